@@ -1,0 +1,107 @@
+# Eyewright: from photographs of a person to fitted, renderable eyes.
+#   make demo                      the whole pipeline on a bundled capture, ending with a picture
+#   make check                     build and run all tests
+#   make CAPTURE=my-capture        run what the capture needs
+#   make help                      everything else
+# On a Debian machine what is missing is installed first.
+
+CAPTURE ?=
+# A folder's name may hold anything: it reaches the programs through the environment, never through a shell's text.
+override CAPTURE := $(value CAPTURE)
+override CAPTURES := $(value CAPTURES)
+export CAPTURE CAPTURES
+
+SAN ?=
+B := build$(if $(SAN),-san)
+BIN := $(if $(SAN),$(B)/bin,bin)
+
+PACKAGES := gcc g++ make pkg-config libopencv-dev libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
+	libinih-dev libxxhash-dev libexif-dev liblapacke-dev libopenblas-dev libcmocka-dev gnuplot-nox
+
+CFLAGS ?= -O3 -g
+CXXFLAGS ?= -O2 -g
+WARN := -Wall -Wextra -Wpedantic -Werror
+SANFLAGS := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+comma := ,
+# No errno from maths and no traps: lets loops with sqrt vectorise. NaN and infinity keep their meaning.
+MATHFLAGS := -fno-math-errno -fno-trapping-math -ffp-contract=off
+ALL_CFLAGS := -std=gnu2x -D_GNU_SOURCE $(WARN) $(CFLAGS) $(SANFLAGS) $(MATHFLAGS) -fopenmp -Ilib -I. -MMD -MP
+ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenmp -Ilib -MMD -MP \
+	-isystem /usr/include/opencv4 -isystem /usr/include/eigen3
+EXR_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
+LIBS := -lopencv_imgcodecs -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
+	-lOpenMeshCore -lOpenEXRCore-3_1 -lexif -llapacke -lopenblas -ljansson -linih -lxxhash -lm
+
+LIB_SRC := $(wildcard lib/*/*.c)
+BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
+LIB_OBJ := $(LIB_SRC:%.c=$B/%.o) $(BRIDGE_SRC:%.cc=$B/%.o)
+STAGES := $(notdir $(patsubst %/,%,$(dir $(wildcard stages/*/main.c)))) render
+PROGRAMS := $(STAGES:%=$(BIN)/%)
+TESTS := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/test_*.c))
+BENCHES := $(patsubst tests/bench/%.c,$B/tests/bench/%,$(wildcard tests/bench/bench_*.c))
+STRESSES := $(patsubst tests/stress/%.c,$B/tests/stress/%,$(wildcard tests/stress/stress_*.c))
+TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c))
+
+.DELETE_ON_ERROR:
+.SECONDARY:
+MAKEFLAGS += --no-builtin-rules
+
+.PHONY: all build setup help check demo bench stress clean distclean batch $(STAGES) FORCE
+all: $(if $(CAPTURE),run,help)
+
+include $(wildcard tests/*.mk)
+
+# ---- set-up: what is missing is installed, or named --------------------------------------------------------------
+$B/.setup: Makefile
+	@tests/setup.sh $(PACKAGES)
+	@mkdir -p $B && touch $@
+setup: $B/.setup
+
+# ---- build -------------------------------------------------------------------------------------------------------
+build: $(PROGRAMS)
+
+$B/%.o: %.c | $B/.setup
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(EXR_CFLAGS) -c $< -o $@
+$B/%.o: %.cc | $B/.setup
+	@mkdir -p $(@D)
+	$(CXX) $(ALL_CXXFLAGS) -c $< -o $@
+
+# Archives and programs are replaced only when their bytes change, so that a comment reruns no stage.
+$B/libeyewright.a: $(LIB_OBJ)
+	@rm -f $@
+	@$(AR) rcsD $@ $(LIB_OBJ)
+
+define program
+$(BIN)/$(1): $(2) $B/libeyewright.a
+	@mkdir -p $$(@D)
+	$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $(LIBS)
+endef
+$(foreach s,$(filter-out render,$(STAGES)),$(eval $(call program,$s,$(patsubst %.c,$B/%.o,$(wildcard stages/$s/*.c)))))
+$(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c))))
+
+$B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a
+	@mkdir -p $(@D)
+	@$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $@ $< $(TEST_LIB_OBJ) $B/libeyewright.a -lcmocka $(LIBS)
+
+# ---- a capture ---------------------------------------------------------------------------------------------------
+# plan looks at the folder and writes what has to run; each stage then runs only if its inputs, configuration or
+# program differ, by their bytes, from what it last ran with.
+.PHONY: run need-capture
+need-capture:
+	@test -n "$$CAPTURE" || { echo "make: say which folder: make CAPTURE=my-capture $(MAKECMDGOALS)" >&2; exit 2; }
+run: need-capture build
+	@$(BIN)/plan --capture="$$CAPTURE"
+	@BIN=$(BIN) $(MAKE) --no-print-directory -f - all < "$$CAPTURE/work/plan.mk"
+$(filter-out plan,$(STAGES)): need-capture build
+	@$(BIN)/plan --capture="$$CAPTURE" --quiet
+	@BIN=$(BIN) $(MAKE) --no-print-directory -f - $@ < "$$CAPTURE/work/plan.mk"
+plan: need-capture build
+	@$(BIN)/plan --capture="$$CAPTURE" --show
+batch: build
+	@set -f; bad=0; for c in $$CAPTURES; do CAPTURE="$$c" $(MAKE) --no-print-directory run || bad=1; done; exit $$bad
+
+clean:
+	@if test -n "$$CAPTURE"; then $(BIN)/plan --capture="$$CAPTURE" --clean; else rm -rf build build-san bin bench; fi
+
+-include $(shell find $B -name '*.d' 2>/dev/null)

@@ -1,0 +1,29 @@
+#include "base/err.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+bool err_set(struct err *err, const char *fmt, ...)
+{
+	if (err_is(err))
+		return false;
+	va_list ap;
+	va_start(ap, fmt);
+	vsnprintf(err->msg, sizeof err->msg, fmt, ap);
+	va_end(ap);
+	return false;
+}
+
+bool err_wrap(struct err *err, const char *fmt, ...)
+{
+	char old[sizeof err->msg], context[sizeof err->msg];
+	va_list ap;
+	va_start(ap, fmt);
+	vsnprintf(context, sizeof context, fmt, ap);
+	va_end(ap);
+	memcpy(old, err->msg, sizeof old);
+	if (snprintf(err->msg, sizeof err->msg, "%.400s: %s", context, old) < 0)
+		err->msg[0] = '?';
+	return false;
+}

@@ -1,0 +1,253 @@
+#include "base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+
+/* Opens a regular file for reading; a pipe or device would hang or never end. */
+static int open_regular(const char *path, struct stat *st, struct err *err)
+{
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	if (fd < 0) {
+		err_set(err, "%s: %s", path, strerror(errno));
+		return -1;
+	}
+	if (fstat(fd, st) || !S_ISREG(st->st_mode)) {
+		err_set(err, "%s: %s", path, S_ISDIR(st->st_mode) ? "is a folder, must be a file" : "is not a regular file");
+		close(fd);
+		return -1;
+	}
+	return fd;
+}
+
+bool file_read(char **data, size_t *size, const char *path, size_t limit, struct err *err)
+{
+	struct stat st;
+	*data = 0;
+	*size = 0;
+	int fd = open_regular(path, &st, err);
+	if (fd < 0)
+		return false;
+	if ((size_t)st.st_size > limit) {
+		close(fd);
+		return err_set(err, "%s: %lld bytes, must be <= %zu", path, (long long)st.st_size, limit);
+	}
+	size_t have = 0, want = (size_t)st.st_size;
+	char *buf = mem_array(want + 1, 1);
+	while (have < want) {
+		ssize_t got = read(fd, buf + have, want - have);
+		if (got < 0 && errno == EINTR)
+			continue;
+		if (got <= 0)
+			break;
+		have += (size_t)got;
+	}
+	close(fd);
+	if (have < want) {
+		free(buf);
+		return err_set(err, "%s: ends after %zu of %zu bytes", path, have, want);
+	}
+	buf[have] = 0;
+	*data = buf;
+	*size = have;
+	return true;
+}
+
+bool file_mkdirs(const char *dir, struct err *err)
+{
+	char *path = mem_str(dir);
+	for (char *p = path + 1;; p++) {
+		char c = *p;
+		if (c != '/' && c)
+			continue;
+		*p = 0;
+		if (mkdir(path, 0777) && errno != EEXIST) {
+			err_set(err, "%s: %s", path, strerror(errno));
+			free(path);
+			return false;
+		}
+		if (!c)
+			break;
+		*p = '/';
+	}
+	free(path);
+	struct stat st;
+	if (stat(dir, &st) || !S_ISDIR(st.st_mode))
+		return err_set(err, "%s: is not a folder", dir);
+	return true;
+}
+
+/* A name beside `path`, short whatever its length, the same at every run so that a killed run leaves
+ * at most one behind, which the next overwrites. */
+static char *temporary_beside(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	char hash[33];
+	file_hash_bytes(hash, path, strlen(path));
+	hash[16] = 0;
+	return mem_printf("%.*s.%s.new", slash ? (int)(slash - path + 1) : 0, path, hash);
+}
+
+static bool write_all(int fd, const char *data, size_t size)
+{
+	while (size) {
+		ssize_t put = write(fd, data, size);
+		if (put < 0 && errno == EINTR)
+			continue;
+		if (put <= 0)
+			return false;
+		data += put;
+		size -= (size_t)put;
+	}
+	return true;
+}
+
+bool file_write(const char *path, const void *data, size_t size, struct err *err)
+{
+	char *slash = strrchr(path, '/');
+	if (slash && slash != path) {
+		char *dir = mem_printf("%.*s", (int)(slash - path), path);
+		bool ok = file_mkdirs(dir, err);
+		free(dir);
+		if (!ok)
+			return false;
+	}
+	char *tmp = temporary_beside(path);
+	int fd = open(tmp, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+	bool ok = fd >= 0 && write_all(fd, data, size);
+	int why = errno;
+	if (fd >= 0 && close(fd) && ok) {
+		ok = false;
+		why = errno;
+	}
+	if (ok && rename(tmp, path)) {
+		ok = false;
+		why = errno;
+	}
+	if (!ok) {
+		if (fd >= 0)
+			unlink(tmp);
+		err_set(err, "%s: cannot write: %s", path, strerror(why));
+	}
+	free(tmp);
+	return ok;
+}
+
+bool file_exists(const char *path)
+{
+	struct stat st;
+	return stat(path, &st) == 0;
+}
+
+bool file_remove(const char *path, struct err *err)
+{
+	if (unlink(path) && errno != ENOENT)
+		return err_set(err, "%s: cannot remove: %s", path, strerror(errno));
+	return true;
+}
+
+static void hash_text(char out[33], XXH128_hash_t h)
+{
+	snprintf(out, 33, "%016llx%016llx", (unsigned long long)h.high64, (unsigned long long)h.low64);
+}
+
+void file_hash_bytes(char out[33], const void *data, size_t size)
+{
+	hash_text(out, XXH3_128bits(data, size));
+}
+
+bool file_hash(char out[33], const char *path, struct err *err)
+{
+	struct stat st;
+	int fd = open_regular(path, &st, err);
+	if (fd < 0)
+		return false;
+	enum { PIECE = 1 << 18 };
+	XXH3_state_t *state = XXH3_createState();
+	char *buf = mem_array(PIECE, 1);
+	XXH3_128bits_reset(state);
+	ssize_t got;
+	while ((got = read(fd, buf, PIECE)) > 0)
+		XXH3_128bits_update(state, buf, (size_t)got);
+	hash_text(out, XXH3_128bits_digest(state));
+	XXH3_freeState(state);
+	free(buf);
+	close(fd);
+	return got == 0 ? true : err_set(err, "%s: cannot read: %s", path, strerror(errno));
+}
+
+static int by_bytes(const void *a, const void *b)
+{
+	return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+bool file_list(struct file_list *out, const char *dir, struct err *err)
+{
+	*out = (struct file_list){ 0 };
+	DIR *d = opendir(dir);
+	if (!d)
+		return errno == ENOENT ? true : err_set(err, "%s: %s", dir, strerror(errno));
+	struct dirent *e;
+	while ((e = readdir(d))) {
+		if (e->d_name[0] == '.')
+			continue;
+		out->names = mem_grow(out->names, (size_t)out->n + 1, sizeof *out->names);
+		out->names[out->n++] = mem_str(e->d_name);
+	}
+	closedir(d);
+	if (out->n)
+		qsort(out->names, (size_t)out->n, sizeof *out->names, by_bytes);
+	return true;
+}
+
+void file_list_free(struct file_list *list)
+{
+	for (int i = 0; i < list->n; i++)
+		free(list->names[i]);
+	free(list->names);
+	*list = (struct file_list){ 0 };
+}
+
+bool file_is_relative(const char *rel)
+{
+	if (!*rel || *rel == '/')
+		return false;
+	for (const char *p = rel; p; p = strchr(p, '/')) {
+		p += *p == '/';
+		if (p[0] == '.' && p[1] == '.' && (!p[2] || p[2] == '/'))
+			return false;
+	}
+	return true;
+}
+
+bool file_inside(char **out, const char *root, const char *rel, struct err *err)
+{
+	*out = 0;
+	if (!file_is_relative(rel))
+		return err_set(err, "%s: leads out of the capture folder", rel);
+	char *joined = mem_printf("%s/%s", root, rel);
+	char *real_root = realpath(root, 0), *real = realpath(joined, 0);
+	size_t n = real_root ? strlen(real_root) : 0;
+	bool inside = real && real_root && !strncmp(real, real_root, n) && (real[n] == '/' || !real[n] || n == 1);
+	if (!real)
+		err_set(err, "%s: %s", joined, strerror(errno));
+	else if (!inside)
+		err_set(err, "%s: leads out of the capture folder", rel);
+	free(joined);
+	free(real_root);
+	if (!inside) {
+		free(real);
+		return false;
+	}
+	*out = real;
+	return true;
+}

@@ -1,0 +1,49 @@
+/* file: whole files in and out, hashes, folders. Paths are passed to the system as they are:
+ * no shell, no pattern. */
+#ifndef BASE_FILE_H
+#define BASE_FILE_H
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/err.h"
+
+/* The whole file, with a zero byte behind it. *data is the caller's, free().
+ * False, err set, when it is not a regular file, cannot be read, or is longer than `limit` bytes. */
+bool file_read(char **data, size_t *size, const char *path, size_t limit, struct err *err);
+
+/* Writes beside `path`, flushes and renames: a reader sees the old file or the new one, whole.
+ * Folders on the way are made. On failure what stood there stays. */
+bool file_write(const char *path, const void *data, size_t size, struct err *err);
+
+/* mkdir -p */
+bool file_mkdirs(const char *dir, struct err *err);
+
+bool file_exists(const char *path);
+
+/* A missing file is no error. */
+bool file_remove(const char *path, struct err *err);
+
+/* 128-bit XXH3 of the bytes, as 32 hexadecimal digits and a zero. */
+void file_hash_bytes(char out[33], const void *data, size_t size);
+
+/* The same of a file; hashed in pieces, never held whole. False when it cannot be read. */
+bool file_hash(char out[33], const char *path, struct err *err);
+
+/* Names in `dir` (no path), sorted by bytes; those beginning with a dot are left out.
+ * A missing folder is empty. names: free with file_list_free. */
+struct file_list {
+	char **names;
+	int n;
+};
+bool file_list(struct file_list *out, const char *dir, struct err *err);
+void file_list_free(struct file_list *list);
+
+/* True when `rel` stays inside the folder it is joined to: relative, without "..". Links are not followed
+ * here: file_inside() does. */
+bool file_is_relative(const char *rel);
+
+/* Joins and resolves links; false, err set, when the result lies outside `root` or does not exist.
+ * *out: free(). */
+bool file_inside(char **out, const char *root, const char *rel, struct err *err);
+
+#endif

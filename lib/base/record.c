@@ -1,0 +1,318 @@
+#include "base/record.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+
+#define HASHES "work/.made/hashes"
+
+static char *in_capture(const char *capture, const char *rel)
+{
+	return *rel == '/' ? mem_str(rel) : mem_printf("%s/%s", capture, rel);
+}
+
+static char *record_path(const char *capture, const char *stage)
+{
+	return mem_printf("%s/work/.made/%s.json", capture, stage);
+}
+
+/* A record that cannot be read is as good as none: the stage runs again. */
+static json_t *load_object(const char *path)
+{
+	json_t *json = json_load_file(path, 0, 0);
+	if (!json_is_object(json)) {
+		json_decref(json);
+		json = json_object();
+	}
+	return json;
+}
+
+static json_t *config_object(const char *lines)
+{
+	json_t *config = json_object();
+	while (*lines) {
+		const char *end = strchrnul(lines, '\n'), *eq = memmem(lines, (size_t)(end - lines), " = ", 3);
+		if (eq) {
+			char *key = mem_printf("%.*s", (int)(eq - lines), lines);
+			json_object_set_new(config, key, json_stringn_nocheck(eq + 3, (size_t)(end - eq - 3)));
+			free(key);
+		}
+		lines = *end ? end + 1 : end;
+	}
+	return config;
+}
+
+static struct record *open_for_hashing(const char *capture, const char *stage)
+{
+	struct record *r = mem_new(1, sizeof *r);
+	char *hashes = in_capture(capture, HASHES);
+	char *old = record_path(capture, stage);
+	r->capture = mem_str(capture);
+	r->stage = stage;
+	r->hashes = load_object(hashes);
+	r->old = load_object(old);
+	free(hashes);
+	free(old);
+	return r;
+}
+
+struct record *record_open(const char *capture, const char *stage, const char *program_path, const char *config)
+{
+	struct record *r = open_for_hashing(capture, stage);
+	r->now = json_object();
+	json_object_set_new(r->now, "stage", json_string(stage));
+	const char *program = record_hash(r, program_path);
+	json_object_set_new(r->now, "program", json_string(program ? program : ""));
+	json_object_set_new(r->now, "config", config_object(config));
+	json_object_set_new(r->now, "lists", json_object());
+	json_object_set_new(r->now, "outputs", json_object());
+	return r;
+}
+
+void record_free(struct record *r)
+{
+	if (!r)
+		return;
+	json_decref(r->old);
+	json_decref(r->now);
+	json_decref(r->hashes);
+	free(r->capture);
+	free(r);
+}
+
+static json_int_t ns(struct timespec t)
+{
+	return (json_int_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static bool same_file(const json_t *entry, const struct stat *st)
+{
+	return json_integer_value(json_object_get(entry, "size")) == (json_int_t)st->st_size
+	       && json_integer_value(json_object_get(entry, "inode")) == (json_int_t)st->st_ino
+	       && json_integer_value(json_object_get(entry, "mtime")) == ns(st->st_mtim)
+	       && json_integer_value(json_object_get(entry, "ctime")) == ns(st->st_ctim);
+}
+
+/* File names are bytes, JSON is UTF-8: bytes that are neither are escaped, so that no two names meet. */
+static char *json_key(const char *rel)
+{
+	json_t *probe = json_string(rel);
+	if (probe) {
+		json_decref(probe);
+		return mem_str(rel);
+	}
+	char *key = mem_new(3 * strlen(rel) + 2, 1), *at = key;
+	*at++ = '%';
+	for (; *rel; rel++)
+		at += sprintf(at, "%%%02x", (unsigned char)*rel);
+	return key;
+}
+
+const char *record_hash(struct record *r, const char *rel)
+{
+	char *path = in_capture(r->capture, rel), *key = json_key(rel);
+	struct stat st;
+	const char *hash = 0;
+	if (stat(path, &st) == 0) {
+		json_t *entry = json_object_get(r->hashes, key);
+		struct timespec now;
+		clock_gettime(CLOCK_REALTIME, &now);
+		if (!entry || !same_file(entry, &st)) {
+			char text[33];
+			struct err err = { 0 };
+			entry = 0;
+			if (file_hash(text, path, &err)) {
+				// A file written this very moment may change again within the clock's grain: do not trust its date.
+				bool settled = ns(now) - ns(st.st_mtim) > 50000000;
+				entry = json_pack("{s:I,s:I,s:I,s:I,s:s}", "size", (json_int_t)st.st_size, "inode",
+				                  (json_int_t)st.st_ino, "mtime", settled ? ns(st.st_mtim) : 0, "ctime",
+				                  ns(st.st_ctim), "hash", text);
+				json_object_set_new(r->hashes, key, entry);
+				r->hashes_changed = true;
+			}
+		}
+		hash = entry ? json_string_value(json_object_get(entry, "hash")) : 0;
+	}
+	free(path);
+	free(key);
+	return hash;
+}
+
+void record_list(struct record *r, const char *dir, const char *hash)
+{
+	json_object_set_new(json_object_get(r->now, "lists"), dir, json_string(hash));
+}
+
+void record_listing_hash(char out[33], int n, char *const names[])
+{
+	size_t size = 0;
+	char *all = 0;
+	for (int i = 0; i < n; i++) {
+		size_t m = strlen(names[i]) + 1;
+		all = mem_grow(all, size + m, 1);
+		memcpy(all + size, names[i], m);
+		size += m;
+	}
+	file_hash_bytes(out, all ? all : "", size);
+	free(all);
+}
+
+static json_t *input_hashes(struct record *r, int n, const char *const in[])
+{
+	json_t *inputs = json_object();
+	for (int i = 0; i < n; i++) {
+		const char *hash = record_hash(r, in[i]);
+		char *key = json_key(in[i]);
+		json_object_set_new(inputs, key, json_string(hash ? hash : ""));
+		free(key);
+	}
+	return inputs;
+}
+
+bool record_fresh(struct record *r, const char *out, int n, const char *const in[])
+{
+	char *key = json_key(out);
+	json_t *made = json_object_get(json_object_get(r->old, "outputs"), key);
+	const char *hash = made ? record_hash(r, out) : 0, *was = json_string_value(json_object_get(made, "hash"));
+	bool fresh = hash && was && !strcmp(hash, was)
+	             && json_equal(json_object_get(r->old, "program"), json_object_get(r->now, "program"))
+	             && json_equal(json_object_get(r->old, "config"), json_object_get(r->now, "config"));
+	if (fresh) {
+		json_t *inputs = input_hashes(r, n, in);
+		fresh = json_equal(inputs, json_object_get(made, "inputs"));
+		json_decref(inputs);
+	}
+	if (fresh)
+		json_object_set(json_object_get(r->now, "outputs"), key, made);
+	free(key);
+	return fresh;
+}
+
+void record_made(struct record *r, const char *out, int n, const char *const in[])
+{
+	const char *hash = record_hash(r, out);
+	char *key = json_key(out);
+	json_t *made = json_object();
+	json_object_set_new(made, "hash", json_string(hash ? hash : ""));
+	json_object_set_new(made, "inputs", input_hashes(r, n, in));
+	json_object_set_new(json_object_get(r->now, "outputs"), key, made);
+	free(key);
+}
+
+static bool save_json(const char *path, const json_t *json, struct err *err)
+{
+	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS);
+	bool ok = text && file_write(path, text, strlen(text), err);
+	free(text);
+	return ok;
+}
+
+bool record_save(struct record *r, bool complete, struct err *err)
+{
+	char *path = record_path(r->capture, r->stage), *hashes = in_capture(r->capture, HASHES);
+	json_object_set_new(r->now, "complete", json_boolean(complete));
+	bool ok = save_json(path, r->now, err);
+	if (ok && r->hashes_changed)
+		ok = save_json(hashes, r->hashes, err);
+	free(path);
+	free(hashes);
+	return ok;
+}
+
+static bool config_holds(const json_t *config, const char *stage, const struct conf *conf, char **why)
+{
+	const struct conf_item *q = conf_find(conf, "quality", 0);
+	const char *key;
+	json_t *value;
+	json_object_foreach((json_t *)config, key, value) {
+		const struct conf_item *item = conf_find(conf, key, q ? q->value : 0);
+		if (!item || strcmp(item->value, json_string_value(value))) {
+			*why = mem_printf("%s has changed", key);
+			return false;
+		}
+	}
+	// A key that was not there when the stage ran. Its own keys are all in the record, known ones as well as
+	// the shared ones it reads; pattern keys of photographs count when they name something new.
+	size_t m = strlen(stage);
+	for (int i = 0; i < conf->n; i++) {
+		const char *k = conf->items[i].key;
+		bool own = !strncmp(k, stage, m) && k[m] == '.', each = !strncmp(k, "photo.", 6);
+		if (conf->items[i].layer && (own || each) && !json_object_get(config, k)) {
+			*why = mem_printf("%s is new", k);
+			return false;
+		}
+	}
+	return true;
+}
+
+static bool files_hold(struct record *r, const json_t *files, const char *kind, char **why)
+{
+	const char *rel;
+	json_t *value;
+	json_object_foreach((json_t *)files, rel, value) {
+		const json_t *was = json_is_object(value) ? json_object_get(value, "hash") : value;
+		const char *hash = *rel == '%' ? 0 : record_hash(r, rel), *old = json_string_value(was);
+		if (!old || strcmp(hash ? hash : "", old)) {
+			*why = mem_printf("%s %s %s", kind, rel, hash ? "has changed" : "is missing");
+			return false;
+		}
+		if (json_is_object(value) && !files_hold(r, json_object_get(value, "inputs"), "input", why))
+			return false;
+	}
+	return true;
+}
+
+static bool lists_hold(struct record *r, char **why)
+{
+	const char *dir;
+	json_t *value;
+	json_object_foreach(json_object_get(r->old, "lists"), dir, value) {
+		char *path = in_capture(r->capture, dir), hash[33];
+		struct file_list list;
+		struct err err = { 0 };
+		file_list(&list, path, &err);
+		record_listing_hash(hash, list.n, list.names);
+		file_list_free(&list);
+		free(path);
+		if (strcmp(hash, json_string_value(value))) {
+			*why = mem_printf("files have come or gone in %s/", dir);
+			return false;
+		}
+	}
+	return true;
+}
+
+bool record_holds(const char *capture, const char *stage, const char *program_path, const struct conf *conf,
+                  char **why)
+{
+	char *reason = 0;
+	struct record *r = open_for_hashing(capture, stage);
+	const char *program = record_hash(r, program_path),
+	           *was = json_string_value(json_object_get(r->old, "program"));
+	bool holds = false;
+	if (!json_is_true(json_object_get(r->old, "complete")))
+		reason = mem_str(json_object_size(r->old) ? "its last run did not finish" : "never run");
+	else if (!program || !was || strcmp(program, was))
+		reason = mem_str("the program has changed");
+	else
+		holds = config_holds(json_object_get(r->old, "config"), stage, conf, &reason)
+		        && lists_hold(r, &reason)
+		        && files_hold(r, json_object_get(r->old, "outputs"), "output", &reason);
+	if (r->hashes_changed) {
+		char *hashes = in_capture(capture, HASHES);
+		struct err err = { 0 };
+		save_json(hashes, r->hashes, &err);  // only a memory: losing it costs time, nothing else
+		free(hashes);
+	}
+	record_free(r);
+	if (why)
+		*why = reason;
+	else
+		free(reason);
+	return holds;
+}

@@ -1,0 +1,71 @@
+#include "base/say.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/err.h"
+#include "base/file.h"
+#include "base/mem.h"
+
+static json_t *log_figures, *log_skips;  // of this process's one stage
+
+static void print_line(const char *who, const char *text)
+{
+	size_t n = strlen(who) + 4 * strlen(text) + 4;
+	char *line = mem_new(n, 1), *at = line;
+	at += sprintf(at, "%s: ", who);
+	for (const unsigned char *p = (const unsigned char *)text; *p; p++)
+		if (*p < 0x20 || *p == 0x7f)
+			at += sprintf(at, "\\x%02x", *p);
+		else
+			*at++ = (char)*p;
+	*at++ = '\n';
+	fwrite(line, 1, (size_t)(at - line), stderr);
+	free(line);
+}
+
+void say_line(const char *who, const char *fmt, va_list ap)
+{
+	char *text = 0;
+	if (vasprintf(&text, fmt, ap) >= 0)
+		print_line(who, text);
+	free(text);
+}
+
+void say_error(const char *who, const char *text)
+{
+	print_line(who, text);
+}
+
+void say_log_open(void)
+{
+	log_figures = json_object();
+	log_skips = json_array();
+}
+
+void say_log_figure(const char *key, double value, const char *unit)
+{
+	if (isfinite(value))
+		json_object_set_new(log_figures, key, json_pack("{s:f,s:s}", "value", value, "unit", unit));
+}
+
+void say_log_skipped(const char *text)
+{
+	json_array_append_new(log_skips, json_string(text));
+}
+
+void say_log_write(const char *path, const char *stage, double seconds, const char *error)
+{
+	json_t *log = json_pack("{s:s,s:f,s:s,s:o,s:o}", "stage", stage, "seconds", seconds, "error", error,
+	                        "figures", log_figures, "skipped", log_skips);
+	char *text = log ? json_dumps(log, JSON_INDENT(1) | JSON_SORT_KEYS) : 0;
+	struct err err = { 0 };
+	if (text)
+		file_write(path, text, strlen(text), &err);  // a log that cannot be written is no reason to fail
+	free(text);
+	json_decref(log);
+	log_figures = log_skips = 0;
+}

@@ -1,0 +1,244 @@
+#include "base/stage.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <omp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/call.h"
+#include "base/mem.h"
+#include "base/record.h"
+#include "base/say.h"
+#include "base/version.h"
+
+static double now_s(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static const char *keep(struct stage *stage, char *s)
+{
+	stage->strings = mem_grow(stage->strings, (size_t)stage->n_strings + 1, sizeof *stage->strings);
+	return stage->strings[stage->n_strings++] = s;
+}
+
+_Noreturn static void die(const struct stage *stage, const struct err *err, int status)
+{
+	say_error(stage->name, err->msg);
+	exit(status);
+}
+
+/* One stage at a time in a folder: a second make waits for the first instead of writing beside it. */
+static bool lock_work(struct stage *stage, struct err *err)
+{
+	const char *dir = stage_path(stage, "work/.made"), *path = stage_path(stage, "work/.made/lock");
+	if (!file_mkdirs(dir, err))
+		return false;
+	stage->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+	if (stage->lock < 0)
+		return err_set(err, "%s: %s", path, strerror(errno));
+	if (flock(stage->lock, LOCK_EX | LOCK_NB)) {
+		stage_note(stage, "waiting for another program in %s", stage->capture);
+		while (flock(stage->lock, LOCK_EX) && errno == EINTR)
+			;
+	}
+	return true;
+}
+
+static char *slice(struct stage *stage)
+{
+	char *text = 0;
+	size_t size = 0;
+	FILE *f = open_memstream(&text, &size);
+	opt_print(f, stage->name, stage->n_opts, stage->opts, &stage->conf);
+	fclose(f);
+	return text;
+}
+
+void stage_start(struct stage *stage, const char *name, const char *about, int argc, char **argv, int n_opts,
+                 const struct opt opts[])
+{
+	*stage = (struct stage){ .name = name, .n_opts = n_opts, .opts = opts, .lock = -1, .start_s = now_s() };
+	struct err err = { 0 };
+	struct call call;
+	call_parse(&call, name, about, argc, argv, n_opts, opts, &stage->conf);
+	stage->capture = call.capture;
+	stage->quiet = call.quiet;
+	stage->force = call.force;
+	if (!call_load(&call, name, &stage->conf, &err) || !opt_resolve(name, n_opts, opts, &stage->conf, &err))
+		die(stage, &err, strncmp(err.msg, "command line:", 13) ? 1 : 2);
+	if (call.print_config) {
+		opt_print(stdout, name, n_opts, opts, &stage->conf);
+		exit(0);
+	}
+	// At most as many as there are: results do not depend on it, memory does.
+	int all = omp_get_num_procs();
+	stage->threads = call.threads > 0 && call.threads < 4 * all ? call.threads : all;
+	omp_set_num_threads(stage->threads);
+	struct file_list list;
+	if (!file_list(&list, stage->capture, &err) || !file_exists(stage->capture)) {
+		err_set(&err, "%s: no such folder", stage->capture);
+		die(stage, &err, 1);
+	}
+	file_list_free(&list);
+	if (!lock_work(stage, &err))
+		die(stage, &err, 1);
+	char *program = call_program_path(), *config = slice(stage);
+	stage->record = record_open(stage->capture, name, program, config);
+	free(program);
+	free(config);
+	say_log_open();
+}
+
+const char *stage_path(struct stage *stage, const char *fmt, ...)
+{
+	va_list ap;
+	char *rel = 0;
+	va_start(ap, fmt);
+	if (vasprintf(&rel, fmt, ap) < 0)
+		rel = mem_str("");
+	va_end(ap);
+	char *path = mem_printf("%s/%s", stage->capture, rel);
+	free(rel);
+	return keep(stage, path);
+}
+
+bool stage_list(struct stage *stage, struct file_list *out, const char *dir, struct err *err)
+{
+	char hash[33];
+	if (!file_list(out, stage_path(stage, "%s", dir), err))
+		return false;
+	record_listing_hash(hash, out->n, out->names);
+	record_list(stage->record, dir, hash);
+	return true;
+}
+
+bool stage_fresh(struct stage *stage, const char *out, int n, const char *const in[])
+{
+	return !stage->force && record_fresh(stage->record, out, n, in);
+}
+
+const char *stage_made_by(struct stage *stage, int n, const char *const in[])
+{
+	json_t *made = json_object(), *inputs = json_object();
+	for (int i = 0; i < n; i++) {
+		const char *hash = record_hash(stage->record, in[i]);
+		if (json_object_set_new(inputs, in[i], json_string(hash ? hash : "")))
+			json_object_set_new(inputs, "(name is not UTF-8)", json_string(hash ? hash : ""));
+	}
+	json_object_set_new(made, "stage", json_string(stage->name));
+	json_object_set_new(made, "version", json_string(EYEWRIGHT_VERSION));
+	json_object_set(made, "config", json_object_get(stage->record->now, "config"));
+	json_object_set_new(made, "inputs", inputs);
+	char *text = json_dumps(made, JSON_COMPACT | JSON_SORT_KEYS);
+	json_decref(made);
+	return keep(stage, text);
+}
+
+bool stage_made(struct stage *stage, const char *out, int n, const char *const in[], struct err *err)
+{
+	record_made(stage->record, out, n, in);
+	return record_save(stage->record, false, err);
+}
+
+static void end_line(struct stage *stage)
+{
+	if (stage->progress_open)
+		fputc('\n', stderr);
+	stage->progress_open = false;
+}
+
+void stage_note(struct stage *stage, const char *fmt, ...)
+{
+	if (stage->quiet)
+		return;
+	va_list ap;
+	va_start(ap, fmt);
+	end_line(stage);
+	say_line(stage->name, fmt, ap);
+	va_end(ap);
+}
+
+void stage_warn(struct stage *stage, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	end_line(stage);
+	say_line(stage->name, fmt, ap);
+	va_end(ap);
+}
+
+void stage_progress(struct stage *stage, int done, int total, const char *what)
+{
+	double now = now_s(), passed = now - stage->start_s;
+	bool tty = isatty(STDERR_FILENO);
+	int tenths = total > 0 ? (int)(10LL * done / total) : 10;
+	if (stage->quiet || done <= 0 || passed < 1)
+		return;
+	if (tty ? now - stage->progress_s < 0.1 && done < total : tenths == stage->progress_shown)
+		return;
+	stage->progress_s = now;
+	stage->progress_shown = tenths;
+	double left = passed * (total - done) / done;
+	if (!tty) {
+		stage_note(stage, "%s: %d of %d, about %.0f s left", what, done, total, left);
+		return;
+	}
+	fprintf(stderr, "\r%s: %s [%.*s%.*s] %d/%d, %.0f s left \033[K", stage->name, what, 2 * tenths,
+	        "####################", 20 - 2 * tenths, "....................", done, total, left);
+	stage->progress_open = true;
+	if (done >= total)
+		end_line(stage);
+}
+
+void stage_figure(struct stage *stage, const char *key, double value, const char *unit)
+{
+	(void)stage;
+	say_log_figure(key, value, unit);
+}
+
+void stage_skipped(struct stage *stage, const char *fmt, ...)
+{
+	va_list ap;
+	char *text = 0;
+	va_start(ap, fmt);
+	if (vasprintf(&text, fmt, ap) < 0)
+		text = mem_str("");
+	va_end(ap);
+	say_log_skipped(text);
+	stage_note(stage, "skipped: %s", text);
+	free(text);
+}
+
+int stage_end(struct stage *stage, struct err *err)
+{
+	double seconds = now_s() - stage->start_s;
+	bool ok = !err_is(err);
+	end_line(stage);
+	struct err late = { 0 };
+	if (!record_save(stage->record, ok, &late) && ok)
+		*err = late;
+	const char *log = stage_path(stage, "work/log/%s.json", stage->name);
+	say_log_write(log, stage->name, seconds, err->msg);
+	if (err_is(err))
+		say_error(stage->name, err->msg);
+	else
+		stage_note(stage, "done in %.2f s", seconds);
+	for (int i = 0; i < stage->n_strings; i++)
+		free(stage->strings[i]);
+	free(stage->strings);
+	record_free(stage->record);
+	opt_free(stage->n_opts, stage->opts);
+	conf_free(&stage->conf);
+	if (stage->lock >= 0)
+		close(stage->lock);
+	return err_is(err) ? 1 : 0;
+}

@@ -1,0 +1,69 @@
+/* vec: small fixed-size vectors and matrices, double. Matrices are row-major [3][3]. */
+#ifndef MATH_VEC_H
+#define MATH_VEC_H
+#include <math.h>
+
+static inline double vec_dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double vec_norm(const double a[3])
+{
+	return sqrt(vec_dot(a, a));
+}
+
+static inline void vec_cross(double out[3], const double a[3], const double b[3])
+{
+	double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+	out[0] = x;
+	out[1] = y;
+	out[2] = z;
+}
+
+/* out = a + s b */
+static inline void vec_add(double out[3], const double a[3], double s, const double b[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = a[i] + s * b[i];
+}
+
+static inline void vec_unit(double out[3], const double a[3])
+{
+	double n = vec_norm(a);
+	for (int i = 0; i < 3; i++)
+		out[i] = a[i] / n;
+}
+
+static inline void mat_vec(double out[3], const double m[3][3], const double a[3])
+{
+	double t[3] = { vec_dot(m[0], a), vec_dot(m[1], a), vec_dot(m[2], a) };
+	for (int i = 0; i < 3; i++)
+		out[i] = t[i];
+}
+
+/* out = mᵀ a */
+static inline void mat_tvec(double out[3], const double m[3][3], const double a[3])
+{
+	double t[3];
+	for (int i = 0; i < 3; i++)
+		t[i] = m[0][i] * a[0] + m[1][i] * a[1] + m[2][i] * a[2];
+	for (int i = 0; i < 3; i++)
+		out[i] = t[i];
+}
+
+static inline void mat_mul(double out[3][3], const double a[3][3], const double b[3][3])
+{
+	double t[3][3];
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			t[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			out[i][j] = t[i][j];
+}
+
+/* The smallest rotation that carries unit vector a onto unit vector b: out a = b. */
+void mat_smallest_rotation(double out[3][3], const double a[3], const double b[3]);
+
+#endif

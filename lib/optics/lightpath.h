@@ -1,0 +1,40 @@
+/* lightpath: the point K of the cornea through which light between P (inside) and C (outside) goes; iris paper
+ * section 3, eqs. 2-8, and beyond it. Fermat: L(K) = |CK| + n |KP| is stationary.
+ */
+#ifndef OPTICS_LIGHTPATH_H
+#define OPTICS_LIGHTPATH_H
+#include "optics/cornea.h"
+
+enum lightpath_status {
+	LIGHTPATH_OK,
+	LIGHTPATH_BEYOND_RIM,  // the path meets the surface outside the limbus: blocked by the sclera
+	LIGHTPATH_GRAZING,     // stationary, but past 90 degrees of incidence: no physical path
+	LIGHTPATH_NONE,        // no stationary point
+};
+
+/* P, C and K in the eye frame, mm. Newton in two dimensions from the closed-form start, double, to 1e-13 mm. */
+enum lightpath_status lightpath_solve(double K[3], const struct cornea *cornea, const double P[3], const double C[3]);
+
+/* The same for a source at infinity in unit direction w (from the eye towards the light). */
+enum lightpath_status lightpath_solve_directional(double K[3], const struct cornea *cornea, const double P[3],
+                                                  const double w[3]);
+
+/* n solves in float, structure of arrays, vectorised: px[n] .. wz[n] in (w: unit, towards the light),
+ * kx[n] .. kz[n] out; status[n] may be null. steps: Newton steps (4: 2e-5 mm worst). */
+void lightpath_batch(int n, const float *px, const float *py, const float *pz, const float *wx, const float *wy,
+                     const float *wz, float *kx, float *ky, float *kz, unsigned char *status,
+                     const struct cornea *cornea, int steps);
+
+/* The paper's algorithm 1 as printed, with its thresholds; alpha in mm (0.5 = the paper's 0.05 cm). */
+struct algorithm1_conf {
+	double alpha, eps_inner, eps_outer;
+	int max_inner, max_outer;
+};
+enum lightpath_status lightpath_algorithm1(double K[3], const struct cornea *cornea, const double P[3],
+                                           const double C[3], const struct algorithm1_conf *conf);
+
+/* Irradiance at P on a plane facing -z, over the irradiance of the same light on a plane facing it outside:
+ * T cos i |dK/dP| / N_z (the caustic). K as solved for P and w. */
+double lightpath_gain(const struct cornea *cornea, const double P[3], const double w[3], const double K[3]);
+
+#endif
