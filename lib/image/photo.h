@@ -4,6 +4,7 @@
  */
 #ifndef IMAGE_PHOTO_H
 #define IMAGE_PHOTO_H
+#include <stddef.h>
 #include <stdint.h>
 
 #include "image/image.h"
