@@ -19,7 +19,7 @@ struct fit {
 	double theta, phi, theta_sigma;
 	double coverage, rms_px;
 	double edge_sigma_px;       // width of the limbal step in the photograph
-	struct camera camera;       // as used; focal_px NAN: weak perspective
+	struct camera camera;       // as used; CAMERA_NONE: weak perspective, a nominal camera 1000 mm away
 	int width, height;          // of the photograph, px
 	double limbus_aspect, limbus_aspect_sigma;
 };
@@ -29,10 +29,10 @@ bool fit_load(struct fit *fit, const char *path, struct err *err);
 /* made_by: stage_made_by(). extra: JSON object text of further keys, or null. */
 bool fit_save(const struct fit *fit, const char *path, const char *made_by, const char *extra, struct err *err);
 
-/* Camera centre in the eye frame; a point 1 m away along the viewing direction under weak perspective. */
+/* Camera centre in the eye frame, mm. */
 void fit_camera_in_eye(double center[3], const struct fit *fit);
 
-/* Ray of a photo pixel in the eye frame: origin and unit direction. Under weak perspective the rays are parallel. */
+/* Ray of a photo pixel in the eye frame: origin and unit direction. */
 void fit_ray(double origin[3], double dir[3], const struct fit *fit, const double px[2]);
 
 /* Photo pixel of a point in the eye frame, no refraction. False behind the camera. */
