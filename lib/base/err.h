@@ -6,6 +6,10 @@
 #define BASE_ERR_H
 #include <stdbool.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct err {
 	char msg[1024];
 };
@@ -22,5 +26,9 @@ static inline bool err_is(const struct err *err)
 {
 	return err->msg[0] != 0;
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

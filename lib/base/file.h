@@ -7,6 +7,10 @@
 
 #include "base/err.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The whole file, with a zero byte behind it. *data is the caller's, free().
  * False, err set, when it is not a regular file, cannot be read, or is longer than `limit` bytes. */
 bool file_read(char **data, size_t *size, const char *path, size_t limit, struct err *err);
@@ -46,4 +50,7 @@ bool file_is_relative(const char *rel);
  * *out: free(). */
 bool file_inside(char **out, const char *root, const char *rel, struct err *err);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

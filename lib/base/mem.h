@@ -3,6 +3,10 @@
 #define BASE_MEM_H
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
 /* n objects of `size` bytes, zeroed. Owned by the caller; free(). */
@@ -20,4 +24,7 @@ char *mem_str(const char *s);
 __attribute__((format(printf, 1, 2)))
 char *mem_printf(const char *fmt, ...);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

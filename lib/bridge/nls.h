@@ -13,7 +13,7 @@ typedef bool (*nls_fn)(void *ctx, const double *x, double *r, double *J);
 struct nls_conf {
 	int max_iter;             // 50 when 0
 	double ftol, gtol, xtol;  // Ceres' defaults (1e-6, 1e-10, 1e-8) when 0
-	bool numeric;             // fn never fills J: derivatives by central differences (Ridders where `exact`)
+	bool numeric;             // fn never fills J: derivatives by central differences
 };
 
 struct nls_result {

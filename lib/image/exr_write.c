@@ -1,0 +1,147 @@
+#include "image/exr.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <openexr.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+
+enum { EXR_MAX_CHANNELS = 16 };
+
+/* The file is built in memory and goes out in one atomic write. */
+struct sink {
+	char *data;
+	size_t size, room;
+	char message[256];
+};
+
+static int64_t take_bytes(exr_const_context_t ctxt, void *user, const void *data, uint64_t size, uint64_t offset,
+                          exr_stream_error_func_ptr_t error)
+{
+	(void)ctxt;
+	(void)error;
+	struct sink *sink = user;
+	size_t end = (size_t)offset + (size_t)size;
+	if (end > sink->room) {
+		sink->room = 2 * end;
+		sink->data = mem_grow(sink->data, sink->room, 1);
+	}
+	if (offset > sink->size)
+		memset(sink->data + sink->size, 0, (size_t)offset - sink->size);
+	memcpy(sink->data + offset, data, (size_t)size);
+	if (end > sink->size)
+		sink->size = end;
+	return (int64_t)size;
+}
+
+static void quiet(exr_const_context_t ctxt, exr_result_t code, const char *message)
+{
+	(void)ctxt;
+	(void)code;
+	(void)message;
+}
+
+static bool declare(exr_context_t file, const struct image *image, const char *const channels[], enum exr_type type,
+                    const struct exr_info *info)
+{
+	int part;
+	exr_pixel_type_t pixel = type == EXR_HALF ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+	if (exr_add_part(file, "maps", EXR_STORAGE_SCANLINE, &part)
+	    || exr_initialize_required_attr_simple(file, part, image->width, image->height, EXR_COMPRESSION_ZIP))
+		return false;
+	for (int c = 0; c < image->channels; c++)
+		if (exr_add_channel(file, part, channels[c], pixel, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1))
+			return false;
+	if (info && info->extent_mm > 0 && exr_attr_set_float(file, part, "extentMm", (float)info->extent_mm))
+		return false;
+	if (info && info->made_by && exr_attr_set_string(file, part, "madeBy", info->made_by))
+		return false;
+	return exr_write_header(file) == EXR_ERR_SUCCESS;
+}
+
+/* Points each of the chunk's channels at our interleaved floats; the library converts to half. */
+static void attach(exr_encode_pipeline_t *pipe, const struct image *image, const char *const channels[], int y)
+{
+	for (int i = 0; i < pipe->channel_count; i++) {
+		exr_coding_channel_info_t *to = &pipe->channels[i];
+		for (int c = 0; c < image->channels; c++)
+			if (!strcmp(channels[c], to->channel_name))
+				to->encode_from_ptr = (const uint8_t *)(image_at(image, 0, y) + c);
+		to->user_data_type = EXR_PIXEL_FLOAT;
+		to->user_bytes_per_element = sizeof(float);
+		to->user_pixel_stride = image->channels * (int)sizeof(float);
+		to->user_line_stride = image->width * to->user_pixel_stride;
+	}
+}
+
+/* The first two steps of exr_encoding_run(), which itself insists on running chunk after chunk. */
+static exr_result_t compress(exr_encode_pipeline_t *pipe)
+{
+	pipe->packed_buffer = malloc((size_t)pipe->chunk.unpacked_size);
+	pipe->packed_alloc_size = (size_t)pipe->chunk.unpacked_size;
+	if (!pipe->packed_buffer)
+		return EXR_ERR_OUT_OF_MEMORY;
+	exr_result_t r = pipe->convert_and_pack_fn(pipe);
+	return r ? r : pipe->compress_fn(pipe);
+}
+
+/* Chunks are compressed by all threads and written in their order, so the bytes do not depend on the threads. */
+static bool write_chunks(exr_context_t file, const struct image *image, const char *const channels[], int lines)
+{
+	int bad = 0, chunks = (image->height + lines - 1) / lines;
+	exr_chunk_info_t first;
+	// The library hands out chunk descriptions in writing order only; all differ from the first by lines alone.
+	if (exr_write_scanline_chunk_info(file, 0, 0, &first))
+		return false;
+#pragma omp parallel for ordered schedule(static, 1)
+	for (int i = 0; i < chunks; i++) {
+		exr_chunk_info_t chunk = first;
+		chunk.idx = i;
+		chunk.start_y = i * lines;
+		chunk.height = chunk.start_y + lines <= image->height ? lines : image->height - chunk.start_y;
+		chunk.unpacked_size = first.unpacked_size / (uint64_t)first.height * (uint64_t)chunk.height;
+		exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+		exr_result_t r = exr_encoding_initialize(file, 0, &chunk, &pipe);
+		if (!r)
+			attach(&pipe, image, channels, i * lines);
+		if (!r)
+			r = exr_encoding_choose_default_routines(file, 0, &pipe);
+		if (!r)
+			r = compress(&pipe);
+#pragma omp ordered
+		{
+			if (!r && !bad)
+				r = pipe.write_fn(&pipe);
+			if (r)
+				bad = 1;
+		}
+		exr_encoding_destroy(file, &pipe);
+	}
+	return !bad;
+}
+
+bool exr_write(const char *path, const struct image *image, const char *const channels[], enum exr_type type,
+               const struct exr_info *info, struct err *err)
+{
+	struct sink sink = { 0 };
+	exr_context_t file = 0;
+	exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+	init.user_data = &sink;
+	init.write_fn = take_bytes;
+	init.error_handler_fn = quiet;
+	init.zip_level = 2;
+	int lines = 16;
+	bool ok = exr_start_write(&file, path, EXR_WRITE_FILE_DIRECTLY, &init) == EXR_ERR_SUCCESS
+	          && declare(file, image, channels, type, info)
+	          && exr_get_scanlines_per_chunk(file, 0, &lines) == EXR_ERR_SUCCESS
+	          && write_chunks(file, image, channels, lines);
+	if (file && exr_finish(&file))
+		ok = false;
+	if (!ok)
+		err_set(err, "%s: OpenEXR cannot write it", path);
+	ok = ok && file_write(path, sink.data, sink.size, err);
+	free(sink.data);
+	return ok;
+}
