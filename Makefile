@@ -35,7 +35,7 @@ LIBS := -lopencv_imgcodecs -lopencv_photo -lopencv_video -lopencv_calib3d -lopen
 LIB_SRC := $(wildcard lib/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
 LIB_OBJ := $(LIB_SRC:%.c=$B/%.o) $(BRIDGE_SRC:%.cc=$B/%.o)
-STAGES := $(notdir $(patsubst %/,%,$(dir $(wildcard stages/*/main.c)))) render
+STAGES := $(notdir $(patsubst %/,%,$(dir $(wildcard stages/*/main.c render/main.c))))
 PROGRAMS := $(STAGES:%=$(BIN)/%)
 TESTS := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/test_*.c))
 BENCHES := $(patsubst tests/bench/%.c,$B/tests/bench/%,$(wildcard tests/bench/bench_*.c))
