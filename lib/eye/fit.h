@@ -3,11 +3,7 @@
 #define EYE_FIT_H
 #include "base/err.h"
 #include "eye/eye.h"
-
-/* px; a >= b semi-axes; angle of the major axis from +x towards +y, radians in memory. */
-struct ellipse {
-	double cx, cy, a, b, angle;
-};
+#include "math/ellipse.h"
 
 struct fit {
 	bool ok;                    // status "ok"

@@ -1,0 +1,243 @@
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/ellipse.h"
+#include "math/rng.h"
+#include "math/stats.h"
+
+enum { N = ELLIPSE_N, SAMPLES = 150, RANK_POINTS = 90 };
+static const double TUKEY = 4.685;
+
+/* inverse of a symmetric positive definite matrix */
+static bool invert(double inv[N][N], const double m[N][N])
+{
+	memcpy(inv, m, sizeof(double[N][N]));
+	if (LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', N, &inv[0][0], N) || LAPACKE_dpotri(LAPACK_ROW_MAJOR, 'L', N, &inv[0][0], N))
+		return false;
+	for (int i = 0; i < N; i++)
+		for (int j = i + 1; j < N; j++)
+			inv[i][j] = inv[j][i];
+	return true;
+}
+
+/* The eigenvector of m (3 x 3) with 4 k0 k2 - k1² > 0: the ellipse among the conics. */
+static bool ellipse_vector(double k[3], double m[3][3])
+{
+	double re[3], im[3], v[3][3], unused;
+	if (LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'V', 3, &m[0][0], 3, re, im, &unused, 1, &v[0][0], 3))
+		return false;
+	double best = 0;
+	for (int j = 0; j < 3; j++) {
+		double cond = 4 * v[0][j] * v[2][j] - v[1][j] * v[1][j];
+		if (im[j] == 0 && cond > best) {
+			best = cond;
+			for (int i = 0; i < 3; i++)
+				k[i] = v[i][j];
+		}
+	}
+	return best > 0;
+}
+
+/* Halir and Flusser: quadratic part S1, mixed S2, linear S3; the linear part is eliminated. */
+static bool direct_conic(double k[6], const double s1[3][3], const double s2[3][3], const double s3[3][3])
+{
+	double inv[3][3], t[3][3], m[3][3];
+	memcpy(inv, s3, sizeof inv);
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			t[i][j] = -s2[j][i];
+	if (LAPACKE_dposv(LAPACK_ROW_MAJOR, 'L', 3, 3, &inv[0][0], 3, &t[0][0], 3))
+		return false;
+	for (int j = 0; j < 3; j++) {
+		double col[3];
+		for (int i = 0; i < 3; i++) {
+			col[i] = s1[i][j];
+			for (int l = 0; l < 3; l++)
+				col[i] += s2[i][l] * t[l][j];
+		}
+		m[0][j] = col[2] / 2;
+		m[1][j] = -col[1];
+		m[2][j] = col[0] / 2;
+	}
+	if (!ellipse_vector(k, m))
+		return false;
+	for (int i = 0; i < 3; i++)
+		k[3 + i] = t[i][0] * k[0] + t[i][1] * k[1] + t[i][2] * k[2];
+	return true;
+}
+
+bool ellipse_fit_direct(struct ellipse *e, int n, const double p[n][2], const double *weight)
+{
+	double mx = 0, my = 0, sum = 0, spread = 0;
+	for (int i = 0; i < n; i++) {
+		double w = weight ? weight[i] : 1;
+		mx += w * p[i][0];
+		my += w * p[i][1];
+		sum += w;
+	}
+	if (n < N || !(sum > 0))
+		return false;
+	mx /= sum;
+	my /= sum;
+	for (int i = 0; i < n; i++)
+		spread += (weight ? weight[i] : 1) * (fabs(p[i][0] - mx) + fabs(p[i][1] - my));
+	double scale = spread / sum;
+	if (!(scale > 0))
+		return false;
+	double s[6][6] = { 0 };
+	for (int i = 0; i < n; i++) {
+		double x = (p[i][0] - mx) / scale, y = (p[i][1] - my) / scale, w = weight ? weight[i] : 1;
+		double row[6] = { x * x, x * y, y * y, x, y, 1 };
+		for (int a = 0; a < 6; a++)
+			for (int b = a; b < 6; b++)
+				s[a][b] += w * row[a] * row[b];
+	}
+	double s1[3][3], s2[3][3], s3[3][3], k[6];
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++) {
+			s1[a][b] = s[a < b ? a : b][a < b ? b : a];
+			s2[a][b] = s[a][3 + b];
+			s3[a][b] = s[3 + (a < b ? a : b)][3 + (a < b ? b : a)];
+		}
+	if (!direct_conic(k, s1, s2, s3) || !ellipse_from_conic(e, k))
+		return false;
+	e->cx = mx + scale * e->cx;
+	e->cy = my + scale * e->cy;
+	e->a *= scale;
+	e->b *= scale;
+	return true;
+}
+
+bool ellipse_bound(double cov_q[N][N], const struct ellipse *e, int n, const double t[n], double sigma)
+{
+	double h[N][N] = { 0 };
+	for (int i = 0; i < n; i++) {
+		double row[N];
+		ellipse_normal_shift(row, e, t[i]);
+		for (int a = 0; a < N; a++)
+			for (int b = 0; b < N; b++)
+				h[a][b] += row[a] * row[b] / (sigma * sigma);
+	}
+	return invert(cov_q, h);
+}
+
+/* The best of SAMPLES five-point ellipses by the sum of |distance| cut at the best median's multiple: least trimmed
+ * squares in spirit; survives outliers up to nearly half. */
+static bool sample_start(struct ellipse *best, int n, const double p[n][2])
+{
+	struct rng rng = { 0x11b5 };
+	double *d = mem_array((size_t)n, sizeof *d), best_score = INFINITY;
+	const int stride = (n + RANK_POINTS - 1) / RANK_POINTS;
+	for (int s = 0; s < SAMPLES; s++) {
+		double five[N][2];
+		struct ellipse e;
+		for (int i = 0; i < N; i++)
+			memcpy(five[i], p[rng_below(&rng, n)], sizeof five[i]);
+		if (!ellipse_fit_direct(&e, N, five, 0) || e.b < 0.2 * e.a)
+			continue;
+		int ranked = 0;
+		for (int i = s % stride; i < n; i += stride) {
+			/* distance along the ray from the centre: cheap, exact enough to rank */
+			double x = p[i][0] - e.cx, y = p[i][1] - e.cy, c = cos(e.angle), s2 = sin(e.angle);
+			double u = (c * x + s2 * y) / e.a, v = (c * y - s2 * x) / e.b, rho = hypot(u, v);
+			d[ranked++] = rho > 1e-9 ? fabs(hypot(x, y) * (1 - 1 / rho)) : e.b;
+		}
+		double score = stats_quantile(ranked, d, 0.55);
+		if (score < best_score) {
+			best_score = score;
+			*best = e;
+		}
+	}
+	free(d);
+	return best_score < INFINITY;
+}
+
+struct pass {
+	double h[N][N], g[N];
+	double weight;
+};
+
+/* One weighted Gauss-Newton system around e; distances in d. */
+static void build(struct pass *pass, const struct ellipse *e, int n, const double p[n][2], const double *prior,
+                  double *out, double *d, double scale)
+{
+	*pass = (struct pass){ 0 };
+	for (int i = 0; i < n; i++) {
+		double t, row[N];
+		d[i] = ellipse_distance(&t, e, p[i]);
+		double k = prior ? sqrt(prior[i]) : 1, z = d[i] * k / (TUKEY * scale);
+		double w = fabs(z) < 1 ? (1 - z * z) * (1 - z * z) : 0;
+		if (out)
+			out[i] = w;
+		if (w == 0)
+			continue;
+		ellipse_normal_shift(row, e, t);
+		pass->weight += w;
+		for (int a = 0; a < N; a++) {
+			pass->g[a] += w * k * k * row[a] * d[i];
+			for (int b = 0; b < N; b++)
+				pass->h[a][b] += w * k * k * row[a] * row[b];
+		}
+	}
+}
+
+static double scale_of(int n, const double *d, const double *prior, double *work)
+{
+	for (int i = 0; i < n; i++)
+		work[i] = d[i] * (prior ? sqrt(prior[i]) : 1);
+	return stats_mad(n, work, 0);
+}
+
+bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2],
+                        const double *prior, double *out, double sigma, bool have_start)
+{
+	if (n < N || (!have_start && !sample_start(e, n, p)))
+		return false;
+	*fit = (struct ellipse_fit){ 0 };
+	double *d = mem_array(2 * (size_t)n, sizeof *d), q[N], step[N], t;
+	bool ok = true;
+	for (int i = 0; i < n; i++)
+		d[i] = ellipse_distance(&t, e, p[i]);
+	double scale = sigma > 0 ? sigma : fmax(scale_of(n, d, prior, d + n), 1e-9);
+	struct pass pass = { 0 };
+	for (fit->iterations = 0; fit->iterations < 60; fit->iterations++) {
+		build(&pass, e, n, p, prior, out, d, scale);
+		double inv[N][N];
+		if (pass.weight < N || !invert(inv, pass.h)) {
+			ok = false;
+			break;
+		}
+		ellipse_to_q(q, e);
+		double size = 0;
+		for (int a = 0; a < N; a++) {
+			step[a] = 0;
+			for (int b = 0; b < N; b++)
+				step[a] += inv[a][b] * pass.g[b];
+			q[a] += step[a];
+			size = fmax(size, fabs(step[a]));
+		}
+		if (!ellipse_from_q(e, q)) {
+			ok = false;
+			break;
+		}
+		/* The scale may fall only while the fit still moves in: a scale that grows back would let outliers in. */
+		if (sigma <= 0)
+			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), 1e-9);
+		if (size < 1e-9 * e->a)
+			break;
+	}
+	if (ok) {
+		build(&pass, e, n, p, prior, out, d, scale);
+		fit->sigma = scale;
+		fit->inliers = pass.weight / n;
+		ok = invert(fit->cov_q, pass.h);
+		for (int a = 0; a < N; a++)
+			for (int b = 0; b < N; b++)
+				fit->cov_q[a][b] *= scale * scale;
+	}
+	free(d);
+	return ok;
+}
