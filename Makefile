@@ -16,7 +16,7 @@ B := build$(if $(SAN),-san)
 BIN := $(if $(SAN),$(B)/bin,bin)
 
 PACKAGES := gcc g++ make pkg-config libopencv-dev libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
-	libinih-dev libxxhash-dev libexif-dev liblapacke-dev libopenblas-dev libcmocka-dev gnuplot-nox
+	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev libopenblas-dev libcmocka-dev gnuplot-nox
 
 CFLAGS ?= -O3 -g
 CXXFLAGS ?= -O2 -g
@@ -29,8 +29,8 @@ ALL_CFLAGS := -std=gnu2x -D_GNU_SOURCE $(WARN) $(CFLAGS) $(SANFLAGS) $(MATHFLAGS
 ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenmp -Ilib -MMD -MP \
 	-isystem /usr/include/opencv4 -isystem /usr/include/eigen3
 EXR_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
-LIBS := -lopencv_imgcodecs -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
-	-lOpenMeshCore -lOpenEXRCore-3_1 -lexif -llapacke -lopenblas -ljansson -linih -lxxhash -lm
+LIBS := -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
+	-lOpenMeshCore -lOpenEXRCore-3_1 -lexif -lturbojpeg -lpng -ltiff -llapacke -lopenblas -ljansson -linih -lxxhash -lm
 
 LIB_SRC := $(wildcard lib/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
