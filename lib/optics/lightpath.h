@@ -1,5 +1,6 @@
 /* lightpath: the point K of the cornea through which light between P (inside) and C (outside) goes; iris paper
- * section 3, eqs. 2-8, and beyond it. Fermat: L(K) = |CK| + n |KP| is stationary.
+ * section 3, eqs. 2-8, and beyond it. Fermat: L(K) = |CK| + n |KP| is stationary. Eye frame, mm. Front surface
+ * alone: cornea->n is taken for all that lies behind it.
  */
 #ifndef OPTICS_LIGHTPATH_H
 #define OPTICS_LIGHTPATH_H
@@ -9,10 +10,11 @@ enum lightpath_status {
 	LIGHTPATH_OK,
 	LIGHTPATH_BEYOND_RIM,  // the path meets the surface outside the limbus: blocked by the sclera
 	LIGHTPATH_GRAZING,     // stationary, but past 90 degrees of incidence: no physical path
-	LIGHTPATH_NONE,        // no stationary point
+	LIGHTPATH_NONE,        // no stationary point: P outside the surface, C inside it, or no number; K is 0 then
 };
 
-/* P, C and K in the eye frame, mm. Newton in two dimensions from the closed-form start, double, to 1e-13 mm. */
+/* Newton in two dimensions from the closed-form start, double, to 1e-13 mm. K is set whatever the status
+ * (BEYOND_RIM: on the surface continued beyond the limbus). Never NaN. */
 enum lightpath_status lightpath_solve(double K[3], const struct cornea *cornea, const double P[3], const double C[3]);
 
 /* The same for a source at infinity in unit direction w (from the eye towards the light). */
@@ -20,10 +22,23 @@ enum lightpath_status lightpath_solve_directional(double K[3], const struct corn
                                                   const double w[3]);
 
 /* n solves in float, structure of arrays, vectorised: px[n] .. wz[n] in (w: unit, towards the light),
- * kx[n] .. kz[n] out; status[n] may be null. steps: Newton steps (4: 2e-5 mm worst). */
+ * kx[n] .. kz[n] out; status[n] may be null. steps: Newton steps (4: 2e-5 mm worst). What has not converged
+ * after them is solved one by one in double. */
 void lightpath_batch(int n, const float *px, const float *py, const float *pz, const float *wx, const float *wy,
                      const float *wz, float *kx, float *ky, float *kz, unsigned char *status,
                      const struct cornea *cornea, int steps);
+
+/* The same towards one point C outside. */
+void lightpath_batch_point(int n, const float *px, const float *py, const float *pz, const double C[3], float *kx,
+                           float *ky, float *kz, unsigned char *status, const struct cornea *cornea, int steps);
+
+/* Both in double (6 steps: 1e-12 mm). */
+void lightpath_batch_double(int n, const double *px, const double *py, const double *pz, const double *wx,
+                            const double *wy, const double *wz, double *kx, double *ky, double *kz,
+                            unsigned char *status, const struct cornea *cornea, int steps);
+void lightpath_batch_point_double(int n, const double *px, const double *py, const double *pz, const double C[3],
+                                  double *kx, double *ky, double *kz, unsigned char *status,
+                                  const struct cornea *cornea, int steps);
 
 /* The paper's algorithm 1 as printed, with its thresholds; alpha in mm (0.5 = the paper's 0.05 cm). */
 struct algorithm1_conf {

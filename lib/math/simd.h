@@ -1,0 +1,18 @@
+/* simd: one loop, compiled for several instruction sets, the best chosen when the program starts.
+ * The bits do not depend on which: floating-point contraction is off for all of them (Makefile).
+ */
+#ifndef MATH_SIMD_H
+#define MATH_SIMD_H
+
+#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+#define SIMD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+// Elsewhere the compiler's baseline is the one version (on arm64 it has vectors anyway); sanitisers cannot run
+// before the choice is made.
+#define SIMD_CLONES
+#endif
+
+#define SIMD_LOOP _Pragma("omp simd")
+#define SIMD_INLINE static inline __attribute__((always_inline))
+
+#endif
