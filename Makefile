@@ -58,7 +58,7 @@ $B/.setup: Makefile
 setup: $B/.setup
 
 # ---- build -------------------------------------------------------------------------------------------------------
-build: $(PROGRAMS)
+build: $B/libeyewright.a $(PROGRAMS)
 
 $B/%.o: %.c | $B/.setup
 	@mkdir -p $(@D)

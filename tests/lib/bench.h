@@ -1,7 +1,7 @@
 /* bench: one harness for all benchmark programs.
  * A program measures, calls bench_row() for each method and setting (speed and error of the same run) and
- * bench_goal() for each figure that has a bar. Output: bench/NAME.csv; `make bench` turns all of them into
- * tables and plots of error against time.
+ * bench_goal() for each figure that has a bar. Output: bench/NAME.csv and NAME.goals.csv; `make bench` turns
+ * all of them into tables and plots of error against time (tests/bench/report.c).
  */
 #ifndef TESTS_BENCH_H
 #define TESTS_BENCH_H
@@ -12,14 +12,21 @@ void bench_open(const char *name, int argc, char **argv);
 bool bench_quick(void);
 
 struct bench_time {
-	double median, low, high;  // seconds a call
+	double median, low, high;  // seconds a call; low and high: the quartiles
+	int reps;                  // calls timed; 0 = not said
 };
 
-/* Calls fn(ctx) `reps` times after one warm-up; median and spread of wall-clock seconds. */
+/* Calls fn(ctx) `reps` times after one warm-up; median and quartiles of wall-clock seconds. */
 struct bench_time bench_time(void (*fn)(void *), void *ctx, int reps);
 
 /* n alternatives interleaved A B C A B C ..., so that drift of the machine hits all alike. */
 void bench_times(int n, struct bench_time out[], void (*const fn[])(void *), void *const ctx[], int reps);
+
+/* Median and quartiles of n measured times; sorts them. */
+struct bench_time bench_time_of(int n, double seconds[]);
+
+/* The same for 1 / n of the work: time.median / n and so on. */
+struct bench_time bench_time_each(struct bench_time time, double n);
 
 /* table: which plot and table it belongs to. method: "algorithm 1 (paper)"; setting: "1000 steps"; per: what the
  * time is for ("solve", "photograph"); units of a solve: seconds are scaled to ns, ms or s when printed.
@@ -33,7 +40,11 @@ void bench_goal(const char *measure, const char *reach, double got, const char *
 /* Writes the files; exit status for main. A missed goal is reported, it is no failure. */
 int bench_close(void);
 
-/* A folder of shared ground-truth data: $EYEWRIGHT_DATA, or ../shared/data beside the checkout. Null: not there. */
+/* A folder of shared ground-truth data: $EYEWRIGHT_DATA, or ../shared/data beside the checkout. Null: not there.
+ * Valid until the eighth call after this one. */
 const char *bench_data(const char *rel);
+
+/* "213 ns", "1.4 ms": seconds in the unit that suits them, in a caller's buffer; "-" for NAN. */
+const char *bench_seconds(char out[32], double seconds);
 
 #endif

@@ -1,0 +1,278 @@
+/* report: joins bench/NAME.csv and NAME.goals.csv of all benchmarks into bench/README.md and one plot of error
+ * against time for every table that has both.
+ *
+ *     report --out=bench --compiler="gcc ..." --flags="-O3 ..."
+ */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/csv.h"
+
+/* Columns of NAME.csv. */
+enum { TABLE, METHOD, SETTING, PER, MEDIAN, LOW, HIGH, REPS, ERROR, UNIT, ERROR_OF };
+
+static bool same(const struct csv_row *a, const struct csv_row *b, int column)
+{
+	return !strcmp(a->cell[column], b->cell[column]);
+}
+
+static bool same_plot(const struct csv_row *a, const struct csv_row *b)
+{
+	return same(a, b, TABLE) && same(a, b, PER) && same(a, b, UNIT) && same(a, b, ERROR_OF);
+}
+
+static bool has_both(const struct csv_row *r)
+{
+	return csv_number(r->cell[MEDIAN]) > 0 && csv_number(r->cell[ERROR]) >= 0;
+}
+
+/* The value of the first "key : value" line in a file of /proc; "unknown" where there is none. */
+static char *proc_value(const char *path, const char *key)
+{
+	FILE *f = fopen(path, "r");
+	char line[1024], *found = 0;
+	while (f && !found && fgets(line, sizeof line, f)) {
+		char *colon = strchr(line, ':');
+		if (!strncmp(line, key, strlen(key)) && colon) {
+			colon += 1 + strspn(colon + 1, " \t");
+			colon[strcspn(colon, "\n")] = 0;
+			found = mem_str(colon);
+		}
+	}
+	if (f)
+		fclose(f);
+	return found ? found : mem_str("unknown");
+}
+
+static void write_machine(FILE *md, const char *compiler, const char *flags)
+{
+	char *cpu = proc_value("/proc/cpuinfo", "model name"), *memory = proc_value("/proc/meminfo", "MemTotal");
+	char *features = proc_value("/proc/cpuinfo", "flags");
+	const char *vectors = strstr(features, "avx512f") ? "AVX-512" : strstr(features, "avx2") ? "AVX2" : "no AVX2";
+	fprintf(md, "# Benchmarks\n\nMade by `make bench`. Times are wall-clock medians; in brackets the quartiles and the "
+	            "number of repetitions. Every time\nand the error beside it come from the same run.\n\n"
+	            "| | |\n|---|---|\n| processor | %s, %ld processors, %s |\n| memory | %s |\n| compiler | %s |\n| flags | `%s` |\n\n",
+	        cpu, sysconf(_SC_NPROCESSORS_ONLN), vectors, memory, compiler, flags);
+	free(cpu);
+	free(memory);
+	free(features);
+}
+
+static void write_goals(FILE *md, int n, const struct csv goals[], const char *const names[])
+{
+	int reached = 0, total = 0;
+	for (int i = 0; i < n; i++)
+		for (int r = 0; r < goals[i].n; r++, total++)
+			reached += !strcmp(goals[i].rows[r].cell[4], "yes");
+	fprintf(md, "## Goals: %d of %d reached\n\n| | measure | to reach | got | benchmark |\n|---|---|---|---|---|\n", reached,
+	        total);
+	for (int i = 0; i < n; i++)
+		for (int r = 0; r < goals[i].n; r++) {
+			char *const *c = goals[i].rows[r].cell;
+			fprintf(md, "| %s | %s | %s | %.4g %s | %s |\n", !strcmp(c[4], "yes") ? "reached" : "**missed**", c[0],
+			        c[1], csv_number(c[2]), c[3], names[i]);
+		}
+	printf("goals: %d of %d reached\n", reached, total);
+}
+
+static void write_table(FILE *md, const struct csv *csv, int first)
+{
+	const struct csv_row *head = &csv->rows[first];
+	fprintf(md, "\n### %s\n\n| method | setting | time | a | error | of |\n|---|---|---|---|---|---|\n", head->cell[TABLE]);
+	for (int i = first; i < csv->n; i++) {
+		char *const *c = csv->rows[i].cell;
+		char median[32], low[32], high[32], error[64] = "-";
+		if (!same(head, &csv->rows[i], TABLE))
+			continue;
+		if (*c[ERROR])
+			snprintf(error, sizeof error, "%.3g %.40s", csv_number(c[ERROR]), c[UNIT]);
+		fprintf(md, "| %s | %s | **%s**", c[METHOD], c[SETTING], bench_seconds(median, csv_number(c[MEDIAN])));
+		if (*c[LOW] && *c[HIGH])
+			fprintf(md, " (%s .. %s", bench_seconds(low, csv_number(c[LOW])), bench_seconds(high, csv_number(c[HIGH])));
+		if (*c[LOW] && *c[HIGH])
+			fprintf(md, csv_number(c[REPS]) > 0 ? "; %.0f)" : ")", csv_number(c[REPS]));
+		fprintf(md, " | %s | %s | %s |\n", c[PER], error, c[ERROR_OF]);
+	}
+}
+
+/* A gnuplot string: single quotes, doubled inside. */
+static void quoted(FILE *gp, const char *text)
+{
+	fputc('\'', gp);
+	for (; *text; text++)
+		fputs(*text == '\'' ? "''" : (char[]){ *text, 0 }, gp);
+	fputc('\'', gp);
+}
+
+/* Smallest positive error of the plot over ten: where an error of exactly zero is drawn on a logarithmic axis. */
+static double floor_of(const struct csv *csv, const struct csv_row *head)
+{
+	double least = INFINITY;
+	for (int i = 0; i < csv->n; i++) {
+		double e = csv_number(csv->rows[i].cell[ERROR]);
+		if (same_plot(head, &csv->rows[i]) && e > 0 && e < least)
+			least = e;
+	}
+	return isfinite(least) ? least / 10 : 1e-17;
+}
+
+/* Rows of one method as a data block; false when row `first` is not the method's first in this plot. */
+static bool plot_series(FILE *gp, const struct csv *csv, const struct csv_row *head, int first, int block)
+{
+	double least = floor_of(csv, head);
+	for (int i = 0; i < first; i++)
+		if (same_plot(head, &csv->rows[i]) && has_both(&csv->rows[i]) && same(&csv->rows[first], &csv->rows[i], METHOD))
+			return false;
+	fprintf(gp, "$d%d << EOD\n", block);
+	for (int i = first; i < csv->n; i++) {
+		const struct csv_row *r = &csv->rows[i];
+		if (!same_plot(head, r) || !has_both(r) || !same(&csv->rows[first], r, METHOD))
+			continue;
+		double e = csv_number(r->cell[ERROR]);
+		fprintf(gp, "%.9g %.9g \"", csv_number(r->cell[MEDIAN]), e > 0 ? e : least);
+		for (const char *s = r->cell[SETTING]; *s; s++)
+			fputc(*s == '"' || *s == '\\' ? '\'' : *s, gp);
+		fputs("\"\n", gp);
+	}
+	fputs("EOD\n", gp);
+	return true;
+}
+
+static bool plot(const struct csv *csv, const struct csv_row *head, const char *png)
+{
+	FILE *gp = popen("gnuplot", "w");
+	if (!gp)
+		return false;
+	int first[512], n = 0;
+	for (int i = 0; i < csv->n && n < COUNT(first); i++)
+		if (same_plot(head, &csv->rows[i]) && has_both(&csv->rows[i]) && plot_series(gp, csv, head, i, n))
+			first[n++] = i;
+	fputs("set terminal pngcairo noenhanced size 1100,700 font 'sans,11'\nset output ", gp);
+	quoted(gp, png);
+	fprintf(gp, "\nset logscale xy\nset grid\nset key outside right top width -2\nset offsets graph 0.05, graph 0.12, graph 0.08, graph 0.08\n"
+	            "set format x '%%.0s %%cs'\nset format y '%%.0e'\nset xlabel 'time a %s'\nset ylabel '%s, %s'\nset title ",
+	        head->cell[PER], head->cell[ERROR_OF], head->cell[UNIT]);
+	quoted(gp, head->cell[TABLE]);
+	fputs("\nplot ", gp);
+	for (int i = 0; i < n; i++) {
+		fprintf(gp, "%s$d%d using 1:2 with linespoints pt %d ps 1.4 lw 1.5 lc %d title ", i ? ", " : "", i, i % 12 + 4,
+		        i + 1);
+		quoted(gp, csv->rows[first[i]].cell[METHOD]);
+		fprintf(gp, ", $d%d using 1:2:3 with labels font ',8' offset 0.6,0.6 left tc lt %d notitle", i, i + 1);
+	}
+	fputs("\n", gp);
+	return pclose(gp) == 0;
+}
+
+/* Plots of the table that begins with row `first`: one for each kind of error that at least two rows have. */
+static void write_plots(FILE *md, const struct csv *csv, int first, const char *name, const char *out)
+{
+	for (int i = first; i < csv->n; i++) {
+		const struct csv_row *r = &csv->rows[i];
+		int same_before = 0, same_all = 0;
+		for (int j = first; j < csv->n; j++)
+			if (same_plot(r, &csv->rows[j]) && has_both(&csv->rows[j])) {
+				same_all++;
+				same_before += j < i;
+			}
+		if (!same(r, &csv->rows[first], TABLE) || !has_both(r) || same_before || same_all < 2)
+			continue;
+		char *file = mem_printf("%s-%s-%s.png", name, r->cell[TABLE], r->cell[ERROR_OF]);
+		for (char *c = file; *c; c++)
+			*c = isalnum((unsigned char)*c) || *c == '.' ? (char)tolower((unsigned char)*c) : '-';
+		char *path = mem_printf("%s/%s", out, file);
+		if (plot(csv, r, path))
+			fprintf(md, "\n![%s against time](%s)\n", r->cell[ERROR_OF], file);
+		free(path);
+		free(file);
+	}
+}
+
+static void write_tables(FILE *md, const struct csv *csv, const char *name, const char *out)
+{
+	fprintf(md, "\n## %s\n", name);
+	for (int i = 0; i < csv->n; i++) {
+		bool seen = false;
+		for (int j = 0; j < i && !seen; j++)
+			seen = same(&csv->rows[i], &csv->rows[j], TABLE);
+		if (seen)
+			continue;
+		write_table(md, csv, i);
+		write_plots(md, csv, i, name, out);
+	}
+}
+
+static bool ends_with(const char *s, const char *tail)
+{
+	size_t n = strlen(s), m = strlen(tail);
+	return n > m && !strcmp(s + n - m, tail);
+}
+
+static bool report(const char *out, const char *compiler, const char *flags, struct err *err)
+{
+	struct file_list list;
+	if (!file_list(&list, out, err))
+		return false;
+	struct csv *rows = mem_new((size_t)list.n, sizeof *rows), *goals = mem_new((size_t)list.n, sizeof *goals);
+	const char **names = mem_new((size_t)list.n, sizeof *names);
+	int n = 0;
+	for (int i = 0; i < list.n && !err_is(err); i++) {
+		if (!ends_with(list.names[i], ".csv") || ends_with(list.names[i], ".goals.csv"))
+			continue;
+		list.names[i][strlen(list.names[i]) - 4] = 0;
+		names[n] = list.names[i];
+		char *path = mem_printf("%s/%s.csv", out, names[n]), *bars = mem_printf("%s/%s.goals.csv", out, names[n]);
+		csv_load(&rows[n], path, err);
+		csv_load(&goals[n++], bars, err);
+		free(path);
+		free(bars);
+	}
+	char *text = 0;
+	size_t size = 0;
+	FILE *md = open_memstream(&text, &size);
+	write_machine(md, compiler, flags);
+	write_goals(md, n, goals, names);
+	for (int i = 0; i < n; i++)
+		write_tables(md, &rows[i], names[i], out);
+	fclose(md);
+	char *path = mem_printf("%s/README.md", out);
+	bool ok = !err_is(err) && file_write(path, text, size, err);
+	if (ok)
+		printf("tables and plots: %s\n", path);
+	for (int i = 0; i < n; i++) {
+		csv_free(&rows[i]);
+		csv_free(&goals[i]);
+	}
+	free(rows);
+	free(goals);
+	free(names);
+	free(text);
+	free(path);
+	file_list_free(&list);
+	return ok;
+}
+
+int main(int argc, char **argv)
+{
+	const char *out = "bench", *compiler = "", *flags = "";
+	for (int i = 1; i < argc; i++) {
+		if (!strncmp(argv[i], "--out=", 6))
+			out = argv[i] + 6;
+		else if (!strncmp(argv[i], "--compiler=", 11))
+			compiler = argv[i] + 11;
+		else if (!strncmp(argv[i], "--flags=", 8))
+			flags = argv[i] + 8;
+	}
+	struct err err = { 0 };
+	if (report(out, compiler, flags, &err))
+		return 0;
+	fprintf(stderr, "report: %s\n", err.msg);
+	return 1;
+}
