@@ -156,7 +156,7 @@ static bool plot(const struct csv *csv, const struct csv_row *head, const char *
 			first[n++] = i;
 	fputs("set terminal pngcairo noenhanced size 1100,700 font 'sans,11'\nset output ", gp);
 	quoted(gp, png);
-	fprintf(gp, "\nset logscale xy\nset grid\nset key outside right top width -2\nset offsets graph 0.05, graph 0.12, graph 0.08, graph 0.08\n"
+	fprintf(gp, "\nset logscale xy\nset grid\nset key outside bottom center maxcols 3\nset offsets graph 0.05, graph 0.12, graph 0.08, graph 0.08\n"
 	            "set format x '%%.0s %%cs'\nset format y '%%.0e'\nset xlabel 'time a %s'\nset ylabel '%s, %s'\nset title ",
 	        head->cell[PER], head->cell[ERROR_OF], head->cell[UNIT]);
 	quoted(gp, head->cell[TABLE]);
