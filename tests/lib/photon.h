@@ -1,0 +1,24 @@
+/* photon: light in a two-layer slab by Monte Carlo, all orders of scattering: the truth that the single-scattering fits
+ * are held against. Shares no line and no formula of transport with lib/eye.
+ *
+ * The slab stands on a black plane z = 0; the stroma reaches up to stroma[y][x] mm, the border layer `abl` mm beyond.
+ * Periodic in x and y; indices matched; isotropic scattering.
+ */
+#ifndef TESTS_PHOTON_H
+#define TESTS_PHOTON_H
+#include <stdint.h>
+
+struct photon_slab {
+	int n;                // cells a side
+	double cell;          // mm
+	const float *stroma;  // [n][n] mm
+	double abl;           // mm
+	double scatter[2], absorb[2];  // border layer, stroma; mm^-1
+};
+
+/* out[n][n]: pi times radiance straight up over irradiance on the plane z = 0 (a white Lambertian plane gives 1), for
+ * light that comes from all azimuths with that cosine. orders: 0 all, else no more than that many scatterings. */
+void photon_reflectance(float *out, const struct photon_slab *slab, double cos_light, long photons, int orders,
+                        uint64_t seed);
+
+#endif
