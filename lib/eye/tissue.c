@@ -55,30 +55,64 @@ void tissue_bands_make(struct tissue_bands *bands, int n, enum illuminant light)
 	}
 }
 
+static void coefficients(double extinction[TISSUE_LAYERS], double source[TISSUE_LAYERS], const struct tissue *t, double nm)
+{
+	double scatter = tissue_scattering(nm);
+	for (int l = 0; l < TISSUE_LAYERS; l++) {
+		double scale = l == TISSUE_STROMA ? t->thickness_scale : 1;
+		source[l] = scale * scatter;
+		extinction[l] = scale * (scatter + tissue_absorption(&t->layer[l], nm));
+	}
+}
+
+/* Reflectance of all orders grows with the stroma's thickness nearly like the first order's a + b (1 - exp(-c T)): three
+ * thicknesses 0, h, 2h give c and b, the border layer alone gives a. */
+static void effective(double extinction[TISSUE_LAYERS], double source[TISSUE_LAYERS], double abl)
+{
+	const double cos_view = 0.95, cos_light = 0.85;  // the middle of ways through a cornea
+	// h: half of what irises reach, mm, but no deeper than light diffuses (diffusion coefficient of attenuation).
+	double absorb = extinction[TISSUE_STROMA] - source[TISSUE_STROMA];
+	double h = fmin(0.35, 2 / (sqrt(3 * absorb * extinction[TISSUE_STROMA]) + 1e-9));
+	double path = 1 / cos_view + 1 / cos_light, front = 4 * (cos_view + cos_light);
+	double r[3];
+	for (int i = 0; i < 3; i++)
+		r[i] = tissue_reflectance_all(extinction, source, abl, i * h, cos_view, cos_light);
+	double through = exp(-extinction[TISSUE_ABL] * abl * path);
+	double fade = fmin(fmax((r[2] - r[1]) / (r[1] - r[0]), 1e-6), 0.999);
+	double decay = -log(fade) / (h * path);
+	if (abl > 0)
+		source[TISSUE_ABL] = front * r[0] * extinction[TISSUE_ABL] / (1 - through);
+	source[TISSUE_STROMA] = front * (r[1] - r[0]) * decay / (through * (1 - fade));
+	extinction[TISSUE_STROMA] = decay;
+}
+
 void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands)
 {
 	*optics = (struct tissue_optics) {
 		.n = bands->n, .abl_thickness = tissue->abl_thickness, .exposure = tissue->exposure
 	};
 	for (int k = 0; k < bands->n; k++) {
-		double scatter = tissue_scattering(bands->nm[k]);
+		double extinction[TISSUE_LAYERS], source[TISSUE_LAYERS];
+		coefficients(extinction, source, tissue, bands->nm[k]);
+		if (tissue->multiple)
+			effective(extinction, source, tissue->abl_thickness);
 		for (int l = 0; l < TISSUE_LAYERS; l++) {
-			double scale = l == TISSUE_STROMA ? tissue->thickness_scale : 1;
-			optics->source[l][k] = scale * scatter;
-			optics->extinction[l][k] = scale * (scatter + tissue_absorption(&tissue->layer[l], bands->nm[k]));
+			optics->extinction[l][k] = extinction[l];
+			optics->source[l][k] = source[l];
 		}
 		for (int c = 0; c < 3; c++)
 			optics->rgb[k][c] = bands->rgb[k][c];
 	}
 }
 
-double tissue_reflectance_at(double extinction_abl, double source_abl, double abl, double extinction_stroma,
-                             double source_stroma, double stroma, double cos_view, double cos_light)
+double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
+                              double stroma, double cos_view, double cos_light)
 {
 	double path = 1 / cos_view + 1 / cos_light;
-	double through_abl = exp(-extinction_abl * abl * path), through_stroma = exp(-extinction_stroma * stroma * path);
-	double sum = source_abl / extinction_abl * (1 - through_abl)
-	             + source_stroma / extinction_stroma * through_abl * (1 - through_stroma);
+	double through_abl = exp(-extinction[TISSUE_ABL] * abl * path);
+	double through_stroma = exp(-extinction[TISSUE_STROMA] * stroma * path);
+	double sum = source[TISSUE_ABL] / extinction[TISSUE_ABL] * (1 - through_abl)
+	             + source[TISSUE_STROMA] / extinction[TISSUE_STROMA] * through_abl * (1 - through_stroma);
 	return sum / (4 * (cos_view + cos_light));
 }
 
@@ -86,9 +120,9 @@ void tissue_reflectance(double rgb[3], const struct tissue_optics *o, double str
 {
 	rgb[0] = rgb[1] = rgb[2] = 0;
 	for (int k = 0; k < o->n; k++) {
-		double r = tissue_reflectance_at(o->extinction[TISSUE_ABL][k], o->source[TISSUE_ABL][k], o->abl_thickness,
-		                                 o->extinction[TISSUE_STROMA][k], o->source[TISSUE_STROMA][k], stroma, cos_view,
-		                                 cos_light);
+		const double extinction[] = { o->extinction[TISSUE_ABL][k], o->extinction[TISSUE_STROMA][k] };
+		const double source[] = { o->source[TISSUE_ABL][k], o->source[TISSUE_STROMA][k] };
+		double r = tissue_reflectance_one(extinction, source, o->abl_thickness, stroma, cos_view, cos_light);
 		for (int c = 0; c < 3; c++)
 			rgb[c] += o->rgb[k][c] * r;
 	}
@@ -99,10 +133,10 @@ void tissue_reflectance_full(double rgb[3], const struct tissue *t, const struct
 {
 	rgb[0] = rgb[1] = rgb[2] = 0;
 	for (int i = 0; i < SPECTRUM_N; i++) {
-		double s = tissue_scattering(spectrum_nm(i)), scale = t->thickness_scale;
-		double abl = s + tissue_absorption(&t->layer[TISSUE_ABL], spectrum_nm(i));
-		double str = s + tissue_absorption(&t->layer[TISSUE_STROMA], spectrum_nm(i));
-		double r = tissue_reflectance_at(abl, s, t->abl_thickness, scale * str, scale * s, stroma, cos_view, cos_light);
+		double extinction[TISSUE_LAYERS], source[TISSUE_LAYERS];
+		coefficients(extinction, source, t, spectrum_nm(i));
+		double r = (t->multiple ? tissue_reflectance_all : tissue_reflectance_one)(extinction, source, t->abl_thickness, stroma,
+		                                                                          cos_view, cos_light);
 		for (int c = 0; c < 3; c++)
 			rgb[c] += observer->weight[c][i] * r;
 	}

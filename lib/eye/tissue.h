@@ -7,6 +7,10 @@
  * Thickness. Maps hold anatomical mm. The stroma is loose: `thickness_scale` says how much of each mm counts, and is
  * multiplied into the stroma's coefficients by tissue_optics_make, so that a march through the relief takes plain mm.
  *
+ * Orders. With `multiple` set, extinction and source of tissue_optics_make are EFFECTIVE ones: the same first-order march
+ * then returns, for thicknesses to 0.9 mm, the reflectance of all orders of scattering, as the integral equation of
+ * radiative transfer gives it. Without it, the paper's first order.
+ *
  * To march a ray (in each band k; t from the surface, straight lines as in the aqueous):
  *     L[k] = integral of optics.source[layer][k] TISSUE_PHASE E[k] exp(-tau_view - tau_light) dt
  * with tau the integrals of optics.extinction[layer][k] along the path, E the irradiance on a plane that faces the light
@@ -33,6 +37,7 @@ struct tissue {
 	double abl_thickness;       // mm
 	double thickness_scale;     // of the stroma
 	double exposure;            // what the photograph shows over what this model reflects: light, multiple scattering
+	bool multiple;              // all orders of scattering, not only the first
 	enum illuminant illuminant; // that the photograph was balanced for
 };
 
@@ -66,11 +71,17 @@ void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissu
 void tissue_reflectance(double rgb[3], const struct tissue_optics *optics, double stroma, double cos_view,
                         double cos_light);
 
-/* The same for one wavelength, with all the coefficients at hand. */
-double tissue_reflectance_at(double extinction_abl, double source_abl, double abl, double extinction_stroma,
-                             double source_stroma, double stroma, double cos_view, double cos_light);
+/* First order, one wavelength. */
+double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
+                              double stroma, double cos_view, double cos_light);
 
-/* The same by the full integral over 380-780 nm: what the bands are measured against. */
+/* All orders, one wavelength: isotropic scattering in two layers over black, from the integral equation for the source
+ * function on a grid (Galerkin, constant in each of 18 cells; the first order exact). Within 0.5 % of Monte Carlo. */
+double tissue_reflectance_all(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
+                              double stroma, double cos_view, double cos_light);
+
+/* By the full integral over 380-780 nm, exact for the order asked for: what bands and effective coefficients are
+ * measured against. */
 void tissue_reflectance_full(double rgb[3], const struct tissue *tissue, const struct observer *observer, double stroma,
                              double cos_view, double cos_light);
 
