@@ -1,0 +1,201 @@
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/record.h"
+#include "image/photo.h"
+#include "plan.h"
+
+/* What the folder holds, one bit each. */
+enum { PHOTOS = 1, VIEWS = 2, VIDEO = 4, SUBJECT = 8, TARGETS = 16, SCRIPT = 32 };
+
+/* A stage runs when the folder has any of `any` and all of `all`, and the stage it needs runs. */
+static const struct rule {
+	const char *name, *needs;  // needs: a stage whose result it cannot do without
+	int any, all;
+	const char *does, *without;  // reasons: why it runs, why not when the folder lacks what it works on
+} rules[PLAN_STAGES] = {
+	{ "plan", 0, 0, 0, "decides what the others do", "" },
+	{ "calibrate", 0, VIEWS | VIDEO, 0, "cameras from the overlapping views",
+	  "one photograph or no views/: cameras come from EXIF or capture.conf" },
+	{ "limbus", 0, PHOTOS, 0, "finds the eye in each photograph", "no photos/" },
+	{ "unrefract", "limbus", PHOTOS, 0, "takes the cornea off the iris", "no photos/" },
+	{ "freckles", "unrefract", PHOTOS, 0, "finds and fills freckles of the iris", "no photos/" },
+	{ "heightfield", "freckles", PHOTOS, 0, "coarse thickness of the stroma", "no photos/" },
+	{ "pigment", "heightfield", PHOTOS, 0, "melanin of the iris", "no photos/" },
+	{ "relief", "pigment", PHOTOS, 0, "relief that renders like the photograph", "no photos/" },
+	{ "refraction", "unrefract", PHOTOS, 0, "how light reaches the iris", "no photos/" },
+	{ "track", 0, VIDEO, 0, "follows gaze, lids and skin", "no video/: there is no motion to follow" },
+	{ "train", "track", VIDEO, 0, "learns how the skin moves with the eye", "no video/: there is no motion to learn" },
+	{ "transfer", "train", TARGETS, VIDEO, "fits the characters to the subject",
+	  "no targets/, or no video/ to learn from" },
+	{ "extrapolate", "transfer", TARGETS, VIDEO, "rigs the characters", "no targets/, or no video/ to learn from" },
+	{ "animate", "train", SCRIPT, VIDEO, "moves the eyes as script/ says", "no script/, or no video/ to learn from" },
+	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "no photos/: no eye to show" },
+};
+
+const char *const plan_names[PLAN_STAGES] = {
+	"plan",       "calibrate", "limbus", "unrefract", "freckles",    "heightfield", "pigment", "relief",
+	"refraction", "track",     "train",  "transfer",  "extrapolate", "animate",     "render",
+};
+
+bool plan_needs(int i, int j)
+{
+	// Cameras come first: whatever looks at pictures takes them from there.
+	bool cameras = !strcmp(plan_names[j], "calibrate") && (!strcmp(plan_names[i], "limbus") || !strcmp(plan_names[i], "track"));
+	return cameras || (rules[i].needs && !strcmp(rules[i].needs, plan_names[j]));
+}
+
+static bool ends_with(const char *s, const char *tail)
+{
+	size_t n = strlen(s), m = strlen(tail);
+	return n > m && !strcmp(s + n - m, tail);
+}
+
+/* One folder's names into the listing; *n gets how many of them end in one of `kinds` (null: all count). */
+static bool look(int *n, char **names, const char *capture, const char *dir, const char *const kinds[], struct err *err)
+{
+	struct file_list list;
+	char *path = mem_printf("%s/%s", capture, dir);
+	*n = 0;
+	bool ok = file_list(&list, path, err);
+	for (int i = 0; ok && i < list.n; i++) {
+		bool counts = !kinds;
+		for (int k = 0; kinds && kinds[k]; k++)
+			counts |= ends_with(list.names[i], kinds[k]);
+		*n += counts;
+		char *more = mem_printf("%s%s/%s\n", *names, dir, list.names[i]);
+		free(*names);
+		*names = more;
+	}
+	file_list_free(&list);
+	free(path);
+	return ok;
+}
+
+static bool holdings(int *have, struct plan *plan, struct err *err)
+{
+	static const char *const meshes[] = { ".obj", ".ply", 0 };
+	static const struct {
+		const char *dir;
+		int bit, least;
+		const char *const *kinds;
+	} dirs[] = { { "photos", PHOTOS, 1, 0 },
+		     { "views", VIEWS, 2, 0 },
+		     { "video", VIDEO, 1, 0 },
+		     { "targets", TARGETS, 1, meshes },
+		     { "script", SCRIPT, 1, 0 } };
+	char *names = mem_str("");
+	bool ok = true;
+	*have = 0;
+	for (int i = 0; i < COUNT(dirs) && ok; i++) {
+		int n;
+		ok = look(&n, &names, plan->capture, dirs[i].dir, dirs[i].kinds, err);
+		*have |= n >= dirs[i].least ? dirs[i].bit : 0;
+		plan->n_photos = dirs[i].bit == PHOTOS ? n : plan->n_photos;
+	}
+	file_hash_bytes(plan->listing, names, strlen(names));
+	free(names);
+	return ok;
+}
+
+/* Megapixels of a photograph from the first part of its file; where that does not tell, from its length. */
+static double megapixels(const char *path)
+{
+	enum { HEAD = 1 << 18 };
+	struct stat st;
+	struct photo photo;
+	struct err err = { 0 };
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	if (fd < 0)
+		return 0;
+	char *head = mem_array(HEAD, 1);
+	ssize_t n = fstat(fd, &st) || !S_ISREG(st.st_mode) ? 0 : read(fd, head, HEAD);
+	close(fd);
+	photo_header(&photo, head, n > 0 ? (size_t)n : 0, 1e6, &err);  // "truncated" is no fault here
+	free(head);
+	if (photo.width > 0 && photo.height > 0)
+		return 1e-6 * photo.width * photo.height;
+	return n > 0 && photo.kind != PHOTO_NONE ? 1e-6 * (double)st.st_size / 3 : 0;
+}
+
+static void measure(struct plan *plan)
+{
+	struct file_list list;
+	struct err err = { 0 };
+	char *dir = mem_printf("%s/photos", plan->capture);
+	file_list(&list, dir, &err);
+	for (int i = 0; i < list.n; i++) {
+		char *path = mem_printf("%s/%s", dir, list.names[i]);
+		plan->mpx += megapixels(path);
+		free(path);
+	}
+	file_list_free(&list);
+	free(dir);
+}
+
+char *plan_program(const char *stage)
+{
+	char *self = call_program_path(), *slash = strrchr(self, '/');
+	char *path = mem_printf("%.*s%s", slash ? (int)(slash - self + 1) : 0, self, stage);
+	free(self);
+	return path;
+}
+
+static bool is_built(const char *stage)
+{
+	char *path = plan_program(stage);
+	bool built = access(path, X_OK) == 0;
+	free(path);
+	return built;
+}
+
+static bool runs(const struct plan *plan, const char *name)
+{
+	for (int i = 0; i < PLAN_STAGES; i++)
+		if (!strcmp(plan->rows[i].name, name))
+			return plan->rows[i].run;
+	return false;
+}
+
+bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], struct err *err)
+{
+	struct stat st;
+	int have;
+	*plan = (struct plan){ .capture = capture };
+	if (stat(capture, &st) || !S_ISDIR(st.st_mode))
+		return err_set(err, "%s: no such folder", capture);
+	char *work = mem_printf("%s/work", capture);
+	bool is_link = !lstat(work, &st) && S_ISLNK(st.st_mode);
+	free(work);
+	if (is_link)  // a folder from elsewhere must not choose where its results are written
+		return err_set(err, "%s/work: is a link: results are written inside the capture folder alone", capture);
+	if (!holdings(&have, plan, err))
+		return false;
+	if (!(have & (PHOTOS | VIEWS | VIDEO)))
+		return err_set(err, "%s: nothing to work on: put macro photographs of an eye into %s/photos/", capture, capture);
+	measure(plan);
+	for (int i = 0; i < PLAN_STAGES; i++)
+		plan->rows[i].name = plan_names[i];
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		const struct rule *r = &rules[i];
+		struct plan_row *row = &plan->rows[i];
+		bool has = (!r->any || have & r->any) && (have & r->all) == r->all;
+		row->reason = r->does;
+		if (!has)
+			row->reason = r->without;
+		else if (!is_built(r->name))
+			row->reason = "its program is not built";
+		else if (r->needs && !runs(plan, r->needs))
+			row->reason = "a stage it needs does not run";
+		else
+			row->run = true;
+		row->seconds = row->run ? cost[i].fixed_mpx[0] + cost[i].fixed_mpx[1] * plan->mpx : 0;
+		plan->n_run += row->run && i;
+	}
+	return true;
+}

@@ -1,0 +1,57 @@
+/* plan: which stages the folder needs, which it does not and why.
+ * reads   names in photos/, views/, video/, targets/, script/; capture.conf
+ * writes  work/plan.json, work/plan.mk
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plan.h"
+
+#define ABOUT "which stages a capture folder needs, and why the others are not needed\n\n" \
+	"  --show             print the plan as a table: what would run, why, how long\n" \
+	"  --fresh=STAGE      exit 0 when that stage's last run still holds, 3 when it has to run\n" \
+	"  --clean            remove the folder's work/ and nothing else"
+
+static struct plan_asked take_asked(int *argc, char **argv)
+{
+	struct plan_asked asked = { 0 };
+	int n = 1;
+	for (int i = 1; i < *argc; i++)
+		if (!strcmp(argv[i], "--show"))
+			asked.show = true;
+		else if (!strcmp(argv[i], "--clean"))
+			asked.clean = true;
+		else if (!strncmp(argv[i], "--fresh=", 8))
+			asked.fresh = argv[i] + 8;
+		else
+			argv[n++] = argv[i];
+	argv[*argc = n] = 0;
+	return asked;
+}
+
+/* One row a stage: STAGE_seconds, fixed and for each megapixel. */
+static void fill_table(struct opt opts[PLAN_STAGES], struct plan_cost cost[PLAN_STAGES])
+{
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		char *key = mem_printf("%s_seconds", plan_names[i]);
+		opts[i] = (struct opt)OPT_REALS(key, cost[i].fixed_mpx, 2, 0, 1e6, "s; s/Mpx", "estimated time of the stage");
+	}
+}
+
+int main(int argc, char **argv)
+{
+	struct call call;
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	struct plan_cost cost[PLAN_STAGES];
+	struct opt opts[PLAN_STAGES];
+	struct plan_asked asked = take_asked(&argc, argv);
+	fill_table(opts, cost);
+	call_parse(&call, "plan", ABOUT, argc, argv, PLAN_STAGES, opts, &conf);
+	int status = plan_run(&call, &asked, opts, cost, &conf, &err);
+	conf_free(&conf);
+	for (int i = 0; i < PLAN_STAGES; i++)
+		free((char *)opts[i].key);
+	return status;
+}

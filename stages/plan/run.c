@@ -1,0 +1,53 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/say.h"
+#include "plan.h"
+
+static char *slice_of(const struct opt opts[PLAN_STAGES], const struct conf *conf)
+{
+	char *text = 0;
+	size_t size = 0;
+	FILE *f = open_memstream(&text, &size);
+	opt_print(f, "plan", PLAN_STAGES, opts, conf);
+	fclose(f);
+	return text;
+}
+
+static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
+                      const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, struct err *err)
+{
+	struct plan plan;
+	char *slice = slice_of(opts, conf);
+	bool ok = plan_decide(&plan, call->capture, cost, err) && plan_check_conf(&plan, conf, err)
+	          && plan_write(&plan, slice, err);
+	free(slice);
+	if (ok && asked->show)
+		plan_show(&plan, call);
+	if (ok && !plan.n_run)
+		return err_set(err, "%s: nothing to run: %s", call->capture, plan.rows[2].reason);
+	return ok;
+}
+
+int plan_run(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
+             const struct plan_cost cost[PLAN_STAGES], struct conf *conf, struct err *err)
+{
+	bool fresh = true;
+	char *why = 0;
+	if (asked->clean)
+		plan_clean(call->capture, err);
+	else if (asked->fresh)
+		plan_fresh(&fresh, &why, call, asked->fresh, err);
+	else if (call_load(call, "plan", conf, err) && opt_resolve("plan", PLAN_STAGES, opts, conf, err)) {
+		if (call->print_config)
+			opt_print(stdout, "plan", PLAN_STAGES, opts, conf);
+		else
+			make_plan(call, asked, opts, cost, conf, err);
+	}
+	free(why);
+	if (!err_is(err))
+		return fresh ? 0 : 3;
+	say_error("plan", err->msg);
+	bool call_is_wrong = !strncmp(err->msg, "command line:", 13) || !strncmp(err->msg, "--", 2);
+	return call_is_wrong ? 2 : 1;
+}

@@ -1,0 +1,65 @@
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/record.h"
+#include "plan.h"
+
+bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *stage, struct err *err)
+{
+	struct conf conf = { 0 };
+	bool known = false;
+	*fresh = false;
+	*why = 0;
+	for (int i = 0; i < PLAN_STAGES; i++)
+		known |= !strcmp(stage, plan_names[i]);
+	if (!known)
+		return err_set(err, "--fresh = %.60s: no such stage", stage);
+	bool ok = call_load(call, stage, &conf, err);
+	if (ok) {
+		char *program = plan_program(stage);
+		*fresh = record_holds(call->capture, stage, program, &conf, why);
+		free(program);
+	}
+	conf_free(&conf);
+	return ok;
+}
+
+/* Seconds the stage took last time; negative when it left no log. */
+static double seconds_taken(const char *capture, const char *stage)
+{
+	char *path = mem_printf("%s/work/log/%s.json", capture, stage);
+	json_t *log = json_load_file(path, 0, 0), *seconds = json_object_get(log, "seconds");
+	double s = seconds ? json_number_value(seconds) : -1;
+	json_decref(log);
+	free(path);
+	return s;
+}
+
+void plan_show(const struct plan *plan, const struct call *call)
+{
+	double sum = 0;
+	printf("%-12s %-11s %9s %9s  %s\n", "stage", "", "estimate", "last run", "why");
+	for (int i = 1; i < PLAN_STAGES; i++) {
+		const struct plan_row *row = &plan->rows[i];
+		struct err err = { 0 };
+		bool fresh = false;
+		char *why = 0, last[32] = "-";
+		if (row->run && !plan_fresh(&fresh, &why, call, row->name, &err))
+			why = mem_str(err.msg);
+		double took = seconds_taken(plan->capture, row->name);
+		if (took >= 0)
+			snprintf(last, sizeof last, "%.2f s", took);
+		printf("%-12s %-11s ", row->name, !row->run ? "skip" : fresh ? "up to date" : "run");
+		if (row->run)
+			printf("%7.2f s %9s  %s%s%s%s\n", row->seconds, last, row->reason, why ? " (" : "", why ? why : "",
+			       why ? ")" : "");
+		else
+			printf("%9s %9s  %s\n", "-", "-", row->reason);
+		sum += fresh ? 0 : row->seconds;
+		free(why);
+	}
+	printf("%d photographs, %.1f megapixels; about %.1f s to do\n", plan->n_photos, plan->mpx, sum);
+}

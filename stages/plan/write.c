@@ -1,0 +1,92 @@
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/version.h"
+#include "plan.h"
+
+static json_t *made_by(const struct plan *plan, const char *slice)
+{
+	json_t *config = json_object();
+	for (const char *line = slice; *line;) {
+		const char *end = strchrnul(line, '\n'), *eq = memmem(line, (size_t)(end - line), " = ", 3);
+		if (eq) {
+			char *key = mem_printf("%.*s", (int)(eq - line), line);
+			json_object_set_new(config, key, json_stringn_nocheck(eq + 3, (size_t)(end - eq - 3)));
+			free(key);
+		}
+		line = *end ? end + 1 : end;
+	}
+	return json_pack("{s:s,s:s,s:o,s:{s:s}}", "stage", "plan", "version", EYEWRIGHT_VERSION, "config", config,
+	                 "inputs", "file names", plan->listing);
+}
+
+static bool write_json(const struct plan *plan, const char *slice, struct err *err)
+{
+	json_t *stages = json_array();
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		const struct plan_row *row = &plan->rows[i];
+		json_array_append_new(stages, json_pack("{s:s,s:b,s:s,s:f}", "name", row->name, "run", row->run, "reason",
+		                                        row->reason, "seconds", round(100 * row->seconds) / 100));
+	}
+	json_t *json = json_pack("{s:o,s:o}", "made_by", made_by(plan, slice), "stages", stages);
+	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS | JSON_REAL_PRECISION(6));
+	char *path = mem_printf("%s/work/plan.json", plan->capture);
+	bool ok = file_write(path, text, strlen(text), err);
+	json_decref(json);
+	free(text);
+	free(path);
+	return ok;
+}
+
+/* What has to be there before a stage: the stage it needs; for the last, all. Names of the table alone: nothing
+ * of the folder's text reaches make. */
+static void write_rule(FILE *mk, const struct plan *plan, int i)
+{
+	const struct plan_row *row = &plan->rows[i];
+	fprintf(mk, "%s:", row->name);
+	if (!row->run) {
+		fprintf(mk, "\n\t@echo \"%s does not run: %s\" >&2\n", row->name, row->reason);
+		return;
+	}
+	for (int j = 1; j < i; j++)
+		if (plan->rows[j].run && (i == PLAN_STAGES - 1 || plan_needs(i, j)))
+			fprintf(mk, " %s", plan->rows[j].name);
+	fprintf(mk, "\n\t@\"$$BIN/plan\" --capture=\"$$CAPTURE\" --fresh=%s || \\\n"
+	            "\t\"$$BIN/%s\" --capture=\"$$CAPTURE\" $${THREADS:+\"--threads=$$THREADS\"}\n",
+	        row->name, row->name);
+}
+
+static bool write_mk(const struct plan *plan, struct err *err)
+{
+	char *text = 0, *path = mem_printf("%s/work/plan.mk", plan->capture);
+	size_t size = 0;
+	FILE *mk = open_memstream(&text, &size);
+	fputs("# Made by plan: which stages this folder needs. BIN: folder of the programs; CAPTURE: this folder.\n", mk);
+	fputs(".PHONY: all", mk);
+	for (int i = 1; i < PLAN_STAGES; i++)
+		fprintf(mk, " %s", plan->rows[i].name);
+	fputs("\nall:", mk);
+	for (int i = 1; i < PLAN_STAGES; i++)
+		if (plan->rows[i].run)
+			fprintf(mk, " %s", plan->rows[i].name);
+	fputs("\n", mk);
+	if (plan->rows[PLAN_STAGES - 1].run)
+		fputs("\t@printf '%s\\n' \"review page: $$CAPTURE/work/review/index.html\"\n", mk);
+	for (int i = 1; i < PLAN_STAGES; i++)
+		write_rule(mk, plan, i);
+	fclose(mk);
+	bool ok = file_write(path, text, size, err);
+	free(text);
+	free(path);
+	return ok;
+}
+
+bool plan_write(const struct plan *plan, const char *slice, struct err *err)
+{
+	return write_json(plan, slice, err) && write_mk(plan, err);
+}
