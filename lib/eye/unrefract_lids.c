@@ -1,0 +1,95 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "eye/unrefract_mask.h"
+#include "image/plane.h"
+
+enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };
+
+/* How much rather lid than iris each cell of the sheet is: positive where it is unlike its ring. */
+static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *weight,
+                         const struct sheet *sheet, double lid_z)
+{
+	double to = sheet->size / (2 * sheet->extent);
+	for (int c = 0; c < 3; c++) {
+		struct rings rings = rings_of(logs[c], weight, sheet, true, 0.2f);
+		for (int a = 0; a < ANGLES; a++)
+			for (int r = 0; r < RINGS; r++) {
+				double p[2], t = (r + 0.5) / RINGS;
+				sheet_point(p, sheet, t, 2 * M_PI * (a + 0.5) / ANGLES);
+				double x = (p[0] + sheet->extent) * to, y = (p[1] + sheet->extent) * to;
+				float z = fabsf(rings_z(&rings, plane_sample(logs[c], sheet->size, sheet->size, x, y), t));
+				float seen = plane_sample(weight, sheet->size, sheet->size, x, y);
+				float e = seen < 0.5f ? 0 : fminf(z, 2 * (float)lid_z) - (float)lid_z;
+				cell[a][r] = c && e < cell[a][r] ? cell[a][r] : e;
+			}
+	}
+}
+
+/* The best closed path: at each angle the first covered ring, RINGS where open. Dynamic programming twice round, so
+ * that the seam at angle 0 is an angle like any other. */
+static void lid_path(int path[ANGLES], float (*const gain)[RINGS + 1], double smooth)
+{
+	enum { STATES = RINGS + 1, STEPS = 2 * ANGLES };
+	short(*from)[STATES] = mem_array(STEPS, sizeof *from);
+	double best[STATES] = { 0 };
+	for (int k = 0; k < STEPS; k++) {
+		double next[STATES];
+		for (int s = 0; s < STATES; s++) {
+			int arg = s;
+			for (int q = 0; q < STATES; q++)
+				if (best[q] - smooth * abs(q - s) > best[arg] - smooth * abs(arg - s))
+					arg = q;
+			from[k][s] = (short)arg;
+			next[s] = best[arg] - smooth * abs(arg - s) + gain[k % ANGLES][s];
+		}
+		for (int s = 0; s < STATES; s++)
+			best[s] = next[s];
+	}
+	int s = 0;
+	for (int q = 1; q < STATES; q++)
+		s = best[q] > best[s] ? q : s;
+	for (int k = STEPS - 1; k >= 0; k--) {
+		if (k < STEPS - ANGLES / 2 && k >= ANGLES / 2)
+			path[k % ANGLES] = s;
+		s = from[k][s];
+	}
+	free(from);
+}
+
+/* A lid covers a long arc of the limbus; what is shorter is a shadow, a crypt or a reflection. */
+static void drop_short(int path[ANGLES])
+{
+	int start = 0;
+	while (start < ANGLES && path[start] < RINGS)
+		start++;
+	for (int i = 0; i < ANGLES && start < ANGLES; i++) {
+		int a = (start + i) % ANGLES, n = 0;
+		while (n < ANGLES && path[(a + n) % ANGLES] < RINGS)
+			n++;
+		for (int k = 0; k < n && n < LID_MIN_DEG * ANGLES / 360; k++)
+			path[(a + k) % ANGLES] = RINGS;
+		i += n;
+	}
+}
+
+void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], const float *weight,
+                    const struct sheet *sheet, const struct unrefract_conf *conf)
+{
+	float(*cell)[RINGS] = mem_array(ANGLES, sizeof *cell);
+	float(*gain)[RINGS + 1] = mem_array(ANGLES, sizeof *gain);
+	lid_evidence(cell, logs, weight, sheet, conf->lid_z);
+	for (int a = 0; a < ANGLES; a++) {
+		gain[a][RINGS] = 0;
+		for (int r = RINGS - 1; r >= 0; r--)
+			gain[a][r] = gain[a][r + 1] + cell[a][r];
+	}
+	int path[ANGLES];
+	lid_path(path, gain, conf->lid_smooth);
+	drop_short(path);
+	for (int a = 0; a < ANGLES; a++)
+		lid_t[a] = (double)path[a] / RINGS;
+	free(gain);
+	free(cell);
+}
