@@ -1,0 +1,167 @@
+#include "unrefract.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "bridge/cv_photo.h"
+#include "image/exr.h"
+
+/* The photographs of one eye whose limbus was found. */
+struct work {
+	const struct run *run;
+	const struct capture_eye *eye;
+	int n;
+	const struct capture_photo **photos;  // [n]
+	struct fit *fits;                     // [n]
+	struct unrefract_view *views;         // [n]
+	const char **inputs;                  // [2 n] files and fits
+	struct photo kept;                    // the only photograph stays in memory between survey and merge
+};
+
+static bool load_photo(struct photo *photo, const struct work *w, int i, struct err *err)
+{
+	return cv_photo_load(photo, stage_path(w->run->stage, "%s", w->photos[i]->file), w->run->limit_mpx, err);
+}
+
+/* Fits that are there and ok. */
+static void gather(struct work *w, int index)
+{
+	const struct capture *capture = w->run->capture;
+	size_t n = (size_t)capture->n_photos;
+	w->photos = mem_new(n, sizeof *w->photos);
+	w->fits = mem_new(n, sizeof *w->fits);
+	w->views = mem_new(n, sizeof *w->views);
+	w->inputs = mem_new(2 * n, sizeof *w->inputs);
+	for (int i = 0; i < capture->n_photos; i++) {
+		const struct capture_photo *photo = &capture->photos[i];
+		struct err err = { 0 };
+		if (photo->eye != index)
+			continue;
+		struct fit *fit = &w->fits[w->n];
+		if (!fit_load(fit, stage_path(w->run->stage, "%s", photo->fit), &err)) {
+			stage_warn(w->run->stage, "%s: left out: %s", photo->file, err.msg);
+		} else if (!fit->ok) {
+			stage_skipped(w->run->stage, "%s: %s", photo->file, fit->reason);
+		} else {
+			w->inputs[2 * w->n] = photo->file;
+			w->inputs[2 * w->n + 1] = photo->fit;
+			w->views[w->n].name = photo->name;
+			w->photos[w->n++] = photo;
+		}
+	}
+}
+
+static void survey(struct work *w)
+{
+	for (int i = 0; i < w->n; i++) {
+		struct photo photo = { 0 };
+		struct err err = { 0 };
+		struct unrefract_view *view = &w->views[i];
+		stage_progress(w->run->stage, i, 2 * w->n, "survey");
+		if (!load_photo(&photo, w, i, &err)
+		    || !unrefract_survey(view, &photo, &w->fits[i], w->run->eye, w->run->conf, &err)) {
+			snprintf(view->note, sizeof view->note, "%.150s", err.msg);
+			stage_warn(w->run->stage, "%s: left out: %s", w->photos[i]->file, err.msg);
+		}
+		if (w->n == 1)
+			w->kept = photo;
+		else
+			photo_free(&photo);
+	}
+}
+
+static bool merge(struct unrefract_texture *texture, struct work *w, int best, struct err *err)
+{
+	const struct run *run = w->run;
+	int size = unrefract_size(w->n, w->views, run->eye, run->conf);
+	*texture = unrefract_begin(size, run->eye, &w->views[best].pupil, run->conf);
+	for (int i = 0; i < w->n; i++) {
+		stage_progress(run->stage, w->n + i, 2 * w->n, "merge");
+		struct photo photo = w->kept;
+		if (!w->views[i].used)
+			continue;
+		if (!photo.rgb && !load_photo(&photo, w, i, err))
+			return false;
+		unrefract_add(texture, &w->views[i], &photo, run->eye, run->conf);
+		if (!w->kept.rgb)
+			photo_free(&photo);
+	}
+	unrefract_finish(texture, run->eye);
+	stage_progress(run->stage, 2 * w->n, 2 * w->n, "merge");
+	return true;
+}
+
+static bool save(const struct unrefract_texture *texture, struct work *w, const char *exr, const char *json,
+                 struct err *err)
+{
+	static const char *const channels[] = { "R", "G", "B", "W" };
+	struct stage *stage = w->run->stage;
+	int n = 2 * w->n;
+	const char *made_by = stage_made_by(stage, n, w->inputs);
+	struct exr_info info = { texture->extent, made_by };
+	return exr_write(stage_path(stage, "%s", exr), &texture->rgbw, channels, EXR_HALF, &info, err)
+	       && unrefract_save_json(stage_path(stage, "%s", json), texture, w->n, w->views, made_by, err)
+	       && stage_made(stage, exr, n, w->inputs, err) && stage_made(stage, json, n, w->inputs, err);
+}
+
+static void tell(const struct unrefract_texture *texture, const struct work *w)
+{
+	struct stage *stage = w->run->stage;
+	int used = 0;
+	for (int i = 0; i < w->n; i++) {
+		used += w->views[i].used;
+		if (!w->views[i].used)
+			stage_skipped(stage, "%s: %s", w->photos[i]->file, w->views[i].note);
+	}
+	stage_figure(stage, "texels a side", texture->rgbw.width, "");
+	stage_figure(stage, "texels computed", (double)texture->texels, "");
+	stage_figure(stage, "texels per mm", texture->rgbw.width / (2 * texture->extent), "/mm");
+	stage_figure(stage, "iris seen", 100 * texture->seen, "%");
+	stage_figure(stage, "photographs merged", used, "");
+	stage_note(stage, "%s: %d x %d texels of %d photograph%s, %.1f %% of the iris seen, pupil %.2f mm", w->eye->iris,
+	           texture->rgbw.width, texture->rgbw.width, used, used == 1 ? "" : "s", 100 * texture->seen,
+	           2 * texture->pupil.r);
+}
+
+static bool make(struct work *w, const char *exr, const char *json, struct err *err)
+{
+	struct stage *stage = w->run->stage;
+	if (stage_fresh(stage, exr, 2 * w->n, w->inputs) && stage_fresh(stage, json, 2 * w->n, w->inputs)
+	    && !w->run->write_map)
+		return true;
+	survey(w);
+	int best = unrefract_align(w->n, w->views, w->run->conf);
+	if (!w->views[best].used)
+		return err_set(err, "%s: %s", w->photos[best]->file, w->views[best].note);
+	struct unrefract_texture texture = { 0 };
+	bool ok = merge(&texture, w, best, err) && save(&texture, w, exr, json, err);
+	if (ok)
+		tell(&texture, w);
+	for (int i = 0; ok && w->run->write_map && i < w->n; i++)
+		ok = !w->views[i].used || unrefract_write_map(w->run, w->photos[i], &w->views[i], w->eye->iris, err);
+	image_free(&texture.rgbw);
+	return ok;
+}
+
+bool unrefract_eye(const struct run *run, int index, struct err *err)
+{
+	struct work w = { .run = run, .eye = &run->capture->eyes[index] };
+	gather(&w, index);
+	char *exr = mem_printf("%s/texture.exr", w.eye->iris), *json = mem_printf("%s/texture.json", w.eye->iris);
+	bool ok = w.n ? make(&w, exr, json, err)
+	              : err_set(err, "no photograph of the %s%s has a usable limbus: see work/limbus, or say where the eye is "
+	                             "with photo.NAME.hint_px",
+	                        w.eye->side, strcmp(w.eye->side, "eye") ? " eye" : "");
+	for (int i = 0; i < w.n; i++)
+		unrefract_view_free(&w.views[i]);
+	photo_free(&w.kept);
+	free(exr);
+	free(json);
+	free(w.photos);
+	free(w.fits);
+	free(w.views);
+	free(w.inputs);
+	return ok;
+}
