@@ -88,8 +88,12 @@ void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], cons
 	int path[ANGLES];
 	lid_path(path, gain, conf->lid_smooth);
 	drop_short(path);
-	for (int a = 0; a < ANGLES; a++)
-		lid_t[a] = (double)path[a] / RINGS;
+	const int reach = 2;  // the path is good to a ring; its mean over a few angles to less
+	for (int a = 0; a < ANGLES; a++) {
+		lid_t[a] = 0;
+		for (int k = -reach; k <= reach; k++)
+			lid_t[a] += (double)path[(a + k + ANGLES) % ANGLES] / RINGS / (2 * reach + 1);
+	}
 	free(gain);
 	free(cell);
 }

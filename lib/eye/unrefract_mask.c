@@ -37,6 +37,15 @@ static void take_logs(struct work *work, const struct unrefract_survey *survey, 
 	}
 }
 
+/* The lid's edge at an angle, between the two it was found at. */
+static double lid_at(const double lid_t[SHEET_ANGLES], double phi)
+{
+	double at = (phi < 0 ? phi + 2 * M_PI : phi) * SHEET_ANGLES / (2 * M_PI) - 0.5 + SHEET_ANGLES;
+	int a = (int)at;
+	double f = at - a;
+	return (1 - f) * lid_t[a % SHEET_ANGLES] + f * lid_t[(a + 1) % SHEET_ANGLES];
+}
+
 static void mark_lids(struct work *work, const struct unrefract_survey *survey, const float *seen,
                       const struct sheet *sheet, const struct unrefract_conf *conf)
 {
@@ -46,9 +55,8 @@ static void mark_lids(struct work *work, const struct unrefract_survey *survey, 
 	for (int y = 0; y < work->size; y++)
 		for (int x = 0; x < work->size; x++) {
 			double phi = atan2(plane_mm(y, survey) - sheet->pupil.cy, plane_mm(x, survey) - sheet->pupil.cx);
-			int a = (int)((phi < 0 ? phi + 2 * M_PI : phi) * SHEET_ANGLES / (2 * M_PI)) % SHEET_ANGLES;
 			long i = (long)y * work->size + x;
-			if (work->kind[i] == IRIS && work->t[i] > lid_t[a])
+			if (work->kind[i] == IRIS && work->t[i] > lid_at(lid_t, phi))
 				work->kind[i] = LID;
 		}
 }
@@ -74,28 +82,67 @@ static void iris_weight(float *weight, const struct work *work, const float *see
 		weight[i] = work->kind[i] == IRIS ? seen[i] : 0;
 }
 
+/* Where the ring's spread is that of the pupil's or the limbus' blur, that of the other rings counts. */
+static void even_scale(struct rings *rings)
+{
+	float sorted[SHEET_RINGS];
+	for (int i = 0; i < SHEET_RINGS; i++) {
+		int k = i;
+		for (; k > 0 && sorted[k - 1] > rings->scale[i]; k--)
+			sorted[k] = sorted[k - 1];
+		sorted[k] = rings->scale[i];
+	}
+	for (int i = 0; i < SHEET_RINGS; i++)
+		rings->scale[i] = fminf(rings->scale[i], 1.2f * sorted[SHEET_RINGS / 2]);
+}
+
+/* A bright fibre is no reflection: blobs narrower than a reflection's blur stay, unless they are far off the ring. */
+static void drop_small(uint8_t *glint, const float *z, const struct work *work, const struct unrefract_conf *conf)
+{
+	long n = (long)work->size * work->size;
+	int *label = mem_array((size_t)n, sizeof *label);
+	int count = mask_label(label, glint, work->size, work->size);
+	long *area = mem_new((size_t)count + 1, sizeof *area);
+	float *peak = mem_new((size_t)count + 1, sizeof *peak);
+	for (long i = 0; i < n; i++) {
+		area[label[i]]++;
+		peak[label[i]] = fmaxf(peak[label[i]], z[i]);
+	}
+	double least = 0.12 / (work->texel * work->texel);  // mm²
+	for (long i = 0; i < n; i++)
+		if (glint[i] && (double)area[label[i]] < least && peak[label[i]] < 1.7f * (float)conf->glint_z)
+			glint[i] = 0;
+	free(peak);
+	free(area);
+	free(label);
+}
+
 /* Reflections: too bright, over an area, in the iris' own darkest channel; or saturated. */
 static void mark_glints(struct work *work, const struct unrefract_survey *survey, const float *seen,
                         const struct sheet *sheet, const struct unrefract_conf *conf)
 {
 	long n = (long)work->size * work->size;
-	float *weight = mem_array((size_t)n, sizeof *weight);
+	float *weight = mem_array((size_t)n, sizeof *weight), *z = mem_array((size_t)n, sizeof *z);
 	uint8_t *glint = mem_new((size_t)n, 1);
 	iris_weight(weight, work, seen);
-	take_logs(work, survey, seen, 0.07 / work->texel);
+	take_logs(work, survey, seen, 0.05 / work->texel);
 	int c = darkest_channel(work, weight, sheet);
 	struct rings rings = rings_of(work->log[c], weight, sheet, false, 0.12f);
+	even_scale(&rings);
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
+		bool here = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.93f;
 		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated;
-		bool added = !conf->polarised && rings_z(&rings, work->log[c][i], work->t[i]) > (float)conf->glint_z;
-		glint[i] = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.97f && (full || added);
+		z[i] = full ? INFINITY : conf->polarised ? 0 : rings_z(&rings, work->log[c][i], work->t[i]);
+		glint[i] = here && z[i] > (float)conf->glint_z;
 	}
+	drop_small(glint, z, work, conf);
 	mask_grow(glint, work->size, work->size, conf->glint_grow / work->texel);
 	for (long i = 0; i < n; i++)
 		if (glint[i] && work->kind[i] == IRIS)
 			work->kind[i] = GLINT;
 	free(glint);
+	free(z);
 	free(weight);
 }
 
@@ -148,7 +195,7 @@ static void weigh(struct unrefract_survey *survey, const struct work *work, cons
 		survey->weight[i] = bad[i] ? 0 : 1;
 	plane_blur(survey->weight, size, size, feather);
 	for (long i = 0; i < n; i++)
-		survey->weight[i] *= seen[i];
+		survey->weight[i] = bad[i] || survey->weight[i] < 0.01f ? 0 : survey->weight[i] * seen[i];
 	survey->lid_share = all ? (double)lid / (double)all : 0;
 	survey->glint_share = all ? (double)glint / (double)all : 0;
 	free(bad);
