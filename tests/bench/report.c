@@ -16,7 +16,7 @@
 #include "tests/lib/csv.h"
 
 /* Columns of NAME.csv. */
-enum { TABLE, METHOD, SETTING, PER, MEDIAN, LOW, HIGH, REPS, ERROR, UNIT, ERROR_OF };
+enum { TABLE, METHOD, SETTING, PER, MEDIAN, LOW, HIGH, ERROR, UNIT, ERROR_OF };
 
 static bool same(const struct csv_row *a, const struct csv_row *b, int column)
 {
@@ -56,8 +56,8 @@ static void write_machine(FILE *md, const char *compiler, const char *flags)
 	char *cpu = proc_value("/proc/cpuinfo", "model name"), *memory = proc_value("/proc/meminfo", "MemTotal");
 	char *features = proc_value("/proc/cpuinfo", "flags");
 	const char *vectors = strstr(features, "avx512f") ? "AVX-512" : strstr(features, "avx2") ? "AVX2" : "no AVX2";
-	fprintf(md, "# Benchmarks\n\nMade by `make bench`. Times are wall-clock medians; in brackets the quartiles and the "
-	            "number of repetitions. Every time\nand the error beside it come from the same run.\n\n"
+	fprintf(md, "# Benchmarks\n\nMade by `make bench`. Times are wall-clock medians; in brackets the quartiles. Every time and the error "
+	            "beside it\ncome from the same run.\n\n"
 	            "| | |\n|---|---|\n| processor | %s, %ld processors, %s |\n| memory | %s |\n| compiler | %s |\n| flags | `%s` |\n\n",
 	        cpu, sysconf(_SC_NPROCESSORS_ONLN), vectors, memory, compiler, flags);
 	free(cpu);
@@ -95,9 +95,8 @@ static void write_table(FILE *md, const struct csv *csv, int first)
 			snprintf(error, sizeof error, "%.3g %.40s", csv_number(c[ERROR]), c[UNIT]);
 		fprintf(md, "| %s | %s | **%s**", c[METHOD], c[SETTING], bench_seconds(median, csv_number(c[MEDIAN])));
 		if (*c[LOW] && *c[HIGH])
-			fprintf(md, " (%s .. %s", bench_seconds(low, csv_number(c[LOW])), bench_seconds(high, csv_number(c[HIGH])));
-		if (*c[LOW] && *c[HIGH])
-			fprintf(md, csv_number(c[REPS]) > 0 ? "; %.0f)" : ")", csv_number(c[REPS]));
+			fprintf(md, " (%s .. %s)", bench_seconds(low, csv_number(c[LOW])),
+			        bench_seconds(high, csv_number(c[HIGH])));
 		fprintf(md, " | %s | %s | %s |\n", c[PER], error, c[ERROR_OF]);
 	}
 }
@@ -197,7 +196,14 @@ static void write_plots(FILE *md, const struct csv *csv, int first, const char *
 
 static void write_tables(FILE *md, const struct csv *csv, const char *name, const char *out)
 {
+	char *path = mem_printf("%s/%s.reps", out, name), *reps = 0;
+	size_t size;
+	struct err none = { 0 };
 	fprintf(md, "\n## %s\n", name);
+	if (file_read(&reps, &size, path, 64, &none) && *reps != '0')
+		fprintf(md, "\n%s repetitions.\n", reps);
+	free(reps);
+	free(path);
 	for (int i = 0; i < csv->n; i++) {
 		bool seen = false;
 		for (int j = 0; j < i && !seen; j++)

@@ -19,6 +19,7 @@ static struct {
 	size_t rows_size, goals_size;
 	FILE *rows_file, *goals_file;
 	char table[80];  // last one printed: its head is printed once
+	int least_reps, most_reps;
 } bench;
 
 void bench_open(const char *name, int argc, char **argv)
@@ -36,8 +37,9 @@ void bench_open(const char *name, int argc, char **argv)
 		}
 	bench.rows_file = open_memstream(&bench.rows, &bench.rows_size);
 	bench.goals_file = open_memstream(&bench.goals, &bench.goals_size);
-	fputs("table,method,setting,per,median_s,low_s,high_s,reps,error,error_unit,error_of\n", bench.rows_file);
+	fputs("table,method,setting,per,median_s,low_s,high_s,error,error_unit,error_of\n", bench.rows_file);
 	fputs("measure,reach,got,unit,reached\n", bench.goals_file);
+	bench.least_reps = bench.most_reps = 0;
 	printf("== %s%s\n", name, bench.quick ? " (quick)" : "");
 }
 
@@ -70,14 +72,16 @@ static double quantile(int n, const double sorted[], double q)
 struct bench_time bench_time_of(int n, double seconds[])
 {
 	if (n < 1)
-		return (struct bench_time){ NAN, NAN, NAN, 0 };
+		return (struct bench_time){ NAN, NAN, NAN };
+	bench.most_reps = n > bench.most_reps ? n : bench.most_reps;
+	bench.least_reps = bench.least_reps && bench.least_reps < n ? bench.least_reps : n;
 	qsort(seconds, (size_t)n, sizeof *seconds, by_value);
-	return (struct bench_time){ quantile(n, seconds, 0.5), quantile(n, seconds, 0.25), quantile(n, seconds, 0.75), n };
+	return (struct bench_time){ quantile(n, seconds, 0.5), quantile(n, seconds, 0.25), quantile(n, seconds, 0.75) };
 }
 
 struct bench_time bench_time_each(struct bench_time t, double n)
 {
-	return (struct bench_time){ t.median / n, t.low / n, t.high / n, t.reps };
+	return (struct bench_time){ t.median / n, t.low / n, t.high / n };
 }
 
 void bench_times(int n, struct bench_time out[], void (*const fn[])(void *), void *const ctx[], int reps)
@@ -145,8 +149,8 @@ void bench_row(const char *table, const char *method, const char *setting, struc
                double error, const char *error_unit, const char *error_of)
 {
 	char median[32], low[32], high[32];
-	csv(bench.rows_file, "ssssnnnnnss", table, method, setting, per, time.median, time.low, time.high,
-	    (double)time.reps, error, error_unit, error_of);
+	csv(bench.rows_file, "ssssnnnnss", table, method, setting, per, time.median, time.low, time.high,
+	    error, error_unit, error_of);
 	if (strcmp(bench.table, table)) {
 		printf("\n%s\n  %-34s %-24s %10s  %-23s %s\n", table, "method", "setting", "median", "quartiles", "error");
 		snprintf(bench.table, sizeof bench.table, "%s", table);
@@ -169,7 +173,7 @@ void bench_goal(const char *measure, const char *reach, double got, const char *
 
 static bool write_out(const char *suffix, const char *text, size_t size, struct err *err)
 {
-	char *path = mem_printf("%s/%s%s.csv", bench.out, bench.name, suffix);
+	char *path = mem_printf("%s/%s%s", bench.out, bench.name, suffix);
 	bool ok = file_write(path, text, size, err);
 	free(path);
 	return ok;
@@ -180,7 +184,11 @@ int bench_close(void)
 	struct err err = { 0 };
 	fclose(bench.rows_file);
 	fclose(bench.goals_file);
-	bool ok = write_out("", bench.rows, bench.rows_size, &err) && write_out(".goals", bench.goals, bench.goals_size, &err);
+	char *reps = mem_printf("%d to %d", bench.least_reps, bench.most_reps);
+	bool ok = write_out(".csv", bench.rows, bench.rows_size, &err)
+	          && write_out(".goals.csv", bench.goals, bench.goals_size, &err)
+	          && write_out(".reps", reps, strlen(reps), &err);
+	free(reps);
 	if (!ok)
 		fprintf(stderr, "%s\n", err.msg);
 	free(bench.rows);

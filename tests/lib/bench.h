@@ -13,7 +13,6 @@ bool bench_quick(void);
 
 struct bench_time {
 	double median, low, high;  // seconds a call; low and high: the quartiles
-	int reps;                  // calls timed; 0 = not said
 };
 
 /* Calls fn(ctx) `reps` times after one warm-up; median and quartiles of wall-clock seconds. */
