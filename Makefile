@@ -1,9 +1,25 @@
-# Eyewright: from photographs of a person to fitted, renderable eyes.
-#   make demo                      the whole pipeline on a bundled capture, ending with a picture
-#   make check                     build and run all tests
-#   make CAPTURE=my-capture        run what the capture needs
-#   make help                      everything else
-# On a Debian machine what is missing is installed first.
+#$ Eyewright: from photographs of a person to fitted, renderable eyes.
+#$
+#$   make demo                       the whole pipeline on a bundled capture, ending with a picture
+#$   make check                      build, then run all tests
+#$
+#$   make CAPTURE=my-capture         run what the capture needs and what has changed
+#$   make CAPTURE=my-capture plan    what would run, what would not and why, and how long it takes
+#$   make CAPTURE=my-capture limbus  one stage, after those it needs (any program of bin/)
+#$   make CAPTURE=my-capture clean   remove my-capture/work/, all that was made
+#$   make batch CAPTURES=DIR         every capture folder in DIR, one after the other
+#$   THREADS=2                       with any of these: at most so many threads; results do not depend on it
+#$
+#$   make bench                      speed and error of every method in tables and plots: bench/README.md
+#$   make bench-NAME                 one benchmark; QUICK=1 with both: fewer cases
+#$   make stress                     long runs over random and hostile cases
+#$   make fuzz SECONDS_EACH=60       everything that reads strangers' files, with clang's libFuzzer
+#$   make build                      the programs alone: bin/
+#$   make setup                      install the Debian packages that are missing, or print the command that does
+#$   make clean                      remove everything built
+#$
+#$ A capture is a folder with photos/ (macro photographs of one eye each) and, if need be, capture.conf:
+#$ one "key = value" a line; bin/STAGE --help lists the keys. Results: my-capture/work/review/index.html.
 
 CAPTURE ?=
 # A folder's name may hold anything: it reaches the programs through the environment, never through a shell's text.
@@ -16,7 +32,8 @@ B := build$(if $(SAN),-san)
 BIN := $(if $(SAN),$(B)/bin,bin)
 
 PACKAGES := gcc g++ make pkg-config libopencv-dev libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
-	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev libopenblas-dev libcmocka-dev gnuplot-nox
+	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
+	libopenblas-dev libcmocka-dev gnuplot-nox
 
 CFLAGS ?= -O3 -g
 CXXFLAGS ?= -O2 -g
@@ -46,7 +63,7 @@ TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c))
 .SECONDARY:
 MAKEFLAGS += --no-builtin-rules
 
-.PHONY: all build setup help check demo bench stress clean distclean batch $(STAGES) FORCE
+.PHONY: all build setup help check demo bench stress clean batch $(STAGES) FORCE
 all: $(if $(CAPTURE),run,help)
 
 include $(wildcard tests/*.mk)
@@ -98,10 +115,21 @@ $(filter-out plan,$(STAGES)): need-capture build
 	@BIN=$(BIN) $(MAKE) --no-print-directory -f - $@ < "$$CAPTURE/work/plan.mk"
 plan: need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE" --show
+# The bundled capture, from the photograph to the page.
+demo: setup build
+	@$(MAKE) --no-print-directory run CAPTURE=samples/demo
+	@echo
+	@for f in work/review/index.html work/render/contact_sheet.png; do \
+		test -e samples/demo/$$f && echo "open $(CURDIR)/samples/demo/$$f"; done; true
 batch: build
-	@set -f; bad=0; for c in $$CAPTURES; do CAPTURE="$$c" $(MAKE) --no-print-directory run || bad=1; done; exit $$bad
+	@test -d "$$CAPTURES" || { echo "make: say which folder holds the captures: make batch CAPTURES=DIR" >&2; exit 2; }
+	@bad=0; for c in "$$CAPTURES"/*/; do \
+		echo "== $$c" >&2; CAPTURE="$${c%/}" $(MAKE) --no-print-directory run || bad=1; done; exit $$bad
 
-clean:
-	@if test -n "$$CAPTURE"; then $(BIN)/plan --capture="$$CAPTURE" --clean; else rm -rf build build-san bin bench; fi
+help:
+	@sed -n 's/^#\$$ \{0,1\}//p' Makefile
+
+clean: $(if $(CAPTURE),build)
+	@if test -n "$$CAPTURE"; then $(BIN)/plan --capture="$$CAPTURE" --clean; else rm -rf build build-san build-fuzz bin bench; fi
 
 -include $(shell find $B -name '*.d' 2>/dev/null)

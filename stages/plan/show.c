@@ -61,5 +61,5 @@ void plan_show(const struct plan *plan, const struct call *call)
 		sum += fresh ? 0 : row->seconds;
 		free(why);
 	}
-	printf("%d photographs, %.1f megapixels; about %.1f s to do\n", plan->n_photos, plan->mpx, sum);
+	printf("photographs: %d, %.1f megapixels; about %.1f s to do\n", plan->n_photos, plan->mpx, sum);
 }
