@@ -1,0 +1,38 @@
+/* freckles: find the freckles of an iris, and paint them over.
+ * reads   work/iris/texture.exr, texture.json
+ * writes  work/iris/freckles.exr, freckles.json, clean.exr
+ */
+#include "base/mem.h"
+#include "freckles.h"
+
+int main(int argc, char **argv)
+{
+	struct eye eye = { 0 };
+	struct freckle_conf c = { 0 };
+	struct stage stage;
+	struct capture capture = { 0 };
+	struct opt_each_list eye_of = { 0 };
+	const struct opt opts[] = {
+		EYE_OPTS(&eye),
+		CAPTURE_OPTS(&eye_of),
+		OPT_INT("max_size", &c.max_size, 64, 8192, "texels", "a side of the map searched, at most"),
+		OPT_REAL("blur", &c.blur, 0, 0.2, "mm", "before colours are compared"),
+		OPT_REAL("ratio", &c.ratio, 0.05, 3, "", "least rise of log(red / green)"),
+		OPT_REAL("ratio_z", &c.ratio_z, 0, 50, "sigma", "least rise in the spread of the surroundings"),
+		OPT_REAL("darker", &c.darker, 0, 3, "", "least fall of log(green)"),
+		OPT_REAL("red_share", &c.red_share, 0, 1, "", "most that red falls, as a share of green"),
+		OPT_REAL("edge", &c.edge, 0.1, 0.9, "", "share of its own level at which a spot ends"),
+		OPT_REAL("min_area", &c.min_area, 0, 1, "mm2", "smallest spot"),
+		OPT_REAL("limbus_margin", &c.limbus_margin, 0, 3, "mm", "iris next to the limbus left out"),
+		OPT_REAL("search_deg", &c.search_deg, 10, 180, "deg", "round the iris for a pattern"),
+		OPT_REAL("band", &c.band, 0.02, 2, "mm", "surroundings that a pattern has to continue"),
+		OPT_INT("candidates", &c.candidates, 1, 1000, "", "patterns tried on either side"),
+	};
+	stage_start(&stage, "freckles", "find freckles and paint them over", argc, argv, COUNT(opts), opts);
+	struct err err = { 0 };
+	if (eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
+		for (int i = 0; i < capture.n_eyes; i++)
+			freckles_eye(&stage, &capture.eyes[i], &eye, &c, &err);
+	capture_free(&capture);
+	return stage_end(&stage, &err);
+}
