@@ -27,6 +27,11 @@ override CAPTURE := $(value CAPTURE)
 override CAPTURES := $(value CAPTURES)
 export CAPTURE CAPTURES
 
+# V=1 shows the commands.
+V ?=
+Q := $(if $(V),,@)
+tell = $(if $(V),,@echo "  $(1)")
+
 SAN ?=
 B := build$(if $(SAN),-san)
 BIN := $(if $(SAN),$(B)/bin,bin)
@@ -79,10 +84,12 @@ build: $B/libeyewright.a $(PROGRAMS)
 
 $B/%.o: %.c | $B/.setup
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(EXR_CFLAGS) -c $< -o $@
+	$(call tell,cc $<)
+	$(Q)$(CC) $(ALL_CFLAGS) $(EXR_CFLAGS) -c $< -o $@
 $B/%.o: %.cc | $B/.setup
 	@mkdir -p $(@D)
-	$(CXX) $(ALL_CXXFLAGS) -c $< -o $@
+	$(call tell,c++ $<)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -c $< -o $@
 
 # Archives and programs are replaced only when their bytes change, so that a comment reruns no stage.
 $B/libeyewright.a: $(LIB_OBJ)
@@ -92,7 +99,8 @@ $B/libeyewright.a: $(LIB_OBJ)
 define program
 $(BIN)/$(1): $(2) $B/libeyewright.a
 	@mkdir -p $$(@D)
-	$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $(LIBS)
+	$$(call tell,link $$@)
+	$$(Q)$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $(LIBS)
 endef
 $(foreach s,$(filter-out render,$(STAGES)),$(eval $(call program,$s,$(patsubst %.c,$B/%.o,$(wildcard stages/$s/*.c)))))
 $(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c))))

@@ -1,0 +1,31 @@
+/* unit: cmocka with all it wants before it. */
+#ifndef TESTS_UNIT_H
+#define TESTS_UNIT_H
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define ERR_HAS(err, text) \
+	do { \
+		if (!strstr((err).msg, text)) \
+			fail_msg("error \"%s\" does not say \"%s\"", (err).msg, text); \
+	} while (0)
+
+/* |got - want| <= tolerance; NaN fails. */
+#define NEAR(got, want, tolerance) \
+	do { \
+		double got_ = (double)(got), want_ = (double)(want); \
+		if (!(fabs(got_ - want_) <= (double)(tolerance))) \
+			fail_msg("%s = %.17g, must be within %g of %.17g", #got, got_, (double)(tolerance), want_); \
+	} while (0)
+
+#endif

@@ -1,0 +1,193 @@
+/* Records: a stage has to run again when, and only when, bytes it depends on have changed. */
+#include "tests/lib/unit.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include "base/conf.h"
+#include "base/file.h"
+#include "base/record.h"
+#include "tests/lib/scratch.h"
+
+static const char *const inputs[] = { "photos/a.jpg" };
+static const char out[] = "work/out.json";
+
+static int setup(void **state)
+{
+	(void)state;
+	scratch_open();
+	scratch_text("program", "program 1");
+	scratch_text("defaults", "sigma = 2\nsigma.draft = 4\n");
+	scratch_text("shared", "quality = review\nphoto.*.hint =\neye.index = 1.336\n");
+	scratch_text("capture.conf", "");
+	scratch_text("photos/a.jpg", "picture");
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	(void)state;
+	scratch_close();
+	return 0;
+}
+
+static struct conf load_conf(void)
+{
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	assert_true(conf_load(&conf, scratch_path("shared"), "", 0, &err)
+	            && conf_load(&conf, scratch_path("defaults"), "stage.", 0, &err)
+	            && conf_load(&conf, scratch_path("capture.conf"), "", 1, &err));
+	return conf;
+}
+
+/* A stage's run with the configuration "stage.sigma = 2". */
+static void run_stage(const char *config)
+{
+	struct err err = { 0 };
+	struct file_list list;
+	char hash[33];
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), config);
+	assert_true(file_list(&list, scratch_path("photos"), &err));
+	record_listing_hash(hash, list.n, list.names);
+	record_list(r, "photos", hash);
+	file_list_free(&list);
+	if (!record_fresh(r, out, 1, inputs)) {
+		scratch_text(out, "made");
+		record_made(r, out, 1, inputs);
+	}
+	assert_true(record_save(r, true, &err));
+	record_free(r);
+}
+
+static bool holds(const char *because)
+{
+	struct conf conf = load_conf();
+	char *why = 0;
+	bool fresh = record_holds(scratch_path("."), "stage", scratch_path("program"), &conf, &why);
+	if (because && (!why || !strstr(why, because)))
+		fail_msg("says \"%s\", must say \"%s\"", why ? why : "", because);
+	free(why);
+	conf_free(&conf);
+	return fresh;
+}
+
+#define CONFIG "quality = review\nstage.sigma = 2\n"
+
+static void nothing_changed(void **state)
+{
+	(void)state;
+	assert_false(holds("never run"));
+	run_stage(CONFIG);
+	assert_true(holds(0));
+	// A new date on the same bytes is no change.
+	struct timespec times[2] = { { 1e9, 0 }, { 1e9, 0 } };
+	assert_int_equal(utimensat(AT_FDCWD, scratch_path("photos/a.jpg"), times, 0), 0);
+	assert_int_equal(utimensat(AT_FDCWD, scratch_path("program"), times, 0), 0);
+	assert_true(holds(0));
+	assert_true(holds(0));
+}
+
+static void bytes_changed(void **state)
+{
+	(void)state;
+	run_stage(CONFIG);
+	scratch_text("photos/a.jpg", "another");
+	assert_false(holds("photos/a.jpg has changed"));
+	scratch_text("photos/a.jpg", "picture");
+	assert_true(holds(0));
+	scratch_text("program", "program 2");
+	assert_false(holds("program has changed"));
+	scratch_text("program", "program 1");
+	scratch_text(out, "mad");
+	assert_false(holds("out.json has changed"));
+	unlink(scratch_path("%s", out));
+	assert_false(holds("out.json is missing"));
+}
+
+/* Same length, same inode, same date: the change time alone tells, and has to be looked at. */
+static void changed_behind_the_date(void **state)
+{
+	(void)state;
+	struct stat st;
+	run_stage(CONFIG);
+	usleep(80000);
+	assert_true(holds(0));
+	const char *path = scratch_path("photos/a.jpg");
+	assert_int_equal(stat(path, &st), 0);
+	int fd = open(path, O_WRONLY);
+	assert_int_equal(write(fd, "PICTURE", 7), 7);
+	struct timespec times[2] = { st.st_atim, st.st_mtim };
+	assert_int_equal(futimens(fd, times), 0);
+	close(fd);
+	assert_false(holds("photos/a.jpg has changed"));
+}
+
+static void files_came_and_went(void **state)
+{
+	(void)state;
+	run_stage(CONFIG);
+	scratch_text("photos/b.jpg", "new");
+	assert_false(holds("come or gone in photos"));
+	unlink(scratch_path("photos/b.jpg"));
+	assert_true(holds(0));
+}
+
+static void configuration_changed(void **state)
+{
+	(void)state;
+	run_stage(CONFIG);
+	scratch_text("capture.conf", "other.sigma = 9\neye.index = 1.4\n");  // what this stage does not read
+	assert_true(holds(0));
+	scratch_text("capture.conf", "stage.sigma = 2\n");  // the same value
+	assert_true(holds(0));
+	scratch_text("capture.conf", "stage.sigma = 3\n");
+	assert_false(holds("stage.sigma has changed"));
+	scratch_text("capture.conf", "quality = draft\n");
+	assert_false(holds("has changed"));
+	scratch_text("capture.conf", "photo.a.hint = 1 2 3\n");
+	assert_false(holds("photo.a.hint is new"));
+}
+
+static void an_unfinished_run_does_not_hold(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	scratch_text(out, "made");
+	record_made(r, out, 1, inputs);
+	assert_true(record_save(r, false, &err));
+	record_free(r);
+	assert_false(holds("did not finish"));
+	// What it had made before is not made again.
+	r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	assert_true(record_fresh(r, out, 1, inputs));
+	record_free(r);
+}
+
+static void a_damaged_record_is_none(void **state)
+{
+	(void)state;
+	run_stage(CONFIG);
+	scratch_text("work/.made/stage.json", "{\"complete\": true, \"outputs\": 3");
+	assert_false(holds("never run"));
+	scratch_text("work/.made/stage.json", "{\"complete\": true, \"outputs\": 3, \"config\": [], \"lists\": \"x\"}");
+	assert_false(holds(0));
+	scratch_text("work/.made/hashes", "[]");
+	run_stage(CONFIG);
+	assert_true(holds(0));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(nothing_changed, setup, teardown),
+		cmocka_unit_test_setup_teardown(bytes_changed, setup, teardown),
+		cmocka_unit_test_setup_teardown(changed_behind_the_date, setup, teardown),
+		cmocka_unit_test_setup_teardown(files_came_and_went, setup, teardown),
+		cmocka_unit_test_setup_teardown(configuration_changed, setup, teardown),
+		cmocka_unit_test_setup_teardown(an_unfinished_run_does_not_hold, setup, teardown),
+		cmocka_unit_test_setup_teardown(a_damaged_record_is_none, setup, teardown),
+	};
+	return cmocka_run_group_tests(tests, 0, 0);
+}
