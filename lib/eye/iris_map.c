@@ -24,7 +24,8 @@ bool iris_see(double P[2], double *rim, const struct iris_view *view, const doub
 	P[1] = from[1] + t * inside[1];
 	if (rim)
 		*rim = hypot(K[0], K[1]);
-	return t > 0;
+	// the posterior surface of a two-surface cornea reaches behind the iris' root: its paths are followed backwards
+	return t > (view->cornea.two_surface ? -1 : 0);
 }
 
 /* Two surfaces have no single K: Newton on iris_see, from the single-surface pixel. */
@@ -103,6 +104,41 @@ static void cubic(float w[4], double t)
 	w[3] = (float)(t * t * (-0.5 + 0.5 * t));
 }
 
+/* Value at a node without a path from the three beyond it in direction (di, dj), quadratic; NAN where they lack too. */
+static float extrapolate(const float *f, int n, int i, int j, int di, int dj)
+{
+	int far_i = i + 3 * di, far_j = j + 3 * dj;
+	if (far_i < 0 || far_i >= n || far_j < 0 || far_j >= n)
+		return NAN;
+	const float *p = f + (long)i * n + j;
+	long step = (long)di * n + dj;
+	return 3 * p[step] - 3 * p[2 * step] + p[3 * step];
+}
+
+/* A texel next to the last path that leads out needs nodes beyond it: continued smoothly, twice round. */
+static void extend_lattice(float *f, int n)
+{
+	float *next = mem_array((size_t)n * (size_t)n, sizeof *next);
+	for (int pass = 0; pass < 2; pass++) {
+		for (int i = 0; i < n; i++)
+			for (int j = 0; j < n; j++) {
+				float sum = 0;
+				int count = 0;
+				next[i * n + j] = f[i * n + j];
+				for (int k = 0; k < 9 && !isfinite(f[i * n + j]); k++) {
+					float v = k == 4 ? NAN : extrapolate(f, n, i, j, k / 3 - 1, k % 3 - 1);
+					if (isfinite(v))
+						sum += v, count++;
+				}
+				if (count)
+					next[i * n + j] = sum / (float)count;
+			}
+		for (long i = 0; i < (long)n * n; i++)
+			f[i] = next[i];
+	}
+	free(next);
+}
+
 /* n nodes a side; node i is at texel coordinate (i - 1) step, so that each texel has four around it. */
 static float *lattice_new(const struct iris_view *view, int n, int step, int size, double extent, double radius)
 {
@@ -118,6 +154,8 @@ static float *lattice_new(const struct iris_view *view, int n, int step, int siz
 			for (int c = 0; c < 3; c++)
 				nodes[((long)c * n + i) * n + j] = f[c];
 		}
+	for (int c = 0; c < 3; c++)
+		extend_lattice(nodes + (long)c * n * n, n);
 	return nodes;
 }
 

@@ -62,17 +62,11 @@ static void mark_lids(struct work *work, const struct unrefract_survey *survey, 
 }
 
 /* The channel in which the iris is darkest: an added reflection shows there most. */
-static int darkest_channel(const struct work *work, const float *weight, const struct sheet *sheet)
+static int darkest_channel(const struct rings rings[3])
 {
-	int best = 0;
-	float low = INFINITY;
-	for (int c = 0; c < 3; c++) {
-		struct rings rings = rings_of(work->log[c], weight, sheet, false, 0.1f);
-		if (rings.median[SHEET_RINGS / 2] < low) {
-			low = rings.median[SHEET_RINGS / 2];
-			best = c;
-		}
-	}
+	int best = 0, middle = SHEET_RINGS / 2;
+	for (int c = 1; c < 3; c++)
+		best = rings[c].median[middle] < rings[best].median[middle] ? c : best;
 	return best;
 }
 
@@ -94,6 +88,18 @@ static void even_scale(struct rings *rings)
 	}
 	for (int i = 0; i < SHEET_RINGS; i++)
 		rings->scale[i] = fminf(rings->scale[i], 1.2f * sorted[SHEET_RINGS / 2]);
+}
+
+/* A reflection adds its own white: the iris' weakest colour gains on its strongest, by the more the further apart they
+ * are. A pale fibre scales all, a yellow fleck keeps its hue. */
+static bool turns_white(const float log_rgb[3], const struct rings rings[3], int weak, double t)
+{
+	const float least = 0.25f;  // of the way to white, in logarithms
+	int strong = 0;
+	for (int c = 1; c < 3; c++)
+		strong = rings_median(&rings[c], t) > rings_median(&rings[strong], t) ? c : strong;
+	float iris = rings_median(&rings[strong], t) - rings_median(&rings[weak], t);
+	return log_rgb[strong] - log_rgb[weak] < (1 - least) * iris;
 }
 
 /* A bright fibre is no reflection: blobs narrower than a reflection's blur stay, unless they are far off the ring. */
@@ -126,15 +132,20 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	uint8_t *glint = mem_new((size_t)n, 1);
 	iris_weight(weight, work, seen);
 	take_logs(work, survey, seen, 0.05 / work->texel);
-	int c = darkest_channel(work, weight, sheet);
-	struct rings rings = rings_of(work->log[c], weight, sheet, false, 0.12f);
-	even_scale(&rings);
+	struct rings rings[3];
+	for (int k = 0; k < 3; k++)
+		rings[k] = rings_of(work->log[k], weight, sheet, false, 0.12f);
+	int c = darkest_channel(rings);
+	even_scale(&rings[c]);
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
 		bool here = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.93f;
-		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated;
-		z[i] = full ? INFINITY : conf->polarised ? 0 : rings_z(&rings, work->log[c][i], work->t[i]);
-		glint[i] = here && z[i] > (float)conf->glint_z;
+		// a yellow fleck may saturate red; a light saturates nearly all
+		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated
+		            && fminf(rgb[0], fminf(rgb[1], rgb[2])) > 0.5f * (float)conf->saturated;
+		z[i] = full ? INFINITY : conf->polarised ? 0 : rings_z(&rings[c], work->log[c][i], work->t[i]);
+		float logs[3] = { work->log[0][i], work->log[1][i], work->log[2][i] };
+		glint[i] = here && z[i] > (float)conf->glint_z && (full || turns_white(logs, rings, c, work->t[i]));
 	}
 	drop_small(glint, z, work, conf);
 	mask_grow(glint, work->size, work->size, conf->glint_grow / work->texel);

@@ -23,6 +23,7 @@ struct rings {
 /* favour: the ring's left and right count more than top and bottom, which lids cover. min_scale: floor of scale. */
 struct rings rings_of(const float *plane, const float *weight, const struct sheet *sheet, bool favour,
                       float min_scale);
+float rings_median(const struct rings *rings, double t);
 /* (value − median) / scale at parameter t. */
 float rings_z(const struct rings *rings, float value, double t);
 

@@ -85,12 +85,20 @@ struct rings rings_of(const float *plane, const float *weight, const struct shee
 	return rings;
 }
 
-float rings_z(const struct rings *rings, float value, double t)
+static float between(const float v[SHEET_RINGS], double t)
 {
 	double at = fmin(fmax(t * SHEET_RINGS - 0.5, 0), SHEET_RINGS - 1.001);
 	int i = (int)at;
 	float f = (float)at - (float)i;
-	float median = (1 - f) * rings->median[i] + f * rings->median[i + 1];
-	float scale = (1 - f) * rings->scale[i] + f * rings->scale[i + 1];
-	return (value - median) / scale;
+	return (1 - f) * v[i] + f * v[i + 1];
+}
+
+float rings_median(const struct rings *rings, double t)
+{
+	return between(rings->median, t);
+}
+
+float rings_z(const struct rings *rings, float value, double t)
+{
+	return (value - between(rings->median, t)) / between(rings->scale, t);
 }
