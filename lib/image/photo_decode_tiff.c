@@ -71,8 +71,8 @@ static int on_warning(TIFF *tif, void *user, const char *module, const char *fmt
 	return 1;  // of unknown tags
 }
 
-/* libtiff's own conversion to 8-bit colour; orientation is left to the caller. */
-static bool read_8(TIFF *tif, const struct photo *photo, uint16_t *rgb, struct source *s)
+/* Palettes and YCbCr: libtiff's own conversion to 8-bit colour; orientation is left to the caller. */
+static bool read_converted(TIFF *tif, const struct photo *photo, uint16_t *rgb, struct source *s)
 {
 	TIFFRGBAImage image;
 	char why[1024];
@@ -95,24 +95,29 @@ static bool read_8(TIFF *tif, const struct photo *photo, uint16_t *rgb, struct s
 	return ok;
 }
 
-/* Layout of 16-bit samples: blocks are strips or tiles; planar files hold one plane in each. */
+/* Layout of plain samples: blocks are strips or tiles; planar files hold one plane in each. */
 struct layout {
 	uint32_t width, height;  // of a block
-	uint16_t samples, invert;
+	uint16_t samples, invert, photometric;
 	bool tiled, planar;
 };
 
-static void place(uint16_t *rgb, const struct photo *photo, const struct layout *l, const uint16_t *block, int x0,
+static inline uint16_t sample_at(const void *block, size_t i, int bits)
+{
+	return bits == 16 ? ((const uint16_t *)block)[i] : (uint16_t)(((const uint8_t *)block)[i] * 257);
+}
+
+static void place(uint16_t *rgb, const struct photo *photo, const struct layout *l, const void *block, int x0,
                   int y0, int plane)
 {
 	int step = l->planar ? 1 : l->samples, colours = photo->grey ? 1 : 3;
 	for (int y = y0; y < y0 + (int)l->height && y < photo->height; y++)
 		for (int x = x0; x < x0 + (int)l->width && x < photo->width; x++) {
-			const uint16_t *in = block + ((size_t)(y - y0) * l->width + (size_t)(x - x0)) * (size_t)step;
+			size_t in = ((size_t)(y - y0) * l->width + (size_t)(x - x0)) * (size_t)step;
 			uint16_t *out = rgb + 3 * ((size_t)y * (size_t)photo->width + (size_t)x);
 			for (int c = 0; c < colours; c++)
 				if (!l->planar || c == plane)
-					out[c] = in[l->planar ? 0 : c] ^ l->invert;
+					out[c] = sample_at(block, in + (size_t)(l->planar ? 0 : c), photo->bits) ^ l->invert;
 			if (photo->grey)
 				out[1] = out[2] = out[0];
 		}
@@ -120,12 +125,12 @@ static void place(uint16_t *rgb, const struct photo *photo, const struct layout 
 
 static struct layout layout_of(TIFF *tif, const struct photo *photo)
 {
-	uint16_t planar = PLANARCONFIG_CONTIG, photometric = 0;
-	struct layout l = { (uint32_t)photo->width, (uint32_t)photo->height, 1, 0, TIFFIsTiled(tif), false };
+	uint16_t planar = PLANARCONFIG_CONTIG;
+	struct layout l = { (uint32_t)photo->width, (uint32_t)photo->height, 1, 0, 0, TIFFIsTiled(tif), false };
 	TIFFGetFieldDefaulted(tif, TIFFTAG_SAMPLESPERPIXEL, &l.samples);
 	TIFFGetFieldDefaulted(tif, TIFFTAG_PLANARCONFIG, &planar);
-	TIFFGetField(tif, TIFFTAG_PHOTOMETRIC, &photometric);
-	l.invert = photometric == PHOTOMETRIC_MINISWHITE ? 0xffff : 0;
+	TIFFGetField(tif, TIFFTAG_PHOTOMETRIC, &l.photometric);
+	l.invert = l.photometric == PHOTOMETRIC_MINISWHITE ? 0xffff : 0;
 	l.planar = planar == PLANARCONFIG_SEPARATE;
 	if (l.tiled) {
 		TIFFGetField(tif, TIFFTAG_TILEWIDTH, &l.width);
@@ -137,15 +142,17 @@ static struct layout layout_of(TIFF *tif, const struct photo *photo)
 	return l;
 }
 
-static bool read_16(TIFF *tif, const struct photo *photo, uint16_t *rgb, struct source *s)
+static bool read_plain(TIFF *tif, const struct photo *photo, uint16_t *rgb, struct source *s)
 {
 	struct layout l = layout_of(tif, photo);
+	if (l.photometric > PHOTOMETRIC_RGB)
+		return read_converted(tif, photo, rgb, s);
 	int planes = l.planar ? (photo->grey ? 1 : 3) : 1;
 	tmsize_t size = l.tiled ? TIFFTileSize(tif) : TIFFStripSize(tif);
-	uint64_t want = (uint64_t)l.width * l.height * (l.planar ? 1u : l.samples) * 2;
+	uint64_t want = (uint64_t)l.width * l.height * (l.planar ? 1u : l.samples) * (uint64_t)photo->bits / 8;
 	if (!l.width || !l.height || size <= 0 || (uint64_t)size != want || want > BLOCK_MAX)
 		return false;
-	uint16_t *block = mem_array((size_t)size, 1);
+	void *block = mem_array((size_t)size, 1);
 	bool ok = true;
 	for (int plane = 0; plane < planes && ok; plane++)
 		for (int y = 0; y < photo->height && ok; y += (int)l.height)
@@ -169,7 +176,7 @@ bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct bytes fi
 	TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, &s);
 	TIFF *tif = TIFFClientOpenExt("photograph", "rm", &s, feed, no_write, seek, no_close, size_of, 0, 0, options);
 	TIFFOpenOptionsFree(options);
-	bool ok = tif && (photo->bits == 16 ? read_16(tif, photo, rgb, &s) : read_8(tif, photo, rgb, &s));
+	bool ok = tif && read_plain(tif, photo, rgb, &s);
 	if (tif)
 		TIFFClose(tif);
 	return ok ? true : err_set(err, "is damaged (%s): save it again", *s.why ? s.why : "its pixels do not fit its header");
