@@ -83,4 +83,7 @@ bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classe
 bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                   const char *path, const char *made_by, const char *extra, struct err *err);
 
+/* The unknowns again, the white they were found with, and of conf what shapes the forward model. */
+bool pigment_load(double x[PIGMENT_N], double white[3], struct pigment_conf *conf, const char *path, struct err *err);
+
 #endif

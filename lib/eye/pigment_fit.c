@@ -1,3 +1,4 @@
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -129,6 +130,38 @@ static void measure(struct pigment_fit *fit, const struct problem *p, double cov
 	fit->residual = sqrt(relative);
 }
 
+/* Information of the classes alone, in units of the priors: eigenvectors below 1 are told by the priors, not by the
+ * photograph. */
+static bool information(struct pigment_fit *fit, struct problem *p, struct err *err)
+{
+	enum { N = PIGMENT_N };
+	int m = 3 * p->classes->n;
+	double r[2][3 * PIGMENT_CLASSES_MAX + N], J[3 * PIGMENT_CLASSES_MAX][N], a[N * N] = { 0 }, w[N];
+	for (int j = 0; j < N; j++) {
+		double x[N], h = 1e-4 * p->conf->prior[j][1];
+		memcpy(x, fit->x, sizeof x);
+		for (int side = 0; side < 2; side++) {
+			x[j] = fit->x[j] + (side ? h : -h);
+			residuals(p, x, r[side], 0);
+		}
+		for (int i = 0; i < m; i++)
+			J[i][j] = (r[1][i] - r[0][i]) / 2e-4;
+	}
+	for (int i = 0; i < m; i++)
+		for (int j = 0; j < N; j++)
+			for (int k = 0; k < N; k++)
+				a[j * N + k] += J[i][j] * J[i][k];
+	if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', N, a, N, w))
+		return err_set(err, "pigment: the information matrix has no eigenvectors");
+	for (int d = 0; d < N && w[d] < 1; d++) {
+		fit->information[fit->directions] = fmax(w[d], 0);
+		for (int j = 0; j < N; j++)
+			fit->direction[fit->directions][j] = a[j * N + d];
+		fit->directions++;
+	}
+	return true;
+}
+
 enum { STARTS_MAX = 64 };
 
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
@@ -155,5 +188,5 @@ bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classe
 	}
 	measure(fit, &problem, best_cov);
 	count_minima(fit, fit->starts, x, cost);
-	return true;
+	return information(fit, &problem, err);
 }

@@ -1,0 +1,52 @@
+/* relief: the filter that sharpens the coarse thickness until a rendering of it looks like the photograph (iris paper
+ * section 4, figs. 6-7). Light that scatters more than once leaves the tissue beside where it came in, so the photograph
+ * shows the relief blurred, and saturated where the stroma is thick.
+ *
+ * The filter works on ln thickness: ln T' = base + sum_b (1 + gain_b) band_b, the bands differences of Gaussians. The
+ * rendering is the forward model of eye/tissue.h at every texel, its multiply scattered share spread by a Gaussian.
+ */
+#ifndef EYE_RELIEF_H
+#define EYE_RELIEF_H
+#include "eye/pigment.h"
+
+enum { RELIEF_BANDS = 3 };
+
+struct relief_conf {
+	double band[RELIEF_BANDS];  // mm: band b lies between Gaussians band[b-1] (none) and band[b]; ascending
+	double gain_sigma;          // prior of the gains: 0 with this sigma
+	double pitch;               // mm a texel of the fit
+	double spread;              // sigma of the lateral spread over the mean free path in the stroma
+	double model_error;         // of ln luminance, 1 sigma, of texels that are independent
+	double low, high;           // thickness stays between them, mm
+	bool filter;                // no: gains stay 0, the paper's coarse height field
+};
+
+struct relief_fit {
+	double gain[RELIEF_BANDS], gain_sigma[RELIEF_BANDS];
+	double before, after;       // rms difference of ln luminance, detail only: coarse height field, filtered one
+	double contrast;            // rms of the photograph's own detail: what no relief at all would leave
+	double slope;               // d ln luminance / d ln thickness at the median thickness
+	double spread_mm, spread_share;
+	int iterations;
+};
+
+/* Where light goes sideways: the share of it that scattered more than once, and how wide that is spread (Gaussian sigma,
+ * mm), at stroma that thick. */
+void relief_spread(double *share, double *sigma, const struct tissue *tissue, const struct relief_conf *conf,
+                   const struct pigment_conf *pigment, double stroma);
+
+/* clean: R, G, B, W; thickness: first channel mm; same square grid. x: as pigment_solve found it; white as there. */
+bool relief_solve(struct relief_fit *fit, const struct image *clean, const struct image *thickness, double extent,
+                  const struct pupil *pupil, double root, const double white[3], const double x[PIGMENT_N],
+                  const struct pigment_conf *pigment, const struct relief_conf *conf, struct err *err);
+
+/* out: thickness after the filter, one channel, new; image_free. */
+bool relief_apply(struct image *out, const struct image *thickness, double extent, const struct relief_fit *fit,
+                  const struct relief_conf *conf, struct err *err);
+
+/* Linear Rec. 709 of a thickness map as the photograph would show it: exposure, white error, veil. out: R, G, B, new. */
+bool relief_render(struct image *out, const struct image *thickness, double extent, const double white[3],
+                   const double x[PIGMENT_N], const struct pigment_conf *pigment, const struct relief_conf *conf,
+                   struct err *err);
+
+#endif

@@ -1,0 +1,86 @@
+#include "eye/relief_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "bridge/cv_blur.h"
+#include "eye/relief.h"
+
+static double luminance(const double rgb[3])
+{
+	return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
+void relief_table_make(struct relief_table *t, double low, double high, const double white[3], const double x[PIGMENT_N],
+                       const struct pigment_conf *conf)
+{
+	struct tissue tissue = pigment_tissue(x, conf);
+	struct tissue_bands bands;
+	struct tissue_optics optics;
+	tissue_bands_make(&bands, conf->bands, conf->illuminant);
+	tissue_optics_make(&optics, &tissue, &bands);
+	t->low = log(low);
+	t->step = log(high / low) / (RELIEF_TABLE - 1);
+	for (int i = 0; i < RELIEF_TABLE; i++) {
+		double rgb[3];
+		pigment_model(rgb, x, &optics, exp(t->low + i * t->step), conf);
+		for (int c = 0; c < 3; c++)
+			t->rgb[i][c] = (float)(rgb[c] *= white[c]);
+		t->light[i] = (float)luminance(rgb);
+	}
+	for (int i = 0; i < RELIEF_TABLE; i++) {
+		int a = i ? i - 1 : 0, b = i < RELIEF_TABLE - 1 ? i + 1 : i;
+		t->slope[i] = (float)((t->light[b] - t->light[a]) / ((b - a) * t->step));
+	}
+}
+
+void relief_spread(double *share, double *sigma, const struct tissue *tissue, const struct relief_conf *conf,
+                   const struct pigment_conf *pigment, double stroma)
+{
+	const double nm = 550;  // where luminance is
+	double scatter = tissue_scattering(nm), source[] = { scatter, scatter * tissue->thickness_scale };
+	double extinction[] = {
+		scatter + tissue_absorption(&tissue->layer[TISSUE_ABL], nm),
+		tissue->thickness_scale * (scatter + tissue_absorption(&tissue->layer[TISSUE_STROMA], nm)),
+	};
+	double one = tissue_reflectance_one(extinction, source, tissue->abl_thickness, stroma, pigment->cos_view, pigment->cos_light);
+	double all = tissue_reflectance_all(extinction, source, tissue->abl_thickness, stroma, pigment->cos_view, pigment->cos_light);
+	*share = fmin(fmax(1 - one / all, 0), 1);
+	*sigma = conf->spread / (extinction[TISSUE_STROMA] + 1 / stroma);
+}
+
+static void shade(struct image *out, const struct image *thickness, const struct relief_table *table)
+{
+	long n = (long)out->width * out->height;
+#pragma omp parallel for schedule(static)
+	for (long i = 0; i < n; i++) {
+		float f;
+		int k = relief_place(table, logf(fmaxf(thickness->px[i * thickness->channels], 1e-4f)), &f);
+		for (int c = 0; c < 3; c++)
+			out->px[3 * i + c] = table->rgb[k][c] + f * (table->rgb[k + 1][c] - table->rgb[k][c]);
+	}
+}
+
+bool relief_render(struct image *out, const struct image *thickness, double extent, const double white[3],
+                   const double x[PIGMENT_N], const struct pigment_conf *pigment, const struct relief_conf *conf,
+                   struct err *err)
+{
+	struct relief_table *table = mem_new(1, sizeof *table);
+	struct tissue tissue = pigment_tissue(x, pigment);
+	double share, sigma;
+	relief_table_make(table, conf->low, conf->high, white, x, pigment);
+	relief_spread(&share, &sigma, &tissue, conf, pigment, 0.45);
+	*out = image_new(thickness->width, thickness->height, 3);
+	struct image wide = image_new(thickness->width, thickness->height, 3);
+	shade(out, thickness, table);
+	bool ok = cv_blur(wide.px, out->px, out->width, out->height, 3, sigma * out->width / (2 * extent), err);
+	for (long i = 0; ok && i < 3L * out->width * out->height; i++)
+		out->px[i] += (float)share * (wide.px[i] - out->px[i]);
+	image_free(&wide);
+	free(table);
+	if (!ok)
+		image_free(out);
+	return ok;
+}

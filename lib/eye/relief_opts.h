@@ -1,0 +1,29 @@
+/* relief_opts: rows for the option tables of the stages that fit the relief's filter. */
+#ifndef EYE_RELIEF_OPTS_H
+#define EYE_RELIEF_OPTS_H
+#include "base/opt.h"
+#include "eye/relief.h"
+
+/* r: struct relief_conf; range: double[2]. */
+#define RELIEF_OPTS(r, range) \
+	OPT_REALS("tissue.filter_mm", (r)->band, RELIEF_BANDS, 0.005, 2, "mm", "Gaussians between the filter's bands"), \
+	OPT_REAL("tissue.filter_sigma", &(r)->gain_sigma, 0.01, 10, "", "prior of the filter's gains"), \
+	OPT_REAL("tissue.filter_pitch_mm", &(r)->pitch, 0.01, 0.5, "mm", "texels of the fit"), \
+	OPT_REAL("tissue.spread", &(r)->spread, 0, 5, "", "lateral spread of light over the mean free path"), \
+	OPT_REAL("tissue.light_error", &(r)->model_error, 0.01, 5, "", "error of ln luminance"), \
+	OPT_REALS("tissue.thickness_mm", range, 2, 0.01, 3, "mm", "least and largest thickness")
+
+/* What ranges cannot check; moves the range into r. */
+static inline bool relief_conf_check(struct relief_conf *r, const double range[2], struct err *err)
+{
+	for (int b = 1; b < RELIEF_BANDS; b++)
+		if (!(r->band[b] > r->band[b - 1]))
+			return err_set(err, "tissue.filter_mm = %g after %g: must ascend", r->band[b], r->band[b - 1]);
+	if (!(range[1] > range[0]))
+		return err_set(err, "tissue.thickness_mm = %g %g: must ascend", range[0], range[1]);
+	r->low = range[0];
+	r->high = range[1];
+	return true;
+}
+
+#endif

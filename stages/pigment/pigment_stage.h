@@ -1,0 +1,36 @@
+#ifndef STAGES_PIGMENT_STAGE_H
+#define STAGES_PIGMENT_STAGE_H
+#include "eye/capture.h"
+#include "eye/eye.h"
+#include "eye/pigment_white.h"
+#include "eye/relief.h"
+
+enum { WHITE_FROM_SCLERA, WHITE_FROM_CARD, WHITE_FROM_CAMERA };
+
+struct pigment_stage_conf {
+	struct pigment_conf fit;
+	struct pigment_classes_conf classes;
+	struct white_conf white;
+	struct relief_conf relief;
+	double prior_exposure[2], prior_exposure_single[2];  // median, sigma of ln
+	double prior_white, prior_veil;                      // sigmas
+	double prior_melanin[2][2], prior_ratio[2][2], prior_scale[2];
+	double range[2];        // of thickness, mm
+	double pupil_radius;    // mm, where none was found
+	double root_beyond_limbus;
+	double limit_mpx;
+	double white_unknown;   // sigma of ln exposure where no white was seen
+	int white_from;         // WHITE_FROM_..., the best there is
+	int rounds;             // of pigment and relief in turn, at most
+	double gain_min;        // the residual's relative fall that pays for another
+	struct opt_each_list card;
+};
+
+/* Priors from the options; what ranges cannot check. */
+bool pigment_stage_check(struct pigment_stage_conf *conf, struct err *err);
+
+/* One eye of the folder: reads its maps and its photograph, writes pigment.json, unless that stands already. */
+bool pigment_stage(struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
+                   const struct pigment_stage_conf *conf, struct err *err);
+
+#endif
