@@ -1,4 +1,4 @@
-/* relief_opts: rows for the option tables of the stages that fit the relief's filter. */
+/* relief_opts: rows for the option tables of the stages of the tissue. */
 #ifndef EYE_RELIEF_OPTS_H
 #define EYE_RELIEF_OPTS_H
 #include "base/opt.h"
@@ -12,6 +12,11 @@
 	OPT_REAL("tissue.spread", &(r)->spread, 0, 5, "", "lateral spread of light over the mean free path"), \
 	OPT_REAL("tissue.light_error", &(r)->model_error, 0.01, 5, "", "error of ln luminance"), \
 	OPT_REALS("tissue.thickness_mm", range, 2, 0.01, 3, "mm", "least and largest thickness")
+
+/* root, pupil: double *, mm. */
+#define IRIS_OPTS(root, pupil) \
+	OPT_REAL("tissue.root_beyond_limbus_mm", root, 0, 1, "mm", "iris root beyond the limbus"), \
+	OPT_REAL("tissue.pupil_mm", pupil, 0.5, 5, "mm", "pupil radius where none was found")
 
 /* What ranges cannot check; moves the range into r. */
 static inline bool relief_conf_check(struct relief_conf *r, const double range[2], struct err *err)

@@ -3,8 +3,7 @@
  * writes  IRIS/thickness.exr (Y mm, S its sigma mm)
  */
 #include "base/mem.h"
-#include "eye/capture.h"
-#include "eye/eye.h"
+#include "eye/relief_opts.h"
 #include "stages/heightfield/heightfield_stage.h"
 
 int main(int argc, char **argv)
@@ -23,13 +22,12 @@ int main(int argc, char **argv)
 		OPT_REAL("id3_from_margin_mm", &p->id3_from_margin, 0.1, 2, "mm", "place of ID3"),
 		OPT_REAL("margin_share", &p->margin_share, 0.1, 1, "", "thickness at the pupil's margin over ID3"),
 		OPT_REAL("root_share", &p->root_share, 0.1, 1, "", "thickness at the root over ID1"),
-		OPT_REAL("root_beyond_limbus_mm", &p->root_beyond_limbus, 0, 1, "mm", "iris root beyond the limbus"),
+		IRIS_OPTS(&p->root_beyond_limbus, &conf.pupil_radius),
 		OPT_REAL("gain", &conf.field.gain, 0, 5, "", "ln thickness per ln luminance"),
 		OPT_REAL("fine_mm", &conf.field.fine, 0.002, 0.5, "mm", "finest detail"),
 		OPT_REAL("coarse_mm", &conf.field.coarse, 0.1, 5, "mm", "coarsest detail"),
 		OPT_REAL("limit", &conf.field.limit, 1.1, 10, "", "largest factor of detail"),
 		OPT_REAL("reach_mm", &conf.field.reach, 0.01, 2, "mm", "how far detail is carried where nothing was seen"),
-		OPT_REAL("pupil_mm", &conf.pupil_radius, 0.5, 5, "mm", "pupil radius where none was found"),
 	};
 	struct stage stage;
 	struct err err = { 0 };

@@ -4,62 +4,25 @@
  */
 #include "base/mem.h"
 #include "eye/relief_opts.h"
-#include "stages/pigment/pigment_stage.h"
+#include "stages/pigment/pigment_opts.h"
 
 int main(int argc, char **argv)
 {
 	struct eye eye = { 0 };
 	struct pigment_stage_conf c = { 0 };
 	struct opt_each_list eye_of = { 0 };
-	int illuminant = 0;
-	static const char *const orders[] = { "single", "multiple", 0 }, *const whites[] = { "sclera", "card", "camera", 0 };
-	int order = 0;
 	const struct opt opts[] = {
 		EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of), RELIEF_OPTS(&c.relief, c.range),
+		IRIS_OPTS(&c.root_beyond_limbus, &c.pupil_radius),
 		OPT_EACH("photo.*.card_px", &c.card, 3, 0, 1e6, "px", "a grey card: x y radius"),
-		OPT_CHOICE("light.illuminant", &illuminant, illuminant_names, "that the photograph was balanced for"),
+		OPT_CHOICE("light.illuminant", &c.illuminant, illuminant_names, "that the photograph was balanced for"),
 		OPT_BOOL("light.polarised", &c.fit.polarised, "no corneal reflection in the photographs"),
 		OPT_REAL("limit.photo_mpx", &c.limit_mpx, 0.01, 1000, "Mpx", "largest photograph decoded"),
-		OPT_CHOICE("scattering", &order, orders, "orders of scattering"),
-		OPT_INT("bands", &c.fit.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"),
-		OPT_INT("starts", &c.fit.starts, 1, 64, "", "places the fit starts from"),
-		OPT_INT("rounds", &c.rounds, 1, 10, "", "pigment and relief in turn, at most"),
-		OPT_REAL("gain_min", &c.gain_min, 0, 1, "", "fall of the residual that pays for another round"),
-		OPT_REAL("cos_light", &c.fit.cos_light, 0.1, 1, "", "mean cosine of light on the iris"),
-		OPT_REAL("model_error", &c.fit.model_error, 0.001, 1, "", "relative error of the forward model"),
-		OPT_REAL("floor", &c.fit.floor, 0, 0.1, "", "absolute error of reflectance"),
-		OPT_REAL("abl_mm", &c.fit.abl_thickness, 0.001, 0.2, "mm", "thickness of the anterior border layer"),
-		OPT_REALS("prior_abl_melanin", c.prior_melanin[0], 2, 1e-5, 10, "", "median, sigma of ln"),
-		OPT_REALS("prior_abl_ratio", c.prior_ratio[0], 2, 0, 1, "", "mean, sigma"),
-		OPT_REALS("prior_stroma_melanin", c.prior_melanin[1], 2, 1e-5, 10, "", "median, sigma of ln"),
-		OPT_REALS("prior_stroma_ratio", c.prior_ratio[1], 2, 0, 1, "", "mean, sigma"),
-		OPT_REALS("prior_scale", c.prior_scale, 2, 0.01, 10, "", "median, sigma of ln"),
-		OPT_REALS("prior_exposure", c.prior_exposure, 2, 0.01, 10, "", "median, sigma of ln"),
-		OPT_REALS("prior_exposure_single", c.prior_exposure_single, 2, 0.01, 10, "", "the same for single scattering"),
-		OPT_REAL("prior_white", &c.prior_white, 0.001, 1, "", "sigma of ln red and blue of the white"),
-		OPT_REAL("prior_veil", &c.prior_veil, 1e-4, 1, "", "sigma of the cornea's reflection"),
-		OPT_CHOICE("white", &c.white_from, whites, "where white is taken from"),
-		OPT_REAL("white_unknown", &c.white_unknown, 0.01, 5, "", "sigma of ln exposure where no white was seen"),
-		OPT_REAL("card_reflectance", &c.white.card, 0.01, 1, "", "of the grey card"),
-		OPT_REALS("sclera", c.white.sclera, 3, 0.05, 1, "", "reflectance of the sclera: R G B"),
-		OPT_REAL("sclera_inner", &c.white.inner, 1, 2, "", "ring searched for sclera, in limbus semi-axes"),
-		OPT_REAL("sclera_outer", &c.white.outer, 1.05, 3, "", "the same, outer"),
-		OPT_REAL("sclera_redness", &c.white.redness, 0.01, 2, "", "ln R/G above the palest that is skin"),
-		OPT_REAL("sclera_dark", &c.white.dark, 0, 1, "", "share of the brightest that is shadow"),
-		OPT_REAL("sclera_share_min", &c.white.share_min, 0.001, 1, "", "less of the ring than that is no white"),
-		OPT_INT("rings", &c.classes.rings, 1, 8, "", "classes of radius"),
-		OPT_INT("levels", &c.classes.levels, 1, 8, "", "classes of thickness in each"),
-		OPT_REAL("inner", &c.classes.inner, 0, 1, "", "tissue is trusted from here: share of the way to the root"),
-		OPT_REAL("outer", &c.classes.outer, 0, 1, "", "to here"),
-		OPT_REAL("grain_mm", &c.classes.grain, 0.005, 1, "mm", "size of an independent patch"),
-		OPT_REAL("root_beyond_limbus_mm", &c.root_beyond_limbus, 0, 1, "mm", "iris root beyond the limbus"),
-		OPT_REAL("pupil_mm", &c.pupil_radius, 0.5, 5, "mm", "pupil radius where none was found"),
+		PIGMENT_OPTS(&c),
 	};
 	struct stage stage;
 	struct err err = { 0 };
 	stage_start(&stage, "pigment", "melanin of the iris' two layers from its texture", argc, argv, COUNT(opts), opts);
-	c.fit.illuminant = (enum illuminant)illuminant;
-	c.fit.multiple = order == 1;
 	struct capture capture = { 0 };
 	if (pigment_stage_check(&c, &err) && eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
 		for (int i = 0; i < capture.n_eyes && !err_is(&err); i++)

@@ -5,6 +5,7 @@
 #include "eye/pigment_white.h"
 #include "eye/relief.h"
 
+extern const char *const pigment_orders[], *const pigment_whites[];  // "single", "multiple"; in the order of WHITE_FROM
 enum { WHITE_FROM_SCLERA, WHITE_FROM_CARD, WHITE_FROM_CAMERA };
 
 struct pigment_stage_conf {
@@ -21,6 +22,7 @@ struct pigment_stage_conf {
 	double limit_mpx;
 	double white_unknown;   // sigma of ln exposure where no white was seen
 	int white_from;         // WHITE_FROM_..., the best there is
+	int order, illuminant;  // of scattering: 0 first, 1 all
 	int rounds;             // of pigment and relief in turn, at most
 	double gain_min;        // the residual's relative fall that pays for another
 	struct opt_each_list card;

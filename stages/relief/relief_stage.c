@@ -1,0 +1,133 @@
+#include "stages/relief/relief_stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "image/exr.h"
+
+enum { MAP_LIMIT_PX = 1 << 26, INPUTS = 4 };
+static const char *const input_names[INPUTS] = { "clean.exr", "texture.json", "thickness.exr", "pigment.json" };
+
+struct work {
+	struct image clean, thickness, sharp, out;
+	struct exr_info info;
+	struct pupil pupil;
+	double root;
+	struct relief_fit fit;
+	double height_rms;
+};
+
+/* Height of the anterior surface against its mean over the iris: the iris' back is straight (Pavlin et al.), so what is
+ * thicker stands higher. Border layer: of even thickness, no part of it. */
+static void heights(struct work *w)
+{
+	int n = w->sharp.width;
+	double sum = 0, square = 0;
+	long m = 0;
+	w->out = image_new(n, n, 2);
+	for (int pass = 0; pass < 2; pass++) {
+		double mean = m ? sum / (double)m : 0;
+		for (int y = 0; y < n; y++) {
+			for (int x = 0; x < n; x++) {
+				double mm = w->info.extent_mm, t = image_at(&w->sharp, x, y)[0];
+				double share = iris_share(&w->pupil, w->root, (2 * (x + 0.5) / n - 1) * mm, (2 * (y + 0.5) / n - 1) * mm);
+				bool iris = share > 0 && share < 1;
+				if (!pass) {
+					sum += iris ? t : 0;
+					m += iris;
+					continue;
+				}
+				square += iris ? (t - mean) * (t - mean) : 0;
+				image_at(&w->out, x, y)[0] = (float)(t - mean);
+				image_at(&w->out, x, y)[1] = (float)t;
+			}
+		}
+	}
+	w->height_rms = m ? sqrt(square / (double)m) : 0;
+}
+
+static bool compute(struct work *w, char *const in[], struct stage *stage, const struct eye *anatomy,
+                    const struct relief_stage_conf *c, struct err *err)
+{
+	static const char *const rgbw[] = { "R", "G", "B", "W" }, *const thickness[] = { "Y" };
+	double x[PIGMENT_N], white[3];
+	struct pigment_conf pigment = { 0 };
+	w->root = anatomy->limbus_radius + c->root_beyond_limbus;
+	if (!exr_read(&w->clean, stage_path(stage, "%s", in[0]), 4, rgbw, MAP_LIMIT_PX, &w->info, err)
+	    || !pupil_load(&w->pupil, stage_path(stage, "%s", in[1]), c->pupil_radius, err)
+	    || !exr_read(&w->thickness, stage_path(stage, "%s", in[2]), 1, thickness, MAP_LIMIT_PX, 0, err)
+	    || !pigment_load(x, white, &pigment, stage_path(stage, "%s", in[3]), err))
+		return false;
+	if (w->clean.width != w->thickness.width || w->clean.height != w->thickness.height || w->clean.width != w->clean.height)
+		return err_set(err, "%s: not the grid of %s", in[2], in[0]);
+	if (!relief_solve(&w->fit, &w->clean, &w->thickness, w->info.extent_mm, &w->pupil, w->root, white, x, &pigment, &c->relief, err)
+	    || !relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err))
+		return false;
+	heights(w);
+	return true;
+}
+
+static bool save_fit(const struct work *w, const struct relief_conf *c, const char *path, const char *made_by, struct err *err)
+{
+	const struct relief_fit *f = &w->fit;
+	json_t *out = json_object();
+	json_object_set_new(out, "band_mm", json_numbers(RELIEF_BANDS, c->band));
+	json_object_set_new(out, "gain", json_numbers(RELIEF_BANDS, f->gain));
+	json_object_set_new(out, "gain_sigma", json_numbers(RELIEF_BANDS, f->gain_sigma));
+	json_object_set_new(out, "residual_coarse", json_number(f->before));
+	json_object_set_new(out, "residual", json_number(f->after));
+	json_object_set_new(out, "contrast", json_number(f->contrast));
+	json_object_set_new(out, "light_per_thickness", json_number(f->slope));
+	json_object_set_new(out, "spread_mm", json_number(f->spread_mm));
+	json_object_set_new(out, "spread_share", json_number(f->spread_share));
+	json_object_set_new(out, "height_rms_mm", json_number(w->height_rms));
+	bool ok = json_write(path, out, made_by, err);
+	json_decref(out);
+	return ok;
+}
+
+static void report(struct stage *stage, const struct capture_eye *eye, const struct work *w)
+{
+	const struct relief_fit *f = &w->fit;
+	stage_note(stage, "%s: gains %.2f %.2f %.2f, detail differs by %.1f %% (coarse %.1f %%, of %.1f %%), relief %.3f mm rms", eye->side,
+	           f->gain[0], f->gain[1], f->gain[2], 100 * f->after, 100 * f->before, 100 * f->contrast, w->height_rms);
+	stage_figure(stage, "detail_residual", 100 * f->after, "%");
+	stage_figure(stage, "detail_residual_coarse", 100 * f->before, "%");
+	stage_figure(stage, "height_rms", w->height_rms, "mm");
+	if (f->slope < 0.1)
+		stage_skipped(stage, "%s: the stroma is so pigmented that its brightness says little about its thickness (%.2f %% of light "
+		              "for 1 %% of thickness): the relief is the generic profile's and the filter's prior's more than the photograph's",
+		              eye->side, f->slope);
+}
+
+bool relief_stage(struct stage *stage, const struct capture_eye *eye, const struct eye *anatomy,
+                  const struct relief_stage_conf *conf, struct err *err)
+{
+	static const char *const channels[] = { "Y", "T" };
+	char *in[INPUTS], *out = mem_printf("%s/relief.exr", eye->iris), *json = mem_printf("%s/relief.json", eye->iris);
+	for (int i = 0; i < INPUTS; i++)
+		in[i] = mem_printf("%s/%s", eye->iris, input_names[i]);
+	const char *const *from = (const char *const *)in;
+	struct work w = { 0 };
+	bool ok = stage_fresh(stage, out, INPUTS, from) && stage_fresh(stage, json, INPUTS, from);
+	if (!ok) {
+		const char *made_by = stage_made_by(stage, INPUTS, from);
+		ok = compute(&w, in, stage, anatomy, conf, err);
+		w.info.made_by = made_by;
+		ok = ok && exr_write(stage_path(stage, "%s", out), &w.out, channels, EXR_HALF, &w.info, err)
+		     && save_fit(&w, &conf->relief, stage_path(stage, "%s", json), made_by, err)
+		     && stage_made(stage, out, INPUTS, from, err) && stage_made(stage, json, INPUTS, from, err);
+		if (ok)
+			report(stage, eye, &w);
+	}
+	struct image *maps[] = { &w.clean, &w.thickness, &w.sharp, &w.out };
+	for (int i = 0; i < COUNT(maps); i++)
+		image_free(maps[i]);
+	for (int i = 0; i < INPUTS; i++)
+		free(in[i]);
+	free(out);
+	free(json);
+	return ok;
+}

@@ -1,0 +1,18 @@
+#ifndef STAGES_RELIEF_STAGE_H
+#define STAGES_RELIEF_STAGE_H
+#include "eye/capture.h"
+#include "eye/eye.h"
+#include "eye/relief_opts.h"
+
+struct relief_stage_conf {
+	struct relief_conf relief;
+	double range[2];            // of thickness, mm
+	double root_beyond_limbus;  // mm
+	double pupil_radius;        // mm, where none was found
+};
+
+/* One eye of the folder: reads its maps and pigment, writes its relief, unless that stands already. */
+bool relief_stage(struct stage *stage, const struct capture_eye *eye, const struct eye *anatomy,
+                  const struct relief_stage_conf *conf, struct err *err);
+
+#endif
