@@ -48,7 +48,7 @@ struct pigment_conf {
 	double prior[PIGMENT_N][2];  // mean and sigma, in the unknowns' own units; veil: mean 0
 	double abl_thickness;        // mm
 	double cos_light, cos_view;
-	double model_error;          // relative error of the forward model, 1 sigma
+	double light_error, model_error;  // of ln light and of ln colour of a class, 1 sigma
 	double floor;                // absolute, of reflectance
 	enum illuminant illuminant;
 	int bands, starts;
@@ -60,7 +60,8 @@ enum { PIGMENT_MINIMA_MAX = 8 };
 struct pigment_fit {
 	double x[PIGMENT_N], sigma[PIGMENT_N], correlation[PIGMENT_N][PIGMENT_N];
 	double residual_rgb[3];  // rms over the classes, reflectance
-	double residual;         // rms over classes and channels, relative to the class' luminance
+	double residual;         // rms over classes and channels, relative to their own rms
+	double residual_colour;  // rms of ln red/green and ln blue/green
 	double cost;             // half the sum of squares, priors in it
 	int iterations;          // over all starts
 	int starts, minima;      // distinct minima found, within 2 of the lowest cost
@@ -72,12 +73,16 @@ struct pigment_fit {
 /* The tissue that unknowns stand for. */
 struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_conf *conf);
 
+/* What a photograph shows of a reflectance: exposure, white error, veil. */
+void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N]);
+
 /* Reflectance that a photograph would show of stroma that thick: exposure, white error and veil included. */
 void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
                    const struct pigment_conf *conf);
 
+/* from: where to start, once; or null: conf->starts places, the first of them the priors' middle. */
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
-                   struct err *err);
+                   const double *from, struct err *err);
 
 /* IRIS/pigment.json. extra: JSON object text of further keys, or null. */
 bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,

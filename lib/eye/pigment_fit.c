@@ -11,7 +11,9 @@ const char *const pigment_names[PIGMENT_N] = {
 };
 
 static const double lower[PIGMENT_N] = { -11.5, 0, -11.5, 0, -4.6, -3, -0.7, -0.7, 0 };
-static const double upper[PIGMENT_N] = { -0.1, 1, -0.1, 1, 1.6, 3, 0.7, 0.7, 0.2 };
+static const double upper[PIGMENT_N] = { -0.5, 1, -0.5, 1, 1.6, 3, 0.7, 0.7, 0.2 };
+
+enum { RESIDUALS_MAX = 3 * PIGMENT_CLASSES_MAX + PIGMENT_N };
 
 struct problem {
 	const struct pigment_classes *classes;
@@ -31,38 +33,85 @@ struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_con
 	};
 }
 
+void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N])
+{
+	double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) };
+	for (int k = 0; k < 3; k++)
+		seen[k] = exp(x[PIGMENT_EXPOSURE]) * gain[k] * rgb[k] + x[PIGMENT_VEIL];
+}
+
 void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
                    const struct pigment_conf *c)
 {
-	tissue_reflectance(rgb, optics, stroma, c->cos_view, c->cos_light);
-	double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) };
-	for (int k = 0; k < 3; k++)
-		rgb[k] = optics->exposure * gain[k] * rgb[k] + x[PIGMENT_VEIL];
+	double bare[3];
+	tissue_reflectance(bare, optics, stroma, c->cos_view, c->cos_light);
+	pigment_photograph(rgb, bare, x);
 }
 
+/* Relative error of a channel from noise alone; the model's own errors are added where residuals are formed. */
 static double noise(const struct pigment_class *class, int k, const struct pigment_conf *c)
 {
-	double model = c->model_error * class->rgb[k], sampling = class->spread[k] / sqrt(class->texels);
-	return sqrt(model * model + sampling * sampling + c->floor * c->floor);
+	double sampling = class->spread[k] / sqrt(class->texels);
+	return sqrt(sampling * sampling + c->floor * c->floor) / fmax(class->rgb[k], c->floor);
 }
 
-/* Classes, then priors. */
-static bool residuals(void *ctx, const double *x, double *r, double *J)
+/* Three residuals of a class, in logarithms: its light, which shadows and unevenness change as well, and its two colours,
+ * which they do not. */
+static void class_residuals(double r[3], const struct pigment_class *class, const double rgb[3], const struct pigment_conf *c)
 {
-	const struct problem *p = ctx;
-	(void)J;
+	double floor = fmax(c->floor / 4, 1e-6), d[3], s[3];
+	for (int k = 0; k < 3; k++) {
+		d[k] = log(fmax(rgb[k], floor) / fmax(class->rgb[k], floor));
+		s[k] = noise(class, k, c);
+	}
+	r[0] = d[1] / hypot(c->light_error, s[1]);
+	r[1] = (d[0] - d[1]) / hypot(c->model_error, s[0]);
+	r[2] = (d[2] - d[1]) / hypot(c->model_error, s[2]);
+}
+
+/* What the tissue alone reflects in every class: all that is slow. */
+static void reflect(double rgb[][3], const struct problem *p, const double *x)
+{
 	struct tissue tissue = pigment_tissue(x, p->conf);
 	struct tissue_optics optics;
 	tissue_optics_make(&optics, &tissue, &p->bands);
-	for (int i = 0; i < p->classes->n; i++) {
-		const struct pigment_class *class = &p->classes->of[i];
-		double rgb[3];
-		pigment_model(rgb, x, &optics, class->thickness, p->conf);
-		for (int k = 0; k < 3; k++)
-			*r++ = (rgb[k] - class->rgb[k]) / noise(class, k, p->conf);
+	for (int i = 0; i < p->classes->n; i++)
+		tissue_reflectance(rgb[i], &optics, p->classes->of[i].thickness, p->conf->cos_view, p->conf->cos_light);
+}
+
+/* Classes, then priors. */
+static void compare(double r[], const struct problem *p, const double *x, double rgb[][3])
+{
+	for (int i = 0; i < p->classes->n; i++, r += 3) {
+		double seen[3];
+		pigment_photograph(seen, rgb[i], x);
+		class_residuals(r, &p->classes->of[i], seen, p->conf);
 	}
 	for (int j = 0; j < PIGMENT_N; j++)
 		*r++ = (x[j] - p->conf->prior[j][0]) / p->conf->prior[j][1];
+}
+
+/* Central differences; the unknowns that are not the tissue's reuse its reflectance. */
+static bool residuals(void *ctx, const double *x, double *r, double *J)
+{
+	enum { N = PIGMENT_N };
+	const double h = 1e-5;  // unknowns are of order 1: truncation and rounding are both about 1e-10
+	const struct problem *p = ctx;
+	double here[PIGMENT_CLASSES_MAX][3], there[PIGMENT_CLASSES_MAX][3], side[2][RESIDUALS_MAX], at[N];
+	reflect(here, p, x);
+	compare(r, p, x, here);
+	memcpy(at, x, sizeof at);
+	for (int j = 0; J && j < N; j++) {
+		for (int s = 0; s < 2; s++) {
+			at[j] = x[j] + (s ? h : -h);
+			if (j <= PIGMENT_SCALE)
+				reflect(there, p, at);
+			compare(side[s], p, at, j <= PIGMENT_SCALE ? there : here);
+		}
+		at[j] = x[j];
+		for (int i = 0; i < 3 * p->classes->n + N; i++)
+			J[i * N + j] = (side[1][i] - side[0][i]) / (2 * h);
+	}
 	return true;
 }
 
@@ -106,7 +155,6 @@ static void count_minima(struct pigment_fit *fit, int n, double x[][PIGMENT_N], 
 
 static void measure(struct pigment_fit *fit, const struct problem *p, double cov[PIGMENT_N][PIGMENT_N])
 {
-	double relative = 0;
 	for (int i = 0; i < PIGMENT_N; i++) {
 		fit->sigma[i] = sqrt(fmax(cov[i][i], 0));
 		for (int j = 0; j < PIGMENT_N; j++)
@@ -115,19 +163,24 @@ static void measure(struct pigment_fit *fit, const struct problem *p, double cov
 	struct tissue tissue = pigment_tissue(fit->x, p->conf);
 	struct tissue_optics optics;
 	tissue_optics_make(&optics, &tissue, &p->bands);
+	double square = 0, light = 0, colour = 0;
 	for (int i = 0; i < p->classes->n; i++) {
 		const struct pigment_class *class = &p->classes->of[i];
-		double rgb[3], light = 0.2126 * class->rgb[0] + 0.7152 * class->rgb[1] + 0.0722 * class->rgb[2];
+		double rgb[3], r[3];
 		pigment_model(rgb, fit->x, &optics, class->thickness, p->conf);
 		for (int k = 0; k < 3; k++) {
 			double d = rgb[k] - class->rgb[k];
 			fit->residual_rgb[k] += d * d / p->classes->n;
-			relative += d * d / (light * light) / (3 * p->classes->n);
+			square += d * d;
+			light += class->rgb[k] * class->rgb[k];
+			r[k] = log(fmax(rgb[k], 1e-4) / fmax(class->rgb[k], 1e-4));
 		}
+		colour += (pow(r[0] - r[1], 2) + pow(r[2] - r[1], 2)) / (2 * p->classes->n);
 	}
+	fit->residual = sqrt(square / light);
+	fit->residual_colour = sqrt(colour);
 	for (int k = 0; k < 3; k++)
 		fit->residual_rgb[k] = sqrt(fit->residual_rgb[k]);
-	fit->residual = sqrt(relative);
 }
 
 /* Information of the classes alone, in units of the priors: eigenvectors below 1 are told by the priors, not by the
@@ -135,22 +188,12 @@ static void measure(struct pigment_fit *fit, const struct problem *p, double cov
 static bool information(struct pigment_fit *fit, struct problem *p, struct err *err)
 {
 	enum { N = PIGMENT_N };
-	int m = 3 * p->classes->n;
-	double r[2][3 * PIGMENT_CLASSES_MAX + N], J[3 * PIGMENT_CLASSES_MAX][N], a[N * N] = { 0 }, w[N];
-	for (int j = 0; j < N; j++) {
-		double x[N], h = 1e-4 * p->conf->prior[j][1];
-		memcpy(x, fit->x, sizeof x);
-		for (int side = 0; side < 2; side++) {
-			x[j] = fit->x[j] + (side ? h : -h);
-			residuals(p, x, r[side], 0);
-		}
-		for (int i = 0; i < m; i++)
-			J[i][j] = (r[1][i] - r[0][i]) / 2e-4;
-	}
-	for (int i = 0; i < m; i++)
+	double r[RESIDUALS_MAX], J[RESIDUALS_MAX * N], a[N * N] = { 0 }, w[N];
+	residuals(p, fit->x, r, J);
+	for (int i = 0; i < 3 * p->classes->n; i++)
 		for (int j = 0; j < N; j++)
 			for (int k = 0; k < N; k++)
-				a[j * N + k] += J[i][j] * J[i][k];
+				a[j * N + k] += J[i * N + j] * p->conf->prior[j][1] * J[i * N + k] * p->conf->prior[k][1];
 	if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', N, a, N, w))
 		return err_set(err, "pigment: the information matrix has no eigenvectors");
 	for (int d = 0; d < N && w[d] < 1; d++) {
@@ -165,17 +208,19 @@ static bool information(struct pigment_fit *fit, struct problem *p, struct err *
 enum { STARTS_MAX = 64 };
 
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
-                   struct err *err)
+                   const double *from, struct err *err)
 {
-	*fit = (struct pigment_fit) { .cost = INFINITY, .starts = conf->starts < STARTS_MAX ? conf->starts : STARTS_MAX };
+	*fit = (struct pigment_fit) { .cost = INFINITY, .starts = from ? 1 : conf->starts < STARTS_MAX ? conf->starts : STARTS_MAX };
 	struct problem problem = { classes, conf, { 0 } };
 	tissue_bands_make(&problem.bands, conf->bands, conf->illuminant);
 	int m = 3 * classes->n + PIGMENT_N;
-	const struct nls_conf nls = { .max_iter = 200, .ftol = 1e-10, .numeric = true };
+	const struct nls_conf nls = { .max_iter = 100, .ftol = 1e-7 };
 	double x[STARTS_MAX][PIGMENT_N], cost[STARTS_MAX], cov[PIGMENT_N][PIGMENT_N], best_cov[PIGMENT_N][PIGMENT_N];
 	for (int s = 0; s < fit->starts; s++) {
 		struct nls_result result;
 		start_at(x[s], s, conf);
+		if (from)
+			memcpy(x[s], from, sizeof x[s]);
 		if (!nls_solve(&result, PIGMENT_N, x[s], lower, upper, m, residuals, &problem, &nls, &cov[0][0], err))
 			return false;
 		cost[s] = result.cost;

@@ -96,6 +96,8 @@ bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *c
 	json_object_set_new(out, "abl", abl);
 	json_object_set_new(out, "stroma", stroma);
 	json_object_set_new(out, "residual_rgb", json_numbers(3, fit->residual_rgb));
+	json_object_set_new(out, "residual", json_number(fit->residual));
+	json_object_set_new(out, "residual_colour", json_number(fit->residual_colour));
 	json_object_set_new(out, "exposure", estimate(fit, PIGMENT_EXPOSURE));
 	json_object_set_new(out, "white_red", estimate(fit, PIGMENT_RED));
 	json_object_set_new(out, "white_blue", estimate(fit, PIGMENT_BLUE));

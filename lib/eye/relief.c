@@ -25,6 +25,7 @@ struct problem {
 	int n;                      // texels that count
 	int *at;                    // their places
 	double noise;               // of one of them, ln luminance
+	double hold[B];             // residual of band b's prior at gain 1
 };
 
 static bool blur(float *out, const float *in, const struct problem *p, int channels, double sigma, struct err *err)
@@ -90,9 +91,9 @@ static bool residuals(void *ctx, const double *gain, double *r, double *J)
 			J[i * B + b] = w * s[b];
 	}
 	for (int b = 0; b < B; b++) {
-		r[p->n + b] = gain[b] / p->conf->gain_sigma;
+		r[p->n + b] = gain[b] * p->hold[b];
 		for (int c = 0; J && c < B; c++)
-			J[(p->n + b) * B + c] = b == c ? 1 / p->conf->gain_sigma : 0;
+			J[(p->n + b) * B + c] = b == c ? p->hold[b] : 0;
 	}
 	return true;
 }
@@ -189,6 +190,22 @@ static bool difference(double *rms, double *contrast, struct problem *p, const d
 	return true;
 }
 
+/* Error of the photograph and prior of the relief, both per independent texel: neighbours within the first band say the
+ * same, so many texels are one. */
+static void weigh(struct problem *p)
+{
+	double one = fmax(p->conf->band[0] * p->scale * 2, 1);
+	p->noise = p->conf->model_error * one;
+	for (int b = 0; b < B; b++) {
+		double sum = 0;
+		for (int i = 0; i < p->n; i++) {
+			double u = p->weight[p->at[i]] * p->band[B * (long)p->at[i] + b];
+			sum += u * u;
+		}
+		p->hold[b] = sqrt(sum) / (p->conf->relief_sigma * one);
+	}
+}
+
 bool relief_solve(struct relief_fit *fit, const struct image *clean, const struct image *thickness, double extent,
                   const struct pupil *pupil, double root, const double white[3], const double x[PIGMENT_N],
                   const struct pigment_conf *pigment, const struct relief_conf *conf, struct err *err)
@@ -204,8 +221,7 @@ bool relief_solve(struct relief_fit *fit, const struct image *clean, const struc
 	if (ok && p->n < 100)
 		ok = err_set(err, "iris texture: %d texels were seen: too few for its relief", p->n);
 	if (ok) {
-		// Neighbours within the first band say the same: so many texels are one.
-		p->noise = conf->model_error * fmax(conf->band[0] * p->scale * 2, 1);
+		weigh(p);
 		float f;
 		int k = relief_place(&p->table, logf(0.45f), &f);
 		fit->slope = p->table.slope[k] / p->table.light[k];

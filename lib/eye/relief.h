@@ -13,7 +13,7 @@ enum { RELIEF_BANDS = 3 };
 
 struct relief_conf {
 	double band[RELIEF_BANDS];  // mm: band b lies between Gaussians band[b-1] (none) and band[b]; ascending
-	double gain_sigma;          // prior of the gains: 0 with this sigma
+	double relief_sigma;        // prior: rms of ln thickness about the coarse field, in each band
 	double pitch;               // mm a texel of the fit
 	double spread;              // sigma of the lateral spread over the mean free path in the stroma
 	double model_error;         // of ln luminance, 1 sigma, of texels that are independent

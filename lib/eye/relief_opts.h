@@ -7,7 +7,7 @@
 /* r: struct relief_conf; range: double[2]. */
 #define RELIEF_OPTS(r, range) \
 	OPT_REALS("tissue.filter_mm", (r)->band, RELIEF_BANDS, 0.005, 2, "mm", "Gaussians between the filter's bands"), \
-	OPT_REAL("tissue.filter_sigma", &(r)->gain_sigma, 0.01, 10, "", "prior of the filter's gains"), \
+	OPT_REAL("tissue.relief_sigma", &(r)->relief_sigma, 0.01, 10, "", "prior: rms of ln thickness about the coarse field, each band"), \
 	OPT_REAL("tissue.filter_pitch_mm", &(r)->pitch, 0.01, 0.5, "mm", "texels of the fit"), \
 	OPT_REAL("tissue.spread", &(r)->spread, 0, 5, "", "lateral spread of light over the mean free path"), \
 	OPT_REAL("tissue.light_error", &(r)->model_error, 0.01, 5, "", "error of ln luminance"), \

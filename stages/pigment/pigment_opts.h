@@ -11,7 +11,8 @@
 	OPT_INT("rounds", &(c)->rounds, 1, 10, "", "pigment and relief in turn, at most"), \
 	OPT_REAL("gain_min", &(c)->gain_min, 0, 1, "", "fall of the residual that pays for another round"), \
 	OPT_REAL("cos_light", &(c)->fit.cos_light, 0.1, 1, "", "mean cosine of light on the iris"), \
-	OPT_REAL("model_error", &(c)->fit.model_error, 0.001, 1, "", "relative error of the forward model"), \
+	OPT_REAL("light_error", &(c)->fit.light_error, 0.001, 3, "", "error of a class' ln light"), \
+	OPT_REAL("model_error", &(c)->fit.model_error, 0.001, 1, "", "error of a class' ln colour"), \
 	OPT_REAL("floor", &(c)->fit.floor, 0, 0.1, "", "absolute error of reflectance"), \
 	OPT_REAL("abl_mm", &(c)->fit.abl_thickness, 0.001, 0.2, "mm", "thickness of the anterior border layer"), \
 	OPT_REALS("prior_abl_melanin", (c)->prior_melanin[0], 2, 1e-5, 10, "", "median, sigma of ln"), \

@@ -87,11 +87,17 @@ static bool turn(struct pigment_run *run, struct image *next, const struct image
 {
 	double root = run->anatomy->limbus_radius + c->root_beyond_limbus;
 	struct relief_fit relief;
+	struct pigment_fit first = run->fit;
 	if (!pigment_classify(&run->classes, &run->clean, thickness, run->extent, &run->pupil, root, run->white.rgb, &c->classes, err)
-	    || !pigment_solve(&run->fit, &run->classes, &run->conf, err)
+	    || !pigment_solve(&run->fit, &run->classes, &run->conf, run->rounds ? first.x : 0, err)
 	    || !relief_solve(&relief, &run->clean, &run->thickness, run->extent, &run->pupil, root, run->white.rgb, run->fit.x,
 	                     &run->conf, &c->relief, err))
 		return false;
+	if (run->rounds) {  // what the several starts of the first round found stays said
+		run->fit.starts = first.starts;
+		run->fit.minima = first.minima;
+		memcpy(run->fit.other, first.other, sizeof first.other);
+	}
 	run->residual[run->rounds] = run->fit.residual;
 	run->relief[run->rounds++] = relief.after;
 	return relief_apply(next, &run->thickness, run->extent, &relief, &c->relief, err);

@@ -83,9 +83,10 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 	stage_note(stage, "%s: border layer melanin %.2f %% (eumelanin %.0f %%), stroma %.2f %% (%.0f %%), scale %.2f, exposure %.2f",
 	           eye->side, 100 * exp(x[PIGMENT_ABL_MELANIN]), 100 * x[PIGMENT_ABL_RATIO], 100 * exp(x[PIGMENT_STROMA_MELANIN]),
 	           100 * x[PIGMENT_STROMA_RATIO], exp(x[PIGMENT_SCALE]), exp(x[PIGMENT_EXPOSURE]));
-	stage_note(stage, "%s: white from the %s, %d round%s, %d of %d starts' minima differ, residual %.1f %%", eye->side,
-	           white_names[run->white.source], run->rounds, run->rounds > 1 ? "s" : "", f->minima - 1, f->starts, 100 * f->residual);
-	stage_figure(stage, "residual", 100 * f->residual, "% of luminance");
+	stage_note(stage, "%s: white from the %s, %d round%s, %d of %d starts' minima differ, residual %.0f %%, of colour alone %.0f %%", eye->side,
+	           white_names[run->white.source], run->rounds, run->rounds > 1 ? "s" : "", f->minima - 1, f->starts, 100 * f->residual, 100 * f->residual_colour);
+	stage_figure(stage, "residual", 100 * f->residual, "%");
+	stage_figure(stage, "residual_colour", 100 * f->residual_colour, "%");
 	stage_figure(stage, "abl_melanin", 100 * exp(x[PIGMENT_ABL_MELANIN]), "%");
 	stage_figure(stage, "stroma_melanin", 100 * exp(x[PIGMENT_STROMA_MELANIN]), "%");
 	stage_figure(stage, "rounds", run->rounds, "");

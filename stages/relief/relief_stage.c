@@ -98,7 +98,7 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 	stage_figure(stage, "height_rms", w->height_rms, "mm");
 	if (f->slope < 0.1)
 		stage_skipped(stage, "%s: the stroma is so pigmented that its brightness says little about its thickness (%.2f %% of light "
-		              "for 1 %% of thickness): the relief is the generic profile's and the filter's prior's more than the photograph's",
+		              "for 1 %% of thickness): its relief is the coarse field, lighter for thicker, not measured",
 		              eye->side, f->slope);
 }
 
