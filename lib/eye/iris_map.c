@@ -53,7 +53,7 @@ static bool find(double px[2], double *rim, const struct iris_view *view, const 
 	fit_camera_in_eye(C, view->fit);
 	enum lightpath_status status = paper ? lightpath_algorithm1(K, &view->cornea, point, C, paper)
 	                                     : lightpath_solve(K, &view->cornea, point, C);
-	if (status == LIGHTPATH_NONE || !fit_project(px, view->fit, K))
+	if (status == LIGHTPATH_NONE || status == LIGHTPATH_GRAZING || !fit_project(px, view->fit, K))
 		return false;
 	if (rim)
 		*rim = hypot(K[0], K[1]);
