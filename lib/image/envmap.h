@@ -1,0 +1,51 @@
+/* envmap: light from all round, as a latitude-longitude map, and what a renderer needs of it.
+ * Frame  the camera's: x right, y down, z forward. The middle of the map lies at -z, behind the camera: what an
+ *        eye that looks into the camera sees before it; the map's right is -x, its top -y.
+ * Values linear radiance, three channels, no negatives.
+ */
+#ifndef IMAGE_ENVMAP_H
+#define IMAGE_ENVMAP_H
+#include "image/image.h"
+
+struct envmap {
+	struct image map;    // [height][2 height][3]; owned
+	double sh[9][3];     // irradiance over pi, spherical harmonics to degree 2 (cosine lobe folded in)
+};
+
+/* A rectangular source: direction of its middle (unit), half-widths across and upwards, radiance. */
+struct envmap_box {
+	double dir[3];
+	double half[2];      // radians
+	double rgb[3];
+};
+
+/* Light of one direction: what a region of the map gives a plane facing it. */
+struct envmap_light {
+	float dir[3];        // unit, towards the light
+	float rgb[3];        // irradiance, over pi: a white plane facing it has this radiance
+};
+
+enum { ENVMAP_LIGHTS_MAX = 64 };
+
+/* A room: ceiling to floor gradient, with the boxes in it. height rows. envmap_free. */
+struct envmap envmap_room(int height, const double ceiling[3], const double floor[3], int n,
+                          const struct envmap_box boxes[]);
+
+/* A latitude-longitude EXR; negatives and what is not finite become 0. envmap_free. */
+bool envmap_load(struct envmap *env, const char *path, struct err *err);
+void envmap_free(struct envmap *env);
+
+/* Scales the map so that a white plane that faces the camera (normal -z) has radiance 1 in the mean of its channels. */
+void envmap_normalise(struct envmap *env);
+
+/* Radiance from a direction (need not be a unit vector), bilinear. */
+void envmap_at(float rgb[3], const struct envmap *env, const float dir[3]);
+
+/* Irradiance over pi of a plane with that unit normal. */
+void envmap_irradiance(float rgb[3], const struct envmap *env, const float normal[3]);
+
+/* Median cut (Debevec 2005): the map in n = 2^k regions of equal energy, each as one light; returns how many (dark
+ * regions are left out). Together they carry all of the map's energy. */
+int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env);
+
+#endif
