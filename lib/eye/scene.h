@@ -1,0 +1,111 @@
+/* scene: a fitted eye ready to be looked at. Geometry and maps are made once; views and lights come and go.
+ *
+ * Frame    eye (DESIGN section 4): origin at the corneal apex, z into the eye, mm.
+ * Surface  the cornea's conic inside the limbus, the scleral sphere outside; both meet in the limbus circle, and
+ *          normal, colour and opacity pass from one to the other over the width of the limbus.
+ * Iris     z = iris_depth - height(x, y); below it the anterior border layer, the stroma of thickness(x, y), and an
+ *          epithelium that absorbs everything (tissue.h).
+ * Colour   linear Rec. 709. A white plane that faces the camera under an environment of envmap_normalise has value 1.
+ */
+#ifndef EYE_SCENE_H
+#define EYE_SCENE_H
+#include "eye/eye.h"
+#include "eye/fit.h"
+#include "eye/tissue.h"
+#include "image/envmap.h"
+#include "image/image.h"
+
+enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 64 };
+
+enum scene_quadrature { SCENE_GAUSS, SCENE_MIDPOINT };
+enum scene_path { SCENE_PATH_GRID, SCENE_PATH_ENDS };  // the light's way to a point: see scene_light.c
+
+struct scene_conf {
+	int map_size;                 // texels across of the finest map, at most
+	int search, shadow;           // steps of the search for the relief; of the shadow ray
+	int steps;                    // of the march
+	int quadrature, path;         // enum scene_quadrature, enum scene_path
+	int bands;                    // wavelengths, 3..TISSUE_BANDS_MAX
+	double detail;                // 0: the fitted model alone; 1: times all of what the photograph shows beyond it
+	double limbus_width;          // mm, over which sclera becomes cornea
+	double sclera_radius;         // mm
+	double sclera_rgb[3];         // of a healthy sclera
+	double vein_density;          // 1: about forty vessels
+	int veins_px, seed;
+};
+
+/* One resolution of the iris maps; each level has half the texels of the one before. Square, row 0 is -y. */
+struct scene_level {
+	int n;
+	float per_mm;                 // texels in a mm
+	float *relief;                // [n][n][2]: height mm, + towards the cornea; stroma mm
+	float *colour;                // [n][n][4]: what the model's colour is multiplied with; 1 where a photograph saw it
+};
+
+struct scene {
+	struct eye eye;
+	struct cornea cornea;         // its rim a little outside the limbus, so that the blend has something to see
+	struct scene_conf conf;
+	double limbus[2], limbus_depth, sclera_z;  // half-widths across and upwards; depth of its plane; centre of the sphere
+	double pupil[3];              // x, y, radius in the iris plane
+	double extent;                // half-width of the maps
+	float height_min, height_max;
+	int n_levels;
+	struct scene_level level[SCENE_LEVELS];
+	struct image veins;           // azimuthal about the axis: transmittance RGB, height of the film's ripples
+	struct tissue_optics optics;
+	int n_nodes[2];               // of the march, in each layer
+	double node[2][SCENE_NODES_MAX], weight[2][SCENE_NODES_MAX];  // on 0..1
+	float flat[3];                // the model's mean reflectance, where it is seen without a march
+	float gain;                   // what the colour factor is relative to: the exposure
+	double explained;             // share of the colour's variance (log) that the model accounts for, before the factor
+};
+
+/* The artifacts of one eye; a null path (or a file that is not there) is done without. */
+struct scene_files {
+	const char *texture, *texture_json, *relief, *pigment;
+};
+
+/* The maps, the tissue, the pupil; then scene_fit_colour. sclera_rgb in conf. scene_free. */
+bool scene_load(struct scene *scene, const struct scene_files *files, const struct eye *eye,
+                const struct scene_conf *conf, struct err *err);
+void scene_free(struct scene *scene);
+
+/* Light as one view sees it: the environment stands in the camera's frame. */
+struct scene_lighting {
+	const struct envmap *env;
+	int n;
+	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the camera's frame
+	bool reflect;                 // the cornea's and the tear film's mirror image of it
+};
+struct scene_lighting scene_lighting(const struct envmap *env, int lights, bool reflect);
+
+struct scene_view {
+	struct camera camera;
+	double cam_from_eye[4][4];
+	double x0, y0, scale;         // camera px of the picture's corner, and of one of its pixels
+	int width, height;            // px
+	int samples;                  // samples^2 rays where the picture has edges, at most
+	bool textured;                // the photograph's colour alone, without scattering: the cheap alternative
+};
+
+/* View of an eye turned by yaw and pitch (radians) in front of a camera that frames `field` mm at distance mm. */
+struct scene_view scene_view_turned(const struct scene *scene, double yaw, double pitch, double field, int size);
+
+/* The view of the photograph itself: a window of it (photo px) at `scale` photo px a pixel. */
+struct scene_view scene_view_photo(const struct fit *fit, const double window[4], double scale);
+
+struct scene_count {
+	long rays, iris;              // traced; of them scattered in the iris
+};
+
+/* RGB and A: colour times cover, and the share of the pixel that the eye covers. image_free. The same bytes for any number of
+ * threads. */
+struct image scene_render(const struct scene *scene, const struct scene_view *view,
+                          const struct scene_lighting *light, struct scene_count *count);
+
+/* The albedo step: texture over model, texel by texel, the model lit and seen as in the photograph, so that there the
+ * rendering shows what the photograph shows. conf.detail is its strength. Call once, after scene_load. */
+void scene_fit_colour(struct scene *scene, const struct scene_view *view, const struct scene_lighting *light);
+
+#endif

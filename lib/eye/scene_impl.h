@@ -1,0 +1,102 @@
+/* scene_impl: what the files of the scene share among themselves. Rays come in batches, one array for each
+ * coordinate, so that the loops over them become vector code. */
+#ifndef EYE_SCENE_IMPL_H
+#define EYE_SCENE_IMPL_H
+#include "eye/scene.h"
+#include "math/simd.h"
+
+enum { BATCH = 256 };
+
+/* Rays of sight inside the eye, and what they meet. */
+struct iris_batch {
+	int n;
+	float fx[BATCH], fy[BATCH], fz[BATCH];  // where the ray starts behind the cornea
+	float vx[BATCH], vy[BATCH], vz[BATCH];  // its unit direction
+	float px[BATCH], py[BATCH], pz[BATCH];  // where it meets the relief
+	float near[BATCH], span[BATCH];         // length in the anterior border layer; in both layers
+	float rgb[3][BATCH];                    // scattered towards the beholder; a white plane = 1
+};
+
+/* One light in the eye's frame, with its own refraction function: K and the irradiance gain over the iris, on planes
+ * at the depths z[0] and z[1]. */
+struct scene_beam {
+	float dir[3], rgb[3];
+	float z[2];
+	float K[2][SCENE_GRID][SCENE_GRID][4];  // x, y, z, gain
+};
+
+struct scene_beams {
+	int n;
+	struct scene_beam *beam;  // owned
+};
+
+/* The lights that reach the iris, for one view. free(beams.beam). */
+struct scene_beams scene_beams(const struct scene *scene, const struct scene_lighting *light,
+                               const double eye_from_cam[3][3]);
+
+/* Fills px..pz: the first crossing of the relief. */
+void scene_meet(struct iris_batch *b, const struct scene *scene, const struct scene_level *level);
+
+/* Fills near, span and rgb. */
+void scene_scatter(struct iris_batch *b, const struct scene *scene, const struct scene_level *level,
+                   const struct scene_beams *beams);
+
+/* The alternative to scatter: the mean colour of the model, lit, without a march. */
+void scene_flat(struct iris_batch *b, const struct scene *scene, const struct scene_beams *beams);
+
+/* K and gain for every ray's point p + t v. */
+void scene_beam_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *scene,
+                      const struct scene_beam *beam);
+
+/* The level whose texels are about as large as a pixel of `mm`. */
+const struct scene_level *scene_level_for(const struct scene *scene, double mm);
+
+/* Levels below level 0, and the range of heights. */
+void scene_levels_make(struct scene *scene);
+
+/* RGB [n][n][4] with weight in A (0: no photograph saw it): what is missing is continued round the axis from what was
+ * seen at the same radius, so that fibres go on. pupil: x, y, radius. */
+void scene_fill(float *rgba, int n, double extent, const double pupil[3]);
+
+void scene_veins_make(struct scene *scene);
+
+/* Albedo of the sclera and the ripple of its film at a point of it. */
+void scene_sclera(float albedo[3], float normal[3], const struct scene *scene, const float point[3]);
+
+/* Bilinear: value and gradient (per mm) of the height, and the thickness, clamped to the map. */
+SIMD_INLINE float relief_at(const float *map, int n, float per_mm, float x, float y, float *gx, float *gy)
+{
+	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f;
+	float u = x * per_mm + h, v = y * per_mm + h;
+	u = u > 0 ? u < top ? u : top : 0;
+	v = v > 0 ? v < top ? v : top : 0;
+	int iu = (int)u, iv = (int)v, at = 2 * (iv * n + iu);
+	u -= (float)iu;
+	v -= (float)iv;
+	float a = map[at], b = map[at + 2], c = map[at + 2 * n], d = map[at + 2 * n + 2];
+	*gx = ((1 - v) * (b - a) + v * (d - c)) * per_mm;
+	*gy = ((1 - u) * (c - a) + u * (d - b)) * per_mm;
+	return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
+}
+
+SIMD_INLINE float channel_at(const float *map, int n, float per_mm, float x, float y, int channels, int channel)
+{
+	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f;
+	float u = x * per_mm + h, v = y * per_mm + h;
+	u = u > 0 ? u < top ? u : top : 0;
+	v = v > 0 ? v < top ? v : top : 0;
+	int iu = (int)u, iv = (int)v, at = channels * (iv * n + iu) + channel;
+	u -= (float)iu;
+	v -= (float)iv;
+	return (1 - v) * ((1 - u) * map[at] + u * map[at + channels])
+	       + v * ((1 - u) * map[at + channels * n] + u * map[at + channels * n + channels]);
+}
+
+static inline float smooth(float lo, float hi, float x)
+{
+	float t = (x - lo) / (hi - lo);
+	t = t > 0 ? t < 1 ? t : 1 : 0;
+	return t * t * (3 - 2 * t);
+}
+
+#endif

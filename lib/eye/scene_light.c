@@ -1,0 +1,154 @@
+/* Lights from the environment, carried into the eye. Each is so far away that its direction is one for the whole iris:
+ * its refraction function f(P, w) -> K (iris paper, eq. 15) is then a smooth field over the iris, tabulated on two planes
+ * of SCENE_GRID^2 points solved exactly (path = grid), or solved for every ray at both ends (path = ends). */
+#include "eye/scene_impl.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "math/vec.h"
+#include "optics/lightpath.h"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-pre")  // see scene_march.c
+#endif
+
+/* Newton steps from the closed-form start: 2e-5 mm at worst. */
+enum { PATH_STEPS = 4 };
+
+struct scene_lighting scene_lighting(const struct envmap *env, int lights, bool reflect)
+{
+	struct scene_lighting l = { .env = env, .reflect = reflect };
+	l.n = envmap_lights(l.light, lights, env);
+	return l;
+}
+
+static void node_path(float K[4], const struct cornea *cornea, const double P[3], const double w[3])
+{
+	double k[3] = { 0 };
+	enum lightpath_status status = lightpath_solve_directional(k, cornea, P, w);
+	bool lit = status == LIGHTPATH_OK || status == LIGHTPATH_BEYOND_RIM;
+	double gain = lit ? lightpath_gain(cornea, P, w, k) : 0;
+	if (status == LIGHTPATH_NONE || !isfinite(k[0] + k[1] + k[2])) {
+		k[0] = P[0];
+		k[1] = P[1];
+		k[2] = cornea_depth(cornea, hypot(P[0], P[1]));
+		k[2] = isfinite(k[2]) ? k[2] : P[2] - 1;
+		gain = 0;
+	}
+	for (int c = 0; c < 3; c++)
+		K[c] = (float)k[c];
+	K[3] = isfinite(gain) && gain > 0 ? (float)gain : 0;
+}
+
+static void beam_make(struct scene_beam *beam, const struct scene *s)
+{
+	double w[3] = { beam->dir[0], beam->dir[1], beam->dir[2] };
+	double deepest = s->optics.abl_thickness + 1;  // mm; a stroma is never thicker
+	beam->z[0] = (float)(s->eye.iris_depth - s->height_max);
+	beam->z[1] = (float)(s->eye.iris_depth - s->height_min + deepest);
+	for (int k = 0; k < 2; k++)
+		for (int y = 0; y < SCENE_GRID; y++)
+			for (int x = 0; x < SCENE_GRID; x++) {
+				double step = 2 * s->extent / (SCENE_GRID - 1);
+				double P[3] = { x * step - s->extent, y * step - s->extent, beam->z[k] };
+				node_path(beam->K[k][y][x], &s->cornea, P, w);
+			}
+}
+
+struct scene_beams scene_beams(const struct scene *s, const struct scene_lighting *light,
+                               const double eye_from_cam[3][3])
+{
+	struct scene_beams beams = { 0, mem_array((size_t)light->n, sizeof(struct scene_beam)) };
+	for (int i = 0; i < light->n; i++) {
+		const struct envmap_light *l = &light->light[i];
+		double d[3] = { l->dir[0], l->dir[1], l->dir[2] };
+		mat_vec(d, eye_from_cam, d);
+		if (d[2] > 0.16)  // further than about 99 degrees from the axis: no path leads into the eye (ANCHORS: 98.8)
+			continue;
+		struct scene_beam *beam = &beams.beam[beams.n++];
+		for (int c = 0; c < 3; c++) {
+			beam->dir[c] = (float)d[c];
+			beam->rgb[c] = l->rgb[c];
+		}
+	}
+#pragma omp parallel for schedule(dynamic)
+	for (int i = 0; i < beams.n; i++)
+		beam_make(&beams.beam[i], s);
+	return beams;
+}
+
+SIMD_INLINE float blend(const float *k, int at, float a, float b, float c, float d)
+{
+	return a * k[at] + b * k[at + 4] + c * k[at + 4 * SCENE_GRID] + d * k[at + 4 * SCENE_GRID + 4];
+}
+
+SIMD_CLONES
+static void grid_paths(float K[4][BATCH], const struct iris_batch *b, const float *restrict t,
+                       const struct scene_beam *beam, float extent)
+{
+	const float *restrict k0 = &beam->K[0][0][0][0], *restrict k1 = &beam->K[1][0][0][0];
+	const float *restrict px = b->px, *restrict py = b->py, *restrict pz = b->pz;
+	const float *restrict vx = b->vx, *restrict vy = b->vy, *restrict vz = b->vz;
+	float *restrict x = K[0], *restrict y = K[1], *restrict z = K[2], *restrict gain = K[3];
+	float per = (SCENE_GRID - 1) / (2 * extent), z0 = beam->z[0], inv = 1 / (beam->z[1] - z0), top = SCENE_GRID - 1.001f;
+	SIMD_LOOP
+	for (int i = 0; i < b->n; i++) {
+		float u = (px[i] + t[i] * vx[i] + extent) * per, v = (py[i] + t[i] * vy[i] + extent) * per;
+		float q = (pz[i] + t[i] * vz[i] - z0) * inv;
+		u = u > 0 ? u < top ? u : top : 0;
+		v = v > 0 ? v < top ? v : top : 0;
+		int iu = (int)u, iv = (int)v, at = 4 * (iv * SCENE_GRID + iu);
+		u -= (float)iu;
+		v -= (float)iv;
+		float a = (1 - u) * (1 - v), e = u * (1 - v), f = (1 - u) * v, g = u * v;
+		x[i] = blend(k0, at, a, e, f, g) * (1 - q) + blend(k1, at, a, e, f, g) * q;
+		y[i] = blend(k0, at + 1, a, e, f, g) * (1 - q) + blend(k1, at + 1, a, e, f, g) * q;
+		z[i] = blend(k0, at + 2, a, e, f, g) * (1 - q) + blend(k1, at + 2, a, e, f, g) * q;
+		gain[i] = blend(k0, at + 3, a, e, f, g) * (1 - q) + blend(k1, at + 3, a, e, f, g) * q;
+	}
+}
+
+/* The sclera begins at the limbus, gradually: light that would enter further out is stopped. */
+SIMD_CLONES
+static void rim_stop(float K[4][BATCH], int n, float ax, float ay, float width)
+{
+	const float *restrict kx = K[0], *restrict ky = K[1];
+	float *restrict gain = K[3], lo = 1 - width / 2, inv = 1 / width;
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		float r = sqrtf(kx[i] * kx[i] * ax * ax + ky[i] * ky[i] * ay * ay), t = (r - lo) * inv;
+		t = t > 0 ? t < 1 ? t : 1 : 0;
+		gain[i] = gain[i] > 0 ? gain[i] * (1 - t * t * (3 - 2 * t)) : 0;
+	}
+}
+
+static void exact_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *s,
+                        const struct scene_beam *beam)
+{
+	float x[BATCH], y[BATCH], z[BATCH], w[3][BATCH];
+	for (int i = 0; i < b->n; i++) {
+		x[i] = b->px[i] + t[i] * b->vx[i];
+		y[i] = b->py[i] + t[i] * b->vy[i];
+		z[i] = b->pz[i] + t[i] * b->vz[i];
+		for (int c = 0; c < 3; c++)
+			w[c][i] = beam->dir[c];
+	}
+	float k[3][BATCH];
+	unsigned char status[BATCH];
+	lightpath_batch(b->n, x, y, z, w[0], w[1], w[2], k[0], k[1], k[2], status, &s->cornea, PATH_STEPS);
+	for (int i = 0; i < b->n; i++)
+		if (status[i] == LIGHTPATH_OK || status[i] == LIGHTPATH_BEYOND_RIM)
+			for (int c = 0; c < 3; c++)
+				K[c][i] = k[c][i];
+}
+
+void scene_beam_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *s,
+                      const struct scene_beam *beam)
+{
+	grid_paths(K, b, t, beam, (float)s->extent);  // the gain is the grid's either way: it needs no more
+	if (s->conf.path == SCENE_PATH_ENDS)
+		exact_paths(K, b, t, s, beam);
+	rim_stop(K, b->n, (float)(1 / s->limbus[0]), (float)(1 / s->limbus[1]), (float)(s->conf.limbus_width / s->limbus[0]));
+}

@@ -1,0 +1,217 @@
+/* Pictures: every pixel's middle first, then more rays where neighbours differ. Tiles are independent of each other, so
+ * that the bytes do not depend on the number of threads. */
+#include "eye/scene_trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/vec.h"
+
+enum { TILE = 16 };
+_Static_assert(TILE * TILE == BATCH, "a tile's first rays are one batch");
+
+struct scene_view scene_view_turned(const struct scene *scene, double yaw, double pitch, double field, int size)
+{
+	// A long lens, 500 mm away, aimed at the middle of the eye that shows: a little in front of its centre of rotation.
+	double distance = 500, cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch);
+	double turn[3][3] = { { cy, 0, -sy }, { sp * sy, cp, sp * cy }, { cp * sy, -sp, cp * cy } };
+	double aim[3] = { 0, 0, scene->sclera_z - 0.1 * scene->conf.sclera_radius }, t[3];
+	struct scene_view v = { .scale = 1, .width = size, .height = size, .samples = 1 };
+	double focal = distance * size / field;
+	v.camera = (struct camera){ .focal_px = focal, .center_px = { size / 2.0, size / 2.0 }, .source = CAMERA_CONF };
+	mat_vec(t, turn, (double[3]){ 0, 0, scene->sclera_z });
+	for (int i = 0; i < 3; i++) {
+		for (int j = 0; j < 3; j++)
+			v.cam_from_eye[i][j] = turn[i][j];
+		v.cam_from_eye[i][3] = (i == 2 ? distance + aim[2] : 0) - t[i];
+	}
+	v.cam_from_eye[3][3] = 1;
+	return v;
+}
+
+struct scene_view scene_view_photo(const struct fit *fit, const double window[4], double scale)
+{
+	struct scene_view v = { .camera = fit->camera, .x0 = window[0], .y0 = window[1], .scale = scale, .samples = 1 };
+	memcpy(v.cam_from_eye, fit->cam_from_eye, sizeof v.cam_from_eye);
+	v.width = (int)lrint((window[2] - window[0]) / scale);
+	v.height = (int)lrint((window[3] - window[1]) / scale);
+	return v;
+}
+
+static void look_make(struct scene_look *look, const struct scene *s, const struct scene_view *view,
+                      const struct scene_lighting *light, const struct scene_beams *beams)
+{
+	double t[3] = { view->cam_from_eye[0][3], view->cam_from_eye[1][3], view->cam_from_eye[2][3] };
+	*look = (struct scene_look){ .light = light, .beams = beams, .textured = view->textured };
+	for (int j = 0; j < 3; j++) {
+		look->origin[j] = 0;
+		for (int i = 0; i < 3; i++) {
+			look->origin[j] -= view->cam_from_eye[i][j] * t[i];
+			look->cam_from_eye[i][j] = (float)view->cam_from_eye[i][j];
+		}
+	}
+	double away = view->cam_from_eye[2][2] * s->eye.iris_depth + t[2];
+	double mm = view->scale * away / view->camera.focal_px;
+	look->level = scene_level_for(s, mm);
+	look->soft = (float)(0.5 * mm);
+}
+
+struct canvas {
+	const struct scene *scene;
+	const struct scene_view *view;
+	const struct scene_look *look;
+	struct image *image;
+	bool bent;  // the lens distorts
+};
+
+/* Rays through n points of the picture (px), traced. */
+static void trace_points(float rgba[][4], int n, const float (*at)[2], const struct canvas *c, long *iris)
+{
+	float dx[BATCH], dy[BATCH], dz[BATCH];
+	const struct scene_view *v = c->view;
+	for (int i = 0; i < n; i++) {
+		double px[2] = { v->x0 + v->scale * at[i][0], v->y0 + v->scale * at[i][1] }, cam[3], d[3];
+		if (c->bent) {
+			camera_ray(cam, &v->camera, px);
+		} else {
+			cam[0] = (px[0] - v->camera.center_px[0]) / v->camera.focal_px;
+			cam[1] = (px[1] - v->camera.center_px[1]) / v->camera.focal_px;
+			cam[2] = 1;
+		}
+		for (int j = 0; j < 3; j++)
+			d[j] = v->cam_from_eye[0][j] * cam[0] + v->cam_from_eye[1][j] * cam[1] + v->cam_from_eye[2][j] * cam[2];
+		vec_unit(d, d);
+		dx[i] = (float)d[0];
+		dy[i] = (float)d[1];
+		dz[i] = (float)d[2];
+	}
+	scene_trace(rgba, n, dx, dy, dz, c->scene, c->look, iris);
+}
+
+static void first_rays(const struct canvas *c, int tx, int ty, struct scene_count *count)
+{
+	float rgba[BATCH][4], at[BATCH][2];
+	int n = 0, x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width;
+	int y1 = ty + TILE < c->view->height ? ty + TILE : c->view->height;
+	for (int y = ty; y < y1; y++)
+		for (int x = tx; x < x1; x++, n++) {
+			at[n][0] = (float)x + 0.5f;
+			at[n][1] = (float)y + 0.5f;
+		}
+	trace_points(rgba, n, (const float(*)[2])at, c, &count->iris);
+	count->rays += n;
+	n = 0;
+	for (int y = ty; y < y1; y++)
+		for (int x = tx; x < x1; x++, n++)
+			memcpy(image_at(c->image, x, y), rgba[n], sizeof rgba[n]);
+}
+
+/* About what the eye makes of a value: steps of it, not of light, decide where more rays go. */
+static float seen(const float *p, int c)
+{
+	return sqrtf(p[c] > 0 ? p[c] < 1.2f ? p[c] : 1.2f : 0);
+}
+
+/* A pixel whose neighbours differ from it by more than 4 % of white. */
+static bool is_edge(const struct image *image, int x, int y)
+{
+	static const int step[4][2] = { { -1, 0 }, { 1, 0 }, { 0, -1 }, { 0, 1 } };
+	const float *p = image_at(image, x, y);
+	for (int k = 0; k < 4; k++) {
+		int u = x + step[k][0], v = y + step[k][1];
+		if (u < 0 || v < 0 || u >= image->width || v >= image->height)
+			continue;
+		const float *q = image_at(image, u, v);
+		for (int c = 0; c < 3; c++)
+			if (fabsf(seen(p, c) - seen(q, c)) > 0.04f)
+				return true;
+		if (p[3] != q[3])
+			return true;
+	}
+	return false;
+}
+
+struct refine {
+	float at[BATCH][2];
+	int pixel[BATCH], n;
+	float sum[BATCH][4];  // by pixel of the tile
+};
+
+static void refine_flush(struct refine *r, const struct canvas *c, struct scene_count *count)
+{
+	float rgba[BATCH][4];
+	if (!r->n)
+		return;
+	trace_points(rgba, r->n, (const float(*)[2])r->at, c, &count->iris);
+	for (int i = 0; i < r->n; i++)
+		for (int k = 0; k < 4; k++)  // a mirror image brighter than white counts as a little more than white
+			r->sum[r->pixel[i]][k] += rgba[i][k] < 2 ? rgba[i][k] : 2;
+	count->rays += r->n;
+	r->n = 0;
+}
+
+/* samples^2 rays in the marked pixels of a tile, in place of the first one. */
+static void more_rays(const struct canvas *c, const unsigned char *mark, int tx, int ty, struct scene_count *count)
+{
+	struct refine r = { .n = 0 };
+	int m = c->view->samples, w = c->view->width, h = c->view->height;
+	for (int k = 0; k < BATCH; k++) {
+		int x = tx + k % TILE, y = ty + k / TILE;
+		for (int j = 0; x < w && y < h && mark[(long)y * w + x] && j < m * m; j++) {
+			r.at[r.n][0] = (float)x + ((float)(j % m) + 0.5f) / (float)m;
+			r.at[r.n][1] = (float)y + ((float)(j / m) + 0.5f) / (float)m;
+			r.pixel[r.n] = k;
+			if (++r.n == BATCH)
+				refine_flush(&r, c, count);
+		}
+	}
+	refine_flush(&r, c, count);
+	for (int k = 0; k < BATCH; k++) {
+		int x = tx + k % TILE, y = ty + k / TILE;
+		for (int i = 0; x < w && y < h && mark[(long)y * w + x] && i < 4; i++)
+			image_at(c->image, x, y)[i] = r.sum[k][i] / (float)(m * m);
+	}
+}
+
+struct image scene_render(const struct scene *s, const struct scene_view *view, const struct scene_lighting *light,
+                          struct scene_count *count)
+{
+	double eye_from_cam[3][3];
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			eye_from_cam[i][j] = view->cam_from_eye[j][i];
+	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
+	struct scene_look look;
+	look_make(&look, s, view, light, &beams);
+	struct image image = image_new(view->width, view->height, 4);
+	struct canvas c = { s, view, &look, &image, false };
+	for (int i = 0; i < 5; i++)
+		c.bent = c.bent || view->camera.distortion[i] != 0;
+	int across = (view->width + TILE - 1) / TILE, tiles = across * ((view->height + TILE - 1) / TILE);
+	long rays = 0, iris = 0;
+	unsigned char *mark = mem_new((size_t)view->width * (size_t)view->height, 1);
+#pragma omp parallel reduction(+ : rays, iris)
+	{
+		struct scene_count mine = { 0 };
+#pragma omp for schedule(dynamic, 4)
+		for (int i = 0; i < tiles; i++)
+			first_rays(&c, i % across * TILE, i / across * TILE, &mine);
+#pragma omp for schedule(static)
+		for (int y = 0; y < view->height; y++)
+			for (int x = 0; x < view->width && view->samples > 1; x++)
+				mark[(long)y * view->width + x] = is_edge(&image, x, y);
+#pragma omp for schedule(dynamic, 4)
+		for (int i = 0; i < tiles; i++)
+			if (view->samples > 1)
+				more_rays(&c, mark, i % across * TILE, i / across * TILE, &mine);
+		rays += mine.rays;
+		iris += mine.iris;
+	}
+	free(mark);
+	free(beams.beam);
+	if (count)
+		*count = (struct scene_count){ count->rays + rays, count->iris + iris };
+	return image;
+}
