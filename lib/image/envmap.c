@@ -176,7 +176,7 @@ void envmap_irradiance(float rgb[3], const struct envmap *env, const float norma
 	}
 }
 
-void envmap_normalise(struct envmap *env)
+double envmap_level(const struct envmap *env)
 {
 	// Degrees 0 to 2 only approximate a narrow light's cosine; the plane's own irradiance is summed exactly.
 	double sum = 0;
@@ -189,7 +189,12 @@ void envmap_normalise(struct envmap *env)
 			sum += fmax(-d[2], 0) * solid_angle(&map, y) * (p[0] + p[1] + p[2]) / (3 * M_PI);
 		}
 	image_free(&map);
-	double k = sum > 0 ? 1 / sum : 1;
+	return sum;
+}
+
+void envmap_normalise(struct envmap *env)
+{
+	double level = envmap_level(env), k = level > 0 ? 1 / level : 1;
 	for (long i = 0; i < 3L * env->map.width * env->map.height; i++)
 		env->map.px[i] *= (float)k;
 	for (int i = 0; i < 9; i++)

@@ -35,7 +35,10 @@ struct envmap envmap_room(int height, const double ceiling[3], const double floo
 bool envmap_load(struct envmap *env, const char *path, struct err *err);
 void envmap_free(struct envmap *env);
 
-/* Scales the map so that a white plane that faces the camera (normal -z) has radiance 1 in the mean of its channels. */
+/* Radiance of a white plane that faces the camera (normal -z), mean of the channels. */
+double envmap_level(const struct envmap *env);
+
+/* Scales the map so that this level is 1. */
 void envmap_normalise(struct envmap *env);
 
 /* Radiance from a direction (need not be a unit vector), bilinear. */

@@ -1,0 +1,230 @@
+#include "eye/scene_impl.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/mem.h"
+#include "bridge/cv_blur.h"
+#include "image/exr.h"
+
+static const long limit_px = 1L << 27;
+
+/* The stroma's thickness where no relief says: the mean of the three places of the iris paper, section 4, weighted by
+ * their share of the area. A layer without melanin to speak of, as in a blue eye. */
+static const double plain_stroma = 0.48;
+static const struct tissue plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
+	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };
+
+/* Gauss-Legendre on 0..1: Newton on the Legendre polynomial from Tricomi's start. */
+static void gauss(int n, double node[], double weight[])
+{
+	for (int i = 0; i < n; i++) {
+		double x = cos(M_PI * (i + 0.75) / (n + 0.5)), d = 1;
+		for (int k = 0; k < 8; k++) {
+			double p = 1, q = 0;
+			for (int j = 1; j <= n; j++) {
+				double r = q;
+				q = p;
+				p = ((2 * j - 1) * x * q - (j - 1) * r) / j;
+			}
+			d = n * (x * p - q) / (x * x - 1);
+			x -= p / d;
+		}
+		node[i] = (1 - x) / 2;
+		weight[i] = 1 / ((1 - x * x) * d * d);
+	}
+}
+
+/* A fifth of the steps in the thin anterior layer, the others in the stroma. */
+static void nodes_make(struct scene *s)
+{
+	int n = s->conf.steps, in_abl = n / 5 > 1 ? n / 5 : 1, in[2] = { in_abl, n - in_abl };
+	for (int l = 0; l < 2; l++) {
+		s->n_nodes[l] = in[l];
+		if (s->conf.quadrature == SCENE_GAUSS)
+			gauss(in[l], s->node[l], s->weight[l]);
+		else
+			for (int i = 0; i < in[l]; i++) {
+				s->node[l][i] = (i + 0.5) / in[l];
+				s->weight[l][i] = 1.0 / in[l];
+			}
+	}
+}
+
+/* Channels of an EXR map on n x n texels of half-width extent: maps of another size are resampled. */
+static bool read_map(struct image *out, const char *path, int channels, const char *const names[], double *extent, int n,
+                     struct err *err)
+{
+	struct exr_info info = { 0 };
+	struct image in;
+	if (!exr_read(&in, path, channels, names, limit_px, &info, err))
+		return false;
+	bool ok = in.width == in.height && info.extent_mm > 0;
+	if (!ok)
+		err_set(err, "%s: an iris map is square and says its extentMm", path);
+	*extent = info.extent_mm;
+	n = n ? n : in.width;
+	for (long i = 0; ok && i < (long)in.width * in.height * channels; i++)
+		if (!isfinite(in.px[i]))
+			in.px[i] = 0;
+	if (ok && n != in.width) {
+		*out = image_new(n, n, channels);
+		ok = cv_resize(out->px, n, n, in.px, in.width, in.height, channels, err);
+		image_free(&in);
+	} else {
+		*out = in;
+	}
+	if (!ok)
+		image_free(out);
+	return ok;
+}
+
+static bool load_colour(struct scene *s, const char *path, int most, struct err *err)
+{
+	static const char *const names[] = { "R", "G", "B", "W" };
+	struct exr_info info = { 0 };
+	struct image head, map;
+	if (!exr_read(&head, path, 4, names, limit_px, &info, err))
+		return false;
+	int n = head.width < most ? head.width : most;
+	image_free(&head);
+	if (!read_map(&map, path, 4, names, &s->extent, n, err))
+		return false;
+	s->level[0] = (struct scene_level){ .n = n, .per_mm = (float)(n / (2 * s->extent)), .colour = map.px };
+	return true;
+}
+
+static bool load_relief(struct scene *s, const char *path, struct err *err)
+{
+	struct scene_level *l = &s->level[0];
+	static const char *const names[] = { "Y", "T" };
+	double extent = s->extent;
+	struct image map = { 0 };
+	if (path && file_exists(path)) {
+		if (!read_map(&map, path, 2, names, &extent, l->n, err))
+			return false;
+		if (fabs(extent - s->extent) > 1e-3 * s->extent) {
+			image_free(&map);
+			return err_set(err, "%s: extentMm = %g, but the texture's is %g", path, extent, s->extent);
+		}
+	} else {
+		map = image_new(l->n, l->n, 2);
+		for (long i = 0; i < (long)l->n * l->n; i++)
+			map.px[2 * i + 1] = (float)plain_stroma;
+	}
+	for (long i = 0; i < (long)l->n * l->n; i++) {  // a relief beyond that is none, and the march counts on it
+		map.px[2 * i] = fmaxf(-0.6f, fminf(0.6f, map.px[2 * i]));
+		map.px[2 * i + 1] = fmaxf(0.02f, fminf(1, map.px[2 * i + 1]));
+	}
+	l->relief = map.px;
+	return true;
+}
+
+static void load_pupil(struct scene *s, const char *path)
+{
+	struct err err = { 0 };
+	json_t *root = path && file_exists(path) ? json_read(path, 1 << 22, &err) : 0, *p = json_object_get(root, "pupil");
+	double v[3];
+	s->pupil[2] = 1.8;  // mm: where it was not found
+	if (p && json_get(&v[0], p, "cx", path, &err) && json_get(&v[1], p, "cy", path, &err)
+	    && json_get(&v[2], p, "r", path, &err) && v[2] > 0.3 && v[2] < s->limbus[1] && hypot(v[0], v[1]) < 2)
+		for (int i = 0; i < 3; i++)
+			s->pupil[i] = v[i];
+	json_decref(root);
+}
+
+static bool load_tissue(struct scene *s, const char *path, struct err *err)
+{
+	struct tissue tissue = plain_tissue;
+	if (path && file_exists(path) && !tissue_load(&tissue, path, err))
+		return false;
+	struct tissue_bands bands;
+	tissue_bands_make(&bands, s->conf.bands, tissue.illuminant);
+	tissue_optics_make(&s->optics, &tissue, &bands);
+	double flat[3];
+	tissue_reflectance(flat, &s->optics, plain_stroma, 1, 1);
+	for (int c = 0; c < 3; c++)
+		s->flat[c] = (float)(flat[c] * s->optics.exposure);
+	return true;
+}
+
+static void geometry(struct scene *s)
+{
+	double aspect = isfinite(s->eye.limbus_aspect) ? s->eye.limbus_aspect : 1;
+	s->cornea = eye_cornea(&s->eye);
+	s->limbus[0] = s->eye.limbus_radius;
+	s->limbus[1] = s->eye.limbus_radius * aspect;
+	s->limbus_depth = eye_limbus_depth(&s->eye);
+	s->cornea.rim = 1.06 * s->limbus[0];
+	double R = s->conf.sclera_radius, r = s->limbus[0];
+	s->sclera_z = s->limbus_depth + sqrt(fmax(R * R - r * r, 0));
+}
+
+bool scene_load(struct scene *s, const struct scene_files *files, const struct eye *eye, const struct scene_conf *conf,
+                struct err *err)
+{
+	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1 };
+	geometry(s);
+	load_pupil(s, files->texture_json);
+	if (!load_colour(s, files->texture, conf->map_size, err) || !load_relief(s, files->relief, err)
+	    || !load_tissue(s, files->pigment, err)) {
+		scene_free(s);
+		return false;
+	}
+	nodes_make(s);
+	scene_fill(s->level[0].colour, s->level[0].n, s->extent, s->pupil);
+	scene_levels_make(s);
+	scene_veins_make(s);
+	return true;
+}
+
+void scene_free(struct scene *s)
+{
+	for (int i = 0; i < SCENE_LEVELS; i++) {
+		free(s->level[i].relief);
+		free(s->level[i].colour);
+	}
+	image_free(&s->veins);
+	*s = (struct scene){ 0 };
+}
+
+static float *halve(const float *map, int n, int channels)
+{
+	int m = n / 2;
+	float *out = mem_array((size_t)m * (size_t)m * (size_t)channels, sizeof *out);
+	for (int y = 0; y < m; y++)
+		for (int x = 0; x < m; x++)
+			for (int c = 0; c < channels; c++) {
+				const float *p = map + ((long)2 * y * n + 2 * x) * channels + c;
+				out[((long)y * m + x) * channels + c] = (p[0] + p[channels] + p[(long)n * channels] + p[(long)(n + 1) * channels]) / 4;
+			}
+	return out;
+}
+
+void scene_levels_make(struct scene *s)
+{
+	struct scene_level *l = s->level;
+	s->height_min = s->height_max = 0;
+	for (long i = 0; i < (long)l->n * l->n; i++) {
+		s->height_min = fminf(s->height_min, l->relief[2 * i]);
+		s->height_max = fmaxf(s->height_max, l->relief[2 * i]);
+	}
+	s->n_levels = 1;
+	for (int k = 1; k < SCENE_LEVELS && l[k - 1].n >= 64; k++, s->n_levels++) {
+		free(l[k].relief);
+		free(l[k].colour);
+		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
+		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
+		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
+	}
+}
+
+const struct scene_level *scene_level_for(const struct scene *s, double mm)
+{
+	int k = 0;
+	while (k + 1 < s->n_levels && s->level[k + 1].per_mm * mm > 0.8)
+		k++;
+	return &s->level[k];
+}

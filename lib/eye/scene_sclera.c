@@ -1,0 +1,155 @@
+/* The white of the eye: vessels grown over it, and the ripples of its tear film. The map is azimuthal and equidistant
+ * about the eye's axis: radius in the map is the angle at the centre of the sphere. */
+#include "eye/scene_impl.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "bridge/cv_blur.h"
+#include "bridge/cv_draw.h"
+#include "math/rng.h"
+
+static const double reach = 110 * M_PI / 180;  // angle at the map's edge
+
+enum { STEPS_MAX = 160 };
+
+struct grower {
+	struct cv_picture picture;
+	struct rng rng;
+	double limbus;  // angle of the limbus
+};
+
+struct vessel {
+	double polar, turn;   // where it is: angle from the axis, and round it
+	double heading;       // 0: straight towards the limbus; radians
+	double width;         // mm
+	double sway, phase;   // tortuosity
+	int depth;            // of branching
+};
+
+static void put(const struct grower *g, float xy[2], double polar, double turn)
+{
+	double r = polar / reach * g->picture.width / 2;
+	xy[0] = (float)(g->picture.width / 2.0 + r * cos(turn));
+	xy[1] = (float)(g->picture.width / 2.0 + r * sin(turn));
+}
+
+static void vessel_draw(const struct grower *g, int n, const float (*xy)[2], double width, double mm_per_px)
+{
+	// Thinner than a pixel: a pixel wide, and paler. Along the vessel it tapers.
+	enum { PIECES = 6 };
+	for (int k = 0; k < PIECES; k++) {
+		int a = n * k / PIECES, b = n * (k + 1) / PIECES + 1;
+		double px = width / mm_per_px * (1 - 0.6 * k / PIECES);
+		uint8_t ink = (uint8_t)fmin(255, 40 + 200 * fmin(px, 1));
+		if (b > n)
+			b = n;
+		if (b - a >= 2)
+			cv_draw_line(&g->picture, b - a, xy + a, false, px > 1.5 ? (int)lrint(px) : 1, &(const uint8_t[3]){ ink }[0]);
+	}
+}
+
+/* Vessels run towards the limbus, sway, fork, and fade before they reach it (iris paper, section 2.2). */
+static void grow(struct grower *g, struct vessel v, double mm_per_px, double radius)
+{
+	float xy[STEPS_MAX][2];
+	int n = 0, steps = (int)rng_range(&g->rng, 40, STEPS_MAX);
+	double step = 0.16 / radius, drift = 0;
+	for (; n < steps && v.polar > g->limbus + 0.03 + 0.05 * rng_uniform(&g->rng); n++) {
+		put(g, xy[n], v.polar, v.turn);
+		drift = 0.93 * drift + 0.10 * rng_normal(&g->rng);
+		double way = v.heading + drift + v.sway * sin(v.phase + 0.35 * n);
+		v.polar -= step * cos(way);
+		v.turn += step * sin(way) / sin(v.polar);
+		v.heading *= 0.985;
+		if (v.depth < 3 && rng_uniform(&g->rng) < 0.035) {
+			double side = rng_uniform(&g->rng) < 0.5 ? -1 : 1;
+			struct vessel w = v;
+			w.heading += side * rng_range(&g->rng, 0.4, 1.0);
+			w.width *= rng_range(&g->rng, 0.45, 0.75);
+			w.phase = rng_range(&g->rng, 0, 6.28);
+			w.depth++;
+			grow(g, w, mm_per_px, radius);
+			v.heading -= side * 0.2;
+			v.width *= 0.92;
+		}
+	}
+	vessel_draw(g, n, (const float(*)[2])xy, v.width, mm_per_px);
+}
+
+/* A layer of vessels: [size][size], 0..255. free(). */
+static uint8_t *layer(const struct scene *s, int size, int seed, int count, double width_lo, double width_hi)
+{
+	double radius = s->conf.sclera_radius;
+	struct grower g = { { mem_new((size_t)size * (size_t)size, 1), size, size, 1 }, { (uint64_t)seed },
+	                    asin(s->limbus[0] / radius) };
+	for (int i = 0; i < count; i++) {
+		// Most come from the canthi, left and right; fewer from above and below.
+		double side = rng_uniform(&g.rng) < 0.5 ? 0 : M_PI, spread = rng_normal(&g.rng) * 0.62;
+		struct vessel v = { .polar = g.limbus + rng_range(&g.rng, 0.25, 1.25), .turn = side + spread,
+		                    .heading = 0.6 * rng_normal(&g.rng), .width = rng_range(&g.rng, width_lo, width_hi),
+		                    .sway = rng_range(&g.rng, 0.1, 0.75), .phase = rng_range(&g.rng, 0, 6.28) };
+		grow(&g, v, 2 * reach * radius / size, radius);
+	}
+	return g.picture.px;
+}
+
+static void ripples(struct image *map, int seed)
+{
+	struct err err = { 0 };
+	int n = map->width < 256 ? map->width : 256;
+	struct image noise = image_new(n, n, 1), big = image_new(map->width, map->width, 1);
+	struct rng rng = { (uint64_t)seed };
+	for (long i = 0; i < (long)n * n; i++)
+		noise.px[i] = (float)rng_normal(&rng);
+	if (cv_blur(noise.px, noise.px, n, n, 1, n / 90.0, &err) && cv_resize(big.px, map->width, map->width, noise.px, n, n, 1, &err))
+		for (long i = 0; i < (long)map->width * map->width; i++)
+			map->px[4 * i + 3] = big.px[i];
+	image_free(&noise);
+	image_free(&big);
+}
+
+void scene_veins_make(struct scene *s)
+{
+	int n = s->conf.veins_px, count = (int)lrint(45 * s->conf.vein_density);
+	s->veins = image_new(n, n, 4);
+	uint8_t *fine = layer(s, n, s->conf.seed, count, 0.03, 0.085);
+	uint8_t *deep = layer(s, n, s->conf.seed + 1, count / 2, 0.10, 0.22);
+	float *blurred = mem_array((size_t)n * (size_t)n, sizeof *blurred), mm_per_px = (float)(2 * reach * s->conf.sclera_radius / n);
+	for (long i = 0; i < (long)n * n; i++)
+		blurred[i] = (float)deep[i] / 255;
+	struct err err = { 0 };
+	cv_blur(blurred, blurred, n, n, 1, 0.13 / mm_per_px, &err);  // deep ones show through a scattering layer
+	ripples(&s->veins, s->conf.seed + 2);
+	for (long i = 0; i < (long)n * n; i++) {
+		float a = 0.62f * (float)fine[i] / 255, b = 0.40f * blurred[i], *p = s->veins.px + 4 * i;
+		p[0] = (1 - 0.34f * a) * (1 - 0.16f * b);
+		p[1] = (1 - 0.92f * a) * (1 - 0.42f * b);
+		p[2] = (1 - 0.95f * a) * (1 - 0.36f * b);
+	}
+	free(fine);
+	free(deep);
+	free(blurred);
+}
+
+void scene_sclera(float albedo[3], float normal[3], const struct scene *s, const float point[3])
+{
+	float x = point[0], y = point[1], z = point[2] - (float)s->sclera_z, flat = sqrtf(x * x + y * y);
+	int n = s->veins.width;
+	float r = atan2f(flat, -z) / (float)reach * (float)n / 2, per = flat > 1e-6f ? r / flat : 0;
+	float u = per * x, v = per * y, e = 0.012f * (float)n;
+	const float *map = s->veins.px;
+	// The fundus of the orbit: a little yellower and redder away from the cornea.
+	float away = smooth(0.35f, 1.1f, r / ((float)n / 2) * (float)(reach / 1.3)), tint[3] = { 1 - 0.02f * away, 1 - 0.10f * away, 1 - 0.20f * away };
+	for (int c = 0; c < 3; c++)
+		albedo[c] = (float)s->conf.sclera_rgb[c] * tint[c] * channel_at(map, n, 1, u, v, 4, c);
+	// A film that is not quite smooth breaks the mirror image up, off the cornea only.
+	float gx = channel_at(map, n, 1, u + e, v, 4, 3) - channel_at(map, n, 1, u - e, v, 4, 3);
+	float gy = channel_at(map, n, 1, u, v + e, 4, 3) - channel_at(map, n, 1, u, v - e, 4, 3), k = 0.22f * smooth(0.40f, 0.75f, r / ((float)n / 2) * (float)(reach / 0.9));
+	normal[0] += k * gx;
+	normal[1] += k * gy;
+	float len = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+	for (int i = 0; i < 3; i++)
+		normal[i] /= len;
+}

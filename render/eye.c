@@ -1,0 +1,232 @@
+/* The pictures of one eye: made only where they are not fresh, from one scene, loaded when the first is needed. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "render/render.h"
+
+static double now_s(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static const char *artifact(struct job *job, const char *name)
+{
+	// Inputs are named relative to the folder; the stage owns the string's longer form.
+	return stage_path(job->stage, "%s/%s", job->names->iris, name) + strlen(job->stage->capture) + 1;
+}
+
+static bool inputs(struct job *job, struct err *err)
+{
+	const struct shot *reference = &job->shots[job->reference];
+	const char *clean = artifact(job, "clean.exr");
+	bool use_clean = !job->conf->freckles && file_exists(stage_path(job->stage, "%s", clean));
+	job->in[job->n_in++] = use_clean ? clean : artifact(job, "texture.exr");
+	job->in[job->n_in++] = artifact(job, "texture.json");
+	job->in[job->n_in++] = artifact(job, "relief.exr");
+	job->in[job->n_in++] = artifact(job, "pigment.json");
+	job->in[job->n_in++] = reference->photo->fit;
+	job->in[job->n_in++] = reference->photo->file;
+	if (job->conf->environment) {
+		char *inside = 0;
+		if (!file_inside(&inside, job->stage->capture, job->conf->environment, err))
+			return err_wrap(err, "render.environment");
+		free(inside);
+		job->in[job->n_in++] = job->conf->environment;
+	}
+	return true;
+}
+
+static struct image trace(struct job *job, struct scene_view *view, const struct scene_lighting *light)
+{
+	double start = now_s();
+	view->samples = job->conf->samples;
+	struct image image = scene_render(&job->scene, view, light, &job->count);
+	job->seconds += now_s() - start;
+	return image;
+}
+
+static bool environments(struct job *job, const struct shot *reference, struct err *err)
+{
+	int height = job->conf->scene.map_size >= 1024 ? 512 : 256, lamps = 0;
+	if (job->conf->environment) {
+		if (!envmap_load(&job->studio, stage_path(job->stage, "%s", job->conf->environment), err))
+			return false;
+		envmap_normalise(&job->studio);
+	} else {
+		job->studio = light_studio(height);
+	}
+	if (job->conf->polarised)
+		job->photo_env = light_studio(height);
+	else
+		job->photo_env = light_of_photo(reference, job->eye, height, &lamps);
+	stage_figure(job->stage, "lamps_found", lamps, "");
+	return true;
+}
+
+/* Everything that all pictures share. */
+static bool prepare(struct job *job, struct err *err)
+{
+	struct shot *reference = &job->shots[job->reference];
+	struct scene_conf conf = job->conf->scene;
+	if (job->ready)
+		return true;
+	if (!shot_decode(job, reference, err) || !environments(job, reference, err))
+		return false;
+	if (!sclera_of_photo(conf.sclera_rgb, reference))
+		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
+	double white = 0.2126 * conf.sclera_rgb[0] + 0.7152 * conf.sclera_rgb[1] + 0.0722 * conf.sclera_rgb[2];
+	job->gain = fmin(fmax(0.62 / white, 0.7), 2.5);  // the beauty views are exposed for the sclera
+	struct eye eye = *job->eye;
+	if (!isfinite(eye.limbus_aspect))
+		eye.limbus_aspect = reference->fit.limbus_aspect;
+	struct scene_files files = { stage_path(job->stage, "%s", job->in[0]), stage_path(job->stage, "%s", job->in[1]),
+	                             stage_path(job->stage, "%s", job->in[2]), stage_path(job->stage, "%s", job->in[3]) };
+	if (!scene_load(&job->scene, &files, &eye, &conf, err))
+		return false;
+	job->ready = true;
+	struct scene_view view = scene_view_photo(&reference->fit, reference->window, reference->scale);
+	struct scene_lighting light = scene_lighting(&job->photo_env, job->conf->lights, false);
+	scene_fit_colour(&job->scene, &view, &light);
+	stage_figure(job->stage, "exposure", job->scene.gain, "");
+	stage_figure(job->stage, "explained_by_model", 100 * job->scene.explained, "%");
+	return true;
+}
+
+/* An eye turned by yaw, pitch (degrees) in the studio. */
+static struct image turned(struct job *job, double yaw, double pitch, int size)
+{
+	struct scene_lighting light = scene_lighting(&job->studio, job->conf->lights, true);
+	struct scene_view view = scene_view_turned(&job->scene, yaw * M_PI / 180, pitch * M_PI / 180, job->conf->field_mm, size);
+	return trace(job, &view, &light);
+}
+
+static const char *output(struct job *job, const char *name, const char *suffix)
+{
+	return stage_path(job->stage, "%s/%s%s", job->names->render, name, suffix) + strlen(job->stage->capture) + 1;
+}
+
+static bool stale(struct job *job, const char *rel, int n, const char *const in[])
+{
+	return !stage_fresh(job->stage, rel, n, in);
+}
+
+static bool still(struct job *job, const char *name, double yaw, double pitch, struct err *err)
+{
+	const char *png = output(job, name, ".png"), *exr = output(job, name, ".exr");
+	bool need_png = stale(job, png, job->n_in, job->in), need_exr = job->conf->exr && stale(job, exr, job->n_in, job->in);
+	if (!need_png && !need_exr)
+		return true;
+	if (!prepare(job, err))
+		return false;
+	struct image rgba = turned(job, yaw, pitch, job->conf->size_px), seen = picture_on_grey(&rgba, job->gain);
+	bool ok = (!need_png || picture_save(job, png, &seen, job->n_in, job->in, err))
+	          && (!need_exr || picture_save_exr(job, exr, &rgba, job->n_in, job->in, err));
+	image_free(&rgba);
+	image_free(&seen);
+	return ok;
+}
+
+static bool turntable(struct job *job, struct err *err)
+{
+	const char *png = output(job, "turntable", ".png");
+	int n = job->conf->frames;
+	if (!stale(job, png, job->n_in, job->in))
+		return true;
+	if (!prepare(job, err))
+		return false;
+	struct image *frames = mem_new((size_t)n, sizeof *frames);
+	for (int i = 0; i < n; i++) {
+		double yaw = n > 1 ? job->conf->frame_deg * (2.0 * i / (n - 1) - 1) : 0;
+		struct image rgba = turned(job, yaw, 0, job->conf->frame_px);
+		frames[i] = picture_on_grey(&rgba, job->gain);
+		image_free(&rgba);
+	}
+	struct image strip = sheet_strip(n, frames);
+	bool ok = picture_save(job, png, &strip, job->n_in, job->in, err);
+	for (int i = 0; i < n; i++)
+		image_free(&frames[i]);
+	free(frames);
+	image_free(&strip);
+	return ok;
+}
+
+static bool photo_view(struct job *job, struct shot *shot, struct err *err)
+{
+	const char *in[10];
+	int n = job->n_in;
+	memcpy(in, job->in, sizeof job->in);
+	in[n++] = shot->photo->fit;
+	in[n++] = shot->photo->file;
+	const char *png = output(job, shot->photo->name, "_view.png"), *exr = output(job, shot->photo->name, "_view.exr");
+	const char *compare = output(job, shot->photo->name, "_compare.png");
+	bool need_exr = job->conf->exr && stale(job, exr, n, in), need_png = stale(job, png, n, in);
+	if (!need_exr && !need_png && !stale(job, compare, n, in))
+		return true;
+	if (!prepare(job, err) || !shot_decode(job, shot, err))
+		return false;
+	struct scene_lighting light = scene_lighting(&job->photo_env, job->conf->lights, !job->conf->polarised);
+	struct scene_view view = scene_view_photo(&shot->fit, shot->window, shot->scale);
+	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1), beside = compare_shot(job, shot, &seen);
+	bool ok = picture_save(job, png, &seen, n, in, err) && picture_save(job, compare, &beside, n, in, err)
+	          && (!job->conf->exr || picture_save_exr(job, exr, &rgba, n, in, err));
+	image_free(&rgba);
+	image_free(&seen);
+	image_free(&beside);
+	return ok;
+}
+
+static bool pictures(struct job *job, struct err *err)
+{
+	int total = job->n_shots + 3, done = 0;
+	for (int i = 0; i < job->n_shots; i++) {
+		if (!photo_view(job, &job->shots[i], err))
+			return false;
+		stage_progress(job->stage, ++done, total, "pictures");
+	}
+	if (!still(job, "front", 0, 0, err))
+		return false;
+	stage_progress(job->stage, ++done, total, "pictures");
+	if (!still(job, "three_quarter", job->conf->three_quarter_deg[0], job->conf->three_quarter_deg[1], err))
+		return false;
+	stage_progress(job->stage, ++done, total, "pictures");
+	return turntable(job, err) && sheet_contact(job, err);
+}
+
+static void figures(struct job *job)
+{
+	if (!job->seconds)
+		return;
+	stage_figure(job->stage, "rays", (double)job->count.rays / 1e6, "million");
+	stage_figure(job->stage, "tracing", job->seconds, "s");
+	stage_figure(job->stage, "speed", (double)job->count.rays / job->seconds / 1e6, "million rays a second");
+	stage_note(job->stage, "%.1f million rays, %.2f s, %.1f million a second", (double)job->count.rays / 1e6, job->seconds,
+	           (double)job->count.rays / job->seconds / 1e6);
+}
+
+bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
+                const struct render_conf *conf, struct err *err)
+{
+	struct job job = { .stage = stage, .conf = conf, .eye = eye, .names = &capture->eyes[eye_index] };
+	bool ok = shots_load(&job, capture, eye_index, err);
+	if (ok && !job.n_shots) {
+		stage_skipped(stage, "pictures of %s: no photograph of it has a fit", job.names->side);
+	} else if (ok && inputs(&job, err)) {
+		if (file_exists(stage_path(stage, "%s", job.in[0])))
+			ok = pictures(&job, err);
+		else
+			stage_skipped(stage, "pictures of %s: %s is missing", job.names->side, job.in[0]);
+		figures(&job);
+	}
+	ok = ok && !err_is(err);
+	if (job.ready)
+		scene_free(&job.scene);
+	envmap_free(&job.studio);
+	envmap_free(&job.photo_env);
+	shots_free(&job);
+	return ok;
+}

@@ -1,0 +1,19 @@
+/* glint: mirror images of lamps in the cornea. */
+#ifndef RENDER_GLINT_H
+#define RENDER_GLINT_H
+#include "render/render.h"
+
+enum { GLINTS_MAX = 6 };
+
+/* Bright pixels that hang together; in px of the shot's view. */
+struct glint {
+	double sum, x, y;      // light above the iris; its middle
+	double rgb[3];         // mean, above the iris
+	long n;                // pixels
+	int lo[2], hi[2];      // the box they fill, inclusive
+};
+
+/* The brightest, in that order; returns how many. */
+int glints_find(struct glint glints[GLINTS_MAX], const struct shot *shot);
+
+#endif

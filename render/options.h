@@ -1,0 +1,39 @@
+/* The options of render. */
+#ifndef RENDER_OPTIONS_H
+#define RENDER_OPTIONS_H
+#include "render/render.h"
+
+static const char *const render_quadratures[] = { "gauss", "midpoint", 0 };
+static const char *const render_paths[] = { "grid", "ends", 0 };
+
+#define RENDER_OPTS(c) \
+	OPT_INT("map_size", &(c)->scene.map_size, 128, 8192, "px", "texels across the iris maps, at most"), \
+	OPT_INT("search", &(c)->scene.search, 2, 64, "", "steps of the search for the relief"), \
+	OPT_INT("shadow", &(c)->scene.shadow, 0, 64, "", "steps of the shadow of the relief; 0: none"), \
+	OPT_INT("steps", &(c)->scene.steps, 2, SCENE_NODES_MAX, "", "steps of the march through the iris"), \
+	OPT_CHOICE("quadrature", &(c)->scene.quadrature, render_quadratures, "where the steps lie"), \
+	OPT_CHOICE("light_path", &(c)->scene.path, render_paths, "light through the cornea: a table a light, or solved for each ray"), \
+	OPT_INT("bands", &(c)->scene.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
+	OPT_REAL("detail", &(c)->scene.detail, 0, 1, "", "how much of what the photograph shows beyond the model is shown"), \
+	OPT_REAL("limbus_width_mm", &(c)->scene.limbus_width, 0.05, 2, "mm", "over which sclera turns into cornea"), \
+	OPT_REAL("sclera_radius_mm", &(c)->scene.sclera_radius, 9, 16, "mm", "radius of the eyeball"), \
+	OPT_REALS("sclera_rgb", (c)->scene.sclera_rgb, 3, 0, 1, "", "colour of the sclera where no photograph shows it"), \
+	OPT_REAL("vein_density", &(c)->scene.vein_density, 0, 5, "", "vessels of the sclera"), \
+	OPT_INT("vein_map_px", &(c)->scene.veins_px, 128, 8192, "px", "texels across the map of the sclera"), \
+	OPT_INT("seed", &(c)->scene.seed, 0, 1000000, "", "of the vessels"), \
+	OPT_INT("lights", &(c)->lights, 1, ENVMAP_LIGHTS_MAX, "", "directions that stand for the environment; a power of 2"), \
+	OPT_INT("samples", &(c)->samples, 1, 8, "", "rays across a pixel, at edges"), \
+	OPT_INT("size_px", &(c)->size_px, 64, 8192, "px", "width of front and three-quarter"), \
+	OPT_INT("photo_px", &(c)->photo_px, 64, 8192, "px", "longest side of the photograph's own view"), \
+	OPT_INT("frames", &(c)->frames, 1, 64, "", "of the turntable"), \
+	OPT_INT("frame_px", &(c)->frame_px, 64, 2048, "px", "width of a turntable frame"), \
+	OPT_REAL("frame_deg", &(c)->frame_deg, 0, 90, "deg", "the turntable turns this far to both sides"), \
+	OPT_REAL("field_mm", &(c)->field_mm, 10, 60, "mm", "what front and three-quarter show"), \
+	OPT_REALS("three_quarter_deg", (c)->three_quarter_deg, 2, -80, 80, "deg", "yaw and pitch of the eye"), \
+	OPT_STR("environment", &(c)->environment, "latitude-longitude EXR in the capture folder; unset: a studio"), \
+	OPT_BOOL("freckles", &(c)->freckles, "show the freckles, too"), \
+	OPT_BOOL("exr", &(c)->exr, "write linear pictures beside the PNG"), \
+	OPT_BOOL("light.polarised", &(c)->polarised, "no corneal reflection in the photographs"), \
+	OPT_REAL("limit.photo_mpx", &(c)->limit_mpx, 1, 1000, "megapixels", "larger photographs are refused")
+
+#endif

@@ -1,0 +1,84 @@
+/* render: pictures of a fitted eye, and the page that shows everything (DESIGN section 2, `render`). */
+#ifndef RENDER_RENDER_H
+#define RENDER_RENDER_H
+#include "base/stage.h"
+#include "eye/capture.h"
+#include "eye/scene.h"
+
+struct render_conf {
+	struct scene_conf scene;
+	int lights, samples;             // of the environment; rays across a pixel where there are edges
+	int size_px, photo_px;           // of front and three-quarter; longest side of the photograph's own view
+	int frames, frame_px;            // turntable
+	double frame_deg;                // it goes from -frame_deg to +frame_deg
+	double field_mm;                 // what front and three-quarter show
+	double three_quarter_deg[2];     // yaw, pitch
+	const char *environment;         // latitude-longitude EXR in the capture folder, or null: a studio
+	bool freckles, exr, polarised;
+	double limit_mpx;
+};
+
+/* One photograph with its fit. */
+struct shot {
+	const struct capture_photo *photo;
+	struct fit fit;
+	struct image image;              // the window, linear, at the size of its view; px null: not decoded yet
+	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view
+};
+
+/* One eye of the capture, on its way to pictures. */
+struct job {
+	struct stage *stage;
+	const struct render_conf *conf;
+	const struct eye *eye;
+	const struct capture_eye *names;
+	struct shot *shots;
+	int n_shots, reference;          // the shot whose light and direction the colours are read in
+	const char *in[8];               // inputs that all pictures have in common, relative to the folder
+	int n_in;
+	bool ready;                      // what follows has been made
+	struct scene scene;
+	struct envmap studio, photo_env; // of the beauty views; of the reference photograph
+	double gain;                     // of the beauty views' exposure
+	struct scene_count count;
+	double seconds;                  // spent tracing
+};
+
+/* Makes whatever pictures of this eye are not fresh. */
+bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
+                const struct render_conf *conf, struct err *err);
+
+/* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free. */
+bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err);
+bool shot_decode(struct job *job, struct shot *shot, struct err *err);
+void shots_free(struct job *job);
+
+/* 1 on the ellipse, more outside. */
+double ellipse_radius(const struct ellipse *e, double x, double y);
+
+/* light.c: the room of a photograph, its lamps where the cornea mirrors them (lamps: how many); or the studio.
+ * envmap_free. */
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, int *lamps);
+struct envmap light_studio(int height);
+
+/* sclera.c: what the photograph shows of the sclera beside the limbus, linear; false when lids leave too little. */
+bool sclera_of_photo(double rgb[3], const struct shot *shot);
+
+/* picture.c: the eye on neutral grey, brightened by gain. image_free. */
+struct image picture_on_grey(const struct image *rgba, double gain);
+bool picture_save(struct job *job, const char *rel, const struct image *image, int n_in, const char *const in[],
+                  struct err *err);
+bool picture_save_exr(struct job *job, const char *rel, const struct image *rgba, int n_in, const char *const in[],
+                      struct err *err);
+
+/* compare.c: photograph, rendering and their difference, side by side; the figures to the log. image_free. */
+struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view);
+
+/* sheet.c: pictures side by side; the contact sheet, from the files of this eye. image_free. */
+struct image sheet_strip(int n, const struct image frames[]);
+bool sheet_contact(struct job *job, struct err *err);
+
+/* page.c: work/review/index.html. */
+bool page_make(struct stage *stage, const struct capture *capture, struct err *err);
+
+#endif

@@ -1,0 +1,95 @@
+/* The photographs: which part of each is looked at, and at what size. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "bridge/cv_blur.h"
+#include "image/photo.h"
+#include "render/render.h"
+
+double ellipse_radius(const struct ellipse *e, double x, double y)
+{
+	double c = cos(e->angle), s = sin(e->angle), dx = x - e->cx, dy = y - e->cy;
+	return hypot((c * dx + s * dy) / e->a, (c * dy - s * dx) / e->b);
+}
+
+/* The eye fills the window: 2.2 semi-axes round the limbus, as far as the photograph goes. */
+static void window_make(struct shot *shot, int most_px)
+{
+	const struct ellipse *e = &shot->fit.limbus;
+	double reach = 2.2 * e->a, at[2] = { e->cx, e->cy }, size[2] = { shot->fit.width, shot->fit.height };
+	for (int i = 0; i < 2; i++) {
+		shot->window[i] = floor(fmax(at[i] - reach, 0));
+		shot->window[2 + i] = ceil(fmin(at[i] + reach, size[i]));
+	}
+	double longest = fmax(shot->window[2] - shot->window[0], shot->window[3] - shot->window[1]);
+	shot->scale = fmax(longest / most_px, 1);
+}
+
+/* More of the limbus, larger, and seen from the front. */
+static double merit(const struct fit *fit)
+{
+	return fit->limbus.a * fit->coverage * cos(fit->theta) * cos(fit->theta);
+}
+
+bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err)
+{
+	job->shots = mem_new((size_t)capture->n_photos, sizeof *job->shots);
+	for (int i = 0; i < capture->n_photos; i++) {
+		const struct capture_photo *photo = &capture->photos[i];
+		const char *path = stage_path(job->stage, "%s", photo->fit);
+		if (photo->eye != eye_index)
+			continue;
+		struct shot shot = { .photo = photo };
+		if (!file_exists(path)) {
+			stage_skipped(job->stage, "%s: it has no fit", photo->name);
+			continue;
+		}
+		if (!fit_load(&shot.fit, path, err))
+			return false;
+		if (!shot.fit.ok) {
+			stage_skipped(job->stage, "%s: its fit was rejected: %s", photo->name, shot.fit.reason);
+			continue;
+		}
+		window_make(&shot, job->conf->photo_px);
+		if (!(shot.window[2] - shot.window[0] >= 16 && shot.window[3] - shot.window[1] >= 16)) {
+			stage_skipped(job->stage, "%s: the eye lies outside the photograph", photo->name);
+			continue;
+		}
+		job->shots[job->n_shots] = shot;
+		if (merit(&shot.fit) > merit(&job->shots[job->reference].fit))
+			job->reference = job->n_shots;
+		job->n_shots++;
+	}
+	return true;
+}
+
+bool shot_decode(struct job *job, struct shot *shot, struct err *err)
+{
+	struct photo photo;
+	if (shot->image.px)
+		return true;
+	if (!photo_load(&photo, stage_path(job->stage, "%s", shot->photo->file), job->conf->limit_mpx, err))
+		return false;
+	const double *w = shot->window;
+	bool ok = photo.width == shot->fit.width && photo.height == shot->fit.height;
+	if (!ok)
+		err_set(err, "%s: %d x %d px, but its fit is of %d x %d: run limbus again", shot->photo->file, photo.width,
+		        photo.height, shot->fit.width, shot->fit.height);
+	if (ok) {
+		struct image all = photo_linear(&photo, (int)w[0], (int)w[1], (int)(w[2] - w[0]), (int)(w[3] - w[1]));
+		struct scene_view v = scene_view_photo(&shot->fit, w, shot->scale);
+		shot->image = image_new(v.width, v.height, 3);
+		ok = cv_resize(shot->image.px, v.width, v.height, all.px, all.width, all.height, 3, err);
+		image_free(&all);
+	}
+	photo_free(&photo);
+	return ok;
+}
+
+void shots_free(struct job *job)
+{
+	for (int i = 0; i < job->n_shots; i++)
+		image_free(&job->shots[i].image);
+	free(job->shots);
+}
