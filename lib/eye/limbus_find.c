@@ -1,0 +1,121 @@
+#include "eye/limbus_find.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "math/stats.h"
+
+enum { MIN_SIDE = 96, TRY = 4, MAX_POOL = 2 * SEEK_MAX };
+
+__attribute__((format(printf, 2, 3)))
+static bool reject(struct limbus_found *found, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	vsnprintf(found->reason, sizeof found->reason, fmt, ap);
+	va_end(ap);
+	return found->ok = false;
+}
+
+static double bright_level(const struct grey *g)
+{
+	const long n = (long)g->width * g->height;
+	double v[1024];
+	int count = 0;
+	for (long i = 0; i < 1024 && i < n; i++)
+		v[count++] = g->px[i * n / (n < 1024 ? n : 1024)];
+	return stats_quantile(count, v, 0.9);
+}
+
+static bool exposed(struct limbus_found *found, const struct pyramid *pyramid, const struct limbus_conf *conf)
+{
+	double level = bright_level(&pyramid->level[pyramid->n - 1]);
+	if (pyramid->over > conf->max_over)
+		return reject(found, "over-exposed: %.0f %% of it is burnt out; use less light or a shorter exposure",
+		              100 * pyramid->over);
+	if (level < conf->min_level)
+		return reject(found, "under-exposed: nine tenths of it are darker than %.0f %%; use more light or a longer exposure",
+		              100 * level);
+	return true;
+}
+
+/* Ellipses worth measuring, best first: an ellipse round another one (limbus round pupil) goes before it. */
+static int gather(struct seek_found pool[MAX_POOL], const struct pyramid *pyramid, const double *hint,
+                  const struct limbus_conf *conf)
+{
+	struct seek_found seen[SEEK_MAX];
+	int n = limbus_seek(seen, pyramid, hint, &conf->seek), m = 0;
+	for (int i = 0; i < n; i++) {
+		struct seek_found outer;
+		bool inside = false;
+		for (int j = 0; j < m && !inside; j++)
+			inside = hypot(seen[i].e.cx - pool[j].e.cx, seen[i].e.cy - pool[j].e.cy) < 0.2 * pool[j].e.b
+			         && fabs(seen[i].e.a / pool[j].e.a - 1) < 0.1;
+		if (inside)
+			continue;
+		if (i < TRY && limbus_seek_outer(&outer, pyramid, &seen[i].e, &conf->seek)
+		    && outer.score > 0.5 * seen[i].score && (!hint || outer.e.b < 1.6 * hint[2]))
+			pool[m++] = outer;
+		pool[m++] = seen[i];
+	}
+	return m;
+}
+
+/* The first reason against a measured ellipse, or null. */
+static const char *judge(const struct rim *rim, const struct photo *photo, const struct limbus_conf *conf)
+{
+	const struct ellipse *e = &rim->e;
+	const double c = cos(e->angle), s = sin(e->angle), slack = 0.01 * e->a;
+	double hx = hypot(e->a * c, e->b * s), hy = hypot(e->a * s, e->b * c);
+	if (e->cx - hx < -slack || e->cy - hy < -slack || e->cx + hx > photo->width + slack
+	    || e->cy + hy > photo->height + slack)
+		return "the iris is cut by the frame: show all of it with some white around";
+	if (rim->contrast < conf->min_contrast)
+		return "no clear edge between iris and sclera: light the eye evenly and focus on the iris";
+	if (rim->width > conf->max_blur * e->a)
+		return "too blurred: focus on the iris and hold the camera still";
+	if (rim->rms > conf->max_rms * e->a)
+		return "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight";
+	if (rim->coverage < conf->min_coverage)
+		return "too much of the limbus is covered by lids or lashes: open the eye wider";
+	return 0;
+}
+
+static bool measure(struct limbus_found *found, const struct photo *photo, const struct pyramid *pyramid,
+                    const double *hint, const struct limbus_conf *conf)
+{
+	struct seek_found pool[MAX_POOL];
+	int n = gather(pool, pyramid, hint, conf);
+	const char *why = 0;
+	for (int i = 0; i < n && i < TRY; i++) {
+		if (!rim_fit(&found->limbus, photo, &pool[i].e, &conf->rim))
+			continue;
+		const char *against = judge(&found->limbus, photo, conf);
+		if (!against) {
+			found->score = pool[i].score;
+			return found->ok = true;
+		}
+		if (!why)
+			why = against;
+	}
+	if (why)
+		return reject(found, "%s", why);
+	return reject(found, "no eye found: photograph one open eye close up, or say where it is with photo.NAME.hint_px");
+}
+
+void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
+                 const struct limbus_conf *conf)
+{
+	memset(found, 0, sizeof *found);
+	if (photo->width < MIN_SIDE || photo->height < MIN_SIDE) {
+		reject(found, "%d x %d px is too small: the iris must be at least 80 px across", photo->width, photo->height);
+		return;
+	}
+	struct pyramid pyramid = pyramid_make(photo);
+	if (exposed(found, &pyramid, conf) && measure(found, photo, &pyramid, hint, conf))
+		found->has_pupil = limbus_pupil(&found->pupil, photo, &pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
+	pyramid_free(&pyramid);
+}

@@ -1,0 +1,134 @@
+#include "eye/limbus_image.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+/* Sum of a reduction cell's three channels, and whether it holds burnt or black pixels. */
+static void reduce_row(float *out, long *over, long *under, const struct photo *photo, int k, int row, int width)
+{
+	uint32_t *sum = mem_new((size_t)width, sizeof *sum);
+	for (int y = row * k; y < (row + 1) * k; y++) {
+		const uint16_t *p = photo->rgb + 3 * (size_t)y * (size_t)photo->width;
+		for (int x = 0; x < width; x++)
+			for (int i = 0; i < k; i++, p += 3) {
+				sum[x] += (uint32_t)(p[0] + p[1] + p[2]) / 3;
+				*over += (p[0] > 64880) & (p[1] > 64880);
+				*under += (p[0] < 655) & (p[1] < 655) & (p[2] < 655);
+			}
+	}
+	const float scale = 1.0f / (65535.0f * (float)(k * k));
+	for (int x = 0; x < width; x++)
+		out[x] = (float)sum[x] * scale;
+	free(sum);
+}
+
+static struct grey halve(const struct grey *g)
+{
+	struct grey h = { g->width / 2, g->height / 2, g->x0, g->y0, 2 * g->scale, 0 };
+	h.px = mem_array((size_t)h.width * (size_t)h.height, sizeof *h.px);
+	for (int y = 0; y < h.height; y++)
+		for (int x = 0; x < h.width; x++) {
+			const float *p = g->px + 2 * (long)y * g->width + 2 * x, *q = p + g->width;
+			h.px[(long)y * h.width + x] = (p[0] + p[1] + q[0] + q[1]) / 4;
+		}
+	return h;
+}
+
+struct pyramid pyramid_make(const struct photo *photo)
+{
+	struct pyramid pyramid = { .n = 1 };
+	const int longer = photo->width > photo->height ? photo->width : photo->height;
+	const int k = (longer + PYRAMID_LONG - 1) / PYRAMID_LONG;
+	struct grey *g = &pyramid.level[0];
+	*g = (struct grey){ photo->width / k, photo->height / k, 0, 0, k, 0 };
+	g->px = mem_array((size_t)g->width * (size_t)g->height, sizeof *g->px);
+	long over = 0, under = 0;
+#pragma omp parallel for schedule(static) reduction(+ : over, under)
+	for (int row = 0; row < g->height; row++)
+		reduce_row(g->px + (long)row * g->width, &over, &under, photo, k, row, g->width);
+	double n = (double)photo->width * photo->height;
+	pyramid.over = (double)over / n;
+	pyramid.under = (double)under / n;
+	while (pyramid.n < PYRAMID_MAX) {
+		const struct grey *last = &pyramid.level[pyramid.n - 1];
+		if ((last->width < last->height ? last->width : last->height) / 2 < PYRAMID_SHORT_MIN)
+			break;
+		pyramid.level[pyramid.n++] = halve(last);
+	}
+	return pyramid;
+}
+
+void pyramid_free(struct pyramid *pyramid)
+{
+	for (int i = 0; i < pyramid->n; i++)
+		grey_free(&pyramid->level[i]);
+	*pyramid = (struct pyramid){ 0 };
+}
+
+/* Linear light of every 16-bit code, once for all threads. */
+static float decode[65536];
+static void decode_fill(void)
+{
+	for (int i = 0; i < 65536; i++)
+		decode[i] = linear_from_srgb((float)i / 65535.0f);
+}
+
+static const float *decode_table(void)
+{
+	static pthread_once_t once = PTHREAD_ONCE_INIT;
+	pthread_once(&once, decode_fill);
+	return decode;
+}
+
+static void linear_row(float *out, const struct photo *photo, const struct grey *g, int k, int row,
+                       const float weight[3])
+{
+	const float *table = decode_table();
+	memset(out, 0, (size_t)g->width * sizeof *out);
+	const long x0 = lround(g->x0), y0 = lround(g->y0);
+	for (long y = y0 + (long)row * k; y < y0 + (long)(row + 1) * k; y++) {
+		const uint16_t *p = photo->rgb + 3 * (y * photo->width + x0);
+		for (int x = 0; x < g->width; x++)
+			for (int i = 0; i < k; i++, p += 3)
+				out[x] += weight[0] * table[p[0]] + weight[1] * table[p[1]] + weight[2] * table[p[2]];
+	}
+}
+
+struct grey grey_linear(const struct photo *photo, const struct ellipse *e, double margin, double max_a,
+                        const double weight[3])
+{
+	const double c = cos(e->angle), s = sin(e->angle);
+	double hx = margin * hypot(e->a * c, e->b * s), hy = margin * hypot(e->a * s, e->b * c);
+	int k = (int)ceil(e->a / max_a);
+	k = k < 1 ? 1 : k;
+	int x0 = (int)fmin(fmax(floor(e->cx - hx), 0), photo->width - 2 * k);
+	int y0 = (int)fmin(fmax(floor(e->cy - hy), 0), photo->height - 2 * k);
+	int x1 = (int)fmax(fmin(ceil(e->cx + hx), photo->width), x0 + 2 * k);
+	int y1 = (int)fmax(fmin(ceil(e->cy + hy), photo->height), y0 + 2 * k);
+	struct grey g = { (x1 - x0) / k, (y1 - y0) / k, x0, y0, k, 0 };
+	g.px = mem_array((size_t)g.width * (size_t)g.height, sizeof *g.px);
+	double norm = (double)k * k;
+	const float w[3] = { (float)(weight[0] / norm), (float)(weight[1] / norm), (float)(weight[2] / norm) };
+#pragma omp parallel for schedule(static)
+	for (int row = 0; row < g.height; row++)
+		linear_row(g.px + (long)row * g.width, photo, &g, k, row, w);
+	return g;
+}
+
+void grey_free(struct grey *grey)
+{
+	free(grey->px);
+	*grey = (struct grey){ 0 };
+}
+
+void photo_colour(double rgb[3], const struct photo *photo, double x, double y)
+{
+	int i = (int)fmin(fmax(x, 0), photo->width - 1), j = (int)fmin(fmax(y, 0), photo->height - 1);
+	const uint16_t *p = photo->rgb + 3 * ((long)j * photo->width + i);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = decode_table()[p[c]];
+}

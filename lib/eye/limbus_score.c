@@ -1,0 +1,59 @@
+#include "eye/limbus_score.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { POINTS = 64 };
+
+double score_ellipse(const struct grey *g, const struct ellipse *e, double contrast)
+{
+	const double near = fmax(0.05 * e->b, 1.2 * g->scale), far = fmax(0.14 * e->b, 2.5 * g->scale);
+	const double c = cos(e->angle), s = sin(e->angle), step = 2 * M_PI / POINTS, cs = cos(step), ss = sin(step);
+	const double w = g->width * g->scale, h = g->height * g->scale;
+	double sum = 0, ct = 1, st = 0;
+	for (int i = 0; i < POINTS; i++) {
+		double nx = e->b * ct, ny = e->a * st, n = sqrt(nx * nx + ny * ny);
+		double ux = (c * nx - s * ny) / n, uy = (s * nx + c * ny) / n;
+		double x = e->cx + c * e->a * ct - s * e->b * st, y = e->cy + s * e->a * ct + c * e->b * st;
+		double t = ct * cs - st * ss;
+		st = st * cs + ct * ss;
+		ct = t;
+		if (x < 0 || y < 0 || x > w || y > h)
+			continue;
+		float in = grey_at(g, x - near * ux, y - near * uy), out = grey_at(g, x + near * ux, y + near * uy);
+		float in2 = grey_at(g, x - far * ux, y - far * uy), out2 = grey_at(g, x + far * ux, y + far * uy);
+		/* brightness outside counts too: the sclera is light, an iris round its pupil is less so */
+		double k1 = (out - in) / (out + in + 0.04), k2 = (out2 - in2) / (out2 + in2 + 0.04), k = fmin(k1, k2);
+		double light = fmin(out, out2);
+		if (k > 0)
+			sum += fmin(k / contrast, 1) * fmin(0.4 + light, 1);
+	}
+	return sum / POINTS;
+}
+
+double score_climb(const struct grey *g, struct ellipse *e, double step, double end, double contrast)
+{
+	double q[ELLIPSE_N], best = score_ellipse(g, e, contrast);
+	ellipse_to_q(q, e);
+	while (step > end) {
+		bool moved = false;
+		for (int i = 0; i < 2 * ELLIPSE_N; i++) {
+			double try[ELLIPSE_N];
+			struct ellipse f;
+			memcpy(try, q, sizeof try);
+			try[i / 2] += i % 2 ? -step : step;
+			if (!ellipse_from_q(&f, try) || f.b < 0.55 * f.a)
+				continue;
+			double score = score_ellipse(g, &f, contrast);
+			if (score > best + 1e-9) {
+				best = score;
+				memcpy(q, try, sizeof q);
+				*e = f;
+				moved = true;
+			}
+		}
+		if (!moved)
+			step /= 2;
+	}
+	return best;
+}

@@ -1,0 +1,14 @@
+/* limbus_score: how well an ellipse lies on an edge that is dark inside and bright outside. */
+#ifndef EYE_LIMBUS_SCORE_H
+#define EYE_LIMBUS_SCORE_H
+#include "eye/limbus_image.h"
+
+/* Mean over the edge of the Weber contrast across it, measured over two distances (a thin dark line passes the near
+ * one only), each point capped at 1 = `contrast`. 0..1. */
+double score_ellipse(const struct grey *grey, const struct ellipse *e, double contrast);
+
+/* Moves, resizes and turns e uphill, one parameter of q after the other, with steps from `step` down to `end` px.
+ * Returns the score reached. */
+double score_climb(const struct grey *grey, struct ellipse *e, double step, double end, double contrast);
+
+#endif

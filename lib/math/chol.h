@@ -1,0 +1,34 @@
+/* chol: tiny symmetric positive definite systems, in place, without calls: for inner loops where LAPACK's own
+ * overhead would be most of the time. Row-major [.][stride], lower triangle used. */
+#ifndef MATH_CHOL_H
+#define MATH_CHOL_H
+#include <math.h>
+#include <stdbool.h>
+
+/* a becomes its factor L, b the solution. False: not positive definite. */
+static inline bool chol_solve(int n, int stride, double *a, double *b)
+{
+	for (int j = 0; j < n; j++) {
+		for (int i = j; i < n; i++) {
+			double sum = a[i * stride + j];
+			for (int k = 0; k < j; k++)
+				sum -= a[i * stride + k] * a[j * stride + k];
+			if (i == j && !(sum > 0))
+				return false;
+			a[i * stride + j] = i == j ? sqrt(sum) : sum / a[j * stride + j];
+		}
+	}
+	for (int i = 0; i < n; i++) {
+		for (int k = 0; k < i; k++)
+			b[i] -= a[i * stride + k] * b[k];
+		b[i] /= a[i * stride + i];
+	}
+	for (int i = n - 1; i >= 0; i--) {
+		for (int k = i + 1; k < n; k++)
+			b[i] -= a[k * stride + i] * b[k];
+		b[i] /= a[i * stride + i];
+	}
+	return true;
+}
+
+#endif
