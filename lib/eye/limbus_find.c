@@ -115,7 +115,9 @@ void limbus_find(struct limbus_found *found, const struct photo *photo, const do
 		return;
 	}
 	struct pyramid pyramid = pyramid_make(photo);
-	if (exposed(found, &pyramid, conf) && measure(found, photo, &pyramid, hint, conf))
+	if (exposed(found, &pyramid, conf) && measure(found, photo, &pyramid, hint, conf)) {
+		band_sample(&found->band, &pyramid, &found->limbus);
 		found->has_pupil = limbus_pupil(&found->pupil, photo, &pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
+	}
 	pyramid_free(&pyramid);
 }

@@ -3,6 +3,7 @@
  */
 #ifndef EYE_LIMBUS_FIND_H
 #define EYE_LIMBUS_FIND_H
+#include "eye/limbus_lean.h"
 #include "eye/limbus_pupil.h"
 #include "eye/limbus_seek.h"
 
@@ -22,6 +23,7 @@ struct limbus_found {
 	char reason[256];
 	struct rim limbus, pupil;
 	bool has_pupil;
+	struct band band;
 	double score;      // of the search, 0..1
 };
 

@@ -61,6 +61,7 @@ static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS])
 	for (int i = 0; i < ARCS; i++) {
 		for (int c = 0; c < 2; c++)
 			rim->p[i][c] = ring->p[i][c] + rim->step[i].d * ring->normal[i][c];
+		memcpy(rim->normal[i], ring->normal[i], sizeof rim->normal[i]);
 		if (!use[i])
 			continue;
 		memcpy(p[n], rim->p[i], sizeof p[n]);
@@ -114,6 +115,7 @@ static void smooth_widths(struct rim *rim, const bool use[ARCS])
 	for (int i = 0; i < ARCS; i++) {
 		double v[2 * WIDTH_ARCS + 1];
 		int n = 0;
+		rim->own_width[i] = use[i] ? rim->step[i].w : 0;
 		for (int j = -WIDTH_ARCS; j <= WIDTH_ARCS; j++) {
 			int at = (i + j + ARCS) % ARCS;
 			if (use[at])

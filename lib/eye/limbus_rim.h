@@ -27,7 +27,8 @@ struct rim {
 	double out, in;          // median brightness outside and inside, linear
 	struct step step[ARCS];
 	bool used[ARCS], seen[ARCS];
-	double p[ARCS][2];       // edge points, px of the photograph
+	double p[ARCS][2], normal[ARCS][2];  // edge points, px of the photograph; outward
+	double own_width[ARCS];  // of each arc alone, px; 0 where not measured
 };
 
 /* False: no ellipse could be fitted near `start`. */
