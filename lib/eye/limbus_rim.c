@@ -62,6 +62,7 @@ static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS])
 		for (int c = 0; c < 2; c++)
 			rim->p[i][c] = ring->p[i][c] + rim->step[i].d * ring->normal[i][c];
 		memcpy(rim->normal[i], ring->normal[i], sizeof rim->normal[i]);
+		rim->t[i] = ring->t[i];
 		if (!use[i])
 			continue;
 		memcpy(p[n], rim->p[i], sizeof p[n]);

@@ -28,6 +28,7 @@ struct rim {
 	struct step step[ARCS];
 	bool used[ARCS], seen[ARCS];
 	double p[ARCS][2], normal[ARCS][2];  // edge points, px of the photograph; outward
+	double t[ARCS];          // eccentric angle of each arc
 	double own_width[ARCS];  // of each arc alone, px; 0 where not measured
 };
 

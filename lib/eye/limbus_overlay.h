@@ -1,0 +1,14 @@
+/* limbus_overlay: the photograph with what was found drawn over it. */
+#ifndef EYE_LIMBUS_OVERLAY_H
+#define EYE_LIMBUS_OVERLAY_H
+#include "eye/fit.h"
+#include "eye/limbus_record.h"
+
+enum { OVERLAY_LONG = 1600 };
+
+/* 8-bit RGB, longer side at most OVERLAY_LONG px: limbus and pupil ellipses, edge points that were used (dots) and
+ * stretches that are hidden, the optical axis out of the eye. Size in *width, *height; free(). */
+uint8_t *limbus_overlay(int *width, int *height, const struct photo *photo, const struct limbus_record *record,
+                        const struct fit *fit);
+
+#endif

@@ -1,0 +1,27 @@
+/* limbus: the stage's own parts. */
+#ifndef STAGES_LIMBUS_H
+#define STAGES_LIMBUS_H
+#include "base/stage.h"
+#include "eye/capture.h"
+#include "eye/limbus_record.h"
+
+struct limbus_options {
+	struct eye eye;
+	struct limbus_conf find;
+	struct pose_conf pose;
+	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
+	struct opt_each_list photo_focal, photo_center, photo_hint, photo_eye;
+	double limit_mpx;
+};
+
+/* work/limbus/NAME.edge.json of every photograph that is not up to date. */
+bool limbus_measure(struct stage *stage, const struct capture *capture, const struct limbus_options *o, struct err *err);
+
+/* work/limbus/NAME.json and NAME.png, all photographs of an eye together. False when none is usable. */
+bool limbus_fit_poses(struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+                      struct err *err);
+
+/* "work/limbus/NAME.edge.json"; owned by the caller, free(). */
+char *limbus_record_path(const struct capture_photo *photo);
+
+#endif

@@ -1,0 +1,55 @@
+/* limbus: find the limbus and the pupil in every photograph, and how the eye stands to the camera.
+ * reads   photos/
+ * writes  work/limbus/NAME.json, NAME.png; NAME.edge.json (what was measured)
+ */
+#include "limbus.h"
+
+#include "base/mem.h"
+
+int main(int argc, char **argv)
+{
+	struct limbus_options o = { 0 };
+	struct stage stage;
+	struct capture capture = { 0 };
+	const struct opt opts[] = {
+		EYE_OPTS(&o.eye),
+		CAPTURE_OPTS(&o.photo_eye),
+		OPT_REAL_UNSET("camera.focal_px", &o.focal_px, 10, 1e7, "px", "focal length"),
+		OPT_REAL_UNSET("camera.focal_mm", &o.focal_mm, 1, 3000, "mm", "focal length, with camera.sensor_mm"),
+		OPT_REAL_UNSET("camera.sensor_mm", &o.sensor_mm, 1, 200, "mm", "longer side of the sensor"),
+		OPT_REALS_UNSET("camera.center_px", o.center_px, 2, -1e6, 1e6, "px", "principal point; unset: the middle"),
+		OPT_REALS("camera.distortion", o.distortion, 5, -100, 100, "", "k1 k2 p1 p2 k3, OpenCV's order"),
+		OPT_EACH("photo.*.focal_px", &o.photo_focal, 1, 10, 1e7, "px", "focal length of one photograph"),
+		OPT_EACH("photo.*.center_px", &o.photo_center, 2, -1e6, 1e6, "px", "principal point of one photograph"),
+		OPT_EACH("photo.*.hint_px", &o.photo_hint, 3, -1e6, 1e6, "px", "x y radius: where the limbus is"),
+		OPT_REAL("limit.photo_mpx", &o.limit_mpx, 1, 1000, "Mpx", "larger photographs are refused"),
+		OPT_REAL("min_radius", &o.find.seek.min_radius, 0.005, 0.3, "", "smallest limbus, share of the longer side"),
+		OPT_REAL("max_radius", &o.find.seek.max_radius, 0.1, 1, "", "largest limbus, share of the shorter side"),
+		OPT_REAL("seek_contrast", &o.find.seek.contrast, 0.02, 1, "", "Weber contrast of a fully supported edge"),
+		OPT_INT("candidates", &o.find.seek.candidates, 1, SEEK_MAX, "", "ellipses kept by the search"),
+		OPT_REAL("search", &o.find.rim.search, 0.01, 0.3, "", "first edge search, share of the semi-axis"),
+		OPT_REAL("arc_rms", &o.find.rim.max_rms, 0.02, 1, "", "residual of a step, of its height, that is trusted"),
+		OPT_REAL("arc_contrast", &o.find.rim.min_contrast, 0, 1, "", "height of a step, of the typical one's"),
+		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
+		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
+		OPT_REAL("min_coverage", &o.find.min_coverage, 0.1, 1, "", "share of the limbus that must be seen"),
+		OPT_REAL("min_contrast", &o.find.min_contrast, 0.01, 1, "", "Weber contrast of sclera and iris"),
+		OPT_REAL("max_blur", &o.find.max_blur, 0.01, 0.5, "", "width of the step, share of the semi-axis"),
+		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of the edge, share of the semi-axis"),
+		OPT_REAL("max_over", &o.find.max_over, 0, 1, "", "share of burnt pixels"),
+		OPT_REAL("min_level", &o.find.min_level, 0, 1, "", "encoded brightness of the 90 % quantile"),
+		OPT_REAL("pupil_offset_sigma", &o.pose.pupil_offset_sigma, 0.01, 2, "mm", "pupil centre off the axis"),
+		OPT_REAL("iris_depth_sigma", &o.pose.depth_sigma, 0.01, 2, "mm", "iris plane off eye.iris_depth_mm"),
+		OPT_REAL("pupil_floor", &o.pose.pupil_floor, 0, 0.2, "", "sigma of an irregular pupil's centre, of its axis"),
+		OPT_REAL("aspect_mean", &o.pose.aspect_mean, 0.7, 1.2, "", "limbus: vertical / horizontal"),
+		OPT_REAL("aspect_sigma", &o.pose.aspect_sigma, 0.001, 0.2, "", "its spread among people"),
+		OPT_REAL("irregularity_px", &o.pose.bias_floor, 0, 10, "px", "sigma of the limbus that noise does not show"),
+	};
+	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
+	struct err err = { 0 };
+	if (eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err)
+	    && limbus_measure(&stage, &capture, &o, &err))
+		limbus_fit_poses(&stage, &capture, &o, &err);
+	capture_free(&capture);
+	return stage_end(&stage, &err);
+}

@@ -1,0 +1,227 @@
+#include "limbus.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "eye/limbus_overlay.h"
+#include "image/picture.h"
+
+static const double DEG = M_PI / 180;
+
+/* The photographs of one eye. */
+struct eye_work {
+	struct stage *stage;
+	const struct capture *capture;
+	const struct limbus_options *o;
+	int n;                               // of this eye
+	const struct capture_photo **photo;  // [n]
+	struct limbus_record *record;        // [n]
+	struct pose_conf pose;               // aspect as fitted or declared
+	double aspect_sigma;
+	int usable;
+};
+
+/* What is common to the eye: its aspect. Declared: fixed; several photographs: fitted; one: the prior. */
+static bool share_aspect(struct eye_work *w, struct err *err)
+{
+	const struct eye *eye = &w->o->eye;
+	w->pose = w->o->pose;
+	w->aspect_sigma = w->pose.aspect_sigma;
+	if (isfinite(eye->limbus_aspect)) {
+		w->pose.aspect_mean = eye->limbus_aspect;
+		w->pose.aspect_sigma = w->aspect_sigma = 0;
+		return true;
+	}
+	if (w->usable < 2)
+		return true;
+	struct pose_view *views = mem_new((size_t)w->usable, sizeof *views);
+	int n = 0;
+	for (int i = 0; i < w->n; i++)
+		if (w->record[i].ok)
+			views[n++] = w->record[i].view;
+	bool ok = limbus_aspect(&w->pose.aspect_mean, &w->aspect_sigma, n, views, eye, &w->o->pose, err);
+	w->pose.aspect_sigma = 0;
+	free(views);
+	return ok;
+}
+
+/* Pose of one photograph; the shared aspect's uncertainty, where it was fitted before, is added to theta's. */
+static bool pose_of(struct pose *pose, const struct eye_work *w, const struct limbus_record *record, struct err *err)
+{
+	const struct eye *eye = &w->o->eye;
+	if (!limbus_pose(pose, &record->view, eye, &w->pose, err))
+		return false;
+	if (w->usable >= 2 && w->aspect_sigma > 0) {
+		struct pose_conf moved = w->pose;
+		struct pose other;
+		moved.aspect_mean += w->aspect_sigma;
+		if (!limbus_pose(&other, &record->view, eye, &moved, err))
+			return false;
+		double dot = 0;
+		for (int i = 0; i < 3; i++)
+			dot += pose->cam_from_eye[i][2] * other.cam_from_eye[i][2];
+		double turn = fabs(dot) < 1 ? acos(dot) : 0;
+		pose->theta_sigma = hypot(pose->theta_sigma, turn > 1 ? fabs(other.theta - pose->theta) : turn);
+		pose->aspect_sigma = w->aspect_sigma;
+	}
+	return true;
+}
+
+static struct fit fit_of(const struct limbus_record *r, const struct pose *pose)
+{
+	struct fit fit = { .ok = r->ok, .width = r->width, .height = r->height };
+	memcpy(fit.reason, r->reason, sizeof fit.reason);
+	if (!r->ok)
+		return fit;
+	fit.limbus = r->view.limbus;
+	fit.pupil = r->view.pupil;
+	fit.has_pupil = r->view.has_pupil;
+	ellipse_sigma(fit.ellipse_sigma, &fit.limbus, r->view.cov_q);
+	memcpy(fit.cam_from_eye, pose->cam_from_eye, sizeof fit.cam_from_eye);
+	fit.theta = pose->theta;
+	fit.phi = pose->phi;
+	fit.theta_sigma = pose->theta_sigma;
+	fit.coverage = r->coverage;
+	fit.rms_px = r->rms;
+	fit.edge_sigma_px = r->blur;
+	fit.camera = r->view.camera;
+	fit.limbus_aspect = pose->aspect;
+	fit.limbus_aspect_sigma = pose->aspect_sigma;
+	return fit;
+}
+
+/* Keys beyond DESIGN's, as JSON text; free(). */
+static char *extra_of(const struct limbus_record *r, const struct pose *pose)
+{
+	json_t *json = json_object();
+	json_object_set_new(json, "theta_weak_perspective_deg", json_number(pose->theta_weak / DEG));
+	json_object_set_new(json, "choice_margin", json_number(pose->margin));
+	json_t *other = json_object();
+	json_object_set_new(other, "theta_deg", json_number(pose->other_theta / DEG));
+	json_object_set_new(other, "phi_deg", json_number(pose->other_phi / DEG));
+	json_object_set_new(json, "other_pose", other);
+	json_object_set_new(json, "pupil_offset_mm", json_numbers(2, pose->pupil_offset));
+	json_object_set_new(json, "contrast", json_number(r->contrast));
+	json_object_set_new(json, "share_used", json_number(r->share_used));
+	json_object_set_new(json, "search_score", json_number(r->score));
+	char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(12));
+	json_decref(json);
+	return text;
+}
+
+static bool write_overlay(const struct eye_work *w, int i, const struct fit *fit, const char *path, struct err *err)
+{
+	struct photo photo = { 0 };
+	const struct capture_photo *p = w->photo[i];
+	if (!photo_load(&photo, stage_path(w->stage, "%s", p->file), w->o->limit_mpx, err))
+		return false;
+	int width, height;
+	uint8_t *px = limbus_overlay(&width, &height, &photo, &w->record[i], fit);
+	bool ok = picture_png_write(stage_path(w->stage, "%s", path), px, width, height, 3, err);
+	free(px);
+	photo_free(&photo);
+	return ok;
+}
+
+static void note(const struct eye_work *w, int i, const struct fit *fit, const struct pose *pose)
+{
+	const char *name = w->photo[i]->name;
+	stage_note(w->stage, "%s: theta %.1f +- %.1f deg, %.0f %% of the limbus seen, rms %.2f px%s", name, fit->theta / DEG,
+	           fit->theta_sigma / DEG, 100 * fit->coverage, fit->rms_px,
+	           fit->camera.source == CAMERA_NONE ? ", camera unknown: weak perspective" : "");
+	char key[320];
+	snprintf(key, sizeof key, "%s rms", name);
+	stage_figure(w->stage, key, fit->rms_px, "px");
+	snprintf(key, sizeof key, "%s theta", name);
+	stage_figure(w->stage, key, fit->theta / DEG, "deg");
+	snprintf(key, sizeof key, "%s theta sigma", name);
+	stage_figure(w->stage, key, fit->theta_sigma / DEG, "deg");
+	snprintf(key, sizeof key, "%s limbus seen", name);
+	stage_figure(w->stage, key, 100 * fit->coverage, "%");
+	if (pose->margin < 1)
+		stage_skipped(w->stage, "%s: which way the eye is tilted is not sure (log odds %.1f): photograph it from farther "
+		              "to one side as well", name, pose->margin);
+}
+
+static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], struct err *err)
+{
+	const struct capture_photo *p = w->photo[i];
+	const struct limbus_record *r = &w->record[i];
+	struct pose pose = { 0 };
+	if (!r->ok)
+		stage_warn(w->stage, "%s: rejected: %s", p->file, r->reason);
+	else if (!pose_of(&pose, w, r, err))
+		return err_wrap(err, "%s", p->file);
+	struct fit fit = fit_of(r, &pose);
+	if (r->ok)
+		note(w, i, &fit, &pose);
+	else
+		stage_skipped(w->stage, "%s: %s", p->file, r->reason);
+	char *png = mem_printf("work/limbus/%s.png", p->name), *extra = r->ok ? extra_of(r, &pose) : 0;
+	bool ok = true;
+	if (!stage_fresh(w->stage, p->fit, n_in, in))
+		ok = fit_save(&fit, stage_path(w->stage, "%s", p->fit), stage_made_by(w->stage, n_in, in), extra, err)
+		     && stage_made(w->stage, p->fit, n_in, in, err);
+	if (ok && r->ok && !stage_fresh(w->stage, png, n_in, in))
+		ok = write_overlay(w, i, &fit, png, err) && stage_made(w->stage, png, n_in, in, err);
+	if (ok && !r->ok)
+		ok = file_remove(stage_path(w->stage, "%s", png), err);
+	free(png);
+	free(extra);
+	return ok;
+}
+
+static bool fit_eye(struct eye_work *w, struct err *err)
+{
+	char **paths = mem_new((size_t)w->n, sizeof *paths);
+	const char **in = mem_new((size_t)w->n + 1, sizeof *in);
+	bool ok = true;
+	for (int i = 0; i < w->n && ok; i++) {
+		paths[i] = limbus_record_path(w->photo[i]);
+		ok = limbus_record_load(&w->record[i], stage_path(w->stage, "%s", paths[i]), err);
+		w->usable += w->record[i].ok;
+	}
+	ok = ok && share_aspect(w, err);
+	/* With the aspect fitted, every photograph of the eye is an input of each. */
+	bool shared = !isfinite(w->o->eye.limbus_aspect) && w->usable >= 2;
+	for (int i = 0; i < w->n && ok; i++) {
+		int n = 0;
+		in[n++] = w->photo[i]->file;
+		for (int j = 0; j < w->n; j++)
+			if (shared || j == i)
+				in[n++] = paths[j];
+		ok = finish(w, i, n, in, err);
+	}
+	for (int i = 0; i < w->n; i++)
+		free(paths[i]);
+	free(paths);
+	free(in);
+	return ok;
+}
+
+bool limbus_fit_poses(struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+                      struct err *err)
+{
+	int usable = 0;
+	bool ok = true;
+	for (int e = 0; e < capture->n_eyes && ok; e++) {
+		struct eye_work w = { .stage = stage, .capture = capture, .o = o };
+		w.photo = mem_new((size_t)capture->n_photos, sizeof *w.photo);
+		w.record = mem_new((size_t)capture->n_photos, sizeof *w.record);
+		for (int i = 0; i < capture->n_photos; i++)
+			if (capture->photos[i].eye == e)
+				w.photo[w.n++] = &capture->photos[i];
+		ok = fit_eye(&w, err);
+		usable += w.usable;
+		free(w.photo);
+		free(w.record);
+	}
+	if (ok && usable == 0)
+		return err_set(err, "photos/: none of the %d photographs can be used; the reasons are above", capture->n_photos);
+	return ok;
+}
