@@ -6,19 +6,8 @@
 
 #include "base/mem.h"
 #include "eye/freckle_ground.h"
+#include "eye/freckle_search.h"
 #include "image/plane.h"
-
-/* The map as searched: reduced, in logarithms, against its surroundings. */
-struct search {
-	int size, step;       // texels a side; texels of the full map each way
-	double mm;            // a texel
-	struct sheet sheet;
-	uint8_t *use;
-	float *log[3];        // of the colour, blurred
-	float *ratio;         // rise of log(red / green)
-	float *ratio_z;       // the same in the surroundings' spread
-	float *fall[2];       // of log(red), log(green): negative where darker
-};
 
 /* Weighted means of step x step texels. */
 static void reduce(struct search *s, const struct image *rgbw, double limbus_margin)
@@ -58,6 +47,25 @@ static void take_logs(struct search *s, double sigma)
 	for (long i = 0; i < n; i++)
 		s->ratio[i] = s->log[0][i] - s->log[1][i];
 	free(weight);
+}
+
+static int by_value(const void *a, const void *b)
+{
+	float x = *(const float *)a, y = *(const float *)b;
+	return (x > y) - (x < y);
+}
+
+static float median_ratio(const struct search *s)
+{
+	long n = 0, all = (long)s->size * s->size;
+	float *v = mem_array((size_t)all / 16 + 1, sizeof *v);
+	for (long i = 0; i < all; i += 16)
+		if (s->use[i])
+			v[n++] = s->ratio[i];
+	qsort(v, (size_t)n, sizeof *v, by_value);
+	float median = n ? v[n / 2] : 0;
+	free(v);
+	return median;
 }
 
 static void compare(struct search *s)
@@ -151,7 +159,9 @@ static int larger_first(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
-static void collect(struct freckles *out, const struct search *s, const struct freckle_conf *conf)
+/* Spots redder than the iris around them. opacity: [s->size][s->size], zeroed. */
+static void find_coloured(struct freckles *out, float *opacity, const struct search *s,
+                          const struct freckle_conf *conf)
 {
 	long n = (long)s->size * s->size;
 	uint8_t *mask = mem_array((size_t)n, 1);
@@ -171,10 +181,10 @@ static void collect(struct freckles *out, const struct search *s, const struct f
 				                                 b->y / b->weight * s->mm - s->sheet.extent,
 				                                 (double)b->area * s->mm * s->mm, confidence };
 	}
-	qsort(out->items, (size_t)out->n, sizeof *out->items, larger_first);
 	for (long i = 0; i < n; i++) {
 		const struct blob *b = &blobs[label[i]];
-		s->log[0][i] = label[i] && b->seeded ? opacity_of(s->ratio[i], b->peak, conf->edge) : 0;
+		if (label[i] && b->seeded)
+			opacity[i] = opacity_of(s->ratio[i], b->peak, conf->edge);
 	}
 	free(blobs);
 	free(label);
@@ -182,14 +192,14 @@ static void collect(struct freckles *out, const struct search *s, const struct f
 }
 
 /* The searched map's opacity, over the whole map. */
-static void spread_opacity(struct freckles *out, const struct search *s)
+static void spread_opacity(struct freckles *out, const float *opacity, const struct search *s)
 {
 	double to = (double)s->size * s->step / s->size;
 #pragma omp parallel for schedule(static)
 	for (int row = 0; row < out->size; row++)
 		for (int col = 0; col < out->size; col++)
 			out->opacity[(long)row * out->size + col]
-				= plane_sample(s->log[0], s->size, s->size, (col + 0.5) / to, (row + 0.5) / to);
+				= plane_sample(opacity, s->size, s->size, (col + 0.5) / to, (row + 0.5) / to);
 }
 
 struct freckles freckles_find(const struct image *rgbw, double extent, const struct circle *pupil, double limbus,
@@ -202,18 +212,24 @@ struct freckles freckles_find(const struct image *rgbw, double extent, const str
 	size_t n = (size_t)s.size * (size_t)s.size;
 	s.mm = 2 * extent * step / size;
 	s.sheet = (struct sheet){ s.size, s.mm * s.size / 2, *pupil, limbus };
-	float *planes = mem_new(7 * n, sizeof *planes);
+	float *planes = mem_new(8 * n, sizeof *planes), *opacity = planes + 7 * n;
 	for (int c = 0; c < 3; c++)
 		s.log[c] = planes + (size_t)c * n;
 	s.ratio = planes + 3 * n, s.ratio_z = planes + 4 * n, s.fall[0] = planes + 5 * n, s.fall[1] = planes + 6 * n;
 	s.use = mem_array(n, 1);
 	reduce(&s, rgbw, conf->limbus_margin);
 	take_logs(&s, conf->blur / s.mm);
+	s.brown = median_ratio(&s);
 	compare(&s);
 	struct freckles out = { .size = size, .opacity = mem_new((size_t)size * (size_t)size, sizeof(float)) };
-	collect(&out, &s, conf);
+	// a brown iris has a freckle's colour already
+	if (s.brown > (float)conf->brown)
+		freckles_find_flat(&out, opacity, &s, conf);
+	else
+		find_coloured(&out, opacity, &s, conf);
+	qsort(out.items, (size_t)out.n, sizeof *out.items, larger_first);
 	if (out.n)
-		spread_opacity(&out, &s);
+		spread_opacity(&out, opacity, &s);
 	free(s.use);
 	free(planes);
 	return out;

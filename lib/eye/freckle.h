@@ -16,6 +16,11 @@ struct freckle_conf {
 	double red_share;       // most that red may fall, as a share of green's fall
 	double edge;            // share of a spot's own level at which it ends
 	double min_area;        // mm²
+	double brown;           // median log(red/green) from which an iris is brown: its freckles are found by flatness
+	double flat_area;       // mm², least there
+	double flat_spread;     // most spread of brightness inside, as a share of that around it
+	double flat_darker;     // least fall of log(green) there
+	double flat_long;       // most length over width
 	double limbus_margin;   // mm of the iris next to the limbus left out
 	double search_deg;      // how far round the iris the fill looks for its pattern
 	double band;            // mm of surroundings that the pattern has to continue
