@@ -52,7 +52,7 @@ ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenm
 	-isystem /usr/include/opencv4 -isystem /usr/include/eigen3
 EXR_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 LIBS := -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
-	-lOpenMeshCore -lOpenEXRCore-3_1 -lexif -lturbojpeg -lpng -ltiff -llapacke -lopenblas -ljansson -linih -lxxhash -lm
+	-lOpenMeshTools -lOpenMeshCore -lOpenEXRCore-3_1 -lexif -lturbojpeg -lpng -ltiff -llapacke -lopenblas -ljansson -linih -lxxhash -lm
 
 LIB_SRC := $(wildcard lib/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)

@@ -1,0 +1,199 @@
+#include "bridge/om_mesh.h"
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <string>
+
+// gcc 12 sees an uninitialised allocator in OpenMesh's property vectors, which has no members.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+
+extern "C" {
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/image.h"
+#include "mesh/mesh_check.h"
+}
+
+namespace {
+
+struct Traits : OpenMesh::DefaultTraits {
+	VertexAttributes(OpenMesh::Attributes::Status | OpenMesh::Attributes::Color);
+	FaceAttributes(OpenMesh::Attributes::Status);
+	EdgeAttributes(OpenMesh::Attributes::Status);
+	HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge);
+};
+using Mesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
+
+/* OpenMesh speaks to std::cerr of faces it cannot join; what matters comes back through struct err. */
+void be_quiet()
+{
+	omlog().disable();
+	omout().disable();
+	omerr().disable();
+}
+
+/* Adds a triangle; one that would make an edge of three faces gets vertices of its own, as OpenMesh's readers do. */
+void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
+{
+	if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
+		return;
+	if (om.add_face(corner[0], corner[1], corner[2]).is_valid())
+		return;
+	Mesh::VertexHandle own[3];
+	for (int k = 0; k < 3; k++) {
+		own[k] = om.add_vertex(om.point(corner[k]));
+		om.set_color(own[k], om.color(corner[k]));
+	}
+	om.add_face(own[0], own[1], own[2]);
+}
+
+bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
+{
+	mesh->n_vertices = (int)om.n_vertices();
+	mesh->n_faces = (int)om.n_faces();
+	mesh->vertices = (float (*)[3])mem_array(om.n_vertices(), 3 * sizeof(float));
+	mesh->faces = (int32_t (*)[3])mem_array(om.n_faces(), 3 * sizeof(int32_t));
+	mesh->colours = colours ? (float (*)[3])mem_array(om.n_vertices(), 3 * sizeof(float)) : nullptr;
+	for (int i = 0; i < mesh->n_vertices; i++) {
+		auto v = om.vertex_handle((unsigned)i);
+		for (int k = 0; k < 3; k++) {
+			mesh->vertices[i][k] = om.point(v)[(size_t)k];
+			if (!std::isfinite(mesh->vertices[i][k]))
+				return err_set(err, "vertex %d: a coordinate that is no number", i);
+			if (colours)
+				mesh->colours[i][k] = linear_from_srgb((float)om.color(v)[(size_t)k] / 255);
+		}
+	}
+	for (int i = 0; i < mesh->n_faces; i++) {
+		int k = 0;
+		for (auto v : om.fv_range(om.face_handle((unsigned)i)))
+			mesh->faces[i][k++] = v.idx();
+	}
+	return true;
+}
+
+bool parse(struct mesh *mesh, const char *data, size_t size, enum mesh_kind kind, struct err *err)
+{
+	Mesh om;
+	std::istringstream in(std::string(data, size), std::ios::binary);
+	OpenMesh::IO::Options options(OpenMesh::IO::Options::VertexColor);
+	if (kind == MESH_PLY && !strstr(data, "ascii"))
+		options += OpenMesh::IO::Options::Binary;
+	be_quiet();
+	if (!OpenMesh::IO::read_mesh(om, in, kind == MESH_PLY ? ".ply" : ".obj", options))
+		return err_set(err, "cannot be read as %s", kind == MESH_PLY ? "PLY" : "OBJ");
+	return take(mesh, om, options.check(OpenMesh::IO::Options::VertexColor), err);
+}
+
+void give(Mesh &om, const struct mesh *mesh)
+{
+	for (int i = 0; i < mesh->n_vertices; i++) {
+		const float *p = mesh->vertices[i];
+		auto v = om.add_vertex(Mesh::Point(p[0], p[1], p[2]));
+		Mesh::Color colour(0, 0, 0);
+		for (int k = 0; mesh->colours && k < 3; k++)
+			colour[(size_t)k] = (unsigned char)std::lround(255 * srgb_from_linear(mesh->colours[i][k]));
+		om.set_color(v, colour);
+	}
+	for (int i = 0; i < mesh->n_faces; i++) {
+		Mesh::VertexHandle corner[3];
+		for (int k = 0; k < 3; k++)
+			corner[k] = om.vertex_handle((unsigned)mesh->faces[i][k]);
+		add_triangle(om, corner);
+	}
+}
+
+}  // namespace
+
+bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *err)
+{
+	enum { BYTES_EACH = 256, BYTES_HEAD = 1 << 16 };
+	*mesh = {};
+	struct err why = {};
+	char *data;
+	size_t size;
+	enum mesh_kind kind;
+	if (!file_read(&data, &size, path, (size_t)limit * 2 * BYTES_EACH + BYTES_HEAD, err))
+		return false;
+	bool ok = false;
+	try {
+		ok = mesh_check(&kind, data, size, limit, &why) && parse(mesh, data, size, kind, &why);
+	} catch (const std::exception &e) {
+		err_set(&why, "cannot be read: %s", e.what());
+	} catch (...) {
+		err_set(&why, "cannot be read");
+	}
+	free(data);
+	if (ok)
+		return true;
+	mesh_free(mesh);
+	return err_set(err, "%s: %s", path, why.msg);
+}
+
+bool om_mesh_save(const struct mesh *mesh, const char *path, const char *made_by, struct err *err)
+{
+	try {
+		// Written here and not by OpenMesh: its writer has no comments, and would split faces that share an edge
+		// with two others.
+		std::string out = "ply\nformat binary_little_endian 1.0\n";
+		if (made_by) {
+			std::string comment = made_by;
+			for (char &c : comment)
+				c = c == '\n' || c == '\r' ? ' ' : c;
+			out += "comment made_by " + comment + "\n";
+		}
+		out += "element vertex " + std::to_string(mesh->n_vertices) + "\n";
+		out += "property float x\nproperty float y\nproperty float z\n";
+		if (mesh->colours)
+			out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+		out += "element face " + std::to_string(mesh->n_faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+		static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values go out as they lie in memory");
+		for (int i = 0; i < mesh->n_vertices; i++) {
+			out.append((const char *)mesh->vertices[i], 3 * sizeof(float));
+			for (int k = 0; mesh->colours && k < 3; k++)
+				out += (char)(unsigned char)std::lround(255 * srgb_from_linear(mesh->colours[i][k]));
+		}
+		for (int i = 0; i < mesh->n_faces; i++) {
+			out += (char)3;
+			out.append((const char *)mesh->faces[i], 3 * sizeof(int32_t));
+		}
+		return file_write(path, out.data(), out.size(), err);
+	} catch (...) {
+		return err_set(err, "%s: out of memory", path);
+	}
+}
+
+bool om_mesh_decimate(struct mesh *mesh, int target_faces, struct err *err)
+{
+	try {
+		Mesh om;
+		be_quiet();
+		give(om, mesh);
+		OpenMesh::Decimater::DecimaterT<Mesh> decimater(om);
+		OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
+		decimater.add(quadric);
+		decimater.module(quadric).unset_max_err();
+		if (!decimater.initialize())
+			return err_set(err, "decimation: OpenMesh refused the mesh");
+		decimater.decimate_to_faces(0, (size_t)target_faces);
+		om.garbage_collection();
+		struct mesh smaller = {};
+		bool colours = mesh->colours != nullptr;
+		if ((int)om.n_faces() > target_faces)
+			return err_set(err, "decimation: stopped at %zu faces, must be <= %d", om.n_faces(), target_faces);
+		if (!take(&smaller, om, colours, err)) {
+			mesh_free(&smaller);
+			return false;
+		}
+		mesh_free(mesh);
+		*mesh = smaller;
+		return true;
+	} catch (...) {
+		return err_set(err, "decimation: out of memory");
+	}
+}
