@@ -2,7 +2,7 @@
 
 #include "eye/limbus_pose.h"
 
-enum { STEPS = 9, ROUNDS = 3 };
+enum { STEPS = 7, ROUNDS = 3 };
 
 /* Minus log likelihood of all photographs at a given aspect. */
 static bool cost_at(double *cost, double aspect, int n, const struct pose_view views[n], const struct eye *eye,

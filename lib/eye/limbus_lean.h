@@ -1,9 +1,7 @@
 /* limbus_lean: which of the two poses of a limbus is the right one, from the iris itself.
- * 1. Seen through the cornea, the iris' dark outer border lies farther in on the side turned to the camera and farther
+ * Seen through the cornea, the iris' dark outer border lies farther in on the side turned to the camera and farther
  * out on the other. Taken back to the iris plane under the right pose, brightness is a function of radius, the same
  * on all sides; under the other pose it is shifted to and fro.
- * 2. The ramp of the limbus lies on the slope of the cornea: turned to the camera on the near side, it looks wider
- * there; on the far side it is seen edge-on and looks sharper.
  */
 #ifndef EYE_LIMBUS_LEAN_H
 #define EYE_LIMBUS_LEAN_H
@@ -21,10 +19,8 @@ struct band {
 
 void band_sample(struct band *band, const struct pyramid *pyramid, const struct rim *limbus);
 
-/* Log likelihood of pose `a` against pose `b` (cam_from_eye), positive for a: by the iris, by the ramp. */
+/* Log likelihood of pose `a` against pose `b` (cam_from_eye), positive for a, by the iris' brightness. */
 double lean_iris(const struct band *band, const struct camera *camera, const double a[4][4], const double b[4][4],
-                 const struct eye *eye);
-double lean_ramp(const struct rim *limbus, const struct camera *camera, const double a[4][4], const double b[4][4],
                  const struct eye *eye);
 
 #endif

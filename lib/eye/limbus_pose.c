@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bridge/nls.h"
+#include "eye/limbus_ramp.h"
 #include "math/chol.h"
 #include "math/vec.h"
 #include "optics/lightpath.h"
@@ -272,9 +273,14 @@ bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct e
 			return err_set(err, "no pose of the eye fits the ellipses: %s", e.msg);
 	}
 	for (int i = 0; i < 2; i++) {
-		double theta, phi;
-		angles(&theta, &phi, &p, s[i].x);
-		s[i].cost -= ok[i] ? (view->lean[0] * cos(phi) + view->lean[1] * sin(phi)) / 2 : 0;
+		double theta, phi = 0;
+		if (ok[i])
+			angles(&theta, &phi, &p, s[i].x);
+		if (!ok[i])
+			continue;
+		double m[4][4];
+		transform(m, &p, s[i].x);
+		s[i].cost += ramp_cost(view, m, eye) - (view->lean[0] * cos(phi) + view->lean[1] * sin(phi)) / 2;
 	}
 	int best = ok[0] && (!ok[1] || s[0].cost <= s[1].cost) ? 0 : 1;
 	*pose = (struct pose){ .theta_weak = acos(ratio), .margin = INFINITY };

@@ -8,6 +8,8 @@
 #include "eye/eye.h"
 #include "math/ellipse.h"
 
+enum { POSE_RAMP = 360 };  // samples around the limbus
+
 struct pose_conf {
 	double pupil_offset_sigma;  // mm: pupil centre against the optical axis, each way
 	double depth_sigma;         // mm: iris plane against eye.iris_depth_mm
@@ -23,6 +25,7 @@ struct pose_view {
 	bool has_pupil;
 	struct ellipse pupil;
 	double pupil_sigma;         // px, of its centre, each way
+	double ramp[POSE_RAMP];     // width of the limbal ramp at equal steps of the eccentric angle, px; 0: not known
 	double lean[2];             // log likelihood of a tilt towards +x, +y against the opposite (limbus_lean.h); 0: unknown
 };
 

@@ -1,11 +1,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "eye/limbus_lean.h"
-#include "math/stats.h"
+#include "eye/fit.h"
+#include "eye/limbus_ramp.h"
+#include "math/chol.h"
 
 /* Arcs whose widths err together: streaks of the iris, veins of the sclera. */
 static const double ALIKE_ARCS = 10;
+static const double SCATTER = 0.05;  // of log width²: no limbus is more regular
 static const double STEP = 0.01;  // of the limbus radius
 
 /* Width in the picture, along the limbus' normal, of 1 mm of radius on the cornea's slope. 0: not seen. */
@@ -27,66 +29,68 @@ static double slope_width(const struct fit *fit, const struct cornea *cornea, co
 	return fmax(w, 0);
 }
 
-/* Mean clipped square of log(own width / model); model² = blur² + (ramp g)², both at least 0, by weighted squares. */
-static double unexplained(const struct rim *limbus, const double g[ARCS])
+enum { BASIS = 4 };  // blur², and the ramp's own width² with a second harmonic: wider above and below than at the sides
+
+/* Non-negative in its first two terms, by dropping one of them. */
+static void solve(double x[BASIS], const double h[BASIS][BASIS], const double g[BASIS])
 {
-	double blur2 = 0, ramp2 = 0, d[ARCS], ss = 0;
-	int n = 0;
-	for (int round = 0; round < 8; round++) {
-		double a = 0, b = 0, c = 0, u = 0, v = 0;
-		for (int i = 0; i < ARCS; i++) {
-			if (!limbus->used[i] || !(limbus->own_width[i] > 0))
-				continue;
-			double w2 = limbus->own_width[i] * limbus->own_width[i], x = g[i] * g[i];
-			double model = blur2 + ramp2 * x, weight = round ? 1 / (model * model) : 1;
-			/* widths far off the model are streaks and lids */
-			double z = round ? log(w2 / model) : 0;
-			weight /= 1 + z * z / 0.04;
-			a += weight;
-			b += weight * x;
-			c += weight * x * x;
-			u += weight * w2;
-			v += weight * w2 * x;
+	for (int skip = -1; skip < 2; skip++) {
+		double m[BASIS][BASIS];
+		memcpy(m, h, sizeof m);
+		memcpy(x, g, BASIS * sizeof *x);
+		for (int i = 0; i < BASIS; i++) {
+			m[i][i] *= 1 + 1e-9;
+			if (i >= 2)
+				m[i][i] += 3 * h[1][1];  // harmonics are small
+			if (i == skip || (skip == 1 && i >= 2)) {
+				for (int j = 0; j < BASIS; j++)
+					m[i][j] = m[j][i] = 0;
+				m[i][i] = 1;
+				x[i] = 0;
+			}
 		}
-		double det = a * c - b * b;
-		ramp2 = det > 0 ? (a * v - b * u) / det : 0;
-		blur2 = det > 0 ? (c * u - b * v) / det : 0;
-		if (!(blur2 > 0)) {
-			blur2 = 0;
-			ramp2 = c > 0 ? v / c : 0;
-		}
-		if (!(ramp2 > 0)) {
-			ramp2 = 0;
-			blur2 = a > 0 ? u / a : 0;
-		}
+		if (chol_solve(BASIS, BASIS, &m[0][0], x) && x[0] >= 0 && x[1] >= 0)
+			return;
 	}
-	for (int i = 0; i < ARCS; i++)
-		if (limbus->used[i] && limbus->own_width[i] > 0) {
-			double model = blur2 + ramp2 * g[i] * g[i];
-			double z = model > 0 ? log(limbus->own_width[i] * limbus->own_width[i] / model) : 0;
-			d[n++] = fmin(fabs(z), 0.6);
-		}
-	for (int i = 0; i < n; i++)
-		ss += d[i] * d[i] / n;
-	return n ? ss : INFINITY;
 }
 
-double lean_ramp(const struct rim *limbus, const struct camera *camera, const double a[4][4], const double b[4][4],
-                 const struct eye *eye)
+double ramp_cost(const struct pose_view *view, const double cam_from_eye[4][4], const struct eye *eye)
 {
-	struct fit fit = { .camera = *camera };
+	struct fit fit = { .camera = view->camera };
 	struct cornea cornea = eye_cornea(eye);
-	double ss[2], g[ARCS];
+	double basis[POSE_RAMP][BASIS], w2[POSE_RAMP], ss = 0, x[BASIS] = { 0 };
 	int n = 0;
-	for (int h = 0; h < 2; h++) {
-		memcpy(fit.cam_from_eye, h ? b : a, sizeof fit.cam_from_eye);
-		for (int i = 0; i < ARCS; i++)
-			g[i] = slope_width(&fit, &cornea, limbus->p[i], limbus->normal[i], eye);
-		ss[h] = unexplained(limbus, g);
+	memcpy(fit.cam_from_eye, cam_from_eye, sizeof fit.cam_from_eye);
+	for (int i = 0; i < POSE_RAMP; i++) {
+		if (!(view->ramp[i] > 0))
+			continue;
+		double p[2], normal[2], g, t = 2 * M_PI * i / POSE_RAMP, phi = view->limbus.angle + t;
+		ellipse_point(p, normal, &view->limbus, t);
+		g = slope_width(&fit, &cornea, p, normal, eye);
+		basis[n][0] = 1;
+		basis[n][1] = g * g;
+		basis[n][2] = g * g * cos(2 * phi);
+		basis[n][3] = g * g * sin(2 * phi);
+		w2[n++] = view->ramp[i] * view->ramp[i];
 	}
-	for (int i = 0; i < ARCS; i++)
-		n += limbus->used[i];
-	if (!(ss[0] > 0) || !(ss[1] > 0) || !isfinite(ss[0] + ss[1]))
-		return 0;
-	return 0.5 * n / ALIKE_ARCS * log(ss[1] / ss[0]);
+	for (int round = 0; round < 8; round++) {
+		double h[BASIS][BASIS] = { 0 }, u[BASIS] = { 0 };
+		ss = 0;
+		for (int i = 0; i < n; i++) {
+			double model = 0;
+			for (int a = 0; a < BASIS; a++)
+				model += x[a] * basis[i][a];
+			/* relative errors; widths far off the model are streaks and lids */
+			double z = round ? log(w2[i] / fmax(model, 0.04 * w2[i])) : 0;
+			double weight = 1 / ((round ? fmax(model * model, 1e-3 * w2[i] * w2[i]) : 1) * (1 + z * z / 0.04));
+			ss += fmin(z * z, 0.36) / n;
+			for (int a = 0; a < BASIS; a++) {
+				u[a] += weight * basis[i][a] * w2[i];
+				for (int b = 0; b < BASIS; b++)
+					h[a][b] += weight * basis[i][a] * basis[i][b];
+			}
+		}
+		solve(x, h, u);
+	}
+	return n ? 0.5 * n / ALIKE_ARCS * log(ss + SCATTER * SCATTER) : 0;
 }

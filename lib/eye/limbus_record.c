@@ -21,6 +21,13 @@ void limbus_record_fill(struct limbus_record *record, const struct limbus_found 
 		record->view.pupil = found->pupil.e;
 		record->view.pupil_sigma = sqrt((found->pupil.cov_q[0][0] + found->pupil.cov_q[1][1]) / 2);
 	}
+	/* widths lie at equal steps along the curve: moved to equal steps of the eccentric angle, nearest */
+	for (int i = 0, k = 0; i < POSE_RAMP; i++) {
+		double t = 2 * M_PI * i / POSE_RAMP;
+		while (k + 1 < ARCS && fabs(rim->t[k + 1] - t) <= fabs(rim->t[k] - t))
+			k++;
+		record->view.ramp[i] = rim->used[k] ? rim->own_width[k] : 0;
+	}
 	record->coverage = rim->coverage;
 	record->share_used = rim->share_used;
 	record->rms = rim->rms;
@@ -63,6 +70,7 @@ bool limbus_record_save(const struct limbus_record *r, const char *path, const c
 		json_object_set_new(json, "limbus", ellipse_json(&r->view.limbus));
 		json_object_set_new(json, "limbus_cov_q", json_numbers(ELLIPSE_N * ELLIPSE_N, &r->view.cov_q[0][0]));
 		json_object_set_new(json, "pupil", r->view.has_pupil ? ellipse_json(&r->view.pupil) : json_null());
+		json_object_set_new(json, "ramp_px", json_numbers(POSE_RAMP, r->view.ramp));
 		json_object_set_new(json, "lean", json_numbers(2, r->view.lean));
 		json_object_set_new(json, "measured", json_numbers(7, measured));
 		json_object_set_new(json, "edge_px", json_numbers(2 * ARCS, &r->point[0][0]));
@@ -100,6 +108,7 @@ static bool record_read(struct limbus_record *r, const json_t *json, const char 
 	if (!json_get_array(camera, 9, json, "camera", path, err) || !ellipse_read(&r->view.limbus, json, "limbus", path, err)
 	    || !json_get_array(&r->view.cov_q[0][0], ELLIPSE_N * ELLIPSE_N, json, "limbus_cov_q", path, err)
 	    || (r->view.has_pupil && !ellipse_read(&r->view.pupil, json, "pupil", path, err))
+	    || !json_get_array(r->view.ramp, POSE_RAMP, json, "ramp_px", path, err)
 	    || !json_get_array(r->view.lean, 2, json, "lean", path, err)
 	    || !json_get_array(measured, 7, json, "measured", path, err)
 	    || !json_get_array(&r->point[0][0], 2 * ARCS, json, "edge_px", path, err)

@@ -12,6 +12,7 @@
 
 enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 9, GAP_ARCS = 5 };
 static const double SHARP_PX = 3;       // a step's sigma
+static const double SEEN = 0.4;         // of the typical step
 static const double MAX_AXIS_PX = 900;  // larger limbi are measured in a reduced picture: as many samples as pay
 
 static double median_of(const struct step step[ARCS], const bool use[ARCS], size_t field)
@@ -174,7 +175,6 @@ static bool first_width(struct rim *rim, const struct grey *grey, int width, int
 		n += use[i];
 	}
 	bool ok = n >= MIN_ARCS;
-	memcpy(rim->seen, use, sizeof use);
 	if (ok) {
 		struct ring t = ring_typical(&r, use, shift);
 		struct step f = { .w = reach / 5 };
@@ -192,13 +192,26 @@ static bool first_width(struct rim *rim, const struct grey *grey, int width, int
 	return ok;
 }
 
-/* Share of the ring that shows a step: what was used, what has a candidate on the ellipse, and short gaps between. */
-static void cover(struct rim *rim)
+/* Share of the ring that shows iris against sclera: brighter outside than inside by a good part of what is typical,
+ * or used; short gaps (a streak, a vein, a lash) are bridged, lone arcs are not believed. */
+static void cover(struct rim *rim, const struct grey *grey, int width, int height)
 {
+	const double gap = 1.5 * rim->width + grey->scale, depth = fmax(0.03 * rim->e.a, 2 * grey->scale);
+	struct ring r = ring_sample(grey, &rim->e, -gap - depth, gap + depth, fmax(grey->scale, depth / 6), 3, width, height);
 	bool on[ARCS];
 	int n = 0;
-	for (int i = 0; i < ARCS; i++)
-		on[i] = rim->used[i] || rim->seen[i];
+	const double typical = MEDIAN(rim->step, rim->used, out) - MEDIAN(rim->step, rim->used, in);
+	for (int i = 0; i < ARCS; i++) {
+		const float *v = r.v + (long)i * r.m;
+		double in = 0, out = 0;
+		const int end = (int)(depth / r.step);
+		for (int j = 0; j < end; j++) {
+			in += v[j] / end;
+			out += v[r.m - 1 - j] / end;
+		}
+		on[i] = rim->used[i] || (r.inside[i] && out - in > SEEN * typical && out - in < typical / SEEN);
+	}
+	ring_free(&r);
 	for (int i = 0; i < ARCS; i++) {
 		int before = 0, after = 0, near = 0;
 		for (int j = 0; j <= GAP_ARCS; j++) {
@@ -243,7 +256,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct ellipse *s
 	}
 	if (ok) {
 		correlate(rim);
-		cover(rim);
+		cover(rim, &grey, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);
 		rim->in = MEDIAN(rim->step, rim->used, in);

@@ -61,8 +61,7 @@ static bool lean(struct limbus_record *record, const struct limbus_found *found,
 	if (!limbus_pose(&pose, view, &o->eye, &conf, err))
 		return false;
 	if (isfinite(pose.margin)) {
-		double sum = lean_iris(&found->band, &view->camera, pose.cam_from_eye, pose.other_cam_from_eye, &o->eye)
-		             + lean_ramp(&found->limbus, &view->camera, pose.cam_from_eye, pose.other_cam_from_eye, &o->eye);
+		double sum = lean_iris(&found->band, &view->camera, pose.cam_from_eye, pose.other_cam_from_eye, &o->eye);
 		view->lean[0] = sum * cos(pose.phi);
 		view->lean[1] = sum * sin(pose.phi);
 	}

@@ -26,18 +26,18 @@ struct eye_work {
 	int usable;
 };
 
-/* What is common to the eye: its aspect. Declared: fixed; several photographs: fitted; one: the prior. */
+/* What is common to the eye: its aspect, declared or fitted to all its photographs under the prior. */
 static bool share_aspect(struct eye_work *w, struct err *err)
 {
 	const struct eye *eye = &w->o->eye;
 	w->pose = w->o->pose;
-	w->aspect_sigma = w->pose.aspect_sigma;
+	w->aspect_sigma = 0;
+	w->pose.aspect_sigma = 0;
 	if (isfinite(eye->limbus_aspect)) {
 		w->pose.aspect_mean = eye->limbus_aspect;
-		w->pose.aspect_sigma = w->aspect_sigma = 0;
 		return true;
 	}
-	if (w->usable < 2)
+	if (w->usable == 0)
 		return true;
 	struct pose_view *views = mem_new((size_t)w->usable, sizeof *views);
 	int n = 0;
@@ -45,18 +45,17 @@ static bool share_aspect(struct eye_work *w, struct err *err)
 		if (w->record[i].ok)
 			views[n++] = w->record[i].view;
 	bool ok = limbus_aspect(&w->pose.aspect_mean, &w->aspect_sigma, n, views, eye, &w->o->pose, err);
-	w->pose.aspect_sigma = 0;
 	free(views);
 	return ok;
 }
 
-/* Pose of one photograph; the shared aspect's uncertainty, where it was fitted before, is added to theta's. */
+/* Pose of one photograph; the fitted aspect's uncertainty is added to theta's. */
 static bool pose_of(struct pose *pose, const struct eye_work *w, const struct limbus_record *record, struct err *err)
 {
 	const struct eye *eye = &w->o->eye;
 	if (!limbus_pose(pose, &record->view, eye, &w->pose, err))
 		return false;
-	if (w->usable >= 2 && w->aspect_sigma > 0) {
+	if (w->aspect_sigma > 0) {
 		struct pose_conf moved = w->pose;
 		struct pose other;
 		moved.aspect_mean += w->aspect_sigma;
