@@ -3,11 +3,10 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "bridge/cv_draw.h"
+#include "image/colour.h"
 #include "math/vec.h"
-#include "render/compare.h"
+#include "render/render.h"
 
-enum { GAP = 6 };
 static const double shown = 1.3;  // semi-axes round the limbus
 
 /* What of the view the panels show. */
@@ -77,8 +76,9 @@ static int compare_floats(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-static void figures(struct job *job, const struct shot *shot, const struct image *view, const float *weight)
+static json_t *figures_make(struct job *job, const struct shot *shot, const struct image *view, const float *weight)
 {
+	json_t *out = json_object();
 	long n = 0, all = (long)view->width * view->height;
 	float *error = mem_array((size_t)all, sizeof *error);
 	double sum = 0;
@@ -89,29 +89,33 @@ static void figures(struct job *job, const struct shot *shot, const struct image
 		}
 	qsort(error, (size_t)n, sizeof *error, compare_floats);
 	if (n) {
-		char *mean = mem_printf("%s_difference_mean", shot->photo->name), *high = mem_printf("%s_difference_95", shot->photo->name);
-		stage_figure(job->stage, mean, sum / (double)n, "CIEDE2000");
-		stage_figure(job->stage, high, error[n * 95 / 100], "CIEDE2000");
+		double mean = sum / (double)n, high = error[n * 95 / 100];
+		json_object_set_new(out, "difference_mean", json_real(mean));
+		json_object_set_new(out, "difference_95", json_real(high));
+		json_object_set_new(out, "difference", json_string("CIEDE2000"));
 		stage_note(job->stage, "%s: differs from the photograph by %.2f on average, %.2f at 95 %% (CIEDE2000)",
-		           shot->photo->name, sum / (double)n, error[n * 95 / 100]);
-		free(mean);
-		free(high);
+		           shot->photo->name, mean, high);
 	}
+	json_object_set_new(out, "compared_px", json_integer(n));
+	json_object_set_new(out, "exposure", json_real(job->scene.gain));
+	json_object_set_new(out, "explained_by_model", json_real(job->scene.explained));
+	json_object_set_new(out, "lamps", json_integer(job->lamps));
 	free(error);
+	return out;
 }
 
-struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view)
+struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view, json_t **figures)
 {
 	struct frame f = frame_of(shot, view);
-	struct image out = image_new(3 * f.width + 2 * GAP, f.height, 3);
+	struct image out = image_new(3 * f.width + 2 * COMPARE_GAP, f.height, 3);
 	float *weight = mem_array((size_t)view->width * (size_t)view->height, sizeof *weight);
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < view->height; y++)
 		weights_row(weight + (long)y * view->width, job, shot, y);
 	put(&out, 0, &f, &shot->image);
-	put(&out, f.width + GAP, &f, view);
-	put_difference(&out, 2 * (f.width + GAP), &f, shot, view, weight);
-	figures(job, shot, view, weight);
+	put(&out, f.width + COMPARE_GAP, &f, view);
+	put_difference(&out, 2 * (f.width + COMPARE_GAP), &f, shot, view, weight);
+	*figures = figures_make(job, shot, view, weight);
 	free(weight);
 	return out;
 }

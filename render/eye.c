@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/json.h"
 #include "base/mem.h"
 #include "render/render.h"
 
@@ -52,7 +53,7 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 
 static bool environments(struct job *job, const struct shot *reference, struct err *err)
 {
-	int height = job->conf->scene.map_size >= 1024 ? 512 : 256, lamps = 0;
+	int height = job->conf->scene.map_size >= 1024 ? 512 : 256;
 	if (job->conf->environment) {
 		if (!envmap_load(&job->studio, stage_path(job->stage, "%s", job->conf->environment), err))
 			return false;
@@ -63,8 +64,8 @@ static bool environments(struct job *job, const struct shot *reference, struct e
 	if (job->conf->polarised)
 		job->photo_env = light_studio(height);
 	else
-		job->photo_env = light_of_photo(reference, job->eye, height, &lamps);
-	stage_figure(job->stage, "lamps_found", lamps, "");
+		job->photo_env = light_of_photo(reference, job->eye, height, &job->lamps);
+	stage_figure(job->stage, "lamps_found", job->lamps, "");
 	return true;
 }
 
@@ -164,16 +165,24 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	in[n++] = shot->photo->file;
 	const char *png = output(job, shot->photo->name, "_view.png"), *exr = output(job, shot->photo->name, "_view.exr");
 	const char *compare = output(job, shot->photo->name, "_compare.png");
+	const char *numbers = output(job, shot->photo->name, "_compare.json");
 	bool need_exr = job->conf->exr && stale(job, exr, n, in), need_png = stale(job, png, n, in);
-	if (!need_exr && !need_png && !stale(job, compare, n, in))
+	bool need_compare = stale(job, compare, n, in), need_numbers = stale(job, numbers, n, in);
+	if (!need_exr && !need_png && !need_compare && !need_numbers)
 		return true;
 	if (!prepare(job, err) || !shot_decode(job, shot, err))
 		return false;
 	struct scene_lighting light = scene_lighting(&job->photo_env, job->conf->lights, !job->conf->polarised);
 	struct scene_view view = scene_view_photo(&shot->fit, shot->window, shot->scale);
-	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1), beside = compare_shot(job, shot, &seen);
+	json_t *figures;
+	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
+	struct image beside = compare_shot(job, shot, &seen, &figures);
 	bool ok = picture_save(job, png, &seen, n, in, err) && picture_save(job, compare, &beside, n, in, err)
-	          && (!job->conf->exr || picture_save_exr(job, exr, &rgba, n, in, err));
+	          && (!job->conf->exr || picture_save_exr(job, exr, &rgba, n, in, err))
+	          && json_write(stage_path(job->stage, "%s", numbers), figures, stage_made_by(job->stage, n, in), err)
+	          && stage_made(job->stage, numbers, n, in, err);
+	job->worst = fmax(job->worst, json_number_value(json_object_get(figures, "difference_mean")));
+	json_decref(figures);
 	image_free(&rgba);
 	image_free(&seen);
 	image_free(&beside);
@@ -201,6 +210,8 @@ static void figures(struct job *job)
 {
 	if (!job->seconds)
 		return;
+	if (job->worst > 0)
+		stage_figure(job->stage, "difference_from_photograph", job->worst, "CIEDE2000, mean inside the iris, the worst photograph");
 	stage_figure(job->stage, "rays", (double)job->count.rays / 1e6, "million");
 	stage_figure(job->stage, "tracing", job->seconds, "s");
 	stage_figure(job->stage, "speed", (double)job->count.rays / job->seconds / 1e6, "million rays a second");

@@ -21,7 +21,7 @@ int main(int argc, char **argv)
 		ok = render_eye(&stage, &capture, i, &eye, &conf, &err);
 	// The page is made even where a picture could not be: it says what is missing and why.
 	struct err late = { 0 };
-	if (!page_make(&stage, &capture, &late) && ok)
+	if (!page_make(&stage, &capture, &conf, &late) && ok)
 		err = late;
 	capture_free(&capture);
 	return stage_end(&stage, &err);

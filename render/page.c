@@ -1,6 +1,156 @@
-#include "render/render.h"
-bool page_make(struct stage *stage, const struct capture *capture, struct err *err)
+#include "render/page.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "base/version.h"
+#include "render/embed.h"
+
+static const char *const out = "work/review/index.html";
+
+static char *format(const char *fmt, va_list ap)
 {
-	(void)stage; (void)capture; (void)err;
-	return true;
+	char *text = 0;
+	return vasprintf(&text, fmt, ap) < 0 ? mem_str("") : text;
+}
+
+const char *page_file(struct page *page, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	char *rel = format(fmt, ap);
+	va_end(ap);
+	const char *path = stage_path(page->stage, "%s", rel);
+	free(rel);
+	return file_exists(path) ? path : 0;
+}
+
+json_t *page_json(struct page *page, const char *path)
+{
+	struct err err = { 0 };
+	json_t *root = path ? json_read(path, 1 << 24, &err) : 0;
+	if (path && !root)
+		page_say(page->missing, "%s", err.msg);
+	return root;
+}
+
+json_t *page_text(const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	char *text = format(fmt, ap);
+	va_end(ap);
+	json_t *json = template_text(text);
+	free(text);
+	return json;
+}
+
+void page_say(json_t *list, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	char *text = format(fmt, ap);
+	va_end(ap);
+	json_t *line = template_text(text), *old;
+	size_t i;
+	free(text);
+	json_array_foreach(list, i, old)
+		if (json_equal(line, old)) {
+			json_decref(line);
+			return;
+		}
+	json_array_append_new(list, line);
+}
+
+struct inputs {
+	char **rel;
+	int n;
+};
+
+__attribute__((format(printf, 2, 3)))
+static void add(struct inputs *in, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	in->rel = mem_grow(in->rel, (size_t)in->n + 1, sizeof *in->rel);
+	in->rel[in->n++] = format(fmt, ap);
+	va_end(ap);
+}
+
+/* Everything the page shows. What is not there counts, too: the page changes when it comes. */
+static struct inputs inputs(const struct capture *capture)
+{
+	static const char *const stages[] = { "calibrate", "limbus", "unrefract", "freckles", "heightfield", "pigment", "relief",
+		                                  "refraction", "track", "train", "transfer", "extrapolate", "animate" };
+	static const char *const iris[] = { "texture.exr", "texture.json", "freckles.exr", "freckles.json", "thickness.exr",
+		                                "relief.exr", "pigment.json" };
+	static const char *const pictures[] = { "front", "three_quarter", "turntable", "contact_sheet" };
+	struct inputs in = { 0 };
+	add(&in, "work/plan.json");
+	for (int i = 0; i < COUNT(stages); i++)
+		add(&in, "work/log/%s.json", stages[i]);
+	for (int e = 0; e < capture->n_eyes; e++) {
+		for (int i = 0; i < COUNT(iris); i++)
+			add(&in, "%s/%s", capture->eyes[e].iris, iris[i]);
+		for (int i = 0; i < COUNT(pictures); i++)
+			add(&in, "%s/%s.png", capture->eyes[e].render, pictures[i]);
+	}
+	for (int i = 0; i < capture->n_photos; i++) {
+		const struct capture_photo *p = &capture->photos[i];
+		add(&in, "%s", p->file);
+		add(&in, "%s", p->fit);
+		add(&in, "%s/%s_compare.png", capture->eyes[p->eye].render, p->name);
+		add(&in, "%s/%s_compare.json", capture->eyes[p->eye].render, p->name);
+	}
+	return in;
+}
+
+static json_t *data_make(struct page *page)
+{
+	double seconds;
+	char *full = realpath(page->stage->capture, 0);
+	const char *base = full && strrchr(full, '/') ? strrchr(full, '/') + 1 : "capture";
+	json_t *data = json_object(), *stages = page_stages(page, &seconds);
+	json_object_set_new(data, "title", template_text(*base ? base : "capture"));
+	json_object_set_new(data, "version", json_string(EYEWRIGHT_VERSION));
+	json_object_set_new(data, "css", json_string(page_css));
+	json_object_set_new(data, "js", json_string(page_js));
+	json_object_set_new(data, "photos", page_photos(page));
+	json_object_set_new(data, "eyes", page_eyes(page));
+	json_object_set_new(data, "stages", stages);
+	json_object_set_new(data, "seconds", page_text("%.1f", seconds));
+	json_object_set_new(data, "n_photos", page_text("%d photograph%s", page->capture->n_photos, page->capture->n_photos == 1 ? "" : "s"));
+	json_object_set(data, "advice", page->advice);
+	json_object_set(data, "missing", page->missing);
+	free(full);
+	return data;
+}
+
+bool page_make(struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err)
+{
+	struct inputs in = inputs(capture);
+	bool ok = stage_fresh(stage, out, in.n, (const char *const *)in.rel);
+	if (!ok) {
+		struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array() };
+		json_t *data = data_make(&page);
+		char *html;
+		size_t size;
+		ok = template_fill(&html, &size, page_html, data, err) && file_write(stage_path(stage, "%s", out), html, size, err)
+		     && stage_made(stage, out, in.n, (const char *const *)in.rel, err);
+		if (ok)
+			stage_note(stage, "%s, %.1f MB", stage_path(stage, "%s", out), (double)size / 1e6);
+		free(ok ? html : 0);
+		json_decref(data);
+		json_decref(page.advice);
+		json_decref(page.missing);
+	}
+	for (int i = 0; i < in.n; i++)
+		free(in.rel[i]);
+	free(in.rel);
+	return ok;
 }

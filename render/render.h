@@ -1,6 +1,8 @@
 /* render: pictures of a fitted eye, and the page that shows everything (DESIGN section 2, `render`). */
 #ifndef RENDER_RENDER_H
 #define RENDER_RENDER_H
+#include <jansson.h>
+
 #include "base/stage.h"
 #include "eye/capture.h"
 #include "eye/scene.h"
@@ -15,6 +17,7 @@ struct render_conf {
 	double three_quarter_deg[2];     // yaw, pitch
 	const char *environment;         // latitude-longitude EXR in the capture folder, or null: a studio
 	bool freckles, exr, polarised;
+	int page_px;                     // width of the page's pictures
 	double limit_mpx;
 };
 
@@ -40,6 +43,8 @@ struct job {
 	struct scene scene;
 	struct envmap studio, photo_env; // of the beauty views; of the reference photograph
 	double gain;                     // of the beauty views' exposure
+	int lamps;                       // found in the reference photograph
+	double worst;                    // largest mean difference from a photograph, CIEDE2000
 	struct scene_count count;
 	double seconds;                  // spent tracing
 };
@@ -71,14 +76,16 @@ bool picture_save(struct job *job, const char *rel, const struct image *image, i
 bool picture_save_exr(struct job *job, const char *rel, const struct image *rgba, int n_in, const char *const in[],
                       struct err *err);
 
-/* compare.c: photograph, rendering and their difference, side by side; the figures to the log. image_free. */
-struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view);
+/* compare.c: photograph, rendering and their difference, side by side, COMPARE_GAP px apart. image_free. figures: a
+ * JSON object for NAME_compare.json, json_decref. */
+enum { COMPARE_GAP = 6 };
+struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view, json_t **figures);
 
 /* sheet.c: pictures side by side; the contact sheet, from the files of this eye. image_free. */
 struct image sheet_strip(int n, const struct image frames[]);
 bool sheet_contact(struct job *job, struct err *err);
 
 /* page.c: work/review/index.html. */
-bool page_make(struct stage *stage, const struct capture *capture, struct err *err);
+bool page_make(struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err);
 
 #endif

@@ -1,13 +1,13 @@
 #include <math.h>
 
-#include "render/compare.h"
+#include "image/colour.h"
 
 static double cube(double t)
 {
 	return t > 216.0 / 24389 ? cbrt(t) : (24389.0 / 27 * t + 16) / 116;
 }
 
-static void lab_of(double lab[3], const float rgb[3])
+void colour_lab(double lab[3], const float rgb[3])
 {
 	static const double xyz_from_rgb[3][3] = { { 0.4123908, 0.3575843, 0.1804808 },
 		                                       { 0.2126390, 0.7151687, 0.0721923 },
@@ -38,7 +38,7 @@ static double hue(double b, double a)
 	return h < 0 ? h + 360 : h;
 }
 
-static double from_lab(const double p[3], const double q[3])
+double colour_difference_lab(const double p[3], const double q[3])
 {
 	const double deg = M_PI / 180;
 	double g = 1 + 0.5 * (1 - chroma_weight((hypot(p[1], p[2]) + hypot(q[1], q[2])) / 2));
@@ -59,7 +59,7 @@ static double from_lab(const double p[3], const double q[3])
 double colour_difference(const float a[3], const float b[3])
 {
 	double p[3], q[3];
-	lab_of(p, a);
-	lab_of(q, b);
-	return from_lab(p, q);
+	colour_lab(p, a);
+	colour_lab(q, b);
+	return colour_difference_lab(p, q);
 }
