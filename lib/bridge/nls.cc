@@ -1,6 +1,7 @@
 #include "bridge/nls.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
@@ -95,18 +96,12 @@ void covariance(nls_result *result, const Matrix &J, double *cov)
 			}
 }
 
-bool solve(nls_result *result, int n, double *x, const double *lo, const double *hi, int m, nls_fn fn, void *ctx,
-           const nls_conf *conf, double *cov, err *err)
+struct Bounds {
+	const double *lo, *hi;  // null: none
+};
+
+ceres::Solver::Options options_of(const nls_conf *conf)
 {
-	ceres::Problem problem;
-	auto *block = new Block(fn, ctx, n, m, conf && conf->numeric);
-	problem.AddResidualBlock(block, nullptr, x);
-	for (int j = 0; j < n; j++) {
-		if (lo && std::isfinite(lo[j]))
-			problem.SetParameterLowerBound(x, j, lo[j]);
-		if (hi && std::isfinite(hi[j]))
-			problem.SetParameterUpperBound(x, j, hi[j]);
-	}
 	ceres::Solver::Options options;
 	options.linear_solver_type = ceres::DENSE_QR;
 	options.logging_type = ceres::SILENT;
@@ -118,21 +113,72 @@ bool solve(nls_result *result, int n, double *x, const double *lo, const double 
 		options.gradient_tolerance = conf->gtol;
 	if (conf && conf->xtol > 0)
 		options.parameter_tolerance = conf->xtol;
+	return options;
+}
+
+/* One run of Ceres from x; parameters in `held` stay where they are. */
+bool run(nls_result *result, Block *block, std::vector<double> &x, const Bounds &bounds, const std::vector<int> &held,
+         const nls_conf *conf, err *err)
+{
+	ceres::Problem::Options borrowed;
+	borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+	ceres::Problem problem(borrowed);
+	const int n = static_cast<int>(x.size());
+	problem.AddResidualBlock(block, nullptr, x.data());
+	for (int j = 0; j < n; j++) {
+		if (bounds.lo && std::isfinite(bounds.lo[j]))
+			problem.SetParameterLowerBound(x.data(), j, bounds.lo[j]);
+		if (bounds.hi && std::isfinite(bounds.hi[j]))
+			problem.SetParameterUpperBound(x.data(), j, bounds.hi[j]);
+	}
+	if (!held.empty())
+		problem.SetManifold(x.data(), new ceres::SubsetManifold(n, held));
 	ceres::Solver::Summary summary;
-	ceres::Solve(options, &problem, &summary);
+	ceres::Solve(options_of(conf), &problem, &summary);
 	if (!summary.IsSolutionUsable())
 		return err_set(err, "least squares: no usable solution");
-	*result = {};
-	result->cost0 = summary.initial_cost;
 	result->cost = summary.final_cost;
-	result->iterations = static_cast<int>(summary.iterations.size()) - 1;
+	result->iterations += static_cast<int>(summary.iterations.size()) - 1;
 	result->converged = summary.termination_type == ceres::CONVERGENCE;
-	std::vector<double> r(m);
+	if (held.empty())
+		result->cost0 = summary.initial_cost;
+	return true;
+}
+
+/* Parameters that stand at a bound and would descend further behind it. */
+std::vector<int> pressed(const std::vector<double> &x, const Bounds &bounds, const Eigen::VectorXd &gradient)
+{
+	std::vector<int> held;
+	for (int j = 0; j < static_cast<int>(x.size()); j++)
+		if ((bounds.lo && x[j] <= bounds.lo[j] && gradient[j] > 0) || (bounds.hi && x[j] >= bounds.hi[j] && gradient[j] < 0))
+			held.push_back(j);
+	return held;
+}
+
+/* Ceres clips its step at the bounds, which changes its direction: with correlated parameters and a bound that is
+ * reached it stops short of the minimum. So what presses against a bound is held there, and the rest solved again,
+ * until the same parameters press. */
+bool solve(nls_result *result, int n, double *x, const Bounds &bounds, int m, nls_fn fn, void *ctx,
+           const nls_conf *conf, double *cov, err *err)
+{
+	Block block(fn, ctx, n, m, conf && conf->numeric);
+	std::vector<double> at(x, x + n), r(m);
+	std::vector<int> held, before;
 	Matrix J(m, n);
-	const double *at = x;
-	double *jacobian = J.data();
-	if (!block->Evaluate(&at, r.data(), &jacobian))
-		return err_set(err, "least squares: no derivatives at the solution");
+	*result = {};
+	for (int round = 0; round < 2 * n + 2; round++) {
+		if (static_cast<int>(held.size()) < n && !run(result, &block, at, bounds, held, conf, err))
+			return false;
+		const double *values = at.data();
+		double *jacobian = J.data();
+		if (!block.Evaluate(&values, r.data(), &jacobian))
+			return err_set(err, "least squares: no derivatives at the solution");
+		before = held;
+		held = pressed(at, bounds, J.transpose() * Eigen::Map<Eigen::VectorXd>(r.data(), m));
+		if (held == before)
+			break;
+	}
+	std::copy(at.begin(), at.end(), x);
 	covariance(result, J, cov);
 	return true;
 }
@@ -143,7 +189,8 @@ bool nls_solve(nls_result *result, int n, double *x, const double *lo, const dou
                const nls_conf *conf, double *cov, err *err)
 {
 	try {
-		return solve(result, n, x, lo, hi, m, fn, ctx, conf, cov, err);
+		FLAGS_minloglevel = google::GLOG_FATAL;  // what goes wrong comes back through struct err
+		return solve(result, n, x, Bounds{ lo, hi }, m, fn, ctx, conf, cov, err);
 	} catch (const std::exception &e) {
 		return err_set(err, "least squares: %s", e.what());
 	}
