@@ -7,24 +7,41 @@
 
 enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };
 
-/* How much rather lid than iris each cell of the sheet is: positive where it is unlike its ring. */
+/* How unlike its ring each cell of the sheet is in one plane, the most of the planes so far; NAN where unseen. */
+static void add_evidence(float (*cell)[RINGS], const float *plane, const float *weight, const struct sheet *sheet)
+{
+	const float least_spread = 0.2f;  // log: shading alone makes as much
+	double to = sheet->size / (2 * sheet->extent);
+	struct rings rings = rings_of(plane, weight, sheet, true, least_spread);
+	rings_even(&rings);
+	for (int a = 0; a < ANGLES; a++)
+		for (int r = 0; r < RINGS; r++) {
+			double p[2], t = (r + 0.5) / RINGS;
+			sheet_point(p, sheet, t, 2 * M_PI * (a + 0.5) / ANGLES);
+			double x = (p[0] + sheet->extent) * to, y = (p[1] + sheet->extent) * to;
+			float z = fabsf(rings_z(&rings, plane_sample(plane, sheet->size, sheet->size, x, y), t));
+			bool seen = plane_sample(weight, sheet->size, sheet->size, x, y) >= 0.5f;
+			cell[a][r] = seen ? fmaxf(cell[a][r], z) : NAN;
+		}
+}
+
+/* Positive where rather lid than iris: in brightness, or in hue, which shading leaves alone. */
 static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *weight,
                          const struct sheet *sheet, double lid_z)
 {
-	double to = sheet->size / (2 * sheet->extent);
-	for (int c = 0; c < 3; c++) {
-		struct rings rings = rings_of(logs[c], weight, sheet, true, 0.2f);
-		for (int a = 0; a < ANGLES; a++)
-			for (int r = 0; r < RINGS; r++) {
-				double p[2], t = (r + 0.5) / RINGS;
-				sheet_point(p, sheet, t, 2 * M_PI * (a + 0.5) / ANGLES);
-				double x = (p[0] + sheet->extent) * to, y = (p[1] + sheet->extent) * to;
-				float z = fabsf(rings_z(&rings, plane_sample(logs[c], sheet->size, sheet->size, x, y), t));
-				float seen = plane_sample(weight, sheet->size, sheet->size, x, y);
-				float e = seen < 0.5f ? 0 : fminf(z, 2 * (float)lid_z) - (float)lid_z;
-				cell[a][r] = c && e < cell[a][r] ? cell[a][r] : e;
-			}
+	long n = (long)sheet->size * sheet->size;
+	float *hue = mem_array((size_t)n, sizeof *hue);
+	for (int c = 0; c < 3; c++)
+		add_evidence(cell, logs[c], weight, sheet);
+	for (int c = 0; c < 2; c++) {
+		for (long i = 0; i < n; i++)
+			hue[i] = logs[c][i] - logs[c + 1][i];
+		add_evidence(cell, hue, weight, sheet);
 	}
+	for (int a = 0; a < ANGLES; a++)
+		for (int r = 0; r < RINGS; r++)
+			cell[a][r] = isfinite(cell[a][r]) ? fminf(cell[a][r], 2 * (float)lid_z) - (float)lid_z : 0;
+	free(hue);
 }
 
 /* The best closed path: at each angle the first covered ring, RINGS where open. Dynamic programming twice round, so
@@ -77,7 +94,7 @@ static void drop_short(int path[ANGLES])
 void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], const float *weight,
                     const struct sheet *sheet, const struct unrefract_conf *conf)
 {
-	float(*cell)[RINGS] = mem_array(ANGLES, sizeof *cell);
+	float(*cell)[RINGS] = mem_new(ANGLES, sizeof *cell);
 	float(*gain)[RINGS + 1] = mem_array(ANGLES, sizeof *gain);
 	lid_evidence(cell, logs, weight, sheet, conf->lid_z);
 	for (int a = 0; a < ANGLES; a++) {

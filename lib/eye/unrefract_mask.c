@@ -76,20 +76,6 @@ static void iris_weight(float *weight, const struct work *work, const float *see
 		weight[i] = work->kind[i] == IRIS ? seen[i] : 0;
 }
 
-/* Where the ring's spread is that of the pupil's or the limbus' blur, that of the other rings counts. */
-static void even_scale(struct rings *rings)
-{
-	float sorted[SHEET_RINGS];
-	for (int i = 0; i < SHEET_RINGS; i++) {
-		int k = i;
-		for (; k > 0 && sorted[k - 1] > rings->scale[i]; k--)
-			sorted[k] = sorted[k - 1];
-		sorted[k] = rings->scale[i];
-	}
-	for (int i = 0; i < SHEET_RINGS; i++)
-		rings->scale[i] = fminf(rings->scale[i], 1.2f * sorted[SHEET_RINGS / 2]);
-}
-
 /* A reflection adds its own white: the iris' weakest colour gains on its strongest, by the more the further apart they
  * are. A pale fibre scales all, a yellow fleck keeps its hue. */
 static bool turns_white(const float log_rgb[3], const struct rings rings[3], int weak, double t)
@@ -136,10 +122,10 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	for (int k = 0; k < 3; k++)
 		rings[k] = rings_of(work->log[k], weight, sheet, false, 0.12f);
 	int c = darkest_channel(rings);
-	even_scale(&rings[c]);
+	rings_even(&rings[c]);
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
-		bool here = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.93f;
+		bool here = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.9f;  // beyond: the limbus' haze
 		// a yellow fleck may saturate red; a light saturates nearly all
 		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated
 		            && fminf(rgb[0], fminf(rgb[1], rgb[2])) > 0.5f * (float)conf->saturated;
@@ -212,10 +198,9 @@ static void weigh(struct unrefract_survey *survey, const struct work *work, cons
 	free(bad);
 }
 
-void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct sheet *sheet, double coverage,
+void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct sheet *sheet,
                     const struct unrefract_conf *conf)
 {
-	const double open_limbus = 0.985;  // the fit saw all of the limbus: there is no lid to look for
 	int size = survey->size;
 	size_t n = (size_t)size * (size_t)size;
 	struct work work = { .size = size, .texel = 2 * survey->extent / size };
@@ -229,10 +214,8 @@ void unrefract_mask(struct unrefract_survey *survey, const float *seen, const st
 			work.t[i] = (float)sheet_t(sheet, plane_mm(x, survey), plane_mm(y, survey));
 			work.kind[i] = seen[i] > 0 && work.t[i] > 0 && work.t[i] < 1 ? IRIS : OUTSIDE;
 		}
-	if (coverage < open_limbus)
-		mark_lids(&work, survey, seen, sheet, conf);
-	if (coverage < open_limbus)
-		mark_lashes(&work, survey, seen, conf);
+	mark_lids(&work, survey, seen, sheet, conf);
+	mark_lashes(&work, survey, seen, conf);
 	mark_glints(&work, survey, seen, sheet, conf);
 	weigh(survey, &work, seen);
 	for (int c = 0; c < 3; c++)

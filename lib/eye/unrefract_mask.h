@@ -23,13 +23,14 @@ struct rings {
 /* favour: the ring's left and right count more than top and bottom, which lids cover. min_scale: floor of scale. */
 struct rings rings_of(const float *plane, const float *weight, const struct sheet *sheet, bool favour,
                       float min_scale);
+/* Where a ring's spread is that of the pupil's or the limbus' blur, that of the other rings counts. */
+void rings_even(struct rings *rings);
 float rings_median(const struct rings *rings, double t);
 /* (value − median) / scale at parameter t. */
 float rings_z(const struct rings *rings, float value, double t);
 
-/* survey->rgb given: fills weight, lid_share, glint_share. seen: [size][size] 1 where the photograph shows the texel.
- * coverage: share of the limbus that the fit saw. */
-void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct sheet *sheet, double coverage,
+/* survey->rgb given: fills weight, lid_share, glint_share. seen: [size][size] 1 where the photograph shows the texel. */
+void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct sheet *sheet,
                     const struct unrefract_conf *conf);
 
 /* Part of the mask: for each angle, the parameter t beyond which a lid covers the iris; 1: open. */

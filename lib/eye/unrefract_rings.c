@@ -85,6 +85,19 @@ struct rings rings_of(const float *plane, const float *weight, const struct shee
 	return rings;
 }
 
+void rings_even(struct rings *rings)
+{
+	float sorted[SHEET_RINGS];
+	for (int i = 0; i < SHEET_RINGS; i++) {
+		int k = i;
+		for (; k > 0 && sorted[k - 1] > rings->scale[i]; k--)
+			sorted[k] = sorted[k - 1];
+		sorted[k] = rings->scale[i];
+	}
+	for (int i = 0; i < SHEET_RINGS; i++)
+		rings->scale[i] = fminf(rings->scale[i], 1.2f * sorted[SHEET_RINGS / 2]);
+}
+
 static float between(const float v[SHEET_RINGS], double t)
 {
 	double at = fmin(fmax(t * SHEET_RINGS - 0.5, 0), SHEET_RINGS - 1.001);

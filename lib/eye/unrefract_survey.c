@@ -96,7 +96,7 @@ static void look(struct unrefract_view *view, const struct iris_map *map, double
 	if (!(view->pupil.r > 0))
 		view->pupil = pupil_from_rings(lum, seen, s->size, s->extent, limbus);
 	struct sheet sheet = { s->size, s->extent, view->pupil, limbus };
-	unrefract_mask(s, seen, &sheet, view->fit->coverage, conf);
+	unrefract_mask(s, seen, &sheet, conf);
 	free(lum);
 	free(seen);
 	take_detail(s, 2 * s->extent / s->size);
