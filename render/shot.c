@@ -48,7 +48,7 @@ bool shots_load(struct job *job, const struct capture *capture, int eye_index, s
 		if (!fit_load(&shot.fit, path, err))
 			return false;
 		if (!shot.fit.ok) {
-			stage_skipped(job->stage, "%s: its fit was rejected: %s", photo->name, shot.fit.reason);
+			stage_skipped_as_said(job->stage, "%s: its fit was rejected: %s", photo->name, shot.fit.reason);
 			continue;
 		}
 		window_make(&shot, job->conf->photo_px);

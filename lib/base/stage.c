@@ -205,16 +205,31 @@ void stage_figure(struct stage *stage, const char *key, double value, const char
 	say_log_figure(key, value, unit);
 }
 
+static char *text_of(const char *fmt, va_list ap)
+{
+	char *text = 0;
+	return vasprintf(&text, fmt, ap) < 0 ? mem_str("") : text;
+}
+
 void stage_skipped(struct stage *stage, const char *fmt, ...)
 {
 	va_list ap;
-	char *text = 0;
 	va_start(ap, fmt);
-	if (vasprintf(&text, fmt, ap) < 0)
-		text = mem_str("");
+	char *text = text_of(fmt, ap);
 	va_end(ap);
 	say_log_skipped(text);
 	stage_note(stage, "skipped: %s", text);
+	free(text);
+}
+
+void stage_skipped_as_said(struct stage *stage, const char *fmt, ...)
+{
+	va_list ap;
+	(void)stage;
+	va_start(ap, fmt);
+	char *text = text_of(fmt, ap);
+	va_end(ap);
+	say_log_skipped(text);
 	free(text);
 }
 

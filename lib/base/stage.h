@@ -83,6 +83,10 @@ void stage_figure(struct stage *stage, const char *key, double value, const char
 __attribute__((format(printf, 2, 3)))
 void stage_skipped(struct stage *stage, const char *fmt, ...);
 
+/* The same for what another line, of this stage or of one before, has said already: recorded, not printed. */
+__attribute__((format(printf, 2, 3)))
+void stage_skipped_as_said(struct stage *stage, const char *fmt, ...);
+
 /* Writes the record and the log; prints the error, if any. Returns the exit status: 0, or 1 with an error. */
 int stage_end(struct stage *stage, struct err *err);
 

@@ -160,7 +160,7 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 	if (r->ok)
 		note(w, i, &fit, &pose);
 	else
-		stage_skipped(w->stage, "%s: %s", p->file, r->reason);
+		stage_skipped_as_said(w->stage, "%s: %s", p->file, r->reason);
 	char *png = mem_printf("work/limbus/%s.png", p->name), *extra = r->ok ? extra_of(r, &pose) : 0;
 	bool ok = true;
 	if (!stage_fresh(w->stage, p->fit, n_in, in))

@@ -43,7 +43,7 @@ static void gather(struct work *w, int index)
 		if (!fit_load(fit, stage_path(w->run->stage, "%s", photo->fit), &err)) {
 			stage_warn(w->run->stage, "%s: left out: %s", photo->file, err.msg);
 		} else if (!fit->ok) {
-			stage_skipped(w->run->stage, "%s: %s", photo->file, fit->reason);
+			stage_skipped_as_said(w->run->stage, "%s: %s", photo->file, fit->reason);
 		} else {
 			w->inputs[2 * w->n] = photo->file;
 			w->inputs[2 * w->n + 1] = photo->fit;

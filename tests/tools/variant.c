@@ -1,0 +1,151 @@
+/* variant: one photograph made into another, for the scripts of tests/chain.
+ *
+ *     variant KIND IN OUT
+ * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/exr.h"
+#include "image/photo.h"
+#include "tests/lib/variant.h"
+
+static struct pixels crop(const struct photo *photo, int x0, int y0, int width, int height, int step)
+{
+	struct pixels p = { width / step, height / step, 3, 0 };
+	p.px = mem_array((size_t)p.width * (size_t)p.height * 3, sizeof *p.px);
+	for (int y = 0; y < p.height; y++)
+		for (int x = 0; x < p.width; x++)
+			memcpy(p.px + 3 * ((long)y * p.width + x),
+			       photo->rgb + 3 * ((long)(y0 + y * step) * photo->width + x0 + x * step), 3 * sizeof *p.px);
+	return p;
+}
+
+/* Exposure in linear light, clipped as a sensor does. */
+static void expose(struct pixels *p, double gain)
+{
+	for (long i = 0; i < (long)p->width * p->height * 3; i++) {
+		float v = linear_from_srgb((float)p->px[i] / 65535) * (float)gain;
+		p->px[i] = (uint16_t)(65535 * srgb_from_linear(v < 1 ? v : 1));
+	}
+}
+
+static double uniform(unsigned *seed)
+{
+	*seed = *seed * 1664525u + 1013904223u;
+	return (*seed >> 8) / 16777216.0;
+}
+
+/* Skin with a fold where the lids meet, and its grain: a closed eye has no limbus. */
+static void paint_closed(struct pixels *p)
+{
+	unsigned seed = 1;
+	for (int y = 0; y < p->height; y++)
+		for (int x = 0; x < p->width; x++) {
+			double u = (x - 0.5 * p->width) / p->width, fold = y - p->height * (0.6 - 0.5 * u * u);
+			double shade = 0.75 + 0.1 * sin(0.004 * x + 0.006 * y) - 0.45 * exp(-fold * fold / 60) + 0.05 * uniform(&seed);
+			for (int c = 0; c < 3; c++)
+				p->px[3 * ((long)y * p->width + x) + c] = (uint16_t)(65535 * shade * (1 - 0.17 * c));
+		}
+}
+
+static void paint_noise(struct pixels *p)
+{
+	unsigned seed = 2;
+	for (long i = 0; i < (long)p->width * p->height * 3; i++)
+		p->px[i] = (uint16_t)(65535 * uniform(&seed));
+}
+
+static struct pixels grey_of(const struct pixels *p)
+{
+	struct pixels g = { p->width, p->height, 1, mem_array((size_t)p->width * (size_t)p->height, 2) };
+	for (long i = 0; i < (long)p->width * p->height; i++)
+		g.px[i] = (uint16_t)((p->px[3 * i] * 2 + p->px[3 * i + 1] * 5 + p->px[3 * i + 2]) / 8);
+	return g;
+}
+
+static struct pixels inks_of(const struct pixels *p)
+{
+	struct pixels c = { p->width, p->height, 4, mem_new((size_t)p->width * (size_t)p->height * 4, 2) };
+	for (long i = 0; i < (long)p->width * p->height; i++)
+		for (int k = 0; k < 3; k++)
+			c.px[4 * i + k] = (uint16_t)(65535 - p->px[3 * i + k]);
+	return c;
+}
+
+static bool write_exr(const struct pixels *p, const char *out, struct err *err)
+{
+	static const char *const rgb[] = { "R", "G", "B" };
+	struct image image = image_new(p->width, p->height, 3);
+	for (long i = 0; i < (long)p->width * p->height * 3; i++)
+		image.px[i] = linear_from_srgb((float)p->px[i] / 65535);
+	bool ok = exr_write(out, &image, rgb, EXR_FLOAT, 0, err);
+	image_free(&image);
+	return ok;
+}
+
+static struct blob encode(const char *kind, struct pixels *p)
+{
+	struct pixels other = { 0 };
+	struct blob b;
+	if (!strcmp(kind, "grey")) {
+		other = grey_of(p);
+		b = encode_jpeg(&other, 0);
+	} else if (!strcmp(kind, "cmyk")) {
+		other = inks_of(p);
+		b = encode_jpeg(&other, 1);
+	} else if (!strcmp(kind, "png8"))
+		b = encode_png(p, 8);
+	else if (!strcmp(kind, "png16"))
+		b = encode_png(p, 16);
+	else if (!strcmp(kind, "tiff16"))
+		b = encode_tiff(p, 16, AS_LZW, 1);
+	else
+		b = encode_jpeg(p, 0);
+	if (!strcmp(kind, "mpx200"))
+		claim_size(b, 20000, 10000);
+	if (!strcmp(kind, "truncated"))
+		b.size /= 2;
+	pixels_free(&other);
+	return b;
+}
+
+int main(int argc, char **argv)
+{
+	struct photo photo;
+	struct err err = { 0 };
+	if (argc != 4) {
+		fprintf(stderr, "variant: KIND IN OUT\n");
+		return 2;
+	}
+	const char *kind = argv[1];
+	if (!photo_load(&photo, argv[2], 200, &err)) {
+		fprintf(stderr, "variant: %s\n", err.msg);
+		return 1;
+	}
+	int w = photo.width, h = photo.height;
+	bool cut = !strcmp(kind, "cut");  // through the middle of the iris
+	struct pixels p = crop(&photo, 0, 0, cut ? w / 2 : w, h, strcmp(kind, "half") ? 1 : 2);
+	expose(&p, !strcmp(kind, "over") ? 30 : !strcmp(kind, "under") ? 0.01 : !strcmp(kind, "dark") ? 0.1 : 1);
+	if (!strcmp(kind, "closed"))
+		paint_closed(&p);
+	if (!strcmp(kind, "noise"))
+		paint_noise(&p);
+	bool ok;
+	if (!strcmp(kind, "exr"))
+		ok = write_exr(&p, argv[3], &err);
+	else {
+		struct blob b = encode(kind, &p);
+		ok = file_write(argv[3], b.data, b.size, &err);
+		free(b.data);
+	}
+	pixels_free(&p);
+	photo_free(&photo);
+	if (!ok)
+		fprintf(stderr, "variant: %s\n", err.msg);
+	return ok ? 0 : 1;
+}
