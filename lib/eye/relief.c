@@ -17,7 +17,7 @@ struct problem {
 	double scale;               // texels a mm
 	const struct relief_conf *conf;
 	struct relief_table table;
-	double share, sigma;        // lateral spread; sigma mm
+	float kappa;                // darkening of hollows, per mm
 	float *base, *band;         // ln thickness below all bands; [size][size][B]
 	float *weight, *detail;     // of the photograph: weight, and ln luminance without its coarse part
 	float *weight_coarse;       // the weight's own coarse mean
@@ -53,26 +53,28 @@ static bool without_coarse(float *map, struct problem *p, struct err *err)
 static bool render(struct problem *p, const double gain[B], struct err *err)
 {
 	long n = (long)p->size * p->size;
+	float kappa = p->kappa;
+#pragma omp parallel for schedule(static)
 	for (long i = 0; i < n; i++) {
 		float t = p->base[i], f;
 		for (int b = 0; b < B; b++)
 			t += (1 + (float)gain[b]) * p->band[B * i + b];
 		int k = relief_place(&p->table, t, &f);
-		float slope = p->table.slope[k] + f * (p->table.slope[k + 1] - p->table.slope[k]);
-		p->part[4 * i + B] = p->table.light[k] + f * (p->table.light[k + 1] - p->table.light[k]);
-		for (int b = 0; b < B; b++)
-			p->part[4 * i + b] = slope * p->band[B * i + b];
+		float light = fmaxf(p->table.light[k] + f * (p->table.light[k + 1] - p->table.light[k]), 1e-6f);
+		float slope = (p->table.slope[k] + f * (p->table.slope[k + 1] - p->table.slope[k])) / light;
+		float thick = expf(t), *part = p->part + 4 * i, *wide = p->wide + 4 * i;
+		for (int b = 0; b < B; b++) {
+			wide[b] = kappa * thick * p->band[B * i + b];
+			part[b] = slope * p->band[B * i + b] + wide[b];
+		}
+		wide[B] = kappa * thick;
+		part[B] = logf(light) + wide[B];
 	}
-	if (!blur(p->wide, p->part, p, 4, p->sigma, err))
-		return false;
-	for (long i = 0; i < n; i++) {
-		float *s = p->part + 4 * i;
-		for (int c = 0; c < 4; c++)
-			s[c] += (float)p->share * (p->wide[4 * i + c] - s[c]);
-		float light = fmaxf(s[B], 1e-6f);
-		for (int b = 0; b < B; b++)
-			s[b] /= light;
-		s[B] = logf(light);
+	if (kappa > 0) {
+		if (!blur(p->wide, p->wide, p, 4, p->conf->reach, err))
+			return false;
+		for (long i = 0; i < 4 * n; i++)
+			p->part[i] -= p->wide[i];
 	}
 	return without_coarse(p->part, p, err);
 }
@@ -214,9 +216,8 @@ bool relief_solve(struct relief_fit *fit, const struct image *clean, const struc
 	struct problem *p = problem_new(extent, conf);
 	struct tissue tissue = pigment_tissue(x, pigment);
 	relief_table_make(&p->table, conf->low, conf->high, white, x, pigment);
-	relief_spread(&p->share, &p->sigma, &tissue, conf, pigment, 0.45);
-	fit->spread_mm = p->sigma;
-	fit->spread_share = p->share;
+	fit->kappa = conf->occlusion * relief_kappa(&tissue);
+	p->kappa = (float)(fit->kappa / conf->reach);
 	bool ok = cut(p, thickness, err) && look(p, clean, extent, pupil, root, err);
 	if (ok && p->n < 100)
 		ok = err_set(err, "iris texture: %d texels were seen: too few for its relief", p->n);

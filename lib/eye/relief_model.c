@@ -36,19 +36,16 @@ void relief_table_make(struct relief_table *t, double low, double high, const do
 	}
 }
 
-void relief_spread(double *share, double *sigma, const struct tissue *tissue, const struct relief_conf *conf,
-                   const struct pigment_conf *pigment, double stroma)
+double relief_kappa(const struct tissue *tissue)
 {
 	const double nm = 550;  // where luminance is
-	double scatter = tissue_scattering(nm), source[] = { scatter, scatter * tissue->thickness_scale };
-	double extinction[] = {
-		scatter + tissue_absorption(&tissue->layer[TISSUE_ABL], nm),
-		tissue->thickness_scale * (scatter + tissue_absorption(&tissue->layer[TISSUE_STROMA], nm)),
-	};
-	double one = tissue_reflectance_one(extinction, source, tissue->abl_thickness, stroma, pigment->cos_view, pigment->cos_light);
-	double all = tissue_reflectance_all(extinction, source, tissue->abl_thickness, stroma, pigment->cos_view, pigment->cos_light);
-	*share = fmin(fmax(1 - one / all, 0), 1);
-	*sigma = conf->spread / (extinction[TISSUE_STROMA] + 1 / stroma);
+	double scatter = tissue_scattering(nm), share[TISSUE_LAYERS];
+	for (int l = 0; l < TISSUE_LAYERS; l++) {
+		double absorb = tissue_absorption(&tissue->layer[l], nm);
+		share[l] = absorb / (absorb + scatter);
+	}
+	double extinction = tissue->thickness_scale * scatter / (1 - share[TISSUE_STROMA]);
+	return sqrt(extinction / 4) * (0.08 * share[TISSUE_ABL] + 0.42 * share[TISSUE_STROMA]);
 }
 
 static void shade(struct image *out, const struct image *thickness, const struct relief_table *table)
@@ -69,16 +66,22 @@ bool relief_render(struct image *out, const struct image *thickness, double exte
 {
 	struct relief_table *table = mem_new(1, sizeof *table);
 	struct tissue tissue = pigment_tissue(x, pigment);
-	double share, sigma;
+	float kappa = (float)(conf->occlusion * relief_kappa(&tissue) / conf->reach);
+	int n = thickness->width;
+	float *one = mem_array((size_t)n * n, sizeof *one), *wide = mem_array((size_t)n * n, sizeof *wide);
 	relief_table_make(table, conf->low, conf->high, white, x, pigment);
-	relief_spread(&share, &sigma, &tissue, conf, pigment, 0.45);
-	*out = image_new(thickness->width, thickness->height, 3);
-	struct image wide = image_new(thickness->width, thickness->height, 3);
+	*out = image_new(n, n, 3);
 	shade(out, thickness, table);
-	bool ok = cv_blur(wide.px, out->px, out->width, out->height, 3, sigma * out->width / (2 * extent), err);
-	for (long i = 0; ok && i < 3L * out->width * out->height; i++)
-		out->px[i] += (float)share * (wide.px[i] - out->px[i]);
-	image_free(&wide);
+	for (long i = 0; i < (long)n * n; i++)
+		one[i] = thickness->px[i * thickness->channels];
+	bool ok = cv_blur(wide, one, n, n, 1, conf->reach * n / (2 * extent), err);
+	for (long i = 0; ok && i < (long)n * n; i++) {
+		float f = expf(kappa * (one[i] - wide[i]));
+		for (int c = 0; c < 3; c++)
+			out->px[3 * i + c] *= f;
+	}
+	free(one);
+	free(wide);
 	free(table);
 	if (!ok)
 		image_free(out);

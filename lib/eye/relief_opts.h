@@ -9,7 +9,8 @@
 	OPT_REALS("tissue.filter_mm", (r)->band, RELIEF_BANDS, 0.005, 2, "mm", "Gaussians between the filter's bands"), \
 	OPT_REAL("tissue.relief_sigma", &(r)->relief_sigma, 0.01, 10, "", "prior: rms of ln thickness about the coarse field, each band"), \
 	OPT_REAL("tissue.filter_pitch_mm", &(r)->pitch, 0.01, 0.5, "mm", "texels of the fit"), \
-	OPT_REAL("tissue.spread", &(r)->spread, 0, 5, "", "lateral spread of light over the mean free path"), \
+	OPT_REAL("tissue.occlusion", &(r)->occlusion, 0, 5, "", "how much hollows are darkened, of what Monte Carlo finds"), \
+	OPT_REAL("tissue.occlusion_mm", &(r)->reach, 0.01, 1, "mm", "how far that reaches"), \
 	OPT_REAL("tissue.light_error", &(r)->model_error, 0.01, 5, "", "error of ln luminance"), \
 	OPT_REALS("tissue.thickness_mm", range, 2, 0.01, 3, "mm", "least and largest thickness")
 

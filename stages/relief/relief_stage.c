@@ -80,8 +80,7 @@ static bool save_fit(const struct work *w, const struct relief_conf *c, const ch
 	json_object_set_new(out, "residual", json_number(f->after));
 	json_object_set_new(out, "contrast", json_number(f->contrast));
 	json_object_set_new(out, "light_per_thickness", json_number(f->slope));
-	json_object_set_new(out, "spread_mm", json_number(f->spread_mm));
-	json_object_set_new(out, "spread_share", json_number(f->spread_share));
+	json_object_set_new(out, "kappa", json_number(f->kappa));
 	json_object_set_new(out, "height_rms_mm", json_number(w->height_rms));
 	bool ok = json_write(path, out, made_by, err);
 	json_decref(out);
@@ -96,7 +95,7 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 	stage_figure(stage, "detail_residual", 100 * f->after, "%");
 	stage_figure(stage, "detail_residual_coarse", 100 * f->before, "%");
 	stage_figure(stage, "height_rms", w->height_rms, "mm");
-	if (f->slope < 0.1)
+	if (f->slope < 0.1 && f->kappa < 0.05)
 		stage_skipped(stage, "%s: the stroma is so pigmented that its brightness says little about its thickness (%.2f %% of light "
 		              "for 1 %% of thickness): its relief is the coarse field, lighter for thicker, not measured",
 		              eye->side, f->slope);
