@@ -7,7 +7,7 @@
 
 #include "eye/tissue.h"
 
-enum { CELLS_ABL = 5, CELLS_STROMA = 13, CELLS = CELLS_ABL + CELLS_STROMA };
+enum { CELLS_ABL = 4, CELLS_STROMA = 14, CELLS = CELLS_ABL + CELLS_STROMA };
 
 /* Third exponential integral, to 2e-7: E1 by the series and the rational fit of Abramowitz and Stegun (5.1.53, 5.1.56),
  * then the recurrence. */
@@ -29,14 +29,13 @@ static double e3(double x)
 	return (e * (1 - x) + x * x * e1) / 2;
 }
 
-/* Edges of n cells over optical depth `depth`, each `grow` times as deep as the one above. Returns the last. */
-static double *cut(double *edge, double from, double depth, int n, double grow)
+/* Edges of n cells over optical depth `depth`, finer on top the deeper it is: powers found by trying, against 120 cells:
+ * mean error 0.2 %, worst 3 % where the stroma is 20 deep. Returns the last. */
+static double *cut(double *edge, double from, double depth, int n)
 {
-	double sum = grow == 1 ? n : (pow(grow, n) - 1) / (grow - 1), step = depth / sum, at = from;
-	for (int i = 0; i < n; i++, step *= grow) {
-		at += step;
-		*++edge = at;
-	}
+	double power = 1 + 0.35 * log1p(depth / 4);
+	for (int i = 1; i <= n; i++)
+		*++edge = from + depth * pow((double)i / n, power);
 	return edge;
 }
 
@@ -83,8 +82,8 @@ double tissue_reflectance_all(const double extinction[TISSUE_LAYERS], const doub
 	double edge[CELLS + 1] = { 0 }, k[CELLS][CELLS], a[CELLS][CELLS], first[CELLS], rest[CELLS];
 	double depth = extinction[TISSUE_ABL] * abl;
 	// A layer of no thickness still needs cells that can be divided by; deeper than 30 nothing comes back.
-	double *last = cut(edge, 0, fmin(fmax(depth, 1e-7), 30), CELLS_ABL, 1);
-	cut(last, *last, fmin(fmax(extinction[TISSUE_STROMA] * stroma, 1e-7), 30), CELLS_STROMA, 1.12);
+	double *last = cut(edge, 0, fmin(fmax(depth, 1e-7), 30), CELLS_ABL);
+	cut(last, *last, fmin(fmax(extinction[TISSUE_STROMA] * stroma, 1e-7), 30), CELLS_STROMA);
 	kernel(k, edge);
 	for (int i = 0; i < CELLS; i++)
 		first[i] = (exp(-edge[i] / cos_light) - exp(-edge[i + 1] / cos_light)) / (4 * (edge[i + 1] - edge[i]));
