@@ -208,7 +208,7 @@ static void test_files(void **state)
 /* ---- white -------------------------------------------------------------------------------------------------------- */
 enum { WIDE = 600, HIGH = 400 };
 static const struct white_conf white_conf = {
-	.sclera = { 0.66, 0.55, 0.48 }, .inner = 1.1, .outer = 1.5, .redness = 0.2, .dark = 0.3, .share_min = 0.03, .card = 0.18
+	.sclera = { 0.66, 0.55, 0.48 }, .inner = 1.1, .outer = 1.5, .redness = 0.2, .reddest = 0.45, .dark = 0.3, .share_min = 0.03, .card = 0.18
 };
 
 /* An eye of semi-axis 100 px in its middle: sclera between lids that are `open` px apart, skin beyond, a clipped glint. */

@@ -91,7 +91,7 @@ bool white_sclera(struct white *out, const struct photo *photo, const struct fit
 			s[m++] = s[i];
 	qsort(s, (size_t)m, sizeof *s, by_redness);
 	int pale = 0;
-	while (pale < m && s[pale].redness < s[m / 20].redness + conf->redness)
+	while (pale < m && s[pale].redness < fmin(s[m / 50].redness + conf->redness, conf->reddest))
 		pale++;
 	bool ok = pale > conf->share_min * SAMPLES;
 	if (ok) {

@@ -18,6 +18,7 @@ struct white_conf {
 	double sclera[3];          // reflectance of the sclera
 	double inner, outer;       // the ring, in semi-axes of the limbus
 	double redness;            // ln R/G above the palest, that is skin already
+	double reddest;            // ln R/G, at which even the palest is skin
 	double dark;               // share of the ring's brightest, that is shadow already
 	double share_min;          // less sclera than that is none
 	double card;               // reflectance of the card

@@ -31,6 +31,7 @@
 	OPT_REAL("sclera_inner", &(c)->white.inner, 1, 2, "", "ring searched for sclera, in limbus semi-axes"), \
 	OPT_REAL("sclera_outer", &(c)->white.outer, 1.05, 3, "", "the same, outer"), \
 	OPT_REAL("sclera_redness", &(c)->white.redness, 0.01, 2, "", "ln R/G above the palest that is skin"), \
+	OPT_REAL("sclera_reddest", &(c)->white.reddest, 0.05, 3, "", "ln R/G that is skin in any light"), \
 	OPT_REAL("sclera_dark", &(c)->white.dark, 0, 1, "", "share of the brightest that is shadow"), \
 	OPT_REAL("sclera_share_min", &(c)->white.share_min, 0.001, 1, "", "less of the ring than that is no white"), \
 	OPT_INT("rings", &(c)->classes.rings, 1, 8, "", "classes of radius"), \
