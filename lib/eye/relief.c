@@ -160,7 +160,7 @@ static void problem_free(struct problem *p)
 static struct problem *problem_new(double extent, const struct relief_conf *conf)
 {
 	struct problem *p = mem_new(1, sizeof *p);
-	int size = (int)fmin(fmax(2 * extent / conf->pitch, 64), MAP_MAX);
+	int size = (int)fmin(fmax(round(2 * extent / conf->pitch), 48), MAP_MAX);
 	size_t n = (size_t)size * (size_t)size;
 	p->size = size;
 	p->scale = size / (2 * extent);
@@ -230,7 +230,7 @@ bool relief_solve(struct relief_fit *fit, const struct image *clean, const struc
 	}
 	if (ok && conf->filter) {
 		static const double lo[B] = { -1, -1, -1 }, hi[B] = { 6, 6, 6 };
-		const struct nls_conf nls = { .max_iter = 30, .ftol = 1e-5 };
+		const struct nls_conf nls = { .max_iter = 30, .ftol = 1e-6 };
 		struct nls_result result;
 		double cov[B][B];
 		ok = nls_solve(&result, B, fit->gain, lo, hi, p->n + B, residuals, p, &nls, &cov[0][0], err);
