@@ -64,9 +64,17 @@ static bool environments(struct job *job, const struct shot *reference, struct e
 	if (job->conf->polarised)
 		job->photo_env = light_studio(height);
 	else
-		job->photo_env = light_of_photo(reference, job->eye, height, &job->lamps);
+		job->photo_env = light_of_photo(reference, job->eye, height, &job->photo_lamps, &job->lamps);
 	stage_figure(job->stage, "lamps_found", job->lamps, "");
 	return true;
+}
+
+/* mm from clear to white, as the photograph shows it. A smooth step of width w has the spread 0.22 w of its slope. */
+static double limbus_width(const struct shot *reference)
+{
+	double mm = reference->fit.cam_from_eye[2][3] / reference->fit.camera.focal_px;
+	double width = mm * reference->fit.edge_sigma_px / 0.2236;
+	return isfinite(width) ? fmin(fmax(width, 0.2), 1.2) : 0.4;
 }
 
 /* Everything that all pictures share. */
@@ -85,13 +93,15 @@ static bool prepare(struct job *job, struct err *err)
 	struct eye eye = *job->eye;
 	if (!isfinite(eye.limbus_aspect))
 		eye.limbus_aspect = reference->fit.limbus_aspect;
+	if (!isfinite(conf.limbus_width))
+		conf.limbus_width = limbus_width(reference);
 	struct scene_files files = { stage_path(job->stage, "%s", job->in[0]), stage_path(job->stage, "%s", job->in[1]),
 	                             stage_path(job->stage, "%s", job->in[2]), stage_path(job->stage, "%s", job->in[3]) };
 	if (!scene_load(&job->scene, &files, &eye, &conf, err))
 		return false;
 	job->ready = true;
 	struct scene_view view = scene_view_photo(&reference->fit, reference->window, reference->scale);
-	struct scene_lighting light = scene_lighting(&job->photo_env, job->conf->lights, false);
+	struct scene_lighting light = scene_lighting(&job->photo_env, 0, job->conf->lights);
 	scene_fit_colour(&job->scene, &view, &light);
 	stage_figure(job->stage, "exposure", job->scene.gain, "");
 	stage_figure(job->stage, "explained_by_model", 100 * job->scene.explained, "%");
@@ -101,7 +111,7 @@ static bool prepare(struct job *job, struct err *err)
 /* An eye turned by yaw, pitch (degrees) in the studio. */
 static struct image turned(struct job *job, double yaw, double pitch, int size)
 {
-	struct scene_lighting light = scene_lighting(&job->studio, job->conf->lights, true);
+	struct scene_lighting light = scene_lighting(&job->studio, &job->studio, job->conf->lights);
 	struct scene_view view = scene_view_turned(&job->scene, yaw * M_PI / 180, pitch * M_PI / 180, job->conf->field_mm, size);
 	return trace(job, &view, &light);
 }
@@ -172,7 +182,8 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 		return true;
 	if (!prepare(job, err) || !shot_decode(job, shot, err))
 		return false;
-	struct scene_lighting light = scene_lighting(&job->photo_env, job->conf->lights, !job->conf->polarised);
+	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
+	struct scene_lighting light = scene_lighting(&job->photo_env, job->lamps ? &job->photo_lamps : 0, job->conf->lights);
 	struct scene_view view = scene_view_photo(&shot->fit, shot->window, shot->scale);
 	json_t *figures;
 	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
@@ -238,6 +249,7 @@ bool render_eye(struct stage *stage, const struct capture *capture, int eye_inde
 		scene_free(&job.scene);
 	envmap_free(&job.studio);
 	envmap_free(&job.photo_env);
+	envmap_free(&job.photo_lamps);
 	shots_free(&job);
 	return ok;
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "bridge/cv_blur.h"
 
 static double lum(const float *p)
 {
@@ -16,54 +17,86 @@ static int compare_floats(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* 0 outside the limbus, 1 iris, 2 pupil. */
-static int part(const struct shot *shot, int x, int y)
+enum { RINGS = 40, OUTSIDE = -1, PUPIL = -2 };
+static const double reach = 0.88;  // share of the limbus: further out the sclera shines through
+
+/* The ring of a pixel round the limbus' centre, or that it lies in the pupil or outside. */
+static int ring_at(const struct shot *shot, int x, int y)
 {
 	double u = shot->window[0] + (x + 0.5) * shot->scale, v = shot->window[1] + (y + 0.5) * shot->scale;
-	if (ellipse_radius(&shot->fit.limbus, u, v) > 0.88)
-		return 0;
-	return shot->fit.has_pupil && ellipse_radius(&shot->fit.pupil, u, v) < 0.9 ? 2 : 1;
+	double r = ellipse_radius(&shot->fit.limbus, u, v);
+	if (r >= reach)
+		return OUTSIDE;
+	return shot->fit.has_pupil && ellipse_radius(&shot->fit.pupil, u, v) < 0.93 ? PUPIL : (int)(r / reach * RINGS);
 }
 
-static double iris_median(const struct shot *shot)
+/* A mirror image is white on top of a colour: the least of the channels gives it away on irises of all colours, against
+ * the upper quarter of its own ring. */
+struct survey {
+	short *ring;          // of each pixel
+	float *least;         // least channel, noise smoothed away
+	float level[RINGS];   // upper quarter of a ring's values begins here
+	float rgb[RINGS][3];  // median colour: what lies below a glint
+};
+
+/* Of values[i * stride] over a ring. */
+static float ring_quantile(const struct survey *s, int ring, const float *values, int stride, double q, long all)
 {
-	const struct image *m = &shot->image;
-	float *values = mem_array((size_t)m->width * (size_t)m->height, sizeof *values);
 	long n = 0;
-	for (int y = 0; y < m->height; y += 2)
-		for (int x = 0; x < m->width; x += 2)
-			if (part(shot, x, y) == 1)
-				values[n++] = (float)lum(image_at(m, x, y));
-	qsort(values, (size_t)n, sizeof *values, compare_floats);
-	double median = n ? (double)values[n / 2] : 0.2;
-	free(values);
-	return median;
+	float *sorted = mem_array((size_t)all, sizeof *sorted);
+	for (long i = 0; i < all; i++)
+		if (s->ring[i] == ring)
+			sorted[n++] = values[i * stride];
+	qsort(sorted, (size_t)n, sizeof *sorted, compare_floats);
+	float value = n ? sorted[(long)(q * (double)(n - 1))] : 0;
+	free(sorted);
+	return value;
 }
 
-/* Marks what is much brighter than the iris, or, before the pupil's black, simply bright. */
-static void mark_bright(unsigned char *marks, const struct shot *shot, double median)
+static void survey_make(struct survey *s, const struct shot *shot)
 {
 	const struct image *m = &shot->image;
-	double high = fmin(fmax(2.4 * median, 0.25), 0.85);
+	long all = (long)m->width * m->height;
+	struct err err = { 0 };
+	s->ring = mem_array((size_t)all, sizeof *s->ring);
+	s->least = mem_array((size_t)all, sizeof *s->least);
+#pragma omp parallel for schedule(static)
 	for (int y = 0; y < m->height; y++)
 		for (int x = 0; x < m->width; x++) {
-			double l = lum(image_at(m, x, y));
-			if (l < 0.15)
-				continue;
-			int in = part(shot, x, y);
-			marks[(long)y * m->width + x] = in && l > (in == 2 ? 0.15 : high);
+			const float *p = image_at(m, x, y);
+			s->ring[(long)y * m->width + x] = (short)ring_at(shot, x, y);
+			s->least[(long)y * m->width + x] = fminf(p[0], fminf(p[1], p[2]));
 		}
+	cv_blur(s->least, s->least, m->width, m->height, 1, 1.2, &err);  // where that fails the noise stays, no more
+#pragma omp parallel for schedule(dynamic)
+	for (int k = 0; k < RINGS; k++) {
+		s->level[k] = ring_quantile(s, k, s->least, 1, 0.75, all);
+		for (int c = 0; c < 3; c++)
+			s->rgb[k][c] = ring_quantile(s, k, m->px + c, 3, 0.5, all);
+	}
 }
 
-static void take(struct glint *g, const float *p, int x, int y, double ground)
+static void mark_bright(unsigned char *marks, const struct survey *s, long n)
 {
-	double w = fmax(lum(p) - ground, 0.01);
+	for (long i = 0; i < n; i++) {
+		int k = s->ring[i];
+		if (k == PUPIL)
+			marks[i] = s->least[i] > 0.05f;
+		else if (k >= 0)
+			marks[i] = s->least[i] > fminf(fmaxf(1.6f * s->level[k], s->level[k] + 0.06f), 0.85f);
+	}
+}
+
+/* ground: the colour below. */
+static void take(struct glint *g, const float *p, int x, int y, const float ground[3])
+{
+	double w = fmax(lum(p) - lum(ground), 0.01);
 	g->n++;
 	g->sum += w;
 	g->x += w * (x + 0.5);
 	g->y += w * (y + 0.5);
 	for (int c = 0; c < 3; c++)
-		g->rgb[c] += fmax(p[c] - ground, 0.01);
+		g->rgb[c] += fmax(p[c] - ground[c], 0.01);
 	g->lo[0] = x < g->lo[0] ? x : g->lo[0];
 	g->hi[0] = x > g->hi[0] ? x : g->hi[0];
 	g->lo[1] = y < g->lo[1] ? y : g->lo[1];
@@ -71,15 +104,17 @@ static void take(struct glint *g, const float *p, int x, int y, double ground)
 }
 
 /* The glint around a marked pixel; its marks are taken away. stack: room for all pixels. */
-static struct glint flood(unsigned char *marks, const struct image *m, int x, int y, double ground, int *stack)
+static struct glint flood(unsigned char *marks, const struct image *m, const struct survey *s, int x, int y, int *stack)
 {
 	struct glint g = { .lo = { x, y }, .hi = { x, y } };
+	static const float black[3];
 	int top = 0, w = m->width;
 	stack[top++] = y * w + x;
 	marks[y * w + x] = 0;
 	while (top) {
 		int at = stack[--top], u = at % w, v = at / w;
-		take(&g, image_at(m, u, v), u, v, ground);
+		take(&g, image_at(m, u, v), u, v, s->ring[at] >= 0 ? s->rgb[s->ring[at]] : black);
+		g.edge = g.edge || s->ring[at] >= RINGS - 1;
 		for (int k = 0; k < 4; k++) {
 			int a = u + (k == 0) - (k == 1), b = v + (k == 2) - (k == 3);
 			if (a >= 0 && b >= 0 && a < w && b < m->height && marks[b * w + a]) {
@@ -106,22 +141,32 @@ static void keep(struct glint glints[], int *n, const struct glint *g)
 	*n += *n < GLINTS_MAX;
 }
 
+/* Neither noise nor a wet lash, no lid, and more or less of one piece. */
+static bool is_lamp(const struct glint *g, double a)
+{
+	double box = (g->hi[0] - g->lo[0] + 1.0) * (g->hi[1] - g->lo[1] + 1);
+	double least = fmin(g->rgb[0], fmin(g->rgb[1], g->rgb[2])) > 0.55 ? 1.5e-4 : 2e-3;  // a bright one may be small
+	return !g->edge && (double)g->n > least * a * a && (double)g->n < 0.5 * a * a && (double)g->n > 0.4 * box;
+}
+
 int glints_find(struct glint glints[GLINTS_MAX], const struct shot *shot)
 {
 	const struct image *m = &shot->image;
 	size_t all = (size_t)m->width * (size_t)m->height;
 	unsigned char *marks = mem_new(all, 1);
 	int *stack = mem_array(all, sizeof *stack), n = 0;
-	double median = iris_median(shot), a = shot->fit.limbus.a / shot->scale;
-	mark_bright(marks, shot, median);
+	struct survey s;
+	survey_make(&s, shot);
+	mark_bright(marks, &s, (long)all);
 	for (int y = 0; y < m->height; y++)
 		for (int x = 0; x < m->width; x++)
 			if (marks[y * m->width + x]) {
-				struct glint g = flood(marks, m, x, y, median / 2, stack);
-				// Smaller than that is noise or a wet lash, larger is no lamp.
-				if ((double)g.n > 4e-4 * a * a && (double)g.n < 0.5 * a * a)
+				struct glint g = flood(marks, m, &s, x, y, stack);
+				if (is_lamp(&g, shot->fit.limbus.a / shot->scale))
 					keep(glints, &n, &g);
 			}
+	free(s.ring);
+	free(s.least);
 	free(marks);
 	free(stack);
 	return n;

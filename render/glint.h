@@ -11,6 +11,7 @@ struct glint {
 	double rgb[3];         // mean, above the iris
 	long n;                // pixels
 	int lo[2], hi[2];      // the box they fill, inclusive
+	bool edge;             // reaches the limbus: a lid, more likely than a lamp
 };
 
 /* The brightest, in that order; returns how many. */

@@ -45,23 +45,23 @@ static bool lamp(struct envmap_box *box, const struct glint *g, const struct sho
 
 struct envmap light_studio(int height)
 {
-	static const double ceiling[3] = { 0.62, 0.64, 0.68 }, floor[3] = { 0.20, 0.18, 0.17 }, deg = M_PI / 180;
+	static const double ceiling[3] = { 0.74, 0.76, 0.80 }, floor[3] = { 0.34, 0.33, 0.32 }, deg = M_PI / 180;
 	// Key, fill, and a strip from above: where they stand seen from the camera, degrees to the right and upwards.
 	static const double at[3][2] = { { -36, 34 }, { 46, 8 }, { 14, 74 } };
 	static const double half[3][2] = { { 8, 10.5 }, { 4.5, 9 }, { 22, 5 } };
-	static const double rgb[3][3] = { { 27, 26.2, 25.1 }, { 9, 9, 9.4 }, { 3, 2.9, 2.8 } };
+	static const double rgb[3][3] = { { 27, 26.6, 26 }, { 9, 9, 9.3 }, { 2, 2, 2 } };
 	struct envmap_box boxes[3];
 	for (int i = 0; i < 3; i++) {
 		double x = sin(at[i][0] * deg) * cos(at[i][1] * deg), y = -sin(at[i][1] * deg);
 		boxes[i] = (struct envmap_box){ { x, y, -sqrt(1 - x * x - y * y) }, { half[i][0] * deg, half[i][1] * deg },
 		                                { rgb[i][0], rgb[i][1], rgb[i][2] } };
 	}
-	struct envmap env = envmap_room(height, ceiling, floor, 3, boxes);
+	struct envmap env = envmap_room(height, ceiling, floor, 0.15, 3, boxes);
 	envmap_normalise(&env);
 	return env;
 }
 
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, int *n)
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n)
 {
 	static const double dark[3] = { 0 };
 	struct glint glints[GLINTS_MAX];
@@ -71,14 +71,13 @@ struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int
 	*n = 0;
 	for (int i = 0; i < got; i++)
 		*n += lamp(&boxes[*n], &glints[i], shot, &cornea);
+	*lamps = envmap_room(height, dark, dark, 1, *n, boxes);
 	if (!*n)
 		return light_studio(height);
 	// What the lamps do not give of the light, the room does: at least a fifth.
-	struct envmap lamps = envmap_room(64, dark, dark, *n, boxes);
-	double level = envmap_level(&lamps), room = fmax(1 - level, 0.2 * fmax(level, 1));
-	envmap_free(&lamps);
+	double level = envmap_level(lamps), room = fmax(1 - level, 0.2 * fmax(level, 1));
 	struct envmap env = envmap_room(height, (double[3]){ 1.3 * room, 1.3 * room, 1.3 * room },
-	                                (double[3]){ 0.7 * room, 0.7 * room, 0.7 * room }, *n, boxes);
+	                                (double[3]){ 0.7 * room, 0.7 * room, 0.7 * room }, 1, *n, boxes);
 	envmap_normalise(&env);
 	return env;
 }

@@ -15,7 +15,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_CHOICE("light_path", &(c)->scene.path, render_paths, "light through the cornea: a table a light, or solved for each ray"), \
 	OPT_INT("bands", &(c)->scene.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
 	OPT_REAL("detail", &(c)->scene.detail, 0, 1, "", "how much of what the photograph shows beyond the model is shown"), \
-	OPT_REAL("limbus_width_mm", &(c)->scene.limbus_width, 0.05, 2, "mm", "over which sclera turns into cornea"), \
+	OPT_REAL_UNSET("limbus_width_mm", &(c)->scene.limbus_width, 0.05, 2, "mm", "over which sclera turns into cornea; unset: as photographed"), \
 	OPT_REAL("sclera_radius_mm", &(c)->scene.sclera_radius, 9, 16, "mm", "radius of the eyeball"), \
 	OPT_REALS("sclera_rgb", (c)->scene.sclera_rgb, 3, 0, 1, "", "colour of the sclera where no photograph shows it"), \
 	OPT_REAL("vein_density", &(c)->scene.vein_density, 0, 5, "", "vessels of the sclera"), \

@@ -42,6 +42,7 @@ struct job {
 	bool ready;                      // what follows has been made
 	struct scene scene;
 	struct envmap studio, photo_env; // of the beauty views; of the reference photograph
+	struct envmap photo_lamps;       // what the cornea mirrors there beyond what is in the texture already
 	double gain;                     // of the beauty views' exposure
 	int lamps;                       // found in the reference photograph
 	double worst;                    // largest mean difference from a photograph, CIEDE2000
@@ -61,9 +62,9 @@ void shots_free(struct job *job);
 /* 1 on the ellipse, more outside. */
 double ellipse_radius(const struct ellipse *e, double x, double y);
 
-/* light.c: the room of a photograph, its lamps where the cornea mirrors them (lamps: how many); or the studio.
- * envmap_free. */
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, int *lamps);
+/* light.c: the room of a photograph with its n lamps where the cornea mirrors them; or, where it mirrors none, the studio.
+ * lamps: the lamps alone, in the dark. envmap_free both. */
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n);
 struct envmap light_studio(int height);
 
 /* sclera.c: what the photograph shows of the sclera beside the limbus, linear; false when lids leave too little. */

@@ -39,7 +39,8 @@ struct scene_level {
 	int n;
 	float per_mm;                 // texels in a mm
 	float *relief;                // [n][n][2]: height mm, + towards the cornea; stroma mm
-	float *colour;                // [n][n][4]: what the model's colour is multiplied with; 1 where a photograph saw it
+	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
+	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
 };
 
 struct scene {
@@ -57,8 +58,8 @@ struct scene {
 	int n_nodes[2];               // of the march, in each layer
 	double node[2][SCENE_NODES_MAX], weight[2][SCENE_NODES_MAX];  // on 0..1
 	float flat[3];                // the model's mean reflectance, where it is seen without a march
-	float gain;                   // what the colour factor is relative to: the exposure
-	double explained;             // share of the colour's variance (log) that the model accounts for, before the factor
+	float gain;                   // photograph over model: what the exposure leaves
+	double explained;             // share of the colour's variance (log) that the model accounts for by itself
 };
 
 /* The artifacts of one eye; a null path (or a file that is not there) is done without. */
@@ -74,11 +75,11 @@ void scene_free(struct scene *scene);
 /* Light as one view sees it: the environment stands in the camera's frame. */
 struct scene_lighting {
 	const struct envmap *env;
+	const struct envmap *mirror;  // what cornea and tear film mirror: usually env; null: nothing
 	int n;
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the camera's frame
-	bool reflect;                 // the cornea's and the tear film's mirror image of it
 };
-struct scene_lighting scene_lighting(const struct envmap *env, int lights, bool reflect);
+struct scene_lighting scene_lighting(const struct envmap *env, const struct envmap *mirror, int lights);
 
 struct scene_view {
 	struct camera camera;
@@ -104,8 +105,8 @@ struct scene_count {
 struct image scene_render(const struct scene *scene, const struct scene_view *view,
                           const struct scene_lighting *light, struct scene_count *count);
 
-/* The albedo step: texture over model, texel by texel, the model lit and seen as in the photograph, so that there the
- * rendering shows what the photograph shows. conf.detail is its strength. Call once, after scene_load. */
+/* The albedo step: fills level[].model as seen in this view, so that there the rendering shows what the photograph
+ * shows (scene_colour.c). conf.detail is its strength. Call once, after scene_load. */
 void scene_fit_colour(struct scene *scene, const struct scene_view *view, const struct scene_lighting *light);
 
 #endif

@@ -1,17 +1,19 @@
-/* The albedo step. The fitted model knows a handful of numbers; the photograph shows every fibre. What the photograph
- * shows beyond the model becomes a factor on the model's colour, texel by texel: texture over model, the model marched
- * with the light and from the place of the photograph itself, so that relief, shadow and refraction are not counted
- * twice. conf.detail raises the factor to a power: 1 shows the photographed eye, 0 the model. */
+/* The albedo step. The fitted model knows a handful of numbers; the photograph shows every fibre. So the photograph's
+ * colour is kept for each texel, and beside it what the model shows there in the light of the photograph, seen from its
+ * camera. Elsewhere, and in other light, the iris shows the photograph's colour times what the model changes by:
+ *     colour = gain model (texture / (gain model_of_photograph))^detail
+ * Where the model is dark its channels change by wildly different factors; they are held within CHROMA of their mean, for
+ * what the photograph cannot have shown in such a texel must not turn into colour. */
 #include "eye/scene_impl.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "optics/lightpath.h"
 
-/* Beyond these a factor says that the model is wrong there (a lash, a reflection), not what colour the iris has. */
-static const float least = 1 / 12.0f, most = 12;
+static const float dark = 1e-4f;  // colours are at least that, so that their ratios are numbers
 
 /* What the model shows at n texels of row y, seen through the cornea from C. */
 static void model_row(struct iris_batch *b, const struct scene *s, const struct scene_level *level, int x0, int n, int y,
@@ -41,55 +43,77 @@ static void model_row(struct iris_batch *b, const struct scene *s, const struct 
  * less everywhere, which is what is put back here. */
 static const float through = 0.98f;
 
-struct fit_sums {
-	double n, log_tex, log_mod, tt, mm, tm;
-};
-
-/* Sums over a row where a photograph saw the iris; the row's texels become texture over model. */
-static void factor_row(struct fit_sums *sum, float *texel, const struct iris_batch *b, const struct scene *s)
+/* The texture was read off the iris plane; a point of the relief lies before it, and the same ray of sight meets the
+ * plane a little further on. That is where the photograph shows the point. */
+static void put_row(float *colour, float *model, const float *texture, const struct iris_batch *b, const struct scene *s,
+                    const struct scene_level *level)
 {
-	for (int i = 0; i < b->n; i++, texel += 4) {
-		float dx = b->px[i] - (float)s->pupil[0], dy = b->py[i] - (float)s->pupil[1], r = sqrtf(b->px[i] * b->px[i] + b->py[i] * b->py[i]);
-		bool counts = texel[3] > 0.5f && sqrtf(dx * dx + dy * dy) > s->pupil[2] + 0.15 && r < 0.92f * (float)s->limbus[0];
+	for (int i = 0; i < b->n; i++, colour += 4, model += 4) {
+		float t = ((float)s->eye.iris_depth - b->pz[i]) / b->vz[i];
+		for (int c = 0; c < 4; c++)
+			colour[c] = channel_at(texture, level->n, level->per_mm, b->px[i] + t * b->vx[i], b->py[i] + t * b->vy[i], 4, c);
 		for (int c = 0; c < 3; c++) {
-			float model = b->rgb[c][i] * through, tex = texel[c] > 1e-4f ? texel[c] : 1e-4f;
-			model = model > 1e-4f ? model : 1e-4f;
-			if (counts) {
-				double t = log(tex), m = log(model);
-				sum->n++;
-				sum->log_tex += t;
-				sum->log_mod += m;
-				sum->tt += t * t;
-				sum->mm += m * m;
-				sum->tm += t * m;
-			}
-			texel[c] = tex / model;
+			colour[c] = colour[c] > dark ? colour[c] : dark;
+			model[c] = b->rgb[c][i] * through > dark ? b->rgb[c][i] * through : dark;
 		}
+		model[3] = 0;
 	}
 }
 
-static void finish(struct scene *s, const struct fit_sums *f)
+struct fit_sums {
+	double n, tex, mod, tt, mm, tm;
+};
+
+/* Sums of logarithms over a row, where a photograph saw the iris. */
+static struct fit_sums sums_row(const struct scene *s, int y)
 {
 	const struct scene_level *level = &s->level[0];
-	double n = f->n > 0 ? f->n : 1, mean = (f->log_tex - f->log_mod) / n;
-	double vt = f->tt - f->log_tex * f->log_tex / n, vm = f->mm - f->log_mod * f->log_mod / n;
-	double cov = f->tm - f->log_tex * f->log_mod / n;
-	s->gain = f->n > 0 ? (float)exp(mean) : 1;
-	s->explained = vt > 0 ? 1 - (vt + vm - 2 * cov) / vt : 0;
-	float power = (float)s->conf.detail;
-	long texels = (long)level->n * level->n;
-#pragma omp parallel for schedule(static)
-	for (long i = 0; i < texels; i++)
+	struct fit_sums f = { 0 };
+	for (int x = 0; x < level->n; x++) {
+		const float *tex = level->colour + 4 * ((long)y * level->n + x), *mod = level->model + 4 * ((long)y * level->n + x);
+		double u = (x + 0.5) / level->per_mm - s->extent, v = (y + 0.5) / level->per_mm - s->extent;
+		if (tex[3] < 0.5f || hypot(u - s->pupil[0], v - s->pupil[1]) < s->pupil[2] + 0.15 || hypot(u, v) > 0.92 * s->limbus[0])
+			continue;
 		for (int c = 0; c < 3; c++) {
-			float k = level->colour[4 * i + c] / s->gain;
-			k = k > least ? k < most ? k : most : least;
-			level->colour[4 * i + c] = s->gain * (power == 1 ? k : powf(k, power));
+			double t = log(tex[c]), m = log(mod[c]);
+			f.n++;
+			f.tex += t;
+			f.mod += m;
+			f.tt += t * t;
+			f.mm += m * m;
+			f.tm += t * m;
 		}
+	}
+	return f;
+}
+
+/* Added up row by row, whatever the number of threads. */
+static void compare(struct scene *s)
+{
+	int n = s->level[0].n;
+	struct fit_sums *row = mem_new((size_t)n, sizeof *row), f = { 0 };
+#pragma omp parallel for schedule(dynamic, 8)
+	for (int y = 0; y < n; y++)
+		row[y] = sums_row(s, y);
+	for (int y = 0; y < n; y++) {
+		f.n += row[y].n;
+		f.tex += row[y].tex;
+		f.mod += row[y].mod;
+		f.tt += row[y].tt;
+		f.mm += row[y].mm;
+		f.tm += row[y].tm;
+	}
+	free(row);
+	if (!(f.n > 0))
+		return;
+	double vt = f.tt - f.tex * f.tex / f.n, vm = f.mm - f.mod * f.mod / f.n, cov = f.tm - f.tex * f.mod / f.n;
+	s->gain = (float)exp((f.tex - f.mod) / f.n);
+	s->explained = vt > 0 ? 1 - (vt + vm - 2 * cov) / vt : 0;
 }
 
 void scene_fit_colour(struct scene *s, const struct scene_view *view, const struct scene_lighting *light)
 {
-	const struct scene_level *level = &s->level[0];
+	struct scene_level *level = &s->level[0];
 	double eye_from_cam[3][3], C[3] = { 0 };
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++) {
@@ -97,25 +121,40 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 			C[j] -= view->cam_from_eye[i][j] * view->cam_from_eye[i][3];
 		}
 	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
-	struct fit_sums *row = mem_new((size_t)level->n, sizeof *row), sum = { 0 };
+	size_t texels = (size_t)level->n * (size_t)level->n;
+	float *texture = level->colour;
+	level->colour = mem_array(4 * texels, sizeof *level->colour);
+	level->model = mem_array(4 * texels, sizeof *level->model);
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < level->n; y++)
 		for (int x = 0; x < level->n; x += BATCH) {
 			struct iris_batch b;
-			int n = level->n - x < BATCH ? level->n - x : BATCH;
-			model_row(&b, s, level, x, n, y, C, &beams);
-			factor_row(&row[y], level->colour + 4 * ((long)y * level->n + x), &b, s);
+			long at = 4 * ((long)y * level->n + x);
+			model_row(&b, s, level, x, level->n - x < BATCH ? level->n - x : BATCH, y, C, &beams);
+			put_row(level->colour + at, level->model + at, texture, &b, s, level);
 		}
-	for (int y = 0; y < level->n; y++) {  // in this order, whatever the number of threads
-		sum.n += row[y].n;
-		sum.log_tex += row[y].log_tex;
-		sum.log_mod += row[y].log_mod;
-		sum.tt += row[y].tt;
-		sum.mm += row[y].mm;
-		sum.tm += row[y].tm;
-	}
-	free(row);
+	free(texture);
 	free(beams.beam);
-	finish(s, &sum);
+	compare(s);
 	scene_levels_make(s);
+}
+
+void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
+{
+	static const float chroma = 1.5f;
+	float k[3], mean = 0, most = 2.5f;  // brighter than that only a texel gets that was in a shadow of the model's
+	if (!level->model)
+		return;
+	for (int c = 0; c < 3; c++) {
+		k[c] = rgb[c] / channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
+		mean += k[c] / 3;
+	}
+	float lit = mean < most ? mean : most;
+	for (int c = 0; c < 3; c++) {
+		float tint = mean > 1e-6f ? k[c] / mean : 1;
+		tint = tint > 1 / chroma ? tint < chroma ? tint : chroma : 1 / chroma;
+		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c) * lit * tint;
+		float alone = s->gain * rgb[c], d = (float)s->conf.detail;
+		rgb[c] = d == 1 ? shown : alone > 0 && shown > 0 ? powf(shown, d) * powf(alone, 1 - d) : 0;
+	}
 }

@@ -51,6 +51,9 @@ void scene_beam_paths(float K[4][BATCH], const struct iris_batch *b, const float
 /* The level whose texels are about as large as a pixel of `mm`. */
 const struct scene_level *scene_level_for(const struct scene *scene, double mm);
 
+/* The model's colour at a point of the iris (in) made the photograph's (out). */
+void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y);
+
 /* Levels below level 0, and the range of heights. */
 void scene_levels_make(struct scene *scene);
 

@@ -17,9 +17,9 @@
 /* Newton steps from the closed-form start: 2e-5 mm at worst. */
 enum { PATH_STEPS = 4 };
 
-struct scene_lighting scene_lighting(const struct envmap *env, int lights, bool reflect)
+struct scene_lighting scene_lighting(const struct envmap *env, const struct envmap *mirror, int lights)
 {
-	struct scene_lighting l = { .env = env, .reflect = reflect };
+	struct scene_lighting l = { .env = env, .mirror = mirror };
 	l.n = envmap_lights(l.light, lights, env);
 	return l;
 }

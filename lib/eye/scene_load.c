@@ -185,6 +185,7 @@ void scene_free(struct scene *s)
 	for (int i = 0; i < SCENE_LEVELS; i++) {
 		free(s->level[i].relief);
 		free(s->level[i].colour);
+		free(s->level[i].model);
 	}
 	image_free(&s->veins);
 	*s = (struct scene){ 0 };
@@ -215,9 +216,11 @@ void scene_levels_make(struct scene *s)
 	for (int k = 1; k < SCENE_LEVELS && l[k - 1].n >= 64; k++, s->n_levels++) {
 		free(l[k].relief);
 		free(l[k].colour);
+		free(l[k].model);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
 		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
 		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
+		l[k].model = l[k - 1].model ? halve(l[k - 1].model, l[k - 1].n, 4) : 0;
 	}
 }
 

@@ -160,7 +160,7 @@ static void node_paths(struct lit *m, const struct iris_batch *r, const struct g
 		// Up along l the relief falls away by its slope: depth lost in a mm of the way. A slope that faces away from
 		// the light makes the way long: that is the shading of the relief.
 		float lost = -lz - gx * lx - gy * ly;
-		lost = lost > 0.1f ? lost : 0.1f;
+		lost = lost > 0.25f ? lost : 0.25f;
 		float in_abl = (depth < abl ? depth : abl) / lost, in_stroma = (depth > abl ? depth - abl : 0) / lost;
 		la[i] = in_abl + (s < near[i] ? s : near[i]);
 		ls[i] = in_stroma + (s > near[i] ? s - near[i] : 0);
@@ -216,16 +216,18 @@ static void shadow_step(float *restrict least, const struct lit *m, const struct
 	}
 }
 
-/* Dims the light by the share that the relief between it and the point lets through. */
+/* Dims the light by the share that the relief between it and the point lets through. A shadow is not black: tissue that
+ * stands around it in the light fills it in. */
 static void shadow(struct lit *m, const struct iris_batch *r, const struct ground *g, int steps)
 {
+	static const float fill = 0.4f;
 	float least[BATCH];
 	for (int i = 0; i < r->n; i++)
 		least[i] = 1;
 	for (int k = 1; k <= steps; k++)
 		shadow_step(least, m, r, g, (float)k / (float)steps);
 	for (int i = 0; i < r->n; i++) {
-		float open = least[i] > 0 ? least[i] : 0;
+		float open = fill + (1 - fill) * (least[i] > 0 ? least[i] : 0);
 		m->K0[3][i] *= open;
 		m->K1[3][i] *= open;
 	}

@@ -37,16 +37,13 @@ static void put(const struct grower *g, float xy[2], double polar, double turn)
 
 static void vessel_draw(const struct grower *g, int n, const float (*xy)[2], double width, double mm_per_px)
 {
-	// Thinner than a pixel: a pixel wide, and paler. Along the vessel it tapers.
-	enum { PIECES = 6 };
-	for (int k = 0; k < PIECES; k++) {
-		int a = n * k / PIECES, b = n * (k + 1) / PIECES + 1;
-		double px = width / mm_per_px * (1 - 0.6 * k / PIECES);
-		uint8_t ink = (uint8_t)fmin(255, 40 + 200 * fmin(px, 1));
-		if (b > n)
-			b = n;
-		if (b - a >= 2)
-			cv_draw_line(&g->picture, b - a, xy + a, false, px > 1.5 ? (int)lrint(px) : 1, &(const uint8_t[3]){ ink }[0]);
+	// Thinner than a pixel: a pixel wide, and paler. Both ends fade: one comes from the depth, the other runs out.
+	enum { PIECE = 5 };
+	for (int a = 0; a + 1 < n; a += PIECE) {
+		int b = a + PIECE + 1 < n ? a + PIECE + 1 : n;
+		double t = (double)a / n, ends = fmin(fmin(t / 0.25, (1 - t) / 0.6), 1), px = width / mm_per_px * (0.35 + 0.65 * ends);
+		uint8_t ink = (uint8_t)fmin(235, 235 * fmin(px, 1) * (0.25 + 0.75 * ends));
+		cv_draw_line(&g->picture, b - a, xy + a, false, px > 1.5 ? (int)lrint(px) : 1, (const uint8_t[3]){ ink });
 	}
 }
 
@@ -54,24 +51,24 @@ static void vessel_draw(const struct grower *g, int n, const float (*xy)[2], dou
 static void grow(struct grower *g, struct vessel v, double mm_per_px, double radius)
 {
 	float xy[STEPS_MAX][2];
-	int n = 0, steps = (int)rng_range(&g->rng, 40, STEPS_MAX);
-	double step = 0.16 / radius, drift = 0;
-	for (; n < steps && v.polar > g->limbus + 0.03 + 0.05 * rng_uniform(&g->rng); n++) {
+	int n = 0, steps = (int)rng_range(&g->rng, 50, STEPS_MAX) >> v.depth;
+	double step = 0.16 / radius, drift = 0, bend = rng_range(&g->rng, 0.12, 0.3), end = 0.02 + 0.18 * rng_uniform(&g->rng);
+	for (; n < steps && v.polar > g->limbus + end; n++) {
 		put(g, xy[n], v.polar, v.turn);
-		drift = 0.93 * drift + 0.10 * rng_normal(&g->rng);
-		double way = v.heading + drift + v.sway * sin(v.phase + 0.35 * n);
+		drift = 0.9 * drift + 0.07 * rng_normal(&g->rng);
+		double way = v.heading + drift + v.sway * sin(v.phase + bend * n);
 		v.polar -= step * cos(way);
 		v.turn += step * sin(way) / sin(v.polar);
 		v.heading *= 0.985;
-		if (v.depth < 3 && rng_uniform(&g->rng) < 0.035) {
+		if (v.depth < 2 && n > 6 && rng_uniform(&g->rng) < 0.022) {
 			double side = rng_uniform(&g->rng) < 0.5 ? -1 : 1;
 			struct vessel w = v;
-			w.heading += side * rng_range(&g->rng, 0.4, 1.0);
-			w.width *= rng_range(&g->rng, 0.45, 0.75);
+			w.heading += side * rng_range(&g->rng, 0.35, 0.8);
+			w.width *= rng_range(&g->rng, 0.45, 0.7);
 			w.phase = rng_range(&g->rng, 0, 6.28);
 			w.depth++;
 			grow(g, w, mm_per_px, radius);
-			v.heading -= side * 0.2;
+			v.heading -= side * 0.15;
 			v.width *= 0.92;
 		}
 	}
@@ -85,11 +82,11 @@ static uint8_t *layer(const struct scene *s, int size, int seed, int count, doub
 	struct grower g = { { mem_new((size_t)size * (size_t)size, 1), size, size, 1 }, { (uint64_t)seed },
 	                    asin(s->limbus[0] / radius) };
 	for (int i = 0; i < count; i++) {
-		// Most come from the canthi, left and right; fewer from above and below.
-		double side = rng_uniform(&g.rng) < 0.5 ? 0 : M_PI, spread = rng_normal(&g.rng) * 0.62;
-		struct vessel v = { .polar = g.limbus + rng_range(&g.rng, 0.25, 1.25), .turn = side + spread,
-		                    .heading = 0.6 * rng_normal(&g.rng), .width = rng_range(&g.rng, width_lo, width_hi),
-		                    .sway = rng_range(&g.rng, 0.1, 0.75), .phase = rng_range(&g.rng, 0, 6.28) };
+		// Most come from the canthi, left and right; fewer from above and below. A few are wide, most hair-thin.
+		double side = rng_uniform(&g.rng) < 0.5 ? 0 : M_PI, spread = rng_normal(&g.rng) * 0.6, u = rng_uniform(&g.rng);
+		struct vessel v = { .polar = g.limbus + rng_range(&g.rng, 0.35, 1.3), .turn = side + spread,
+		                    .heading = 0.45 * rng_normal(&g.rng), .width = width_lo + (width_hi - width_lo) * u * u * u,
+		                    .sway = rng_range(&g.rng, 0.05, 0.5), .phase = rng_range(&g.rng, 0, 6.28) };
 		grow(&g, v, 2 * reach * radius / size, radius);
 	}
 	return g.picture.px;
@@ -112,10 +109,10 @@ static void ripples(struct image *map, int seed)
 
 void scene_veins_make(struct scene *s)
 {
-	int n = s->conf.veins_px, count = (int)lrint(45 * s->conf.vein_density);
+	int n = s->conf.veins_px, count = (int)lrint(80 * s->conf.vein_density);
 	s->veins = image_new(n, n, 4);
-	uint8_t *fine = layer(s, n, s->conf.seed, count, 0.03, 0.085);
-	uint8_t *deep = layer(s, n, s->conf.seed + 1, count / 2, 0.10, 0.22);
+	uint8_t *fine = layer(s, n, s->conf.seed, count, 0.012, 0.07);
+	uint8_t *deep = layer(s, n, s->conf.seed + 1, count / 2, 0.08, 0.22);
 	float *blurred = mem_array((size_t)n * (size_t)n, sizeof *blurred), mm_per_px = (float)(2 * reach * s->conf.sclera_radius / n);
 	for (long i = 0; i < (long)n * n; i++)
 		blurred[i] = (float)deep[i] / 255;
@@ -123,10 +120,11 @@ void scene_veins_make(struct scene *s)
 	cv_blur(blurred, blurred, n, n, 1, 0.13 / mm_per_px, &err);  // deep ones show through a scattering layer
 	ripples(&s->veins, s->conf.seed + 2);
 	for (long i = 0; i < (long)n * n; i++) {
-		float a = 0.62f * (float)fine[i] / 255, b = 0.40f * blurred[i], *p = s->veins.px + 4 * i;
-		p[0] = (1 - 0.34f * a) * (1 - 0.16f * b);
-		p[1] = (1 - 0.92f * a) * (1 - 0.42f * b);
-		p[2] = (1 - 0.95f * a) * (1 - 0.36f * b);
+		// Blood takes green and blue; what lies deep is seen through white and turns bluish.
+		float a = 0.66f * (float)fine[i] / 255, b = 0.5f * blurred[i], *p = s->veins.px + 4 * i;
+		p[0] = (1 - 0.22f * a) * (1 - 0.26f * b);
+		p[1] = (1 - 0.80f * a) * (1 - 0.38f * b);
+		p[2] = (1 - 0.78f * a) * (1 - 0.26f * b);
 	}
 	free(fine);
 	free(deep);
@@ -141,7 +139,7 @@ void scene_sclera(float albedo[3], float normal[3], const struct scene *s, const
 	float u = per * x, v = per * y, e = 0.012f * (float)n;
 	const float *map = s->veins.px;
 	// The fundus of the orbit: a little yellower and redder away from the cornea.
-	float away = smooth(0.35f, 1.1f, r / ((float)n / 2) * (float)(reach / 1.3)), tint[3] = { 1 - 0.02f * away, 1 - 0.10f * away, 1 - 0.20f * away };
+	float away = smooth(0.35f, 1.1f, r / ((float)n / 2) * (float)(reach / 1.3)), tint[3] = { 1 - 0.01f * away, 1 - 0.06f * away, 1 - 0.11f * away };
 	for (int c = 0; c < 3; c++)
 		albedo[c] = (float)s->conf.sclera_rgb[c] * tint[c] * channel_at(map, n, 1, u, v, 4, c);
 	// A film that is not quite smooth breaks the mirror image up, off the cornea only.

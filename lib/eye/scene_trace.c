@@ -82,7 +82,8 @@ static void add_mirror(float rgb[3], const struct spot *p, const struct scene_lo
 	for (int i = 0; i < 3; i++)
 		r[i] = d[i] + 2 * p->cos_i * p->normal[i];
 	to_cam(cam, look, r);
-	envmap_at(seen, look->light->env, cam);
+	// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
+	envmap_at(seen, look->light->mirror, cam, 0.75f * smooth(1.0f, 1.35f, p->rho));
 	for (int c = 0; c < 3; c++)
 		rgb[c] += f * seen[c];
 }
@@ -120,10 +121,11 @@ static void iris_colour(float rgb[3], const struct scene *s, const struct scene_
 {
 	float x = b->px[i], y = b->py[i], ruff, cover = iris_cover(s, x, y, soft, &ruff);
 	static const float dark[3] = { 0.30f, 0.20f, 0.15f };  // what the pigment of the ruff leaves of the colour
-	for (int c = 0; c < 3; c++) {
-		float k = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
-		rgb[c] = cover * b->rgb[c][i] * k * (1 + 0.75f * ruff * (dark[c] - 1));
-	}
+	for (int c = 0; c < 3; c++)
+		rgb[c] = b->rgb[c][i];
+	scene_colour(rgb, s, level, x, y);
+	for (int c = 0; c < 3; c++)
+		rgb[c] *= cover * (1 + 0.75f * ruff * (dark[c] - 1));
 }
 
 /* Those rays of a batch that look through the cornea, packed together. */
@@ -149,7 +151,7 @@ void scene_trace(float rgba[][4], int n, const float *dx, const float *dy, const
 	float width = (float)(s->conf.limbus_width / s->limbus[0]);
 	for (int i = 0; i < n; i++) {
 		spot[i] = spot_of(s, look, (float[3]){ dx[i], dy[i], dz[i] }, hit[i], (float[3]){ K[0][i], K[1][i], K[2][i] });
-		lid[i] = hit[i] ? smooth(1 - 0.6f * width, 1 + 0.4f * width, spot[i].rho) : 1;
+		lid[i] = hit[i] ? smooth(1 - 0.5f * width, 1 + 0.5f * width, spot[i].rho) : 1;
 		if (!spot[i].hit || lid[i] >= 1)
 			continue;
 		int k = b.n++;
@@ -178,7 +180,7 @@ void scene_trace(float rgba[][4], int n, const float *dx, const float *dy, const
 		for (int c = 0; c < 3; c++)
 			rgba[i][c] += through * seen[c];
 	}
-	for (int i = 0; i < n && look->light->reflect; i++)
+	for (int i = 0; i < n && look->light->mirror; i++)
 		if (spot[i].hit)
 			add_mirror(rgba[i], &spot[i], look, (float[3]){ dx[i], dy[i], dz[i] });
 }

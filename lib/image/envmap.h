@@ -9,6 +9,7 @@
 
 struct envmap {
 	struct image map;    // [height][2 height][3]; owned
+	struct image sharp, rough;  // the same on the octahedron unfolded about -z, for lookups; rough: blurred by 6 degrees
 	double sh[9][3];     // irradiance over pi, spherical harmonics to degree 2 (cosine lobe folded in)
 };
 
@@ -27,8 +28,9 @@ struct envmap_light {
 
 enum { ENVMAP_LIGHTS_MAX = 64 };
 
-/* A room: ceiling to floor gradient, with the boxes in it. height rows. envmap_free. */
-struct envmap envmap_room(int height, const double ceiling[3], const double floor[3], int n,
+/* A room: ceiling to floor gradient, darker towards what lies behind the eye (back: share of light left there), with the
+ * boxes in it. height rows. envmap_free. */
+struct envmap envmap_room(int height, const double ceiling[3], const double floor[3], double back, int n,
                           const struct envmap_box boxes[]);
 
 /* A latitude-longitude EXR; negatives and what is not finite become 0. envmap_free. */
@@ -41,8 +43,8 @@ double envmap_level(const struct envmap *env);
 /* Scales the map so that this level is 1. */
 void envmap_normalise(struct envmap *env);
 
-/* Radiance from a direction (need not be a unit vector), bilinear. */
-void envmap_at(float rgb[3], const struct envmap *env, const float dir[3]);
+/* Radiance from a unit direction, bilinear; rough 0..1: between the map and its blurred copy. */
+void envmap_at(float rgb[3], const struct envmap *env, const float dir[3], float rough);
 
 /* Irradiance over pi of a plane with that unit normal. */
 void envmap_irradiance(float rgb[3], const struct envmap *env, const float normal[3]);

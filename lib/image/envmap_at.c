@@ -1,0 +1,116 @@
+/* Lookups: many of them, so from a map that needs no trigonometry. The octahedron |x| + |y| + |z| = 1 is unfolded into a
+ * square, -z in its middle and +z at its corners. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "image/envmap_impl.h"
+
+enum { ROUGH = 96 };
+
+/* Square -1..1 to direction. */
+static void unfold_dir(double d[3], double u, double v)
+{
+	double z = 1 - fabs(u) - fabs(v), x = u, y = v;
+	if (z < 0) {
+		x = copysign(1 - fabs(v), u);
+		y = copysign(1 - fabs(u), v);
+	}
+	double n = sqrt(x * x + y * y + z * z);
+	d[0] = x / n;
+	d[1] = y / n;
+	d[2] = -z / n;
+}
+
+static void map_at(float rgb[3], const struct image *map, const double d[3])
+{
+	double u = 0.5 + atan2(-d[0], -d[2]) / (2 * M_PI), v = acos(fmin(fmax(-d[1], -1), 1)) / M_PI;
+	double x = u * map->width - 0.5, y = v * map->height - 0.5, fx = floor(x), fy = floor(y);
+	int w = map->width, h = map->height, x0 = ((int)fx + w) % w, x1 = (x0 + 1) % w, y0 = (int)fy, y1 = y0 + 1;
+	float s = (float)(x - fx), t = (float)(y - fy);
+	y0 = y0 < 0 ? 0 : y0;
+	y1 = y1 > h - 1 ? h - 1 : y1;
+	for (int c = 0; c < 3; c++)
+		rgb[c] = (1 - t) * ((1 - s) * image_at(map, x0, y0)[c] + s * image_at(map, x1, y0)[c])
+		         + t * ((1 - s) * image_at(map, x0, y1)[c] + s * image_at(map, x1, y1)[c]);
+}
+
+/* Mean of the map over a lobe about d: Gaussian of 6 degrees, from the coarse map's pixels near by. */
+static void lobe_at(float rgb[3], const struct image *map, const double (*dirs)[3], const double d[3])
+{
+	double sum[3] = { 0 }, total = 0;
+	const double k = 1 / (2 * pow(6 * M_PI / 180, 2));
+	for (int y = 0; y < map->height; y++) {
+		double weight = envmap_solid_angle(map, y);
+		for (int x = 0; x < map->width; x++) {
+			const double *e = dirs[y * map->width + x];
+			double off = 2 - 2 * (d[0] * e[0] + d[1] * e[1] + d[2] * e[2]);  // the chord's square
+			if (off > 0.1)
+				continue;
+			double w = weight * exp(-k * off);
+			total += w;
+			for (int c = 0; c < 3; c++)
+				sum[c] += w * image_at(map, x, y)[c];
+		}
+	}
+	for (int c = 0; c < 3; c++)
+		rgb[c] = (float)(total > 0 ? sum[c] / total : 0);
+}
+
+void envmap_unfold(struct envmap *env)
+{
+	int n = 2 * env->map.height;
+	struct image low = envmap_coarse(&env->map);
+	double(*dirs)[3] = mem_array((size_t)low.width * (size_t)low.height, sizeof *dirs);
+	for (int i = 0; i < low.width * low.height; i++)
+		envmap_dir(dirs[i], (i % low.width + 0.5) / low.width, (i / low.width + 0.5) / low.height);
+	env->sharp = image_new(n, n, 3);
+	env->rough = image_new(ROUGH, ROUGH, 3);
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < n; y++)
+		for (int x = 0; x < n; x++) {
+			double d[3];
+			unfold_dir(d, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1);
+			map_at(image_at(&env->sharp, x, y), &env->map, d);
+		}
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < ROUGH; y++)
+		for (int x = 0; x < ROUGH; x++) {
+			double d[3];
+			unfold_dir(d, (2 * x + 1.0) / ROUGH - 1, (2 * y + 1.0) / ROUGH - 1);
+			lobe_at(image_at(&env->rough, x, y), &low, (const double(*)[3])dirs, d);
+		}
+	free(dirs);
+	image_free(&low);
+}
+
+static void square_at(float rgb[3], const struct image *map, float u, float v)
+{
+	float top = (float)map->width - 1.001f;
+	u = (u + 1) * 0.5f * (float)map->width - 0.5f;
+	v = (v + 1) * 0.5f * (float)map->width - 0.5f;
+	u = u > 0 ? u < top ? u : top : 0;
+	v = v > 0 ? v < top ? v : top : 0;
+	int x = (int)u, y = (int)v;
+	const float *a = image_at(map, x, y), *b = a + 3L * map->width;
+	u -= (float)x;
+	v -= (float)y;
+	for (int c = 0; c < 3; c++)
+		rgb[c] = (1 - v) * ((1 - u) * a[c] + u * a[c + 3]) + v * ((1 - u) * b[c] + u * b[c + 3]);
+}
+
+void envmap_at(float rgb[3], const struct envmap *env, const float d[3], float rough)
+{
+	float inv = 1 / (fabsf(d[0]) + fabsf(d[1]) + fabsf(d[2])), u = d[0] * inv, v = d[1] * inv, blurred[3];
+	if (d[2] > 0) {
+		float x = u;
+		u = copysignf(1 - fabsf(v), x);
+		v = copysignf(1 - fabsf(x), v);
+	}
+	square_at(rgb, &env->sharp, u, v);
+	if (rough > 0) {
+		square_at(blurred, &env->rough, u, v);
+		for (int c = 0; c < 3; c++)
+			rgb[c] += rough * (blurred[c] - rgb[c]);
+	}
+}
