@@ -9,6 +9,18 @@
 #include "base/version.h"
 #include "plan.h"
 
+/* Only when the bytes differ: a make that changes nothing writes nothing. */
+static bool write_new(const char *path, const char *text, struct err *err)
+{
+	enum { LIMIT = 1 << 20 };
+	char *was = 0;
+	size_t size;
+	struct err none = { 0 };
+	bool same = file_read(&was, &size, path, LIMIT, &none) && !strcmp(was, text);
+	free(was);
+	return same || file_write(path, text, strlen(text), err);
+}
+
 static json_t *made_by(const struct plan *plan, const char *slice)
 {
 	json_t *config = json_object();
@@ -36,7 +48,7 @@ static bool write_json(const struct plan *plan, const char *slice, struct err *e
 	json_t *json = json_pack("{s:o,s:o}", "made_by", made_by(plan, slice), "stages", stages);
 	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS | JSON_REAL_PRECISION(6));
 	char *path = mem_printf("%s/work/plan.json", plan->capture);
-	bool ok = file_write(path, text, strlen(text), err);
+	bool ok = write_new(path, text, err);
 	json_decref(json);
 	free(text);
 	free(path);
@@ -67,7 +79,8 @@ static bool write_mk(const struct plan *plan, struct err *err)
 	size_t size = 0;
 	FILE *mk = open_memstream(&text, &size);
 	fputs("# Made by plan: which stages this folder needs. BIN: folder of the programs; CAPTURE: this folder.\n", mk);
-	fputs(".PHONY: all", mk);
+	// What stands on make's command line is expanded again in each make below it: a dollar in the name would be lost.
+	fputs("override CAPTURE := $(value CAPTURE)\nexport CAPTURE\n.PHONY: all", mk);
 	for (int i = 1; i < PLAN_STAGES; i++)
 		fprintf(mk, " %s", plan->rows[i].name);
 	fputs("\nall:", mk);
@@ -80,7 +93,7 @@ static bool write_mk(const struct plan *plan, struct err *err)
 	for (int i = 1; i < PLAN_STAGES; i++)
 		write_rule(mk, plan, i);
 	fclose(mk);
-	bool ok = file_write(path, text, size, err);
+	bool ok = write_new(path, text, err);
 	free(text);
 	free(path);
 	return ok;

@@ -1,0 +1,16 @@
+#!/bin/bash
+# The same inputs give the same bytes, on any number of threads.
+. "$(dirname "$0")/../lib/chain.sh"
+
+for n in 1 2 5; do
+	new_capture "$root/$n"
+	cp "$PHOTO" "$root/$n/photos/right_a.jpg"
+	"$VARIANT" half "$PHOTO" "$root/$n/photos/right_b.jpg"
+	echo "unrefract.write_map = yes" >>"$root/$n/capture.conf"
+	run_make "$root/$n" THREADS=$n
+	same "make with $n threads" "$?" 0
+done
+for n in 2 5; do
+	different=$(diff <(bytes_of "$root/1") <(bytes_of "$root/$n") | sed -n 's/^> [0-9a-f]*  //p' | tr '\n' ' ')
+	same "$n threads and 1 give the same bytes" "$different" ""
+done

@@ -1,0 +1,37 @@
+# Sourced by tests/chain/*.sh: captures in a folder of their own, make on them, what ran.
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
+. tests/lib/check.sh
+BIN=${BIN:-bin}
+VARIANT=${B:-build}/tests/tools/variant
+PHOTO=samples/demo/photos/right_softbox.jpg
+root=$(mktemp -d)
+trap 'rm -rf "$root"' EXIT
+log=$root/log
+
+# new_capture DIR: the bundled capture's configuration at draft quality; no photograph yet.
+new_capture() {
+	mkdir -p "$1/photos"
+	{ cat samples/demo/capture.conf; echo "quality = draft"; } >"$1/capture.conf"
+}
+
+# run_make DIR [TARGET...]: status of make; all it says in $log. A capture's name goes through the environment or as
+# make's argument: both have to take any name.
+run_make() {
+	local capture=$1
+	shift
+	make --no-print-directory CAPTURE="$capture" "$@" >"$log" 2>&1 </dev/null
+}
+
+# Stages that ran, in order.
+ran() { sed -n 's/^\([a-z]*\): done in .*/\1/p' "$log" | tr '\n' ' ' | sed 's/ $//'; }
+
+# Names, times and bytes of everything made, but for what tells how long it took.
+bytes_of() { (cd "$1/work" && find . -type f ! -path './.made/*' ! -path './log/*' ! -path './review/*' -print0 |
+	sort -z | xargs -0 sha256sum); }
+times_of() { (cd "$1/work" && find . -type f ! -path './.made/*' -printf '%P %T@\n' | sort); }
+
+# same NAME GOT WANT: equal; of longer texts the first lines that differ are shown.
+same() {
+	if [ "$2" = "$3" ]; then pass "$1"; return; fi
+	fail "$1" "$(diff <(printf '%s\n' "$2") <(printf '%s\n' "$3") | head -n 8); log: $(tail -n 4 "$log")"
+}
