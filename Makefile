@@ -50,9 +50,11 @@ MATHFLAGS := -fno-math-errno -fno-trapping-math -ffp-contract=off
 ALL_CFLAGS := -std=gnu2x -D_GNU_SOURCE $(WARN) $(CFLAGS) $(SANFLAGS) $(MATHFLAGS) -fopenmp -Ilib -I. -MMD -MP
 ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenmp -Ilib -MMD -MP \
 	-isystem /usr/include/opencv4 -isystem /usr/include/eigen3
-EXR_CFLAGS := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
-LIBS := -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
-	-lOpenMeshTools -lOpenMeshCore -lOpenEXRCore-3_1 -lexif -lturbojpeg -lpng -ltiff -llapacke -lopenblas -ljansson -linih -lxxhash -lm
+# Asked when a recipe runs, not when this file is read: on a fresh machine set-up comes in between.
+EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
+EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
+LIBS = -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
+	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -llapacke -lopenblas -ljansson -linih -lxxhash -lm
 
 LIB_SRC := $(wildcard lib/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
