@@ -241,7 +241,9 @@ static void masks_against_labels(void **state)
 			// a lash is a few texels wide, so that a few in a thousand are left; reflections and the dark under a lid are
 			// iris by label and yet not to be used
 			assert_true((double)c.wrong < 0.005 * (double)c.kept);
-			assert_true((double)c.missed < (truth.covered > 0 ? 0.4 : 0.01) * (double)c.iris);
+			// and a checkerboard's black squares at the limbus are none that an iris has
+			double may_miss = truth.covered > 0 ? 0.4 : truth.name[0] == 'C' ? 0.05 : 0.01;
+			assert_true((double)c.missed < may_miss * (double)c.iris);
 			// where a circle of the true size lies, in the plane
 			assert_float_equal(texture.pupil.r, truth.pupil_radius, 0.05);
 			image_free(&texture.rgbw);
