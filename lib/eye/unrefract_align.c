@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "image/plane.h"
+#include "math/chol.h"
 
 enum { ANGLES = 1440, RINGS = 48, SMALLEST_OVERLAP = 12 };  // overlap in per cent of the rings' cells
 
@@ -104,32 +105,6 @@ static void add_point(struct normal *eq, const struct unrefract_view *fixed, con
 	}
 }
 
-/* h x = g by Cholesky; false when singular. */
-static bool solve6(double x[6], struct normal *eq)
-{
-	for (int i = 0; i < 6; i++)
-		for (int j = 0; j <= i; j++) {
-			double s = eq->h[i][j];
-			for (int k = 0; k < j; k++)
-				s -= eq->h[i][k] * eq->h[j][k];
-			if (i == j && !(s > 0))
-				return false;
-			eq->h[i][j] = i == j ? sqrt(s) : s / eq->h[j][j];
-		}
-	for (int i = 0; i < 6; i++) {
-		x[i] = eq->g[i];
-		for (int k = 0; k < i; k++)
-			x[i] -= eq->h[i][k] * x[k];
-		x[i] /= eq->h[i][i];
-	}
-	for (int i = 5; i >= 0; i--) {
-		for (int k = i + 1; k < 6; k++)
-			x[i] -= eq->h[k][i] * x[k];
-		x[i] /= eq->h[i][i];
-	}
-	return true;
-}
-
 /* Gauss-Newton on the six numbers: what is left of the turn, and the stretch and shift that an error of the pose makes.
  * Blurred first, so that fibres a few texels apart find one another. */
 static void refine(const struct unrefract_view *fixed, struct unrefract_view *view)
@@ -145,14 +120,14 @@ static void refine(const struct unrefract_view *fixed, struct unrefract_view *vi
 		plane_blur_weighted(to, view->survey.weight, s->size, s->size, sigmas[level], 0);
 		for (int iter = 0; iter < 8; iter++) {
 			struct normal eq = { 0 };
-			double d[6], mm = 2 * s->extent / s->size;
+			double mm = 2 * s->extent / s->size;
 			for (int row = 0; row < s->size; row += 2)
 				for (int col = 0; col < s->size; col += 2)
 					add_point(&eq, fixed, view, from, to, (col + 0.5) * mm - s->extent, (row + 0.5) * mm - s->extent);
-			if (!solve6(d, &eq))
+			if (!chol_solve(6, 6, &eq.h[0][0], eq.g))
 				break;
 			for (int i = 0; i < 6; i++)
-				view->iris.a[i / 3][i % 3] += d[i];
+				view->iris.a[i / 3][i % 3] += eq.g[i];
 		}
 	}
 	free(from);
