@@ -60,18 +60,32 @@ static bool take(float out[3], const struct patch *p, double x, double y)
 	return true;
 }
 
+/* The same of the nearest texel: enough to tell places apart. */
+static bool take_nearest(float out[3], const struct patch *p, double x, double y)
+{
+	int size = p->rgbw->width, col = (int)x, row = (int)y;
+	if (!(x >= 2 && y >= 2 && col < size - 2 && row < size - 2))
+		return false;
+	const float *px = image_at(p->rgbw, col, row);
+	for (int c = 0; c < 3; c++)
+		out[c] = logf(fmaxf(px[c], darkest));
+	return px[3] >= seen && !p->mask[(long)row * size + col];
+}
+
 /* The pattern's log colour for texel (col, row) of the map. */
-static bool take_pattern(float out[3], const struct patch *p, const struct pattern *pattern, int col, int row)
+static bool take_pattern(float out[3], const struct patch *p, const struct pattern *pattern, int col, int row,
+                         bool fine)
 {
 	double x = (col + 0.5) * p->mm - p->sheet.extent, y = (row + 0.5) * p->mm - p->sheet.extent, at[2];
 	double phi = atan2(y - p->sheet.pupil.cy, x - p->sheet.pupil.cx);
 	double from = pattern->mirror ? 2 * p->phi - phi + pattern->turn : phi + pattern->turn;
 	sheet_point(at, &p->sheet, sheet_t(&p->sheet, x, y), from);
-	return take(out, p, (at[0] + p->sheet.extent) / p->mm, (at[1] + p->sheet.extent) / p->mm);
+	double u = (at[0] + p->sheet.extent) / p->mm, v = (at[1] + p->sheet.extent) / p->mm;
+	return fine ? take(out, p, u, v) : take_nearest(out, p, u, v);
 }
 
 /* How badly the pattern continues the band, its mean colour aside; INFINITY where part of it is unseen. */
-static void judge(struct pattern *pattern, const struct patch *p, int stride)
+static void judge(struct pattern *pattern, const struct patch *p, int stride, bool fine)
 {
 	double sum[3] = { 0 }, square[3] = { 0 };
 	int n = 0;
@@ -82,7 +96,7 @@ static void judge(struct pattern *pattern, const struct patch *p, int stride)
 			float s[3];
 			if (kind == NEITHER)
 				continue;
-			if (!take_pattern(s, p, pattern, p->x0 + x, p->y0 + y))
+			if (!take_pattern(s, p, pattern, p->x0 + x, p->y0 + y, fine))
 				return;
 			const float *px = image_at(p->rgbw, p->x0 + x, p->y0 + y);
 			for (int c = 0; c < 3 && kind == BAND; c++) {
@@ -130,17 +144,19 @@ static struct pattern find_pattern(const struct patch *p, const struct freckle_c
 	for (int i = 0; i < conf->candidates * 4; i++) {
 		double turn = near + step * (i / 4 + 0.5);
 		all[i] = (struct pattern){ .turn = i & 1 ? -turn : turn, .mirror = i & 2 };
-		judge(&all[i], p, stride);
+		judge(&all[i], p, stride, false);
 	}
 	for (int i = 0; i < conf->candidates * 4; i++)
 		if (all[i].cost < best.cost)
 			best = all[i];
 	free(all);
+	if (isfinite(best.cost))
+		judge(&best, p, stride, true);
 	for (double d = step / 2; isfinite(best.cost) && d * 4 > p->mm; d /= 2)
 		for (int side = -1; side <= 1; side += 2) {
 			struct pattern try = best;
 			try.turn += side * d;
-			judge(&try, p, stride);
+			judge(&try, p, stride, true);
 			if (try.cost < best.cost && fabs(try.turn) >= near)
 				best = try;
 		}
@@ -155,7 +171,7 @@ static void lay_pattern(struct patch *p, const struct pattern *pattern)
 			float *s = p->source + 3 * ((long)y * p->w + x);
 			if (p->kind[y * p->w + x] == NEITHER)
 				continue;
-			bool ok = isfinite(pattern->cost) && take_pattern(s, p, pattern, p->x0 + x, p->y0 + y);
+			bool ok = isfinite(pattern->cost) && take_pattern(s, p, pattern, p->x0 + x, p->y0 + y, true);
 			for (int c = 0; c < 3; c++)
 				s[c] = ok ? s[c] + pattern->offset[c] : 0;
 		}
