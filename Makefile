@@ -102,7 +102,7 @@ define program
 $(BIN)/$(1): $(2) $B/libeyewright.a
 	@mkdir -p $$(@D)
 	$$(call tell,link $$@)
-	$$(Q)$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $(LIBS)
+	$$(Q)$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $$(LIBS)
 endef
 $(foreach s,$(filter-out render,$(STAGES)),$(eval $(call program,$s,$(patsubst %.c,$B/%.o,$(wildcard stages/$s/*.c)))))
 $B/render/embed.o: render/page.html render/page.css render/page.js
