@@ -1,34 +1,64 @@
-/* Blocks of problems, and what the lanes leave over. Included after lightpath_lane.h, once for each type; TOO_FAR2 is the
- * square of the longest last step (mm) after which a solve counts as converged. */
+/* Blocks of problems. Included by lightpath_batch.c after lightpath_lane.h, once for each type. */
 
-SIMD_CLONES static void NAME(solve_directional)(struct NAME(block) *b, const struct NAME(shared) *c, int m, int steps)
+#define LOOP(m, call)                                                                                                  \
+	SIMD_LOOP                                                                                                      \
+	for (int i = 0; i < (m); i++)                                                                                  \
+		call
+
+SIMD_CLONES static void NAME(start_directional)(struct NAME(block) *b, const struct NAME(shared) *c, int m)
 {
-	SIMD_LOOP
-	for (int i = 0; i < m; i++)
-		NAME(start)(b, i, c, false);
-	for (int k = 0; k < steps; k++) {
-		SIMD_LOOP
-		for (int i = 0; i < m; i++)
-			NAME(step)(b, i, c, false);
-	}
-	SIMD_LOOP
-	for (int i = 0; i < m; i++)
-		NAME(finish)(b, i, c, false);
+	LOOP(m, NAME(bent)(b, i, c, false));
+	LOOP(m, NAME(refracted)(b, i, c, false));
+	LOOP(m, NAME(started)(b, i, c));
 }
 
-SIMD_CLONES static void NAME(solve_point)(struct NAME(block) *b, const struct NAME(shared) *c, int m, int steps)
+SIMD_CLONES static void NAME(start_point)(struct NAME(block) *b, const struct NAME(shared) *c, int m)
 {
-	SIMD_LOOP
-	for (int i = 0; i < m; i++)
-		NAME(start)(b, i, c, true);
+	LOOP(m, NAME(bent)(b, i, c, true));
+	LOOP(m, NAME(refracted)(b, i, c, true));
+	LOOP(m, NAME(started)(b, i, c));
+}
+
+SIMD_CLONES static void NAME(polish_directional)(struct NAME(block) *b, const struct NAME(shared) *c, int m, int steps)
+{
 	for (int k = 0; k < steps; k++) {
-		SIMD_LOOP
-		for (int i = 0; i < m; i++)
-			NAME(step)(b, i, c, true);
+		LOOP(m, NAME(lengths)(b, i, c));
+		LOOP(m, NAME(curve)(b, i, c, false));
+		LOOP(m, NAME(move)(b, i, c));
 	}
-	SIMD_LOOP
-	for (int i = 0; i < m; i++)
-		NAME(finish)(b, i, c, true);
+	LOOP(m, NAME(finish)(b, i, c, false));
+}
+
+SIMD_CLONES static void NAME(polish_point)(struct NAME(block) *b, const struct NAME(shared) *c, int m, int steps)
+{
+	for (int k = 0; k < steps; k++) {
+		LOOP(m, NAME(lengths)(b, i, c));
+		LOOP(m, NAME(curve)(b, i, c, true));
+		LOOP(m, NAME(move)(b, i, c));
+	}
+	LOOP(m, NAME(finish)(b, i, c, true));
+}
+
+#undef LOOP
+
+/* Lanes work in whole vectors: the last problem is repeated. Returns how many lanes are filled. */
+static int NAME(pad)(struct NAME(block) *b, int m)
+{
+	int whole = (m + 7) / 8 * 8;
+	REAL *const all[] = { b->px, b->py, b->pz, b->wx, b->wy, b->wz, b->x, b->y };
+	for (int k = 0; k < COUNT(all); k++)
+		for (int i = m; i < whole; i++)
+			all[k][i] = all[k][m - 1];
+	return whole;
+}
+
+static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3])
+{
+	struct NAME(shared) shared = { .R = c->R, .p = c->p, .n = c->n, .n2_1 = c->n * c->n - 1, .inv_2R = 0.5 / c->R,
+		                       .rim2 = c->rim * c->rim };
+	for (int k = 0; k < 3 && C; k++)
+		shared.C[k] = C[k];
+	return shared;
 }
 
 /* The arrays of a call, whichever of w and C it has. */
@@ -40,68 +70,62 @@ struct NAME(batch) {
 	const double *C;
 };
 
-/* The lanes from `from` on into a block; rounded up to whole vectors by repeating the last. Returns their number. */
-static int NAME(load)(struct NAME(block) *b, const struct NAME(batch) *in, int from, int n)
+/* The one lane, by the solver that always ends well. */
+static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *in)
 {
-	int m = n - from < BLOCK ? n - from : BLOCK, whole = (m + 15) / 16 * 16;
-	size_t size = m * sizeof(REAL);
-	const REAL *const src[] = { in->px, in->py, in->pz, in->wx, in->wy, in->wz };
-	REAL *const dst[] = { b->px, b->py, b->pz, b->wx, b->wy, b->wz };
-	for (int k = 0; k < (in->C ? 3 : 6); k++) {
-		memcpy(dst[k], src[k] + from, size);
-		for (int i = m; i < whole; i++)
-			dst[k][i] = dst[k][m - 1];
-	}
-	return whole;
+	double P[3] = { b->px[i], b->py[i], b->pz[i] }, w[3] = { b->wx[i], b->wy[i], b->wz[i] }, K[3];
+	b->status[i] = in->C ? lightpath_solve(K, in->cornea, P, in->C) : lightpath_solve_directional(K, in->cornea, P, w);
+	b->kx[i] = K[0];
+	b->ky[i] = K[1];
+	b->kz[i] = K[2];
 }
 
-/* One problem, by the solver that always ends well. */
-static void NAME(alone)(const struct NAME(batch) *in, int i, unsigned char *status)
+/* Lanes that have not converged, or that float cannot tell well enough, gathered and polished in double. */
+static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in)
 {
-	double P[3] = { in->px[i], in->py[i], in->pz[i] }, K[3];
-	if (in->C) {
-		*status = lightpath_solve(K, in->cornea, P, in->C);
-	} else {
-		double w[3] = { in->wx[i], in->wy[i], in->wz[i] };
-		*status = lightpath_solve_directional(K, in->cornea, P, w);
-	}
-	in->kx[i] = K[0];
-	in->ky[i] = K[1];
-	in->kz[i] = K[2];
-}
-
-static void NAME(store)(const struct NAME(batch) *out, const struct NAME(block) *b, int from, int n)
-{
-	int m = n - from < BLOCK ? n - from : BLOCK;
-	double edge = cornea_edge(out->cornea), rim2 = edge * edge;
-	memcpy(out->kx + from, b->x, m * sizeof(REAL));
-	memcpy(out->ky + from, b->y, m * sizeof(REAL));
-	memcpy(out->kz + from, b->z, m * sizeof(REAL));
+	int lane[BLOCK + 1], n = 0;
 	for (int i = 0; i < m; i++) {
-		unsigned char status = b->cos_i[i] < 0 ? LIGHTPATH_GRAZING
-		                       : b->x[i] * b->x[i] + b->y[i] * b->y[i] > rim2 ? LIGHTPATH_BEYOND_RIM
-		                                                                      : LIGHTPATH_OK;
-		if (!(b->last2[i] <= TOO_FAR2))
-			NAME(alone)(out, from + i, &status);
-		if (out->status)
-			out->status[from + i] = status;
+		lane[n] = i;
+		n += b->again[i];
+	}
+	if (!n)
+		return;
+	struct double_block again;
+	for (int j = 0; j < n; j++) {
+		int i = lane[j];
+		again.px[j] = b->px[i], again.py[j] = b->py[i], again.pz[j] = b->pz[i];
+		again.wx[j] = b->wx[i], again.wy[j] = b->wy[i], again.wz[j] = b->wz[i];
+		again.x[j] = b->x[i], again.y[j] = b->y[i];
+	}
+	struct double_shared shared = double_share(in->cornea, in->C);
+	(in->C ? double_polish_point : double_polish_directional)(&again, &shared, double_pad(&again, n), 3);
+	for (int j = 0; j < n; j++) {
+		int i = lane[j];
+		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
+		b->status[i] = again.status[j];
+		if (again.again[j])
+			NAME(alone)(b, i, in);
 	}
 }
 
 static void NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 {
-	const struct cornea *c = batch->cornea;
-	double reach = lightpath_reach(c);
-	struct NAME(shared) shared = { c->R, c->R * c->R, c->p, c->n, c->n * c->n - 1, reach * reach, { 0 } };
-	for (int k = 0; k < 3 && batch->C; k++)
-		shared.C[k] = batch->C[k];
+	struct NAME(shared) shared = NAME(share)(batch->cornea, batch->C);
 	struct NAME(block) block;
+	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz };
+	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz };
 	for (int from = 0; from < n; from += BLOCK) {
-		int m = NAME(load)(&block, batch, from, n);
-		if (batch->C)
-			NAME(solve_point)(&block, &shared, m, steps);
-		else
-			NAME(solve_directional)(&block, &shared, m, steps);
-		NAME(store)(batch, &block, from, n);
+		int m = n - from < BLOCK ? n - from : BLOCK;
+		for (int k = 0; k < 6; k++)
+			memcpy(dst[k], (batch->C && k > 2 ? src[0] : src[k]) + from, m * sizeof(REAL));
+		int whole = NAME(pad)(&block, m);
+		(batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
+		(batch->C ? NAME(polish_point) : NAME(polish_directional))(&block, &shared, whole, steps);
+		NAME(redo)(&block, m, batch);
+		memcpy(batch->kx + from, block.kx, m * sizeof(REAL));
+		memcpy(batch->ky + from, block.ky, m * sizeof(REAL));
+		memcpy(batch->kz + from, block.kz, m * sizeof(REAL));
+		if (batch->status)
+			memcpy(batch->status + from, block.status, m);
 	}
 }

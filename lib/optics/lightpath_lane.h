@@ -1,24 +1,23 @@
 /* The solve of lightpath.c for many problems at once, without branches. Included by lightpath_batch.c once for
- * each type: REAL, SQRT, BLOCK and NAME(x) are defined there; hence no guard.
+ * each type: REAL, SQRT, NAME(x), BLOCK, FAR2 and ILL are defined there; hence no guard.
  */
 
-/* A block of problems: structure of arrays. P inside; (x, y) the current K; w the direction, or nothing where
- * the light is a point C. */
+/* A block of problems: structure of arrays. */
 struct NAME(block) {
-	REAL px[BLOCK], py[BLOCK], pz[BLOCK], wx[BLOCK], wy[BLOCK], wz[BLOCK];
-	REAL x[BLOCK], y[BLOCK], z[BLOCK], cos_i[BLOCK];
-	REAL last2[BLOCK];  // square of the last step, mm²; huge where L is not convex
+	REAL px[BLOCK], py[BLOCK], pz[BLOCK];  // P, mm
+	REAL wx[BLOCK], wy[BLOCK], wz[BLOCK];  // direction to the light; unused where it is a point
+	REAL x[BLOCK], y[BLOCK];               // the current K in the chart of lengths()
+	REAL tau[BLOCK], inv_d[BLOCK];         // one step's intermediate results
+	REAL gx[BLOCK], gy[BLOCK], hxx[BLOCK], hxy[BLOCK], hyy[BLOCK];
+	REAL kx[BLOCK], ky[BLOCK], kz[BLOCK];  // K, mm
+	REAL last2[BLOCK];                     // square of the last step, mm²; 1 where that says nothing: ILL
+	unsigned char status[BLOCK], again[BLOCK];
 };
 
 /* What all problems share. */
 struct NAME(shared) {
-	REAL R, R2, p, n, n2_1, reach2, C[3];
+	REAL R, p, n, n2_1, inv_2R, rim2, C[3];
 };
-
-SIMD_INLINE REAL NAME(least)(REAL a, REAL b)
-{
-	return a < b ? a : b;
-}
 
 /* Unit direction from (x, y, z) to the light, and 1 / its distance. */
 SIMD_INLINE REAL NAME(outward)(REAL u[3], const struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point,
@@ -49,62 +48,99 @@ SIMD_INLINE void NAME(leave)(REAL K[3], const struct NAME(block) *b, int i, cons
 	K[2] = pz + t * q[2];
 }
 
-/* The closed-form start of lightpath.c. */
-SIMD_INLINE void NAME(start)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
+/* The closed-form start of lightpath.c in three loops (why: see lengths()): bent(), refracted(), started(). */
+SIMD_INLINE void NAME(bent)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
 {
-	REAL u[3], q[3], K[3];
-	NAME(outward)(u, b, i, c, point, b->px[i], b->py[i], b->pz[i]);
-	q[0] = u[0];
-	q[1] = u[1];
-	q[2] = u[2] - (REAL)LIGHTPATH_BEND;
+	REAL q[3], K[3];
+	NAME(outward)(q, b, i, c, point, b->px[i], b->py[i], b->pz[i]);
+	q[2] -= (REAL)LIGHTPATH_BEND;
 	NAME(leave)(K, b, i, c, q);
-	NAME(outward)(u, b, i, c, point, K[0], K[1], K[2]);
-	REAL G[3] = { K[0], K[1], c->p * K[2] - c->R }, a = u[0] * G[0] + u[1] * G[1] + u[2] * G[2];
-	REAL g2 = G[0] * G[0] + G[1] * G[1] + G[2] * G[2], f = (SQRT(a * a + c->n2_1 * g2) - a) / g2;
-	for (int k = 0; k < 3; k++)
-		q[k] = u[k] + f * G[k];
-	NAME(leave)(K, b, i, c, q);
-	b->x[i] = K[0];
-	b->y[i] = K[1];
+	b->kx[i] = K[0];
+	b->ky[i] = K[1];
+	b->kz[i] = K[2];
 }
 
-/* One Newton step on L in the chart (x, y), kept within `reach`. */
-SIMD_INLINE void NAME(step)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
+SIMD_INLINE void NAME(refracted)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
 {
-	REAL x = b->x[i], y = b->y[i], r2 = x * x + y * y, p = c->p, u[3];
-	REAL over = r2 > c->reach2 ? SQRT(c->reach2 / r2) : 1;
-	x *= over;
-	y *= over;
-	r2 *= over * over;
-	REAL s = SQRT(c->R2 - p * r2), inv = 1 / (s * (c->R + s)), inv_s = inv * (c->R + s), z = r2 * inv * s;
-	REAL out = NAME(outward)(u, b, i, c, point, x, y, z);
-	REAL vx = x - b->px[i], vy = y - b->py[i], vz = z - b->pz[i], inv_d = 1 / SQRT(vx * vx + vy * vy + vz * vz);
-	vx *= inv_d;
-	vy *= inv_d;
-	vz *= inv_d;
-	REAL in = c->n * inv_d, sx = x * inv_s, sy = y * inv_s, gz = c->n * vz - u[2], bend = gz * inv_s;
-	REAL gx = c->n * vx - u[0] + sx * gz, gy = c->n * vy - u[1] + sy * gz;
-	REAL va = vx + sx * vz, vb = vy + sy * vz, f = in + out, e = f + bend * p;
-	REAL hxx = f + bend + sx * sx * e - in * va * va, hyy = f + bend + sy * sy * e - in * vb * vb;
-	REAL hxy = sx * sy * e - in * va * vb;
+	REAL kx = b->kx[i], ky = b->ky[i], kz = b->kz[i], u[3];
+	NAME(outward)(u, b, i, c, point, kx, ky, kz);
+	REAL gz = c->p * kz - c->R, a = u[0] * kx + u[1] * ky + u[2] * gz, g2 = kx * kx + ky * ky + gz * gz;
+	REAL f = (SQRT(a * a + c->n2_1 * g2) - a) / g2;
+	b->gx[i] = u[0] + f * kx;
+	b->gy[i] = u[1] + f * ky;
+	b->hxx[i] = u[2] + f * gz;
+}
+
+SIMD_INLINE void NAME(started)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
+{
+	REAL q[3] = { b->gx[i], b->gy[i], b->hxx[i] }, K[3];
+	NAME(leave)(K, b, i, c, q);
+	// The chart: where the line from the far end of the axis meets the plane z = 0, over 2R.
+	REAL inv_t = 1 / (2 * c->R - c->p * K[2]);
+	b->x[i] = K[0] * inv_t;
+	b->y[i] = K[1] * inv_t;
+}
+
+/* One Newton step on L, in the rational chart K = t (x, y, rho²), t = R tau, tau = 2 / (1 + p rho²), rho² = x² + y²:
+ * no root, no end at the equator. In three loops, lengths(), curve() and move(): each alone is short enough that a
+ * processor works on several vectors of lanes at a time, instead of waiting for the roots and quotients of one. */
+SIMD_INLINE void NAME(lengths)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
+{
+	REAL x = b->x[i], y = b->y[i], rho2 = x * x + y * y, tau = 2 / (1 + c->p * rho2), t = c->R * tau;
+	REAL vx = t * x - b->px[i], vy = t * y - b->py[i], vz = t * rho2 - b->pz[i];
+	b->tau[i] = tau;
+	b->inv_d[i] = 1 / SQRT(vx * vx + vy * vy + vz * vz);
+}
+
+/* Gradient and Hessian of L over the tangents e + (x, y) m, m = tau (−p x, −p y, 1), of length 1 / t against the
+ * chart's own. Terms of the second derivatives that vanish with the gradient are left out: it keeps the order and
+ * converges a third of a step faster. */
+SIMD_INLINE void NAME(curve)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
+{
+	REAL x = b->x[i], y = b->y[i], p = c->p, n = c->n, rho2 = x * x + y * y, tau = b->tau[i], inv_d = b->inv_d[i], u[3];
+	REAL t = c->R * tau, kx = t * x, ky = t * y, kz = t * rho2;
+	REAL out = NAME(outward)(u, b, i, c, point, kx, ky, kz);
+	REAL vx = (kx - b->px[i]) * inv_d, vy = (ky - b->py[i]) * inv_d, vz = (kz - b->pz[i]) * inv_d;
+	REAL g1 = n * vx - u[0], g2 = n * vy - u[1], g3 = n * vz - u[2];
+	REAL gm = tau * (g3 - p * (x * g1 + y * g2)), vm = tau * (vz - p * (x * vx + y * vy));
+	REAL va = vx + x * vm, vb = vy + y * vm, in = n * inv_d, f = in + out;
+	REAL bend = f + gm * (1 + p * rho2) * c->inv_2R, m2 = f * tau * (tau * (1 + p * p * rho2) - 2 * p);
+	b->gx[i] = g1 + x * gm;
+	b->gy[i] = g2 + y * gm;
+	REAL hxx = bend + m2 * x * x - in * va * va, hyy = bend + m2 * y * y - in * vb * vb;
+	REAL hxy = m2 * x * y - in * va * vb;
 	if (point) {
-		REAL ua = u[0] + sx * u[2], ub = u[1] + sy * u[2];
+		REAL um = tau * (u[2] - p * (x * u[0] + y * u[1])), ua = u[0] + x * um, ub = u[1] + y * um;
 		hxx -= out * ua * ua;
 		hyy -= out * ub * ub;
 		hxy -= out * ua * ub;
 	}
-	REAL det = hxx * hyy - hxy * hxy, inv_det = 1 / det;
-	REAL dx = (hxy * gy - hyy * gx) * inv_det, dy = (hxy * gx - hxx * gy) * inv_det;
-	b->x[i] = x + dx;
-	b->y[i] = y + dy;
-	b->last2[i] = det > 0 && hxx > 0 ? dx * dx + dy * dy : 1;
+	b->hxx[i] = hxx;
+	b->hyy[i] = hyy;
+	b->hxy[i] = hxy;
 }
 
-/* K's depth, and the side on which the light stands. */
+SIMD_INLINE void NAME(move)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
+{
+	REAL gx = b->gx[i], gy = b->gy[i], hxx = b->hxx[i], hxy = b->hxy[i], hyy = b->hyy[i], t = c->R * b->tau[i];
+	REAL det = hxx * hyy - hxy * hxy, inv = 1 / (det * t);
+	REAL dx = (hxy * gy - hyy * gx) * inv, dy = (hxy * gx - hxx * gy) * inv;
+	b->x[i] += dx;
+	b->y[i] += dy;
+	b->last2[i] = det > ILL * (hxx + hyy) && hxx + hyy > 0 ? t * t * (dx * dx + dy * dy) : 1;
+}
+
+/* K in mm, what came of it, and whether it needs another look. */
 SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
 {
-	REAL x = b->x[i], y = b->y[i], r2 = x * x + y * y, s2 = c->R2 - c->p * r2, s = SQRT(s2 > 0 ? s2 : 0), u[3];
-	b->z[i] = r2 / (c->R + s);
-	NAME(outward)(u, b, i, c, point, x, y, b->z[i]);
-	b->cos_i[i] = u[0] * x + u[1] * y - u[2] * s;
+	REAL x = b->x[i], y = b->y[i], rho2 = x * x + y * y, t = 2 * c->R / (1 + c->p * rho2), u[3];
+	REAL kx = t * x, ky = t * y, kz = t * rho2;
+	b->kx[i] = kx;
+	b->ky[i] = ky;
+	b->kz[i] = kz;
+	NAME(outward)(u, b, i, c, point, kx, ky, kz);
+	REAL cos_i = u[0] * kx + u[1] * ky - u[2] * (c->R - c->p * kz);
+	bool beyond = (kx * kx + ky * ky > c->rim2) | (c->p * kz > c->R);
+	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
+	b->again[i] = !(b->last2[i] <= FAR2);
 }
