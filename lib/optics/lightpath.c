@@ -53,45 +53,38 @@ static bool descend(struct chart *at, double *least, const struct path *path)
 	return true;
 }
 
-/* Where n -> 1 meets grazing incidence L is almost flat: Snell's law itself still tells the place. */
-static void polish(struct chart *at, const struct path *path)
+static enum lightpath_status judge(const double K[3], const struct path *path)
 {
-	for (int i = 0; i < 2; i++) {
-		double r[2], J[2][2];
-		path_mismatch(r, J, path, at);
-		double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-		double step[2] = { (J[0][1] * r[1] - J[1][1] * r[0]) / det, (J[1][0] * r[0] - J[0][0] * r[1]) / det };
-		if (!(fabs(step[0]) + fabs(step[1]) < 1e-5))
-			return;
-		*at = chart_moved(path->cornea, at, step);
-	}
+	double u[3], N[3];
+	path_outward(u, path, K);
+	cornea_normal(N, path->cornea, K);
+	if (vec_dot(u, N) < 0)
+		return LIGHTPATH_GRAZING;
+	return hypot(K[0], K[1]) > path->cornea->rim || N[2] > 0 ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
 }
 
 static enum lightpath_status solve(double K[3], const struct path *path)
 {
+	double least, found[1][3];
 	for (int i = 0; i < 3; i++)
 		K[i] = 0;
-	const struct cornea *c = path->cornea;
-	const double *P = path->P, *C = path->C;
-	if (!(P[0] * P[0] + P[1] * P[1] + P[2] * (c->p * P[2] - 2 * c->R) < 0))
-		return LIGHTPATH_NONE;
-	if (C && !(C[0] * C[0] + C[1] * C[1] + C[2] * (c->p * C[2] - 2 * c->R) > 0))
-		return LIGHTPATH_NONE;
-	if (!C && !isfinite(path->w[0] + path->w[1] + path->w[2]))
+	if (!path_is_sound(path))
 		return LIGHTPATH_NONE;
 	struct chart at = first_guess(path);
-	double least;
 	if (!descend(&at, &least, path))
 		return LIGHTPATH_NONE;
 	if (least < 0.02)
-		polish(&at, path);
+		path_polish(&at, path);
 	for (int i = 0; i < 3; i++)
 		K[i] = at.K[i];
-	double u[3];
-	path_outward(u, path, K);
-	if (u[0] * K[0] + u[1] * K[1] + u[2] * (c->p * K[2] - c->R) < 0)
-		return LIGHTPATH_GRAZING;
-	return hypot(K[0], K[1]) > c->rim || c->p * K[2] > c->R ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
+	enum lightpath_status status = judge(K, path);
+	// A shortest path that comes from behind the surface may stand beside a real one that is no minimum: light that
+	// has passed its focus, or comes from behind the limbus.
+	if (status != LIGHTPATH_GRAZING || !path_search(found, 1, path))
+		return status;
+	for (int i = 0; i < 3; i++)
+		K[i] = found[0][i];
+	return LIGHTPATH_OK;
 }
 
 enum lightpath_status lightpath_solve(double K[3], const struct cornea *cornea, const double P[3], const double C[3])

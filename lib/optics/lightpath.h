@@ -21,6 +21,12 @@ enum lightpath_status lightpath_solve(double K[3], const struct cornea *cornea, 
 enum lightpath_status lightpath_solve_directional(double K[3], const struct cornea *cornea, const double P[3],
                                                   const double w[3]);
 
+/* Every path through the lit cornea inside the rim, shortest optical length first; their number, at most max.
+ * C: a point outside; or null, and the light comes from direction w. Several exist where light from behind the
+ * limbus (beyond 98.8 degrees from the axis, for the generic eye) is focused on the far side; about 50 us. */
+int lightpath_all(double K[][3], int max, const struct cornea *cornea, const double P[3], const double C[3],
+                  const double w[3]);
+
 /* n solves in float, structure of arrays, vectorised: px[n] .. wz[n] in (w: unit, towards the light),
  * kx[n] .. kz[n] out; status[n] may be null. steps: Newton steps (4: 2e-5 mm worst). What has not converged
  * after them is solved one by one in double. */

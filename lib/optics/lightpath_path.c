@@ -139,3 +139,26 @@ void path_mismatch(double r[2], double J[2][2], const struct path *path, const s
 			J[i][k] = vec_dot(B[i], T) / d - vec_dot(B[i], dq);
 	}
 }
+
+void path_polish(struct chart *at, const struct path *path)
+{
+	for (int i = 0; i < 2; i++) {
+		double r[2], J[2][2];
+		path_mismatch(r, J, path, at);
+		double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
+		double step[2] = { (J[0][1] * r[1] - J[1][1] * r[0]) / det, (J[1][0] * r[0] - J[0][0] * r[1]) / det };
+		if (!(fabs(step[0]) + fabs(step[1]) < 1e-5))
+			return;
+		*at = chart_moved(path->cornea, at, step);
+	}
+}
+
+bool path_is_sound(const struct path *path)
+{
+	const double *P = path->P, *C = path->C, R = path->cornea->R, p = path->cornea->p;
+	if (!(P[0] * P[0] + P[1] * P[1] + P[2] * (p * P[2] - 2 * R) < 0))
+		return false;
+	if (C)
+		return C[0] * C[0] + C[1] * C[1] + C[2] * (p * C[2] - 2 * R) > 0 && isfinite(C[0] + C[1] + C[2]);
+	return isfinite(path->w[0] + path->w[1] + path->w[2]);
+}

@@ -45,6 +45,15 @@ void path_inside(double q[3], const struct path *path, const struct chart *at, c
  * the tangents (1/mm): Snell's law in a form that keeps its digits where n -> 1 meets grazing incidence. */
 void path_mismatch(double r[2], double J[2][2], const struct path *path, const struct chart *at);
 
+/* At most two Newton steps on the mismatch, from a K that is right but for rounding. */
+void path_polish(struct chart *at, const struct path *path);
+
+/* P inside the surface, C outside, all of them numbers. */
+bool path_is_sound(const struct path *path);
+
+/* lightpath_all() of a sound problem. */
+int path_search(double K[][3], int max, const struct path *path);
+
 /* Where the ray from P inside, in direction q, leaves the surface. */
 struct chart path_leave(const struct path *path, const double q[3]);
 
