@@ -78,9 +78,12 @@ static enum lightpath_status solve(double K[3], const struct path *path)
 	for (int i = 0; i < 3; i++)
 		K[i] = at.K[i];
 	enum lightpath_status status = judge(K, path);
-	// A shortest path that comes from behind the surface may stand beside a real one that is no minimum: light that
-	// has passed its focus, or comes from behind the limbus.
-	if (status != LIGHTPATH_GRAZING || !path_search(found, 1, path))
+	// A shortest path that comes from behind the surface, or past the rim, may stand beside a real one that is no
+	// minimum: light far off the axis that has passed its focus.
+	double u[3];
+	path_outward(u, path, path->P);
+	bool plain = status == LIGHTPATH_OK || (status == LIGHTPATH_BEYOND_RIM && u[2] < -0.5);
+	if (plain || !path_search(found, 1, path))
 		return status;
 	for (int i = 0; i < 3; i++)
 		K[i] = found[0][i];

@@ -46,6 +46,12 @@ void lightpath_batch_point_double(int n, const double *px, const double *py, con
                                   double *kx, double *ky, double *kz, unsigned char *status,
                                   const struct cornea *cornea, int steps);
 
+/* lightpath_batch() with an error in mm that is good enough (0: as good as float is), from starts of the caller's:
+ * x[n], y[n] = K_x, K_y over 2R − pK_z; both null: the closed form. Returns how many had to be done again in double. */
+long lightpath_batch_from(int n, const float *x, const float *y, const float *px, const float *py, const float *pz,
+                          const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
+                          unsigned char *status, const struct cornea *cornea, int steps, double error_mm);
+
 /* The paper's algorithm 1 as printed, with its thresholds; alpha in mm (0.5 = the paper's 0.05 cm). */
 struct algorithm1_conf {
 	double alpha, eps_inner, eps_outer;
@@ -57,5 +63,13 @@ enum lightpath_status lightpath_algorithm1(double K[3], const struct cornea *cor
 /* Irradiance at P on a plane facing -z, over the irradiance of the same light on a plane facing it outside:
  * T cos i |dK/dP| / N_z (the caustic). K as solved for P and w. */
 double lightpath_gain(const struct cornea *cornea, const double P[3], const double w[3], const double K[3]);
+
+/* The same of n paths, in float; 0 where the light stands behind the surface at K. */
+void lightpath_gain_batch(int n, const float *px, const float *py, const float *pz, const float *wx, const float *wy,
+                          const float *wz, const float *kx, const float *ky, const float *kz, float *gain,
+                          const struct cornea *cornea);
+
+/* The sum of the gains of all paths from direction w to P. */
+double lightpath_irradiance(const struct cornea *cornea, const double P[3], const double w[3]);
 
 #endif

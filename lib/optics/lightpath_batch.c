@@ -13,20 +13,20 @@ enum { BLOCK = 128 };  // a block's arrays stay in the first-level cache
 #define REAL double
 #define SQRT sqrt
 #define NAME(x) double_##x
-#define FAR2 1e-12
+#define FAR 1e-6
 #define ILL 0
 #include "optics/lightpath_lane.h"
 #include "optics/lightpath_block.h"
 #undef REAL
 #undef SQRT
 #undef NAME
-#undef FAR2
+#undef FAR
 #undef ILL
 #define REAL float
 #define SQRT sqrtf
 #define NAME(x) float_##x
-#define FAR2 2.5e-5f
-#define ILL 0.02f
+#define FAR 5e-3
+#define ILL 0.02
 #include "optics/lightpath_lane.h"
 #include "optics/lightpath_block.h"
 
@@ -34,25 +34,71 @@ void lightpath_batch(int n, const float *px, const float *py, const float *pz, c
                      const float *wz, float *kx, float *ky, float *kz, unsigned char *status,
                      const struct cornea *cornea, int steps)
 {
-	float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0 }, n, steps);
+	float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, 0, 0, 0 }, n, steps);
 }
 
 void lightpath_batch_point(int n, const float *px, const float *py, const float *pz, const double C[3], float *kx,
                            float *ky, float *kz, unsigned char *status, const struct cornea *cornea, int steps)
 {
-	float_run(&(struct float_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C }, n, steps);
+	float_run(&(struct float_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C, 0, 0, 0 }, n, steps);
 }
 
 void lightpath_batch_double(int n, const double *px, const double *py, const double *pz, const double *wx,
                             const double *wy, const double *wz, double *kx, double *ky, double *kz,
                             unsigned char *status, const struct cornea *cornea, int steps)
 {
-	double_run(&(struct double_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0 }, n, steps);
+	double_run(&(struct double_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, 0, 0, 0 }, n, steps);
 }
 
 void lightpath_batch_point_double(int n, const double *px, const double *py, const double *pz, const double C[3],
                                   double *kx, double *ky, double *kz, unsigned char *status,
                                   const struct cornea *cornea, int steps)
 {
-	double_run(&(struct double_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C }, n, steps);
+	double_run(&(struct double_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C, 0, 0, 0 }, n, steps);
+}
+
+long lightpath_batch_from(int n, const float *x, const float *y, const float *px, const float *py, const float *pz,
+                          const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
+                          unsigned char *status, const struct cornea *cornea, int steps, double error_mm)
+{
+	return float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, x, y, error_mm }, n,
+	                 steps);
+}
+
+/* Gain at K, given in mm. */
+SIMD_CLONES static void shine(struct float_block *b, const struct float_shared *c, int m)
+{
+	SIMD_LOOP
+	for (int i = 0; i < m; i++) {
+		float inv_t = 1 / (2 * c->R - c->p * b->kz[i]);
+		b->x[i] = b->kx[i] * inv_t;
+		b->y[i] = b->ky[i] * inv_t;
+		float_lengths(b, i, c);
+	}
+	SIMD_LOOP
+	for (int i = 0; i < m; i++)
+		float_curve(b, i, c, false);
+	SIMD_LOOP
+	for (int i = 0; i < m; i++)
+		float_caustic(b, i, c);
+}
+
+void lightpath_gain_batch(int n, const float *px, const float *py, const float *pz, const float *wx, const float *wy,
+                          const float *wz, const float *kx, const float *ky, const float *kz, float *gain,
+                          const struct cornea *cornea)
+{
+	struct float_shared shared = float_share(cornea, 0);
+	struct float_block block;
+	const float *const src[] = { px, py, pz, wx, wy, wz, kx, ky, kz };
+	float *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz, block.kx, block.ky, block.kz };
+	for (int from = 0; from < n; from += BLOCK) {
+		int m = n - from < BLOCK ? n - from : BLOCK, whole = (m + 7) / 8 * 8;
+		for (int k = 0; k < COUNT(src); k++) {
+			memcpy(dst[k], src[k] + from, m * sizeof(float));
+			for (int i = m; i < whole; i++)
+				dst[k][i] = dst[k][m - 1];
+		}
+		shine(&block, &shared, whole);
+		memcpy(gain + from, block.gain, m * sizeof(float));
+	}
 }

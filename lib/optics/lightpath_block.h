@@ -56,6 +56,8 @@ static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3]
 {
 	struct NAME(shared) shared = { .R = c->R, .p = c->p, .n = c->n, .n2_1 = c->n * c->n - 1, .inv_2R = 0.5 / c->R,
 		                       .rim2 = c->rim * c->rim };
+	shared.far2 = FAR * FAR;
+	shared.ill = ILL;
 	for (int k = 0; k < 3 && C; k++)
 		shared.C[k] = C[k];
 	return shared;
@@ -68,6 +70,8 @@ struct NAME(batch) {
 	unsigned char *status;
 	const struct cornea *cornea;
 	const double *C;
+	const REAL *x, *y;  // where to start, in the chart; or null
+	double error;       // mm; 0: as good as the type is
 };
 
 /* The one lane, by the solver that always ends well. */
@@ -80,8 +84,8 @@ static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *
 	b->kz[i] = K[2];
 }
 
-/* Lanes that have not converged, or that float cannot tell well enough, gathered and polished in double. */
-static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in)
+/* Lanes that have not converged, or that float cannot tell well enough, gathered and polished in double; their number. */
+static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in)
 {
 	int lane[BLOCK + 1], n = 0;
 	for (int i = 0; i < m; i++) {
@@ -89,7 +93,7 @@ static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *i
 		n += b->again[i];
 	}
 	if (!n)
-		return;
+		return 0;
 	struct double_block again;
 	for (int j = 0; j < n; j++) {
 		int i = lane[j];
@@ -103,29 +107,43 @@ static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *i
 		int i = lane[j];
 		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
 		b->status[i] = again.status[j];
-		if (again.again[j])
+		if (again.again[j] || again.status[j] == LIGHTPATH_GRAZING)
 			NAME(alone)(b, i, in);
 	}
+	return n;
 }
 
-static void NAME(run)(const struct NAME(batch) *batch, int n, int steps)
+/* The effort that an error allows: after a last step of s mm, s² mm are left at most. */
+static void NAME(spare)(struct NAME(shared) *shared, double error)
+{
+	if (!(error > FAR * FAR))
+		return;
+	shared->far2 = error < 0.04 ? error : 0.04;
+	shared->ill = error < ILL ? ILL * FAR * FAR / error : 0;
+}
+
+static long NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 {
 	struct NAME(shared) shared = NAME(share)(batch->cornea, batch->C);
+	NAME(spare)(&shared, batch->error);
 	struct NAME(block) block;
-	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz };
-	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz };
+	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz, batch->x, batch->y };
+	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz, block.x, block.y };
+	long redone = 0;
 	for (int from = 0; from < n; from += BLOCK) {
 		int m = n - from < BLOCK ? n - from : BLOCK;
-		for (int k = 0; k < 6; k++)
-			memcpy(dst[k], (batch->C && k > 2 ? src[0] : src[k]) + from, m * sizeof(REAL));
+		for (int k = 0; k < COUNT(src); k++)
+			memcpy(dst[k], (src[k] ? src[k] : src[0]) + from, m * sizeof(REAL));
 		int whole = NAME(pad)(&block, m);
-		(batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
+		if (!batch->x)
+			(batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
 		(batch->C ? NAME(polish_point) : NAME(polish_directional))(&block, &shared, whole, steps);
-		NAME(redo)(&block, m, batch);
+		redone += NAME(redo)(&block, m, batch);
 		memcpy(batch->kx + from, block.kx, m * sizeof(REAL));
 		memcpy(batch->ky + from, block.ky, m * sizeof(REAL));
 		memcpy(batch->kz + from, block.kz, m * sizeof(REAL));
 		if (batch->status)
 			memcpy(batch->status + from, block.status, m);
 	}
+	return redone;
 }

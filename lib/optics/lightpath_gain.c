@@ -1,5 +1,6 @@
 #include <math.h>
 
+#include "base/mem.h"
 #include "math/vec.h"
 #include "optics/lightpath.h"
 #include "optics/lightpath_path.h"
@@ -27,4 +28,13 @@ double lightpath_gain(const struct cornea *cornea, const double P[3], const doub
 	cornea_normal(N, cornea, K);
 	double cos_i = vec_dot(w, N);
 	return cos_i > 0 ? fresnel_transmittance(cos_i, 1, cornea->n) * cos_i * fabs(moved) * vec_norm(area) : 0;
+}
+
+double lightpath_irradiance(const struct cornea *cornea, const double P[3], const double w[3])
+{
+	double K[8][3], sum = 0;
+	int n = lightpath_all(K, COUNT(K), cornea, P, 0, w);
+	for (int i = 0; i < n; i++)
+		sum += lightpath_gain(cornea, P, w, K[i]);
+	return sum;
 }

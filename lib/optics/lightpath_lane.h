@@ -1,5 +1,5 @@
 /* The solve of lightpath.c for many problems at once, without branches. Included by lightpath_batch.c once for
- * each type: REAL, SQRT, NAME(x), BLOCK, FAR2 and ILL are defined there; hence no guard.
+ * each type: REAL, SQRT, NAME(x) and BLOCK are defined there; hence no guard.
  */
 
 /* A block of problems: structure of arrays. */
@@ -10,13 +10,15 @@ struct NAME(block) {
 	REAL tau[BLOCK], inv_d[BLOCK];         // one step's intermediate results
 	REAL gx[BLOCK], gy[BLOCK], hxx[BLOCK], hxy[BLOCK], hyy[BLOCK];
 	REAL kx[BLOCK], ky[BLOCK], kz[BLOCK];  // K, mm
-	REAL last2[BLOCK];                     // square of the last step, mm²; 1 where that says nothing: ILL
+	REAL last2[BLOCK];                     // square of the last step, mm²; huge where that says nothing
+	REAL gain[BLOCK];
 	unsigned char status[BLOCK], again[BLOCK];
 };
 
 /* What all problems share. */
 struct NAME(shared) {
 	REAL R, p, n, n2_1, inv_2R, rim2, C[3];
+	REAL far2, ill;  // a longer last step, or a curvature below, and the lane is done again: mm², 1/mm
 };
 
 /* Unit direction from (x, y, z) to the light, and 1 / its distance. */
@@ -127,7 +129,7 @@ SIMD_INLINE void NAME(move)(struct NAME(block) *b, int i, const struct NAME(shar
 	REAL dx = (hxy * gy - hyy * gx) * inv, dy = (hxy * gx - hxx * gy) * inv;
 	b->x[i] += dx;
 	b->y[i] += dy;
-	b->last2[i] = det > ILL * (hxx + hyy) && hxx + hyy > 0 ? t * t * (dx * dx + dy * dy) : 1;
+	b->last2[i] = det > c->ill * (hxx + hyy) && hxx + hyy > 0 ? t * t * (dx * dx + dy * dy) : 1e9f;
 }
 
 /* K in mm, what came of it, and whether it needs another look. */
@@ -142,5 +144,25 @@ SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(sh
 	REAL cos_i = u[0] * kx + u[1] * ky - u[2] * (c->R - c->p * kz);
 	bool beyond = (kx * kx + ky * ky > c->rim2) | (c->p * kz > c->R);
 	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
-	b->again[i] = !(b->last2[i] <= FAR2);
+	// In the hemisphere before the iris there is a real path: where this one is not, the search of the scalar solver.
+	bool settled = b->last2[i] <= c->far2, behind = (cos_i < 0) & (u[2] < 0);
+	b->again[i] = behind | !settled;
+}
+
+/* Irradiance gain of lightpath_gain(), from the Hessian of curve() at K. */
+SIMD_INLINE void NAME(caustic)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
+{
+	REAL x = b->x[i], y = b->y[i], p = c->p, tau = b->tau[i], inv_d = b->inv_d[i], t = c->R * tau, rho2 = x * x + y * y;
+	REAL vx = (t * x - b->px[i]) * inv_d, vy = (t * y - b->py[i]) * inv_d, vz = (t * rho2 - b->pz[i]) * inv_d;
+	REAL vm = tau * (vz - p * (x * vx + y * vy)), va = vx + x * vm, vb = vy + y * vm, f = c->n * inv_d;
+	REAL mx = -tau * p * x, my = -tau * p * y;
+	REAL m11 = 1 + x * mx - va * vx, m12 = x * my - va * vy, m21 = y * mx - vb * vx, m22 = 1 + y * my - vb * vy;
+	REAL det = b->hxx[i] * b->hyy[i] - b->hxy[i] * b->hxy[i], moved = f * f * (m11 * m22 - m12 * m21) / det;
+	// The tangents' cross product over |N_z| of it: their area in the plane, 1 + x m_x + y m_y, over N_z.
+	REAL gz = c->R - p * t * rho2, g2 = t * t * rho2 + gz * gz, a = b->wx[i] * t * x + b->wy[i] * t * y - b->wz[i] * gz;
+	REAL cos_i = a / SQRT(g2), area = (1 + x * mx + y * my) * SQRT(g2) / gz;
+	REAL cos_t = SQRT(c->n2_1 + cos_i * cos_i), rs = (cos_i - cos_t) / (cos_i + cos_t), n2 = c->n2_1 + 1;
+	REAL rp = (n2 * cos_i - cos_t) / (n2 * cos_i + cos_t), T = 1 - (REAL)0.5 * (rs * rs + rp * rp);
+	REAL gain = T * cos_i * (moved < 0 ? -moved : moved) * area;
+	b->gain[i] = cos_i > 0 ? gain : 0;
 }
