@@ -63,9 +63,9 @@ static enum lightpath_status judge(const double K[3], const struct path *path)
 	return hypot(K[0], K[1]) > path->cornea->rim || N[2] > 0 ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
 }
 
-static enum lightpath_status solve(double K[3], const struct path *path)
+enum lightpath_status path_shortest(double K[3], const struct path *path)
 {
-	double least, found[1][3];
+	double least;
 	for (int i = 0; i < 3; i++)
 		K[i] = 0;
 	if (!path_is_sound(path))
@@ -77,13 +77,22 @@ static enum lightpath_status solve(double K[3], const struct path *path)
 		path_polish(&at, path);
 	for (int i = 0; i < 3; i++)
 		K[i] = at.K[i];
-	enum lightpath_status status = judge(K, path);
+	return judge(K, path);
+}
+
+static enum lightpath_status solve(double K[3], const struct path *path)
+{
+	enum lightpath_status status = path_shortest(K, path);
+	if (status == LIGHTPATH_OK || status == LIGHTPATH_NONE)
+		return status;
 	// A shortest path that comes from behind the surface, or past the rim, may stand beside a real one that is no
 	// minimum: light far off the axis that has passed its focus.
-	double u[3];
+	double u[3], found[1][3];
 	path_outward(u, path, path->P);
-	bool plain = status == LIGHTPATH_OK || (status == LIGHTPATH_BEYOND_RIM && u[2] < -0.5);
-	if (plain || !path_search(found, 1, path))
+	bool near_light = path->C && vec_norm(path->C) < 100;
+	if (!near_light && u[2] < 0 && path->P[2] < lightpath_clear_depth(path->cornea))
+		return status;
+	if ((status == LIGHTPATH_BEYOND_RIM && u[2] < -0.2) || !path_search(found, 1, path))
 		return status;
 	for (int i = 0; i < 3; i++)
 		K[i] = found[0][i];

@@ -23,9 +23,13 @@ enum lightpath_status lightpath_solve_directional(double K[3], const struct corn
 
 /* Every path through the lit cornea inside the rim, shortest optical length first; their number, at most max.
  * C: a point outside; or null, and the light comes from direction w. Several exist where light from behind the
- * limbus (beyond 98.8 degrees from the axis, for the generic eye) is focused on the far side; about 50 us. */
+ * limbus is focused on the far side; about 0.3 ms. */
 int lightpath_all(double K[][3], int max, const struct cornea *cornea, const double P[3], const double C[3],
                   const double w[3]);
+
+/* Depth to which light from the hemisphere before the iris has met no focus: above it a path is the only one, and where
+ * lightpath_solve() finds it grazing or beyond the rim there is none. 3.3 mm for the generic eye. */
+double lightpath_clear_depth(const struct cornea *cornea);
 
 /* n solves in float, structure of arrays, vectorised: px[n] .. wz[n] in (w: unit, towards the light),
  * kx[n] .. kz[n] out; status[n] may be null. steps: Newton steps (4: 2e-5 mm worst). What has not converged

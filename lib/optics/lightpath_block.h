@@ -56,6 +56,7 @@ static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3]
 {
 	struct NAME(shared) shared = { .R = c->R, .p = c->p, .n = c->n, .n2_1 = c->n * c->n - 1, .inv_2R = 0.5 / c->R,
 		                       .rim2 = c->rim * c->rim };
+	shared.clear = lightpath_clear_depth(c);
 	shared.far2 = FAR * FAR;
 	shared.ill = ILL;
 	for (int k = 0; k < 3 && C; k++)

@@ -3,7 +3,7 @@
  */
 #ifndef OPTICS_LIGHTPATH_PATH_H
 #define OPTICS_LIGHTPATH_PATH_H
-#include "optics/cornea.h"
+#include "optics/lightpath.h"
 
 /* How far the first guess bends the direction to the light towards the axis. 1 leaves 0.23 mm on average over the
  * hemisphere, more than 0.6 does (0.18), but where Newton's steps shrink faster: 1e-5 mm after three, not 4e-3. */
@@ -50,6 +50,10 @@ void path_polish(struct chart *at, const struct path *path);
 
 /* P inside the surface, C outside, all of them numbers. */
 bool path_is_sound(const struct path *path);
+
+/* The path the closed-form start descends to: a smooth function of P and of the light, which continues beyond the rim and
+ * past 90 degrees of incidence. */
+enum lightpath_status path_shortest(double K[3], const struct path *path);
 
 /* lightpath_all() of a sound problem. */
 int path_search(double K[][3], int max, const struct path *path);

@@ -1,0 +1,24 @@
+/* The parts refraction.c is put together from: polynomial and table. */
+#ifndef OPTICS_REFRACTION_PARTS_H
+#define OPTICS_REFRACTION_PARTS_H
+#include "optics/refraction.h"
+
+/* Number of coefficients of A, and of B: monomials of total degree <= degree in three variables. */
+int refraction_monomials(int degree);
+
+/* Fits the polynomial to the solver's K over the iris and the hemisphere (and 5 degrees below), by least squares.
+ * Fills f->data. */
+void refraction_fit(struct refraction *f);
+
+/* Starts in lightpath_batch_from()'s chart. */
+void refraction_start(const struct refraction *f, int n, const float *px, const float *py, const float *wx, const float *wy,
+                      const float *wz, float *x, float *y);
+
+/* Largest w_z for which the polynomial is good. */
+#define REFRACTION_BEHIND 0.087f
+
+void refraction_tabulate(struct refraction *f);
+void refraction_look_up(const struct refraction *f, int n, const float *px, const float *py, const float *wx,
+                        const float *wy, const float *wz, float *kx, float *ky, float *kz);
+
+#endif

@@ -1,0 +1,120 @@
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/simd.h"
+#include "optics/lightpath_path.h"
+#include "optics/refraction_parts.h"
+
+/* The eye is the same after a turn about its axis and in a mirror: K_xy = A P_xy + B w_xy with A and B functions of
+ * what such a turn leaves alone: |P_xy|², P_xy·w_xy, w_z. Smooth across the horizon and at the centre. */
+
+int refraction_monomials(int degree)
+{
+	return (degree + 1) * (degree + 2) * (degree + 3) / 6;
+}
+
+/* Eight lanes; the compiler splits them where the machine's vectors are shorter. */
+typedef float lanes __attribute__((vector_size(32)));
+
+/* Sum of c[i][j][k] a^i b^j d^k over i + j + k <= degree, c in the order of the loops; A and B at once. */
+SIMD_INLINE void horner(lanes AB[2], int degree, const float (*c)[3], const lanes abd[3])
+{
+	int at = refraction_monomials(degree);
+	lanes a = abd[0], b = abd[1], d = abd[2];
+	lanes sa = { 0 }, sb = { 0 };
+	for (int i = degree; i >= 0; i--) {
+		lanes ta = { 0 }, tb = { 0 };
+		for (int j = degree - i; j >= 0; j--) {
+			lanes ua = { 0 }, ub = { 0 };
+			for (int k = degree - i - j; k >= 0; k--) {
+				at--;
+				ua = ua * d + c[at][0];
+				ub = ub * d + c[at][1];
+			}
+			ta = ta * b + ua;
+			tb = tb * b + ub;
+		}
+		sa = sa * a + ta;
+		sb = sb * a + tb;
+	}
+	AB[0] = sa;
+	AB[1] = sb;
+}
+
+SIMD_CLONES static void start_eight(const struct refraction *f, int n, const float *const in[5], float *const out[2])
+{
+	const float inv = 1 / f->radius;
+	for (int i = 0; i < n; i += 8) {
+		size_t size = (n - i < 8 ? n - i : 8) * sizeof(float);
+		lanes v[5] = { 0 }, AB[2], abd[3], xy[2];
+		for (int k = 0; k < 5; k++)
+			memcpy(&v[k], in[k] + i, size);
+		abd[0] = 2 * inv * inv * (v[0] * v[0] + v[1] * v[1]) - 1;
+		abd[1] = inv * (v[0] * v[2] + v[1] * v[3]);
+		abd[2] = 2 * v[4] + 1;
+		horner(AB, f->degree, (const float(*)[3])f->data, abd);
+		for (int k = 0; k < 2; k++) {
+			xy[k] = AB[0] * v[k] + AB[1] * v[2 + k];
+			memcpy(out[k] + i, &xy[k], size);
+		}
+	}
+}
+
+void refraction_start(const struct refraction *f, int n, const float *px, const float *py, const float *wx, const float *wy,
+                      const float *wz, float *x, float *y)
+{
+	start_eight(f, n, (const float *const[]){ px, py, wx, wy, wz }, (float *const[]){ x, y });
+}
+
+/* One sample's two equations: rows of the design matrix for x and y of the chart. */
+static void equations(double *rows, double *rhs, int n, const struct refraction *f, const double P[3], const double w[3],
+                      const double K[3])
+{
+	double a = 2 * (P[0] * P[0] + P[1] * P[1]) / (f->radius * f->radius) - 1, d = 2 * w[2] + 1;
+	double b = (P[0] * w[0] + P[1] * w[1]) / f->radius, t = 2 * f->cornea.R - f->cornea.p * K[2];
+	int at = 0;
+	for (int i = 0; i <= f->degree; i++)
+		for (int j = 0; i + j <= f->degree; j++)
+			for (int k = 0; i + j + k <= f->degree; k++, at++) {
+				double m = pow(a, i) * pow(b, j) * pow(d, k);
+				for (int xy = 0; xy < 2; xy++) {
+					rows[xy * 2 * n + at] = m * P[xy];
+					rows[xy * 2 * n + n + at] = m * w[xy];
+				}
+			}
+	rhs[0] = K[0] / t;
+	rhs[1] = K[1] / t;
+}
+
+void refraction_fit(struct refraction *f)
+{
+	enum { RADII = 14, THETAS = 16, PHIS = 16 };
+	int n = refraction_monomials(f->degree), m = 0;
+	double *rows = mem_new((size_t)2 * RADII * THETAS * PHIS * 2 * n, sizeof *rows);
+	double *rhs = mem_new((size_t)2 * RADII * THETAS * PHIS, sizeof *rhs);
+	for (int s = 0; s < RADII * THETAS * PHIS; s++) {
+		// Chebyshev's points: denser towards the ends, where a polynomial fit is worst.
+		double r = f->radius * sin(M_PI / 2 * (s % RADII + 0.5) / RADII);
+		double c = 0.5 * (REFRACTION_BEHIND - 1) + 0.5 * (REFRACTION_BEHIND + 1) * cos(M_PI * (s / RADII % THETAS + 0.5) / THETAS);
+		double phi = M_PI * (s / RADII / THETAS + 0.5) / PHIS, q = sqrt(1 - c * c);
+		double P[3] = { r, 0, f->depth }, w[3] = { q * cos(phi), q * sin(phi), c }, K[3];
+		enum lightpath_status status = path_shortest(K, &(struct path){ &f->cornea, P, 0, w });
+		if (status != LIGHTPATH_OK && status != LIGHTPATH_BEYOND_RIM)
+			continue;
+		equations(rows + (size_t)2 * m * 2 * n, rhs + 2 * m, n, f, P, w, K);
+		m++;
+	}
+	LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', 2 * m, 2 * n, 1, rows, 2 * n, rhs, 1);
+	free(f->data);
+	f->n_data = n;
+	f->data = mem_new(n, sizeof *f->data);
+	for (int i = 0; i < n; i++) {
+		f->data[i][0] = rhs[i];
+		f->data[i][1] = rhs[n + i];
+	}
+	free(rows);
+	free(rhs);
+}
