@@ -164,8 +164,8 @@ static void choose(struct refraction *f, struct probe *probe, int method)
 		f->degree = degree;
 		if (method != REFRACTION_AUTO && method != f->method)
 			continue;
-		if (degree)
-			refraction_fit(f);
+		if (degree && !refraction_fit(f))
+			continue;
 		for (f->steps = degree ? 0 : 1; f->steps <= 5; f->steps++) {
 			double price = cost(f, measure(f, probe));
 			// Float cannot be asked for more than it has.
@@ -180,6 +180,15 @@ static void choose(struct refraction *f, struct probe *probe, int method)
 		}
 	}
 	free(f->data);
+	if (!best.steps && !best.degree) {
+		// Nothing is good enough on this cornea: the start that stores nothing, with steps to spare.
+		best = *f;
+		best.method = REFRACTION_NEWTON;
+		best.steps = 6;
+		best.degree = 0;
+		best.data = 0;
+		measure(&best, probe);
+	}
 	*f = best;
 	if (f->method == REFRACTION_NEWTON)
 		f->n_data = 0;

@@ -7,8 +7,8 @@
 int refraction_monomials(int degree);
 
 /* Fits the polynomial to the solver's K over the iris and the hemisphere (and 5 degrees below), by least squares.
- * Fills f->data. */
-void refraction_fit(struct refraction *f);
+ * Fills f->data. False where the light reaches too little of the iris for that. */
+bool refraction_fit(struct refraction *f);
 
 /* Starts in lightpath_batch_from()'s chart. */
 void refraction_start(const struct refraction *f, int n, const float *px, const float *py, const float *wx, const float *wy,

@@ -1,3 +1,4 @@
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -89,7 +90,7 @@ static void equations(double *rows, double *rhs, int n, const struct refraction 
 	rhs[1] = K[1] / t;
 }
 
-void refraction_fit(struct refraction *f)
+bool refraction_fit(struct refraction *f)
 {
 	enum { RADII = 14, THETAS = 16, PHIS = 16 };
 	int n = refraction_monomials(f->degree), m = 0;
@@ -107,7 +108,11 @@ void refraction_fit(struct refraction *f)
 		equations(rows + (size_t)2 * m * 2 * n, rhs + 2 * m, n, f, P, w, K);
 		m++;
 	}
-	LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', 2 * m, 2 * n, 1, rows, 2 * n, rhs, 1);
+	// One thread: the same bits on every number of them.
+	int threads = openblas_get_num_threads();
+	openblas_set_num_threads(1);
+	bool ok = m > 2 * n && !LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', 2 * m, 2 * n, 1, rows, 2 * n, rhs, 1);
+	openblas_set_num_threads(threads);
 	free(f->data);
 	f->n_data = n;
 	f->data = mem_new(n, sizeof *f->data);
@@ -117,4 +122,5 @@ void refraction_fit(struct refraction *f)
 	}
 	free(rows);
 	free(rhs);
+	return ok;
 }
