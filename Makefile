@@ -43,8 +43,8 @@ PACKAGES := gcc g++ make pkg-config libopencv-dev libceres-dev libopenexr-dev li
 CFLAGS ?= -O3 -g
 CXXFLAGS ?= -O2 -g
 WARN := -Wall -Wextra -Wpedantic -Werror
-SANFLAGS := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 comma := ,
+SANFLAGS := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 # No errno from maths and no traps: lets loops with sqrt vectorise. NaN and infinity keep their meaning.
 MATHFLAGS := -fno-math-errno -fno-trapping-math -ffp-contract=off
 ALL_CFLAGS := -std=gnu2x -D_GNU_SOURCE $(WARN) $(CFLAGS) $(SANFLAGS) $(MATHFLAGS) -fopenmp -Ilib -I. -MMD -MP

@@ -19,9 +19,23 @@ tests-sanitised: $(TESTS)
 stress: build $(STRESSES)
 	@bad=0; for s in $(STRESSES); do echo "== $$s"; $$s || bad=1; done; exit $$bad
 
-# Fuzz targets need clang; the C parts they reach are built anew with its instrumentation.
-FUZZ_SRC := $(wildcard lib/base/*.c lib/image/*.c lib/math/*.c lib/mesh/*.c lib/optics/camera.c)
+# Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
+FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w
+FUZZ_OBJ := $(LIB_SRC:%.c=build-fuzz/%.o) build-fuzz/lib/bridge/om_mesh.o
 FUZZERS := $(patsubst tests/fuzz/fuzz_%.c,build-fuzz/fuzz_%,$(wildcard tests/fuzz/fuzz_*.c))
-fuzzers: $(FUZZERS)
+build-fuzz/%.o: %.c
+	@mkdir -p $(@D)
+	@clang -std=c2x $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -MMD -MP -c $< -o $@
+build-fuzz/%.o: %.cc
+	@mkdir -p $(@D)
+	@clang++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -c $< -o $@
+build-fuzz/libeyewright.a: $(FUZZ_OBJ)
+	@rm -f $@
+	@$(AR) rcsD $@ $(FUZZ_OBJ)
+build-fuzz/fuzz_%: build-fuzz/tests/fuzz/fuzz_%.o build-fuzz/libeyewright.a
+	@clang++ -fsanitize=fuzzer,address,undefined -Wl,--as-needed -o $@ $^ $(LIBS) -lgomp
+-include $(FUZZ_OBJ:.o=.d)
+
+fuzzers: $(FUZZERS) $(TOOLS)
 fuzz: fuzzers
-	@FUZZ=$(SECONDS_EACH) tests/fuzz.sh
+	@FUZZ=$(SECONDS_EACH) B=$B tests/fuzz.sh

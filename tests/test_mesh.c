@@ -148,7 +148,8 @@ static void hostile_files_are_refused(void **state)
 		{ "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n", "type of property" },
 		{ "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n", "x, y and z" },
 		{ "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 0 0\n",
-		  "vertex must be the first" },
+		  "must be elements vertex, then face" },
+		{ "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nnonsense\nend_header\n", "nonsense" },
 		{ "ply\nformat ascii 1.0\nelement vertex 3\n", "head does not end" },
 	};
 	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {

@@ -22,6 +22,7 @@ extern "C" {
 namespace {
 
 struct Traits : OpenMesh::DefaultTraits {
+	typedef OpenMesh::Vec3f Color;  // its readers' casts from float to bytes are undefined outside 0..1
 	VertexAttributes(OpenMesh::Attributes::Status | OpenMesh::Attributes::Color);
 	FaceAttributes(OpenMesh::Attributes::Status);
 	EdgeAttributes(OpenMesh::Attributes::Status);
@@ -65,8 +66,10 @@ bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
 			mesh->vertices[i][k] = om.point(v)[(size_t)k];
 			if (!std::isfinite(mesh->vertices[i][k]))
 				return err_set(err, "vertex %d: a coordinate that is no number", i);
-			if (colours)
-				mesh->colours[i][k] = linear_from_srgb((float)om.color(v)[(size_t)k] / 255);
+			if (!colours)
+				continue;
+			float c = om.color(v)[(size_t)k];
+			mesh->colours[i][k] = linear_from_srgb(c > 0 ? c < 1 ? c : 1 : 0);
 		}
 	}
 	for (int i = 0; i < mesh->n_faces; i++) {
@@ -97,7 +100,7 @@ void give(Mesh &om, const struct mesh *mesh)
 		auto v = om.add_vertex(Mesh::Point(p[0], p[1], p[2]));
 		Mesh::Color colour(0, 0, 0);
 		for (int k = 0; mesh->colours && k < 3; k++)
-			colour[(size_t)k] = (unsigned char)std::lround(255 * srgb_from_linear(mesh->colours[i][k]));
+			colour[(size_t)k] = srgb_from_linear(mesh->colours[i][k]);
 		om.set_color(v, colour);
 	}
 	for (int i = 0; i < mesh->n_faces; i++) {

@@ -164,7 +164,7 @@ static bool take_property(struct element *e, char *line, struct err *err)
 static bool next_line(struct ply *ply, char line[HEAD_LINE_MAX + 1])
 {
 	const char *nl = memchr(ply->at, '\n', (size_t)(ply->end - ply->at));
-	if (!nl || nl - ply->at > HEAD_LINE_MAX)
+	if (!nl || nl - ply->at > HEAD_LINE_MAX || memchr(ply->at, 0, (size_t)(nl - ply->at)))
 		return false;
 	memcpy(line, ply->at, (size_t)(nl - ply->at));
 	line[nl - ply->at] = 0;
@@ -185,7 +185,13 @@ static bool take_format(struct ply *ply, const char *line, struct err *err)
 	return err_set(err, "PLY head: %.40s", line);
 }
 
-enum { ELEMENTS_MAX = 8 };
+enum { ELEMENTS_MAX = 2 };
+
+static bool is_remark(const char *line)
+{
+	return !strcmp(line, "ply") || !strcmp(line, "end_header") || !strcmp(line, "comment") || !strcmp(line, "obj_info")
+	       || !strncmp(line, "comment ", 8) || !strncmp(line, "obj_info ", 9);
+}
 
 /* One line of the head; e[*n - 1] is the element it speaks of. */
 static bool take_line(struct ply *ply, char *line, struct element e[ELEMENTS_MAX], int *n, struct err *err)
@@ -195,17 +201,15 @@ static bool take_line(struct ply *ply, char *line, struct element e[ELEMENTS_MAX
 	if (!strncmp(line, "property ", 9))
 		return *n ? take_property(&e[*n - 1], line, err) : err_set(err, "PLY head: a property of no element");
 	if (strncmp(line, "element ", 8))
-		return true;
-	if (*n == ELEMENTS_MAX)
-		return err_set(err, "PLY head: more than %d elements", ELEMENTS_MAX);
-	struct element *next = &e[(*n)++];
-	*next = (struct element){ 0 };
-	if (sscanf(line, "element %31s %ld", next->name, &next->count) != 2 || next->count < 0)
-		return err_set(err, "PLY head: %.40s", line);
-	// Faces speak of vertices: these come first.
-	if ((*n == 1) != !strcmp(next->name, "vertex"))
-		return err_set(err, "PLY head: element vertex must be the first, and the only one of its name");
-	ply->n_vertices = *n == 1 ? next->count : ply->n_vertices;
+		return is_remark(line) || err_set(err, "PLY head: %.40s", line);
+	// Faces speak of vertices: these come first. OpenMesh loses its way in elements of other names.
+	static const char *const names[ELEMENTS_MAX] = { "vertex", "face" };
+	int end = 0;
+	if (*n == ELEMENTS_MAX || sscanf(line, "element %31s %ld%n", e[*n].name, &e[*n].count, &end) != 2 || line[end]
+	    || e[*n].count < 0 || strcmp(e[*n].name, names[*n]))
+		return err_set(err, "PLY head: %.40s: must be elements vertex, then face", line);
+	ply->n_vertices = e[0].count;
+	++*n;
 	return true;
 }
 

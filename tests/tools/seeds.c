@@ -1,0 +1,99 @@
+/* seeds: small valid files of every kind that the fuzz targets begin from.
+ *
+ *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/fit/..., DIR/mesh/...
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/exr.h"
+#include "tests/lib/variant.h"
+
+static void put(const char *dir, const char *name, const void *data, size_t size)
+{
+	struct err err = { 0 };
+	char *path = mem_printf("%s/%s", dir, name);
+	if (!file_write(path, data, size, &err)) {
+		fprintf(stderr, "seeds: %s\n", err.msg);
+		exit(1);
+	}
+	free(path);
+}
+
+static void put_blob(const char *dir, const char *name, struct blob b)
+{
+	put(dir, name, b.data, b.size);
+	free(b.data);
+}
+
+static void put_text(const char *dir, const char *name, const char *text)
+{
+	put(dir, name, text, strlen(text));
+}
+
+static void photos(const char *dir)
+{
+	struct pixels p = pattern(24, 20, 3), g = pattern(24, 20, 1), q = pattern(24, 20, 4);
+	struct blob jpeg = encode_jpeg(&p, 0);
+	put_blob(dir, "photo/exif.jpg", with_exif(jpeg, &(struct exif_block){ 6, 100, 150, 250, 24, 20 }));
+	put_blob(dir, "photo/plain.jpg", jpeg);
+	put_blob(dir, "photo/grey.jpg", encode_jpeg(&g, 0));
+	put_blob(dir, "photo/8.png", encode_png(&p, 8));
+	put_blob(dir, "photo/16.png", encode_png(&q, 16));
+	put_blob(dir, "photo/8.tif", encode_tiff(&p, 8, AS_LZW, 3));
+	put_blob(dir, "photo/16.tif", encode_tiff(&q, 16, AS_TILED | AS_BIG_ENDIAN, 1));
+	put_blob(dir, "photo/planar.tif", encode_tiff(&p, 16, AS_PLANAR, 1));
+	pixels_free(&p);
+	pixels_free(&g);
+	pixels_free(&q);
+}
+
+static void maps(const char *dir)
+{
+	static const char *const rgb[] = { "R", "G", "B" }, *const y[] = { "Y" };
+	struct image colour = image_new(20, 18, 3), grey = image_new(33, 40, 1);
+	struct exr_info info = { 6.4, "{}" };
+	struct err err = { 0 };
+	char *a = mem_printf("%s/exr/rgb.exr", dir), *b = mem_printf("%s/exr/y.exr", dir),
+	     *c = mem_printf("%s/photo/rgb.exr", dir);
+	for (int i = 0; i < 20 * 18 * 3; i++)
+		colour.px[i] = (float)(i % 7) / 7;
+	for (int i = 0; i < 33 * 40; i++)
+		grey.px[i] = (float)(i % 11);
+	if (!exr_write(a, &colour, rgb, EXR_HALF, &info, &err) || !exr_write(b, &grey, y, EXR_FLOAT, &info, &err)
+	    || !exr_write(c, &colour, rgb, EXR_HALF, 0, &err))
+		fprintf(stderr, "seeds: %s\n", err.msg);
+	free(a);
+	free(b);
+	free(c);
+	image_free(&colour);
+	image_free(&grey);
+}
+
+int main(int argc, char **argv)
+{
+	if (argc != 2)
+		return 2;
+	const char *dir = argv[1];
+	photos(dir);
+	maps(dir);
+	put_text(dir, "conf/a.conf", "; comment\ns.a = 0.25\ns.b = 3\ns.c = yes\ns.d = green\ns.e = 0 0.5 1\ns.f = x y\nphoto.n.g = 0 1\n");
+	put_text(dir, "fit/a.json",
+	         "{\"status\":\"ok\",\"reason\":\"\",\"ellipse\":{\"cx\":8,\"cy\":6,\"a\":5,\"b\":4,\"angle_deg\":10},\"pupil\":null,"
+	         "\"theta_deg\":10,\"phi_deg\":20,\"theta_sigma_deg\":1,\"cam_from_eye\":[1,0,0,0,0,1,0,0,0,0,1,120,0,0,0,1],"
+	         "\"coverage\":0.5,\"rms_px\":0.3,\"width\":1600,\"height\":1200,\"camera\":{\"focal_px\":10000,"
+	         "\"center_px\":[800,600],\"distortion\":[0,0,0,0,0],\"source\":\"exif\"}}");
+	put_text(dir, "mesh/a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf 1 2 3\n");
+	put_text(dir, "mesh/a.ply", "ply\nformat ascii 1.0\ncomment x\nelement vertex 3\nproperty float x\nproperty float y\n"
+	                            "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+	                            "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+	                            "0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n");
+	static const char binary[] = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+	                             "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+	                             "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0"
+	                             "\3\0\0\0\0\1\0\0\0\2\0\0\0";
+	put(dir, "mesh/b.ply", binary, sizeof binary - 1);
+	return 0;
+}
