@@ -1,7 +1,9 @@
 #include <lapacke.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "bridge/nls.h"
 #include "eye/pigment.h"
 
@@ -130,29 +132,6 @@ static void start_at(double x[PIGMENT_N], int start, const struct pigment_conf *
 	}
 }
 
-/* Same place: within a tenth of a sigma in every unknown. */
-static bool same(const double a[PIGMENT_N], const double b[PIGMENT_N], const double sigma[PIGMENT_N])
-{
-	for (int j = 0; j < PIGMENT_N; j++)
-		if (fabs(a[j] - b[j]) > 0.1 * sigma[j])
-			return false;
-	return true;
-}
-
-static void count_minima(struct pigment_fit *fit, int n, double x[][PIGMENT_N], const double cost[])
-{
-	fit->minima = 1;
-	for (int s = 0; s < n; s++) {
-		bool known = !(cost[s] < fit->cost + 2) || same(x[s], fit->x, fit->sigma);
-		for (int m = 0; m < fit->minima - 1 && !known; m++)
-			known = same(x[s], fit->other[m], fit->sigma);
-		if (known || fit->minima > PIGMENT_MINIMA_MAX)
-			continue;
-		memcpy(fit->other[fit->minima - 1], x[s], sizeof x[s]);
-		fit->other[fit->minima++ - 1][PIGMENT_N] = cost[s];
-	}
-}
-
 static void measure(struct pigment_fit *fit, const struct problem *p, double cov[PIGMENT_N][PIGMENT_N])
 {
 	for (int i = 0; i < PIGMENT_N; i++) {
@@ -207,31 +186,79 @@ static bool information(struct pigment_fit *fit, struct problem *p, struct err *
 
 enum { STARTS_MAX = 64 };
 
+/* What one start came to. */
+struct outcome {
+	bool ok;
+	double x[PIGMENT_N], cov[PIGMENT_N][PIGMENT_N];
+	struct nls_result result;
+	struct err err;
+};
+
+/* Every start on its own; starts are compared in their order, so that threads change nothing. */
+static bool run_starts(struct outcome out[], int n, const struct problem *problem, const double *from)
+{
+	// A cost that falls by less than a hundred-thousandth moves no unknown by a hundredth of its sigma.
+	const struct nls_conf nls = { .max_iter = 100, .ftol = 1e-5 };
+	int m = 3 * problem->classes->n + PIGMENT_N;
+#pragma omp parallel for schedule(dynamic) if (n > 1)
+	for (int s = 0; s < n; s++) {
+		struct problem own = *problem;
+		out[s].err.msg[0] = 0;
+		start_at(out[s].x, s, problem->conf);
+		if (from)
+			memcpy(out[s].x, from, sizeof out[s].x);
+		out[s].ok = nls_solve(&out[s].result, PIGMENT_N, out[s].x, lower, upper, m, residuals, &own, &nls, &out[s].cov[0][0], &out[s].err);
+	}
+	bool ok = false;
+	for (int s = 0; s < n; s++)
+		ok = ok || out[s].ok;
+	return ok;
+}
+
+/* Same place: within a tenth of a sigma in every unknown. */
+static bool same(const double a[PIGMENT_N], const double b[PIGMENT_N], const double sigma[PIGMENT_N])
+{
+	for (int j = 0; j < PIGMENT_N; j++)
+		if (fabs(a[j] - b[j]) > 0.1 * sigma[j])
+			return false;
+	return true;
+}
+
+static void count_minima(struct pigment_fit *fit, int n, const struct outcome out[])
+{
+	fit->minima = 1;
+	for (int s = 0; s < n; s++) {
+		const double *x = out[s].x, cost = out[s].result.cost;
+		bool known = !out[s].ok || !(cost < fit->cost + 2) || same(x, fit->x, fit->sigma);
+		for (int m = 0; m < fit->minima - 1 && !known; m++)
+			known = same(x, fit->other[m], fit->sigma);
+		if (known || fit->minima > PIGMENT_MINIMA_MAX)
+			continue;
+		memcpy(fit->other[fit->minima - 1], x, sizeof out[s].x);
+		fit->other[fit->minima++ - 1][PIGMENT_N] = cost;
+	}
+}
+
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                    const double *from, struct err *err)
 {
 	*fit = (struct pigment_fit) { .cost = INFINITY, .starts = from ? 1 : conf->starts < STARTS_MAX ? conf->starts : STARTS_MAX };
 	struct problem problem = { classes, conf, { 0 } };
+	struct outcome *out = mem_new((size_t)fit->starts, sizeof *out), *best = out;
 	tissue_bands_make(&problem.bands, conf->bands, conf->illuminant);
-	int m = 3 * classes->n + PIGMENT_N;
-	const struct nls_conf nls = { .max_iter = 100, .ftol = 1e-7 };
-	double x[STARTS_MAX][PIGMENT_N], cost[STARTS_MAX], cov[PIGMENT_N][PIGMENT_N], best_cov[PIGMENT_N][PIGMENT_N];
-	for (int s = 0; s < fit->starts; s++) {
-		struct nls_result result;
-		start_at(x[s], s, conf);
-		if (from)
-			memcpy(x[s], from, sizeof x[s]);
-		if (!nls_solve(&result, PIGMENT_N, x[s], lower, upper, m, residuals, &problem, &nls, &cov[0][0], err))
-			return false;
-		cost[s] = result.cost;
-		fit->iterations += result.iterations;
-		if (result.cost < fit->cost) {
-			fit->cost = result.cost;
-			memcpy(fit->x, x[s], sizeof x[s]);
-			memcpy(best_cov, cov, sizeof cov);
+	bool ok = run_starts(out, fit->starts, &problem, from) || err_set(err, "pigment: %s", out->err.msg);
+	for (int s = 0; ok && s < fit->starts; s++) {
+		fit->iterations += out[s].result.iterations;
+		if (out[s].ok && out[s].result.cost < fit->cost) {
+			fit->cost = out[s].result.cost;
+			best = &out[s];
 		}
 	}
-	measure(fit, &problem, best_cov);
-	count_minima(fit, fit->starts, x, cost);
-	return information(fit, &problem, err);
+	memcpy(fit->x, best->x, sizeof fit->x);
+	if (ok) {
+		measure(fit, &problem, best->cov);
+		count_minima(fit, fit->starts, out);
+	}
+	free(out);
+	return ok && information(fit, &problem, err);
 }
