@@ -171,7 +171,7 @@ static void damage_does_no_harm(void **state)
 	struct mesh m = sphere(4, 6);
 	struct err err = { 0 };
 	char *data;
-	size_t size;
+	size_t size = 0;
 	const char *path = scratch_path("m.ply");
 	assert_true(om_mesh_save(&m, path, 0, &err) && file_read(&data, &size, path, 1 << 20, &err));
 	for (size_t i = 0; i < 2 * size; i++) {
