@@ -76,6 +76,9 @@ static float texel_weight(const struct unrefract_texture *texture, const struct 
 	return w * smooth_step(from_pupil / fmax(mm, conf->pupil_margin) + 0.5);
 }
 
+// A texel squeezed into less of a photo pixel than this, at the grazing limit, shows its neighbours' colours.
+static const double grazing = 0.2;
+
 void unrefract_add(struct unrefract_texture *texture, const struct unrefract_view *view, const struct photo *photo,
                    const struct eye *eye, const struct unrefract_conf *conf)
 {
@@ -91,7 +94,8 @@ void unrefract_add(struct unrefract_texture *texture, const struct unrefract_vie
 		for (int col = 0; col < size; col++) {
 			long i = (long)row * size + col;
 			float *out = texture->rgbw.px + 4 * i;
-			if (skip[i] || rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2] <= 0)
+			if (skip[i] || rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2] <= 0
+			    || map_resolution(&map, col, row) * conf->scale < grazing)
 				continue;
 			// a trace even of what weighs nothing, so that it has a colour
 			float w = texel_weight(texture, &map, view, eye, col, row, ramp, conf) + 1e-6f;
