@@ -11,12 +11,6 @@ static double lum(const float *p)
 	return 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-	float x = *(const float *)a, y = *(const float *)b;
-	return (x > y) - (x < y);
-}
-
 enum { RINGS = 40, OUTSIDE = -1, PUPIL = -2 };
 static const double reach = 0.88;  // share of the limbus: further out the sclera shines through
 
@@ -39,18 +33,21 @@ struct survey {
 	float rgb[RINGS][3];  // median colour: what lies below a glint
 };
 
-/* Of values[i * stride] over a ring. */
+/* Of values[i * stride], 0..1, over a ring; to half a thousandth. */
 static float ring_quantile(const struct survey *s, int ring, const float *values, int stride, double q, long all)
 {
-	long n = 0;
-	float *sorted = mem_array((size_t)all, sizeof *sorted);
+	enum { BINS = 1024 };
+	long count[BINS] = { 0 }, n = 0, below = 0;
+	int k = 0;
 	for (long i = 0; i < all; i++)
-		if (s->ring[i] == ring)
-			sorted[n++] = values[i * stride];
-	qsort(sorted, (size_t)n, sizeof *sorted, compare_floats);
-	float value = n ? sorted[(long)(q * (double)(n - 1))] : 0;
-	free(sorted);
-	return value;
+		if (s->ring[i] == ring) {
+			float v = values[i * stride];
+			count[v > 0 ? v < 1 ? (int)(v * BINS) : BINS - 1 : 0]++;
+			n++;
+		}
+	while (k < BINS - 1 && (double)(below + count[k]) < q * (double)n)
+		below += count[k++];
+	return n ? ((float)k + 0.5f) / BINS : 0;
 }
 
 static void survey_make(struct survey *s, const struct shot *shot)

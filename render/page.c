@@ -123,7 +123,7 @@ static json_t *data_make(struct page *page)
 	json_object_set_new(data, "photos", page_photos(page));
 	json_object_set_new(data, "eyes", page_eyes(page));
 	json_object_set_new(data, "stages", stages);
-	json_object_set_new(data, "seconds", page_text("%.1f", seconds));
+	json_object_set_new(data, "total_seconds", page_text("%.1f", seconds));
 	json_object_set_new(data, "n_photos", page_text("%d photograph%s", page->capture->n_photos, page->capture->n_photos == 1 ? "" : "s"));
 	json_object_set(data, "advice", page->advice);
 	json_object_set(data, "missing", page->missing);

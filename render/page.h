@@ -39,14 +39,17 @@ json_t *page_stages(struct page *page, double *seconds);
 json_t *page_picture(struct page *page, const char *path, int width);
 /* The same of pixels [height][width][3]. */
 json_t *page_pixels(const uint8_t *px, int width, int height);
-/* The same of a third of a comparison: 0 the photograph, 1 the rendering, 2 the difference. */
-json_t *page_panel(struct page *page, const char *path, int panel);
+/* The same of the thirds of a comparison: photograph, rendering, difference. False when it cannot be read. */
+bool page_panels(json_t *out[3], struct page *page, const char *path);
 
-/* Iris maps as pictures: colour with what was not seen hatched; marks of a mask on it; a number as colour; height as a
- * lit relief. *range (may be null): least and greatest value. */
-json_t *page_colour_map(struct page *page, const char *path);
-json_t *page_mask_map(struct page *page, const char *path, const char *colour_path);
-json_t *page_scalar_map(struct page *page, const char *path, const char *channel, double range[2]);
-json_t *page_relief_map(struct page *page, const char *path, double range[2]);
+/* Channels of an iris map, at most as wide as the page's pictures; false when there is none. image_free. */
+bool page_map(struct image *out, struct page *page, const char *path, int n, const char *const names[]);
+
+/* Iris maps as pictures: colour with what was not seen striped; the outlines of a mask on it; a channel as colour; the
+ * first channel as a lit relief. range: what the colours span. */
+json_t *page_colour_map(const struct image *rgbw);
+json_t *page_mask_map(const struct image *mask, const struct image *rgbw);
+json_t *page_scalar_map(const struct image *map, int channel, double range[2]);
+json_t *page_relief_map(const struct image *map, double range[2]);
 
 #endif

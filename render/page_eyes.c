@@ -31,33 +31,60 @@ static json_t *freckle_note(struct page *page, const char *dir)
 	return note;
 }
 
+static void colour_maps(struct page *page, json_t *list, const char *dir, const json_t *texture)
+{
+	static const char *const rgbw[] = { "R", "G", "B", "W" }, *const y[] = { "Y" };
+	struct image colour, mask;
+	if (!page_map(&colour, page, page_file(page, "%s/texture.exr", dir), 4, rgbw)) {
+		page_say(page->missing, "%s/texture.exr: no photograph was unrefracted, so there is no iris to show.", dir);
+		return;
+	}
+	json_t *seen = json_object_get(texture, "seen");
+	map(list, "Texture", "The iris as it would look without its cornea", page_colour_map(&colour),
+	    json_is_number(seen) ? page_text("%.0f %% of the iris was seen; stripes were not", 100 * json_number_value(seen)) : 0);
+	if (page_map(&mask, page, page_file(page, "%s/freckles.exr", dir), 1, y)) {
+		map(list, "Freckles", "The freckles outlined on the iris", page_mask_map(&mask, &colour), freckle_note(page, dir));
+		image_free(&mask);
+	}
+	image_free(&colour);
+}
+
+static json_t *span(const double range[2])
+{
+	return page_text("%.0f µm (dark) to %.0f µm (light)", 1e3 * range[0], 1e3 * range[1]);
+}
+
+static void height_maps(struct page *page, json_t *list, const char *dir)
+{
+	static const char *const y[] = { "Y" }, *const yt[] = { "Y", "T" };
+	struct image thick, relief;
+	double range[2];
+	if (page_map(&thick, page, page_file(page, "%s/thickness.exr", dir), 1, y)) {
+		json_t *picture = page_scalar_map(&thick, 0, range);
+		map(list, "Thickness, coarse", "Thickness of the stroma as colour", picture, span(range));
+		image_free(&thick);
+	}
+	if (page_map(&relief, page, page_file(page, "%s/relief.exr", dir), 2, yt)) {
+		json_t *picture = page_relief_map(&relief, range);
+		map(list, "Relief", "The relief of the iris, lit from the upper left", picture,
+		    page_text("heights %+.0f to %+.0f µm about the iris plane", 1e3 * range[0], 1e3 * range[1]));
+		picture = page_scalar_map(&relief, 1, range);
+		map(list, "Thickness, fitted", "Thickness of the stroma after the fitted filter, as colour", picture, span(range));
+		image_free(&relief);
+	}
+}
+
 static json_t *maps(struct page *page, const char *dir)
 {
-	json_t *list = json_array(), *root = page_json(page, page_file(page, "%s/texture.json", dir));
-	const char *texture = page_file(page, "%s/texture.exr", dir), *freckles = page_file(page, "%s/freckles.exr", dir);
-	const char *thick = page_file(page, "%s/thickness.exr", dir), *relief = page_file(page, "%s/relief.exr", dir);
-	double t[2], h[2], s[2];
-	json_t *seen = json_object_get(root, "seen"), *picture;
-	map(list, "Texture", "The iris as it would look without its cornea", page_colour_map(page, texture),
-	    json_is_number(seen) ? page_text("%.0f %% of the iris was seen; stripes were not", 100 * json_number_value(seen)) : 0);
-	map(list, "Freckles", "The freckles outlined on the iris", page_mask_map(page, freckles, texture), freckle_note(page, dir));
-	picture = page_scalar_map(page, thick, "Y", t);
-	map(list, "Thickness, coarse", "Thickness of the stroma as colour", picture,
-	    picture ? page_text("%.0f µm (dark) to %.0f µm (light)", 1e3 * t[0], 1e3 * t[1]) : 0);
-	picture = page_relief_map(page, relief, h);
-	map(list, "Relief", "The relief of the iris, lit from the upper left", picture,
-	    picture ? page_text("heights %+.0f to %+.0f µm about the iris plane", 1e3 * h[0], 1e3 * h[1]) : 0);
-	picture = page_scalar_map(page, relief, "T", s);
-	map(list, "Thickness, fitted", "Thickness of the stroma after the fitted filter, as colour", picture,
-	    picture ? page_text("%.0f µm (dark) to %.0f µm (light)", 1e3 * s[0], 1e3 * s[1]) : 0);
-	json_t *better = json_object_get(root, "photograph_better"), *line;
+	json_t *list = json_array(), *texture = page_json(page, page_file(page, "%s/texture.json", dir));
+	json_t *better = json_object_get(texture, "photograph_better"), *line;
 	size_t i;
+	colour_maps(page, list, dir, texture);
+	height_maps(page, list, dir);
 	json_array_foreach(better, i, line)
 		if (json_is_string(line))
 			page_say(page->advice, "%s", json_string_value(line));
-	if (!texture)
-		page_say(page->missing, "%s/texture.exr: no photograph was unrefracted, so there is no iris to show.", dir);
-	json_decref(root);
+	json_decref(texture);
 	return list;
 }
 
@@ -138,8 +165,8 @@ static json_t *renders(struct page *page, const char *dir)
 		bool wide = i >= 2;
 		json_t *picture = page_picture(page, page_file(page, "%s/%s.png", dir, names[i][0]), wide ? 2 * page->width : page->width * 5 / 4);
 		if (picture)
-			json_array_append_new(list, json_pack("{s:s,s:s,s:b,s:s,s:o}", "title", names[i][1], "alt", names[i][2], "wide", wide,
-			                                      "id", names[i][0], "picture", picture));
+			json_array_append_new(list, json_pack("{s:s,s:s,s:b,s:b,s:o}", "title", names[i][1], "alt", names[i][2], "wide", wide,
+			                                      "folded", i == 3, "picture", picture));
 		else
 			page_say(page->missing, "%s/%s.png has not been rendered.", dir, names[i][0]);
 	}

@@ -65,25 +65,26 @@ json_t *page_picture(struct page *page, const char *path, int width)
 	return picture;
 }
 
-json_t *page_panel(struct page *page, const char *path, int panel)
+bool page_panels(json_t *out[3], struct page *page, const char *path)
 {
 	struct err err = { 0 };
 	uint8_t *px;
 	int w, h;
 	if (!path || !picture_read(&px, &w, &h, path, page->conf->limit_mpx, &err))
-		return 0;
-	int width = (w - 2 * COMPARE_GAP) / 3, at = panel * (width + COMPARE_GAP);
+		return false;
+	int width = (w - 2 * COMPARE_GAP) / 3;
 	uint8_t *part = mem_array((size_t)width * (size_t)h * 3, 1);
-	for (int y = 0; y < h; y++)
-		memcpy(part + 3L * y * width, px + 3L * (y * w + at), 3 * (size_t)width);
-	json_t *picture = pixels_at_most(part, width, h, page->width);
+	for (int k = 0; k < 3; k++) {
+		for (int y = 0; y < h; y++)
+			memcpy(part + 3L * y * width, px + 3L * (y * w + k * (width + COMPARE_GAP)), 3 * (size_t)width);
+		out[k] = pixels_at_most(part, width, h, page->width);
+	}
 	free(part);
 	free(px);
-	return picture;
+	return true;
 }
 
-/* Channels of a map, at most the page's width. image_free. */
-static bool map_read(struct image *out, struct page *page, const char *path, int n, const char *const names[])
+bool page_map(struct image *out, struct page *page, const char *path, int n, const char *const names[])
 {
 	struct err err = { 0 };
 	struct image in;
@@ -115,57 +116,51 @@ static json_t *linear_picture(struct image *rgb)
 }
 
 /* Colour where a photograph saw it; dark stripes elsewhere. */
-static bool seen_colour(struct image *rgb, struct page *page, const char *path)
+static struct image seen_colour(const struct image *map)
 {
-	static const char *const names[] = { "R", "G", "B", "W" };
-	struct image map;
-	if (!map_read(&map, page, path, 4, names))
-		return false;
-	*rgb = image_new(map.width, map.height, 3);
-	for (int y = 0; y < map.height; y++)
-		for (int x = 0; x < map.width; x++) {
-			const float *p = image_at(&map, x, y);
+	struct image rgb = image_new(map->width, map->height, 3);
+	for (int y = 0; y < map->height; y++)
+		for (int x = 0; x < map->width; x++) {
+			const float *p = image_at(map, x, y);
 			float w = p[3] > 0.05f ? 1 : p[3] / 0.05f, stripe = (x + y) / 5 % 2 ? 0.012f : 0.022f;
 			for (int c = 0; c < 3; c++)
-				image_at(rgb, x, y)[c] = w * p[c] + (1 - w) * stripe;
+				image_at(&rgb, x, y)[c] = w * p[c] + (1 - w) * stripe;
 		}
-	image_free(&map);
-	return true;
+	return rgb;
 }
 
-json_t *page_colour_map(struct page *page, const char *path)
+json_t *page_colour_map(const struct image *rgbw)
 {
-	struct image rgb;
-	return seen_colour(&rgb, page, path) ? linear_picture(&rgb) : 0;
+	struct image rgb = seen_colour(rgbw);
+	return linear_picture(&rgb);
 }
 
-json_t *page_mask_map(struct page *page, const char *path, const char *colour_path)
+static bool on_edge(const struct image *mask, int x, int y)
 {
-	static const char *const names[] = { "Y" };
-	static const float accent[3] = { 1.0f, 0.32f, 0.05f };
-	struct image rgb, mask;
-	if (!seen_colour(&rgb, page, colour_path))
-		return 0;
-	if (!map_read(&mask, page, path, 1, names) || mask.width != rgb.width || mask.height != rgb.height) {
-		image_free(&rgb);
-		return 0;
+	static const int step[8][2] = { { -2, 0 }, { 2, 0 }, { 0, -2 }, { 0, 2 }, { -1, -1 }, { 1, 1 }, { -1, 1 }, { 1, -1 } };
+	bool in = *image_at(mask, x, y) > 0.5f, edge = false;
+	for (int k = 0; k < 8; k++) {
+		int u = x + step[k][0], v = y + step[k][1];
+		if (u >= 0 && v >= 0 && u < mask->width && v < mask->height)
+			edge = edge || (*image_at(mask, u, v) > 0.5f) != in;
 	}
+	return edge;
+}
+
+json_t *page_mask_map(const struct image *mask, const struct image *rgbw)
+{
+	static const float accent[3] = { 1.0f, 0.32f, 0.05f };
+	if (mask->width != rgbw->width || mask->height != rgbw->height)
+		return 0;
+	struct image rgb = seen_colour(rgbw);
 	for (int y = 0; y < rgb.height; y++)
 		for (int x = 0; x < rgb.width; x++) {
-			// The outline of each region, two pixels wide, and the rest of the iris a little dimmed.
-			bool in = mask.px[y * rgb.width + x] > 0.5f, edge = false;
-			for (int k = 0; k < 8; k++) {
-				static const int step[8][2] = { { -2, 0 }, { 2, 0 }, { 0, -2 }, { 0, 2 }, { -1, -1 }, { 1, 1 }, { -1, 1 }, { 1, -1 } };
-				int u = x + step[k][0], v = y + step[k][1];
-				if (u >= 0 && v >= 0 && u < rgb.width && v < rgb.height)
-					edge = edge || (mask.px[v * rgb.width + u] > 0.5f) != in;
-			}
+			bool in = *image_at(mask, x, y) > 0.5f, edge = on_edge(mask, x, y);
 			for (int c = 0; c < 3; c++) {
 				float *p = &image_at(&rgb, x, y)[c];
-				*p = edge ? accent[c] : in ? *p : 0.55f * *p;
+				*p = edge ? accent[c] : in ? *p : 0.55f * *p;  // the rest of the iris a little dimmed
 			}
 		}
-	image_free(&mask);
 	return linear_picture(&rgb);
 }
 
@@ -186,52 +181,47 @@ static int compare_floats(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Between the first and the last hundredth of the values of a map: what the colours span. */
-static void spread(double range[2], const struct image *map)
+/* Between the first and the last hundredth of the values of a channel: what the colours span. */
+static void spread(double range[2], const struct image *map, int channel)
 {
 	long n = (long)map->width * map->height;
 	float *sorted = mem_array((size_t)n, sizeof *sorted);
-	memcpy(sorted, map->px, (size_t)n * sizeof *sorted);
+	for (long i = 0; i < n; i++)
+		sorted[i] = map->px[i * map->channels + channel];
 	qsort(sorted, (size_t)n, sizeof *sorted, compare_floats);
 	range[0] = sorted[n / 100];
 	range[1] = sorted[n - 1 - n / 100];
 	free(sorted);
 }
 
-json_t *page_scalar_map(struct page *page, const char *path, const char *channel, double range[2])
+json_t *page_scalar_map(const struct image *map, int channel, double range[2])
 {
-	struct image map;
-	if (!map_read(&map, page, path, 1, &channel))
-		return 0;
-	spread(range, &map);
-	struct image rgb = image_new(map.width, map.height, 3);
-	for (long i = 0; i < (long)map.width * map.height; i++)
-		ramp(rgb.px + 3 * i, (float)((map.px[i] - range[0]) / fmax(range[1] - range[0], 1e-9)));
-	image_free(&map);
+	spread(range, map, channel);
+	struct image rgb = image_new(map->width, map->height, 3);
+	for (long i = 0; i < (long)map->width * map->height; i++)
+		ramp(rgb.px + 3 * i, (float)((map->px[i * map->channels + channel] - range[0]) / fmax(range[1] - range[0], 1e-9)));
 	return linear_picture(&rgb);
 }
 
-json_t *page_relief_map(struct page *page, const char *path, double range[2])
+/* Lit from the upper left; the slope is scaled by its own size, so that shallow reliefs show, too. */
+json_t *page_relief_map(const struct image *map, double range[2])
 {
-	static const char *const names[] = { "Y" };
-	struct image map;
-	if (!map_read(&map, page, path, 1, names))
-		return 0;
-	spread(range, &map);
-	// Lit from the upper left; the slope is scaled by its own size, so that shallow reliefs show, too.
+	int step = map->channels;
+	long n = (long)map->width * map->height;
 	double sum = 0;
-	long n = (long)map.width * map.height;
+	spread(range, map, 0);
 	for (long i = 1; i < n; i++)
-		sum += fabs(map.px[i] - map.px[i - 1]);
-	float k = (float)(0.55 / fmax(sum / (double)n, 1e-9));
-	struct image rgb = image_new(map.width, map.height, 3);
-	for (int y = 0; y < map.height; y++)
-		for (int x = 0; x < map.width; x++) {
-			float here = *image_at(&map, x, y), left = *image_at(&map, x ? x - 1 : x, y), up = *image_at(&map, x, y ? y - 1 : y);
-			float gx = k * (here - left), gy = k * (here - up), light = (0.80f - 0.42f * (gx + gy) * -1) / sqrtf(1 + gx * gx + gy * gy);
+		sum += fabs(map->px[i * step] - map->px[(i - 1) * step]);
+	float k = (float)(0.28 / fmax(sum / (double)n, 1e-9));
+	struct image rgb = image_new(map->width, map->height, 3);
+	for (int y = 0; y < map->height; y++)
+		for (int x = 0; x < map->width; x++) {
+			float here = *image_at(map, x, y), gx = k * (here - *image_at(map, x ? x - 1 : x, y)),
+			      gy = k * (here - *image_at(map, x, y ? y - 1 : y));
+			float light = (0.78f + 0.40f * (gx + gy)) / sqrtf(1 + gx * gx + gy * gy), shade = 0.66f * light;
+			shade = shade > 0 ? shade < 1 ? shade : 1 : 0;
 			for (int c = 0; c < 3; c++)
-				image_at(&rgb, x, y)[c] = powf(fminf(fmaxf(0.62f * light, 0), 1), 2.2f) * (c == 2 ? 0.92f : 1);
+				image_at(&rgb, x, y)[c] = shade * shade * (c == 2 ? 0.93f : 1);
 		}
-	image_free(&map);
 	return linear_picture(&rgb);
 }

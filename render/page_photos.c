@@ -66,10 +66,11 @@ static void likeness(struct page *page, json_t *entry, const char *dir, const ch
 {
 	const char *compare = page_file(page, "%s/%s_compare.png", dir, name);
 	json_t *numbers = page_json(page, page_file(page, "%s/%s_compare.json", dir, name)), *like = json_object();
-	if (compare) {
-		add(like, "photo", page_panel(page, compare, 0));
-		add(like, "render", page_panel(page, compare, 1));
-		add(like, "difference", page_panel(page, compare, 2));
+	json_t *panels[3];
+	if (page_panels(panels, page, compare)) {
+		add(like, "photo", panels[0]);
+		add(like, "render", panels[1]);
+		add(like, "difference", panels[2]);
 		json_object_set_new(like, "name", template_text(name));
 		double mean = json_number_value(json_object_get(numbers, "difference_mean"));
 		double high = json_number_value(json_object_get(numbers, "difference_95"));

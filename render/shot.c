@@ -10,7 +10,8 @@
 double ellipse_radius(const struct ellipse *e, double x, double y)
 {
 	double c = cos(e->angle), s = sin(e->angle), dx = x - e->cx, dy = y - e->cy;
-	return hypot((c * dx + s * dy) / e->a, (c * dy - s * dx) / e->b);
+	double u = (c * dx + s * dy) / e->a, v = (c * dy - s * dx) / e->b;
+	return sqrt(u * u + v * v);
 }
 
 /* The eye fills the window: 2.2 semi-axes round the limbus, as far as the photograph goes. */

@@ -53,47 +53,45 @@ static void nodes_make(struct scene *s)
 	}
 }
 
-/* Channels of an EXR map on n x n texels of half-width extent: maps of another size are resampled. */
-static bool read_map(struct image *out, const char *path, int channels, const char *const names[], double *extent, int n,
+/* Channels of an EXR map; *extent its half-width. What is not finite becomes 0. image_free. */
+static bool read_map(struct image *out, const char *path, int channels, const char *const names[], double *extent,
                      struct err *err)
 {
 	struct exr_info info = { 0 };
-	struct image in;
-	if (!exr_read(&in, path, channels, names, limit_px, &info, err))
+	if (!exr_read(out, path, channels, names, limit_px, &info, err))
 		return false;
-	bool ok = in.width == in.height && info.extent_mm > 0;
-	if (!ok)
-		err_set(err, "%s: an iris map is square and says its extentMm", path);
 	*extent = info.extent_mm;
-	n = n ? n : in.width;
-	for (long i = 0; ok && i < (long)in.width * in.height * channels; i++)
-		if (!isfinite(in.px[i]))
-			in.px[i] = 0;
-	if (ok && n != in.width) {
-		*out = image_new(n, n, channels);
-		ok = cv_resize(out->px, n, n, in.px, in.width, in.height, channels, err);
-		image_free(&in);
-	} else {
-		*out = in;
-	}
-	if (!ok)
+	if (out->width != out->height || !(info.extent_mm > 0)) {
 		image_free(out);
+		return err_set(err, "%s: an iris map is square and says its extentMm", path);
+	}
+	for (long i = 0; i < (long)out->width * out->height * channels; i++)
+		if (!isfinite(out->px[i]))
+			out->px[i] = 0;
+	return true;
+}
+
+static bool resample(struct image *map, int n, struct err *err)
+{
+	if (map->width == n)
+		return true;
+	struct image out = image_new(n, n, map->channels);
+	bool ok = cv_resize(out.px, n, n, map->px, map->width, map->height, map->channels, err);
+	image_free(map);
+	*map = out;
 	return ok;
 }
 
 static bool load_colour(struct scene *s, const char *path, int most, struct err *err)
 {
 	static const char *const names[] = { "R", "G", "B", "W" };
-	struct exr_info info = { 0 };
-	struct image head, map;
-	if (!exr_read(&head, path, 4, names, limit_px, &info, err))
+	struct image map;
+	if (!read_map(&map, path, 4, names, &s->extent, err))
 		return false;
-	int n = head.width < most ? head.width : most;
-	image_free(&head);
-	if (!read_map(&map, path, 4, names, &s->extent, n, err))
-		return false;
+	int n = map.width < most ? map.width : most;
+	bool ok = resample(&map, n, err);
 	s->level[0] = (struct scene_level){ .n = n, .per_mm = (float)(n / (2 * s->extent)), .colour = map.px };
-	return true;
+	return ok;
 }
 
 static bool load_relief(struct scene *s, const char *path, struct err *err)
@@ -103,11 +101,15 @@ static bool load_relief(struct scene *s, const char *path, struct err *err)
 	double extent = s->extent;
 	struct image map = { 0 };
 	if (path && file_exists(path)) {
-		if (!read_map(&map, path, 2, names, &extent, l->n, err))
+		if (!read_map(&map, path, 2, names, &extent, err))
 			return false;
 		if (fabs(extent - s->extent) > 1e-3 * s->extent) {
 			image_free(&map);
 			return err_set(err, "%s: extentMm = %g, but the texture's is %g", path, extent, s->extent);
+		}
+		if (!resample(&map, l->n, err)) {
+			image_free(&map);
+			return false;
 		}
 	} else {
 		map = image_new(l->n, l->n, 2);

@@ -29,10 +29,10 @@ static void harmonics(double y[9], const double d[3])
 	y[8] = 0.546274215296040 * (d[0] * d[0] - d[1] * d[1]);
 }
 
-/* The map averaged down to 64 rows: sharp enough for light on a rough surface. image_free. */
-struct image envmap_coarse(const struct image *map)
+struct image envmap_coarse(const struct image *map, int rows)
 {
-	int rows = map->height < 64 ? map->height : 64, k = map->height / rows;
+	rows = map->height < rows ? map->height : rows;
+	int k = map->height / rows;
 	struct image out = image_new(2 * rows, rows, 3);
 	for (int y = 0; y < rows; y++)
 		for (int x = 0; x < 2 * rows; x++)
@@ -52,17 +52,19 @@ double envmap_solid_angle(const struct image *map, int y)
 static void project(struct envmap *env)
 {
 	static const double lobe[9] = { 1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25 };
-	struct image map = envmap_coarse(&env->map);
+	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
 	memset(env->sh, 0, sizeof env->sh);
-	for (int y = 0; y < map.height; y++)
+	for (int y = 0; y < map.height; y++) {
+		double w = envmap_solid_angle(&map, y);
 		for (int x = 0; x < map.width; x++) {
-			double d[3], h[9], w = envmap_solid_angle(&map, y);
+			double d[3], h[9];
 			envmap_dir(d, (x + 0.5) / map.width, (y + 0.5) / map.height);
 			harmonics(h, d);
 			for (int k = 0; k < 9; k++)
 				for (int c = 0; c < 3; c++)
 					env->sh[k][c] += lobe[k] * h[k] * w * image_at(&map, x, y)[c];
 		}
+	}
 	image_free(&map);
 }
 
@@ -182,7 +184,7 @@ double envmap_level(const struct envmap *env)
 {
 	// Degrees 0 to 2 only approximate a narrow light's cosine; the plane's own irradiance is summed exactly.
 	double sum = 0;
-	struct image map = envmap_coarse(&env->map);
+	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
 	for (int y = 0; y < map.height; y++)
 		for (int x = 0; x < map.width; x++) {
 			double d[3];

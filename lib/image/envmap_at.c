@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "image/envmap_impl.h"
 
-enum { ROUGH = 96 };
+enum { ROUGH = 64, LOW = 32 };  // rows of what the blurred copy is made from: 5.6 degrees
 
 /* Square -1..1 to direction. */
 static void unfold_dir(double d[3], double u, double v)
@@ -41,7 +41,7 @@ static void lobe_at(float rgb[3], const struct image *map, const double (*dirs)[
 	double sum[3] = { 0 }, total = 0;
 	const double k = 1 / (2 * pow(6 * M_PI / 180, 2));
 	for (int y = 0; y < map->height; y++) {
-		double weight = envmap_solid_angle(map, y);
+		double weight = envmap_solid_angle(map, y);  // a row's, and dear
 		for (int x = 0; x < map->width; x++) {
 			const double *e = dirs[y * map->width + x];
 			double off = 2 - 2 * (d[0] * e[0] + d[1] * e[1] + d[2] * e[2]);  // the chord's square
@@ -60,7 +60,7 @@ static void lobe_at(float rgb[3], const struct image *map, const double (*dirs)[
 void envmap_unfold(struct envmap *env)
 {
 	int n = 2 * env->map.height;
-	struct image low = envmap_coarse(&env->map);
+	struct image low = envmap_coarse(&env->map, LOW);
 	double(*dirs)[3] = mem_array((size_t)low.width * (size_t)low.height, sizeof *dirs);
 	for (int i = 0; i < low.width * low.height; i++)
 		envmap_dir(dirs[i], (i % low.width + 0.5) / low.width, (i / low.width + 0.5) / low.height);

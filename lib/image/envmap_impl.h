@@ -6,8 +6,11 @@
 /* Direction of a place in the map, u and v 0..1. */
 void envmap_dir(double dir[3], double u, double v);
 
-/* The map averaged down to 64 rows at most. image_free. */
-struct image envmap_coarse(const struct image *map);
+/* The map averaged down to that many rows at most. image_free. */
+struct image envmap_coarse(const struct image *map, int rows);
+
+/* Sharp enough for the light that falls on a surface. */
+enum { ENVMAP_ROWS = 64 };
 
 /* Of a pixel in row y. */
 double envmap_solid_angle(const struct image *map, int y);

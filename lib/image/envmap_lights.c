@@ -14,9 +14,12 @@ struct region {
 static double region_energy(const struct image *map, struct region r)
 {
 	double sum = 0;
-	for (int y = r.y0; y < r.y1; y++)
+	for (int y = r.y0; y < r.y1; y++) {
+		double row = 0;
 		for (int x = r.x0; x < r.x1; x++)
-			sum += lum(image_at(map, x, y)) * envmap_solid_angle(map, y);
+			row += lum(image_at(map, x, y));
+		sum += row * envmap_solid_angle(map, y);
+	}
 	return sum;
 }
 
@@ -62,7 +65,7 @@ static bool region_light(struct envmap_light *light, const struct image *map, st
 
 int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env)
 {
-	struct image map = envmap_coarse(&env->map);
+	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
 	struct region regions[ENVMAP_LIGHTS_MAX] = { { 0, 0, map.width, map.height } };
 	int made = 1, out = 0;
 	while (2 * made <= n && 2 * made <= ENVMAP_LIGHTS_MAX) {
