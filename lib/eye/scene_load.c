@@ -37,10 +37,10 @@ static void gauss(int n, double node[], double weight[])
 	}
 }
 
-/* A fifth of the steps in the thin anterior layer, the others in the stroma. */
+/* A third of the steps in the thin anterior layer, where most of the melanin is, the others in the stroma. */
 static void nodes_make(struct scene *s)
 {
-	int n = s->conf.steps, in_abl = n / 5 > 1 ? n / 5 : 1, in[2] = { in_abl, n - in_abl };
+	int n = s->conf.steps, in_abl = n / 3 > 1 ? n / 3 : 1, in[2] = { in_abl, n - in_abl };
 	for (int l = 0; l < 2; l++) {
 		s->n_nodes[l] = in[l];
 		if (s->conf.quadrature == SCENE_GAUSS)

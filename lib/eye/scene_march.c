@@ -196,8 +196,8 @@ static void band_add(int n, float *restrict sum, const float *restrict la, const
 		sum[i] += source * w[i] * exp_negative(-(ea * la[i] + es * ls[i]));
 }
 
-/* The clearance of the way to the light above the relief, at the part t of the way out of the relief's reach; softened
- * over a source of 0.15 rad, 4 um of bias. */
+/* How much of a source of 0.15 rad stands clear of the relief, looking from a batch's points at the part `part` of the
+ * way out of the relief's reach. 4 um of bias: a surface does not shadow itself. */
 SIMD_CLONES
 static void shadow_step(float *restrict least, const struct lit *m, const struct iris_batch *r, const struct ground *g,
                         float part)
@@ -211,7 +211,7 @@ static void shadow_step(float *restrict least, const struct lit *m, const struct
 		float x = px[i], y = py[i], z = pz[i], lx = kx[i] - x, ly = ky[i] - y, lz = kz[i] - z, gx, gy;
 		float up = lz < -0.2f ? lz : -0.2f, t = part * (z_high - z) / up;  // t: in units of the way to K
 		float h = z_plane - relief_at(relief, size, per_mm, x + t * lx, y + t * ly, &gx, &gy);
-		float clear = (h - (z + t * lz)) / (0.15f * t * sqrtf(lx * lx + ly * ly) + 0.004f) + 0.5f, old = least[i];
+		float off = t * sqrtf(lx * lx + ly * ly), clear = (h - (z + t * lz) + 0.004f) / (0.15f * off + 0.004f), old = least[i];
 		least[i] = clear < old ? clear : old;
 	}
 }
