@@ -6,23 +6,19 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 #include <omp.h>
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "eye/scene_impl.h"
 #include "image/colour.h"
-#include "image/exr.h"
 #include "math/rng.h"
 #include "optics/lightpath.h"
+#include "tests/lib/painted.h"
 
 static const struct eye plain_eye = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75, 0.55, 1.376 };
 static const double grey[3] = { 1, 1, 1 };
-enum { MAP = 256 };
-static const double extent = 6.4;
 
 static struct scene_conf conf_of(int steps)
 {
@@ -32,42 +28,11 @@ static struct scene_conf conf_of(int steps)
 		                        .veins_px = 256, .seed = 1 };
 }
 
-typedef void paint_fn(float rgb[3], double x, double y);
-typedef double height_fn(double x, double y);
-
-/* A scene from maps written to files, as the stages write them. */
-static void scene_of(struct scene *scene, const struct eye *eye, const struct scene_conf *conf, paint_fn *paint,
-                     height_fn *height, double pupil)
+static void scene_of(struct scene *scene, const struct eye *eye, const struct scene_conf *conf, painted_colour *colour,
+                     painted_height *height, double pupil)
 {
 	struct err err = { 0 };
-	struct exr_info info = { .extent_mm = extent, .made_by = "{}" };
-	struct image tex = image_new(MAP, MAP, 4), relief = image_new(MAP, MAP, 2);
-	for (int y = 0; y < MAP; y++)
-		for (int x = 0; x < MAP; x++) {
-			double u = (x + 0.5) * 2 * extent / MAP - extent, v = (y + 0.5) * 2 * extent / MAP - extent;
-			paint(image_at(&tex, x, y), u, v);
-			image_at(&tex, x, y)[3] = hypot(u, v) < 6.2;
-			image_at(&relief, x, y)[0] = height ? (float)height(u, v) : 0;
-			image_at(&relief, x, y)[1] = 0.5f;
-		}
-	char dir[] = "/tmp/render_XXXXXX", texture[64], json[64], map[64];
-	assert_non_null(mkdtemp(dir));
-	snprintf(texture, sizeof texture, "%s/texture.exr", dir);
-	snprintf(json, sizeof json, "%s/texture.json", dir);
-	snprintf(map, sizeof map, "%s/relief.exr", dir);
-	char text[100];
-	int n = snprintf(text, sizeof text, "{\"pupil\": {\"cx\": 0, \"cy\": 0, \"r\": %g}}", pupil);
-	assert_true(exr_write(texture, &tex, (const char *const[]){ "R", "G", "B", "W" }, EXR_FLOAT, &info, &err));
-	assert_true(exr_write(map, &relief, (const char *const[]){ "Y", "T" }, EXR_FLOAT, &info, &err));
-	assert_true(file_write(json, text, (size_t)n, &err));
-	struct scene_files files = { texture, json, map, 0 };
-	assert_true(scene_load(scene, &files, eye, conf, &err));
-	unlink(texture);
-	unlink(json);
-	unlink(map);
-	rmdir(dir);
-	image_free(&tex);
-	image_free(&relief);
+	assert_true(painted_scene(scene, 256, eye, conf, colour, height, pupil, &err));
 }
 
 static void even(float rgb[3], double x, double y)
@@ -384,7 +349,7 @@ static void holes_are_filled(void **state)
 	static const double pupil[3] = { 0.1, -0.1, 1.5 };
 	float(*map)[4] = mem_array(N * N, sizeof *map), (*was)[4] = mem_array(N * N, sizeof *was);
 	for (int i = 0; i < N * N; i++) {
-		double x = (i % N + 0.5) * 2 * extent / N - extent - pupil[0], y = (i / N + 0.5) * 2 * extent / N - extent - pupil[1];
+		double x = (i % N + 0.5) * 2 * painted_extent / N - painted_extent - pupil[0], y = (i / N + 0.5) * 2 * painted_extent / N - painted_extent - pupil[1];
 		double r = hypot(x, y), t = atan2(y, x);
 		float v = (float)((0.3 + 0.1 * sin(12 * t)) * (1 - 0.1 * r));
 		map[i][0] = map[i][1] = map[i][2] = v;
@@ -394,10 +359,10 @@ static void holes_are_filled(void **state)
 	for (int i = 0; i < N * N; i++)
 		if (map[i][3] == 0)
 			map[i][0] = map[i][1] = map[i][2] = 0;
-	scene_fill(&map[0][0], N, extent, pupil);
+	scene_fill(&map[0][0], N, painted_extent, pupil);
 	double sum = 0, n = 0;
 	for (int i = 0; i < N * N; i++) {
-		double x = (i % N + 0.5) * 2 * extent / N - extent - pupil[0], y = (i / N + 0.5) * 2 * extent / N - extent - pupil[1];
+		double x = (i % N + 0.5) * 2 * painted_extent / N - painted_extent - pupil[0], y = (i / N + 0.5) * 2 * painted_extent / N - painted_extent - pupil[1];
 		assert_true(isfinite(map[i][0]) && map[i][0] >= 0);
 		if (was[i][3] == 1)
 			assert_true(map[i][0] == was[i][0]);

@@ -1,0 +1,257 @@
+/* The march through the iris, the light's way to it, and whole frames: error against time of the same run. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "eye/scene_impl.h"
+#include "math/rng.h"
+#include "optics/lightpath.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/painted.h"
+
+enum { BATCHES = 24, LIGHTS = 8 };
+
+static const struct eye eye = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75, 0.55, 1.376 };
+static const double id[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+
+static struct scene_conf conf_of(int steps, int quadrature, int path)
+{
+	return (struct scene_conf){ .map_size = 1024, .search = 8, .shadow = 4, .steps = steps, .quadrature = quadrature,
+		                        .path = path, .bands = 4, .detail = 1, .limbus_width = 0.4, .sclera_radius = 11.8,
+		                        .sclera_rgb = { 0.7, 0.65, 0.6 }, .vein_density = 1, .veins_px = 512, .seed = 1 };
+}
+
+static void fibres(float rgb[3], double x, double y)
+{
+	double r = hypot(x, y), t = atan2(y, x), v = 0.3 + 0.12 * sin(40 * t + 3 * sin(2 * r)) * sin(5 * r);
+	rgb[0] = (float)(0.7 * v);
+	rgb[1] = (float)(0.9 * v);
+	rgb[2] = (float)v;
+}
+
+static double ridges(double x, double y)
+{
+	double r = hypot(x, y), t = atan2(y, x);
+	return 0.05 * sin(40 * t + 3 * sin(2 * r)) * sin(5 * r) + 0.06 * exp(-(r - 3) * (r - 3) / 0.1);
+}
+
+struct work {
+	struct scene scene;
+	struct scene_beams beams;
+	struct iris_batch *batches;  // BATCHES rays of sight, met with the relief
+	float K[4][BATCH];
+};
+
+static void rays(struct work *w)
+{
+	struct rng rng = { 21 };
+	w->batches = mem_new(BATCHES, sizeof *w->batches);
+	for (int k = 0; k < BATCHES; k++) {
+		struct iris_batch *b = &w->batches[k];
+		b->n = BATCH;
+		for (int i = 0; i < BATCH; i++) {
+			double r = sqrt(rng_range(&rng, 3, 25)), t = rng_range(&rng, 0, 2 * M_PI), a = rng_range(&rng, 0, 0.5), f = rng_range(&rng, 0, 6.28);
+			b->vx[i] = (float)(sin(a) * cos(f));
+			b->vy[i] = (float)(sin(a) * sin(f));
+			b->vz[i] = (float)cos(a);
+			b->fx[i] = (float)(r * cos(t)) - 2 * b->vx[i];
+			b->fy[i] = (float)(r * sin(t)) - 2 * b->vy[i];
+			b->fz[i] = 3.3f - 2 * b->vz[i];
+		}
+		scene_meet(b, &w->scene, &w->scene.level[0]);
+	}
+}
+
+static bool work_make(struct work *w, const struct scene_conf *conf, const struct scene_lighting *light)
+{
+	struct err err = { 0 };
+	if (!painted_scene(&w->scene, 1024, &eye, conf, fibres, ridges, 1.6, &err)) {
+		fprintf(stderr, "bench_render: %s\n", err.msg);
+		return false;
+	}
+	w->beams = scene_beams(&w->scene, light, id);
+	rays(w);
+	return true;
+}
+
+static void work_free(struct work *w)
+{
+	free(w->batches);
+	free(w->beams.beam);
+	scene_free(&w->scene);
+}
+
+static void scatter_all(void *ctx)
+{
+	struct work *w = ctx;
+	for (int k = 0; k < BATCHES; k++)
+		scene_scatter(&w->batches[k], &w->scene, &w->scene.level[0], &w->beams);
+}
+
+static void flat_all(void *ctx)
+{
+	struct work *w = ctx;
+	for (int k = 0; k < BATCHES; k++)
+		scene_flat(&w->batches[k], &w->scene, &w->beams);
+}
+
+/* Mean difference of the colours, relative to the reference's mean. */
+static double differs(const struct work *w, const struct iris_batch *reference)
+{
+	double sum = 0, all = 0;
+	for (int k = 0; k < BATCHES; k++)
+		for (int c = 0; c < 3; c++)
+			for (int i = 0; i < BATCH; i++) {
+				sum += fabs(w->batches[k].rgb[c][i] - reference[k].rgb[c][i]);
+				all += reference[k].rgb[c][i];
+			}
+	return 100 * sum / all;
+}
+
+static struct bench_time each(struct bench_time t, double n)
+{
+	return (struct bench_time){ t.median / n, t.low / n, t.high / n };
+}
+
+static struct iris_batch *reference_make(const struct scene_lighting *light)
+{
+	struct work w = { 0 };
+	struct scene_conf conf = conf_of(SCENE_NODES_MAX, SCENE_GAUSS, SCENE_PATH_ENDS);
+	if (!work_make(&w, &conf, light))
+		return 0;
+	scatter_all(&w);
+	struct iris_batch *reference = w.batches;
+	w.batches = 0;
+	work_free(&w);
+	return reference;
+}
+
+/* One row; the time of a ray with its eight lights, one thread. Returns the error. */
+static double row(const char *table, const char *method, const char *setting, const struct scene_conf *conf, bool flat,
+                  const struct scene_lighting *light, const struct iris_batch *reference)
+{
+	struct work w = { 0 };
+	if (!work_make(&w, conf, light))
+		return NAN;
+	struct bench_time t = bench_time(flat ? flat_all : scatter_all, &w, bench_quick() ? 3 : 9);
+	double error = differs(&w, reference);
+	bench_row(table, method, setting, each(t, BATCHES * BATCH), "ray", error, "%", "colour, mean, against 64 steps");
+	work_free(&w);
+	return error;
+}
+
+static void marches(const struct scene_lighting *light, const struct iris_batch *reference)
+{
+	static const int steps[] = { 4, 6, 8, 12, 16, 32 };
+	struct scene_conf conf = conf_of(6, SCENE_GAUSS, SCENE_PATH_GRID);
+	row("march", "texture without scattering", "no steps", &conf, true, light, reference);
+	for (int i = 0; i < COUNT(steps); i++) {
+		char setting[32];
+		snprintf(setting, sizeof setting, "%d steps", steps[i]);
+		conf = conf_of(steps[i], SCENE_MIDPOINT, SCENE_PATH_GRID);
+		row("march", "half-step rule in each layer", setting, &conf, false, light, reference);
+		conf = conf_of(steps[i], SCENE_GAUSS, SCENE_PATH_GRID);
+		double error = row("march", "Gauss-Legendre in each layer", setting, &conf, false, light, reference);
+		if (steps[i] == 8)
+			bench_goal("single scattering by marching, 8 steps", "<= 0.78 % (half-step rule)", error, "%", error <= 0.78);
+	}
+}
+
+static void paths(const struct scene_lighting *light, const struct iris_batch *reference)
+{
+	struct scene_conf conf = conf_of(16, SCENE_GAUSS, SCENE_PATH_ENDS);
+	row("light path", "solved at both ends of each ray", "4 Newton steps", &conf, false, light, reference);
+	conf = conf_of(16, SCENE_GAUSS, SCENE_PATH_GRID);
+	row("light path", "a table of the light's own", "48 x 48 x 2", &conf, false, light, reference);
+}
+
+/* K of the table against the solver. */
+static void grid_error(const struct scene_lighting *light)
+{
+	struct work w = { 0 };
+	struct scene_conf conf = conf_of(6, SCENE_GAUSS, SCENE_PATH_GRID);
+	float zero[BATCH] = { 0 };
+	double sum = 0, worst = 0, n = 0;
+	if (!work_make(&w, &conf, light))
+		return;
+	for (int l = 0; l < w.beams.n; l++)
+		for (int k = 0; k < BATCHES; k++) {
+			const struct iris_batch *b = &w.batches[k];
+			double dir[3] = { w.beams.beam[l].dir[0], w.beams.beam[l].dir[1], w.beams.beam[l].dir[2] }, K[3];
+			scene_beam_paths(w.K, b, zero, &w.scene, &w.beams.beam[l]);
+			for (int i = 0; i < BATCH; i++) {
+				double P[3] = { b->px[i], b->py[i], b->pz[i] };
+				if (lightpath_solve_directional(K, &w.scene.cornea, P, dir) != LIGHTPATH_OK)
+					continue;
+				double off = hypot(hypot(w.K[0][i] - K[0], w.K[1][i] - K[1]), w.K[2][i] - K[2]);
+				sum += off;
+				worst = fmax(worst, off);
+				n++;
+			}
+		}
+	struct bench_time none = { NAN, NAN, NAN };
+	bench_row("K of the table", "a table of the light's own", "48 x 48 x 2", none, "point", 1e3 * sum / n, "um", "K, mean");
+	bench_row("K of the table", "a table of the light's own", "48 x 48 x 2", none, "point", 1e3 * worst, "um", "K, worst");
+	work_free(&w);
+}
+
+struct frame {
+	const struct scene *scene;
+	struct scene_view view;
+	const struct scene_lighting *light;
+	struct image image;
+};
+
+static void frame_render(void *ctx)
+{
+	struct frame *f = ctx;
+	image_free(&f->image);
+	f->image = scene_render(f->scene, &f->view, f->light, 0);
+}
+
+/* 1280 x 1024, the cornea on 47 % of the pixels, all threads. */
+static void frames(const struct scene_lighting *light)
+{
+	struct scene s;
+	struct err err = { 0 };
+	struct scene_conf conf = conf_of(6, SCENE_GAUSS, SCENE_PATH_GRID);
+	if (!painted_scene(&s, 1024, &eye, &conf, fibres, ridges, 1.6, &err))
+		return;
+	struct frame f = { &s, scene_view_turned(&s, 0, 0, 17.1, 1280), light, { 0 } };
+	f.view.y0 = 128;
+	f.view.height = 1024;
+	scene_fit_colour(&s, &f.view, light);
+	static const char *const names[] = { "refraction and texture", "single scattering, 6 steps, 8 lights" };
+	for (int i = 0; i < 2; i++) {
+		f.view.textured = i == 0;
+		struct bench_time t = bench_time(frame_render, &f, bench_quick() ? 2 : 5);
+		char setting[32];
+		snprintf(setting, sizeof setting, "%d threads", omp_get_max_threads());
+		bench_row("frame, 1280 x 1024", names[i], setting, t, "frame", 1280 * 1024 / t.median / 1e6, "Mray/s", "speed");
+	}
+	image_free(&f.image);
+	scene_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+	bench_open("render", argc, argv);
+	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.15, 0.2 }, { 25, 25, 25 } },
+		                         { { 0.7, -0.1, -0.7071 }, { 0.1, 0.2 }, { 10, 10, 11 } } };
+	struct envmap env = envmap_room(128, (double[3]){ 0.6, 0.6, 0.7 }, (double[3]){ 0.2, 0.2, 0.2 }, 0.5, 2, box);
+	envmap_normalise(&env);
+	struct scene_lighting light = scene_lighting(&env, &env, LIGHTS);
+	struct iris_batch *reference = reference_make(&light);
+	if (reference) {
+		marches(&light, reference);
+		paths(&light, reference);
+		grid_error(&light);
+		frames(&light);
+	}
+	free(reference);
+	envmap_free(&env);
+	return bench_close();
+}
