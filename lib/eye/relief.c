@@ -105,6 +105,7 @@ static bool cut(struct problem *p, const struct image *thickness, struct err *er
 {
 	long n = (long)p->size * p->size, full = (long)thickness->width * thickness->height;
 	float *one = mem_array((size_t)full, sizeof *one), *at = mem_array((size_t)n, sizeof *at);
+#pragma omp parallel for schedule(static)
 	for (long i = 0; i < full; i++)
 		one[i] = logf(fmaxf(thickness->px[i * thickness->channels], 1e-3f));
 	bool ok = cv_resize(at, p->size, p->size, one, thickness->width, thickness->height, 1, err);
@@ -251,6 +252,7 @@ bool relief_apply(struct image *out, const struct image *thickness, double exten
 	double scale = size / (2 * extent);
 	*out = image_new(size, size, 1);
 	float *sharp = mem_array((size_t)n, sizeof *sharp), *soft = mem_array((size_t)n, sizeof *soft);
+#pragma omp parallel for schedule(static)
 	for (long i = 0; i < n; i++)
 		out->px[i] = sharp[i] = logf(fmaxf(thickness->px[i * thickness->channels], 1e-3f));
 	bool ok = true;

@@ -1,7 +1,7 @@
 /* relief_opts: rows for the option tables of the stages of the tissue. */
 #ifndef EYE_RELIEF_OPTS_H
 #define EYE_RELIEF_OPTS_H
-#include "base/opt.h"
+#include "eye/capture.h"
 #include "eye/relief.h"
 
 /* r: struct relief_conf; range: double[2]. */
@@ -18,6 +18,16 @@
 #define IRIS_OPTS(root, pupil) \
 	OPT_REAL("tissue.root_beyond_limbus_mm", root, 0, 1, "mm", "iris root beyond the limbus"), \
 	OPT_REAL("tissue.pupil_mm", pupil, 0.5, 5, "mm", "pupil radius where none was found")
+
+/* True, and said, when this eye has no texture while the folder has other eyes: those go on. An only eye's missing texture
+ * is an error where it is read. */
+static inline bool iris_left_out(struct stage *stage, const struct capture *capture, const struct capture_eye *eye)
+{
+	if (capture->n_eyes < 2 || file_exists(stage_path(stage, "%s/clean.exr", eye->iris)))
+		return false;
+	stage_skipped(stage, "%s: no texture of its iris: none of its photographs could be used", eye->side);
+	return true;
+}
 
 /* What ranges cannot check; moves the range into r. */
 static inline bool relief_conf_check(struct relief_conf *r, const double range[2], struct err *err)

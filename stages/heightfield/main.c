@@ -36,7 +36,8 @@ int main(int argc, char **argv)
 	struct capture capture = { 0 };
 	if (eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
 		for (int i = 0; i < capture.n_eyes && !err_is(&err); i++)
-			heightfield_stage(&stage, &capture.eyes[i], &eye, &conf, &err);
+			if (!iris_left_out(&stage, &capture, &capture.eyes[i]))
+				heightfield_stage(&stage, &capture.eyes[i], &eye, &conf, &err);
 	capture_free(&capture);
 	return stage_end(&stage, &err);
 }

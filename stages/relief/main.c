@@ -24,7 +24,8 @@ int main(int argc, char **argv)
 	struct capture capture = { 0 };
 	if (relief_conf_check(&c.relief, c.range, &err) && eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
 		for (int i = 0; i < capture.n_eyes && !err_is(&err); i++)
-			relief_stage(&stage, &capture.eyes[i], &eye, &c, &err);
+			if (!iris_left_out(&stage, &capture, &capture.eyes[i]))
+				relief_stage(&stage, &capture.eyes[i], &eye, &c, &err);
 	capture_free(&capture);
 	return stage_end(&stage, &err);
 }

@@ -24,28 +24,28 @@ struct work {
 static void heights(struct work *w)
 {
 	int n = w->sharp.width;
-	double sum = 0, square = 0;
-	long m = 0;
+	double mm = w->info.extent_mm, (*rows)[3] = mem_new((size_t)n, sizeof *rows), sum[3] = { 0 };
 	w->out = image_new(n, n, 2);
-	for (int pass = 0; pass < 2; pass++) {
-		double mean = m ? sum / (double)m : 0;
-		for (int y = 0; y < n; y++) {
-			for (int x = 0; x < n; x++) {
-				double mm = w->info.extent_mm, t = image_at(&w->sharp, x, y)[0];
-				double share = iris_share(&w->pupil, w->root, (2 * (x + 0.5) / n - 1) * mm, (2 * (y + 0.5) / n - 1) * mm);
-				bool iris = share > 0 && share < 1;
-				if (!pass) {
-					sum += iris ? t : 0;
-					m += iris;
-					continue;
-				}
-				square += iris ? (t - mean) * (t - mean) : 0;
-				image_at(&w->out, x, y)[0] = (float)(t - mean);
-				image_at(&w->out, x, y)[1] = (float)t;
-			}
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < n; y++)
+		for (int x = 0; x < n; x++) {
+			double t = image_at(&w->sharp, x, y)[0];
+			double share = iris_share(&w->pupil, w->root, (2 * (x + 0.5) / n - 1) * mm, (2 * (y + 0.5) / n - 1) * mm);
+			bool iris = share > 0 && share < 1;
+			rows[y][0] += iris;
+			rows[y][1] += iris ? t : 0;
+			rows[y][2] += iris ? t * t : 0;
 		}
+	for (int y = 0; y < n; y++)  // in this order whatever the threads
+		for (int k = 0; k < 3; k++)
+			sum[k] += rows[y][k];
+	double count = fmax(sum[0], 1), mean = sum[1] / count;
+	w->height_rms = sqrt(fmax(sum[2] / count - mean * mean, 0));
+	for (long i = 0; i < (long)n * n; i++) {
+		w->out.px[2 * i] = (float)(w->sharp.px[i] - mean);
+		w->out.px[2 * i + 1] = w->sharp.px[i];
 	}
-	w->height_rms = m ? sqrt(square / (double)m) : 0;
+	free(rows);
 }
 
 static bool compute(struct work *w, char *const in[], struct stage *stage, const struct eye *anatomy,
