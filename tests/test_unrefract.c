@@ -16,16 +16,11 @@
 #include "eye/unrefract.h"
 #include "image/exr.h"
 #include "tests/lib/bench.h"
-#include "tests/lib/truth.h"
+#include "tests/lib/iris.h"
 
 enum { CAPTURES = 32 };
 
-static const struct unrefract_conf plain = {
-	.map = { .method = IRIS_LATTICE, .node = 16 }, .scale = 1, .max_size = 768, .extent = 1.03, .survey_size = 512,
-	.pupil_margin = 0.06, .limbus_ramp = 0.25, .lid_z = 2.5, .lid_smooth = 3, .glint_z = 2.6, .glint_grow = 0.1,
-	.saturated = 0.9, .lash_contrast = 0.8, .lash_width = 0.12, .foreshortening = 2, .torsion_max_deg = 15,
-	.correlation_min = 0.25,
-};
+static struct unrefract_conf plain;  // as configured, at most 768 texels a side
 
 static struct truth eye_at(double theta_deg, bool two_surface)
 {
@@ -176,21 +171,11 @@ static void against_renderer(void **state)
 	}
 }
 
-/* The texture of one capture as the stage makes it, with a perfect limbus. */
 static struct unrefract_texture texture_of(const struct truth *truth, struct fit *fit, struct unrefract_view *view)
 {
+	struct unrefract_texture texture;
 	struct err err = { 0 };
-	struct photo photo = { 0 };
-	*fit = truth_fit(truth);
-	*view = (struct unrefract_view){ .name = truth->name };
-	assert_true(cv_photo_load(&photo, truth->photo, 100, &err));
-	assert_true(unrefract_survey(view, &photo, fit, &truth->eye, &plain, &err));
-	assert_int_equal(unrefract_align(1, view, &plain), 0);
-	int size = unrefract_size(1, view, &truth->eye, &plain);
-	struct unrefract_texture texture = unrefract_begin(size, &truth->eye, &view->pupil, &plain);
-	unrefract_add(&texture, view, &photo, &truth->eye, &plain);
-	unrefract_finish(&texture, &truth->eye);
-	photo_free(&photo);
+	assert_true(iris_texture(&texture, view, fit, truth, &plain, &err));
 	return texture;
 }
 
@@ -348,5 +333,7 @@ int main(void)
 		cmocka_unit_test(against_renderer), cmocka_unit_test(masks_against_labels),
 		cmocka_unit_test(photographs_meet), cmocka_unit_test(threads_do_not_matter),
 	};
+	plain = iris_unrefract_conf("review");
+	plain.max_size = 768;
 	return cmocka_run_group_tests(tests, 0, 0);
 }

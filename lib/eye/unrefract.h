@@ -36,8 +36,8 @@ struct unrefract_survey {
 	double extent;
 	float *rgb;     // [size][size][3]
 	float *weight;  // 0..1: share that is iris and well seen
-	float *detail;  // local contrast, zero mean, unit variance; for registration
-	float *sharp;   // local energy of the finest structure seen
+	float *detail;  // local contrast, zero mean, unit variance; where there are several photographs
+	float *sharp;   // local energy of the finest structure seen; likewise
 	double lid_share, glint_share;  // of the iris
 };
 

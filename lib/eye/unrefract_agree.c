@@ -137,7 +137,13 @@ int unrefract_align(int n, struct unrefract_view views[], const struct unrefract
 	for (int i = 1; i < n; i++)
 		fixed = worth(&views[i]) > worth(&views[fixed]) ? i : fixed;
 	views[fixed].correlation = 1;
-	int used = 1;
+	int used = 0;
+	for (int i = 0; i < n; i++)
+		used += views[i].used;
+	for (int i = 0; i < n && used > 1; i++)
+		if (views[i].used)
+			unrefract_detail(&views[i].survey);
+	used = 1;
 	for (int i = 0; i < n; i++) {
 		if (i == fixed || !views[i].used)
 			continue;

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "eye/unrefract_align.h"
 #include "eye/unrefract_mask.h"
 #include "eye/unrefract_sample.h"
 #include "image/plane.h"
@@ -56,8 +57,9 @@ static struct circle pupil_from_rings(const float *lum, const float *seen, int s
 }
 
 /* Brightness against its surroundings, in units of the local contrast; and the energy of its finest part. */
-static void take_detail(struct unrefract_survey *s, double mm)
+void unrefract_detail(struct unrefract_survey *s)
 {
+	double mm = 2 * s->extent / s->size;
 	long n = (long)s->size * s->size;
 	s->detail = mem_array((size_t)n, sizeof(float));
 	s->sharp = mem_array((size_t)n, sizeof(float));
@@ -99,7 +101,6 @@ static void look(struct unrefract_view *view, const struct iris_map *map, double
 	unrefract_mask(s, seen, &sheet, conf);
 	free(lum);
 	free(seen);
-	take_detail(s, 2 * s->extent / s->size);
 }
 
 bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit,

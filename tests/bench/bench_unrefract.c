@@ -7,21 +7,12 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "bridge/cv_photo.h"
 #include "eye/iris_map.h"
-#include "eye/unrefract.h"
 #include "image/exr.h"
 #include "tests/lib/bench.h"
-#include "tests/lib/truth.h"
+#include "tests/lib/iris.h"
 
 enum { CAPTURES = 64 };
-
-static const struct unrefract_conf review = {
-	.map = { .method = IRIS_LATTICE, .node = 16 }, .scale = 1, .max_size = 1536, .extent = 1.03, .survey_size = 512,
-	.pupil_margin = 0.06, .limbus_ramp = 0.25, .lid_z = 2.5, .lid_smooth = 3, .glint_z = 2.6, .glint_grow = 0.1,
-	.saturated = 0.9, .lash_contrast = 0.8, .lash_width = 0.12, .foreshortening = 2, .torsion_max_deg = 15,
-	.correlation_min = 0.25,
-};
 
 /* A generic eye, 30 degrees from the side, 110 mm away. */
 static struct truth side_view(bool two_surface)
@@ -227,7 +218,6 @@ static void positions(int n, char *const dirs[])
 
 struct whole {
 	struct truth truth;
-	struct photo photo;
 	struct unrefract_conf conf;
 	double seen;
 };
@@ -236,15 +226,11 @@ static void make_texture(void *ctx)
 {
 	struct whole *w = ctx;
 	struct err err = { 0 };
-	struct fit fit = truth_fit(&w->truth);
-	struct unrefract_view view = { .name = w->truth.name };
-	if (!unrefract_survey(&view, &w->photo, &fit, &w->truth.eye, &w->conf, &err))
+	struct fit fit;
+	struct unrefract_view view;
+	struct unrefract_texture texture;
+	if (!iris_texture(&texture, &view, &fit, &w->truth, &w->conf, &err))
 		return;
-	unrefract_align(1, &view, &w->conf);
-	int size = unrefract_size(1, &view, &w->truth.eye, &w->conf);
-	struct unrefract_texture texture = unrefract_begin(size, &w->truth.eye, &view.pupil, &w->conf);
-	unrefract_add(&texture, &view, &w->photo, &w->truth.eye, &w->conf);
-	unrefract_finish(&texture, &w->truth.eye);
 	w->seen = texture.seen;
 	image_free(&texture.rgbw);
 	unrefract_view_free(&view);
@@ -253,18 +239,17 @@ static void make_texture(void *ctx)
 static void textures(int n, char *const dirs[])
 {
 	for (int i = 0; i < n; i += bench_quick() ? 5 : 2) {
-		struct whole w = { .conf = review };
+		struct whole w = { .conf = iris_unrefract_conf("review") };
 		struct err err = { 0 };
-		if (!truth_load(&w.truth, dirs[i], &err) || !cv_photo_load(&w.photo, w.truth.photo, 100, &err))
+		if (!truth_load(&w.truth, dirs[i], &err))
 			continue;
 		struct bench_time t = bench_time(make_texture, &w, bench_quick() ? 1 : 5);
 		bench_row("texture of a photograph", "review", w.truth.name, t, "photograph", 100 * (1 - w.seen), "%",
 		          "of the iris not seen");
-		w.conf.scale = 0.5, w.conf.max_size = 512, w.conf.survey_size = 320;
+		w.conf = iris_unrefract_conf("draft");
 		t = bench_time(make_texture, &w, bench_quick() ? 1 : 5);
 		bench_row("texture of a photograph", "draft", w.truth.name, t, "photograph", 100 * (1 - w.seen), "%",
 		          "of the iris not seen");
-		photo_free(&w.photo);
 	}
 }
 
