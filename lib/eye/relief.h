@@ -33,7 +33,7 @@ struct relief_fit {
 	int iterations;
 };
 
-/* kappa: how strongly surroundings darken what lies lower: an empirical fit to Monte Carlo of 16 tissues at 550 nm, within
+/* kappa: how strongly surroundings darken what lies lower: an empirical fit to Monte Carlo of 13 tissues at 550 nm, within
  * 0.05. Grows with absorption; none where light goes on through the walls. */
 double relief_kappa(const struct tissue *tissue);
 
