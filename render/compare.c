@@ -38,6 +38,9 @@ static void weights_row(float *weight, const struct job *job, const struct shot 
 		if (!cornea_sight(K, from, in, &s->cornea, o, d) || in[2] < 0.1)
 			continue;
 		vec_add(P, from, (s->eye.iris_depth - from[2]) / in[2], in);
+		double u0 = P[0], v0 = P[1];
+		P[0] += shot->slip[0][0] * u0 + shot->slip[0][1] * v0 + shot->slip[0][2];
+		P[1] += shot->slip[1][0] * u0 + shot->slip[1][1] * v0 + shot->slip[1][2];
 		if (hypot(P[0] - s->pupil[0], P[1] - s->pupil[1]) < s->pupil[2] + 0.12)
 			continue;
 		double u = (P[0] + s->extent) * level->per_mm, v = (P[1] + s->extent) * level->per_mm;

@@ -100,7 +100,7 @@ static bool prepare(struct job *job, struct err *err)
 	if (!scene_load(&job->scene, &files, &eye, &conf, err))
 		return false;
 	job->ready = true;
-	struct scene_view view = scene_view_photo(&reference->fit, reference->window, reference->scale);
+	struct scene_view view = shot_view(reference);
 	struct scene_lighting light = scene_lighting(&job->photo_env, 0, job->conf->lights);
 	scene_fit_colour(&job->scene, &view, &light);
 	stage_figure(job->stage, "exposure", job->scene.gain, "");
@@ -184,7 +184,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 		return false;
 	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
 	struct scene_lighting light = scene_lighting(&job->photo_env, job->lamps ? &job->photo_lamps : 0, job->conf->lights);
-	struct scene_view view = scene_view_photo(&shot->fit, shot->window, shot->scale);
+	struct scene_view view = shot_view(shot);
 	json_t *figures;
 	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
 	struct image beside = compare_shot(job, shot, &seen, &figures);

@@ -27,6 +27,7 @@ struct shot {
 	struct fit fit;
 	struct image image;              // the window, linear, at the size of its view; px null: not decoded yet
 	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view
+	double slip[2][3];               // as in struct scene_view
 };
 
 /* One eye of the capture, on its way to pictures. */
@@ -58,6 +59,13 @@ bool render_eye(struct stage *stage, const struct capture *capture, int eye_inde
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err);
 bool shot_decode(struct job *job, struct shot *shot, struct err *err);
 void shots_free(struct job *job);
+
+/* align.c: turns the fit's eye frame into that of the maps, as unrefract registered this photograph; what a turn about
+ * the axis does not explain goes into shot->slip. texture_json: path; a photograph it does not name stays as it is. */
+bool shot_align(struct shot *shot, const char *texture_json, struct err *err);
+
+/* The photograph's own view. */
+struct scene_view shot_view(const struct shot *shot);
 
 /* 1 on the ellipse, more outside. */
 double ellipse_radius(const struct ellipse *e, double x, double y);

@@ -35,6 +35,7 @@ static double merit(const struct fit *fit)
 
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err)
 {
+	const char *texture = stage_path(job->stage, "%s/texture.json", job->names->iris);
 	job->shots = mem_new((size_t)capture->n_photos, sizeof *job->shots);
 	for (int i = 0; i < capture->n_photos; i++) {
 		const struct capture_photo *photo = &capture->photos[i];
@@ -46,7 +47,7 @@ bool shots_load(struct job *job, const struct capture *capture, int eye_index, s
 			stage_skipped(job->stage, "%s: it has no fit", photo->name);
 			continue;
 		}
-		if (!fit_load(&shot.fit, path, err))
+		if (!fit_load(&shot.fit, path, err) || !shot_align(&shot, texture, err))
 			return false;
 		if (!shot.fit.ok) {
 			stage_skipped_as_said(job->stage, "%s: its fit was rejected: %s", photo->name, shot.fit.reason);
@@ -79,7 +80,7 @@ bool shot_decode(struct job *job, struct shot *shot, struct err *err)
 		        photo.height, shot->fit.width, shot->fit.height);
 	if (ok) {
 		struct image all = photo_linear(&photo, (int)w[0], (int)w[1], (int)(w[2] - w[0]), (int)(w[3] - w[1]));
-		struct scene_view v = scene_view_photo(&shot->fit, w, shot->scale);
+		struct scene_view v = shot_view(shot);
 		shot->image = image_new(v.width, v.height, 3);
 		ok = cv_resize(shot->image.px, v.width, v.height, all.px, all.width, all.height, 3, err);
 		image_free(&all);

@@ -84,6 +84,8 @@ struct scene_lighting scene_lighting(const struct envmap *env, const struct envm
 struct scene_view {
 	struct camera camera;
 	double cam_from_eye[4][4];
+	double slip[2][3];            // iris maps are looked up at (x, y) + slip (x, y, 1): what registration of several
+	                              // photographs found beyond the pose; zero: nothing
 	double x0, y0, scale;         // camera px of the picture's corner, and of one of its pixels
 	int width, height;            // px
 	int samples;                  // samples^2 rays where the picture has edges, at most

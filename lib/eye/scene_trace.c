@@ -131,6 +131,14 @@ static void iris_colour(float rgb[3], const struct scene *s, const struct scene_
 /* Those rays of a batch that look through the cornea, packed together. */
 static void see_iris(struct iris_batch *b, const struct scene *s, const struct scene_look *look)
 {
+	for (int i = 0; i < b->n; i++) {
+		float x = b->fx[i], y = b->fy[i], u = b->vx[i], v = b->vy[i];
+		const float *p = look->slip[0], *q = look->slip[1];
+		b->fx[i] += p[0] * x + p[1] * y + p[2];
+		b->fy[i] += q[0] * x + q[1] * y + q[2];
+		b->vx[i] += p[0] * u + p[1] * v;
+		b->vy[i] += q[0] * u + q[1] * v;
+	}
 	scene_meet(b, s, look->level);
 	if (look->textured)
 		scene_flat(b, s, look->beams);

@@ -7,6 +7,7 @@
 struct scene_look {
 	double origin[3];            // of all rays: the camera in the eye's frame
 	float cam_from_eye[3][3];
+	float slip[2][3];            // as in the view
 	const struct scene_level *level;
 	const struct scene_lighting *light;
 	const struct scene_beams *beams;

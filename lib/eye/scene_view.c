@@ -52,6 +52,9 @@ static void look_make(struct scene_look *look, const struct scene *s, const stru
 			look->cam_from_eye[i][j] = (float)view->cam_from_eye[i][j];
 		}
 	}
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 3; j++)
+			look->slip[i][j] = (float)view->slip[i][j];
 	double away = view->cam_from_eye[2][2] * s->eye.iris_depth + t[2];
 	double mm = view->scale * away / view->camera.focal_px;
 	look->level = scene_level_for(s, mm);
