@@ -22,13 +22,14 @@ static struct chart first_guess(const struct path *path)
 {
 	double u[3], q[3];
 	path_outward(u, path, path->P);
-	struct chart at = path_leave(path, (double[]){ u[0], u[1], u[2] - LIGHTPATH_BEND });
+	struct chart at = path_leave(path, (double[]){ u[0], u[1], u[2] - path_bend(path->cornea->n) });
 	path_outward(u, path, at.K);
 	path_inside(q, path, &at, u);
 	return path_leave(path, q);
 }
 
-/* Newton's steps, kept downhill. False when there is no number left. least: curvature of L at the end. */
+/* Newton's steps, kept downhill. False where they do not end in a minimum: at a focus, where L is flat. least: curvature
+ * of L at the end. */
 static bool descend(struct chart *at, double *least, const struct path *path)
 {
 	for (int i = 0; i < 60; i++) {
@@ -50,7 +51,7 @@ static bool descend(struct chart *at, double *least, const struct path *path)
 		if (size < 1e-9)
 			return true;
 	}
-	return true;
+	return false;
 }
 
 static enum lightpath_status judge(const double K[3], const struct path *path)
@@ -71,28 +72,36 @@ enum lightpath_status path_shortest(double K[3], const struct path *path)
 	if (!path_is_sound(path))
 		return LIGHTPATH_NONE;
 	struct chart at = first_guess(path);
-	if (!descend(&at, &least, path))
+	bool found = descend(&at, &least, path);
+	if (!isfinite(at.K[0] + at.K[1] + at.K[2]))
 		return LIGHTPATH_NONE;
-	if (least < 0.02)
+	if (found && least < 0.3)
 		path_polish(&at, path);
 	for (int i = 0; i < 3; i++)
 		K[i] = at.K[i];
-	return judge(K, path);
+	return found ? judge(K, path) : LIGHTPATH_NONE;
+}
+
+/* Whether the shortest path, which is none, can stand beside a real one that is no minimum, or another: where the light has
+ * passed a focus. */
+static bool may_hide(enum lightpath_status shortest, const struct path *path)
+{
+	if (shortest == LIGHTPATH_OK || !path_is_sound(path))
+		return false;
+	if (shortest == LIGHTPATH_NONE || (path->C && vec_norm(path->C) < 100))
+		return true;
+	double u[3];
+	path_outward(u, path, path->P);
+	if (u[2] < 0 && path->P[2] < lightpath_clear_depth(path->cornea))
+		return false;
+	return shortest == LIGHTPATH_GRAZING || u[2] > -0.4;
 }
 
 static enum lightpath_status solve(double K[3], const struct path *path)
 {
+	double found[1][3];
 	enum lightpath_status status = path_shortest(K, path);
-	if (status == LIGHTPATH_OK || status == LIGHTPATH_NONE)
-		return status;
-	// A shortest path that comes from behind the surface, or past the rim, may stand beside a real one that is no
-	// minimum: light far off the axis that has passed its focus.
-	double u[3], found[1][3];
-	path_outward(u, path, path->P);
-	bool near_light = path->C && vec_norm(path->C) < 100;
-	if (!near_light && u[2] < 0 && path->P[2] < lightpath_clear_depth(path->cornea))
-		return status;
-	if ((status == LIGHTPATH_BEYOND_RIM && u[2] < -0.2) || !path_search(found, 1, path))
+	if (!may_hide(status, path) || !path_search(found, 1, path))
 		return status;
 	for (int i = 0; i < 3; i++)
 		K[i] = found[0][i];

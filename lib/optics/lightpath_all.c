@@ -9,7 +9,7 @@ struct grid {
 	int rings, spokes;
 	double first;
 };
-static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 28, 2 };
+static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 40, 2 };
 
 static double cos_incidence(const struct path *path, const double K[3])
 {
@@ -93,7 +93,7 @@ static int search(double K[][3], int max, const struct path *path, const struct 
 		n = try(K, n, max, path, path_leave(path, (double[]){ u[0], u[1], u[2] - 0.5 * i }), edge, 1);
 	for (int ring = 0; ring < grid->rings; ring++) {
 		for (int spoke = 0; spoke < grid->spokes; spoke++) {
-			double r = edge * (ring + 0.5) / grid->rings, phi = 2 * M_PI * (spoke + 0.5 * (ring % 2)) / grid->spokes;
+			double r = edge * (ring + 1) / grid->rings, phi = 2 * M_PI * (spoke + 0.5 * (ring % 2)) / grid->spokes;
 			double start[3] = { r * cos(phi), r * sin(phi), cornea_depth(c, r) };
 			if (cos_incidence(path, start) > -0.02)
 				n = try(K, n, max, path, chart_of(c, start), edge, grid->first);

@@ -17,7 +17,7 @@ struct NAME(block) {
 
 /* What all problems share. */
 struct NAME(shared) {
-	REAL R, p, n, n2_1, inv_2R, rim2, C[3];
+	REAL R, p, n, n2_1, inv_2R, rim2, bend, C[3];
 	REAL clear;      // lightpath_clear_depth()
 	REAL far2, ill;  // a longer last step, or a curvature below, and the lane is done again: mm², 1/mm
 };
@@ -56,7 +56,7 @@ SIMD_INLINE void NAME(bent)(struct NAME(block) *b, int i, const struct NAME(shar
 {
 	REAL q[3], K[3];
 	NAME(outward)(q, b, i, c, point, b->px[i], b->py[i], b->pz[i]);
-	q[2] -= (REAL)LIGHTPATH_BEND;
+	q[2] -= c->bend;
 	NAME(leave)(K, b, i, c, q);
 	b->kx[i] = K[0];
 	b->ky[i] = K[1];

@@ -4,14 +4,9 @@
 #ifndef TESTS_LIGHT_CASE_H
 #define TESTS_LIGHT_CASE_H
 #include <stdbool.h>
-#include <stdint.h>
 
+#include "math/rng.h"
 #include "optics/cornea.h"
-
-struct rng {
-	uint64_t state;
-};
-double rng_uniform(struct rng *rng, double low, double high);
 
 struct light_case {
 	struct cornea cornea;
@@ -19,6 +14,7 @@ struct light_case {
 	double w[3];        // unit, towards the light
 	double C[3];        // a point in that direction, 1 mm to 10 km from K
 	double cos_i;
+	double spread[2];  // mm that K moves, at most, when P moves by 1 mm across the ray: large near a focus; for w, C
 };
 
 /* What may be drawn. */
@@ -40,5 +36,10 @@ int light_case_bracketed(double K[][3], int max, const struct cornea *cornea, co
  * x, y). */
 double light_case_snell(const struct cornea *cornea, const double P[3], const double C[3], const double w[3],
                         const double K[3]);
+
+/* Whether K is the right answer, or another physical path of the same problem: on the surface inside the rim, lit from
+ * outside, Snell's law kept to 1e-12. */
+enum light_verdict { LIGHT_RIGHT, LIGHT_OTHER_PATH, LIGHT_WRONG };
+enum light_verdict light_case_judge(const struct light_case *c, bool point, const double K[3], double tolerance);
 
 #endif
