@@ -237,7 +237,7 @@ static void batches(void **state)
 	(void)state;
 	struct soa *s = mem_new(1, sizeof *s);
 	struct rng rng = { 77 };
-	const struct light_range range = { false, { 2.9, 3.9 }, 5.7, 90, { 0, 89.9 } };
+	const struct light_range range = { false, { 2.7, 3.3 }, 5.7, 90, { 0, 89.9 } };
 	for (int i = 0; i < N; i++) {
 		light_case_draw(&s->c[i], &rng, &range);
 		for (int k = 0; k < 3; k++) {

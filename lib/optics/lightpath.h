@@ -33,7 +33,8 @@ double lightpath_clear_depth(const struct cornea *cornea);
 
 /* n solves in float, structure of arrays, vectorised: px[n] .. wz[n] in (w: unit, towards the light),
  * kx[n] .. kz[n] out; status[n] may be null. steps: Newton steps (4: 2e-5 mm worst). What has not converged
- * after them is solved one by one in double. */
+ * after them is solved one by one in double. Shortest paths only: where P lies deeper than lightpath_clear_depth() or the
+ * light comes from behind, GRAZING may hide a path that lightpath_solve() would find by a search. */
 void lightpath_batch(int n, const float *px, const float *py, const float *pz, const float *wx, const float *wy,
                      const float *wz, float *kx, float *ky, float *kz, unsigned char *status,
                      const struct cornea *cornea, int steps);

@@ -56,7 +56,6 @@ static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3]
 {
 	struct NAME(shared) shared = { .R = c->R, .p = c->p, .n = c->n, .n2_1 = c->n * c->n - 1, .inv_2R = 0.5 / c->R,
 		                       .rim2 = c->rim * c->rim, .bend = path_bend(c->n) };
-	shared.clear = lightpath_clear_depth(c);
 	shared.far2 = FAR * FAR;
 	shared.ill = ILL;
 	for (int k = 0; k < 3 && C; k++)
@@ -75,16 +74,11 @@ struct NAME(batch) {
 	double error;       // mm; 0: as good as the type is
 };
 
-/* The one lane, by the solver that always ends well; without its search where there is nothing to find. */
-static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *in, double clear)
+/* The one lane, by the scalar solver. */
+static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *in)
 {
 	double P[3] = { b->px[i], b->py[i], b->pz[i] }, w[3] = { b->wx[i], b->wy[i], b->wz[i] }, K[3];
-	if (in->C)
-		b->status[i] = lightpath_solve(K, in->cornea, P, in->C);
-	else if (P[2] < clear && w[2] < 0)
-		b->status[i] = path_shortest(K, &(struct path){ in->cornea, P, 0, w });
-	else
-		b->status[i] = lightpath_solve_directional(K, in->cornea, P, w);
+	b->status[i] = path_shortest(K, &(struct path){ in->cornea, P, in->C, in->C ? 0 : w });
 	b->kx[i] = K[0];
 	b->ky[i] = K[1];
 	b->kz[i] = K[2];
@@ -113,8 +107,8 @@ static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in
 		int i = lane[j];
 		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
 		b->status[i] = again.status[j];
-		if (again.again[j] || again.status[j] == LIGHTPATH_GRAZING)
-			NAME(alone)(b, i, in, shared.clear);
+		if (again.again[j])
+			NAME(alone)(b, i, in);
 	}
 	return n;
 }

@@ -18,7 +18,6 @@ struct NAME(block) {
 /* What all problems share. */
 struct NAME(shared) {
 	REAL R, p, n, n2_1, inv_2R, rim2, bend, C[3];
-	REAL clear;      // lightpath_clear_depth()
 	REAL far2, ill;  // a longer last step, or a curvature below, and the lane is done again: mm², 1/mm
 };
 
@@ -145,9 +144,7 @@ SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(sh
 	REAL cos_i = u[0] * kx + u[1] * ky - u[2] * (c->R - c->p * kz);
 	bool beyond = (kx * kx + ky * ky > c->rim2) | (c->p * kz > c->R);
 	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
-	// Past a focus there may be a real path beside this one: for the scalar solver's search.
-	bool settled = b->last2[i] <= c->far2, behind = (cos_i < 0) & (u[2] < 0) & (b->pz[i] > c->clear);
-	b->again[i] = behind | !settled;
+	b->again[i] = !(b->last2[i] <= c->far2);
 }
 
 /* Irradiance gain of lightpath_gain(), from the Hessian of curve() at K. */
