@@ -12,7 +12,7 @@ static const double RIDGE = 0.05;    // share of the scatter added to its diagon
 static const double NOISE = 0.004;   // linear light; below this, scatter is the sensor's
 
 struct angle {
-	double diff[3], scatter[3][3];
+	double diff[3], out[3], scatter[3][3];
 };
 
 static void sample(double rgb[3], const struct photo *photo, const struct ellipse *e, double t, double scale)
@@ -47,8 +47,10 @@ static void look(struct angle *out, const struct photo *photo, const struct elli
 			me[c] += ex[i][c] / OUTER;
 	}
 	memset(out, 0, sizeof *out);
-	for (int c = 0; c < 3; c++)
+	for (int c = 0; c < 3; c++) {
+		out->out[c] = me[c];
 		out->diff[c] = me[c] - mi[c];
+	}
 	add_scatter(out->scatter, INNER, in, mi);
 	add_scatter(out->scatter, OUTER, ex, me);
 }
@@ -60,7 +62,7 @@ void limbus_colour(double weight[3], const struct photo *photo, const struct ell
 	int n = 0;
 	for (int i = 0; i < ANGLES; i++) {
 		look(&angle[i], photo, e, 2 * M_PI * i / ANGLES);
-		bright[i] = angle[i].diff[0] + angle[i].diff[1] + angle[i].diff[2];
+		bright[i] = fmin(angle[i].out[0], fmin(angle[i].out[1], angle[i].out[2]));
 	}
 	memcpy(sorted, bright, sizeof sorted);
 	double median = stats_median(ANGLES, sorted);

@@ -4,7 +4,7 @@
 #include "eye/limbus_image.h"
 
 /* Fisher's discriminant of linear colour between a band inside and a band outside the ellipse, from the half of the
- * ring with the clearest step (lids are elsewhere); scaled so that the step is 1. An iris' streaks differ in
+ * ring that is whitest outside (lids are elsewhere); scaled so that the step is 1. An iris' streaks differ in
  * brightness more than in hue: the mixture that removes them leaves the ramp, whose opacity mixes linearly in every
  * channel. weight may be negative. */
 void limbus_colour(double weight[3], const struct photo *photo, const struct ellipse *e);

@@ -16,9 +16,10 @@ struct arcs {
 	int count[ARCS];
 };
 
-static void collect(struct arcs *arcs, const struct ring *r, double half)
+static void collect(struct arcs *arcs, const struct ring *r, const struct grey *tint, double half)
 {
 	double strength[ARCS][C], first[ARCS];
+	int at[ARCS];
 	arcs->n = 0;
 	for (int i = 0; i < ARCS; i++) {
 		int n = arcs->n;
@@ -26,12 +27,16 @@ static void collect(struct arcs *arcs, const struct ring *r, double half)
 			continue;
 		ellipse_normal_shift(arcs->row[n], &r->e, r->t[i]);
 		first[n] = strength[n][0];
+		at[n] = i;
 		arcs->n++;
 	}
 	double typical = stats_quantile(arcs->n, first, 0.6);
 	for (int i = 0; i < arcs->n; i++)
-		for (int j = 0; j < arcs->count[i]; j++)
-			arcs->weight[i][j] = fmin(strength[i][j] / typical, 1);
+		for (int j = 0; j < arcs->count[i]; j++) {
+			double s = arcs->d[i][j] + half, x = r->p[at[i]][0] + s * r->normal[at[i]][0];
+			double white = tint ? grey_at(tint, x, r->p[at[i]][1] + s * r->normal[at[i]][1]) : 1;
+			arcs->weight[i][j] = fmin(strength[i][j] / typical, 1) * white * white;
+		}
 }
 
 static double shift(const double row[N], const double dq[N])
@@ -111,11 +116,12 @@ static void polish(double dq[N], const struct arcs *arcs, double tol)
 	}
 }
 
-bool rim_consensus(struct ellipse *e, const struct grey *grey, double range, int width, int height)
+bool rim_consensus(struct ellipse *e, const struct grey *grey, const struct grey *tint, double range, int width,
+                   int height)
 {
 	struct ring r = ring_sample(grey, e, -1.3 * range, 1.3 * range, fmax(grey->scale, range / 30), 3, width, height);
 	struct arcs arcs;
-	collect(&arcs, &r, range / 4);
+	collect(&arcs, &r, tint, range / 4);
 	ring_free(&r);
 	if (arcs.n < MIN_ARCS)
 		return false;

@@ -32,7 +32,7 @@ static double bright_level(const struct grey *g)
 
 static bool exposed(struct limbus_found *found, const struct pyramid *pyramid, const struct limbus_conf *conf)
 {
-	double level = bright_level(&pyramid->level[pyramid->n - 1]);
+	double level = bright_level(&pyramid->bright[pyramid->n - 1]);
 	if (pyramid->over > conf->max_over)
 		return reject(found, "over-exposed: %.0f %% of it is burnt out; use less light or a shorter exposure",
 		              100 * pyramid->over);
@@ -91,7 +91,7 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 	int n = gather(pool, pyramid, hint, conf);
 	const char *why = 0;
 	for (int i = 0; i < n && i < TRY; i++) {
-		if (!rim_fit(&found->limbus, photo, &pool[i].e, &conf->rim))
+		if (!rim_fit(&found->limbus, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
 		const char *against = judge(&found->limbus, photo, conf);
 		if (!against) {

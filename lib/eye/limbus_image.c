@@ -6,23 +6,64 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/stats.h"
 
-/* Sum of a reduction cell's three channels, and whether it holds burnt or black pixels. */
-static void reduce_row(float *out, long *over, long *under, const struct photo *photo, int k, int row, int width)
+/* How red an encoded colour is, -1..1; skin is redder than sclera under any light. */
+static float redness(float r, float g, float b)
 {
-	uint32_t *sum = mem_new((size_t)width, sizeof *sum);
+	return (r - b) / (r + g + b + 0.02f);
+}
+
+/* The redness of the whitest of what is light in the photograph: sclera, where an eye fills some of it. */
+static float white_redness(const struct photo *photo)
+{
+	enum { SIDE = 96 };
+	static const double LIGHT = 0.85, LOW = 0.2;  // quantiles
+	double low[SIDE * SIDE], sorted[SIDE * SIDE], red[SIDE * SIDE];
+	int n = 0, m = 0;
+	for (int j = 0; j < SIDE; j++)
+		for (int i = 0; i < SIDE; i++) {
+			long x = (long)i * photo->width / SIDE, y = (long)j * photo->height / SIDE;
+			const uint16_t *p = photo->rgb + 3 * (y * photo->width + x);
+			red[n] = redness(p[0] / 65535.0f, p[1] / 65535.0f, p[2] / 65535.0f);
+			low[n++] = fmin(p[0], fmin(p[1], p[2]));
+		}
+	memcpy(sorted, low, sizeof sorted);
+	double cut = stats_quantile(n, sorted, LIGHT);
+	for (int i = 0; i < n; i++)
+		if (low[i] >= cut)
+			red[m++] = red[i];
+	return (float)stats_quantile(m, red, LOW);
+}
+
+struct planes {
+	float *white, *bright, *tint;
+};
+
+/* One row of reduction cells: their mean colour, and from it the three planes. */
+static void reduce_row(const struct planes *out, long *over, long *under, const struct photo *photo, int k, int row,
+                       int width, float reference)
+{
+	static const float SPREAD = 0.06f;  // of redness, sclera to skin
+	uint32_t *sum = mem_new(3 * (size_t)width, sizeof *sum);
 	for (int y = row * k; y < (row + 1) * k; y++) {
 		const uint16_t *p = photo->rgb + 3 * (size_t)y * (size_t)photo->width;
 		for (int x = 0; x < width; x++)
 			for (int i = 0; i < k; i++, p += 3) {
-				sum[x] += (uint32_t)(p[0] + p[1] + p[2]) / 3;
+				for (int c = 0; c < 3; c++)
+					sum[3 * x + c] += p[c];
 				*over += (p[0] > 64880) & (p[1] > 64880);
 				*under += (p[0] < 655) & (p[1] < 655) & (p[2] < 655);
 			}
 	}
 	const float scale = 1.0f / (65535.0f * (float)(k * k));
-	for (int x = 0; x < width; x++)
-		out[x] = (float)sum[x] * scale;
+	for (int x = 0; x < width; x++) {
+		float r = (float)sum[3 * x] * scale, g = (float)sum[3 * x + 1] * scale, b = (float)sum[3 * x + 2] * scale;
+		float z = fmaxf(redness(r, g, b) - reference, 0) / SPREAD;
+		out->tint[x] = 1 / (1 + z * z);
+		out->white[x] = fminf(r, fminf(g, b)) * out->tint[x];
+		out->bright[x] = fmaxf(r, fmaxf(g, b));
+	}
 	free(sum);
 }
 
@@ -38,34 +79,47 @@ static struct grey halve(const struct grey *g)
 	return h;
 }
 
+static struct grey empty(int width, int height, double scale)
+{
+	return (struct grey){ width, height, 0, 0, scale, mem_array((size_t)width * (size_t)height, sizeof(float)) };
+}
+
 struct pyramid pyramid_make(const struct photo *photo)
 {
-	struct pyramid pyramid = { .n = 1 };
+	struct pyramid p = { .n = 1 };
 	const int longer = photo->width > photo->height ? photo->width : photo->height;
-	const int k = (longer + PYRAMID_LONG - 1) / PYRAMID_LONG;
-	struct grey *g = &pyramid.level[0];
-	*g = (struct grey){ photo->width / k, photo->height / k, 0, 0, k, 0 };
-	g->px = mem_array((size_t)g->width * (size_t)g->height, sizeof *g->px);
+	const int k = (longer + PYRAMID_LONG - 1) / PYRAMID_LONG, w = photo->width / k, h = photo->height / k;
+	const float reference = white_redness(photo);
+	p.level[0] = empty(w, h, k);
+	p.bright[0] = empty(w, h, k);
+	p.tint = empty(w, h, k);
 	long over = 0, under = 0;
 #pragma omp parallel for schedule(static) reduction(+ : over, under)
-	for (int row = 0; row < g->height; row++)
-		reduce_row(g->px + (long)row * g->width, &over, &under, photo, k, row, g->width);
-	double n = (double)photo->width * photo->height;
-	pyramid.over = (double)over / n;
-	pyramid.under = (double)under / n;
-	while (pyramid.n < PYRAMID_MAX) {
-		const struct grey *last = &pyramid.level[pyramid.n - 1];
+	for (int row = 0; row < h; row++) {
+		const long at = (long)row * w;
+		const struct planes out = { p.level[0].px + at, p.bright[0].px + at, p.tint.px + at };
+		reduce_row(&out, &over, &under, photo, k, row, w, reference);
+	}
+	double n = (double)w * h * k * k;
+	p.over = (double)over / n;
+	p.under = (double)under / n;
+	for (; p.n < PYRAMID_MAX; p.n++) {
+		const struct grey *last = &p.level[p.n - 1];
 		if ((last->width < last->height ? last->width : last->height) / 2 < PYRAMID_SHORT_MIN)
 			break;
-		pyramid.level[pyramid.n++] = halve(last);
+		p.level[p.n] = halve(last);
+		p.bright[p.n] = halve(&p.bright[p.n - 1]);
 	}
-	return pyramid;
+	return p;
 }
 
 void pyramid_free(struct pyramid *pyramid)
 {
-	for (int i = 0; i < pyramid->n; i++)
+	for (int i = 0; i < pyramid->n; i++) {
 		grey_free(&pyramid->level[i]);
+		grey_free(&pyramid->bright[i]);
+	}
+	grey_free(&pyramid->tint);
 	*pyramid = (struct pyramid){ 0 };
 }
 

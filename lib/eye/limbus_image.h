@@ -16,12 +16,15 @@ struct grey {
 
 enum { PYRAMID_MAX = 6, PYRAMID_LONG = 640, PYRAMID_SHORT_MIN = 28 };
 
-/* level[0] the finest, at most PYRAMID_LONG px on its longer side; each next is half of it. Encoded (sRGB)
- * brightness 0..1, mean of the three channels. */
+/* level[0] the finest, at most PYRAMID_LONG px on its longer side; each next is half of it. Encoded (sRGB) values.
+ * level   whiteness 0..1: the darkest of the three channels, less where the colour is redder than the whitest of what
+ *         is light. The sclera is lighter in it than irises of every colour, and than skin
+ * bright  the lightest of the three channels
+ * tint    0..1, the size of level[0]: 1 as white as sclera, less for skin */
 struct pyramid {
-	struct grey level[PYRAMID_MAX];
+	struct grey level[PYRAMID_MAX], bright[PYRAMID_MAX], tint;
 	int n;
-	double over, under;  // share of photo pixels with a channel above 0.99 / all below 0.01
+	double over, under;  // share of photo pixels with red and green above 0.99 / all below 0.01
 };
 
 struct pyramid pyramid_make(const struct photo *photo);

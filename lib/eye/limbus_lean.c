@@ -16,7 +16,7 @@ static const double CLIP = 0.35;                   // of log brightness: glints,
 void band_sample(struct band *band, const struct pyramid *pyramid, const struct rim *limbus)
 {
 	const struct ellipse *e = &limbus->e;
-	const struct grey *g = pyramid_level(pyramid, e->a, 250);
+	const struct grey *g = &pyramid->bright[pyramid_index(pyramid, e->a, 250)];
 	const double from = 2.2 * limbus->width + g->scale, to = BAND * e->b;
 	for (int i = 0; i < BAND_ARCS; i++) {
 		double p[2], n[2];

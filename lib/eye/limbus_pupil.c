@@ -40,7 +40,7 @@ static double search(struct ellipse *best, const struct pyramid *pyramid, const 
 	double top = 0;
 	for (int i = 0; i < RADII; i++) {
 		double k = 0.12 * pow(0.78 / 0.12, (double)i / (RADII - 1)), reach = 0.07 * limbus->b;
-		const struct grey *g = pyramid_level(pyramid, k * limbus->a, 40);
+		const struct grey *g = &pyramid->bright[pyramid_index(pyramid, k * limbus->a, 40)];
 		for (int x = -GRID; x <= GRID; x++)
 			for (int y = -GRID; y <= GRID; y++) {
 				struct ellipse e = { limbus->cx + x * reach, limbus->cy + y * reach, k * limbus->a, k * limbus->b,
@@ -61,11 +61,11 @@ bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyr
 	struct ellipse e;
 	if (search(&e, pyramid, limbus) < 0.2)
 		return false;
-	score_climb(pyramid_level(pyramid, e.a, 60), &e, 0.08 * e.a, 0.01 * e.a, CONTRAST);
+	score_climb(&pyramid->bright[pyramid_index(pyramid, e.a, 60)], &e, 0.08 * e.a, 0.01 * e.a, CONTRAST);
 	struct rim_conf grey = *rim_conf;
 	grey.grey = true;
 	grey.search = fmax(grey.search, 6 / e.a);
-	if (!rim_fit(pupil, photo, &e, &grey))
+	if (!rim_fit(pupil, photo, 0, &e, &grey))
 		return false;
 	double off = hypot(pupil->e.cx - limbus->cx, pupil->e.cy - limbus->cy);
 	return off + pupil->e.a < limbus->a && pupil->contrast > conf->min_contrast && pupil->coverage > conf->min_coverage;

@@ -12,6 +12,8 @@
 
 enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 9, GAP_ARCS = 5 };
 static const double SHARP_PX = 3;       // a step's sigma
+static const double OUTSIDE = 0.09;     // of the semi-axis: where the colour outside is looked at
+static const double WHITE = 0.55;       // of the ring's whiter part
 static const double SEEN = 0.4;         // of the typical step
 static const double MAX_AXIS_PX = 900;  // larger limbi are measured in a reduced picture: as many samples as pay
 
@@ -26,15 +28,30 @@ static double median_of(const struct step step[ARCS], const bool use[ARCS], size
 }
 #define MEDIAN(steps, use, field) median_of(steps, use, offsetof(struct step, field))
 
+/* Tint of what lies outside each arc, against the whiter arcs of the ring; 1 without tint. */
+static void outer_tint(double white[ARCS], const struct ring *ring, const struct grey *tint)
+{
+	double sorted[ARCS];
+	for (int i = 0; i < ARCS; i++) {
+		const double s = OUTSIDE * ring->e.a;
+		white[i] = tint ? grey_at(tint, ring->p[i][0] + s * ring->normal[i][0], ring->p[i][1] + s * ring->normal[i][1]) : 1;
+	}
+	memcpy(sorted, white, sizeof sorted);
+	double reference = stats_quantile(ARCS, sorted, 0.75);
+	for (int i = 0; i < ARCS; i++)
+		white[i] /= reference;
+}
+
 /* Which arcs show iris against sclera: enough contrast, a step as the others', not beside a gap. */
 static int choose_arcs(bool use[ARCS], const struct step step[ARCS], const struct ring *ring,
-                       const struct rim_conf *conf)
+                       const struct grey *tint, const struct rim_conf *conf)
 {
 	bool good[ARCS];
-	double jump[ARCS];
+	double jump[ARCS], white[ARCS];
 	int n = 0;
+	outer_tint(white, ring, tint);
 	for (int i = 0; i < ARCS; i++) {
-		good[i] = step[i].ok && !step[i].steep && ring->inside[i] && step[i].rms < conf->max_rms;
+		good[i] = step[i].ok && !step[i].steep && ring->inside[i] && step[i].rms < conf->max_rms && white[i] > WHITE;
 		if (good[i])
 			jump[n++] = step[i].out - step[i].in;
 	}
@@ -129,8 +146,8 @@ static void smooth_widths(struct rim *rim, const bool use[ARCS])
 }
 
 /* One pass of the blurred step. free_width: each arc's own, for its median. */
-static bool fine_pass(struct rim *rim, const struct grey *grey, double window, bool free_width, int width, int height,
-                      const struct rim_conf *conf)
+static bool fine_pass(struct rim *rim, const struct grey *grey, const struct grey *tint, double window, bool free_width,
+                      int width, int height, const struct rim_conf *conf)
 {
 	const double lo = -2.4 * window, hi = 2.4 * window;
 	struct ring r = ring_sample(grey, &rim->e, lo, hi, fmax(0.7 * grey->scale, window / 12), ACROSS,
@@ -144,7 +161,7 @@ static bool fine_pass(struct rim *rim, const struct grey *grey, double window, b
 		edge_fit(&rim->step[i], &r, i, window, free_width);
 	}
 	bool use[ARCS];
-	bool ok = choose_arcs(use, rim->step, &r, conf) >= MIN_ARCS && refit(rim, &r, use);
+	bool ok = choose_arcs(use, rim->step, &r, tint, conf) >= MIN_ARCS && refit(rim, &r, use);
 	if (ok && free_width) {
 		rim->width = MEDIAN(rim->step, use, w);
 		smooth_widths(rim, use);
@@ -194,12 +211,14 @@ static bool first_width(struct rim *rim, const struct grey *grey, int width, int
 
 /* Share of the ring that shows iris against sclera: brighter outside than inside by a good part of what is typical,
  * or used; short gaps (a streak, a vein, a lash) are bridged, lone arcs are not believed. */
-static void cover(struct rim *rim, const struct grey *grey, int width, int height)
+static void cover(struct rim *rim, const struct grey *grey, const struct grey *tint, int width, int height)
 {
 	const double gap = 1.5 * rim->width + grey->scale, depth = fmax(0.03 * rim->e.a, 2 * grey->scale);
 	struct ring r = ring_sample(grey, &rim->e, -gap - depth, gap + depth, fmax(grey->scale, depth / 6), 3, width, height);
 	bool on[ARCS];
+	double white[ARCS];
 	int n = 0;
+	outer_tint(white, &r, tint);
 	const double typical = MEDIAN(rim->step, rim->used, out) - MEDIAN(rim->step, rim->used, in);
 	for (int i = 0; i < ARCS; i++) {
 		const float *v = r.v + (long)i * r.m;
@@ -209,7 +228,7 @@ static void cover(struct rim *rim, const struct grey *grey, int width, int heigh
 			in += v[j] / end;
 			out += v[r.m - 1 - j] / end;
 		}
-		on[i] = rim->used[i] || (r.inside[i] && out - in > SEEN * typical && out - in < typical / SEEN);
+		on[i] = rim->used[i] || (r.inside[i] && white[i] > WHITE && out - in > SEEN * typical && out - in < typical / SEEN);
 	}
 	ring_free(&r);
 	for (int i = 0; i < ARCS; i++) {
@@ -226,15 +245,16 @@ static void cover(struct rim *rim, const struct grey *grey, int width, int heigh
 }
 
 /* Rough ellipse to width of the step, in the given picture. */
-static bool locate(struct rim *rim, const struct grey *grey, double range, int width, int height)
+static bool locate(struct rim *rim, const struct grey *grey, const struct grey *tint, double range, int width, int height)
 {
 	for (int i = 0; i < 3; i++, range /= 2)
-		if (!rim_consensus(&rim->e, grey, fmax(range, 6 * grey->scale), width, height))
+		if (!rim_consensus(&rim->e, grey, tint, fmax(range, 6 * grey->scale), width, height))
 			return false;
 	return first_width(rim, grey, width, height);
 }
 
-bool rim_fit(struct rim *rim, const struct photo *photo, const struct ellipse *start, const struct rim_conf *conf)
+bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint, const struct ellipse *start,
+             const struct rim_conf *conf)
 {
 	*rim = (struct rim){ .e = *start };
 	double weight[3] = { 1 / 3.0, 1 / 3.0, 1 / 3.0 };
@@ -242,7 +262,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct ellipse *s
 		limbus_colour(weight, photo, start);
 	const int w = photo->width, h = photo->height;
 	struct grey grey = grey_linear(photo, start, 1.4, MAX_AXIS_PX, weight);
-	bool ok = locate(rim, &grey, conf->search * start->a, w, h);
+	bool ok = locate(rim, &grey, tint, conf->search * start->a, w, h);
 	if (ok && !conf->grey && rim->width < SHARP_PX) {
 		/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone */
 		grey_free(&grey);
@@ -252,11 +272,11 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct ellipse *s
 		rim->widths[i] = rim->width;
 	for (int i = 0; i < 5 && ok; i++) {
 		double window = fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a);
-		ok = fine_pass(rim, &grey, window, i == 1 || i == 2, w, h, conf);
+		ok = fine_pass(rim, &grey, tint, window, i == 1 || i == 2, w, h, conf);
 	}
 	if (ok) {
 		correlate(rim);
-		cover(rim, &grey, w, h);
+		cover(rim, &grey, tint, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);
 		rim->in = MEDIAN(rim->step, rim->used, in);

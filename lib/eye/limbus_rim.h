@@ -32,7 +32,9 @@ struct rim {
 	double own_width[ARCS];  // of each arc alone, px; 0 where not measured
 };
 
-/* False: no ellipse could be fitted near `start`. */
-bool rim_fit(struct rim *rim, const struct photo *photo, const struct ellipse *start, const struct rim_conf *conf);
+/* tint: pyramid.tint, to tell sclera outside from skin; null where that does not matter (pupil).
+ * False: no ellipse could be fitted near `start`. */
+bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint, const struct ellipse *start,
+             const struct rim_conf *conf);
 
 #endif

@@ -200,24 +200,24 @@ bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, co
 	out->score = 0;
 	for (int i = 0; i < n; i++) {
 		double a = best[i].e.a;
-		best[i].score = score_climb(pyramid_level(pyramid, a, 60), &best[i].e, 0.08 * a, 0.008 * a, conf->contrast);
+		best[i].score = score_climb(&pyramid->level[pyramid_index(pyramid, a, 60)], &best[i].e, 0.08 * a, 0.008 * a, conf->contrast);
 		if (best[i].score > out->score && best[i].e.b > 1.15 * inner->b)
 			*out = best[i];
 	}
 	return out->score > 0;
 }
 
-const struct grey *pyramid_level(const struct pyramid *pyramid, double radius, double px)
+int pyramid_index(const struct pyramid *pyramid, double radius, double px)
 {
 	int l = 0;
 	while (l + 1 < pyramid->n && radius / pyramid->level[l].scale > px)
 		l++;
-	return &pyramid->level[l];
+	return l;
 }
 
 double limbus_seek_score(const struct pyramid *pyramid, const struct ellipse *e, const struct seek_conf *conf)
 {
-	return score_ellipse(pyramid_level(pyramid, e->a, 60), e, conf->contrast);
+	return score_ellipse(&pyramid->level[pyramid_index(pyramid, e->a, 60)], e, conf->contrast);
 }
 
 int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, const double *hint,
@@ -241,7 +241,7 @@ int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, 
 	n = n < conf->candidates ? n : conf->candidates;
 #pragma omp parallel for schedule(dynamic, 1)
 	for (int i = 0; i < n; i++) {
-		const struct grey *g = pyramid_level(pyramid, out[i].e.a, 60);
+		const struct grey *g = &pyramid->level[pyramid_index(pyramid, out[i].e.a, 60)];
 		out[i].score = score_climb(g, &out[i].e, 0.05 * out[i].e.a, 0.008 * out[i].e.a, conf->contrast);
 	}
 	struct seek_found sorted[SEEK_MAX];

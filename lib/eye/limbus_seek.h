@@ -33,7 +33,7 @@ double limbus_seek_score(const struct pyramid *pyramid, const struct ellipse *e,
 bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, const struct ellipse *inner,
                        const struct seek_conf *conf);
 
-/* The level on which a radius is nearest below `px` pixels, or the finest. */
-const struct grey *pyramid_level(const struct pyramid *pyramid, double radius, double px);
+/* Index of the level on which a radius is nearest below `px` pixels, or of the finest. */
+int pyramid_index(const struct pyramid *pyramid, double radius, double px);
 
 #endif
