@@ -6,8 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "math/stats.h"
 
+static const double CLEAR = 0.7;  // coverage at which no other ellipse is tried
 enum { MIN_SIDE = 96, TRY = 4, MAX_POOL = 2 * SEEK_MAX };
 
 __attribute__((format(printf, 2, 3)))
@@ -79,7 +81,11 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 		return "too blurred: focus on the iris and hold the camera still";
 	if (rim->rms > conf->max_rms * e->a)
 		return "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight";
-	if (rim->coverage < conf->min_coverage)
+	double sigma[ELLIPSE_N], worst = 0;
+	ellipse_sigma(sigma, e, rim->cov_q);
+	for (int i = 0; i < 4; i++)
+		worst = fmax(worst, sigma[i]);
+	if (rim->coverage < conf->min_coverage || worst > conf->max_sigma * e->a)
 		return "too much of the limbus is covered by lids or lashes: open the eye wider";
 	return 0;
 }
@@ -90,17 +96,27 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 	struct seek_found pool[MAX_POOL];
 	int n = gather(pool, pyramid, hint, conf);
 	const char *why = 0;
+	struct rim *rim = mem_new(1, sizeof *rim);
+	double best = 0;
 	for (int i = 0; i < n && i < TRY; i++) {
-		if (!rim_fit(&found->limbus, photo, &pyramid->tint, &pool[i].e, &conf->rim))
+		if (!rim_fit(rim, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
-		const char *against = judge(&found->limbus, photo, conf);
-		if (!against) {
+		const char *against = judge(rim, photo, conf);
+		double quality = rim->share_used * rim->e.a;
+		if (!against && quality > best) {
+			best = quality;
+			found->limbus = *rim;
 			found->score = pool[i].score;
-			return found->ok = true;
+			found->ok = true;
 		}
+		if (!against && rim->coverage > CLEAR)
+			break;
 		if (!why)
 			why = against;
 	}
+	free(rim);
+	if (found->ok)
+		return true;
 	if (why)
 		return reject(found, "%s", why);
 	return reject(found, "no eye found: photograph one open eye close up, or say where it is with photo.NAME.hint_px");

@@ -15,6 +15,7 @@ struct limbus_conf {
 	double min_contrast;   // Weber contrast of sclera and iris, linear light
 	double max_blur;       // width of the step, share of the semi-axis
 	double max_rms;        // scatter of the edge, share of the semi-axis
+	double max_sigma;      // of centre and semi-axes, share of the semi-axis
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
 };
 

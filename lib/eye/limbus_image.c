@@ -18,7 +18,7 @@ static float redness(float r, float g, float b)
 static float white_redness(const struct photo *photo)
 {
 	enum { SIDE = 96 };
-	static const double LIGHT = 0.85, LOW = 0.2;  // quantiles
+	static const double LIGHT = 0.85, LOW = 0.08;  // quantiles
 	double low[SIDE * SIDE], sorted[SIDE * SIDE], red[SIDE * SIDE];
 	int n = 0, m = 0;
 	for (int j = 0; j < SIDE; j++)

@@ -26,7 +26,7 @@ static double ring_median(const struct grey *g, const struct ellipse *e, double 
 /* Edge score, less where the inside is not one dark level from the middle to the margin (collarette, dark ring). */
 static double pupil_score(const struct grey *g, const struct ellipse *e)
 {
-	double edge = score_ellipse(g, e, CONTRAST);
+	double edge = score_ellipse(g, e, CONTRAST, SCORE_WIDE);
 	double core = ring_median(g, e, 0.4, 0.5), rim = ring_median(g, e, 0.85, 0.6), out = ring_median(g, e, 1.15, 0.5);
 	if (!(out > core))
 		return 0;
@@ -61,7 +61,7 @@ bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyr
 	struct ellipse e;
 	if (search(&e, pyramid, limbus) < 0.2)
 		return false;
-	score_climb(&pyramid->bright[pyramid_index(pyramid, e.a, 60)], &e, 0.08 * e.a, 0.01 * e.a, CONTRAST);
+	score_climb(&pyramid->bright[pyramid_index(pyramid, e.a, 60)], &e, 0.08 * e.a, 0.01 * e.a, CONTRAST, SCORE_WIDE);
 	struct rim_conf grey = *rim_conf;
 	grey.grey = true;
 	grey.search = fmax(grey.search, 6 / e.a);

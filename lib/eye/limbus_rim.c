@@ -13,7 +13,7 @@
 enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 9, GAP_ARCS = 5 };
 static const double SHARP_PX = 3;       // a step's sigma
 static const double OUTSIDE = 0.09;     // of the semi-axis: where the colour outside is looked at
-static const double WHITE = 0.55;       // of the ring's whiter part
+static const double WHITE = 0.35;       // of the ring's whiter part
 static const double SEEN = 0.4;         // of the typical step
 static const double MAX_AXIS_PX = 900;  // larger limbi are measured in a reduced picture: as many samples as pay
 

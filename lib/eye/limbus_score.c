@@ -5,9 +5,9 @@
 
 enum { POINTS = 64 };
 
-double score_ellipse(const struct grey *g, const struct ellipse *e, double contrast)
+double score_ellipse(const struct grey *g, const struct ellipse *e, double contrast, enum score_reach reach)
 {
-	const double near = fmax(0.05 * e->b, 1.2 * g->scale), far = fmax(0.14 * e->b, 2.5 * g->scale);
+	const double near = fmax((reach == SCORE_NARROW ? 0.025 : 0.05) * e->b, 1.2 * g->scale), far = fmax(0.14 * e->b, 2.5 * g->scale);
 	const double c = cos(e->angle), s = sin(e->angle), step = 2 * M_PI / POINTS, cs = cos(step), ss = sin(step);
 	const double w = g->width * g->scale, h = g->height * g->scale;
 	double sum = 0, ct = 1, st = 0;
@@ -31,9 +31,10 @@ double score_ellipse(const struct grey *g, const struct ellipse *e, double contr
 	return sum / POINTS;
 }
 
-double score_climb(const struct grey *g, struct ellipse *e, double step, double end, double contrast)
+double score_climb(const struct grey *g, struct ellipse *e, double step, double end, double contrast,
+                   enum score_reach reach)
 {
-	double q[ELLIPSE_N], best = score_ellipse(g, e, contrast);
+	double q[ELLIPSE_N], best = score_ellipse(g, e, contrast, reach);
 	ellipse_to_q(q, e);
 	while (step > end) {
 		bool moved = false;
@@ -44,7 +45,7 @@ double score_climb(const struct grey *g, struct ellipse *e, double step, double 
 			try[i / 2] += i % 2 ? -step : step;
 			if (!ellipse_from_q(&f, try) || f.b < 0.55 * f.a)
 				continue;
-			double score = score_ellipse(g, &f, contrast);
+			double score = score_ellipse(g, &f, contrast, reach);
 			if (score > best + 1e-9) {
 				best = score;
 				memcpy(q, try, sizeof q);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "eye/limbus_consensus.h"
 #include "eye/limbus_score.h"
 #include "math/stats.h"
 
@@ -115,7 +116,7 @@ static struct seek_found around(const struct grey *g, double x, double y, double
 	for (int i = 0; i < RADII; i++) {
 		double r = lo * pow(hi / lo, (i + 0.5) / RADII);
 		struct seek_found f = { { x, y, r, r, 0 }, 0 };
-		f.score = score_ellipse(g, &f.e, conf->contrast);
+		f.score = score_ellipse(g, &f.e, conf->contrast, SCORE_WIDE);
 		keep(circles, &n, CIRCLES, &f);
 	}
 	for (int i = 0; i < n; i++)
@@ -123,11 +124,11 @@ static struct seek_found around(const struct grey *g, double x, double y, double
 			double r = circles[i].e.a, ratio = j == 0 ? 1 : j < 5 ? 0.8 : 0.65;
 			double angle = j == 0 ? 0 : j < 5 ? (j - 1) * M_PI / 4 : (j - 5) * M_PI / 4 + M_PI / 8;
 			struct seek_found f = { { x, y, r / sqrt(ratio), r * sqrt(ratio), angle }, 0 };
-			f.score = score_ellipse(g, &f.e, conf->contrast);
+			f.score = score_ellipse(g, &f.e, conf->contrast, SCORE_WIDE);
 			if (f.score > best.score)
 				best = f;
 		}
-	best.score = score_climb(g, &best.e, 0.12 * best.e.a, 0.03 * best.e.a, conf->contrast);
+	best.score = score_climb(g, &best.e, 0.12 * best.e.a, 0.03 * best.e.a, conf->contrast, SCORE_WIDE);
 	return best;
 }
 
@@ -181,6 +182,21 @@ static void search_level(struct seek_found out[SEEK_MAX], int *n, const struct p
 	}
 }
 
+void limbus_seek_settle(struct seek_found *f, const struct pyramid *pyramid, const struct seek_conf *conf)
+{
+	const struct grey *g = &pyramid->level[pyramid_index(pyramid, f->e.a, 130)];
+	const int w = (int)(pyramid->level[0].width * pyramid->level[0].scale), h = (int)(pyramid->level[0].height * pyramid->level[0].scale);
+	struct seek_found as_is = *f;
+	for (int i = 0; i < 2; i++)
+		if (!rim_consensus(&f->e, g, 0, (i ? 0.09 : 0.2) * f->e.a, w, h))
+			break;
+	f->score = f->e.b < 0.55 * f->e.a ? 0 : limbus_seek_score(pyramid, &f->e, conf);
+	as_is.score = limbus_seek_score(pyramid, &as_is.e, conf);
+	if (as_is.score > f->score)
+		*f = as_is;
+	f->score = score_climb(g, &f->e, 0.02 * f->e.a, 0.005 * f->e.a, conf->contrast, SCORE_NARROW);
+}
+
 bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, const struct ellipse *inner,
                        const struct seek_conf *conf)
 {
@@ -200,7 +216,7 @@ bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, co
 	out->score = 0;
 	for (int i = 0; i < n; i++) {
 		double a = best[i].e.a;
-		best[i].score = score_climb(&pyramid->level[pyramid_index(pyramid, a, 60)], &best[i].e, 0.08 * a, 0.008 * a, conf->contrast);
+		best[i].score = score_climb(&pyramid->level[pyramid_index(pyramid, a, 60)], &best[i].e, 0.08 * a, 0.008 * a, conf->contrast, SCORE_NARROW);
 		if (best[i].score > out->score && best[i].e.b > 1.15 * inner->b)
 			*out = best[i];
 	}
@@ -217,7 +233,7 @@ int pyramid_index(const struct pyramid *pyramid, double radius, double px)
 
 double limbus_seek_score(const struct pyramid *pyramid, const struct ellipse *e, const struct seek_conf *conf)
 {
-	return score_ellipse(&pyramid->level[pyramid_index(pyramid, e->a, 60)], e, conf->contrast);
+	return score_ellipse(&pyramid->level[pyramid_index(pyramid, e->a, 60)], e, conf->contrast, SCORE_NARROW);
 }
 
 int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, const double *hint,
@@ -240,10 +256,8 @@ int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, 
 			add(out, &n, SEEK_MAX, &part[l][i]);
 	n = n < conf->candidates ? n : conf->candidates;
 #pragma omp parallel for schedule(dynamic, 1)
-	for (int i = 0; i < n; i++) {
-		const struct grey *g = &pyramid->level[pyramid_index(pyramid, out[i].e.a, 60)];
-		out[i].score = score_climb(g, &out[i].e, 0.05 * out[i].e.a, 0.008 * out[i].e.a, conf->contrast);
-	}
+	for (int i = 0; i < n; i++)
+		limbus_seek_settle(&out[i], pyramid, conf);
 	struct seek_found sorted[SEEK_MAX];
 	int m = 0;
 	for (int i = 0; i < n; i++)

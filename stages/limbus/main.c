@@ -36,6 +36,7 @@ int main(int argc, char **argv)
 		OPT_REAL("min_contrast", &o.find.min_contrast, 0.01, 1, "", "Weber contrast of sclera and iris"),
 		OPT_REAL("max_blur", &o.find.max_blur, 0.01, 0.5, "", "width of the step, share of the semi-axis"),
 		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of the edge, share of the semi-axis"),
+		OPT_REAL("max_sigma", &o.find.max_sigma, 0.001, 0.2, "", "sigma of the ellipse, share of the semi-axis"),
 		OPT_REAL("max_over", &o.find.max_over, 0, 1, "", "share of burnt pixels"),
 		OPT_REAL("min_level", &o.find.min_level, 0, 1, "", "encoded brightness of the 90 % quantile"),
 		OPT_REAL("pupil_offset_sigma", &o.pose.pupil_offset_sigma, 0.01, 2, "mm", "pupil centre off the axis"),
