@@ -10,7 +10,7 @@
 
 enum { MAX_ITER = 12, SMOOTH_ARCS = 9, PARAMS = 4 };
 static const double RAMP_END = 2;   // sigma of the step
-static const double SULCUS = 0.5;  // share of the sclera's shading that continues into the ramp
+static const double SULCUS = 0.2;  // share of the sclera's shading that continues into the ramp
 
 /* Eccentric angles equally spaced along the ellipse: the cumulated perimeter inverted. */
 static void equal_arcs(double t[ARCS], const struct ellipse *e)

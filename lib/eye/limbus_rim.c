@@ -263,10 +263,15 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	const int w = photo->width, h = photo->height;
 	struct grey grey = grey_linear(photo, start, 1.4, MAX_AXIS_PX, weight);
 	bool ok = locate(rim, &grey, tint, conf->search * start->a, w, h);
-	if (ok && !conf->grey && rim->width < SHARP_PX) {
-		/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone */
+	if (ok && !conf->grey) {
+		/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone. Of soft ones the
+		 * colours are looked at again, now that it is known where they are. */
+		for (int c = 0; c < 3; c++)
+			weight[c] = 1 / 3.0;
+		if (rim->width >= SHARP_PX)
+			limbus_colour(weight, photo, &rim->e);
 		grey_free(&grey);
-		grey = grey_linear(photo, &rim->e, 1.3, MAX_AXIS_PX, (double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 });
+		grey = grey_linear(photo, &rim->e, 1.3, MAX_AXIS_PX, weight);
 	}
 	for (int i = 0; i < ARCS; i++)
 		rim->widths[i] = rim->width;

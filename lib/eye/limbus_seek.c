@@ -94,10 +94,17 @@ static int find_peaks(struct peak out[PEAKS], float *acc, int w, int h)
 	return n;
 }
 
+/* Rank of a candidate: mostly the length of edge that supports it, so that half a limbus does not pass for a whole
+ * narrow ellipse. */
+static double rank(const struct seek_found *f)
+{
+	return pow(fmax(f->score, 0), 1.5) * (f->e.a + f->e.b);
+}
+
 static void keep(struct seek_found *list, int *n, int max, const struct seek_found *f)
 {
 	int at = *n;
-	while (at > 0 && list[at - 1].score < f->score)
+	while (at > 0 && rank(&list[at - 1]) < rank(f))
 		at--;
 	if (at >= max)
 		return;
@@ -142,7 +149,7 @@ static void add(struct seek_found *out, int *n, int max, const struct seek_found
 {
 	for (int i = 0; i < *n; i++)
 		if (same(&out[i].e, &f->e)) {
-			if (out[i].score >= f->score)
+			if (rank(&out[i]) >= rank(f))
 				return;
 			memmove(out + i, out + i + 1, (size_t)(*n - i - 1) * sizeof *out);
 			--*n;
