@@ -8,7 +8,7 @@
 
 enum { ANGLES = 144, INNER = 4, OUTER = 3 };
 static const double inner[INNER] = { 0.80, 0.85, 0.90, 0.94 }, outer[OUTER] = { 1.06, 1.11, 1.17 };
-static const double RIDGE = 0.05;    // share of the scatter added to its diagonal
+static const double RIDGE = 0.06;    // share of the scatter added to its diagonal
 static const double NOISE = 0.004;   // linear light; below this, scatter is the sensor's
 
 struct angle {

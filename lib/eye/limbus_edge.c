@@ -40,12 +40,20 @@ static void sample_arc(struct ring *r, int arc, const struct grey *grey, double 
 	r->inside[arc] = fmin(x0, x1) > 1 && fmax(x0, x1) < width - 1 && fmin(y0, y1) > 1 && fmax(y0, y1) < height - 1;
 	float *v = r->v + (long)arc * r->m;
 	memset(v, 0, (size_t)r->m * sizeof *v);
+	/* in px of the picture: start, and step along the profile */
+	const double k = 1 / grey->scale;
+	const float du = (float)(nx * r->step * k), dv = (float)(ny * r->step * k);
+	const float right = (float)grey->width - 1.001f, bottom = (float)grey->height - 1.001f;
 	for (int i = 0; i < across; i++) {
-		double q = ((i + 0.5) / across - 0.5) * spacing, in = q * q * bend;
-		double x = r->p[arc][0] - q * ny - in * nx, y = r->p[arc][1] + q * nx - in * ny;
+		double q = ((i + 0.5) / across - 0.5) * spacing, in = q * q * bend - r->lo;
+		float u = (float)((r->p[arc][0] - q * ny - in * nx - grey->x0) * k - 0.5);
+		float w = (float)((r->p[arc][1] + q * nx - in * ny - grey->y0) * k - 0.5);
 		for (int j = 0; j < r->m; j++) {
-			double s = r->lo + j * r->step;
-			v[j] += grey_at(grey, x + s * nx, y + s * ny);
+			float x = fminf(fmaxf(u + (float)j * du, 0), right), y = fminf(fmaxf(w + (float)j * dv, 0), bottom);
+			int ix = (int)x, iy = (int)y;
+			const float *a = grey->px + (long)iy * grey->width + ix, *b = a + grey->width;
+			float fx = x - (float)ix, top = a[0] + fx * (a[1] - a[0]), low = b[0] + fx * (b[1] - b[0]);
+			v[j] += top + (y - (float)iy) * (low - top);
 		}
 	}
 	for (int j = 0; j < r->m; j++)
@@ -193,28 +201,38 @@ struct normal {
 	double h[PARAMS][PARAMS], g[PARAMS], ss, weight;
 };
 
+/* Upper tail of the normal distribution beyond -z, given e = exp(-z²/2): Abramowitz and Stegun 7.1.26, to 1.5e-7. */
+static double normal_cdf(double z, double e)
+{
+	double t = 1 / (1 + 0.3275911 * M_SQRT1_2 * fabs(z));
+	double tail = 0.5 * e * t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
+	return z < 0 ? tail : 1 - tail;
+}
+
 /* Model and derivatives summed over the profile; parameters: in, out, d, w. */
 static void accumulate(struct normal *n, const struct step *f, const struct ring *r, int arc, double center,
                        double window)
 {
 	*n = (struct normal){ 0 };
 	const float *v = r->v + (long)arc * r->m;
-	const double ramp = RAMP_END * f->w;
-	for (int j = 0; j < r->m; j++) {
-		double s = r->lo + j * r->step, x = (s - center) / window;
-		if (fabs(x) > 2)
-			continue;
-		double weight = exp(-0.5 * x * x), z = (s - f->d) / f->w;
-		double A = 0.5 * erfc(-z * M_SQRT1_2), density = exp(-0.5 * z * z) / (sqrt(2 * M_PI) * f->w);
-		double iris = exp(f->k * s), beyond = s - center - ramp, sclera = 1 + f->m * (beyond > 0 ? beyond : SULCUS * beyond);
-		double jump = f->out * sclera - f->in * iris;
+	const double ramp = RAMP_END * f->w, growth = exp(f->k * r->step);
+	const int from = (int)fmax(ceil((center - 2 * window - r->lo) / r->step), 0);
+	const int to = (int)fmin(floor((center + 2 * window - r->lo) / r->step), r->m - 1);
+	double iris = exp(f->k * (r->lo + from * r->step));
+	for (int j = from; j <= to; j++, iris *= growth) {
+		double s = r->lo + j * r->step, x = (s - center) / window, z = (s - f->d) / f->w;
+		/* a window with compact support, near to a Gaussian of sigma `window` */
+		double weight = 1 - x * x / 4, e = exp(-0.5 * z * z);
+		weight *= weight;
+		double A = normal_cdf(z, e), density = e / (sqrt(2 * M_PI) * f->w), beyond = s - center - ramp;
+		double sclera = 1 + f->m * (beyond > 0 ? beyond : SULCUS * beyond), jump = f->out * sclera - f->in * iris;
 		double J[PARAMS] = { (1 - A) * iris, A * sclera, -jump * density, -jump * density * z };
 		double res = v[j] - (J[0] * f->in + J[1] * f->out);
 		n->ss += weight * res * res;
 		n->weight += weight;
 		for (int a = 0; a < PARAMS; a++) {
 			n->g[a] += weight * J[a] * res;
-			for (int b = 0; b < PARAMS; b++)
+			for (int b = 0; b <= a; b++)
 				n->h[a][b] += weight * J[a] * J[b];
 		}
 	}

@@ -137,7 +137,7 @@ static bool set_up(struct problem *p, const struct pose_view *view, const struct
 	}
 	if (!ellipse_fit_direct(&e, POINTS, pts, 0))
 		return false;
-	const double a = e.a, floor = conf->bias_floor / a;
+	const double a = e.a;
 	*p = (struct problem){ .view = view, .eye = eye, .conf = conf, .cornea = eye_cornea(eye),
 	                       .limbus_depth = eye_limbus_depth(eye), .focal = view->camera.focal_px / a,
 	                       .aspect_sigma = fmax(conf->aspect_sigma, 1e-6) };
@@ -148,7 +148,7 @@ static bool set_up(struct problem *p, const struct pose_view *view, const struct
 	ellipse_to_q(p->q, &unit);
 	for (int i = 0; i < ELLIPSE_N; i++)
 		for (int j = 0; j < ELLIPSE_N; j++)
-			p->chol[i][j] = view->cov_q[i][j] / (a * a) + (i == j) * floor * floor;
+			p->chol[i][j] = view->cov_q[i][j] / (a * a);
 	double unused[ELLIPSE_N] = { 0 };
 	if (!chol_solve(ELLIPSE_N, ELLIPSE_N, &p->chol[0][0], unused))
 		return false;

@@ -15,7 +15,6 @@ struct pose_conf {
 	double depth_sigma;         // mm: iris plane against eye.iris_depth_mm
 	double pupil_floor;         // an irregular margin: sigma of its centre, share of the pupil's semi-axis
 	double aspect_mean, aspect_sigma;  // prior of vertical / horizontal; sigma 0: declared
-	double bias_floor;          // px: sigma of the limbus that the noise does not show (its own irregularity)
 };
 
 struct pose_view {

@@ -10,7 +10,7 @@
 #include "eye/limbus_consensus.h"
 #include "math/stats.h"
 
-enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 9, GAP_ARCS = 5 };
+enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, GAP_ARCS = 5 };
 static const double SHARP_PX = 3;       // a step's sigma
 static const double OUTSIDE = 0.09;     // of the semi-axis: where the colour outside is looked at
 static const double WHITE = 0.35;       // of the ring's whiter part
@@ -102,7 +102,7 @@ static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS])
 
 /* Arcs that err together: 1 + 2 sum of the residuals' autocorrelation along the ring, up to its first zero
  * (the variance of a mean grows by that factor). Scales cov_q. */
-static void correlate(struct rim *rim)
+static void correlate(struct rim *rim, double irregularity)
 {
 	double d[ARCS], sum[MAX_LAG] = { 0 }, ss = 0;
 	int count[MAX_LAG] = { 0 }, n = 0;
@@ -126,6 +126,9 @@ static void correlate(struct rim *rim)
 	for (int a = 0; a < ELLIPSE_N; a++)
 		for (int b = 0; b < ELLIPSE_N; b++)
 			rim->cov_q[a][b] *= rim->correlation * n / (n - ELLIPSE_N);
+	/* what moves a whole side moves centre and size; the shape less */
+	for (int a = 0; a < ELLIPSE_N; a++)
+		rim->cov_q[a][a] += pow(irregularity * rim->width * (a < 3 ? 1 : 0.4), 2);
 }
 
 /* The ramp is foreshortened with the limbus and blurred by focus: its width varies slowly along the ring. */
@@ -263,24 +266,24 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	const int w = photo->width, h = photo->height;
 	struct grey grey = grey_linear(photo, start, 1.4, MAX_AXIS_PX, weight);
 	bool ok = locate(rim, &grey, tint, conf->search * start->a, w, h);
-	if (ok && !conf->grey) {
-		/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone. Of soft ones the
-		 * colours are looked at again, now that it is known where they are. */
-		for (int c = 0; c < 3; c++)
-			weight[c] = 1 / 3.0;
-		if (rim->width >= SHARP_PX)
-			limbus_colour(weight, photo, &rim->e);
-		grey_free(&grey);
-		grey = grey_linear(photo, &rim->e, 1.3, MAX_AXIS_PX, weight);
-	}
 	for (int i = 0; i < ARCS; i++)
 		rim->widths[i] = rim->width;
-	for (int i = 0; i < 5 && ok; i++) {
+	for (int i = 0; i < PASSES && ok; i++) {
+		if (!conf->grey && (i == 0 || (i == 3 && rim->width >= SHARP_PX))) {
+			/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone. Of soft ones the
+			 * colours are looked at again, now that it is known better where they are. */
+			for (int c = 0; c < 3; c++)
+				weight[c] = 1 / 3.0;
+			if (rim->width >= SHARP_PX)
+				limbus_colour(weight, photo, &rim->e);
+			grey_free(&grey);
+			grey = grey_linear(photo, &rim->e, 1.3, MAX_AXIS_PX, weight);
+		}
 		double window = fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a);
 		ok = fine_pass(rim, &grey, tint, window, i == 1 || i == 2, w, h, conf);
 	}
 	if (ok) {
-		correlate(rim);
+		correlate(rim, conf->irregularity);
 		cover(rim, &grey, tint, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);

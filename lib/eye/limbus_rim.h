@@ -11,6 +11,7 @@ struct rim_conf {
 	double search;        // first search range, share of the semi-axis
 	double max_rms;       // residual of a step, in units of its height, beyond which an arc is not trusted
 	double min_contrast;  // of an arc's step, relative to the ring's median
+	double irregularity;  // sigma that noise does not show, share of the step's width: no limbus is this exact a step
 	bool grey;            // measure in brightness, not in the best mixture of colours
 };
 

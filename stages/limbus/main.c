@@ -30,6 +30,7 @@ int main(int argc, char **argv)
 		OPT_REAL("search", &o.find.rim.search, 0.01, 0.3, "", "first edge search, share of the semi-axis"),
 		OPT_REAL("arc_rms", &o.find.rim.max_rms, 0.02, 1, "", "residual of a step, of its height, that is trusted"),
 		OPT_REAL("arc_contrast", &o.find.rim.min_contrast, 0, 1, "", "height of a step, of the typical one's"),
+		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
 		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
 		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
 		OPT_REAL("min_coverage", &o.find.min_coverage, 0.1, 1, "", "share of the limbus that must be seen"),
@@ -44,7 +45,6 @@ int main(int argc, char **argv)
 		OPT_REAL("pupil_floor", &o.pose.pupil_floor, 0, 0.2, "", "sigma of an irregular pupil's centre, of its axis"),
 		OPT_REAL("aspect_mean", &o.pose.aspect_mean, 0.7, 1.2, "", "limbus: vertical / horizontal"),
 		OPT_REAL("aspect_sigma", &o.pose.aspect_sigma, 0.001, 0.2, "", "its spread among people"),
-		OPT_REAL("irregularity_px", &o.pose.bias_floor, 0, 10, "px", "sigma of the limbus that noise does not show"),
 	};
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
