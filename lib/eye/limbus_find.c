@@ -9,7 +9,9 @@
 #include "base/mem.h"
 #include "math/stats.h"
 
-static const double CLEAR = 0.7;  // coverage at which no other ellipse is tried
+static const double OUTER = 0.3;   // least support of a limbus round a pupil, of the pupil's
+static const double WHITER = 1.45; // farther out than an edge's outside: that edge is a pupil's
+static const double CLEAR = 0.55, EXACT = 0.004;  // coverage and scatter at which no other ellipse is tried
 enum { MIN_SIDE = 96, TRY = 4, MAX_POOL = 2 * SEEK_MAX };
 
 __attribute__((format(printf, 2, 3)))
@@ -59,15 +61,33 @@ static int gather(struct seek_found pool[MAX_POOL], const struct pyramid *pyrami
 		if (inside)
 			continue;
 		if (i < TRY && limbus_seek_outer(&outer, pyramid, &seen[i].e, &conf->seek)
-		    && outer.score > 0.5 * seen[i].score && (!hint || outer.e.b < 1.6 * hint[2]))
+		    && outer.score > OUTER * seen[i].score && (!hint || outer.e.b < 1.6 * hint[2]))
 			pool[m++] = outer;
 		pool[m++] = seen[i];
 	}
 	return m;
 }
 
+/* A pupil passes for a limbus but for this: what lies round it is an iris, and farther out it gets whiter. */
+static bool is_pupil(const struct rim *rim, const struct grey *white)
+{
+	enum { RINGS = 4 };
+	static const double ring[RINGS] = { 1.6, 2, 2.5, 3 };
+	double near[ARCS], far[RINGS * ARCS];
+	int n = 0, m = 0;
+	for (int i = 0; i < ARCS; i++) {
+		const double dx = rim->p[i][0] - rim->e.cx, dy = rim->p[i][1] - rim->e.cy;
+		if (rim->used[i])
+			near[n++] = grey_at(white, rim->e.cx + 1.12 * dx, rim->e.cy + 1.12 * dy);
+		for (int k = 0; k < RINGS; k++)
+			far[m++] = grey_at(white, rim->e.cx + ring[k] * dx, rim->e.cy + ring[k] * dy);
+	}
+	return stats_quantile(m, far, 0.93) > WHITER * stats_median(n, near);
+}
+
 /* The first reason against a measured ellipse, or null. */
-static const char *judge(const struct rim *rim, const struct photo *photo, const struct limbus_conf *conf)
+static const char *judge(const struct rim *rim, const struct photo *photo, const struct pyramid *pyramid,
+                         const struct limbus_conf *conf)
 {
 	const struct ellipse *e = &rim->e;
 	const double c = cos(e->angle), s = sin(e->angle), slack = 0.01 * e->a;
@@ -81,6 +101,8 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 		return "too blurred: focus on the iris and hold the camera still";
 	if (rim->rms > conf->max_rms * e->a)
 		return "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight";
+	if (is_pupil(rim, &pyramid->level[0]))
+		return "only the pupil stands out, no limbus round it: show the whole iris, evenly lit";
 	double sigma[ELLIPSE_N], worst = 0;
 	ellipse_sigma(sigma, e, rim->cov_q);
 	for (int i = 0; i < 4; i++)
@@ -101,7 +123,7 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 	for (int i = 0; i < n && i < TRY; i++) {
 		if (!rim_fit(rim, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
-		const char *against = judge(rim, photo, conf);
+		const char *against = judge(rim, photo, pyramid, conf);
 		double quality = rim->share_used * rim->e.a;
 		if (!against && quality > best) {
 			best = quality;
@@ -109,7 +131,7 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 			found->score = pool[i].score;
 			found->ok = true;
 		}
-		if (!against && rim->coverage > CLEAR)
+		if (!against && rim->coverage > CLEAR && rim->rms < EXACT * rim->e.a)
 			break;
 		if (!why)
 			why = against;

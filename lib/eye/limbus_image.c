@@ -33,7 +33,8 @@ static float white_redness(const struct photo *photo)
 	for (int i = 0; i < n; i++)
 		if (low[i] >= cut)
 			red[m++] = red[i];
-	return (float)stats_quantile(m, red, LOW);
+	/* a blue iris is no white, and no sclera is bluer than grey but under blue light, where skin is less red too */
+	return (float)fmax(stats_quantile(m, red, LOW), 0);
 }
 
 struct planes {

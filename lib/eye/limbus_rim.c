@@ -137,7 +137,7 @@ static void smooth_widths(struct rim *rim, const bool use[ARCS])
 	for (int i = 0; i < ARCS; i++) {
 		double v[2 * WIDTH_ARCS + 1];
 		int n = 0;
-		rim->own_width[i] = use[i] ? rim->step[i].w : 0;
+
 		for (int j = -WIDTH_ARCS; j <= WIDTH_ARCS; j++) {
 			int at = (i + j + ARCS) % ARCS;
 			if (use[at])
@@ -247,6 +247,22 @@ static void cover(struct rim *rim, const struct grey *grey, const struct grey *t
 	rim->coverage = (double)n / ARCS;
 }
 
+/* Width of the step in every used arc by itself, the ellipse and the slopes being known. */
+static void own_widths(struct rim *rim, const struct grey *grey, double window, int width, int height)
+{
+	struct ring r = ring_sample(grey, &rim->e, -2.4 * window, 2.4 * window, fmax(0.7 * grey->scale, window / 12), ACROSS,
+	                            width, height);
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < ARCS; i++) {
+		struct step f = rim->step[i];
+		f.d = 0;
+		f.w = rim->widths[i];
+		edge_fit(&f, &r, i, window, true);
+		rim->own_width[i] = rim->used[i] && f.ok ? f.w : 0;
+	}
+	ring_free(&r);
+}
+
 /* Rough ellipse to width of the step, in the given picture. */
 static bool locate(struct rim *rim, const struct grey *grey, const struct grey *tint, double range, int width, int height)
 {
@@ -283,6 +299,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 		ok = fine_pass(rim, &grey, tint, window, i == 1 || i == 2, w, h, conf);
 	}
 	if (ok) {
+		own_widths(rim, &grey, fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a), w, h);
 		correlate(rim, conf->irregularity);
 		cover(rim, &grey, tint, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);

@@ -217,13 +217,16 @@ bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, co
 			double round = sqrt(inner->a * inner->b);
 			f.e.a = k * (i ? round : inner->a);
 			f.e.b = k * (i ? round : inner->b);
-			f.score = limbus_seek_score(pyramid, &f.e, conf);
+			const struct grey *g = &pyramid->level[pyramid_index(pyramid, f.e.a, 60)];
+			f.score = score_ellipse(g, &f.e, conf->contrast, SCORE_WIDE);
 			keep(best, &n, CIRCLES, &f);
 		}
 	out->score = 0;
 	for (int i = 0; i < n; i++) {
 		double a = best[i].e.a;
-		best[i].score = score_climb(&pyramid->level[pyramid_index(pyramid, a, 60)], &best[i].e, 0.08 * a, 0.008 * a, conf->contrast, SCORE_NARROW);
+		const struct grey *g = &pyramid->level[pyramid_index(pyramid, a, 60)];
+		score_climb(g, &best[i].e, 0.08 * a, 0.015 * a, conf->contrast, SCORE_WIDE);
+		limbus_seek_settle(&best[i], pyramid, conf);
 		if (best[i].score > out->score && best[i].e.b > 1.15 * inner->b)
 			*out = best[i];
 	}
