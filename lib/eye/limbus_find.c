@@ -11,8 +11,9 @@
 
 static const double OUTER = 0.3;   // least support of a limbus round a pupil, of the pupil's
 static const double WHITER = 1.45; // farther out than an edge's outside: that edge is a pupil's
+static const double PIXEL_RMS = 0.4;  // px of scatter that pixels and their noise cause in any case
 static const double CLEAR = 0.55, EXACT = 0.004;  // coverage and scatter at which no other ellipse is tried
-enum { MIN_SIDE = 96, TRY = 4, MAX_POOL = 2 * SEEK_MAX };
+enum { MIN_SIDE = 96, TRY = 5, MAX_POOL = 2 * SEEK_MAX };
 
 __attribute__((format(printf, 2, 3)))
 static bool reject(struct limbus_found *found, const char *fmt, ...)
@@ -71,8 +72,8 @@ static int gather(struct seek_found pool[MAX_POOL], const struct pyramid *pyrami
 /* A pupil passes for a limbus but for this: what lies round it is an iris, and farther out it gets whiter. */
 static bool is_pupil(const struct rim *rim, const struct grey *white)
 {
-	enum { RINGS = 4 };
-	static const double ring[RINGS] = { 1.6, 2, 2.5, 3 };
+	enum { RINGS = 6 };
+	static const double ring[RINGS] = { 1.6, 2, 2.5, 3, 3.7, 4.5 };
 	double near[ARCS], far[RINGS * ARCS];
 	int n = 0, m = 0;
 	for (int i = 0; i < ARCS; i++) {
@@ -99,7 +100,7 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 		return "no clear edge between iris and sclera: light the eye evenly and focus on the iris";
 	if (rim->width > conf->max_blur * e->a)
 		return "too blurred: focus on the iris and hold the camera still";
-	if (rim->rms > conf->max_rms * e->a)
+	if (rim->rms > conf->max_rms * e->a + PIXEL_RMS)
 		return "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight";
 	if (is_pupil(rim, &pyramid->level[0]))
 		return "only the pupil stands out, no limbus round it: show the whole iris, evenly lit";
@@ -121,6 +122,9 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 	struct rim *rim = mem_new(1, sizeof *rim);
 	double best = 0;
 	for (int i = 0; i < n && i < TRY; i++) {
+		if (found->ok && pool[i].e.a < 0.8 * found->limbus.e.a
+		    && hypot(pool[i].e.cx - found->limbus.e.cx, pool[i].e.cy - found->limbus.e.cy) < found->limbus.e.b)
+			continue;  // what lies inside a limbus is its pupil, or a part of it
 		if (!rim_fit(rim, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
 		const char *against = judge(rim, photo, pyramid, conf);

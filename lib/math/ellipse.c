@@ -61,11 +61,13 @@ double ellipse_distance(double *t, const struct ellipse *e, const double p[2])
 		else
 			hi = u;
 		double step = f / (k * (cu * cu - su * su) - x * a * cu - y * b * su);
+		if (fabs(step) < 1e-8) {  // quadratic: what is left is 1e-16
+			u -= step;
+			break;
+		}
 		double next = u - step;
 		if (!(next > lo && next < hi))
 			next = (lo + hi) / 2;
-		if (fabs(next - u) < 1e-13)
-			break;
 		u = next;
 	}
 	double fx = a * cos(u), fy = b * sin(u);

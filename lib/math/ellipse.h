@@ -8,10 +8,7 @@
 #define MATH_ELLIPSE_H
 #include <stdbool.h>
 
-/* px; a >= b semi-axes; angle of the major axis from +x towards +y, radians in memory. */
-struct ellipse {
-	double cx, cy, a, b, angle;
-};
+#include "math/ellipse_type.h"
 
 enum { ELLIPSE_N = 5 };  // parameters of an ellipse
 

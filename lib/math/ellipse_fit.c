@@ -226,7 +226,7 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 		/* The scale may fall only while the fit still moves in: a scale that grows back would let outliers in. */
 		if (sigma <= 0)
 			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), 1e-9);
-		if (size < 1e-9 * e->a)
+		if (size < 1e-4 * scale)
 			break;
 	}
 	if (ok) {
