@@ -69,6 +69,13 @@ static int gather(struct seek_found pool[MAX_POOL], const struct pyramid *pyrami
 	return m;
 }
 
+static const char COVERED[] = "too much of the limbus is covered by lids or lashes: open the eye wider";
+
+static bool within(const struct ellipse *e, const struct ellipse *around)
+{
+	return e->a < 0.8 * around->a && hypot(e->cx - around->cx, e->cy - around->cy) < around->b;
+}
+
 /* A pupil passes for a limbus but for this: what lies round it is an iris, and farther out it gets whiter. */
 static bool is_pupil(const struct rim *rim, const struct grey *white)
 {
@@ -109,7 +116,7 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 	for (int i = 0; i < 4; i++)
 		worst = fmax(worst, sigma[i]);
 	if (rim->coverage < conf->min_coverage || worst > conf->max_sigma * e->a)
-		return "too much of the limbus is covered by lids or lashes: open the eye wider";
+		return COVERED;
 	return 0;
 }
 
@@ -120,17 +127,20 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 	int n = gather(pool, pyramid, hint, conf);
 	const char *why = 0;
 	struct rim *rim = mem_new(1, sizeof *rim);
+	struct ellipse around = { 0 };  // a limbus, accepted or hidden too much
 	double best = 0;
 	for (int i = 0; i < n && i < TRY; i++) {
-		if (found->ok && pool[i].e.a < 0.8 * found->limbus.e.a
-		    && hypot(pool[i].e.cx - found->limbus.e.cx, pool[i].e.cy - found->limbus.e.cy) < found->limbus.e.b)
+		if (within(&pool[i].e, &around))
 			continue;  // what lies inside a limbus is its pupil, or a part of it
 		if (!rim_fit(rim, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
 		const char *against = judge(rim, photo, pyramid, conf);
 		double quality = rim->share_used * rim->e.a;
+		if (against == COVERED && rim->rms < EXACT * rim->e.a + PIXEL_RMS && rim->e.a > around.a)
+			around = rim->e;
 		if (!against && quality > best) {
 			best = quality;
+			around = rim->e;
 			found->limbus = *rim;
 			found->score = pool[i].score;
 			found->ok = true;

@@ -8,7 +8,7 @@ static const struct limbus_conf limbus_defaults = {
 	.seek = { .min_radius = 0.015, .max_radius = 0.52, .contrast = 0.15, .candidates = 8 },
 	.rim = { .search = 0.08, .max_rms = 0.15, .min_contrast = 0.15, .irregularity = 0.06 },
 	.pupil = { .min_contrast = 0.25, .min_coverage = 0.4 },
-	.min_coverage = 0.45, .min_contrast = 0.08, .max_blur = 0.08, .max_rms = 0.008, .max_sigma = 0.015,
+	.min_coverage = 0.35, .min_contrast = 0.08, .max_blur = 0.08, .max_rms = 0.008, .max_sigma = 0.015,
 	.max_over = 0.6, .min_level = 0.04,
 };
 
