@@ -26,6 +26,8 @@ CAPTURE ?=
 override CAPTURE := $(value CAPTURE)
 override CAPTURES := $(value CAPTURES)
 export CAPTURE CAPTURES
+# Threads that wait sleep: other programs of this machine are not slowed down.
+export OMP_WAIT_POLICY ?= passive
 
 # V=1 shows the commands.
 V ?=

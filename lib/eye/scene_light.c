@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath_path.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre")  // see scene_march.c
@@ -27,7 +27,8 @@ struct scene_lighting scene_lighting(const struct envmap *env, const struct envm
 static void node_path(float K[4], const struct cornea *cornea, const double P[3], const double w[3])
 {
 	double k[3] = { 0 };
-	enum lightpath_status status = lightpath_solve_directional(k, cornea, P, w);
+	// The nodes are interpolated: they want the one path that goes on smoothly everywhere, not a focused one here and there.
+	enum lightpath_status status = path_shortest(k, &(struct path){ cornea, P, 0, w });
 	bool lit = status == LIGHTPATH_OK || status == LIGHTPATH_BEYOND_RIM;
 	double gain = lit ? lightpath_gain(cornea, P, w, k) : 0;
 	if (status == LIGHTPATH_NONE || !isfinite(k[0] + k[1] + k[2])) {
