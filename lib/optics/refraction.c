@@ -146,12 +146,12 @@ static double measure(struct refraction *f, struct probe *p)
 	return (double)again / PROBE;
 }
 
-/* Arithmetic operations of one evaluation, roots and quotients counted as the slots they take (measured with AVX2):
- * what the choice goes by, so that it is the same on every machine. */
+/* Nanoseconds of one evaluation, as measured with AVX2 (bench_refraction): fixed figures, so that the choice is the same on
+ * every machine. */
 static double cost(const struct refraction *f, double again)
 {
-	double start = f->method == REFRACTION_POLYNOMIAL ? 20 + 4.0 * refraction_monomials(f->degree) : 150;
-	return start + 100 * f->steps + 2500 * again;
+	double start = f->method == REFRACTION_POLYNOMIAL ? 9 + 0.3 * refraction_monomials(f->degree) : 4;
+	return start + 2.7 * f->steps + 150 * again;
 }
 
 /* The cheapest start and number of steps within the error, among those of the method. */

@@ -2,7 +2,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "math/simd.h"
@@ -17,49 +16,40 @@ int refraction_monomials(int degree)
 	return (degree + 1) * (degree + 2) * (degree + 3) / 6;
 }
 
-/* Eight lanes; the compiler splits them where the machine's vectors are shorter. */
-typedef float lanes __attribute__((vector_size(32)));
+enum { LANES = 64 };
 
-/* Sum of c[i][j][k] a^i b^j d^k over i + j + k <= degree, c in the order of the loops; A and B at once. */
-SIMD_INLINE void horner(lanes AB[2], int degree, const float (*c)[3], const lanes abd[3])
+/* Sum of c[i][j][k] a^i b^j d^k over i + j + k <= degree by Horner's rule, c in the order of the loops; A and B at once. */
+SIMD_CLONES static void horner(float A[LANES], float B[LANES], int degree, const float (*c)[3], const float a[LANES],
+                               const float b[LANES], const float d[LANES])
 {
+	float ta[LANES], tb[LANES], ua[LANES], ub[LANES];
 	int at = refraction_monomials(degree);
-	lanes a = abd[0], b = abd[1], d = abd[2];
-	lanes sa = { 0 }, sb = { 0 };
+	for (int n = 0; n < LANES; n++)
+		A[n] = B[n] = 0;
 	for (int i = degree; i >= 0; i--) {
-		lanes ta = { 0 }, tb = { 0 };
+		for (int n = 0; n < LANES; n++)
+			ta[n] = tb[n] = 0;
 		for (int j = degree - i; j >= 0; j--) {
-			lanes ua = { 0 }, ub = { 0 };
+			for (int n = 0; n < LANES; n++)
+				ua[n] = ub[n] = 0;
 			for (int k = degree - i - j; k >= 0; k--) {
 				at--;
-				ua = ua * d + c[at][0];
-				ub = ub * d + c[at][1];
+				SIMD_LOOP
+				for (int n = 0; n < LANES; n++) {
+					ua[n] = ua[n] * d[n] + c[at][0];
+					ub[n] = ub[n] * d[n] + c[at][1];
+				}
 			}
-			ta = ta * b + ua;
-			tb = tb * b + ub;
+			SIMD_LOOP
+			for (int n = 0; n < LANES; n++) {
+				ta[n] = ta[n] * b[n] + ua[n];
+				tb[n] = tb[n] * b[n] + ub[n];
+			}
 		}
-		sa = sa * a + ta;
-		sb = sb * a + tb;
-	}
-	AB[0] = sa;
-	AB[1] = sb;
-}
-
-SIMD_CLONES static void start_eight(const struct refraction *f, int n, const float *const in[5], float *const out[2])
-{
-	const float inv = 1 / f->radius;
-	for (int i = 0; i < n; i += 8) {
-		size_t size = (n - i < 8 ? n - i : 8) * sizeof(float);
-		lanes v[5] = { 0 }, AB[2], abd[3], xy[2];
-		for (int k = 0; k < 5; k++)
-			memcpy(&v[k], in[k] + i, size);
-		abd[0] = 2 * inv * inv * (v[0] * v[0] + v[1] * v[1]) - 1;
-		abd[1] = inv * (v[0] * v[2] + v[1] * v[3]);
-		abd[2] = 2 * v[4] + 1;
-		horner(AB, f->degree, (const float(*)[3])f->data, abd);
-		for (int k = 0; k < 2; k++) {
-			xy[k] = AB[0] * v[k] + AB[1] * v[2 + k];
-			memcpy(out[k] + i, &xy[k], size);
+		SIMD_LOOP
+		for (int n = 0; n < LANES; n++) {
+			A[n] = A[n] * a[n] + ta[n];
+			B[n] = B[n] * a[n] + tb[n];
 		}
 	}
 }
@@ -67,7 +57,22 @@ SIMD_CLONES static void start_eight(const struct refraction *f, int n, const flo
 void refraction_start(const struct refraction *f, int n, const float *px, const float *py, const float *wx, const float *wy,
                       const float *wz, float *x, float *y)
 {
-	start_eight(f, n, (const float *const[]){ px, py, wx, wy, wz }, (float *const[]){ x, y });
+	const float inv = 1 / f->radius;
+	for (int from = 0; from < n; from += LANES) {
+		float a[LANES] = { 0 }, b[LANES] = { 0 }, d[LANES] = { 0 }, A[LANES], B[LANES];
+		int m = n - from < LANES ? n - from : LANES;
+		for (int i = 0; i < m; i++) {
+			float u = px[from + i], v = py[from + i];
+			a[i] = 2 * inv * inv * (u * u + v * v) - 1;
+			b[i] = inv * (u * wx[from + i] + v * wy[from + i]);
+			d[i] = 2 * wz[from + i] + 1;
+		}
+		horner(A, B, f->degree, (const float(*)[3])f->data, a, b, d);
+		for (int i = 0; i < m; i++) {
+			x[from + i] = A[i] * px[from + i] + B[i] * wx[from + i];
+			y[from + i] = A[i] * py[from + i] + B[i] * wy[from + i];
+		}
+	}
 }
 
 /* One sample's two equations: rows of the design matrix for x and y of the chart. */

@@ -1,0 +1,158 @@
+/* The refraction function f(P, w) -> K: error against time of the paper's tables and of what replaces them, light from the
+ * hemisphere, K inside the rim; and what its irradiance gain costs.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "optics/refraction.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/light_case.h"
+
+enum { N = 65536 };
+static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
+
+static struct {
+	float p[3][N], w[3][N], k[3][N], gain[N];
+	double truth[N][3];
+	unsigned char status[N];
+} *s;
+
+static void draw(void)
+{
+	struct rng rng = { 1 };
+	const struct light_range range = { false, { 3.3, 3.3 }, 5.85, 90, { 0, 89.9 } };
+	for (int i = 0; i < N; i++) {
+		struct light_case c;
+		light_case_draw(&c, &rng, &range);
+		for (int k = 0; k < 3; k++) {
+			s->p[k][i] = c.P[k];
+			s->w[k][i] = c.w[k];
+		}
+		double P[3] = { s->p[0][i], s->p[1][i], s->p[2][i] }, w[3] = { s->w[0][i], s->w[1][i], s->w[2][i] };
+		lightpath_solve_directional(s->truth[i], &generic, P, w);
+	}
+}
+
+struct run {
+	struct refraction f;
+	bool with_gain;
+};
+
+static void evaluate(void *ctx)
+{
+	struct run *r = ctx;
+	refraction_batch(&r->f, N, s->p[0], s->p[1], s->p[2], s->w[0], s->w[1], s->w[2], s->k[0], s->k[1], s->k[2],
+	                 r->with_gain ? s->gain : 0, s->status);
+}
+
+static double worst(double *mean)
+{
+	double most = 0, sum = 0;
+	for (int i = 0; i < N; i++) {
+		const double *K = s->truth[i];
+		double e = hypot(hypot(s->k[0][i] - K[0], s->k[1][i] - K[1]), s->k[2][i] - K[2]);
+		most = fmax(most, e);
+		sum += e;
+	}
+	*mean = sum / N;
+	return most;
+}
+
+/* The same figures with the mean error, for a table of their own after the first. */
+struct means {
+	int n;
+	struct mean_row {
+		const char *method;
+		char setting[120];
+		struct bench_time time;
+		double mean;
+	} rows[40];
+};
+
+static void show(const struct means *means)
+{
+	for (int i = 0; i < means->n; i++) {
+		const struct mean_row *row = &means->rows[i];
+		bench_row("refraction function, on average", row->method, row->setting, row->time, "evaluation", row->mean, "mm",
+		          "K, mean");
+	}
+}
+
+/* One row with the worst error, one kept for the mean; returns the seconds of one evaluation. */
+static double measure(struct means *means, const char *method, const struct refraction_conf *conf, const char *label,
+                      double *most)
+{
+	struct run r = { 0 };
+	refraction_make(&r.f, &generic, conf);
+	struct bench_time t = bench_time(evaluate, &r, 15);
+	t = (struct bench_time){ t.median / N, t.low / N, t.high / N };
+	double mean;
+	*most = worst(&mean);
+	char setting[120];
+	snprintf(setting, sizeof setting, "%s%s%d steps, %ld B", label, *label ? ", " : "", r.f.steps, refraction_bytes(&r.f));
+	bench_row("refraction function", method, setting, t, "evaluation", *most, "mm", "K, worst");
+	if (means->n < COUNT(means->rows)) {
+		struct mean_row *row = &means->rows[means->n++];
+		*row = (struct mean_row){ .method = method, .time = t, .mean = mean };
+		snprintf(row->setting, sizeof row->setting, "%s", setting);
+	}
+	refraction_free(&r.f);
+	return t.median;
+}
+
+static void gain(void)
+{
+	struct run r = { .with_gain = true };
+	refraction_make(&r.f, &generic, &(struct refraction_conf){ REFRACTION_AUTO, 1e-3, 0, 0, 5.85, 3.3 });
+	struct bench_time t = bench_time(evaluate, &r, 15);
+	double most = 0;
+	for (int i = 0; i < N; i++) {
+		double P[3] = { s->p[0][i], s->p[1][i], s->p[2][i] }, w[3] = { s->w[0][i], s->w[1][i], s->w[2][i] };
+		double exact = lightpath_gain(&generic, P, w, s->truth[i]);
+		// Where little light comes in, what counts is the light. On the rim itself float cannot say which side.
+		if (hypot(s->truth[i][0], s->truth[i][1]) > 5.8499)
+			continue;
+		most = fmax(most, fabs(s->gain[i] - exact) / fmax(exact, 0.05));
+	}
+	bench_row("irradiance gain (caustic)", "with K, error_mm 0.001", "", (struct bench_time){ t.median / N, t.low / N, t.high / N },
+	          "evaluation", 100 * most, "%", "gain, worst");
+	refraction_free(&r.f);
+}
+
+int main(int argc, char **argv)
+{
+	bench_open("refraction", argc, argv);
+	s = mem_new(1, sizeof *s);
+	draw();
+	struct means means = { 0 };
+	double most, table_time = INFINITY, table_error = INFINITY;
+	const int points[] = { 10, 100 }, directions[] = { 100, 2500 };
+	for (int method = REFRACTION_TABLE_NEAREST; method >= REFRACTION_TABLE_LINEAR; method--) {
+		for (int i = 0; i < COUNT(points); i++) {
+			char label[40];
+			snprintf(label, sizeof label, "%d x %d, %s", points[i], directions[i],
+			         method == REFRACTION_TABLE_LINEAR ? "linear" : "nearest");
+			double t = measure(&means, "table (paper)", &(struct refraction_conf){ method, 0, points[i], directions[i], 5.85, 3.3 },
+			                   label, &most);
+			table_time = fmin(table_time, t);
+			table_error = fmin(table_error, most);
+		}
+	}
+	const double budgets[] = { 1e-1, 1e-2, 1e-3, 1e-4, 1e-5 };
+	const char *const names[] = { "auto", "closed form + Newton", "polynomial + Newton" };
+	for (int method = REFRACTION_NEWTON; method <= REFRACTION_POLYNOMIAL; method++)
+		for (int i = 0; i < COUNT(budgets); i++) {
+			char label[40];
+			snprintf(label, sizeof label, "error_mm %g", budgets[i]);
+			measure(&means, names[method], &(struct refraction_conf){ method, budgets[i], 0, 0, 5.85, 3.3 }, label, &most);
+		}
+	double t = measure(&means, "auto", &(struct refraction_conf){ REFRACTION_AUTO, 1e-3, 0, 0, 5.85, 3.3 }, "error_mm 0.001", &most);
+	bench_goal("refraction function against the paper's tables: error", "below every table's", most, "mm", most < table_error);
+	bench_goal("refraction function against the paper's tables: time", "below every table's", 1e9 * t, "ns", t < table_time);
+	show(&means);
+	gain();
+	free(s);
+	return bench_close();
+}
