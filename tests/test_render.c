@@ -25,14 +25,14 @@ static struct scene_conf conf_of(int steps)
 	return (struct scene_conf){ .map_size = 1024, .search = 8, .shadow = 4, .steps = steps, .quadrature = SCENE_GAUSS,
 		                        .path = SCENE_PATH_GRID, .bands = 6, .detail = 1, .limbus_width = 0.4,
 		                        .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.65, 0.6 }, .vein_density = 0.2,
-		                        .veins_px = 256, .seed = 1 };
+		                        .veins_px = 128, .seed = 1 };
 }
 
 static void scene_of(struct scene *scene, const struct eye *eye, const struct scene_conf *conf, painted_colour *colour,
                      painted_height *height, double pupil)
 {
 	struct err err = { 0 };
-	assert_true(painted_scene(scene, 256, eye, conf, colour, height, pupil, &err));
+	assert_true(painted_scene(scene, 192, eye, conf, colour, height, pupil, &err));
 }
 
 static void even(float rgb[3], double x, double y)
@@ -323,7 +323,7 @@ static void threads_and_numbers(void **state)
 	struct scene_view first = scene_view_turned(&s, 0.2, 0.1, 27, 64);
 	scene_fit_colour(&s, &first, &light);
 	struct rng rng = { 13 };
-	for (int i = 0; i < 12; i++) {
+	for (int i = 0; i < 6; i++) {
 		struct scene_view view = scene_view_turned(&s, rng_range(&rng, -3, 3), rng_range(&rng, -1.5, 1.5), 27, 97);
 		view.samples = 2;
 		omp_set_num_threads(1);
