@@ -30,6 +30,7 @@ static bool inputs(struct job *job, struct err *err)
 	job->in[job->n_in++] = artifact(job, "texture.json");
 	job->in[job->n_in++] = artifact(job, "relief.exr");
 	job->in[job->n_in++] = artifact(job, "pigment.json");
+	job->in[job->n_in++] = artifact(job, "refraction.exr");
 	job->in[job->n_in++] = reference->photo->fit;
 	job->in[job->n_in++] = reference->photo->file;
 	if (job->conf->environment) {
@@ -53,7 +54,7 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 
 static bool environments(struct job *job, const struct shot *reference, struct err *err)
 {
-	int height = job->conf->scene.map_size >= 1024 ? 512 : 256;
+	int height = job->conf->scene.map_size > 1024 ? 512 : job->conf->scene.map_size > 512 ? 256 : 128;
 	if (job->conf->environment) {
 		if (!envmap_load(&job->studio, stage_path(job->stage, "%s", job->conf->environment), err))
 			return false;
@@ -95,8 +96,10 @@ static bool prepare(struct job *job, struct err *err)
 		eye.limbus_aspect = reference->fit.limbus_aspect;
 	if (!isfinite(conf.limbus_width))
 		conf.limbus_width = limbus_width(reference);
-	struct scene_files files = { stage_path(job->stage, "%s", job->in[0]), stage_path(job->stage, "%s", job->in[1]),
-	                             stage_path(job->stage, "%s", job->in[2]), stage_path(job->stage, "%s", job->in[3]) };
+	const char *path[5];
+	for (int i = 0; i < 5; i++)
+		path[i] = stage_path(job->stage, "%s", job->in[i]);
+	struct scene_files files = { path[0], path[1], path[2], path[3], path[4] };
 	if (!scene_load(&job->scene, &files, &eye, &conf, err))
 		return false;
 	job->ready = true;
@@ -130,13 +133,13 @@ static bool still(struct job *job, const char *name, double yaw, double pitch, s
 {
 	const char *png = output(job, name, ".png"), *exr = output(job, name, ".exr");
 	bool need_png = stale(job, png, job->n_in, job->in), need_exr = job->conf->exr && stale(job, exr, job->n_in, job->in);
-	if (!need_png && !need_exr)
+	if (!need_png && !need_exr)  // one look makes both
 		return true;
 	if (!prepare(job, err))
 		return false;
 	struct image rgba = turned(job, yaw, pitch, job->conf->size_px), seen = picture_on_grey(&rgba, job->gain);
-	bool ok = (!need_png || picture_save(job, png, &seen, job->n_in, job->in, err))
-	          && (!need_exr || picture_save_exr(job, exr, &rgba, job->n_in, job->in, err));
+	const struct picture_out out[] = { { png, &seen }, { exr, &rgba } };
+	bool ok = pictures_save(job, job->conf->exr ? 2 : 1, out, job->n_in, job->in, err);
 	image_free(&rgba);
 	image_free(&seen);
 	return ok;
@@ -158,7 +161,7 @@ static bool turntable(struct job *job, struct err *err)
 		image_free(&rgba);
 	}
 	struct image strip = sheet_strip(n, frames);
-	bool ok = picture_save(job, png, &strip, job->n_in, job->in, err);
+	bool ok = pictures_save(job, 1, &(struct picture_out){ png, &strip }, job->n_in, job->in, err);
 	for (int i = 0; i < n; i++)
 		image_free(&frames[i]);
 	free(frames);
@@ -168,7 +171,7 @@ static bool turntable(struct job *job, struct err *err)
 
 static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 {
-	const char *in[10];
+	const char *in[COUNT(job->in) + 2];
 	int n = job->n_in;
 	memcpy(in, job->in, sizeof job->in);
 	in[n++] = shot->photo->fit;
@@ -188,8 +191,8 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	json_t *figures;
 	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
 	struct image beside = compare_shot(job, shot, &seen, &figures);
-	bool ok = picture_save(job, png, &seen, n, in, err) && picture_save(job, compare, &beside, n, in, err)
-	          && (!job->conf->exr || picture_save_exr(job, exr, &rgba, n, in, err))
+	const struct picture_out out[] = { { png, &seen }, { compare, &beside }, { exr, &rgba } };
+	bool ok = pictures_save(job, job->conf->exr ? 3 : 2, out, n, in, err)
 	          && json_write(stage_path(job->stage, "%s", numbers), figures, stage_made_by(job->stage, n, in), err)
 	          && stage_made(job->stage, numbers, n, in, err);
 	job->worst = fmax(job->worst, json_number_value(json_object_get(figures, "difference_mean")));

@@ -33,21 +33,41 @@ struct survey {
 	float rgb[RINGS][3];  // median colour: what lies below a glint
 };
 
-/* Of values[i * stride], 0..1, over a ring; to half a thousandth. */
-static float ring_quantile(const struct survey *s, int ring, const float *values, int stride, double q, long all)
+enum { BINS = 512 };
+
+static int bin_of(float v)
 {
-	enum { BINS = 1024 };
-	long count[BINS] = { 0 }, n = 0, below = 0;
+	return v > 0 ? v < 1 ? (int)(v * BINS) : BINS - 1 : 0;
+}
+
+/* To a thousandth. */
+static float quantile(const int count[BINS], double q)
+{
+	long n = 0, below = 0;
 	int k = 0;
-	for (long i = 0; i < all; i++)
-		if (s->ring[i] == ring) {
-			float v = values[i * stride];
-			count[v > 0 ? v < 1 ? (int)(v * BINS) : BINS - 1 : 0]++;
-			n++;
-		}
+	for (int i = 0; i < BINS; i++)
+		n += count[i];
 	while (k < BINS - 1 && (double)(below + count[k]) < q * (double)n)
 		below += count[k++];
 	return n ? ((float)k + 0.5f) / BINS : 0;
+}
+
+/* Levels of all rings, from histograms of the least channel and of each channel. */
+static void survey_rings(struct survey *s, const struct image *m)
+{
+	int(*count)[4][BINS] = mem_new(RINGS, sizeof *count);
+	for (long i = 0; i < (long)m->width * m->height; i++)
+		if (s->ring[i] >= 0) {
+			count[s->ring[i]][3][bin_of(s->least[i])]++;
+			for (int c = 0; c < 3; c++)
+				count[s->ring[i]][c][bin_of(m->px[3 * i + c])]++;
+		}
+	for (int k = 0; k < RINGS; k++) {
+		s->level[k] = quantile(count[k][3], 0.75);
+		for (int c = 0; c < 3; c++)
+			s->rgb[k][c] = quantile(count[k][c], 0.5);
+	}
+	free(count);
 }
 
 static void survey_make(struct survey *s, const struct shot *shot)
@@ -65,12 +85,7 @@ static void survey_make(struct survey *s, const struct shot *shot)
 			s->least[(long)y * m->width + x] = fminf(p[0], fminf(p[1], p[2]));
 		}
 	cv_blur(s->least, s->least, m->width, m->height, 1, 1.2, &err);  // where that fails the noise stays, no more
-#pragma omp parallel for schedule(dynamic)
-	for (int k = 0; k < RINGS; k++) {
-		s->level[k] = ring_quantile(s, k, s->least, 1, 0.75, all);
-		for (int c = 0; c < 3; c++)
-			s->rgb[k][c] = ring_quantile(s, k, m->px + c, 3, 0.5, all);
-	}
+	survey_rings(s, m);
 }
 
 static void mark_bright(unsigned char *marks, const struct survey *s, long n)

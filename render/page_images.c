@@ -184,10 +184,10 @@ static int compare_floats(const void *a, const void *b)
 /* Between the first and the last hundredth of the values of a channel: what the colours span. */
 static void spread(double range[2], const struct image *map, int channel)
 {
-	long n = (long)map->width * map->height;
+	long n = ((long)map->width * map->height + 6) / 7;  // every seventh texel says it as well
 	float *sorted = mem_array((size_t)n, sizeof *sorted);
 	for (long i = 0; i < n; i++)
-		sorted[i] = map->px[i * map->channels + channel];
+		sorted[i] = map->px[7 * i * map->channels + channel];
 	qsort(sorted, (size_t)n, sizeof *sorted, compare_floats);
 	range[0] = sorted[n / 100];
 	range[1] = sorted[n - 1 - n / 100];

@@ -38,7 +38,7 @@ struct job {
 	const struct capture_eye *names;
 	struct shot *shots;
 	int n_shots, reference;          // the shot whose light and direction the colours are read in
-	const char *in[8];               // inputs that all pictures have in common, relative to the folder
+	const char *in[9];               // inputs that all pictures have in common, relative to the folder
 	int n_in;
 	bool ready;                      // what follows has been made
 	struct scene scene;
@@ -80,10 +80,14 @@ bool sclera_of_photo(double rgb[3], const struct shot *shot);
 
 /* picture.c: the eye on neutral grey, brightened by gain. image_free. */
 struct image picture_on_grey(const struct image *rgba, double gain);
-bool picture_save(struct job *job, const char *rel, const struct image *image, int n_in, const char *const in[],
-                  struct err *err);
-bool picture_save_exr(struct job *job, const char *rel, const struct image *rgba, int n_in, const char *const in[],
-                      struct err *err);
+
+/* At most PICTURES_MAX pictures at once, from the same inputs: 3 channels become a PNG, 4 an EXR. rel: in the folder. */
+enum { PICTURES_MAX = 4 };
+struct picture_out {
+	const char *rel;
+	const struct image *image;
+};
+bool pictures_save(struct job *job, int n, const struct picture_out out[], int n_in, const char *const in[], struct err *err);
 
 /* compare.c: photograph, rendering and their difference, side by side, COMPARE_GAP px apart. image_free. figures: a
  * JSON object for NAME_compare.json, json_decref. */

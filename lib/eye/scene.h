@@ -14,6 +14,7 @@
 #include "eye/tissue.h"
 #include "image/envmap.h"
 #include "image/image.h"
+#include "optics/refraction.h"
 
 enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 64 };
 
@@ -50,11 +51,12 @@ struct scene {
 	double limbus[2], limbus_depth, sclera_z;  // half-widths across and upwards; depth of its plane; centre of the sphere
 	double pupil[3];              // x, y, radius in the iris plane
 	double extent;                // half-width of the maps
-	float height_min, height_max;
+	float height_min, height_max, thickness_max;
 	int n_levels;
 	struct scene_level level[SCENE_LEVELS];
 	struct image veins;           // azimuthal about the axis: transmittance RGB, height of the film's ripples
 	struct tissue_optics optics;
+	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march, in each layer
 	double node[2][SCENE_NODES_MAX], weight[2][SCENE_NODES_MAX];  // on 0..1
 	float flat[3];                // the model's mean reflectance, where it is seen without a march
@@ -64,7 +66,7 @@ struct scene {
 
 /* The artifacts of one eye; a null path (or a file that is not there) is done without. */
 struct scene_files {
-	const char *texture, *texture_json, *relief, *pigment;
+	const char *texture, *texture_json, *relief, *pigment, *refraction;
 };
 
 /* The maps, the tissue, the pupil; then scene_fit_colour. sclera_rgb in conf. scene_free. */

@@ -8,7 +8,6 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath_path.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre")  // see scene_march.c
@@ -24,38 +23,57 @@ struct scene_lighting scene_lighting(const struct envmap *env, const struct envm
 	return l;
 }
 
-static void node_path(float K[4], const struct cornea *cornea, const double P[3], const double w[3])
+enum { NODES = SCENE_GRID * SCENE_GRID };
+
+/* One plane of a beam's table. Its nodes are interpolated: they want the one path that goes on smoothly everywhere, the
+ * shortest, not a focused one here and there. */
+struct plane {
+	float p[3][NODES], w[3][NODES], k[3][NODES], gain[NODES];
+	unsigned char status[NODES];
+};
+
+static void plane_solve(struct plane *n, const struct scene *s)
 {
-	double k[3] = { 0 };
-	// The nodes are interpolated: they want the one path that goes on smoothly everywhere, not a focused one here and there.
-	enum lightpath_status status = path_shortest(k, &(struct path){ cornea, P, 0, w });
-	bool lit = status == LIGHTPATH_OK || status == LIGHTPATH_BEYOND_RIM;
-	double gain = lit ? lightpath_gain(cornea, P, w, k) : 0;
-	if (status == LIGHTPATH_NONE || !isfinite(k[0] + k[1] + k[2])) {
-		k[0] = P[0];
-		k[1] = P[1];
-		k[2] = cornea_depth(cornea, hypot(P[0], P[1]));
-		k[2] = isfinite(k[2]) ? k[2] : P[2] - 1;
-		gain = 0;
+	if (s->refraction.data || s->refraction.steps)
+		refraction_batch(&s->refraction, NODES, n->p[0], n->p[1], n->p[2], n->w[0], n->w[1], n->w[2], n->k[0], n->k[1],
+		                 n->k[2], 0, n->status);
+	else
+		lightpath_batch(NODES, n->p[0], n->p[1], n->p[2], n->w[0], n->w[1], n->w[2], n->k[0], n->k[1], n->k[2], n->status,
+		                &s->cornea, PATH_STEPS);
+	lightpath_gain_batch(NODES, n->p[0], n->p[1], n->p[2], n->w[0], n->w[1], n->w[2], n->k[0], n->k[1], n->k[2], n->gain,
+	                     &s->cornea);
+}
+
+static void plane_make(float (*K)[4], struct plane *n, const struct scene_beam *beam, const struct scene *s, float z)
+{
+	double step = 2 * s->extent / (SCENE_GRID - 1), most = 1.04 * s->limbus[0];
+	for (int i = 0; i < NODES; i++) {
+		// Outside the limbus there is no iris to light: those nodes only bound the others' cells, and stand at its edge.
+		double x = i % SCENE_GRID * step - s->extent, y = i / SCENE_GRID * step - s->extent, r = hypot(x, y);
+		double pull = r > most ? most / r : 1;
+		n->p[0][i] = (float)(pull * x);
+		n->p[1][i] = (float)(pull * y);
+		n->p[2][i] = z;
+		for (int c = 0; c < 3; c++)
+			n->w[c][i] = beam->dir[c];
 	}
-	for (int c = 0; c < 3; c++)
-		K[c] = (float)k[c];
-	K[3] = isfinite(gain) && gain > 0 ? (float)gain : 0;
+	plane_solve(n, s);
+	for (int i = 0; i < NODES; i++) {
+		bool lit = n->status[i] == LIGHTPATH_OK || n->status[i] == LIGHTPATH_BEYOND_RIM;
+		for (int c = 0; c < 3; c++)
+			K[i][c] = n->status[i] == LIGHTPATH_NONE ? n->p[c][i] + beam->dir[c] : n->k[c][i];
+		K[i][3] = lit && n->gain[i] > 0 && isfinite(n->gain[i]) ? n->gain[i] : 0;
+	}
 }
 
 static void beam_make(struct scene_beam *beam, const struct scene *s)
 {
-	double w[3] = { beam->dir[0], beam->dir[1], beam->dir[2] };
-	double deepest = s->optics.abl_thickness + 1;  // mm; a stroma is never thicker
+	struct plane *plane = mem_array(1, sizeof *plane);
 	beam->z[0] = (float)(s->eye.iris_depth - s->height_max);
-	beam->z[1] = (float)(s->eye.iris_depth - s->height_min + deepest);
+	beam->z[1] = (float)(s->eye.iris_depth - s->height_min + s->optics.abl_thickness) + s->thickness_max;
 	for (int k = 0; k < 2; k++)
-		for (int y = 0; y < SCENE_GRID; y++)
-			for (int x = 0; x < SCENE_GRID; x++) {
-				double step = 2 * s->extent / (SCENE_GRID - 1);
-				double P[3] = { x * step - s->extent, y * step - s->extent, beam->z[k] };
-				node_path(beam->K[k][y][x], &s->cornea, P, w);
-			}
+		plane_make(beam->K[k][0], plane, beam, s, beam->z[k]);
+	free(plane);
 }
 
 struct scene_beams scene_beams(const struct scene *s, const struct scene_lighting *light,

@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
+#include "eye/refraction_file.h"
 #include "image/exr.h"
 
 static const long limit_px = 1L << 27;
@@ -152,6 +153,22 @@ static bool load_tissue(struct scene *s, const char *path, struct err *err)
 	return true;
 }
 
+/* Made for this very cornea, or not used: the folder may have been changed since. */
+static bool load_refraction(struct scene *s, const char *path, struct err *err)
+{
+	if (!path || !file_exists(path))
+		return true;
+	if (!refraction_load(&s->refraction, path, err))
+		return false;
+	const struct cornea *a = &s->refraction.cornea, *b = &s->cornea;
+	bool same = fabs(a->R - b->R) + fabs(a->p - b->p) + fabs(a->n - b->n) < 1e-6;
+	if (!same || s->refraction.method > REFRACTION_POLYNOMIAL) {  // a table is for the iris plane alone
+		refraction_free(&s->refraction);
+		s->refraction = (struct refraction){ 0 };
+	}
+	return true;
+}
+
 static void geometry(struct scene *s)
 {
 	double aspect = isfinite(s->eye.limbus_aspect) ? s->eye.limbus_aspect : 1;
@@ -171,7 +188,7 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
 	geometry(s);
 	load_pupil(s, files->texture_json);
 	if (!load_colour(s, files->texture, conf->map_size, err) || !load_relief(s, files->relief, err)
-	    || !load_tissue(s, files->pigment, err)) {
+	    || !load_tissue(s, files->pigment, err) || !load_refraction(s, files->refraction, err)) {
 		scene_free(s);
 		return false;
 	}
@@ -190,6 +207,7 @@ void scene_free(struct scene *s)
 		free(s->level[i].model);
 	}
 	image_free(&s->veins);
+	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };
 }
 
@@ -210,7 +228,9 @@ void scene_levels_make(struct scene *s)
 {
 	struct scene_level *l = s->level;
 	s->height_min = s->height_max = 0;
+	s->thickness_max = 0;
 	for (long i = 0; i < (long)l->n * l->n; i++) {
+		s->thickness_max = fmaxf(s->thickness_max, l->relief[2 * i + 1]);
 		s->height_min = fminf(s->height_min, l->relief[2 * i]);
 		s->height_max = fmaxf(s->height_max, l->relief[2 * i]);
 	}

@@ -108,7 +108,11 @@ static void sclera_colour(float rgb[3], struct spot *p, const struct scene *s, c
 /* The margin of the pupil: how much of a point of the iris plane is iris; *ruff how much is the dark ruff. */
 static float iris_cover(const struct scene *s, float x, float y, float soft, float *ruff)
 {
-	float dx = x - (float)s->pupil[0], dy = y - (float)s->pupil[1], r = sqrtf(dx * dx + dy * dy), turn = atan2f(dy, dx);
+	float dx = x - (float)s->pupil[0], dy = y - (float)s->pupil[1], r = sqrtf(dx * dx + dy * dy), off = r - (float)s->pupil[2];
+	*ruff = 0;
+	if (fabsf(off) > 0.2f + 2 * soft)
+		return off > 0;
+	float turn = atan2f(dy, dx);
 	// The ridges of the ruff: about 70 round the margin, of uneven height (iris paper, section 2.2).
 	float ridge = 0.6f * fabsf(sinf(34 * turn + 1.7f * sinf(5 * turn))) + 0.4f * fabsf(sinf(21 * turn + 2 * sinf(3 * turn + 1)));
 	float edge = (float)s->pupil[2] - 0.018f * ridge, width = 0.045f + 0.02f * ridge;

@@ -66,6 +66,14 @@ static void project(struct envmap *env)
 		}
 	}
 	image_free(&map);
+	// harmonics() again, sorted by powers.
+	static const double factor[9] = { 0.282094791773878, 0.488602511902920, 0.488602511902920, 0.488602511902920,
+		                              1.092548430592079, 1.092548430592079, 0.946174695757560, 1.092548430592079,
+		                              0.546274215296040 };
+	static const int from[9] = { 0, 3, 1, 2, 4, 5, 6, 7, 8 };
+	for (int k = 0; k < 9; k++)
+		for (int c = 0; c < 3; c++)
+			env->quadric[k][c] = (float)(factor[k] * env->sh[from[k]][c] - (k ? 0 : 0.315391565252520 * env->sh[6][c]));
 }
 
 /* How much of a box a direction is in: 1 inside, falling to 0 over half a degree outside. */
@@ -168,15 +176,14 @@ void envmap_free(struct envmap *env)
 	image_free(&env->rough);
 }
 
-void envmap_irradiance(float rgb[3], const struct envmap *env, const float normal[3])
+void envmap_irradiance(float rgb[3], const struct envmap *env, const float n[3])
 {
-	double h[9], n[3] = { normal[0], normal[1], normal[2] };
-	harmonics(h, n);
+	float x = n[0], y = n[1], z = n[2], terms[9] = { 1, x, y, z, x * y, y * z, z * z, x * z, x * x - y * y };
 	for (int c = 0; c < 3; c++) {
-		double sum = 0;
+		float sum = 0;
 		for (int k = 0; k < 9; k++)
-			sum += env->sh[k][c] * h[k];
-		rgb[c] = (float)fmax(sum, 0);
+			sum += env->quadric[k][c] * terms[k];
+		rgb[c] = sum > 0 ? sum : 0;
 	}
 }
 
@@ -204,6 +211,8 @@ void envmap_normalise(struct envmap *env)
 		for (long i = 0; i < 3L * all[j]->width * all[j]->height; i++)
 			all[j]->px[i] *= (float)k;
 	for (int i = 0; i < 9; i++)
-		for (int c = 0; c < 3; c++)
+		for (int c = 0; c < 3; c++) {
 			env->sh[i][c] *= k;
+			env->quadric[i][c] *= (float)k;
+		}
 }

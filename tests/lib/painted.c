@@ -41,7 +41,7 @@ bool painted_scene(struct scene *scene, int size, const struct eye *eye, const s
 	snprintf(texture, sizeof texture, "%s/texture.exr", dir);
 	snprintf(json, sizeof json, "%s/texture.json", dir);
 	snprintf(relief, sizeof relief, "%s/relief.exr", dir);
-	struct scene_files files = { texture, json, relief, 0 };
+	struct scene_files files = { texture, json, relief, 0, 0 };
 	bool ok = write_maps(&files, size, colour, height, pupil, err) && scene_load(scene, &files, eye, conf, err);
 	unlink(texture);
 	unlink(json);
