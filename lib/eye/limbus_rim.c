@@ -8,13 +8,11 @@
 #include "base/mem.h"
 #include "eye/limbus_colour.h"
 #include "eye/limbus_consensus.h"
+#include "eye/limbus_cover.h"
 #include "math/stats.h"
 
-enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, GAP_ARCS = 5 };
+enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6 };
 static const double SHARP_PX = 3;       // a step's sigma
-static const double OUTSIDE = 0.09;     // of the semi-axis: where the colour outside is looked at
-static const double WHITE = 0.35;       // of the ring's whiter part
-static const double SEEN = 0.4;         // of the typical step
 static const double MAX_AXIS_PX = 900;  // larger limbi are measured in a reduced picture: as many samples as pay
 
 static double median_of(const struct step step[ARCS], const bool use[ARCS], size_t field)
@@ -28,20 +26,6 @@ static double median_of(const struct step step[ARCS], const bool use[ARCS], size
 }
 #define MEDIAN(steps, use, field) median_of(steps, use, offsetof(struct step, field))
 
-/* Tint of what lies outside each arc, against the whiter arcs of the ring; 1 without tint. */
-static void outer_tint(double white[ARCS], const struct ring *ring, const struct grey *tint)
-{
-	double sorted[ARCS];
-	for (int i = 0; i < ARCS; i++) {
-		const double s = OUTSIDE * ring->e.a;
-		white[i] = tint ? grey_at(tint, ring->p[i][0] + s * ring->normal[i][0], ring->p[i][1] + s * ring->normal[i][1]) : 1;
-	}
-	memcpy(sorted, white, sizeof sorted);
-	double reference = stats_quantile(ARCS, sorted, 0.75);
-	for (int i = 0; i < ARCS; i++)
-		white[i] /= reference;
-}
-
 /* Which arcs show iris against sclera: enough contrast, a step as the others', not beside a gap. */
 static int choose_arcs(bool use[ARCS], const struct step step[ARCS], const struct ring *ring,
                        const struct grey *tint, const struct rim_conf *conf)
@@ -49,9 +33,9 @@ static int choose_arcs(bool use[ARCS], const struct step step[ARCS], const struc
 	bool good[ARCS];
 	double jump[ARCS], white[ARCS];
 	int n = 0;
-	outer_tint(white, ring, tint);
+	rim_tint(white, ring, tint);
 	for (int i = 0; i < ARCS; i++) {
-		good[i] = step[i].ok && !step[i].steep && ring->inside[i] && step[i].rms < conf->max_rms && white[i] > WHITE;
+		good[i] = step[i].ok && !step[i].steep && ring->inside[i] && step[i].rms < conf->max_rms && white[i] > RIM_WHITE;
 		if (good[i])
 			jump[n++] = step[i].out - step[i].in;
 	}
@@ -212,41 +196,6 @@ static bool first_width(struct rim *rim, const struct grey *grey, int width, int
 	return ok;
 }
 
-/* Share of the ring that shows iris against sclera: brighter outside than inside by a good part of what is typical,
- * or used; short gaps (a streak, a vein, a lash) are bridged, lone arcs are not believed. */
-static void cover(struct rim *rim, const struct grey *grey, const struct grey *tint, int width, int height)
-{
-	const double gap = 1.5 * rim->width + grey->scale, depth = fmax(0.03 * rim->e.a, 2 * grey->scale);
-	struct ring r = ring_sample(grey, &rim->e, -gap - depth, gap + depth, fmax(grey->scale, depth / 6), 3, width, height);
-	bool on[ARCS];
-	double white[ARCS];
-	int n = 0;
-	outer_tint(white, &r, tint);
-	const double typical = MEDIAN(rim->step, rim->used, out) - MEDIAN(rim->step, rim->used, in);
-	for (int i = 0; i < ARCS; i++) {
-		const float *v = r.v + (long)i * r.m;
-		double in = 0, out = 0;
-		const int end = (int)(depth / r.step);
-		for (int j = 0; j < end; j++) {
-			in += v[j] / end;
-			out += v[r.m - 1 - j] / end;
-		}
-		on[i] = rim->used[i] || (r.inside[i] && white[i] > WHITE && out - in > SEEN * typical && out - in < typical / SEEN);
-	}
-	ring_free(&r);
-	for (int i = 0; i < ARCS; i++) {
-		int before = 0, after = 0, near = 0;
-		for (int j = 0; j <= GAP_ARCS; j++) {
-			before |= on[(i - j + ARCS) % ARCS];
-			after |= on[(i + j) % ARCS];
-			near += on[(i - j + ARCS) % ARCS] + on[(i + j) % ARCS];
-		}
-		rim->seen[i] = (on[i] || (before && after)) && near > GAP_ARCS;
-		n += rim->seen[i];
-	}
-	rim->coverage = (double)n / ARCS;
-}
-
 /* Width of the step in every used arc by itself, the ellipse and the slopes being known. */
 static void own_widths(struct rim *rim, const struct grey *grey, double window, int width, int height)
 {
@@ -301,7 +250,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	if (ok) {
 		own_widths(rim, &grey, fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a), w, h);
 		correlate(rim, conf->irregularity);
-		cover(rim, &grey, tint, w, h);
+		rim_cover(rim, &grey, tint, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);
 		rim->in = MEDIAN(rim->step, rim->used, in);
