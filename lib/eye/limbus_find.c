@@ -93,6 +93,20 @@ static bool is_pupil(const struct rim *rim, const struct grey *white)
 	return stats_quantile(m, far, 0.93) > WHITER * stats_median(n, near);
 }
 
+/* Most of what lies outside the edge is burnt out: a bright iris round its pupil then passes for sclera, and a ramp
+ * cut off by the sensor is no measure of the limbus. */
+static bool is_burnt(const struct rim *rim, const struct grey *white)
+{
+	int burnt = 0, n = 0;
+	for (int i = 0; i < ARCS; i++)
+		if (rim->used[i]) {
+			const double dx = rim->p[i][0] - rim->e.cx, dy = rim->p[i][1] - rim->e.cy;
+			burnt += grey_at(white, rim->e.cx + 1.12 * dx, rim->e.cy + 1.12 * dy) > 0.96;
+			n++;
+		}
+	return burnt > 0.8 * n;
+}
+
 /* The first reason against a measured ellipse, or null. */
 static const char *judge(const struct rim *rim, const struct photo *photo, const struct pyramid *pyramid,
                          const struct limbus_conf *conf)
@@ -109,6 +123,8 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 		return "too blurred: focus on the iris and hold the camera still";
 	if (rim->rms > conf->max_rms * e->a + PIXEL_RMS)
 		return "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight";
+	if (is_burnt(rim, &pyramid->level[0]))
+		return "over-exposed round the iris: the white of the eye is burnt out; use less light or a shorter exposure";
 	if (is_pupil(rim, &pyramid->level[0]))
 		return "only the pupil stands out, no limbus round it: show the whole iris, evenly lit";
 	double sigma[ELLIPSE_N], worst = 0;
