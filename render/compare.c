@@ -102,7 +102,7 @@ static json_t *figures_make(struct job *job, const struct shot *shot, const stru
 	json_object_set_new(out, "compared_px", json_integer(n));
 	json_object_set_new(out, "exposure", json_real(job->scene.gain));
 	json_object_set_new(out, "explained_by_model", json_real(job->scene.explained));
-	json_object_set_new(out, "lamps", json_integer(job->lamps));
+	json_object_set_new(out, "lamps", json_integer(shot->n_lamps));
 	free(error);
 	return out;
 }

@@ -52,22 +52,36 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 	return image;
 }
 
-static bool environments(struct job *job, const struct shot *reference, struct err *err)
+static bool studio(struct job *job, struct err *err)
 {
-	int height = job->conf->scene.map_size > 1024 ? 512 : job->conf->scene.map_size > 512 ? 256 : 128;
-	if (job->conf->environment) {
-		if (!envmap_load(&job->studio, stage_path(job->stage, "%s", job->conf->environment), err))
-			return false;
-		envmap_normalise(&job->studio);
-	} else {
-		job->studio = light_studio(height);
+	if (!job->conf->environment) {
+		job->studio = light_studio(env_height(job->conf));
+		return true;
 	}
-	if (job->conf->polarised)
-		job->photo_env = light_studio(height);
-	else
-		job->photo_env = light_of_photo(reference, job->eye, height, &job->photo_lamps, &job->lamps);
-	stage_figure(job->stage, "lamps_found", job->lamps, "");
+	if (!envmap_load(&job->studio, stage_path(job->stage, "%s", job->conf->environment), err))
+		return false;
+	envmap_normalise(&job->studio);
 	return true;
+}
+
+/* What the photograph shows of the sclera, without the light that falls on it beside the limbus. */
+static void unlight(double rgb[3], const struct shot *shot, const struct eye *eye, const struct scene_conf *conf)
+{
+	enum { TURNS = 16 };
+	double mean[3] = { 0 };
+	for (int k = 0; k < TURNS; k++) {
+		double polar = asin(1.35 * eye->limbus_radius / conf->sclera_radius), turn = 2 * M_PI * k / TURNS;
+		double n[3] = { sin(polar) * cos(turn), sin(polar) * sin(turn), -cos(polar) };
+		float cam[3], light[3];
+		for (int i = 0; i < 3; i++)
+			cam[i] = (float)(shot->fit.cam_from_eye[i][0] * n[0] + shot->fit.cam_from_eye[i][1] * n[1]
+			                 + shot->fit.cam_from_eye[i][2] * n[2]);
+		envmap_irradiance(light, &shot->env, cam);
+		for (int c = 0; c < 3; c++)
+			mean[c] += light[c] / TURNS;
+	}
+	for (int c = 0; c < 3; c++)
+		rgb[c] = fmin(rgb[c] / fmax(mean[c], 0.3), 0.95);
 }
 
 /* mm from clear to white, as the photograph shows it. A smooth step of width w has the spread 0.22 w of its slope. */
@@ -85,9 +99,11 @@ static bool prepare(struct job *job, struct err *err)
 	struct scene_conf conf = job->conf->scene;
 	if (job->ready)
 		return true;
-	if (!shot_decode(job, reference, err) || !environments(job, reference, err))
+	if (!shot_ready(job, reference, err) || !studio(job, err))
 		return false;
-	if (!sclera_of_photo(conf.sclera_rgb, reference))
+	if (sclera_of_photo(conf.sclera_rgb, reference))
+		unlight(conf.sclera_rgb, reference, job->eye, &conf);
+	else
 		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
 	double white = 0.2126 * conf.sclera_rgb[0] + 0.7152 * conf.sclera_rgb[1] + 0.0722 * conf.sclera_rgb[2];
 	job->gain = fmin(fmax(0.62 / white, 0.7), 2.5);  // the beauty views are exposed for the sclera
@@ -104,8 +120,9 @@ static bool prepare(struct job *job, struct err *err)
 		return false;
 	job->ready = true;
 	struct scene_view view = shot_view(reference);
-	struct scene_lighting light = scene_lighting(&job->photo_env, 0, job->conf->lights);
+	struct scene_lighting light = scene_lighting(&reference->env, 0, job->conf->lights);
 	scene_fit_colour(&job->scene, &view, &light);
+	stage_figure(job->stage, "lamps_found", reference->n_lamps, "");
 	stage_figure(job->stage, "exposure", job->scene.gain, "");
 	stage_figure(job->stage, "explained_by_model", 100 * job->scene.explained, "%");
 	return true;
@@ -183,10 +200,10 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	bool need_compare = stale(job, compare, n, in), need_numbers = stale(job, numbers, n, in);
 	if (!need_exr && !need_png && !need_compare && !need_numbers)
 		return true;
-	if (!prepare(job, err) || !shot_decode(job, shot, err))
+	if (!prepare(job, err) || !shot_ready(job, shot, err))
 		return false;
 	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
-	struct scene_lighting light = scene_lighting(&job->photo_env, job->lamps ? &job->photo_lamps : 0, job->conf->lights);
+	struct scene_lighting light = scene_lighting(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights);
 	struct scene_view view = shot_view(shot);
 	json_t *figures;
 	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
@@ -251,8 +268,6 @@ bool render_eye(struct stage *stage, const struct capture *capture, int eye_inde
 	if (job.ready)
 		scene_free(&job.scene);
 	envmap_free(&job.studio);
-	envmap_free(&job.photo_env);
-	envmap_free(&job.photo_lamps);
 	shots_free(&job);
 	return ok;
 }

@@ -147,6 +147,7 @@ static json_t *pigments(struct page *page, const char *dir)
 		if (*line)
 			json_array_append_new(weak, template_text(line));
 	}
+	json_object_set_new(out, "any_held", json_boolean(json_array_size(weak)));
 	json_object_set_new(out, "held", weak);
 	json_decref(root);
 	return out;

@@ -26,6 +26,8 @@ struct shot {
 	const struct capture_photo *photo;
 	struct fit fit;
 	struct image image;              // the window, linear, at the size of its view; px null: not decoded yet
+	struct envmap env, lamps;        // its light; what the cornea mirrors beyond what is in the texture already
+	int n_lamps;
 	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view
 	double slip[2][3];               // as in struct scene_view
 };
@@ -42,10 +44,8 @@ struct job {
 	int n_in;
 	bool ready;                      // what follows has been made
 	struct scene scene;
-	struct envmap studio, photo_env; // of the beauty views; of the reference photograph
-	struct envmap photo_lamps;       // what the cornea mirrors there beyond what is in the texture already
+	struct envmap studio;            // of the beauty views
 	double gain;                     // of the beauty views' exposure
-	int lamps;                       // found in the reference photograph
 	double worst;                    // largest mean difference from a photograph, CIEDE2000
 	struct scene_count count;
 	double seconds;                  // spent tracing
@@ -55,9 +55,10 @@ struct job {
 bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
                 const struct render_conf *conf, struct err *err);
 
-/* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free. */
+/* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free.
+ * shot_ready: decodes the photograph and reads its light, once. */
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err);
-bool shot_decode(struct job *job, struct shot *shot, struct err *err);
+bool shot_ready(struct job *job, struct shot *shot, struct err *err);
 void shots_free(struct job *job);
 
 /* align.c: turns the fit's eye frame into that of the maps, as unrefract registered this photograph; what a turn about
@@ -69,6 +70,9 @@ struct scene_view shot_view(const struct shot *shot);
 
 /* 1 on the ellipse, more outside. */
 double ellipse_radius(const struct ellipse *e, double x, double y);
+
+/* Rows of an environment's map: sharper than the pictures need it. */
+int env_height(const struct render_conf *conf);
 
 /* light.c: the room of a photograph with its n lamps where the cornea mirrors them; or, where it mirrors none, the studio.
  * lamps: the lamps alone, in the dark. envmap_free both. */

@@ -66,11 +66,9 @@ bool shots_load(struct job *job, const struct capture *capture, int eye_index, s
 	return true;
 }
 
-bool shot_decode(struct job *job, struct shot *shot, struct err *err)
+static bool decode(struct job *job, struct shot *shot, struct err *err)
 {
 	struct photo photo;
-	if (shot->image.px)
-		return true;
 	if (!photo_load(&photo, stage_path(job->stage, "%s", shot->photo->file), job->conf->limit_mpx, err))
 		return false;
 	const double *w = shot->window;
@@ -89,9 +87,30 @@ bool shot_decode(struct job *job, struct shot *shot, struct err *err)
 	return ok;
 }
 
+int env_height(const struct render_conf *conf)
+{
+	return conf->scene.map_size > 1024 ? 512 : conf->scene.map_size > 512 ? 256 : 128;
+}
+
+bool shot_ready(struct job *job, struct shot *shot, struct err *err)
+{
+	if (shot->image.px)
+		return true;
+	if (!decode(job, shot, err))
+		return false;
+	if (job->conf->polarised)
+		shot->env = light_studio(env_height(job->conf));
+	else
+		shot->env = light_of_photo(shot, job->eye, env_height(job->conf), &shot->lamps, &shot->n_lamps);
+	return true;
+}
+
 void shots_free(struct job *job)
 {
-	for (int i = 0; i < job->n_shots; i++)
+	for (int i = 0; i < job->n_shots; i++) {
 		image_free(&job->shots[i].image);
+		envmap_free(&job->shots[i].env);
+		envmap_free(&job->shots[i].lamps);
+	}
 	free(job->shots);
 }
