@@ -94,7 +94,7 @@ $B/%.o: %.c | $B/.setup
 $B/%.o: %.cc | $B/.setup
 	@mkdir -p $(@D)
 	$(call tell,c++ $<)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -c $< -o $@
+	$(Q)$(CXX) $(ALL_CXXFLAGS) $(EXR_CFLAGS) -c $< -o $@
 
 # Archives and programs are replaced only when their bytes change, so that a comment reruns no stage.
 $B/libeyewright.a: $(LIB_OBJ)

@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "bridge/imf_read.h"
 #include "render/render.h"
 
 static double now_s(void)
@@ -58,7 +59,9 @@ static bool studio(struct job *job, struct err *err)
 		job->studio = light_studio(env_height(job->conf));
 		return true;
 	}
-	if (!envmap_load(&job->studio, stage_path(job->stage, "%s", job->conf->environment), err))
+	struct image map;
+	const char *path = stage_path(job->stage, "%s", job->conf->environment);
+	if (!imf_read_rgb(&map, path, 1L << 26, err) || !envmap_take(&job->studio, &map, path, err))
 		return false;
 	envmap_normalise(&job->studio);
 	return true;
@@ -84,6 +87,23 @@ static void unlight(double rgb[3], const struct shot *shot, const struct eye *ey
 		rgb[c] = fmin(rgb[c] / fmax(mean[c], 0.3), 0.95);
 }
 
+/* The beauty views are exposed for the sclera of an eye that looks into the camera: between its mean and its brightest
+ * side it comes out at 62 %. */
+static double exposure(const struct envmap *env, const double sclera[3])
+{
+	enum { TURNS = 16 };
+	double mean = 0, most = 0;
+	for (int k = 0; k < TURNS; k++) {
+		double turn = 2 * M_PI * k / TURNS;
+		float light[3], n[3] = { (float)(0.7071 * cos(turn)), (float)(0.7071 * sin(turn)), -0.7071f };
+		envmap_irradiance(light, env, n);
+		double lum = 0.2126 * sclera[0] * light[0] + 0.7152 * sclera[1] * light[1] + 0.0722 * sclera[2] * light[2];
+		mean += lum / TURNS;
+		most = fmax(most, lum);
+	}
+	return fmin(fmax(0.62 * 2 / (mean + most), 0.05), 3);
+}
+
 /* mm from clear to white, as the photograph shows it. A smooth step of width w has the spread 0.22 w of its slope. */
 static double limbus_width(const struct shot *reference)
 {
@@ -105,8 +125,7 @@ static bool prepare(struct job *job, struct err *err)
 		unlight(conf.sclera_rgb, reference, job->eye, &conf);
 	else
 		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
-	double white = 0.2126 * conf.sclera_rgb[0] + 0.7152 * conf.sclera_rgb[1] + 0.0722 * conf.sclera_rgb[2];
-	job->gain = fmin(fmax(0.62 / white, 0.7), 2.5);  // the beauty views are exposed for the sclera
+	job->gain = exposure(&job->studio, conf.sclera_rgb);
 	struct eye eye = *job->eye;
 	if (!isfinite(eye.limbus_aspect))
 		eye.limbus_aspect = reference->fit.limbus_aspect;

@@ -11,10 +11,12 @@
 #include <omp.h>
 
 #include "base/mem.h"
+#include "bridge/imf_read.h"
 #include "eye/scene_impl.h"
 #include "image/colour.h"
 #include "math/rng.h"
 #include "optics/lightpath.h"
+#include "tests/lib/bench.h"
 #include "tests/lib/painted.h"
 
 static const struct eye plain_eye = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75, 0.55, 1.376 };
@@ -102,6 +104,39 @@ static void one_lamp(void **state)
 	double expected = 20 * 4 * asin(sin(0.1) * sin(0.1)) / M_PI + 0.01 * 4;
 	assert_float_equal(best->rgb[0], expected, 0.05 * expected);  // its edge is soft over half a degree of 5.7
 	envmap_free(&env);
+}
+
+/* Maps as strangers make them: negative light, none, no numbers, another shape. The shared ones are DWAB-compressed. */
+static void strange_maps(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	struct envmap env;
+	struct image odd = image_new(30, 16, 3), bad = image_new(32, 16, 3), black = image_new(32, 16, 3);
+	assert_false(envmap_take(&env, &odd, "odd", &err));
+	assert_non_null(strstr(err.msg, "odd: 30 x 16"));
+	assert_false(envmap_take(&env, &black, "black", &(struct err){ 0 }));
+	for (int i = 0; i < 32 * 16 * 3; i++)
+		bad.px[i] = i % 4 == 0 ? -5 : i % 4 == 1 ? NAN : i % 4 == 2 ? INFINITY : 1;
+	assert_true(envmap_take(&env, &bad, "bad", &err));
+	envmap_normalise(&env);
+	assert_float_equal(envmap_level(&env), 1, 1e-5);
+	envmap_free(&env);
+	const char *path = bench_data("env/studio.exr");
+	if (!path)
+		skip();  // the shared data is not there
+	struct image map;
+	err = (struct err){ 0 };
+	assert_true(imf_read_rgb(&map, path, 1 << 20, &err));
+	assert_int_equal(map.width, 512);
+	assert_true(envmap_take(&env, &map, path, &err));
+	struct envmap_light lights[8];
+	assert_int_equal(envmap_lights(lights, 8, &env), 8);
+	for (int i = 0; i < 8; i++)
+		assert_true(lights[i].rgb[1] > 0 && isfinite(lights[i].rgb[1]));
+	envmap_free(&env);
+	assert_false(imf_read_rgb(&map, path, 1000, &err));
+	assert_false(imf_read_rgb(&map, "/dev/null", 1000, &err));
 }
 
 /* Batch of one ray straight down at (x, y) onto a flat iris. */
@@ -401,6 +436,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(even_light),          cmocka_unit_test(one_lamp),
+		cmocka_unit_test(strange_maps),
 		cmocka_unit_test(march_closed_form),   cmocka_unit_test(grid_against_solver),
 		cmocka_unit_test(places),              cmocka_unit_test(photograph_comes_back),
 		cmocka_unit_test(mirror_at_normal),    cmocka_unit_test(threads_and_numbers),

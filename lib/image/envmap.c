@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/exr.h"
 
 void envmap_dir(double dir[3], double u, double v)
 {
@@ -144,16 +143,14 @@ struct envmap envmap_room(int height, const double ceiling[3], const double floo
 	return env;
 }
 
-bool envmap_load(struct envmap *env, const char *path, struct err *err)
+bool envmap_take(struct envmap *env, struct image *map, const char *name, struct err *err)
 {
-	static const char *const rgb[] = { "R", "G", "B" };
-	*env = (struct envmap){ 0 };
-	if (!exr_read(&env->map, path, 3, rgb, 1L << 26, 0, err))
-		return false;
-	int w = env->map.width, h = env->map.height;
-	if (w != 2 * h || h < 8) {
-		image_free(&env->map);
-		return err_set(err, "%s: %d x %d px: a latitude-longitude map is twice as wide as high, 16 x 8 at least", path,
+	int w = map->width, h = map->height;
+	*env = (struct envmap){ .map = *map };
+	*map = (struct image){ 0 };
+	if (w != 2 * h || h < 8 || env->map.channels != 3) {
+		envmap_free(env);
+		return err_set(err, "%s: %d x %d px: a latitude-longitude map is twice as wide as high, 16 x 8 at least", name,
 		               w, h);
 	}
 	for (long i = 0; i < 3L * w * h; i++) {
@@ -164,7 +161,7 @@ bool envmap_load(struct envmap *env, const char *path, struct err *err)
 	envmap_unfold(env);
 	if (!(env->sh[0][0] + env->sh[0][1] + env->sh[0][2] > 0)) {
 		envmap_free(env);
-		return err_set(err, "%s: the map is black", path);
+		return err_set(err, "%s: the map is black", name);
 	}
 	return true;
 }

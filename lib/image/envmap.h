@@ -34,8 +34,9 @@ enum { ENVMAP_LIGHTS_MAX = 64 };
 struct envmap envmap_room(int height, const double ceiling[3], const double floor[3], double back, int n,
                           const struct envmap_box boxes[]);
 
-/* A latitude-longitude EXR; negatives and what is not finite become 0. envmap_free. */
-bool envmap_load(struct envmap *env, const char *path, struct err *err);
+/* Of a latitude-longitude picture, which it takes over: three channels; negatives and what is not finite become 0.
+ * name: for errors. envmap_free. */
+bool envmap_take(struct envmap *env, struct image *map, const char *name, struct err *err);
 void envmap_free(struct envmap *env);
 
 /* Radiance of a white plane that faces the camera (normal -z), mean of the channels. */
