@@ -93,6 +93,18 @@ bool parse(struct mesh *mesh, const char *data, size_t size, enum mesh_kind kind
 	return take(mesh, om, options.check(OpenMesh::IO::Options::VertexColor), err);
 }
 
+/* OpenMesh gets OBJ in its plainest form: its reader aborts on some that are not, and opens the materials they name. */
+bool clean(char **data, size_t *size, long limit, struct err *err)
+{
+	char *plain;
+	size_t n = 0;
+	bool ok = mesh_clean_obj(&plain, &n, *data, *size, limit, err);
+	free(*data);
+	*data = plain;
+	*size = n;
+	return ok;
+}
+
 void give(Mesh &om, const struct mesh *mesh)
 {
 	for (int i = 0; i < mesh->n_vertices; i++) {
@@ -120,12 +132,14 @@ bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *e
 	struct err why = {};
 	char *data;
 	size_t size;
-	enum mesh_kind kind;
 	if (!file_read(&data, &size, path, (size_t)limit * 2 * BYTES_EACH + BYTES_HEAD, err))
 		return false;
 	bool ok = false;
 	try {
-		ok = mesh_check(&kind, data, size, limit, &why) && parse(mesh, data, size, kind, &why);
+		enum mesh_kind kind;
+		ok = mesh_kind_of(&kind, data, size, &why)
+		     && (kind == MESH_PLY ? mesh_check_ply(data, size, limit, &why) : clean(&data, &size, limit, &why))
+		     && parse(mesh, data, size, kind, &why);
 	} catch (const std::exception &e) {
 		err_set(&why, "cannot be read: %s", e.what());
 	} catch (...) {

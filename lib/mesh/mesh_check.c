@@ -1,8 +1,59 @@
 #include "mesh/mesh_check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const char blanks[] = " \t\r\v\f";
+
+struct obj {
+	FILE *out;
+	long line, n_vertices, n_faces, all_vertices;  // all: of the file, which a face may name ahead of time
+	struct err *err;
+};
+
+/* "v x y z", with r g b behind it or not. */
+static bool take_vertex(struct obj *obj, const char *at, const char *end)
+{
+	float v[6] = { 0 };
+	int n = 0;
+	for (at += strspn(at, blanks); at < end && n < 6; at += strspn(at, blanks), n++) {
+		char *after;
+		v[n] = strtof(at, &after);
+		if (after == at || after > end || !isfinite(v[n]))
+			return err_set(obj->err, "line %ld: a coordinate that is no number", obj->line);
+		at = after;
+	}
+	if (n < 3)
+		return err_set(obj->err, "line %ld: a vertex of %d coordinates: must be 3", obj->line, n);
+	fprintf(obj->out, n == 6 ? "v %.9g %.9g %.9g %.9g %.9g %.9g\n" : "v %.9g %.9g %.9g\n", (double)v[0], (double)v[1],
+	        (double)v[2], (double)v[3], (double)v[4], (double)v[5]);
+	obj->n_vertices++;
+	return true;
+}
+
+/* Corners "v", "v/t", "v//n", "v/t/n"; from 1, or below zero backwards from the last vertex so far. */
+static bool take_face(struct obj *obj, const char *at, const char *end)
+{
+	int corners = 0;
+	fputs("f", obj->out);
+	for (at += strspn(at, blanks); at < end; at += strspn(at, blanks)) {
+		char *after;
+		long v = strtol(at, &after, 10);
+		bool is_word = after > at && after <= end;
+		v = v < 0 ? v + 1 + obj->n_vertices : v;
+		if (!is_word || v < 1 || v > obj->all_vertices)
+			return err_set(obj->err, "line %ld: a corner that is no vertex: must be in [1, %ld]", obj->line,
+			               obj->all_vertices);
+		fprintf(obj->out, " %ld", v);
+		corners++;
+		at = after + strcspn(after, " \t\r\v\f\n");
+	}
+	fputs("\n", obj->out);
+	obj->n_faces++;
+	return corners >= 3 || err_set(obj->err, "line %ld: a face of %d corners: must be at least 3", obj->line, corners);
+}
 
 /* Where a text line ends. */
 static const char *line_end(const char *at, const char *end)
@@ -11,70 +62,48 @@ static const char *line_end(const char *at, const char *end)
 	return nl ? nl : end;
 }
 
-static bool starts(const char *at, const char *end, const char *with)
+/* What stands behind the line's first word, when it is `letter`; null otherwise. */
+static const char *behind(const char *at, const char *end, char letter)
 {
-	size_t n = strlen(with);
-	return (size_t)(end - at) > n && !strncmp(at, with, n);
+	at += strspn(at, blanks);
+	return at + 1 < end && *at == letter && strchr(blanks, at[1]) ? at + 1 : 0;
 }
 
-static bool check_vertex(const char *at, const char *end, long line, struct err *err)
+static void count(struct obj *obj, long *faces, const char *data, const char *end)
 {
-	for (int k = 0; k < 3; k++) {
-		char *after;
-		float x = strtof(at, &after);
-		if (after == at || after > end || !isfinite(x))
-			return err_set(err, "line %ld: a coordinate that is no number", line);
-		at = after;
+	for (const char *at = data; at < end; at = line_end(at, end) + 1) {
+		obj->all_vertices += behind(at, line_end(at, end), 'v') != 0;
+		*faces += behind(at, line_end(at, end), 'f') != 0;
 	}
-	return true;
 }
 
-/* Corners "v", "v/t", "v//n", "v/t/n"; from 1, or from the last backwards below zero. */
-static bool check_face(const char *at, const char *end, long line, long n_vertices, struct err *err)
-{
-	int corners = 0;
-	for (at += strspn(at, " \t"); at < end && *at != '\r'; at += strspn(at, " \t")) {
-		char *after;
-		long v = strtol(at, &after, 10);
-		if (after == at || after > end || !v || v > n_vertices || v < -n_vertices)
-			return err_set(err, "line %ld: a corner that is no vertex: must be in [1, %ld]", line, n_vertices);
-		corners++;
-		at = after + strcspn(after, " \t\r\n");
-	}
-	return corners >= 3 || err_set(err, "line %ld: a face of %d corners: must be at least 3", line, corners);
-}
-
-static bool check_obj(const char *data, size_t size, long limit, struct err *err)
+bool mesh_clean_obj(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err)
 {
 	const char *end = data + size;
-	long n_vertices = 0, n_faces = 0, line = 1;
-	for (const char *at = data; at < end; at = line_end(at, end) + 1) {
-		n_vertices += starts(at, end, "v ");
-		n_faces += starts(at, end, "f ");
-	}
-	if (n_vertices > limit || n_faces > limit)
-		return err_set(err, "%ld vertices, %ld faces: must be <= %ld", n_vertices, n_faces, limit);
-	if (!n_vertices)
+	struct obj obj = { .line = 1, .err = err };
+	long faces = 0;
+	*clean = 0;
+	count(&obj, &faces, data, end);
+	if (!obj.all_vertices)
 		return err_set(err, "is no mesh: must be PLY or OBJ");
-	for (const char *at = data; at < end; at = line_end(at, end) + 1, line++) {
-		if (starts(at, end, "v ") && !check_vertex(at + 2, line_end(at, end), line, err))
-			return false;
-		if (starts(at, end, "f ") && !check_face(at + 2, line_end(at, end), line, n_vertices, err))
-			return false;
+	if (obj.all_vertices > limit || faces > limit)
+		return err_set(err, "%ld vertices, %ld faces: must be <= %ld", obj.all_vertices, faces, limit);
+	obj.out = open_memstream(clean, clean_size);
+	for (const char *at = data; at < end; at = line_end(at, end) + 1, obj.line++) {
+		const char *stop = line_end(at, end), *vertex = behind(at, stop, 'v'), *face = behind(at, stop, 'f');
+		if ((vertex && !take_vertex(&obj, vertex, stop)) || (face && !take_face(&obj, face, stop)))
+			break;
 	}
-	return true;
+	fclose(obj.out);
+	return !err_is(err);
 }
 
-bool mesh_check(enum mesh_kind *kind, const char *data, size_t size, long limit, struct err *err)
+bool mesh_kind_of(enum mesh_kind *kind, const char *data, size_t size, struct err *err)
 {
-	*kind = MESH_NONE;
+	*kind = !strncmp(data, "ply\n", 4) || !strncmp(data, "ply\r\n", 5) ? MESH_PLY : MESH_OBJ;
 	if (!size)
 		return err_set(err, "is empty");
-	bool ply = !strncmp(data, "ply\n", 4) || !strncmp(data, "ply\r\n", 5);
-	if (!ply && memchr(data, 0, size))
+	if (*kind == MESH_OBJ && memchr(data, 0, size))
 		return err_set(err, "is no mesh: must be PLY or OBJ");
-	if (ply ? !mesh_check_ply(data, size, limit, err) : !check_obj(data, size, limit, err))
-		return false;
-	*kind = ply ? MESH_PLY : MESH_OBJ;
 	return true;
 }
