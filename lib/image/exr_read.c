@@ -30,6 +30,30 @@ static bool open_part(exr_context_t *file, const char *path, struct err *err)
 	return true;
 }
 
+/* Where each channel of the chunk goes. Those nobody asked for go to `spare`, which takes one channel's lines:
+ * OpenEXRCore (3.1) would leave them out by a null pointer, but its fast paths for three and four half channels then
+ * write through it. False for subsampled channels. */
+static bool aim(exr_decode_pipeline_t *pipe, const struct image *image, int line, int n, const char *const channels[],
+                float *spare)
+{
+	for (int i = 0; i < pipe->channel_count; i++) {
+		exr_coding_channel_info_t *from = &pipe->channels[i];
+		if (from->x_samples != 1 || from->y_samples != 1)
+			return false;
+		from->decode_to_ptr = (uint8_t *)spare;
+		from->user_pixel_stride = sizeof(float);
+		for (int c = 0; c < n; c++)
+			if (!strcmp(channels[c], from->channel_name)) {
+				from->decode_to_ptr = (uint8_t *)(image_at(image, 0, line) + c);
+				from->user_pixel_stride = n * (int)sizeof(float);
+			}
+		from->user_data_type = EXR_PIXEL_FLOAT;
+		from->user_bytes_per_element = sizeof(float);
+		from->user_line_stride = image->width * from->user_pixel_stride;
+	}
+	return true;
+}
+
 static bool read_chunk(exr_context_t file, int part, int y, const struct image *image, int n,
                        const char *const channels[], exr_decode_pipeline_t *pipe)
 {
@@ -40,19 +64,11 @@ static bool read_chunk(exr_context_t file, int part, int y, const struct image *
 	exr_get_data_window(file, part, &window);
 	if (exr_decoding_initialize(file, part, &chunk, pipe))
 		return false;
-	for (int i = 0; i < pipe->channel_count; i++) {
-		exr_coding_channel_info_t *from = &pipe->channels[i];
-		if (from->x_samples != 1 || from->y_samples != 1)
-			return false;
-		for (int c = 0; c < n; c++)
-			if (!strcmp(channels[c], from->channel_name))
-				from->decode_to_ptr = (uint8_t *)(image_at(image, 0, y - window.min.y) + c);
-		from->user_data_type = EXR_PIXEL_FLOAT;
-		from->user_bytes_per_element = sizeof(float);
-		from->user_pixel_stride = n * (int)sizeof(float);
-		from->user_line_stride = image->width * from->user_pixel_stride;
-	}
-	return !exr_decoding_choose_default_routines(file, part, pipe) && !exr_decoding_run(file, part, pipe);
+	float *spare = mem_array((size_t)image->width * (size_t)chunk.height, sizeof *spare);
+	bool ok = aim(pipe, image, y - window.min.y, n, channels, spare)
+	          && !exr_decoding_choose_default_routines(file, part, pipe) && !exr_decoding_run(file, part, pipe);
+	free(spare);
+	return ok;
 }
 
 static bool read_chunks(exr_context_t file, const struct image *image, int n, const char *const channels[])
