@@ -8,7 +8,7 @@
 #include "math/rng.h"
 #include "math/stats.h"
 
-enum { N = ELLIPSE_N, TRIES = 300, POLISH = 8, MIN_ARCS = 40, C = EDGE_CANDIDATES, STRIDE = 3 };
+enum { N = ELLIPSE_N, TRIES = 140, POLISH = 8, MIN_ARCS = 40, C = EDGE_CANDIDATES, STRIDE = 4 };
 
 struct arcs {
 	int n;

@@ -15,7 +15,7 @@ static const double SULCUS = 0.2;  // share of the sclera's shading that continu
 /* Eccentric angles equally spaced along the ellipse: the cumulated perimeter inverted. */
 static void equal_arcs(double t[ARCS], const struct ellipse *e)
 {
-	enum { FINE = 4 * ARCS };
+	enum { FINE = ARCS };
 	double along[FINE + 1] = { 0 };
 	for (int i = 0; i < FINE; i++) {
 		double u = 2 * M_PI * (i + 0.5) / FINE;
@@ -67,7 +67,6 @@ struct ring ring_sample(const struct grey *grey, const struct ellipse *e, double
 	const double spacing = ellipse_perimeter(e) / ARCS;
 	r.v = mem_array((size_t)ARCS * (size_t)r.m, sizeof *r.v);
 	equal_arcs(r.t, e);
-#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		ellipse_point(r.p[i], r.normal[i], e, r.t[i]);
 		sample_arc(&r, i, grey, spacing, across, width, height);

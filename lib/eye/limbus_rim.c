@@ -11,7 +11,7 @@
 #include "eye/limbus_cover.h"
 #include "math/stats.h"
 
-enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6 };
+enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, SHARP_PASSES = 5 };
 static const double SHARP_PX = 3;       // a step's sigma
 static const double MAX_AXIS_PX = 900;  // larger limbi are measured in a reduced picture: as many samples as pay
 
@@ -141,7 +141,6 @@ static bool fine_pass(struct rim *rim, const struct grey *grey, const struct gre
 	                            width, height);
 	/* the first pass knows no step yet: no slopes */
 	edge_slopes(rim->step, &r, fmin(2.3 * rim->width + 0.5, 1.15 * window));
-#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		rim->step[i].d = 0;
 		rim->step[i].w = rim->step[i].ok ? rim->widths[i] : rim->width;
@@ -201,7 +200,6 @@ static void own_widths(struct rim *rim, const struct grey *grey, double window, 
 {
 	struct ring r = ring_sample(grey, &rim->e, -2.4 * window, 2.4 * window, fmax(0.7 * grey->scale, window / 12), ACROSS,
 	                            width, height);
-#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		struct step f = rim->step[i];
 		f.d = 0;
@@ -233,7 +231,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	bool ok = locate(rim, &grey, tint, conf->search * start->a, w, h);
 	for (int i = 0; i < ARCS; i++)
 		rim->widths[i] = rim->width;
-	for (int i = 0; i < PASSES && ok; i++) {
+	for (int i = 0; i < (rim->width < SHARP_PX ? SHARP_PASSES : PASSES) && ok; i++) {
 		if (!conf->grey && (i == 0 || (i == 3 && rim->width >= SHARP_PX))) {
 			/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone. Of soft ones the
 			 * colours are looked at again, now that it is known better where they are. */

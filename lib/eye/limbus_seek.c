@@ -221,15 +221,16 @@ bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, co
 			f.score = score_ellipse(g, &f.e, conf->contrast, SCORE_WIDE);
 			keep(best, &n, CIRCLES, &f);
 		}
-	out->score = 0;
+	*out = (struct seek_found){ 0 };
 	for (int i = 0; i < n; i++) {
 		double a = best[i].e.a;
 		const struct grey *g = &pyramid->level[pyramid_index(pyramid, a, 60)];
-		score_climb(g, &best[i].e, 0.08 * a, 0.015 * a, conf->contrast, SCORE_WIDE);
-		limbus_seek_settle(&best[i], pyramid, conf);
-		if (best[i].score > out->score && best[i].e.b > 1.15 * inner->b)
+		best[i].score = score_climb(g, &best[i].e, 0.08 * a, 0.015 * a, conf->contrast, SCORE_WIDE);
+		if (best[i].e.b > 1.15 * inner->b && rank(&best[i]) > rank(out))
 			*out = best[i];
 	}
+	if (out->score > 0)
+		limbus_seek_settle(out, pyramid, conf);
 	return out->score > 0;
 }
 

@@ -43,7 +43,7 @@ struct ellipse_fit {
 	double inliers;     // sum of the Tukey weights over n
 };
 
-/* Maximum likelihood fit, robust: geometric distances, iteratively reweighted with Tukey's biweight (c = 4.685, 95 %
+/* Maximum likelihood fit, robust: geometric distances, iteratively reweighted with Tukey's biweight (c = 5.5, 97.5 %
  * efficient on clean data).
  * start   e as given, when `have_start`; else random five-point samples (seeded), the best by truncated distance
  * sigma   0: scale from the median absolute deviation; else the known noise of the points, px
