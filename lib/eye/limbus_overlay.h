@@ -4,7 +4,7 @@
 #include "eye/fit.h"
 #include "eye/limbus_record.h"
 
-enum { OVERLAY_LONG = 1600 };
+enum { OVERLAY_LONG = 1200 };
 
 /* 8-bit RGB, longer side at most OVERLAY_LONG px: limbus and pupil ellipses, edge points that were used (dots) and
  * stretches that are hidden, the optical axis out of the eye. Size in *width, *height; free(). */
