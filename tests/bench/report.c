@@ -14,24 +14,7 @@
 #include "base/mem.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/csv.h"
-
-/* Columns of NAME.csv. */
-enum { TABLE, METHOD, SETTING, PER, MEDIAN, LOW, HIGH, ERROR, UNIT, ERROR_OF };
-
-static bool same(const struct csv_row *a, const struct csv_row *b, int column)
-{
-	return !strcmp(a->cell[column], b->cell[column]);
-}
-
-static bool same_plot(const struct csv_row *a, const struct csv_row *b)
-{
-	return same(a, b, TABLE) && same(a, b, PER) && same(a, b, UNIT) && same(a, b, ERROR_OF);
-}
-
-static bool has_both(const struct csv_row *r)
-{
-	return csv_number(r->cell[MEDIAN]) > 0 && csv_number(r->cell[ERROR]) >= 0;
-}
+#include "tests/lib/plot.h"
 
 /* The value of the first "key : value" line in a file of /proc; "unknown" where there is none. */
 static char *proc_value(const char *path, const char *key)
@@ -65,6 +48,19 @@ static void write_machine(FILE *md, const char *compiler, const char *flags)
 	free(features);
 }
 
+/* Text in a cell of a Markdown table. */
+static const char *cell_text(char out[256], const char *text)
+{
+	size_t n = 0;
+	for (; *text && n < 250; text++) {
+		if (*text == '|')
+			out[n++] = '\\';
+		out[n++] = *text;
+	}
+	out[n] = 0;
+	return out;
+}
+
 static void write_goals(FILE *md, int n, const struct csv goals[], const char *const names[])
 {
 	int reached = 0, total = 0;
@@ -75,9 +71,9 @@ static void write_goals(FILE *md, int n, const struct csv goals[], const char *c
 	        total);
 	for (int i = 0; i < n; i++)
 		for (int r = 0; r < goals[i].n; r++) {
-			char *const *c = goals[i].rows[r].cell;
-			fprintf(md, "| %s | %s | %s | %.4g %s | %s |\n", !strcmp(c[4], "yes") ? "reached" : "**missed**", c[0],
-			        c[1], csv_number(c[2]), c[3], names[i]);
+			char *const *c = goals[i].rows[r].cell, measure[256], reach[256];
+			fprintf(md, "| %s | %s | %s | %.4g %s | %s |\n", !strcmp(c[4], "yes") ? "reached" : "**missed**",
+			        cell_text(measure, c[0]), cell_text(reach, c[1]), csv_number(c[2]), c[3], names[i]);
 		}
 	printf("goals: %d of %d reached\n", reached, total);
 }
@@ -89,85 +85,17 @@ static void write_table(FILE *md, const struct csv *csv, int first)
 	for (int i = first; i < csv->n; i++) {
 		char *const *c = csv->rows[i].cell;
 		char median[32], low[32], high[32], error[64] = "-";
-		if (!same(head, &csv->rows[i], TABLE))
+		if (!csv_same(head, &csv->rows[i], TABLE))
 			continue;
 		if (*c[ERROR])
 			snprintf(error, sizeof error, "%.3g %.40s", csv_number(c[ERROR]), c[UNIT]);
-		fprintf(md, "| %s | %s | **%s**", c[METHOD], c[SETTING], bench_seconds(median, csv_number(c[MEDIAN])));
+		char method[256], setting[256];
+		fprintf(md, "| %s | %s | **%s**", cell_text(method, c[METHOD]), cell_text(setting, c[SETTING]), bench_seconds(median, csv_number(c[MEDIAN])));
 		if (*c[LOW] && *c[HIGH])
 			fprintf(md, " (%s .. %s)", bench_seconds(low, csv_number(c[LOW])),
 			        bench_seconds(high, csv_number(c[HIGH])));
 		fprintf(md, " | %s | %s | %s |\n", c[PER], error, c[ERROR_OF]);
 	}
-}
-
-/* A gnuplot string: single quotes, doubled inside. */
-static void quoted(FILE *gp, const char *text)
-{
-	fputc('\'', gp);
-	for (; *text; text++)
-		fputs(*text == '\'' ? "''" : (char[]){ *text, 0 }, gp);
-	fputc('\'', gp);
-}
-
-/* Smallest positive error of the plot over ten: where an error of exactly zero is drawn on a logarithmic axis. */
-static double floor_of(const struct csv *csv, const struct csv_row *head)
-{
-	double least = INFINITY;
-	for (int i = 0; i < csv->n; i++) {
-		double e = csv_number(csv->rows[i].cell[ERROR]);
-		if (same_plot(head, &csv->rows[i]) && e > 0 && e < least)
-			least = e;
-	}
-	return isfinite(least) ? least / 10 : 1e-17;
-}
-
-/* Rows of one method as a data block; false when row `first` is not the method's first in this plot. */
-static bool plot_series(FILE *gp, const struct csv *csv, const struct csv_row *head, int first, int block)
-{
-	double least = floor_of(csv, head);
-	for (int i = 0; i < first; i++)
-		if (same_plot(head, &csv->rows[i]) && has_both(&csv->rows[i]) && same(&csv->rows[first], &csv->rows[i], METHOD))
-			return false;
-	fprintf(gp, "$d%d << EOD\n", block);
-	for (int i = first; i < csv->n; i++) {
-		const struct csv_row *r = &csv->rows[i];
-		if (!same_plot(head, r) || !has_both(r) || !same(&csv->rows[first], r, METHOD))
-			continue;
-		double e = csv_number(r->cell[ERROR]);
-		fprintf(gp, "%.9g %.9g \"", csv_number(r->cell[MEDIAN]), e > 0 ? e : least);
-		for (const char *s = r->cell[SETTING]; *s; s++)
-			fputc(*s == '"' || *s == '\\' ? '\'' : *s, gp);
-		fputs("\"\n", gp);
-	}
-	fputs("EOD\n", gp);
-	return true;
-}
-
-static bool plot(const struct csv *csv, const struct csv_row *head, const char *png)
-{
-	FILE *gp = popen("gnuplot", "w");
-	if (!gp)
-		return false;
-	int first[512], n = 0;
-	for (int i = 0; i < csv->n && n < COUNT(first); i++)
-		if (same_plot(head, &csv->rows[i]) && has_both(&csv->rows[i]) && plot_series(gp, csv, head, i, n))
-			first[n++] = i;
-	fputs("set terminal pngcairo noenhanced size 1100,700 font 'sans,11'\nset output ", gp);
-	quoted(gp, png);
-	fprintf(gp, "\nset logscale xy\nset grid\nset key outside bottom center maxcols 3\nset offsets graph 0.05, graph 0.12, graph 0.08, graph 0.08\n"
-	            "set format x '%%.0s %%cs'\nset format y '%%.0e'\nset xlabel 'time a %s'\nset ylabel '%s, %s'\nset title ",
-	        head->cell[PER], head->cell[ERROR_OF], head->cell[UNIT]);
-	quoted(gp, head->cell[TABLE]);
-	fputs("\nplot ", gp);
-	for (int i = 0; i < n; i++) {
-		fprintf(gp, "%s$d%d using 1:2 with linespoints pt %d ps 1.4 lw 1.5 lc %d title ", i ? ", " : "", i, i % 12 + 4,
-		        i + 1);
-		quoted(gp, csv->rows[first[i]].cell[METHOD]);
-		fprintf(gp, ", $d%d using 1:2:3 with labels font ',8' offset 0.6,0.6 left tc lt %d notitle", i, i + 1);
-	}
-	fputs("\n", gp);
-	return pclose(gp) == 0;
 }
 
 /* Plots of the table that begins with row `first`: one for each kind of error that at least two rows have. */
@@ -177,17 +105,17 @@ static void write_plots(FILE *md, const struct csv *csv, int first, const char *
 		const struct csv_row *r = &csv->rows[i];
 		int same_before = 0, same_all = 0;
 		for (int j = first; j < csv->n; j++)
-			if (same_plot(r, &csv->rows[j]) && has_both(&csv->rows[j])) {
+			if (plot_shares(r, &csv->rows[j]) && plot_has(&csv->rows[j])) {
 				same_all++;
 				same_before += j < i;
 			}
-		if (!same(r, &csv->rows[first], TABLE) || !has_both(r) || same_before || same_all < 2)
+		if (!csv_same(r, &csv->rows[first], TABLE) || !plot_has(r) || same_before || same_all < 2)
 			continue;
 		char *file = mem_printf("%s-%s-%s.png", name, r->cell[TABLE], r->cell[ERROR_OF]);
 		for (char *c = file; *c; c++)
 			*c = isalnum((unsigned char)*c) || *c == '.' ? (char)tolower((unsigned char)*c) : '-';
 		char *path = mem_printf("%s/%s", out, file);
-		if (plot(csv, r, path))
+		if (plot_write(csv, r, path))
 			fprintf(md, "\n![%s against time](%s)\n", r->cell[ERROR_OF], file);
 		free(path);
 		free(file);
@@ -207,7 +135,7 @@ static void write_tables(FILE *md, const struct csv *csv, const char *name, cons
 	for (int i = 0; i < csv->n; i++) {
 		bool seen = false;
 		for (int j = 0; j < i && !seen; j++)
-			seen = same(&csv->rows[i], &csv->rows[j], TABLE);
+			seen = csv_same(&csv->rows[i], &csv->rows[j], TABLE);
 		if (seen)
 			continue;
 		write_table(md, csv, i);
