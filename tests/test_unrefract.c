@@ -218,7 +218,7 @@ static void masks_against_labels(void **state)
 		int width, height;
 		char *path = mem_printf("%s/labels.png", dirs[i]);
 		assert_true(truth_load(&truth, dirs[i], &err));
-		if (cv_rgb8_read(&labels, &width, &height, path, 10, &err)) {
+		if (picture_read(&labels, &width, &height, path, 10, &err)) {
 			struct unrefract_texture texture = texture_of(&truth, &fit, &view);
 			struct label_count c = count_labels(&texture, &view, &truth, labels, width, height);
 			print_message("%s: %.3f %% of what is kept is no iris, %.1f %% of the iris is missed\n", truth.name,
@@ -266,7 +266,7 @@ static void photographs_meet(void **state)
 		}
 		fit[i] = truth_fit(&truth[i]);
 		view[i].name = names[i];
-		assert_true(cv_photo_load(&photo, truth[i].photo, 100, &err));
+		assert_true(photo_load(&photo, truth[i].photo, 100, &err));
 		assert_true(unrefract_survey(&view[i], &photo, &fit[i], &truth[i].eye, &plain, &err));
 		photo_free(&photo);
 		free(dir);

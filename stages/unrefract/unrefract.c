@@ -22,7 +22,7 @@ struct work {
 
 static bool load_photo(struct photo *photo, const struct work *w, int i, struct err *err)
 {
-	return cv_photo_load(photo, stage_path(w->run->stage, "%s", w->photos[i]->file), w->run->limit_mpx, err);
+	return photo_load(photo, stage_path(w->run->stage, "%s", w->photos[i]->file), w->run->limit_mpx, err);
 }
 
 /* Fits that are there and ok. */

@@ -189,13 +189,13 @@ static void time_24_megapixels(struct truth t, const char *root)
 	struct err err = { 0 };
 	const int big_w = 5664, big_h = 4248;
 	char *path = mem_printf("%s/big.jpg", root), *capture = mem_printf("%s/24mpx", root);
-	if (!cv_rgb8_read(&px, &w, &h, t.photo, 100, &err)) {
+	if (!picture_read(&px, &w, &h, t.photo, 100, &err)) {
 		fprintf(stderr, "%s\n", err.msg);
 		return;
 	}
 	uint8_t *big = cv_resize8(px, w, h, 3, big_w, big_h);
 	double scale = (double)big_w / w;
-	if (cv_jpeg_encode(&jpeg, &size, big, big_w, big_h, 3, 92, &err) && file_write(path, jpeg, size, &err)) {
+	if (picture_jpeg_encode(&jpeg, &size, big, big_w, big_h, 3, 92, &err) && file_write(path, jpeg, size, &err)) {
 		snprintf(t.photo, sizeof t.photo, "%s", path);
 		t.focal_px *= scale;
 		t.center_px[0] *= scale;

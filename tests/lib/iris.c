@@ -55,7 +55,7 @@ bool iris_texture(struct unrefract_texture *texture, struct unrefract_view *view
 	struct photo photo = { 0 };
 	*fit = truth_fit(truth);
 	*view = (struct unrefract_view){ .name = truth->name };
-	if (!cv_photo_load(&photo, truth->photo, 100, err) || !unrefract_survey(view, &photo, fit, &truth->eye, conf, err))
+	if (!photo_load(&photo, truth->photo, 100, err) || !unrefract_survey(view, &photo, fit, &truth->eye, conf, err))
 		return false;
 	unrefract_align(1, view, conf);
 	*texture = unrefract_begin(unrefract_size(1, view, &truth->eye, conf), &truth->eye, &view->pupil, conf);
@@ -71,7 +71,7 @@ bool iris_painted(struct image *rgbw, double *extent, const struct truth *truth,
 	struct err err = { 0 };
 	uint8_t *px;
 	int width, height;
-	bool ok = cv_rgb8_read(&px, &width, &height, path, 20, &err);
+	bool ok = picture_read(&px, &width, &height, path, 20, &err);
 	free(path);
 	if (!ok)
 		return false;
@@ -97,7 +97,7 @@ uint8_t *iris_freckle_mask(const struct truth *truth, const char *dir, int size,
 	struct err err = { 0 };
 	uint8_t *px, *mask = 0;
 	int width, height;
-	if (cv_rgb8_read(&px, &width, &height, path, 20, &err)) {
+	if (picture_read(&px, &width, &height, path, 20, &err)) {
 		mask = mem_new((size_t)size * (size_t)size, 1);
 		double c = cos(truth->turn), s = turned ? sin(truth->turn) : 0, mm = 2 * extent / size;
 		c = turned ? c : 1;
