@@ -1,9 +1,9 @@
 #!/bin/bash
-# Includes point down only: stages, render -> eye -> bridge -> optics, image, mesh -> math -> base. Stages never
+# Includes point down only: stages, render -> skin -> eye -> bridge -> optics, image, mesh -> math -> base. Stages never
 # include each other; C++ lives in lib/bridge alone; no shell is started with text of a user's.
 . tests/lib/check.sh
 
-declare -A rank=([base]=0 [math]=1 [optics]=2 [image]=2 [mesh]=2 [bridge]=3 [eye]=4)
+declare -A rank=([base]=0 [math]=1 [optics]=2 [image]=2 [mesh]=2 [bridge]=3 [eye]=4 [skin]=5)
 
 bad=
 while IFS=: read -r file line text; do
