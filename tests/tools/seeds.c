@@ -1,6 +1,6 @@
 /* seeds: small valid files of every kind that the fuzz targets begin from.
  *
- *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/fit/..., DIR/mesh/...
+ *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/...
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/npy.h"
 #include "image/exr.h"
 #include "tests/lib/variant.h"
 
@@ -72,6 +73,22 @@ static void maps(const char *dir)
 	image_free(&grey);
 }
 
+static void arrays(const char *dir)
+{
+	struct err err = { 0 };
+	double x[12] = { 0, 1, 2 };
+	struct npy a = npy_of(NPY_F8, 2, (long[]){ 6, 2 }, x), b = npy_of(NPY_U1, 3, (long[]){ 2, 3, 4 }, x);
+	char *paths[] = { mem_printf("%s/npy/a.npy", dir), mem_printf("%s/npy/b.npy", dir), mem_printf("%s/npy/c.npz", dir) };
+	if (!npy_save(paths[0], &a, &err) || !npy_save(paths[1], &b, &err)
+	    || !npz_save(paths[2], 2, (struct npz_item[]){ { "x", a }, { "y", b } }, "{}", &err))
+		fprintf(stderr, "seeds: %s\n", err.msg);
+	for (int i = 0; i < 3; i++)
+		free(paths[i]);
+	put_text(dir, "npy/swapped.npy", "\x93NUMPY\2");
+	put_text(dir, "csv/a.csv", "frame,time_s,\"g1_deg\"\n0,0,1.5\n1,0.0167,\n# x\n2,0.03,-1e-3\n");
+	put_text(dir, "csv/b.csv", "\xef\xbb\xbf" "a;b\r\n1;\r\n;2\r\n");
+}
+
 int main(int argc, char **argv)
 {
 	if (argc != 2)
@@ -79,6 +96,7 @@ int main(int argc, char **argv)
 	const char *dir = argv[1];
 	photos(dir);
 	maps(dir);
+	arrays(dir);
 	put_text(dir, "conf/a.conf", "; comment\ns.a = 0.25\ns.b = 3\ns.c = yes\ns.d = green\ns.e = 0 0.5 1\ns.f = x y\nphoto.n.g = 0 1\n");
 	put_text(dir, "fit/a.json",
 	         "{\"status\":\"ok\",\"reason\":\"\",\"ellipse\":{\"cx\":8,\"cy\":6,\"a\":5,\"b\":4,\"angle_deg\":10},\"pupil\":null,"
