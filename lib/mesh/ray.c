@@ -1,0 +1,87 @@
+#include "mesh/ray.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <embree3/rtcore.h>
+
+#include "base/mem.h"
+
+struct ray_scene {
+	RTCDevice device;
+	RTCScene scene;
+	RTCGeometry geometry;
+	float (*vertices)[3];  // Embree's own buffer
+	int n_vertices, n_faces;
+};
+
+struct ray_scene *ray_scene_new(int n_vertices, const float (*vertices)[3], int n_faces, const int32_t (*faces)[3])
+{
+	struct ray_scene *s = mem_new(1, sizeof *s);
+	s->n_vertices = n_vertices;
+	s->n_faces = n_faces;
+	// One build thread: the tree, and with it which of two equally near triangles is hit, is the same on any machine.
+	s->device = rtcNewDevice("threads=1");
+	s->scene = rtcNewScene(s->device);
+	rtcSetSceneFlags(s->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+	if (n_faces) {
+		s->geometry = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+		s->vertices = rtcSetNewGeometryBuffer(s->geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+		                                      sizeof *vertices, (size_t)n_vertices);
+		void *corners = rtcSetNewGeometryBuffer(s->geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof *faces,
+		                                        (size_t)n_faces);
+		memcpy(s->vertices, vertices, (size_t)n_vertices * sizeof *vertices);
+		memcpy(corners, faces, (size_t)n_faces * sizeof *faces);
+		rtcCommitGeometry(s->geometry);
+		rtcAttachGeometry(s->scene, s->geometry);
+	}
+	rtcCommitScene(s->scene);
+	return s;
+}
+
+void ray_scene_move(struct ray_scene *s, const float (*vertices)[3])
+{
+	if (!s->n_faces)
+		return;
+	memcpy(s->vertices, vertices, (size_t)s->n_vertices * sizeof *vertices);
+	rtcUpdateGeometryBuffer(s->geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+	rtcCommitGeometry(s->geometry);
+	rtcCommitScene(s->scene);
+}
+
+void ray_scene_free(struct ray_scene *s)
+{
+	if (!s)
+		return;
+	if (s->geometry)
+		rtcReleaseGeometry(s->geometry);
+	rtcReleaseScene(s->scene);
+	rtcReleaseDevice(s->device);
+	free(s);
+}
+
+static struct RTCRay ray_of(const float origin[3], const float dir[3], float near, float far)
+{
+	return (struct RTCRay){ .org_x = origin[0], .org_y = origin[1], .org_z = origin[2], .tnear = near, .dir_x = dir[0],
+		                    .dir_y = dir[1], .dir_z = dir[2], .tfar = far, .mask = 0xffffffff };
+}
+
+struct ray_hit ray_first(const struct ray_scene *s, const float origin[3], const float dir[3], float near, float far)
+{
+	struct RTCIntersectContext context;
+	struct RTCRayHit r = { .ray = ray_of(origin, dir, near, far) };
+	r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+	rtcInitIntersectContext(&context);
+	rtcIntersect1(s->scene, &context, &r);
+	bool hit = r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+	return (struct ray_hit){ r.ray.tfar, hit ? (int)r.hit.primID : -1, r.hit.u, r.hit.v };
+}
+
+bool ray_blocked(const struct ray_scene *s, const float origin[3], const float dir[3], float near, float far)
+{
+	struct RTCIntersectContext context;
+	struct RTCRay r = ray_of(origin, dir, near, far);
+	rtcInitIntersectContext(&context);
+	rtcOccluded1(s->scene, &context, &r);
+	return r.tfar < 0;
+}

@@ -1,0 +1,227 @@
+/* Eyeballs of a mesh: round components where an eye is expected. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "math/chol.h"
+#include "math/vec.h"
+#include "skin/rig_make.h"
+
+enum { LEAST_VERTICES = 20, ROUNDS = 8 };
+/* A human eye: cornea of 7.8 mm on a sclera of 11.8, limbus radius 5.85: apex at 12.95 mm from the centre. */
+static const double cornea_share = 7.8 / 11.8, apex_share = 12.95 / 11.8;
+
+static int root_of(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+/* Component of each vertex: the lowest vertex of it. free(). */
+static int *components_of(const struct rig *rig)
+{
+	int *parent = mem_new((size_t)rig->n + 1, sizeof *parent);
+	for (int i = 0; i < rig->n; i++)
+		parent[i] = i;
+	for (int f = 0; f < rig->n_faces; f++)
+		for (int k = 1; k < 3; k++) {
+			int a = root_of(parent, rig->faces[f][0]), b = root_of(parent, rig->faces[f][k]);
+			parent[a > b ? a : b] = a > b ? b : a;
+		}
+	for (int i = 0; i < rig->n; i++)
+		parent[i] = root_of(parent, i);
+	return parent;
+}
+
+struct ball {
+	double center[3], radius, rms;
+	int n, component;
+};
+
+/* The sphere nearest to a component's vertices; a cornea on it counts less from round to round. */
+static bool fit_ball(struct ball *ball, const struct rig *rig, const int *component, int which)
+{
+	double origin[3] = { 0 };
+	*ball = (struct ball){ .component = which };
+	for (int i = 0; i < rig->n; i++)
+		if (component[i] == which) {
+			for (int c = 0; c < 3; c++)
+				origin[c] += rig->rest[i][c];
+			ball->n++;
+		}
+	if (ball->n < LEAST_VERTICES)
+		return false;
+	for (int c = 0; c < 3; c++)
+		origin[c] /= ball->n;
+	double x[4] = { 0 }, total = 0;
+	for (int round = 0; round < ROUNDS; round++) {
+		double A[16] = { 0 }, b[4] = { 0 }, rms = 0, radius = ball->radius;
+		total = 0;
+		for (int i = 0; i < rig->n; i++) {
+			if (component[i] != which)
+				continue;
+			double p[4] = { 0, 0, 0, 1 }, square = 0, w = 1, off[3];
+			for (int c = 0; c < 3; c++) {
+				off[c] = rig->rest[i][c] - origin[c];
+				p[c] = 2 * off[c];
+				square += off[c] * off[c];
+				off[c] -= x[c];
+			}
+			double residual = (vec_norm(off) - radius) / fmax(radius, 1e-9);
+			if (round)
+				w = 1 / (1 + (residual / 0.02) * (residual / 0.02));
+			for (int j = 0; j < 4; j++) {
+				for (int k = 0; k < 4; k++)
+					A[4 * j + k] += w * p[j] * p[k];
+				b[j] += w * p[j] * square;
+			}
+			rms += w * residual * residual;
+			total += w;
+		}
+		if (!chol_solve(4, 4, A, b))
+			return false;
+		for (int j = 0; j < 4; j++)
+			x[j] = b[j];
+		ball->radius = sqrt(x[3] + x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+		ball->rms = sqrt(rms / total);
+	}
+	for (int c = 0; c < 3; c++)
+		ball->center[c] = origin[c] + x[c];
+	// Most of it has to lie on the sphere: a strip of lid does, too, but not all round (globe_map_from_mesh sees to that).
+	return isfinite(ball->radius) && total > 0.4 * ball->n;
+}
+
+static bool expected(const struct ball *ball, const double center[3], double radius)
+{
+	double d[3];
+	if (!isfinite(center[0]))
+		return false;
+	vec_add(d, ball->center, -1, center);
+	return vec_norm(d) < radius && ball->radius > 0.4 * radius && ball->radius < 2.2 * radius;
+}
+
+/* The component in the globe's own frame (axes of the head, origin at its centre). mesh_free. */
+static struct mesh own_mesh(const struct rig *rig, const struct ball *ball, const int *component)
+{
+	struct mesh mesh = { .vertices = mem_new((size_t)rig->n + 1, sizeof *mesh.vertices),
+		                 .faces = mem_new((size_t)rig->n_faces + 1, sizeof *mesh.faces) };
+	int *row = mem_new((size_t)rig->n + 1, sizeof *row);
+	for (int i = 0; i < rig->n; i++) {
+		double p[3];
+		if (component[i] != ball->component)
+			continue;
+		for (int c = 0; c < 3; c++)
+			p[c] = rig->rest[i][c] - ball->center[c];
+		mat_vec(p, rig->head_from_target, p);
+		for (int c = 0; c < 3; c++)
+			mesh.vertices[mesh.n_vertices][c] = (float)p[c];
+		row[i] = mesh.n_vertices++;
+	}
+	for (int f = 0; f < rig->n_faces; f++)
+		if (component[rig->faces[f][0]] == ball->component) {
+			for (int k = 0; k < 3; k++)
+				mesh.faces[mesh.n_faces][k] = row[rig->faces[f][k]];
+			mesh.n_faces++;
+		}
+	free(row);
+	return mesh;
+}
+
+/* A globe without a cornea gets one: lids bulge as it passes below them, and what is drawn has it. */
+static bool add_cornea(struct globe_map *map, double radius, double bulge)
+{
+	float front = 0;
+	for (int k = -1; k <= 1; k++)  // a little off the axis, too: irises are drawn with a dent there
+		front = fmaxf(front, globe_map_at(map, (float[3]){ 0.1f * (float)k, 0, 1 }));
+	if (front > bulge * radius)
+		return false;
+	struct globe_map round = globe_map_round(map->n, radius, cornea_share * radius, apex_share * radius);
+	size_t nodes = (size_t)(map->n + 1) * (size_t)(map->n + 1);
+	for (size_t i = 0; i < nodes; i++)
+		map->radius[i] = fmaxf(map->radius[i], round.radius[i]);
+	globe_map_free(&round);
+	return true;
+}
+
+static bool take_own(struct rig *rig, int side, const struct ball *ball, const int *component, int cells)
+{
+	struct rig_globe *globe = &rig->globe[side];
+	struct mesh mesh = own_mesh(rig, ball, component);
+	struct err none = { 0 };
+	bool ok = globe_map_from_mesh(&globe->map, cells, &mesh, &none);
+	mesh_free(&mesh);
+	if (!ok)
+		return false;
+	vec_add(globe->center, ball->center, 0, ball->center);
+	globe->radius = ball->radius;
+	globe->own = true;
+	// What lies within it (an iris, a lens) turns with it.
+	for (int i = 0; i < rig->n; i++)
+		if (component[i] == ball->component)
+			rig->part[i] = side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT;
+	return true;
+}
+
+/* Eyeball centres as the subject has them, on the character: by what registration did to the skin round them. */
+void rig_expect_globes(double center[2][3], double *radius, const struct rig *rig, const struct rig_character *ch)
+{
+	double scale = vec_norm(ch->subject_from_target[0]);
+	*radius = (isfinite(ch->eye_radius) ? ch->eye_radius : 12) / scale;
+	for (int s = 0; s < 2; s++) {
+		double sum[3] = { 0 }, moved[3] = { 0 }, total = 0, at[3];
+		for (int i = 0; i < rig->n; i++) {
+			double d[3];
+			for (int c = 0; c < 3; c++)
+				d[c] = ch->registered[i][c] - ch->eye_center[s][c];
+			double w = exp(-0.5 * vec_dot(d, d) / (20.0 * 20.0));
+			for (int c = 0; c < 3 && w > 1e-6; c++) {
+				double there = 0;
+				for (int k = 0; k < 3; k++)
+					there += ch->subject_from_target[k][c] * (ch->registered[i][k] - ch->subject_from_target[k][3]) / (scale * scale);
+				moved[c] += w * (rig->rest[i][c] - there);
+			}
+			total += w;
+		}
+		for (int c = 0; c < 3; c++) {
+			for (int k = 0; k < 3; k++)
+				sum[c] += ch->subject_from_target[k][c] * (ch->eye_center[s][k] - ch->subject_from_target[k][3]) / (scale * scale);
+			at[c] = sum[c] + (total > 0 ? moved[c] / total : 0);
+			center[s][c] = at[c];
+		}
+	}
+}
+
+bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, const struct rig_conf *conf,
+                     struct rig_report *report, struct err *err)
+{
+	static const char *const sides[] = { "left", "right" };
+	int *component = components_of(rig);
+	for (int i = 0; i < rig->n; i++) {
+		struct ball ball;
+		if (component[i] != i || !fit_ball(&ball, rig, component, i) || ball.rms > 0.12)
+			continue;
+		for (int side = 0; side < 2; side++)
+			if (expected(&ball, center[side], radius) && ball.radius > rig->globe[side].radius) {
+				globe_map_free(&rig->globe[side].map);
+				take_own(rig, side, &ball, component, conf->globe_cells);
+			}
+	}
+	free(component);
+	bool ok = true;
+	for (int side = 0; side < 2; side++) {
+		struct rig_globe *globe = &rig->globe[side];
+		if (!globe->own && !isfinite(center[side][0])) {
+			ok = err_set(err, "no %s eyeball: the character has no round closed mesh there; give subject.eye_center.%s and "
+			             "subject.eye_radius", sides[side], sides[side]);
+			continue;
+		}
+		if (!globe->own) {
+			globe->radius = radius;
+			vec_add(globe->center, center[side], 0, center[side]);
+			globe->map = globe_map_round(conf->globe_cells, radius, cornea_share * radius, apex_share * radius);
+		}
+		report->cornea_added[side] = globe->own && conf->cornea_bulge > 0 && add_cornea(&globe->map, globe->radius, conf->cornea_bulge);
+	}
+	return ok;
+}

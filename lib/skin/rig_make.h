@@ -1,0 +1,84 @@
+/* rig_make: from a model of one person's skin and a character registered on that person's mesh to a rig of the
+ * character (skin paper, sections 3.6 to 3.8).
+ */
+#ifndef SKIN_RIG_MAKE_H
+#define SKIN_RIG_MAKE_H
+#include "mesh/mesh.h"
+#include "skin/model.h"
+#include "skin/rig.h"
+
+/* How the skin moves, from skin_model: everything folded to RIG_COMPONENTS numbers e. px of the modelling camera. */
+struct rig_motion {
+	int n_inputs;
+	double *W;                            // [RIG_COMPONENTS][n_inputs + 1]
+	double rest_e[RIG_COMPONENTS], rest_aperture[4], baseline[4][3];
+	int n;                                // tracked rows of the subject mesh
+	int *vertex;
+	double (*basis)[RIG_BASIS];
+	int n_points;                         // control points of a lid
+	double (*lid)[2];                     // [4 n_points] where they are at rest; NAN: not learnt
+	double (*lid_basis)[RIG_BASIS];
+	double lid_error;                     // px, rms: what the lids lose by following e alone
+	struct skin_camera camera;
+};
+
+/* The lids follow their own components, not e: they are regressed on e over the gazes, blinks and action units the model
+ * has seen. model: at least one component. rig_motion_free. */
+void rig_motion_of_model(struct rig_motion *motion, const struct skin_model *model);
+void rig_motion_free(struct rig_motion *motion);
+
+/* A character. Lengths mm. */
+struct rig_character {
+	const struct mesh *mesh;              // in its own axes
+	const float (*registered)[3];         // its vertices on the subject, in the subject's axes
+	const int32_t *b_start, *b_column;    // B, compressed rows: rows of the mesh, columns vertices of the subject
+	const double *b_weight;
+	const float *confidence;              // of each row, 0..1; null: all 1
+	double subject_from_target[4][4];     // similarity
+	double eye_center[2][3], eye_radius;  // left, right, in the subject's axes; NAN where unknown
+};
+
+struct rig_conf {
+	int neighbours;                       // of an extrapolated vertex
+	double fade[2];                       // mm from tracked skin: all motion up to the first, none from the second
+	double glue[2];                       // mm from the globe at rest: kept up to the first, free from the second
+	double thickness, least;              // mm: t of skin that rests further away; and at least
+	double lid;                           // mm from the lid's margin that follow its spline
+	double min_confidence;
+	double map_step;                      // px of the modelling camera
+	int globe_cells;
+	double cornea_bulge;                  // apex over radius below which a globe gets a cornea; 0: never
+};
+
+/* What was found, for the log. */
+struct rig_report {
+	int tracked, lid, extrapolated, still, inside_at_rest;
+	double deepest;                       // mm inside a globe at rest
+	bool cornea_added[2];
+};
+
+bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motion *motion, const struct rig_character *character,
+              const struct rig_conf *conf, struct err *err);
+
+/* What follows is rig_make's own.
+ *
+ * Where the modelling camera sees a point of the subject; cam: the point in its frame. rig_chart.c */
+void rig_project(double px[2], double cam[3], const struct skin_camera *camera, const float x[3]);
+void rig_take_homes(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character);
+
+/* The skull map, from what that camera sees of the character at rest. */
+bool rig_take_skull(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character, double step,
+                    struct err *err);
+
+/* Where the character's eyeballs are to be expected, by what registration did to the skin round them. rig_globe.c */
+void rig_expect_globes(double center[2][3], double *radius, const struct rig *rig, const struct rig_character *character);
+
+/* The eyeballs of a mesh: closed, round components about the expected centres; marks part[], fills globe[]. centre, radius:
+ * where they are expected, in the mesh's axes, NAN where unknown. rig_globe.c */
+bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, const struct rig_conf *conf,
+                     struct rig_report *report, struct err *err);
+
+/* B+ and fade of every vertex whose source is RIG_EXTRAPOLATED, distances measured along the character's skin. rig_spread.c */
+void rig_spread(struct rig *rig, const struct rig_conf *conf);
+
+#endif
