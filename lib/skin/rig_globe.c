@@ -92,11 +92,22 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 	return isfinite(ball->radius) && total > 0.4 * ball->n;
 }
 
-static bool expected(const struct ball *ball, const double center[3], double radius)
+/* On that side of the face, where nobody knows more. */
+static bool on_side(const struct rig *rig, const struct ball *ball, int side)
+{
+	const double *across = rig->head_from_target[0];
+	double mean = 0;
+	for (int i = 0; i < rig->n; i++)
+		for (int c = 0; c < 3; c++)
+			mean += across[c] * rig->rest[i][c] / rig->n;
+	return (vec_dot(across, ball->center) < mean) == side;
+}
+
+static bool expected(const struct rig *rig, const struct ball *ball, int side, const double center[3], double radius)
 {
 	double d[3];
 	if (!isfinite(center[0]))
-		return false;
+		return on_side(rig, ball, side) && ball->radius > 0.5 * radius && ball->radius < 2 * radius;
 	vec_add(d, ball->center, -1, center);
 	return vec_norm(d) < radius && ball->radius > 0.4 * radius && ball->radius < 2.2 * radius;
 }
@@ -202,7 +213,7 @@ bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, 
 		if (component[i] != i || !fit_ball(&ball, rig, component, i) || ball.rms > 0.12)
 			continue;
 		for (int side = 0; side < 2; side++)
-			if (expected(&ball, center[side], radius) && ball.radius > rig->globe[side].radius) {
+			if (expected(rig, &ball, side, center[side], radius) && ball.radius > rig->globe[side].radius) {
 				globe_map_free(&rig->globe[side].map);
 				take_own(rig, side, &ball, component, conf->globe_cells);
 			}

@@ -111,7 +111,7 @@ static double nearest_lid(double basis[RIG_BASIS], const struct rig_motion *m, c
 static void take_lids(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double lid_mm)
 {
 	for (int i = 0; i < rig->n && lid_mm > 0; i++) {
-		double basis[RIG_BASIS], px[2], cam[3];
+		double basis[RIG_BASIS] = { 0 }, px[2], cam[3];
 		if (rig->part[i] != RIG_SKIN || rig->gap[i] > 3 || rig->gap[i] < -2)
 			continue;
 		rig_project(px, cam, &m->camera, ch->registered[i]);

@@ -13,6 +13,15 @@ static double finite_or(double x, double otherwise)
 	return isfinite(x) ? x : otherwise;
 }
 
+/* The reference frame's; 0 where an eye was not learnt. free(). */
+static double *rest_controls(const struct skin_model *model)
+{
+	double *c = mem_new((size_t)model->n_inputs, sizeof *c);
+	for (int i = 0; i < model->n_inputs; i++)
+		c[i] = finite_or(model->rest_controls[i], 0);
+	return c;
+}
+
 static void open_at(double *c, const struct skin_model *model, double h, double v, double closing)
 {
 	for (int eye = 0; eye < 2; eye++) {
@@ -115,11 +124,10 @@ static void solve(struct rig_motion *m, struct regression *r, int n_lid)
 static void take_lids(struct rig_motion *m, const struct skin_model *model)
 {
 	struct regression r = { 0 };
-	double *c = mem_new((size_t)m->n_inputs, sizeof *c);
+	double *c = rest_controls(model);
 	r.le = mem_new((size_t)model->n_lid * RIG_COMPONENTS + 1, sizeof *r.le);
 	r.rest = mem_new((size_t)model->n_lid + 1, sizeof *r.rest);
 	r.l = mem_new((size_t)model->n_lid + 1, sizeof *r.l);
-	open_at(c, model, 0, 0, 1);
 	skin_model_inputs(c, model, c);
 	skin_model_lids(r.rest, model, c);
 	for (int i = 0; i < model->n_lid; i++)
@@ -160,15 +168,14 @@ void rig_motion_of_model(struct rig_motion *m, const struct skin_model *model)
 	m->basis = mem_new((size_t)model->n_vertices + 1, sizeof *m->basis);
 	m->lid = mem_new((size_t)model->n_lid / 2 + 1, sizeof *m->lid);
 	m->lid_basis = mem_new((size_t)model->n_lid / 2 + 1, sizeof *m->lid_basis);
-	double *c = mem_new((size_t)m->n_inputs, sizeof *c);
-	open_at(c, model, 0, 0, 1);
+	double *c = rest_controls(model);
 	components(m->rest_e, m, c);
+	free(c);
 	for (int k = 0; k < 4; k++) {
-		m->rest_aperture[k] = c[k < 2 ? 3 + k : 6 + k];
+		m->rest_aperture[k] = finite_or(model->rest_controls[k < 2 ? 3 + k : 6 + k], 0);
 		for (int j = 0; j < 3; j++)
 			m->baseline[k][j] = finite_or(model->baseline[k / 2][k % 2][j], 0);
 	}
-	free(c);
 	take_skin(m, model);
 	take_lids(m, model);
 }

@@ -1,0 +1,175 @@
+#include "stages/extrapolate/extrapolate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "base/npy.h"
+#include "bridge/om_mesh.h"
+#include "image/exr.h"
+
+/* Everything of one character that is read. */
+struct character {
+	struct mesh mesh, registered;
+	struct npy start, column, weight, confidence;
+	double *weights;
+	struct rig_character rig;
+};
+
+static void character_free(struct character *c)
+{
+	mesh_free(&c->mesh);
+	mesh_free(&c->registered);
+	npy_free(&c->start);
+	npy_free(&c->column);
+	npy_free(&c->weight);
+	npy_free(&c->confidence);
+	free(c->weights);
+}
+
+static bool read_weights(struct character *c, const char *path, int n, struct err *err)
+{
+	if (!npz_read(&c->start, path, "indptr", NPY_LIMIT, err) || !npz_read(&c->column, path, "indices", NPY_LIMIT, err)
+	    || !npz_read(&c->weight, path, "data", NPY_LIMIT, err) || !npz_read(&c->confidence, path, "confidence", NPY_LIMIT, err))
+		return false;
+	if (c->start.type != NPY_I4 || c->column.type != NPY_I4 || c->confidence.type != NPY_F4)
+		return err_set(err, "%s: other types of numbers than transfer writes: run it again", path);
+	long entries = npy_count(&c->column);
+	const int32_t *start = c->start.data, *column = c->column.data;
+	if (npy_count(&c->start) != n + 1 || start[0] != 0 || start[n] != entries || npy_count(&c->weight) != entries
+	    || npy_count(&c->confidence) != n)
+		return err_set(err, "%s: its rows are not the %d vertices of registered.ply: run transfer again", path, n);
+	for (int i = 0; i < n; i++)
+		if (start[i] > start[i + 1])
+			return err_set(err, "%s: indptr: must not fall", path);
+	for (long k = 0; k < entries; k++)
+		if (column[k] < 0)
+			return err_set(err, "%s: indices: %d is no vertex", path, column[k]);
+	c->weights = npy_doubles(&c->weight);
+	return true;
+}
+
+static void expect_eyes(struct rig_character *rig, const struct extrapolate_conf *conf, double unit)
+{
+	static const char *const sides[] = { "left", "right" };
+	rig->eye_radius = conf->eye_radius * unit;
+	for (int s = 0; s < 2; s++)
+		for (int c = 0; c < 3; c++)
+			rig->eye_center[s][c] = NAN;
+	for (int i = 0; i < conf->eye_center.n; i++)
+		for (int s = 0; s < 2; s++)
+			if (!strcmp(conf->eye_center.items[i].name, sides[s]))
+				for (int c = 0; c < 3; c++)
+					rig->eye_center[s][c] = conf->eye_center.items[i].value[c] * unit;
+}
+
+static bool read_character(struct character *c, struct stage *stage, const char *const in[], const struct extrapolate_conf *conf,
+                           struct err *err)
+{
+	json_t *json = 0;
+	double to_mm = 1, subject_unit = 1;
+	bool ok = om_mesh_load(&c->mesh, stage_path(stage, "%s", in[0]), (long)conf->limit_vertices, err)
+	          && om_mesh_load(&c->registered, stage_path(stage, "%s", in[1]), (long)conf->limit_vertices, err);
+	if (ok && c->mesh.n_vertices != c->registered.n_vertices)
+		ok = err_set(err, "%s: %d vertices, but %s has %d: run transfer again", in[1], c->registered.n_vertices, in[0],
+		             c->mesh.n_vertices);
+	ok = ok && read_weights(c, stage_path(stage, "%s", in[2]), c->mesh.n_vertices, err)
+	     && (json = json_read(stage_path(stage, "%s", in[3]), 1 << 24, err))
+	     && json_get_array(&c->rig.subject_from_target[0][0], 16, json, "subject_from_target", in[3], err)
+	     && json_get(&to_mm, json, "target_unit_mm", in[3], err) && json_get(&subject_unit, json, "subject_unit_mm", in[3], err);
+	json_decref(json);
+	for (int i = 0; ok && i < c->mesh.n_vertices; i++)
+		for (int k = 0; k < 3; k++)
+			c->mesh.vertices[i][k] *= (float)to_mm;
+	if (!ok)
+		return false;
+	c->rig.mesh = &c->mesh;
+	c->rig.registered = (const float(*)[3])c->registered.vertices;
+	c->rig.b_start = c->start.data;
+	c->rig.b_column = c->column.data;
+	c->rig.b_weight = c->weights;
+	c->rig.confidence = c->confidence.data;
+	expect_eyes(&c->rig, conf, isfinite(conf->subject_unit) ? conf->subject_unit : subject_unit);
+	return true;
+}
+
+static bool save_map(struct stage *stage, const char *rel, struct image image, int n, const char *const in[], struct err *err)
+{
+	static const char *const rgb[] = { "R", "G", "B" }, *const y[] = { "Y" };
+	struct exr_info info = { .made_by = stage_made_by(stage, n, in) };
+	bool ok = exr_write(stage_path(stage, "%s", rel), &image, image.channels == 3 ? rgb : y, EXR_FLOAT, &info, err)
+	          && stage_made(stage, rel, n, in, err);
+	image_free(&image);
+	return ok;
+}
+
+static void report(struct stage *stage, const char *name, const struct rig *rig, const struct rig_report *r, double lid_error)
+{
+	stage_note(stage, "%s: %d vertices tracked, %d on the lid margins, %d extrapolated, %d still; globes of %.1f and %.1f mm%s",
+	           name, r->tracked, r->lid, r->extrapolated, r->still, rig->globe[0].radius, rig->globe[1].radius,
+	           rig->globe[0].own && rig->globe[1].own ? "" : " (spheres)");
+	stage_figure(stage, "tracked_vertices", r->tracked, "");
+	stage_figure(stage, "lid_vertices", r->lid, "");
+	stage_figure(stage, "extrapolated_vertices", r->extrapolated, "");
+	stage_figure(stage, "globe_radius", 0.5 * (rig->globe[0].radius + rig->globe[1].radius), "mm");
+	stage_figure(stage, "lids_folded_error", lid_error, "px rms: what the lids lose by following the skin's components");
+	if (r->inside_at_rest)
+		stage_note(stage, "%s: %d vertices lie up to %.2f mm inside an eyeball at rest: they are put before it", name,
+		           r->inside_at_rest, r->deepest);
+	if (r->cornea_added[0] || r->cornea_added[1])
+		stage_note(stage, "%s: its eyeballs are mere balls: they get a cornea", name);
+}
+
+static bool rig_one(struct stage *stage, const char *name, const char *const out[5], int n, const char *const in[],
+                    const struct rig_motion *motion, const struct extrapolate_conf *conf, struct err *err)
+{
+	struct character c = { 0 };
+	struct rig rig = { 0 };
+	struct rig_report found;
+	bool ok = read_character(&c, stage, in, conf, err);
+	if (ok && !rig_make(&rig, &found, motion, &c.rig, &conf->rig, err))
+		ok = err_wrap(err, "targets/%s", name);
+	ok = ok && rig_save(&rig, stage_path(stage, "%s", out[0]), stage_made_by(stage, n, in), err)
+	     && stage_made(stage, out[0], n, in, err) && save_map(stage, out[1], skull_map_positions(&rig.skull), n, in, err)
+	     && save_map(stage, out[2], skull_map_normals(&rig.skull), n, in, err);
+	for (int s = 0; s < 2 && ok; s++)
+		ok = save_map(stage, out[3 + s], globe_map_polar(&rig.globe[s].map, conf->polar_px), n, in, err);
+	if (ok)
+		report(stage, name, &rig, &found, motion->lid_error);
+	rig_free(&rig);
+	character_free(&c);
+	return ok;
+}
+
+bool extrapolate_target(struct stage *stage, const char *file, const struct rig_motion *motion, const struct extrapolate_conf *conf,
+                        struct err *err)
+{
+	static const char *const reads[] = { "registered.ply", "barycentric.npz", "transfer.json" };
+	static const char *const writes[] = { "rig.npz", "skull.exr", "skull_normal.exr", "globe_left.exr", "globe_right.exr" };
+	enum { FROM_TRANSFER = 3, OUT = 5, IN_MAX = 32 };
+	const char *dot = strrchr(file, '.');
+	char *name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file), *in[IN_MAX], *out[OUT];
+	int n = 0;
+	in[n++] = mem_printf("targets/%s", file);
+	for (int i = 0; i < FROM_TRANSFER; i++)
+		in[n++] = mem_printf("work/targets/%s/%s", name, reads[i]);
+	for (int i = 0; skin_model_files[i] && n < IN_MAX; i++)
+		in[n++] = mem_printf("work/skin/%s", skin_model_files[i]);
+	for (int i = 0; i < OUT; i++)
+		out[i] = mem_printf("work/targets/%s/%s", name, writes[i]);
+	bool ok = true, fresh = true;
+	for (int i = 0; i < OUT; i++)
+		fresh = stage_fresh(stage, out[i], n, (const char *const *)in) && fresh;
+	if (!fresh && !file_exists(stage_path(stage, "%s", in[1])))
+		stage_skipped(stage, "%s: transfer has not registered it", in[0]);
+	else if (!fresh)
+		ok = rig_one(stage, name, (const char *const *)out, n, (const char *const *)in, motion, conf, err);
+	for (int i = 0; i < n; i++)
+		free(in[i]);
+	for (int i = 0; i < OUT; i++)
+		free(out[i]);
+	free(name);
+	return ok;
+}

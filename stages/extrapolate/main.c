@@ -1,0 +1,45 @@
+/* extrapolate: rigs every character that transfer has registered.
+ * reads   work/skin/model.json and matrices, targets/NAME.*, work/targets/NAME/registered.ply, barycentric.npz, transfer.json
+ * writes  work/targets/NAME/rig.npz, skull.exr, skull_normal.exr, globe_left.exr, globe_right.exr
+ */
+#include "base/mem.h"
+#include "stages/extrapolate/extrapolate.h"
+
+int main(int argc, char **argv)
+{
+	struct extrapolate_conf conf = { 0 };
+	struct rig_conf *r = &conf.rig;
+	const struct opt opts[] = {
+		OPT_INT("neighbours", &r->neighbours, 1, 64, "", "tracked vertices that an untracked one follows"),
+		OPT_REALS("fade_mm", r->fade, 2, 0, 200, "mm", "from tracked skin: all of its motion up to the first, none from the second"),
+		OPT_REALS("glue_mm", r->glue, 2, 0, 50, "mm", "from the globe at rest: distance kept up to the first, free from the second"),
+		OPT_REAL("thickness_mm", &r->thickness, 0, 10, "mm", "least distance of skin from the globe, where it rests further away"),
+		OPT_REAL("least_mm", &r->least, 0, 2, "mm", "the same of skin that lies on it"),
+		OPT_REAL("lid_mm", &r->lid, 0, 10, "mm", "from the lid's margin: skin that follows the margin itself"),
+		OPT_REAL("min_confidence", &r->min_confidence, 0, 1, "", "of transfer, below which a vertex counts as untracked"),
+		OPT_REAL("map_step_px", &r->map_step, 0.25, 32, "px", "texel of the skull map, in the video's pixels"),
+		OPT_INT("globe_cells", &r->globe_cells, 8, 2048, "", "cells across the globe's map"),
+		OPT_REAL("cornea_bulge", &r->cornea_bulge, 0, 2, "", "apex over radius below which a character's globe gets a cornea; 0: never"),
+		OPT_INT("polar_px", &conf.polar_px, 16, 4096, "px", "rows of the globe map's picture"),
+		OPT_REAL("limit_vertices", &conf.limit_vertices, 100, 1e8, "", "larger meshes are refused"),
+		OPT_REAL_UNSET("subject.unit_mm", &conf.subject_unit, 1e-6, 1e6, "mm", "one unit of the subject's mesh"),
+		OPT_REAL_UNSET("subject.eye_radius", &conf.eye_radius, 1e-6, 1e6, "unit", "of the subject's eyeballs, in the mesh's unit"),
+		OPT_EACH("subject.eye_center.*", &conf.eye_center, 3, -1e6, 1e6, "unit", "centre of an eyeball, in the mesh's unit and axes"),
+	};
+	struct stage stage;
+	struct err err = { 0 };
+	struct file_list targets = { 0 };
+	struct skin_model model = { 0 };
+	struct rig_motion motion = { 0 };
+	stage_start(&stage, "extrapolate", "rig characters: skin that was not tracked, the skull and the globes below it", argc, argv,
+	            COUNT(opts), opts);
+	if (stage_list(&stage, &targets, "targets", &err) && skin_model_load(&model, stage_path(&stage, "work/skin"), &err)) {
+		rig_motion_of_model(&motion, &model);
+		for (int i = 0; i < targets.n && !err_is(&err); i++)
+			extrapolate_target(&stage, targets.names[i], &motion, &conf, &err);
+	}
+	rig_motion_free(&motion);
+	skin_model_free(&model);
+	file_list_free(&targets);
+	return stage_end(&stage, &err);
+}

@@ -1,0 +1,177 @@
+/* bench_rig: what one frame of a driven character costs a vertex, and how far the folded, single-precision rig is from
+ * the paper's general path (model, barycentric map, extrapolation, algorithm 1 as printed) in double precision. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "math/rng.h"
+#include "math/vec.h"
+#include "skin/deform.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/face.h"
+
+struct general {
+	const struct face *face;
+	const struct rig *rig;
+	const struct rig_motion *motion;
+	double c[12], turn[2][3][3], *u, *u_rest, *ut;
+	double (*x)[3], (*normal)[3];
+};
+
+/* The skull map in double precision. */
+static void skull(double p[3], double n[3], const struct skull_map *m, const double px[2])
+{
+	double u = fmin(fmax((px[0] - m->x0) / m->step, 0), m->width - 1.001), v = fmin(fmax((px[1] - m->y0) / m->step, 0), m->height - 1.001);
+	int iu = (int)u, iv = (int)v;
+	const float *t = m->texel + ((long)iv * m->width + iu) * SKULL_CHANNELS;
+	u -= iu;
+	v -= iv;
+	for (int k = 0; k < 6; k++) {
+		double a = t[k], b = t[k + SKULL_CHANNELS], c = t[k + (long)m->width * SKULL_CHANNELS];
+		double d = t[k + ((long)m->width + 1) * SKULL_CHANNELS];
+		*(k < 3 ? &p[k] : &n[k - 3]) = (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
+	}
+}
+
+/* Algorithm 1 as printed, with this project's offset of the skull map and its fading delta0. */
+static void algorithm1(struct general *g, int i, const double px[2])
+{
+	const struct rig *rig = g->rig;
+	const struct rig_globe *globe = &rig->globe[rig->side[i]];
+	double home[2] = { rig->home[i][0], rig->home[i][1] }, at[3], facing[3], at0[3], facing0[3], tau[3], tau0[3], r[3], axis[3], nn[3];
+	skull(at, facing, &rig->skull, px);
+	skull(at0, facing0, &rig->skull, home);
+	for (int k = 0; k < 3; k++) {
+		at[k] += rig->rest[i][k] - at0[k];
+		facing[k] += rig->normal[i][k] - facing0[k];
+		tau[k] = at[k] - globe->center[k];
+		tau0[k] = rig->rest[i][k] - globe->center[k];
+	}
+	mat_tvec(r, (const double(*)[3])g->turn[rig->side[i]], tau);
+	// The paper's polar angles, and D through them.
+	double len = vec_norm(r), a = atan2(r[0], r[2]), b = acos(r[1] / len);
+	float dir[3] = { (float)(sin(b) * sin(a)), (float)cos(b), (float)(sin(b) * cos(a)) };
+	double D = globe_map_at(&globe->map, dir), out = D + rig->thickness[i], w = rig->glue[i];
+	double pushed = fmax(len, out), to = pushed + w * (D + rig->gap[i] - pushed);
+	vec_unit(tau, tau);
+	vec_unit(tau0, tau0);
+	double turn[3][3];
+	mat_smallest_rotation(turn, tau0, tau);
+	mat_vec(axis, (const double(*)[3])turn, (double[]){ rig->normal[i][0], rig->normal[i][1], rig->normal[i][2] });
+	double on = fmin(fmax(10 * (out - len), 0), 1);
+	for (int k = 0; k < 3; k++) {
+		nn[k] = facing[k] + on * (tau[k] - facing[k]);
+		nn[k] += w * (axis[k] - nn[k]);
+		g->x[i][k] = globe->center[k] + to * tau[k];
+	}
+	vec_unit(g->normal[i], nn);
+}
+
+/* Equations 3.2 to 3.5 one after the other, then algorithm 1. */
+static void general_frame(void *ctx)
+{
+	struct general *g = ctx;
+	const struct rig *rig = g->rig;
+	skin_model_predict(g->u, 0, &g->face->model, g->c);
+	for (int i = 0; i < rig->n; i++)
+		for (int k = 0; k < 2; k++) {
+			double sum = 0;
+			for (int j = g->face->b_start[i]; j < g->face->b_start[i + 1]; j++) {
+				int col = 2 * g->face->b_column[j] + k;
+				sum += g->face->b_weight[j] * (g->u[col] - g->u_rest[col]);
+			}
+			g->ut[2 * i + k] = sum;
+		}
+	for (int i = 0; i < rig->n; i++) {
+		double px[2] = { rig->home[i][0], rig->home[i][1] };
+		if (rig->part[i] != RIG_SKIN)
+			continue;
+		for (int j = rig->bplus.start[i]; j < rig->bplus.start[i + 1]; j++)
+			for (int k = 0; k < 2; k++)
+				px[k] += rig->fade[i] * rig->bplus.weight[j] * g->ut[2 * rig->bplus.column[j] + k];
+		algorithm1(g, i, px);
+	}
+}
+
+struct folded {
+	const struct rig *rig;
+	const struct deform *deform;
+	double c[12], turn[2][3][3];
+	float (*x)[3], (*normal)[3];
+};
+
+static void folded_frame(void *ctx)
+{
+	struct folded *f = ctx;
+	double e[RIG_COMPONENTS];
+	rig_components(e, f->rig, f->c);
+	deform_pose(f->deform, e, (const double(*)[3][3])f->turn, f->x, f->normal);
+}
+
+static void positions_frame(void *ctx)
+{
+	struct folded f = *(struct folded *)ctx;
+	f.normal = 0;
+	folded_frame(&f);
+}
+
+int main(int argc, char **argv)
+{
+	bench_open("rig", argc, argv);
+	struct face face;
+	struct rig rig;
+	struct rig_report report;
+	struct rig_motion motion;
+	struct err err = { 0 };
+	face_make(&face, false);
+	struct rig_conf conf = face_conf();
+	conf.lid = 0;  // the general path has no lid splines in it
+	struct rig_character character = face_character(&face);
+	rig_motion_of_model(&motion, &face.model);
+	if (!rig_make(&rig, &report, &motion, &character, &conf, &err)) {
+		fprintf(stderr, "bench_rig: %s\n", err.msg);
+		return 1;
+	}
+	struct deform *deform = deform_new(&rig);
+	size_t n = (size_t)rig.n;
+	int skin = report.tracked + report.lid + report.extrapolated;
+	struct general g = { &face, &rig, &motion, .u = calloc(2 * n, sizeof(double)), .u_rest = calloc(2 * n, sizeof(double)),
+		                 .ut = calloc(2 * n, sizeof(double)), .x = calloc(n, sizeof *g.x), .normal = calloc(n, sizeof *g.normal) };
+	struct folded f = { &rig, deform, .x = calloc(n, sizeof *f.x), .normal = calloc(n, sizeof *f.normal) };
+	struct rng rng = { 21 };
+	double worst = 0, worst_normal = 0;
+	skin_model_predict(g.u_rest, 0, &face.model, face.model.rest_controls);
+	for (int round = 0; round < (bench_quick() ? 4 : 30); round++) {
+		for (int i = 0; i < 12; i++)
+			f.c[i] = g.c[i] = i < 10 && i % 5 < 3 ? rng_range(&rng, -20, 20) : rng_uniform(&rng);
+		for (int s = 0; s < 2; s++) {
+			double gaze[3];
+			for (int k = 0; k < 3; k++)
+				gaze[k] = g.c[5 * s + k] * M_PI / 180;
+			rig_globe_rotation(g.turn[s], &rig, gaze);
+			memcpy(f.turn[s], g.turn[s], sizeof f.turn[s]);
+		}
+		general_frame(&g);
+		folded_frame(&f);
+		for (int i = 0; i < rig.n; i++)
+			for (int k = 0; k < 3 && rig.part[i] == RIG_SKIN; k++) {
+				worst = fmax(worst, fabs(g.x[i][k] - f.x[i][k]));
+				worst_normal = fmax(worst_normal, fabs(g.normal[i][k] - f.normal[i][k]));
+			}
+	}
+	void (*const fn[])(void *) = { folded_frame, positions_frame, general_frame };
+	void *const ctx[] = { &f, &f, &g };
+	struct bench_time t[3];
+	bench_times(3, t, fn, ctx, bench_quick() ? 20 : 200);
+	for (int k = 0; k < 3; k++)
+		t[k] = bench_time_each(t[k], skin);
+	char setting[64];
+	snprintf(setting, sizeof setting, "%d vertices, all moving", skin);
+	bench_row("a driven frame", "folded, vector code: positions and normals", setting, t[0], "vertex", 1000 * worst, "um", "position against the general path, worst");
+	bench_row("a driven frame", "folded, vector code: positions alone", setting, t[1], "vertex", 1000 * worst, "um", "position against the general path, worst");
+	bench_row("a driven frame", "general path, unfolded (paper)", setting, t[2], "vertex", 0, "um", "position against the general path, worst");
+	bench_row("normals", "folded, vector code: positions and normals", setting, t[0], "vertex", worst_normal, "", "component of a unit normal against the general path, worst");
+	bench_goal("model evaluation, algorithm 1 included, one core", "<= 50 ns a vertex a frame", 1e9 * t[0].median, "ns", t[0].median <= 50e-9);
+	return bench_close();
+}
