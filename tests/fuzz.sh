@@ -23,5 +23,9 @@ for target in build-fuzz/fuzz_*; do
 		pass "fuzz $name: $(printf %s "$said" | sed -n 's/stat::number_of_executed_units: */runs /p')"
 	else
 		fail "fuzz $name" "$(printf %s "$said" | grep -E 'ERROR|SUMMARY|Test unit' | head -n 4)"
+		# The input itself, where it is gone with the machine: base64 -d brings it back.
+		for input in build-fuzz/crash-"$name"-*; do
+			[ -f "$input" ] && echo "  $input: $(base64 -w0 <"$input" | head -c 6000)"
+		done
 	fi
 done

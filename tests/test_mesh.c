@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
-#include "mesh/mesh_check.h"
+#include "mesh/mesh_clean.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/scratch.h"
 
@@ -110,6 +110,35 @@ static void obj_by_hand(void **state)
 	float (*n)[3] = mesh_normals(&m);
 	NEAR(n[0][2], 1, 1e-7);
 	free(n);
+	mesh_free(&m);
+}
+
+/* What readers stumble over though the format allows it: numbers of every type, with points and exponents where whole
+ * numbers are asked for, polygons, corners twice, unused lists and properties, colours as shares of one. */
+static void ply_by_hand(void **state)
+{
+	(void)state;
+	struct mesh m;
+	struct err err = { 0 };
+	const char *path = scratch_text("m.ply",
+	                                "ply\nformat ascii 1.0\ncomment element face 9999999\nelement vertex 4\nproperty int z\n"
+	                                "property double y\nproperty short x\nproperty float red\nproperty float green\n"
+	                                "property float blue\nproperty uchar quality\nelement face 3\nproperty int flags\n"
+	                                "property list uchar float weights\nproperty list int uint vertex_index\n"
+	                                "property uchar red\nend_header\n"
+	                                "0 0 0 1 0 0.5 1.5\n0.0 0e0 1 1 0 .5 2e0\n0 1 1 1 0 0.5 3\n0 1 0 1 0 0.5 4\n"
+	                                "7.5 2 0.1 0.2 4 0 1 2 3 99999.5\n8 0 3 0 0 1 1\n9 1 -4e9 3 0 1 0 7\n");
+	if (!om_mesh_load(&m, path, 100, &err))
+		fail_msg("%s", err.msg);
+	assert_int_equal(m.n_vertices, 4);
+	assert_int_equal(m.n_faces, 2);
+	double volume;
+	NEAR(area_and_volume(&m, &volume), 1, 1e-12);
+	for (int i = 0; i < 4; i++) {
+		NEAR(m.colours[i][0], 1, 1e-6);
+		NEAR(m.colours[i][1], 0, 1e-6);
+		NEAR(m.colours[i][2], 0.2140, 0.0046);  // 0.5 in sRGB, in steps of 1/255
+	}
 	mesh_free(&m);
 }
 
@@ -253,6 +282,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(ply_round_trip, setup, teardown),
+		cmocka_unit_test_setup_teardown(ply_by_hand, setup, teardown),
 		cmocka_unit_test_setup_teardown(obj_by_hand, setup, teardown),
 		cmocka_unit_test_setup_teardown(hostile_files_are_refused, setup, teardown),
 		cmocka_unit_test_setup_teardown(damage_does_no_harm, setup, teardown),

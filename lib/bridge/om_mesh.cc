@@ -16,7 +16,7 @@ extern "C" {
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/image.h"
-#include "mesh/mesh_check.h"
+#include "mesh/mesh_clean.h"
 }
 
 namespace {
@@ -85,7 +85,7 @@ bool parse(struct mesh *mesh, const char *data, size_t size, enum mesh_kind kind
 	Mesh om;
 	std::istringstream in(std::string(data, size), std::ios::binary);
 	OpenMesh::IO::Options options(OpenMesh::IO::Options::VertexColor);
-	if (kind == MESH_PLY && !strstr(data, "ascii"))
+	if (kind == MESH_PLY)
 		options += OpenMesh::IO::Options::Binary;
 	be_quiet();
 	if (!OpenMesh::IO::read_mesh(om, in, kind == MESH_PLY ? ".ply" : ".obj", options))
@@ -93,12 +93,13 @@ bool parse(struct mesh *mesh, const char *data, size_t size, enum mesh_kind kind
 	return take(mesh, om, options.check(OpenMesh::IO::Options::VertexColor), err);
 }
 
-/* OpenMesh gets OBJ in its plainest form: its reader aborts on some that are not, and opens the materials they name. */
-bool clean(char **data, size_t *size, long limit, struct err *err)
+/* OpenMesh gets files in their plainest form: its readers lose their way in some that are not, and take the rest of the
+ * file for numbers of faces; and its OBJ reader opens the materials that are named. */
+bool clean(char **data, size_t *size, enum mesh_kind kind, long limit, struct err *err)
 {
 	char *plain;
 	size_t n = 0;
-	bool ok = mesh_clean_obj(&plain, &n, *data, *size, limit, err);
+	bool ok = (kind == MESH_PLY ? mesh_clean_ply : mesh_clean_obj)(&plain, &n, *data, *size, limit, err);
 	free(*data);
 	*data = plain;
 	*size = n;
@@ -138,7 +139,7 @@ bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *e
 	try {
 		enum mesh_kind kind;
 		ok = mesh_kind_of(&kind, data, size, &why)
-		     && (kind == MESH_PLY ? mesh_check_ply(data, size, limit, &why) : clean(&data, &size, limit, &why))
+		     && clean(&data, &size, kind, limit, &why)
 		     && parse(mesh, data, size, kind, &why);
 	} catch (const std::exception &e) {
 		err_set(&why, "cannot be read: %s", e.what());

@@ -1,4 +1,4 @@
-#include "mesh/mesh_check.h"
+#include "mesh/mesh_clean.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,11 +33,12 @@ static bool take_vertex(struct obj *obj, const char *at, const char *end)
 	return true;
 }
 
-/* Corners "v", "v/t", "v//n", "v/t/n"; from 1, or below zero backwards from the last vertex so far. */
+/* Corners "v", "v/t", "v//n", "v/t/n"; from 1, or below zero backwards from the last vertex so far. A fan of triangles
+ * comes out; those with a corner twice have no area and are left out. */
 static bool take_face(struct obj *obj, const char *at, const char *end)
 {
+	long first = 0, last = 0;
 	int corners = 0;
-	fputs("f", obj->out);
 	for (at += strspn(at, blanks); at < end; at += strspn(at, blanks)) {
 		char *after;
 		long v = strtol(at, &after, 10);
@@ -46,11 +47,12 @@ static bool take_face(struct obj *obj, const char *at, const char *end)
 		if (!is_word || v < 1 || v > obj->all_vertices)
 			return err_set(obj->err, "line %ld: a corner that is no vertex: must be in [1, %ld]", obj->line,
 			               obj->all_vertices);
-		fprintf(obj->out, " %ld", v);
-		corners++;
+		if (corners >= 2 && first != last && last != v && v != first)
+			fprintf(obj->out, "f %ld %ld %ld\n", first, last, v);
+		first = corners++ ? first : v;
+		last = v;
 		at = after + strcspn(after, " \t\r\v\f\n");
 	}
-	fputs("\n", obj->out);
 	obj->n_faces++;
 	return corners >= 3 || err_set(obj->err, "line %ld: a face of %d corners: must be at least 3", obj->line, corners);
 }
