@@ -91,6 +91,10 @@ static void rows(void **state)
 		for (long i = 0; i < 3 * got; i++)
 			assert_true(out[i] == (double)total++);
 	assert_int_equal(total, 210);
+	assert_true(npy_rows_seek(in, 41, &err) && npy_rows_next(in, 2, out, &got, &err));
+	assert_true(got == 2 && out[0] == 123 && out[5] == 128);
+	assert_false(npy_rows_seek(in, 71, &err));
+	err = (struct err){ 0 };
 	assert_memory_equal(&head.shape, &whole.shape, sizeof head.shape);
 	npy_rows_close(in);
 	npy_free(&whole);

@@ -60,6 +60,8 @@ struct npy_rows;
 struct npy_rows *npy_rows_open(struct npy *head, const char *path, struct err *err);  // head: shape and type, data null
 /* Next at most n rows as double [rows][row length]; *got = 0 at the end. */
 bool npy_rows_next(struct npy_rows *rows, long n, double *out, long *got, struct err *err);
+/* The next row read is row `first`. */
+bool npy_rows_seek(struct npy_rows *rows, long first, struct err *err);
 void npy_rows_close(struct npy_rows *rows);
 
 /* Rows appended one block after another; the file appears, whole, at npy_sink_close. row: type and shape of the array,

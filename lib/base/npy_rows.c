@@ -86,6 +86,16 @@ bool npy_rows_next(struct npy_rows *rows, long n, double *out, long *got, struct
 	return true;
 }
 
+bool npy_rows_seek(struct npy_rows *rows, long first, struct err *err)
+{
+	size_t row = rows->row * npy_type_size(rows->head.array.type);
+	if (first < 0 || first > rows->head.array.shape[0])
+		return err_set(err, "%s: row %ld of %ld", rows->path, first, rows->head.array.shape[0]);
+	rows->left = rows->head.array.shape[0] - first;
+	return !fseeko(rows->file, (off_t)(rows->head.begins + (size_t)first * row), SEEK_SET)
+	       || err_set(err, "%s: %s", rows->path, strerror(errno));
+}
+
 void npy_rows_close(struct npy_rows *rows)
 {
 	if (!rows)

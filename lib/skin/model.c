@@ -21,13 +21,16 @@ void skin_model_alloc(struct skin_model *m)
 	m->l0 = numbers(m->n_lid, 1);
 	m->l0_sigma = numbers(m->n_lid, 1);
 	m->K = numbers(m->n_lid, m->n_lid_pc);
+	m->K_sigma = numbers(m->n_lid, m->n_lid_pc);
 	m->L = numbers(m->n_lid_pc, SKIN_EYE_INPUTS + 1);
 	m->L_sigma = numbers(m->n_lid_pc, SKIN_EYE_INPUTS + 1);
 	m->u0 = numbers(u, 1);
 	m->u0_sigma = numbers(u, 1);
 	m->J = numbers(u, m->n_skin_pc);
+	m->J_sigma = numbers(u, m->n_skin_pc);
 	m->M = numbers(m->n_skin_pc, from);
 	m->M_sigma = numbers(m->n_skin_pc, from);
+	m->W_sigma = numbers(m->n_skin_pc, m->n_inputs + 1);
 	m->lid_pc = numbers(m->n_lid_pc, 1);
 	m->lid_pc_sigma = numbers(m->n_lid_pc, 1);
 	m->skin_pc = numbers(m->n_skin_pc, 1);
@@ -49,7 +52,7 @@ void skin_model_free(struct skin_model *m)
 	double *const all[] = { m->l0,     m->l0_sigma, m->K,      m->L,            m->L_sigma, m->u0,
 		                    m->u0_sigma, m->J,      m->M,      m->M_sigma,      m->lid_pc,  m->lid_pc_sigma,
 		                    m->skin_pc,  m->skin_pc_sigma, m->vertex_rms, m->low, m->high,  m->mean,
-		                    m->rest_controls, m->rest_e };
+		                    m->rest_controls, m->rest_e, m->K_sigma, m->J_sigma, m->W_sigma };
 	for (int i = 0; i < COUNT(all); i++)
 		free(all[i]);
 	*m = (struct skin_model){ 0 };

@@ -11,7 +11,8 @@
  *
  *     l = l0 + K L [g; 1]         u = u0 + J e, e = M [l; au; 1] = W [c; 1]
  *
- * What the clip did not show (an eye out of the picture) is not modelled: NAN in l0 and l, zeros in K and M.
+ * What the clip did not show (an eye out of the picture, a vertex hardly seen) is not modelled: NAN in l0, l, u0 and u,
+ * zeros in K, M and J.
  * Fitted numbers have standard errors beside them (delete-a-block jackknife over time, so that neighbouring frames do
  * not count as independent). Everything row-major; owned by the model.
  */
@@ -39,14 +40,15 @@ struct skin_model {
 	struct skin_camera camera;
 
 	double *l0, *l0_sigma;        // [n_lid] px
-	double *K;                    // [n_lid][n_lid_pc], orthonormal columns
+	double *K, *K_sigma;          // [n_lid][n_lid_pc], orthonormal columns, each of one eye's lids alone
 	double *L, *L_sigma;          // [n_lid_pc][SKIN_EYE_INPUTS + 1], px a unit of the input; last: constant
 	double *u0, *u0_sigma;        // [2 n_vertices] px
-	double *J;                    // [2 n_vertices][n_skin_pc], orthonormal columns
+	double *J, *J_sigma;          // [2 n_vertices][n_skin_pc], orthonormal columns
 	double *M, *M_sigma;          // [n_skin_pc][n_lid + n_au + 1]
+	double *W_sigma;              // [n_skin_pc][n_inputs + 1], of skin_model_fold's W, J taken as known
 	double *lid_pc, *lid_pc_sigma;    // [n_lid_pc] standard deviation along each component, px
 	double *skin_pc, *skin_pc_sigma;  // [n_skin_pc]
-	double *vertex_rms;           // [n_vertices] px left unexplained in held-out frames; NAN: vertex never seen
+	double *vertex_rms;           // [n_vertices] px left unexplained in held-out frames; NAN: not modelled
 	double *rest_controls;        // [n_inputs] c at the reference frame, in which the subject's mesh lies on the picture
 	double *rest_e;               // [n_skin_pc] e there, as measured: J^T (u - u0)
 

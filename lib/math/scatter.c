@@ -1,0 +1,269 @@
+#include "math/scatter.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+enum { TILE = 256 };
+
+int linalg_serial(void)
+{
+	int n = openblas_get_num_threads();
+	openblas_set_num_threads(1);
+	return n;
+}
+
+void linalg_threads(int n)
+{
+	openblas_set_num_threads(n);
+}
+
+void scatter_new(struct scatter *s, int p, int keep)
+{
+	*s = (struct scatter){ .p = p, .keep = keep };
+	s->mean = mem_new((size_t)p + 1, sizeof *s->mean);
+	if (keep > 0) {
+		s->rows = mem_array((size_t)keep * (size_t)p + 1, sizeof *s->rows);
+		s->weights = mem_array((size_t)keep + 1, sizeof *s->weights);
+	} else
+		s->S = mem_new((size_t)p * (size_t)p + 1, sizeof *s->S);
+}
+
+void scatter_free(struct scatter *s)
+{
+	free(s->mean);
+	free(s->rows);
+	free(s->weights);
+	free(s->S);
+	free(s->work);
+	*s = (struct scatter){ 0 };
+}
+
+/* S += Y^T Y for the first `rows` rows of work, tile by tile of the lower triangle. */
+static void add_square(struct scatter *s, int rows)
+{
+	int p = s->p, tiles = (p + TILE - 1) / TILE, n = tiles * (tiles + 1) / 2;
+	const double *y = s->work;
+#pragma omp parallel for schedule(dynamic)
+	for (int t = 0; t < n; t++) {
+		int i = (int)((sqrt(8.0 * t + 1) - 1) / 2), j = t - i * (i + 1) / 2;
+		int i0 = i * TILE, j0 = j * TILE, ni = p - i0 < TILE ? p - i0 : TILE, nj = p - j0 < TILE ? p - j0 : TILE;
+		double *to = s->S + (size_t)i0 * (size_t)p + j0;
+		if (i == j)
+			cblas_dsyrk(CblasRowMajor, CblasLower, CblasTrans, ni, rows, 1, y + i0, p, 1, to, p);
+		else
+			cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, ni, nj, rows, 1, y + i0, p, y + j0, p, 1, to, p);
+	}
+}
+
+/* One block of rows already in work as x (not centred), weights w: centred on its own mean, squared, merged. */
+static void merge_block(struct scatter *s, int n, const double *w)
+{
+	int p = s->p, used = 0;
+	double weight = 0, *mean = mem_new((size_t)p + 1, sizeof *mean), *y = s->work;
+	for (int r = 0; r < n; r++)
+		weight += w[r];
+	for (int r = 1; r < n && weight > 0; r++)  // from the first row on: what does not vary is exact
+		for (int c = 0; c < p; c++)
+			mean[c] += w[r] / weight * (y[(size_t)r * (size_t)p + (size_t)c] - y[c]);
+	for (int c = 0; c < p; c++)
+		mean[c] += y[c];
+	for (int r = 0; r < n; r++) {
+		double root = sqrt(w[r]), *row = y + (size_t)r * (size_t)p;
+		for (int c = 0; c < p; c++)
+			row[c] = root * (row[c] - mean[c]);
+		used += w[r] > 0;
+	}
+	if (weight > 0) {
+		// The means' own difference is one more row.
+		double share = weight / (s->weight + weight), root = sqrt(s->weight * share), *row = y + (size_t)n * (size_t)p;
+		for (int c = 0; c < p; c++) {
+			double d = mean[c] - s->mean[c];
+			row[c] = root * d;
+			s->mean[c] += share * d;
+		}
+		add_square(s, n + 1);
+		s->weight += weight;
+		s->n += used;
+	}
+	free(mean);
+}
+
+/* From rows to the matrix. */
+static void square_rows(struct scatter *s)
+{
+	long n = s->n;
+	int p = s->p;
+	double *rows = s->rows, *w = s->weights;
+	s->S = mem_new((size_t)p * (size_t)p + 1, sizeof *s->S);
+	s->rows = s->weights = 0;
+	s->n = 0;
+	s->weight = 0;
+	memset(s->mean, 0, (size_t)p * sizeof *s->mean);
+	scatter_add(s, n, rows, w);
+	free(rows);
+	free(w);
+}
+
+static void keep_rows(struct scatter *s, long n, const double *x, const double *w)
+{
+	for (long r = 0; r < n; r++) {
+		double one = w ? w[r] : 1;
+		if (!(one > 0))
+			continue;
+		memcpy(s->rows + (size_t)s->n * (size_t)s->p, x + (size_t)r * (size_t)s->p, (size_t)s->p * sizeof *x);
+		s->weights[s->n++] = one;
+		s->weight += one;
+		for (int c = 0; c < s->p; c++)
+			s->mean[c] += one / s->weight * (x[(size_t)r * (size_t)s->p + (size_t)c] - s->mean[c]);
+	}
+}
+
+void scatter_add(struct scatter *s, long n, const double *x, const double *w)
+{
+	if (!s->S && s->n + n <= s->keep) {
+		keep_rows(s, n, x, w);
+		return;
+	}
+	if (!s->S)
+		square_rows(s);
+	if (!s->work)
+		s->work = mem_array((size_t)(SCATTER_BLOCK + 1) * (size_t)s->p + 1, sizeof *s->work);
+	double one[SCATTER_BLOCK];
+	for (long at = 0; at < n; at += SCATTER_BLOCK) {
+		int m = n - at < SCATTER_BLOCK ? (int)(n - at) : SCATTER_BLOCK;
+		for (int r = 0; r < m; r++)
+			one[r] = w ? w[at + r] : 1;
+		memcpy(s->work, x + (size_t)at * (size_t)s->p, (size_t)m * (size_t)s->p * sizeof *x);
+		merge_block(s, m, one);
+	}
+}
+
+/* Columns from..from+n-1 of the rows kept, centred and weighted: [s->n][n]. */
+static double *centred(const struct scatter *s, int from, int n)
+{
+	double *y = mem_array((size_t)s->n * (size_t)n + 1, sizeof *y);
+	for (long r = 0; r < s->n; r++) {
+		double root = sqrt(s->weights[r]);
+		for (int c = 0; c < n; c++)
+			y[r * n + c] = root * (s->rows[r * s->p + from + c] - s->mean[from + c]);
+	}
+	return y;
+}
+
+void scatter_cross(double *out, const struct scatter *s, int i0, int ni, int j0, int nj)
+{
+	if (s->S) {
+		for (int i = 0; i < ni; i++)
+			for (int j = 0; j < nj; j++) {
+				size_t a = (size_t)(i0 + i), b = (size_t)(j0 + j), p = (size_t)s->p;
+				out[i * nj + j] = a >= b ? s->S[a * p + b] : s->S[b * p + a];
+			}
+		return;
+	}
+	double *a = centred(s, i0, ni), *b = centred(s, j0, nj);
+	cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, ni, nj, (int)s->n, 1, a, ni, b, nj, 0, out, nj);
+	free(a);
+	free(b);
+}
+
+double scatter_energy(const struct scatter *s, int from, int n)
+{
+	double sum = 0;
+	for (int c = from; s->S && c < from + n; c++)
+		sum += s->S[(size_t)c * (size_t)s->p + (size_t)c];
+	if (!s->S) {
+		double *y = centred(s, from, n);
+		for (long i = 0; i < s->n * n; i++)
+			sum += y[i] * y[i];
+		free(y);
+	}
+	return sum;
+}
+
+/* Column k of vectors gets the sign that makes its largest number positive. */
+static void settle_signs(double *vectors, int n, int k)
+{
+	for (int c = 0; c < k; c++) {
+		int top = 0;
+		for (int i = 1; i < n; i++)
+			if (fabs(vectors[i * k + c]) > fabs(vectors[top * k + c]) * (1 + 1e-9))
+				top = i;
+		bool flip = vectors[top * k + c] < 0;
+		for (int i = 0; i < n && flip; i++)
+			vectors[i * k + c] = -vectors[i * k + c];
+	}
+}
+
+/* n_rows x n singular value decomposition of the kept rows; *resolved: below that, values are rounding. */
+static bool by_rows(double *vectors, double *values, double *resolved, const struct scatter *s, int from, int n, int k)
+{
+	int m = (int)s->n, least = m < n ? m : n;
+	double *y = centred(s, from, n), *d = mem_new((size_t)least + 1, sizeof *d);
+	double *vt = mem_new((size_t)least * (size_t)n + 1, sizeof *vt), *u = mem_new((size_t)m * (size_t)least + 1, sizeof *u);
+	bool ok = least > 0 && !LAPACKE_dgesdd(LAPACK_ROW_MAJOR, 'S', m, n, y, n, d, u, least, vt, n);
+	for (int c = 0; c < k && ok; c++) {
+		values[c] = c < least ? d[c] : 0;
+		for (int i = 0; i < n && c < least; i++)
+			vectors[i * k + c] = vt[(size_t)c * (size_t)n + (size_t)i];
+	}
+	*resolved = ok ? d[0] * (m > n ? m : n) * DBL_EPSILON : 0;
+	free(y);
+	free(d);
+	free(vt);
+	free(u);
+	return ok;
+}
+
+static bool by_matrix(double *vectors, double *values, double *resolved, const struct scatter *s, int from, int n, int k)
+{
+	double *A = mem_array((size_t)n * (size_t)n + 1, sizeof *A), *d = mem_new((size_t)n + 1, sizeof *d);
+	double *z = mem_new((size_t)n * (size_t)k + 1, sizeof *z);
+	lapack_int *support = mem_new(2 * (size_t)k + 2, sizeof *support), found = 0;
+	// Column-major upper is row-major lower: no copy inside LAPACKE.
+	for (int i = 0; i < n; i++)
+		memcpy(A + (size_t)i * (size_t)n, s->S + (size_t)(from + i) * (size_t)s->p + from, (size_t)(i + 1) * sizeof *A);
+	bool ok = !LAPACKE_dsyevr(LAPACK_COL_MAJOR, 'V', 'I', 'U', n, A, n, 0, 0, n - k + 1, n, 0, &found, d, z, n, support)
+	          && found == k;
+	for (int c = 0; c < k && ok; c++) {
+		values[c] = sqrt(d[k - 1 - c] > 0 ? d[k - 1 - c] : 0);
+		for (int i = 0; i < n; i++)
+			vectors[i * k + c] = z[(size_t)(k - 1 - c) * (size_t)n + (size_t)i];
+	}
+	*resolved = ok ? sqrt(fmax(d[k - 1], 0) * n * DBL_EPSILON) : 0;
+	free(A);
+	free(d);
+	free(z);
+	free(support);
+	return ok;
+}
+
+int scatter_components(double *vectors, double *values, const struct scatter *s, int from, int n, int k)
+{
+	double resolved = 0;
+	memset(vectors, 0, (size_t)n * (size_t)k * sizeof *vectors);
+	memset(values, 0, (size_t)k * sizeof *values);
+	if (!n || !k || !s->n)
+		return 0;
+	if (!(s->S ? by_matrix : by_rows)(vectors, values, &resolved, s, from, n, k))
+		return 0;
+	double mean2 = 0;  // what does not move at all differs from its mean by rounding
+	for (int i = from; i < from + n; i++)
+		mean2 += s->mean[i] * s->mean[i];
+	resolved = fmax(resolved, 8 * DBL_EPSILON * sqrt(s->weight * mean2));
+	int rank = 0;
+	while (rank < k && values[rank] > resolved)
+		rank++;
+	for (int c = rank; c < k; c++) {
+		values[c] = 0;
+		for (int i = 0; i < n; i++)
+			vectors[i * k + c] = 0;
+	}
+	settle_signs(vectors, n, k);
+	return rank;
+}
