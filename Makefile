@@ -40,7 +40,7 @@ BIN := $(if $(SAN),$(B)/bin,bin)
 
 PACKAGES := gcc g++ make pkg-config libopencv-dev libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
 	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
-	libopenblas-dev libsuitesparse-dev libflann-dev libembree-dev libzip-dev libavformat-dev libavcodec-dev \
+	libopenblas-dev libsuitesparse-dev libflann-dev libembree-dev libsqlite3-dev libzip-dev libavformat-dev libavcodec-dev \
 	libswscale-dev libavutil-dev libqhull-dev libcmocka-dev gnuplot-nox
 
 # Sanitised programs are built to be built fast: they run no longer for it.
@@ -58,7 +58,7 @@ ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenm
 EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
 LIBS = -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
-	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lzip \
+	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lsqlite3 -lzip \
 	-lavformat -lavcodec -lswscale -lavutil -llapacke -lopenblas -ljansson -linih -lxxhash -lm
 
 LIB_SRC := $(wildcard lib/*/*.c)

@@ -20,7 +20,7 @@ static const struct rule {
 	const char *does, *without;  // reasons: why it runs, why not when the folder lacks what it works on
 } rules[PLAN_STAGES] = {
 	{ "plan", 0, 0, 0, "decides what the others do", "" },
-	{ "calibrate", 0, VIEWS | VIDEO, 0, "cameras from the overlapping views",
+	{ "calibrate", 0, VIEWS, 0, "cameras from the overlapping views",
 	  "one photograph or no views/: cameras come from EXIF or capture.conf" },
 	{ "limbus", 0, PHOTOS, 0, "finds the eye in each photograph", "no photos/" },
 	{ "unrefract", "limbus", PHOTOS, 0, "takes the cornea off the iris", "no photos/" },

@@ -10,7 +10,10 @@
 #include "base/mem.h"
 #include "base/npy.h"
 #include "image/exr.h"
+#include "optics/colmap.h"
 #include "tests/lib/variant.h"
+
+static const char *const stems[] = { "cameras", "images", "points3D" };
 
 static void put(const char *dir, const char *name, const void *data, size_t size)
 {
@@ -89,6 +92,43 @@ static void arrays(const char *dir)
 	put_text(dir, "csv/b.csv", "\xef\xbb\xbf" "a;b\r\n1;\r\n;2\r\n");
 }
 
+/* One camera, two images, one point: text and binary behind the five bytes that say where the files end. */
+static void models(const char *dir)
+{
+	static const char cameras[] = "1 PINHOLE 100 80 90 90 50 40\n",
+	                  images[] = "1 1 0 0 0 0 0 0 1 a.jpg\n10 10 1\n2 1 0 0 0 1 0 0 1 b.jpg\n20 10 1\n",
+	                  points[] = "1 0 0 5 1 2 3 -1 1 0 2 0\n";
+	const char *const data[] = { cameras, images, points };
+	const size_t size[] = { sizeof cameras - 1, sizeof images - 1, sizeof points - 1 };
+	struct colmap_model model;
+	struct err err = { 0 };
+	if (!colmap_parse(&model, COLMAP_TEXT, data, size, data, &err))
+		fprintf(stderr, "seeds: %s\n", err.msg);
+	for (int text = 0; text < 2; text++) {
+		char *files[3], *all = 0, *to = mem_printf("%s/colmap-%d", dir, text);
+		size_t sizes[3], n = 0;
+		if (!colmap_save(&model, to, text ? COLMAP_TEXT : COLMAP_BINARY, &err))
+			fprintf(stderr, "seeds: %s\n", err.msg);
+		FILE *f = open_memstream(&all, &n);
+		for (int i = 0; i < 3; i++) {
+			char *path = mem_printf("%s/%s.%s", to, stems[i], text ? "txt" : "bin");
+			if (!file_read(&files[i], &sizes[i], path, 1 << 16, &err))
+				exit(1);
+			free(path);
+		}
+		fprintf(f, "%c%c%c%c%c", text, (int)(sizes[0] & 255), (int)(sizes[0] >> 8), (int)(sizes[1] & 255), (int)(sizes[1] >> 8));
+		for (int i = 0; i < 3; i++) {
+			fwrite(files[i], 1, sizes[i], f);
+			free(files[i]);
+		}
+		fclose(f);
+		put(dir, text ? "colmap/text" : "colmap/binary", all, n);
+		free(all);
+		free(to);
+	}
+	colmap_free(&model);
+}
+
 int main(int argc, char **argv)
 {
 	if (argc != 2)
@@ -96,6 +136,7 @@ int main(int argc, char **argv)
 	const char *dir = argv[1];
 	photos(dir);
 	maps(dir);
+	models(dir);
 	arrays(dir);
 	put_text(dir, "conf/a.conf", "; comment\ns.a = 0.25\ns.b = 3\ns.c = yes\ns.d = green\ns.e = 0 0.5 1\ns.f = x y\nphoto.n.g = 0 1\n");
 	put_text(dir, "fit/a.json",

@@ -1,0 +1,50 @@
+/* camera_rig: the cameras `calibrate` has found, work/rig.json. A stage that looks at pictures takes its cameras from there:
+ *
+ *     struct camera_rig rig = { 0 };
+ *     if (file_exists(path) && !camera_rig_load(&rig, path, err))       path: stage_path(stage, "work/rig.json"), an input
+ *             return false;
+ *     const struct rig_camera *c = camera_rig_find(&rig, "photos/left_a.jpg");
+ *     if (c)                                                     null: not registered, or no rig at all
+ *             camera = c->camera;                                source CAMERA_RIG, distortion included
+ *     camera_rig_free(&rig);
+ *
+ * Lens distortion is in camera->distortion and nowhere else: camera_project and camera_ray take it in and out again.
+ * Frame  head: the subject mesh's axes, x to the person's left, y up, z out of the face; mm.
+ * Image  the picture's own size, upright (after its EXIF orientation), first pixel's centre at (0.5, 0.5).
+ */
+#ifndef OPTICS_CAMERA_RIG_H
+#define OPTICS_CAMERA_RIG_H
+#include "base/err.h"
+#include "optics/camera.h"
+
+struct rig_camera {
+	char *name, *file;           // "left_a", "photos/left_a.jpg"; owned
+	int width, height;           // px
+	struct camera camera;        // focal_px: the geometric mean where fx and fy differ
+	double focal[2];             // fx, fy, px
+	bool has_pose;               // false: only the lens is known
+	double cam_from_head[4][4];  // mm
+	double residual_px;          // mean reprojection error; NAN where nothing was measured
+	int points;                  // that it was measured on
+};
+
+struct camera_rig {
+	struct rig_camera *cameras;  // owned
+	int n;
+	double scale_sigma;    // relative standard deviation of all lengths; NAN: the scale is an assumption
+	char scale_source[32]; // "ruler", "marker", "distance", "limbus", "assumed"
+	char frame_source[32]; // "eyes and mouth", "cameras"
+};
+
+/* camera_rig_free. False, err set, when the file cannot be used: nothing is filled then. */
+bool camera_rig_load(struct camera_rig *rig, const char *path, struct err *err);
+
+/* Further keys of the document: JSON object text, or null. */
+bool camera_rig_save(const struct camera_rig *rig, const char *path, const char *made_by, const char *extra, struct err *err);
+
+/* The camera of a picture by its path in the capture ("views/a.jpg"); null: it has none. */
+const struct rig_camera *camera_rig_find(const struct camera_rig *rig, const char *file);
+
+void camera_rig_free(struct camera_rig *rig);
+
+#endif

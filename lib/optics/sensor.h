@@ -1,0 +1,8 @@
+/* sensor: how wide the sensors of cameras are that do not say it in EXIF themselves. */
+#ifndef OPTICS_SENSOR_H
+#define OPTICS_SENSOR_H
+
+/* Longer side of the sensor, mm, of a camera as EXIF calls it ("Canon EOS 600D"); NAN for one that is not in the table. */
+double sensor_mm(const char *model);
+
+#endif

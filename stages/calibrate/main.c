@@ -1,0 +1,41 @@
+/* calibrate: cameras and the subject's mesh from overlapping photographs.
+ * reads   views/, photos/, video/
+ * writes  work/rig.json, work/subject.ply, work/calibrate/
+ */
+#include "stages/calibrate/run.h"
+
+int main(int argc, char **argv)
+{
+	static const char *const lenses[] = { "simple_radial", "radial", "opencv", 0 };
+	struct calibrate_options o = { 0 };
+	struct stage stage;
+	struct err err = { 0 };
+	const struct opt opts[] = {
+		OPT_REAL_UNSET("camera.focal_px", &o.focal_px, 10, 1e7, "px", "focal length of all photographs"),
+		OPT_REAL_UNSET("camera.focal_mm", &o.focal_mm, 1, 3000, "mm", "focal length, with camera.sensor_mm"),
+		OPT_REAL_UNSET("camera.sensor_mm", &o.sensor_mm, 1, 200, "mm", "longer side of the sensor"),
+		OPT_REAL("limit.photo_mpx", &o.limit_mpx, 1, 1000, "Mpx", "larger photographs are refused"),
+		OPT_INT("max_views", &o.max_views, 10, 2000, "", "of more, so many are taken"),
+		OPT_REAL("same_level", &o.same_level, 0, 50, "levels", "a picture that differs less from the one before is left out"),
+		OPT_INT("picture_px", &o.picture_px, 400, 10000, "px", "longer side of the pictures that are compared"),
+		OPT_INT("features", &o.features, 200, 32768, "", "features of a picture, at most"),
+		OPT_INT("first_octave", &o.first_octave, -1, 0, "", "-1: features are also sought between the pixels"),
+		OPT_INT("overlap_features", &o.overlap.strongest, 50, 8192, "", "features that decide which pictures overlap"),
+		OPT_INT("overlap_matches", &o.overlap.min_matches, 1, 1000, "", "matches among them that make a pair"),
+		OPT_INT("overlap_best", &o.overlap.always, 1, 1000, "", "best pairs of a picture that are kept anyway"),
+		OPT_INT("sequence_neighbours", &o.sequence_neighbours, 0, 100, "", "neighbours compared in a sequence"),
+		OPT_REAL("max_ratio", &o.overlap.match.max_ratio, 0.3, 1, "", "angle to the best match over that to the second"),
+		OPT_REAL("max_distance", &o.overlap.match.max_distance, 0.1, 1.5, "rad", "angle between matching features"),
+		OPT_INT("min_matches", &o.min_matches, 8, 1000, "", "matches that make two pictures neighbours"),
+		OPT_CHOICE("lens", &o.lens, lenses, "distortion that is sought"),
+		OPT_REAL("filter_px", &o.filter_px, 0.5, 20, "px", "points that project worse are left out"),
+		OPT_REAL("min_angle_deg", &o.tri_deg, 0.1, 20, "deg", "smallest angle under which a point is seen"),
+		OPT_INT("adjustments", &o.ba_rounds, 1, 20, "", "rounds of a bundle adjustment"),
+		OPT_REAL("regrow", &o.regrow, 0, 1, "", "share of new pictures from which on all cameras are found anew"),
+		OPT_REAL("head_radius_mm", &o.head_radius_mm, 20, 1000, "mm", "half the head's height, where nothing has a known length"),
+	};
+	stage_start(&stage, "calibrate", "cameras and the person's mesh from overlapping photographs, with COLMAP", argc, argv,
+	            COUNT(opts), opts);
+	calibrate_run(&stage, &o, &err);
+	return stage_end(&stage, &err);
+}

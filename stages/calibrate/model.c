@@ -1,0 +1,141 @@
+/* Cameras and points from checked matches: COLMAP's mapper, begun anew or gone on with; the best of its models. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "stages/calibrate/calibrate.h"
+#include "stages/calibrate/model.h"
+
+enum { MAX_MODELS = 8 };
+#define TRIALS CALIBRATE_DIR "/models"
+
+static const char *const files[] = { "cameras.bin", "images.bin", "points3D.bin", "project.ini", "seal" };
+
+void model_remove(struct stage *stage, const char *dir)
+{
+	struct err none = { 0 };
+	for (int i = 0; i < COUNT(files); i++)
+		file_remove(stage_path(stage, "%s/%s", dir, files[i]), &none);
+	rmdir(stage_path(stage, "%s", dir));
+}
+
+static void remove_trials(struct stage *stage)
+{
+	for (int i = 0; i < MAX_MODELS; i++)
+		model_remove(stage, stage_path(stage, TRIALS "/%d", i) + strlen(stage->capture) + 1);
+	model_remove(stage, TRIALS);
+}
+
+/* Puts the chosen model where it is kept, under seal. */
+static bool keep(const struct colmap_model *model, struct stage *stage, struct err *err)
+{
+	const char *dir = stage_path(stage, MODEL_DIR);
+	model_remove(stage, MODEL_DIR);
+	return colmap_save(model, dir, COLMAP_BINARY, err) && colmap_seal(dir, err);
+}
+
+static bool run_mapper(struct stage *stage, const struct views *views, bool grows, const struct calibrate_options *o,
+                       struct err *err)
+{
+	char *filter = mem_printf("%g", o->filter_px), *angle = mem_printf("%g", o->tri_deg), *rounds = mem_printf("%d", o->ba_rounds);
+	char *least = mem_printf("%d", views->n_used < 10 ? 2 : 5), *matches = mem_printf("%d", o->min_matches);
+	const char *refine = grows ? "0" : "1", *trials = stage_path(stage, TRIALS);
+	// Its sums depend on the number of threads; one is hardly slower, for most of its work is not shared out anyway.
+	const char *args[48] = { "--database_path", stage_path(stage, CALIBRATE_DIR "/database.db"),
+		"--image_path", stage_path(stage, CALIBRATE_DIR "/pictures"), "--output_path", trials, "--Mapper.num_threads", "1",
+		"--Mapper.min_num_matches", matches, "--Mapper.min_model_size", least, "--Mapper.max_num_models", "5",
+		"--Mapper.filter_max_reproj_error", filter, "--Mapper.filter_min_tri_angle", angle,
+		"--Mapper.ba_global_max_refinements", rounds, "--Mapper.ba_refine_focal_length", refine,
+		"--Mapper.ba_refine_extra_params", refine, "--Mapper.fix_existing_images", grows ? "1" : "0" };
+	int n = 0;
+	while (args[n])
+		n++;
+	if (grows) {
+		args[n++] = "--input_path";
+		args[n++] = stage_path(stage, MODEL_DIR);
+	}
+	bool ok = file_mkdirs(trials, err) && colmap_run(stage, "mapper", args, views->n_used, "cameras", err);
+	free(filter);
+	free(angle);
+	free(rounds);
+	free(least);
+	free(matches);
+	return ok;
+}
+
+/* The model with the most pictures, then the most points. *n: how many models there are. */
+static bool best_trial(struct colmap_model *best, int *n, struct stage *stage, struct err *err)
+{
+	*best = (struct colmap_model){ 0 };
+	*n = 0;
+	for (int i = -1; i < MAX_MODELS; i++) {
+		const char *dir = i < 0 ? stage_path(stage, TRIALS) : stage_path(stage, TRIALS "/%d", i);
+		char *file = mem_printf("%s/cameras.bin", dir);
+		bool there = file_exists(file);
+		struct colmap_model m;
+		free(file);
+		if (!there)
+			continue;
+		if (!colmap_load(&m, dir, err) || !colmap_check_errors(&m, dir, err))
+			return false;
+		++*n;
+		if (m.n_images > best->n_images || (m.n_images == best->n_images && m.n_points > best->n_points)) {
+			struct colmap_model was = *best;
+			*best = m;
+			m = was;
+		}
+		colmap_free(&m);
+	}
+	return true;
+}
+
+/* The model that was kept, when it still says what these pictures say. False without an error: there is none. */
+static bool recall(struct colmap_model *kept, const struct views *views, bool grows, struct stage *stage,
+                   const struct calibrate_options *o)
+{
+	struct err why = { 0 };
+	const char *dir = stage_path(stage, MODEL_DIR);
+	int n_new = 0;
+	*kept = (struct colmap_model){ 0 };
+	for (int i = 0; i < views->n_used; i++)
+		n_new += views->v[i].is_new;
+	char *file = mem_printf("%s/cameras.bin", dir);
+	bool there = file_exists(file);
+	free(file);
+	if (!grows || !there || n_new > o->regrow * views->n_used)
+		return false;
+	if (colmap_load(kept, dir, &why))
+		return true;
+	stage_warn(stage, "%s: begun anew", why.msg);
+	return false;
+}
+
+static bool map(struct colmap_model *model, int *n_models, const struct views *views, bool grows, struct stage *stage,
+                const struct calibrate_options *o, struct err *err)
+{
+	remove_trials(stage);
+	bool ok = run_mapper(stage, views, grows, o, err) && best_trial(model, n_models, stage, err);
+	remove_trials(stage);
+	return ok;
+}
+
+bool model_make(struct colmap_model *model, const struct views *views, bool grows, struct stage *stage,
+                const struct calibrate_options *o, struct err *err)
+{
+	int n_models = 1, n_new = 0;
+	for (int i = 0; i < views->n_used; i++)
+		n_new += views->v[i].is_new;
+	bool kept = recall(model, views, grows, stage, o);
+	if (kept && !n_new)
+		return true;
+	colmap_free(model);
+	if (!map(model, &n_models, views, kept, stage, o, err))
+		return false;
+	if (!model->n_images)
+		return model_advice(views, stage, err);
+	stage_note(stage, "%d of %d pictures registered, %d points, %.2f px%s", model->n_images, views->n_used, model->n_points,
+	           colmap_residual(model, -1), n_models > 1 ? "; the rest does not connect" : "");
+	return keep(model, stage, err);
+}

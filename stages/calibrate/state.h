@@ -1,0 +1,13 @@
+/* state: with which options the database and the model were made: others make them anew. */
+#ifndef STAGES_CALIBRATE_STATE_H
+#define STAGES_CALIBRATE_STATE_H
+#include "stages/calibrate/calibrate.h"
+
+/* Removes the database when features or matches would come out otherwise now (or with --force), and the model when it or
+ * the database would. */
+bool state_check(struct stage *stage, const struct calibrate_options *o, struct err *err);
+
+/* Records the options the model stands for. */
+bool state_save(struct stage *stage, const struct calibrate_options *o, struct err *err);
+
+#endif
