@@ -72,6 +72,8 @@ struct scene_files {
 /* The maps, the tissue, the pupil; then scene_fit_colour. sclera_rgb in conf. scene_free. */
 bool scene_load(struct scene *scene, const struct scene_files *files, const struct eye *eye,
                 const struct scene_conf *conf, struct err *err);
+/* An eye nobody photographed: an iris of about that colour (linear), its fibres from a seed. scene_fit_colour, scene_free. */
+void scene_plain(struct scene *scene, const struct eye *eye, const struct scene_conf *conf, const double rgb[3], uint64_t seed);
 void scene_free(struct scene *scene);
 
 /* Light as one view sees it: the environment stands in the camera's frame. */

@@ -30,6 +30,13 @@ struct scene_beams {
 	struct scene_beam *beam;  // owned
 };
 
+/* Limbus, sclera and cornea of s->eye. */
+void scene_geometry(struct scene *scene);
+
+/* Where nothing was fitted: the stroma's thickness, mm, and a tissue; the march's steps. */
+extern const double scene_plain_stroma;
+void scene_plain_tissue(struct scene *scene);
+
 /* The lights that reach the iris, for one view. free(beams.beam). */
 struct scene_beams scene_beams(const struct scene *scene, const struct scene_lighting *light,
                                const double eye_from_cam[3][3]);

@@ -14,7 +14,7 @@ static const long limit_px = 1L << 27;
 
 /* The stroma's thickness where no relief says: the mean of the three places of the iris paper, section 4, weighted by
  * their share of the area. A layer without melanin to speak of, as in a blue eye. */
-static const double plain_stroma = 0.48;
+const double scene_plain_stroma = 0.48;
 static const struct tissue plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
 	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };
 
@@ -115,7 +115,7 @@ static bool load_relief(struct scene *s, const char *path, struct err *err)
 	} else {
 		map = image_new(l->n, l->n, 2);
 		for (long i = 0; i < (long)l->n * l->n; i++)
-			map.px[2 * i + 1] = (float)plain_stroma;
+			map.px[2 * i + 1] = (float)scene_plain_stroma;
 	}
 	for (long i = 0; i < (long)l->n * l->n; i++) {  // a relief beyond that is none, and the march counts on it
 		map.px[2 * i] = fmaxf(-0.6f, fminf(0.6f, map.px[2 * i]));
@@ -138,19 +138,30 @@ static void load_pupil(struct scene *s, const char *path)
 	json_decref(root);
 }
 
+static void take_tissue(struct scene *s, const struct tissue *tissue)
+{
+	struct tissue_bands bands;
+	tissue_bands_make(&bands, s->conf.bands, tissue->illuminant);
+	tissue_optics_make(&s->optics, tissue, &bands);
+	double flat[3];
+	tissue_reflectance(flat, &s->optics, scene_plain_stroma, 1, 1);
+	for (int c = 0; c < 3; c++)
+		s->flat[c] = (float)(flat[c] * s->optics.exposure);
+	nodes_make(s);
+}
+
 static bool load_tissue(struct scene *s, const char *path, struct err *err)
 {
 	struct tissue tissue = plain_tissue;
 	if (path && file_exists(path) && !tissue_load(&tissue, path, err))
 		return false;
-	struct tissue_bands bands;
-	tissue_bands_make(&bands, s->conf.bands, tissue.illuminant);
-	tissue_optics_make(&s->optics, &tissue, &bands);
-	double flat[3];
-	tissue_reflectance(flat, &s->optics, plain_stroma, 1, 1);
-	for (int c = 0; c < 3; c++)
-		s->flat[c] = (float)(flat[c] * s->optics.exposure);
+	take_tissue(s, &tissue);
 	return true;
+}
+
+void scene_plain_tissue(struct scene *s)
+{
+	take_tissue(s, &plain_tissue);
 }
 
 /* Made for this very cornea, or not used: the folder may have been changed since. */
@@ -169,7 +180,7 @@ static bool load_refraction(struct scene *s, const char *path, struct err *err)
 	return true;
 }
 
-static void geometry(struct scene *s)
+void scene_geometry(struct scene *s)
 {
 	double aspect = isfinite(s->eye.limbus_aspect) ? s->eye.limbus_aspect : 1;
 	s->cornea = eye_cornea(&s->eye);
@@ -185,14 +196,13 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
                 struct err *err)
 {
 	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1 };
-	geometry(s);
+	scene_geometry(s);
 	load_pupil(s, files->texture_json);
 	if (!load_colour(s, files->texture, conf->map_size, err) || !load_relief(s, files->relief, err)
 	    || !load_tissue(s, files->pigment, err) || !load_refraction(s, files->refraction, err)) {
 		scene_free(s);
 		return false;
 	}
-	nodes_make(s);
 	scene_fill(s->level[0].colour, s->level[0].n, s->extent, s->pupil);
 	scene_levels_make(s);
 	scene_veins_make(s);

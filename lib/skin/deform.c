@@ -89,7 +89,7 @@ struct deform *deform_new(const struct rig *rig)
 	d->vertex = mem_new((size_t)rig->n + BLOCK, sizeof *d->vertex);
 	d->globe_vertex = mem_new((size_t)rig->n + 1, sizeof *d->globe_vertex);
 	for (int i = 0; i < rig->n; i++)
-		if (rig->part[i] != RIG_SKIN)
+		if (rig_is_globe(rig->part[i]))
 			d->globe_vertex[d->n_globe++] = i;
 		else if (moves(rig, i))
 			d->vertex[d->n++] = i;

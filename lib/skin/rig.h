@@ -14,12 +14,17 @@
 
 enum { RIG_COMPONENTS = 4, RIG_BASIS = 2 * RIG_COMPONENTS };
 
-/* What a vertex belongs to. */
-enum rig_part { RIG_SKIN, RIG_GLOBE_LEFT, RIG_GLOBE_RIGHT };
+/* What a vertex belongs to. Near an eye: pieces of their own there (lashes, tear film): they follow the skin. */
+enum rig_part { RIG_SKIN, RIG_GLOBE_LEFT, RIG_GLOBE_RIGHT, RIG_NEAR_EYE, RIG_PARTS };
 
-/* How the rig came to know how a vertex moves: barycentrically from tracked points (eq. 3.4), from the lid margin's
- * splines, or from its neighbours (eq. 3.5). */
-enum rig_source { RIG_TRACKED, RIG_LID, RIG_EXTRAPOLATED };
+static inline bool rig_is_globe(uint8_t part)
+{
+	return part == RIG_GLOBE_LEFT || part == RIG_GLOBE_RIGHT;
+}
+
+/* How the rig came to know how a vertex moves: barycentrically from tracked points (eq. 3.4), or from its
+ * neighbours (eq. 3.5). */
+enum rig_source { RIG_TRACKED, RIG_EXTRAPOLATED };
 
 struct rig_globe {
 	double center[3];        // mm

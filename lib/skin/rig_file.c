@@ -147,7 +147,7 @@ static bool check(const struct rig *r, const char *path, struct err *err)
 		if (r->faces[i / 3][i % 3] < 0 || r->faces[i / 3][i % 3] >= r->n)
 			return err_set(err, "%s: faces: %d is no vertex", path, r->faces[i / 3][i % 3]);
 	for (int i = 0; i < r->n; i++)
-		if (r->side[i] > 1 || r->part[i] > RIG_GLOBE_RIGHT)
+		if (r->side[i] > 1 || r->part[i] >= RIG_PARTS)
 			return err_set(err, "%s: vertex %d belongs to no part", path, i);
 	for (int i = 0; i < r->n; i++)
 		if (r->bplus.start[i] < 0 || r->bplus.start[i] > r->bplus.start[i + 1])

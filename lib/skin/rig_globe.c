@@ -39,8 +39,26 @@ struct ball {
 	int n, component;
 };
 
+/* Area that each vertex stands for: corneas are meshed finely, and would outvote the sclera. free(). */
+static double *areas_of(const struct rig *rig)
+{
+	double *area = mem_new((size_t)rig->n + 1, sizeof *area);
+	for (int f = 0; f < rig->n_faces; f++) {
+		const int32_t *v = rig->faces[f];
+		double a[3], b[3];
+		for (int c = 0; c < 3; c++) {
+			a[c] = rig->rest[v[1]][c] - rig->rest[v[0]][c];
+			b[c] = rig->rest[v[2]][c] - rig->rest[v[0]][c];
+		}
+		vec_cross(a, a, b);
+		for (int k = 0; k < 3; k++)
+			area[v[k]] += vec_norm(a) / 6;
+	}
+	return area;
+}
+
 /* The sphere nearest to a component's vertices; a cornea on it counts less from round to round. */
-static bool fit_ball(struct ball *ball, const struct rig *rig, const int *component, int which)
+static bool fit_ball(struct ball *ball, const struct rig *rig, const int *component, const double *area, int which)
 {
 	double origin[3] = { 0 };
 	*ball = (struct ball){ .component = which };
@@ -54,14 +72,14 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 		return false;
 	for (int c = 0; c < 3; c++)
 		origin[c] /= ball->n;
-	double x[4] = { 0 }, total = 0;
+	double x[4] = { 0 }, total = 0, all = 0;
 	for (int round = 0; round < ROUNDS; round++) {
 		double A[16] = { 0 }, b[4] = { 0 }, rms = 0, radius = ball->radius;
-		total = 0;
+		total = all = 0;
 		for (int i = 0; i < rig->n; i++) {
 			if (component[i] != which)
 				continue;
-			double p[4] = { 0, 0, 0, 1 }, square = 0, w = 1, off[3];
+			double p[4] = { 0, 0, 0, 1 }, square = 0, w = area[i], off[3];
 			for (int c = 0; c < 3; c++) {
 				off[c] = rig->rest[i][c] - origin[c];
 				p[c] = 2 * off[c];
@@ -70,7 +88,7 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 			}
 			double residual = (vec_norm(off) - radius) / fmax(radius, 1e-9);
 			if (round)
-				w = 1 / (1 + (residual / 0.02) * (residual / 0.02));
+				w /= 1 + (residual / 0.02) * (residual / 0.02);
 			for (int j = 0; j < 4; j++) {
 				for (int k = 0; k < 4; k++)
 					A[4 * j + k] += w * p[j] * p[k];
@@ -78,6 +96,7 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 			}
 			rms += w * residual * residual;
 			total += w;
+			all += area[i];
 		}
 		if (!chol_solve(4, 4, A, b))
 			return false;
@@ -89,7 +108,7 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 	for (int c = 0; c < 3; c++)
 		ball->center[c] = origin[c] + x[c];
 	// Most of it has to lie on the sphere: a strip of lid does, too, but not all round (globe_map_from_mesh sees to that).
-	return isfinite(ball->radius) && total > 0.4 * ball->n;
+	return isfinite(ball->radius) && total > 0.4 * all;
 }
 
 /* On that side of the face, where nobody knows more. */
@@ -112,31 +131,76 @@ static bool expected(const struct rig *rig, const struct ball *ball, int side, c
 	return vec_norm(d) < radius && ball->radius > 0.4 * radius && ball->radius < 2.2 * radius;
 }
 
-/* The component in the globe's own frame (axes of the head, origin at its centre). mesh_free. */
-static struct mesh own_mesh(const struct rig *rig, const struct ball *ball, const int *component)
+/* The globe's vertices in its own frame (axes of the head, origin at its centre). mesh_free. */
+static struct mesh own_mesh(const struct rig *rig, const double center[3], enum rig_part part)
 {
 	struct mesh mesh = { .vertices = mem_new((size_t)rig->n + 1, sizeof *mesh.vertices),
 		                 .faces = mem_new((size_t)rig->n_faces + 1, sizeof *mesh.faces) };
 	int *row = mem_new((size_t)rig->n + 1, sizeof *row);
 	for (int i = 0; i < rig->n; i++) {
 		double p[3];
-		if (component[i] != ball->component)
+		if (rig->part[i] != part)
 			continue;
 		for (int c = 0; c < 3; c++)
-			p[c] = rig->rest[i][c] - ball->center[c];
+			p[c] = rig->rest[i][c] - center[c];
 		mat_vec(p, rig->head_from_target, p);
 		for (int c = 0; c < 3; c++)
 			mesh.vertices[mesh.n_vertices][c] = (float)p[c];
 		row[i] = mesh.n_vertices++;
 	}
 	for (int f = 0; f < rig->n_faces; f++)
-		if (component[rig->faces[f][0]] == ball->component) {
+		if (rig->part[rig->faces[f][0]] == part) {
 			for (int k = 0; k < 3; k++)
 				mesh.faces[mesh.n_faces][k] = row[rig->faces[f][k]];
 			mesh.n_faces++;
 		}
 	free(row);
 	return mesh;
+}
+
+/* How a component lies about a globe: nearest and furthest vertex over the radius, least cosine from the axis, and how
+ * far its middle is off the axis over the radius. */
+struct lie {
+	double low, high, least_cos, off[3];
+	int n;
+};
+
+static void look_round(struct lie *lie, const struct rig *rig, const struct ball *ball, const int *component)
+{
+	for (int i = 0; i < rig->n; i++) {
+		struct lie *l = &lie[component[i]];
+		double p[3], r;
+		for (int c = 0; c < 3; c++)
+			p[c] = (rig->rest[i][c] - ball->center[c]) / ball->radius;
+		mat_vec(p, rig->head_from_target, p);
+		r = vec_norm(p);
+		if (!l->n++)
+			l->low = r, l->least_cos = 1;
+		l->low = fmin(l->low, r);
+		l->high = fmax(l->high, r);
+		l->least_cos = fmin(l->least_cos, p[2] / fmax(r, 1e-9));
+		vec_add(l->off, l->off, 1, p);
+	}
+}
+
+/* Marks the ball, what else is part of the eyeball (a cornea of its own, an iris, a lens) and what lies round it (lashes,
+ * tear film). */
+static void mark(struct rig *rig, int side, const struct ball *ball, const int *component)
+{
+	struct lie *lie = mem_new((size_t)rig->n + 1, sizeof *lie);
+	enum rig_part globe = side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT;
+	look_round(lie, rig, ball, component);
+	for (int i = 0; i < rig->n; i++) {
+		const struct lie *l = &lie[component[i]];
+		double middle = hypot(l->off[0], l->off[1]) / l->n;
+		bool front = l->n >= 8 && l->high < 1.3 && l->least_cos > 0.7 && middle < 0.12;
+		bool round = l->n >= 8 && l->high < 1.15 && (l->high < 0.98 || l->least_cos < -0.8);
+		if (component[i] == ball->component || round || front)
+			rig->part[i] = globe;
+		else if (l->n >= 3 && l->high < 1.9 && rig->part[i] == RIG_SKIN)
+			rig->part[i] = RIG_NEAR_EYE;
+	}
+	free(lie);
 }
 
 /* A globe without a cornea gets one: lids bulge as it passes below them, and what is drawn has it. */
@@ -155,26 +219,21 @@ static bool add_cornea(struct globe_map *map, double radius, double bulge)
 	return true;
 }
 
-static bool take_own(struct rig *rig, int side, const struct ball *ball, const int *component, int cells)
+static void take_own(struct rig *rig, int side, const struct ball *ball, const int *component, int cells)
 {
 	struct rig_globe *globe = &rig->globe[side];
-	struct mesh mesh = own_mesh(rig, ball, component);
 	struct err none = { 0 };
-	bool ok = globe_map_from_mesh(&globe->map, cells, &mesh, &none);
+	mark(rig, side, ball, component);
+	struct mesh mesh = own_mesh(rig, ball->center, side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT);
+	globe->own = globe_map_from_mesh(&globe->map, cells, &mesh, &none);
 	mesh_free(&mesh);
-	if (!ok)
-		return false;
+	if (!globe->own)  // a cap, not a ball: part of something else
+		for (int i = 0; i < rig->n; i++)
+			rig->part[i] = rig->part[i] == (side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT) ? RIG_NEAR_EYE : rig->part[i];
 	vec_add(globe->center, ball->center, 0, ball->center);
 	globe->radius = ball->radius;
-	globe->own = true;
-	// What lies within it (an iris, a lens) turns with it.
-	for (int i = 0; i < rig->n; i++)
-		if (component[i] == ball->component)
-			rig->part[i] = side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT;
-	return true;
 }
 
-/* Eyeball centres as the subject has them, on the character: by what registration did to the skin round them. */
 void rig_expect_globes(double center[2][3], double *radius, const struct rig *rig, const struct rig_character *ch)
 {
 	double scale = vec_norm(ch->subject_from_target[0]);
@@ -208,16 +267,20 @@ bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, 
 {
 	static const char *const sides[] = { "left", "right" };
 	int *component = components_of(rig);
+	double *area = areas_of(rig);
+	struct ball best[2] = { 0 };
 	for (int i = 0; i < rig->n; i++) {
 		struct ball ball;
-		if (component[i] != i || !fit_ball(&ball, rig, component, i) || ball.rms > 0.12)
+		if (component[i] != i || !fit_ball(&ball, rig, component, area, i) || ball.rms > 0.12)
 			continue;
 		for (int side = 0; side < 2; side++)
-			if (expected(rig, &ball, side, center[side], radius) && ball.radius > rig->globe[side].radius) {
-				globe_map_free(&rig->globe[side].map);
-				take_own(rig, side, &ball, component, conf->globe_cells);
-			}
+			if (expected(rig, &ball, side, center[side], radius) && ball.radius > best[side].radius)
+				best[side] = ball;
 	}
+	for (int side = 0; side < 2; side++)
+		if (best[side].radius > 0)
+			take_own(rig, side, &best[side], component, conf->globe_cells);
+	free(area);
 	free(component);
 	bool ok = true;
 	for (int side = 0; side < 2; side++) {

@@ -87,44 +87,6 @@ static void take_tracked(struct rig *rig, const struct rig_motion *m, const stru
 	free(row);
 }
 
-/* The nearest place on the lid margins, px, and how that moves. */
-static double nearest_lid(double basis[RIG_BASIS], const struct rig_motion *m, const float px[2])
-{
-	double least = INFINITY;
-	for (int i = 0; i + 1 < SKIN_LIDS * m->n_points; i++) {
-		const double *a = m->lid[i], *b = m->lid[i + 1];
-		if ((i + 1) % m->n_points == 0 || !isfinite(a[0] + a[1] + b[0] + b[1]))
-			continue;
-		double x = b[0] - a[0], y = b[1] - a[1], t = ((px[0] - a[0]) * x + (px[1] - a[1]) * y) / (x * x + y * y + 1e-12);
-		t = fmin(fmax(t, 0), 1);
-		double d = hypot(px[0] - a[0] - t * x, px[1] - a[1] - t * y);
-		if (d >= least)
-			continue;
-		least = d;
-		for (int k = 0; k < RIG_BASIS; k++)
-			basis[k] = (1 - t) * m->lid_basis[i][k] + t * m->lid_basis[i + 1][k];
-	}
-	return least;
-}
-
-/* Skin at the margins follows the lids' own splines: flow loses it behind the lashes, and when the eye shuts. */
-static void take_lids(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double lid_mm)
-{
-	for (int i = 0; i < rig->n && lid_mm > 0; i++) {
-		double basis[RIG_BASIS] = { 0 }, px[2], cam[3];
-		if (rig->part[i] != RIG_SKIN || rig->gap[i] > 3 || rig->gap[i] < -2)
-			continue;
-		rig_project(px, cam, &m->camera, ch->registered[i]);
-		double mm = nearest_lid(basis, m, rig->home[i]) * cam[2] / m->camera.focal_px;
-		bool tracked = rig->source[i] == RIG_TRACKED;
-		double share = !(mm < lid_mm) ? 0 : tracked ? fmin(2 * (1 - mm / lid_mm), 1) : 1;
-		for (int k = 0; k < RIG_BASIS; k++)
-			rig->basis[i][k] += (float)(share * (basis[k] - rig->basis[i][k]));
-		if (share == 1)
-			rig->source[i] = RIG_LID;
-	}
-}
-
 static void extrapolate(struct rig *rig)
 {
 	for (int i = 0; i < rig->n; i++) {
@@ -135,7 +97,7 @@ static void extrapolate(struct rig *rig)
 			for (int k = 0; k < RIG_BASIS; k++)
 				sum[k] += rig->bplus.weight[j] * rig->basis[rig->bplus.column[j]][k];
 		for (int k = 0; k < RIG_BASIS; k++)
-			rig->basis[i][k] = rig->part[i] == RIG_SKIN ? rig->fade[i] * sum[k] : 0;
+			rig->basis[i][k] = rig_is_globe(rig->part[i]) ? 0 : rig->fade[i] * sum[k];
 	}
 }
 
@@ -162,7 +124,7 @@ static void take_thickness(struct rig *rig, const struct rig_conf *conf)
 	for (int i = 0; i < rig->n; i++) {
 		double gap = fmax(rig->gap[i], conf->least), t = (gap - conf->glue[0]) / (conf->glue[1] - conf->glue[0]);
 		t = fmin(fmax(t, 0), 1);
-		bool free_skin = rig->source[i] == RIG_TRACKED || rig->part[i] != RIG_SKIN;
+		bool free_skin = rig->source[i] == RIG_TRACKED || rig_is_globe(rig->part[i]);
 		rig->glue[i] = free_skin ? 0 : (float)(1 - t * t * (3 - 2 * t));
 		rig->gap[i] = (float)gap;
 		rig->thickness[i] = (float)fmin(gap, conf->thickness);
@@ -172,13 +134,28 @@ static void take_thickness(struct rig *rig, const struct rig_conf *conf)
 static void count(struct rig_report *report, const struct rig *rig)
 {
 	for (int i = 0; i < rig->n; i++) {
-		if (rig->part[i] != RIG_SKIN)
+		if (rig_is_globe(rig->part[i]))
 			continue;
 		report->tracked += rig->source[i] == RIG_TRACKED;
-		report->lid += rig->source[i] == RIG_LID;
 		report->extrapolated += rig->source[i] == RIG_EXTRAPOLATED && rig->fade[i] > 0;
 		report->still += rig->fade[i] == 0;
 	}
+}
+
+/* Picture elements of the modelling camera in a millimetre of the face. */
+static double rig_px_per_mm(const struct rig *rig, const struct rig_motion *m, const struct rig_character *ch)
+{
+	double sum = 0;
+	int n = 0;
+	for (int i = 0; i < rig->n; i++) {
+		double px[2], cam[3];
+		rig_project(px, cam, &m->camera, ch->registered[i]);
+		if (rig->source[i] == RIG_TRACKED && cam[2] > 0) {
+			sum += m->camera.focal_px / cam[2];
+			n++;
+		}
+	}
+	return n ? sum / n : 1;
 }
 
 bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motion *motion, const struct rig_character *ch,
@@ -201,12 +178,15 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 		rig_take_homes(rig, motion, ch);
 		take_gaps(rig, report);
 		take_tracked(rig, motion, ch, conf->min_confidence);
-		take_lids(rig, motion, ch, conf->lid);
 		rig_spread(rig, conf);
 		extrapolate(rig);
+		double px_per_mm = rig_px_per_mm(rig, motion, ch);
+		rig_follow_lids(rig, motion, px_per_mm, conf->lid, report);
+		if (conf->seal >= 0)
+			rig_seal_lids(rig, motion, px_per_mm, conf->seal, report);
 		take_thickness(rig, conf);
 		count(report, rig);
-		ok = report->tracked + report->lid > 0 || err_set(err, "no vertex of the character lies on tracked skin");
+		ok = report->tracked > 0 || err_set(err, "no vertex of the character lies on tracked skin");
 		ok = ok && rig_take_skull(rig, motion, ch, conf->map_step, err);
 	}
 	if (!ok)

@@ -43,7 +43,8 @@ struct rig_conf {
 	double fade[2];                       // mm from tracked skin: all motion up to the first, none from the second
 	double glue[2];                       // mm from the globe at rest: kept up to the first, free from the second
 	double thickness, least;              // mm: t of skin that rests further away; and at least
-	double lid;                           // mm from the lid's margin that follow its spline
+	double lid;                           // mm from the lid's margin over which skin follows its spline; 0: never
+	double seal;                          // mm that closed lids overlap; < 0: they close as far as they were learnt to
 	double min_confidence;
 	double map_step;                      // px of the modelling camera
 	int globe_cells;
@@ -54,6 +55,7 @@ struct rig_conf {
 struct rig_report {
 	int tracked, lid, extrapolated, still, inside_at_rest;
 	double deepest;                       // mm inside a globe at rest
+	double open_before[2], open_after[2]; // mm left open of closed eyes, before and after they were sealed
 	bool cornea_added[2];
 };
 
@@ -72,6 +74,12 @@ bool rig_take_skull(struct rig *rig, const struct rig_motion *motion, const stru
 
 /* Where the character's eyeballs are to be expected, by what registration did to the skin round them. rig_globe.c */
 void rig_expect_globes(double center[2][3], double *radius, const struct rig *rig, const struct rig_character *character);
+
+/* Skin at the lid margins moves as the margins' splines do. rig_lids.c */
+void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);
+
+/* Upper lids come down as far as it takes to close an eye that is told to close. */
+void rig_seal_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double seal_mm, struct rig_report *report);
 
 /* The eyeballs of a mesh: closed, round components about the expected centres; marks part[], fills globe[]. centre, radius:
  * where they are expected, in the mesh's axes, NAN where unknown. rig_globe.c */

@@ -222,7 +222,7 @@ static void rows_make(struct row *rows, struct rig *rig, const struct graph *g, 
 			struct row *row = &rows[i];
 			rig->fade[i] = 1;
 			*row = (struct row){ 1, { i }, { 1 } };
-			if (rig->source[i] != RIG_EXTRAPOLATED || rig->part[i] != RIG_SKIN || !n_tracked)
+			if (rig->source[i] != RIG_EXTRAPOLATED || rig_is_globe(rig->part[i]) || !n_tracked)
 				continue;
 			if (reached[i] < INFINITY)
 				along_skin(&near, rig, g, &q, i, conf->neighbours, 2 * (float)conf->fade[1]);

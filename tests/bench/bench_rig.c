@@ -126,7 +126,6 @@ int main(int argc, char **argv)
 	struct err err = { 0 };
 	face_make(&face, false);
 	struct rig_conf conf = face_conf();
-	conf.lid = 0;  // the general path has no lid splines in it
 	struct rig_character character = face_character(&face);
 	rig_motion_of_model(&motion, &face.model);
 	if (!rig_make(&rig, &report, &motion, &character, &conf, &err)) {
@@ -135,7 +134,7 @@ int main(int argc, char **argv)
 	}
 	struct deform *deform = deform_new(&rig);
 	size_t n = (size_t)rig.n;
-	int skin = report.tracked + report.lid + report.extrapolated;
+	int skin = report.tracked + report.extrapolated;
 	struct general g = { &face, &rig, &motion, .u = calloc(2 * n, sizeof(double)), .u_rest = calloc(2 * n, sizeof(double)),
 		                 .ut = calloc(2 * n, sizeof(double)), .x = calloc(n, sizeof *g.x), .normal = calloc(n, sizeof *g.normal) };
 	struct folded f = { &rig, deform, .x = calloc(n, sizeof *f.x), .normal = calloc(n, sizeof *f.normal) };

@@ -1,0 +1,53 @@
+/* portrait: a driven character drawn: skin as a smooth surface lit by an environment, with the eyes of scene.h in it.
+ *
+ * Frames   the rig's (mm) and the camera's (x right, y down, z forward), in which the environment stands.
+ * Skin     Phong tessellation of the mesh round the eyes (Boubekeur and Alexa 2008; it keeps the vertices); irradiance
+ *          with shadows at the vertices, spread along the surface as far as skin scatters light, and a rough mirror.
+ * Colour   linear Rec. 709; a white plane facing the camera has value 1.
+ */
+#ifndef SKIN_PORTRAIT_H
+#define SKIN_PORTRAIT_H
+#include "eye/scene.h"
+#include "skin/deform.h"
+
+struct portrait_conf {
+	int lights;            // directions that stand for the environment
+	int subdivide;         // times the triangles near the eyes are cut in four
+	int samples;           // samples^2 of a pixel where it shows more than one thing
+	int eye_samples;       // the same inside the eyes
+	double skin_rgb[3];    // albedo
+	double texture;        // strength of pores and blotches: 1 as on a face, 0 none
+	double scatter_mm;     // how far red light travels in skin
+};
+
+/* What one frame shows. */
+struct portrait_view {
+	double cam_from_target[3][4];
+	double focal_px, center_px[2];
+	int width, height;
+};
+
+struct portrait;
+
+/* env, eyes (left, right) and rig must outlive it. portrait_free. */
+struct portrait *portrait_new(const struct rig *rig, const struct scene *const eyes[2], const struct envmap *env,
+                              const struct portrait_conf *conf);
+void portrait_free(struct portrait *portrait);
+
+/* Poses it: controls g~ [rig.n_inputs]. */
+void portrait_pose(struct portrait *portrait, const double *controls);
+
+/* Its vertices as posed, [rig.n][3], and unit normals. Borrowed. */
+const float (*portrait_vertices(const struct portrait *portrait))[3];
+const float (*portrait_normals(const struct portrait *portrait))[3];
+
+/* Lights the vertices for a camera that stands so. all: every vertex; else those that have moved since the last time. */
+void portrait_light(struct portrait *portrait, const struct portrait_view *view, bool all);
+
+/* RGB and A (cover), premultiplied. image_free. The same bytes for any number of threads. */
+struct image portrait_draw(struct portrait *portrait, const struct portrait_view *view);
+
+/* A view of both eyes (side < 0) or one (0 left, 1 right) from the front, field mm across, turned by yaw and pitch (rad). */
+struct portrait_view portrait_front(const struct rig *rig, int side, double field, double yaw, double pitch, int width, int height);
+
+#endif

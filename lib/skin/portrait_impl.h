@@ -1,0 +1,72 @@
+/* portrait_impl: what the files of the portrait share. */
+#ifndef SKIN_PORTRAIT_IMPL_H
+#define SKIN_PORTRAIT_IMPL_H
+#include "mesh/ray.h"
+#include "skin/portrait.h"
+
+/* Drawn triangles: the skin's, near the eyes cut in four. The first rig.n vertices are the rig's; each further one lies
+ * between two of them. */
+struct portrait_mesh {
+	int n, n_faces, n_base;
+	int (*between)[2];          // [n - n_base]
+	int32_t (*faces)[3];
+	float (*x)[3], (*normal)[3], (*rest)[3], (*light)[3], (*albedo)[3];
+	float *open;                // share of the light that reaches it
+};
+
+struct portrait {
+	const struct rig *rig;
+	const struct scene *eye[2];
+	const struct envmap *env;
+	struct portrait_conf conf;
+	struct deform *deform;
+	struct portrait_mesh mesh;
+	struct ray_scene *shadow;   // the skin's own triangles
+	float (*lit)[3];            // irradiance at the rig's vertices, before it is spread
+	float (*lit_at)[3];         // where they were then
+	int *near_start, *near;     // neighbours of the rig's vertices
+	float *spread;              // weight of each neighbour, of red
+	double target_from_globe[2][3][3];
+};
+
+/* portrait_mesh.c: topology once, vertices for each pose. */
+void portrait_mesh_make(struct portrait *portrait);
+void portrait_mesh_move(struct portrait *portrait);
+void portrait_mesh_free(struct portrait_mesh *mesh);
+
+/* What a sample of the picture shows. */
+struct portrait_spot {
+	int face;      // of the mesh; -1: nothing, -2 and -3: the left and right eye
+	float depth;   // along the camera's axis, mm
+};
+
+/* portrait_raster.c: the nearest triangle at the middle of every cell of a grid samples times finer than the view;
+ * [height samples][width samples]. free(). */
+struct portrait_spot *portrait_raster(const struct portrait *portrait, const struct portrait_view *view, int samples);
+
+/* portrait_shade.c: colour of a point of a face seen along dir (camera, unit). */
+struct portrait_sky {
+	int n;
+	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
+};
+void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
+                    const float origin[3], const float dir[3]);
+struct portrait_sky portrait_sky_of(const struct portrait *portrait, const struct portrait_view *view);
+
+/* portrait_eye.c: both eyes' colours where the grid shows them, [height][width][4] each; null px where not in view. */
+void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
+                   const struct portrait_spot *spots, int samples);
+
+/* Distance to the eye along a ray of the rig's frame; INFINITY: missed. */
+float portrait_eye_hit(const struct portrait *portrait, int side, const float origin[3], const float dir[3]);
+
+/* The camera in the rig's frame, and a pixel's ray there (dir: unit; scale: its length along the camera's axis). */
+struct portrait_rays {
+	float origin[3];
+	double rig_from_cam[3][3];
+	const struct portrait_view *view;
+};
+struct portrait_rays portrait_rays_of(const struct portrait_view *view);
+float portrait_ray(float dir[3], const struct portrait_rays *rays, double x, double y);
+
+#endif

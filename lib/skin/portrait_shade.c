@@ -1,0 +1,139 @@
+/* Colour of a point of skin. */
+#include <math.h>
+#include <string.h>
+
+#include "skin/portrait_impl.h"
+
+/* A number in -1..1 that is always the same for the same cell. */
+static float hash(int x, int y, int z)
+{
+	uint32_t h = (uint32_t)x * 0x8da6b343u ^ (uint32_t)y * 0xd8163841u ^ (uint32_t)z * 0xcb1ab31fu;
+	h ^= h >> 15;
+	h *= 0x2c1b3c6du;
+	h ^= h >> 12;
+	h *= 0x297a2d39u;
+	h ^= h >> 15;
+	return (float)(h & 0xffff) / 32767.5f - 1;
+}
+
+/* Smooth noise at a point of the skin at rest. */
+static float noise(const float p[3], float per_mm)
+{
+	float f[3];
+	int i[3];
+	for (int c = 0; c < 3; c++) {
+		float x = p[c] * per_mm;
+		i[c] = (int)floorf(x);
+		f[c] = x - (float)i[c];
+		f[c] = f[c] * f[c] * (3 - 2 * f[c]);
+	}
+	float v[2];
+	for (int z = 0; z < 2; z++) {
+		float a = hash(i[0], i[1], i[2] + z), b = hash(i[0] + 1, i[1], i[2] + z);
+		float c = hash(i[0], i[1] + 1, i[2] + z), d = hash(i[0] + 1, i[1] + 1, i[2] + z);
+		v[z] = (a + f[0] * (b - a)) * (1 - f[1]) + (c + f[0] * (d - c)) * f[1];
+	}
+	return v[0] + f[2] * (v[1] - v[0]);
+}
+
+/* Pores: the slope of a noise of 0.5 mm cells tilts the normal. */
+static void pores(float n[3], const float rest[3], float strength)
+{
+	static const float step = 0.12f;
+	float at = noise(rest, 2.1f) + 0.5f * noise(rest, 4.7f);
+	for (int c = 0; c < 3; c++) {
+		float q[3] = { rest[0], rest[1], rest[2] };
+		q[c] += step;
+		n[c] -= strength * (noise(q, 2.1f) + 0.5f * noise(q, 4.7f) - at);
+	}
+}
+
+/* Trowbridge-Reitz lobe with Smith's shadowing, Schlick's Fresnel of skin (F0 = 0.028). */
+static float gloss(const float n[3], const float l[3], const float v[3], float rough)
+{
+	float h[3], len = 0, nh = 0, nl = 0, nv = 0, vh = 0, a2 = rough * rough * rough * rough;
+	for (int c = 0; c < 3; c++) {
+		h[c] = l[c] + v[c];
+		len += h[c] * h[c];
+	}
+	len = 1 / sqrtf(len + 1e-12f);
+	for (int c = 0; c < 3; c++) {
+		nh += n[c] * h[c] * len;
+		vh += v[c] * h[c] * len;
+		nl += n[c] * l[c];
+		nv += n[c] * v[c];
+	}
+	if (nl <= 0 || nv <= 0)
+		return 0;
+	float d = nh * nh * (a2 - 1) + 1, k = 0.5f * rough * rough, g = nl / (nl * (1 - k) + k) * nv / (nv * (1 - k) + k);
+	float f = 0.028f + 0.972f * powf(1 - fmaxf(vh, 0), 5);
+	return a2 / (d * d) * g * f / (4 * nv);  // times pi / pi: lights are irradiance over pi
+}
+
+struct point {
+	float x[3], rest[3], normal[3], light[3], albedo[3], open;
+};
+
+static struct point point_of(const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
+{
+	const int32_t *v = m->faces[face];
+	const float *a = m->x[v[0]], *b = m->x[v[1]], *c = m->x[v[2]];
+	float e[3], g[3], s[3], h[3], q[3];
+	for (int k = 0; k < 3; k++) {
+		e[k] = b[k] - a[k];
+		g[k] = c[k] - a[k];
+		s[k] = origin[k] - a[k];
+	}
+	h[0] = dir[1] * g[2] - dir[2] * g[1], h[1] = dir[2] * g[0] - dir[0] * g[2], h[2] = dir[0] * g[1] - dir[1] * g[0];
+	q[0] = s[1] * e[2] - s[2] * e[1], q[1] = s[2] * e[0] - s[0] * e[2], q[2] = s[0] * e[1] - s[1] * e[0];
+	float det = e[0] * h[0] + e[1] * h[1] + e[2] * h[2], k = fabsf(det) > 1e-12f ? 1 / det : 0;
+	float w1 = (s[0] * h[0] + s[1] * h[1] + s[2] * h[2]) * k, w2 = (dir[0] * q[0] + dir[1] * q[1] + dir[2] * q[2]) * k;
+	w1 = fminf(fmaxf(w1, 0), 1);  // samples at an edge may lie a hair outside
+	w2 = fminf(fmaxf(w2, 0), 1 - w1);
+	float w[3] = { 1 - w1 - w2, w1, w2 }, len = 0;
+	struct point p = { 0 };
+	for (int j = 0; j < 3; j++) {
+		int i = v[j];
+		for (int d = 0; d < 3; d++) {
+			p.x[d] += w[j] * m->x[i][d];
+			p.rest[d] += w[j] * m->rest[i][d];
+			p.normal[d] += w[j] * m->normal[i][d];
+			p.light[d] += w[j] * m->light[i][d];
+			p.albedo[d] += w[j] * m->albedo[i][d];
+		}
+		p.open += w[j] * m->open[i];
+	}
+	for (int d = 0; d < 3; d++)
+		len += p.normal[d] * p.normal[d];
+	for (int d = 0; d < 3; d++)
+		p.normal[d] /= sqrtf(len) + 1e-12f;
+	return p;
+}
+
+void portrait_shade(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, int face, const float origin[3],
+                    const float dir[3])
+{
+	struct point q = point_of(&p->mesh, face, origin, dir);
+	float strength = (float)p->conf.texture, to[3] = { -dir[0], -dir[1], -dir[2] }, shine = 0, len = 0, n[3];
+	memcpy(n, q.normal, sizeof n);
+	if (strength > 0)
+		pores(n, q.rest, 0.16f * strength);
+	for (int c = 0; c < 3; c++)
+		len += n[c] * n[c];
+	for (int c = 0; c < 3; c++)
+		n[c] /= sqrtf(len);
+	float blotch = strength * (0.6f * noise(q.rest, 0.13f) + 0.4f * noise(q.rest, 0.45f)), grain = strength * noise(q.rest, 1.6f);
+	static const float redder[3] = { 0.02f, -0.09f, -0.08f };
+	float spec[3] = { 0 };
+	for (int k = 0; k < sky->n; k++) {
+		shine = 0.55f * gloss(n, sky->light[k].dir, to, 0.42f) + 0.45f * gloss(n, sky->light[k].dir, to, 0.30f);
+		for (int c = 0; c < 3; c++)
+			spec[c] += shine * sky->light[k].rgb[c];
+	}
+	// What pores do to the diffuse light: a little of their slope against the surface's own.
+	float relief = 1;
+	for (int c = 0; c < 3; c++)
+		relief += 0.35f * (n[c] - q.normal[c]) * sky->light[0].dir[c];
+	for (int c = 0; c < 3; c++)
+		rgb[c] = q.albedo[c] * (1 + redder[c] * blotch * 1.6f + 0.035f * grain) * q.light[c] * relief + spec[c] * q.open;
+}
