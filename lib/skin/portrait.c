@@ -32,7 +32,7 @@ static void neighbours(struct portrait *p)
 			}
 }
 
-/* Albedo: the skin's, redder and darker where it is thin (lids, their margins, the canthi). */
+/* Albedo: the skin's, in blotches; redder and darker where it is thin (lids, their margins, the canthi). */
 static void colours(struct portrait *p)
 {
 	static const double thin[3] = { 0.93, 0.80, 0.80 }, margin[3] = { 0.98, 0.66, 0.64 };
@@ -41,8 +41,10 @@ static void colours(struct portrait *p)
 		double gap = p->rig->gap[i];
 		double radius = p->rig->globe[p->rig->side[i]].radius, lid = exp(-pow(fmax(gap, 0) / (0.28 * radius), 2));
 		double rim = exp(-pow(fmax(gap - 0.2, 0) / (0.055 * radius), 2));
+		static const double redder[3] = { 0.03, -0.14, -0.13 };
+		double blotch = p->conf.texture * (0.6 * portrait_noise(m->rest[i], 0.13f) + 0.4 * portrait_noise(m->rest[i], 0.45f));
 		for (int c = 0; c < 3; c++)
-			m->albedo[i][c] = (float)(p->conf.skin_rgb[c] * (1 + 0.7 * lid * (thin[c] - 1)) * (1 + 0.8 * rim * (margin[c] - 1)));
+			m->albedo[i][c] = (float)(p->conf.skin_rgb[c] * (1 + redder[c] * blotch) * (1 + 0.7 * lid * (thin[c] - 1)) * (1 + 0.8 * rim * (margin[c] - 1)));
 	}
 	for (int i = m->n_base; i < m->n; i++)
 		for (int c = 0; c < 3; c++)

@@ -44,9 +44,13 @@ struct portrait_spot {
  * [height samples][width samples]. free(). */
 struct portrait_spot *portrait_raster(const struct portrait *portrait, const struct portrait_view *view, int samples);
 
+/* Smooth noise in -1..1 at a point of the skin at rest, of cells so many to a mm. */
+float portrait_noise(const float p[3], float per_mm);
+
 /* portrait_shade.c: colour of a point of a face seen along dir (camera, unit). */
 struct portrait_sky {
 	int n;
+	float detail;  // 0..1: how much of pores a pixel of the view resolves
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
 void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,

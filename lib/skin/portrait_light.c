@@ -4,12 +4,16 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 #include "skin/portrait_impl.h"
 
 struct portrait_sky portrait_sky_of(const struct portrait *p, const struct portrait_view *view)
 {
 	struct portrait_sky sky;
 	struct portrait_rays rays = portrait_rays_of(view);
+	// Pores are half a millimetre apart.
+	double mm = vec_norm((double[]){ view->cam_from_target[0][3], view->cam_from_target[1][3], view->cam_from_target[2][3] }) / view->focal_px;
+	sky.detail = (float)fmin(fmax((0.22 - mm) / 0.1, 0), 1);
 	sky.n = envmap_lights(sky.light, p->conf.lights, p->env);
 	for (int i = 0; i < sky.n; i++) {
 		float cam[3];

@@ -17,7 +17,7 @@ static float hash(int x, int y, int z)
 }
 
 /* Smooth noise at a point of the skin at rest. */
-static float noise(const float p[3], float per_mm)
+float portrait_noise(const float p[3], float per_mm)
 {
 	float f[3];
 	int i[3];
@@ -40,11 +40,11 @@ static float noise(const float p[3], float per_mm)
 static void pores(float n[3], const float rest[3], float strength)
 {
 	static const float step = 0.12f;
-	float at = noise(rest, 2.1f) + 0.5f * noise(rest, 4.7f);
+	float at = portrait_noise(rest, 2.1f) + 0.5f * portrait_noise(rest, 4.7f);
 	for (int c = 0; c < 3; c++) {
 		float q[3] = { rest[0], rest[1], rest[2] };
 		q[c] += step;
-		n[c] -= strength * (noise(q, 2.1f) + 0.5f * noise(q, 4.7f) - at);
+		n[c] -= strength * (portrait_noise(q, 2.1f) + 0.5f * portrait_noise(q, 4.7f) - at);
 	}
 }
 
@@ -66,7 +66,7 @@ static float gloss(const float n[3], const float l[3], const float v[3], float r
 	if (nl <= 0 || nv <= 0)
 		return 0;
 	float d = nh * nh * (a2 - 1) + 1, k = 0.5f * rough * rough, g = nl / (nl * (1 - k) + k) * nv / (nv * (1 - k) + k);
-	float f = 0.028f + 0.972f * powf(1 - fmaxf(vh, 0), 5);
+	float s = 1 - fmaxf(vh, 0), f = 0.028f + 0.972f * s * s * s * s * s;
 	return a2 / (d * d) * g * f / (4 * nv);  // times pi / pi: lights are irradiance over pi
 }
 
@@ -114,19 +114,19 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
                     const float dir[3])
 {
 	struct point q = point_of(&p->mesh, face, origin, dir);
-	float strength = (float)p->conf.texture, to[3] = { -dir[0], -dir[1], -dir[2] }, shine = 0, len = 0, n[3];
+	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, len = 0, n[3], grain = 0;
 	memcpy(n, q.normal, sizeof n);
-	if (strength > 0)
-		pores(n, q.rest, 0.16f * strength);
+	if (strength > 0) {
+		pores(n, q.rest, 0.10f * strength);
+		grain = 0.035f * strength * portrait_noise(q.rest, 1.6f);
+	}
 	for (int c = 0; c < 3; c++)
 		len += n[c] * n[c];
 	for (int c = 0; c < 3; c++)
 		n[c] /= sqrtf(len);
-	float blotch = strength * (0.6f * noise(q.rest, 0.13f) + 0.4f * noise(q.rest, 0.45f)), grain = strength * noise(q.rest, 1.6f);
-	static const float redder[3] = { 0.02f, -0.09f, -0.08f };
 	float spec[3] = { 0 };
 	for (int k = 0; k < sky->n; k++) {
-		shine = 0.55f * gloss(n, sky->light[k].dir, to, 0.42f) + 0.45f * gloss(n, sky->light[k].dir, to, 0.30f);
+		float shine = 0.5f * gloss(n, sky->light[k].dir, to, 0.50f) + 0.28f * gloss(n, sky->light[k].dir, to, 0.34f);
 		for (int c = 0; c < 3; c++)
 			spec[c] += shine * sky->light[k].rgb[c];
 	}
@@ -135,5 +135,5 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	for (int c = 0; c < 3; c++)
 		relief += 0.35f * (n[c] - q.normal[c]) * sky->light[0].dir[c];
 	for (int c = 0; c < 3; c++)
-		rgb[c] = q.albedo[c] * (1 + redder[c] * blotch * 1.6f + 0.035f * grain) * q.light[c] * relief + spec[c] * q.open;
+		rgb[c] = q.albedo[c] * (1 + grain) * q.light[c] * relief + spec[c] * q.open;
 }
