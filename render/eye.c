@@ -53,7 +53,7 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 	return image;
 }
 
-static bool studio(struct job *job, struct err *err)
+bool job_studio(struct job *job, struct err *err)
 {
 	if (!job->conf->environment) {
 		job->studio = light_studio(env_height(job->conf));
@@ -113,13 +113,13 @@ static double limbus_width(const struct shot *reference)
 }
 
 /* Everything that all pictures share. */
-static bool prepare(struct job *job, struct err *err)
+bool job_ready(struct job *job, struct err *err)
 {
 	struct shot *reference = &job->shots[job->reference];
 	struct scene_conf conf = job->conf->scene;
 	if (job->ready)
 		return true;
-	if (!shot_ready(job, reference, err) || !studio(job, err))
+	if (!shot_ready(job, reference, err) || !job_studio(job, err))
 		return false;
 	if (sclera_of_photo(conf.sclera_rgb, reference))
 		unlight(conf.sclera_rgb, reference, job->eye, &conf);
@@ -171,7 +171,7 @@ static bool still(struct job *job, const char *name, double yaw, double pitch, s
 	bool need_png = stale(job, png, job->n_in, job->in), need_exr = job->conf->exr && stale(job, exr, job->n_in, job->in);
 	if (!need_png && !need_exr)  // one look makes both
 		return true;
-	if (!prepare(job, err))
+	if (!job_ready(job, err))
 		return false;
 	struct image rgba = turned(job, yaw, pitch, job->conf->size_px), seen = picture_on_grey(&rgba, job->gain);
 	const struct picture_out out[] = { { png, &seen }, { exr, &rgba } };
@@ -187,7 +187,7 @@ static bool turntable(struct job *job, struct err *err)
 	int n = job->conf->frames;
 	if (!stale(job, png, job->n_in, job->in))
 		return true;
-	if (!prepare(job, err))
+	if (!job_ready(job, err))
 		return false;
 	struct image *frames = mem_new((size_t)n, sizeof *frames);
 	for (int i = 0; i < n; i++) {
@@ -219,7 +219,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	bool need_compare = stale(job, compare, n, in), need_numbers = stale(job, numbers, n, in);
 	if (!need_exr && !need_png && !need_compare && !need_numbers)
 		return true;
-	if (!prepare(job, err) || !shot_ready(job, shot, err))
+	if (!job_ready(job, err) || !shot_ready(job, shot, err))
 		return false;
 	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
 	struct scene_lighting light = scene_lighting(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights);
@@ -269,24 +269,42 @@ static void figures(struct job *job)
 	           (double)job->count.rays / job->seconds / 1e6);
 }
 
+bool job_open(struct job *job, bool *usable, struct stage *stage, const struct capture *capture, int eye_index,
+              const struct eye *eye, const struct render_conf *conf, struct err *err)
+{
+	*job = (struct job){ .stage = stage, .conf = conf, .eye = eye, .names = &capture->eyes[eye_index] };
+	*usable = false;
+	if (!shots_load(job, capture, eye_index, err))
+		return false;
+	if (!job->n_shots)
+		return true;
+	if (!inputs(job, err))
+		return false;
+	*usable = file_exists(stage_path(stage, "%s", job->in[0]));
+	return true;
+}
+
+void job_close(struct job *job)
+{
+	if (job->ready)
+		scene_free(&job->scene);
+	envmap_free(&job->studio);
+	shots_free(job);
+}
+
 bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
                 const struct render_conf *conf, struct err *err)
 {
-	struct job job = { .stage = stage, .conf = conf, .eye = eye, .names = &capture->eyes[eye_index] };
-	bool ok = shots_load(&job, capture, eye_index, err);
-	if (ok && !job.n_shots) {
-		stage_skipped(stage, "pictures of %s: no photograph of it has a fit", job.names->side);
-	} else if (ok && inputs(&job, err)) {
-		if (file_exists(stage_path(stage, "%s", job.in[0])))
-			ok = pictures(&job, err);
-		else
-			stage_skipped(stage, "pictures of %s: %s is missing", job.names->side, job.in[0]);
+	struct job job;
+	bool usable, ok = job_open(&job, &usable, stage, capture, eye_index, eye, conf, err);
+	if (ok && usable) {
+		ok = pictures(&job, err);
 		figures(&job);
+	} else if (ok && !job.n_shots) {
+		stage_skipped(stage, "pictures of %s: no photograph of it has a fit", job.names->side);
+	} else if (ok) {
+		stage_skipped(stage, "pictures of %s: %s is missing", job.names->side, job.in[0]);
 	}
-	ok = ok && !err_is(err);
-	if (job.ready)
-		scene_free(&job.scene);
-	envmap_free(&job.studio);
-	shots_free(&job);
-	return ok;
+	job_close(&job);
+	return ok && !err_is(err);
 }

@@ -1,24 +1,39 @@
-/* render: pictures of the fitted eye, and the review page.
+/* render: pictures of the fitted eye and of driven characters, and the review page.
  * reads   IRIS/texture.exr, clean.exr, relief.exr, pigment.json, limbus/NAME.json, photos/
- * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet; review/index.html
+ *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/
+ * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet; review/index.html;
+ *         work/render/NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
  */
 #include "base/mem.h"
 #include "render/options.h"
+#include "render/skin.h"
+
+/* A folder without photographs has no fitted eye, and need not have one: its characters get plain ones. */
+static bool photos_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
+{
+	struct file_list photos;
+	bool ok = stage_list(stage, &photos, "photos", err) && (!photos.n || capture_load(capture, stage, eye_of, err));
+	file_list_free(&photos);
+	return ok;
+}
 
 int main(int argc, char **argv)
 {
 	struct eye eye = { 0 };
 	struct render_conf conf = { 0 };
+	struct skin_conf skin = { 0 };
 	struct opt_each_list eye_of = { 0 };
-	const struct opt opts[] = { EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of), RENDER_OPTS(&conf) };
+	const struct opt opts[] = { EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of), RENDER_OPTS(&conf), SKIN_OPTS(&skin) };
 	struct stage stage;
 	struct err err = { 0 };
 	stage_start(&stage, "render", "pictures of the fitted eye and the page that shows everything", argc, argv, COUNT(opts),
 	            opts);
 	struct capture capture = { 0 };
-	bool ok = eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err);
+	bool ok = eye_check(&eye, &err) && photos_load(&capture, &stage, &eye_of, &err);
 	for (int i = 0; ok && i < capture.n_eyes; i++)
 		ok = render_eye(&stage, &capture, i, &eye, &conf, &err);
+	skin.portrait.eye_samples = conf.samples;
+	ok = ok && render_skin(&stage, &capture, &eye, &conf, &skin, &err);
 	// The page is made even where a picture could not be: it says what is missing and why.
 	struct err late = { 0 };
 	if (!page_make(&stage, &capture, &conf, &late) && ok)

@@ -55,6 +55,14 @@ struct job {
 bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
                 const struct render_conf *conf, struct err *err);
 
+/* One eye's photographs, and whether there is enough of it to show. job_close in any case. job_ready: loads the scene, once.
+ * job_studio: the light of the beauty views alone. */
+bool job_open(struct job *job, bool *usable, struct stage *stage, const struct capture *capture, int eye_index,
+              const struct eye *eye, const struct render_conf *conf, struct err *err);
+bool job_ready(struct job *job, struct err *err);
+bool job_studio(struct job *job, struct err *err);
+void job_close(struct job *job);
+
 /* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free.
  * shot_ready: decodes the photograph and reads its light, once. */
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err);

@@ -101,6 +101,36 @@ static void round_trip(void **state)
 	NEAR(d, 0, 3);
 }
 
+/* More than one group of pictures: an encoder's key frames are 250 apart. */
+static void read_from_its_start(void **state)
+{
+	(void)state;
+	enum { LONG = 270, SMALL = 64 };
+	struct err err = { 0 };
+	struct video_info info;
+	struct video_frame frame;
+	struct video_writer_conf how = { .width = SMALL, .height = SMALL, .fps = 30, .crf = 20 };
+	uint8_t *rgb = mem_array(SMALL * SMALL, 3);
+	struct video_writer *writer = video_writer_open(scratch_path("long.mp4"), &how, &err);
+	for (int i = 0; i < LONG; i++) {
+		memset(rgb, 40 + i / 2, SMALL * SMALL * 3);
+		assert_true(video_writer_put(writer, rgb, even(i), &err));
+	}
+	assert_true(video_writer_close(writer, true, &err));
+	struct video *video = video_open(&info, scratch_path("long.mp4"), &conf, &err);
+	bool got = true;
+	int n = 0;
+	for (; video_next(&frame, &got, video, &err) && got; n++) {
+		NEAR(frame.time, even(n), 1e-3);
+		video_frame_rgb(rgb, 3 * SMALL, &frame, 0, 0, SMALL, SMALL);
+		NEAR(rgb[3 * (SMALL * SMALL / 2)], 40 + n / 2, 6);  // of 256, after quantisation
+		video_frame_free(&frame);
+	}
+	assert_int_equal(n, LONG);
+	video_close(video);
+	free(rgb);
+}
+
 static void same_bytes(void **state)
 {
 	(void)state;
@@ -287,7 +317,7 @@ static int teardown(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(round_trip),   cmocka_unit_test(same_bytes),   cmocka_unit_test(odd_sides),
+		cmocka_unit_test(round_trip),   cmocka_unit_test(read_from_its_start), cmocka_unit_test(same_bytes),   cmocka_unit_test(odd_sides),
 		cmocka_unit_test(variable_rate), cmocka_unit_test(rotation_tag), cmocka_unit_test(broken_files),
 		cmocka_unit_test(limits),       cmocka_unit_test(noise_in_files), cmocka_unit_test(cuts),
 	};

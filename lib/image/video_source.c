@@ -134,9 +134,13 @@ bool video_source_scan(struct video_source *s, struct video_info *info, const ch
 		return err_set(err, "%s: has more than %ld frames (limit.video_frames): cut it, or raise the limit", path, limit);
 	if (n == 0)
 		return err_set(err, "%s: holds no frame: copy it again, whole", path);
-	if (av_seek_frame(s->file, s->stream, INT64_MIN, AVSEEK_FLAG_BACKWARD) < 0 && avformat_seek_file(s->file, -1, INT64_MIN, 0, 0, 0) < 0)
-		return err_set(err, "%s: cannot be read from its start again", path);
-	return true;
+	// Opened again, not sought: containers differ in what they take for the start, and MP4's own seek ends in the last
+	// group of pictures.
+	double first = s->first;
+	video_source_close(s);
+	bool again = video_source_open(s, path, err);
+	s->first = first;
+	return again;
 }
 
 int video_source_rotation(const struct video_source *s)

@@ -117,7 +117,7 @@ static void report(struct stage *stage, const char *name, const struct rig *rig,
 	stage_figure(stage, "lids_folded_error", lid_error, "px rms: what the lids lose by following the skin's components");
 	stage_figure(stage, "open_when_closed", fmax(r->open_before[0], r->open_before[1]), "mm that the learnt motion leaves open of closed eyes");
 	stage_figure(stage, "open_after_sealing", fmax(r->open_after[0], r->open_after[1]), "mm");
-	if (r->open_after[0] + r->open_after[1] > 0)
+	if (fmax(r->open_after[0], r->open_after[1]) > 0.5)
 		stage_skipped(stage, "%s: its closed eyes stay open by %.1f mm: film a full blink, or check subject.landmark.* and the target's lids",
 		              name, fmax(r->open_after[0], r->open_after[1]));
 	if (r->inside_at_rest)
