@@ -9,7 +9,15 @@ struct grid {
 	int rings, spokes;
 	double first;
 };
-static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 40, 2 };
+static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 40, 2 }, sliver = { 24, 80, 2 };
+
+/* The grid that misses no path. Light from the side or from behind reaches a sliver of the cornea along its edge. */
+static const struct grid *grid_for_all(const struct path *path)
+{
+	double u[3];
+	path_outward(u, path, path->P);
+	return u[2] > -0.6 ? &sliver : &thorough;
+}
 
 static double cos_incidence(const struct path *path, const double K[3])
 {
@@ -105,7 +113,7 @@ static int search(double K[][3], int max, const struct path *path, const struct 
 int path_search(double K[][3], int max, const struct path *path)
 {
 	int n = search(K, max, path, &quick);
-	return n ? n : search(K, max, path, &thorough);
+	return n ? n : search(K, max, path, grid_for_all(path));
 }
 
 double lightpath_clear_depth(const struct cornea *cornea)
@@ -125,5 +133,5 @@ int lightpath_all(double K[][3], int max, const struct cornea *cornea, const dou
                   const double w[3])
 {
 	struct path path = { cornea, P, C, C ? 0 : w };
-	return path_is_sound(&path) ? search(K, max, &path, &thorough) : 0;
+	return path_is_sound(&path) ? search(K, max, &path, grid_for_all(&path)) : 0;
 }

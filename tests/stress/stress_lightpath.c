@@ -1,5 +1,5 @@
 /* The light path in 10^8 random cases whose K is known (light_case.h): no failure, no NaN, no wrong branch.
- *     stress_lightpath [cases [seed]]
+ *     stress_lightpath [cases [seed [family]]]
  * One line for each family; exit 1 when a case fails, with all that is needed to run it again.
  */
 #include <math.h>
@@ -107,9 +107,11 @@ int main(int argc, char **argv)
 {
 	double cases = argc > 1 ? atof(argv[1]) : 1e8;
 	uint64_t seed = argc > 2 ? strtoull(argv[2], 0, 10) : 1;
+	int only = argc > 3 ? atoi(argv[3]) : -1;
 	long wrong = 0;
 	printf("stress_lightpath: %.0f cases, seed %llu\n", cases, (unsigned long long)seed);
 	for (int i = 0; i < COUNT(families); i++)
-		wrong += run(&families[i], (long)(cases / COUNT(families)), seed + i);
+		if (only < 0 || only == i)
+			wrong += run(&families[i], (long)(cases / (only < 0 ? COUNT(families) : 1)), seed + (uint64_t)i);
 	return wrong > 0;
 }
