@@ -195,8 +195,9 @@ enum light_verdict light_case_judge(const struct light_case *c, bool point, cons
 	normal_at(N, &c->cornea, k);
 	for (int i = 0; i < 3; i++)
 		u[i] = C ? C[i] - k[i] : (real)c->w[i];
-	bool physical = dot(u, N) >= 0 && hypot(K[0], K[1]) <= c->cornea.rim && fabsl(k[2] - K[2]) < 1e-13L
-	                && light_case_snell(&c->cornea, c->P, C, c->w, K) <= 1e-12;
-	// Close by, it is no other path but a bad one.
-	return physical && gap > 1e3 * tolerance ? LIGHT_OTHER_PATH : LIGHT_WRONG;
+	double snell = light_case_snell(&c->cornea, c->P, C, c->w, K);
+	bool physical = dot(u, N) >= 0 && hypot(K[0], K[1]) <= c->cornea.rim && fabsl(k[2] - K[2]) < 1e-13L && snell <= 1e-12;
+	// Close by, it is no other path but a bad one; except at a focus, where two paths meet, and each keeps the law to
+	// the last digit that K has.
+	return physical && (gap > 1e3 * tolerance || snell <= 1e-15) ? LIGHT_OTHER_PATH : LIGHT_WRONG;
 }

@@ -38,7 +38,7 @@ double light_case_snell(const struct cornea *cornea, const double P[3], const do
                         const double K[3]);
 
 /* Whether K is the right answer, or another physical path of the same problem: on the surface inside the rim, lit from
- * outside, Snell's law kept to 1e-12. */
+ * outside, Snell's law kept to 1e-12 (to 1e-15 next to K: at a focus two paths meet). */
 enum light_verdict { LIGHT_RIGHT, LIGHT_OTHER_PATH, LIGHT_WRONG };
 enum light_verdict light_case_judge(const struct light_case *c, bool point, const double K[3], double tolerance);
 
