@@ -7,13 +7,19 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "eye/limbus_flank.h"
 #include "math/stats.h"
 
 static const double OUTER = 0.3;   // least support of a limbus round a pupil, of the pupil's
 static const double WHITER = 1.45; // farther out than an edge's outside: that edge is a pupil's
 static const double PIXEL_RMS = 0.4;  // px of scatter that pixels and their noise cause in any case
+static const double FULL = 0.8, DARK = 0.15;  // share of an edge seen, encoded brightness inside: a pupil's
+static const double SIDES_SEEN = 0.55, SIDES_CLEAR = 0.9;  // limbus_flank_around: of a limbus that may be, that must be
 static const double CLEAR = 0.55, EXACT = 0.004;  // coverage and scatter at which no other ellipse is tried
-enum { MIN_SIDE = 96, TRY = 5, MAX_POOL = 2 * SEEK_MAX };
+static const double FLANK_LEAST = 0.03;     // of the longer side: smaller eyes are not looked for by their sides
+static const double FLANK_NEAR = 0.25, FLANK_SIZE = 0.16, FLANK_SUPPORT = 0.19;
+static const double FLANK_HINT = 0.15;      // natural logarithm of a hint's radius: its sigma
+enum { MIN_SIDE = 96, TRY = 5, FLANK_TRY = 8, MAX_POOL = 2 * SEEK_MAX };
 
 __attribute__((format(printf, 2, 3)))
 static bool reject(struct limbus_found *found, const char *fmt, ...)
@@ -93,6 +99,20 @@ static bool is_pupil(const struct rim *rim, const struct grey *white)
 	return stats_quantile(m, far, 0.93) > WHITER * stats_median(n, near);
 }
 
+/* A dark disc in full sight with the sides of something larger round it. */
+static bool is_dark_disc(const struct rim *rim, const struct photo *photo, const struct grey *bright, double sides)
+{
+	double in[ARCS], around;
+	if (rim->coverage < FULL)
+		return false;
+	for (int i = 0; i < ARCS; i++)
+		in[i] = grey_at(bright, rim->e.cx + 0.8 * (rim->p[i][0] - rim->e.cx), rim->e.cy + 0.8 * (rim->p[i][1] - rim->e.cy));
+	if (stats_median(ARCS, in) > DARK)
+		return false;
+	limbus_flank_around(photo, &rim->e, &around);
+	return around > sides;
+}
+
 /* Most of what lies outside the edge is burnt out: a bright iris round its pupil then passes for sclera, and a ramp
  * cut off by the sensor is no measure of the limbus. */
 static bool is_burnt(const struct rim *rim, const struct grey *white)
@@ -125,7 +145,8 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 		return "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight";
 	if (is_burnt(rim, &pyramid->level[0]))
 		return "over-exposed round the iris: the white of the eye is burnt out; use less light or a shorter exposure";
-	if (is_pupil(rim, &pyramid->level[0]))
+	if ((!conf->rim.settled && is_pupil(rim, &pyramid->level[0]))
+	    || is_dark_disc(rim, photo, &pyramid->bright[0], conf->rim.settled ? 0 : SIDES_SEEN))
 		return "only the pupil stands out, no limbus round it: show the whole iris, evenly lit";
 	double sigma[ELLIPSE_N], worst = 0;
 	ellipse_sigma(sigma, e, rim->cov_q);
@@ -136,27 +157,27 @@ static const char *judge(const struct rim *rim, const struct photo *photo, const
 	return 0;
 }
 
-static bool measure(struct limbus_found *found, const struct photo *photo, const struct pyramid *pyramid,
-                    const double *hint, const struct limbus_conf *conf)
+/* around: a limbus that was seen but could not be measured; what lies inside it is none. */
+static bool measure(struct limbus_found *found, struct ellipse *around, const struct photo *photo,
+                    const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf)
 {
 	struct seek_found pool[MAX_POOL];
 	int n = gather(pool, pyramid, hint, conf);
 	const char *why = 0;
 	struct rim *rim = mem_new(1, sizeof *rim);
-	struct ellipse around = { 0 };  // a limbus, accepted or hidden too much
 	double best = 0;
 	for (int i = 0; i < n && i < TRY; i++) {
-		if (within(&pool[i].e, &around))
+		if (within(&pool[i].e, around))
 			continue;  // what lies inside a limbus is its pupil, or a part of it
 		if (!rim_fit(rim, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
 		const char *against = judge(rim, photo, pyramid, conf);
 		double quality = rim->share_used * rim->e.a;
-		if (against == COVERED && rim->rms < EXACT * rim->e.a + PIXEL_RMS && rim->e.a > around.a)
-			around = rim->e;
+		if (against == COVERED && rim->rms < EXACT * rim->e.a + PIXEL_RMS && rim->e.a > around->a)
+			*around = rim->e;
 		if (!against && quality > best) {
 			best = quality;
-			around = rim->e;
+			*around = rim->e;
 			found->limbus = *rim;
 			found->score = pool[i].score;
 			found->ok = true;
@@ -174,6 +195,79 @@ static bool measure(struct limbus_found *found, const struct photo *photo, const
 	return reject(found, "no eye found: photograph one open eye close up, or say where it is with photo.NAME.hint_px");
 }
 
+/* Settled circles of limbus_flanks, best first. Both sides of a pupil are clear too, but the limbus is larger. */
+static int gather_flanks(struct seek_found pool[SEEK_MAX], const struct photo *photo, const double *hint,
+                         const struct limbus_conf *conf)
+{
+	const double longer = fmax(photo->width, photo->height), shorter = fmin(photo->width, photo->height);
+	double lo = fmax(conf->seek.min_radius, FLANK_LEAST) * longer, value[SEEK_MAX];
+	int n = limbus_flanks(pool, photo, hint, lo, conf->seek.max_radius * shorter);
+	n = n < FLANK_TRY ? n : FLANK_TRY;
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = 0; i < n; i++) {
+		value[i] = pool[i].score;
+		value[i] *= limbus_flank_settle(&pool[i], photo) ? pool[i].score * sqrt(pool[i].e.a) : 0;
+		if (hint)  // it says how large as well
+			value[i] *= exp(-0.5 * pow(log(pool[i].e.a / hint[2]) / FLANK_HINT, 2));
+	}
+	for (int i = 1; i < n; i++)
+		for (int j = i; j > 0 && value[j] > value[j - 1]; j--) {
+			struct seek_found f = pool[j];
+			double v = value[j];
+			pool[j] = pool[j - 1];
+			value[j] = value[j - 1];
+			pool[j - 1] = f;
+			value[j - 1] = v;
+		}
+	return n;
+}
+
+/* The blurred step's ellipse says what the sides of the limbus said. */
+static bool agrees(const struct ellipse *e, const struct ellipse *settled)
+{
+	return hypot(e->cx - settled->cx, e->cy - settled->cy) < FLANK_NEAR * settled->a
+	       && fabs(e->a / settled->a - 1) < FLANK_SIZE;
+}
+
+static bool has_sides_around(const struct photo *photo, const struct ellipse *e)
+{
+	double sides;
+	limbus_flank_around(photo, e, &sides);
+	return sides > SIDES_CLEAR;
+}
+
+/* around: what lies inside is the pupil of what was tried before.
+ * Where the search by whiteness found nothing it could vouch for, or a hint says where the eye is: by the sides of the
+ * limbus. Real sclera is shaded and coloured, and lids are at its rim: the edge scatters more than a step should. */
+static bool measure_flanks(struct limbus_found *found, struct ellipse around, const struct photo *photo,
+                           const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf)
+{
+	struct seek_found pool[SEEK_MAX];
+	struct limbus_conf loose = *conf;
+	struct rim *rim = mem_new(1, sizeof *rim);
+	loose.rim.settled = true;
+	loose.max_rms = conf->max_flank_rms;
+	loose.max_sigma = conf->max_flank_sigma;
+	loose.min_coverage = conf->min_flank_coverage;
+	int n = gather_flanks(pool, photo, hint, conf);
+	for (int i = 0; i < n && i < TRY && !found->ok; i++) {
+		if (pool[i].score < FLANK_SUPPORT || within(&pool[i].e, &around))
+			continue;
+		around = pool[i].e.a > around.a ? pool[i].e : around;
+		for (int k = 0; k < 2 && !found->ok; k++) {
+			if (!rim_fit(rim, photo, k ? 0 : &pyramid->tint, &pool[i].e, &loose.rim) || !agrees(&rim->e, &pool[i].e))
+				continue;
+			if (judge(rim, photo, pyramid, &loose) || (!hint && has_sides_around(photo, &rim->e)))
+				continue;
+			found->limbus = *rim;
+			found->score = pool[i].score;
+			found->ok = true;
+		}
+	}
+	free(rim);
+	return found->ok;
+}
+
 void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
                  const struct limbus_conf *conf)
 {
@@ -183,7 +277,11 @@ void limbus_find(struct limbus_found *found, const struct photo *photo, const do
 		return;
 	}
 	struct pyramid pyramid = pyramid_make(photo);
-	if (exposed(found, &pyramid, conf) && measure(found, photo, &pyramid, hint, conf)) {
+	struct ellipse around = { 0 };
+	if (exposed(found, &pyramid, conf)
+	    && ((hint && measure_flanks(found, around, photo, &pyramid, hint, conf))
+	        || measure(found, &around, photo, &pyramid, hint, conf)
+	        || (!hint && measure_flanks(found, around, photo, &pyramid, 0, conf)))) {
 		band_sample(&found->band, &pyramid, &found->limbus);
 		found->has_pupil = limbus_pupil(&found->pupil, photo, &pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
 	}

@@ -16,6 +16,7 @@ struct limbus_conf {
 	double max_blur;       // width of the step, share of the semi-axis
 	double max_rms;        // scatter of the edge, share of the semi-axis
 	double max_sigma;      // of centre and semi-axes, share of the semi-axis
+	double max_flank_rms, max_flank_sigma, min_flank_coverage;  // the same for eyes found by the sides of the limbus
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
 };
 

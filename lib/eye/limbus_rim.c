@@ -211,9 +211,11 @@ static void own_widths(struct rim *rim, const struct grey *grey, double window, 
 }
 
 /* Rough ellipse to width of the step, in the given picture. */
-static bool locate(struct rim *rim, const struct grey *grey, const struct grey *tint, double range, int width, int height)
+static bool locate(struct rim *rim, const struct grey *grey, const struct grey *tint, const struct rim_conf *conf, int width,
+                   int height)
 {
-	for (int i = 0; i < 3; i++, range /= 2)
+	double range = conf->search * rim->e.a;
+	for (int i = 0; i < 3 && !conf->settled; i++, range /= 2)
 		if (!rim_consensus(&rim->e, grey, tint, fmax(range, 6 * grey->scale), width, height))
 			return false;
 	return first_width(rim, grey, width, height);
@@ -228,7 +230,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 		limbus_colour(weight, photo, start);
 	const int w = photo->width, h = photo->height;
 	struct grey grey = grey_linear(photo, start, 1.4, MAX_AXIS_PX, weight);
-	bool ok = locate(rim, &grey, tint, conf->search * start->a, w, h);
+	bool ok = locate(rim, &grey, tint, conf, w, h);
 	for (int i = 0; i < ARCS; i++)
 		rim->widths[i] = rim->width;
 	for (int i = 0; i < (rim->width < SHARP_PX ? SHARP_PASSES : PASSES) && ok; i++) {

@@ -13,6 +13,7 @@ struct rim_conf {
 	double min_contrast;  // of an arc's step, relative to the ring's median
 	double irregularity;  // sigma that noise does not show, share of the step's width: no limbus is this exact a step
 	bool grey;            // measure in brightness, not in the best mixture of colours
+	bool settled;         // the start is good to a few hundredths: no edge is looked for farther away
 };
 
 struct rim {

@@ -1,0 +1,22 @@
+/* limbus_flank: eyes found by the two sides of the limbus, where it meets the sclera. Lids cover it above and below,
+ * windows shine in it, warm light colours the sclera and dark skin is darker than it; at the sides the sclera is still
+ * lighter than the iris, in every channel. For photographs that the search by whiteness (limbus_seek) does not settle.
+ */
+#ifndef EYE_LIMBUS_FLANK_H
+#define EYE_LIMBUS_FLANK_H
+#include "eye/limbus_seek.h"
+
+/* Circles with a clear step at their sides, best first; at most SEEK_MAX; returns how many. score: of the step, in
+ * natural logarithms of brightness. Radii lo to hi px. hint: x, y, radius px, or null: centres within 0.7 of its radius
+ * and radii within a factor 1.5 alone. */
+int limbus_flanks(struct seek_found out[SEEK_MAX], const struct photo *photo, const double *hint, double lo, double hi);
+
+/* The circle made an ellipse on the longest stretch of such edge near it; few arcs far from the rest, the lids', do not
+ * count. score: mean step along it, arcs without one counted as 0. False: no edge is left. */
+bool limbus_flank_settle(struct seek_found *found, const struct photo *photo);
+
+/* The clearest circle round an ellipse, 1.5 to 4.5 times as large: where that is a pupil, its limbus. Returns how many
+ * times; *score as in limbus_flanks. */
+double limbus_flank_around(const struct photo *photo, const struct ellipse *e, double *score);
+
+#endif
