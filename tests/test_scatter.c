@@ -106,6 +106,48 @@ static void equals_direct(void **state)
 	free(w);
 }
 
+/* Known directions in double, the rest in single: what stands out of the rest keeps its digits. */
+static void split(void **state)
+{
+	(void)state;
+	enum { N = 3000, P = 150, K = 5, FROM = 20 };
+	double *x = low_rank(N, P, K, 0.6, 0.05, 500, 8), *w = mem_new(N, sizeof *w);
+	double values[P], *vt = mem_new(P * P, sizeof *vt), V[P * K], d[K], cross[FROM * P], direct_cross[FROM * P];
+	double *u = mem_new(N * (P - FROM), sizeof *u), rough[(P - FROM) * K];
+	struct scatter s, rows;
+	for (int i = 0; i < N; i++) {
+		w[i] = 0.5 + 0.5 * (i % 3);
+		memcpy(u + i * (P - FROM), x + i * P + FROM, (P - FROM) * sizeof *u);
+	}
+	scatter_new(&rows, P, N);  // directions known from the first 200 rows
+	scatter_add(&rows, 200, x, w);
+	scatter_components(rough, d, &rows, FROM, P - FROM, K);
+	scatter_free(&rows);
+	scatter_new(&rows, P, N);
+	scatter_add(&rows, N, x, w);
+	scatter_cross(direct_cross, &rows, 0, FROM, 0, P);
+	scatter_new(&s, P, 0);
+	scatter_split(&s, FROM, K, rough);
+	for (int at = 0; at < N; at += 750)
+		scatter_add(&s, 750, x + at * P, w + at);
+	scatter_join(&s);
+	direct(values, vt, N, P - FROM, u, w);
+	assert_int_equal(scatter_components(V, d, &s, FROM, P - FROM, K), K);
+	for (int k = 0; k < K; k++) {
+		NEAR(d[k] / values[k], 1, 1e-10);  // the rest is 0.05 of the least: 6e-8 * 0.05^2
+		NEAR(turned(P - FROM, K, k, V, vt), 0, 1e-10);
+	}
+	scatter_cross(cross, &s, 0, FROM, 0, P);
+	for (int i = 0; i < FROM * P; i++)
+		NEAR(cross[i] / N, direct_cross[i] / N, 1e-9);
+	scatter_free(&s);
+	scatter_free(&rows);
+	free(x);
+	free(w);
+	free(u);
+	free(vt);
+}
+
 static void chan(void **state)
 {
 	(void)state;
@@ -251,7 +293,7 @@ static void network(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(equals_direct), cmocka_unit_test(chan),    cmocka_unit_test(stress),
+		cmocka_unit_test(equals_direct), cmocka_unit_test(split), cmocka_unit_test(chan), cmocka_unit_test(stress),
 		cmocka_unit_test(recovers_slopes), cmocka_unit_test(network),
 	};
 	linalg_serial();

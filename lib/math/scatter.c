@@ -1,4 +1,4 @@
-#include "math/scatter.h"
+#include "math/scatter_impl.h"
 
 #include <cblas.h>
 #include <float.h>
@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 
-enum { TILE = 256 };
+enum { STRIPE = 256 };
 
 int linalg_serial(void)
 {
@@ -41,45 +41,76 @@ void scatter_free(struct scatter *s)
 	free(s->weights);
 	free(s->S);
 	free(s->work);
+	scatter_split_free(s);
 	*s = (struct scatter){ 0 };
+}
+
+int scatter_tiles(int p)
+{
+	int n = (p + SCATTER_TILE - 1) / SCATTER_TILE;
+	return n * (n + 1) / 2;
+}
+
+struct scatter_tile scatter_tile(int p, int t)
+{
+	int i = (int)((sqrt(8.0 * t + 1) - 1) / 2), j = t - i * (i + 1) / 2, i0 = i * SCATTER_TILE, j0 = j * SCATTER_TILE;
+	return (struct scatter_tile){ i0, j0, p - i0 < SCATTER_TILE ? p - i0 : SCATTER_TILE,
+		                          p - j0 < SCATTER_TILE ? p - j0 : SCATTER_TILE };
 }
 
 /* S += Y^T Y for the first `rows` rows of work, tile by tile of the lower triangle. */
 static void add_square(struct scatter *s, int rows)
 {
-	int p = s->p, tiles = (p + TILE - 1) / TILE, n = tiles * (tiles + 1) / 2;
+	int p = s->p, n = scatter_tiles(p);
 	const double *y = s->work;
+	if (s->split) {
+		scatter_split_add(s, rows);
+		return;
+	}
 #pragma omp parallel for schedule(dynamic)
 	for (int t = 0; t < n; t++) {
-		int i = (int)((sqrt(8.0 * t + 1) - 1) / 2), j = t - i * (i + 1) / 2;
-		int i0 = i * TILE, j0 = j * TILE, ni = p - i0 < TILE ? p - i0 : TILE, nj = p - j0 < TILE ? p - j0 : TILE;
-		double *to = s->S + (size_t)i0 * (size_t)p + j0;
-		if (i == j)
-			cblas_dsyrk(CblasRowMajor, CblasLower, CblasTrans, ni, rows, 1, y + i0, p, 1, to, p);
+		struct scatter_tile a = scatter_tile(p, t);
+		double *to = s->S + (size_t)a.i0 * (size_t)p + a.j0;
+		if (a.i0 == a.j0)
+			cblas_dsyrk(CblasRowMajor, CblasLower, CblasTrans, a.ni, rows, 1, y + a.i0, p, 1, to, p);
 		else
-			cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, ni, nj, rows, 1, y + i0, p, y + j0, p, 1, to, p);
+			cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, a.ni, a.nj, rows, 1, y + a.i0, p, y + a.j0, p, 1, to, p);
 	}
 }
 
-/* One block of rows already in work as x (not centred), weights w: centred on its own mean, squared, merged. */
+/* The block's weighted mean, and its rows centred on it and scaled by the roots of their weights; columns in stripes, so
+ * that threads share nothing. */
+static void centre_block(double *mean, struct scatter *s, int n, const double *w, double weight)
+{
+	int p = s->p;
+	double *y = s->work;
+#pragma omp parallel for
+	for (int from = 0; from < p; from += STRIPE) {
+		int to = from + STRIPE < p ? from + STRIPE : p;
+		for (int r = 1; r < n; r++)  // from the first row on: what does not vary is exact
+			for (int c = from; c < to; c++)
+				mean[c] += w[r] / weight * (y[(size_t)r * (size_t)p + (size_t)c] - y[c]);
+		for (int c = from; c < to; c++)
+			mean[c] += y[c];
+		for (int r = 0; r < n; r++) {
+			double root = sqrt(w[r]), *row = y + (size_t)r * (size_t)p;
+			for (int c = from; c < to; c++)
+				row[c] = root * (row[c] - mean[c]);
+		}
+	}
+}
+
+/* One block of rows already in work, weights w: centred on its own mean, squared, merged. */
 static void merge_block(struct scatter *s, int n, const double *w)
 {
 	int p = s->p, used = 0;
 	double weight = 0, *mean = mem_new((size_t)p + 1, sizeof *mean), *y = s->work;
-	for (int r = 0; r < n; r++)
-		weight += w[r];
-	for (int r = 1; r < n && weight > 0; r++)  // from the first row on: what does not vary is exact
-		for (int c = 0; c < p; c++)
-			mean[c] += w[r] / weight * (y[(size_t)r * (size_t)p + (size_t)c] - y[c]);
-	for (int c = 0; c < p; c++)
-		mean[c] += y[c];
 	for (int r = 0; r < n; r++) {
-		double root = sqrt(w[r]), *row = y + (size_t)r * (size_t)p;
-		for (int c = 0; c < p; c++)
-			row[c] = root * (row[c] - mean[c]);
+		weight += w[r];
 		used += w[r] > 0;
 	}
 	if (weight > 0) {
+		centre_block(mean, s, n, w, weight);
 		// The means' own difference is one more row.
 		double share = weight / (s->weight + weight), root = sqrt(s->weight * share), *row = y + (size_t)n * (size_t)p;
 		for (int c = 0; c < p; c++) {

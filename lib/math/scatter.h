@@ -21,9 +21,10 @@ struct scatter {
 	double *S;        // [p][p] sum of w (x - mean)(x - mean)^T, lower triangle; null while rows are kept
 	int keep;
 	double *work;     // [SCATTER_BLOCK + 1][p]
+	struct scatter_split *split;
 };
 
-enum { SCATTER_BLOCK = 512 };
+enum { SCATTER_BLOCK = 1024 };
 
 /* keep 0: the scatter matrix from the first row on. */
 void scatter_new(struct scatter *s, int p, int keep);
@@ -31,6 +32,14 @@ void scatter_free(struct scatter *s);
 
 /* n rows [n][p], weights w[n] >= 0 (null: all 1). Every number must be finite. */
 void scatter_add(struct scatter *s, long n, const double *x, const double *w);
+
+/* Columns from..p-1 lie near k known directions V[p - from][k] (orthonormal columns): these are summed in double, only what
+ * is left beside them in single precision, at twice the speed. Rounding is then 1e-7 of the rest, not of the whole:
+ * components that stand ten times out of the rest keep 1e-9. Before the first row, keep = 0. */
+void scatter_split(struct scatter *s, int from, int k, const double *V);
+
+/* Ends a split: the rest and the known directions become one matrix. No rows after it. No effect without one. */
+void scatter_join(struct scatter *s);
 
 /* out[ni][nj]: sum of w (x_i - mean_i)(x_j - mean_j), i from i0, j from j0. */
 void scatter_cross(double *out, const struct scatter *s, int i0, int ni, int j0, int nj);

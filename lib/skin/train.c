@@ -41,11 +41,11 @@ void train_report_free(struct train_report *r)
 	*r = (struct train_report){ 0 };
 }
 
-static void keep_if_measured(double *x, double *c, double to, double belief)
+static inline void keep_if_measured(double *x, double *c, double to, double belief)
 {
 	bool ok = fabs(to) <= farthest && belief > 0;
 	*x = ok ? to : NAN;
-	*c = ok ? fmin(belief, 1) : 0;
+	*c = !ok ? 0 : belief < 1 ? belief : 1;
 }
 
 bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS],
@@ -55,12 +55,13 @@ bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS
 	double *lid = mem_array((size_t)n * (size_t)t->n_lid + 1, sizeof *lid);
 	double *skin = mem_array((size_t)n * (size_t)nu + 1, sizeof *skin), *seen = mem_array((size_t)n * (size_t)nv + 1, sizeof *seen);
 	bool ok = t->clip->read(t->clip->ctx, first, n, lid, skin, seen, err);
-	for (long r = 0; r < n && ok; r++) {
-		for (int i = 0; i < t->n_lid; i++) {
-			int p = i / t->n_eye;
-			size_t at = (size_t)r * (size_t)t->n_eye + (size_t)(i % t->n_eye);
-			keep_if_measured(&x[p][at], &c[p][at], lid[r * t->n_lid + i], 1);
-		}
+#pragma omp parallel for if (n > 1)
+	for (long r = 0; r < (ok ? n : 0); r++) {
+		for (int p = 0; p < 2; p++)
+			for (int i = 0; i < t->n_eye; i++) {
+				size_t at = (size_t)r * (size_t)t->n_eye + (size_t)i;
+				keep_if_measured(&x[p][at], &c[p][at], lid[r * t->n_lid + p * t->n_eye + i], 1);
+			}
 		for (int i = 0; i < nu; i++) {
 			size_t at = (size_t)r * (size_t)nu + (size_t)i;
 			keep_if_measured(&x[TRAIN_SKIN][at], &c[TRAIN_SKIN][at], skin[at], seen[r * nv + i / 2]);

@@ -11,6 +11,7 @@
 #include "skin/train_impl.h"
 
 enum { CHUNK = 64, IRLS_STEPS = 10 };
+static const double settled = 0.01;  // change of any weight
 static const double smallest_distance = 1e-4;  // of the motion: below that, numbers agree to rounding of their files
 
 void part_free(struct part *p)
@@ -96,9 +97,50 @@ static void distance(double *d, double *share, const struct part *p, const doubl
 	*share = all > 0 ? seen / all : 0;
 }
 
+static bool all_measured(const struct part *p, int m, const double *c)
+{
+	for (int r = 0; r < m; r++)
+		for (int i = 0; i < p->n; i++)
+			if (p->seen[i] && !(c[r * p->n + i] >= 1))
+				return false;
+	return true;
+}
+
+/* Nothing is missing in these rows: their distance is what their scores leave of their length. */
+static void measure_chunk(const struct part *p, int m, double *x, double *d, double *share)
+{
+	int n = p->n, k = p->k, seen = 0;
+	double *y = mem_array((size_t)(m * n) + 1, sizeof *y), *scores = mem_new((size_t)(m * k) + 1, sizeof *scores);
+	for (int i = 0; i < n; i++)
+		seen += p->seen[i];
+	for (int r = 0; r < m; r++) {
+		d[r] = 0;
+		for (int i = 0; i < n; i++) {
+			double one = p->seen[i] ? x[r * n + i] - p->mean[i] : 0;
+			x[r * n + i] = p->seen[i] ? x[r * n + i] : p->mean[i];
+			y[r * n + i] = one;
+			d[r] += one * one;
+		}
+	}
+	if (k)
+		cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, k, n, 1, y, n, p->V, k, 0, scores, k);
+	for (int r = 0; r < m; r++) {
+		for (int a = 0; a < k; a++)
+			d[r] -= scores[r * k + a] * scores[r * k + a];
+		d[r] = seen ? sqrt(fmax(d[r], 0) / seen) : 0;
+		share[r] = seen > 0;
+	}
+	free(y);
+	free(scores);
+}
+
 static void complete_chunk(const struct part *p, int m, double *x, const double *c, double *d, double *share)
 {
 	int n = p->n;
+	if (all_measured(p, m, c)) {
+		measure_chunk(p, m, x, d, share);
+		return;
+	}
 	double *fit = mem_array((size_t)(m * n) + 1, sizeof *fit);
 	fit_rows(fit, p, m, x, c);
 	for (int r = 0; r < m; r++) {
@@ -193,6 +235,7 @@ static void components(struct part *p, double *lambda, long m, const double *x, 
 /* A frame that makes a component by itself has no distance from it: what it has inside the components then counts. */
 static void add_leverage(struct part *p, double *d, const double *lambda, long m, const double *x, const double *w)
 {
+#pragma omp parallel for
 	for (long r = 0; r < m; r++) {
 		double leverage = 0, inside = 0;
 		for (int c = 0; c < p->k; c++) {
@@ -212,12 +255,11 @@ static void weighted_mean(struct part *p, long m, const double *x, const double 
 	double sum = 0;
 	for (long r = 0; r < m; r++)
 		sum += w[r];
-	for (int i = 0; i < p->n && sum > 0; i++) {
-		double s = 0;
-		for (long r = 0; r < m; r++)
-			s += w[r] * x[r * p->n + i];
-		p->mean[i] = s / sum;
-	}
+	if (sum > 0)
+		memset(p->mean, 0, (size_t)p->n * sizeof *p->mean);
+	for (long r = 0; r < m && sum > 0; r++)
+		for (int i = 0; i < p->n; i++)
+			p->mean[i] += w[r] / sum * x[r * p->n + i];
 }
 
 /* Spherical principal components (Locantore et al. 1999) to begin with: every frame weighs one direction, however far
@@ -254,6 +296,7 @@ void part_pilot(struct part *p, long m, double *x, double *c, const struct train
 	memcpy(was, x, (size_t)m * (size_t)p->n * sizeof *was);
 	p->variance = mem_new(PILOT_COMPONENTS + 1, sizeof *p->variance);
 	spherical(p, w, m, x);
+	bool missing = !all_measured(p, (int)m, c);
 	double spread = 0;  // sum of squares about the medians
 	for (long r = 0; r < m; r++)
 		spread += w[r] > 0 ? 1 / w[r] : 0;
@@ -267,9 +310,15 @@ void part_pilot(struct part *p, long m, double *x, double *c, const struct train
 		add_leverage(p, d, lambda, m, x, w);
 		memcpy(sorted, d, (size_t)m * sizeof *d);
 		p->usual = fmax(stats_median((int)m, sorted), smallest_distance * sqrt(spread / (double)m / fmax(p->n, 1)));
-		for (long r = 0; r < m; r++)
-			w[r] = part_weight(p, conf, d[r]) * (share[r] > 0);
+		double change = 0;
+		for (long r = 0; r < m; r++) {
+			double to = part_weight(p, conf, d[r]) * (share[r] > 0);
+			change = fmax(change, fabs(to - w[r]));
+			w[r] = to;
+		}
 		weighted_mean(p, m, x, w);
+		if (step && change < settled && !missing)
+			break;
 	}
 	components(p, lambda, m, x, w);
 	set_variance(p, lambda, m, w, 0);

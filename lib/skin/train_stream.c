@@ -6,6 +6,8 @@
 #include "base/mem.h"
 #include "skin/train_impl.h"
 
+enum { LONG_CLIP = 8192 };  // frames from which on speed counts
+
 static const double least_share = 0.3;  // of a frame's numbers must be measured for it to count
 
 /* Buffers of `n` frames for every part: numbers, how far to believe them, distances, shares measured. */
@@ -153,6 +155,7 @@ bool train_sample(struct train *t, struct err *err)
 static void assemble(struct train *t, double *row[TRAIN_PARTS], const struct frames *f, long n, const long *frame)
 {
 	int n_in = t->model->n_inputs, n_au = t->clip->n_au;
+#pragma omp parallel for
 	for (long i = 0; i < n; i++) {
 		const double *g = t->g + frame[i] * n_in;
 		for (int p = 0; p < 2; p++) {
@@ -192,6 +195,8 @@ bool train_stream(struct train *t, struct err *err)
 		struct part *part = &t->part[p];
 		part->from = p == TRAIN_SKIN ? t->n_lid + t->clip->n_au : EYE_INPUTS;
 		scatter_new(&part->sum, part->from + part->n, t->clip->n <= PILOT_FRAMES ? (int)t->clip->n : 0);
+		if (p == TRAIN_SKIN && t->clip->n >= LONG_CLIP)
+			scatter_split(&part->sum, part->from, part->k, part->V);
 		row[p] = mem_array(SCATTER_BLOCK * (size_t)part->sum.p + 1, sizeof *row[p]);
 	}
 	bool ok = true;
@@ -211,8 +216,10 @@ bool train_stream(struct train *t, struct err *err)
 		if (t->clip->progress)
 			t->clip->progress(t->clip->ctx, at + n, t->clip->n);
 	}
-	for (int p = 0; p < TRAIN_PARTS; p++)
+	for (int p = 0; p < TRAIN_PARTS; p++) {
 		free(row[p]);
+		scatter_join(&t->part[p].sum);
+	}
 	frames_free(&f);
 	return ok;
 }
