@@ -124,8 +124,9 @@ static void take_thickness(struct rig *rig, const struct rig_conf *conf)
 	for (int i = 0; i < rig->n; i++) {
 		double gap = fmax(rig->gap[i], conf->least), t = (gap - conf->glue[0]) / (conf->glue[1] - conf->glue[0]);
 		t = fmin(fmax(t, 0), 1);
-		bool free_skin = rig->source[i] == RIG_TRACKED || rig_is_globe(rig->part[i]);
-		rig->glue[i] = free_skin ? 0 : (float)(1 - t * t * (3 - 2 * t));
+		// The paper holds extrapolated skin alone to its distance. Tracked lids are as thick wherever they slide, too: else
+		// a raised lid sinks into the socket behind its own margin.
+		rig->glue[i] = rig_is_globe(rig->part[i]) ? 0 : (float)(1 - t * t * (3 - 2 * t));
 		rig->gap[i] = (float)gap;
 		rig->thickness[i] = (float)fmin(gap, conf->thickness);
 	}
