@@ -83,7 +83,7 @@ static void add(struct inputs *in, const char *fmt, ...)
 }
 
 /* Everything the page shows. What is not there counts, too: the page changes when it comes. */
-static struct inputs inputs(const struct capture *capture)
+static struct inputs inputs(const struct capture *capture, const struct file_list *targets)
 {
 	static const char *const stages[] = { "calibrate", "limbus", "unrefract", "freckles", "heightfield", "pigment", "relief",
 		                                  "refraction", "track", "train", "transfer", "extrapolate", "animate" };
@@ -107,6 +107,18 @@ static struct inputs inputs(const struct capture *capture)
 		add(&in, "%s/%s_compare.png", capture->eyes[p->eye].render, p->name);
 		add(&in, "%s/%s_compare.json", capture->eyes[p->eye].render, p->name);
 	}
+	static const char *const skin[] = { "gaze.csv", "model.json", "track.png", "curves.svg" };
+	static const char *const driven[] = { "_look.png", "_sheet.png", "_blink.png", "_clip.mp4", "_script.mp4", ".glb" };
+	for (int i = 0; i < COUNT(skin) && targets->n; i++)
+		add(&in, "work/skin/%s", skin[i]);
+	for (int t = 0; t < targets->n; t++) {
+		const char *name = targets->names[t], *dot = strrchr(name, '.');
+		int n = dot ? (int)(dot - name) : (int)strlen(name);
+		for (int i = 0; i < COUNT(driven); i++)
+			add(&in, "work/render/%.*s%s", n, name, driven[i]);
+		add(&in, "work/targets/%.*s/rig.npz", n, name);
+		add(&in, "work/targets/%.*s/transfer.json", n, name);
+	}
 	return in;
 }
 
@@ -121,11 +133,18 @@ static json_t *data_make(struct page *page)
 	json_object_set_new(data, "css", json_string(page_css));
 	json_object_set_new(data, "js", json_string(page_js));
 	json_object_set_new(data, "photos", page_photos(page));
-	json_object_set_new(data, "eyes", page_eyes(page));
+	json_object_set_new(data, "has_photos", json_boolean(page->capture->n_photos));
+	if (page->capture->n_photos)
+		json_object_set_new(data, "eyes", page_eyes(page));
+	json_t *skin = page_skin(page);
+	if (skin)
+		json_object_set_new(data, "skin", skin);
 	json_object_set_new(data, "stages", stages);
 	json_object_set_new(data, "total_seconds", page_text("%.1f", seconds));
-	json_object_set_new(data, "n_photos", page_text("%d photograph%s", page->capture->n_photos, page->capture->n_photos == 1 ? "" : "s"));
+	int n = page->capture->n_photos;
+	json_object_set_new(data, "n_photos", n ? page_text("%d photograph%s, ", n, n == 1 ? "" : "s") : json_string(""));
 	json_object_set(data, "advice", page->advice);
+	json_object_set(data, "film", page->film);
 	json_object_set(data, "missing", page->missing);
 	free(full);
 	return data;
@@ -133,10 +152,14 @@ static json_t *data_make(struct page *page)
 
 bool page_make(struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err)
 {
-	struct inputs in = inputs(capture);
+	struct file_list targets;
+	if (!stage_list(stage, &targets, "targets", err))
+		return false;
+	struct inputs in = inputs(capture, &targets);
+	file_list_free(&targets);
 	bool ok = stage_fresh(stage, out, in.n, (const char *const *)in.rel);
 	if (!ok) {
-		struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array() };
+		struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array(), json_array() };
 		json_t *data = data_make(&page);
 		char *html;
 		size_t size;
@@ -147,6 +170,7 @@ bool page_make(struct stage *stage, const struct capture *capture, const struct 
 		free(ok ? html : 0);
 		json_decref(data);
 		json_decref(page.advice);
+		json_decref(page.film);
 		json_decref(page.missing);
 	}
 	for (int i = 0; i < in.n; i++)

@@ -13,6 +13,7 @@ struct page {
 	const struct render_conf *conf;
 	int width;          // of the pictures in it, px
 	json_t *advice;     // what to photograph better: sentences
+	json_t *film;       // what to film better
 	json_t *missing;    // what the page cannot show, and why: sentences
 };
 
@@ -32,8 +33,13 @@ __attribute__((format(printf, 1, 2)))
 json_t *page_text(const char *fmt, ...);
 
 json_t *page_photos(struct page *page);
+/* Null where the folder has no video. */
+json_t *page_skin(struct page *page);
 json_t *page_eyes(struct page *page);
 json_t *page_stages(struct page *page, double *seconds);
+
+/* head, then the bytes in base 64; free(). */
+char *page_base64(const uint8_t *data, size_t size, const char *head);
 
 /* {uri, width, height} of a picture as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. */
 json_t *page_picture(struct page *page, const char *path, int width);

@@ -11,7 +11,7 @@
 
 enum { JPEG_QUALITY = 86 };
 
-static char *base64(const uint8_t *data, size_t size, const char *head)
+char *page_base64(const uint8_t *data, size_t size, const char *head)
 {
 	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 	char *out = mem_array(strlen(head) + (size + 2) / 3 * 4 + 1, 1), *at = out + strlen(head);
@@ -35,7 +35,7 @@ json_t *page_pixels(const uint8_t *px, int width, int height)
 	size_t size;
 	if (!picture_jpeg_encode(&data, &size, px, width, height, 3, JPEG_QUALITY, &err))
 		return 0;
-	char *uri = base64(data, size, "data:image/jpeg;base64,");
+	char *uri = page_base64(data, size, "data:image/jpeg;base64,");
 	json_t *picture = json_pack("{s:s,s:i,s:i}", "uri", uri, "width", width, "height", height);
 	free(uri);
 	free(data);

@@ -13,7 +13,7 @@
 /* What the folder holds, one bit each. */
 enum { PHOTOS = 1, VIEWS = 2, VIDEO = 4, SUBJECT = 8, TARGETS = 16, SCRIPT = 32 };
 
-/* A stage runs when the folder has any of `any` and all of `all`, and the stage it needs runs. */
+/* A stage runs when the folder has any of `any` and all of `all`, and the stage it needs runs (or the other way of `others` is open). */
 static const struct rule {
 	const char *name, *needs;  // needs: a stage whose result it cannot do without
 	int any, all;
@@ -35,7 +35,15 @@ static const struct rule {
 	  "no targets/, or no video/ to learn from" },
 	{ "extrapolate", "transfer", TARGETS, VIDEO, "rigs the characters", "no targets/, or no video/ to learn from" },
 	{ "animate", "train", SCRIPT, VIDEO, "moves the eyes as script/ says", "no script/, or no video/ to learn from" },
-	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "no photos/: no eye to show" },
+	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "neither photos/ of an eye nor video/ and targets/ to show" },
+};
+
+/* Stages that run for another reason, too: the folder has all of `all`, and the stage needed runs. */
+static const struct {
+	const char *name, *needs;
+	int all;
+} others[] = {
+	{ "render", "extrapolate", VIDEO | TARGETS },
 };
 
 const char *const plan_names[PLAN_STAGES] = {
@@ -162,6 +170,14 @@ static bool runs(const struct plan *plan, const char *name)
 	return false;
 }
 
+static bool other_way(const struct plan *plan, const char *name, int have)
+{
+	for (int i = 0; i < COUNT(others); i++)
+		if (!strcmp(others[i].name, name) && (have & others[i].all) == others[i].all && runs(plan, others[i].needs))
+			return true;
+	return false;
+}
+
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], struct err *err)
 {
 	struct stat st;
@@ -185,12 +201,13 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		const struct rule *r = &rules[i];
 		struct plan_row *row = &plan->rows[i];
 		bool has = (!r->any || have & r->any) && (have & r->all) == r->all;
+		bool other = other_way(plan, r->name, have);
 		row->reason = r->does;
-		if (!has)
+		if (!has && !other)
 			row->reason = r->without;
 		else if (!is_built(r->name))
 			row->reason = "its program is not built";
-		else if (r->needs && !runs(plan, r->needs))
+		else if (!other && r->needs && !runs(plan, r->needs))
 			row->reason = "a stage it needs does not run";
 		else
 			row->run = true;
