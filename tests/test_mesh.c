@@ -224,6 +224,64 @@ static void damage_does_no_harm(void **state)
 	mesh_free(&m);
 }
 
+/* n triangles round the vertex 0 of the n + 2 that there are, every second of its fan. */
+static const char *fan_file(const char *name, int n, bool as_obj)
+{
+	char *text = 0;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+	if (!as_obj)
+		fprintf(out, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+		             "element face %d\nproperty list uchar int vertex_indices\nend_header\n", 2 * n + 1, n);
+	for (int i = 0; i <= 2 * n; i++)
+		fprintf(out, as_obj ? "v %d %d 0\n" : "%d %d 0\n", i, i * i % 1000);
+	for (int i = 0; i < n; i++)
+		fprintf(out, as_obj ? "f 1 %d %d\n" : "3 0 %d %d\n", 2 * i + 1 + as_obj, 2 * i + 2 + as_obj);
+	fclose(out);
+	const char *path = scratch_text(name, text);
+	free(text);
+	return path;
+}
+
+/* Work that grows with the square of a vertex's faces is refused: 100 000 of them would be joined for minutes, while the
+ * same number of a sound mesh takes no time. */
+static void fans_without_end_are_refused(void **state)
+{
+	(void)state;
+	for (int as_obj = 0; as_obj < 2; as_obj++) {
+		struct mesh m;
+		struct err err = { 0 };
+		assert_false(om_mesh_load(&m, fan_file("m.mesh", 100000, as_obj), 1000000, &err));
+		ERR_HAS(err, "100000 faces meet in vertex 0");
+		err = (struct err){ 0 };
+		if (!om_mesh_load(&m, fan_file("m.mesh", 1000, as_obj), 1000000, &err))
+			fail_msg("%s", err.msg);
+		assert_int_equal(m.n_faces, 1000);
+		mesh_free(&m);
+	}
+}
+
+/* One polygon may name a vertex many times: its triangles count, not its line. */
+static void long_polygons_count_as_triangles(void **state)
+{
+	(void)state;
+	struct mesh m;
+	struct err err = { 0 };
+	char text[8000] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1";
+	for (int i = 0; i < 1500; i++)
+		strcat(text, i % 2 ? " 2" : " 3");
+	strcat(text, "\n");
+	assert_false(om_mesh_load(&m, scratch_text("m.obj", text), 1000, &err));
+	ERR_HAS(err, "line 4: triangle 1001: must be <= 1000");
+	struct mesh many = sphere(200, 300);
+	err = (struct err){ 0 };
+	for (int f = 0; f < many.n_faces; f++)
+		many.faces[f][0] = 0;
+	assert_false(om_mesh_decimate(&many, 100, &err));
+	ERR_HAS(err, "faces meet in vertex 0");
+	mesh_free(&many);
+}
+
 static void three_faces_at_one_edge(void **state)
 {
 	(void)state;
@@ -286,6 +344,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(obj_by_hand, setup, teardown),
 		cmocka_unit_test_setup_teardown(hostile_files_are_refused, setup, teardown),
 		cmocka_unit_test_setup_teardown(damage_does_no_harm, setup, teardown),
+		cmocka_unit_test_setup_teardown(fans_without_end_are_refused, setup, teardown),
+		cmocka_unit_test_setup_teardown(long_polygons_count_as_triangles, setup, teardown),
 		cmocka_unit_test_setup_teardown(three_faces_at_one_edge, setup, teardown),
 		cmocka_unit_test(decimated_sphere_stays_one),
 		cmocka_unit_test(real_meshes_load),

@@ -17,6 +17,7 @@ extern "C" {
 #include "base/mem.h"
 #include "image/image.h"
 #include "mesh/mesh_clean.h"
+#include "mesh/mesh_joins.h"
 }
 
 namespace {
@@ -106,8 +107,13 @@ bool clean(char **data, size_t *size, enum mesh_kind kind, long limit, struct er
 	return ok;
 }
 
-void give(Mesh &om, const struct mesh *mesh)
+bool give(Mesh &om, const struct mesh *mesh, struct err *err)
 {
+	struct mesh_joins joins = mesh_joins_begin(mesh->n_vertices);
+	for (int i = 0; i < mesh->n_faces; i++)
+		mesh_joins_add(&joins, mesh->faces[i]);
+	if (!mesh_joins_end(&joins, err))
+		return false;
 	for (int i = 0; i < mesh->n_vertices; i++) {
 		const float *p = mesh->vertices[i];
 		auto v = om.add_vertex(Mesh::Point(p[0], p[1], p[2]));
@@ -122,6 +128,7 @@ void give(Mesh &om, const struct mesh *mesh)
 			corner[k] = om.vertex_handle((unsigned)mesh->faces[i][k]);
 		add_triangle(om, corner);
 	}
+	return true;
 }
 
 }  // namespace
@@ -191,7 +198,8 @@ bool om_mesh_decimate(struct mesh *mesh, int target_faces, struct err *err)
 	try {
 		Mesh om;
 		be_quiet();
-		give(om, mesh);
+		if (!give(om, mesh, err))
+			return false;
 		OpenMesh::Decimater::DecimaterT<Mesh> decimater(om);
 		OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
 		decimater.add(quadric);

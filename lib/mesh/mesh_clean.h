@@ -12,8 +12,9 @@ bool mesh_kind_of(enum mesh_kind *kind, const char *data, size_t size, struct er
 
 /* What a library may read in a stranger's place: vertices, their colours where all have one, and triangles (polygons as
  * fans, without those that have a corner twice) in the plainest form the format has; nothing of what else was in the
- * file. *clean: free(), also when it is false. False, err set, when it has more than `limit` vertices or faces, claims
- * more than its bytes hold, has elements other than vertices and faces, or a face whose corner is no vertex. */
+ * file. *clean: free(), also when it is false. False, err set, when it has more than `limit` vertices, faces or
+ * triangles, claims more than its bytes hold, has elements other than vertices and faces, a face whose corner is no
+ * vertex, or too many round one vertex (mesh_joins.h). */
 bool mesh_clean_ply(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err);
 bool mesh_clean_obj(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err);
 

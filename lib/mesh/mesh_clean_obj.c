@@ -5,11 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/mesh_joins.h"
+
 static const char blanks[] = " \t\r\v\f";
 
 struct obj {
 	FILE *out;
-	long line, n_vertices, n_faces, all_vertices;  // all: of the file, which a face may name ahead of time
+	long line, n_vertices, all_vertices;  // all: of the file, which a face may name ahead of time
+	long triangles, limit;
+	struct mesh_joins joins;
 	struct err *err;
 };
 
@@ -33,6 +37,15 @@ static bool take_vertex(struct obj *obj, const char *at, const char *end)
 	return true;
 }
 
+static bool take_triangle(struct obj *obj, long a, long b, long c)
+{
+	if (++obj->triangles > obj->limit)
+		return err_set(obj->err, "line %ld: triangle %ld: must be <= %ld", obj->line, obj->triangles, obj->limit);
+	mesh_joins_add(&obj->joins, (int32_t[]){ (int32_t)(a - 1), (int32_t)(b - 1), (int32_t)(c - 1) });
+	fprintf(obj->out, "f %ld %ld %ld\n", a, b, c);
+	return true;
+}
+
 /* Corners "v", "v/t", "v//n", "v/t/n"; from 1, or below zero backwards from the last vertex so far. A fan of triangles
  * comes out; those with a corner twice have no area and are left out. */
 static bool take_face(struct obj *obj, const char *at, const char *end)
@@ -47,13 +60,12 @@ static bool take_face(struct obj *obj, const char *at, const char *end)
 		if (!is_word || v < 1 || v > obj->all_vertices)
 			return err_set(obj->err, "line %ld: a corner that is no vertex: must be in [1, %ld]", obj->line,
 			               obj->all_vertices);
-		if (corners >= 2 && first != last && last != v && v != first)
-			fprintf(obj->out, "f %ld %ld %ld\n", first, last, v);
+		if (corners >= 2 && first != last && last != v && v != first && !take_triangle(obj, first, last, v))
+			return false;
 		first = corners++ ? first : v;
 		last = v;
 		at = after + strcspn(after, " \t\r\v\f\n");
 	}
-	obj->n_faces++;
 	return corners >= 3 || err_set(obj->err, "line %ld: a face of %d corners: must be at least 3", obj->line, corners);
 }
 
@@ -82,7 +94,7 @@ static void count(struct obj *obj, long *faces, const char *data, const char *en
 bool mesh_clean_obj(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err)
 {
 	const char *end = data + size;
-	struct obj obj = { .line = 1, .err = err };
+	struct obj obj = { .line = 1, .limit = limit, .err = err };
 	long faces = 0;
 	*clean = 0;
 	count(&obj, &faces, data, end);
@@ -90,6 +102,7 @@ bool mesh_clean_obj(char **clean, size_t *clean_size, const char *data, size_t s
 		return err_set(err, "is no mesh: must be PLY or OBJ");
 	if (obj.all_vertices > limit || faces > limit)
 		return err_set(err, "%ld vertices, %ld faces: must be <= %ld", obj.all_vertices, faces, limit);
+	obj.joins = mesh_joins_begin(obj.all_vertices);
 	obj.out = open_memstream(clean, clean_size);
 	for (const char *at = data; at < end; at = line_end(at, end) + 1, obj.line++) {
 		const char *stop = line_end(at, end), *vertex = behind(at, stop, 'v'), *face = behind(at, stop, 'f');
@@ -97,7 +110,8 @@ bool mesh_clean_obj(char **clean, size_t *clean_size, const char *data, size_t s
 			break;
 	}
 	fclose(obj.out);
-	return !err_is(err);
+	struct err joined = { 0 };
+	return mesh_joins_end(&obj.joins, err_is(err) ? &joined : err) && !err_is(err);
 }
 
 bool mesh_kind_of(enum mesh_kind *kind, const char *data, size_t size, struct err *err)

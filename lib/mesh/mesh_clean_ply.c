@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "mesh/mesh_clean.h"
+#include "mesh/mesh_joins.h"
 #include "mesh/mesh_ply.h"
 
 enum { CORNERS_MAX = 255 };
@@ -163,10 +164,25 @@ static bool body(struct bytes *vertices, struct bytes *faces, int *made, struct 
 	for (long row = 0; row < ply->element[0].count; row++)
 		if (!take_vertex(vertices, ply, row, err))
 			return false;
-	for (long row = 0; row < ply->element[1].count; row++)
+	for (long row = 0; row < ply->element[1].count; row++) {
 		if (!take_face(faces, made, ply, row, err))
 			return false;
+		if (*made > limit)
+			return err_set(err, "%d triangles in its first %ld faces: must be <= %ld", *made, row + 1, limit);
+	}
 	return true;
+}
+
+/* Whether the triangles, as they were put, can be joined. */
+static bool joins_end(const struct bytes *faces, int made, long n_vertices, struct err *err)
+{
+	struct mesh_joins joins = mesh_joins_begin(n_vertices);
+	for (int i = 0; i < made; i++) {
+		int32_t corner[3];
+		memcpy(corner, faces->data + (size_t)i * (1 + sizeof corner) + 1, sizeof corner);
+		mesh_joins_add(&joins, corner);
+	}
+	return mesh_joins_end(&joins, err);
 }
 
 bool mesh_clean_ply(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err)
@@ -175,7 +191,8 @@ bool mesh_clean_ply(char **clean, size_t *clean_size, const char *data, size_t s
 	struct bytes vertices = { 0 }, faces = { 0 }, out = { 0 };
 	int made = 0;
 	*ply = (struct ply){ .at = data, .end = data + size, .format = -1 };
-	bool ok = ply_head(ply, err) && body(&vertices, &faces, &made, ply, limit, err);
+	bool ok = ply_head(ply, err) && body(&vertices, &faces, &made, ply, limit, err)
+	          && joins_end(&faces, made, ply->element[0].count, err);
 	if (ok) {
 		_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values go out as they lie in memory");
 		const char *colours = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
