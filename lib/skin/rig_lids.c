@@ -225,19 +225,24 @@ static bool window(struct fissure *f, const struct rig *rig, const struct rig_mo
 /* What is still open, smoothed along the fissure so that the margin stays a curve. */
 static double open_columns(float *open, const struct fissure *f, double seal_mm, double px_per_mm)
 {
-	int reach = (int)fmax(1.5 * px_per_mm, 1);
+	int reach = (int)fmax(2 * px_per_mm, 1);
 	double worst = 0;
+	float *most = mem_new((size_t)f->width + 1, sizeof *most);
+	for (int x = 0; x < f->width; x++) {
+		worst = fmax(worst, f->bottom[x] - f->top[x]);
+		for (int k = x - reach < 0 ? 0 : x - reach; k <= x + reach && k < f->width; k++)
+			most[k] = fmaxf(most[k], f->bottom[x] - f->top[x]);
+	}
 	for (int x = 0; x < f->width; x++) {
 		double sum = 0, total = 0;
 		for (int k = x - 2 * reach; k <= x + 2 * reach; k++) {
-			double w = exp(-0.5 * (k - x) * (k - x) / ((double)reach * reach));
-			double here = k < 0 || k >= f->width ? 0 : f->bottom[k] - f->top[k];
+			double w = exp(-0.5 * (k - x) * (k - x) / ((double)reach * reach)), here = k < 0 || k >= f->width ? 0 : most[k];
 			sum += w * (here > 0 ? here + seal_mm * px_per_mm : 0);
 			total += w;
 		}
 		open[x] = (float)(sum / total);
-		worst = fmax(worst, f->bottom[x] - f->top[x]);
 	}
+	free(most);
 	return worst;
 }
 
