@@ -9,13 +9,16 @@ struct grid {
 	int rings, spokes;
 	double first;
 };
-static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 40, 2 }, sliver = { 24, 80, 2 };
+static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 40, 2 }, sliver = { 24, 80, 2 }, finest = { 60, 200, 2 };
 
-/* The grid that misses no path. Light from the side or from behind reaches a sliver of the cornea along its edge. */
+/* The grid that misses no path. Light from the side or from behind reaches a sliver of the cornea along its edge; a P
+ * outside the limbus sees through a still narrower one. */
 static const struct grid *grid_for_all(const struct path *path)
 {
 	double u[3];
 	path_outward(u, path, path->P);
+	if (path->P[0] * path->P[0] + path->P[1] * path->P[1] > path->cornea->rim * path->cornea->rim)
+		return &finest;
 	return u[2] > -0.6 ? &sliver : &thorough;
 }
 
