@@ -61,6 +61,7 @@ bool fit_save(const struct fit *fit, const char *path, const char *made_by, cons
 		json_object_set_new(json, "theta_sigma_deg", json_number(fit->theta_sigma / deg));
 		json_object_set_new(json, "cam_from_eye", json_numbers(16, &fit->cam_from_eye[0][0]));
 		json_object_set_new(json, "coverage", json_number(fit->coverage));
+		json_object_set_new(json, "limbus_seen", json_numbers(FIT_SECTORS, fit->seen));
 		json_object_set_new(json, "rms_px", json_number(fit->rms_px));
 		json_object_set_new(json, "edge_sigma_px", json_number(fit->edge_sigma_px));
 		json_object_set_new(json, "limbus_aspect", json_number(fit->limbus_aspect));
@@ -116,6 +117,10 @@ static bool fit_read(struct fit *fit, const json_t *json, const char *path, stru
 		fit->ellipse_sigma[i] *= i == 4 ? deg : 1;
 	}
 	fit->has_pupil = json_is_object(pupil);
+	for (int i = 0; i < FIT_SECTORS; i++)
+		fit->seen[i] = 1;
+	if (json_object_get(json, "limbus_seen") && !json_get_array(fit->seen, FIT_SECTORS, json, "limbus_seen", path, err))
+		return false;
 	bool ok = ellipse_read(&fit->limbus, json_object_get(json, "ellipse"), path, err)
 	          && (!fit->has_pupil || ellipse_read(&fit->pupil, pupil, path, err))
 	          && json_get(&fit->theta, json, "theta_deg", path, err) && json_get(&fit->phi, json, "phi_deg", path, err)

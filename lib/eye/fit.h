@@ -5,6 +5,8 @@
 #include "eye/eye.h"
 #include "math/ellipse.h"
 
+enum { FIT_SECTORS = 72 };
+
 struct fit {
 	bool ok;                    // status "ok"
 	char reason[256];           // why not
@@ -14,6 +16,7 @@ struct fit {
 	double cam_from_eye[4][4];  // mm
 	double theta, phi, theta_sigma;
 	double coverage, rms_px;
+	double seen[FIT_SECTORS];   // share of the limbus in sight, in sectors about its centre from +x towards +y; 1 unknown
 	double edge_sigma_px;       // width of the limbal step in the photograph
 	struct camera camera;       // as used; CAMERA_NONE: weak perspective, a nominal camera 1000 mm away
 	int width, height;          // of the photograph, px

@@ -211,7 +211,7 @@ struct freckles freckles_find(const struct image *rgbw, double extent, const str
 	struct search s = { .size = size / step, .step = step };
 	size_t n = (size_t)s.size * (size_t)s.size;
 	s.mm = 2 * extent * step / size;
-	s.sheet = (struct sheet){ s.size, s.mm * s.size / 2, *pupil, limbus };
+	s.sheet = (struct sheet){ s.size, s.mm * s.size / 2, *pupil, limbus, 0 };
 	float *planes = mem_new(8 * n, sizeof *planes), *opacity = planes + 7 * n;
 	for (int c = 0; c < 3; c++)
 		s.log[c] = planes + (size_t)c * n;

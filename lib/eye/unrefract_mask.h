@@ -9,6 +9,7 @@ struct sheet {
 	double extent;        // of the planes, mm
 	struct circle pupil;
 	double limbus;        // mm
+	const double *open;   // [SHEET_ANGLES] how sure it is that no lid covers the iris there, 0..1; null: unknown
 };
 
 enum { SHEET_RINGS = 64, SHEET_ANGLES = 360 };
@@ -20,7 +21,7 @@ void sheet_point(double xy[2], const struct sheet *sheet, double t, double phi);
 struct rings {
 	float median[SHEET_RINGS], scale[SHEET_RINGS];
 };
-/* favour: the ring's left and right count more than top and bottom, which lids cover. min_scale: floor of scale. */
+/* favour: what no lid covers counts more: where the sheet does not know, left and right. min_scale: floor of scale. */
 struct rings rings_of(const float *plane, const float *weight, const struct sheet *sheet, bool favour,
                       float min_scale);
 /* Where a ring's spread is that of the pupil's or the limbus' blur, that of the other rings counts. */

@@ -44,7 +44,7 @@ static struct circle pupil_in_plane(const struct unrefract_view *view)
 /* Where no pupil was found: the radius at which the brightness of the rings rises most. */
 static struct circle pupil_from_rings(const float *lum, const float *seen, int size, double extent, double limbus)
 {
-	struct sheet disc = { size, extent, { 0, 0, 0 }, limbus };
+	struct sheet disc = { size, extent, { 0, 0, 0 }, limbus, 0 };
 	struct rings rings = rings_of(lum, seen, &disc, true, 0.1f);
 	int best = 0;
 	float rise = 0;
@@ -83,7 +83,22 @@ void unrefract_detail(struct unrefract_survey *s)
 	free(mean);
 }
 
-static void look(struct unrefract_view *view, const struct iris_map *map, double limbus,
+/* Where the limbus is in sight no lid covers the iris beside it. */
+static void open_angles(double open[SHEET_ANGLES], const struct fit *fit, const struct sheet *sheet, const struct eye *eye)
+{
+	for (int a = 0; a < SHEET_ANGLES; a++) {
+		double p[3], px[2];
+		sheet_point(p, sheet, 1, 2 * M_PI * (a + 0.5) / SHEET_ANGLES);
+		p[2] = eye_limbus_depth(eye);
+		open[a] = 0;
+		if (!fit_project(px, fit, p))
+			continue;
+		double turn = atan2(px[1] - fit->limbus.cy, px[0] - fit->limbus.cx) / (2 * M_PI);
+		open[a] = fit->seen[(int)((turn < 0 ? turn + 1 : turn) * FIT_SECTORS) % FIT_SECTORS];
+	}
+}
+
+static void look(struct unrefract_view *view, const struct iris_map *map, double limbus, const struct eye *eye,
                  const struct unrefract_conf *conf)
 {
 	struct unrefract_survey *s = &view->survey;
@@ -97,7 +112,9 @@ static void look(struct unrefract_view *view, const struct iris_map *map, double
 	}
 	if (!(view->pupil.r > 0))
 		view->pupil = pupil_from_rings(lum, seen, s->size, s->extent, limbus);
-	struct sheet sheet = { s->size, s->extent, view->pupil, limbus };
+	double open[SHEET_ANGLES];
+	struct sheet sheet = { s->size, s->extent, view->pupil, limbus, open };
+	open_angles(open, view->fit, &sheet, eye);
 	unrefract_mask(s, seen, &sheet, conf);
 	free(lum);
 	free(seen);
@@ -121,7 +138,7 @@ bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, co
 	struct crop crop = crop_new(photo, &map);
 	long sampled = crop_sample(s->rgb, &crop, &map, 0);
 	if (sampled)
-		look(view, &map, eye->limbus_radius, conf);
+		look(view, &map, eye->limbus_radius, eye, conf);
 	crop_free(&crop);
 	iris_map_free(&map);
 	view->used = sampled > 0;

@@ -71,6 +71,21 @@ static bool pose_of(struct pose *pose, const struct eye_work *w, const struct li
 	return true;
 }
 
+/* Share of each sector's edge points that are in sight. */
+static void seen_of(double seen[FIT_SECTORS], const struct limbus_record *r)
+{
+	double all[FIT_SECTORS] = { 0 };
+	memset(seen, 0, FIT_SECTORS * sizeof *seen);
+	for (int i = 0; i < ARCS; i++) {
+		double phi = atan2(r->point[i][1] - r->view.limbus.cy, r->point[i][0] - r->view.limbus.cx) / (2 * M_PI);
+		int at = (int)((phi < 0 ? phi + 1 : phi) * FIT_SECTORS) % FIT_SECTORS;
+		all[at]++;
+		seen[at] += r->state[i] != ARC_HIDDEN;
+	}
+	for (int i = 0; i < FIT_SECTORS; i++)
+		seen[i] = all[i] > 0 ? seen[i] / all[i] : 0;
+}
+
 static struct fit fit_of(const struct limbus_record *r, const struct pose *pose)
 {
 	struct fit fit = { .ok = r->ok, .width = r->width, .height = r->height };
@@ -86,6 +101,7 @@ static struct fit fit_of(const struct limbus_record *r, const struct pose *pose)
 	fit.phi = pose->phi;
 	fit.theta_sigma = pose->theta_sigma;
 	fit.coverage = r->coverage;
+	seen_of(fit.seen, r);
 	fit.rms_px = r->rms;
 	fit.edge_sigma_px = r->blur;
 	fit.camera = r->view.camera;
