@@ -68,7 +68,7 @@ struct rings rings_of(const float *plane, const float *weight, const struct shee
 			sheet_point(p, sheet, (ring + 0.5) / SHEET_RINGS, phi);
 			double to = sheet->size / (2 * sheet->extent);
 			double x = (p[0] + sheet->extent) * to, y = (p[1] + sheet->extent) * to;
-			float w = plane_sample(weight, sheet->size, sheet->size, x, y) * (float)(favour ? 0.2 + (sheet->open ? sheet->open[a] : c * c) : 1);
+			float w = plane_sample(weight, sheet->size, sheet->size, x, y) * (float)(favour ? 0.2 + (sheet->open ? 0.5 * c * c + sheet->open[a] : c * c) : 1);
 			if (w < 0.1f)
 				continue;
 			v[n++] = (struct weighted){ plane_sample(plane, sheet->size, sheet->size, x, y), w };

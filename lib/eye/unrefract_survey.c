@@ -83,9 +83,17 @@ void unrefract_detail(struct unrefract_survey *s)
 	free(mean);
 }
 
-/* Where the limbus is in sight no lid covers the iris beside it. */
-static void open_angles(double open[SHEET_ANGLES], const struct fit *fit, const struct sheet *sheet, const struct eye *eye)
+enum { MUCH_HIDDEN = 2 * FIT_SECTORS / 5 };
+
+/* Where the limbus is in sight no lid covers the iris beside it. False: most of it is in sight, and the ring's left and
+ * right say more; or nobody knows. */
+static bool open_angles(double open[SHEET_ANGLES], const struct fit *fit, const struct sheet *sheet, const struct eye *eye)
 {
+	int hidden = 0;
+	for (int i = 0; i < FIT_SECTORS; i++)
+		hidden += fit->seen[i] < 0.5;
+	if (hidden < MUCH_HIDDEN || hidden == FIT_SECTORS)
+		return false;
 	for (int a = 0; a < SHEET_ANGLES; a++) {
 		double p[3], px[2];
 		sheet_point(p, sheet, 1, 2 * M_PI * (a + 0.5) / SHEET_ANGLES);
@@ -96,6 +104,7 @@ static void open_angles(double open[SHEET_ANGLES], const struct fit *fit, const 
 		double turn = atan2(px[1] - fit->limbus.cy, px[0] - fit->limbus.cx) / (2 * M_PI);
 		open[a] = fit->seen[(int)((turn < 0 ? turn + 1 : turn) * FIT_SECTORS) % FIT_SECTORS];
 	}
+	return true;
 }
 
 static void look(struct unrefract_view *view, const struct iris_map *map, double limbus, const struct eye *eye,
@@ -113,8 +122,9 @@ static void look(struct unrefract_view *view, const struct iris_map *map, double
 	if (!(view->pupil.r > 0))
 		view->pupil = pupil_from_rings(lum, seen, s->size, s->extent, limbus);
 	double open[SHEET_ANGLES];
-	struct sheet sheet = { s->size, s->extent, view->pupil, limbus, open };
-	open_angles(open, view->fit, &sheet, eye);
+	struct sheet sheet = { s->size, s->extent, view->pupil, limbus, 0 };
+	if (open_angles(open, view->fit, &sheet, eye))
+		sheet.open = open;
 	unrefract_mask(s, seen, &sheet, conf);
 	free(lum);
 	free(seen);
