@@ -1,9 +1,11 @@
 # Tests.
 #   make check            everything; ends with one line: N passed, N failed, N skipped
-#   make stress           long runs against random and hostile cases
+#   make stress           long runs against random and hostile cases; CASES=1e8 SEED=1 of light paths
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30
 TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c))
 SECONDS_EACH ?= 30
+CASES ?= 1e8
+SEED ?= 1
 
 .PHONY: tests fuzz fuzzers
 tests: $(TESTS) $(TOOLS)
@@ -17,7 +19,8 @@ check: setup build tests
 tests-sanitised: $(TESTS)
 
 stress: build $(STRESSES)
-	@bad=0; for s in $(STRESSES); do echo "== $$s"; $$s || bad=1; done; exit $$bad
+	@bad=0; for s in $(STRESSES); do echo "== $$s"; \
+		case $$s in *_lightpath) $$s $(CASES) $(SEED) ;; *) $$s ;; esac || bad=1; done; exit $$bad
 
 # Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
 FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w

@@ -83,7 +83,7 @@ enum lightpath_status path_shortest(double K[3], const struct path *path)
 }
 
 /* Whether the shortest path, which is none, can stand beside a real one that is no minimum, or another: where the light has
- * passed a focus. */
+ * passed a focus. Beyond the rim, that takes light from the side: none was ever seen at less than 60 degrees, far light. */
 static bool may_hide(enum lightpath_status shortest, const struct path *path)
 {
 	if (shortest == LIGHTPATH_OK || !path_is_sound(path))
@@ -94,7 +94,7 @@ static bool may_hide(enum lightpath_status shortest, const struct path *path)
 	path_outward(u, path, path->P);
 	if (u[2] < 0 && path->P[2] < lightpath_clear_depth(path->cornea))
 		return false;
-	return shortest == LIGHTPATH_GRAZING || u[2] > -0.4;
+	return shortest == LIGHTPATH_GRAZING || u[2] > -0.7;
 }
 
 static enum lightpath_status solve(double K[3], const struct path *path)

@@ -4,58 +4,120 @@
 #include "optics/lightpath.h"
 #include "optics/lightpath_path.h"
 
-/* Starts of a search: a grid over the lit cornea, and how long a first step may be, over the edge's radius. */
-struct grid {
-	int rings, spokes;
-	double first;
-};
-static const struct grid quick = { 8, 20, 0.3 }, thorough = { 12, 40, 2 }, sliver = { 24, 80, 2 }, finest = { 60, 200, 2 };
+/* All paths are the zeros of the miss (path_miss) over the lit cornea. The cornea is cut into squares of the chart; a square
+ * is dropped when no zero can be in it, polished when it holds one at most, and cut in four otherwise. Both are known
+ * from the miss and its Jacobian at the centre, and from how much that can change up to the corners: no path is
+ * overlooked, however thin the sliver of the cornea it goes through or however close to another it is. */
 
-/* The grid that misses no path. Light from the side or from behind reaches a sliver of the cornea along its edge; a P
- * outside the limbus sees through a still narrower one. */
-static const struct grid *grid_for_all(const struct path *path)
+/* Squares are cut down to this half side, over the edge's: two paths closer than that have met in a focus. And so many
+ * are looked at: only where a whole ring of paths meets in P are there more. */
+static const double SMALLEST = 1e-8;
+enum { SQUARES_MAX = 20000, LEVELS_MAX = 32 };
+
+struct square {
+	double x, y, half;  // in the chart
+};
+
+/* What bounds the change of the Jacobian. */
+struct bound {
+	double rho;      // radius of the edge in the chart
+	double kappa;    // largest curvature of the surface, 1/mm
+	double stretch;  // length of the chart's longest tangent
+	double bend;     // change of the curvature along the surface, over kappa²
+};
+
+static struct bound bound_of(const struct cornea *c)
 {
-	double u[3];
-	path_outward(u, path, path->P);
-	if (path->P[0] * path->P[0] + path->P[1] * path->P[1] > path->cornea->rim * path->cornea->rim)
-		return &finest;
-	return u[2] > -0.6 ? &sliver : &thorough;
+	double edge = cornea_edge(c), R = c->R, p = c->p, g = sqrt(fmax(R * R + (1 - p) * edge * edge, 0));
+	double rho = edge / (2 * R - p * cornea_depth(c, edge)), tau = 2 / (1 + p * rho * rho);
+	return (struct bound){ .rho = rho * (1 + 1e-12), .kappa = fmax(fmax(1 / R, 1 / g), R * R / (g * g * g)),
+		               .stretch = sqrt(fmax(1, 1 + rho * rho * tau * (tau * (1 + p * p * rho * rho) - 2 * p))),
+		               .bend = 3 * fabs(1 - p) };
 }
 
-static double cos_incidence(const struct path *path, const double K[3])
+static double cos_incidence(double *light, const struct path *path, const double K[3])
 {
 	double u[3], N[3];
-	path_outward(u, path, K);
+	*light = path_outward(u, path, K);
 	cornea_normal(N, path->cornea, K);
 	return vec_dot(u, N);
 }
 
-/* One Newton step towards a stationary point of any kind; its length, mm. */
-static double step_to(double step[2], const struct path *path, const struct chart *at)
+/* How the law of refraction turns with the surface: s' = κ (1 − bend). */
+static double law(double cos_i, double n)
 {
-	double g[2], H[3];
-	path_derivatives(g, H, path, at);
-	double det = H[0] * H[2] - H[1] * H[1];
-	step[0] = (H[1] * g[1] - H[2] * g[0]) / det;
-	step[1] = (H[1] * g[0] - H[0] * g[1]) / det;
-	return sqrt(step[0] * step[0] + step[1] * step[1]);
+	return cos_i / sqrt(n * n - 1 + cos_i * cos_i + 1e-300);
 }
 
-/* Newton's steps from a start of the grid. False when they leave the lit cornea, or begin with a step that leads out
- * of the start's surroundings: another start is nearer then. */
-static bool settle(struct chart *at, const struct path *path, double edge, double first)
+/* Most that the Jacobian can change within `radius` mm of K; half of it where it grows evenly. With s the unit direction
+ * inside, τ its length to P, o = 1 / distance of the light, k = κ + o: |s'| <= k, and s'' is k² and what Snell's law
+ * adds, suddenly at grazing incidence for n near 1. False when no point within is lit. */
+static bool change(double *least, double *most, const struct path *path, const struct bound *b, const double K[3], double radius)
 {
-	for (int i = 0; i < 20; i++) {
-		double step[2], size = step_to(step, path, at), longest = 0.1 * edge;
-		if (!(size < (i ? 1e3 : first) * edge))
+	double v[3], n = path->cornea->n, light, cos_i = cos_incidence(&light, path, K);
+	double o = light > 0 ? light / fmax(1 - light * radius, 1e-3) : 0, k = b->kappa + o, reach = k * radius;
+	if (cos_i + reach < 0)
+		return false;
+	vec_add(v, K, -1, path->P);
+	double tau = vec_norm(v) + radius, at = law(cos_i, n), low = law(fmax(cos_i - reach, fmin(cos_i, 0)), n);
+	double high = law(fmin(cos_i + reach, 1), n), square = b->stretch * b->stretch;
+	double even = square * radius * (b->kappa + 2 * k + tau * (k * k + b->bend * b->kappa * b->kappa + o * o));
+	double sudden = square * tau * k * fmax(at - low, high - at);
+	*least = 0.5 * even + sudden;
+	*most = even + sudden;
+	return true;
+}
+
+enum verdict { NONE, AT_MOST_ONE, MANY };
+
+/* Singular values of J and the miss along its left singular vectors. */
+static void across(double sigma[2], double along[2], const double J[2][2], const double miss[2])
+{
+	double A = J[0][0] * J[0][0] + J[0][1] * J[0][1], C = J[1][0] * J[1][0] + J[1][1] * J[1][1];
+	double B = J[0][0] * J[1][0] + J[0][1] * J[1][1], diff = 0.5 * (A - C), root = sqrt(diff * diff + B * B);
+	double e[2] = { diff >= 0 ? diff + root : B, diff >= 0 ? B : root - diff }, length = hypot(e[0], e[1]);
+	e[0] = length > 0 ? e[0] / length : 1;
+	e[1] = length > 0 ? e[1] / length : 0;
+	sigma[0] = sqrt(0.5 * (A + C) + root);
+	sigma[1] = sigma[0] > 0 ? fabs(J[0][0] * J[1][1] - J[0][1] * J[1][0]) / sigma[0] : 0;
+	along[0] = fabs(e[0] * miss[0] + e[1] * miss[1]);
+	along[1] = fabs(e[0] * miss[1] - e[1] * miss[0]);
+}
+
+static enum verdict look(struct chart *at, double *radius, const struct path *path, const struct bound *b, const struct square *s)
+{
+	double miss[2], J[2][2], sigma[2], along[2], least, most;
+	if (hypot(s->x, s->y) - M_SQRT2 * s->half > b->rho)
+		return NONE;
+	*at = chart_at(path->cornea, s->x, s->y);
+	*radius = M_SQRT2 * s->half * path->cornea->R * at->tau;
+	if (!change(&least, &most, path, b, at->K, *radius * b->stretch))
+		return NONE;
+	path_miss(miss, J, path, at);
+	across(sigma, along, J, miss);
+	for (int i = 0; i < 2; i++)
+		if (along[i] > (sigma[i] + least) * *radius)
+			return NONE;
+	return most < 0.5 * sigma[1] ? AT_MOST_ONE : MANY;
+}
+
+/* Newton's steps to the zero of the miss. False when they do not end. */
+static bool settle(struct chart *at, const struct path *path, double longest)
+{
+	for (int i = 0; i < 30; i++) {
+		double r[2], J[2][2], step[2];
+		path_miss(r, J, path, at);
+		double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
+		step[0] = (J[0][1] * r[1] - J[1][1] * r[0]) / det;
+		step[1] = (J[1][0] * r[0] - J[0][0] * r[1]) / det;
+		double size = hypot(step[0], step[1]);
+		if (!isfinite(size))
 			return false;
 		for (int k = 0; k < 2 && size > longest; k++)
 			step[k] *= longest / size;
 		*at = chart_moved(path->cornea, at, step);
 		if (size < 1e-9)
 			return true;
-		if (at->K[0] * at->K[0] + at->K[1] * at->K[1] > 1.3 * edge * edge || cos_incidence(path, at->K) < -0.2)
-			return false;
 	}
 	return false;
 }
@@ -82,41 +144,37 @@ static int add(double K[][3], int n, int max, const struct path *path, const dou
 	return last + 1;
 }
 
-/* From one start to a path that counts. */
-static int try(double K[][3], int n, int max, const struct path *path, struct chart at, double edge, double first)
+/* Adds what Newton's steps from the centre of a square come to, where it is a path. False when they come to nothing. */
+static bool polish(double K[][3], int *n, int max, const struct path *path, struct chart at, double radius)
 {
 	const struct cornea *c = path->cornea;
-	if (!settle(&at, path, edge, first) || cos_incidence(path, at.K) < 0)
-		return n;
+	double light;
+	if (!settle(&at, path, 2 * radius))
+		return false;
 	path_polish(&at, path);
 	bool inside = at.K[0] * at.K[0] + at.K[1] * at.K[1] <= c->rim * c->rim && c->p * at.K[2] <= c->R;
-	return inside ? add(K, n, max, path, at.K) : n;
-}
-
-static int search(double K[][3], int max, const struct path *path, const struct grid *grid)
-{
-	const struct cornea *c = path->cornea;
-	double edge = cornea_edge(c), u[3];
-	int n = 0;
-	// Above P, where it lies close to the surface: a grid would need to be fine there.
-	path_outward(u, path, path->P);
-	for (int i = 0; i <= 4; i++)
-		n = try(K, n, max, path, path_leave(path, (double[]){ u[0], u[1], u[2] - 0.5 * i }), edge, 1);
-	for (int ring = 0; ring < grid->rings; ring++) {
-		for (int spoke = 0; spoke < grid->spokes; spoke++) {
-			double r = edge * (ring + 1) / grid->rings, phi = 2 * M_PI * (spoke + 0.5 * (ring % 2)) / grid->spokes;
-			double start[3] = { r * cos(phi), r * sin(phi), cornea_depth(c, r) };
-			if (cos_incidence(path, start) > -0.02)
-				n = try(K, n, max, path, chart_of(c, start), edge, grid->first);
-		}
-	}
-	return n;
+	if (inside && cos_incidence(&light, path, at.K) >= 0)
+		*n = add(K, *n, max, path, at.K);
+	return true;
 }
 
 int path_search(double K[][3], int max, const struct path *path)
 {
-	int n = search(K, max, path, &quick);
-	return n ? n : search(K, max, path, grid_for_all(path));
+	struct bound bound = bound_of(path->cornea);
+	struct square todo[4 * LEVELS_MAX] = { { 0, 0, bound.rho } };
+	int n = 0, left = 1;
+	for (int looked = 0; left && looked < SQUARES_MAX; looked++) {
+		struct square s = todo[--left];
+		struct chart at;
+		double radius, half = 0.5 * s.half;
+		enum verdict verdict = look(&at, &radius, path, &bound, &s);
+		bool smallest = s.half < SMALLEST * bound.rho;
+		if (verdict == NONE || ((verdict == AT_MOST_ONE || smallest) && (polish(K, &n, max, path, at, radius) || smallest)))
+			continue;
+		for (int k = 0; k < 4; k++)
+			todo[left++] = (struct square){ s.x + (k & 1 ? half : -half), s.y + (k & 2 ? half : -half), half };
+	}
+	return n;
 }
 
 double lightpath_clear_depth(const struct cornea *cornea)
@@ -136,5 +194,5 @@ int lightpath_all(double K[][3], int max, const struct cornea *cornea, const dou
                   const double w[3])
 {
 	struct path path = { cornea, P, C, C ? 0 : w };
-	return path_is_sound(&path) ? search(K, max, &path, grid_for_all(&path)) : 0;
+	return path_is_sound(&path) ? path_search(K, max, &path) : 0;
 }

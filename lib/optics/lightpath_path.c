@@ -116,27 +116,26 @@ static void turn(double dq[3], const struct path *path, const struct chart *at, 
 		dq[i] = (du[i] + df * G[i] + f * dG[i]) / c->n;
 }
 
-void path_mismatch(double r[2], double J[2][2], const struct path *path, const struct chart *at)
+void path_miss(double miss[2], double J[2][2], const struct path *path, const struct chart *at)
 {
 	const struct cornea *c = path->cornea;
 	double u[3], q[3], v[3], out = path_outward(u, path, at->K), m[3] = { -c->p * at->x, -c->p * at->y, 1 };
 	path_inside(q, path, at, u);
 	vec_add(v, at->K, -1, path->P);
-	double d = vec_norm(v);
-	vec_unit(v, v);
-	// Two directions across v: the first from the axis it leans on least.
-	int least = fabs(v[0]) < fabs(v[1]) ? 0 : 1;
-	double e[3] = { least == 0, least == 1, 0 }, B[2][3];
-	vec_cross(B[0], v, e);
+	// Two directions across the ray: the first from the axis it leans on least.
+	int least = fabs(q[0]) < fabs(q[1]) ? 0 : 1;
+	double e[3] = { least == 0, least == 1, 0 }, B[2][3], t = vec_dot(v, q) / c->n;
+	vec_unit(q, q);
+	vec_cross(B[0], q, e);
 	vec_unit(B[0], B[0]);
-	vec_cross(B[1], v, B[0]);
+	vec_cross(B[1], q, B[0]);
 	for (int k = 0; k < 2; k++) {
 		double along_m = at->tau * (k ? at->y : at->x), dq[3];
 		double T[3] = { (k == 0) + along_m * m[0], (k == 1) + along_m * m[1], along_m };
 		turn(dq, path, at, u, out, T);
-		r[k] = -vec_dot(B[k], q) / c->n;
+		miss[k] = vec_dot(B[k], v);
 		for (int i = 0; i < 2; i++)
-			J[i][k] = vec_dot(B[i], T) / d - vec_dot(B[i], dq);
+			J[i][k] = vec_dot(B[i], T) - t * vec_dot(B[i], dq);
 	}
 }
 
@@ -144,7 +143,7 @@ void path_polish(struct chart *at, const struct path *path)
 {
 	for (int i = 0; i < 2; i++) {
 		double r[2], J[2][2];
-		path_mismatch(r, J, path, at);
+		path_miss(r, J, path, at);
 		double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
 		double step[2] = { (J[0][1] * r[1] - J[1][1] * r[0]) / det, (J[1][0] * r[0] - J[0][0] * r[1]) / det };
 		if (!(fabs(step[0]) + fabs(step[1]) < 1e-5))

@@ -47,11 +47,12 @@ void path_derivatives(double g[2], double H[3], const struct path *path, const s
  * incidence. Length n. */
 void path_inside(double q[3], const struct path *path, const struct chart *at, const double u[3]);
 
-/* The mismatch between that direction and P's own, in radians along two directions across it, and its Jacobian over
- * the tangents (1/mm): Snell's law in a form that keeps its digits where n -> 1 meets grazing incidence. */
-void path_mismatch(double r[2], double J[2][2], const struct path *path, const struct chart *at);
+/* How far the ray that K refracts passes by P, mm along two directions across it, and the Jacobian over the tangents:
+ * Snell's law in a form that keeps its digits where n -> 1 meets grazing incidence, and is smooth where P lies close to
+ * the surface. */
+void path_miss(double miss[2], double J[2][2], const struct path *path, const struct chart *at);
 
-/* At most two Newton steps on the mismatch, from a K that is right but for rounding. */
+/* At most two Newton steps on the miss, from a K that is right but for rounding. */
 void path_polish(struct chart *at, const struct path *path);
 
 /* P inside the surface, C outside, all of them numbers. */

@@ -1,6 +1,8 @@
-/* The light path in 10^8 random cases whose K is known (light_case.h): no failure, no NaN, no wrong branch.
+/* The light path in 10^8 random cases whose K is known (light_case.h): no failure, no NaN, no wrong branch; one by one,
+ * and by the batches in double and in float.
  *     stress_lightpath [cases [seed [family]]]
- * One line for each family; exit 1 when a case fails, with all that is needed to run it again.
+ * One line for each family; exit 1 when a case fails, with all that is needed to run it again. Runs of other seeds add up:
+ * their cases are others.
  */
 #include <math.h>
 #include <stdio.h>
@@ -8,6 +10,7 @@
 
 #include "base/mem.h"
 #include "optics/lightpath.h"
+#include "optics/lightpath_path.h"
 #include "tests/lib/light_case.h"
 
 static const struct family {
@@ -23,11 +26,15 @@ static const struct family {
 	{ "any cornea, light from anywhere", { true, { 2.5, 5 }, 6, 135, { 0, 89.9 } }, false },
 };
 
+enum solver { ONE, DOUBLE, FLOAT, SOLVERS };
+static const char *const solver_names[] = { "lightpath_solve", "lightpath_batch_double", "lightpath_batch" };
+
 struct tally {
-	long n, wrong, other;
-	double worst;      // mm, over cases whose K is good to 1e-12
+	long n, wrong[SOLVERS], other;
+	double worst[SOLVERS];  // mm; of those in double over cases whose K is good to 1e-12
 	struct light_case first;
 	int first_point;
+	enum solver first_solver;
 };
 
 /* The inputs are rounded to double: a K that moves 100 mm for 1 mm cannot be good to 1e-12. */
@@ -37,35 +44,113 @@ static double tolerance_of(const struct light_case *c, int point)
 	return fmax(1e-12, 4e-15 * spread * (1 + spread * 1e-6));
 }
 
+static double gap(const double a[3], const double b[3])
+{
+	return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+static enum lightpath_status in_double(double K[3], const struct light_case *c, int point)
+{
+	const double *P = c->P, *w = c->w;
+	unsigned char status;
+	if (point)
+		lightpath_batch_point_double(1, P, P + 1, P + 2, c->C, K, K + 1, K + 2, &status, &c->cornea, 6);
+	else
+		lightpath_batch_double(1, P, P + 1, P + 2, w, w + 1, w + 2, K, K + 1, K + 2, &status, &c->cornea, 6);
+	return status;
+}
+
+/* The case in float, and *rounded: the same problem in double. */
+static enum lightpath_status in_float(double K[3], struct light_case *rounded, const struct light_case *c, int point)
+{
+	float P[3], w[3], k[3];
+	unsigned char status;
+	*rounded = *c;
+	for (int i = 0; i < 3; i++) {
+		rounded->P[i] = P[i] = (float)c->P[i];
+		rounded->w[i] = w[i] = (float)c->w[i];
+	}
+	if (point)
+		lightpath_batch_point(1, P, P + 1, P + 2, c->C, k, k + 1, k + 2, &status, &c->cornea, 4);
+	else
+		lightpath_batch(1, P, P + 1, P + 2, w, w + 1, w + 2, k, k + 1, k + 2, &status, &c->cornea, 4);
+	for (int i = 0; i < 3; i++)
+		K[i] = (double)k[i];
+	return status;
+}
+
+static enum lightpath_status shortest(double K[3], const struct light_case *c, int point)
+{
+	return path_shortest(K, &(struct path){ &c->cornea, c->P, point ? c->C : 0, point ? 0 : c->w });
+}
+
+/* Whether the status hangs on the last digit: at the rim, or at grazing incidence. */
+static bool on_the_edge(const struct light_case *c, int point, const double K[3], double digit)
+{
+	double u[3], N[3];
+	path_outward(u, &(struct path){ &c->cornea, c->P, point ? c->C : 0, point ? 0 : c->w }, K);
+	cornea_normal(N, &c->cornea, K);
+	return fabs(hypot(K[0], K[1]) - cornea_edge(&c->cornea)) < digit || fabs(u[0] * N[0] + u[1] * N[1] + u[2] * N[2]) < digit;
+}
+
+/* Whether a solver does right by a case. *K: where it says. */
+static bool is_right(struct tally *tally, enum solver solver, const struct light_case *c, int point, bool one_path)
+{
+	double tolerance = tolerance_of(c, point), K[3], want[3];
+	struct light_case rounded;
+	if (solver == FLOAT) {
+		enum lightpath_status got = in_float(K, &rounded, c, point), status = shortest(want, &rounded, point);
+		bool same = got == status || on_the_edge(&rounded, point, want, 1e-4);
+		if (status != LIGHTPATH_OK || got != LIGHTPATH_OK)
+			return same && isfinite(K[0] + K[1] + K[2]);
+		tally->worst[FLOAT] = fmax(tally->worst[FLOAT], gap(K, want));
+		return gap(K, want) <= 2e-5;
+	}
+	enum lightpath_status status;
+	if (solver == ONE)
+		status = point ? lightpath_solve(K, &c->cornea, c->P, c->C) : lightpath_solve_directional(K, &c->cornea, c->P, c->w);
+	else if ((status = in_double(K, c, point)) != LIGHTPATH_OK)
+		return (status == shortest(want, c, point) || on_the_edge(c, point, want, 1e-9)) && isfinite(K[0] + K[1] + K[2]);
+	enum light_verdict verdict = status == LIGHTPATH_OK ? light_case_judge(c, point, K, tolerance) : LIGHT_WRONG;
+	tally->other += verdict == LIGHT_OTHER_PATH && solver == ONE;
+	if (verdict == LIGHT_RIGHT && tolerance == 1e-12)
+		tally->worst[solver] = fmax(tally->worst[solver], gap(K, c->K));
+	return verdict == LIGHT_RIGHT || (verdict == LIGHT_OTHER_PATH && !one_path);
+}
+
+static long wrong_of(const struct tally *tally)
+{
+	return tally->wrong[ONE] + tally->wrong[DOUBLE] + tally->wrong[FLOAT];
+}
+
 static void one_case(struct tally *tally, const struct family *family, struct rng *rng)
 {
 	struct light_case c;
 	light_case_draw(&c, rng, &family->range);
 	int point = rng_uniform(rng) < 0.5;
-	double tolerance = tolerance_of(&c, point), K[3];
-	enum lightpath_status status = point ? lightpath_solve(K, &c.cornea, c.P, c.C)
-	                                     : lightpath_solve_directional(K, &c.cornea, c.P, c.w);
-	enum light_verdict verdict = status == LIGHTPATH_OK ? light_case_judge(&c, point, K, tolerance) : LIGHT_WRONG;
 	tally->n++;
-	tally->other += verdict == LIGHT_OTHER_PATH;
-	if (verdict == LIGHT_RIGHT && tolerance == 1e-12)
-		tally->worst = fmax(tally->worst, hypot(hypot(K[0] - c.K[0], K[1] - c.K[1]), K[2] - c.K[2]));
-	if (verdict == LIGHT_RIGHT || (verdict == LIGHT_OTHER_PATH && !family->one_path))
-		return;
-	if (!tally->wrong++) {
-		tally->first = c;
-		tally->first_point = point;
+	for (enum solver i = ONE; i < SOLVERS; i++) {
+		if (is_right(tally, i, &c, point, family->one_path))
+			continue;
+		if (!wrong_of(tally)) {
+			tally->first = c;
+			tally->first_point = point;
+			tally->first_solver = i;
+		}
+		tally->wrong[i]++;
 	}
 }
 
-static void show(const struct light_case *c, int point)
+static void show(const struct tally *tally)
 {
+	const struct light_case *c = &tally->first;
+	int point = tally->first_point;
 	double K[3];
 	int status = point ? lightpath_solve(K, &c->cornea, c->P, c->C)
 	                   : lightpath_solve_directional(K, &c->cornea, c->P, c->w);
-	printf("  first: R %.17g p %.17g n %.17g rim %.17g\n  P %.17g %.17g %.17g\n  %s %.17g %.17g %.17g\n  K %.17g %.17g %.17g"
+	printf("  first: %s: R %.17g p %.17g n %.17g rim %.17g\n  P %.17g %.17g %.17g\n  %s %.17g %.17g %.17g\n  K %.17g %.17g %.17g"
 	       "\n  found %.17g %.17g %.17g, status %d, Snell off by %.1e; spread %g, cos i %g\n",
-	       c->cornea.R, c->cornea.p, c->cornea.n, c->cornea.rim, c->P[0], c->P[1], c->P[2], point ? "C" : "w",
+	       solver_names[tally->first_solver], c->cornea.R, c->cornea.p, c->cornea.n, c->cornea.rim, c->P[0], c->P[1], c->P[2], point ? "C" : "w",
 	       point ? c->C[0] : c->w[0], point ? c->C[1] : c->w[1], point ? c->C[2] : c->w[2], c->K[0], c->K[1], c->K[2],
 	       K[0], K[1], K[2], status,
 	       light_case_snell(&c->cornea, c->P, point ? c->C : 0, c->w, K), c->spread[point], c->cos_i);
@@ -85,22 +170,26 @@ static long run(const struct family *family, long cases, uint64_t seed)
 			one_case(&tally, family, &rng);
 #pragma omp critical
 		{
-			if (tally.wrong && !all.wrong) {
+			if (wrong_of(&tally) && !wrong_of(&all)) {
 				all.first = tally.first;
 				all.first_point = tally.first_point;
+				all.first_solver = tally.first_solver;
 			}
 			all.n += tally.n;
-			all.wrong += tally.wrong;
 			all.other += tally.other;
-			all.worst = fmax(all.worst, tally.worst);
+			for (int k = 0; k < SOLVERS; k++) {
+				all.wrong[k] += tally.wrong[k];
+				all.worst[k] = fmax(all.worst[k], tally.worst[k]);
+			}
 		}
 	}
-	printf("%-50s %11ld cases, wrong %ld, several paths %ld, K worst %.1e mm\n", family->name, all.n, all.wrong, all.other,
-	       all.worst);
-	if (all.wrong)
-		show(&all.first, all.first_point);
+	printf("%-48s %10ld cases, several paths %ld; wrong %ld, double %ld, float %ld; K worst %.1e, %.1e, %.1e mm\n", family->name,
+	       all.n, all.other, all.wrong[ONE], all.wrong[DOUBLE], all.wrong[FLOAT], all.worst[ONE], all.worst[DOUBLE],
+	       all.worst[FLOAT]);
+	if (wrong_of(&all))
+		show(&all);
 	fflush(stdout);
-	return all.wrong;
+	return wrong_of(&all);
 }
 
 int main(int argc, char **argv)
