@@ -8,7 +8,7 @@
 #include "math/rng.h"
 
 enum { ACROSS = 97, UP = 49, RINGS = 24, SEGMENTS = 32, POINTS = 12 };
-static const double half[2] = { 62, 28 }, pupil_distance = 62, fissure[2] = { 13, 4.5 }, distance = 600, focal = 5000;
+static const double half[2] = { 62, 28 }, pupil_distance = 62, fissure[2] = { 10, 4.5 }, distance = 600, focal = 5000;
 
 static double lift(double x, double y)
 {

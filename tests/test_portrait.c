@@ -1,0 +1,160 @@
+/* Portraits of a made face: light in closed form, no holes, eyes where they are, the same bytes on any number of threads. */
+#include "math/rng.h"
+#include "skin/drive.h"
+#include "skin/portrait_impl.h"
+#include "tests/lib/face.h"
+#include "tests/lib/unit.h"
+
+#include <omp.h>
+
+struct made {
+	struct face face;
+	struct rig rig;
+	struct scene eye;
+	struct envmap env;  // the same radiance from everywhere: 1
+};
+
+static int setup(void **state)
+{
+	struct made *m = calloc(1, sizeof *m);
+	struct rig_motion motion;
+	struct rig_report report;
+	struct err err = { 0 };
+	struct rig_conf conf = face_conf();
+	face_make(&m->face, false);
+	conf.map_step = 4;
+	rig_motion_of_model(&motion, &m->face.model);
+	struct rig_character c = face_character(&m->face);
+	bool ok = rig_make(&m->rig, &report, &motion, &c, &conf, &err);
+	rig_motion_free(&motion);
+	struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 };
+	struct scene_conf scene = { .map_size = 256, .search = 2, .steps = 4, .bands = 3, .detail = 1, .limbus_width = 0.5,
+		                        .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .vein_density = 0, .veins_px = 128, .seed = 1 };
+	scene_plain(&m->eye, &eye, &scene, (double[]){ 0.2, 0.2, 0.2 }, 1);
+	m->env = envmap_room(64, (double[]){ 1, 1, 1 }, (double[]){ 1, 1, 1 }, 1, 0, 0);
+	struct scene_view view = scene_view_turned(&m->eye, 0, 0, 27, 64);
+	struct scene_lighting light = scene_lighting(&m->env, 0, 4);
+	scene_fit_colour(&m->eye, &view, &light);
+	*state = m;
+	return ok ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+	struct made *m = *state;
+	scene_free(&m->eye);
+	envmap_free(&m->env);
+	rig_free(&m->rig);
+	face_free(&m->face);
+	free(m);
+	return 0;
+}
+
+static struct portrait *portrait_of(const struct made *m, double scatter)
+{
+	const struct scene *eyes[2] = { &m->eye, &m->eye };
+	struct portrait_conf conf = { .lights = 64, .subdivide = 1, .samples = 2, .eye_samples = 1, .skin_rgb = { 0.5, 0.4, 0.3 }, .scatter_mm = scatter };
+	return portrait_new(&m->rig, eyes, &m->env, &conf);
+}
+
+/* Light from everywhere gives an open surface irradiance 1 whichever way it faces; median cut stands for it by 64
+ * directions of equal energy. */
+static void even_light_is_one(void **state)
+{
+	struct made *m = *state;
+	struct portrait *p = portrait_of(m, 0.01);
+	double c[12];
+	drive_look(c, &m->rig, 0, 0, 1);
+	portrait_pose(p, c);
+	struct portrait_view view = portrait_front(&m->rig, -1, 130, 0, 0, 130, 60);
+	portrait_light(p, &view, true);
+	int n = 0;
+	for (int i = 0; i < m->rig.n; i++)
+		if (p->mesh.open[i] > 0.999f && m->rig.part[i] == RIG_SKIN && p->near_start[i + 1] > p->near_start[i]) {
+			NEAR(p->mesh.light[i][1], 1, 0.06);
+			n++;
+		}
+	assert_true(n > 300);
+	portrait_free(p);
+}
+
+/* Inside the sheet's outline every pixel shows skin or an eye, whatever the pose. */
+static void no_holes(void **state)
+{
+	struct made *m = *state;
+	struct portrait *p = portrait_of(m, 2);
+	struct rng rng = { 31 };
+	double c[12];
+	for (int round = 0; round < 6; round++) {
+		drive_look(c, &m->rig, rng_range(&rng, -20, 20), rng_range(&rng, -12, 12), rng_uniform(&rng));
+		portrait_pose(p, c);
+		struct portrait_view view = portrait_front(&m->rig, -1, 90, 0, 0, 240, 80);
+		struct portrait_spot *spots = portrait_raster(p, &view, 2);
+		int eye = 0;
+		for (int i = 0; i < 480 * 160; i++) {
+			assert_true(spots[i].face != -1);
+			eye += spots[i].face < -1;
+		}
+		assert_true(eye > 100);  // the made lids never meet: eyes show
+		free(spots);
+	}
+	portrait_free(p);
+}
+
+static void eyes_are_where_they_are(void **state)
+{
+	struct made *m = *state;
+	struct portrait *p = portrait_of(m, 2);
+	double c[12];
+	drive_look(c, &m->rig, 0, 0, 1);
+	portrait_pose(p, c);
+	const double *o = m->rig.globe[0].center;
+	double scale = m->rig.globe[0].radius / 11.8;
+	// From the front: the corneal apex; from the side and from behind: the sclera, which is the globe's own sphere.
+	float front[3] = { (float)o[0], (float)o[1], (float)o[2] + 100 }, side[3] = { (float)o[0] + 100, (float)o[1], (float)o[2] - 2 };
+	double apex = m->eye.sclera_z * scale, r = m->rig.globe[0].radius;
+	NEAR(portrait_eye_hit(p, 0, front, (float[]){ 0, 0, -1 }), 100 - apex, 1e-3);
+	NEAR(portrait_eye_hit(p, 0, side, (float[]){ -1, 0, 0 }), 100 - sqrt(r * r - 4), 1e-3);
+	assert_true(isinf(portrait_eye_hit(p, 0, front, (float[]){ 0, 0, 1 })));
+	// Turned by 20 degrees to the left, the apex stands where Fick's formula says.
+	drive_look(c, &m->rig, 20, 0, 1);
+	portrait_pose(p, c);
+	float from[3] = { (float)(o[0] + 100 * sin(M_PI / 9)), (float)o[1], (float)(o[2] + 100 * cos(M_PI / 9)) };
+	NEAR(portrait_eye_hit(p, 0, from, (float[]){ (float)-sin(M_PI / 9), 0, (float)-cos(M_PI / 9) }), 100 - apex, 1e-3);
+	portrait_free(p);
+}
+
+static void same_bytes_on_any_number_of_threads(void **state)
+{
+	struct made *m = *state;
+	int threads = omp_get_max_threads();
+	struct image image[2];
+	double c[12];
+	for (int k = 0; k < 2; k++) {
+		omp_set_num_threads(k ? 3 : 1);
+		struct portrait *p = portrait_of(m, 2);
+		drive_look(c, &m->rig, 10, -5, 0.7);
+		portrait_pose(p, c);
+		struct portrait_view view = portrait_front(&m->rig, -1, 110, 0.1, 0, 150, 60);
+		portrait_light(p, &view, true);
+		image[k] = portrait_draw(p, &view);
+		portrait_free(p);
+	}
+	omp_set_num_threads(threads);
+	assert_memory_equal(image[0].px, image[1].px, 150 * 60 * 4 * sizeof(float));
+	for (int i = 0; i < 150 * 60 * 4; i++)
+		assert_true(image[0].px[i] >= 0 && isfinite(image[0].px[i]));
+	image_free(&image[0]);
+	image_free(&image[1]);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(even_light_is_one),
+		cmocka_unit_test(no_holes),
+		cmocka_unit_test(eyes_are_where_they_are),
+		cmocka_unit_test(same_bytes_on_any_number_of_threads),
+	};
+	return cmocka_run_group_tests(tests, setup, teardown);
+}
