@@ -76,6 +76,12 @@ struct skin_target {
 bool render_skin(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *render,
                  const struct skin_conf *conf, struct err *err);
 
+/* The typed gaze is of NAME_look.png alone: what else was made is kept when only that has changed (skin_keep.c).
+ * skin_kept: stage_fresh, or else made by the same program from the same bytes with a configuration that differs in gaze
+ * and aperture at most; then it is recorded anew. skin_made: stage_made, and remembers how. */
+bool skin_kept(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
+bool skin_made(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
+
 /* Eyes, light and the model, once. */
 bool skin_ready(struct skin_job *job, struct err *err);
 

@@ -92,6 +92,7 @@ static bool clip_make(struct clip *c, const char *rel, int n_in, const char *con
 	struct portrait_conf draw = conf->portrait;
 	draw.samples = conf->clip_samples;
 	draw.eye_samples = 1;
+	draw.lights = draw.lights > 8 ? 8 : draw.lights;  // shadows as sharp as its pixels show them
 	draw.subdivide = draw.subdivide < 1 ? draw.subdivide : 1;
 	c->step = step_of(c->drive, conf->clip_fps);
 	c->width = c->input_width + c->view.width;
@@ -102,7 +103,7 @@ static bool clip_make(struct clip *c, const char *rel, int n_in, const char *con
 		                           .preset = "fast", .made_by = stage_made_by(c->job->stage, n_in, in) };
 	c->writer = video_writer_open(stage_path(c->job->stage, "%s", rel), &w, err);
 	bool ok = c->writer && frames(c, err);
-	ok = video_writer_close(c->writer, ok, err) && ok && stage_made(c->job->stage, rel, n_in, in, err);
+	ok = video_writer_close(c->writer, ok, err) && ok && skin_made(c->job, rel, n_in, in, err);
 	if (c->frame.luma)
 		video_frame_free(&c->frame);
 	portrait_free(c->portrait);
@@ -131,7 +132,7 @@ static bool driven(struct skin_job *job, struct skin_target *t, struct err *err)
 	memcpy(in, t->in, sizeof t->in);
 	in[n++] = gaze_csv;
 	in[n++] = job->video;
-	if (stage_fresh(job->stage, rel, n, in))
+	if (skin_kept(job, rel, n, in, err))
 		return true;
 	if (!skin_open(job, t, err) || !drive_load(&drive, &job->model, stage_path(job->stage, "%s", gaze_csv), err))
 		return false;
@@ -151,7 +152,7 @@ static bool scripted(struct skin_job *job, struct skin_target *t, struct err *er
 	double d[3];
 	memcpy(in, t->in, sizeof t->in);
 	in[n++] = script_csv;
-	if (stage_fresh(job->stage, rel, n, in))
+	if (skin_kept(job, rel, n, in, err))
 		return true;
 	if (!skin_open(job, t, err) || !drive_load(&drive, &job->model, stage_path(job->stage, "%s", script_csv), err))
 		return false;
@@ -169,7 +170,7 @@ static bool gltf(struct skin_job *job, struct skin_target *t, const char *csv, s
 	struct drive drive;
 	struct glb_report report;
 	struct glb_conf conf = job->conf->glb;
-	if (stage_fresh(job->stage, rel, COUNT(in), in))
+	if (skin_kept(job, rel, COUNT(in), in, err))
 		return true;
 	if (!skin_open(job, t, err) || !drive_load(&drive, &job->model, stage_path(job->stage, "%s", csv), err))
 		return false;
@@ -177,7 +178,7 @@ static bool gltf(struct skin_job *job, struct skin_target *t, const char *csv, s
 	memcpy(conf.sclera_rgb, job->render->scene.sclera_rgb, sizeof conf.sclera_rgb);
 	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, t->name, &conf,
 	                    stage_made_by(job->stage, COUNT(in), in), err)
-	          && stage_made(job->stage, rel, COUNT(in), in, err);
+	          && skin_made(job, rel, COUNT(in), in, err);
 	if (ok) {
 		stage_note(job->stage, "%s: %d morph targets, %d vertices move, %.2f mm off at worst, %.1f MB", rel, report.targets,
 		           report.moving, report.worst, (double)report.bytes / 1e6);

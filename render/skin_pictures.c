@@ -38,7 +38,7 @@ static struct image look(struct skin_job *job, struct skin_target *t, double h, 
 static bool save(struct skin_job *job, struct skin_target *t, const char *rel, const struct image *image, struct err *err)
 {
 	return picture_png_write_linear(stage_path(job->stage, "%s", rel), image, err)
-	       && stage_made(job->stage, rel, t->n_in, t->in, err);
+	       && skin_made(job, rel, t->n_in, t->in, err);
 }
 
 static void put(struct image *sheet, const struct image *cell, int x, int y)
@@ -69,7 +69,7 @@ static bool sheet(struct skin_job *job, struct skin_target *t, struct err *err)
 	const struct skin_conf *c = job->conf;
 	const char *rel = output(job, t->name, "_sheet.png");
 	int w = c->cell_px, h = w * 3 / 7;
-	if (stage_fresh(job->stage, rel, t->n_in, t->in))
+	if (skin_kept(job, rel, t->n_in, t->in, err))
 		return true;
 	if (!skin_open(job, t, err))
 		return false;
@@ -94,7 +94,7 @@ static bool blink(struct skin_job *job, struct skin_target *t, struct err *err)
 	const struct skin_conf *c = job->conf;
 	const char *rel = output(job, t->name, "_blink.png");
 	int n = c->blink_frames, w = c->cell_px * 3 / 4, h = w * 3 / 4, shut = (n - 1) * 2 / 5;
-	if (stage_fresh(job->stage, rel, t->n_in, t->in))
+	if (skin_kept(job, rel, t->n_in, t->in, err))
 		return true;
 	if (!skin_open(job, t, err))
 		return false;

@@ -1,0 +1,30 @@
+#!/bin/bash
+# The skin column on its bundled capture: a video and a mesh go in, a driven character comes out.
+. "$(dirname "$0")/../lib/chain.sh"
+
+for program in track train transfer extrapolate render; do
+	[ -x "$BIN/$program" ] || { skip "the skin column" "$program is not built"; exit 0; }
+done
+capture=$root/face
+mkdir -p "$capture"
+cp -r samples/face/{video,targets,script,subject.ply,capture.conf} "$capture"
+echo "quality = draft" >>"$capture/capture.conf"
+
+run_make "$capture"
+same "make on a video, a mesh and a character" "$?" 0
+same "runs the skin column and nothing of the photographs'" "$(ran | tr ' ' '\n' | grep -xE 'limbus|unrefract|freckles|relief' | tr '\n' ' ')" ""
+for file in look.png sheet.png blink.png clip.mp4; do
+	check "work/render/mpfb_$file is there" test -s "$capture/work/render/mpfb_$file"
+done
+check "the glTF is one" test "$(head -c 4 "$capture/work/render/mpfb.glb")" = glTF
+check "the review page shows the character" grep -q 'mpfb.glb' "$capture/work/review/index.html"
+check "and holds its clip" grep -q 'data:video/mp4' "$capture/work/review/index.html"
+
+before=$(times_of "$capture")
+run_make "$capture"
+same "a second make runs no stage" "$? $(ran)" "0 "
+same "and writes nothing" "$(times_of "$capture")" "$before"
+
+echo "render.gaze = 15 -5" >>"$capture/capture.conf"
+run_make "$capture"
+same "another gaze runs render alone" "$? $(ran)" "0 render"
