@@ -26,7 +26,4 @@ void deform_rest(const struct deform *deform, float (*xyz)[3], float (*normal)[3
 void deform_pose(const struct deform *deform, const double e[RIG_COMPONENTS], const double target_from_globe[2][3][3],
                  float (*xyz)[3], float (*normal)[3]);
 
-/* Signed distance of a point from that globe turned so: |r| - D; < 0 inside. mm. */
-double deform_globe_distance(const struct rig *rig, int side, const double target_from_globe[3][3], const float x[3]);
-
 #endif

@@ -1,86 +1,14 @@
 #include "skin/glb_bake.h"
+#include "skin/glb_buffer.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "base/version.h"
 
-enum { FLOAT = 5126, UINT = 5125, ARRAY = 34962, INDICES = 34963 };
 static const double metres = 1e-3;
-
-/* The file on its way: JSON lists, and the bytes they point into. */
-struct glb {
-	json_t *views, *accessors;
-	char *bin;
-	size_t size, room;
-};
-
-static int add_view(struct glb *g, const void *data, size_t size, int target)
-{
-	size_t at = (g->size + 3) & ~(size_t)3;
-	if (at + size + 4 > g->room)
-		g->bin = mem_grow(g->bin, g->room = 2 * (at + size) + 1024, 1);
-	memset(g->bin + g->size, 0, at - g->size);
-	memcpy(g->bin + at, data, size);
-	g->size = at + size;
-	json_t *view = json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", (json_int_t)at, "byteLength", (json_int_t)size);
-	if (target)
-		json_object_set_new(view, "target", json_integer(target));
-	json_array_append_new(g->views, view);
-	return (int)json_array_size(g->views) - 1;
-}
-
-static int add_accessor(struct glb *g, json_t *accessor)
-{
-	json_array_append_new(g->accessors, accessor);
-	return (int)json_array_size(g->accessors) - 1;
-}
-
-/* Smallest and largest of n rows of `width` numbers; floats exactly as the file has them. */
-static void put_range(json_t *accessor, const float *x, size_t n, int width)
-{
-	json_t *low = json_array(), *high = json_array();
-	for (int c = 0; c < width; c++) {
-		float a = x[c], b = x[c];
-		for (size_t i = 1; i < n; i++) {
-			a = fminf(a, x[i * (size_t)width + (size_t)c]);
-			b = fmaxf(b, x[i * (size_t)width + (size_t)c]);
-		}
-		json_array_append_new(low, json_real(a));
-		json_array_append_new(high, json_real(b));
-	}
-	json_object_set_new(accessor, "min", low);
-	json_object_set_new(accessor, "max", high);
-}
-
-static int add_floats(struct glb *g, const float *x, size_t n, int width, bool range, int target)
-{
-	static const char *const types[] = { "", "SCALAR", "VEC2", "VEC3", "VEC4" };
-	int view = add_view(g, x, n * (size_t)width * sizeof *x, target);
-	json_t *a = json_pack("{s:i,s:i,s:I,s:s}", "bufferView", view, "componentType", FLOAT, "count", (json_int_t)n, "type", types[width]);
-	if (range)
-		put_range(a, x, n, width);
-	return add_accessor(g, a);
-}
-
-/* Displacements that are zero for all vertices but a few: a sparse accessor. index: view of the row of each of the few. */
-static int add_sparse(struct glb *g, const float *x, int few, int index_view, int all, bool range)
-{
-	int view = add_view(g, x, 3 * (size_t)few * sizeof *x, 0);
-	json_t *a = json_pack("{s:i,s:i,s:s,s:{s:i,s:{s:i,s:i},s:{s:i}}}", "componentType", FLOAT, "count", all, "type", "VEC3", "sparse",
-	                      "count", few, "indices", "bufferView", index_view, "componentType", UINT, "values", "bufferView", view);
-	if (range) {
-		float *with_zero = mem_new(3 * ((size_t)few + 1), sizeof *with_zero);
-		memcpy(with_zero, x, 3 * (size_t)few * sizeof *x);
-		put_range(a, with_zero, few < all ? (size_t)few + 1 : (size_t)few, 3);
-		free(with_zero);
-	}
-	return add_accessor(g, a);
-}
 
 /* Rows of the rig that are skin, numbered; -1: not. */
 static int *skin_rows(int *n, const struct rig *rig)
@@ -92,7 +20,7 @@ static int *skin_rows(int *n, const struct rig *rig)
 	return row;
 }
 
-static json_t *morph_targets(struct glb *g, const struct glb_bake *b, const int *row, int all)
+static json_t *morph_targets(struct glb_buffer *g, const struct glb_bake *b, const int *row, int all)
 {
 	json_t *targets = json_array();
 	size_t width = 3 * (size_t)b->n;
@@ -100,13 +28,13 @@ static json_t *morph_targets(struct glb *g, const struct glb_bake *b, const int 
 	float *scaled = mem_new(width + 1, sizeof *scaled);
 	for (int i = 0; i < b->n; i++)
 		index[i] = (uint32_t)row[b->vertex[i]];
-	int view = add_view(g, index, (size_t)b->n * sizeof *index, 0), poses = b->pose ? GLB_POSES : 0;
+	int view = glb_add_view(g, index, (size_t)b->n * sizeof *index, 0), poses = b->pose ? GLB_POSES : 0;
 	for (int k = 0; k < b->n_targets + poses; k++) {
 		const float *x = k < b->n_targets ? b->target + (size_t)k * width : b->pose + (size_t)(k - b->n_targets) * width;
 		const float *n = k < b->n_targets ? b->lean + (size_t)k * width : b->pose_lean + (size_t)(k - b->n_targets) * width;
 		for (size_t i = 0; i < width; i++)
 			scaled[i] = (float)(metres * x[i]);
-		int position = add_sparse(g, scaled, b->n, view, all, true), normal = add_sparse(g, n, b->n, view, all, false);
+		int position = glb_add_sparse(g, scaled, b->n, view, all, true), normal = glb_add_sparse(g, n, b->n, view, all, false);
 		json_array_append_new(targets, json_pack("{s:i,s:i}", "POSITION", position, "NORMAL", normal));
 	}
 	free(index);
@@ -124,7 +52,7 @@ static json_t *target_names(const struct glb_bake *b)
 	return names;
 }
 
-static json_t *skin_mesh(struct glb *g, const struct rig *rig, const struct glb_bake *b)
+static json_t *skin_mesh(struct glb_buffer *g, const struct rig *rig, const struct glb_bake *b)
 {
 	int n, *row = skin_rows(&n, rig), faces = 0;
 	float *x = mem_new(3 * (size_t)n + 1, sizeof *x), *nrm = mem_new(3 * (size_t)n + 1, sizeof *nrm);
@@ -142,9 +70,9 @@ static json_t *skin_mesh(struct glb *g, const struct rig *rig, const struct glb_
 			corner[3 * faces + k] = (uint32_t)row[v[k]];
 		faces++;
 	}
-	int position = add_floats(g, x, (size_t)n, 3, true, ARRAY), normal = add_floats(g, nrm, (size_t)n, 3, false, ARRAY);
-	int view = add_view(g, corner, 3 * (size_t)faces * sizeof *corner, INDICES);
-	int index = add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", UINT, "count", 3 * faces, "type", "SCALAR"));
+	int position = glb_add_floats(g, x, (size_t)n, 3, true, GLB_ARRAY), normal = glb_add_floats(g, nrm, (size_t)n, 3, false, GLB_ARRAY);
+	int view = glb_add_view(g, corner, 3 * (size_t)faces * sizeof *corner, GLB_INDICES);
+	int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", 3 * faces, "type", "SCALAR"));
 	json_t *primitive = json_pack("{s:{s:i,s:i},s:i,s:i}", "attributes", "POSITION", position, "NORMAL", normal, "indices", index,
 	                              "material", 0);
 	json_t *mesh = json_pack("{s:s,s:[o]}", "name", "skin", "primitives", primitive);
@@ -164,7 +92,7 @@ static json_t *skin_mesh(struct glb *g, const struct rig *rig, const struct glb_
 }
 
 /* One eyeball as D has it, in the globe's own frame (the head's axes), with vertex colours: sclera, iris, pupil. */
-static json_t *eye_mesh(struct glb *g, const struct rig *rig, int side, const struct glb_conf *conf)
+static json_t *eye_mesh(struct glb_buffer *g, const struct rig *rig, int side, const struct glb_conf *conf)
 {
 	enum { AROUND = 64, RINGS = 80, N = AROUND * (RINGS + 1) };
 	float *x = mem_new(3 * N, sizeof *x), *nrm = mem_new(3 * N, sizeof *nrm), *rgb = mem_new(3 * N, sizeof *rgb);
@@ -191,9 +119,9 @@ static json_t *eye_mesh(struct glb *g, const struct rig *rig, int side, const st
 				if (!(j == 0 && k >= 3) && !(j == RINGS - 1 && k < 3))  // at the poles one of the two has no area
 					corner[n++] = quad[k];
 		}
-	int position = add_floats(g, x, N, 3, true, ARRAY), normal = add_floats(g, nrm, N, 3, false, ARRAY);
-	int colour = add_floats(g, rgb, N, 3, false, ARRAY), view = add_view(g, corner, (size_t)n * sizeof *corner, INDICES);
-	int index = add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", UINT, "count", n, "type", "SCALAR"));
+	int position = glb_add_floats(g, x, N, 3, true, GLB_ARRAY), normal = glb_add_floats(g, nrm, N, 3, false, GLB_ARRAY);
+	int colour = glb_add_floats(g, rgb, N, 3, false, GLB_ARRAY), view = glb_add_view(g, corner, (size_t)n * sizeof *corner, GLB_INDICES);
+	int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", n, "type", "SCALAR"));
 	free(x);
 	free(nrm);
 	free(rgb);
@@ -253,7 +181,7 @@ static void turn_of(float q[4], const float from_rest[4], const double head_from
 		q[k] = (float)(r[k] / len);
 }
 
-static json_t *animation(struct glb *g, const struct rig *rig, const struct glb_bake *b, const struct drive *drive)
+static json_t *animation(struct glb_buffer *g, const struct rig *rig, const struct glb_bake *b, const struct drive *drive)
 {
 	size_t n = (size_t)drive->n;
 	int all = b->n_targets + (b->pose ? GLB_POSES : 0);
@@ -263,17 +191,17 @@ static json_t *animation(struct glb *g, const struct rig *rig, const struct glb_
 		if (b->n_targets)
 			memcpy(weight + f * (size_t)all, b->weight + f * (size_t)b->n_targets, (size_t)b->n_targets * sizeof *weight);
 	}
-	int input = add_floats(g, time, n, 1, true, 0);
+	int input = glb_add_floats(g, time, n, 1, true, 0);
 	json_t *samplers = json_array(), *channels = json_array();
 	if (all) {
-		int output = add_floats(g, weight, n * (size_t)all, 1, false, 0);
+		int output = glb_add_floats(g, weight, n * (size_t)all, 1, false, 0);
 		json_array_append_new(samplers, json_pack("{s:i,s:i}", "input", input, "output", output));
 		json_array_append_new(channels, json_pack("{s:i,s:{s:i,s:s}}", "sampler", 0, "target", "node", 1, "path", "weights"));
 	}
 	for (int s = 0; s < 2; s++) {
 		for (size_t f = 0; f < n; f++)
 			turn_of(turn + 4 * f, b->turn[s] + 4 * f, rig->head_from_target);
-		int output = add_floats(g, turn, n, 4, false, 0);
+		int output = glb_add_floats(g, turn, n, 4, false, 0);
 		json_array_append_new(samplers, json_pack("{s:i,s:i}", "input", input, "output", output));
 		json_array_append_new(channels, json_pack("{s:i,s:{s:i,s:s}}", "sampler", (int)json_array_size(samplers) - 1, "target", "node",
 		                                          2 + s, "path", "rotation"));
@@ -292,33 +220,10 @@ static json_t *materials(const struct glb_conf *conf)
 	return json_pack("[o,o]", skin, eye);
 }
 
-/* Header, JSON padded by spaces, bytes padded by zeros. */
-static bool save(const char *path, struct glb *g, json_t *root, long *bytes, struct err *err)
-{
-	char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9));
-	size_t json_size = strlen(text), json_pad = (json_size + 3) & ~(size_t)3, bin_pad = (g->size + 3) & ~(size_t)3;
-	size_t total = 12 + 8 + json_pad + 8 + bin_pad;
-	char *out = mem_array(total, 1), *at = out;
-	uint32_t head[5] = { 0x46546c67, 2, (uint32_t)total, (uint32_t)json_pad, 0x4e4f534a }, bin[2] = { (uint32_t)bin_pad, 0x004e4942 };
-	memset(out, 0, total);
-	memcpy(at, head, sizeof head);
-	at += sizeof head;
-	memcpy(at, text, json_size);
-	memset(at + json_size, ' ', json_pad - json_size);
-	at += json_pad;
-	memcpy(at, bin, sizeof bin);
-	memcpy(at + sizeof bin, g->bin, g->size);
-	*bytes = (long)total;
-	bool ok = total < UINT32_MAX ? file_write(path, out, total, err) : err_set(err, "%s: larger than a binary glTF can be (4 GiB)", path);
-	free(text);
-	free(out);
-	return ok;
-}
-
 bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive, const char *name,
                const struct glb_conf *conf, const char *made_by, struct err *err)
 {
-	struct glb g = { .views = json_array(), .accessors = json_array() };
+	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
 	struct glb_bake bake;
 	bool ok = glb_bake_make(&bake, rig, drive, conf, err);
 	if (ok) {
@@ -337,7 +242,7 @@ bool glb_write(const char *path, struct glb_report *report, const struct rig *ri
 		json_object_set_new(root, "accessors", g.accessors);
 		json_object_set_new(root, "bufferViews", g.views);
 		json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)g.size));
-		ok = save(path, &g, root, &report->bytes, err);
+		ok = glb_save(path, &g, root, &report->bytes, err);
 		json_decref(root);
 	} else {
 		json_decref(g.accessors);

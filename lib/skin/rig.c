@@ -60,3 +60,13 @@ void rig_globe_rotation(double target_from_globe[3][3], const struct rig *rig, c
 	fick(turn, gaze);
 	mat_mul(target_from_globe, back, turn);
 }
+
+double rig_globe_distance(const struct rig *rig, int side, const double target_from_globe[3][3], const float x[3])
+{
+	const struct rig_globe *globe = &rig->globe[side];
+	double d[3], r[3];
+	for (int c = 0; c < 3; c++)
+		d[c] = x[c] - globe->center[c];
+	mat_tvec(r, target_from_globe, d);
+	return vec_norm(d) - globe_map_at(&globe->map, (float[3]){ (float)r[0], (float)r[1], (float)r[2] });
+}

@@ -107,7 +107,7 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 	}
 	for (int c = 0; c < 3; c++)
 		ball->center[c] = origin[c] + x[c];
-	// Most of it has to lie on the sphere: a strip of lid does, too, but not all round (globe_map_from_mesh sees to that).
+	// A strip of lid lies on the sphere, too, but not all round: globe_map_from_mesh sees to that.
 	return isfinite(ball->radius) && total > 0.4 * all;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/stats.h"
 #include "math/vec.h"
 #include "skin/deform.h"
 
@@ -56,8 +57,27 @@ static void take_camera(struct rig *rig, const struct rig_motion *m, const doubl
 	c->height = m->camera.height;
 }
 
+/* Median distance, px, between where the model has tracked points at rest and where the registered mesh is seen. */
+static double off_chart(const struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, const int *row)
+{
+	double *d = fresh(rig->n, sizeof *d);
+	int n = 0;
+	for (int i = 0; i < rig->n; i++) {
+		double px[2] = { 0 };
+		for (int j = ch->b_start[i]; j < ch->b_start[i + 1]; j++)
+			for (int c = 0; c < 2 && rig->source[i] == RIG_TRACKED; c++)
+				px[c] += row[ch->b_column[j]] >= 0 ? ch->b_weight[j] * m->rest_px[row[ch->b_column[j]]][c] : 0;
+		if (rig->source[i] == RIG_TRACKED && isfinite(px[0] + px[1]))
+			d[n++] = hypot(px[0] - rig->home[i][0], px[1] - rig->home[i][1]);
+	}
+	double median = stats_median(n, d);
+	free(d);
+	return median;
+}
+
 /* Vertices whose whole barycentric neighbourhood was tracked (eq. 3.4). */
-static void take_tracked(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double min_confidence)
+static void take_tracked(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double min_confidence,
+                         struct rig_report *report)
 {
 	int last = 0;
 	for (int k = 0; k < m->n; k++)
@@ -84,6 +104,7 @@ static void take_tracked(struct rig *rig, const struct rig_motion *m, const stru
 		for (int c = 0; tracked && c < RIG_BASIS; c++)
 			rig->basis[i][c] = (float)basis[c];
 	}
+	report->off_chart = off_chart(rig, m, ch, row);
 	free(row);
 }
 
@@ -109,7 +130,7 @@ static void take_gaps(struct rig *rig, struct rig_report *report)
 	for (int i = 0; i < rig->n; i++) {
 		double d[2];
 		for (int s = 0; s < 2; s++)
-			d[s] = deform_globe_distance(rig, s, (const double(*)[3])rest, rig->rest[i]);
+			d[s] = rig_globe_distance(rig, s, (const double(*)[3])rest, rig->rest[i]);
 		rig->side[i] = d[1] < d[0];
 		rig->gap[i] = (float)d[rig->side[i]];
 		if (rig->part[i] == RIG_SKIN && rig->gap[i] < 0) {
@@ -178,7 +199,7 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 	if (ok) {
 		rig_take_homes(rig, motion, ch);
 		take_gaps(rig, report);
-		take_tracked(rig, motion, ch, conf->min_confidence);
+		take_tracked(rig, motion, ch, conf->min_confidence, report);
 		rig_spread(rig, conf);
 		extrapolate(rig);
 		double px_per_mm = rig_px_per_mm(rig, motion, ch);

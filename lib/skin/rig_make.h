@@ -15,6 +15,7 @@ struct rig_motion {
 	int n;                                // tracked rows of the subject mesh
 	int *vertex;
 	double (*basis)[RIG_BASIS];
+	double (*rest_px)[2];                 // where the model has them at rest
 	int n_points;                         // control points of a lid
 	double (*lid)[2];                     // [4 n_points] where they are at rest; NAN: not learnt
 	double (*lid_basis)[RIG_BASIS];
@@ -54,6 +55,7 @@ struct rig_conf {
 /* What was found, for the log. */
 struct rig_report {
 	int tracked, lid, extrapolated, still, inside_at_rest;
+	double off_chart;                     // px, median: what the model has at rest against where the mesh is seen
 	double deepest;                       // mm inside a globe at rest
 	double open_before[2], open_after[2]; // mm left open of closed eyes, before and after they were sealed
 	bool cornea_added[2];

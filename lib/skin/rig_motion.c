@@ -147,6 +147,11 @@ static void take_skin(struct rig_motion *m, const struct skin_model *model)
 		if (!isfinite(model->vertex_rms[i]))
 			continue;  // never seen: it learns from its neighbours
 		m->vertex[m->n] = model->vertices[i];
+		for (int j = 0; j < 2; j++) {
+			m->rest_px[m->n][j] = model->u0[2 * i + j];
+			for (int k = 0; k < model->n_skin_pc; k++)
+				m->rest_px[m->n][j] += model->J[(2 * i + j) * model->n_skin_pc + k] * model->rest_e[k];
+		}
 		for (int j = 0; j < 2; j++)
 			for (int k = 0; k < kept; k++)
 				m->basis[m->n][j * RIG_COMPONENTS + k] = model->J[(2 * i + j) * model->n_skin_pc + k];
@@ -166,6 +171,7 @@ void rig_motion_of_model(struct rig_motion *m, const struct skin_model *model)
 	free(W);
 	m->vertex = mem_new((size_t)model->n_vertices + 1, sizeof *m->vertex);
 	m->basis = mem_new((size_t)model->n_vertices + 1, sizeof *m->basis);
+	m->rest_px = mem_new((size_t)model->n_vertices + 1, sizeof *m->rest_px);
 	m->lid = mem_new((size_t)model->n_lid / 2 + 1, sizeof *m->lid);
 	m->lid_basis = mem_new((size_t)model->n_lid / 2 + 1, sizeof *m->lid_basis);
 	double *c = rest_controls(model);
@@ -185,6 +191,7 @@ void rig_motion_free(struct rig_motion *m)
 	free(m->W);
 	free(m->vertex);
 	free(m->basis);
+	free(m->rest_px);
 	free(m->lid);
 	free(m->lid_basis);
 	*m = (struct rig_motion){ 0 };

@@ -115,6 +115,10 @@ static void report(struct stage *stage, const char *name, const struct rig *rig,
 	stage_figure(stage, "extrapolated_vertices", r->extrapolated, "");
 	stage_figure(stage, "globe_radius", 0.5 * (rig->globe[0].radius + rig->globe[1].radius), "mm");
 	stage_figure(stage, "lids_folded_error", lid_error, "px rms: what the lids lose by following the skin's components");
+	stage_figure(stage, "off_chart", r->off_chart, "px, median: the model's skin at rest against the registered mesh as the camera sees it");
+	if (r->off_chart > 12)
+		stage_skipped(stage, "%s: its skin is seen %.0f px from where it was tracked: check camera.focal_px, subject.unit_mm and subject.landmark.*",
+		              name, r->off_chart);
 	stage_figure(stage, "open_when_closed", fmax(r->open_before[0], r->open_before[1]), "mm that the learnt motion leaves open of closed eyes");
 	stage_figure(stage, "open_after_sealing", fmax(r->open_after[0], r->open_after[1]), "mm");
 	if (fmax(r->open_after[0], r->open_after[1]) > 0.5)
