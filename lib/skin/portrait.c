@@ -62,6 +62,10 @@ struct portrait *portrait_new(const struct rig *rig, const struct scene *const e
 	p->lit = mem_new((size_t)rig->n + 1, sizeof *p->lit);
 	p->lit_at = mem_new((size_t)rig->n + 1, sizeof *p->lit_at);
 	deform_rest(p->deform, p->mesh.x, p->mesh.normal);
+	for (int s = 0; s < 2; s++)
+		rig_globe_rotation(p->target_from_globe[s], rig, (double[]){ 0, 0, 0 });
+	portrait_mesh_move(p);
+	portrait_lashes_make(p);
 	return p;
 }
 
@@ -72,6 +76,7 @@ void portrait_free(struct portrait *p)
 	portrait_mesh_free(&p->mesh);
 	ray_scene_free(p->shadow);
 	deform_free(p->deform);
+	free(p->lash);
 	free(p->lit);
 	free(p->lit_at);
 	free(p->near_start);
@@ -118,7 +123,10 @@ struct canvas {
 static void colour_at(float rgba[4], const struct canvas *c, double x, double y, int face)
 {
 	rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
-	if (face >= 0) {
+	if (face >= c->p->first_lash) {
+		portrait_lash_colour(rgba, c->p, face);
+		rgba[3] = 1;
+	} else if (face >= 0) {
 		float dir[3];
 		portrait_ray(dir, &c->rays, x, y);
 		portrait_shade(rgba, c->p, &c->sky, face, c->rays.origin, dir);
@@ -142,7 +150,8 @@ static bool is_plain(const struct canvas *c, int x, int y)
 	for (int j = 0; j < s; j++)
 		for (int i = 0; i < s; i++) {
 			const struct portrait_spot *o = &first[(long)j * w + i];
-			bool same = first->face < 0 ? o->face == first->face : o->face >= 0 && fabsf(o->depth - first->depth) < 0.8f;
+			bool hair = (o->face >= c->p->first_lash) != (first->face >= c->p->first_lash);
+			bool same = first->face < 0 ? o->face == first->face : o->face >= 0 && !hair && fabsf(o->depth - first->depth) < 0.8f;
 			if (!same)
 				return false;
 		}
@@ -170,6 +179,7 @@ static void draw_pixel(float rgba[4], const struct canvas *c, int x, int y)
 struct image portrait_draw(struct portrait *p, const struct portrait_view *view)
 {
 	struct image image = image_new(view->width, view->height, 4);
+	portrait_lashes_move(p, view);
 	struct portrait_spot *spots = portrait_raster(p, view, p->conf.samples);
 	struct canvas c = { .p = p, .spots = spots, .rays = portrait_rays_of(view), .sky = portrait_sky_of(p, view), .samples = p->conf.samples };
 	portrait_eyes(c.eye, c.eye_at, p, view, spots, p->conf.samples);

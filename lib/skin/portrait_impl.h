@@ -27,7 +27,15 @@ struct portrait {
 	int *near_start, *near;     // neighbours of the rig's vertices
 	float *spread;              // weight of each neighbour, of red
 	double target_from_globe[2][3][3];
+	struct portrait_lash *lash; // their triangles are the mesh's last, from first_lash; their vertices from lash_vertex
+	int n_lashes, first_lash, lash_vertex;
 };
+
+/* portrait_lash.c: planted at rest; stretched out for a pose, as wide as they are towards that camera. */
+void portrait_lashes_make(struct portrait *portrait);
+void portrait_lashes_move(struct portrait *portrait, const struct portrait_view *view);
+void portrait_lash_colour(float rgb[3], const struct portrait *portrait, int face);
+
 
 /* portrait_mesh.c: topology once, vertices for each pose. */
 void portrait_mesh_make(struct portrait *portrait);

@@ -7,13 +7,13 @@
 
 struct screen {
 	float (*at)[3];  // x, y in samples, depth; depth <= 0: behind the camera
-	int width, height;
+	int points, width, height;
 	struct portrait_spot *spots;
 };
 
 static void project(struct screen *s, const struct portrait *p, const struct portrait_view *v, int samples)
 {
-	for (int i = 0; i < p->mesh.n; i++) {
+	for (int i = 0; i < s->points; i++) {
 		const float *x = p->mesh.x[i];
 		double c[3];
 		for (int k = 0; k < 3; k++)
@@ -81,10 +81,12 @@ static void put_eye(struct screen *s, const struct portrait *p, const struct por
 struct portrait_spot *portrait_raster(const struct portrait *p, const struct portrait_view *v, int samples)
 {
 	enum { BAND = 64 };
-	struct screen s = { .width = v->width * samples, .height = v->height * samples };
+	struct screen s = { .points = p->mesh.n, .width = v->width * samples, .height = v->height * samples };
 	struct portrait_rays rays = portrait_rays_of(v);
 	long n = (long)s.width * s.height;
-	s.at = mem_array((size_t)p->mesh.n + 1, sizeof *s.at);
+	for (int f = p->first_lash; f < p->mesh.n_faces; f++)
+		s.points = p->mesh.faces[f][1] >= s.points ? p->mesh.faces[f][1] + 1 : s.points;
+	s.at = mem_array((size_t)s.points + 1, sizeof *s.at);
 	s.spots = mem_array((size_t)n, sizeof *s.spots);
 	project(&s, p, v, samples);
 #pragma omp parallel for schedule(dynamic)
