@@ -276,7 +276,7 @@ int freckle_fill(struct image *rgbw, const uint8_t *mask, double extent, const s
 	struct image before = image_new(size, size, 4);
 	memcpy(before.px, rgbw->px, (size_t)size * (size_t)size * 4 * sizeof(float));
 	for (int k = 1; k <= count; k++) {
-		struct patch p = { .rgbw = &before, .mask = mask, .sheet = { size, extent, *pupil, limbus },
+		struct patch p = { .rgbw = &before, .mask = mask, .sheet = { size, extent, *pupil, limbus, 0 },
 			           .mm = 2 * extent / size, .band = conf->band };
 		if (patch_open(&p, label, k, box[k])) {
 			struct pattern pattern = find_pattern(&p, conf, conf->search_deg * M_PI / 180);

@@ -18,6 +18,7 @@ static const double SIDES_SEEN = 0.55, SIDES_CLEAR = 0.9;  // limbus_flank_aroun
 static const double CLEAR = 0.55, EXACT = 0.004;  // coverage and scatter at which no other ellipse is tried
 static const double FLANK_LEAST = 0.03;     // of the longer side: smaller eyes are not looked for by their sides
 static const double FLANK_NEAR = 0.25, FLANK_SIZE = 0.16, FLANK_SUPPORT = 0.19;
+static const double FLANK_BEHIND = 0.6;     // of the best circle's worth
 static const double FLANK_HINT = 0.15;      // natural logarithm of a hint's radius: its sigma
 enum { MIN_SIDE = 96, TRY = 5, FLANK_TRY = 8, MAX_POOL = 2 * SEEK_MAX };
 
@@ -195,7 +196,8 @@ static bool measure(struct limbus_found *found, struct ellipse *around, const st
 	return reject(found, "no eye found: photograph one open eye close up, or say where it is with photo.NAME.hint_px");
 }
 
-/* Settled circles of limbus_flanks, best first. Both sides of a pupil are clear too, but the limbus is larger. */
+/* Settled circles of limbus_flanks, best first; those far behind the best are left out. Both sides of a pupil are clear
+ * too, but the limbus is larger. */
 static int gather_flanks(struct seek_found pool[SEEK_MAX], const struct photo *photo, const double *hint,
                          const struct limbus_conf *conf)
 {
@@ -206,7 +208,7 @@ static int gather_flanks(struct seek_found pool[SEEK_MAX], const struct photo *p
 #pragma omp parallel for schedule(dynamic, 1)
 	for (int i = 0; i < n; i++) {
 		value[i] = pool[i].score;
-		value[i] *= limbus_flank_settle(&pool[i], photo) ? pool[i].score * sqrt(pool[i].e.a) : 0;
+		value[i] *= limbus_flank_settle(&pool[i], photo) ? pool[i].score * pow(pool[i].e.a, 0.25) : 0;
 		if (hint)  // it says how large as well
 			value[i] *= exp(-0.5 * pow(log(pool[i].e.a / hint[2]) / FLANK_HINT, 2));
 	}
@@ -219,6 +221,8 @@ static int gather_flanks(struct seek_found pool[SEEK_MAX], const struct photo *p
 			pool[j - 1] = f;
 			value[j - 1] = v;
 		}
+	while (n > 0 && value[n - 1] < FLANK_BEHIND * value[0])
+		n--;
 	return n;
 }
 
@@ -268,6 +272,19 @@ static bool measure_flanks(struct limbus_found *found, struct ellipse around, co
 	return found->ok;
 }
 
+/* What the search by whiteness vouches for with half an eye only is asked of the sides of the limbus too. */
+static void second_opinion(struct limbus_found *found, const struct photo *photo, const struct pyramid *pyramid,
+                           const struct limbus_conf *conf)
+{
+	const struct rim *rim = &found->limbus;
+	if (rim->coverage > CLEAR || rim->rms < EXACT * rim->e.a)
+		return;
+	struct limbus_found *other = mem_new(1, sizeof *other);
+	if (measure_flanks(other, (struct ellipse){ 0 }, photo, pyramid, 0, conf) && !agrees(&rim->e, &other->limbus.e))
+		*found = *other;
+	free(other);
+}
+
 void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
                  const struct limbus_conf *conf)
 {
@@ -278,10 +295,13 @@ void limbus_find(struct limbus_found *found, const struct photo *photo, const do
 	}
 	struct pyramid pyramid = pyramid_make(photo);
 	struct ellipse around = { 0 };
-	if (exposed(found, &pyramid, conf)
-	    && ((hint && measure_flanks(found, around, photo, &pyramid, hint, conf))
-	        || measure(found, &around, photo, &pyramid, hint, conf)
-	        || (!hint && measure_flanks(found, around, photo, &pyramid, 0, conf)))) {
+	if (exposed(found, &pyramid, conf) && !(hint && measure_flanks(found, around, photo, &pyramid, hint, conf))) {
+		if (measure(found, &around, photo, &pyramid, hint, conf) && !hint)
+			second_opinion(found, photo, &pyramid, conf);
+		else if (!found->ok && !hint)
+			measure_flanks(found, around, photo, &pyramid, 0, conf);
+	}
+	if (found->ok) {
 		band_sample(&found->band, &pyramid, &found->limbus);
 		found->has_pupil = limbus_pupil(&found->pupil, photo, &pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
 	}
