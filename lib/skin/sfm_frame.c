@@ -49,7 +49,7 @@ static double distance(const double a[3], const double b[3])
 bool sfm_subject(struct sfm_subject *out, const struct colmap_model *m, struct err *err)
 {
 	// Points farther than this share of the cameras' distance are background; the head's reach beyond its middling point.
-	const double background = 0.6, reach = 1.35;
+	const double background = 0.6, reach = 1.5;
 	if (!focus(out->center, m))
 		return err_set(err, "the photographs all look the same way: walk round the head");
 	double *r = mem_array((size_t)(m->n_images > m->n_points ? m->n_images : m->n_points) + 1, sizeof *r);

@@ -6,6 +6,7 @@
 #define STAGES_CALIBRATE_CALIBRATE_H
 #include "base/stage.h"
 #include "optics/colmap.h"
+#include "skin/cloud.h"
 #include "skin/sfm_match.h"
 
 #define CALIBRATE_DIR "work/calibrate"
@@ -19,6 +20,10 @@ struct calibrate_options {
 	int ba_rounds;
 	double focal_px, focal_mm, sensor_mm;
 	double head_radius_mm;
+	struct cloud_conf cloud;
+	double best_angle_deg, max_slant_deg;
+	int mesh_depth, mesh_faces, mesh_min_points;
+	double mesh_trim;
 };
 
 enum { THUMB = 16 };

@@ -2,6 +2,8 @@
  * reads   views/, photos/, video/
  * writes  work/rig.json, work/subject.ply, work/calibrate/
  */
+#include <math.h>
+
 #include "stages/calibrate/run.h"
 
 int main(int argc, char **argv)
@@ -33,9 +35,26 @@ int main(int argc, char **argv)
 		OPT_INT("adjustments", &o.ba_rounds, 1, 20, "", "rounds of a bundle adjustment"),
 		OPT_REAL("regrow", &o.regrow, 0, 1, "", "share of new pictures from which on all cameras are found anew"),
 		OPT_REAL("head_radius_mm", &o.head_radius_mm, 20, 1000, "mm", "half the head's height, where nothing has a known length"),
+		OPT_INT("neighbours", &o.cloud.neighbours, 1, 20, "", "pictures each one is matched with densely"),
+		OPT_REAL("best_angle_deg", &o.best_angle_deg, 1, 45, "deg", "angle between two such views that suits best"),
+		OPT_INT("subject_px", &o.cloud.size_px, 100, 4000, "px", "the head's diameter in dense matching"),
+		OPT_INT("max_range", &o.cloud.max_range, 32, 1024, "px", "disparities that are tried, at most"),
+		OPT_REAL("voxel", &o.cloud.voxel, 0.001, 0.1, "", "points are averaged in cells of this edge, of the head's radius"),
+		OPT_INT("min_pairs", &o.cloud.min_pairs, 1, 10, "", "pairs of pictures that have to agree on a point"),
+		OPT_REAL("max_slant_deg", &o.max_slant_deg, 20, 89, "deg", "surfaces steeper than this are left to other views"),
+		OPT_INT("block", &o.cloud.stereo.block, 3, 15, "px", "window of dense matching"),
+		OPT_INT("uniqueness", &o.cloud.stereo.uniqueness, 0, 50, "%", "the best match undercuts the second by"),
+		OPT_INT("left_right", &o.cloud.stereo.left_right, 0, 10, "px", "match from the other side"),
+		OPT_INT("speckle", &o.cloud.stereo.speckle, 0, 10000, "px", "smaller patches of their own depth are left out"),
+		OPT_INT("mesh_depth", &o.mesh_depth, 5, 13, "", "octree levels of the Poisson mesher"),
+		OPT_REAL("mesh_trim", &o.mesh_trim, 0, 15, "", "levels below which its surface is guesswork and cut away"),
+		OPT_INT("mesh_faces", &o.mesh_faces, 1000, 5000000, "", "triangles of the subject's mesh"),
+		OPT_INT("mesh_min_points", &o.mesh_min_points, 100, 1000000, "", "fewer points make no mesh"),
 	};
 	stage_start(&stage, "calibrate", "cameras and the person's mesh from overlapping photographs, with COLMAP", argc, argv,
 	            COUNT(opts), opts);
+	o.cloud.best_angle = o.best_angle_deg * M_PI / 180;
+	o.cloud.max_slant = o.max_slant_deg * M_PI / 180;
 	calibrate_run(&stage, &o, &err);
 	return stage_end(&stage, &err);
 }

@@ -131,6 +131,9 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 	if (kept && !n_new)
 		return true;
 	colmap_free(model);
+	struct err none = { 0 };
+	if (!kept)  // the cameras move: points measured with the old ones are worth nothing
+		file_remove(stage_path(stage, CALIBRATE_DIR "/cloud.grid"), &none);
 	if (!map(model, &n_models, views, kept, stage, o, err))
 		return false;
 	if (!model->n_images)

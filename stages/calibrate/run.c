@@ -4,6 +4,7 @@
 
 #include "stages/calibrate/head.h"
 #include "stages/calibrate/state.h"
+#include "stages/calibrate/subject.h"
 
 #define RIG "work/rig.json"
 
@@ -41,6 +42,11 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	          && head_place(&head, views, stage, o, err)
 	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, views->n, in), err)
 	          && stage_made(stage, RIG, views->n, in, err);
+	if (ok && subject_given(stage))
+		stage_skipped(stage, "subject mesh: the folder has one");
+	else if (ok)
+		ok = subject_make(&head, views, stage, o, stage_made_by(stage, views->n, in), err)
+		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, views->n, in, err));
 	if (ok)
 		report(stage, views, &rig, &head);
 	free(in);
