@@ -48,8 +48,8 @@ static double distance(const double a[3], const double b[3])
 
 bool sfm_subject(struct sfm_subject *out, const struct colmap_model *m, struct err *err)
 {
-	// Points farther than this share of the cameras' distance are background; the head's reach beyond its middling point.
-	const double background = 0.6, reach = 1.5;
+	// Points farther than this share of the cameras' distance are background.
+	const double background = 0.6;
 	if (!focus(out->center, m))
 		return err_set(err, "the photographs all look the same way: walk round the head");
 	double *r = mem_array((size_t)(m->n_images > m->n_points ? m->n_images : m->n_points) + 1, sizeof *r);
@@ -65,7 +65,7 @@ bool sfm_subject(struct sfm_subject *out, const struct colmap_model *m, struct e
 		if (d < far)
 			r[n++] = d;
 	}
-	out->radius = n ? fmin(far, reach * stats_median(n, r)) : 0;
+	out->radius = n ? fmin(far, SFM_SUBJECT_REACH * stats_median(n, r)) : 0;
 	free(r);
 	if (n < 10)
 		return err_set(err, "the photographs do not look at one thing: keep the head in the middle of each");

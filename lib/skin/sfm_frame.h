@@ -6,6 +6,9 @@
 #include "optics/colmap.h"
 #include "optics/camera_rig.h"
 
+/* The ball's radius over the distance at which most of the subject's points lie. */
+#define SFM_SUBJECT_REACH 1.5
+
 /* The subject: a ball round what all cameras look at. */
 struct sfm_subject {
 	double center[3], radius;  // world

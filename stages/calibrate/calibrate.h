@@ -19,7 +19,8 @@ struct calibrate_options {
 	double filter_px, tri_deg;
 	int ba_rounds;
 	double focal_px, focal_mm, sensor_mm;
-	double head_radius_mm;
+	double head_radius_mm, ruler_mm, marker_mm, limbus_radius_mm;
+	struct opt_each_list left_eye, right_eye, mouth, ruler, distance;
 	struct cloud_conf cloud;
 	double best_angle_deg, max_slant_deg;
 	int mesh_depth, mesh_faces, mesh_min_points;
