@@ -66,10 +66,15 @@ static bool take_property(struct ply_element *e, char *line, struct err *err)
 static bool next_line(struct ply *ply, char line[HEAD_LINE_MAX + 1])
 {
 	const char *nl = memchr(ply->at, '\n', (size_t)(ply->end - ply->at));
-	if (!nl || nl - ply->at > HEAD_LINE_MAX || memchr(ply->at, 0, (size_t)(nl - ply->at)))
+	if (!nl || memchr(ply->at, 0, (size_t)(nl - ply->at)))
 		return false;
-	memcpy(line, ply->at, (size_t)(nl - ply->at));
-	line[nl - ply->at] = 0;
+	long n = nl - ply->at;
+	// Of a remark, however long (what made the mesh, from what), the beginning is enough.
+	if (n > HEAD_LINE_MAX && strncmp(ply->at, "comment ", 8))
+		return false;
+	n = n > HEAD_LINE_MAX ? HEAD_LINE_MAX : n;
+	memcpy(line, ply->at, (size_t)n);
+	line[n] = 0;
 	line[strcspn(line, "\r")] = 0;
 	ply->at = nl + 1;
 	return true;

@@ -21,7 +21,7 @@ int main(int argc, char **argv)
 		OPT_EACH("view.*.mouth_px", &o.mouth, 4, -1e6, 1e6, "px", "x y of the mouth's right corner, x y of its left one"),
 		OPT_EACH("view.*.ruler_px", &o.ruler, 4, -1e6, 1e6, "px", "x y of one end of a length, x y of the other"),
 		OPT_EACH("view.*.distance_mm", &o.distance, 1, 1, 1e6, "mm", "from the camera to the face in the middle of a view"),
-		OPT_REAL("eye.limbus_radius_mm", &o.limbus_radius_mm, 4.5, 7.5, "mm", "half the visible iris diameter"),
+		OPT_REAL("eye.limbus_radius_mm", &o.limbus_radius_mm, 4, 8, "mm", "half the visible iris diameter"),
 		OPT_REAL_UNSET("ruler_mm", &o.ruler_mm, 1, 1e5, "mm", "the length named by view.*.ruler_px"),
 		OPT_REAL_UNSET("marker_mm", &o.marker_mm, 1, 1e4, "mm", "side of the black square of printed markers"),
 		OPT_REAL("limit.photo_mpx", &o.limit_mpx, 1, 1000, "Mpx", "larger photographs are refused"),

@@ -140,6 +140,11 @@ static void pairs_free(struct db_pair *pairs, int n)
 bool pairs_match(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct db *db = 0;
+	bool any_new = false;
+	for (int i = 0; i < views->n_used; i++)
+		any_new |= views->v[i].is_new;
+	if (!any_new)
+		return true;
 	struct sfm_features *f = mem_new((size_t)views->n_used, sizeof *f);
 	struct sfm_pair *pairs = 0;
 	struct db_pair *matched = 0;

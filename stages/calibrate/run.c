@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "stages/calibrate/head.h"
+#include "stages/calibrate/figure.h"
 #include "stages/calibrate/state.h"
 #include "stages/calibrate/subject.h"
 
@@ -37,6 +37,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	struct head head = { .model = &model };
 	struct camera_rig rig = { 0 };
 	const char **in = inputs_of(views);
+	const char *const rig_alone[] = { RIG };
 	bool ok = state_check(stage, o, err) && features_make(&grows, views, stage, o, err) && pairs_match(views, stage, o, err)
 	          && model_make(&model, views, grows, stage, o, err) && state_save(stage, o, err)
 	          && head_place(&head, views, stage, o, err)
@@ -45,8 +46,10 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	if (ok && subject_given(stage))
 		stage_skipped(stage, "subject mesh: the folder has one");
 	else if (ok)
-		ok = subject_make(&head, views, stage, o, stage_made_by(stage, views->n, in), err)
+		// Made from the rig, which names all photographs: a mesh's head has to stay short.
+		ok = subject_make(&head, views, stage, o, stage_made_by(stage, 1, rig_alone), err)
 		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, views->n, in, err));
+	ok = ok && figure_draw(&head, &rig, stage, err) && stage_made(stage, FIGURE, views->n, in, err);
 	if (ok)
 		report(stage, views, &rig, &head);
 	free(in);

@@ -1,0 +1,93 @@
+#include "stages/calibrate/figure_mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "image/image.h"
+
+struct corner {
+	float x, y, z;   // px of the square, depth towards the viewer
+	float rgb[3];    // lit, linear
+};
+
+/* Half the larger side of the box round it, and its middle. */
+static float frame(float middle[3], const struct mesh *m)
+{
+	float low[3], high[3], half = 1;
+	for (int k = 0; k < 3; k++) {
+		low[k] = INFINITY;
+		high[k] = -INFINITY;
+		for (int i = 0; i < m->n_vertices; i++) {
+			low[k] = fminf(low[k], m->vertices[i][k]);
+			high[k] = fmaxf(high[k], m->vertices[i][k]);
+		}
+		middle[k] = 0.5f * (low[k] + high[k]);
+		half = fmaxf(half, 0.5f * (high[k] - low[k]));
+	}
+	return half;
+}
+
+static void turned(float out[3], const float v[3], float c, float s)
+{
+	out[0] = c * v[0] - s * v[2];
+	out[1] = v[1];
+	out[2] = s * v[0] + c * v[2];
+}
+
+static struct corner *light(const struct mesh *m, int size, double turn)
+{
+	struct corner *out = mem_array((size_t)m->n_vertices, sizeof *out);
+	float (*normals)[3] = mesh_normals(m), middle[3], half = frame(middle, m), scale = 0.46f * (float)size / half;
+	float c = (float)cos(turn), s = (float)sin(turn);
+	for (int i = 0; i < m->n_vertices; i++) {
+		float v[3], p[3], n[3];
+		for (int k = 0; k < 3; k++)
+			v[k] = m->vertices[i][k] - middle[k];
+		turned(p, v, c, s);
+		turned(n, normals[i], c, s);
+		float lit = 0.25f + 0.9f * fmaxf(0, -0.4f * n[0] + 0.4f * n[1] + 0.82f * n[2]);
+		out[i] = (struct corner){ 0.5f * (float)size + scale * p[0], 0.5f * (float)size - scale * p[1], p[2], { 0 } };
+		for (int k = 0; k < 3; k++)
+			out[i].rgb[k] = lit * (m->colours ? m->colours[i][k] : 0.5f);
+	}
+	free(normals);
+	return out;
+}
+
+static void triangle(struct cv_picture *pic, int x0, int y0, int size, float *depth, const struct corner *a,
+                     const struct corner *b, const struct corner *c)
+{
+	float area = (b->x - a->x) * (c->y - a->y) - (c->x - a->x) * (b->y - a->y);
+	int low_x = (int)fmaxf(0, fminf(a->x, fminf(b->x, c->x))), high_x = (int)fminf((float)size - 1, fmaxf(a->x, fmaxf(b->x, c->x)));
+	int low_y = (int)fmaxf(0, fminf(a->y, fminf(b->y, c->y))), high_y = (int)fminf((float)size - 1, fmaxf(a->y, fmaxf(b->y, c->y)));
+	if (area == 0)
+		return;
+	for (int y = low_y; y <= high_y; y++)
+		for (int x = low_x; x <= high_x; x++) {
+			float px = (float)x + 0.5f, py = (float)y + 0.5f;
+			float v = ((px - a->x) * (c->y - a->y) - (c->x - a->x) * (py - a->y)) / area;
+			float w = ((b->x - a->x) * (py - a->y) - (px - a->x) * (b->y - a->y)) / area, u = 1 - v - w;
+			float z = u * a->z + v * b->z + w * c->z;
+			if (u < 0 || v < 0 || w < 0 || z <= depth[y * size + x])
+				continue;
+			depth[y * size + x] = z;
+			for (int k = 0; k < 3; k++) {
+				float g = u * a->rgb[k] + v * b->rgb[k] + w * c->rgb[k];
+				pic->px[3 * ((long)(y0 + y) * pic->width + x0 + x) + k] = (uint8_t)(255 * srgb_from_linear(fminf(1, g)) + 0.5f);
+			}
+		}
+}
+
+void figure_mesh(struct cv_picture *pic, int x0, int y0, int size, const struct mesh *m, double turn)
+{
+	struct corner *corners = light(m, size, turn);
+	float *depth = mem_array((size_t)size * (size_t)size, sizeof *depth);
+	for (int i = 0; i < size * size; i++)
+		depth[i] = -INFINITY;
+	for (int f = 0; f < m->n_faces; f++)
+		triangle(pic, x0, y0, size, depth, &corners[m->faces[f][0]], &corners[m->faces[f][1]], &corners[m->faces[f][2]]);
+	free(corners);
+	free(depth);
+}
