@@ -170,12 +170,13 @@ static bool runs(const struct plan *plan, const char *name)
 	return false;
 }
 
-static bool other_way(const struct plan *plan, const char *name, int have)
+/* The stage that lets this one run the other way with such a folder; null when there is none. */
+static const char *other_way(const char *name, int have)
 {
 	for (int i = 0; i < COUNT(others); i++)
-		if (!strcmp(others[i].name, name) && (have & others[i].all) == others[i].all && runs(plan, others[i].needs))
-			return true;
-	return false;
+		if (!strcmp(others[i].name, name) && (have & others[i].all) == others[i].all)
+			return others[i].needs;
+	return 0;
 }
 
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], struct err *err)
@@ -201,13 +202,14 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		const struct rule *r = &rules[i];
 		struct plan_row *row = &plan->rows[i];
 		bool has = (!r->any || have & r->any) && (have & r->all) == r->all;
-		bool other = other_way(plan, r->name, have);
+		const char *other = other_way(r->name, have);
+		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));
 		row->reason = r->does;
 		if (!has && !other)
 			row->reason = r->without;
 		else if (!is_built(r->name))
 			row->reason = "its program is not built";
-		else if (!other && r->needs && !runs(plan, r->needs))
+		else if (!fed)
 			row->reason = "a stage it needs does not run";
 		else
 			row->run = true;
