@@ -18,6 +18,7 @@ static const double SIDES_SEEN = 0.55, SIDES_CLEAR = 0.9;  // limbus_flank_aroun
 static const double CLEAR = 0.55, EXACT = 0.004;  // coverage and scatter at which no other ellipse is tried
 static const double FLANK_LEAST = 0.03;     // of the longer side: smaller eyes are not looked for by their sides
 static const double FLANK_NEAR = 0.25, FLANK_SIZE = 0.16, FLANK_SUPPORT = 0.19;
+static const double FLANK_COOLER = 0.25;     // limbus_flank_cooler: 0.01 to 0.19 for eyes of portraits
 static const double FLANK_BEHIND = 0.6;     // of the best circle's worth
 static const double FLANK_HINT = 0.15;      // natural logarithm of a hint's radius: its sigma
 enum { MIN_SIDE = 96, TRY = 5, FLANK_TRY = 8, MAX_POOL = 2 * SEEK_MAX };
@@ -128,15 +129,19 @@ static bool is_burnt(const struct rim *rim, const struct grey *white)
 	return burnt > 0.8 * n;
 }
 
+static bool is_cut(const struct ellipse *e, const struct photo *photo)
+{
+	const double c = cos(e->angle), s = sin(e->angle), slack = 0.01 * e->a;
+	double hx = hypot(e->a * c, e->b * s), hy = hypot(e->a * s, e->b * c);
+	return e->cx - hx < -slack || e->cy - hy < -slack || e->cx + hx > photo->width + slack || e->cy + hy > photo->height + slack;
+}
+
 /* The first reason against a measured ellipse, or null. */
 static const char *judge(const struct rim *rim, const struct photo *photo, const struct pyramid *pyramid,
                          const struct limbus_conf *conf)
 {
 	const struct ellipse *e = &rim->e;
-	const double c = cos(e->angle), s = sin(e->angle), slack = 0.01 * e->a;
-	double hx = hypot(e->a * c, e->b * s), hy = hypot(e->a * s, e->b * c);
-	if (e->cx - hx < -slack || e->cy - hy < -slack || e->cx + hx > photo->width + slack
-	    || e->cy + hy > photo->height + slack)
+	if (is_cut(e, photo))
 		return "the iris is cut by the frame: show all of it with some white around";
 	if (rim->contrast < conf->min_contrast)
 		return "no clear edge between iris and sclera: light the eye evenly and focus on the iris";
@@ -254,14 +259,14 @@ static bool measure_flanks(struct limbus_found *found, struct ellipse around, co
 	loose.max_sigma = conf->max_flank_sigma;
 	loose.min_coverage = conf->min_flank_coverage;
 	int n = gather_flanks(pool, photo, hint, conf);
-	for (int i = 0; i < n && i < TRY && !found->ok; i++) {
+	for (int i = 0; i < n && i < TRY && !found->ok && !(n && is_cut(&pool[0].e, photo)); i++) {
 		if (pool[i].score < FLANK_SUPPORT || within(&pool[i].e, &around))
 			continue;
 		around = pool[i].e.a > around.a ? pool[i].e : around;
 		for (int k = 0; k < 2 && !found->ok; k++) {
 			if (!rim_fit(rim, photo, k ? 0 : &pyramid->tint, &pool[i].e, &loose.rim) || !agrees(&rim->e, &pool[i].e))
 				continue;
-			if (judge(rim, photo, pyramid, &loose) || (!hint && has_sides_around(photo, &rim->e)))
+			if (judge(rim, photo, pyramid, &loose) || (!hint && (has_sides_around(photo, &rim->e) || limbus_flank_cooler(photo, &rim->e) > FLANK_COOLER)))
 				continue;
 			found->limbus = *rim;
 			found->score = pool[i].score;

@@ -19,4 +19,8 @@ bool limbus_flank_settle(struct seek_found *found, const struct photo *photo);
  * times; *score as in limbus_flanks. */
 double limbus_flank_around(const struct photo *photo, const struct ellipse *e, double *score);
 
+/* Share of the photograph, what is dark left out, that is less warm in colour than what lies beside the ellipse: little,
+ * where that is sclera. */
+double limbus_flank_cooler(const struct photo *photo, const struct ellipse *e);
+
 #endif

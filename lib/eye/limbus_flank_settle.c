@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "eye/limbus_flank.h"
 #include "eye/limbus_flank_map.h"
 #include "math/stats.h"
@@ -12,6 +13,7 @@ static const double MOST = 0.8;                  // a step counts no further
 static const double NEAR = 0.04, FAR = 0.12;     // of the radius: it is measured over two distances
 static const double ASPECT = 0.92, SPREAD = 0.1; // what a limbus looks like, seen within some 35 degrees
 
+static const double DARKER = 0.3;                // ln of green below the picture's median: dark
 static const double REDDER = 0.25;               // ln(red / blue) of skin over that of sclera, about
 
 /* ln(red / blue) at (x, y), map px. */
@@ -119,4 +121,23 @@ bool limbus_flank_settle(struct seek_found *found, const struct photo *photo)
 	found->score = support(&m, &top, white);
 	free(m.px);
 	return found->score > 0;
+}
+
+double limbus_flank_cooler(const struct photo *photo, const struct ellipse *e)
+{
+	double box[4] = { 0, 0, photo->width, photo->height };
+	struct log_map m = log_map_make(photo, box, fmax(photo->width, photo->height) / 200.0);
+	const long n = (long)m.width * m.height;
+	double white = sclera_warmth(&m, e), cooler = 0, light = 0, *green = mem_array((size_t)n, sizeof *green);
+	for (long i = 0; i < n; i++)
+		green[i] = (double)m.px[i][1];
+	double least = stats_median((int)n, green) - DARKER;
+	for (long i = 0; i < n; i++)
+		if ((double)m.px[i][1] > least) {
+			light++;
+			cooler += (double)(m.px[i][0] - m.px[i][2]) < white;
+		}
+	free(green);
+	free(m.px);
+	return cooler / fmax(light, 1);
 }
