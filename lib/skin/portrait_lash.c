@@ -14,6 +14,7 @@ enum { VIEW = 480, UPPER = 95, LOWER = 60, POINTS = 6, QUADS = POINTS - 1, TRIAN
 struct portrait_lash {
 	int vertex[3], side;
 	float weight[3], length, fan, lift;
+	float cover[POINTS];  // of a hair as thick as it is, by one as thick as it is drawn
 	bool upper;
 };
 
@@ -159,7 +160,7 @@ void portrait_lashes_move(struct portrait *p, const struct portrait_view *view)
 {
 	struct portrait_rays rays = portrait_rays_of(view);
 	for (int i = 0; i < p->n_lashes; i++) {
-		const struct portrait_lash *l = &p->lash[i];
+		struct portrait_lash *l = &p->lash[i];
 		float root[3], off[3], along[3], up[3], point[POINTS][3];
 		frame_of(root, off, along, up, p, l);
 		for (int k = 0; k < POINTS; k++) {
@@ -168,8 +169,14 @@ void portrait_lashes_move(struct portrait *p, const struct portrait_view *view)
 			for (int c = 0; c < 3; c++)
 				point[k][c] = root[c] + 0.12f * off[c] + l->length * (out * off[c] + side * along[c] + rise * up[c]);
 		}
+		// Never thinner than samples lie apart; what it covers too much then, its colour makes good.
+		float apart = 0, half0 = 0.062f * (float)(p->rig->globe[l->side].radius / 12);
+		for (int c = 0; c < 3; c++)
+			apart += (rays.origin[c] - root[c]) * (rays.origin[c] - root[c]);
+		apart = sqrtf(apart) / (float)(view->focal_px * p->conf.samples);
 		for (int k = 0; k < POINTS; k++) {
-			float way[3], to[3], wide[3], half = 0.062f * (float)(p->rig->globe[l->side].radius / 12) * (1 - 0.85f * (float)k / QUADS);
+			float way[3], to[3], wide[3], own = half0 * (1 - 0.85f * (float)k / QUADS), half = fmaxf(own, 0.45f * apart);
+			l->cover[k] = own / half;
 			for (int c = 0; c < 3; c++) {
 				way[c] = point[k < QUADS ? k + 1 : k][c] - point[k < QUADS ? k : k - 1][c];
 				to[c] = rays.origin[c] - point[k][c];
@@ -189,7 +196,9 @@ void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)
 {
 	static const float hair[3] = { 0.022f, 0.014f, 0.010f };
 	const struct portrait_lash *l = &p->lash[(face - p->first_lash) / TRIANGLES];
-	float tip = (float)((face - p->first_lash) % TRIANGLES / 4) / QUADS;
+	int quad = (face - p->first_lash) % TRIANGLES / 4;
+	float tip = (float)quad / QUADS, cover = 0.5f * (l->cover[quad] + l->cover[quad + 1]);
+	const float *light = p->mesh.light[l->vertex[0]];
 	for (int c = 0; c < 3; c++)
-		rgb[c] = hair[c] * (1 + tip) * (0.4f + p->mesh.light[l->vertex[0]][c]);
+		rgb[c] = cover * hair[c] * (1 + tip) * (0.4f + light[c]) + (1 - cover) * p->mesh.albedo[l->vertex[0]][c] * light[c];
 }
