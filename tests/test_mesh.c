@@ -234,7 +234,7 @@ static const char *fan_file(const char *name, int n, bool as_obj)
 		fprintf(out, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
 		             "element face %d\nproperty list uchar int vertex_indices\nend_header\n", 2 * n + 1, n);
 	for (int i = 0; i <= 2 * n; i++)
-		fprintf(out, as_obj ? "v %d %d 0\n" : "%d %d 0\n", i, i * i % 1000);
+		fprintf(out, as_obj ? "v %d %d 0\n" : "%d %d 0\n", i, (int)((long)i * i % 1000));
 	for (int i = 0; i < n; i++)
 		fprintf(out, as_obj ? "f 1 %d %d\n" : "3 0 %d %d\n", 2 * i + 1 + as_obj, 2 * i + 2 + as_obj);
 	fclose(out);

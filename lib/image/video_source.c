@@ -87,8 +87,11 @@ static int ascending(const void *a, const void *b)
 /* Rate and evenness from sorted times. */
 static void intervals(struct video_info *info, double *first, long n, double *time)
 {
-	qsort(time, (size_t)n, sizeof *time, ascending);
-	*first = n ? time[0] : 0;
+	*first = 0;
+	if (n)
+		qsort(time, (size_t)n, sizeof *time, ascending);
+	if (n)
+		*first = time[0];
 	if (n < 2)
 		return;
 	double *step = mem_array((size_t)n, sizeof *step);
