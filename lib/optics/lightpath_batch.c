@@ -8,13 +8,13 @@
 
 enum { BLOCK = 128 };  // a block's arrays stay in the first-level cache
 
-// Newton converges quadratically: after a step of 5e-3 mm the error is below 1e-5, after 1e-6 below 1e-12. Where
+// Newton converges quadratically: after a step of 2e-3 mm the error is below 1e-5, after 1e-7 1e-14. Where
 // the smaller curvature of L is below ILL (1/mm), float's rounding of the gradient (1e-7) moves K too far.
 #define REAL double
 #define SQRT sqrt
 #define NAME(x) double_##x
-#define FAR 1e-6
-#define ILL 0
+#define FAR 1e-7
+#define ILL 0.002
 #include "optics/lightpath_lane.h"
 #include "optics/lightpath_block.h"
 #undef REAL
@@ -25,7 +25,7 @@ enum { BLOCK = 128 };  // a block's arrays stay in the first-level cache
 #define REAL float
 #define SQRT sqrtf
 #define NAME(x) float_##x
-#define FAR 5e-3
+#define FAR 2e-3
 #define ILL 0.02
 #include "optics/lightpath_lane.h"
 #include "optics/lightpath_block.h"

@@ -84,13 +84,26 @@ static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *
 	b->kz[i] = K[2];
 }
 
-/* Lanes that have not converged, or that float cannot tell well enough, gathered and polished in double; their number. */
-static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in)
+/* Whether a lane needs another look: not converged; or past grazing incidence though the light comes from behind or may have
+ * met a focus before it came so deep: a step may have gone past the path, to where the surface turns its back. clear:
+ * lightpath_clear_depth(), or 0 as long as nobody asked. */
+static bool NAME(doubtful)(const struct NAME(block) *b, int i, const struct cornea *cornea, const double *C,
+                           double *clear)
+{
+	if (b->again[i] || b->status[i] != LIGHTPATH_GRAZING)
+		return b->again[i];
+	if (!*clear)
+		*clear = lightpath_clear_depth(cornea);
+	return b->pz[i] > *clear || (C ? C[2] > b->kz[i] : b->wz[i] > 0);
+}
+
+/* Those lanes, or that float cannot tell well enough, gathered and polished in double; their number. */
+static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in, double *clear)
 {
 	int lane[BLOCK + 1], n = 0;
 	for (int i = 0; i < m; i++) {
 		lane[n] = i;
-		n += b->again[i];
+		n += NAME(doubtful)(b, i, in->cornea, in->C, clear);
 	}
 	if (!n)
 		return 0;
@@ -107,7 +120,7 @@ static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in
 		int i = lane[j];
 		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
 		b->status[i] = again.status[j];
-		if (again.again[j])
+		if (double_doubtful(&again, j, in->cornea, in->C, clear) || again.status[j] != LIGHTPATH_OK)
 			NAME(alone)(b, i, in);
 	}
 	return n;
@@ -130,6 +143,7 @@ static long NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz, batch->x, batch->y };
 	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz, block.x, block.y };
 	long redone = 0;
+	double clear = 0;
 	for (int from = 0; from < n; from += BLOCK) {
 		int m = n - from < BLOCK ? n - from : BLOCK;
 		for (int k = 0; k < COUNT(src); k++)
@@ -138,7 +152,7 @@ static long NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 		if (!batch->x)
 			(batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
 		(batch->C ? NAME(polish_point) : NAME(polish_directional))(&block, &shared, whole, steps);
-		redone += NAME(redo)(&block, m, batch);
+		redone += NAME(redo)(&block, m, batch, &clear);
 		memcpy(batch->kx + from, block.kx, m * sizeof(REAL));
 		memcpy(batch->ky + from, block.ky, m * sizeof(REAL));
 		memcpy(batch->kz + from, block.kz, m * sizeof(REAL));

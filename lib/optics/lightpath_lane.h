@@ -140,11 +140,13 @@ SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(sh
 	b->kx[i] = kx;
 	b->ky[i] = ky;
 	b->kz[i] = kz;
-	NAME(outward)(u, b, i, c, point, kx, ky, kz);
+	REAL near = NAME(outward)(u, b, i, c, point, kx, ky, kz);
 	REAL cos_i = u[0] * kx + u[1] * ky - u[2] * (c->R - c->p * kz);
 	bool beyond = (kx * kx + ky * ky > c->rim2) | (c->p * kz > c->R);
 	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
-	b->again[i] = !(b->last2[i] <= c->far2);
+	// Newton leaves the step squared over 2 mm or so; more where the light is near and L curves with it.
+	// And its steps look small at the surface's far end, wherever they lead.
+	b->again[i] = !(b->last2[i] * (1 + 4 * near * near) <= c->far2) | (c->p * kz > (REAL)1.9 * c->R);
 }
 
 /* Irradiance gain of lightpath_gain(), from the Hessian of curve() at K. */
