@@ -142,8 +142,12 @@ bool dense_cloud(struct cloud_points *cloud, const struct head *head, const stru
 	char *tag = tag_of(m, &o->cloud);
 	bool ok = match(grid, pairs, n, pictures, &subject, head, stage, o, err)
 	          && cloud_grid_save(grid, stage_path(stage, GRID), tag, err);
+	// A small set has few pairs: what two agree on has to do.
+	enum { SMALL_SET = 20 };
+	struct cloud_conf conf = o->cloud;
+	conf.min_pairs = m->n_images < SMALL_SET && conf.min_pairs > 2 ? 2 : conf.min_pairs;
 	if (ok)
-		cloud_grid_points(cloud, grid, &o->cloud);
+		cloud_grid_points(cloud, grid, &conf);
 	for (int i = 0; i < m->n_images; i++)
 		free(pictures[i].grey);
 	free(pictures);
