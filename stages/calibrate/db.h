@@ -45,4 +45,7 @@ bool db_join(struct db *db, const char *path, struct err *err);
 /* Pairs with checked matches, and how many of them there are; for the whole database (image 0) or of one picture. */
 bool db_checked(int *pairs, long *matches, struct db *db, uint32_t image, struct err *err);
 
+/* Share of checked pairs whose matches a plane, or a camera that only turned, explains as well (0..1; 0 without pairs). */
+bool db_flat_share(double *share, struct db *db, struct err *err);
+
 #endif

@@ -121,3 +121,14 @@ bool db_checked(int *pairs, long *matches, struct db *db, uint32_t image, struct
 	sqlite3_finalize(s);
 	return ok;
 }
+
+bool db_flat_share(double *share, struct db *db, struct err *err)
+{
+	// COLMAP's estimators/two_view_geometry.h: 4 planar, 5 panoramic, 6 one of the two.
+	sqlite3_stmt *s = db_prepare(db, "SELECT total(config BETWEEN 4 AND 6)/max(1,count(*)) FROM two_view_geometries WHERE rows>0", err);
+	if (!s)
+		return false;
+	*share = sqlite3_step(s) == SQLITE_ROW ? sqlite3_column_double(s, 0) : 0;
+	sqlite3_finalize(s);
+	return true;
+}

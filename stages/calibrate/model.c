@@ -116,7 +116,14 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
                 const struct calibrate_options *o, struct err *err)
 {
 	remove_trials(stage);
-	bool ok = run_mapper(stage, views, grows, o, err) && best_trial(model, n_models, stage, err);
+	struct err why = { 0 };
+	bool ok = run_mapper(stage, views, grows, o, &why);
+	// That it found no pair to begin with is a result, and for the photographs to answer for.
+	if (!ok && !strstr(why.msg, "failed to create sparse model"))
+		return err_set(err, "%s", why.msg);
+	*n_models = 0;
+	*model = (struct colmap_model){ 0 };
+	ok = !ok || best_trial(model, n_models, stage, err);
 	remove_trials(stage);
 	return ok;
 }
@@ -136,8 +143,12 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 		file_remove(stage_path(stage, CALIBRATE_DIR "/cloud.grid"), &none);
 	if (!map(model, &n_models, views, kept, stage, o, err))
 		return false;
-	if (!model->n_images)
+	bool flat = false;
+	if (!model_is_flat(&flat, stage, err))
+		return false;
+	if (!model->n_images || flat)
 		return model_advice(views, stage, err);
+	model_warn(model, views, stage);
 	stage_note(stage, "%d of %d pictures registered, %d points, %.2f px%s", model->n_images, views->n_used, model->n_points,
 	           colmap_residual(model, -1), n_models > 1 ? "; the rest does not connect" : "");
 	return keep(model, stage, err);

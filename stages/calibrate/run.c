@@ -25,9 +25,6 @@ static void report(struct stage *stage, const struct views *views, const struct 
 	stage_figure(stage, "registered", rig->n, "");
 	stage_figure(stage, "points", head->model->n_points, "");
 	stage_figure(stage, "residual", head->residual_px, "px");
-	for (int i = 0; i < views->n_used; i++)
-		if (!head_image(head, &views->v[i]))
-			stage_skipped(stage, "%s: not registered: it shares too little with the others", views->v[i].file);
 }
 
 static bool from_views(struct stage *stage, struct views *views, const struct calibrate_options *o, struct err *err)

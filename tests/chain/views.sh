@@ -1,0 +1,110 @@
+#!/bin/bash
+# Cameras from views: programs that are missing, killed or out of disk, bad sets of photographs, one more photograph, the
+# same bytes on any number of threads. What needs COLMAP or photographs of a head is skipped where they are missing.
+. "$(dirname "$0")/../lib/chain.sh"
+
+# views DIR FILE...: a capture of those photographs.
+views() {
+	local dir=$1
+	shift
+	mkdir -p "$dir/views"
+	printf 'quality = draft\ncalibrate.same_level = 0\n' >"$dir/capture.conf"
+	cp "$@" "$dir/views/"
+}
+run_calibrate() { # DIR ARGS...: status; all it says in $log
+	local dir=$1
+	shift
+	"$BIN/calibrate" --capture="$dir" "$@" >"$log" 2>&1 </dev/null
+}
+one_line() { # NAME TEXT: exit status 1 before, one line of error that says TEXT
+	same "$1: exit status" "$status" 1
+	check "$1: says why" grep -q "$2" "$log"
+	same "$1: one line" "$(grep -vc 'left$' "$log")" 1
+}
+
+mkdir -p "$root/made"
+for kind in half grey png16; do "$VARIANT" $kind "$PHOTO" "$root/made/$kind.png"; done
+
+# Programs that are not there, or end badly.
+views "$root/fake" "$root/made/half.png" "$root/made/png16.png"
+PATH=/nonexistent run_calibrate "$root/fake"
+status=$?
+one_line "colmap not installed" "colmap is not installed: apt-get install colmap"
+mkdir "$root/bin"
+fake() { printf '#!/bin/sh\n%s\n' "$1" >"$root/bin/colmap" && chmod +x "$root/bin/colmap"; }
+for case in 'kill -9 $$|was killed' "echo 'SQLite error: database or disk is full'; exit 1|the disk is full" \
+	'echo "ERROR: no"; exit 1|failed: ERROR: no' 'exit 0|database.db'; do
+	fake "${case%|*}"
+	PATH="$root/bin:$PATH" run_calibrate "$root/fake"
+	status=$?
+	one_line "colmap: ${case%%|*}" "${case##*|}"
+	check "colmap: ${case%%|*}: nothing is left for others to take" test ! -e "$root/fake/work/rig.json"
+done
+
+# Nothing to do: calibrate does not run, and the plan says why.
+new_capture "$root/single"
+cp "$PHOTO" "$root/single/photos/right_a.jpg"
+mkdir "$root/single/views"
+cp "$PHOTO" "$root/single/views/"
+"$BIN/plan" --capture="$root/single" --show >"$log" 2>&1
+check "a single view: calibrate is skipped, with its reason" grep -q '^calibrate *skip .*no views' "$log"
+
+# One photograph, one that is none, one twice.
+echo "no picture" >"$root/made/text.jpg"
+views "$root/few" "$root/made/half.png" "$root/made/text.jpg"
+cp "$root/made/half.png" "$root/few/views/copy.png"
+run_calibrate "$root/few"
+status=$?
+same "one usable photograph: exit status" "$status" 1
+for says in "text.jpg: is no photograph" "the same file as views/copy.png" "1 usable photographs, at least 2"; do
+	check "one usable photograph: $says" grep -q "$says" "$log"
+done
+
+# Frames of a video that stands still.
+mkdir -p "$root/still/views"
+echo "quality = draft" >"$root/still/capture.conf"
+for i in $(seq 10 25); do cp "$PHOTO" "$root/still/views/f$i.jpg" && printf '%s' "$i" >>"$root/still/views/f$i.jpg"; done
+run_calibrate "$root/still"
+check "near-duplicates are left out, and it is said" grep -q "15 of 16 left out" "$log"
+
+heads=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
+if ! command -v colmap >/dev/null 2>&1; then skip "views through COLMAP" "colmap is not installed"; exit; fi
+if [ ! -d "$heads" ]; then skip "views through COLMAP" "no photographs of a head"; exit; fi
+
+views "$root/other" "$heads/00013.jpg" "$root/made/half.png"
+run_calibrate "$root/other"
+status=$?
+same "two different things: exit status" "$status" 1
+check "two different things: says what to do" grep -q "walk round the head" "$log"
+
+head_views() { views "$1" "$heads"/000{13,16,22,31,34,36,62,63}.jpg; }
+head_views "$root/head"
+run_calibrate "$root/head" --threads=1
+same "eight views of a head: exit status" "$?" 0
+same "all have a camera" "$(grep -c '"cam_from_head": \[' "$root/head/work/rig.json")" 8
+check "there is a mesh" test -s "$root/head/work/subject.ply"
+head_views "$root/again"
+run_calibrate "$root/again" --threads=2
+results() { (cd "$1/work" && sha256sum rig.json subject.ply calibrate/rig.png); }
+same "the same bytes on two threads" "$(results "$root/again")" "$(results "$root/head")"
+
+# One more: what was extracted, matched and found before is not done again, and the old cameras stay where they are.
+cp "$heads/00035.jpg" "$root/head/views/"
+: >"$root/head/work/calibrate/colmap.log"
+run_calibrate "$root/head"
+same "one more view: exit status" "$?" 0
+same "one more view: it has a camera" "$(grep -c '"cam_from_head": \[' "$root/head/work/rig.json")" 9
+same "one more view: the others' features are not sought again" \
+	"$(grep -c '^Processed file' "$root/head/work/calibrate/colmap.log")" 1
+
+# A kept model whose bytes have changed is not gone on with.
+printf 'x' | dd of="$root/head/work/calibrate/model/points3D.bin" bs=1 seek=200 conv=notrunc 2>/dev/null
+cp "$heads/00060.jpg" "$root/head/views/"
+run_calibrate "$root/head"
+same "a changed model: exit status" "$?" 0
+check "a changed model: begun anew, and it is said" grep -q "not the ones that were sealed.*begun anew" "$log"
+
+# A mesh that is given is not made.
+cp "$root/again/work/subject.ply" "$root/again/subject.ply"
+run_calibrate "$root/again" --force
+check "a mesh is given: said" grep -q "the folder has one" "$log"
