@@ -119,6 +119,12 @@ static void band(FILE *out, const struct frame *f, const struct chart_series *s)
 static void line(FILE *out, const struct frame *f, const struct chart_series *s)
 {
 	bool pen = false;
+	for (int i = 0; i < s->n && s->dots; i++)
+		if (isfinite(s->x[i] + s->y[i]))
+			fprintf(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.4\" fill=\"%s\"/>\n", place_x(f, s->x[i]), place_y(f, s->y[i]),
+			        s->colour);
+	if (s->no_line)
+		return;
 	fputs("<path d=\"", out);
 	for (int i = 0; i < s->n; i++) {
 		if (!isfinite(s->x[i]) || !isfinite(s->y[i])) {
@@ -132,16 +138,19 @@ static void line(FILE *out, const struct frame *f, const struct chart_series *s)
 	if (s->dash)
 		fprintf(out, " stroke-dasharray=\"%s\"", s->dash);
 	fputs("/>\n", out);
-	for (int i = 0; i < s->n && s->dots; i++)
-		if (isfinite(s->x[i] + s->y[i]))
-			fprintf(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.4\" fill=\"%s\"/>\n", place_x(f, s->x[i]), place_y(f, s->y[i]),
-			        s->colour);
 }
 
 /* In the upper right corner, one line a series. */
 static void legend(FILE *out, const struct frame *f, const struct chart_panel *p)
 {
-	int row = 0;
+	int row = 0, rows = 0, longest = 0;
+	for (int i = 0; i < p->n; i++) {
+		int length = p->series[i].name ? (int)strlen(p->series[i].name) : 0;
+		rows += length > 0;
+		longest = length > longest ? length : longest;
+	}
+	fprintf(out, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%d\" fill=\"#fff\" fill-opacity=\"0.75\"/>",
+	        f->x0 + f->width - 42 - 6.0 * longest, f->y0 + 3, 40 + 6.0 * longest, 15 * rows + 3);
 	for (int i = 0; i < p->n; i++) {
 		const struct chart_series *s = &p->series[i];
 		if (!s->name)

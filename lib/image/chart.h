@@ -11,7 +11,7 @@ struct chart_series {
 	int n;
 	const double *x, *y;  // NAN interrupts the line
 	const double *sigma;  // band y - sigma .. y + sigma, or null
-	bool dots;            // a dot at each point
+	bool dots, no_line;   // a dot at each point; nothing between them
 };
 
 struct chart_panel {

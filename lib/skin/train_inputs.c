@@ -253,6 +253,24 @@ static void baseline(struct train *t, int eye)
 	free(controls);
 }
 
+/* A lid that moves with the gaze rather than with the opening stands at almost the same place in the shut and in the wide
+ * eye: equation 3.7 would divide by nothing. Its range is then what it covers in the clip. */
+static void widen(struct train *t)
+{
+	struct skin_model *m = t->model;
+	double *x = mem_array((size_t)t->clip->n + 1, sizeof *x);
+	for (int i = 0; i < SKIN_EYE_INPUTS; i++) {
+		int n = 0;
+		for (long k = 0; k < t->clip->n && is_aperture(i) && t->eye[i / EYE_INPUTS]; k++)
+			if (!isnan(t->clip->g[k * m->n_inputs + i]))
+				x[n++] = t->clip->g[k * m->n_inputs + i];
+		double range = n ? stats_quantile(n, x, 0.95) - stats_quantile(n, x, 0.05) : 0;
+		if (n && m->open[i] - m->closed[i] < 0.5 * range)
+			m->open[i] = m->closed[i] + range;
+	}
+	free(x);
+}
+
 void train_apertures(struct train *t)
 {
 	struct skin_model *m = t->model;
@@ -272,6 +290,7 @@ void train_apertures(struct train *t)
 			           t->clip->place, least, most);
 		}
 	}
+	widen(t);
 	for (int e = 0; e < 2; e++)
 		if (t->eye[e] && n)
 			baseline(t, e);

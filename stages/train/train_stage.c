@@ -35,14 +35,14 @@ static bool draw(const struct train_report *r, const struct train_conf *conf, co
 		int lines = 0, k = kept(conf, c, p);
 		if (!c->n)
 			continue;
-		series[n][lines++] = (struct chart_series){ "linear", "#d62728", 0, c->n, x, c->linear, c->linear_sigma, true };
+		series[n][lines++] = (struct chart_series){ "linear", "#d62728", 0, c->n, x, c->linear, c->linear_sigma, true, false };
 		if (!conf->brief)
 			series[n][lines++] = (struct chart_series){ "radial basis functions", "#1f77b4", 0, c->n, x, c->rbf, c->rbf_sigma,
-				                                        true };
-		series[n][lines++] = (struct chart_series){ "components alone", "#7f7f7f", "5 4", c->n, x, c->pca, 0, false };
-		series[n][lines++] = (struct chart_series){ "linear, random frames", "#ff9896", "5 4", c->n, x, c->random, 0, false };
+				                                        true, false };
+		series[n][lines++] = (struct chart_series){ "components alone", "#7f7f7f", "5 4", c->n, x, c->pca, 0, false, false };
+		series[n][lines++] = (struct chart_series){ "linear, random frames", "#ff9896", "5 4", c->n, x, c->random, 0, false, false };
 		at[n][0] = at[n][1] = k + 1;
-		series[n][lines++] = (struct chart_series){ "kept", "#2ca02c", "2 3", 2, at[n], span, 0, false };
+		series[n][lines++] = (struct chart_series){ "kept", "#2ca02c", "2 3", 2, at[n], span, 0, false, false };
 		double top = 0;
 		for (int i = 0; i < c->n; i++)
 			top = fmax(top, fmax(c->linear[i], conf->brief ? 0 : c->rbf[i]));
