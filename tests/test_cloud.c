@@ -97,9 +97,9 @@ static void test_ball(void **state)
 	assert_true(facing > 0.97);
 	// Kept between runs, to the bit.
 	const char *path = scratch_path("grid");
-	struct cloud_grid *back;
+	struct cloud_grid *back = 0;
 	struct cloud_points again;
-	char *tag;
+	char *tag = 0;
 	assert_true(cloud_grid_save(grid, path, "what\n", &err) && cloud_grid_load(&back, &tag, path));
 	assert_string_equal(tag, "what\n");
 	cloud_grid_points(&again, back, &conf);
