@@ -92,6 +92,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 	static const char *const pictures[] = { "front", "three_quarter", "turntable", "contact_sheet" };
 	struct inputs in = { 0 };
 	add(&in, "work/plan.json");
+	add(&in, "work/calibrate/rig.png");
 	for (int i = 0; i < COUNT(stages); i++)
 		add(&in, "work/log/%s.json", stages[i]);
 	for (int e = 0; e < capture->n_eyes; e++) {
@@ -136,6 +137,9 @@ static json_t *data_make(struct page *page)
 	json_object_set_new(data, "has_photos", json_boolean(page->capture->n_photos));
 	if (page->capture->n_photos)
 		json_object_set_new(data, "eyes", page_eyes(page));
+	json_t *rig = page_rig(page);
+	if (rig)
+		json_object_set_new(data, "rig", rig);
 	json_t *skin = page_skin(page);
 	if (skin)
 		json_object_set_new(data, "skin", skin);

@@ -33,6 +33,8 @@ __attribute__((format(printf, 1, 2)))
 json_t *page_text(const char *fmt, ...);
 
 json_t *page_photos(struct page *page);
+/* Null where no cameras were found from views/. */
+json_t *page_rig(struct page *page);
 /* Null where the folder has no video. */
 json_t *page_skin(struct page *page);
 json_t *page_eyes(struct page *page);

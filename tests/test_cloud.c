@@ -106,10 +106,12 @@ static void test_ball(void **state)
 	assert_int_equal(again.n, all.n);
 	assert_memory_equal(again.xyz, all.xyz, (size_t)all.n * sizeof *all.xyz);
 	free(tag);
-	assert_false(cloud_grid_load(&back, &tag, scratch_text("no", "EWCLOUD but not really")));
+	struct cloud_grid *none;
+	assert_false(cloud_grid_load(&none, &tag, scratch_text("no", "EWCLOUD but not really")));
 	cloud_points_free(&all);
 	cloud_points_free(&again);
 	cloud_grid_free(grid);
+	cloud_grid_free(back);
 	for (int i = 0; i < USED; i++)
 		free(pictures[i].grey);
 	colmap_free(&m);

@@ -25,9 +25,10 @@ struct nearest {
 
 static float *widen(const struct sfm_features *f)
 {
+	const uint8_t *bytes = (const uint8_t *)f->descriptors;
 	float *out = mem_array((size_t)f->n * SIFT_DIM, sizeof *out);
 	for (long i = 0; i < (long)f->n * SIFT_DIM; i++)
-		out[i] = f->descriptors[0][i];
+		out[i] = bytes[i];
 	return out;
 }
 

@@ -7,15 +7,25 @@
 
 #include "base/mem.h"
 #include "image/photo.h"
+#include "optics/camera_rig.h"
 
 char *limbus_record_path(const struct capture_photo *photo)
 {
 	return mem_printf("work/limbus/%s.edge.json", photo->name);
 }
 
-/* capture.conf for this photograph, for all, EXIF, in that order; none: a nominal camera far away. */
+#define RIG "work/rig.json"
+
+/* The camera `calibrate` found for this photograph, when it is of the size it was found at; else null. */
+static const struct rig_camera *rig_camera_of(const struct camera_rig *rig, const char *file, const struct photo *photo)
+{
+	const struct rig_camera *c = camera_rig_find(rig, file);
+	return c && c->width == photo->width && c->height == photo->height ? c : 0;
+}
+
+/* capture.conf for this photograph, for all, what calibrate found, EXIF, in that order; none: a nominal camera far away. */
 static struct camera camera_of(const struct limbus_options *o, const char *name, const struct photo *photo,
-                               const struct ellipse *limbus)
+                               const struct ellipse *limbus, const struct rig_camera *calibrated)
 {
 	struct camera c = pose_nominal_camera(limbus, &o->eye, photo->width, photo->height);
 	const struct opt_each *focal = capture_each(&o->photo_focal, name), *center = capture_each(&o->photo_center, name);
@@ -30,6 +40,8 @@ static struct camera camera_of(const struct limbus_options *o, const char *name,
 		c.focal_px = by_mm;
 	if (focal || isfinite(o->focal_px) || isfinite(by_mm)) {
 		c.source = CAMERA_CONF;
+	} else if (calibrated) {
+		return calibrated->camera;
 	} else if (isfinite(exif->focal_px)) {
 		/* EXIF names the focal length at infinity: close up the picture lies (1 + magnification) times as far behind
 		 * the lens. */
@@ -48,12 +60,12 @@ static struct camera camera_of(const struct limbus_options *o, const char *name,
 
 /* Camera, then which way the eye leans, from two trial poses. */
 static bool lean(struct limbus_record *record, const struct limbus_found *found, const struct photo *photo,
-                 const char *name, const struct limbus_options *o, struct err *err)
+                 const char *name, const struct limbus_options *o, const struct rig_camera *calibrated, struct err *err)
 {
 	struct pose_view *view = &record->view;
 	struct pose_conf conf = o->pose;
 	struct pose pose;
-	view->camera = camera_of(o, name, photo, &view->limbus);
+	view->camera = camera_of(o, name, photo, &view->limbus, calibrated);
 	if (isfinite(o->eye.limbus_aspect)) {
 		conf.aspect_mean = o->eye.limbus_aspect;
 		conf.aspect_sigma = 0;
@@ -69,7 +81,7 @@ static bool lean(struct limbus_record *record, const struct limbus_found *found,
 }
 
 static void measure_one(struct limbus_record *record, struct stage *stage, const struct capture_photo *p,
-                        const struct limbus_options *o)
+                        const struct limbus_options *o, const struct camera_rig *rig)
 {
 	struct photo photo = { 0 };
 	struct err err = { 0 };
@@ -86,7 +98,7 @@ static void measure_one(struct limbus_record *record, struct stage *stage, const
 	const struct opt_each *hint = capture_each(&o->photo_hint, p->name);
 	limbus_find(found, &photo, hint ? hint->value : 0, &o->find);
 	limbus_record_fill(record, found, &photo);
-	if (record->ok && !lean(record, found, &photo, p->name, o, &err)) {
+	if (record->ok && !lean(record, found, &photo, p->name, o, rig_camera_of(rig, p->file, &photo), &err)) {
 		record->ok = false;
 		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
 	}
@@ -96,20 +108,26 @@ static void measure_one(struct limbus_record *record, struct stage *stage, const
 
 bool limbus_measure(struct stage *stage, const struct capture *capture, const struct limbus_options *o, struct err *err)
 {
-	bool ok = true;
+	struct camera_rig rig = { 0 };
+	const char *path = stage_path(stage, RIG);
+	const bool has_rig = file_exists(path);
+	bool ok = !has_rig || camera_rig_load(&rig, path, err);
 	for (int i = 0; i < capture->n_photos && ok; i++) {
 		const struct capture_photo *p = &capture->photos[i];
-		const char *in[] = { p->file };
+		// A photograph the rig does not know is measured the same with and without it.
+		const int n_in = camera_rig_find(&rig, p->file) ? 2 : 1;
+		const char *in[] = { p->file, RIG };
 		char *out = limbus_record_path(p);
 		stage_progress(stage, i, capture->n_photos, "measure");
-		if (!stage_fresh(stage, out, 1, in)) {
+		if (!stage_fresh(stage, out, n_in, in)) {
 			struct limbus_record *record = mem_new(1, sizeof *record);
-			measure_one(record, stage, p, o);
-			ok = limbus_record_save(record, stage_path(stage, "%s", out), stage_made_by(stage, 1, in), err)
-			     && stage_made(stage, out, 1, in, err);
+			measure_one(record, stage, p, o, &rig);
+			ok = limbus_record_save(record, stage_path(stage, "%s", out), stage_made_by(stage, n_in, in), err)
+			     && stage_made(stage, out, n_in, in, err);
 			free(record);
 		}
 		free(out);
 	}
+	camera_rig_free(&rig);
 	return ok;
 }

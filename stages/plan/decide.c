@@ -35,7 +35,7 @@ static const struct rule {
 	  "no targets/, or no video/ to learn from" },
 	{ "extrapolate", "transfer", TARGETS, VIDEO, "rigs the characters", "no targets/, or no video/ to learn from" },
 	{ "animate", "train", SCRIPT, VIDEO, "moves the eyes as script/ says", "no script/, or no video/ to learn from" },
-	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "neither photos/ of an eye nor video/ and targets/ to show" },
+	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "neither photos/ of an eye, nor views/, nor video/ and targets/ to show" },
 };
 
 /* Stages that run for another reason, too: the folder has all of `all`, and the stage needed runs. */
@@ -44,6 +44,7 @@ static const struct {
 	int all;
 } others[] = {
 	{ "render", "extrapolate", VIDEO | TARGETS },
+	{ "render", "calibrate", VIEWS },
 };
 
 const char *const plan_names[PLAN_STAGES] = {
