@@ -307,7 +307,7 @@ bool sweep(struct sweep_points *out, const struct views_truth *truth, const char
 		far[i] = vec_norm(d);
 	}
 	// The head fills about a third of the way from its middle to the cameras.
-	out->radius = ok ? 0.5 * stats_median(truth->n, far) : 0;
+	out->radius = ok ? 0.45 * stats_median(truth->n, far) : 0;
 #pragma omp parallel for schedule(dynamic) if (ok)
 	for (int i = 0; i < truth->n; i++) {
 		int near[NEIGHBOURS];
