@@ -127,6 +127,7 @@ static struct glint flood(unsigned char *marks, const struct image *m, const str
 		int at = stack[--top], u = at % w, v = at / w;
 		take(&g, image_at(m, u, v), u, v, s->ring[at] >= 0 ? s->rgb[s->ring[at]] : black);
 		g.edge = g.edge || s->ring[at] >= RINGS - 1;
+		g.over += s->least[at] / fmaxf(s->ring[at] >= 0 ? s->level[s->ring[at]] : 0, 1e-3f);
 		for (int k = 0; k < 4; k++) {
 			int a = u + (k == 0) - (k == 1), b = v + (k == 2) - (k == 3);
 			if (a >= 0 && b >= 0 && a < w && b < m->height && marks[b * w + a]) {
@@ -137,6 +138,7 @@ static struct glint flood(unsigned char *marks, const struct image *m, const str
 	}
 	g.x /= g.sum;
 	g.y /= g.sum;
+	g.over /= (double)g.n;
 	for (int c = 0; c < 3; c++)
 		g.rgb[c] /= (double)g.n;
 	return g;
@@ -153,11 +155,13 @@ static void keep(struct glint glints[], int *n, const struct glint *g)
 	*n += *n < GLINTS_MAX;
 }
 
-/* Neither noise nor a wet lash, no lid, and more or less of one piece. */
+/* Neither noise nor a wet lash, no lid, and more or less of one piece. What is small and not bright may be a pale fibre of
+ * the iris: those are up to twice as light as the upper quarter of their ring, mirror images of lamps 2.5 times or more. */
 static bool is_lamp(const struct glint *g, double a)
 {
 	double box = (g->hi[0] - g->lo[0] + 1.0) * (g->hi[1] - g->lo[1] + 1);
-	double least = fmin(g->rgb[0], fmin(g->rgb[1], g->rgb[2])) > 0.55 ? 1.5e-4 : 2e-3;  // a bright one may be small
+	bool bright = fmin(g->rgb[0], fmin(g->rgb[1], g->rgb[2])) > 0.55;
+	double least = bright ? 1.5e-4 : g->over > 2.5 ? 2e-3 : 1e-2;
 	return !g->edge && (double)g->n > least * a * a && (double)g->n < 0.5 * a * a && (double)g->n > 0.4 * box;
 }
 

@@ -10,6 +10,7 @@ struct glint {
 	double sum, x, y;      // light above the iris; its middle
 	double rgb[3];         // mean, above the iris
 	long n;                // pixels
+	double over;           // how many times as light as the upper quarter of what lies round it, mean
 	int lo[2], hi[2];      // the box they fill, inclusive
 	bool edge;             // reaches the limbus: a lid, more likely than a lamp
 };

@@ -88,7 +88,7 @@ bool sheet_contact(struct job *job, struct err *err)
 		rels[i] = in[i] + strlen(job->stage->capture) + 1;
 	bool ok = stage_fresh(job->stage, rel, n, rels);
 	if (!ok) {
-		struct sheet s = { .picture = { .width = 1500, .channels = 3 }, .y = MARGIN };
+		struct sheet s = { .picture = { .width = job->conf->sheet_px, .channels = 3 }, .y = MARGIN };
 		sheet_grow(&s, 0);
 		for (int i = 0; i < job->n_shots; i++) {
 			char *caption = mem_printf("%s: photograph, rendering, difference x 4", job->shots[i].photo->name);

@@ -5,13 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <turbojpeg.h>
+#include <zlib.h>
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/photo.h"
 
-/* zlib's levels above 2 take twice the time for a tenth of the size on photographs and renders. */
-enum { PNG_LEVEL = 2 };
 
 struct png_sink {
 	uint8_t *data;
@@ -59,8 +58,10 @@ static bool write_rows(png_structp png, png_infop info, struct png_sink *s, cons
 	png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, type[channels], PNG_INTERLACE_NONE,
 	             PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
 	png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-	png_set_compression_level(png, PNG_LEVEL);
-	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
+	// Photographs and renders hold no repetitions for zlib to find: runs alone, on differences to the mean of left and
+	// above, are as small as its level 2 and take two thirds of the time. Measured on 1500 x 1640: 69 and 98 ms.
+	png_set_compression_strategy(png, Z_RLE);
+	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_AVG);
 	png_write_info(png, info);
 	for (int y = 0; y < height; y++)
 		png_write_row(png, px + (size_t)y * (size_t)width * (size_t)channels);
