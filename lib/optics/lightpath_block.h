@@ -56,7 +56,8 @@ static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3]
 {
 	struct NAME(shared) shared = { .R = c->R, .p = c->p, .n = c->n, .n2_1 = c->n * c->n - 1, .inv_2R = 0.5 / c->R,
 		                       .rim2 = c->rim * c->rim, .bend = path_bend(c->n) };
-	shared.far2 = FAR * FAR;
+	// Near n = 1 the law of refraction bends sharply at grazing incidence: a step leaves more.
+	shared.far2 = FAR * FAR * fmin(fmax(4 * (c->n * c->n - 1), 0.01), 1);
 	shared.ill = ILL;
 	for (int k = 0; k < 3 && C; k++)
 		shared.C[k] = C[k];
