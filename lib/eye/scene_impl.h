@@ -17,12 +17,14 @@ struct iris_batch {
 	float rgb[3][BATCH];                    // scattered towards the beholder; a white plane = 1
 };
 
-/* One light in the eye's frame, with its own refraction function: K and the irradiance gain over the iris, on planes
- * at the depths z[0] and z[1]. */
+/* One light in the eye's frame, with its own refraction function over the iris, on planes at the depths z[0] and z[1]:
+ * unit direction towards it, irradiance of a plane that faces it there, and where on the cornea its light came in (1: at the
+ * limbus). */
+enum { SCENE_WAY = 8 };  // five, and room for a whole vector
 struct scene_beam {
 	float dir[3], rgb[3];
 	float z[2];
-	float K[2][SCENE_GRID][SCENE_GRID][4];  // x, y, z, gain
+	float way[2][SCENE_GRID][SCENE_GRID][SCENE_WAY];
 };
 
 struct scene_beams {
@@ -51,15 +53,29 @@ void scene_scatter(struct iris_batch *b, const struct scene *scene, const struct
 /* The alternative to scatter: the mean colour of the model, lit, without a march. */
 void scene_flat(struct iris_batch *b, const struct scene *scene, const struct scene_beams *beams);
 
-/* K and gain for every ray's point p + t v. */
-void scene_beam_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *scene,
-                      const struct scene_beam *beam);
+/* The way from points of the iris out to a camera at C, as if it were a light. free(). */
+struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
+
+/* The iris as one view shows it, for every texel of a level: the march has been done. */
+struct scene_shade {
+	int n;
+	float per_mm;
+	float *rgba;  // [n][n][4]; owned
+};
+
+/* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel, its ratio
+ * to what the model showed in the photograph times the photograph's colour. free(shade.rgba). */
+struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3],
+                                    const struct scene_beams *beams);
 
 /* The level whose texels are about as large as a pixel of `mm`. */
 const struct scene_level *scene_level_for(const struct scene *scene, double mm);
 
 /* The model's colour at a point of the iris (in) made the photograph's (out). */
 void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y);
+
+/* What that is, times the photograph's colour to the power of detail. model: what the model showed there. */
+void scene_colour_ratio(float rgb[3], const struct scene *scene, const float model[3]);
 
 /* Levels below level 0, and the range of heights. */
 void scene_levels_make(struct scene *scene);

@@ -1,4 +1,4 @@
-#include "eye/scene_impl.h"
+#include "eye/scene_march.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -215,6 +215,7 @@ void scene_free(struct scene *s)
 		free(s->level[i].relief);
 		free(s->level[i].colour);
 		free(s->level[i].model);
+		free(s->level[i].horizon);
 	}
 	image_free(&s->veins);
 	refraction_free(&s->refraction);
@@ -249,10 +250,13 @@ void scene_levels_make(struct scene *s)
 		free(l[k].relief);
 		free(l[k].colour);
 		free(l[k].model);
+		free(l[k].horizon);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
 		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
 		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
 		l[k].model = l[k - 1].model ? halve(l[k - 1].model, l[k - 1].n, 4) : 0;
+		if (s->conf.shading == SCENE_TEXELS && s->conf.shadow > 0)
+			l[k].horizon = scene_horizons(s, &l[k]);
 	}
 }
 
