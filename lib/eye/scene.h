@@ -45,6 +45,7 @@ struct scene_level {
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
 	float *horizon;               // scene_march.h; null: level is not marched from
+	float *shown;                 // [n][n][4]: colour with the pupil cut out; null: the same
 };
 
 struct scene {
@@ -57,7 +58,8 @@ struct scene {
 	float height_min, height_max, thickness_max;
 	int n_levels;
 	struct scene_level level[SCENE_LEVELS];
-	struct image veins;           // azimuthal about the axis: transmittance RGB, height of the film's ripples
+	struct image veins;           // azimuthal about the axis: albedo RGB
+	struct image film;            // the same: slopes of the tear film's ripples
 	struct tissue_optics optics;
 	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march, in each layer

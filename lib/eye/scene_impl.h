@@ -53,6 +53,12 @@ void scene_scatter(struct iris_batch *b, const struct scene *scene, const struct
 /* The alternative to scatter: the mean colour of the model, lit, without a march. */
 void scene_flat(struct iris_batch *b, const struct scene *scene, const struct scene_beams *beams);
 
+/* What is seen of the iris' colour at a point near the pupil's margin: none inside, less on the ruff. soft: half a pixel, mm. */
+void scene_pupil(float cover[3], const struct scene *scene, float x, float y, float soft);
+
+/* The photograph's colours of a level with the pupil cut out, [n][n][4]. free(). */
+float *scene_pupil_colours(const struct scene *scene, const struct scene_level *level);
+
 /* The way from points of the iris out to a camera at C, as if it were a light. free(). */
 struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
 
@@ -64,8 +70,8 @@ struct scene_shade {
 };
 
 /* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel, its ratio
- * to what the model showed in the photograph times the photograph's colour. free(shade.rgba). */
-struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3],
+ * to what the model showed in the photograph times the photograph's colour. flat: the alternative to the march. free(shade.rgba). */
+struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3], bool flat,
                                     const struct scene_beams *beams);
 
 /* The level whose texels are about as large as a pixel of `mm`. */
@@ -84,6 +90,10 @@ void scene_levels_make(struct scene *scene);
  * seen at the same radius, so that fibres go on. pupil: x, y, radius. */
 void scene_fill(float *rgba, int n, double extent, const double pupil[3]);
 
+#define SCENE_FILM_INDEX 1.336f  // of the tear film, which mirrors on all wet surfaces
+
+/* Maps of the sclera are azimuthal and equidistant about the axis: angle at the sphere's centre at their edge. */
+#define SCENE_SCLERA_REACH (110 * M_PI / 180)
 void scene_veins_make(struct scene *scene);
 
 /* Albedo of the sclera and the ripple of its film at a point of it. */

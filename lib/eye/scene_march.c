@@ -221,3 +221,19 @@ void scene_flat(struct iris_batch *r, const struct scene *s, const struct scene_
 					r->rgb[c][first + i] -= beams->beam[l].rgb[c] * s->flat[c] * w.power[0][i] * w.z[0][i];
 		}
 }
+
+void scene_flat_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *s, const struct scene_beams *beams)
+{
+	struct march_light w;
+	struct march_tile open = *tile;
+	open.horizon = 0;
+	memset(r->rgb, 0, sizeof r->rgb);
+	for (int i = 0; i < PART; i++)
+		r->span[i] = (float)scene_plain_stroma;
+	for (int l = 0; l < beams->n; l++) {
+		scene_light_tile(&w, r, &open, s, &beams->beam[l]);
+		for (int c = 0; c < 3; c++)
+			for (int i = 0; i < PART; i++)
+				r->rgb[c][i] -= beams->beam[l].rgb[c] * s->flat[c] * w.power[0][i] * w.z[0][i];
+	}
+}

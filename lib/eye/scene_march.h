@@ -59,6 +59,9 @@ void scene_light_tile(struct march_light *light, const struct iris_batch *rays, 
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene,
                         const struct scene_level *level, const struct scene_beams *beams);
 
+/* The same without a march: the model's mean colour, lit. */
+void scene_flat_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_beams *beams);
+
 /* Horizons of a level's tiles, [tile][HORIZONS][PART]. free(). */
 float *scene_horizons(const struct scene *scene, const struct scene_level *level);
 

@@ -20,6 +20,7 @@ struct painter {
 	const struct scene_beam *sight;
 	const struct scene_beams *beams;
 	int tiles;     // across
+	bool flat;
 	float *ratio;  // [level->n][level->n][4]
 };
 
@@ -60,8 +61,13 @@ static void tile_put(const struct iris_batch *b, const struct painter *p, int tx
 			continue;
 		long at = 4 * ((long)y * n + x);
 		float rgb[3] = { b->rgb[0][i], b->rgb[1][i], b->rgb[2][i] };
+		float cover[3] = { 1, 1, 1 };
 		if (p->level->model)
 			scene_colour_ratio(rgb, p->scene, p->level->model + at);
+		else
+			scene_pupil(cover, p->scene, b->px[i], b->py[i], 0.5f / p->level->per_mm);
+		for (int c = 0; c < 3; c++)
+			rgb[c] *= cover[c];
 		memcpy(p->ratio + at, rgb, sizeof rgb);
 	}
 }
@@ -84,7 +90,10 @@ static void tile_paint(const struct painter *p, int tx, int ty)
 	if (p->level->horizon)
 		t.horizon = (const float(*)[PART])p->level->horizon + (long)(ty * p->tiles + tx) * HORIZONS;
 	tile_rays(&b, p, &t, tx, ty);
-	scene_scatter_tile(&b, &t, s, p->level, p->beams);
+	if (p->flat)
+		scene_flat_tile(&b, &t, s, p->beams);
+	else
+		scene_scatter_tile(&b, &t, s, p->level, p->beams);
 	tile_put(&b, p, tx, ty);
 }
 
@@ -108,7 +117,7 @@ static void compose(struct scene_shade *out, const struct scene_level *fine, con
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < fine->n; y++) {
 		float row[4 * coarse], weak[detail < 1 ? 4 * fine->n : 1];
-		const float *colour = fine->colour + 4L * y * fine->n;
+		const float *colour = fine->shown + 4L * y * fine->n;
 		for (int i = 0; i < 4 * fine->n && detail < 1; i++)
 			weak[i] = powf(colour[i], detail);
 		int near = y / 2 < coarse ? y / 2 : coarse - 1, far = near + (y & 1 ? 1 : -1);
@@ -118,17 +127,17 @@ static void compose(struct scene_shade *out, const struct scene_level *fine, con
 	}
 }
 
-struct scene_shade scene_shade_make(const struct scene *s, const struct scene_level *level, const double C[3],
+struct scene_shade scene_shade_make(const struct scene *s, const struct scene_level *level, const double C[3], bool flat,
                                     const struct scene_beams *beams)
 {
-	const struct scene_level *coarse = level + 1 < s->level + s->n_levels ? level + 1 : level;
-	struct painter p = { s, coarse, scene_sight(s, C), beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, 0 };
+	const struct scene_level *coarse = level + 1;
+	struct painter p = { s, coarse, scene_sight(s, C), beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, flat, 0 };
 	struct scene_shade out = { level->n, level->per_mm, 0 };
 	p.ratio = mem_new((size_t)coarse->n * (size_t)coarse->n, 4 * sizeof *p.ratio);
 #pragma omp parallel for schedule(dynamic, 4)
 	for (int i = 0; i < p.tiles * p.tiles; i++)
 		tile_paint(&p, i % p.tiles, i / p.tiles);
-	if (!level->model || coarse == level) {  // nothing to multiply into
+	if (!level->model) {  // nothing to multiply into
 		out.n = coarse->n;
 		out.per_mm = coarse->per_mm;
 		out.rgba = p.ratio;
