@@ -375,6 +375,56 @@ static void threads_and_numbers(void **state)
 	scene_free(&s);
 }
 
+/* The march from the map's texels shows what the march along every ray does: light under a relief of half a millimetre's
+ * waves is smooth against texels of 0.05 mm, twice the pixels. */
+static void texels_against_rays(void **state)
+{
+	(void)state;
+	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 } };
+	struct envmap env = envmap_room(64, (double[3]){ 0.5, 0.5, 0.5 }, (double[3]){ 0.2, 0.2, 0.2 }, 1, 1, &box);
+	struct scene_lighting light = scene_lighting(&env, &env, 4);
+	struct image image[2];
+	for (int k = 0; k < 2; k++) {
+		struct scene s;
+		struct scene_conf conf = conf_of(k ? 4 : 16);
+		conf.shading = k ? SCENE_TEXELS : SCENE_RAYS;
+		conf.quadrature = k ? SCENE_EXPONENTIAL : SCENE_GAUSS;
+		conf.shadow = 16;
+		struct err err = { 0 };
+		assert_true(painted_scene(&s, 512, &plain_eye, &conf, even, bumps, 1.5, &err));
+		struct scene_view view = scene_view_turned(&s, 0, 0, 16, 480);
+		scene_fit_colour(&s, &view, &light);
+		view = scene_view_turned(&s, 0.3, -0.2, 16, 480);
+		image[k] = scene_render(&s, &view, &light, 0);
+		scene_free(&s);
+	}
+	double off = 0, all = 0, cover = 0;
+	for (int i = 0; i < 480 * 480; i++) {
+		for (int c = 0; c < 3; c++) {
+			off += fabs(image[0].px[4 * i + c] - image[1].px[4 * i + c]);
+			all += image[0].px[4 * i + c];
+		}
+		cover = fmax(cover, fabs(image[0].px[4 * i + 3] - image[1].px[4 * i + 3]));
+	}
+	print_message("texels against rays: %.2g\n", off / all);
+	assert_true(off > 0 && off / all < 0.008);  // the pupil's edge differs by part of a texel; its ring is 2 % of the eye
+	assert_true(cover < 0.01);
+	for (int k = 0; k < 2; k++)
+		image_free(&image[k]);
+	envmap_free(&env);
+}
+
+/* Gauss's rule for fading light: 4 steps are what 24 of Gauss-Legendre's are. */
+static void exponential_rule(void **state)
+{
+	(void)state;
+	double e4 = march_error(4, SCENE_EXPONENTIAL), e3 = march_error(3, SCENE_EXPONENTIAL), g4 = march_error(4, SCENE_GAUSS);
+	print_message("march: exponential 4 %.2g, 3 %.2g, Gauss-Legendre 4 %.2g\n", e4, e3, g4);
+	assert_true(e4 < 2e-3);
+	assert_true(e3 < 1.2e-2);
+	assert_true(g4 > 5 * e4);
+}
+
 /* A fibre pattern with a sector and an outer ring taken away comes back like itself: closer to what was there than its
  * own mean is, and what was seen stays. */
 static void holes_are_filled(void **state)
@@ -440,6 +490,7 @@ int main(void)
 		cmocka_unit_test(march_closed_form),   cmocka_unit_test(table_against_solver),
 		cmocka_unit_test(places),              cmocka_unit_test(photograph_comes_back),
 		cmocka_unit_test(mirror_at_normal),    cmocka_unit_test(threads_and_numbers),
+		cmocka_unit_test(texels_against_rays), cmocka_unit_test(exponential_rule),
 		cmocka_unit_test(holes_are_filled),    cmocka_unit_test(colour_differences),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

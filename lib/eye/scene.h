@@ -18,7 +18,7 @@
 
 enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 64 };
 
-enum scene_quadrature { SCENE_GAUSS, SCENE_MIDPOINT };
+enum scene_quadrature { SCENE_GAUSS, SCENE_MIDPOINT, SCENE_EXPONENTIAL };
 enum scene_shading { SCENE_RAYS, SCENE_TEXELS };       // the march: along every ray of sight, or from the map's texels once a view
 enum scene_path { SCENE_PATH_GRID, SCENE_PATH_ENDS };  // the light's way to a point: see scene_light.c
 

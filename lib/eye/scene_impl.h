@@ -83,6 +83,9 @@ void scene_colour(float rgb[3], const struct scene *scene, const struct scene_le
 /* What that is, times the photograph's colour to the power of detail. model: what the model showed there. */
 void scene_colour_ratio(float rgb[3], const struct scene *scene, const float model[3]);
 
+/* Where the march's steps lie and what they weigh, for this tissue and thickness. */
+void scene_nodes_make(struct scene *scene);
+
 /* Levels below level 0, and the range of heights. */
 void scene_levels_make(struct scene *scene);
 
