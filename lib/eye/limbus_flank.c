@@ -164,23 +164,23 @@ int limbus_flanks(struct seek_found out[SEEK_MAX], const struct photo *photo, co
 	return n;
 }
 
-double limbus_flank_around(const struct photo *photo, const struct ellipse *e, double *score)
+struct seek_found limbus_flank_around(const struct photo *photo, const struct ellipse *e)
 {
 	const struct compass compass = compass_make();
-	double reach = 5.2 * e->a, box[4] = { e->cx - reach, e->cy - reach, e->cx + reach, e->cy + reach }, ratio = 0;
+	double reach = 5.2 * e->a, box[4] = { e->cx - reach, e->cy - reach, e->cx + reach, e->cy + reach };
 	struct log_map m = log_map_make(photo, box, e->a / FINEST);
 	float x = (float)((e->cx - m.x0) / m.scale - 0.5), y = (float)((e->cy - m.y0) / m.scale - 0.5), a = (float)(e->a / m.scale);
-	*score = 0;
+	struct circle best = { x, y, a, 0 };
 	for (float k = 1.5f; k < 4.6f; k *= 1.08f)
 		for (int i = 0; i < 9; i++) {
 			float off = 0.1f * k * a;
 			struct circle o = { x + off * (float)(i % 3 - 1), y + off * (float)(i / 3 - 1), k * a, 0 };
-			double s = (double)circle_score(&m, &o, &compass, true);
-			if (s > *score) {
-				*score = s;
-				ratio = (double)k;
-			}
+			o.score = circle_score(&m, &o, &compass, true);
+			if (o.score > best.score)
+				best = o;
 		}
+	struct seek_found out = { { ((double)best.x + 0.5) * m.scale + m.x0, ((double)best.y + 0.5) * m.scale + m.y0,
+	                            (double)best.r * m.scale, (double)best.r * m.scale, 0 }, (double)best.score };
 	free(m.px);
-	return ratio;
+	return out;
 }

@@ -15,9 +15,9 @@ int limbus_flanks(struct seek_found out[SEEK_MAX], const struct photo *photo, co
  * count. score: mean step along it, arcs without one counted as 0. False: no edge is left. */
 bool limbus_flank_settle(struct seek_found *found, const struct photo *photo);
 
-/* The clearest circle round an ellipse, 1.5 to 4.5 times as large: where that is a pupil, its limbus. Returns how many
- * times; *score as in limbus_flanks. */
-double limbus_flank_around(const struct photo *photo, const struct ellipse *e, double *score);
+/* The clearest circle round an ellipse, 1.5 to 4.5 times as large: where that is a pupil, its limbus. score as in
+ * limbus_flanks, at most 1.4; 0: there is none. */
+struct seek_found limbus_flank_around(const struct photo *photo, const struct ellipse *e);
 
 /* Share of the photograph, what is dark left out, that is less warm in colour than what lies beside the ellipse: little,
  * where that is sclera. */
