@@ -83,6 +83,8 @@ static bool measure(struct limbus_found *found, struct ellipse *around, const st
 		if (!rim_fit(rim, photo, &pyramid->tint, &pool[i].e, &conf->rim))
 			continue;
 		const char *against = limbus_judge(rim, photo, pyramid, conf);
+		if (against == LIMBUS_COVERED && limbus_measure_centred(rim, &pool[i].e, photo, pyramid, conf))
+			against = 0;
 		double quality = rim->share_used * rim->e.a;
 		if (against == LIMBUS_COVERED && rim->rms < LIMBUS_EXACT * rim->e.a + LIMBUS_PIXEL_RMS && rim->e.a > around->a)
 			*around = rim->e;

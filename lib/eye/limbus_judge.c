@@ -17,7 +17,7 @@ static const double FULL = 0.8, DARK = 0.15;  // share of an edge seen, encoded 
 static const double SIDES_SEEN = 0.55;        // limbus_flank_around: of a limbus that may be
 /* On 240 rendered eyes true ellipses scatter less than the first or have a pupil less than 0.1 off their middle; wrong
  * ones scatter more and have none nearer than 0.17. */
-static const double EXACT = 0.0045, CENTRED = 0.12;
+static const double EXACT = 0.0045;
 static const double HALF = 0.5;  // of the limbus seen: less of it can be exact and wrong
 
 /* A pupil passes for a limbus but for this: what lies round it is an iris, and farther out it gets whiter. */
@@ -48,10 +48,15 @@ bool limbus_is_dark(const struct ellipse *e, const struct grey *bright)
 	return stats_median(SAMPLES, in) <= DARK;
 }
 
-/* A dark disc with the sides of something larger round it. */
+bool limbus_has_sides_around(const struct ellipse *e, const struct photo *photo, double least)
+{
+	struct seek_found round[FLANK_ROUND];
+	return limbus_flank_around(round, photo, e, FLANK_GAP) > 0 && round[0].score > least;
+}
+
 static bool is_dark_disc(const struct rim *rim, const struct photo *photo, const struct grey *bright, double sides)
 {
-	return limbus_is_dark(&rim->e, bright) && limbus_flank_around(photo, &rim->e).score > sides;
+	return limbus_is_dark(&rim->e, bright) && limbus_has_sides_around(&rim->e, photo, sides);
 }
 
 bool limbus_within(const struct ellipse *e, const struct ellipse *around)
@@ -119,7 +124,7 @@ double limbus_pupil_off(const struct ellipse *e, const struct photo *photo, cons
 
 bool limbus_sure(const struct rim *rim, double pupil_off, const struct photo *photo, const struct pyramid *pyramid)
 {
-	if (pupil_off < CENTRED)
+	if (pupil_off < LIMBUS_CENTRED)
 		return true;
 	return rim->rms < EXACT * rim->e.a && (isnan(pupil_off) || rim->coverage > HALF)
 	       && !is_dark_disc(rim, photo, &pyramid->bright[0], SIDES_SEEN);

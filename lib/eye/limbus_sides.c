@@ -11,6 +11,7 @@ static const double FLANK_NEAR = 0.25, FLANK_SIZE = 0.16, FLANK_SUPPORT = 0.19;
 static const double FLANK_COOLER = 0.25;    // limbus_flank_cooler: 0.01 to 0.19 for eyes of portraits
 static const double FLANK_BEHIND = 0.6;     // of the best circle's worth
 static const double FLANK_HINT = 0.15;      // natural logarithm of a hint's radius: its sigma
+static const double RING_GAP = 0.05;        // that of a limbal ring: pale irises are no darker than sclera
 static const double ROUND_LEAST = 0.3;      // limbus_flank_around: less is no limbus
 static const double OFF = 0.2;             // limbus_pupil_off: more is none in the middle
 static const double SIDES_CLEAR = 0.9;      // the same: of a limbus that must be
@@ -38,9 +39,19 @@ static void sort(int n, struct seek_found pool[], double value[])
 		}
 }
 
+static int around(struct seek_found out[FLANK_ROUND], const struct ellipse *e, const struct photo *photo, double gap)
+{
+	struct seek_found round[FLANK_ROUND];
+	int n = 0;
+	for (int i = 0, m = limbus_flank_around(round, photo, e, gap); i < m; i++)
+		if (round[i].score > ROUND_LEAST && limbus_flank_settle(&round[i], photo))
+			out[n++] = round[i];
+	return n;
+}
+
 /* Settled circles of limbus_flanks, best first; those far behind the best are left out. Then what lies round dark discs
  * among them: pupils have clearer sides than pale irises. */
-static int gather_flanks(struct seek_found pool[SEEK_MAX + ROUND_TRY], const struct photo *photo,
+static int gather_flanks(struct seek_found pool[SEEK_MAX + 2 * ROUND_TRY * FLANK_ROUND], const struct photo *photo,
                          const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf)
 {
 	const double longer = fmax(photo->width, photo->height), shorter = fmin(photo->width, photo->height);
@@ -56,8 +67,8 @@ static int gather_flanks(struct seek_found pool[SEEK_MAX + ROUND_TRY], const str
 	for (int i = 0; i < n && i < ROUND_TRY && !hint; i++) {
 		if (!limbus_is_dark(&pool[i].e, &pyramid->bright[0]))
 			continue;
-		pool[n + rounds] = limbus_flank_around(photo, &pool[i].e);
-		rounds += pool[n + rounds].score > ROUND_LEAST && limbus_flank_settle(&pool[n + rounds], photo);
+		for (int k = 0; k < 2; k++)
+			rounds += around(pool + n + rounds, &pool[i].e, photo, k ? RING_GAP : FLANK_GAP);
 	}
 	return n + rounds;
 }
@@ -66,6 +77,30 @@ bool limbus_agrees(const struct ellipse *e, const struct ellipse *settled)
 {
 	return hypot(e->cx - settled->cx, e->cy - settled->cy) < FLANK_NEAR * settled->a
 	       && fabs(e->a / settled->a - 1) < FLANK_SIZE;
+}
+
+static struct limbus_conf loosened(const struct limbus_conf *conf)
+{
+	struct limbus_conf loose = *conf;
+	loose.rim.settled = true;
+	loose.max_rms = conf->max_flank_rms;
+	loose.max_sigma = conf->max_flank_sigma;
+	loose.min_coverage = conf->min_flank_coverage;
+	return loose;
+}
+
+bool limbus_measure_centred(struct rim *rim, const struct ellipse *start, const struct photo *photo,
+                            const struct pyramid *pyramid, const struct limbus_conf *conf)
+{
+	const struct limbus_conf loose = loosened(conf);
+	struct rim *again = mem_new(1, sizeof *again);
+	bool ok = rim_fit(again, photo, &pyramid->tint, start, &loose.rim) && limbus_agrees(&again->e, start)
+	          && !limbus_judge(again, photo, pyramid, &loose)
+	          && limbus_pupil_off(&again->e, photo, pyramid, conf) < LIMBUS_CENTRED;
+	if (ok)
+		*rim = *again;
+	free(again);
+	return ok;
 }
 
 /* A pupil, by the sides of what is round it, or one with nothing white beside it, or with
@@ -78,7 +113,7 @@ static bool is_doubtful(const struct rim *rim, bool inside, const struct photo *
 		return !(off < OFF);
 	if (limbus_sure(rim, off, photo, pyramid))
 		return false;
-	return off > OFF || limbus_flank_around(photo, &rim->e).score > SIDES_CLEAR
+	return off > OFF || limbus_has_sides_around(&rim->e, photo, SIDES_CLEAR)
 	       || limbus_flank_cooler(photo, &rim->e) > FLANK_COOLER;
 }
 
@@ -93,16 +128,12 @@ static bool is_like(const struct ellipse *e, const struct ellipse *pupil)
 bool limbus_measure_flanks(struct limbus_found *found, struct ellipse around, const struct photo *photo,
                            const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf)
 {
-	struct seek_found pool[SEEK_MAX + ROUND_TRY];
+	struct seek_found pool[SEEK_MAX + 2 * ROUND_TRY * FLANK_ROUND];
 	struct ellipse pupil = { 0 };  // one that was measured: it is looked at once
-	struct limbus_conf loose = *conf;
+	const struct limbus_conf loose = loosened(conf);
 	struct rim *rim = mem_new(1, sizeof *rim);
-	loose.rim.settled = true;
-	loose.max_rms = conf->max_flank_rms;
-	loose.max_sigma = conf->max_flank_sigma;
-	loose.min_coverage = conf->min_flank_coverage;
 	int n = gather_flanks(pool, photo, pyramid, hint, conf);
-	for (int i = 0; i < n && i < FLANK_TRY && !found->ok && !limbus_is_cut(&pool[0].e, photo); i++) {
+	for (int i = 0; i < n && !found->ok && !limbus_is_cut(&pool[0].e, photo); i++) {
 		bool inside = limbus_within(&pool[i].e, &around);
 		if (pool[i].score < FLANK_SUPPORT || (inside && hint) || is_like(&pool[i].e, &pupil))
 			continue;
