@@ -11,6 +11,7 @@
 #include "math/stats.h"
 
 static const double OUTER = 0.3;   // least support of a limbus round a pupil, of the pupil's
+static const double ROUGH = 0.012;  // scatter, share of the semi-axis, from which an ellipse counts less
 static const double CLEAR = 0.55;  // coverage at which, if it is exact, no other ellipse is tried
 enum { MIN_SIDE = 96, TRY = 5, MAX_POOL = 2 * SEEK_MAX };
 
@@ -85,7 +86,7 @@ static bool measure(struct limbus_found *found, struct ellipse *around, const st
 		const char *against = limbus_judge(rim, photo, pyramid, conf);
 		if (against == LIMBUS_COVERED && limbus_measure_centred(rim, &pool[i].e, photo, pyramid, conf))
 			against = 0;
-		double quality = rim->share_used * rim->e.a;
+		double quality = rim->share_used * rim->e.a * fmin(pow(ROUGH * rim->e.a / rim->rms, 2), 1);
 		if (against == LIMBUS_COVERED && rim->rms < LIMBUS_EXACT * rim->e.a + LIMBUS_PIXEL_RMS && rim->e.a > around->a)
 			*around = rim->e;
 		if (!against && quality > best) {

@@ -18,7 +18,8 @@ static const double SIDES_SEEN = 0.55;        // limbus_flank_around: of a limbu
 /* On 240 rendered eyes true ellipses scatter less than the first or have a pupil less than 0.1 off their middle; wrong
  * ones scatter more and have none nearer than 0.17. */
 static const double EXACT = 0.0045;
-static const double HALF = 0.5;  // of the limbus seen: less of it can be exact and wrong
+static const double STEEP = 0.62;       // semi-axes of an eye turned by 52 degrees
+static const double LITTLE = 0.37, HALF = 0.5;  // of the limbus seen: less of it can be exact and wrong
 
 /* A pupil passes for a limbus but for this: what lies round it is an iris, and farther out it gets whiter. */
 static bool is_pupil(const struct rim *rim, const struct grey *white)
@@ -124,7 +125,9 @@ double limbus_pupil_off(const struct ellipse *e, const struct photo *photo, cons
 
 bool limbus_sure(const struct rim *rim, double pupil_off, const struct photo *photo, const struct pyramid *pyramid)
 {
-	if (pupil_off < LIMBUS_CENTRED)
+	if (rim->e.b < STEEP * rim->e.a)
+		return false;
+	if (pupil_off < LIMBUS_CENTRED && (rim->coverage > LITTLE || rim->rms < EXACT * rim->e.a))
 		return true;
 	return rim->rms < EXACT * rim->e.a && (isnan(pupil_off) || rim->coverage > HALF)
 	       && !is_dark_disc(rim, photo, &pyramid->bright[0], SIDES_SEEN);

@@ -11,8 +11,10 @@ static const double FLANK_NEAR = 0.25, FLANK_SIZE = 0.16, FLANK_SUPPORT = 0.19;
 static const double FLANK_COOLER = 0.25;    // limbus_flank_cooler: 0.01 to 0.19 for eyes of portraits
 static const double FLANK_BEHIND = 0.6;     // of the best circle's worth
 static const double FLANK_HINT = 0.15;      // natural logarithm of a hint's radius: its sigma
+static const double ROUND_SUPPORT = 0.08;   // of what is round a pupil and has it in its middle
 static const double RING_GAP = 0.05;        // that of a limbal ring: pale irises are no darker than sclera
 static const double ROUND_LEAST = 0.3;      // limbus_flank_around: less is no limbus
+static const double LITTLE = 0.37;         // of the limbus seen, where it is not exact
 static const double OFF = 0.2;             // limbus_pupil_off: more is none in the middle
 static const double SIDES_CLEAR = 0.9;      // the same: of a limbus that must be
 
@@ -51,12 +53,13 @@ static int around(struct seek_found out[FLANK_ROUND], const struct ellipse *e, c
 
 /* Settled circles of limbus_flanks, best first; those far behind the best are left out. Then what lies round dark discs
  * among them: pupils have clearer sides than pale irises. */
-static int gather_flanks(struct seek_found pool[SEEK_MAX + 2 * ROUND_TRY * FLANK_ROUND], const struct photo *photo,
+static int gather_flanks(struct seek_found pool[SEEK_MAX + 2 * ROUND_TRY * FLANK_ROUND], int *rounds, const struct photo *photo,
                          const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf)
 {
 	const double longer = fmax(photo->width, photo->height), shorter = fmin(photo->width, photo->height);
 	double lo = fmax(conf->seek.min_radius, FLANK_LEAST) * longer, value[SEEK_MAX];
-	int n = limbus_flanks(pool, photo, hint, lo, conf->seek.max_radius * shorter), rounds = 0;
+	int n = limbus_flanks(pool, photo, hint, lo, conf->seek.max_radius * shorter);
+	*rounds = 0;
 	n = n < FLANK_TRY ? n : FLANK_TRY;
 #pragma omp parallel for schedule(dynamic, 1)
 	for (int i = 0; i < n; i++)
@@ -68,9 +71,9 @@ static int gather_flanks(struct seek_found pool[SEEK_MAX + 2 * ROUND_TRY * FLANK
 		if (!limbus_is_dark(&pool[i].e, &pyramid->bright[0]))
 			continue;
 		for (int k = 0; k < 2; k++)
-			rounds += around(pool + n + rounds, &pool[i].e, photo, k ? RING_GAP : FLANK_GAP);
+			*rounds += around(pool + n + *rounds, &pool[i].e, photo, k ? RING_GAP : FLANK_GAP);
 	}
-	return n + rounds;
+	return n;
 }
 
 bool limbus_agrees(const struct ellipse *e, const struct ellipse *settled)
@@ -94,9 +97,11 @@ bool limbus_measure_centred(struct rim *rim, const struct ellipse *start, const 
 {
 	const struct limbus_conf loose = loosened(conf);
 	struct rim *again = mem_new(1, sizeof *again);
-	bool ok = rim_fit(again, photo, &pyramid->tint, start, &loose.rim) && limbus_agrees(&again->e, start)
-	          && !limbus_judge(again, photo, pyramid, &loose)
-	          && limbus_pupil_off(&again->e, photo, pyramid, conf) < LIMBUS_CENTRED;
+	bool ok = false;
+	for (int k = 0; k < 2 && !ok; k++)
+		ok = rim_fit(again, photo, k ? 0 : &pyramid->tint, start, &loose.rim) && limbus_agrees(&again->e, start)
+		     && !limbus_judge(again, photo, pyramid, &loose)
+		     && limbus_pupil_off(&again->e, photo, pyramid, conf) < LIMBUS_CENTRED;
 	if (ok)
 		*rim = *again;
 	free(again);
@@ -105,15 +110,15 @@ bool limbus_measure_centred(struct rim *rim, const struct ellipse *start, const 
 
 /* A pupil, by the sides of what is round it, or one with nothing white beside it, or with
  * the pupil far off its middle. */
-static bool is_doubtful(const struct rim *rim, bool inside, const struct photo *photo, const struct pyramid *pyramid,
+static bool is_doubtful(const struct rim *rim, bool strict, const struct photo *photo, const struct pyramid *pyramid,
                         const struct limbus_conf *conf)
 {
 	double off = limbus_pupil_off(&rim->e, photo, pyramid, conf);
-	if (inside)
-		return !(off < OFF);
+	if (strict && !(off < LIMBUS_CENTRED))
+		return true;
 	if (limbus_sure(rim, off, photo, pyramid))
 		return false;
-	return off > OFF || limbus_has_sides_around(&rim->e, photo, SIDES_CLEAR)
+	return off > OFF || rim->coverage < LITTLE || limbus_has_sides_around(&rim->e, photo, SIDES_CLEAR)
 	       || limbus_flank_cooler(photo, &rim->e) > FLANK_COOLER;
 }
 
@@ -132,10 +137,10 @@ bool limbus_measure_flanks(struct limbus_found *found, struct ellipse around, co
 	struct ellipse pupil = { 0 };  // one that was measured: it is looked at once
 	const struct limbus_conf loose = loosened(conf);
 	struct rim *rim = mem_new(1, sizeof *rim);
-	int n = gather_flanks(pool, photo, pyramid, hint, conf);
-	for (int i = 0; i < n && !found->ok && !limbus_is_cut(&pool[0].e, photo); i++) {
-		bool inside = limbus_within(&pool[i].e, &around);
-		if (pool[i].score < FLANK_SUPPORT || (inside && hint) || is_like(&pool[i].e, &pupil))
+	int rounds, n = gather_flanks(pool, &rounds, photo, pyramid, hint, conf);
+	for (int i = 0; i < n + rounds && !found->ok && !limbus_is_cut(&pool[0].e, photo); i++) {
+		bool strict = i >= n || limbus_within(&pool[i].e, &around);  // its pupil must be in it
+		if (pool[i].score < (i < n ? FLANK_SUPPORT : ROUND_SUPPORT) || (strict && hint) || is_like(&pool[i].e, &pupil))
 			continue;
 		around = pool[i].e.a > around.a ? pool[i].e : around;
 		for (int k = 0; k < 2 && !found->ok; k++) {
@@ -144,7 +149,7 @@ bool limbus_measure_flanks(struct limbus_found *found, struct ellipse around, co
 			const char *against = limbus_judge(rim, photo, pyramid, &loose);
 			if (against == LIMBUS_PUPIL)
 				pupil = rim->e;
-			if (against || (!hint && is_doubtful(rim, inside, photo, pyramid, conf)))
+			if (against || (!hint && is_doubtful(rim, strict, photo, pyramid, conf)))
 				continue;
 			found->limbus = *rim;
 			found->score = pool[i].score;
