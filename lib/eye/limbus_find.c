@@ -113,11 +113,13 @@ static bool measure(struct limbus_found *found, struct ellipse *around, const st
 static void second_opinion(struct limbus_found *found, const struct photo *photo, const struct pyramid *pyramid,
                            const struct limbus_conf *conf)
 {
-	if (limbus_sure(&found->limbus, limbus_pupil_off(&found->limbus.e, photo, pyramid, conf), photo, pyramid))
+	const struct rim *rim = &found->limbus;
+	if ((rim->coverage > CLEAR && limbus_sure(rim, NAN, photo, pyramid))
+	    || limbus_sure(rim, limbus_pupil_off(&rim->e, photo, pyramid, conf), photo, pyramid))
 		return;
 	struct limbus_found *other = mem_new(1, sizeof *other);
 	if (!limbus_measure_flanks(other, (struct ellipse){ 0 }, photo, pyramid, 0, conf))
-		reject(found, LIMBUS_UNCLEAR);
+		reject(found, "%s", LIMBUS_UNCLEAR);
 	else if (!limbus_agrees(&found->limbus.e, &other->limbus.e))
 		*found = *other;
 	free(other);
