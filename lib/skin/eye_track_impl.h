@@ -1,0 +1,72 @@
+/* eye_track_impl: one eye of eye_track, between the frames. */
+#ifndef SKIN_EYE_TRACK_IMPL_H
+#define SKIN_EYE_TRACK_IMPL_H
+#include "skin/eye_track.h"
+#include "skin/gaze_edge.h"
+#include "skin/gaze_torsion.h"
+#include "skin/lid_track.h"
+
+enum { EYE_STILL_SIDE = 24 };
+
+/* What the fit over the whole clip needs of a frame. */
+struct eye_record {
+	double cam_from_head[3][4];
+	double fick[2];
+	double height;             // of the pupil's place above the lower margin, px
+	float mm;                  // px
+	struct lid_found found;
+	long first_edge;           // in struct eye_side
+	int edges;                 // 0: no gaze
+	bool measured, open;       // lids were looked for; there was an opening
+	bool still;
+};
+
+struct eye_side {
+	bool absent, started;
+	const struct eye_scene *scene;
+	const struct eye_track_conf *conf;
+	const struct eye_prior *prior;
+	struct gaze_globe globe, first_globe;
+	double center_sigma[3], rms;
+	double canthus[2][3];      // head frame
+	double fick[2];            // last gaze
+	bool have;                 // it is of the last frame but for a blink
+	int lost;                  // frames without gaze
+	double contrast;           // grey levels from iris to sclera
+	struct lid_track lids;
+	struct gaze_torsion torsion;
+	uint8_t still[EYE_STILL_SIDE * EYE_STILL_SIDE];
+	struct eye_state last;
+	long frames, space;
+	struct eye_state *state;   // [frames]
+	struct eye_record *record; // [frames]
+	struct lid_kept *kept;     // [frames]
+	long edges, edge_space;
+	struct gaze_edge *edge;
+};
+
+struct eye_track {
+	struct eye_scene scene;
+	struct eye_track_conf conf;
+	struct eye_side side[SIDES];
+};
+
+/* Camera of a frame; an unknown focal length is that of a camera one metre away. */
+void eye_view(struct gaze_view *view, const struct eye_scene *scene, const double cam_from_head[3][4]);
+
+/* px of a millimetre at the eyeball's front. NAN behind the camera. */
+double eye_scale(const struct gaze_globe *globe, const struct gaze_view *view);
+
+/* One frame of one eye; the result is appended. */
+void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);
+
+/* Lids of a frame into its state, as found. */
+void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int points);
+
+/* All frames once more with what the whole clip tells: eyeball, gaze, torsion, lids. */
+void eye_side_settle(struct eye_side *eye, struct eye_globe *globe);
+
+/* Openness and blinks of one eye, and its saccades; events are appended to clip. */
+void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side);
+
+#endif
