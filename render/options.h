@@ -3,7 +3,8 @@
 #define RENDER_OPTIONS_H
 #include "render/render.h"
 
-static const char *const render_quadratures[] = { "gauss", "midpoint", 0 };
+static const char *const render_quadratures[] = { "gauss", "midpoint", "exponential", 0 };
+static const char *const render_shadings[] = { "rays", "texels", 0 };
 static const char *const render_paths[] = { "grid", "ends", 0 };
 
 #define RENDER_OPTS(c) \
@@ -12,6 +13,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_INT("shadow", &(c)->scene.shadow, 0, 64, "", "steps of the shadow of the relief; 0: none"), \
 	OPT_INT("steps", &(c)->scene.steps, 2, SCENE_NODES_MAX, "", "steps of the march through the iris"), \
 	OPT_CHOICE("quadrature", &(c)->scene.quadrature, render_quadratures, "where the steps lie"), \
+	OPT_CHOICE("shading", &(c)->scene.shading, render_shadings, "the march: along every ray of sight, or once a view from the map's texels"), \
 	OPT_CHOICE("light_path", &(c)->scene.path, render_paths, "light through the cornea: a table a light, or solved for each ray"), \
 	OPT_INT("bands", &(c)->scene.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
 	OPT_REAL("detail", &(c)->scene.detail, 0, 1, "", "how much of what the photograph shows beyond the model is shown"), \

@@ -9,7 +9,7 @@
 
 enum { ANGLES = 24, ROLLS = 2, PER_LEVEL = 16, LEVELS = 8, RADII = 8, STRIDE = 2 };
 static const float LEAST = -0.3f, MOST = 0.7f;  // a step counts no further
-static const double GAP = 0.15;                 // of the radius: the step is measured over so much on both sides
+#define GAP FLANK_GAP
 static const double FINEST = 8, RATIO = 1.1;    // px on a level: the smallest radius looked for; RADII of them an octave
 static const double FLANK_SCORE = 0.3;          // below this nothing stands out
 
@@ -42,9 +42,9 @@ static float sector(const float step[ANGLES], int first, int n, int way)
 
 /* Both sides from 45 degrees above the middle to 60 below it, and what lies beneath: the better side, most of the other,
  * a little of the lower rim. The head may lean. slit: only the 45 degrees that lids leave open last. */
-static float circle_score(const struct log_map *m, const struct circle *o, const struct compass *compass, bool slit)
+static float circle_score(const struct log_map *m, const struct circle *o, const struct compass *compass, double gap, bool slit)
 {
-	float step[ANGLES], best = -1, in = (float)(1 - GAP) * o->r, out = (float)(1 + GAP) * o->r;
+	float step[ANGLES], best = -1, in = (float)(1 - gap) * o->r, out = (float)(1 + gap) * o->r;
 	for (int i = 0; i < ANGLES; i++) {
 		float c = compass->c[i], s = compass->s[i];
 		float d = log_map_step(m, o->x + in * c, o->y + in * s, o->x + out * c, o->y + out * s);
@@ -96,7 +96,7 @@ static void climb(struct circle *o, const struct log_map *m, const struct compas
 			for (int i = 0; i < 6; i++) {
 				struct circle p = *o;
 				*(i / 2 == 0 ? &p.x : i / 2 == 1 ? &p.y : &p.r) += i % 2 ? -step : step;
-				p.score = p.r > 4 ? circle_score(m, &p, compass, false) : -1;
+				p.score = p.r > 4 ? circle_score(m, &p, compass, GAP, false) : -1;
 				if (p.score > o->score + 1e-6f) {
 					*o = p;
 					moved = true;
@@ -120,7 +120,7 @@ static int search_level(struct circle out[PER_LEVEL], const struct log_map *m, c
 				struct circle o = { (float)x, (float)y, r, 0 };
 				if (hint && hypot((x + 0.5) * m->scale + m->x0 - hint[0], (y + 0.5) * m->scale + m->y0 - hint[1]) > 0.7 * hint[2])
 					continue;
-				o.score = circle_score(m, &o, &compass, false);
+				o.score = circle_score(m, &o, &compass, GAP, false);
 				if (o.score > (float)FLANK_SCORE && (n < PER_LEVEL || o.score > out[n - 1].score))
 					keep(out, &n, PER_LEVEL, &o);
 			}
@@ -164,23 +164,39 @@ int limbus_flanks(struct seek_found out[SEEK_MAX], const struct photo *photo, co
 	return n;
 }
 
-double limbus_flank_around(const struct photo *photo, const struct ellipse *e, double *score)
+/* The best circle of radius r whose centre is within a tenth of it of (x, y). */
+static struct circle best_near(const struct log_map *m, float x, float y, float r, const struct compass *compass,
+                               double gap)
 {
+	struct circle best = { x, y, r, 0 };
+	for (int i = 0; i < 9; i++) {
+		struct circle o = { x + 0.1f * r * (float)(i % 3 - 1), y + 0.1f * r * (float)(i / 3 - 1), r, 0 };
+		o.score = circle_score(m, &o, compass, gap, true);
+		if (o.score > best.score)
+			best = o;
+	}
+	return best;
+}
+
+int limbus_flank_around(struct seek_found out[FLANK_ROUND], const struct photo *photo, const struct ellipse *e, double gap)
+{
+	enum { STEPS = 15 };
 	const struct compass compass = compass_make();
-	double reach = 5.2 * e->a, box[4] = { e->cx - reach, e->cy - reach, e->cx + reach, e->cy + reach }, ratio = 0;
+	double reach = 5.2 * e->a, box[4] = { e->cx - reach, e->cy - reach, e->cx + reach, e->cy + reach };
 	struct log_map m = log_map_make(photo, box, e->a / FINEST);
 	float x = (float)((e->cx - m.x0) / m.scale - 0.5), y = (float)((e->cy - m.y0) / m.scale - 0.5), a = (float)(e->a / m.scale);
-	*score = 0;
-	for (float k = 1.5f; k < 4.6f; k *= 1.08f)
-		for (int i = 0; i < 9; i++) {
-			float off = 0.1f * k * a;
-			struct circle o = { x + off * (float)(i % 3 - 1), y + off * (float)(i / 3 - 1), k * a, 0 };
-			double s = (double)circle_score(&m, &o, &compass, true);
-			if (s > *score) {
-				*score = s;
-				ratio = (double)k;
-			}
-		}
+	struct circle at[STEPS + 2] = { 0 }, top[FLANK_ROUND];
+	int n = 0;
+	for (int i = 1; i <= STEPS; i++)
+		at[i] = best_near(&m, x, y, 1.5f * powf(1.08f, (float)(i - 1)) * a, &compass, gap);
+	for (int i = 1; i <= STEPS; i++)
+		if (at[i].score > at[i - 1].score && at[i].score >= at[i + 1].score)
+			keep(top, &n, FLANK_ROUND, &at[i]);
+	for (int i = 0; i < n; i++) {
+		double r = (double)top[i].r * m.scale;
+		out[i] = (struct seek_found){ { ((double)top[i].x + 0.5) * m.scale + m.x0, ((double)top[i].y + 0.5) * m.scale + m.y0, r, r, 0 },
+		                              (double)top[i].score };
+	}
 	free(m.px);
-	return ratio;
+	return n;
 }

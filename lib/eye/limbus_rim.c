@@ -239,7 +239,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 			 * colours are looked at again, now that it is known better where they are. */
 			for (int c = 0; c < 3; c++)
 				weight[c] = 1 / 3.0;
-			if (rim->width >= SHARP_PX)
+			if (rim->width >= SHARP_PX || conf->settled)
 				limbus_colour(weight, photo, &rim->e);
 			grey_free(&grey);
 			grey = grey_linear(photo, &rim->e, 1.3, MAX_AXIS_PX, weight);

@@ -18,7 +18,8 @@
 
 enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 64 };
 
-enum scene_quadrature { SCENE_GAUSS, SCENE_MIDPOINT };
+enum scene_quadrature { SCENE_GAUSS, SCENE_MIDPOINT, SCENE_EXPONENTIAL };
+enum scene_shading { SCENE_RAYS, SCENE_TEXELS };       // the march: along every ray of sight, or from the map's texels once a view
 enum scene_path { SCENE_PATH_GRID, SCENE_PATH_ENDS };  // the light's way to a point: see scene_light.c
 
 struct scene_conf {
@@ -26,6 +27,7 @@ struct scene_conf {
 	int search, shadow;           // steps of the search for the relief; of the shadow ray
 	int steps;                    // of the march
 	int quadrature, path;         // enum scene_quadrature, enum scene_path
+	int shading;                  // enum scene_shading
 	int bands;                    // wavelengths, 3..TISSUE_BANDS_MAX
 	double detail;                // 0: the fitted model alone; 1: times all of what the photograph shows beyond it
 	double limbus_width;          // mm, over which sclera becomes cornea
@@ -42,6 +44,8 @@ struct scene_level {
 	float *relief;                // [n][n][2]: height mm, + towards the cornea; stroma mm
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
+	float *horizon;               // scene_march.h; null: level is not marched from
+	float *shown;                 // [n][n][4]: colour with the pupil cut out; null: the same
 };
 
 struct scene {
@@ -54,7 +58,8 @@ struct scene {
 	float height_min, height_max, thickness_max;
 	int n_levels;
 	struct scene_level level[SCENE_LEVELS];
-	struct image veins;           // azimuthal about the axis: transmittance RGB, height of the film's ripples
+	struct image veins;           // azimuthal about the axis: albedo RGB
+	struct image film;            // the same: slopes of the tear film's ripples
 	struct tissue_optics optics;
 	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march, in each layer

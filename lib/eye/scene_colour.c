@@ -139,22 +139,32 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 	scene_levels_make(s);
 }
 
-void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
+void scene_colour_ratio(float rgb[3], const struct scene *s, const float model[3])
 {
 	static const float chroma = 1.5f;
-	float k[3], mean = 0, most = 2.5f;  // brighter than that only a texel gets that was in a shadow of the model's
-	if (!level->model)
-		return;
+	float k[3], mean = 0, most = 2.5f, d = (float)s->conf.detail;  // brighter only a texel gets that was in a shadow of the model's
 	for (int c = 0; c < 3; c++) {
-		k[c] = rgb[c] / channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
+		k[c] = rgb[c] / model[c];
 		mean += k[c] / 3;
 	}
 	float lit = mean < most ? mean : most;
 	for (int c = 0; c < 3; c++) {
-		float tint = mean > 1e-6f ? k[c] / mean : 1;
+		float tint = mean > 1e-6f ? k[c] / mean : 1, alone = s->gain * rgb[c];
 		tint = tint > 1 / chroma ? tint < chroma ? tint : chroma : 1 / chroma;
-		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c) * lit * tint;
-		float alone = s->gain * rgb[c], d = (float)s->conf.detail;
-		rgb[c] = d == 1 ? shown : alone > 0 && shown > 0 ? powf(shown, d) * powf(alone, 1 - d) : 0;
+		rgb[c] = d == 1 ? lit * tint : alone > 0 && lit * tint > 0 ? powf(lit * tint, d) * powf(alone, 1 - d) : 0;
+	}
+}
+
+void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
+{
+	float model[3], d = (float)s->conf.detail;
+	if (!level->model)
+		return;
+	for (int c = 0; c < 3; c++)
+		model[c] = channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
+	scene_colour_ratio(rgb, s, model);
+	for (int c = 0; c < 3; c++) {
+		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
+		rgb[c] *= d == 1 ? shown : shown > 0 ? powf(shown, d) : 0;
 	}
 }

@@ -17,12 +17,14 @@ struct iris_batch {
 	float rgb[3][BATCH];                    // scattered towards the beholder; a white plane = 1
 };
 
-/* One light in the eye's frame, with its own refraction function: K and the irradiance gain over the iris, on planes
- * at the depths z[0] and z[1]. */
+/* One light in the eye's frame, with its own refraction function over the iris, on planes at the depths z[0] and z[1]:
+ * unit direction towards it, irradiance of a plane that faces it there, and where on the cornea its light came in (1: at the
+ * limbus). */
+enum { SCENE_WAY = 8 };  // five, and room for a whole vector
 struct scene_beam {
 	float dir[3], rgb[3];
 	float z[2];
-	float K[2][SCENE_GRID][SCENE_GRID][4];  // x, y, z, gain
+	float way[2][SCENE_GRID][SCENE_GRID][SCENE_WAY];
 };
 
 struct scene_beams {
@@ -51,15 +53,38 @@ void scene_scatter(struct iris_batch *b, const struct scene *scene, const struct
 /* The alternative to scatter: the mean colour of the model, lit, without a march. */
 void scene_flat(struct iris_batch *b, const struct scene *scene, const struct scene_beams *beams);
 
-/* K and gain for every ray's point p + t v. */
-void scene_beam_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *scene,
-                      const struct scene_beam *beam);
+/* What is seen of the iris' colour at a point near the pupil's margin: none inside, less on the ruff. soft: half a pixel, mm. */
+void scene_pupil(float cover[3], const struct scene *scene, float x, float y, float soft);
+
+/* The photograph's colours of a level with the pupil cut out, [n][n][4]. free(). */
+float *scene_pupil_colours(const struct scene *scene, const struct scene_level *level);
+
+/* The way from points of the iris out to a camera at C, as if it were a light. free(). */
+struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
+
+/* The iris as one view shows it, for every texel of a level: the march has been done. */
+struct scene_shade {
+	int n;
+	float per_mm;
+	float *rgba;  // [n][n][4]; owned
+};
+
+/* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel, its ratio
+ * to what the model showed in the photograph times the photograph's colour. flat: the alternative to the march. free(shade.rgba). */
+struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3], bool flat,
+                                    const struct scene_beams *beams);
 
 /* The level whose texels are about as large as a pixel of `mm`. */
 const struct scene_level *scene_level_for(const struct scene *scene, double mm);
 
 /* The model's colour at a point of the iris (in) made the photograph's (out). */
 void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y);
+
+/* What that is, times the photograph's colour to the power of detail. model: what the model showed there. */
+void scene_colour_ratio(float rgb[3], const struct scene *scene, const float model[3]);
+
+/* Where the march's steps lie and what they weigh, for this tissue and thickness. */
+void scene_nodes_make(struct scene *scene);
 
 /* Levels below level 0, and the range of heights. */
 void scene_levels_make(struct scene *scene);
@@ -68,6 +93,10 @@ void scene_levels_make(struct scene *scene);
  * seen at the same radius, so that fibres go on. pupil: x, y, radius. */
 void scene_fill(float *rgba, int n, double extent, const double pupil[3]);
 
+#define SCENE_FILM_INDEX 1.336f  // of the tear film, which mirrors on all wet surfaces
+
+/* Maps of the sclera are azimuthal and equidistant about the axis: angle at the sphere's centre at their edge. */
+#define SCENE_SCLERA_REACH (110 * M_PI / 180)
 void scene_veins_make(struct scene *scene);
 
 /* Albedo of the sclera and the ripple of its film at a point of it. */

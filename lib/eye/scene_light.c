@@ -1,7 +1,7 @@
 /* Lights from the environment, carried into the eye. Each is so far away that its direction is one for the whole iris:
  * its refraction function f(P, w) -> K (iris paper, eq. 15) is then a smooth field over the iris, tabulated on two planes
  * of SCENE_GRID^2 points solved exactly (path = grid), or solved for every ray at both ends (path = ends). */
-#include "eye/scene_impl.h"
+#include "eye/scene_march.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "math/vec.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_march.c
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
 /* Newton steps from the closed-form start: 2e-5 mm at worst. */
@@ -44,7 +44,19 @@ static void plane_solve(struct plane *n, const struct scene *s)
 	                     &s->cornea);
 }
 
-static void plane_make(float (*K)[4], struct plane *n, const struct scene_beam *beam, const struct scene *s, float z)
+/* What a node tells the march: unit direction towards the light, irradiance of a plane that faces it, and where on the
+ * cornea it came in, 1 at the limbus. */
+static void node_put(float out[SCENE_WAY], const double p[3], const float k[3], float gain, const double limbus[2])
+{
+	double d[3] = { k[0] - p[0], k[1] - p[1], k[2] - p[2] };
+	vec_unit(d, d);
+	for (int c = 0; c < 3; c++)
+		out[c] = (float)d[c];
+	out[3] = (float)(gain / fmax(-d[2], 0.05));
+	out[4] = (float)hypot(k[0] / limbus[0], k[1] / limbus[1]);
+}
+
+static void plane_points(struct plane *n, const struct scene *s, float z)
 {
 	double step = 2 * s->extent / (SCENE_GRID - 1), most = 1.04 * s->limbus[0];
 	for (int i = 0; i < NODES; i++) {
@@ -54,26 +66,60 @@ static void plane_make(float (*K)[4], struct plane *n, const struct scene_beam *
 		n->p[0][i] = (float)(pull * x);
 		n->p[1][i] = (float)(pull * y);
 		n->p[2][i] = z;
+	}
+}
+
+static void plane_make(float (*way)[SCENE_WAY], struct plane *n, const struct scene_beam *beam, const struct scene *s, float z)
+{
+	plane_points(n, s, z);
+	for (int i = 0; i < NODES; i++)
 		for (int c = 0; c < 3; c++)
 			n->w[c][i] = beam->dir[c];
-	}
 	plane_solve(n, s);
 	for (int i = 0; i < NODES; i++) {
-		bool lit = n->status[i] == LIGHTPATH_OK || n->status[i] == LIGHTPATH_BEYOND_RIM;
+		bool lit = n->status[i] == LIGHTPATH_OK || n->status[i] == LIGHTPATH_BEYOND_RIM, none = n->status[i] == LIGHTPATH_NONE;
+		double p[3] = { n->p[0][i], n->p[1][i], n->p[2][i] };
+		float k[3];
 		for (int c = 0; c < 3; c++)
-			K[i][c] = n->status[i] == LIGHTPATH_NONE ? n->p[c][i] + beam->dir[c] : n->k[c][i];
-		K[i][3] = lit && n->gain[i] > 0 && isfinite(n->gain[i]) ? n->gain[i] : 0;
+			k[c] = none ? n->p[c][i] + beam->dir[c] : n->k[c][i];
+		node_put(way[i], p, k, lit && n->gain[i] > 0 && isfinite(n->gain[i]) ? n->gain[i] : 0, s->limbus);
 	}
+}
+
+static void beam_depths(struct scene_beam *beam, const struct scene *s)
+{
+	beam->z[0] = (float)(s->eye.iris_depth - s->height_max);
+	beam->z[1] = (float)(s->eye.iris_depth - s->height_min + s->optics.abl_thickness) + s->thickness_max;
 }
 
 static void beam_make(struct scene_beam *beam, const struct scene *s)
 {
 	struct plane *plane = mem_array(1, sizeof *plane);
-	beam->z[0] = (float)(s->eye.iris_depth - s->height_max);
-	beam->z[1] = (float)(s->eye.iris_depth - s->height_min + s->optics.abl_thickness) + s->thickness_max;
+	beam_depths(beam, s);
 	for (int k = 0; k < 2; k++)
-		plane_make(beam->K[k][0], plane, beam, s, beam->z[k]);
+		plane_make(beam->way[k][0], plane, beam, s, beam->z[k]);
 	free(plane);
+}
+
+struct scene_beam *scene_sight(const struct scene *s, const double C[3])
+{
+	struct scene_beam *beam = mem_new(1, sizeof *beam);
+	struct plane *plane = mem_array(1, sizeof *plane);
+	beam_depths(beam, s);
+	for (int k = 0; k < 2; k++) {
+		plane_points(plane, s, beam->z[k]);
+		lightpath_batch_point(NODES, plane->p[0], plane->p[1], plane->p[2], C, plane->k[0], plane->k[1], plane->k[2], plane->status,
+		                      &s->cornea, PATH_STEPS);
+		for (int i = 0; i < NODES; i++) {
+			bool none = plane->status[i] == LIGHTPATH_NONE;
+			double p[3] = { plane->p[0][i], plane->p[1][i], plane->p[2][i] };
+			float up[3] = { plane->p[0][i], plane->p[1][i], plane->p[2][i] - 1 };
+			float at[3] = { plane->k[0][i], plane->k[1][i], plane->k[2][i] };
+			node_put(beam->way[k][0][i], p, none ? up : at, 1, s->limbus);
+		}
+	}
+	free(plane);
+	return beam;
 }
 
 struct scene_beams scene_beams(const struct scene *s, const struct scene_lighting *light,
@@ -98,76 +144,76 @@ struct scene_beams scene_beams(const struct scene *s, const struct scene_lightin
 	return beams;
 }
 
-SIMD_INLINE float blend(const float *k, int at, float a, float b, float c, float d)
-{
-	return a * k[at] + b * k[at + 4] + c * k[at + 4 * SCENE_GRID] + d * k[at + 4 * SCENE_GRID + 4];
-}
-
 SIMD_CLONES
-static void grid_paths(float K[4][BATCH], const struct iris_batch *b, const float *restrict t,
-                       const struct scene_beam *beam, float extent)
+void scene_table_at(float out[SCENE_WAY], const struct scene_beam *beam, const float p[3], float extent)
 {
-	const float *restrict k0 = &beam->K[0][0][0][0], *restrict k1 = &beam->K[1][0][0][0];
-	const float *restrict px = b->px, *restrict py = b->py, *restrict pz = b->pz;
-	const float *restrict vx = b->vx, *restrict vy = b->vy, *restrict vz = b->vz;
-	float *restrict x = K[0], *restrict y = K[1], *restrict z = K[2], *restrict gain = K[3];
-	float per = (SCENE_GRID - 1) / (2 * extent), z0 = beam->z[0], inv = 1 / (beam->z[1] - z0), top = SCENE_GRID - 1.001f;
-	SIMD_LOOP
-	for (int i = 0; i < b->n; i++) {
-		float u = (px[i] + t[i] * vx[i] + extent) * per, v = (py[i] + t[i] * vy[i] + extent) * per;
-		float q = (pz[i] + t[i] * vz[i] - z0) * inv;
-		u = u > 0 ? u < top ? u : top : 0;
-		v = v > 0 ? v < top ? v : top : 0;
-		int iu = (int)u, iv = (int)v, at = 4 * (iv * SCENE_GRID + iu);
-		u -= (float)iu;
-		v -= (float)iv;
-		float a = (1 - u) * (1 - v), e = u * (1 - v), f = (1 - u) * v, g = u * v;
-		x[i] = blend(k0, at, a, e, f, g) * (1 - q) + blend(k1, at, a, e, f, g) * q;
-		y[i] = blend(k0, at + 1, a, e, f, g) * (1 - q) + blend(k1, at + 1, a, e, f, g) * q;
-		z[i] = blend(k0, at + 2, a, e, f, g) * (1 - q) + blend(k1, at + 2, a, e, f, g) * q;
-		gain[i] = blend(k0, at + 3, a, e, f, g) * (1 - q) + blend(k1, at + 3, a, e, f, g) * q;
-	}
+	float per = (SCENE_GRID - 1) / (2 * extent), top = SCENE_GRID - 1.001f, u = (p[0] + extent) * per, v = (p[1] + extent) * per;
+	float q = (p[2] - beam->z[0]) / (beam->z[1] - beam->z[0]), r = 1 - q;
+	u = u > 0 ? u < top ? u : top : 0;
+	v = v > 0 ? v < top ? v : top : 0;
+	int iu = (int)u, iv = (int)v;
+	u -= (float)iu;
+	v -= (float)iv;
+	const float(*restrict a)[SCENE_WAY] = &beam->way[0][iv][iu], (*restrict b)[SCENE_WAY] = &beam->way[1][iv][iu];
+	float w00 = (1 - u) * (1 - v), w10 = u * (1 - v), w01 = (1 - u) * v, w11 = u * v;
+	for (int c = 0; c < SCENE_WAY; c++)
+		out[c] = r * (w00 * a[0][c] + w10 * a[1][c] + w01 * a[SCENE_GRID][c] + w11 * a[SCENE_GRID + 1][c])
+		         + q * (w00 * b[0][c] + w10 * b[1][c] + w01 * b[SCENE_GRID][c] + w11 * b[SCENE_GRID + 1][c]);
 }
 
 /* The sclera begins at the limbus, gradually: light that would enter further out is stopped. */
 SIMD_CLONES
-static void rim_stop(float K[4][BATCH], int n, float ax, float ay, float width)
+static void rim_stop(int n, float *restrict power, const float *restrict rho, float width)
 {
-	const float *restrict kx = K[0], *restrict ky = K[1];
-	float *restrict gain = K[3], lo = 1 - width / 2, inv = 1 / width;
+	float lo = 1 - width / 2, inv = 1 / width;
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		float r = sqrtf(kx[i] * kx[i] * ax * ax + ky[i] * ky[i] * ay * ay), t = (r - lo) * inv;
+		float t = (rho[i] - lo) * inv;
 		t = t > 0 ? t < 1 ? t : 1 : 0;
-		gain[i] = gain[i] > 0 ? gain[i] * (1 - t * t * (3 - 2 * t)) : 0;
+		power[i] = power[i] > 0 ? power[i] * (1 - t * t * (3 - 2 * t)) : 0;
 	}
 }
 
-static void exact_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *s,
-                        const struct scene_beam *beam)
+static void table_paths(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
+                        const struct scene_beam *beam, float extent, float width)
 {
-	float x[BATCH], y[BATCH], z[BATCH], w[3][BATCH];
-	for (int i = 0; i < b->n; i++) {
-		x[i] = b->px[i] + t[i] * b->vx[i];
-		y[i] = b->py[i] + t[i] * b->vy[i];
-		z[i] = b->pz[i] + t[i] * b->vz[i];
+	float rho[PART];
+	for (int i = 0; i < n; i++) {
+		float way[SCENE_WAY];
+		scene_table_at(way, beam, (float[3]){ x[i], y[i], z[i] }, extent);
+		light->x[end][i] = way[0];
+		light->y[end][i] = way[1];
+		light->z[end][i] = way[2];
+		light->power[end][i] = way[3];
+		rho[i] = way[4];
+	}
+	rim_stop(n, light->power[end], rho, width);
+}
+
+static void exact_paths(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
+                        const struct scene *s, const struct scene_beam *beam)
+{
+	float w[3][PART], k[3][PART];
+	unsigned char status[PART];
+	for (int i = 0; i < PART; i++)
 		for (int c = 0; c < 3; c++)
 			w[c][i] = beam->dir[c];
+	lightpath_batch(n, x, y, z, w[0], w[1], w[2], k[0], k[1], k[2], status, &s->cornea, PATH_STEPS);
+	for (int i = 0; i < n; i++) {
+		if (status[i] != LIGHTPATH_OK && status[i] != LIGHTPATH_BEYOND_RIM)
+			continue;
+		float d[3] = { k[0][i] - x[i], k[1][i] - y[i], k[2][i] - z[i] }, inv = 1 / sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		light->x[end][i] = d[0] * inv;
+		light->y[end][i] = d[1] * inv;
+		light->z[end][i] = d[2] * inv;
 	}
-	float k[3][BATCH];
-	unsigned char status[BATCH];
-	lightpath_batch(b->n, x, y, z, w[0], w[1], w[2], k[0], k[1], k[2], status, &s->cornea, PATH_STEPS);
-	for (int i = 0; i < b->n; i++)
-		if (status[i] == LIGHTPATH_OK || status[i] == LIGHTPATH_BEYOND_RIM)
-			for (int c = 0; c < 3; c++)
-				K[c][i] = k[c][i];
 }
 
-void scene_beam_paths(float K[4][BATCH], const struct iris_batch *b, const float t[BATCH], const struct scene *s,
-                      const struct scene_beam *beam)
+void scene_light_at(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
+                    const struct scene *s, const struct scene_beam *beam)
 {
-	grid_paths(K, b, t, beam, (float)s->extent);  // the gain is the grid's either way: it needs no more
+	// The power is the table's either way: it needs no more.
+	table_paths(light, end, n, x, y, z, beam, (float)s->extent, (float)(s->conf.limbus_width / s->limbus[0]));
 	if (s->conf.path == SCENE_PATH_ENDS)
-		exact_paths(K, b, t, s, beam);
-	rim_stop(K, b->n, (float)(1 / s->limbus[0]), (float)(1 / s->limbus[1]), (float)(s->conf.limbus_width / s->limbus[0]));
+		exact_paths(light, end, n, x, y, z, s, beam);
 }

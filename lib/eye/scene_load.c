@@ -1,4 +1,4 @@
-#include "eye/scene_impl.h"
+#include "eye/scene_march.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,42 +17,6 @@ static const long limit_px = 1L << 27;
 const double scene_plain_stroma = 0.48;
 static const struct tissue plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
 	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };
-
-/* Gauss-Legendre on 0..1: Newton on the Legendre polynomial from Tricomi's start. */
-static void gauss(int n, double node[], double weight[])
-{
-	for (int i = 0; i < n; i++) {
-		double x = cos(M_PI * (i + 0.75) / (n + 0.5)), d = 1;
-		for (int k = 0; k < 8; k++) {
-			double p = 1, q = 0;
-			for (int j = 1; j <= n; j++) {
-				double r = q;
-				q = p;
-				p = ((2 * j - 1) * x * q - (j - 1) * r) / j;
-			}
-			d = n * (x * p - q) / (x * x - 1);
-			x -= p / d;
-		}
-		node[i] = (1 - x) / 2;
-		weight[i] = 1 / ((1 - x * x) * d * d);
-	}
-}
-
-/* A third of the steps in the thin anterior layer, where most of the melanin is, the others in the stroma. */
-static void nodes_make(struct scene *s)
-{
-	int n = s->conf.steps, in_abl = n / 3 > 1 ? n / 3 : 1, in[2] = { in_abl, n - in_abl };
-	for (int l = 0; l < 2; l++) {
-		s->n_nodes[l] = in[l];
-		if (s->conf.quadrature == SCENE_GAUSS)
-			gauss(in[l], s->node[l], s->weight[l]);
-		else
-			for (int i = 0; i < in[l]; i++) {
-				s->node[l][i] = (i + 0.5) / in[l];
-				s->weight[l][i] = 1.0 / in[l];
-			}
-	}
-}
 
 /* Channels of an EXR map; *extent its half-width. What is not finite becomes 0. image_free. */
 static bool read_map(struct image *out, const char *path, int channels, const char *const names[], double *extent,
@@ -147,7 +111,6 @@ static void take_tissue(struct scene *s, const struct tissue *tissue)
 	tissue_reflectance(flat, &s->optics, scene_plain_stroma, 1, 1);
 	for (int c = 0; c < 3; c++)
 		s->flat[c] = (float)(flat[c] * s->optics.exposure);
-	nodes_make(s);
 }
 
 static bool load_tissue(struct scene *s, const char *path, struct err *err)
@@ -205,6 +168,7 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
 	}
 	scene_fill(s->level[0].colour, s->level[0].n, s->extent, s->pupil);
 	scene_levels_make(s);
+	scene_nodes_make(s);
 	scene_veins_make(s);
 	return true;
 }
@@ -215,8 +179,11 @@ void scene_free(struct scene *s)
 		free(s->level[i].relief);
 		free(s->level[i].colour);
 		free(s->level[i].model);
+		free(s->level[i].horizon);
+		free(s->level[i].shown);
 	}
 	image_free(&s->veins);
+	image_free(&s->film);
 	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };
 }
@@ -249,11 +216,18 @@ void scene_levels_make(struct scene *s)
 		free(l[k].relief);
 		free(l[k].colour);
 		free(l[k].model);
+		free(l[k].horizon);
+		free(l[k].shown);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
 		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
 		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
 		l[k].model = l[k - 1].model ? halve(l[k - 1].model, l[k - 1].n, 4) : 0;
+		if (s->conf.shading == SCENE_TEXELS && s->conf.shadow > 0)
+			l[k].horizon = scene_horizons(s, &l[k]);
 	}
+	free(l[0].shown);
+	for (int k = 0; k < s->n_levels; k++)
+		l[k].shown = s->conf.shading == SCENE_TEXELS ? scene_pupil_colours(s, &l[k]) : 0;
 }
 
 const struct scene_level *scene_level_for(const struct scene *s, double mm)

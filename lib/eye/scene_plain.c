@@ -60,5 +60,6 @@ void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf
 		}
 	scene_plain_tissue(s);
 	scene_levels_make(s);
+	scene_nodes_make(s);
 	scene_veins_make(s);
 }

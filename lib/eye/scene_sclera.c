@@ -10,7 +10,7 @@
 #include "bridge/cv_draw.h"
 #include "math/rng.h"
 
-static const double reach = 110 * M_PI / 180;  // angle at the map's edge
+static const double reach = SCENE_SCLERA_REACH;
 
 enum { STEPS_MAX = 160 };
 
@@ -92,19 +92,42 @@ static uint8_t *layer(const struct scene *s, int size, int seed, int count, doub
 	return g.picture.px;
 }
 
-static void ripples(struct image *map, int seed)
+/* A film that is not quite smooth breaks the mirror image up, off the cornea only: slopes from the noise's height, once. */
+static void film_make(struct scene *s, const struct image *height)
 {
+	int n = height->width;
+	float e = 0.012f * (float)n;
+	s->film = image_new(n, n, 2);
+	for (int y = 0; y < n; y++)
+		for (int x = 0; x < n; x++) {
+			float u = (float)x + 0.5f, v = (float)y + 0.5f, r = hypotf(u - 0.5f * (float)n, v - 0.5f * (float)n) * 2 / (float)n;
+			float k = 0.22f * smooth(0.40f, 0.75f, r * (float)(reach / 0.9)), *p = image_at(&s->film, x, y);
+			p[0] = k * (image_sample(height, u + e, v, 0) - image_sample(height, u - e, v, 0));
+			p[1] = k * (image_sample(height, u, v + e, 0) - image_sample(height, u, v - e, 0));
+		}
+}
+
+static struct image ripples(int seed)
+{
+	enum { N = 256 };
 	struct err err = { 0 };
-	int n = map->width < 256 ? map->width : 256;
-	struct image noise = image_new(n, n, 1), big = image_new(map->width, map->width, 1);
+	struct image noise = image_new(N, N, 1);
 	struct rng rng = { (uint64_t)seed };
-	for (long i = 0; i < (long)n * n; i++)
+	for (long i = 0; i < (long)N * N; i++)
 		noise.px[i] = (float)rng_normal(&rng);
-	if (cv_blur(noise.px, noise.px, n, n, 1, n / 90.0, &err) && cv_resize(big.px, map->width, map->width, noise.px, n, n, 1, &err))
-		for (long i = 0; i < (long)map->width * map->width; i++)
-			map->px[4 * i + 3] = big.px[i];
-	image_free(&noise);
-	image_free(&big);
+	cv_blur(noise.px, noise.px, N, N, 1, N / 90.0, &err);
+	return noise;
+}
+
+/* What sclera and vessels leave of white light. a: fine vessels, b: deep ones. Blood takes green and blue; what lies deep is
+ * seen through white and turns bluish. Away from the cornea it gets a little yellower and redder: fat of the orbit. */
+static void albedo_put(float p[3], const struct scene *s, float r, float a, float b)
+{
+	float away = smooth(0.35f, 1.1f, r * (float)(reach / 1.3));
+	float tint[3] = { 1 - 0.01f * away, 1 - 0.06f * away, 1 - 0.11f * away };
+	float blood[3] = { (1 - 0.22f * a) * (1 - 0.26f * b), (1 - 0.80f * a) * (1 - 0.38f * b), (1 - 0.78f * a) * (1 - 0.26f * b) };
+	for (int c = 0; c < 3; c++)
+		p[c] = (float)s->conf.sclera_rgb[c] * tint[c] * blood[c];
 }
 
 void scene_veins_make(struct scene *s)
@@ -118,14 +141,15 @@ void scene_veins_make(struct scene *s)
 		blurred[i] = (float)deep[i] / 255;
 	struct err err = { 0 };
 	cv_blur(blurred, blurred, n, n, 1, 0.13 / mm_per_px, &err);  // deep ones show through a scattering layer
-	ripples(&s->veins, s->conf.seed + 2);
-	for (long i = 0; i < (long)n * n; i++) {
-		// Blood takes green and blue; what lies deep is seen through white and turns bluish.
-		float a = 0.66f * (float)fine[i] / 255, b = 0.5f * blurred[i], *p = s->veins.px + 4 * i;
-		p[0] = (1 - 0.22f * a) * (1 - 0.26f * b);
-		p[1] = (1 - 0.80f * a) * (1 - 0.38f * b);
-		p[2] = (1 - 0.78f * a) * (1 - 0.26f * b);
-	}
+	for (int y = 0; y < n; y++)
+		for (int x = 0; x < n; x++) {
+			long i = (long)y * n + x;
+			float r = hypotf((float)x + 0.5f - 0.5f * (float)n, (float)y + 0.5f - 0.5f * (float)n) * 2 / (float)n;
+			albedo_put(s->veins.px + 4 * i, s, r, 0.66f * (float)fine[i] / 255, 0.5f * blurred[i]);
+		}
+	struct image height = ripples(s->conf.seed + 2);
+	film_make(s, &height);
+	image_free(&height);
 	free(fine);
 	free(deep);
 	free(blurred);
@@ -133,21 +157,15 @@ void scene_veins_make(struct scene *s)
 
 void scene_sclera(float albedo[3], float normal[3], const struct scene *s, const float point[3])
 {
-	float x = point[0], y = point[1], z = point[2] - (float)s->sclera_z, flat = sqrtf(x * x + y * y);
-	int n = s->veins.width;
-	float r = atan2f(flat, -z) / (float)reach * (float)n / 2, per = flat > 1e-6f ? r / flat : 0;
-	float u = per * x, v = per * y, e = 0.012f * (float)n;
-	const float *map = s->veins.px;
-	// The fundus of the orbit: a little yellower and redder away from the cornea.
-	float away = smooth(0.35f, 1.1f, r / ((float)n / 2) * (float)(reach / 1.3)), tint[3] = { 1 - 0.01f * away, 1 - 0.06f * away, 1 - 0.11f * away };
+	float x = point[0], y = point[1], z = point[2] - (float)s->sclera_z, flat = sqrtf(x * x + y * y), len = 0;
+	float r = atan2f(flat, -z) / (float)reach * 0.5f, per = flat > 1e-6f ? r / flat : 0;  // of the map's width
+	int n = s->veins.width, m = s->film.width;
 	for (int c = 0; c < 3; c++)
-		albedo[c] = (float)s->conf.sclera_rgb[c] * tint[c] * channel_at(map, n, 1, u, v, 4, c);
-	// A film that is not quite smooth breaks the mirror image up, off the cornea only.
-	float gx = channel_at(map, n, 1, u + e, v, 4, 3) - channel_at(map, n, 1, u - e, v, 4, 3);
-	float gy = channel_at(map, n, 1, u, v + e, 4, 3) - channel_at(map, n, 1, u, v - e, 4, 3), k = 0.22f * smooth(0.40f, 0.75f, r / ((float)n / 2) * (float)(reach / 0.9));
-	normal[0] += k * gx;
-	normal[1] += k * gy;
-	float len = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-	for (int i = 0; i < 3; i++)
-		normal[i] /= len;
+		albedo[c] = channel_at(s->veins.px, n, (float)n, per * x, per * y, 4, c);
+	for (int c = 0; c < 2; c++)
+		normal[c] += channel_at(s->film.px, m, (float)m, per * x, per * y, 2, c);
+	for (int c = 0; c < 3; c++)
+		len += normal[c] * normal[c];
+	for (int c = 0; c < 3; c++)
+		normal[c] /= sqrtf(len);
 }

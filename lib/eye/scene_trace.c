@@ -3,13 +3,10 @@
 
 #include <math.h>
 
-/* Wet surfaces mirror at the tear film, whose index is water's. */
-static const float film_index = 1.336f;
-
 /* Fresnel reflectance, unpolarised, from air. */
 static float mirror(float cos_i)
 {
-	float n = film_index, c = cos_i > 0 ? cos_i : 0, t = sqrtf(n * n - 1 + c * c);
+	float n = SCENE_FILM_INDEX, c = cos_i > 0 ? cos_i : 0, t = sqrtf(n * n - 1 + c * c);
 	float s = (c - t) / (c + t), p = (n * n * c - t) / (n * n * c + t);
 	return 0.5f * (s * s + p * p);
 }
@@ -105,31 +102,16 @@ static void sclera_colour(float rgb[3], struct spot *p, const struct scene *s, c
 	}
 }
 
-/* The margin of the pupil: how much of a point of the iris plane is iris; *ruff how much is the dark ruff. */
-static float iris_cover(const struct scene *s, float x, float y, float soft, float *ruff)
-{
-	float dx = x - (float)s->pupil[0], dy = y - (float)s->pupil[1], r = sqrtf(dx * dx + dy * dy), off = r - (float)s->pupil[2];
-	*ruff = 0;
-	if (fabsf(off) > 0.2f + 2 * soft)
-		return off > 0;
-	float turn = atan2f(dy, dx);
-	// The ridges of the ruff: about 70 round the margin, of uneven height (iris paper, section 2.2).
-	float ridge = 0.6f * fabsf(sinf(34 * turn + 1.7f * sinf(5 * turn))) + 0.4f * fabsf(sinf(21 * turn + 2 * sinf(3 * turn + 1)));
-	float edge = (float)s->pupil[2] - 0.018f * ridge, width = 0.045f + 0.02f * ridge;
-	*ruff = 1 - smooth(edge + width - soft, edge + width + 0.05f + soft, r);
-	return smooth(edge - 0.012f - soft, edge + 0.012f + soft, r);
-}
-
 static void iris_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float soft,
                         const struct iris_batch *b, int i)
 {
-	float x = b->px[i], y = b->py[i], ruff, cover = iris_cover(s, x, y, soft, &ruff);
-	static const float dark[3] = { 0.30f, 0.20f, 0.15f };  // what the pigment of the ruff leaves of the colour
+	float cover[3];
 	for (int c = 0; c < 3; c++)
 		rgb[c] = b->rgb[c][i];
-	scene_colour(rgb, s, level, x, y);
+	scene_colour(rgb, s, level, b->px[i], b->py[i]);
+	scene_pupil(cover, s, b->px[i], b->py[i], soft);
 	for (int c = 0; c < 3; c++)
-		rgb[c] *= cover * (1 + 0.75f * ruff * (dark[c] - 1));
+		rgb[c] *= cover[c];
 }
 
 /* Those rays of a batch that look through the cornea, packed together. */

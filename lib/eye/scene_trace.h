@@ -1,7 +1,7 @@
 /* scene_trace: rays of one view, in batches; between scene_view.c, scene_colour.c and scene_trace.c. */
 #ifndef EYE_SCENE_TRACE_H
 #define EYE_SCENE_TRACE_H
-#include "eye/scene_impl.h"
+#include "eye/scene_quick.h"
 
 /* A view as its rays need it. */
 struct scene_look {
@@ -11,6 +11,7 @@ struct scene_look {
 	const struct scene_level *level;
 	const struct scene_lighting *light;
 	const struct scene_beams *beams;
+	const struct quick_look *quick;  // null: the march goes along the rays
 	float soft;                  // half a pixel on the iris, mm
 	bool textured;
 };

@@ -67,13 +67,59 @@ struct canvas {
 	const struct scene_look *look;
 	struct image *image;
 	bool bent;  // the lens distorts
+	// Direction of a point's ray in the eye's frame, and where it meets a plane before the eye: constant, times x, times y.
+	struct canvas_plane {
+		float dir[3][3], from[3][3];
+	} plane;
 };
+
+static struct canvas_plane plane_make(const struct scene_look *look, const struct scene_view *v, double sphere_z)
+{
+	struct canvas_plane p;
+	double per = v->scale / v->camera.focal_px, center = v->cam_from_eye[2][2] * sphere_z + v->cam_from_eye[2][3];
+	double depth = fmax(center - 16, 0);  // mm: the eye reaches 14 before its centre at most
+	for (int j = 0; j < 3; j++) {
+		double step[3] = { (v->x0 - v->camera.center_px[0]) / v->camera.focal_px, (v->y0 - v->camera.center_px[1]) / v->camera.focal_px, 1 };
+		double d[3] = { 0, per * v->cam_from_eye[0][j], per * v->cam_from_eye[1][j] };
+		for (int i = 0; i < 3; i++)
+			d[0] += v->cam_from_eye[i][j] * step[i];
+		for (int k = 0; k < 3; k++) {
+			p.dir[k][j] = (float)d[k];
+			p.from[k][j] = (float)(depth * d[k] + (k == 0 ? look->origin[j] : 0));
+		}
+	}
+	return p;
+}
+
+/* Rays through n points of the picture, from a plane that lies before the eye. Pinhole: places on it are linear in px. */
+static void quick_points(float rgba[][4], int n, const float (*at)[2], const struct canvas *c, long *iris)
+{
+	struct quick_rays r;
+	const struct canvas_plane *p = &c->plane;
+	r.n = n;
+	for (int i = 0; i < n; i++) {
+		float x = at[i][0], y = at[i][1];
+		float dx = p->dir[0][0] + x * p->dir[1][0] + y * p->dir[2][0], dy = p->dir[0][1] + x * p->dir[1][1] + y * p->dir[2][1];
+		float dz = p->dir[0][2] + x * p->dir[1][2] + y * p->dir[2][2], inv = 1 / sqrtf(dx * dx + dy * dy + dz * dz);
+		r.dx[i] = dx * inv;
+		r.dy[i] = dy * inv;
+		r.dz[i] = dz * inv;
+		r.ox[i] = p->from[0][0] + x * p->from[1][0] + y * p->from[2][0];
+		r.oy[i] = p->from[0][1] + x * p->from[1][1] + y * p->from[2][1];
+		r.oz[i] = p->from[0][2] + x * p->from[1][2] + y * p->from[2][2];
+	}
+	quick_trace(rgba, &r, c->look->quick, iris);
+}
 
 /* Rays through n points of the picture (px), traced. */
 static void trace_points(float rgba[][4], int n, const float (*at)[2], const struct canvas *c, long *iris)
 {
 	float dx[BATCH], dy[BATCH], dz[BATCH];
 	const struct scene_view *v = c->view;
+	if (c->look->quick && !c->bent) {
+		quick_points(rgba, n, at, c, iris);
+		return;
+	}
 	for (int i = 0; i < n; i++) {
 		double px[2] = { v->x0 + v->scale * at[i][0], v->y0 + v->scale * at[i][1] }, cam[3], d[3];
 		if (c->bent) {
@@ -189,11 +235,18 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 	struct scene_look look;
 	look_make(&look, s, view, light, &beams);
 	struct image image = image_new(view->width, view->height, 4);
-	struct canvas c = { s, view, &look, &image, false };
+	struct canvas c = { s, view, &look, &image, false, plane_make(&look, view, s->sclera_z) };
 	for (int i = 0; i < 5; i++)
 		c.bent = c.bent || view->camera.distortion[i] != 0;
 	int across = (view->width + TILE - 1) / TILE, tiles = across * ((view->height + TILE - 1) / TILE);
 	long rays = 0, iris = 0;
+	struct scene_shade shade = { 0 };
+	struct quick_look quick;
+	if (s->conf.shading == SCENE_TEXELS && !c.bent) {
+		shade = scene_shade_make(s, look.level, look.origin, view->textured, &beams);
+		quick = quick_look(s, view, light, &shade, look.level);
+		look.quick = &quick;
+	}
 	unsigned char *mark = mem_new((size_t)view->width * (size_t)view->height, 1);
 #pragma omp parallel reduction(+ : rays, iris)
 	{
@@ -213,6 +266,7 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 		iris += mine.iris;
 	}
 	free(mark);
+	free(shade.rgba);
 	free(beams.beam);
 	if (count)
 		*count = (struct scene_count){ count->rays + rays, count->iris + iris };

@@ -64,8 +64,8 @@ void envmap_unfold(struct envmap *env)
 	double(*dirs)[3] = mem_array((size_t)low.width * (size_t)low.height, sizeof *dirs);
 	for (int i = 0; i < low.width * low.height; i++)
 		envmap_dir(dirs[i], (i % low.width + 0.5) / low.width, (i / low.width + 0.5) / low.height);
-	env->sharp = image_new(n, n, 3);
-	env->rough = image_new(ROUGH, ROUGH, 3);
+	env->sharp = image_new(n, n, 4);
+	env->rough = image_new(ROUGH, ROUGH, 4);
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
@@ -92,11 +92,11 @@ static void square_at(float rgb[3], const struct image *map, float u, float v)
 	u = u > 0 ? u < top ? u : top : 0;
 	v = v > 0 ? v < top ? v : top : 0;
 	int x = (int)u, y = (int)v;
-	const float *a = image_at(map, x, y), *b = a + 3L * map->width;
+	const float *a = image_at(map, x, y), *b = a + 4L * map->width;
 	u -= (float)x;
 	v -= (float)y;
 	for (int c = 0; c < 3; c++)
-		rgb[c] = (1 - v) * ((1 - u) * a[c] + u * a[c + 3]) + v * ((1 - u) * b[c] + u * b[c + 3]);
+		rgb[c] = (1 - v) * ((1 - u) * a[c] + u * a[c + 4]) + v * ((1 - u) * b[c] + u * b[c + 4]);
 }
 
 void envmap_at(float rgb[3], const struct envmap *env, const float d[3], float rough)

@@ -1,0 +1,72 @@
+/* scene_march: single scattering along rays of sight; between scene_meet.c, scene_light.c, scene_march.c, scene_shadow.c. */
+#ifndef EYE_SCENE_MARCH_H
+#define EYE_SCENE_MARCH_H
+#include "eye/scene_impl.h"
+
+enum { PART = 64 };  // rays that march together: what is known of all their nodes stays in the first cache
+
+/* What the loops read of the maps. */
+struct ground {
+	const float *relief;
+	int size;
+	float per_mm, z_plane, z_high, z_low, abl;
+};
+struct ground ground_of(const struct scene *scene, const struct scene_level *level);
+
+/* Fills near and span: down to the epithelium, which lies the layers' thickness below the relief. */
+void scene_spans(struct iris_batch *r, const struct ground *g);
+
+/* A node of the quadrature, on every ray of a part, whatever the light: its place between the ray's ends (0..1), slope of
+ * the relief there, tissue above it and towards the beholder (mm, of each layer), and the length it stands for. */
+struct march_node {
+	float u[PART], gx[PART], gy[PART], above[TISSUE_LAYERS][PART], seen[TISSUE_LAYERS][PART], length[PART];
+};
+
+/* One light at both ends of every ray: unit direction towards it, and irradiance of a plane that faces it. */
+struct march_light {
+	float x[2][PART], y[2][PART], z[2][PART], power[2][PART];
+};
+
+/* The light at n points, into end `end` (0, 1) of its rays. */
+void scene_light_at(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
+                    const struct scene *scene, const struct scene_beam *beam);
+
+/* All channels of a beam's table at a point. */
+void scene_table_at(float way[SCENE_WAY], const struct scene_beam *beam, const float point[3], float extent);
+
+/* Share of the light that comes in over a horizon which lies `clear` (slope) below it: sources are 0.15 wide. A shadow is not
+ * black: tissue that stands around it in the light fills it in. */
+SIMD_INLINE float scene_shadow_open(float clear)
+{
+	float t = clear * (1 / 0.15f);
+	return 0.4f + 0.6f * (t > 0 ? t < 1 ? t : 1 : 0);
+}
+
+/* Eight by eight texels of a level, as one part: corner, step between texels, mm. */
+enum { TILE_SIDE = 8, HORIZONS = 16 };
+struct march_tile {
+	float x, y, step;
+	const float (*horizon)[PART];  // [HORIZONS] slope under which the relief hides the sky, by azimuth; null: no shadows
+};
+_Static_assert(TILE_SIDE * TILE_SIDE == PART, "a tile is a part");
+
+/* The light on a tile's rays (near, span filled): the table's at the corners of the body that they go through, linear
+ * between these; dimmed by the relief's shadow. */
+void scene_light_tile(struct march_light *light, const struct iris_batch *rays, const struct march_tile *tile,
+                      const struct scene *scene, const struct scene_beam *beam);
+
+/* Fills near, span and rgb of the 64 rays that begin at a tile's texels. */
+void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene,
+                        const struct scene_level *level, const struct scene_beams *beams);
+
+/* The same without a march: the model's mean colour, lit. */
+void scene_flat_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_beams *beams);
+
+/* Horizons of a level's tiles, [tile][HORIZONS][PART]. free(). */
+float *scene_horizons(const struct scene *scene, const struct scene_level *level);
+
+/* Dims the light by the share of it that the relief between it and the points hides. */
+void scene_shadow(struct march_light *light, int n, const float *x, const float *y, const float *z,
+                  const struct ground *ground, int steps);
+
+#endif

@@ -1,0 +1,51 @@
+/* scene_quick: a picture whose march has been done already (scene_shade_make): geometry in vectors, colours looked up. */
+#ifndef EYE_SCENE_QUICK_H
+#define EYE_SCENE_QUICK_H
+#include "eye/scene_impl.h"
+
+/* Rays that start a little before the eye, where float has all the digits that a texel needs. */
+struct quick_rays {
+	int n;
+	float ox[BATCH], oy[BATCH], oz[BATCH];  // mm
+	float dx[BATCH], dy[BATCH], dz[BATCH];  // unit
+};
+
+/* Where they end on the outside of the eye, and how they go on behind the cornea. */
+struct quick_spots {
+	float hit[BATCH];                              // 1 or 0
+	float nx[BATCH], ny[BATCH], nz[BATCH];         // unit normal
+	float cos_i[BATCH], rho[BATCH], lid[BATCH];    // rho: 1 on the limbus; lid: share of the sclera, 1 white
+	float su[BATCH], sv[BATCH];                    // place in the maps of the sclera, -0.5..0.5
+	float fx[BATCH], fy[BATCH], fz[BATCH], vx[BATCH], vy[BATCH], vz[BATCH];  // behind the cornea
+	float iu[BATCH], iv[BATCH];                    // place on the iris, mm
+	float mirror[BATCH], eu[BATCH], ev[BATCH];     // Fresnel; place on the environment's unfolded octahedron, -1..1
+};
+
+struct quick_quadric {
+	float R, p, apex, m2;  // m2: squared ratio of the indices, less 1
+};
+
+/* What all rays of a view share. */
+struct quick_look {
+	const struct scene *scene;
+	const struct scene_lighting *light;
+	const struct scene_shade *shade;
+	const struct scene_level *level;  // of the relief
+	struct quick_quadric front, back;
+	bool two;
+	float rim2, index;
+	float sphere_z, sphere_r, limbus[2], lid_width;
+	float cam_from_eye[3][3], slip[2][3];
+	float sky[9][4], even[4];         // irradiance as a polynomial of the normal (eye's frame is turned there); its mean
+};
+struct quick_look quick_look(const struct scene *scene, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level);
+
+/* scene_quick.c: everything of the spots but the environment's place; scene_quick_mirror after the film has bent normals. */
+void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+void quick_iris(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+void quick_mirror(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+
+/* Colour of the rays; adds to *iris those that saw the iris. */
+void quick_trace(float rgba[][4], const struct quick_rays *rays, const struct quick_look *look, long *iris);
+
+#endif

@@ -1,0 +1,98 @@
+/* Light on a tile of the iris: what is smooth across it is looked up at its corners alone. */
+#include "eye/scene_march.h"
+
+#include <math.h>
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#endif
+
+/* The body that a tile's rays go through: from the middle of its relief to where they end, sheared by their mean. */
+struct body {
+	float z, over[3];  // depth of the near face; from it to the far one
+	float q[2][PART];  // where each ray's ends lie between the two
+};
+
+static void body_make(struct body *b, const struct iris_batch *r)
+{
+	float z = 0, over[3] = { 0 };
+	for (int i = 0; i < PART; i++) {
+		z += r->pz[i] / PART;
+		over[0] += r->span[i] * r->vx[i] / PART;
+		over[1] += r->span[i] * r->vy[i] / PART;
+		over[2] += r->span[i] * r->vz[i] / PART;
+	}
+	b->z = z;
+	for (int c = 0; c < 3; c++)
+		b->over[c] = over[c];
+	for (int i = 0; i < PART; i++) {
+		b->q[0][i] = (r->pz[i] - z) / over[2];
+		b->q[1][i] = (r->pz[i] + r->span[i] * r->vz[i] - z) / over[2];
+	}
+}
+
+/* One channel over the tile: c[face][y][x], at each ray's end. */
+SIMD_INLINE void channel_lay(float *restrict out0, float *restrict out1, const float c[8], const struct body *restrict b)
+{
+	SIMD_LOOP
+	for (int i = 0; i < PART; i++) {
+		float u = ((float)(i % TILE_SIDE) + 0.5f) / TILE_SIDE, v = ((float)(i / TILE_SIDE) + 0.5f) / TILE_SIDE;
+		float n0 = c[0] + u * (c[1] - c[0]), n1 = c[2] + u * (c[3] - c[2]), near = n0 + v * (n1 - n0);
+		float f0 = c[4] + u * (c[5] - c[4]), f1 = c[6] + u * (c[7] - c[6]), rise = f0 + v * (f1 - f0) - near;
+		out0[i] = near + b->q[0][i] * rise;
+		out1[i] = near + b->q[1][i] * rise;
+	}
+}
+
+SIMD_CLONES static void lay(struct march_light *w, float corner[SCENE_WAY][8], const struct body *b, float rim_width)
+{
+	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width;
+	channel_lay(w->x[0], w->x[1], corner[0], b);
+	channel_lay(w->y[0], w->y[1], corner[1], b);
+	channel_lay(w->z[0], w->z[1], corner[2], b);
+	channel_lay(w->power[0], w->power[1], corner[3], b);
+	channel_lay(rho[0], rho[1], corner[4], b);
+	for (int end = 0; end < 2; end++) {
+		SIMD_LOOP
+		for (int i = 0; i < PART; i++) {
+			float t = (rho[end][i] - lo) * inv, p = w->power[end][i];
+			t = t > 0 ? t < 1 ? t : 1 : 0;
+			w->power[end][i] = p > 0 ? p * (1 - t * t * (3 - 2 * t)) : 0;
+		}
+	}
+}
+
+SIMD_CLONES static void shade(struct march_light *w, const float *restrict low, const float *restrict high, float part)
+{
+	const float *restrict lx = w->x[0], *restrict ly = w->y[0], *restrict lz = w->z[0];
+	SIMD_LOOP
+	for (int i = 0; i < PART; i++) {
+		float rise = -lz[i] / sqrtf(lx[i] * lx[i] + ly[i] * ly[i] + 1e-12f);
+		float open = scene_shadow_open(rise - (low[i] + part * (high[i] - low[i])));
+		w->power[0][i] *= open;
+		w->power[1][i] *= open;
+	}
+}
+
+void scene_light_tile(struct march_light *light, const struct iris_batch *r, const struct march_tile *tile,
+                      const struct scene *s, const struct scene_beam *beam)
+{
+	struct body body;
+	float corner[SCENE_WAY][8], side = TILE_SIDE * tile->step;
+	body_make(&body, r);
+	for (int k = 0; k < 8; k++) {
+		float far = k < 4 ? 0 : 1, way[SCENE_WAY], p[3];
+		p[0] = tile->x + (k & 1 ? side : 0) + far * body.over[0];
+		p[1] = tile->y + (k & 2 ? side : 0) + far * body.over[1];
+		p[2] = body.z + far * body.over[2];
+		scene_table_at(way, beam, p, (float)s->extent);
+		for (int c = 0; c < SCENE_WAY; c++)
+			corner[c][k] = way[c];
+	}
+	lay(light, corner, &body, (float)(s->conf.limbus_width / s->limbus[0]));
+	if (!tile->horizon)
+		return;
+	float turn = atan2f(corner[1][0] + corner[1][3], corner[0][0] + corner[0][3]) * (float)(HORIZONS / (2 * M_PI));
+	int at = (int)floorf(turn);
+	shade(light, tile->horizon[(at + HORIZONS) % HORIZONS], tile->horizon[(at + 1 + HORIZONS) % HORIZONS], turn - (float)at);
+}

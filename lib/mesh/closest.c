@@ -1,0 +1,199 @@
+#include "mesh/closest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <embree3/rtcore.h>
+
+#include "base/mem.h"
+
+struct closest_scene {
+	const struct mesh *mesh;
+	const float (*normals)[3];
+	RTCDevice device;
+	RTCScene scene;
+	int32_t *face;  // of the mesh, for each triangle of the scene
+	int32_t (*corners)[3];
+	int n;
+};
+
+static float dot(const float a[3], const float b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static bool has_area(const struct mesh *mesh, const int32_t v[3])
+{
+	const float *a = mesh->vertices[v[0]], *b = mesh->vertices[v[1]], *c = mesh->vertices[v[2]];
+	double e[3], g[3];
+	for (int k = 0; k < 3; k++) {
+		e[k] = (double)b[k] - (double)a[k];
+		g[k] = (double)c[k] - (double)a[k];
+	}
+	double x = e[1] * g[2] - e[2] * g[1], y = e[2] * g[0] - e[0] * g[2], z = e[0] * g[1] - e[1] * g[0];
+	double longest = fmax(e[0] * e[0] + e[1] * e[1] + e[2] * e[2], g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+	return sqrt(x * x + y * y + z * z) > 1e-7 * longest && longest > 0;
+}
+
+struct closest_scene *closest_new(const struct mesh *mesh, const float (*normals)[3])
+{
+	struct closest_scene *s = mem_new(1, sizeof *s);
+	s->mesh = mesh;
+	s->normals = normals;
+	s->face = mem_array((size_t)mesh->n_faces + 1, sizeof *s->face);
+	s->corners = mem_array((size_t)mesh->n_faces + 1, sizeof *s->corners);
+	for (int f = 0; f < mesh->n_faces; f++)
+		if (has_area(mesh, mesh->faces[f])) {
+			memcpy(s->corners[s->n], mesh->faces[f], sizeof *s->corners);
+			s->face[s->n++] = f;
+		}
+	// One build thread: the tree is the same on any machine.
+	s->device = rtcNewDevice("threads=1");
+	s->scene = rtcNewScene(s->device);
+	if (s->n) {
+		RTCGeometry g = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+		// Copied: Embree reads 16 bytes at a vertex, the last of the mesh's own has 12.
+		void *v = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof *mesh->vertices,
+		                                  (size_t)mesh->n_vertices);
+		void *c = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof *s->corners, (size_t)s->n);
+		memcpy(v, mesh->vertices, (size_t)mesh->n_vertices * sizeof *mesh->vertices);
+		memcpy(c, s->corners, (size_t)s->n * sizeof *s->corners);
+		rtcCommitGeometry(g);
+		rtcAttachGeometry(s->scene, g);
+		rtcReleaseGeometry(g);
+	}
+	rtcCommitScene(s->scene);
+	return s;
+}
+
+void closest_free(struct closest_scene *s)
+{
+	if (!s)
+		return;
+	rtcReleaseScene(s->scene);
+	rtcReleaseDevice(s->device);
+	free(s->face);
+	free(s->corners);
+	free(s);
+}
+
+/* Barycentric weights of the point of triangle a b c closest to p (regions of the plane: Ericson, Real-Time Collision
+ * Detection, 5.1.5). */
+static void on_triangle(float w[3], const float p[3], const float a[3], const float b[3], const float c[3])
+{
+	float ab[3], ac[3], ap[3];
+	for (int k = 0; k < 3; k++) {
+		ab[k] = b[k] - a[k];
+		ac[k] = c[k] - a[k];
+		ap[k] = p[k] - a[k];
+	}
+	float bb = dot(ab, ab), cc = dot(ac, ac), bc = dot(ab, ac), d1 = dot(ab, ap), d2 = dot(ac, ap);
+	float d3 = d1 - bb, d4 = d2 - bc, d5 = d1 - bc, d6 = d2 - cc;
+	float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+	float u = 0, v = 0;
+	if (d1 <= 0 && d2 <= 0)
+		;
+	else if (d3 >= 0 && d4 <= d3)
+		u = 1;
+	else if (d6 >= 0 && d5 <= d6)
+		v = 1;
+	else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+		u = d1 / (d1 - d3);
+	else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+		v = d2 / (d2 - d6);
+	else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+		v = (d4 - d3) / (d4 - d3 + d5 - d6);
+		u = 1 - v;
+	} else {
+		float sum = va + vb + vc;
+		u = vb / sum;
+		v = vc / sum;
+	}
+	w[0] = fmaxf(1 - u - v, 0);
+	w[1] = u;
+	w[2] = v;
+}
+
+struct query {
+	const struct closest_scene *scene;
+	const float *at, *normal;
+	float turn2, best;  // best: squared, in the measure
+	struct closest_point found;
+	int triangle;
+};
+
+static void normal_at(float n[3], const struct closest_scene *s, const int32_t v[3], const float w[3])
+{
+	if (s->normals)
+		for (int k = 0; k < 3; k++)
+			n[k] = w[0] * s->normals[v[0]][k] + w[1] * s->normals[v[1]][k] + w[2] * s->normals[v[2]][k];
+	else {
+		const float *a = s->mesh->vertices[v[0]], *b = s->mesh->vertices[v[1]], *c = s->mesh->vertices[v[2]];
+		float e[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, g[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
+		n[0] = e[1] * g[2] - e[2] * g[1];
+		n[1] = e[2] * g[0] - e[0] * g[2];
+		n[2] = e[0] * g[1] - e[1] * g[0];
+	}
+	float len = sqrtf(dot(n, n));
+	for (int k = 0; k < 3; k++)
+		n[k] = len > 0 ? n[k] / len : 0;
+}
+
+/* Looks at one triangle; true when it is closer than all before. */
+static bool look(struct query *q, int triangle)
+{
+	const struct closest_scene *s = q->scene;
+	const int32_t *v = s->corners[triangle];
+	const float *a = s->mesh->vertices[v[0]], *b = s->mesh->vertices[v[1]], *c = s->mesh->vertices[v[2]];
+	struct closest_point p = { .face = s->face[triangle] };
+	float d2 = 0;
+	on_triangle(p.bary, q->at, a, b, c);
+	for (int k = 0; k < 3; k++) {
+		p.at[k] = p.bary[0] * a[k] + p.bary[1] * b[k] + p.bary[2] * c[k];
+		d2 += (p.at[k] - q->at[k]) * (p.at[k] - q->at[k]);
+	}
+	float measure = d2;
+	if (!(measure <= q->best))
+		return false;
+	normal_at(p.normal, s, v, p.bary);
+	if (q->normal && q->turn2 > 0)
+		measure += q->turn2 * 2 * fmaxf(1 - dot(p.normal, q->normal), 0);
+	if (!(measure < q->best || (measure == q->best && triangle < q->triangle)))
+		return false;
+	p.distance = sqrtf(d2);
+	q->found = p;
+	q->best = measure;
+	q->triangle = triangle;
+	return true;
+}
+
+static bool visit(struct RTCPointQueryFunctionArguments *args)
+{
+	struct query *q = args->userPtr;
+	if (!look(q, (int)args->primID))
+		return false;
+	args->query->radius = sqrtf(q->best);
+	return true;
+}
+
+struct closest_point closest_find(const struct closest_scene *s, const float at[3], const float normal[3], float turn,
+                                  float reach, int guess)
+{
+	struct query q = { .scene = s, .at = at, .normal = normal, .turn2 = turn * turn, .best = reach * reach,
+		               .found = { .face = -1, .distance = INFINITY }, .triangle = INT32_MAX };
+	if (!s->n || !isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
+		return q.found;
+	// Triangles keep the order of the faces: the guess is at its own number or before it.
+	for (int t = guess < s->n ? guess : s->n - 1; guess >= 0 && t >= 0; t--)
+		if (s->face[t] <= guess) {
+			if (s->face[t] == guess)
+				look(&q, t);
+			break;
+		}
+	struct RTCPointQuery query = { .x = at[0], .y = at[1], .z = at[2], .radius = sqrtf(q.best) };
+	struct RTCPointQueryContext context;
+	rtcInitPointQueryContext(&context);
+	rtcPointQuery(s->scene, &query, &context, visit, &q);
+	return q.found;
+}

@@ -1,0 +1,142 @@
+#include "skin/skin_track.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "skin/skin_track_impl.h"
+
+/* Patches and the search round them must stay inside the window that is kept of a frame. */
+static void window(int box[4], const struct skin_track *t)
+{
+	double lo[2] = { t->width, t->height }, hi[2] = { 0, 0 };
+	for (int i = 0; i < t->points.n; i++)
+		for (int k = 0; k < 2; k++) {
+			lo[k] = fmin(lo[k], t->point[i].warp.at[k]);
+			hi[k] = fmax(hi[k], t->point[i].warp.at[k]);
+		}
+	int margin = (t->conf.radius + 6) << (t->conf.levels - 1);
+	box[0] = (int)lo[0] - margin;
+	box[1] = (int)lo[1] - margin;
+	box[2] = (int)hi[0] + margin;
+	box[3] = (int)hi[1] + margin;
+}
+
+static void fill(struct scales *p, const struct skin_track *t, const uint8_t *luma, int stride)
+{
+	int box[4];
+	window(box, t);
+	scales_fill(p, luma, stride, t->width, t->height, box[0], box[1], box[2] > box[0] ? box[2] : box[0] + 1,
+	             box[3] > box[1] ? box[3] : box[1] + 1, t->conf.levels);
+}
+
+void skin_track_restart(struct skin_track *t)
+{
+	for (int i = 0; i < t->points.n; i++) {
+		struct skin_warp *p = &t->point[i];
+		*p = (struct skin_warp){ .warp = { { t->points.at[i][0], t->points.at[i][1] }, { { 1, 0 }, { 0, 1 } } }, .seen = 1, .usual = 1 };
+		p->before = p->warp;
+	}
+	t->has_last = false;
+}
+
+static struct skin_points copy_points(const struct skin_points *from)
+{
+	int links = from->first[from->n];
+	struct skin_points to = { .n = from->n };
+	to.at = mem_new((size_t)from->n + 1, sizeof *to.at);
+	to.first = mem_new((size_t)from->n + 1, sizeof *to.first);
+	to.near = mem_new((size_t)links + 1, sizeof *to.near);
+	memcpy(to.at, from->at, (size_t)from->n * sizeof *to.at);
+	memcpy(to.first, from->first, ((size_t)from->n + 1) * sizeof *to.first);
+	memcpy(to.near, from->near, (size_t)links * sizeof *to.near);
+	return to;
+}
+
+struct skin_track *skin_track_new(const struct skin_points *points, const uint8_t *luma, int stride, int width, int height,
+                                  const uint8_t *mask, const struct skin_track_conf *conf)
+{
+	struct skin_track *t = mem_new(1, sizeof *t);
+	t->conf = *conf;
+	t->width = width;
+	t->height = height;
+	t->points = copy_points(points);
+	t->point = mem_new((size_t)points->n + 1, sizeof *t->point);
+	t->field = mem_new((size_t)points->n + 1, sizeof *t->field);
+	skin_track_restart(t);
+	fill(&t->frame, t, luma, stride);
+	const struct scale_level *l = &t->frame.level[0];
+	float *weight = mask ? mem_new((size_t)l->stride * (size_t)l->height, sizeof *weight) : 0;
+	for (int y = 0; weight && y < l->height; y++)
+		for (int x = 0; x < l->width; x++)
+			weight[(long)y * l->stride + x] = mask[(long)(t->frame.y0 + y) * width + t->frame.x0 + x] / 255.0f;
+	const struct patch_conf patch = { conf->radius, conf->iterations, conf->stop, conf->noise, conf->misfit };
+	t->patches = patch_set_new(&t->frame, points->n, points->at, weight, &patch);
+	free(weight);
+	return t;
+}
+
+void skin_track_free(struct skin_track *t)
+{
+	if (!t)
+		return;
+	patch_set_free(t->patches);
+	scales_free(&t->frame);
+	scales_free(&t->last);
+	skin_points_free(&t->points);
+	free(t->point);
+	free(t->field);
+	free(t);
+}
+
+bool skin_track_was_still(const struct skin_track *t)
+{
+	return t->was_still;
+}
+
+/* Mean change from the frame before, on the coarsest level, after a common gain. */
+static bool stands_still(const struct skin_track *t)
+{
+	const struct scales *a = &t->frame, *b = &t->last;
+	int level = a->levels - 1 < 2 ? a->levels - 1 : 2;
+	const struct scale_level *p = &a->level[level], *q = &b->level[level];
+	if (!t->has_last || a->x0 != b->x0 || a->y0 != b->y0 || p->width != q->width || p->height != q->height)
+		return false;
+	double sa = 0, sb = 0, d = 0;
+	for (int y = 0; y < p->height; y++)
+		for (int x = 0; x < p->width; x++) {
+			sa += p->px[(long)y * p->stride + x];
+			sb += q->px[(long)y * q->stride + x];
+		}
+	double gain = sb > 0 ? sa / sb : 1;
+	for (int y = 0; y < p->height; y++)
+		for (int x = 0; x < p->width; x++)
+			d += fabs(p->px[(long)y * p->stride + x] - gain * q->px[(long)y * q->stride + x]);
+	return d / ((double)p->width * p->height) < t->conf.still;
+}
+
+double skin_track_push(struct skin_track *t, const uint8_t *luma, int stride, struct skin_point_state *state)
+{
+	struct scales swap = t->last;
+	t->last = t->frame;
+	t->frame = swap;
+	fill(&t->frame, t, luma, stride);
+	t->was_still = stands_still(t);
+	if (t->was_still) {
+		// compared with the frame that was worked on, so that slow motion adds up until it is seen
+		swap = t->last;
+		t->last = t->frame;
+		t->frame = swap;
+	} else {
+		skin_track_follow(t);
+	}
+	t->has_last = true;
+	double seen = 0;
+	for (int i = 0; i < t->points.n; i++) {
+		const struct skin_warp *p = &t->point[i];
+		state[i] = (struct skin_point_state){ { p->best[0], p->best[1] }, p->confidence, p->ncc };
+		seen += p->confidence > 0;
+	}
+	return t->points.n ? seen / t->points.n : 0;
+}

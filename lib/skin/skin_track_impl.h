@@ -1,0 +1,39 @@
+/* skin_track_impl: what the files of skin_track share. */
+#ifndef SKIN_SKIN_TRACK_IMPL_H
+#define SKIN_SKIN_TRACK_IMPL_H
+#include "skin/skin_track.h"
+
+struct skin_warp {
+	struct patch_warp warp, before;  // now, and in the frame before
+	double best[2];        // warp.at steadied by the neighbours
+	double ncc, usual;     // now; running mean while seen
+	double sigma;          // px, of warp.at from the patch alone
+	double confidence;
+	int seen;              // measured in this frame
+};
+
+/* What the neighbours say of a point. */
+struct skin_field {
+	struct patch_warp warp;
+	double spread;         // px: how far they agree
+	int n;                 // how many were asked; 0: no one knows
+};
+
+struct skin_track {
+	struct skin_track_conf conf;
+	int width, height;
+	struct skin_points points;
+	struct patch_set *patches;
+	struct scales frame, last;
+	bool has_last, was_still;
+	struct skin_warp *point;
+	struct skin_field *field;
+};
+
+/* Brings all points to t->frame. skin_follow.c */
+void skin_track_follow(struct skin_track *t);
+
+/* Fills t->field from the points that are seen. skin_field.c */
+void skin_track_ask(struct skin_track *t);
+
+#endif

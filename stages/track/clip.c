@@ -1,0 +1,191 @@
+/* What the clip is before it is followed: the camera, the reference frame, and the head in it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "optics/camera_rig.h"
+#include "stages/track/track.h"
+
+static const char *const marks[] = { "left_inner_canthus",  "left_outer_canthus",  "left_upper_lid_mid",  "left_lower_lid_mid",
+	                                 "right_inner_canthus", "right_outer_canthus", "right_upper_lid_mid", "right_lower_lid_mid" };
+
+bool track_video(char file[320], int *others, struct stage *stage, struct err *err)
+{
+	struct file_list list;
+	file[0] = 0;
+	if (!stage_list(stage, &list, "video", err))
+		return false;
+	*others = list.n - 1;
+	if (list.n > 0)
+		snprintf(file, 320, "video/%s", list.names[0]);
+	bool ok = list.n > 0 || err_set(err, "video/: holds no file: film the eyes, close, looking around and blinking");
+	file_list_free(&list);
+	return ok;
+}
+
+static bool set_camera(struct track_clip *clip, struct stage *stage, const struct track_conf *conf, struct err *err)
+{
+	struct camera *c = &clip->camera;
+	*c = (struct camera){ .focal_px = conf->focal_px, .center_px = { 0.5 * clip->info.width, 0.5 * clip->info.height }, .source = CAMERA_CONF };
+	memcpy(c->distortion, conf->distortion, sizeof c->distortion);
+	if (isfinite(conf->center_px[0]))
+		memcpy(c->center_px, conf->center_px, sizeof c->center_px);
+	if (isnan(c->focal_px) && isfinite(conf->focal_mm) && isfinite(conf->sensor_mm))
+		c->focal_px = conf->focal_mm / conf->sensor_mm * clip->info.width;
+	struct camera_rig rig = { 0 };
+	const char *path = stage_path(stage, "work/rig.json");
+	if (isnan(c->focal_px) && file_exists(path)) {
+		if (!camera_rig_load(&rig, path, err))
+			return false;
+		const struct rig_camera *found = camera_rig_find(&rig, clip->file);
+		if (found && found->width == clip->info.width && found->height == clip->info.height)
+			*c = found->camera;
+		camera_rig_free(&rig);
+	}
+	// The widest picture a face is filmed in, as if from the usual distance: scaled when the eyes are found.
+	clip->focal_assumed = isnan(c->focal_px);
+	if (clip->focal_assumed)
+		*c = (struct camera){ .focal_px = 4.0 * clip->info.width, .center_px = { c->center_px[0], c->center_px[1] }, .source = CAMERA_NONE };
+	return true;
+}
+
+/* Landmarks marked in the picture of the reference frame. */
+static bool pose_from_marks(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	struct head_sight sights[COUNT(marks)] = { 0 };
+	int n = 0;
+	for (int i = 0; i < conf->landmark_px.n; i++) {
+		int k = 0;
+		while (k < COUNT(marks) && strcmp(marks[k], conf->landmark_px.items[i].name))
+			k++;
+		int row = k < COUNT(marks) ? s->mark[k / MARKS][k % MARKS] : -1;
+		if (row < 0)
+			return err_set(err, "capture.conf: track.landmark_%s: needs subject.landmark.%s, a row of the mesh",
+			               conf->landmark_px.items[i].name, conf->landmark_px.items[i].name);
+		sights[n] = (struct head_sight){ .weight = 1, .px = { conf->landmark_px.items[i].value[0], conf->landmark_px.items[i].value[1] } };
+		for (int c = 0; c < 3; c++)
+			sights[n].head[c] = s->mesh.vertices[row][c];
+		clip->eye_seen[k / MARKS] = true;
+		n++;
+	}
+	if (n < 4)
+		return err_set(err, "capture.conf: track.landmark_*: %d marked, at least 4 are needed", n);
+	// Start: facing the camera, at the distance that the marks' spread tells.
+	double at[2] = { 0 }, mid[3] = { 0 }, px = 0, mm = 0, R[3] = { 1, -1, -1 };
+	for (int i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++) {
+			mid[c] += sights[i].head[c] / n;
+			at[c % 2] += c < 2 ? sights[i].px[c] / n : 0;
+		}
+	for (int i = 0; i < n; i++) {
+		px += pow(sights[i].px[0] - at[0], 2) + pow(sights[i].px[1] - at[1], 2);
+		mm += pow(sights[i].head[0] - mid[0], 2) + pow(sights[i].head[1] - mid[1], 2);
+	}
+	double z = clip->camera.focal_px * sqrt(mm / fmax(px, 1e-9)), ray[3];
+	struct head_prior prior = { .sigma = { 0.15, 0.15, INFINITY, INFINITY, INFINITY, INFINITY } };
+	camera_ray(ray, &clip->camera, at);
+	for (int c = 0; c < 3; c++) {
+		prior.cam_from_head[c][c] = R[c];
+		prior.cam_from_head[c][3] = ray[c] / ray[2] * z - R[c] * mid[c];
+	}
+	prior.cam_from_head[3][3] = 1;
+	memcpy(clip->cam_from_head, prior.cam_from_head, sizeof clip->cam_from_head);
+	clip->pose_px = head_pose_fit(clip->cam_from_head, n, sights, &clip->camera, INFINITY, &prior);
+	clip->pose_given = true;
+	if (isnan(clip->pose_px) || clip->pose_px > 0.03 * clip->info.width)
+		return err_set(err, "capture.conf: track.landmark_*: no pose of %s brings them together (rms %.0f px): look for one that is misplaced",
+		               s->file, clip->pose_px);
+	return true;
+}
+
+/* A camera of which nothing is known: as far away as faces are filmed from. */
+static void assume_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	double eye[3] = { 0 }, p[3], n = s->opening[0].open + s->opening[1].open;
+	for (int e = 0; e < SIDES; e++)
+		for (int k = 0; k < 3 && s->opening[e].open; k++)
+			eye[k] += s->opening[e].center[k] / n;
+	head_from(p, clip->cam_from_head, eye);
+	double k = conf->distance_mm / p[2];
+	clip->camera.focal_px *= k;
+	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
+}
+
+static bool look(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct head_found found;
+	int w = clip->info.width, h = clip->info.height;
+	if (!head_find(&found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head))
+		return false;
+	memcpy(clip->cam_from_head, found.cam_from_head, sizeof clip->cam_from_head);
+	memcpy(clip->eye_seen, found.seen, sizeof clip->eye_seen);
+	if (clip->focal_assumed) {
+		assume_distance(clip, s, conf);
+		memcpy(found.cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
+	}
+	if (!head_find_refine(&found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head))
+		return false;
+	memcpy(clip->cam_from_head, found.cam_from_head, sizeof clip->cam_from_head);
+	clip->pose_px = found.edge_px;
+	return true;
+}
+
+static void keep(struct track_clip *clip, const struct video_frame *f)
+{
+	for (int y = 0; y < f->height; y++)
+		memcpy(clip->luma + (long)y * f->width, f->luma + (long)y * f->luma_stride, (size_t)f->width);
+	video_frame_rgb(clip->rgb, 3 * f->width, f, 0, 0, f->width, f->height);
+	clip->reference = f->index;
+}
+
+/* Decodes up to the reference frame: the one asked for, or the first in which eyes are found. */
+static bool find_reference(struct track_clip *clip, struct video *video, const struct track_subject *s, const struct track_conf *conf,
+                           struct err *err)
+{
+	enum { EVERY = 5 };
+	bool found = false, any = false;
+	for (long i = 0; !found && (conf->reference >= 0 ? i <= conf->reference : i < conf->search); i++) {
+		struct video_frame f;
+		bool got;
+		if (!video_next(&f, &got, video, err))
+			return false;
+		if (!got)
+			break;
+		bool marked = conf->landmark_px.n > 0;
+		if (conf->reference >= 0 ? i == conf->reference : i % EVERY == 0) {
+			keep(clip, &f);
+			any = true;
+			found = s->mesh.n_vertices == 0 || (marked ? pose_from_marks(clip, s, conf, err) : look(clip, s, conf));
+		}
+		video_frame_free(&f);
+		if (err_is(err))
+			return false;
+	}
+	if (!any)
+		return err_set(err, "%s: %ld frames: track.reference_frame = %d is none of them", clip->file, clip->info.frames, conf->reference);
+	return found || err_set(err, "%s: no face with open eyes in %s: film the face from in front, upright, eyes open at the start; or mark the corners of the eyes (track.landmark_left_inner_canthus = x y ...)",
+	                        clip->file, conf->reference >= 0 ? "the reference frame" : "its first frames");
+}
+
+bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf,
+                     struct err *err)
+{
+	clip->pose_px = NAN;
+	for (int i = 0; i < SIDES * 3; i++)
+		clip->limbus_px[i / 3][i % 3] = NAN;
+	struct video *video = video_open(&clip->info, stage_path(stage, "%s", clip->file), &conf->video, err);
+	bool ok = video && set_camera(clip, stage, conf, err);
+	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
+	clip->luma = mem_new(area + 1, 1);
+	clip->rgb = mem_new(3 * area + 1, 1);
+	ok = ok && find_reference(clip, video, s, conf, err);
+	video_close(video);
+	return ok;
+}
+
+void track_clip_free(struct track_clip *clip)
+{
+	free(clip->luma);
+	free(clip->rgb);
+}

@@ -1,0 +1,164 @@
+/* The pipeline: frames as the decoder gives them, skin, head, eyes. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "stages/track/track.h"
+
+/* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
+struct rigid {
+	int n;
+	double *off2;
+	struct head_sight *sights;
+};
+
+static const double off_first = 0.3, off_lids = 2, off_least = 0.05, forget = 0.05;  // px, px, px, share a frame
+
+static struct rigid rigid_new(const struct track_points *points, const struct track_subject *s)
+{
+	struct rigid r = { .n = points->n, .off2 = mem_new((size_t)points->n + 1, sizeof *r.off2), .sights = mem_new((size_t)points->n + 1, sizeof *r.sights) };
+	for (int i = 0; i < r.n; i++) {
+		bool lid = false;
+		memcpy(r.sights[i].head, points->head[i], sizeof r.sights[i].head);
+		for (int e = 0; e < SIDES; e++)
+			lid |= pow(points->head[i][0] - s->center[e][0], 2) + pow(points->head[i][1] - s->center[e][1], 2) < 1.4 * 1.4 * s->radius * s->radius;
+		r.off2[i] = lid ? off_lids * off_lids : off_first * off_first;
+	}
+	return r;
+}
+
+static void rigid_free(struct rigid *r)
+{
+	free(r->off2);
+	free(r->sights);
+}
+
+static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust)
+{
+	double next[4][4];
+	memcpy(next, pose, sizeof next);
+	for (int i = 0; i < r->n; i++) {
+		r->sights[i].weight = state[i].confidence / (off_least * off_least + r->off2[i]);
+		memcpy(r->sights[i].px, state[i].at, sizeof r->sights[i].px);
+	}
+	if (isnan(head_pose_fit(next, r->n, r->sights, camera, robust, 0)))
+		return;
+	memcpy(pose, next, sizeof next);
+	for (int i = 0; i < r->n; i++) {
+		double px[2];
+		if (state[i].confidence > 0 && head_project(px, camera, pose, r->sights[i].head))
+			r->off2[i] += forget * (fmin(100, pow(px[0] - state[i].at[0], 2) + pow(px[1] - state[i].at[1], 2)) - r->off2[i]);
+	}
+}
+
+void track_to_model(float out[2], const double px[2], const double head[3], const double pose[4][4], const struct track_clip *clip)
+{
+	double p[3], ray[3], h[3], model[2] = { NAN, NAN };
+	head_from(p, pose, head);
+	camera_ray(ray, &clip->camera, px);
+	for (int k = 0; k < 3; k++)
+		ray[k] *= p[2] / ray[2];
+	head_to(h, pose, ray);
+	head_project(model, &clip->camera, clip->cam_from_head, h);
+	out[0] = (float)model[0];
+	out[1] = (float)model[1];
+}
+
+static void grow(struct track_result *r, long *room)
+{
+	if (r->n < *room)
+		return;
+	*room = *room ? 2 * *room : 256;
+	size_t n = (size_t)*room, m = n * (size_t)r->n_points;
+	r->time = mem_grow(r->time, n, sizeof *r->time);
+	r->pose = mem_grow(r->pose, n, sizeof *r->pose);
+	r->skin = mem_grow(r->skin, m + 1, sizeof *r->skin);
+	r->skin_model = mem_grow(r->skin_model, m + 1, sizeof *r->skin_model);
+	r->confidence = mem_grow(r->confidence, m + 1, sizeof *r->confidence);
+}
+
+static void store(struct track_result *r, const struct skin_point_state *state, const double pose[4][4], bool lost,
+                  const struct track_points *points, const struct track_clip *clip)
+{
+	long at = r->n * r->n_points;
+	for (int i = 0; i < r->n_points; i++) {
+		r->skin[at + i][0] = (float)state[i].at[0];
+		r->skin[at + i][1] = (float)state[i].at[1];
+		r->confidence[at + i] = lost ? 0 : (float)state[i].confidence;
+		track_to_model(r->skin_model[at + i], state[i].at, points->head[i], pose, clip);
+	}
+	memcpy(r->pose[r->n], pose, sizeof r->pose[r->n]);
+}
+
+/* One frame of skin and head; true when what was followed is lost. */
+static bool skin_frame(struct track_result *r, struct skin_track *skin, struct skin_point_state *state, const struct video_frame *f,
+                       const struct track_conf *conf)
+{
+	double seen = skin_track_push(skin, f->luma, f->luma_stride, state);
+	r->still += skin_track_was_still(skin);
+	if (seen >= conf->cut || !r->n_points)
+		return false;
+	// perhaps the camera jumped there and back
+	skin_track_restart(skin);
+	seen = skin_track_push(skin, f->luma, f->luma_stride, state);
+	if (seen >= conf->cut)
+		return false;
+	if (r->cut < 0)
+		r->cut = f->index;
+	r->lost++;
+	return true;
+}
+
+bool track_follow(struct track_result *r, struct stage *stage, const struct track_clip *clip, const struct track_subject *subject,
+                  const struct track_points *points, const struct track_conf *conf, struct err *err)
+{
+	struct video_info info;
+	struct video *video = video_open(&info, stage_path(stage, "%s", clip->file), &conf->video, err);
+	*r = (struct track_result){ .n_points = points->n, .cut = -1, .lid_points = conf->eyes.lid_points, .n_au = conf->expression.n };
+	if (!video)
+		return false;
+	struct skin_track *skin = skin_track_new(&points->points, clip->luma, info.width, info.width, info.height, points->mask, &conf->skin);
+	struct skin_point_state *state = mem_new((size_t)points->n + 1, sizeof *state);
+	struct rigid rigid = rigid_new(points, subject);
+	double pose[4][4];
+	long room = 0;
+	bool ok = true, got = true;
+	memcpy(pose, clip->cam_from_head, sizeof pose);
+	while (ok && got) {
+		struct video_frame f;
+		ok = video_next(&f, &got, video, err);
+		if (ok && got) {
+			grow(r, &room);
+			bool lost = skin_frame(r, skin, state, &f, conf);
+			if (!lost && points->n)
+				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px);
+			r->time[r->n] = f.time;
+			store(r, state, pose, lost, points, clip);
+			r->n++;
+			stage_progress(stage, (int)r->n, (int)info.frames, "frames");
+		}
+		video_frame_free(&f);
+	}
+	if (video_damaged(video))
+		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
+	rigid_free(&rigid);
+	free(state);
+	skin_track_free(skin);
+	video_close(video);
+	return ok;
+}
+
+void track_result_free(struct track_result *r)
+{
+	free(r->time);
+	free(r->pose);
+	free(r->skin);
+	free(r->skin_model);
+	free(r->confidence);
+	free(r->lids);
+	free(r->lids_model);
+	free(r->g);
+	free(r->eyes.state);
+	free(r->eyes.event);
+}

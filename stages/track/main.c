@@ -1,0 +1,46 @@
+/* track: gaze, lids and skin of a video, followed frame by frame.
+ * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
+ * writes  work/skin/gaze.csv, lids.npy, lids_model.npy, vertices.npy, skin.npy, skin_model.npy, confidence.npy, head.npy
+ *         (where the head was), track.json
+ */
+#include "base/mem.h"
+#include "stages/track/track.h"
+
+int main(int argc, char **argv)
+{
+	struct track_conf c = { 0 };
+	const struct opt opts[] = {
+		EYE_OPTS(&c.eye),
+		VIDEO_OPTS(&c.video),
+		EYE_TRACK_OPTS(&c.eyes),
+		SKIN_TRACK_OPTS(&c.skin),
+		HEAD_FIND_OPTS(&c.head),
+		OPT_REAL_UNSET("camera.focal_px", &c.focal_px, 50, 1e6, "px", "focal length"),
+		OPT_REAL_UNSET("camera.focal_mm", &c.focal_mm, 0.5, 2000, "mm", "focal length, with the sensor's width"),
+		OPT_REAL_UNSET("camera.sensor_mm", &c.sensor_mm, 1, 100, "mm", "width of the sensor"),
+		OPT_REALS_UNSET("camera.center_px", c.center_px, 2, -1e5, 1e5, "px", "principal point"),
+		OPT_REALS("camera.distortion", c.distortion, 5, -10, 10, "", "k1 k2 p1 p2 k3"),
+		OPT_REAL_UNSET("subject.unit_mm", &c.unit_mm, 1e-4, 1e5, "mm", "in one unit of the subject's mesh"),
+		OPT_REAL_UNSET("subject.eye_radius", &c.eye_radius, 1e-6, 1e6, "unit", "of an eyeball"),
+		OPT_EACH("subject.landmark.*", &c.landmark, 1, 0, 1e9, "", "row of the subject's mesh"),
+		OPT_EACH("subject.eye_center.*", &c.eye_center, 3, -1e6, 1e6, "unit", "centre of an eyeball, in the mesh's unit and axes"),
+		OPT_EACH("expression.*", &c.expression, 2, 0, 1e7, "", "neutral and peak frame of an expression"),
+		OPT_EACH("landmark_*", &c.landmark_px, 2, -1e5, 1e5, "px", "where a landmark is seen in the reference frame"),
+		OPT_INT("reference_frame", &c.reference, -1, 10000000, "", "frame the mesh is laid on; -1: found"),
+		OPT_INT("search_frames", &c.search, 1, 100000, "", "searched for a face at most"),
+		OPT_REAL("distance_mm", &c.distance_mm, 50, 10000, "mm", "of the face from a camera of unknown focal length"),
+		OPT_INT("points", &c.points, 20, 20000, "", "of skin"),
+		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),
+		OPT_REAL("gap_px", &c.gap_px, 0, 50, "px", "least distance between two points"),
+		OPT_REAL("cut", &c.cut, 0, 1, "", "share of the points that must be seen, or the clip was cut"),
+		OPT_REAL("pose_robust_px", &c.still_pose_px, 0.05, 50, "px", "a point further off the head's motion counts little"),
+	};
+	struct stage stage;
+	struct err err = { 0 };
+	stage_start(&stage, "track", "gaze, lids and skin of a video, followed frame by frame", argc, argv, COUNT(opts), opts);
+	if (c.video.threads == 0)
+		c.video.threads = stage.threads;
+	if (eye_check(&c.eye, &err))
+		track_stage(&stage, &c, &err);
+	return stage_end(&stage, &err);
+}

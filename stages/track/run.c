@@ -1,0 +1,87 @@
+#include <math.h>
+
+#include "base/mem.h"
+#include "stages/track/track.h"
+
+/* What the video is that nobody asked for, one line each. */
+static void tell_video(struct stage *stage, const struct track_clip *clip)
+{
+	const struct video_info *v = &clip->info;
+	if (v->variable)
+		stage_skipped(stage, "%s: variable frame rate (intervals differ by up to %.0f %%): its own time stamps are used; film at a fixed rate", clip->file,
+		              100 * v->jitter);
+	if (v->promised > v->frames)
+		stage_skipped(stage, "%s: cut off: %ld of %ld frames are there; copy the file again", clip->file, v->frames, v->promised);
+	if (v->fps < 25)
+		stage_skipped(stage, "%s: %.0f frames/s: blinks are over in a few frames; film at 60 or more", clip->file, v->fps);
+	if (clip->focal_assumed)
+		stage_skipped(stage, "%s: focal length not known: as if from %.0f mm away; set camera.focal_px, or camera.focal_mm and camera.sensor_mm", clip->file,
+		              clip->cam_from_head[2][3]);
+}
+
+static void tell(struct stage *stage, const struct track_result *r, const struct track_clip *clip)
+{
+	double seen = 0;
+	for (long i = 0; i < r->n * r->n_points; i++)
+		seen += r->confidence[i] > 0;
+	seen /= fmax(1, (double)r->n * r->n_points);
+	stage_note(stage, "%s: %ld frames, %d points of skin, %.0f %% of them seen; pose from the openings of the eyes to %.1f px", clip->file,
+	           r->n, r->n_points, 100 * seen, clip->pose_px);
+	stage_figure(stage, "track_frames", (double)r->n, "");
+	stage_figure(stage, "track_points", r->n_points, "");
+	stage_figure(stage, "track_seen", seen, "");
+	stage_figure(stage, "track_pose", clip->pose_px, "px");
+	if (r->lost)
+		stage_skipped(stage, "%s: from frame %ld on, %ld frames show the face otherwise than frame %ld does (a cut, or the head turned away): nothing is measured there",
+		              clip->file, r->cut, r->lost, clip->reference);
+}
+
+static bool work(struct stage *stage, struct track_clip *clip, struct track_subject *subject, struct track_points *points,
+                 struct track_result *result, const struct track_conf *conf, int n, const char *const in[], struct err *err)
+{
+	if (!track_subject_load(subject, stage, conf, err) || !track_clip_open(clip, stage, subject, conf, err))
+		return false;
+	tell_video(stage, clip);
+	if (!track_points_choose(points, clip, subject, conf, err) || !track_follow(result, stage, clip, subject, points, conf, err))
+		return false;
+	if (result->n < 2)
+		return err_set(err, "%s: %ld frames: film longer", clip->file, result->n);
+	if (result->lost * 2 > result->n)
+		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again: cut the video to one take", clip->file,
+		               result->cut, clip->reference);
+	track_apertures(result, clip, subject);
+	if (!track_expressions(result, stage, conf, err) || !track_save(stage, result, clip, points, n, in, err))
+		return false;
+	tell(stage, result, clip);
+	return true;
+}
+
+bool track_stage(struct stage *stage, const struct track_conf *conf, struct err *err)
+{
+	const char *in[8];
+	struct track_clip clip = { 0 };
+	int n = 0, more;
+	if (!track_video(clip.file, &more, stage, err))
+		return false;
+	in[n++] = clip.file;
+	static const char *const others[] = { "subject.ply", "subject.obj", "work/subject.ply", "work/rig.json" };
+	for (int i = 0; i < COUNT(others); i++)
+		if (file_exists(stage_path(stage, "%s", others[i])))
+			in[n++] = others[i];
+	bool fresh = true;
+	for (int i = 0; i < TRACK_FILES; i++)
+		fresh = stage_fresh(stage, track_files[i], n, in) && fresh;
+	if (fresh)
+		return true;
+	if (more)
+		stage_skipped(stage, "video/: %s is followed, the other %d files are not", clip.file, more);
+	struct track_subject subject = { 0 };
+	struct track_points points = { 0 };
+	struct track_result result = { 0 };
+	bool ok = work(stage, &clip, &subject, &points, &result, conf, n, in, err);
+	track_result_free(&result);
+	track_points_free(&points);
+	track_subject_free(&subject);
+	track_clip_free(&clip);
+	return ok;
+}

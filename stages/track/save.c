@@ -1,0 +1,139 @@
+/* work/skin/ as the design fixes it. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/csv.h"
+#include "base/json.h"
+#include "base/mem.h"
+#include "base/npy.h"
+#include "stages/track/track.h"
+
+enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
+
+const char *const track_files[TRACK_FILES] = {
+	"work/skin/gaze.csv",       "work/skin/lids.npy",       "work/skin/lids_model.npy",  "work/skin/vertices.npy", "work/skin/skin.npy",
+	"work/skin/skin_model.npy", "work/skin/confidence.npy", "work/skin/head.npy", "work/skin/track.json",
+};
+
+static bool save_gaze(const struct track_result *r, const char *path, struct err *err)
+{
+	static const char *const inputs[EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
+		                                            "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
+	int width = EYE_INPUTS + r->n_au, columns = 2 + width + 2;
+	char **name = mem_new((size_t)columns, sizeof *name);
+	name[0] = mem_str("frame");
+	name[1] = mem_str("time_s");
+	for (int i = 0; i < width; i++)
+		name[2 + i] = i < EYE_INPUTS ? mem_str(inputs[i]) : mem_printf("au%d", i - EYE_INPUTS + 1);
+	name[2 + width] = mem_str("confidence_left");
+	name[3 + width] = mem_str("confidence_right");
+	struct csv_table table = csv_table_new(columns, (const char *const *)name);
+	double *row = mem_new((size_t)columns, sizeof *row);
+	for (long f = 0; f < r->n; f++) {
+		row[0] = (double)f;
+		row[1] = r->time[f];
+		for (int i = 0; i < width; i++)
+			row[2 + i] = r->g ? r->g[f * width + i] : NAN;
+		for (int e = 0; e < SIDES; e++)
+			row[2 + width + e] = r->has_eyes ? r->eyes.state[f][e].confidence : 0;
+		csv_add(&table, row);
+	}
+	bool ok = csv_save(path, &table, err);
+	csv_table_free(&table);
+	for (int i = 0; i < columns; i++)
+		free(name[i]);
+	free(name);
+	free(row);
+	return ok;
+}
+
+static json_t *globe_json(const struct eye_globe *g)
+{
+	json_t *j = json_object();
+	json_object_set_new(j, "center_in_head_mm", json_numbers(3, g->center_in_head));
+	json_object_set_new(j, "center_sigma_mm", json_numbers(3, g->center_sigma));
+	json_object_set_new(j, "radius_mm", json_number(g->radius));
+	json_object_set_new(j, "limbus_radius_mm", json_number(g->limbus_radius));
+	json_object_set_new(j, "rms_px", json_number(g->rms_px));
+	json_object_set_new(j, "frames", json_integer(g->frames));
+	return j;
+}
+
+static json_t *events_json(const struct eye_clip *c, int kind)
+{
+	static const char *const sides[SIDES] = { "left", "right" };
+	json_t *all = json_array();
+	for (int i = 0; i < c->events; i++) {
+		const struct eye_event *e = &c->event[i];
+		if ((int)e->kind != kind)
+			continue;
+		json_t *j = json_object();
+		json_object_set_new(j, "eye", json_string(sides[e->side]));
+		json_object_set_new(j, "first", json_integer(e->first));
+		json_object_set_new(j, "peak", json_integer(e->peak));
+		json_object_set_new(j, "last", json_integer(e->last));
+		bool blink = e->kind == EVENT_BLINK;
+		json_object_set_new(j, blink ? "amplitude" : "amplitude_deg", json_number(blink ? e->amplitude : e->amplitude * 180 / M_PI));
+		if (!blink)
+			json_object_set_new(j, "peak_speed_deg_s", json_number(e->peak_speed * 180 / M_PI));
+		json_array_append_new(all, j);
+	}
+	return all;
+}
+
+static bool save_json(const struct track_result *r, const struct track_clip *clip, const char *path, const char *made_by, struct err *err)
+{
+	json_t *j = json_object(), *camera = json_object();
+	json_object_set_new(camera, "width", json_integer(clip->info.width));
+	json_object_set_new(camera, "height", json_integer(clip->info.height));
+	json_object_set_new(camera, "focal_px", json_number(clip->camera.focal_px));
+	json_object_set_new(camera, "center_px", json_numbers(2, clip->camera.center_px));
+	json_object_set_new(camera, "distortion", json_numbers(5, clip->camera.distortion));
+	json_object_set_new(camera, "cam_from_head", json_numbers(16, &clip->cam_from_head[0][0]));
+	json_object_set_new(camera, "focal_assumed", json_boolean(clip->focal_assumed));
+	json_object_set_new(j, "camera", camera);
+	json_object_set_new(j, "video", json_string(clip->file));
+	json_object_set_new(j, "frames", json_integer(r->n));
+	json_object_set_new(j, "fps", json_number(clip->info.fps));
+	json_object_set_new(j, "variable_rate", json_boolean(clip->info.variable));
+	json_object_set_new(j, "reference_frame", json_integer(clip->reference));
+	json_object_set_new(j, "pose_rms_px", json_number(clip->pose_px));
+	json_object_set_new(j, "lost_frames", json_integer(r->lost));
+	json_object_set_new(j, "still_frames", json_integer(r->still));
+	json_object_set_new(j, "first_lost_frame", r->cut >= 0 ? json_integer(r->cut) : json_null());
+	if (r->has_eyes) {
+		json_object_set_new(j, "left_eye", r->eyes.globe[0].seen ? globe_json(&r->eyes.globe[0]) : json_null());
+		json_object_set_new(j, "right_eye", r->eyes.globe[1].seen ? globe_json(&r->eyes.globe[1]) : json_null());
+		json_object_set_new(j, "blinks", events_json(&r->eyes, EVENT_BLINK));
+		json_object_set_new(j, "saccades", events_json(&r->eyes, EVENT_SACCADE));
+	}
+	bool ok = json_write(path, j, made_by, err);
+	json_decref(j);
+	return ok;
+}
+
+static bool save_array(struct stage *stage, const char *name, enum npy_type type, int ndim, const long *shape, const void *data,
+                       struct err *err)
+{
+	struct npy a = npy_of(type, ndim, shape, data);
+	return npy_save(stage_path(stage, "work/skin/%s", name), &a, err);
+}
+
+bool track_save(struct stage *stage, const struct track_result *r, const struct track_clip *clip, const struct track_points *points,
+                int n, const char *const in[], struct err *err)
+{
+	const long m = r->n_points, lids[] = { r->n, LIDS_ALL, r->lid_points, 2 };
+	bool ok = file_mkdirs(stage_path(stage, "work/skin"), err)
+	          && save_gaze(r, stage_path(stage, "work/skin/gaze.csv"), err)
+	          && save_array(stage, "lids.npy", NPY_F4, 4, lids, r->lids, err)
+	          && save_array(stage, "lids_model.npy", NPY_F4, 4, lids, r->lids_model, err)
+	          && save_array(stage, "vertices.npy", NPY_I4, 1, &m, points->vertex, err)
+	          && save_array(stage, "skin.npy", NPY_F4, 3, (long[]){ r->n, m, 2 }, r->skin, err)
+	          && save_array(stage, "skin_model.npy", NPY_F4, 3, (long[]){ r->n, m, 2 }, r->skin_model, err)
+	          && save_array(stage, "confidence.npy", NPY_F4, 2, (long[]){ r->n, m }, r->confidence, err)
+	          && save_array(stage, "head.npy", NPY_F8, 3, (long[]){ r->n, 4, 4 }, r->pose, err)
+	          && save_json(r, clip, stage_path(stage, "work/skin/track.json"), stage_made_by(stage, n, in), err);
+	for (int i = 0; i < TRACK_FILES && ok; i++)
+		ok = stage_made(stage, track_files[i], n, in, err);
+	return ok;
+}

@@ -1,0 +1,238 @@
+#include "stages/transfer/transfer_stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "bridge/om_mesh.h"
+#include "math/stats.h"
+#include "mesh/mesh_part.h"
+#include "skin/transfer_file.h"
+
+enum { OUT = 3, IN = 2 };
+
+struct subject {
+	const char *file;  // relative to the capture
+	struct mesh mesh;  // mm
+	double unit;
+	bool guessed;
+};
+
+struct target {
+	char *name, *in[IN], *out[OUT];
+	struct mesh mesh;  // mm
+	double unit;
+	bool guessed;
+	struct mesh_part part;
+	struct transfer result;
+};
+
+static void scale(struct mesh *mesh, double unit)
+{
+	for (int i = 0; i < mesh->n_vertices; i++)
+		for (int k = 0; k < 3; k++)
+			mesh->vertices[i][k] = (float)((double)mesh->vertices[i][k] * unit);
+}
+
+/* What had to be mended, one line a mesh. */
+static void say_mended(struct stage *stage, const char *file, const struct mesh_part *p)
+{
+	if (p->doubled)
+		stage_note(stage, "%s: %d vertices lie exactly on others: joined to them for the registration", file, p->doubled);
+	if (p->flat)
+		stage_note(stage, "%s: %d faces without area are passed over", file, p->flat);
+	if (p->tangled)
+		stage_note(stage, "%s: %d edges belong to three faces or more: normals there are means", file, p->tangled);
+	if (p->left_out)
+		stage_note(stage, "%s: %d of %d pieces are small or closed (eyeballs, teeth, lashes, strays): carried along, not matched",
+		           file, p->left_out, p->pieces);
+}
+
+static bool load_subject(struct subject *s, struct stage *stage, const struct transfer_stage_conf *conf, struct err *err)
+{
+	static const char *const files[] = { "subject.ply", "subject.obj", "work/subject.ply" };
+	for (int i = 0; i < COUNT(files) && !s->file; i++)
+		if (file_exists(stage_path(stage, "%s", files[i])))
+			s->file = files[i];
+	if (!s->file)
+		return err_set(err, "no subject.ply or subject.obj: a character is laid onto the person's mesh; give one, or views/ to make it from");
+	if (!om_mesh_load(&s->mesh, stage_path(stage, "%s", s->file), (long)conf->limit_vertices, err))
+		return false;
+	s->guessed = !isfinite(conf->subject_unit);
+	s->unit = s->guessed ? transfer_subject_unit(&s->mesh) : conf->subject_unit;
+	scale(&s->mesh, s->unit);
+	return true;
+}
+
+static bool load_target(struct target *t, struct stage *stage, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
+{
+	if (!om_mesh_load(&t->mesh, stage_path(stage, "%s", t->in[0]), (long)conf->limit_vertices, err))
+		return false;
+	if (!t->mesh.n_faces)
+		return err_set(err, "%s: has no faces: a cloud of points cannot be registered", t->in[0]);
+	t->unit = NAN;
+	for (int i = 0; i < conf->target_unit.n; i++)
+		if (!strcmp(conf->target_unit.items[i].name, t->name))
+			t->unit = conf->target_unit.items[i].value[0];
+	t->guessed = !isfinite(t->unit);
+	if (t->guessed)
+		t->unit = transfer_same_topology(&t->mesh, &s->mesh) ? s->unit : transfer_target_unit(&t->mesh, &s->mesh, &conf->transfer);
+	scale(&t->mesh, t->unit);
+	mesh_part_make(&t->part, &t->mesh, conf->transfer.least_piece);
+	say_mended(stage, t->in[0], &t->part);
+	return true;
+}
+
+/* Quantile of the distances that B spans, over vertices it can be trusted for. */
+static double distance_at(const struct transfer *t, double q)
+{
+	double *d = mem_array((size_t)t->n + 1, sizeof *d);
+	int n = 0;
+	for (int i = 0; i < t->n; i++)
+		if (t->confidence[i] > 0.2f)
+			d[n++] = (double)t->distance[i];
+	double at = stats_quantile(n, d, q);
+	free(d);
+	return at;
+}
+
+static int trusted(const struct transfer *t)
+{
+	int n = 0;
+	for (int i = 0; i < t->n; i++)
+		n += t->confidence[i] > 0.2f;
+	return n;
+}
+
+static bool save_json(const struct target *t, const struct subject *s, const char *path, const char *made_by, struct err *err)
+{
+	const struct transfer *r = &t->result;
+	const struct mesh_part *p = &t->part;
+	json_t *root = json_pack("{s:s, s:s, s:b}", "target", t->in[0], "subject", s->file, "same_topology", r->same_topology);
+	json_object_set_new(root, "subject_from_target", json_numbers(16, &r->subject_from_target[0][0]));
+	json_object_set_new(root, "scale", json_number(r->scale));
+	json_object_set_new(root, "target_unit_mm", json_number(t->unit));
+	json_object_set_new(root, "target_unit_guessed", json_boolean(t->guessed));
+	json_object_set_new(root, "subject_unit_mm", json_number(s->unit));
+	json_object_set_new(root, "subject_unit_guessed", json_boolean(s->guessed));
+	json_object_set_new(root, "aligned_share", json_number(r->matched));
+	json_object_set_new(root, "matched_share", json_number(r->covered));
+	json_object_set_new(root, "residual_rms_mm", json_number(r->rms));
+	json_object_set_new(root, "distance_median_mm", json_number(distance_at(r, 0.5)));
+	json_object_set_new(root, "distance_95_mm", json_number(distance_at(r, 0.95)));
+	json_object_set_new(root, "vertices", json_integer(t->mesh.n_vertices));
+	json_object_set_new(root, "trusted_vertices", json_integer(trusted(r)));
+	json_object_set_new(root, "mended", json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "doubled_vertices", p->doubled, "flat_faces", p->flat,
+	                                              "tangled_edges", p->tangled, "boundaries", p->rims, "pieces", p->pieces,
+	                                              "pieces_carried", p->left_out));
+	bool ok = json_write(path, root, made_by, err);
+	json_decref(root);
+	return ok;
+}
+
+static bool save(struct target *t, const struct subject *s, struct stage *stage, struct err *err)
+{
+	const char *const *in = (const char *const *)t->in;
+	const char *made_by = stage_made_by(stage, IN, in);
+	struct mesh registered = t->mesh;
+	registered.vertices = t->result.registered;
+	bool ok = om_mesh_save(&registered, stage_path(stage, "%s", t->out[0]), made_by, err)
+	          && transfer_save_matrix(&t->result, s->mesh.n_vertices, stage_path(stage, "%s", t->out[1]), made_by, err)
+	          && save_json(t, s, stage_path(stage, "%s", t->out[2]), made_by, err);
+	for (int i = 0; i < OUT && ok; i++)
+		ok = stage_made(stage, t->out[i], IN, in, err);
+	return ok;
+}
+
+static void report(struct stage *stage, const struct target *t)
+{
+	const struct transfer *r = &t->result;
+	if (r->same_topology) {
+		stage_note(stage, "%s: the subject's own topology: vertex goes to vertex, nothing is registered", t->name);
+		stage_skipped_as_said(stage, "%s: has the subject's own topology: no registration", t->in[0]);
+		return;
+	}
+	stage_note(stage, "%s: %.4g mm a unit%s, scale %.3f, %.0f %% of the subject found on it; %d of %d vertices follow the subject, %.2f mm from it in the median",
+	           t->name, t->unit, t->guessed ? " (guessed)" : "", r->scale, 100 * r->matched, trusted(r), t->mesh.n_vertices,
+	           distance_at(r, 0.5));
+	stage_figure(stage, "aligned_share", 100 * r->matched, "%");
+	stage_figure(stage, "residual_rms", r->rms, "mm");
+	stage_figure(stage, "distance_95", distance_at(r, 0.95), "mm");
+}
+
+static void target_names(struct target *t, const char *file, const char *subject)
+{
+	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "transfer.json" };
+	const char *dot = strrchr(file, '.');
+	t->name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file);
+	t->in[0] = mem_printf("targets/%s", file);
+	t->in[1] = mem_str(subject);
+	for (int i = 0; i < OUT; i++)
+		t->out[i] = mem_printf("work/targets/%s/%s", t->name, writes[i]);
+}
+
+static void target_free(struct target *t)
+{
+	free(t->name);
+	for (int i = 0; i < IN; i++)
+		free(t->in[i]);
+	for (int i = 0; i < OUT; i++)
+		free(t->out[i]);
+	mesh_free(&t->mesh);
+	mesh_part_free(&t->part);
+	transfer_free(&t->result);
+}
+
+/* True when it is registered, or was already. What is wrong with one character is said, and the others go on. */
+static bool one(struct stage *stage, const char *file, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
+{
+	struct target t = { 0 };
+	struct nricp_landmarks landmarks = { 0 };
+	struct err why = { 0 };
+	target_names(&t, file, s->file);
+	bool done = true, fresh = true;
+	for (int i = 0; i < OUT; i++)
+		fresh = stage_fresh(stage, t.out[i], IN, (const char *const *)t.in) && fresh;
+	if (!fresh) {
+		done = load_target(&t, stage, s, conf, &why)
+		       && transfer_landmarks(&landmarks, t.name, t.mesh.n_vertices, s->mesh.n_vertices, conf, err)
+		       && (transfer_run(&t.result, &t.mesh, &s->mesh, &landmarks, &conf->transfer, &why) || err_wrap(&why, "%s", t.in[0]))
+		       && save(&t, s, stage, err);
+		if (done)
+			report(stage, &t);
+		else if (err_is(&why)) {
+			stage_skipped(stage, "%s", why.msg);
+			for (int i = 0; i < OUT; i++)
+				file_remove(stage_path(stage, "%s", t.out[i]), err);
+		}
+	}
+	free((void *)landmarks.moving);
+	target_free(&t);
+	return done;
+}
+
+static bool is_mesh(const char *file)
+{
+	size_t n = strlen(file);
+	return n > 4 && (!strcmp(file + n - 4, ".ply") || !strcmp(file + n - 4, ".obj"));
+}
+
+bool transfer_stage(struct stage *stage, const struct transfer_stage_conf *conf, struct err *err)
+{
+	struct file_list targets = { 0 };
+	struct subject s = { 0 };
+	int n = 0, done = 0;
+	if (stage_list(stage, &targets, "targets", err) && load_subject(&s, stage, conf, err))
+		for (int i = 0; i < targets.n && !err_is(err); i++)
+			if (is_mesh(targets.names[i])) {
+				stage_progress(stage, n++, targets.n, "character");
+				done += one(stage, targets.names[i], &s, conf, err);
+			}
+	if (!err_is(err) && n && !done)
+		err_set(err, "none of the %d meshes in targets/ can be laid onto %s: the lines above say why", n, s.file);
+	mesh_free(&s.mesh);
+	file_list_free(&targets);
+	return !err_is(err);
+}
