@@ -2,8 +2,22 @@
 
 /* C23's #embed is newer than the compilers; .incbin is in both their assemblers. Paths are the repository's. */
 #define EMBED(name, file) \
-	__asm__(".section .rodata\n.global " #name "\n" #name ":\n.incbin \"render/" file "\"\n.byte 0\n.previous\n")
+	__asm__(".section .rodata\n.global " #name "\n" #name ":\n.incbin \"" file "\"\n.byte 0\n.previous\n")
 
-EMBED(page_html, "page.html");
-EMBED(page_css, "page.css");
-EMBED(page_js, "page.js");
+EMBED(page_html, "render/page.html");
+EMBED(page_css, "render/page.css");
+EMBED(page_js, "render/page.js");
+
+EMBED(viewer_html, "render/viewer/viewer.html");
+EMBED(viewer_css, "render/viewer/viewer.css");
+EMBED(viewer_common, "render/viewer/common.glsl");
+EMBED(viewer_decode, "render/viewer/decode.frag");
+EMBED(viewer_paths, "render/viewer/paths.frag");
+EMBED(viewer_eye_frag, "render/viewer/eye.frag");
+EMBED(viewer_present, "render/viewer/present.frag");
+EMBED(viewer_tissue_js, "render/viewer/tissue.js");
+EMBED(viewer_motion_js, "render/viewer/motion.js");
+EMBED(viewer_gl_js, "render/viewer/gl.js");
+EMBED(viewer_scene_js, "render/viewer/scene.js");
+EMBED(viewer_page_js, "render/viewer/page.js");
+EMBED(viewer_motion_conf, "config/animate.conf");

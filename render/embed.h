@@ -1,7 +1,13 @@
-/* The page's own text, put into the program by the assembler (render/page.html, page.css, page.js). */
+/* The page's own text, put into the program by the assembler (render/page.html and its like). */
 #ifndef RENDER_EMBED_H
 #define RENDER_EMBED_H
 
-extern const char page_html[], page_css[], page_js[];  // end with a zero byte
+/* Each ends with a zero byte. */
+extern const char page_html[], page_css[], page_js[];
+/* The interactive page: its frame, its shaders, its programs in the order they are run in. */
+extern const char viewer_html[], viewer_css[], viewer_common[], viewer_decode[], viewer_paths[], viewer_eye_frag[],
+                  viewer_present[], viewer_tissue_js[], viewer_motion_js[], viewer_gl_js[], viewer_scene_js[], viewer_page_js[];
+/* config/animate.conf: how eyes move. */
+extern const char viewer_motion_conf[];
 
 #endif

@@ -1,12 +1,13 @@
 /* render: pictures of the fitted eye and of driven characters, and the review page.
  * reads   IRIS/texture.exr, clean.exr, relief.exr, pigment.json, limbus/NAME.json, photos/
  *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/
- * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet; review/index.html;
+ * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet; review/index.html, viewer.html;
  *         work/render/NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
  */
 #include "base/mem.h"
 #include "render/options.h"
 #include "render/skin.h"
+#include "render/viewer.h"
 
 /* A folder without photographs has no fitted eye, and need not have one: its characters get plain ones. */
 static bool photos_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
@@ -34,6 +35,7 @@ int main(int argc, char **argv)
 		ok = render_eye(&stage, &capture, i, &eye, &conf, &err);
 	skin.portrait.eye_samples = conf.samples;
 	ok = ok && render_skin(&stage, &capture, &eye, &conf, &skin, &err);
+	ok = ok && viewer_make(&stage, &capture, &eye, &conf, &err);
 	// The page is made even where a picture could not be: it says what is missing and why.
 	struct err late = { 0 };
 	if (!page_make(&stage, &capture, &conf, &late) && ok)

@@ -93,6 +93,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 	struct inputs in = { 0 };
 	add(&in, "work/plan.json");
 	add(&in, "work/calibrate/rig.png");
+	add(&in, "work/review/viewer.html");
 	for (int i = 0; i < COUNT(stages); i++)
 		add(&in, "work/log/%s.json", stages[i]);
 	for (int e = 0; e < capture->n_eyes; e++) {
@@ -134,6 +135,7 @@ static json_t *data_make(struct page *page)
 	json_object_set_new(data, "css", json_string(page_css));
 	json_object_set_new(data, "js", json_string(page_js));
 	json_object_set_new(data, "photos", page_photos(page));
+	json_object_set_new(data, "viewer", json_boolean(page_file(page, "work/review/viewer.html")));
 	json_object_set_new(data, "has_photos", json_boolean(page->capture->n_photos));
 	if (page->capture->n_photos)
 		json_object_set_new(data, "eyes", page_eyes(page));

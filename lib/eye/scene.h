@@ -60,6 +60,7 @@ struct scene {
 	struct scene_level level[SCENE_LEVELS];
 	struct image veins;           // azimuthal about the axis: albedo RGB
 	struct image film;            // the same: slopes of the tear film's ripples
+	struct tissue tissue;
 	struct tissue_optics optics;
 	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march, in each layer

@@ -105,6 +105,7 @@ static void load_pupil(struct scene *s, const char *path)
 static void take_tissue(struct scene *s, const struct tissue *tissue)
 {
 	struct tissue_bands bands;
+	s->tissue = *tissue;
 	tissue_bands_make(&bands, s->conf.bands, tissue->illuminant);
 	tissue_optics_make(&s->optics, tissue, &bands);
 	double flat[3];

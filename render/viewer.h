@@ -1,0 +1,29 @@
+/* viewer: work/review/viewer.html, the page on which a fitted eye is turned, lit and changed live. The same model as
+ * eye/scene.h, as WebGL 2 shaders (render/viewer); its numbers and maps come from the scene of the C renderer. */
+#ifndef RENDER_VIEWER_H
+#define RENDER_VIEWER_H
+#include <jansson.h>
+
+#include "render/render.h"
+
+/* Everything the page needs of one eye: job_ready() has been called. json_decref. */
+json_t *viewer_eye(struct job *job, struct err *err);
+
+/* Maps as pictures in base 64, {png, low, high} or {jpeg}: 8 bits a channel and what 0 and 255 mean.
+ * viewer_map_log: colours > 0 by their logarithm; viewer_map_plain: any channels, 1 to 3. */
+json_t *viewer_map_relief(const struct scene_level *level);
+json_t *viewer_map_colour(const struct scene_level *level);
+json_t *viewer_map_log(const float *px, int width, int height, int stride, struct err *err);
+json_t *viewer_map_plain(const float *px, int width, int height, int stride, int channel, struct err *err);
+
+/* An environment: its two maps for reflections, its lights, its irradiance. mirror: what the cornea mirrors. */
+json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, int lights, struct err *err);
+
+/* The tissue as fitted, with what each wavelength absorbs and scatters, and sigmas of the fit. */
+json_t *viewer_tissue(struct job *job, const struct scene *scene);
+
+/* Writes the page where it is not fresh; no eye: no page. */
+bool viewer_make(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *conf,
+                 struct err *err);
+
+#endif

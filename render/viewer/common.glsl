@@ -1,0 +1,25 @@
+#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+// What the passes share. Eye frame as in lib/eye/scene.h: origin at the corneal apex, z into the eye, mm.
+const int LIGHTS = 8;   // beams at most
+const float GRID = 48.0;
+uniform float cornea_R, cornea_p, cornea_n;
+uniform float extent;   // half-width of the iris maps
+uniform vec2 beam_z;    // depths of the two planes of a beam's table
+uniform float rim;      // the limbus, horizontally
+
+float step_smooth(float lo, float hi, float x)
+{
+	float t = clamp((x - lo) / (hi - lo), 0.0, 1.0);
+	return t * t * (3.0 - 2.0 * t);
+}
+
+// Fresnel reflectance, unpolarised, from air into index n.
+float mirror_share(float cos_i, float n)
+{
+	float c = max(cos_i, 0.0), t = sqrt(n * n - 1.0 + c * c);
+	float s = (c - t) / (c + t), p = (n * n * c - t) / (n * n * c + t);
+	return 0.5 * (s * s + p * p);
+}

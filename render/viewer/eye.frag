@@ -1,0 +1,317 @@
+// A ray of sight for each pixel: lib/eye/scene_trace.c, scene_march.c, scene_sclera.c.
+const int NODES = 12;
+const float PI = 3.14159265358979;
+uniform vec3 origin;              // of all rays: the camera, eye frame
+uniform mat3 eye_from_cam, env_from_eye;
+uniform vec4 lens;                // focal length, middle (px of the camera), px of the camera in one of the picture
+uniform vec2 corner, size, jitter;
+uniform mat3 slip;
+uniform vec2 limbus;
+uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
+uniform vec3 sclera_rgb;
+uniform vec3 pupil;               // as fitted: x, y, radius, in the iris plane
+uniform float pupil_now;
+uniform float iris_depth, pixel;  // pixel: mm on the iris
+uniform vec2 heights;
+uniform int level, map_size;
+uniform sampler2D relief_map, colour_map, model_map, path_map, vein_map, film_map, sharp_map, rough_map;
+uniform int beams;
+uniform vec3 beam_rgb[LIGHTS];
+uniform vec4 source[2], extinction[2];  // by layer, four wavelengths
+uniform mat4 band_rgb;            // columns: wavelengths; rows: R, G, B
+uniform float abl, exposure, tissue_gain, detail;
+uniform int nodes[2];
+uniform vec2 node[2 * NODES];     // place and weight, of the anterior border layer, then of the stroma
+uniform int search, shadow_steps;
+uniform bool flat_iris;
+uniform vec3 flat_rgb;
+uniform vec3 quadric[9], even;    // irradiance of the environment
+uniform float mirror_on, film_index, tear;
+out vec4 seen;
+
+// From a place on the iris as it is now to the same tissue in the maps: radial fibres shorten evenly.
+vec2 stretch(vec2 p, out float along, out float across)
+{
+	vec2 d = p - pupil.xy;
+	float r = length(d), root = rim * 1.02;
+	along = across = 1.0;
+	if (abs(pupil_now - pupil.z) < 1e-4 || r >= root)
+		return p;
+	along = (root - pupil.z) / (root - pupil_now);
+	float r0 = pupil.z + (r - pupil_now) * along;
+	across = r0 / max(r, 1e-3);
+	return pupil.xy + d * across;
+}
+
+vec2 map_place(vec2 p)
+{
+	return p / (2.0 * extent) + 0.5;
+}
+
+// Height and thickness; lying loosely, the stroma keeps its volume: it is thicker where it is shorter.
+vec2 relief_at(vec2 p)
+{
+	float along, across;
+	vec2 q = stretch(p, along, across), t = textureLod(relief_map, map_place(q), float(level)).rg;
+	return vec2(t.x, t.y * clamp(along * across, 0.3, 3.0));
+}
+
+// The same with the slope of the height in zw.
+vec4 relief_slope(vec2 p)
+{
+	float along, across;
+	vec2 q = stretch(p, along, across);
+	int n = map_size >> level;
+	float per_mm = float(n) / (2.0 * extent);
+	vec2 u = clamp(q * per_mm + 0.5 * float(n) - 0.5, 0.0, float(n) - 1.001);
+	ivec2 i = ivec2(u);
+	u -= vec2(i);
+	vec2 a = texelFetch(relief_map, i, level).rg, b = texelFetch(relief_map, i + ivec2(1, 0), level).rg;
+	vec2 c = texelFetch(relief_map, i + ivec2(0, 1), level).rg, d = texelFetch(relief_map, i + ivec2(1, 1), level).rg;
+	vec2 g = per_mm * vec2(mix(b.x - a.x, d.x - c.x, u.y), mix(c.x - a.x, d.x - b.x, u.x));
+	vec2 ht = mix(mix(a, b, u.x), mix(c, d, u.x), u.y);
+	if (along != 1.0 || across != 1.0) {
+		vec2 e = normalize(p - pupil.xy);
+		g = across * g + (along - across) * dot(g, e) * e;
+		ht.y *= clamp(along * across, 0.3, 3.0);
+	}
+	return vec4(ht, g);
+}
+
+vec4 path_at(int beam, int plane, vec2 p)
+{
+	vec2 cell = clamp((p + extent) / (2.0 * extent) * (GRID - 1.0), 0.0, GRID - 1.0);
+	return textureLod(path_map, (cell + 0.5 + vec2(float(plane), float(beam)) * GRID) / (GRID * vec2(2.0, float(LIGHTS))), 0.0);
+}
+
+// K and gain for a point; the sclera stops, gradually, what would enter outside the limbus.
+vec4 path_to(int beam, vec3 p)
+{
+	float q = (p.z - beam_z.x) / (beam_z.y - beam_z.x);
+	vec4 K = mix(path_at(beam, 0, p.xy), path_at(beam, 1, p.xy), q);
+	float r = length(K.xy / limbus), t = clamp((r - 1.0) / sclera.z + 0.5, 0.0, 1.0);
+	K.w = max(K.w, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t));
+	return K;
+}
+
+// The first crossing of the relief: bracketed by equal steps, then twice regula falsi.
+vec3 meet(vec3 f, vec3 v)
+{
+	float high = iris_depth - heights.y - 1e-4, low = iris_depth - heights.x + 1e-4;
+	float a = (high - f.z) / v.z, fa = -1e-6, b = a, fb = 0.0, dt = (low - high) / v.z / float(search);
+	for (int k = 1; k <= 16; k++) {
+		if (k > search)
+			break;
+		b = a + dt;
+		vec3 p = f + b * v;
+		fb = p.z - iris_depth + relief_at(p.xy).x;
+		if (fb >= 0.0)
+			break;
+		if (k < search) {
+			a = b;
+			fa = fb;
+		}
+	}
+	for (int k = 0; k < 2; k++) {
+		float t = a - fa * (b - a) / (fb - fa + 1e-12);
+		vec3 p = f + t * v;
+		float d = p.z - iris_depth + relief_at(p.xy).x;
+		if (d >= 0.0) {
+			b = t;
+			fb = d;
+		} else {
+			a = t;
+			fa = d;
+		}
+	}
+	float d = fb - fa;
+	return f + v * (d > 1e-12 ? a - fa * (b - a) / d : b);
+}
+
+// How much of a source of 0.15 rad stands clear of the relief; tissue that stands around in the light fills shadows in.
+float shadow(vec3 p, vec3 K)
+{
+	vec3 l = K - p;
+	float least = 1.0, reach = (iris_depth - heights.y - 1e-4 - p.z) / min(l.z, -0.2);
+	for (int k = 1; k <= 16; k++) {
+		if (k > shadow_steps)
+			break;
+		float t = float(k) / float(shadow_steps) * reach;
+		vec3 q = p + t * l;
+		float clear = (iris_depth - relief_at(q.xy).x - q.z + 0.004) / (0.15 * t * length(l.xy) + 0.004);
+		least = min(least, clear);
+	}
+	return 0.4 + 0.6 * max(least, 0.0);
+}
+
+// Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
+vec3 scatter(vec3 p, vec3 v)
+{
+	vec4 top = relief_slope(p.xy);
+	float rate = max(v.z + dot(top.zw, v.xy), 0.2), most = 3.0 * (abl + top.y), span = (abl + top.y) / rate;
+	for (int k = 0; k < 2; k++) {
+		vec3 q = p + span * v;
+		vec2 t = relief_at(q.xy);
+		span = clamp(span + (abl + t.y - (q.z - iris_depth + t.x)) / v.z, 1e-3, most);
+	}
+	float near = min(abl / rate, span);
+	vec4 at[NODES], way[NODES];  // slope, depth, place on the ray; to the beholder in either layer, weight
+	int total = nodes[0] + nodes[1];
+	for (int j = 0; j < NODES; j++) {
+		if (j >= total)
+			break;
+		bool stroma = j >= nodes[0];
+		vec2 n = node[stroma ? NODES + j - nodes[0] : j];
+		float len = stroma ? span - near : near, s = (stroma ? near : 0.0) + n.x * len;
+		vec3 q = p + s * v;
+		vec4 t = relief_slope(q.xy);
+		at[j] = vec4(t.zw, max(q.z - iris_depth + t.x, 0.0), s);
+		way[j] = vec4(min(s, near), max(s - near, 0.0), n.y * len, 0.0);
+	}
+	vec3 sum = vec3(0.0);
+	for (int b = 0; b < LIGHTS; b++) {
+		if (b >= beams)
+			break;
+		vec4 K0 = path_to(b, p), K1 = path_to(b, p + span * v), lit = vec4(0.0);
+		float open = shadow_steps > 0 ? shadow(p, K0.xyz) : 1.0;
+		for (int j = 0; j < NODES; j++) {
+			if (j >= total)
+				break;
+			float u = at[j].w / span;
+			vec3 l = normalize(mix(K0.xyz, K1.xyz, u) - (p + at[j].w * v));
+			float lost = max(-l.z - dot(at[j].xy, l.xy), 0.25);
+			float la = min(at[j].z, abl) / lost + way[j].x, ls = max(at[j].z - abl, 0.0) / lost + way[j].y;
+			float w = way[j].z * mix(K0.w, K1.w, u) / max(-l.z, 0.05);
+			lit += source[j < nodes[0] ? 0 : 1] * w * exp(-(extinction[0] * la + extinction[1] * ls));
+		}
+		sum += beam_rgb[b] * (band_rgb * (lit * (open * 0.25))).rgb;  // pi times the phase, 1 / (4 pi)
+	}
+	return max(sum * exposure, 0.0);
+}
+
+vec3 flat_light(vec3 p)
+{
+	vec3 sum = vec3(0.0);
+	for (int b = 0; b < LIGHTS; b++)
+		if (b < beams)
+			sum += beam_rgb[b] * path_to(b, p).w;
+	return sum * flat_rgb;
+}
+
+// The photograph's colour times what the model changes by: lib/eye/scene_colour.c.
+vec3 photographed(vec3 rgb, vec2 p)
+{
+	float along, across;
+	vec2 at = map_place(stretch(p, along, across));
+	vec3 k = rgb / textureLod(model_map, at, float(level)).rgb;
+	float mean = (k.r + k.g + k.b) / 3.0;
+	vec3 tint = clamp(k / max(mean, 1e-6), 1.0 / 1.5, 1.5);
+	vec3 shown = textureLod(colour_map, at, float(level)).rgb * min(mean, 2.5) * tint;
+	return detail >= 1.0 ? shown : pow(max(shown, 1e-5), vec3(detail)) * pow(max(tissue_gain * rgb, 1e-5), vec3(1.0 - detail));
+}
+
+// The margin of the pupil, and its ruff: what is left of the iris' colour.
+vec3 pupil_cover(vec2 p)
+{
+	vec2 d = p - pupil.xy;
+	float r = length(d), soft = 0.5 * pixel;
+	if (abs(r - pupil_now) > 0.2 + 2.0 * soft)
+		return vec3(step(pupil_now, r));
+	float turn = atan(d.y, d.x);
+	float ridge = 0.6 * abs(sin(34.0 * turn + 1.7 * sin(5.0 * turn))) + 0.4 * abs(sin(21.0 * turn + 2.0 * sin(3.0 * turn + 1.0)));
+	float edge = pupil_now - 0.018 * ridge, width = 0.045 + 0.02 * ridge;
+	float ruff = 1.0 - step_smooth(edge + width - soft, edge + width + 0.05 + soft, r);
+	return step_smooth(edge - 0.012 - soft, edge + 0.012 + soft, r) * (1.0 + 0.75 * ruff * (vec3(0.30, 0.20, 0.15) - 1.0));
+}
+
+vec3 iris(vec3 f, vec3 v)
+{
+	f.xy += (slip * vec3(f.xy, 1.0)).xy;
+	v.xy += mat2(slip) * v.xy;
+	vec3 p = meet(f, v), cover = pupil_cover(p.xy);
+	if (cover.r <= 0.0)
+		return vec3(0.0);
+	return photographed(flat_iris ? flat_light(p) : scatter(p, v), p.xy) * cover;
+}
+
+vec3 environment(vec3 r, float rough)
+{
+	vec3 d = env_from_eye * r;
+	d /= abs(d.x) + abs(d.y) + abs(d.z);
+	vec2 u = d.z > 0.0 ? vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(d.yx)) : d.xy;
+	u = 0.5 * u + 0.5;
+	return mix(textureLod(sharp_map, u, 0.0).rgb, textureLod(rough_map, u, 0.0).rgb, rough);
+}
+
+vec3 irradiance(vec3 normal)
+{
+	vec3 d = env_from_eye * normal;
+	return max(quadric[0] + quadric[1] * d.x + quadric[2] * d.y + quadric[3] * d.z + quadric[4] * (d.x * d.y)
+	           + quadric[5] * (d.y * d.z) + quadric[6] * (d.z * d.z) + quadric[7] * (d.x * d.z)
+	           + quadric[8] * (d.x * d.x - d.y * d.y), 0.0);
+}
+
+// The white of the eye: diffuse, softened by what scatters below the surface; its film's ripples turn the normal.
+vec3 white(inout vec3 normal, vec3 at, float rho)
+{
+	const float reach = 110.0 * PI / 180.0;
+	vec3 direct = irradiance(normal), d = at - vec3(0.0, 0.0, sclera.x);
+	float flat_ = length(d.xy), r = atan(flat_, -d.z) / reach;
+	vec2 u = 0.5 + 0.5 * r * d.xy / max(flat_, 1e-6);
+	float away = step_smooth(0.35, 1.1, r * reach / 1.3);
+	vec3 albedo = sclera_rgb * (1.0 - away * vec3(0.01, 0.06, 0.11)) * textureLod(vein_map, u, 0.0).rgb;
+	vec2 slope = vec2(textureLod(film_map, u + vec2(0.012, 0.0), 0.0).r - textureLod(film_map, u - vec2(0.012, 0.0), 0.0).r,
+	                  textureLod(film_map, u + vec2(0.0, 0.012), 0.0).r - textureLod(film_map, u - vec2(0.0, 0.012), 0.0).r);
+	normal = normalize(normal + vec3(0.22 * step_smooth(0.40, 0.75, r * reach / 0.9) * slope, 0.0));
+	float edge = 1.0 - step_smooth(0.97, 1.22, rho);
+	vec3 light = direct + vec3(0.38, 0.26, 0.20) * (even - direct);
+	return albedo * light * (1.0 - vec3(0.36, 0.31, 0.25) * edge * edge);
+}
+
+// Radiance from a ray that meets the eye, and how much of the pixel the eye covers.
+vec4 look(vec3 o, vec3 d)
+{
+	float start = max(0.0, -dot(o, d));  // from the point of the ray nearest to the apex: no digits are lost
+	vec3 n = o + start * d;
+	float A = dot(d.xy, d.xy) + cornea_p * d.z * d.z, B = dot(n.xy, d.xy) + (cornea_p * n.z - cornea_R) * d.z;
+	float C = dot(n.xy, n.xy) + n.z * (cornea_p * n.z - 2.0 * cornea_R), disc = B * B - A * C;
+	float t = disc >= 0.0 ? (B < 0.0 ? C / (sqrt(disc) - B) : -(B + sqrt(disc)) / A) : 1e9;
+	vec3 K = n + t * d;
+	bool hit = disc >= 0.0 && cornea_p * K.z <= cornea_R && length(K.xy) <= 1.06 * rim;
+	vec3 m = n - vec3(0.0, 0.0, sclera.x);
+	float b = dot(m, d), miss = sqrt(max(dot(m, m) - b * b, 0.0)), in_sphere = sclera.y * sclera.y - miss * miss;
+	float ts = in_sphere > 0.0 ? -b - sqrt(in_sphere) : 1e9, cover = 1.0;
+	bool on_sclera = ts < 1e8 && (!hit || ts < t);
+	if (on_sclera)
+		cover = clamp((sclera.y - miss) / pixel, 0.0, 1.0);
+	if (!hit && !on_sclera)
+		return vec4(0.0);
+	vec3 at = n + (on_sclera ? ts : t) * d;
+	// The corneal normal turns into the sphere's across the sulcus: no crease stands where they meet.
+	float rho = at.z < sclera.x ? length(at.xy / limbus) : 2.0;
+	vec3 front = normalize(vec3(at.xy, cornea_p * at.z - cornea_R)), round_ = (at - vec3(0.0, 0.0, sclera.x)) / sclera.y;
+	vec3 normal = normalize(mix(front, round_, step_smooth(0.90, 1.12, rho)));
+	float cos_i = -dot(normal, d), lid = hit ? step_smooth(1.0 - 0.5 * sclera.z, 1.0 + 0.5 * sclera.z, rho) : 1.0;
+	vec3 rgb = vec3(0.0);
+	if (lid < 1.0) {
+		vec3 N = normalize(vec3(K.xy, cornea_p * K.z - cornea_R));
+		float c = -dot(d, N), eta = 1.0 / cornea_n;
+		vec3 inside = eta * d + (eta * c - sqrt(1.0 - eta * eta * (1.0 - c * c))) * N;
+		rgb = (1.0 - lid) * (1.0 - mirror_share(cos_i, film_index)) * iris(K, inside);
+	}
+	if (lid > 0.0)
+		rgb += lid * white(normal, at, rho);
+	if (mirror_on > 0.0) {
+		float rough = 0.75 * step_smooth(1.0, 1.35, rho) * clamp(1.5 - 0.5 * tear, 0.0, 1.33);
+		rgb += mirror_on * mirror_share(cos_i, film_index) * environment(d + 2.0 * cos_i * normal, rough);
+	}
+	return vec4(rgb * cover, cover);
+}
+
+void main()
+{
+	vec2 px = vec2(gl_FragCoord.x, size.y - gl_FragCoord.y) + jitter;
+	vec3 d = normalize(eye_from_cam * vec3((corner + lens.w * px - lens.yz) / lens.x, 1.0));
+	vec4 c = look(origin, d);
+	seen = vec4(min(c.rgb, 2.0), c.a);  // a mirror image brighter than white counts as a little more than white
+}

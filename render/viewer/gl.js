@@ -1,0 +1,121 @@
+/* WebGL 2: programs, maps, targets. */
+class Graphics {
+	constructor(canvas, shaders) {
+		const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, powerPreference: "high-performance", preserveDrawingBuffer: true });
+		if (!gl)
+			throw new Error("this browser offers no WebGL 2");
+		if (!gl.getExtension("EXT_color_buffer_float") && !gl.getExtension("EXT_color_buffer_half_float"))
+			throw new Error("this graphics driver cannot draw into floating-point pictures");
+		this.gl = gl;
+		this.shaders = shaders;
+		this.frame = gl.createFramebuffer();
+		const triangle = gl.createBuffer();
+		gl.bindBuffer(gl.ARRAY_BUFFER, triangle);
+		gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 3, -1, -1, 3]), gl.STATIC_DRAW);
+		gl.enableVertexAttribArray(0);
+		gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
+		const info = gl.getExtension("WEBGL_debug_renderer_info");
+		this.name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+		this.software = /swiftshader|llvmpipe|software|basic render/i.test(this.name);
+	}
+
+	program(name) {
+		const gl = this.gl, program = gl.createProgram();
+		const add = (type, text) => {
+			const shader = gl.createShader(type);
+			gl.shaderSource(shader, text);
+			gl.compileShader(shader);
+			gl.attachShader(program, shader);
+			return shader;
+		};
+		add(gl.VERTEX_SHADER, "#version 300 es\nlayout(location=0) in vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n");
+		const fragment = add(gl.FRAGMENT_SHADER, this.shaders.common + this.shaders[name]);
+		gl.linkProgram(program);
+		if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+			throw new Error(`shader ${name}: ${gl.getShaderInfoLog(fragment) || gl.getProgramInfoLog(program)}`);
+		const uniforms = {};
+		for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
+			const u = gl.getActiveUniform(program, i);
+			uniforms[u.name.replace("[0]", "")] = { at: gl.getUniformLocation(program, u.name), type: u.type };
+		}
+		return { program, uniforms };
+	}
+
+	/* Draws the whole target with these uniforms; a uniform that is a texture takes the next unit. */
+	draw(p, values) {
+		const gl = this.gl;
+		let unit = 0;
+		gl.useProgram(p.program);
+		for (const [name, u] of Object.entries(p.uniforms)) {
+			const v = values[name];
+			if (v === undefined)
+				throw new Error(`uniform ${name} is not set`);
+			switch (u.type) {
+			case gl.FLOAT: Array.isArray(v) ? gl.uniform1fv(u.at, v) : gl.uniform1f(u.at, v); break;
+			case gl.FLOAT_VEC2: gl.uniform2fv(u.at, v); break;
+			case gl.FLOAT_VEC3: gl.uniform3fv(u.at, v); break;
+			case gl.FLOAT_VEC4: gl.uniform4fv(u.at, v); break;
+			case gl.FLOAT_MAT3: gl.uniformMatrix3fv(u.at, true, v); break;
+			case gl.FLOAT_MAT4: gl.uniformMatrix4fv(u.at, true, v); break;
+			case gl.INT: case gl.BOOL: Array.isArray(v) ? gl.uniform1iv(u.at, v) : gl.uniform1i(u.at, v); break;
+			case gl.SAMPLER_2D:
+				gl.activeTexture(gl.TEXTURE0 + unit);
+				gl.bindTexture(gl.TEXTURE_2D, v.texture);
+				gl.uniform1i(u.at, unit++);
+				break;
+			default: throw new Error(`uniform ${name}: unknown type`);
+			}
+		}
+		gl.drawArrays(gl.TRIANGLES, 0, 3);
+	}
+
+	texture(width, height, format, levels) {
+		const gl = this.gl, texture = gl.createTexture();
+		gl.bindTexture(gl.TEXTURE_2D, texture);
+		gl.texStorage2D(gl.TEXTURE_2D, levels || 1, format, width, height);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, levels > 1 ? gl.LINEAR_MIPMAP_NEAREST : gl.LINEAR);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+		return { texture, width, height };
+	}
+
+	/* Draws into a texture, or (null) onto the page. */
+	target(t, width, height) {
+		const gl = this.gl;
+		gl.bindFramebuffer(gl.FRAMEBUFFER, t ? this.frame : null);
+		if (t)
+			gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, t.texture, 0);
+		gl.viewport(0, 0, t ? t.width : width, t ? t.height : height);
+	}
+
+	async bitmap(base64, type) {
+		const bytes = Uint8Array.from(atob(base64), c => c.charCodeAt(0));
+		return createImageBitmap(new Blob([bytes], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+	}
+
+	/* A map of the page's data as a texture; rows stay in order: row 0 is at 0. srgb: colours; else decoded to half floats. */
+	async map(m, kind) {
+		const gl = this.gl, bitmap = await this.bitmap(m.png, "image/png"), srgb = kind === "srgb";
+		const levels = kind === "srgb" || kind === 0 || kind === "log" ? 1 + Math.floor(Math.log2(m.width)) : 1;
+		const raw = this.texture(m.width, m.height, srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8, srgb ? levels : 1);
+		gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+		gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+		bitmap.close();
+		if (srgb) {
+			gl.generateMipmap(gl.TEXTURE_2D);
+			return raw;
+		}
+		this.decoder = this.decoder || this.program("decode");
+		const out = this.texture(m.width, m.height, gl.RGBA16F, levels);
+		this.target(out);
+		this.draw(this.decoder, { map: raw, kind: kind === 0 ? 0 : kind === "plain" ? 2 : 1, low: [...m.low, 0], high: [...m.high, 1] });
+		gl.deleteTexture(raw.texture);
+		if (levels > 1) {
+			gl.bindTexture(gl.TEXTURE_2D, out.texture);
+			gl.generateMipmap(gl.TEXTURE_2D);
+		}
+		return out;
+	}
+}

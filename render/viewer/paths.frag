@@ -1,0 +1,80 @@
+// The light's way through the cornea (iris paper, eq. 15): for each beam K and the irradiance gain over the iris, on two
+// planes of GRID x GRID points; lib/eye/scene_light.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
+uniform vec3 beam_dir[LIGHTS];
+out vec4 path;
+
+// Where the ray from P in direction q leaves the surface.
+vec3 leave(vec3 P, vec3 q)
+{
+	float s = cornea_R - cornea_p * P.z;
+	float A = dot(q.xy, q.xy) + cornea_p * q.z * q.z, B = dot(P.xy, q.xy) - s * q.z;
+	float C = dot(P.xy, P.xy) - P.z * (cornea_R + s);
+	return P - q * (C / (B + sqrt(max(B * B - A * C, 0.0))));
+}
+
+// Start in closed form: out along the light bent towards the axis, refracted there, out again.
+vec2 start(vec3 P, vec3 w)
+{
+	vec3 K = leave(P, w - vec3(0.0, 0.0, 0.6));
+	vec3 G = vec3(K.xy, cornea_p * K.z - cornea_R);
+	float a = dot(w, G), g2 = dot(G, G), f = (sqrt(a * a + (cornea_n * cornea_n - 1.0) * g2) - a) / g2;
+	K = leave(P, w + f * G);
+	return K.xy / (2.0 * cornea_R - cornea_p * K.z);
+}
+
+// Fermat: gradient and Hessian of n |KP| - w K in the chart K = R tau (x, y, rho^2), tau = 2 / (1 + p rho^2).
+void curve(vec2 x, vec3 P, vec3 w, out vec2 g, out vec3 H, out float tau)
+{
+	float p = cornea_p, n = cornea_n, rho2 = dot(x, x);
+	tau = 2.0 / (1.0 + p * rho2);
+	float t = cornea_R * tau;
+	vec3 v = vec3(t * x, t * rho2) - P;
+	float inv = 1.0 / length(v), f = n * inv;
+	v *= inv;
+	vec3 d = n * v - w;
+	float gm = tau * (d.z - p * dot(x, d.xy)), vm = tau * (v.z - p * dot(x, v.xy));
+	vec2 va = v.xy + x * vm;
+	float bend = f + gm * (1.0 + p * rho2) / (2.0 * cornea_R), m2 = f * tau * (tau * (1.0 + p * p * rho2) - 2.0 * p);
+	g = d.xy + x * gm;
+	H = vec3(bend + m2 * x.x * x.x - f * va.x * va.x, m2 * x.x * x.y - f * va.x * va.y,
+	         bend + m2 * x.y * x.y - f * va.y * va.y);
+}
+
+// T cos i |dK/dP| / N_z.
+float caustic(vec2 x, vec3 P, vec3 w, vec3 H, float tau)
+{
+	float p = cornea_p, t = cornea_R * tau, rho2 = dot(x, x);
+	vec3 v = vec3(t * x, t * rho2) - P;
+	float f = cornea_n / length(v);
+	v = normalize(v);
+	float vm = tau * (v.z - p * dot(x, v.xy));
+	vec2 va = v.xy + x * vm, m = -tau * p * x;
+	float m11 = 1.0 + x.x * m.x - va.x * v.x, m12 = x.x * m.y - va.x * v.y;
+	float m21 = x.y * m.x - va.y * v.x, m22 = 1.0 + x.y * m.y - va.y * v.y;
+	float moved = f * f * (m11 * m22 - m12 * m21) / (H.x * H.z - H.y * H.y);
+	float gz = cornea_R - p * t * rho2, len = sqrt(t * t * rho2 + gz * gz);
+	float cos_i = (t * dot(w.xy, x) - w.z * gz) / len;
+	float area = (1.0 + dot(x, m)) * len / gz;
+	return cos_i > 0.0 ? (1.0 - mirror_share(cos_i, cornea_n)) * cos_i * abs(moved) * area : 0.0;
+}
+
+void main()
+{
+	ivec2 at = ivec2(gl_FragCoord.xy), tile = at / int(GRID), cell = at - tile * int(GRID);
+	vec3 w = beam_dir[tile.y];
+	vec2 place = vec2(cell) / (GRID - 1.0) * 2.0 * extent - extent;
+	float r = length(place), most = 1.04 * rim;
+	vec3 P = vec3(place * min(1.0, most / max(r, 1e-6)), tile.x == 0 ? beam_z.x : beam_z.y);
+	vec2 x = start(P, w), g;
+	vec3 H;
+	float tau;
+	for (int i = 0; i < 5; i++) {
+		curve(x, P, w, g, H, tau);
+		vec2 move = vec2(H.y * g.y - H.z * g.x, H.y * g.x - H.x * g.y) / ((H.x * H.z - H.y * H.y) * cornea_R * tau);
+		x += move * min(1.0, 0.5 / max(length(move), 1e-6));
+	}
+	curve(x, P, w, g, H, tau);
+	float gain = caustic(x, P, w, H, tau);
+	bool good = dot(g, g) < 1e-4 && dot(x, x) < 4.0 && gain < 40.0;
+	path = good ? vec4(cornea_R * tau * vec3(x, dot(x, x)), gain) : vec4(P + w, 0.0);
+}

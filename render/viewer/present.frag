@@ -1,0 +1,18 @@
+// The picture as it is seen: on a photographer's grey (render/picture.c), encoded as sRGB, or as it is for measuring.
+uniform sampler2D picture;
+uniform float gain, bare;
+uniform vec2 size;
+out vec4 shown;
+
+void main()
+{
+	vec2 at = gl_FragCoord.xy / size, u = 2.0 * at - 1.0;
+	vec4 p = texture(picture, at);
+	float grey = mix(0.115, 0.030, min(dot(u, u) / 2.0, 1.0));
+	vec3 c = p.rgb * gain + (1.0 - p.a) * grey * (1.0 - bare);
+	c = clamp(c, 0.0, 1.0);
+	vec3 s = mix(c * 12.92, 1.055 * pow(max(c, 1e-5), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+	// Half a step of noise: what is smooth shows no bands.
+	float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
+	shown = vec4(s + noise / 255.0 * (1.0 - bare), 1.0);
+}

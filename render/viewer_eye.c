@@ -1,0 +1,123 @@
+/* One eye for the interactive page: the scene of the C renderer in numbers, maps and lights. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "bridge/cv_blur.h"
+#include "render/page.h"
+#include "render/viewer.h"
+
+enum { VEINS_JPEG = 92, FILM = 256 };
+
+static void put(json_t *out, const char *key, int n, const double *x)
+{
+	json_object_set_new(out, key, n == 1 ? json_number(*x) : json_numbers(n, x));
+}
+
+static json_t *geometry(const struct scene *s, double gain)
+{
+	const struct cornea *c = &s->cornea;
+	json_t *out = json_object();
+	double limbus[] = { s->limbus[0], s->limbus[1] }, sclera[] = { s->sclera_z, s->conf.sclera_radius, s->conf.limbus_width };
+	double heights[] = { s->height_min, s->height_max }, model = s->gain;
+	double thickness = s->thickness_max;
+	put(out, "R", 1, &c->R);
+	put(out, "p", 1, &c->p);
+	put(out, "n", 1, &c->n);
+	put(out, "limbus", 2, limbus);
+	put(out, "sclera", 3, sclera);
+	put(out, "sclera_rgb", 3, s->conf.sclera_rgb);
+	put(out, "pupil", 3, s->pupil);
+	put(out, "extent", 1, &s->extent);
+	put(out, "heights", 2, heights);
+	put(out, "thickness_max", 1, &thickness);
+	put(out, "iris_depth", 1, &s->eye.iris_depth);
+	put(out, "gain", 1, &model);
+	put(out, "exposure", 1, &gain);
+	put(out, "detail", 1, &s->conf.detail);
+	json_object_set_new(out, "two_surface", json_boolean(c->two_surface));
+	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
+	json_object_set_new(out, "search", json_integer(s->conf.search));
+	json_object_set_new(out, "shadow", json_integer(s->conf.shadow));
+	return out;
+}
+
+static json_t *quadrature(const struct scene *s)
+{
+	json_t *out = json_array();
+	for (int l = 0; l < TISSUE_LAYERS; l++) {
+		json_t *list = json_array();
+		for (int i = 0; i < s->n_nodes[l]; i++) {
+			double v[2] = { s->node[l][i], s->weight[l][i] };
+			json_array_append_new(list, json_numbers(2, v));
+		}
+		json_array_append_new(out, list);
+	}
+	return out;
+}
+
+static bool maps(json_t *out, const struct scene *s, struct err *err)
+{
+	const struct scene_level *l = &s->level[0];
+	int n = s->veins.width, small = n < FILM ? n : FILM;
+	json_object_set_new(out, "relief", viewer_map_relief(l));
+	json_object_set_new(out, "colour", viewer_map_colour(l));
+	if (l->model)
+		json_object_set_new(out, "model", viewer_map_log(l->model, l->n, l->n, 4, err));
+	json_object_set_new(out, "veins", viewer_map_log(s->veins.px, n, n, 4, err));
+	struct image film = image_new(small, small, 4);
+	bool ok = cv_resize(film.px, small, small, s->veins.px, n, n, 4, err);
+	if (ok)
+		json_object_set_new(out, "film", viewer_map_plain(film.px, small, small, 4, 3, err));
+	image_free(&film);
+	return ok && !err_is(err);
+}
+
+/* The photograph's own view, for the comparison beside it. */
+static json_t *photo(const struct job *job, const struct shot *shot)
+{
+	struct scene_view v = shot_view(shot);
+	double pose[16], slip[6], camera[3] = { v.camera.focal_px, v.camera.center_px[0], v.camera.center_px[1] };
+	double window[3] = { v.x0, v.y0, v.scale };
+	memcpy(pose, v.cam_from_eye, sizeof pose);
+	memcpy(slip, v.slip, sizeof slip);
+	uint8_t *px = image_to_srgb8(&shot->image);
+	json_t *out = page_pixels(px, shot->image.width, shot->image.height);
+	free(px);
+	if (!out)
+		return 0;
+	put(out, "cam_from_eye", 16, pose);
+	put(out, "slip", 6, slip);
+	put(out, "camera", 3, camera);
+	put(out, "window", 3, window);
+	json_object_set_new(out, "name", template_text(shot->photo->name));
+	json_object_set_new(out, "lens_bends", json_boolean(v.camera.distortion[0] != 0));
+	(void)job;
+	return out;
+}
+
+json_t *viewer_eye(struct job *job, struct err *err)
+{
+	const struct scene *s = &job->scene;
+	struct shot *shot = &job->shots[job->reference];
+	json_t *out = json_object(), *map = json_object(), *lights = json_array();
+	const char *side = job->names->side;
+	json_object_set_new(out, "side", template_text(side));
+	json_object_set_new(out, "constants", json_pack("{s:f}", "film_index", 1.336));
+	json_object_set_new(out, "eye", geometry(s, job->gain));
+	json_object_set_new(out, "nodes", quadrature(s));
+	json_object_set_new(out, "tissue", viewer_tissue(job, s));
+	json_object_set_new(out, "photo", photo(job, shot));
+	json_array_append_new(lights, viewer_light("Studio", &job->studio, &job->studio, job->conf->lights, err));
+	json_array_append_new(lights, viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, err));
+	json_object_set_new(out, "lights", lights);
+	bool ok = maps(map, s, err) && !err_is(err);
+	json_object_set_new(out, "maps", map);
+	if (!ok) {
+		json_decref(out);
+		return 0;
+	}
+	return out;
+}
