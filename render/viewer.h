@@ -9,12 +9,12 @@
 /* Everything the page needs of one eye: job_ready() has been called. json_decref. */
 json_t *viewer_eye(struct job *job, struct err *err);
 
-/* Maps as pictures in base 64, {png, low, high} or {jpeg}: 8 bits a channel and what 0 and 255 mean.
- * viewer_map_log: colours > 0 by their logarithm; viewer_map_plain: any channels, 1 to 3. */
+/* Maps as pictures in base 64, {png, width, height, low, high}: 8 bits a channel and what 0 and 255 mean.
+ * viewer_map_log: colours > 0 by their logarithm; viewer_map_plain: its first channels, at most 3. */
 json_t *viewer_map_relief(const struct scene_level *level);
 json_t *viewer_map_colour(const struct scene_level *level);
 json_t *viewer_map_log(const float *px, int width, int height, int stride, struct err *err);
-json_t *viewer_map_plain(const float *px, int width, int height, int stride, int channel, struct err *err);
+json_t *viewer_map_plain(const struct image *map, struct err *err);
 
 /* An environment: its two maps for reflections, its lights, its irradiance. mirror: what the cornea mirrors. */
 json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, int lights, struct err *err);

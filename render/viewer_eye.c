@@ -5,11 +5,9 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "bridge/cv_blur.h"
+#include "eye/scene_impl.h"
 #include "render/page.h"
 #include "render/viewer.h"
-
-enum { VEINS_JPEG = 92, FILM = 256 };
 
 static void put(json_t *out, const char *key, int n, const double *x)
 {
@@ -28,7 +26,6 @@ static json_t *geometry(const struct scene *s, double gain)
 	put(out, "n", 1, &c->n);
 	put(out, "limbus", 2, limbus);
 	put(out, "sclera", 3, sclera);
-	put(out, "sclera_rgb", 3, s->conf.sclera_rgb);
 	put(out, "pupil", 3, s->pupil);
 	put(out, "extent", 1, &s->extent);
 	put(out, "heights", 2, heights);
@@ -44,35 +41,17 @@ static json_t *geometry(const struct scene *s, double gain)
 	return out;
 }
 
-static json_t *quadrature(const struct scene *s)
-{
-	json_t *out = json_array();
-	for (int l = 0; l < TISSUE_LAYERS; l++) {
-		json_t *list = json_array();
-		for (int i = 0; i < s->n_nodes[l]; i++) {
-			double v[2] = { s->node[l][i], s->weight[l][i] };
-			json_array_append_new(list, json_numbers(2, v));
-		}
-		json_array_append_new(out, list);
-	}
-	return out;
-}
-
 static bool maps(json_t *out, const struct scene *s, struct err *err)
 {
 	const struct scene_level *l = &s->level[0];
-	int n = s->veins.width, small = n < FILM ? n : FILM;
+	int n = s->veins.width;
 	json_object_set_new(out, "relief", viewer_map_relief(l));
 	json_object_set_new(out, "colour", viewer_map_colour(l));
 	if (l->model)
 		json_object_set_new(out, "model", viewer_map_log(l->model, l->n, l->n, 4, err));
 	json_object_set_new(out, "veins", viewer_map_log(s->veins.px, n, n, 4, err));
-	struct image film = image_new(small, small, 4);
-	bool ok = cv_resize(film.px, small, small, s->veins.px, n, n, 4, err);
-	if (ok)
-		json_object_set_new(out, "film", viewer_map_plain(film.px, small, small, 4, 3, err));
-	image_free(&film);
-	return ok && !err_is(err);
+	json_object_set_new(out, "film", viewer_map_plain(&s->film, err));
+	return !err_is(err);
 }
 
 /* The photograph's own view, for the comparison beside it. */
@@ -105,9 +84,8 @@ json_t *viewer_eye(struct job *job, struct err *err)
 	json_t *out = json_object(), *map = json_object(), *lights = json_array();
 	const char *side = job->names->side;
 	json_object_set_new(out, "side", template_text(side));
-	json_object_set_new(out, "constants", json_pack("{s:f}", "film_index", 1.336));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f}", "film_index", (double)SCENE_FILM_INDEX, "sclera_reach", SCENE_SCLERA_REACH));
 	json_object_set_new(out, "eye", geometry(s, job->gain));
-	json_object_set_new(out, "nodes", quadrature(s));
 	json_object_set_new(out, "tissue", viewer_tissue(job, s));
 	json_object_set_new(out, "photo", photo(job, shot));
 	json_array_append_new(lights, viewer_light("Studio", &job->studio, &job->studio, job->conf->lights, err));

@@ -92,21 +92,26 @@ json_t *viewer_map_log(const float *px, int width, int height, int stride, struc
 	return map;
 }
 
-json_t *viewer_map_plain(const float *px, int width, int height, int stride, int channel, struct err *err)
+json_t *viewer_map_plain(const struct image *map, struct err *err)
 {
-	double low[3] = { INFINITY }, high[3] = { -INFINITY };
-	long n = (long)width * height;
-	uint8_t *out = mem_array((size_t)n, 1);
-	for (long i = 0; i < n; i++) {
-		low[0] = fmin(low[0], px[stride * i + channel]);
-		high[0] = fmax(high[0], px[stride * i + channel]);
+	double low[3] = { 0 }, high[3] = { 1, 1, 1 };
+	int n = map->channels < 3 ? map->channels : 3;
+	long count = (long)map->width * map->height;
+	uint8_t *out = mem_new((size_t)count * 3, 1);
+	for (int c = 0; c < n; c++) {
+		low[c] = INFINITY;
+		high[c] = -INFINITY;
+		for (long i = 0; i < count; i++) {
+			low[c] = fmin(low[c], map->px[map->channels * i + c]);
+			high[c] = fmax(high[c], map->px[map->channels * i + c]);
+		}
+		high[c] = fmax(high[c], low[c] + 1e-6);
+		for (long i = 0; i < count; i++)
+			out[3 * i + c] = byte((map->px[map->channels * i + c] - low[c]) / (high[c] - low[c]));
 	}
-	high[0] = fmax(high[0], low[0] + 1e-6);
-	for (long i = 0; i < n; i++)
-		out[i] = byte((px[stride * i + channel] - low[0]) / (high[0] - low[0]));
-	json_t *map = png(out, width, height, 1, low, high, err);
+	json_t *json = png(out, map->width, map->height, 3, low, high, err);
 	free(out);
-	return map;
+	return json;
 }
 
 json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, int lights, struct err *err)
@@ -134,8 +139,8 @@ json_t *viewer_light(const char *name, const struct envmap *env, const struct en
 	json_object_set_new(out, "even", json_numbers(3, even));
 	if (mirror) {
 		const struct image *s = &mirror->sharp, *r = &mirror->rough;
-		json_object_set_new(out, "sharp", viewer_map_log(s->px, s->width, s->height, 3, err));
-		json_object_set_new(out, "rough", viewer_map_log(r->px, r->width, r->height, 3, err));
+		json_object_set_new(out, "sharp", viewer_map_log(s->px, s->width, s->height, s->channels, err));
+		json_object_set_new(out, "rough", viewer_map_log(r->px, r->width, r->height, r->channels, err));
 	}
 	return out;
 }

@@ -1,14 +1,13 @@
 // A ray of sight for each pixel: lib/eye/scene_trace.c, scene_march.c, scene_sclera.c.
 const int NODES = 12;
-const float PI = 3.14159265358979;
 uniform vec3 origin;              // of all rays: the camera, eye frame
 uniform mat3 eye_from_cam, env_from_eye;
 uniform vec4 lens;                // focal length, middle (px of the camera), px of the camera in one of the picture
 uniform vec2 corner, size, jitter;
 uniform mat3 slip;
 uniform vec2 limbus;
+uniform float sclera_reach;       // angle at the edge of the maps of the sclera
 uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
-uniform vec3 sclera_rgb;
 uniform vec3 pupil;               // as fitted: x, y, radius, in the iris plane
 uniform float pupil_now;
 uniform float iris_depth, pixel;  // pixel: mm on the iris
@@ -84,14 +83,14 @@ vec4 path_at(int beam, int plane, vec2 p)
 	return textureLod(path_map, (cell + 0.5 + vec2(float(plane), float(beam)) * GRID) / (GRID * vec2(2.0, float(LIGHTS))), 0.0);
 }
 
-// K and gain for a point; the sclera stops, gradually, what would enter outside the limbus.
+// Unit direction towards the light, and irradiance of a plane that faces it; the sclera stops, gradually, what would enter
+// outside the limbus.
 vec4 path_to(int beam, vec3 p)
 {
 	float q = (p.z - beam_z.x) / (beam_z.y - beam_z.x);
-	vec4 K = mix(path_at(beam, 0, p.xy), path_at(beam, 1, p.xy), q);
-	float r = length(K.xy / limbus), t = clamp((r - 1.0) / sclera.z + 0.5, 0.0, 1.0);
-	K.w = max(K.w, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t));
-	return K;
+	vec4 w = mix(path_at(beam, 0, p.xy), path_at(beam, 1, p.xy), q);
+	float t = clamp((w.w - 1.0) / sclera.z + 0.5, 0.0, 1.0);
+	return vec4(w.xy, -sqrt(max(1.0 - dot(w.xy, w.xy), 0.0)), max(w.z, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t)));
 }
 
 // The first crossing of the relief: bracketed by equal steps, then twice regula falsi.
@@ -128,20 +127,19 @@ vec3 meet(vec3 f, vec3 v)
 	return f + v * (d > 1e-12 ? a - fa * (b - a) / d : b);
 }
 
-// How much of a source of 0.15 rad stands clear of the relief; tissue that stands around in the light fills shadows in.
-float shadow(vec3 p, vec3 K)
+// Share of the light that comes in over the relief's horizon: sources are 0.15 wide; tissue that stands around in the light
+// fills shadows in.
+float shadow(vec3 p, vec3 l)
 {
-	vec3 l = K - p;
-	float least = 1.0, reach = (iris_depth - heights.y - 1e-4 - p.z) / min(l.z, -0.2);
+	float steepest = -1e3, across = length(l.xy), reach = (iris_depth - heights.y - 1e-4 - p.z) / min(l.z, -0.05);
 	for (int k = 1; k <= 16; k++) {
 		if (k > shadow_steps)
 			break;
 		float t = float(k) / float(shadow_steps) * reach;
-		vec3 q = p + t * l;
-		float clear = (iris_depth - relief_at(q.xy).x - q.z + 0.004) / (0.15 * t * length(l.xy) + 0.004);
-		least = min(least, clear);
+		float h = iris_depth - relief_at(p.xy + t * l.xy).x;
+		steepest = max(steepest, (p.z - h - 0.004) / (t * across + 1e-6));
 	}
-	return 0.4 + 0.6 * max(least, 0.0);
+	return 0.4 + 0.6 * clamp((-l.z / max(across, 1e-6) - steepest) / 0.15, 0.0, 1.0);
 }
 
 // Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
@@ -172,17 +170,15 @@ vec3 scatter(vec3 p, vec3 v)
 	for (int b = 0; b < LIGHTS; b++) {
 		if (b >= beams)
 			break;
-		vec4 K0 = path_to(b, p), K1 = path_to(b, p + span * v), lit = vec4(0.0);
-		float open = shadow_steps > 0 ? shadow(p, K0.xyz) : 1.0;
+		vec4 near_light = path_to(b, p), far_light = path_to(b, p + span * v), lit = vec4(0.0);
+		float open = shadow_steps > 0 ? shadow(p, near_light.xyz) : 1.0;
 		for (int j = 0; j < NODES; j++) {
 			if (j >= total)
 				break;
-			float u = at[j].w / span;
-			vec3 l = normalize(mix(K0.xyz, K1.xyz, u) - (p + at[j].w * v));
+			vec4 l = mix(near_light, far_light, at[j].w / span);
 			float lost = max(-l.z - dot(at[j].xy, l.xy), 0.25);
 			float la = min(at[j].z, abl) / lost + way[j].x, ls = max(at[j].z - abl, 0.0) / lost + way[j].y;
-			float w = way[j].z * mix(K0.w, K1.w, u) / max(-l.z, 0.05);
-			lit += source[j < nodes[0] ? 0 : 1] * w * exp(-(extinction[0] * la + extinction[1] * ls));
+			lit += source[j < nodes[0] ? 0 : 1] * (way[j].z * l.w) * exp(-(extinction[0] * la + extinction[1] * ls));
 		}
 		sum += beam_rgb[b] * (band_rgb * (lit * (open * 0.25))).rgb;  // pi times the phase, 1 / (4 pi)
 	}
@@ -193,8 +189,10 @@ vec3 flat_light(vec3 p)
 {
 	vec3 sum = vec3(0.0);
 	for (int b = 0; b < LIGHTS; b++)
-		if (b < beams)
-			sum += beam_rgb[b] * path_to(b, p).w;
+		if (b < beams) {
+			vec4 l = path_to(b, p);
+			sum += beam_rgb[b] * max(l.w * -l.z, 0.0);
+		}
 	return sum * flat_rgb;
 }
 
@@ -254,15 +252,11 @@ vec3 irradiance(vec3 normal)
 // The white of the eye: diffuse, softened by what scatters below the surface; its film's ripples turn the normal.
 vec3 white(inout vec3 normal, vec3 at, float rho)
 {
-	const float reach = 110.0 * PI / 180.0;
 	vec3 direct = irradiance(normal), d = at - vec3(0.0, 0.0, sclera.x);
-	float flat_ = length(d.xy), r = atan(flat_, -d.z) / reach;
+	float flat_ = length(d.xy), r = atan(flat_, -d.z) / sclera_reach;
 	vec2 u = 0.5 + 0.5 * r * d.xy / max(flat_, 1e-6);
-	float away = step_smooth(0.35, 1.1, r * reach / 1.3);
-	vec3 albedo = sclera_rgb * (1.0 - away * vec3(0.01, 0.06, 0.11)) * textureLod(vein_map, u, 0.0).rgb;
-	vec2 slope = vec2(textureLod(film_map, u + vec2(0.012, 0.0), 0.0).r - textureLod(film_map, u - vec2(0.012, 0.0), 0.0).r,
-	                  textureLod(film_map, u + vec2(0.0, 0.012), 0.0).r - textureLod(film_map, u - vec2(0.0, 0.012), 0.0).r);
-	normal = normalize(normal + vec3(0.22 * step_smooth(0.40, 0.75, r * reach / 0.9) * slope, 0.0));
+	vec3 albedo = textureLod(vein_map, u, 0.0).rgb;
+	normal = normalize(normal + vec3(textureLod(film_map, u, 0.0).rg, 0.0));
 	float edge = 1.0 - step_smooth(0.97, 1.22, rho);
 	vec3 light = direct + vec3(0.38, 0.26, 0.20) * (even - direct);
 	return albedo * light * (1.0 - vec3(0.36, 0.31, 0.25) * edge * edge);

@@ -1,7 +1,9 @@
-// The light's way through the cornea (iris paper, eq. 15): for each beam K and the irradiance gain over the iris, on two
-// planes of GRID x GRID points; lib/eye/scene_light.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
+// The light's way through the cornea (iris paper, eq. 15): for each beam, over the iris on two planes of GRID x GRID
+// points, the direction towards the light (x, y), the irradiance of a plane that faces it, and where on the cornea it came in
+// (1: at the limbus); lib/eye/scene_light.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
 uniform vec3 beam_dir[LIGHTS];
-out vec4 path;
+uniform vec2 limbus;
+out vec4 way;
 
 // Where the ray from P in direction q leaves the surface.
 vec3 leave(vec3 P, vec3 q)
@@ -75,6 +77,8 @@ void main()
 	}
 	curve(x, P, w, g, H, tau);
 	float gain = caustic(x, P, w, H, tau);
-	bool good = dot(g, g) < 1e-4 && dot(x, x) < 4.0 && gain < 40.0;
-	path = good ? vec4(cornea_R * tau * vec3(x, dot(x, x)), gain) : vec4(P + w, 0.0);
+	// A way that is no minimum lies behind a focus: not the one that goes on smoothly.
+	bool good = dot(g, g) < 1e-4 && dot(x, x) < 4.0 && H.x * H.z > H.y * H.y && H.x + H.z > 0.0 && gain < 40.0;
+	vec3 K = good ? cornea_R * tau * vec3(x, dot(x, x)) : P + w, l = normalize(K - P);
+	way = vec4(l.xy, good ? gain / max(-l.z, 0.05) : 0.0, min(length(K.xy / limbus), 4.0));
 }

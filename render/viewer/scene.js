@@ -12,11 +12,11 @@ const turns = {
 
 /* What costs time, dearest first. */
 const presets = [
-	{ name: "full", scale: 1, lights: 8, shadow: 4, search: 8, march: true },
-	{ name: "high", scale: 1, lights: 4, shadow: 2, search: 6, march: true },
-	{ name: "medium", scale: 0.66, lights: 4, shadow: 0, search: 5, march: true },
-	{ name: "low", scale: 0.66, lights: 4, shadow: 0, search: 4, march: false },
-	{ name: "least", scale: 0.4, lights: 2, shadow: 0, search: 3, march: false },
+	{ name: "full", steps: 6, scale: 1, lights: 8, shadow: 4, search: 8, march: true },
+	{ name: "high", steps: 6, scale: 1, lights: 4, shadow: 2, search: 6, march: true },
+	{ name: "medium", steps: 4, scale: 0.66, lights: 4, shadow: 0, search: 5, march: true },
+	{ name: "low", steps: 3, scale: 0.66, lights: 4, shadow: 0, search: 4, march: false },
+	{ name: "least", steps: 3, scale: 0.4, lights: 2, shadow: 0, search: 3, march: false },
 ];
 
 class EyeScene {
@@ -121,10 +121,24 @@ class EyeScene {
 		return this.optics;
 	}
 
-	nodes() {
-		const out = [];
-		for (const list of this.data.nodes)
-			out.push(...EyeScene.padded(list.slice(0, EyeScene.NODES).flat(), 2 * EyeScene.NODES));
+	/* Gauss-Legendre in either layer: a third of the steps in the thin anterior one, where most of the melanin is. */
+	static nodes(steps) {
+		const abl = Math.max(1, Math.floor(steps / 3)), out = { nodes: [abl, steps - abl], node: [] };
+		for (const n of out.nodes) {
+			const list = [];
+			for (let i = 0; i < n; i++) {
+				let x = Math.cos(Math.PI * (i + 0.75) / (n + 0.5)), d = 1;
+				for (let k = 0; k < 8; k++) {
+					let p = 1, q = 0;
+					for (let j = 1; j <= n; j++)
+						[q, p] = [p, ((2 * j - 1) * x * p - (j - 1) * q) / j];
+					d = n * (x * p - q) / (x * x - 1);
+					x -= p / d;
+				}
+				list.push((1 - x) / 2, 1 / ((1 - x * x) * d * d));
+			}
+			out.node.push(...EyeScene.padded(list, 2 * EyeScene.NODES));
+		}
 		return out;
 	}
 
@@ -150,11 +164,11 @@ class EyeScene {
 			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + extra + e.thickness_max],
 			beam_dir: beams.dir, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), env_from_eye, lens: cam.lens, corner: cam.corner,
 			size: [width, height], jitter, slip: view.slip ? [...view.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0], limbus: e.limbus,
-			sclera: this.sclera(s), sclera_rgb: e.sclera_rgb, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
+			sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
 			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps, path_map: this.path_map,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
 			beams: beams.n, beam_rgb: beams.rgb, ...this.tissue(s), abl: data.tissue.abl, exposure: data.tissue.exposure,
-			tissue_gain: e.gain, detail: s.detail, nodes: data.nodes.map(l => Math.min(l.length, EyeScene.NODES)), node: this.nodes(),
+			tissue_gain: e.gain, detail: s.detail, ...EyeScene.nodes(preset.steps),
 			search: preset.search, shadow_steps: preset.shadow, flat_iris: preset.march ? 0 : 1,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
 			mirror_on: view.bare_film || !light.sharp_map ? 0 : s.light_gain, film_index: data.constants.film_index, tear: s.tear,
