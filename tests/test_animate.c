@@ -11,7 +11,7 @@
 /* config/animate.conf. */
 static const struct animate_conf usual = {
 	.gaze = { .saccade = { 0.021, 0.0022, 1.65, 0.48, 0.32 }, .latency = { 0.2, 0.03 }, .catch_up = { 0.125, 0.02 },
-	          .gain = { 0.95, 0.03 }, .threshold = 0.7, .crossing = { 0.04, 0.18 }, .pursuit_gain = 0.95, .pursuit_delay = 0.1,
+	          .gain = { 0.95, 0.03 }, .threshold = 0.7, .crossing = { 0.04, 0.18 }, .crossing_lead = 0.125, .pursuit_gain = 0.95, .pursuit_delay = 0.1,
 	          .pursuit_tau = 0.06, .pursuit_limit = 80, .vor_gain = 0.97, .vergence_delay = 0.16, .vergence_tau = 0.2,
 	          .drift = 0.05, .drift_tau = 0.5, .range = 45, .ipd = 63 },
 	.blink = { { 0.1339, 0.1605 }, { 0.02, 2 }, { 34.5895, 3.805 }, 30.7845, 0.0375, 0.00093, 2, 0.008, 1.5 },
@@ -197,6 +197,19 @@ static void pursuit(void **state)
 	NEAR(b.cyclopean[0], 15 * 1.8, 1.5);  // kept up with by catch-up saccades
 	gaze_sim_saccades(sim, &n);
 	assert_true(n >= 1);
+	gaze_sim_free(sim);
+	struct scene back = { .at = 0.2, .jump = { -3 }, .speed = 15 };
+	sim = gaze_sim_new(&conf, look, &back, 1);
+	gaze_sim_at(sim, 0.7, &b);
+	gaze_sim_saccades(sim, &n);
+	gaze_sim_free(sim);
+	assert_int_equal(n, 0);
+	int away_n;
+	struct scene away = { .at = 0.2, .jump = { 3 }, .speed = 15 };
+	sim = gaze_sim_new(&conf, look, &away, 1);
+	gaze_sim_at(sim, 0.7, &b);
+	gaze_sim_saccades(sim, &away_n);
+	assert_true(away_n >= 1 && away_n > n);
 	gaze_sim_free(sim);
 }
 

@@ -139,12 +139,12 @@ static void sense(struct gaze_sim *s, double head_speed[2])
 	s->near[s->now % HISTORY] = isinf(s->input.distance) ? 0 : 1 / s->input.distance;
 }
 
-/* Whether pursuit will bring the eye across the target soon enough by itself. */
+/* Whether pursuit will bring the eye across the target soon enough by itself: by the error and its change of now. */
 static bool will_cross(const struct gaze_sim *s, const double error[2], double length)
 {
 	double closing = 0;
 	for (int k = 0; k < 2; k++)
-		closing -= error[k] / length * (past(s, s->conf.pursuit_delay, k) - s->pursuit[k]);
+		closing -= error[k] / length * (past(s, 0, k) - s->pursuit[k]);
 	double crossing = closing > 0 ? length / closing : INFINITY;
 	return crossing >= s->conf.crossing[0] && crossing <= s->conf.crossing[1];
 }
@@ -152,11 +152,20 @@ static bool will_cross(const struct gaze_sim *s, const double error[2], double l
 static void plan_saccade(struct gaze_sim *s, const double error[2], double t)
 {
 	double length = hypot(error[0], error[1]);
-	if (s->moving || s->pending || t < s->rest_until || length <= s->conf.threshold || will_cross(s, error, length))
+	if (s->moving || s->pending || t < s->rest_until || length <= s->conf.threshold)
 		return;
 	bool moves = hypot(s->pursuit[0], s->pursuit[1]) > 1 || s->catch_up;
 	s->begin = t + drawn(&s->rng, moves ? s->conf.catch_up : s->conf.latency);
 	s->pending = true;
+}
+
+/* A saccade is called off while there is time for it, not later than a catch-up saccade's latency before it. */
+static void decide_saccade(struct gaze_sim *s, const double error[2], double t)
+{
+	double length = hypot(error[0], error[1]);
+	if (s->pending && t < s->begin - s->conf.crossing_lead + 0.5 * step_s && length > 0 && will_cross(s, error, length))
+		s->pending = false;
+
 }
 
 /* The saccade goes where the target will be when it ends. */
@@ -164,7 +173,7 @@ static void begin_saccade(struct gaze_sim *s, const double error[2], double t)
 {
 	double length = hypot(error[0], error[1]);
 	s->pending = false;
-	if (length <= 0.5 * s->conf.threshold)
+	if (length <= s->conf.threshold)
 		return;
 	double gain = s->conf.gain[0] + s->conf.gain[1] * rng_normal(&s->rng);
 	double ahead = s->conf.saccade.duration_s + s->conf.saccade.duration_per_deg * length;
@@ -237,6 +246,7 @@ static void advance(struct gaze_sim *s)
 	if (hypot(s->input.target[0] - s->last.target[0], s->input.target[1] - s->last.target[1]) > jump_speed * step_s)
 		s->catch_up = false;
 	plan_saccade(s, error, t);
+	decide_saccade(s, error, t);
 	if (s->pending && t >= s->begin)
 		begin_saccade(s, error, t);
 	move(s, head_speed, t);

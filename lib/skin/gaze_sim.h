@@ -21,6 +21,7 @@ struct gaze_conf {
 	double gain[2];             // of saccades: mean and sigma of amplitude over error
 	double threshold;           // degrees of error that call for a saccade
 	double crossing[2];         // s: no saccade while pursuit will cross the target within these
+	double crossing_lead;       // s before a saccade until which it can be called off
 	double pursuit_gain, pursuit_delay, pursuit_tau, pursuit_limit;  // tau s, limit degrees/s
 	double vor_gain;
 	double vergence_delay, vergence_tau;  // s

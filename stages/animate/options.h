@@ -12,7 +12,8 @@
 	OPT_REALS("catch_up_latency_s", (g)->catch_up, 2, 0, 2, "s", "before corrections and catch-up saccades: mean, sigma"), \
 	OPT_REALS("saccade_gain", (g)->gain, 2, 0, 2, "", "amplitude over error: mean, sigma"), \
 	OPT_REAL("saccade_threshold_deg", &(g)->threshold, 0.05, 20, "degrees", "error that calls for a saccade"), \
-	OPT_REALS("crossing_s", (g)->crossing, 2, 0, 2, "s", "pursuit crosses the target within: no saccade")
+	OPT_REALS("crossing_s", (g)->crossing, 2, 0, 2, "s", "pursuit crosses the target within: no saccade"), \
+	OPT_REAL("crossing_lead_s", &(g)->crossing_lead, 0, 1, "s", "so long before a saccade it can be called off")
 
 #define PURSUIT_OPTS(g) \
 	OPT_REAL("pursuit_gain", &(g)->pursuit_gain, 0, 1.5, "", "velocity of eye over target"), \
