@@ -434,7 +434,7 @@ static void paint(unsigned char *rgb, int x0, int y0, int size, int r, int g, in
 		}
 }
 
-/* Short bars all of one slant, in a grid; one of another. */
+
 static bool near_place(const double at[2], double x, double y, double px)
 {
 	return hypot(at[0] * W - x, at[1] * H - y) <= px;
@@ -471,6 +471,28 @@ static void popping_out(void **state)
 	saliency_free(&s);
 }
 
+/* Bars of one slant, 8 by 6 of them, one of another: wherever that one is, it is looked at first. */
+static void orientation_pops_out(void **state)
+{
+	(void)state;
+	enum { LONG = 18, CELL = 64, ACROSS = 8 * CELL, DOWN = 6 * CELL };
+	static unsigned char rgb[ACROSS * DOWN * 3];
+	for (int odd = 0; odd < 48; odd += 5) {
+		struct saliency s = { 0 };
+		double at[2];
+		memset(rgb, 128, sizeof rgb);
+		for (int k = 0; k < 48; k++)
+			for (int i = -LONG; i <= LONG; i++) {
+				int x = CELL / 2 + k % 8 * CELL + i, y = CELL / 2 + k / 8 * CELL + (k == odd ? -i : i);
+				memset(rgb + 3 * (y * ACROSS + x - 3), 255, 21);
+			}
+		saliency_push(&s, rgb, ACROSS, DOWN, 3 * ACROSS);
+		assert_true(saliency_next(at, &s));
+		assert_int_equal((int)(8 * at[0]) + 8 * (int)(6 * at[1]), odd);
+		saliency_free(&s);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -478,7 +500,7 @@ int main(void)
 		cmocka_unit_test(a_saccade),     cmocka_unit_test(reflex),            cmocka_unit_test(pursuit),
 		cmocka_unit_test(vergence_dynamics), cmocka_unit_test(blinks),        cmocka_unit_test(keyframes),
 		cmocka_unit_test(deterministic), cmocka_unit_test(recorded),          cmocka_unit_test(bad_scripts),
-		cmocka_unit_test(popping_out),
+		cmocka_unit_test(popping_out), cmocka_unit_test(orientation_pops_out),
 	};
 	scratch_open();
 	int failed = cmocka_run_group_tests(tests, 0, 0);

@@ -154,6 +154,19 @@ static struct pyramid oriented(const struct pyramid *intensity, int angle)
 	return out;
 }
 
+/* Orientations suppress each other at a place, as in the visual cortex: each keeps what it has above their mean. */
+static void compete(struct pyramid o[ANGLES])
+{
+	for (int l = FIRST; l < LEVELS; l++)
+		for (int i = 0; i < o[0].level[l].width * o[0].level[l].height; i++) {
+			float mean = 0;
+			for (int a = 0; a < ANGLES; a++)
+				mean += o[a].level[l].px[i] / ANGLES;
+			for (int a = 0; a < ANGLES; a++)
+				o[a].level[l].px[i] = fmaxf(o[a].level[l].px[i] - mean, 0);
+		}
+}
+
 /* Working size; red, green, blue 0..1 as averages over the pixels that fall together. */
 static void shrink(struct level rgb[3], const unsigned char *px, int width, int height, int stride)
 {
@@ -256,14 +269,17 @@ void saliency_push(struct saliency *s, const unsigned char *px, int width, int h
 	centre_surround(&sum, &p[2]);
 	add_conspicuity(s, &sum);
 	struct level all = level_new(s->width, s->height);
+	struct pyramid o[ANGLES];
+	for (int a = 0; a < ANGLES; a++)
+		o[a] = oriented(&p[0], a);
+	compete(o);
 	for (int a = 0; a < ANGLES; a++) {
-		struct pyramid o = oriented(&p[0], a);
-		centre_surround(&sum, &o);
+		centre_surround(&sum, &o[a]);
 		promote(&sum);
 		for (int i = 0; i < s->width * s->height; i++)
 			all.px[i] += sum.px[i];
 		memset(sum.px, 0, (size_t)(s->width * s->height) * sizeof *sum.px);
-		pyramid_free(&o);
+		pyramid_free(&o[a]);
 	}
 	add_conspicuity(s, &all);
 	if (moving) {
@@ -278,45 +294,4 @@ void saliency_push(struct saliency *s, const unsigned char *px, int width, int h
 		free(rgb[c].px);
 	free(sum.px);
 	free(all.px);
-}
-
-bool saliency_next(double place[2], const struct saliency *s)
-{
-	double best = 1e-6;
-	int found = -1;
-	for (int i = 0; i < s->width * s->height; i++) {
-		double v = s->map[i] * (1 - s->inhibited[i]);
-		found = v > best ? i : found;
-		best = fmax(best, v);
-	}
-	place[0] = found < 0 ? 0.5 : (found % s->width + 0.5) / s->width;
-	place[1] = found < 0 ? 0.5 : (found / s->width + 0.5) / s->height;
-	return found >= 0;
-}
-
-void saliency_inhibit(struct saliency *s, const double place[2], double radius)
-{
-	double r = radius * (s->width < s->height ? s->width : s->height);
-	for (int y = 0; y < s->height; y++)
-		for (int x = 0; x < s->width; x++) {
-			double d = hypot(x + 0.5 - place[0] * s->width, y + 0.5 - place[1] * s->height);
-			double to = d <= r ? 1 : exp(-(d - r) * (d - r) / (0.5 * r * r));
-			double *was = &s->inhibited[y * s->width + x];
-			*was = fmax(*was, to);
-		}
-}
-
-void saliency_decay(struct saliency *s, double seconds, double tau)
-{
-	double keep = exp(-seconds / tau);
-	for (int i = 0; i < s->width * s->height; i++)
-		s->inhibited[i] *= keep;
-}
-
-void saliency_free(struct saliency *s)
-{
-	free(s->map);
-	free(s->inhibited);
-	free(s->last);
-	*s = (struct saliency){ 0 };
 }
