@@ -21,13 +21,32 @@ static struct eye_event *new_event(struct eye_clip *clip, int kind, int side)
 	return event;
 }
 
-/* Height of the opening in mm, 0 shut, NAN not looked at; and the vertical gaze, filled in between. */
-static void series(double gap[], double v[], const struct eye_side *eye)
+/* How high the middle of the lower lid is above the line between the corners, mm. */
+static double lower_height(const struct eye_record *record, int points)
+{
+	const struct lid_found *found = &record->found;
+	double dx = found->corner[1][0] - found->corner[0][0], dy = found->corner[1][1] - found->corner[0][1];
+	double low[2], up[2];
+	for (int k = 0; k < 2; k++) {
+		low[k] = found->p[1][points / 2][k] - found->corner[0][k];
+		up[k] = found->p[0][points / 2][k] - found->p[1][points / 2][k];
+	}
+	double away = dx * low[1] - dy * low[0], side = dx * up[1] - dy * up[0] < 0 ? -1 : 1;
+	return side * away / hypot(dx, dy) / record->mm;
+}
+
+/* Height of the opening in mm, 0 shut, NAN not looked at; that of the lower lid, held while shut; and the vertical gaze,
+ * filled in between. */
+static void series(double gap[], double lower[], double v[], const struct eye_side *eye)
 {
 	long n = eye->frames, last = -1;
+	double held = 0;
 	for (long i = 0; i < n; i++) {
 		const struct eye_record *record = &eye->record[i];
 		gap[i] = !record->measured ? NAN : record->open ? record->found.gap / record->mm : 0;
+		if (record->measured && record->open)
+			held = lower_height(record, eye->lids.points);
+		lower[i] = held;
 		v[i] = eye->state[i].gaze[1];
 		if (!isfinite(v[i]))
 			continue;
@@ -90,7 +109,8 @@ static void mark(struct eye_side *eye, const struct eye_event *event, const doub
 	}
 }
 
-static void blinks(struct eye_clip *clip, struct eye_side *eye, int side, const double open[])
+static void blinks(struct eye_clip *clip, struct eye_side *eye, int side, const double open[],
+                   const double lower[], double usual_gap)
 {
 	long n = eye->frames, half = (long)ceil(AROUND * eye->scene->fps), longest = (long)(BLINK_LONGEST * eye->scene->fps);
 	for (long i = 0; i < n; i++) {
@@ -109,7 +129,9 @@ static void blinks(struct eye_clip *clip, struct eye_side *eye, int side, const 
 		long end = last;
 		while (end + 1 < n && base - open[end + 1] > ONSET * depth && open[end + 1] >= open[end] && end - last < longest)
 			end++;
-		if (last - i <= longest) {
+		// A blink is the upper lid's; a squint raises the lower one.
+		bool falls = lower[low] - lower[first] < 0.5 * depth * usual_gap;
+		if (last - i <= longest && falls) {
 			struct eye_event *event = new_event(clip, EVENT_BLINK, side);
 			event->first = (int)first;
 			event->last = (int)end;
@@ -164,16 +186,15 @@ static void saccades(struct eye_clip *clip, struct eye_side *eye, int side)
 void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side)
 {
 	long n = eye->frames;
-	double *gap = mem_array((size_t)n + 1, sizeof *gap), *v = mem_array((size_t)n + 1, sizeof *v), line[2];
-	series(gap, v, eye);
+	double *gap = mem_array(3 * (size_t)n + 1, sizeof *gap), *v = gap + n, *lower = v + n, line[2];
+	series(gap, lower, v, eye);
 	if (usual(line, n, gap, v)) {
 		for (long i = 0; i < n; i++) {
 			gap[i] = fmin(1.5, gap[i] / fmax(0.3 * line[0], line[0] + line[1] * v[i]));
 			eye->state[i].openness = fmin(1, gap[i]);
 		}
-		blinks(clip, eye, side, gap);
+		blinks(clip, eye, side, gap, lower, line[0]);
 	}
 	saccades(clip, eye, side);
 	free(gap);
-	free(v);
 }

@@ -60,16 +60,28 @@ static double change(struct eye_side *eye, const struct luma *luma, const double
 	return mean;
 }
 
-/* Roughly where it looks. Returns the score. */
-static double seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view)
+struct seen {
+	const struct lid_track *lids;
+	double inside;
+};
+
+static bool is_seen(const void *ctx, const double px[2])
 {
-	double degree = M_PI / 180, fick[2] = { eye->fick[0], eye->fick[1] };
-	double score = NAN;
-	if (eye->have)
-		score = gaze_seek(fick, luma, &eye->globe, view, 9 * degree, 1.5 * degree, 0.5 * degree, eye->contrast);
+	const struct seen *seen = ctx;
+	return lid_track_inside(seen->lids, px, seen->inside);
+}
+
+/* Roughly where it looks: near where it last did, else anywhere. Returns the score. */
+static double seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere)
+{
+	double degree = M_PI / 180, fick[2] = { eye->fick[0], eye->fick[1] }, score = NAN;
+	struct seen seen = { &eye->lids, 0 };
+	struct gaze_sight sight = { luma, &eye->globe, view, eye->contrast, eye->lids.known ? is_seen : NULL, &seen };
+	if (eye->have && !anywhere)
+		score = gaze_seek(fick, &sight, 9 * degree, 1.5 * degree, 0.5 * degree);
 	if (!(score > FOUND)) {
 		double wide[2] = { 0, 0 };
-		double s = gaze_seek(wide, luma, &eye->globe, view, 36 * degree, 3 * degree, 0.5 * degree, eye->contrast);
+		double s = gaze_seek(wide, &sight, 36 * degree, 3 * degree, 0.5 * degree);
 		if (!(score >= s - 0.1)) {
 			score = s;
 			fick[0] = wide[0];
@@ -81,17 +93,6 @@ static double seek(struct eye_side *eye, const struct luma *luma, const struct g
 		eye->fick[1] = fick[1];
 	}
 	return score;
-}
-
-struct seen {
-	const struct lid_track *lids;
-	double inside;
-};
-
-static bool is_seen(const void *ctx, const double px[2])
-{
-	const struct seen *seen = ctx;
-	return lid_track_inside(seen->lids, px, seen->inside);
 }
 
 /* Gaze from the edges of the limbus in the opening. */
@@ -195,7 +196,7 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 	struct luma luma = { frame->luma, scene->width, scene->height, frame->luma_stride };
 	struct lid_picture picture = { frame->rgb, frame->rgb_stride, scene->width, scene->height };
 	struct lid_look look = { .mm = eye_scale(&eye->globe, view) };
-	double limbus_px = look.mm * eye->globe.limbus, score = seek(eye, &luma, view), plane = gaze_plane(&eye->globe);
+	double limbus_px = look.mm * eye->globe.limbus, score = seek(eye, &luma, view, false), plane = gaze_plane(&eye->globe);
 	double head_down[3] = { eye->globe.center[0], eye->globe.center[1] - 1, eye->globe.center[2] }, top[2], low[2];
 	if (!to_pixel(look.inner, view, eye->canthus[0]) || !to_pixel(look.outer, view, eye->canthus[1])
 	    || !to_pixel(top, view, eye->globe.center) || !to_pixel(low, view, head_down)
@@ -215,7 +216,9 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 	struct gaze_edge edge[GAZE_ARCS_MAX];
 	struct gaze_fit fit;
 	int n = 0;
-	if (!measure(&fit, edge, &n, eye, &luma, view, limbus_px))
+	// Once more with the lids where they are now.
+	if (!measure(&fit, edge, &n, eye, &luma, view, limbus_px)
+	    && (!(seek(eye, &luma, view, true) > FOUND) || !measure(&fit, edge, &n, eye, &luma, view, limbus_px)))
 		return;
 	double pupil[2], below, above;
 	gaze_pixel(pupil, &eye->globe, view, (double[3]){ fit.fick[0], fit.fick[1], 0 }, (double[3]){ 0, 0, plane });

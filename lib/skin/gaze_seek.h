@@ -5,14 +5,20 @@
 #define SKIN_GAZE_SEEK_H
 #include "skin/gaze_edge.h"
 
+struct gaze_sight {
+	const struct luma *luma;
+	const struct gaze_globe *globe;
+	const struct gaze_view *view;
+	double contrast;           // grey levels of a full step
+	gaze_seen_fn seen;         // where the limbus may be seen; null: everywhere
+	const void *ctx;
+};
+
 /* fick: where to start; replaced by the best of the grid `reach` round it (radians), then refined by halving the step to
- * `fine`. contrast: grey levels of a full step. Returns the mean share of a full step, -1..1: about 0 by chance, NAN when
- * the eye is out of the picture. */
-double gaze_seek(double fick[2], const struct luma *luma, const struct gaze_globe *globe, const struct gaze_view *view,
-                 double reach, double step, double fine, double contrast);
+ * `fine`. Returns the mean share of a full step, -1..1: about 0 by chance, NAN when the eye is out of the picture. */
+double gaze_seek(double fick[2], const struct gaze_sight *sight, double reach, double step, double fine);
 
 /* The score of one direction. */
-double gaze_seek_score(const struct luma *luma, const struct gaze_globe *globe, const struct gaze_view *view,
-                       const double fick[2], double contrast);
+double gaze_seek_score(const struct gaze_sight *sight, const double fick[2]);
 
 #endif

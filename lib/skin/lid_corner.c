@@ -73,11 +73,14 @@ void lid_corner_find(double shift[2], struct lid_corner *corner, int which, cons
 				bi = i, bj = j;
 		}
 	}
+	// What no longer looks like it, as in a blink, tells little.
+	double fit = (double)square(&field[bj * CORNER_FIELD + bi], &corner->look[0][0]) / (CORNER_SIDE * CORNER_SIDE);
+	double strange = fit / (12 * NOISE * NOISE), trust = 1 / (1 + pow(strange, 4));
 	double x = bi - CORNER_REACH, y = bj - CORNER_REACH, step = SAMPLE * chart->width;
 	if (bi > 0 && bi < N - 1)
 		x += top(cost[bj][bi - 1], cost[bj][bi], cost[bj][bi + 1]);
 	if (bj > 0 && bj < N - 1)
 		y += top(cost[bj - 1][bi], cost[bj][bi], cost[bj + 1][bi]);
-	shift[0] = x * step / hypot(chart->du[0], chart->du[1]);
-	shift[1] = y * step / hypot(chart->dv[0], chart->dv[1]);
+	shift[0] = trust * x * step / hypot(chart->du[0], chart->du[1]);
+	shift[1] = trust * y * step / hypot(chart->dv[0], chart->dv[1]);
 }
