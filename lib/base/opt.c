@@ -133,13 +133,13 @@ static bool read_value(const struct opt *o, const struct conf_item *item, struct
 	return true;
 }
 
-static bool read_each(const struct opt *o, const struct conf *conf, struct err *err)
+static bool read_each(const struct opt *o, const char *pattern, const struct conf *conf, struct err *err)
 {
 	*o->out.each = (struct opt_each_list){ 0 };
 	for (int i = 0; i < conf->n; i++) {
 		const struct conf_item *item = &conf->items[i];
 		char *name;
-		if (!item->layer || !opt_match(o->key, item->key, &name))
+		if (!item->layer || !opt_match(pattern, item->key, &name))
 			continue;
 		if (conf_find(conf, item->key, 0) != item) {  // a later layer says otherwise
 			free(name);
@@ -181,7 +181,10 @@ bool opt_resolve(const char *stage, int n, const struct opt opts[], const struct
 	for (int i = 0; i < n; i++) {
 		const struct opt *o = &opts[i];
 		if (o->type == OPT_T_EACH) {
-			if (!read_each(o, conf, err))
+			char *pattern = opt_full_key(stage, o->key);
+			bool ok = read_each(o, pattern, conf, err);
+			free(pattern);
+			if (!ok)
 				return false;
 			continue;
 		}

@@ -116,7 +116,7 @@ static double sum(double H[P][P], double g[P], double *weight, const double m[4]
 		double r[2], J[2][P];
 		int rows = s[i].weight > 0 ? look(r, J, &s[i], m, camera, pivot) : 0;
 		double e2 = (rows > 0 ? r[0] * r[0] : 0) + (rows > 1 ? r[1] * r[1] : 0);
-		double k = isinf(robust) ? 1 : 1 / (1 + e2 / (robust * robust)), w = s[i].weight * k * k;
+		double k = isinf(robust) || s[i].sure ? 1 : 1 / (1 + e2 / (robust * robust)), w = s[i].weight * k * k;
 		cost += rows ? s[i].weight * k * e2 : 0;
 		*weight += rows ? s[i].weight : 0;
 		for (int a = 0; H && a < rows; a++)

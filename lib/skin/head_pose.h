@@ -18,6 +18,7 @@ struct head_prior {
 struct head_sight {
 	double head[3], px[2], normal[2];
 	bool line;
+	bool sure;             // no outlier, however far off
 	double weight;         // 1 / sigma^2, px^-2; 0: left out
 };
 

@@ -9,21 +9,36 @@
 /* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
 struct rigid {
 	int n;
-	double *off2;
+	double *off2, *least;
 	struct head_sight *sights;
 };
 
-static const double off_first = 0.3, off_lids = 2, off_least = 0.05, forget = 0.05;  // px, px, px, share a frame
+static const double forget = 0.02;  // share a frame
+/* How far skin is expected to move on its own, mm: over the bridge of the nose, the cheeks, the brows, the lids. */
+static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids = 0.6;
+/* How much a head moves from one frame to the next: degrees, mm. */
+static const double turn_step = 0.2, shift_step = 0.6;
 
-static struct rigid rigid_new(const struct track_points *points, const struct track_subject *s)
+static double expected_off(const double head[3], const struct track_subject *s)
 {
-	struct rigid r = { .n = points->n, .off2 = mem_new((size_t)points->n + 1, sizeof *r.off2), .sights = mem_new((size_t)points->n + 1, sizeof *r.sights) };
+	double nose = 0.5 * (s->center[SIDE_LEFT][0] + s->center[SIDE_RIGHT][0]);
+	for (int e = 0; e < SIDES; e++) {
+		double dx = head[0] - s->center[e][0], dy = head[1] - s->center[e][1];
+		if (dx * dx + dy * dy < 1.4 * 1.4 * s->radius * s->radius)
+			return off_lids;
+	}
+	double up = head[1] - (isnan(s->center[SIDE_LEFT][1]) ? s->center[SIDE_RIGHT][1] : s->center[SIDE_LEFT][1]);
+	if (fabs(head[0] - (isnan(nose) ? 0 : nose)) < s->radius && up < 0.5 * s->radius)
+		return off_nose;
+	return up > 0.5 * s->radius ? off_brow : off_cheek;
+}
+
+static struct rigid rigid_new(const struct track_points *points, const struct track_subject *s, double px_per_mm)
+{
+	struct rigid r = { .n = points->n, .off2 = mem_new((size_t)points->n + 1, sizeof *r.off2), .least = mem_new((size_t)points->n + 1, sizeof *r.least), .sights = mem_new((size_t)points->n + 1, sizeof *r.sights) };
 	for (int i = 0; i < r.n; i++) {
-		bool lid = false;
 		memcpy(r.sights[i].head, points->head[i], sizeof r.sights[i].head);
-		for (int e = 0; e < SIDES; e++)
-			lid |= pow(points->head[i][0] - s->center[e][0], 2) + pow(points->head[i][1] - s->center[e][1], 2) < 1.4 * 1.4 * s->radius * s->radius;
-		r.off2[i] = lid ? off_lids * off_lids : off_first * off_first;
+		r.off2[i] = r.least[i] = pow(px_per_mm * expected_off(points->head[i], s), 2);
 	}
 	return r;
 }
@@ -31,18 +46,21 @@ static struct rigid rigid_new(const struct track_points *points, const struct tr
 static void rigid_free(struct rigid *r)
 {
 	free(r->off2);
+	free(r->least);
 	free(r->sights);
 }
 
 static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust)
 {
-	double next[4][4];
+	double next[4][4], turn = turn_step * M_PI / 180;
+	struct head_prior prior = { .sigma = { turn, turn, turn, shift_step, shift_step, shift_step } };
 	memcpy(next, pose, sizeof next);
+	memcpy(prior.cam_from_head, pose, sizeof prior.cam_from_head);
 	for (int i = 0; i < r->n; i++) {
-		r->sights[i].weight = state[i].confidence / (off_least * off_least + r->off2[i]);
+		r->sights[i].weight = state[i].confidence / fmax(r->least[i], r->off2[i]);
 		memcpy(r->sights[i].px, state[i].at, sizeof r->sights[i].px);
 	}
-	if (isnan(head_pose_fit(next, r->n, r->sights, camera, robust, 0)))
+	if (isnan(head_pose_fit(next, r->n, r->sights, camera, robust, &prior)))
 		return;
 	memcpy(pose, next, sizeof next);
 	for (int i = 0; i < r->n; i++) {
@@ -72,6 +90,7 @@ static void grow(struct track_result *r, long *room)
 	*room = *room ? 2 * *room : 256;
 	size_t n = (size_t)*room, m = n * (size_t)r->n_points;
 	r->time = mem_grow(r->time, n, sizeof *r->time);
+	r->lost_at = mem_grow(r->lost_at, n, sizeof *r->lost_at);
 	r->pose = mem_grow(r->pose, n, sizeof *r->pose);
 	r->skin = mem_grow(r->skin, m + 1, sizeof *r->skin);
 	r->skin_model = mem_grow(r->skin_model, m + 1, sizeof *r->skin_model);
@@ -95,9 +114,11 @@ static void store(struct track_result *r, const struct skin_point_state *state, 
 static bool skin_frame(struct track_result *r, struct skin_track *skin, struct skin_point_state *state, const struct video_frame *f,
                        const struct track_conf *conf)
 {
+	if (!skin)
+		return false;
 	double seen = skin_track_push(skin, f->luma, f->luma_stride, state);
 	r->still += skin_track_was_still(skin);
-	if (seen >= conf->cut || !r->n_points)
+	if (seen >= conf->cut)
 		return false;
 	// perhaps the camera jumped there and back
 	skin_track_restart(skin);
@@ -118,14 +139,15 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	*r = (struct track_result){ .n_points = points->n, .cut = -1, .lid_points = conf->eyes.lid_points, .n_au = conf->expression.n };
 	if (!video)
 		return false;
-	struct skin_track *skin = skin_track_new(&points->points, clip->luma, info.width, info.width, info.height, points->mask, &conf->skin);
+	struct skin_track *skin = !points->n ? 0 : skin_track_new(&points->points, clip->luma, info.width, info.width, info.height, points->mask, &conf->skin);
 	struct skin_point_state *state = mem_new((size_t)points->n + 1, sizeof *state);
-	struct rigid rigid = rigid_new(points, subject);
+	struct rigid rigid = rigid_new(points, subject, clip->camera.focal_px / clip->cam_from_head[2][3]);
+	struct track_eyes *eyes = track_eyes_new(clip, subject, conf);
 	double pose[4][4];
 	long room = 0;
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);
-	while (ok && got) {
+	while (ok && got && (!conf->limit || r->n < conf->limit)) {
 		struct video_frame f;
 		ok = video_next(&f, &got, video, err);
 		if (ok && got) {
@@ -134,14 +156,19 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 			if (!lost && points->n)
 				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px);
 			r->time[r->n] = f.time;
+			r->lost_at[r->n] = lost;
+			track_eyes_push(eyes, &f, pose);
 			store(r, state, pose, lost, points, clip);
 			r->n++;
-			stage_progress(stage, (int)r->n, (int)info.frames, "frames");
+			if (!conf->limit)
+				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
 		}
 		video_frame_free(&f);
 	}
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
+	ok = ok && (r->n < 2 || track_eyes_finish(r, eyes, err));
+	track_eyes_free(eyes);
 	rigid_free(&rigid);
 	free(state);
 	skin_track_free(skin);
@@ -152,6 +179,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 void track_result_free(struct track_result *r)
 {
 	free(r->time);
+	free(r->lost_at);
 	free(r->pose);
 	free(r->skin);
 	free(r->skin_model);
@@ -159,6 +187,5 @@ void track_result_free(struct track_result *r)
 	free(r->lids);
 	free(r->lids_model);
 	free(r->g);
-	free(r->eyes.state);
-	free(r->eyes.event);
+	eye_clip_free(&r->eyes);
 }

@@ -3,11 +3,23 @@
  * writes  work/skin/gaze.csv, lids.npy, lids_model.npy, vertices.npy, skin.npy, skin_model.npy, confidence.npy, head.npy
  *         (where the head was), track.json
  */
+#include <stdlib.h>
+#include <unistd.h>
+
 #include "base/mem.h"
 #include "stages/track/track.h"
 
+/* Beside a decoder that needs a core too, threads that spin while they wait take more than they win: they must sleep, which
+ * OpenMP has to be told before it starts. */
+static void start_calm(char **argv)
+{
+	if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
+		execv("/proc/self/exe", argv);
+}
+
 int main(int argc, char **argv)
 {
+	start_calm(argv);
 	struct track_conf c = { 0 };
 	const struct opt opts[] = {
 		EYE_OPTS(&c.eye),
@@ -29,6 +41,9 @@ int main(int argc, char **argv)
 		OPT_INT("reference_frame", &c.reference, -1, 10000000, "", "frame the mesh is laid on; -1: found"),
 		OPT_INT("search_frames", &c.search, 1, 100000, "", "searched for a face at most"),
 		OPT_REAL("distance_mm", &c.distance_mm, 50, 10000, "mm", "of the face from a camera of unknown focal length"),
+		OPT_INT("settle_frames", &c.settle, 0, 10000, "", "from which the eyeballs' centres settle the head's pose; 0: not"),
+		OPT_REAL("settle_sigma_mm", &c.settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),
+		OPT_REAL("mesh_center_sigma_mm", &c.center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),
 		OPT_INT("points", &c.points, 20, 20000, "", "of skin"),
 		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),
 		OPT_REAL("gap_px", &c.gap_px, 0, 50, "px", "least distance between two points"),

@@ -21,7 +21,10 @@ struct track_conf {
 	double distance_mm;    // of the face from a camera of which nothing is known
 	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
 	int search;            // frames looked through for it
+	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
+	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
 	int points;            // of skin
+	long limit;            // frames followed; 0: all
 	double reach_mm;       // round an eyeball's centre
 	double gap_px;         // points are no closer
 	double cut;            // share of the points that must be seen again, or there was a cut
@@ -38,6 +41,7 @@ struct track_subject {
 	int mark[SIDES][MARKS];          // rows; -1: not known
 	double center[SIDES][3], radius; // of the eyeballs; NAN where not known
 	struct eye_opening opening[SIDES];
+	bool assumed;          // there is no mesh: openings of a usual face, to find eyes with
 };
 
 /* The clip as it lies before the first frame is followed. */
@@ -45,7 +49,7 @@ struct track_clip {
 	char file[320];        // relative to the capture
 	struct video_info info;
 	struct camera camera;
-	bool focal_assumed, head_known;
+	bool focal_assumed;
 	long reference;
 	double cam_from_head[4][4];      // at the reference
 	bool eye_seen[SIDES];
@@ -69,6 +73,7 @@ struct track_result {
 	long n;
 	int n_points;
 	double *time;          // [n]
+	bool *lost_at;         // [n]
 	double (*pose)[4][4];  // [n]
 	float (*skin)[2];      // [n][n_points] px
 	float (*skin_model)[2];
@@ -94,6 +99,10 @@ bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct 
                      const struct track_conf *conf, struct err *err);
 void track_clip_free(struct track_clip *clip);
 
+/* Improves the pose by the centres that the eyes turn about in the first frames. */
+bool track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf,
+                  struct err *err);
+
 bool track_points_choose(struct track_points *points, const struct track_clip *clip, const struct track_subject *subject,
                          const struct track_conf *conf, struct err *err);
 void track_points_free(struct track_points *points);
@@ -101,6 +110,12 @@ void track_points_free(struct track_points *points);
 bool track_follow(struct track_result *result, struct stage *stage, const struct track_clip *clip,
                   const struct track_subject *subject, const struct track_points *points, const struct track_conf *conf,
                   struct err *err);
+
+struct track_eyes;
+struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
+void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, const double cam_from_head[4][4]);
+bool track_eyes_finish(struct track_result *result, struct track_eyes *eyes, struct err *err);
+void track_eyes_free(struct track_eyes *eyes);
 
 /* Files of the stage, relative to the capture. */
 enum { TRACK_FILES = 9 };

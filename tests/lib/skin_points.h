@@ -1,0 +1,27 @@
+/* skin_points: skin_track on a rendered clip, every point begun at its true place in the first frame. */
+#ifndef TESTS_SKIN_POINTS_H
+#define TESTS_SKIN_POINTS_H
+#include "skin/skin_track.h"
+#include "tests/lib/track_score.h"
+
+/* The defaults of config/track.conf. */
+static const struct skin_track_conf skin_track_review = {
+	.radius = 10, .levels = 4, .iterations = 12, .stop = 0.02, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .outlier = 4,
+	.sweeps = 2, .still = 0.05,
+};
+static const struct skin_track_conf skin_track_draft = {
+	.radius = 8, .levels = 4, .iterations = 8, .stop = 0.05, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .outlier = 4,
+	.sweeps = 1, .still = 0.05,
+};
+
+struct skin_points_score {
+	int points;
+	struct spread all, first, last;  // px: points in sight that are seen; in the first and last tenth of the clip
+	double seen;                     // share of those in sight
+	double seconds;                  // a frame, without decoding
+};
+
+/* dir: folder of video.mp4 and truth.npz. At most `most` points, spread evenly. False, err set, where a file is missing. */
+bool skin_points_follow(struct skin_points_score *score, const char *dir, int most, const struct skin_track_conf *conf, struct err *err);
+
+#endif
