@@ -45,7 +45,8 @@ struct scene_level {
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
 	float *horizon;               // scene_march.h; null: level is not marched from
-	float *shown;                 // [n][n][4]: colour with the pupil cut out; null: the same
+	float *shown, *bare;          // [n][n][4]: colour (to the power of detail) with the pupil cut out; the same without
+	                              // the photograph's light; null: level is not marched from
 };
 
 struct scene {

@@ -139,32 +139,46 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 	scene_levels_make(s);
 }
 
-void scene_colour_ratio(float rgb[3], const struct scene *s, const float model[3])
+SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float (*restrict model)[4])
 {
-	static const float chroma = 1.5f;
-	float k[3], mean = 0, most = 2.5f, d = (float)s->conf.detail;  // brighter only a texel gets that was in a shadow of the model's
-	for (int c = 0; c < 3; c++) {
-		k[c] = rgb[c] / model[c];
-		mean += k[c] / 3;
+	const float most = 2.5f, chroma = 1.5f;  // brighter only a texel gets that was in a shadow of the model's
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		float x = r[i] / model[i][0], y = g[i] / model[i][1], z = b[i] / model[i][2], mean = (x + y + z) / 3;
+		float lit = mean < most ? mean : most, low = lit / chroma, high = lit * chroma, k = mean > 1e-6f ? lit / mean : 1;
+		x *= k;
+		y *= k;
+		z *= k;
+		r[i] = x > low ? x < high ? x : high : low;
+		g[i] = y > low ? y < high ? y : high : low;
+		b[i] = z > low ? z < high ? z : high : low;
 	}
-	float lit = mean < most ? mean : most;
-	for (int c = 0; c < 3; c++) {
-		float tint = mean > 1e-6f ? k[c] / mean : 1, alone = s->gain * rgb[c];
-		tint = tint > 1 / chroma ? tint < chroma ? tint : chroma : 1 / chroma;
-		rgb[c] = d == 1 ? lit * tint : alone > 0 && lit * tint > 0 ? powf(lit * tint, d) * powf(alone, 1 - d) : 0;
-	}
+}
+
+void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const float (*model)[4])
+{
+	float d = (float)s->conf.detail, alone[3][BATCH];
+	for (int c = 0; c < 3 && d < 1; c++)
+		for (int i = 0; i < n; i++)
+			alone[c][i] = s->gain * rgb[c][i];
+	ratio_whole(n, rgb[0], rgb[1], rgb[2], model);
+	for (int c = 0; c < 3 && d < 1; c++)
+		for (int i = 0; i < n; i++)
+			rgb[c][i] = alone[c][i] > 0 && rgb[c][i] > 0 ? powf(rgb[c][i], d) * powf(alone[c][i], 1 - d) : 0;
 }
 
 void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
 {
-	float model[3], d = (float)s->conf.detail;
+	float model[1][4], ratio[3][BATCH], d = (float)s->conf.detail;
 	if (!level->model)
 		return;
-	for (int c = 0; c < 3; c++)
-		model[c] = channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
-	scene_colour_ratio(rgb, s, model);
+	for (int c = 0; c < 3; c++) {
+		model[0][c] = channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
+		ratio[c][0] = rgb[c];
+	}
+	scene_colour_ratio(1, ratio, s, (const float(*)[4])model);
 	for (int c = 0; c < 3; c++) {
 		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
-		rgb[c] *= d == 1 ? shown : shown > 0 ? powf(shown, d) : 0;
+		rgb[c] = ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) : 0);
 	}
 }

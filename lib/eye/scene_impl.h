@@ -56,21 +56,22 @@ void scene_flat(struct iris_batch *b, const struct scene *scene, const struct sc
 /* What is seen of the iris' colour at a point near the pupil's margin: none inside, less on the ruff. soft: half a pixel, mm. */
 void scene_pupil(float cover[3], const struct scene *scene, float x, float y, float soft);
 
-/* The photograph's colours of a level with the pupil cut out, [n][n][4]. free(). */
-float *scene_pupil_colours(const struct scene *scene, const struct scene_level *level);
+/* Fills a level's shown and bare. */
+void scene_shown_make(struct scene_level *level, const struct scene *scene);
 
 /* The way from points of the iris out to a camera at C, as if it were a light. free(). */
 struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
 
-/* The iris as one view shows it, for every texel of a level: the march has been done. */
+/* The iris as one view shows it: detail times light, both bilinear. */
 struct scene_shade {
-	int n;
-	float per_mm;
-	float *rgba;  // [n][n][4]; owned
+	int n, light_n;
+	float per_mm, light_per_mm;  // texels in a mm
+	const float *detail;         // [n][n][4] of the scene's: what a photograph shows and the march does not
+	float *light;                // [light_n][light_n][4]: the march from these texels; owned
 };
 
-/* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel, its ratio
- * to what the model showed in the photograph times the photograph's colour. flat: the alternative to the march. free(shade.rgba). */
+/* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel. flat: the
+ * alternative, light on the photograph's colours alone. free(shade.light). */
 struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3], bool flat,
                                     const struct scene_beams *beams);
 
@@ -80,8 +81,8 @@ const struct scene_level *scene_level_for(const struct scene *scene, double mm);
 /* The model's colour at a point of the iris (in) made the photograph's (out). */
 void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y);
 
-/* What that is, times the photograph's colour to the power of detail. model: what the model showed there. */
-void scene_colour_ratio(float rgb[3], const struct scene *scene, const float model[3]);
+/* What that is without the photograph's colour, at n points. model: what the model showed there, [n][4]. */
+void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *scene, const float (*model)[4]);
 
 /* Where the march's steps lie and what they weigh, for this tissue and thickness. */
 void scene_nodes_make(struct scene *scene);

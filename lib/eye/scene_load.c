@@ -182,6 +182,7 @@ void scene_free(struct scene *s)
 		free(s->level[i].model);
 		free(s->level[i].horizon);
 		free(s->level[i].shown);
+		free(s->level[i].bare);
 	}
 	image_free(&s->veins);
 	image_free(&s->film);
@@ -219,6 +220,7 @@ void scene_levels_make(struct scene *s)
 		free(l[k].model);
 		free(l[k].horizon);
 		free(l[k].shown);
+		free(l[k].bare);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
 		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
 		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
@@ -226,9 +228,11 @@ void scene_levels_make(struct scene *s)
 		if (s->conf.shading == SCENE_TEXELS && s->conf.shadow > 0)
 			l[k].horizon = scene_horizons(s, &l[k]);
 	}
-	free(l[0].shown);
-	for (int k = 0; k < s->n_levels; k++)
-		l[k].shown = s->conf.shading == SCENE_TEXELS ? scene_pupil_colours(s, &l[k]) : 0;
+	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++) {
+		free(l[k].shown);
+		free(l[k].bare);
+		scene_shown_make(&l[k], s);
+	}
 }
 
 const struct scene_level *scene_level_for(const struct scene *s, double mm)

@@ -125,11 +125,12 @@ static struct rates rates_of(const struct tissue_optics *o, int layer)
 	return r;
 }
 
-static void add_light(struct iris_batch *r, int first, int n, const struct tissue_optics *o, const float rgb[3], const float (*sum)[PART])
+SIMD_CLONES static void add_light(struct iris_batch *r, int first, int n, const struct tissue_optics *o, const float rgb[3], const float (*sum)[PART])
 {
 	for (int c = 0; c < 3; c++)
 		for (int k = 0; k < o->n; k++) {
 			float f = (float)(o->rgb[k][c] * o->exposure * rgb[c]), *to = r->rgb[c] + first;
+			SIMD_LOOP
 			for (int i = 0; i < n; i++)
 				to[i] += f * sum[k][i];
 		}
@@ -198,13 +199,16 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 {
 	struct ground g = ground_of(s, level);
 	struct march_node node[s->n_nodes[0] + s->n_nodes[1]];
+	struct march_body body;
 	scene_spans(r, &g);
-	memset(r->rgb, 0, sizeof r->rgb);
+	scene_body_make(&body, r, tile);
+	for (int i = 0; i < PART; i++)
+		r->rgb[0][i] = r->rgb[1][i] = r->rgb[2][i] = 0;
 	nodes_make(node, r, 0, PART, s, &g);
 	for (int k = 0; k < beams->n; k++) {
 		struct march_light light;
-		scene_light_tile(&light, r, tile, s, &beams->beam[k]);
-		light_add(r, 0, PART, s, node, &light, beams->beam[k].rgb);
+		if (scene_light_tile(&light, &body, s, &beams->beam[k]))
+			light_add(r, 0, PART, s, node, &light, beams->beam[k].rgb);
 	}
 }
 
@@ -222,18 +226,14 @@ void scene_flat(struct iris_batch *r, const struct scene *s, const struct scene_
 		}
 }
 
-void scene_flat_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *s, const struct scene_beams *beams)
+void scene_flat_at(float rgb[4], float x, float y, const struct scene *s, const struct scene_beams *beams)
 {
-	struct march_light w;
-	struct march_tile open = *tile;
-	open.horizon = 0;
-	memset(r->rgb, 0, sizeof r->rgb);
-	for (int i = 0; i < PART; i++)
-		r->span[i] = (float)scene_plain_stroma;
+	float z = (float)s->eye.iris_depth;
+	memset(rgb, 0, 4 * sizeof *rgb);
 	for (int l = 0; l < beams->n; l++) {
-		scene_light_tile(&w, r, &open, s, &beams->beam[l]);
+		struct march_light w;
+		scene_light_at(&w, 0, 1, &x, &y, &z, s, &beams->beam[l]);
 		for (int c = 0; c < 3; c++)
-			for (int i = 0; i < PART; i++)
-				r->rgb[c][i] -= beams->beam[l].rgb[c] * s->flat[c] * w.power[0][i] * w.z[0][i];
+			rgb[c] -= beams->beam[l].rgb[c] * s->flat[c] * w.power[0][0] * w.z[0][0];
 	}
 }

@@ -34,11 +34,12 @@ void scene_light_at(struct march_light *light, int end, int n, const float *x, c
 /* All channels of a beam's table at a point. */
 void scene_table_at(float way[SCENE_WAY], const struct scene_beam *beam, const float point[3], float extent);
 
-/* Share of the light that comes in over a horizon which lies `clear` (slope) below it: sources are 0.15 wide. A shadow is not
+/* Share of the light that comes in over a horizon which lies `clear` (slope) below it. A shadow is not
  * black: tissue that stands around it in the light fills it in. */
+#define SCENE_SOURCE 0.15f  // width of every source, slope
 SIMD_INLINE float scene_shadow_open(float clear)
 {
-	float t = clear * (1 / 0.15f);
+	float t = clear * (1 / SCENE_SOURCE);
 	return 0.4f + 0.6f * (t > 0 ? t < 1 ? t : 1 : 0);
 }
 
@@ -50,17 +51,24 @@ struct march_tile {
 };
 _Static_assert(TILE_SIDE * TILE_SIDE == PART, "a tile is a part");
 
-/* The light on a tile's rays (near, span filled): the table's at the corners of the body that they go through, linear
- * between these; dimmed by the relief's shadow. */
-void scene_light_tile(struct march_light *light, const struct iris_batch *rays, const struct march_tile *tile,
-                      const struct scene *scene, const struct scene_beam *beam);
+/* The body that a tile's rays go through (span filled): its relief's middle, and sheared by their mean to where they end. */
+struct march_body {
+	const struct march_tile *tile;
+	float z, over[3];  // depth of the near face; from it to the far one
+	float q[2][PART];  // where each ray's ends lie between the two
+};
+void scene_body_make(struct march_body *body, const struct iris_batch *rays, const struct march_tile *tile);
+
+/* The light on a tile's rays: the table's at the corners of their body, linear between these; dimmed by the relief's
+ * shadow. False: none comes here. */
+bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *scene, const struct scene_beam *beam);
 
 /* Fills near, span and rgb of the 64 rays that begin at a tile's texels. */
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene,
                         const struct scene_level *level, const struct scene_beams *beams);
 
-/* The same without a march: the model's mean colour, lit. */
-void scene_flat_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_beams *beams);
+/* Without a march: the model's mean colour at a point of the iris plane, lit. */
+void scene_flat_at(float rgb[4], float x, float y, const struct scene *scene, const struct scene_beams *beams);
 
 /* Horizons of a level's tiles, [tile][HORIZONS][PART]. free(). */
 float *scene_horizons(const struct scene *scene, const struct scene_level *level);

@@ -27,18 +27,22 @@ void scene_pupil(float cover[3], const struct scene *s, float x, float y, float 
 		cover[c] = iris * (1 + 0.75f * ruff * (dark[c] - 1));
 }
 
-float *scene_pupil_colours(const struct scene *s, const struct scene_level *l)
+void scene_shown_make(struct scene_level *l, const struct scene *s)
 {
-	float *out = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *out), step = 1 / l->per_mm, extent = (float)s->extent;
+	float step = 1 / l->per_mm, extent = (float)s->extent, detail = (float)s->conf.detail;
+	l->shown = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *l->shown);
+	l->bare = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *l->bare);
 #pragma omp parallel for schedule(dynamic, 16)
 	for (int y = 0; y < l->n; y++)
 		for (int x = 0; x < l->n; x++) {
 			float cover[3];
 			long at = 4 * ((long)y * l->n + x);
 			scene_pupil(cover, s, ((float)x + 0.5f) * step - extent, ((float)y + 0.5f) * step - extent, 0.5f * step);
-			for (int c = 0; c < 3; c++)
-				out[at + c] = cover[c] * l->colour[at + c];
-			out[at + 3] = 1;
+			for (int c = 0; c < 3; c++) {
+				float colour = l->colour[at + c];
+				l->shown[at + c] = cover[c] * (!l->model ? 1 : detail == 1 ? colour : powf(colour, detail));
+				l->bare[at + c] = cover[c] * (l->model ? fminf(colour / l->model[at + c], 4) : 1);
+			}
+			l->shown[at + 3] = l->bare[at + 3] = 0;
 		}
-	return out;
 }

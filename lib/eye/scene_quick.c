@@ -96,30 +96,115 @@ SIMD_INLINE void outside_lane(int i, struct quick_spots *restrict s, const struc
 	s->vz[i] = unit * ray.d[2];
 }
 
-SIMD_CLONES static void outside_one(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+/* Well inside the limbus: no sclera. */
+SIMD_INLINE void cornea_lane(int i, struct quick_spots *restrict s, const struct quick_rays *restrict r, const struct quick_look *restrict k, bool two)
 {
-	SIMD_LOOP
-	for (int i = 0; i < r->n; i++)
-		outside_lane(i, s, r, k, false);
+	struct lane ray = { { r->ox[i], r->oy[i], r->oz[i] }, { r->dx[i], r->dy[i], r->dz[i] } };
+	float g[3], back[3], cosine, hit = enter(&ray, k->front, g, &cosine);
+	float inv = 1 / sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+	if (two)
+		hit *= enter(&ray, k->back, back, &cosine);
+	float unit = (1.5f - 0.5f * (r->dx[i] * r->dx[i] + r->dy[i] * r->dy[i] + r->dz[i] * r->dz[i])) / k->index;
+	s->hit[i] = hit;
+	s->nx[i] = g[0] * inv;
+	s->ny[i] = g[1] * inv;
+	s->nz[i] = g[2] * inv;
+	s->rho[i] = 0;
+	s->lid[i] = 0;
+	s->fx[i] = ray.o[0];
+	s->fy[i] = ray.o[1];
+	s->fz[i] = ray.o[2];
+	s->vx[i] = unit * ray.d[0];
+	s->vy[i] = unit * ray.d[1];
+	s->vz[i] = unit * ray.d[2];
 }
 
-SIMD_CLONES static void outside_two(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+/* Well outside: no cornea. */
+SIMD_INLINE void sclera_lane(int i, struct quick_spots *restrict s, const struct quick_rays *restrict r, const struct quick_look *restrict k)
 {
-	SIMD_LOOP
-	for (int i = 0; i < r->n; i++)
-		outside_lane(i, s, r, k, true);
+	float ox = r->ox[i], oy = r->oy[i], oz = r->oz[i] - k->sphere_z, dx = r->dx[i], dy = r->dy[i], dz = r->dz[i];
+	float b = ox * dx + oy * dy + oz * dz, disc = b * b - (ox * ox + oy * oy + oz * oz - k->sphere_r * k->sphere_r);
+	float t = -b - sqrtf(disc > 0 ? disc : 0), per = 1 / k->sphere_r;
+	float x = (ox + t * dx) * per, y = (oy + t * dy) * per, z = (oz + t * dz) * per;
+	float place = angle_over_sine(-z) * (float)(0.5 / SCENE_SCLERA_REACH);
+	s->hit[i] = disc > 0 ? 1.0f : 0.0f;
+	s->nx[i] = x;
+	s->ny[i] = y;
+	s->nz[i] = z;
+	s->rho[i] = 2;
+	s->lid[i] = 1;
+	s->su[i] = x * place;
+	s->sv[i] = y * place;
 }
 
-void quick_outside(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+#define QUICK_LOOP(name, lane)                                                                                         \
+	SIMD_CLONES static void name(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)        \
+	{                                                                                                                  \
+		SIMD_LOOP                                                                                                      \
+		for (int i = 0; i < r->n; i++)                                                                                 \
+			lane;                                                                                                      \
+	}
+QUICK_LOOP(mixed_one, outside_lane(i, s, r, k, false))
+QUICK_LOOP(mixed_two, outside_lane(i, s, r, k, true))
+QUICK_LOOP(cornea_one, cornea_lane(i, s, r, k, false))
+QUICK_LOOP(cornea_two, cornea_lane(i, s, r, k, true))
+QUICK_LOOP(sclera_only, sclera_lane(i, s, r, k))
+
+void quick_outside(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k, enum quick_kind kind)
 {
-	(k->two ? outside_two : outside_one)(s, r, k);
+	if (kind == QUICK_SCLERA)
+		sclera_only(s, r, k);
+	else if (kind == QUICK_CORNEA)
+		(k->two ? cornea_two : cornea_one)(s, r, k);
+	else
+		(k->two ? mixed_two : mixed_one)(s, r, k);
+}
+
+/* Light on the white: diffuse, softened by what scatters below the surface, most in the red; next to the limbus it thins
+ * out over the dark of the chamber's angle. Then the ripples of its film bend the normal. */
+SIMD_CLONES static void sclera_light(struct quick_spots *s, int n, const struct quick_look *k)
+{
+	static const float bleed[3] = { 0.38f, 0.26f, 0.20f }, rim[3] = { 0.36f, 0.31f, 0.25f };
+	for (int c = 0; c < 3; c++) {
+		const float *q = k->sky[c];
+		float *restrict sky = s->sky[c];
+		SIMD_LOOP
+		for (int i = 0; i < n; i++) {
+			float x = s->nx[i], y = s->ny[i], z = s->nz[i], edge = 1 - step_smooth(0.97f, 4, s->rho[i]);
+			float light = q[0] + x * (q[1] + y * q[4] + z * q[7] + x * q[8]) + y * (q[2] + z * q[5] - y * q[8]) + z * (q[3] + z * q[6]);
+			light = light > 0 ? light : 0;
+			sky[i] = (light + bleed[c] * (k->even[c] - light)) * (1 - rim[c] * edge * edge);
+		}
+	}
+}
+
+SIMD_CLONES static void ripple(struct quick_spots *s, int n, const struct image *film)
+{
+	const float *restrict map = film->px, w = (float)film->width;
+	int size = film->width;
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		float x = s->nx[i] + channel_at(map, size, 1, s->su[i] * w, s->sv[i] * w, 2, 0);
+		float y = s->ny[i] + channel_at(map, size, 1, s->su[i] * w, s->sv[i] * w, 2, 1), z = s->nz[i];
+		float inv = 1 / sqrtf(x * x + y * y + z * z), on = s->rho[i] > 1 ? 1.0f : 0.0f;
+		s->nx[i] = on > 0 ? x * inv : s->nx[i];
+		s->ny[i] = on > 0 ? y * inv : s->ny[i];
+		s->nz[i] = on > 0 ? z * inv : s->nz[i];
+	}
+}
+
+void quick_sclera(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+{
+	sclera_light(s, r->n, k);
+	if (k->light->mirror)
+		ripple(s, r->n, &k->scene->film);
 }
 
 /* The relief along each ray, by Newton's steps from the iris plane: it is flat enough against the slope of sight in the
  * aqueous that the first crossing is the only one. */
 SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
 {
-	enum { STEPS = 3 };
+	enum { STEPS = 2 };
 	const float *restrict relief = k->level->relief, *restrict fx = s->fx, *restrict fy = s->fy, *restrict fz = s->fz;
 	const float *restrict vx = s->vx, *restrict vy = s->vy, *restrict vz = s->vz;
 	float *restrict iu = s->iu, *restrict iv = s->iv, per_mm = k->level->per_mm, plane = (float)k->scene->eye.iris_depth;
@@ -131,7 +216,7 @@ SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, c
 		float y = fy[i] + k->slip[1][0] * fx[i] + k->slip[1][1] * fy[i] + k->slip[1][2];
 		float a = vx[i] + k->slip[0][0] * vx[i] + k->slip[0][1] * vy[i], b = vy[i] + k->slip[1][0] * vx[i] + k->slip[1][1] * vy[i];
 		float c = vz[i] > 0.1f ? vz[i] : 0.1f, low = (least - fz[i]) / c, high = (most - fz[i]) / c, t = (plane - fz[i]) / c;
-#pragma GCC unroll 3
+#pragma GCC unroll 2
 		for (int j = 0; j < STEPS; j++) {
 			float gx, gy, f = fz[i] + t * c - plane + relief_at(relief, n, per_mm, x + t * a, y + t * b, &gx, &gy);
 			float slope = c + gx * a + gy * b;
@@ -153,11 +238,30 @@ SIMD_CLONES void quick_mirror(struct quick_spots *s, const struct quick_rays *r,
 		float x = m[0][0] * rx + m[0][1] * ry + m[0][2] * rz, y = m[1][0] * rx + m[1][1] * ry + m[1][2] * rz, z = m[2][0] * rx + m[2][1] * ry + m[2][2] * rz;
 		float ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, az = z < 0 ? -z : z, inv = 1 / (ax + ay + az), u = x * inv, v = y * inv;
 		float fu = 1 - ay * inv, fv = 1 - ax * inv;
-		s->cos_i[i] = c;
 		s->mirror[i] = fresnel(c);
+		// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
+		s->rough[i] = 0.75f * step_smooth(1, 1 / 0.35f, s->rho[i]);
 		s->eu[i] = z > 0 ? x < 0 ? -fu : fu : u;
 		s->ev[i] = z > 0 ? y < 0 ? -fv : fv : v;
 	}
+}
+
+/* The environment's polynomial of a normal in the camera's frame, as one of the same normal in the eye's. */
+static void sky_turn(float out[9], const float (*in)[3], int c, const double (*turn)[4])
+{
+	double q[3][3] = { { in[8][c], in[4][c] / 2, in[7][c] / 2 }, { in[4][c] / 2, -in[8][c], in[5][c] / 2 }, { in[7][c] / 2, in[5][c] / 2, in[6][c] } };
+	double m[3][3] = { 0 }, line[3] = { 0 };
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++) {
+			line[i] += in[1 + j][c] * turn[j][i];
+			for (int a = 0; a < 3; a++)
+				for (int b = 0; b < 3; b++)
+					m[i][j] += turn[a][i] * q[a][b] * turn[b][j];
+		}
+	double even = (m[0][0] + m[1][1]) / 2;  // of xx + yy, which is 1 - zz
+	const double all[9] = { in[0][c] + even, line[0], line[1], line[2], 2 * m[0][1], 2 * m[1][2], m[2][2] - even, 2 * m[0][2], (m[0][0] - m[1][1]) / 2 };
+	for (int k = 0; k < 9; k++)
+		out[k] = (float)all[k];
 }
 
 struct quick_look quick_look(const struct scene *s, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level)
@@ -180,9 +284,9 @@ struct quick_look quick_look(const struct scene *s, const struct scene_view *vie
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++)
 			k.cam_from_eye[i][j] = (float)view->cam_from_eye[i][j];
-	for (int i = 0; i < 9; i++)
-		memcpy(k.sky[i], light->env->quadric[i], 3 * sizeof(float));
-	for (int i = 0; i < 3; i++)
-		k.even[i] = (float)(light->env->sh[0][i] * 0.282094791773878);
+	for (int c = 0; c < 3; c++) {
+		sky_turn(k.sky[c], light->env->quadric, c, view->cam_from_eye);
+		k.even[c] = (float)(light->env->sh[0][c] * 0.282094791773878);
+	}
 	return k;
 }

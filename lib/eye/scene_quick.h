@@ -14,11 +14,12 @@ struct quick_rays {
 struct quick_spots {
 	float hit[BATCH];                              // 1 or 0
 	float nx[BATCH], ny[BATCH], nz[BATCH];         // unit normal
-	float cos_i[BATCH], rho[BATCH], lid[BATCH];    // rho: 1 on the limbus; lid: share of the sclera, 1 white
+	float rho[BATCH], lid[BATCH];                  // rho: 1 on the limbus; lid: share of the sclera, 1 white
 	float su[BATCH], sv[BATCH];                    // place in the maps of the sclera, -0.5..0.5
 	float fx[BATCH], fy[BATCH], fz[BATCH], vx[BATCH], vy[BATCH], vz[BATCH];  // behind the cornea
 	float iu[BATCH], iv[BATCH];                    // place on the iris, mm
-	float mirror[BATCH], eu[BATCH], ev[BATCH];     // Fresnel; place on the environment's unfolded octahedron, -1..1
+	float mirror[BATCH], rough[BATCH], eu[BATCH], ev[BATCH];  // Fresnel; place on the environment's octahedron, -1..1
+	float sky[3][BATCH];                           // irradiance over pi, as the sclera has it
 };
 
 struct quick_quadric {
@@ -36,16 +37,21 @@ struct quick_look {
 	float rim2, index;
 	float sphere_z, sphere_r, limbus[2], lid_width;
 	float cam_from_eye[3][3], slip[2][3];
-	float sky[9][4], even[4];         // irradiance as a polynomial of the normal (eye's frame is turned there); its mean
+	float sky[3][9];                  // irradiance as a polynomial of the eye's normal: 1 x y z xy yz zz xz xx-yy
+	float even[3];                    // its mean
 };
 struct quick_look quick_look(const struct scene *scene, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level);
 
-/* scene_quick.c: everything of the spots but the environment's place; scene_quick_mirror after the film has bent normals. */
-void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+/* What a tile shows is asked at its corners: all of them well inside the limbus, or well outside. */
+enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA };
+
+/* In this order; quick_iris where something of the iris is seen, quick_sclera where something white is. */
+void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look, enum quick_kind kind);
 void quick_iris(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+void quick_sclera(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
 void quick_mirror(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
 
-/* Colour of the rays; adds to *iris those that saw the iris. */
-void quick_trace(float rgba[][4], const struct quick_rays *rays, const struct quick_look *look, long *iris);
+/* Colour of the rays; adds to *iris those that saw the iris. corners: the rays are a tile's, row by row, `across` in each. */
+void quick_trace(float rgba[][4], const struct quick_rays *rays, int across, const struct quick_look *look, long *iris);
 
 #endif

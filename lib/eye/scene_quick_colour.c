@@ -17,93 +17,118 @@ SIMD_INLINE colour read4(const float *p)
 	return c;
 }
 
-/* Bilinear, from a map of four channels; u, v in texels from the first one's centre. */
-SIMD_INLINE colour bilinear(const float *map, int n, float u, float v)
+/* Where each ray looks into a map: its first texel, and how far on. */
+struct places {
+	int at[BATCH];
+	float u[BATCH], v[BATCH];
+};
+
+/* n texels across; coordinates times `per` plus `off`, from the first texel's centre. */
+SIMD_INLINE void places_of(struct places *restrict p, const float *restrict x, const float *restrict y, float per, float off, int n, int count)
 {
 	float top = (float)n - 1.001f;
-	u = u > 0 ? u < top ? u : top : 0;
-	v = v > 0 ? v < top ? v : top : 0;
-	int x = (int)u, y = (int)v;
-	const float *a = map + 4 * ((long)y * n + x), *b = a + 4L * n;
-	u -= (float)x;
-	v -= (float)y;
-	colour p = read4(a), q = read4(b);
-	p += u * (read4(a + 4) - p);
-	q += u * (read4(b + 4) - q);
-	return p + v * (q - p);
-}
-
-/* Ripples of the tear film bend the normals beyond the limbus. */
-static void ripple(struct quick_spots *s, int n, const struct image *film)
-{
-	float w = (float)film->width;
-	for (int i = 0; i < n; i++) {
-		if (s->rho[i] < 1.3f || s->hit[i] == 0)
-			continue;
-		float gx = channel_at(film->px, film->width, 1, s->su[i] * w, s->sv[i] * w, 2, 0);
-		float gy = channel_at(film->px, film->width, 1, s->su[i] * w, s->sv[i] * w, 2, 1);
-		float x = s->nx[i] + gx, y = s->ny[i] + gy, z = s->nz[i], inv = 1 / sqrtf(x * x + y * y + z * z);
-		s->nx[i] = x * inv;
-		s->ny[i] = y * inv;
-		s->nz[i] = z * inv;
+	SIMD_LOOP
+	for (int i = 0; i < count; i++) {
+		float u = x[i] * per + off, v = y[i] * per + off;
+		u = u > 0 ? u < top ? u : top : 0;
+		v = v > 0 ? v < top ? v : top : 0;
+		int iu = (int)u, iv = (int)v;
+		p->at[i] = 4 * (iv * n + iu);
+		p->u[i] = u - (float)iu;
+		p->v[i] = v - (float)iv;
 	}
 }
 
-/* The white of the eye: diffuse, softened by what scatters below the surface, most in the red; next to the limbus it thins
- * out over the dark of the chamber's angle. */
-SIMD_INLINE colour sclera(const struct quick_spots *s, const struct quick_look *k, const float normal[3], int i)
+/* Bilinear, four channels. */
+SIMD_INLINE colour look_up(const float *map, int n, const struct places *p, int i)
 {
-	const float *v0 = k->cam_from_eye[0], *v1 = k->cam_from_eye[1], *v2 = k->cam_from_eye[2];
-	float x = v0[0] * normal[0] + v0[1] * normal[1] + v0[2] * normal[2], y = v1[0] * normal[0] + v1[1] * normal[1] + v1[2] * normal[2];
-	float z = v2[0] * normal[0] + v2[1] * normal[1] + v2[2] * normal[2];
-	float(*q)[4] = (float(*)[4])k->sky;
-	colour light = read4(q[0]) + x * read4(q[1]) + y * read4(q[2]) + z * read4(q[3]) + x * y * read4(q[4]) + y * z * read4(q[5])
-	               + z * z * read4(q[6]) + x * z * read4(q[7]) + (x * x - y * y) * read4(q[8]);
-	colour even = read4(k->even), bleed = { 0.38f, 0.26f, 0.20f, 0 }, rim = { 0.36f, 0.31f, 0.25f, 0 };
-	float n = (float)k->scene->veins.width, edge = 1 - smooth(0.97f, 1.22f, s->rho[i]);
-	for (int c = 0; c < 3; c++)
-		light[c] = light[c] > 0 ? light[c] : 0;
-	colour albedo = bilinear(k->scene->veins.px, k->scene->veins.width, (s->su[i] + 0.5f) * n - 0.5f, (s->sv[i] + 0.5f) * n - 0.5f);
-	return albedo * (light + bleed * (even - light)) * (1 - rim * (edge * edge));
+	const float *a = map + p->at[i], *b = a + 4L * n;
+	colour s = read4(a), t = read4(b);
+	s += p->u[i] * (read4(a + 4) - s);
+	t += p->u[i] * (read4(b + 4) - t);
+	return s + p->v[i] * (t - s);
 }
 
-SIMD_INLINE colour environment(const struct envmap *env, float u, float v, float rough)
-{
-	float n = (float)env->sharp.width, m = (float)env->rough.width;
-	colour c = bilinear(env->sharp.px, env->sharp.width, (u + 1) * 0.5f * n - 0.5f, (v + 1) * 0.5f * n - 0.5f);
-	if (rough > 0)
-		c += rough * (bilinear(env->rough.px, env->rough.width, (u + 1) * 0.5f * m - 0.5f, (v + 1) * 0.5f * m - 0.5f) - c);
-	return c;
-}
-
-SIMD_CLONES static void put(float rgba[][4], const struct quick_spots *s, int n, const float (*normal)[3], const struct quick_look *k)
+/* Starts every ray's colour with what shows under the film: the photograph's detail times what this light makes of it. */
+SIMD_CLONES static void put_iris(float rgba[][4], const struct quick_spots *s, int n, const struct quick_look *k)
 {
 	const struct scene_shade *h = k->shade;
-	float half = 0.5f * (float)h->n - 0.5f;
+	struct places p, q;
+	places_of(&p, s->iu, s->iv, h->per_mm, 0.5f * (float)h->n - 0.5f, h->n, n);
+	places_of(&q, s->iu, s->iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, n);
 	for (int i = 0; i < n; i++) {
-		colour c = { 0 };
-		if (s->hit[i] > 0) {
-			float lid = s->lid[i];
-			if (lid > 0)
-				c += lid * sclera(s, k, normal[i], i);
-			if (lid < 1)
-				c += (1 - lid) * (1 - s->mirror[i]) * bilinear(h->rgba, h->n, s->iu[i] * h->per_mm + half, s->iv[i] * h->per_mm + half);
-			// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
-			if (k->light->mirror)
-				c += s->mirror[i] * environment(k->light->mirror, s->eu[i], s->ev[i], 0.75f * smooth(1.0f, 1.35f, s->rho[i]));
-			c[3] = 1;
-		}
+		float part = s->hit[i] * (1 - s->lid[i]) * (1 - s->mirror[i]);
+		colour c = part > 0 ? part * look_up(h->detail, h->n, &p, i) * look_up(h->light, h->light_n, &q, i) : (colour){ 0 };
+		c[3] = s->hit[i];
 		memcpy(rgba[i], &c, sizeof c);
 	}
 }
 
-void quick_trace(float rgba[][4], const struct quick_rays *r, const struct quick_look *k, long *iris)
+SIMD_CLONES static void put_sclera(float rgba[][4], const struct quick_spots *s, int n, const struct quick_look *k, bool first)
+{
+	const struct image *map = &k->scene->veins;
+	struct places p;
+	places_of(&p, s->su, s->sv, (float)map->width, 0.5f * (float)map->width - 0.5f, map->width, n);
+	for (int i = 0; i < n; i++) {
+		colour light = { s->sky[0][i], s->sky[1][i], s->sky[2][i], 0 }, before = { 0, 0, 0, s->hit[i] };
+		float part = s->hit[i] * s->lid[i];
+		if (!first)
+			memcpy(&before, rgba[i], sizeof before);
+		if (part > 0)
+			before += part * light * look_up(map->px, map->width, &p, i);
+		memcpy(rgba[i], &before, sizeof before);
+	}
+}
+
+SIMD_CLONES static void put_mirror(float rgba[][4], const struct quick_spots *s, int n, const struct envmap *env)
+{
+	struct places p, q;
+	float w = (float)env->sharp.width, m = (float)env->rough.width;
+	places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, n);
+	places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, n);
+	for (int i = 0; i < n; i++) {
+		if (s->hit[i] == 0)
+			continue;
+		colour c = look_up(env->sharp.px, env->sharp.width, &p, i), before;
+		if (s->rough[i] > 0)
+			c += s->rough[i] * (look_up(env->rough.px, env->rough.width, &q, i) - c);
+		memcpy(&before, rgba[i], sizeof before);
+		before += s->mirror[i] * c;
+		memcpy(rgba[i], &before, sizeof before);
+	}
+}
+
+/* The limbus and the globe's outline are convex on the picture: what holds at the corners of a tile that is small against
+ * them holds in it. */
+static enum quick_kind kind_of(const struct quick_rays *r, int across, const struct quick_look *k)
+{
+	struct quick_rays four = { .n = 4 };
+	struct quick_spots s;
+	int at[4] = { 0, across - 1, r->n - across, r->n - 1 }, in = 0, out = 0;
+	if (across < 2 || r->n < 2 * across)
+		return QUICK_MIXED;
+	for (int i = 0; i < 4; i++) {
+		four.ox[i] = r->ox[at[i]], four.oy[i] = r->oy[at[i]], four.oz[i] = r->oz[at[i]];
+		four.dx[i] = r->dx[at[i]], four.dy[i] = r->dy[at[i]], four.dz[i] = r->dz[at[i]];
+	}
+	quick_outside(&s, &four, k, QUICK_MIXED);
+	float wide = fabsf(four.ox[3] - four.ox[0]) + fabsf(four.oy[3] - four.oy[0]) + fabsf(four.oz[3] - four.oz[0]);
+	if (wide * k->limbus[0] > 0.4f)
+		return QUICK_MIXED;
+	for (int i = 0; i < 4; i++) {
+		in += s.hit[i] > 0 && s.rho[i] < 0.88f;
+		out += s.hit[i] > 0 && s.rho[i] > 1.36f;
+	}
+	return in == 4 ? QUICK_CORNEA : out == 4 ? QUICK_SCLERA : QUICK_MIXED;
+}
+
+void quick_trace(float rgba[][4], const struct quick_rays *r, int across, const struct quick_look *k, long *iris)
 {
 	struct quick_spots s;
-	float normal[BATCH][3];
-	int seen = 0, hit = 0, white = 0;
-	quick_outside(&s, r, k);
-	for (int i = 0; i < r->n; i++) {
+	enum quick_kind kind = kind_of(r, across, k);
+	int seen = kind == QUICK_CORNEA ? r->n : 0, hit = seen, white = kind == QUICK_SCLERA ? r->n : 0;
+	quick_outside(&s, r, k, kind);
+	for (int i = 0; i < r->n && kind != QUICK_CORNEA; i++) {
 		hit += s.hit[i] > 0;
 		seen += s.hit[i] > 0 && s.lid[i] < 1;
 		white += s.lid[i] > 0;
@@ -112,16 +137,16 @@ void quick_trace(float rgba[][4], const struct quick_rays *r, const struct quick
 		memset(rgba, 0, (size_t)r->n * sizeof *rgba);
 		return;
 	}
-	for (int i = 0; i < r->n && white; i++) {
-		normal[i][0] = s.nx[i];
-		normal[i][1] = s.ny[i];
-		normal[i][2] = s.nz[i];
-	}
 	if (white)
-		ripple(&s, r->n, &k->scene->film);
+		quick_sclera(&s, r, k);
 	if (seen)
 		quick_iris(&s, r, k);
 	quick_mirror(&s, r, k);
-	put(rgba, &s, r->n, (const float(*)[3])normal, k);
+	if (seen)
+		put_iris(rgba, &s, r->n, k);
+	if (white)
+		put_sclera(rgba, &s, r->n, k, !seen);
+	if (k->light->mirror)
+		put_mirror(rgba, &s, r->n, k->light->mirror);
 	*iris += seen;
 }

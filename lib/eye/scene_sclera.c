@@ -96,12 +96,12 @@ static uint8_t *layer(const struct scene *s, int size, int seed, int count, doub
 static void film_make(struct scene *s, const struct image *height)
 {
 	int n = height->width;
-	float e = 0.012f * (float)n;
+	float e = 0.012f * (float)n, from = (float)asin(s->limbus[0] / s->conf.sclera_radius);
 	s->film = image_new(n, n, 2);
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
 			float u = (float)x + 0.5f, v = (float)y + 0.5f, r = hypotf(u - 0.5f * (float)n, v - 0.5f * (float)n) * 2 / (float)n;
-			float k = 0.22f * smooth(0.40f, 0.75f, r * (float)(reach / 0.9)), *p = image_at(&s->film, x, y);
+			float k = 0.22f * smooth(from, from + 0.3f, r * (float)reach), *p = image_at(&s->film, x, y);
 			p[0] = k * (image_sample(height, u + e, v, 0) - image_sample(height, u - e, v, 0));
 			p[1] = k * (image_sample(height, u, v + e, 0) - image_sample(height, u, v - e, 0));
 		}

@@ -7,32 +7,30 @@
 #pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
-/* The body that a tile's rays go through: from the middle of its relief to where they end, sheared by their mean. */
-struct body {
-	float z, over[3];  // depth of the near face; from it to the far one
-	float q[2][PART];  // where each ray's ends lie between the two
-};
-
-static void body_make(struct body *b, const struct iris_batch *r)
+SIMD_CLONES void scene_body_make(struct march_body *b, const struct iris_batch *r, const struct march_tile *tile)
 {
-	float z = 0, over[3] = { 0 };
+	float z = 0, ox = 0, oy = 0, oz = 0;
+#pragma omp simd reduction(+ : z, ox, oy, oz)
 	for (int i = 0; i < PART; i++) {
 		z += r->pz[i] / PART;
-		over[0] += r->span[i] * r->vx[i] / PART;
-		over[1] += r->span[i] * r->vy[i] / PART;
-		over[2] += r->span[i] * r->vz[i] / PART;
+		ox += r->span[i] * r->vx[i] / PART;
+		oy += r->span[i] * r->vy[i] / PART;
+		oz += r->span[i] * r->vz[i] / PART;
 	}
+	b->tile = tile;
 	b->z = z;
-	for (int c = 0; c < 3; c++)
-		b->over[c] = over[c];
+	b->over[0] = ox;
+	b->over[1] = oy;
+	b->over[2] = oz;
+	SIMD_LOOP
 	for (int i = 0; i < PART; i++) {
-		b->q[0][i] = (r->pz[i] - z) / over[2];
-		b->q[1][i] = (r->pz[i] + r->span[i] * r->vz[i] - z) / over[2];
+		b->q[0][i] = (r->pz[i] - z) / oz;
+		b->q[1][i] = (r->pz[i] + r->span[i] * r->vz[i] - z) / oz;
 	}
 }
 
 /* One channel over the tile: c[face][y][x], at each ray's end. */
-SIMD_INLINE void channel_lay(float *restrict out0, float *restrict out1, const float c[8], const struct body *restrict b)
+SIMD_INLINE void channel_lay(float *restrict out0, float *restrict out1, const float c[8], const struct march_body *restrict b)
 {
 	SIMD_LOOP
 	for (int i = 0; i < PART; i++) {
@@ -44,7 +42,7 @@ SIMD_INLINE void channel_lay(float *restrict out0, float *restrict out1, const f
 	}
 }
 
-SIMD_CLONES static void lay(struct march_light *w, float corner[SCENE_WAY][8], const struct body *b, float rim_width)
+SIMD_CLONES static void lay(struct march_light *w, float corner[SCENE_WAY][8], const struct march_body *b, float rim_width)
 {
 	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width;
 	channel_lay(w->x[0], w->x[1], corner[0], b);
@@ -74,25 +72,52 @@ SIMD_CLONES static void shade(struct march_light *w, const float *restrict low, 
 	}
 }
 
-void scene_light_tile(struct march_light *light, const struct iris_batch *r, const struct march_tile *tile,
-                      const struct scene *s, const struct scene_beam *beam)
+SIMD_CLONES static float steepest(const float *restrict a, const float *restrict b)
 {
-	struct body body;
-	float corner[SCENE_WAY][8], side = TILE_SIDE * tile->step;
-	body_make(&body, r);
+	float most = -1;
+#pragma omp simd reduction(max : most)
+	for (int i = 0; i < PART; i++) {
+		float m = a[i] > b[i] ? a[i] : b[i];
+		most = m > most ? m : most;
+	}
+	return most;
+}
+
+/* Slope of the lowest of a light's directions over the tile, and whether there is any light. */
+static bool lowest(float *slope, float corner[SCENE_WAY][8], float width)
+{
+	bool any = false;
+	*slope = 1e3f;
+	for (int k = 0; k < 8; k++) {
+		float flat = hypotf(corner[0][k], corner[1][k]);
+		*slope = -corner[2][k] < *slope * flat ? -corner[2][k] / flat : *slope;
+		any = any || (corner[3][k] > 0 && corner[4][k] < 1 + width / 2);
+	}
+	return any;
+}
+
+bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *s, const struct scene_beam *beam)
+{
+	const struct march_tile *tile = body->tile;
+	float corner[SCENE_WAY][8], side = TILE_SIDE * tile->step, width = (float)(s->conf.limbus_width / s->limbus[0]), low;
 	for (int k = 0; k < 8; k++) {
 		float far = k < 4 ? 0 : 1, way[SCENE_WAY], p[3];
-		p[0] = tile->x + (k & 1 ? side : 0) + far * body.over[0];
-		p[1] = tile->y + (k & 2 ? side : 0) + far * body.over[1];
-		p[2] = body.z + far * body.over[2];
+		p[0] = tile->x + (k & 1 ? side : 0) + far * body->over[0];
+		p[1] = tile->y + (k & 2 ? side : 0) + far * body->over[1];
+		p[2] = body->z + far * body->over[2];
 		scene_table_at(way, beam, p, (float)s->extent);
-		for (int c = 0; c < SCENE_WAY; c++)
+		for (int c = 0; c < 5; c++)
 			corner[c][k] = way[c];
 	}
-	lay(light, corner, &body, (float)(s->conf.limbus_width / s->limbus[0]));
+	if (!lowest(&low, corner, width))
+		return false;
+	lay(light, corner, body, width);
 	if (!tile->horizon)
-		return;
+		return true;
 	float turn = atan2f(corner[1][0] + corner[1][3], corner[0][0] + corner[0][3]) * (float)(HORIZONS / (2 * M_PI));
 	int at = (int)floorf(turn);
-	shade(light, tile->horizon[(at + HORIZONS) % HORIZONS], tile->horizon[(at + 1 + HORIZONS) % HORIZONS], turn - (float)at);
+	const float *a = tile->horizon[(at + HORIZONS) % HORIZONS], *b = tile->horizon[(at + 1 + HORIZONS) % HORIZONS];
+	if (low - steepest(a, b) < SCENE_SOURCE)
+		shade(light, a, b, turn - (float)at);
+	return true;
 }

@@ -92,36 +92,40 @@ static struct canvas_plane plane_make(const struct scene_look *look, const struc
 }
 
 /* Rays through n points of the picture, from a plane that lies before the eye. Pinhole: places on it are linear in px. */
-static void quick_points(float rgba[][4], int n, const float (*at)[2], const struct canvas *c, long *iris)
+SIMD_CLONES static void quick_rays_make(struct quick_rays *r, const float *restrict x, const float *restrict y, const struct canvas_plane *p)
+{
+	SIMD_LOOP
+	for (int i = 0; i < r->n; i++) {
+		float dx = p->dir[0][0] + x[i] * p->dir[1][0] + y[i] * p->dir[2][0], dy = p->dir[0][1] + x[i] * p->dir[1][1] + y[i] * p->dir[2][1];
+		float dz = p->dir[0][2] + x[i] * p->dir[1][2] + y[i] * p->dir[2][2], inv = 1 / sqrtf(dx * dx + dy * dy + dz * dz);
+		r->dx[i] = dx * inv;
+		r->dy[i] = dy * inv;
+		r->dz[i] = dz * inv;
+		r->ox[i] = p->from[0][0] + x[i] * p->from[1][0] + y[i] * p->from[2][0];
+		r->oy[i] = p->from[0][1] + x[i] * p->from[1][1] + y[i] * p->from[2][1];
+		r->oz[i] = p->from[0][2] + x[i] * p->from[1][2] + y[i] * p->from[2][2];
+	}
+}
+
+static void quick_points(float rgba[][4], int n, const float *x, const float *y, int across, const struct canvas *c, long *iris)
 {
 	struct quick_rays r;
-	const struct canvas_plane *p = &c->plane;
 	r.n = n;
-	for (int i = 0; i < n; i++) {
-		float x = at[i][0], y = at[i][1];
-		float dx = p->dir[0][0] + x * p->dir[1][0] + y * p->dir[2][0], dy = p->dir[0][1] + x * p->dir[1][1] + y * p->dir[2][1];
-		float dz = p->dir[0][2] + x * p->dir[1][2] + y * p->dir[2][2], inv = 1 / sqrtf(dx * dx + dy * dy + dz * dz);
-		r.dx[i] = dx * inv;
-		r.dy[i] = dy * inv;
-		r.dz[i] = dz * inv;
-		r.ox[i] = p->from[0][0] + x * p->from[1][0] + y * p->from[2][0];
-		r.oy[i] = p->from[0][1] + x * p->from[1][1] + y * p->from[2][1];
-		r.oz[i] = p->from[0][2] + x * p->from[1][2] + y * p->from[2][2];
-	}
-	quick_trace(rgba, &r, c->look->quick, iris);
+	quick_rays_make(&r, x, y, &c->plane);
+	quick_trace(rgba, &r, across, c->look->quick, iris);
 }
 
 /* Rays through n points of the picture (px), traced. */
-static void trace_points(float rgba[][4], int n, const float (*at)[2], const struct canvas *c, long *iris)
+static void trace_points(float rgba[][4], int n, const float *x, const float *y, int across, const struct canvas *c, long *iris)
 {
 	float dx[BATCH], dy[BATCH], dz[BATCH];
 	const struct scene_view *v = c->view;
 	if (c->look->quick && !c->bent) {
-		quick_points(rgba, n, at, c, iris);
+		quick_points(rgba, n, x, y, across, c, iris);
 		return;
 	}
 	for (int i = 0; i < n; i++) {
-		double px[2] = { v->x0 + v->scale * at[i][0], v->y0 + v->scale * at[i][1] }, cam[3], d[3];
+		double px[2] = { v->x0 + v->scale * x[i], v->y0 + v->scale * y[i] }, cam[3], d[3];
 		if (c->bent) {
 			camera_ray(cam, &v->camera, px);
 		} else {
@@ -141,20 +145,18 @@ static void trace_points(float rgba[][4], int n, const float (*at)[2], const str
 
 static void first_rays(const struct canvas *c, int tx, int ty, struct scene_count *count)
 {
-	float rgba[BATCH][4], at[BATCH][2];
+	float rgba[BATCH][4], u[BATCH] = { 0 }, v[BATCH] = { 0 };
 	int n = 0, x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width;
 	int y1 = ty + TILE < c->view->height ? ty + TILE : c->view->height;
 	for (int y = ty; y < y1; y++)
 		for (int x = tx; x < x1; x++, n++) {
-			at[n][0] = (float)x + 0.5f;
-			at[n][1] = (float)y + 0.5f;
+			u[n] = (float)x + 0.5f;
+			v[n] = (float)y + 0.5f;
 		}
-	trace_points(rgba, n, (const float(*)[2])at, c, &count->iris);
+	trace_points(rgba, n, u, v, x1 - tx, c, &count->iris);
 	count->rays += n;
-	n = 0;
 	for (int y = ty; y < y1; y++)
-		for (int x = tx; x < x1; x++, n++)
-			memcpy(image_at(c->image, x, y), rgba[n], sizeof rgba[n]);
+		memcpy(image_at(c->image, tx, y), rgba[(y - ty) * (x1 - tx)], (size_t)(x1 - tx) * sizeof *rgba);
 }
 
 /* About what the eye makes of a value: steps of it, not of light, decide where more rays go. */
@@ -183,7 +185,7 @@ static bool is_edge(const struct image *image, int x, int y)
 }
 
 struct refine {
-	float at[BATCH][2];
+	float x[BATCH], y[BATCH];
 	int pixel[BATCH], n;
 	float sum[BATCH][4];  // by pixel of the tile
 };
@@ -193,7 +195,7 @@ static void refine_flush(struct refine *r, const struct canvas *c, struct scene_
 	float rgba[BATCH][4];
 	if (!r->n)
 		return;
-	trace_points(rgba, r->n, (const float(*)[2])r->at, c, &count->iris);
+	trace_points(rgba, r->n, r->x, r->y, 0, c, &count->iris);
 	for (int i = 0; i < r->n; i++)
 		for (int k = 0; k < 4; k++)  // a mirror image brighter than white counts as a little more than white
 			r->sum[r->pixel[i]][k] += rgba[i][k] < 2 ? rgba[i][k] : 2;
@@ -209,8 +211,8 @@ static void more_rays(const struct canvas *c, const unsigned char *mark, int tx,
 	for (int k = 0; k < BATCH; k++) {
 		int x = tx + k % TILE, y = ty + k / TILE;
 		for (int j = 0; x < w && y < h && mark[(long)y * w + x] && j < m * m; j++) {
-			r.at[r.n][0] = (float)x + ((float)(j % m) + 0.5f) / (float)m;
-			r.at[r.n][1] = (float)y + ((float)(j / m) + 0.5f) / (float)m;
+			r.x[r.n] = (float)x + ((float)(j % m) + 0.5f) / (float)m;
+			r.y[r.n] = (float)y + ((float)(j / m) + 0.5f) / (float)m;
 			r.pixel[r.n] = k;
 			if (++r.n == BATCH)
 				refine_flush(&r, c, count);
@@ -266,7 +268,7 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 		iris += mine.iris;
 	}
 	free(mark);
-	free(shade.rgba);
+	free(shade.light);
 	free(beams.beam);
 	if (count)
 		*count = (struct scene_count){ count->rays + rays, count->iris + iris };

@@ -77,7 +77,8 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 	for (int side = 0; side < SIDES; side++) {
 		struct eye_side *eye = &track->side[side];
 		eye_side_settle(eye, &clip->globe[side]);
-		eye_side_events(clip, eye, side);
+		if (clip->globe[side].seen)
+			eye_side_events(clip, eye, side);
 		for (int i = 0; i < clip->frames; i++)
 			clip->state[i][side] = eye->state[i];
 		seen |= clip->globe[side].seen;

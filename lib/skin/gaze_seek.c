@@ -27,12 +27,20 @@ double gaze_seek_score(const struct gaze_sight *sight, const double fick[2])
 		return NAN;
 	// Close to the circle the perspective of its rim is that of a plane seen from afar: an affine map.
 	double ax = at[1][0] - at[0][0], ay = at[1][1] - at[0][1], bx = at[2][0] - at[0][0], by = at[2][1] - at[0][1];
-	static const double tap[4] = { 0.80, 0.90, 1.10, 1.20 };
-	double sum = 0;
-	int n = 0;
+	static const double tap[4] = { 0.80, 0.90, 1.10, 1.20 }, pupil[2] = { 0.18, 0.65 };
+	double sum = 0, dark = 0;
+	int n = 0, m = 0;
 	for (int i = 0; i < ARCS; i++) {
 		double c = cos(2 * M_PI * (i + 0.5) / ARCS), s = sin(2 * M_PI * (i + 0.5) / ARCS), v[4];
 		double ux = c * ax + s * bx, uy = c * ay + s * by;
+		// A pupil darker than the iris tells what a limbus of which little is seen does not.
+		double in[2] = { at[0][0] + pupil[1] * ux, at[0][1] + pupil[1] * uy };
+		if (!sight->seen || sight->seen(sight->ctx, in)) {
+			double rise = (luma_near(luma, in[0], in[1])
+			               - luma_near(luma, at[0][0] + pupil[0] * ux, at[0][1] + pupil[0] * uy)) / sight->contrast;
+			dark += rise > 0.5 ? 0.5 : rise < -0.25 ? -0.25 : rise;
+			m++;
+		}
 		if (sight->seen && !sight->seen(sight->ctx, (double[2]){ at[0][0] + ux, at[0][1] + uy }))
 			continue;
 		n++;
@@ -43,7 +51,7 @@ double gaze_seek_score(const struct gaze_sight *sight, const double fick[2])
 		sum += rise > 1 ? 1 : rise < -0.5 ? -0.5 : rise;
 	}
 	// Few arcs prove little.
-	return sum / (n > LEAST ? n : LEAST);
+	return sum / (n > LEAST ? n : LEAST) + 0.5 * dark / (m > LEAST ? m : LEAST);
 }
 
 static double try_around(double best[2], double score, double step, int reach, const struct gaze_sight *sight)
