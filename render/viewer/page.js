@@ -72,7 +72,6 @@
 			this.preset = graphics.software ? 2 : 0;
 			this.automatic = true;
 			this.times = [];
-			this.last = null;
 			this.orbit = [0, 0];
 			this.follow = "pointer";
 			this.beside = false;
@@ -96,7 +95,6 @@
 				this.values[c.key] = c.value;
 			this.build();
 			this.from_hash();
-			by_id("photo").hidden = true;
 			by_id("busy").textContent = "";
 			this.changed();
 		}
@@ -380,7 +378,6 @@
 		wake() {
 			if (!this.awake) {
 				this.awake = true;
-				this.last = null;
 				requestAnimationFrame(t => this.tick(t));
 			}
 		}
@@ -425,48 +422,67 @@
 			this.scene.show(w, h, this.beside ? 1 : this.eye.eye.exposure, false);
 		}
 
-		/* Frame times of motion; too slow for a while: a cheaper preset. */
-		measure(t) {
-			if (this.last !== null)
-				this.times.push(t - this.last);
-			this.last = t;
-			if (this.times.length < 8)
-				return;
-			const sorted = [...this.times].sort((a, b) => a - b), ms = sorted[sorted.length >> 1];
-			this.frame_ms = ms;
-			by_id("time").textContent = `${ms.toFixed(1)} ms a frame, ${presets[this.preset].name} quality`;
-			if (this.automatic && ms > 45 && this.preset + 1 < presets.length) {
+		/* How long a picture takes, from asking for it until the driver says it is done. */
+		watch(counts) {
+			const gl = this.graphics.gl, begin = performance.now(), fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+			gl.flush();
+			this.busy = true;
+			const ask = () => {
+				const status = gl.clientWaitSync(fence, 0, 0);
+				if (status === gl.TIMEOUT_EXPIRED && performance.now() - begin < 20000) {
+					setTimeout(ask, 1);
+					return;
+				}
+				gl.deleteSync(fence);
+				this.busy = false;
+				if (counts)
+					this.took(performance.now() - begin);
+			};
+			setTimeout(ask, 0);
+		}
+
+		/* Too slow for a while, or far too slow once: a cheaper preset. */
+		took(ms) {
+			this.times.push(ms);
+			if (this.times.length > 24)
+				this.times.shift();
+			const sorted = [...this.times].sort((a, b) => a - b);
+			this.frame_ms = sorted[sorted.length >> 1];
+			if (this.automatic && this.preset + 1 < presets.length && (ms > 250 || this.times.length > 5 && this.frame_ms > 40)) {
 				this.preset++;
 				this.times = [];
-				said(`Quality lowered to ${presets[this.preset].name}: frames took ${ms.toFixed(0)} ms`);
-			} else if (this.times.length > 24) {
-				this.times.shift();
+				said(`Quality lowered to ${presets[this.preset].name}: a frame took ${ms.toFixed(0)} ms`);
 			}
+			by_id("time").textContent = `${this.frame_ms.toFixed(1)} ms a frame, ${presets[this.preset].name} quality while moving`;
 		}
 
 		tick(t) {
 			const now = t / 1000;
+			this.awake = true;
+			if (this.busy) {
+				requestAnimationFrame(u => this.tick(u));
+				return;
+			}
 			if (this.follow === "wander")
 				this.wander(now);
 			const moves = !this.beside && this.eyes.step(now);
 			const settled = Math.hypot(this.eyes.target[0] - this.eyes.eye[0], this.eyes.target[1] - this.eyes.eye[1]) < this.eyes.conf.saccade_threshold_deg;
-			const slow = this.frame_ms > 45 || this.preset > 1, finest = slow ? 4 : 16;
+			const slow = this.frame_ms > 40 || this.preset > 1, finest = slow ? 4 : 16;
 			if (moves || this.rested === 0) {
 				this.scene.restart();
 				this.draw(presets[this.preset]);
-				this.measure(t);
-				this.rested = moves ? 1e-9 : this.rested || 1e-9;
+				this.watch(true);
+				this.rested = 1;
 				this.rest_from = t;
 			} else if (t - this.rest_from > (slow ? 350 : 60) && this.scene.count <= finest) {
 				if (this.stilled !== this.rest_from) {
 					this.scene.restart();
 					this.stilled = this.rest_from;
 				}
-				if (this.scene.count < finest)
+				if (this.scene.count < finest) {
 					this.draw(presets[0]);
-				this.last = null;
-			} else {
-				this.last = null;
+					this.watch(false);
+				}
 			}
 			const idle = settled && this.scene.count >= finest && this.follow !== "wander" && (this.eyes.still || this.beside || !this.scene.has_lids);
 			this.awake = false;

@@ -78,7 +78,7 @@ void main()
 	curve(x, P, w, g, H, tau);
 	float gain = caustic(x, P, w, H, tau);
 	// A way that is no minimum lies behind a focus: not the one that goes on smoothly.
-	bool good = dot(g, g) < 1e-4 && dot(x, x) < 4.0 && H.x * H.z > H.y * H.y && H.x + H.z > 0.0 && gain < 40.0;
+	bool good = dot(g, g) < 1e-4 && dot(x, x) < 4.0 && H.x * H.z > H.y * H.y && H.x + H.z > 0.0 && gain < 8.0;
 	vec3 K = good ? cornea_R * tau * vec3(x, dot(x, x)) : P + w, l = normalize(K - P);
 	way = vec4(l.xy, good ? gain / max(-l.z, 0.05) : 0.0, min(length(K.xy / limbus), 4.0));
 }

@@ -86,8 +86,10 @@ class Browser {
 		fs.writeFileSync(file, Buffer.from(data, "base64"));
 	}
 
-	async mouse(type, x, y, buttons) {
-		await this.send("Input.dispatchMouseEvent", { type, x, y, button: buttons ? "left" : "none", buttons: buttons ? 1 : 0, clickCount: buttons ? 1 : 0 });
+	/* down: the left button is held. */
+	async mouse(type, x, y, down) {
+		const press = type !== "mouseMoved";
+		await this.send("Input.dispatchMouseEvent", { type, x, y, button: press || down ? "left" : "none", buttons: down ? 1 : 0, clickCount: press ? 1 : 0 });
 	}
 
 	async key(key, code) {

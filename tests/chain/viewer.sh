@@ -1,0 +1,35 @@
+#!/bin/bash
+# The interactive page of the bundled capture, driven in a headless Chromium: agreement with the C renderer, hands, keys, names.
+. "$(dirname "$0")/../lib/chain.sh"
+
+if ! command -v chromium >/dev/null || ! command -v node >/dev/null; then
+	skip "the interactive page in a browser" "no chromium or no node: apt-get install chromium nodejs"
+	exit 0
+fi
+capture="$root/<b>eye & \"co\""
+new_capture "$capture"
+cp "$PHOTO" "$capture/photos/right_<img src=x onerror=alert(1)>.jpg"
+# The reference: every ray marched in many steps; maps as fine as in a review.
+printf 'render.shading = rays\nrender.steps = 12\nrender.quadrature = gauss\nrender.shadow = 4\nrender.search = 8\nrender.lights = 8\nrender.bands = 4\nrender.size_px = 450\nrender.map_size = 1024\n' >>"$capture/capture.conf"
+run_make "$capture"
+same "the page is made" "$?" 0
+page=$capture/work/review/viewer.html
+check "and linked from the review" grep -q 'href="viewer.html"' "$capture/work/review/index.html"
+check "no name is live in it" test "$(grep -c '<img src=x\|<b>eye' "$page")" = 0
+SHOTS=${SHOTS:-$root/shots}
+mkdir -p "$SHOTS"
+timeout 300 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" >"$root/said" 2>&1
+while IFS= read -r line; do
+	case $line in
+	"pass "*) pass "${line#pass }" ;;
+	"fail "*) fail "${line#fail }" "" ;;
+	*) [ -n "${VERBOSE:-}" ] && echo "  $line" ;;
+	esac
+done <"$root/said"
+check "the browser's run came to its end" grep -q 'without WebGL 2' "$root/said"
+if [ -s "$SHOTS/lines.conf" ]; then
+	cat "$SHOTS/lines.conf" >>"$capture/capture.conf"
+	run_make "$capture"
+	same "make takes the lines the page offered" "$?" 0
+	check "and the pigment is where it was put" grep -q "$(sed -n 's/.*melanin = \([0-9.]*\) .*/\1/p' "$SHOTS/lines.conf" | cut -c1-6)" "$capture/work/iris/pigment.json"
+fi
