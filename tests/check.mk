@@ -10,7 +10,11 @@ SEED ?= 1
 .PHONY: tests fuzz fuzzers
 tests: $(TESTS) $(TOOLS)
 
+# Without these the interactive page is not driven, and the summary says so.
+CHECK_PACKAGES := chromium nodejs
+
 check: setup build tests
+	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=5 \
 		tests/check.sh
