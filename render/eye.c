@@ -20,7 +20,9 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 {
 	double start = now_s();
 	view->samples = job->conf->samples;
-	struct image image = scene_render(&job->scene, view, light, &job->count);
+	int passes = job->conf->passes;
+	struct image image = passes > 1 ? scene_converge(&job->scene, view, light->env, light->mirror, job->conf->lights, passes, &job->error, &job->count)
+	                                : scene_render(&job->scene, view, light, &job->count);
 	job->seconds += now_s() - start;
 	return image;
 }
@@ -235,6 +237,8 @@ static void figures(struct job *job)
 	if (job->worst > 0)
 		stage_figure(job->stage, "difference_from_photograph", job->worst, "CIEDE2000, mean inside the iris, the worst photograph");
 	stage_figure(job->stage, "rays", (double)job->count.rays / 1e6, "million");
+	if (job->conf->passes > 1)
+		stage_figure(job->stage, "noise", 100 * job->error, "% of luminance, standard error of the last picture");
 	stage_figure(job->stage, "tracing", job->seconds, "s");
 	stage_figure(job->stage, "speed", (double)job->count.rays / job->seconds / 1e6, "million rays a second");
 	stage_note(job->stage, "%.1f million rays, %.2f s, %.1f million a second", (double)job->count.rays / 1e6, job->seconds,

@@ -9,7 +9,7 @@
 
 struct render_conf {
 	struct scene_conf scene;
-	int lights, samples;             // of the environment; rays across a pixel where there are edges
+	int lights, passes, samples;     // of the environment; light drawn anew; rays across a pixel where there are edges
 	int size_px, photo_px;           // of front and three-quarter; longest side of the photograph's own view
 	int frames, frame_px;            // turntable
 	double frame_deg;                // it goes from -frame_deg to +frame_deg
@@ -49,6 +49,7 @@ struct job {
 	double gain;                     // of the beauty views' exposure
 	double worst;                    // largest mean difference from a photograph, CIEDE2000
 	struct scene_count count;
+	double error;                    // of the last converging picture
 	double seconds;                  // spent tracing
 };
 

@@ -118,6 +118,12 @@ struct scene_count {
 struct image scene_render(const struct scene *scene, const struct scene_view *view,
                           const struct scene_lighting *light, struct scene_count *count);
 
+/* The converging picture: the mean of `passes`, each with the environment's `lights` directions drawn anew within their
+ * regions (so that areas light as areas) and its rays drawn anew within their pixels. env stands in the camera's frame; mirror
+ * as in the lighting. *error: mean relative standard error of the luminance of what is not black; null: not wanted. image_free. */
+struct image scene_converge(const struct scene *scene, const struct scene_view *view, const struct envmap *env,
+                            const struct envmap *mirror, int lights, int passes, double *error, struct scene_count *count);
+
 /* The albedo step: fills level[].model as seen in this view, so that there the rendering shows what the photograph
  * shows (scene_colour.c). conf.detail is its strength. Call once, after scene_load. */
 void scene_fit_colour(struct scene *scene, const struct scene_view *view, const struct scene_lighting *light);

@@ -71,7 +71,7 @@ SIMD_CLONES static void put_sclera(float rgba[][4], const struct quick_spots *s,
 	places_of(&p, s->su, s->sv, (float)map->width, 0.5f * (float)map->width - 0.5f, map->width, n);
 	for (int i = 0; i < n; i++) {
 		colour light = { s->sky[0][i], s->sky[1][i], s->sky[2][i], 0 }, before = { 0, 0, 0, s->hit[i] };
-		float part = s->hit[i] * s->lid[i];
+		float part = s->hit[i] * s->lid[i] * (1 - s->mirror[i]);
 		if (!first)
 			memcpy(&before, rgba[i], sizeof before);
 		if (part > 0)

@@ -164,7 +164,7 @@ void scene_trace(float rgba[][4], int n, const float *dx, const float *dy, const
 			float white[3];
 			sclera_colour(white, &spot[i], s, look);
 			for (int c = 0; c < 3; c++)
-				rgba[i][c] = lid[i] * white[c];
+				rgba[i][c] = lid[i] * (1 - mirror(spot[i].cos_i)) * white[c];
 		}
 	}
 	for (int k = 0; k < b.n; k++) {

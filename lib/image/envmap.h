@@ -56,4 +56,8 @@ void envmap_irradiance(float rgb[3], const struct envmap *env, const float norma
  * regions are left out). Together they carry all of the map's energy. */
 int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env);
 
+/* The same with each region's direction drawn by its light: the mean over many seeds is the environment itself, areas and
+ * all. */
+int envmap_lights_drawn(struct envmap_light lights[], int n, const struct envmap *env, uint64_t seed);
+
 #endif

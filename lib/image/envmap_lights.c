@@ -1,6 +1,7 @@
 #include <math.h>
 
 #include "image/envmap_impl.h"
+#include "math/rng.h"
 
 static double lum(const float rgb[3])
 {
@@ -63,22 +64,65 @@ static bool region_light(struct envmap_light *light, const struct image *map, st
 	return n > 0;
 }
 
-int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env)
+/* Regions of equal energy; returns their number, at most n. */
+static int regions_cut(struct region regions[ENVMAP_LIGHTS_MAX], const struct image *map, int n)
 {
-	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
-	struct region regions[ENVMAP_LIGHTS_MAX] = { { 0, 0, map.width, map.height } };
-	int made = 1, out = 0;
+	int made = 1;
+	regions[0] = (struct region){ 0, 0, map->width, map->height };
 	while (2 * made <= n && 2 * made <= ENVMAP_LIGHTS_MAX) {
 		for (int i = made - 1; i >= 0; i--) {
 			struct region two[2];
-			cut(&map, regions[i], two);
+			cut(map, regions[i], two);
 			regions[2 * i] = two[0];
 			regions[2 * i + 1] = two[1];
 		}
 		made *= 2;
 	}
+	return made;
+}
+
+int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env)
+{
+	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
+	struct region regions[ENVMAP_LIGHTS_MAX];
+	int made = regions_cut(regions, &map, n), out = 0;
 	for (int i = 0; i < made; i++)
 		out += region_light(&lights[out], &map, regions[i]);
+	image_free(&map);
+	return out;
+}
+
+/* A direction drawn in a region as its light lies in it; within a pixel, evenly. */
+static void region_draw(double dir[3], const struct image *map, struct region r, struct rng *rng)
+{
+	double left = rng_uniform(rng) * region_energy(map, r);
+	int x = r.x1 - 1, y = r.y1 - 1;
+	for (int v = r.y0; v < r.y1 && left >= 0; v++) {
+		double w = envmap_solid_angle(map, v);
+		for (int u = r.x0; u < r.x1 && left >= 0; u++) {
+			left -= w * lum(image_at(map, u, v));
+			x = u;
+			y = v;
+		}
+	}
+	envmap_dir(dir, (x + rng_uniform(rng)) / map->width, (y + rng_uniform(rng)) / map->height);
+}
+
+int envmap_lights_drawn(struct envmap_light lights[], int n, const struct envmap *env, uint64_t seed)
+{
+	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
+	struct region regions[ENVMAP_LIGHTS_MAX];
+	struct rng rng = { seed };
+	int made = regions_cut(regions, &map, n), out = 0;
+	for (int i = 0; i < made; i++) {
+		double dir[3];
+		if (!region_light(&lights[out], &map, regions[i]))
+			continue;
+		region_draw(dir, &map, regions[i], &rng);
+		for (int c = 0; c < 3; c++)
+			lights[out].dir[c] = (float)dir[c];
+		out++;
+	}
 	image_free(&map);
 	return out;
 }
