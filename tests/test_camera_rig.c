@@ -14,6 +14,9 @@ static struct camera_rig make(void)
 		{ { 0, -1, 0, 12.5 }, { 1, 0, 0, -7 }, { 0, 0, 1, 600 }, { 0, 0, 0, 1 } }, 0.41, 123 };
 	rig.cameras[1] = (struct rig_camera){ mem_str("v"), mem_str("video/v.mp4"), 1920, 1080, lens, { 1500, 1500 }, false,
 		{ { 0 } }, NAN, 0 };
+	rig.has_eyes = true;
+	for (int i = 0; i < 6; i++)
+		rig.eye_center[i / 3][i % 3] = 31.25 - 11.5 * i;
 	return rig;
 }
 
@@ -44,6 +47,9 @@ static void test_round_trip(void **state)
 	assert_true(c->has_pose && !v->has_pose);
 	assert_true(isnan(v->residual_px));
 	NEAR(read.scale_sigma, 0.0125, 1e-12);
+	assert_true(read.has_eyes);
+	for (int i = 0; i < 6; i++)
+		NEAR(read.eye_center[i / 3][i % 3], made.eye_center[i / 3][i % 3], 1e-10);
 	assert_string_equal(read.scale_source, "limbus");
 	camera_rig_free(&made);
 	camera_rig_free(&read);

@@ -37,6 +37,7 @@ bool camera_rig_save(const struct camera_rig *rig, const char *path, const char 
 	json_object_set_new(json, "scale_sigma", json_number(rig->scale_sigma));
 	json_object_set_new(json, "frame_source", json_string(rig->frame_source));
 	json_object_set_new(json, "cameras", cameras);
+	json_object_set_new(json, "eye_center", rig->has_eyes ? json_numbers(6, &rig->eye_center[0][0]) : json_null());
 	if (extra) {
 		json_t *more = json_loads(extra, 0, 0);
 		json_object_update_missing(json, more);
@@ -108,6 +109,9 @@ static bool rig_read(struct camera_rig *rig, const json_t *json, const char *pat
 		return false;
 	strncpy(rig->scale_source, scale, sizeof rig->scale_source - 1);
 	strncpy(rig->frame_source, frame, sizeof rig->frame_source - 1);
+	rig->has_eyes = json_is_array(json_object_get(json, "eye_center"));
+	if (rig->has_eyes && !json_get_array(&rig->eye_center[0][0], 6, json, "eye_center", path, err))
+		return false;
 	size_t n = json_array_size(cameras);
 	if (!json_is_array(cameras) || n > RIG_CAMERAS)
 		return err_set(err, "%s: cameras: must be an array of at most %d", path, RIG_CAMERAS);

@@ -34,6 +34,8 @@ struct camera_rig {
 	double scale_sigma;    // relative standard deviation of all lengths; NAN: the scale is an assumption
 	char scale_source[32]; // "ruler", "marker", "distance", "limbus", "assumed"
 	char frame_source[32]; // "eyes and mouth", "cameras"
+	bool has_eyes;
+	double eye_center[2][3];  // of the left and the right eyeball, head, mm
 };
 
 /* camera_rig_free. False, err set, when the file cannot be used: nothing is filled then. */

@@ -4,6 +4,17 @@
 
 #include "stages/calibrate/places.h"
 
+/* Eyeballs behind the irises: a sphere of 12 mm cut by the limbus's plane, the eyes looking ahead. */
+static void place_eyes(struct head *head, const double left[3], const double right[3], double limbus_mm)
+{
+	const double globe_mm = 12;
+	sfm_to_head(head->eye_center[0], &head->frame, left);
+	sfm_to_head(head->eye_center[1], &head->frame, right);
+	for (int e = 0; e < 2; e++)
+		head->eye_center[e][2] -= sqrt(globe_mm * globe_mm - limbus_mm * limbus_mm);
+	head->has_eyes = true;
+}
+
 /* The first source that says anything: rulers and markers are exact, a tape less, people's eyes least. */
 static bool find_scale(double *scale, struct head *head, const struct views *views, struct stage *stage,
                        const struct calibrate_options *o, struct err *err)
@@ -54,9 +65,10 @@ bool head_place(struct head *head, const struct views *views, struct stage *stag
 		middle[i] = 0.5 * (mouth[0][i] + mouth[1][i]);
 	bool eyes = has_left && has_right;
 	head->frame_source = !eyes ? "cameras" : has_mouth ? "eyes and mouth" : "eyes";
-	if (eyes)
+	if (eyes) {
 		sfm_frame_eyes(&head->frame, head->model, left, right, has_mouth ? middle : 0, scale);
-	else
+		place_eyes(head, left, right, o->limbus_radius_mm);
+	} else
 		sfm_frame_cameras(&head->frame, head->model, &head->subject, scale);
 	return true;
 }

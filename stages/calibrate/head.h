@@ -9,6 +9,8 @@ struct head {
 	struct sfm_subject subject;
 	struct sfm_frame frame;
 	double scale_sigma;          // relative; NAN: assumed
+	bool has_eyes;
+	double eye_center[2][3];     // of the left and the right eyeball, head, mm
 	const char *scale_source, *frame_source;
 	double residual_px;          // mean, in the photographs' own pixels
 };

@@ -70,7 +70,9 @@ bool rig_out(struct camera_rig *rig, struct head *head, const struct views *view
 	double sum = 0;
 	long n = 0;
 	bool ok = true;
-	*rig = (struct camera_rig){ .cameras = mem_new((size_t)views->n_used, sizeof *rig->cameras), .scale_sigma = head->scale_sigma };
+	*rig = (struct camera_rig){ .cameras = mem_new((size_t)views->n_used, sizeof *rig->cameras), .scale_sigma = head->scale_sigma,
+		                        .has_eyes = head->has_eyes };
+	memcpy(rig->eye_center, head->eye_center, sizeof rig->eye_center);
 	snprintf(rig->scale_source, sizeof rig->scale_source, "%s", head->scale_source);
 	snprintf(rig->frame_source, sizeof rig->frame_source, "%s", head->frame_source);
 	for (int i = 0; i < views->n_used && ok; i++) {

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
 #include "math/vec.h"
+#include "optics/camera_rig.h"
 #include "stages/track/track.h"
 
 static const long limit_vertices = 2000000;
@@ -72,13 +73,9 @@ static bool center_from_marks(double center[3], const struct track_subject *s, i
 	return true;
 }
 
-/* Where the mesh has no hole for the eye: parabolas through the landmarks. */
-static void opening_from_marks(struct eye_opening *o, const struct track_subject *s, int side)
+/* Parabolas through the corners of the eye and the middles of its lids. */
+static void opening_through(struct eye_opening *o, const float *in, const float *out, const float *const mid[2])
 {
-	const float *in = at(s, side, MARK_INNER), *out = at(s, side, MARK_OUTER);
-	const float *mid[2] = { at(s, side, MARK_UPPER), at(s, side, MARK_LOWER) };
-	if (o->open || !in || !out || !mid[0] || !mid[1])
-		return;
 	// counter-clockwise as seen from in front: over the upper lid from right to left
 	const float *right = in[0] > out[0] ? in : out, *left = in[0] > out[0] ? out : in;
 	*o = (struct eye_opening){ .open = true };
@@ -96,24 +93,73 @@ static void opening_from_marks(struct eye_opening *o, const struct track_subject
 	}
 }
 
-static bool eyes(struct track_subject *s, const struct track_conf *conf, struct err *err)
+/* Where the mesh has no hole for the eye. */
+static void opening_from_marks(struct eye_opening *o, const struct track_subject *s, int side)
 {
+	const float *in = at(s, side, MARK_INNER), *out = at(s, side, MARK_OUTER);
+	const float *mid[2] = { at(s, side, MARK_UPPER), at(s, side, MARK_LOWER) };
+	if (!o->open && in && out && mid[0] && mid[1])
+		opening_through(o, in, out, (const float *const *)mid);
+}
+
+/* Where nothing is known but the eyeball: people's mean fissure (Farkas 1994: 30 mm long; the upper lid stands 4 mm above the
+ * pupil's centre, the lower 5.5 mm below), laid on the mesh; where that has holes, on the eyeball. */
+static void opening_usual(struct eye_opening *o, const struct ray_scene *rays, const double center[3], double radius)
+{
+	static const float offsets[4][2] = { { -15, -1 }, { 15, 0 }, { 0, 4 }, { 0, -5.5f } };
+	const float side = center[0] < 0 ? -1 : 1, back[3] = { 0, 0, -1 };
+	float p[4][3];
+	for (int i = 0; i < 4; i++) {
+		const float from[3] = { (float)center[0] + side * offsets[i][0], (float)center[1] + offsets[i][1], (float)center[2] + 500 };
+		struct ray_hit hit = ray_first(rays, from, back, 0, 520);
+		double off = hypot((double)offsets[i][0], (double)offsets[i][1]);
+		p[i][0] = from[0];
+		p[i][1] = from[1];
+		p[i][2] = hit.face >= 0 ? from[2] - hit.t : (float)(center[2] + sqrt(fmax(0, radius * radius - off * off)));
+	}
+	const float *const mid[2] = { p[2], p[3] };
+	opening_through(o, p[0], p[1], mid);
+}
+
+/* Eyeballs that calibrate has seen, where the mesh is its own. */
+static bool eyes_of_rig(struct camera_rig *rig, const struct track_subject *s, struct stage *stage, struct err *err)
+{
+	const char *path = stage_path(stage, "work/rig.json");
+	*rig = (struct camera_rig){ 0 };
+	return strncmp(s->file, "work/", 5) || !file_exists(path) || camera_rig_load(rig, path, err);
+}
+
+static bool eyes(struct track_subject *s, struct stage *stage, const struct track_conf *conf, struct err *err)
+{
+	struct camera_rig rig;
+	if (!eyes_of_rig(&rig, s, stage, err))
+		return false;
 	s->radius = isfinite(conf->eye_radius) ? conf->eye_radius * s->unit_mm : usual_radius;
 	struct ray_scene *rays = ray_scene_new(s->mesh.n_vertices, (const float(*)[3])s->mesh.vertices, s->mesh.n_faces,
 	                                       (const int32_t(*)[3])s->mesh.faces);
-	bool any = false;
+	bool any = false, usual = false;
 	for (int e = 0; e < SIDES; e++) {
 		const double *center = given(&conf->eye_center, sides[e]);
 		for (int k = 0; k < 3; k++)
-			s->center[e][k] = center ? center[k] * s->unit_mm : NAN;
-		if (!center && !center_from_marks(s->center[e], s, e))
+			s->center[e][k] = center ? center[k] * s->unit_mm : rig.has_eyes ? rig.eye_center[e][k] : NAN;
+		if (!center && !rig.has_eyes && !center_from_marks(s->center[e], s, e))
 			continue;
 		const double from[3] = { s->center[e][0], s->center[e][1], s->center[e][2] + 1000 };
 		eye_opening_find(&s->opening[e], rays, from, s->center[e], s->radius);
 		opening_from_marks(&s->opening[e], s, e);
+		if (!s->opening[e].open && rig.has_eyes) {
+			opening_usual(&s->opening[e], rays, s->center[e], s->radius);
+			usual = true;
+		}
 		any |= s->opening[e].open;
 	}
 	ray_scene_free(rays);
+	camera_rig_free(&rig);
+	if (usual)
+		stage_skipped(stage, "%s: no lids are seen in it: people's mean opening stands for their lids; mark the corners of the eyes and the lids (subject.landmark.*)",
+		              s->file);
+	if (!any && !strncmp(s->file, "work/", 5))
+		return err_set(err, "%s: where its eyes are is not known: name them in two views in capture.conf (view.NAME.left_eye_px = x y radius, view.NAME.right_eye_px)", s->file);
 	if (!any)
 		return err_set(err, "%s: where its eyes are is not known: set subject.eye_center.left and .right, or subject.landmark.left_inner_canthus and so on, in capture.conf", s->file);
 	return true;
@@ -135,7 +181,7 @@ bool track_subject_load(struct track_subject *s, struct stage *stage, const stru
 	for (int i = 0; i < s->mesh.n_vertices; i++)
 		for (int k = 0; k < 3; k++)
 			s->mesh.vertices[i][k] *= (float)s->unit_mm;
-	return read_marks(s, conf, err) && eyes(s, conf, err);
+	return read_marks(s, conf, err) && eyes(s, stage, conf, err);
 }
 
 void track_subject_free(struct track_subject *s)

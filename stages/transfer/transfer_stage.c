@@ -60,8 +60,9 @@ static bool load_subject(struct subject *s, struct stage *stage, const struct tr
 		return err_set(err, "no subject.ply or subject.obj: a character is laid onto the person's mesh; give one, or views/ to make it from");
 	if (!om_mesh_load(&s->mesh, stage_path(stage, "%s", s->file), (long)conf->limit_vertices, err))
 		return false;
-	s->guessed = !isfinite(conf->subject_unit);
-	s->unit = s->guessed ? transfer_subject_unit(&s->mesh) : conf->subject_unit;
+	bool own = !strncmp(s->file, "work/", 5);  // calibrate's is in mm
+	s->guessed = !own && !isfinite(conf->subject_unit);
+	s->unit = own ? 1 : s->guessed ? transfer_subject_unit(&s->mesh) : conf->subject_unit;
 	scale(&s->mesh, s->unit);
 	return true;
 }
