@@ -1,11 +1,13 @@
 # Tests.
 #   make check            everything; ends with one line: N passed, N failed, N skipped
-#   make stress           long runs against random and hostile cases; CASES=1e8 SEED=1 of light paths
+#   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others;
+#                         CASES=1e8 of light paths
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30
 TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c))
 SECONDS_EACH ?= 30
-CASES ?= 1e8
+CASES ?= 1e6
 SEED ?= 1
+SHARE ?= 1
 
 .PHONY: tests fuzz fuzzers
 tests: $(TESTS) $(TOOLS)
@@ -13,7 +15,7 @@ tests: $(TESTS) $(TOOLS)
 # Without these the interactive page is not driven, and the summary says so.
 CHECK_PACKAGES := chromium nodejs
 
-check: setup build tests
+check: setup build tests $(STRESSES)
 	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=5 \
@@ -23,8 +25,8 @@ check: setup build tests
 tests-sanitised: $(TESTS)
 
 stress: build $(STRESSES)
-	@bad=0; for s in $(STRESSES); do echo "== $$s"; \
-		case $$s in *_lightpath) $$s $(CASES) $(SEED) ;; *) $$s ;; esac || bad=1; done; exit $$bad
+	@bad=0; for s in $(STRESSES); do echo "== $$s"; case $$s in *_lightpath) $$s $(CASES) $(SEED) ;; \
+		*_limbus) $$s ;; *) $$s --share=$(SHARE) --seed=$(SEED) ;; esac || bad=1; done; exit $$bad
 
 # Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
 FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w

@@ -103,8 +103,8 @@ bool ellipse_from_conic(struct ellipse *e, const double k[6])
 	double scale = -f * sign;
 	if (!(scale > 0) || !(small > 0))
 		return false;
-	double angle = atan2(-sign * k[1], -sign * (k[0] - k[2])) / 2;
-	*e = (struct ellipse){ cx, cy, sqrt(scale / small), sqrt(scale / large), angle < 0 ? angle + M_PI : angle };
+	double angle = atan2(-sign * k[1], -sign * (k[0] - k[2])) / 2, a = sqrt(scale / small);
+	*e = (struct ellipse){ cx, cy, a, fmin(a, sqrt(scale / large)), angle < 0 ? angle + M_PI : angle };
 	return isfinite(cx + cy + e->a + e->b);
 }
 

@@ -210,9 +210,16 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 	bool ok = true;
 	for (int i = 0; i < n; i++)
 		d[i] = ellipse_distance(&t, e, p[i]);
-	double scale = sigma > 0 ? sigma : fmax(scale_of(n, d, prior, d + n), 1e-9);
+	/* From a sample, points at the known noise may lie many sigma off: the scale comes down to it with the fit. */
+	const bool falls = sigma <= 0 || !have_start;
+	const double least = sigma > 0 ? sigma : 1e-9;
+	double scale = falls ? fmax(scale_of(n, d, prior, d + n), least) : sigma;
+	if (!isfinite(scale)) {  // five points tell nothing of their own noise
+		ok = sigma > 0;
+		scale = sigma;
+	}
 	struct pass pass = { 0 };
-	for (fit->iterations = 0; fit->iterations < 60; fit->iterations++) {
+	for (fit->iterations = 0; ok && fit->iterations < 60; fit->iterations++) {
 		build(&pass, e, n, p, prior, out, d, scale);
 		double inv[N][N];
 		if (pass.weight < N || !invert(inv, pass.h)) {
@@ -233,10 +240,13 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 			break;
 		}
 		/* The scale may fall only while the fit still moves in: a scale that grows back would let outliers in. */
-		if (sigma <= 0)
-			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), 1e-9);
-		if (size < 1e-4 * scale)
+		if (falls)
+			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), least);
+		if (size >= 1e-4 * scale)
+			continue;
+		if (sigma <= 0 || scale <= least)
 			break;
+		scale = fmax(scale / 2, least);
 	}
 	if (ok) {
 		build(&pass, e, n, p, prior, out, d, scale);
