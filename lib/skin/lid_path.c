@@ -53,7 +53,7 @@ static void one_path(double path[], const struct ground *ground, const struct li
 	for (int i = 0; i < cols; i++) {
 		float *now = cost[i & 1], *before = cost[!(i & 1)];
 		// The corners of the eye hardly move.
-		double t = (i - a) / (b - a), sigma = conf->sigma[lower] * (0.15 + 0.85 * (t > 0 && t < 1 ? sqrt(4 * t * (1 - t)) : 0));
+		double t = (i - a) / (b - a), sigma = conf->sigma[lower] * (0.35 + 0.85 * (t > 0 && t < 1 ? sqrt(4 * t * (1 - t)) : 0));
 		double slope = i ? expect[i] - expect[i - 1] : 0;
 		int lean = (int)lround(slope), edge = (int)fmin(LID_ROWS, fmax(0, other[i]));
 		for (int j = 0; j <= LID_ROWS; j++) {

@@ -120,7 +120,7 @@ void lid_strip_edge(double out[], double weight[], const struct lid_strip *strip
 		}
 		for (int k = 0; k < quiet; k++)
 			in = fmax(in, v[k]);
-		double level = skin + 0.1 * (in - skin), rise = (in - skin) / (SURE * NOISE);
+		double level = skin + 0.07 * (in - skin), rise = (in - skin) / (SURE * NOISE);
 		int k = 0;
 		while (k < quiet && v[k + 1] >= level)
 			k++;

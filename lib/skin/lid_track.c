@@ -15,7 +15,7 @@ static void lens(struct lid_curves *curves, const struct lid_chart *chart, doubl
 {
 	double a = lid_chart_corner(chart, 0), b = lid_chart_corner(chart, 1), row = hypot(chart->dv[0], chart->dv[1]);
 	for (int i = 0; i < chart->cols; i++) {
-		double t = (i - a) / (b - a), bow = t > 0 && t < 1 ? pow(4 * t * (1 - t), 0.8) : 0;
+		double t = (i - a) / (b - a), bow = t > 0 && t < 1 ? pow(4 * t * (1 - t), 0.65) : 0;
 		curves->row[0][i] = LID_ROWS / 2 - bow * upper * chart->width / row;
 		curves->row[1][i] = LID_ROWS / 2 + bow * lower * chart->width / row;
 		if (bow == 0)
