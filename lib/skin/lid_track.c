@@ -28,7 +28,7 @@ static struct lid_path_conf path_conf(const struct lid_track *lids, const struct
 {
 	const struct lid_chart *chart = &lids->chart;
 	double rows = chart->width / hypot(chart->dv[0], chart->dv[1]);
-	struct lid_path_conf conf = { .sigma = { upper * rows, lower * rows }, .certain = 0.3, .bend = 1, .edge = 3,
+	struct lid_path_conf conf = { .sigma = { upper * rows, lower * rows }, .certain = 0.6, .bend = 1, .edge = 10,
 		.cross = 3, .strip = 10 };
 	conf.columns[0] = (int)ceil(lids->at[0][0]);
 	conf.columns[1] = (int)floor(lids->at[1][0]);
