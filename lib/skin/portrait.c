@@ -183,6 +183,7 @@ struct image portrait_draw(struct portrait *p, const struct portrait_view *view)
 	struct portrait_spot *spots = portrait_raster(p, view, p->conf.samples);
 	struct canvas c = { .p = p, .spots = spots, .rays = portrait_rays_of(view), .sky = portrait_sky_of(p, view), .samples = p->conf.samples };
 	portrait_eyes(c.eye, c.eye_at, p, view, spots, p->conf.samples);
+	portrait_tears(c.eye, c.eye_at, p, view, spots, p->conf.samples);
 #pragma omp parallel for schedule(dynamic, 4)
 	for (int y = 0; y < view->height; y++)
 		for (int x = 0; x < view->width; x++)

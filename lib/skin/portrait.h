@@ -18,6 +18,7 @@ struct portrait_conf {
 	double skin_rgb[3];    // albedo
 	double texture;        // strength of pores and blotches: 1 as on a face, 0 none
 	double scatter_mm;     // how far red light travels in skin
+	double tear_mm;        // height of the tear line along the lids; 0: none, and no dark under their edges
 	double lash_mm;        // length of the upper lashes; 0: none
 };
 

@@ -69,6 +69,14 @@ struct portrait_sky portrait_sky_of(const struct portrait *portrait, const struc
 void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                    const struct portrait_spot *spots, int samples);
 
+/* portrait_tear.c: tear line and the dark under the lids' edges, into those pictures. */
+void portrait_tears(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
+                    const struct portrait_spot *spots, int samples);
+
+/* Unit normal of a meniscus of that height at distance d from the lid: between the globe's normal and `away`, the unit
+ * direction from the lid in the globe's tangent plane. */
+void portrait_meniscus(float normal[3], const float globe[3], const float away[3], float d, float height);
+
 /* Distance to the eye along a ray of the rig's frame; INFINITY: missed. */
 float portrait_eye_hit(const struct portrait *portrait, int side, const float origin[3], const float dir[3]);
 
