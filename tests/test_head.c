@@ -108,7 +108,7 @@ static void find(const char *name, bool two)
 	}
 	assert_true(head_find(&found, c.rgb, c.width, c.height, &c.camera, opening, &conf));
 	assert_true(found.seen[0] && found.seen[1] == two && !found.upside_down);
-	assert_true(head_find_refine(&found, c.rgb, c.width, c.height, &c.camera, opening, 0, 0, &conf));
+	assert_true(head_find_refine(&found, c.rgb, c.width, c.height, &c.camera, opening, &conf));
 	// lashes and the shade under them hide a lid's edge by up to half their width: 10 px here, less with both eyes
 	assert_true(distance(&c, found.cam_from_head) < 10);
 	assert_true(head_angle(found.cam_from_head, c.pose) < 3 * M_PI / 180);

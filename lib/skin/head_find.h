@@ -35,9 +35,8 @@ struct head_found {
 bool head_find(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
                const struct eye_opening opening[2], const struct head_find_conf *conf);
 
-/* Improves a pose by the openings' outlines in the picture, and by n further points that were measured otherwise (at most
- * 8; null where n is 0); found->cam_from_head as it is expected to be. False: no outline. */
+/* Improves a pose by the openings' outlines in the picture; found->cam_from_head as it is expected to be. False: no outline. */
 bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
-                      const struct eye_opening opening[2], int n, const struct head_sight *further, const struct head_find_conf *conf);
+                      const struct eye_opening opening[2], const struct head_find_conf *conf);
 
 #endif

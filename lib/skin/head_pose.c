@@ -181,7 +181,7 @@ double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight 
 		double now = sum(0, 0, &weight, next, n, s, camera, robust, pivot) + expect(0, 0, next, prior, pivot);
 		double step = fmax(vec_norm(g) * 100, vec_norm(g + 3));
 		if (now < cost) {
-			bool small = cost - now < 1e-10 * cost;
+			bool small = cost - now < 1e-7 * cost;
 			memcpy(m, next, sizeof m);
 			cost = now;
 			damp = fmax(0.1 * damp, 1e-9);

@@ -6,7 +6,7 @@
 
 #include "skin/head_find.h"
 
-enum { ROUNDS = 10, FURTHER = 8, REACH = 96, ACROSS = 5, HUES = 24, GREYS = 16 };
+enum { ROUNDS = 10, REACH = 96, ACROSS = 5, HUES = 24, GREYS = 16 };
 
 static const double pitch_px = 0.5;      // between samples along a normal
 static const double edge_weight = 0.02;  // px^-2: 128 edges with errors of 2 px count as ten that are independent
@@ -165,8 +165,7 @@ static int look(struct head_sight *sights, const struct picture *p, const double
 }
 
 bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
-                      const struct eye_opening opening[2], int n_further, const struct head_sight *further,
-                      const struct head_find_conf *conf)
+                      const struct eye_opening opening[2], const struct head_find_conf *conf)
 {
 	struct picture p = { .rgb = rgb, .width = width, .height = height, .scale = fmax(0.5, width / 1280.0) };
 	double turn = conf->turn_sigma * M_PI / 180;
@@ -174,8 +173,8 @@ bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, i
 	memcpy(prior.cam_from_head, found->cam_from_head, sizeof prior.cam_from_head);
 	found->edge_px = NAN;
 	for (int round = 0; round < ROUNDS; round++) {
-		struct head_sight sights[2 * OPENING_POINTS + FURTHER];
-		double range = p.scale * fmax(5, (n_further ? 0.3 : 1) * conf->edge * pow(0.65, round));
+		struct head_sight sights[2 * OPENING_POINTS];
+		double range = p.scale * fmax(5, conf->edge * pow(0.65, round));
 		int n = 0;
 		learn(&p, found, camera, opening, round < 3 ? 0.25 : 0.1);
 		for (int e = 0; e < 2; e++)
@@ -186,8 +185,6 @@ bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, i
 		// edges of neighbouring places err together, by what lashes shade
 		for (int i = 0; i < n; i++)
 			sights[i].weight *= edge_weight / (p.scale * p.scale);
-		for (int i = 0; i < n_further && i < FURTHER; i++)
-			sights[n++] = further[i];
 		double rms = head_pose_fit(found->cam_from_head, n, sights, camera, fmax(1.5, 0.3 * range), &prior);
 		if (isnan(rms))
 			return false;

@@ -95,6 +95,11 @@ static void seen_from(double out[2], const struct skin_track *t, int i, int j)
 		out[r] = w->at[r] + w->A[r][0] * d[0] + w->A[r][1] * d[1];
 }
 
+static double pow2(double x)
+{
+	return x * x;
+}
+
 /* A robust mean: from the median on, with Tukey's weights; near neighbours count more. */
 static void ask(struct skin_field *f, const struct skin_track *t, int i)
 {
@@ -115,12 +120,12 @@ static void ask(struct skin_field *f, const struct skin_track *t, int i)
 		mid[r] = stats_median(n, x);
 	}
 	for (int k = 0; k < n; k++)
-		x[k] = hypot(at[k][0] - mid[0], at[k][1] - mid[1]);
+		x[k] = sqrt(pow2(at[k][0] - mid[0]) + pow2(at[k][1] - mid[1]));
 	double scale = fmax(3 * stats_median(n, x), 0.5), sum = 0, far = 0;
 	for (int k = 0; k < n; k++) {
-		double r = hypot(at[k][0] - mid[0], at[k][1] - mid[1]) / scale, d2 = 0;
+		double r = sqrt(pow2(at[k][0] - mid[0]) + pow2(at[k][1] - mid[1])) / scale, d2 = 0;
 		for (int c = 0; c < 2; c++)
-			d2 += pow(t->points.at[i][c] - t->points.at[who[k]][c], 2);
+			d2 += pow2(t->points.at[i][c] - t->points.at[who[k]][c]);
 		weight[k] = r < 1 ? (1 - r * r) * (1 - r * r) / (d2 + 25) : 0;
 		sum += weight[k];
 	}
@@ -133,7 +138,7 @@ static void ask(struct skin_field *f, const struct skin_track *t, int i)
 		}
 	}
 	for (int k = 0; k < n; k++)
-		far += weight[k] / sum * (pow(at[k][0] - f->warp.at[0], 2) + pow(at[k][1] - f->warp.at[1], 2));
+		far += weight[k] / sum * (pow2(at[k][0] - f->warp.at[0]) + pow2(at[k][1] - f->warp.at[1]));
 	f->spread = sqrt(far);
 	f->n = n;
 }

@@ -28,10 +28,14 @@ static void try(struct skin_track *t, int i, int level, const struct patch_warp 
                 double at_sigma, double A_sigma)
 {
 	struct patch_warp w = *start;
-	struct patch_fit fit, look;
+	struct patch_fit fit;
 	for (int l = level; l > 0; l--)
 		at_level(&w, &fit, t, i, l, expected, at_sigma, 0.5 * A_sigma);
-	if (at_level(&w, &fit, t, i, 0, expected, at_sigma, A_sigma) && patch_look(&look, t->patches, i, 0, &t->frame, &w))
+	if (!at_level(&w, &fit, t, i, 0, expected, at_sigma, A_sigma))
+		return;
+	// the correlation is that before the last step, which is small where the patch has been found
+	struct patch_fit look = fit;
+	if (fit.step < 4 * t->conf.stop || patch_look(&look, t->patches, i, 0, &t->frame, &w))
 		keep(&t->point[i], &w, look.ncc, fit.sigma);
 }
 
@@ -59,9 +63,12 @@ static void with_others(struct skin_track *t, int i)
 	if (!f->n)
 		return;
 	double limit = t->conf.outlier + 2 * f->spread, sigma = hypot(t->conf.smooth, f->spread);
-	double usual = p->usual;
+	double usual = p->usual, apart = hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]);
+	// what fits as ever, and is where its neighbours see it, need not be asked again
+	if (p->seen && p->ncc > usual - 0.04 && apart < t->conf.agree)
+		return;
 	p->ncc = -1;
-	if (p->seen && hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]) < limit)
+	if (p->seen && apart < limit)
 		try(t, i, 0, &p->warp, &f->warp, sigma, stretch_in_space);
 	if (p->ncc < usual - 0.04 || p->ncc < t->conf.min_ncc)
 		try(t, i, 0, &f->warp, &f->warp, sigma, stretch_in_space);
@@ -99,7 +106,8 @@ void skin_track_follow(struct skin_track *t)
 		for (int i = 0; i < n; i++)
 			with_others(t, i);
 	}
-	skin_track_ask(t);
+	if (t->conf.sweeps > 1)
+		skin_track_ask(t);
 #pragma omp parallel for schedule(static)
 	for (int i = 0; i < n; i++)
 		settle(t, i);

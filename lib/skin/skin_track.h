@@ -17,6 +17,7 @@ struct skin_track_conf {
 	double misfit;         // pixels that err together where a patch does not fit
 	double min_ncc;        // below it a point counts as not seen
 	double smooth;         // px: how far a point may differ from its neighbours' field and be as good as measured
+	double agree;          // px: a point that fits and is so near to that field is not asked again
 	double outlier;        // px from that field beyond which a point is taken for lost
 	double back;           // px: forward-backward check; 0: none
 	int sweeps;            // rounds of asking the neighbours
@@ -32,6 +33,7 @@ struct skin_track_conf {
 	OPT_REAL("misfit_px", &(c)->misfit, 0, 1000, "px", "pixels that err together where a patch does not fit"), \
 	OPT_REAL("min_ncc", &(c)->min_ncc, 0, 1, "", "correlation with the reference below which a point is not seen"), \
 	OPT_REAL("smooth_px", &(c)->smooth, 0.01, 10, "px", "trust in what the neighbours do: its standard deviation"), \
+	OPT_REAL("agree_px", &(c)->agree, 0, 10, "px", "a point that fits, so near to where its neighbours see it, is done"), \
 	OPT_REAL("outlier_px", &(c)->outlier, 0.5, 50, "px", "further from what its neighbours do a point is lost"), \
 	OPT_REAL("back_px", &(c)->back, 0, 10, "px", "forward-backward check of doubtful points; 0: none"), \
 	OPT_INT("sweeps", &(c)->sweeps, 1, 10, "", "rounds of asking the neighbours"), \

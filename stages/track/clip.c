@@ -124,7 +124,7 @@ static bool look(struct track_clip *clip, const struct track_subject *s, const s
 		assume_distance(clip, s, conf);
 		memcpy(found.cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
 	}
-	if (!head_find_refine(&found, clip->rgb, w, h, &clip->camera, s->opening, 0, 0, &conf->head))
+	if (!head_find_refine(&found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head))
 		return false;
 	memcpy(clip->cam_from_head, found.cam_from_head, sizeof clip->cam_from_head);
 	clip->pose_px = found.edge_px;

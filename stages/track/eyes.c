@@ -50,8 +50,8 @@ static bool box_of(int box[4], const struct track_eyes *eyes, int side, const do
 	}
 	double wide = high[0] - low[0], size[2] = { eyes->clip->info.width, eyes->clip->info.height };
 	for (int k = 0; k < 2; k++) {
-		box[k] = (int)fmax(0, fmin(size[k], low[k] - (k ? 0.5 : 0.35) * wide));
-		box[2 + k] = (int)fmax(0, fmin(size[k], high[k] + (k ? 0.5 : 0.35) * wide));
+		box[k] = (int)fmax(0, fmin(size[k], low[k] - (k ? 0.4 : 0.3) * wide));
+		box[2 + k] = (int)fmax(0, fmin(size[k], high[k] + (k ? 0.4 : 0.3) * wide));
 	}
 	return box[2] > box[0] && box[3] > box[1];
 }

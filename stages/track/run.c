@@ -42,8 +42,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_subject_load(subject, stage, conf, err) || !track_clip_open(clip, stage, subject, conf, err))
 		return false;
 	tell_video(stage, clip);
-	if (!track_settle(clip, stage, subject, conf, err))
-		return false;
+	track_settle(clip, stage, subject, conf);
 	if (!track_points_choose(points, clip, subject, conf, err) || !track_follow(result, stage, clip, subject, points, conf, err))
 		return false;
 	if (result->n < 2)

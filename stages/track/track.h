@@ -100,8 +100,7 @@ bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct 
 void track_clip_free(struct track_clip *clip);
 
 /* Improves the pose by the centres that the eyes turn about in the first frames. */
-bool track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf,
-                  struct err *err);
+void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf);
 
 bool track_points_choose(struct track_points *points, const struct track_clip *clip, const struct track_subject *subject,
                          const struct track_conf *conf, struct err *err);
