@@ -9,10 +9,11 @@ static const struct camera lens = { .center_px = { 400.25, 299.5 }, .distortion 
 
 static struct camera_rig make(void)
 {
-	struct camera_rig rig = { mem_new(2, sizeof(struct rig_camera)), 2, 0.0125, "limbus", "eyes and mouth" };
-	rig.cameras[0] = (struct rig_camera){ mem_str("a"), mem_str("views/a b.jpg"), 800, 600, lens, { 900.5, 901 }, true,
+	struct camera_rig rig = { .cameras = mem_new(2, sizeof *rig.cameras), .n = 2, .scale_sigma = 0.0125, .scale_source = "limbus",
+		                      .frame_source = "eyes and mouth" };
+	rig.cameras[0] = (struct rig_camera){ mem_str("a"), mem_str("views/a b.jpg"), -1, 800, 600, lens, { 900.5, 901 }, true,
 		{ { 0, -1, 0, 12.5 }, { 1, 0, 0, -7 }, { 0, 0, 1, 600 }, { 0, 0, 0, 1 } }, 0.41, 123 };
-	rig.cameras[1] = (struct rig_camera){ mem_str("v"), mem_str("video/v.mp4"), 1920, 1080, lens, { 1500, 1500 }, false,
+	rig.cameras[1] = (struct rig_camera){ mem_str("v"), mem_str("video/v.mp4"), 120, 1920, 1080, lens, { 1500, 1500 }, false,
 		{ { 0 } }, NAN, 0 };
 	rig.has_eyes = true;
 	for (int i = 0; i < 6; i++)
@@ -47,6 +48,7 @@ static void test_round_trip(void **state)
 	assert_true(c->has_pose && !v->has_pose);
 	assert_true(isnan(v->residual_px));
 	NEAR(read.scale_sigma, 0.0125, 1e-12);
+	assert_true(c->frame == -1 && v->frame == 120);
 	assert_true(read.has_eyes);
 	for (int i = 0; i < 6; i++)
 		NEAR(read.eye_center[i / 3][i % 3], made.eye_center[i / 3][i % 3], 1e-10);

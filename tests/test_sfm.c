@@ -3,6 +3,7 @@
 #include "math/rng.h"
 #include "math/vec.h"
 #include "skin/sfm_frame.h"
+#include "skin/sfm_frames.h"
 #include "skin/sfm_match.h"
 #include "tests/lib/sfm_scene.h"
 #include "tests/lib/unit.h"
@@ -274,11 +275,50 @@ static void test_frame(void **state)
 	colmap_free(&m);
 }
 
+/* A camera that pans evenly, rests for thousands of frames, and pans on: every third frame of the pan is sharp. */
+static void test_frames(void **state)
+{
+	(void)state;
+	enum { N = 5000, PAN = 60, WANT = 20 };
+	static double sharpness[N], change[N];
+	long chosen[WANT];
+	for (int i = 0; i < N; i++) {
+		bool moves = i < PAN || i >= N - PAN;
+		sharpness[i] = moves && i % 3 == 1 ? 9 : 1;
+		change[i] = i && moves ? 2 : 0;
+	}
+	int n = sfm_choose_frames(chosen, WANT, N, sharpness, change, 0.7);
+	assert_in_range(n, WANT - 1, WANT);
+	int resting = 0;
+	for (int i = 0; i < n; i++) {
+		assert_true(!i || chosen[i] > chosen[i - 1]);
+		resting += chosen[i] >= PAN && chosen[i] < N - PAN;
+		assert_true(sharpness[chosen[i]] == 9);
+	}
+	// The rest is one stretch's part, however long it lasts.
+	assert_in_range(resting, 0, 1);
+	// Equal shares of the change: 12 a stretch are 6 frames.
+	for (int i = 1; i < n; i++)
+		if (chosen[i] < PAN)
+			assert_in_range(chosen[i] - chosen[i - 1], 1, 12);
+	for (int i = 0; i < N; i++)
+		change[i] = 0;
+	sharpness[77] = 10;
+	assert_int_equal(sfm_choose_frames(chosen, WANT, N, sharpness, change, 0.7), 1);
+	assert_int_equal(chosen[0], 77);
+	assert_int_equal(sfm_choose_frames(chosen, WANT, 1, sharpness, change, 0.7), 1);
+	assert_int_equal(sfm_choose_frames(chosen, WANT, 0, sharpness, change, 0.7), 0);
+	// Noise of a tripod: fewer stretches than it is asked for, never more.
+	for (int i = 0; i < N; i++)
+		change[i] = 0.0005;
+	assert_in_range(sfm_choose_frames(chosen, WANT, N, sharpness, change, 0.7), 1, 4);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_match),       cmocka_unit_test(test_overlap), cmocka_unit_test(test_subject),
-		cmocka_unit_test(test_triangulate), cmocka_unit_test(test_scale),   cmocka_unit_test(test_frame),
+		cmocka_unit_test(test_triangulate), cmocka_unit_test(test_scale),   cmocka_unit_test(test_frame), cmocka_unit_test(test_frames),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

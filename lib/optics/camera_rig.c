@@ -14,6 +14,8 @@ static json_t *camera_json(const struct rig_camera *c)
 	json_t *j = json_object();
 	json_object_set_new(j, "name", json_string(c->name));
 	json_object_set_new(j, "file", json_string(c->file));
+	if (c->frame >= 0)
+		json_object_set_new(j, "frame", json_integer(c->frame));
 	json_object_set_new(j, "width", json_integer(c->width));
 	json_object_set_new(j, "height", json_integer(c->height));
 	json_object_set_new(j, "fx", json_number(c->focal[0]));
@@ -90,6 +92,8 @@ static bool camera_read(struct rig_camera *c, const json_t *j, const char *path,
 		return false;
 	c->name = mem_str(name);
 	c->file = mem_str(file);
+	const json_t *frame = json_object_get(j, "frame");
+	c->frame = json_is_integer(frame) && json_integer_value(frame) >= 0 ? (long)json_integer_value(frame) : -1;
 	c->has_pose = json_is_array(json_object_get(j, "cam_from_head"));
 	return json_get(&w, j, "width", path, err) && json_get(&h, j, "height", path, err)
 	       && json_get(&c->focal[0], j, "fx", path, err) && json_get(&c->focal[1], j, "fy", path, err)

@@ -19,6 +19,7 @@
 
 struct rig_camera {
 	char *name, *file;           // "left_a", "photos/left_a.jpg"; owned
+	long frame;                  // of a video; -1: a photograph, or all of a video
 	int width, height;           // px
 	struct camera camera;        // focal_px: the geometric mean where fx and fy differ
 	double focal[2];             // fx, fy, px
@@ -44,7 +45,8 @@ bool camera_rig_load(struct camera_rig *rig, const char *path, struct err *err);
 /* Further keys of the document: JSON object text, or null. */
 bool camera_rig_save(const struct camera_rig *rig, const char *path, const char *made_by, const char *extra, struct err *err);
 
-/* The camera of a picture by its path in the capture ("views/a.jpg"); null: it has none. */
+/* The camera of a picture by its path in the capture ("views/a.jpg"); null: it has none. Frames of a video are one camera's,
+ * each with its own pose: the first of them. */
 const struct rig_camera *camera_rig_find(const struct camera_rig *rig, const char *file);
 
 void camera_rig_free(struct camera_rig *rig);

@@ -53,13 +53,17 @@ void model_warn(const struct colmap_model *model, const struct views *views, str
 		sharp[i] = views->v[i].sharpness;
 	double middle = stats_median(views->n_used, sharp);
 	free(sharp);
+	int frames = 0;
 	for (int i = 0; i < views->n_used; i++) {
 		const struct view *v = &views->v[i];
 		bool registered = false;
 		for (int k = 0; k < model->n_images; k++)
 			registered |= !strcmp(model->images[k].name, v->picture);
-		if (!registered)
+		frames += !registered && v->frame >= 0;
+		if (!registered && v->frame < 0)
 			stage_skipped(stage, "%s: not registered: %s", v->file, v->sharpness < blurred * middle
 			              ? "it is blurred" : "it shares too little with the others: take one between");
 	}
+	if (frames)
+		stage_skipped(stage, "video: %d of its frames are not registered: they share too little with the other pictures", frames);
 }

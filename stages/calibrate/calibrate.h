@@ -12,6 +12,8 @@
 #define CALIBRATE_DIR "work/calibrate"
 
 struct calibrate_options {
+	int video_frames, video_frames_beside, limit_video_frames;
+	double limit_video_mpx;
 	int picture_px, features, first_octave, max_views, min_matches, lens;
 	double same_level, blur_warning, limit_mpx, regrow;
 	struct sfm_overlap_conf overlap;
@@ -29,9 +31,10 @@ struct calibrate_options {
 
 enum { THUMB = 16 };
 
-/* A photograph of views/ or photos/. */
+/* A photograph of views/ or photos/, or a frame of video/. */
 struct view {
 	char *file;               // "views/a.jpg"; owned
+	long frame;               // of a video; -1: a photograph
 	char picture[40];         // its name below work/calibrate/pictures
 	int width, height;        // of the photograph, upright, px
 	int picture_width, picture_height;
@@ -54,10 +57,24 @@ struct views {
 	int n_cameras;
 };
 
-/* Photographs of views/ and photos/ as pictures for COLMAP: upright, at most picture_px long; near-duplicates and what
+/* Photographs of views/ and photos/ and frames of video/ as pictures for COLMAP: upright, at most picture_px long; near-duplicates and what
  * cannot be decoded left out with a reason. views_free. */
 bool views_gather(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err);
 void views_free(struct views *views);
+
+/* What capture.conf calls it: the file without folder and ending, of a frame with its number: "clip_120". free(). */
+char *view_name(const struct view *view);
+
+/* True where nothing of views/ is in use: frames of a video have to do. */
+bool views_are_video(const struct views *views);
+
+/* Of 8-bit pixels [height][width][channels]. */
+void view_thumb(uint8_t thumb[THUMB * THUMB], const uint8_t *px, int width, int height, int channels);
+double view_sharpness(const uint8_t *px, int width, int height, int channels);
+double view_difference(const uint8_t *thumb, const uint8_t *other);  // mean, grey levels
+
+/* Writes the picture of a view of that size, at most picture_px long, and fills what is known from its pixels. */
+bool view_picture(struct view *view, const char *path, const uint8_t *px, int channels, int picture_px, struct err *err);
 
 /* The camera of a picture before anything is known but EXIF, capture.conf and the table of sensors. */
 double view_focal_known(const struct view *view, const struct calibrate_options *o);

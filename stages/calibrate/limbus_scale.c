@@ -56,17 +56,21 @@ static bool add_view(struct places_lengths *out, const struct head *head, const 
 {
 	struct photo photo;
 	const struct colmap_image *im = head_image(head, view);
-	double a, R[3][3], p[3], scale = (double)view->picture_width / view->width;
-	if (!photo_load(&photo, stage_path(stage, "%s", view->file), o->limit_mpx, err))
-		return false;
-	bool found = measure(&a, &photo, hint);
-	photo_free(&photo);
+	double a = hint[2], R[3][3], p[3], scale = (double)view->picture_width / view->width;
+	bool found = false;
+	// Of a video's frame no photograph is kept: the hand's circle has to do.
+	if (view->frame < 0) {
+		if (!photo_load(&photo, stage_path(stage, "%s", view->file), o->limit_mpx, err))
+			return false;
+		found = measure(&a, &photo, hint);
+		photo_free(&photo);
+	}
 	colmap_rotation(R, im->q);
 	mat_vec(p, R, eye);
 	double depth = p[2] + im->t[2], focal = head->model->cameras[im->camera].params[0] / scale;
 	// A hand draws the circle to a tenth of its size; the edge is found to half a pixel.
 	if (out->n < PLACES_LENGTHS)
-		out->l[out->n++] = (struct sfm_length){ (found ? a : hint[2]) * depth / focal, o->limbus_radius_mm, found ? 0.5 / a : 0.1 };
+		out->l[out->n++] = (struct sfm_length){ a * depth / focal, o->limbus_radius_mm, found ? 0.5 / a : 0.1 };
 	return true;
 }
 

@@ -119,7 +119,7 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
 	struct err why = { 0 };
 	bool ok = run_mapper(stage, views, grows, o, &why);
 	// That it found no pair to begin with is a result, and for the photographs to answer for.
-	if (!ok && !strstr(why.msg, "failed to create sparse model"))
+	if (!ok && !strstr(why.msg, "failed to create sparse model") && !strstr(why.msg, "No good initial image pair"))
 		return err_set(err, "%s", why.msg);
 	*n_models = 0;
 	*model = (struct colmap_model){ 0 };
@@ -138,15 +138,16 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 	if (kept && !n_new)
 		return true;
 	colmap_free(model);
+	*model = (struct colmap_model){ 0 };
 	struct err none = { 0 };
 	if (!kept)  // the cameras move: points measured with the old ones are worth nothing
 		file_remove(stage_path(stage, CALIBRATE_DIR "/cloud.grid"), &none);
-	if (!map(model, &n_models, views, kept, stage, o, err))
-		return false;
 	bool flat = false;
 	if (!model_is_flat(&flat, stage, err))
 		return false;
-	if (!model->n_images || flat)
+	if (!flat && !map(model, &n_models, views, kept, stage, o, err))
+		return false;
+	if (!model->n_images)
 		return model_advice(views, stage, err);
 	model_warn(model, views, stage);
 	stage_note(stage, "%d of %d pictures registered, %d points, %.2f px%s", model->n_images, views->n_used, model->n_points,

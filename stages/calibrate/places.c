@@ -17,9 +17,10 @@ static const double hand_px = 1.5, corner_px = 0.3;
 
 bool view_is_named(const struct view *view, const char *name)
 {
-	const char *slash = strrchr(view->file, '/'), *file = slash ? slash + 1 : view->file, *dot = strrchr(file, '.');
-	size_t n = dot && dot != file ? (size_t)(dot - file) : strlen(file);
-	return strlen(name) == n && !strncmp(file, name, n);
+	char *own = view_name(view);
+	bool same = !strcmp(own, name);
+	free(own);
+	return same;
 }
 
 /* Index of the registered image of the view of that name; -1: none. *scale: picture px for a px of the photograph. */

@@ -7,12 +7,6 @@
 #include "base/mem.h"
 #include "stages/calibrate/head.h"
 
-static char *stem(const char *file)
-{
-	const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file, *dot = strrchr(name, '.');
-	return mem_printf("%.*s", dot && dot != name ? (int)(dot - name) : (int)strlen(name), name);
-}
-
 const struct colmap_image *head_image(const struct head *head, const struct view *view)
 {
 	for (int i = 0; i < head->model->n_images; i++)
@@ -26,7 +20,7 @@ static bool fill(struct rig_camera *c, const struct head *head, const struct vie
 {
 	const struct colmap_model *m = head->model;
 	const double sx = (double)view->width / view->picture_width, sy = (double)view->height / view->picture_height;
-	*c = (struct rig_camera){ .name = stem(view->file), .file = mem_str(view->file), .width = view->width,
+	*c = (struct rig_camera){ .name = view_name(view), .file = mem_str(view->file), .frame = view->frame, .width = view->width,
 		                      .height = view->height, .has_pose = true };
 	if (!colmap_to_camera(&c->camera, c->focal, &m->cameras[image->camera], err))
 		return false;
@@ -54,8 +48,12 @@ static char *extras(const struct head *head, const struct views *views)
 	for (int i = 0; i < views->n; i++) {
 		const struct view *v = &views->v[i];
 		const char *reason = *v->reason ? v->reason : head_image(head, v) ? 0 : "shares too little with the others";
-		if (reason)
-			json_array_append_new(out, json_pack("{s:o,s:o}", "file", text(v->file), "reason", text(reason)));
+		if (reason) {
+			json_t *row = json_pack("{s:o,s:o}", "file", text(v->file), "reason", text(reason));
+			if (v->frame >= 0)
+				json_object_set_new(row, "frame", json_integer(v->frame));
+			json_array_append_new(out, row);
+		}
 	}
 	json_t *json = json_pack("{s:o,s:o,s:o,s:i}", "not_registered", out, "mm_per_unit", json_number(head->frame.scale),
 	                         "residual_px", json_number(head->residual_px), "points", head->model->n_points);

@@ -1,19 +1,29 @@
 #include "stages/calibrate/run.h"
 
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/run.h"
 #include "stages/calibrate/figure.h"
 #include "stages/calibrate/state.h"
 #include "stages/calibrate/subject.h"
 
 #define RIG "work/rig.json"
 
-/* The photographs the results are made from. */
-static const char **inputs_of(const struct views *views)
+/* The files the results are made from; of a video's frames the video, once. */
+static const char **inputs_of(int *n, const struct views *views)
 {
-	const char **in = mem_new((size_t)views->n, sizeof *in);
-	for (int i = 0; i < views->n; i++)
-		in[i] = views->v[i].file;
+	const char **in = mem_new((size_t)views->n, sizeof *in), *video = 0;
+	*n = 0;
+	for (int i = 0; i < views->n; i++) {
+		const struct view *v = &views->v[i];
+		if (v->frame < 0)
+			in[(*n)++] = v->file;
+		else
+			video = v->file;
+	}
+	if (video)
+		in[(*n)++] = video;
 	return in;
 }
 
@@ -33,20 +43,21 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	struct colmap_model model = { 0 };
 	struct head head = { .model = &model };
 	struct camera_rig rig = { 0 };
-	const char **in = inputs_of(views);
+	int n;
+	const char **in = inputs_of(&n, views);
 	const char *const rig_alone[] = { RIG };
 	bool ok = state_check(stage, o, err) && features_make(&grows, views, stage, o, err) && pairs_match(views, stage, o, err)
 	          && model_make(&model, views, grows, stage, o, err) && state_save(stage, o, err)
 	          && head_place(&head, views, stage, o, err)
-	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, views->n, in), err)
-	          && stage_made(stage, RIG, views->n, in, err);
+	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, n, in), err)
+	          && stage_made(stage, RIG, n, in, err);
 	if (ok && subject_given(stage))
 		stage_skipped(stage, "subject mesh: the folder has one");
 	else if (ok)
 		// Made from the rig, which names all photographs: a mesh's head has to stay short.
 		ok = subject_make(&head, views, stage, o, stage_made_by(stage, 1, rig_alone), err)
-		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, views->n, in, err));
-	ok = ok && figure_draw(&head, &rig, stage, err) && stage_made(stage, FIGURE, views->n, in, err);
+		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, n, in, err));
+	ok = ok && figure_draw(&head, &rig, stage, err) && stage_made(stage, FIGURE, n, in, err);
 	if (ok)
 		report(stage, views, &rig, &head);
 	free(in);
@@ -55,15 +66,45 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	return ok;
 }
 
+/* Nothing but a video, and no camera to be had from it: what comes later takes a generic one, and the user is told. */
+static bool give_up(struct stage *stage, const struct views *views, const char *why, struct err *err)
+{
+	static const char *const out[] = { RIG, SUBJECT, FIGURE };
+	const char *file = "video/";
+	for (int i = 0; i < views->n; i++)
+		file = views->v[i].frame >= 0 ? views->v[i].file : file;
+	stage_skipped(stage, "%s: no camera found from it (%s): a generic one is taken. Set camera.focal_px, or put photographs taken round the head into views/",
+	              file, why);
+	*err = (struct err){ 0 };
+	bool ok = true;
+	for (int i = 0; i < COUNT(out); i++)
+		ok = file_remove(stage_path(stage, "%s", out[i]), err) && ok;
+	return ok;
+}
+
+/* What the pictures themselves are to blame for begins with the folder's name: advice.c and head.c. */
+static bool is_advice(const struct err *err, const struct stage *stage)
+{
+	char *start = mem_printf("%s/views:", stage->capture);
+	bool is = !strncmp(err->msg, start, strlen(start));
+	free(start);
+	return is;
+}
+
 bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct views views;
-	bool ok = views_gather(&views, stage, o, err);
-	if (ok && views.n_used < 2)
+	bool ok = views_gather(&views, stage, o, err), video = ok && file_exists(stage_path(stage, "video")) && views_are_video(&views);
+	if (ok && video && !run_exists("colmap"))
+		ok = give_up(stage, &views, "COLMAP is not installed: apt-get install colmap", err);
+	else if (ok && video && views.n_used < 2)
+		ok = give_up(stage, &views, "it shows one picture only, or none", err);
+	else if (ok && views.n_used < 2)
 		ok = err_set(err, "%s/views: %d usable photographs, at least 2 are needed, better 20 from all round", stage->capture,
 		             views.n_used);
-	if (ok)
-		ok = from_views(stage, &views, o, err);
+	else if (ok)
+		ok = from_views(stage, &views, o, err)
+		     || (video && is_advice(err, stage) && give_up(stage, &views, "neither camera nor head move enough in it", err));
 	views_free(&views);
 	return ok;
 }

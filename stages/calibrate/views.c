@@ -9,7 +9,7 @@
 #include "image/photo.h"
 #include "optics/sensor.h"
 #include "stages/calibrate/calibrate.h"
-#include "stages/calibrate/pictures.h"
+#include "stages/calibrate/frames.h"
 
 enum { SHARP_PX = 800, JPEG_QUALITY = 96 };
 
@@ -33,7 +33,7 @@ static uint8_t *grey_at(const uint8_t *px, int w, int h, int channels, int new_w
 }
 
 /* Mean squared Laplacian: drops with blur (Pech-Pacheco et al. 2000 use its variance). */
-static double sharpness_of(const uint8_t *px, int w, int h, int channels)
+double view_sharpness(const uint8_t *px, int w, int h, int channels)
 {
 	double f = fmin(1, (double)SHARP_PX / fmax(w, h)), sum = 0;
 	int W = (int)fmax(3, lround(f * w)), H = (int)fmax(3, lround(f * h));
@@ -48,32 +48,42 @@ static double sharpness_of(const uint8_t *px, int w, int h, int channels)
 	return sum / ((double)(W - 2) * (H - 2));
 }
 
+void view_thumb(uint8_t thumb[THUMB * THUMB], const uint8_t *px, int width, int height, int channels)
+{
+	uint8_t *grey = grey_at(px, width, height, channels, THUMB, THUMB);
+	memcpy(thumb, grey, THUMB * THUMB);
+	free(grey);
+}
+
+bool view_picture(struct view *view, const char *path, const uint8_t *px, int channels, int picture_px, struct err *err)
+{
+	double f = fmin(1, (double)picture_px / fmax(view->width, view->height));
+	int w = (int)fmax(1, lround(f * view->width)), h = (int)fmax(1, lround(f * view->height));
+	uint8_t *reduced = f < 1 ? cv_resize8(px, view->width, view->height, channels, w, h) : 0, *jpeg = 0;
+	const uint8_t *small = reduced ? reduced : px;
+	view->picture_width = w;
+	view->picture_height = h;
+	view->sharpness = view_sharpness(small, w, h, channels);
+	view_thumb(view->thumb, small, w, h, channels);
+	size_t size;
+	bool ok = picture_jpeg_encode(&jpeg, &size, small, w, h, channels, JPEG_QUALITY, err) && file_write(path, jpeg, size, err);
+	free(reduced);
+	free(jpeg);
+	return ok;
+}
+
 static bool make_picture(struct view *view, const char *path, const struct photo *photo, int picture_px, struct err *err)
 {
 	int channels = photo->grey ? 1 : 3;
-	double f = fmin(1, (double)picture_px / fmax(photo->width, photo->height));
 	view->width = photo->width;
 	view->height = photo->height;
-	view->picture_width = (int)fmax(1, lround(f * photo->width));
-	view->picture_height = (int)fmax(1, lround(f * photo->height));
 	view->focal_px = photo->exif.focal_px;
 	if (!isfinite(view->focal_px))
 		view->focal_px = photo->exif.focal_mm / sensor_mm(photo->exif.model) * fmax(photo->width, photo->height);
 	strcpy(view->maker, photo->exif.model);
-	uint8_t *px = narrow(photo, channels), *small = px, *jpeg = 0;
-	if (f < 1)
-		small = cv_resize8(px, photo->width, photo->height, channels, view->picture_width, view->picture_height);
-	view->sharpness = sharpness_of(small, view->picture_width, view->picture_height, channels);
-	uint8_t *thumb = grey_at(small, view->picture_width, view->picture_height, channels, THUMB, THUMB);
-	memcpy(view->thumb, thumb, sizeof view->thumb);
-	size_t size;
-	bool ok = picture_jpeg_encode(&jpeg, &size, small, view->picture_width, view->picture_height, channels, JPEG_QUALITY, err)
-	          && file_write(path, jpeg, size, err);
-	if (small != px)
-		free(small);
+	uint8_t *px = narrow(photo, channels);
+	bool ok = view_picture(view, path, px, channels, picture_px, err);
 	free(px);
-	free(thumb);
-	free(jpeg);
 	return ok;
 }
 
@@ -101,7 +111,7 @@ static void add_folder(struct views *views, struct stage *stage, const char *dir
 		return;
 	views->v = mem_grow(views->v, (size_t)(views->n + list.n), sizeof *views->v);
 	for (int i = 0; i < list.n; i++)
-		views->v[views->n++] = (struct view){ .file = mem_printf("%s/%s", dir, list.names[i]), .focal_px = NAN };
+		views->v[views->n++] = (struct view){ .file = mem_printf("%s/%s", dir, list.names[i]), .focal_px = NAN, .frame = -1 };
 	file_list_free(&list);
 }
 
@@ -146,11 +156,11 @@ static bool prepare_all(struct views *views, struct stage *stage, const struct c
 	return ok;
 }
 
-static double difference(const struct view *a, const struct view *b)
+double view_difference(const uint8_t *thumb, const uint8_t *other)
 {
 	double sum = 0;
 	for (int i = 0; i < THUMB * THUMB; i++)
-		sum += abs(a->thumb[i] - b->thumb[i]);
+		sum += abs(thumb[i] - other[i]);
 	return sum / (THUMB * THUMB);
 }
 
@@ -162,7 +172,7 @@ static void thin(struct views *views, struct stage *stage, const struct calibrat
 		struct view *v = &views->v[i];
 		if (*v->reason)
 			continue;
-		if (last >= 0 && difference(v, &views->v[last]) < o->same_level) {
+		if (last >= 0 && view_difference(v->thumb, views->v[last].thumb) < o->same_level) {
 			snprintf(v->reason, sizeof v->reason, "nearly the same as %.200s", views->v[last].file);
 			same++;
 		} else {
@@ -208,6 +218,15 @@ static void sort_used(struct views *views)
 	views->v = out;
 }
 
+/* A few are enough for the video's lens beside photographs; alone they have to carry everything. */
+static int frames_wanted(const struct views *views, const struct calibrate_options *o)
+{
+	int n = 0;
+	for (int i = 0; i < views->n; i++)
+		n += !*views->v[i].reason && !strncmp(views->v[i].file, "views/", 6);
+	return n >= 2 ? o->video_frames_beside : o->video_frames;
+}
+
 bool views_gather(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	*views = (struct views){ 0 };
@@ -219,7 +238,7 @@ bool views_gather(struct views *views, struct stage *stage, const struct calibra
 	struct pictures known;
 	pictures_load(&known, stage_path(stage, CALIBRATE_DIR "/pictures.json"));
 	pictures_recall(views, &known);
-	bool ok = prepare_all(views, stage, o, err);
+	bool ok = prepare_all(views, stage, o, err) && frames_add(views, frames_wanted(views, o), &known, stage, o, err);
 	if (ok) {
 		thin(views, stage, o);
 		say_left_out(views, stage);
@@ -229,6 +248,21 @@ bool views_gather(struct views *views, struct stage *stage, const struct calibra
 	}
 	pictures_free(&known);
 	return ok;
+}
+
+char *view_name(const struct view *view)
+{
+	const char *slash = strrchr(view->file, '/'), *file = slash ? slash + 1 : view->file, *dot = strrchr(file, '.');
+	int n = dot && dot != file ? (int)(dot - file) : (int)strlen(file);
+	return view->frame < 0 ? mem_printf("%.*s", n, file) : mem_printf("%.*s_%ld", n, file, view->frame);
+}
+
+bool views_are_video(const struct views *views)
+{
+	for (int i = 0; i < views->n_used; i++)
+		if (!strncmp(views->v[i].file, "views/", 6))
+			return false;
+	return true;
 }
 
 void views_free(struct views *views)

@@ -20,7 +20,7 @@ static const struct rule {
 	const char *does, *without;  // reasons: why it runs, why not when the folder lacks what it works on
 } rules[PLAN_STAGES] = {
 	{ "plan", 0, 0, 0, "decides what the others do", "" },
-	{ "calibrate", 0, VIEWS, 0, "cameras from the overlapping views",
+	{ "calibrate", 0, VIEWS | VIDEO, 0, "cameras from the overlapping views, or from the video",
 	  "one photograph or no views/: cameras come from EXIF or capture.conf" },
 	{ "limbus", 0, PHOTOS, 0, "finds the eye in each photograph", "no photos/" },
 	{ "unrefract", "limbus", PHOTOS, 0, "takes the cornea off the iris", "no photos/" },
@@ -57,6 +57,18 @@ bool plan_needs(int i, int j)
 	// Cameras come first: whatever looks at pictures takes them from there.
 	bool cameras = !strcmp(plan_names[j], "calibrate") && (!strcmp(plan_names[i], "limbus") || !strcmp(plan_names[i], "track"));
 	return cameras || (rules[i].needs && !strcmp(rules[i].needs, plan_names[j]));
+}
+
+/* The lens is in capture.conf: without views there is nothing left to be found. */
+static bool lens_given(const struct conf *conf)
+{
+	static const char *const keys[] = { "camera.focal_px", "camera.focal_mm", "camera.sensor_mm" };
+	bool given[COUNT(keys)];
+	for (int i = 0; i < COUNT(keys); i++) {
+		const struct conf_item *item = conf_find(conf, keys[i], 0);
+		given[i] = item && *item->value;
+	}
+	return given[0] || (given[1] && given[2]);
 }
 
 static bool ends_with(const char *s, const char *tail)
@@ -180,7 +192,8 @@ static const char *other_way(const char *name, int have)
 	return 0;
 }
 
-bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], struct err *err)
+bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
+                 struct err *err)
 {
 	struct stat st;
 	int have;
@@ -202,7 +215,8 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		const struct rule *r = &rules[i];
 		struct plan_row *row = &plan->rows[i];
-		bool has = (!r->any || have & r->any) && (have & r->all) == r->all;
+		bool calibrates = !strcmp(r->name, "calibrate");
+		bool has = (!calibrates || have & VIEWS || !lens_given(conf)) && (!r->any || have & r->any) && (have & r->all) == r->all;
 		const char *other = other_way(r->name, have);
 		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));
 		row->reason = r->does;

@@ -41,7 +41,8 @@ struct plan_asked {
 extern const char *const plan_names[PLAN_STAGES];
 
 /* cost: one for each stage, in the order of plan_names. False, err set, when the folder holds nothing to work on. */
-bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], struct err *err);
+bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
+                 struct err *err);
 
 /* Whether stage i cannot do without the result of stage j; both count in plan_names. */
 bool plan_needs(int i, int j);

@@ -19,7 +19,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 {
 	struct plan plan;
 	char *slice = slice_of(opts, conf);
-	bool ok = plan_decide(&plan, call->capture, cost, err) && plan_check_conf(&plan, conf, err)
+	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
 	if (ok && asked->show)

@@ -67,6 +67,28 @@ for i in $(seq 10 25); do cp "$PHOTO" "$root/still/views/f$i.jpg" && printf '%s'
 run_calibrate "$root/still"
 check "near-duplicates are left out, and it is said" grep -q "15 of 16 left out" "$log"
 
+# A video and no views: the lens is looked for in it, and where it cannot be found, nothing fails.
+CLIP=${B:-build}/tests/tools/clip
+mkdir -p "$root/video/video"
+echo "quality = draft" >"$root/video/capture.conf"
+"$CLIP" "$root/video/video/still.mp4" 480 20 "$PHOTO"
+"$BIN/plan" --capture="$root/video" --show >"$log" 2>&1
+check "a video whose lens nobody knows: calibrate runs" grep -q '^calibrate *run ' "$log"
+run_calibrate "$root/video"
+same "a video that stands still: exit status" "$?" 0
+check "says that a generic camera is taken" grep -q "still.mp4: no camera found from it.*one picture only.*generic.*camera.focal_px" "$log"
+check "no cameras are left" test ! -e "$root/video/work/rig.json"
+PATH=/nonexistent run_calibrate "$root/video" --force
+same "a video, colmap not installed: exit status" "$?" 0
+check "a video, colmap not installed: said" grep -q "apt-get install colmap.*generic" "$log"
+echo "no video" >"$root/video/video/still.mp4"
+run_calibrate "$root/video"
+same "a video that is none: exit status" "$?" 0
+check "a video that is none: said" grep -q "skipped: .*still.mp4" "$log"
+echo "camera.focal_px = 900" >>"$root/video/capture.conf"
+"$BIN/plan" --capture="$root/video" --show >"$log" 2>&1
+check "a video whose lens is given: calibrate does not run" grep -q '^calibrate *skip ' "$log"
+
 heads=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
 if ! command -v colmap >/dev/null 2>&1; then skip "views through COLMAP" "colmap is not installed"; exit; fi
 if [ ! -d "$heads" ]; then skip "views through COLMAP" "no photographs of a head"; exit; fi
@@ -103,6 +125,18 @@ cp "$heads/00060.jpg" "$root/head/views/"
 run_calibrate "$root/head"
 same "a changed model: exit status" "$?" 0
 check "a changed model: begun anew, and it is said" grep -q "not the ones that were sealed.*begun anew" "$log"
+
+# A video of a walk round the head, and nothing else: its lens, and where the head was.
+mkdir -p "$root/walk/video"
+echo "quality = draft" >"$root/walk/capture.conf"
+"$CLIP" "$root/walk/video/walk.mp4" 1280 3 "$heads"/000{13,16,22,31,34,36,62,63,35,60}.jpg
+run_calibrate "$root/walk"
+same "a walk filmed: exit status" "$?" 0
+check "some frames are enough, and it is said" grep -q "10 of 30 frames taken" "$log"
+same "each has a pose" "$(grep -c '"cam_from_head": \[' "$root/walk/work/rig.json")" 10
+# Its pictures are the photographs', reduced to 1280 of 2736 px; their published focal length is 1860.9 px. Ten frames: 3 %.
+focal=$(sed -n 's/.*"fx": \([0-9]*\).*/\1/p' "$root/walk/work/rig.json" | head -n 1)
+check "the lens is found: $focal of 871 px" test "${focal:-0}" -gt 845 -a "${focal:-0}" -lt 897
 
 # A mesh that is given is not made.
 cp "$root/again/work/subject.ply" "$root/again/subject.ply"
