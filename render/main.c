@@ -35,7 +35,7 @@ int main(int argc, char **argv)
 		ok = render_eye(&stage, &capture, i, &eye, &conf, &err);
 	skin.portrait.eye_samples = conf.samples;
 	ok = ok && render_skin(&stage, &capture, &eye, &conf, &skin, &err);
-	ok = ok && viewer_make(&stage, &capture, &eye, &conf, &err);
+	ok = ok && viewer_make(&stage, &capture, &eye, &conf, &skin, &err);
 	// The page is made even where a picture could not be: it says what is missing and why.
 	struct err late = { 0 };
 	if (!page_make(&stage, &capture, &conf, &late) && ok)

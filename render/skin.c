@@ -125,6 +125,16 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 	return ok;
 }
 
+void skin_close(struct skin_job *job)
+{
+	for (int i = 0; i < job->n_photographed; i++)
+		job_close(&job->photographed[i]);
+	if (job->eyes[0] == &job->plain)
+		scene_free(&job->plain);
+	envmap_free(&job->studio);
+	skin_model_free(&job->model);
+}
+
 bool render_skin(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *render,
                  const struct skin_conf *conf, struct err *err)
 {
@@ -137,11 +147,6 @@ bool render_skin(struct stage *stage, const struct capture *capture, const struc
 			ok = one(&job, targets.names[i], err);
 	}
 	file_list_free(&targets);
-	for (int i = 0; i < job.n_photographed; i++)
-		job_close(&job.photographed[i]);
-	if (job.eyes[0] == &job.plain)
-		scene_free(&job.plain);
-	envmap_free(&job.studio);
-	skin_model_free(&job.model);
+	skin_close(&job);
 	return ok && !err_is(err);
 }

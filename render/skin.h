@@ -84,6 +84,9 @@ bool render_skin(struct stage *stage, const struct capture *capture, const struc
 bool skin_kept(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
 bool skin_made(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
 
+/* Frees what the job has made. */
+void skin_close(struct skin_job *job);
+
 /* Eyes, light and the model, once. */
 bool skin_ready(struct skin_job *job, struct err *err);
 

@@ -7,6 +7,7 @@
 #include "base/version.h"
 #include "render/embed.h"
 #include "render/page.h"
+#include "render/viewer_face.h"
 
 static const char *const out = "work/review/viewer.html";
 
@@ -62,16 +63,17 @@ static void programs(json_t *data)
 	const struct {
 		const char *key, *text;
 	} part[] = { { "css", viewer_css }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths },
-		         { "eye_frag", viewer_eye_frag }, { "present", viewer_present } };
+		         { "eye_frag", viewer_eye_frag }, { "present", viewer_present },
+		         { "skin", viewer_skin_frag }, { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
 	for (int i = 0; i < COUNT(part); i++)
 		json_object_set_new(data, part[i].key, json_string(part[i].text));
-	char *js = mem_printf("%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_page_js);
+	char *js = mem_printf("%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_face_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);
 }
 
 static bool write_page(struct stage *stage, const struct capture *capture, const struct render_conf *conf, json_t *eyes,
-                       struct err *err)
+                       json_t *face, struct err *err)
 {
 	struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array(), json_array() };
 	char *full = realpath(stage->capture, 0), *html, *text;
@@ -79,6 +81,8 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 	json_t *data = json_object(), *state = json_object();
 	json_object_set_new(state, "title", template_text(*base ? base : "capture"));
 	json_object_set(state, "eyes", eyes);
+	if (face)
+		json_object_set(state, "face", face);
 	json_object_set_new(state, "motion", motion(stage));
 	json_object_set_new(state, "version", json_string(EYEWRIGHT_VERSION));
 	text = script_text(state);
@@ -102,33 +106,142 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 	return ok;
 }
 
-bool viewer_make(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *conf,
-                 struct err *err)
+/* Files that the page is made of. */
+struct parts {
+	struct job *job;                 // of the eyes
+	bool *usable;
+	int opened, n_in;
+	const char **in;
+	char *target;                    // the character: its name; null: none
+};
+
+static bool find_eyes(struct parts *p, struct stage *stage, const struct capture *capture, const struct eye *eye,
+                      const struct render_conf *conf, struct err *err)
 {
-	struct job *job = mem_new((size_t)capture->n_eyes + 1, sizeof *job);
-	bool *usable = mem_new((size_t)capture->n_eyes + 1, sizeof *usable), ok = true;
-	const char **in = mem_new((size_t)capture->n_eyes * (COUNT(job->in) + 2) + 1, sizeof *in);
-	int n = 0, opened = 0;
-	for (; ok && opened < capture->n_eyes; opened++) {
-		ok = job_open(&job[opened], &usable[opened], stage, capture, opened, eye, conf, err);
-		for (int i = 0; ok && usable[opened] && i < job[opened].n_in; i++)
-			in[n++] = job[opened].in[i];
+	for (; p->opened < capture->n_eyes; p->opened++) {
+		struct job *job = &p->job[p->opened];
+		if (!job_open(job, &p->usable[p->opened], stage, capture, p->opened, eye, conf, err))
+			return false;
+		for (int i = 0; p->usable[p->opened] && i < job->n_in; i++)
+			p->in[p->n_in++] = job->in[i];
 	}
-	if (ok && n && !stage_fresh(stage, out, n, in)) {
-		json_t *eyes = json_array();
-		for (int i = 0; ok && i < opened; i++) {
-			json_t *one = usable[i] && job_ready(&job[i], err) ? viewer_eye(&job[i], err) : 0;
-			ok = !usable[i] || one;
-			if (one)
-				json_array_append_new(eyes, one);
+	return true;
+}
+
+static bool find_character(struct parts *p, struct stage *stage, struct err *err)
+{
+	struct file_list list;
+	if (!file_exists(stage_path(stage, "work/skin/model.json")))
+		return true;
+	if (!stage_list(stage, &list, "targets", err))
+		return false;
+	for (int i = 0; i < list.n && !p->target; i++) {
+		const char *dot = strrchr(list.names[i], '.');
+		char *name = mem_printf("%.*s", dot ? (int)(dot - list.names[i]) : (int)strlen(list.names[i]), list.names[i]);
+		const char *rig = stage_path(stage, "work/targets/%s/rig.npz", name) + strlen(stage->capture) + 1;
+		if (file_exists(stage_path(stage, "%s", rig))) {
+			p->target = name;
+			p->in[p->n_in++] = rig;
+			p->in[p->n_in++] = "work/skin/model.json";
+			p->in[p->n_in++] = "work/skin/gaze.csv";
+			p->in[p->n_in++] = "work/skin/animation.csv";
+		} else {
+			free(name);
 		}
-		ok = ok && write_page(stage, capture, conf, eyes, err) && stage_made(stage, out, n, in, err);
-		json_decref(eyes);
 	}
-	for (int i = 0; i < opened; i++)
-		job_close(&job[i]);
-	free(job);
-	free(usable);
-	free(in);
+	file_list_free(&list);
+	return true;
+}
+
+static bool add_eyes(json_t *eyes, struct parts *p, struct err *err)
+{
+	for (int i = 0; i < p->opened; i++) {
+		struct job *job = &p->job[i];
+		if (!p->usable[i])
+			continue;
+		if (!job_ready(job, err))
+			return false;
+		const struct viewer_source source = { &job->scene, job->names->side, stage_path(job->stage, "%s", job->in[3]),
+			                                  &job->studio, job->gain, &job->shots[job->reference], job->conf->lights };
+		json_t *one = viewer_eye(&source, err);
+		if (!one)
+			return false;
+		json_array_append_new(eyes, one);
+	}
+	return true;
+}
+
+/* Recorded gaze and the script's, where they are. */
+static bool add_clips(json_t *face, struct skin_job *skin, const struct rig *rig, struct err *err)
+{
+	static const char *const clips[][2] = { { "work/skin/gaze.csv", "As recorded" }, { "work/skin/animation.csv", "Cut-scene" } };
+	json_t *list = json_array();
+	bool ok = true;
+	for (int i = 0; i < COUNT(clips) && ok; i++) {
+		const char *path = stage_path(skin->stage, "%s", clips[i][0]);
+		struct drive drive;
+		if (!file_exists(path))
+			continue;
+		ok = drive_load(&drive, &skin->model, path, err);
+		if (ok) {
+			json_array_append_new(list, viewer_clip(clips[i][1], rig, &drive));
+			drive_free(&drive);
+		}
+	}
+	json_object_set_new(face, "clips", list);
+	return ok;
+}
+
+/* The character and, where there is no other, its plain eye. */
+static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const char *name, struct err *err)
+{
+	struct skin_target target = { .name = name, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
+	bool ok = skin_open(skin, &target, err);
+	if (ok && !json_array_size(eyes)) {
+		const struct viewer_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, skin->render->lights };
+		json_t *one = viewer_eye(&plain, err);
+		ok = one;
+		if (one)
+			json_array_append_new(eyes, one);
+	}
+	if (ok) {
+		*face = viewer_face(name, target.portrait, skin->gain, skin->eyes);
+		ok = add_clips(*face, skin, &target.rig, err);
+	}
+	portrait_free(target.portrait);
+	rig_free(&target.rig);
+	return ok;
+}
+
+static bool make(struct parts *p, struct skin_job *skin, struct err *err)
+{
+	json_t *eyes = json_array(), *face = 0;
+	bool ok = add_eyes(eyes, p, err) && (!p->target || add_face(&face, eyes, skin, p->target, err))
+	          && write_page(skin->stage, skin->capture, skin->render, eyes, face, err)
+	          && stage_made(skin->stage, out, p->n_in, p->in, err);
+	json_decref(eyes);
+	json_decref(face);
+	return ok;
+}
+
+bool viewer_make(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *conf,
+                 const struct skin_conf *skin_conf, struct err *err)
+{
+	struct parts p = { 0 };
+	p.job = mem_new((size_t)capture->n_eyes + 1, sizeof *p.job);
+	p.usable = mem_new((size_t)capture->n_eyes + 1, sizeof *p.usable);
+	p.in = mem_new((size_t)capture->n_eyes * COUNT(p.job->in) + 4, sizeof *p.in);
+	bool ok = find_eyes(&p, stage, capture, eye, conf, err) && find_character(&p, stage, err);
+	if (ok && p.n_in && !stage_fresh(stage, out, p.n_in, p.in)) {
+		struct skin_job skin = { .stage = stage, .render = conf, .conf = skin_conf, .capture = capture, .eye = eye };
+		ok = make(&p, &skin, err);
+		skin_close(&skin);
+	}
+	for (int i = 0; i < p.opened; i++)
+		job_close(&p.job[i]);
+	free(p.job);
+	free(p.usable);
+	free(p.in);
+	free(p.target);
 	return ok;
 }

@@ -4,10 +4,21 @@
 #define RENDER_VIEWER_H
 #include <jansson.h>
 
-#include "render/render.h"
+#include "render/skin.h"
 
-/* Everything the page needs of one eye: job_ready() has been called. json_decref. */
-json_t *viewer_eye(struct job *job, struct err *err);
+/* One eye and what is known of it. */
+struct viewer_source {
+	const struct scene *scene;       // scene_fit_colour has been called
+	const char *side;                // "left", "right", "eye"
+	const char *pigment;             // path of pigment.json, or null
+	const struct envmap *studio;
+	double gain;                     // exposure
+	const struct shot *shot;         // the photograph its colours are of, decoded; null: none
+	int lights;
+};
+
+/* Everything the page needs of one eye. json_decref. */
+json_t *viewer_eye(const struct viewer_source *source, struct err *err);
 
 /* Maps as pictures in base 64, {png, width, height, low, high}: 8 bits a channel and what 0 and 255 mean.
  * viewer_map_log: colours > 0 by their logarithm; viewer_map_plain: its first channels, at most 3. */
@@ -20,10 +31,11 @@ json_t *viewer_map_plain(const struct image *map, struct err *err);
 json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, int lights, struct err *err);
 
 /* The tissue as fitted, with what each wavelength absorbs and scatters, and sigmas of the fit. */
-json_t *viewer_tissue(struct job *job, const struct scene *scene);
+json_t *viewer_tissue(const struct viewer_source *source);
 
-/* Writes the page where it is not fresh; no eye: no page. */
+/* Writes the page where it is not fresh: the photographed eyes, and the first character that has a rig, whose eyes are plain
+ * ones where none was photographed. Neither: no page. */
 bool viewer_make(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *conf,
-                 struct err *err);
+                 const struct skin_conf *skin, struct err *err);
 
 #endif

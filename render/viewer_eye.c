@@ -55,7 +55,7 @@ static bool maps(json_t *out, const struct scene *s, struct err *err)
 }
 
 /* The photograph's own view, for the comparison beside it. */
-static json_t *photo(const struct job *job, const struct shot *shot)
+static json_t *photo(const struct shot *shot)
 {
 	struct scene_view v = shot_view(shot);
 	double pose[16], slip[6], camera[3] = { v.camera.focal_px, v.camera.center_px[0], v.camera.center_px[1] };
@@ -73,23 +73,23 @@ static json_t *photo(const struct job *job, const struct shot *shot)
 	put(out, "window", 3, window);
 	json_object_set_new(out, "name", template_text(shot->photo->name));
 	json_object_set_new(out, "lens_bends", json_boolean(v.camera.distortion[0] != 0));
-	(void)job;
 	return out;
 }
 
-json_t *viewer_eye(struct job *job, struct err *err)
+json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 {
-	const struct scene *s = &job->scene;
-	struct shot *shot = &job->shots[job->reference];
+	const struct scene *s = source->scene;
+	const struct shot *shot = source->shot;
 	json_t *out = json_object(), *map = json_object(), *lights = json_array();
-	const char *side = job->names->side;
-	json_object_set_new(out, "side", template_text(side));
+	json_object_set_new(out, "side", template_text(source->side));
 	json_object_set_new(out, "constants", json_pack("{s:f,s:f}", "film_index", (double)SCENE_FILM_INDEX, "sclera_reach", SCENE_SCLERA_REACH));
-	json_object_set_new(out, "eye", geometry(s, job->gain));
-	json_object_set_new(out, "tissue", viewer_tissue(job, s));
-	json_object_set_new(out, "photo", photo(job, shot));
-	json_array_append_new(lights, viewer_light("Studio", &job->studio, &job->studio, job->conf->lights, err));
-	json_array_append_new(lights, viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, err));
+	json_object_set_new(out, "eye", geometry(s, source->gain));
+	json_object_set_new(out, "tissue", viewer_tissue(source));
+	json_array_append_new(lights, viewer_light("Studio", source->studio, source->studio, source->lights, err));
+	if (shot) {
+		json_object_set_new(out, "photo", photo(shot));
+		json_array_append_new(lights, viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source->lights, err));
+	}
 	json_object_set_new(out, "lights", lights);
 	bool ok = maps(map, s, err) && !err_is(err);
 	json_object_set_new(out, "maps", map);

@@ -15,7 +15,7 @@ static json_t *intervals(const char *path)
 {
 	json_t *out = json_object();
 	struct err err = { 0 };
-	json_t *root = file_exists(path) ? json_read(path, 1 << 22, &err) : 0;
+	json_t *root = path && file_exists(path) ? json_read(path, 1 << 22, &err) : 0;
 	for (int i = 0; i < COUNT(names); i++) {
 		json_t *entry = json_object_get(json_object_get(root, keys[i][0]), keys[i][1]);
 		double v[2];
@@ -42,18 +42,17 @@ static json_t *spectra(int n, enum illuminant illuminant)
 	return out;
 }
 
-json_t *viewer_tissue(struct job *job, const struct scene *scene)
+json_t *viewer_tissue(const struct viewer_source *source)
 {
 	enum { BANDS = 4 };  // what the shader carries in one vector
-	const struct tissue t = scene->tissue;
-	const char *path = stage_path(job->stage, "%s", job->in[3]);
+	const struct tissue t = source->scene->tissue;
 	double value[] = { t.layer[0].melanin, t.layer[0].eumelanin_ratio, t.layer[1].melanin, t.layer[1].eumelanin_ratio,
 		               t.thickness_scale };
 	json_t *out = json_object(), *fitted = json_object();
 	for (int i = 0; i < COUNT(names); i++)
 		json_object_set_new(fitted, names[i], json_number(value[i]));
 	json_object_set_new(out, "fitted", fitted);
-	json_object_set_new(out, "interval", intervals(path));
+	json_object_set_new(out, "interval", intervals(source->pigment));
 	json_object_set_new(out, "abl", json_number(t.abl_thickness));
 	json_object_set_new(out, "exposure", json_number(t.exposure));
 	json_object_set_new(out, "multiple", json_boolean(t.multiple));

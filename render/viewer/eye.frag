@@ -26,6 +26,10 @@ uniform bool flat_iris;
 uniform vec3 flat_rgb;
 uniform vec3 quadric[9], even;    // irradiance of the environment
 uniform float mirror_on, film_index, tear;
+uniform mat3 lidded_from_eye;     // to the axes in which lids leave sky over places of the globe
+uniform float lidded, side;       // in a face: 1; left eye 0, right eye 1
+uniform sampler2D sky_map;
+uniform vec3 depth;               // in a face: of clip space, and its mm in one of the eye's
 out vec4 seen;
 
 // From a place on the iris as it is now to the same tissue in the maps: radial fibres shorten evenly.
@@ -263,8 +267,9 @@ vec3 white(inout vec3 normal, vec3 at, float rho)
 }
 
 // Radiance from a ray that meets the eye, and how much of the pixel the eye covers.
-vec4 look(vec3 o, vec3 d)
+vec4 look(vec3 o, vec3 d, out float far)
 {
+	far = 1e9;
 	float start = max(0.0, -dot(o, d));  // from the point of the ray nearest to the apex: no digits are lost
 	vec3 n = o + start * d;
 	float A = dot(d.xy, d.xy) + cornea_p * d.z * d.z, B = dot(n.xy, d.xy) + (cornea_p * n.z - cornea_R) * d.z;
@@ -280,6 +285,7 @@ vec4 look(vec3 o, vec3 d)
 		cover = clamp((sclera.y - miss) / pixel, 0.0, 1.0);
 	if (!hit && !on_sclera)
 		return vec4(0.0);
+	far = start + (on_sclera ? ts : t);
 	vec3 at = n + (on_sclera ? ts : t) * d;
 	// The corneal normal turns into the sphere's across the sulcus: no crease stands where they meet.
 	float rho = at.z < sclera.x ? length(at.xy / limbus) : 2.0;
@@ -299,13 +305,25 @@ vec4 look(vec3 o, vec3 d)
 		float rough = 0.75 * step_smooth(1.0, 1.35, rho) * clamp(1.5 - 0.5 * tear, 0.0, 1.33);
 		rgb += mirror_on * mirror_share(cos_i, film_index) * environment(d + 2.0 * cos_i * normal, rough);
 	}
+	if (lidded > 0.0) {
+		// Lids darken the eye below them, and throw back some of their own colour.
+		vec2 place = (lidded_from_eye * normalize(at - vec3(0.0, 0.0, sclera.x))).xy;
+		float open = textureLod(sky_map, vec2(clamp(0.25 + 0.25 * place.x, 0.02, 0.48) + 0.5 * side, 0.5 + 0.5 * place.y), 0.0).r;
+		rgb *= open + vec3(0.34, 0.25, 0.20) * (1.0 - open);
+		cover = 1.0;
+	}
 	return vec4(rgb * cover, cover);
 }
 
 void main()
 {
 	vec2 px = vec2(gl_FragCoord.x, size.y - gl_FragCoord.y) + jitter;
-	vec3 d = normalize(eye_from_cam * vec3((corner + lens.w * px - lens.yz) / lens.x, 1.0));
-	vec4 c = look(origin, d);
+	vec3 ray = vec3((corner + lens.w * px - lens.yz) / lens.x, 1.0);
+	float far;
+	vec4 c = look(origin, normalize(eye_from_cam * ray), far);
+	if (lidded > 0.0 && c.a == 0.0)
+		discard;
+	float z = far / length(ray) * depth.z;
+	gl_FragDepth = lidded > 0.0 ? 0.5 + 0.5 * (depth.x + depth.y / z) : 0.0;
 	seen = vec4(min(c.rgb, 2.0), c.a);  // a mirror image brighter than white counts as a little more than white
 }

@@ -9,6 +9,8 @@ class Graphics {
 		this.gl = gl;
 		this.shaders = shaders;
 		this.frame = gl.createFramebuffer();
+		this.whole = gl.createVertexArray();
+		gl.bindVertexArray(this.whole);
 		const triangle = gl.createBuffer();
 		gl.bindBuffer(gl.ARRAY_BUFFER, triangle);
 		gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 3, -1, -1, 3]), gl.STATIC_DRAW);
@@ -19,7 +21,7 @@ class Graphics {
 		this.software = /swiftshader|llvmpipe|software|basic render/i.test(this.name);
 	}
 
-	program(name) {
+	program(name, vertex) {
 		const gl = this.gl, program = gl.createProgram();
 		const add = (type, text) => {
 			const shader = gl.createShader(type);
@@ -28,11 +30,12 @@ class Graphics {
 			gl.attachShader(program, shader);
 			return shader;
 		};
-		add(gl.VERTEX_SHADER, "#version 300 es\nlayout(location=0) in vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n");
+		const whole = "#version 300 es\nlayout(location=0) in vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n";
+		add(gl.VERTEX_SHADER, vertex ? "#version 300 es\n" + this.shaders[vertex] : whole);
 		const fragment = add(gl.FRAGMENT_SHADER, this.shaders.common + this.shaders[name]);
 		gl.linkProgram(program);
 		if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-			throw new Error(`shader ${name}: ${gl.getShaderInfoLog(fragment) || gl.getProgramInfoLog(program)}`);
+			throw new Error(`shader ${name}: ${gl.getShaderInfoLog(fragment)} ${gl.getProgramInfoLog(program)}`);
 		const uniforms = {};
 		for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
 			const u = gl.getActiveUniform(program, i);
@@ -41,8 +44,8 @@ class Graphics {
 		return { program, uniforms };
 	}
 
-	/* Draws the whole target with these uniforms; a uniform that is a texture takes the next unit. */
-	draw(p, values) {
+	/* Draws the whole target, or a shape, with these uniforms; a uniform that is a texture takes the next unit. */
+	draw(p, values, shape, n_indices) {
 		const gl = this.gl;
 		let unit = 0;
 		gl.useProgram(p.program);
@@ -66,7 +69,12 @@ class Graphics {
 			default: throw new Error(`uniform ${name}: unknown type`);
 			}
 		}
-		gl.drawArrays(gl.TRIANGLES, 0, 3);
+		gl.bindVertexArray(shape || this.whole);
+		if (shape)
+			gl.drawElements(gl.TRIANGLES, n_indices, gl.UNSIGNED_INT, 0);
+		else
+			gl.drawArrays(gl.TRIANGLES, 0, 3);
+		gl.bindVertexArray(null);
 	}
 
 	texture(width, height, format, levels) {
@@ -81,11 +89,13 @@ class Graphics {
 	}
 
 	/* Draws into a texture, or (null) onto the page. */
-	target(t, width, height) {
+	target(t, width, height, depth) {
 		const gl = this.gl;
 		gl.bindFramebuffer(gl.FRAMEBUFFER, t ? this.frame : null);
-		if (t)
+		if (t) {
 			gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, t.texture, 0);
+			gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth || null);
+		}
 		gl.viewport(0, 0, t ? t.width : width, t ? t.height : height);
 	}
 

@@ -74,7 +74,8 @@
 			this.times = [];
 			this.orbit = [0, 0];
 			this.follow = "pointer";
-			this.beside = false;
+			this.mode = "";
+			this.playing = null;
 			this.rested = 0;
 			this.light = 0;
 			const calmed = () => { this.eyes.still = calm.matches; this.eyes.blinking = !calm.matches; };
@@ -88,6 +89,9 @@
 			this.eye = data.eyes[index];
 			this.scene = new EyeScene(this.graphics, this.eye);
 			await this.scene.load();
+			if (data.face)
+				await this.open_face();
+			this.mode = this.mode || "eye";
 			this.groups = sliders(this.eye);
 			this.controls = this.groups.flatMap(g => g[1]);
 			this.values = {};
@@ -97,6 +101,27 @@
 			this.from_hash();
 			by_id("busy").textContent = "";
 			this.changed();
+		}
+
+		/* The character, with each eye on its own side, or the only one on both. */
+		async open_face() {
+			this.face = this.face || new FaceScene(this.graphics, data.face);
+			this.pair = [];
+			for (const side of ["left", "right"]) {
+				const k = data.eyes.findIndex(e => e.side === side);
+				if (k < 0 || k === this.index)
+					this.pair.push(this.scene);
+				else {
+					this.others = this.others || {};
+					if (!this.others[k]) {
+						this.others[k] = new EyeScene(this.graphics, data.eyes[k]);
+						await this.others[k].load();
+					}
+					this.pair.push(this.others[k]);
+				}
+			}
+			this.scene.has_lids = true;
+			this.mode = this.mode || "face";
 		}
 
 		/* ---- what the shader is told */
@@ -110,6 +135,9 @@
 			const p = this.eye.photo, rad = Math.PI / 180, [h, v] = [0, 1].map(k => this.eyes.eye[k] + this.eyes.drift[k]);
 			if (this.beside && p)
 				return { pose: p.cam_from_eye, slip: p.slip, camera: p.camera, window: p.window, rows: p.height };
+			if (this.mode === "face")
+				return { face: this.face, eyes: this.pair, gaze: [h, v], open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
+					field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
 			return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
 		}
 
@@ -120,9 +148,10 @@
 			if (data.eyes.length > 1)
 				box.append(element("div", { className: "buttons", role: "group", ariaLabel: "Eye" }, ...data.eyes.map((e, i) =>
 					this.button(`${e.side} eye`, () => this.open(i), i === this.index))));
-			if (this.eye.photo)
-				box.append(element("div", { className: "buttons", role: "group", ariaLabel: "View" },
-					this.live = this.button("Live", () => this.set_beside(false), true), this.compare = this.button("Beside the photograph", () => this.set_beside(true), false)));
+			const modes = [["face", "Face", this.face], ["eye", "Eye", true], ["beside", "Beside the photograph", this.eye.photo]].filter(m => m[2]);
+			this.modes = modes.map(([mode, text]) => ({ mode, button: this.button(text, () => this.set_mode(mode), mode === this.mode) }));
+			if (modes.length > 1)
+				box.append(element("div", { className: "buttons", role: "group", ariaLabel: "View" }, ...this.modes.map(m => m.button)));
 			box.append(this.gaze_controls());
 			for (const [title, list] of this.groups) {
 				const set = element("fieldset", {}, element("legend", { textContent: title }));
@@ -166,7 +195,8 @@
 			};
 			this.following = ["pointer", "typed", "wander"].map(mode => this.button({ pointer: "Follow the pointer", typed: "Look where typed", wander: "Look about" }[mode], () => this.set_follow(mode), mode === this.follow));
 			const blink = this.button("Blink", () => this.blink());
-			return element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? [blink] : [])),
+			this.players = (this.face && data.face.clips || []).map((clip, i) => this.button(`▶ ${clip.name}`, () => this.play(this.playing === i ? null : i), false));
+			return element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? [blink] : []), ...this.players),
 				element("div", { className: "numbers" }, number("To the person's left, degrees", 0), number("Up, degrees", 1)));
 		}
 
@@ -289,6 +319,8 @@
 		}
 
 		set_follow(mode) {
+			if (this.playing !== null)
+				this.play(null);
 			this.follow = mode;
 			["pointer", "typed", "wander"].forEach((m, i) => this.following[i].setAttribute("aria-pressed", m === mode));
 			this.wake();
@@ -300,18 +332,25 @@
 			this.changed();
 		}
 
-		set_beside(on) {
-			this.beside = on;
-			const photo = by_id("photo");
-			this.live.setAttribute("aria-pressed", !on);
-			this.compare.setAttribute("aria-pressed", on);
-			if (on)
+		set_mode(mode) {
+			const photo = by_id("photo"), on = mode === "beside", was = this.beside;
+			this.mode = mode;
+			if (mode !== "face" && this.playing !== null)
+				this.play(null);
+			this.modes.forEach(m => m.button.setAttribute("aria-pressed", m.mode === mode));
+			if (on) {
 				photo.src = this.eye.photo.uri;
-			photo.alt = `Photograph ${this.eye.photo.name}`;
+				photo.alt = `Photograph ${this.eye.photo.name}`;
+			}
 			photo.hidden = by_id("bar").hidden = by_id("wipe-box").hidden = !on;
-			this.set_light(on && this.eye.lights.length > 1 ? 1 : 0);
+			if (on !== was)
+				this.set_light(on && this.eye.lights.length > 1 ? 1 : 0);
 			this.to_hash();
 			this.changed();
+		}
+
+		get beside() {
+			return this.mode === "beside";
 		}
 
 		blink() {
@@ -331,8 +370,8 @@
 				parts.push(`gaze=${this.eyes.target.map(v => v.toFixed(1)).join(",")}`);
 			if (this.light)
 				parts.push(`light=${this.light}`);
-			if (this.beside)
-				parts.push("beside=1");
+			if (this.mode !== (this.face ? "face" : "eye"))
+				parts.push(`view=${this.mode}`);
 			if (this.index)
 				parts.push(`eye=${this.index}`);
 			history.replaceState(null, "", parts.length ? `#${parts.join("&")}` : location.pathname + location.search);
@@ -358,9 +397,10 @@
 				this.eyes.last = [...this.eyes.target];
 				this.typed.forEach((input, k) => { input.value = this.eyes.target[k]; });
 			}
-			if (q.get("beside") === "1" && this.eye.photo)
-				this.set_beside(true);
-			else if (Number.isInteger(light) && light > 0 && light < this.eye.lights.length)
+			const mode = q.get("view");
+			if (mode && this.modes.some(m => m.mode === mode))
+				this.set_mode(mode);
+			if (!this.beside && Number.isInteger(light) && light > 0 && light < this.eye.lights.length)
 				this.set_light(light);
 			for (const c of this.controls)
 				c.update && c.update();
@@ -380,6 +420,41 @@
 				this.awake = true;
 				requestAnimationFrame(t => this.tick(t));
 			}
+		}
+
+		/* A recorded clip or a cut-scene, over and over; null: live again. */
+		play(i) {
+			this.playing = i;
+			this.began = null;
+			this.players.forEach((b, k) => b.setAttribute("aria-pressed", k === i));
+			this.eyes.time = null;
+			this.eyes.now = null;
+			this.eyes.pending = null;
+			if (i !== null)
+				this.set_mode("face");
+			this.changed();
+		}
+
+		/* The clip's gaze and lids at time t, between its frames. */
+		clip_at(t) {
+			const rows = data.face.clips[this.playing].rows, last = rows[rows.length - 1][0];
+			this.began = this.began === null ? t : this.began;
+			const at = last > 0 ? (t - this.began) % (last + 0.5) : 0;
+			let i = 0, j = rows.length - 1;
+			while (j - i > 1) {
+				const k = i + j >> 1;
+				if (rows[k][0] <= at)
+					i = k;
+				else
+					j = k;
+			}
+			const a = rows[i], b = rows[j], u = b[0] > a[0] ? Math.min(1, Math.max(0, (at - a[0]) / (b[0] - a[0]))) : 0;
+			const v = [1, 2, 3].map(k => a[k] + u * (b[k] - a[k]));
+			this.eyes.eye = [v[0], v[1]];
+			this.eyes.target = [v[0], v[1]];
+			this.eyes.drift = [0, 0];
+			this.eyes.closure = 0;
+			this.clip_open = v[2];
 		}
 
 		wander(t) {
@@ -419,7 +494,7 @@
 			};
 			const jitter = n ? [halton(n, 2) - 0.5, halton(n, 3) - 0.5] : [0, 0];
 			this.scene.add(this.state(), { ...this.view(), closure: this.eyes.closure }, preset, jitter);
-			this.scene.show(w, h, this.beside ? 1 : this.eye.eye.exposure, false);
+			this.scene.show(w, h, this.beside ? 1 : this.mode === "face" ? data.face.gain : this.eye.eye.exposure, false);
 		}
 
 		/* How long a picture takes, from asking for it until the driver says it is done. */
@@ -435,8 +510,9 @@
 				}
 				gl.deleteSync(fence);
 				this.busy = false;
-				if (counts)
+				if (counts && this.warm)
 					this.took(performance.now() - begin);
+				this.warm = true;  // the first picture waits for the driver's compiler
 			};
 			setTimeout(ask, 0);
 		}
@@ -465,7 +541,9 @@
 			}
 			if (this.follow === "wander")
 				this.wander(now);
-			const moves = !this.beside && this.eyes.step(now);
+			if (this.playing !== null)
+				this.clip_at(now);
+			const moves = this.playing !== null || !this.beside && this.eyes.step(now);
 			const settled = Math.hypot(this.eyes.target[0] - this.eyes.eye[0], this.eyes.target[1] - this.eyes.eye[1]) < this.eyes.conf.saccade_threshold_deg;
 			const slow = this.frame_ms > 40 || this.preset > 1, finest = slow ? 4 : 16;
 			if (moves || this.rested === 0) {
@@ -568,7 +646,7 @@
 
 	async function start() {
 		const canvas = by_id("view"), shaders = {};
-		for (const name of ["common", "decode", "paths", "eye", "present"])
+		for (const name of ["common", "decode", "paths", "eye", "present", "skin", "skin_vert", "copy"])
 			shaders[name] = by_id(`shader-${name}`).textContent;
 		try {
 			if (!data.eyes.length)

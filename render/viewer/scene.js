@@ -28,7 +28,8 @@ class EyeScene {
 		Object.assign(this, { g, data, count: 0, target: null });
 		for (const name of ["paths", "eye", "present"])
 			this[name] = g.program(name);
-		this.path_map = g.texture(2 * EyeScene.GRID, EyeScene.LIGHTS * EyeScene.GRID, g.gl.RGBA16F);
+		this.path_maps = {};
+		this.no_sky = g.texture(1, 1, g.gl.R8);
 	}
 
 	async load() {
@@ -151,37 +152,61 @@ class EyeScene {
 		this.count = 0;
 	}
 
-	/* Adds one picture to the mean of those since restart(). s: state; view: where from; jitter: px. */
-	add(s, view, preset, jitter) {
+	/* The light's ways into the eye as this camera has it, once for each change; kept by name. */
+	solve(s, cam, preset, name) {
 		const { g, data } = this, gl = g.gl, e = data.eye, light = this.lights[s.light] || this.lights[0];
-		const { width, height } = this.target, cam = this.camera(s, { ...view, width }, height);
 		const turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
 		const env_from_eye = turns.multiply(turns.transpose(turn), cam.head_from_eye);
 		const beams = this.beams(light, turns.transpose(env_from_eye), s.light_gain, Math.min(preset.lights, light.lights.length));
-		const extra = Math.max(0, data.tissue.abl);
-		const values = {
-			cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0],
-			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + extra + e.thickness_max],
-			beam_dir: beams.dir, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), env_from_eye, lens: cam.lens, corner: cam.corner,
-			size: [width, height], jitter, slip: view.slip ? [...view.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0], limbus: e.limbus,
+		const key = [s.R, s.p, s.n, beams.n, ...beams.dir].join(), old = this.path_maps[name];
+		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, beam_dir: beams.dir,
+			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + data.tissue.abl + e.thickness_max] };
+		const map = old ? old.map : g.texture(2 * EyeScene.GRID, EyeScene.LIGHTS * EyeScene.GRID, gl.RGBA16F);
+		if (!old || old.key !== key) {
+			gl.disable(gl.BLEND);
+			g.target(map);
+			gl.enable(gl.SCISSOR_TEST);
+			gl.scissor(0, 0, 2 * EyeScene.GRID, Math.max(1, beams.n) * EyeScene.GRID);
+			g.draw(this.paths, values);
+			gl.disable(gl.SCISSOR_TEST);
+		}
+		this.path_maps[name] = { key, map };
+		this.solved = { ...this.solved, [name]: { ...values, path_map: map, env_from_eye, beams: beams.n, beam_rgb: beams.rgb, light } };
+	}
+
+	/* Every pixel of the target's ray. */
+	trace(s, cam, preset, jitter, extra, size) {
+		const { g, data } = this, e = data.eye, solved = this.solved[cam.side === undefined ? "eye" : `face${cam.side}`], light = solved.light;
+		g.draw(this.eye, {
+			...solved, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), lens: cam.lens, corner: cam.corner,
+			size, jitter, slip: cam.slip ? [...cam.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0],
 			sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
-			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps, path_map: this.path_map,
+			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
-			beams: beams.n, beam_rgb: beams.rgb, ...this.tissue(s), abl: data.tissue.abl, exposure: data.tissue.exposure,
+			...this.tissue(s), abl: data.tissue.abl, exposure: data.tissue.exposure,
 			tissue_gain: e.gain, detail: s.detail, ...EyeScene.nodes(preset.steps),
 			search: preset.search, shadow_steps: preset.shadow, flat_iris: preset.march ? 0 : 1,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
-			mirror_on: view.bare_film || !light.sharp_map ? 0 : s.light_gain, film_index: data.constants.film_index, tear: s.tear,
-		};
-		gl.disable(gl.BLEND);
-		g.target(this.path_map);
-		g.draw(this.paths, values);
+			mirror_on: light.sharp_map ? s.light_gain : 0, film_index: data.constants.film_index, tear: s.tear,
+			lidded: 0, side: cam.side || 0, lidded_from_eye: cam.lidded_from_eye || cam.head_from_eye, depth: cam.depth || [0, 0, 1], sky_map: this.no_sky, ...extra,
+		});
+	}
+
+	/* Adds one picture to the mean of those since restart(). s: state; view: where from; jitter: px. */
+	add(s, view, preset, jitter) {
+		const { g } = this, gl = g.gl, { width, height } = this.target;
+		if (view.face) {
+			view.face.add(this.target, this.count++, view.eyes, s, view, preset, jitter);
+			return;
+		}
+		const cam = { ...this.camera(s, { ...view, width }, height), slip: view.slip };
+		this.solve(s, cam, preset, "eye");
 		if (this.count)
 			gl.enable(gl.BLEND);
 		gl.blendColor(0, 0, 0, 1 / (this.count + 1));
 		gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
 		g.target(this.target);
-		g.draw(this.eye, values);
+		this.trace(s, cam, preset, jitter, {}, [width, height]);
 		gl.disable(gl.BLEND);
 		this.count++;
 	}

@@ -158,7 +158,7 @@ async function everyone(b) {
 }
 
 async function beside(b) {
-	await open(b, "#beside=1");
+	await open(b, "#view=beside");
 	await b.until(settled, 90);
 	await b.screenshot(path.join(shots, "beside.png"));
 	say(await b.value("!document.getElementById('photo').hidden && document.getElementById('photo').naturalWidth > 100"), "the photograph stands beside the rendering", "it does not");

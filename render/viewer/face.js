@@ -1,0 +1,198 @@
+/* A driven character: its mesh between the poses that the page carries, its eyes in it. Head's axes, mm. */
+class FaceScene {
+	static RECORD = 12;
+	static DISTANCE = 900;
+
+	constructor(g, data) {
+		const gl = g.gl, bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+		Object.assign(this, { g, data, poses: bytes(data.poses), skies: bytes(data.sky), key: "" });
+		this.skin = g.program("skin", "skin_vert");
+		this.copy = g.program("copy");
+		const faces = new Uint32Array(bytes(data.faces).buffer), still = bytes(data.still);
+		this.n_indices = faces.length;
+		this.values = new Float32Array(9 * data.n);
+		for (let i = 0; i < data.n; i++)
+			this.put(i, FaceScene.decoded(still, i * FaceScene.RECORD, data.reach));
+		const rest = new Float32Array(3 * data.n);
+		for (let i = 0; i < data.n; i++)
+			rest.set(this.values.subarray(9 * i, 9 * i + 3), 3 * i);
+		this.shape = gl.createVertexArray();
+		gl.bindVertexArray(this.shape);
+		this.buffer = gl.createBuffer();
+		gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+		gl.bufferData(gl.ARRAY_BUFFER, this.values, gl.DYNAMIC_DRAW);
+		for (const k of [0, 1, 2]) {
+			gl.enableVertexAttribArray(k);
+			gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 36, 12 * k);
+		}
+		const array = (at, list, n, type, normalised) => {
+			gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+			gl.bufferData(gl.ARRAY_BUFFER, list, gl.STATIC_DRAW);
+			gl.enableVertexAttribArray(at);
+			gl.vertexAttribPointer(at, n, type, normalised, 0, 0);
+		};
+		array(3, bytes(data.skin), 4, gl.UNSIGNED_BYTE, true);
+		array(4, rest, 3, gl.FLOAT, false);
+		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
+		gl.bindVertexArray(null);
+		// Both eyes and some of what is beside them, mm across.
+		this.field = 2.3 * Math.hypot(...[0, 1, 2].map(k => data.globes[0][k] - data.globes[1][k]));
+		this.sky_map = g.texture(2 * data.sky_px, data.sky_px, gl.R8);
+	}
+
+	static decoded(b, at, reach) {
+		const x = k => ((b[at + 2 * k] + 256 * b[at + 2 * k + 1]) / 65535 - 0.5) * 2 * reach;
+		return [x(0), x(1), x(2), b[at + 6] / 127.5 - 1, b[at + 7] / 127.5 - 1, b[at + 8] / 127.5 - 1, b[at + 9] / 255, b[at + 10] / 255, b[at + 11] / 255];
+	}
+
+	put(i, v) {
+		this.values.set(v, 9 * i);
+	}
+
+	/* Place between the knots: index and share; held at the ends. */
+	static between(list, x) {
+		let i = 0;
+		while (i + 2 < list.length && x > list[i + 1])
+			i++;
+		return [i, Math.min(1, Math.max(0, (x - list[i]) / (list[i + 1] - list[i])))];
+	}
+
+	/* The eight poses round these controls and their weights. */
+	mixture(h, v, a) {
+		const d = this.data, [ih, uh] = FaceScene.between(d.h, h), [iv, uv] = FaceScene.between(d.v, v), [ia, ua] = FaceScene.between(d.a, a), out = [];
+		for (let k = 0; k < 8; k++) {
+			const w = (k & 1 ? uh : 1 - uh) * (k & 2 ? uv : 1 - uv) * (k & 4 ? ua : 1 - ua);
+			if (w > 0)
+				out.push([w, ih + (k & 1) + d.h.length * (iv + (k >> 1 & 1) + d.v.length * (ia + (k >> 2)))]);
+		}
+		return out;
+	}
+
+	/* h, v degrees; a: aperture, 1 as people open their eyes at that gaze. */
+	pose(h, v, a) {
+		const key = [h, v, a].map(x => x.toFixed(2)).join(), gl = this.g.gl, d = this.data;
+		if (key === this.key)
+			return;
+		this.key = key;
+		const mix = this.mixture(h, v, a), b = this.poses, size = d.moving * FaceScene.RECORD, out = this.values, k16 = 2 * d.reach / 65535;
+		for (let i = 0; i < d.moving; i++) {
+			let x = 0, y = 0, z = 0, nx = 0, ny = 0, nz = 0, r = 0, g = 0, l = 0;
+			for (const [w, pose] of mix) {
+				const at = pose * size + i * FaceScene.RECORD;
+				x += w * (b[at] + 256 * b[at + 1]);
+				y += w * (b[at + 2] + 256 * b[at + 3]);
+				z += w * (b[at + 4] + 256 * b[at + 5]);
+				nx += w * b[at + 6];
+				ny += w * b[at + 7];
+				nz += w * b[at + 8];
+				r += w * b[at + 9];
+				g += w * b[at + 10];
+				l += w * b[at + 11];
+			}
+			const o = 9 * i;
+			out[o] = x * k16 - d.reach;
+			out[o + 1] = y * k16 - d.reach;
+			out[o + 2] = z * k16 - d.reach;
+			out[o + 3] = nx / 127.5 - 1;
+			out[o + 4] = ny / 127.5 - 1;
+			out[o + 5] = nz / 127.5 - 1;
+			out[o + 6] = r / 255;
+			out[o + 7] = g / 255;
+			out[o + 8] = l / 255;
+		}
+		gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+		gl.bufferSubData(gl.ARRAY_BUFFER, 0, out.subarray(0, 9 * d.moving));
+		const n = 2 * d.sky_px * d.sky_px, sky = new Uint8Array(n);
+		for (let i = 0; i < n; i++)
+			sky[i] = mix.reduce((sum, [w, pose]) => sum + w * this.skies[pose * n + i], 0);
+		gl.bindTexture(gl.TEXTURE_2D, this.sky_map.texture);
+		gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * d.sky_px, d.sky_px, gl.RED, gl.UNSIGNED_BYTE, sky);
+	}
+
+	resize(width, height) {
+		const gl = this.g.gl;
+		if (this.frame && this.frame.width === width && this.frame.height === height)
+			return;
+		if (this.frame) {
+			gl.deleteTexture(this.frame.texture);
+			gl.deleteRenderbuffer(this.frame.depth);
+		}
+		this.frame = this.g.texture(width, height, gl.RGBA16F);
+		this.frame.depth = gl.createRenderbuffer();
+		gl.bindRenderbuffer(gl.RENDERBUFFER, this.frame.depth);
+		gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
+	}
+
+	/* The camera before the face, turned round the middle of its eyes; field(height): mm of height shown. */
+	camera(view, height) {
+		const R = turns.multiply(turns.turned(view.orbit[0], view.orbit[1]), [1, 0, 0, 0, -1, 0, 0, 0, -1]), D = FaceScene.DISTANCE;
+		return { R, focal: D * height / view.field(height), at: turns.apply(turns.transpose(R), [0, 0, -D]) };
+	}
+
+	/* Depth of the near and far ends of what is drawn, as clip space has it. */
+	static clip() {
+		const near = FaceScene.DISTANCE - 200, far = FaceScene.DISTANCE + 200;
+		return [(far + near) / (far - near), -2 * far * near / (far - near)];
+	}
+
+	/* The view of one eye in it, in the eye's own mm. */
+	eye_view(eye_scene, s, view, side, width, height) {
+		const c = this.camera(view, height), [x, y, z, scale] = this.data.globes[side], rad = Math.PI / 180;
+		const h = view.gaze[0] * rad, v = view.gaze[1] * rad, ch = Math.cos(h), sh = Math.sin(h), cv = Math.cos(v), sv = Math.sin(v);
+		// Fick: Ry(h) Rx(-v); the eye's y and z run the other way.
+		const turn = [ch, -sh * sv, sh * cv, 0, cv, sv, -sh, -ch * sv, ch * cv], axes = turn.map((w, i) => i % 3 ? -w : w);
+		const o = turns.apply(turns.transpose(axes), c.at.map((w, i) => (w - [x, y, z][i]) / scale));
+		o[2] += eye_scene.sclera(s)[0];
+		return { R: turns.multiply(c.R, axes), head_from_eye: turns.multiply([1, 0, 0, 0, -1, 0, 0, 0, -1], axes), lidded_from_eye: axes, origin: o, corner: [0, 0],
+			lens: [c.focal, width / 2, height / 2, 1], pixel: FaceScene.DISTANCE / c.focal / scale, depth: [...FaceScene.clip(), scale], side };
+	}
+
+	/* A picture of skin and eyes into frame. */
+	draw(eye_scenes, s, view, preset, jitter) {
+		const g = this.g, gl = g.gl, { width, height } = this.frame, c = this.camera(view, height), first = eye_scenes[0];
+		this.pose(view.gaze[0], view.gaze[1], view.open);
+		const light = first.lights[s.light] || first.lights[0], turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
+		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = EyeScene.merged(light.lights, EyeScene.LIGHTS);
+		const views = [0, 1].map(side => this.eye_view(eye_scenes[side], s, view, side, width, height));
+		views.forEach((v, side) => eye_scenes[side].solve(s, v, preset, `face${side}`));
+		g.target(this.frame, 0, 0, this.frame.depth);
+		gl.disable(gl.BLEND);
+		gl.enable(gl.DEPTH_TEST);
+		gl.enable(gl.CULL_FACE);
+		gl.clearColor(0, 0, 0, 0);
+		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+		g.draw(this.skin, { cam_from_head: c.R, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
+			shift: [-2 * jitter[0] / width, 2 * jitter[1] / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
+			sky_dir: EyeScene.padded(skies.flatMap(l => turns.apply(turns.transpose(env), l)), 3 * EyeScene.LIGHTS),
+			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),
+			quadric: light.quadric.flat().map(v => v * s.light_gain), still_quadric: first.lights[0].quadric.flat(),
+			pores: !preset.march ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
+		gl.disable(gl.CULL_FACE);
+		views.forEach((v, side) => {
+			// Only where the globe can be seen.
+			const [x, y, z, scale] = this.data.globes[side], p = turns.apply(c.R, [x, y, z]), Z = p[2] + FaceScene.DISTANCE, r = 14.5 * scale * c.focal / Z;
+			const cx = width / 2 + c.focal * p[0] / Z, cy = height / 2 - c.focal * p[1] / Z;
+			gl.enable(gl.SCISSOR_TEST);
+			gl.scissor(Math.floor(cx - r), Math.floor(cy - r), Math.ceil(2 * r), Math.ceil(2 * r));
+			eye_scenes[side].trace(s, v, preset, jitter, { lidded: 1, sky_map: this.sky_map }, [width, height]);
+			gl.disable(gl.SCISSOR_TEST);
+		});
+		gl.disable(gl.DEPTH_TEST);
+	}
+
+	/* Adds one picture to the mean in target. */
+	add(target, count, eye_scenes, s, view, preset, jitter) {
+		const g = this.g, gl = g.gl;
+		this.resize(target.width, target.height);
+		this.draw(eye_scenes, s, view, preset, jitter);
+		if (count)
+			gl.enable(gl.BLEND);
+		gl.blendColor(0, 0, 0, 1 / (count + 1));
+		gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
+		g.target(target);
+		g.draw(this.copy, { picture: this.frame });
+		gl.disable(gl.BLEND);
+	}
+}

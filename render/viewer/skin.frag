@@ -1,0 +1,82 @@
+// lib/skin/portrait_shade.c: diffuse light as spread in the skin, pores, and two rough lobes.
+in vec3 seen_at, seen_normal, seen_light, seen_rest;
+in vec4 seen_skin;
+uniform vec3 head_camera;         // where it is, head's axes
+uniform mat3 env_from_head, still_from_head;  // the surroundings as they are, and as the light of the vertices had them
+uniform int skies;
+uniform vec3 sky_dir[LIGHTS], sky_rgb[LIGHTS];  // head's axes
+uniform vec3 quadric[9], still_quadric[9];
+uniform float pores;
+out vec4 seen;
+
+float hash(ivec3 c)
+{
+	uint h = uint(c.x) * 0x8da6b343u ^ uint(c.y) * 0xd8163841u ^ uint(c.z) * 0xcb1ab31fu;
+	h ^= h >> 15;
+	h *= 0x2c1b3c6du;
+	h ^= h >> 12;
+	h *= 0x297a2d39u;
+	h ^= h >> 15;
+	return float(h & 0xffffu) / 32767.5 - 1.0;
+}
+
+float noise(vec3 p)
+{
+	ivec3 i = ivec3(floor(p));
+	vec3 f = fract(p);
+	f = f * f * (3.0 - 2.0 * f);
+	vec4 low = vec4(hash(i), hash(i + ivec3(1, 0, 0)), hash(i + ivec3(0, 1, 0)), hash(i + ivec3(1, 1, 0)));
+	i.z++;
+	vec4 high = vec4(hash(i), hash(i + ivec3(1, 0, 0)), hash(i + ivec3(0, 1, 0)), hash(i + ivec3(1, 1, 0)));
+	vec4 v = mix(low, high, f.z);
+	return mix(mix(v.x, v.y, f.x), mix(v.z, v.w, f.x), f.y);
+}
+
+float pore(vec3 p)
+{
+	return noise(2.1 * p) + 0.5 * noise(4.7 * p);
+}
+
+vec3 irradiance(vec3 d, vec3 q[9])
+{
+	return max(q[0] + q[1] * d.x + q[2] * d.y + q[3] * d.z + q[4] * (d.x * d.y) + q[5] * (d.y * d.z) + q[6] * (d.z * d.z)
+	           + q[7] * (d.x * d.z) + q[8] * (d.x * d.x - d.y * d.y), 0.02);
+}
+
+float gloss(vec3 n, vec3 l, vec3 v, float rough)
+{
+	vec3 h = normalize(l + v);
+	float nh = dot(n, h), nl = dot(n, l), nv = dot(n, v), vh = max(dot(v, h), 0.0), a2 = rough * rough * rough * rough;
+	if (nl <= 0.0 || nv <= 0.0)
+		return 0.0;
+	float d = nh * nh * (a2 - 1.0) + 1.0, k = 0.5 * rough * rough, g = nl / (nl * (1.0 - k) + k) * nv / (nv * (1.0 - k) + k);
+	float s = 1.0 - vh, s2 = s * s, f = 0.028 + 0.972 * s2 * s2 * s;
+	return a2 / (d * d) * g * f / (4.0 * nv);
+}
+
+void main()
+{
+	vec3 smooth_n = normalize(seen_normal), n = smooth_n, to = normalize(head_camera - seen_at), albedo = seen_skin.rgb * seen_skin.rgb;
+	// The light moved: what that changes for a surface that faces this way.
+	vec3 moved = irradiance(env_from_head * n, quadric) / irradiance(still_from_head * n, still_quadric);
+	vec3 light = 3.0 * seen_light * seen_light * clamp(moved, 0.0, 6.0);
+	if (seen_skin.a > 0.5) {
+		seen = vec4(albedo * 1.5 * (0.4 + light), 1.0);
+		return;
+	}
+	float grain = 0.0, relief = 1.0;
+	if (pores > 0.0) {
+		float at = pore(seen_rest);
+		n -= 0.10 * pores * vec3(pore(seen_rest + vec3(0.12, 0.0, 0.0)) - at, pore(seen_rest + vec3(0.0, 0.12, 0.0)) - at, pore(seen_rest + vec3(0.0, 0.0, 0.12)) - at);
+		grain = 0.035 * pores * noise(1.6 * seen_rest);
+		n = normalize(n);
+		relief += 0.35 * dot(n - smooth_n, sky_dir[0]);
+	}
+	vec3 spec = vec3(0.0);
+	for (int k = 0; k < LIGHTS; k++)
+		if (k < skies)
+			spec += (0.5 * gloss(n, sky_dir[k], to, 0.50) + 0.28 * gloss(n, sky_dir[k], to, 0.34)) * sky_rgb[k];
+	// What reaches the skin of its light, reaches the mirror too.
+	float open = clamp(dot(light, vec3(0.33)) / dot(irradiance(env_from_head * smooth_n, quadric), vec3(0.33)), 0.0, 1.0);
+	seen = vec4(albedo * (1.0 + grain) * light * relief + spec * open, 1.0);
+}
