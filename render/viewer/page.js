@@ -656,6 +656,7 @@
 			const wanted = Number(new URLSearchParams(location.hash.slice(1)).get("eye"));
 			await page.open(Number.isInteger(wanted) && wanted > 0 && wanted < data.eyes.length ? wanted : 0);
 			page.listen();
+			document.documentElement.dataset.open = "1";
 		} catch (e) {
 			give_up(e.message);
 		}

@@ -6,9 +6,10 @@ const path = require("path");
 const { pathToFileURL } = require("url");
 const { Browser } = require("./browser.js");
 
-const [, , page, front, turned, shots] = process.argv, url = pathToFileURL(page).href;
+const [, , page, front, turned, shots, face] = process.argv;
+let url = pathToFileURL(page).href;
 const say = (ok, name, why) => console.log(ok ? `pass ${name}` : `fail ${name}: ${why}`);
-const opened = "document.getElementById('stills') && (!document.getElementById('stills').hidden || window.eyewright && document.getElementById('busy').textContent === '')";
+const opened = "document.getElementById('stills') && (!document.getElementById('stills').hidden || document.documentElement.dataset.open)";
 const settled = "document.documentElement.dataset.settled";
 /* The eye's middle on the page, and what the page shows, as one number. */
 const sum = `(() => { const p = eyewright, gl = p.graphics.gl, c = gl.canvas, px = new Uint8Array(4 * c.width * c.height);
@@ -164,6 +165,32 @@ async function beside(b) {
 	say(await b.value("!document.getElementById('photo').hidden && document.getElementById('photo').naturalWidth > 100"), "the photograph stands beside the rendering", "it does not");
 }
 
+/* A character without a photograph: its lids, its clip, its size. */
+async function character(b) {
+	url = pathToFileURL(face).href;
+	await calm(b, true);
+	await open(b, "#gaze=0,0");
+	await b.until(settled, 120);
+	await b.screenshot(path.join(shots, "face.png"));
+	const open_eyes = await b.value(sum);
+	await b.value("eyewright.set('aperture', 0)");
+	await b.until(settled, 120);
+	await b.screenshot(path.join(shots, "shut.png"));
+	say(await b.value("eyewright.mode") === "face" && await b.value(sum) !== open_eyes, "a character's lids close", "the picture has not changed");
+	// Lids between poses: the mean of the poses on either side.
+	const worst = await b.value(`(() => { const f = eyewright.face, d = f.data, a = d.a[1], c = d.a[2], take = x => { f.pose(0, 0, x); return f.values.slice(0, 9 * d.moving); };
+		const p = take(a), q = take(c), m = take((a + c) / 2); return p.reduce((w, v, i) => Math.max(w, Math.abs(m[i] - (v + q[i]) / 2)), 0); })()`);
+	say(worst < 1e-4, "between poses the mesh is interpolated", `off by ${worst}`);
+	await b.value("eyewright.play(0)");
+	await b.until("eyewright.eyes.eye.some(v => v !== 0)", 20);
+	const a = await b.value("eyewright.began"), first = await b.value("eyewright.eyes.eye.join()");
+	await b.until(`eyewright.eyes.eye.join() !== "${first}"`, 20);
+	say(a !== null, "a recorded clip plays", "it does not");
+	await b.value("eyewright.play(null)");
+	say(!b.problems.length, "the face: no error on the console", b.problems.join("; "));
+	say(fs.statSync(face).size < 20e6, "with a face the page is below 20 MB", `${fs.statSync(face).size}`);
+}
+
 async function without(b) {
 	await open(b);
 	await b.screenshot(path.join(shots, "without.png"));
@@ -184,6 +211,11 @@ async function without(b) {
 		await eyes(b);
 		await beside(b);
 		await everyone(b);
+		if (face) {
+			await b.size(1000, 640);
+			await character(b);
+			url = pathToFileURL(page).href;
+		}
 	} finally {
 		await b.end();
 	}

@@ -18,7 +18,16 @@ check "and linked from the review" grep -q 'href="viewer.html"' "$capture/work/r
 check "no name is live in it" test "$(grep -c '<img src=x\|<b>eye' "$page")" = 0
 SHOTS=${SHOTS:-$root/shots}
 mkdir -p "$SHOTS"
-timeout 300 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" >"$root/said" 2>&1
+character=$root/character
+"${B:-build}/tests/tools/made_face" "$character"
+sed -i '/^render.clip_px/d' "$character/capture.conf"
+echo 'render.clip_px = 0' >>"$character/capture.conf"
+for stage in extrapolate render; do
+	"$BIN/$stage" --capture="$character" --quiet >"$log" 2>&1
+	same "$stage of a character" "$? $(cat "$log")" "0 "
+done
+timeout 400 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" \
+	"$character/work/review/viewer.html" >"$root/said" 2>&1
 while IFS= read -r line; do
 	case $line in
 	"pass "*) pass "${line#pass }" ;;
