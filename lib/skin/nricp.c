@@ -153,7 +153,7 @@ static void one_level(struct run *run, struct level *l, int rounds, int first, i
 {
 	const struct nricp_conf *c = &run->conf;
 	double last = c->stiff[1] + c->noise * run->noise;
-	struct nricp_solver *solver = nricp_solver_new(&l->graph, direct, 60, 1e-3);
+	struct nricp_solver *solver = nricp_solver_new(&l->graph, direct, 60, 1e-2);
 	for (int i = 0; i < rounds; i++) {
 		double at = total > 1 ? (double)(first + i) / (total - 1) : 1;
 		double stiff = c->stiff[0] * pow(last / c->stiff[0], at);
@@ -246,6 +246,7 @@ bool nricp_run(struct nricp_result *out, const struct mesh *moving, const struct
 	out->confidence = mem_new((size_t)moving->n_vertices + 1, sizeof *out->confidence);
 	stand(&run->level[0]);
 	nricp_polish(run->level[0].points, run->level[0].match, &run->level[0].graph, &run->fixed, &run->conf);
+	nricp_unfold(run->level[0].points, &run->moving, &run->level[0].graph);
 	give(out, run, center, size);
 	for (int i = 0; i < run->n_levels; i++)
 		level_free(&run->level[i]);

@@ -51,4 +51,8 @@ double nricp_noise(const struct mesh *mesh, const struct topology *topology, con
 void nricp_polish(struct nricp_point *points, struct nricp_match *match, const struct nricp_graph *graph, const struct nricp_fixed *fixed,
                   const struct nricp_conf *conf);
 
+/* Triangles that the registration has turned over are put right: around them, displacements are made smooth over as many
+ * vertices as that needs. rest: the moving mesh as it was, in the points' frame. Returns how many stay folded. */
+int nricp_unfold(struct nricp_point *points, const struct mesh *rest, const struct nricp_graph *graph);
+
 #endif

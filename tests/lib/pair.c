@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
@@ -48,6 +47,17 @@ static bool load_covered(struct pair *p)
 	return ok;
 }
 
+static bool load_diag(struct pair *p, struct err *err)
+{
+	char rel[256];
+	snprintf(rel, sizeof rel, "registration/%s/info.json", p->name);
+	const char *path = bench_data(rel);
+	json_t *root = path ? json_load_file(path, 0, 0) : 0;
+	p->diag = json_number_value(json_object_get(root, "diag"));
+	json_decref(root);
+	return p->diag > 0 || err_set(err, "%s: must have diag, a number above 0", rel);
+}
+
 bool pair_load(struct pair *p, const char *name, struct err *err)
 {
 	struct mesh truth = { 0 };
@@ -61,15 +71,7 @@ bool pair_load(struct pair *p, const char *name, struct err *err)
 	mesh_free(&truth);
 	if (ok && !load_covered(p))
 		ok = err_set(err, "%s: mask.txt is short", name);
-	float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
-	for (int i = 0; ok && i < p->source.n_vertices; i++)
-		for (int k = 0; k < 3; k++) {
-			low[k] = fminf(low[k], p->source.vertices[i][k]);
-			high[k] = fmaxf(high[k], p->source.vertices[i][k]);
-		}
-	for (int k = 0; k < 3; k++)
-		p->diag += pow((double)high[k] - (double)low[k], 2);
-	p->diag = sqrt(p->diag);
+	ok = ok && load_diag(p, err);
 	if (!ok)
 		pair_free(p);
 	return ok;

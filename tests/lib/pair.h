@@ -11,7 +11,7 @@ struct pair {
 	struct mesh source, target, clean;  // clean: the target's surface without noise, strays and holes
 	float (*truth)[3];                  // [source.n_vertices]
 	bool *covered;                      // [source.n_vertices] its true place lies on the target
-	double diag;                        // of the source's bounding box: unit of the errors
+	double diag;                        // of the bounding box, as the pair gives it: unit of the errors
 };
 
 struct pair_error {
