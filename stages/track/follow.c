@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "stages/track/track.h"
+#include "stages/track/film.h"
 
 /* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
 struct rigid {
@@ -145,6 +145,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	struct track_eyes *eyes = track_eyes_new(clip, subject, conf);
 	double pose[4][4];
 	long room = 0;
+	r->film = conf->limit ? 0 : film_new(clip, subject, points);
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	while (ok && got && (!conf->limit || r->n < conf->limit)) {
@@ -160,6 +161,8 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 			track_eyes_push(eyes, &f, pose);
 			store(r, state, pose, lost, points, clip);
 			r->n++;
+			if (r->film)
+				film_add(r->film, &f);
 			if (!conf->limit)
 				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
 		}
@@ -188,4 +191,5 @@ void track_result_free(struct track_result *r)
 	free(r->lids_model);
 	free(r->g);
 	eye_clip_free(&r->eyes);
+	film_free(r->film);
 }

@@ -1,7 +1,7 @@
 /* track: gaze, lids and skin of a video, followed frame by frame.
  * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
  * writes  work/skin/gaze.csv, lids.npy, lids_model.npy, vertices.npy, skin.npy, skin_model.npy, confidence.npy, head.npy
- *         (where the head was), track.json
+ *         (where the head was), track.json, track.png
  */
 #include <stdlib.h>
 #include <unistd.h>

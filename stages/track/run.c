@@ -1,7 +1,7 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "stages/track/track.h"
+#include "stages/track/film.h"
 
 /* What the video is that nobody asked for, one line each. */
 static void tell_video(struct stage *stage, const struct track_clip *clip)
@@ -51,7 +51,9 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again: cut the video to one take", clip->file,
 		               result->cut, clip->reference);
 	track_apertures(result, clip, subject);
-	if (!track_expressions(result, stage, conf, err) || !track_save(stage, result, clip, points, n, in, err))
+	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
+	    || !film_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)
+	    || !track_save(stage, result, clip, points, n, in, err))
 		return false;
 	tell(stage, result, clip);
 	return true;

@@ -13,6 +13,7 @@ enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
 const char *const track_files[TRACK_FILES] = {
 	"work/skin/gaze.csv",       "work/skin/lids.npy",       "work/skin/lids_model.npy",  "work/skin/vertices.npy", "work/skin/skin.npy",
 	"work/skin/skin_model.npy", "work/skin/confidence.npy", "work/skin/head.npy", "work/skin/track.json",
+	"work/skin/track.png",
 };
 
 static bool save_gaze(const struct track_result *r, const char *path, struct err *err)

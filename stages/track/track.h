@@ -79,6 +79,7 @@ struct track_result {
 	float (*skin_model)[2];
 	float *confidence;     // [n][n_points]
 	struct eye_clip eyes;
+	struct film *film;     // null where the clip is only looked at
 	bool has_eyes;
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points]
 	int lid_points;
@@ -117,7 +118,7 @@ bool track_eyes_finish(struct track_result *result, struct track_eyes *eyes, str
 void track_eyes_free(struct track_eyes *eyes);
 
 /* Files of the stage, relative to the capture. */
-enum { TRACK_FILES = 9 };
+enum { TRACK_FILES = 10 };
 extern const char *const track_files[TRACK_FILES];
 
 /* g4, g5, g9, g10 and the lids in the modelling camera. */
