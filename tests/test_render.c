@@ -425,6 +425,54 @@ static void exponential_rule(void **state)
 	assert_true(g4 > 5 * e4);
 }
 
+/* What rays met is kept while only light moves: the same bytes as without, and no ray traced. What is hidden is left out, and
+ * the rest is as it was; an eye all hidden traces nothing. */
+static void kept_and_hidden(void **state)
+{
+	(void)state;
+	enum { N = 150 };
+	struct scene s;
+	struct scene_conf conf = conf_of(4);
+	conf.shading = SCENE_TEXELS;
+	scene_of(&s, &plain_eye, &conf, spot, bumps, 1.5);
+	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 } }, { { 0.6, -0.48, -0.64 }, { 0.2, 0.2 }, { 5, 12, 12 } } };
+	struct scene_hits *hits = scene_hits_new();
+	struct scene_view view = scene_view_turned(&s, 0.2, 0.1, 27, N);
+	for (int k = 0; k < 2; k++) {
+		struct envmap env = envmap_room(64, grey, grey, 0.3, 1, &box[k]);
+		struct scene_lighting light = scene_lighting(&env, &env, 8);
+		struct scene_count count = { 0 }, plain = { 0 };
+		view.hits = hits;
+		struct image a = scene_render(&s, &view, &light, &count);
+		view.hits = 0;
+		struct image b = scene_render(&s, &view, &light, &plain);
+		assert_memory_equal(a.px, b.px, N * N * 4 * sizeof(float));
+		assert_int_equal(count.kept, k ? N * N : 0);
+		assert_int_equal(count.rays, k ? 0 : N * N);
+		assert_int_equal(plain.rays, N * N);
+		unsigned char visible[N * N];
+		for (int i = 0; i < N * N; i++)
+			visible[i] = i / N > N / 2;
+		view.visible = visible;
+		struct scene_count half = { 0 }, none = { 0 };
+		struct image c = scene_render(&s, &view, &light, &half);
+		assert_true(half.hidden > N * N / 3 && half.rays + half.hidden == N * N);
+		for (int i = 0; i < N * N; i++)
+			assert_true(!visible[i] || !memcmp(b.px + 4 * i, c.px + 4 * i, 4 * sizeof(float)));
+		memset(visible, 0, sizeof visible);
+		struct image d = scene_render(&s, &view, &light, &none);
+		assert_true(none.rays == 0 && none.hidden == N * N && image_at(&d, N / 2, N / 2)[3] == 0);
+		view.visible = 0;
+		image_free(&a);
+		image_free(&b);
+		image_free(&c);
+		image_free(&d);
+		envmap_free(&env);
+	}
+	scene_hits_free(hits);
+	scene_free(&s);
+}
+
 /* In a white room a white eye cannot be told from the room, whichever way it is drawn: what the film does not mirror, the
  * sclera returns. (Red, near the limbus: further away the model has fat in it, which is not white.) */
 static void white_furnace(void **state)
@@ -580,7 +628,7 @@ int main(void)
 		cmocka_unit_test(mirror_at_normal),    cmocka_unit_test(threads_and_numbers),
 		cmocka_unit_test(texels_against_rays), cmocka_unit_test(exponential_rule),
 		cmocka_unit_test(white_furnace),       cmocka_unit_test(tissue_furnace),
-		cmocka_unit_test(converges),
+		cmocka_unit_test(converges),           cmocka_unit_test(kept_and_hidden),
 		cmocka_unit_test(holes_are_filled),    cmocka_unit_test(colour_differences),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

@@ -16,7 +16,7 @@
 #include "image/image.h"
 #include "optics/refraction.h"
 
-enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 64 };
+enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 256 };
 
 enum scene_quadrature { SCENE_GAUSS, SCENE_MIDPOINT, SCENE_EXPONENTIAL };
 enum scene_shading { SCENE_RAYS, SCENE_TEXELS };       // the march: along every ray of sight, or from the map's texels once a view
@@ -101,6 +101,8 @@ struct scene_view {
 	int width, height;            // px
 	int samples;                  // samples^2 rays where the picture has edges, at most
 	bool textured;                // the photograph's colour alone, without scattering: the cheap alternative
+	const unsigned char *visible; // [height][width] 1, or 0: something stands before the eye there, and it is left out; null: all
+	struct scene_hits *hits;      // what rays meet is kept there and not sought again while only light changes; null: not
 };
 
 /* View of an eye turned by yaw and pitch (radians) in front of a camera that frames `field` mm at distance mm. */
@@ -111,7 +113,13 @@ struct scene_view scene_view_photo(const struct fit *fit, const double window[4]
 
 struct scene_count {
 	long rays, iris;              // traced; of them scattered in the iris
+	long kept, hidden;            // first rays not traced: kept from the picture before; behind something (whole tiles)
 };
+
+/* What the rays of one view met, for a camera and an eye that stand still while lights move: 90 bytes a pixel. Quick pictures
+ * alone use it. One scene, one picture at a time. */
+struct scene_hits *scene_hits_new(void);
+void scene_hits_free(struct scene_hits *hits);
 
 /* RGB and A: colour times cover, and the share of the pixel that the eye covers. image_free. The same bytes for any number of
  * threads. */

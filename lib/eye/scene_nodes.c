@@ -27,7 +27,7 @@ static void gauss(int n, double node[], double weight[])
 /* Gauss's rule for the weight exp(-c x) on 0..1: light that fades with depth is its polynomial of degree 0, so that what is
  * left to the nodes is only how it differs from that. Orthogonal polynomials by Stieltjes' procedure on a fine rule; roots by
  * bisection between their changes of sign. */
-enum { EXPONENTIAL_MAX = 12, FINE = SCENE_NODES_MAX };
+enum { EXPONENTIAL_MAX = 12, FINE = 64 };
 
 struct stieltjes {
 	double a[EXPONENTIAL_MAX], b[EXPONENTIAL_MAX], h[EXPONENTIAL_MAX];  // p_k+1 = (x - a_k) p_k - b_k p_k-1; h: norms

@@ -178,8 +178,16 @@ SIMD_CLONES static void sclera_light(struct quick_spots *s, int n, const struct 
 	}
 }
 
-SIMD_CLONES static void ripple(struct quick_spots *s, int n, const struct image *film)
+void quick_sclera(struct quick_spots *s, int n, const struct quick_look *k)
 {
+	sclera_light(s, n, k);
+}
+
+/* Ripples of the tear film bend the normals beyond the limbus. */
+SIMD_CLONES void quick_ripple(struct quick_found *f, int n, const struct quick_look *k)
+{
+	const struct image *film = &k->scene->film;
+	const struct quick_spots *s = &f->spots;
 	const float *restrict map = film->px, w = (float)film->width;
 	int size = film->width;
 	SIMD_LOOP
@@ -187,17 +195,10 @@ SIMD_CLONES static void ripple(struct quick_spots *s, int n, const struct image 
 		float x = s->nx[i] + channel_at(map, size, 1, s->su[i] * w, s->sv[i] * w, 2, 0);
 		float y = s->ny[i] + channel_at(map, size, 1, s->su[i] * w, s->sv[i] * w, 2, 1), z = s->nz[i];
 		float inv = 1 / sqrtf(x * x + y * y + z * z), on = s->rho[i] > 1 ? 1.0f : 0.0f;
-		s->nx[i] = on > 0 ? x * inv : s->nx[i];
-		s->ny[i] = on > 0 ? y * inv : s->ny[i];
-		s->nz[i] = on > 0 ? z * inv : s->nz[i];
+		f->bent[0][i] = on > 0 ? x * inv : s->nx[i];
+		f->bent[1][i] = on > 0 ? y * inv : s->ny[i];
+		f->bent[2][i] = on > 0 ? z * inv : s->nz[i];
 	}
-}
-
-void quick_sclera(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
-{
-	sclera_light(s, r->n, k);
-	if (k->light->mirror)
-		ripple(s, r->n, &k->scene->film);
 }
 
 /* The relief along each ray, by Newton's steps from the iris plane: it is flat enough against the slope of sight in the
@@ -228,12 +229,13 @@ SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, c
 	}
 }
 
-SIMD_CLONES void quick_mirror(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+SIMD_CLONES void quick_mirror(struct quick_found *f, const struct quick_rays *r, const struct quick_look *k)
 {
+	struct quick_spots *s = &f->spots;
 	float(*m)[3] = (float(*)[3])k->cam_from_eye;
 	SIMD_LOOP
 	for (int i = 0; i < r->n; i++) {
-		float dx = r->dx[i], dy = r->dy[i], dz = r->dz[i], nx = s->nx[i], ny = s->ny[i], nz = s->nz[i];
+		float dx = r->dx[i], dy = r->dy[i], dz = r->dz[i], nx = f->bent[0][i], ny = f->bent[1][i], nz = f->bent[2][i];
 		float c = -(dx * nx + dy * ny + dz * nz), rx = dx + 2 * c * nx, ry = dy + 2 * c * ny, rz = dz + 2 * c * nz;
 		float x = m[0][0] * rx + m[0][1] * ry + m[0][2] * rz, y = m[1][0] * rx + m[1][1] * ry + m[1][2] * rz, z = m[2][0] * rx + m[2][1] * ry + m[2][2] * rz;
 		float ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, az = z < 0 ? -z : z, inv = 1 / (ax + ay + az), u = x * inv, v = y * inv;

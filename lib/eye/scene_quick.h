@@ -42,16 +42,31 @@ struct quick_look {
 };
 struct quick_look quick_look(const struct scene *scene, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level);
 
+/* Where the rays end, once: what they see is found in it. */
+struct quick_found {
+	struct quick_spots spots;  // normals before the film has bent them
+	int seen, hit, white;      // rays that see the iris, anything, the sclera
+	float bent[3][BATCH];      // normals after
+};
+
 /* What a tile shows is asked at its corners: all of them well inside the limbus, or well outside. */
 enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA };
 
-/* In this order; quick_iris where something of the iris is seen, quick_sclera where something white is. */
+/* In this order; quick_iris where something of the iris is seen, ripple and sclera where something white is. */
 void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look, enum quick_kind kind);
 void quick_iris(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
-void quick_sclera(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
-void quick_mirror(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+void quick_ripple(struct quick_found *found, int n, const struct quick_look *look);
+void quick_mirror(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
+void quick_sclera(struct quick_spots *spots, int n, const struct quick_look *look);
 
-/* Colour of the rays; adds to *iris those that saw the iris. corners: the rays are a tile's, row by row, `across` in each. */
-void quick_trace(float rgba[][4], const struct quick_rays *rays, int across, const struct quick_look *look, long *iris);
+/* across: the rays are a tile's, row by row, so many in each; 0: no tile. */
+void quick_find(struct quick_found *found, const struct quick_rays *rays, int across, const struct quick_look *look);
+
+/* Makes hits those of this view: empty, where they were another's. Then one tile's; *kept: it has been found before. */
+void scene_hits_for(struct scene_hits *hits, const struct scene *scene, const struct scene_view *view, int tiles);
+struct quick_found *scene_hits_tile(struct scene_hits *hits, int tile, bool *kept);
+
+/* Colours of n rays. */
+void quick_colour(float rgba[][4], struct quick_found *found, int n, const struct quick_look *look);
 
 #endif

@@ -122,31 +122,46 @@ static enum quick_kind kind_of(const struct quick_rays *r, int across, const str
 	return in == 4 ? QUICK_CORNEA : out == 4 ? QUICK_SCLERA : QUICK_MIXED;
 }
 
-void quick_trace(float rgba[][4], const struct quick_rays *r, int across, const struct quick_look *k, long *iris)
+void quick_find(struct quick_found *f, const struct quick_rays *r, int across, const struct quick_look *k)
 {
-	struct quick_spots s;
 	enum quick_kind kind = kind_of(r, across, k);
-	int seen = kind == QUICK_CORNEA ? r->n : 0, hit = seen, white = kind == QUICK_SCLERA ? r->n : 0;
-	quick_outside(&s, r, k, kind);
+	struct quick_spots *s = &f->spots;
+	f->seen = kind == QUICK_CORNEA ? r->n : 0;
+	f->hit = f->seen;
+	f->white = kind == QUICK_SCLERA ? r->n : 0;
+	quick_outside(s, r, k, kind);
 	for (int i = 0; i < r->n && kind != QUICK_CORNEA; i++) {
-		hit += s.hit[i] > 0;
-		seen += s.hit[i] > 0 && s.lid[i] < 1;
-		white += s.lid[i] > 0;
+		f->hit += s->hit[i] > 0;
+		f->seen += s->hit[i] > 0 && s->lid[i] < 1;
+		f->white += s->lid[i] > 0;
 	}
-	if (!hit) {
-		memset(rgba, 0, (size_t)r->n * sizeof *rgba);
+	if (!f->hit)
+		return;
+	if (f->white) {
+		quick_ripple(f, r->n, k);
+	} else {
+		memcpy(f->bent[0], s->nx, sizeof s->nx);
+		memcpy(f->bent[1], s->ny, sizeof s->ny);
+		memcpy(f->bent[2], s->nz, sizeof s->nz);
+	}
+	if (f->seen)
+		quick_iris(s, r, k);
+	quick_mirror(f, r, k);
+}
+
+void quick_colour(float rgba[][4], struct quick_found *f, int n, const struct quick_look *k)
+{
+	struct quick_spots *s = &f->spots;
+	if (!f->hit) {
+		memset(rgba, 0, (size_t)n * sizeof *rgba);
 		return;
 	}
-	if (white)
-		quick_sclera(&s, r, k);
-	if (seen)
-		quick_iris(&s, r, k);
-	quick_mirror(&s, r, k);
-	if (seen)
-		put_iris(rgba, &s, r->n, k);
-	if (white)
-		put_sclera(rgba, &s, r->n, k, !seen);
+	if (f->white)
+		quick_sclera(s, n, k);
+	if (f->seen)
+		put_iris(rgba, s, n, k);
+	if (f->white)
+		put_sclera(rgba, s, n, k, !f->seen);
 	if (k->light->mirror)
-		put_mirror(rgba, &s, r->n, k->light->mirror);
-	*iris += seen;
+		put_mirror(rgba, s, n, k->light->mirror);
 }

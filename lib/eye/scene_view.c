@@ -12,34 +12,6 @@
 enum { TILE = 16 };
 _Static_assert(TILE * TILE == BATCH, "a tile's first rays are one batch");
 
-struct scene_view scene_view_turned(const struct scene *scene, double yaw, double pitch, double field, int size)
-{
-	// A long lens, 500 mm away, aimed at the middle of the eye that shows: a little in front of its centre of rotation.
-	double distance = 500, cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch);
-	double turn[3][3] = { { cy, 0, -sy }, { sp * sy, cp, sp * cy }, { cp * sy, -sp, cp * cy } };
-	double aim[3] = { 0, 0, scene->sclera_z - 0.1 * scene->conf.sclera_radius }, t[3];
-	struct scene_view v = { .scale = 1, .width = size, .height = size, .samples = 1 };
-	double focal = distance * size / field;
-	v.camera = (struct camera){ .focal_px = focal, .center_px = { size / 2.0, size / 2.0 }, .source = CAMERA_CONF };
-	mat_vec(t, turn, (double[3]){ 0, 0, scene->sclera_z });
-	for (int i = 0; i < 3; i++) {
-		for (int j = 0; j < 3; j++)
-			v.cam_from_eye[i][j] = turn[i][j];
-		v.cam_from_eye[i][3] = (i == 2 ? distance + aim[2] : 0) - t[i];
-	}
-	v.cam_from_eye[3][3] = 1;
-	return v;
-}
-
-struct scene_view scene_view_photo(const struct fit *fit, const double window[4], double scale)
-{
-	struct scene_view v = { .camera = fit->camera, .x0 = window[0], .y0 = window[1], .scale = scale, .samples = 1 };
-	memcpy(v.cam_from_eye, fit->cam_from_eye, sizeof v.cam_from_eye);
-	v.width = (int)lrint((window[2] - window[0]) / scale);
-	v.height = (int)lrint((window[3] - window[1]) / scale);
-	return v;
-}
-
 static void look_make(struct scene_look *look, const struct scene *s, const struct scene_view *view,
                       const struct scene_lighting *light, const struct scene_beams *beams)
 {
@@ -107,21 +79,24 @@ SIMD_CLONES static void quick_rays_make(struct quick_rays *r, const float *restr
 	}
 }
 
-static void quick_points(float rgba[][4], int n, const float *x, const float *y, int across, const struct canvas *c, long *iris)
+static void quick_points(struct quick_found *found, int n, const float *x, const float *y, int across, const struct canvas *c)
 {
 	struct quick_rays r;
 	r.n = n;
 	quick_rays_make(&r, x, y, &c->plane);
-	quick_trace(rgba, &r, across, c->look->quick, iris);
+	quick_find(found, &r, across, c->look->quick);
 }
 
 /* Rays through n points of the picture (px), traced. */
-static void trace_points(float rgba[][4], int n, const float *x, const float *y, int across, const struct canvas *c, long *iris)
+static void trace_points(float rgba[][4], int n, const float *x, const float *y, const struct canvas *c, long *iris)
 {
 	float dx[BATCH], dy[BATCH], dz[BATCH];
 	const struct scene_view *v = c->view;
 	if (c->look->quick && !c->bent) {
-		quick_points(rgba, n, x, y, across, c, iris);
+		struct quick_found found;
+		quick_points(&found, n, x, y, 0, c);
+		quick_colour(rgba, &found, n, c->look->quick);
+		*iris += found.seen;
 		return;
 	}
 	for (int i = 0; i < n; i++) {
@@ -143,7 +118,29 @@ static void trace_points(float rgba[][4], int n, const float *x, const float *y,
 	scene_trace(rgba, n, dx, dy, dz, c->scene, c->look, iris);
 }
 
-static void first_rays(const struct canvas *c, int tx, int ty, struct scene_count *count)
+/* A tile of a quick picture; what its rays met may be known from the picture before. */
+static void quick_tile(float rgba[][4], int n, const float *x, const float *y, int across, int tile, const struct canvas *c, struct scene_count *count)
+{
+	struct quick_found mine, *found = &mine;
+	bool kept = false;
+	if (c->view->hits)
+		found = scene_hits_tile(c->view->hits, tile, &kept);
+	if (!kept)
+		quick_points(found, n, x, y, across, c);
+	quick_colour(rgba, found, n, c->look->quick);
+	*(kept ? &count->kept : &count->rays) += n;
+	count->iris += found->seen;
+}
+
+static bool any_visible(const struct scene_view *v, int tx, int ty, int x1, int y1)
+{
+	for (int y = ty; y < y1; y++)
+		if (!v->visible || memchr(v->visible + (long)y * v->width + tx, 1, (size_t)(x1 - tx)))
+			return true;
+	return false;
+}
+
+static void first_rays(const struct canvas *c, int tile, int tx, int ty, struct scene_count *count)
 {
 	float rgba[BATCH][4], u[BATCH] = { 0 }, v[BATCH] = { 0 };
 	int n = 0, x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width;
@@ -153,8 +150,16 @@ static void first_rays(const struct canvas *c, int tx, int ty, struct scene_coun
 			u[n] = (float)x + 0.5f;
 			v[n] = (float)y + 0.5f;
 		}
-	trace_points(rgba, n, u, v, x1 - tx, c, &count->iris);
-	count->rays += n;
+	if (!any_visible(c->view, tx, ty, x1, y1)) {
+		count->hidden += n;
+		return;
+	}
+	if (c->look->quick) {
+		quick_tile(rgba, n, u, v, x1 - tx, tile, c, count);
+	} else {
+		trace_points(rgba, n, u, v, c, &count->iris);
+		count->rays += n;
+	}
 	for (int y = ty; y < y1; y++)
 		memcpy(image_at(c->image, tx, y), rgba[(y - ty) * (x1 - tx)], (size_t)(x1 - tx) * sizeof *rgba);
 }
@@ -195,7 +200,7 @@ static void refine_flush(struct refine *r, const struct canvas *c, struct scene_
 	float rgba[BATCH][4];
 	if (!r->n)
 		return;
-	trace_points(rgba, r->n, r->x, r->y, 0, c, &count->iris);
+	trace_points(rgba, r->n, r->x, r->y, c, &count->iris);
 	for (int i = 0; i < r->n; i++)
 		for (int k = 0; k < 4; k++)  // a mirror image brighter than white counts as a little more than white
 			r->sum[r->pixel[i]][k] += rgba[i][k] < 2 ? rgba[i][k] : 2;
@@ -229,6 +234,11 @@ static void more_rays(const struct canvas *c, const unsigned char *mark, int tx,
 struct image scene_render(const struct scene *s, const struct scene_view *view, const struct scene_lighting *light,
                           struct scene_count *count)
 {
+	if (view->visible && !memchr(view->visible, 1, (size_t)view->width * (size_t)view->height)) {  // the lids are closed
+		if (count)
+			count->hidden += (long)view->width * view->height;
+		return image_new(view->width, view->height, 4);
+	}
 	double eye_from_cam[3][3];
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++)
@@ -241,36 +251,40 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 	for (int i = 0; i < 5; i++)
 		c.bent = c.bent || view->camera.distortion[i] != 0;
 	int across = (view->width + TILE - 1) / TILE, tiles = across * ((view->height + TILE - 1) / TILE);
-	long rays = 0, iris = 0;
+	long rays = 0, iris = 0, kept = 0, hidden = 0;
 	struct scene_shade shade = { 0 };
 	struct quick_look quick;
 	if (s->conf.shading == SCENE_TEXELS && !c.bent) {
 		shade = scene_shade_make(s, look.level, look.origin, view->textured, &beams);
 		quick = quick_look(s, view, light, &shade, look.level);
 		look.quick = &quick;
+		if (view->hits)
+			scene_hits_for(view->hits, s, view, tiles);
 	}
 	unsigned char *mark = mem_new((size_t)view->width * (size_t)view->height, 1);
-#pragma omp parallel reduction(+ : rays, iris)
+#pragma omp parallel reduction(+ : rays, iris, kept, hidden)
 	{
 		struct scene_count mine = { 0 };
 #pragma omp for schedule(dynamic, 4)
 		for (int i = 0; i < tiles; i++)
-			first_rays(&c, i % across * TILE, i / across * TILE, &mine);
+			first_rays(&c, i, i % across * TILE, i / across * TILE, &mine);
 #pragma omp for schedule(static)
 		for (int y = 0; y < view->height; y++)
 			for (int x = 0; x < view->width && view->samples > 1; x++)
-				mark[(long)y * view->width + x] = is_edge(&image, x, y);
+				mark[(long)y * view->width + x] = (!view->visible || view->visible[(long)y * view->width + x]) && is_edge(&image, x, y);
 #pragma omp for schedule(dynamic, 4)
 		for (int i = 0; i < tiles; i++)
 			if (view->samples > 1)
 				more_rays(&c, mark, i % across * TILE, i / across * TILE, &mine);
 		rays += mine.rays;
 		iris += mine.iris;
+		kept += mine.kept;
+		hidden += mine.hidden;
 	}
 	free(mark);
 	free(shade.light);
 	free(beams.beam);
 	if (count)
-		*count = (struct scene_count){ count->rays + rays, count->iris + iris };
+		*count = (struct scene_count){ count->rays + rays, count->iris + iris, count->kept + kept, count->hidden + hidden };
 	return image;
 }

@@ -121,6 +121,25 @@ static bool window_of(int window[4], const struct portrait_view *v, const struct
 	return window[2] > window[0];
 }
 
+/* Pixels of the window that any sample shows the eye in, and their neighbours: colours are read a pixel away. free(). */
+static unsigned char *visible_of(const int window[4], const struct portrait_view *v, const struct portrait_spot *spots, int samples, int side)
+{
+	int w = window[2] - window[0], h = window[3] - window[1];
+	unsigned char *out = mem_new((size_t)w * (size_t)h, 1);
+	for (int y = window[1] * samples; y < window[3] * samples; y++)
+		for (int x = window[0] * samples; x < window[2] * samples; x++) {
+			if (spots[(long)y * v->width * samples + x].face != -2 - side)
+				continue;
+			int cx = x / samples - window[0], cy = y / samples - window[1];
+			for (int k = 0; k < 9; k++) {
+				int a = cx + k % 3 - 1, b = cy + k / 3 - 1;
+				if (a >= 0 && b >= 0 && a < w && b < h)
+					out[(long)b * w + a] = 1;
+			}
+		}
+	return out;
+}
+
 /* Share of the sky over a point of the eye that lids and brow leave: fixed directions about the normal. */
 static float sky_over(const struct portrait *p, const float at[3], const float normal[3])
 {
@@ -174,7 +193,7 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *p, 
                    const struct portrait_spot *spots, int samples)
 {
 	struct portrait_rays rays = portrait_rays_of(v);
-	struct scene_lighting light = scene_lighting(p->env, p->env, 8);
+	struct scene_lighting light = { 0 };  // a closed eye needs none
 	for (int side = 0; side < 2; side++) {
 		int window[4];
 		out[side] = (struct image){ 0 };
@@ -186,7 +205,12 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *p, 
 		view.y0 = at[side][1] = window[1];
 		view.width = window[2] - window[0];
 		view.height = window[3] - window[1];
+		unsigned char *visible = visible_of(window, v, spots, samples, side);
+		view.visible = visible;
+		if (!light.n)
+			light = scene_lighting(p->env, p->env, 8);
 		out[side] = scene_render(p->eye[side], &view, &light, &count);
+		free(visible);
 		shade_eye(&out[side], at[side], p, &rays, side);
 	}
 }

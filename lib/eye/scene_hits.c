@@ -1,0 +1,60 @@
+/* What rays of an unmoved view met, kept from picture to picture. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "eye/scene_quick.h"
+
+struct scene_hits {
+	const struct scene *scene;
+	struct scene_view view;  // that they belong to
+	int tiles;
+	struct quick_found **found;  // of each tile; null: not traced yet
+};
+
+struct scene_hits *scene_hits_new(void)
+{
+	return mem_new(1, sizeof(struct scene_hits));
+}
+
+static void clear(struct scene_hits *h)
+{
+	for (int i = 0; i < h->tiles; i++)
+		free(h->found[i]);
+	free(h->found);
+	*h = (struct scene_hits){ 0 };
+}
+
+void scene_hits_free(struct scene_hits *h)
+{
+	if (h)
+		clear(h);
+	free(h);
+}
+
+static bool same_view(const struct scene_view *a, const struct scene_view *b)
+{
+	return a->camera.focal_px == b->camera.focal_px && !memcmp(a->camera.center_px, b->camera.center_px, sizeof a->camera.center_px)
+	       && !memcmp(a->camera.distortion, b->camera.distortion, sizeof a->camera.distortion)
+	       && !memcmp(a->cam_from_eye, b->cam_from_eye, sizeof a->cam_from_eye) && !memcmp(a->slip, b->slip, sizeof a->slip)
+	       && a->x0 == b->x0 && a->y0 == b->y0 && a->scale == b->scale && a->width == b->width && a->height == b->height;
+}
+
+void scene_hits_for(struct scene_hits *h, const struct scene *scene, const struct scene_view *view, int tiles)
+{
+	if (h->scene == scene && h->tiles == tiles && same_view(&h->view, view))
+		return;
+	clear(h);
+	h->scene = scene;
+	h->view = *view;
+	h->tiles = tiles;
+	h->found = mem_new((size_t)tiles, sizeof *h->found);
+}
+
+struct quick_found *scene_hits_tile(struct scene_hits *h, int tile, bool *kept)
+{
+	*kept = h->found[tile] != 0;
+	if (!*kept)
+		h->found[tile] = mem_array(1, sizeof **h->found);
+	return h->found[tile];
+}
