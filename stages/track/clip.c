@@ -24,7 +24,22 @@ bool track_video(char file[320], int *others, struct stage *stage, struct err *e
 	return ok;
 }
 
-static bool set_camera(struct track_clip *clip, struct stage *stage, const struct track_conf *conf, struct err *err)
+/* Where calibrate saw the head: in its own mesh's frame. */
+static void take_poses(struct track_clip *clip, const struct camera_rig *rig)
+{
+	for (int i = 0; i < rig->n; i++) {
+		const struct rig_camera *c = &rig->cameras[i];
+		if (strcmp(c->file, clip->file) || c->frame < 0 || !c->has_pose)
+			continue;
+		clip->known = mem_grow(clip->known, (size_t)clip->n_known + 1, sizeof *clip->known);
+		struct track_known *k = &clip->known[clip->n_known++];
+		*k = (struct track_known){ c->frame, .residual_px = c->residual_px };
+		memcpy(k->cam_from_head, c->cam_from_head, sizeof k->cam_from_head);
+	}
+}
+
+static bool set_camera(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf,
+                       struct err *err)
 {
 	struct camera *c = &clip->camera;
 	*c = (struct camera){ .focal_px = conf->focal_px, .center_px = { 0.5 * clip->info.width, 0.5 * clip->info.height }, .source = CAMERA_CONF };
@@ -39,8 +54,11 @@ static bool set_camera(struct track_clip *clip, struct stage *stage, const struc
 		if (!camera_rig_load(&rig, path, err))
 			return false;
 		const struct rig_camera *found = camera_rig_find(&rig, clip->file);
-		if (found && found->width == clip->info.width && found->height == clip->info.height)
+		if (found && found->width == clip->info.width && found->height == clip->info.height) {
 			*c = found->camera;
+			if (s->file && !strncmp(s->file, "work/", 5))
+				take_poses(clip, &rig);
+		}
 		camera_rig_free(&rig);
 	}
 	// The widest picture a face is filmed in, as if from the usual distance: scaled when the eyes are found.
@@ -131,6 +149,33 @@ static bool look(struct track_clip *clip, const struct track_subject *s, const s
 	return true;
 }
 
+/* A frame of known pose, if open eyes are seen where they then are. */
+static bool look_known(struct track_clip *clip, long frame, const struct track_subject *s, const struct track_conf *conf)
+{
+	for (int i = 0; i < clip->n_known; i++) {
+		const struct track_known *k = &clip->known[i];
+		struct head_found found = { .seen = { s->opening[0].open, s->opening[1].open } };
+		if (k->frame != frame)
+			continue;
+		memcpy(found.cam_from_head, k->cam_from_head, sizeof found.cam_from_head);
+		if (!head_find_refine(&found, clip->rgb, clip->info.width, clip->info.height, &clip->camera, s->opening, &conf->head))
+			return false;
+		memcpy(clip->cam_from_head, k->cam_from_head, sizeof clip->cam_from_head);
+		memcpy(clip->eye_seen, found.seen, sizeof clip->eye_seen);
+		clip->pose_px = k->residual_px;
+		return clip->pose_given = true;
+	}
+	return false;
+}
+
+static bool is_known(const struct track_clip *clip, long frame)
+{
+	for (int i = 0; i < clip->n_known; i++)
+		if (clip->known[i].frame == frame)
+			return true;
+	return false;
+}
+
 static void keep(struct track_clip *clip, const struct video_frame *f)
 {
 	for (int y = 0; y < f->height; y++)
@@ -139,9 +184,20 @@ static void keep(struct track_clip *clip, const struct video_frame *f)
 	clip->reference = f->index;
 }
 
-/* Decodes up to the reference frame: the one asked for, or the first in which eyes are found. */
-static bool find_reference(struct track_clip *clip, struct video *video, const struct track_subject *s, const struct track_conf *conf,
-                           struct err *err)
+/* Whether the head is where the kept frame shows it. */
+static bool try_frame(struct track_clip *clip, bool known, const struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	if (known)
+		return look_known(clip, clip->reference, s, conf);
+	if (s->mesh.n_vertices == 0)
+		return true;
+	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : look(clip, s, conf);
+}
+
+/* Decodes up to the reference frame: the one asked for, or the first in which eyes are found; known: of those alone whose pose
+ * is known, and none is no error. */
+static bool find_reference(struct track_clip *clip, struct video *video, bool known, const struct track_subject *s,
+                           const struct track_conf *conf, struct err *err)
 {
 	enum { EVERY = 5 };
 	bool found = false, any = false;
@@ -152,16 +208,17 @@ static bool find_reference(struct track_clip *clip, struct video *video, const s
 			return false;
 		if (!got)
 			break;
-		bool marked = conf->landmark_px.n > 0;
-		if (conf->reference >= 0 ? i == conf->reference : i % EVERY == 0) {
+		if (known ? is_known(clip, i) : conf->reference >= 0 ? i == conf->reference : i % EVERY == 0) {
 			keep(clip, &f);
 			any = true;
-			found = s->mesh.n_vertices == 0 || (marked ? pose_from_marks(clip, s, conf, err) : look(clip, s, conf));
+			found = try_frame(clip, known, s, conf, err);
 		}
 		video_frame_free(&f);
 		if (err_is(err))
 			return false;
 	}
+	if (known)
+		return found;
 	if (!any)
 		return err_set(err, "%s: %ld frames: track.reference_frame = %d is none of them", clip->file, clip->info.frames, conf->reference);
 	return found || err_set(err, "%s: no face with open eyes in %s: film the face from in front, upright, eyes open at the start; or mark the corners of the eyes (track.landmark_left_inner_canthus = x y ...)",
@@ -175,11 +232,17 @@ bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct 
 	for (int i = 0; i < SIDES * 3; i++)
 		clip->limbus_px[i / 3][i % 3] = NAN;
 	struct video *video = video_open(&clip->info, stage_path(stage, "%s", clip->file), &conf->video, err);
-	bool ok = video && set_camera(clip, stage, conf, err);
+	bool ok = video && set_camera(clip, stage, s, conf, err);
 	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
 	clip->luma = mem_new(area + 1, 1);
 	clip->rgb = mem_new(3 * area + 1, 1);
-	ok = ok && find_reference(clip, video, s, conf, err);
+	bool known = ok && clip->n_known && conf->reference < 0 && !conf->landmark_px.n;
+	bool found = known && find_reference(clip, video, true, s, conf, err);
+	if (known && !found && !err_is(err)) {
+		video_close(video);
+		video = video_open(&clip->info, stage_path(stage, "%s", clip->file), &conf->video, err);
+	}
+	ok = found || (ok && video && !err_is(err) && find_reference(clip, video, false, s, conf, err));
 	video_close(video);
 	return ok;
 }
@@ -188,4 +251,5 @@ void track_clip_free(struct track_clip *clip)
 {
 	free(clip->luma);
 	free(clip->rgb);
+	free(clip->known);
 }

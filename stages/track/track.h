@@ -44,6 +44,12 @@ struct track_subject {
 	bool assumed;          // there is no mesh: openings of a usual face, to find eyes with
 };
 
+/* A frame in which calibrate has found the head. */
+struct track_known {
+	long frame;
+	double cam_from_head[4][4], residual_px;
+};
+
 /* The clip as it lies before the first frame is followed. */
 struct track_clip {
 	char file[320];        // relative to the capture
@@ -56,7 +62,9 @@ struct track_clip {
 	double limbus_px[SIDES][3];      // without a mesh; NAN
 	uint8_t *luma, *rgb;             // of the reference [height][width]; owned
 	double pose_px;        // rms of what the pose was found from
-	bool pose_given;       // from track.landmark_*
+	bool pose_given;       // from track.landmark_*, or known
+	struct track_known *known;       // by rig.json, of this video and of its own mesh; owned
+	int n_known;
 };
 
 /* Points of skin: rows of the mesh and where they are at the reference. */

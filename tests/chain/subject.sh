@@ -13,11 +13,13 @@ printf 'quality = draft\nsubject.eye_radius = 15.175\n' >"$capture/capture.conf"
 # Its mesh is in centimetres; what calibrate makes is in millimetres.
 awk 'body && NF == 3 { printf "%.6f %.6f %.6f\n", 10 * $1, 10 * $2, 10 * $3; next } { print } /^end_header/ { body = 1 }' \
 	samples/face/subject.ply >"$capture/work/subject.ply"
+# The head rests in front of the camera: where it is, from the skin's true positions in the first frame.
 rig() { # EYES
 	cat >"$capture/work/rig.json" <<-END
 		{"scale_source": "limbus", "scale_sigma": 0.02, "frame_source": "eyes", "eye_center": $1, "cameras": [{
-		 "name": "face", "file": "video/face.mp4", "width": 1280, "height": 720, "fx": 6380, "fy": 6380, "cx": 640, "cy": 360,
-		 "distortion": [0, 0, 0, 0, 0], "cam_from_head": null, "residual_px": 0.5, "points": 100}]}
+		 "name": "face_20", "frame": 20, "file": "video/face.mp4", "width": 1280, "height": 720, "fx": 6380, "fy": 6380, "cx": 640, "cy": 360,
+		 "distortion": [0, 0, 0, 0, 0], "cam_from_head": [1, 0, 0, 0, 0, -1, 0, 35.473, 0, 0, -1, 673.1, 0, 0, 0, 1],
+		 "residual_px": 0.5, "points": 100}]}
 	END
 }
 
@@ -32,6 +34,9 @@ same "the video is tracked with calibrate's lens, eyes and mesh" "$?" 0
 same "the lens is not guessed" "$(grep -c 'focal length not known' "$log")" 0
 check "most of the skin is seen" grep -qE '(9[0-9]|100) % of them seen' "$log"
 check "the lens is the rig's" grep -q '"focal_px": 6380' "$capture/work/skin/track.json"
+
+check "the head is where calibrate saw it" grep -q '"reference_frame": 20,' "$capture/work/skin/track.json"
+check "to within what calibrate's cameras are good for" grep -q '"pose_rms_px": 0.5,' "$capture/work/skin/track.json"
 
 "$BIN/transfer" --capture="$capture" >"$log" 2>&1
 same "the character is laid onto calibrate's mesh" "$?" 0
