@@ -83,7 +83,7 @@ static void settle_lids(struct eye_side *eye)
 	}
 }
 
-void eye_side_settle(struct eye_side *eye, struct eye_globe *globe)
+void eye_side_settle(struct eye_side *eye)
 {
 	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
 	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
@@ -109,10 +109,16 @@ void eye_side_settle(struct eye_side *eye, struct eye_globe *globe)
 	}
 	level_torsion(eye);
 	settle_lids(eye);
-	*globe = (struct eye_globe){ .seen = n > 0, .radius = eye->globe.radius, .limbus_radius = eye->globe.limbus,
-		.rms_px = eye->rms, .frames = n };
-	memcpy(globe->center_in_head, eye->globe.center, sizeof globe->center_in_head);
-	memcpy(globe->center_sigma, eye->center_sigma, sizeof globe->center_sigma);
 	free(frame);
 	free(index);
+}
+
+void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye)
+{
+	*globe = (struct eye_globe){ .radius = eye->globe.radius, .limbus_radius = eye->globe.limbus, .rms_px = eye->rms };
+	memcpy(globe->center_in_head, eye->globe.center, sizeof globe->center_in_head);
+	memcpy(globe->center_sigma, eye->center_sigma, sizeof globe->center_sigma);
+	for (long i = 0; i < eye->frames; i++)
+		globe->frames += eye->state[i].confidence > 0;
+	globe->seen = globe->frames > 0;
 }

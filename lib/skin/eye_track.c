@@ -74,16 +74,20 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 			clip->frames = (int)track->side[side].frames;
 	clip->state = mem_new((size_t)clip->frames, sizeof *clip->state);
 	bool seen = false;
+	for (int side = 0; side < SIDES; side++)
+		eye_side_settle(&track->side[side]);
+	eye_pair_level(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT]);
 	for (int side = 0; side < SIDES; side++) {
 		struct eye_side *eye = &track->side[side];
-		eye_side_settle(eye, &clip->globe[side]);
+		eye_side_globe(&clip->globe[side], eye);
 		if (clip->globe[side].seen)
 			eye_side_events(clip, eye, side);
 		for (int i = 0; i < clip->frames; i++)
 			clip->state[i][side] = eye->state[i];
 		seen |= clip->globe[side].seen;
 	}
-	qsort(clip->event, (size_t)clip->events, sizeof *clip->event, earlier);
+	if (clip->events)
+		qsort(clip->event, (size_t)clip->events, sizeof *clip->event, earlier);
 	if (!seen)
 		return err_set(err, "no eye was found in any frame: film one or both eyes from near, lit from the front, open");
 	return true;

@@ -64,7 +64,13 @@ void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);
 void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int points);
 
 /* All frames once more with what the whole clip tells: eyeball, gaze, torsion, lids. */
-void eye_side_settle(struct eye_side *eye, struct eye_globe *globe);
+void eye_side_settle(struct eye_side *eye);
+
+/* The eyeball as the clip has it. */
+void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye);
+
+/* After both have settled: what is not level by no more than the eyeballs' centres are unsure of is shared between them. */
+void eye_pair_level(struct eye_side *left, struct eye_side *right);
 
 /* Openness and blinks of one eye, and its saccades; events are appended to clip. */
 void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side);

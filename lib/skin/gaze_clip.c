@@ -153,8 +153,8 @@ static bool iterate(struct gaze_globe *globe, struct gaze_clip_fit *fit, int n, 
 			gather(&own[i], NULL, frame[i], globe, 3 * scale);
 			reduce(&sums, &own[i]);
 		}
-		// Edges round one limbus share its lobes and shading: a frame is worth about four of them, not all.
-		double noise = sums.weight > 0 ? sums.square / sums.weight * same * EDGES / 4 : 1;
+		// Edges round one limbus share its lobes and shading: a frame is worth about three of them, not all.
+		double noise = sums.weight > 0 ? sums.square / sums.weight * same * EDGES / 3 : 1;
 		if (!solve(step, &sums, globe, &start, sigma, fmax(noise, 0.01), fit->sigma))
 			return false;
 		fit->rms = sqrt(sums.square / fmax(1, sums.weight));
