@@ -105,9 +105,14 @@ static int count_rims(const struct topology *t)
 	return rims;
 }
 
+static bool all_marked(const bool *mark, const int32_t v[3])
+{
+	return mark && mark[v[0]] && mark[v[1]] && mark[v[2]];
+}
+
 /* The kept faces and their vertices, in the whole's order. */
 static void copy_kept(struct mesh_part *out, const struct mesh *whole, const struct mesh *joined, const int32_t *first,
-                      const struct topology *t, const bool *keep)
+                      const struct topology *t, const bool *keep, const bool *leave)
 {
 	size_t n = (size_t)whole->n_vertices, m = (size_t)whole->n_faces;
 	struct mesh *mesh = &out->mesh;
@@ -118,7 +123,7 @@ static void copy_kept(struct mesh_part *out, const struct mesh *whole, const str
 	out->face = mem_array(m + 1, sizeof *out->face);
 	uint8_t *used = mem_new(n + 1, 1);
 	for (int f = 0; f < joined->n_faces; f++)
-		if (keep[t->piece[joined->faces[f][0]]] && area_of(joined, joined->faces[f]) > 0) {
+		if (keep[t->piece[joined->faces[f][0]]] && !all_marked(leave, joined->faces[f]) && area_of(joined, joined->faces[f]) > 0) {
 			memcpy(mesh->faces[mesh->n_faces], joined->faces[f], sizeof *mesh->faces);
 			out->face[mesh->n_faces++] = f;
 			for (int k = 0; k < 3; k++)
@@ -140,7 +145,7 @@ static void copy_kept(struct mesh_part *out, const struct mesh *whole, const str
 	free(used);
 }
 
-void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double least)
+void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double least, const bool *leave)
 {
 	*out = (struct mesh_part){ 0 };
 	int32_t *first = join(&out->doubled, whole);
@@ -152,7 +157,7 @@ void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double leas
 	struct topology t;
 	topology_make(&t, &joined);
 	bool *keep = choose(out, &joined, &t, least);
-	copy_kept(out, whole, &joined, first, &t, keep);
+	copy_kept(out, whole, &joined, first, &t, keep, leave);
 	topology_free(&t);
 	topology_make(&t, &out->mesh);
 	out->tangled = t.n_tangled;

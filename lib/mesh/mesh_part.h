@@ -19,8 +19,8 @@ struct mesh_part {
 };
 
 /* least: pieces smaller than this share of the largest's area are left out, and closed ones (balls) smaller than half of
- * it. mesh_part_free. */
-void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double least);
+ * it. leave: [whole's vertices] faces whose corners are all marked are left out too; or null. mesh_part_free. */
+void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double least, const bool *leave);
 void mesh_part_free(struct mesh_part *part);
 
 #endif

@@ -8,6 +8,7 @@
 #include "mesh/closest.h"
 #include "mesh/kdtree.h"
 #include "mesh/mesh_part.h"
+#include "mesh/openness.h"
 #include "skin/transfer_impl.h"
 
 void transfer_free(struct transfer *t)
@@ -144,14 +145,33 @@ static void snap(struct transfer *out, const struct mesh *target, const struct m
 	free(normals);
 }
 
+/* Sockets behind the lids, insides of nose and mouth: what a scan or a face cut out of one does not have. Matched, they
+ * would be drawn into the openings. Null: none, or a mesh that is inside out. */
+static bool *hidden(const struct mesh *target, double least)
+{
+	float *open = mem_array((size_t)target->n_vertices + 1, sizeof *open);
+	bool *is = mem_new((size_t)target->n_vertices + 1, sizeof *is);
+	int n = 0;
+	mesh_openness(open, target);
+	for (int i = 0; i < target->n_vertices; i++)
+		n += is[i] = (double)open[i] < least;
+	free(open);
+	if (n && n < target->n_vertices / 2)
+		return is;
+	free(is);
+	return 0;
+}
+
 static bool registered(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct nricp_landmarks *landmarks,
                        const struct transfer_conf *conf, struct err *err)
 {
 	struct mesh_part moving, fixed;
 	struct nricp_align_result pose;
 	struct nricp_result result = { 0 };
-	mesh_part_make(&moving, target, conf->least_piece);
-	mesh_part_make(&fixed, subject, conf->least_piece);
+	bool *leave = hidden(target, conf->open);
+	mesh_part_make(&moving, target, conf->least_piece, leave);
+	mesh_part_make(&fixed, subject, conf->least_piece, 0);
+	free(leave);
 	int n = 0, *rows = mem_array(2 * (size_t)(landmarks ? landmarks->n : 0) + 2, sizeof *rows), *to = rows + (landmarks ? landmarks->n : 0);
 	for (int i = 0; landmarks && i < landmarks->n; i++)
 		if (moving.of[landmarks->moving[i]] >= 0 && fixed.of[landmarks->fixed[i]] >= 0) {

@@ -10,6 +10,7 @@ struct transfer_conf {
 	struct nricp_conf nricp;
 	struct nricp_align_conf align;
 	double least_piece;      // share of the largest piece's area below which a piece is carried along, not matched
+	double open;             // faces with less before them free (mesh_openness) are carried along too
 	double snap;             // distance from the subject at which a vertex's confidence has fallen to 1/e; share of its size
 };
 

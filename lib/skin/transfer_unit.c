@@ -38,7 +38,7 @@ double transfer_target_unit(const struct mesh *target, const struct mesh *subjec
 {
 	struct mesh_part part, fixed;
 	double center[3], best = 0, top = -1;
-	mesh_part_make(&part, target, conf->least_piece);
+	mesh_part_make(&part, target, conf->least_piece, 0);
 	double size = mesh_size(center, &part.mesh);
 	int n = 0;
 	for (int i = 0; i < UNITS; i++)
@@ -47,7 +47,7 @@ double transfer_target_unit(const struct mesh *target, const struct mesh *subjec
 			n++;
 		}
 	if (n > 1) {
-		mesh_part_make(&fixed, subject, conf->least_piece);
+		mesh_part_make(&fixed, subject, conf->least_piece, 0);
 		for (int i = 0; i < UNITS; i++)
 			if (size * units[i] > face_least && size * units[i] < body_most) {
 				struct mesh scaled = in_unit(&part.mesh, units[i]);

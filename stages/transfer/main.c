@@ -36,6 +36,7 @@ int main(int argc, char **argv)
 		OPT_REAL("align_good", &a->good, 0, 1, "", "share of the subject found, with which no further start is tried"),
 		OPT_REAL("align_least", &a->least, 0, 1, "", "share of the subject found, below which there is no likeness"),
 		OPT_INT("align_starts", &a->starts, 0, 10000, "", "places of the character tried where turning does not help"),
+		OPT_REAL("open", &conf.transfer.open, 0, 0.5, "", "surface with less before it free is carried along: sockets, insides"),
 		OPT_REAL("least_piece", &conf.transfer.least_piece, 0, 1, "", "pieces smaller than this share of the largest are carried along"),
 		OPT_REAL("snap", &conf.transfer.snap, 1e-3, 10, "size", "distance from the subject at which trust has fallen to 1/e"),
 		OPT_REAL("limit_vertices", &conf.limit_vertices, 100, 1e8, "", "larger meshes are refused"),

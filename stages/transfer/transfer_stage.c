@@ -81,7 +81,7 @@ static bool load_target(struct target *t, struct stage *stage, const struct subj
 	if (t->guessed)
 		t->unit = transfer_same_topology(&t->mesh, &s->mesh) ? s->unit : transfer_target_unit(&t->mesh, &s->mesh, &conf->transfer);
 	scale(&t->mesh, t->unit);
-	mesh_part_make(&t->part, &t->mesh, conf->transfer.least_piece);
+	mesh_part_make(&t->part, &t->mesh, conf->transfer.least_piece, 0);
 	say_mended(stage, t->in[0], &t->part);
 	return true;
 }

@@ -9,7 +9,7 @@ static const struct transfer_conf transfer_defaults = {
 	           .rim_reach = 0.1, .polish_rounds = 2, .polish = 0.005 },
 	.align = { .samples = 400, .rounds = 12, .welsch = { 0.5, 0.1 }, .turn = 0.15, .facing = 0.3, .scale_max = 2, .good = 0.7,
 	           .least = 0.3, .starts = 60 },
-	.least_piece = 0.1, .snap = 0.05,
+	.least_piece = 0.1, .open = 0.12, .snap = 0.05,
 };
 
 #endif
