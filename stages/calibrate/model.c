@@ -5,11 +5,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "stages/calibrate/calibrate.h"
-#include "stages/calibrate/model.h"
-
-enum { MAX_MODELS = 8 };
-#define TRIALS CALIBRATE_DIR "/models"
+#include "stages/calibrate/merge.h"
 
 static const char *const files[] = { "cameras.bin", "images.bin", "points3D.bin", "project.ini", "seal" };
 
@@ -23,7 +19,7 @@ void model_remove(struct stage *stage, const char *dir)
 
 static void remove_trials(struct stage *stage)
 {
-	for (int i = 0; i < MAX_MODELS; i++)
+	for (int i = 0; i < MODEL_TRIALS; i++)
 		model_remove(stage, stage_path(stage, TRIALS "/%d", i) + strlen(stage->capture) + 1);
 	model_remove(stage, TRIALS);
 }
@@ -65,12 +61,13 @@ static bool run_mapper(struct stage *stage, const struct views *views, bool grow
 	return ok;
 }
 
-/* The model with the most pictures, then the most points. *n: how many models there are. */
-static bool best_trial(struct colmap_model *best, int *n, struct stage *stage, struct err *err)
+/* The model with the most pictures, then the most points. *n: how many models there are; *at: its number, -1 of one gone on
+ * with. */
+static bool best_trial(struct colmap_model *best, int *n, int *at, struct stage *stage, struct err *err)
 {
 	*best = (struct colmap_model){ 0 };
 	*n = 0;
-	for (int i = -1; i < MAX_MODELS; i++) {
+	for (int i = -1; i < MODEL_TRIALS; i++) {
 		const char *dir = i < 0 ? stage_path(stage, TRIALS) : stage_path(stage, TRIALS "/%d", i);
 		char *file = mem_printf("%s/cameras.bin", dir);
 		bool there = file_exists(file);
@@ -85,6 +82,7 @@ static bool best_trial(struct colmap_model *best, int *n, struct stage *stage, s
 			struct colmap_model was = *best;
 			*best = m;
 			m = was;
+			*at = i;
 		}
 		colmap_free(&m);
 	}
@@ -123,7 +121,9 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
 		return err_set(err, "%s", why.msg);
 	*n_models = 0;
 	*model = (struct colmap_model){ 0 };
-	ok = !ok || best_trial(model, n_models, stage, err);
+	int at = -1;
+	ok = !ok || (best_trial(model, n_models, &at, stage, err)
+	             && (at < 0 || *n_models < 2 || merge_models(model, n_models, at, stage, o, err)));
 	remove_trials(stage);
 	return ok;
 }

@@ -138,6 +138,40 @@ same "each has a pose" "$(grep -c '"cam_from_head": \[' "$root/walk/work/rig.jso
 focal=$(sed -n 's/.*"fx": \([0-9]*\).*/\1/p' "$root/walk/work/rig.json" | head -n 1)
 check "the lens is found: $focal of 871 px" test "${focal:-0}" -gt 845 -a "${focal:-0}" -lt 897
 
+# A mapper that leaves two models which share pictures: joined.
+cat >"$root/bin/colmap" <<'END'
+#!/bin/bash
+PATH=${PATH#*:}
+[ "$1" = mapper ] || exec colmap "$@"
+args=("$@")
+for ((i = 0; i < $#; i++)); do
+	case ${args[i]} in
+	--output_path) out=${args[i + 1]} at=$((i + 1)) ;;
+	--image_path) pictures=${args[i + 1]} ;;
+	esac
+done
+ls "$pictures" | sort -t- -k3n >"$out.all"
+for part in 0 1; do
+	mkdir -p "$out/part"
+	args[at]=$out/part
+	if [ $part = 0 ]; then head -n 7; else tail -n 7; fi <"$out.all" >"$out.list"
+	colmap "${args[@]}" --image_list_path "$out.list" || exit
+	mv "$out/part/0" "$out/$part"
+done
+rm -r "$out/part" "$out.all" "$out.list"
+END
+mkdir -p "$root/split/video"
+cp "$root/walk/capture.conf" "$root/split/"
+cp "$root/walk/video/walk.mp4" "$root/split/video/"
+PATH="$root/bin:$PATH" run_calibrate "$root/split"
+same "two models that share pictures: exit status" "$?" 0
+# Neither part has more than 7 pictures; one at an end may share too little with its part.
+check "they are joined, and it is said" grep -qE "share pictures: joined to one of (9|10)" "$log"
+check "and have cameras" test "$(grep -c '"cam_from_head": \[' "$root/split/work/rig.json")" -ge 9
+focal=$(sed -n 's/.*"fx": \([0-9]*\).*/\1/p' "$root/split/work/rig.json" | head -n 1)
+check "the lens is found: $focal of 871 px" test "${focal:-0}" -gt 845 -a "${focal:-0}" -lt 897
+same "nothing is left about" "$(ls "$root/split/work/calibrate" | grep -cE 'merged|adjusted|joined|models')" 0
+
 # A mesh that is given is not made.
 cp "$root/again/work/subject.ply" "$root/again/subject.ply"
 run_calibrate "$root/again" --force
