@@ -48,6 +48,29 @@ static inline void keep_if_measured(double *x, double *c, double to, double beli
 	*c = !ok ? 0 : belief < 1 ? belief : 1;
 }
 
+/* Points that all lie in one place are no lids and no skin: what a tracker writes that has nothing to write. */
+static bool collapsed(int n, const double *x, const double *c)
+{
+	const double place = 1e-3;  // px
+	double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
+	int measured = 0;
+	for (int i = 0; i < n; i++)
+		if (c[i] > 0) {
+			measured++;
+			low[i % 2] = fmin(low[i % 2], x[i]);
+			high[i % 2] = fmax(high[i % 2], x[i]);
+		}
+	return measured > 2 && high[0] - low[0] < place && high[1] - low[1] < place;
+}
+
+static void forget(int n, double *x, double *c)
+{
+	for (int i = 0; i < n; i++) {
+		x[i] = NAN;
+		c[i] = 0;
+	}
+}
+
 bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS],
                 struct err *err)
 {
@@ -65,6 +88,11 @@ bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS
 		for (int i = 0; i < nu; i++) {
 			size_t at = (size_t)r * (size_t)nu + (size_t)i;
 			keep_if_measured(&x[TRAIN_SKIN][at], &c[TRAIN_SKIN][at], skin[at], seen[r * nv + i / 2]);
+		}
+		for (int p = 0; p < TRAIN_PARTS; p++) {
+			size_t at = (size_t)r * (size_t)t->part[p].n;
+			if (collapsed(t->part[p].n, x[p] + at, c[p] + at))
+				forget(t->part[p].n, x[p] + at, c[p] + at);
 		}
 	}
 	free(lid);
