@@ -166,15 +166,21 @@ static struct eye_scene painted_scene(double off)
 	return scene;
 }
 
-static void push_film(struct eye_track *track, int i)
+static void push_film_at(struct eye_track *track, int i, double far)
 {
 	static uint8_t rgb[PAINTED_H * PAINTED_W * 3], luma[PAINTED_H * PAINTED_W];
 	struct painted_eye eye = film(i);
 	struct eye_frame frame = { luma, rgb, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } } };
 	painted_eye_draw(rgb, luma, &eye);
 	painted_eye_camera(frame.cam_from_head);
+	frame.cam_from_head[2][3] = far;
 	for (int side = 0; side < SIDES; side++)
 		eye_track_push(track, side, &frame);
+}
+
+static void push_film(struct eye_track *track, int i)
+{
+	push_film_at(track, i, PAINTED_FAR);
 }
 
 struct painted_error {
@@ -251,6 +257,42 @@ static void painted_film(void **state)
 	for (int k = 0; k < 2; k++)
 		NEAR(clip.globe[SIDE_LEFT].center_in_head[k], eye.center[k], 0.2);
 	assert_false(clip.globe[SIDE_RIGHT].seen);
+	eye_clip_free(&clip);
+	eye_track_free(track);
+}
+
+/* No mesh and no camera: a limbus seen in the first frame is all that is known. Gaze then is off by as much as that first
+ * look was not straight into the camera, but its changes are right; lids do not care. */
+static void without_mesh(void **state)
+{
+	(void)state;
+	struct eye_scene scene = painted_scene(0);
+	struct painted_eye eye = film(0);
+	struct eye_prior *prior = &scene.prior[SIDE_LEFT];
+	double per_mm = PAINTED_FOCAL / (PAINTED_FAR - eye.center[2] - PAINTED_R);
+	scene.camera.focal_px = scene.camera.center_px[0] = prior->radius = NAN;
+	for (int k = 0; k < 3; k++)
+		prior->center_in_head[k] = prior->canthus_in_head[0][k] = prior->canthus_in_head[1][k] = NAN;
+	prior->limbus_px[0] = PAINTED_W / 2.0 + eye.center[0] * per_mm;
+	prior->limbus_px[1] = PAINTED_H / 2.0 - eye.center[1] * per_mm;
+	prior->limbus_px[2] = PAINTED_LIMBUS * per_mm;
+	struct eye_track *track = eye_track_new(&scene, &eye_track_review);
+	struct eye_clip clip;
+	struct err err = { 0 };
+	static struct painted_error e;
+	for (int i = 0; i < FILM; i++)
+		push_film_at(track, i, 0);
+	assert_true(eye_track_finish(&clip, track, &err));
+	compare(&e, &clip);
+	print_message("gaze %.2f %.2f degrees; lids %.2f %.2f px; missing %d\n", stats_median(e.n, e.gaze[0]),
+	              stats_median(e.n, e.gaze[1]), stats_median(e.points[0], e.lid[0]), stats_median(e.points[1], e.lid[1]),
+	              e.missing);
+	assert_true(e.missing <= 4);
+	assert_int_equal(e.invented, 0);
+	// The camera's distance is a guess (twice the true one), the eyeball's size too.
+	assert_true(stats_median(e.n, e.gaze[0]) < 2 && stats_median(e.n, e.gaze[1]) < 2);
+	for (int q = 0; q < LIDS; q++)
+		assert_true(stats_median(e.points[q], e.lid[q]) < 1.5);
 	eye_clip_free(&clip);
 	eye_track_free(track);
 }
@@ -357,7 +399,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(arc_slopes), cmocka_unit_test(pixel_round_trip), cmocka_unit_test(globe_from_clip),
-		cmocka_unit_test(smooth_line), cmocka_unit_test(painted_film), cmocka_unit_test(no_eye),
+		cmocka_unit_test(smooth_line), cmocka_unit_test(painted_film), cmocka_unit_test(without_mesh), cmocka_unit_test(no_eye),
 		cmocka_unit_test(absurd_priors),
 #ifndef __SANITIZE_ADDRESS__
 		cmocka_unit_test(rendered_clip),  // a minute when sanitised

@@ -87,7 +87,7 @@ void eye_side_settle(struct eye_side *eye)
 {
 	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
 	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
-	struct gaze_clip_conf conf = { eye->conf->center_sigma, eye->conf->radius_sigma, eye->conf->limbus_sigma };
+	struct gaze_clip_conf conf = { eye->center_guess, eye->conf->radius_sigma, eye->conf->limbus_sigma };
 	struct gaze_clip_fit fit;
 	struct gaze_globe best = eye->first_globe;
 	if (gaze_clip_fit(&best, &fit, n, frame, &conf)) {
@@ -96,7 +96,7 @@ void eye_side_settle(struct eye_side *eye)
 		eye->rms = fit.rms;
 	} else {
 		for (int k = 0; k < 3; k++)
-			eye->center_sigma[k] = eye->conf->center_sigma;
+			eye->center_sigma[k] = eye->center_guess;
 	}
 	for (int i = 0; i < n; i++)
 		refit(&eye->state[index[i]], eye, &frame[i]);

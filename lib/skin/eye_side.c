@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 #include "skin/eye_track_impl.h"
 #include "skin/gaze_seek.h"
 #include "skin/gaze_sim.h"
@@ -188,6 +189,32 @@ void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int p
 	}
 }
 
+/* The corners were a guess: now they are where the opening just found ends, and the lids begin anew. */
+static bool find_corners(struct eye_side *eye, struct eye_record *record, const struct lid_picture *picture,
+                         struct lid_look *look, const struct gaze_view *view)
+{
+	if (!record->found.open)
+		return true;
+	for (int c = 0; c < 2; c++) {
+		double cam[3], ray[3], at[3];
+		const struct lid_curves *m = &eye->lids.margins;
+		int end = c ? record->found.last : record->found.first;
+		double *px = c ? look->outer : look->inner;
+		lid_chart_px(px, &eye->lids.chart, end, 0.5 * (m->row[0][end] + m->row[1][end]));
+		for (int i = 0; i < 3; i++)
+			cam[i] = vec_dot(view->cam_from_head[i], eye->canthus[c]) + view->cam_from_head[i][3];
+		camera_ray(ray, &view->camera, px);
+		for (int i = 0; i < 3; i++)
+			at[i] = ray[i] * cam[2] / ray[2] - view->cam_from_head[i][3];
+		for (int i = 0; i < 3; i++)
+			eye->canthus[c][i] = view->cam_from_head[0][i] * at[0] + view->cam_from_head[1][i] * at[1]
+			                     + view->cam_from_head[2][i] * at[2];
+	}
+	eye->corners_guessed = false;
+	lid_track_start(&eye->lids, eye->conf->lid_columns, eye->conf->lid_points);
+	return lid_track_push(&record->found, &eye->lids, picture, look);
+}
+
 /* Lids, then gaze between them. */
 static void look(struct eye_state *state, struct eye_record *record, struct eye_side *eye, const struct eye_frame *frame,
                  const struct gaze_view *view)
@@ -207,6 +234,8 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 	look.iris_px = score > FOUND ? limbus_px : NAN;
 	record->mm = (float)look.mm;
 	record->measured = lid_track_push(&record->found, &eye->lids, &picture, &look);
+	if (eye->corners_guessed && record->measured)
+		record->measured = find_corners(eye, record, &picture, &look, view);
 	if (!record->measured)
 		return;
 	record->open = record->found.open;

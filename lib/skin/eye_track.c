@@ -15,20 +15,70 @@ static bool known(int n, const double x[])
 	return true;
 }
 
+// mm: radius of an eyeball of which nothing is known; how far its guessed centre may be off.
+static const double RADIUS = 12, GUESS_SIGMA = 3;
+
+/* Without a mesh: the eyeball behind the limbus seen in the first frame, as if it looked into the camera. */
+static void guess_center(struct eye_side *eye, const struct eye_scene *scene, const double limbus_px[3])
+{
+	const struct camera *camera = &scene->camera;
+	double far = camera->focal_px * eye->globe.limbus / limbus_px[2], ray[3];
+	camera_ray(ray, camera, limbus_px);
+	eye->globe.center[0] = far * ray[0] / ray[2];
+	eye->globe.center[1] = -far * ray[1] / ray[2];
+	eye->globe.center[2] = -far - gaze_plane(&eye->globe);
+	eye->center_guess = GUESS_SIGMA;
+}
+
+/* Corners of a usual opening, 28 mm wide, round the eyeball. */
+static void guess_corners(struct eye_side *eye, int side)
+{
+	double size = eye->globe.radius / RADIUS, nose = side == SIDE_LEFT ? -1 : 1;
+	for (int c = 0; c < 2; c++) {
+		eye->canthus[c][0] = eye->globe.center[0] + (c ? -nose : nose) * 14 * size;
+		eye->canthus[c][1] = eye->globe.center[1] + (c ? 0.5 : -1.5) * size;
+		eye->canthus[c][2] = eye->globe.center[2] + 0.7 * eye->globe.radius;
+	}
+	eye->corners_guessed = true;
+}
+
 static void start(struct eye_side *eye, const struct eye_track *track, int side)
 {
 	const struct eye_prior *prior = &track->scene.prior[side];
+	bool seen = known(3, prior->limbus_px) && prior->limbus_px[2] > 2, given = known(3, prior->center_in_head);
 	eye->scene = &track->scene;
 	eye->conf = &track->conf;
-	eye->prior = prior;
-	eye->absent = prior->absent || !known(3, prior->center_in_head);
-	memcpy(eye->globe.center, prior->center_in_head, sizeof eye->globe.center);
-	eye->globe.radius = isfinite(prior->radius) && prior->radius > 3 ? prior->radius : 12;
+	eye->absent = prior->absent || !(given || seen);
+	eye->globe.radius = isfinite(prior->radius) && prior->radius > 3 ? prior->radius : RADIUS;
 	eye->globe.limbus = fmin(track->scene.eye.limbus_radius, 0.95 * eye->globe.radius);
+	eye->center_guess = track->conf.center_sigma;
+	if (given)
+		memcpy(eye->globe.center, prior->center_in_head, sizeof eye->globe.center);
+	else if (seen)
+		guess_center(eye, &track->scene, prior->limbus_px);
 	eye->first_globe = eye->globe;
 	memcpy(eye->canthus, prior->canthus_in_head, sizeof eye->canthus);
+	if (!known(6, &prior->canthus_in_head[0][0]))
+		guess_corners(eye, side);
 	eye->torsion.rays = track->conf.torsion_rays < TORSION_RAYS_MAX ? track->conf.torsion_rays : TORSION_RAYS_MAX;
 	lid_track_start(&eye->lids, track->conf.lid_columns, track->conf.lid_points);
+}
+
+/* A camera of unknown focal length is a metre away; without a centre, it looks at the picture's middle. */
+static void settle_camera(struct eye_scene *scene)
+{
+	struct camera *camera = &scene->camera;
+	if (!known(2, camera->center_px)) {
+		camera->center_px[0] = scene->width / 2.0;
+		camera->center_px[1] = scene->height / 2.0;
+	}
+	for (int side = 0; side < SIDES && !isfinite(camera->focal_px); side++) {
+		const struct eye_prior *prior = &scene->prior[side];
+		if (!prior->absent && prior->limbus_px[2] > 2)
+			camera->focal_px = 1000 * prior->limbus_px[2] / scene->eye.limbus_radius;
+	}
+	if (!isfinite(camera->focal_px))
+		camera->focal_px = 2.0 * scene->width;
 }
 
 struct eye_track *eye_track_new(const struct eye_scene *scene, const struct eye_track_conf *conf)
@@ -36,6 +86,7 @@ struct eye_track *eye_track_new(const struct eye_scene *scene, const struct eye_
 	struct eye_track *track = mem_new(1, sizeof *track);
 	track->scene = *scene;
 	track->conf = *conf;
+	settle_camera(&track->scene);
 	for (int side = 0; side < SIDES; side++)
 		start(&track->side[side], track, side);
 	return track;

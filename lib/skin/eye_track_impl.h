@@ -25,10 +25,11 @@ struct eye_side {
 	bool absent, started;
 	const struct eye_scene *scene;
 	const struct eye_track_conf *conf;
-	const struct eye_prior *prior;
 	struct gaze_globe globe, first_globe;
 	double center_sigma[3], rms;
+	double center_guess;       // mm: how far the centre may be off what was given
 	double canthus[2][3];      // head frame
+	bool corners_guessed;      // until lids are found
 	double fick[2];            // last gaze
 	bool have;                 // it is of the last frame but for a blink
 	int lost;                  // frames without gaze
