@@ -48,10 +48,9 @@ static inline void keep_if_measured(double *x, double *c, double to, double beli
 	*c = !ok ? 0 : belief < 1 ? belief : 1;
 }
 
-/* Points that all lie in one place are no lids and no skin: what a tracker writes that has nothing to write. */
+/* Points that all lie in the very same place are no lids and no skin: what a tracker writes that has nothing to write. */
 static bool collapsed(int n, const double *x, const double *c)
 {
-	const double place = 1e-3;  // px
 	double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
 	int measured = 0;
 	for (int i = 0; i < n; i++)
@@ -60,7 +59,7 @@ static bool collapsed(int n, const double *x, const double *c)
 			low[i % 2] = fmin(low[i % 2], x[i]);
 			high[i % 2] = fmax(high[i % 2], x[i]);
 		}
-	return measured > 2 && high[0] - low[0] < place && high[1] - low[1] < place;
+	return measured > 2 && high[0] <= low[0] && high[1] <= low[1];
 }
 
 static void forget(int n, double *x, double *c)

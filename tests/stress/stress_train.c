@@ -423,7 +423,7 @@ int main(int argc, char **argv)
 		components(&s, s.index % 2, 1, pow(10, rng_range(&s.rng, 0, 8)));
 	for (stress_family(&s, "constant columns, columns and frames twice", 2000); stress_case(&s);)
 		degenerate(&s);
-	for (stress_family(&s, "blocks against all at once", 400); stress_case(&s);)
+	for (stress_family(&s, "blocks against all at once", 200); stress_case(&s);)
 		streamed(&s);
 	for (stress_family(&s, "regression, condition to 1e16", 10000); stress_case(&s);)
 		regression(&s, false);
