@@ -8,6 +8,7 @@
 #include "optics/colmap.h"
 #include "skin/cloud.h"
 #include "skin/sfm_match.h"
+#include "skin/transfer.h"
 
 #define CALIBRATE_DIR "work/calibrate"
 
@@ -27,6 +28,9 @@ struct calibrate_options {
 	double best_angle_deg, max_slant_deg;
 	int mesh_depth, mesh_faces, mesh_min_points;
 	double mesh_trim;
+	const char *template;         // relative to the capture; null: none
+	double template_cells;
+	struct transfer_conf transfer;
 };
 
 enum { THUMB = 16 };

@@ -4,12 +4,14 @@
  */
 #include <math.h>
 
+#include "skin/transfer_opts.h"
 #include "stages/calibrate/run.h"
 
 int main(int argc, char **argv)
 {
 	static const char *const lenses[] = { "simple_radial", "radial", "opencv", 0 };
 	struct calibrate_options o = { 0 };
+	double nodes[NRICP_LEVELS], rounds[NRICP_LEVELS];
 	struct stage stage;
 	struct err err = { 0 };
 	const struct opt opts[] = {
@@ -62,9 +64,13 @@ int main(int argc, char **argv)
 		OPT_REAL("mesh_trim", &o.mesh_trim, 0, 15, "", "levels below which its surface is guesswork and cut away"),
 		OPT_INT("mesh_faces", &o.mesh_faces, 1000, 5000000, "", "triangles of the subject's mesh"),
 		OPT_INT("mesh_min_points", &o.mesh_min_points, 100, 1000000, "", "fewer points make no mesh"),
+		OPT_STR("template", &o.template, "a mesh in the capture folder that is laid onto the surface"),
+		OPT_REAL("template_cells", &o.template_cells, 0, 100, "cells", "by which it may lie farther from the points than the surface"),
+		TRANSFER_OPTS("template_", &o.transfer, nodes, rounds),
 	};
 	stage_start(&stage, "calibrate", "cameras and the person's mesh from overlapping photographs, with COLMAP", argc, argv,
 	            COUNT(opts), opts);
+	transfer_conf_take(&o.transfer, nodes, rounds);
 	o.cloud.best_angle = o.best_angle_deg * M_PI / 180;
 	o.cloud.max_slant = o.max_slant_deg * M_PI / 180;
 	calibrate_run(&stage, &o, &err);

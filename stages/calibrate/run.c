@@ -11,9 +11,9 @@
 #define RIG "work/rig.json"
 
 /* The files the results are made from; of a video's frames the video, once. */
-static const char **inputs_of(int *n, const struct views *views)
+static const char **inputs_of(int *n, const struct views *views, const struct calibrate_options *o)
 {
-	const char **in = mem_new((size_t)views->n, sizeof *in), *video = 0;
+	const char **in = mem_new((size_t)views->n + 1, sizeof *in), *video = 0;
 	*n = 0;
 	for (int i = 0; i < views->n; i++) {
 		const struct view *v = &views->v[i];
@@ -24,6 +24,8 @@ static const char **inputs_of(int *n, const struct views *views)
 	}
 	if (video)
 		in[(*n)++] = video;
+	if (o->template)
+		in[(*n)++] = o->template;
 	return in;
 }
 
@@ -44,7 +46,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	struct head head = { .model = &model };
 	struct camera_rig rig = { 0 };
 	int n;
-	const char **in = inputs_of(&n, views);
+	const char **in = inputs_of(&n, views, o);
 	const char *const rig_alone[] = { RIG };
 	bool ok = state_check(stage, o, err) && features_make(&grows, views, stage, o, err) && pairs_match(views, stage, o, err)
 	          && model_make(&model, views, grows, stage, o, err) && state_save(stage, o, err)
@@ -91,9 +93,20 @@ static bool is_advice(const struct err *err, const struct stage *stage)
 	return is;
 }
 
+/* Before hours of work, not behind them. */
+static bool check_template(struct stage *stage, const struct calibrate_options *o, struct err *err)
+{
+	char *path = 0;
+	bool ok = !o->template || file_inside(&path, stage->capture, o->template, err) || err_wrap(err, "capture.conf: calibrate.template");
+	free(path);
+	return ok;
+}
+
 bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct views views;
+	if (!check_template(stage, o, err))
+		return false;
 	bool ok = views_gather(&views, stage, o, err), video = ok && file_exists(stage_path(stage, "video")) && views_are_video(&views);
 	if (ok && video && !run_exists("colmap"))
 		ok = give_up(stage, &views, "COLMAP is not installed: apt-get install colmap", err);

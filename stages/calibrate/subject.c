@@ -10,6 +10,7 @@
 #include "image/picture.h"
 #include "skin/surface.h"
 #include "stages/calibrate/dense.h"
+#include "stages/calibrate/template.h"
 
 enum { MESH_LIMIT = 20000000 };
 #define CLOUD CALIBRATE_DIR "/cloud.ply"
@@ -112,7 +113,9 @@ bool subject_make(const struct head *head, const struct views *views, struct sta
 	     && om_mesh_load(&mesh, stage_path(stage, RAW_MESH), MESH_LIMIT, err);
 	if (ok)
 		clean(&mesh, head);
-	ok = ok && (mesh.n_faces <= o->mesh_faces || om_mesh_decimate(&mesh, o->mesh_faces, err))
+	bool laid = false;
+	ok = ok && (!o->template || template_lay(&laid, &mesh, &cloud, head, stage, o, err));
+	ok = ok && (laid || mesh.n_faces <= o->mesh_faces || om_mesh_decimate(&mesh, o->mesh_faces, err))
 	     && colour(&mesh, head, stage, o, err) && om_mesh_save(&mesh, stage_path(stage, SUBJECT), made_by, err);
 	if (ok) {
 		stage_note(stage, "subject: %d vertices, %d faces from %ld points", mesh.n_vertices, mesh.n_faces, cloud.n);

@@ -138,6 +138,27 @@ same "each has a pose" "$(grep -c '"cam_from_head": \[' "$root/walk/work/rig.jso
 focal=$(sed -n 's/.*"fx": \([0-9]*\).*/\1/p' "$root/walk/work/rig.json" | head -n 1)
 check "the lens is found: $focal of 871 px" test "${focal:-0}" -gt 845 -a "${focal:-0}" -lt 897
 
+# A template: the mesh that other photographs of the head gave, in another frame.
+template() { printf 'quality = draft\ncalibrate.template = %s\n' "$1" >"$root/walk/capture.conf"; }
+elements() { head -c 4000 "$1" | grep -a '^element'; }
+cp "$root/again/work/subject.ply" "$root/walk/other.ply"
+template other.ply
+run_calibrate "$root/walk"
+same "a template: exit status" "$?" 0
+check "both residuals and the better are said" grep -q "mm from the template, .* mm from the surface: the template is the subject's mesh" "$log"
+same "the subject has the template's vertices and faces" "$(elements "$root/walk/work/subject.ply")" "$(elements "$root/walk/other.ply")"
+printf 'v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 900\nf 1 2 3\nf 1 4 2\n' >"$root/walk/splinter.obj"
+template splinter.obj
+run_calibrate "$root/walk"
+same "a template like nothing: exit status" "$?" 0
+check "a template like nothing: the surface is taken, and it is said" grep -qE "splinter.obj: cannot be laid|the surface is the subject's mesh" "$log"
+for bad in missing.ply ../other.ply; do
+	template $bad
+	run_calibrate "$root/walk"
+	status=$?
+	one_line "template = $bad" "template"
+done
+
 # A mapper that leaves two models which share pictures: joined.
 cat >"$root/bin/colmap" <<'END'
 #!/bin/bash
