@@ -24,4 +24,5 @@ EMBED(viewer_gl_js, "render/viewer/gl.js");
 EMBED(viewer_scene_js, "render/viewer/scene.js");
 EMBED(viewer_face_js, "render/viewer/face.js");
 EMBED(viewer_page_js, "render/viewer/page.js");
+EMBED(scene_look, "lib/eye/scene_look.h");
 EMBED(viewer_motion_conf, "config/animate.conf");

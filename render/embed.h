@@ -10,5 +10,7 @@ extern const char viewer_html[], viewer_css[], viewer_common[], viewer_decode[],
                   viewer_page_js[];
 /* config/animate.conf: how eyes move. */
 extern const char viewer_motion_conf[];
+/* lib/eye/scene_look.h: a shader can read it. */
+extern const char scene_look[];
 
 #endif

@@ -62,7 +62,7 @@ static void programs(json_t *data)
 {
 	const struct {
 		const char *key, *text;
-	} part[] = { { "css", viewer_css }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths },
+	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths },
 		         { "eye_frag", viewer_eye_frag }, { "present", viewer_present },
 		         { "skin", viewer_skin_frag }, { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
 	for (int i = 0; i < COUNT(part); i++)

@@ -82,7 +82,7 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 	const struct shot *shot = source->shot;
 	json_t *out = json_object(), *map = json_object(), *lights = json_array();
 	json_object_set_new(out, "side", template_text(source->side));
-	json_object_set_new(out, "constants", json_pack("{s:f,s:f}", "film_index", (double)SCENE_FILM_INDEX, "sclera_reach", SCENE_SCLERA_REACH));
+	json_object_set_new(out, "constants", json_pack("{s:f}", "sclera_reach", SCENE_SCLERA_REACH));
 	json_object_set_new(out, "eye", geometry(s, source->gain));
 	json_object_set_new(out, "tissue", viewer_tissue(source));
 	json_array_append_new(lights, viewer_light("Studio", source->studio, source->studio, source->lights, err));

@@ -103,14 +103,14 @@ static void pose_all(struct face *f)
 	free(controls);
 }
 
-/* What differs by more than a hundredth of a millimetre or a step of light anywhere on the grid moves. */
+/* What differs by more than 0.04 mm or a few steps of light anywhere on the grid moves. */
 static bool moves(const struct face *f, int i)
 {
 	const uint8_t *a = f->record[0] + (long)i * RECORD;
 	for (int k = 1; k < POSES; k++) {
 		const uint8_t *b = f->record[k] + (long)i * RECORD;
 		for (int c = 0; c < 3; c++)
-			if (abs(a[2 * c] + 256 * a[2 * c + 1] - b[2 * c] - 256 * b[2 * c + 1]) > 6 || abs(a[9 + c] - b[9 + c]) > 3)
+			if (abs(a[2 * c] + 256 * a[2 * c + 1] - b[2 * c] - 256 * b[2 * c + 1]) > 12 || abs(a[9 + c] - b[9 + c]) > 5)
 				return true;
 	}
 	return false;

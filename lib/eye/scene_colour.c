@@ -141,7 +141,7 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 
 SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float (*restrict model)[4])
 {
-	const float most = 2.5f, chroma = 1.5f;  // brighter only a texel gets that was in a shadow of the model's
+	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // brighter only a texel gets that was in a shadow of the model's
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
 		float x = r[i] / model[i][0], y = g[i] / model[i][1], z = b[i] / model[i][2], mean = (x + y + z) / 3;

@@ -3,6 +3,7 @@
 #ifndef EYE_SCENE_IMPL_H
 #define EYE_SCENE_IMPL_H
 #include "eye/scene.h"
+#include "eye/scene_look.h"
 #include "math/simd.h"
 
 enum { BATCH = 256 };
@@ -94,7 +95,7 @@ void scene_levels_make(struct scene *scene);
  * seen at the same radius, so that fibres go on. pupil: x, y, radius. */
 void scene_fill(float *rgba, int n, double extent, const double pupil[3]);
 
-#define SCENE_FILM_INDEX 1.336f  // of the tear film, which mirrors on all wet surfaces
+#define SCENE_FILM_INDEX ((float)LOOK_FILM_INDEX)
 
 /* Maps of the sclera are azimuthal and equidistant about the axis: angle at the sphere's centre at their edge. */
 #define SCENE_SCLERA_REACH (110 * M_PI / 180)

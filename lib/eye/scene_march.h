@@ -36,11 +36,11 @@ void scene_table_at(float way[SCENE_WAY], const struct scene_beam *beam, const f
 
 /* Share of the light that comes in over a horizon which lies `clear` (slope) below it. A shadow is not
  * black: tissue that stands around it in the light fills it in. */
-#define SCENE_SOURCE 0.15f  // width of every source, slope
+#define SCENE_SOURCE ((float)LOOK_SOURCE)
 SIMD_INLINE float scene_shadow_open(float clear)
 {
 	float t = clear * (1 / SCENE_SOURCE);
-	return 0.4f + 0.6f * (t > 0 ? t < 1 ? t : 1 : 0);
+	return (float)LOOK_FILL + (float)(1 - LOOK_FILL) * (t > 0 ? t < 1 ? t : 1 : 0);
 }
 
 /* Eight by eight texels of a level, as one part: corner, step between texels, mm. */

@@ -75,7 +75,7 @@ SIMD_INLINE void outside_lane(int i, struct quick_spots *restrict s, const struc
 	float x = ball > 0 ? ox + ts * dx : K[0], y = ball > 0 ? oy + ts * dy : K[1], z = ball > 0 ? oz + ts * dz + k->sphere_z : K[2];
 	float hit = ball > 0 ? 1 : cornea, fz = k->front.p * z - k->front.R, inv = 1 / sqrtf(x * x + y * y + fz * fz);
 	float u = x * k->limbus[0], v = y * k->limbus[1], deep = z - k->sphere_z, rho = deep < 0 ? sqrtf(u * u + v * v) : 2;
-	float blend = step_smooth(0.90f, 1 / 0.22f, rho), per = 1 / k->sphere_r;
+	float blend = step_smooth(LOOK_SEAM_FROM, (float)(1 / (LOOK_SEAM_TO - LOOK_SEAM_FROM)), rho), per = 1 / k->sphere_r;
 	float nx = x * inv + blend * (x * per - x * inv), ny = y * inv + blend * (y * per - y * inv), nz = fz * inv + blend * (deep * per - fz * inv);
 	float norm = 1 / sqrtf(nx * nx + ny * ny + nz * nz);
 	float lid = step_smooth(1 - 0.5f * k->lid_width, 1 / k->lid_width, rho), far = 1 / sqrtf(x * x + y * y + deep * deep);
@@ -164,13 +164,13 @@ void quick_outside(struct quick_spots *s, const struct quick_rays *r, const stru
  * out over the dark of the chamber's angle. Then the ripples of its film bend the normal. */
 SIMD_CLONES static void sclera_light(struct quick_spots *s, int n, const struct quick_look *k)
 {
-	static const float bleed[3] = { 0.38f, 0.26f, 0.20f }, rim[3] = { 0.36f, 0.31f, 0.25f };
+	static const float bleed[3] = { LOOK_BLEED }, rim[3] = { LOOK_RIM_DARK };
 	for (int c = 0; c < 3; c++) {
 		const float *q = k->sky[c];
 		float *restrict sky = s->sky[c];
 		SIMD_LOOP
 		for (int i = 0; i < n; i++) {
-			float x = s->nx[i], y = s->ny[i], z = s->nz[i], edge = 1 - step_smooth(0.97f, 4, s->rho[i]);
+			float x = s->nx[i], y = s->ny[i], z = s->nz[i], edge = 1 - step_smooth(LOOK_RIM_FROM, (float)(1 / (LOOK_RIM_TO - LOOK_RIM_FROM)), s->rho[i]);
 			float light = q[0] + x * (q[1] + y * q[4] + z * q[7] + x * q[8]) + y * (q[2] + z * q[5] - y * q[8]) + z * (q[3] + z * q[6]);
 			light = light > 0 ? light : 0;
 			sky[i] = (light + bleed[c] * (k->even[c] - light)) * (1 - rim[c] * edge * edge);
@@ -242,7 +242,7 @@ SIMD_CLONES void quick_mirror(struct quick_found *f, const struct quick_rays *r,
 		float fu = 1 - ay * inv, fv = 1 - ax * inv;
 		s->mirror[i] = fresnel(c);
 		// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
-		s->rough[i] = 0.75f * step_smooth(1, 1 / 0.35f, s->rho[i]);
+		s->rough[i] = (float)LOOK_FILM_ROUGH * step_smooth(LOOK_FILM_FROM, (float)(1 / (LOOK_FILM_TO - LOOK_FILM_FROM)), s->rho[i]);
 		s->eu[i] = z > 0 ? x < 0 ? -fu : fu : u;
 		s->ev[i] = z > 0 ? y < 0 ? -fv : fv : v;
 	}

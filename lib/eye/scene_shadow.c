@@ -10,7 +10,7 @@
 #pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
-static const float bias = 0.004f;  // mm: a surface does not shadow itself
+static const float bias = (float)LOOK_BIAS;  // mm: a surface does not shadow itself
 
 /* The steepest slope so far, looking at the part `part` of the way out of the relief's reach. */
 SIMD_CLONES

@@ -61,7 +61,7 @@ static struct spot spot_of(const struct scene *s, const struct scene_look *look,
 	float len = sqrtf(front[0] * front[0] + front[1] * front[1] + front[2] * front[2]);
 	float u = x / (float)s->limbus[0], v = y / (float)s->limbus[1];
 	p.rho = z < center[2] ? sqrtf(u * u + v * v) : 2;
-	float blend = smooth(0.90f, 1.12f, p.rho);
+	float blend = smooth(LOOK_SEAM_FROM, LOOK_SEAM_TO, p.rho);
 	for (int i = 0; i < 3; i++) {
 		round[i] = (p.at[i] - center[i]) / (float)s->conf.sclera_radius;
 		p.normal[i] = front[i] / len + blend * (round[i] - front[i] / len);
@@ -80,7 +80,7 @@ static void add_mirror(float rgb[3], const struct spot *p, const struct scene_lo
 		r[i] = d[i] + 2 * p->cos_i * p->normal[i];
 	to_cam(cam, look, r);
 	// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
-	envmap_at(seen, look->light->mirror, cam, 0.75f * smooth(1.0f, 1.35f, p->rho));
+	envmap_at(seen, look->light->mirror, cam, (float)LOOK_FILM_ROUGH * smooth(LOOK_FILM_FROM, LOOK_FILM_TO, p->rho));
 	for (int c = 0; c < 3; c++)
 		rgb[c] += f * seen[c];
 }
@@ -88,13 +88,13 @@ static void add_mirror(float rgb[3], const struct spot *p, const struct scene_lo
 /* The white of the eye: diffuse, softened by what scatters below the surface, most in the red. */
 static void sclera_colour(float rgb[3], struct spot *p, const struct scene *s, const struct scene_look *look)
 {
-	static const float bleed[3] = { 0.38f, 0.26f, 0.20f };
+	static const float bleed[3] = { LOOK_BLEED };
 	float albedo[3], cam[3], direct[3];
 	to_cam(cam, look, p->normal);
 	envmap_irradiance(direct, look->light->env, cam);
 	scene_sclera(albedo, p->normal, s, p->at);
 	// Next to the limbus the sclera thins out over the dark of the chamber's angle: cooler and darker.
-	float edge = 1 - smooth(0.97f, 1.22f, p->rho), rim[3] = { 0.36f, 0.31f, 0.25f };
+	float edge = 1 - smooth(LOOK_RIM_FROM, LOOK_RIM_TO, p->rho), rim[3] = { LOOK_RIM_DARK };
 	for (int c = 0; c < 3; c++) {
 		float even = (float)(look->light->env->sh[0][c] * 0.282094791773878);
 		float light = direct[c] + bleed[c] * (even - direct[c]);

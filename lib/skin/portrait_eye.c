@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "eye/scene_look.h"
 #include "math/vec.h"
 #include "skin/portrait_impl.h"
 
@@ -183,7 +184,7 @@ static void shade_eye(struct image *image, const int corner[2], const struct por
 			for (int c = 0; c < 3; c++)
 				normal[c] /= sqrtf(len);
 			float open = sky_over(p, at, normal);
-			static const float bounce[3] = { 0.34f, 0.25f, 0.20f };  // light off the lids
+			static const float bounce[3] = { LOOK_BOUNCE };  // light off the lids
 			for (int c = 0; c < 3; c++)
 				px[c] *= open + bounce[c] * (1 - open);
 		}

@@ -25,14 +25,15 @@ uniform int search, shadow_steps;
 uniform bool flat_iris;
 uniform vec3 flat_rgb;
 uniform vec3 quadric[9], even;    // irradiance of the environment
-uniform float mirror_on, film_index, tear;
+uniform float mirror_on, tear;
 uniform mat3 lidded_from_eye;     // to the axes in which lids leave sky over places of the globe
 uniform float lidded, side;       // in a face: 1; left eye 0, right eye 1
 uniform sampler2D sky_map;
 uniform vec3 depth;               // in a face: of clip space, and its mm in one of the eye's
 out vec4 seen;
 
-// From a place on the iris as it is now to the same tissue in the maps: radial fibres shorten evenly.
+// From a place on the iris as it is now to the same tissue in the maps: radial fibres shorten evenly from the margin to the
+// root, the homogeneous rubber sheet of Daugman (1993).
 vec2 stretch(vec2 p, out float along, out float across)
 {
 	vec2 d = p - pupil.xy;
@@ -141,9 +142,9 @@ float shadow(vec3 p, vec3 l)
 			break;
 		float t = float(k) / float(shadow_steps) * reach;
 		float h = iris_depth - relief_at(p.xy + t * l.xy).x;
-		steepest = max(steepest, (p.z - h - 0.004) / (t * across + 1e-6));
+		steepest = max(steepest, (p.z - h - LOOK_BIAS) / (t * across + 1e-6));
 	}
-	return 0.4 + 0.6 * clamp((-l.z / max(across, 1e-6) - steepest) / 0.15, 0.0, 1.0);
+	return LOOK_FILL + (1.0 - LOOK_FILL) * clamp((-l.z / max(across, 1e-6) - steepest) / LOOK_SOURCE, 0.0, 1.0);
 }
 
 // Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
@@ -207,8 +208,8 @@ vec3 photographed(vec3 rgb, vec2 p)
 	vec2 at = map_place(stretch(p, along, across));
 	vec3 k = rgb / textureLod(model_map, at, float(level)).rgb;
 	float mean = (k.r + k.g + k.b) / 3.0;
-	vec3 tint = clamp(k / max(mean, 1e-6), 1.0 / 1.5, 1.5);
-	vec3 shown = textureLod(colour_map, at, float(level)).rgb * min(mean, 2.5) * tint;
+	vec3 tint = clamp(k / max(mean, 1e-6), 1.0 / LOOK_CHROMA, LOOK_CHROMA);
+	vec3 shown = textureLod(colour_map, at, float(level)).rgb * min(mean, LOOK_MOST) * tint;
 	return detail >= 1.0 ? shown : pow(max(shown, 1e-5), vec3(detail)) * pow(max(tissue_gain * rgb, 1e-5), vec3(1.0 - detail));
 }
 
@@ -221,9 +222,9 @@ vec3 pupil_cover(vec2 p)
 		return vec3(step(pupil_now, r));
 	float turn = atan(d.y, d.x);
 	float ridge = 0.6 * abs(sin(34.0 * turn + 1.7 * sin(5.0 * turn))) + 0.4 * abs(sin(21.0 * turn + 2.0 * sin(3.0 * turn + 1.0)));
-	float edge = pupil_now - 0.018 * ridge, width = 0.045 + 0.02 * ridge;
-	float ruff = 1.0 - step_smooth(edge + width - soft, edge + width + 0.05 + soft, r);
-	return step_smooth(edge - 0.012 - soft, edge + 0.012 + soft, r) * (1.0 + 0.75 * ruff * (vec3(0.30, 0.20, 0.15) - 1.0));
+	float edge = pupil_now - LOOK_RUFF_RIDGE * ridge, width = LOOK_RUFF_WIDTH + LOOK_RUFF_MORE * ridge;
+	float ruff = 1.0 - step_smooth(edge + width - soft, edge + width + LOOK_RUFF_SOFT + soft, r);
+	return step_smooth(edge - LOOK_RUFF_BLUR - soft, edge + LOOK_RUFF_BLUR + soft, r) * (1.0 + LOOK_RUFF_SHARE * ruff * (vec3(LOOK_RUFF_COLOUR) - 1.0));
 }
 
 vec3 iris(vec3 f, vec3 v)
@@ -261,9 +262,9 @@ vec3 white(inout vec3 normal, vec3 at, float rho)
 	vec2 u = 0.5 + 0.5 * r * d.xy / max(flat_, 1e-6);
 	vec3 albedo = textureLod(vein_map, u, 0.0).rgb;
 	normal = normalize(normal + vec3(textureLod(film_map, u, 0.0).rg, 0.0));
-	float edge = 1.0 - step_smooth(0.97, 1.22, rho);
-	vec3 light = direct + vec3(0.38, 0.26, 0.20) * (even - direct);
-	return albedo * light * (1.0 - vec3(0.36, 0.31, 0.25) * edge * edge);
+	float edge = 1.0 - step_smooth(LOOK_RIM_FROM, LOOK_RIM_TO, rho);
+	vec3 light = direct + vec3(LOOK_BLEED) * (even - direct);
+	return albedo * light * (1.0 - vec3(LOOK_RIM_DARK) * edge * edge);
 }
 
 // Radiance from a ray that meets the eye, and how much of the pixel the eye covers.
@@ -290,26 +291,26 @@ vec4 look(vec3 o, vec3 d, out float far)
 	// The corneal normal turns into the sphere's across the sulcus: no crease stands where they meet.
 	float rho = at.z < sclera.x ? length(at.xy / limbus) : 2.0;
 	vec3 front = normalize(vec3(at.xy, cornea_p * at.z - cornea_R)), round_ = (at - vec3(0.0, 0.0, sclera.x)) / sclera.y;
-	vec3 normal = normalize(mix(front, round_, step_smooth(0.90, 1.12, rho)));
+	vec3 normal = normalize(mix(front, round_, step_smooth(LOOK_SEAM_FROM, LOOK_SEAM_TO, rho)));
 	float cos_i = -dot(normal, d), lid = hit ? step_smooth(1.0 - 0.5 * sclera.z, 1.0 + 0.5 * sclera.z, rho) : 1.0;
 	vec3 rgb = vec3(0.0);
 	if (lid < 1.0) {
 		vec3 N = normalize(vec3(K.xy, cornea_p * K.z - cornea_R));
 		float c = -dot(d, N), eta = 1.0 / cornea_n;
 		vec3 inside = eta * d + (eta * c - sqrt(1.0 - eta * eta * (1.0 - c * c))) * N;
-		rgb = (1.0 - lid) * (1.0 - mirror_share(cos_i, film_index)) * iris(K, inside);
+		rgb = (1.0 - lid) * (1.0 - mirror_share(cos_i, LOOK_FILM_INDEX)) * iris(K, inside);
 	}
 	if (lid > 0.0)
 		rgb += lid * white(normal, at, rho);
 	if (mirror_on > 0.0) {
-		float rough = 0.75 * step_smooth(1.0, 1.35, rho) * clamp(1.5 - 0.5 * tear, 0.0, 1.33);
-		rgb += mirror_on * mirror_share(cos_i, film_index) * environment(d + 2.0 * cos_i * normal, rough);
+		float rough = LOOK_FILM_ROUGH * step_smooth(LOOK_FILM_FROM, LOOK_FILM_TO, rho) * clamp(1.5 - 0.5 * tear, 0.0, 1.33);
+		rgb += mirror_on * mirror_share(cos_i, LOOK_FILM_INDEX) * environment(d + 2.0 * cos_i * normal, rough);
 	}
 	if (lidded > 0.0) {
 		// Lids darken the eye below them, and throw back some of their own colour.
 		vec2 place = (lidded_from_eye * normalize(at - vec3(0.0, 0.0, sclera.x))).xy;
 		float open = textureLod(sky_map, vec2(clamp(0.25 + 0.25 * place.x, 0.02, 0.48) + 0.5 * side, 0.5 + 0.5 * place.y), 0.0).r;
-		rgb *= open + vec3(0.34, 0.25, 0.20) * (1.0 - open);
+		rgb *= open + vec3(LOOK_BOUNCE) * (1.0 - open);
 		cover = 1.0;
 	}
 	return vec4(rgb * cover, cover);

@@ -32,7 +32,7 @@ class Graphics {
 		};
 		const whole = "#version 300 es\nlayout(location=0) in vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n";
 		add(gl.VERTEX_SHADER, vertex ? "#version 300 es\n" + this.shaders[vertex] : whole);
-		const fragment = add(gl.FRAGMENT_SHADER, this.shaders.common + this.shaders[name]);
+		const fragment = add(gl.FRAGMENT_SHADER, "#version 300 es\n" + this.shaders.look + this.shaders.common + this.shaders[name]);
 		gl.linkProgram(program);
 		if (!gl.getProgramParameter(program, gl.LINK_STATUS))
 			throw new Error(`shader ${name}: ${gl.getShaderInfoLog(fragment)} ${gl.getProgramInfoLog(program)}`);

@@ -646,7 +646,7 @@
 
 	async function start() {
 		const canvas = by_id("view"), shaders = {};
-		for (const name of ["common", "decode", "paths", "eye", "present", "skin", "skin_vert", "copy"])
+		for (const name of ["look", "common", "decode", "paths", "eye", "present", "skin", "skin_vert", "copy"])
 			shaders[name] = by_id(`shader-${name}`).textContent;
 		try {
 			if (!data.eyes.length)

@@ -187,7 +187,7 @@ class EyeScene {
 			tissue_gain: e.gain, detail: s.detail, ...EyeScene.nodes(preset.steps),
 			search: preset.search, shadow_steps: preset.shadow, flat_iris: preset.march ? 0 : 1,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
-			mirror_on: light.sharp_map ? s.light_gain : 0, film_index: data.constants.film_index, tear: s.tear,
+			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear,
 			lidded: 0, side: cam.side || 0, lidded_from_eye: cam.lidded_from_eye || cam.head_from_eye, depth: cam.depth || [0, 0, 1], sky_map: this.no_sky, ...extra,
 		});
 	}
