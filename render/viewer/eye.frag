@@ -298,10 +298,11 @@ vec4 look(vec3 o, vec3 d, out float far)
 		vec3 N = normalize(vec3(K.xy, cornea_p * K.z - cornea_R));
 		float c = -dot(d, N), eta = 1.0 / cornea_n;
 		vec3 inside = eta * d + (eta * c - sqrt(1.0 - eta * eta * (1.0 - c * c))) * N;
-		rgb = (1.0 - lid) * (1.0 - mirror_share(cos_i, LOOK_FILM_INDEX)) * iris(K, inside);
+		rgb = (1.0 - lid) * iris(K, inside);
 	}
 	if (lid > 0.0)
 		rgb += lid * white(normal, at, rho);
+	rgb *= 1.0 - mirror_share(cos_i, LOOK_FILM_INDEX);  // what the film mirrors does not come back from below
 	if (mirror_on > 0.0) {
 		float rough = LOOK_FILM_ROUGH * step_smooth(LOOK_FILM_FROM, LOOK_FILM_TO, rho) * clamp(1.5 - 0.5 * tear, 0.0, 1.33);
 		rgb += mirror_on * mirror_share(cos_i, LOOK_FILM_INDEX) * environment(d + 2.0 * cos_i * normal, rough);

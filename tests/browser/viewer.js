@@ -66,6 +66,7 @@ async function compare(b, png, yaw, pitch) {
 async function agreement(b) {
 	for (const [name, png, yaw, pitch] of [["front", front, 0, 0], ["three-quarter", turned, 38, -10]]) {
 		const d = await compare(b, png, yaw, pitch), text = JSON.stringify(d);
+		console.log(`# ${name}: ${text}`);
 		// 8 bits a channel of maps and pictures, half floats, 6 steps of quadrature against 12: 1 % on average; the caustic's
 		// edge and single fibres differ by more.
 		say(d.iris.mean < 0.025 && d.iris.off < 0.06, `${name}: the iris agrees with the C renderer's`, text);
