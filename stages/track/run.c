@@ -25,8 +25,8 @@ static void tell(struct stage *stage, const struct track_result *r, const struct
 	for (long i = 0; i < r->n * r->n_points; i++)
 		seen += r->confidence[i] > 0;
 	seen /= fmax(1, (double)r->n * r->n_points);
-	stage_note(stage, "%s: %ld frames, %d points of skin, %.0f %% of them seen; pose from the openings of the eyes to %.1f px", clip->file,
-	           r->n, r->n_points, 100 * seen, clip->pose_px);
+	stage_note(stage, "%s: %ld frames, %d points of skin, %.0f %% of them seen; pose from the openings of the eyes to %.1f px%s", clip->file,
+	           r->n, r->n_points, 100 * seen, clip->pose_px, r->rests ? "; the head rests" : "");
 	stage_figure(stage, "track_frames", (double)r->n, "");
 	stage_figure(stage, "track_points", r->n_points, "");
 	stage_figure(stage, "track_seen", seen, "");

@@ -99,6 +99,7 @@ static bool save_json(const struct track_result *r, const struct track_clip *cli
 	json_object_set_new(j, "variable_rate", json_boolean(clip->info.variable));
 	json_object_set_new(j, "reference_frame", json_integer(clip->reference));
 	json_object_set_new(j, "pose_rms_px", json_number(clip->pose_px));
+	json_object_set_new(j, "head_rests", json_boolean(r->rests));
 	json_object_set_new(j, "lost_frames", json_integer(r->lost));
 	json_object_set_new(j, "still_frames", json_integer(r->still));
 	json_object_set_new(j, "first_lost_frame", r->cut >= 0 ? json_integer(r->cut) : json_null());

@@ -89,6 +89,7 @@ struct track_result {
 	struct eye_clip eyes;
 	struct film *film;     // null where the clip is only looked at
 	bool has_eyes;
+	bool rests;            // the head, on a rest: every pose is the reference's
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points]
 	int lid_points;
 	double *g;             // [n][10 + n_au], gaze.csv's units
