@@ -189,8 +189,6 @@ static bool try_frame(struct track_clip *clip, bool known, const struct track_su
 {
 	if (known)
 		return look_known(clip, clip->reference, s, conf);
-	if (s->mesh.n_vertices == 0)
-		return true;
 	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : look(clip, s, conf);
 }
 
@@ -229,8 +227,6 @@ bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct 
                      struct err *err)
 {
 	clip->pose_px = NAN;
-	for (int i = 0; i < SIDES * 3; i++)
-		clip->limbus_px[i / 3][i % 3] = NAN;
 	struct video *video = video_open(&clip->info, stage_path(stage, "%s", clip->file), &conf->video, err);
 	bool ok = video && set_camera(clip, stage, s, conf, err);
 	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;

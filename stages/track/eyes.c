@@ -16,20 +16,24 @@ struct track_eyes {
 struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf)
 {
 	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps,
-		                       .camera = clip->camera, .eye = conf->eye, .head_known = !subject->assumed };
+		                       .camera = clip->camera, .eye = conf->eye, .head_known = true };
+	struct eye_track_conf free_centers = conf->eyes;
+	// where eyes are taken to be as in most people, they are sought further from there
+	if (subject->assumed)
+		free_centers.center_sigma = fmax(free_centers.center_sigma, conf->settle_sigma);
 	for (int e = 0; e < SIDES; e++) {
 		struct eye_prior *p = &scene.prior[e];
 		p->absent = !clip->eye_seen[e];
-		p->radius = subject->assumed ? NAN : subject->radius;
+		p->radius = subject->radius;
 		for (int k = 0; k < 3; k++) {
-			p->limbus_px[k] = clip->limbus_px[e][k];
-			p->center_in_head[k] = subject->assumed ? NAN : subject->center[e][k];
+			p->limbus_px[k] = NAN;
+			p->center_in_head[k] = subject->center[e][k];
 			for (int c = 0; c < 2; c++)
-				p->canthus_in_head[c][k] = subject->assumed || !subject->opening[e].open ? NAN : subject->opening[e].canthus[c][k];
+				p->canthus_in_head[c][k] = !subject->opening[e].open ? NAN : subject->opening[e].canthus[c][k];
 		}
 	}
 	struct track_eyes *eyes = mem_new(1, sizeof *eyes);
-	*eyes = (struct track_eyes){ eye_track_new(&scene, &conf->eyes), clip, subject, 0 };
+	*eyes = (struct track_eyes){ eye_track_new(&scene, &free_centers), clip, subject, 0 };
 	eyes->rgb = mem_new(3 * (size_t)clip->info.width * (size_t)clip->info.height, 1);
 	return eyes;
 }
@@ -58,17 +62,16 @@ static bool box_of(int box[4], const struct track_eyes *eyes, int side, const do
 
 void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const double pose[4][4])
 {
-	struct eye_frame frame = { f->luma, eyes->rgb, f->luma_stride, 3 * f->width, f->time, { { 1 }, { 0, -1 }, { 0, 0, -1 }, { 0, 0, 0, 1 } } };
+	struct eye_frame frame = { f->luma, eyes->rgb, f->luma_stride, 3 * f->width, f->time, { { 0 } } };
 	int box[SIDES][4];
 	bool in[SIDES], both;
 	for (int e = 0; e < SIDES; e++)
-		in[e] = eyes->clip->eye_seen[e] && box_of(box[e], eyes, e, eyes->subject->assumed ? eyes->clip->cam_from_head : pose);
+		in[e] = eyes->clip->eye_seen[e] && box_of(box[e], eyes, e, pose);
 	// openings that lie close share columns: filled one after the other then
 	both = in[0] && in[1] && !(box[SIDE_RIGHT][2] <= box[SIDE_LEFT][0] || box[SIDE_LEFT][2] <= box[SIDE_RIGHT][0]);
 	for (int e = 0; e < SIDES && both; e++)
 		video_frame_rgb(eyes->rgb, 3 * f->width, f, box[e][0], box[e][1], box[e][2], box[e][3]);
-	if (!eyes->subject->assumed)
-		memcpy(frame.cam_from_head, pose, sizeof frame.cam_from_head);
+	memcpy(frame.cam_from_head, pose, sizeof frame.cam_from_head);
 #pragma omp parallel for schedule(static, 1) num_threads(SIDES)
 	for (int e = 0; e < SIDES; e++) {
 		if (in[e] && !both)

@@ -147,7 +147,7 @@ bool track_points_choose(struct track_points *p, const struct track_clip *clip, 
 	double(*px)[2] = mem_new(most, sizeof *px);
 	memset(p->mask, 255, area);
 	cut_openings(p->mask, clip, s);
-	int n = candidates(row, px, clip, s, p->mask, conf->reach_mm);
+	int n = s->assumed ? 0 : candidates(row, px, clip, s, p->mask, conf->reach_mm);
 	double low = conf->gap_px, high = 64;
 	p->n = thin(taken, n, (const double(*)[2])px, low);
 	if (p->n > conf->points) {
@@ -170,7 +170,7 @@ bool track_points_choose(struct track_points *p, const struct track_clip *clip, 
 	free(taken);
 	free(px);
 	join(p, clip->info.width);
-	return p->n >= 20 || err_set(err, "%s: only %d vertices of skin are in sight round the eyes, at least 20 are needed: check subject.unit_mm and subject.eye_center", s->file, p->n);
+	return s->assumed || p->n >= 20 || err_set(err, "%s: only %d vertices of skin are in sight round the eyes, at least 20 are needed: check subject.unit_mm and subject.eye_center", s->file, p->n);
 }
 
 void track_points_free(struct track_points *p)

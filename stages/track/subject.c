@@ -165,6 +165,20 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 	return true;
 }
 
+/* Without a mesh: eyes as people have them, 63 mm apart (Dodgson 2004), to be looked for in the picture. */
+static void assume_eyes(struct track_subject *s)
+{
+	struct ray_scene *nothing = ray_scene_new(0, 0, 0, 0);
+	s->assumed = true;
+	s->radius = usual_radius;
+	for (int e = 0; e < SIDES; e++) {
+		s->center[e][0] = e == SIDE_LEFT ? 31.5 : -31.5;
+		s->center[e][1] = s->center[e][2] = 0;
+		opening_usual(&s->opening[e], nothing, s->center[e], s->radius);
+	}
+	ray_scene_free(nothing);
+}
+
 bool track_subject_load(struct track_subject *s, struct stage *stage, const struct track_conf *conf, struct err *err)
 {
 	static const char *const files[] = { "subject.ply", "subject.obj", "work/subject.ply" };
@@ -172,8 +186,11 @@ bool track_subject_load(struct track_subject *s, struct stage *stage, const stru
 	for (int i = 0; i < COUNT(files) && !s->file; i++)
 		if (file_exists(stage_path(stage, "%s", files[i])))
 			s->file = files[i];
-	if (!s->file)
+	if (!s->file) {
+		stage_skipped(stage, "no mesh of the person (subject.ply): gaze and lids are followed, skin is not; put one in, or photographs into views/");
+		assume_eyes(s);
 		return true;
+	}
 	if (!om_mesh_load(&s->mesh, stage_path(stage, "%s", s->file), limit_vertices, err))
 		return false;
 	bool own = !strncmp(s->file, "work/", 5);  // calibrate's is in mm

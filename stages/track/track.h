@@ -59,7 +59,6 @@ struct track_clip {
 	long reference;
 	double cam_from_head[4][4];      // at the reference
 	bool eye_seen[SIDES];
-	double limbus_px[SIDES][3];      // without a mesh; NAN
 	uint8_t *luma, *rgb;             // of the reference [height][width]; owned
 	double pose_px;        // rms of what the pose was found from
 	bool pose_given;       // from track.landmark_*, or known
