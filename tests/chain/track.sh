@@ -1,0 +1,83 @@
+#!/bin/bash
+# track on what is no good clip: one clear line each, or a result that says what is missing. And the same bytes on any number of
+# threads.
+. "$(dirname "$0")/../lib/chain.sh"
+
+[ -x "$BIN/track" ] || { skip "track" "not built"; exit 0; }
+CLIP=${B:-build}/tests/tools/clip
+
+# capture NAME: the bundled face, without its video.
+capture() {
+	mkdir -p "$root/$1/video"
+	cp samples/face/{subject.ply,capture.conf} "$root/$1"
+	echo "quality = draft" >>"$root/$1/capture.conf"
+}
+
+# refuses NAME WORDS [OPTION...]: exit 1 and one line that has the words, apart from what was skipped.
+refuses() {
+	local name=$1 words=$2 said status
+	shift 2
+	said=$("$BIN/track" --quiet --capture="$root/$name" "$@" 2>&1 </dev/null)
+	status=$?
+	said=$(grep -v ': skipped: ' <<<"$said")
+	same "$name: exit" "$status" 1
+	same "$name: lines" "$(wc -l <<<"$said")" 1
+	check "$name: says $words (it says: $said)" grep -qiE "$words" <<<"$said"
+}
+
+capture nothing
+refuses nothing "video/: holds no file"
+
+capture text
+echo "no video at all" >"$root/text/video/face.mp4"
+refuses text "face.mp4"
+
+capture cut_off
+head -c 200000 samples/face/video/face.mp4 >"$root/cut_off/video/face.mp4"
+refuses cut_off "face.mp4"
+
+if [ -x "$CLIP" ]; then
+	base64 -d >"$root/grey.png" <<<iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==
+	capture no_face
+	"$CLIP" "$root/no_face/video/a.mp4" 320 12 "$root/grey.png"
+	refuses no_face "no face with open eyes"
+else
+	skip "no face in the video" "tests/tools/clip is not built"
+fi
+
+capture rows
+cp samples/face/video/face.mp4 "$root/rows/video"
+sed -i 's/^subject.landmark.left_inner_canthus = .*/subject.landmark.left_inner_canthus = 99999/' "$root/rows/capture.conf"
+refuses rows "subject.landmark.left_inner_canthus = 99999: must be"
+
+capture late
+cp samples/face/video/face.mp4 "$root/late/video"
+refuses late "300 frames: track.reference_frame = 5000" --reference-frame=5000
+
+capture one_mark
+cp samples/face/video/face.mp4 "$root/one_mark/video"
+echo "track.landmark_left_inner_canthus = 871 370" >>"$root/one_mark/capture.conf"
+refuses one_mark "at least 4"
+
+capture never
+cp samples/face/video/face.mp4 "$root/never/video"
+echo "expression.frown = 10 4000" >>"$root/never/capture.conf"
+refuses never "expression.frown = 10 4000: must be two frames" --settle-frames=0 --points=60
+
+# An expression that is not shown, and no mesh: said, and the rest goes on.
+capture still
+cp samples/face/video/face.mp4 "$root/still/video"
+echo "expression.frown = 95 96" >>"$root/still/capture.conf"
+rm "$root/still/subject.ply"
+said=$("$BIN/track" --quiet --capture="$root/still" --threads=1 2>&1)
+same "without a mesh: exit" "$?" 0
+check "says that skin is not followed" grep -q "no mesh of the person" <<<"$said"
+check "gaze is there all the same" test "$(sed -n 30p "$root/still/work/skin/gaze.csv" | cut -d, -f3)" != ""
+
+capture threads
+cp samples/face/video/face.mp4 "$root/threads/video"
+for n in 1 3; do
+	check "track on $n threads" "$BIN/track" --quiet --force --capture="$root/threads" --threads=$n --points=300
+	bytes_of "$root/threads" >"$root/bytes$n"
+done
+same "the same bytes on 1 and 3 threads" "$(cat "$root/bytes1")" "$(cat "$root/bytes3")"
