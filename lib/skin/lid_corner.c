@@ -60,7 +60,7 @@ void lid_corner_find(double shift[2], struct lid_corner *corner, int which, cons
 		return;
 	}
 	static _Thread_local uint8_t field[CORNER_FIELD * CORNER_FIELD];
-	double cost[N][N];
+	double cost[N][N], least = INFINITY;
 	int bi = CORNER_REACH, bj = CORNER_REACH;
 	read_field(field, CORNER_FIELD, which, chart, picture);
 	for (int j = 0; j < N; j++) {
@@ -69,8 +69,8 @@ void lid_corner_find(double shift[2], struct lid_corner *corner, int which, cons
 			// Neighbouring samples err together: of all of them a dozen count.
 			double fit = (double)square(&field[j * CORNER_FIELD + i], &corner->look[0][0]) / (CORNER_SIDE * CORNER_SIDE);
 			cost[j][i] = 0.5 * 12 * fit / (NOISE * NOISE) + 0.5 * off * off;
-			if (cost[j][i] < cost[bj][bi])
-				bi = i, bj = j;
+			if (cost[j][i] < least)
+				least = cost[j][i], bi = i, bj = j;
 		}
 	}
 	// What no longer looks like it, as in a blink, tells little.
