@@ -5,13 +5,6 @@
 #include "base/mem.h"
 #include "math/vec.h"
 #include "skin/eye_track_impl.h"
-#include "skin/gaze_seek.h"
-#include "skin/gaze_sim.h"
-
-// Grey levels taken for the step from iris to sclera before one was measured.
-static const double CONTRAST = 60, CONTRAST_LEAST = 10;
-// Score of gaze_seek() from which an eye counts as found, and below which it counts as lost.
-static const double FOUND = 0.35, LOST = 0.15;
 
 void eye_view(struct gaze_view *view, const struct eye_scene *scene, const double cam_from_head[3][4])
 {
@@ -59,112 +52,6 @@ static double change(struct eye_side *eye, const struct luma *luma, const double
 	if (!(mean < eye->conf->still))
 		memcpy(eye->still, now, sizeof now);
 	return mean;
-}
-
-struct seen {
-	const struct lid_track *lids;
-	double inside;
-};
-
-static bool is_seen(const void *ctx, const double px[2])
-{
-	const struct seen *seen = ctx;
-	return lid_track_inside(seen->lids, px, seen->inside);
-}
-
-/* Roughly where it looks: near where it last did, else anywhere. Returns the score. */
-static double seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere)
-{
-	double degree = M_PI / 180, fick[2] = { eye->fick[0], eye->fick[1] }, score = NAN;
-	struct seen seen = { &eye->lids, 0 };
-	struct gaze_sight sight = { luma, &eye->globe, view, eye->contrast, eye->lids.known ? is_seen : NULL, &seen };
-	if (eye->have && !anywhere)
-		score = gaze_seek(fick, &sight, 9 * degree, 1.5 * degree, 0.5 * degree);
-	if (!(score > FOUND)) {
-		double wide[2] = { 0, 0 };
-		double s = gaze_seek(wide, &sight, 36 * degree, 3 * degree, 0.5 * degree);
-		if (!(score >= s - 0.1)) {
-			score = s;
-			fick[0] = wide[0];
-			fick[1] = wide[1];
-		}
-	}
-	if (score > LOST) {
-		eye->fick[0] = fick[0];
-		eye->fick[1] = fick[1];
-	}
-	return score;
-}
-
-/* Gaze from the edges of the limbus in the opening. */
-static bool measure(struct gaze_fit *fit, struct gaze_edge edge[GAZE_ARCS_MAX], int *n, struct eye_side *eye,
-                    const struct luma *luma, const struct gaze_view *view, double limbus_px)
-{
-	struct seen seen = { &eye->lids, 0.12 * limbus_px };
-	static const double range[3] = { 0.2, 0.1, 0.06 };
-	fit->fick[0] = eye->fick[0];
-	fit->fick[1] = eye->fick[1];
-	for (int k = 0; k < 3; k++) {
-		struct gaze_search search = { .arcs = eye->conf->limbus_arcs, .range = fmax(2, range[k] * limbus_px),
-			.half = fmax(1.5, 0.06 * limbus_px), .least = 0.2 * eye->contrast, .seen = is_seen, .ctx = &seen };
-		*n = gaze_edges(edge, luma, &eye->globe, view, fit->fick, &search);
-		if (!gaze_fit_edges(fit, *n, edge, &eye->globe, view, 0.05))
-			return false;
-	}
-	return fit->inliers > 0.12 * eye->conf->limbus_arcs && fit->rms < fmax(1.2, 0.04 * limbus_px);
-}
-
-static double clear_height(const struct lid_chart *chart, const struct lid_curves *curves, const double px[2],
-                           double *below)
-{
-	double col, row, high = hypot(chart->dv[0], chart->dv[1]);
-	lid_chart_of(&col, &row, chart, px);
-	int i = (int)lround(fmin(fmax(col, 0), chart->cols - 1));
-	*below = (curves->row[1][i] - row) * high;
-	return (row - curves->row[0][i]) * high;
-}
-
-static void fill_gaze(struct eye_state *state, struct eye_side *eye, const struct gaze_fit *fit,
-                      const struct gaze_view *view)
-{
-	for (int k = 0; k < 2; k++) {
-		eye->fick[k] = state->gaze[k] = fit->fick[k];
-		state->sigma[k] = sqrt(fit->cov[k][k]);
-	}
-	double share = fit->inliers / eye->conf->limbus_arcs, limbus_px = eye->globe.limbus * eye_scale(&eye->globe, view);
-	double sharp = exp(-0.5 * pow(fit->rms / fmax(1, 0.03 * limbus_px), 2));
-	state->confidence = fmin(1, share / 0.5) * sharp;
-	struct ellipse e;
-	if (gaze_ellipse(&e, &eye->globe, view, fit->fick)) {
-		double v[5] = { e.cx, e.cy, e.a, e.b, e.angle };
-		memcpy(state->limbus, v, sizeof v);
-	}
-}
-
-static void fill_torsion(struct eye_state *state, struct eye_side *eye, const struct luma *luma,
-                         const struct gaze_view *view, double limbus_px)
-{
-	struct seen seen = { &eye->lids, 0.08 * limbus_px };
-	struct torsion_look look = { luma, &eye->globe, view, &eye->scene->eye, { state->gaze[0], state->gaze[1] }, is_seen,
-		&seen };
-	double degree = M_PI / 180, first = degree * listing_torsion(state->gaze[0] / degree, state->gaze[1] / degree);
-	double torsion, sigma;
-	if (!gaze_torsion(&torsion, &sigma, &eye->torsion, &look, first))
-		return;
-	state->gaze[2] = torsion;
-	state->sigma[2] = sigma;
-}
-
-static void keep_edges(struct eye_side *eye, struct eye_record *record, int n, const struct gaze_edge edge[])
-{
-	if (eye->edges + n > eye->edge_space) {
-		eye->edge_space = 2 * (eye->edges + n) + 1000;
-		eye->edge = mem_grow(eye->edge, (size_t)eye->edge_space, sizeof *eye->edge);
-	}
-	record->first_edge = eye->edges;
-	record->edges = n;
-	memcpy(eye->edge + eye->edges, edge, (size_t)n * sizeof *edge);
-	eye->edges += n;
 }
 
 static struct eye_state blank(double time)
@@ -223,7 +110,7 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 	struct luma luma = { frame->luma, scene->width, scene->height, frame->luma_stride };
 	struct lid_picture picture = { frame->rgb, frame->rgb_stride, scene->width, scene->height };
 	struct lid_look look = { .mm = eye_scale(&eye->globe, view) };
-	double limbus_px = look.mm * eye->globe.limbus, score = seek(eye, &luma, view, false), plane = gaze_plane(&eye->globe);
+	double limbus_px = look.mm * eye->globe.limbus, score = eye_seek(eye, &luma, view, false), plane = gaze_plane(&eye->globe);
 	double head_down[3] = { eye->globe.center[0], eye->globe.center[1] - 1, eye->globe.center[2] }, top[2], low[2];
 	if (!to_pixel(look.inner, view, eye->canthus[0]) || !to_pixel(look.outer, view, eye->canthus[1])
 	    || !to_pixel(top, view, eye->globe.center) || !to_pixel(low, view, head_down)
@@ -231,7 +118,7 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 		return;
 	look.down[0] = low[0] - top[0];
 	look.down[1] = low[1] - top[1];
-	look.iris_px = score > FOUND ? limbus_px : NAN;
+	look.iris_px = score > EYE_FOUND ? limbus_px : NAN;
 	record->mm = (float)look.mm;
 	record->measured = lid_track_push(&record->found, &eye->lids, &picture, &look);
 	if (eye->corners_guessed && record->measured)
@@ -242,27 +129,7 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 	if (!record->found.open)
 		return;
 	eye_fill_lids(state, &record->found, eye->lids.points);
-	struct gaze_edge edge[GAZE_ARCS_MAX];
-	struct gaze_fit fit;
-	int n = 0;
-	// Once more with the lids where they are now.
-	if (!measure(&fit, edge, &n, eye, &luma, view, limbus_px)
-	    && (!(seek(eye, &luma, view, true) > FOUND) || !measure(&fit, edge, &n, eye, &luma, view, limbus_px)))
-		return;
-	double pupil[2], below, above;
-	gaze_pixel(pupil, &eye->globe, view, (double[3]){ fit.fick[0], fit.fick[1], 0 }, (double[3]){ 0, 0, plane });
-	above = clear_height(&eye->lids.chart, &eye->lids.margins, pupil, &below);
-	record->height = below;
-	// The pupil's centre must be seen: a circle guessed from what a lid leaves of it is no measurement.
-	if (above < 0.05 * limbus_px || below < 0.05 * limbus_px)
-		return;
-	double rise = 0;
-	for (int i = 0; i < n; i++)
-		rise += edge[i].strength / n;
-	eye->contrast = fmax(CONTRAST_LEAST, 0.9 * eye->contrast + 0.1 * rise);
-	fill_gaze(state, eye, &fit, view);
-	keep_edges(eye, record, n, edge);
-	fill_torsion(state, eye, &luma, view, limbus_px);
+	eye_measure(state, record, eye, &luma, view);
 }
 
 static void append(struct eye_side *eye, const struct eye_state *state, const struct eye_record *record)
@@ -290,8 +157,6 @@ void eye_side_push(struct eye_side *eye, const struct eye_frame *frame)
 	              && center[0] < eye->scene->width && center[1] < eye->scene->height;
 	if (!eye->absent && inside) {
 		struct luma luma = { frame->luma, eye->scene->width, eye->scene->height, frame->luma_stride };
-		if (!eye->started)
-			eye->contrast = CONTRAST;
 		bool still = change(eye, &luma, center, eye->globe.radius * mm) < eye->conf->still && eye->started;
 		eye->started = true;
 		if (still) {

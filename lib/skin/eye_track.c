@@ -17,6 +17,8 @@ static bool known(int n, const double x[])
 
 // mm: radius of an eyeball of which nothing is known; how far its guessed centre may be off.
 static const double RADIUS = 12, GUESS_SIGMA = 3;
+// Grey levels taken for the step from iris to sclera before one was measured.
+static const double CONTRAST = 60;
 
 /* Without a mesh: the eyeball behind the limbus seen in the first frame, as if it looked into the camera. */
 static void guess_center(struct eye_side *eye, const struct eye_scene *scene, const double limbus_px[3])
@@ -52,6 +54,7 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 	eye->globe.radius = isfinite(prior->radius) && prior->radius > 3 ? prior->radius : RADIUS;
 	eye->globe.limbus = fmin(track->scene.eye.limbus_radius, 0.95 * eye->globe.radius);
 	eye->center_guess = track->conf.center_sigma;
+	eye->contrast = CONTRAST;
 	if (given)
 		memcpy(eye->globe.center, prior->center_in_head, sizeof eye->globe.center);
 	else if (seen)

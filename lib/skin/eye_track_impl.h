@@ -12,7 +12,6 @@ enum { EYE_STILL_SIDE = 24 };
 struct eye_record {
 	double cam_from_head[3][4];
 	double fick[2];
-	double height;             // of the pupil's place above the lower margin, px
 	float mm;                  // px
 	struct lid_found found;
 	long first_edge;           // in struct eye_side
@@ -57,6 +56,15 @@ void eye_view(struct gaze_view *view, const struct eye_scene *scene, const doubl
 
 /* px of a millimetre at the eyeball's front. NAN behind the camera. */
 double eye_scale(const struct gaze_globe *globe, const struct gaze_view *view);
+
+/* Roughly where it looks, into eye->fick: near where it last did, else anywhere. Returns the score of gaze_seek(); from
+ * EYE_FOUND on it is an eye. */
+double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere);
+static const double EYE_FOUND = 0.35;
+
+/* Gaze and torsion between the lids found in this frame; nothing where they cannot be measured. */
+void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_side *eye, const struct luma *luma,
+                 const struct gaze_view *view);
 
 /* One frame of one eye; the result is appended. */
 void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);

@@ -1,6 +1,7 @@
 #include "skin/gaze_edge.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "math/chol.h"
 #include "math/stats.h"
@@ -80,6 +81,22 @@ static void add_row(struct normal_system *sys, const struct gaze_arc *arc, doubl
 	sys->sin1 += w * sin(angle);
 }
 
+/* What the last step says of the fit. */
+static void describe(struct gaze_fit *fit, const struct normal_system *sys, double noise, int n)
+{
+	fit->rms = sqrt(sys->square / sys->weight);
+	double one = hypot(sys->cos1, sys->sin1) / sys->weight, two = hypot(sys->cos2, sys->sin2) / sys->weight;
+	fit->span = fmax(0, 1 - fmax(one, two * one));
+	for (int k = 0; k < 2; k++) {
+		double e[FREE] = { k == 0, k == 1, 0 }, a[FREE][FREE];
+		memcpy(a, sys->a, sizeof a);
+		chol_solve(FREE, FREE, &a[0][0], e);
+		// Neighbouring edges share lobes and shading of the limbus: all of them are worth about three.
+		fit->cov[0][k] = n / 3.0 * noise * e[0];
+		fit->cov[1][k] = n / 3.0 * noise * e[1];
+	}
+}
+
 static bool one_step(struct gaze_fit *fit, struct gaze_globe *globe, double *shift, int n,
                      const struct gaze_edge edge[], const struct gaze_view *view, double bias_sigma, double *scale,
                      double limbus0)
@@ -109,30 +126,15 @@ static bool one_step(struct gaze_fit *fit, struct gaze_globe *globe, double *shi
 	sys.a[2][2] += tie;
 	sys.b[2] += tie * (limbus0 - globe->limbus);
 	double a[FREE][FREE], b[FREE];
-	for (int i = 0; i < FREE; i++) {
-		b[i] = sys.b[i];
-		for (int j = 0; j < FREE; j++)
-			a[i][j] = sys.a[i][j];
-	}
+	memcpy(a, sys.a, sizeof a);
+	memcpy(b, sys.b, sizeof b);
 	if (!chol_solve(FREE, FREE, &a[0][0], b))
 		return false;
 	fit->fick[0] += b[0];
 	fit->fick[1] += b[1];
 	globe->limbus += b[2];
 	*shift = fmax(fabs(b[0]), fabs(b[1]));
-	fit->rms = sqrt(sys.square / sys.weight);
-	double one = hypot(sys.cos1, sys.sin1) / sys.weight, two = hypot(sys.cos2, sys.sin2) / sys.weight;
-	fit->span = fmax(0, 1 - fmax(one, two * one));
-	for (int k = 0; k < 2; k++) {
-		double e[FREE] = { k == 0, k == 1, 0 }, again[FREE][FREE];
-		for (int i = 0; i < FREE; i++)
-			for (int j = 0; j < FREE; j++)
-				again[i][j] = sys.a[i][j];
-		chol_solve(FREE, FREE, &again[0][0], e);
-		// Neighbouring edges share lobes and shading of the limbus: all of them are worth about three.
-		fit->cov[0][k] = n / 3.0 * noise * e[0];
-		fit->cov[1][k] = n / 3.0 * noise * e[1];
-	}
+	describe(fit, &sys, noise, n);
 	return true;
 }
 

@@ -40,59 +40,67 @@ static void survey(struct ground *ground, const struct lid_chart *chart, float o
 	}
 }
 
-/* One margin against the other, by dynamic programming. sign 1: the lower one, 0 upper. Row j: the margin lies between
- * row j - 1 and row j. */
-static void one_path(double path[], const struct ground *ground, const struct lid_chart *chart, int lower, const struct lid_match *match,
-                     const double other[], const double expect[], const struct lid_path_conf *conf)
+struct margin {
+	const struct ground *ground;
+	const struct lid_match *match;
+	const struct lid_path_conf *conf;
+	const double *other, *expect;  // rows of the other margin, and where this one is thought to be
+	int lower;
+};
+
+/* What it costs that column i's margin lies between rows j - 1 and j; edge: where the other one is. */
+static double cost_of(const struct margin *m, int i, int j, int edge, double sigma)
 {
-	static const float never = 1e9f;
+	const struct ground *ground = m->ground;
+	const struct lid_path_conf *conf = m->conf;
+	if (i < conf->columns[0] || i > conf->columns[1])
+		return 2.0 * abs(j - edge);
+	double off = (j - 0.5 - m->expect[i]) / sigma, cost = 0.5 * off * off, crossed = 0;
+	// Its own edge is not crossed.
+	if (m->lower && j > edge + 2)
+		crossed = ground->cross[j - 2][i] - ground->cross[edge][i];
+	if (!m->lower && j < edge - 2)
+		crossed = ground->cross[edge][i] - ground->cross[j + 3][i];
+	double inside = (m->lower ? 1 : -1) * (ground->sum[j][i] - ground->sum[edge][i]);
+	bool past = m->lower ? j < edge : j > edge;
+	cost += conf->cross * crossed;
+	cost += past ? 2.0 * abs(j - edge) : -conf->certain * inside - conf->edge * ground->edge[j][i];
+	if (m->match->known) {
+		bool asked = j >= m->match->first[m->lower] && j <= m->match->last[m->lower];
+		cost += conf->strip * (asked ? m->match->cost[m->lower][j][i] / LID_STRIP_WORST : 1);
+	}
+	return cost;
+}
+
+/* One margin against the other, by dynamic programming. */
+static void one_path(double path[], const struct margin *m, const struct lid_chart *chart)
+{
 	float cost[2][LID_ROWS + 1];
 	signed char from[LID_COLS_MAX][LID_ROWS + 1];
 	double a = lid_chart_corner(chart, 0), b = lid_chart_corner(chart, 1);
-	int cols = chart->cols;
+	int cols = chart->cols, end = 0;
 	for (int i = 0; i < cols; i++) {
 		float *now = cost[i & 1], *before = cost[!(i & 1)];
-		// The corners of the eye hardly move.
-		double t = (i - a) / (b - a), sigma = conf->sigma[lower] * (0.35 + 0.85 * (t > 0 && t < 1 ? sqrt(4 * t * (1 - t)) : 0));
-		double slope = i ? expect[i] - expect[i - 1] : 0;
-		int lean = (int)lround(slope), edge = (int)fmin(LID_ROWS, fmax(0, other[i]));
+		// The corners of the eye move less than what lies between.
+		double t = (i - a) / (b - a), amid = t > 0 && t < 1 ? sqrt(4 * t * (1 - t)) : 0;
+		double sigma = m->conf->sigma[m->lower] * (0.35 + 0.85 * amid), slope = i ? m->expect[i] - m->expect[i - 1] : 0;
+		int lean = (int)lround(fmax(-100, fmin(100, slope))), edge = (int)fmin(LID_ROWS, fmax(0, m->other[i]));
 		for (int j = 0; j <= LID_ROWS; j++) {
-			double off = (j - 0.5 - expect[i]) / sigma, own = 0.5 * off * off;
-			bool past = lower ? j < edge : j > edge;
-			bool shut = i < conf->columns[0] || i > conf->columns[1];
-			double inside = lower ? ground->sum[j][i] - ground->sum[edge][i] : ground->sum[edge][i] - ground->sum[j][i];
-			// Its own edge is not crossed.
-			double crossed = 0;
-			if (lower && j > edge + 2)
-				crossed = ground->cross[j - 2][i] - ground->cross[edge][i];
-			if (!lower && j < edge - 2)
-				crossed = ground->cross[edge][i] - ground->cross[j + 3][i];
-			own += conf->cross * crossed;
-			own -= past ? -2.0 * abs(j - edge) : conf->certain * inside + conf->edge * ground->edge[j][i];
-			if (match->known)
-				own += conf->strip * (j >= match->first[lower] && j <= match->last[lower]
-				                      ? match->cost[lower][j][i] / LID_STRIP_WORST : 1);
-			if (shut)
-				own = 2.0 * abs(j - edge);
-			float best = i ? never : 0;
+			float best = i ? 1e9F : 0;
 			int step = 0;
 			for (int k = lean - STEEP; i && k <= lean + STEEP; k++) {
 				if (j - k < 0 || j - k > LID_ROWS)
 					continue;
-				float c = before[j - k] + (float)(conf->bend * (k - slope) * (k - slope));
+				float c = before[j - k] + (float)(m->conf->bend * (k - slope) * (k - slope));
 				if (c < best)
 					best = c, step = k;
 			}
-			now[j] = best + (float)own;
-			from[i][j] = (signed char)(step < -120 ? -120 : step > 120 ? 120 : step);
+			now[j] = best + (float)cost_of(m, i, j, edge, sigma);
+			from[i][j] = (signed char)step;
+			end = i == cols - 1 && now[j] < now[end] ? j : end;
 		}
 	}
-	int j = 0;
-	const float *last = cost[(cols - 1) & 1];
-	for (int k = 1; k <= LID_ROWS; k++)
-		if (last[k] < last[j])
-			j = k;
-	for (int i = cols - 1; i >= 0; i--) {
+	for (int i = cols - 1, j = end; i >= 0; i--) {
 		path[i] = j - 0.5;
 		j -= from[i][j];
 		j = j < 0 ? 0 : j > LID_ROWS ? LID_ROWS : j;
@@ -103,17 +111,16 @@ double lid_path(struct lid_curves *out, const struct lid_chart *chart, float odd
                 const struct lid_match *match, const struct lid_curves *expect, const struct lid_path_conf *conf)
 {
 	struct ground ground;
-	struct lid_curves hope = *expect;
 	survey(&ground, chart, odds, conf->iris);
 	double mid[LID_COLS_MAX];
 	for (int i = 0; i < chart->cols; i++)
-		mid[i] = hope.row[1][i] + 0.5;
+		mid[i] = expect->row[1][i] + 0.5;
 	for (int k = 0; k < ROUNDS; k++) {
 		double other[LID_COLS_MAX];
-		one_path(out->row[0], &ground, chart, 0, match, mid, hope.row[0], conf);
+		one_path(out->row[0], &(struct margin){ &ground, match, conf, mid, expect->row[0], 0 }, chart);
 		for (int i = 0; i < chart->cols; i++)
 			other[i] = out->row[0][i] + 0.5;
-		one_path(out->row[1], &ground, chart, 1, match, other, hope.row[1], conf);
+		one_path(out->row[1], &(struct margin){ &ground, match, conf, other, expect->row[1], 1 }, chart);
 		bool same = true;
 		for (int i = 0; i < chart->cols; i++) {
 			same &= fabs(mid[i] - out->row[1][i] - 0.5) < 1.5;

@@ -29,7 +29,8 @@ struct lid_match {
 /* odds: log odds of eye against lid of each cell. match: may say nothing (known false). expect: where the margins are thought to be, and their slopes; may be
  * out itself. Rows are whole numbers. Returns the mean odds inside the opening, minus that in a rim outside it. */
 double lid_path(struct lid_curves *out, const struct lid_chart *chart, float odds[LID_ROWS][LID_COLS_MAX],
-                const struct lid_match *match, const struct lid_curves *expect, const struct lid_path_conf *conf);
+                const struct lid_match *match, const struct lid_curves *expect,
+                const struct lid_path_conf *conf);
 
 /* Moves whole rows to where the strips match best, to a fraction of a row, and smooths; columns first..last. Returns the
  * mean cost there. */
