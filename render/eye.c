@@ -121,12 +121,12 @@ bool job_ready(struct job *job, struct err *err)
 	return true;
 }
 
-/* An eye turned by yaw, pitch (degrees) in the studio. */
-static struct image turned(struct job *job, double yaw, double pitch, int size)
+/* An eye turned by yaw, pitch (degrees) in the studio; view: as it was seen. */
+static struct image turned(struct job *job, struct scene_view *view, double yaw, double pitch, int size, bool mirror)
 {
-	struct scene_lighting light = scene_lighting(&job->studio, &job->studio, job->conf->lights);
-	struct scene_view view = scene_view_turned(&job->scene, yaw * M_PI / 180, pitch * M_PI / 180, job->conf->field_mm, size);
-	return trace(job, &view, &light);
+	struct scene_lighting light = scene_lighting(&job->studio, mirror ? &job->studio : 0, job->conf->lights);
+	*view = scene_view_turned(&job->scene, yaw * M_PI / 180, pitch * M_PI / 180, job->conf->field_mm, size);
+	return trace(job, view, &light);
 }
 
 static const char *output(struct job *job, const char *name, const char *suffix)
@@ -141,15 +141,22 @@ static bool stale(struct job *job, const char *rel, int n, const char *const in[
 
 static bool still(struct job *job, const char *name, double yaw, double pitch, struct err *err)
 {
-	const char *png = output(job, name, ".png"), *exr = output(job, name, ".exr");
-	bool need_png = stale(job, png, job->n_in, job->in), need_exr = job->conf->exr && stale(job, exr, job->n_in, job->in);
-	if (!need_png && !need_exr)  // one look makes both
+	const char *png = output(job, name, ".png"), *exr = output(job, name, ".exr"), *layers = output(job, name, "_layers.exr");
+	bool need_png = stale(job, png, job->n_in, job->in);
+	bool need_exr = job->conf->exr && (stale(job, exr, job->n_in, job->in) || stale(job, layers, job->n_in, job->in));
+	if (!need_png && !need_exr)  // one look makes all
 		return true;
 	if (!job_ready(job, err))
 		return false;
-	struct image rgba = turned(job, yaw, pitch, job->conf->size_px), seen = picture_on_grey(&rgba, job->gain);
+	struct scene_view view;
+	struct image rgba = turned(job, &view, yaw, pitch, job->conf->size_px, true), seen = picture_on_grey(&rgba, job->gain);
 	const struct picture_out out[] = { { png, &seen }, { exr, &rgba } };
 	bool ok = pictures_save(job, job->conf->exr ? 2 : 1, out, job->n_in, job->in, err);
+	if (ok && job->conf->exr) {
+		struct image diffuse = turned(job, &view, yaw, pitch, job->conf->size_px, false);
+		ok = layers_save(job, layers, &rgba, &diffuse, &view, err);
+		image_free(&diffuse);
+	}
 	image_free(&rgba);
 	image_free(&seen);
 	return ok;
@@ -166,7 +173,8 @@ static bool turntable(struct job *job, struct err *err)
 	struct image *frames = mem_new((size_t)n, sizeof *frames);
 	for (int i = 0; i < n; i++) {
 		double yaw = n > 1 ? job->conf->frame_deg * (2.0 * i / (n - 1) - 1) : 0;
-		struct image rgba = turned(job, yaw, 0, job->conf->frame_px);
+		struct scene_view view;
+		struct image rgba = turned(job, &view, yaw, 0, job->conf->frame_px, true);
 		frames[i] = picture_on_grey(&rgba, job->gain);
 		image_free(&rgba);
 	}
@@ -227,7 +235,7 @@ static bool pictures(struct job *job, struct err *err)
 	if (!still(job, "three_quarter", job->conf->three_quarter_deg[0], job->conf->three_quarter_deg[1], err))
 		return false;
 	stage_progress(job->stage, ++done, total, "pictures");
-	return turntable(job, err) && sheet_contact(job, err);
+	return turntable(job, err) && turntable_film(job, output(job, "turntable", ".mp4"), err) && sheet_contact(job, err);
 }
 
 static void figures(struct job *job)

@@ -115,4 +115,12 @@ bool sheet_contact(struct job *job, struct err *err);
 /* page.c: work/review/index.html. */
 bool page_make(struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err);
 
+/* turntable.c: the eye turned to and fro, MP4. */
+bool turntable_film(struct job *job, const char *rel, struct err *err);
+
+/* EXR of a picture in layers: what comes out of the eye (diffuse) and what the film mirrors (specular), which add up to it;
+ * depth Z, mm; normal N in the camera's frame. diffuse: the picture without a mirror. */
+bool layers_save(struct job *job, const char *rel, const struct image *full, const struct image *diffuse, const struct scene_view *view,
+                 struct err *err);
+
 #endif

@@ -473,6 +473,28 @@ static void kept_and_hidden(void **state)
 	scene_free(&s);
 }
 
+/* Depth and normal of the outside: the apex from the front, and the sphere beside the limbus. */
+static void surface(void **state)
+{
+	(void)state;
+	struct scene s;
+	struct scene_conf conf = conf_of(4);
+	scene_of(&s, &plain_eye, &conf, even, 0, 1.5);
+	struct scene_view view = scene_view_turned(&s, 0, 0, 27, 271);
+	struct image image = scene_surface(&s, &view);
+	const float *apex = image_at(&image, 135, 135), *side = image_at(&image, 135 + 85, 135), *off = image_at(&image, 2, 2);
+	assert_float_equal(apex[0], view.cam_from_eye[2][3], 1e-4);
+	assert_float_equal(apex[3], -1, 1e-6);
+	double x = (85.0 / 271) * 27 / 500, o = view.cam_from_eye[2][3] + s.sclera_z, R = s.conf.sclera_radius;  // ray (x, 0, 1) t
+	double t = (o - sqrt(o * o - (1 + x * x) * (o * o - R * R))) / (1 + x * x);
+	assert_float_equal(side[0], t, 1e-3);
+	assert_float_equal(side[1], x * t / R, 1e-5);
+	assert_float_equal(side[3], (t - o) / R, 1e-5);
+	assert_true(isinf(off[0]) && off[3] == 0);
+	image_free(&image);
+	scene_free(&s);
+}
+
 /* In a white room a white eye cannot be told from the room, whichever way it is drawn: what the film does not mirror, the
  * sclera returns. (Red, near the limbus: further away the model has fat in it, which is not white.) */
 static void white_furnace(void **state)
@@ -629,6 +651,7 @@ int main(void)
 		cmocka_unit_test(texels_against_rays), cmocka_unit_test(exponential_rule),
 		cmocka_unit_test(white_furnace),       cmocka_unit_test(tissue_furnace),
 		cmocka_unit_test(converges),           cmocka_unit_test(kept_and_hidden),
+		cmocka_unit_test(surface),
 		cmocka_unit_test(holes_are_filled),    cmocka_unit_test(colour_differences),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

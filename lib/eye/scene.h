@@ -132,6 +132,10 @@ struct image scene_render(const struct scene *scene, const struct scene_view *vi
 struct image scene_converge(const struct scene *scene, const struct scene_view *view, const struct envmap *env,
                             const struct envmap *mirror, int lights, int passes, double *error, struct scene_count *count);
 
+/* Depth of the eye's outside along the camera's axis (mm; INFINITY beside the eye) and its unit normal in the camera's frame
+ * (without the film's ripples). image_free. */
+struct image scene_surface(const struct scene *scene, const struct scene_view *view);
+
 /* The albedo step: fills level[].model as seen in this view, so that there the rendering shows what the photograph
  * shows (scene_colour.c). conf.detail is its strength. Call once, after scene_load. */
 void scene_fit_colour(struct scene *scene, const struct scene_view *view, const struct scene_lighting *light);
