@@ -184,6 +184,15 @@ static void deform(struct run *run)
 	}
 }
 
+static void finish(struct run *run)
+{
+	struct level *l = &run->level[0];
+	const struct nricp_conf *c = &run->conf;
+	nricp_polish(l->points, l->match, &l->graph, &run->fixed, c, c->polish + c->polish_noise * run->noise);
+	nricp_unfold(l->points, &run->moving, &l->graph);
+	nricp_match_all(l->match, l->graph.n, l->points, &run->fixed, c, c->welsch[1]);
+}
+
 static void build_levels(struct run *run)
 {
 	const struct nricp_conf *c = &run->conf;
@@ -218,6 +227,8 @@ static void give(struct nricp_result *out, const struct run *run, const double c
 			d2 += w > 0 ? pow((double)(m->goal[k] - l->points[i].at[k]), 2) : 0;
 		}
 		out->confidence[i] = fminf(m->weight, 1);
+		out->face[i] = m->face;
+		memcpy(out->bary[i], m->bary, sizeof *out->bary);
 		square += w * d2;
 		matched += w;
 		area += l->graph.area[i];
@@ -244,9 +255,10 @@ bool nricp_run(struct nricp_result *out, const struct mesh *moving, const struct
 	deform(run);
 	out->place = mem_array((size_t)moving->n_vertices + 1, sizeof *out->place);
 	out->confidence = mem_new((size_t)moving->n_vertices + 1, sizeof *out->confidence);
+	out->face = mem_new((size_t)moving->n_vertices + 1, sizeof *out->face);
+	out->bary = mem_new((size_t)moving->n_vertices + 1, sizeof *out->bary);
 	stand(&run->level[0]);
-	nricp_polish(run->level[0].points, run->level[0].match, &run->level[0].graph, &run->fixed, &run->conf);
-	nricp_unfold(run->level[0].points, &run->moving, &run->level[0].graph);
+	finish(run);
 	give(out, run, center, size);
 	for (int i = 0; i < run->n_levels; i++)
 		level_free(&run->level[i]);
@@ -261,5 +273,7 @@ void nricp_result_free(struct nricp_result *r)
 {
 	free(r->place);
 	free(r->confidence);
+	free(r->face);
+	free(r->bary);
 	*r = (struct nricp_result){ 0 };
 }

@@ -28,11 +28,14 @@ struct nricp_conf {
 	double rim_reach;          // scale of its robust weight
 	int polish_rounds;         // last steps, of all vertices along their normals
 	double polish;             // length over which these are smooth
+	double polish_noise;       // longer by so many standard deviations of the fixed mesh's noise
 };
 
 struct nricp_result {
 	float (*place)[3];        // [moving vertices] registered; owned
 	float *confidence;        // [moving vertices] 0..1; owned
+	int32_t *face;            // [moving vertices] of the fixed mesh, on which the closest place of a like normal lies; -1: none; owned
+	float (*bary)[3];         // [moving vertices] weights of its corners there; owned
 	double rms, covered;      // of what matched: distance; share of the moving area that matched
 };
 

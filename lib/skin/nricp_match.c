@@ -122,6 +122,7 @@ static void match_inside(struct nricp_match *m, const struct nricp_point *p, con
 {
 	struct closest_point c = closest_find(f->scene, p->at, p->normal, (float)conf->turn, INFINITY, m->face);
 	m->face = c.face;
+	memcpy(m->bary, c.bary, sizeof m->bary);
 	m->weight = 0;
 	if (c.face < 0 || is_at_end(f, &c))
 		return;

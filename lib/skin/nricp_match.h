@@ -33,6 +33,7 @@ struct nricp_point {
 
 struct nricp_match {
 	int face;          // of the fixed mesh, -1: none
+	float bary[3];     // weights of its corners at the closest point
 	float goal[3];
 	float normal[3];   // there; of a rim, the direction along it
 	float weight;      // 0..1
@@ -47,9 +48,9 @@ void nricp_match_all(struct nricp_match *match, int n, const struct nricp_point 
 double nricp_noise(const struct mesh *mesh, const struct topology *topology, const float (*normals)[3]);
 
 /* The last step: all points stand where the graph (of every vertex) has put them; they go along their normals towards the
- * fixed mesh, smoothly. match gets the last goals and weights. */
+ * fixed mesh, smoothly over `length`. */
 void nricp_polish(struct nricp_point *points, struct nricp_match *match, const struct nricp_graph *graph, const struct nricp_fixed *fixed,
-                  const struct nricp_conf *conf);
+                  const struct nricp_conf *conf, double length);
 
 /* Triangles that the registration has turned over are put right: around them, displacements are made smooth over as many
  * vertices as that needs. rest: the moving mesh as it was, in the points' frame. Returns how many stay folded. */

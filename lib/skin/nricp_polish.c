@@ -77,15 +77,13 @@ static void solve(struct screened *e, const double *offset)
 }
 
 void nricp_polish(struct nricp_point *points, struct nricp_match *match, const struct nricp_graph *graph, const struct nricp_fixed *fixed,
-                  const struct nricp_conf *conf)
+                  const struct nricp_conf *conf, double length)
 {
 	size_t n = (size_t)graph->n + 1;
 	double *room = mem_array(7 * n, sizeof *room), *offset = room + 6 * n;
-	struct screened e = { graph, conf->polish * conf->polish / sqrt(3), room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n };
-	for (int round = 0; round <= conf->polish_rounds; round++) {
+	struct screened e = { graph, length * length / sqrt(3), room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n };
+	for (int round = 0; round < conf->polish_rounds; round++) {
 		nricp_match_all(match, graph->n, points, fixed, conf, conf->welsch[1]);
-		if (round == conf->polish_rounds)
-			break;
 		for (int i = 0; i < graph->n; i++) {
 			const struct nricp_match *m = &match[i];
 			double across = 0;

@@ -75,12 +75,19 @@ static void same(struct transfer *out, const struct mesh *target, const struct m
 	out->matched = out->covered = 1;
 	out->same_topology = true;
 	memcpy(out->registered, subject->vertices, (size_t)subject->n_vertices * sizeof *subject->vertices);
+	for (int i = 0; i < out->n; i++) {
+		int first = i < out->n - 2 ? i : out->n > 2 ? out->n - 3 : 0;  // three columns a row, rising; one counts
+		for (int k = 0; k < 3; k++) {
+			out->column[i][k] = first + k < out->n ? first + k : out->n - 1;
+			out->weight[i][k] = first + k == i;
+		}
+		out->face[i] = -1;
+		out->confidence[i] = 1;
+	}
 	for (int f = 0; f < subject->n_faces; f++)
 		for (int k = 0; k < 3; k++) {
 			float bary[3] = { k == 0, k == 1, k == 2 };
-			int i = subject->faces[f][k];
-			transfer_row(out, i, subject, f, bary);
-			out->confidence[i] = 1;
+			transfer_row(out, subject->faces[f][k], subject, f, bary);
 		}
 	free(row);
 }
@@ -118,27 +125,46 @@ void transfer_place(double out[3], const double m[4][4], const float x[3])
 		out[r] = m[r][0] * (double)x[0] + m[r][1] * (double)x[1] + m[r][2] * (double)x[2] + m[r][3];
 }
 
+static float distance_to(const struct transfer *t, int i, const struct mesh *subject)
+{
+	double d2 = 0;
+	for (int k = 0; k < 3; k++) {
+		double at = 0;
+		for (int c = 0; c < 3; c++)
+			at += t->weight[i][c] * (double)subject->vertices[t->column[i][c]][k];
+		d2 += pow(at - (double)t->registered[i][k], 2);
+	}
+	return (float)sqrt(d2);
+}
+
 /* Onto the nearest faces of the subject that look the same way. */
 static void snap(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct mesh_part *target_part,
-                 const struct mesh_part *subject_part, const float *matched, const struct transfer_conf *conf)
+                 const struct mesh_part *subject_part, const struct nricp_result *result, const struct transfer_conf *conf)
 {
 	struct mesh registered = *target;
 	registered.vertices = out->registered;
 	double center[3], size = mesh_size(center, &subject_part->mesh);
 	float (*own)[3] = mesh_normals(&registered), (*normals)[3] = mesh_normals(&subject_part->mesh);
-	struct closest_scene *scene = closest_new(&subject_part->mesh, (const float(*)[3])normals);
+	bool search = target_part->mesh.n_vertices < target->n_vertices;
+	for (int p = 0; p < target_part->mesh.n_vertices; p++)
+		search |= result->face[p] < 0;
+	struct closest_scene *scene = search ? closest_new(&subject_part->mesh, (const float(*)[3])normals) : 0;
 	float turn = (float)(conf->nricp.turn * size);
 #pragma omp parallel for schedule(dynamic, 256)
 	for (int i = 0; i < out->n; i++) {
-		struct closest_point c = closest_find(scene, out->registered[i], own[i], turn, INFINITY, -1);
-		if (c.face < 0)
-			c = closest_find(scene, subject_part->mesh.vertices[0], 0, 0, INFINITY, -1);
-		double away = (double)c.distance / (conf->snap * size);
-		transfer_row(out, i, subject, subject_part->face[c.face], c.bary);
-		// The part's faces name the first of doubled vertices; the subject's own rows are what was tracked.
-		out->distance[i] = c.distance;
 		int p = target_part->of[i];
-		out->confidence[i] = p < 0 ? 0 : (float)((double)matched[p] * exp(-away * away));
+		struct closest_point c = { .bary = { 1 } };
+		if (p >= 0 && result->face[p] >= 0) {
+			c.face = result->face[p];
+			memcpy(c.bary, result->bary[p], sizeof c.bary);
+		} else
+			c = closest_find(scene, out->registered[i], own[i], turn, INFINITY, -1);
+		c.face = c.face < 0 ? 0 : c.face;
+		// The part's faces name the first of doubled vertices; the subject's own rows are what was tracked.
+		transfer_row(out, i, subject, subject_part->face[c.face], c.bary);
+		out->distance[i] = distance_to(out, i, subject);
+		double away = (double)out->distance[i] / (conf->snap * size);
+		out->confidence[i] = p < 0 ? 0 : (float)((double)result->confidence[p] * exp(-away * away));
 	}
 	closest_free(scene);
 	free(own);
@@ -191,7 +217,7 @@ static bool registered(struct transfer *out, const struct mesh *target, const st
 			if (moving.of[i] >= 0)
 				memcpy(out->registered[i], result.place[moving.of[i]], sizeof *out->registered);
 		carry(out, target, &moving, (const float(*)[3])result.place);
-		snap(out, target, subject, &moving, &fixed, result.confidence, conf);
+		snap(out, target, subject, &moving, &fixed, &result, conf);
 	}
 	nricp_result_free(&result);
 	mesh_part_free(&moving);

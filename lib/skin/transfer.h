@@ -20,7 +20,7 @@ struct transfer {
 	float (*registered)[3];        // in the subject's unit and axes
 	int32_t (*column)[3];          // rows of the subject mesh, rising; B has three entries a row
 	double (*weight)[3];           // >= 0, sum 1
-	int32_t *face;                 // of the subject mesh, onto which it is snapped
+	int32_t *face;                 // of the subject mesh, onto which it is snapped; -1: a vertex of no face, of the same topology
 	float (*bary)[3];              // weights of that face's corners
 	float *distance, *confidence;  // in the subject's unit, from there; 0..1
 	double subject_from_target[4][4];

@@ -22,6 +22,7 @@
 	OPT_REAL(p "rim_reach", &(c)->nricp.rim_reach, 1e-3, 10, "size", "scale of the boundaries' robust weight"), \
 	OPT_INT(p "polish_rounds", &(c)->nricp.polish_rounds, 0, 100, "", "last steps, of all vertices along their normals"), \
 	OPT_REAL(p "polish", &(c)->nricp.polish, 0, 10, "size", "length over which these are smooth"), \
+	OPT_REAL(p "polish_noise", &(c)->nricp.polish_noise, 0, 100, "sigma", "of the subject's noise, by which that is longer"), \
 	OPT_INT(p "align_samples", &(c)->align.samples, 10, 100000, "", "points of the subject for the similarity"), \
 	OPT_INT(p "align_rounds", &(c)->align.rounds, 1, 1000, "", "of matching and solving from one start"), \
 	OPT_REALS(p "align_welsch", (c)->align.welsch, 2, 1e-3, 10, "size", "scale of the robust weight, first and last round"), \
