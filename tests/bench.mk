@@ -1,12 +1,16 @@
 # Benchmarks: speed and error of the same run, in one table. QUICK=1: fewer repetitions and cases.
 #   make bench            all of them, then bench/README.md with tables, plots and the goals reached
 #   make bench-NAME       one
+#   make bench-compare BEFORE=DIR AFTER=DIR   what became worse beyond the spread; AFTER: bench if not said
 BENCH_ARGS = --out=bench $(if $(QUICK),--quick)
 
 bench: $(BENCHES:$B/tests/bench/bench_%=bench-%)
 	@$(MAKE) --no-print-directory bench-report
 
-.PHONY: bench-report
+.PHONY: bench-report bench-compare
+bench-compare: $B/tests/bench/compare
+	@test -n "$(BEFORE)" || { echo "make: say which: make bench-compare BEFORE=old/bench [AFTER=bench]" >&2; exit 2; }
+	@$< "$(BEFORE)" "$(or $(AFTER),bench)"
 bench-%: build $B/tests/bench/bench_% FORCE
 	@mkdir -p bench
 	@$B/tests/bench/bench_$* $(BENCH_ARGS)
