@@ -1,7 +1,7 @@
 /* variant: one photograph made into another, for the scripts of tests/chain.
  *
  *     variant KIND IN OUT
- * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half
+ * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half, turned
  */
 #include <math.h>
 #include <stdio.h>
@@ -23,6 +23,16 @@ static struct pixels crop(const struct photo *photo, int x0, int y0, int width, 
 			memcpy(p.px + 3 * ((long)y * p.width + x),
 			       photo->rgb + 3 * ((long)(y0 + y * step) * photo->width + x0 + x * step), 3 * sizeof *p.px);
 	return p;
+}
+
+/* A quarter turn clockwise. */
+static struct pixels turn(const struct pixels *p)
+{
+	struct pixels t = { p->height, p->width, 3, mem_array((size_t)p->width * (size_t)p->height * 3, sizeof *t.px) };
+	for (int y = 0; y < p->height; y++)
+		for (int x = 0; x < p->width; x++)
+			memcpy(t.px + 3 * ((long)x * t.width + (p->height - 1 - y)), p->px + 3 * ((long)y * p->width + x), 3 * sizeof *t.px);
+	return t;
 }
 
 /* Exposure in linear light, clipped as a sensor does. */
@@ -131,6 +141,11 @@ int main(int argc, char **argv)
 	bool cut = !strcmp(kind, "cut");  // through the middle of the iris
 	struct pixels p = crop(&photo, 0, 0, cut ? w / 2 : w, h, strcmp(kind, "half") ? 1 : 2);
 	expose(&p, !strcmp(kind, "over") ? 30 : !strcmp(kind, "under") ? 0.01 : !strcmp(kind, "dark") ? 0.1 : 1);
+	if (!strcmp(kind, "turned")) {
+		struct pixels upright = p;
+		p = turn(&upright);
+		pixels_free(&upright);
+	}
 	if (!strcmp(kind, "closed"))
 		paint_closed(&p);
 	if (!strcmp(kind, "noise"))
