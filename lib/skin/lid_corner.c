@@ -6,9 +6,9 @@
 #include "math/simd.h"
 
 // Shares of the distance between the corners: a sample of the patch, and how far outside the corner its middle lies.
-static const double SAMPLE = 0.008, BESIDE = 0.06;
+static const double SAMPLE = 0.008, BESIDE = 0.04;
 // Grey levels of a usual mismatch; how far a corner moves, in samples.
-static const double NOISE = 6, MOVES = 5;
+static const double NOISE = 6, MOVES = 8;
 
 /* Brightness on a square round the patch, side samples wide. */
 static void read_field(uint8_t *out, int side, int which, const struct lid_chart *chart,
@@ -75,7 +75,7 @@ void lid_corner_find(double shift[2], struct lid_corner *corner, int which, cons
 	}
 	// What no longer looks like it, as in a blink, tells little.
 	double fit = (double)square(&field[bj * CORNER_FIELD + bi], &corner->look[0][0]) / (CORNER_SIDE * CORNER_SIDE);
-	double strange = fit / (12 * NOISE * NOISE), trust = 1 / (1 + pow(strange, 4));
+	double strange = fit / (18 * NOISE * NOISE), trust = 1 / (1 + pow(strange, 4));
 	double x = bi - CORNER_REACH, y = bj - CORNER_REACH, step = SAMPLE * chart->width;
 	if (bi > 0 && bi < N - 1)
 		x += top(cost[bj][bi - 1], cost[bj][bi], cost[bj][bi + 1]);
