@@ -82,7 +82,7 @@ static void test_topology(void **state)
 	assert_int_equal(t.n_tangled, 0);
 	topology_free(&t);
 	struct mesh_part part;
-	mesh_part_make(&part, &both, 0);
+	mesh_part_make(&part, &both, 0, 0);
 	assert_int_equal(part.doubled, 8);  // at x = -60, -20, 20, 60 and y = -60, 60 both have a vertex
 	assert_int_equal(part.mesh.n_vertices, a.n_vertices + b.n_vertices - 8);
 	mesh_part_free(&part);

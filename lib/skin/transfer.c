@@ -171,18 +171,31 @@ static void snap(struct transfer *out, const struct mesh *target, const struct m
 	free(normals);
 }
 
-/* Sockets behind the lids, insides of nose and mouth: what a scan or a face cut out of one does not have. Matched, they
- * would be drawn into the openings. Null: none, or a mesh that is inside out. */
-static bool *hidden(const struct mesh *target, double least)
+/* Which vertices lie hidden; returns their share. is: or null. */
+static double hidden(bool *is, const struct mesh *mesh, double least)
 {
-	float *open = mem_array((size_t)target->n_vertices + 1, sizeof *open);
-	bool *is = mem_new((size_t)target->n_vertices + 1, sizeof *is);
+	float *open = mem_array((size_t)mesh->n_vertices + 1, sizeof *open);
 	int n = 0;
-	mesh_openness(open, target);
-	for (int i = 0; i < target->n_vertices; i++)
-		n += is[i] = (double)open[i] < least;
+	mesh_openness(open, mesh);
+	for (int i = 0; i < mesh->n_vertices; i++) {
+		n += (double)open[i] < least;
+		if (is)
+			is[i] = (double)open[i] < least;
+	}
 	free(open);
-	if (n && n < target->n_vertices / 2)
+	return mesh->n_vertices ? (double)n / mesh->n_vertices : 0;
+}
+
+/* Sockets behind the lids, insides of nose and mouth: what a scan or a face cut out of one does not have. Matched, they
+ * would be drawn into the openings. Null: none, a mesh that is inside out, or a subject that has them too. */
+static bool *only_hidden(const struct mesh *target, const struct mesh *subject, double least)
+{
+	static const double inside_out = 0.5, has_them = 0.1;
+	if (!(least > 0))
+		return 0;
+	bool *is = mem_new((size_t)target->n_vertices + 1, sizeof *is);
+	double share = hidden(is, target, least);
+	if (share > 0 && share < inside_out && hidden(0, subject, least) < has_them * share)
 		return is;
 	free(is);
 	return 0;
@@ -194,7 +207,7 @@ static bool registered(struct transfer *out, const struct mesh *target, const st
 	struct mesh_part moving, fixed;
 	struct nricp_align_result pose;
 	struct nricp_result result = { 0 };
-	bool *leave = hidden(target, conf->open);
+	bool *leave = only_hidden(target, subject, conf->open);
 	mesh_part_make(&moving, target, conf->least_piece, leave);
 	mesh_part_make(&fixed, subject, conf->least_piece, 0);
 	free(leave);
