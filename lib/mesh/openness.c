@@ -32,7 +32,8 @@ static void frame(float x[3], float y[3], const float n[3])
 	y[2] = -n[1];
 }
 
-void mesh_openness(float *open, const struct mesh *mesh)
+/* Of every step-th vertex. */
+static void measure(float *open, const struct mesh *mesh, int step)
 {
 	float dir[RAYS][3], (*normal)[3] = mesh_normals(mesh);
 	float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, size = 0;
@@ -46,7 +47,7 @@ void mesh_openness(float *open, const struct mesh *mesh)
 	                                        (const int32_t(*)[3])mesh->faces);
 	sky(dir);
 #pragma omp parallel for schedule(dynamic, 256)
-	for (int i = 0; i < mesh->n_vertices; i++) {
+	for (int i = 0; i < mesh->n_vertices; i += step) {
 		const float *n = normal[i];
 		float x[3], y[3], from[3];
 		int free_rays = 0;
@@ -63,4 +64,20 @@ void mesh_openness(float *open, const struct mesh *mesh)
 	}
 	ray_scene_free(scene);
 	free(normal);
+}
+
+void mesh_openness(float *open, const struct mesh *mesh)
+{
+	measure(open, mesh, 1);
+}
+
+double mesh_hidden_share(const struct mesh *mesh, double least, int samples)
+{
+	int step = mesh->n_vertices > samples ? mesh->n_vertices / samples : 1, n = 0, all = 0;
+	float *open = mem_array((size_t)mesh->n_vertices + 1, sizeof *open);
+	measure(open, mesh, step);
+	for (int i = 0; i < mesh->n_vertices; i += step, all++)
+		n += (double)open[i] < least;
+	free(open);
+	return all ? (double)n / all : 0;
 }

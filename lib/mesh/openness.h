@@ -9,4 +9,7 @@
  * seen from outside. */
 void mesh_openness(float *open, const struct mesh *mesh);
 
+/* Share of about `samples` vertices, evenly taken, with an openness below `least`. */
+double mesh_hidden_share(const struct mesh *mesh, double least, int samples);
+
 #endif

@@ -171,34 +171,22 @@ static void snap(struct transfer *out, const struct mesh *target, const struct m
 	free(normals);
 }
 
-/* Which vertices lie hidden; returns their share. is: or null. */
-static double hidden(bool *is, const struct mesh *mesh, double least)
-{
-	float *open = mem_array((size_t)mesh->n_vertices + 1, sizeof *open);
-	int n = 0;
-	mesh_openness(open, mesh);
-	for (int i = 0; i < mesh->n_vertices; i++) {
-		n += (double)open[i] < least;
-		if (is)
-			is[i] = (double)open[i] < least;
-	}
-	free(open);
-	return mesh->n_vertices ? (double)n / mesh->n_vertices : 0;
-}
-
 /* Sockets behind the lids, insides of nose and mouth: what a scan or a face cut out of one does not have. Matched, they
  * would be drawn into the openings. Null: none, a mesh that is inside out, or a subject that has them too. */
 static bool *only_hidden(const struct mesh *target, const struct mesh *subject, double least)
 {
+	enum { SAMPLES = 700 };
 	static const double inside_out = 0.5, has_them = 0.1;
-	if (!(least > 0))
+	double share = least > 0 ? mesh_hidden_share(target, least, SAMPLES) : 0;
+	if (!(share > 0 && share < inside_out) || mesh_hidden_share(subject, least, SAMPLES) > has_them * share)
 		return 0;
+	float *open = mem_array((size_t)target->n_vertices + 1, sizeof *open);
 	bool *is = mem_new((size_t)target->n_vertices + 1, sizeof *is);
-	double share = hidden(is, target, least);
-	if (share > 0 && share < inside_out && hidden(0, subject, least) < has_them * share)
-		return is;
-	free(is);
-	return 0;
+	mesh_openness(open, target);
+	for (int i = 0; i < target->n_vertices; i++)
+		is[i] = (double)open[i] < least;
+	free(open);
+	return is;
 }
 
 static bool registered(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct nricp_landmarks *landmarks,
