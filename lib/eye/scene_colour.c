@@ -13,8 +13,6 @@
 #include "base/mem.h"
 #include "optics/lightpath.h"
 
-static const float dark = 1e-4f;  // colours are at least that, so that their ratios are numbers
-
 /* What the model shows at n texels of row y, seen through the cornea from C. */
 static void model_row(struct iris_batch *b, const struct scene *s, const struct scene_level *level, int x0, int n, int y,
                       const double C[3], const struct scene_beams *beams)
@@ -53,8 +51,8 @@ static void put_row(float *colour, float *model, const float *texture, const str
 		for (int c = 0; c < 4; c++)
 			colour[c] = channel_at(texture, level->n, level->per_mm, b->px[i] + t * b->vx[i], b->py[i] + t * b->vy[i], 4, c);
 		for (int c = 0; c < 3; c++) {
-			colour[c] = colour[c] > dark ? colour[c] : dark;
-			model[c] = b->rgb[c][i] * through > dark ? b->rgb[c][i] * through : dark;
+			colour[c] = colour[c] > SCENE_DARK ? colour[c] : SCENE_DARK;
+			model[c] = b->rgb[c][i] * through > SCENE_DARK ? b->rgb[c][i] * through : SCENE_DARK;
 		}
 		model[3] = 0;
 	}
@@ -134,9 +132,11 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 			put_row(level->colour + at, level->model + at, texture, &b, s, level);
 		}
 	free(texture);
-	free(beams.beam);
 	compare(s);
 	scene_levels_make(s);
+	for (int k = 1; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
+		scene_shade_model(&s->level[k], s, C, &beams, through);
+	free(beams.beam);
 }
 
 SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float (*restrict model)[4])

@@ -76,6 +76,11 @@ struct scene_shade {
 struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3], bool flat,
                                     const struct scene_beams *beams);
 
+/* Fills the model of a level with the march from its own texels, times through: what a later march from them is compared with. */
+void scene_shade_model(struct scene_level *level, const struct scene *scene, const double C[3], const struct scene_beams *beams, float through);
+
+#define SCENE_DARK 1e-4f  // colours are at least that, so that their ratios are numbers
+
 /* The level whose texels are about as large as a pixel of `mm`. */
 const struct scene_level *scene_level_for(const struct scene *scene, double mm);
 

@@ -19,8 +19,9 @@ struct painter {
 	const struct scene_level *level;  // that is marched from
 	const struct scene_beam *sight;
 	const struct scene_beams *beams;
-	int tiles;     // across
-	float *light;  // [level->n][level->n][4]
+	int tiles;      // across
+	float *light;   // [level->n][level->n][4]
+	float through;  // over 0: light times that goes there, not its ratio to the model
 };
 
 /* Texel of a tile's ray; the map's edge repeats. */
@@ -67,9 +68,13 @@ static void tile_put(struct iris_batch *b, const struct painter *p, int tx, int 
 {
 	const struct scene_level *l = p->level;
 	float model[PART][4];
-	for (int i = 0; i < PART && l->model; i++)
+	bool ratio = l->model && !(p->through > 0);
+	for (int i = 0; i < PART && ratio; i++)
 		memcpy(model[i], l->model + 4 * texel(l, tx, ty, i), sizeof model[i]);
-	if (l->model)
+	for (int i = 0; i < PART && p->through > 0; i++)
+		for (int c = 0; c < 3; c++)
+			b->rgb[c][i] = fmaxf(p->through * b->rgb[c][i], SCENE_DARK);
+	if (ratio)
 		scene_colour_ratio(PART, b->rgb, p->scene, (const float(*)[4])model);
 	for (int i = 0; i < PART; i++) {
 		float *out = p->light + 4 * texel(l, tx, ty, i);
@@ -101,6 +106,20 @@ static void tile_paint(const struct painter *p, int tx, int ty)
 	tile_put(&b, p, tx, ty);
 }
 
+static void paint(const struct painter *p)
+{
+#pragma omp parallel for schedule(dynamic, 4)
+	for (int i = 0; i < p->tiles * p->tiles; i++)
+		tile_paint(p, i % p->tiles, i / p->tiles);
+}
+
+void scene_shade_model(struct scene_level *level, const struct scene *s, const double C[3], const struct scene_beams *beams, float through)
+{
+	struct scene_beam *sight = scene_sight(s, C);
+	paint(&(struct painter){ s, level, sight, beams, (level->n + TILE_SIDE - 1) / TILE_SIDE, level->model, through });
+	free(sight);
+}
+
 /* The alternative: irradiance on the iris plane alone, which is smooth. */
 static struct scene_shade flat_make(const struct scene *s, const struct scene_level *level, const struct scene_beams *beams)
 {
@@ -121,11 +140,9 @@ struct scene_shade scene_shade_make(const struct scene *s, const struct scene_le
 	if (flat)
 		return flat_make(s, level, beams);
 	struct scene_beam *sight = scene_sight(s, C);
-	struct painter p = { s, coarse, sight, beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, 0 };
+	struct painter p = { s, coarse, sight, beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, 0, 0 };
 	p.light = mem_new((size_t)coarse->n * (size_t)coarse->n, 4 * sizeof *p.light);
-#pragma omp parallel for schedule(dynamic, 4)
-	for (int i = 0; i < p.tiles * p.tiles; i++)
-		tile_paint(&p, i % p.tiles, i / p.tiles);
+	paint(&p);
 	free(sight);
 	return (struct scene_shade){ level->n, coarse->n, level->per_mm, coarse->per_mm, level->shown, p.light };
 }
