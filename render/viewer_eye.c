@@ -34,7 +34,8 @@ static json_t *geometry(const struct scene *s, double gain)
 	put(out, "gain", 1, &model);
 	put(out, "exposure", 1, &gain);
 	put(out, "detail", 1, &s->conf.detail);
-	json_object_set_new(out, "two_surface", json_boolean(c->two_surface));
+	double back[] = { c->R_post, c->p_post, c->thickness, c->two_surface ? c->n_cornea : 0 };
+	put(out, "back", COUNT(back), back);
 	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
 	json_object_set_new(out, "search", json_integer(s->conf.search));
 	json_object_set_new(out, "shadow", json_integer(s->conf.shadow));

@@ -1,5 +1,6 @@
 /* A driven character for the interactive page: its mesh as portrait.h poses and lights it, on a grid of gazes and apertures
  * between which the page interpolates. Lengths mm, in the head's axes about the middle of both eyes. */
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +13,7 @@
 #include "skin/portrait_impl.h"
 
 static const double at_h[] = { -32, -16, 0, 16, 32 }, at_v[] = { -22, 0, 22 }, at_a[] = { 0, 0.5, 1, 1.4 };
-enum { NH = COUNT(at_h), NV = COUNT(at_v), NA = COUNT(at_a), POSES = NH * NV * NA, SKY = 24, RECORD = 12 };
+enum { NH = COUNT(at_h), NV = COUNT(at_v), NA = COUNT(at_a), POSES = NH * NV * NA, SKY = 24, RECORD = 12, MOST = 9000 };
 static const float reach = 110;  // mm about the eyes: what the page shows of the face
 
 struct face {
@@ -23,6 +24,7 @@ struct face {
 	uint8_t *record[POSES];          // [n][RECORD]: x, y, z 16 bits each, normal 8 bits each, light red, green, blue
 	uint8_t *sky;                    // [POSES][SKY][2 SKY]: left, right
 	int *order, moving;              // vertices as the page has them: those that move first
+	int least;                       // what counts as motion, in steps of 1/300 mm
 };
 
 static void to_head(float out[3], const struct face *f, const float x[3], bool point)
@@ -103,14 +105,14 @@ static void pose_all(struct face *f)
 	free(controls);
 }
 
-/* What differs by more than 0.04 mm or a few steps of light anywhere on the grid moves. */
+/* What differs by more than that or a few steps of light anywhere on the grid moves. */
 static bool moves(const struct face *f, int i)
 {
 	const uint8_t *a = f->record[0] + (long)i * RECORD;
 	for (int k = 1; k < POSES; k++) {
 		const uint8_t *b = f->record[k] + (long)i * RECORD;
 		for (int c = 0; c < 3; c++)
-			if (abs(a[2 * c] + 256 * a[2 * c + 1] - b[2 * c] - 256 * b[2 * c + 1]) > 12 || abs(a[9 + c] - b[9 + c]) > 5)
+			if (abs(a[2 * c] + 256 * a[2 * c + 1] - b[2 * c] - 256 * b[2 * c + 1]) > f->least || abs(a[9 + c] - b[9 + c]) > (f->least + 7) / 4)
 				return true;
 	}
 	return false;
@@ -152,6 +154,14 @@ static int order(struct face *f, uint32_t **faces, int *n_faces)
 			++*n_faces;
 		}
 	f->order = mem_array((size_t)f->n, sizeof *f->order);
+	// A page that is too large for the post is of no use: then less counts as motion.
+	long count = LONG_MAX;
+	for (f->least = 6; count > MOST;) {
+		f->least *= 2;
+		count = 0;
+		for (int i = 0; i < f->n; i++)
+			count += used[i] && moves(f, i);
+	}
 	for (int pass = 0; pass < 2; pass++) {
 		for (int i = 0; i < f->n; i++)
 			if (used[i] && moves(f, i) == !pass) {

@@ -6,6 +6,7 @@ uniform vec4 lens;                // focal length, middle (px of the camera), px
 uniform vec2 corner, size, jitter;
 uniform mat3 slip;
 uniform vec2 limbus;
+uniform vec4 back;                // of the cornea: sight()
 uniform float sclera_reach;       // angle at the edge of the maps of the sclera
 uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
 uniform vec3 pupil;               // as fitted: x, y, radius, in the iris plane
@@ -267,6 +268,22 @@ vec3 white(inout vec3 normal, vec3 at, float rho)
 	return albedo * light * (1.0 - vec3(LOOK_RIM_DARK) * edge * edge);
 }
 
+// Unit direction behind the cornea of a ray d that meets it at `from`, which becomes the place where that direction starts:
+// lib/optics/cornea.c. back: radius, asphericity, depth of the posterior surface's apex, index of the cornea; index 0: none.
+vec3 sight(inout vec3 from, vec3 d)
+{
+	vec3 N = normalize(vec3(from.xy, cornea_p * from.z - cornea_R));
+	vec3 v = refract(d, N, 1.0 / (back.w > 0.0 ? back.w : cornea_n));
+	if (back.w <= 0.0)
+		return v;
+	vec3 o = from - vec3(0.0, 0.0, back.z);
+	float A = dot(v.xy, v.xy) + back.y * v.z * v.z, B = dot(o.xy, v.xy) + (back.y * o.z - back.x) * v.z;
+	float C = dot(o.xy, o.xy) + o.z * (back.y * o.z - 2.0 * back.x), disc = max(B * B - A * C, 0.0);
+	from += v * max(B < 0.0 ? C / (sqrt(disc) - B) : -(B + sqrt(disc)) / A, 0.0);
+	N = normalize(vec3(from.xy, back.y * (from.z - back.z) - back.x));
+	return refract(v, N, back.w / cornea_n);
+}
+
 // Radiance from a ray that meets the eye, and how much of the pixel the eye covers.
 vec4 look(vec3 o, vec3 d, out float far)
 {
@@ -295,10 +312,8 @@ vec4 look(vec3 o, vec3 d, out float far)
 	float cos_i = -dot(normal, d), lid = hit ? step_smooth(1.0 - 0.5 * sclera.z, 1.0 + 0.5 * sclera.z, rho) : 1.0;
 	vec3 rgb = vec3(0.0);
 	if (lid < 1.0) {
-		vec3 N = normalize(vec3(K.xy, cornea_p * K.z - cornea_R));
-		float c = -dot(d, N), eta = 1.0 / cornea_n;
-		vec3 inside = eta * d + (eta * c - sqrt(1.0 - eta * eta * (1.0 - c * c))) * N;
-		rgb = (1.0 - lid) * iris(K, inside);
+		vec3 from = K, inside = sight(from, d);
+		rgb = (1.0 - lid) * iris(from, inside);
 	}
 	if (lid > 0.0)
 		rgb += lid * white(normal, at, rho);
