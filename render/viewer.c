@@ -63,11 +63,12 @@ static void programs(json_t *data)
 	const struct {
 		const char *key, *text;
 	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths },
-		         { "eye_frag", viewer_eye_frag }, { "present", viewer_present },
+		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present },
 		         { "skin", viewer_skin_frag }, { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
 	for (int i = 0; i < COUNT(part); i++)
 		json_object_set_new(data, part[i].key, json_string(part[i].text));
-	char *js = mem_printf("%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_face_js, viewer_page_js);
+	char *js = mem_printf("%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_face_js,
+	                      viewer_sliders_js, viewer_controls_js, viewer_live_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);
 }

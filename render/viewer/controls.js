@@ -1,0 +1,276 @@
+/* Controls, and the address that keeps them. */
+function element(tag, attributes, ...children) {
+	const out = document.createElement(tag);
+	for (const [key, value] of Object.entries(attributes || {}))
+		key in out && key !== "list" ? out[key] = value : out.setAttribute(key, value);
+	out.append(...children);
+	return out;
+}
+
+class Controls {
+	/* ---- controls */
+	build() {
+		const box = by_id("controls");
+		box.replaceChildren();
+		if (data.eyes.length > 1)
+			box.append(element("div", { className: "buttons", role: "group", ariaLabel: "Eye" }, ...data.eyes.map((e, i) =>
+				this.button(`${e.side} eye`, () => this.open(i), i === this.index))));
+		const modes = [["face", "Face", this.face], ["eye", "Eye", true], ["beside", "Beside the photograph", this.eye.photo]].filter(m => m[2]);
+		this.modes = modes.map(([mode, text]) => ({ mode, button: this.button(text, () => this.set_mode(mode), mode === this.mode) }));
+		if (modes.length > 1)
+			box.append(element("div", { className: "buttons", role: "group", ariaLabel: "View" }, ...this.modes.map(m => m.button)));
+		box.append(this.gaze_controls());
+		for (const [title, list] of this.groups) {
+			const set = element("fieldset", {}, element("legend", { textContent: title }));
+			if (title === "Light")
+				set.append(this.light_choice());
+			if (title === "Cornea")
+				set.append(element("p", { className: "note", textContent: "As configured; the band is the spread between people (R ± 0.27 mm, p ± 0.12)." }));
+			for (const c of list)
+				if (!c.lids || this.scene.has_lids)
+					set.append(this.slider(c));
+			if (title === "Cornea")
+				set.append(this.keeping());
+			box.append(set);
+		}
+		box.append(this.machine());
+	}
+
+	button(text, on, pressed) {
+		const b = element("button", { type: "button", textContent: text });
+		if (pressed !== undefined)
+			b.setAttribute("aria-pressed", pressed);
+		b.addEventListener("click", on);
+		return b;
+	}
+
+	gaze_controls() {
+		const number = (label, k) => {
+			const input = element("input", { type: "number", min: -45, max: 45, step: 1, value: 0, id: `gaze-${k}` });
+			input.addEventListener("input", () => {
+				const v = Number(input.value);
+				if (Number.isFinite(v)) {
+					this.set_follow("typed");
+					this.eyes.target[k] = Math.min(45, Math.max(-45, v));
+					this.to_hash();
+					this.wake();
+				}
+			});
+			this.typed = this.typed || [];
+			this.typed[k] = input;
+			return element("label", { textContent: label }, input);
+		};
+		this.following = ["pointer", "typed", "wander"].map(mode => this.button({ pointer: "Follow the pointer", typed: "Look where typed", wander: "Look about" }[mode], () => this.set_follow(mode), mode === this.follow));
+		const blink = this.button("Blink", () => this.blink());
+		this.players = (this.face && data.face.clips || []).map((clip, i) => this.button(`▶ ${clip.name}`, () => this.play(this.playing === i ? null : i), false));
+		return element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? [blink] : []), ...this.players),
+			element("div", { className: "numbers" }, number("To the person's left, degrees", 0), number("Up, degrees", 1)));
+	}
+
+	light_choice() {
+		this.light_buttons = this.eye.lights.map((l, i) => this.button(l.name, () => { this.set_light(i); this.to_hash(); }, i === this.light));
+		return element("div", { className: "buttons", role: "group", ariaLabel: "Surroundings" }, ...this.light_buttons);
+	}
+
+	slider(c) {
+		const id = `s-${c.key}`, power = c.power || 1, t_of = v => Math.pow(Math.min(Math.max((v - c.lo) / (c.hi - c.lo), 0), 1), 1 / power);
+		const input = element("input", { type: "range", id, min: 0, max: 1000, step: 1 }), output = element("output", { htmlFor: id });
+		const reset = this.button("↺", () => { this.set(c.key, c.value); input.focus(); });
+		reset.className = "reset";
+		reset.setAttribute("aria-label", `${c.label}: back to ${c.show(c.value)}`);
+		reset.title = "Back";
+		const at = t => `calc(${t} * (100% - 16px) + 8px)`, track = element("span", { className: "track" });
+		if (c.sigma) {
+			const a = t_of(c.value - c.sigma), b = t_of(c.value + c.sigma), band = element("span", { className: "sigma" });
+			band.style.left = at(a);
+			band.style.width = `calc(${Math.max(b - a, 0.005)} * (100% - 16px))`;
+			track.append(band);
+		}
+		const tick = element("span", { className: "fit" });
+		tick.style.left = at(t_of(c.value));
+		track.append(tick, input);
+		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track);
+		const plus = c.sigma ? ` ± ${c.show(c.sigma)}` : "";
+		row.title = `${c.assumed ? "Configured" : "Fitted"}: ${c.show(c.value)}${plus}`;
+		c.update = () => {
+			const v = this.values[c.key];
+			input.value = Math.round(1000 * t_of(v));
+			output.textContent = c.show(v);
+			input.setAttribute("aria-valuetext", `${c.show(v)}; ${row.title}`);
+			row.classList.toggle("moved", Math.abs(v - c.value) > 1e-9);
+		};
+		input.addEventListener("input", () => {
+			const v = c.lo + (c.hi - c.lo) * Math.pow(input.value / 1000, power);
+			this.set(c.key, input.value === String(Math.round(1000 * t_of(c.value))) ? c.value : v, true);
+		});
+		c.update();
+		return row;
+	}
+
+	set(key, value, from_hand) {
+		const c = this.controls.find(o => o.key === key);
+		this.values[key] = Math.min(Math.max(value, c.lo), c.hi);
+		c.update();
+		this.lines();
+		this.to_hash();
+		this.changed();
+		if (!from_hand)
+			said(`${c.label}: ${c.show(this.values[key])}`);
+	}
+
+	keeping() {
+		this.kept = element("textarea", { readOnly: true, id: "lines", spellcheck: false });
+		const copy = this.button("Copy", async () => {
+			this.kept.select();
+			try {
+				await navigator.clipboard.writeText(this.kept.value);
+			} catch {
+				document.execCommand("copy");
+			}
+			said("Copied");
+		});
+		this.keep_box = element("div", { hidden: true }, element("p", { className: "note" }, element("label", { htmlFor: "lines", textContent: "Keep these values: put the lines into capture.conf and run make again." })), this.kept, element("div", { className: "buttons" }, copy));
+		return this.keep_box;
+	}
+
+	/* capture.conf lines for what was moved: a narrow prior holds a pigment where it was put. */
+	lines() {
+		const v = this.state(), out = [], moved = key => Math.abs(this.values[key] - this.controls.find(c => c.key === key).value) > 1e-9;
+		for (const layer of ["abl", "stroma"])
+			if (moved(layer + "_eu") || moved(layer + "_pheo")) {
+				out.push(`pigment.prior_${layer}_melanin = ${Math.max(v[layer + "_melanin"], 1e-4).toPrecision(4)} 0.01`);
+				out.push(`pigment.prior_${layer}_ratio = ${v[layer + "_ratio"].toFixed(4)} 0.005`);
+			}
+		if (moved("thickness_scale"))
+			out.push(`pigment.prior_scale = ${v.thickness_scale.toFixed(4)} 0.01`);
+		for (const c of this.controls)
+			if (c.conf && moved(c.key))
+				out.push(`${c.conf} = ${this.values[c.key].toFixed(4)}`);
+		this.kept.value = out.join("\n");
+		this.keep_box.hidden = !out.length;
+	}
+
+	machine() {
+		const quality = element("select", { id: "quality" }, element("option", { value: "auto", textContent: "automatic" }), ...presets.map((p, i) => element("option", { value: i, textContent: p.name })));
+		quality.addEventListener("change", () => {
+			this.automatic = quality.value === "auto";
+			this.preset = this.automatic ? this.preset : Number(quality.value);
+			this.times = [];
+			this.changed();
+		});
+		const copy = this.button("Copy the address of this view", async () => {
+			this.to_hash();
+			try {
+				await navigator.clipboard.writeText(location.href);
+				said("Copied");
+			} catch {
+				said("The address is in the address bar");
+			}
+		});
+		return element("fieldset", {}, element("legend", { textContent: "Page" }), element("div", { className: "row" }, element("label", { htmlFor: "quality", textContent: "Quality while moving" }), quality),
+			element("div", { className: "buttons" }, copy, this.button("Reset all", () => this.reset())));
+	}
+
+	reset() {
+		for (const c of this.controls)
+			this.values[c.key] = c.value;
+		this.orbit = [0, 0];
+		this.eyes.target = [0, 0];
+		this.set_light(0);
+		for (const c of this.controls)
+			c.update && c.update();
+		this.lines();
+		this.to_hash();
+		this.changed();
+		said("Everything as fitted");
+	}
+
+	set_follow(mode) {
+		if (this.playing !== null)
+			this.play(null);
+		this.follow = mode;
+		["pointer", "typed", "wander"].forEach((m, i) => this.following[i].setAttribute("aria-pressed", m === mode));
+		this.wake();
+	}
+
+	set_light(i) {
+		this.light = i;
+		this.light_buttons.forEach((b, k) => b.setAttribute("aria-pressed", k === i));
+		this.changed();
+	}
+
+	set_mode(mode) {
+		const photo = by_id("photo"), on = mode === "beside", was = this.beside;
+		this.mode = mode;
+		if (mode !== "face" && this.playing !== null)
+			this.play(null);
+		this.modes.forEach(m => m.button.setAttribute("aria-pressed", m.mode === mode));
+		if (on) {
+			photo.src = this.eye.photo.uri;
+			photo.alt = `Photograph ${this.eye.photo.name}`;
+		}
+		photo.hidden = by_id("bar").hidden = by_id("wipe-box").hidden = !on;
+		if (on !== was)
+			this.set_light(on && this.eye.lights.length > 1 ? 1 : 0);
+		this.to_hash();
+		this.changed();
+	}
+
+	get beside() {
+		return this.mode === "beside";
+	}
+
+	blink() {
+		this.eyes.blink_now(performance.now() / 1000);
+		this.wake();
+	}
+
+	/* ---- the address */
+	to_hash() {
+		const parts = [];
+		for (const c of this.controls)
+			if (Math.abs(this.values[c.key] - c.value) > 1e-9)
+				parts.push(`${c.key}=${Number(this.values[c.key].toPrecision(6))}`);
+		if (this.orbit[0] || this.orbit[1])
+			parts.push(`orbit=${this.orbit.map(v => (v * 180 / Math.PI).toFixed(1)).join(",")}`);
+		if (this.follow === "typed")
+			parts.push(`gaze=${this.eyes.target.map(v => v.toFixed(1)).join(",")}`);
+		if (this.light)
+			parts.push(`light=${this.light}`);
+		if (this.mode !== (this.face ? "face" : "eye"))
+			parts.push(`view=${this.mode}`);
+		if (this.index)
+			parts.push(`eye=${this.index}`);
+		history.replaceState(null, "", parts.length ? `#${parts.join("&")}` : location.pathname + location.search);
+	}
+
+	from_hash() {
+		const q = new URLSearchParams(location.hash.slice(1)), pair = key => {
+			const v = (q.get(key) || "").split(",").map(Number);
+			return v.length === 2 && v.every(Number.isFinite) ? v : null;
+		};
+		for (const c of this.controls) {
+			const v = Number(q.get(c.key));
+			if (q.has(c.key) && Number.isFinite(v))
+				this.values[c.key] = Math.min(Math.max(v, c.lo), c.hi);
+		}
+		const orbit = pair("orbit"), gaze = pair("gaze"), light = Number(q.get("light"));
+		if (orbit)
+			this.orbit = [Math.max(-Math.PI, Math.min(Math.PI, orbit[0] * Math.PI / 180)), Math.max(-1.2, Math.min(1.2, orbit[1] * Math.PI / 180))];
+		if (gaze) {
+			this.set_follow("typed");
+			this.eyes.target = gaze.map(v => Math.min(45, Math.max(-45, v)));
+			this.eyes.eye = [...this.eyes.target];
+			this.eyes.last = [...this.eyes.target];
+			this.typed.forEach((input, k) => { input.value = this.eyes.target[k]; });
+		}
+		const mode = q.get("view");
+		if (mode && this.modes.some(m => m.mode === mode))
+			this.set_mode(mode);
+		if (!this.beside && Number.isInteger(light) && light > 0 && light < this.eye.lights.length)
+			this.set_light(light);
+		for (const c of this.controls)
+			c.update && c.update();
+		this.lines();
+	}
+}

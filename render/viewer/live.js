@@ -1,0 +1,185 @@
+/* What is drawn when: only what has changed; then finer and finer. */
+class Live extends Controls {
+	/* ---- what the shader is told */
+	state() {
+		const v = this.values, ratio = (eu, pheo) => eu + pheo > 0 ? eu / (eu + pheo) : 0.5;
+		return { ...v, light: this.light, abl_melanin: Math.min(v.abl_eu + v.abl_pheo, 1), abl_ratio: ratio(v.abl_eu, v.abl_pheo),
+			stroma_melanin: Math.min(v.stroma_eu + v.stroma_pheo, 1), stroma_ratio: ratio(v.stroma_eu, v.stroma_pheo) };
+	}
+
+	view() {
+		const p = this.eye.photo, rad = Math.PI / 180, [h, v] = [0, 1].map(k => this.eyes.eye[k] + this.eyes.drift[k]);
+		if (this.beside && p)
+			return { pose: p.cam_from_eye, slip: p.slip, camera: p.camera, window: p.window, rows: p.height };
+		if (this.mode === "face")
+			return { face: this.face, eyes: this.pair, gaze: [h, v], open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
+				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
+		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
+	}
+
+	/* ---- drawing: only when something has changed; then finer and finer */
+	changed() {
+		if (this.scene)
+			this.scene.restart();
+		this.rested = 0;
+		this.wake();
+	}
+
+	wake() {
+		if (!this.awake) {
+			this.awake = true;
+			requestAnimationFrame(t => this.tick(t));
+		}
+	}
+
+	/* A recorded clip or a cut-scene, over and over; null: live again. */
+	play(i) {
+		this.playing = i;
+		this.began = null;
+		this.players.forEach((b, k) => b.setAttribute("aria-pressed", k === i));
+		this.eyes.time = null;
+		this.eyes.now = null;
+		this.eyes.pending = null;
+		if (i !== null)
+			this.set_mode("face");
+		this.changed();
+	}
+
+	/* The clip's gaze and lids at time t, between its frames. */
+	clip_at(t) {
+		const rows = data.face.clips[this.playing].rows, last = rows[rows.length - 1][0];
+		this.began = this.began === null ? t : this.began;
+		const at = last > 0 ? (t - this.began) % (last + 0.5) : 0;
+		let i = 0, j = rows.length - 1;
+		while (j - i > 1) {
+			const k = i + j >> 1;
+			if (rows[k][0] <= at)
+				i = k;
+			else
+				j = k;
+		}
+		const a = rows[i], b = rows[j], u = b[0] > a[0] ? Math.min(1, Math.max(0, (at - a[0]) / (b[0] - a[0]))) : 0;
+		const v = [1, 2, 3].map(k => a[k] + u * (b[k] - a[k]));
+		this.eyes.eye = [v[0], v[1]];
+		this.eyes.target = [v[0], v[1]];
+		this.eyes.drift = [0, 0];
+		this.eyes.closure = 0;
+		this.clip_open = v[2];
+	}
+
+	wander(t) {
+		if (!(t < this.wander_until)) {
+			this.wander_until = t + 0.6 + 1.8 * Math.random();
+			this.eyes.target = [(Math.random() - 0.5) * 44, (Math.random() - 0.5) * 24];
+		}
+	}
+
+	size(scale) {
+		const frame = by_id("frame"), stage = by_id("stage"), p = this.eye.photo;
+		const room = stage.getBoundingClientRect();
+		let w = room.width, h = room.height;
+		if (this.beside && p) {
+			const k = Math.min(w / p.width, h / p.height);
+			w = p.width * k;
+			h = p.height * k;
+		}
+		frame.style.width = `${w}px`;
+		frame.style.height = `${h}px`;
+		const dense = Math.min(devicePixelRatio || 1, 2) * scale, most = 2048 / Math.max(w * dense, h * dense, 1);
+		return [w, h].map(v => Math.max(16, Math.round(v * dense * Math.min(1, most))));
+	}
+
+	draw(preset) {
+		const canvas = by_id("view"), [w, h] = this.size(preset.scale);
+		if (canvas.width !== w || canvas.height !== h) {
+			canvas.width = w;
+			canvas.height = h;
+		}
+		this.scene.resize(w, h);
+		const n = this.scene.count, halton = (i, b) => {
+			let f = 1, r = 0;
+			for (; i > 0; i = Math.floor(i / b))
+				r += (f /= b) * (i % b);
+			return r;
+		};
+		const jitter = n ? [halton(n, 2) - 0.5, halton(n, 3) - 0.5] : [0, 0];
+		this.scene.add(this.state(), { ...this.view(), closure: this.eyes.closure }, preset, jitter);
+		this.scene.show(w, h, this.beside ? 1 : this.mode === "face" ? data.face.gain : this.eye.eye.exposure, false);
+	}
+
+	/* How long a picture takes, from asking for it until the driver says it is done. */
+	watch(counts) {
+		const gl = this.graphics.gl, begin = performance.now(), fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+		gl.flush();
+		this.busy = true;
+		const ask = () => {
+			const status = gl.clientWaitSync(fence, 0, 0);
+			if (status === gl.TIMEOUT_EXPIRED && performance.now() - begin < 20000) {
+				setTimeout(ask, 1);
+				return;
+			}
+			gl.deleteSync(fence);
+			this.busy = false;
+			if (counts && this.warm)
+				this.took(performance.now() - begin);
+			this.warm = true;  // the first picture waits for the driver's compiler
+		};
+		setTimeout(ask, 0);
+	}
+
+	/* Too slow for a while, or far too slow once: a cheaper preset. */
+	took(ms) {
+		this.times.push(ms);
+		if (this.times.length > 24)
+			this.times.shift();
+		const sorted = [...this.times].sort((a, b) => a - b);
+		this.frame_ms = sorted[sorted.length >> 1];
+		if (this.automatic && this.preset + 1 < presets.length && (ms > 250 || this.times.length > 5 && this.frame_ms > 40)) {
+			this.preset++;
+			this.times = [];
+			said(`Quality lowered to ${presets[this.preset].name}: a frame took ${ms.toFixed(0)} ms`);
+		}
+		by_id("time").textContent = `${this.frame_ms.toFixed(1)} ms a frame, ${presets[this.preset].name} quality while moving`;
+	}
+
+	tick(t) {
+		const now = t / 1000;
+		this.awake = true;
+		if (this.busy) {
+			requestAnimationFrame(u => this.tick(u));
+			return;
+		}
+		if (this.follow === "wander")
+			this.wander(now);
+		if (this.playing !== null)
+			this.clip_at(now);
+		const moves = this.playing !== null || !this.beside && this.eyes.step(now);
+		const settled = Math.hypot(this.eyes.target[0] - this.eyes.eye[0], this.eyes.target[1] - this.eyes.eye[1]) < this.eyes.conf.saccade_threshold_deg;
+		const slow = this.frame_ms > 40 || this.preset > 1, finest = slow ? 4 : 16;
+		if (moves || this.rested === 0) {
+			this.scene.restart();
+			this.draw(presets[this.preset]);
+			this.watch(true);
+			this.rested = 1;
+			this.rest_from = t;
+		} else if (t - this.rest_from > (slow ? 350 : 60) && this.scene.count <= finest) {
+			if (this.stilled !== this.rest_from) {
+				this.scene.restart();
+				this.stilled = this.rest_from;
+			}
+			if (this.scene.count < finest) {
+				this.draw(presets[0]);
+				this.watch(false);
+			}
+		}
+		const idle = settled && this.scene.count >= finest && this.follow !== "wander" && (this.eyes.still || this.beside || !this.scene.has_lids);
+		this.awake = false;
+		if (idle)
+			document.documentElement.dataset.settled = "1";
+		else {
+			delete document.documentElement.dataset.settled;
+			this.awake = true;
+			requestAnimationFrame(u => this.tick(u));
+		}
+	}
+}

@@ -1,0 +1,57 @@
+/* The data, and everything that a hand can move. */
+const by_id = id => document.getElementById(id), data = JSON.parse(by_id("data").textContent);
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+const said = text => { by_id("said").textContent = text; };
+
+function give_up(why) {
+	by_id("stage").hidden = by_id("panel").hidden = true;
+	by_id("stills").hidden = false;
+	by_id("why").textContent = `No live picture: ${why}. These are still ones.`;
+}
+
+/* Melanin by kind: volume fractions; one sigma of the product from those of its factors. */
+function pigments(t) {
+	const out = {};
+	for (const layer of ["abl", "stroma"]) {
+		const m = t.fitted[layer + "_melanin"], b = t.fitted[layer + "_ratio"];
+		const im = t.interval[layer + "_melanin"], ib = t.interval[layer + "_ratio"];
+		const sm = im ? (im[1] - im[0]) / 2 : 0, sb = ib ? (ib[1] - ib[0]) / 2 : 0;
+		out[layer + "_eu"] = { value: m * b, sigma: im ? Math.hypot(b * sm, m * sb) : 0 };
+		out[layer + "_pheo"] = { value: m * (1 - b), sigma: im ? Math.hypot((1 - b) * sm, m * sb) : 0 };
+	}
+	return out;
+}
+
+/* Everything a hand can move. value: as fitted or assumed. power: how the slider is bent. conf: what capture.conf calls it. */
+function sliders(eye) {
+	const e = eye.eye, t = eye.tissue, p = pigments(t), scale = t.interval.thickness_scale, per_cent = v => `${(100 * v).toPrecision(3)} %`;
+	const degrees = v => `${v.toFixed(0)}°`, mm = n => v => `${v.toFixed(n)} mm`;
+	const melanin = key => ({ key, lo: 0, hi: 0.6, power: 3, show: per_cent, ...p[key] });
+	return [
+		["Eye", [
+			{ key: "aperture", label: "Lids: how far open", lo: 0, hi: 1.6, value: 1, show: v => `${(100 * v).toFixed(0)} %`, lids: true },
+			{ key: "pupil", label: "Pupil, radius", lo: 0.7, hi: 4.2, value: e.pupil[2], show: mm(2) },
+			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, show: v => `${(100 * v).toFixed(0)} %` },
+			{ key: "field", label: "Zoom: height shown", lo: 8, hi: 60, value: 30, power: 2, show: mm(1) },
+		]],
+		["Pigment of the iris", [
+			{ ...melanin("abl_eu"), label: "Anterior border layer: eumelanin" },
+			{ ...melanin("abl_pheo"), label: "Anterior border layer: pheomelanin" },
+			{ ...melanin("stroma_eu"), label: "Stroma: eumelanin" },
+			{ ...melanin("stroma_pheo"), label: "Stroma: pheomelanin" },
+			{ key: "thickness_scale", label: "Stroma: optical over anatomical thickness", lo: 0.02, hi: 2.5, power: 2, value: t.fitted.thickness_scale,
+				sigma: scale ? (scale[1] - scale[0]) / 2 : 0, show: v => v.toFixed(3) },
+			{ key: "detail", label: "Of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, show: v => `${(100 * v).toFixed(0)} %` },
+		]],
+		["Cornea", [
+			{ key: "R", label: "Apical radius R", lo: 6.5, hi: 9.5, value: e.R, sigma: 0.27, show: mm(2), conf: "eye.cornea_radius_mm", assumed: true },
+			{ key: "p", label: "Asphericity p", lo: 0.3, hi: 1.2, value: e.p, sigma: 0.12, show: v => v.toFixed(3), conf: "eye.cornea_asphericity", assumed: true },
+			{ key: "n", label: "Index of refraction", lo: 1, hi: 1.5, value: e.n, show: v => v.toFixed(4), conf: "eye.index", assumed: true },
+		]],
+		["Light", [
+			{ key: "light_yaw", label: "Round", lo: -180, hi: 180, value: 0, show: degrees },
+			{ key: "light_pitch", label: "Up and down", lo: -80, hi: 80, value: 0, show: degrees },
+			{ key: "light_gain", label: "Strength", lo: 0.1, hi: 3, power: 2, value: 1, show: v => `${(100 * v).toFixed(0)} %` },
+		]],
+	];
+}
