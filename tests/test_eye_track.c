@@ -211,8 +211,9 @@ static void compare(struct painted_error *e, const struct eye_clip *clip)
 					e->lid[q][e->points[q]++] = fabs(s->lid[q][k][1] - want);
 			}
 	}
-	double middle = stats_median(e->torsions, (double *)memcpy(mem_array(FILM, sizeof(double)), e->gaze[2],
-	                                                           sizeof e->gaze[2]));
+	double copy[FILM];
+	memcpy(copy, e->gaze[2], sizeof copy);
+	double middle = stats_median(e->torsions, copy);
 	for (int i = 0; i < e->torsions; i++)
 		e->gaze[2][i] = fabs(e->gaze[2][i] - middle);
 }
