@@ -62,7 +62,7 @@ static void with_others(struct skin_track *t, int i)
 	const struct skin_field *f = &t->field[i];
 	if (!f->n)
 		return;
-	double limit = t->conf.outlier + 2 * f->spread, sigma = hypot(t->conf.smooth, f->spread);
+	double limit = t->conf.outlier + fmin(2 * f->spread, t->conf.outlier), sigma = hypot(t->conf.smooth, f->spread);
 	double usual = p->usual, apart = hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]);
 	// what fits as ever, and is where its neighbours see it, need not be asked again
 	if (p->seen && p->ncc > usual - 0.04 && apart < t->conf.agree)
@@ -88,8 +88,11 @@ static void settle(struct skin_track *t, int i)
 	const struct skin_field *f = &t->field[i];
 	for (int r = 0; r < 2; r++)
 		p->best[r] = p->warp.at[r];
-	double off = f->n ? hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]) / (t->conf.outlier + 2 * f->spread) : 0.5;
+	double off = f->n ? hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]) / (t->conf.outlier + fmin(2 * f->spread, t->conf.outlier)) : 0.5;
 	p->confidence = p->seen ? fmin(1, (p->ncc - t->conf.min_ncc) / (1 - t->conf.min_ncc) * 1.5 + 0.05) * (1 - fmin(0.9, off * off)) : 0;
+	// where neighbours contradict each other, none of them is to be believed: lashes, and folds that open and close
+	double torn = f->n ? f->spread / t->conf.outlier : 0;
+	p->confidence = torn > 2 ? 0 : p->confidence / (1 + torn * torn);
 	if (p->seen)
 		p->usual += 0.1 * (p->ncc - p->usual);
 }
