@@ -54,6 +54,9 @@ void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 	om.add_face(own[0], own[1], own[2]);
 }
 
+/* In any unit, a face is smaller: squares and cubes of lengths stay numbers in float. */
+const float farthest = 1e9f;
+
 bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
 {
 	mesh->n_vertices = (int)om.n_vertices();
@@ -67,6 +70,9 @@ bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
 			mesh->vertices[i][k] = om.point(v)[(size_t)k];
 			if (!std::isfinite(mesh->vertices[i][k]))
 				return err_set(err, "vertex %d: a coordinate that is no number", i);
+			if (std::fabs(mesh->vertices[i][k]) > farthest)
+				return err_set(err, "vertex %d: coordinate = %g, must be within %g of 0", i, (double)mesh->vertices[i][k],
+				               (double)farthest);
 			if (!colours)
 				continue;
 			float c = om.color(v)[(size_t)k];

@@ -1,5 +1,6 @@
 #include "mesh/ray.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,11 +67,23 @@ static struct RTCRay ray_of(const float origin[3], const float dir[3], float nea
 		                    .dir_y = dir[1], .dir_z = dir[2], .tfar = far, .mask = 0xffffffff };
 }
 
+/* Embree ends the program at rays that it cannot reckon with; such hit nothing. */
+static bool can_be_traced(const float origin[3], const float dir[3])
+{
+	const float largest = 1e18f;  // its FLT_LARGE
+	for (int k = 0; k < 3; k++)
+		if (!(fabsf(origin[k]) < largest && fabsf(dir[k]) < largest))
+			return false;
+	return true;
+}
+
 struct ray_hit ray_first(const struct ray_scene *s, const float origin[3], const float dir[3], float near, float far)
 {
 	struct RTCIntersectContext context;
 	struct RTCRayHit r = { .ray = ray_of(origin, dir, near, far) };
 	r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+	if (!can_be_traced(origin, dir))
+		return (struct ray_hit){ far, -1, 0, 0 };
 	rtcInitIntersectContext(&context);
 	rtcIntersect1(s->scene, &context, &r);
 	bool hit = r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
@@ -81,6 +94,8 @@ bool ray_blocked(const struct ray_scene *s, const float origin[3], const float d
 {
 	struct RTCIntersectContext context;
 	struct RTCRay r = ray_of(origin, dir, near, far);
+	if (!can_be_traced(origin, dir))
+		return false;
 	rtcInitIntersectContext(&context);
 	rtcOccluded1(s->scene, &context, &r);
 	return r.tfar < 0;
