@@ -158,8 +158,10 @@ void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double leas
 	topology_make(&t, &joined);
 	bool *keep = choose(out, &joined, &t, least);
 	copy_kept(out, whole, &joined, first, &t, keep, leave);
-	topology_free(&t);
-	topology_make(&t, &out->mesh);
+	if (out->mesh.n_vertices < whole->n_vertices || out->mesh.n_faces < whole->n_faces) {
+		topology_free(&t);
+		topology_make(&t, &out->mesh);
+	}
 	out->tangled = t.n_tangled;
 	out->rims = count_rims(&t);
 	topology_free(&t);
