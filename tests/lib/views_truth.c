@@ -57,24 +57,41 @@ static bool read_one(struct views_camera *c, const char *path)
 	return true;
 }
 
-bool views_truth_load(struct views_truth *truth, const char *dir, struct err *err)
+static bool read_camera(struct views_camera *c, const char *path)
+{
+	double v[24];
+	FILE *f = fopen(path, "r");
+	bool ok = f;
+	for (int i = 0; i < 24 && ok; i++)
+		ok = fscanf(f, "%lf", &v[i]) == 1;
+	if (f)
+		fclose(f);
+	for (int i = 0; i < 9 && ok; i++) {
+		c->K[i / 3][i % 3] = v[i];
+		c->R[i % 3][i / 3] = v[12 + i];
+		c->center[i % 3] = v[21 + i % 3];
+	}
+	return ok;
+}
+
+/* All files of a folder with that ending. */
+static bool load_all(struct views_truth *truth, const char *folder, const char *ending,
+                     bool read(struct views_camera *c, const char *path), struct err *err)
 {
 	struct file_list list;
-	char *folder = mem_printf("%s/P", dir);
 	*truth = (struct views_truth){ 0 };
 	bool ok = file_list(&list, folder, err);
 	truth->c = mem_new((size_t)list.n, sizeof *truth->c);
 	for (int i = 0; i < list.n; i++) {
-		char *path = mem_printf("%s/%s", folder, list.names[i]), *tail = strstr(list.names[i], "_P.txt");
+		char *path = mem_printf("%s/%s", folder, list.names[i]), *tail = strstr(list.names[i], ending);
 		struct views_camera *c = &truth->c[truth->n];
-		if (tail && read_one(c, path)) {
+		if (tail && read(c, path)) {
 			snprintf(c->name, sizeof c->name, "%.*s", (int)(tail - list.names[i]), list.names[i]);
 			truth->n++;
 		}
 		free(path);
 	}
 	file_list_free(&list);
-	free(folder);
 	for (int k = 0; k < 3; k++) {
 		double low = INFINITY, high = -INFINITY;
 		for (int i = 0; i < truth->n; i++) {
@@ -83,7 +100,20 @@ bool views_truth_load(struct views_truth *truth, const char *dir, struct err *er
 		}
 		truth->extent = fmax(truth->extent, high - low);
 	}
-	return ok && (truth->n || err_set(err, "%s: no projection matrices", dir));
+	return ok && (truth->n || err_set(err, "%s: no cameras", folder));
+}
+
+bool views_truth_load(struct views_truth *truth, const char *dir, struct err *err)
+{
+	char *folder = mem_printf("%s/P", dir);
+	bool ok = load_all(truth, folder, "_P.txt", read_one, err);
+	free(folder);
+	return ok;
+}
+
+bool views_truth_load_cameras(struct views_truth *truth, const char *dir, struct err *err)
+{
+	return load_all(truth, dir, ".jpg.camera", read_camera, err);
 }
 
 void views_truth_free(struct views_truth *truth)

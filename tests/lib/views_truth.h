@@ -16,6 +16,8 @@ struct views_truth {
 
 /* dir/P/NAME_P.txt: three rows of four numbers. False, err set, when there is none. */
 bool views_truth_load(struct views_truth *truth, const char *dir, struct err *err);
+/* dir/NAME.jpg.camera, as Strecha et al. (2008) publish theirs: K; lens; the camera's axes as columns; its centre; the size. */
+bool views_truth_load_cameras(struct views_truth *truth, const char *dir, struct err *err);
 void views_truth_free(struct views_truth *truth);
 
 /* p_truth = scale R p_head + t, least squares over the cameras both have (Umeyama 1991). */
