@@ -115,7 +115,7 @@ struct scene_beam *scene_sight(const struct scene *s, const double C[3])
 			double p[3] = { plane->p[0][i], plane->p[1][i], plane->p[2][i] };
 			float up[3] = { plane->p[0][i], plane->p[1][i], plane->p[2][i] - 1 };
 			float at[3] = { plane->k[0][i], plane->k[1][i], plane->k[2][i] };
-			node_put(beam->way[k][0][i], p, none ? up : at, 1, s->limbus);
+			node_put(beam->way[k][i / SCENE_GRID][i % SCENE_GRID], p, none ? up : at, 1, s->limbus);
 		}
 	}
 	free(plane);
