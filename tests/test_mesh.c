@@ -161,6 +161,7 @@ static void hostile_files_are_refused(void **state)
 		{ "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "2 corners" },
 		{ "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", "line 4" },
 		{ "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no number" },
+		{ "v 0 0 1e30\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 0: coordinate = 1e+30, must be within" },
 		{ "v 0 0 1e60\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no number" },
 		{ HEAD("ascii", "3", "1") THREE "3 0 1 3\n", "corner 3 is no vertex" },
 		{ HEAD("ascii", "3", "1") THREE "3 0 1 -1\n", "no vertex" },

@@ -44,6 +44,30 @@ run_make "$capture"
 case " $(ran) " in *" unrefract "*) pass "a truncated artifact is made again" ;; *) fail "a truncated artifact is made again" "ran $(ran)" ;; esac
 same "with the same bytes as before" "$(bytes_of "$capture")" "$made"
 
+printf 'X' | dd of="$capture/work/iris/texture.exr" bs=1 seek=2000 conv=notrunc 2>/dev/null
+run_make "$capture"
+case " $(ran) " in *" unrefract "*) pass "an artifact edited by hand is made again" ;; *) fail "an artifact edited by hand is made again" "ran $(ran)" ;; esac
+same "with the bytes it had" "$(bytes_of "$capture")" "$made"
+
+# A key runs the stages that read it, and after them only those whose inputs changed their bytes.
+runs() { # KEY VALUE STAGES...: exactly these begin
+	local key=$1 value=$2
+	shift 2
+	cp "$capture/capture.conf" "$root/conf"
+	echo "$key = $value" >>"$capture/capture.conf"
+	run_make "$capture"
+	same "$key runs what reads it" "$(ran)" "$*"
+	mv "$root/conf" "$capture/capture.conf"
+	run_make "$capture"
+	same "and taken back the bytes are the old ones" "$(bytes_of "$capture")" "$made"
+}
+runs render.gaze "15 -5" render
+
+begin=$(date +%s%N)
+run_make "$capture"
+[ -n "${VERBOSE:-}" ] && echo "  nothing changed: $((($(date +%s%N) - begin) / 1000000)) ms"
+same "nothing changed" "$(ran)" ""
+
 sed "s/^light.illuminant.*/light.illuminant = A/" "$capture/capture.conf" >"$capture/new" && mv "$capture/new" "$capture/capture.conf"
 run_make "$capture"
 case " $(ran) " in *limbus* | *unrefract* | *freckles*) fail "a key runs the stages that read it" "ran $(ran)" ;;
