@@ -14,6 +14,8 @@ struct errors errors_new(int K)
 	return (struct errors){ .K = K, .error = mem_new((size_t)(MOST_FOLDS * K) + 1, sizeof(double)) };
 }
 
+static const double SHOWN = 0.05;  // of an expression's strength: less is noise
+
 double errors_normalised(const struct errors *e, int folds, int k, double *sigma)
 {
 	double sum = 0, none = 0, squares = 0, all = 0;
@@ -91,6 +93,25 @@ void cv_shuffle(struct cv *cv)
 		cv->fold[i] = rng_below(&rng, cv->folds);
 }
 
+/* An expression that was shown once cannot be foretold by a model that has not seen it: frames with more of one than twice
+ * what the other folds show are not asked about. */
+static void leave_unshown(struct cv *cv, int n_au)
+{
+	double *most = mem_array((size_t)cv->folds, sizeof *most);
+	for (int a = cv->q - n_au; a < cv->q; a++) {
+		for (int f = 0; f < cv->folds; f++)
+			most[f] = 0;
+		for (long i = 0; i < cv->m; i++)
+			for (int f = 0; f < cv->folds && cv->fold[i] >= 0; f++)
+				if (cv->fold[i] != f)
+					most[f] = fmax(most[f], fabs(cv->x[i * cv->q + a]));
+		for (long i = 0; i < cv->m; i++)
+			if (cv->fold[i] >= 0 && fabs(cv->x[i * cv->q + a]) > fmax(SHOWN, 2 * most[cv->fold[i]]))
+				cv->fold[i] = -1;
+	}
+	free(most);
+}
+
 struct cv cv_new(const struct train *t, int p)
 {
 	const struct part *part = &t->part[p];
@@ -115,6 +136,8 @@ struct cv cv_new(const struct train *t, int p)
 		cv.rest[i] = fmax(cv.rest[i], 0);
 		cv.fold[i] = t->block[i] < 0 ? -1 : t->block[i] % cv.folds;
 	}
+	if (p == TRAIN_SKIN)
+		leave_unshown(&cv, t->model->n_au);
 	cv.scaled = comparable(&cv, p);
 	return cv;
 }
