@@ -39,10 +39,12 @@ static void closed_box(void **state)
 	mesh_openness(open, &mesh);
 	for (int i = 0; i < 8; i++)
 		assert_float_equal(open[i], 1, 0);
+	assert_float_equal(mesh_hidden_share(&mesh, 0.5, 3), 0, 0);
 	mesh.faces = in;
 	mesh_openness(open, &mesh);
 	for (int i = 0; i < 8; i++)
 		assert_float_equal(open[i], 0, 0);
+	assert_float_equal(mesh_hidden_share(&mesh, 0.5, 3), 1, 0);
 }
 
 int main(void)
