@@ -112,7 +112,7 @@ static void ask(struct skin_field *f, const struct skin_track *t, int i)
 			seen_from(at[n], t, i, who[n]);
 			n++;
 		}
-	if (!n)
+	if (n <= 0)
 		return;
 	for (int r = 0; r < 2; r++) {
 		for (int k = 0; k < n; k++)
