@@ -12,7 +12,7 @@ for program in "$@"; do
 	cases=0
 	while IFS= read -r line; do
 		case $line in
-		"ok "*"# SKIP"*) skip "$label$name ${line#ok }" "see above or run $program" && cases=$((cases + 1)) ;;
+		*"ok "*"# SKIP"*) skip "$label$name ${line#*ok }" "see above or run $program" && cases=$((cases + 1)) ;;
 		"ok "*) pass "$label$name ${line#ok }" && cases=$((cases + 1)) ;;
 		"not ok "*) fail "$label$name ${line#not ok }" "run $program" && cases=$((cases + 1)) ;;
 		esac
