@@ -86,9 +86,7 @@ bool file_mkdirs(const char *dir, struct err *err)
 	return true;
 }
 
-/* A name beside `path`, short whatever its length, the same at every run so that a killed run leaves
- * at most one behind, which the next overwrites. */
-static char *temporary_beside(const char *path)
+char *file_temporary(const char *path)
 {
 	const char *slash = strrchr(path, '/');
 	char hash[33];
@@ -121,7 +119,7 @@ bool file_write(const char *path, const void *data, size_t size, struct err *err
 		if (!ok)
 			return false;
 	}
-	char *tmp = temporary_beside(path);
+	char *tmp = file_temporary(path);
 	int fd = open(tmp, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
 	bool ok = fd >= 0 && write_all(fd, data, size);
 	int why = errno;

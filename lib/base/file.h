@@ -53,4 +53,8 @@ bool file_inside(char **out, const char *root, const char *rel, struct err *err)
 #ifdef __cplusplus
 }
 #endif
+/* A name beside `path` to write under until it is whole: short whatever the path's length, the same at every run, so that
+ * a killed run leaves at most one behind, which the next overwrites. free(). */
+char *file_temporary(const char *path);
+
 #endif

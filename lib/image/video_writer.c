@@ -102,7 +102,7 @@ struct video_writer *video_writer_open(const char *path, const struct video_writ
 	struct video_writer *w = mem_new(1, sizeof *w);
 	av_log_set_level(AV_LOG_QUIET);
 	w->path = mem_str(path);
-	w->part = mem_printf("%s.part%ld", path, (long)getpid());
+	w->part = file_temporary(path);
 	w->width = conf->width;
 	w->height = conf->height;
 	w->even_w = (conf->width + 1) & ~1;

@@ -101,7 +101,8 @@ class Browser {
 		const gone = new Promise(r => this.process.on("exit", r));
 		this.process.kill();
 		await gone;
-		fs.rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+		// its helpers outlive it by a moment, and still write there
+		fs.rmSync(this.profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 250 });
 	}
 }
 module.exports = { Browser };

@@ -207,7 +207,7 @@ done
 rm -r "$out/part" "$out.all" "$out.list"
 END
 mkdir -p "$root/split/video"
-cp "$root/walk/capture.conf" "$root/split/"
+echo "quality = draft" >"$root/split/capture.conf"
 cp "$root/walk/video/walk.mp4" "$root/split/video/"
 PATH="$root/bin:$PATH" run_calibrate "$root/split"
 same "two models that share pictures: exit status" "$?" 0
