@@ -12,7 +12,7 @@ class Browser {
 		b.process = spawn("chromium", ["--headless=new", "--no-sandbox", "--disable-gpu-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
 			"--enable-unsafe-swiftshader", "--remote-debugging-pipe", "--hide-scrollbars", "--mute-audio", "--no-first-run",
 			"--disable-background-networking", "--host-resolver-rules=MAP * ~NOTFOUND", `--user-data-dir=${b.profile}`, ...(extra || []), "about:blank"],
-			{ stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+			{ stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], detached: true });
 		Object.assign(b, { next: 1, waiting: new Map(), problems: [], requests: [], text: "" });
 		b.process.stdio[4].on("data", data => b.receive(data));
 		b.process.on("exit", () => b.waiting.forEach(w => w.reject(new Error("the browser ended"))));
@@ -99,10 +99,15 @@ class Browser {
 
 	async end() {
 		const gone = new Promise(r => this.process.on("exit", r));
-		this.process.kill();
+		process.kill(-this.process.pid, "SIGKILL");  // its helpers too
 		await gone;
-		// its helpers outlive it by a moment, and still write there
-		fs.rmSync(this.profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 250 });
+		for (let tries = 0; tries < 50; tries++)
+			try {
+				fs.rmSync(this.profile, { recursive: true, force: true });
+				return;
+			} catch (e) {
+				await new Promise(r => setTimeout(r, 100));  // one of them has not noticed yet
+			}
 	}
 }
 module.exports = { Browser };
