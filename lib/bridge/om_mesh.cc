@@ -2,12 +2,10 @@
 
 #include <cmath>
 #include <cstring>
-#include <sstream>
 #include <string>
 
 // gcc 12 sees an uninitialised allocator in OpenMesh's property vectors, which has no members.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
@@ -23,7 +21,7 @@ extern "C" {
 namespace {
 
 struct Traits : OpenMesh::DefaultTraits {
-	typedef OpenMesh::Vec3f Color;  // its readers' casts from float to bytes are undefined outside 0..1
+	typedef OpenMesh::Vec3f Color;  // as struct mesh has them
 	VertexAttributes(OpenMesh::Attributes::Status | OpenMesh::Attributes::Color);
 	FaceAttributes(OpenMesh::Attributes::Status);
 	EdgeAttributes(OpenMesh::Attributes::Status);
@@ -39,7 +37,7 @@ void be_quiet()
 	omerr().disable();
 }
 
-/* Adds a triangle; one that would make an edge of three faces gets vertices of its own, as OpenMesh's readers do. */
+/* Adds a triangle; one that would make an edge of three faces gets vertices of its own, behind all others. */
 void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 {
 	if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
@@ -48,8 +46,10 @@ void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 		return;
 	Mesh::VertexHandle own[3];
 	for (int k = 0; k < 3; k++) {
-		own[k] = om.add_vertex(om.point(corner[k]));
-		om.set_color(own[k], om.color(corner[k]));
+		const Mesh::Point at = om.point(corner[k]);  // copies: what they are taken from moves as it grows
+		const Mesh::Color colour = om.color(corner[k]);
+		own[k] = om.add_vertex(at);
+		om.set_color(own[k], colour);
 	}
 	om.add_face(own[0], own[1], own[2]);
 }
@@ -57,7 +57,8 @@ void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 /* In any unit, a face is smaller: squares and cubes of lengths stay numbers in float. */
 const float farthest = 1e9f;
 
-bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
+/* What OpenMesh has made of it. Colours come as they were given, in sRGB. */
+void take(struct mesh *mesh, const Mesh &om, bool colours)
 {
 	mesh->n_vertices = (int)om.n_vertices();
 	mesh->n_faces = (int)om.n_faces();
@@ -66,17 +67,10 @@ bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
 	mesh->colours = colours ? (float (*)[3])mem_array(om.n_vertices(), 3 * sizeof(float)) : nullptr;
 	for (int i = 0; i < mesh->n_vertices; i++) {
 		auto v = om.vertex_handle((unsigned)i);
-		for (int k = 0; k < 3; k++) {
-			mesh->vertices[i][k] = om.point(v)[(size_t)k];
-			if (!std::isfinite(mesh->vertices[i][k]))
-				return err_set(err, "vertex %d: a coordinate that is no number", i);
-			if (std::fabs(mesh->vertices[i][k]) > farthest)
-				return err_set(err, "vertex %d: coordinate = %g, must be within %g of 0", i, (double)mesh->vertices[i][k],
-				               (double)farthest);
-			if (!colours)
-				continue;
-			float c = om.color(v)[(size_t)k];
-			mesh->colours[i][k] = linear_from_srgb(c > 0 ? c < 1 ? c : 1 : 0);
+		for (size_t k = 0; k < 3; k++) {
+			mesh->vertices[i][k] = om.point(v)[k];
+			if (colours)
+				mesh->colours[i][k] = om.color(v)[k];
 		}
 	}
 	for (int i = 0; i < mesh->n_faces; i++) {
@@ -84,48 +78,18 @@ bool take(struct mesh *mesh, const Mesh &om, bool colours, struct err *err)
 		for (auto v : om.fv_range(om.face_handle((unsigned)i)))
 			mesh->faces[i][k++] = v.idx();
 	}
-	return true;
-}
-
-bool parse(struct mesh *mesh, const char *data, size_t size, enum mesh_kind kind, struct err *err)
-{
-	Mesh om;
-	std::istringstream in(std::string(data, size), std::ios::binary);
-	OpenMesh::IO::Options options(OpenMesh::IO::Options::VertexColor);
-	if (kind == MESH_PLY)
-		options += OpenMesh::IO::Options::Binary;
-	be_quiet();
-	if (!OpenMesh::IO::read_mesh(om, in, kind == MESH_PLY ? ".ply" : ".obj", options))
-		return err_set(err, "cannot be read as %s", kind == MESH_PLY ? "PLY" : "OBJ");
-	return take(mesh, om, options.check(OpenMesh::IO::Options::VertexColor), err);
-}
-
-/* OpenMesh gets files in their plainest form: its readers lose their way in some that are not, and take the rest of the
- * file for numbers of faces; and its OBJ reader opens the materials that are named. */
-bool clean(char **data, size_t *size, enum mesh_kind kind, long limit, struct err *err)
-{
-	char *plain;
-	size_t n = 0;
-	bool ok = (kind == MESH_PLY ? mesh_clean_ply : mesh_clean_obj)(&plain, &n, *data, *size, limit, err);
-	free(*data);
-	*data = plain;
-	*size = n;
-	return ok;
 }
 
 bool give(Mesh &om, const struct mesh *mesh, struct err *err)
 {
-	struct mesh_joins joins = mesh_joins_begin(mesh->n_vertices);
-	for (int i = 0; i < mesh->n_faces; i++)
-		mesh_joins_add(&joins, mesh->faces[i]);
-	if (!mesh_joins_end(&joins, err))
+	if (!mesh_joins_check(mesh, err))
 		return false;
 	for (int i = 0; i < mesh->n_vertices; i++) {
 		const float *p = mesh->vertices[i];
 		auto v = om.add_vertex(Mesh::Point(p[0], p[1], p[2]));
 		Mesh::Color colour(0, 0, 0);
 		for (int k = 0; mesh->colours && k < 3; k++)
-			colour[(size_t)k] = srgb_from_linear(mesh->colours[i][k]);
+			colour[(size_t)k] = mesh->colours[i][k];
 		om.set_color(v, colour);
 	}
 	for (int i = 0; i < mesh->n_faces; i++) {
@@ -134,6 +98,40 @@ bool give(Mesh &om, const struct mesh *mesh, struct err *err)
 			corner[k] = om.vertex_handle((unsigned)mesh->faces[i][k]);
 		add_triangle(om, corner);
 	}
+	return true;
+}
+
+/* Takes the place of the mesh. */
+void replace(struct mesh *mesh, const Mesh &om)
+{
+	struct mesh made = {};
+	take(&made, om, mesh->colours != nullptr);
+	mesh_free(mesh);
+	*mesh = made;
+}
+
+/* Edges of three faces and fans that meet in one vertex are taken apart by OpenMesh; what is a surface stays as it is. */
+bool make_sound(struct mesh *mesh, struct err *err)
+{
+	if (mesh_joins_sound(mesh))
+		return true;
+	Mesh om;
+	be_quiet();
+	if (!give(om, mesh, err))
+		return false;
+	replace(mesh, om);
+	return true;
+}
+
+bool check_places(const struct mesh *mesh, struct err *err)
+{
+	for (int i = 0; i < mesh->n_vertices; i++)
+		for (float x : mesh->vertices[i]) {
+			if (!std::isfinite(x))
+				return err_set(err, "vertex %d: a coordinate that is no number", i);
+			if (std::fabs(x) > farthest)
+				return err_set(err, "vertex %d: coordinate = %g, must be within %g of 0", i, (double)x, (double)farthest);
+		}
 	return true;
 }
 
@@ -152,14 +150,17 @@ bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *e
 	try {
 		enum mesh_kind kind;
 		ok = mesh_kind_of(&kind, data, size, &why)
-		     && clean(&data, &size, kind, limit, &why)
-		     && parse(mesh, data, size, kind, &why);
+		     && (kind == MESH_PLY ? mesh_clean_ply : mesh_clean_obj)(mesh, data, size, limit, &why)
+		     && check_places(mesh, &why) && make_sound(mesh, &why);
 	} catch (const std::exception &e) {
 		err_set(&why, "cannot be read: %s", e.what());
 	} catch (...) {
 		err_set(&why, "cannot be read");
 	}
 	free(data);
+	for (int i = 0; ok && mesh->colours && i < mesh->n_vertices; i++)
+		for (float &c : mesh->colours[i])
+			c = linear_from_srgb(c);
 	if (ok)
 		return true;
 	mesh_free(mesh);
@@ -214,16 +215,9 @@ bool om_mesh_decimate(struct mesh *mesh, int target_faces, struct err *err)
 			return err_set(err, "decimation: OpenMesh refused the mesh");
 		decimater.decimate_to_faces(0, (size_t)target_faces);
 		om.garbage_collection();
-		struct mesh smaller = {};
-		bool colours = mesh->colours != nullptr;
 		if ((int)om.n_faces() > target_faces)
 			return err_set(err, "decimation: stopped at %zu faces, must be <= %d", om.n_faces(), target_faces);
-		if (!take(&smaller, om, colours, err)) {
-			mesh_free(&smaller);
-			return false;
-		}
-		mesh_free(mesh);
-		*mesh = smaller;
+		replace(mesh, om);
 		return true;
 	} catch (...) {
 		return err_set(err, "decimation: out of memory");

@@ -1,4 +1,4 @@
-/* om_mesh: triangle meshes in and out, connectivity and decimation, through OpenMesh. */
+/* om_mesh: triangle meshes in and out; what is no surface is taken apart, and decimated, by OpenMesh. */
 #ifndef BRIDGE_OM_MESH_H
 #define BRIDGE_OM_MESH_H
 #ifdef __cplusplus

@@ -1,19 +1,19 @@
 #include "mesh/mesh_clean.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "mesh/mesh_joins.h"
 
 static const char blanks[] = " \t\r\v\f";
 
 struct obj {
-	FILE *out;
-	long line, n_vertices, all_vertices;  // all: of the file, which a face may name ahead of time
-	long triangles, limit;
-	struct mesh_joins joins;
+	struct mesh *mesh;
+	long line, all_vertices;  // of the file, which a face may name ahead of time
+	long limit;
+	int room, coloured;       // for faces; vertices with a colour
 	struct err *err;
 };
 
@@ -31,18 +31,26 @@ static bool take_vertex(struct obj *obj, const char *at, const char *end)
 	}
 	if (n < 3)
 		return err_set(obj->err, "line %ld: a vertex of %d coordinates: must be 3", obj->line, n);
-	fprintf(obj->out, n == 6 ? "v %.9g %.9g %.9g %.9g %.9g %.9g\n" : "v %.9g %.9g %.9g\n", (double)v[0], (double)v[1],
-	        (double)v[2], (double)v[3], (double)v[4], (double)v[5]);
-	obj->n_vertices++;
+	struct mesh *m = obj->mesh;
+	memcpy(m->vertices[m->n_vertices], v, sizeof *m->vertices);
+	for (int k = 0; k < 3 && n == 6; k++)
+		m->colours[m->n_vertices][k] = v[3 + k] > 0 ? v[3 + k] < 1 ? v[3 + k] : 1 : 0;
+	obj->coloured += n == 6;
+	m->n_vertices++;
 	return true;
 }
 
 static bool take_triangle(struct obj *obj, long a, long b, long c)
 {
-	if (++obj->triangles > obj->limit)
-		return err_set(obj->err, "line %ld: triangle %ld: must be <= %ld", obj->line, obj->triangles, obj->limit);
-	mesh_joins_add(&obj->joins, (int32_t[]){ (int32_t)(a - 1), (int32_t)(b - 1), (int32_t)(c - 1) });
-	fprintf(obj->out, "f %ld %ld %ld\n", a, b, c);
+	struct mesh *m = obj->mesh;
+	if (m->n_faces == obj->limit)
+		return err_set(obj->err, "line %ld: triangle %ld: must be <= %ld", obj->line, obj->limit + 1, obj->limit);
+	if (m->n_faces == obj->room)
+		m->faces = mem_grow(m->faces, (size_t)(obj->room = 2 * obj->room + 64), sizeof *m->faces);
+	int32_t *to = m->faces[m->n_faces++];
+	to[0] = (int32_t)(a - 1);
+	to[1] = (int32_t)(b - 1);
+	to[2] = (int32_t)(c - 1);
 	return true;
 }
 
@@ -56,7 +64,7 @@ static bool take_face(struct obj *obj, const char *at, const char *end)
 		char *after;
 		long v = strtol(at, &after, 10);
 		bool is_word = after > at && after <= end;
-		v = v < 0 ? v + 1 + obj->n_vertices : v;
+		v = v < 0 ? v + 1 + obj->mesh->n_vertices : v;
 		if (!is_word || v < 1 || v > obj->all_vertices)
 			return err_set(obj->err, "line %ld: a corner that is no vertex: must be in [1, %ld]", obj->line,
 			               obj->all_vertices);
@@ -91,27 +99,29 @@ static void count(struct obj *obj, long *faces, const char *data, const char *en
 	}
 }
 
-bool mesh_clean_obj(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err)
+bool mesh_clean_obj(struct mesh *mesh, const char *data, size_t size, long limit, struct err *err)
 {
 	const char *end = data + size;
-	struct obj obj = { .line = 1, .limit = limit, .err = err };
+	struct obj obj = { .mesh = mesh, .line = 1, .limit = limit, .err = err };
 	long faces = 0;
-	*clean = 0;
+	*mesh = (struct mesh){ 0 };
 	count(&obj, &faces, data, end);
 	if (!obj.all_vertices)
 		return err_set(err, "is no mesh: must be PLY or OBJ");
 	if (obj.all_vertices > limit || faces > limit)
 		return err_set(err, "%ld vertices, %ld faces: must be <= %ld", obj.all_vertices, faces, limit);
-	obj.joins = mesh_joins_begin(obj.all_vertices);
-	obj.out = open_memstream(clean, clean_size);
+	mesh->vertices = mem_array((size_t)obj.all_vertices, sizeof *mesh->vertices);
+	mesh->colours = mem_array((size_t)obj.all_vertices, sizeof *mesh->colours);
 	for (const char *at = data; at < end; at = line_end(at, end) + 1, obj.line++) {
 		const char *stop = line_end(at, end), *vertex = behind(at, stop, 'v'), *face = behind(at, stop, 'f');
 		if ((vertex && !take_vertex(&obj, vertex, stop)) || (face && !take_face(&obj, face, stop)))
-			break;
+			return false;
 	}
-	fclose(obj.out);
-	struct err joined = { 0 };
-	return mesh_joins_end(&obj.joins, err_is(err) ? &joined : err) && !err_is(err);
+	if (obj.coloured < mesh->n_vertices) {
+		free(mesh->colours);
+		mesh->colours = 0;
+	}
+	return mesh_joins_check(mesh, err);
 }
 
 bool mesh_kind_of(enum mesh_kind *kind, const char *data, size_t size, struct err *err)

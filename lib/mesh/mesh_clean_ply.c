@@ -11,23 +11,6 @@
 
 enum { CORNERS_MAX = 255 };
 
-/* Bytes that grow. */
-struct bytes {
-	char *data;
-	size_t n, room;
-};
-
-static void put(struct bytes *to, const void *from, size_t n)
-{
-	if (to->n + n > to->room) {
-		to->room = 2 * (to->n + n);
-		to->data = mem_grow(to->data, to->room, 1);
-	}
-	if (n)
-		memcpy(to->data + to->n, from, n);
-	to->n += n;
-}
-
 /* A value of the body in bytes. False past the end. */
 static bool binary(double *v, struct ply *ply, int size, bool is_float, bool is_signed)
 {
@@ -76,11 +59,10 @@ static bool coloured(const struct ply *ply)
 	return (ply->element[0].roles & rgb) == rgb;
 }
 
-static bool take_vertex(struct bytes *to, struct ply *ply, long row, struct err *err)
+static bool take_vertex(struct mesh *to, struct ply *ply, long row, struct err *err)
 {
 	const struct ply_element *e = &ply->element[0];
-	float at[3] = { 0 };
-	unsigned char colour[3] = { 0 };
+	float *at = to->vertices[row], *colour = to->colours ? to->colours[row] : 0;
 	for (int k = 0; k < e->n_props; k++) {
 		const struct ply_property *p = &e->props[k];
 		double v;
@@ -88,30 +70,24 @@ static bool take_vertex(struct bytes *to, struct ply *ply, long row, struct err 
 			return err_set(err, "ends in row %ld of %ld of its vertices, or has no number there", row, e->count);
 		if (p->role <= PLY_Z)
 			at[p->role - PLY_X] = (float)v;
-		else if (p->role <= PLY_BLUE) {
-			v = p->is_float ? v * 255 : v;
-			colour[p->role - PLY_RED] = (unsigned char)(v > 0 ? v < 255 ? v + 0.5 : 255 : 0);  // NaN: 0
+		else if (p->role <= PLY_BLUE && colour) {
+			v = p->is_float ? v : v / 255;
+			colour[p->role - PLY_RED] = (float)(v > 0 ? v < 1 ? v : 1 : 0);  // NaN: 0
 		}
 	}
-	put(to, at, sizeof at);
-	if (coloured(ply))
-		put(to, colour, sizeof colour);
 	return true;
 }
 
 /* A face as a fan of triangles; those with a corner twice have no area and are left out. */
-static int fan(struct bytes *to, const int32_t *corner, int n)
+static void fan(struct mesh *to, int *room, const int32_t *corner, int n)
 {
-	int made = 0;
+	if (to->n_faces + n > *room)
+		to->faces = mem_grow(to->faces, (size_t)(*room = 2 * (to->n_faces + n)), sizeof *to->faces);
 	for (int k = 1; k + 1 < n; k++) {
-		int32_t t[3] = { corner[0], corner[k], corner[k + 1] };
-		if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-			continue;
-		put(to, &(unsigned char){ 3 }, 1);
-		put(to, t, sizeof t);
-		made++;
+		const int32_t t[3] = { corner[0], corner[k], corner[k + 1] };
+		if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+			memcpy(to->faces[to->n_faces++], t, sizeof t);
 	}
-	return made;
 }
 
 /* A face's list: its corners where it is theirs (*n of them), otherwise passed over. */
@@ -140,7 +116,7 @@ static bool take_list(int32_t corner[CORNERS_MAX], int *n, struct ply *ply, cons
 	return true;
 }
 
-static bool take_face(struct bytes *to, int *made, struct ply *ply, long row, struct err *err)
+static bool take_face(struct mesh *to, int *room, struct ply *ply, long row, struct err *err)
 {
 	const struct ply_element *e = &ply->element[1];
 	int32_t corner[CORNERS_MAX];
@@ -152,63 +128,38 @@ static bool take_face(struct bytes *to, int *made, struct ply *ply, long row, st
 		if (!e->props[k].count_size && !value(&v, ply, &e->props[k]))
 			return err_set(err, "ends in row %ld of %ld of its faces, or has no number there", row, e->count);
 	}
-	*made += fan(to, corner, n);
+	fan(to, room, corner, n);
 	return true;
 }
 
-static bool body(struct bytes *vertices, struct bytes *faces, int *made, struct ply *ply, long limit, struct err *err)
+static bool body(struct mesh *mesh, struct ply *ply, long limit, struct err *err)
 {
 	for (int i = 0; i < ply->n_elements; i++)
 		if (ply->element[i].count > limit)
 			return err_set(err, "%ld %s rows: must be <= %ld", ply->element[i].count, ply->element[i].name, limit);
-	for (long row = 0; row < ply->element[0].count; row++)
-		if (!take_vertex(vertices, ply, row, err))
+	long n = ply->element[0].count, m = ply->element[1].count;
+	int room = 0;
+	mesh->vertices = mem_new((size_t)n + 1, sizeof *mesh->vertices);
+	mesh->colours = coloured(ply) ? mem_new((size_t)n + 1, sizeof *mesh->colours) : 0;
+	mesh->n_vertices = (int)n;
+	for (long row = 0; row < n; row++)
+		if (!take_vertex(mesh, ply, row, err))
 			return false;
-	for (long row = 0; row < ply->element[1].count; row++) {
-		if (!take_face(faces, made, ply, row, err))
+	for (long row = 0; row < m; row++) {
+		if (!take_face(mesh, &room, ply, row, err))
 			return false;
-		if (*made > limit)
-			return err_set(err, "%d triangles in its first %ld faces: must be <= %ld", *made, row + 1, limit);
+		if (mesh->n_faces > limit)
+			return err_set(err, "%d triangles in its first %ld faces: must be <= %ld", mesh->n_faces, row + 1, limit);
 	}
 	return true;
 }
 
-/* Whether the triangles, as they were put, can be joined. */
-static bool joins_end(const struct bytes *faces, int made, long n_vertices, struct err *err)
-{
-	struct mesh_joins joins = mesh_joins_begin(n_vertices);
-	for (int i = 0; i < made; i++) {
-		int32_t corner[3];
-		memcpy(corner, faces->data + (size_t)i * (1 + sizeof corner) + 1, sizeof corner);
-		mesh_joins_add(&joins, corner);
-	}
-	return mesh_joins_end(&joins, err);
-}
-
-bool mesh_clean_ply(char **clean, size_t *clean_size, const char *data, size_t size, long limit, struct err *err)
+bool mesh_clean_ply(struct mesh *mesh, const char *data, size_t size, long limit, struct err *err)
 {
 	struct ply *ply = mem_new(1, sizeof *ply);
-	struct bytes vertices = { 0 }, faces = { 0 }, out = { 0 };
-	int made = 0;
 	*ply = (struct ply){ .at = data, .end = data + size, .format = -1 };
-	bool ok = ply_head(ply, err) && body(&vertices, &faces, &made, ply, limit, err)
-	          && joins_end(&faces, made, ply->element[0].count, err);
-	if (ok) {
-		_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values go out as they lie in memory");
-		const char *colours = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-		char *head = mem_printf("ply\nformat binary_little_endian 1.0\nelement vertex %ld\n"
-		                        "property float x\nproperty float y\nproperty float z\n%s"
-		                        "element face %d\nproperty list uchar int vertex_indices\nend_header\n",
-		                        ply->element[0].count, coloured(ply) ? colours : "", made);
-		put(&out, head, strlen(head));
-		put(&out, vertices.data, vertices.n);
-		put(&out, faces.data, faces.n);
-		free(head);
-	}
-	free(vertices.data);
-	free(faces.data);
+	*mesh = (struct mesh){ 0 };
+	bool ok = ply_head(ply, err) && body(mesh, ply, limit, err) && mesh_joins_check(mesh, err);
 	free(ply);
-	*clean = out.data;
-	*clean_size = out.n;
 	return ok;
 }

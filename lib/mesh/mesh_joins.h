@@ -1,21 +1,14 @@
-/* mesh_joins: what it costs to join triangles at their vertices. OpenMesh walks round a vertex for each of its faces: a
- * million that share one would take hours. */
+/* mesh_joins: how the triangles of a mesh meet, and what it costs to join them. OpenMesh walks round a vertex for each of its
+ * faces: a million that share one would take hours. */
 #ifndef MESH_MESH_JOINS_H
 #define MESH_MESH_JOINS_H
-#include <stdint.h>
+#include "mesh/mesh.h"
 
-#include "base/err.h"
+/* False, err set, when joining them would take more than seconds. */
+bool mesh_joins_check(const struct mesh *mesh, struct err *err);
 
-struct mesh_joins {
-	int32_t *faces;    // [vertex] how many have it as a corner; owned
-	int64_t steps;     // sum of their squares
-	int32_t busiest;   // the vertex of the most
-};
-
-struct mesh_joins mesh_joins_begin(long n_vertices);
-void mesh_joins_add(struct mesh_joins *joins, const int32_t corner[3]);
-
-/* Frees. False, err set, when joining them would take more than seconds. */
-bool mesh_joins_end(struct mesh_joins *joins, struct err *err);
+/* Whether the mesh is a surface wherever it has faces: an edge has one face on either side at most, and the faces round a
+ * vertex are one fan or one ring. False too for vertices of more than a hundred faces, which are not looked at. */
+bool mesh_joins_sound(const struct mesh *mesh);
 
 #endif
