@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
 #include "mesh/mesh_clean.h"
+#include "mesh/mesh_joins.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/scratch.h"
 
@@ -299,6 +300,43 @@ static void three_faces_at_one_edge(void **state)
 	mesh_free(&back);
 }
 
+/* Faces that join as OpenMesh would join them stay as they are; others get vertices of their own, behind all others. */
+static void what_is_no_surface_is_taken_apart(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *what;
+		int n_faces, added;
+		int32_t faces[8][3];
+	} cases[] = {
+		{ "two faces at an edge", 2, 0, { { 0, 1, 2 }, { 1, 0, 3 } } },
+		{ "wound against each other", 2, 3, { { 0, 1, 2 }, { 0, 1, 3 } } },
+		{ "three at an edge", 3, 3, { { 0, 1, 2 }, { 1, 0, 3 }, { 0, 1, 4 } } },
+		{ "a closed ring", 4, 0, { { 0, 1, 2 }, { 0, 3, 1 }, { 0, 2, 3 }, { 1, 3, 2 } } },
+		{ "two closed ones that touch in a point", 8, 9,
+		  { { 0, 1, 2 }, { 0, 3, 1 }, { 0, 2, 3 }, { 1, 3, 2 }, { 0, 4, 5 }, { 0, 6, 4 }, { 0, 5, 6 }, { 4, 6, 5 } } },
+		{ "twice the same", 2, 3, { { 0, 1, 2 }, { 0, 1, 2 } } },
+	};
+	for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+		float vertices[7][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } };
+		int32_t faces[8][3];
+		memcpy(faces, cases[c].faces, sizeof faces);
+		struct mesh m = { 7, cases[c].n_faces, vertices, faces, 0 }, back;
+		struct err err = { 0 };
+		double volume, area = area_and_volume(&m, &volume);
+		const char *path = scratch_path("m.ply");
+		assert_int_equal(mesh_joins_sound(&m), !cases[c].added);
+		assert_true(om_mesh_save(&m, path, 0, &err) && om_mesh_load(&back, path, 100, &err));
+		if (back.n_vertices != 7 + cases[c].added)
+			fail_msg("%s: %d vertices, must be %d", cases[c].what, back.n_vertices, 7 + cases[c].added);
+		assert_int_equal(back.n_faces, cases[c].n_faces);
+		assert_memory_equal(back.vertices, vertices, sizeof vertices);
+		assert_true(mesh_joins_sound(&back));
+		NEAR(area_and_volume(&back, &volume), area, 1e-12);
+		mesh_free(&back);
+	}
+}
+
 static void decimated_sphere_stays_one(void **state)
 {
 	(void)state;
@@ -348,6 +386,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(fans_without_end_are_refused, setup, teardown),
 		cmocka_unit_test_setup_teardown(long_polygons_count_as_triangles, setup, teardown),
 		cmocka_unit_test_setup_teardown(three_faces_at_one_edge, setup, teardown),
+		cmocka_unit_test_setup_teardown(what_is_no_surface_is_taken_apart, setup, teardown),
 		cmocka_unit_test(decimated_sphere_stays_one),
 		cmocka_unit_test(real_meshes_load),
 	};

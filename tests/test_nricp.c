@@ -43,29 +43,46 @@ static void test_spd(void **state)
 	spd_free(spd);
 }
 
-/* No vertex is closer than the closest point, and a guess changes nothing. */
-static void test_closest(void **state)
+/* No vertex and no point of a face is closer than the closest point, wherever the mesh lies, and a guess changes nothing. */
+static void closest_on(float far)
 {
-	(void)state;
+	static const double inside[][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0.5, 0.5, 0 }, { 0, 0.5, 0.5 },
+		                            { 0.5, 0, 0.5 }, { 0.6, 0.2, 0.2 }, { 0.2, 0.6, 0.2 }, { 0.2, 0.2, 0.6 } };
 	struct mesh m = sheet_make(40, 30, true);
+	for (int i = 0; i < m.n_vertices; i++)
+		m.vertices[i][0] += far;
+	double rounding = 4e-7 * (double)far;  // of the coordinates
 	struct closest_scene *scene = closest_new(&m, 0);
 	for (int i = 0; i < 50; i++) {
-		float at[3] = { (float)(-70 + 3 * i), (float)(65 - 2.6 * i), (float)(-20 + i) };
+		float at[3] = { far + (float)(-70 + 3 * i), (float)(65 - 2.6 * i), (float)(-20 + i) };
 		struct closest_point got = closest_find(scene, at, 0, 0, INFINITY, -1);
 		double best = INFINITY;
-		for (int v = 0; v < m.n_faces * 3; v++) {  // no vertex of a face is closer
-			const float *p = m.vertices[m.faces[v / 3][v % 3]];
-			best = fmin(best, hypot(hypot((double)(p[0] - at[0]), (double)(p[1] - at[1])), (double)(p[2] - at[2])));
+		for (int k = 0; k < m.n_faces * 9; k++) {
+			double d2 = 0;
+			for (int c = 0; c < 3; c++) {
+				double p = -(double)at[c];
+				for (int v = 0; v < 3; v++)
+					p += inside[k % 9][v] * (double)m.vertices[m.faces[k / 9][v]][c];
+				d2 += p * p;
+			}
+			best = fmin(best, sqrt(d2));
 		}
-		assert_true(got.face >= 0 && (double)got.distance <= best * (1 + 1e-5));
+		assert_true(got.face >= 0 && (double)got.distance <= best * (1 + 1e-5) + rounding);
 		NEAR(got.bary[0] + got.bary[1] + got.bary[2], 1, 1e-5);
 		for (int guess = 0; guess < m.n_faces; guess += 97)  // a guess changes nothing
-			NEAR(closest_find(scene, at, 0, 0, INFINITY, guess).distance, got.distance, 1e-5);
+			NEAR(closest_find(scene, at, 0, 0, INFINITY, guess).distance, got.distance, 1e-5 + rounding);
 	}
 	float nan[3] = { NAN, 0, 0 };
 	assert_int_equal(closest_find(scene, nan, 0, 0, INFINITY, -1).face, -1);
 	closest_free(scene);
 	mesh_free(&m);
+}
+
+static void test_closest(void **state)
+{
+	(void)state;
+	closest_on(0);
+	closest_on(1e4f);
 }
 
 /* 40 x 30 vertices: an Euler count, one rim without slits, three with; a piece each that is joined on. */

@@ -10,27 +10,7 @@ static bool is_degenerate(const int32_t f[3])
 	return f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
 }
 
-static int by_index(const void *a, const void *b)
-{
-	int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-	return (x > y) - (x < y);
-}
-
-static void sort_few(int32_t *x, int n)
-{
-	if (n > 32) {
-		qsort(x, (size_t)n, sizeof *x, by_index);
-		return;
-	}
-	for (int i = 1; i < n; i++)
-		for (int j = i; j > 0 && x[j - 1] > x[j]; j--) {
-			int32_t t = x[j];
-			x[j] = x[j - 1];
-			x[j - 1] = t;
-		}
-}
-
-/* Each edge of each face, seen from both its ends: out[] of vertex i holds 2 v + 1 for an edge i -> v, 2 v for v -> i. */
+/* Each edge of each face, seen from both its ends: vertex i holds 2 v + 1 for an edge i -> v, 2 v for v -> i, by rising v. */
 static int32_t *half_edges(int32_t *start, const struct mesh *mesh)
 {
 	int n = mesh->n_vertices;
@@ -48,8 +28,16 @@ static int32_t *half_edges(int32_t *start, const struct mesh *mesh)
 			out[fill[a]++] = 2 * b + 1;
 			out[fill[b]++] = 2 * a;
 		}
+	// Gone through by rising vertex, what i holds of v is put where v holds what it has of i: the lists come out in order.
+	int32_t *rising = mem_array((size_t)start[n] + 1, sizeof *rising);
+	for (int i = 0; i < n; i++)
+		fill[i] = start[i];
+	for (int v = 0; v < n; v++)
+		for (int32_t e = start[v]; e < start[v + 1]; e++)
+			rising[fill[out[e] / 2]++] = 2 * v + !(out[e] & 1);
 	free(fill);
-	return out;
+	free(out);
+	return rising;
 }
 
 /* Numbers the pieces by falling size; of equals the one with the lower vertex first. */
@@ -99,7 +87,6 @@ void topology_make(struct topology *out, const struct mesh *mesh)
 	int32_t written = 0, from = 0, room = 0;
 	for (int i = 0; i < mesh->n_vertices; i++) {
 		int32_t to = out->start[i + 1];
-		sort_few(out->neighbour + from, to - from);
 		out->start[i] = written;
 		for (int32_t e = from, count; e < to; e += count) {
 			int32_t v = out->neighbour[e] / 2, outwards = 0;

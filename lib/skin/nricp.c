@@ -176,8 +176,11 @@ static void deform(struct run *run)
 	for (int i = last; i >= 0; i--) {
 		struct level *l = &run->level[i];
 		int rounds = i >= run->first ? run->conf.rounds[NRICP_LEVELS - 1 - i + run->first] : 0;
-		if (i < last)
+		if (i < last) {
 			nricp_graph_spread(l->t, &l->graph, &l[1].graph, (const double(*)[4])l[1].t);
+			for (int v = 0; v < l->graph.n; v++)  // where to look first
+				l->match[v].face = l[1].match[l[1].graph.parent[v]].face;
+		}
 		nricp_graph_turns(l->turn, &l->graph, (const double(*)[4])l->t, run->conf.growth);
 		one_level(run, l, rounds, done, total, i == last);
 		done += rounds;
