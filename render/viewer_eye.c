@@ -6,12 +6,38 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "eye/scene_impl.h"
+#include "optics/lightpath_path.h"
 #include "render/page.h"
 #include "render/viewer.h"
 
 static void put(json_t *out, const char *key, int n, const double *x)
 {
 	json_object_set_new(out, key, n == 1 ? json_number(*x) : json_numbers(n, x));
+}
+
+/* The march's rules: for each number of nodes, how fast light fades, and each node its place and weight. */
+static json_t *rules(const struct scene *s)
+{
+	enum { RULES = 9, FADES = 25 };  // of twelve steps
+	double thick[] = { scene_thickness(s, TISSUE_ABL), scene_thickness(s, TISSUE_STROMA) }, ways = LOOK_WAYS, fade[FADES];
+	json_t *all = json_array();
+	for (int k = 0; k < FADES; k++)
+		fade[k] = SCENE_FADE_MAX * pow((double)k / (FADES - 1), 2);
+	for (int n = 1; n <= RULES; n++) {
+		json_t *of_n = json_array();
+		for (int k = 0; k < FADES; k++) {
+			double node[RULES], weight[RULES], pairs[2 * RULES];
+			scene_exponential(n, fade[k], node, weight);
+			for (int i = 0; i < n; i++) {
+				pairs[2 * i] = node[i];
+				pairs[2 * i + 1] = weight[i];
+			}
+			json_array_append_new(of_n, json_numbers(2 * n, pairs));
+		}
+		json_array_append_new(all, of_n);
+	}
+	return json_pack("{s:i,s:o,s:f,s:i,s:o,s:o}", "steps", s->conf.steps, "thickness", json_numbers(2, thick), "ways", ways, "share", SCENE_SHARE, "fade",
+	                 json_numbers(FADES, fade), "rules", all);
 }
 
 static json_t *geometry(const struct scene *s, double gain)
@@ -36,10 +62,22 @@ static json_t *geometry(const struct scene *s, double gain)
 	put(out, "detail", 1, &s->conf.detail);
 	double back[] = { c->R_post, c->p_post, c->thickness, c->two_surface ? c->n_cornea : 0 };
 	put(out, "back", COUNT(back), back);
+	json_object_set_new(out, "march", rules(s));
 	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
 	json_object_set_new(out, "search", json_integer(s->conf.search));
 	json_object_set_new(out, "shadow", json_integer(s->conf.shadow));
 	return out;
+}
+
+/* The least value that a map of the model has where there is iris: eight bits are for those. */
+static float darkest(const struct scene *s, const struct scene_level *l)
+{
+	float least = 1, reach = (float)(fmax(s->limbus[0], s->limbus[1]) * l->per_mm), middle = 0.5f * (float)l->n;
+	for (int y = 0; y < l->n; y++)
+		for (int x = 0; x < l->n; x++)
+			for (int c = 0; c < 3 && hypotf((float)x + 0.5f - middle, (float)y + 0.5f - middle) <= reach; c++)
+				least = fminf(least, l->model[4 * ((long)y * l->n + x) + c]);
+	return fmaxf(least, SCENE_DARK);
 }
 
 static bool maps(json_t *out, const struct scene *s, struct err *err)
@@ -49,8 +87,8 @@ static bool maps(json_t *out, const struct scene *s, struct err *err)
 	json_object_set_new(out, "relief", viewer_map_relief(l));
 	json_object_set_new(out, "colour", viewer_map_colour(l));
 	if (l->model)
-		json_object_set_new(out, "model", viewer_map_log(l->model, l->n, l->n, 4, err));
-	json_object_set_new(out, "veins", viewer_map_log(s->veins.px, n, n, 4, err));
+		json_object_set_new(out, "model", viewer_map_log(l->model, l->n, l->n, 4, darkest(s, l), err));
+	json_object_set_new(out, "veins", viewer_map_log(s->veins.px, n, n, 4, SCENE_DARK, err));
 	json_object_set_new(out, "film", viewer_map_plain(&s->film, err));
 	return !err_is(err);
 }
@@ -83,7 +121,7 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 	const struct shot *shot = source->shot;
 	json_t *out = json_object(), *map = json_object(), *lights = json_array();
 	json_object_set_new(out, "side", template_text(source->side));
-	json_object_set_new(out, "constants", json_pack("{s:f}", "sclera_reach", SCENE_SCLERA_REACH));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2)));
 	json_object_set_new(out, "eye", geometry(s, source->gain));
 	json_object_set_new(out, "tissue", viewer_tissue(source));
 	json_array_append_new(lights, viewer_light("Studio", source->studio, source->studio, source->lights, err));

@@ -4,6 +4,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "eye/scene_impl.h"
 #include "image/picture.h"
 #include "render/page.h"
 #include "render/viewer.h"
@@ -69,9 +70,8 @@ json_t *viewer_map_colour(const struct scene_level *level)
 	return map;
 }
 
-json_t *viewer_map_log(const float *px, int width, int height, int stride, struct err *err)
+json_t *viewer_map_log(const float *px, int width, int height, int stride, float dark, struct err *err)
 {
-	static const float dark = 1e-4f;
 	double low[3], high[3];
 	long n = (long)width * height;
 	uint8_t *out = mem_array((size_t)n * 3, 1);
@@ -139,8 +139,8 @@ json_t *viewer_light(const char *name, const struct envmap *env, const struct en
 	json_object_set_new(out, "even", json_numbers(3, even));
 	if (mirror) {
 		const struct image *s = &mirror->sharp, *r = &mirror->rough;
-		json_object_set_new(out, "sharp", viewer_map_log(s->px, s->width, s->height, s->channels, err));
-		json_object_set_new(out, "rough", viewer_map_log(r->px, r->width, r->height, r->channels, err));
+		json_object_set_new(out, "sharp", viewer_map_log(s->px, s->width, s->height, s->channels, SCENE_DARK, err));
+		json_object_set_new(out, "rough", viewer_map_log(r->px, r->width, r->height, r->channels, SCENE_DARK, err));
 	}
 	return out;
 }

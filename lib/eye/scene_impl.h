@@ -93,6 +93,14 @@ void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *scene, c
 /* Where the march's steps lie and what they weigh, for this tissue and thickness. */
 void scene_nodes_make(struct scene *scene);
 
+/* Gauss's rule of n points, at most SCENE_EXPONENTIAL_MAX, on 0..1 for what fades as exp(-c x), c at most SCENE_FADE_MAX; one
+ * in SCENE_SHARE of the steps goes to the anterior layer. */
+enum { SCENE_EXPONENTIAL_MAX = 12, SCENE_FADE_MAX = 40, SCENE_SHARE = 4 };
+void scene_exponential(int n, double c, double node[], double weight[]);
+
+/* Mean thickness of a layer, mm. */
+double scene_thickness(const struct scene *scene, int layer);
+
 /* Levels below level 0, and the range of heights. */
 void scene_levels_make(struct scene *scene);
 

@@ -27,7 +27,7 @@ static void gauss(int n, double node[], double weight[])
 /* Gauss's rule for the weight exp(-c x) on 0..1: light that fades with depth is its polynomial of degree 0, so that what is
  * left to the nodes is only how it differs from that. Orthogonal polynomials by Stieltjes' procedure on a fine rule; roots by
  * bisection between their changes of sign. */
-enum { EXPONENTIAL_MAX = 12, FINE = 64 };
+enum { EXPONENTIAL_MAX = SCENE_EXPONENTIAL_MAX, FINE = 64 };
 
 struct stieltjes {
 	double a[EXPONENTIAL_MAX], b[EXPONENTIAL_MAX], h[EXPONENTIAL_MAX];  // p_k+1 = (x - a_k) p_k - b_k p_k-1; h: norms
@@ -72,7 +72,7 @@ static double polynomial(const struct stieltjes *s, int n, double x, double *wei
 	return p;
 }
 
-static void exponential(int n, double c, double node[], double weight[])
+void scene_exponential(int n, double c, double node[], double weight[])
 {
 	enum { GRID = 4000 };
 	struct stieltjes s;
@@ -94,28 +94,33 @@ static void exponential(int n, double c, double node[], double weight[])
 	}
 }
 
-/* How fast light fades over a layer, to and fro: in the middle of the bands, of the ways through a cornea (about 1.05 and
- * 1.3 times the depth), at the stroma's mean thickness. */
+double scene_thickness(const struct scene *s, int layer)
+{
+	const struct scene_level *l = &s->level[s->n_levels - 1];
+	double thick = 0;
+	for (int i = 0; i < l->n * l->n; i++)
+		thick += l->relief[2 * i + 1] / (l->n * l->n);
+	return layer == TISSUE_ABL ? s->optics.abl_thickness : thick;
+}
+
+/* How fast light fades over a layer, to and fro: in the middle of the bands, at the layer's mean thickness. */
 static double fading(const struct scene *s, int layer)
 {
 	const struct tissue_optics *o = &s->optics;
-	const struct scene_level *l = &s->level[s->n_levels - 1];
-	double sum = 0, thick = 0;
+	double sum = 0;
 	for (int k = 0; k < o->n; k++)
 		sum += o->extinction[layer][k] / o->n;
-	for (int i = 0; i < l->n * l->n; i++)
-		thick += l->relief[2 * i + 1] / (l->n * l->n);
-	return fmin(2.35 * sum * (layer == TISSUE_ABL ? o->abl_thickness : thick), 40);
+	return fmin(LOOK_WAYS * sum * scene_thickness(s, layer), SCENE_FADE_MAX);
 }
 
 /* Most steps go to the stroma; the anterior layer is thin, but most of the melanin is there. */
 void scene_nodes_make(struct scene *s)
 {
-	int n = s->conf.steps, share = s->conf.quadrature == SCENE_EXPONENTIAL ? 4 : 3, in_abl = n / share > 1 ? n / share : 1, in[2] = { in_abl, n - in_abl };
+	int n = s->conf.steps, share = s->conf.quadrature == SCENE_EXPONENTIAL ? SCENE_SHARE : 3, in_abl = n / share > 1 ? n / share : 1, in[2] = { in_abl, n - in_abl };
 	for (int l = 0; l < 2; l++) {
 		s->n_nodes[l] = in[l];
 		if (s->conf.quadrature == SCENE_EXPONENTIAL && in[l] <= EXPONENTIAL_MAX)
-			exponential(in[l], fading(s, l), s->node[l], s->weight[l]);
+			scene_exponential(in[l], fading(s, l), s->node[l], s->weight[l]);
 		else if (s->conf.quadrature != SCENE_MIDPOINT)
 			gauss(in[l], s->node[l], s->weight[l]);
 		else

@@ -8,8 +8,10 @@ out vec4 value;
 void main()
 {
 	vec4 t = texelFetch(map, ivec2(gl_FragCoord.xy), 0);
-	if (kind == 0)
-		value = vec4(mix(low.x, high.x, (t.r * 4080.0 + t.g * 15.0) / 4095.0), mix(low.y, high.y, t.b), 0.0, 1.0);
+	if (kind == 0) {
+		float height = mix(low.x, high.x, (t.r * 4080.0 + t.g * 15.0) / 4095.0), coarse = round(height * 256.0) / 256.0;
+		value = vec4(coarse, mix(low.y, high.y, t.b), height - coarse, 1.0);
+	}
 	else if (kind == 1)
 		value = vec4(exp(mix(low.rgb, high.rgb, t.rgb)), 1.0);
 	else

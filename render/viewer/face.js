@@ -50,17 +50,9 @@ class FaceScene {
 		this.values.set(v, 9 * i);
 	}
 
-	/* Place between the knots: index and share; held at the ends. */
-	static between(list, x) {
-		let i = 0;
-		while (i + 2 < list.length && x > list[i + 1])
-			i++;
-		return [i, Math.min(1, Math.max(0, (x - list[i]) / (list[i + 1] - list[i])))];
-	}
-
 	/* The eight poses round these controls and their weights. */
 	mixture(h, v, a) {
-		const d = this.data, [ih, uh] = FaceScene.between(d.h, h), [iv, uv] = FaceScene.between(d.v, v), [ia, ua] = FaceScene.between(d.a, a), out = [];
+		const d = this.data, [ih, uh] = between(d.h, h), [iv, uv] = between(d.v, v), [ia, ua] = between(d.a, a), out = [];
 		for (let k = 0; k < 8; k++) {
 			const w = (k & 1 ? uh : 1 - uh) * (k & 2 ? uv : 1 - uv) * (k & 4 ? ua : 1 - ua);
 			if (w > 0)

@@ -54,11 +54,17 @@ vec2 map_place(vec2 p)
 	return p / (2.0 * extent) + 0.5;
 }
 
+// Height, which a half float holds too coarsely for its slopes: in two, and thickness.
+vec2 height_of(vec4 t)
+{
+	return vec2(t.r + t.b, t.g);
+}
+
 // Height and thickness; lying loosely, the stroma keeps its volume: it is thicker where it is shorter.
 vec2 relief_at(vec2 p)
 {
 	float along, across;
-	vec2 q = stretch(p, along, across), t = textureLod(relief_map, map_place(q), float(level)).rg;
+	vec2 q = stretch(p, along, across), t = height_of(textureLod(relief_map, map_place(q), float(level)));
 	return vec2(t.x, t.y * clamp(along * across, 0.3, 3.0));
 }
 
@@ -72,8 +78,8 @@ vec4 relief_slope(vec2 p)
 	vec2 u = clamp(q * per_mm + 0.5 * float(n) - 0.5, 0.0, float(n) - 1.001);
 	ivec2 i = ivec2(u);
 	u -= vec2(i);
-	vec2 a = texelFetch(relief_map, i, level).rg, b = texelFetch(relief_map, i + ivec2(1, 0), level).rg;
-	vec2 c = texelFetch(relief_map, i + ivec2(0, 1), level).rg, d = texelFetch(relief_map, i + ivec2(1, 1), level).rg;
+	vec2 a = height_of(texelFetch(relief_map, i, level)), b = height_of(texelFetch(relief_map, i + ivec2(1, 0), level));
+	vec2 c = height_of(texelFetch(relief_map, i + ivec2(0, 1), level)), d = height_of(texelFetch(relief_map, i + ivec2(1, 1), level));
 	vec2 g = per_mm * vec2(mix(b.x - a.x, d.x - c.x, u.y), mix(c.x - a.x, d.x - b.x, u.x));
 	vec2 ht = mix(mix(a, b, u.x), mix(c, d, u.x), u.y);
 	if (along != 1.0 || across != 1.0) {

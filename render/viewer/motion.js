@@ -128,10 +128,10 @@ const motion = (() => {
 		}
 
 		/* One millisecond. */
-		tick(t) {
-			const c = this.conf, dt = 1e-3, error = [0, 1].map(k => this.target[k] - this.eye[k]), length = Math.hypot(...error);
-			const speed = [0, 1].map(k => (this.target[k] - this.last[k]) / dt), jump = Math.hypot(...speed) > 120;
-			this.last = [...this.target];
+		tick(t, target) {
+			const c = this.conf, dt = 1e-3, error = [0, 1].map(k => target[k] - this.eye[k]), length = Math.hypot(...error);
+			const speed = [0, 1].map(k => (target[k] - this.last[k]) / dt), jump = Math.hypot(...speed) > 120;
+			this.last = target;
 			this.slip.push(jump ? [0, 0] : speed);
 			const delay = Math.round(c.pursuit_delay_s / dt);
 			const delayed = this.slip.length > delay ? this.slip[this.slip.length - 1 - delay] : [0, 0];
@@ -171,12 +171,14 @@ const motion = (() => {
 				this.closure = 0;
 				this.time = t;
 			} else {
+				// What the target did since the last picture it did steadily; a pause is none of its motion.
 				if (this.time === null || t - this.time > 0.25) {
-					this.time = t;
+					this.time = this.time === null ? t : t - 0.25;
 					this.last = [...this.target];
 				}
+				const begin = this.time, from = this.last;
 				for (; this.time < t; this.time += 1e-3)
-					this.tick(this.time);
+					this.tick(this.time, from.map((v, k) => v + (this.target[k] - v) * (this.time + 1e-3 < t ? (this.time - begin) / (t - begin) : 1)));
 				this.blinks(t);
 			}
 			return Math.hypot(this.eye[0] - before[0], this.eye[1] - before[1]) > 2e-3 || this.closure !== before[2];

@@ -3,6 +3,7 @@
 // (1: at the limbus); lib/eye/scene_light.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
 uniform vec3 beam_dir[LIGHTS];
 uniform vec2 limbus;
+uniform float path_bend;
 out vec4 way;
 
 // Where the ray from P in direction q leaves the surface.
@@ -17,7 +18,7 @@ vec3 leave(vec3 P, vec3 q)
 // Start in closed form: out along the light bent towards the axis, refracted there, out again.
 vec2 start(vec3 P, vec3 w)
 {
-	vec3 K = leave(P, w - vec3(0.0, 0.0, 0.6));
+	vec3 K = leave(P, w - vec3(0.0, 0.0, path_bend * sqrt(cornea_n * cornea_n - 1.0)));
 	vec3 G = vec3(K.xy, cornea_p * K.z - cornea_R);
 	float a = dot(w, G), g2 = dot(G, G), f = (sqrt(a * a + (cornea_n * cornea_n - 1.0) * g2) - a) / g2;
 	K = leave(P, w + f * G);
@@ -60,6 +61,49 @@ float caustic(vec2 x, vec3 P, vec3 w, vec3 H, float tau)
 	return cos_i > 0.0 ? (1.0 - mirror_share(cos_i, cornea_n)) * cos_i * abs(moved) * area : 0.0;
 }
 
+vec3 surface(vec2 x)
+{
+	float rho2 = dot(x, x);
+	return 2.0 * cornea_R / (1.0 + cornea_p * rho2) * vec3(x, rho2);
+}
+
+// n |aP| - n |bP| - w (b - a) without cancellation.
+float longer(vec3 a, vec3 b, vec3 P, vec3 w)
+{
+	vec3 way = b - a, both = a + b - 2.0 * P;
+	return cornea_n * dot(way, both) / (length(a - P) + length(b - P)) - dot(w, way);
+}
+
+// Newton's steps, kept downhill (lib/optics/lightpath.c); false where they do not end in a minimum.
+bool descend(inout vec2 x, vec3 P, vec3 w)
+{
+	for (int i = 0; i < 40; i++) {
+		vec2 g;
+		vec3 H;
+		float tau;
+		curve(x, P, w, g, H, tau);
+		float mean = 0.5 * (H.x + H.z), half_ = length(vec2(0.5 * (H.x - H.z), H.y)), least = mean - half_;
+		float lift = least < 1e-5 * half_ ? 1e-2 * (abs(mean) + half_) - least : 0.0, a = H.x + lift, c = H.z + lift;
+		vec2 move = vec2(H.y * g.y - c * g.x, H.y * g.x - a * g.y) / (a * c - H.y * H.y);
+		float size = length(move), slope = dot(move, g), k = min(1.0, 3.0 / size), per = 1.0 / (cornea_R * tau);
+		if (!(size < 1e6))
+			return false;
+		// Below a few micrometres float's lengths no longer tell the points apart; Newton's step is right there.
+		vec3 from = surface(x);
+		for (int j = 0; j < 14 && size > 2e-3; j++) {
+			if (longer(from, surface(x + k * per * move), P, w) <= 1e-4 * k * slope)
+				break;
+			k *= 0.4;
+		}
+		x += k * per * move;
+		if (size < 2e-5)
+			return true;
+		if (i > 30 && size < 2e-3)
+			return true;
+	}
+	return false;
+}
+
 void main()
 {
 	ivec2 at = ivec2(gl_FragCoord.xy), tile = at / int(GRID), cell = at - tile * int(GRID);
@@ -70,15 +114,9 @@ void main()
 	vec2 x = start(P, w), g;
 	vec3 H;
 	float tau;
-	for (int i = 0; i < 5; i++) {
-		curve(x, P, w, g, H, tau);
-		vec2 move = vec2(H.y * g.y - H.z * g.x, H.y * g.x - H.x * g.y) / ((H.x * H.z - H.y * H.y) * cornea_R * tau);
-		x += move * min(1.0, 0.5 / max(length(move), 1e-6));
-	}
+	bool found = descend(x, P, w);
 	curve(x, P, w, g, H, tau);
-	float gain = caustic(x, P, w, H, tau);
-	// A way that is no minimum lies behind a focus: not the one that goes on smoothly.
-	bool good = dot(g, g) < 1e-4 && dot(x, x) < 4.0 && H.x * H.z > H.y * H.y && H.x + H.z > 0.0 && gain < 8.0;
-	vec3 K = good ? cornea_R * tau * vec3(x, dot(x, x)) : P + w, l = normalize(K - P);
-	way = vec4(l.xy, good ? gain / max(-l.z, 0.05) : 0.0, min(length(K.xy / limbus), 4.0));
+	vec3 K = found ? surface(x) : P + w, l = normalize(K - P);
+	float gain = found ? caustic(x, P, w, H, tau) : 0.0;
+	way = vec4(l.xy, gain / max(-l.z, 0.05), min(length(K.xy / limbus), 4.0));
 }

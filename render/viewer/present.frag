@@ -1,4 +1,4 @@
-// The picture as it is seen: on a photographer's grey (render/picture.c), encoded as sRGB, or as it is for measuring.
+// The picture as it is seen: on a photographer's grey (render/picture.c), encoded as sRGB, without noise (bare) for measuring.
 uniform sampler2D picture;
 uniform float gain, bare;
 uniform vec2 size;
@@ -9,7 +9,7 @@ void main()
 	vec2 at = gl_FragCoord.xy / size, u = 2.0 * at - 1.0;
 	vec4 p = texture(picture, at);
 	float grey = mix(0.115, 0.030, min(dot(u, u) / 2.0, 1.0));
-	vec3 c = p.rgb * gain + (1.0 - p.a) * grey * (1.0 - bare);
+	vec3 c = p.rgb * gain + (1.0 - p.a) * grey;
 	c = clamp(c, 0.0, 1.0);
 	vec3 s = mix(c * 12.92, 1.055 * pow(max(c, 1e-5), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 	// Half a step of noise: what is smooth shows no bands.

@@ -10,9 +10,18 @@ const turns = {
 	},
 };
 
-/* What costs time, dearest first. */
+/* Place between the knots of a list: index and share; held at the ends. */
+function between(list, x) {
+	let i = 0;
+	while (i + 2 < list.length && x > list[i + 1])
+		i++;
+	return [i, Math.min(1, Math.max(0, (x - list[i]) / (list[i + 1] - list[i])))];
+}
+
+/* What costs time, dearest first. No more steps are taken than the model in the maps was made with: the photograph's own view
+ * then shows the photograph. */
 const presets = [
-	{ name: "full", steps: 6, scale: 1, lights: 8, shadow: 4, search: 8, march: true },
+	{ name: "full", steps: 12, scale: 1, lights: 8, shadow: 4, search: 8, march: true },
 	{ name: "high", steps: 6, scale: 1, lights: 4, shadow: 2, search: 6, march: true },
 	{ name: "medium", steps: 4, scale: 0.66, lights: 4, shadow: 0, search: 5, march: true },
 	{ name: "low", steps: 3, scale: 0.66, lights: 4, shadow: 0, search: 4, march: false },
@@ -122,24 +131,15 @@ class EyeScene {
 		return this.optics;
 	}
 
-	/* Gauss-Legendre in either layer: a third of the steps in the thin anterior one, where most of the melanin is. */
-	static nodes(steps) {
-		const abl = Math.max(1, Math.floor(steps / 3)), out = { nodes: [abl, steps - abl], node: [] };
-		for (const n of out.nodes) {
-			const list = [];
-			for (let i = 0; i < n; i++) {
-				let x = Math.cos(Math.PI * (i + 0.75) / (n + 0.5)), d = 1;
-				for (let k = 0; k < 8; k++) {
-					let p = 1, q = 0;
-					for (let j = 1; j <= n; j++)
-						[q, p] = [p, ((2 * j - 1) * x * p - (j - 1) * q) / j];
-					d = n * (x * p - q) / (x * x - 1);
-					x -= p / d;
-				}
-				list.push((1 - x) / 2, 1 / ((1 - x * x) * d * d));
-			}
-			out.node.push(...EyeScene.padded(list, 2 * EyeScene.NODES));
-		}
+	/* Places and weights of the march's steps in both layers, for tissue that fades light as this does: between the rules that
+	 * lib/eye/scene_nodes.c makes. */
+	nodes(steps, extinction) {
+		const m = this.data.eye.march, all = Math.max(2, Math.min(steps, m.steps, EyeScene.NODES)), abl = Math.max(1, Math.floor(all / m.share)), out = { nodes: [abl, all - abl], node: [] };
+		out.nodes.forEach((n, layer) => {
+			const of = extinction.slice(4 * layer, 4 * layer + 4), c = m.ways * m.thickness[layer] * of.reduce((a, v) => a + v, 0) / of.length;
+			const [i, u] = between(m.fade, c), a = m.rules[n - 1][i], b = m.rules[n - 1][i + 1];
+			out.node.push(...EyeScene.padded(a.map((v, k) => v + u * (b[k] - v)), 2 * EyeScene.NODES));
+		});
 		return out;
 	}
 
@@ -159,7 +159,7 @@ class EyeScene {
 		const env_from_eye = turns.multiply(turns.transpose(turn), cam.head_from_eye);
 		const beams = this.beams(light, turns.transpose(env_from_eye), s.light_gain, Math.min(preset.lights, light.lights.length));
 		const key = [s.R, s.p, s.n, beams.n, ...beams.dir].join(), old = this.path_maps[name];
-		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, beam_dir: beams.dir,
+		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, beam_dir: beams.dir, path_bend: data.constants.path_bend,
 			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + data.tissue.abl + e.thickness_max] };
 		const map = old ? old.map : g.texture(2 * EyeScene.GRID, EyeScene.LIGHTS * EyeScene.GRID, gl.RGBA16F);
 		if (!old || old.key !== key) {
@@ -184,7 +184,7 @@ class EyeScene {
 			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
 			...this.tissue(s), abl: data.tissue.abl, exposure: data.tissue.exposure,
-			tissue_gain: e.gain, detail: s.detail, ...EyeScene.nodes(preset.steps),
+			tissue_gain: e.gain, detail: s.detail, ...this.nodes(preset.steps, this.optics.extinction),
 			search: preset.search, shadow_steps: preset.shadow, flat_iris: preset.march ? 0 : 1,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
 			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear,
