@@ -3,6 +3,22 @@
 #include "mesh/openness.h"
 #include "tests/lib/unit.h"
 
+static void hidden_is_of_little_openness(const struct mesh *mesh)
+{
+	float open[9];
+	bool hidden[9];
+	mesh_openness(open, mesh);
+	for (int percent = 0; percent <= 100; percent += 5) {
+		int n = 0;
+		mesh_hidden(hidden, mesh, percent / 100.0);
+		for (int i = 0; i < mesh->n_vertices; i++) {
+			assert_int_equal(hidden[i], (double)open[i] < percent / 100.0);
+			n += hidden[i];
+		}
+		assert_float_equal(mesh_hidden_share(mesh, percent / 100.0, 9), (double)n / mesh->n_vertices, 1e-12);
+	}
+}
+
 static void groove(void **state)
 {
 	(void)state;
@@ -17,6 +33,7 @@ static void groove(void **state)
 		float open[9];
 		mesh_openness(open, &mesh);
 		assert_float_equal(open[1], sin(degrees * M_PI / 180), 0.13);  // 24 rays, three deviations of strata at the walls
+		hidden_is_of_little_openness(&mesh);
 	}
 }
 
@@ -40,6 +57,7 @@ static void closed_box(void **state)
 	for (int i = 0; i < 8; i++)
 		assert_float_equal(open[i], 1, 0);
 	assert_float_equal(mesh_hidden_share(&mesh, 0.5, 3), 0, 0);
+	hidden_is_of_little_openness(&mesh);
 	mesh.faces = in;
 	mesh_openness(open, &mesh);
 	for (int i = 0; i < 8; i++)

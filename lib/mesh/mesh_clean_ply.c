@@ -15,21 +15,26 @@ enum { CORNERS_MAX = 255 };
 static bool binary(double *v, struct ply *ply, int size, bool is_float, bool is_signed)
 {
 	uint64_t bits = 0;
+	uint32_t low;
+	float f;
 	if (ply->end - ply->at < size)
 		return false;
-	for (int i = 0; i < size; i++)
-		bits |= (uint64_t)(unsigned char)ply->at[ply->format == PLY_BIG ? size - 1 - i : i] << 8 * i;
+	if (size == 4 && ply->format == PLY_LITTLE) {  // next to all there are
+		memcpy(&low, ply->at, sizeof low);
+		bits = low;
+	} else
+		for (int i = 0; i < size; i++)
+			bits |= (uint64_t)(unsigned char)ply->at[ply->format == PLY_BIG ? size - 1 - i : i] << 8 * i;
 	ply->at += size;
 	if (is_float && size == 8)
 		memcpy(v, &bits, sizeof *v);
 	else if (is_float) {
-		float f;
-		uint32_t low = (uint32_t)bits;
+		low = (uint32_t)bits;
 		memcpy(&f, &low, sizeof f);
 		*v = (double)f;
 	} else {
-		uint64_t top = 1ull << (8 * size - 1);
-		*v = is_signed && bits & top ? (double)bits - 2.0 * (double)top : (double)bits;
+		int64_t top = 1ll << (8 * size - 1);
+		*v = is_signed ? (double)(((int64_t)bits ^ top) - top) : (double)bits;
 	}
 	return true;
 }

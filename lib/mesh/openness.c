@@ -32,8 +32,8 @@ static void frame(float x[3], float y[3], const float n[3])
 	y[2] = -n[1];
 }
 
-/* Of every step-th vertex. */
-static void measure(float *open, const struct mesh *mesh, int step)
+/* Of every step-th vertex. No further rays go out once `enough` of them are free. */
+static void measure(float *open, const struct mesh *mesh, int step, int enough)
 {
 	float dir[RAYS][3], (*normal)[3] = mesh_normals(mesh);
 	float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, size = 0;
@@ -54,7 +54,7 @@ static void measure(float *open, const struct mesh *mesh, int step)
 		frame(x, y, n);
 		for (int k = 0; k < 3; k++)
 			from[k] = mesh->vertices[i][k] + OFF * size * n[k];
-		for (int r = 0; r < RAYS; r++) {
+		for (int r = 0; r < RAYS && free_rays < enough; r++) {
 			float d[3];
 			for (int k = 0; k < 3; k++)
 				d[k] = dir[r][0] * x[k] + dir[r][1] * y[k] + dir[r][2] * n[k];
@@ -68,16 +68,34 @@ static void measure(float *open, const struct mesh *mesh, int step)
 
 void mesh_openness(float *open, const struct mesh *mesh)
 {
-	measure(open, mesh, 1);
+	measure(open, mesh, 1, RAYS);
+}
+
+/* Every step-th; returns how many of them there are and, in *n, how many are hidden. */
+static int find_hidden(bool *hidden, int *n, const struct mesh *mesh, double least, int step)
+{
+	int all = 0;
+	float *open = mem_array((size_t)mesh->n_vertices + 1, sizeof *open);
+	measure(open, mesh, step, (int)ceil(least * RAYS));
+	*n = 0;
+	for (int i = 0; i < mesh->n_vertices; i += step, all++) {
+		bool is = (double)open[i] < least;
+		*n += is;
+		if (hidden)
+			hidden[i] = is;
+	}
+	free(open);
+	return all;
+}
+
+void mesh_hidden(bool *hidden, const struct mesh *mesh, double least)
+{
+	int n;
+	find_hidden(hidden, &n, mesh, least, 1);
 }
 
 double mesh_hidden_share(const struct mesh *mesh, double least, int samples)
 {
-	int step = mesh->n_vertices > samples ? mesh->n_vertices / samples : 1, n = 0, all = 0;
-	float *open = mem_array((size_t)mesh->n_vertices + 1, sizeof *open);
-	measure(open, mesh, step);
-	for (int i = 0; i < mesh->n_vertices; i += step, all++)
-		n += (double)open[i] < least;
-	free(open);
+	int n, all = find_hidden(0, &n, mesh, least, mesh->n_vertices > samples ? mesh->n_vertices / samples : 1);
 	return all ? (double)n / all : 0;
 }

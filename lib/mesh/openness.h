@@ -9,6 +9,9 @@
  * seen from outside. */
 void mesh_openness(float *open, const struct mesh *mesh);
 
+/* hidden [mesh->n_vertices]: whose openness is below `least`; faster than to measure it. */
+void mesh_hidden(bool *hidden, const struct mesh *mesh, double least);
+
 /* Share of about `samples` vertices, evenly taken, with an openness below `least`. */
 double mesh_hidden_share(const struct mesh *mesh, double least, int samples);
 

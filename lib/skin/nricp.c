@@ -28,7 +28,6 @@ struct run {
 	struct level level[NRICP_LEVELS + 1];
 	int n_levels;                    // level[0] is all vertices, each further one is coarser
 	int first;                       // 1: there are too many vertices, level[0] is polished alone
-	double noise;                    // of the fixed mesh, standard deviation
 };
 
 static void level_room(struct level *l)
@@ -152,7 +151,7 @@ static void ask(struct level *l, const struct nricp_conf *conf)
 static void one_level(struct run *run, struct level *l, int rounds, int first, int total, bool direct)
 {
 	const struct nricp_conf *c = &run->conf;
-	double last = c->stiff[1] + c->noise * run->noise;
+	double last = c->stiff[1] + c->noise * run->fixed.noise;
 	struct nricp_solver *solver = nricp_solver_new(&l->graph, direct, 60, 1e-2);
 	for (int i = 0; i < rounds; i++) {
 		double at = total > 1 ? (double)(first + i) / (total - 1) : 1;
@@ -191,7 +190,7 @@ static void finish(struct run *run)
 {
 	struct level *l = &run->level[0];
 	const struct nricp_conf *c = &run->conf;
-	nricp_polish(l->points, l->match, &l->graph, &run->fixed, c, c->polish + c->polish_noise * run->noise);
+	nricp_polish(l->points, l->match, &l->graph, &run->fixed, c, c->polish + c->polish_noise * run->fixed.noise);
 	nricp_unfold(l->points, &run->moving, &l->graph);
 	nricp_match_all(l->match, l->graph.n, l->points, &run->fixed, c, c->welsch[1]);
 }
@@ -253,7 +252,6 @@ bool nricp_run(struct nricp_result *out, const struct mesh *moving, const struct
 	run->fixed_mesh = nricp_carried(fixed, same, center, working_size / size);
 	run->moving = nricp_carried(moving, fixed_from_moving, center, working_size / size);
 	nricp_fixed_make(&run->fixed, &run->fixed_mesh);
-	run->noise = nricp_noise(&run->fixed_mesh, &run->fixed.topology, (const float(*)[3])run->fixed.normals);
 	build_levels(run);
 	deform(run);
 	out->place = mem_array((size_t)moving->n_vertices + 1, sizeof *out->place);

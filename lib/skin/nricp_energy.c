@@ -56,26 +56,26 @@ static double star_weight(const struct nricp_graph *g, int i, double floor2)
 	return degree && h2 > 0 ? 4 * g->area[i] / (degree * h2 * h2) : 0;
 }
 
-/* Q_jk = w (delta_jk - e_j' star_k) for edges j, k of star i. */
-static double q_of(const struct nricp_graph *g, int i, int32_t j, int32_t k)
-{
-	const double *a = g->place[i], *b = g->place[g->neighbour[j]], *s = g->star + 3 * (size_t)k;
-	return (j == k) - (b[0] - a[0]) * s[0] - (b[1] - a[1]) * s[1] - (b[2] - a[2]) * s[2];
-}
-
-/* S of star i, rows and columns: the node itself, then its neighbours; [1 + degree][1 + degree]. */
+/* S of star i, rows and columns: the node itself, then its neighbours; [1 + degree][1 + degree]:
+ * Q_jk = w (delta_jk - e_j' star_k) for edges j, k of the star, and the node's own so that rows and columns sum to 0. */
 static void star_form(double *s, const struct nricp_graph *g, int i, double weight)
 {
 	int32_t first = g->start[i], degree = g->start[i + 1] - first, m = degree + 1;
-	memset(s, 0, (size_t)m * (size_t)m * sizeof *s);
-	for (int32_t j = 0; j < degree; j++)
+	const double *a = g->place[i], *star = g->star + 3 * (size_t)first;
+	memset(s, 0, (size_t)m * sizeof *s);
+	for (int32_t j = 0; j < degree; j++) {
+		const double *b = g->place[g->neighbour[first + j]];
+		double x = weight * (b[0] - a[0]), y = weight * (b[1] - a[1]), z = weight * (b[2] - a[2]), sum = 0;
+		double *line = s + (size_t)(j + 1) * (size_t)m;
 		for (int32_t k = 0; k < degree; k++) {
-			double q = weight * q_of(g, i, first + j, first + k);
-			s[(j + 1) * m + k + 1] += q;
-			s[(j + 1) * m] -= q;
+			double q = (j == k ? weight : 0) - x * star[3 * k] - y * star[3 * k + 1] - z * star[3 * k + 2];
+			line[k + 1] = q;
 			s[k + 1] -= q;
-			s[0] += q;
+			sum += q;
 		}
+		line[0] = -sum;
+		s[0] += sum;
+	}
 }
 
 /* The pattern of R: nodes that share a star. */

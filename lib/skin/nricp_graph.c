@@ -111,8 +111,9 @@ static void nearest_rotation(double a[3][3])
 			a[0][0] = a[1][1] = a[2][2] = 1;
 			return;
 		}
+		double half = 0.5 / det;
 		for (int i = 0; i < 9; i++) {
-			double next = 0.5 * ((&a[0][0])[i] + (&cof[0][0])[i] / det);
+			double next = 0.5 * (&a[0][0])[i] + half * (&cof[0][0])[i];
 			change += fabs(next - (&a[0][0])[i]);
 			(&a[0][0])[i] = next;
 		}

@@ -86,6 +86,7 @@ void nricp_fixed_make(struct nricp_fixed *out, const struct mesh *mesh)
 {
 	*out = (struct nricp_fixed){ .mesh = mesh, .normals = mesh_normals(mesh) };
 	topology_make(&out->topology, mesh);
+	out->noise = nricp_noise(out->normals, mesh, &out->topology);
 	out->scene = closest_new(mesh, (const float(*)[3])out->normals);
 	take_rim(out);
 }

@@ -16,6 +16,7 @@ struct nricp_fixed {
 	struct kdtree *rim_tree;   // middles and ends of its rim; null: it has none
 	float (*rim)[3], (*rim_out)[3], (*rim_along)[3];  // points; unit directions off the surface there, and along it
 	int n_rim;
+	double noise;              // of the mesh, across its surface: standard deviation
 };
 
 void nricp_fixed_make(struct nricp_fixed *out, const struct mesh *mesh);
@@ -44,8 +45,9 @@ struct nricp_match {
 void nricp_match_all(struct nricp_match *match, int n, const struct nricp_point *points, const struct nricp_fixed *fixed,
                      const struct nricp_conf *conf, double scale);
 
-/* Standard deviation of the noise of a mesh, across its surface: of vertices against the mean of their neighbours. */
-double nricp_noise(const struct mesh *mesh, const struct topology *topology, const float (*normals)[3]);
+/* Standard deviation of the noise of a mesh, across its surface: of vertices against the mean of their neighbours. The
+ * normals of a noisy mesh, which are off by noise over the edges' length, are then made means with their neighbours'. */
+double nricp_noise(float (*normals)[3], const struct mesh *mesh, const struct topology *topology);
 
 /* The last step: all points stand where the graph (of every vertex) has put them; they go along their normals towards the
  * fixed mesh, smoothly over `length`. */

@@ -180,12 +180,8 @@ static bool *only_hidden(const struct mesh *target, const struct mesh *subject, 
 	double share = least > 0 ? mesh_hidden_share(target, least, SAMPLES) : 0;
 	if (!(share > 0 && share < inside_out) || mesh_hidden_share(subject, least, SAMPLES) > has_them * share)
 		return 0;
-	float *open = mem_array((size_t)target->n_vertices + 1, sizeof *open);
 	bool *is = mem_new((size_t)target->n_vertices + 1, sizeof *is);
-	mesh_openness(open, target);
-	for (int i = 0; i < target->n_vertices; i++)
-		is[i] = (double)open[i] < least;
-	free(open);
+	mesh_hidden(is, target, least);
 	return is;
 }
 
