@@ -34,34 +34,34 @@ void lightpath_batch(int n, const float *px, const float *py, const float *pz, c
                      const float *wz, float *kx, float *ky, float *kz, unsigned char *status,
                      const struct cornea *cornea, int steps)
 {
-	float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, 0, 0, 0 }, n, steps);
+	float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, { 0 }, 0 }, n, steps);
 }
 
 void lightpath_batch_point(int n, const float *px, const float *py, const float *pz, const double C[3], float *kx,
                            float *ky, float *kz, unsigned char *status, const struct cornea *cornea, int steps)
 {
-	float_run(&(struct float_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C, 0, 0, 0 }, n, steps);
+	float_run(&(struct float_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C, { 0 }, 0 }, n, steps);
 }
 
 void lightpath_batch_double(int n, const double *px, const double *py, const double *pz, const double *wx,
                             const double *wy, const double *wz, double *kx, double *ky, double *kz,
                             unsigned char *status, const struct cornea *cornea, int steps)
 {
-	double_run(&(struct double_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, 0, 0, 0 }, n, steps);
+	double_run(&(struct double_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, { 0 }, 0 }, n, steps);
 }
 
 void lightpath_batch_point_double(int n, const double *px, const double *py, const double *pz, const double C[3],
                                   double *kx, double *ky, double *kz, unsigned char *status,
                                   const struct cornea *cornea, int steps)
 {
-	double_run(&(struct double_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C, 0, 0, 0 }, n, steps);
+	double_run(&(struct double_batch){ px, py, pz, 0, 0, 0, kx, ky, kz, status, cornea, C, { 0 }, 0 }, n, steps);
 }
 
-long lightpath_batch_from(int n, const float *x, const float *y, const float *px, const float *py, const float *pz,
+long lightpath_batch_from(int n, const float *qx, const float *qy, const float *qz, const float *px, const float *py, const float *pz,
                           const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
                           unsigned char *status, const struct cornea *cornea, int steps, double error_mm)
 {
-	return float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, x, y, error_mm }, n,
+	return float_run(&(struct float_batch){ px, py, pz, wx, wy, wz, kx, ky, kz, status, cornea, 0, { qx, qy, qz }, error_mm }, n,
 	                 steps);
 }
 

@@ -12,6 +12,11 @@ SIMD_CLONES static void NAME(start_directional)(struct NAME(block) *b, const str
 	LOOP(m, NAME(started)(b, i, c));
 }
 
+SIMD_CLONES static void NAME(start_along)(struct NAME(block) *b, const struct NAME(shared) *c, int m)
+{
+	LOOP(m, NAME(started)(b, i, c));
+}
+
 SIMD_CLONES static void NAME(start_point)(struct NAME(block) *b, const struct NAME(shared) *c, int m)
 {
 	LOOP(m, NAME(bent)(b, i, c, true));
@@ -41,12 +46,13 @@ SIMD_CLONES static void NAME(polish_point)(struct NAME(block) *b, const struct N
 
 #undef LOOP
 
-/* Lanes work in whole vectors: the last problem is repeated. Returns how many lanes are filled. */
-static int NAME(pad)(struct NAME(block) *b, int m)
+/* Lanes work in whole vectors: the last problem is repeated, with where it starts: in the chart, or along a direction.
+ * Returns how many lanes are filled. */
+static int NAME(pad)(struct NAME(block) *b, int m, bool chart)
 {
 	int whole = (m + 7) / 8 * 8;
-	REAL *const all[] = { b->px, b->py, b->pz, b->wx, b->wy, b->wz, b->x, b->y };
-	for (int k = 0; k < COUNT(all); k++)
+	REAL *const all[] = { b->px, b->py, b->pz, b->wx, b->wy, b->wz, chart ? b->x : b->gx, chart ? b->y : b->gy, b->hxx };
+	for (int k = 0; k < COUNT(all) - chart; k++)
 		for (int i = m; i < whole; i++)
 			all[k][i] = all[k][m - 1];
 	return whole;
@@ -71,7 +77,7 @@ struct NAME(batch) {
 	unsigned char *status;
 	const struct cornea *cornea;
 	const double *C;
-	const REAL *x, *y;  // where to start, in the chart; or null
+	const REAL *q[3];   // where to start: along these directions from P; or null
 	double error;       // mm; 0: as good as the type is
 };
 
@@ -101,7 +107,12 @@ static bool NAME(doubtful)(const struct NAME(block) *b, int i, const struct corn
 /* Those lanes, or that float cannot tell well enough, gathered and polished in double; their number. */
 static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in, double *clear)
 {
-	int lane[BLOCK + 1], n = 0;
+	int lane[BLOCK + 1], n = 0, any = 0;
+#pragma omp simd reduction(| : any)
+	for (int i = 0; i < m; i++)
+		any |= b->again[i] | (b->status[i] == LIGHTPATH_GRAZING);
+	if (!any)
+		return 0;
 	for (int i = 0; i < m; i++) {
 		lane[n] = i;
 		n += NAME(doubtful)(b, i, in->cornea, in->C, clear);
@@ -116,7 +127,7 @@ static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in
 		again.x[j] = b->x[i], again.y[j] = b->y[i];
 	}
 	struct double_shared shared = double_share(in->cornea, in->C);
-	(in->C ? double_polish_point : double_polish_directional)(&again, &shared, double_pad(&again, n), 4);
+	(in->C ? double_polish_point : double_polish_directional)(&again, &shared, double_pad(&again, n, true), 4);
 	for (int j = 0; j < n; j++) {
 		int i = lane[j];
 		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
@@ -141,17 +152,17 @@ static long NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 	struct NAME(shared) shared = NAME(share)(batch->cornea, batch->C);
 	NAME(spare)(&shared, batch->error);
 	struct NAME(block) block;
-	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz, batch->x, batch->y };
-	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz, block.x, block.y };
+	const REAL *const *q = batch->q;
+	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz, q[0], q[1], q[2] };
+	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz, block.gx, block.gy, block.hxx };
 	long redone = 0;
 	double clear = 0;
 	for (int from = 0; from < n; from += BLOCK) {
 		int m = n - from < BLOCK ? n - from : BLOCK;
-		for (int k = 0; k < COUNT(src); k++)
+		for (int k = 0; k < (q[0] ? 9 : 6); k++)
 			memcpy(dst[k], (src[k] ? src[k] : src[0]) + from, m * sizeof(REAL));
-		int whole = NAME(pad)(&block, m);
-		if (!batch->x)
-			(batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
+		int whole = m % 8 ? NAME(pad)(&block, m, false) : m;
+		(q[0] ? NAME(start_along) : batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
 		(batch->C ? NAME(polish_point) : NAME(polish_directional))(&block, &shared, whole, steps);
 		redone += NAME(redo)(&block, m, batch, &clear);
 		memcpy(batch->kx + from, block.kx, m * sizeof(REAL));

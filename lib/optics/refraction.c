@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/simd.h"
 #include "optics/lightpath_path.h"
 #include "optics/refraction_parts.h"
 
@@ -30,14 +31,19 @@ static bool is_table(const struct refraction *f)
 }
 
 /* Whether start or table serve all of these. */
+SIMD_CLONES static bool all_within(int n, const float *px, const float *py, const float *wz, float edge2, float most)
+{
+	int out = 0;
+#pragma omp simd reduction(| : out)
+	for (int i = 0; i < n; i++)
+		out |= !(px[i] * px[i] + py[i] * py[i] <= edge2) | !(wz[i] <= most);
+	return !out;
+}
+
 static bool covered(const struct refraction *f, int n, const float *px, const float *py, const float *wz)
 {
-	float most = is_table(f) ? 0 : REFRACTION_BEHIND, r2 = 0, z = -1, edge = 1.02 * f->radius;
-	for (int i = 0; i < n; i++) {
-		r2 = fmaxf(r2, px[i] * px[i] + py[i] * py[i]);
-		z = fmaxf(z, wz[i]);
-	}
-	return z <= most && r2 <= edge * edge;
+	float edge = 1.02f * (float)f->radius;
+	return all_within(n, px, py, wz, edge * edge, is_table(f) ? 0 : REFRACTION_BEHIND);
 }
 
 static void judge(const struct refraction *f, int n, const float *wx, const float *wy, const float *wz, const float *kx,
@@ -57,7 +63,7 @@ static long evaluate(const struct refraction *f, int n, const float *px, const f
                      const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
                      unsigned char *status)
 {
-	float x[BLOCK], y[BLOCK];
+	float qx[BLOCK], qy[BLOCK], qz[BLOCK];
 	bool good = f->method != REFRACTION_NEWTON && covered(f, n, px, py, wz);
 	if (good && is_table(f)) {
 		refraction_look_up(f, n, px, py, wx, wy, wz, kx, ky, kz);
@@ -65,11 +71,11 @@ static long evaluate(const struct refraction *f, int n, const float *px, const f
 		return 0;
 	}
 	if (good)
-		refraction_start(f, n, px, py, wx, wy, wz, x, y);
+		refraction_start(f, n, px, py, wx, wy, wz, qx, qy, qz);
 	// Without its own start a block needs the closed form's steps.
 	int steps = good || f->method == REFRACTION_NEWTON ? f->steps : 3;
-	return lightpath_batch_from(n, good ? x : 0, good ? y : 0, px, py, pz, wx, wy, wz, kx, ky, kz, status, &f->cornea,
-	                            steps, f->error_mm);
+	return lightpath_batch_from(n, good ? qx : 0, good ? qy : 0, good ? qz : 0, px, py, pz, wx, wy, wz, kx, ky, kz, status,
+	                            &f->cornea, steps, f->error_mm);
 }
 
 void refraction_batch(const struct refraction *f, int n, const float *px, const float *py, const float *pz,

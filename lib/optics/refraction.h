@@ -10,7 +10,7 @@
 enum refraction_method {
 	REFRACTION_AUTO,           // the cheaper of the next two for the error
 	REFRACTION_NEWTON,         // closed-form start, nothing stored
-	REFRACTION_POLYNOMIAL,     // polynomial start
+	REFRACTION_POLYNOMIAL,     // start along a ray bent by polynomials
 	REFRACTION_TABLE_LINEAR,   // the paper's table, interpolated
 	REFRACTION_TABLE_NEAREST,  // its nearest sample
 	REFRACTION_METHODS
@@ -26,7 +26,7 @@ struct refraction_conf {
 	double depth;               // of the iris plane, mm
 };
 
-enum { REFRACTION_MAX_DEGREE = 6 };
+enum { REFRACTION_MAX_DEGREE = 3 };
 
 struct refraction {
 	struct cornea cornea;
@@ -35,7 +35,7 @@ struct refraction {
 	int steps;                  // Newton steps after the start
 	int degree;                 // of the polynomial
 	int points, thetas, phis;   // of the table: radius × angle from the axis 0..90° × azimuth 0..180° from P's
-	float (*data)[3];           // polynomial: coefficients of A, B, 0; table: K. Owned
+	float (*data)[3];           // polynomial: coefficients of gamma, beta (refraction_poly.c), 0; table: K. Owned
 	long n_data;
 	double worst_mm, mean_mm;   // measured against the solver in double, light from the hemisphere, K inside the rim
 };

@@ -3,16 +3,16 @@
 #define OPTICS_REFRACTION_PARTS_H
 #include "optics/refraction.h"
 
-/* Number of coefficients of A, and of B: monomials of total degree <= degree in three variables. */
+/* Number of coefficients of gamma, and of beta: monomials of total degree <= degree in three variables. */
 int refraction_monomials(int degree);
 
-/* Fits the polynomial to the solver's K over the iris and the hemisphere (and 5 degrees below), by least squares.
+/* Fits the polynomials to the solver's K over the iris and the hemisphere (and 5 degrees below), by least squares.
  * Fills f->data. False where the light reaches too little of the iris for that. */
 bool refraction_fit(struct refraction *f);
 
-/* Starts in lightpath_batch_from()'s chart. */
+/* Directions from P towards K for lightpath_batch_from(), of any length. f->degree >= 1. */
 void refraction_start(const struct refraction *f, int n, const float *px, const float *py, const float *wx, const float *wy,
-                      const float *wz, float *x, float *y);
+                      const float *wz, float *qx, float *qy, float *qz);
 
 /* Largest w_z for which the polynomial is good. */
 #define REFRACTION_BEHIND 0.087f
