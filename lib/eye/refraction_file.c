@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 
-enum { CONSTANTS = 17, NARROWEST = 32, LIMIT_PX = 1 << 24 };
+enum { FORMAT = 2, CONSTANTS = 17, NARROWEST = 32, LIMIT_PX = 1 << 24 };
 static const char *const xyz[] = { "X", "Y", "Z" };
 
 static int columns(const struct refraction *f)
@@ -18,7 +18,7 @@ static int columns(const struct refraction *f)
 bool refraction_save(const struct refraction *f, const char *path, const char *made_by, struct err *err)
 {
 	const struct cornea *c = &f->cornea;
-	const double constants[CONSTANTS] = { 1,        f->method,   f->steps,    f->degree, f->points,   f->thetas,
+	const double constants[CONSTANTS] = { FORMAT,   f->method,   f->steps,    f->degree, f->points,   f->thetas,
 		                              f->phis,  c->R,        c->p,        c->n,      c->rim,      f->depth,
 		                              f->radius, f->error_mm, f->worst_mm, f->mean_mm, f->n_data };
 	int width = columns(f);
@@ -51,7 +51,7 @@ static bool constants(struct refraction *f, const float *px)
 	f->error_mm = v[13];
 	f->worst_mm = v[14];
 	f->mean_mm = v[15];
-	bool ok = whole(&format, v[0], 1, 1) && whole(&f->method, v[1], REFRACTION_NEWTON, REFRACTION_METHODS - 1)
+	bool ok = whole(&format, v[0], FORMAT, FORMAT) && whole(&f->method, v[1], REFRACTION_NEWTON, REFRACTION_METHODS - 1)
 	          && whole(&f->steps, v[2], 0, 100) && whole(&f->degree, v[3], 0, REFRACTION_MAX_DEGREE)
 	          && whole(&f->points, v[4], 0, 10000) && whole(&f->thetas, v[5], 0, 1000) && whole(&f->phis, v[6], 0, 1000);
 	ok = ok && v[7] > 0 && v[8] >= 0 && v[9] >= 1 && v[10] > 0 && v[11] > 0 && v[12] > 0 && v[13] >= 0;

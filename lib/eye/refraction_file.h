@@ -1,7 +1,7 @@
 /* refraction_file: the refraction function in a file, IRIS/refraction.exr: channels X, Y, Z, float.
- * Row 0, X: constants, in order: format (1), method, steps, degree, points, thetas, phis, R, p, n, rim, depth, radius,
+ * Row 0, X: constants, in order: format (2), method, steps, degree, points, thetas, phis, R, p, n, rim, depth, radius,
  * error_mm, worst_mm, mean_mm, number of data. From row 1 on, row by row, the data: of a polynomial the coefficients of
- * A (X) and B (Y); of a table K in mm, one row for each point of the radius, its columns angle from the axis × azimuth;
+ * gamma (X) and beta (Y); of a table K in mm, one row for each point of the radius, its columns angle from the axis × azimuth;
  * of the closed-form start nothing. lib/optics/refraction.h says what they mean.
  */
 #ifndef EYE_REFRACTION_FILE_H

@@ -9,19 +9,19 @@ SIMD_CLONES static void NAME(start_directional)(struct NAME(block) *b, const str
 {
 	LOOP(m, NAME(bent)(b, i, c, false));
 	LOOP(m, NAME(refracted)(b, i, c, false));
-	LOOP(m, NAME(started)(b, i, c));
+	LOOP(m, NAME(started)(b, i, c, false));
 }
 
 SIMD_CLONES static void NAME(start_along)(struct NAME(block) *b, const struct NAME(shared) *c, int m)
 {
-	LOOP(m, NAME(started)(b, i, c));
+	LOOP(m, NAME(started)(b, i, c, true));
 }
 
 SIMD_CLONES static void NAME(start_point)(struct NAME(block) *b, const struct NAME(shared) *c, int m)
 {
 	LOOP(m, NAME(bent)(b, i, c, true));
 	LOOP(m, NAME(refracted)(b, i, c, true));
-	LOOP(m, NAME(started)(b, i, c));
+	LOOP(m, NAME(started)(b, i, c, false));
 }
 
 SIMD_CLONES static void NAME(polish_directional)(struct NAME(block) *b, const struct NAME(shared) *c, int m, int steps)
@@ -31,7 +31,9 @@ SIMD_CLONES static void NAME(polish_directional)(struct NAME(block) *b, const st
 		LOOP(m, NAME(curve)(b, i, c, false));
 		LOOP(m, NAME(move)(b, i, c));
 	}
-	LOOP(m, NAME(finish)(b, i, c, false));
+	struct NAME(shared) own = *c;  // that no store of K can be to
+	REAL *restrict K[] = { b->kx, b->ky, b->kz };
+	LOOP(m, NAME(finish)(b, i, &own, false, K));
 }
 
 SIMD_CLONES static void NAME(polish_point)(struct NAME(block) *b, const struct NAME(shared) *c, int m, int steps)
@@ -41,20 +43,38 @@ SIMD_CLONES static void NAME(polish_point)(struct NAME(block) *b, const struct N
 		LOOP(m, NAME(curve)(b, i, c, true));
 		LOOP(m, NAME(move)(b, i, c));
 	}
-	LOOP(m, NAME(finish)(b, i, c, true));
+	struct NAME(shared) own = *c;  // that no store of K can be to
+	REAL *restrict K[] = { b->kx, b->ky, b->kz };
+	LOOP(m, NAME(finish)(b, i, &own, true, K));
 }
 
 #undef LOOP
 
-/* Lanes work in whole vectors: the last problem is repeated, with where it starts: in the chart, or along a direction.
- * Returns how many lanes are filled. */
-static int NAME(pad)(struct NAME(block) *b, int m, bool chart)
+enum { NAME(IN) = 9, NAME(OUT) = 3 };
+
+/* Lanes work in whole vectors: problems that fill none are moved here, the last one repeated. */
+struct NAME(spare_lanes) {
+	REAL in[NAME(IN)][BLOCK], out[NAME(OUT)][BLOCK];
+};
+
+/* The problems [from, from + m) of a call: straight from the caller's arrays, or from the spare lanes. Returns how many
+ * lanes are filled. in: null where not used. */
+static int NAME(load)(struct NAME(block) *b, struct NAME(spare_lanes) *spare, const REAL *const in[NAME(IN)],
+                      REAL *const out[NAME(OUT)], long from, int m)
 {
+	const REAL **const to[] = { &b->px, &b->py, &b->pz, &b->wx, &b->wy, &b->wz, &b->qx, &b->qy, &b->qz };
+	REAL **const K[] = { &b->kx, &b->ky, &b->kz };
 	int whole = (m + 7) / 8 * 8;
-	REAL *const all[] = { b->px, b->py, b->pz, b->wx, b->wy, b->wz, chart ? b->x : b->gx, chart ? b->y : b->gy, b->hxx };
-	for (int k = 0; k < COUNT(all) - chart; k++)
-		for (int i = m; i < whole; i++)
-			all[k][i] = all[k][m - 1];
+	for (int k = 0; k < NAME(IN); k++) {
+		*to[k] = in[k] ? in[k] + from : in[0] + from;
+		if (whole == m)
+			continue;
+		for (int i = 0; i < whole; i++)
+			spare->in[k][i] = (*to[k])[i < m ? i : m - 1];
+		*to[k] = spare->in[k];
+	}
+	for (int k = 0; k < NAME(OUT); k++)
+		*K[k] = whole != m ? spare->out[k] : out[k] ? out[k] + from : 0;
 	return whole;
 }
 
@@ -72,13 +92,12 @@ static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3]
 
 /* The arrays of a call, whichever of w and C it has. */
 struct NAME(batch) {
-	const REAL *px, *py, *pz, *wx, *wy, *wz;
-	REAL *kx, *ky, *kz;
+	const REAL *in[NAME(IN)];  // P, w, and where to start: along these directions from P, or null
+	REAL *out[NAME(OUT)];      // K
 	unsigned char *status;
 	const struct cornea *cornea;
 	const double *C;
-	const REAL *q[3];   // where to start: along these directions from P; or null
-	double error;       // mm; 0: as good as the type is
+	double error;              // mm; 0: as good as the type is
 };
 
 /* The one lane, by the scalar solver. */
@@ -105,7 +124,7 @@ static bool NAME(doubtful)(const struct NAME(block) *b, int i, const struct corn
 }
 
 /* Those lanes, or that float cannot tell well enough, gathered and polished in double; their number. */
-static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in, double *clear)
+static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *batch, double *clear)
 {
 	int lane[BLOCK + 1], n = 0, any = 0;
 #pragma omp simd reduction(| : any)
@@ -115,25 +134,29 @@ static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *in
 		return 0;
 	for (int i = 0; i < m; i++) {
 		lane[n] = i;
-		n += NAME(doubtful)(b, i, in->cornea, in->C, clear);
+		n += NAME(doubtful)(b, i, batch->cornea, batch->C, clear);
 	}
 	if (!n)
 		return 0;
 	struct double_block again;
-	for (int j = 0; j < n; j++) {
-		int i = lane[j];
-		again.px[j] = b->px[i], again.py[j] = b->py[i], again.pz[j] = b->pz[i];
-		again.wx[j] = b->wx[i], again.wy[j] = b->wy[i], again.wz[j] = b->wz[i];
+	struct double_spare_lanes spare;
+	for (int j = 0; j < (n + 7) / 8 * 8; j++) {
+		int i = lane[j < n ? j : n - 1];
+		const double of[] = { b->px[i], b->py[i], b->pz[i], b->wx[i], b->wy[i], b->wz[i] };
+		for (int k = 0; k < COUNT(of); k++)
+			spare.in[k][j] = of[k];
 		again.x[j] = b->x[i], again.y[j] = b->y[i];
 	}
-	struct double_shared shared = double_share(in->cornea, in->C);
-	(in->C ? double_polish_point : double_polish_directional)(&again, &shared, double_pad(&again, n, true), 4);
+	const double *const in[] = { spare.in[0], spare.in[1], spare.in[2], spare.in[3], spare.in[4], spare.in[5], 0, 0, 0 };
+	double *const out[] = { spare.out[0], spare.out[1], spare.out[2] };
+	struct double_shared shared = double_share(batch->cornea, batch->C);
+	(batch->C ? double_polish_point : double_polish_directional)(&again, &shared, double_load(&again, &spare, in, out, 0, (n + 7) / 8 * 8), 4);
 	for (int j = 0; j < n; j++) {
 		int i = lane[j];
 		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
 		b->status[i] = again.status[j];
-		if (double_doubtful(&again, j, in->cornea, in->C, clear) || again.status[j] != LIGHTPATH_OK)
-			NAME(alone)(b, i, in);
+		if (double_doubtful(&again, j, batch->cornea, batch->C, clear) || again.status[j] != LIGHTPATH_OK)
+			NAME(alone)(b, i, batch);
 	}
 	return n;
 }
@@ -147,29 +170,31 @@ static void NAME(spare)(struct NAME(shared) *shared, double error)
 	shared->ill = error < ILL ? ILL * FAR * FAR / error : 0;
 }
 
+/* int to bytes. */
+SIMD_CLONES static void NAME(tell)(unsigned char *restrict out, const int *restrict status, int m)
+{
+	SIMD_LOOP
+	for (int i = 0; i < m; i++)
+		out[i] = (unsigned char)status[i];
+}
+
 static long NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 {
 	struct NAME(shared) shared = NAME(share)(batch->cornea, batch->C);
 	NAME(spare)(&shared, batch->error);
 	struct NAME(block) block;
-	const REAL *const *q = batch->q;
-	const REAL *const src[] = { batch->px, batch->py, batch->pz, batch->wx, batch->wy, batch->wz, q[0], q[1], q[2] };
-	REAL *const dst[] = { block.px, block.py, block.pz, block.wx, block.wy, block.wz, block.gx, block.gy, block.hxx };
+	struct NAME(spare_lanes) spare;
 	long redone = 0;
 	double clear = 0;
 	for (int from = 0; from < n; from += BLOCK) {
-		int m = n - from < BLOCK ? n - from : BLOCK;
-		for (int k = 0; k < (q[0] ? 9 : 6); k++)
-			memcpy(dst[k], (src[k] ? src[k] : src[0]) + from, m * sizeof(REAL));
-		int whole = m % 8 ? NAME(pad)(&block, m, false) : m;
-		(q[0] ? NAME(start_along) : batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
+		int m = n - from < BLOCK ? n - from : BLOCK, whole = NAME(load)(&block, &spare, batch->in, batch->out, from, m);
+		(batch->in[6] ? NAME(start_along) : batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
 		(batch->C ? NAME(polish_point) : NAME(polish_directional))(&block, &shared, whole, steps);
 		redone += NAME(redo)(&block, m, batch, &clear);
-		memcpy(batch->kx + from, block.kx, m * sizeof(REAL));
-		memcpy(batch->ky + from, block.ky, m * sizeof(REAL));
-		memcpy(batch->kz + from, block.kz, m * sizeof(REAL));
+		for (int k = 0; k < NAME(OUT) && whole != m; k++)
+			memcpy(batch->out[k] + from, spare.out[k], (size_t)m * sizeof(REAL));
 		if (batch->status)
-			memcpy(batch->status + from, block.status, m);
+			NAME(tell)(batch->status + from, block.status, m);
 	}
 	return redone;
 }

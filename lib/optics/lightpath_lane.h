@@ -2,17 +2,18 @@
  * each type: REAL, SQRT, NAME(x) and BLOCK are defined there; hence no guard.
  */
 
-/* A block of problems: structure of arrays. */
+/* A block of problems: structure of arrays. What comes in and goes out lies where the caller has it. */
 struct NAME(block) {
-	REAL px[BLOCK], py[BLOCK], pz[BLOCK];  // P, mm
-	REAL wx[BLOCK], wy[BLOCK], wz[BLOCK];  // direction to the light; unused where it is a point
+	const REAL *px, *py, *pz;              // P, mm
+	const REAL *wx, *wy, *wz;              // direction to the light; unused where it is a point
+	const REAL *qx, *qy, *qz;              // where to start: along these directions from P; unused in the closed form
+	REAL *kx, *ky, *kz;                    // K, mm
 	REAL x[BLOCK], y[BLOCK];               // the current K in the chart of lengths()
 	REAL tau[BLOCK], inv_d[BLOCK];         // one step's intermediate results
 	REAL gx[BLOCK], gy[BLOCK], hxx[BLOCK], hxy[BLOCK], hyy[BLOCK];
-	REAL kx[BLOCK], ky[BLOCK], kz[BLOCK];  // K, mm
 	REAL last2[BLOCK];                     // square of the last step, mm²; huge where that says nothing
 	REAL gain[BLOCK];
-	unsigned char status[BLOCK], again[BLOCK];
+	int status[BLOCK], again[BLOCK];
 };
 
 /* What all problems share. */
@@ -73,9 +74,9 @@ SIMD_INLINE void NAME(refracted)(struct NAME(block) *b, int i, const struct NAME
 	b->hxx[i] = u[2] + f * gz;
 }
 
-SIMD_INLINE void NAME(started)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
+SIMD_INLINE void NAME(started)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool given)
 {
-	REAL q[3] = { b->gx[i], b->gy[i], b->hxx[i] }, K[3];
+	REAL q[3] = { given ? b->qx[i] : b->gx[i], given ? b->qy[i] : b->gy[i], given ? b->qz[i] : b->hxx[i] }, K[3];
 	NAME(leave)(K, b, i, c, q);
 	// The chart: where the line from the far end of the axis meets the plane z = 0, over 2R.
 	REAL inv_t = 1 / (2 * c->R - c->p * K[2]);
@@ -133,20 +134,22 @@ SIMD_INLINE void NAME(move)(struct NAME(block) *b, int i, const struct NAME(shar
 }
 
 /* K in mm, what came of it, and whether it needs another look. */
-SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point)
+SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point, REAL *restrict out[3])
 {
 	REAL x = b->x[i], y = b->y[i], rho2 = x * x + y * y, t = 2 * c->R / (1 + c->p * rho2), u[3];
 	REAL kx = t * x, ky = t * y, kz = t * rho2;
-	b->kx[i] = kx;
-	b->ky[i] = ky;
-	b->kz[i] = kz;
+	out[0][i] = kx;
+	out[1][i] = ky;
+	out[2][i] = kz;
 	REAL near = NAME(outward)(u, b, i, c, point, kx, ky, kz);
 	REAL cos_i = u[0] * kx + u[1] * ky - u[2] * (c->R - c->p * kz);
-	bool beyond = (kx * kx + ky * ky > c->rim2) | (c->p * kz > c->R);
-	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
+	int beyond = kx * kx + ky * ky > c->rim2 ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
+	beyond = c->p * kz > c->R ? LIGHTPATH_BEYOND_RIM : beyond;
+	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond;
 	// Newton leaves the step squared over 2 mm or so; more where the light is near and L curves with it.
 	// And its steps look small at the surface's far end, wherever they lead.
-	b->again[i] = !(b->last2[i] * (1 + 4 * near * near) <= c->far2) | (c->p * kz > (REAL)1.9 * c->R);
+	int far = c->p * kz > (REAL)1.9 * c->R;
+	b->again[i] = b->last2[i] * (1 + 4 * near * near) <= c->far2 ? far : 1;
 }
 
 /* Irradiance gain of lightpath_gain(), from the Hessian of curve() at K. */

@@ -156,8 +156,8 @@ static double measure(struct refraction *f, struct probe *p)
  * every machine. */
 static double cost(const struct refraction *f, double again)
 {
-	double start = f->method == REFRACTION_POLYNOMIAL ? 9 + 0.3 * refraction_monomials(f->degree) : 4;
-	return start + 2.7 * f->steps + 150 * again;
+	double start = f->method == REFRACTION_POLYNOMIAL ? 2.5 + 0.06 * refraction_monomials(f->degree) : 3.4;
+	return start + 2.25 * f->steps + 150 * again;
 }
 
 /* The cheapest start and number of steps within the error, among those of the method. */

@@ -91,9 +91,9 @@ static void show(const struct means *means)
 	}
 }
 
-/* One row with the worst error, one kept for the mean; returns the seconds of one evaluation. */
+/* One row with the worst error, one kept for the mean; returns the seconds of one evaluation. bytes: null, or storage. */
 static double measure(struct means *means, const char *method, const struct refraction_conf *conf, const char *label,
-                      double *most)
+                      double *most, long *bytes)
 {
 	struct run r = { 0 };
 	refraction_make(&r.f, &generic, conf);
@@ -108,6 +108,8 @@ static double measure(struct means *means, const char *method, const struct refr
 		*row = (struct mean_row){ .method = method, .time = t, .mean = mean };
 		snprintf(row->setting, sizeof row->setting, "%s", setting);
 	}
+	if (bytes)
+		*bytes = refraction_bytes(&r.f);
 	refraction_free(&r.f);
 	return t.median;
 }
@@ -145,7 +147,7 @@ int main(int argc, char **argv)
 			snprintf(label, sizeof label, "%d x %d, %s", points[i], directions[i],
 			         method == REFRACTION_TABLE_LINEAR ? "linear" : "nearest");
 			double t = measure(&means, "table (paper)", &(struct refraction_conf){ method, 0, points[i], directions[i], 5.85, 3.3 },
-			                   label, &most);
+			                   label, &most, 0);
 			table_time = fmin(table_time, t);
 			table_error = fmin(table_error, most);
 		}
@@ -156,9 +158,13 @@ int main(int argc, char **argv)
 		for (int i = 0; i < COUNT(budgets); i++) {
 			char label[40];
 			snprintf(label, sizeof label, "error_mm %g", budgets[i]);
-			measure(&means, names[method], &(struct refraction_conf){ method, budgets[i], 0, 0, 5.85, 3.3 }, label, &most);
+			measure(&means, names[method], &(struct refraction_conf){ method, budgets[i], 0, 0, 5.85, 3.3 }, label, &most, 0);
 		}
-	double t = measure(&means, "auto", &(struct refraction_conf){ REFRACTION_AUTO, 1e-3, 0, 0, 5.85, 3.3 }, "error_mm 0.001", &most);
+	long bytes;
+	double t = measure(&means, "auto", &(struct refraction_conf){ REFRACTION_AUTO, 1e-4, 0, 0, 5.85, 3.3 }, "error_mm 0.0001", &most, &bytes);
+	bench_goal("refraction function over the hemisphere: error, worst", "<= 1e-4 mm to 89.9 degrees", most, "mm", most <= 1e-4);
+	bench_goal("refraction function: storage", "<= 2048 bytes", bytes, "B", bytes <= 2048);
+	bench_goal("refraction function: time, one core", "<= 10 ns", 1e9 * t, "ns", t <= 1e-8);
 	bench_goal("refraction function against the paper's tables: error", "below every table's", most, "mm", most < table_error);
 	bench_goal("refraction function against the paper's tables: time", "below every table's", 1e9 * t, "ns", t < table_time);
 	show(&means);
