@@ -42,6 +42,7 @@ struct scene_level {
 	int n;
 	float per_mm;                 // texels in a mm
 	float *relief;                // [n][n][2]: height mm, + towards the cornea; stroma mm
+	int *pairs;                   // [n][n]: heights of a texel and of the next one to the right, 16 bits each; null: SCENE_RAYS
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
 	float *horizon;               // scene_march.h; null: level is not marched from

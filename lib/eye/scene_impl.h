@@ -57,6 +57,10 @@ void scene_flat(struct iris_batch *b, const struct scene *scene, const struct sc
 /* What is seen of the iris' colour at a point near the pupil's margin: none inside, less on the ruff. soft: half a pixel, mm. */
 void scene_pupil(float cover[3], const struct scene *scene, float x, float y, float soft);
 
+/* Heights in a level's pairs are multiples of that, mm. */
+#define SCENE_PAIR_MM (1.0f / 32768)
+void scene_pairs_make(struct scene_level *level);
+
 /* Fills a level's shown and bare. */
 void scene_shown_make(struct scene_level *level, const struct scene *scene);
 

@@ -181,6 +181,7 @@ void scene_free(struct scene *s)
 		free(s->level[i].colour);
 		free(s->level[i].model);
 		free(s->level[i].horizon);
+		free(s->level[i].pairs);
 		free(s->level[i].shown);
 		free(s->level[i].bare);
 	}
@@ -219,6 +220,7 @@ void scene_levels_make(struct scene *s)
 		free(l[k].colour);
 		free(l[k].model);
 		free(l[k].horizon);
+		free(l[k].pairs);
 		free(l[k].shown);
 		free(l[k].bare);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
@@ -229,8 +231,10 @@ void scene_levels_make(struct scene *s)
 			l[k].horizon = scene_horizons(s, &l[k]);
 	}
 	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++) {
+		free(l[k].pairs);
 		free(l[k].shown);
 		free(l[k].bare);
+		scene_pairs_make(&l[k]);
 		scene_shown_make(&l[k], s);
 	}
 }

@@ -46,3 +46,19 @@ void scene_shown_make(struct scene_level *l, const struct scene *s)
 			l->shown[at + 3] = l->bare[at + 3] = 0;
 		}
 }
+
+static int pair_half(float height)
+{
+	return (int)lrintf(fmaxf(-32768, fminf(32767, height / SCENE_PAIR_MM)));
+}
+
+void scene_pairs_make(struct scene_level *l)
+{
+	l->pairs = mem_array((size_t)l->n * (size_t)l->n, sizeof *l->pairs);
+	for (int y = 0; y < l->n; y++)
+		for (int x = 0; x < l->n; x++) {
+			long at = (long)y * l->n + x, next = x + 1 < l->n ? at + 1 : at;
+			unsigned low = (unsigned)pair_half(l->relief[2 * at]) & 0xffff, high = (unsigned)pair_half(l->relief[2 * next]);
+			l->pairs[at] = (int)(high << 16 | low);
+		}
+}

@@ -96,47 +96,6 @@ SIMD_INLINE void outside_lane(int i, struct quick_spots *restrict s, const struc
 	s->vz[i] = unit * ray.d[2];
 }
 
-/* Well inside the limbus: no sclera. */
-SIMD_INLINE void cornea_lane(int i, struct quick_spots *restrict s, const struct quick_rays *restrict r, const struct quick_look *restrict k, bool two)
-{
-	struct lane ray = { { r->ox[i], r->oy[i], r->oz[i] }, { r->dx[i], r->dy[i], r->dz[i] } };
-	float g[3], back[3], cosine, hit = enter(&ray, k->front, g, &cosine);
-	float inv = 1 / sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-	if (two)
-		hit *= enter(&ray, k->back, back, &cosine);
-	float unit = (1.5f - 0.5f * (r->dx[i] * r->dx[i] + r->dy[i] * r->dy[i] + r->dz[i] * r->dz[i])) / k->index;
-	s->hit[i] = hit;
-	s->nx[i] = g[0] * inv;
-	s->ny[i] = g[1] * inv;
-	s->nz[i] = g[2] * inv;
-	s->rho[i] = 0;
-	s->lid[i] = 0;
-	s->fx[i] = ray.o[0];
-	s->fy[i] = ray.o[1];
-	s->fz[i] = ray.o[2];
-	s->vx[i] = unit * ray.d[0];
-	s->vy[i] = unit * ray.d[1];
-	s->vz[i] = unit * ray.d[2];
-}
-
-/* Well outside: no cornea. */
-SIMD_INLINE void sclera_lane(int i, struct quick_spots *restrict s, const struct quick_rays *restrict r, const struct quick_look *restrict k)
-{
-	float ox = r->ox[i], oy = r->oy[i], oz = r->oz[i] - k->sphere_z, dx = r->dx[i], dy = r->dy[i], dz = r->dz[i];
-	float b = ox * dx + oy * dy + oz * dz, disc = b * b - (ox * ox + oy * oy + oz * oz - k->sphere_r * k->sphere_r);
-	float t = -b - sqrtf(disc > 0 ? disc : 0), per = 1 / k->sphere_r;
-	float x = (ox + t * dx) * per, y = (oy + t * dy) * per, z = (oz + t * dz) * per;
-	float place = angle_over_sine(-z) * (float)(0.5 / SCENE_SCLERA_REACH);
-	s->hit[i] = disc > 0 ? 1.0f : 0.0f;
-	s->nx[i] = x;
-	s->ny[i] = y;
-	s->nz[i] = z;
-	s->rho[i] = 2;
-	s->lid[i] = 1;
-	s->su[i] = x * place;
-	s->sv[i] = y * place;
-}
-
 #define QUICK_LOOP(name, lane)                                                                                         \
 	SIMD_CLONES static void name(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)        \
 	{                                                                                                                  \
@@ -144,25 +103,17 @@ SIMD_INLINE void sclera_lane(int i, struct quick_spots *restrict s, const struct
 		for (int i = 0; i < r->n; i++)                                                                                 \
 			lane;                                                                                                      \
 	}
-QUICK_LOOP(mixed_one, outside_lane(i, s, r, k, false))
-QUICK_LOOP(mixed_two, outside_lane(i, s, r, k, true))
-QUICK_LOOP(cornea_one, cornea_lane(i, s, r, k, false))
-QUICK_LOOP(cornea_two, cornea_lane(i, s, r, k, true))
-QUICK_LOOP(sclera_only, sclera_lane(i, s, r, k))
+QUICK_LOOP(outside_one, outside_lane(i, s, r, k, false))
+QUICK_LOOP(outside_two, outside_lane(i, s, r, k, true))
 
-void quick_outside(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k, enum quick_kind kind)
+void quick_outside(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
 {
-	if (kind == QUICK_SCLERA)
-		sclera_only(s, r, k);
-	else if (kind == QUICK_CORNEA)
-		(k->two ? cornea_two : cornea_one)(s, r, k);
-	else
-		(k->two ? mixed_two : mixed_one)(s, r, k);
+	(k->two ? outside_two : outside_one)(s, r, k);
 }
 
 /* Light on the white: diffuse, softened by what scatters below the surface, most in the red; next to the limbus it thins
  * out over the dark of the chamber's angle. Then the ripples of its film bend the normal. */
-SIMD_CLONES static void sclera_light(struct quick_spots *s, int n, const struct quick_look *k)
+SIMD_CLONES void quick_sclera(struct quick_spots *s, int n, const struct quick_look *k)
 {
 	static const float bleed[3] = { LOOK_BLEED }, rim[3] = { LOOK_RIM_DARK };
 	for (int c = 0; c < 3; c++) {
@@ -178,13 +129,8 @@ SIMD_CLONES static void sclera_light(struct quick_spots *s, int n, const struct 
 	}
 }
 
-void quick_sclera(struct quick_spots *s, int n, const struct quick_look *k)
-{
-	sclera_light(s, n, k);
-}
-
 /* Ripples of the tear film bend the normals beyond the limbus. */
-SIMD_CLONES void quick_ripple(struct quick_found *f, int n, const struct quick_look *k)
+SIMD_CLONES static void ripple(struct quick_found *f, int n, const struct quick_look *k)
 {
 	const struct image *film = &k->scene->film;
 	const struct quick_spots *s = &f->spots;
@@ -199,6 +145,17 @@ SIMD_CLONES void quick_ripple(struct quick_found *f, int n, const struct quick_l
 		f->bent[1][i] = on > 0 ? y * inv : s->ny[i];
 		f->bent[2][i] = on > 0 ? z * inv : s->nz[i];
 	}
+}
+
+void quick_bend(struct quick_found *f, int n, const struct quick_look *k)
+{
+	if (f->white) {
+		ripple(f, n, k);
+		return;
+	}
+	memcpy(f->bent[0], f->spots.nx, (size_t)n * sizeof(float));
+	memcpy(f->bent[1], f->spots.ny, (size_t)n * sizeof(float));
+	memcpy(f->bent[2], f->spots.nz, (size_t)n * sizeof(float));
 }
 
 /* The relief along each ray, by Newton's steps from the iris plane: it is flat enough against the slope of sight in the
@@ -229,7 +186,8 @@ SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, c
 	}
 }
 
-SIMD_CLONES void quick_mirror(struct quick_found *f, const struct quick_rays *r, const struct quick_look *k)
+SIMD_CLONES void quick_reflect(float *restrict out_x, float *restrict out_y, float *restrict out_z, struct quick_found *f, const struct quick_rays *r,
+                               const struct quick_look *k)
 {
 	struct quick_spots *s = &f->spots;
 	float(*m)[3] = (float(*)[3])k->cam_from_eye;
@@ -237,14 +195,23 @@ SIMD_CLONES void quick_mirror(struct quick_found *f, const struct quick_rays *r,
 	for (int i = 0; i < r->n; i++) {
 		float dx = r->dx[i], dy = r->dy[i], dz = r->dz[i], nx = f->bent[0][i], ny = f->bent[1][i], nz = f->bent[2][i];
 		float c = -(dx * nx + dy * ny + dz * nz), rx = dx + 2 * c * nx, ry = dy + 2 * c * ny, rz = dz + 2 * c * nz;
-		float x = m[0][0] * rx + m[0][1] * ry + m[0][2] * rz, y = m[1][0] * rx + m[1][1] * ry + m[1][2] * rz, z = m[2][0] * rx + m[2][1] * ry + m[2][2] * rz;
-		float ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, az = z < 0 ? -z : z, inv = 1 / (ax + ay + az), u = x * inv, v = y * inv;
-		float fu = 1 - ay * inv, fv = 1 - ax * inv;
 		s->mirror[i] = fresnel(c);
 		// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
 		s->rough[i] = (float)LOOK_FILM_ROUGH * step_smooth(LOOK_FILM_FROM, (float)(1 / (LOOK_FILM_TO - LOOK_FILM_FROM)), s->rho[i]);
-		s->eu[i] = z > 0 ? x < 0 ? -fu : fu : u;
-		s->ev[i] = z > 0 ? y < 0 ? -fv : fv : v;
+		out_x[i] = m[0][0] * rx + m[0][1] * ry + m[0][2] * rz;
+		out_y[i] = m[1][0] * rx + m[1][1] * ry + m[1][2] * rz;
+		out_z[i] = m[2][0] * rx + m[2][1] * ry + m[2][2] * rz;
+	}
+}
+
+SIMD_CLONES void quick_unfold(int n, float *restrict x, float *restrict y, const float *restrict z)
+{
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		float ax = x[i] < 0 ? -x[i] : x[i], ay = y[i] < 0 ? -y[i] : y[i], az = z[i] < 0 ? -z[i] : z[i], inv = 1 / (ax + ay + az);
+		float fu = 1 - ay * inv, fv = 1 - ax * inv, u = x[i] * inv, v = y[i] * inv;
+		x[i] = z[i] > 0 ? u < 0 ? -fu : fu : u;
+		y[i] = z[i] > 0 ? v < 0 ? -fv : fv : v;
 	}
 }
 

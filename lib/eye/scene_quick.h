@@ -42,25 +42,38 @@ struct quick_look {
 };
 struct quick_look quick_look(const struct scene *scene, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level);
 
-/* Where the rays end, once: what they see is found in it. */
+/* What a tile shows: everything, or nothing that changes fast within it but maps. */
+enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA };
+
+/* Where the rays end, once: what they see is found in it. Cornea, sclera: as of 256 rays, but normals, rho of the nodes. */
 struct quick_found {
 	struct quick_spots spots;  // normals before the film has bent them
+	enum quick_kind kind;
 	int seen, hit, white;      // rays that see the iris, anything, the sclera
 	float bent[3][BATCH];      // normals after
 };
 
-/* What a tile shows is asked at its corners: all of them well inside the limbus, or well outside. */
-enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA };
-
-/* In this order; quick_iris where something of the iris is seen, ripple and sclera where something white is. */
-void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look, enum quick_kind kind);
+/* In this order; quick_iris where something of the iris is seen, sclera where something white is; reflect into the camera's
+ * frame, then unfolded (x, y) onto the octahedron. */
+void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
+void quick_bend(struct quick_found *found, int n, const struct quick_look *look);
 void quick_iris(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
-void quick_ripple(struct quick_found *found, int n, const struct quick_look *look);
-void quick_mirror(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
+void quick_reflect(float *x, float *y, float *z, struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
+void quick_unfold(int n, float *x, float *y, const float *z);
 void quick_sclera(struct quick_spots *spots, int n, const struct quick_look *look);
 
-/* across: the rays are a tile's, row by row, so many in each; 0: no tile. */
-void quick_find(struct quick_found *found, const struct quick_rays *rays, int across, const struct quick_look *look);
+/* A tile's nodes: every fourth pixel of its 16 x 16 and of the next ones, in rows of eight of which five count. */
+enum { QUICK_TILE = 16, GRID_STEP = 4, GRID_SIDE = 5, GRID_ROW = 8, GRID_NODES = GRID_SIDE * GRID_ROW, GRID_LAST = GRID_NODES - GRID_ROW + GRID_SIDE - 1 };
+enum { GRID_U, GRID_V, GRID_RX, GRID_RY, GRID_RZ, GRID_MIRROR, GRID_ASIDE, GRID_ACROSS, GRID_ROUGH = GRID_ASIDE, GRID_CHANNELS = 8 };
+
+/* The 256 pixels from their nodes. */
+void quick_lay(float *out, const float node[GRID_NODES]);
+
+/* Finds a tile by the rays at its nodes. False: something in it wants every ray. */
+bool quick_grid(struct quick_found *found, const struct quick_rays *nodes, const struct quick_look *look);
+
+/* Finds it by every ray. */
+void quick_find(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
 
 /* Makes hits those of this view: empty, where they were another's. Then one tile's; *kept: it has been found before. */
 void scene_hits_for(struct scene_hits *hits, const struct scene *scene, const struct scene_view *view, int tiles);

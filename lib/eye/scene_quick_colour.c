@@ -98,55 +98,66 @@ SIMD_CLONES static void put_mirror(float rgba[][4], const struct quick_spots *s,
 	}
 }
 
-/* The limbus and the globe's outline are convex on the picture: what holds at the corners of a tile that is small against
- * them holds in it. */
-static enum quick_kind kind_of(const struct quick_rays *r, int across, const struct quick_look *k)
+/* A tile of cornea. */
+SIMD_CLONES static void all_iris(float rgba[][4], const struct quick_spots *s, const struct quick_look *k)
 {
-	struct quick_rays four = { .n = 4 };
-	struct quick_spots s;
-	int at[4] = { 0, across - 1, r->n - across, r->n - 1 }, in = 0, out = 0;
-	if (across < 2 || r->n < 2 * across)
-		return QUICK_MIXED;
-	for (int i = 0; i < 4; i++) {
-		four.ox[i] = r->ox[at[i]], four.oy[i] = r->oy[at[i]], four.oz[i] = r->oz[at[i]];
-		four.dx[i] = r->dx[at[i]], four.dy[i] = r->dy[at[i]], four.dz[i] = r->dz[at[i]];
+	const struct scene_shade *h = k->shade;
+	const struct envmap *env = k->light->mirror;
+	const struct image none = { 2, 2, 4, (float[16]){ 0 } }, *sharp = env ? &env->sharp : &none;
+	struct places p, q, e;
+	places_of(&p, s->iu, s->iv, h->per_mm, 0.5f * (float)h->n - 0.5f, h->n, BATCH);
+	places_of(&q, s->iu, s->iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, BATCH);
+	places_of(&e, s->eu, s->ev, 0.5f * (float)sharp->width, 0.5f * (float)sharp->width - 0.5f, sharp->width, BATCH);
+	for (int i = 0; i < BATCH; i++) {
+		colour c = look_up(h->detail, h->n, &p, i) * look_up(h->light, h->light_n, &q, i), m = look_up(sharp->px, sharp->width, &e, i);
+		c += s->mirror[i] * (m - c);
+		c[3] = 1;
+		memcpy(rgba[i], &c, sizeof c);
 	}
-	quick_outside(&s, &four, k, QUICK_MIXED);
-	float wide = fabsf(four.ox[3] - four.ox[0]) + fabsf(four.oy[3] - four.oy[0]) + fabsf(four.oz[3] - four.oz[0]);
-	if (wide * k->limbus[0] > 0.4f)
-		return QUICK_MIXED;
-	for (int i = 0; i < 4; i++) {
-		in += s.hit[i] > 0 && s.rho[i] < 0.88f;
-		out += s.hit[i] > 0 && s.rho[i] > 1.36f;
-	}
-	return in == 4 ? QUICK_CORNEA : out == 4 ? QUICK_SCLERA : QUICK_MIXED;
 }
 
-void quick_find(struct quick_found *f, const struct quick_rays *r, int across, const struct quick_look *k)
+/* A tile of sclera. */
+SIMD_CLONES static void all_sclera(float rgba[][4], struct quick_spots *s, const struct quick_look *k)
 {
-	enum quick_kind kind = kind_of(r, across, k);
+	const struct envmap *env = k->light->mirror;
+	const struct image none = { 2, 2, 4, (float[16]){ 0 } }, *sharp = env ? &env->sharp : &none, *rough = env ? &env->rough : &none, *map = &k->scene->veins;
+	struct places p, q, e;
+	float sky[3][BATCH];
+	quick_sclera(s, GRID_NODES, k);
+	for (int c = 0; c < 3; c++)
+		quick_lay(sky[c], s->sky[c]);
+	places_of(&p, s->su, s->sv, (float)map->width, 0.5f * (float)map->width - 0.5f, map->width, BATCH);
+	places_of(&e, s->eu, s->ev, 0.5f * (float)sharp->width, 0.5f * (float)sharp->width - 0.5f, sharp->width, BATCH);
+	places_of(&q, s->eu, s->ev, 0.5f * (float)rough->width, 0.5f * (float)rough->width - 0.5f, rough->width, BATCH);
+	for (int i = 0; i < BATCH; i++) {
+		colour light = { sky[0][i], sky[1][i], sky[2][i], 0 }, c = light * look_up(map->px, map->width, &p, i);
+		colour m = look_up(sharp->px, sharp->width, &e, i);
+		m += s->rough[i] * (look_up(rough->px, rough->width, &q, i) - m);
+		c += s->mirror[i] * (m - c);
+		c[3] = 1;
+		memcpy(rgba[i], &c, sizeof c);
+	}
+}
+
+void quick_find(struct quick_found *f, const struct quick_rays *r, const struct quick_look *k)
+{
 	struct quick_spots *s = &f->spots;
-	f->seen = kind == QUICK_CORNEA ? r->n : 0;
-	f->hit = f->seen;
-	f->white = kind == QUICK_SCLERA ? r->n : 0;
-	quick_outside(s, r, k, kind);
-	for (int i = 0; i < r->n && kind != QUICK_CORNEA; i++) {
+	float back[BATCH];
+	f->kind = QUICK_MIXED;
+	f->hit = f->seen = f->white = 0;
+	quick_outside(s, r, k);
+	for (int i = 0; i < r->n; i++) {
 		f->hit += s->hit[i] > 0;
 		f->seen += s->hit[i] > 0 && s->lid[i] < 1;
 		f->white += s->lid[i] > 0;
 	}
 	if (!f->hit)
 		return;
-	if (f->white) {
-		quick_ripple(f, r->n, k);
-	} else {
-		memcpy(f->bent[0], s->nx, sizeof s->nx);
-		memcpy(f->bent[1], s->ny, sizeof s->ny);
-		memcpy(f->bent[2], s->nz, sizeof s->nz);
-	}
+	quick_bend(f, r->n, k);
 	if (f->seen)
 		quick_iris(s, r, k);
-	quick_mirror(f, r, k);
+	quick_reflect(s->eu, s->ev, back, f, r, k);
+	quick_unfold(r->n, s->eu, s->ev, back);
 }
 
 void quick_colour(float rgba[][4], struct quick_found *f, int n, const struct quick_look *k)
@@ -154,6 +165,14 @@ void quick_colour(float rgba[][4], struct quick_found *f, int n, const struct qu
 	struct quick_spots *s = &f->spots;
 	if (!f->hit) {
 		memset(rgba, 0, (size_t)n * sizeof *rgba);
+		return;
+	}
+	if (f->kind == QUICK_CORNEA) {
+		all_iris(rgba, s, k);
+		return;
+	}
+	if (f->kind == QUICK_SCLERA) {
+		all_sclera(rgba, s, k);
 		return;
 	}
 	if (f->white)

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "math/vec.h"
 
-enum { TILE = 16 };
+enum { TILE = QUICK_TILE };
 _Static_assert(TILE * TILE == BATCH, "a tile's first rays are one batch");
 
 static void look_make(struct scene_look *look, const struct scene *s, const struct scene_view *view,
@@ -79,12 +79,28 @@ SIMD_CLONES static void quick_rays_make(struct quick_rays *r, const float *restr
 	}
 }
 
-static void quick_points(struct quick_found *found, int n, const float *x, const float *y, int across, const struct canvas *c)
+static void quick_points(struct quick_found *found, int n, const float *x, const float *y, const struct canvas *c)
 {
 	struct quick_rays r;
 	r.n = n;
 	quick_rays_make(&r, x, y, &c->plane);
-	quick_find(found, &r, across, c->look->quick);
+	quick_find(found, &r, c->look->quick);
+}
+
+/* A whole tile, by the rays at its nodes if these are enough. */
+static void quick_tile_find(struct quick_found *found, const float *x, const float *y, const struct canvas *c)
+{
+	struct quick_rays r;
+	float u[GRID_NODES], v[GRID_NODES];
+	for (int i = 0; i < GRID_NODES; i++) {
+		int column = i % GRID_ROW < GRID_SIDE ? i % GRID_ROW : GRID_SIDE - 1;
+		u[i] = x[0] + (float)(GRID_STEP * column);
+		v[i] = y[0] + (float)(GRID_STEP * (i / GRID_ROW));
+	}
+	r.n = GRID_NODES;
+	quick_rays_make(&r, u, v, &c->plane);
+	if (!quick_grid(found, &r, c->look->quick))
+		quick_points(found, BATCH, x, y, c);
 }
 
 /* Rays through n points of the picture (px), traced. */
@@ -94,7 +110,7 @@ static void trace_points(float rgba[][4], int n, const float *x, const float *y,
 	const struct scene_view *v = c->view;
 	if (c->look->quick && !c->bent) {
 		struct quick_found found;
-		quick_points(&found, n, x, y, 0, c);
+		quick_points(&found, n, x, y, c);
 		quick_colour(rgba, &found, n, c->look->quick);
 		*iris += found.seen;
 		return;
@@ -118,16 +134,16 @@ static void trace_points(float rgba[][4], int n, const float *x, const float *y,
 	scene_trace(rgba, n, dx, dy, dz, c->scene, c->look, iris);
 }
 
-/* A tile of a quick picture; what its rays met may be known from the picture before. */
-static void quick_tile(float rgba[][4], int n, const float *x, const float *y, int across, int tile, const struct canvas *c, struct scene_count *count)
+/* A tile of a quick picture, n of whose rays are of the picture; what its rays met may be known from the picture before. */
+static void quick_tile(float rgba[][4], int n, const float *x, const float *y, int tile, const struct canvas *c, struct scene_count *count)
 {
 	struct quick_found mine, *found = &mine;
 	bool kept = false;
 	if (c->view->hits)
 		found = scene_hits_tile(c->view->hits, tile, &kept);
 	if (!kept)
-		quick_points(found, n, x, y, across, c);
-	quick_colour(rgba, found, n, c->look->quick);
+		quick_tile_find(found, x, y, c);
+	quick_colour(rgba, found, BATCH, c->look->quick);
 	*(kept ? &count->kept : &count->rays) += n;
 	count->iris += found->seen;
 }
@@ -142,26 +158,23 @@ static bool any_visible(const struct scene_view *v, int tx, int ty, int x1, int 
 
 static void first_rays(const struct canvas *c, int tile, int tx, int ty, struct scene_count *count)
 {
-	float rgba[BATCH][4], u[BATCH] = { 0 }, v[BATCH] = { 0 };
-	int n = 0, x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width;
-	int y1 = ty + TILE < c->view->height ? ty + TILE : c->view->height;
-	for (int y = ty; y < y1; y++)
-		for (int x = tx; x < x1; x++, n++) {
-			u[n] = (float)x + 0.5f;
-			v[n] = (float)y + 0.5f;
-		}
+	float rgba[BATCH][4], u[BATCH], v[BATCH];
+	int x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width, y1 = ty + TILE < c->view->height ? ty + TILE : c->view->height;
+	int n = (x1 - tx) * (y1 - ty);
 	if (!any_visible(c->view, tx, ty, x1, y1)) {
 		count->hidden += n;
 		return;
 	}
-	if (c->look->quick) {
-		quick_tile(rgba, n, u, v, x1 - tx, tile, c, count);
-	} else {
-		trace_points(rgba, n, u, v, c, &count->iris);
-		count->rays += n;
+	for (int i = 0; i < BATCH; i++) {
+		u[i] = (float)(tx + i % TILE) + 0.5f;
+		v[i] = (float)(ty + i / TILE) + 0.5f;
 	}
+	if (c->look->quick)
+		quick_tile(rgba, n, u, v, tile, c, count);
+	else
+		trace_points(rgba, BATCH, u, v, c, &count->iris), count->rays += n;
 	for (int y = ty; y < y1; y++)
-		memcpy(image_at(c->image, tx, y), rgba[(y - ty) * (x1 - tx)], (size_t)(x1 - tx) * sizeof *rgba);
+		memcpy(image_at(c->image, tx, y), rgba[(y - ty) * TILE], (size_t)(x1 - tx) * sizeof *rgba);
 }
 
 /* About what the eye makes of a value: steps of it, not of light, decide where more rays go. */
