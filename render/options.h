@@ -36,6 +36,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_STR("environment", &(c)->environment, "latitude-longitude EXR in the capture folder; unset: a studio"), \
 	OPT_BOOL("freckles", &(c)->freckles, "show the freckles, too"), \
 	OPT_BOOL("exr", &(c)->exr, "write linear pictures beside the PNG"), \
+	OPT_BOOL("film", &(c)->film, "the turntable as a film"), \
 	OPT_INT("sheet_px", &(c)->sheet_px, 300, 6000, "px", "width of the contact sheet"), \
 	OPT_INT("page_px", &(c)->page_px, 100, 2000, "px", "width of the review page's pictures"), \
 	OPT_BOOL("light.polarised", &(c)->polarised, "no corneal reflection in the photographs"), \

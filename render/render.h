@@ -16,7 +16,7 @@ struct render_conf {
 	double field_mm;                 // what front and three-quarter show
 	double three_quarter_deg[2];     // yaw, pitch
 	const char *environment;         // latitude-longitude EXR in the capture folder, or null: a studio
-	bool freckles, exr, polarised;
+	bool freckles, exr, film, polarised;
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
 	double limit_mpx;

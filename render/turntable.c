@@ -30,6 +30,10 @@ static bool film(struct job *job, struct video_writer *w, struct err *err)
 
 bool turntable_film(struct job *job, const char *rel, struct err *err)
 {
+	if (!job->conf->film) {
+		stage_skipped(job->stage, "%s: film = no", rel);
+		return true;
+	}
 	if (stage_fresh(job->stage, rel, job->n_in, job->in))
 		return true;
 	if (!job_ready(job, err))
@@ -55,7 +59,7 @@ bool layers_save(struct job *job, const char *rel, const struct image *full, con
 		}
 	}
 	struct exr_info info = { .made_by = stage_made_by(job->stage, job->n_in, job->in) };
-	bool ok = exr_write(stage_path(job->stage, "%s", rel), &out, names, EXR_FLOAT, &info, err)
+	bool ok = exr_write(stage_path(job->stage, "%s", rel), &out, names, EXR_HALF, &info, err)
 	          && stage_made(job->stage, rel, job->n_in, job->in, err);
 	image_free(&surface);
 	image_free(&out);

@@ -45,26 +45,57 @@ void scene_shadow(struct march_light *m, int n, const float *x, const float *y, 
 	}
 }
 
-/* Slopes seen from one texel towards azimuth (cos, sin), at distances that grow by a quarter from a texel on. */
-static float horizon_at(const struct scene_level *l, float x, float y, float c, float s, float h, float top)
+/* Heights of a level alone, its edge repeated all round, so that looking out needs no limits. */
+struct heights {
+	float *px;
+	int stride, pad;
+};
+
+static struct heights heights_make(const struct scene_level *l, float reach)
 {
-	float steepest = -1, step = 1 / l->per_mm, gx, gy;
-	for (float off = step; off * 0.5f < top - h; off += fmaxf(step, 0.25f * off)) {  // beyond, none is above one half
-		float rise = relief_at(l->relief, l->n, l->per_mm, x + off * c, y + off * s, &gx, &gy) - h - bias;
-		steepest = fmaxf(steepest, rise / off);
-	}
-	return steepest;
+	int pad = (int)(reach * l->per_mm) + 2 + TILE_SIDE, stride = l->n + 2 * pad;
+	struct heights h = { mem_array((size_t)stride * (size_t)stride, sizeof *h.px), stride, pad };
+	for (int y = 0; y < stride; y++)
+		for (int x = 0; x < stride; x++) {
+			int u = x - pad, v = y - pad;
+			u = u < 0 ? 0 : u < l->n ? u : l->n - 1;
+			v = v < 0 ? 0 : v < l->n ? v : l->n - 1;
+			h.px[(long)y * stride + x] = l->relief[2 * ((long)v * l->n + u)];
+		}
+	return h;
 }
 
-static void tile_horizons(float (*out)[PART], const struct scene_level *l, int tx, int ty, float extent, float top)
+/* A tile's texels look the same way and as far: what they see lies side by side, between the same four weights. */
+SIMD_CLONES
+static void tile_look(float *restrict steepest, const float *restrict at, long stride, const float off[2], float distance, float per_distance, float top)
 {
-	for (int i = 0; i < PART; i++) {
-		int x = tx * TILE_SIDE + i % TILE_SIDE, y = ty * TILE_SIDE + i / TILE_SIDE;
-		x = x < l->n ? x : l->n - 1;
-		y = y < l->n ? y : l->n - 1;
-		float h = l->relief[2 * ((long)y * l->n + x)], u = ((float)x + 0.5f) / l->per_mm - extent, v = ((float)y + 0.5f) / l->per_mm - extent;
-		for (int a = 0; a < HORIZONS; a++)
-			out[a][i] = horizon_at(l, u, v, cosf((float)(2 * M_PI) * (float)a / HORIZONS), sinf((float)(2 * M_PI) * (float)a / HORIZONS), h, top);
+	float fu = floorf(off[0]), fv = floorf(off[1]), u = off[0] - fu, v = off[1] - fv;
+	const float *restrict seen = at + (long)fv * stride + (long)fu;
+	float a = (1 - v) * (1 - u), b = (1 - v) * u, c = v * (1 - u), d = v * u;
+	for (int y = 0; y < TILE_SIDE; y++) {
+		const float *restrict p = seen + y * stride, *restrict q = p + stride, *restrict own = at + y * stride;
+		float *restrict out = steepest + y * TILE_SIDE;
+		SIMD_LOOP
+		for (int x = 0; x < TILE_SIDE; x++) {
+			float slope = (a * p[x] + b * p[x + 1] + c * q[x] + d * q[x + 1] - own[x] - bias) * per_distance;
+			out[x] = 0.5f * distance < top - own[x] && slope > out[x] ? slope : out[x];  // beyond, none is above one half
+		}
+	}
+}
+
+/* Slopes that a tile's texels see in all azimuths, at distances that grow by a quarter from a texel on. */
+static void tile_horizons(float (*out)[PART], const struct scene_level *l, const struct heights *h, int tx, int ty, float top, float reach)
+{
+	const float *at = h->px + (long)(ty * TILE_SIDE + h->pad) * h->stride + tx * TILE_SIDE + h->pad;
+	float low = top, step = 1 / l->per_mm;
+	for (int i = 0; i < PART; i++)
+		low = fminf(low, at[(long)(i / TILE_SIDE) * h->stride + i % TILE_SIDE]);
+	for (int a = 0; a < HORIZONS; a++) {
+		float turn = (float)(2 * M_PI) * (float)a / HORIZONS, c = cosf(turn), s = sinf(turn);
+		for (int i = 0; i < PART; i++)
+			out[a][i] = -1;
+		for (float off = step; off * 0.5f < top - low && off < reach; off += fmaxf(step, 0.25f * off))
+			tile_look(out[a], at, h->stride, (const float[2]){ off * c * l->per_mm, off * s * l->per_mm }, off, 1 / off, top);
 	}
 }
 
@@ -72,8 +103,11 @@ float *scene_horizons(const struct scene *s, const struct scene_level *l)
 {
 	int tiles = (l->n + TILE_SIDE - 1) / TILE_SIDE;
 	float(*out)[HORIZONS][PART] = mem_array((size_t)tiles * (size_t)tiles, sizeof *out);
-#pragma omp parallel for schedule(dynamic)
+	float reach = fminf(2 * (s->height_max - s->height_min), 2 * (float)s->extent);
+	struct heights heights = heights_make(l, reach);
+#pragma omp parallel for schedule(dynamic, 8)
 	for (int i = 0; i < tiles * tiles; i++)
-		tile_horizons(out[i], l, i % tiles, i / tiles, (float)s->extent, s->height_max);
+		tile_horizons(out[i], l, &heights, i % tiles, i / tiles, s->height_max, reach);
+	free(heights.px);
 	return &out[0][0][0];
 }

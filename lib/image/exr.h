@@ -12,7 +12,7 @@ struct exr_info {
 enum exr_type { EXR_HALF, EXR_FLOAT };
 
 /* channels: one name for each channel of the image, in its order, e.g. { "R", "G", "B" }, { "Y" }.
- * Scan lines, losslessly compressed: PIZ for half, ZIP for float. The bytes do not depend on the threads. */
+ * Scan lines, losslessly compressed: PIZ for half, ZIP for float; "Z" is float in either. The bytes do not depend on the threads. */
 bool exr_write(const char *path, const struct image *image, const char *const channels[], enum exr_type type,
                const struct exr_info *info, struct err *err);
 

@@ -47,16 +47,18 @@ static bool declare(exr_context_t file, const struct image *image, const char *c
                     const struct exr_info *info)
 {
 	int part;
-	exr_pixel_type_t pixel = type == EXR_HALF ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+	exr_pixel_type_t pixel = type == EXR_HALF ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, own;
 	// Measured on an iris texture with photographic noise, 1280 x 1280 RGBW half: PIZ 0.046 s and 6.2 MB, ZIP level 2
 	// 0.32 s and 7.8 MB, level 6 0.68 s and 7.5 MB. Positions in float, half of them NaN, are ZIP's.
 	exr_compression_t compression = type == EXR_HALF ? EXR_COMPRESSION_PIZ : EXR_COMPRESSION_ZIP;
 	if (exr_add_part(file, "maps", EXR_STORAGE_SCANLINE, &part)
 	    || exr_initialize_required_attr_simple(file, part, image->width, image->height, compression))
 		return false;
-	for (int c = 0; c < image->channels; c++)
-		if (exr_add_channel(file, part, channels[c], pixel, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1))
+	for (int c = 0; c < image->channels; c++) {
+		own = strcmp(channels[c], "Z") ? pixel : EXR_PIXEL_FLOAT;  // half a depth of a metre is half a millimetre
+		if (exr_add_channel(file, part, channels[c], own, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1))
 			return false;
+	}
 	if (info && info->extent_mm > 0 && exr_attr_set_float(file, part, "extentMm", (float)info->extent_mm))
 		return false;
 	if (info && info->made_by && exr_attr_set_string(file, part, "madeBy", info->made_by))
