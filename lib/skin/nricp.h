@@ -26,6 +26,7 @@ struct nricp_conf {
 	double rim;                // weight of boundary matched to boundary; 0: boundaries are free
 	double rim_slide;          // weight of the distance along a boundary over that across it
 	double rim_reach;          // scale of its robust weight
+	double mirror;             // weight of the mirror image of the other half where nothing matches; 0: it is not asked
 	int polish_rounds;         // last steps, of all vertices along their normals
 	double polish;             // length over which these are smooth
 	double polish_noise;       // longer by so many standard deviations of the fixed mesh's noise

@@ -20,6 +20,7 @@
 	OPT_REAL(p "rim", &(c)->nricp.rim, 0, 100, "", "weight of boundaries matched to boundaries; 0: they are free"), \
 	OPT_REAL(p "rim_slide", &(c)->nricp.rim_slide, 0, 1, "", "weight of distance along a boundary over that across it"), \
 	OPT_REAL(p "rim_reach", &(c)->nricp.rim_reach, 1e-3, 10, "size", "scale of the boundaries' robust weight"), \
+	OPT_REAL(p "mirror", &(c)->nricp.mirror, 0, 1, "", "weight of the other half's mirror image where nothing matches; 0: none"), \
 	OPT_INT(p "polish_rounds", &(c)->nricp.polish_rounds, 0, 100, "", "last steps, of all vertices along their normals"), \
 	OPT_REAL(p "polish", &(c)->nricp.polish, 0, 10, "size", "length over which these are smooth"), \
 	OPT_REAL(p "polish_noise", &(c)->nricp.polish_noise, 0, 100, "sigma", "of the subject's noise, by which that is longer"), \
