@@ -27,7 +27,8 @@ static json_t *figures(const json_t *log)
 	return list;
 }
 
-static json_t *plan_reason(const json_t *plan, const char *name, bool *run)
+/* setting: of a measured front, where capture.conf asks for an error or a time; or null. */
+static json_t *plan_reason(const json_t *plan, const char *name, bool *run, json_t **setting)
 {
 	json_t *stages = json_object_get(plan, "stages"), *row;
 	size_t i;
@@ -35,6 +36,7 @@ static json_t *plan_reason(const json_t *plan, const char *name, bool *run)
 		const char *is = json_string_value(json_object_get(row, "name"));
 		if (is && !strcmp(is, name)) {
 			*run = json_is_true(json_object_get(row, "run"));
+			*setting = json_object_get(row, "setting");
 			return json_object_get(row, "reason");
 		}
 	}
@@ -52,10 +54,12 @@ static double now_s(void)
 static json_t *row(struct page *page, const char *name, const json_t *plan, json_t *log, double *seconds)
 {
 	bool run, self = !strcmp(name, "render");
-	json_t *reason = plan_reason(plan, name, &run), *entry = json_pack("{s:s}", "name", name);
+	json_t *setting = 0, *reason = plan_reason(plan, name, &run, &setting), *entry = json_pack("{s:s}", "name", name);
 	const char *error = json_string_value(json_object_get(log, "error"));
 	if (reason)
 		json_object_set(entry, "reason", reason);
+	if (setting && run)
+		json_object_set(entry, "setting", setting);
 	if (!log && !self) {
 		json_object_set_new(entry, "idle", json_true());
 		return entry;

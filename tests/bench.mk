@@ -1,6 +1,7 @@
 # Benchmarks: speed and error of the same run, in one table. QUICK=1: fewer repetitions and cases.
 #   make bench            all of them, then bench/README.md with tables, plots and the goals reached
 #   make bench-NAME       one
+#   make fronts           config/fronts.conf measured anew: settings for `error = ...` and `time = ...` of capture.conf
 #   make bench-compare BEFORE=DIR AFTER=DIR   what became worse beyond the spread; AFTER: bench if not said
 BENCH_ARGS = --out=bench $(if $(QUICK),--quick)
 
@@ -16,4 +17,10 @@ bench-%: build $B/tests/bench/bench_% FORCE
 	@$B/tests/bench/bench_$* $(BENCH_ARGS)
 bench-report: $B/tests/bench/report
 	@$< --out=bench --compiler="$$($(CC) --version | head -n 1)" --flags="$(CFLAGS) $(MATHFLAGS)"
+# Settings that no other beats in time and error, of the stages that have such knobs.
+.PHONY: fronts
+fronts: bench-fronts bench-fronts_skin
+	@{ printf '; Settings of each stage that no other beats in both time and error: error against the finest setting or the truth, and\n'; \
+	printf '; time on two processors, fixed and for each megapixel of photographs. Made by make fronts on samples/.\n'; \
+	cat bench/fronts.front bench/fronts_skin.front; } > config/fronts.conf
 FORCE:

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/front.h"
 #include "base/mem.h"
 #include "base/say.h"
 #include "base/version.h"
@@ -160,7 +161,8 @@ static bool check_shared(const struct conf *conf, const char *config_dir, struct
 		const char *dot = strchr(item->key, '.');
 		if (!known && dot) {
 			char *file = mem_printf("%s/%.*s.conf", config_dir, (int)(dot - item->key), item->key);
-			known = !strchr(item->key, '/') && file_exists(file);
+			bool stage = strncmp(item->key, "capture.", 8) && strncmp(item->key, "fronts.", 7) && !strchr(item->key, '/');
+			known = stage && file_exists(file);
 			free(file);
 		}
 		if (!known)
@@ -175,7 +177,8 @@ bool call_load(const struct call *call, const char *name, struct conf *conf, str
 	char *shared = mem_printf("%s/capture.conf", dir), *own = mem_printf("%s/%s.conf", dir, name),
 	     *capture = mem_printf("%s/capture.conf", call->capture), *prefix = mem_printf("%s.", name);
 	bool ok = conf_load(conf, shared, "", 0, err) && conf_load(conf, own, prefix, 0, err)
-	          && conf_load(conf, capture, "", 1, err) && check_shared(conf, dir, err);
+	          && conf_load(conf, capture, "", 1, err) && check_shared(conf, dir, err)
+	          && front_apply(conf, name, call->capture, dir, err);
 	free(dir);
 	free(shared);
 	free(own);

@@ -20,6 +20,7 @@ struct plan_row {
 	bool run;
 	const char *reason;  // fixed texts: they go into plan.mk
 	double seconds;      // estimate; 0 when it does not run
+	char *setting;       // chosen from the measured fronts; null: the preset. Owned by the plan
 };
 
 struct plan {
@@ -28,6 +29,7 @@ struct plan {
 	int n_run;           // plan itself not counted
 	int n_photos;
 	double mpx;          // of all photographs, as far as their heads tell
+	char asked[64];      // "error = 0.05 mm", or ""
 	char listing[33];    // hash of the names that decide
 };
 
@@ -46,6 +48,9 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 
 /* Whether stage i cannot do without the result of stage j; both count in plan_names. */
 bool plan_needs(int i, int j);
+
+/* The setting of each stage where capture.conf asks for an error or a time: lib/base/front.h. */
+bool plan_setting(struct plan *plan, const struct call *call, const struct conf *conf, struct err *err);
 
 /* work/plan.json and work/plan.mk. slice: opt_print's lines of plan's own configuration. */
 bool plan_write(const struct plan *plan, const char *slice, struct err *err);

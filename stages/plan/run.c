@@ -19,11 +19,14 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 {
 	struct plan plan;
 	char *slice = slice_of(opts, conf);
-	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && plan_check_conf(&plan, conf, err)
+	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && plan_setting(&plan, call, conf, err)
+	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
 	if (ok && asked->show)
 		plan_show(&plan, call);
+	for (int i = 0; i < PLAN_STAGES; i++)
+		free(plan.rows[i].setting);
 	if (ok && !plan.n_run)
 		return err_set(err, "%s: nothing to run: %s", call->capture, plan.rows[2].reason);
 	return ok;

@@ -54,12 +54,14 @@ void plan_show(const struct plan *plan, const struct call *call)
 			snprintf(last, sizeof last, "%.2f s", took);
 		printf("%-12s %-11s ", row->name, !row->run ? "skip" : fresh ? "up to date" : "run");
 		if (row->run)
-			printf("%7.2f s %9s  %s%s%s%s\n", row->seconds, last, row->reason, why ? " (" : "", why ? why : "",
-			       why ? ")" : "");
+			printf("%7.2f s %9s  %s%s%s%s%s%s\n", row->seconds, last, row->reason, why ? " (" : "", why ? why : "", why ? ")" : "",
+			       row->setting ? "; " : "", row->setting ? row->setting : "");
 		else
 			printf("%9s %9s  %s\n", "-", "-", row->reason);
 		sum += fresh ? 0 : row->seconds;
 		free(why);
 	}
+	if (*plan->asked)
+		printf("%s: settings from the measured fronts, config/fronts.conf\n", plan->asked);
 	printf("photographs: %d, %.1f megapixels; about %.1f s to do\n", plan->n_photos, plan->mpx, sum);
 }

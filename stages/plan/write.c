@@ -42,10 +42,11 @@ static bool write_json(const struct plan *plan, const char *slice, struct err *e
 	json_t *stages = json_array();
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		const struct plan_row *row = &plan->rows[i];
-		json_array_append_new(stages, json_pack("{s:s,s:b,s:s,s:f}", "name", row->name, "run", row->run, "reason",
-		                                        row->reason, "seconds", round(100 * row->seconds) / 100));
+		json_array_append_new(stages, json_pack("{s:s,s:b,s:s,s:f,s:s*}", "name", row->name, "run", row->run, "reason",
+		                                        row->reason, "seconds", round(100 * row->seconds) / 100, "setting", row->setting));
 	}
-	json_t *json = json_pack("{s:o,s:o}", "made_by", made_by(plan, slice), "stages", stages);
+	json_t *json = json_pack("{s:o,s:o,s:s*}", "made_by", made_by(plan, slice), "stages", stages, "asked",
+	                         *plan->asked ? plan->asked : 0);
 	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS | JSON_REAL_PRECISION(6));
 	char *path = mem_printf("%s/work/plan.json", plan->capture);
 	bool ok = write_new(path, text, err);

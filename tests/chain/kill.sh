@@ -3,21 +3,24 @@
 # Afterwards a plain make gives the bytes of an undisturbed run, leaves nothing half made, and what was put in is as it was.
 #   KILLS=1000 SEED=2 tests/chain/kill.sh
 . "$(dirname "$0")/../lib/chain.sh"
-KILLS=${KILLS:-6}
+KILLS=${KILLS:-9}
 RANDOM=${SEED:-1}
-
-new_capture "$root/calm"
-cp "$PHOTO" "$root/calm/photos/right_a.jpg"
-"$VARIANT" half "$PHOTO" "$root/calm/photos/right_b.jpg"
-given() { (cd "$1" && sha256sum capture.conf photos/*); }
+declare -A stages
+given() { (cd "$1" && find . -path ./work -prune -o -type f -print0 | sort -z | xargs -0 sha256sum); }
 # Anything under work/ that an undisturbed run does not leave: temporary files, say.
 names_of() { (cd "$1/work" && find . -type f ! -path './log/*' | sort); }
-cp -r "$root/calm" "$root/hit"
-begin=$(date +%s%N)
-run_make "$root/calm"
-same "an undisturbed make" "$?" 0
-length=$((($(date +%s%N) - begin) / 1000000))
-want=$(bytes_of "$root/calm") input=$(given "$root/calm")
+
+# undisturbed COLUMN: a make that nobody troubles, in $root/calm; $root/hit is a copy of what goes in.
+undisturbed() {
+	rm -rf "$root/hit"
+	cp -r "$root/calm" "$root/hit"
+	local begin
+	begin=$(date +%s%N)
+	run_make "$root/calm"
+	same "$1: an undisturbed make" "$?" 0
+	length=$((($(date +%s%N) - begin) / 1000000))
+	want=$(bytes_of "$root/calm") input=$(given "$root/calm")
+}
 
 # recovers NAME: a plain make mends the capture.
 recovers() {
@@ -30,26 +33,79 @@ recovers() {
 	same "$1: and then nothing runs" "$? $(ran)" "0 "
 }
 
-# The whole group of processes dies at once, make and its stages, at a moment anywhere in an undisturbed run.
-struck=0
-for ((i = 0; i < KILLS; i++)); do
-	setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
-	pid=$!
-	ms=$((RANDOM * (length * 3 / 4) / 32768))
-	sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
-	kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1))
-	wait "$pid" 2>/dev/null
-	# It goes on from where it was hit, begins anew, or is mended at once and then loses something.
+# One artifact, any, is deleted, cut in half or written into.
+damage() {
+	local files file
+	# COLMAP's own files are what it goes on from when views are added; the stage answers for what it makes of them.
+	mapfile -t files < <(cd "$root/hit/work" 2>/dev/null && find . -type f ! -path './.made/*' ! -path './log/*' ! -path './calibrate/*' | sort)
+	[ ${#files[@]} -gt 0 ] || return
+	file=$root/hit/work/${files[RANDOM % ${#files[@]}]}
 	case $((RANDOM % 3)) in
-	0) [ -e "$root/hit/work/review/index.html" ] && rm -rf "$root/hit/work/limbus" ;;
-	1) rm -rf "$root/hit/work" ;;
-	2) run_make "$root/hit"
-		[ "$(bytes_of "$root/hit")" = "$want" ] || fail "kill $i after $ms ms: the same bytes" "$(diff <(bytes_of "$root/hit") <(printf '%s\n' "$want") | head -n 4)"
-		rm -f "$root/hit/work/iris/clean.exr" "$root/hit"/work/limbus/right_b.json ;;
+	0) rm "$file" ;;
+	1) truncate -s "$(($(stat -c %s "$file") / 2))" "$file" ;;
+	2) printf 'X' | dd of="$file" bs=1 seek="$(($(stat -c %s "$file") / 2))" conv=notrunc 2>/dev/null ;;
 	esac
+}
+
+# strike COLUMN N: the whole group of processes dies at once, make and its stages, at a moment anywhere in an undisturbed run.
+strike() {
+	local column=$1 wanted=$2 struck=0 tries=0 pid ms name
+	while [ "$struck" -lt "$wanted" ] && [ "$tries" -lt $((4 * wanted)) ]; do
+		tries=$((tries + 1))
+		setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
+		pid=$!
+		ms=$((RANDOM * length / 32768))
+		sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
+		name=$(ps -o comm= -g "$pid" 2>/dev/null | grep -vxE 'make|sh|ps|setsid' | tail -n 1)
+		kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1)) && stages[${name:-make}]=$((${stages[${name:-make}]:-0} + 1))
+		wait "$pid" 2>/dev/null
+		# It goes on from where it was hit, loses something, begins anew, or is mended at once.
+		case $((RANDOM % 8)) in
+		0 | 1) damage ;;
+		2) rm -rf "$root/hit/work" ;;
+		3) run_make "$root/hit"
+			[ "$(bytes_of "$root/hit")" = "$want" ] || fail "$column, kill $struck after $ms ms: the same bytes" "$(diff <(bytes_of "$root/hit") <(printf '%s\n' "$want") | head -n 4)"
+			damage ;;
+		*) [ ! -e "$root/hit/work/review/index.html" ] || damage ;;
+		esac
+	done
+	check "$column: struck while it ran" test "$struck" -gt 0
+	recovers "$column: $struck kills"
+}
+
+# What goes in: photographs; a video, a mesh and a character; views of a head, where COLMAP and such views are.
+photographs() {
+	new_capture "$root/calm"
+	cp "$PHOTO" "$root/calm/photos/right_a.jpg"
+	"$VARIANT" half "$PHOTO" "$root/calm/photos/right_b.jpg"
+}
+skin() {
+	mkdir -p "$root/calm/video" "$root/calm/script"
+	cp -r samples/face/{targets,subject.ply} "$root/calm"
+	# The first 11 frames: what a copy that broke off leaves is followed as far as it goes.
+	head -c 250000 samples/face/video/face.mp4 >"$root/calm/video/face.mp4"
+	head -n 4 samples/face/script/look_around.csv | sed 1d | cut -d, -f1-7 >"$root/calm/script/look.csv"
+	{ grep -v '^expression' samples/face/capture.conf
+		printf '%s\n' "quality = draft" "track.settle_frames = 0" "track.points = 60" "track.sweeps = 1" "train.sample = 64" \
+			"transfer.rounds = 1 1 1" "transfer.nodes = 100 300 1000" "extrapolate.map_step_px = 8" \
+			"render.look_px = 200" "render.cell_px = 100" "render.blink_frames = 3" "render.sheet_px = 300" "render.clip_px = 160" \
+			"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.1"; } >"$root/calm/capture.conf"
+}
+views() {
+	mkdir -p "$root/calm/views"
+	cp "$VIEWS"/0000[1-4].jpg "$root/calm/views"
+	printf '%s\n' "quality = draft" "calibrate.picture_px = 800" "calibrate.features = 1024" "calibrate.subject_px = 100" >"$root/calm/capture.conf"
+}
+VIEWS=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
+columns="skin photographs"
+if [ -d "$VIEWS" ] && command -v colmap >/dev/null; then columns="views $columns"; else skip "kills of calibrate" "COLMAP or views/buddha is not there"; fi
+for column in ${COLUMNS:-$columns}; do
+	rm -rf "$root/calm"
+	"$column"
+	undisturbed "$column"
+	strike "$column" "$(((KILLS + 2) / 3))"
 done
-check "$KILLS kills: some struck while it ran" test "$struck" -gt 0
-recovers "$KILLS kills"
+for name in "${!stages[@]}"; do printf '  killed in %s: %s\n' "$name" "${stages[$name]}"; done | sort
 
 # No file may grow beyond 300 KiB: what a full disk does to a stage that writes.
 rm -rf "$root/hit/work"

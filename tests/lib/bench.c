@@ -48,6 +48,11 @@ bool bench_quick(void)
 	return bench.quick;
 }
 
+const char *bench_out(void)
+{
+	return bench.out;
+}
+
 static double now_s(void)
 {
 	struct timespec t;

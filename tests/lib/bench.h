@@ -11,6 +11,9 @@
 void bench_open(const char *name, int argc, char **argv);
 bool bench_quick(void);
 
+/* The folder of --out. */
+const char *bench_out(void);
+
 struct bench_time {
 	double median, low, high;  // seconds a call; low and high: the quartiles
 };

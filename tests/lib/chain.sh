@@ -26,7 +26,7 @@ run_make() {
 ran() { sed -n 's/^\([a-z]*\): done in .*/\1/p' "$log" | tr '\n' ' ' | sed 's/ $//'; }
 
 # Names, times and bytes of everything made, but for what tells how long it took.
-bytes_of() { (cd "$1/work" && find . -type f ! -path './.made/*' ! -path './log/*' ! -path './review/*' -print0 |
+bytes_of() { (cd "$1/work" && find . -type f ! -path './.made/*' ! -path './log/*' ! -path './review/*' ! -name '*.log' -print0 |
 	sort -z | xargs -0 sha256sum); }
 times_of() { (cd "$1/work" && find . -type f ! -path './.made/*' -printf '%P %T@\n' | sort); }
 

@@ -1,0 +1,106 @@
+/* In place of a preset: the settings that `error = ...` or `time = ...` asks for, from the measured fronts. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/front.h"
+#include "base/mem.h"
+#include "base/say.h"
+#include "plan.h"
+
+static bool has_front(const struct front *front, const char *stage)
+{
+	for (int i = 0; i < front->n; i++)
+		if (!strcmp(front->points[i].stage, stage))
+			return true;
+	return false;
+}
+
+/* "mm, %": the units that the fronts have, each once. free(). */
+static char *units(const struct front *front)
+{
+	char *list = mem_str("");
+	for (int i = 0; i < front->n; i++) {
+		bool before = false;
+		for (int j = 0; j < i && !before; j++)
+			before = !strcmp(front->points[i].unit, front->points[j].unit);
+		if (before)
+			continue;
+		char *more = mem_printf("%s%s%s", list, *list ? ", " : "", front->points[i].unit);
+		free(list);
+		list = more;
+	}
+	return list;
+}
+
+static bool none_chosen(const int chosen[PLAN_STAGES])
+{
+	for (int i = 0; i < PLAN_STAGES; i++)
+		if (chosen[i] >= 0)
+			return false;
+	return true;
+}
+
+/* Each row's setting and time; the line of log: which, how exact, how long. free(). */
+static char *tell(struct plan *plan, const struct front *front, const struct front_ask *ask, const int chosen[PLAN_STAGES])
+{
+	char *line = mem_printf("%s:", ask->text), *more;
+	double sum = 0;
+	bool first = true;
+	for (int i = 1; i < PLAN_STAGES; i++) {
+		struct plan_row *row = &plan->rows[i];
+		if (chosen[i] >= 0) {
+			const struct front_point *p = &front->points[chosen[i]];
+			bool missed = ask->error && p->error > ask->value;
+			row->seconds = front_seconds(p, plan->mpx);
+			row->setting = mem_printf("%s: %s (%.3g %s)", p->name, p->settings, p->error, p->unit);
+			more = mem_printf("%s%s %s %s (%.2g %s%s)", line, first ? "" : ",", p->stage, p->name, p->error, p->unit,
+			                  missed ? ", the best there is" : "");
+			free(line);
+			line = more;
+			first = false;
+		}
+		sum += row->seconds;
+	}
+	bool late = ask->time && sum > ask->value;
+	more = mem_printf("%s; about %.2g s in all%s", line, sum, late ? ", the least there is" : "");
+	free(line);
+	return more;
+}
+
+bool plan_setting(struct plan *plan, const struct call *call, const struct conf *conf, struct err *err)
+{
+	struct front_ask ask;
+	struct front front = { 0 };
+	bool runs[PLAN_STAGES], changed;
+	int chosen[PLAN_STAGES];
+	double others_s = 0;
+	if (!front_ask(&ask, conf, err) || (!ask.error && !ask.time))
+		return !err_is(err);
+	char *dir = call->config_dir ? mem_str(call->config_dir) : call_config_dir(), *path = mem_printf("%s/fronts.conf", dir);
+	bool ok = front_load(&front, path, err);
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		runs[i] = plan->rows[i].run;
+		others_s += has_front(&front, plan_names[i]) ? 0 : plan->rows[i].seconds;
+	}
+	if (ok) {
+		front_choose(&front, &ask, PLAN_STAGES, plan_names, runs, plan->mpx, others_s, chosen);
+		if (none_chosen(chosen)) {
+			char *known = units(&front);
+			ok = err_set(err, "%s/capture.conf: %s: no stage that runs here is measured in %s; %s has %s", plan->capture, ask.text,
+			             ask.unit, path, known);
+			free(known);
+		}
+	}
+	if (ok && front_save(&front, &ask, PLAN_STAGES, chosen, plan->capture, &changed, err)) {
+		char *line = tell(plan, &front, &ask, chosen);
+		snprintf(plan->asked, sizeof plan->asked, "%s", ask.text);
+		if (changed && !call->quiet)
+			say_error("plan", line);
+		free(line);
+	}
+	front_free(&front);
+	free(dir);
+	free(path);
+	return !err_is(err);
+}
