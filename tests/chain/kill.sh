@@ -1,9 +1,11 @@
 #!/bin/bash
 # What interrupts a make: kill -9 at random moments, a full disk, a folder that cannot be written, a second make beside it.
 # Afterwards a plain make gives the bytes of an undisturbed run, leaves nothing half made, and what was put in is as it was.
-#   KILLS=1000 SEED=2 tests/chain/kill.sh
+#   KILLS=1000 SEED=2 tests/chain/kill.sh          a third of them on each column; MINUTES=30: each column stops there
+#   ONLY=skin                                      this column alone
 . "$(dirname "$0")/../lib/chain.sh"
 KILLS=${KILLS:-9}
+MINUTES=${MINUTES:-1000}
 RANDOM=${SEED:-1}
 declare -A stages
 given() { (cd "$1" && find . -path ./work -prune -o -type f -print0 | sort -z | xargs -0 sha256sum); }
@@ -49,8 +51,8 @@ damage() {
 
 # strike COLUMN N: the whole group of processes dies at once, make and its stages, at a moment anywhere in an undisturbed run.
 strike() {
-	local column=$1 wanted=$2 struck=0 tries=0 pid ms name
-	while [ "$struck" -lt "$wanted" ] && [ "$tries" -lt $((4 * wanted)) ]; do
+	local column=$1 wanted=$2 struck=0 tries=0 until=$((SECONDS + 60 * MINUTES)) pid ms name
+	while [ "$struck" -lt "$wanted" ] && [ "$tries" -lt $((4 * wanted)) ] && [ "$SECONDS" -lt "$until" ]; do
 		tries=$((tries + 1))
 		setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
 		pid=$!
@@ -69,6 +71,7 @@ strike() {
 		*) [ ! -e "$root/hit/work/review/index.html" ] || damage ;;
 		esac
 	done
+	echo "  $column: $struck kills"
 	check "$column: struck while it ran" test "$struck" -gt 0
 	recovers "$column: $struck kills"
 }
@@ -99,7 +102,7 @@ views() {
 VIEWS=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
 columns="skin photographs"
 if [ -d "$VIEWS" ] && command -v colmap >/dev/null; then columns="views $columns"; else skip "kills of calibrate" "COLMAP or views/buddha is not there"; fi
-for column in ${COLUMNS:-$columns}; do
+for column in ${ONLY:-$columns}; do
 	rm -rf "$root/calm"
 	"$column"
 	undisturbed "$column"
