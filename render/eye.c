@@ -227,6 +227,8 @@ static bool pictures(struct job *job, struct err *err)
 	for (int i = 0; i < job->n_shots; i++) {
 		if (!photo_view(job, &job->shots[i], err))
 			return false;
+		if (i != job->reference)
+			shot_done(&job->shots[i]);
 		stage_progress(job->stage, ++done, total, "pictures");
 	}
 	if (!still(job, "front", 0, 0, err))
@@ -253,19 +255,16 @@ static void figures(struct job *job)
 	           (double)job->count.rays / job->seconds / 1e6);
 }
 
-bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
-                const struct render_conf *conf, struct err *err)
+bool render_eye(struct job *job, struct err *err)
 {
-	struct job job;
-	bool usable, ok = job_open(&job, &usable, stage, capture, eye_index, eye, conf, err);
-	if (ok && usable) {
-		ok = pictures(&job, err);
-		figures(&job);
-	} else if (ok && !job.n_shots) {
-		stage_skipped(stage, "pictures of %s: no photograph of it has a fit", job.names->side);
-	} else if (ok) {
-		stage_skipped(stage, "pictures of %s: %s is missing", job.names->side, job.in[0]);
+	bool ok = true;
+	if (job->usable) {
+		ok = pictures(job, err);
+		figures(job);
+	} else if (!job->n_shots) {
+		stage_skipped(job->stage, "pictures of %s: no photograph of it has a fit", job->names->side);
+	} else {
+		stage_skipped(job->stage, "pictures of %s: %s is missing", job->names->side, job->in[0]);
 	}
-	job_close(&job);
 	return ok && !err_is(err);
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "render/render.h"
 
 static const char *artifact(struct job *job, const char *name)
@@ -32,25 +33,42 @@ static bool inputs(struct job *job, struct err *err)
 	return true;
 }
 
-bool job_open(struct job *job, bool *usable, struct stage *stage, const struct capture *capture, int eye_index,
-              const struct eye *eye, const struct render_conf *conf, struct err *err)
+static bool job_open(struct job *job, const struct capture *capture, int eye_index, struct err *err)
 {
-	*job = (struct job){ .stage = stage, .conf = conf, .eye = eye, .names = &capture->eyes[eye_index] };
-	*usable = false;
+	job->names = &capture->eyes[eye_index];
 	if (!shots_load(job, capture, eye_index, err))
 		return false;
 	if (!job->n_shots)
 		return true;
 	if (!inputs(job, err))
 		return false;
-	*usable = file_exists(stage_path(stage, "%s", job->in[0]));
+	job->usable = file_exists(stage_path(job->stage, "%s", job->in[0]));
 	return true;
 }
 
-void job_close(struct job *job)
+bool jobs_open(struct jobs *jobs, struct stage *stage, const struct capture *capture, const struct eye *eye,
+               const struct render_conf *conf, struct err *err)
+{
+	bool ok = true;
+	*jobs = (struct jobs){ .job = mem_new((size_t)capture->n_eyes + 1, sizeof *jobs->job) };
+	for (int i = 0; ok && i < capture->n_eyes; i++) {
+		jobs->job[jobs->n] = (struct job){ .stage = stage, .conf = conf, .eye = eye };
+		ok = job_open(&jobs->job[jobs->n++], capture, i, err);
+	}
+	return ok;
+}
+
+static void job_close(struct job *job)
 {
 	if (job->ready)
 		scene_free(&job->scene);
 	envmap_free(&job->studio);
 	shots_free(job);
+}
+
+void jobs_close(struct jobs *jobs)
+{
+	for (int i = 0; i < jobs->n; i++)
+		job_close(&jobs->job[i]);
+	free(jobs->job);
 }

@@ -31,15 +31,19 @@ int main(int argc, char **argv)
 	            opts);
 	struct capture capture = { 0 };
 	bool ok = eye_check(&eye, &err) && photos_load(&capture, &stage, &eye_of, &err);
-	for (int i = 0; ok && i < capture.n_eyes; i++)
-		ok = render_eye(&stage, &capture, i, &eye, &conf, &err);
+	struct jobs eyes = { 0 };
+	ok = ok && jobs_open(&eyes, &stage, &capture, &eye, &conf, &err);
+	for (int i = 0; ok && i < eyes.n; i++)
+		ok = render_eye(&eyes.job[i], &err);
 	skin.portrait.eye_samples = conf.samples;
-	ok = ok && render_skin(&stage, &capture, &eye, &conf, &skin, &err);
-	ok = ok && viewer_make(&stage, &capture, &eye, &conf, &skin, &err);
+	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .capture = &capture, .eye = &eye, .photographed = &eyes };
+	ok = ok && render_skin(&faces, &err) && viewer_make(&faces, &err);
+	skin_close(&faces);
 	// The page is made even where a picture could not be: it says what is missing and why.
 	struct err late = { 0 };
 	if (!page_make(&stage, &capture, &conf, &late) && ok)
 		err = late;
+	jobs_close(&eyes);
 	capture_free(&capture);
 	return stage_end(&stage, &err);
 }

@@ -43,6 +43,7 @@ struct job {
 	int n_shots, reference;          // the shot whose light and direction the colours are read in
 	const char *in[9];               // inputs that all pictures have in common, relative to the folder
 	int n_in;
+	bool usable;                     // there is enough to show
 	bool ready;                      // what follows has been made
 	struct scene scene;
 	struct envmap studio;            // of the beauty views
@@ -54,21 +55,27 @@ struct job {
 };
 
 /* Makes whatever pictures of this eye are not fresh. */
-bool render_eye(struct stage *stage, const struct capture *capture, int eye_index, const struct eye *eye,
-                const struct render_conf *conf, struct err *err);
+bool render_eye(struct job *job, struct err *err);
 
-/* One eye's photographs, and whether there is enough of it to show. job_close in any case. job_ready: loads the scene, once.
- * job_studio: the light of the beauty views alone. */
-bool job_open(struct job *job, bool *usable, struct stage *stage, const struct capture *capture, int eye_index,
-              const struct eye *eye, const struct render_conf *conf, struct err *err);
+/* The eyes of a capture: what photographs there are of each, and whether there is enough of it to show. One scene serves
+ * the pictures and the interactive page. jobs_close in any case. */
+struct jobs {
+	int n;
+	struct job *job;
+};
+bool jobs_open(struct jobs *jobs, struct stage *stage, const struct capture *capture, const struct eye *eye,
+               const struct render_conf *conf, struct err *err);
+void jobs_close(struct jobs *jobs);
+
+/* job_ready: loads the scene, once. job_studio: the light of the beauty views alone. */
 bool job_ready(struct job *job, struct err *err);
 bool job_studio(struct job *job, struct err *err);
-void job_close(struct job *job);
 
 /* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free.
- * shot_ready: decodes the photograph and reads its light, once. */
+ * shot_ready: decodes the photograph and reads its light, once; shot_done: forgets both. */
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err);
 bool shot_ready(struct job *job, struct shot *shot, struct err *err);
+void shot_done(struct shot *shot);
 void shots_free(struct job *job);
 
 /* align.c: turns the fit's eye frame into that of the maps, as unrefract registered this photograph; what a turn about

@@ -105,12 +105,19 @@ bool shot_ready(struct job *job, struct shot *shot, struct err *err)
 	return true;
 }
 
+void shot_done(struct shot *shot)
+{
+	image_free(&shot->image);
+	envmap_free(&shot->env);
+	envmap_free(&shot->lamps);
+	shot->image = (struct image){ 0 };
+	shot->env = shot->lamps = (struct envmap){ 0 };
+	shot->n_lamps = 0;
+}
+
 void shots_free(struct job *job)
 {
-	for (int i = 0; i < job->n_shots; i++) {
-		image_free(&job->shots[i].image);
-		envmap_free(&job->shots[i].env);
-		envmap_free(&job->shots[i].lamps);
-	}
+	for (int i = 0; i < job->n_shots; i++)
+		shot_done(&job->shots[i]);
 	free(job->shots);
 }

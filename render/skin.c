@@ -39,16 +39,11 @@ static bool light_ready(struct skin_job *job, struct err *err)
 /* A fitted eye on its own side; the only one, or the unnamed one, on both. */
 static bool eyes_ready(struct skin_job *job, struct err *err)
 {
-	for (int i = 0; i < job->capture->n_eyes && job->n_photographed < 2; i++) {
-		struct job *eye = &job->photographed[job->n_photographed];
-		bool usable;
-		if (!job_open(eye, &usable, job->stage, job->capture, i, job->eye, job->render, err))
-			return false;
-		if (!usable) {
-			job_close(eye);
+	for (int i = 0, n = 0; i < job->photographed->n && n < 2; i++) {
+		struct job *eye = &job->photographed->job[i];
+		if (!eye->usable)
 			continue;
-		}
-		job->n_photographed++;
+		n++;
 		if (!job_ready(eye, err))
 			return false;
 		int side = !strcmp(eye->names->side, "right");
@@ -127,26 +122,21 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 
 void skin_close(struct skin_job *job)
 {
-	for (int i = 0; i < job->n_photographed; i++)
-		job_close(&job->photographed[i]);
 	if (job->eyes[0] == &job->plain)
 		scene_free(&job->plain);
 	envmap_free(&job->studio);
 	skin_model_free(&job->model);
 }
 
-bool render_skin(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *render,
-                 const struct skin_conf *conf, struct err *err)
+bool render_skin(struct skin_job *job, struct err *err)
 {
-	struct skin_job job = { .stage = stage, .render = render, .conf = conf, .capture = capture, .eye = eye };
 	struct file_list targets;
-	bool ok = stage_list(stage, &targets, "targets", err);
-	if (ok && targets.n && file_exists(stage_path(stage, "work/skin/model.json"))) {
-		job.video = first_video(stage, err);
+	bool ok = stage_list(job->stage, &targets, "targets", err);
+	if (ok && targets.n && file_exists(stage_path(job->stage, "work/skin/model.json"))) {
+		job->video = first_video(job->stage, err);
 		for (int i = 0; i < targets.n && ok; i++)
-			ok = one(&job, targets.names[i], err);
+			ok = one(job, targets.names[i], err);
 	}
 	file_list_free(&targets);
-	skin_close(&job);
 	return ok && !err_is(err);
 }

@@ -53,11 +53,10 @@ struct skin_job {
 	const struct skin_conf *conf;
 	const struct capture *capture;
 	const struct eye *eye;
+	struct jobs *photographed;        // eyes that photographs were fitted to
 	const char *video;                // the input video, relative to the folder; null: none
 	// Made when the first picture needs them:
 	bool ready;
-	struct job photographed[2];       // eyes that photographs were fitted to
-	int n_photographed;
 	struct scene plain;               // what the others get
 	const struct scene *eyes[2];      // left, right
 	struct envmap studio;
@@ -75,8 +74,7 @@ struct skin_target {
 };
 
 /* Everything of every character that is not fresh. A capture without rigs is no fault. */
-bool render_skin(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *render,
-                 const struct skin_conf *conf, struct err *err);
+bool render_skin(struct skin_job *job, struct err *err);
 
 /* The typed gaze is of NAME_look.png alone: what else was made is kept when only that has changed (skin_keep.c).
  * skin_kept: stage_fresh, or else made by the same program from the same bytes with a configuration that differs in gaze
@@ -84,7 +82,7 @@ bool render_skin(struct stage *stage, const struct capture *capture, const struc
 bool skin_kept(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
 bool skin_made(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
 
-/* Frees what the job has made. */
+/* Frees what the job has made, but not photographed. */
 void skin_close(struct skin_job *job);
 
 /* Eyes, light and the model, once. */

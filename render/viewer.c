@@ -109,24 +109,19 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 
 /* Files that the page is made of. */
 struct parts {
-	struct job *job;                 // of the eyes
-	bool *usable;
-	int opened, n_in;
+	struct jobs *eyes;
+	int n_in;
 	const char **in;
-	char *target;                    // the character: its name; null: none
+	char *target;  // the character: its name; null: none
 };
 
-static bool find_eyes(struct parts *p, struct stage *stage, const struct capture *capture, const struct eye *eye,
-                      const struct render_conf *conf, struct err *err)
+static void find_eyes(struct parts *p)
 {
-	for (; p->opened < capture->n_eyes; p->opened++) {
-		struct job *job = &p->job[p->opened];
-		if (!job_open(job, &p->usable[p->opened], stage, capture, p->opened, eye, conf, err))
-			return false;
-		for (int i = 0; p->usable[p->opened] && i < job->n_in; i++)
+	for (int e = 0; e < p->eyes->n; e++) {
+		const struct job *job = &p->eyes->job[e];
+		for (int i = 0; job->usable && i < job->n_in; i++)
 			p->in[p->n_in++] = job->in[i];
 	}
-	return true;
 }
 
 static bool find_character(struct parts *p, struct stage *stage, struct err *err)
@@ -156,9 +151,9 @@ static bool find_character(struct parts *p, struct stage *stage, struct err *err
 
 static bool add_eyes(json_t *eyes, struct parts *p, struct err *err)
 {
-	for (int i = 0; i < p->opened; i++) {
-		struct job *job = &p->job[i];
-		if (!p->usable[i])
+	for (int i = 0; i < p->eyes->n; i++) {
+		struct job *job = &p->eyes->job[i];
+		if (!job->usable)
 			continue;
 		if (!job_ready(job, err))
 			return false;
@@ -225,23 +220,14 @@ static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 	return ok;
 }
 
-bool viewer_make(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *conf,
-                 const struct skin_conf *skin_conf, struct err *err)
+bool viewer_make(struct skin_job *skin, struct err *err)
 {
-	struct parts p = { 0 };
-	p.job = mem_new((size_t)capture->n_eyes + 1, sizeof *p.job);
-	p.usable = mem_new((size_t)capture->n_eyes + 1, sizeof *p.usable);
-	p.in = mem_new((size_t)capture->n_eyes * COUNT(p.job->in) + 4, sizeof *p.in);
-	bool ok = find_eyes(&p, stage, capture, eye, conf, err) && find_character(&p, stage, err);
-	if (ok && p.n_in && !stage_fresh(stage, out, p.n_in, p.in)) {
-		struct skin_job skin = { .stage = stage, .render = conf, .conf = skin_conf, .capture = capture, .eye = eye };
-		ok = make(&p, &skin, err);
-		skin_close(&skin);
-	}
-	for (int i = 0; i < p.opened; i++)
-		job_close(&p.job[i]);
-	free(p.job);
-	free(p.usable);
+	struct jobs *eyes = skin->photographed;
+	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 4, sizeof *p.in) };
+	find_eyes(&p);
+	bool ok = find_character(&p, skin->stage, err);
+	if (ok && p.n_in && !stage_fresh(skin->stage, out, p.n_in, p.in))
+		ok = make(&p, skin, err);
 	free(p.in);
 	free(p.target);
 	return ok;

@@ -35,7 +35,6 @@ json_t *viewer_tissue(const struct viewer_source *source);
 
 /* Writes the page where it is not fresh: the photographed eyes, and the first character that has a rig, whose eyes are plain
  * ones where none was photographed. Neither: no page. */
-bool viewer_make(struct stage *stage, const struct capture *capture, const struct eye *eye, const struct render_conf *conf,
-                 const struct skin_conf *skin, struct err *err);
+bool viewer_make(struct skin_job *skin, struct err *err);
 
 #endif
