@@ -1,33 +1,55 @@
 #include "stages/calibrate/merge.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 
 #define MERGED CALIBRATE_DIR "/merged"
-#define ADJUSTED CALIBRATE_DIR "/adjusted"
+#define LESS CALIBRATE_DIR "/less"
 #define JOINED CALIBRATE_DIR "/joined"
 
-/* Merger, adjustment, filter: the result in JOINED. */
-static bool run_all(const char *one, const char *other, struct stage *stage, const struct calibrate_options *o, struct err *err)
+/* The picture that sees the most points: it finds its way back in whatever else moves. */
+static const char *best_held(const struct colmap_model *m)
 {
-	const char *merged = stage_path(stage, MERGED), *adjusted = stage_path(stage, ADJUSTED), *joined = stage_path(stage, JOINED);
-	char *filter = mem_printf("%g", o->filter_px), *angle = mem_printf("%g", o->tri_deg);
+	int most = -1, best = 0;
+	for (int i = 0; i < m->n_images; i++) {
+		int n = 0;
+		for (int k = 0; k < m->images[i].n_seen; k++)
+			n += m->images[i].seen[k].point >= 0;
+		if (n > most)
+			best = i;
+		most = n > most ? n : most;
+	}
+	return m->images[best].name;
+}
+
+/* Merger and mapper: the result in JOINED. COLMAP's bundle adjuster alone cannot be held to one thread, and on several its
+ * sums differ from run to run; its mapper can, and adjusts all when a picture comes: one is taken out for it to put back. */
+static bool run_all(const struct colmap_model *best, const char *one, const char *other, const struct views *views,
+                    struct stage *stage, const struct calibrate_options *o, struct err *err)
+{
+	const char *merged = stage_path(stage, MERGED), *less = stage_path(stage, LESS), *list = stage_path(stage, MERGED "/one.txt");
 	const char *const merge[] = { "--input_path1", one, "--input_path2", other, "--output_path", merged, 0 };
-	const char *const adjust[] = { "--input_path", merged, "--output_path", adjusted, 0 };
-	const char *const drop[] = { "--input_path", adjusted, "--output_path", joined, "--max_reproj_error", filter, "--min_tri_angle",
-		                         angle, 0 };
-	bool ok = file_mkdirs(merged, err) && file_mkdirs(adjusted, err) && file_mkdirs(joined, err)
-	          && colmap_run(stage, "model_merger", merge, 0, "", err) && colmap_run(stage, "bundle_adjuster", adjust, 0, "", err)
-	          && colmap_run(stage, "point_filtering", drop, 0, "", err);
-	free(filter);
-	free(angle);
+	const char *const take[] = { "--input_path", merged, "--output_path", less, "--image_names_path", list, 0 };
+	char *name = mem_printf("%s\n", best_held(best));
+	bool ok = file_mkdirs(merged, err) && file_mkdirs(less, err) && file_write(list, name, strlen(name), err)
+	          && colmap_run(stage, "model_merger", merge, 0, "", err) && colmap_run(stage, "image_deleter", take, 0, "", err)
+	          && model_map(stage, views, &(struct model_step){ LESS, JOINED, false, true }, o, err);
+	file_remove(list, &(struct err){ 0 });
+	free(name);
 	return ok;
 }
 
-/* Every picture still sees enough points: where the models were laid onto each other wrongly, those are gone. */
-static bool holds(const struct colmap_model *m, int least)
+/* Every picture still sees enough points, and the one taken out is back: where the models were laid onto each other wrongly,
+ * that is not so. */
+static bool holds(const struct colmap_model *m, const char *back, int least)
 {
+	bool is_back = false;
+	for (int i = 0; i < m->n_images; i++)
+		is_back |= !strcmp(m->images[i].name, back);
+	if (!is_back)
+		return false;
 	for (int i = 0; i < m->n_images; i++) {
 		int n = 0;
 		for (int k = 0; k < m->images[i].n_seen; k++)
@@ -39,16 +61,16 @@ static bool holds(const struct colmap_model *m, int least)
 }
 
 /* *joined: the other model brought pictures, and fits. */
-static bool join(bool *joined, struct colmap_model *best, const char *one, const char *other, struct stage *stage,
-                 const struct calibrate_options *o, struct err *err)
+static bool join(bool *joined, struct colmap_model *best, const char *one, const char *other, const struct views *views,
+                 struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct colmap_model m;
 	const char *dir = stage_path(stage, JOINED);
 	*joined = false;
-	if (!run_all(one, other, stage, o, err) || !colmap_load(&m, dir, err))
+	if (!run_all(best, one, other, views, stage, o, err) || !colmap_load(&m, dir, err))
 		return false;
 	bool ok = colmap_check_errors(&m, dir, err);
-	if (ok && m.n_images > best->n_images && holds(&m, o->min_matches)) {
+	if (ok && m.n_images > best->n_images && holds(&m, best_held(best), o->min_matches)) {
 		struct colmap_model was = *best;
 		*best = m;
 		m = was;
@@ -58,8 +80,8 @@ static bool join(bool *joined, struct colmap_model *best, const char *one, const
 	return ok;
 }
 
-bool merge_models(struct colmap_model *best, int *n_models, int at, struct stage *stage, const struct calibrate_options *o,
-                  struct err *err)
+bool merge_models(struct colmap_model *best, int *n_models, int at, const struct views *views, struct stage *stage,
+                  const struct calibrate_options *o, struct err *err)
 {
 	const char *one = stage_path(stage, TRIALS "/%d", at);
 	bool ok = true;
@@ -68,7 +90,7 @@ bool merge_models(struct colmap_model *best, int *n_models, int at, struct stage
 		bool joined = false;
 		if (i == at || !file_exists(stage_path(stage, TRIALS "/%d/cameras.bin", i)))
 			continue;
-		ok = join(&joined, best, one, other, stage, o, err);
+		ok = join(&joined, best, one, other, views, stage, o, err);
 		if (joined) {
 			// What is joined next is joined to this.
 			model_remove(stage, TRIALS "/joined");
@@ -79,7 +101,7 @@ bool merge_models(struct colmap_model *best, int *n_models, int at, struct stage
 		}
 	}
 	model_remove(stage, MERGED);
-	model_remove(stage, ADJUSTED);
+	model_remove(stage, LESS);
 	model_remove(stage, JOINED);
 	model_remove(stage, TRIALS "/joined");
 	return ok;

@@ -32,27 +32,31 @@ static bool keep(const struct colmap_model *model, struct stage *stage, struct e
 	return colmap_save(model, dir, COLMAP_BINARY, err) && colmap_seal(dir, err);
 }
 
-static bool run_mapper(struct stage *stage, const struct views *views, bool grows, const struct calibrate_options *o,
-                       struct err *err)
+bool model_map(struct stage *stage, const struct views *views, const struct model_step *step, const struct calibrate_options *o,
+               struct err *err)
 {
 	char *filter = mem_printf("%g", o->filter_px), *angle = mem_printf("%g", o->tri_deg), *rounds = mem_printf("%d", o->ba_rounds);
 	char *least = mem_printf("%d", views->n_used < 10 ? 2 : 5), *matches = mem_printf("%d", o->min_matches);
-	const char *refine = grows ? "0" : "1", *trials = stage_path(stage, TRIALS);
+	const char *refine = step->fixed ? "0" : "1", *to = stage_path(stage, "%s", step->to);
 	// Its sums depend on the number of threads; one is hardly slower, for most of its work is not shared out anyway.
 	const char *args[48] = { "--database_path", stage_path(stage, CALIBRATE_DIR "/database.db"),
-		"--image_path", stage_path(stage, CALIBRATE_DIR "/pictures"), "--output_path", trials, "--Mapper.num_threads", "1",
+		"--image_path", stage_path(stage, CALIBRATE_DIR "/pictures"), "--output_path", to, "--Mapper.num_threads", "1",
 		"--Mapper.min_num_matches", matches, "--Mapper.min_model_size", least, "--Mapper.max_num_models", "5",
 		"--Mapper.filter_max_reproj_error", filter, "--Mapper.filter_min_tri_angle", angle,
 		"--Mapper.ba_global_max_refinements", rounds, "--Mapper.ba_refine_focal_length", refine,
-		"--Mapper.ba_refine_extra_params", refine, "--Mapper.fix_existing_images", grows ? "1" : "0" };
+		"--Mapper.ba_refine_extra_params", refine, "--Mapper.fix_existing_images", step->fixed ? "1" : "0" };
 	int n = 0;
 	while (args[n])
 		n++;
-	if (grows) {
+	if (step->from) {
 		args[n++] = "--input_path";
-		args[n++] = stage_path(stage, MODEL_DIR);
+		args[n++] = stage_path(stage, "%s", step->from);
 	}
-	bool ok = file_mkdirs(trials, err) && colmap_run(stage, "mapper", args, views->n_used, "cameras", err);
+	if (step->adjust_each) {
+		args[n++] = "--Mapper.ba_global_images_freq";
+		args[n++] = "1";
+	}
+	bool ok = file_mkdirs(to, err) && colmap_run(stage, "mapper", args, views->n_used, "cameras", err);
 	free(filter);
 	free(angle);
 	free(rounds);
@@ -115,7 +119,7 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
 {
 	remove_trials(stage);
 	struct err why = { 0 };
-	bool ok = run_mapper(stage, views, grows, o, &why);
+	bool ok = model_map(stage, views, &(struct model_step){ grows ? MODEL_DIR : 0, TRIALS, grows, false }, o, &why);
 	// That it found no pair to begin with is a result, and for the photographs to answer for.
 	if (!ok && !strstr(why.msg, "failed to create sparse model") && !strstr(why.msg, "No good initial image pair"))
 		return err_set(err, "%s", why.msg);
@@ -123,7 +127,7 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
 	*model = (struct colmap_model){ 0 };
 	int at = -1;
 	ok = !ok || (best_trial(model, n_models, &at, stage, err)
-	             && (at < 0 || *n_models < 2 || merge_models(model, n_models, at, stage, o, err)));
+	             && (at < 0 || *n_models < 2 || merge_models(model, n_models, at, views, stage, o, err)));
 	remove_trials(stage);
 	return ok;
 }

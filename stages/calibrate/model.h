@@ -4,6 +4,16 @@
 
 #define MODEL_DIR CALIBRATE_DIR "/model"
 
+/* One run of COLMAP's mapper; folders relative to the capture. */
+struct model_step {
+	const char *from;   // a model that is gone on with; null: begun from the matches alone
+	const char *to;
+	bool fixed;         // the cameras of that model stay where they are
+	bool adjust_each;   // everything is adjusted with each picture that comes, not now and then
+};
+bool model_map(struct stage *stage, const struct views *views, const struct model_step *step, const struct calibrate_options *o,
+               struct err *err);
+
 /* Why no two pictures could be put together, and what to photograph instead. Always false, err set. */
 bool model_advice(const struct views *views, struct stage *stage, struct err *err);
 

@@ -32,7 +32,7 @@ static const struct rule {
 	{ "track", 0, VIDEO, 0, "follows gaze, lids and skin", "no video/: there is no motion to follow" },
 	{ "train", "track", VIDEO, 0, "learns how the skin moves with the eye", "no video/: there is no motion to learn" },
 	{ "transfer", "train", TARGETS, VIDEO, "fits the characters to the subject",
-	  "no targets/, or no video/ to learn from" },
+	  "no targets/, or neither video/ to learn from nor views/ to make the subject's mesh from" },
 	{ "extrapolate", "transfer", TARGETS, VIDEO, "rigs the characters", "no targets/, or no video/ to learn from" },
 	{ "animate", "train", SCRIPT, VIDEO, "moves the eyes as script/ says", "no script/, or no video/ to learn from" },
 	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "neither photos/ of an eye, nor views/, nor video/ and targets/ to show" },
@@ -43,6 +43,7 @@ static const struct {
 	const char *name, *needs;
 	int all;
 } others[] = {
+	{ "transfer", "calibrate", VIEWS | TARGETS },
 	{ "render", "extrapolate", VIDEO | TARGETS },
 	{ "render", "calibrate", VIEWS },
 };
@@ -54,8 +55,11 @@ const char *const plan_names[PLAN_STAGES] = {
 
 bool plan_needs(int i, int j)
 {
-	// Cameras come first: whatever looks at pictures takes them from there.
-	bool cameras = !strcmp(plan_names[j], "calibrate") && (!strcmp(plan_names[i], "limbus") || !strcmp(plan_names[i], "track"));
+	// Cameras and mesh come first: whatever looks at pictures, or at the person, takes them from there.
+	static const char *const takers[] = { "limbus", "track", "transfer" };
+	bool cameras = false;
+	for (int k = 0; k < COUNT(takers); k++)
+		cameras |= !strcmp(plan_names[j], "calibrate") && !strcmp(plan_names[i], takers[k]);
 	return cameras || (rules[i].needs && !strcmp(rules[i].needs, plan_names[j]));
 }
 

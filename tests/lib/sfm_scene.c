@@ -1,6 +1,7 @@
 #include "tests/lib/sfm_scene.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "math/rng.h"
@@ -66,4 +67,35 @@ void sfm_scene(struct colmap_model *m, int n_images, int n_points, unsigned seed
 		place(im, R, 2 * M_PI * i / n_images, 1 + 0.5 * (i % 3));
 		see(m, i, R, &rng);
 	}
+}
+
+bool sfm_same(const struct colmap_model *a, const struct colmap_model *b, double slack)
+{
+	if (a->n_cameras != b->n_cameras || a->n_images != b->n_images || a->n_points != b->n_points)
+		return false;
+	bool ok = true;
+	for (int i = 0; i < a->n_cameras; i++)
+		ok &= a->cameras[i].id == b->cameras[i].id && a->cameras[i].kind == b->cameras[i].kind
+		      && a->cameras[i].width == b->cameras[i].width && a->cameras[i].height == b->cameras[i].height
+		      && !memcmp(a->cameras[i].params, b->cameras[i].params, sizeof a->cameras[i].params);
+	for (int i = 0; i < a->n_images; i++) {
+		const struct colmap_image *p = &a->images[i], *q = &b->images[i];
+		ok &= p->id == q->id && !strcmp(p->name, q->name) && p->camera == q->camera && p->n_seen == q->n_seen;
+		for (int k = 0; k < 4; k++)
+			ok &= fabs(p->q[k] - q->q[k]) <= slack;
+		for (int k = 0; k < 3; k++)
+			ok &= fabs(p->t[k] - q->t[k]) <= slack;
+		for (int k = 0; ok && k < p->n_seen; k++)
+			ok &= p->seen[k].point == q->seen[k].point && fabs(p->seen[k].px[0] - q->seen[k].px[0]) <= 1e3 * slack
+			      && fabs(p->seen[k].px[1] - q->seen[k].px[1]) <= 1e3 * slack;
+	}
+	for (int i = 0; ok && i < a->n_points; i++) {
+		const struct colmap_point *p = &a->points[i], *q = &b->points[i];
+		ok &= p->id == q->id && p->n_track == q->n_track && !memcmp(p->rgb, q->rgb, 3) && fabs(p->error - q->error) <= slack;
+		for (int k = 0; k < 3; k++)
+			ok &= fabs(p->xyz[k] - q->xyz[k]) <= slack;
+		for (int k = 0; ok && k < p->n_track; k++)
+			ok &= p->track[k].image == q->track[k].image && p->track[k].seen == q->track[k].seen;
+	}
+	return ok;
 }
