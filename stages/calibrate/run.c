@@ -1,5 +1,6 @@
 #include "stages/calibrate/run.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,8 @@ static void report(struct stage *stage, const struct views *views, const struct 
 	stage_figure(stage, "registered", rig->n, "");
 	stage_figure(stage, "points", head->model->n_points, "");
 	stage_figure(stage, "residual", head->residual_px, "px");
+	if (isfinite(head->scale_sigma))
+		stage_figure(stage, "scale_sigma", 100 * head->scale_sigma, "%");
 }
 
 static bool from_views(struct stage *stage, struct views *views, const struct calibrate_options *o, struct err *err)

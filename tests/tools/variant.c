@@ -1,7 +1,8 @@
 /* variant: one photograph made into another, for the scripts of tests/chain.
  *
  *     variant KIND IN OUT
- * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half, turned
+ * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half, turned,
+ * middle (its inner quarter: the same lens nearer up), blurred, bent
  */
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +13,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "image/photo.h"
+#include "tests/lib/bent.h"
 #include "tests/lib/variant.h"
 
 static struct pixels crop(const struct photo *photo, int x0, int y0, int width, int height, int step)
@@ -33,6 +35,42 @@ static struct pixels turn(const struct pixels *p)
 		for (int x = 0; x < p->width; x++)
 			memcpy(t.px + 3 * ((long)x * t.width + (p->height - 1 - y)), p->px + 3 * ((long)y * p->width + x), 3 * sizeof *t.px);
 	return t;
+}
+
+/* Three running means of each row and column of 41 px: a hand that shook. */
+static void blur(struct pixels *p)
+{
+	enum { HALF = 20 };
+	uint16_t *line = mem_array((size_t)(p->width > p->height ? p->width : p->height), sizeof *line);
+	for (int pass = 0; pass < 6; pass++) {
+		int n = pass % 2 ? p->height : p->width, lines = pass % 2 ? p->width : p->height;
+		long step = pass % 2 ? 3L * p->width : 3, next = pass % 2 ? 3 : 3L * p->width;
+		for (int i = 0; i < 3 * lines; i++) {
+			uint16_t *at = p->px + i / 3 * next + i % 3;
+			long sum = 0;
+			for (int k = 0; k < n; k++)
+				line[k] = at[k * step];
+			for (int k = -HALF; k < HALF; k++)
+				sum += line[k < 0 ? 0 : k];
+			for (int k = 0; k < n; k++) {
+				sum += line[k + HALF < n ? k + HALF : n - 1];
+				at[k * step] = (uint16_t)(sum / (2 * HALF + 1));
+				sum -= line[k - HALF < 0 ? 0 : k - HALF];
+			}
+		}
+	}
+	free(line);
+}
+
+/* As a wide-angle lens bends: OpenCV's k1 k2 p1 p2 for a focal length of the picture's width. */
+static void bend(struct pixels *p)
+{
+	const struct camera lens = { .focal_px = p->width, .center_px = { 0.5 * p->width, 0.5 * p->height },
+		                         .distortion = { -0.1, 0.02, 0.002, -0.003, 0 } };
+	uint16_t *out = mem_array((size_t)p->width * (size_t)p->height * 3, sizeof *out);
+	bent_rgb16(out, p->px, p->width, p->height, &lens);
+	free(p->px);
+	p->px = out;
 }
 
 /* Exposure in linear light, clipped as a sensor does. */
@@ -138,14 +176,19 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	int w = photo.width, h = photo.height;
-	bool cut = !strcmp(kind, "cut");  // through the middle of the iris
-	struct pixels p = crop(&photo, 0, 0, cut ? w / 2 : w, h, strcmp(kind, "half") ? 1 : 2);
+	bool cut = !strcmp(kind, "cut"), middle = !strcmp(kind, "middle");  // cut: through the middle of the iris
+	struct pixels p = middle ? crop(&photo, w / 4, h / 4, w / 2, h / 2, 1)
+	                         : crop(&photo, 0, 0, cut ? w / 2 : w, h, strcmp(kind, "half") ? 1 : 2);
 	expose(&p, !strcmp(kind, "over") ? 30 : !strcmp(kind, "under") ? 0.01 : !strcmp(kind, "dark") ? 0.1 : 1);
 	if (!strcmp(kind, "turned")) {
 		struct pixels upright = p;
 		p = turn(&upright);
 		pixels_free(&upright);
 	}
+	if (!strcmp(kind, "blurred"))
+		blur(&p);
+	if (!strcmp(kind, "bent"))
+		bend(&p);
 	if (!strcmp(kind, "closed"))
 		paint_closed(&p);
 	if (!strcmp(kind, "noise"))
