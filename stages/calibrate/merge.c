@@ -35,7 +35,7 @@ static bool run_all(const struct colmap_model *best, const char *one, const char
 	char *name = mem_printf("%s\n", best_held(best));
 	bool ok = file_mkdirs(merged, err) && file_mkdirs(less, err) && file_write(list, name, strlen(name), err)
 	          && colmap_run(stage, "model_merger", merge, 0, "", err) && colmap_run(stage, "image_deleter", take, 0, "", err)
-	          && model_map(stage, views, &(struct model_step){ LESS, JOINED, false, true }, o, err);
+	          && model_map(stage, views, &(struct model_step){ LESS, JOINED, false, true, true }, o, err);
 	file_remove(list, &(struct err){ 0 });
 	free(name);
 	return ok;

@@ -37,7 +37,7 @@ bool model_map(struct stage *stage, const struct views *views, const struct mode
 {
 	char *filter = mem_printf("%g", o->filter_px), *angle = mem_printf("%g", o->tri_deg), *rounds = mem_printf("%d", o->ba_rounds);
 	char *least = mem_printf("%d", views->n_used < 10 ? 2 : 5), *matches = mem_printf("%d", o->min_matches);
-	const char *refine = step->fixed ? "0" : "1", *to = stage_path(stage, "%s", step->to);
+	const char *refine = step->refine ? "1" : "0", *to = stage_path(stage, "%s", step->to);
 	// Its sums depend on the number of threads; one is hardly slower, for most of its work is not shared out anyway.
 	const char *args[48] = { "--database_path", stage_path(stage, CALIBRATE_DIR "/database.db"),
 		"--image_path", stage_path(stage, CALIBRATE_DIR "/pictures"), "--output_path", to, "--Mapper.num_threads", "1",
@@ -114,12 +114,25 @@ static bool recall(struct colmap_model *kept, const struct views *views, bool gr
 	return false;
 }
 
-static bool map(struct colmap_model *model, int *n_models, const struct views *views, bool grows, struct stage *stage,
+/* A picture has come whose lens none of the model's pictures has: all that is known of it is a guess. */
+static bool new_lens(const struct colmap_model *kept, const struct views *views)
+{
+	for (int i = 0; i < views->n_used; i++) {
+		bool known = !views->v[i].is_new;
+		for (int k = 0; k < kept->n_images && !known; k++)
+			known = kept->cameras[kept->images[k].camera].id == views->cameras[views->v[i].camera].id;
+		if (!known)
+			return true;
+	}
+	return false;
+}
+
+static bool map(struct colmap_model *model, int *n_models, const struct views *views, const struct model_step *step, struct stage *stage,
                 const struct calibrate_options *o, struct err *err)
 {
 	remove_trials(stage);
 	struct err why = { 0 };
-	bool ok = model_map(stage, views, &(struct model_step){ grows ? MODEL_DIR : 0, TRIALS, grows, false }, o, &why);
+	bool ok = model_map(stage, views, step, o, &why);
 	// That it found no pair to begin with is a result, and for the photographs to answer for.
 	if (!ok && !strstr(why.msg, "failed to create sparse model") && !strstr(why.msg, "No good initial image pair"))
 		return err_set(err, "%s", why.msg);
@@ -139,6 +152,7 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 	for (int i = 0; i < views->n_used; i++)
 		n_new += views->v[i].is_new;
 	bool kept = recall(model, views, grows, stage, o);
+	const struct model_step step = { kept ? MODEL_DIR : 0, TRIALS, kept, !kept || new_lens(model, views), false };
 	if (kept && !n_new)
 		return true;
 	colmap_free(model);
@@ -149,7 +163,7 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 	bool flat = false;
 	if (!model_is_flat(&flat, stage, err))
 		return false;
-	if (!flat && !map(model, &n_models, views, kept, stage, o, err))
+	if (!flat && !map(model, &n_models, views, &step, stage, o, err))
 		return false;
 	if (!model->n_images)
 		return model_advice(views, stage, err);

@@ -9,6 +9,7 @@ struct model_step {
 	const char *from;   // a model that is gone on with; null: begun from the matches alone
 	const char *to;
 	bool fixed;         // the cameras of that model stay where they are
+	bool refine;        // lenses are adjusted
 	bool adjust_each;   // everything is adjusted with each picture that comes, not now and then
 };
 bool model_map(struct stage *stage, const struct views *views, const struct model_step *step, const struct calibrate_options *o,
