@@ -118,6 +118,16 @@ PATH="$root/bin:$PATH" "$BIN/calibrate" --capture="$head" --force >"$log" 2>&1
 same "the person moved: exit status" "$?" 1
 check "says what to do" grep -q "overlap too little, or the person moved: take at least 8" "$log"
 
+# A video of a head on a chin rest, its light changing: many matches, no depth. The lens is not guessed from it.
+mkdir -p "$root/still/video"
+for kind in dark under; do "$VARIANT" $kind "$heads/00013.jpg" "$root/$kind.png"; done
+"${B:-build}/tests/tools/clip" "$root/still/video/rest.mp4" 1280 3 "$heads/00013.jpg" "$root/dark.png" "$root/under.png"
+echo "quality = draft" >"$root/still/capture.conf"
+"$BIN/calibrate" --capture="$root/still" >"$log" 2>&1
+same "a video of a still head: exit status" "$?" 0
+check "a generic camera is taken, and it is said" grep -q "rest.mp4: no camera found from it (neither camera nor head move enough.*generic" "$log"
+check "no cameras are left" test ! -e "$root/still/work/rig.json"
+
 # A disk that is full, where a folder of a known size can be had.
 mkdir "$root/small"
 if ! unshare -rm mount -t tmpfs -o size=3m none "$root/small" 2>/dev/null; then
