@@ -101,11 +101,11 @@ const struct eye_state *eye_track_push(struct eye_track *track, int side, const 
 	return &track->side[side].last;
 }
 
-void eye_track_head_rested(struct eye_track *track, const double cam_from_head[4][4])
+void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4])
 {
 	for (int side = 0; side < SIDES; side++)
-		for (long i = 0; i < track->side[side].frames; i++)
-			memcpy(track->side[side].record[i].cam_from_head, cam_from_head, sizeof track->side[side].record[i].cam_from_head);
+		if (frame < track->side[side].frames)
+			memcpy(track->side[side].record[frame].cam_from_head, cam_from_head, sizeof track->side[side].record[frame].cam_from_head);
 }
 
 void eye_track_free(struct eye_track *track)

@@ -90,8 +90,8 @@ struct eye_track *eye_track_new(const struct eye_scene *scene, const struct eye_
  * at once. The frame is not kept. Returns what was found so far, valid until the next push of this eye. */
 const struct eye_state *eye_track_push(struct eye_track *track, int side, const struct eye_frame *frame);
 
-/* The head turns out to have been there in all frames pushed so far. Before eye_track_finish. */
-void eye_track_head_rested(struct eye_track *track, const double cam_from_head[4][4]);
+/* The head turns out to have been there in a frame pushed before. Before eye_track_finish. */
+void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);
 
 /* Clip-wide fit of the eyeballs, then gaze, openness, blinks, saccades anew. False, err set, where no eye was found
  * in any frame. clip is overwritten; eye_clip_free. */

@@ -62,8 +62,7 @@ double head_angle(const double a[4][4], const double b[4][4])
 	return vec_norm(w);
 }
 
-/* The pose after a rotation w of the camera's axes about `pivot` (camera frame), then a shift. */
-static void moved(double out[4][4], const double m[4][4], const double d[P], const double pivot[3])
+void head_moved(double out[4][4], const double m[4][4], const double d[P], const double pivot[3])
 {
 	double R[3][3], now[3][3], was[3][3], arm[3];
 	turn(R, d);
@@ -129,19 +128,23 @@ static double sum(double H[P][P], double g[P], double *weight, const double m[4]
 	return cost;
 }
 
-static double expect(double H[P][P], double g[P], const double m[4][4], const struct head_prior *prior, const double pivot[3])
+void head_motion(double e[P], const double m[4][4], const double from[4][4], const double pivot[3])
 {
-	double e[P], there[4][4], cost = 0;
-	if (!prior)
-		return 0;
-	turned(e, m, prior->cam_from_head);
-	// shifts are those of the pivot, so that a turn of the head is not taken for one
 	double head[3];
+	turned(e, m, from);
+	// shifts are those of the pivot, so that a turn of the head is not taken for one
 	head_to(head, m, pivot);
-	memcpy(there, prior->cam_from_head, sizeof there);
-	head_from(head, there, head);
+	head_from(head, from, head);
 	for (int i = 0; i < 3; i++)
 		e[3 + i] = pivot[i] - head[i];
+}
+
+static double expect(double H[P][P], double g[P], const double m[4][4], const struct head_prior *prior, const double pivot[3])
+{
+	double e[P], cost = 0;
+	if (!prior)
+		return 0;
+	head_motion(e, m, prior->cam_from_head, pivot);
 	for (int i = 0; i < P; i++) {
 		double w = 1 / (prior->sigma[i] * prior->sigma[i]);
 		cost += w * e[i] * e[i];
@@ -177,7 +180,7 @@ double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight 
 			H[k][k] *= 1 + damp;
 		if (!chol_solve(P, P, &H[0][0], g))
 			return NAN;
-		moved(next, m, g, pivot);
+		head_moved(next, m, g, pivot);
 		double now = sum(0, 0, &weight, next, n, s, camera, robust, pivot) + expect(0, 0, next, prior, pivot);
 		double step = fmax(vec_norm(g) * 100, vec_norm(g + 3));
 		if (now < cost) {

@@ -36,6 +36,12 @@ void head_to(double out[3], const double cam_from_head[4][4], const double cam[3
 /* Pixel of a point of the head; false behind the camera. */
 bool head_project(double px[2], const struct camera *camera, const double cam_from_head[4][4], const double head[3]);
 
+/* The pose after a rotation d[0..2] of the camera's axes (radians) about `pivot` (camera frame, mm), then a shift d[3..5]. */
+void head_moved(double out[4][4], const double cam_from_head[4][4], const double d[6], const double pivot[3]);
+
+/* That motion to cam_from_head from another pose; what lies at `pivot` afterwards counts for the shift. */
+void head_motion(double d[6], const double cam_from_head[4][4], const double from[4][4], const double pivot[3]);
+
 /* Angle between two poses' orientations, radians. */
 double head_angle(const double a[4][4], const double b[4][4]);
 

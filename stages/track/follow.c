@@ -20,18 +20,21 @@ static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids 
 /* How much a head moves from one frame to the next: degrees, mm. */
 static const double turn_step = 0.2, shift_step = 0.6;
 
-/* A head rests that comes back to within so many px of where it was in this share of the frames of each third of the clip. In
- * rendered films of heads on a rest 0.3 to 0.5 of the frames are so, of heads held freely none after the first second. */
-static const double rest_px = 0.3, rest_share = 0.1;
+bool track_on_lid(const double head[3], const struct track_subject *s)
+{
+	for (int e = 0; e < SIDES; e++) {
+		double dx = head[0] - s->center[e][0], dy = head[1] - s->center[e][1];
+		if (dx * dx + dy * dy < 1.4 * 1.4 * s->radius * s->radius)
+			return true;
+	}
+	return false;
+}
 
 static double expected_off(const double head[3], const struct track_subject *s)
 {
 	double nose = 0.5 * (s->center[SIDE_LEFT][0] + s->center[SIDE_RIGHT][0]);
-	for (int e = 0; e < SIDES; e++) {
-		double dx = head[0] - s->center[e][0], dy = head[1] - s->center[e][1];
-		if (dx * dx + dy * dy < 1.4 * 1.4 * s->radius * s->radius)
-			return off_lids;
-	}
+	if (track_on_lid(head, s))
+		return off_lids;
 	double up = head[1] - (isnan(s->center[SIDE_LEFT][1]) ? s->center[SIDE_RIGHT][1] : s->center[SIDE_LEFT][1]);
 	if (fabs(head[0] - (isnan(nose) ? 0 : nose)) < s->radius && up < 0.5 * s->radius)
 		return off_nose;
@@ -136,47 +139,6 @@ static bool skin_frame(struct track_result *r, struct skin_track *skin, struct s
 	return true;
 }
 
-/* How far a frame's skin is from where it is in the reference: what a tenth of the points stays below, px. */
-static double away(const struct track_result *r, long frame, double *room)
-{
-	int n = 0;
-	for (int i = 0; i < r->n_points; i++) {
-		long at = frame * r->n_points + i;
-		if (r->confidence[at] > 0.5f)
-			room[n++] = hypot((double)(r->skin[at][0] - r->skin[i][0]), (double)(r->skin[at][1] - r->skin[i][1]));
-	}
-	return n > r->n_points / 4 ? stats_quantile(n, room, 0.1) : INFINITY;
-}
-
-/* A head on a rest: whatever the face does, it comes back to the very same place, early and late. Skin alone does not tell
- * raised cheeks from a head that comes nearer. */
-static bool rests(const struct track_result *r)
-{
-	enum { PARTS = 3 };
-	double *room = mem_array((size_t)r->n_points + 1, sizeof *room);
-	bool yes = r->n_points > 0 && r->n >= 10L * PARTS;
-	for (int part = 0; part < PARTS && yes; part++) {
-		long back = 0, from = part * r->n / PARTS, to = (part + 1) * r->n / PARTS;
-		for (long i = from; i < to; i++)
-			back += away(r, i, room) < rest_px;
-		yes = (double)back >= rest_share * (double)(to - from);
-	}
-	free(room);
-	return yes;
-}
-
-static void hold_still(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
-{
-	for (long f = 0; f < r->n; f++) {
-		memcpy(r->pose[f], clip->cam_from_head, sizeof r->pose[f]);
-		for (int i = 0; i < r->n_points; i++) {
-			const float *at = r->skin[f * r->n_points + i];
-			const double px[2] = { (double)at[0], (double)at[1] };
-			track_to_model(r->skin_model[f * r->n_points + i], px, points->head[i], r->pose[f], clip);
-		}
-	}
-}
-
 bool track_follow(struct track_result *r, struct stage *stage, const struct track_clip *clip, const struct track_subject *subject,
                   const struct track_points *points, const struct track_conf *conf, struct err *err)
 {
@@ -216,9 +178,8 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	}
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
-	r->rests = ok && rests(r);
-	if (r->rests)
-		hold_still(r, points, clip);
+	if (ok && points->n)
+		track_steady(r, points, subject, clip);
 	ok = ok && (r->n < 2 || track_eyes_finish(r, eyes, err));
 	track_eyes_free(eyes);
 	rigid_free(&rigid);

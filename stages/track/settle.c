@@ -40,11 +40,13 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 
 /* Lids follow the eye, by a quarter of a millimetre a degree up and down, and a little sideways. Those of a mesh are taken for those of
  * an eye that looks straight on, as high as in the reference frame: what each control point's place would be then, from all frames of
- * open eyes, px of the modelling camera = rest + h turn[0] + (v - v of the reference) turn[1], robustly. NAN where too few tell. */
-static void rest_of(double rest[2], const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point)
+ * open eyes, px of the modelling camera = rest + h turn[0] + (v - v of the reference) turn[1], robustly. Where too few
+ * tell, that of the reference frame. */
+static void rest_of(double rest[2], const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
+                    const struct track_conf *conf)
 {
 	double scale = INFINITY, turn[2][2] = { { 0 } }, up = r->eyes.state[clip->reference][side].gaze[1];
-	rest[0] = rest[1] = NAN;
+	memcpy(rest, r->eyes.state[clip->reference][side].lid[point / conf->eyes.lid_points][point % conf->eyes.lid_points], 2 * sizeof *rest);
 	for (int round = 0; round < REST_ROUNDS; round++) {
 		double a[3][3] = { { 0 } }, b[2][3] = { { 0 } }, square = 0, weight = 0;
 		for (long f = 0; f < r->n; f++) {
@@ -129,7 +131,7 @@ static void refine(struct track_clip *clip, const struct track_result *r, const 
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	memcpy(prior.cam_from_head, pose, sizeof pose);
 	for (int i = 0; i < SIDES * points; i++)
-		rest_of(rest[i / points][i % points], r, clip, s, i / points, i % points);
+		rest_of(rest[i / points][i % points], r, clip, s, i / points, i % points, conf);
 	for (int round = 0; round < ROUNDS; round++) {
 		int n = centers(sights, r, clip, s, conf);
 		if (!n)

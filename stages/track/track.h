@@ -119,6 +119,13 @@ bool track_follow(struct track_result *result, struct stage *stage, const struct
                   const struct track_subject *subject, const struct track_points *points, const struct track_conf *conf,
                   struct err *err);
 
+/* After the last frame: whether the head rests, and else its path. */
+void track_steady(struct track_result *result, const struct track_points *points, const struct track_subject *subject,
+                  const struct track_clip *clip);
+
+/* Whether a point of the skin moves with the eyelids. */
+bool track_on_lid(const double head[3], const struct track_subject *subject);
+
 struct track_eyes;
 struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
 void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, const double cam_from_head[4][4]);

@@ -159,7 +159,8 @@ static void score_gaze(struct track_score *s, const struct found *f)
 	for (int k = 0; k < 3; k++)
 		e[k] = mem_new(2 * (size_t)f->n + 1, sizeof *e[k]);
 	for (int side = 0; side < 2; side++) {
-		struct array gaze = truth(f, "gaze", side ? "right_deg" : "left_deg"), state = truth(f, "blink_state", 0), in = truth(f, "limbus_px", sides[side]);
+		struct array gaze = truth(f, "gaze", side ? "right_deg" : "left_deg"), state = truth(f, "blink_state", 0), in = truth(f, "openness", sides[side]);
+		// an eye that is out of the picture has a gaze, and no lids
 		for (long t = 0; t < f->n && gaze.x && in.x; t++) {
 			if (state.x[t] != 0)
 				continue;
