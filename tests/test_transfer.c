@@ -213,6 +213,25 @@ static void test_nothing_in_common(void **state)
 	mesh_free(&needle);
 }
 
+/* Coordinates whose squares are no numbers in float are refused, wherever they stand. */
+static void test_far_away(void **state)
+{
+	(void)state;
+	static const float far[] = { 1e38f, -3e38f, 2e9f, INFINITY, NAN };
+	for (int i = 0; i < 10; i++) {
+		struct mesh mesh[2] = { sheet_make(40, 40, true), sheet_make(31, 33, true) };
+		struct transfer t;
+		struct err err = { 0 };
+		mesh[i % 2].vertices[7 + 100 * i][i % 3] = far[i / 2];
+		assert_false(transfer_run(&t, &mesh[1], &mesh[0], 0, &transfer_defaults, &err));
+		ERR_HAS(err, far[i / 2] < INFINITY ? "must be within 1e+09 of 0" : "no number");
+		assert_int_equal(strncmp(err.msg, "the subject: ", 13) == 0, i % 2 == 0);
+		assert_null(t.registered);
+		mesh_free(&mesh[0]);
+		mesh_free(&mesh[1]);
+	}
+}
+
 /* What is written reads back as B. */
 static void test_file(void **state)
 {
@@ -248,7 +267,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_same_topology), cmocka_unit_test(test_similar),           cmocka_unit_test(test_affine), cmocka_unit_test(test_unlike),
-		cmocka_unit_test(test_units),         cmocka_unit_test(test_nothing_in_common), cmocka_unit_test(test_file),
+		cmocka_unit_test(test_units),         cmocka_unit_test(test_nothing_in_common), cmocka_unit_test(test_file), cmocka_unit_test(test_far_away),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
 }

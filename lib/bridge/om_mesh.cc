@@ -54,9 +54,6 @@ void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 	om.add_face(own[0], own[1], own[2]);
 }
 
-/* In any unit, a face is smaller: squares and cubes of lengths stay numbers in float. */
-const float farthest = 1e9f;
-
 /* What OpenMesh has made of it. Colours come as they were given, in sRGB. */
 void take(struct mesh *mesh, const Mesh &om, bool colours)
 {
@@ -123,18 +120,6 @@ bool make_sound(struct mesh *mesh, struct err *err)
 	return true;
 }
 
-bool check_places(const struct mesh *mesh, struct err *err)
-{
-	for (int i = 0; i < mesh->n_vertices; i++)
-		for (float x : mesh->vertices[i]) {
-			if (!std::isfinite(x))
-				return err_set(err, "vertex %d: a coordinate that is no number", i);
-			if (std::fabs(x) > farthest)
-				return err_set(err, "vertex %d: coordinate = %g, must be within %g of 0", i, (double)x, (double)farthest);
-		}
-	return true;
-}
-
 }  // namespace
 
 bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *err)
@@ -151,7 +136,7 @@ bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *e
 		enum mesh_kind kind;
 		ok = mesh_kind_of(&kind, data, size, &why)
 		     && (kind == MESH_PLY ? mesh_clean_ply : mesh_clean_obj)(mesh, data, size, limit, &why)
-		     && check_places(mesh, &why) && make_sound(mesh, &why);
+		     && mesh_check(mesh, &why) && make_sound(mesh, &why);
 	} catch (const std::exception &e) {
 		err_set(&why, "cannot be read: %s", e.what());
 	} catch (...) {

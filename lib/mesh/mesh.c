@@ -40,3 +40,18 @@ float (*mesh_normals(const struct mesh *mesh))[3]
 	}
 	return normals;
 }
+
+bool mesh_check(const struct mesh *mesh, struct err *err)
+{
+	// In any unit, a face is smaller: squares and cubes of lengths stay numbers in float.
+	static const float farthest = 1e9f;
+	for (int i = 0; i < mesh->n_vertices; i++)
+		for (int k = 0; k < 3; k++) {
+			float x = mesh->vertices[i][k];
+			if (!isfinite(x))
+				return err_set(err, "vertex %d: a coordinate that is no number", i);
+			if (fabsf(x) > farthest)
+				return err_set(err, "vertex %d: coordinate = %g, must be within %g of 0", i, (double)x, (double)farthest);
+		}
+	return true;
+}

@@ -14,6 +14,9 @@ struct mesh {
 
 void mesh_free(struct mesh *mesh);
 
+/* False, err set, where a coordinate is no number, or further from 0 than any face in any unit. */
+bool mesh_check(const struct mesh *mesh, struct err *err);
+
 /* Area-weighted unit normals, [n_vertices][3]; (0, 0, 1) where no face gives one. free(). */
 float (*mesh_normals(const struct mesh *mesh))[3];
 

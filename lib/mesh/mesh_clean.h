@@ -17,4 +17,7 @@ bool mesh_kind_of(enum mesh_kind *kind, const char *data, size_t size, struct er
 bool mesh_clean_ply(struct mesh *mesh, const char *data, size_t size, long limit, struct err *err);
 bool mesh_clean_obj(struct mesh *mesh, const char *data, size_t size, long limit, struct err *err);
 
+/* Vertices that an OBJ has, by its lines. */
+long mesh_clean_obj_vertices(const char *data, size_t size);
+
 #endif

@@ -91,21 +91,27 @@ static const char *behind(const char *at, const char *end, char letter)
 	return at + 1 < end && *at == letter && strchr(blanks, at[1]) ? at + 1 : 0;
 }
 
-static void count(struct obj *obj, long *faces, const char *data, const char *end)
+/* Lines of that kind. */
+static long count(const char *data, size_t size, char letter)
 {
-	for (const char *at = data; at < end; at = line_end(at, end) + 1) {
-		obj->all_vertices += behind(at, line_end(at, end), 'v') != 0;
-		*faces += behind(at, line_end(at, end), 'f') != 0;
-	}
+	long n = 0;
+	for (const char *at = data, *end = data + size; at < end; at = line_end(at, end) + 1)
+		n += behind(at, line_end(at, end), letter) != 0;
+	return n;
+}
+
+long mesh_clean_obj_vertices(const char *data, size_t size)
+{
+	return count(data, size, 'v');
 }
 
 bool mesh_clean_obj(struct mesh *mesh, const char *data, size_t size, long limit, struct err *err)
 {
 	const char *end = data + size;
 	struct obj obj = { .mesh = mesh, .line = 1, .limit = limit, .err = err };
-	long faces = 0;
+	long faces = count(data, size, 'f');
 	*mesh = (struct mesh){ 0 };
-	count(&obj, &faces, data, end);
+	obj.all_vertices = count(data, size, 'v');
 	if (!obj.all_vertices)
 		return err_set(err, "is no mesh: must be PLY or OBJ");
 	if (obj.all_vertices > limit || faces > limit)

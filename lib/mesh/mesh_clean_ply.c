@@ -144,6 +144,8 @@ static bool body(struct mesh *mesh, struct ply *ply, long limit, struct err *err
 			return err_set(err, "%ld %s rows: must be <= %ld", ply->element[i].count, ply->element[i].name, limit);
 	long n = ply->element[0].count, m = ply->element[1].count;
 	int room = 0;
+	if (n > ply->end - ply->at)
+		return err_set(err, "its %ld bytes end before the last of %ld vertices", (long)(ply->end - ply->at), n);
 	mesh->vertices = mem_new((size_t)n + 1, sizeof *mesh->vertices);
 	mesh->colours = coloured(ply) ? mem_new((size_t)n + 1, sizeof *mesh->colours) : 0;
 	mesh->n_vertices = (int)n;

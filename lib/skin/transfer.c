@@ -226,6 +226,11 @@ static bool registered(struct transfer *out, const struct mesh *target, const st
 bool transfer_run(struct transfer *out, const struct mesh *target, const struct mesh *subject,
                   const struct nricp_landmarks *landmarks, const struct transfer_conf *conf, struct err *err)
 {
+	*out = (struct transfer){ 0 };
+	if (!mesh_check(target, err))
+		return false;
+	if (!mesh_check(subject, err))
+		return err_wrap(err, "the subject");
 	room(out, target->n_vertices);
 	if (transfer_same_topology(target, subject))
 		same(out, target, subject, &conf->align, err);

@@ -196,6 +196,16 @@ static const char *other_way(const char *name, int have)
 	return 0;
 }
 
+/* What transfer does, where the characters' meshes tell. */
+static const char *transfer_does(const char *usual, const char *capture)
+{
+	int all, same;
+	plan_characters(&all, &same, capture);
+	if (all && same == all)
+		return "every character has the subject's own topology: vertex goes to vertex, no ICP";
+	return same ? "fits the characters to the subject; no ICP for those of its own topology" : usual;
+}
+
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
                  struct err *err)
 {
@@ -232,6 +242,8 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 			row->reason = "a stage it needs does not run";
 		else
 			row->run = true;
+		if (row->run && !strcmp(r->name, "transfer"))
+			row->reason = transfer_does(r->does, capture);
 		row->seconds = row->run ? cost[i].fixed_mpx[0] + cost[i].fixed_mpx[1] * plan->mpx : 0;
 		plan->n_run += row->run && i;
 	}

@@ -1,5 +1,6 @@
 /* plan: which stages a capture folder needs, in what order, why the others are not needed, and about how long
- * each takes. Looks at names and file heads alone: it is started for every stage of every make. */
+ * each takes. Looks at names and file heads, and into a character's mesh only where it has as many vertices as the
+ * subject's: it is started by every make. */
 #ifndef STAGES_PLAN_PLAN_H
 #define STAGES_PLAN_PLAN_H
 #include <stdbool.h>
@@ -45,6 +46,9 @@ extern const char *const plan_names[PLAN_STAGES];
 /* cost: one for each stage, in the order of plan_names. False, err set, when the folder holds nothing to work on. */
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
                  struct err *err);
+
+/* Meshes in targets/, and how many of them have the faces of the subject's own mesh: nothing is registered for these. */
+void plan_characters(int *all, int *same, const char *capture);
 
 /* Whether stage i cannot do without the result of stage j; both count in plan_names. */
 bool plan_needs(int i, int j);
