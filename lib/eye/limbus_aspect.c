@@ -30,9 +30,15 @@ bool limbus_aspect(double *aspect, double *sigma, int n, const struct pose_view 
 	for (int round = 0; round < ROUNDS; round++) {
 		const double step = 2 * half / (STEPS - 1);
 		int best = 0;
+		struct err bad[STEPS] = { 0 };
+#pragma omp parallel for schedule(dynamic)
+		for (int i = 0; i < STEPS; i++)
+			cost_at(&cost[i], center + (i - STEPS / 2) * step, n, views, eye, conf, &bad[i]);
 		for (int i = 0; i < STEPS; i++) {
-			if (!cost_at(&cost[i], center + (i - STEPS / 2) * step, n, views, eye, conf, err))
+			if (err_is(&bad[i])) {
+				*err = bad[i];
 				return false;
+			}
 			if (cost[i] < cost[best])
 				best = i;
 		}

@@ -96,11 +96,11 @@ static void draw_axis(struct canvas *c, const struct fit *fit, double depth, dou
 	}
 }
 
-uint8_t *limbus_overlay(int *width, int *height, const struct photo *photo, const struct limbus_record *record,
+uint8_t *limbus_overlay(int *width, int *height, int most_px, const struct photo *photo, const struct limbus_record *record,
                         const struct fit *fit)
 {
 	const int longer = photo->width > photo->height ? photo->width : photo->height;
-	const double scale = longer > OVERLAY_LONG ? (double)OVERLAY_LONG / longer : 1;
+	const double scale = longer > most_px ? (double)most_px / longer : 1;
 	const size_t n = (size_t)photo->width * (size_t)photo->height;
 	uint8_t *full = mem_array(3 * n, 1);
 	for (size_t i = 0; i < 3 * n; i++)

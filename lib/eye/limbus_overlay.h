@@ -4,11 +4,9 @@
 #include "eye/fit.h"
 #include "eye/limbus_record.h"
 
-enum { OVERLAY_LONG = 1200 };
-
-/* 8-bit RGB, longer side at most OVERLAY_LONG px: limbus and pupil ellipses, edge points that were used (dots) and
+/* 8-bit RGB, longer side at most most_px: limbus and pupil ellipses, edge points that were used (dots) and
  * stretches that are hidden, the optical axis out of the eye. Size in *width, *height; free(). */
-uint8_t *limbus_overlay(int *width, int *height, const struct photo *photo, const struct limbus_record *record,
+uint8_t *limbus_overlay(int *width, int *height, int most_px, const struct photo *photo, const struct limbus_record *record,
                         const struct fit *fit);
 
 #endif

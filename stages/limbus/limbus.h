@@ -12,6 +12,7 @@ struct limbus_options {
 	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
 	struct opt_each_list photo_focal, photo_center, photo_hint, photo_eye;
 	double limit_mpx;
+	int overlay_px;
 };
 
 /* work/limbus/NAME.edge.json of every photograph that is not up to date. */

@@ -26,6 +26,7 @@ int main(int argc, char **argv)
 		OPT_REAL("min_radius", &o.find.seek.min_radius, 0.005, 0.3, "", "smallest limbus, share of the longer side"),
 		OPT_REAL("max_radius", &o.find.seek.max_radius, 0.1, 1, "", "largest limbus, share of the shorter side"),
 		OPT_REAL("seek_contrast", &o.find.seek.contrast, 0.02, 1, "", "Weber contrast of a fully supported edge"),
+		OPT_INT("overlay_px", &o.overlay_px, 64, 8192, "px", "longer side of the picture of what was found, at most"),
 		OPT_INT("candidates", &o.find.seek.candidates, 1, SEEK_MAX, "", "ellipses kept by the search"),
 		OPT_REAL("search", &o.find.rim.search, 0.01, 0.3, "", "first edge search, share of the semi-axis"),
 		OPT_REAL("arc_rms", &o.find.rim.max_rms, 0.02, 1, "", "residual of a step, of its height, that is trusted"),

@@ -136,7 +136,7 @@ static bool write_overlay(const struct eye_work *w, int i, const struct fit *fit
 	if (!photo_load(&photo, stage_path(w->stage, "%s", p->file), w->o->limit_mpx, err))
 		return false;
 	int width, height;
-	uint8_t *px = limbus_overlay(&width, &height, &photo, &w->record[i], fit);
+	uint8_t *px = limbus_overlay(&width, &height, w->o->overlay_px, &photo, &w->record[i], fit);
 	bool ok = picture_png_write(stage_path(w->stage, "%s", path), px, width, height, 3, err);
 	free(px);
 	photo_free(&photo);
