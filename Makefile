@@ -28,6 +28,8 @@ override CAPTURES := $(value CAPTURES)
 export CAPTURE CAPTURES
 # Threads that wait sleep: other programs of this machine are not slowed down.
 export OMP_WAIT_POLICY ?= passive
+# Those of OpenBLAS do not, and a stage's own threads want the cores: its matrices are small.
+still := OPENBLAS_NUM_THREADS=$${OPENBLAS_NUM_THREADS:-1}
 
 # V=1 shows the commands.
 V ?=
@@ -125,10 +127,10 @@ need-capture:
 	@test -n "$$CAPTURE" || { echo "make: say which folder: make CAPTURE=my-capture $(MAKECMDGOALS)" >&2; exit 2; }
 run: need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE"
-	@BIN=$(BIN) $(MAKE) --no-print-directory -f - all < "$$CAPTURE/work/plan.mk"
+	@BIN=$(BIN) $(still) $(MAKE) --no-print-directory -f - all < "$$CAPTURE/work/plan.mk"
 $(filter-out plan,$(STAGES)): need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE" --quiet
-	@BIN=$(BIN) $(MAKE) --no-print-directory -f - $@ < "$$CAPTURE/work/plan.mk"
+	@BIN=$(BIN) $(still) $(MAKE) --no-print-directory -f - $@ < "$$CAPTURE/work/plan.mk"
 plan: need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE" --show
 # The bundled capture, from the photograph to the page.

@@ -25,7 +25,9 @@ const char *page_file(struct page *page, const char *fmt, ...)
 	va_start(ap, fmt);
 	char *rel = format(fmt, ap);
 	va_end(ap);
-	const char *path = stage_path(page->stage, "%s", rel);
+	const char *path;
+#pragma omp critical(page)
+	path = stage_path(page->stage, "%s", rel);
 	free(rel);
 	return file_exists(path) ? path : 0;
 }

@@ -78,9 +78,17 @@ static json_t *maps(struct page *page, const char *dir)
 {
 	json_t *list = json_array(), *texture = page_json(page, page_file(page, "%s/texture.json", dir));
 	json_t *better = json_object_get(texture, "photograph_better"), *line;
+	json_t *heights = json_array();
 	size_t i;
-	colour_maps(page, list, dir, texture);
-	height_maps(page, list, dir);
+#pragma omp parallel sections
+	{
+#pragma omp section
+		colour_maps(page, list, dir, texture);
+#pragma omp section
+		height_maps(page, heights, dir);
+	}
+	json_array_extend(list, heights);
+	json_decref(heights);
 	json_array_foreach(better, i, line)
 		if (json_is_string(line))
 			page_say(page->advice, "%s", json_string_value(line));
@@ -161,10 +169,13 @@ static json_t *renders(struct page *page, const char *dir)
 		{ "turntable", "Turntable", "The fitted eye turned from side to side, frame by frame" },
 		{ "contact_sheet", "Contact sheet", "All renderings on one sheet" },
 	};
-	json_t *list = json_array();
+	json_t *list = json_array(), *pictures[COUNT(names)];
+#pragma omp parallel for schedule(dynamic)
+	for (int i = 0; i < COUNT(names); i++)
+		pictures[i] = page_picture(page, page_file(page, "%s/%s.png", dir, names[i][0]), i >= 2 ? 2 * page->width : page->width * 5 / 4);
 	for (int i = 0; i < COUNT(names); i++) {
 		bool wide = i >= 2;
-		json_t *picture = page_picture(page, page_file(page, "%s/%s.png", dir, names[i][0]), wide ? 2 * page->width : page->width * 5 / 4);
+		json_t *picture = pictures[i];
 		if (picture)
 			json_array_append_new(list, json_pack("{s:s,s:s,s:b,s:b,s:o}", "title", names[i][1], "alt", names[i][2], "wide", wide,
 			                                      "folded", i == 3, "picture", picture));

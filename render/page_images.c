@@ -73,13 +73,14 @@ bool page_panels(json_t *out[3], struct page *page, const char *path)
 	if (!path || !picture_read(&px, &w, &h, path, page->conf->limit_mpx, &err))
 		return false;
 	int width = (w - 2 * COMPARE_GAP) / 3;
-	uint8_t *part = mem_array((size_t)width * (size_t)h * 3, 1);
+#pragma omp parallel for
 	for (int k = 0; k < 3; k++) {
+		uint8_t *part = mem_array((size_t)width * (size_t)h * 3, 1);
 		for (int y = 0; y < h; y++)
 			memcpy(part + 3L * y * width, px + 3L * (y * w + k * (width + COMPARE_GAP)), 3 * (size_t)width);
 		out[k] = pixels_at_most(part, width, h, page->width);
+		free(part);
 	}
-	free(part);
 	free(px);
 	return true;
 }

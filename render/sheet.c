@@ -55,10 +55,15 @@ static void sheet_grow(struct sheet *s, int rows)
 /* One row of pictures of equal width with captions below; those that are missing are left out. */
 static void sheet_row(struct sheet *s, int n, const char *const paths[], const char *const captions[])
 {
-	int tallest = 0, width = (s->picture.width - (n + 1) * MARGIN) / n, at = MARGIN;
+	enum { MOST = 2 };
+	int tallest = 0, width = (s->picture.width - (n + 1) * MARGIN) / n, at = MARGIN, height[MOST];
+	uint8_t *small[MOST];
+#pragma omp parallel for
+	for (int i = 0; i < n; i++)
+		small[i] = thumbnail(&height[i], paths[i], width);
 	for (int i = 0; i < n; i++) {
-		int h = 0;
-		uint8_t *px = thumbnail(&h, paths[i], width);
+		int h = height[i];
+		uint8_t *px = small[i];
 		if (!px)
 			continue;
 		sheet_grow(s, h + CAPTION + MARGIN);
