@@ -1,5 +1,5 @@
 /* The refraction function f(P, w) -> K: error against time of the paper's tables and of what replaces them, light from the
- * hemisphere, K inside the rim; and what its irradiance gain costs.
+ * hemisphere, K inside the rim.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ enum { N = 65536, TIMED = 4096 };  // timed over so few that other programs seld
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
 
 static struct {
-	float p[3][N], w[3][N], k[3][N], gain[N];
+	float p[3][N], w[3][N], k[3][N];
 	double truth[N][3];
 	unsigned char status[N];
 } *s;
@@ -38,14 +38,13 @@ static void draw(void)
 struct run {
 	struct refraction f;
 	int n;
-	bool with_gain;
 };
 
 static void evaluate(void *ctx)
 {
 	struct run *r = ctx;
 	refraction_batch(&r->f, r->n, s->p[0], s->p[1], s->p[2], s->w[0], s->w[1], s->w[2], s->k[0], s->k[1], s->k[2],
-	                 r->with_gain ? s->gain : 0, s->status);
+	                 0, s->status);
 }
 
 /* Seconds of one evaluation, over some of the cases; then all of them, for their error. */
@@ -114,25 +113,6 @@ static double measure(struct means *means, const char *method, const struct refr
 	return t.median;
 }
 
-static void gain(void)
-{
-	struct run r = { .with_gain = true };
-	refraction_make(&r.f, &generic, &(struct refraction_conf){ REFRACTION_AUTO, 1e-3, 0, 0, 5.85, 3.3 });
-	struct bench_time t = timed(&r);
-	double most = 0;
-	for (int i = 0; i < N; i++) {
-		double P[3] = { s->p[0][i], s->p[1][i], s->p[2][i] }, w[3] = { s->w[0][i], s->w[1][i], s->w[2][i] };
-		double exact = lightpath_gain(&generic, P, w, s->truth[i]);
-		// Where little light comes in, what counts is the light. On the rim itself float cannot say which side.
-		if (hypot(s->truth[i][0], s->truth[i][1]) > 5.8499)
-			continue;
-		most = fmax(most, fabs(s->gain[i] - exact) / fmax(exact, 0.05));
-	}
-	bench_row("irradiance gain (caustic)", "with K, error_mm 0.001", "", t,
-	          "evaluation", 100 * most, "%", "gain, worst");
-	refraction_free(&r.f);
-}
-
 int main(int argc, char **argv)
 {
 	bench_open("refraction", argc, argv);
@@ -168,7 +148,6 @@ int main(int argc, char **argv)
 	bench_goal("refraction function against the paper's tables: error", "below every table's", most, "mm", most < table_error);
 	bench_goal("refraction function against the paper's tables: time", "below every table's", 1e9 * t, "ns", t < table_time);
 	show(&means);
-	gain();
 	free(s);
 	return bench_close();
 }
