@@ -1,0 +1,263 @@
+#include "image/subsurface_level.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/simd.h"
+
+enum { LANES = 8 };
+typedef float lanes __attribute__((vector_size(32), aligned(4)));
+typedef int mask __attribute__((vector_size(32)));
+
+static int rounded(int n)
+{
+	return (n + LANES - 1) / LANES * LANES;
+}
+
+void subsurface_taps_gauss(struct subsurface_taps *t, double variance)
+{
+	double sum = 0, w[2 * SUBSURFACE_RADIUS + 1];
+	t->radius = (int)fmin(fmax(ceil(3 * sqrt(variance)), 1), SUBSURFACE_RADIUS);
+	for (int k = -t->radius; k <= t->radius; k++)
+		sum += w[k + t->radius] = exp(-k * k / (2 * variance));
+	for (int k = 0; k <= 2 * t->radius; k++)
+		t->weight[k] = (float)(w[k] / sum);
+}
+
+void subsurface_level_top(struct subsurface_level *l, const struct subsurface_picture *p)
+{
+	*l = (struct subsurface_level){ p->width, p->height, p->width, { p->rgb[0], p->rgb[1], p->rgb[2] }, p->depth, { 0 } };
+}
+
+void subsurface_room_make(struct subsurface_room *room, size_t n)
+{
+	if (room->n < n) {
+		free(room->px);
+		*room = (struct subsurface_room){ mem_array(n, sizeof *room->px), n, 0 };
+	}
+	room->used = 0;
+}
+
+void subsurface_room_free(struct subsurface_room *room)
+{
+	free(room->px);
+	*room = (struct subsurface_room){ 0 };
+}
+
+float *subsurface_room_take(struct subsurface_room *room, size_t n)
+{
+	float *px = room->px + room->used;
+	room->used += (n + 15) / 16 * 16;
+	assert(room->used <= room->n);
+	return px;
+}
+
+/* One texel out of four, with their shares: those about as near as the nearest. */
+SIMD_INLINE float shares(float share[4], const float z[4], float gap)
+{
+	float front = 1e30f, n = 0, mean = 0;
+	for (int k = 0; k < 4; k++)
+		front = z[k] > 0 && z[k] < front ? z[k] : front;
+	for (int k = 0; k < 4; k++) {
+		share[k] = z[k] > 0 && z[k] < front + gap ? 1.0f : 0.0f;
+		n += share[k];
+		mean += share[k] * z[k];
+	}
+	float each = 1 / (n > 0 ? n : 1);
+	for (int k = 0; k < 4; k++)
+		share[k] *= each;
+	return mean * each;
+}
+
+/* Rows 2y and 2y + 1 of the level above, of twice n texels. */
+struct pair {
+	const float *z[2], *rgb[2][3];
+	float *z_out, *rgb_out[3];
+};
+
+SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
+{
+	const float *a = p->z[0], *b = p->z[1], *r0 = p->rgb[0][0], *r1 = p->rgb[1][0];
+	const float *g0 = p->rgb[0][1], *g1 = p->rgb[1][1], *b0 = p->rgb[0][2], *b1 = p->rgb[1][2];
+	float *z = p->z_out, *r = p->rgb_out[0], *g = p->rgb_out[1], *blue = p->rgb_out[2];
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		float s[4], of[4] = { a[2 * i], a[2 * i + 1], b[2 * i], b[2 * i + 1] };
+		z[i] = shares(s, of, gap);
+		r[i] = (s[0] * r0[2 * i] + s[1] * r0[2 * i + 1]) + (s[2] * r1[2 * i] + s[3] * r1[2 * i + 1]);
+		g[i] = (s[0] * g0[2 * i] + s[1] * g0[2 * i + 1]) + (s[2] * g1[2 * i] + s[3] * g1[2 * i + 1]);
+		blue[i] = (s[0] * b0[2 * i] + s[1] * b0[2 * i + 1]) + (s[2] * b1[2 * i] + s[3] * b1[2 * i + 1]);
+	}
+}
+
+/* The last column of an odd width, alone. */
+static void halve_last(const struct pair *p, int i, float gap)
+{
+	float s[4], of[4] = { p->z[0][2 * i], 0, p->z[1][2 * i], 0 };
+	p->z_out[i] = shares(s, of, gap);
+	for (int c = 0; c < 3; c++)
+		p->rgb_out[c][i] = s[0] * p->rgb[0][c][2 * i] + s[2] * p->rgb[1][c][2 * i];
+}
+
+void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_level *above, double texels_per_mm,
+                            struct subsurface_room *room)
+{
+	*l = (struct subsurface_level){ .width = (above->width + 1) / 2, .height = (above->height + 1) / 2 };
+	l->stride = rounded(l->width);
+	size_t n = (size_t)l->stride * (size_t)l->height;
+	for (int c = 0; c < 3; c++)
+		l->rgb[c] = subsurface_room_take(room, n);
+	float *z = subsurface_room_take(room, n);
+	l->z = z;
+	float gap = (float)(4 / texels_per_mm);  // a surface seen at 60 degrees falls by 2.4 texels across their diagonal
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < l->height; y++) {
+		struct pair p;
+		size_t to = (size_t)y * (size_t)l->stride;
+		for (int k = 0; k < 2; k++) {
+			int row = 2 * y + k < above->height ? 2 * y + k : 2 * y;  // counted twice, the last of an odd height
+			size_t from = (size_t)row * (size_t)above->stride;
+			p.z[k] = above->z + from;
+			for (int c = 0; c < 3; c++)
+				p.rgb[k][c] = above->rgb[c] + from;
+		}
+		p.z_out = z + to;
+		for (int c = 0; c < 3; c++)
+			p.rgb_out[c] = l->rgb[c] + to;
+		halve_row(&p, above->width / 2, gap);
+		if (above->width % 2)
+			halve_last(&p, l->width - 1, gap);
+		for (int i = l->width; i < l->stride; i++)
+			p.z_out[i] = p.rgb_out[0][i] = p.rgb_out[1][i] = p.rgb_out[2][i] = 0;
+	}
+}
+
+/* Taps [from, to] of n texels; a step apart. */
+struct line {
+	const float *in[3], *z;
+	float *out[3];
+	int n, step, from, to;
+	bool used[3], adds[3];
+	float gain[3];
+};
+
+SIMD_INLINE void tap(const struct line *restrict l, const struct subsurface_taps *restrict t, float inv_8v, int x)
+{
+	const lanes zero = { 0 };
+	lanes here = *(const lanes *)(l->z + x), sum[3] = { zero, zero, zero }, all = zero;
+	for (int k = l->from; k <= l->to; k++) {
+		long at = x + (long)k * l->step;
+		// exp(-dz² / 2v) as (1 - dz² / 8v)^4, 0 beyond: within 0.02 of it.
+		lanes dz = *(const lanes *)(l->z + at) - here, f = 1 - dz * dz * inv_8v;
+		f = (lanes)((mask)f & (f > 0));
+		f *= f;
+		f = t->weight[k + t->radius] * (f * f);
+		all += f;
+		for (int c = 0; c < 3; c++)
+			if (l->used[c])
+				sum[c] += f * *(const lanes *)(l->in[c] + at);
+	}
+	all = 1 / all;  // the middle one is always there
+	for (int c = 0; c < 3; c++)
+		if (l->used[c]) {
+			lanes *out = (lanes *)(l->out[c] + x), now = sum[c] * all * l->gain[c];
+			*out = l->adds[c] ? *out + now : now;
+		}
+}
+
+SIMD_CLONES static void along(const struct line *l, const struct subsurface_taps *t, float inv_8v)
+{
+	for (int x = 0; x < l->n; x += LANES)
+		tap(l, t, inv_8v, x);
+}
+
+/* Rows in [0, n) padded on both sides by nothing. */
+static void pad(float *out, const float *in, int n, int stride, int side)
+{
+	memset(out, 0, (size_t)side * sizeof *out);
+	memcpy(out + side, in, (size_t)n * sizeof *out);
+	memset(out + side + n, 0, (size_t)(stride - n + side) * sizeof *out);
+}
+
+static void blur_x(float *const out[3], float *z_out, const struct subsurface_level *l, const struct subsurface_taps *t, float inv_8v,
+                   const bool used[3], int stride)
+{
+#pragma omp parallel
+	{
+		int side = SUBSURFACE_RADIUS, wide = stride + 2 * side;
+		float *row = mem_array(4 * (size_t)wide, sizeof *row);
+#pragma omp for schedule(static)
+		for (int y = 0; y < l->height; y++) {
+			size_t from = (size_t)y * (size_t)l->stride, to = (size_t)y * (size_t)stride;
+			struct line line = { .z = row + 3 * wide + side, .n = stride, .step = 1, .from = -t->radius, .to = t->radius };
+			pad(row + 3 * wide, l->z + from, l->width, stride, side);
+			memcpy(z_out + to, line.z, (size_t)stride * sizeof *z_out);
+			for (int c = 0; c < 3; c++) {
+				if (used[c])
+					pad(row + c * wide, l->rgb[c] + from, l->width, stride, side);
+				line.in[c] = row + c * wide + side;
+				line.out[c] = out[c] + to;
+				line.used[c] = used[c];
+				line.gain[c] = 1;
+			}
+			along(&line, t, inv_8v);
+		}
+		free(row);
+	}
+}
+
+void subsurface_blur(struct subsurface_level *l, const struct subsurface_taps *t, double variance, const double weight[3],
+                     struct subsurface_room *room)
+{
+	int stride = rounded(l->width);
+	size_t n = (size_t)stride * (size_t)l->height;
+	bool used[3], first[3];
+	for (int c = 0; c < 3; c++) {
+		used[c] = weight[c] > 0;
+		first[c] = !l->sum[c];
+		l->sum[c] = first[c] ? subsurface_room_take(room, n) : l->sum[c];
+		if (first[c] && !used[c])
+			memset(l->sum[c], 0, n * sizeof *l->sum[c]);
+	}
+	size_t back = room->used;
+	float *between[3], *z = subsurface_room_take(room, n), inv_8v = (float)(1 / (8 * variance));
+	for (int c = 0; c < 3; c++)
+		between[c] = subsurface_room_take(room, used[c] ? n : 0);
+	blur_x(between, z, l, t, inv_8v, used, stride);
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < l->height; y++) {
+		size_t at = (size_t)y * (size_t)stride;
+		struct line line = { .z = z + at, .n = stride, .step = stride };
+		line.from = y < t->radius ? -y : -t->radius;
+		line.to = l->height - 1 - y < t->radius ? l->height - 1 - y : t->radius;
+		for (int c = 0; c < 3; c++) {
+			line.in[c] = between[c] + (used[c] ? at : 0);
+			line.out[c] = l->sum[c] + at;
+			line.used[c] = used[c];
+			line.gain[c] = (float)weight[c];
+			line.adds[c] = !first[c];
+		}
+		along(&line, t, inv_8v);
+	}
+	room->used = back;
+}
+
+void subsurface_level_give(struct subsurface_level *l, const double stays[3])
+{
+	int stride = rounded(l->width);
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < l->height; y++) {
+		const float *z = l->z + (size_t)y * (size_t)l->stride;
+		for (int c = 0; c < 3; c++) {
+			float *px = l->rgb[c] + (size_t)y * (size_t)l->stride, keep = (float)stays[c];
+			const float *sum = l->sum[c] + (size_t)y * (size_t)stride;
+			SIMD_LOOP
+			for (int i = 0; i < l->width; i++)
+				px[i] = z[i] > 0 ? keep * px[i] + sum[i] : px[i];
+		}
+	}
+}
