@@ -28,12 +28,21 @@ SIMD_CLONES static void widen(float *restrict near, float *restrict far, const f
 	far[2 * n - 1] = in[n - 1];
 }
 
-static void see(struct seen *s, const struct subsurface_level *below, int y)
+/* The last rows seen: of any three neighbours each has a place of its own. */
+struct views {
+	struct seen seen[3];
+	int row[3];
+};
+
+static const struct seen *see(struct views *v, const struct subsurface_level *below, int y)
 {
-	int row = y < 0 ? 0 : y < below->height ? y : below->height - 1;
+	int row = y < 0 ? 0 : y < below->height ? y : below->height - 1, place = row % 3;
 	size_t at = (size_t)row * (size_t)below->stride;
-	for (int k = 0; k < 4; k++)
+	struct seen *s = &v->seen[place];
+	for (int k = 0; k < 4 && v->row[place] != row; k++)
 		widen(s->near[k], s->far[k], (k < 3 ? below->sum[k] : below->z) + at, below->width);
+	v->row[place] = row;
+	return s;
 }
 
 /* A texel of the level below: its share as far as its depth is this one's; a trace of it whatever its depth, where all
@@ -89,10 +98,10 @@ void subsurface_level_join(struct subsurface_level *l, const struct subsurface_l
 #pragma omp parallel
 	{
 		size_t wide = 2 * (size_t)below->width;
-		float *buffer = mem_array(16 * wide, sizeof *buffer);
-		struct seen seen[2];
-		for (int k = 0; k < 16; k++)
-			*(k % 2 ? &seen[k / 8].near[k / 2 % 4] : &seen[k / 8].far[k / 2 % 4]) = buffer + (size_t)k * wide;
+		float *buffer = mem_array(24 * wide, sizeof *buffer);
+		struct views views = { .row = { -1, -1, -1 } };
+		for (int k = 0; k < 24; k++)
+			*(k % 2 ? &views.seen[k / 8].near[k / 2 % 4] : &views.seen[k / 8].far[k / 2 % 4]) = buffer + (size_t)k * wide;
 #pragma omp for schedule(static)
 		for (int y = 0; y < l->height; y++) {
 			struct row row = { .z = l->z + (size_t)y * (size_t)l->stride, .n = l->width };
@@ -100,9 +109,8 @@ void subsurface_level_join(struct subsurface_level *l, const struct subsurface_l
 				row.out[c] = stays ? l->rgb[c] + (size_t)y * (size_t)l->stride : l->sum[c] + (size_t)y * (size_t)stride;
 				row.keep[c] = stays && !l->sum[0] ? (float)stays[c] : 1;
 			}
-			see(&seen[0], below, y / 2);
-			see(&seen[1], below, y % 2 ? y / 2 + 1 : y / 2 - 1);
-			join_row(&row, &seen[0], &seen[1], inv);
+			const struct seen *near = see(&views, below, y / 2), *far = see(&views, below, y % 2 ? y / 2 + 1 : y / 2 - 1);
+			join_row(&row, near, far, inv);
 		}
 		free(buffer);
 	}

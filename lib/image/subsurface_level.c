@@ -59,11 +59,15 @@ float *subsurface_room_take(struct subsurface_room *room, size_t n)
 /* One texel out of four, with their shares: those about as near as the nearest. */
 SIMD_INLINE float shares(float share[4], const float z[4], float gap)
 {
-	float front = 1e30f, n = 0, mean = 0;
-	for (int k = 0; k < 4; k++)
-		front = z[k] > 0 && z[k] < front ? z[k] : front;
+	const float nowhere = 1e30f;
+	float front = nowhere, n = 0, mean = 0, at[4];
 	for (int k = 0; k < 4; k++) {
-		share[k] = z[k] > 0 && z[k] < front + gap ? 1.0f : 0.0f;
+		at[k] = z[k] > 0 ? z[k] : nowhere;
+		front = at[k] < front ? at[k] : front;
+	}
+	front += gap;
+	for (int k = 0; k < 4; k++) {
+		share[k] = at[k] < front ? 1.0f : 0.0f;
 		n += share[k];
 		mean += share[k] * z[k];
 	}
@@ -140,39 +144,46 @@ void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_
 struct line {
 	const float *in[3], *z;
 	float *out[3];
-	int n, step, from, to;
-	bool used[3], adds[3];
+	int n, step, from, to, channels;  // the first so many
+	bool adds[3];
 	float gain[3];
 };
 
-SIMD_INLINE void tap(const struct line *restrict l, const struct subsurface_taps *restrict t, float inv_8v, int x)
+SIMD_INLINE void tap(const struct line *l, const struct subsurface_taps *t, float inv_8v, int channels)
 {
+	const float *restrict z = l->z, *restrict in[3] = { l->in[0], l->in[1], l->in[2] }, *restrict weight = t->weight + t->radius;
+	const int from = l->from, to = l->to;
+	const long step = l->step;
 	const lanes zero = { 0 };
-	lanes here = *(const lanes *)(l->z + x), sum[3] = { zero, zero, zero }, all = zero;
-	for (int k = l->from; k <= l->to; k++) {
-		long at = x + (long)k * l->step;
-		// exp(-dz² / 2v) as (1 - dz² / 8v)^4, 0 beyond: within 0.02 of it.
-		lanes dz = *(const lanes *)(l->z + at) - here, f = 1 - dz * dz * inv_8v;
-		f = (lanes)((mask)f & (f > 0));
-		f *= f;
-		f = t->weight[k + t->radius] * (f * f);
-		all += f;
-		for (int c = 0; c < 3; c++)
-			if (l->used[c])
-				sum[c] += f * *(const lanes *)(l->in[c] + at);
-	}
-	all = 1 / all;  // the middle one is always there
-	for (int c = 0; c < 3; c++)
-		if (l->used[c]) {
+	for (int x = 0; x < l->n; x += LANES) {
+		lanes here = *(const lanes *)(z + x), sum[3] = { zero, zero, zero }, all = zero;
+		for (int k = from; k <= to; k++) {
+			long at = x + k * step;
+			// exp(-dz² / 2v) as (1 - dz² / 8v)^4, 0 beyond: within 0.02 of it.
+			lanes dz = *(const lanes *)(z + at) - here, f = 1 - dz * dz * inv_8v;
+			f = (lanes)((mask)f & (f > 0));
+			f *= f;
+			f = weight[k] * (f * f);
+			all += f;
+			for (int c = 0; c < channels; c++)
+				sum[c] += f * *(const lanes *)(in[c] + at);
+		}
+		all = 1 / all;  // the middle one is always there
+		for (int c = 0; c < channels; c++) {
 			lanes *out = (lanes *)(l->out[c] + x), now = sum[c] * all * l->gain[c];
 			*out = l->adds[c] ? *out + now : now;
 		}
+	}
 }
 
 SIMD_CLONES static void along(const struct line *l, const struct subsurface_taps *t, float inv_8v)
 {
-	for (int x = 0; x < l->n; x += LANES)
-		tap(l, t, inv_8v, x);
+	if (l->channels == 1)
+		tap(l, t, inv_8v, 1);
+	else if (l->channels == 2)
+		tap(l, t, inv_8v, 2);
+	else
+		tap(l, t, inv_8v, 3);
 }
 
 /* Rows in [0, n) padded on both sides by nothing. */
@@ -184,7 +195,7 @@ static void pad(float *out, const float *in, int n, int stride, int side)
 }
 
 static void blur_x(float *const out[3], float *z_out, const struct subsurface_level *l, const struct subsurface_taps *t, float inv_8v,
-                   const bool used[3], int stride)
+                   int channels, int stride)
 {
 #pragma omp parallel
 	{
@@ -193,15 +204,14 @@ static void blur_x(float *const out[3], float *z_out, const struct subsurface_le
 #pragma omp for schedule(static)
 		for (int y = 0; y < l->height; y++) {
 			size_t from = (size_t)y * (size_t)l->stride, to = (size_t)y * (size_t)stride;
-			struct line line = { .z = row + 3 * wide + side, .n = stride, .step = 1, .from = -t->radius, .to = t->radius };
+			struct line line = { .z = row + 3 * wide + side, .n = stride, .step = 1, .from = -t->radius, .to = t->radius,
+				             .channels = channels };
 			pad(row + 3 * wide, l->z + from, l->width, stride, side);
 			memcpy(z_out + to, line.z, (size_t)stride * sizeof *z_out);
-			for (int c = 0; c < 3; c++) {
-				if (used[c])
-					pad(row + c * wide, l->rgb[c] + from, l->width, stride, side);
+			for (int c = 0; c < channels; c++) {
+				pad(row + c * wide, l->rgb[c] + from, l->width, stride, side);
 				line.in[c] = row + c * wide + side;
 				line.out[c] = out[c] + to;
-				line.used[c] = used[c];
 				line.gain[c] = 1;
 			}
 			along(&line, t, inv_8v);
@@ -215,31 +225,29 @@ void subsurface_blur(struct subsurface_level *l, const struct subsurface_taps *t
 {
 	int stride = rounded(l->width);
 	size_t n = (size_t)stride * (size_t)l->height;
-	bool used[3], first[3];
-	for (int c = 0; c < 3; c++) {
-		used[c] = weight[c] > 0;
-		first[c] = !l->sum[c];
-		l->sum[c] = first[c] ? subsurface_room_take(room, n) : l->sum[c];
-		if (first[c] && !used[c])
+	int channels = weight[2] > 0 ? 3 : weight[1] > 0 ? 2 : 1;
+	bool first = !l->sum[0];
+	for (int c = 0; c < 3 && first; c++) {
+		l->sum[c] = subsurface_room_take(room, n);
+		if (c >= channels)
 			memset(l->sum[c], 0, n * sizeof *l->sum[c]);
 	}
 	size_t back = room->used;
-	float *between[3], *z = subsurface_room_take(room, n), inv_8v = (float)(1 / (8 * variance));
-	for (int c = 0; c < 3; c++)
-		between[c] = subsurface_room_take(room, used[c] ? n : 0);
-	blur_x(between, z, l, t, inv_8v, used, stride);
+	float *between[3] = { 0 }, *z = subsurface_room_take(room, n), inv_8v = (float)(1 / (8 * variance));
+	for (int c = 0; c < channels; c++)
+		between[c] = subsurface_room_take(room, n);
+	blur_x(between, z, l, t, inv_8v, channels, stride);
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < l->height; y++) {
 		size_t at = (size_t)y * (size_t)stride;
-		struct line line = { .z = z + at, .n = stride, .step = stride };
+		struct line line = { .z = z + at, .n = stride, .step = stride, .channels = channels };
 		line.from = y < t->radius ? -y : -t->radius;
 		line.to = l->height - 1 - y < t->radius ? l->height - 1 - y : t->radius;
-		for (int c = 0; c < 3; c++) {
-			line.in[c] = between[c] + (used[c] ? at : 0);
+		for (int c = 0; c < channels; c++) {
+			line.in[c] = between[c] + at;
 			line.out[c] = l->sum[c] + at;
-			line.used[c] = used[c];
 			line.gain[c] = (float)weight[c];
-			line.adds[c] = !first[c];
+			line.adds[c] = !first;
 		}
 		along(&line, t, inv_8v);
 	}
