@@ -57,24 +57,29 @@ float *subsurface_room_take(struct subsurface_room *room, size_t n)
 }
 
 /* One texel out of four, with their shares: those about as near as the nearest. */
-SIMD_INLINE float shares(float share[4], const float z[4], float gap)
+struct quad {
+	float a, b, c, d;
+};
+
+SIMD_INLINE float depth_or_far(float z)
 {
-	const float nowhere = 1e30f;
-	float front = nowhere, n = 0, mean = 0, at[4];
-	for (int k = 0; k < 4; k++) {
-		at[k] = z[k] > 0 ? z[k] : nowhere;
-		front = at[k] < front ? at[k] : front;
-	}
-	front += gap;
-	for (int k = 0; k < 4; k++) {
-		share[k] = at[k] < front ? 1.0f : 0.0f;
-		n += share[k];
-		mean += share[k] * z[k];
-	}
-	float each = 1 / (n > 0 ? n : 1);
-	for (int k = 0; k < 4; k++)
-		share[k] *= each;
-	return mean * each;
+	return z > 0 ? z : 1e30f;
+}
+
+SIMD_INLINE float least(float a, float b)
+{
+	return a < b ? a : b;
+}
+
+SIMD_INLINE struct quad shares(float *depth, float a, float b, float c, float d, float gap)
+{
+	float fa = depth_or_far(a), fb = depth_or_far(b), fc = depth_or_far(c), fd = depth_or_far(d);
+	float front = least(least(fa, fb), least(fc, fd)) + gap;
+	struct quad q = { fa < front ? 1 : 0, fb < front ? 1 : 0, fc < front ? 1 : 0, fd < front ? 1 : 0 };
+	float n = (q.a + q.b) + (q.c + q.d), each = 1 / (n > 0 ? n : 1);
+	q = (struct quad){ q.a * each, q.b * each, q.c * each, q.d * each };
+	*depth = (q.a * a + q.b * b) + (q.c * c + q.d * d);
+	return q;
 }
 
 /* Rows 2y and 2y + 1 of the level above, of twice n texels. */
@@ -90,21 +95,19 @@ SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
 	float *z = p->z_out, *r = p->rgb_out[0], *g = p->rgb_out[1], *blue = p->rgb_out[2];
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		float s[4], of[4] = { a[2 * i], a[2 * i + 1], b[2 * i], b[2 * i + 1] };
-		z[i] = shares(s, of, gap);
-		r[i] = (s[0] * r0[2 * i] + s[1] * r0[2 * i + 1]) + (s[2] * r1[2 * i] + s[3] * r1[2 * i + 1]);
-		g[i] = (s[0] * g0[2 * i] + s[1] * g0[2 * i + 1]) + (s[2] * g1[2 * i] + s[3] * g1[2 * i + 1]);
-		blue[i] = (s[0] * b0[2 * i] + s[1] * b0[2 * i + 1]) + (s[2] * b1[2 * i] + s[3] * b1[2 * i + 1]);
+		struct quad q = shares(&z[i], a[2 * i], a[2 * i + 1], b[2 * i], b[2 * i + 1], gap);
+		r[i] = (q.a * r0[2 * i] + q.b * r0[2 * i + 1]) + (q.c * r1[2 * i] + q.d * r1[2 * i + 1]);
+		g[i] = (q.a * g0[2 * i] + q.b * g0[2 * i + 1]) + (q.c * g1[2 * i] + q.d * g1[2 * i + 1]);
+		blue[i] = (q.a * b0[2 * i] + q.b * b0[2 * i + 1]) + (q.c * b1[2 * i] + q.d * b1[2 * i + 1]);
 	}
 }
 
 /* The last column of an odd width, alone. */
 static void halve_last(const struct pair *p, int i, float gap)
 {
-	float s[4], of[4] = { p->z[0][2 * i], 0, p->z[1][2 * i], 0 };
-	p->z_out[i] = shares(s, of, gap);
+	struct quad q = shares(&p->z_out[i], p->z[0][2 * i], 0, p->z[1][2 * i], 0, gap);
 	for (int c = 0; c < 3; c++)
-		p->rgb_out[c][i] = s[0] * p->rgb[0][c][2 * i] + s[2] * p->rgb[1][c][2 * i];
+		p->rgb_out[c][i] = q.a * p->rgb[0][c][2 * i] + q.c * p->rgb[1][c][2 * i];
 }
 
 void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_level *above, double texels_per_mm,
