@@ -116,6 +116,7 @@ struct canvas {
 	const struct portrait_spot *spots;
 	struct portrait_rays rays;
 	struct portrait_sky sky;
+	struct portrait_glow glow;
 	struct image eye[2];
 	int eye_at[2][2], samples;
 };
@@ -129,7 +130,9 @@ static void colour_at(float rgba[4], const struct canvas *c, double x, double y,
 	} else if (face >= 0) {
 		float dir[3];
 		portrait_ray(dir, &c->rays, x, y);
-		portrait_shade(rgba, c->p, &c->sky, face, c->rays.origin, dir);
+		long at = (long)y * c->glow.width + (long)x;
+		const float light[3] = { c->glow.rgb[0][at], c->glow.rgb[1][at], c->glow.rgb[2][at] };
+		portrait_shade(rgba, c->p, &c->sky, face, c->rays.origin, dir, c->glow.depth[at] > 0 ? light : 0);
 		rgba[3] = 1;
 	} else if (face < -1) {
 		const struct image *eye = &c->eye[-2 - face];
@@ -183,11 +186,13 @@ struct image portrait_draw(struct portrait *p, const struct portrait_view *view)
 	struct portrait_spot *spots = portrait_raster(p, view, p->conf.samples);
 	struct canvas c = { .p = p, .spots = spots, .rays = portrait_rays_of(view), .sky = portrait_sky_of(p, view), .samples = p->conf.samples };
 	portrait_eyes(c.eye, c.eye_at, p, view, spots, p->conf.samples);
+	c.glow = portrait_glow_of(p, view, spots, p->conf.samples);
 	portrait_tears(c.eye, c.eye_at, p, view, spots, p->conf.samples);
 #pragma omp parallel for schedule(dynamic, 4)
 	for (int y = 0; y < view->height; y++)
 		for (int x = 0; x < view->width; x++)
 			draw_pixel(image_at(&image, x, y), &c, x, y);
+	portrait_glow_free(&c.glow);
 	image_free(&c.eye[0]);
 	image_free(&c.eye[1]);
 	free(spots);

@@ -2,7 +2,7 @@
  *
  * Frames   the rig's (mm) and the camera's (x right, y down, z forward), in which the environment stands.
  * Skin     Phong tessellation of the mesh round the eyes (Boubekeur and Alexa 2008; it keeps the vertices); irradiance
- *          with shadows at the vertices, spread along the surface as far as skin scatters light, and a rough mirror.
+ *          with shadows at the vertices, spread beneath the skin on the screen (subsurface.h), and a rough mirror.
  * Colour   linear Rec. 709; a white plane facing the camera has value 1.
  */
 #ifndef SKIN_PORTRAIT_H
@@ -17,7 +17,7 @@ struct portrait_conf {
 	int eye_samples;       // the same inside the eyes
 	double skin_rgb[3];    // albedo
 	double texture;        // strength of pores and blotches: 1 as on a face, 0 none
-	double scatter_mm;     // how far red light travels in skin
+	double scatter_mm;     // how far red light travels in skin: 1.5 times the root mean square; 0: not at all
 	double tear_mm;        // height of the tear line along the lids; 0: none, and no dark under their edges
 	double lash_mm;        // length of the upper lashes; 0: none
 };

@@ -10,7 +10,7 @@ struct portrait_mesh {
 	int n, n_faces, n_base;
 	int (*between)[2];          // [n - n_base]
 	int32_t (*faces)[3];
-	float (*x)[3], (*normal)[3], (*rest)[3], (*light)[3], (*albedo)[3];
+	float (*x)[3], (*normal)[3], (*rest)[3], (*bare)[3], (*light)[3], (*albedo)[3];  // bare: light before skin spreads it
 	float *open;                // share of the light that reaches it
 };
 
@@ -61,9 +61,22 @@ struct portrait_sky {
 	float detail;  // 0..1: how much of pores a pixel of the view resolves
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
+/* light: irradiance there; null: the vertices'. */
 void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
-                    const float origin[3], const float dir[3]);
+                    const float origin[3], const float dir[3], const float *light);
+
+/* Irradiance of such a point, before skin spreads it. */
+void portrait_bare_light(float rgb[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);
 struct portrait_sky portrait_sky_of(const struct portrait *portrait, const struct portrait_view *view);
+
+/* portrait_glow.c: irradiance of the skin at every pixel's middle, spread beneath it. */
+struct portrait_glow {
+	int width, height;
+	float *rgb[3], *depth;  // [height][width]; depth 0: no skin there. Owned
+};
+struct portrait_glow portrait_glow_of(const struct portrait *portrait, const struct portrait_view *view, const struct portrait_spot *spots,
+                                      int samples);
+void portrait_glow_free(struct portrait_glow *glow);
 
 /* portrait_eye.c: both eyes' colours where the grid shows them, [height][width][4] each; null px where not in view. */
 void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,

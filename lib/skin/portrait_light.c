@@ -82,13 +82,16 @@ void portrait_light(struct portrait *p, const struct portrait_view *view, bool a
 		if (p->near_start[i + 1] > p->near_start[i] && (all || moved > 0.25f))
 			light_vertex(p, &sky, i);
 	}
+	memcpy(m->bare, p->lit, (size_t)p->rig->n * sizeof *m->bare);
 	memcpy(m->light, p->lit, (size_t)p->rig->n * sizeof *m->light);
 	for (int round = 0; round < 2; round++)
 		spread(p, m->light, rate);
 	for (int i = m->n_base; i < m->n; i++) {
 		const int *e = m->between[i - m->n_base];
-		for (int c = 0; c < 3; c++)
+		for (int c = 0; c < 3; c++) {
 			m->light[i][c] = 0.5f * (m->light[e[0]][c] + m->light[e[1]][c]);
+			m->bare[i][c] = 0.5f * (m->bare[e[0]][c] + m->bare[e[1]][c]);
+		}
 		m->open[i] = 0.5f * (m->open[e[0]] + m->open[e[1]]);
 	}
 }

@@ -161,6 +161,7 @@ void portrait_mesh_make(struct portrait *p)
 	m->x = fresh(n, sizeof *m->x);
 	m->normal = fresh(n, sizeof *m->normal);
 	m->rest = fresh(n, sizeof *m->rest);
+	m->bare = fresh(n, sizeof *m->bare);
 	m->light = fresh(n, sizeof *m->light);
 	m->albedo = fresh(n, sizeof *m->albedo);
 	m->open = fresh(n, sizeof *m->open);
@@ -191,6 +192,7 @@ void portrait_mesh_free(struct portrait_mesh *m)
 	free(m->x);
 	free(m->normal);
 	free(m->rest);
+	free(m->bare);
 	free(m->light);
 	free(m->albedo);
 	free(m->open);

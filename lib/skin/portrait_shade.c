@@ -74,7 +74,8 @@ struct point {
 	float x[3], rest[3], normal[3], light[3], albedo[3], open;
 };
 
-static struct point point_of(const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
+/* Where in the face the ray meets its plane: weights of its vertices. */
+static void weights(float w[3], const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
 {
 	const int32_t *v = m->faces[face];
 	const float *a = m->x[v[0]], *b = m->x[v[1]], *c = m->x[v[2]];
@@ -90,7 +91,26 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 	float w1 = (s[0] * h[0] + s[1] * h[1] + s[2] * h[2]) * k, w2 = (dir[0] * q[0] + dir[1] * q[1] + dir[2] * q[2]) * k;
 	w1 = fminf(fmaxf(w1, 0), 1);  // samples at an edge may lie a hair outside
 	w2 = fminf(fmaxf(w2, 0), 1 - w1);
-	float w[3] = { 1 - w1 - w2, w1, w2 }, len = 0;
+	w[0] = 1 - w1 - w2;
+	w[1] = w1;
+	w[2] = w2;
+}
+
+void portrait_bare_light(float rgb[3], const struct portrait *p, int face, const float origin[3], const float dir[3])
+{
+	const struct portrait_mesh *m = &p->mesh;
+	const int32_t *v = m->faces[face];
+	float w[3];
+	weights(w, m, face, origin, dir);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = w[0] * m->bare[v[0]][c] + w[1] * m->bare[v[1]][c] + w[2] * m->bare[v[2]][c];
+}
+
+static struct point point_of(const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
+{
+	const int32_t *v = m->faces[face];
+	float w[3], len = 0;
+	weights(w, m, face, origin, dir);
 	struct point p = { 0 };
 	for (int j = 0; j < 3; j++) {
 		int i = v[j];
@@ -111,9 +131,11 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 }
 
 void portrait_shade(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, int face, const float origin[3],
-                    const float dir[3])
+                    const float dir[3], const float *light)
 {
 	struct point q = point_of(&p->mesh, face, origin, dir);
+	if (light)
+		memcpy(q.light, light, sizeof q.light);
 	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, len = 0, n[3], grain = 0;
 	memcpy(n, q.normal, sizeof n);
 	if (strength > 0) {
