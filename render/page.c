@@ -111,7 +111,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 		add(&in, "%s/%s_compare.png", capture->eyes[p->eye].render, p->name);
 		add(&in, "%s/%s_compare.json", capture->eyes[p->eye].render, p->name);
 	}
-	static const char *const skin[] = { "gaze.csv", "model.json", "track.png", "curves.svg" };
+	static const char *const skin[] = { "gaze.csv", "model.json", "track.png", "wrinkles.png", "curves.svg" };
 	static const char *const driven[] = { "_look.png", "_sheet.png", "_blink.png", "_clip.mp4", "_script.mp4", ".glb" };
 	for (int i = 0; i < COUNT(skin) && targets->n; i++)
 		add(&in, "work/skin/%s", skin[i]);

@@ -143,6 +143,7 @@ json_t *page_skin(struct page *page)
 	column(page, columns, "animate", "Animated");
 	add(skin, "columns", columns);
 	add(skin, "track", page_picture(page, page_file(page, "work/skin/track.png"), 2 * page->width));
+	add(skin, "wrinkles", page_picture(page, page_file(page, "work/skin/wrinkles.png"), 2 * page->width));
 	add(skin, "curves", data_uri(page_file(page, "work/skin/curves.svg"), "image/svg+xml", 4 << 20));
 	if (stage_list(page->stage, &targets, "targets", &err))
 		for (int i = 0; i < targets.n; i++) {

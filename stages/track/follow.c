@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "stages/track/film.h"
+#include "stages/track/wrinkle.h"
 
 /* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
 struct rigid {
@@ -154,6 +155,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	double pose[4][4];
 	long room = 0;
 	r->film = conf->limit ? 0 : film_new(clip, subject, points);
+	r->folds = conf->limit ? 0 : folds_new(clip, points, conf);
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	while (ok && got && (!conf->limit || r->n < conf->limit)) {
@@ -171,6 +173,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 			r->n++;
 			if (r->film)
 				film_add(r->film, &f);
+			folds_add(r->folds, &f);
 			if (!conf->limit)
 				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
 		}
@@ -202,4 +205,5 @@ void track_result_free(struct track_result *r)
 	free(r->g);
 	eye_clip_free(&r->eyes);
 	film_free(r->film);
+	folds_free(r->folds);
 }

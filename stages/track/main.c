@@ -1,7 +1,7 @@
 /* track: gaze, lids and skin of a video, followed frame by frame.
  * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
- * writes  work/skin/gaze.csv, lids.npy, lids_model.npy, vertices.npy, skin.npy, skin_model.npy, confidence.npy, head.npy
- *         (where the head was), track.json, track.png
+ * writes  work/skin/gaze.csv, lids.npy, lids_model.npy, vertices.npy, skin.npy, skin_model.npy, confidence.npy, head.npy,
+ *         track.json, track.png; of expressions wrinkles.json, wrinkles.exr, wrinkles.png
  */
 #include <stdlib.h>
 #include <unistd.h>
@@ -9,8 +9,7 @@
 #include "base/mem.h"
 #include "stages/track/track.h"
 
-/* Beside a decoder that needs a core too, threads that spin while they wait take more than they win: they must sleep, which
- * OpenMP has to be told before it starts. */
+/* Beside a decoder threads that spin while they wait take more than they win; OpenMP has to be told before it starts. */
 static void start_calm(char **argv)
 {
 	if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
@@ -27,6 +26,7 @@ int main(int argc, char **argv)
 		EYE_TRACK_OPTS(&c.eyes),
 		SKIN_TRACK_OPTS(&c.skin),
 		HEAD_FIND_OPTS(&c.head),
+		WRINKLE_OPTS(&c.wrinkle),
 		OPT_REAL_UNSET("camera.focal_px", &c.focal_px, 50, 1e6, "px", "focal length"),
 		OPT_REAL_UNSET("camera.focal_mm", &c.focal_mm, 0.5, 2000, "mm", "focal length, with the sensor's width"),
 		OPT_REAL_UNSET("camera.sensor_mm", &c.sensor_mm, 1, 100, "mm", "width of the sensor"),
@@ -53,8 +53,7 @@ int main(int argc, char **argv)
 	struct stage stage;
 	struct err err = { 0 };
 	stage_start(&stage, "track", "gaze, lids and skin of a video, followed frame by frame", argc, argv, COUNT(opts), opts);
-	if (c.video.threads == 0)
-		c.video.threads = stage.threads;
+	c.video.threads = c.video.threads ? c.video.threads : stage.threads;
 	if (eye_check(&c.eye, &err))
 		track_stage(&stage, &c, &err);
 	return stage_end(&stage, &err);

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "stages/track/film.h"
+#include "stages/track/wrinkle.h"
 
 /* What the video is that nobody asked for, one line each. */
 static void tell_video(struct stage *stage, const struct track_clip *clip)
@@ -53,7 +54,8 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	track_apertures(result, clip, subject);
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
 	    || !film_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)
-	    || !track_save(stage, result, clip, points, n, in, err))
+	    || !track_save(stage, result, clip, points, n, in, err)
+	    || !folds_finish(result->folds, stage, result, clip, subject, points, conf, n, in, err))
 		return false;
 	tell(stage, result, clip);
 	return true;
@@ -68,12 +70,16 @@ bool track_stage(struct stage *stage, const struct track_conf *conf, struct err 
 		return false;
 	in[n++] = clip.file;
 	static const char *const others[] = { "subject.ply", "subject.obj", "work/subject.ply", "work/rig.json" };
+	bool fresh = true, has_mesh = false;
 	for (int i = 0; i < COUNT(others); i++)
-		if (file_exists(stage_path(stage, "%s", others[i])))
+		if (file_exists(stage_path(stage, "%s", others[i]))) {
 			in[n++] = others[i];
-	bool fresh = true;
+			has_mesh = has_mesh || i < 3;
+		}
 	for (int i = 0; i < TRACK_FILES; i++)
 		fresh = stage_fresh(stage, track_files[i], n, in) && fresh;
+	for (int i = 0; i < WRINKLE_FILES && wrinkles_wanted(conf, has_mesh); i++)
+		fresh = stage_fresh(stage, wrinkle_files[i], n, in) && fresh;
 	if (fresh)
 		return true;
 	if (more)

@@ -7,6 +7,7 @@
 #include "skin/eye_track.h"
 #include "skin/head_find.h"
 #include "skin/skin_track.h"
+#include "skin/wrinkle.h"
 
 struct track_conf {
 	struct video_conf video;
@@ -14,6 +15,7 @@ struct track_conf {
 	struct eye_track_conf eyes;
 	struct skin_track_conf skin;
 	struct head_find_conf head;
+	struct wrinkle_conf wrinkle;
 	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
 	double unit_mm, eye_radius;                  // subject.*: NAN where not given
 	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
@@ -87,6 +89,7 @@ struct track_result {
 	float *confidence;     // [n][n_points]
 	struct eye_clip eyes;
 	struct film *film;     // null where the clip is only looked at
+	struct folds *folds;   // null, too, where there are no expressions or no points
 	bool has_eyes;
 	bool rests;            // the head, on a rest: every pose is the reference's
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points]
