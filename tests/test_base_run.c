@@ -33,6 +33,10 @@ static void test_says(void **state)
 	assert_true(file_read(&log, &size, scratch_path("log"), 10000, &err));
 	assert_non_null(strstr(log, "one\ntwo\n"));
 	free(log);
+	const char *const pwd[] = { "pwd", 0 };
+	said[0] = 0;
+	assert_true(run_program(&(struct run){ pwd, 0, scratch_path("log"), collect, said, 0, "/usr" }, &err));
+	assert_string_equal(said, "/usr|");
 }
 
 static void test_ends(void **state)
@@ -42,6 +46,8 @@ static void test_ends(void **state)
 		const char *script, *says;
 	} cases[] = {
 		{ "echo fine; echo 'ERROR: no pictures' ; echo then; exit 3", "failed: ERROR: no pictures" },
+		{ "echo '  => Filtered: 0'; echo 'ERROR: no model'; echo 'Error: trace'; exit 1", "failed: ERROR: no model" },
+		{ "echo '=> Filtered: 0'; echo '  => No good pair'; exit 1", "=> No good pair" },
 		{ "exit 1", "it does not say why" },
 		{ "kill -9 $$", "was killed" },
 		{ "kill -11 $$", "signal 11" },
@@ -80,7 +86,7 @@ static void test_many(void **state)
 		const char *script = i == 3 ? "echo 'ERROR: three'; exit 1" : "echo ok";
 		memcpy(argv[i], ((const char *[]){ "sh", "-c", script, 0 }), sizeof argv[i]);
 		said[i][0] = 0;
-		runs[i] = (struct run){ argv[i], 0, scratch_path("log"), collect, said[i], 0 };
+		runs[i] = (struct run){ argv[i], 0, scratch_path("log"), collect, said[i], 0, 0 };
 	}
 	struct err err = { 0 };
 	assert_false(run_programs(5, runs, 2, &err));

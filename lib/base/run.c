@@ -25,7 +25,7 @@ struct child {
 	pid_t pid;
 	int out, log;              // its output; the log
 	char line[LINE_MAX_BYTES + 1], reason[LINE_MAX_BYTES + 1];
-	int n_line;
+	int n_line, sure;          // sure: how much the reason looks like one
 	bool disk_full;
 };
 
@@ -43,14 +43,15 @@ bool run_exists(const char *name)
 	return found;
 }
 
-/* What a program that gives up says before the end: the first such line is the reason, the rest a trace. */
-static bool looks_like_reason(const char *line)
+/* How much a line looks like what a program says that gives up: 2 an error by name, of which the first is the reason and the rest
+ * a trace; 1 a result, of which the last counts. */
+static int looks_like_reason(const char *line)
 {
-	static const char *const words[] = { "ERROR", "Error", "error:", "Check failed", "terminate called", "what():", "=>" };
+	static const char *const words[] = { "ERROR", "Error", "error:", "Check failed", "terminate called", "what():" };
 	for (int i = 0; i < COUNT(words); i++)
 		if (strstr(line, words[i]))
-			return true;
-	return false;
+			return 2;
+	return strstr(line, "=>") ? 1 : 0;
 }
 
 static void end_of_line(struct child *c)
@@ -60,8 +61,11 @@ static void end_of_line(struct child *c)
 	if (!c->line[strspn(c->line, " ")])
 		return;
 	c->disk_full |= strstr(c->line, "No space left") || strstr(c->line, "disk is full") || strstr(c->line, "disk I/O error");
-	if (looks_like_reason(c->line) && !*c->reason)
+	int sure = looks_like_reason(c->line);
+	if (sure > c->sure || (sure == 1 && c->sure == 1)) {
 		strcpy(c->reason, c->line);
+		c->sure = sure;
+	}
 	if (c->run->line)
 		c->run->line(c->run->ctx, c->line);
 }
@@ -117,6 +121,8 @@ static bool start(struct child *c, const struct run *run, struct err *err)
 	posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
 	posix_spawn_file_actions_adddup2(&files, ends[1], STDOUT_FILENO);
 	posix_spawn_file_actions_adddup2(&files, ends[1], STDERR_FILENO);
+	if (run->dir)
+		posix_spawn_file_actions_addchdir_np(&files, run->dir);
 	char **env = environment(run->env);
 	int why = posix_spawnp(&c->pid, run->argv[0], &files, 0, (char *const *)run->argv, env);
 	free(env);

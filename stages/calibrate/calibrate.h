@@ -88,6 +88,10 @@ double view_focal_known(const struct view *view, const struct calibrate_options 
 bool colmap_run(struct stage *stage, const char *task, const char *const args[], int total, const char *what,
                 struct err *err);
 
+/* The same in work/calibrate as its current folder, to which paths among the arguments are relative: for tasks that keep files
+ * of their own in the current folder, which need not be one to be written to. */
+bool colmap_run_inside(struct stage *stage, const char *task, const char *const args[], const char *what, struct err *err);
+
 /* Several at a time, as many as the stage has threads. */
 bool colmap_run_parts(struct stage *stage, const char *task, int n, const char *const *const args[], const char *what,
                       struct err *err);

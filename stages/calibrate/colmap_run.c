@@ -43,15 +43,26 @@ static const char **arguments(const char *task, const char *const args[])
 	return argv;
 }
 
-bool colmap_run(struct stage *stage, const char *task, const char *const args[], int total, const char *what,
-                struct err *err)
+static bool run_in(struct stage *stage, const char *dir, const char *task, const char *const args[], int total, const char *what,
+                   struct err *err)
 {
 	struct progress p = { stage, what, total, 0 };
 	const char **argv = arguments(task, args);
-	const struct run run = { argv, env, stage_path(stage, CALIBRATE_DIR "/colmap.log"), take_line, &p, INSTALL };
+	const struct run run = { argv, env, stage_path(stage, CALIBRATE_DIR "/colmap.log"), take_line, &p, INSTALL, dir };
 	bool ok = run_program(&run, err);
 	free(argv);
 	return ok;
+}
+
+bool colmap_run(struct stage *stage, const char *task, const char *const args[], int total, const char *what,
+                struct err *err)
+{
+	return run_in(stage, 0, task, args, total, what, err);
+}
+
+bool colmap_run_inside(struct stage *stage, const char *task, const char *const args[], const char *what, struct err *err)
+{
+	return run_in(stage, stage_path(stage, CALIBRATE_DIR), task, args, 0, what, err);
 }
 
 bool colmap_run_parts(struct stage *stage, const char *task, int n, const char *const *const args[], const char *what,
@@ -62,7 +73,7 @@ bool colmap_run_parts(struct stage *stage, const char *task, int n, const char *
 	const char ***argv = mem_new((size_t)n, sizeof *argv);
 	for (int i = 0; i < n; i++) {
 		argv[i] = arguments(task, args[i]);
-		runs[i] = (struct run){ argv[i], env, stage_path(stage, CALIBRATE_DIR "/colmap.log"), take_line, &p, INSTALL };
+		runs[i] = (struct run){ argv[i], env, stage_path(stage, CALIBRATE_DIR "/colmap.log"), take_line, &p, INSTALL, 0 };
 	}
 	bool ok = run_programs(n, runs, stage->threads, err);
 	for (int i = 0; i < n; i++)

@@ -26,10 +26,10 @@ bool subject_given(struct stage *stage)
 static bool poisson(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	char *depth = mem_printf("%d", o->mesh_depth), *trim = mem_printf("%g", o->mesh_trim);
-	const char *const args[] = { "--input_path", stage_path(stage, CLOUD), "--output_path", stage_path(stage, RAW_MESH),
+	const char *const args[] = { "--input_path", "cloud.ply", "--output_path", "poisson.ply",
 		"--PoissonMeshing.depth", depth, "--PoissonMeshing.trim", trim, "--PoissonMeshing.color", "0",
 		"--PoissonMeshing.num_threads", "1", 0 };
-	bool ok = colmap_run(stage, "poisson_mesher", args, 0, "mesh", err);
+	bool ok = colmap_run_inside(stage, "poisson_mesher", args, "mesh", err);
 	free(depth);
 	free(trim);
 	return ok;

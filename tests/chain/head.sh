@@ -34,6 +34,10 @@ run_make "$head"
 same "make on photographs and a character: exit status" "$?" 0
 same "what ran" "$(ran)" "calibrate transfer render"
 check "the character is laid onto the mesh from the photographs" grep -q '"subject": "work/subject.ply"' "$head/work/targets/mpfb/transfer.json"
+elements() { head -c 4000 "$head/work/subject.ply" | grep -aE "$1"; }
+faces=$(elements '^element face' | sed 's/.* //')
+check "the mesh is reduced to what config says: ${faces:-0} faces" test "${faces:-0}" -gt 10000 -a "${faces:-0}" -le 30000
+same "it has a colour for each vertex" "$(elements '^property uchar (red|green|blue)$' | wc -l)" 3
 check "there it lies" test -s "$head/work/targets/mpfb/registered.ply"
 check "the page shows cameras, cloud and residuals" grep -q 'id="cameras"' "$head/work/review/index.html"
 check "there is a picture of them" test -s "$head/work/calibrate/rig.png"
@@ -96,6 +100,24 @@ check "and is known to some per cent: $(rig scale_sigma)" within "$(rig scale_si
 calibrate "${eyes[@]}" "${ruler[@]}" "view.00013.distance_mm = 900" "calibrate.ruler_mm = 100"
 same "a ruler comes before all" "$(rig scale_source)" '"ruler"'
 check "50 mm that are 100: $(grown) times as large" within "$(grown)" 1.98 2.02
+
+# A marker of 30 mm of the assumed scale, printed 60 mm wide: how far two cameras stand apart tells.
+apart() { # FILE FILE: mm
+	for file in "$@"; do
+		camera "$file" | tr ',[]:"' '     ' | awk '{ for (i = 1; i <= NF; i++) if ($i == "cam_from_head") for (j = 0; j < 12; j++) m[j] = $(i + 1 + j)
+			for (k = 0; k < 3; k++) printf "%.6f ", -(m[k] * m[3] + m[4 + k] * m[7] + m[8 + k] * m[11]) }'
+	done | awk '{ printf "%.4f", sqrt(($1 - $4) ^ 2 + ($2 - $5) ^ 2 + ($3 - $6) ^ 2) }'
+}
+calibrate
+was=$(apart views/00013.jpg views/00062.jpg)
+"${B:-build}/tests/tools/marker" "$head/work/rig.json" "$head/views" 30 0 0 130
+calibrate "${eyes[@]}" "calibrate.marker_mm = 60"
+same "a printed marker: exit status" "$?" 0
+same "the scale comes from it" "$(rig scale_source)" '"marker"'
+ratio=$(awk -v a="$(apart views/00013.jpg views/00062.jpg)" -v b="$was" 'BEGIN { printf "%.4f", a / b }')
+# Its corners are found to a third of a pixel of 90; eight pictures tell their cameras' places to about half a per cent.
+check "30 mm that are 60: $ratio times as large" within "$ratio" 1.98 2.02
+cp "$heads"/000{13,16,22,31,34,36,62,63}.jpg "$head/views/"
 
 # A hand that shook: the photograph is left out, and why.
 "$VARIANT" blurred "$heads/00035.jpg" "$head/views/blurred.jpg"
