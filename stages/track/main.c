@@ -44,6 +44,7 @@ int main(int argc, char **argv)
 		OPT_INT("settle_frames", &c.settle, 0, 10000, "", "from which the eyeballs' centres settle the head's pose; 0: not"),
 		OPT_REAL("settle_sigma_mm", &c.settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),
 		OPT_REAL("mesh_center_sigma_mm", &c.center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),
+		OPT_REAL("meniscus_mm", &c.meniscus_mm, 0, 3, "mm", "that a lid's margin stands off the eye in its corners"),
 		OPT_INT("points", &c.points, 20, 20000, "", "of skin"),
 		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),
 		OPT_REAL("gap_px", &c.gap_px, 0, 50, "px", "least distance between two points"),

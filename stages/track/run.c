@@ -51,6 +51,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (result->lost * 2 > result->n)
 		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again: cut the video to one take", clip->file,
 		               result->cut, clip->reference);
+	track_corners(result, clip, subject, points);
 	track_apertures(result, clip, subject);
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
 	    || !film_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)

@@ -146,6 +146,7 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 			continue;
 		const double from[3] = { s->center[e][0], s->center[e][1], s->center[e][2] + 1000 };
 		eye_opening_find(&s->opening[e], rays, from, s->center[e], s->radius);
+		eye_opening_find(&s->margin[e], rays, from, s->center[e], s->radius + conf->meniscus_mm);
 		opening_from_marks(&s->opening[e], s, e);
 		if (!s->opening[e].open && rig.has_eyes) {
 			opening_usual(&s->opening[e], rays, s->center[e], s->radius);

@@ -27,6 +27,7 @@ struct track_conf {
 	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
 	int points;            // of skin
 	long limit;            // frames followed; 0: all
+	double meniscus_mm;    // that the edge of a lid's margin stands off the eye in the corners
 	double reach_mm;       // round an eyeball's centre
 	double gap_px;         // points are no closer
 	double cut;            // share of the points that must be seen again, or there was a cut
@@ -43,6 +44,7 @@ struct track_subject {
 	int mark[SIDES][MARKS];          // rows; -1: not known
 	double center[SIDES][3], radius; // of the eyeballs; NAN where not known
 	struct eye_opening opening[SIDES];
+	struct eye_opening margin[SIDES];  // where the lids stand clear of the eye and its tears: the inner edge of their margins
 	bool assumed;          // there is no mesh: openings of a usual face, to find eyes with
 };
 
@@ -138,6 +140,10 @@ void track_eyes_free(struct track_eyes *eyes);
 /* Files of the stage, relative to the capture. */
 enum { TRACK_FILES = 10 };
 extern const char *const track_files[TRACK_FILES];
+
+/* Ends of the margins by the mesh and the skin beside them. */
+void track_corners(struct track_result *result, const struct track_clip *clip, const struct track_subject *subject,
+                   const struct track_points *points);
 
 /* g4, g5, g9, g10 and the lids in the modelling camera. */
 void track_apertures(struct track_result *result, const struct track_clip *clip, const struct track_subject *subject);
