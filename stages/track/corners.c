@@ -23,19 +23,22 @@ struct line {
 /* The margin of the mesh, both lids from the inner corner to the outer, head frame. */
 struct rim {
 	int n[LIDS];
-	double head[LIDS][OPENING_POINTS + 1][3];
+	double head[LIDS][OPENING_POINTS + 2][3];
 };
 
-static int nearest(const struct eye_opening *o, const double to[3])
+/* The place of the outline after which a corner lies. */
+static int after(const struct eye_opening *o, const double corner[3])
 {
 	int best = 0;
 	double least = INFINITY;
 	for (int i = 0; i < OPENING_POINTS; i++) {
-		double d = 0;
-		for (int k = 0; k < 3; k++)
-			d += pow(o->edge[i][k] - to[k], 2);
-		if (d < least) {
-			least = d;
+		const double *a = o->edge[i], *b = o->edge[(i + 1) % OPENING_POINTS];
+		double way = 0;
+		for (int k = 0; k < 2; k++)
+			way += k ? hypot(b[0] - corner[0], b[1] - corner[1]) : hypot(a[0] - corner[0], a[1] - corner[1]);
+		way -= hypot(b[0] - a[0], b[1] - a[1]);
+		if (way < least) {
+			least = way;
 			best = i;
 		}
 	}
@@ -44,14 +47,19 @@ static int nearest(const struct eye_opening *o, const double to[3])
 
 static void rim_of(struct rim *rim, const struct eye_opening *o)
 {
-	int inner = nearest(o, o->canthus[0]), outer = nearest(o, o->canthus[1]);
+	int inner = after(o, o->canthus[0]), outer = after(o, o->canthus[1]);
 	double height[2] = { 0 };
-	struct rim way = { .n = { (outer - inner + OPENING_POINTS) % OPENING_POINTS + 1, (inner - outer + OPENING_POINTS) % OPENING_POINTS + 1 } };
-	for (int k = 0; k < 2; k++)
-		for (int i = 0; i < way.n[k]; i++) {
-			memcpy(way.head[k][i], o->edge[(inner + (k ? -i : i) + OPENING_POINTS) % OPENING_POINTS], sizeof way.head[k][i]);
-			height[k] += way.head[k][i][1] / way.n[k];
+	struct rim way = { 0 };
+	for (int k = 0; k < 2; k++) {
+		int between = ((k ? inner - outer : outer - inner) + OPENING_POINTS) % OPENING_POINTS;
+		way.n[k] = between + 2;
+		memcpy(way.head[k][0], o->canthus[0], sizeof way.head[k][0]);
+		memcpy(way.head[k][between + 1], o->canthus[1], sizeof way.head[k][0]);
+		for (int i = 0; i < between; i++) {
+			memcpy(way.head[k][1 + i], o->edge[(inner + (k ? -i : 1 + i) + OPENING_POINTS) % OPENING_POINTS], sizeof way.head[k][0]);
+			height[k] += way.head[k][1 + i][1] / between;
 		}
+	}
 	int upper = height[1] > height[0];
 	for (int k = 0; k < LIDS; k++) {
 		rim->n[k] = way.n[k ^ upper];

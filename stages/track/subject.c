@@ -93,6 +93,15 @@ static void opening_through(struct eye_opening *o, const float *in, const float 
 	}
 }
 
+/* A corner that is round has no end of its own: where it is marked, that is it. */
+static void corners_from_marks(struct eye_opening *margin, const struct track_subject *s, int side)
+{
+	const float *mark[2] = { at(s, side, MARK_INNER), at(s, side, MARK_OUTER) };
+	for (int c = 0; c < 2; c++)
+		for (int k = 0; k < 3 && mark[c]; k++)
+			margin->canthus[c][k] = mark[c][k];
+}
+
 /* Where the mesh has no hole for the eye. */
 static void opening_from_marks(struct eye_opening *o, const struct track_subject *s, int side)
 {
@@ -147,6 +156,7 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 		const double from[3] = { s->center[e][0], s->center[e][1], s->center[e][2] + 1000 };
 		eye_opening_find(&s->opening[e], rays, from, s->center[e], s->radius);
 		eye_opening_find(&s->margin[e], rays, from, s->center[e], s->radius + conf->meniscus_mm);
+		corners_from_marks(&s->margin[e], s, e);
 		opening_from_marks(&s->opening[e], s, e);
 		if (!s->opening[e].open && rig.has_eyes) {
 			opening_usual(&s->opening[e], rays, s->center[e], s->radius);

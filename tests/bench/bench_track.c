@@ -44,6 +44,11 @@ static bool make_capture(const char *dir, const char *clip, const char *quality)
 		        json_number_value(json_array_get(K, 0)), radius, quality);
 		for (int e = 0; e < 2; e++)
 			fprintf(out, "subject.eye_center.%s = %.4f %.4f %.4f\n", e ? "right" : "left", c[e][0], c[e][1], c[e][2]);
+		const char *mark;
+		json_t *row, *marks = json_object_get(j, "landmarks_skin_vertex");
+		json_object_foreach(marks, mark, row)
+			if (strstr(mark, "canthus"))
+				fprintf(out, "subject.landmark.%s = %lld\n", mark, (long long)json_integer_value(row));
 		fclose(out);
 	}
 	json_decref(j);
