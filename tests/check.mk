@@ -1,7 +1,7 @@
 # Tests.
 #   make check            everything; ends with one line: N passed, N failed, N skipped
 #   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others;
-#                         CASES=1e8 of light paths
+#                         CASES=1e8: so many light paths instead of 1e6
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30
 TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c))
 SECONDS_EACH ?= 30

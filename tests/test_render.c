@@ -81,6 +81,18 @@ static void even_light(void **state)
 		assert_float_equal(rgb[2], 1, 1e-4);
 	}
 	envmap_free(&env);
+	// Whatever its light, scaled to 1 it is 1 in every direction, sharp and rough.
+	env = envmap_room(64, (double[3]){ 30, 30, 30 }, (double[3]){ 30, 30, 30 }, 1, 0, 0);
+	envmap_normalise(&env);
+	for (int i = 0; i < 400; i++) {
+		float d[3] = { (float)rng_normal(&rng), (float)rng_normal(&rng), (float)rng_normal(&rng) }, rgb[3];
+		float len = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		for (int c = 0; c < 3; c++)
+			d[c] /= len;
+		envmap_at(rgb, &env, d, (float)(i % 2));
+		assert_float_equal(rgb[0], 1, 2e-3);  // the level itself is summed over pixels of 2.8 degrees
+	}
+	envmap_free(&env);
 }
 
 /* A lamp is found again where it stands, and as the brightest light. */

@@ -73,6 +73,8 @@ static struct fit_sums sums_row(const struct scene *s, int y)
 		if (tex[3] < 0.5f || hypot(u - s->pupil[0], v - s->pupil[1]) < s->pupil[2] + 0.15 || hypot(u, v) > 0.92 * s->limbus[0])
 			continue;
 		for (int c = 0; c < 3; c++) {
+			if (!(mod[c] > SCENE_DARK))  // unlit: it says nothing of how bright the model is
+				continue;
 			double t = log(tex[c]), m = log(mod[c]);
 			f.n++;
 			f.tex += t;
@@ -144,7 +146,8 @@ SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g,
 	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // brighter only a texel gets that was in a shadow of the model's
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		float x = r[i] / model[i][0], y = g[i] / model[i][1], z = b[i] / model[i][2], mean = (x + y + z) / 3;
+		// A few wavelengths stand for the spectrum: what light of hardly any colour is left deep in dark tissue they may put below zero.
+		float x = fmaxf(r[i], 0) / model[i][0], y = fmaxf(g[i], 0) / model[i][1], z = fmaxf(b[i], 0) / model[i][2], mean = (x + y + z) / 3;
 		float lit = mean < most ? mean : most, low = lit / chroma, high = lit * chroma, k = mean > 1e-6f ? lit / mean : 1;
 		x *= k;
 		y *= k;

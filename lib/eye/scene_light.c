@@ -184,7 +184,7 @@ static void table_paths(struct march_light *light, int end, int n, const float *
 		light->x[end][i] = way[0];
 		light->y[end][i] = way[1];
 		light->z[end][i] = way[2];
-		light->power[end][i] = way[3];
+		light->power[end][i] = way[2] < 0 ? way[3] : 0;  // an iris that juts out of its cornea is not lit from behind
 		rho[i] = way[4];
 	}
 	rim_stop(n, light->power[end], rho, width);
@@ -203,6 +203,8 @@ static void exact_paths(struct march_light *light, int end, int n, const float *
 		if (status[i] != LIGHTPATH_OK && status[i] != LIGHTPATH_BEYOND_RIM)
 			continue;
 		float d[3] = { k[0][i] - x[i], k[1][i] - y[i], k[2][i] - z[i] }, inv = 1 / sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		if (!(d[2] < 0))
+			continue;
 		light->x[end][i] = d[0] * inv;
 		light->y[end][i] = d[1] * inv;
 		light->z[end][i] = d[2] * inv;

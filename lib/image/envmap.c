@@ -205,7 +205,7 @@ void envmap_normalise(struct envmap *env)
 	double level = envmap_level(env), k = level > 0 ? 1 / level : 1;
 	struct image *const all[] = { &env->map, &env->sharp, &env->rough };
 	for (int j = 0; j < 3; j++)
-		for (long i = 0; i < 3L * all[j]->width * all[j]->height; i++)
+		for (long i = 0; i < (long)all[j]->channels * all[j]->width * all[j]->height; i++)
 			all[j]->px[i] *= (float)k;
 	for (int i = 0; i < 9; i++)
 		for (int c = 0; c < 3; c++) {

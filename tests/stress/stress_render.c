@@ -1,0 +1,210 @@
+/* The eye's renderer over random scenes: anatomy, settings, light and view over their whole ranges; iris maps and pigments as
+ * strangers make them. Nothing that comes out is not a number, is negative or covers more than all of a pixel, and no place is
+ * brighter than what lights it: in an even room nothing outshines the room. Flagged: a scene that was refused. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "eye/scene.h"
+#include "image/exr.h"
+#include "tests/lib/scratch.h"
+#include "tests/lib/stress.h"
+
+enum { MAP = 24, PICTURE = 14 };
+enum hostility { TAME, NOT_NUMBERS, INFINITE, NEGATIVE, ENORMOUS, TINY, BLACK, SPIKES, HOSTILITIES };
+static const char *const hostilities[] = { "tame", "not numbers", "infinite", "negative", "enormous", "tiny", "black", "spikes" };
+
+struct paths {
+	char texture[512], json[512], relief[512], pigment[512];
+};
+
+/* One of the interval's ends in one of eight cases: extremes meet. */
+static double over(struct rng *rng, double lo, double hi)
+{
+	int end = rng_below(rng, 16);
+	return end == 0 ? lo : end == 1 ? hi : rng_range(rng, lo, hi);
+}
+
+/* The ranges of config/capture.conf's keys. */
+static struct eye any_eye(struct rng *rng)
+{
+	struct eye eye = { over(rng, 5, 12), over(rng, 0, 2), over(rng, 1, 2), over(rng, 4, 8), rng_below(rng, 4) ? over(rng, 0.7, 1.2) : NAN,
+		           over(rng, 1.5, 6), rng_below(rng, 2), over(rng, 4, 12), over(rng, 0, 2), over(rng, 0.2, 1.2), over(rng, 1, 2) };
+	return eye;
+}
+
+/* Those of config/render.conf. */
+static struct scene_conf any_conf(struct rng *rng)
+{
+	struct scene_conf c = { .map_size = 128, .search = 2 + rng_below(rng, 16), .shadow = rng_below(rng, 12), .steps = 2 + rng_below(rng, 10),
+		.quadrature = rng_below(rng, 3), .path = rng_below(rng, 2), .shading = rng_below(rng, 2), .bands = 3 + rng_below(rng, 4),
+		.detail = over(rng, 0, 1), .limbus_width = over(rng, 0.05, 2), .sclera_radius = over(rng, 9, 16),
+		.vein_density = over(rng, 0, 0.2), .veins_px = 128, .seed = rng_below(rng, 1000) };
+	for (int i = 0; i < 3; i++)
+		c.sclera_rgb[i] = over(rng, 0, 1);
+	return c;
+}
+
+static float strange(struct rng *rng, enum hostility kind, float tame)
+{
+	static const float not_numbers[] = { NAN, -NAN, INFINITY };
+	bool hit = rng_below(rng, 5) == 0;
+	switch (kind) {
+	case NOT_NUMBERS: return hit ? not_numbers[rng_below(rng, 2)] : tame;
+	case INFINITE: return hit ? (rng_below(rng, 2) ? INFINITY : -INFINITY) : tame;
+	case NEGATIVE: return hit ? -tame : tame;
+	case ENORMOUS: return tame * 1e30f;
+	case TINY: return tame * 1e-38f;
+	case BLACK: return 0;
+	case SPIKES: return rng_below(rng, 20) ? tame : 1e6f;
+	default: return tame;
+	}
+}
+
+static bool write_files(const struct paths *at, struct rng *rng, enum hostility colour, enum hostility height, struct err *err)
+{
+	double extent = over(rng, 4, 9);
+	struct exr_info info = { .extent_mm = extent, .made_by = "{}" };
+	struct image texture = image_new(MAP, MAP, 4), relief = image_new(MAP, MAP, 2);
+	for (int i = 0; i < MAP * MAP; i++) {
+		for (int c = 0; c < 3; c++)
+			texture.px[4 * i + c] = strange(rng, colour, (float)over(rng, 0, 1));
+		texture.px[4 * i + 3] = strange(rng, colour == BLACK ? TAME : colour, (float)(rng_below(rng, 6) > 0));
+		relief.px[2 * i] = strange(rng, height, (float)over(rng, -0.3, 0.3));
+		relief.px[2 * i + 1] = strange(rng, height, (float)over(rng, 0.02, 1));
+	}
+	char *pupil = mem_printf("{\"pupil\": {\"cx\": %g, \"cy\": %g, \"r\": %g}}", over(rng, -3, 3), over(rng, -3, 3), over(rng, -1, 9));
+	double most = colour && rng_below(rng, 4) == 0 ? 1e3 : 1;
+	char *pigment = mem_printf("{\"abl\": {\"melanin\": {\"value\": %g}, \"eumelanin_ratio\": {\"value\": %g}, \"thickness_mm\": %g},"
+	                           "\"stroma\": {\"melanin\": {\"value\": %g}, \"eumelanin_ratio\": {\"value\": %g}, \"thickness_scale\": {\"value\": %g}},"
+	                           "\"exposure\": {\"value\": %g}, \"illuminant\": \"D65\", \"scattering\": \"%s\"}", over(rng, 0, most),
+	                           over(rng, 0, 1), over(rng, 0.01, 0.2), over(rng, 0, most), over(rng, 0, 1), over(rng, 0.1, 5), over(rng, 0.1, 5),
+	                           rng_below(rng, 2) ? "multiple" : "single");
+	bool ok = exr_write(at->texture, &texture, (const char *const[]){ "R", "G", "B", "W" }, EXR_FLOAT, &info, err)
+	          && exr_write(at->relief, &relief, (const char *const[]){ "Y", "T" }, EXR_FLOAT, &info, err)
+	          && file_write(at->json, pupil, strlen(pupil), err) && file_write(at->pigment, pigment, strlen(pigment), err);
+	image_free(&texture);
+	image_free(&relief);
+	free(pupil);
+	free(pigment);
+	return ok;
+}
+
+/* A room with up to three lamps of up to 1e4 times its light. */
+static struct envmap any_light(struct rng *rng, bool even)
+{
+	static const double one[3] = { 1, 1, 1 };
+	struct envmap_box boxes[3];
+	int n = even ? 0 : rng_below(rng, 4);
+	for (int i = 0; i < n; i++) {
+		double z = over(rng, -1, 1), phi = rng_range(rng, 0, 2 * M_PI), r = sqrt(fmax(1 - z * z, 0)), power = pow(10, rng_range(rng, 0, 4));
+		boxes[i] = (struct envmap_box){ { r * cos(phi), r * sin(phi), z }, { over(rng, 0.03, 1), over(rng, 0.03, 1) }, { power, power, power } };
+	}
+	double ceiling[3], floor[3];
+	for (int c = 0; c < 3; c++) {
+		ceiling[c] = over(rng, 0, 1);
+		floor[c] = over(rng, 0.001, 1);
+	}
+	struct envmap env = envmap_room(16, even ? one : ceiling, even ? one : floor, even ? 1 : over(rng, 0, 1), n, boxes);
+	if (!even)
+		envmap_normalise(&env);
+	return env;
+}
+
+/* The brightest number; what is no picture is wrong. */
+static double brightest(struct stress *s, const struct image *image)
+{
+	double most = 0;
+	for (long i = 0; i < (long)image->width * image->height; i++) {
+		const float *px = image->px + 4 * i;
+		if (!isfinite(px[0] + px[1] + px[2] + px[3]))
+			stress_wrong(s, "pixel %ld: %g %g %g, cover %g", i, (double)px[0], (double)px[1], (double)px[2], (double)px[3]);
+		else if (px[0] < 0 || px[1] < 0 || px[2] < 0)
+			stress_wrong(s, "pixel %ld is darker than black: %g %g %g", i, (double)px[0], (double)px[1], (double)px[2]);
+		else if (px[3] < 0 || px[3] > 1.0001f)
+			stress_wrong(s, "pixel %ld is covered by %g", i, (double)px[3]);
+		most = fmax(most, (double)fmaxf(px[0], fmaxf(px[1], px[2])));
+	}
+	return most;
+}
+
+static struct scene_view any_view(const struct scene *s, struct rng *rng)
+{
+	double yaw = rng_below(rng, 3) ? over(rng, -1.4, 1.4) : over(rng, -M_PI, M_PI);
+	struct scene_view view = scene_view_turned(s, yaw, over(rng, -1.4, 1.4), over(rng, 10, 60), PICTURE);
+	view.samples = 1 + rng_below(rng, 3);
+	view.textured = rng_below(rng, 8) == 0;
+	for (int i = 0; i < 2 && rng_below(rng, 8) == 0; i++)
+		view.slip[i][2] = over(rng, -1, 1);
+	return view;
+}
+
+/* The brightest place of one picture over the brightest light. */
+static double shine(struct stress *run, struct scene *s, bool even, bool tame)
+{
+	struct rng *rng = &run->rng;
+	struct envmap env = any_light(rng, even);
+	struct scene_lighting light = scene_lighting(&env, rng_below(rng, 4) || even ? &env : 0, 1 << rng_below(rng, 5));
+	struct scene_view seen = scene_view_turned(s, even ? 0 : over(rng, -0.6, 0.6), even ? 0 : over(rng, -0.6, 0.6), 24, 32), view = any_view(s, rng);
+	scene_fit_colour(s, &seen, &light);
+	struct image image = scene_render(s, &view, &light, 0);
+	double most = brightest(run, &image), lamp = 0;
+	for (long i = 0; i < 3L * env.map.width * env.map.height; i++)
+		lamp = fmax(lamp, (double)env.map.px[i]);
+	// All of the photograph's detail: no texel, of 1 at most, comes out more than 2.5 times as bright (LOOK_MOST), and a mirror
+	// no brighter than the lamp. A tenth: the sclera's light is summed over the map's coarse pixels.
+	if (tame && s->conf.detail == 1 && most > 2.5 + 1.1 * lamp)
+		stress_wrong(run, "as bright as %.3g in light of %.3g", most, lamp);
+	image_free(&image);
+	envmap_free(&env);
+	return most / lamp;
+}
+
+static void one(struct stress *s, const struct paths *at, bool hostile, bool even)
+{
+	struct eye eye = any_eye(&s->rng);
+	for (int i = 0; i < 100 && even && eye.iris_depth < eye_limbus_depth(&eye); i++)  // an iris that juts out of its cornea is none
+		eye = any_eye(&s->rng);
+	struct scene_conf conf = any_conf(&s->rng);
+	enum hostility colour = hostile ? rng_below(&s->rng, HOSTILITIES) : TAME, height = hostile ? rng_below(&s->rng, HOSTILITIES) : TAME;
+	conf.detail = even || rng_below(&s->rng, 2) ? 1 : conf.detail;
+	struct err err = { 0 };
+	struct scene scene;
+	struct scene_files files = { at->texture, at->json, at->relief, rng_below(&s->rng, 4) ? at->pigment : 0, 0 };
+	stress_about(s, "R %.2f p %.2f n %.2f limbus %.1f iris %.1f; colour %s, relief %s; %s, %s, %d steps", eye.cornea_radius, eye.cornea_asphericity,
+	             eye.index, eye.limbus_radius, eye.iris_depth, hostilities[colour], hostilities[height], conf.shading ? "texels" : "rays",
+	             conf.path ? "ends" : "grid", conf.steps);
+	if (!write_files(at, &s->rng, colour, height, &err) || !scene_load(&scene, &files, &eye, &conf, &err)) {
+		stress_flagged(s);
+		if (s->show)
+			printf("  %s\n", err.msg);
+		return;
+	}
+	stress_measure(s, shine(s, &scene, even, colour == TAME), "of the brightest light");
+	scene_free(&scene);
+}
+
+int main(int argc, char **argv)
+{
+	struct stress s;
+	struct paths at;
+	omp_set_num_threads(1);  // pictures of 200 pixels: threads would wait for each other most of the time
+	stress_start(&s, "render", argc, argv);
+	scratch_open();
+	snprintf(at.texture, sizeof at.texture, "%s", scratch_path("texture.exr"));
+	snprintf(at.json, sizeof at.json, "%s", scratch_path("texture.json"));
+	snprintf(at.relief, sizeof at.relief, "%s", scratch_path("relief.exr"));
+	snprintf(at.pigment, sizeof at.pigment, "%s", scratch_path("pigment.json"));
+	for (stress_family(&s, "whole ranges", 50000); stress_case(&s);)
+		one(&s, &at, false, false);
+	for (stress_family(&s, "hostile maps", 30000); stress_case(&s);)
+		one(&s, &at, true, false);
+	for (stress_family(&s, "an even room", 20000); stress_case(&s);)
+		one(&s, &at, false, true);
+	scratch_close();
+	return stress_end(&s);
+}
