@@ -19,7 +19,7 @@ static bool run_sh(const char *script, char said[4096], struct err *err)
 	const char *const argv[] = { "sh", "-c", script, 0 };
 	const char *const env[] = { "RUN_TEST=here", "PATH=/bin:/usr/bin", 0 };
 	said[0] = 0;
-	return run_program(&(struct run){ argv, env, scratch_path("log"), collect, said, 0 }, err);
+	return run_program(&(struct run){ argv, env, scratch_path("log"), collect, said, 0, 0 }, err);
 }
 
 static void test_says(void **state)
