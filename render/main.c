@@ -2,7 +2,7 @@
  * reads   IRIS/texture.exr, clean.exr, relief.exr, pigment.json, limbus/NAME.json, photos/
  *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/
  * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet; review/index.html, viewer.html;
- *         work/render/NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
+ *         work/render/NAME_look.png, NAME_look_layers.exr, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
  */
 #include "base/mem.h"
 #include "render/options.h"

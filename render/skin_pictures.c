@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "image/exr.h"
 #include "image/picture.h"
 #include "math/vec.h"
 #include "render/skin.h"
@@ -20,9 +21,9 @@ static double eye_distance(const struct rig *rig)
 	return vec_norm(d);
 }
 
-/* One picture with these controls, on grey. side < 0: both eyes. image_free. */
+/* One picture with these controls, on grey. side < 0: both eyes. layers: null, or what it is of. image_free both. */
 static struct image look(struct skin_job *job, struct skin_target *t, double h, double v, double aperture, int side, double field,
-                         int width, int height)
+                         int width, int height, struct image *layers)
 {
 	double *controls = mem_new((size_t)t->rig.n_inputs + 1, sizeof *controls);
 	drive_look(controls, &t->rig, h, v, aperture);
@@ -30,6 +31,8 @@ static struct image look(struct skin_job *job, struct skin_target *t, double h, 
 	struct portrait_view view = portrait_front(&t->rig, side, field, 0, 0, width, height);
 	portrait_light(t->portrait, &view, true);
 	struct image rgba = portrait_draw(t->portrait, &view), seen = picture_on_grey(&rgba, job->gain);
+	if (layers)
+		*layers = portrait_layers(t->portrait, &view);
 	image_free(&rgba);
 	free(controls);
 	return seen;
@@ -47,17 +50,28 @@ static void put(struct image *sheet, const struct image *cell, int x, int y)
 		memcpy(image_at(sheet, x, y + row), image_at(cell, 0, row), (size_t)cell->width * 3 * sizeof(float));
 }
 
+static bool layers_write(struct skin_job *job, struct skin_target *t, const char *rel, const struct image *layers, struct err *err)
+{
+	static const char *const names[] = { "Z", "distance" };
+	struct exr_info info = { .made_by = stage_made_by(job->stage, t->n_in, t->in) };
+	return exr_write(stage_path(job->stage, "%s", rel), layers, names, EXR_FLOAT, &info, err)
+	       && stage_made(job->stage, rel, t->n_in, t->in, err);
+}
+
 static bool still(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	const struct skin_conf *c = job->conf;
-	const char *rel = output(job, t->name, "_look.png");
-	if (stage_fresh(job->stage, rel, t->n_in, t->in))
+	const char *rel = output(job, t->name, "_look.png"), *layers_rel = output(job, t->name, "_look_layers.exr");
+	bool fresh = stage_fresh(job->stage, rel, t->n_in, t->in), exr = job->render->exr;
+	if (fresh && (!exr || stage_fresh(job->stage, layers_rel, t->n_in, t->in)))
 		return true;
 	if (!skin_open(job, t, err))
 		return false;
+	struct image layers = { 0 };
 	struct image image = look(job, t, c->gaze[0], c->gaze[1], c->aperture, -1, c->field * eye_distance(&t->rig), c->look_px,
-	                          c->look_px * 9 / 16);
-	bool ok = save(job, t, rel, &image, err);
+	                          c->look_px * 9 / 16, exr ? &layers : 0);
+	bool ok = save(job, t, rel, &image, err) && (!exr || layers_write(job, t, layers_rel, &layers, err));
+	image_free(&layers);
 	image_free(&image);
 	return ok;
 }
@@ -77,7 +91,7 @@ static bool sheet(struct skin_job *job, struct skin_target *t, struct err *err)
 	for (int k = 0; k < 9; k++) {
 		int column = k % 3, row = k / 3;
 		struct image cell = look(job, t, (column - 1) * c->sheet_deg[0], (1 - row) * c->sheet_deg[1], 1, -1,
-		                         0.86 * c->field * eye_distance(&t->rig), w, h);
+		                         0.86 * c->field * eye_distance(&t->rig), w, h, 0);
 		put(&image, &cell, column * (w + GAP), row * (h + GAP));
 		image_free(&cell);
 		stage_progress(job->stage, k + 1, 9, "gaze sheet");
@@ -102,7 +116,7 @@ static bool blink(struct skin_job *job, struct skin_target *t, struct err *err)
 	for (int k = 0; k < n; k++) {
 		double phase = k <= shut ? (double)k / fmax(shut, 1) : 1 - (double)(k - shut) / fmax(n - 1 - shut, 1);
 		double open = 0.5 * (1 + cos(M_PI * phase));
-		struct image cell = look(job, t, 0, 0, open, 0, 0.78 * eye_distance(&t->rig), w, h);
+		struct image cell = look(job, t, 0, 0, open, 0, 0.78 * eye_distance(&t->rig), w, h, 0);
 		put(&image, &cell, k * (w + GAP), 0);
 		image_free(&cell);
 	}

@@ -86,6 +86,10 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *por
 void portrait_tears(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                     const struct portrait_spot *spots, int samples);
 
+/* enum distance_material of a pixel for the eye of that side, and how much of it is skin: from its samples, rows apart. */
+uint8_t portrait_material(float *cover, const struct portrait *portrait, const struct portrait_spot *spots, long row, int samples,
+                          int side);
+
 /* Unit normal of a meniscus of that height at distance d from the lid: between the globe's normal and `away`, the unit
  * direction from the lid in the globe's tangent plane. */
 void portrait_meniscus(float normal[3], const float globe[3], const float away[3], float d, float height);

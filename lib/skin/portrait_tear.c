@@ -29,8 +29,8 @@ static void field_free(struct field *f)
 	free(f->nearest);
 }
 
-/* A pixel's samples: lashes hang before the lid's edge and are not it. */
-static void pixel_put(struct field *f, long to, const struct portrait *p, const struct portrait_spot *spots, long row, int samples, int side)
+// Lashes hang before the lid's edge and are not it.
+uint8_t portrait_material(float *cover, const struct portrait *p, const struct portrait_spot *spots, long row, int samples, int side)
 {
 	int skin = 0, globe = 0;
 	for (int j = 0; j < samples; j++)
@@ -41,8 +41,8 @@ static void pixel_put(struct field *f, long to, const struct portrait *p, const 
 			globe += is_globe;
 		}
 	int all = skin + globe;
-	f->cover[to] = all ? (float)skin / (float)all : 0;
-	f->material[to] = !all ? DISTANCE_OTHER : 2 * skin >= all ? DISTANCE_SKIN : DISTANCE_GLOBE;
+	*cover = all ? (float)skin / (float)all : 0;
+	return !all ? DISTANCE_OTHER : 2 * skin >= all ? DISTANCE_SKIN : DISTANCE_GLOBE;
 }
 
 static struct field field_make(const struct portrait *p, const struct portrait_view *v, const struct portrait_spot *spots, int samples, int side,
@@ -61,8 +61,11 @@ static struct field field_make(const struct portrait *p, const struct portrait_v
 	f.nearest = mem_new(n, sizeof *f.nearest);
 	long row = (long)v->width * samples;
 	for (int y = 0; y < f.height; y++)
-		for (int x = 0; x < f.width; x++)
-			pixel_put(&f, (long)y * f.width + x, p, spots + (long)(f.y0 + y) * samples * row + (long)(f.x0 + x) * samples, row, samples, side);
+		for (int x = 0; x < f.width; x++) {
+			const struct portrait_spot *of = spots + (long)(f.y0 + y) * samples * row + (long)(f.x0 + x) * samples;
+			long i = (long)y * f.width + x;
+			f.material[i] = portrait_material(&f.cover[i], p, of, row, samples, side);
+		}
 	// Across the screen: how far a lid stands off the globe, its mesh knows only to within its own facets.
 	struct distance_scene scene = { f.width, f.height, f.material, f.cover, 0, 0, { 0, 0 } };
 	distance_band(f.distance, f.nearest, &scene, reach * v->focal_px / away, 0);
