@@ -22,8 +22,8 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err);
 
 /* Maps as pictures in base 64, {png, width, height, low, high}: 8 bits a channel and what 0 and 255 mean.
  * viewer_map_log: colours by their logarithm, none below dark (> 0); viewer_map_plain: its first channels, at most 3. */
-json_t *viewer_map_relief(const struct scene_level *level);
-json_t *viewer_map_colour(const struct scene_level *level);
+json_t *viewer_map_relief(const struct scene_level *level, struct err *err);
+json_t *viewer_map_colour(const struct scene_level *level, struct err *err);
 json_t *viewer_map_log(const float *px, int width, int height, int stride, float dark, struct err *err);
 json_t *viewer_map_plain(const struct image *map, struct err *err);
 

@@ -80,19 +80,6 @@ static float darkest(const struct scene *s, const struct scene_level *l)
 	return fmaxf(least, SCENE_DARK);
 }
 
-static bool maps(json_t *out, const struct scene *s, struct err *err)
-{
-	const struct scene_level *l = &s->level[0];
-	int n = s->veins.width;
-	json_object_set_new(out, "relief", viewer_map_relief(l));
-	json_object_set_new(out, "colour", viewer_map_colour(l));
-	if (l->model)
-		json_object_set_new(out, "model", viewer_map_log(l->model, l->n, l->n, 4, darkest(s, l), err));
-	json_object_set_new(out, "veins", viewer_map_log(s->veins.px, n, n, 4, SCENE_DARK, err));
-	json_object_set_new(out, "film", viewer_map_plain(&s->film, err));
-	return !err_is(err);
-}
-
 /* The photograph's own view, for the comparison beside it. */
 static json_t *photo(const struct shot *shot)
 {
@@ -115,26 +102,60 @@ static json_t *photo(const struct shot *shot)
 	return out;
 }
 
+/* Everything that is a picture, dearest first: each is encoded by itself, as many at a time as there are processors. */
+enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, FILM, PARTS };
+
+static json_t *part_make(enum part part, const struct viewer_source *source, struct err *err)
+{
+	const struct scene *s = source->scene;
+	const struct scene_level *l = &s->level[0];
+	const struct shot *shot = source->shot;
+	switch (part) {
+	case VEINS: return viewer_map_log(s->veins.px, s->veins.width, s->veins.height, 4, SCENE_DARK, err);
+	case PHOTO: return shot ? photo(shot) : 0;
+	case RELIEF: return viewer_map_relief(l, err);
+	case COLOUR: return viewer_map_colour(l, err);
+	case MODEL: return l->model ? viewer_map_log(l->model, l->n, l->n, 4, darkest(s, l), err) : 0;
+	case PHOTOGRAPHED: return shot ? viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source->lights, err) : 0;
+	case STUDIO: return viewer_light("Studio", source->studio, source->studio, source->lights, err);
+	default: return viewer_map_plain(&s->film, err);
+	}
+}
+
+static void put_parts(json_t *out, json_t *part[PARTS])
+{
+	json_t *lights = json_array(), *maps = json_object();
+	static const char *const names[PARTS] = { [VEINS] = "veins", [RELIEF] = "relief", [COLOUR] = "colour", [MODEL] = "model", [FILM] = "film" };
+	for (int i = 0; i < PARTS; i++)
+		if (names[i] && part[i])
+			json_object_set_new(maps, names[i], part[i]);
+	json_array_append_new(lights, part[STUDIO]);
+	if (part[PHOTOGRAPHED])
+		json_array_append_new(lights, part[PHOTOGRAPHED]);
+	if (part[PHOTO])
+		json_object_set_new(out, "photo", part[PHOTO]);
+	json_object_set_new(out, "lights", lights);
+	json_object_set_new(out, "maps", maps);
+}
+
 json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 {
 	const struct scene *s = source->scene;
-	const struct shot *shot = source->shot;
-	json_t *out = json_object(), *map = json_object(), *lights = json_array();
+	json_t *out = json_object(), *part[PARTS];
+	struct err errs[PARTS] = { 0 };
 	json_object_set_new(out, "side", template_text(source->side));
 	json_object_set_new(out, "constants", json_pack("{s:f,s:f}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2)));
 	json_object_set_new(out, "eye", geometry(s, source->gain));
 	json_object_set_new(out, "tissue", viewer_tissue(source));
-	json_array_append_new(lights, viewer_light("Studio", source->studio, source->studio, source->lights, err));
-	if (shot) {
-		json_object_set_new(out, "photo", photo(shot));
-		json_array_append_new(lights, viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source->lights, err));
-	}
-	json_object_set_new(out, "lights", lights);
-	bool ok = maps(map, s, err) && !err_is(err);
-	json_object_set_new(out, "maps", map);
-	if (!ok) {
-		json_decref(out);
-		return 0;
-	}
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = 0; i < PARTS; i++)
+		part[i] = part_make((enum part)i, source, &errs[i]);
+	put_parts(out, part);
+	for (int i = 0; i < PARTS; i++)
+		if (err_is(&errs[i])) {
+			*err = errs[i];
+			json_decref(out);
+			return 0;
+		}
 	return out;
 }

@@ -31,11 +31,10 @@ static uint8_t byte(double t)
 }
 
 /* 12 bits of height in two channels, 8 of thickness in the third. */
-json_t *viewer_map_relief(const struct scene_level *level)
+json_t *viewer_map_relief(const struct scene_level *level, struct err *err)
 {
 	double low[3] = { INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY };
 	long n = (long)level->n * level->n;
-	struct err err = { 0 };
 	for (long i = 0; i < n; i++)
 		for (int c = 0; c < 2; c++) {
 			low[c] = fmin(low[c], level->relief[2 * i + c]);
@@ -50,21 +49,20 @@ json_t *viewer_map_relief(const struct scene_level *level)
 		px[3 * i + 1] = (uint8_t)((h & 15) * 17);
 		px[3 * i + 2] = byte((level->relief[2 * i + 1] - low[1]) / (high[1] - low[1]));
 	}
-	json_t *map = png(px, level->n, level->n, 3, low, high, &err);
+	json_t *map = png(px, level->n, level->n, 3, low, high, err);
 	free(px);
 	return map;
 }
 
-json_t *viewer_map_colour(const struct scene_level *level)
+json_t *viewer_map_colour(const struct scene_level *level, struct err *err)
 {
 	static const double low[3] = { 0 }, high[3] = { 1, 1, 1 };
-	struct err err = { 0 };
 	struct image rgb = image_new(level->n, level->n, 3);
 	for (long i = 0; i < (long)level->n * level->n; i++)
 		for (int c = 0; c < 3; c++)
 			rgb.px[3 * i + c] = level->colour[4 * i + c];
 	uint8_t *px = image_to_srgb8(&rgb);
-	json_t *map = png(px, level->n, level->n, 3, low, high, &err);
+	json_t *map = png(px, level->n, level->n, 3, low, high, err);
 	free(px);
 	image_free(&rgb);
 	return map;
@@ -72,22 +70,26 @@ json_t *viewer_map_colour(const struct scene_level *level)
 
 json_t *viewer_map_log(const float *px, int width, int height, int stride, float dark, struct err *err)
 {
-	double low[3], high[3];
+	float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
 	long n = (long)width * height;
+	float *value = mem_array((size_t)n * 3, sizeof *value);
 	uint8_t *out = mem_array((size_t)n * 3, 1);
-	for (int c = 0; c < 3; c++) {
-		low[c] = INFINITY;
-		high[c] = -INFINITY;
-		for (long i = 0; i < n; i++) {
-			double v = log(fmaxf(px[stride * i + c], dark));
-			low[c] = fmin(low[c], v);
-			high[c] = fmax(high[c], v);
+	for (long i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++) {
+			float v = value[3 * i + c] = logf(fmaxf(px[stride * i + c], dark));
+			low[c] = v < low[c] ? v : low[c];
+			high[c] = v > high[c] ? v : high[c];
 		}
-		high[c] = fmax(high[c], low[c] + 1e-6);
-		for (long i = 0; i < n; i++)
-			out[3 * i + c] = byte((log(fmaxf(px[stride * i + c], dark)) - low[c]) / (high[c] - low[c]));
+	double from[3], to[3];
+	for (int c = 0; c < 3; c++) {
+		from[c] = low[c];
+		to[c] = high[c] = fmaxf(high[c], low[c] + 1e-6f);
 	}
-	json_t *map = png(out, width, height, 3, low, high, err);
+	for (long i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++)
+			out[3 * i + c] = (uint8_t)(255 * (value[3 * i + c] - low[c]) / (high[c] - low[c]) + 0.5f);
+	free(value);
+	json_t *map = png(out, width, height, 3, from, to, err);
 	free(out);
 	return map;
 }
