@@ -111,6 +111,7 @@ bool job_ready(struct job *job, struct err *err)
 	struct scene_files files = { path[0], path[1], path[2], path[3], path[4] };
 	if (!scene_load(&job->scene, &files, &eye, &conf, err))
 		return false;
+	job_say_what_lacks(job);
 	job->ready = true;
 	struct scene_view view = shot_view(reference);
 	struct scene_lighting light = scene_lighting(&reference->env, 0, job->conf->lights);

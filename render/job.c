@@ -58,6 +58,20 @@ bool jobs_open(struct jobs *jobs, struct stage *stage, const struct capture *cap
 	return ok;
 }
 
+void job_say_what_lacks(struct job *job)
+{
+	static const char *const instead[] = { [2] = "an iris without relief is drawn", [3] = "the tissue of a blue eye is drawn" };
+	const struct scene *s = &job->scene;
+	for (int i = 2; i < 4; i++)
+		if (!file_exists(stage_path(job->stage, "%s", job->in[i])))
+			stage_skipped(job->stage, "%s of %s eye: %s is missing: %s", i == 2 ? "relief" : "pigment", job->names->side, job->in[i], instead[i]);
+	if (s->not_finite)
+		stage_skipped(job->stage, "%ld values of the maps of the %s eye: they are no numbers: drawn as 0", s->not_finite, job->names->side);
+	if (s->odd_pupil != 0)
+		stage_skipped(job->stage, "pupil of the %s eye: %s says a radius of %g mm, in an iris of %.2f mm: one of %.1f mm is drawn", job->names->side,
+		              job->in[1], s->odd_pupil, s->limbus[0], s->pupil[2]);
+}
+
 static void job_close(struct job *job)
 {
 	if (job->ready)

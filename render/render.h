@@ -70,6 +70,8 @@ void jobs_close(struct jobs *jobs);
 /* job_ready: loads the scene, once. job_studio: the light of the beauty views alone. */
 bool job_ready(struct job *job, struct err *err);
 bool job_studio(struct job *job, struct err *err);
+/* What is drawn in place of artifacts that are missing, or cannot be: recorded as skipped. After scene_load. */
+void job_say_what_lacks(struct job *job);
 
 /* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free.
  * shot_ready: decodes the photograph and reads its light, once; shot_done: forgets both. */

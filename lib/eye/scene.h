@@ -70,6 +70,8 @@ struct scene {
 	float flat[3];                // the model's mean reflectance, where it is seen without a march
 	float gain;                   // photograph over model: what the exposure leaves
 	double explained;             // share of the colour's variance (log) that the model accounts for by itself
+	long not_finite;              // values of the maps that were no numbers, and became 0
+	double odd_pupil;             // radius of a pupil that cannot be, for which a usual one stands; 0: it could be
 };
 
 /* The artifacts of one eye; a null path (or a file that is not there) is done without. */

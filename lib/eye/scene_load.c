@@ -18,8 +18,8 @@ const double scene_plain_stroma = 0.48;
 static const struct tissue plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
 	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };
 
-/* Channels of an EXR map; *extent its half-width. What is not finite becomes 0. image_free. */
-static bool read_map(struct image *out, const char *path, int channels, const char *const names[], double *extent,
+/* Channels of an EXR map; *extent its half-width. What is not finite becomes 0, and is counted. image_free. */
+static bool read_map(struct image *out, struct scene *s, const char *path, int channels, const char *const names[], double *extent,
                      struct err *err)
 {
 	struct exr_info info = { 0 };
@@ -31,8 +31,10 @@ static bool read_map(struct image *out, const char *path, int channels, const ch
 		return err_set(err, "%s: an iris map is square and says its extentMm", path);
 	}
 	for (long i = 0; i < (long)out->width * out->height * channels; i++)
-		if (!isfinite(out->px[i]))
+		if (!isfinite(out->px[i])) {
 			out->px[i] = 0;
+			s->not_finite++;
+		}
 	return true;
 }
 
@@ -51,7 +53,7 @@ static bool load_colour(struct scene *s, const char *path, int most, struct err 
 {
 	static const char *const names[] = { "R", "G", "B", "W" };
 	struct image map;
-	if (!read_map(&map, path, 4, names, &s->extent, err))
+	if (!read_map(&map, s, path, 4, names, &s->extent, err))
 		return false;
 	int n = map.width < most ? map.width : most;
 	bool ok = resample(&map, n, err);
@@ -66,7 +68,7 @@ static bool load_relief(struct scene *s, const char *path, struct err *err)
 	double extent = s->extent;
 	struct image map = { 0 };
 	if (path && file_exists(path)) {
-		if (!read_map(&map, path, 2, names, &extent, err))
+		if (!read_map(&map, s, path, 2, names, &extent, err))
 			return false;
 		if (fabs(extent - s->extent) > 1e-3 * s->extent) {
 			image_free(&map);
@@ -95,10 +97,13 @@ static void load_pupil(struct scene *s, const char *path)
 	json_t *root = path && file_exists(path) ? json_read(path, 1 << 22, &err) : 0, *p = json_object_get(root, "pupil");
 	double v[3];
 	s->pupil[2] = 1.8;  // mm: where it was not found
-	if (p && json_get(&v[0], p, "cx", path, &err) && json_get(&v[1], p, "cy", path, &err)
-	    && json_get(&v[2], p, "r", path, &err) && v[2] > 0.3 && v[2] < s->limbus[1] && hypot(v[0], v[1]) < 2)
-		for (int i = 0; i < 3; i++)
-			s->pupil[i] = v[i];
+	if (p && json_get(&v[0], p, "cx", path, &err) && json_get(&v[1], p, "cy", path, &err) && json_get(&v[2], p, "r", path, &err)) {
+		if (v[2] > 0.3 && v[2] < s->limbus[1] && hypot(v[0], v[1]) < 2)
+			for (int i = 0; i < 3; i++)
+				s->pupil[i] = v[i];
+		else
+			s->odd_pupil = v[2];
+	}
 	json_decref(root);
 }
 
