@@ -112,7 +112,7 @@ $(BIN)/$(1): $(2) $B/libeyewright.a
 	$$(Q)$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $$(LIBS)
 endef
 $(foreach s,$(filter-out render,$(STAGES)),$(eval $(call program,$s,$(patsubst %.c,$B/%.o,$(wildcard stages/$s/*.c)))))
-$B/render/embed.o: render/page.html render/page.css render/page.js config/animate.conf lib/eye/scene_look.h $(wildcard render/viewer/*)
+$B/render/embed.o: render/page.html render/page.css render/page.js config/animate.conf lib/eye/scene_look.h lib/skin/skin_look.h $(wildcard render/viewer/*)
 $(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c))))
 
 $B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a

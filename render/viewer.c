@@ -58,16 +58,23 @@ static json_t *stills(struct page *page)
 	return list;
 }
 
-static void programs(json_t *data)
+/* The shaders and the program; of a face only where there is one. */
+static void programs(json_t *data, bool face)
 {
 	const struct {
 		const char *key, *text;
 	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths },
-		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present },
-		         { "skin", viewer_skin_frag }, { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
+		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present } },
+	  of_face[] = { { "skin_look", skin_look }, { "lids", viewer_lids }, { "tear", viewer_tear }, { "skin", viewer_skin_frag },
+		            { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
+	json_t *sub = json_object();
 	for (int i = 0; i < COUNT(part); i++)
 		json_object_set_new(data, part[i].key, json_string(part[i].text));
-	char *js = mem_printf("%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_face_js,
+	for (int i = 0; i < COUNT(of_face); i++)
+		json_object_set_new(sub, of_face[i].key, json_string(of_face[i].text));
+	json_object_set_new(data, "face", face ? json_pack("[o]", json_incref(sub)) : json_array());
+	json_decref(sub);
+	char *js = mem_printf("%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, face ? viewer_face_js : "",
 	                      viewer_sliders_js, viewer_controls_js, viewer_live_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);
@@ -91,7 +98,7 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 	json_object_set_new(data, "version", json_string(EYEWRIGHT_VERSION));
 	json_object_set_new(data, "stills", stills(&page));
 	json_object_set_new(data, "data", json_string(text));
-	programs(data);
+	programs(data, face);
 	size_t size;
 	bool ok = template_fill(&html, &size, viewer_html, data, err) && file_write(stage_path(stage, "%s", out), html, size, err);
 	if (ok)

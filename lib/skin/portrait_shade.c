@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "skin/portrait_impl.h"
+#include "skin/skin_look.h"
 
 /* A number in -1..1 that is always the same for the same cell. */
 static float hash(int x, int y, int z)
@@ -39,16 +40,16 @@ float portrait_noise(const float p[3], float per_mm)
 /* Pores: the slope of a noise of 0.5 mm cells tilts the normal. */
 static void pores(float n[3], const float rest[3], float strength)
 {
-	static const float step = 0.12f;
-	float at = portrait_noise(rest, 2.1f) + 0.5f * portrait_noise(rest, 4.7f);
+	static const float step = (float)SKIN_PORES_STEP, coarse = (float)SKIN_PORES_COARSE, fine = (float)SKIN_PORES_FINE;
+	float at = portrait_noise(rest, coarse) + 0.5f * portrait_noise(rest, fine);
 	for (int c = 0; c < 3; c++) {
 		float q[3] = { rest[0], rest[1], rest[2] };
 		q[c] += step;
-		n[c] -= strength * (portrait_noise(q, 2.1f) + 0.5f * portrait_noise(q, 4.7f) - at);
+		n[c] -= strength * (portrait_noise(q, coarse) + 0.5f * portrait_noise(q, fine) - at);
 	}
 }
 
-/* Trowbridge-Reitz lobe with Smith's shadowing, Schlick's Fresnel of skin (F0 = 0.028). */
+/* Trowbridge-Reitz lobe with Smith's shadowing, Schlick's Fresnel of skin. */
 static float gloss(const float n[3], const float l[3], const float v[3], float rough)
 {
 	float h[3], len = 0, nh = 0, nl = 0, nv = 0, vh = 0, a2 = rough * rough * rough * rough;
@@ -66,7 +67,7 @@ static float gloss(const float n[3], const float l[3], const float v[3], float r
 	if (nl <= 0 || nv <= 0)
 		return 0;
 	float d = nh * nh * (a2 - 1) + 1, k = 0.5f * rough * rough, g = nl / (nl * (1 - k) + k) * nv / (nv * (1 - k) + k);
-	float s = 1 - fmaxf(vh, 0), f = 0.028f + 0.972f * s * s * s * s * s;
+	float f0 = (float)SKIN_MIRROR, s = 1 - fmaxf(vh, 0), f = f0 + (1 - f0) * s * s * s * s * s;
 	return a2 / (d * d) * g * f / (4 * nv);  // times pi / pi: lights are irradiance over pi
 }
 
@@ -139,8 +140,8 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, len = 0, n[3], grain = 0;
 	memcpy(n, q.normal, sizeof n);
 	if (strength > 0) {
-		pores(n, q.rest, 0.10f * strength);
-		grain = 0.035f * strength * portrait_noise(q.rest, 1.6f);
+		pores(n, q.rest, (float)SKIN_PORES * strength);
+		grain = (float)SKIN_GRAIN * strength * portrait_noise(q.rest, (float)SKIN_GRAIN_CELLS);
 	}
 	for (int c = 0; c < 3; c++)
 		len += n[c] * n[c];
@@ -148,14 +149,15 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 		n[c] /= sqrtf(len);
 	float spec[3] = { 0 };
 	for (int k = 0; k < sky->n; k++) {
-		float shine = 0.5f * gloss(n, sky->light[k].dir, to, 0.50f) + 0.28f * gloss(n, sky->light[k].dir, to, 0.34f);
+		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_WIDE)
+		              + (float)SKIN_LOBE_NARROW * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_NARROW);
 		for (int c = 0; c < 3; c++)
 			spec[c] += shine * sky->light[k].rgb[c];
 	}
 	// What pores do to the diffuse light: a little of their slope against the surface's own.
 	float relief = 1;
 	for (int c = 0; c < 3; c++)
-		relief += 0.35f * (n[c] - q.normal[c]) * sky->light[0].dir[c];
+		relief += (float)SKIN_PORES_LIGHT * (n[c] - q.normal[c]) * sky->light[0].dir[c];
 	for (int c = 0; c < 3; c++)
 		rgb[c] = q.albedo[c] * (1 + grain) * q.light[c] * relief + spec[c] * q.open;
 }

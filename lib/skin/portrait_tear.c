@@ -10,9 +10,9 @@
 #include "eye/scene_impl.h"
 #include "image/distance.h"
 #include "skin/portrait_impl.h"
+#include "skin/skin_look.h"
 
-/* mm: how far the dark under a lid's edge reaches, and how much light it takes there; lids are some 2 mm thick. */
-static const float shadow_mm = 0.7f, shadow_part = 0.45f;
+static const float shadow_mm = (float)TEAR_SHADOW_MM, shadow_part = (float)TEAR_SHADOW;
 
 /* A part of the screen round one eye, with what the distance field asks about it. */
 struct field {
@@ -120,10 +120,10 @@ static void mirrored(float rgb[3], float *fresnel, const struct portrait *p, con
 	for (int k = 0; k < 3; k++)
 		for (int i = 0; i < 3; i++)
 			cam[k] += (float)rays->rig_from_cam[i][k] * r[i];
-	envmap_at(rgb, p->env, cam, 0.15f);
+	envmap_at(rgb, p->env, cam, (float)TEAR_ROUGH);
 	if (ray_blocked(p->shadow, at, r, 0.3f, 60))
 		for (int i = 0; i < 3; i++)
-			rgb[i] = 0.5f * (float)p->conf.skin_rgb[i];  // skin half in shadow
+			rgb[i] = (float)(TEAR_SKIN * p->conf.skin_rgb[i]);
 	float m = SCENE_FILM_INDEX, k = c > 0 ? c : 0, t = sqrtf(m * m - 1 + k * k), s = (k - t) / (k + t), q = (m * m * k - t) / (m * m * k + t);
 	*fresnel = 0.5f * (s * s + q * q);
 }
@@ -152,7 +152,7 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	int u = (int)x - f->x0, v = (int)y - f->y0;
 	float off[2], distance = f->distance[(long)v * f->width + u];
 	float dir[3], at[3], n[3], out[3], lean[3], rgb[3], fresnel, len = 0, d = distance / w->per_mm;
-	float dark = 1 - shadow_part * expf(-3 * d / shadow_mm) * (1 - smooth(0.7f * shadow_mm, shadow_mm, d));
+	float dark = 1 - shadow_part * expf(-(float)TEAR_SHADOW_FADE * d / shadow_mm) * (1 - smooth((float)TEAR_SHADOW_END * shadow_mm, shadow_mm, d));
 	portrait_ray(dir, w->rays, x, y);
 	float t = portrait_eye_hit(w->p, w->side, w->rays->origin, dir);
 	for (int c = 0; c < 3; c++)
@@ -172,7 +172,7 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	// The meniscus turns by a right angle within a few pixels: what a pixel mirrors of it is a mean.
 	float sum[3] = { 0 }, through = 0;
 	for (int k = 0; k < ACROSS; k++) {
-		float dk = d + ((float)k + 0.5f - 0.5f * ACROSS) / ACROSS * w->pixel, part = 1 - smooth(0.75f * w->height, w->height, dk);
+		float dk = d + ((float)k + 0.5f - 0.5f * ACROSS) / ACROSS * w->pixel, part = 1 - smooth((float)TEAR_END * w->height, w->height, dk);
 		portrait_meniscus(lean, n, out, dk, w->height);
 		mirrored(rgb, &fresnel, w->p, w->rays, at, lean, dir);
 		through += (1 - part * fresnel) / ACROSS;

@@ -83,25 +83,28 @@ vec4 look(vec3 o, vec3 d, out float far)
 		float rough = LOOK_FILM_ROUGH * step_smooth(LOOK_FILM_FROM, LOOK_FILM_TO, rho) * clamp(1.5 - 0.5 * tear, 0.0, 1.33);
 		rgb += mirror_on * mirror_share(cos_i, LOOK_FILM_INDEX) * environment(d + 2.0 * cos_i * normal, rough);
 	}
-	if (lidded > 0.0) {
-		// Lids darken the eye below them, and throw back some of their own colour.
-		vec2 place = (lidded_from_eye * normalize(at - vec3(0.0, 0.0, sclera.x))).xy;
-		float open = textureLod(sky_map, vec2(clamp(0.25 + 0.25 * place.x, 0.02, 0.48) + 0.5 * side, 0.5 + 0.5 * place.y), 0.0).r;
-		rgb *= open + vec3(LOOK_BOUNCE) * (1.0 - open);
-		cover = 1.0;
-	}
+#ifdef LIDS
+	rgb = below_lids(rgb, at, d);
+	cover = 1.0;
+#endif
 	return vec4(rgb * cover, cover);
+}
+
+// Of a point of the picture, px; camera's axes.
+vec3 ray_at(vec2 px)
+{
+	return vec3((corner + lens.w * px - lens.yz) / lens.x, 1.0);
 }
 
 void main()
 {
-	vec2 px = vec2(gl_FragCoord.x, size.y - gl_FragCoord.y) + jitter;
-	vec3 ray = vec3((corner + lens.w * px - lens.yz) / lens.x, 1.0);
+	vec3 ray = ray_at(vec2(gl_FragCoord.x, size.y - gl_FragCoord.y) + jitter);
 	float far;
 	vec4 c = look(origin, normalize(eye_from_cam * ray), far);
-	if (lidded > 0.0 && c.a == 0.0)
+#ifdef LIDS
+	if (c.a == 0.0)
 		discard;
-	float z = far / length(ray) * depth.z;
-	gl_FragDepth = lidded > 0.0 ? 0.5 + 0.5 * (depth.x + depth.y / z) : 0.0;
+	gl_FragDepth = 0.5 + 0.5 * (depth.x + depth.y / (far / length(ray) * depth.z));
+#endif
 	seen = vec4(min(c.rgb, 2.0), c.a);  // a mirror image brighter than white counts as a little more than white
 }

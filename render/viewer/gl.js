@@ -8,6 +8,7 @@ class Graphics {
 			throw new Error("this graphics driver cannot draw into floating-point pictures");
 		this.gl = gl;
 		this.shaders = shaders;
+		this.compiled = [];  // in order: what a scene does not show is not compiled
 		this.frame = gl.createFramebuffer();
 		this.whole = gl.createVertexArray();
 		gl.bindVertexArray(this.whole);
@@ -21,7 +22,8 @@ class Graphics {
 		this.software = /swiftshader|llvmpipe|software|basic render/i.test(this.name);
 	}
 
-	program(name, vertex) {
+	/* A program of the page's shaders; parts: others whose text goes before it, each defined by its name in capitals. */
+	program(name, vertex, parts) {
 		const gl = this.gl, program = gl.createProgram();
 		const add = (type, text) => {
 			const shader = gl.createShader(type);
@@ -32,8 +34,9 @@ class Graphics {
 		};
 		const whole = "#version 300 es\nlayout(location=0) in vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n";
 		add(gl.VERTEX_SHADER, vertex ? "#version 300 es\n" + this.shaders[vertex] : whole);
-		const fragment = add(gl.FRAGMENT_SHADER, "#version 300 es\n" + this.shaders.look + this.shaders.common + this.shaders[name]);
+		const fragment = add(gl.FRAGMENT_SHADER, `#version 300 es\n${this.shaders.look}${this.shaders.common}${(parts || []).map(p => `#define ${p.toUpperCase()}\n`).join("")}${this.text(name, parts || [])}`);
 		gl.linkProgram(program);
+		this.compiled.push([name, ...(parts || [])].join("+"));
 		if (!gl.getProgramParameter(program, gl.LINK_STATUS))
 			throw new Error(`shader ${name}: ${gl.getShaderInfoLog(fragment)} ${gl.getProgramInfoLog(program)}`);
 		const uniforms = {};
@@ -42,6 +45,11 @@ class Graphics {
 			uniforms[u.name.replace("[0]", "")] = { at: gl.getUniformLocation(program, u.name), type: u.type };
 		}
 		return { program, uniforms };
+	}
+
+	/* The eye's own uniforms come before what builds on them. */
+	text(name, parts) {
+		return name === "eye" ? this.shaders.iris + parts.map(p => this.shaders[p]).join("") + this.shaders.eye : parts.map(p => this.shaders[p]).join("") + this.shaders[name];
 	}
 
 	/* Draws the whole target, or a shape, with these uniforms; a uniform that is a texture takes the next unit. */

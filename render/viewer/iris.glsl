@@ -28,10 +28,6 @@ uniform bool flat_iris;
 uniform vec3 flat_rgb;
 uniform vec3 quadric[9], even;    // irradiance of the environment
 uniform float mirror_on, tear;
-uniform mat3 lidded_from_eye;     // to the axes in which lids leave sky over places of the globe
-uniform float lidded, side;       // in a face: 1; left eye 0, right eye 1
-uniform sampler2D sky_map;
-uniform vec3 depth;               // in a face: of clip space, and its mm in one of the eye's
 out vec4 seen;
 
 // From a place on the iris as it is now to the same tissue in the maps: radial fibres shorten evenly from the margin to the

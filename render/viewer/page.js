@@ -132,8 +132,8 @@ class Page extends Live {
 
 async function start() {
 	const canvas = by_id("view"), shaders = {};
-	for (const name of ["look", "common", "decode", "paths", "eye", "present", "skin", "skin_vert", "copy"])
-		shaders[name] = by_id(`shader-${name}`).textContent;
+	for (const text of document.querySelectorAll("script[id^=shader-]"))
+		shaders[text.id.slice(7)] = text.textContent;
 	try {
 		if (!data.eyes.length)
 			throw new Error("no eye of this folder has been fitted");

@@ -34,7 +34,7 @@ float noise(vec3 p)
 
 float pore(vec3 p)
 {
-	return noise(2.1 * p) + 0.5 * noise(4.7 * p);
+	return noise(SKIN_PORES_COARSE * p) + 0.5 * noise(SKIN_PORES_FINE * p);
 }
 
 vec3 irradiance(vec3 d, vec3 q[9])
@@ -50,7 +50,7 @@ float gloss(vec3 n, vec3 l, vec3 v, float rough)
 	if (nl <= 0.0 || nv <= 0.0)
 		return 0.0;
 	float d = nh * nh * (a2 - 1.0) + 1.0, k = 0.5 * rough * rough, g = nl / (nl * (1.0 - k) + k) * nv / (nv * (1.0 - k) + k);
-	float s = 1.0 - vh, s2 = s * s, f = 0.028 + 0.972 * s2 * s2 * s;
+	float s = 1.0 - vh, s2 = s * s, f = SKIN_MIRROR + (1.0 - SKIN_MIRROR) * s2 * s2 * s;
 	return a2 / (d * d) * g * f / (4.0 * nv);
 }
 
@@ -61,21 +61,22 @@ void main()
 	vec3 moved = irradiance(env_from_head * n, quadric) / irradiance(still_from_head * n, still_quadric);
 	vec3 light = 3.0 * seen_light * seen_light * clamp(moved, 0.0, 6.0);
 	if (seen_skin.a > 0.5) {
-		seen = vec4(albedo * 1.5 * (0.4 + light), 1.0);
+		seen = vec4(albedo * 1.5 * (0.4 + light), 0.99);  // hairs hang before a lid's edge and are not it: tear.frag
 		return;
 	}
 	float grain = 0.0, relief = 1.0;
 	if (pores > 0.0) {
 		float at = pore(seen_rest);
-		n -= 0.10 * pores * vec3(pore(seen_rest + vec3(0.12, 0.0, 0.0)) - at, pore(seen_rest + vec3(0.0, 0.12, 0.0)) - at, pore(seen_rest + vec3(0.0, 0.0, 0.12)) - at);
-		grain = 0.035 * pores * noise(1.6 * seen_rest);
+		const vec2 step_ = vec2(SKIN_PORES_STEP, 0.0);
+		n -= SKIN_PORES * pores * vec3(pore(seen_rest + step_.xyy) - at, pore(seen_rest + step_.yxy) - at, pore(seen_rest + step_.yyx) - at);
+		grain = SKIN_GRAIN * pores * noise(SKIN_GRAIN_CELLS * seen_rest);
 		n = normalize(n);
-		relief += 0.35 * dot(n - smooth_n, sky_dir[0]);
+		relief += SKIN_PORES_LIGHT * dot(n - smooth_n, sky_dir[0]);
 	}
 	vec3 spec = vec3(0.0);
 	for (int k = 0; k < LIGHTS; k++)
 		if (k < skies)
-			spec += (0.5 * gloss(n, sky_dir[k], to, 0.50) + 0.28 * gloss(n, sky_dir[k], to, 0.34)) * sky_rgb[k];
+			spec += (SKIN_LOBE_WIDE * gloss(n, sky_dir[k], to, SKIN_ROUGH_WIDE) + SKIN_LOBE_NARROW * gloss(n, sky_dir[k], to, SKIN_ROUGH_NARROW)) * sky_rgb[k];
 	// What reaches the skin of its light, reaches the mirror too.
 	float open = clamp(dot(light, vec3(0.33)) / dot(irradiance(env_from_head * smooth_n, quadric), vec3(0.33)), 0.0, 1.0);
 	seen = vec4(albedo * (1.0 + grain) * light * relief + spec * open, 1.0);
