@@ -11,6 +11,7 @@
 #include "render/page.h"
 #include "render/viewer_face.h"
 #include "skin/portrait_impl.h"
+#include "skin/skin_look.h"
 
 static const double at_h[] = { -32, -16, 0, 16, 32 }, at_v[] = { -22, 0, 22 }, at_a[] = { 0, 0.5, 1, 1.4 };
 enum { NH = COUNT(at_h), NV = COUNT(at_v), NA = COUNT(at_a), POSES = NH * NV * NA, SKY = 24, RECORD = 12, MOST = 9000 };
@@ -205,7 +206,8 @@ static void put_mesh(json_t *out, struct face *f)
 	free(poses);
 }
 
-/* What drives, as the grid has it: time, gaze, aperture against what people do at that gaze; one row a frame. */
+/* What drives, as the grid has it: time, gaze of the left eye, aperture against what people do at that gaze, gaze of the right
+ * eye; one row a frame. */
 json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive *drive)
 {
 	json_t *rows = json_array();
@@ -221,8 +223,9 @@ json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive 
 			usual += rig->baseline[k][0] * gaze[0] + rig->baseline[k][1] * gaze[1] + rig->baseline[k][2];
 		}
 		double aperture = usual > 0.05 ? open / usual : 1;
-		json_array_append_new(rows, json_pack("[f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * gaze[0]) / 100,
-		                                      round(100 * gaze[1]) / 100, round(1e3 * fmin(fmax(aperture, 0), 1.4)) / 1e3));
+		json_array_append_new(rows, json_pack("[f,f,f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * c[0]) / 100,
+		                                      round(100 * c[1]) / 100, round(1e3 * fmin(fmax(aperture, 0), 1.4)) / 1e3,
+		                                      round(100 * c[5]) / 100, round(100 * c[6]) / 100));
 	}
 	return json_pack("{s:s,s:o}", "name", name, "rows", rows);
 }
@@ -241,6 +244,10 @@ json_t *viewer_face(const char *name, struct portrait *portrait, double gain, co
 	json_object_set_new(out, "name", template_text(name));
 	json_object_set_new(out, "reach", json_number(reach_mm));
 	json_object_set_new(out, "gain", json_number(gain));
+	double shadow_mm = TEAR_SHADOW_MM;
+	json_object_set_new(out, "tear_mm", json_number(portrait->conf.tear_mm));
+	json_object_set_new(out, "shadow_mm", json_number(shadow_mm));
+	json_object_set_new(out, "skin_rgb", json_numbers(3, portrait->conf.skin_rgb));
 	json_object_set_new(out, "h", json_numbers(NH, at_h));
 	json_object_set_new(out, "v", json_numbers(NV, at_v));
 	json_object_set_new(out, "a", json_numbers(NA, at_a));

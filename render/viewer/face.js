@@ -6,7 +6,9 @@ class FaceScene {
 	constructor(g, data) {
 		const gl = g.gl, bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 		Object.assign(this, { g, data, poses: bytes(data.poses), skies: bytes(data.sky), key: "" });
-		this.skin = g.program("skin", "skin_vert");
+		this.skin = g.program("skin", "skin_vert", ["skin_look"]);
+		this.eye = g.program("eye", null, ["skin_look", "lids"]);
+		this.tear = g.program("tear");
 		this.copy = g.program("copy");
 		const faces = new Uint32Array(bytes(data.faces).buffer), still = bytes(data.still);
 		this.n_indices = faces.length;
@@ -108,19 +110,23 @@ class FaceScene {
 		if (this.frame && this.frame.width === width && this.frame.height === height)
 			return;
 		if (this.frame) {
-			gl.deleteTexture(this.frame.texture);
+			for (const t of [this.frame, ...this.fields])
+				gl.deleteTexture(t.texture);
 			gl.deleteRenderbuffer(this.frame.depth);
 		}
 		this.frame = this.g.texture(width, height, gl.RGBA16F);
+		this.fields = [0, 1].map(() => this.g.texture(width, height, gl.RGBA16F));
 		this.frame.depth = gl.createRenderbuffer();
 		gl.bindRenderbuffer(gl.RENDERBUFFER, this.frame.depth);
 		gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
 	}
 
-	/* The camera before the face, turned round the middle of its eyes; field(height): mm of height shown. */
+	/* The camera before the face, turned round the middle of its eyes; field(height): mm of height shown. Close by (0..1) it is
+	 * one eye that stands in the picture's middle. */
 	camera(view, height) {
 		const R = turns.multiply(turns.turned(view.orbit[0], view.orbit[1]), [1, 0, 0, 0, -1, 0, 0, 0, -1]), D = FaceScene.DISTANCE;
-		return { R, focal: D * height / view.field(height), at: turns.apply(turns.transpose(R), [0, 0, -D]) };
+		const focal = D * height / view.field(height), p = turns.apply(R, this.data.globes[view.closer]), k = view.close * focal / (p[2] + D);
+		return { R, focal, at: turns.apply(turns.transpose(R), [0, 0, -D]), aim: [-k * p[0], -k * p[1]] };
 	}
 
 	/* Depth of the near and far ends of what is drawn, as clip space has it. */
@@ -132,19 +138,29 @@ class FaceScene {
 	/* The view of one eye in it, in the eye's own mm. */
 	eye_view(eye_scene, s, view, side, width, height) {
 		const c = this.camera(view, height), [x, y, z, scale] = this.data.globes[side], rad = Math.PI / 180;
-		const h = view.gaze[0] * rad, v = view.gaze[1] * rad, ch = Math.cos(h), sh = Math.sin(h), cv = Math.cos(v), sv = Math.sin(v);
+		const h = view.gazes[side][0] * rad, v = view.gazes[side][1] * rad, ch = Math.cos(h), sh = Math.sin(h), cv = Math.cos(v), sv = Math.sin(v);
 		// Fick: Ry(h) Rx(-v); the eye's y and z run the other way.
 		const turn = [ch, -sh * sv, sh * cv, 0, cv, sv, -sh, -ch * sv, ch * cv], axes = turn.map((w, i) => i % 3 ? -w : w);
 		const o = turns.apply(turns.transpose(axes), c.at.map((w, i) => (w - [x, y, z][i]) / scale));
 		o[2] += eye_scene.sclera(s)[0];
 		return { R: turns.multiply(c.R, axes), head_from_eye: turns.multiply([1, 0, 0, 0, -1, 0, 0, 0, -1], axes), lidded_from_eye: axes, origin: o, corner: [0, 0],
-			lens: [c.focal, width / 2, height / 2, 1], pixel: FaceScene.DISTANCE / c.focal / scale, depth: [...FaceScene.clip(), scale], side };
+			lens: [c.focal, width / 2 + c.aim[0], height / 2 + c.aim[1], 1], pixel: FaceScene.DISTANCE / c.focal / scale, depth: [...FaceScene.clip(), scale], side };
+	}
+
+	/* How far it is to the lids, from the skin as drawn: along rows, then along columns. */
+	field_of_lids(per_mm, s) {
+		const { g } = this, gl = g.gl, reach = Math.min(64, Math.ceil(1.2 * per_mm * Math.max(this.data.shadow_mm, this.data.tear_mm * s.tear)) + 2);
+		gl.disable(gl.DEPTH_TEST);
+		for (const rows of [0, 1]) {
+			g.target(this.fields[rows]);
+			g.draw(this.tear, { picture: rows ? this.fields[0] : this.frame, rows, reach });
+		}
 	}
 
 	/* A picture of skin and eyes into frame. */
 	draw(eye_scenes, s, view, preset, jitter) {
 		const g = this.g, gl = g.gl, { width, height } = this.frame, c = this.camera(view, height), first = eye_scenes[0];
-		this.pose(view.gaze[0], view.gaze[1], view.open);
+		this.pose(...[0, 1].map(k => (view.gazes[0][k] + view.gazes[1][k]) / 2), view.open);
 		const light = first.lights[s.light] || first.lights[0], turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
 		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = EyeScene.merged(light.lights, EyeScene.LIGHTS);
 		const views = [0, 1].map(side => this.eye_view(eye_scenes[side], s, view, side, width, height));
@@ -156,21 +172,25 @@ class FaceScene {
 		gl.clearColor(0, 0, 0, 0);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
 		g.draw(this.skin, { cam_from_head: c.R, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
-			shift: [-2 * jitter[0] / width, 2 * jitter[1] / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
+			shift: [2 * (c.aim[0] - jitter[0]) / width, 2 * (jitter[1] - c.aim[1]) / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
 			sky_dir: EyeScene.padded(skies.flatMap(l => turns.apply(turns.transpose(env), l)), 3 * EyeScene.LIGHTS),
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),
 			quadric: light.quadric.flat().map(v => v * s.light_gain), still_quadric: first.lights[0].quadric.flat(),
 			pores: !preset.march ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
 		gl.disable(gl.CULL_FACE);
+		gl.enable(gl.SCISSOR_TEST);
 		views.forEach((v, side) => {
 			// Only where the globe can be seen.
 			const [x, y, z, scale] = this.data.globes[side], p = turns.apply(c.R, [x, y, z]), Z = p[2] + FaceScene.DISTANCE, r = 14.5 * scale * c.focal / Z;
-			const cx = width / 2 + c.focal * p[0] / Z, cy = height / 2 - c.focal * p[1] / Z;
-			gl.enable(gl.SCISSOR_TEST);
+			const cx = width / 2 + c.aim[0] + c.focal * p[0] / Z, cy = height / 2 - c.aim[1] - c.focal * p[1] / Z;
 			gl.scissor(Math.floor(cx - r), Math.floor(cy - r), Math.ceil(2 * r), Math.ceil(2 * r));
-			eye_scenes[side].trace(s, v, preset, jitter, { lidded: 1, sky_map: this.sky_map }, [width, height]);
-			gl.disable(gl.SCISSOR_TEST);
+			this.field_of_lids(c.focal / FaceScene.DISTANCE, s);
+			g.target(this.frame, 0, 0, this.frame.depth);
+			gl.enable(gl.DEPTH_TEST);
+			eye_scenes[side].trace(s, v, preset, jitter, { side: v.side, lidded_from_eye: v.lidded_from_eye, depth: v.depth, sky_map: this.sky_map,
+				lid_map: this.fields[1], tear_height: Math.max(this.data.tear_mm * s.tear, 1e-3), skin_rgb: this.data.skin_rgb }, [width, height], this.eye);
 		});
+		gl.disable(gl.SCISSOR_TEST);
 		gl.disable(gl.DEPTH_TEST);
 	}
 

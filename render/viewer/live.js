@@ -12,9 +12,16 @@ class Live extends Controls {
 		if (this.beside && p)
 			return { pose: p.cam_from_eye, slip: p.slip, camera: p.camera, window: p.window, rows: p.height };
 		if (this.mode === "face")
-			return { face: this.face, eyes: this.pair, gaze: [h, v], open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
+			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
 				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
 		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
+	}
+
+	/* Of either eye, degrees: a clip's own; else both look at one place, so far away. */
+	gazes(h, v) {
+		if (this.playing !== null)
+			return this.clip_gazes;
+		return data.face.globes.map(g => [h - Math.atan(g[0] * this.values.near / 1000) * 180 / Math.PI, v]);
 	}
 
 	/* ---- drawing: only when something has changed; then finer and finer */
@@ -59,9 +66,10 @@ class Live extends Controls {
 				j = k;
 		}
 		const a = rows[i], b = rows[j], u = b[0] > a[0] ? Math.min(1, Math.max(0, (at - a[0]) / (b[0] - a[0]))) : 0;
-		const v = [1, 2, 3].map(k => a[k] + u * (b[k] - a[k]));
-		this.eyes.eye = [v[0], v[1]];
-		this.eyes.target = [v[0], v[1]];
+		const v = [1, 2, 3, 4, 5].map(k => a[k] + u * (b[k] - a[k]));
+		this.clip_gazes = [[v[0], v[1]], [v[3], v[4]]];
+		this.eyes.eye = [(v[0] + v[3]) / 2, (v[1] + v[4]) / 2];
+		this.eyes.target = [...this.eyes.eye];
 		this.eyes.drift = [0, 0];
 		this.eyes.closure = 0;
 		this.clip_open = v[2];

@@ -35,10 +35,14 @@ class EyeScene {
 
 	constructor(g, data) {
 		Object.assign(this, { g, data, count: 0, target: null });
-		for (const name of ["paths", "eye", "present"])
+		for (const name of ["paths", "present"])
 			this[name] = g.program(name);
 		this.path_maps = {};
-		this.no_sky = g.texture(1, 1, g.gl.R8);
+	}
+
+	/* The eye alone; in a face the face's own program draws it, and this is never compiled. */
+	get eye() {
+		return this.alone = this.alone || this.g.program("eye");
 	}
 
 	async load() {
@@ -175,9 +179,9 @@ class EyeScene {
 	}
 
 	/* Every pixel of the target's ray. */
-	trace(s, cam, preset, jitter, extra, size) {
+	trace(s, cam, preset, jitter, extra, size, program) {
 		const { g, data } = this, e = data.eye, solved = this.solved[cam.side === undefined ? "eye" : `face${cam.side}`], light = solved.light;
-		g.draw(this.eye, {
+		g.draw(program || this.eye, {
 			...solved, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), lens: cam.lens, corner: cam.corner,
 			size, jitter, slip: cam.slip ? [...cam.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0],
 			back: e.back, sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
@@ -188,7 +192,7 @@ class EyeScene {
 			search: preset.search, shadow_steps: preset.shadow, flat_iris: preset.march ? 0 : 1,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
 			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear,
-			lidded: 0, side: cam.side || 0, lidded_from_eye: cam.lidded_from_eye || cam.head_from_eye, depth: cam.depth || [0, 0, 1], sky_map: this.no_sky, ...extra,
+			...extra,
 		});
 	}
 

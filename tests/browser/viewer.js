@@ -195,6 +195,20 @@ async function character(b) {
 	await b.until(`eyewright.eyes.eye.join() !== "${first}"`, 20);
 	say(a !== null, "a recorded clip plays", "it does not");
 	await b.value("eyewright.play(null)");
+	// Either eye turned to one place: 62 mm apart they turn by 2 atan(31 / 200) against each other at 20 cm.
+	const turned = await b.value(`(() => { const v = eyewright; v.values.near = 5; const g = v.gazes(0, 0), x = data.face.globes; v.values.near = 0;
+		return (g[1][0] - g[0][0]) - 2 * Math.atan((x[0][0] - x[1][0]) / 2 / 200) * 180 / Math.PI; })()`);
+	say(Math.abs(turned) < 0.2, "near things are looked at with both eyes", `off by ${turned} degrees`);
+	const dry = await b.value(`(() => { eyewright.reset(); eyewright.set("field", 16); return 1; })()`);
+	await b.until(settled, 120);
+	await b.screenshot(path.join(shots, "close.png"));
+	const with_tears = await b.value(sum);
+	await b.value("eyewright.set('tear', 0)");
+	await b.until(settled, 120);
+	say(dry === 1 && await b.value(sum) !== with_tears, "the tear line follows its slider", "the picture has not changed");
+	await b.screenshot(path.join(shots, "dry.png"));
+	const compiled = await b.value("eyewright.graphics.compiled.join()");
+	say(/skin/.test(compiled) && /lids/.test(compiled) && !/eye(,|$)/.test(compiled), "a face compiles its own eye and no other", compiled);
 	say(!b.problems.length, "the face: no error on the console", b.problems.join("; "));
 	say(fs.statSync(face).size < 20e6, "with a face the page is below 20 MB", `${fs.statSync(face).size}`);
 }
@@ -214,6 +228,9 @@ async function without(b) {
 		const start = await b.value("Math.round(performance.now())");
 		console.log(`# opened after ${start} ms, ${(fs.statSync(page).size / 1e6).toFixed(1)} MB`);
 		say(fs.statSync(page).size < 10e6, "the page is below 10 MB", `${fs.statSync(page).size}`);
+		// An eye alone: no skin, no lids, no tears, neither sent nor compiled.
+		const compiled = await b.value("eyewright.graphics.compiled.join()"), sent = await b.value("Object.keys(eyewright.graphics.shaders).join()");
+		say(!/skin|lids|tear/.test(compiled + sent), "an eye alone compiles no skin and no tears", `${compiled}; ${sent}`);
 		await agreement(b);
 		await hands(b);
 		await eyes(b);
