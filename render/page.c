@@ -122,6 +122,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 			add(&in, "work/render/%.*s%s", n, name, driven[i]);
 		add(&in, "work/targets/%.*s/rig.npz", n, name);
 		add(&in, "work/targets/%.*s/transfer.json", n, name);
+		add(&in, "work/targets/%.*s/registration.png", n, name);
 	}
 	return in;
 }

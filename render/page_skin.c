@@ -110,6 +110,10 @@ static json_t *target(struct page *page, const char *name)
 		if (picture)
 			json_array_append_new(pictures, json_pack("{s:s,s:s,s:o}", "title", stills[i][1], "alt", stills[i][2], "picture", picture));
 	}
+	json_t *registration = page_picture(page, page_file(page, "work/targets/%s/registration.png", name), 2 * page->width);
+	if (registration)
+		json_array_append_new(pictures, json_pack("{s:s,s:s,s:o}", "title", "Laid onto the subject; how far from it as colours", "alt",
+		                                          "The subject, the character on it, one in the other", "picture", registration));
 	json_t *driven = clip(page, name, "_clip.mp4", "Driven by the video", "The input video, and the character beside it");
 	json_t *script = clip(page, name, "_script.mp4", "Driven by script/", "The character, moved by the script");
 	if (driven)

@@ -4,8 +4,9 @@
 
 #include "base/mem.h"
 #include "base/npy.h"
-#include "bridge/om_mesh.h"
+#include "image/picture.h"
 #include "skin/transfer_file.h"
+#include "skin/transfer_picture.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/sheet.h"
 #include "tests/lib/transfer_conf.h"
@@ -232,6 +233,41 @@ static void test_far_away(void **state)
 	}
 }
 
+/* The picture's second panel: near is blue, far is red, what was not matched is plain; beyond the mesh is nothing. */
+static void test_picture(void **state)
+{
+	(void)state;
+	struct mesh subject = sheet_make(60, 60, false), target = sheet_make(51, 53, false);
+	struct transfer t;
+	struct err err = { 0 };
+	run(&t, &target, &subject);
+	for (int i = 0; i < t.n; i++) {
+		t.distance[i] = target.vertices[i][0] > 50 ? 3 : 0.001f;  // less than 95 in 100 are near: the scale ends beyond
+		t.confidence[i] = target.vertices[i][1] < 0;
+	}
+	const char *path = scratch_path("registration.png");
+	assert_true(transfer_save_picture(&t, &target, &subject, path, &err));
+	uint8_t *px;
+	int width, height;
+	assert_true(picture_read(&px, &width, &height, path, 1e7, &err));
+	assert_true(width > 3 * 500 && height > 600);
+	static const struct {
+		double x, y;
+		bool red, blue, nothing;
+	} at[] = { { 55, -30, true, false, false }, { -20, -30, false, true, false }, { -20, 50, false, false, false }, { 0, 64, false, false, true } };
+	for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+		double mm = 120 * 1.12 / 620;  // a pixel: the panel is 620 high with 6 in 100 free on either side
+		const uint8_t *p = px + 3 * ((size_t)(34 + 310 - at[i].y / mm) * (size_t)width + (size_t)(width / 2.0 + at[i].x / mm));
+		assert_int_equal(p[0] > p[2] + 60, at[i].red);
+		assert_int_equal(p[2] > p[0] + 60, at[i].blue);
+		assert_int_equal(p[0] + p[1] + p[2] < 120, at[i].nothing);
+	}
+	free(px);
+	transfer_free(&t);
+	mesh_free(&subject);
+	mesh_free(&target);
+}
+
 /* What is written reads back as B. */
 static void test_file(void **state)
 {
@@ -267,7 +303,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_same_topology), cmocka_unit_test(test_similar),           cmocka_unit_test(test_affine), cmocka_unit_test(test_unlike),
-		cmocka_unit_test(test_units),         cmocka_unit_test(test_nothing_in_common), cmocka_unit_test(test_file), cmocka_unit_test(test_far_away),
+		cmocka_unit_test(test_units),         cmocka_unit_test(test_nothing_in_common), cmocka_unit_test(test_file), cmocka_unit_test(test_far_away), cmocka_unit_test(test_picture),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
 }

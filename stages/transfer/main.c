@@ -1,7 +1,7 @@
 /* transfer: lays every character onto the subject, and says what of the subject's skin each of its vertices follows.
  * reads   subject.ply or subject.obj (else work/subject.ply), targets/NAME.ply or .obj
  * writes  work/targets/NAME/registered.ply (mm, the subject's axes; the target's vertices and faces),
- *         barycentric.npz (B, eq. 3.4), transfer.json
+ *         barycentric.npz (B, eq. 3.4), transfer.json, registration.png
  */
 #include "base/mem.h"
 #include "skin/transfer_opts.h"

@@ -10,8 +10,9 @@
 #include "math/stats.h"
 #include "mesh/mesh_part.h"
 #include "skin/transfer_file.h"
+#include "skin/transfer_picture.h"
 
-enum { OUT = 3, IN = 2 };
+enum { OUT = 4, IN = 2 };
 
 struct subject {
 	const char *file;  // relative to the capture
@@ -141,7 +142,8 @@ static bool save(struct target *t, const struct subject *s, struct stage *stage,
 	registered.vertices = t->result.registered;
 	bool ok = om_mesh_save(&registered, stage_path(stage, "%s", t->out[0]), made_by, err)
 	          && transfer_save_matrix(&t->result, s->mesh.n_vertices, stage_path(stage, "%s", t->out[1]), made_by, err)
-	          && save_json(t, s, stage_path(stage, "%s", t->out[2]), made_by, err);
+	          && save_json(t, s, stage_path(stage, "%s", t->out[2]), made_by, err)
+	          && transfer_save_picture(&t->result, &t->mesh, &s->mesh, stage_path(stage, "%s", t->out[3]), err);
 	for (int i = 0; i < OUT && ok; i++)
 		ok = stage_made(stage, t->out[i], IN, in, err);
 	return ok;
@@ -165,7 +167,7 @@ static void report(struct stage *stage, const struct target *t)
 
 static void target_names(struct target *t, const char *file, const char *subject)
 {
-	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "transfer.json" };
+	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "transfer.json", "registration.png" };
 	const char *dot = strrchr(file, '.');
 	t->name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file);
 	t->in[0] = mem_printf("targets/%s", file);
