@@ -14,3 +14,12 @@ for n in 2 5; do
 	different=$(diff <(bytes_of "$root/1") <(bytes_of "$root/$n") | sed -n 's/^> [0-9a-f]*  //p' | tr '\n' ' ')
 	same "$n threads and 1 give the same bytes" "$different" ""
 done
+
+# The skin column.
+for n in 1 2; do
+	small_face "$root/face$n"
+	run_make "$root/face$n" THREADS=$n
+	same "the skin column with $n threads" "$?" 0
+done
+different=$(diff <(bytes_of "$root/face1") <(bytes_of "$root/face2") | sed -n 's/^> [0-9a-f]*  //p' | tr '\n' ' ')
+same "the skin column: 2 threads and 1 give the same bytes" "$different" ""

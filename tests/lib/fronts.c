@@ -156,11 +156,11 @@ static void time_all(int n, struct point points[], const struct fronts_stage *s,
 		*(small ? &points[i].small : &points[i].time) = jobs[i].ok ? times[i] : (struct bench_time){ NAN, NAN, NAN };
 }
 
-/* Beaten: another is as exact and faster by a tenth beyond the spread, or as fast and more exact by a fiftieth. */
+/* Beaten: another is as exact and faster by a tenth beyond the spread, or as fast and more exact by a tenth. */
 static bool beats(const struct point *a, const struct point *b)
 {
 	bool faster = a->time.high < b->time.low && a->time.median < 0.9 * b->time.median;
-	bool exacter = a->error < 0.98 * b->error;
+	bool exacter = a->error < 0.9 * b->error;
 	return (faster && a->error <= b->error) || (exacter && a->time.median <= b->time.median);
 }
 

@@ -213,7 +213,7 @@ static long run(const struct family *family, long cases, uint64_t seed)
 
 int main(int argc, char **argv)
 {
-	double cases = argc > 1 ? atof(argv[1]) : 1e8;
+	double cases = argc > 1 ? atof(argv[1]) : 1e6;
 	uint64_t seed = argc > 2 ? strtoull(argv[2], 0, 10) : 1;
 	int only = argc > 3 ? atoi(argv[3]) : -1;
 	long wrong = 0;

@@ -1,0 +1,121 @@
+/* What is not done, and what that saves: the same work with each skip and without it, on a scene that needs the work and on
+ * one that does not. The scene that needs it shows what looking costs.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/scratch.h"
+
+/* A command before each run, and the command that is timed: shell text, $C the capture, the text this file's own. */
+struct run {
+	const char *before, *timed;
+};
+
+struct skip {
+	const char *what, *scene, *capture;
+	struct run with, without;
+	bool slow;  // left out of a quick run
+};
+
+#define MAKE "make --no-print-directory CAPTURE=\"$C\" "
+static const struct skip skips[] = {
+	{ "stages whose inputs, keys and program are as they were", "nothing changed", "photo", { "true", MAKE "relief" },
+	  { "rm -rf \"$C/work\"", MAKE "relief" }, false },
+	{ "stages whose inputs, keys and program are as they were", "everything is new", "photo", { "rm -rf \"$C/work\"", MAKE "relief" },
+	  { "rm -rf \"$C/work\"; mkdir -p \"$C/work\"",
+	    "for s in limbus unrefract freckles heightfield pigment relief; do bin/$s --capture=\"$C\" || exit 1; done" }, false },
+	{ "photographs that were measured before", "one of four is new", "four",
+	  { "bin/limbus --capture=\"$C\"; rm -f \"$C\"/work/limbus/right_1.*", "bin/limbus --capture=\"$C\"" },
+	  { "true", "bin/limbus --force --capture=\"$C\"" }, false },
+	{ "photographs that were measured before", "all four are new", "four", { "rm -rf \"$C/work\"", "bin/limbus --capture=\"$C\"" },
+	  { "true", "bin/limbus --force --capture=\"$C\"" }, false },
+	{ "cornea solved at nodes of a lattice, not for each texel", "any iris", "photo", { "true", "bin/unrefract --force --capture=\"$C\"" },
+	  { "true", "bin/unrefract --force --capture=\"$C\" --method=newton" }, false },
+	{ "relief's sharpening filter", "not wanted (relief.filter = no)", "photo", { "true", "bin/relief --force --capture=\"$C\" --filter=no" },
+	  { "true", "bin/relief --force --capture=\"$C\"" }, false },
+	{ "eyes and skin that stand still between two frames", "moving eyes and skin", "face", { "true", "bin/track --force --capture=\"$C\"" },
+	  { "true", "bin/track --force --capture=\"$C\" --still=0 --skin-still=0" }, true },
+	{ "the comparison with radial basis functions", "not wanted (train.rbf = no)", "face", { "true", "bin/train --force --capture=\"$C\" --rbf=no" },
+	  { "true", "bin/train --force --capture=\"$C\" --rbf=yes" }, true },
+};
+
+static double now_s(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static bool shell(const char *command)
+{
+	char *quiet = mem_printf("{ %s ; } >>\"$C.log\" 2>&1", command);
+	int status = system(quiet);
+	free(quiet);
+	return WIFEXITED(status) && !WEXITSTATUS(status);
+}
+
+static double timed(const struct run *run)
+{
+	shell(run->before);
+	double begin = now_s();
+	return shell(run->timed) ? now_s() - begin : NAN;
+}
+
+static void measure(const struct skip *s, int reps)
+{
+	double *with = mem_new(2 * (size_t)reps, sizeof *with), *without = with + reps;
+	for (int i = 0; i < reps; i++) {  // in turn: the machine's drift hits both
+		with[i] = timed(&s->with);
+		without[i] = timed(&s->without);
+	}
+	struct bench_time a = bench_time_of(reps, with), b = bench_time_of(reps, without);
+	char *with_it = mem_printf("%s: with", s->scene), *without_it = mem_printf("%s: without", s->scene);
+	double saved = b.median - a.median;
+	bench_row(s->what, "skipped", with_it, a, "run", 100 * saved / b.median, "%", "time saved");
+	bench_row(s->what, "done all the same", without_it, b, "run", NAN, "", "");
+	printf("| %s | %s | %.2f s | %.2f s | %.2f s |\n", s->what, s->scene, a.median, b.median, saved);
+	free(with);
+	free(with_it);
+	free(without_it);
+}
+
+static bool make_captures(const char *root)
+{
+	setenv("ROOT", root, 1);
+	setenv("C", root, 1);
+	return shell("for c in photo four; do mkdir -p \"$ROOT/$c/photos\"; cp samples/demo/capture.conf \"$ROOT/$c\"; done;"
+	             "cp samples/demo/photos/right_softbox.jpg \"$ROOT/photo/photos\";"
+	             "for i in 1 2 3 4; do { cat samples/demo/photos/right_softbox.jpg; echo $i; } >\"$ROOT/four/photos/right_$i.jpg\"; done;"
+	             "mkdir -p \"$ROOT/face\"; cp -r samples/face/video samples/face/subject.ply samples/face/capture.conf \"$ROOT/face\";"
+	             "echo 'quality = draft' >>\"$ROOT/face/capture.conf\"");
+}
+
+int main(int argc, char **argv)
+{
+	bench_open("skips", argc, argv);
+	const char *root = scratch_open();
+	char *last = 0;
+	if (!make_captures(root))
+		printf("samples/ is not there: nothing measured\n");
+	for (int i = 0; i < COUNT(skips); i++) {
+		if (bench_quick() && skips[i].slow)
+			continue;
+		char *capture = mem_printf("%s/%s", root, skips[i].capture);
+		setenv("C", capture, 1);
+		if (!last || strcmp(last, capture))  // what comes before the stages here
+			shell(strcmp(skips[i].capture, "face") ? MAKE "relief && " MAKE "refraction" : MAKE "track");
+		measure(&skips[i], skips[i].slow || bench_quick() ? 1 : 3);
+		free(last);
+		last = capture;
+	}
+	free(last);
+	scratch_close();
+	return bench_close();
+}
