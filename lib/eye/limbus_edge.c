@@ -49,7 +49,9 @@ static void sample_arc(struct ring *r, int arc, const struct grey *grey, double 
 		float u = (float)((r->p[arc][0] - q * ny - in * nx - grey->x0) * k - 0.5);
 		float w = (float)((r->p[arc][1] + q * nx - in * ny - grey->y0) * k - 0.5);
 		for (int j = 0; j < r->m; j++) {
-			float x = fminf(fmaxf(u + (float)j * du, 0), right), y = fminf(fmaxf(w + (float)j * dv, 0), bottom);
+			float x = u + (float)j * du, y = w + (float)j * dv;
+			x = x > 0 ? x < right ? x : right : 0;
+			y = y > 0 ? y < bottom ? y : bottom : 0;
 			int ix = (int)x, iy = (int)y;
 			const float *a = grey->px + (long)iy * grey->width + ix, *b = a + grey->width;
 			float fx = x - (float)ix, top = a[0] + fx * (a[1] - a[0]), low = b[0] + fx * (b[1] - b[0]);
@@ -67,6 +69,7 @@ struct ring ring_sample(const struct grey *grey, const struct ellipse *e, double
 	const double spacing = ellipse_perimeter(e) / ARCS;
 	r.v = mem_array((size_t)ARCS * (size_t)r.m, sizeof *r.v);
 	equal_arcs(r.t, e);
+#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		ellipse_point(r.p[i], r.normal[i], e, r.t[i]);
 		sample_arc(&r, i, grey, spacing, across, width, height);

@@ -46,20 +46,27 @@ static void reduce_row(const struct planes *out, long *over, long *under, const 
                        int width, float reference)
 {
 	static const float SPREAD = 0.06f;  // of redness, sclera to skin
-	uint32_t *sum = mem_new(3 * (size_t)width, sizeof *sum);
+	const int n = 3 * k * width;
+	uint32_t *sum = mem_new((size_t)n, sizeof *sum);
 	for (int y = row * k; y < (row + 1) * k; y++) {
 		const uint16_t *p = photo->rgb + 3 * (size_t)y * (size_t)photo->width;
-		for (int x = 0; x < width; x++)
-			for (int i = 0; i < k; i++, p += 3) {
-				for (int c = 0; c < 3; c++)
-					sum[3 * x + c] += p[c];
-				*over += (p[0] > 64880) & (p[1] > 64880);
-				*under += (p[0] < 655) & (p[1] < 655) & (p[2] < 655);
-			}
+		for (int i = 0; i < n; i++)  // columns by themselves first: in step with memory
+			sum[i] += p[i];
+		uint32_t burnt = 0, black = 0;
+		for (int i = 0; i < n; i += 3) {
+			burnt += (p[i] > 64880) & (p[i + 1] > 64880);
+			black += (p[i] < 655) & (p[i + 1] < 655) & (p[i + 2] < 655);
+		}
+		*over += burnt;
+		*under += black;
 	}
 	const float scale = 1.0f / (65535.0f * (float)(k * k));
 	for (int x = 0; x < width; x++) {
-		float r = (float)sum[3 * x] * scale, g = (float)sum[3 * x + 1] * scale, b = (float)sum[3 * x + 2] * scale;
+		uint32_t cell[3] = { 0 };
+		for (int i = 0; i < k; i++)
+			for (int c = 0; c < 3; c++)
+				cell[c] += sum[3 * (k * x + i) + c];
+		float r = (float)cell[0] * scale, g = (float)cell[1] * scale, b = (float)cell[2] * scale;
 		float z = fmaxf(redness(r, g, b) - reference, 0) / SPREAD;
 		out->tint[x] = 1 / (1 + z * z);
 		out->white[x] = fminf(r, fminf(g, b)) * out->tint[x];

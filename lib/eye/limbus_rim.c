@@ -141,6 +141,7 @@ static bool fine_pass(struct rim *rim, const struct grey *grey, const struct gre
 	                            width, height);
 	/* the first pass knows no step yet: no slopes */
 	edge_slopes(rim->step, &r, fmin(2.3 * rim->width + 0.5, 1.15 * window));
+#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		rim->step[i].d = 0;
 		rim->step[i].w = rim->step[i].ok ? rim->widths[i] : rim->width;
@@ -200,6 +201,7 @@ static void own_widths(struct rim *rim, const struct grey *grey, double window, 
 {
 	struct ring r = ring_sample(grey, &rim->e, -2.4 * window, 2.4 * window, fmax(0.7 * grey->scale, window / 12), ACROSS,
 	                            width, height);
+#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		struct step f = rim->step[i];
 		f.d = 0;
