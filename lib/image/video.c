@@ -84,7 +84,11 @@ static void *decode(void *arg)
 	AVPacket *packet = av_packet_alloc();
 	bool more = packet;
 	while (more && av_read_frame(s->file, packet) >= 0) {
-		if (packet->stream_index == s->stream) {
+		// Where a file breaks off in a picture: what a decoder makes of the rest, and of its neighbours, hangs on its threads.
+		bool whole = !(packet->flags & AV_PKT_FLAG_CORRUPT);
+		if (packet->stream_index == s->stream && !whole)
+			count_damaged(v);
+		if (packet->stream_index == s->stream && whole) {
 			int sent = avcodec_send_packet(s->decoder, packet);
 			if (sent < 0 && sent != AVERROR(EAGAIN) && sent != AVERROR_EOF)
 				count_damaged(v);
