@@ -5,20 +5,17 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "math/chol.h"
-#include "stages/track/track.h"
+#include "stages/track/line.h"
 
-enum { ENDS = 2, LINE = OPENING_POINTS + 2 * LID_POINTS_MAX };
+enum { ENDS = 2 };
 
 /* Shares of the distance between the corners: what the mesh shapes at either end; how far skin tells of a corner. */
 static const double shaped = 0.14, beside = 0.055;
+/* How far skin is believed where it is near what is seen of either margin, and how near that is, mm: skin of the lower lid runs into
+ * its margin; that of the upper hangs over it. */
+static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.35;
 // Of a full weight: less skin in sight does not tell.
 static const double least_skin = 0.15;
-
-struct line {
-	int n;
-	double p[LINE][2];
-};
 
 /* The margin of the mesh, both lids from the inner corner to the outer, head frame. */
 struct rim {
@@ -78,17 +75,18 @@ static bool project_rim(struct line out[LIDS], const struct rim *rim, const stru
 	return true;
 }
 
-/* How far the skin beside a corner is from where the head alone would take it, less what it was at the reference: px, by the points
- * nearest to it. Returns their weight. */
+/* How far the skin beside a place of the margin is from where the head alone would take it, less what it was at the reference: px, by
+ * the points nearest to it. Returns their weight. */
 static double skin_moved(double moved[2], const struct track_result *r, const struct track_points *points, const struct track_clip *clip, long frame,
                          const double head[3], double reach)
 {
 	double weight = 0;
 	moved[0] = moved[1] = 0;
 	for (int i = 0; i < points->n; i++) {
-		double d2 = 0, now[2], was[2];
-		for (int k = 0; k < 3; k++)
-			d2 += pow(points->head[i][k] - head[k], 2);
+		const double *p = points->head[i];
+		double d2 = (p[0] - head[0]) * (p[0] - head[0]) + (p[1] - head[1]) * (p[1] - head[1]) + (p[2] - head[2]) * (p[2] - head[2]), now[2], was[2];
+		if (d2 > 9 * reach * reach)
+			continue;
 		long at = frame * r->n_points + i, at0 = clip->reference * r->n_points + i;
 		double w = (double)r->confidence[at] * exp(-d2 / (reach * reach));
 		if (!(w > 1e-6) || !head_project(now, &clip->camera, r->pose[frame], points->head[i])
@@ -101,26 +99,6 @@ static double skin_moved(double moved[2], const struct track_result *r, const st
 	for (int k = 0; k < 2; k++)
 		moved[k] /= fmax(weight, 1e-12);
 	return weight;
-}
-
-static double along(const double p[2], const double from[2], const double to[2])
-{
-	double d[2] = { to[0] - from[0], to[1] - from[1] };
-	return ((p[0] - from[0]) * d[0] + (p[1] - from[1]) * d[1]) / fmax(1e-9, d[0] * d[0] + d[1] * d[1]);
-}
-
-/* Where a line that runs from end to end passes the share u. */
-static bool passes(double out[2], const struct line *line, double u, const double ends[ENDS][2])
-{
-	for (int i = 0; i + 1 < line->n; i++) {
-		double a = along(line->p[i], ends[0], ends[1]), b = along(line->p[i + 1], ends[0], ends[1]);
-		if (!((a <= u && b > u) || (b <= u && a > u)))
-			continue;
-		for (int k = 0; k < 2; k++)
-			out[k] = line->p[i][k] + (u - a) / (b - a) * (line->p[i + 1][k] - line->p[i][k]);
-		return true;
-	}
-	return false;
 }
 
 /* The affine map of three points. */
@@ -143,38 +121,16 @@ static bool affine(double m[2][3], const double from[3][2], const double to[3][2
 	return true;
 }
 
-static void add(struct line *line, const double p[2])
-{
-	if (line->n < LINE)
-		memcpy(line->p[line->n++], p, sizeof line->p[0]);
-}
-
 /* The mesh's margin between a corner and the share u, mapped, in the order from inner to outer. */
 static void add_end(struct line *out, const struct line *mesh, const double corners[ENDS][2], int end, double m[2][3])
 {
 	for (int i = 0; i < mesh->n; i++) {
-		double u = along(mesh->p[i], corners[0], corners[1]), p[2];
+		double u = line_along(mesh->p[i], corners[0], corners[1]), p[2];
 		if (end ? u < 1 - shaped : u > shaped)
 			continue;
 		for (int k = 0; k < 2; k++)
 			p[k] = m[k][0] * mesh->p[i][0] + m[k][1] * mesh->p[i][1] + m[k][2];
-		add(out, p);
-	}
-}
-
-/* n points at equal distances along a line. */
-static void spread(double (*out)[2], int n, const struct line *line)
-{
-	double length[LINE] = { 0 };
-	for (int i = 1; i < line->n; i++)
-		length[i] = length[i - 1] + hypot(line->p[i][0] - line->p[i - 1][0], line->p[i][1] - line->p[i - 1][1]);
-	for (int j = 0, i = 0; j < n; j++) {
-		double at = length[line->n - 1] * j / (n - 1);
-		while (i + 2 < line->n && length[i + 1] < at)
-			i++;
-		double t = fmin(1, (at - length[i]) / fmax(1e-9, length[i + 1] - length[i]));
-		for (int k = 0; k < 2; k++)
-			out[j][k] = (1 - t) * line->p[i][k] + t * line->p[i + 1][k];
+		line_add(out, p);
 	}
 }
 
@@ -194,7 +150,7 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 		memcpy(a[0], from[c], sizeof a[0]);
 		memcpy(b[0], corner[c], sizeof b[0]);
 		for (int k = 0; k < LIDS; k++)
-			if (!passes(a[1 + k], &mesh[k], u, from) || !passes(b[1 + k], &found[k], u, corner))
+			if (!line_passes(a[1 + k], &mesh[k], u, from) || !line_passes(b[1 + k], &found[k], u, corner))
 				return;
 		if (!affine(map[c], a, b))
 			return;
@@ -202,16 +158,34 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 	for (int k = 0; k < LIDS; k++) {
 		add_end(&out[k], &mesh[k], from, 0, map[0]);
 		for (int i = 0; i < found[k].n; i++) {
-			double u = along(found[k].p[i], corner[0], corner[1]);
+			double u = line_along(found[k].p[i], corner[0], corner[1]);
 			if (u > shaped && u < 1 - shaped)
-				add(&out[k], found[k].p[i]);
+				line_add(&out[k], found[k].p[i]);
 		}
 		add_end(&out[k], &mesh[k], from, 1, map[1]);
 		if (out[k].n < LIDS)
 			return;
 	}
 	for (int k = 0; k < LIDS; k++)
-		spread(state->lid[k], state->lid_points, &out[k]);
+		line_spread(state->lid[k], state->lid_points, &out[k]);
+}
+
+/* A margin drawn towards where the mesh's is carried by the skin beside it, as far as the two are not at odds. */
+static void draw_to_skin(struct eye_state *state, int lid, const struct line *mesh, const double (*moved)[2], const double *weight, double near_px)
+{
+	struct line found = { .n = state->lid_points }, out = { .n = mesh->n };
+	memcpy(found.p, state->lid[lid], (size_t)found.n * sizeof *found.p);
+	for (int i = 0; i < mesh->n; i++) {
+		double p[2] = { mesh->p[i][0] + moved[i][0], mesh->p[i][1] + moved[i][1] }, q[2];
+		bool end = i == 0 || i == mesh->n - 1;
+		memcpy(q, end ? found.p[i ? found.n - 1 : 0] : p, sizeof q);
+		if (!end)
+			line_nearest(q, &found, p);
+		double off = hypot(p[0] - q[0], p[1] - q[1]) / near_px, share = end ? 0 : believed[lid] * fmin(1, weight[i]) / (1 + pow(off, 4));
+		for (int k = 0; k < 2; k++)
+			out.p[i][k] = q[k] + share * (p[k] - q[k]);
+	}
+	line_spread(state->lid[lid], state->lid_points, &out);
 }
 
 /* Where the skin beside a corner is not seen, it moves from where it was last to where it is next. */
@@ -256,6 +230,13 @@ void track_corners(struct track_result *r, const struct track_clip *clip, const 
 				for (int k = 0; k < 2; k++)
 					corner[c][k] = mesh[0].p[c ? mesh[0].n - 1 : 0][k] + moved[c * r->n + f][k];
 			reshape(state, mesh, corner);
+			double near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
+			for (int k = 0; k < LIDS; k++) {
+				double by[OPENING_POINTS + 2][2], weight[OPENING_POINTS + 2];
+				for (int i = 0; i < rim.n[k]; i++)
+					weight[i] = skin_moved(by[i], r, points, clip, f, rim.head[k][i], beside * sqrt(wide)) / least_skin;
+				draw_to_skin(state, k, &mesh[k], (const double(*)[2])by, weight, near_px);
+			}
 		}
 		free(moved);
 		free(told);
