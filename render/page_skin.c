@@ -103,6 +103,7 @@ static json_t *target(struct page *page, const char *name)
 		{ "_look.png", "Looking as render.gaze says", "The character from the front" },
 		{ "_sheet.png", "Nine gazes: the character looks to its right (left in the picture) .. left, up .. down", "Nine pictures of the eyes looking in nine directions" },
 		{ "_blink.png", "A blink", "The left eye closing and opening" },
+		{ "_expressions.png", "At rest, and each expression in full", "The character's eyes at rest and with each expression" },
 	};
 	json_t *entry = json_object(), *pictures = json_array(), *clips = json_array();
 	for (int i = 0; i < COUNT(stills); i++) {

@@ -68,7 +68,8 @@ static bool eyes_ready(struct skin_job *job, struct err *err)
 bool skin_ready(struct skin_job *job, struct err *err)
 {
 	job->ready = job->ready || (light_ready(job, err) && eyes_ready(job, err)
-	                            && skin_model_load(&job->model, stage_path(job->stage, "work/skin"), err));
+	                            && skin_model_load(&job->model, stage_path(job->stage, "work/skin"), err)
+	                            && wrinkle_maps_load(&job->wrinkles, stage_path(job->stage, "work/skin"), err));
 	return job->ready;
 }
 
@@ -82,6 +83,7 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 		return err_set(err, "%s: %d inputs, but work/skin/model.json has %d: run extrapolate again", t->rig_path, t->rig.n_inputs,
 		               job->model.n_inputs);
 	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &job->conf->portrait);
+	portrait_wear(t->portrait, &job->wrinkles, job->model.n_au, job->model.au_names);
 	return true;
 }
 
@@ -89,6 +91,10 @@ static void inputs(struct skin_job *job, struct skin_target *t)
 {
 	t->in[t->n_in++] = t->rig_path;
 	t->in[t->n_in++] = "work/skin/model.json";
+	static const char *const folds[] = { "work/skin/wrinkles.json", "work/skin/wrinkles.exr" };
+	for (int i = 0; i < COUNT(folds); i++)
+		if (file_exists(stage_path(job->stage, "%s", folds[i])))
+			t->in[t->n_in++] = folds[i];
 	for (int i = 0; i < job->capture->n_eyes && i < 2; i++) {
 		static const char *const maps[] = { "texture.exr", "clean.exr", "relief.exr", "pigment.json" };
 		for (int k = 0; k < COUNT(maps); k++) {
@@ -126,6 +132,7 @@ void skin_close(struct skin_job *job)
 		scene_free(&job->plain);
 	envmap_free(&job->studio);
 	skin_model_free(&job->model);
+	wrinkle_maps_free(&job->wrinkles);
 }
 
 bool render_skin(struct skin_job *job, struct err *err)

@@ -61,6 +61,7 @@ struct skin_job {
 	const struct scene *eyes[2];      // left, right
 	struct envmap studio;
 	struct skin_model model;
+	struct wrinkle_maps wrinkles;
 	double gain;
 };
 
@@ -69,7 +70,7 @@ struct skin_target {
 	const char *name, *rig_path;      // rig_path relative to the folder
 	struct rig rig;
 	struct portrait *portrait;        // of the stills; null until needed
-	const char *in[24];               // inputs that all its pictures have in common
+	const char *in[28];               // inputs that all its pictures have in common
 	int n_in;
 };
 
@@ -88,7 +89,7 @@ void skin_close(struct skin_job *job);
 /* Eyes, light and the model, once. */
 bool skin_ready(struct skin_job *job, struct err *err);
 
-/* skin_pictures.c: NAME_look.png, NAME_sheet.png, NAME_blink.png. */
+/* skin_pictures.c: NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_expressions.png. */
 bool skin_pictures(struct skin_job *job, struct skin_target *target, struct err *err);
 
 /* skin_clip.c: NAME_clip.mp4 (the input video and the character beside it), NAME_script.mp4 (animation.csv), NAME.glb. */

@@ -98,6 +98,7 @@ static bool clip_make(struct clip *c, const char *rel, int n_in, const char *con
 	c->width = c->input_width + c->view.width;
 	c->rgb = mem_new((size_t)c->width * (size_t)c->view.height * 3, 1);
 	c->portrait = portrait_new(&c->t->rig, c->job->eyes, &c->job->studio, &draw);
+	portrait_wear(c->portrait, &c->job->wrinkles, c->job->model.n_au, c->job->model.au_names);
 	double mean = c->drive->n > 1 ? (c->drive->time[c->drive->n - 1] - c->drive->time[0]) / (c->drive->n - 1) : 1;
 	struct video_writer_conf w = { .width = c->width, .height = c->view.height, .fps = 1 / (mean * c->step), .crf = conf->clip_crf,
 		                           .preset = "fast", .made_by = stage_made_by(c->job->stage, n_in, in) };

@@ -21,12 +21,15 @@ static double eye_distance(const struct rig *rig)
 	return vec_norm(d);
 }
 
-/* One picture with these controls, on grey. side < 0: both eyes. layers: null, or what it is of. image_free both. */
-static struct image look(struct skin_job *job, struct skin_target *t, double h, double v, double aperture, int side, double field,
-                         int width, int height, struct image *layers)
+/* One picture with these controls, on grey; au: expression shown in full, or -1. side < 0: both eyes. layers: null, or what it
+ * is of. image_free both. */
+static struct image look_with(struct skin_job *job, struct skin_target *t, double h, double v, double aperture, int au, int side, double field,
+                              int width, int height, struct image *layers)
 {
 	double *controls = mem_new((size_t)t->rig.n_inputs + 1, sizeof *controls);
 	drive_look(controls, &t->rig, h, v, aperture);
+	if (au >= 0)
+		controls[SKIN_EYE_INPUTS + au] = 1;
 	portrait_pose(t->portrait, controls);
 	struct portrait_view view = portrait_front(&t->rig, side, field, 0, 0, width, height);
 	portrait_light(t->portrait, &view, true);
@@ -36,6 +39,12 @@ static struct image look(struct skin_job *job, struct skin_target *t, double h, 
 	image_free(&rgba);
 	free(controls);
 	return seen;
+}
+
+static struct image look(struct skin_job *job, struct skin_target *t, double h, double v, double aperture, int side, double field,
+                         int width, int height, struct image *layers)
+{
+	return look_with(job, t, h, v, aperture, -1, side, field, width, height, layers);
 }
 
 static bool save(struct skin_job *job, struct skin_target *t, const char *rel, const struct image *image, struct err *err)
@@ -125,7 +134,29 @@ static bool blink(struct skin_job *job, struct skin_target *t, struct err *err)
 	return ok;
 }
 
+/* At rest, and each expression in full with its wrinkles. */
+static bool expressions(struct skin_job *job, struct skin_target *t, struct err *err)
+{
+	enum { GAP = 4, MOST = 7 };
+	const char *rel = output(job, t->name, "_expressions.png");
+	int w = job->conf->cell_px, h = w * 3 / 7;
+	if (!file_exists(stage_path(job->stage, "work/skin/wrinkles.json")) || skin_kept(job, rel, t->n_in, t->in, err))
+		return !err_is(err);
+	if (!skin_open(job, t, err))
+		return false;
+	int n = job->model.n_au < MOST ? job->model.n_au + 1 : MOST + 1;
+	struct image image = image_new(w, n * h + (n - 1) * GAP, 3);
+	for (int k = 0; k < n; k++) {
+		struct image cell = look_with(job, t, 0, 0, 1, k - 1, -1, 0.86 * job->conf->field * eye_distance(&t->rig), w, h, 0);
+		put(&image, &cell, 0, k * (h + GAP));
+		image_free(&cell);
+	}
+	bool ok = save(job, t, rel, &image, err);
+	image_free(&image);
+	return ok;
+}
+
 bool skin_pictures(struct skin_job *job, struct skin_target *t, struct err *err)
 {
-	return still(job, t, err) && sheet(job, t, err) && blink(job, t, err);
+	return still(job, t, err) && sheet(job, t, err) && blink(job, t, err) && expressions(job, t, err);
 }

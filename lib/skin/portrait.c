@@ -77,6 +77,8 @@ void portrait_free(struct portrait *p)
 	ray_scene_free(p->shadow);
 	deform_free(p->deform);
 	free(p->lash);
+	free(p->wrinkle_input);
+	free(p->wrinkle_strength);
 	free(p->lit);
 	free(p->lit_at);
 	free(p->near_start);
@@ -96,6 +98,7 @@ void portrait_pose(struct portrait *p, const double *controls)
 		rig_globe_rotation(turn[s], p->rig, gaze);
 	}
 	memcpy(p->target_from_globe, turn, sizeof turn);
+	portrait_fold_pose(p, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);
 	portrait_mesh_move(p);
 }

@@ -9,6 +9,7 @@
 #define SKIN_PORTRAIT_H
 #include "eye/scene.h"
 #include "skin/deform.h"
+#include "skin/wrinkle_map.h"
 
 struct portrait_conf {
 	int lights;            // directions that stand for the environment
@@ -35,6 +36,9 @@ struct portrait;
 struct portrait *portrait_new(const struct rig *rig, const struct scene *const eyes[2], const struct envmap *env,
                               const struct portrait_conf *conf);
 void portrait_free(struct portrait *portrait);
+
+/* Puts an expression's wrinkles on: as strong as its action unit, by name. maps must outlive it. */
+void portrait_wear(struct portrait *portrait, const struct wrinkle_maps *maps, int n_au, char *const au_names[]);
 
 /* Poses it: controls g~ [rig.n_inputs]. */
 void portrait_pose(struct portrait *portrait, const double *controls);

@@ -12,6 +12,7 @@ struct portrait_mesh {
 	int32_t (*faces)[3];
 	float (*x)[3], (*normal)[3], (*rest)[3], (*bare)[3], (*light)[3], (*albedo)[3];  // bare: light before skin spreads it
 	float *open;                // share of the light that reaches it
+	float (*home)[2];           // where the modelling camera sees it at rest, px; null without wrinkles
 };
 
 struct portrait {
@@ -29,6 +30,10 @@ struct portrait {
 	double target_from_globe[2][3][3];
 	struct portrait_lash *lash; // their triangles are the mesh's last, from first_lash; their vertices from lash_vertex
 	int n_lashes, first_lash, lash_vertex;
+	const struct wrinkle_maps *wrinkles;
+	int *wrinkle_input;         // [wrinkles.n] control that it follows; -1: none
+	float *wrinkle_strength;    // in this pose
+	bool folded;                // any of them
 };
 
 /* portrait_lash.c: planted at rest; stretched out for a pose, as wide as they are towards that camera. */
@@ -77,6 +82,12 @@ struct portrait_glow {
 struct portrait_glow portrait_glow_of(const struct portrait *portrait, const struct portrait_view *view, const struct portrait_spot *spots,
                                       int samples);
 void portrait_glow_free(struct portrait_glow *glow);
+
+/* portrait_wrinkle.c: strengths for a pose; what a fold does to the normal of a point of a face (weights w) and to its light.
+ * False: none there. */
+void portrait_fold_pose(struct portrait *portrait, const double *controls);
+bool portrait_fold(float normal[3], float light[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
+                   const float w[3]);
 
 /* portrait_eye.c: both eyes' colours where the grid shows them, [height][width][4] each; null px where not in view. */
 void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,

@@ -196,5 +196,6 @@ void portrait_mesh_free(struct portrait_mesh *m)
 	free(m->light);
 	free(m->albedo);
 	free(m->open);
+	free(m->home);
 	*m = (struct portrait_mesh){ 0 };
 }

@@ -72,7 +72,7 @@ static float gloss(const float n[3], const float l[3], const float v[3], float r
 }
 
 struct point {
-	float x[3], rest[3], normal[3], light[3], albedo[3], open;
+	float x[3], rest[3], normal[3], light[3], albedo[3], open, weight[3];
 };
 
 /* Where in the face the ray meets its plane: weights of its vertices. */
@@ -126,6 +126,7 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 	}
 	for (int d = 0; d < 3; d++)
 		len += p.normal[d] * p.normal[d];
+	memcpy(p.weight, w, sizeof w);
 	for (int d = 0; d < 3; d++)
 		p.normal[d] /= sqrtf(len) + 1e-12f;
 	return p;
@@ -138,6 +139,8 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	if (light)
 		memcpy(q.light, light, sizeof q.light);
 	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, len = 0, n[3], grain = 0;
+	if (p->folded)
+		portrait_fold(q.normal, q.light, p, sky, face, q.weight);
 	memcpy(n, q.normal, sizeof n);
 	if (strength > 0) {
 		pores(n, q.rest, (float)SKIN_PORES * strength);
