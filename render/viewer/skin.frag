@@ -7,6 +7,7 @@ uniform int skies;
 uniform vec3 sky_dir[LIGHTS], sky_rgb[LIGHTS];  // head's axes
 uniform vec3 quadric[9], still_quadric[9];
 uniform float pores;
+uniform vec4 globes[2];           // middle and radius, head's axes
 out vec4 seen;
 
 float hash(ivec3 c)
@@ -35,6 +36,20 @@ float noise(vec3 p)
 float pore(vec3 p)
 {
 	return noise(SKIN_PORES_COARSE * p) + 0.5 * noise(SKIN_PORES_FINE * p);
+}
+
+// 1, or less where a globe stands before it: what is behind an eye is no edge of a lid (tear.frag).
+float before_globes()
+{
+	float far = distance(head_camera, seen_at), out_ = 1.0;
+	vec3 d = (seen_at - head_camera) / far;
+	for (int i = 0; i < 2; i++) {
+		vec3 m = globes[i].xyz - head_camera;
+		float along = dot(m, d), inside = globes[i].w * globes[i].w - dot(m - along * d, m - along * d);
+		if (inside > 0.0 && along - sqrt(inside) + 0.15 < far)
+			out_ = 0.99;
+	}
+	return out_;
 }
 
 vec3 irradiance(vec3 d, vec3 q[9])
@@ -79,5 +94,5 @@ void main()
 			spec += (SKIN_LOBE_WIDE * gloss(n, sky_dir[k], to, SKIN_ROUGH_WIDE) + SKIN_LOBE_NARROW * gloss(n, sky_dir[k], to, SKIN_ROUGH_NARROW)) * sky_rgb[k];
 	// What reaches the skin of its light, reaches the mirror too.
 	float open = clamp(dot(light, vec3(0.33)) / dot(irradiance(env_from_head * smooth_n, quadric), vec3(0.33)), 0.0, 1.0);
-	seen = vec4(albedo * (1.0 + grain) * light * relief + spec * open, 1.0);
+	seen = vec4(albedo * (1.0 + grain) * light * relief + spec * open, before_globes());
 }
