@@ -130,6 +130,7 @@ class Live extends Controls {
 			this.busy = false;
 			if (counts && this.warm)
 				this.took(performance.now() - begin);
+			this.first_picture = this.first_picture || performance.now();
 			this.warm = true;  // the first picture waits for the driver's compiler
 		};
 		setTimeout(ask, 0);

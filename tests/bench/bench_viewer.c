@@ -1,0 +1,112 @@
+/* The interactive page in a headless Chromium, at 1280 x 1024: size, time until the first picture stands, frames by preset, and
+ * which preset the page falls back to by itself. Run from the top of the checkout; needs chromium and node. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/mem.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/scratch.h"
+
+enum { REPS = 8 };
+
+/* A script of the shell, to which R is the folder. */
+static bool run(const char *script, const char *dir)
+{
+	char *command = mem_printf("R='%s'; %s", dir, script);
+	bool ok = system(command) == 0;
+	free(command);
+	return ok;
+}
+
+static double megabytes(const char *page)
+{
+	struct stat st;
+	return stat(page, &st) ? NAN : (double)st.st_size / 1e6;
+}
+
+/* What one run of the browser says. */
+struct said {
+	double opened, fallback_s;
+	char driver[160], starts[32], fallback[32], size[32];
+};
+
+static void frame_row(const char *what, const char *line, const char *driver)
+{
+	char name[32];
+	double s[REPS];
+	int at = 0, n = 0, step;
+	if (sscanf(line, "frame %31s%n", name, &at) != 1)
+		return;
+	while (n < REPS && sscanf(line + at, "%lf%n", &s[n], &step) == 1) {
+		at += step;
+		n++;
+	}
+	char *method = mem_printf("%s, %s", what, strstr(driver, "SwiftShader") ? "software GL" : "GPU");
+	if (n)
+		bench_row("interactive page, 1280 x 1024", method, name, bench_time_of(n, s), "frame", NAN, "", "");
+	free(method);
+}
+
+static bool browse(struct said *said, const char *what, const char *page)
+{
+	char *command = mem_printf("timeout 100 node tests/browser/bench.js '%s' %d", page, bench_quick());
+	char line[512];
+	FILE *f = popen(command, "r");
+	*said = (struct said){ .opened = NAN, .fallback_s = NAN };
+	while (f && fgets(line, sizeof line, f)) {
+		sscanf(line, "opened %lf", &said->opened);
+		sscanf(line, "driver %159[^\n]", said->driver);
+		sscanf(line, "starts %31s", said->starts);
+		sscanf(line, "fallback %31s %lf", said->fallback, &said->fallback_s);
+		frame_row(what, line, said->driver);
+		if (!strncmp(line, "failed", 6))
+			fprintf(stderr, "bench_viewer: %s: %s", what, line);
+	}
+	free(command);
+	return f && pclose(f) == 0;
+}
+
+static void measure(const char *what, const char *page, double limit_mb)
+{
+	struct said said;
+	double mb = megabytes(page);
+	char *goal = mem_printf("page with %s: size", what), *reach = mem_printf("< %g MB", limit_mb);
+	bench_goal(goal, reach, mb, "MB", mb < limit_mb);
+	if (browse(&said, what, page)) {
+		char *open = mem_printf("page with %s: until the first picture stands", what);
+		char *back = mem_printf("page with %s on %s: frame, fallen back from %s to %s by itself", what,
+		                        strstr(said.driver, "SwiftShader") ? "software GL" : said.driver, said.starts, said.fallback);
+		bench_goal(open, "<= 2 s", said.opened, "s", said.opened <= 2);
+		bench_goal(back, "60 frames/s (of a GPU of 2015)", 1000 * said.fallback_s, "ms", said.fallback_s <= 1 / 60.0);
+		free(open);
+		free(back);
+	}
+	free(goal);
+	free(reach);
+}
+
+int main(int argc, char **argv)
+{
+	bench_open("viewer", argc, argv);
+	if (system("command -v chromium >/dev/null && command -v node >/dev/null")) {
+		printf("bench_viewer: no chromium or no node: the page is not driven (apt-get install chromium nodejs)\n");
+		return bench_close();
+	}
+	const char *root = scratch_open();
+	// An eye in the maps of a review, its other stages in a draft.
+	bool eye = run("mkdir -p $R/eye/photos && cp samples/demo/photos/*.jpg $R/eye/photos && cp samples/demo/capture.conf $R/eye && "
+	               "printf 'quality = draft\\nrender.map_size = 1024\\nrender.vein_map_px = 1536\\n' >>$R/eye/capture.conf && "
+	               "make --no-print-directory CAPTURE=$R/eye >$R/log 2>&1 </dev/null", root);
+	bool face = run("make --no-print-directory build/tests/tools/made_face >$R/log 2>&1 && build/tests/tools/made_face $R/face && "
+	                "echo 'render.clip_px = 0' >>$R/face/capture.conf && bin/extrapolate --capture=$R/face --quiet && "
+	                "bin/render --capture=$R/face --quiet", root);
+	if (eye)
+		measure("an eye", scratch_path("eye/work/review/viewer.html"), 10);
+	if (face)
+		measure("a face", scratch_path("face/work/review/viewer.html"), 20);
+	scratch_close();
+	return bench_close();
+}
