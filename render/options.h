@@ -14,6 +14,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_INT("steps", &(c)->scene.steps, 2, SCENE_NODES_MAX, "", "steps of the march through the iris"), \
 	OPT_CHOICE("quadrature", &(c)->scene.quadrature, render_quadratures, "where the steps lie"), \
 	OPT_CHOICE("shading", &(c)->scene.shading, render_shadings, "the march: along every ray of sight, or once a view from the map's texels"), \
+	OPT_INT("shading_apart", &(c)->scene.apart, 1, 8, "", "texels from one that is marched from to the next"), \
 	OPT_CHOICE("light_path", &(c)->scene.path, render_paths, "light through the cornea: a table a light, or solved for each ray"), \
 	OPT_INT("bands", &(c)->scene.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
 	OPT_REAL("detail", &(c)->scene.detail, 0, 1, "", "how much of what the photograph shows beyond the model is shown"), \
@@ -23,7 +24,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_REAL("vein_density", &(c)->scene.vein_density, 0, 5, "", "vessels of the sclera"), \
 	OPT_INT("vein_map_px", &(c)->scene.veins_px, 128, 8192, "px", "texels across the map of the sclera"), \
 	OPT_INT("seed", &(c)->scene.seed, 0, 1000000, "", "of the vessels"), \
-	OPT_INT("lights", &(c)->lights, 1, ENVMAP_LIGHTS_MAX, "", "directions that stand for the environment; a power of 2"), \
+	OPT_INT("lights", &(c)->lights, 1, 64, "", "beams into the eye, each of eight directions of the environment; a power of 2"), \
 	OPT_INT("passes", &(c)->passes, 1, 4096, "", "light drawn anew within its areas; more than one: converging to area light"), \
 	OPT_INT("samples", &(c)->samples, 1, 8, "", "rays across a pixel, at edges"), \
 	OPT_INT("size_px", &(c)->size_px, 64, 8192, "px", "width of front and three-quarter"), \

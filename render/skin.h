@@ -32,7 +32,7 @@ struct skin_conf {
 	OPT_REAL("clip_fps", &(c)->clip_fps, 1, 240, "1/s", "frames a second of the clips, at most"), \
 	OPT_REAL("clip_crf", &(c)->clip_crf, 0, 51, "", "quality of the clips: 0 lossless, 51 worst"), \
 	OPT_REAL("clip_seconds", &(c)->clip_seconds, 0, 1e5, "s", "of a clip, at most"), \
-	OPT_INT("skin_lights", &(c)->portrait.lights, 1, ENVMAP_LIGHTS_MAX, "", "directions that stand for the environment on skin; a power of 2"), \
+	OPT_INT("skin_lights", &(c)->portrait.lights, 1, 64, "", "directions that stand for the environment on skin; a power of 2"), \
 	OPT_INT("skin_subdivide", &(c)->portrait.subdivide, 0, 4, "", "times the triangles round the eyes are cut in four"), \
 	OPT_INT("skin_samples", &(c)->portrait.samples, 1, 8, "", "rays across a pixel of skin where it shows more than one thing"), \
 	OPT_REALS("skin_rgb", (c)->portrait.skin_rgb, 3, 0, 1, "", "colour of the skin"), \

@@ -27,7 +27,7 @@ struct scene_conf {
 	int search, shadow;           // steps of the search for the relief; of the shadow ray
 	int steps;                    // of the march
 	int quadrature, path;         // enum scene_quadrature, enum scene_path
-	int shading;                  // enum scene_shading
+	int shading, apart;           // enum scene_shading; texels: the march is at every so many texels (1, 2, 4 or 8; 0: 2)
 	int bands;                    // wavelengths, 3..TISSUE_BANDS_MAX
 	double detail;                // 0: the fitted model alone; 1: times all of what the photograph shows beyond it
 	double limbus_width;          // mm, over which sclera becomes cornea
@@ -90,9 +90,10 @@ void scene_free(struct scene *scene);
 struct scene_lighting {
 	const struct envmap *env;
 	const struct envmap *mirror;  // what cornea and tear film mirror: usually env; null: nothing
-	int n;
+	int n, each;                  // each: so many neighbours go into the eye as one beam; 0 as 1
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the camera's frame
 };
+/* lights: beams; each of up to eight directions. */
 struct scene_lighting scene_lighting(const struct envmap *env, const struct envmap *mirror, int lights);
 
 struct scene_view {

@@ -18,9 +18,10 @@ struct iris_batch {
 	float rgb[3][BATCH];                    // scattered towards the beholder; a white plane = 1
 };
 
-/* One light in the eye's frame, with its own refraction function over the iris, on planes at the depths z[0] and z[1]:
- * unit direction towards it, irradiance of a plane that faces it there, and where on the cornea its light came in (1: at the
- * limbus). */
+/* One light in the eye's frame, or several neighbours (scene_beam.c), with its own refraction function over the iris, on planes
+ * at the depths z[0] and z[1]: direction towards it, irradiance of a plane that faces it, and where on the cornea its light
+ * came in (1: at the limbus). */
+enum { SCENE_PATH_STEPS = 4 };  // Newton's, from the closed-form start: 2e-5 mm at worst
 enum { SCENE_WAY = 8 };  // five, and room for a whole vector
 struct scene_beam {
 	float dir[3], rgb[3];
@@ -74,6 +75,9 @@ struct scene_shade {
 	const float *detail;         // [n][n][4] of the scene's: what a photograph shows and the march does not
 	float *light;                // [light_n][light_n][4]: the march from these texels; owned
 };
+
+/* Levels finer than that are not marched from. */
+int scene_marched(const struct scene *scene);
 
 /* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel. flat: the
  * alternative, light on the photograph's colours alone. free(shade.light). */

@@ -40,21 +40,19 @@ static void node_make(int n, struct march_node *m, const struct iris_batch *r, i
 	}
 }
 
-/* exp2 of what is not positive, to 3e-6. */
+/* exp2 of what is not positive, to 1e-4: a cubic on -1/2..1/2 times a power of 2, which is added to its exponent. The nearest
+ * whole number is what a sum with 1.5 2^23 is rounded to. */
 SIMD_INLINE float exp2_negative(float t)
 {
 	t = t > -120 ? t : -120;
-	int k = (int)(t - 0.5f);
-	float f = t - (float)k, p = 9.570101392e-3f;
-	p = p * f + 5.591786028e-2f;
-	p = p * f + 2.402474484e-1f;
-	p = p * f + 6.931218147e-1f;
-	p = p * f + 9.999992614e-1f;
 	union {
-		int i;
 		float f;
-	} scale = { (k + 127) << 23 };
-	return p * scale.f;
+		unsigned i;
+	} whole = { t + 12582912.0f }, p;
+	float f = t - (whole.f - 12582912.0f);
+	p.f = ((5.517167e-2f * f + 0.24261112f) * f + 0.69326099f) * f + 0.99992807f;
+	p.i += whole.i << 23;
+	return p.f;
 }
 
 /* What a layer makes of light, in every band: per mm, of 2. */

@@ -31,6 +31,17 @@ struct march_light {
 void scene_light_at(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
                     const struct scene *scene, const struct scene_beam *beam);
 
+/* The lights of one beam, in the eye's frame. */
+struct beam_lights {
+	int n;
+	float dir[ENVMAP_LIGHTS_MAX][3], rgb[ENVMAP_LIGHTS_MAX][3], share[ENVMAP_LIGHTS_MAX];
+};
+
+/* A lighting's directions that come from before the eye. Then split, the widest first, until there are `most` beams; returns
+ * their number. */
+void scene_lights_turn(struct beam_lights *in, const struct scene_lighting *light, const double eye_from_cam[3][3]);
+int scene_lights_split(struct beam_lights *in, int most);
+
 /* All channels of a beam's table at a point. */
 void scene_table_at(float way[SCENE_WAY], const struct scene_beam *beam, const float point[3], float extent);
 

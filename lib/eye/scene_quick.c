@@ -162,8 +162,9 @@ void quick_bend(struct quick_found *f, int n, const struct quick_look *k)
  * aqueous that the first crossing is the only one. */
 SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
 {
-	enum { STEPS = 3 };
-	const float *restrict relief = k->level->relief, *restrict fx = s->fx, *restrict fy = s->fy, *restrict fz = s->fz;
+	enum { STEPS = 2 };
+	const int *restrict pairs = k->level->pairs;
+	const float *restrict fx = s->fx, *restrict fy = s->fy, *restrict fz = s->fz;
 	const float *restrict vx = s->vx, *restrict vy = s->vy, *restrict vz = s->vz;
 	float *restrict iu = s->iu, *restrict iv = s->iv, per_mm = k->level->per_mm, plane = (float)k->scene->eye.iris_depth;
 	float most = plane - k->scene->height_min, least = plane - k->scene->height_max;
@@ -174,9 +175,9 @@ SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, c
 		float y = fy[i] + k->slip[1][0] * fx[i] + k->slip[1][1] * fy[i] + k->slip[1][2];
 		float a = vx[i] + k->slip[0][0] * vx[i] + k->slip[0][1] * vy[i], b = vy[i] + k->slip[1][0] * vx[i] + k->slip[1][1] * vy[i];
 		float c = vz[i] > 0.1f ? vz[i] : 0.1f, low = (least - fz[i]) / c, high = (most - fz[i]) / c, t = (plane - fz[i]) / c;
-#pragma GCC unroll 3
+#pragma GCC unroll 2
 		for (int j = 0; j < STEPS; j++) {
-			float gx, gy, f = fz[i] + t * c - plane + relief_at(relief, n, per_mm, x + t * a, y + t * b, &gx, &gy);
+			float gx, gy, f = fz[i] + t * c - plane + quick_height_at(pairs, n, per_mm, x + t * a, y + t * b, &gx, &gy);
 			float slope = c + gx * a + gy * b;
 			t -= f / (slope > 0.3f ? slope : 0.3f);
 			t = t > low ? t < high ? t : high : low;

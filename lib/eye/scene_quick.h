@@ -53,6 +53,22 @@ struct quick_found {
 	float bent[3][BATCH];      // normals after
 };
 
+/* Bilinear height from pairs of neighbours in one word. */
+SIMD_INLINE float quick_height_at(const int *map, int n, float per_mm, float x, float y, float *gx, float *gy)
+{
+	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f, u = x * per_mm + h, v = y * per_mm + h;
+	u = u > 0 ? u < top ? u : top : 0;
+	v = v > 0 ? v < top ? v : top : 0;
+	int iu = (int)u, iv = (int)v, at = iv * n + iu, p = map[at], q = map[at + n];
+	u -= (float)iu;
+	v -= (float)iv;
+	float a = (float)(p << 16 >> 16), b = (float)(p >> 16), c = (float)(q << 16 >> 16), d = (float)(q >> 16);
+	float top_row = a + u * (b - a), low_row = c + u * (d - c);
+	*gx = ((b - a) + v * ((d - c) - (b - a))) * (per_mm * SCENE_PAIR_MM);
+	*gy = (low_row - top_row) * (per_mm * SCENE_PAIR_MM);
+	return (top_row + v * (low_row - top_row)) * SCENE_PAIR_MM;
+}
+
 /* In this order; quick_iris where something of the iris is seen, sclera where something white is; reflect into the camera's
  * frame, then unfolded (x, y) onto the octahedron. */
 void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
@@ -64,7 +80,7 @@ void quick_sclera(struct quick_spots *spots, int n, const struct quick_look *loo
 
 /* A tile's nodes: every fourth pixel of its 16 x 16 and of the next ones, in rows of eight of which five count. */
 enum { QUICK_TILE = 16, GRID_STEP = 4, GRID_SIDE = 5, GRID_ROW = 8, GRID_NODES = GRID_SIDE * GRID_ROW, GRID_LAST = GRID_NODES - GRID_ROW + GRID_SIDE - 1 };
-enum { GRID_U, GRID_V, GRID_RX, GRID_RY, GRID_RZ, GRID_MIRROR, GRID_ASIDE, GRID_ACROSS, GRID_ROUGH = GRID_ASIDE, GRID_CHANNELS = 8 };
+enum { GRID_U, GRID_V, GRID_RX, GRID_RY, GRID_RZ, GRID_MIRROR, GRID_ASIDE, GRID_ACROSS, GRID_HEIGHT, GRID_ROUGH = GRID_ASIDE, GRID_CHANNELS = GRID_HEIGHT + 1 };
 
 /* The 256 pixels from their nodes. */
 void quick_lay(float *out, const float node[GRID_NODES]);

@@ -13,13 +13,14 @@
 typedef float four __attribute__((vector_size(16), aligned(16)));
 _Static_assert(GRID_STEP == 4 && GRID_SIDE == QUICK_TILE / GRID_STEP + 1, "a row is four vectors of four");
 
-void quick_lay(float *restrict out, const float node[GRID_NODES])
+SIMD_CLONES void quick_lay(float *restrict out, const float node[GRID_NODES])
 {
 	const four ramp = { 0, 0.25f, 0.5f, 0.75f };
 	for (int y = 0; y < QUICK_TILE; y++) {
 		const float *a = node + y / GRID_STEP * GRID_ROW, *b = a + GRID_ROW;
-		float v = 0.25f * (float)(y % GRID_STEP), r[GRID_SIDE];
-		for (int i = 0; i < GRID_SIDE; i++)
+		float v = 0.25f * (float)(y % GRID_STEP), r[GRID_ROW];
+		SIMD_LOOP
+		for (int i = 0; i < GRID_ROW; i++)
 			r[i] = a[i] + v * (b[i] - a[i]);
 		for (int i = 0; i < GRID_SIDE - 1; i++) {
 			four c = r[i] + ramp * (r[i + 1] - r[i]);
@@ -59,38 +60,36 @@ SIMD_CLONES static void cross_plane(float (*q)[GRID_NODES], const struct quick_s
 	}
 }
 
-/* Bilinear height from pairs of neighbours in one word. */
-SIMD_INLINE float pair_at(const int *map, int n, float per_mm, float x, float y, float *gx, float *gy)
+/* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets the relief. */
+SIMD_INLINE float meet(float h, float u, float v, float aside, float across, const struct quick_look *k, int steps)
 {
-	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f, u = x * per_mm + h, v = y * per_mm + h;
-	u = u > 0 ? u < top ? u : top : 0;
-	v = v > 0 ? v < top ? v : top : 0;
-	int iu = (int)u, iv = (int)v, at = iv * n + iu, p = map[at], q = map[at + n];
-	u -= (float)iu;
-	v -= (float)iv;
-	float a = (float)(p << 16 >> 16), b = (float)(p >> 16), c = (float)(q << 16 >> 16), d = (float)(q >> 16);
-	float top_row = a + u * (b - a), low_row = c + u * (d - c);
-	*gx = ((b - a) + v * ((d - c) - (b - a))) * (per_mm * SCENE_PAIR_MM);
-	*gy = (low_row - top_row) * (per_mm * SCENE_PAIR_MM);
-	return (top_row + v * (low_row - top_row)) * SCENE_PAIR_MM;
+	float per_mm = k->level->per_mm, most = k->scene->height_max, least = k->scene->height_min;
+#pragma GCC unroll 3
+	for (int j = 0; j < steps; j++) {
+		float gx, gy, off = quick_height_at(k->level->pairs, k->level->n, per_mm, u - h * aside, v - h * across, &gx, &gy) - h;
+		float slope = 1 + gx * aside + gy * across;
+		h += off / (slope > 0.3f ? slope : 0.3f);
+		h = h > least ? h < most ? h : most : least;
+	}
+	return h;
 }
 
-/* The relief along each ray by Newton's steps from the iris plane, as quick_iris; u, v: there, then on the relief. */
-SIMD_CLONES static void meet_relief(float *restrict u, float *restrict v, const float *restrict aside, const float *restrict across, const struct quick_look *k)
+SIMD_CLONES static void meet_nodes(float (*q)[GRID_NODES], const struct quick_look *look)
 {
-	const int *restrict pairs = k->level->pairs;
-	float per_mm = k->level->per_mm, most = k->scene->height_max, least = k->scene->height_min;
-	int n = k->level->n;
+	const struct quick_look k = *look;
+	SIMD_LOOP
+	for (int i = 0; i < GRID_NODES; i++)
+		q[GRID_HEIGHT][i] = meet(0, q[GRID_U][i], q[GRID_V][i], q[GRID_ASIDE][i], q[GRID_ACROSS][i], &k, 3);
+}
+
+/* u, v: on the plane, then on the relief. From the nodes' heights one more step is enough. */
+SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const float *restrict aside, const float *restrict across,
+                                    const float *restrict start, const struct quick_look *look)
+{
+	const struct quick_look k = *look;
 	SIMD_LOOP
 	for (int i = 0; i < BATCH; i++) {
-		float h = 0;
-#pragma GCC unroll 2
-		for (int j = 0; j < 2; j++) {
-			float gx, gy, off = pair_at(pairs, n, per_mm, u[i] - h * aside[i], v[i] - h * across[i], &gx, &gy) - h;
-			float slope = 1 + gx * aside[i] + gy * across[i];
-			h += off / (slope > 0.3f ? slope : 0.3f);
-			h = h > least ? h < most ? h : most : least;
-		}
+		float h = meet(start[i], u[i], v[i], aside[i], across[i], &k, 1);
 		u[i] -= h * aside[i];
 		v[i] -= h * across[i];
 	}
@@ -98,7 +97,7 @@ SIMD_CLONES static void meet_relief(float *restrict u, float *restrict v, const 
 
 bool quick_grid(struct quick_found *f, const struct quick_rays *nodes, const struct quick_look *k)
 {
-	float q[GRID_CHANNELS][GRID_NODES], back[BATCH], aside[2][BATCH];
+	float q[GRID_CHANNELS][GRID_NODES], back[BATCH], aside[2][BATCH], height[BATCH];
 	struct quick_spots *s = &f->spots;
 	quick_outside(s, nodes, k);
 	f->kind = kind_of(s, nodes, k);
@@ -113,6 +112,8 @@ bool quick_grid(struct quick_found *f, const struct quick_rays *nodes, const str
 	memcpy(q[GRID_MIRROR], s->mirror, sizeof q[GRID_MIRROR]);
 	if (cornea) {
 		cross_plane(q, s, k);
+		meet_nodes(q, k);
+		quick_lay(height, q[GRID_HEIGHT]);
 		quick_lay(aside[0], q[GRID_ASIDE]);
 		quick_lay(aside[1], q[GRID_ACROSS]);
 	} else {
@@ -125,7 +126,7 @@ bool quick_grid(struct quick_found *f, const struct quick_rays *nodes, const str
 	quick_lay(u, q[GRID_U]);
 	quick_lay(v, q[GRID_V]);
 	if (cornea)
-		meet_relief(u, v, aside[0], aside[1], k);
+		meet_pixels(u, v, aside[0], aside[1], height, k);
 	quick_lay(s->mirror, q[GRID_MIRROR]);
 	quick_lay(s->eu, q[GRID_RX]);
 	quick_lay(s->ev, q[GRID_RY]);

@@ -1,5 +1,5 @@
 /* The march from the texels of the map instead of along the rays of sight. Light in tissue is smooth against the fibres that
- * the photograph shows: the march is done at every second texel each way, and only its ratio to what the model showed in the
+ * the photograph shows: the march is done at every second or fourth texel each way, and only its ratio to what the model showed in the
  * photograph's light is multiplied into the photograph's own texels. Sight comes to each texel by its own way through the
  * cornea; so a picture's pixel sees just what a march along its ray would have made, up to what lies between texels. */
 #include "eye/scene_march.h"
@@ -133,10 +133,19 @@ static struct scene_shade flat_make(const struct scene *s, const struct scene_le
 	return out;
 }
 
+int scene_marched(const struct scene *s)
+{
+	int k = 0;
+	for (int step = s->conf.apart > 0 ? s->conf.apart : 2; step > 1; step /= 2)
+		k++;
+	return k;
+}
+
 struct scene_shade scene_shade_make(const struct scene *s, const struct scene_level *level, const double C[3], bool flat,
                                     const struct scene_beams *beams)
 {
-	const struct scene_level *coarse = level + 1 < s->level + s->n_levels ? level + 1 : level;
+	int k = (int)(level - s->level) + scene_marched(s);
+	const struct scene_level *coarse = s->level + (k < s->n_levels ? k : s->n_levels - 1);
 	if (flat)
 		return flat_make(s, level, beams);
 	struct scene_beam *sight = scene_sight(s, C);

@@ -18,15 +18,13 @@ static void look_make(struct scene_look *look, const struct scene *s, const stru
 	double t[3] = { view->cam_from_eye[0][3], view->cam_from_eye[1][3], view->cam_from_eye[2][3] };
 	*look = (struct scene_look){ .light = light, .beams = beams, .textured = view->textured };
 	for (int j = 0; j < 3; j++) {
-		look->origin[j] = 0;
 		for (int i = 0; i < 3; i++) {
 			look->origin[j] -= view->cam_from_eye[i][j] * t[i];
 			look->cam_from_eye[i][j] = (float)view->cam_from_eye[i][j];
 		}
 	}
-	for (int i = 0; i < 2; i++)
-		for (int j = 0; j < 3; j++)
-			look->slip[i][j] = (float)view->slip[i][j];
+	for (int k = 0; k < 6; k++)
+		look->slip[k / 3][k % 3] = (float)view->slip[k / 3][k % 3];
 	double away = view->cam_from_eye[2][2] * s->eye.iris_depth + t[2];
 	double mm = view->scale * away / view->camera.focal_px;
 	look->level = scene_level_for(s, mm);
@@ -81,8 +79,7 @@ SIMD_CLONES static void quick_rays_make(struct quick_rays *r, const float *restr
 
 static void quick_points(struct quick_found *found, int n, const float *x, const float *y, const struct canvas *c)
 {
-	struct quick_rays r;
-	r.n = n;
+	struct quick_rays r = { .n = n };
 	quick_rays_make(&r, x, y, &c->plane);
 	quick_find(found, &r, c->look->quick);
 }
@@ -90,14 +87,13 @@ static void quick_points(struct quick_found *found, int n, const float *x, const
 /* A whole tile, by the rays at its nodes if these are enough. */
 static void quick_tile_find(struct quick_found *found, const float *x, const float *y, const struct canvas *c)
 {
-	struct quick_rays r;
+	struct quick_rays r = { .n = GRID_NODES };
 	float u[GRID_NODES], v[GRID_NODES];
 	for (int i = 0; i < GRID_NODES; i++) {
 		int column = i % GRID_ROW < GRID_SIDE ? i % GRID_ROW : GRID_SIDE - 1;
 		u[i] = x[0] + (float)(GRID_STEP * column);
 		v[i] = y[0] + (float)(GRID_STEP * (i / GRID_ROW));
 	}
-	r.n = GRID_NODES;
 	quick_rays_make(&r, u, v, &c->plane);
 	if (!quick_grid(found, &r, c->look->quick))
 		quick_points(found, BATCH, x, y, c);
@@ -169,10 +165,12 @@ static void first_rays(const struct canvas *c, int tile, int tx, int ty, struct 
 		u[i] = (float)(tx + i % TILE) + 0.5f;
 		v[i] = (float)(ty + i / TILE) + 0.5f;
 	}
-	if (c->look->quick)
+	if (c->look->quick) {
 		quick_tile(rgba, n, u, v, tile, c, count);
-	else
-		trace_points(rgba, BATCH, u, v, c, &count->iris), count->rays += n;
+	} else {
+		trace_points(rgba, BATCH, u, v, c, &count->iris);
+		count->rays += n;
+	}
 	for (int y = ty; y < y1; y++)
 		memcpy(image_at(c->image, tx, y), rgba[(y - ty) * TILE], (size_t)(x1 - tx) * sizeof *rgba);
 }
@@ -253,9 +251,8 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 		return image_new(view->width, view->height, 4);
 	}
 	double eye_from_cam[3][3];
-	for (int i = 0; i < 3; i++)
-		for (int j = 0; j < 3; j++)
-			eye_from_cam[i][j] = view->cam_from_eye[j][i];
+	for (int k = 0; k < 9; k++)
+		eye_from_cam[k / 3][k % 3] = view->cam_from_eye[k % 3][k / 3];
 	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
 	struct scene_look look;
 	look_make(&look, s, view, light, &beams);

@@ -28,7 +28,7 @@ struct envmap_light {
 	float rgb[3];        // irradiance, over pi: a white plane facing it has this radiance
 };
 
-enum { ENVMAP_LIGHTS_MAX = 64 };
+enum { ENVMAP_LIGHTS_MAX = 256 };
 
 /* A room: ceiling to floor gradient, darker towards what lies behind the eye (back: share of light left there), with the
  * boxes in it. height rows. envmap_free. */
@@ -55,6 +55,9 @@ void envmap_irradiance(float rgb[3], const struct envmap *env, const float norma
 /* Median cut (Debevec 2005): the map in n = 2^k regions of equal energy, each as one light; returns how many (dark
  * regions are left out). Together they carry all of the map's energy. */
 int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env);
+
+/* The same with regions of about equal energy times solid angle: where the light is even they are small, and a lamp is one. */
+int envmap_lights_spread(struct envmap_light lights[], int n, const struct envmap *env);
 
 /* The same with each region's direction drawn by its light: the mean over many seeds is the environment itself, areas and
  * all. */

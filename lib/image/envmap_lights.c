@@ -92,10 +92,44 @@ int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env)
 	return out;
 }
 
-/* A direction drawn in a region as its light lies in it; within a pixel, evenly. */
-static void region_draw(double dir[3], const struct image *map, struct region r, struct rng *rng)
+/* Energy times solid angle: what a region's single direction gets wrong. */
+static double region_spread(const struct image *map, struct region r)
 {
-	double left = rng_uniform(rng) * region_energy(map, r);
+	double angle = 0;
+	for (int y = r.y0; y < r.y1; y++)
+		angle += (r.x1 - r.x0) * envmap_solid_angle(map, y);
+	return (r.x1 - r.x0) * (r.y1 - r.y0) > 1 ? angle * region_energy(map, r) : 0;
+}
+
+int envmap_lights_spread(struct envmap_light lights[], int n, const struct envmap *env)
+{
+	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
+	struct region regions[ENVMAP_LIGHTS_MAX] = { { 0, 0, map.width, map.height } }, two[2];
+	double spread[ENVMAP_LIGHTS_MAX] = { region_spread(&map, regions[0]) };
+	int made = 1, out = 0;
+	while (made < n && made < ENVMAP_LIGHTS_MAX) {
+		int at = 0;
+		for (int i = 1; i < made; i++)
+			at = spread[i] > spread[at] ? i : at;
+		if (!(spread[at] > 0))
+			break;
+		cut(&map, regions[at], two);
+		regions[at] = two[0];
+		regions[made] = two[1];
+		spread[at] = region_spread(&map, two[0]);
+		spread[made++] = region_spread(&map, two[1]);
+	}
+	for (int i = 0; i < made; i++)
+		out += region_light(&lights[out], &map, regions[i]);
+	image_free(&map);
+	return out;
+}
+
+/* A direction drawn in a region as its light lies in it; within a pixel, evenly. turn, 0..1: successive draws are turned on by
+ * the golden section, so that they spread over the region's light evenly. */
+static void region_draw(double dir[3], const struct image *map, struct region r, double turn, struct rng *rng)
+{
+	double left = (turn - floor(turn)) * region_energy(map, r);
 	int x = r.x1 - 1, y = r.y1 - 1;
 	for (int v = r.y0; v < r.y1 && left >= 0; v++) {
 		double w = envmap_solid_angle(map, v);
@@ -112,13 +146,13 @@ int envmap_lights_drawn(struct envmap_light lights[], int n, const struct envmap
 {
 	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
 	struct region regions[ENVMAP_LIGHTS_MAX];
-	struct rng rng = { seed };
+	struct rng rng = { seed }, start = { 1 };
 	int made = regions_cut(regions, &map, n), out = 0;
 	for (int i = 0; i < made; i++) {
-		double dir[3];
+		double dir[3], turn = rng_uniform(&start) + (double)(seed % (1 << 20)) * 0.6180339887498949;
 		if (!region_light(&lights[out], &map, regions[i]))
 			continue;
-		region_draw(dir, &map, regions[i], &rng);
+		region_draw(dir, &map, regions[i], turn, &rng);
 		for (int c = 0; c < 3; c++)
 			lights[out].dir[c] = (float)dir[c];
 		out++;
