@@ -11,6 +11,7 @@
 #include "optics/refraction.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/light_case.h"
+#include "tests/lib/storage.h"
 
 enum { N = 65536, TIMED = 4096 };  // timed over so few that other programs seldom cut in
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
@@ -81,6 +82,7 @@ struct means {
 		struct bench_time time;
 		double mean;
 	} rows[40];
+	struct storage_point points[40];  // of the same, with the worst error
 };
 
 static void show(const struct means *means)
@@ -105,6 +107,7 @@ static double measure(struct means *means, const char *method, const struct refr
 	snprintf(setting, sizeof setting, "%s%s%d steps, %ld B", label, *label ? ", " : "", r.f.steps, refraction_bytes(&r.f));
 	bench_row("refraction function", method, setting, t, "evaluation", *most, "mm", "K, worst");
 	if (means->n < COUNT(means->rows)) {
+		means->points[means->n] = (struct storage_point){ method, (double)refraction_bytes(&r.f), t.median, *most };
 		struct mean_row *row = &means->rows[means->n++];
 		*row = (struct mean_row){ .method = method, .time = t, .mean = mean };
 		snprintf(row->setting, sizeof row->setting, "%s", setting);
@@ -225,6 +228,8 @@ int main(int argc, char **argv)
 	bench_goal("refraction function against the paper's tables: error", "below every table's", most, "mm", most < table_error);
 	bench_goal("refraction function against the paper's tables: time", "below every table's", 1e9 * t, "ns", t < table_time);
 	show(&means);
+	if (!storage_plot(bench_out(), "refraction-storage", "The refraction function: storage, error, and time as the size of the mark", "K, worst, mm", means.n, means.points))
+		fprintf(stderr, "bench_refraction: gnuplot draws no refraction-storage.svg\n");
 	asymmetric();
 	free(s);
 	return bench_close();

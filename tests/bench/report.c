@@ -132,6 +132,10 @@ static void write_tables(FILE *md, const struct csv *csv, const char *name, cons
 		fprintf(md, "\n%s repetitions.\n", reps);
 	free(reps);
 	free(path);
+	char *storage = mem_printf("%s/%s-storage.svg", out, name);
+	if (file_exists(storage))
+		fprintf(md, "\n![storage, error and time](%s-storage.svg)\n", name);
+	free(storage);
 	for (int i = 0; i < csv->n; i++) {
 		bool seen = false;
 		for (int j = 0; j < i && !seen; j++)
