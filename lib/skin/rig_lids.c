@@ -247,12 +247,9 @@ static double open_columns(float *open, const struct fissure *f, double seal_mm,
 }
 
 /* The upper lid comes down by what is open, all of it at its margin and less and less further up. */
-static void close_once(struct rig *rig, const struct fissure *f, const float *open, int side, const double de[RIG_COMPONENTS],
+static void close_once(struct rig *rig, const struct fissure *f, const float *open, int side, const double closing[RIG_COMPONENTS],
                        double px_per_mm)
 {
-	double square = 0;
-	for (int k = 0; k < RIG_COMPONENTS; k++)
-		square += de[k] * de[k];
 	for (int i = 0; i < rig->n; i++) {
 		double column = f->at[i][0] - f->x0, beyond = fmax(-column, column - f->width) / px_per_mm;
 		int x = (int)fmin(fmax(lrint(column), 0), f->width - 1);
@@ -261,18 +258,19 @@ static void close_once(struct rig *rig, const struct fissure *f, const float *op
 		double middle = 0.5 * (f->top[x] + f->bottom[x]), above = (f->top[x] - f->at[i][1]) / px_per_mm;
 		double w = (1 - ramp(above, 1, 9)) * (1 - ramp(beyond, 0, 3)) * (1 - ramp(rig->gap[i], lid_gap, lid_gap + 3)) * (f->at[i][1] < middle + 0.2 * px_per_mm);
 		for (int k = 0; k < RIG_COMPONENTS; k++)
-			rig->basis[i][RIG_COMPONENTS + k] += (float)(w * open[x] * de[k] / square);
+			rig->basis[i][RIG_COMPONENTS + k] += (float)(w * open[x] * closing[k]);
 	}
 }
 
 void rig_seal_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm, double seal_mm, struct rig_report *report)
 {
 	enum { ROUNDS = 12 };
-	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c), de[RIG_COMPONENTS];
+	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c), de[RIG_COMPONENTS], closing[RIG_COMPONENTS];
 	rig_components(de, rig, c);  // straight ahead, both eyes closed
 	for (int k = 0; k < RIG_COMPONENTS; k++)
 		de[k] -= rig->rest_e[k];
 	free(c);
+	rig_closing_direction(closing, rig, de);
 	for (int side = 0; side < 2; side++) {
 		struct fissure f;
 		if (!window(&f, rig, m, side, px_per_mm))
@@ -285,7 +283,7 @@ void rig_seal_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm
 			report->open_before[side] = round ? report->open_before[side] : left / px_per_mm;
 			if (left == 0 || round == ROUNDS)
 				break;
-			close_once(rig, &f, open, side, de, px_per_mm);
+			close_once(rig, &f, open, side, closing, px_per_mm);
 		}
 		report->open_after[side] = left / px_per_mm;
 		free(open);

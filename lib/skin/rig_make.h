@@ -80,6 +80,11 @@ void rig_expect_globes(double center[2][3], double *radius, const struct rig *ri
 /* Skin at the lid margins moves as the margins' splines do. rig_lids.c */
 void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);
 
+/* The linear form of the components from rest that is 1 with eyes closed straight ahead (closed), and of all such nearest to
+ * 1 with eyes closed and to 0 with eyes open, wherever they look, and in the expressions: what seals the lids by it leaves a
+ * gaze downwards, which takes the lids halfway, as it was learnt. */
+void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, const double closed[RIG_COMPONENTS]);
+
 /* Upper lids come down as far as it takes to close an eye that is told to close. */
 void rig_seal_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double seal_mm, struct rig_report *report);
 
