@@ -4,7 +4,7 @@ class Page extends Live {
 		super();
 		this.graphics = graphics;
 		this.eyes = new motion.Eyes(motion.configuration(data.motion));
-		this.preset = graphics.software ? 2 : 0;
+		this.preset = graphics.software ? presets.length - 1 : 0;  // a processor shows the first picture sooner so
 		this.automatic = true;
 		this.times = [];
 		this.orbit = [0, 0];
