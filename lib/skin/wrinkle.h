@@ -61,6 +61,7 @@ struct wrinkle_point {
 	double px[2], mm[3];               // chart; head
 	double across[3], across_px[2];    // unit vector on the skin, across the line; in the chart, px a mm
 	double depth, width;               // d and w at the peak, mm
+	bool even;                         // measured as if light came evenly from everywhere
 	int face;                          // of the mesh, and
 	double bary[2];                    // where in it: weights of its second and third corner
 };

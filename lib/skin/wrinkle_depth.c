@@ -183,6 +183,8 @@ static bool sight_of(struct sight *sight, const struct wrinkle_point *p, const s
 	if (!wrinkle_on_surface(&hit, normal, g, p->px))
 		return false;
 	*sight = (struct sight){ vec_dot(w->from, p->across), vec_dot(w->from, normal), w->ambient };
+	if (p->even)
+		*sight = (struct sight){ .ambient = 1 };
 	return true;
 }
 
@@ -218,7 +220,7 @@ static struct found measure(const struct wrinkle_line *line, int i, const struct
 	if (!sight_of(&sight, &line->point[i], w, g))
 		return (struct found){ 0 };
 	double step = shift_most * f.width / SHIFTS;
-	f = best_of(&f, SHIFTS, shift_most * f.width, WIDTHS, wider, line, i, &sight, change, g, t);
+	f = best_of(&f, SHIFTS, SHIFTS * step, WIDTHS, wider, line, i, &sight, change, g, t);
 	return best_of(&f, 2, 0.67 * step, 2, 1.1, line, i, &sight, change, g, t);
 }
 
@@ -232,30 +234,44 @@ static double middle(const struct found *f, int n, int i, int which)
 	return stats_median(m, v);
 }
 
+/* All points, in the light of the face, or as if it came evenly from everywhere; returns how much is explained, median. */
+static double measure_all(struct found *f, struct wrinkle_line *line, bool even, const struct wrinkles *w, const float *change,
+                          const struct wrinkle_ground *g, const struct wrinkle_grooves *t)
+{
+	double *share = mem_new((size_t)line->n + 1, sizeof *share);
+	for (int i = 0; i < line->n; i++)
+		line->point[i].even = even;
+#pragma omp parallel for schedule(dynamic)
+	for (int i = 0; i < line->n; i++)
+		f[i] = measure(line, i, w, change, g, t);
+	for (int i = 0; i < line->n; i++)
+		share[i] = f[i].share;
+	double median = stats_median(line->n, share);
+	free(share);
+	return median;
+}
+
 void wrinkle_measure(struct wrinkle_line *line, const struct wrinkles *w, const float *change, const struct wrinkle_ground *g,
                      const struct wrinkle_grooves *t, const struct wrinkle_conf *conf)
 {
 	struct found *f = mem_new((size_t)line->n + 1, sizeof *f);
-	double *share = mem_new((size_t)line->n + 1, sizeof *share), *width = mem_new((size_t)line->n + 1, sizeof *width);
-#pragma omp parallel for schedule(dynamic)
-	for (int i = 0; i < line->n; i++)
-		f[i] = measure(line, i, w, change, g, t);
+	double *width = mem_new((size_t)line->n + 1, sizeof *width), share = measure_all(f, line, false, w, change, g, t);
+	if (share < explained)  // the nose or a brow may stand before the lamp
+		share = measure_all(f, line, true, w, change, g, t);
 	int deep = 0;
 	for (int i = 0; i < line->n; i++) {
 		struct wrinkle_point *p = &line->point[i];
 		double shift = middle(f, line->n, i, 2), normal[3];
 		p->depth = middle(f, line->n, i, 0);
 		width[i] = p->width = middle(f, line->n, i, 1);
-		share[i] = f[i].share;
 		deep += p->depth > 0;
 		for (int k = 0; k < 2; k++)
 			p->px[k] += shift * p->across_px[k];
 		wrinkle_on_surface(p, normal, g, p->px);
 	}
-	if (2 * deep < line->n || stats_median(line->n, share) < explained || stats_median(line->n, width) > 1.3 * conf->width_mm[1])
+	if (2 * deep < line->n || share < explained || stats_median(line->n, width) > 1.3 * conf->width_mm[1])
 		line->n = 0;
 	free(f);
-	free(share);
 	free(width);
 }
 
