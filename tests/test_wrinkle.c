@@ -7,7 +7,7 @@
 #include "tests/lib/wrinkle_scene.h"
 
 /* The defaults of config/track.conf. */
-static const struct wrinkle_conf conf = { .width_mm = { 0.12, 0.8 }, .scales = 6, .drop = 0.04, .significance = 6, .pattern = 2, .length_mm = 4, .slope = 1.5, .frames = 8 };
+static const struct wrinkle_conf conf = { .width_mm = { 0.12, 0.8 }, .scales = 6, .drop = 0.04, .significance = 6, .pattern = 2.5, .length_mm = 4, .slope = 1.5, .frames = 8 };
 
 static double off_groove(const struct groove *g, const double mm[3])
 {

@@ -100,7 +100,7 @@ void wrinkle_unwrap(float *log_light, uint8_t *sure, const struct wrinkle_ground
 			shift_at(s, &m, x + 0.5, y + 0.5);
 			double u = x + 0.5 + s[0], v = y + 0.5 + s[1];
 			long at = (long)y * g->width + x;
-			sure[at] = s[2] > 0.5f && u > 2 && v > 2 && u < g->width - 2 && v < g->height - 2 ? 255 : 0;
+			sure[at] = s[2] > 0.05f && u > 2 && v > 2 && u < g->width - 2 && v < g->height - 2 ? 255 : 0;
 			// Half of 8 bits' first step: black has a logarithm.
 			log_light[at] = sure[at] ? logf(fmaxf(light_at(g, f->grey, linear, u, v), 0) + 1e-3f) : 0;
 		}

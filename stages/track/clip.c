@@ -217,6 +217,8 @@ static bool find_reference(struct track_clip *clip, struct video *video, bool kn
 	}
 	if (known)
 		return found;
+	if (!any && clip->info.frames < 2)
+		return err_set(err, "%s: %ld frames: film longer, or copy the file again, whole", clip->file, clip->info.frames);
 	if (!any)
 		return err_set(err, "%s: %ld frames: track.reference_frame = %d is none of them", clip->file, clip->info.frames, conf->reference);
 	return found || err_set(err, "%s: no face with open eyes in %s: film the face from in front, upright, eyes open at the start; or mark the corners of the eyes (track.landmark_left_inner_canthus = x y ...)",

@@ -32,6 +32,15 @@ capture text
 echo "no video at all" >"$root/text/video/face.mp4"
 refuses text "face.mp4"
 
+capture sound_alone
+{ printf 'RIFF\x24\x10\x00\x00WAVEfmt \x10\x00\x00\x00\x01\x00\x01\x00\x44\xac\x00\x00\x88\x58\x01\x00\x02\x00\x10\x00data\x00\x10\x00\x00'
+	head -c 4096 /dev/zero; } >"$root/sound_alone/video/a.mp4"
+refuses sound_alone "a.mp4: is no video"
+
+capture one_frame
+head -c 30000 samples/face/video/face.mp4 >"$root/one_frame/video/face.mp4"
+refuses one_frame "1 frames: film longer"
+
 capture cut_off
 sed -i '/^expression/d' "$root/cut_off/capture.conf"
 head -c 200000 samples/face/video/face.mp4 >"$root/cut_off/video/face.mp4"
@@ -74,6 +83,7 @@ echo "expression.frown = 95 96" >>"$root/still/capture.conf"
 rm "$root/still/subject.ply"
 said=$("$BIN/track" --capture="$root/still" 2>&1)
 same "without a mesh: exit" "$?" 0
+check "says why wrinkles are not looked for" grep -q "wrinkles: no mesh of the person" <<<"$said"
 check "says that skin is not followed" grep -q "no mesh of the person" <<<"$said"
 check "gaze is there all the same" test "$(sed -n 30p "$root/still/work/skin/gaze.csv" | cut -d, -f3)" != ""
 
