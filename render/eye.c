@@ -114,7 +114,7 @@ bool job_ready(struct job *job, struct err *err)
 	job_say_what_lacks(job);
 	job->ready = true;
 	struct scene_view view = shot_view(reference);
-	struct scene_lighting light = scene_lighting(&reference->env, 0, job->conf->lights);
+	struct scene_lighting light = scene_lighting_of(&reference->env, 0, job->conf->lights, job->conf->light_directions);
 	scene_fit_colour(&job->scene, &view, &light);
 	stage_figure(job->stage, "lamps_found", reference->n_lamps, "");
 	stage_figure(job->stage, "exposure", job->scene.gain, "");
@@ -125,7 +125,7 @@ bool job_ready(struct job *job, struct err *err)
 /* An eye turned by yaw, pitch (degrees) in the studio; view: as it was seen. */
 static struct image turned(struct job *job, struct scene_view *view, double yaw, double pitch, int size, bool mirror)
 {
-	struct scene_lighting light = scene_lighting(&job->studio, mirror ? &job->studio : 0, job->conf->lights);
+	struct scene_lighting light = scene_lighting_of(&job->studio, mirror ? &job->studio : 0, job->conf->lights, job->conf->light_directions);
 	*view = scene_view_turned(&job->scene, yaw * M_PI / 180, pitch * M_PI / 180, job->conf->field_mm, size);
 	return trace(job, view, &light);
 }
@@ -205,7 +205,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	if (!job_ready(job, err) || !shot_ready(job, shot, err))
 		return false;
 	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
-	struct scene_lighting light = scene_lighting(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights);
+	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, job->conf->light_directions);
 	struct scene_view view = shot_view(shot);
 	json_t *figures;
 	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);

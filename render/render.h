@@ -9,7 +9,7 @@
 
 struct render_conf {
 	struct scene_conf scene;
-	int lights, passes, samples;     // of the environment; light drawn anew; rays across a pixel where there are edges
+	int lights, light_directions, passes, samples;     // of the environment; light drawn anew; rays across a pixel where there are edges
 	int size_px, photo_px;           // of front and three-quarter; longest side of the photograph's own view
 	int frames, frame_px;            // turntable
 	double frame_deg;                // it goes from -frame_deg to +frame_deg

@@ -12,7 +12,7 @@ enum { SECONDS = 4, FPS = 30 };
 
 static bool film(struct job *job, struct video_writer *w, struct err *err)
 {
-	struct scene_lighting light = scene_lighting(&job->studio, &job->studio, job->conf->lights);
+	struct scene_lighting light = scene_lighting_of(&job->studio, &job->studio, job->conf->lights, job->conf->light_directions);
 	bool ok = true;
 	for (int i = 0; ok && i < SECONDS * FPS; i++) {
 		double yaw = job->conf->frame_deg * M_PI / 180 * sin(2 * M_PI * i / (SECONDS * FPS));  // it begins again where it ends

@@ -94,6 +94,8 @@ struct scene_lighting {
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the camera's frame
 };
 /* lights: beams; each of up to eight directions. */
+/* each: so many. */
+struct scene_lighting scene_lighting_of(const struct envmap *env, const struct envmap *mirror, int lights, int each);
 struct scene_lighting scene_lighting(const struct envmap *env, const struct envmap *mirror, int lights);
 
 struct scene_view {
