@@ -61,6 +61,7 @@ static void put(struct image *out, int at, const struct frame *f, const struct i
 static void put_difference(struct image *out, int at, const struct frame *f, const struct shot *shot,
                            const struct image *view, const float *weight)
 {
+#pragma omp parallel for schedule(static)
 	for (int y = 0; y < f->height; y++)
 		for (int x = 0; x < f->width; x++) {
 			const float *a = image_at(&shot->image, f->x0 + x, f->y0 + y), *b = image_at(view, f->x0 + x, f->y0 + y);

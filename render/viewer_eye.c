@@ -23,17 +23,21 @@ static json_t *rules(const struct scene *s)
 	json_t *all = json_array();
 	for (int k = 0; k < FADES; k++)
 		fade[k] = SCENE_FADE_MAX * pow((double)k / (FADES - 1), 2);
-	for (int n = 1; n <= RULES; n++) {
-		json_t *of_n = json_array();
+	double pairs[RULES][FADES][2 * RULES];
+#pragma omp parallel for collapse(2) schedule(dynamic, 4)
+	for (int n = RULES; n >= 1; n--)
 		for (int k = 0; k < FADES; k++) {
-			double node[RULES], weight[RULES], pairs[2 * RULES];
+			double node[RULES], weight[RULES];
 			scene_exponential(n, fade[k], node, weight);
 			for (int i = 0; i < n; i++) {
-				pairs[2 * i] = node[i];
-				pairs[2 * i + 1] = weight[i];
+				pairs[n - 1][k][2 * i] = node[i];
+				pairs[n - 1][k][2 * i + 1] = weight[i];
 			}
-			json_array_append_new(of_n, json_numbers(2 * n, pairs));
 		}
+	for (int n = 1; n <= RULES; n++) {
+		json_t *of_n = json_array();
+		for (int k = 0; k < FADES; k++)
+			json_array_append_new(of_n, json_numbers(2 * n, pairs[n - 1][k]));
 		json_array_append_new(all, of_n);
 	}
 	return json_pack("{s:i,s:o,s:f,s:i,s:o,s:o}", "steps", s->conf.steps, "thickness", json_numbers(2, thick), "ways", ways, "share", SCENE_SHARE, "fade",
