@@ -1,6 +1,8 @@
 /* scene_quick: a picture whose march has been done already (scene_shade_make): geometry in vectors, colours looked up. */
 #ifndef EYE_SCENE_QUICK_H
 #define EYE_SCENE_QUICK_H
+#include <stdint.h>
+
 #include "eye/scene_impl.h"
 
 /* Rays that start a little before the eye, where float has all the digits that a texel needs. */
@@ -62,7 +64,7 @@ SIMD_INLINE float quick_height_at(const int *map, int n, float per_mm, float x, 
 	int iu = (int)u, iv = (int)v, at = iv * n + iu, p = map[at], q = map[at + n];
 	u -= (float)iu;
 	v -= (float)iv;
-	float a = (float)(p << 16 >> 16), b = (float)(p >> 16), c = (float)(q << 16 >> 16), d = (float)(q >> 16);
+	float a = (float)(int16_t)p, b = (float)(p >> 16), c = (float)(int16_t)q, d = (float)(q >> 16);
 	float top_row = a + u * (b - a), low_row = c + u * (d - c);
 	*gx = ((b - a) + v * ((d - c) - (b - a))) * (per_mm * SCENE_PAIR_MM);
 	*gy = (low_row - top_row) * (per_mm * SCENE_PAIR_MM);

@@ -91,8 +91,9 @@ bool features_make(bool *grows, struct views *views, struct stage *stage, const 
 	db_close(db);
 	// Pictures that are new come last.
 	qsort(views->v, (size_t)views->n_used, sizeof *views->v, by_id);
-	ok = ok && list_new(&n_new, views, stage_path(stage, CALIBRATE_DIR "/new.txt"), err)
-	     && (!n_new || extract(stage, o, n_new, stage->threads, err));
+	const char *list = stage_path(stage, CALIBRATE_DIR "/new.txt");
+	ok = ok && list_new(&n_new, views, list, err) && (!n_new || extract(stage, o, n_new, stage->threads, err))
+	     && file_remove(list, err);
 	*grows = same && ok && n_new < views->n_used;
 	return ok;
 }
