@@ -101,6 +101,9 @@ for column in ${ONLY:-$columns}; do
 done
 for name in "${!stages[@]}"; do printf '  killed in %s: %s\n' "$name" "${stages[$name]}"; done | sort
 
+# The rest wants a folder whose make writes much.
+[ "$column" != views ] || exit 0
+
 # No file may grow beyond 300 KiB: what a full disk does to a stage that writes.
 rm -rf "$root/hit/work"
 (ulimit -f 300; trap '' XFSZ; run_make "$root/hit"; exit $?)
