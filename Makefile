@@ -134,7 +134,8 @@ $(filter-out plan,$(STAGES)): need-capture build
 plan: need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE" --show
 # The bundled capture, from the photograph to the page.
-demo: setup build
+demo: setup
+	@$(MAKE) --no-print-directory -j$(CORES) build
 	@$(MAKE) --no-print-directory run CAPTURE=samples/demo
 	@echo
 	@for f in work/review/index.html work/render/contact_sheet.png; do \

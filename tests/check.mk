@@ -15,9 +15,11 @@ tests: $(TESTS) $(TOOLS)
 # Without these the interactive page is not driven, and the summary says so.
 CHECK_PACKAGES := chromium nodejs
 
-check: setup build tests $(STRESSES) $B/tests/bench/compare
+CORES = $(shell nproc)
+check: setup
+	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/bench/compare
 	@tests/setup.sh $(CHECK_PACKAGES) || true
-	@$(MAKE) --no-print-directory SAN=1 tests-sanitised
+	@$(MAKE) --no-print-directory -j$(CORES) SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=5 \
 		tests/check.sh
 

@@ -5,7 +5,7 @@ if ! command -v clang >/dev/null 2>&1; then
 	skip "fuzzing" "clang is not installed"
 	exit 0
 fi
-if ! make --no-print-directory fuzzers >build-fuzz.log 2>&1; then
+if ! make --no-print-directory -j"$(nproc)" fuzzers >build-fuzz.log 2>&1; then
 	if grep -q 'libclang_rt\|cannot find' build-fuzz.log; then skip "fuzzing" "clang's libFuzzer is not installed"
 	else fail "fuzz targets build" "$(tail -n 5 build-fuzz.log)"; fi
 	rm -f build-fuzz.log
