@@ -61,7 +61,7 @@ EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/de
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
 LIBS = -lopencv_aruco -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
 	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lsqlite3 -lzip \
-	-lavformat -lavcodec -lswscale -lavutil -llapacke -lopenblas -ljansson -linih -lxxhash -lm
+	-llapacke -lopenblas -ljansson -linih -lxxhash -lm
 
 LIB_SRC := $(wildcard lib/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)

@@ -35,7 +35,7 @@ static bool hand_over(struct video *v, AVFrame *frame)
 	pthread_cond_broadcast(&v->changed);
 	pthread_mutex_unlock(&v->lock);
 	if (!wanted)
-		av_frame_free(&frame);
+		av.av_frame_free(&frame);
 	return wanted;
 }
 
@@ -50,10 +50,10 @@ static void count_damaged(struct video *v)
 static bool drain(struct video *v)
 {
 	for (;;) {
-		AVFrame *frame = av_frame_alloc();
-		int got = frame ? avcodec_receive_frame(v->source.decoder, frame) : AVERROR(ENOMEM);
+		AVFrame *frame = av.av_frame_alloc();
+		int got = frame ? av.avcodec_receive_frame(v->source.decoder, frame) : AVERROR(ENOMEM);
 		if (got < 0) {
-			av_frame_free(&frame);
+			av.av_frame_free(&frame);
 			return got == AVERROR(EAGAIN);
 		}
 		bool turned = v->info.rotation == 90 || v->info.rotation == 270;
@@ -61,12 +61,12 @@ static bool drain(struct video *v)
 		if (width != v->info.width || height != v->info.height) {
 			err_set(&v->failed, "%s: its pictures change from %d x %d to %d x %d px: cut it there", v->path, v->info.width,
 			        v->info.height, width, height);
-			av_frame_free(&frame);
+			av.av_frame_free(&frame);
 			return false;
 		}
 		if (frame->decode_error_flags || frame->flags & AV_FRAME_FLAG_CORRUPT) {
 			count_damaged(v);
-			av_frame_free(&frame);
+			av.av_frame_free(&frame);
 			continue;
 		}
 		frame = video_plane_upright(frame, v->info.rotation);
@@ -81,24 +81,24 @@ static void *decode(void *arg)
 {
 	struct video *v = arg;
 	struct video_source *s = &v->source;
-	AVPacket *packet = av_packet_alloc();
+	AVPacket *packet = av.av_packet_alloc();
 	bool more = packet;
-	while (more && av_read_frame(s->file, packet) >= 0) {
+	while (more && av.av_read_frame(s->file, packet) >= 0) {
 		// Where a file breaks off in a picture: what a decoder makes of the rest, and of its neighbours, hangs on its threads.
 		bool whole = !(packet->flags & AV_PKT_FLAG_CORRUPT);
 		if (packet->stream_index == s->stream && !whole)
 			count_damaged(v);
 		if (packet->stream_index == s->stream && whole) {
-			int sent = avcodec_send_packet(s->decoder, packet);
+			int sent = av.avcodec_send_packet(s->decoder, packet);
 			if (sent < 0 && sent != AVERROR(EAGAIN) && sent != AVERROR_EOF)
 				count_damaged(v);
 			more = drain(v);
 		}
-		av_packet_unref(packet);
+		av.av_packet_unref(packet);
 	}
-	if (more && avcodec_send_packet(s->decoder, 0) >= 0)
+	if (more && av.avcodec_send_packet(s->decoder, 0) >= 0)
 		drain(v);
-	av_packet_free(&packet);
+	av.av_packet_free(&packet);
 	pthread_mutex_lock(&v->lock);
 	v->ended = true;
 	pthread_cond_broadcast(&v->changed);
@@ -115,7 +115,7 @@ static bool describe(struct video *v, const struct video_conf *conf, struct err 
 	bool turned = info->rotation == 90 || info->rotation == 270;
 	info->width = turned ? p->height : p->width;
 	info->height = turned ? p->width : p->height;
-	snprintf(info->codec, sizeof info->codec, "%s", avcodec_get_name(p->codec_id));
+	snprintf(info->codec, sizeof info->codec, "%s", av.avcodec_get_name(p->codec_id));
 	if (info->width < 1 || info->height < 1)
 		return err_set(err, "%s: its pictures have no size: copy it again, whole", v->path);
 	double mpx = 1e-6 * info->width * info->height;
@@ -172,7 +172,7 @@ bool video_next(struct video_frame *frame, bool *got, struct video *v, struct er
 void video_frame_free(struct video_frame *frame)
 {
 	AVFrame *f = frame->hold;
-	av_frame_free(&f);
+	av.av_frame_free(&f);
 	*frame = (struct video_frame){ 0 };
 }
 
@@ -195,7 +195,7 @@ void video_close(struct video *v)
 	pthread_mutex_unlock(&v->lock);
 	pthread_join(v->thread, 0);
 	for (; v->n; v->n--, v->head = (v->head + 1) % AHEAD)
-		av_frame_free(&v->ahead[v->head]);
+		av.av_frame_free(&v->ahead[v->head]);
 	pthread_mutex_destroy(&v->lock);
 	pthread_cond_destroy(&v->changed);
 	video_source_close(&v->source);

@@ -1,10 +1,8 @@
 /* video_impl: what the files of the reader share. */
 #ifndef IMAGE_VIDEO_IMPL_H
 #define IMAGE_VIDEO_IMPL_H
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-
 #include "image/video.h"
+#include "image/video_api.h"
 
 /* An open file and its one stream of pictures. */
 struct video_source {

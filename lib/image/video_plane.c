@@ -1,7 +1,5 @@
 /* Planes of a frame: upright, 8 bits; and their colour. */
 #include <libavutil/imgutils.h>
-#include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 
 #include "image/video_impl.h"
 
@@ -19,25 +17,25 @@ static bool plain(int format)
 
 static AVFrame *frame_like(const AVFrame *in, int format, int width, int height)
 {
-	AVFrame *out = av_frame_alloc();
+	AVFrame *out = av.av_frame_alloc();
 	if (!out)
 		return 0;
 	out->format = format;
 	out->width = width;
 	out->height = height;
-	if (av_frame_get_buffer(out, 0) < 0 || av_frame_copy_props(out, in) < 0)
-		av_frame_free(&out);
+	if (av.av_frame_get_buffer(out, 0) < 0 || av.av_frame_copy_props(out, in) < 0)
+		av.av_frame_free(&out);
 	return out;
 }
 
 static AVFrame *to_plain(const AVFrame *in)
 {
 	AVFrame *out = frame_like(in, AV_PIX_FMT_YUV420P, in->width, in->height);
-	struct SwsContext *sws = out ? sws_getContext(in->width, in->height, in->format, in->width, in->height, AV_PIX_FMT_YUV420P,
+	struct SwsContext *sws = out ? av.sws_getContext(in->width, in->height, in->format, in->width, in->height, AV_PIX_FMT_YUV420P,
 	                                              SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT, 0, 0, 0) : 0;
-	if (!sws || sws_scale(sws, (const uint8_t *const *)in->data, in->linesize, 0, in->height, out->data, out->linesize) <= 0)
-		av_frame_free(&out);
-	sws_freeContext(sws);
+	if (!sws || av.sws_scale(sws, (const uint8_t *const *)in->data, in->linesize, 0, in->height, out->data, out->linesize) <= 0)
+		av.av_frame_free(&out);
+	av.sws_freeContext(sws);
 	return out;
 }
 
@@ -61,7 +59,7 @@ static AVFrame *turned(const AVFrame *in, int rotation)
 {
 	int width = rotation == 180 ? in->width : in->height, height = rotation == 180 ? in->height : in->width;
 	AVFrame *out = frame_like(in, turned_format(in->format, rotation), width, height);
-	const AVPixFmtDescriptor *d = out ? av_pix_fmt_desc_get(out->format) : 0;
+	const AVPixFmtDescriptor *d = out ? av.av_pix_fmt_desc_get(out->format) : 0;
 	for (int c = 0; d && c < d->nb_components; c++)
 		turn(out->data[c], out->linesize[c], c ? AV_CEIL_RSHIFT(width, d->log2_chroma_w) : width,
 		     c ? AV_CEIL_RSHIFT(height, d->log2_chroma_h) : height, in->data[c], in->linesize[c], rotation);
@@ -72,12 +70,12 @@ AVFrame *video_plane_upright(AVFrame *in, int rotation)
 {
 	if (!plain(in->format) || in->format == AV_PIX_FMT_YUV411P) {
 		AVFrame *out = to_plain(in);
-		av_frame_free(&in);
+		av.av_frame_free(&in);
 		in = out;
 	}
 	if (in && rotation) {
 		AVFrame *out = turned(in, rotation);
-		av_frame_free(&in);
+		av.av_frame_free(&in);
 		in = out;
 	}
 	return in;
@@ -111,7 +109,7 @@ static inline uint8_t clamp8(int v)
 void video_frame_rgb(uint8_t *rgb, int stride, const struct video_frame *frame, int x0, int y0, int x1, int y1)
 {
 	const AVFrame *f = frame->hold;
-	const AVPixFmtDescriptor *d = av_pix_fmt_desc_get(f->format);
+	const AVPixFmtDescriptor *d = av.av_pix_fmt_desc_get(f->format);
 	struct matrix m = matrix_of(f);
 	bool grey = d->nb_components < 3;
 	for (int y = y0; y < y1; y++) {

@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <libavutil/display.h>
-
 #include "base/mem.h"
 #include "image/video_impl.h"
 #include "math/stats.h"
@@ -36,20 +34,22 @@ static bool choose(struct video_source *s, const char *path, struct err *err)
 bool video_source_open(struct video_source *s, const char *path, struct err *err)
 {
 	*s = (struct video_source){ 0 };
-	av_log_set_level(AV_LOG_QUIET);
+	if (!video_api_load(err))
+		return err_wrap(err, "%s", path);
+	av.av_log_set_level(AV_LOG_QUIET);
 	char *url = mem_printf("file:%s", path);
 	AVDictionary *opts = 0;
-	av_dict_set(&opts, "format_whitelist", formats, 0);
-	av_dict_set(&opts, "codec_whitelist", codecs, 0);
-	av_dict_set(&opts, "protocol_whitelist", "file", 0);
-	int got = avformat_open_input(&s->file, url, 0, &opts);
-	av_dict_free(&opts);
+	av.av_dict_set(&opts, "format_whitelist", formats, 0);
+	av.av_dict_set(&opts, "codec_whitelist", codecs, 0);
+	av.av_dict_set(&opts, "protocol_whitelist", "file", 0);
+	int got = av.avformat_open_input(&s->file, url, 0, &opts);
+	av.av_dict_free(&opts);
 	free(url);
 	if (got == AVERROR(ENOENT) || got == AVERROR(EACCES))
 		return err_set(err, "%s: %s", path, strerror(AVUNERROR(got)));
 	if (got < 0)
 		return err_set(err, "%s: is no video, or cut off before its index: copy it again, whole", path);
-	if (avformat_find_stream_info(s->file, 0) < 0)
+	if (av.avformat_find_stream_info(s->file, 0) < 0)
 		return err_set(err, "%s: its streams cannot be read: copy it again, whole", path);
 	return choose(s, path, err);
 }
@@ -57,25 +57,27 @@ bool video_source_open(struct video_source *s, const char *path, struct err *err
 bool video_source_decode(struct video_source *s, const char *path, int threads, struct err *err)
 {
 	const AVCodecParameters *p = s->file->streams[s->stream]->codecpar;
-	const AVCodec *codec = avcodec_find_decoder(p->codec_id);
+	const AVCodec *codec = av.avcodec_find_decoder(p->codec_id);
 	if (!codec)
-		return err_set(err, "%s: its codec (%s) cannot be decoded: convert it to H.264", path, avcodec_get_name(p->codec_id));
-	s->decoder = avcodec_alloc_context3(codec);
-	if (!s->decoder || avcodec_parameters_to_context(s->decoder, p) < 0)
+		return err_set(err, "%s: its codec (%s) cannot be decoded: convert it to H.264", path, av.avcodec_get_name(p->codec_id));
+	s->decoder = av.avcodec_alloc_context3(codec);
+	if (!s->decoder || av.avcodec_parameters_to_context(s->decoder, p) < 0)
 		return err_set(err, "%s: its codec's parameters cannot be read", path);
 	s->decoder->thread_count = threads;
 	s->decoder->pkt_timebase = s->file->streams[s->stream]->time_base;
 	AVDictionary *opts = 0;
-	av_dict_set(&opts, "codec_whitelist", codecs, 0);
-	int got = avcodec_open2(s->decoder, codec, &opts);
-	av_dict_free(&opts);
+	av.av_dict_set(&opts, "codec_whitelist", codecs, 0);
+	int got = av.avcodec_open2(s->decoder, codec, &opts);
+	av.av_dict_free(&opts);
 	return got >= 0 || err_set(err, "%s: its codec (%s) cannot be opened: convert it to H.264", path, codec->name);
 }
 
 void video_source_close(struct video_source *s)
 {
-	avcodec_free_context(&s->decoder);
-	avformat_close_input(&s->file);
+	if (s->decoder)
+		av.avcodec_free_context(&s->decoder);
+	if (s->file)
+		av.avformat_close_input(&s->file);
 }
 
 static int ascending(const void *a, const void *b)
@@ -112,10 +114,10 @@ static void intervals(struct video_info *info, double *first, long n, double *ti
 bool video_source_scan(struct video_source *s, struct video_info *info, const char *path, long limit, struct err *err)
 {
 	AVStream *st = s->file->streams[s->stream];
-	AVPacket *packet = av_packet_alloc();
+	AVPacket *packet = av.av_packet_alloc();
 	double *time = 0;
 	long n = 0, room = 0;
-	while (packet && av_read_frame(s->file, packet) >= 0) {
+	while (packet && av.av_read_frame(s->file, packet) >= 0) {
 		bool ours = packet->stream_index == s->stream && !(packet->flags & AV_PKT_FLAG_DISCARD) && packet->size > 0;
 		int64_t at = packet->pts != AV_NOPTS_VALUE ? packet->pts : packet->dts;
 		if (ours && n == room)
@@ -124,11 +126,11 @@ bool video_source_scan(struct video_source *s, struct video_info *info, const ch
 			double unstamped = (double)n / fmax(1, av_q2d(st->avg_frame_rate));
 			time[n++] = at == AV_NOPTS_VALUE ? unstamped : (double)at * av_q2d(st->time_base);
 		}
-		av_packet_unref(packet);
+		av.av_packet_unref(packet);
 		if (n > limit)
 			break;
 	}
-	av_packet_free(&packet);
+	av.av_packet_free(&packet);
 	intervals(info, &s->first, n, time);
 	free(time);
 	info->frames = n;
@@ -149,8 +151,8 @@ bool video_source_scan(struct video_source *s, struct video_info *info, const ch
 int video_source_rotation(const struct video_source *s)
 {
 	size_t size = 0;
-	const uint8_t *matrix = av_stream_get_side_data(s->file->streams[s->stream], AV_PKT_DATA_DISPLAYMATRIX, &size);
-	double counter = matrix && size >= 9 * sizeof(int32_t) ? av_display_rotation_get((const int32_t *)matrix) : 0;
+	const uint8_t *matrix = av.av_stream_get_side_data(s->file->streams[s->stream], AV_PKT_DATA_DISPLAYMATRIX, &size);
+	double counter = matrix && size >= 9 * sizeof(int32_t) ? av.av_display_rotation_get((const int32_t *)matrix) : 0;
 	if (!isfinite(counter))
 		return 0;
 	long quarter = lround(-counter / 90);

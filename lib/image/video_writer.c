@@ -3,14 +3,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/opt.h>
-#include <libswscale/swscale.h>
-
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/video.h"
+#include "image/video_api.h"
 
 enum { CLOCK = 90000 };     // ticks a second
 enum { ENCODER_THREADS = 4 };  // x264's bytes depend on their number: always the same one
@@ -29,10 +25,10 @@ struct video_writer {
 static void writer_free(struct video_writer *w)
 {
 	if (w->file && w->file->pb)
-		avio_closep(&w->file->pb);
-	avformat_free_context(w->file);
-	avcodec_free_context(&w->encoder);
-	sws_freeContext(w->sws);
+		av.avio_closep(&w->file->pb);
+	av.avformat_free_context(w->file);
+	av.avcodec_free_context(&w->encoder);
+	av.sws_freeContext(w->sws);
 	free(w->rgb);
 	free(w->path);
 	free(w->part);
@@ -41,48 +37,48 @@ static void writer_free(struct video_writer *w)
 
 static bool open_encoder(struct video_writer *w, const struct video_writer_conf *conf, struct err *err)
 {
-	const AVCodec *codec = avcodec_find_encoder_by_name("libx264");
-	if (!codec || !(w->encoder = avcodec_alloc_context3(codec)))
+	const AVCodec *codec = av.avcodec_find_encoder_by_name("libx264");
+	if (!codec || !(w->encoder = av.avcodec_alloc_context3(codec)))
 		return err_set(err, "%s: this machine's libavcodec has no x264 to write H.264 with", w->path);
 	AVCodecContext *e = w->encoder;
 	e->width = w->even_w;
 	e->height = w->even_h;
 	e->pix_fmt = AV_PIX_FMT_YUV420P;
 	e->time_base = (AVRational){ 1, CLOCK };
-	e->framerate = av_d2q(conf->fps, 1001000);
+	e->framerate = av.av_d2q(conf->fps, 1001000);
 	e->color_range = AVCOL_RANGE_MPEG;
 	e->colorspace = AVCOL_SPC_BT709;
 	e->color_primaries = AVCOL_PRI_BT709;
 	e->color_trc = AVCOL_TRC_BT709;
 	e->thread_count = ENCODER_THREADS;
 	e->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
-	av_opt_set(e->priv_data, "preset", conf->preset ? conf->preset : "fast", 0);
-	av_opt_set_double(e->priv_data, "crf", conf->crf, 0);
-	return avcodec_open2(e, codec, 0) >= 0
+	av.av_opt_set(e->priv_data, "preset", conf->preset ? conf->preset : "fast", 0);
+	av.av_opt_set_double(e->priv_data, "crf", conf->crf, 0);
+	return av.avcodec_open2(e, codec, 0) >= 0
 	       || err_set(err, "%s: x264 refuses %d x %d px, %g frames/s, quality %g", w->path, conf->width, conf->height, conf->fps, conf->crf);
 }
 
 static bool open_stream(struct video_writer *w, const struct video_writer_conf *conf)
 {
-	AVStream *st = avformat_new_stream(w->file, 0);
-	if (!st || avcodec_parameters_from_context(st->codecpar, w->encoder) < 0)
+	AVStream *st = av.avformat_new_stream(w->file, 0);
+	if (!st || av.avcodec_parameters_from_context(st->codecpar, w->encoder) < 0)
 		return false;
 	st->time_base = w->encoder->time_base;
 	st->avg_frame_rate = w->encoder->framerate;
 	w->file->flags |= AVFMT_FLAG_BITEXACT;
 	if (conf->made_by)
-		av_dict_set(&w->file->metadata, "comment", conf->made_by, 0);
+		av.av_dict_set(&w->file->metadata, "comment", conf->made_by, 0);
 	return true;
 }
 
 static bool open_file(struct video_writer *w, const struct video_writer_conf *conf, struct err *err)
 {
 	char *url = mem_printf("file:%s", w->part);
-	bool ok = avformat_alloc_output_context2(&w->file, 0, "mp4", url) >= 0 && open_stream(w, conf);
+	bool ok = av.avformat_alloc_output_context2(&w->file, 0, "mp4", url) >= 0 && open_stream(w, conf);
 	AVDictionary *opts = 0;
-	av_dict_set(&opts, "movflags", "+faststart", 0);  // plays while it loads
-	ok = ok && avio_open(&w->file->pb, url, AVIO_FLAG_WRITE) >= 0 && avformat_write_header(w->file, &opts) >= 0;
-	av_dict_free(&opts);
+	av.av_dict_set(&opts, "movflags", "+faststart", 0);  // plays while it loads
+	ok = ok && av.avio_open(&w->file->pb, url, AVIO_FLAG_WRITE) >= 0 && av.avformat_write_header(w->file, &opts) >= 0;
+	av.av_dict_free(&opts);
 	free(url);
 	return ok || err_set(err, "%s: cannot be written", w->path);
 }
@@ -90,17 +86,21 @@ static bool open_file(struct video_writer *w, const struct video_writer_conf *co
 static bool open_colours(struct video_writer *w, struct err *err)
 {
 	w->rgb = mem_array((size_t)w->even_w * (size_t)w->even_h, 3);
-	w->sws = sws_getContext(w->even_w, w->even_h, AV_PIX_FMT_RGB24, w->even_w, w->even_h, AV_PIX_FMT_YUV420P,
+	w->sws = av.sws_getContext(w->even_w, w->even_h, AV_PIX_FMT_RGB24, w->even_w, w->even_h, AV_PIX_FMT_YUV420P,
 	                        SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT | SWS_FULL_CHR_H_INT, 0, 0, 0);
-	const int *to = sws_getCoefficients(SWS_CS_ITU709);
-	return (w->sws && sws_setColorspaceDetails(w->sws, to, 1, to, 0, 0, 1 << 16, 1 << 16) >= 0)
+	const int *to = av.sws_getCoefficients(SWS_CS_ITU709);
+	return (w->sws && av.sws_setColorspaceDetails(w->sws, to, 1, to, 0, 0, 1 << 16, 1 << 16) >= 0)
 	       || err_set(err, "%s: colours cannot be converted", w->path);
 }
 
 struct video_writer *video_writer_open(const char *path, const struct video_writer_conf *conf, struct err *err)
 {
+	if (!video_api_load(err)) {
+		err_wrap(err, "%s", path);
+		return 0;
+	}
 	struct video_writer *w = mem_new(1, sizeof *w);
-	av_log_set_level(AV_LOG_QUIET);
+	av.av_log_set_level(AV_LOG_QUIET);
 	w->path = mem_str(path);
 	w->part = file_temporary(path);
 	w->width = conf->width;
@@ -122,16 +122,16 @@ struct video_writer *video_writer_open(const char *path, const struct video_writ
 /* Sends one frame (null: no more) and writes what comes out. */
 static bool encode(struct video_writer *w, AVFrame *frame, struct err *err)
 {
-	AVPacket *packet = av_packet_alloc();
-	bool ok = packet && avcodec_send_frame(w->encoder, frame) >= 0;
+	AVPacket *packet = av.av_packet_alloc();
+	bool ok = packet && av.avcodec_send_frame(w->encoder, frame) >= 0;
 	while (ok) {
-		int got = avcodec_receive_packet(w->encoder, packet);
+		int got = av.avcodec_receive_packet(w->encoder, packet);
 		if (got == AVERROR(EAGAIN) || got == AVERROR_EOF)
 			break;
-		av_packet_rescale_ts(packet, w->encoder->time_base, w->file->streams[0]->time_base);
-		ok = got >= 0 && av_interleaved_write_frame(w->file, packet) >= 0;
+		av.av_packet_rescale_ts(packet, w->encoder->time_base, w->file->streams[0]->time_base);
+		ok = got >= 0 && av.av_interleaved_write_frame(w->file, packet) >= 0;
 	}
-	av_packet_free(&packet);
+	av.av_packet_free(&packet);
 	return ok || err_set(err, "%s: cannot be written: is the disk full?", w->path);
 }
 
@@ -151,22 +151,22 @@ bool video_writer_put(struct video_writer *w, const uint8_t *rgb, double time, s
 	int64_t at = llround(time * CLOCK);
 	if (at <= w->last)
 		return err_set(err, "%s: frame at %.4f s: times must grow", w->path, time);
-	AVFrame *frame = av_frame_alloc();
+	AVFrame *frame = av.av_frame_alloc();
 	if (!frame)
 		return err_set(err, "%s: no memory for a frame", w->path);
 	frame->format = AV_PIX_FMT_YUV420P;
 	frame->width = w->even_w;
 	frame->height = w->even_h;
 	frame->pts = w->last = at;
-	bool ok = av_frame_get_buffer(frame, 0) >= 0 || err_set(err, "%s: no memory for a frame", w->path);
+	bool ok = av.av_frame_get_buffer(frame, 0) >= 0 || err_set(err, "%s: no memory for a frame", w->path);
 	if (ok) {
 		fill_up(w, rgb);
 		const uint8_t *const from[] = { w->rgb };
 		const int stride[] = { 3 * w->even_w };
-		sws_scale(w->sws, from, stride, 0, w->even_h, frame->data, frame->linesize);
+		av.sws_scale(w->sws, from, stride, 0, w->even_h, frame->data, frame->linesize);
 		ok = encode(w, frame, err);
 	}
-	av_frame_free(&frame);
+	av.av_frame_free(&frame);
 	return ok;
 }
 
@@ -174,9 +174,9 @@ bool video_writer_close(struct video_writer *w, bool keep, struct err *err)
 {
 	if (!w)
 		return true;
-	bool ok = !keep || (encode(w, 0, err) && (av_write_trailer(w->file) >= 0 || err_set(err, "%s: cannot be written", w->path)));
+	bool ok = !keep || (encode(w, 0, err) && (av.av_write_trailer(w->file) >= 0 || err_set(err, "%s: cannot be written", w->path)));
 	if (w->file && w->file->pb)
-		ok = (avio_closep(&w->file->pb) >= 0 || err_set(err, "%s: cannot be written", w->path)) && ok;
+		ok = (av.avio_closep(&w->file->pb) >= 0 || err_set(err, "%s: cannot be written", w->path)) && ok;
 	if (keep && ok)
 		ok = !rename(w->part, w->path) || err_set(err, "%s: cannot be put in its place", w->path);
 	if (!keep || !ok)
