@@ -35,22 +35,45 @@ static void map_at(float rgb[3], const struct image *map, const double d[3])
 		         + t * ((1 - s) * image_at(map, x0, y1)[c] + s * image_at(map, x1, y1)[c]);
 }
 
-/* Mean of the map over a lobe about d: Gaussian of 6 degrees, from the coarse map's pixels near by. */
-static void lobe_at(float rgb[3], const struct image *map, const double (*dirs)[3], const double d[3])
+/* The coarse map from which lobes are made: direction of each pixel, solid angle and polar angle of each row. */
+struct low {
+	struct image map;
+	double (*dirs)[3], weight[LOW], polar[LOW];
+};
+
+static struct low low_make(const struct image *map)
 {
+	struct low low = { .map = envmap_coarse(map, LOW) };
+	int w = low.map.width, h = low.map.height;
+	low.dirs = mem_array((size_t)w * (size_t)h, sizeof *low.dirs);
+	for (int y = 0; y < h; y++) {
+		low.weight[y] = envmap_solid_angle(&low.map, y);
+		low.polar[y] = M_PI * (y + 0.5) / h;
+		for (int x = 0; x < w; x++)
+			envmap_dir(low.dirs[y * w + x], (x + 0.5) / w, (y + 0.5) / h);
+	}
+	return low;
+}
+
+/* Mean of the map over a lobe about d: Gaussian of 6 degrees, cut off at three times that. */
+static void lobe_at(float rgb[3], const struct low *low, const double d[3])
+{
+	const double width = 6 * M_PI / 180, k = 1 / (2 * width * width), far = 0.1, reach = 2 * asin(sqrt(far) / 2);
+	const double polar = acos(fmin(fmax(-d[1], -1), 1));
 	double sum[3] = { 0 }, total = 0;
-	const double k = 1 / (2 * pow(6 * M_PI / 180, 2));
-	for (int y = 0; y < map->height; y++) {
-		double weight = envmap_solid_angle(map, y);  // a row's, and dear
-		for (int x = 0; x < map->width; x++) {
-			const double *e = dirs[y * map->width + x];
+	for (int y = 0; y < low->map.height; y++) {
+		// directions of two rows are at least as far apart as the rows
+		if (fabs(low->polar[y] - polar) > reach)
+			continue;
+		for (int x = 0; x < low->map.width; x++) {
+			const double *e = low->dirs[y * low->map.width + x];
 			double off = 2 - 2 * (d[0] * e[0] + d[1] * e[1] + d[2] * e[2]);  // the chord's square
-			if (off > 0.1)
+			if (off > far)
 				continue;
-			double w = weight * exp(-k * off);
+			double w = low->weight[y] * exp(-k * off);
 			total += w;
 			for (int c = 0; c < 3; c++)
-				sum[c] += w * image_at(map, x, y)[c];
+				sum[c] += w * image_at(&low->map, x, y)[c];
 		}
 	}
 	for (int c = 0; c < 3; c++)
@@ -60,10 +83,7 @@ static void lobe_at(float rgb[3], const struct image *map, const double (*dirs)[
 void envmap_unfold(struct envmap *env)
 {
 	int n = 2 * env->map.height;
-	struct image low = envmap_coarse(&env->map, LOW);
-	double(*dirs)[3] = mem_array((size_t)low.width * (size_t)low.height, sizeof *dirs);
-	for (int i = 0; i < low.width * low.height; i++)
-		envmap_dir(dirs[i], (i % low.width + 0.5) / low.width, (i / low.width + 0.5) / low.height);
+	struct low low = low_make(&env->map);
 	env->sharp = image_new(n, n, 4);
 	env->rough = image_new(ROUGH, ROUGH, 4);
 #pragma omp parallel for schedule(static)
@@ -78,10 +98,10 @@ void envmap_unfold(struct envmap *env)
 		for (int x = 0; x < ROUGH; x++) {
 			double d[3];
 			unfold_dir(d, (2 * x + 1.0) / ROUGH - 1, (2 * y + 1.0) / ROUGH - 1);
-			lobe_at(image_at(&env->rough, x, y), &low, (const double(*)[3])dirs, d);
+			lobe_at(image_at(&env->rough, x, y), &low, d);
 		}
-	free(dirs);
-	image_free(&low);
+	free(low.dirs);
+	image_free(&low.map);
 }
 
 static void square_at(float rgb[3], const struct image *map, float u, float v)
