@@ -238,7 +238,7 @@ static bool pictures(struct job *job, struct err *err)
 	if (!still(job, "three_quarter", job->conf->three_quarter_deg[0], job->conf->three_quarter_deg[1], err))
 		return false;
 	stage_progress(job->stage, ++done, total, "pictures");
-	return turntable(job, err) && turntable_film(job, output(job, "turntable", ".mp4"), err) && sheet_contact(job, err);
+	return turntable(job, err) && turntable_film(job, output(job, "turntable", ".mp4"), err);
 }
 
 static void figures(struct job *job)

@@ -37,12 +37,9 @@ int main(int argc, char **argv)
 		ok = render_eye(&eyes.job[i], &err);
 	skin.portrait.eye_samples = conf.samples;
 	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .capture = &capture, .eye = &eye, .photographed = &eyes };
-	ok = ok && render_skin(&faces, &err) && viewer_make(&faces, &err);
+	ok = ok && render_skin(&faces, &err);
+	show(&faces, ok, &err);
 	skin_close(&faces);
-	// The page is made even where a picture could not be: it says what is missing and why.
-	struct err late = { 0 };
-	if (!page_make(&stage, &capture, &conf, &late) && ok)
-		err = late;
 	jobs_close(&eyes);
 	capture_free(&capture);
 	return stage_end(&stage, &err);

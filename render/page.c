@@ -25,9 +25,7 @@ const char *page_file(struct page *page, const char *fmt, ...)
 	va_start(ap, fmt);
 	char *rel = format(fmt, ap);
 	va_end(ap);
-	const char *path;
-#pragma omp critical(page)
-	path = stage_path(page->stage, "%s", rel);
+	const char *path = stage_path(page->stage, "%s", rel);
 	free(rel);
 	return file_exists(path) ? path : 0;
 }
@@ -138,7 +136,6 @@ static json_t *data_make(struct page *page)
 	json_object_set_new(data, "css", json_string(page_css));
 	json_object_set_new(data, "js", json_string(page_js));
 	json_object_set_new(data, "photos", page_photos(page));
-	json_object_set_new(data, "viewer", json_boolean(page_file(page, "work/review/viewer.html")));
 	json_object_set_new(data, "has_photos", json_boolean(page->capture->n_photos));
 	if (page->capture->n_photos)
 		json_object_set_new(data, "eyes", page_eyes(page));
@@ -159,31 +156,47 @@ static json_t *data_make(struct page *page)
 	return data;
 }
 
-bool page_make(struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err)
+bool page_begin(struct page_work *work, struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err)
 {
 	struct file_list targets;
+	*work = (struct page_work){ .page = { stage, capture, conf, conf->page_px, json_array(), json_array(), json_array() } };
 	if (!stage_list(stage, &targets, "targets", err))
 		return false;
 	struct inputs in = inputs(capture, &targets);
 	file_list_free(&targets);
-	bool ok = stage_fresh(stage, out, in.n, (const char *const *)in.rel);
-	if (!ok) {
-		struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array(), json_array() };
-		json_t *data = data_make(&page);
-		char *html;
-		size_t size;
-		ok = template_fill(&html, &size, page_html, data, err) && file_write(stage_path(stage, "%s", out), html, size, err)
-		     && stage_made(stage, out, in.n, (const char *const *)in.rel, err);
-		if (ok)
-			stage_note(stage, "%s, %.1f MB", stage_path(stage, "%s", out), (double)size / 1e6);
-		free(ok ? html : 0);
-		json_decref(data);
-		json_decref(page.advice);
-		json_decref(page.film);
-		json_decref(page.missing);
-	}
-	for (int i = 0; i < in.n; i++)
-		free(in.rel[i]);
-	free(in.rel);
+	work->in = in.rel;
+	work->n_in = in.n;
+	if (!stage_fresh(stage, out, in.n, (const char *const *)in.rel))
+		work->data = data_make(&work->page);
+	return true;
+}
+
+static bool write(struct page_work *work, struct err *err)
+{
+	struct stage *stage = work->page.stage;
+	char *html;
+	size_t size;
+	json_object_set_new(work->data, "viewer", json_boolean(page_file(&work->page, "%s", "work/review/viewer.html")));
+	bool ok = template_fill(&html, &size, page_html, work->data, err) && file_write(stage_path(stage, "%s", out), html, size, err)
+	          && stage_made(stage, out, work->n_in, (const char *const *)work->in, err);
+	if (ok)
+		stage_note(stage, "%s, %.1f MB", stage_path(stage, "%s", out), (double)size / 1e6);
+	free(ok ? html : 0);
+	return ok;
+}
+
+bool page_end(struct page_work *work, struct err *err)
+{
+	// What was fresh before the last of its files was made may not be after it.
+	if (!work->data && work->in && !stage_fresh(work->page.stage, out, work->n_in, (const char *const *)work->in))
+		work->data = data_make(&work->page);
+	bool ok = !work->data || write(work, err);
+	json_decref(work->data);
+	json_decref(work->page.advice);
+	json_decref(work->page.film);
+	json_decref(work->page.missing);
+	for (int i = 0; i < work->n_in; i++)
+		free(work->in[i]);
+	free(work->in);
 	return ok;
 }

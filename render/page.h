@@ -17,6 +17,19 @@ struct page {
 	json_t *missing;    // what the page cannot show, and why: sentences
 };
 
+/* work/review/index.html on its way. */
+struct page_work {
+	struct page page;
+	json_t *data;       // null: nothing to do
+	char **in;          // every file that it shows
+	int n_in;
+};
+
+/* Reads and shrinks what the page shows, all but the interactive page, which it only links to and which may be written
+ * meanwhile; then writes it. page_end after page_begin in any case: it frees. */
+bool page_begin(struct page_work *work, struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err);
+bool page_end(struct page_work *work, struct err *err);
+
 /* The folder's file of that name if it is there, else null. Owned by the stage. */
 __attribute__((format(printf, 2, 3)))
 const char *page_file(struct page *page, const char *fmt, ...);

@@ -121,9 +121,6 @@ struct image compare_shot(struct job *job, const struct shot *shot, const struct
 struct image sheet_strip(int n, const struct image frames[]);
 bool sheet_contact(struct job *job, struct err *err);
 
-/* page.c: work/review/index.html. */
-bool page_make(struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err);
-
 /* turntable.c: the eye turned to and fro, MP4. */
 bool turntable_film(struct job *job, const char *rel, struct err *err);
 

@@ -65,6 +65,9 @@ struct skin_job {
 	double gain;
 };
 
+/* show.c: the contact sheets and the two pages; drawn: all pictures are there, else only the review page is made. */
+bool show(struct skin_job *faces, bool drawn, struct err *err);
+
 /* One character. */
 struct skin_target {
 	const char *name, *rig_path;      // rig_path relative to the folder

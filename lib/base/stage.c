@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <omp.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,9 @@
 #include "base/say.h"
 #include "base/version.h"
 
+/* Parts of a stage that run at the same time record what they make and say in one place. Recursive: some of these call others. */
+static pthread_mutex_t busy = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
+
 static double now_s(void)
 {
 	struct timespec t;
@@ -26,8 +30,11 @@ static double now_s(void)
 
 static const char *keep(struct stage *stage, char *s)
 {
+	pthread_mutex_lock(&busy);
 	stage->strings = mem_grow(stage->strings, (size_t)stage->n_strings + 1, sizeof *stage->strings);
-	return stage->strings[stage->n_strings++] = s;
+	stage->strings[stage->n_strings++] = s;
+	pthread_mutex_unlock(&busy);
+	return s;
 }
 
 _Noreturn static void die(const struct stage *stage, const struct err *err, int status)
@@ -117,18 +124,24 @@ bool stage_list(struct stage *stage, struct file_list *out, const char *dir, str
 	if (!file_list(out, stage_path(stage, "%s", dir), err))
 		return false;
 	record_listing_hash(hash, out->n, out->names);
+	pthread_mutex_lock(&busy);
 	record_list(stage->record, dir, hash);
+	pthread_mutex_unlock(&busy);
 	return true;
 }
 
 bool stage_fresh(struct stage *stage, const char *out, int n, const char *const in[])
 {
-	return !stage->force && record_fresh(stage->record, out, n, in);
+	pthread_mutex_lock(&busy);
+	bool fresh = !stage->force && record_fresh(stage->record, out, n, in);
+	pthread_mutex_unlock(&busy);
+	return fresh;
 }
 
 const char *stage_made_by(struct stage *stage, int n, const char *const in[])
 {
 	json_t *made = json_object(), *inputs = json_object();
+	pthread_mutex_lock(&busy);
 	for (int i = 0; i < n; i++) {
 		const char *hash = record_hash(stage->record, in[i]);
 		if (json_object_set_new(inputs, in[i], json_string(hash ? hash : "")))
@@ -140,13 +153,17 @@ const char *stage_made_by(struct stage *stage, int n, const char *const in[])
 	json_object_set_new(made, "inputs", inputs);
 	char *text = json_dumps(made, JSON_COMPACT | JSON_SORT_KEYS);
 	json_decref(made);
+	pthread_mutex_unlock(&busy);
 	return keep(stage, text);
 }
 
 bool stage_made(struct stage *stage, const char *out, int n, const char *const in[], struct err *err)
 {
+	pthread_mutex_lock(&busy);
 	record_made(stage->record, out, n, in);
-	return record_save(stage->record, false, err);
+	bool ok = record_save(stage->record, false, err);
+	pthread_mutex_unlock(&busy);
+	return ok;
 }
 
 static void end_line(struct stage *stage)
@@ -156,14 +173,21 @@ static void end_line(struct stage *stage)
 	stage->progress_open = false;
 }
 
+static void say(struct stage *stage, const char *fmt, va_list ap)
+{
+	pthread_mutex_lock(&busy);
+	end_line(stage);
+	say_line(stage->name, fmt, ap);
+	pthread_mutex_unlock(&busy);
+}
+
 void stage_note(struct stage *stage, const char *fmt, ...)
 {
 	if (stage->quiet)
 		return;
 	va_list ap;
 	va_start(ap, fmt);
-	end_line(stage);
-	say_line(stage->name, fmt, ap);
+	say(stage, fmt, ap);
 	va_end(ap);
 }
 
@@ -171,8 +195,7 @@ void stage_warn(struct stage *stage, const char *fmt, ...)
 {
 	va_list ap;
 	va_start(ap, fmt);
-	end_line(stage);
-	say_line(stage->name, fmt, ap);
+	say(stage, fmt, ap);
 	va_end(ap);
 }
 
@@ -202,7 +225,9 @@ void stage_progress(struct stage *stage, int done, int total, const char *what)
 void stage_figure(struct stage *stage, const char *key, double value, const char *unit)
 {
 	(void)stage;
+	pthread_mutex_lock(&busy);
 	say_log_figure(key, value, unit);
+	pthread_mutex_unlock(&busy);
 }
 
 static char *text_of(const char *fmt, va_list ap)
@@ -217,7 +242,9 @@ void stage_skipped(struct stage *stage, const char *fmt, ...)
 	va_start(ap, fmt);
 	char *text = text_of(fmt, ap);
 	va_end(ap);
+	pthread_mutex_lock(&busy);
 	say_log_skipped(text);
+	pthread_mutex_unlock(&busy);
 	stage_note(stage, "skipped: %s", text);
 	free(text);
 }
@@ -229,7 +256,9 @@ void stage_skipped_as_said(struct stage *stage, const char *fmt, ...)
 	va_start(ap, fmt);
 	char *text = text_of(fmt, ap);
 	va_end(ap);
+	pthread_mutex_lock(&busy);
 	say_log_skipped(text);
+	pthread_mutex_unlock(&busy);
 	free(text);
 }
 

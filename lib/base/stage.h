@@ -8,6 +8,7 @@
  *             stage_note(&stage, "...");
  *     return stage_end(&stage, &err);
  *
+ * What follows stage_start may be called from several threads at once, but for stage_progress and stage_end.
  * Only stage_* prints or exits. Paths handed to stage_* are relative to the capture folder
  * ("photos/left.jpg", "work/iris/texture.exr").
  *
