@@ -54,16 +54,23 @@ static json_t *span(const double range[2])
 	return page_text("%.0f µm (dark) to %.0f µm (light)", 1e3 * range[0], 1e3 * range[1]);
 }
 
-static void height_maps(struct page *page, json_t *list, const char *dir)
+static void thickness_map(struct page *page, json_t *list, const char *dir)
 {
-	static const char *const y[] = { "Y" }, *const yt[] = { "Y", "T" };
-	struct image thick, relief;
+	static const char *const y[] = { "Y" };
+	struct image thick;
 	double range[2];
 	if (page_map(&thick, page, page_file(page, "%s/thickness.exr", dir), 1, y)) {
 		json_t *picture = page_scalar_map(&thick, 0, range);
 		map(list, "Thickness, coarse", "Thickness of the stroma as colour", picture, span(range));
 		image_free(&thick);
 	}
+}
+
+static void relief_maps(struct page *page, json_t *list, const char *dir)
+{
+	static const char *const yt[] = { "Y", "T" };
+	struct image relief;
+	double range[2];
 	if (page_map(&relief, page, page_file(page, "%s/relief.exr", dir), 2, yt)) {
 		json_t *picture = page_relief_map(&relief, range);
 		map(list, "Relief", "The relief of the iris, lit from the upper left", picture,
@@ -74,26 +81,61 @@ static void height_maps(struct page *page, json_t *list, const char *dir)
 	}
 }
 
-static json_t *maps(struct page *page, const char *dir)
+enum { PICTURES = 4 };
+static const char *const names[PICTURES][3] = {
+	{ "front", "Front", "The fitted eye from the front, in a studio" },
+	{ "three_quarter", "Three-quarter", "The fitted eye turned to three-quarter view" },
+	{ "turntable", "Turntable", "The fitted eye turned from side to side, frame by frame" },
+	{ "contact_sheet", "Contact sheet", "All renderings on one sheet" },
+};
+
+static void read_pictures(json_t *pictures[PICTURES], struct page *page, const char *dir)
 {
-	json_t *list = json_array(), *texture = page_json(page, page_file(page, "%s/texture.json", dir));
-	json_t *better = json_object_get(texture, "photograph_better"), *line;
-	json_t *heights = json_array();
+	for (int i = 0; i < PICTURES; i++)
+		pictures[i] = page_picture(page, page_file(page, "%s/%s.png", dir, names[i][0]), i >= 2 ? 2 * page->width : page->width * 5 / 4);
+}
+
+static json_t *renders(struct page *page, const char *dir, json_t *const pictures[PICTURES])
+{
+	json_t *list = json_array();
+	for (int i = 0; i < PICTURES; i++) {
+		if (pictures[i])
+			json_array_append_new(list, json_pack("{s:s,s:s,s:b,s:b,s:o}", "title", names[i][1], "alt", names[i][2], "wide", i >= 2,
+			                                      "folded", i == 3, "picture", pictures[i]));
+		else
+			page_say(page->missing, "%s/%s.png has not been rendered.", dir, names[i][0]);
+	}
+	return list;
+}
+
+/* Maps and pictures of one eye, each read and shrunk on its own. */
+static void show_eye(json_t *eye, struct page *page, const struct capture_eye *e)
+{
+	json_t *list = json_array(), *texture = page_json(page, page_file(page, "%s/texture.json", e->iris));
+	json_t *better = json_object_get(texture, "photograph_better"), *line, *thickness = json_array(), *relief = json_array();
+	json_t *pictures[PICTURES];
 	size_t i;
 #pragma omp parallel sections
 	{
 #pragma omp section
-		colour_maps(page, list, dir, texture);
+		colour_maps(page, list, e->iris, texture);
 #pragma omp section
-		height_maps(page, heights, dir);
+		relief_maps(page, relief, e->iris);
+#pragma omp section
+		read_pictures(pictures, page, e->render);
+#pragma omp section
+		thickness_map(page, thickness, e->iris);
 	}
-	json_array_extend(list, heights);
-	json_decref(heights);
+	json_array_extend(list, thickness);
+	json_array_extend(list, relief);
+	json_decref(thickness);
+	json_decref(relief);
 	json_array_foreach(better, i, line)
 		if (json_is_string(line))
 			page_say(page->advice, "%s", json_string_value(line));
 	json_decref(texture);
-	return list;
+	json_object_set_new(eye, "maps", list);
+	json_object_set_new(eye, "renders", renders(page, e->render, pictures));
 }
 
 /* A row of the table of pigments: value, sigma, and a bar of both on 0..full. */
@@ -161,30 +203,6 @@ static json_t *pigments(struct page *page, const char *dir)
 	return out;
 }
 
-static json_t *renders(struct page *page, const char *dir)
-{
-	static const char *const names[][3] = {
-		{ "front", "Front", "The fitted eye from the front, in a studio" },
-		{ "three_quarter", "Three-quarter", "The fitted eye turned to three-quarter view" },
-		{ "turntable", "Turntable", "The fitted eye turned from side to side, frame by frame" },
-		{ "contact_sheet", "Contact sheet", "All renderings on one sheet" },
-	};
-	json_t *list = json_array(), *pictures[COUNT(names)];
-#pragma omp parallel for schedule(dynamic)
-	for (int i = 0; i < COUNT(names); i++)
-		pictures[i] = page_picture(page, page_file(page, "%s/%s.png", dir, names[i][0]), i >= 2 ? 2 * page->width : page->width * 5 / 4);
-	for (int i = 0; i < COUNT(names); i++) {
-		bool wide = i >= 2;
-		json_t *picture = pictures[i];
-		if (picture)
-			json_array_append_new(list, json_pack("{s:s,s:s,s:b,s:b,s:o}", "title", names[i][1], "alt", names[i][2], "wide", wide,
-			                                      "folded", i == 3, "picture", picture));
-		else
-			page_say(page->missing, "%s/%s.png has not been rendered.", dir, names[i][0]);
-	}
-	return list;
-}
-
 json_t *page_eyes(struct page *page)
 {
 	json_t *list = json_array();
@@ -193,8 +211,7 @@ json_t *page_eyes(struct page *page)
 		json_t *eye = json_object(), *pigment = pigments(page, e->iris);
 		const char *side = strcmp(e->side, "eye") ? e->side : "";
 		json_object_set_new(eye, "side", json_string(side));
-		json_object_set_new(eye, "maps", maps(page, e->iris));
-		json_object_set_new(eye, "renders", renders(page, e->render));
+		show_eye(eye, page, e);
 		if (pigment)
 			json_object_set_new(eye, "pigments", pigment);
 		json_array_append_new(list, eye);

@@ -1,6 +1,6 @@
 /* Quadrature of the march. */
 #include <math.h>
-
+#include <pthread.h>
 
 #include "eye/scene_impl.h"
 
@@ -29,16 +29,25 @@ static void gauss(int n, double node[], double weight[])
  * bisection between their changes of sign. */
 enum { EXPONENTIAL_MAX = SCENE_EXPONENTIAL_MAX, FINE = 64 };
 
+static double fine_node[FINE], fine_weight[FINE];
+static pthread_once_t fine_once = PTHREAD_ONCE_INIT;
+
+static void fine_make(void)
+{
+	gauss(FINE, fine_node, fine_weight);
+}
+
 struct stieltjes {
 	double a[EXPONENTIAL_MAX], b[EXPONENTIAL_MAX], h[EXPONENTIAL_MAX];  // p_k+1 = (x - a_k) p_k - b_k p_k-1; h: norms
 };
 
 static void stieltjes(struct stieltjes *s, int n, double c)
 {
-	double x[FINE], w[FINE], p[FINE], before[FINE] = { 0 };
-	gauss(FINE, x, w);
+	double w[FINE], p[FINE], before[FINE] = { 0 };
+	const double *x = fine_node;
+	pthread_once(&fine_once, fine_make);
 	for (int i = 0; i < FINE; i++) {
-		w[i] *= exp(-c * x[i]);
+		w[i] = fine_weight[i] * exp(-c * x[i]);
 		p[i] = 1;
 	}
 	for (int k = 0; k < n; k++) {
@@ -58,8 +67,20 @@ static void stieltjes(struct stieltjes *s, int n, double c)
 	}
 }
 
-/* p_n at x; *weight: Christoffel's, of a node there. */
-static double polynomial(const struct stieltjes *s, int n, double x, double *weight)
+/* p_n at x. */
+static double polynomial(const struct stieltjes *s, int n, double x)
+{
+	double p = 1, before = 0;
+	for (int k = 0; k < n; k++) {
+		double next = (x - s->a[k]) * p - s->b[k] * before;
+		before = p;
+		p = next;
+	}
+	return p;
+}
+
+/* Christoffel's weight of a node at x. */
+static double christoffel(const struct stieltjes *s, int n, double x)
 {
 	double p = 1, before = 0, sum = 0;
 	for (int k = 0; k < n; k++) {
@@ -68,27 +89,24 @@ static double polynomial(const struct stieltjes *s, int n, double x, double *wei
 		before = p;
 		p = next;
 	}
-	*weight = 1 / sum;
-	return p;
+	return 1 / sum;
 }
 
 void scene_exponential(int n, double c, double node[], double weight[])
 {
 	enum { GRID = 4000 };
 	struct stieltjes s;
-	double w, last;
 	stieltjes(&s, n, c);
-	last = polynomial(&s, n, 0, &w);
+	double last = polynomial(&s, n, 0);
 	for (int i = 1, found = 0; i <= GRID && found < n; i++) {
-		double now = polynomial(&s, n, (double)i / GRID, &w), lo = (i - 1.0) / GRID, hi = (double)i / GRID;
+		double now = polynomial(&s, n, (double)i / GRID), lo = (i - 1.0) / GRID, hi = (double)i / GRID;
 		if (now * last <= 0 && now != 0) {
 			for (int k = 0; k < 50; k++) {
 				double mid = (lo + hi) / 2;
-				*(polynomial(&s, n, mid, &w) * last > 0 ? &lo : &hi) = mid;
+				*(polynomial(&s, n, mid) * last > 0 ? &lo : &hi) = mid;
 			}
 			node[found] = lo;
-			polynomial(&s, n, lo, &w);
-			weight[found++] = w * exp(c * lo);
+			weight[found++] = christoffel(&s, n, lo) * exp(c * lo);
 		}
 		last = now;
 	}
