@@ -5,17 +5,16 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "stages/track/beside.h"
 #include "stages/track/line.h"
 
 enum { ENDS = 2 };
 
 /* Shares of the distance between the corners: what the mesh shapes at either end; how far skin tells of a corner. */
-static const double shaped = 0.14, beside = 0.055;
+static const double shaped = 0.14;
 /* How far skin is believed where it is near what is seen of either margin, and how near that is, mm: skin of the lower lid runs into
  * its margin; that of the upper hangs over it. */
 static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.35;
-// Of a full weight: less skin in sight does not tell.
-static const double least_skin = 0.15;
 
 /* The margin of the mesh, both lids from the inner corner to the outer, head frame. */
 struct rim {
@@ -73,32 +72,6 @@ static bool project_rim(struct line out[LIDS], const struct rim *rim, const stru
 				return false;
 	}
 	return true;
-}
-
-/* How far the skin beside a place of the margin is from where the head alone would take it, less what it was at the reference: px, by
- * the points nearest to it. Returns their weight. */
-static double skin_moved(double moved[2], const struct track_result *r, const struct track_points *points, const struct track_clip *clip, long frame,
-                         const double head[3], double reach)
-{
-	double weight = 0;
-	moved[0] = moved[1] = 0;
-	for (int i = 0; i < points->n; i++) {
-		const double *p = points->head[i];
-		double d2 = (p[0] - head[0]) * (p[0] - head[0]) + (p[1] - head[1]) * (p[1] - head[1]) + (p[2] - head[2]) * (p[2] - head[2]), now[2], was[2];
-		if (d2 > 9 * reach * reach)
-			continue;
-		long at = frame * r->n_points + i, at0 = clip->reference * r->n_points + i;
-		double w = (double)r->confidence[at] * exp(-d2 / (reach * reach));
-		if (!(w > 1e-6) || !head_project(now, &clip->camera, r->pose[frame], points->head[i])
-		    || !head_project(was, &clip->camera, clip->cam_from_head, points->head[i]))
-			continue;
-		weight += w;
-		for (int k = 0; k < 2; k++)
-			moved[k] += w * ((double)r->skin[at][k] - now[k] - (double)r->skin[at0][k] + was[k]);
-	}
-	for (int k = 0; k < 2; k++)
-		moved[k] /= fmax(weight, 1e-12);
-	return weight;
 }
 
 /* The affine map of three points. */
@@ -171,74 +144,54 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 }
 
 /* A margin drawn towards where the mesh's is carried by the skin beside it, as far as the two are not at odds. */
-static void draw_to_skin(struct eye_state *state, int lid, const struct line *mesh, const double (*moved)[2], const double *weight, double near_px)
+static void draw_to_skin(struct eye_state *state, int lid, const struct line *mesh, const struct beside *skin, long frame, double near_px)
 {
 	struct line found = { .n = state->lid_points }, out = { .n = mesh->n };
 	memcpy(found.p, state->lid[lid], (size_t)found.n * sizeof *found.p);
 	for (int i = 0; i < mesh->n; i++) {
-		double p[2] = { mesh->p[i][0] + moved[i][0], mesh->p[i][1] + moved[i][1] }, q[2];
+		const double *moved = beside_moved(skin, i, frame);
+		double p[2] = { mesh->p[i][0] + moved[0], mesh->p[i][1] + moved[1] }, q[2];
 		bool end = i == 0 || i == mesh->n - 1;
 		memcpy(q, end ? found.p[i ? found.n - 1 : 0] : p, sizeof q);
 		if (!end)
 			line_nearest(q, &found, p);
-		double off = hypot(p[0] - q[0], p[1] - q[1]) / near_px, share = end ? 0 : believed[lid] * fmin(1, weight[i]) / (1 + pow(off, 4));
+		double off = hypot(p[0] - q[0], p[1] - q[1]) / near_px, share = end ? 0 : believed[lid] * beside_weight(skin, i, frame) / (1 + pow(off, 4));
 		for (int k = 0; k < 2; k++)
 			out.p[i][k] = q[k] + share * (p[k] - q[k]);
 	}
 	line_spread(state->lid[lid], state->lid_points, &out);
 }
 
-/* Where the skin beside a corner is not seen, it moves from where it was last to where it is next. */
-static void fill(long n, double (*moved)[2], const bool *told)
+static void eye(struct track_result *r, int side, const struct track_clip *clip, const struct track_subject *s, const struct track_points *points)
 {
-	long last = -1;
-	for (long f = 0; f <= n; f++) {
-		if (f < n && !told[f])
+	struct rim rim;
+	struct beside skin[LIDS];
+	rim_of(&rim, &s->margin[side]);
+	for (int k = 0; k < LIDS; k++)
+		skin[k] = beside_new(rim.n[k], rim.head[k], r, side, clip, points);
+	double near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
+	for (long f = 0; f < r->n; f++) {
+		struct eye_state *state = &r->eyes.state[f][side];
+		struct line mesh[LIDS];
+		double corner[ENDS][2];
+		if (!isfinite(state->lid[0][0][0]) || !project_rim(mesh, &rim, clip, r->pose[f]))
 			continue;
-		for (long i = last + 1; i < f; i++)
-			for (int k = 0; k < 2; k++) {
-				double a = last < 0 ? (f < n ? moved[f][k] : 0) : moved[last][k], b = f < n ? moved[f][k] : a;
-				moved[i][k] = a + (b - a) * (double)(i - last) / (double)(f - last);
-			}
-		last = f;
+		for (int c = 0; c < ENDS; c++) {
+			int end = c ? mesh[0].n - 1 : 0;
+			for (int k = 0; k < 2; k++)
+				corner[c][k] = mesh[0].p[end][k] + beside_moved(&skin[0], end, f)[k];
+		}
+		reshape(state, mesh, (const double(*)[2])corner);
+		for (int k = 0; k < LIDS; k++)
+			draw_to_skin(state, k, &mesh[k], &skin[k], f, near_px);
 	}
+	for (int k = 0; k < LIDS; k++)
+		beside_free(&skin[k]);
 }
 
 void track_corners(struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_points *points)
 {
-	for (int e = 0; e < SIDES && r->has_eyes && points->n; e++) {
-		const struct eye_opening *o = &s->margin[e];
-		struct rim rim;
-		double(*moved)[2] = mem_array(ENDS * (size_t)r->n + 1, sizeof *moved), wide = 0;
-		bool *told = mem_new((size_t)r->n + 1, sizeof *told);
-		for (int k = 0; k < 3; k++)
-			wide += pow(o->canthus[1][k] - o->canthus[0][k], 2);
-		for (int c = 0; c < ENDS && o->open; c++) {
-			for (long f = 0; f < r->n; f++)
-				told[f] = skin_moved(moved[c * r->n + f], r, points, clip, f, o->canthus[c], beside * sqrt(wide)) > least_skin;
-			fill(r->n, moved + c * r->n, told);
-		}
-		if (o->open)
-			rim_of(&rim, o);
-		for (long f = 0; f < r->n && o->open && r->eyes.globe[e].seen; f++) {
-			struct eye_state *state = &r->eyes.state[f][e];
-			struct line mesh[LIDS];
-			double corner[ENDS][2];
-			if (!isfinite(state->lid[0][0][0]) || !project_rim(mesh, &rim, clip, r->pose[f]))
-				continue;
-			for (int c = 0; c < ENDS; c++)
-				for (int k = 0; k < 2; k++)
-					corner[c][k] = mesh[0].p[c ? mesh[0].n - 1 : 0][k] + moved[c * r->n + f][k];
-			reshape(state, mesh, corner);
-			double near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
-			for (int k = 0; k < LIDS; k++) {
-				double by[OPENING_POINTS + 2][2], weight[OPENING_POINTS + 2];
-				for (int i = 0; i < rim.n[k]; i++)
-					weight[i] = skin_moved(by[i], r, points, clip, f, rim.head[k][i], beside * sqrt(wide)) / least_skin;
-				draw_to_skin(state, k, &mesh[k], (const double(*)[2])by, weight, near_px);
-			}
-		}
-		free(moved);
-		free(told);
-	}
+	for (int e = 0; e < SIDES && r->has_eyes && points->n; e++)
+		if (s->margin[e].open && r->eyes.globe[e].seen)
+			eye(r, e, clip, s, points);
 }
