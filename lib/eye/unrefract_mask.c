@@ -29,9 +29,11 @@ static void take_logs(struct work *work, const struct unrefract_survey *survey, 
 {
 	long n = (long)work->size * work->size;
 	for (int c = 0; c < 3; c++) {
+#pragma omp parallel for schedule(static)
 		for (long i = 0; i < n; i++)
 			work->log[c][i] = survey->rgb[3 * i + c];
 		plane_blur_weighted(work->log[c], seen, work->size, work->size, sigma, 0);
+#pragma omp parallel for schedule(static)
 		for (long i = 0; i < n; i++)
 			work->log[c][i] = logf(fmaxf(work->log[c][i], darkest));
 	}
@@ -52,11 +54,14 @@ static void mark_lids(struct work *work, const struct unrefract_survey *survey, 
 	double lid_t[SHEET_ANGLES];
 	take_logs(work, survey, seen, 0.06 / work->texel);
 	unrefract_lids(lid_t, (const float *const *)work->log, seen, sheet, conf);
+#pragma omp parallel for schedule(static)
 	for (int y = 0; y < work->size; y++)
 		for (int x = 0; x < work->size; x++) {
-			double phi = atan2(plane_mm(y, survey) - sheet->pupil.cy, plane_mm(x, survey) - sheet->pupil.cx);
 			long i = (long)y * work->size + x;
-			if (work->kind[i] == IRIS && work->t[i] > lid_at(lid_t, phi))
+			if (work->kind[i] != IRIS)
+				continue;
+			double phi = atan2(plane_mm(y, survey) - sheet->pupil.cy, plane_mm(x, survey) - sheet->pupil.cx);
+			if (work->t[i] > lid_at(lid_t, phi))
 				work->kind[i] = LID;
 		}
 }
@@ -123,6 +128,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 		rings[k] = rings_of(work->log[k], weight, sheet, false, 0.12f);
 	int c = darkest_channel(rings);
 	rings_even(&rings[c]);
+#pragma omp parallel for schedule(static)
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
 		bool here = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.9f;  // beyond: the limbus' haze
@@ -150,6 +156,7 @@ static void mark_lashes(struct work *work, const struct unrefract_survey *survey
 	int size = work->size;
 	long n = (long)size * size;
 	float *fine = mem_array((size_t)n, sizeof *fine), *wide = mem_array((size_t)n, sizeof *wide);
+#pragma omp parallel for schedule(static)
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
 		fine[i] = wide[i] = logf(fmaxf(0.3f * rgb[0] + 0.6f * rgb[1] + 0.1f * rgb[2], darkest));
@@ -208,6 +215,7 @@ void unrefract_mask(struct unrefract_survey *survey, const float *seen, const st
 		work.log[c] = mem_array(n, sizeof(float));
 	work.t = mem_array(n, sizeof(float));
 	work.kind = mem_array(n, 1);
+#pragma omp parallel for schedule(static)
 	for (int y = 0; y < size; y++)
 		for (int x = 0; x < size; x++) {
 			long i = (long)y * size + x;

@@ -15,11 +15,18 @@ struct limbus_options {
 	int overlay_px;
 };
 
-/* work/limbus/NAME.edge.json of every photograph that is not up to date. */
-bool limbus_measure(struct stage *stage, const struct capture *capture, const struct limbus_options *o, struct err *err);
+/* A photograph in memory, for who needs the same one next. */
+struct limbus_kept {
+	const struct capture_photo *of;  // null: none
+	struct photo photo;
+};
+
+/* work/limbus/NAME.edge.json of every photograph that is not up to date; the last of them is kept. photo_free(&kept->photo). */
+bool limbus_measure(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+                    struct err *err);
 
 /* work/limbus/NAME.json and NAME.png, all photographs of an eye together. False when none is usable. */
-bool limbus_fit_poses(struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+bool limbus_fit_poses(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
                       struct err *err);
 
 /* "work/limbus/NAME.edge.json"; owned by the caller, free(). */

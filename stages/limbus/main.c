@@ -52,9 +52,11 @@ int main(int argc, char **argv)
 	};
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
+	struct limbus_kept kept = { 0 };
 	if (eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err)
-	    && limbus_measure(&stage, &capture, &o, &err))
-		limbus_fit_poses(&stage, &capture, &o, &err);
+	    && limbus_measure(&kept, &stage, &capture, &o, &err))
+		limbus_fit_poses(&kept, &stage, &capture, &o, &err);
+	photo_free(&kept.photo);
 	capture_free(&capture);
 	return stage_end(&stage, &err);
 }

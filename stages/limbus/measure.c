@@ -80,11 +80,13 @@ static bool lean(struct limbus_record *record, const struct limbus_found *found,
 	return true;
 }
 
-static void measure_one(struct limbus_record *record, struct stage *stage, const struct capture_photo *p,
+static void measure_one(struct limbus_record *record, struct limbus_kept *kept, struct stage *stage, const struct capture_photo *p,
                         const struct limbus_options *o, const struct camera_rig *rig)
 {
 	struct photo photo = { 0 };
 	struct err err = { 0 };
+	photo_free(&kept->photo);
+	*kept = (struct limbus_kept){ 0 };
 	*record = (struct limbus_record){ 0 };
 	if (!photo_load(&photo, stage_path(stage, "%s", p->file), o->limit_mpx, &err)) {
 		record->width = record->height = 1;
@@ -103,10 +105,11 @@ static void measure_one(struct limbus_record *record, struct stage *stage, const
 		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
 	}
 	free(found);
-	photo_free(&photo);
+	*kept = (struct limbus_kept){ p, photo };
 }
 
-bool limbus_measure(struct stage *stage, const struct capture *capture, const struct limbus_options *o, struct err *err)
+bool limbus_measure(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+                    struct err *err)
 {
 	struct camera_rig rig = { 0 };
 	const char *path = stage_path(stage, RIG);
@@ -121,7 +124,7 @@ bool limbus_measure(struct stage *stage, const struct capture *capture, const st
 		stage_progress(stage, i, capture->n_photos, "measure");
 		if (!stage_fresh(stage, out, n_in, in)) {
 			struct limbus_record *record = mem_new(1, sizeof *record);
-			measure_one(record, stage, p, o, &rig);
+			measure_one(record, kept, stage, p, o, &rig);
 			ok = limbus_record_save(record, stage_path(stage, "%s", out), stage_made_by(stage, n_in, in), err)
 			     && stage_made(stage, out, n_in, in, err);
 			free(record);

@@ -24,6 +24,7 @@ struct eye_work {
 	struct pose_conf pose;               // aspect as fitted or declared
 	double aspect_sigma;
 	int usable;
+	struct limbus_kept *kept;
 };
 
 /* What is common to the eye: its aspect, declared or fitted to all its photographs under the prior. */
@@ -131,15 +132,19 @@ static char *extra_of(const struct limbus_record *r, const struct pose *pose)
 
 static bool write_overlay(const struct eye_work *w, int i, const struct fit *fit, const char *path, struct err *err)
 {
-	struct photo photo = { 0 };
+	struct limbus_kept *kept = w->kept;
 	const struct capture_photo *p = w->photo[i];
-	if (!photo_load(&photo, stage_path(w->stage, "%s", p->file), w->o->limit_mpx, err))
-		return false;
+	if (kept->of != p) {
+		photo_free(&kept->photo);
+		*kept = (struct limbus_kept){ 0 };
+		if (!photo_load(&kept->photo, stage_path(w->stage, "%s", p->file), w->o->limit_mpx, err))
+			return false;
+		kept->of = p;
+	}
 	int width, height;
-	uint8_t *px = limbus_overlay(&width, &height, w->o->overlay_px, &photo, &w->record[i], fit);
+	uint8_t *px = limbus_overlay(&width, &height, w->o->overlay_px, &kept->photo, &w->record[i], fit);
 	bool ok = picture_png_write(stage_path(w->stage, "%s", path), px, width, height, 3, err);
 	free(px);
-	photo_free(&photo);
 	return ok;
 }
 
@@ -219,13 +224,13 @@ static bool fit_eye(struct eye_work *w, struct err *err)
 	return ok;
 }
 
-bool limbus_fit_poses(struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+bool limbus_fit_poses(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
                       struct err *err)
 {
 	int usable = 0;
 	bool ok = true;
 	for (int e = 0; e < capture->n_eyes && ok; e++) {
-		struct eye_work w = { .stage = stage, .capture = capture, .o = o };
+		struct eye_work w = { .stage = stage, .capture = capture, .o = o, .kept = kept };
 		w.photo = mem_new((size_t)capture->n_photos, sizeof *w.photo);
 		w.record = mem_new((size_t)capture->n_photos, sizeof *w.record);
 		for (int i = 0; i < capture->n_photos; i++)
