@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 
-enum { STRIPE = 256 };
+enum { STRIPE = 64 };
 
 int linalg_serial(void)
 {
@@ -163,9 +163,8 @@ void scatter_add(struct scatter *s, long n, const double *x, const double *w)
 	}
 	if (!s->S)
 		square_rows(s);
-	if (!s->work)
-		s->work = mem_array((size_t)(SCATTER_BLOCK + 1) * (size_t)s->p + 1, sizeof *s->work);
 	double one[SCATTER_BLOCK];
+	scatter_rows(s);
 	for (long at = 0; at < n; at += SCATTER_BLOCK) {
 		int m = n - at < SCATTER_BLOCK ? (int)(n - at) : SCATTER_BLOCK;
 		for (int r = 0; r < m; r++)
@@ -173,6 +172,26 @@ void scatter_add(struct scatter *s, long n, const double *x, const double *w)
 		memcpy(s->work, x + (size_t)at * (size_t)s->p, (size_t)m * (size_t)s->p * sizeof *x);
 		merge_block(s, m, one);
 	}
+}
+
+double *scatter_rows(struct scatter *s)
+{
+	if (!s->work)
+		s->work = mem_array((size_t)(SCATTER_BLOCK + 1) * (size_t)s->p + 1, sizeof *s->work);
+	return s->work;
+}
+
+void scatter_take(struct scatter *s, long n, const double *w)
+{
+	if (s->S) {
+		merge_block(s, (int)n, w);
+		return;
+	}
+	double *rows = s->work;  // adding may need it
+	s->work = 0;
+	scatter_add(s, n, rows, w);
+	free(s->work);
+	s->work = rows;
 }
 
 /* Columns from..from+n-1 of the rows kept, centred and weighted: [s->n][n]. */

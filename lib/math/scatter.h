@@ -33,6 +33,11 @@ void scatter_free(struct scatter *s);
 /* n rows [n][p], weights w[n] >= 0 (null: all 1). Every number must be finite. */
 void scatter_add(struct scatter *s, long n, const double *x, const double *w);
 
+/* The same without a copy: room for SCATTER_BLOCK rows [p], which scatter_take adds, the first n of them; what they hold is
+ * lost. No other call between the two; to write to from any thread, call scatter_rows once before. */
+double *scatter_rows(struct scatter *s);
+void scatter_take(struct scatter *s, long n, const double *w);
+
 /* Columns from..p-1 lie near k known directions V[p - from][k] (orthonormal columns): these are summed in double, only what
  * is left beside them in single precision, at twice the speed. Rounding is then 1e-7 of the rest, not of the whole:
  * components that stand ten times out of the rest keep 1e-9. Before the first row, keep = 0. */

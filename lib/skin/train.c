@@ -51,15 +51,18 @@ static inline void keep_if_measured(double *x, double *c, double to, double beli
 /* Points that all lie in the very same place are no lids and no skin: what a tracker writes that has nothing to write. */
 static bool collapsed(int n, const double *x, const double *c)
 {
-	double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
+	double place[2] = { NAN, NAN };
 	int measured = 0;
-	for (int i = 0; i < n; i++)
-		if (c[i] > 0) {
-			measured++;
-			low[i % 2] = fmin(low[i % 2], x[i]);
-			high[i % 2] = fmax(high[i % 2], x[i]);
-		}
-	return measured > 2 && high[0] <= low[0] && high[1] <= low[1];
+	for (int i = 0; i < n; i++) {
+		if (!(c[i] > 0))
+			continue;
+		measured++;
+		if (isnan(place[i % 2]))
+			place[i % 2] = x[i];
+		else if (x[i] != place[i % 2])
+			return false;
+	}
+	return measured > 2;
 }
 
 static void forget(int n, double *x, double *c)
@@ -70,30 +73,34 @@ static void forget(int n, double *x, double *c)
 	}
 }
 
-bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS],
-                struct err *err)
+void train_accept(const struct train *t, long n, const double *lid, const double *skin, const double *seen,
+                  double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS])
 {
-	int nu = t->part[TRAIN_SKIN].n, nv = nu / 2;
-	double *lid = mem_array((size_t)n * (size_t)t->n_lid + 1, sizeof *lid);
-	double *skin = mem_array((size_t)n * (size_t)nu + 1, sizeof *skin), *seen = mem_array((size_t)n * (size_t)nv + 1, sizeof *seen);
-	bool ok = t->clip->read(t->clip->ctx, first, n, lid, skin, seen, err);
-#pragma omp parallel for if (n > 1)
-	for (long r = 0; r < (ok ? n : 0); r++) {
+	long nu = t->part[TRAIN_SKIN].n;
+	for (long r = 0; r < n; r++) {
 		for (int p = 0; p < 2; p++)
-			for (int i = 0; i < t->n_eye; i++) {
-				size_t at = (size_t)r * (size_t)t->n_eye + (size_t)i;
-				keep_if_measured(&x[p][at], &c[p][at], lid[r * t->n_lid + p * t->n_eye + i], 1);
-			}
-		for (int i = 0; i < nu; i++) {
-			size_t at = (size_t)r * (size_t)nu + (size_t)i;
-			keep_if_measured(&x[TRAIN_SKIN][at], &c[TRAIN_SKIN][at], skin[at], seen[r * nv + i / 2]);
-		}
+			for (int i = 0; i < t->n_eye; i++)
+				keep_if_measured(&x[p][r * t->n_eye + i], &c[p][r * t->n_eye + i], lid[r * t->n_lid + p * t->n_eye + i], 1);
+		double *to = x[TRAIN_SKIN] + r * nu, *belief = c[TRAIN_SKIN] + r * nu;
+		for (long i = 0; i < nu; i++)
+			keep_if_measured(&to[i], &belief[i], skin[r * nu + i], seen[r * nu / 2 + i / 2]);
 		for (int p = 0; p < TRAIN_PARTS; p++) {
-			size_t at = (size_t)r * (size_t)t->part[p].n;
+			long at = r * t->part[p].n;
 			if (collapsed(t->part[p].n, x[p] + at, c[p] + at))
 				forget(t->part[p].n, x[p] + at, c[p] + at);
 		}
 	}
+}
+
+bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS],
+                struct err *err)
+{
+	size_t nu = (size_t)t->part[TRAIN_SKIN].n;
+	double *lid = mem_array((size_t)n * (size_t)t->n_lid + 1, sizeof *lid), *skin = mem_array((size_t)n * nu + 1, sizeof *skin);
+	double *seen = mem_array((size_t)n * nu / 2 + 1, sizeof *seen);
+	bool ok = t->clip->read(t->clip->ctx, first, n, lid, skin, seen, err);
+	if (ok)
+		train_accept(t, n, lid, skin, seen, x, c);
 	free(lid);
 	free(skin);
 	free(seen);

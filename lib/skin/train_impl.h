@@ -6,6 +6,8 @@
 
 enum { PILOT_FRAMES = 512, PILOT_COMPONENTS = 20, EYE_INPUTS = 5 };
 
+#define TRAIN_LEAST_SHARE 0.3  // of a frame's numbers must be measured for it to count
+
 /* The lids of one eye, or the skin. */
 struct part {
 	int n, kept;         // coordinates; components of the model
@@ -44,6 +46,9 @@ struct train {
  * d[n]: distance of each row from the pilot, px; share[n]: of its numbers measured. */
 void part_complete(struct part *part, long n, double *x, const double *c, double *d, double *share);
 
+/* The same for a few rows, on the calling thread. */
+void part_complete_few(const struct part *part, int n, double *x, const double *c, double *d, double *share);
+
 /* The robust weight of a row of that distance: Huber's for scatter. */
 double part_weight(const struct part *part, const struct train_conf *conf, double d);
 
@@ -51,7 +56,21 @@ double part_weight(const struct part *part, const struct train_conf *conf, doubl
 void part_pilot(struct part *part, long m, double *x, double *c, const struct train_conf *conf);
 void part_free(struct part *part);
 
-/* n frames from `first` into x[part] and c[part] ([n][part->n] each); work is of those sizes. */
+/* Buffers of n frames by part: numbers, how far to believe them ([n][part.n]), distances, shares measured, weights. */
+struct frames {
+	double *x[TRAIN_PARTS], *c[TRAIN_PARTS], *d[TRAIN_PARTS], *share[TRAIN_PARTS], *w[TRAIN_PARTS];
+};
+struct frames frames_new(const struct train *t, long n);
+void frames_free(struct frames *f);
+
+/* Weights of n completed frames; frame[i]: number of the i-th in the clip. */
+void train_weigh(const struct train *t, struct frames *f, long n, const long *frame);
+
+/* n rows as read into x[part] and c[part]: numbers that are none, or lie outside any picture, are not measured. */
+void train_accept(const struct train *t, long n, const double *lid, const double *skin, const double *seen,
+                  double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS]);
+
+/* n frames from `first` into x[part] and c[part] ([n][part->n] each). */
 bool train_read(struct train *t, long first, long n, double *const x[TRAIN_PARTS], double *const c[TRAIN_PARTS],
                 struct err *err);
 

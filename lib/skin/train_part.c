@@ -114,13 +114,15 @@ static void measure_chunk(const struct part *p, int m, double *x, double *d, dou
 	for (int i = 0; i < n; i++)
 		seen += p->seen[i];
 	for (int r = 0; r < m; r++) {
-		d[r] = 0;
+		double *xr = x + r * n, *yr = y + r * n, squares = 0;
+#pragma omp simd reduction(+ : squares)
 		for (int i = 0; i < n; i++) {
-			double one = p->seen[i] ? x[r * n + i] - p->mean[i] : 0;
-			x[r * n + i] = p->seen[i] ? x[r * n + i] : p->mean[i];
-			y[r * n + i] = one;
-			d[r] += one * one;
+			double to = p->seen[i] ? xr[i] : p->mean[i], one = to - p->mean[i];
+			xr[i] = to;
+			yr[i] = one;
+			squares += one * one;
 		}
+		d[r] = squares;
 	}
 	if (k)
 		cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, k, n, 1, y, n, p->V, k, 0, scores, k);
@@ -134,7 +136,7 @@ static void measure_chunk(const struct part *p, int m, double *x, double *d, dou
 	free(scores);
 }
 
-static void complete_chunk(const struct part *p, int m, double *x, const double *c, double *d, double *share)
+void part_complete_few(const struct part *p, int m, double *x, const double *c, double *d, double *share)
 {
 	int n = p->n;
 	if (all_measured(p, m, c)) {
@@ -160,7 +162,7 @@ void part_complete(struct part *p, long n, double *x, const double *c, double *d
 	for (long at = 0; at < n; at += CHUNK) {
 		int m = n - at < CHUNK ? (int)(n - at) : CHUNK;
 		size_t o = (size_t)at * (size_t)p->n;
-		complete_chunk(p, m, x + o, c + o, d + at, share + at);
+		part_complete_few(p, m, x + o, c + o, d + at, share + at);
 	}
 }
 
