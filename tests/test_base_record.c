@@ -6,6 +6,7 @@
 
 #include "base/conf.h"
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/record.h"
 #include "tests/lib/scratch.h"
 
@@ -18,7 +19,7 @@ static int setup(void **state)
 	scratch_open();
 	scratch_text("program", "program 1");
 	scratch_text("defaults", "sigma = 2\nsigma.draft = 4\n");
-	scratch_text("shared", "quality = review\nphoto.*.hint =\neye.index = 1.336\n");
+	scratch_text("shared", "quality = review\nphoto.*.hint =\nview.*.mm =\neye.index = 1.336\n");
 	scratch_text("capture.conf", "");
 	scratch_text("photos/a.jpg", "picture");
 	return 0;
@@ -51,6 +52,7 @@ static void run_stage(const char *config)
 	assert_true(file_list(&list, scratch_path("photos"), &err));
 	record_listing_hash(hash, list.n, list.names);
 	record_list(r, "photos", hash);
+	record_each(r, "photo.*.hint");
 	file_list_free(&list);
 	if (!record_fresh(r, out, 1, inputs)) {
 		scratch_text(out, "made");
@@ -147,6 +149,45 @@ static void configuration_changed(void **state)
 	assert_false(holds("has changed"));
 	scratch_text("capture.conf", "photo.a.hint = 1 2 3\n");
 	assert_false(holds("photo.a.hint is new"));
+	scratch_text("capture.conf", "view.a.mm = 1\n");  // a pattern that another stage reads
+	assert_true(holds(0));
+}
+
+static void note_dropped(void *ctx, const char *rel)
+{
+	char *all = ctx;
+	strcat(strcat(all, rel), ";");
+}
+
+/* What a stage keeps to go on from is removed where its bytes are not those it left, once, and nothing else is. */
+static void altered_files_are_dropped(void **state)
+{
+	(void)state;
+	static const char *const kept[] = { "work/kept/a", "work/kept/b", "work/kept/gone", "work/keptnot/c" };
+	struct err err = { 0 };
+	char dropped[200] = "";
+	for (int i = 0; i < COUNT(kept); i++)
+		scratch_text(kept[i], "made");
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	for (int i = 0; i < COUNT(kept); i++)
+		record_made(r, kept[i], 0, 0);
+	assert_true(record_save(r, true, &err));
+	record_free(r);
+	scratch_text("work/kept/b", "mad");
+	scratch_text("work/keptnot/c", "mad");
+	unlink(scratch_path("%s", kept[2]));
+	r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	assert_true(record_drop_altered(r, "work/kept", note_dropped, dropped, &err));
+	record_free(r);
+	assert_string_equal(dropped, "work/kept/b;");
+	assert_true(file_exists(scratch_path("work/kept/a")) && !file_exists(scratch_path("work/kept/b")));
+	assert_true(file_exists(scratch_path("work/keptnot/c")));
+	// A run that goes on with them and is killed leaves other bytes, and no fault.
+	scratch_text("work/kept/a", "longer");
+	r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	assert_true(record_drop_altered(r, "work/kept", note_dropped, dropped, &err));
+	record_free(r);
+	assert_true(file_exists(scratch_path("work/kept/a")));
 }
 
 static void an_unfinished_run_does_not_hold(void **state)
@@ -187,6 +228,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(files_came_and_went, setup, teardown),
 		cmocka_unit_test_setup_teardown(configuration_changed, setup, teardown),
 		cmocka_unit_test_setup_teardown(an_unfinished_run_does_not_hold, setup, teardown),
+		cmocka_unit_test_setup_teardown(altered_files_are_dropped, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_damaged_record_is_none, setup, teardown),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

@@ -21,6 +21,8 @@ static void test_table(void **state)
 	assert_true(isnan(sensor_mm("")));
 	assert_true(isnan(sensor_mm("iPhone 14")));  // it says its 35 mm equivalent itself
 	assert_true(isnan(sensor_mm("canon eos 600d")));
+	assert_true(fabs(sensor_focal_px("Canon EOS 600D", 100, 5184) - 100 / 22.3 * 5184) < 1e-9);
+	assert_true(isnan(sensor_focal_px("Canon EOS 600D", NAN, 5184)) && isnan(sensor_focal_px("iPhone 14", 4, 4032)));
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-#include "base/record.h"
+#include "base/record_impl.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -9,9 +9,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 
-#define HASHES "work/.made/hashes"
-
-static char *in_capture(const char *capture, const char *rel)
+char *record_in_capture(const char *capture, const char *rel)
 {
 	return *rel == '/' ? mem_str(rel) : mem_printf("%s/%s", capture, rel);
 }
@@ -47,10 +45,10 @@ static json_t *config_object(const char *lines)
 	return config;
 }
 
-static struct record *open_for_hashing(const char *capture, const char *stage)
+struct record *record_open_old(const char *capture, const char *stage)
 {
 	struct record *r = mem_new(1, sizeof *r);
-	char *hashes = in_capture(capture, HASHES);
+	char *hashes = record_in_capture(capture, RECORD_HASHES);
 	char *old = record_path(capture, stage);
 	r->capture = mem_str(capture);
 	r->stage = stage;
@@ -63,12 +61,13 @@ static struct record *open_for_hashing(const char *capture, const char *stage)
 
 struct record *record_open(const char *capture, const char *stage, const char *program_path, const char *config)
 {
-	struct record *r = open_for_hashing(capture, stage);
+	struct record *r = record_open_old(capture, stage);
 	r->now = json_object();
 	json_object_set_new(r->now, "stage", json_string(stage));
 	const char *program = record_hash(r, program_path);
 	json_object_set_new(r->now, "program", json_string(program ? program : ""));
 	json_object_set_new(r->now, "config", config_object(config));
+	json_object_set_new(r->now, "each", json_array());
 	json_object_set_new(r->now, "lists", json_object());
 	json_object_set_new(r->now, "outputs", json_object());
 	return r;
@@ -115,7 +114,7 @@ static char *json_key(const char *rel)
 
 const char *record_hash(struct record *r, const char *rel)
 {
-	char *path = in_capture(r->capture, rel), *key = json_key(rel);
+	char *path = record_in_capture(r->capture, rel), *key = json_key(rel);
 	struct stat st;
 	const char *hash = 0;
 	if (stat(path, &st) == 0) {
@@ -146,6 +145,11 @@ const char *record_hash(struct record *r, const char *rel)
 void record_list(struct record *r, const char *dir, const char *hash)
 {
 	json_object_set_new(json_object_get(r->now, "lists"), dir, json_string(hash));
+}
+
+void record_each(struct record *r, const char *pattern)
+{
+	json_array_append_new(json_object_get(r->now, "each"), json_string(pattern));
 }
 
 void record_listing_hash(char out[33], int n, char *const names[])
@@ -204,7 +208,7 @@ void record_made(struct record *r, const char *out, int n, const char *const in[
 	free(key);
 }
 
-static bool save_json(const char *path, const json_t *json, struct err *err)
+bool record_save_json(const char *path, const json_t *json, struct err *err)
 {
 	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS);
 	bool ok = text && file_write(path, text, strlen(text), err);
@@ -214,105 +218,12 @@ static bool save_json(const char *path, const json_t *json, struct err *err)
 
 bool record_save(struct record *r, bool complete, struct err *err)
 {
-	char *path = record_path(r->capture, r->stage), *hashes = in_capture(r->capture, HASHES);
+	char *path = record_path(r->capture, r->stage), *hashes = record_in_capture(r->capture, RECORD_HASHES);
 	json_object_set_new(r->now, "complete", json_boolean(complete));
-	bool ok = save_json(path, r->now, err);
+	bool ok = record_save_json(path, r->now, err);
 	if (ok && r->hashes_changed)
-		ok = save_json(hashes, r->hashes, err);
+		ok = record_save_json(hashes, r->hashes, err);
 	free(path);
 	free(hashes);
 	return ok;
-}
-
-static bool config_holds(const json_t *config, const char *stage, const struct conf *conf, char **why)
-{
-	const struct conf_item *q = conf_find(conf, "quality", 0);
-	const char *key;
-	json_t *value;
-	json_object_foreach((json_t *)config, key, value) {
-		const struct conf_item *item = conf_find(conf, key, q ? q->value : 0);
-		if (!item || strcmp(item->value, json_string_value(value))) {
-			*why = mem_printf("%s has changed", key);
-			return false;
-		}
-	}
-	// A key that was not there when the stage ran. Its own keys are all in the record, known ones as well as
-	// the shared ones it reads; pattern keys of photographs count when they name something new.
-	size_t m = strlen(stage);
-	for (int i = 0; i < conf->n; i++) {
-		const char *k = conf->items[i].key;
-		bool own = !strncmp(k, stage, m) && k[m] == '.', each = !strncmp(k, "photo.", 6);
-		if (conf->items[i].layer && (own || each) && !json_object_get(config, k)) {
-			*why = mem_printf("%s is new", k);
-			return false;
-		}
-	}
-	return true;
-}
-
-static bool files_hold(struct record *r, const json_t *files, const char *kind, char **why)
-{
-	const char *rel;
-	json_t *value;
-	json_object_foreach((json_t *)files, rel, value) {
-		const json_t *was = json_is_object(value) ? json_object_get(value, "hash") : value;
-		const char *hash = *rel == '%' ? 0 : record_hash(r, rel), *old = json_string_value(was);
-		if (!old || strcmp(hash ? hash : "", old)) {
-			*why = mem_printf("%s %s %s", kind, rel, hash ? "has changed" : "is missing");
-			return false;
-		}
-		if (json_is_object(value) && !files_hold(r, json_object_get(value, "inputs"), "input", why))
-			return false;
-	}
-	return true;
-}
-
-static bool lists_hold(struct record *r, char **why)
-{
-	const char *dir;
-	json_t *value;
-	json_object_foreach(json_object_get(r->old, "lists"), dir, value) {
-		char *path = in_capture(r->capture, dir), hash[33];
-		struct file_list list;
-		struct err err = { 0 };
-		file_list(&list, path, &err);
-		record_listing_hash(hash, list.n, list.names);
-		file_list_free(&list);
-		free(path);
-		if (strcmp(hash, json_string_value(value))) {
-			*why = mem_printf("files have come or gone in %s/", dir);
-			return false;
-		}
-	}
-	return true;
-}
-
-bool record_holds(const char *capture, const char *stage, const char *program_path, const struct conf *conf,
-                  char **why)
-{
-	char *reason = 0;
-	struct record *r = open_for_hashing(capture, stage);
-	const char *program = record_hash(r, program_path),
-	           *was = json_string_value(json_object_get(r->old, "program"));
-	bool holds = false;
-	if (!json_is_true(json_object_get(r->old, "complete")))
-		reason = mem_str(json_object_size(r->old) ? "its last run did not finish" : "never run");
-	else if (!program || !was || strcmp(program, was))
-		reason = mem_str("the program has changed");
-	else
-		holds = config_holds(json_object_get(r->old, "config"), stage, conf, &reason)
-		        && lists_hold(r, &reason)
-		        && files_hold(r, json_object_get(r->old, "outputs"), "output", &reason);
-	if (r->hashes_changed) {
-		char *hashes = in_capture(capture, HASHES);
-		struct err err = { 0 };
-		save_json(hashes, r->hashes, &err);  // only a memory: losing it costs time, nothing else
-		free(hashes);
-	}
-	record_free(r);
-	if (why)
-		*why = reason;
-	else
-		free(reason);
-	return holds;
 }

@@ -12,7 +12,7 @@
 struct record {
 	char *capture;       // path of the capture folder
 	const char *stage;
-	json_t *old, *now;   // {stage, program, config {}, lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, complete}
+	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, complete}
 	json_t *hashes;      // path -> {size, inode, mtime, ctime, hash}
 	bool hashes_changed;
 };
@@ -27,11 +27,20 @@ const char *record_hash(struct record *record, const char *rel);
 /* The hash of a folder's sorted listing. Registers the listing as an input. */
 void record_list(struct record *record, const char *dir, const char *hash);
 
+/* Registers a pattern of keys ("view.*.distance_mm", in full) that the stage reads: one more of them is a change. */
+void record_each(struct record *record, const char *pattern);
+
 bool record_fresh(struct record *record, const char *out, int n, const char *const in[]);
 void record_made(struct record *record, const char *out, int n, const char *const in[]);
 
 /* complete: the stage has done all its work. */
 bool record_save(struct record *record, bool complete, struct err *err);
+
+/* Removes every file below `dir` ("work/calibrate") that the stage's last run recorded as made and that has other bytes now,
+ * and calls dropped(ctx, file); for a stage that keeps files to go on from. What was changed by a run that did not finish is
+ * no fault: from here to the next record_made nothing counts as recorded. */
+typedef void record_dropped(void *ctx, const char *rel);
+bool record_drop_altered(struct record *record, const char *dir, record_dropped *dropped, void *ctx, struct err *err);
 
 /* True when everything the stage's last run recorded still holds: program, configuration as it would be now
  * (conf: all layers), listings, inputs, outputs. why (may be null): what does not; owned by the caller, free(). */

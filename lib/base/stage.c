@@ -100,6 +100,12 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 		die(stage, &err, 1);
 	char *program = call_program_path(), *config = slice(stage);
 	stage->record = record_open(stage->capture, name, program, config);
+	for (int i = 0; i < n_opts; i++)
+		if (opts[i].type == OPT_T_EACH) {
+			char *pattern = opt_full_key(name, opts[i].key);
+			record_each(stage->record, pattern);
+			free(pattern);
+		}
 	free(program);
 	free(config);
 	say_log_open();

@@ -49,3 +49,8 @@ double sensor_mm(const char *model)
 			return sensors[i].mm;
 	return NAN;
 }
+
+double sensor_focal_px(const char *model, double focal_mm, int longer)
+{
+	return focal_mm / sensor_mm(model) * longer;
+}

@@ -55,6 +55,19 @@ void db_close(struct db *db)
 	free(db);
 }
 
+bool db_is_sound(const char *path)
+{
+	struct db *db = 0;
+	struct err none = { 0 };
+	bool ok = db_open(&db, path, &none);
+	sqlite3_stmt *s = ok ? db_prepare(db, "PRAGMA quick_check(1)", &none) : 0;
+	const char *says = s && sqlite3_step(s) == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : 0;
+	ok = says && !strcmp(says, "ok");
+	sqlite3_finalize(s);
+	db_close(db);
+	return ok;
+}
+
 /* Integer of the first row's first column; `none` where there is no row. */
 static bool number(int64_t *out, int64_t none, struct db *db, sqlite3_stmt *s, struct err *err)
 {

@@ -11,6 +11,9 @@ struct db;
 bool db_open(struct db **db, const char *path, struct err *err);
 void db_close(struct db *db);
 
+/* False where SQLite finds the file damaged, or no database at all. */
+bool db_is_sound(const char *path);
+
 struct db_image {
 	const char *name;  // of the file below the folder of pictures
 	int camera;        // index into the cameras

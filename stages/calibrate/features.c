@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "stages/calibrate/calibrate.h"
 #include "stages/calibrate/db.h"
+#include "stages/calibrate/kept.h"
 
 double view_focal_known(const struct view *view, const struct calibrate_options *o)
 {
@@ -22,6 +23,11 @@ static bool open_database(struct db **db, struct stage *stage, struct err *err)
 {
 	const char *path = stage_path(stage, CALIBRATE_DIR "/database.db");
 	const char *const args[] = { "--database_path", path, 0 };
+	if (file_exists(path) && !db_is_sound(path)) {
+		stage_warn(stage, "%s: damaged: made anew", path);
+		if (!kept_remove_database(stage, err))
+			return false;
+	}
 	return (file_exists(path) || colmap_run(stage, "database_creator", args, 0, "", err)) && db_open(db, path, err);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/run.h"
 #include "stages/calibrate/figure.h"
+#include "stages/calibrate/kept.h"
 #include "stages/calibrate/state.h"
 #include "stages/calibrate/subject.h"
 
@@ -64,6 +65,8 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, n, in, err));
 	ok = ok && figure_draw(&head, &rig, stage, err) && stage_made(stage, FIGURE, n, in, err);
 	if (ok)
+		kept_record(stage, views);
+	if (ok)
 		report(stage, views, &rig, &head);
 	free(in);
 	camera_rig_free(&rig);
@@ -108,7 +111,7 @@ static bool check_template(struct stage *stage, const struct calibrate_options *
 bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct views views;
-	if (!check_template(stage, o, err))
+	if (!check_template(stage, o, err) || !kept_check(stage, err))
 		return false;
 	bool ok = views_gather(&views, stage, o, err), video = ok && file_exists(stage_path(stage, "video")) && views_are_video(&views);
 	if (ok && video && !run_exists("colmap"))

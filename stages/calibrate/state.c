@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "stages/calibrate/kept.h"
 #include "stages/calibrate/model.h"
 
 #define STATE CALIBRATE_DIR "/options.txt"
@@ -32,7 +33,7 @@ bool state_check(struct stage *stage, const struct calibrate_options *o, struct 
 		was = mem_str("");
 	bool ok = true, matches = !stage->force && strstr(was, matching), maps = matches && strstr(was, mapping);
 	if (!matches)
-		ok = file_remove(stage_path(stage, CALIBRATE_DIR "/database.db"), err);
+		ok = kept_remove_database(stage, err);
 	if (!maps)
 		model_remove(stage, MODEL_DIR);
 	free(was);

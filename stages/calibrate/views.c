@@ -79,7 +79,7 @@ static bool make_picture(struct view *view, const char *path, const struct photo
 	view->height = photo->height;
 	view->focal_px = photo->exif.focal_px;
 	if (!isfinite(view->focal_px))
-		view->focal_px = photo->exif.focal_mm / sensor_mm(photo->exif.model) * fmax(photo->width, photo->height);
+		view->focal_px = sensor_focal_px(photo->exif.model, photo->exif.focal_mm, photo->width > photo->height ? photo->width : photo->height);
 	strcpy(view->maker, photo->exif.model);
 	uint8_t *px = narrow(photo, channels);
 	bool ok = view_picture(view, path, px, channels, picture_px, err);

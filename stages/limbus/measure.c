@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "image/photo.h"
 #include "optics/camera_rig.h"
+#include "optics/sensor.h"
 
 char *limbus_record_path(const struct capture_photo *photo)
 {
@@ -23,7 +24,7 @@ static const struct rig_camera *rig_camera_of(const struct camera_rig *rig, cons
 	return c && c->width == photo->width && c->height == photo->height ? c : 0;
 }
 
-/* capture.conf for this photograph, for all, what calibrate found, EXIF, in that order; none: a nominal camera far away. */
+/* capture.conf for this photograph, for all, what calibrate found, EXIF with the table of sensors, in that order; none: a nominal camera far away. */
 static struct camera camera_of(const struct limbus_options *o, const char *name, const struct photo *photo,
                                const struct ellipse *limbus, const struct rig_camera *calibrated)
 {
@@ -31,7 +32,9 @@ static struct camera camera_of(const struct limbus_options *o, const char *name,
 	const struct opt_each *focal = capture_each(&o->photo_focal, name), *center = capture_each(&o->photo_center, name);
 	const double longer = fmax(photo->width, photo->height);
 	const struct photo_exif *exif = &photo->exif;
-	double by_mm = o->focal_mm / o->sensor_mm * longer;
+	double by_mm = o->focal_mm / o->sensor_mm * longer, by_exif = exif->focal_px;
+	if (!isfinite(by_exif))
+		by_exif = sensor_focal_px(exif->model, exif->focal_mm, (int)longer);
 	if (focal)
 		c.focal_px = focal->value[0];
 	else if (isfinite(o->focal_px))
@@ -42,11 +45,11 @@ static struct camera camera_of(const struct limbus_options *o, const char *name,
 		c.source = CAMERA_CONF;
 	} else if (calibrated) {
 		return calibrated->camera;
-	} else if (isfinite(exif->focal_px)) {
+	} else if (isfinite(by_exif)) {
 		/* EXIF names the focal length at infinity: close up the picture lies (1 + magnification) times as far behind
 		 * the lens. */
-		double m = isfinite(exif->focal_mm) ? limbus->a / o->eye.limbus_radius * exif->focal_mm / exif->focal_px : 0;
-		c.focal_px = exif->focal_px * (1 + m);
+		double m = isfinite(exif->focal_mm) ? limbus->a / o->eye.limbus_radius * exif->focal_mm / by_exif : 0;
+		c.focal_px = by_exif * (1 + m);
 		c.source = CAMERA_EXIF;
 	} else {
 		return c;

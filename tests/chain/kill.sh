@@ -40,8 +40,7 @@ recovers() {
 # One artifact, any, is deleted, cut in half or written into.
 damage() {
 	local files file
-	# COLMAP's own files are what it goes on from when views are added; the stage answers for what it makes of them.
-	mapfile -t files < <(cd "$root/hit/work" 2>/dev/null && find . -type f ! -path './.made/*' ! -path './log/*' ! -path './calibrate/*' | sort)
+	mapfile -t files < <(cd "$root/hit/work" 2>/dev/null && find . -type f ! -path './.made/*' ! -path './log/*' ! -name '*.log' | sort)
 	[ ${#files[@]} -gt 0 ] || return
 	file=$root/hit/work/${files[RANDOM % ${#files[@]}]}
 	case $((RANDOM % 3)) in

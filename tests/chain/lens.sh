@@ -34,3 +34,12 @@ check "the eye leans the same way: $(number "$(fit bent)" theta_deg) for $(numbe
 	near "$(number "$(fit bent)" theta_deg)" "$(number "$(fit straight)" theta_deg)" 0.2
 check "as much of the limbus is seen" near "$(number "$(fit bent)" coverage)" "$(number "$(fit straight)" coverage)" 0.05
 check "there is a texture" test -s "$root/bent/work/iris/texture.exr"
+
+# No rig, nothing in capture.conf, and EXIF that names a camera and its focal length in mm alone: the table of sensors. Pixels of
+# a camera 22.3 mm wide with 100 mm, focused close up: farther behind its lens by the eye's magnification.
+capture table exif
+"$BIN/limbus" --capture="$root/table" >"$log" 2>&1
+same "a camera of the table: limbus" "$?" 0
+check "its lens is from EXIF" grep -q '"source": "EXIF"' "$(fit table)"
+want=$(awk -v a="$(number "$(fit table)" a)" 'BEGIN { f = 100 / 22.3 * 1600; printf "%.1f", f * (1 + a / 5.85 * 100 / f) }')
+check "focal length: $(number "$(fit table)" focal_px) of $want px" near "$(number "$(fit table)" focal_px)" "$want" 5

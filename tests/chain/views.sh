@@ -144,7 +144,37 @@ same "one more view: it has a camera" "$(grep -c '"cam_from_head": \[' "$root/he
 same "one more view: the others' features are not sought again" \
 	"$(grep -c '^Processed file' "$root/head/work/calibrate/colmap.log")" 1
 
-# A kept model whose bytes have changed is not gone on with.
+# What is kept and was deleted, cut, or written into is noticed by make and made again, with the bytes it had.
+kept=$root/again/work/calibrate
+is_due() { "$BIN/plan" --capture="$root/again" --show | grep -qE "^calibrate +run .*$1"; }
+"$BIN/plan" --capture="$root/again" --show >"$log"
+check "all there: nothing to do" grep -q '^calibrate *up to date' "$log"
+mended=$(results "$root/again")
+rm "$kept/database.db"
+check "a deleted database: calibrate is to run" is_due "database.db is missing"
+picture=$(ls "$kept"/pictures/*.jpg | head -n 1)
+printf 'X' | dd of="$picture" bs=1 seek=5000 conv=notrunc 2>/dev/null
+truncate -s 5000 "$kept/cloud.grid"
+run_calibrate "$root/again"
+same "database, a picture and the grid damaged: exit status" "$?" 0
+for file in "${picture##*/}" cloud.grid; do check "$file: said" grep -q "$file: not as the last run left it: made anew" "$log"; done
+same "the same bytes as before" "$(results "$root/again")" "$mended"
+truncate -s 20000 "$kept/database.db" && rm "$root/again/work/.made/calibrate.json"
+run_calibrate "$root/again"
+same "a database cut while nothing was recorded: exit status" "$?" 0
+check "said" grep -q "database.db: damaged: made anew" "$log"
+same "the same bytes again" "$(results "$root/again")" "$mended"
+printf 'x' | dd of="$kept/model/points3D.bin" bs=1 seek=200 conv=notrunc 2>/dev/null
+check "a changed model: calibrate is to run" is_due "points3D.bin has changed"
+run_calibrate "$root/again"
+same "a changed model: exit status" "$?" 0
+check "it is said" grep -q "points3D.bin: not as the last run left it" "$log"
+same "the same bytes once more" "$(results "$root/again")" "$mended"
+echo "view.00013.distance_mm = 900" >>"$root/again/capture.conf"
+check "a length named in capture.conf: calibrate is to run" is_due "view.00013.distance_mm is new"
+
+# A kept model whose bytes have changed is not gone on with, even where nothing says what they were.
+rm "$root/head/work/.made/calibrate.json"
 printf 'x' | dd of="$root/head/work/calibrate/model/points3D.bin" bs=1 seek=200 conv=notrunc 2>/dev/null
 cp "$heads/00060.jpg" "$root/head/views/"
 run_calibrate "$root/head"

@@ -196,10 +196,31 @@ static void entry(struct ifd_writer *w, int tag, int type, double value)
 	w->entries++;
 }
 
+static void text_entry(struct ifd_writer *w, int tag, const char *text)
+{
+	uint8_t *e = w->block + w->at;
+	size_t n = strlen(text) + 1;
+	put(e, (uint32_t)tag, 2);
+	put(e + 2, 2, 2);
+	put(e + 4, (uint32_t)n, 4);
+	put(e + 8, (uint32_t)w->values, 4);
+	memcpy(w->block + w->values, text, n);
+	w->values += (int)(n + n % 2);
+	w->at += 12;
+	w->entries++;
+}
+
 struct blob with_exif(struct blob jpeg, const struct exif_block *exif)
+{
+	return with_exif_of(jpeg, exif, 0);
+}
+
+struct blob with_exif_of(struct blob jpeg, const struct exif_block *exif, const char *model)
 {
 	struct ifd_writer w = { .at = 10, .values = 300 };
 	memcpy(w.block, "II*\0\10\0\0\0", 8);
+	if (model)
+		text_entry(&w, 0x0110, model);
 	entry(&w, 0x0112, 3, exif->orientation);
 	entry(&w, 0x8769, 4, 100);
 	put(w.block + 8, (uint32_t)w.entries, 2);

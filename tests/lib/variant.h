@@ -35,6 +35,7 @@ struct exif_block {
 	int full_width, full_height;
 };
 struct blob with_exif(struct blob jpeg, const struct exif_block *exif);
+struct blob with_exif_of(struct blob jpeg, const struct exif_block *exif, const char *model);  // model: of the camera, 0..100 bytes
 
 /* The JPEG or PNG claiming another size; pixels stay. */
 void claim_size(struct blob file, int width, int height);

@@ -2,7 +2,7 @@
  *
  *     variant KIND IN OUT
  * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half, turned,
- * middle (its inner quarter: the same lens nearer up), blurred, bent
+ * middle (its inner quarter: the same lens nearer up), blurred, bent, exif (a Canon EOS 600D with 100 mm, and no more)
  */
 #include <math.h>
 #include <stdio.h>
@@ -154,6 +154,11 @@ static struct blob encode(const char *kind, struct pixels *p)
 		b = encode_tiff(p, 16, AS_LZW, 1);
 	else
 		b = encode_jpeg(p, 0);
+	if (!strcmp(kind, "exif")) {
+		struct blob plain = b;
+		b = with_exif_of(plain, &(struct exif_block){ 1, 100, -1, -1, -1, -1 }, "Canon EOS 600D");
+		free(plain.data);
+	}
 	if (!strcmp(kind, "mpx200"))
 		claim_size(b, 20000, 10000);
 	if (!strcmp(kind, "truncated"))

@@ -1,0 +1,132 @@
+/* What of a record still holds. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/record_impl.h"
+
+/* One of the stage's patterns stands for that key: "view.*.distance_mm" for "view.a.distance_mm". */
+static bool is_each(const json_t *patterns, const char *key)
+{
+	size_t i;
+	json_t *pattern;
+	json_array_foreach(patterns, i, pattern) {
+		const char *text = json_string_value(pattern);
+		if (text && opt_match(text, key, 0))
+			return true;
+	}
+	return false;
+}
+
+static bool config_holds(const json_t *old, const char *stage, const struct conf *conf, char **why)
+{
+	const json_t *config = json_object_get(old, "config"), *patterns = json_object_get(old, "each");
+	const struct conf_item *q = conf_find(conf, "quality", 0);
+	const char *key;
+	json_t *value;
+	json_object_foreach((json_t *)config, key, value) {
+		const struct conf_item *item = conf_find(conf, key, q ? q->value : 0);
+		if (!item || strcmp(item->value, json_string_value(value))) {
+			*why = mem_printf("%s has changed", key);
+			return false;
+		}
+	}
+	// A key that was not there when the stage ran. Its own keys are all in the record, known ones as well as
+	// the shared ones it reads; one that a pattern stands for counts when it names something new.
+	size_t m = strlen(stage);
+	for (int i = 0; i < conf->n; i++) {
+		const char *k = conf->items[i].key;
+		bool own = !strncmp(k, stage, m) && k[m] == '.';
+		if (conf->items[i].layer && (own || is_each(patterns, k)) && !json_object_get(config, k)) {
+			*why = mem_printf("%s is new", k);
+			return false;
+		}
+	}
+	return true;
+}
+
+static bool files_hold(struct record *r, const json_t *files, const char *kind, char **why)
+{
+	const char *rel;
+	json_t *value;
+	json_object_foreach((json_t *)files, rel, value) {
+		const json_t *was = json_is_object(value) ? json_object_get(value, "hash") : value;
+		const char *hash = *rel == '%' ? 0 : record_hash(r, rel), *old = json_string_value(was);
+		if (!old || strcmp(hash ? hash : "", old)) {
+			*why = mem_printf("%s %s %s", kind, rel, hash ? "has changed" : "is missing");
+			return false;
+		}
+		if (json_is_object(value) && !files_hold(r, json_object_get(value, "inputs"), "input", why))
+			return false;
+	}
+	return true;
+}
+
+static bool lists_hold(struct record *r, char **why)
+{
+	const char *dir;
+	json_t *value;
+	json_object_foreach(json_object_get(r->old, "lists"), dir, value) {
+		char *path = record_in_capture(r->capture, dir), hash[33];
+		struct file_list list;
+		struct err err = { 0 };
+		file_list(&list, path, &err);
+		record_listing_hash(hash, list.n, list.names);
+		file_list_free(&list);
+		free(path);
+		if (strcmp(hash, json_string_value(value))) {
+			*why = mem_printf("files have come or gone in %s/", dir);
+			return false;
+		}
+	}
+	return true;
+}
+
+bool record_holds(const char *capture, const char *stage, const char *program_path, const struct conf *conf,
+                  char **why)
+{
+	char *reason = 0;
+	struct record *r = record_open_old(capture, stage);
+	const char *program = record_hash(r, program_path),
+	           *was = json_string_value(json_object_get(r->old, "program"));
+	bool holds = false;
+	if (!json_is_true(json_object_get(r->old, "complete")))
+		reason = mem_str(json_object_size(r->old) ? "its last run did not finish" : "never run");
+	else if (!program || !was || strcmp(program, was))
+		reason = mem_str("the program has changed");
+	else
+		holds = config_holds(r->old, stage, conf, &reason)
+		        && lists_hold(r, &reason)
+		        && files_hold(r, json_object_get(r->old, "outputs"), "output", &reason);
+	if (r->hashes_changed) {
+		char *hashes = record_in_capture(capture, RECORD_HASHES);
+		struct err err = { 0 };
+		record_save_json(hashes, r->hashes, &err);  // only a memory: losing it costs time, nothing else
+		free(hashes);
+	}
+	record_free(r);
+	if (why)
+		*why = reason;
+	else
+		free(reason);
+	return holds;
+}
+
+bool record_drop_altered(struct record *r, const char *dir, record_dropped *dropped, void *ctx, struct err *err)
+{
+	const char *rel;
+	json_t *made;
+	bool ok = true;
+	size_t n = strlen(dir);
+	json_object_foreach(json_object_get(r->old, "outputs"), rel, made) {
+		const char *was = json_string_value(json_object_get(made, "hash")), *hash = 0;
+		if (strncmp(rel, dir, n) || rel[n] != '/' || !was || !(hash = record_hash(r, rel)) || !strcmp(hash, was))
+			continue;
+		char *path = record_in_capture(r->capture, rel);
+		ok = file_remove(path, err) && ok;
+		free(path);
+		dropped(ctx, rel);
+	}
+	return ok && record_save(r, false, err);
+}

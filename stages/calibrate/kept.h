@@ -1,0 +1,15 @@
+/* kept: what the stage goes on from when photographs are added. A file of it that was deleted or changed is made anew. */
+#ifndef STAGES_CALIBRATE_KEPT_H
+#define STAGES_CALIBRATE_KEPT_H
+#include "stages/calibrate/calibrate.h"
+
+/* Before anything is read: removes what is not as the last run left it, and says so. */
+bool kept_check(struct stage *stage, struct err *err);
+
+/* Behind everything: records what there is, so that `make` notices when one of the files is missing or has changed. */
+void kept_record(struct stage *stage, const struct views *views);
+
+/* COLMAP's database, with what SQLite keeps beside it. */
+bool kept_remove_database(struct stage *stage, struct err *err);
+
+#endif
