@@ -14,7 +14,8 @@
 #include "stages/calibrate/figure_mesh.h"
 #include "stages/calibrate/subject.h"
 
-enum { PANEL = 560, BARS = 220, WIDTH = 2 * PANEL, HEIGHT = 2 * PANEL + BARS, MESH_LIMIT = 20000000 };
+enum { PANEL = 560, TITLE = 36, BARS = 240, WORST = 4, MESH_LIMIT = 20000000 };
+enum { MESH_TOP = TITLE + PANEL, BARS_TOP = MESH_TOP + TITLE + PANEL, WIDTH = 2 * PANEL, HEIGHT = BARS_TOP + BARS };
 static const uint8_t ink[3] = { 40, 44, 52 }, faint[3] = { 205, 208, 214 };
 
 /* Residual to colour: green as good as the best, red at three times the middling one. */
@@ -46,24 +47,32 @@ static void draw_points(struct cv_picture *pic, const struct head *head, const s
 		sfm_to_head(p, &head->frame, head->model->points[i].xyz);
 		at(xy, l, p);
 		int x = (int)xy[0], y = (int)xy[1];
-		if (x < x_low || x >= x_high || y < 0 || y >= PANEL)
+		if (x < x_low || x >= x_high || y < TITLE || y >= MESH_TOP)
 			continue;
 		for (int c = 0; c < 3; c++)
 			pic->px[3 * ((long)y * pic->width + x) + c] = (uint8_t)(head->model->points[i].rgb[c] * 0.7);
 	}
 }
 
+static void centre_of(double centre[3], const struct rig_camera *c)
+{
+	double R[3][3], t[3];
+	for (int i = 0; i < 3; i++) {
+		memcpy(R[i], c->cam_from_head[i], sizeof R[i]);
+		t[i] = -c->cam_from_head[i][3];
+	}
+	mat_tvec(centre, R, t);
+}
+
 /* The four rays of a picture's corners, as long as `reach` mm. */
 static void draw_camera(struct cv_picture *pic, const struct rig_camera *c, const struct look *l, double reach,
                         const uint8_t colour[3])
 {
-	double centre[3], corner[4][3];
+	double centre[3], corner[4][3], R[3][3];
 	float from[2], to[4][2];
-	double R[3][3];
-	for (int i = 0; i < 9; i++)
-		R[i / 3][i % 3] = c->cam_from_head[i / 3][i % 3];
-	double t[3] = { -c->cam_from_head[0][3], -c->cam_from_head[1][3], -c->cam_from_head[2][3] };
-	mat_tvec(centre, R, t);
+	for (int i = 0; i < 3; i++)
+		memcpy(R[i], c->cam_from_head[i], sizeof R[i]);
+	centre_of(centre, c);
 	at(from, l, centre);
 	for (int k = 0; k < 4; k++) {
 		double px[2] = { k == 1 || k == 2 ? c->width : 0, k >= 2 ? c->height : 0 };
@@ -77,37 +86,65 @@ static void draw_camera(struct cv_picture *pic, const struct rig_camera *c, cons
 	cv_draw_line(pic, 4, (const float (*)[2])to, true, 1, colour);
 }
 
-static double extent(const struct camera_rig *rig)
+/* Half the side of the box round cameras and head, mm, and its middle. */
+static double box(double middle[3], const struct camera_rig *rig)
 {
-	double most = 1;
-	for (int i = 0; i < rig->n; i++) {
-		const double (*m)[4] = rig->cameras[i].cam_from_head;
-		most = fmax(most, sqrt(m[0][3] * m[0][3] + m[1][3] * m[1][3] + m[2][3] * m[2][3]));
+	double half = 1;
+	for (int k = 0; k < 3; k++) {
+		double low = 0, high = 0, centre[3];
+		for (int i = 0; i < rig->n; i++) {
+			centre_of(centre, &rig->cameras[i]);
+			low = fmin(low, centre[k]);
+			high = fmax(high, centre[k]);
+		}
+		middle[k] = 0.5 * (low + high);
+		half = fmax(half, 0.5 * (high - low));
 	}
-	return most;
+	return half;
 }
 
 static void draw_rig(struct cv_picture *pic, const struct head *head, const struct camera_rig *rig, double typical)
 {
-	double reach = extent(rig), scale = 0.44 * PANEL / reach;
-	const struct look looks[2] = { { { 1, 0, 0 }, { 0, 1, 0 }, scale, 0.5 * PANEL, 0.5 * PANEL },
-		                           { { 1, 0, 0 }, { 0, 0, -1 }, scale, 1.5 * PANEL, 0.5 * PANEL } };
+	double middle[3], half = box(middle, rig), frustum = 0.14 * half, scale = 0.48 * PANEL / (half + frustum);
+	const double y = TITLE + 0.5 * PANEL, x = 0.5 * PANEL - scale * middle[0];
+	const struct look looks[2] = { { { 1, 0, 0 }, { 0, 1, 0 }, scale, x, y + scale * middle[1] },
+		                           { { 1, 0, 0 }, { 0, 0, -1 }, scale, PANEL + x, y - scale * middle[2] } };
 	static const char *const titles[] = { "cameras and points from the front", "from above" };
 	for (int k = 0; k < 2; k++) {
 		draw_points(pic, head, &looks[k], k * PANEL, (k + 1) * PANEL);
 		for (int i = 0; i < rig->n; i++) {
 			uint8_t colour[3];
 			heat(colour, rig->cameras[i].residual_px, typical);
-			draw_camera(pic, &rig->cameras[i], &looks[k], 0.08 * reach, colour);
+			draw_camera(pic, &rig->cameras[i], &looks[k], frustum, colour);
 		}
 		cv_draw_text(pic, k * PANEL + 12, 24, 11, titles[k], ink);
 	}
 }
 
+/* Names and residuals of the pictures that fit worst. free(). */
+static char *worst_of(const struct camera_rig *rig)
+{
+	char *text = mem_str("worst:");
+	double below = INFINITY;
+	for (int k = 0; k < WORST && k < rig->n; k++) {
+		int at = -1;
+		for (int i = 0; i < rig->n; i++)
+			if (rig->cameras[i].residual_px < below && (at < 0 || rig->cameras[i].residual_px > rig->cameras[at].residual_px))
+				at = i;
+		if (at < 0)
+			break;
+		below = rig->cameras[at].residual_px;
+		char *longer = mem_printf("%s%s %.60s %.2f", text, k ? "," : "", rig->cameras[at].name, below);
+		free(text);
+		text = longer;
+	}
+	return text;
+}
+
 static void draw_bars(struct cv_picture *pic, const struct camera_rig *rig, double typical)
 {
-	const int left = 60, top = 2 * PANEL + 40, bottom = HEIGHT - 30;
-	char text[80];
+	const int left = 60, top = BARS_TOP + 44, bottom = HEIGHT - 40;
+	char text[80], *worst = worst_of(rig);
 	double most = typical;
 	for (int i = 0; i < rig->n; i++)
 		most = fmax(most, rig->cameras[i].residual_px);
@@ -117,7 +154,7 @@ static void draw_bars(struct cv_picture *pic, const struct camera_rig *rig, doub
 		uint8_t colour[3];
 		const double pitch = (double)(WIDTH - left - 20) / rig->n;
 		int x0 = left + (int)(i * pitch), x1 = left + (int)fmax(i * pitch + 1, (i + 0.8) * pitch);
-		int y0 = bottom - (int)((bottom - top) * rig->cameras[i].residual_px / most);
+		int y0 = bottom - (int)((bottom - top) * fmin(1, rig->cameras[i].residual_px / most));
 		heat(colour, rig->cameras[i].residual_px, typical);
 		for (int y = y0; y < bottom; y++)
 			for (int x = x0; x < x1; x++)
@@ -127,6 +164,8 @@ static void draw_bars(struct cv_picture *pic, const struct camera_rig *rig, doub
 	cv_draw_line(pic, 2, (const float (*)[2])base, false, 1, faint);
 	snprintf(text, sizeof text, "%.2f", most);
 	cv_draw_text(pic, 12, top + 10, 10, text, ink);
+	cv_draw_text(pic, left, HEIGHT - 14, 10, worst, ink);
+	free(worst);
 }
 
 bool figure_draw(const struct head *head, const struct camera_rig *rig, struct stage *stage, struct err *err)
@@ -143,9 +182,9 @@ bool figure_draw(const struct head *head, const struct camera_rig *rig, struct s
 	draw_bars(&pic, rig, typical);
 	bool ok = !file_exists(subject) || om_mesh_load(&mesh, subject, MESH_LIMIT, err);
 	if (ok && mesh.n_faces) {
-		figure_mesh(&pic, 0, PANEL, PANEL, &mesh, 0);
-		figure_mesh(&pic, PANEL, PANEL, PANEL, &mesh, 0.9);
-		cv_draw_text(&pic, 12, PANEL + 24, 11, "subject.ply from the front, and turned", ink);
+		figure_mesh(&pic, 0, MESH_TOP + TITLE, PANEL, &mesh, 0);
+		figure_mesh(&pic, PANEL, MESH_TOP + TITLE, PANEL, &mesh, 0.9);
+		cv_draw_text(&pic, 12, MESH_TOP + 24, 11, "subject.ply from the front, and turned", ink);
 	}
 	ok = ok && picture_png_write(stage_path(stage, FIGURE), pic.px, WIDTH, HEIGHT, 3, err);
 	mesh_free(&mesh);

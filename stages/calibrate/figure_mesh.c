@@ -56,12 +56,20 @@ static struct corner *light(const struct mesh *m, int size, double turn)
 	return out;
 }
 
-static void triangle(struct cv_picture *pic, int x0, int y0, int size, float *depth, const struct corner *a,
-                     const struct corner *b, const struct corner *c)
+/* Samples along a pixel's side: outlines without steps. */
+enum { FINE = 3 };
+
+/* The mesh's samples: lit colour, linear, and how near they are; -INFINITY: none. */
+struct canvas {
+	int size;
+	float *depth, (*rgb)[3];
+};
+
+static void triangle(struct canvas *out, const struct corner *a, const struct corner *b, const struct corner *c)
 {
-	float area = (b->x - a->x) * (c->y - a->y) - (c->x - a->x) * (b->y - a->y);
-	int low_x = (int)fmaxf(0, fminf(a->x, fminf(b->x, c->x))), high_x = (int)fminf((float)size - 1, fmaxf(a->x, fmaxf(b->x, c->x)));
-	int low_y = (int)fmaxf(0, fminf(a->y, fminf(b->y, c->y))), high_y = (int)fminf((float)size - 1, fmaxf(a->y, fmaxf(b->y, c->y)));
+	float area = (b->x - a->x) * (c->y - a->y) - (c->x - a->x) * (b->y - a->y), most = (float)out->size - 1;
+	int low_x = (int)fmaxf(0, fminf(a->x, fminf(b->x, c->x))), high_x = (int)fminf(most, fmaxf(a->x, fmaxf(b->x, c->x)));
+	int low_y = (int)fmaxf(0, fminf(a->y, fminf(b->y, c->y))), high_y = (int)fminf(most, fmaxf(a->y, fmaxf(b->y, c->y)));
 	if (area == 0)
 		return;
 	for (int y = low_y; y <= high_y; y++)
@@ -70,24 +78,52 @@ static void triangle(struct cv_picture *pic, int x0, int y0, int size, float *de
 			float v = ((px - a->x) * (c->y - a->y) - (c->x - a->x) * (py - a->y)) / area;
 			float w = ((b->x - a->x) * (py - a->y) - (px - a->x) * (b->y - a->y)) / area, u = 1 - v - w;
 			float z = u * a->z + v * b->z + w * c->z;
-			if (u < 0 || v < 0 || w < 0 || z <= depth[y * size + x])
+			long at = (long)y * out->size + x;
+			if (u < 0 || v < 0 || w < 0 || z <= out->depth[at])
 				continue;
-			depth[y * size + x] = z;
-			for (int k = 0; k < 3; k++) {
-				float g = u * a->rgb[k] + v * b->rgb[k] + w * c->rgb[k];
-				pic->px[3 * ((long)(y0 + y) * pic->width + x0 + x) + k] = (uint8_t)(255 * srgb_from_linear(fminf(1, g)) + 0.5f);
+			out->depth[at] = z;
+			for (int k = 0; k < 3; k++)
+				out->rgb[at][k] = fminf(1, u * a->rgb[k] + v * b->rgb[k] + w * c->rgb[k]);
+		}
+}
+
+/* Each pixel the mean of its samples; where there is no mesh, what the picture showed before. */
+static void shrink(struct cv_picture *pic, int x0, int y0, int size, const struct canvas *fine)
+{
+	for (int y = 0; y < size; y++)
+		for (int x = 0; x < size; x++) {
+			uint8_t *px = pic->px + 3 * ((long)(y0 + y) * pic->width + x0 + x);
+			float sum[3] = { 0 };
+			int n = 0;
+			for (int i = 0; i < FINE * FINE; i++) {
+				long at = (long)(FINE * y + i / FINE) * fine->size + FINE * x + i % FINE;
+				if (!(fine->depth[at] > -INFINITY))
+					continue;
+				for (int k = 0; k < 3; k++)
+					sum[k] += fine->rgb[at][k];
+				n++;
+			}
+			const float share = (float)n / (FINE * FINE);
+			for (int k = 0; k < 3 && n; k++) {
+				float behind = linear_from_srgb((float)px[k] / 255), mean = share * sum[k] / (float)n + (1 - share) * behind;
+				px[k] = (uint8_t)(255 * srgb_from_linear(mean) + 0.5f);
 			}
 		}
 }
 
 void figure_mesh(struct cv_picture *pic, int x0, int y0, int size, const struct mesh *m, double turn)
 {
-	struct corner *corners = light(m, size, turn);
-	float *depth = mem_array((size_t)size * (size_t)size, sizeof *depth);
-	for (int i = 0; i < size * size; i++)
-		depth[i] = -INFINITY;
+	struct canvas fine = { FINE * size, 0, 0 };
+	long n = (long)fine.size * fine.size;
+	struct corner *corners = light(m, fine.size, turn);
+	fine.depth = mem_array((size_t)n, sizeof *fine.depth);
+	fine.rgb = mem_array((size_t)n, sizeof *fine.rgb);
+	for (long i = 0; i < n; i++)
+		fine.depth[i] = -INFINITY;
 	for (int f = 0; f < m->n_faces; f++)
-		triangle(pic, x0, y0, size, depth, &corners[m->faces[f][0]], &corners[m->faces[f][1]], &corners[m->faces[f][2]]);
+		triangle(&fine, &corners[m->faces[f][0]], &corners[m->faces[f][1]], &corners[m->faces[f][2]]);
+	shrink(pic, x0, y0, size, &fine);
 	free(corners);
-	free(depth);
+	free(fine.depth);
+	free(fine.rgb);
 }
