@@ -63,7 +63,7 @@ static void programs(json_t *data, bool face)
 {
 	const struct {
 		const char *key, *text;
-	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths },
+	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths }, { "refine", viewer_refine }, { "ground", viewer_ground }, { "march", viewer_march },
 		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present } },
 	  of_face[] = { { "skin_look", skin_look }, { "lids", viewer_lids }, { "tear", viewer_tear }, { "skin", viewer_skin_frag },
 		            { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
@@ -74,7 +74,7 @@ static void programs(json_t *data, bool face)
 		json_object_set_new(sub, of_face[i].key, json_string(of_face[i].text));
 	json_object_set_new(data, "face", face ? json_pack("[o]", json_incref(sub)) : json_array());
 	json_decref(sub);
-	char *js = mem_printf("%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, face ? viewer_face_js : "",
+	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_face_js : "",
 	                      viewer_sliders_js, viewer_controls_js, viewer_live_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);
@@ -165,7 +165,7 @@ static bool add_eyes(json_t *eyes, struct parts *p, struct err *err)
 		if (!job_ready(job, err))
 			return false;
 		const struct viewer_source source = { &job->scene, job->names->side, stage_path(job->stage, "%s", job->in[3]),
-			                                  &job->studio, job->gain, &job->shots[job->reference], job->conf->lights };
+			                                  &job->studio, job->gain, &job->shots[job->reference], job->conf->lights, job->conf->light_directions };
 		json_t *one = viewer_eye(&source, err);
 		if (!one)
 			return false;
@@ -201,7 +201,7 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 	struct skin_target target = { .name = name, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
 	bool ok = skin_open(skin, &target, err);
 	if (ok && !json_array_size(eyes)) {
-		const struct viewer_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, skin->render->lights };
+		const struct viewer_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, skin->render->lights, skin->render->light_directions };
 		json_t *one = viewer_eye(&plain, err);
 		ok = one;
 		if (one)

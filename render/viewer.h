@@ -14,21 +14,24 @@ struct viewer_source {
 	const struct envmap *studio;
 	double gain;                     // exposure
 	const struct shot *shot;         // the photograph its colours are of, decoded; null: none
-	int lights;
+	int lights, directions;          // beams, and directions in each
 };
 
 /* Everything the page needs of one eye. json_decref. */
 json_t *viewer_eye(const struct viewer_source *source, struct err *err);
 
 /* Maps as pictures in base 64, {png, width, height, low, high}: 8 bits a channel and what 0 and 255 mean.
- * viewer_map_log: colours by their logarithm, none below dark (> 0); viewer_map_plain: its first channels, at most 3. */
+ * viewer_map_log: colours by their logarithm, none below dark (> 0); viewer_map_model: the same of the model at the levels that
+ * are marched from, one below the other, {from, tops} the first of them and their rows; viewer_map_plain: its first channels, at
+ * most 3. */
 json_t *viewer_map_relief(const struct scene_level *level, struct err *err);
 json_t *viewer_map_colour(const struct scene_level *level, struct err *err);
 json_t *viewer_map_log(const float *px, int width, int height, int stride, float dark, struct err *err);
+json_t *viewer_map_model(const struct scene *scene, struct err *err);
 json_t *viewer_map_plain(const struct image *map, struct err *err);
 
 /* An environment: its two maps for reflections, its lights, its irradiance. mirror: what the cornea mirrors. */
-json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, int lights, struct err *err);
+json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, const struct viewer_source *source, struct err *err);
 
 /* The tissue as fitted, with what each wavelength absorbs and scatters, and sigmas of the fit. */
 json_t *viewer_tissue(const struct viewer_source *source);

@@ -68,20 +68,10 @@ static json_t *geometry(const struct scene *s, double gain)
 	put(out, "back", COUNT(back), back);
 	json_object_set_new(out, "march", rules(s));
 	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
+	json_object_set_new(out, "levels", json_integer(s->n_levels));
+	json_object_set_new(out, "marched", json_integer(scene_marched(s)));
 	json_object_set_new(out, "search", json_integer(s->conf.search));
-	json_object_set_new(out, "shadow", json_integer(s->conf.shadow));
 	return out;
-}
-
-/* The least value that a map of the model has where there is iris: eight bits are for those. */
-static float darkest(const struct scene *s, const struct scene_level *l)
-{
-	float least = 1, reach = (float)(fmax(s->limbus[0], s->limbus[1]) * l->per_mm), middle = 0.5f * (float)l->n;
-	for (int y = 0; y < l->n; y++)
-		for (int x = 0; x < l->n; x++)
-			for (int c = 0; c < 3 && hypotf((float)x + 0.5f - middle, (float)y + 0.5f - middle) <= reach; c++)
-				least = fminf(least, l->model[4 * ((long)y * l->n + x) + c]);
-	return fmaxf(least, SCENE_DARK);
 }
 
 /* The photograph's own view, for the comparison beside it. */
@@ -119,9 +109,9 @@ static json_t *part_make(enum part part, const struct viewer_source *source, str
 	case PHOTO: return shot ? photo(shot) : 0;
 	case RELIEF: return viewer_map_relief(l, err);
 	case COLOUR: return viewer_map_colour(l, err);
-	case MODEL: return l->model ? viewer_map_log(l->model, l->n, l->n, 4, darkest(s, l), err) : 0;
-	case PHOTOGRAPHED: return shot ? viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source->lights, err) : 0;
-	case STUDIO: return viewer_light("Studio", source->studio, source->studio, source->lights, err);
+	case MODEL: return l->model ? viewer_map_model(s, err) : 0;
+	case PHOTOGRAPHED: return shot ? viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source, err) : 0;
+	case STUDIO: return viewer_light("Studio", source->studio, source->studio, source, err);
 	default: return viewer_map_plain(&s->film, err);
 	}
 }
@@ -148,7 +138,7 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 	json_t *out = json_object(), *part[PARTS];
 	struct err errs[PARTS] = { 0 };
 	json_object_set_new(out, "side", template_text(source->side));
-	json_object_set_new(out, "constants", json_pack("{s:f,s:f}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2)));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:i,s:i}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
 	json_object_set_new(out, "eye", geometry(s, source->gain));
 	json_object_set_new(out, "tissue", viewer_tissue(source));
 #pragma omp parallel for schedule(dynamic, 1)

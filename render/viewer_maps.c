@@ -1,6 +1,7 @@
 /* Maps for the interactive page. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/json.h"
 #include "base/mem.h"
@@ -94,6 +95,43 @@ json_t *viewer_map_log(const float *px, int width, int height, int stride, float
 	return map;
 }
 
+/* The least value that a map of the model has where there is iris: eight bits are for those. */
+static float darkest(const struct scene *s, const struct scene_level *l)
+{
+	float least = 1, reach = (float)(fmax(s->limbus[0], s->limbus[1]) * l->per_mm), middle = 0.5f * (float)l->n;
+	for (int y = 0; y < l->n; y++)
+		for (int x = 0; x < l->n; x++)
+			for (int c = 0; c < 3 && hypotf((float)x + 0.5f - middle, (float)y + 0.5f - middle) <= reach; c++)
+				least = fminf(least, l->model[4 * ((long)y * l->n + x) + c]);
+	return fmaxf(least, SCENE_DARK);
+}
+
+json_t *viewer_map_model(const struct scene *s, struct err *err)
+{
+	int from = scene_marched(s) < s->n_levels ? scene_marched(s) : s->n_levels - 1, rows = 0;
+	const struct scene_level *first = &s->level[from];
+	float dark = darkest(s, first), *all;
+	json_t *tops = json_array();
+	for (int k = from; k < s->n_levels; k++) {
+		json_array_append_new(tops, json_integer(rows));
+		rows += s->level[k].n;
+	}
+	all = mem_array((size_t)first->n * (size_t)rows * 4, sizeof *all);
+	for (long i = 0; i < 4L * first->n * rows; i++)
+		all[i] = dark;
+	for (int k = from, y = 0; k < s->n_levels; y += s->level[k++].n)
+		for (int row = 0; row < s->level[k].n; row++)
+			memcpy(all + 4L * first->n * (y + row), s->level[k].model + 4L * s->level[k].n * row, 4 * (size_t)s->level[k].n * sizeof *all);
+	json_t *map = viewer_map_log(all, first->n, rows, 4, dark, err);
+	free(all);
+	if (map) {
+		json_object_set_new(map, "from", json_integer(from));
+		json_object_set(map, "tops", tops);
+	}
+	json_decref(tops);
+	return map;
+}
+
 json_t *viewer_map_plain(const struct image *map, struct err *err)
 {
 	double low[3] = { 0 }, high[3] = { 1, 1, 1 };
@@ -116,11 +154,9 @@ json_t *viewer_map_plain(const struct image *map, struct err *err)
 	return json;
 }
 
-json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, int lights, struct err *err)
+static json_t *directions(int n, const struct envmap_light *light)
 {
-	struct envmap_light light[ENVMAP_LIGHTS_MAX];
-	int n = envmap_lights(light, lights, env);
-	json_t *out = json_pack("{s:s}", "name", name), *list = json_array(), *quadric = json_array();
+	json_t *list = json_array();
 	for (int i = 0; i < n; i++) {
 		double v[6];
 		for (int c = 0; c < 3; c++) {
@@ -129,6 +165,18 @@ json_t *viewer_light(const char *name, const struct envmap *env, const struct en
 		}
 		json_array_append_new(list, json_numbers(6, v));
 	}
+	return list;
+}
+
+json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, const struct viewer_source *source, struct err *err)
+{
+	enum { SKIES = 8 };  // what the skin mirrors
+	struct scene_lighting light = scene_lighting_of(env, mirror, source->lights, source->directions);
+	struct envmap_light sky[ENVMAP_LIGHTS_MAX];
+	int n = envmap_lights(sky, SKIES, env);
+	json_t *out = json_pack("{s:s,s:i}", "name", name, "beams", (light.n + light.each - 1) / light.each), *quadric = json_array();
+	json_object_set_new(out, "lights", directions(light.n, light.light));
+	json_object_set_new(out, "skies", directions(n, sky));
 	for (int k = 0; k < 9; k++) {
 		double v[3] = { env->quadric[k][0], env->quadric[k][1], env->quadric[k][2] };
 		json_array_append_new(quadric, json_numbers(3, v));
@@ -136,7 +184,6 @@ json_t *viewer_light(const char *name, const struct envmap *env, const struct en
 	double even[3];
 	for (int c = 0; c < 3; c++)
 		even[c] = env->sh[0][c] * 0.282094791773878;
-	json_object_set_new(out, "lights", list);
 	json_object_set_new(out, "quadric", quadric);
 	json_object_set_new(out, "even", json_numbers(3, even));
 	if (mirror) {

@@ -74,9 +74,6 @@ struct plane_work {
 	struct plane_sum sum;
 };
 
-/* Several lights together are smooth: a coarser grid, and cubics (Catmull and Rom's) between. */
-enum { COARSE = 24 };
-
 SIMD_CLONES static void plane_add(struct plane_sum *sum, const struct plane *n, const float *restrict lit, const float dir[3], float share, const double limbus[2])
 {
 	float per_x = (float)(1 / limbus[0]), per_y = (float)(1 / limbus[1]);
@@ -97,8 +94,8 @@ SIMD_CLONES static void plane_add(struct plane_sum *sum, const struct plane *n, 
 
 static void cubic(float w[4], int *at, int i)
 {
-	float x = (float)i * (COARSE - 1) / (SCENE_GRID - 1);
-	*at = (int)x < COARSE - 3 ? (int)x > 1 ? (int)x - 1 : 0 : COARSE - 4;
+	float x = (float)i * (SCENE_COARSE - 1) / (SCENE_GRID - 1);
+	*at = (int)x < SCENE_COARSE - 3 ? (int)x > 1 ? (int)x - 1 : 0 : SCENE_COARSE - 4;
 	float t = x - (float)(*at + 1), u = t * t;
 	if (t < 0 || t > 1) {  // at the border: linear
 		int k = t < 0 ? 0 : 2;
@@ -115,15 +112,15 @@ static void cubic(float w[4], int *at, int i)
 
 SIMD_CLONES static void refine(float (*restrict way)[SCENE_WAY], const float (*restrict coarse)[SCENE_WAY])
 {
-	float w[SCENE_GRID][4], row[SCENE_GRID][COARSE][SCENE_WAY];
+	float w[SCENE_GRID][4], row[SCENE_GRID][SCENE_COARSE][SCENE_WAY];
 	int at[SCENE_GRID];
 	for (int i = 0; i < SCENE_GRID; i++)
 		cubic(w[i], &at[i], i);
 	for (int y = 0; y < SCENE_GRID; y++)
-		for (int x = 0; x < COARSE; x++)
+		for (int x = 0; x < SCENE_COARSE; x++)
 			for (int c = 0; c < SCENE_WAY; c++)
-				row[y][x][c] = w[y][0] * coarse[at[y] * COARSE + x][c] + w[y][1] * coarse[(at[y] + 1) * COARSE + x][c]
-				               + w[y][2] * coarse[(at[y] + 2) * COARSE + x][c] + w[y][3] * coarse[(at[y] + 3) * COARSE + x][c];
+				row[y][x][c] = w[y][0] * coarse[at[y] * SCENE_COARSE + x][c] + w[y][1] * coarse[(at[y] + 1) * SCENE_COARSE + x][c]
+				               + w[y][2] * coarse[(at[y] + 2) * SCENE_COARSE + x][c] + w[y][3] * coarse[(at[y] + 3) * SCENE_COARSE + x][c];
 	for (int y = 0; y < SCENE_GRID; y++)
 		for (int x = 0; x < SCENE_GRID; x++)
 			for (int c = 0; c < SCENE_WAY; c++)
@@ -136,8 +133,8 @@ static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lig
 {
 	struct plane *n = &work->plane;
 	struct plane_sum *sum = &work->sum;
-	float lit[NODES], coarse[COARSE * COARSE][SCENE_WAY], (*to)[SCENE_WAY] = lights > 1 ? coarse : way;
-	plane_points(n, lights > 1 ? COARSE : SCENE_GRID, s, z);
+	float lit[NODES], coarse[SCENE_COARSE * SCENE_COARSE][SCENE_WAY], (*to)[SCENE_WAY] = lights > 1 ? coarse : way;
+	plane_points(n, lights > 1 ? SCENE_COARSE : SCENE_GRID, s, z);
 	*sum = (struct plane_sum){ 0 };
 	for (int l = 0; l < lights; l++) {
 		for (int c = 0; c < 3; c++)

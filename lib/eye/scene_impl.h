@@ -23,6 +23,7 @@ struct iris_batch {
  * came in (1: at the limbus). */
 enum { SCENE_PATH_STEPS = 4 };  // Newton's, from the closed-form start: 2e-5 mm at worst
 enum { SCENE_WAY = 8 };  // five, and room for a whole vector
+enum { SCENE_COARSE = 24 };  // several lights together are smooth: a coarser grid, and cubics (Catmull and Rom's) between
 struct scene_beam {
 	float dir[3], rgb[3];
 	float z[2];

@@ -2,8 +2,6 @@ precision highp float;
 precision highp int;
 precision highp sampler2D;
 // What the passes share. Eye frame as in lib/eye/scene.h: origin at the corneal apex, z into the eye, mm.
-const int LIGHTS = 8;   // beams at most
-const float GRID = 48.0;
 uniform float cornea_R, cornea_p, cornea_n;
 uniform float extent;   // half-width of the iris maps
 uniform vec2 beam_z;    // depths of the two planes of a beam's table

@@ -162,7 +162,7 @@ class FaceScene {
 		const g = this.g, gl = g.gl, { width, height } = this.frame, c = this.camera(view, height), first = eye_scenes[0];
 		this.pose(...[0, 1].map(k => (view.gazes[0][k] + view.gazes[1][k]) / 2), view.open);
 		const light = first.lights[s.light] || first.lights[0], turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
-		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = EyeScene.merged(light.lights, EyeScene.LIGHTS);
+		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = light.skies;
 		const views = [0, 1].map(side => this.eye_view(eye_scenes[side], s, view, side, width, height));
 		views.forEach((v, side) => eye_scenes[side].solve(s, v, preset, `face${side}`));
 		g.target(this.frame, 0, 0, this.frame.depth);
@@ -177,7 +177,7 @@ class FaceScene {
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),
 			globes: this.data.globes.flatMap(([x, y, z, scale], side) => [x, y, z, scale * eye_scenes[side].sclera(s)[1]]),
 			quadric: light.quadric.flat().map(v => v * s.light_gain), still_quadric: first.lights[0].quadric.flat(),
-			pores: !preset.march ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
+			pores: !preset.pores ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
 		gl.disable(gl.CULL_FACE);
 		gl.enable(gl.SCISSOR_TEST);
 		views.forEach((v, side) => {

@@ -1,6 +1,6 @@
 /* WebGL 2: programs, maps, targets. */
 class Graphics {
-	constructor(canvas, shaders) {
+	constructor(canvas, shaders, constants) {
 		const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, powerPreference: "high-performance", preserveDrawingBuffer: true });
 		if (!gl)
 			throw new Error("this browser offers no WebGL 2");
@@ -8,6 +8,7 @@ class Graphics {
 			throw new Error("this graphics driver cannot draw into floating-point pictures");
 		this.gl = gl;
 		this.shaders = shaders;
+		this.constants = Object.entries(constants).map(([name, value]) => `#define ${name} ${value}\n`).join("");
 		this.compiled = [];  // in order: what a scene does not show is not compiled
 		this.frame = gl.createFramebuffer();
 		this.whole = gl.createVertexArray();
@@ -34,7 +35,7 @@ class Graphics {
 		};
 		const whole = "#version 300 es\nlayout(location=0) in vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n";
 		add(gl.VERTEX_SHADER, vertex ? "#version 300 es\n" + this.shaders[vertex] : whole);
-		const fragment = add(gl.FRAGMENT_SHADER, `#version 300 es\n${this.shaders.look}${this.shaders.common}${(parts || []).map(p => `#define ${p.toUpperCase()}\n`).join("")}${this.text(name, parts || [])}`);
+		const fragment = add(gl.FRAGMENT_SHADER, `#version 300 es\n${this.constants}${this.shaders.look}${this.shaders.common}${(parts || []).map(p => `#define ${p.toUpperCase()}\n`).join("")}${this.text(name, parts || [])}`);
 		gl.linkProgram(program);
 		this.compiled.push([name, ...(parts || [])].join("+"));
 		if (!gl.getProgramParameter(program, gl.LINK_STATUS))
@@ -47,9 +48,10 @@ class Graphics {
 		return { program, uniforms };
 	}
 
-	/* The eye's own uniforms come before what builds on them. */
+	/* What a shader builds on comes before it. */
 	text(name, parts) {
-		return name === "eye" ? this.shaders.iris + parts.map(p => this.shaders[p]).join("") + this.shaders.eye : parts.map(p => this.shaders[p]).join("") + this.shaders[name];
+		const below = { eye: ["ground", "iris"], march: ["ground"] }[name] || [];
+		return [...below, ...parts, name].map(p => this.shaders[p]).join("");
 	}
 
 	/* Draws the whole target, or a shape, with these uniforms; a uniform that is a texture takes the next unit. */
@@ -96,12 +98,14 @@ class Graphics {
 		return { texture, width, height };
 	}
 
-	/* Draws into a texture, or (null) onto the page. */
+	/* Draws into a texture (and another of its size, also), or (null) onto the page. */
 	target(t, width, height, depth) {
 		const gl = this.gl;
 		gl.bindFramebuffer(gl.FRAMEBUFFER, t ? this.frame : null);
 		if (t) {
 			gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, t.texture, 0);
+			gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, t.also ? t.also.texture : null, 0);
+			gl.drawBuffers(t.also ? [gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1] : [gl.COLOR_ATTACHMENT0]);
 			gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth || null);
 		}
 		gl.viewport(0, 0, t ? t.width : width, t ? t.height : height);
@@ -115,7 +119,7 @@ class Graphics {
 	/* A map of the page's data as a texture; rows stay in order: row 0 is at 0. srgb: colours; else decoded to half floats. */
 	async map(m, kind) {
 		const gl = this.gl, bitmap = await this.bitmap(m.png, "image/png"), srgb = kind === "srgb";
-		const levels = kind === "srgb" || kind === 0 || kind === "log" ? 1 + Math.floor(Math.log2(m.width)) : 1;
+		const levels = kind === "srgb" || kind === 0 ? 1 + Math.floor(Math.log2(m.width)) : 1;
 		const raw = this.texture(m.width, m.height, srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8, srgb ? levels : 1);
 		gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
 		gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);

@@ -1,10 +1,14 @@
-// The light's way through the cornea (iris paper, eq. 15): for each beam, over the iris on two planes of GRID x GRID
-// points, the direction towards the light (x, y), the irradiance of a plane that faces it, and where on the cornea it came in
-// (1: at the limbus); lib/eye/scene_light.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
-uniform vec3 beam_dir[LIGHTS];
+// The light's way through the cornea (iris paper, eq. 15): for each beam, over the iris on two planes of side x side
+// points, the mean direction towards its lights (x, y; z in down), the irradiance of a plane that faces it, and where on the
+// cornea it came in (1: at the limbus); lib/eye/scene_beam.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
+uniform vec4 light_dir[DIRECTIONS];   // towards each light, and its share in its beam
+uniform int first[TILES + 1];         // of each beam's lights; the last beam is the way to the camera: its light has no direction
+uniform vec3 origin;                  // the camera
+uniform int side;
 uniform vec2 limbus;
 uniform float path_bend;
-out vec4 way;
+layout(location = 0) out vec4 way;
+layout(location = 1) out float down;
 
 // Where the ray from P in direction q leaves the surface.
 vec3 leave(vec3 P, vec3 q)
@@ -104,13 +108,9 @@ bool descend(inout vec2 x, vec3 P, vec3 w)
 	return false;
 }
 
-void main()
+// One light at P: direction, and power in w.
+vec4 arrives(vec3 P, vec3 w, out float rho)
 {
-	ivec2 at = ivec2(gl_FragCoord.xy), tile = at / int(GRID), cell = at - tile * int(GRID);
-	vec3 w = beam_dir[tile.y];
-	vec2 place = vec2(cell) / (GRID - 1.0) * 2.0 * extent - extent;
-	float r = length(place), most = 1.04 * rim;
-	vec3 P = vec3(place * min(1.0, most / max(r, 1e-6)), tile.x == 0 ? beam_z.x : beam_z.y);
 	vec2 x = start(P, w), g;
 	vec3 H;
 	float tau;
@@ -118,5 +118,27 @@ void main()
 	curve(x, P, w, g, H, tau);
 	vec3 K = found ? surface(x) : P + w, l = normalize(K - P);
 	float gain = found ? caustic(x, P, w, H, tau) : 0.0;
-	way = vec4(l.xy, gain / max(-l.z, 0.05), min(length(K.xy / limbus), 4.0));
+	rho = min(length(K.xy / limbus), 4.0);
+	return vec4(l, gain / max(-l.z, 0.05));
+}
+
+void main()
+{
+	ivec2 at = ivec2(gl_FragCoord.xy), tile = at / side, cell = at - tile * side;
+	vec2 place = vec2(cell) / float(side - 1) * 2.0 * extent - extent;
+	float r = length(place), most = 1.04 * limbus.x, rho, all = 0.0, in_at = 0.0;
+	vec3 P = vec3(place * min(1.0, most / max(r, 1e-6)), tile.x == 0 ? beam_z.x : beam_z.y), sum = vec3(0.0);
+	for (int i = first[tile.y]; i < first[tile.y + 1]; i++) {
+		vec3 w = light_dir[i].xyz;
+		if (w == vec3(0.0))
+			w = normalize(origin - surface(start(P, normalize(origin - P))));
+		vec4 l = arrives(P, w, rho);
+		float power = light_dir[i].w * (l.w + 1e-9);  // where none comes, a direction still
+		all += power;
+		sum += power * l.xyz;
+		in_at += power * rho;
+	}
+	sum /= all;
+	way = vec4(sum.xy, all, in_at / all);
+	down = sum.z;
 }

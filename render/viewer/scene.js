@@ -21,23 +21,25 @@ function between(list, x) {
 /* What costs time, dearest first. No more steps are taken than the model in the maps was made with: the photograph's own view
  * then shows the photograph. */
 const presets = [
-	{ name: "full", steps: 12, scale: 1, lights: 8, shadow: 4, search: 8, march: true },
-	{ name: "high", steps: 6, scale: 1, lights: 4, shadow: 2, search: 6, march: true },
-	{ name: "medium", steps: 4, scale: 0.66, lights: 4, shadow: 0, search: 5, march: true },
-	{ name: "low", steps: 3, scale: 0.66, lights: 4, shadow: 0, search: 4, march: false },
-	{ name: "least", steps: 3, scale: 0.4, lights: 2, shadow: 0, search: 3, march: false },
+	{ name: "full", steps: 12, scale: 1, beams: 8, directions: 128, shadow: 0.25, search: 8, apart: 0, pores: true },
+	{ name: "high", steps: 6, scale: 1, beams: 4, directions: 32, shadow: 0.5, search: 6, apart: 0, pores: true },
+	{ name: "medium", steps: 3, scale: 0.66, beams: 4, directions: 8, shadow: 1, search: 5, apart: 1, pores: true },
+	{ name: "low", steps: 3, scale: 0.66, beams: 4, directions: 4, shadow: 0, search: 4, apart: 1, pores: false },
+	{ name: "least", steps: 2, scale: 0.4, beams: 2, directions: 2, shadow: 0, search: 3, apart: 2, pores: false },
 ];
 
 class EyeScene {
-	static LIGHTS = 8;
-	static GRID = 48;
+	static LIGHTS = 8;        // beams at most; and the way to the camera
+	static DIRECTIONS = 128;  // in all of them
 	static NODES = 12;
 
 	constructor(g, data) {
 		Object.assign(this, { g, data, count: 0, target: null });
 		for (const name of ["paths", "present"])
 			this[name] = g.program(name);
+		this.marcher = g.program("march");
 		this.path_maps = {};
+		this.shades = {};
 	}
 
 	/* The eye alone; in a face the face's own program draws it, and this is never compiled. */
@@ -48,43 +50,10 @@ class EyeScene {
 	async load() {
 		const { g, data } = this, m = data.maps;
 		const [relief, colour, model, veins, film] = await Promise.all([g.map(m.relief, 0), g.map(m.colour, "srgb"),
-			g.map(m.model, "log"), g.map(m.veins, "log-flat"), g.map(m.film, "plain")]);
+			g.map(m.model, "log"), g.map(m.veins, "log"), g.map(m.film, "plain")]);
 		this.maps = { relief_map: relief, colour_map: colour, model_map: model, vein_map: veins, film_map: film };
 		this.lights = await Promise.all(data.lights.map(async l => ({ ...l,
-			sharp_map: l.sharp ? await g.map(l.sharp, "log-flat") : null, rough_map: l.rough ? await g.map(l.rough, "log-flat") : null })));
-	}
-
-	/* Neighbouring lights become one, as the median cut had them. */
-	static merged(list, n) {
-		list = list.map(l => [...l]);
-		while (list.length > n) {
-			const next = [];
-			for (let i = 0; i < list.length; i += 2) {
-				const a = list[i], b = list[i + 1];
-				if (!b) {
-					next.push(a);
-					continue;
-				}
-				const wa = a[3] + a[4] + a[5], wb = b[3] + b[4] + b[5];
-				const d = [0, 1, 2].map(k => wa * a[k] + wb * b[k]), len = Math.hypot(...d) || 1;
-				next.push([...d.map(v => v / len), a[3] + b[3], a[4] + b[4], a[5] + b[5]]);
-			}
-			list = next;
-		}
-		return list;
-	}
-
-	/* Lights in the eye's frame that reach the iris: no path leads in from further than 99 degrees off the axis. */
-	beams(light, eye_from_env, gain, n) {
-		const dir = [], rgb = [];
-		for (const l of EyeScene.merged(light.lights, n)) {
-			const d = turns.apply(eye_from_env, l);
-			if (d[2] <= 0.16) {
-				dir.push(...d);
-				rgb.push(l[3] * gain, l[4] * gain, l[5] * gain);
-			}
-		}
-		return { n: dir.length / 3, dir: EyeScene.padded(dir, 3 * EyeScene.LIGHTS), rgb: EyeScene.padded(rgb, 3 * EyeScene.LIGHTS) };
+			sharp_map: l.sharp ? await g.map(l.sharp, "log") : null, rough_map: l.rough ? await g.map(l.rough, "log") : null })));
 	}
 
 	static padded(list, n) {
@@ -119,9 +88,15 @@ class EyeScene {
 	level(pixel) {
 		const n = this.data.eye.map_px, per_mm = n / (2 * this.data.eye.extent);
 		let k = 0;
-		while (k < 5 && (n >> k) >= 64 && per_mm / (2 << k) * pixel > 0.8)
+		while (k + 1 < this.data.eye.levels && per_mm / (2 << k) * pixel > 0.8)
 			k++;
 		return k;
+	}
+
+	/* The level that the march begins from. */
+	marched(pixel, preset) {
+		const m = this.data.maps.model;
+		return Math.min(Math.max(this.level(pixel) + this.data.eye.marched + preset.apart, m.from), this.data.eye.levels - 1);
 	}
 
 	tissue(s) {
@@ -129,8 +104,7 @@ class EyeScene {
 		if (this.tissue_key !== key) {
 			const t = this.data.tissue, o = tissue.optics(t, s);
 			this.tissue_key = key;
-			this.optics = { source: o.source.flat(), extinction: o.extinction.flat(), flat_rgb: tissue.flat(t, o, 0.48),
-				band_rgb: [0, 1, 2].flatMap(c => t.bands.map(b => b[5 + c])).concat([0, 0, 0, 0]) };
+			this.optics = { source: o.source.flat(), extinction: o.extinction.flat(), band_rgb: [0, 1, 2].flatMap(c => t.bands.map(b => b[5 + c])).concat([0, 0, 0, 0]) };
 		}
 		return this.optics;
 	}
@@ -156,40 +130,78 @@ class EyeScene {
 		this.count = 0;
 	}
 
+	/* Room for the ways of all beams, on side x side points. */
+	ways(side) {
+		const { g } = this, size = [2 * side, (EyeScene.LIGHTS + 1) * side];
+		return { ...g.texture(...size, g.gl.RGBA16F), also: g.texture(...size, g.gl.R16F) };
+	}
+
 	/* The light's ways into the eye as this camera has it, once for each change; kept by name. */
 	solve(s, cam, preset, name) {
-		const { g, data } = this, gl = g.gl, e = data.eye, light = this.lights[s.light] || this.lights[0];
+		const { g, data } = this, e = data.eye, c = data.constants, light = this.lights[s.light] || this.lights[0];
 		const turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
 		const env_from_eye = turns.multiply(turns.transpose(turn), cam.head_from_eye);
-		const beams = this.beams(light, turns.transpose(env_from_eye), s.light_gain, Math.min(preset.lights, light.lights.length));
-		const key = [s.R, s.p, s.n, beams.n, ...beams.dir].join(), old = this.path_maps[name];
-		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, beam_dir: beams.dir, path_bend: data.constants.path_bend,
+		const in_eye = beams.turned(light.lights, turns.transpose(env_from_eye));
+		const made = beams.made(in_eye, Math.min(preset.beams, light.beams, EyeScene.LIGHTS), Math.min(preset.directions, EyeScene.DIRECTIONS - 1));
+		made.first.push(made.first[made.n] + 1);
+		made.dir.push(0, 0, 0, 1);  // the way to the camera
+		const key = [s.R, s.p, s.n, ...cam.origin, ...made.first, ...made.dir].join(), old = this.path_maps[name], map = old ? old.map : this.ways(c.grid);
+		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, path_bend: c.path_bend,
+			light_dir: EyeScene.padded(made.dir, 4 * EyeScene.DIRECTIONS), first: EyeScene.padded(made.first, EyeScene.LIGHTS + 2), origin: cam.origin,
 			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + data.tissue.abl + e.thickness_max] };
-		const map = old ? old.map : g.texture(2 * EyeScene.GRID, EyeScene.LIGHTS * EyeScene.GRID, gl.RGBA16F);
-		if (!old || old.key !== key) {
-			gl.disable(gl.BLEND);
-			g.target(map);
-			gl.enable(gl.SCISSOR_TEST);
-			gl.scissor(0, 0, 2 * EyeScene.GRID, Math.max(1, beams.n) * EyeScene.GRID);
-			g.draw(this.paths, values);
-			gl.disable(gl.SCISSOR_TEST);
-		}
+		if (!old || old.key !== key)
+			this.solve_all(map, values, made);
 		this.path_maps[name] = { key, map };
-		this.solved = { ...this.solved, [name]: { ...values, path_map: map, env_from_eye, beams: beams.n, beam_rgb: beams.rgb, light } };
+		const beam_rgb = EyeScene.padded(made.rgb.map(v => v * s.light_gain), 3 * EyeScene.LIGHTS);
+		this.solved = { ...this.solved, [name]: { ...values, key, path_map: map, down_map: map.also, env_from_eye, beams: made.n, beam_rgb, light } };
+		this.march(s, cam, preset, name);
+	}
+
+	/* Light on the iris' texels, once for each change. */
+	march(s, cam, preset, name) {
+		const { g, data } = this, gl = g.gl, e = data.eye, solved = this.solved[name], level = this.marched(cam.pixel, preset), n = e.map_px >> level, m = data.maps.model;
+		const own = { ...this.tissue(s), ...this.nodes(preset.steps, this.optics.extinction), pupil_now: s.pupil, detail: s.detail, shadow_grow: preset.shadow, level };
+		const key = solved.key + solved.beam_rgb.join() + JSON.stringify(own), old = this.shades[name];
+		if (old && old.key === key)
+			return;
+		if (old && old.map.width !== n)
+			gl.deleteTexture(old.map.texture);
+		const map = old && old.map.width === n ? old.map : g.texture(n, n, gl.RGBA16F);
+		g.target(map);
+		g.draw(this.marcher, { ...solved, ...own, ...this.maps, sclera: this.sclera(s), pupil: e.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px,
+			abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, model_top: m.tops[level - m.from] });
+		this.shades[name] = { key, map };
+	}
+
+	/* Several lights together are smooth: fewer points, and cubics between. */
+	solve_all(map, values, made) {
+		const { g } = this, gl = g.gl, { grid, coarse } = this.data.constants, side = made.each > 1 ? coarse : grid;
+		this.coarse = this.coarse || (made.each > 1 ? this.ways(coarse) : null);
+		const to = made.each > 1 ? this.coarse : map, part = n => gl.scissor(0, 0, 2 * n, (made.n + 1) * n);
+		gl.disable(gl.BLEND);
+		gl.enable(gl.SCISSOR_TEST);
+		g.target(to);
+		part(side);
+		g.draw(this.paths, { ...values, side });
+		if (to !== map) {
+			g.target(map);
+			part(grid);
+			this.refine = this.refine || g.program("refine");
+			g.draw(this.refine, { path_map: to, down_map: to.also });
+		}
+		gl.disable(gl.SCISSOR_TEST);
 	}
 
 	/* Every pixel of the target's ray. */
 	trace(s, cam, preset, jitter, extra, size, program) {
-		const { g, data } = this, e = data.eye, solved = this.solved[cam.side === undefined ? "eye" : `face${cam.side}`], light = solved.light;
+		const { g, data } = this, e = data.eye, name = cam.side === undefined ? "eye" : `face${cam.side}`, solved = this.solved[name], light = solved.light;
 		g.draw(program || this.eye, {
 			...solved, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), lens: cam.lens, corner: cam.corner,
 			size, jitter, slip: cam.slip ? [...cam.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0],
 			back: e.back, sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
 			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
-			...this.tissue(s), abl: data.tissue.abl, exposure: data.tissue.exposure,
-			tissue_gain: e.gain, detail: s.detail, ...this.nodes(preset.steps, this.optics.extinction),
-			search: preset.search, shadow_steps: preset.shadow, flat_iris: preset.march ? 0 : 1,
+			light_map: this.shades[name].map, detail: s.detail, search: preset.search,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
 			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear,
 			...extra,

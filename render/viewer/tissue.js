@@ -124,16 +124,5 @@ const tissue = (() => {
 		}
 		return out;
 	}
-
-	/* Mean colour of the model: what is seen without a march. */
-	function flat(data, o, stroma) {
-		const rgb = [0, 0, 0];
-		data.bands.forEach((band, k) => {
-			const r = first_order([o.extinction[0][k], o.extinction[1][k]], [o.source[0][k], o.source[1][k]], data.abl, stroma, 1, 1);
-			for (const c of [0, 1, 2])
-				rgb[c] += band[5 + c] * r * data.exposure;
-		});
-		return rgb;
-	}
-	return { optics, flat };
+	return { optics };
 })();

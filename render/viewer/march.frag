@@ -1,0 +1,125 @@
+// Light in the iris, from the map's texels: what each texel of the photograph is multiplied by in this light, seen from this
+// camera; lib/eye/scene_shade.c, scene_tile.c, scene_march.c, scene_colour.c.
+const int NODES = 12;
+uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
+uniform vec2 heights;
+uniform sampler2D path_map, down_map, model_map;
+uniform int model_top;            // of this level's rows in model_map
+uniform int beams;
+uniform vec3 beam_rgb[LIGHTS];
+uniform vec4 source[2], extinction[2];  // by layer, four wavelengths
+uniform mat4 band_rgb;            // columns: wavelengths; rows: R, G, B
+uniform float abl, exposure, tissue_gain, detail;
+uniform int nodes[2];
+uniform vec2 node[2 * NODES];     // place and weight, of the anterior border layer, then of the stroma
+uniform float shadow_grow;        // of the distances at which the relief is looked at for shadows; 0: none
+out vec4 light;
+
+// The same place as stretch() knows it, the other way round.
+vec2 shrink(vec2 q)
+{
+	vec2 d = q - pupil.xy;
+	float r = length(d), root = rim * 1.02;
+	if (abs(pupil_now - pupil.z) < 1e-4 || r >= root)
+		return q;
+	return pupil.xy + d * ((pupil_now + (r - pupil.z) * (root - pupil_now) / (root - pupil.z)) / max(r, 1e-3));
+}
+
+vec2 path_place(int beam, int plane, vec2 p)
+{
+	const float grid = float(GRID);
+	vec2 cell = clamp((p + extent) / (2.0 * extent) * (grid - 1.0), 0.0, grid - 1.0);
+	return (cell + 0.5 + vec2(float(plane), float(beam)) * grid) / (grid * vec2(2.0, float(TILES)));
+}
+
+// Mean direction towards a beam's light (not of unit length), and irradiance of a plane that faces it; the sclera stops,
+// gradually, what would enter outside the limbus.
+vec4 path_to(int beam, vec3 p)
+{
+	float q = (p.z - beam_z.x) / (beam_z.y - beam_z.x);
+	vec2 above = path_place(beam, 0, p.xy), below = path_place(beam, 1, p.xy);
+	vec4 w = mix(textureLod(path_map, above, 0.0), textureLod(path_map, below, 0.0), q);
+	float down = mix(textureLod(down_map, above, 0.0).r, textureLod(down_map, below, 0.0).r, q);
+	float t = clamp((w.w - 1.0) / sclera.z + 0.5, 0.0, 1.0);
+	return vec4(w.xy, down, down < 0.0 ? max(w.z, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t)) : 0.0);
+}
+
+// Share of the light that comes in over the relief's horizon, looked at where lib/eye/scene_shadow.c does: sources are 0.15
+// wide; tissue that stands around in the light fills shadows in.
+float shadow(vec3 p, vec3 l)
+{
+	float own = iris_depth - p.z, texel = 2.0 * extent / float(map_size >> level), steepest = -1.0, off = texel;
+	float reach = 2.0 * (heights.y - heights.x), across = max(length(l.xy), 1e-6);
+	for (int k = 0; k < 24; k++) {
+		if (off >= reach || 0.5 * off >= heights.y - own)
+			break;
+		steepest = max(steepest, (relief_at(p.xy + off / across * l.xy).x - own - LOOK_BIAS) / off);
+		off += max(texel, shadow_grow * off);
+	}
+	return LOOK_FILL + (1.0 - LOOK_FILL) * clamp((-l.z / across - steepest) / LOOK_SOURCE, 0.0, 1.0);
+}
+
+// Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
+vec3 scatter(vec3 p, vec3 v)
+{
+	vec4 top = relief_slope(p.xy);
+	float rate = max(v.z + dot(top.zw, v.xy), 0.2), most = 3.0 * (abl + top.y), span = (abl + top.y) / rate;
+	for (int k = 0; k < 2; k++) {
+		vec3 q = p + span * v;
+		vec2 t = relief_at(q.xy);
+		span = clamp(span + (abl + t.y - (q.z - iris_depth + t.x)) / v.z, 1e-3, most);
+	}
+	float near = min(abl / rate, span);
+	vec4 at[NODES], way[NODES];  // slope, depth, place on the ray; to the beholder in either layer, weight
+	int total = nodes[0] + nodes[1];
+	for (int j = 0; j < NODES; j++) {
+		if (j >= total)
+			break;
+		bool stroma = j >= nodes[0];
+		vec2 n = node[stroma ? NODES + j - nodes[0] : j];
+		float len = stroma ? span - near : near, s = (stroma ? near : 0.0) + n.x * len;
+		vec3 q = p + s * v;
+		vec4 t = relief_slope(q.xy);
+		at[j] = vec4(t.zw, max(q.z - iris_depth + t.x, 0.0), s);
+		way[j] = vec4(min(s, near), max(s - near, 0.0), n.y * len, 0.0);
+	}
+	vec3 sum = vec3(0.0);
+	for (int b = 0; b < LIGHTS; b++) {
+		if (b >= beams)
+			break;
+		vec4 near_light = path_to(b, p), far_light = path_to(b, p + span * v), lit = vec4(0.0);
+		float open = shadow_grow > 0.0 ? shadow(p, near_light.xyz) : 1.0;
+		for (int j = 0; j < NODES; j++) {
+			if (j >= total)
+				break;
+			vec4 l = mix(near_light, far_light, at[j].w / span);
+			float lost = max(-l.z - dot(at[j].xy, l.xy), 0.25);
+			float la = min(at[j].z, abl) / lost + way[j].x, ls = max(at[j].z - abl, 0.0) / lost + way[j].y;
+			lit += source[j < nodes[0] ? 0 : 1] * (way[j].z * l.w) * exp(-(extinction[0] * la + extinction[1] * ls));
+		}
+		sum += beam_rgb[b] * (band_rgb * (lit * (open * 0.25))).rgb;  // pi times the phase, 1 / (4 pi)
+	}
+	return max(sum * exposure, 0.0);
+}
+
+// What the photograph's colour is multiplied by: lib/eye/scene_colour.c.
+vec3 ratio(vec3 rgb, vec3 model)
+{
+	vec3 k = rgb / model;
+	float mean = (k.r + k.g + k.b) / 3.0, lit = min(mean, LOOK_MOST);
+	k = clamp(k * (lit / max(mean, 1e-6)), lit / LOOK_CHROMA, lit * LOOK_CHROMA);
+	return detail >= 1.0 ? k : pow(max(k, 1e-5), vec3(detail)) * pow(max(tissue_gain * rgb, 1e-5), vec3(1.0 - detail));
+}
+
+void main()
+{
+	ivec2 at = ivec2(gl_FragCoord.xy);
+	float texel = 2.0 * extent / float(map_size >> level);
+	vec2 q = (vec2(at) + 0.5) * texel - extent, xy = shrink(q);
+	light = vec4(0.0, 0.0, 0.0, 1.0);
+	if (length(q) > 1.06 * rim + 3.0 * texel || length(q - pupil.xy) < pupil.z - 0.1 - 3.0 * texel)
+		return;
+	vec3 p = vec3(xy, iris_depth - relief_at(xy).x), sight = -normalize(path_to(beams, vec3(xy, iris_depth)).xyz);
+	sight.z = max(sight.z, 0.2);  // flatter, nobody sees it
+	light.rgb = ratio(scatter(p, sight), texelFetch(model_map, at + ivec2(0, model_top), 0).rgb);
+}
