@@ -70,7 +70,6 @@ static json_t *geometry(const struct scene *s, double gain)
 	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
 	json_object_set_new(out, "levels", json_integer(s->n_levels));
 	json_object_set_new(out, "marched", json_integer(scene_marched(s)));
-	json_object_set_new(out, "search", json_integer(s->conf.search));
 	return out;
 }
 

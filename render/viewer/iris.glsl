@@ -12,43 +12,21 @@ uniform float pixel;              // mm on the iris
 uniform vec2 heights;
 uniform sampler2D colour_map, light_map, vein_map, film_map, sharp_map, rough_map;
 uniform float detail;
-uniform int search;
 uniform vec3 quadric[9], even;    // irradiance of the environment
 uniform float mirror_on, tear;
 out vec4 seen;
 
-// The first crossing of the relief: bracketed by equal steps, then twice regula falsi.
+// Where the ray meets the relief, by Newton's steps from the iris plane: lib/eye/scene_quick.c. The relief is flat enough
+// against the slope of sight in the aqueous that the first crossing is the only one.
 vec3 meet(vec3 f, vec3 v)
 {
-	float high = iris_depth - heights.y - 1e-4, low = iris_depth - heights.x + 1e-4;
-	float a = (high - f.z) / v.z, fa = -1e-6, b = a, fb = 0.0, dt = (low - high) / v.z / float(search);
-	for (int k = 1; k <= 16; k++) {
-		if (k > search)
-			break;
-		b = a + dt;
-		vec3 p = f + b * v;
-		fb = p.z - iris_depth + relief_at(p.xy).x;
-		if (fb >= 0.0)
-			break;
-		if (k < search) {
-			a = b;
-			fa = fb;
-		}
-	}
+	float c = max(v.z, 0.1), low = (iris_depth - heights.y - f.z) / c, high = (iris_depth - heights.x - f.z) / c, t = (iris_depth - f.z) / c;
 	for (int k = 0; k < 2; k++) {
-		float t = a - fa * (b - a) / (fb - fa + 1e-12);
 		vec3 p = f + t * v;
-		float d = p.z - iris_depth + relief_at(p.xy).x;
-		if (d >= 0.0) {
-			b = t;
-			fb = d;
-		} else {
-			a = t;
-			fa = d;
-		}
+		vec4 h = relief_slope(p.xy);
+		t = clamp(t - (p.z - iris_depth + h.x) / max(c + dot(h.zw, v.xy), 0.3), low, high);
 	}
-	float d = fb - fa;
-	return f + v * (d > 1e-12 ? a - fa * (b - a) / d : b);
+	return f + t * v;
 }
 
 // The margin of the pupil, and its ruff: what is left of the iris' colour.

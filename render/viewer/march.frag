@@ -44,18 +44,28 @@ vec4 path_to(int beam, vec3 p)
 	return vec4(w.xy, down, down < 0.0 ? max(w.z, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t)) : 0.0);
 }
 
-// Share of the light that comes in over the relief's horizon, looked at where lib/eye/scene_shadow.c does: sources are 0.15
-// wide; tissue that stands around in the light fills shadows in.
-float shadow(vec3 p, vec3 l)
+// The steepest slope that the relief rises to from p in one azimuth, looked at where lib/eye/scene_shadow.c does.
+float horizon(vec3 p, float turn)
 {
 	float own = iris_depth - p.z, texel = 2.0 * extent / float(map_size >> level), steepest = -1.0, off = texel;
-	float reach = 2.0 * (heights.y - heights.x), across = max(length(l.xy), 1e-6);
+	float reach = 2.0 * (heights.y - heights.x);
+	vec2 to = vec2(cos(turn), sin(turn));
 	for (int k = 0; k < 24; k++) {
 		if (off >= reach || 0.5 * off >= heights.y - own)
 			break;
-		steepest = max(steepest, (relief_at(p.xy + off / across * l.xy).x - own - LOOK_BIAS) / off);
+		steepest = max(steepest, (relief_at(p.xy + off * to).x - own - LOOK_BIAS) / off);
 		off += max(texel, shadow_grow * off);
 	}
+	return steepest;
+}
+
+// Share of the light that comes in over the horizon, which is linear between azimuths: sources are 0.15 wide; tissue that
+// stands around in the light fills shadows in.
+float shadow(vec3 p, vec3 l)
+{
+	const float STEP = 0.39269908;
+	float across = max(length(l.xy), 1e-6), turn = atan(l.y, l.x) / STEP, at = floor(turn);
+	float steepest = mix(horizon(p, at * STEP), horizon(p, (at + 1.0) * STEP), turn - at);
 	return LOOK_FILL + (1.0 - LOOK_FILL) * clamp((-l.z / across - steepest) / LOOK_SOURCE, 0.0, 1.0);
 }
 

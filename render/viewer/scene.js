@@ -21,11 +21,11 @@ function between(list, x) {
 /* What costs time, dearest first. No more steps are taken than the model in the maps was made with: the photograph's own view
  * then shows the photograph. */
 const presets = [
-	{ name: "full", steps: 12, scale: 1, beams: 8, directions: 128, shadow: 0.25, search: 8, apart: 0, pores: true },
-	{ name: "high", steps: 6, scale: 1, beams: 4, directions: 32, shadow: 0.5, search: 6, apart: 0, pores: true },
-	{ name: "medium", steps: 3, scale: 0.66, beams: 4, directions: 8, shadow: 1, search: 5, apart: 1, pores: true },
-	{ name: "low", steps: 3, scale: 0.66, beams: 4, directions: 4, shadow: 0, search: 4, apart: 1, pores: false },
-	{ name: "least", steps: 2, scale: 0.4, beams: 2, directions: 2, shadow: 0, search: 3, apart: 2, pores: false },
+	{ name: "full", steps: 12, scale: 1, beams: 8, directions: 128, shadow: 0.25, apart: 0, pores: true },
+	{ name: "high", steps: 6, scale: 1, beams: 4, directions: 32, shadow: 0.5, apart: 0, pores: true },
+	{ name: "medium", steps: 3, scale: 0.66, beams: 4, directions: 8, shadow: 1, apart: 1, pores: true },
+	{ name: "low", steps: 3, scale: 0.66, beams: 4, directions: 4, shadow: 0, apart: 1, pores: false },
+	{ name: "least", steps: 2, scale: 0.4, beams: 2, directions: 2, shadow: 0, apart: 2, pores: false },
 ];
 
 class EyeScene {
@@ -201,7 +201,7 @@ class EyeScene {
 			back: e.back, sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
 			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
-			light_map: this.shades[name].map, detail: s.detail, search: preset.search,
+			light_map: this.shades[name].map, detail: s.detail,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
 			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear,
 			...extra,
