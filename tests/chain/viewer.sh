@@ -9,8 +9,11 @@ fi
 capture="$root/<b>eye & \"co\""
 new_capture "$capture"
 cp "$PHOTO" "$capture/photos/right_<img src=x onerror=alert(1)>.jpg"
-# The reference: every ray marched, by the rule that the page takes over; maps as fine as in a review.
-printf 'render.shading = rays\nrender.steps = 6\nrender.quadrature = exponential\nrender.shadow = 4\nrender.search = 8\nrender.lights = 8\nrender.light_directions = 1\nrender.bands = 4\nrender.size_px = 450\nrender.map_size = 1024\n' >>"$capture/capture.conf"
+# The eye's pictures as a review has them, and the page of the same maps.
+for key in map_size shadow steps shading_apart bands vein_map_px lights samples size_px; do
+	sed -n "s/^$key = /render.$key = /p" config/render.conf
+done >>"$capture/capture.conf"
+printf 'render.frames = 1\nrender.exr = no\n' >>"$capture/capture.conf"
 run_make "$capture"
 same "the page is made" "$?" 0
 page=$capture/work/review/viewer.html
