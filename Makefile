@@ -151,6 +151,6 @@ help:
 	@sed -n 's/^#\$$ \{0,1\}//p' Makefile
 
 clean: $(if $(CAPTURE),build)
-	@if test -n "$$CAPTURE"; then $(BIN)/plan --capture="$$CAPTURE" --clean; else rm -rf build build-san build-fuzz bin bench; fi
+	@if test -n "$$CAPTURE"; then $(BIN)/plan --capture="$$CAPTURE" --clean; else rm -rf build build-* bin bench; fi
 
 -include $(shell find $B -name '*.d' 2>/dev/null)

@@ -2,6 +2,7 @@
 #   make check            everything; ends with one line: N passed, N failed, N skipped
 #   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others;
 #                         CASES=1e8: so many light paths instead of 1e6
+#   make check-compilers  every artifact of the bundled captures by gcc's and by clang's programs, number by number
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30
 TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c))
 SECONDS_EACH ?= 30
@@ -9,7 +10,7 @@ CASES ?= 1e6
 SEED ?= 1
 SHARE ?= 1
 
-.PHONY: tests fuzz fuzzers
+.PHONY: tests fuzz fuzzers check-compilers
 tests: $(TESTS) $(TOOLS)
 
 # Without these the interactive page is not driven, and the summary says so.
@@ -23,12 +24,16 @@ check: setup
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=5 \
 		tests/check.sh
 
+check-compilers: build $(TOOLS)
+	@B=$B BIN=$(BIN) tests/compilers.sh
+
 .PHONY: tests-sanitised
 tests-sanitised: $(TESTS)
 
+# Side by side, one to a core; what each says comes when it is through.
 stress: build $(STRESSES)
-	@bad=0; for s in $(STRESSES); do echo "== $$s"; case $$s in *_lightpath) $$s $(CASES) $(SEED) ;; \
-		*_limbus) $$s ;; *) $$s --share=$(SHARE) --seed=$(SEED) ;; esac || bad=1; done; exit $$bad
+	@printf '%s\n' $(STRESSES) | xargs -P $(CORES) -I% sh -c 'case % in *_lightpath) a="$(CASES) $(SEED)" ;; \
+		*) a="--share=$(SHARE) --seed=$(SEED)" ;; esac; said=$$(% $$a 2>&1); bad=$$?; printf "== %s\n%s\n" % "$$said"; exit $$bad'
 
 # Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
 FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w

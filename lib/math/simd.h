@@ -4,11 +4,11 @@
 #ifndef MATH_SIMD_H
 #define MATH_SIMD_H
 
-#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && (!defined(__clang__) || __clang_major__ >= 17)
 #define SIMD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 // Elsewhere the compiler's baseline is the one version (on arm64 it has vectors anyway); sanitisers cannot run
-// before the choice is made.
+// before the choice is made, and what older clangs make of clones other files cannot call.
 #define SIMD_CLONES
 #endif
 

@@ -80,8 +80,9 @@ strike() {
 # What goes in: photographs; a video, a mesh and a character; views of a head, where COLMAP and such views are.
 photographs() {
 	new_capture "$root/calm"
-	cp "$PHOTO" "$root/calm/photos/right_a.jpg"
-	"$VARIANT" half "$PHOTO" "$root/calm/photos/right_b.jpg"
+	"$VARIANT" half "$PHOTO" "$root/calm/photos/right_a.jpg"
+	"$VARIANT" middle "$PHOTO" "$root/calm/photos/right_b.jpg"
+	printf 'render.size_px = 96\nrender.frame_px = 64\nrender.photo_px = 128\nrender.map_size = 128\nrender.vein_map_px = 128\n' >>"$root/calm/capture.conf"
 }
 skin() { small_face "$root/calm"; }
 views() {
