@@ -145,6 +145,23 @@ static void a_ring_of_paths_ends(void **state)
 		assert_true(hypot(K[k][0], K[k][1]) < 1e-9 || fabs(hypot(K[k][0], K[k][1]) - r) < 1e-9);
 }
 
+/* A rim beyond the equator, as the camera's own rays have it, ends at the equator, wherever rounding puts that. */
+static void a_cornea_to_its_equator(void **state)
+{
+	(void)state;
+	struct rng rng = { 33 };
+	for (int i = 0; i < 2000; i++) {
+		struct cornea whole = { .R = rng_range(&rng, 7, 8.5), .p = rng_range(&rng, 0.6, 1), .n = 1.336, .rim = 1000 }, cut = whole;
+		cut.rim = cornea_edge(&whole) * (1 - 1e-9);
+		assert_float_equal(cornea_depth(&whole, cornea_edge(&whole)), whole.R / whole.p, 1e-6);
+		double P[3] = { -5, 4, 3.3 }, a = rng_range(&rng, 80, 110) * M_PI / 180, w[3] = { sin(a), 0, -cos(a) }, K[4][3], L[4][3];
+		int n = lightpath_all(K, 4, &whole, P, 0, w), m = lightpath_all(L, 4, &cut, P, 0, w);
+		assert_int_equal(n, m);
+		for (int k = 0; k < n; k++)
+			assert_true(gap(K[k], L[k]) < 1e-9);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -153,6 +170,7 @@ int main(void)
 		cmocka_unit_test(a_step_past_the_path_is_taken_back),
 		cmocka_unit_test(a_path_beside_a_blocked_one),
 		cmocka_unit_test(a_ring_of_paths_ends),
+		cmocka_unit_test(a_cornea_to_its_equator),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -1,5 +1,6 @@
 #include "optics/cornea.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "math/vec.h"
@@ -11,8 +12,9 @@ struct quadric {
 
 double cornea_depth(const struct cornea *cornea, double r)
 {
-	double s2 = cornea->R * cornea->R - cornea->p * r * r;
-	return s2 < 0 ? NAN : r * r / (cornea->R + sqrt(s2));
+	double R2 = cornea->R * cornea->R, s2 = R2 - cornea->p * r * r;
+	// at the equator rounding may put the point outside
+	return s2 < -8 * DBL_EPSILON * R2 ? NAN : r * r / (cornea->R + sqrt(fmax(s2, 0)));
 }
 
 double cornea_edge(const struct cornea *cornea)

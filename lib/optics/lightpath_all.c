@@ -1,5 +1,6 @@
 #include <math.h>
 
+#include "base/mem.h"
 #include "math/vec.h"
 #include "optics/lightpath.h"
 #include "optics/lightpath_path.h"
@@ -162,8 +163,8 @@ int path_search(double K[][3], int max, const struct path *path)
 {
 	struct bound bound = bound_of(path->cornea);
 	struct square todo[4 * LEVELS_MAX] = { { 0, 0, bound.rho } };
-	int n = 0, left = 1;
-	for (int looked = 0; left && looked < SQUARES_MAX; looked++) {
+	int n = 0, left = bound.rho > 0 && isfinite(bound.rho);
+	for (int looked = 0; left && looked < SQUARES_MAX && left + 4 <= COUNT(todo); looked++) {
 		struct square s = todo[--left];
 		struct chart at;
 		double radius, half = 0.5 * s.half;

@@ -2,9 +2,8 @@
  * reads   photos/
  * writes  work/limbus/NAME.json, NAME.png; NAME.edge.json (what was measured)
  */
-#include "limbus.h"
-
 #include "base/mem.h"
+#include "limbus.h"
 
 int main(int argc, char **argv)
 {
@@ -53,9 +52,8 @@ int main(int argc, char **argv)
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
 	struct limbus_kept kept = { 0 };
-	if (eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err)
-	    && limbus_measure(&kept, &stage, &capture, &o, &err))
-		limbus_fit_poses(&kept, &stage, &capture, &o, &err);
+	bool ok = eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err);
+	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
 	photo_free(&kept.photo);
 	capture_free(&capture);
 	return stage_end(&stage, &err);

@@ -35,7 +35,18 @@ static double now_s(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Wall-clock seconds of `make CAPTURE=dir`; negative when it fails. The log goes to dir.log. */
+static void show_end(const char *path)
+{
+	char line[1024], last[3][1024] = { "", "", "" };
+	FILE *f = fopen(path, "r");
+	for (int i = 0; f && fgets(line, sizeof line, f); i++)
+		memcpy(last[i % 3], line, sizeof line);
+	fprintf(stderr, "make failed; the end of %s:\n%s%s%s", path, last[0], last[1], last[2]);
+	if (f)
+		fclose(f);
+}
+
+/* Wall-clock seconds of `make CAPTURE=dir`; negative when it fails: the end of its log, dir.log, is shown then. */
 static double run_make(const char *dir)
 {
 	double start = now_s();
@@ -50,7 +61,13 @@ static double run_make(const char *dir)
 	}
 	int status = 1;
 	waitpid(pid, &status, 0);
-	return WIFEXITED(status) && !WEXITSTATUS(status) ? now_s() - start : -1;
+	double seconds = now_s() - start;
+	if (WIFEXITED(status) && !WEXITSTATUS(status))
+		return seconds;
+	char *log = mem_printf("%s.log", dir);
+	show_end(log);
+	free(log);
+	return -1;
 }
 
 static int by_value(const void *a, const void *b)
