@@ -164,10 +164,10 @@ static void points_alone(const char *clip, const struct skin_track_conf *conf, c
 		struct bench_time each = { s.seconds, s.seconds, s.seconds }, none = { NAN, NAN, NAN };
 		bench_row("track: points of skin alone", "patches on the reference frame", setting, each, "frame", s.all.median, "px", "points in sight, median");
 		bench_row("track: points of skin alone", "patches on the reference frame", setting, none, "frame", s.all.p90, "px", "points in sight, 90 %");
-		printf("%s, %s: %d points from their true places: %.3f px, 90 %% %.2f px; first tenth %.3f px, last %.3f px; %.0f %% seen\n", clip, quality,
-		       s.points, s.all.median, s.all.p90, s.first.median, s.last.median, 100 * s.seen);
+		printf("%s, %s: %d points from their true places: %.3f px, 90 %% %.2f px; first tenth %.3f px, last %.3f px, first tenth shown again after it %.3f px; %.0f %% seen\n",
+		       clip, quality, s.points, s.all.median, s.all.p90, s.first.median, s.last.median, s.again.median, 100 * s.seen);
 		*worst = fmax(*worst, s.all.median);
-		*drift = fmax(*drift, s.last.median - s.first.median);
+		*drift = fmax(*drift, s.again.median - s.first.median);
 	}
 	free(from);
 	free(setting);
@@ -193,7 +193,7 @@ int main(int argc, char **argv)
 			whole_stage(&w, root, clips[c], quality);
 	}
 	bench_goal("skin points, median", "<= 0.5 px", points, "px", points <= 0.5);
-	bench_goal("skin points: last tenth of the clip less the first", "<= 0 px", drift, "px", drift <= 0);
+	bench_goal("skin points, drift: the first tenth of the clip shown again after its last, less the first time", "<= 0.001 px", drift, "px", drift <= 1e-3);
 	bench_goal("gaze, horizontal and vertical, open eyes, median", "<= 0.5 deg", w.gaze, "deg", w.gaze <= 0.5);
 	bench_goal("gaze, 95 %", "<= 1.5 deg", w.gaze95, "deg", w.gaze95 <= 1.5);
 	bench_goal("torsion, median", "<= 1 deg", w.torsion, "deg", w.torsion <= 1);

@@ -134,20 +134,26 @@ static int *choose(struct skin_points *p, const struct truth *t, int most)
 }
 
 struct sums {
-	double *all, *first, *last, sight;
-	long n, n_first, n_last;
+	double *all, *first, *last, *again, sight;
+	long n, n_first, n_last, n_again;
 };
 
-static void count(struct sums *s, const struct truth *t, const struct skin_point_state *state, int n, const int *row, long f)
+/* Errors of one frame; `again`: shown after the end of the clip. */
+static void count(struct sums *s, const struct truth *t, const struct skin_point_state *state, int n, const int *row, long f, bool again)
 {
 	for (int i = 0; i < n; i++) {
 		long k = f * t->all + row[i];
 		if (!(t->visible[k] > 0))
 			continue;
-		s->sight++;
+		s->sight += !again;
 		if (!(state[i].confidence > 0))
 			continue;
-		double e = s->all[s->n++] = hypot(state[i].at[0] - t->px[2 * k], state[i].at[1] - t->px[2 * k + 1]);
+		double e = hypot(state[i].at[0] - t->px[2 * k], state[i].at[1] - t->px[2 * k + 1]);
+		if (again) {
+			s->again[s->n_again++] = e;
+			continue;
+		}
+		s->all[s->n++] = e;
 		if (f < t->n / TENTH)
 			s->first[s->n_first++] = e;
 		if (f >= t->n - t->n / TENTH)
@@ -171,12 +177,15 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 		return false;
 	int *row = choose(&points, &t, most);
 	size_t room = (size_t)t.n * (size_t)points.n + 1;
-	struct sums s = { .all = mem_new(room, sizeof(double)), .first = mem_new(room, sizeof(double)), .last = mem_new(room, sizeof(double)) };
+	struct sums s = { .all = mem_new(room, sizeof(double)), .first = mem_new(room, sizeof(double)), .last = mem_new(room, sizeof(double)), .again = mem_new(room, sizeof(double)) };
 	struct skin_point_state *state = mem_new((size_t)points.n + 1, sizeof *state);
 	char *path = mem_printf("%s/video.mp4", dir);
 	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2 }, err);
 	struct skin_track *track = 0;
-	uint8_t *mask = mem_new((size_t)info.width * (size_t)info.height + 1, 1);
+	size_t area = (size_t)info.width * (size_t)info.height;
+	long tenth = t.n / TENTH;
+	uint8_t *begin = mem_new(area * (size_t)tenth + 1, 1);
+	uint8_t *mask = mem_new(area + 1, 1);
 	for (long i = 0; i < (long)info.width * info.height; i++)
 		mask[i] = in_opening(&t, (double)(i % info.width) + 0.5, (double)(i / info.width) + 0.5) ? 0 : 255;
 	bool got = video != 0;
@@ -190,11 +199,17 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 		if (got) {
 			skin_track_push(track, frame.luma, frame.luma_stride, state);
 			seconds += now() - start;
-			count(&s, &t, state, points.n, row, f);
+			count(&s, &t, state, points.n, row, f, false);
+			for (int y = 0; y < frame.height && f < tenth; y++)
+				memcpy(begin + (size_t)f * area + (size_t)y * (size_t)frame.width, frame.luma + (long)y * frame.luma_stride, (size_t)frame.width);
 		}
 		video_frame_free(&frame);
 	}
-	*score = (struct skin_points_score){ points.n, spread_of(s.n, s.all), spread_of(s.n_first, s.first), spread_of(s.n_last, s.last),
+	for (long f = 0; track && f < tenth; f++) {
+		skin_track_push(track, begin + (size_t)f * area, info.width, state);
+		count(&s, &t, state, points.n, row, f, true);
+	}
+	*score = (struct skin_points_score){ points.n, spread_of(s.n, s.all), spread_of(s.n_first, s.first), spread_of(s.n_last, s.last), spread_of(s.n_again, s.again),
 		                                 (double)s.n / fmax(1, s.sight), seconds / (double)t.n };
 	skin_track_free(track);
 	video_close(video);
@@ -206,6 +221,8 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 	free(s.all);
 	free(s.first);
 	free(s.last);
+	free(s.again);
+	free(begin);
 	free(t.px);
 	free(t.visible);
 	return !err_is(err);

@@ -17,6 +17,7 @@ static const struct skin_track_conf skin_track_draft = {
 struct skin_points_score {
 	int points;
 	struct spread all, first, last;  // px: points in sight that are seen; in the first and last tenth of the clip
+	struct spread again;             // in the first tenth, shown a second time after the last: what is worse than the first time is drift
 	double seen;                     // share of those in sight
 	double seconds;                  // a frame, without decoding
 };
