@@ -17,7 +17,8 @@ struct patch_warp {
 };
 
 struct patch_conf {
-	int radius;            // of the patch in px of its level; (2 radius + 1)^2 of them
+	int radius;            // of the patch in px of its level; what lies within about that of its centre counts
+	int every;             // 1: all pixels; 2: every other one, as on a chessboard
 	int iterations;        // at most, per level
 	double stop;           // px of the level: a smaller step is the last
 	double noise;          // of a pixel, 0..255: what the prior is weighed against

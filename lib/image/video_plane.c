@@ -2,6 +2,7 @@
 #include <libavutil/imgutils.h>
 
 #include "image/video_impl.h"
+#include "math/simd.h"
 
 /* Whether the planes can be used as they are: 8 bits each, luma first, chroma (if any) in planes of its own. */
 static bool plain(int format)
@@ -100,10 +101,29 @@ static struct matrix matrix_of(const AVFrame *f)
 		                .gv = (int)(c * 2 * kr * (1 - kr) / kg + 0.5), .bu = (int)(c * 2 * (1 - kb) + 0.5), .black = full ? 0 : 16 };
 }
 
+enum { SPAN = 256 };  // pixels converted together
+
 static inline uint8_t clamp8(int v)
 {
 	int i = (v + 32768) >> 16;
 	return (uint8_t)(i < 0 ? 0 : i > 255 ? 255 : i);
+}
+
+SIMD_CLONES static void convert(uint8_t *restrict out, const struct matrix *m, int n, const uint8_t *restrict py, const uint8_t *restrict pu,
+                                const uint8_t *restrict pv)
+{
+	uint8_t r[SPAN], g[SPAN], b[SPAN];
+	for (int i = 0; i < n; i++) {
+		int l = m->y * (py[i] - m->black), u = pu[i] - 128, v = pv[i] - 128;
+		r[i] = clamp8(l + m->rv * v);
+		g[i] = clamp8(l - m->gu * u - m->gv * v);
+		b[i] = clamp8(l + m->bu * u);
+	}
+	for (int i = 0; i < n; i++) {
+		out[3 * i] = r[i];
+		out[3 * i + 1] = g[i];
+		out[3 * i + 2] = b[i];
+	}
 }
 
 void video_frame_rgb(uint8_t *rgb, int stride, const struct video_frame *frame, int x0, int y0, int x1, int y1)
@@ -117,11 +137,14 @@ void video_frame_rgb(uint8_t *rgb, int stride, const struct video_frame *frame, 
 		const uint8_t *pu = grey ? 0 : f->data[1] + (long)(y >> d->log2_chroma_h) * f->linesize[1];
 		const uint8_t *pv = grey ? 0 : f->data[2] + (long)(y >> d->log2_chroma_h) * f->linesize[2];
 		uint8_t *out = rgb + (long)y * stride;
-		for (int x = x0; x < x1; x++) {
-			int l = m.y * (py[x] - m.black), u = grey ? 0 : pu[x >> d->log2_chroma_w] - 128, v = grey ? 0 : pv[x >> d->log2_chroma_w] - 128;
-			out[3 * x] = clamp8(l + m.rv * v);
-			out[3 * x + 1] = clamp8(l - m.gu * u - m.gv * v);
-			out[3 * x + 2] = clamp8(l + m.bu * u);
+		for (int x = x0; x < x1; x += SPAN) {
+			uint8_t u[SPAN], v[SPAN];
+			int n = x1 - x < SPAN ? x1 - x : SPAN;
+			for (int i = 0; i < n; i++) {
+				u[i] = grey ? 128 : pu[(x + i) >> d->log2_chroma_w];
+				v[i] = grey ? 128 : pv[(x + i) >> d->log2_chroma_w];
+			}
+			convert(out + 3L * x, &m, n, py + x, u, v);
 		}
 	}
 }

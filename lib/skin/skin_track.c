@@ -71,7 +71,7 @@ struct skin_track *skin_track_new(const struct skin_points *points, const uint8_
 	for (int y = 0; weight && y < l->height; y++)
 		for (int x = 0; x < l->width; x++)
 			weight[(long)y * l->stride + x] = mask[(long)(t->frame.y0 + y) * width + t->frame.x0 + x] / 255.0f;
-	const struct patch_conf patch = { conf->radius, conf->iterations, conf->stop, conf->noise, conf->misfit };
+	const struct patch_conf patch = { conf->radius, conf->every, conf->iterations, conf->stop, conf->noise, conf->misfit };
 	t->patches = patch_set_new(&t->frame, points->n, points->at, weight, &patch);
 	free(weight);
 	return t;

@@ -10,6 +10,7 @@
 
 struct skin_track_conf {
 	int radius;            // px of a patch at each level
+	int every;             // of its pixels: 1 all, 2 every other
 	int levels;            // of the pyramid
 	int iterations;
 	double stop;           // px
@@ -26,6 +27,7 @@ struct skin_track_conf {
 
 #define SKIN_TRACK_OPTS(c) \
 	OPT_INT("patch_radius_px", &(c)->radius, 3, 24, "px", "half the side of a patch of skin"), \
+	OPT_INT("patch_every", &(c)->every, 1, 2, "", "1: all pixels of a patch; 2: every other, as on a chessboard"), \
 	OPT_INT("patch_levels", &(c)->levels, 1, SCALES_LEVELS, "", "halvings of the picture, the full one included"), \
 	OPT_INT("patch_iterations", &(c)->iterations, 1, 100, "", "steps of a patch on each level"), \
 	OPT_REAL("patch_stop_px", &(c)->stop, 1e-4, 1, "px", "a smaller step is the last"), \

@@ -44,7 +44,8 @@ struct film *film_new(const struct track_clip *clip, const struct track_subject 
 	film->step = film->step < 1 ? 1 : film->step;
 	film->width = w / film->step > 0 ? w / film->step : 1;
 	film->height = h / film->step > 0 ? h / film->step : 1;
-	film->every = 1;
+	for (film->every = 1; clip->info.frames > (long)film->every * FILM_MOST;)
+		film->every *= 2;
 	return film;
 }
 
@@ -74,16 +75,23 @@ void film_add(struct film *film, const struct video_frame *f)
 		return;
 	uint8_t *to = film->px[film->n] = mem_new((size_t)film->width * (size_t)film->height, 1);
 	film->frame[film->n++] = f->index;
-	int s = film->step;
-	for (int y = 0; y < film->height; y++)
+	int s = film->step, wide = film->width * s;
+	unsigned *down = mem_array((size_t)wide + 1, sizeof *down);
+	for (int y = 0; y < film->height; y++) {
+		memset(down, 0, (size_t)wide * sizeof *down);
+		for (int v = 0; v < s; v++) {
+			const uint8_t *from = f->luma + (long)(film->y0 + y * s + v) * f->luma_stride + film->x0;
+			for (int x = 0; x < wide; x++)
+				down[x] += from[x];
+		}
 		for (int x = 0; x < film->width; x++) {
-			const uint8_t *from = f->luma + (long)(film->y0 + y * s) * f->luma_stride + film->x0 + x * s;
 			unsigned sum = 0;
-			for (int v = 0; v < s; v++)
-				for (int u = 0; u < s; u++)
-					sum += from[(long)v * f->luma_stride + u];
+			for (int u = 0; u < s; u++)
+				sum += down[x * s + u];
 			to[y * film->width + x] = (uint8_t)(sum / (unsigned)(s * s));
 		}
+	}
+	free(down);
 }
 
 void film_free(struct film *film)

@@ -5,8 +5,7 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "stages/track/film.h"
-#include "stages/track/wrinkle.h"
+#include "stages/track/behind.h"
 
 /* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
 struct rigid {
@@ -156,6 +155,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	long room = 0;
 	r->film = conf->limit ? 0 : film_new(clip, subject, points);
 	r->folds = conf->limit ? 0 : folds_new(clip, points, conf);
+	struct behind *behind = behind_new(eyes, r->film, r->folds);
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	while (ok && got && (!conf->limit || r->n < conf->limit)) {
@@ -168,17 +168,15 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px);
 			r->time[r->n] = f.time;
 			r->lost_at[r->n] = lost;
-			track_eyes_push(eyes, &f, pose);
 			store(r, state, pose, lost, points, clip);
 			r->n++;
-			if (r->film)
-				film_add(r->film, &f);
-			folds_add(r->folds, &f);
+			behind_push(behind, &f, (const double(*)[4])pose);
 			if (!conf->limit)
 				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
 		}
 		video_frame_free(&f);
 	}
+	behind_end(behind);
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n)

@@ -6,11 +6,11 @@
 
 /* The defaults of config/track.conf. */
 static const struct skin_track_conf skin_track_review = {
-	.radius = 10, .levels = 4, .iterations = 12, .stop = 0.02, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .agree = 0.1,
+	.radius = 10, .every = 1, .levels = 4, .iterations = 12, .stop = 0.02, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .agree = 0.1,
 	.outlier = 4, .sweeps = 2, .still = 0.05,
 };
 static const struct skin_track_conf skin_track_draft = {
-	.radius = 8, .levels = 4, .iterations = 8, .stop = 0.05, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .agree = 0.6,
+	.radius = 8, .every = 2, .levels = 4, .iterations = 8, .stop = 0.05, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .agree = 0.6,
 	.outlier = 4, .sweeps = 1, .still = 0.05,
 };
 
