@@ -65,33 +65,34 @@ static void take_samples(struct search *s, const struct mesh *fixed, const doubl
 	free(normal);
 }
 
+static void take_landmarks(struct search *s, const struct nricp_landmarks *l, const struct mesh *fixed, const double center[3],
+                           double size)
+{
+	if (!l || l->n < 3)
+		return;
+	s->held = mem_new((size_t)l->n, sizeof *s->held);
+	for (int i = 0; i < l->n; i++) {
+		for (int k = 0; k < 3; k++)
+			s->held[i].at[k] = ((double)fixed->vertices[l->fixed[i]][k] - center[k]) / size;
+		s->held[i].row = l->moving[i];
+	}
+	s->n_held = l->n;
+}
+
 /* From landmarks: the rotation, scale and shift of least squares, by refinement from the identity. */
-static bool from_landmarks(struct pose *pose, const struct nricp_landmarks *l, const struct search *s, const struct mesh *fixed,
-                           const double center[3], double size)
+static bool from_landmarks(struct pose *pose, const struct search *s)
 {
 	enum { ROUNDS = 50 };
-	if (!l || l->n < 3)
-		return false;
 	*pose = pose_still;
-	for (int round = 0; round < ROUNDS; round++) {
+	for (int round = 0; round < ROUNDS && s->n_held; round++) {
 		struct sums sums = { 0 };
-		for (int i = 0; i < l->n; i++) {
-			double p[3], at[3], about[3], off[3];
-			for (int k = 0; k < 3; k++)
-				p[k] = ((double)fixed->vertices[l->fixed[i]][k] - center[k]) / size;
-			pose_place(at, pose, p);
-			for (int k = 0; k < 3; k++) {
-				about[k] = at[k] - pose->shift[k];
-				off[k] = (double)s->moving.vertices[l->moving[i]][k] - at[k];
-			}
-			sums_add(&sums, about, off, 0, 1);
-		}
+		align_hold(&sums, s, pose, s->n_held);
 		for (int k = 0; k < 7; k++)
 			sums.a[k][k] += 1e-9;
 		if (!sums_move(pose, &sums, s->conf->scale_max))
 			return false;
 	}
-	return true;
+	return s->n_held;
 }
 
 /* The inverse of the pose, in the meshes' own unit. */
@@ -126,14 +127,17 @@ bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, cons
 	topology_make(&s.topology, &s.moving);
 	s.scene = closest_new(&s.moving, (const float(*)[3])s.normals);
 	take_samples(&s, fixed, fixed_center, size);
+	take_landmarks(&s, landmarks, fixed, fixed_center, size);
 	for (int k = 0; k < 3; k++)
 		offset[k] = (fixed_center[k] - moving_center[k]) / size;
 	struct best best = { .pose = pose_still };
-	if (from_landmarks(&best.pose, landmarks, &s, fixed, fixed_center, size)) {
+	if (from_landmarks(&best.pose, &s)) {
 		const double narrow[2] = { conf->welsch[1], conf->welsch[1] };
 		best.matched = align_refine(&best.pose, &best.rms, &s, conf->rounds, narrow);
-	} else
+	} else {
+		s.n_held = 0;
 		best = align_find(&s, offset);
+	}
 	give(out, &best, moving_center, fixed_center, size);
 	free(s.moving.vertices);
 	free(s.normals);
@@ -141,6 +145,7 @@ bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, cons
 	closest_free(s.scene);
 	free(s.samples);
 	free(s.face);
+	free(s.held);
 	return best.matched >= conf->least
 	       || err_set(err, "%.0f %% of the subject lies on it wherever it is put, must be at least %.0f %%", 100 * best.matched,
 	                  100 * conf->least);

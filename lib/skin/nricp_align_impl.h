@@ -24,6 +24,11 @@ struct search {
 	struct sample *samples;
 	int n;
 	int *face;           // [n] matched last
+	int n_held;          // landmarks that a refinement keeps together: p of the fixed mesh on the vertex `row` of the moving one
+	struct held {
+		double at[3];
+		int row;
+	} *held;
 };
 
 static const struct pose pose_still = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0 }, 1 };
@@ -50,6 +55,9 @@ bool sums_move(struct pose *pose, struct sums *sums, double scale_max);
 
 /* Rounds of matching; returns the share matched at the end. welsch: first and last scale. */
 double align_refine(struct pose *pose, double *rms, struct search *search, int rounds, const double welsch[2]);
+
+/* All landmarks' pulls, of that weight together. */
+void align_hold(struct sums *sums, const struct search *search, const struct pose *pose, double weight);
 
 /* The best of all starts. offset: between the centroids, in units of the search. */
 struct best align_find(struct search *search, const double offset[3]);

@@ -96,6 +96,19 @@ static void match_one(struct sums *sums, struct search *s, int i, const struct p
 	sums->square += weight * across * across;
 }
 
+void align_hold(struct sums *sums, const struct search *s, const struct pose *pose, double weight)
+{
+	for (int i = 0; i < s->n_held; i++) {
+		double at[3], about[3], off[3];
+		pose_place(at, pose, s->held[i].at);
+		for (int k = 0; k < 3; k++) {
+			about[k] = at[k] - pose->shift[k];
+			off[k] = (double)s->moving.vertices[s->held[i].row][k] - at[k];
+		}
+		sums_add(sums, about, off, 0, weight / s->n_held);
+	}
+}
+
 double align_refine(struct pose *pose, double *rms, struct search *s, int rounds, const double welsch[2])
 {
 	struct sums sums = { 0 };
@@ -108,6 +121,7 @@ double align_refine(struct pose *pose, double *rms, struct search *s, int rounds
 			match_one(&sums, s, i, pose, welsch[0] * pow(welsch[1] / welsch[0], at));
 		if (round == rounds)
 			break;
+		align_hold(&sums, s, pose, sums.weight);
 		for (int k = 0; k < 7; k++)
 			sums.a[k][k] += 1e-6 * s->n + (k == 6 ? 0.01 * sums.weight : 0);
 		if (!(sums.weight > 6) || !sums_move(pose, &sums, s->conf->scale_max))

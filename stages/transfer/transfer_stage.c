@@ -9,8 +9,10 @@
 #include "bridge/om_mesh.h"
 #include "math/stats.h"
 #include "mesh/mesh_part.h"
+#include "optics/camera_rig.h"
 #include "skin/transfer_file.h"
 #include "skin/transfer_picture.h"
+#include "stages/transfer/eyes.h"
 
 enum { OUT = 4, IN = 2 };
 
@@ -18,7 +20,8 @@ struct subject {
 	const char *file;  // relative to the capture
 	struct mesh mesh;  // mm
 	double unit;
-	bool guessed;
+	bool guessed, has_eyes;
+	double eye[2][3];  // centres of the left and the right eyeball, mm
 };
 
 struct target {
@@ -51,6 +54,21 @@ static void say_mended(struct stage *stage, const char *file, const struct mesh_
 		           file, p->left_out, p->pieces);
 }
 
+/* calibrate's mesh stands in the frame of its cameras, and where they were named, its eyes are known there. */
+static bool load_eyes(struct subject *s, struct stage *stage, struct err *err)
+{
+	struct camera_rig rig = { 0 };
+	const char *path = stage_path(stage, "work/rig.json");
+	if (!file_exists(path))
+		return true;
+	if (!camera_rig_load(&rig, path, err))
+		return false;
+	s->has_eyes = rig.has_eyes;
+	memcpy(s->eye, rig.eye_center, sizeof s->eye);
+	camera_rig_free(&rig);
+	return true;
+}
+
 static bool load_subject(struct subject *s, struct stage *stage, const struct transfer_stage_conf *conf, struct err *err)
 {
 	static const char *const files[] = { "subject.ply", "subject.obj", "work/subject.ply" };
@@ -65,7 +83,7 @@ static bool load_subject(struct subject *s, struct stage *stage, const struct tr
 	s->guessed = !own && !isfinite(conf->subject_unit);
 	s->unit = own ? 1 : s->guessed ? transfer_subject_unit(&s->mesh) : conf->subject_unit;
 	scale(&s->mesh, s->unit);
-	return true;
+	return !own || load_eyes(s, stage, err);
 }
 
 static bool load_target(struct target *t, struct stage *stage, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
@@ -188,6 +206,22 @@ static void target_free(struct target *t)
 	transfer_free(&t->result);
 }
 
+/* By the landmarks that are given; else by the eyes, where both have some; else, or where that leads nowhere, by the shapes alone. */
+static bool lay(struct target *t, const struct subject *s, const struct nricp_landmarks *given, const struct transfer_stage_conf *conf,
+                struct err *err)
+{
+	struct nricp_landmarks eyes = { 0 };
+	double eye[2][3], radius;
+	bool done = false;
+	if (!given->n && s->has_eyes && eyes_of_target(eye, &radius, &t->mesh)
+	    && eyes_landmarks(&eyes, &t->part, (const double(*)[3])eye, radius, &s->mesh, s->eye)) {
+		struct err why = { 0 };
+		done = transfer_run(&t->result, &t->mesh, &s->mesh, &eyes, &conf->transfer, &why);
+	}
+	free((void *)eyes.moving);
+	return done || transfer_run(&t->result, &t->mesh, &s->mesh, given, &conf->transfer, err) || err_wrap(err, "%s", t->in[0]);
+}
+
 /* True when it is registered, or was already. What is wrong with one character is said, and the others go on. */
 static bool one(struct stage *stage, const char *file, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
 {
@@ -201,7 +235,7 @@ static bool one(struct stage *stage, const char *file, const struct subject *s, 
 	if (!fresh) {
 		done = load_target(&t, stage, s, conf, &why)
 		       && transfer_landmarks(&landmarks, t.name, t.mesh.n_vertices, s->mesh.n_vertices, conf, err)
-		       && (transfer_run(&t.result, &t.mesh, &s->mesh, &landmarks, &conf->transfer, &why) || err_wrap(&why, "%s", t.in[0]))
+		       && lay(&t, s, &landmarks, conf, &why)
 		       && save(&t, s, stage, err);
 		if (done)
 			report(stage, &t);

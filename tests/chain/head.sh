@@ -40,9 +40,27 @@ check "the mesh is reduced to what config says: ${faces:-0} faces" test "${faces
 same "it has a colour for each vertex" "$(elements '^property uchar (red|green|blue)$' | wc -l)" 3
 check "there it lies" test -s "$head/work/targets/mpfb/registered.ply"
 check "the page shows cameras, cloud and residuals" grep -q 'id="cameras"' "$head/work/review/index.html"
+check "and the character on the mesh" grep -q 'mpfb laid onto the mesh' "$head/work/review/index.html"
 check "there is a picture of them" test -s "$head/work/calibrate/rig.png"
 run_make "$head"
 same "again: nothing runs" "$(ran)" ""
+
+# Its eyes and the corners of its mouth as a hand marks them in three views (00034 is seen face on; its iris' width stands for a
+# scale that a statue does not have): the head stands upright in its own frame, and a character that has eyeballs goes there.
+calibrate "view.00034.left_eye_px = 1518 593 45" "view.00034.right_eye_px = 1498 1070 44" "view.00034.mouth_px = 1992 952 1978 700" \
+	"view.00013.left_eye_px = 1237 416 40" "view.00013.right_eye_px = 1189 842 42" "view.00013.mouth_px = 1648 737 1642 523" \
+	"view.00031.left_eye_px = 1249 478 36" "view.00031.right_eye_px = 1198 811 40"
+same "eyes and mouth named: exit status" "$?" 0
+run_make "$head"
+same "a character laid on by its eyes: exit status" "$?" 0
+numbers() { tr -d ' \n' <"$1" | sed "s/.*\"$2\":\[\([^]]*\)\].*/\1/; s/,/ /g"; echo; } # FILE KEY
+numbers "$head/work/rig.json" eye_center >"$root/eyes"
+numbers "$head/work/targets/mpfb/transfer.json" subject_from_target >"$root/onto"
+# mpfb's eyeballs lie +-30.8, 728.4, 124.5 mm from its origin. Half a lid's width is 6 mm; the wrong place is 30 mm away.
+off=$(cat "$root/eyes" "$root/onto" | tr '\n' ' ' | awk '{ for (e = 0; e < 2; e++) { x = e ? -30.8 : 30.8; d = 0
+	for (k = 0; k < 3; k++) d += ($(7 + 4 * k) * x + $(8 + 4 * k) * 728.4 + $(9 + 4 * k) * 124.5 + $(10 + 4 * k) - $(1 + 3 * e + k)) ^ 2
+	m = d > m ? d : m } printf "%.1f", sqrt(m) }')
+check "its eyes lie where the subject's do: ${off:-none} mm off" test "$(printf '%.0f' "${off:-99}")" -le 6
 
 # A mesh of one's own from here on: cameras alone are found. The same lens nearer up is put to the views.
 cp "$head/work/subject.ply" "$head/"
