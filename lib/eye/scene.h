@@ -9,6 +9,8 @@
  */
 #ifndef EYE_SCENE_H
 #define EYE_SCENE_H
+#include <stdint.h>
+
 #include "eye/eye.h"
 #include "eye/fit.h"
 #include "eye/tissue.h"
@@ -37,6 +39,13 @@ struct scene_conf {
 	int veins_px, seed;
 };
 
+/* A square map for quick pictures: [n][n][4] of which three count, in multiples of step. */
+struct scene_texels {
+	int n;
+	float step;
+	uint16_t *px;
+};
+
 /* One resolution of the iris maps; each level has half the texels of the one before. Square, row 0 is -y. */
 struct scene_level {
 	int n;
@@ -46,8 +55,8 @@ struct scene_level {
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
 	float *horizon;               // scene_march.h; null: level is not marched from
-	float *shown, *bare;          // [n][n][4]: colour (to the power of detail) with the pupil cut out; the same without
-	                              // the photograph's light; null: level is not marched from
+	struct scene_texels shown, bare;  // colour (to the power of detail) with the pupil cut out; the same without the
+	                                  // photograph's light; empty: SCENE_RAYS
 };
 
 struct scene {
@@ -61,6 +70,7 @@ struct scene {
 	int n_levels;
 	struct scene_level level[SCENE_LEVELS];
 	struct image veins;           // azimuthal about the axis: albedo RGB
+	struct scene_texels white;    // the same
 	struct image film;            // the same: slopes of the tear film's ripples
 	struct tissue tissue;
 	struct tissue_optics optics;

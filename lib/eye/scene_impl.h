@@ -63,6 +63,9 @@ void scene_pupil(float cover[3], const struct scene *scene, float x, float y, fl
 #define SCENE_PAIR_MM (1.0f / 32768)
 void scene_pairs_make(struct scene_level *level);
 
+/* Packs [n][n][4]; negatives become 0. Frees what *out had. */
+void scene_texels_make(struct scene_texels *out, const float *rgba, int n);
+
 /* Fills a level's shown and bare. */
 void scene_shown_make(struct scene_level *level, const struct scene *scene);
 
@@ -71,10 +74,11 @@ struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
 
 /* The iris as one view shows it: detail times light, both bilinear. */
 struct scene_shade {
-	int n, light_n;
-	float per_mm, light_per_mm;  // texels in a mm
-	const float *detail;         // [n][n][4] of the scene's: what a photograph shows and the march does not
+	int light_n;
+	float per_mm, light_per_mm;  // texels in a mm: of detail, of light
+	const struct scene_texels *detail;  // of the scene's: what a photograph shows and the march does not
 	float *light;                // [light_n][light_n][4]: the march from these texels; owned
+	bool even;                   // light is that of a flat iris: smooth
 };
 
 /* Levels finer than that are not marched from. */

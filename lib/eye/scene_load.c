@@ -187,10 +187,11 @@ void scene_free(struct scene *s)
 		free(s->level[i].model);
 		free(s->level[i].horizon);
 		free(s->level[i].pairs);
-		free(s->level[i].shown);
-		free(s->level[i].bare);
+		free(s->level[i].shown.px);
+		free(s->level[i].bare.px);
 	}
 	image_free(&s->veins);
+	free(s->white.px);
 	image_free(&s->film);
 	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };
@@ -226,8 +227,8 @@ void scene_levels_make(struct scene *s)
 		free(l[k].model);
 		free(l[k].horizon);
 		free(l[k].pairs);
-		free(l[k].shown);
-		free(l[k].bare);
+		free(l[k].shown.px);
+		free(l[k].bare.px);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
 		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
 		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
@@ -237,8 +238,6 @@ void scene_levels_make(struct scene *s)
 	}
 	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++) {
 		free(l[k].pairs);
-		free(l[k].shown);
-		free(l[k].bare);
 		scene_pairs_make(&l[k]);
 		scene_shown_make(&l[k], s);
 	}

@@ -1,5 +1,6 @@
 /* The margin of the pupil. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/mem.h"
 #include "eye/scene_impl.h"
@@ -30,8 +31,7 @@ void scene_pupil(float cover[3], const struct scene *s, float x, float y, float 
 void scene_shown_make(struct scene_level *l, const struct scene *s)
 {
 	float step = 1 / l->per_mm, extent = (float)s->extent, detail = (float)s->conf.detail;
-	l->shown = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *l->shown);
-	l->bare = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *l->bare);
+	float *shown = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *shown), *bare = mem_array((size_t)l->n * (size_t)l->n, 4 * sizeof *bare);
 #pragma omp parallel for schedule(dynamic, 16)
 	for (int y = 0; y < l->n; y++)
 		for (int x = 0; x < l->n; x++) {
@@ -40,11 +40,14 @@ void scene_shown_make(struct scene_level *l, const struct scene *s)
 			scene_pupil(cover, s, ((float)x + 0.5f) * step - extent, ((float)y + 0.5f) * step - extent, 0.5f * step);
 			for (int c = 0; c < 3; c++) {
 				float colour = l->colour[at + c];
-				l->shown[at + c] = cover[c] * (!l->model ? 1 : detail == 1 ? colour : powf(colour, detail));
-				l->bare[at + c] = cover[c] * (l->model ? fminf(colour / l->model[at + c], 4) : 1);
+				shown[at + c] = cover[c] * (!l->model ? 1 : detail == 1 ? colour : powf(colour, detail));
+				bare[at + c] = cover[c] * (l->model ? fminf(colour / l->model[at + c], 4) : 1);
 			}
-			l->shown[at + 3] = l->bare[at + 3] = 0;
 		}
+	scene_texels_make(&l->shown, shown, l->n);
+	scene_texels_make(&l->bare, bare, l->n);
+	free(shown);
+	free(bare);
 }
 
 static int pair_half(float height)

@@ -1,9 +1,8 @@
 /* scene_quick: a picture whose march has been done already (scene_shade_make): geometry in vectors, colours looked up. */
 #ifndef EYE_SCENE_QUICK_H
 #define EYE_SCENE_QUICK_H
-#include <stdint.h>
-
 #include "eye/scene_impl.h"
+#include "eye/scene_quick_map.h"
 
 /* Rays that start a little before the eye, where float has all the digits that a texel needs. */
 struct quick_rays {
@@ -44,32 +43,21 @@ struct quick_look {
 };
 struct quick_look quick_look(const struct scene *scene, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level);
 
-/* What a tile shows: everything, or nothing that changes fast within it but maps. */
-enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA };
+/* What a tile shows: everything, or nothing that changes fast within it but maps: of the iris, the white, or both. */
+enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA, QUICK_LIMBUS };
 
-/* Where the rays end, once: what they see is found in it. Cornea, sclera: as of 256 rays, but normals, rho of the nodes. */
+/* A tile's nodes: every fourth pixel of its 16 x 16 and of the next ones, five by five; sparse: every eighth, three by three. */
+enum { QUICK_TILE = 16, NODE_STEP = 4, NODE_SIDE = 5, NODES_IN_TILE = 25, NODE_LANES = 32, SPARSE_SIDE = 3, SPARSE_LANES = 16 };
+
+/* Where the rays end, once: what they see is found in it. Not mixed: normals, rho, mirror, rough and the place on the
+ * environment are the nodes', the places on the maps all pixels'. */
 struct quick_found {
 	struct quick_spots spots;  // normals before the film has bent them
 	enum quick_kind kind;
 	int seen, hit, white;      // rays that see the iris, anything, the sclera
 	float bent[3][BATCH];      // normals after
+	float node_u[NODE_LANES], node_v[NODE_LANES];  // places of the nodes on the iris
 };
-
-/* Bilinear height from pairs of neighbours in one word. */
-SIMD_INLINE float quick_height_at(const int *map, int n, float per_mm, float x, float y, float *gx, float *gy)
-{
-	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f, u = x * per_mm + h, v = y * per_mm + h;
-	u = u > 0 ? u < top ? u : top : 0;
-	v = v > 0 ? v < top ? v : top : 0;
-	int iu = (int)u, iv = (int)v, at = iv * n + iu, p = map[at], q = map[at + n];
-	u -= (float)iu;
-	v -= (float)iv;
-	float a = (float)(int16_t)p, b = (float)(p >> 16), c = (float)(int16_t)q, d = (float)(q >> 16);
-	float top_row = a + u * (b - a), low_row = c + u * (d - c);
-	*gx = ((b - a) + v * ((d - c) - (b - a))) * (per_mm * SCENE_PAIR_MM);
-	*gy = (low_row - top_row) * (per_mm * SCENE_PAIR_MM);
-	return (top_row + v * (low_row - top_row)) * SCENE_PAIR_MM;
-}
 
 /* In this order; quick_iris where something of the iris is seen, sclera where something white is; reflect into the camera's
  * frame, then unfolded (x, y) onto the octahedron. */
@@ -80,15 +68,14 @@ void quick_reflect(float *x, float *y, float *z, struct quick_found *found, cons
 void quick_unfold(int n, float *x, float *y, const float *z);
 void quick_sclera(struct quick_spots *spots, int n, const struct quick_look *look);
 
-/* A tile's nodes: every fourth pixel of its 16 x 16 and of the next ones, in rows of eight of which five count. */
-enum { QUICK_TILE = 16, GRID_STEP = 4, GRID_SIDE = 5, GRID_ROW = 8, GRID_NODES = GRID_SIDE * GRID_ROW, GRID_LAST = GRID_NODES - GRID_ROW + GRID_SIDE - 1 };
-enum { GRID_U, GRID_V, GRID_RX, GRID_RY, GRID_RZ, GRID_MIRROR, GRID_ASIDE, GRID_ACROSS, GRID_HEIGHT, GRID_ROUGH = GRID_ASIDE, GRID_CHANNELS = GRID_HEIGHT + 1 };
+/* From nodes to the 16 pixels right of each row of them; and to all 256. */
+void quick_rows(float (*rows)[QUICK_TILE], const float node[NODE_LANES]);
+void quick_lay(float *out, const float node[NODE_LANES]);
 
-/* The 256 pixels from their nodes. */
-void quick_lay(float *out, const float node[GRID_NODES]);
-
-/* Finds a tile by the rays at its nodes. False: something in it wants every ray. */
-bool quick_grid(struct quick_found *found, const struct quick_rays *nodes, const struct quick_look *look);
+/* Finds a tile whose first pixel's middle is at x, y by the rays at its nodes. make: rays through n points of the picture.
+ * False: something in it wants every ray. */
+typedef void quick_make(struct quick_rays *rays, const float *x, const float *y, const void *ctx);
+bool quick_grid(struct quick_found *found, float x, float y, quick_make *make, const void *ctx, const struct quick_look *look);
 
 /* Finds it by every ray. */
 void quick_find(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
@@ -99,5 +86,8 @@ struct quick_found *scene_hits_tile(struct scene_hits *hits, int tile, bool *kep
 
 /* Colours of n rays. */
 void quick_colour(float rgba[][4], struct quick_found *found, int n, const struct quick_look *look);
+
+/* Colours of a tile that is not mixed, into rows `stride` pixels apart. */
+void quick_tile_colour(float *out, long stride, struct quick_found *found, const struct quick_look *look);
 
 #endif

@@ -1,6 +1,6 @@
-/* Tiles of scene_quick.h where nothing but the maps varies fast: all of the cornea, or all of the sclera. Rays are followed
- * at every fourth pixel; between them places, directions and Fresnel are linear, to 1e-3 px of what each ray would find
- * (over 4 px the refracted place bends by (4 px)^2 / 8 of 0.014 / mm). */
+/* Tiles of scene_quick.h where nothing but the maps varies fast. Rays are followed at nodes alone; between them places,
+ * directions and Fresnel are linear, to 1e-3 px of what each ray would find (over 4 px the refracted place bends by
+ * (4 px)^2 / 8 of 0.014 / mm; where all is cornea, whose film is smooth, over 8 px). */
 #include "eye/scene_quick.h"
 
 #include <math.h>
@@ -10,55 +10,58 @@
 #pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
-typedef float four __attribute__((vector_size(16), aligned(16)));
-_Static_assert(GRID_STEP == 4 && GRID_SIDE == QUICK_TILE / GRID_STEP + 1, "a row is four vectors of four");
+_Static_assert(NODE_STEP == 4 && NODE_SIDE == QUICK_TILE / NODE_STEP + 1, "a row is four vectors of four");
 
-SIMD_CLONES void quick_lay(float *restrict out, const float node[GRID_NODES])
+SIMD_INLINE void rows_lay(float (*restrict rows)[QUICK_TILE], const float *restrict node)
 {
-	const four ramp = { 0, 0.25f, 0.5f, 0.75f };
-	for (int y = 0; y < QUICK_TILE; y++) {
-		const float *a = node + y / GRID_STEP * GRID_ROW, *b = a + GRID_ROW;
-		float v = 0.25f * (float)(y % GRID_STEP), r[GRID_ROW];
-		SIMD_LOOP
-		for (int i = 0; i < GRID_ROW; i++)
-			r[i] = a[i] + v * (b[i] - a[i]);
-		for (int i = 0; i < GRID_SIDE - 1; i++) {
-			four c = r[i] + ramp * (r[i + 1] - r[i]);
-			memcpy(out + y * QUICK_TILE + i * GRID_STEP, &c, sizeof c);
+	const quick_four ramp = { 0, 0.25f, 0.5f, 0.75f };
+	for (int k = 0; k < NODE_SIDE; k++)
+		for (int i = 0; i < NODE_SIDE - 1; i++) {
+			float left = node[k * NODE_SIDE + i];
+			quick_four c = left + ramp * (node[k * NODE_SIDE + i + 1] - left);
+			memcpy(rows[k] + NODE_STEP * i, &c, sizeof c);
 		}
+}
+
+SIMD_CLONES void quick_rows(float (*rows)[QUICK_TILE], const float node[NODE_LANES])
+{
+	rows_lay(rows, node);
+}
+
+SIMD_CLONES void quick_lay(float *restrict out, const float node[NODE_LANES])
+{
+	float rows[NODE_SIDE][QUICK_TILE];
+	rows_lay(rows, node);
+	for (int y = 0; y < QUICK_TILE; y++) {
+		float v = (float)(y % NODE_STEP) / NODE_STEP;
+		const float *a = rows[y / NODE_STEP], *b = a + QUICK_TILE;
+		SIMD_LOOP
+		for (int i = 0; i < QUICK_TILE; i++)
+			out[y * QUICK_TILE + i] = a[i] + v * (b[i] - a[i]);
 	}
 }
 
-/* All nodes well inside the limbus, or well outside; and none seen at a grazing angle, where places run away. */
+/* All nodes well inside the limbus, or well outside, or about it; and none seen at a grazing angle, where places run away. */
 static enum quick_kind kind_of(const struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
 {
 	float inner = fminf((float)LOOK_SEAM_FROM, 1 - 0.5f * k->lid_width), outer = fmaxf(1.08f, 1 + 0.5f * k->lid_width);
-	float wide = fabsf(r->ox[GRID_LAST] - r->ox[0]) + fabsf(r->oy[GRID_LAST] - r->oy[0]) + fabsf(r->oz[GRID_LAST] - r->oz[0]);
-	int in = 0, out = 0;
-	for (int i = 0; i < GRID_NODES; i++) {
-		bool faces = s->hit[i] > 0 && -(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]) > 0.3f;
-		in += faces && s->rho[i] < inner;
-		out += faces && s->rho[i] > outer;
+	float wide = fabsf(r->ox[r->n - 1] - r->ox[0]) + fabsf(r->oy[r->n - 1] - r->oy[0]) + fabsf(r->oz[r->n - 1] - r->oz[0]);
+	int in = 0, out = 0, faces = 0, through = 0;
+	for (int i = 0; i < r->n; i++) {
+		bool good = s->hit[i] > 0 && -(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]) > 0.3f;
+		in += good && s->rho[i] < inner;
+		out += good && s->rho[i] > outer;
+		faces += good;
+		through += s->vz[i] > 0.3f && s->fz[i] > -0.1f && s->fz[i] < 5;  // whether there is an entry or the conic goes on as one
 	}
-	if (wide * k->limbus[0] > 0.4f)
+	if (wide * k->limbus[0] > 0.4f || faces < r->n)
 		return QUICK_MIXED;
-	return in == GRID_NODES ? QUICK_CORNEA : out == GRID_NODES ? QUICK_SCLERA : QUICK_MIXED;
+	return in == r->n ? QUICK_CORNEA : out == r->n ? QUICK_SCLERA : through == r->n ? QUICK_LIMBUS : QUICK_MIXED;
 }
 
-/* Where rays behind the cornea cross the iris plane, and how far aside they go in a mm of depth. */
-SIMD_CLONES static void cross_plane(float (*q)[GRID_NODES], const struct quick_spots *s, const struct quick_look *k)
-{
-	float plane = (float)k->scene->eye.iris_depth;
-	SIMD_LOOP
-	for (int i = 0; i < GRID_NODES; i++) {
-		float fx = s->fx[i], fy = s->fy[i], vx = s->vx[i], vy = s->vy[i], c = s->vz[i] > 0.1f ? s->vz[i] : 0.1f;
-		float a = (vx + k->slip[0][0] * vx + k->slip[0][1] * vy) / c, b = (vy + k->slip[1][0] * vx + k->slip[1][1] * vy) / c, t = plane - s->fz[i];
-		q[GRID_U][i] = fx + k->slip[0][0] * fx + k->slip[0][1] * fy + k->slip[0][2] + t * a;
-		q[GRID_V][i] = fy + k->slip[1][0] * fx + k->slip[1][1] * fy + k->slip[1][2] + t * b;
-		q[GRID_ASIDE][i] = a;
-		q[GRID_ACROSS][i] = b;
-	}
-}
+/* What is laid between nodes: where rays behind the cornea cross the iris plane, how far aside they go in a mm of depth, and
+ * how high the relief stands there. */
+enum { NODE_U, NODE_V, NODE_ASIDE, NODE_ACROSS, NODE_HEIGHT, NODE_CHANNELS };
 
 /* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets the relief. */
 SIMD_INLINE float meet(float h, float u, float v, float aside, float across, const struct quick_look *k, int steps)
@@ -68,69 +71,143 @@ SIMD_INLINE float meet(float h, float u, float v, float aside, float across, con
 	for (int j = 0; j < steps; j++) {
 		float gx, gy, off = quick_height_at(k->level->pairs, k->level->n, per_mm, u - h * aside, v - h * across, &gx, &gy) - h;
 		float slope = 1 + gx * aside + gy * across;
-		h += off / (slope > 0.3f ? slope : 0.3f);
-		h = h > least ? h < most ? h : most : least;
+		h = quick_clamp(h + off / (slope > 0.3f ? slope : 0.3f), least, most);
 	}
 	return h;
 }
 
-SIMD_CLONES static void meet_nodes(float (*q)[GRID_NODES], const struct quick_look *look)
+SIMD_CLONES static void meet_nodes(float (*restrict q)[NODE_LANES], int n, const struct quick_spots *restrict s, const struct quick_look *look)
 {
 	const struct quick_look k = *look;
+	float plane = (float)k.scene->eye.iris_depth;
 	SIMD_LOOP
-	for (int i = 0; i < GRID_NODES; i++)
-		q[GRID_HEIGHT][i] = meet(0, q[GRID_U][i], q[GRID_V][i], q[GRID_ASIDE][i], q[GRID_ACROSS][i], &k, 3);
-}
-
-/* u, v: on the plane, then on the relief. From the nodes' heights one more step is enough. */
-SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const float *restrict aside, const float *restrict across,
-                                    const float *restrict start, const struct quick_look *look)
-{
-	const struct quick_look k = *look;
-	SIMD_LOOP
-	for (int i = 0; i < BATCH; i++) {
-		float h = meet(start[i], u[i], v[i], aside[i], across[i], &k, 1);
-		u[i] -= h * aside[i];
-		v[i] -= h * across[i];
+	for (int i = 0; i < n; i++) {
+		float fx = s->fx[i], fy = s->fy[i], vx = s->vx[i], vy = s->vy[i], c = s->vz[i] > 0.1f ? s->vz[i] : 0.1f;
+		float a = (vx + k.slip[0][0] * vx + k.slip[0][1] * vy) / c, b = (vy + k.slip[1][0] * vx + k.slip[1][1] * vy) / c, t = plane - s->fz[i];
+		float u = fx + k.slip[0][0] * fx + k.slip[0][1] * fy + k.slip[0][2] + t * a;
+		float v = fy + k.slip[1][0] * fx + k.slip[1][1] * fy + k.slip[1][2] + t * b;
+		q[NODE_U][i] = u;
+		q[NODE_V][i] = v;
+		q[NODE_ASIDE][i] = a;
+		q[NODE_ACROSS][i] = b;
+		q[NODE_HEIGHT][i] = meet(0, u, v, a, b, &k, 3);
 	}
 }
 
-bool quick_grid(struct quick_found *f, const struct quick_rays *nodes, const struct quick_look *k)
+/* From the nodes' heights one more step is enough. */
+SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const float (*restrict q)[NODE_LANES], const struct quick_look *look)
 {
-	float q[GRID_CHANNELS][GRID_NODES], back[BATCH], aside[2][BATCH], height[BATCH];
+	const struct quick_look k = *look;
+	float rows[NODE_CHANNELS][NODE_SIDE][QUICK_TILE];
+	for (int c = 0; c < NODE_CHANNELS; c++)
+		rows_lay(rows[c], q[c]);
+	for (int y = 0; y < QUICK_TILE; y++) {
+		int a = y / NODE_STEP, b = a + 1;
+		float w = (float)(y % NODE_STEP) / NODE_STEP, *restrict out_u = u + y * QUICK_TILE, *restrict out_v = v + y * QUICK_TILE;
+		SIMD_LOOP
+		for (int i = 0; i < QUICK_TILE; i++) {
+			float p[NODE_CHANNELS];
+#pragma GCC unroll 5
+			for (int c = 0; c < NODE_CHANNELS; c++)
+				p[c] = rows[c][a][i] + w * (rows[c][b][i] - rows[c][a][i]);
+			float h = meet(p[NODE_HEIGHT], p[NODE_U], p[NODE_V], p[NODE_ASIDE], p[NODE_ACROSS], &k, 1);
+			out_u[i] = p[NODE_U] - h * p[NODE_ASIDE];
+			out_v[i] = p[NODE_V] - h * p[NODE_ACROSS];
+		}
+	}
+}
+
+/* Three by three nodes become five by five. */
+static void refine(float node[NODE_LANES])
+{
+	float q[SPARSE_SIDE * SPARSE_SIDE];
+	memcpy(q, node, sizeof q);
+	for (int y = 0; y < NODE_SIDE; y++)
+		for (int x = 0; x < NODE_SIDE; x++) {
+			const float *a = q + y / 2 * SPARSE_SIDE + x / 2, *b = a + y % 2 * SPARSE_SIDE;
+			node[y * NODE_SIDE + x] = 0.25f * (a[0] + a[x % 2] + b[0] + b[x % 2]);
+		}
+}
+
+static void nodes_make(struct quick_rays *r, int side, float x, float y, quick_make *make, const void *ctx)
+{
+	float u[NODE_LANES], v[NODE_LANES], step = (float)QUICK_TILE / (float)(side - 1);
+	r->n = side == SPARSE_SIDE ? SPARSE_LANES : NODE_LANES;
+	for (int i = 0; i < r->n; i++) {  // the lanes behind the nodes repeat the last
+		int k = i < side * side ? i : side * side - 1;
+		u[i] = x + step * (float)(k % side);
+		v[i] = y + step * (float)(k / side);
+	}
+	make(r, u, v, ctx);
+}
+
+/* Places on the environment's octahedron jump where its far corners meet. */
+static bool jumps(const float *u, const float *v, int n)
+{
+	float low[2] = { 1, 1 }, high[2] = { -1, -1 };
+	for (int i = 0; i < n; i++) {
+		low[0] = fminf(low[0], u[i]);
+		low[1] = fminf(low[1], v[i]);
+		high[0] = fmaxf(high[0], u[i]);
+		high[1] = fmaxf(high[1], v[i]);
+	}
+	return high[0] - low[0] > 0.5f || high[1] - low[1] > 0.5f;
+}
+
+static void iris_lay(struct quick_found *f, int nodes, bool sparse, const struct quick_look *k)
+{
+	float q[NODE_CHANNELS][NODE_LANES];
+	meet_nodes(q, nodes, &f->spots, k);
+	for (int c = 0; c < NODE_CHANNELS && sparse; c++)
+		refine(q[c]);
+	for (int i = 0; i < NODES_IN_TILE; i++) {
+		f->node_u[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
+		f->node_v[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
+	}
+	meet_pixels(f->spots.iu, f->spots.iv, (const float(*)[NODE_LANES])q, k);
+}
+
+static void lay_over(float *out)
+{
+	float node[NODE_LANES];
+	memcpy(node, out, sizeof node);
+	quick_lay(out, node);
+}
+
+bool quick_grid(struct quick_found *f, float x, float y, quick_make *make, const void *ctx, const struct quick_look *k)
+{
 	struct quick_spots *s = &f->spots;
-	quick_outside(s, nodes, k);
-	f->kind = kind_of(s, nodes, k);
+	struct quick_rays r;
+	float back[NODE_LANES];
+	nodes_make(&r, SPARSE_SIDE, x, y, make, ctx);
+	quick_outside(s, &r, k);
+	f->kind = kind_of(s, &r, k);
+	bool sparse = f->kind == QUICK_CORNEA;
+	if (!sparse) {
+		nodes_make(&r, NODE_SIDE, x, y, make, ctx);
+		quick_outside(s, &r, k);
+		f->kind = kind_of(s, &r, k);
+	}
 	if (f->kind == QUICK_MIXED)
 		return false;
-	bool cornea = f->kind == QUICK_CORNEA;
 	f->hit = BATCH;
-	f->seen = cornea ? BATCH : 0;
-	f->white = BATCH - f->seen;
-	quick_bend(f, GRID_NODES, k);
-	quick_reflect(q[GRID_RX], q[GRID_RY], q[GRID_RZ], f, nodes, k);
-	memcpy(q[GRID_MIRROR], s->mirror, sizeof q[GRID_MIRROR]);
-	if (cornea) {
-		cross_plane(q, s, k);
-		meet_nodes(q, k);
-		quick_lay(height, q[GRID_HEIGHT]);
-		quick_lay(aside[0], q[GRID_ASIDE]);
-		quick_lay(aside[1], q[GRID_ACROSS]);
-	} else {
-		memcpy(q[GRID_U], s->su, sizeof q[GRID_U]);
-		memcpy(q[GRID_V], s->sv, sizeof q[GRID_V]);
-		memcpy(q[GRID_ROUGH], s->rough, sizeof q[GRID_ROUGH]);
-		quick_lay(s->rough, q[GRID_ROUGH]);
+	f->seen = f->kind == QUICK_SCLERA ? 0 : BATCH;
+	f->white = f->kind == QUICK_CORNEA ? 0 : BATCH;
+	quick_bend(f, r.n, k);
+	quick_reflect(s->eu, s->ev, back, f, &r, k);
+	quick_unfold(r.n, s->eu, s->ev, back);
+	if (jumps(s->eu, s->ev, r.n))
+		return false;
+	if (sparse) {
+		refine(s->mirror);
+		refine(s->eu);
+		refine(s->ev);
 	}
-	float *u = cornea ? s->iu : s->su, *v = cornea ? s->iv : s->sv;
-	quick_lay(u, q[GRID_U]);
-	quick_lay(v, q[GRID_V]);
-	if (cornea)
-		meet_pixels(u, v, aside[0], aside[1], height, k);
-	quick_lay(s->mirror, q[GRID_MIRROR]);
-	quick_lay(s->eu, q[GRID_RX]);
-	quick_lay(s->ev, q[GRID_RY]);
-	quick_lay(back, q[GRID_RZ]);
-	quick_unfold(BATCH, s->eu, s->ev, back);
+	if (f->seen)
+		iris_lay(f, r.n, sparse, k);
+	if (f->white) {
+		lay_over(s->su);
+		lay_over(s->sv);
+	}
 	return true;
 }

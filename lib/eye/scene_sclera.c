@@ -147,6 +147,7 @@ void scene_veins_make(struct scene *s)
 			float r = hypotf((float)x + 0.5f - 0.5f * (float)n, (float)y + 0.5f - 0.5f * (float)n) * 2 / (float)n;
 			albedo_put(s->veins.px + 4 * i, s, r, 0.66f * (float)fine[i] / 255, 0.5f * blurred[i]);
 		}
+	scene_texels_make(&s->white, s->veins.px, n);
 	struct image height = ripples(s->conf.seed + 2);
 	film_make(s, &height);
 	image_free(&height);

@@ -123,8 +123,8 @@ void scene_shade_model(struct scene_level *level, const struct scene *s, const d
 /* The alternative: irradiance on the iris plane alone, which is smooth. */
 static struct scene_shade flat_make(const struct scene *s, const struct scene_level *level, const struct scene_beams *beams)
 {
-	enum { N = 96 };
-	struct scene_shade out = { level->n, N, level->per_mm, (float)(N / (2 * s->extent)), level->bare, mem_array(N * N, 4 * sizeof *out.light) };
+	enum { N = SCENE_GRID };
+	struct scene_shade out = { N, level->per_mm, (float)(N / (2 * s->extent)), &level->bare, mem_array(N * N, 4 * sizeof *out.light), true };
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < N; y++)
 		for (int x = 0; x < N; x++)
@@ -153,5 +153,5 @@ struct scene_shade scene_shade_make(const struct scene *s, const struct scene_le
 	p.light = mem_new((size_t)coarse->n * (size_t)coarse->n, 4 * sizeof *p.light);
 	paint(&p);
 	free(sight);
-	return (struct scene_shade){ level->n, coarse->n, level->per_mm, coarse->per_mm, level->shown, p.light };
+	return (struct scene_shade){ coarse->n, level->per_mm, coarse->per_mm, &level->shown, p.light, false };
 }

@@ -84,19 +84,18 @@ static void quick_points(struct quick_found *found, int n, const float *x, const
 	quick_find(found, &r, c->look->quick);
 }
 
-/* A whole tile, by the rays at its nodes if these are enough. */
-static void quick_tile_find(struct quick_found *found, const float *x, const float *y, const struct canvas *c)
+static void nodes_make(struct quick_rays *r, const float *x, const float *y, const void *plane)
 {
-	struct quick_rays r = { .n = GRID_NODES };
-	float u[GRID_NODES], v[GRID_NODES];
-	for (int i = 0; i < GRID_NODES; i++) {
-		int column = i % GRID_ROW < GRID_SIDE ? i % GRID_ROW : GRID_SIDE - 1;
-		u[i] = x[0] + (float)(GRID_STEP * column);
-		v[i] = y[0] + (float)(GRID_STEP * (i / GRID_ROW));
+	quick_rays_make(r, x, y, plane);
+}
+
+/* Middles of a tile's pixels. */
+static void tile_points(float *x, float *y, int tx, int ty)
+{
+	for (int i = 0; i < BATCH; i++) {
+		x[i] = (float)(tx + i % TILE) + 0.5f;
+		y[i] = (float)(ty + i / TILE) + 0.5f;
 	}
-	quick_rays_make(&r, u, v, &c->plane);
-	if (!quick_grid(found, &r, c->look->quick))
-		quick_points(found, BATCH, x, y, c);
 }
 
 /* Rays through n points of the picture (px), traced. */
@@ -130,18 +129,29 @@ static void trace_points(float rgba[][4], int n, const float *x, const float *y,
 	scene_trace(rgba, n, dx, dy, dz, c->scene, c->look, iris);
 }
 
-/* A tile of a quick picture, n of whose rays are of the picture; what its rays met may be known from the picture before. */
-static void quick_tile(float rgba[][4], int n, const float *x, const float *y, int tile, const struct canvas *c, struct scene_count *count)
+/* A tile of a quick picture, n of whose rays are of the picture: by the rays at its nodes if these are enough. What its rays
+ * met may be known from the picture before. out: rows `stride` floats apart. */
+static void quick_tile(float *out, long stride, int n, int tx, int ty, int tile, const struct canvas *c, struct scene_count *count)
 {
 	struct quick_found mine, *found = &mine;
 	bool kept = false;
 	if (c->view->hits)
 		found = scene_hits_tile(c->view->hits, tile, &kept);
-	if (!kept)
-		quick_tile_find(found, x, y, c);
-	quick_colour(rgba, found, BATCH, c->look->quick);
+	if (!kept && !quick_grid(found, (float)tx + 0.5f, (float)ty + 0.5f, nodes_make, &c->plane, c->look->quick)) {
+		float x[BATCH], y[BATCH];
+		tile_points(x, y, tx, ty);
+		quick_points(found, BATCH, x, y, c);
+	}
 	*(kept ? &count->kept : &count->rays) += n;
 	count->iris += found->seen;
+	if (found->kind != QUICK_MIXED) {
+		quick_tile_colour(out, stride, found, c->look->quick);
+		return;
+	}
+	float rgba[BATCH][4];
+	quick_colour(rgba, found, BATCH, c->look->quick);
+	for (int y = 0; y < TILE; y++)
+		memcpy(out + y * stride, rgba[y * TILE], TILE * sizeof *rgba);
 }
 
 static bool any_visible(const struct scene_view *v, int tx, int ty, int x1, int y1)
@@ -154,21 +164,24 @@ static bool any_visible(const struct scene_view *v, int tx, int ty, int x1, int 
 
 static void first_rays(const struct canvas *c, int tile, int tx, int ty, struct scene_count *count)
 {
-	float rgba[BATCH][4], u[BATCH], v[BATCH];
+	float rgba[BATCH][4];
 	int x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width, y1 = ty + TILE < c->view->height ? ty + TILE : c->view->height;
 	int n = (x1 - tx) * (y1 - ty);
+	bool whole = n == BATCH;
 	if (!any_visible(c->view, tx, ty, x1, y1)) {
 		count->hidden += n;
 		return;
 	}
-	for (int i = 0; i < BATCH; i++) {
-		u[i] = (float)(tx + i % TILE) + 0.5f;
-		v[i] = (float)(ty + i / TILE) + 0.5f;
+	if (c->look->quick && whole) {
+		quick_tile(image_at(c->image, tx, ty), 4L * c->image->width, n, tx, ty, tile, c, count);
+		return;
 	}
 	if (c->look->quick) {
-		quick_tile(rgba, n, u, v, tile, c, count);
+		quick_tile(rgba[0], 4 * TILE, n, tx, ty, tile, c, count);
 	} else {
-		trace_points(rgba, BATCH, u, v, c, &count->iris);
+		float x[BATCH], y[BATCH];
+		tile_points(x, y, tx, ty);
+		trace_points(rgba, BATCH, x, y, c, &count->iris);
 		count->rays += n;
 	}
 	for (int y = ty; y < y1; y++)

@@ -1,0 +1,244 @@
+/* Colours of tiles that scene_quick_grid.c has found. What light and film make of the maps' colours is smooth: it is known at
+ * the nodes and added up from pixel to pixel; only where the mirror shows an edge is the environment looked up in every one. */
+#include <math.h>
+
+#include "eye/scene_quick.h"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#endif
+
+/* At the nodes: what the iris' colour, and the white's, is multiplied by; and what is mirrored, with the cover. */
+struct film {
+	quick_four iris[NODE_LANES], white[NODE_LANES], mirror[NODE_LANES];
+	bool edge;  // the mirror image has one, and is not in it
+};
+
+/* What the tile looks up in every pixel. */
+struct maps {
+	struct quick_places detail, light, white, sharp, rough;
+	float lid[BATCH], mirror[BATCH], roughness[BATCH];
+};
+
+/* Places of the environment's pixels that the tile's nodes see. */
+SIMD_CLONES static void film_mirror(struct film *f, const struct quick_spots *s, const struct envmap *env, bool rough)
+{
+	struct quick_places p, q;
+	float w = (float)env->sharp.width, m = (float)env->rough.width;
+	quick_places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, NODE_LANES);
+	quick_places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, NODE_LANES);
+	for (int i = 0; i < NODES_IN_TILE; i++) {
+		quick_four c = quick_look_up(env->sharp.px, env->sharp.width, &p, i);
+		if (rough)
+			c += s->rough[i] * (quick_look_up(env->rough.px, env->rough.width, &q, i) - c);
+		c *= s->mirror[i];
+		c[3] = 1;
+		f->mirror[i] = c;
+	}
+}
+
+/* Between nodes the mirror image is as between its pixels, or bends by less than that: of white. */
+static bool film_even(const struct film *f, const struct quick_spots *s, const struct envmap *env)
+{
+	const float bend = 0.02f, texels = 4;
+	float level[NODES_IN_TILE];
+	for (int i = 0; i < NODES_IN_TILE; i++)
+		level[i] = f->mirror[i][0] + f->mirror[i][1] + f->mirror[i][2];
+	for (int y = 0; y < NODE_SIDE; y++)
+		for (int k = 1; k < NODE_SIDE - 1; k++) {
+			const float *a = level + y * NODE_SIDE + k, *b = level + k * NODE_SIDE + y;
+			if (fabsf(a[-1] - 2 * a[0] + a[1]) > 3 * bend || fabsf(b[-NODE_SIDE] - 2 * b[0] + b[NODE_SIDE]) > 3 * bend)
+				return false;
+		}
+	const int last = NODES_IN_TILE - 1, right = NODE_SIDE - 1, low = last - right;
+	float across = fmaxf(fabsf(s->eu[last] - s->eu[0]), fabsf(s->eu[right] - s->eu[low]));
+	float down = fmaxf(fabsf(s->ev[last] - s->ev[0]), fabsf(s->ev[right] - s->ev[low]));
+	return fmaxf(across, down) * 0.5f * (float)env->sharp.width < texels;
+}
+
+/* Light on the iris at the nodes, where it is smooth. */
+SIMD_CLONES static void film_iris(struct film *f, const struct quick_found *found, const struct quick_look *k)
+{
+	const struct scene_shade *h = k->shade;
+	struct quick_places p;
+	quick_places_of(&p, found->node_u, found->node_v, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, NODES_IN_TILE);
+	for (int i = 0; i < NODES_IN_TILE; i++) {
+		float through = h->detail->step * (1 - found->spots.mirror[i]);
+		quick_four c = { through, through, through, 0 };
+		f->iris[i] = h->even ? c * quick_look_up(h->light, h->light_n, &p, i) : c;
+	}
+}
+
+static void film_white(struct film *f, struct quick_spots *s, const struct quick_look *k)
+{
+	quick_sclera(s, NODE_LANES, k);
+	for (int i = 0; i < NODES_IN_TILE; i++) {
+		float through = k->scene->white.step * (1 - s->mirror[i]);
+		f->white[i] = (quick_four){ through * s->sky[0][i], through * s->sky[1][i], through * s->sky[2][i], 0 };
+	}
+}
+
+static void film_make(struct film *f, struct quick_found *found, const struct quick_look *k)
+{
+	const struct envmap *env = k->light->mirror;
+	f->edge = false;
+	for (int i = 0; i < NODES_IN_TILE; i++)
+		f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
+	if (env) {
+		film_mirror(f, &found->spots, env, found->white);
+		f->edge = !film_even(f, &found->spots, env);
+		for (int i = 0; i < NODES_IN_TILE && f->edge; i++)
+			f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
+	}
+	if (found->seen)
+		film_iris(f, found, k);
+	if (found->white)
+		film_white(f, &found->spots, k);
+}
+
+SIMD_INLINE float ramp(float lo, float inv, float x)
+{
+	float t = quick_clamp((x - lo) * inv, 0, 1);
+	return t * t * (3 - 2 * t);
+}
+
+SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_spots *s, const struct quick_look *k)
+{
+	const struct scene_shade *h = k->shade;
+	int n = h->detail->n;
+	quick_places_of(&m->detail, s->iu, s->iv, h->per_mm, 0.5f * (float)n - 0.5f, n, BATCH);
+	if (!h->even)
+		quick_places_of(&m->light, s->iu, s->iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, BATCH);
+}
+
+SIMD_CLONES static void maps_white(struct maps *m, const struct quick_spots *s, const struct quick_look *k, bool lid)
+{
+	float w = (float)k->scene->white.n, inv = 1 / k->lid_width, lo = 1 - 0.5f * k->lid_width;
+	quick_places_of(&m->white, s->su, s->sv, w, 0.5f * w - 0.5f, k->scene->white.n, BATCH);
+	if (!lid)
+		return;
+	quick_lay(m->lid, s->rho);
+	SIMD_LOOP
+	for (int i = 0; i < BATCH; i++)
+		m->lid[i] = ramp(lo, inv, m->lid[i]);
+}
+
+SIMD_CLONES static void maps_mirror(struct maps *m, const struct quick_spots *s, const struct envmap *env, bool rough)
+{
+	float u[BATCH], v[BATCH], w = (float)env->sharp.width, r = (float)env->rough.width;
+	quick_lay(u, s->eu);
+	quick_lay(v, s->ev);
+	quick_lay(m->mirror, s->mirror);
+	quick_places_of(&m->sharp, u, v, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, BATCH);
+	if (rough) {
+		quick_lay(m->roughness, s->rough);
+		quick_places_of(&m->rough, u, v, 0.5f * r, 0.5f * r - 0.5f, env->rough.width, BATCH);
+	}
+}
+
+/* Nodes' values along the pixel row y of a tile, and what a step to the next row adds. */
+struct steps {
+	quick_four at[NODE_SIDE], by[NODE_SIDE];
+};
+
+SIMD_INLINE void steps_on(struct steps *s, const quick_four node[], int y)
+{
+	const quick_four *a = node + y / NODE_STEP * NODE_SIDE, *b = a + NODE_SIDE;
+	for (int i = 0; i < NODE_SIDE; i++) {
+		if (y % NODE_STEP == 0) {
+			s->by[i] = 0.25f * (b[i] - a[i]);
+			s->at[i] = a[i];
+		} else {
+			s->at[i] += s->by[i];
+		}
+	}
+}
+
+enum { PAINT_IRIS = 1, PAINT_WHITE = 2, PAINT_EVEN = 4, PAINT_EDGE = 8 };
+
+SIMD_INLINE quick_four mirrored(const struct maps *m, const struct envmap *env, int i, bool rough)
+{
+	quick_four c = quick_look_up(env->sharp.px, env->sharp.width, &m->sharp, i);
+	if (rough)
+		c += m->roughness[i] * (quick_look_up(env->rough.px, env->rough.width, &m->rough, i) - c);
+	c *= m->mirror[i];
+	c[3] = 0;
+	return c;
+}
+
+SIMD_INLINE void paint(float *restrict out, long stride, const struct film *restrict f, const struct maps *restrict m, const struct quick_look *k, int what)
+{
+	const struct scene_shade *h = k->shade;
+	const bool iris = what & PAINT_IRIS, white = what & PAINT_WHITE, even = what & PAINT_EVEN, edge = what & PAINT_EDGE;
+	const quick_four none = { 0 };
+	struct steps a, b, c;
+	for (int y = 0; y < QUICK_TILE; y++) {
+		float *restrict row = out + y * stride;
+		steps_on(&a, f->mirror, y);
+		if (iris)
+			steps_on(&b, f->iris, y);
+		if (white)
+			steps_on(&c, f->white, y);
+		for (int x = 0; x < QUICK_TILE; x += NODE_STEP) {
+			int j = x / NODE_STEP;
+			quick_four p = a.at[j], dp = 0.25f * (a.at[j + 1] - p);
+			quick_four q = iris ? b.at[j] : none, dq = iris ? 0.25f * (b.at[j + 1] - q) : none;
+			quick_four r = white ? c.at[j] : none, dr = white ? 0.25f * (c.at[j + 1] - r) : none;
+#pragma GCC unroll 4
+			for (int t = 0; t < NODE_STEP; t++, p += dp, q += dq, r += dr) {
+				int i = y * QUICK_TILE + x + t;
+				quick_four colour = p;
+				if (iris) {
+					quick_four seen = q * quick_texel(h->detail, &m->detail, i);
+					if (!even)
+						seen *= quick_look_up(h->light, h->light_n, &m->light, i);
+					colour += white ? (1 - m->lid[i]) * seen : seen;
+				}
+				if (white) {
+					quick_four seen = r * quick_texel(&k->scene->white, &m->white, i);
+					colour += iris ? m->lid[i] * seen : seen;
+				}
+				if (edge)
+					colour += mirrored(m, k->light->mirror, i, white);
+				memcpy(row + 4 * (x + t), &colour, sizeof colour);
+			}
+		}
+	}
+}
+
+#define PAINT(name, what)                                                                                                                             \
+	SIMD_CLONES static void name(float *out, long stride, const struct film *f, const struct maps *m, const struct quick_look *k) \
+	{                                                                                                                                                 \
+		paint(out, stride, f, m, k, what);                                                                                                            \
+	}
+PAINT(paint_iris, PAINT_IRIS)
+PAINT(paint_iris_edge, PAINT_IRIS | PAINT_EDGE)
+PAINT(paint_even, PAINT_IRIS | PAINT_EVEN)
+PAINT(paint_even_edge, PAINT_IRIS | PAINT_EVEN | PAINT_EDGE)
+PAINT(paint_white, PAINT_WHITE)
+PAINT(paint_white_edge, PAINT_WHITE | PAINT_EDGE)
+PAINT(paint_limbus, PAINT_IRIS | PAINT_WHITE)
+PAINT(paint_limbus_edge, PAINT_IRIS | PAINT_WHITE | PAINT_EDGE)
+PAINT(paint_limbus_even, PAINT_IRIS | PAINT_WHITE | PAINT_EVEN)
+PAINT(paint_limbus_even_edge, PAINT_IRIS | PAINT_WHITE | PAINT_EVEN | PAINT_EDGE)
+
+void quick_tile_colour(float *out, long stride, struct quick_found *found, const struct quick_look *k)
+{
+	typedef void painter(float *, long, const struct film *, const struct maps *, const struct quick_look *);
+	static painter *const with[3][2][2] = {  // iris, white, both; light looked up, even; mirror image even, looked up
+		{ { paint_iris, paint_iris_edge }, { paint_even, paint_even_edge } },
+		{ { paint_white, paint_white_edge }, { paint_white, paint_white_edge } },
+		{ { paint_limbus, paint_limbus_edge }, { paint_limbus_even, paint_limbus_even_edge } },
+	};
+	struct film film;
+	struct maps maps;
+	film_make(&film, found, k);
+	if (found->seen)
+		maps_iris(&maps, &found->spots, k);
+	if (found->white)
+		maps_white(&maps, &found->spots, k, found->seen);
+	if (film.edge)
+		maps_mirror(&maps, &found->spots, k->light->mirror, found->white);
+	int what = !found->white ? 0 : found->seen ? 2 : 1;
+	with[what][k->shade->even][film.edge](out, stride, &film, &maps, k);
+}
