@@ -146,12 +146,32 @@ static bool jumps(const float *u, const float *v, int n)
 {
 	float low[2] = { 1, 1 }, high[2] = { -1, -1 };
 	for (int i = 0; i < n; i++) {
-		low[0] = fminf(low[0], u[i]);
-		low[1] = fminf(low[1], v[i]);
-		high[0] = fmaxf(high[0], u[i]);
-		high[1] = fmaxf(high[1], v[i]);
+		low[0] = u[i] < low[0] ? u[i] : low[0];
+		low[1] = v[i] < low[1] ? v[i] : low[1];
+		high[0] = u[i] > high[0] ? u[i] : high[0];
+		high[1] = v[i] > high[1] ? v[i] : high[1];
 	}
 	return high[0] - low[0] > 0.5f || high[1] - low[1] > 0.5f;
+}
+
+/* The tile on the right comes next, and looks on where this one ends: its texels are asked for while this one is worked on. */
+static void ahead(const struct quick_found *f, const struct quick_look *k)
+{
+	const struct scene_texels *map = k->shade->detail;
+	const float *u = f->node_u, *v = f->node_v, per = k->shade->per_mm, off = 0.5f * (float)map->n - 0.5f;
+	float wide = (u[NODE_SIDE - 1] - u[0]) * per, slant = (v[NODE_SIDE - 1] - v[0]) * per;
+	for (int y = 0; y < QUICK_TILE; y++) {
+		int a = (y / NODE_STEP + 1) * NODE_SIDE - 1, b = a + NODE_SIDE;
+		float w = (float)(y % NODE_STEP) / NODE_STEP, x0 = (u[a] + w * (u[b] - u[a])) * per + off, y0 = (v[a] + w * (v[b] - v[a])) * per + off;
+		for (int i = 0; i < 3; i++) {
+			int x = (int)(x0 + 0.5f * (float)i * wide), row = (int)(y0 + 0.5f * (float)i * slant);
+			if (x < 0 || row < 0 || x >= map->n || row >= map->n)
+				continue;
+			__builtin_prefetch(map->px + 4 * ((long)row * map->n + x));
+			if (i < 2)
+				__builtin_prefetch(k->level->pairs + (long)row * map->n + x);
+		}
+	}
 }
 
 static void iris_lay(struct quick_found *f, int nodes, bool sparse, const struct quick_look *k)
@@ -164,6 +184,7 @@ static void iris_lay(struct quick_found *f, int nodes, bool sparse, const struct
 		f->node_u[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
 		f->node_v[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
 	}
+	ahead(f, k);
 	meet_pixels(f->spots.iu, f->spots.iv, (const float(*)[NODE_LANES])q, k);
 }
 

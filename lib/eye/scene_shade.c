@@ -123,7 +123,7 @@ void scene_shade_model(struct scene_level *level, const struct scene *s, const d
 /* The alternative: irradiance on the iris plane alone, which is smooth. */
 static struct scene_shade flat_make(const struct scene *s, const struct scene_level *level, const struct scene_beams *beams)
 {
-	enum { N = SCENE_GRID };
+	enum { N = 80 };
 	struct scene_shade out = { N, level->per_mm, (float)(N / (2 * s->extent)), &level->bare, mem_array(N * N, 4 * sizeof *out.light), true };
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < N; y++)

@@ -37,56 +37,14 @@ struct canvas {
 	const struct scene_look *look;
 	struct image *image;
 	bool bent;  // the lens distorts
-	// Direction of a point's ray in the eye's frame, and where it meets a plane before the eye: constant, times x, times y.
-	struct canvas_plane {
-		float dir[3][3], from[3][3];
-	} plane;
+	struct sight_plane plane;
 };
-
-static struct canvas_plane plane_make(const struct scene_look *look, const struct scene_view *v, double sphere_z)
-{
-	struct canvas_plane p;
-	double per = v->scale / v->camera.focal_px, center = v->cam_from_eye[2][2] * sphere_z + v->cam_from_eye[2][3];
-	double depth = fmax(center - 16, 0);  // mm: the eye reaches 14 before its centre at most
-	for (int j = 0; j < 3; j++) {
-		double step[3] = { (v->x0 - v->camera.center_px[0]) / v->camera.focal_px, (v->y0 - v->camera.center_px[1]) / v->camera.focal_px, 1 };
-		double d[3] = { 0, per * v->cam_from_eye[0][j], per * v->cam_from_eye[1][j] };
-		for (int i = 0; i < 3; i++)
-			d[0] += v->cam_from_eye[i][j] * step[i];
-		for (int k = 0; k < 3; k++) {
-			p.dir[k][j] = (float)d[k];
-			p.from[k][j] = (float)(depth * d[k] + (k == 0 ? look->origin[j] : 0));
-		}
-	}
-	return p;
-}
-
-/* Rays through n points of the picture, from a plane that lies before the eye. Pinhole: places on it are linear in px. */
-SIMD_CLONES static void quick_rays_make(struct quick_rays *r, const float *restrict x, const float *restrict y, const struct canvas_plane *p)
-{
-	SIMD_LOOP
-	for (int i = 0; i < r->n; i++) {
-		float dx = p->dir[0][0] + x[i] * p->dir[1][0] + y[i] * p->dir[2][0], dy = p->dir[0][1] + x[i] * p->dir[1][1] + y[i] * p->dir[2][1];
-		float dz = p->dir[0][2] + x[i] * p->dir[1][2] + y[i] * p->dir[2][2], inv = 1 / sqrtf(dx * dx + dy * dy + dz * dz);
-		r->dx[i] = dx * inv;
-		r->dy[i] = dy * inv;
-		r->dz[i] = dz * inv;
-		r->ox[i] = p->from[0][0] + x[i] * p->from[1][0] + y[i] * p->from[2][0];
-		r->oy[i] = p->from[0][1] + x[i] * p->from[1][1] + y[i] * p->from[2][1];
-		r->oz[i] = p->from[0][2] + x[i] * p->from[1][2] + y[i] * p->from[2][2];
-	}
-}
 
 static void quick_points(struct quick_found *found, int n, const float *x, const float *y, const struct canvas *c)
 {
 	struct quick_rays r = { .n = n };
-	quick_rays_make(&r, x, y, &c->plane);
+	sight_rays_make(&r, x, y, &c->plane);
 	quick_find(found, &r, c->look->quick);
-}
-
-static void nodes_make(struct quick_rays *r, const float *x, const float *y, const void *plane)
-{
-	quick_rays_make(r, x, y, plane);
 }
 
 /* Middles of a tile's pixels. */
@@ -137,7 +95,7 @@ static void quick_tile(float *out, long stride, int n, int tx, int ty, int tile,
 	bool kept = false;
 	if (c->view->hits)
 		found = scene_hits_tile(c->view->hits, tile, &kept);
-	if (!kept && !quick_grid(found, (float)tx + 0.5f, (float)ty + 0.5f, nodes_make, &c->plane, c->look->quick)) {
+	if (!kept && !quick_grid(found, (float)tx + 0.5f, (float)ty + 0.5f, sight_rays_make, &c->plane, c->look->quick)) {
 		float x[BATCH], y[BATCH];
 		tile_points(x, y, tx, ty);
 		quick_points(found, BATCH, x, y, c);
@@ -170,6 +128,8 @@ static void first_rays(const struct canvas *c, int tile, int tx, int ty, struct 
 	bool whole = n == BATCH;
 	if (!any_visible(c->view, tx, ty, x1, y1)) {
 		count->hidden += n;
+		for (int y = ty; y < y1; y++)
+			memset(image_at(c->image, tx, y), 0, (size_t)(x1 - tx) * sizeof *rgba);
 		return;
 	}
 	if (c->look->quick && whole) {
@@ -269,8 +229,8 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
 	struct scene_look look;
 	look_make(&look, s, view, light, &beams);
-	struct image image = image_new(view->width, view->height, 4);
-	struct canvas c = { s, view, &look, &image, false, plane_make(&look, view, s->sclera_z) };
+	struct image image = { view->width, view->height, 4, mem_array(4 * (size_t)view->width * (size_t)view->height, sizeof(float)) };
+	struct canvas c = { s, view, &look, &image, false, sight_plane(&look, view, s->sclera_z) };
 	for (int i = 0; i < 5; i++)
 		c.bent = c.bent || view->camera.distortion[i] != 0;
 	int across = (view->width + TILE - 1) / TILE, tiles = across * ((view->height + TILE - 1) / TILE);
@@ -284,7 +244,7 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 		if (view->hits)
 			scene_hits_for(view->hits, s, view, tiles);
 	}
-	unsigned char *mark = mem_new((size_t)view->width * (size_t)view->height, 1);
+	unsigned char *mark = view->samples > 1 ? mem_new((size_t)view->width * (size_t)view->height, 1) : 0;
 #pragma omp parallel reduction(+ : rays, iris, kept, hidden)
 	{
 		struct scene_count mine = { 0 };
@@ -292,13 +252,12 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 		for (int i = 0; i < tiles; i++)
 			first_rays(&c, i, i % across * TILE, i / across * TILE, &mine);
 #pragma omp for schedule(static)
-		for (int y = 0; y < view->height; y++)
-			for (int x = 0; x < view->width && view->samples > 1; x++)
+		for (int y = 0; y < (mark ? view->height : 0); y++)
+			for (int x = 0; x < view->width; x++)
 				mark[(long)y * view->width + x] = (!view->visible || view->visible[(long)y * view->width + x]) && is_edge(&image, x, y);
 #pragma omp for schedule(dynamic, 4)
-		for (int i = 0; i < tiles; i++)
-			if (view->samples > 1)
-				more_rays(&c, mark, i % across * TILE, i / across * TILE, &mine);
+		for (int i = 0; i < (mark ? tiles : 0); i++)
+			more_rays(&c, mark, i % across * TILE, i / across * TILE, &mine);
 		rays += mine.rays;
 		iris += mine.iris;
 		kept += mine.kept;

@@ -171,6 +171,7 @@ void envmap_free(struct envmap *env)
 	image_free(&env->map);
 	image_free(&env->sharp);
 	image_free(&env->rough);
+	image_free(&env->bend);
 }
 
 void envmap_irradiance(float rgb[3], const struct envmap *env, const float n[3])
@@ -203,8 +204,8 @@ double envmap_level(const struct envmap *env)
 void envmap_normalise(struct envmap *env)
 {
 	double level = envmap_level(env), k = level > 0 ? 1 / level : 1;
-	struct image *const all[] = { &env->map, &env->sharp, &env->rough };
-	for (int j = 0; j < 3; j++)
+	struct image *const all[] = { &env->map, &env->sharp, &env->rough, &env->bend };
+	for (int j = 0; j < 4; j++)
 		for (long i = 0; i < (long)all[j]->channels * all[j]->width * all[j]->height; i++)
 			all[j]->px[i] *= (float)k;
 	for (int i = 0; i < 9; i++)

@@ -7,10 +7,13 @@
 #define IMAGE_ENVMAP_H
 #include "image/image.h"
 
+enum { ENVMAP_BLOCK = 8 };
+
 struct envmap {
 	struct image map;    // [height][2 height][3]; owned
 	struct image sharp, rough;  // the same on the octahedron unfolded about -z, for lookups; rough: blurred by 6 degrees;
 	                            // four channels, the last empty
+	struct image bend;   // of sharp, by blocks of ENVMAP_BLOCK px: greatest second difference, channels summed
 	double sh[9][3];     // irradiance over pi, spherical harmonics to degree 2 (cosine lobe folded in)
 	float quadric[9][3]; // the same as a polynomial in x, y, z: 1 x y z xy yz zz xz xx-yy
 };

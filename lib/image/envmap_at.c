@@ -80,6 +80,40 @@ static void lobe_at(float rgb[3], const struct low *low, const double d[3])
 		rgb[c] = (float)(total > 0 ? sum[c] / total : 0);
 }
 
+/* By how much a pixel (0..width - 1 each way) is off the middle between its neighbours, twice. */
+static float bend_at(const struct image *map, int x, int y)
+{
+	float most = 0;
+	for (int k = 0; k < 2; k++) {
+		int at = k ? y : x, off = k ? 4 * map->width : 4;
+		if (at < 1 || at > map->width - 2)
+			continue;
+		const float *p = image_at(map, x, y);
+		float sum = 0;
+		for (int c = 0; c < 3; c++)
+			sum += fabsf(p[c - off] - 2 * p[c] + p[c + off]);
+		most = sum > most ? sum : most;
+	}
+	return most;
+}
+
+/* Of a block and the pixels round it. */
+static void bends(struct envmap *env)
+{
+	int n = env->sharp.width, m = (n + ENVMAP_BLOCK - 1) / ENVMAP_BLOCK;
+	env->bend = image_new(m, m, 1);
+#pragma omp parallel for schedule(static)
+	for (int by = 0; by < m; by++)
+		for (int bx = 0; bx < m; bx++) {
+			float most = 0;
+			for (int y = by * ENVMAP_BLOCK - 1; y <= (by + 1) * ENVMAP_BLOCK; y++)
+				for (int x = bx * ENVMAP_BLOCK - 1; x <= (bx + 1) * ENVMAP_BLOCK; x++)
+					if (x >= 0 && y >= 0 && x < n && y < n)
+						most = fmaxf(most, bend_at(&env->sharp, x, y));
+			*image_at(&env->bend, bx, by) = most;
+		}
+}
+
 void envmap_unfold(struct envmap *env)
 {
 	int n = 2 * env->map.height;
@@ -102,6 +136,7 @@ void envmap_unfold(struct envmap *env)
 		}
 	free(low.dirs);
 	image_free(&low.map);
+	bends(env);
 }
 
 static void square_at(float rgb[3], const struct image *map, float u, float v)
