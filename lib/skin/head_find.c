@@ -197,10 +197,10 @@ static void facing(double m[4][4], const struct camera *camera, const double ori
 }
 
 bool head_find(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
-               const struct eye_opening opening[2], const struct head_find_conf *conf)
+               const struct eye_opening opening[2], bool upside_down, const struct head_find_conf *conf)
 {
 	struct small s = shrink(rgb, width, height);
-	struct best each[2 * ROLLS * SIZES];
+	struct best each[ROLLS * SIZES];
 	double origin[3], wide = 0;
 	origin_of(origin, opening);
 	*found = (struct head_found){ .score = -INFINITY, .edge_px = NAN };
@@ -208,24 +208,21 @@ bool head_find(struct head_found *found, const uint8_t *rgb, int width, int heig
 		if (opening[e].open)
 			wide = fmax(wide, fabs(opening[e].canthus[1][0] - opening[e].canthus[0][0]));
 #pragma omp parallel for schedule(dynamic, 1)
-	for (int i = 0; i < 2 * ROLLS * SIZES; i++) {
+	for (int i = 0; i < ROLLS * SIZES; i++) {
 		double size = conf->width[0] * pow(conf->width[1] / conf->width[0], (double)(i % SIZES) / (SIZES - 1)) * s.width / wide;
-		double roll = conf->roll * M_PI / 180 * (i / SIZES % ROLLS - ROLLS / 2) / (ROLLS / 2) + (i >= ROLLS * SIZES ? M_PI : 0);
+		double roll = conf->roll * M_PI / 180 * (i / SIZES - ROLLS / 2) / (ROLLS / 2) + (upside_down ? M_PI : 0);
 		struct shape shape[2];
 		each[i] = (struct best){ .score = -INFINITY };
 		shapes(shape, opening, origin, size, roll);
 		slide(&each[i], &s, shape, size, roll);
-		// heads that stand on their feet are more likely
-		each[i].score -= i >= ROLLS * SIZES ? 0.5 : 0;
 	}
 	const struct best *best = each;
-	for (int i = 1; i < 2 * ROLLS * SIZES; i++)
+	for (int i = 1; i < ROLLS * SIZES; i++)
 		best = each[i].score > best->score ? &each[i] : best;
 	free(s.sum);
 	found->score = best->score - (best->seen[0] && best->seen[1] ? pair : 0);
 	if (!(found->score >= conf->min_score))
 		return false;
-	found->upside_down = fabs(best->roll) > M_PI / 2;
 	memcpy(found->seen, best->seen, sizeof found->seen);
 	const double px[2] = { s.factor * best->at[0], s.factor * best->at[1] };
 	facing(found->cam_from_head, camera, origin, px, best->px_per_mm * s.factor, best->roll);

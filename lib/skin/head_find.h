@@ -28,12 +28,12 @@ struct head_found {
 	bool seen[2];          // openings in the picture, left and right
 	double score;          // contrast of openings against skin, in its spread
 	double edge_px;        // rms of the outlines found against the mesh's; NAN: not refined
-	bool upside_down;
 };
 
-/* rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. False: no eyes. */
+/* rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. upside_down: heads
+ * that are so, instead of upright ones; openings alone hardly tell the two apart. False: no eyes. */
 bool head_find(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
-               const struct eye_opening opening[2], const struct head_find_conf *conf);
+               const struct eye_opening opening[2], bool upside_down, const struct head_find_conf *conf);
 
 /* Improves a pose by the openings' outlines in the picture; found->cam_from_head as it is expected to be. False: no outline. */
 bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,

@@ -130,22 +130,38 @@ static void assume_distance(struct track_clip *clip, const struct track_subject 
 	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
 }
 
-static bool look(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+/* The head one way up, in the kept frame. */
+static bool look_so(struct head_found *found, struct track_clip *clip, bool upside_down, const struct track_subject *s, const struct track_conf *conf)
 {
-	struct head_found found;
 	int w = clip->info.width, h = clip->info.height;
-	if (!head_find(&found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head))
+	if (!head_find(found, clip->rgb, w, h, &clip->camera, s->opening, upside_down, &conf->head))
 		return false;
-	memcpy(clip->cam_from_head, found.cam_from_head, sizeof clip->cam_from_head);
-	memcpy(clip->eye_seen, found.seen, sizeof clip->eye_seen);
+	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
 	if (clip->focal_assumed) {
 		assume_distance(clip, s, conf);
-		memcpy(found.cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
+		memcpy(found->cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
 	}
-	if (!head_find_refine(&found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head))
+	return head_find_refine(found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head);
+}
+
+/* Openings turned upside down look much like themselves: a head is taken to be so where its openings stand out more, and their outlines
+ * fit better, than those of one that is upright. */
+static bool look(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct head_found up, over;
+	struct camera camera = clip->camera, upright;
+	bool is_up = look_so(&up, clip, false, s, conf);
+	upright = clip->camera;
+	clip->camera = camera;
+	bool is_over = look_so(&over, clip, true, s, conf) && !(is_up && (up.score >= over.score || up.edge_px <= over.edge_px));
+	if (!is_up && !is_over)
 		return false;
-	memcpy(clip->cam_from_head, found.cam_from_head, sizeof clip->cam_from_head);
-	clip->pose_px = found.edge_px;
+	if (!is_over)
+		clip->camera = upright;
+	const struct head_found *found = is_over ? &over : &up;
+	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
+	memcpy(clip->eye_seen, found->seen, sizeof clip->eye_seen);
+	clip->pose_px = found->edge_px;
 	return true;
 }
 

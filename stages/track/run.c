@@ -15,6 +15,8 @@ static void tell_video(struct stage *stage, const struct track_clip *clip)
 		stage_skipped(stage, "%s: cut off: %ld of %ld frames are there; copy the file again", clip->file, v->frames, v->promised);
 	if (v->fps < 25)
 		stage_skipped(stage, "%s: %.0f frames/s: blinks are over in a few frames; film at 60 or more", clip->file, v->fps);
+	if (clip->cam_from_head[1][1] > 0)
+		stage_skipped(stage, "%s: the face is upside down in it: it is followed as it is; film upright, or set the file's rotation", clip->file);
 	if (clip->focal_assumed)
 		stage_skipped(stage, "%s: focal length not known: as if from %.0f mm away; set camera.focal_px, or camera.focal_mm and camera.sensor_mm", clip->file,
 		              clip->cam_from_head[2][3]);
@@ -49,7 +51,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (result->n < 2)
 		return err_set(err, "%s: %ld frames: film longer", clip->file, result->n);
 	if (result->lost * 2 > result->n)
-		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again: cut the video to one take", clip->file,
+		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again (a cut, or the head turned away): cut the video to one take", clip->file,
 		               result->cut, clip->reference);
 	track_corners(result, clip, subject, points);
 	track_apertures(result, clip, subject);

@@ -5,6 +5,7 @@
 
 [ -x "$BIN/track" ] || { skip "track" "not built"; exit 0; }
 CLIP=${B:-build}/tests/tools/clip
+RECUT=${B:-build}/tests/tools/recut
 
 # capture NAME: the bundled face, without its video.
 capture() {
@@ -55,6 +56,44 @@ if [ -x "$CLIP" ]; then
 	refuses no_face "no face with open eyes"
 else
 	skip "no face in the video" "tests/tools/clip is not built"
+fi
+
+# Takes that nobody wants, from the frames of the bundled one.
+if [ -x "$RECUT" ]; then
+	# take NAME PART...: see tests/tools/recut.c
+	take() {
+		capture "$1"
+		sed -i '/^expression/d' "$root/$1/capture.conf"
+		"$RECUT" "$root/$1/video/a.mp4" samples/face/video/face.mp4 "${@:2}"
+	}
+	# follows NAME WORDS: exit 0, and a line that has the words.
+	follows() {
+		said=$("$BIN/track" --capture="$root/$1" --points=60 --settle-frames=0 2>&1)
+		same "$1: exit" "$?" 0
+		check "$1: says $2 (it says: $said)" grep -q "$2" <<<"$said"
+	}
+	# cell NAME FRAME COLUMN of gaze.csv
+	cell() { awk -F, -v f="$2" -v c="$3" '!/^#/ && $1 == "frame" { for (i = 1; i <= NF; i++) if ($i == c) at = i } $1 == f { print $at }' "$root/$1/work/skin/gaze.csv"; }
+	# near NAME A B TOLERANCE
+	near() { check "$1: $2 and $3" awk -v a="$2" -v b="$3" -v t="$4" 'BEGIN { exit !(a != "" && b != "" && a - b < t && b - a < t) }'; }
+
+	take uneven uneven:0-29
+	follows uneven "variable frame rate (intervals differ by up to 67 %): its own time stamps are used"
+	near "uneven: time of frame 3" "$(cell uneven 3 time_s)" 0.058333 0.0005
+	take over over:0-29
+	follows over "the face is upside down in it: it is followed as it is"
+	near "upside down: the same gaze" "$(cell over 20 g1_deg)" "$(cell uneven 20 g1_deg)" 1.5
+	take cut 0-29 over:30-44
+	follows cut "from frame 30 on, 15 frames show the face otherwise than frame 0 does (a cut"
+	same "after the cut nothing is measured" "$(cell cut 40 g1_deg)" ""
+	take cuts 0-9 over:10-29
+	refuses cuts "from frame 10 on the face of frame 0 is not seen again .a cut, or the head turned away.: cut the video" --points=60 --settle-frames=0
+	take roll roll:0-29
+	refuses roll "from frame [0-9]+ on the face of frame 0 is not seen again .a cut, or the head turned away.: cut the video" --points=60 --settle-frames=0
+	take shut 176-176x30
+	refuses shut "no face with open eyes in its first frames"
+else
+	skip "takes that nobody wants" "tests/tools/recut is not built"
 fi
 
 capture rows

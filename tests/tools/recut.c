@@ -1,0 +1,109 @@
+/* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), roll (turned
+ * further from frame to frame, by 180 degrees in all), uneven (every second frame half an interval late). */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "image/video.h"
+
+enum { FRAMES = 4000, PARTS = 16 };
+
+struct part {
+	char how[16];
+	long first, last, times;
+};
+
+static bool read_part(struct part *p, const char *text)
+{
+	*p = (struct part){ .times = 1 };
+	const char *colon = strchr(text, ':');
+	if (colon && (size_t)(colon - text) < sizeof p->how)
+		memcpy(p->how, text, (size_t)(colon - text));
+	int got = sscanf(colon ? colon + 1 : text, "%ld-%ldx%ld", &p->first, &p->last, &p->times);
+	return got >= 2 && p->first >= 0 && p->last >= p->first && p->last < FRAMES && p->times > 0;
+}
+
+/* Frames that a part wants, as sRGB; the others null. */
+static bool load(uint8_t **rgb, struct video_info *info, const char *path, int n, const struct part part[], struct err *err)
+{
+	struct video *video = video_open(info, path, &(struct video_conf){ 40, FRAMES, 2 }, err);
+	bool got = video;
+	while (got) {
+		struct video_frame f;
+		bool wanted = false;
+		got = video_next(&f, &got, video, err) && got;
+		for (int i = 0; i < n && got; i++)
+			wanted |= f.index >= part[i].first && f.index <= part[i].last;
+		if (wanted) {
+			rgb[f.index] = mem_array((size_t)f.width * (size_t)f.height, 3);
+			video_frame_rgb(rgb[f.index], 3 * f.width, &f, 0, 0, f.width, f.height);
+		}
+		video_frame_free(&f);
+	}
+	video_close(video);
+	return !err_is(err);
+}
+
+static void turn(uint8_t *out, const uint8_t *in, int w, int h, double angle)
+{
+	double c = cos(angle), s = sin(angle);
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			double dx = x + 0.5 - 0.5 * w, dy = y + 0.5 - 0.5 * h;
+			int u = (int)floor(c * dx + s * dy + 0.5 * w), v = (int)floor(-s * dx + c * dy + 0.5 * h);
+			bool in_it = u >= 0 && v >= 0 && u < w && v < h;
+			for (int k = 0; k < 3; k++)
+				out[3 * ((long)y * w + x) + k] = in_it ? in[3 * ((long)v * w + u) + k] : 0;
+		}
+}
+
+static bool put(struct video_writer *writer, long *n, const struct part *p, uint8_t *const *rgb, const struct video_info *info, struct err *err)
+{
+	uint8_t *turned = mem_array((size_t)info->width * (size_t)info->height, 3);
+	bool over = !strcmp(p->how, "over"), roll = !strcmp(p->how, "roll"), uneven = !strcmp(p->how, "uneven"), ok = true;
+	for (long t = 0; t < p->times && ok; t++)
+		for (long f = p->first; f <= p->last && ok; f++) {
+			double share = (double)(f - p->first) / fmax(1, (double)(p->last - p->first));
+			const uint8_t *px = rgb[f];
+			if (!px) {
+				ok = err_set(err, "no frame %ld", f);
+				break;
+			}
+			if (over || roll) {
+				turn(turned, px, info->width, info->height, M_PI * (roll ? share : 1));
+				px = turned;
+			}
+			ok = video_writer_put(writer, px, ((double)*n + (uneven && *n % 2 ? 0.5 : 0)) / info->fps, err);
+			++*n;
+		}
+	free(turned);
+	return ok;
+}
+
+int main(int argc, char **argv)
+{
+	struct part part[PARTS];
+	struct err err = { 0 };
+	struct video_info info;
+	static uint8_t *rgb[FRAMES];
+	long frames = 0;
+	int n = argc - 3;
+	bool ok = n > 0 && n <= PARTS;
+	for (int i = 0; i < n && ok; i++)
+		ok = read_part(&part[i], argv[3 + i]);
+	if (!ok)
+		return 2;
+	struct video_writer *writer = 0;
+	if (load(rgb, &info, argv[2], n, part, &err))
+		writer = video_writer_open(argv[1], &(struct video_writer_conf){ .width = info.width, .height = info.height, .fps = info.fps, .crf = 16, .preset = "veryfast" }, &err);
+	for (int i = 0; i < n && writer && !err_is(&err); i++)
+		put(writer, &frames, &part[i], rgb, &info, &err);
+	video_writer_close(writer, !err_is(&err), &err);
+	for (int i = 0; i < FRAMES; i++)
+		free(rgb[i]);
+	if (err_is(&err))
+		fprintf(stderr, "%s\n", err.msg);
+	return err_is(&err);
+}
