@@ -6,7 +6,7 @@
 . "$(dirname "$0")/lib/chain.sh"
 CC2=${CC2:-clang} CXX2=${CXX2:-clang++}
 B2=build-$CC2
-MOST=${MOST:-1e-3} SHARE=${SHARE:-1e-3}
+MOST=${MOST:-1e-3} SHARE=${SHARE:-1e-5}
 DIFFER=${B:-build}/tests/tools/differ
 if ! command -v "$CC2" >/dev/null || ! command -v "$CXX2" >/dev/null; then skip "two compilers" "no $CC2 or $CXX2"; exit 0; fi
 

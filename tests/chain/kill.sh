@@ -3,9 +3,11 @@
 # Afterwards a plain make gives the bytes of an undisturbed run, leaves nothing half made, and what was put in is as it was.
 #   KILLS=1000 SEED=2 tests/chain/kill.sh          a third of them on each column; MINUTES=30: each column stops there
 #   ONLY=skin                                      this column alone
+#   EACH=70                                        beside them so many of each stage's program by itself
 . "$(dirname "$0")/../lib/chain.sh"
 KILLS=${KILLS:-9}
 MINUTES=${MINUTES:-1000}
+EACH=${EACH:-0}
 RANDOM=${SEED:-1}
 declare -A stages
 # COLMAP's database is no artifact: its pages lie where the last interruption left them.
@@ -22,7 +24,7 @@ undisturbed() {
 	begin=$(date +%s%N)
 	run_make "$root/calm"
 	same "$1: an undisturbed make" "$?" 0
-	length=$((($(date +%s%N) - begin) / 1000000))
+	length=$((($(date +%s%N) - begin) / 1000000)) all=$(ran)
 	want=$(made "$root/calm") input=$(given "$root/calm")
 }
 
@@ -77,6 +79,28 @@ strike() {
 	recovers "$column: $struck kills"
 }
 
+# strike_each COLUMN N: each stage's program by itself, begun anew each time and killed at a moment anywhere in its run.
+strike_each() {
+	local column=$1 wanted=$2 stage begin took ms pid struck
+	export OPENBLAS_NUM_THREADS=1 # as make has it
+	for stage in $all; do
+		begin=$(date +%s%N) struck=0
+		"$BIN/$stage" --capture="$root/hit" --force --quiet >"$log" 2>&1
+		took=$((($(date +%s%N) - begin) / 1000000))
+		for ((i = 0; i < 2 * wanted && struck < wanted; i++)); do
+			setsid "$BIN/$stage" --capture="$root/hit" --force --quiet >"$log" 2>&1 </dev/null &
+			pid=$!
+			ms=$((RANDOM * took / 32768))
+			sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
+			kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1))
+			wait "$pid" 2>/dev/null
+			[ $((i % 16)) != 15 ] || damage
+		done
+		stages[$stage]=$((${stages[$stage]:-0} + struck))
+		recovers "$column: $struck kills of $stage alone"
+	done
+}
+
 # What goes in: photographs; a video, a mesh and a character; views of a head, where COLMAP and such views are.
 photographs() {
 	new_capture "$root/calm"
@@ -98,6 +122,7 @@ for column in ${ONLY:-$columns}; do
 	"$column"
 	undisturbed "$column"
 	strike "$column" "$(((KILLS + 2) / 3))"
+	[ "$EACH" = 0 ] || strike_each "$column" "$EACH"
 done
 for name in "${!stages[@]}"; do printf '  killed in %s: %s\n' "$name" "${stages[$name]}"; done | sort
 

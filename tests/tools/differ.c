@@ -3,7 +3,7 @@
  *     differ FILE FILE MOST SHARE
  *
  * Every number of a file belongs to a series (a channel of a map, a column, an array, a key): what it is off by is measured in
- * the series' largest. A series agrees when no more than SHARE of its numbers is off by more than MOST, or is a number in one
+ * the series' largest, or a millionth. A series agrees when no more than SHARE of its numbers is off by more than MOST, or is a number in one
  * file and none in the other. Texts have to be the same but for what names programs and inputs (made_by and hashes). One line;
  * exit 1 when a series does not agree.
  */
@@ -22,14 +22,14 @@ struct worst {
 
 static void judge(struct worst *w, const struct series *a, const struct series *b, double most)
 {
-	double scale = 0;
+	double scale = 1e-6;  // mm, px, degrees: below that is nothing
 	long beyond = 0;
 	for (long i = 0; i < a->n; i++)
 		if (isfinite(a->v[i]))
 			scale = fmax(scale, fabs(a->v[i]));
 	for (long i = 0; i < a->n; i++) {
 		bool number = isfinite(a->v[i]);
-		double off = number != (bool)isfinite(b->v[i]) ? INFINITY : number && scale > 0 ? fabs(a->v[i] - b->v[i]) / scale : number ? fabs(b->v[i]) : 0;
+		double off = number != (bool)isfinite(b->v[i]) ? INFINITY : number ? fabs(a->v[i] - b->v[i]) / scale : 0;
 		beyond += off > most;
 		if (off > w->off) {
 			w->off = off;

@@ -1,6 +1,6 @@
 /* seeds: small valid files of every kind that the fuzz targets begin from.
  *
- *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/...
+ *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/front/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/...
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -139,6 +139,9 @@ int main(int argc, char **argv)
 	models(dir);
 	arrays(dir);
 	put_text(dir, "conf/a.conf", "; comment\ns.a = 0.25\ns.b = 3\ns.c = yes\ns.d = green\ns.e = 0 0.5 1\ns.f = x y\nphoto.n.g = 0 1\n");
+	put_text(dir, "front/error.conf", "; made\nblur.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: sigma = 4, steps = 2\nblur.fine = 0.01 mm, 1 s + 1 s/Mpx: sigma = 1\n"
+	                                  "\ferror = 0.05 mm\n");
+	put_text(dir, "front/time.conf", "blur.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: sigma = 4\npaint.fine = 1 %, 1 s + 0 s/Mpx: rays = 8\n\ftime = 2 s\n");
 	put_text(dir, "fit/a.json",
 	         "{\"status\":\"ok\",\"reason\":\"\",\"ellipse\":{\"cx\":8,\"cy\":6,\"a\":5,\"b\":4,\"angle_deg\":10},\"pupil\":null,"
 	         "\"theta_deg\":10,\"phi_deg\":20,\"theta_sigma_deg\":1,\"cam_from_eye\":[1,0,0,0,0,1,0,0,0,0,1,120,0,0,0,1],"
