@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "bridge/cv_distance.h"
 #include "image/distance.h"
 #include "math/rng.h"
 #include "tests/lib/lid_scene.h"
@@ -50,6 +51,40 @@ static void test_mask_exact(void **state)
 			}
 			assert_float_equal(out[p], d, 1e-4);  // a root in float
 			assert_float_equal(hypotf(near[p][0], near[p][1]), d, 1e-4);
+		}
+	}
+}
+
+/* Blocks of skin and of globe on a screen many blocks wide, its width no multiple of theirs: against OpenCV's transform. */
+static void test_wide_screen(void **state)
+{
+	(void)state;
+	enum { WIDE = 403, HIGH = 97, ALL = WIDE * HIGH };
+	static uint8_t m[ALL], elsewhere[ALL];
+	static float out[ALL], exact[ALL];
+	struct rng rng = { 11 };
+	static const double reach[] = { 2, 8, 31, 500 };
+	for (int round = 0; round < 24; round++) {
+		memset(m, round % 3 ? DISTANCE_GLOBE : DISTANCE_SKIN, sizeof m);
+		for (int k = 0; k < 4 + round; k++) {
+			int x0 = rng_below(&rng, WIDE), y0 = rng_below(&rng, HIGH), w = 1 + rng_below(&rng, 90), h = 1 + rng_below(&rng, 40);
+			for (int y = y0; y < y0 + h && y < HIGH; y++)
+				memset(m + y * WIDE + x0, k % 3, (size_t)(x0 + w < WIDE ? w : WIDE - x0));
+		}
+		for (int i = 0; i < ALL; i++)
+			elsewhere[i] = m[i] != DISTANCE_SKIN;
+		assert_true(cv_distance(exact, elsewhere, WIDE, HIGH));
+		double far = reach[round % COUNT(reach)];
+		for (int i = 0; i < ALL; i++)
+			out[i] = -1;
+		distance_band(out, 0, &(struct distance_scene){ .width = WIDE, .height = HIGH, .material = m }, far, 0);
+		for (int i = 0; i < ALL; i++) {
+			if (m[i] != DISTANCE_GLOBE)
+				assert_true(out[i] == -1);  // no other texel is written
+			else if ((double)exact[i] > far + 1e-4)
+				assert_true(isinf(out[i]));
+			else if ((double)exact[i] < far - 1e-4)
+				assert_float_equal(out[i], exact[i], 1e-4);
 		}
 	}
 }
@@ -187,6 +222,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_mask_exact),
+		cmocka_unit_test(test_wide_screen),
 		cmocka_unit_test(test_lids_to_a_fraction_of_a_pixel),
 		cmocka_unit_test(test_world_units),
 		cmocka_unit_test(test_threads_change_nothing),
