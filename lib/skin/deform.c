@@ -11,6 +11,7 @@
 enum { BLOCK = 256 };
 
 typedef float texel_row __attribute__((vector_size(32), aligned(32)));
+_Static_assert(RIG_COMPONENTS % 4 == 0, "components are added in fours");
 _Static_assert(sizeof(texel_row) == SKULL_CHANNELS * sizeof(float), "a texel is one vector");
 
 /* The moving vertices, one array for each number, in whole blocks: the last one's rest repeats the last vertex. */
@@ -135,12 +136,14 @@ SIMD_CLONES
 static void skin_coordinates(struct block *restrict b, const struct deform *d, int at, const float e[RIG_COMPONENTS])
 {
 	for (int c = 0; c < 2; c++) {
-		const float *restrict mean = d->mean[c] + at;
-		const float *restrict p = d->basis[c * RIG_COMPONENTS] + at, *restrict q = d->basis[c * RIG_COMPONENTS + 1] + at;
-		const float *restrict r = d->basis[c * RIG_COMPONENTS + 2] + at, *restrict s = d->basis[c * RIG_COMPONENTS + 3] + at;
-		SIMD_LOOP
-		for (int i = 0; i < BLOCK; i++)
-			b->u[c][i] = mean[i] + ((p[i] * e[0] + q[i] * e[1]) + (r[i] * e[2] + s[i] * e[3]));
+		memcpy(b->u[c], d->mean[c] + at, sizeof b->u[c]);
+		for (int k = 0; k < RIG_COMPONENTS; k += 4) {
+			float *const *basis = d->basis + c * RIG_COMPONENTS + k;
+			const float *restrict p = basis[0] + at, *restrict q = basis[1] + at, *restrict r = basis[2] + at, *restrict s = basis[3] + at;
+			SIMD_LOOP
+			for (int i = 0; i < BLOCK; i++)
+				b->u[c][i] += (p[i] * e[k] + q[i] * e[k + 1]) + (r[i] * e[k + 2] + s[i] * e[k + 3]);
+		}
 	}
 }
 

@@ -12,7 +12,9 @@
 #include "skin/globe_map.h"
 #include "skin/skull_map.h"
 
-enum { RIG_COMPONENTS = 4, RIG_BASIS = 2 * RIG_COMPONENTS };
+/* Of the skin, as the paper has them; then of what the lids do beyond those (rig_motion_lids.c). */
+enum { RIG_SKIN_COMPONENTS = 4, RIG_LID_COMPONENTS = 4, RIG_COMPONENTS = RIG_SKIN_COMPONENTS + RIG_LID_COMPONENTS,
+	   RIG_BASIS = 2 * RIG_COMPONENTS };
 
 /* What a vertex belongs to. Near an eye: pieces of their own there (lashes, tear film): they follow the skin. */
 enum rig_part { RIG_SKIN, RIG_GLOBE_LEFT, RIG_GLOBE_RIGHT, RIG_NEAR_EYE, RIG_PARTS };

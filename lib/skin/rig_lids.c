@@ -1,4 +1,4 @@
-/* Lids of a rig. Two things that flow and four components leave undone: skin at the margins follows the margins' own
+/* Lids of a rig. Two things that flow and components leave undone: skin at the margins follows the margins' own
  * splines, and eyes that are told to close do close. Both are corrections of U~: evaluation does not change. */
 #include <math.h>
 #include <stdlib.h>

@@ -19,12 +19,12 @@ struct rig_motion {
 	int n_points;                         // control points of a lid
 	double (*lid)[2];                     // [4 n_points] where they are at rest; NAN: not learnt
 	double (*lid_basis)[RIG_BASIS];
-	double lid_error;                     // px, rms: what the lids lose by following e alone
+	double lid_error_skin, lid_error;     // px, rms: what the skin's part of e leaves of the lids; what all of it does
 	struct skin_camera camera;
 };
 
-/* The lids follow their own components, not e: they are regressed on e over the gazes, blinks and action units the model
- * has seen. model: at least one component. rig_motion_free. */
+/* The lids are regressed on the skin's components over the gazes, blinks and action units the model has seen; what that
+ * leaves of them are components of their own. model: at least one component. rig_motion_free. */
 void rig_motion_of_model(struct rig_motion *motion, const struct skin_model *model);
 void rig_motion_free(struct rig_motion *motion);
 
@@ -64,12 +64,13 @@ struct rig_report {
 bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motion *motion, const struct rig_character *character,
               const struct rig_conf *conf, struct err *err);
 
-/* What follows is rig_make's own.
- *
- * Where the modelling camera sees a point of the subject; cam: the point in its frame. rig_chart.c */
+/* What follows is rig_make's own. e = W [c; 1]. rest: controls of the reference frame. rig_motion.c, rig_motion_lids.c */
+void rig_motion_components(double e[RIG_COMPONENTS], const struct rig_motion *motion, const double *controls);
+void rig_motion_take_lids(struct rig_motion *motion, const struct skin_model *model, const double *rest);
+
+/* Where the modelling camera sees a point of the subject; cam: the point in its frame. rig_chart.c */
 void rig_project(double px[2], double cam[3], const struct skin_camera *camera, const float x[3]);
 void rig_take_homes(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character);
-
 /* The skull map, from what that camera sees of the character at rest. */
 bool rig_take_skull(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character, double step,
                     struct err *err);

@@ -131,7 +131,7 @@ static double least_distance(const struct rig *rig)
 	return least;
 }
 
-static void report(struct stage *stage, const char *name, const struct rig *rig, const struct rig_report *r, double lid_error)
+static void report(struct stage *stage, const char *name, const struct rig *rig, const struct rig_report *r, const struct rig_motion *motion)
 {
 	stage_note(stage, "%s: %d vertices tracked, %d on the lid margins, %d extrapolated, %d still; globes of %.1f and %.1f mm%s",
 	           name, r->tracked, r->lid, r->extrapolated, r->still, rig->globe[0].radius, rig->globe[1].radius,
@@ -140,7 +140,8 @@ static void report(struct stage *stage, const char *name, const struct rig *rig,
 	stage_figure(stage, "lid_vertices", r->lid, "");
 	stage_figure(stage, "extrapolated_vertices", r->extrapolated, "");
 	stage_figure(stage, "globe_radius", 0.5 * (rig->globe[0].radius + rig->globe[1].radius), "mm");
-	stage_figure(stage, "lids_folded_error", lid_error, "px rms: what the lids lose by following the skin's components");
+	stage_figure(stage, "lids_beside_skin", motion->lid_error_skin, "px rms: what the skin's components do not know of the lids");
+	stage_figure(stage, "lids_folded_error", motion->lid_error, "px rms: what is left of it with components of the lids' own");
 	stage_figure(stage, "least_distance", least_distance(rig), "mm of skin from an eyeball, over 27 poses");
 	stage_figure(stage, "off_chart", r->off_chart, "px, median: the model's skin at rest against the registered mesh as the camera sees it");
 	if (r->off_chart > 12)
@@ -173,7 +174,7 @@ static bool rig_one(struct stage *stage, const char *name, const char *const out
 	for (int s = 0; s < 2 && ok; s++)
 		ok = save_map(stage, out[3 + s], globe_map_polar(&rig.globe[s].map, conf->polar_px), n, in, err);
 	if (ok)
-		report(stage, name, &rig, &found, motion->lid_error);
+		report(stage, name, &rig, &found, motion);
 	rig_free(&rig);
 	character_free(&c);
 	return ok;
