@@ -16,8 +16,12 @@
 #include "tests/lib/bench.h"
 #include "tests/lib/skin_points.h"
 #include "tests/lib/track_score.h"
+#include "tests/lib/track_units.h"
 
 static const char *const clips[] = { "clip_a", "clip_b" };
+
+static const char *const units[] = { "browInnerUp_L", "eyeSquint_L" };
+enum { UNITS = sizeof units / sizeof *units };
 
 static double now(void)
 {
@@ -49,6 +53,10 @@ static bool make_capture(const char *dir, const char *clip, const char *quality)
 		json_object_foreach(marks, mark, row)
 			if (strstr(mark, "canthus"))
 				fprintf(out, "subject.landmark.%s = %lld\n", mark, (long long)json_integer_value(row));
+		// where the time of every frame counts nothing is looked for that nobody asked for
+		for (int k = 0, frame[2]; k < UNITS && !strcmp(quality, "review"); k++)
+			if (track_units_mark(frame, bench_data(from), units[k]))
+				fprintf(out, "expression.%s = %d %d\n", units[k], frame[0], frame[1]);
 		fclose(out);
 	}
 	json_decref(j);
@@ -106,6 +114,22 @@ static void row(const char *method, const char *clip, const char *quality, doubl
 	free(tail);
 }
 
+/* Strengths of the expressions that were marked. */
+static void strengths(const char *dir, const char *clip, double each)
+{
+	struct spread all, shown, rest;
+	struct err err = { 0 };
+	char *from = mem_printf("video/%s", clip);
+	if (track_units_score(&all, &shown, &rest, dir, bench_data(from), UNITS, units, &err)) {
+		row("expressions", clip, "review", each, &all, "of the peak", "all frames");
+		row("expressions", clip, "review", each, &shown, "of the peak", "shown more than half");
+		row("expressions", clip, "review", each, &rest, "of the peak", "not shown");
+	} else {
+		printf("%s: %s\n", clip, err.msg);
+	}
+	free(from);
+}
+
 /* Figures of both clips that the goals ask for: the worse of the two. */
 struct worst {
 	double gaze, gaze95, torsion, lid, lid95, missed, wrong, rate[2];
@@ -137,6 +161,8 @@ static void whole_stage(struct worst *w, const char *root, const char *clip, int
 		       "skin first tenth %.2f px, last %.2f px; head %.2f deg\n",
 		       clip, names[quality], 100 * s.gaze_share, 100 * s.lid_share, 100 * s.skin_seen, s.found, s.blinks, s.wrong, s.skin_first.median,
 		       s.skin_last.median, s.head_deg);
+		if (quality == 1)
+			strengths(dir, clip, each);
 		if (quality == 1) {
 			w->gaze = fmax(w->gaze, fmax(s.gaze[0].median, s.gaze[1].median));
 			w->gaze95 = fmax(w->gaze95, fmax(s.gaze[0].p95, s.gaze[1].p95));
