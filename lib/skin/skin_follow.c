@@ -44,6 +44,12 @@ static void alone(struct skin_track *t, int i)
 {
 	struct skin_warp *p = &t->point[i];
 	struct patch_warp start = p->before = p->warp;
+	if (t->conf.quiet > 0 && p->seen) {
+		p->changed += skin_track_changed(t, p->warp.at);
+		if (p->changed < t->conf.quiet)
+			return;
+	}
+	p->changed = 0;
 	p->ncc = -1;
 	p->seen = 0;
 	try(t, i, 0, &start, &start, INFINITY, stretch_in_time);

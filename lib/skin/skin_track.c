@@ -7,6 +7,8 @@
 #include "base/mem.h"
 #include "skin/skin_track_impl.h"
 
+enum { STEP = 64 };
+
 /* Patches and the search round them must stay inside the window that is kept of a frame. */
 static void window(int box[4], const struct skin_track *t)
 {
@@ -16,11 +18,12 @@ static void window(int box[4], const struct skin_track *t)
 			lo[k] = fmin(lo[k], t->point[i].warp.at[k]);
 			hi[k] = fmax(hi[k], t->point[i].warp.at[k]);
 		}
+	// in steps, so that it mostly stays the same from frame to frame
 	int margin = (t->conf.radius + 6) << (t->conf.levels - 1);
-	box[0] = (int)lo[0] - margin;
-	box[1] = (int)lo[1] - margin;
-	box[2] = (int)hi[0] + margin;
-	box[3] = (int)hi[1] + margin;
+	for (int k = 0; k < 2; k++) {
+		box[k] = (int)floor((lo[k] - margin) / STEP) * STEP;
+		box[2 + k] = (int)ceil((hi[k] + margin) / STEP) * STEP;
+	}
 }
 
 static void fill(struct scales *p, const struct skin_track *t, const uint8_t *luma, int stride)
@@ -95,25 +98,55 @@ bool skin_track_was_still(const struct skin_track *t)
 	return t->was_still;
 }
 
-/* Mean change from the frame before, on the coarsest level, after a common gain. */
-static bool stands_still(const struct skin_track *t)
+enum { STILL_LEVEL = 2 };
+
+static int still_level(const struct skin_track *t)
+{
+	return t->frame.levels - 1 < STILL_LEVEL ? t->frame.levels - 1 : STILL_LEVEL;
+}
+
+/* What the frame before has to be multiplied by to be as bright as this one; 0 where their windows differ. */
+static double gain_of(const struct skin_track *t)
 {
 	const struct scales *a = &t->frame, *b = &t->last;
-	int level = a->levels - 1 < 2 ? a->levels - 1 : 2;
-	const struct scale_level *p = &a->level[level], *q = &b->level[level];
+	const struct scale_level *p = &a->level[still_level(t)], *q = &b->level[still_level(t)];
 	if (!t->has_last || a->x0 != b->x0 || a->y0 != b->y0 || p->width != q->width || p->height != q->height)
-		return false;
-	double sa = 0, sb = 0, d = 0;
+		return 0;
+	double sa = 0, sb = 0;
 	for (int y = 0; y < p->height; y++)
 		for (int x = 0; x < p->width; x++) {
 			sa += p->px[(long)y * p->stride + x];
 			sb += q->px[(long)y * q->stride + x];
 		}
-	double gain = sb > 0 ? sa / sb : 1;
-	for (int y = 0; y < p->height; y++)
-		for (int x = 0; x < p->width; x++)
-			d += fabs(p->px[(long)y * p->stride + x] - gain * q->px[(long)y * q->stride + x]);
-	return d / ((double)p->width * p->height) < t->conf.still;
+	return sb > 0 ? sa / sb : 1;
+}
+
+/* Mean change from the frame before, after that gain. */
+static double change(const struct skin_track *t, int x0, int y0, int x1, int y1)
+{
+	const struct scale_level *p = &t->frame.level[still_level(t)], *q = &t->last.level[still_level(t)];
+	double d = 0;
+	for (int y = y0; y < y1; y++)
+		for (int x = x0; x < x1; x++)
+			d += fabs(p->px[(long)y * p->stride + x] - t->gain * q->px[(long)y * q->stride + x]);
+	return d / ((double)(x1 - x0) * (y1 - y0));
+}
+
+double skin_track_changed(const struct skin_track *t, const double at[2])
+{
+	const struct scale_level *p = &t->frame.level[still_level(t)];
+	int size = 1 << still_level(t), x = ((int)at[0] - t->frame.x0) / size, y = ((int)at[1] - t->frame.y0) / size;
+	int reach = (t->conf.radius + size - 1) / size;
+	if (!(t->gain > 0) || x < reach || y < reach || x + reach >= p->width || y + reach >= p->height)
+		return INFINITY;
+	return change(t, x - reach, y - reach, x + reach + 1, y + reach + 1);
+}
+
+/* Changes add up until they are seen: the frame before is the last that was worked on. */
+static bool stands_still(const struct skin_track *t)
+{
+	const struct scale_level *p = &t->frame.level[still_level(t)];
+	return t->gain > 0 && change(t, 0, 0, p->width, p->height) < t->conf.still;
 }
 
 double skin_track_push(struct skin_track *t, const uint8_t *luma, int stride, struct skin_point_state *state)
@@ -122,6 +155,7 @@ double skin_track_push(struct skin_track *t, const uint8_t *luma, int stride, st
 	t->last = t->frame;
 	t->frame = swap;
 	fill(&t->frame, t, luma, stride);
+	t->gain = gain_of(t);
 	t->was_still = stands_still(t);
 	if (t->was_still) {
 		// compared with the frame that was worked on, so that slow motion adds up until it is seen

@@ -23,6 +23,7 @@ struct skin_track_conf {
 	double back;           // px: forward-backward check; 0: none
 	int sweeps;            // rounds of asking the neighbours
 	double still;          // mean change of brightness (of 255) of a frame that stands still
+	double quiet;          // and of the skin about a point that is where it was; 0: every point is measured in every frame
 };
 
 #define SKIN_TRACK_OPTS(c) \
@@ -39,7 +40,8 @@ struct skin_track_conf {
 	OPT_REAL("outlier_px", &(c)->outlier, 0.5, 50, "px", "further from what its neighbours do a point is lost"), \
 	OPT_REAL("back_px", &(c)->back, 0, 10, "px", "forward-backward check of doubtful points; 0: none"), \
 	OPT_INT("sweeps", &(c)->sweeps, 1, 10, "", "rounds of asking the neighbours"), \
-	OPT_REAL("skin_still", &(c)->still, 0, 20, "", "mean change of brightness (of 255) of a frame that stands still")
+	OPT_REAL("skin_still", &(c)->still, 0, 20, "", "mean change of brightness (of 255) of a frame that stands still"), \
+	OPT_REAL("skin_quiet", &(c)->quiet, 0, 20, "", "and of the skin about a point that stays; 0: all are measured in every frame")
 
 /* Points and who neighbours whom: near[first[i] .. first[i + 1] - 1]. */
 struct skin_points {

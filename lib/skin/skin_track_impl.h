@@ -9,7 +9,8 @@ struct skin_warp {
 	double ncc, usual;     // now; running mean while seen
 	double sigma;          // px, of warp.at from the patch alone
 	double confidence;
-	int seen;              // measured in this frame
+	double changed;        // mean change of brightness about it since it was measured
+	int seen;              // measured in this frame, or as it was
 };
 
 /* What the neighbours say of a point. */
@@ -26,12 +27,16 @@ struct skin_track {
 	struct patch_set *patches;
 	struct scales frame, last;
 	bool has_last, was_still;
+	double gain;           // of the frame against the last; 0: they cannot be compared
 	struct skin_warp *point;
 	struct skin_field *field;
 };
 
 /* Brings all points to t->frame. skin_follow.c */
 void skin_track_follow(struct skin_track *t);
+
+/* Mean change of brightness about a place since the frame before; INFINITY where that is not known. skin_track.c */
+double skin_track_changed(const struct skin_track *t, const double at[2]);
 
 /* Fills t->field from the points that are seen. skin_field.c */
 void skin_track_ask(struct skin_track *t);

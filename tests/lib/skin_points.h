@@ -11,7 +11,7 @@ static const struct skin_track_conf skin_track_review = {
 };
 static const struct skin_track_conf skin_track_draft = {
 	.radius = 8, .every = 2, .levels = 4, .iterations = 8, .stop = 0.05, .noise = 2, .misfit = 8, .min_ncc = 0.55, .smooth = 0.5, .agree = 0.6,
-	.outlier = 4, .sweeps = 1, .still = 0.05,
+	.outlier = 4, .sweeps = 1, .still = 0.05, .quiet = 0.3,
 };
 
 struct skin_points_score {
