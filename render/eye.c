@@ -248,6 +248,7 @@ static void figures(struct job *job)
 	if (job->worst > 0)
 		stage_figure(job->stage, "difference_from_photograph", job->worst, "CIEDE2000, mean inside the iris, the worst photograph");
 	stage_figure(job->stage, "rays", (double)job->count.rays / 1e6, "million");
+	stage_figure(job->stage, "rays_left_out", (double)(job->count.kept + job->count.hidden) / 1e6, "million: hidden, or known from the picture before");
 	if (job->conf->passes > 1)
 		stage_figure(job->stage, "noise", 100 * job->error, "% of luminance, standard error of the last picture");
 	stage_figure(job->stage, "tracing", job->seconds, "s");

@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 
-static json_t *log_figures, *log_skips;  // of this process's one stage
+static json_t *log_figures, *log_skips, *log_artifacts;  // of this process's one stage
 
 static void print_line(const char *who, const char *text)
 {
@@ -44,6 +44,7 @@ void say_log_open(void)
 {
 	log_figures = json_object();
 	log_skips = json_array();
+	log_artifacts = json_object();
 }
 
 void say_log_figure(const char *key, double value, const char *unit)
@@ -57,15 +58,28 @@ void say_log_skipped(const char *text)
 	json_array_append_new(log_skips, json_string(text));
 }
 
+void say_log_artifact(const char *rel, bool made)
+{
+	if (made || !json_object_get(log_artifacts, rel))
+		json_object_set_new(log_artifacts, rel, json_boolean(made));
+}
+
 void say_log_write(const char *path, const char *stage, double seconds, const char *error)
 {
-	json_t *log = json_pack("{s:s,s:f,s:s,s:o,s:o}", "stage", stage, "seconds", seconds, "error", error,
-	                        "figures", log_figures, "skipped", log_skips);
+	const char *rel;
+	json_t *is_made;
+	int made = 0;
+	json_object_foreach(log_artifacts, rel, is_made)
+		made += json_is_true(is_made);
+	json_t *artifacts = json_pack("{s:i,s:i}", "made", made, "kept", (int)json_object_size(log_artifacts) - made);
+	json_t *log = json_pack("{s:s,s:f,s:s,s:o,s:o,s:o}", "stage", stage, "seconds", seconds, "error", error,
+	                        "figures", log_figures, "skipped", log_skips, "artifacts", artifacts);
 	char *text = log ? json_dumps(log, JSON_INDENT(1) | JSON_SORT_KEYS) : 0;
 	struct err err = { 0 };
 	if (text)
 		file_write(path, text, strlen(text), &err);  // a log that cannot be written is no reason to fail
 	free(text);
 	json_decref(log);
-	log_figures = log_skips = 0;
+	json_decref(log_artifacts);
+	log_figures = log_skips = log_artifacts = 0;
 }

@@ -140,6 +140,8 @@ bool stage_fresh(struct stage *stage, const char *out, int n, const char *const 
 {
 	pthread_mutex_lock(&busy);
 	bool fresh = !stage->force && record_fresh(stage->record, out, n, in);
+	if (fresh)
+		say_log_artifact(out, false);
 	pthread_mutex_unlock(&busy);
 	return fresh;
 }
@@ -167,6 +169,7 @@ bool stage_made(struct stage *stage, const char *out, int n, const char *const i
 {
 	pthread_mutex_lock(&busy);
 	record_made(stage->record, out, n, in);
+	say_log_artifact(out, true);
 	bool ok = record_save(stage->record, false, err);
 	pthread_mutex_unlock(&busy);
 	return ok;

@@ -122,6 +122,7 @@ bool pigment_run(struct pigment_run *run, const struct pigment_stage_conf *c, st
 		pays = now < (1 - c->gain_min) * before;
 		stage_progress(run->stage, r, c->rounds, "pigment and relief");
 	}
+	stage_figure(run->stage, "rounds_left_out", c->rounds - run->rounds, "that would have changed nothing more");
 	image_free(&thickness);
 	snprintf(run->note, sizeof run->note, "thickness_scale times thickness against melanin, and exposure against all of them, are what one "
 	         "photograph tells least apart: see held_by_priors and correlation");

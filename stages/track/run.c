@@ -31,6 +31,7 @@ static void tell(struct stage *stage, const struct track_result *r, const struct
 	stage_note(stage, "%s: %ld frames, %d points of skin, %.0f %% of them seen; pose from the openings of the eyes to %.1f px%s", clip->file,
 	           r->n, r->n_points, 100 * seen, clip->pose_px, r->rests ? "; the head rests" : "");
 	stage_figure(stage, "track_frames", (double)r->n, "");
+	stage_figure(stage, "track_still_frames", (double)r->still, "whose skin was not sought again: nothing moves");
 	stage_figure(stage, "track_points", r->n_points, "");
 	stage_figure(stage, "track_seen", seen, "");
 	stage_figure(stage, "track_pose", clip->pose_px, "px");

@@ -1,5 +1,6 @@
 #include "unrefract.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -117,6 +118,8 @@ static void tell(const struct unrefract_texture *texture, const struct work *w)
 	}
 	stage_figure(stage, "texels a side", texture->rgbw.width, "");
 	stage_figure(stage, "texels computed", (double)texture->texels, "");
+	stage_figure(stage, "texels_left_out", fmax((double)used * texture->rgbw.width * texture->rgbw.width - (double)texture->texels, 0),
+	             "of the photographs: outside the iris, or not seen");
 	stage_figure(stage, "texels per mm", texture->rgbw.width / (2 * texture->extent), "/mm");
 	stage_figure(stage, "iris seen", 100 * texture->seen, "%");
 	stage_figure(stage, "photographs merged", used, "");

@@ -18,6 +18,9 @@ stale() { # stages whose record no longer holds, in order
 	for stage in $all; do "$BIN/plan" --capture="$capture" --fresh="$stage" >"$log" 2>&1 || said="$said $stage"; done
 	echo "${said# }"
 }
+counted() { # what a stage says of its last run
+	tr -d ' \n' <"$capture/work/log/$1.json" | sed -n 's/.*"artifacts":{"kept":\([0-9]*\),"made":\([0-9]*\)}.*/\2 made, \1 kept/p'
+}
 spoil() { # KIND FILE
 	case $1 in
 	deleted) rm "$2" ;;
@@ -49,6 +52,7 @@ for column in photographs skin; do
 	all=$(ran)
 	made=$(bytes_of "$capture")
 	same "$column: all records hold" "$(stale)" ""
+	for stage in $all; do same "$column: $stage accounts for its artifacts" "$(counted "$stage")" "$(outputs "$stage" | wc -l) made, 0 kept"; done
 
 	kinds=(deleted cut edited) n=0 missed=
 	for stage in $all; do
@@ -94,4 +98,8 @@ first=$(stat -c %y "$capture/work/limbus/right_a.edge.json") # what is measured 
 run_make "$capture"
 check "a photograph more: it is measured" test -s "$capture/work/limbus/right_b.json"
 same "a photograph more: the other is not measured again" "$(stat -c %y "$capture/work/limbus/right_a.edge.json")" "$first"
+check "a photograph more: limbus says what it kept: $(counted limbus)" grep -q ' [1-9][0-9]* kept' <<<"$(counted limbus)"
+for figure in "unrefract texels_left_out" "render rays_left_out" "pigment rounds_left_out"; do
+	check "it is counted: $figure" grep -q "\"${figure#* }\"" "$capture/work/log/${figure% *}.json"
+done
 exit 0
