@@ -17,7 +17,8 @@ struct work {
 	const struct capture_photo **photos;  // [n]
 	struct fit *fits;                     // [n]
 	struct unrefract_view *views;         // [n]
-	const char **inputs;                  // [2 n] files and fits
+	int n_inputs;
+	const char **inputs;                  // photographs and fits; also fits that say no: they may come to say yes
 	struct photo kept;                    // the only photograph stays in memory between survey and merge
 };
 
@@ -41,13 +42,13 @@ static void gather(struct work *w, int index)
 		if (photo->eye != index)
 			continue;
 		struct fit *fit = &w->fits[w->n];
+		w->inputs[w->n_inputs++] = photo->fit;
 		if (!fit_load(fit, stage_path(w->run->stage, "%s", photo->fit), &err)) {
 			stage_warn(w->run->stage, "%s: left out: %s", photo->file, err.msg);
 		} else if (!fit->ok) {
 			stage_skipped_as_said(w->run->stage, "%s: %s", photo->file, fit->reason);
 		} else {
-			w->inputs[2 * w->n] = photo->file;
-			w->inputs[2 * w->n + 1] = photo->fit;
+			w->inputs[w->n_inputs++] = photo->file;
 			w->views[w->n].name = photo->name;
 			w->photos[w->n++] = photo;
 		}
@@ -99,7 +100,7 @@ static bool save(const struct unrefract_texture *texture, struct work *w, const 
 {
 	static const char *const channels[] = { "R", "G", "B", "W" };
 	struct stage *stage = w->run->stage;
-	int n = 2 * w->n;
+	int n = w->n_inputs;
 	const char *made_by = stage_made_by(stage, n, w->inputs);
 	struct exr_info info = { texture->extent, made_by };
 	return exr_write(stage_path(stage, "%s", exr), &texture->rgbw, channels, EXR_HALF, &info, err)
@@ -131,7 +132,7 @@ static void tell(const struct unrefract_texture *texture, const struct work *w)
 static bool make(struct work *w, const char *exr, const char *json, struct err *err)
 {
 	struct stage *stage = w->run->stage;
-	if (stage_fresh(stage, exr, 2 * w->n, w->inputs) && stage_fresh(stage, json, 2 * w->n, w->inputs)
+	if (stage_fresh(stage, exr, w->n_inputs, w->inputs) && stage_fresh(stage, json, w->n_inputs, w->inputs)
 	    && !w->run->write_map)
 		return true;
 	survey(w);

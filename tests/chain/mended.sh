@@ -98,6 +98,11 @@ first=$(stat -c %y "$capture/work/limbus/right_a.edge.json") # what is measured 
 run_make "$capture"
 check "a photograph more: it is measured" test -s "$capture/work/limbus/right_b.json"
 same "a photograph more: the other is not measured again" "$(stat -c %y "$capture/work/limbus/right_a.edge.json")" "$first"
+rm "$capture/work/limbus/right_b.json"
+"$BIN/unrefract" --capture="$capture" --quiet >"$log" 2>&1
+"$BIN/limbus" --capture="$capture" --quiet >"$log" 2>&1
+all=unrefract
+same "a fit that was not there, and then is, is found by who had to do without it" "$(stale)" unrefract
 check "a photograph more: limbus says what it kept: $(counted limbus)" grep -q ' [1-9][0-9]* kept' <<<"$(counted limbus)"
 for figure in "unrefract texels_left_out" "render rays_left_out" "pigment rounds_left_out"; do
 	check "it is counted: $figure" grep -q "\"${figure#* }\"" "$capture/work/log/${figure% *}.json"
