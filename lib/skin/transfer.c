@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/scatter.h"
 #include "mesh/closest.h"
 #include "mesh/kdtree.h"
 #include "mesh/mesh_part.h"
@@ -232,10 +233,12 @@ bool transfer_run(struct transfer *out, const struct mesh *target, const struct 
 	if (!mesh_check(subject, err))
 		return err_wrap(err, "the subject");
 	room(out, target->n_vertices);
+	int threads = linalg_serial();  // the factor's blocks are small: threads of BLAS would only wait for each other
 	if (transfer_same_topology(target, subject))
 		same(out, target, subject, &conf->align, err);
 	else
 		registered(out, target, subject, landmarks, conf, err);
+	linalg_threads(threads);
 	if (err_is(err))
 		transfer_free(out);
 	return !err_is(err);
