@@ -68,11 +68,15 @@ static void grooves_found(const struct scene_light *light)
 		// half a px is 0.06 mm; a line may end early where its groove fades over one w
 		NEAR(r.off, 0, 0.10);
 		assert_true(r.covered > 0.85);
-		// a skin that all but faces the camera does not tell a lamp before it from light all round
-		NEAR(r.depth, 1, 0.35);
-		NEAR(r.width, 1, 0.25);
+		// the light is known to about 0.15 (below), and depth goes with it; a line's width is that of a dozen px
+		NEAR(r.depth, 1, 0.2);
+		NEAR(r.width, 1, 0.2);
 		NEAR(r.half, 0.5, 0.15);
 	}
+	// a skin that all but faces the camera does not tell a lamp before it from light all round; its lines do
+	double share = w.ambient / (w.ambient + w.from[2]), is = light->sky / (light->sky + light->lamp[2]);
+	print_message("share of the light that comes from everywhere: %.2f, is %.2f\n", share, is);
+	NEAR(share, is, 0.2);
 	for (int i = 0; i < p->n; i++)
 		for (int k = 0; k < p->line[i].n; k++) {
 			double best = INFINITY;

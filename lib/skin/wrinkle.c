@@ -126,6 +126,7 @@ bool wrinkle_find(struct wrinkles *w, const char *name, int n, const struct wrin
 	bool ok = wrinkle_ridges_find(&ridges, f.change, f.neutral, f.skin, g, conf, err);
 	if (ok) {
 		p->n = wrinkle_link(&p->line, &ridges, g, conf);
+		wrinkle_ambient(w, p->n, p->line, f.change, g, grooves);
 		for (int i = 0; i < p->n; i++)
 			wrinkle_measure(&p->line[i], w, f.change, g, grooves, conf);
 		keep(p);

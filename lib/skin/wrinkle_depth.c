@@ -10,13 +10,12 @@
 #include "math/vec.h"
 #include "skin/wrinkle_impl.h"
 
-enum { SAMPLES = 25, SLOPES = 20, WIDTHS = 4, SHIFTS = 3, ACROSS = 160, ROUNDS = 6 };
+enum { SAMPLES = 25, SLOPES = 20, WIDTHS = 4, SHIFTS = 3, ACROSS = 160 };
 
 static const double reach = 3;       // of a profile, in w
 static const double low_slope = 0.03;
 static const double shift_most = 1.2;  // of w: light from one side darkens one wall, not the bottom
 static const double wider = 1.8;     // than the ridge says, or narrower, at most
-static const double usual_ambient = 0.5, usual_pull = 0.001;  // of the mean light; weight of a point
 static const double explained = 0.6; // of the profile's variance, by a groove
 
 double wrinkle_sky(double s, double slope)
@@ -53,53 +52,6 @@ struct wrinkle_grooves *wrinkle_grooves_new(double most)
 		}
 	}
 	return t;
-}
-
-void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin, const struct wrinkle_ground *g)
-{
-	// light = albedo (ambient + from . n), one albedo for all; what differs much (brows, moles, gloss) counts little
-	double x[4] = { 1, 0, 0, 0 }, (*n)[3] = mem_array((size_t)g->n + 1, sizeof *n), *v = mem_array((size_t)g->n + 1, sizeof *v);
-	double *off = mem_array((size_t)g->n + 1, sizeof *off), mean = 0;
-	int m = 0;
-	for (int i = 0; i < g->n; i++) {
-		struct wrinkle_point p;
-		double at[2] = { g->at[i][0] - g->x0, g->at[i][1] - g->y0 };
-		long px = (long)at[1] * g->width + (long)at[0];
-		if (at[0] < 0 || at[1] < 0 || at[0] >= g->width || at[1] >= g->height || !skin[px] || !wrinkle_on_surface(&p, n[m], g, g->at[i]))
-			continue;
-		v[m] = exp((double)plane_sample(neutral, g->width, g->height, at[0], at[1]));
-		mean += v[m++];
-	}
-	mean /= fmax(m, 1);
-	double scale = 0.3;
-	for (int round = 0; round < ROUNDS && m >= 12; round++) {
-		double H[16] = { 0 }, b[4] = { 0 };
-		for (int i = 0; i < m; i++) {
-			double a[4] = { 1, n[i][0], n[i][1], n[i][2] }, r = v[i] / mean - x[0] - vec_dot(x + 1, n[i]);
-			double weight = round ? 1 / (1 + r * r / (scale * scale)) : 1;
-			off[i] = fabs(r);
-			for (int j = 0; j < 4; j++) {
-				b[j] += weight * a[j] * v[i] / mean;
-				for (int k = 0; k < 4; k++)
-					H[4 * j + k] += weight * a[j] * a[k];
-			}
-		}
-		scale = fmax(0.02, 1.5 * stats_median(m, off));
-		// a face seen from the front does not tell a lamp before it from light everywhere: half and half, as in a room
-		H[0] += usual_pull * m;
-		b[0] += usual_pull * usual_ambient * m;
-		for (int j = 1; j < 4; j++)
-			H[5 * j] += 5e-4 * m;
-		if (chol_solve(4, 4, H, b))
-			memcpy(x, b, sizeof x);
-	}
-	// A sky lights every groove: some of the light has no direction (a tenth, in a dark room with one lamp).
-	double all = x[0] + vec_norm(x + 1);
-	w->ambient = fmax(x[0], 0.1 * fmax(all, 0.1));
-	memcpy(w->from, x + 1, sizeof w->from);
-	free(n);
-	free(v);
-	free(off);
 }
 
 /* Change across the line about control point i, shifted by mm; mean over its neighbours. */
@@ -190,7 +142,7 @@ static bool sight_of(struct sight *sight, const struct wrinkle_point *p, const s
 
 /* What a control point is measured to be, and how much of its profile a groove explains. */
 struct found {
-	double depth, width, shift, share;
+	double depth, width, shift, share, left;
 };
 
 /* The best of a grid of middles and widths round `from`; span: of the middles, mm, and of the widths, a factor. */
@@ -206,7 +158,7 @@ static struct found best_of(const struct found *from, int shifts, double shift_s
 		for (int k = -widths; k <= widths; k++) {
 			double left, try = from->width * pow(width_span, (double)k / widths), depth = fit_depth(&left, got, sight, t, seen, try);
 			if (1 - left / all > best.share)
-				best = (struct found){ depth, try, shift, 1 - left / all };
+				best = (struct found){ depth, try, shift, 1 - left / all, left };
 		}
 	}
 	return best;
@@ -222,6 +174,19 @@ static struct found measure(const struct wrinkle_line *line, int i, const struct
 	double step = shift_most * f.width / SHIFTS;
 	f = best_of(&f, SHIFTS, SHIFTS * step, WIDTHS, wider, line, i, &sight, change, g, t);
 	return best_of(&f, 2, 0.67 * step, 2, 1.1, line, i, &sight, change, g, t);
+}
+
+double wrinkle_unexplained(const struct wrinkle_line *line, const struct wrinkles *w, const float *change, const struct wrinkle_ground *g,
+                           const struct wrinkle_grooves *t)
+{
+	double *left = mem_new((size_t)line->n + 1, sizeof *left), sum = 0;
+#pragma omp parallel for schedule(dynamic)
+	for (int i = 0; i < line->n; i += 2)
+		left[i] = measure(line, i, w, change, g, t).left;
+	for (int i = 0; i < line->n; i++)
+		sum += left[i];
+	free(left);
+	return sum;
 }
 
 static double middle(const struct found *f, int n, int i, int which)

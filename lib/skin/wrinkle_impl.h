@@ -23,9 +23,17 @@ void wrinkle_ridges_free(struct wrinkle_ridges *ridges);
 int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *ridges, const struct wrinkle_ground *ground,
                  const struct wrinkle_conf *conf);
 
-/* wrinkle_depth.c */
+/* wrinkle_light.c: from the neutral face; then what it cannot tell, whether light comes straight on or from everywhere, from how the
+ * lines are shaded: a lamp darkens their walls, a sky their bottom. */
 void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin, const struct wrinkle_ground *ground);
 struct wrinkle_grooves;
+void wrinkle_ambient(struct wrinkles *w, int n, const struct wrinkle_line lines[], const float *change, const struct wrinkle_ground *ground,
+                     const struct wrinkle_grooves *grooves);
+
+/* wrinkle_depth.c */
+/* What is left of a line's profiles when grooves have been fitted. */
+double wrinkle_unexplained(const struct wrinkle_line *line, const struct wrinkles *w, const float *change, const struct wrinkle_ground *ground,
+                           const struct wrinkle_grooves *grooves);
 struct wrinkle_grooves *wrinkle_grooves_new(double most_slope);  // free()
 /* Depth, width and true middle of every point from the peak's change; of a line that is no groove n becomes 0. */
 void wrinkle_measure(struct wrinkle_line *line, const struct wrinkles *w, const float *change, const struct wrinkle_ground *ground,
