@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "skin/lid_line.h"
 #include "stages/track/beside.h"
-#include "stages/track/line.h"
 
 enum { ENDS = 2 };
 

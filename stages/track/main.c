@@ -1,7 +1,6 @@
 /* track: gaze, lids and skin of a video, followed frame by frame.
  * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
- * writes  work/skin/gaze.csv, lids.npy, lids_model.npy, vertices.npy, skin.npy, skin_model.npy, confidence.npy, head.npy,
- *         track.json, track.png; of expressions wrinkles.json, wrinkles.exr, wrinkles.png
+ * writes  work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkle.c)
  */
 #include <stdlib.h>
 #include <unistd.h>
@@ -54,7 +53,7 @@ int main(int argc, char **argv)
 	struct stage stage;
 	struct err err = { 0 };
 	stage_start(&stage, "track", "gaze, lids and skin of a video, followed frame by frame", argc, argv, COUNT(opts), opts);
-	c.video.threads = c.video.threads ? c.video.threads : stage.threads;
+	c.video.threads = stage.threads;
 	if (eye_check(&c.eye, &err))
 		track_stage(&stage, &c, &err);
 	return stage_end(&stage, &err);

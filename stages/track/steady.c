@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
+#include "math/walk.h"
 #include "stages/track/track.h"
 
 enum { MOTIONS = 6, LEAST_POINTS = 20 };
@@ -70,24 +71,6 @@ static double misfit(const struct track_result *r, long frame, const struct trac
 	return n >= LEAST_POINTS ? stats_median(n, room) : INFINITY;
 }
 
-/* x[n] with errors sigma[n], that goes on by about `step` from one to the next: the likeliest path, by elimination of its three
- * diagonals. */
-static void path(long n, double *x, const double *sigma, double step, double *room)
-{
-	double tie = 1 / (step * step), *up = room;
-	for (long i = 0; i < n; i++) {
-		double w = 1 / (sigma[i] * sigma[i]), d = w + (i > 0 ? tie : 0) + (i + 1 < n ? tie : 0), b = w * x[i];
-		if (i) {
-			d -= tie * up[i - 1];
-			b += tie * x[i - 1];
-		}
-		up[i] = tie / d;
-		x[i] = b / d;
-	}
-	for (long i = n - 2; i >= 0; i--)
-		x[i] += up[i] * x[i + 1];
-}
-
 /* Poses as motions since the reference, each of the six smoothed over the clip. A frame whose skin moves k times further off the head
  * than is usual tells the head's pose k times worse: a brow that is raised takes along what is seen of nose and cheek. */
 static void smooth(struct track_result *r, const double *misfit, double usual, const double pivot[3], const struct track_clip *clip)
@@ -107,7 +90,7 @@ static void smooth(struct track_result *r, const double *misfit, double usual, c
 		step = fmax(k < 3 ? least_turn * M_PI / 180 : least_shift, stats_median((int)n - 1, room));
 		for (size_t f = 0; f < n; f++)
 			sigma[f] = step * fmin(1e4, fmax(1, misfit[f] / usual));
-		path(r->n, own, sigma, step, room);
+		walk_smooth(r->n, own, sigma, step, room);
 	}
 	for (long f = 0; f < r->n; f++) {
 		double d[MOTIONS];

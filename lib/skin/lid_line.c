@@ -1,4 +1,4 @@
-#include "stages/track/line.h"
+#include "skin/lid_line.h"
 
 #include <math.h>
 #include <string.h>

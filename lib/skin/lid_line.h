@@ -1,7 +1,8 @@
-/* line: a margin of a lid as a chain of points, px, from the inner corner to the outer. */
-#ifndef TRACK_LINE_H
-#define TRACK_LINE_H
-#include "stages/track/track.h"
+/* lid_line: a margin of a lid as a chain of points, px, from the inner corner to the outer. */
+#ifndef SKIN_LID_LINE_H
+#define SKIN_LID_LINE_H
+#include "skin/eye_opening.h"
+#include "skin/eye_track.h"
 
 enum { LINE = OPENING_POINTS + 2 * LID_POINTS_MAX };
 

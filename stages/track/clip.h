@@ -1,0 +1,53 @@
+/* clip: the video as it lies before its frames are followed: the camera, the reference frame and where the head is in it, the points of
+ * skin. */
+#ifndef TRACK_CLIP_H
+#define TRACK_CLIP_H
+#include "stages/track/subject.h"
+
+/* A frame in which calibrate has found the head. */
+struct track_known {
+	long frame;
+	double cam_from_head[4][4], residual_px;
+};
+
+/* The clip as it lies before the first frame is followed. */
+struct track_clip {
+	char file[320];        // relative to the capture
+	struct video_info info;
+	struct camera camera;
+	bool focal_assumed;
+	long reference;
+	double cam_from_head[4][4];      // at the reference
+	bool eye_seen[SIDES];
+	uint8_t *luma, *rgb;             // of the reference [height][width]; owned
+	double pose_px;        // rms of what the pose was found from
+	bool pose_given;       // from track.landmark_*, or known
+	struct track_known *known;       // by rig.json, of this video and of its own mesh; owned
+	int n_known;
+};
+
+/* Points of skin: rows of the mesh and where they are at the reference. */
+struct track_points {
+	int n;
+	int32_t *vertex;
+	double (*head)[3];     // mm
+	struct skin_points points;
+	uint8_t *mask;         // [height][width] 0 where the picture shows no skin
+};
+
+/* The first file of video/; false, err set, when there is none. */
+bool track_video(char file[320], int *others, struct stage *stage, struct err *err);
+
+/* file is set. */
+bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct track_subject *subject,
+                     const struct track_conf *conf, struct err *err);
+void track_clip_free(struct track_clip *clip);
+
+/* Improves the pose by the centres that the eyes turn about in the first frames. */
+void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf);
+
+bool track_points_choose(struct track_points *points, const struct track_clip *clip, const struct track_subject *subject,
+                         const struct track_conf *conf, struct err *err);
+void track_points_free(struct track_points *points);
+
+#endif

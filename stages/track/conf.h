@@ -1,0 +1,35 @@
+/* conf: what config/track.conf and capture.conf say. */
+#ifndef TRACK_CONF_H
+#define TRACK_CONF_H
+#include "image/video.h"
+#include "skin/eye_track.h"
+#include "skin/head_find.h"
+#include "skin/skin_track.h"
+#include "skin/wrinkle.h"
+
+struct track_conf {
+	struct video_conf video;
+	struct eye eye;
+	struct eye_track_conf eyes;
+	struct skin_track_conf skin;
+	struct head_find_conf head;
+	struct wrinkle_conf wrinkle;
+	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
+	double unit_mm, eye_radius;                  // subject.*: NAN where not given
+	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
+	struct opt_each_list landmark_px, expression;
+	double distance_mm;    // of the face from a camera of which nothing is known
+	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
+	int search;            // frames looked through for it
+	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
+	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
+	int points;            // of skin
+	long limit;            // frames followed; 0: all
+	double meniscus_mm;    // that the edge of a lid's margin stands off the eye in the corners
+	double reach_mm;       // round an eyeball's centre
+	double gap_px;         // points are no closer
+	double cut;            // share of the points that must be seen again, or there was a cut
+	double still_pose_px;  // robust scale of a point off the head's motion
+};
+
+#endif

@@ -1,0 +1,109 @@
+/* What the stage `track` is put together from, against closed forms: the path of a head, a margin as a chain of points. */
+#include <math.h>
+#include <string.h>
+
+#include "math/chol.h"
+#include "math/rng.h"
+#include "math/walk.h"
+#include "skin/lid_line.h"
+#include "tests/lib/unit.h"
+
+enum { N = 30 };
+
+/* The normal equations of the same path, solved as a full matrix. */
+static void walk_is_least_squares(void **state)
+{
+	(void)state;
+	struct rng rng = { 3 };
+	double x[N], sigma[N], room[N], H[N][N] = { { 0 } }, b[N], step = 0.2;
+	for (int i = 0; i < N; i++) {
+		x[i] = sin(0.3 * i) + 0.1 * rng_uniform(&rng);
+		sigma[i] = i % 7 == 3 ? 1e4 : 0.05 + 0.3 * rng_uniform(&rng);
+		H[i][i] += 1 / (sigma[i] * sigma[i]);
+		b[i] = x[i] / (sigma[i] * sigma[i]);
+		for (int k = i - 1; i && k <= i; k++)
+			for (int j = i - 1; j <= i; j++)
+				H[k][j] += (k == j ? 1 : -1) / (step * step);
+	}
+	walk_smooth(N, x, sigma, step, room);
+	assert_true(chol_solve(N, N, &H[0][0], b));
+	for (int i = 0; i < N; i++)
+		NEAR(x[i], b[i], 1e-9);
+}
+
+/* One sure measurement among none: the path stays there. Of two, a straight line runs from one to the other. */
+static void walk_between(void **state)
+{
+	(void)state;
+	double x[N], sigma[N], room[N];
+	for (int i = 0; i < N; i++) {
+		x[i] = i == 5 ? 2 : i == 25 ? 6 : 99;
+		sigma[i] = i == 5 || i == 25 ? 1e-6 : 1e9;
+	}
+	walk_smooth(N, x, sigma, 1, room);
+	for (int i = 0; i < N; i++)
+		NEAR(x[i], i < 5 ? 2 : i > 25 ? 6 : 2 + 0.2 * (i - 5), 1e-6);
+	double one = 3, s = 1;
+	walk_smooth(1, &one, &s, 1, room);
+	NEAR(one, 3, 0);
+}
+
+/* A parabola between (0, 0) and (10, 0). */
+static struct line bow(int n)
+{
+	struct line line = { 0 };
+	for (int i = 0; i < n; i++) {
+		double x = 10.0 * i / (n - 1);
+		line_add(&line, (double[]){ x, 0.2 * x * (10 - x) });
+	}
+	return line;
+}
+
+static void line_places(void **state)
+{
+	(void)state;
+	const double ends[2][2] = { { 0, 0 }, { 10, 0 } };
+	struct line line = bow(101);
+	double p[2];
+	NEAR(line_along((double[]){ 4, 7 }, ends[0], ends[1]), 0.4, 1e-12);
+	assert_true(line_passes(p, &line, 0.25, ends));
+	NEAR(p[0], 2.5, 1e-9);
+	NEAR(p[1], 0.2 * 2.5 * 7.5, 1e-9);
+	assert_false(line_passes(p, &line, 1.2, ends));
+	// above the top the nearest place is the top; the chain's chords lie 0.2 * 0.05^2 below it
+	line_nearest(p, &line, (double[]){ 5, 9 });
+	NEAR(p[0], 5, 1e-9);
+	NEAR(p[1], 5, 1e-3);
+	line_nearest(p, &line, (double[]){ -3, -1 });
+	NEAR(hypot(p[0], p[1]), 0, 1e-9);
+}
+
+static void line_spreads_evenly(void **state)
+{
+	(void)state;
+	enum { POINTS = 17 };
+	struct line line = bow(LINE);
+	double out[POINTS][2], least = INFINITY, most = 0;
+	line_spread(out, POINTS, &line);
+	for (int i = 0; i + 1 < POINTS; i++) {
+		double d = hypot(out[i + 1][0] - out[i][0], out[i + 1][1] - out[i][1]);
+		least = fmin(least, d);
+		most = fmax(most, d);
+	}
+	// chords of equal arcs differ by their curvature: (length / radius)^2 / 24, radius 2.5 at the top
+	assert_true(most / least < 1 + 1.0 / 24);
+	NEAR(hypot(out[POINTS - 1][0] - 10, out[POINTS - 1][1]), 0, 1e-9);
+	line_add(&line, (double[]){ 99, 99 });
+	assert_int_equal(line.n, LINE);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(walk_is_least_squares),
+		cmocka_unit_test(walk_between),
+		cmocka_unit_test(line_places),
+		cmocka_unit_test(line_spreads_evenly),
+	};
+	return cmocka_run_group_tests(tests, 0, 0);
+}
