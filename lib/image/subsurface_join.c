@@ -1,49 +1,12 @@
 /* From a level of the pyramid to the one above: bilinear, over the four texels as far as their depth is the pixel's. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "image/subsurface_level.h"
 #include "math/simd.h"
-
-/* A row of the level below as the row above sees it: of each of its texels the nearer one and the farther one. */
-struct seen {
-	float *near[4], *far[4];  // r, g, b, z
-};
-
-SIMD_CLONES static void widen(float *restrict near, float *restrict far, const float *restrict in, int n)
-{
-	SIMD_LOOP
-	for (int i = 0; i < n; i++) {
-		near[2 * i] = in[i];
-		near[2 * i + 1] = in[i];
-	}
-	SIMD_LOOP
-	for (int i = 1; i < n; i++) {
-		far[2 * i - 1] = in[i];
-		far[2 * i] = in[i - 1];
-	}
-	far[0] = in[0];
-	far[2 * n - 1] = in[n - 1];
-}
-
-/* The last rows seen: of any three neighbours each has a place of its own. */
-struct views {
-	struct seen seen[3];
-	int row[3];
-};
-
-static const struct seen *see(struct views *v, const struct subsurface_level *below, int y)
-{
-	int row = y < 0 ? 0 : y < below->height ? y : below->height - 1, place = row % 3;
-	size_t at = (size_t)row * (size_t)below->stride;
-	struct seen *s = &v->seen[place];
-	for (int k = 0; k < 4 && v->row[place] != row; k++)
-		widen(s->near[k], s->far[k], (k < 3 ? below->sum[k] : below->z) + at, below->width);
-	v->row[place] = row;
-	return s;
-}
 
 /* A texel of the level below: its share as far as its depth is this one's; a trace of it whatever its depth, where all
  * four lie elsewhere. */
@@ -54,31 +17,113 @@ SIMD_INLINE float share(float z, float there, float inv, float part)
 	return there > 0 ? part * f : 0;
 }
 
+/* A row, and of the level below the nearer row (0) and the farther one (1): r, g, b, z. */
 struct row {
-	const float *z;
-	float *out[3], keep[3];
-	int n;
+	const float *z, *below[2][4];
+	float *out[3], keep[3], *mean[3];  // mean: room for the two rows below, 3 : 1
+	int n, n_below;
 };
 
-/* out = keep out + what comes from below, where there is skin. a: the nearer row of the level below. */
-SIMD_CLONES static void join_row(const struct row *row, const struct seen *a, const struct seen *b, float inv)
+enum { PART = 64 };  // texels that take one way or the other
+
+/* The farther neighbour of texel x in a row below; the nearer one is x / 2. */
+SIMD_INLINE int farther(const struct row *r, int x)
 {
-	const float *restrict z = row->z, *restrict za = a->near[3], *restrict zb = a->far[3], *restrict zc = b->near[3], *restrict zd = b->far[3];
-	float *restrict r = row->out[0], *restrict g = row->out[1], *restrict blue = row->out[2];
-	const float *restrict ra = a->near[0], *restrict rb = a->far[0], *restrict rc = b->near[0], *restrict rd = b->far[0];
-	const float *restrict ga = a->near[1], *restrict gb = a->far[1], *restrict gc = b->near[1], *restrict gd = b->far[1];
-	const float *restrict ba = a->near[2], *restrict bb = a->far[2], *restrict bc = b->near[2], *restrict bd = b->far[2];
-	float kr = row->keep[0], kg = row->keep[1], kb = row->keep[2];
+	int at = x % 2 ? x / 2 + 1 : x / 2 - 1;
+	return at < 0 ? 0 : at < r->n_below ? at : r->n_below - 1;
+}
+
+/* Texels [from, to): out = keep out + what comes from below, where there is skin. */
+SIMD_INLINE void join_uneven(const struct row *row, int from, int to, float inv)
+{
+	float part[4][4][PART], weight[4][PART];
+	const float *restrict z = row->z + from;
+	int n = to - from;
+	for (int i = 0; i < n; i++) {
+		int a = (from + i) / 2, b = farther(row, from + i);
+		for (int k = 0; k < 4; k++) {
+			part[k][0][i] = row->below[0][k][a];
+			part[k][1][i] = row->below[0][k][b];
+			part[k][2][i] = row->below[1][k][a];
+			part[k][3][i] = row->below[1][k][b];
+		}
+	}
 	SIMD_LOOP
-	for (int i = 0; i < row->n; i++) {
-		float p = share(z[i], za[i], inv, 9), q = share(z[i], zb[i], inv, 3), s = share(z[i], zc[i], inv, 3), t = share(z[i], zd[i], inv, 1);
+	for (int i = 0; i < n; i++) {
+		float p = share(z[i], part[3][0][i], inv, 9), q = share(z[i], part[3][1][i], inv, 3);
+		float s = share(z[i], part[3][2][i], inv, 3), t = share(z[i], part[3][3][i], inv, 1);
 		float all = (p + q) + (s + t), each = 1 / (all > 0 ? all : 1);
-		float red = kr * r[i] + ((p * ra[i] + q * rb[i]) + (s * rc[i] + t * rd[i])) * each;
-		float green = kg * g[i] + ((p * ga[i] + q * gb[i]) + (s * gc[i] + t * gd[i])) * each;
-		float b_ = kb * blue[i] + ((p * ba[i] + q * bb[i]) + (s * bc[i] + t * bd[i])) * each;
-		r[i] = z[i] > 0 ? red : r[i];
-		g[i] = z[i] > 0 ? green : g[i];
-		blue[i] = z[i] > 0 ? b_ : blue[i];
+		weight[0][i] = p * each;
+		weight[1][i] = q * each;
+		weight[2][i] = s * each;
+		weight[3][i] = t * each;
+	}
+	for (int c = 0; c < 3; c++) {
+		float *restrict out = row->out[c] + from, keep = row->keep[c];
+		SIMD_LOOP
+		for (int i = 0; i < n; i++) {
+			float now = keep * out[i] + ((weight[0][i] * part[c][0][i] + weight[1][i] * part[c][1][i])
+			                             + (weight[2][i] * part[c][2][i] + weight[3][i] * part[c][3][i]));
+			out[i] = z[i] > 0 ? now : out[i];
+		}
+	}
+}
+
+/* The same where all depths are as good as one: bilinear. from and to are even, neither at an end of the row. */
+SIMD_INLINE void join_even(const struct row *row, int from, int to)
+{
+	for (int c = 0; c < 3; c++) {
+		float *restrict out = row->out[c] + from, keep = row->keep[c];
+		const float *restrict mean = row->mean[c] + from / 2;
+		SIMD_LOOP
+		for (int i = 0; i < (to - from) / 2; i++) {
+			float left = 0.75f * mean[i] + 0.25f * mean[i - 1], right = 0.75f * mean[i] + 0.25f * mean[i + 1];
+			out[2 * i] = keep * out[2 * i] + left;
+			out[2 * i + 1] = keep * out[2 * i + 1] + right;
+		}
+	}
+}
+
+/* Whether all that is looked at lies on one surface, at up to 60 degrees to the camera: half of where shares end. */
+SIMD_INLINE bool even(const struct row *row, int from, int to, float inv)
+{
+	const float *restrict z = row->z + from;
+	const float *restrict a = row->below[0][3] + from / 2, *restrict b = row->below[1][3] + from / 2;
+	float most = sqrtf(0.25f / inv);
+	int off = 0;
+#pragma omp simd reduction(| : off)
+	for (int i = 0; i < (to - from) / 2; i++) {
+		float l = z[2 * i], r = z[2 * i + 1];
+		float high = a[i] > b[i] ? a[i] : b[i], low = a[i] > b[i] ? b[i] : a[i];
+		float high_l = a[i - 1] > b[i - 1] ? a[i - 1] : b[i - 1], low_l = a[i - 1] > b[i - 1] ? b[i - 1] : a[i - 1];
+		float high_r = a[i + 1] > b[i + 1] ? a[i + 1] : b[i + 1], low_r = a[i + 1] > b[i + 1] ? b[i + 1] : a[i + 1];
+		high_l = high > high_l ? high : high_l;
+		low_l = low < low_l ? low : low_l;
+		high_r = high > high_r ? high : high_r;
+		low_r = low < low_r ? low : low_r;
+		float worst_l = high_l - l > l - low_l ? high_l - l : l - low_l, worst_r = high_r - r > r - low_r ? high_r - r : r - low_r;
+		off |= !((worst_l > worst_r ? worst_l : worst_r) <= most) | !((l < r ? l : r) > 0);
+	}
+	return !off;
+}
+
+SIMD_CLONES static void join_row(const struct row *row, float inv)
+{
+	for (int k = 0; k < 3; k++) {
+		const float *restrict a = row->below[0][k], *restrict b = row->below[1][k];
+		float *restrict mean = row->mean[k];
+		SIMD_LOOP
+		for (int i = 0; i < row->n_below; i++)
+			mean[i] = 0.75f * a[i] + 0.25f * b[i];
+	}
+	for (int from = 0, to; from < row->n; from = to) {
+		to = from ? from + PART : 2;  // the ends, whose neighbours lie outside, alone
+		to = to < row->n - 2 ? to : from < row->n - 2 ? (row->n - 2) / 2 * 2 : row->n;
+		to = to > from ? to : row->n;
+		if (from > 0 && to < row->n && even(row, from, to, inv))
+			join_even(row, from, to);
+		else
+			join_uneven(row, from, to, inv);
 	}
 }
 
@@ -97,21 +142,23 @@ void subsurface_level_join(struct subsurface_level *l, const struct subsurface_l
 		subsurface_level_give(l, stays);
 #pragma omp parallel
 	{
-		size_t wide = 2 * (size_t)below->width;
-		float *buffer = mem_array(24 * wide, sizeof *buffer);
-		struct views views = { .row = { -1, -1, -1 } };
-		for (int k = 0; k < 24; k++)
-			*(k % 2 ? &views.seen[k / 8].near[k / 2 % 4] : &views.seen[k / 8].far[k / 2 % 4]) = buffer + (size_t)k * wide;
+		float *mean = mem_array(3 * (size_t)below->width, sizeof *mean);
 #pragma omp for schedule(static)
 		for (int y = 0; y < l->height; y++) {
-			struct row row = { .z = l->z + (size_t)y * (size_t)l->stride, .n = l->width };
+			struct row row = { .z = l->z + (size_t)y * (size_t)l->stride, .n = l->width, .n_below = below->width };
 			for (int c = 0; c < 3; c++) {
 				row.out[c] = stays ? l->rgb[c] + (size_t)y * (size_t)l->stride : l->sum[c] + (size_t)y * (size_t)stride;
 				row.keep[c] = stays && !l->sum[0] ? (float)stays[c] : 1;
+				row.mean[c] = mean + (size_t)c * (size_t)below->width;
 			}
-			const struct seen *near = see(&views, below, y / 2), *far = see(&views, below, y % 2 ? y / 2 + 1 : y / 2 - 1);
-			join_row(&row, near, far, inv);
+			for (int k = 0; k < 2; k++) {
+				int at = k ? y % 2 ? y / 2 + 1 : y / 2 - 1 : y / 2;
+				at = at < 0 ? 0 : at < below->height ? at : below->height - 1;
+				for (int c = 0; c < 4; c++)
+					row.below[k][c] = (c < 3 ? below->sum[c] : below->z) + (size_t)at * (size_t)below->stride;
+			}
+			join_row(&row, inv);
 		}
-		free(buffer);
+		free(mean);
 	}
 }

@@ -1,0 +1,123 @@
+/* From a level of the pyramid to the one below: each texel the mean of the frontmost of four. */
+#include "image/subsurface_level.h"
+#include "math/simd.h"
+
+/* One texel out of four, with their shares: those about as near as the nearest. */
+struct quad {
+	float a, b, c, d;
+};
+
+SIMD_INLINE float depth_or_far(float z)
+{
+	return z > 0 ? z : 1e30f;
+}
+
+SIMD_INLINE float least(float a, float b)
+{
+	return a < b ? a : b;
+}
+
+SIMD_INLINE struct quad shares(float *depth, float a, float b, float c, float d, float gap)
+{
+	float fa = depth_or_far(a), fb = depth_or_far(b), fc = depth_or_far(c), fd = depth_or_far(d);
+	float front = least(least(fa, fb), least(fc, fd)) + gap;
+	struct quad q = { fa < front ? 1 : 0, fb < front ? 1 : 0, fc < front ? 1 : 0, fd < front ? 1 : 0 };
+	float n = (q.a + q.b) + (q.c + q.d), each = 1 / (n > 0 ? n : 1);
+	q = (struct quad){ q.a * each, q.b * each, q.c * each, q.d * each };
+	*depth = (q.a * a + q.b * b) + (q.c * c + q.d * d);
+	return q;
+}
+
+/* Rows 2y and 2y + 1 of the level above, of twice n texels. */
+struct pair {
+	const float *z[2], *rgb[2][3];
+	float *z_out, *rgb_out[3];
+};
+
+SIMD_INLINE void halve_uneven(const struct pair *p, int from, int to, float gap)
+{
+	const float *a = p->z[0], *b = p->z[1], *r0 = p->rgb[0][0], *r1 = p->rgb[1][0];
+	const float *g0 = p->rgb[0][1], *g1 = p->rgb[1][1], *b0 = p->rgb[0][2], *b1 = p->rgb[1][2];
+	float *z = p->z_out, *r = p->rgb_out[0], *g = p->rgb_out[1], *blue = p->rgb_out[2];
+	SIMD_LOOP
+	for (int i = from; i < to; i++) {
+		struct quad q = shares(&z[i], a[2 * i], a[2 * i + 1], b[2 * i], b[2 * i + 1], gap);
+		r[i] = (q.a * r0[2 * i] + q.b * r0[2 * i + 1]) + (q.c * r1[2 * i] + q.d * r1[2 * i + 1]);
+		g[i] = (q.a * g0[2 * i] + q.b * g0[2 * i + 1]) + (q.c * g1[2 * i] + q.d * g1[2 * i + 1]);
+		blue[i] = (q.a * b0[2 * i] + q.b * b0[2 * i + 1]) + (q.c * b1[2 * i] + q.d * b1[2 * i + 1]);
+	}
+}
+
+/* Where each four lie within the gap, their mean. */
+SIMD_INLINE void halve_even(const struct pair *p, int from, int to)
+{
+	for (int k = 0; k < 4; k++) {
+		const float *restrict a = k < 3 ? p->rgb[0][k] : p->z[0], *restrict b = k < 3 ? p->rgb[1][k] : p->z[1];
+		float *restrict out = k < 3 ? p->rgb_out[k] : p->z_out;
+		SIMD_LOOP
+		for (int i = from; i < to; i++)
+			out[i] = 0.25f * ((a[2 * i] + a[2 * i + 1]) + (b[2 * i] + b[2 * i + 1]));
+	}
+}
+
+SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
+{
+	enum { PART = 64 };
+	const float *restrict a = p->z[0], *restrict b = p->z[1];
+	for (int from = 0, to; from < n; from = to) {
+		int uneven = 0;
+		to = from + PART < n ? from + PART : n;
+#pragma omp simd reduction(| : uneven)
+		for (int i = from; i < to; i++) {
+			float l = a[2 * i], r = a[2 * i + 1], u = b[2 * i], w = b[2 * i + 1];
+			float lr0 = l < r ? l : r, lr1 = l < r ? r : l, uw0 = u < w ? u : w, uw1 = u < w ? w : u;
+			float front = lr0 < uw0 ? lr0 : uw0, back = lr1 < uw1 ? uw1 : lr1;
+			uneven |= !(front > 0 && back < front + gap);
+		}
+		if (uneven)
+			halve_uneven(p, from, to, gap);
+		else
+			halve_even(p, from, to);
+	}
+}
+
+/* The last column of an odd width, alone. */
+static void halve_last(const struct pair *p, int i, float gap)
+{
+	struct quad q = shares(&p->z_out[i], p->z[0][2 * i], 0, p->z[1][2 * i], 0, gap);
+	for (int c = 0; c < 3; c++)
+		p->rgb_out[c][i] = q.a * p->rgb[0][c][2 * i] + q.c * p->rgb[1][c][2 * i];
+}
+
+void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_level *above, double texels_per_mm,
+                            struct subsurface_room *room)
+{
+	*l = (struct subsurface_level){ .width = (above->width + 1) / 2, .height = (above->height + 1) / 2 };
+	l->stride = (l->width + 7) / 8 * 8;
+	size_t n = (size_t)l->stride * (size_t)l->height;
+	for (int c = 0; c < 3; c++)
+		l->rgb[c] = subsurface_room_take(room, n);
+	float *z = subsurface_room_take(room, n);
+	l->z = z;
+	float gap = (float)(4 / texels_per_mm);  // a surface seen at 60 degrees falls by 2.4 texels across their diagonal
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < l->height; y++) {
+		struct pair p;
+		size_t to = (size_t)y * (size_t)l->stride;
+		for (int k = 0; k < 2; k++) {
+			int row = 2 * y + k < above->height ? 2 * y + k : 2 * y;  // counted twice, the last of an odd height
+			size_t from = (size_t)row * (size_t)above->stride;
+			p.z[k] = above->z + from;
+			for (int c = 0; c < 3; c++)
+				p.rgb[k][c] = above->rgb[c] + from;
+		}
+		p.z_out = z + to;
+		for (int c = 0; c < 3; c++)
+			p.rgb_out[c] = l->rgb[c] + to;
+		halve_row(&p, above->width / 2, gap);
+		if (above->width % 2)
+			halve_last(&p, l->width - 1, gap);
+		for (int i = l->width; i < l->stride; i++)
+			p.z_out[i] = p.rgb_out[0][i] = p.rgb_out[1][i] = p.rgb_out[2][i] = 0;
+	}
+}
