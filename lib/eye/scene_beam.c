@@ -47,6 +47,7 @@ static void node_put(float out[SCENE_WAY], const double p[3], const float k[3], 
 		out[c] = (float)d[c];
 	out[3] = (float)(gain / fmax(-d[2], 0.05));
 	out[4] = (float)hypot(k[0] / limbus[0], k[1] / limbus[1]);
+	out[5] = (float)-d[2];
 }
 
 static void plane_points(struct plane *n, int side, const struct scene *s, float z)
@@ -64,9 +65,10 @@ static void plane_points(struct plane *n, int side, const struct scene *s, float
 	}
 }
 
-/* What the lights of a beam bring to a plane's nodes: power, that times direction and place on the cornea. */
+/* What the lights of a beam bring to a plane's nodes: power, that times direction, times direction and how far it goes down,
+ * and times the place on the cornea. */
 struct plane_sum {
-	float power[NODES], dir[3][NODES], rho[NODES];
+	float power[NODES], dir[3][NODES], down[3][NODES], rho[NODES];
 };
 
 struct plane_work {
@@ -89,7 +91,27 @@ SIMD_CLONES static void plane_add(struct plane_sum *sum, const struct plane *n, 
 		sum->dir[1][i] += power * inv * dy;
 		sum->dir[2][i] += power * inv * dz;
 		sum->rho[i] += power * sqrtf(x * x + y * y);
+		power *= inv * down;
+		sum->down[0][i] += power * dx;
+		sum->down[1][i] += power * dy;
+		sum->down[2][i] += power * dz;
 	}
+}
+
+/* The one direction in which a beam's light makes tissue as bright as its lights do. A surface that light meets at the cosine
+ * m sends back R = m / (m + v) of it at the cosine v; the mean over lights of covariance C about their mean d is R at
+ * m - C_nn / (m + v), n the normal: linear in n about the axis, where v is 1, that is a direction's. */
+static void beam_direction(float out[SCENE_WAY], const struct plane_sum *sum, int i)
+{
+	float per = 1 / sum->power[i], d[3], c[3];
+	for (int k = 0; k < 3; k++)
+		d[k] = per * sum->dir[k][i];
+	float m = -d[2] > 0.05f ? -d[2] : 0.05f, part = 1 / (m + 1);
+	for (int k = 0; k < 3; k++)
+		c[k] = per * sum->down[k][i] + d[k] * d[2];  // covariance with the cosine
+	for (int k = 0; k < 3; k++)
+		out[k] = d[k] * (1 - part * c[2] / m) - 2 * part * c[k];
+	out[5] = -d[2];
 }
 
 static void cubic(float w[4], int *at, int i)
@@ -146,7 +168,8 @@ static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lig
 		plane_add(sum, n, lit, dir[l], share[l], s->limbus);
 	}
 	for (int i = 0; i < n->n; i++) {
-		float per = 1 / sum->power[i], node[SCENE_WAY] = { per * sum->dir[0][i], per * sum->dir[1][i], per * sum->dir[2][i], sum->power[i], per * sum->rho[i] };
+		float node[SCENE_WAY] = { [3] = sum->power[i], [4] = sum->rho[i] / sum->power[i] };
+		beam_direction(node, sum, i);
 		for (int c = 0; c < SCENE_WAY; c++)
 			to[i][c] = node[c];
 	}

@@ -136,7 +136,7 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 	free(texture);
 	compare(s);
 	scene_levels_make(s);
-	for (int k = scene_marched(s) > 1 ? scene_marched(s) : 1; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
+	for (int k = scene_marched(s); k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
 		scene_shade_model(&s->level[k], s, C, &beams, through);
 	free(beams.beam);
 }

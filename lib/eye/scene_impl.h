@@ -19,10 +19,10 @@ struct iris_batch {
 };
 
 /* One light in the eye's frame, or several neighbours (scene_beam.c), with its own refraction function over the iris, on planes
- * at the depths z[0] and z[1]: direction towards it, irradiance of a plane that faces it, and where on the cornea its light
- * came in (1: at the limbus). */
+ * at the depths z[0] and z[1]: direction towards it, irradiance of a plane that faces it, where on the cornea its light
+ * came in (1: at the limbus), and what of the irradiance falls on the iris plane. */
 enum { SCENE_PATH_STEPS = 4 };  // Newton's, from the closed-form start: 2e-5 mm at worst
-enum { SCENE_WAY = 8 };  // five, and room for a whole vector
+enum { SCENE_WAY = 8 };  // six, and room for a whole vector
 enum { SCENE_COARSE = 24 };  // several lights together are smooth: a coarser grid, and cubics (Catmull and Rom's) between
 struct scene_beam {
 	float dir[3], rgb[3];

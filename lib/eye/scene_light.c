@@ -63,6 +63,7 @@ static void table_paths(struct march_light *light, int end, int n, const float *
 		light->y[end][i] = way[1];
 		light->z[end][i] = way[2];
 		light->power[end][i] = way[2] < 0 ? way[3] : 0;  // an iris that juts out of its cornea is not lit from behind
+		light->fall[end][i] = way[5];
 		rho[i] = way[4];
 	}
 	rim_stop(n, light->power[end], rho, width);
@@ -86,6 +87,7 @@ static void exact_paths(struct march_light *light, int end, int n, const float *
 		light->x[end][i] = d[0] * inv;
 		light->y[end][i] = d[1] * inv;
 		light->z[end][i] = d[2] * inv;
+		light->fall[end][i] = -d[2] * inv;
 	}
 }
 

@@ -220,7 +220,7 @@ void scene_flat(struct iris_batch *r, const struct scene *s, const struct scene_
 			scene_light_at(&w, 0, n, r->px + first, r->py + first, r->pz + first, s, &beams->beam[l]);
 			for (int c = 0; c < 3; c++)
 				for (int i = 0; i < n; i++)
-					r->rgb[c][first + i] -= beams->beam[l].rgb[c] * s->flat[c] * w.power[0][i] * w.z[0][i];
+					r->rgb[c][first + i] += beams->beam[l].rgb[c] * s->flat[c] * w.power[0][i] * w.fall[0][i];
 		}
 }
 
@@ -232,6 +232,6 @@ void scene_flat_at(float rgb[4], float x, float y, const struct scene *s, const 
 		struct march_light w;
 		scene_light_at(&w, 0, 1, &x, &y, &z, s, &beams->beam[l]);
 		for (int c = 0; c < 3; c++)
-			rgb[c] -= beams->beam[l].rgb[c] * s->flat[c] * w.power[0][0] * w.z[0][0];
+			rgb[c] += beams->beam[l].rgb[c] * s->flat[c] * w.power[0][0] * w.fall[0][0];
 	}
 }

@@ -22,9 +22,10 @@ struct march_node {
 	float u[PART], gx[PART], gy[PART], above[TISSUE_LAYERS][PART], seen[TISSUE_LAYERS][PART], length[PART];
 };
 
-/* One light at both ends of every ray: unit direction towards it, and irradiance of a plane that faces it. */
+/* One light at both ends of every ray: direction towards it (scene_beam.c), irradiance of a plane that faces it; fall: what of
+ * it falls on the iris plane (scene_light_at alone). */
 struct march_light {
-	float x[2][PART], y[2][PART], z[2][PART], power[2][PART];
+	float x[2][PART], y[2][PART], z[2][PART], power[2][PART], fall[2][PART];
 };
 
 /* The light at n points, into end `end` (0, 1) of its rays. */
