@@ -153,20 +153,21 @@ static void nodes_make(struct march_node *node, const struct iris_batch *r, int 
 }
 
 static void light_add(struct iris_batch *r, int first, int n, const struct scene *s, const struct march_node *node,
-                      const struct march_light *light, const float rgb[3])
+                      const struct march_light *light, const float rgb[3], const struct rates rates[TISSUE_LAYERS])
 {
-	float sum[TISSUE_BANDS_MAX][PART] = { 0 };
-	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++) {
-		struct rates rates = rates_of(&s->optics, l);
+	float sum[TISSUE_BANDS_MAX][PART];
+	for (int k = 0; k < s->optics.n; k++)
+		memset(sum[k], 0, sizeof sum[k]);
+	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++)
 		for (int j = 0; j < s->n_nodes[l]; j++, k++)
-			node_lights(n, s->optics.n, sum, &node[k], light, &rates);
-	}
+			node_lights(n, s->optics.n, sum, &node[k], light, &rates[l]);
 	add_light(r, first, n, &s->optics, rgb, (const float(*)[PART])sum);
 }
 
 static void march_part(struct iris_batch *r, int first, int n, const struct scene *s, const struct ground *g, const struct scene_beams *beams)
 {
 	struct march_node node[s->n_nodes[0] + s->n_nodes[1]];
+	const struct rates rates[TISSUE_LAYERS] = { rates_of(&s->optics, 0), rates_of(&s->optics, 1) };
 	float near[3][PART], far[3][PART];
 	nodes_make(node, r, first, n, s, g);
 	points(near, r, first, n, 0);
@@ -178,7 +179,7 @@ static void march_part(struct iris_batch *r, int first, int n, const struct scen
 		scene_light_at(&light, 1, n, far[0], far[1], far[2], s, beam);
 		if (s->conf.shadow > 0)
 			scene_shadow(&light, n, near[0], near[1], near[2], g, s->conf.shadow);
-		light_add(r, first, n, s, node, &light, beam->rgb);
+		light_add(r, first, n, s, node, &light, beam->rgb, rates);
 	}
 }
 
@@ -198,6 +199,7 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 	struct ground g = ground_of(s, level);
 	struct march_node node[s->n_nodes[0] + s->n_nodes[1]];
 	struct march_body body;
+	const struct rates rates[TISSUE_LAYERS] = { rates_of(&s->optics, 0), rates_of(&s->optics, 1) };
 	scene_spans(r, &g);
 	scene_body_make(&body, r, tile);
 	for (int i = 0; i < PART; i++)
@@ -206,7 +208,7 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 	for (int k = 0; k < beams->n; k++) {
 		struct march_light light;
 		if (scene_light_tile(&light, &body, s, &beams->beam[k]))
-			light_add(r, 0, PART, s, node, &light, beams->beam[k].rgb);
+			light_add(r, 0, PART, s, node, &light, beams->beam[k].rgb, rates);
 	}
 }
 

@@ -67,17 +67,23 @@ static void tile_rays(struct iris_batch *b, const struct painter *p, const struc
 static void tile_put(struct iris_batch *b, const struct painter *p, int tx, int ty)
 {
 	const struct scene_level *l = p->level;
-	float model[PART][4];
-	bool ratio = l->model && !(p->through > 0);
-	for (int i = 0; i < PART && ratio; i++)
-		memcpy(model[i], l->model + 4 * texel(l, tx, ty, i), sizeof model[i]);
+	float model[PART][4], *row[TILE_SIDE];
+	bool ratio = l->model && !(p->through > 0), whole = (tx + 1) * TILE_SIDE <= l->n && (ty + 1) * TILE_SIDE <= l->n;
+	for (int y = 0; y < TILE_SIDE && ratio; y++)
+		if (whole)
+			memcpy(model[y * TILE_SIDE], l->model + 4 * texel(l, tx, ty, y * TILE_SIDE), TILE_SIDE * sizeof *model);
+		else
+			for (int i = y * TILE_SIDE; i < (y + 1) * TILE_SIDE; i++)
+				memcpy(model[i], l->model + 4 * texel(l, tx, ty, i), sizeof model[i]);
 	for (int i = 0; i < PART && p->through > 0; i++)
 		for (int c = 0; c < 3; c++)
 			b->rgb[c][i] = fmaxf(p->through * b->rgb[c][i], SCENE_DARK);
 	if (ratio)
 		scene_colour_ratio(PART, b->rgb, p->scene, (const float(*)[4])model);
+	for (int y = 0; y < TILE_SIDE; y++)
+		row[y] = p->light + 4 * texel(l, tx, ty, y * TILE_SIDE);
 	for (int i = 0; i < PART; i++) {
-		float *out = p->light + 4 * texel(l, tx, ty, i);
+		float *out = whole ? row[i / TILE_SIDE] + 4 * (i % TILE_SIDE) : p->light + 4 * texel(l, tx, ty, i);
 		out[0] = b->rgb[0][i];
 		out[1] = b->rgb[1][i];
 		out[2] = b->rgb[2][i];
