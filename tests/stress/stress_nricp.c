@@ -49,7 +49,7 @@ static void move(struct mesh *m, const double axis[3], double angle, double scal
 }
 
 /* of the moving and the fixed mesh */
-enum harm { NO_AREA = 1, TWICE = 2, LOOSE = 4, PIECES = 8, ABSURD = 16, FLIPPED = 32, NO_FACES = 64, ONE_PLACE = 128 };
+enum harm { NO_AREA = 1, TWICE = 2, LOOSE = 4, PIECES = 8, ABSURD = 16, FLIPPED = 32, NO_FACES = 64, ONE_PLACE = 128, HALF = 256, OTHER = 512 };
 
 static void harm(struct mesh *m, struct rng *rng, int kinds)
 {
@@ -80,6 +80,9 @@ static void harm(struct mesh *m, struct rng *rng, int kinds)
 		m->faces[f][0] = m->faces[f][1];
 		m->faces[f][1] = t;
 	}
+	for (int f = m->n_faces; f-- > 0 && kinds & HALF;)  // triangles of one side alone
+		if ((m->vertices[m->faces[f][0]][0] > 0) == !(kinds & OTHER))
+			memmove(m->faces + f, m->faces + f + 1, (size_t)(--m->n_faces - f) * sizeof *m->faces);
 	if (kinds & NO_FACES)
 		m->n_faces = 0;
 	for (int i = 1; i < m->n_vertices && kinds & ONE_PLACE; i++)
@@ -165,6 +168,8 @@ int main(int argc, char **argv)
 		one(&s, 0, 0, 0.1, pow(10, rng_range(&s.rng, -6, 6)), 1, 1, false);
 	for (stress_family(&s, "far apart", 16); stress_case(&s);)
 		one(&s, 0, 0, 0.1, 1, 1, pow(10, rng_range(&s.rng, 2, 7)), false);
+	for (stress_family(&s, "nothing in common: the front's left and right half", 16); stress_case(&s);)
+		one(&s, HALF, HALF | OTHER, 0.1, 1, 1, 1, false);
 	for (stress_family(&s, "absurd numbers, no faces, all in one place", 60); stress_case(&s);) {
 		static const int kinds[] = { ABSURD, NO_FACES, ONE_PLACE, ABSURD | TWICE, 0 };
 		int moving = kinds[rng_below(&s.rng, COUNT(kinds))], fixed = kinds[rng_below(&s.rng, COUNT(kinds))];

@@ -101,6 +101,50 @@ static void starts(struct stress *s)
 	}
 }
 
+/* Parameters that the colours cannot tell apart: classes of nearly one thickness, few bands of light. Whatever is found explains
+ * them as well as the truth does, and no number is surer than it is right. */
+static void correlated(struct stress *s)
+{
+	struct pigment_conf conf = plain(s->index % 2);
+	struct err err = { 0 };
+	double truth[PIGMENT_N], spread = pow(10, rng_range(&s->rng, -6, -1)), most = 0, worst = 0;
+	struct pigment_fit fit;
+	conf.light_error = conf.model_error = 0.02;
+	draw(truth, &conf, &s->rng, 1.5);
+	struct pigment_classes classes = photograph(truth, &conf, &s->rng);
+	struct tissue tissue = pigment_tissue(truth, &conf);
+	struct tissue_bands bands;
+	struct tissue_optics optics;
+	tissue_bands_make(&bands, conf.bands, conf.illuminant);
+	tissue_optics_make(&optics, &tissue, &bands);
+	for (int i = 0; i < classes.n; i++) {
+		struct pigment_class *c = &classes.of[i];
+		c->thickness = 0.4 * (1 + spread * i / classes.n);
+		pigment_model(c->rgb, truth, &optics, c->thickness, &conf);
+	}
+	stress_about(s, "%d classes, thickness varies by %.1g, ln melanin %.2f over %.2f, all orders %d", classes.n, spread, truth[PIGMENT_ABL_MELANIN],
+	             truth[PIGMENT_STROMA_MELANIN], conf.multiple);
+	conf.starts = 8;
+	if (!pigment_solve(&fit, &classes, &conf, 0, &err) || !numbers(&fit)) {
+		stress_wrong(s, "no answer, or none of numbers: %s", err.msg);
+		return;
+	}
+	for (int j = 0; j < PIGMENT_N; j++) {
+		worst = fmax(worst, fabs(fit.x[j] - truth[j]) / fit.sigma[j]);
+		for (int k = 0; k < j; k++)
+			most = fmax(most, fabs(fit.correlation[j][k]));
+	}
+	if (fit.minima > 1)
+		stress_flagged(s);
+	stress_measure(s, worst, "sigma from the truth");
+	if (s->show)
+		printf("  largest correlation %.4f, residual %.2g\n", most, fit.residual);
+	if (most > 1 + 1e-9)
+		stress_wrong(s, "a correlation of %.6f", most);
+	if (fit.minima == 1 && worst > 5)
+		stress_wrong(s, "%.2g sigma from the truth", worst);
+}
+
 /* Colours that no tissue has. */
 static void strange(struct stress *s)
 {
@@ -140,6 +184,8 @@ int main(int argc, char **argv)
 	stress_start(&s, "pigment", argc, argv);
 	for (stress_family(&s, "starts anywhere", 30); stress_case(&s);)
 		starts(&s);
+	for (stress_family(&s, "correlated parameters", 60); stress_case(&s);)
+		correlated(&s);
 	for (stress_family(&s, "colours that no tissue has", 200); stress_case(&s);)
 		strange(&s);
 	return stress_end(&s);
