@@ -1,0 +1,88 @@
+/* Fronts of the skin column: knobs of `train` and `transfer` on the bundled clip and character, time and error of the same run.
+ * train: error of lids and skin in frames held out, px of the video. transfer: how far the registered character lies from
+ * where the finest setting puts it, mm.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/mem.h"
+#include "bridge/om_mesh.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/fronts.h"
+#include "tests/lib/scratch.h"
+
+/* Mean over the model's parts. */
+static double held_out(const char *capture, const char *reference)
+{
+	(void)reference;
+	struct err err = { 0 };
+	char *path = mem_printf("%s/work/skin/train.json", capture);
+	json_t *json = json_read(path, 1 << 22, &err), *part;
+	const char *key;
+	double sum = 0;
+	int n = 0;
+	json_object_foreach(json, key, part) {
+		json_t *px = json_object_get(part, "held_out_px");
+		if (json_is_number(px)) {
+			sum += json_number_value(px);
+			n++;
+		}
+	}
+	json_decref(json);
+	free(path);
+	return n ? sum / n : NAN;
+}
+
+static double registered_off(const char *capture, const char *reference)
+{
+	struct mesh a = { 0 }, b = { 0 };
+	struct err err = { 0 };
+	char *is = mem_printf("%s/work/targets/mpfb/registered.ply", capture), *was = mem_printf("%s/targets/mpfb/registered.ply", reference);
+	double sum = NAN;
+	if (om_mesh_load(&a, is, 1 << 22, &err) && om_mesh_load(&b, was, 1 << 22, &err) && a.n_vertices == b.n_vertices) {
+		sum = 0;
+		for (int i = 0; i < a.n_vertices; i++) {
+			double d = 0;
+			for (int k = 0; k < 3; k++)
+				d = hypot(d, (double)(a.vertices[i][k] - b.vertices[i][k]));
+			sum += d / a.n_vertices;
+		}
+		sum *= 10;  // the bundled meshes are in centimetres
+	}
+	mesh_free(&a);
+	mesh_free(&b);
+	free(is);
+	free(was);
+	return sum;
+}
+
+static const struct fronts_stage stages[] = {
+	{ .stage = "transfer", .keys = "rounds, polish_rounds", .finest = { "finest", "8 8 6, 4" },
+	  .more = { { "two", "2 2 1, 1" }, { "least", "1 1 1, 1" }, { "thorough", "6 6 3, 2" }, { "no_polish", "4 4 2, 0" } },
+	  .unit = "mm", .error_of = "mean distance from the finest registration", .error = registered_off, .reps = 3 },
+	{ .stage = "train", .keys = "lid_components, skin_components", .always = "--rbf=no",
+	  .more = { { "one", "1, 1" }, { "two", "2, 2" }, { "three", "3, 3" }, { "four", "4, 4" }, { "eight", "8, 4" }, { "many", "20, 8" } },
+	  .unit = "px", .error_of = "lids and skin held out, mean", .error = held_out, .reps = 3 },
+};
+
+int main(int argc, char **argv)
+{
+	struct err err = { 0 };
+	bench_open("fronts_skin", argc, argv);
+	scratch_open();
+	char *dir = mem_str(scratch_path("face"));
+	char *command = mem_printf("cp -r samples/face '%s' && rm -rf '%s/work' && echo 'quality = draft' >>'%s/capture.conf'", dir, dir, dir);
+	if (!system(command) && fronts_make(dir, "train") && fronts_make(dir, "transfer"))
+		for (int i = 0; i < COUNT(stages); i++)
+			fronts_measure(&stages[i], dir, 0, (const double[2]){ 1, 0 });
+	if (!fronts_write(bench_out(), "fronts_skin", &err))
+		fprintf(stderr, "%s\n", err.msg);
+	scratch_close();
+	free(command);
+	free(dir);
+	return bench_close();
+}
