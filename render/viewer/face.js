@@ -4,7 +4,7 @@ class FaceScene {
 	static DISTANCE = 900;
 
 	constructor(g, data) {
-		const gl = g.gl, bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+		const gl = g.gl, bytes = Graphics.bytes;
 		Object.assign(this, { g, data, poses: bytes(data.poses), skies: bytes(data.sky), key: "" });
 		this.skin = g.program("skin", "skin_vert", ["skin_look"]);
 		this.eye = g.program("eye", null, ["skin_look", "lids"]);
@@ -129,6 +129,19 @@ class FaceScene {
 		return { R, focal, at: turns.apply(turns.transpose(R), [0, 0, -D]), aim: [-k * p[0], -k * p[1]] };
 	}
 
+	/* What the skin mirrors: neighbours, as they were cut, become one. */
+	static fewer(list, n) {
+		while (list.length > n)
+			list = list.flatMap((a, i) => {
+				const b = list[i + 1];
+				if (i % 2 || !b)
+					return i % 2 ? [] : [a];
+				const wa = a[3] + a[4] + a[5], wb = b[3] + b[4] + b[5], d = [0, 1, 2].map(k => wa * a[k] + wb * b[k]), length = Math.hypot(...d) || 1;
+				return [[...d.map(v => v / length), a[3] + b[3], a[4] + b[4], a[5] + b[5]]];
+			});
+		return list;
+	}
+
 	/* Depth of the near and far ends of what is drawn, as clip space has it. */
 	static clip() {
 		const near = FaceScene.DISTANCE - 200, far = FaceScene.DISTANCE + 200;
@@ -162,7 +175,7 @@ class FaceScene {
 		const g = this.g, gl = g.gl, { width, height } = this.frame, c = this.camera(view, height), first = eye_scenes[0];
 		this.pose(...[0, 1].map(k => (view.gazes[0][k] + view.gazes[1][k]) / 2), view.open);
 		const light = first.lights[s.light] || first.lights[0], turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
-		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = light.skies;
+		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = FaceScene.fewer(light.skies, preset.skies);
 		const views = [0, 1].map(side => this.eye_view(eye_scenes[side], s, view, side, width, height));
 		views.forEach((v, side) => eye_scenes[side].solve(s, v, preset, `face${side}`));
 		g.target(this.frame, 0, 0, this.frame.depth);

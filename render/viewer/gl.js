@@ -23,7 +23,8 @@ class Graphics {
 		this.software = /swiftshader|llvmpipe|software|basic render/i.test(this.name);
 	}
 
-	/* A program of the page's shaders; parts: others whose text goes before it, each defined by its name in capitals. */
+	/* A program of the page's shaders; parts: others whose text goes before it, each defined by its name in capitals. The driver is
+	 * not waited for before the program is used: it compiles while maps are decoded. */
 	program(name, vertex, parts) {
 		const gl = this.gl, program = gl.createProgram();
 		const add = (type, text) => {
@@ -38,14 +39,20 @@ class Graphics {
 		const fragment = add(gl.FRAGMENT_SHADER, `#version 300 es\n${this.constants}${this.shaders.look}${this.shaders.common}${(parts || []).map(p => `#define ${p.toUpperCase()}\n`).join("")}${this.text(name, parts || [])}`);
 		gl.linkProgram(program);
 		this.compiled.push([name, ...(parts || [])].join("+"));
-		if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-			throw new Error(`shader ${name}: ${gl.getShaderInfoLog(fragment)} ${gl.getProgramInfoLog(program)}`);
-		const uniforms = {};
-		for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
-			const u = gl.getActiveUniform(program, i);
-			uniforms[u.name.replace("[0]", "")] = { at: gl.getUniformLocation(program, u.name), type: u.type };
+		return { name, program, fragment, uniforms: null };
+	}
+
+	/* What it wants to be told, once it is linked. */
+	linked(p) {
+		const gl = this.gl;
+		if (!gl.getProgramParameter(p.program, gl.LINK_STATUS))
+			throw new Error(`shader ${p.name}: ${gl.getShaderInfoLog(p.fragment)} ${gl.getProgramInfoLog(p.program)}`);
+		p.uniforms = {};
+		for (let i = 0; i < gl.getProgramParameter(p.program, gl.ACTIVE_UNIFORMS); i++) {
+			const u = gl.getActiveUniform(p.program, i);
+			p.uniforms[u.name.replace("[0]", "")] = { at: gl.getUniformLocation(p.program, u.name), type: u.type };
 		}
-		return { program, uniforms };
+		return p.uniforms;
 	}
 
 	/* What a shader builds on comes before it. */
@@ -59,7 +66,7 @@ class Graphics {
 		const gl = this.gl;
 		let unit = 0;
 		gl.useProgram(p.program);
-		for (const [name, u] of Object.entries(p.uniforms)) {
+		for (const [name, u] of Object.entries(p.uniforms || this.linked(p))) {
 			const v = values[name];
 			if (v === undefined)
 				throw new Error(`uniform ${name} is not set`);
@@ -111,9 +118,15 @@ class Graphics {
 		gl.viewport(0, 0, t ? t.width : width, t ? t.height : height);
 	}
 
+	static bytes(base64) {
+		const text = atob(base64), out = new Uint8Array(text.length);
+		for (let i = 0; i < out.length; i++)
+			out[i] = text.charCodeAt(i);
+		return out;
+	}
+
 	async bitmap(base64, type) {
-		const bytes = Uint8Array.from(atob(base64), c => c.charCodeAt(0));
-		return createImageBitmap(new Blob([bytes], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+		return createImageBitmap(new Blob([Graphics.bytes(base64)], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
 	}
 
 	/* A map of the page's data as a texture; rows stay in order: row 0 is at 0. srgb: colours; else decoded to half floats. */

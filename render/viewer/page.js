@@ -23,6 +23,11 @@ class Page extends Live {
 		this.index = index;
 		this.eye = data.eyes[index];
 		this.scene = new EyeScene(this.graphics, this.eye);
+		// Programs first: they compile while maps are decoded.
+		if (data.face)
+			this.face = this.face || new FaceScene(this.graphics, data.face);
+		else
+			this.scene.start();
 		await this.scene.load();
 		if (data.face)
 			await this.open_face();
@@ -40,7 +45,6 @@ class Page extends Live {
 
 	/* The character, with each eye on its own side, or the only one on both. */
 	async open_face() {
-		this.face = this.face || new FaceScene(this.graphics, data.face);
 		this.pair = [];
 		for (const side of ["left", "right"]) {
 			const k = data.eyes.findIndex(e => e.side === side);
