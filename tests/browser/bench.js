@@ -1,8 +1,10 @@
 "use strict";
 /* Times of the interactive page in a headless Chromium. Called by tests/bench/bench_viewer.c: node bench.js KIND PAGE QUICK
- * Prints lines of "opened SECONDS", "frame PRESET SECONDS..." and "fallback FROM TO SECONDS", "driver NAME". */
+ * Prints lines of "opened SECONDS", "driver NAME", "frame PRESET SECONDS...", "count PRESET OPERATIONS READS SECONDS GPU" (estimates
+ * for GPUs of 2015) and "fallback FROM TO SECONDS". */
 const { pathToFileURL } = require("url");
 const { Browser } = require("./browser.js");
+const { picture, seconds_on, GPUS } = require("./count.js");
 
 const [, , page, quick] = process.argv;
 
@@ -11,6 +13,19 @@ const frames = (preset, n) => `(() => { const p = eyewright, gl = p.graphics.gl,
 	for (let i = 0; i <= ${n}; i++) { p.eyes.eye = [i % 7, i % 5]; p.scene.restart(); const t = performance.now(); p.draw(presets[${preset}]);
 		gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, one); if (i) out.push((performance.now() - t) / 1000); }
 	return out.join(" "); })()`;
+
+/* Operations and texture reads, from the shaders' text. */
+async function count(b) {
+	const d = JSON.parse(await b.value(`(() => { const p = eyewright, e = p.eye; return JSON.stringify({ shaders: p.graphics.shaders, presets, face: !!p.face,
+		directions: e.lights[0].lights.length, grid: e.constants.grid, coarse: e.constants.coarse, map: e.eye.map_px }); })()`));
+	const below = { eye: ["ground", "iris"], march: ["ground"] };
+	const text = (name, parts) => ["common", ...(below[name] || []), ...parts, name].map(p => d.shaders[p]).join("\n");
+	for (const p of d.presets) {
+		const sum = picture(text, p, 1280, 1024, d.directions, d.grid, d.coarse, d.map, d.face);
+		for (const [name, gpu] of Object.entries(GPUS))
+			console.log(`count ${p.name} ${sum[0]} ${sum[1]} ${seconds_on(gpu, sum)} ${name}`);
+	}
+}
 
 (async () => {
 	const b = await Browser.start();
@@ -23,14 +38,17 @@ const frames = (preset, n) => `(() => { const p = eyewright, gl = p.graphics.gl,
 		console.log(`opened ${await b.value("eyewright.first_picture / 1000")}`);
 		console.log(`driver ${await b.value("eyewright.graphics.name")}`);
 		console.log(`size ${await b.value("eyewright.size(1).join(' ')")}`);
-		const names = JSON.parse(await b.value("JSON.stringify(presets.map(p => p.name))")), taken = await b.value("presets[eyewright.preset].name");
+		const names = JSON.parse(await b.value("JSON.stringify(presets.map(p => p.name))"));
 		await b.value("eyewright.busy = true");  // the page itself draws no more
 		for (let k = 0; k < names.length; k++)
-			console.log(`frame ${names[k]} ${await b.value(frames(k, quick === "1" ? 1 : 3), 120000)}`);
-		console.log(`starts ${taken}`);
-		await b.value("eyewright.busy = false; eyewright.set_follow('wander'); eyewright.eyes.still = false; eyewright.changed()");
-		await new Promise(r => setTimeout(r, quick === "1" ? 3000 : 8000));
-		console.log(`fallback ${await b.value("presets[eyewright.preset].name")} ${await b.value("eyewright.frame_ms / 1000")}`);
+			if (quick !== "1" || k === 0 || k + 1 === names.length)
+				console.log(`frame ${names[k]} ${await b.value(frames(k, quick === "1" ? 1 : 3), 120000)}`);
+		await count(b);
+		await b.value(`eyewright.preset = 0; eyewright.times = []; eyewright.automatic = true; eyewright.busy = false; eyewright.set_follow('wander');
+			eyewright.eyes.still = false; eyewright.changed()`);
+		await b.until("eyewright.preset + 1 === presets.length || eyewright.times.length > 20", 20).catch(() => 0);
+		await b.until("eyewright.times.length > 4", 10);
+		console.log(`fallback ${names[0]} ${await b.value("presets[eyewright.preset].name")} ${await b.value("eyewright.frame_ms / 1000")}`);
 	} finally {
 		await b.end();
 	}
