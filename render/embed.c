@@ -22,6 +22,7 @@ EMBED(viewer_present, "render/viewer/present.frag");
 EMBED(viewer_lids, "render/viewer/lids.glsl");
 EMBED(viewer_tear, "render/viewer/tear.frag");
 EMBED(viewer_skin_frag, "render/viewer/skin.frag");
+EMBED(viewer_folds, "render/viewer/folds.glsl");
 EMBED(viewer_skin_vert, "render/viewer/skin.vert");
 EMBED(viewer_copy, "render/viewer/copy.frag");
 EMBED(viewer_tissue_js, "render/viewer/tissue.js");

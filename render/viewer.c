@@ -66,7 +66,7 @@ static void programs(json_t *data, bool face)
 	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths }, { "refine", viewer_refine }, { "ground", viewer_ground }, { "march", viewer_march },
 		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present } },
 	  of_face[] = { { "skin_look", skin_look }, { "lids", viewer_lids }, { "tear", viewer_tear }, { "skin", viewer_skin_frag },
-		            { "skin_vert", viewer_skin_vert }, { "copy", viewer_copy } };
+		            { "skin_vert", viewer_skin_vert }, { "folds", viewer_folds }, { "copy", viewer_copy } };
 	json_t *sub = json_object();
 	for (int i = 0; i < COUNT(part); i++)
 		json_object_set_new(data, part[i].key, json_string(part[i].text));
@@ -148,6 +148,8 @@ static bool find_character(struct parts *p, struct stage *stage, struct err *err
 			p->in[p->n_in++] = "work/skin/model.json";
 			p->in[p->n_in++] = "work/skin/gaze.csv";
 			p->in[p->n_in++] = "work/skin/animation.csv";
+			p->in[p->n_in++] = "work/skin/wrinkles.json";
+			p->in[p->n_in++] = "work/skin/wrinkles.exr";
 		} else {
 			free(name);
 		}
@@ -208,8 +210,8 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 			json_array_append_new(eyes, one);
 	}
 	if (ok) {
-		*face = viewer_face(name, target.portrait, skin->gain, skin->eyes);
-		ok = add_clips(*face, skin, &target.rig, err);
+		*face = viewer_face(name, target.portrait, &skin->model, skin->gain, skin->eyes, err);
+		ok = *face && add_clips(*face, skin, &target.rig, err);
 	}
 	portrait_free(target.portrait);
 	rig_free(&target.rig);
@@ -230,7 +232,7 @@ static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 bool viewer_make(struct skin_job *skin, struct err *err)
 {
 	struct jobs *eyes = skin->photographed;
-	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 4, sizeof *p.in) };
+	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 6, sizeof *p.in) };
 	find_eyes(&p);
 	bool ok = find_character(&p, skin->stage, err);
 	if (ok && p.n_in && !stage_fresh(skin->stage, out, p.n_in, p.in))

@@ -23,11 +23,12 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err);
 /* Maps as pictures in base 64, {png, width, height, low, high}: 8 bits a channel and what 0 and 255 mean.
  * viewer_map_log: colours by their logarithm, none below dark (> 0); viewer_map_model: the same of the model at the levels that
  * are marched from, one below the other, {from, tops} the first of them and their rows; viewer_map_plain: its first channels, at
- * most 3. */
+ * most 3; viewer_map_folds: of wrinkle maps the n in `of`, one below the other. */
 json_t *viewer_map_relief(const struct scene_level *level, struct err *err);
 json_t *viewer_map_colour(const struct scene_level *level, struct err *err);
 json_t *viewer_map_log(const float *px, int width, int height, int stride, float dark, struct err *err);
 json_t *viewer_map_model(const struct scene *scene, struct err *err);
+json_t *viewer_map_folds(const struct image *map, int n, const int of[], struct err *err);
 json_t *viewer_map_plain(const struct image *map, struct err *err);
 
 /* An environment: its two maps for reflections, its lights, its irradiance. mirror: what the cornea mirrors. */

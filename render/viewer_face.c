@@ -9,24 +9,11 @@
 #include "base/mem.h"
 #include "math/vec.h"
 #include "render/page.h"
-#include "render/viewer_face.h"
-#include "skin/portrait_impl.h"
+#include "render/viewer_face_impl.h"
 #include "skin/skin_look.h"
 
-static const double at_h[] = { -32, -16, 0, 16, 32 }, at_v[] = { -22, 0, 22 }, at_a[] = { 0, 0.5, 1, 1.4 };
-enum { NH = COUNT(at_h), NV = COUNT(at_v), NA = COUNT(at_a), POSES = NH * NV * NA, SKY = 24, RECORD = 12, MOST = 9000 };
+static const double at_h[NH] = { -32, -16, 0, 16, 32 }, at_v[NV] = { -22, 0, 22 }, at_a[NA] = { 0, 0.5, 1, 1.4 };
 static const float reach = 110;  // mm about the eyes: what the page shows of the face
-
-struct face {
-	const struct rig *rig;
-	struct portrait *portrait;
-	int n;
-	double middle[3];
-	uint8_t *record[POSES];          // [n][RECORD]: x, y, z 16 bits each, normal 8 bits each, light red, green, blue
-	uint8_t *sky;                    // [POSES][SKY][2 SKY]: left, right
-	int *order, moving;              // vertices as the page has them: those that move first
-	int least;                       // what counts as motion, in steps of 1/300 mm
-};
 
 static void to_head(float out[3], const struct face *f, const float x[3], bool point)
 {
@@ -93,15 +80,20 @@ static void pose_all(struct face *f)
 {
 	double *controls = mem_new((size_t)f->rig->n_inputs + 1, sizeof *controls);
 	f->sky = mem_new((size_t)POSES * SKY * SKY, 2);
-	for (int k = 0; k < POSES; k++) {
-		drive_look(controls, f->rig, at_h[k % NH], at_v[k / NH % NV], at_a[k / NH / NV]);
+	f->record = mem_new((size_t)(POSES + f->n_au), sizeof *f->record);
+	for (int k = 0; k < POSES + f->n_au; k++) {
+		int pose = k < POSES ? k : REST;
+		drive_look(controls, f->rig, at_h[pose % NH], at_v[pose / NH % NV], at_a[pose / NH / NV]);
+		if (k >= POSES)
+			controls[SKIN_EYE_INPUTS + k - POSES] = 1;
 		portrait_pose(f->portrait, controls);
 		struct portrait_view view = portrait_front(f->rig, -1, 140, 0, 0, 1280, 720);
 		portrait_light(f->portrait, &view, k == 0);
 		portrait_lashes_move(f->portrait, &view);
 		f->record[k] = mem_array((size_t)f->n * RECORD, 1);
 		record(f->record[k], f);
-		sky(f->sky + (long)k * SKY * SKY * 2, f);
+		if (k < POSES)
+			sky(f->sky + (long)k * SKY * SKY * 2, f);
 	}
 	free(controls);
 }
@@ -130,7 +122,7 @@ static bool shown(const struct face *f, const int32_t v[3])
 	return true;
 }
 
-static json_t *base64(const void *bytes, size_t size)
+json_t *viewer_base64(const void *bytes, size_t size)
 {
 	char *text = page_base64(bytes, size, "");
 	json_t *out = json_string(text);
@@ -178,7 +170,7 @@ static int order(struct face *f, uint32_t **faces, int *n_faces)
 	return n;
 }
 
-static void put_mesh(json_t *out, struct face *f)
+static int put_mesh(json_t *out, struct face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	uint32_t *faces;
@@ -190,24 +182,25 @@ static void put_mesh(json_t *out, struct face *f)
 		for (int c = 0; c < 3; c++)
 			skin[4 * i + c] = byte(255 * sqrt(fmax(f->order[i] < m->n ? m->albedo[f->order[i]][c] : hair[c], 0)));
 		skin[4 * i + 3] = f->order[i] < m->n ? 0 : 255;
-		memcpy(still + (long)i * RECORD, f->record[(NA - 2) * NH * NV + NV / 2 * NH + NH / 2] + (long)f->order[i] * RECORD, RECORD);
+		memcpy(still + (long)i * RECORD, f->record[REST] + (long)f->order[i] * RECORD, RECORD);
 		for (int k = 0; k < POSES && i < f->moving; k++)
 			memcpy(poses + ((long)k * f->moving + i) * RECORD, f->record[k] + (long)f->order[i] * RECORD, RECORD);
 	}
 	json_object_set_new(out, "n", json_integer(n));
 	json_object_set_new(out, "moving", json_integer(f->moving));
-	json_object_set_new(out, "faces", base64(faces, (size_t)n_faces * 3 * sizeof *faces));
-	json_object_set_new(out, "skin", base64(skin, (size_t)n * 4));
-	json_object_set_new(out, "still", base64(still, (size_t)n * RECORD));
-	json_object_set_new(out, "poses", base64(poses, (size_t)f->moving * RECORD * POSES));
+	json_object_set_new(out, "faces", viewer_base64(faces, (size_t)n_faces * 3 * sizeof *faces));
+	json_object_set_new(out, "skin", viewer_base64(skin, (size_t)n * 4));
+	json_object_set_new(out, "still", viewer_base64(still, (size_t)n * RECORD));
+	json_object_set_new(out, "poses", viewer_base64(poses, (size_t)f->moving * RECORD * POSES));
 	free(faces);
 	free(skin);
 	free(still);
 	free(poses);
+	return n;
 }
 
 /* What drives, as the grid has it: time, gaze of the left eye, aperture against what people do at that gaze, gaze of the right
- * eye; one row a frame. */
+ * eye, expressions; one row a frame. */
 json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive *drive)
 {
 	json_t *rows = json_array();
@@ -223,16 +216,18 @@ json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive 
 			usual += rig->baseline[k][0] * gaze[0] + rig->baseline[k][1] * gaze[1] + rig->baseline[k][2];
 		}
 		double aperture = usual > 0.05 ? open / usual : 1;
-		json_array_append_new(rows, json_pack("[f,f,f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * c[0]) / 100,
-		                                      round(100 * c[1]) / 100, round(1e3 * fmin(fmax(aperture, 0), 1.4)) / 1e3,
-		                                      round(100 * c[5]) / 100, round(100 * c[6]) / 100));
+		json_t *row = json_pack("[f,f,f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * c[0]) / 100,
+		                        round(100 * c[1]) / 100, round(1e3 * fmin(fmax(aperture, 0), 1.4)) / 1e3, round(100 * c[5]) / 100, round(100 * c[6]) / 100);
+		for (int k = SKIN_EYE_INPUTS; k < drive->n_inputs; k++)
+			json_array_append_new(row, json_real(round(1e3 * c[k]) / 1e3));
+		json_array_append_new(rows, row);
 	}
 	return json_pack("{s:s,s:o}", "name", name, "rows", rows);
 }
 
-json_t *viewer_face(const char *name, struct portrait *portrait, double gain, const struct scene *const eyes[2])
+json_t *viewer_face(const char *name, struct portrait *portrait, const struct skin_model *model, double gain, const struct scene *const eyes[2], struct err *err)
 {
-	struct face f = { .rig = portrait->rig, .portrait = portrait, .n = portrait->mesh.n };
+	struct face f = { .rig = portrait->rig, .portrait = portrait, .n = portrait->mesh.n, .n_au = model->n_au };
 	for (int i = portrait->first_lash; i < portrait->mesh.n_faces; i++)
 		for (int j = 0; j < 3; j++)
 			f.n = portrait->mesh.faces[i][j] < f.n ? f.n : portrait->mesh.faces[i][j] + 1;
@@ -259,10 +254,16 @@ json_t *viewer_face(const char *name, struct portrait *portrait, double gain, co
 	}
 	json_object_set_new(out, "globes", globes);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
-	json_object_set_new(out, "sky", base64(f.sky, (size_t)POSES * SKY * SKY * 2));
-	put_mesh(out, &f);
-	for (int k = 0; k < POSES; k++)
+	json_object_set_new(out, "sky", viewer_base64(f.sky, (size_t)POSES * SKY * SKY * 2));
+	int n = put_mesh(out, &f);
+	json_object_set_new(out, "expressions", viewer_expressions(&f, n, model->au_names));
+	if (!viewer_put_folds(out, &f, n, err)) {
+		json_decref(out);
+		out = 0;
+	}
+	for (int k = 0; k < POSES + f.n_au; k++)
 		free(f.record[k]);
+	free(f.record);
 	free(f.sky);
 	free(f.order);
 	return out;

@@ -31,28 +31,45 @@ static uint8_t byte(double t)
 	return (uint8_t)lrint(255 * fmin(fmax(t, 0), 1));
 }
 
-/* 12 bits of height in two channels, 8 of thickness in the third. */
-json_t *viewer_map_relief(const struct scene_level *level, struct err *err)
+/* 12 bits of height in two channels, 8 of what goes with it in the third. px: [height][width][2]. */
+static json_t *map_height(const float *px, int width, int height, struct err *err)
 {
 	double low[3] = { INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY };
-	long n = (long)level->n * level->n;
+	long n = (long)width * height;
 	for (long i = 0; i < n; i++)
 		for (int c = 0; c < 2; c++) {
-			low[c] = fmin(low[c], level->relief[2 * i + c]);
-			high[c] = fmax(high[c], level->relief[2 * i + c]);
+			low[c] = fmin(low[c], px[2 * i + c]);
+			high[c] = fmax(high[c], px[2 * i + c]);
 		}
 	for (int c = 0; c < 2; c++)
 		high[c] = fmax(high[c], low[c] + 1e-6);
-	uint8_t *px = mem_array((size_t)n * 3, 1);
+	uint8_t *out = mem_array((size_t)n * 3, 1);
 	for (long i = 0; i < n; i++) {
-		int h = (int)lrint((level->relief[2 * i] - low[0]) / (high[0] - low[0]) * 4095);
-		px[3 * i] = (uint8_t)(h >> 4);
-		px[3 * i + 1] = (uint8_t)((h & 15) * 17);
-		px[3 * i + 2] = byte((level->relief[2 * i + 1] - low[1]) / (high[1] - low[1]));
+		int h = (int)lrint((px[2 * i] - low[0]) / (high[0] - low[0]) * 4095);
+		out[3 * i] = (uint8_t)(h >> 4);
+		out[3 * i + 1] = (uint8_t)((h & 15) * 17);
+		out[3 * i + 2] = byte((px[2 * i + 1] - low[1]) / (high[1] - low[1]));
 	}
-	json_t *map = png(px, level->n, level->n, 3, low, high, err);
-	free(px);
+	json_t *map = png(out, width, height, 3, low, high, err);
+	free(out);
 	return map;
+}
+
+json_t *viewer_map_relief(const struct scene_level *level, struct err *err)
+{
+	return map_height(level->relief, level->n, level->n, err);
+}
+
+json_t *viewer_map_folds(const struct image *map, int n, const int of[], struct err *err)
+{
+	long count = (long)map->width * map->height;
+	float *px = mem_array((size_t)count * (size_t)n * 2, sizeof *px);
+	for (int k = 0; k < n; k++)
+		for (long i = 0; i < count; i++)
+			memcpy(px + 2 * (k * count + i), map->px + map->channels * i + 2 * of[k], 2 * sizeof *px);
+	json_t *out = map_height(px, map->width, n * map->height, err);
+	free(px);
+	return out;
 }
 
 json_t *viewer_map_colour(const struct scene_level *level, struct err *err)

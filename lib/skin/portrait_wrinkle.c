@@ -6,8 +6,7 @@
 #include "base/mem.h"
 #include "skin/model.h"
 #include "skin/portrait_impl.h"
-
-static const float diffuse = 0.7f;  // of a slope is left in light that has been below the skin
+#include "skin/skin_look.h"
 
 void portrait_wear(struct portrait *p, const struct wrinkle_maps *maps, int n_au, char *const au_names[])
 {
@@ -82,7 +81,7 @@ bool portrait_fold(float normal[3], float light[3], const struct portrait *p, co
 	if (!wrinkle_maps_at(slope, &open, p->wrinkles, p->wrinkle_strength, px) || !on_face(g, p, face, slope))
 		return false;
 	for (int c = 0; c < 3; c++)
-		bent[c] = normal[c] - diffuse * g[c];
+		bent[c] = normal[c] - (float)SKIN_FOLD_DIFFUSE * g[c];
 	float len = sqrtf(dot(bent, bent));
 	for (int k = 0; k < sky->n; k++)
 		for (int c = 0; c < 3; c++) {

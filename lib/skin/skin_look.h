@@ -19,6 +19,10 @@
 #define SKIN_ROUGH_NARROW 0.34
 #define SKIN_MIRROR 0.028
 
+// Wrinkles: what of their slope is left in light that has been below the skin; over how far slopes are taken, px of their map.
+#define SKIN_FOLD_DIFFUSE 0.7
+#define SKIN_FOLD_STEP 0.7
+
 // The dark under a lid's edge: how far it reaches (mm; lids are some 2 mm thick), how much light it takes there, how fast it
 // fades, from which share of its reach on it ends.
 #define TEAR_SHADOW_MM 0.7

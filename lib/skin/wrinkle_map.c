@@ -7,9 +7,10 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "skin/skin_look.h"
 
 static const long limit_px = 100000000;
-static const float step = 0.7f;  // px, of the slope
+static const float step = (float)SKIN_FOLD_STEP;
 
 static bool read_names(struct wrinkle_maps *m, const char *path, struct err *err)
 {

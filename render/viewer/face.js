@@ -6,7 +6,7 @@ class FaceScene {
 	constructor(g, data) {
 		const gl = g.gl, bytes = Graphics.bytes;
 		Object.assign(this, { g, data, poses: bytes(data.poses), skies: bytes(data.sky), key: "" });
-		this.skin = g.program("skin", "skin_vert", ["skin_look"]);
+		this.skin = g.program("skin", "skin_vert", data.folds ? ["skin_look", "folds"] : ["skin_look"]);
 		this.eye = g.program("eye", null, ["skin_look", "lids"]);
 		this.tear = g.program("tear");
 		this.copy = g.program("copy");
@@ -35,12 +35,62 @@ class FaceScene {
 		};
 		array(3, bytes(data.skin), 4, gl.UNSIGNED_BYTE, true);
 		array(4, rest, 3, gl.FLOAT, false);
+		if (data.folds)
+			array(5, new Float32Array(Array.from(new Uint16Array(bytes(data.folds.home).buffer), v => v / 16)), 2, gl.FLOAT, false);
 		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
 		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
 		gl.bindVertexArray(null);
 		// Both eyes and some of what is beside them, mm across.
 		this.field = 2.3 * Math.hypot(...[0, 1, 2].map(k => data.globes[0][k] - data.globes[1][k]));
 		this.sky_map = g.texture(2 * data.sky_px, data.sky_px, gl.R8);
+		this.still = this.values.slice();
+		this.strengths = data.expressions.map(() => 0);
+	}
+
+	async load() {
+		this.fold_map = this.data.folds ? await this.g.map(this.data.folds.map, 0) : null;
+	}
+
+	/* What an expression in full adds to its vertices. */
+	expression(k) {
+		const e = this.data.expressions[k];
+		if (!e.delta) {
+			const to = Graphics.bytes(e.to);
+			e.at = new Uint32Array(Graphics.bytes(e.index).buffer);
+			e.delta = new Float32Array(9 * e.at.length);
+			e.at.forEach((v, i) => FaceScene.decoded(to, i * FaceScene.RECORD, this.data.reach).forEach((x, c) => { e.delta[9 * i + c] = x - this.still[9 * v + c]; }));
+		}
+		return e;
+	}
+
+	/* Expressions on top of what gaze and lids have made of the vertices; true where more than those have moved. */
+	express(strengths) {
+		const d = this.data, out = this.values, before = this.strengths;
+		let any = false;
+		strengths.forEach((s, k) => {
+			if (s > 0 || before[k] > 0) {
+				any = true;
+				for (const v of this.expression(k).at)
+					if (v >= d.moving)
+						out.set(this.still.subarray(9 * v, 9 * v + 9), 9 * v);
+			}
+		});
+		strengths.forEach((s, k) => {
+			if (s > 0) {
+				const { at, delta } = this.expression(k);
+				for (let i = 0; i < at.length; i++)
+					for (let c = 0, o = 9 * at[i]; c < 9; c++)
+						out[o + c] += s * delta[9 * i + c];
+			}
+		});
+		this.strengths = [...strengths];
+		return any;
+	}
+
+	/* Of the skin's shader, where the model folds. */
+	folds() {
+		const f = this.data.folds, of = f ? f.follows.map(k => Math.min(1, this.strengths[k])) : [];
+		return f ? { fold_map: this.fold_map, folds: of.length, fold_strength: EyeScene.padded(of, EyeScene.LIGHTS), fold_size: f.size, fold_scale: [f.subject_mm, f.px] } : {};
 	}
 
 	static decoded(b, at, reach) {
@@ -63,9 +113,10 @@ class FaceScene {
 		return out;
 	}
 
-	/* h, v degrees; a: aperture, 1 as people open their eyes at that gaze. */
-	pose(h, v, a) {
-		const key = [h, v, a].map(x => x.toFixed(2)).join(), gl = this.g.gl, d = this.data;
+	/* h, v degrees; a: aperture, 1 as people open their eyes at that gaze; strengths: of expressions. */
+	pose(h, v, a, strengths) {
+		strengths = this.strengths.map((s, k) => strengths && strengths[k] || 0);
+		const key = [h, v, a, ...strengths].map(x => x.toFixed(2)).join(), gl = this.g.gl, d = this.data;
 		if (key === this.key)
 			return;
 		this.key = key;
@@ -95,8 +146,9 @@ class FaceScene {
 			out[o + 7] = g / 255;
 			out[o + 8] = l / 255;
 		}
+		const more = this.express(strengths);
 		gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-		gl.bufferSubData(gl.ARRAY_BUFFER, 0, out.subarray(0, 9 * d.moving));
+		gl.bufferSubData(gl.ARRAY_BUFFER, 0, more ? out : out.subarray(0, 9 * d.moving));
 		const n = 2 * d.sky_px * d.sky_px, sky = new Uint8Array(n);
 		for (let i = 0; i < n; i++)
 			sky[i] = mix.reduce((sum, [w, pose]) => sum + w * this.skies[pose * n + i], 0);
@@ -173,7 +225,7 @@ class FaceScene {
 	/* A picture of skin and eyes into frame. */
 	draw(eye_scenes, s, view, preset, jitter) {
 		const g = this.g, gl = g.gl, { width, height } = this.frame, c = this.camera(view, height), first = eye_scenes[0];
-		this.pose(...[0, 1].map(k => (view.gazes[0][k] + view.gazes[1][k]) / 2), view.open);
+		this.pose(...[0, 1].map(k => (view.gazes[0][k] + view.gazes[1][k]) / 2), view.open, view.expressions);
 		const light = first.lights[s.light] || first.lights[0], turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
 		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = FaceScene.fewer(light.skies, preset.skies);
 		const views = [0, 1].map(side => this.eye_view(eye_scenes[side], s, view, side, width, height));
@@ -184,7 +236,7 @@ class FaceScene {
 		gl.enable(gl.CULL_FACE);
 		gl.clearColor(0, 0, 0, 0);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-		g.draw(this.skin, { cam_from_head: c.R, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
+		g.draw(this.skin, { ...this.folds(), cam_from_head: c.R, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
 			shift: [2 * (c.aim[0] - jitter[0]) / width, 2 * (jitter[1] - c.aim[1]) / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
 			sky_dir: EyeScene.padded(skies.flatMap(l => turns.apply(turns.transpose(env), l)), 3 * EyeScene.LIGHTS),
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),

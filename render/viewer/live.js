@@ -12,7 +12,8 @@ class Live extends Controls {
 		if (this.beside && p)
 			return { pose: p.cam_from_eye, slip: p.slip, camera: p.camera, window: p.window, rows: p.height };
 		if (this.mode === "face")
-			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
+			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), expressions: this.playing === null ? data.face.expressions.map((e, k) => this.values[`au${k}`]) : this.clip_expressions,
+				open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
 				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
 		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
 	}
@@ -29,6 +30,7 @@ class Live extends Controls {
 		if (this.scene)
 			this.scene.restart();
 		this.rested = 0;
+		delete document.documentElement.dataset.settled;
 		this.wake();
 	}
 
@@ -66,13 +68,14 @@ class Live extends Controls {
 				j = k;
 		}
 		const a = rows[i], b = rows[j], u = b[0] > a[0] ? Math.min(1, Math.max(0, (at - a[0]) / (b[0] - a[0]))) : 0;
-		const v = [1, 2, 3, 4, 5].map(k => a[k] + u * (b[k] - a[k]));
+		const v = a.map((x, k) => x + u * (b[k] - x)).slice(1);
 		this.clip_gazes = [[v[0], v[1]], [v[3], v[4]]];
 		this.eyes.eye = [(v[0] + v[3]) / 2, (v[1] + v[4]) / 2];
 		this.eyes.target = [...this.eyes.eye];
 		this.eyes.drift = [0, 0];
 		this.eyes.closure = 0;
 		this.clip_open = v[2];
+		this.clip_expressions = v.slice(5);
 	}
 
 	wander(t) {

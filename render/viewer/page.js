@@ -28,7 +28,7 @@ class Page extends Live {
 			this.face = this.face || new FaceScene(this.graphics, data.face);
 		else
 			this.scene.start();
-		await this.scene.load();
+		await Promise.all([this.scene.load(), this.face ? this.face.load() : null]);
 		if (data.face)
 			await this.open_face();
 		this.mode = this.mode || "eye";

@@ -75,6 +75,12 @@ void main()
 	// The light moved: what that changes for a surface that faces this way.
 	vec3 moved = irradiance(env_from_head * n, quadric) / irradiance(still_from_head * n, still_quadric);
 	vec3 light = 3.0 * seen_light * seen_light * clamp(moved, 0.0, 6.0);
+#ifdef FOLDS
+	float sky;
+	vec3 fold = folded(smooth_n, seen_at, sky), bent = normalize(smooth_n - SKIN_FOLD_DIFFUSE * fold);
+	light *= sky * min(irradiance(env_from_head * bent, quadric) / irradiance(env_from_head * smooth_n, quadric), 2.0);
+	n = smooth_n = normalize(smooth_n - fold);
+#endif
 	if (seen_skin.a > 0.5) {
 		seen = vec4(albedo * 1.5 * (0.4 + light), 0.99);  // hairs hang before a lid's edge and are not it: tear.frag
 		return;

@@ -4,11 +4,13 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 light;
 layout(location = 3) in vec4 skin;
 layout(location = 4) in vec3 rest;
+layout(location = 5) in vec2 home;  // in the chart of wrinkles, px
 uniform mat3 cam_from_head;
 uniform vec3 camera;              // focal length over half the width, over half the height; distance
 uniform vec2 clip_depth, shift;
 out vec3 seen_at, seen_normal, seen_light, seen_rest;
 out vec4 seen_skin;
+out vec2 seen_home;
 
 void main()
 {
@@ -19,4 +21,5 @@ void main()
 	seen_light = light;
 	seen_rest = rest;
 	seen_skin = skin;
+	seen_home = home;
 }

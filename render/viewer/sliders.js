@@ -36,6 +36,8 @@ function sliders(eye) {
 			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, show: v => `${(100 * v).toFixed(0)} %` },
 			{ key: "field", label: "Zoom: height shown", lo: 8, hi: 60, value: 30, power: 2, show: mm(1) },
 		]],
+		...(data.face && data.face.expressions.length ? [["Expressions", data.face.expressions.map((x, k) => (
+			{ key: `au${k}`, label: x.name, lo: 0, hi: 1, value: 0, lids: true, show: v => `${(100 * v).toFixed(0)} %` }))]] : []),
 		["Pigment of the iris", [
 			{ ...melanin("abl_eu"), label: "Anterior border layer: eumelanin" },
 			{ ...melanin("abl_pheo"), label: "Anterior border layer: pheomelanin" },

@@ -117,6 +117,57 @@ async function hands(b) {
 	say(Math.abs(await b.value("eyewright.values.stroma_eu") / value - 1) < 1e-4, "the address restores the view", hash);
 }
 
+/* Every slider: its fitted value is marked, moving it changes the picture, its own reset brings the first back. */
+async function sliders(b) {
+	await calm(b, true);
+	await open(b, "#gaze=0,0");
+	const said = JSON.parse(await b.value(`(() => {
+		const p = eyewright, gl = p.graphics.gl, of = key => document.getElementById("s-" + key), out = { all: [], stuck: [], bare: [], unsure: [] };
+		p.busy = true;
+		const look = () => { p.scene.restart(); p.draw(presets[presets.length - 1]); return ${sum}; };
+		const first = look();
+		for (const c of p.controls.filter(c => of(c.key))) {
+			const row = of(c.key).closest(".row");
+			out.all.push(c.key);
+			p.set(c.key, c.value - c.lo > c.hi - c.value ? c.lo : c.hi);
+			const moved = look();
+			row.querySelector(".reset").click();
+			if (moved === first || look() !== first || p.values[c.key] !== c.value)
+				out.stuck.push(c.key);
+			if (!row.querySelector(".fit"))
+				out.bare.push(c.key);
+			if (!row.querySelector(".sigma"))
+				out.unsure.push(c.key);
+		}
+		p.busy = false;
+		return JSON.stringify(out);
+	})()`, 120000));
+	const wanted = ["pupil", "tear", "abl_eu", "abl_pheo", "stroma_eu", "stroma_pheo", "thickness_scale", "R", "p", "n", "light_yaw", "light_pitch", "light_gain"];
+	say(wanted.every(k => said.all.includes(k)), "sliders for pupil, tears, pigments, thickness, cornea and light", said.all.join());
+	say(!said.stuck.length, "each slider changes the picture, and its reset brings it back", said.stuck.join());
+	say(!said.bare.length, "each slider marks its fitted value", said.bare.join());
+	say(["abl_eu", "abl_pheo", "stroma_eu", "stroma_pheo", "thickness_scale", "R", "p"].every(k => !said.unsure.includes(k)), "what is uncertain shows how much", said.unsure.join());
+}
+
+/* The picture's own keys, and what a screen reader is told. */
+async function keys(b) {
+	await calm(b, true);
+	await open(b, "#gaze=0,0");
+	const press = (key, shift) => b.value(`document.getElementById("view").dispatchEvent(new KeyboardEvent("keydown", { key: "${key}", shiftKey: ${!!shift}, bubbles: true, cancelable: true }))`);
+	await press("ArrowRight");
+	await press("ArrowUp");
+	say(await b.value("eyewright.eyes.target.join()") === "2,2", "arrow keys turn the gaze", await b.value("eyewright.eyes.target.join()"));
+	const told = await b.value("document.getElementById('said').textContent + document.getElementById('said').getAttribute('aria-live')");
+	say(/2 degrees.*left, 2 up.*polite/.test(told), "and a screen reader is told", told);
+	await press("ArrowLeft", true);
+	await press("+");
+	say(await b.value("eyewright.orbit[0] < 0 && eyewright.values.field < 30 && location.hash.includes('field=') && location.hash.includes('gaze=2.0,2.0')"), "with shift they turn the view, + zooms, the address keeps it", await b.value("location.hash"));
+	await press("0");
+	say(await b.value("eyewright.orbit.join() + eyewright.values.field + eyewright.eyes.target.join()") === "0,0300,0", "0 goes back", await b.value("eyewright.orbit.join()"));
+	await b.value("document.getElementById('s-pupil').focus()");
+	say(/^[0-9.]+ mm; Fitted/.test(await b.value("document.activeElement.getAttribute('aria-valuetext')")), "a slider says its value and the fitted one", await b.value("document.activeElement.getAttribute('aria-valuetext')"));
+}
+
 async function eyes(b) {
 	await calm(b, false);
 	await open(b);
@@ -190,12 +241,15 @@ async function character(b) {
 	const worst = await b.value(`(() => { const f = eyewright.face, d = f.data, a = d.a[1], c = d.a[2], take = x => { f.pose(0, 0, x); return f.values.slice(0, 9 * d.moving); };
 		const p = take(a), q = take(c), m = take((a + c) / 2); return p.reduce((w, v, i) => Math.max(w, Math.abs(m[i] - (v + q[i]) / 2)), 0); })()`);
 	say(worst < 1e-4, "between poses the mesh is interpolated", `off by ${worst}`);
-	await b.value("eyewright.play(0)");
-	await b.until("eyewright.eyes.eye.some(v => v !== 0)", 20);
-	const a = await b.value("eyewright.began"), first = await b.value("eyewright.eyes.eye.join()");
-	await b.until(`eyewright.eyes.eye.join() !== "${first}"`, 20);
-	say(a !== null, "a recorded clip plays", "it does not");
+	for (const [k, name] of [[0, "As recorded"], [1, "Cut-scene"]]) {
+		await b.value(`eyewright.eyes.eye = [0, 0]; eyewright.play(${k})`);
+		await b.until("eyewright.eyes.eye.some(v => v !== 0)", 20);
+		const first = await b.value("eyewright.eyes.eye.join()");
+		await b.until(`eyewright.eyes.eye.join() !== "${first}"`, 20);
+		say(await b.value(`data.face.clips[${k}].name`) === name && await b.value("eyewright.began") !== null, `a clip plays: ${name}`, await b.value(`data.face.clips[${k}].name`));
+	}
 	await b.value("eyewright.play(null)");
+	await expressions(b);
 	// Either eye turned to one place: 62 mm apart they turn by 2 atan(31 / 200) against each other at 20 cm.
 	const turned = await b.value(`(() => { const v = eyewright; v.values.near = 5; const g = v.gazes(0, 0), x = data.face.globes; v.values.near = 0;
 		return (g[1][0] - g[0][0]) - 2 * Math.atan((x[0][0] - x[1][0]) / 2 / 200) * 180 / Math.PI; })()`);
@@ -212,6 +266,36 @@ async function character(b) {
 	say(/skin/.test(compiled) && /lids/.test(compiled) && !/eye(,|$)/.test(compiled), "a face compiles its own eye and no other", compiled);
 	say(!b.problems.length, "the face: no error on the console", b.problems.join("; "));
 	say(fs.statSync(face).size < 20e6, "with a face the page is below 20 MB", `${fs.statSync(face).size}`);
+}
+
+/* Vertices between rest and an expression in full, and back; wrinkles fold with theirs alone. */
+async function expressions(b) {
+	const off = JSON.parse(await b.value(`(() => {
+		const f = eyewright.face, d = f.data, take = s => { f.pose(0, 0, 1, s); return f.values.slice(); };
+		const rest = take([0, 0]), half = take([0.5, 0]), full = take([1, 0]), both = take([1, 1]), other = take([0, 1]), again = take([0, 0]);
+		let moves = 0, halfway = 0, sum = 0, back = 0;
+		rest.forEach((r, i) => {
+			moves = Math.max(moves, Math.abs(full[i] - r));
+			halfway = Math.max(halfway, Math.abs(half[i] - (r + full[i]) / 2));
+			sum = Math.max(sum, Math.abs(both[i] - full[i] - other[i] + r));
+			back = Math.max(back, Math.abs(again[i] - r));
+		});
+		return JSON.stringify({ moves, halfway, sum, back });
+	})()`));
+	say(off.moves > 0.5 && off.halfway < 1e-4 && off.sum < 1e-4 && off.back < 1e-6, "expressions move the face, add, and go", JSON.stringify(off));
+	const seen = JSON.parse(await b.value(`(() => {
+		const p = eyewright;
+		p.busy = true;
+		p.eyes.eye = p.eyes.target = [0, 0];
+		const look = (au0, au1, flat) => { p.values.au0 = au0; p.values.au1 = au1; p.scene.restart(); if (flat) p.face.folds = () => ({ ...fold(), folds: 0 }); p.draw(presets[presets.length - 1]); delete p.face.folds; return ${sum}; };
+		const fold = p.face.folds.bind(p.face);
+		const out = { brow: look(1, 0) !== look(1, 0, true), squint: look(0, 1) !== look(0, 1, true), rest: look(0, 0) !== look(0, 0, true) };
+		look(0, 0);
+		p.busy = false;
+		return JSON.stringify(out);
+	})()`, 120000));
+	say(seen.brow && !seen.squint && !seen.rest, "skin folds with the expression that folds it", JSON.stringify(seen));
+	say(await b.value("!!document.getElementById('s-au0') && !!document.getElementById('s-au1')"), "each expression has a slider", "one is missing");
 }
 
 async function without(b) {
@@ -234,6 +318,8 @@ async function without(b) {
 		say(!/skin|lids|tear/.test(compiled + sent), "an eye alone compiles no skin and no tears", `${compiled}; ${sent}`);
 		await agreement(b);
 		await hands(b);
+		await sliders(b);
+		await keys(b);
 		await eyes(b);
 		await beside(b);
 		await everyone(b);

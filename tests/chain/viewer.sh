@@ -25,7 +25,9 @@ character=$root/character
 "${B:-build}/tests/tools/made_face" "$character"
 sed -i '/^render.clip_px/d' "$character/capture.conf"
 echo 'render.clip_px = 0' >>"$character/capture.conf"
-for stage in extrapolate render; do
+mkdir -p "$character/script"
+sed 1d samples/face/script/look_around.csv | head -n 3 | cut -d, -f1-7 >"$character/script/look.csv"
+for stage in extrapolate animate render; do
 	"$BIN/$stage" --capture="$character" --quiet >"$log" 2>&1
 	same "$stage of a character" "$? $(cat "$log")" "0 "
 done

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/npy.h"
 #include "bridge/om_mesh.h"
+#include "image/exr.h"
 #include "image/video.h"
 #include "tests/lib/face.h"
 
@@ -64,6 +65,28 @@ static bool write_transfer(const struct face *face, struct err *err)
 	return ok;
 }
 
+/* The brow's expression folds the skin above both eyes in one line: a groove a millimetre wide. */
+static bool write_wrinkles(const struct face *face, struct err *err)
+{
+	enum { CHART_W = 960, CHART_H = 120 };
+	static const char *const channels[] = { "brow.height", "brow.open" };
+	const struct skin_camera *camera = &face->model.camera;
+	double px_per_mm = camera->focal_px / camera->cam_from_head[2][3];
+	int x0 = (int)camera->center_px[0] - CHART_W / 2, y0 = (int)(camera->center_px[1] - 20 * px_per_mm) - CHART_H / 2;
+	struct image map = image_new(CHART_W, CHART_H, 2);
+	for (int y = 0; y < CHART_H; y++)
+		for (int x = 0; x < CHART_W; x++) {
+			double off = (y - CHART_H / 2.0) / px_per_mm, deep = exp(-off * off / 0.5) * (x > 20 && x < CHART_W - 20);
+			map.px[2 * (y * CHART_W + x)] = (float)(-0.5 * deep);
+			map.px[2 * (y * CHART_W + x) + 1] = (float)(1 - 0.4 * deep);
+		}
+	json_t *json = json_pack("{s:[i,i,i,i],s:f,s:[{s:s,s:[i]}]}", "chart", x0, y0, CHART_W, CHART_H, "px_per_mm", px_per_mm, "expressions", "name", "brow", "lines", 1);
+	bool ok = json_write(at("work/skin/wrinkles.json"), json, 0, err) && exr_write(at("work/skin/wrinkles.exr"), &map, channels, EXR_FLOAT, 0, err);
+	json_decref(json);
+	image_free(&map);
+	return ok;
+}
+
 /* A gaze that wanders, and a blink that hides it. */
 static bool write_gaze(struct err *err)
 {
@@ -104,7 +127,7 @@ int main(int argc, char **argv)
 	face_make(&face, false);
 	bool ok = file_mkdirs(at("work/skin"), &err) && file_mkdirs(at("work/targets/made"), &err)
 	          && file_write(at("capture.conf"), conf, sizeof conf - 1, &err) && write_obj(&face.character, &err)
-	          && skin_model_save(&face.model, at("work/skin"), "{}", &err) && write_transfer(&face, &err) && write_gaze(&err)
+	          && skin_model_save(&face.model, at("work/skin"), "{}", &err) && write_transfer(&face, &err) && write_gaze(&err) && write_wrinkles(&face, &err)
 	          && write_video(&err);
 	face_free(&face);
 	if (!ok)
