@@ -31,7 +31,7 @@ for stage in extrapolate animate render; do
 	"$BIN/$stage" --capture="$character" --quiet >"$log" 2>&1
 	same "$stage of a character" "$? $(cat "$log")" "0 "
 done
-timeout 400 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" \
+timeout 600 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" \
 	"$character/work/review/viewer.html" >"$root/said" 2>&1
 while IFS= read -r line; do
 	case $line in
