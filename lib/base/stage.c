@@ -211,6 +211,12 @@ void stage_warn(struct stage *stage, const char *fmt, ...)
 void stage_progress(struct stage *stage, int done, int total, const char *what)
 {
 	double now = now_s(), passed = now - stage->start_s;
+	// What comes after another piece of work is timed from that one's end.
+	if (strncmp(stage->progress_what, what, sizeof stage->progress_what - 1)) {
+		snprintf(stage->progress_what, sizeof stage->progress_what, "%s", what);
+		stage->what_s = stage->called_s > 0 ? stage->called_s : stage->start_s;
+	}
+	stage->called_s = now;
 	bool tty = isatty(STDERR_FILENO);
 	int tenths = total > 0 ? (int)(10LL * done / total) : 10;
 	if (stage->quiet || done <= 0 || passed < 1)
@@ -219,7 +225,7 @@ void stage_progress(struct stage *stage, int done, int total, const char *what)
 		return;
 	stage->progress_s = now;
 	stage->progress_shown = tenths;
-	double left = passed * (total - done) / done;
+	double left = (now - stage->what_s) * (total - done) / done;
 	if (!tty) {
 		stage_note(stage, "%s: %d of %d, about %.0f s left", what, done, total, left);
 		return;
@@ -239,21 +245,24 @@ void stage_figure(struct stage *stage, const char *key, double value, const char
 	pthread_mutex_unlock(&busy);
 }
 
-static char *text_of(const char *fmt, va_list ap)
+/* The sentence, recorded; free(). */
+static char *skip(const char *fmt, va_list ap)
 {
 	char *text = 0;
-	return vasprintf(&text, fmt, ap) < 0 ? mem_str("") : text;
+	if (vasprintf(&text, fmt, ap) < 0)
+		text = mem_str("");
+	pthread_mutex_lock(&busy);
+	say_log_skipped(text);
+	pthread_mutex_unlock(&busy);
+	return text;
 }
 
 void stage_skipped(struct stage *stage, const char *fmt, ...)
 {
 	va_list ap;
 	va_start(ap, fmt);
-	char *text = text_of(fmt, ap);
+	char *text = skip(fmt, ap);
 	va_end(ap);
-	pthread_mutex_lock(&busy);
-	say_log_skipped(text);
-	pthread_mutex_unlock(&busy);
 	stage_note(stage, "skipped: %s", text);
 	free(text);
 }
@@ -263,12 +272,8 @@ void stage_skipped_as_said(struct stage *stage, const char *fmt, ...)
 	va_list ap;
 	(void)stage;
 	va_start(ap, fmt);
-	char *text = text_of(fmt, ap);
+	free(skip(fmt, ap));
 	va_end(ap);
-	pthread_mutex_lock(&busy);
-	say_log_skipped(text);
-	pthread_mutex_unlock(&busy);
-	free(text);
 }
 
 int stage_end(struct stage *stage, struct err *err)

@@ -40,6 +40,8 @@ struct stage {
 	int n_strings, lock;
 	double start_s, progress_s;
 	int progress_shown;
+	char progress_what[64];  // the work that is counted now
+	double what_s, called_s; // when it began; when stage_progress was last called
 	bool progress_open;  // an unfinished progress line stands on the terminal
 };
 
