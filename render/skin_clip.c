@@ -101,7 +101,7 @@ static bool clip_make(struct clip *c, const char *rel, int n_in, const char *con
 	portrait_wear(c->portrait, &c->job->wrinkles, c->job->model.n_au, c->job->model.au_names);
 	double mean = c->drive->n > 1 ? (c->drive->time[c->drive->n - 1] - c->drive->time[0]) / (c->drive->n - 1) : 1;
 	struct video_writer_conf w = { .width = c->width, .height = c->view.height, .fps = 1 / (mean * c->step), .crf = conf->clip_crf,
-		                           .preset = "fast", .made_by = stage_made_by(c->job->stage, n_in, in) };
+		                           .preset = "veryfast", .made_by = stage_made_by(c->job->stage, n_in, in) };
 	c->writer = video_writer_open(stage_path(c->job->stage, "%s", rel), &w, err);
 	bool ok = c->writer && frames(c, err);
 	ok = video_writer_close(c->writer, ok, err) && ok && skin_made(c->job, rel, n_in, in, err);

@@ -29,6 +29,9 @@ static void project(struct screen *s, const struct portrait *p, const struct por
 static void fill(struct screen *s, const int32_t v[3], int face, int low, int high)
 {
 	const float *a = s->at[v[0]], *b = s->at[v[1]], *c = s->at[v[2]];
+	float above = (float)low + 0.5f, below = (float)high - 0.5f;  // most triangles lie in another band
+	if ((a[1] < above && b[1] < above && c[1] < above) || (a[1] > below && b[1] > below && c[1] > below))
+		return;
 	if (!(a[2] > 1 && b[2] > 1 && c[2] > 1))
 		return;
 	// Counter-clockwise from outside; the picture's y points down.
