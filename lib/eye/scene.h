@@ -132,7 +132,7 @@ struct scene_count {
 	long kept, hidden;            // first rays not traced: kept from the picture before; behind something (whole tiles)
 };
 
-/* What the rays of one view met, for a camera and an eye that stand still while lights move: 90 bytes a pixel. Quick pictures
+/* What the rays of one view met, for a camera and an eye that stand still while lights move: about 14 bytes a pixel. Quick pictures
  * alone use it. One scene, one picture at a time. */
 struct scene_hits *scene_hits_new(void);
 void scene_hits_free(struct scene_hits *hits);

@@ -1,4 +1,5 @@
 /* What rays of an unmoved view met, kept from picture to picture. */
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,10 +52,17 @@ void scene_hits_for(struct scene_hits *h, const struct scene *scene, const struc
 	h->found = mem_new((size_t)tiles, sizeof *h->found);
 }
 
-struct quick_found *scene_hits_tile(struct scene_hits *h, int tile, bool *kept)
+struct quick_found *scene_hits_tile(const struct scene_hits *h, int tile)
 {
-	*kept = h->found[tile] != 0;
-	if (!*kept)
-		h->found[tile] = mem_array(1, sizeof **h->found);
 	return h->found[tile];
+}
+
+/* No more than is read of it again. */
+void scene_hits_keep(struct scene_hits *h, int tile, const struct quick_found *found)
+{
+	size_t size = sizeof *found;
+	if (found->kind != QUICK_MIXED)
+		size = found->kind == QUICK_LIMBUS ? offsetof(struct quick_found, spots) : offsetof(struct quick_found, nodes.second);
+	h->found[tile] = mem_array(1, size);
+	memcpy(h->found[tile], found, size);
 }

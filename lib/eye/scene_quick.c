@@ -113,15 +113,16 @@ void quick_outside(struct quick_spots *s, const struct quick_rays *r, const stru
 
 /* Light on the white: diffuse, softened by what scatters below the surface, most in the red; next to the limbus it thins
  * out over the dark of the chamber's angle. Then the ripples of its film bend the normal. */
-SIMD_CLONES void quick_sclera(struct quick_spots *s, int n, const struct quick_look *k)
+SIMD_CLONES void quick_sclera(float out[3][BATCH], int n, const float *restrict nx, const float *restrict ny, const float *restrict nz,
+                              const float *restrict rho, const struct quick_look *k)
 {
 	static const float bleed[3] = { LOOK_BLEED }, rim[3] = { LOOK_RIM_DARK };
 	for (int c = 0; c < 3; c++) {
 		const float *q = k->sky[c];
-		float *restrict sky = s->sky[c];
+		float *restrict sky = out[c];
 		SIMD_LOOP
 		for (int i = 0; i < n; i++) {
-			float x = s->nx[i], y = s->ny[i], z = s->nz[i], edge = 1 - step_smooth(LOOK_RIM_FROM, (float)(1 / (LOOK_RIM_TO - LOOK_RIM_FROM)), s->rho[i]);
+			float x = nx[i], y = ny[i], z = nz[i], edge = 1 - step_smooth(LOOK_RIM_FROM, (float)(1 / (LOOK_RIM_TO - LOOK_RIM_FROM)), rho[i]);
 			float light = q[0] + x * (q[1] + y * q[4] + z * q[7] + x * q[8]) + y * (q[2] + z * q[5] - y * q[8]) + z * (q[3] + z * q[6]);
 			light = light > 0 ? light : 0;
 			sky[i] = (light + bleed[c] * (k->even[c] - light)) * (1 - rim[c] * edge * edge);

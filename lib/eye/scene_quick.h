@@ -49,14 +49,20 @@ enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA, QUICK_LIMBUS };
 /* A tile's nodes: every fourth pixel of its 16 x 16 and of the next ones, five by five; sparse: every eighth, three by three. */
 enum { QUICK_TILE = 16, NODE_STEP = 4, NODE_SIDE = 5, NODES_IN_TILE = 25, NODE_LANES = 32, SPARSE_SIDE = 3, SPARSE_LANES = 16 };
 
-/* Where the rays end, once: what they see is found in it. Not mixed: normals, rho, mirror, rough and the place on the
- * environment are the nodes', the places on the maps all pixels'. */
+/* A tile that is not mixed: as in quick_spots at its nodes, and where all its pixels look into the maps. */
+struct quick_nodes {
+	float nx[NODE_LANES], ny[NODE_LANES], nz[NODE_LANES], rho[NODE_LANES], mirror[NODE_LANES], rough[NODE_LANES];
+	float eu[NODE_LANES], ev[NODE_LANES], iu[NODE_LANES], iv[NODE_LANES];
+	float first[2][BATCH], second[2][BATCH];  // on the iris, or else the white; on the white beyond the iris' limbus
+};
+
+/* Where the rays end, once: what they see is found in it. */
 struct quick_found {
-	struct quick_spots spots;  // normals before the film has bent them
 	enum quick_kind kind;
 	int seen, hit, white;      // rays that see the iris, anything, the sclera
-	float bent[3][BATCH];      // normals after
-	float node_u[NODE_LANES], node_v[NODE_LANES];  // places of the nodes on the iris
+	struct quick_nodes nodes;
+	struct quick_spots spots;  // mixed: normals before the film has bent them
+	float bent[3][BATCH];      // and after
 };
 
 /* In this order; quick_iris where something of the iris is seen, sclera where something white is; reflect into the camera's
@@ -66,7 +72,7 @@ void quick_bend(struct quick_found *found, int n, const struct quick_look *look)
 void quick_iris(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
 void quick_reflect(float *x, float *y, float *z, struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
 void quick_unfold(int n, float *x, float *y, const float *z);
-void quick_sclera(struct quick_spots *spots, int n, const struct quick_look *look);
+void quick_sclera(float sky[3][BATCH], int n, const float *nx, const float *ny, const float *nz, const float *rho, const struct quick_look *look);
 
 /* From nodes to the 16 pixels right of each row of them; and to all 256. */
 void quick_rows(float (*rows)[QUICK_TILE], const float node[NODE_LANES]);
@@ -80,9 +86,10 @@ bool quick_grid(struct quick_found *found, float x, float y, quick_make *make, c
 /* Finds it by every ray. */
 void quick_find(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
 
-/* Makes hits those of this view: empty, where they were another's. Then one tile's; *kept: it has been found before. */
+/* Makes hits those of this view: empty, where they were another's. Then one tile's; null: not found yet; and keeps it. */
 void scene_hits_for(struct scene_hits *hits, const struct scene *scene, const struct scene_view *view, int tiles);
-struct quick_found *scene_hits_tile(struct scene_hits *hits, int tile, bool *kept);
+struct quick_found *scene_hits_tile(const struct scene_hits *hits, int tile);
+void scene_hits_keep(struct scene_hits *hits, int tile, const struct quick_found *found);
 
 /* Colours of n rays. */
 void quick_colour(float rgba[][4], struct quick_found *found, int n, const struct quick_look *look);

@@ -86,7 +86,7 @@ void quick_colour(float rgba[][4], struct quick_found *f, int n, const struct qu
 		return;
 	}
 	if (f->white)
-		quick_sclera(s, n, k);
+		quick_sclera(s->sky, n, s->nx, s->ny, s->nz, s->rho, k);
 	if (f->seen)
 		put_iris(rgba, s, n, k);
 	if (f->white)

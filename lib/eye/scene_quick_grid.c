@@ -158,7 +158,7 @@ static bool jumps(const float *u, const float *v, int n)
 static void ahead(const struct quick_found *f, const struct quick_look *k)
 {
 	const struct scene_texels *map = k->shade->detail;
-	const float *u = f->node_u, *v = f->node_v, per = k->shade->per_mm, off = 0.5f * (float)map->n - 0.5f;
+	const float *u = f->nodes.iu, *v = f->nodes.iv, per = k->shade->per_mm, off = 0.5f * (float)map->n - 0.5f;
 	float wide = (u[NODE_SIDE - 1] - u[0]) * per, slant = (v[NODE_SIDE - 1] - v[0]) * per;
 	for (int y = 0; y < QUICK_TILE; y++) {
 		int a = (y / NODE_STEP + 1) * NODE_SIDE - 1, b = a + NODE_SIDE;
@@ -181,18 +181,20 @@ static void iris_lay(struct quick_found *f, int nodes, bool sparse, const struct
 	for (int c = 0; c < NODE_CHANNELS && sparse; c++)
 		refine(q[c]);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
-		f->node_u[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
-		f->node_v[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
+		f->nodes.iu[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
+		f->nodes.iv[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
 	}
 	ahead(f, k);
-	meet_pixels(f->spots.iu, f->spots.iv, (const float(*)[NODE_LANES])q, k);
+	meet_pixels(f->nodes.first[0], f->nodes.first[1], (const float(*)[NODE_LANES])q, k);
 }
 
-static void lay_over(float *out)
+/* What is kept of the rays at the nodes. */
+static void nodes_put(struct quick_nodes *n, const struct quick_spots *s)
 {
-	float node[NODE_LANES];
-	memcpy(node, out, sizeof node);
-	quick_lay(out, node);
+	float *const to[] = { n->nx, n->ny, n->nz, n->rho, n->mirror, n->rough, n->eu, n->ev };
+	const float *const from[] = { s->nx, s->ny, s->nz, s->rho, s->mirror, s->rough, s->eu, s->ev };
+	for (int k = 0; k < 8; k++)
+		memcpy(to[k], from[k], NODE_LANES * sizeof(float));
 }
 
 bool quick_grid(struct quick_found *f, float x, float y, quick_make *make, const void *ctx, const struct quick_look *k)
@@ -226,9 +228,11 @@ bool quick_grid(struct quick_found *f, float x, float y, quick_make *make, const
 	}
 	if (f->seen)
 		iris_lay(f, r.n, sparse, k);
+	nodes_put(&f->nodes, s);
 	if (f->white) {
-		lay_over(s->su);
-		lay_over(s->sv);
+		float(*at)[BATCH] = f->seen ? f->nodes.second : f->nodes.first;
+		quick_lay(at[0], s->su);
+		quick_lay(at[1], s->sv);
 	}
 	return true;
 }

@@ -21,7 +21,7 @@ struct maps {
 };
 
 /* Places of the environment's pixels that the tile's nodes see. */
-SIMD_CLONES static void film_mirror(struct film *f, const struct quick_spots *s, const struct envmap *env, bool rough)
+SIMD_CLONES static void film_mirror(struct film *f, const struct quick_nodes *s, const struct envmap *env, bool rough)
 {
 	struct quick_places p, q;
 	float w = (float)env->sharp.width, m = (float)env->rough.width;
@@ -58,7 +58,7 @@ static struct span span_of(const float *u)
 
 /* Straight lines between nodes miss a mirror image that bends by b a pixel^2 of its by step^2 b / 8: less than an eighth of a
  * hundredth of white? */
-static bool film_even(const struct quick_spots *s, const struct envmap *env)
+static bool film_even(const struct quick_nodes *s, const struct envmap *env)
 {
 	const float least = 0.01f;
 	enum { MOST = 6 };
@@ -84,20 +84,21 @@ SIMD_CLONES static void film_iris(struct film *f, const struct quick_found *foun
 {
 	const struct scene_shade *h = k->shade;
 	struct quick_places p;
-	quick_places_of(&p, found->node_u, found->node_v, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, NODES_IN_TILE);
+	quick_places_of(&p, found->nodes.iu, found->nodes.iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, NODES_IN_TILE);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
-		float through = h->detail->step * (1 - found->spots.mirror[i]);
+		float through = h->detail->step * (1 - found->nodes.mirror[i]);
 		quick_four c = { through, through, through, 0 };
 		f->iris[i] = h->even ? c * quick_look_up(h->light, h->light_n, &p, i) : c;
 	}
 }
 
-static void film_white(struct film *f, struct quick_spots *s, const struct quick_look *k)
+static void film_white(struct film *f, const struct quick_nodes *s, const struct quick_look *k)
 {
-	quick_sclera(s, NODE_LANES, k);
+	float sky[3][BATCH];
+	quick_sclera(sky, NODE_LANES, s->nx, s->ny, s->nz, s->rho, k);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
 		float through = k->scene->white.step * (1 - s->mirror[i]);
-		f->white[i] = (quick_four){ through * s->sky[0][i], through * s->sky[1][i], through * s->sky[2][i], 0 };
+		f->white[i] = (quick_four){ through * sky[0][i], through * sky[1][i], through * sky[2][i], 0 };
 	}
 }
 
@@ -108,15 +109,15 @@ static void film_make(struct film *f, struct quick_found *found, const struct qu
 	for (int i = 0; i < NODES_IN_TILE; i++)
 		f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
 	if (env) {
-		film_mirror(f, &found->spots, env, found->white);
-		f->edge = !film_even(&found->spots, env);
+		film_mirror(f, &found->nodes, env, found->white);
+		f->edge = !film_even(&found->nodes, env);
 		for (int i = 0; i < NODES_IN_TILE && f->edge; i++)
 			f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
 	}
 	if (found->seen)
 		film_iris(f, found, k);
 	if (found->white)
-		film_white(f, &found->spots, k);
+		film_white(f, &found->nodes, k);
 }
 
 SIMD_INLINE float ramp(float lo, float inv, float x)
@@ -125,19 +126,20 @@ SIMD_INLINE float ramp(float lo, float inv, float x)
 	return t * t * (3 - 2 * t);
 }
 
-SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_spots *s, const struct quick_look *k)
+SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_nodes *s, const struct quick_look *k)
 {
 	const struct scene_shade *h = k->shade;
 	int n = h->detail->n;
-	quick_places_of(&m->detail, s->iu, s->iv, h->per_mm, 0.5f * (float)n - 0.5f, n, BATCH);
+	quick_places_of(&m->detail, s->first[0], s->first[1], h->per_mm, 0.5f * (float)n - 0.5f, n, BATCH);
 	if (!h->even)
-		quick_places_of(&m->light, s->iu, s->iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, BATCH);
+		quick_places_of(&m->light, s->first[0], s->first[1], h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, BATCH);
 }
 
-SIMD_CLONES static void maps_white(struct maps *m, const struct quick_spots *s, const struct quick_look *k, bool lid)
+SIMD_CLONES static void maps_white(struct maps *m, const struct quick_nodes *s, const struct quick_look *k, bool lid)
 {
 	float w = (float)k->scene->white.n, inv = 1 / k->lid_width, lo = 1 - 0.5f * k->lid_width;
-	quick_places_of(&m->white, s->su, s->sv, w, 0.5f * w - 0.5f, k->scene->white.n, BATCH);
+	const float(*at)[BATCH] = lid ? s->second : s->first;
+	quick_places_of(&m->white, at[0], at[1], w, 0.5f * w - 0.5f, k->scene->white.n, BATCH);
 	if (!lid)
 		return;
 	quick_lay(m->lid, s->rho);
@@ -146,7 +148,7 @@ SIMD_CLONES static void maps_white(struct maps *m, const struct quick_spots *s, 
 		m->lid[i] = ramp(lo, inv, m->lid[i]);
 }
 
-SIMD_CLONES static void maps_mirror(struct maps *m, const struct quick_spots *s, const struct envmap *env, bool rough)
+SIMD_CLONES static void maps_mirror(struct maps *m, const struct quick_nodes *s, const struct envmap *env, bool rough)
 {
 	float u[BATCH], v[BATCH], w = (float)env->sharp.width, r = (float)env->rough.width;
 	quick_lay(u, s->eu);
@@ -257,11 +259,11 @@ void quick_tile_colour(float *out, long stride, struct quick_found *found, const
 	struct maps maps;
 	film_make(&film, found, k);
 	if (found->seen)
-		maps_iris(&maps, &found->spots, k);
+		maps_iris(&maps, &found->nodes, k);
 	if (found->white)
-		maps_white(&maps, &found->spots, k, found->seen);
+		maps_white(&maps, &found->nodes, k, found->seen);
 	if (film.edge)
-		maps_mirror(&maps, &found->spots, k->light->mirror, found->white);
+		maps_mirror(&maps, &found->nodes, k->light->mirror, found->white);
 	int what = !found->white ? 0 : found->seen ? 2 : 1;
 	with[what][k->shade->even][film.edge](out, stride, &film, &maps, k);
 }

@@ -91,15 +91,14 @@ static void trace_points(float rgba[][4], int n, const float *x, const float *y,
  * met may be known from the picture before. out: rows `stride` floats apart. */
 static void quick_tile(float *out, long stride, int n, int tx, int ty, int tile, const struct canvas *c, struct scene_count *count)
 {
-	struct quick_found mine, *found = &mine;
-	bool kept = false;
-	if (c->view->hits)
-		found = scene_hits_tile(c->view->hits, tile, &kept);
+	struct quick_found mine, *kept = c->view->hits ? scene_hits_tile(c->view->hits, tile) : 0, *found = kept ? kept : &mine;
 	if (!kept && !quick_grid(found, (float)tx + 0.5f, (float)ty + 0.5f, sight_rays_make, &c->plane, c->look->quick)) {
 		float x[BATCH], y[BATCH];
 		tile_points(x, y, tx, ty);
 		quick_points(found, BATCH, x, y, c);
 	}
+	if (c->view->hits && !kept)
+		scene_hits_keep(c->view->hits, tile, found);
 	*(kept ? &count->kept : &count->rays) += n;
 	count->iris += found->seen;
 	if (found->kind != QUICK_MIXED) {
