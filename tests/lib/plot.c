@@ -92,6 +92,30 @@ static bool plot_series(FILE *gp, const struct csv *csv, const struct csv_row *h
 	return true;
 }
 
+/* The front, as steps: what no other row beats in time and error together. */
+static void plot_front(FILE *gp, const struct csv *csv, const struct csv_row *head, double least)
+{
+	double after = -1, error = INFINITY;
+	fputs("$front << EOD\n", gp);
+	for (;;) {
+		const struct csv_row *next = 0;
+		for (int i = 0; i < csv->n; i++) {
+			const struct csv_row *r = &csv->rows[i];
+			double t = csv_number(r->cell[MEDIAN]), best = next ? csv_number(next->cell[MEDIAN]) : INFINITY;
+			if (!plot_shares(head, r) || !plot_has(r) || !(csv_number(r->cell[ERROR]) < error) || !(t > after))
+				continue;
+			if (t < best || (t == best && csv_number(r->cell[ERROR]) < csv_number(next->cell[ERROR])))
+				next = r;
+		}
+		if (!next)
+			break;
+		after = csv_number(next->cell[MEDIAN]);
+		error = csv_number(next->cell[ERROR]);
+		fprintf(gp, "%.9g %.9g\n", after, error > 0 ? error : least);
+	}
+	fputs("EOD\n", gp);
+}
+
 bool plot_write(const struct csv *csv, const struct csv_row *head, const char *png)
 {
 	FILE *gp = popen("gnuplot", "w");
@@ -106,6 +130,7 @@ bool plot_write(const struct csv *csv, const struct csv_row *head, const char *p
 		if (plot_shares(head, &csv->rows[i]) && plot_has(&csv->rows[i]) && plot_series(gp, csv, head, &series[n], n, least))
 			n++;
 	}
+	plot_front(gp, csv, head, least);
 	fputs("set terminal pngcairo noenhanced size 1300,700 font 'sans,11'\nset output ", gp);
 	quoted(gp, png);
 	fprintf(gp, "\nset logscale x\nset grid\nset key outside right top width -2\n"
@@ -114,9 +139,9 @@ bool plot_write(const struct csv *csv, const struct csv_row *head, const char *p
 	        logarithmic ? "set logscale y\nset format y '%.0e'" : "set yrange [0:*]", head->cell[PER], head->cell[ERROR_OF],
 	        head->cell[UNIT]);
 	quoted(gp, head->cell[TABLE]);
-	fputs("\nplot ", gp);
+	fputs("\nplot $front using 1:2 with steps lw 2 lc rgb '#bbbbbb' title 'front'", gp);
 	for (int i = 0; i < n; i++) {
-		fprintf(gp, "%s$d%d using 1:2 with %s pt %d ps 1.4 lc %d title ", i ? ", " : "", i,
+		fprintf(gp, ", $d%d using 1:2 with %s pt %d ps 1.4 lc %d title ", i,
 		        series[i].ordered ? "linespoints" : "points", i % 12 + 4, i + 1);
 		quoted(gp, csv->rows[series[i].first].cell[METHOD]);
 		fprintf(gp, ", $d%d using 1:2:3 with labels font ',8' offset 0.6,0.6 left tc lt %d notitle", i, i + 1);
