@@ -32,7 +32,7 @@ vec2 path_place(int beam, int plane, vec2 p)
 	return (cell + 0.5 + vec2(float(plane), float(beam)) * grid) / (grid * vec2(2.0, float(TILES)));
 }
 
-// Mean direction towards a beam's light (not of unit length), and irradiance of a plane that faces it; the sclera stops,
+// Direction towards a beam's light (not of unit length), and irradiance of a plane that faces it; the sclera stops,
 // gradually, what would enter outside the limbus.
 vec4 path_to(int beam, vec3 p)
 {

@@ -1,5 +1,5 @@
 // The light's way through the cornea (iris paper, eq. 15): for each beam, over the iris on two planes of side x side
-// points, the mean direction towards its lights (x, y; z in down), the irradiance of a plane that faces it, and where on the
+// points, the direction that stands for its lights' (x, y; z in down), the irradiance of a plane that faces it, and where on the
 // cornea it came in (1: at the limbus); lib/eye/scene_beam.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
 uniform vec4 light_dir[DIRECTIONS];   // towards each light, and its share in its beam
 uniform int first[TILES + 1];         // of each beam's lights; the last beam is the way to the camera: its light has no direction
@@ -127,7 +127,7 @@ void main()
 	ivec2 at = ivec2(gl_FragCoord.xy), tile = at / side, cell = at - tile * side;
 	vec2 place = vec2(cell) / float(side - 1) * 2.0 * extent - extent;
 	float r = length(place), most = 1.04 * limbus.x, rho, all = 0.0, in_at = 0.0;
-	vec3 P = vec3(place * min(1.0, most / max(r, 1e-6)), tile.x == 0 ? beam_z.x : beam_z.y), sum = vec3(0.0);
+	vec3 P = vec3(place * min(1.0, most / max(r, 1e-6)), tile.x == 0 ? beam_z.x : beam_z.y), sum = vec3(0.0), down_sum = vec3(0.0);
 	for (int i = first[tile.y]; i < first[tile.y + 1]; i++) {
 		vec3 w = light_dir[i].xyz;
 		if (w == vec3(0.0))
@@ -136,9 +136,13 @@ void main()
 		float power = light_dir[i].w * (l.w + 1e-9);  // where none comes, a direction still
 		all += power;
 		sum += power * l.xyz;
+		down_sum += power * -l.z * l.xyz;
 		in_at += power * rho;
 	}
-	sum /= all;
-	way = vec4(sum.xy, all, in_at / all);
-	down = sum.z;
+	// The one direction in which tissue is as bright as under all of them: beam_direction() of lib/eye/scene_beam.c.
+	vec3 mean = sum / all, with_cosine = down_sum / all + mean * mean.z;
+	float m = max(-mean.z, 0.05), part = 1.0 / (m + 1.0);
+	vec3 d = mean * (1.0 - part * with_cosine.z / m) - 2.0 * part * with_cosine;
+	way = vec4(d.xy, all, in_at / all);
+	down = d.z;
 }

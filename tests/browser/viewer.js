@@ -66,7 +66,7 @@ async function compare(b, png, yaw, pitch) {
 async function agreement(b) {
 	// 8 bits a channel of maps and pictures, half floats, and light that C has linear over tiles of eight texels: 0.75 % on average
 	// in the iris straight on. From the side Newton's steps towards the relief do not come to rest on its steepest slopes, where
-	// one ray in fifty ends elsewhere: 1.3 %.
+	// one ray in fifty ends elsewhere: 1.4 %.
 	for (const [name, png, yaw, pitch, mean, off] of [["front", front, 0, 0, 0.01, 0.002], ["three-quarter", turned, 38, -10, 0.015, 0.02]]) {
 		const d = await compare(b, png, yaw, pitch), text = JSON.stringify(d);
 		console.log(`# ${name}: ${text}`);
