@@ -84,7 +84,7 @@ static bool remove_image(struct db *db, int64_t id, struct err *err)
 {
 	static const char *const text[] = {
 		"DELETE FROM keypoints WHERE image_id=?1", "DELETE FROM descriptors WHERE image_id=?1",
-		"DELETE FROM images WHERE image_id=?1",
+		"DELETE FROM images WHERE image_id=?1", "DELETE FROM " DB_DONE " WHERE image_id=?1",
 		"DELETE FROM matches WHERE pair_id/2147483647=?1 OR pair_id%2147483647=?1",
 		"DELETE FROM two_view_geometries WHERE pair_id/2147483647=?1 OR pair_id%2147483647=?1",
 	};
@@ -185,7 +185,7 @@ static bool put_image(bool *changed, struct db *db, struct db_image *image, stru
 	}
 	if (!db_finish(db, s, err))
 		return false;
-	s = db_prepare(db, "SELECT count(*) FROM keypoints WHERE image_id=?1", err);
+	s = db_prepare(db, "SELECT count(*) FROM " DB_DONE " WHERE image_id=?1", err);
 	if (s)
 		sqlite3_bind_int64(s, 1, id);
 	if (!number(&rows, 0, db, s, err))
@@ -198,11 +198,20 @@ bool db_sync(bool *same, struct db *db, int n_cameras, const struct colmap_camer
              struct db_image images[], struct err *err)
 {
 	bool gone = false, changed = false;
-	bool ok = db_run(db, "BEGIN", err) && remove_gone(&gone, db, n, images, err);
+	bool ok = db_run(db, "BEGIN; CREATE TABLE IF NOT EXISTS " DB_DONE "(image_id INTEGER PRIMARY KEY)", err)
+	          && remove_gone(&gone, db, n, images, err);
 	for (int k = 0; k < n_cameras && ok; k++)
 		ok = put_camera(&changed, db, k, &cameras[k], has_focal[k], err);
 	for (int i = 0; i < n && ok; i++)
 		ok = put_image(&changed, db, &images[i], err);
 	*same = !gone && !changed;
 	return ok && db_run(db, "COMMIT", err);
+}
+
+bool db_done(const char *path, struct err *err)
+{
+	struct db *db;
+	bool ok = db_open(&db, path, err) && db_run(db, "INSERT OR IGNORE INTO " DB_DONE " SELECT image_id FROM images", err);
+	db_close(db);
+	return ok;
 }

@@ -18,7 +18,7 @@ struct db_image {
 	const char *name;  // of the file below the folder of pictures
 	int camera;        // index into the cameras
 	uint32_t id;       // out: image_id
-	bool is_new;       // out: it has no features yet
+	bool is_new;       // out: no model has been made with it
 };
 
 /* Brings the tables to these pictures: others are removed with all that belongs to them, missing ones are added, in this
@@ -26,6 +26,10 @@ struct db_image {
  * are as they were, only added to. */
 bool db_sync(bool *same, struct db *db, int n_cameras, const struct colmap_camera cameras[], const bool has_focal[], int n,
              struct db_image images[], struct err *err);
+
+/* From here on no picture that is in it now is new: a run that is interrupted before takes up what it lacks when it comes
+ * again. */
+bool db_done(const char *path, struct err *err);
 
 /* Features of a picture; none: n = 0. sfm_features_free. */
 bool db_features(struct sfm_features *out, struct db *db, uint32_t image, struct err *err);

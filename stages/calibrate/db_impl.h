@@ -5,6 +5,9 @@
 
 #include "stages/calibrate/db.h"
 
+/* A table of our own beside COLMAP's: pictures that a finished model was made with. */
+#define DB_DONE "eyewright_done"
+
 struct db {
 	sqlite3 *sql;
 	char *path;

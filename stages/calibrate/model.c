@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "stages/calibrate/db.h"
 #include "stages/calibrate/merge.h"
 
 static const char *const files[] = { "cameras.bin", "images.bin", "points3D.bin", "project.ini", "seal" };
@@ -170,5 +171,5 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 	model_warn(model, views, stage);
 	stage_note(stage, "%d of %d pictures registered, %d points, %.2f px%s", model->n_images, views->n_used, model->n_points,
 	           colmap_residual(model, -1), n_models > 1 ? "; the rest does not connect" : "");
-	return keep(model, stage, err);
+	return keep(model, stage, err) && db_done(stage_path(stage, CALIBRATE_DIR "/database.db"), err);
 }

@@ -52,8 +52,9 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	int n;
 	const char **in = inputs_of(&n, views, o);
 	const char *const rig_alone[] = { RIG };
-	bool ok = state_check(stage, o, err) && features_make(&grows, views, stage, o, err) && pairs_match(views, stage, o, err)
-	          && model_make(&model, views, grows, stage, o, err) && state_save(stage, o, err)
+	// What is kept belongs to these options from here on: a run that is interrupted is gone on with.
+	bool ok = state_check(stage, o, err) && state_save(stage, o, err) && features_make(&grows, views, stage, o, err)
+	          && pairs_match(views, stage, o, err) && model_make(&model, views, grows, stage, o, err)
 	          && head_place(&head, views, stage, o, err)
 	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, n, in), err)
 	          && stage_made(stage, RIG, n, in, err);

@@ -7,7 +7,7 @@
  * the database would. */
 bool state_check(struct stage *stage, const struct calibrate_options *o, struct err *err);
 
-/* Records the options the model stands for. */
+/* Records the options that what is kept stands for. */
 bool state_save(struct stage *stage, const struct calibrate_options *o, struct err *err);
 
 #endif

@@ -173,10 +173,19 @@ same "the same bytes once more" "$(results "$root/again")" "$mended"
 echo "view.00013.distance_mm = 900" >>"$root/again/capture.conf"
 check "a length named in capture.conf: calibrate is to run" is_due "view.00013.distance_mm is new"
 
+# Interrupted when its features are known and its matches are not: the next run takes up what is missing.
+fake '[ "$1" = matches_importer ] && kill -9 $$; PATH=${PATH#*:}; exec colmap "$@"'
+cp "$heads/00060.jpg" "$root/head/views/"
+PATH="$root/bin:$PATH" run_calibrate "$root/head"
+status=$?
+one_line "interrupted while a view is added" "was killed"
+run_calibrate "$root/head"
+same "gone on with: exit status" "$?" 0
+same "gone on with: the view has a camera" "$(grep -c '"cam_from_head": \[' "$root/head/work/rig.json")" 10
+
 # A kept model whose bytes have changed is not gone on with, even where nothing says what they were.
 rm "$root/head/work/.made/calibrate.json"
 printf 'x' | dd of="$root/head/work/calibrate/model/points3D.bin" bs=1 seek=200 conv=notrunc 2>/dev/null
-cp "$heads/00060.jpg" "$root/head/views/"
 run_calibrate "$root/head"
 same "a changed model: exit status" "$?" 0
 check "a changed model: begun anew, and it is said" grep -q "not the ones that were sealed.*begun anew" "$log"
