@@ -177,8 +177,8 @@ check "a length named in capture.conf: calibrate is to run" is_due "view.00013.d
 fake '[ "$1" = matches_importer ] && kill -9 $$; PATH=${PATH#*:}; exec colmap "$@"'
 cp "$heads/00060.jpg" "$root/head/views/"
 PATH="$root/bin:$PATH" run_calibrate "$root/head"
-status=$?
-one_line "interrupted while a view is added" "was killed"
+same "interrupted while a view is added: exit status" "$?" 1
+check "interrupted: said" grep -q "matches_importer: was killed" "$log"
 run_calibrate "$root/head"
 same "gone on with: exit status" "$?" 0
 same "gone on with: the view has a camera" "$(grep -c '"cam_from_head": \[' "$root/head/work/rig.json")" 10
