@@ -32,8 +32,8 @@ tests-sanitised: $(TESTS)
 
 # Side by side, one to a core; what each says comes when it is through.
 stress: build $(STRESSES)
-	@printf '%s\n' $(STRESSES) | xargs -P $(CORES) -I% sh -c 'case % in *_lightpath) a="$(CASES) $(SEED)" ;; \
-		*) a="--share=$(SHARE) --seed=$(SEED)" ;; esac; said=$$(% $$a 2>&1); bad=$$?; printf "== %s\n%s\n" % "$$said"; exit $$bad'
+	@printf '%s\n' $(STRESSES) | xargs -P $(CORES) -I{} sh -c 'case {} in *_lightpath) a="$(CASES) $(SEED)" ;; \
+		*) a="--share=$(SHARE) --seed=$(SEED)" ;; esac; said=$$({} $$a 2>&1); bad=$$?; printf "== %s\n%s\n" {} "$$said"; exit $$bad'
 
 # Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
 FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w
