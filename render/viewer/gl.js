@@ -1,9 +1,22 @@
+/* The canvas' WebGL 2. A browser whose graphics are just starting, or starting again, may refuse it once. */
+async function graphics_context(canvas) {
+	const options = { alpha: false, antialias: false, depth: false, powerPreference: "high-performance", preserveDrawingBuffer: true };
+	let why = "";
+	canvas.addEventListener("webglcontextcreationerror", e => { why = e.statusMessage ? ` (${e.statusMessage})` : ""; });
+	for (let tries = 0; tries < 6; tries++) {
+		const gl = canvas.getContext("webgl2", options);
+		if (gl && !gl.isContextLost())
+			return gl;
+		if (gl || !window.WebGL2RenderingContext)
+			break;
+		await new Promise(done => setTimeout(done, 100));
+	}
+	throw new Error("this browser offers no WebGL 2" + why);
+}
+
 /* WebGL 2: programs, maps, targets. */
 class Graphics {
-	constructor(canvas, shaders, constants) {
-		const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, powerPreference: "high-performance", preserveDrawingBuffer: true });
-		if (!gl)
-			throw new Error("this browser offers no WebGL 2");
+	constructor(gl, shaders, constants) {
 		if (!gl.getExtension("EXT_color_buffer_float") && !gl.getExtension("EXT_color_buffer_half_float"))
 			throw new Error("this graphics driver cannot draw into floating-point pictures");
 		this.gl = gl;

@@ -20,6 +20,9 @@ async function open(b, hash) {
 	await b.open("about:blank");
 	await b.open(url + (hash || ""));
 	await b.until(opened, 60);
+	const stills = await b.value("window.eyewright && document.getElementById('stills').hidden ? '' : document.getElementById('why').textContent");
+	if (stills && !b.bare)
+		throw new Error(stills);
 }
 
 /* The page's own picture of a view against one of the C renderer's, both as shown: mean relative difference of luminance
@@ -332,6 +335,7 @@ async function without(b) {
 		await b.end();
 	}
 	const bare = await Browser.start(["--disable-3d-apis"]);
+	bare.bare = true;
 	try {
 		await without(bare);
 	} finally {
