@@ -141,7 +141,7 @@ bool dense_cloud(struct cloud_points *cloud, const struct head *head, const stru
 	struct cloud_picture *pictures = mem_new((size_t)m->n_images, sizeof *pictures);
 	char *tag = tag_of(m, &o->cloud);
 	bool ok = match(grid, pairs, n, pictures, &subject, head, stage, o, err)
-	          && cloud_grid_save(grid, stage_path(stage, GRID), tag, err);
+	          && cloud_grid_save(grid, stage_path(stage, GRID), tag, err) && stage_made(stage, GRID, 0, 0, err);
 	// A small set has few pairs: what two agree on has to do.
 	enum { SMALL_SET = 20 };
 	struct cloud_conf conf = o->cloud;

@@ -34,15 +34,16 @@ static void record_one(struct stage *stage, const char *name)
 	free(rel);
 }
 
-void kept_record(struct stage *stage, const struct views *views)
+bool kept_record(struct stage *stage, const struct views *views, bool whole, struct err *err)
 {
 	static const char *const kept[] = { "database.db", "options.txt", "pictures.json", "frames.json", "cloud.grid", "cloud.ply",
 		                                "model/cameras.bin", "model/images.bin", "model/points3D.bin", "model/seal" };
-	for (int i = 0; i < COUNT(kept); i++)
+	for (int i = whole ? 0 : 1; i < COUNT(kept); i++)
 		record_one(stage, kept[i]);
 	for (int i = 0; i < views->n_used; i++) {
 		char *name = mem_printf("pictures/%s", views->v[i].picture);
 		record_one(stage, name);
 		free(name);
 	}
+	return record_save(stage->record, false, err);
 }

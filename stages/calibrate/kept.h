@@ -6,8 +6,9 @@
 /* Before anything is read: removes what is not as the last run left it, and says so. */
 bool kept_check(struct stage *stage, struct err *err);
 
-/* Behind everything: records what there is, so that `make` notices when one of the files is missing or has changed. */
-void kept_record(struct stage *stage, const struct views *views);
+/* Records what there is, so that a file that is missing or has changed is noticed. whole: with the database, behind everything;
+ * while a run goes on that changes from moment to moment, and an interrupted one is gone on with as SQLite finds it sound. */
+bool kept_record(struct stage *stage, const struct views *views, bool whole, struct err *err);
 
 /* COLMAP's database, with what SQLite keeps beside it. */
 bool kept_remove_database(struct stage *stage, struct err *err);

@@ -104,7 +104,8 @@ static bool recall(struct colmap_model *kept, const struct views *views, bool gr
 	*kept = (struct colmap_model){ 0 };
 	for (int i = 0; i < views->n_used; i++)
 		n_new += views->v[i].is_new;
-	char *file = mem_printf("%s/cameras.bin", dir);
+	// The seal is written last: a model without one is half a model.
+	char *file = mem_printf("%s/seal", dir);
 	bool there = file_exists(file);
 	free(file);
 	if (!grows || !there || n_new > o->regrow * views->n_used)

@@ -53,8 +53,10 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	const char **in = inputs_of(&n, views, o);
 	const char *const rig_alone[] = { RIG };
 	// What is kept belongs to these options from here on: a run that is interrupted is gone on with.
-	bool ok = state_check(stage, o, err) && state_save(stage, o, err) && features_make(&grows, views, stage, o, err)
+	bool ok = state_check(stage, o, err) && state_save(stage, o, err)
+	          && kept_record(stage, views, false, err) && features_make(&grows, views, stage, o, err)
 	          && pairs_match(views, stage, o, err) && model_make(&model, views, grows, stage, o, err)
+	          && kept_record(stage, views, false, err)
 	          && head_place(&head, views, stage, o, err)
 	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, n, in), err)
 	          && stage_made(stage, RIG, n, in, err);
@@ -65,8 +67,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 		ok = subject_make(&head, views, stage, o, stage_made_by(stage, 1, rig_alone), err)
 		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, n, in, err));
 	ok = ok && figure_draw(&head, &rig, stage, err) && stage_made(stage, FIGURE, n, in, err);
-	if (ok)
-		kept_record(stage, views);
+	ok = ok && kept_record(stage, views, true, err);
 	if (ok)
 		report(stage, views, &rig, &head);
 	free(in);
