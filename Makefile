@@ -28,10 +28,11 @@ override CAPTURES := $(value CAPTURES)
 export CAPTURE CAPTURES
 # Threads that wait sleep: other programs of this machine are not slowed down.
 export OMP_WAIT_POLICY ?= passive
-# Large arrays in large pages, where the kernel has them on request: a fifth of the page faults.
-export GLIBC_TUNABLES ?= glibc.malloc.hugetlb=1
 # Those of OpenBLAS do not, and a stage's own threads want the cores: its matrices are small.
 still := OPENBLAS_NUM_THREADS=$${OPENBLAS_NUM_THREADS:-1}
+# Large arrays in large pages, where the kernel has them on request: a fifth of the page faults. For stages alone: a browser
+# that a test starts gets no graphics with it.
+still += GLIBC_TUNABLES=$${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1}
 
 # V=1 shows the commands.
 V ?=
