@@ -135,3 +135,25 @@ double *mesh_vertex_areas(const struct mesh *mesh)
 	}
 	return area;
 }
+
+static int root_of(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+int *mesh_pieces(int n, int n_faces, const int32_t (*faces)[3])
+{
+	int *parent = mem_new((size_t)n + 1, sizeof *parent);
+	for (int i = 0; i < n; i++)
+		parent[i] = i;
+	for (int f = 0; f < n_faces; f++)
+		for (int k = 1; k < 3; k++) {
+			int a = root_of(parent, faces[f][0]), b = root_of(parent, faces[f][k]);
+			parent[a > b ? a : b] = a > b ? b : a;
+		}
+	for (int i = 0; i < n; i++)
+		parent[i] = root_of(parent, i);
+	return parent;
+}

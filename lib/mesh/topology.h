@@ -19,6 +19,9 @@ struct topology {
 void topology_make(struct topology *out, const struct mesh *mesh);
 void topology_free(struct topology *topology);
 
+/* Of each of n vertices the lowest one that faces join it to: alone, where it is in none. free(). */
+int *mesh_pieces(int n, int n_faces, const int32_t (*faces)[3]);
+
 /* A third of the area of its faces, of each vertex; free(). Squared length of the mesh's unit. */
 double *mesh_vertex_areas(const struct mesh *mesh);
 

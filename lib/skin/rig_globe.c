@@ -5,34 +5,12 @@
 #include "base/mem.h"
 #include "math/chol.h"
 #include "math/vec.h"
+#include "mesh/topology.h"
 #include "skin/rig_make.h"
 
 enum { LEAST_VERTICES = 20, ROUNDS = 8 };
 /* A human eye: cornea of 7.8 mm on a sclera of 11.8, limbus radius 5.85: apex at 12.95 mm from the centre. */
 static const double cornea_share = 7.8 / 11.8, apex_share = 12.95 / 11.8;
-
-static int root_of(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
-
-/* Component of each vertex: the lowest vertex of it. free(). */
-static int *components_of(const struct rig *rig)
-{
-	int *parent = mem_new((size_t)rig->n + 1, sizeof *parent);
-	for (int i = 0; i < rig->n; i++)
-		parent[i] = i;
-	for (int f = 0; f < rig->n_faces; f++)
-		for (int k = 1; k < 3; k++) {
-			int a = root_of(parent, rig->faces[f][0]), b = root_of(parent, rig->faces[f][k]);
-			parent[a > b ? a : b] = a > b ? b : a;
-		}
-	for (int i = 0; i < rig->n; i++)
-		parent[i] = root_of(parent, i);
-	return parent;
-}
 
 struct ball {
 	double center[3], radius, rms;
@@ -266,7 +244,7 @@ bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, 
                      struct rig_report *report, struct err *err)
 {
 	static const char *const sides[] = { "left", "right" };
-	int *component = components_of(rig);
+	int *component = mesh_pieces(rig->n, rig->n_faces, rig->faces);
 	double *area = areas_of(rig);
 	struct ball best[2] = { 0 };
 	for (int i = 0; i < rig->n; i++) {

@@ -5,35 +5,13 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "mesh/topology.h"
 
 enum { LEAST_VERTICES = 20 };
 
 struct ball {
 	double center[3], radius;
 };
-
-static int root_of(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
-
-/* Piece of each vertex: the lowest vertex of it. free(). */
-static int *pieces_of(const struct mesh *mesh)
-{
-	int *parent = mem_new((size_t)mesh->n_vertices + 1, sizeof *parent);
-	for (int i = 0; i < mesh->n_vertices; i++)
-		parent[i] = i;
-	for (int f = 0; f < mesh->n_faces; f++)
-		for (int k = 1; k < 3; k++) {
-			int a = root_of(parent, mesh->faces[f][0]), b = root_of(parent, mesh->faces[f][k]);
-			parent[a > b ? a : b] = a > b ? b : a;
-		}
-	for (int i = 0; i < mesh->n_vertices; i++)
-		parent[i] = root_of(parent, i);
-	return parent;
-}
 
 /* A piece all round its middle, at much the same distance. */
 static bool is_ball(struct ball *ball, const struct mesh *mesh, const int *piece, int which)
@@ -72,7 +50,7 @@ bool eyes_of_target(double center[2][3], double *radius, const struct mesh *targ
 {
 	enum { MOST = 64 };
 	struct ball balls[MOST];
-	int *piece = pieces_of(target), n = 0;
+	int *piece = mesh_pieces(target->n_vertices, target->n_faces, target->faces), n = 0;
 	for (int i = 0; i < target->n_vertices && n < MOST; i++)
 		n += piece[i] == i && is_ball(&balls[n], target, piece, i);
 	*radius = 0;
