@@ -81,20 +81,25 @@ static void set_blocks(struct train *t)
 	}
 }
 
+/* The sample's frame i as row `at` of f. */
+static bool read_into(struct frames *f, long at, struct train *t, long i, struct err *err)
+{
+	double *x[TRAIN_PARTS], *c[TRAIN_PARTS];
+	for (int p = 0; p < TRAIN_PARTS; p++) {
+		x[p] = f->x[p] + at * t->part[p].n;
+		c[p] = f->c[p] + at * t->part[p].n;
+	}
+	return train_read(t, t->sample[i], 1, x, c, err);
+}
+
 /* The pilots from every few of the sample's frames. */
 static bool pilots(struct train *t, struct err *err)
 {
 	long step = (t->n_sample + PILOT_FRAMES - 1) / PILOT_FRAMES, m = 0;
 	struct frames f = frames_new(t, t->n_sample / step + 1);
 	bool ok = true;
-	for (long i = 0; i < t->n_sample && ok; i += step, m++) {
-		double *x[TRAIN_PARTS], *c[TRAIN_PARTS];
-		for (int p = 0; p < TRAIN_PARTS; p++) {
-			x[p] = f.x[p] + m * t->part[p].n;
-			c[p] = f.c[p] + m * t->part[p].n;
-		}
-		ok = train_read(t, t->sample[i], 1, x, c, err);
-	}
+	for (long i = 0; i < t->n_sample && ok; i += step, m++)
+		ok = read_into(&f, m, t, i, err);
 	for (int p = 0; p < TRAIN_PARTS && ok; p++)
 		part_pilot(&t->part[p], m, f.x[p], f.c[p], t->conf);
 	frames_free(&f);
@@ -120,14 +125,8 @@ bool train_sample(struct train *t, struct err *err)
 		               t->clip->place, t->conf->min_seen);
 	struct frames f = frames_new(t, t->n_sample);
 	bool ok = true;
-	for (long i = 0; i < t->n_sample && ok; i++) {
-		double *x[TRAIN_PARTS], *c[TRAIN_PARTS];
-		for (int p = 0; p < TRAIN_PARTS; p++) {
-			x[p] = f.x[p] + i * t->part[p].n;
-			c[p] = f.c[p] + i * t->part[p].n;
-		}
-		ok = train_read(t, t->sample[i], 1, x, c, err);
-	}
+	for (long i = 0; i < t->n_sample && ok; i++)
+		ok = read_into(&f, i, t, i, err);
 	for (int p = 0; p < TRAIN_PARTS && ok; p++)
 		part_complete(&t->part[p], t->n_sample, f.x[p], f.c[p], f.d[p], f.share[p]);
 	if (ok)
