@@ -1,17 +1,11 @@
-/* The canvas' WebGL 2. A browser whose graphics are just starting, or starting again, may refuse it once. */
-async function graphics_context(canvas) {
-	const options = { alpha: false, antialias: false, depth: false, powerPreference: "high-performance", preserveDrawingBuffer: true };
+/* The canvas' WebGL 2. */
+function graphics_context(canvas) {
 	let why = "";
 	canvas.addEventListener("webglcontextcreationerror", e => { why = e.statusMessage ? ` (${e.statusMessage})` : ""; });
-	for (let tries = 0; tries < 6; tries++) {
-		const gl = canvas.getContext("webgl2", options);
-		if (gl && !gl.isContextLost())
-			return gl;
-		if (gl || !window.WebGL2RenderingContext)
-			break;
-		await new Promise(done => setTimeout(done, 100));
-	}
-	throw new Error("this browser offers no WebGL 2" + why);
+	const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, powerPreference: "high-performance", preserveDrawingBuffer: true });
+	if (!gl)
+		throw new Error("this browser offers no WebGL 2" + why);
+	return gl;
 }
 
 /* WebGL 2: programs, maps, targets. */
