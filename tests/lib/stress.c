@@ -35,7 +35,7 @@ static void print_command(const struct stress *s, long index)
 
 static void end_family(struct stress *s)
 {
-	if (!s->family || s->cases == 0)
+	if (!s->family[0] || s->cases == 0)
 		return;
 	printf("%s: %s: %ld cases, %ld flagged, %ld wrong", s->name, s->family, s->cases, s->flagged, s->wrong);
 	if (s->worst_case >= 0) {
@@ -45,6 +45,10 @@ static void end_family(struct stress *s)
 			printf("; worst loses %.1f digits", s->worst);
 		print_command(s, s->worst_case);
 		printf("  %s", s->worst_about);
+	} else if (s->first_flagged >= 0) {
+		printf("; nothing to measure, the first flagged");
+		print_command(s, s->first_flagged);
+		printf("  %s", s->flagged_about);
 	}
 	if (s->wrong) {
 		print_command(s, s->first_wrong);
@@ -59,7 +63,7 @@ static void end_family(struct stress *s)
 void stress_family(struct stress *s, const char *family, long cases)
 {
 	end_family(s);
-	s->family = family;
+	snprintf(s->family, sizeof s->family, "%s", family);
 	s->family_index++;
 	s->cases = (long)ceil((double)cases * s->share);
 	if (s->only_family >= 0 && s->only_family != s->family_index)
@@ -67,7 +71,7 @@ void stress_family(struct stress *s, const char *family, long cases)
 	s->flagged = s->wrong = 0;
 	s->worst = -INFINITY;
 	s->measure = 0;
-	s->worst_case = s->first_wrong = s->index = -1;
+	s->worst_case = s->first_wrong = s->first_flagged = s->index = -1;
 	s->case_flagged = s->case_wrong = false;
 	if (s->only_case >= 0 && s->cases) {
 		s->index = s->only_case - 1;
@@ -118,15 +122,24 @@ void stress_measure(struct stress *s, double value, const char *unit)
 	memcpy(s->worst_about, s->about, sizeof s->about);
 }
 
+void stress_lost_of(struct stress *s, double error, double digit)
+{
+	stress_measure(s, isnan(error) ? NAN : fmax(log10(error / digit), 0), 0);
+}
+
 void stress_lost(struct stress *s, double error)
 {
-	stress_measure(s, isnan(error) ? NAN : fmax(log10(error / DBL_EPSILON), 0), 0);
+	stress_lost_of(s, error, DBL_EPSILON);
 }
 
 void stress_flagged(struct stress *s)
 {
 	if (s->show)
 		printf("  flagged\n");
+	if (s->first_flagged < 0) {
+		s->first_flagged = s->index;
+		memcpy(s->flagged_about, s->about, sizeof s->about);
+	}
 	s->flagged += !s->case_flagged;
 	s->case_flagged = true;
 }

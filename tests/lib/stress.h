@@ -1,6 +1,6 @@
 /* stress: seeded runs over hostile cases, one family of cases after the other. Each family ends in one line: how many, how
  * many were flagged (refused, or said to be uncertain), how many wrong, and its worst case with the digits lost there and
- * the command that runs that case alone and tells about it.
+ * the command that runs that case alone and tells about it; where all were flagged and nothing was measured, the first of them.
  *
  *     struct stress s;
  *     stress_start(&s, "pca", argc, argv);
@@ -18,18 +18,19 @@
 #include "math/rng.h"
 
 struct stress {
-	const char *program, *name, *family;
+	const char *program, *name;
+	char family[200];
 	double share;
 	uint64_t seed;
 	long family_index, cases, index, only_family, only_case;
 	struct rng rng;            // of this case alone
 	long flagged, wrong, wrong_all, run_all;
-	long worst_case, first_wrong;
+	long worst_case, first_wrong, first_flagged;
 	double worst;              // the family's measure
 	const char *measure;       // null: digits lost
 	bool case_flagged, case_wrong, show;
 	char why[300];             // of the first wrong case
-	char about[300], worst_about[300];
+	char about[300], worst_about[300], flagged_about[300];
 };
 
 void stress_start(struct stress *s, const char *name, int argc, char **argv);
@@ -46,6 +47,9 @@ void stress_about(struct stress *s, const char *fmt, ...);
 
 /* Relative error of a result: digits lost of the sixteen. NAN is wrong. */
 void stress_lost(struct stress *s, double error);
+
+/* The same of numbers that hold fewer: digit is their epsilon. */
+void stress_lost_of(struct stress *s, double error, double digit);
 
 /* Another measure than digits, of which the largest is the worst: "times the bound". */
 void stress_measure(struct stress *s, double value, const char *unit);

@@ -114,7 +114,7 @@ static void in_float(struct stress *s, struct path_case t)
 	else if (status != LIGHTPATH_OK || (off > most && law < 1e-5))
 		stress_flagged(s);
 	else {
-		stress_lost(s, off / t.c.R);
+		stress_lost_of(s, off / t.c.R, (double)FLT_EPSILON);
 		if (off > most)
 			stress_wrong(s, "float: K off by %.2g mm, %.2g expected of rounding; Snell's law by %.2g", off, most, law);
 	}
@@ -230,6 +230,7 @@ int main(int argc, char **argv)
 					r[5].away[0] = (r[5].away[1] = s.index % 4 < 2 ? 0.01 : 7) - 0.01;
 				one(&s, &r[i], single);
 			}
+			free(name);
 		}
 	for (stress_family(&s, "out of the eye, total reflection", 1000000); stress_case(&s);)
 		leaving(&s);
