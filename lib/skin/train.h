@@ -27,6 +27,7 @@ struct train_clip {
 
 struct train_conf {
 	int lid_components, skin_components;  // of one eye's lids; of the skin
+	bool choose;                  // so many at most: no more than make held-out frames better predicted
 	int curve_components;         // the curves go so far
 	int sample;                   // frames of the bounded sample
 	double block_s, guard_s;      // time blocks of the cross-validation and the gap between them, s
@@ -44,7 +45,7 @@ enum { TRAIN_PARTS = 3, TRAIN_LEFT = 0, TRAIN_RIGHT = 1, TRAIN_SKIN = 2 };
 
 /* One part of figure 3.7: normalised error of held-out frames (0 perfect, 1 as bad as the mean). */
 struct train_curve {
-	int n;                        // components 1..n; 0: part not modelled
+	int n, kept;                  // components 1..n; 0: part not modelled; of the model
 	double *linear, *rbf, *pca;   // [n]; pca: the components alone, from the held-out shapes themselves
 	double *random;               // [n] linear, frames held out at random as in the paper: neighbours leak
 	double *linear_sigma, *rbf_sigma;  // [n] standard error over the folds

@@ -162,12 +162,25 @@ static void validate_rbf(struct train_curve *curve, const struct cv *cv, int K, 
 		free(rbf[i].error);
 }
 
+void cv_least(double *least, const struct cv *cv, int K)
+{
+	struct errors of[COUNT(ridges)], pca = errors_new(K);
+	for (int i = 0; i < COUNT(ridges); i++)
+		of[i] = errors_new(K);
+	linear_errors(of, &pca, cv);
+	for (int k = 0; k < K; k++)
+		least[k] = errors_normalised(&of[best_of(COUNT(ridges), of, cv->folds, k)], cv->folds, k, 0);
+	for (int i = 0; i < COUNT(ridges); i++)
+		free(of[i].error);
+	free(pca.error);
+}
+
 void train_validate(struct train *t, int p)
 {
 	struct cv cv = cv_new(t, p);
 	struct train_curve *curve = &t->report->curve[p];
 	int most = t->part[p].kept, K = (int)fmin(cv.R, fmax(t->conf->curve_components, most)), kept = (most < K ? most : K) - 1;
-	*curve = (struct train_curve){ .n = K };
+	*curve = (struct train_curve){ .n = K, .kept = kept + 1 };
 	double **const curves[] = { &curve->linear, &curve->rbf, &curve->pca, &curve->linear_sigma, &curve->rbf_sigma,
 		                        &curve->random };
 	for (int i = 0; i < COUNT(curves); i++)

@@ -135,6 +135,7 @@ static void fit_skin(struct train *t)
 {
 	struct skin_model *m = t->model;
 	struct part *part = &t->part[TRAIN_SKIN];
+	train_choose_skin(t);
 	int n = part->n, ne = m->n_skin_pc, q = m->n_lid_pc + m->n_au;
 	for (int i = 0; i < n; i++) {
 		m->u0[i] = part->seen[i] ? part->sum.mean[part->from + i] : NAN;
@@ -222,6 +223,7 @@ void train_fit(struct train *t)
 	for (int p = 0; p < TRAIN_PARTS; p++)
 		if (t->part[p].used)
 			components(t, p);
+	train_choose_lids(t);
 	fit_lids(t, TRAIN_LEFT);
 	fit_lids(t, TRAIN_RIGHT);
 	fit_skin(t);

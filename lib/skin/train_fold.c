@@ -52,7 +52,7 @@ double *train_regressors(const struct train *t, int p, int *q)
 		for (int e = 0; e < 2; e++)
 			for (int c = 0; c < kl && t->part[e].used; c++)
 				for (int a = 0; a < t->n_eye; a++)
-					to[e * kl + c] += m->K[(size_t)(e * t->n_eye + a) * (size_t)m->n_lid_pc + (size_t)(e * kl + c)]
+					to[e * kl + c] += t->part[e].V_all[a * t->part[e].k_max + c]
 					                  * (t->part[e].x[i * t->n_eye + a] - t->part[e].sum.mean[EYE_INPUTS + a]);
 		memcpy(to + m->n_lid_pc, g + SKIN_EYE_INPUTS, (size_t)m->n_au * sizeof *to);
 	}

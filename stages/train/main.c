@@ -14,6 +14,7 @@ int main(int argc, char **argv)
 		OPT_EACH("expression.*", &expressions, 2, 0, 1e7, "", "neutral and peak frame of an expression"),
 		OPT_INT("lid_components", &conf.lid_components, 1, 60, "", "components of one eye's lids"),
 		OPT_INT("skin_components", &conf.skin_components, 1, 60, "", "components of the skin"),
+		OPT_BOOL("choose", &conf.choose, "of these, only as many as make frames held out better predicted"),
 		OPT_INT("curve_components", &conf.curve_components, 1, 60, "", "the error is drawn up to so many"),
 		OPT_INT("sample", &conf.sample, 64, 16384, "frames", "bounded sample: pilot, cross-validation, errors"),
 		OPT_REAL("block_s", &conf.block_s, 0.05, 60, "s", "block of time that is held out together"),

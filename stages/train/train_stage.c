@@ -12,12 +12,6 @@ static const char *const parts[TRAIN_PARTS] = { "left lids", "right lids", "skin
 static const char *const keys[TRAIN_PARTS] = { "lids_left", "lids_right", "skin" };
 static const char *const curves_rel = "work/skin/curves.svg", *const report_rel = "work/skin/train.json";
 
-static int kept(const struct train_conf *conf, const struct train_curve *c, int part)
-{
-	int k = part == TRAIN_SKIN ? conf->skin_components : conf->lid_components;
-	return (k < c->n ? k : c->n) - 1;
-}
-
 /* Figure 3.7: error against the number of components. */
 static bool draw(const struct train_report *r, const struct train_conf *conf, const char *path, const char *made_by,
                  struct err *err)
@@ -32,7 +26,7 @@ static bool draw(const struct train_report *r, const struct train_conf *conf, co
 		x[k] = k + 1;
 	for (int p = 0; p < TRAIN_PARTS; p++) {
 		const struct train_curve *c = &r->curve[p];
-		int lines = 0, k = kept(conf, c, p);
+		int lines = 0, k = c->kept - 1;
 		if (!c->n)
 			continue;
 		series[n][lines++] = (struct chart_series){ "linear", "#d62728", 0, c->n, x, c->linear, c->linear_sigma, true, false };
@@ -65,6 +59,7 @@ static json_t *curve_json(const struct train_report *r, int p)
 	json_object_set_new(j, "rbf_sigma", json_numbers(c->n, c->rbf_sigma));
 	json_object_set_new(j, "linear_random_frames", json_numbers(c->n, c->random));
 	json_object_set_new(j, "components_alone", json_numbers(c->n, c->pca));
+	json_object_set_new(j, "kept", json_integer(c->kept));
 	json_object_set_new(j, "held_out_px", json_number(c->linear_px));
 	json_object_set_new(j, "ridge", json_number(c->ridge));
 	json_object_set_new(j, "rbf_functions", json_integer(c->rbf_functions));
@@ -105,12 +100,15 @@ static void tell(struct stage *stage, const struct train_report *r, const struct
 				stage_skipped(stage, "%s: not modelled: this eye's gaze or lids were not measured in enough frames", parts[p]);
 			continue;
 		}
-		int k = kept(conf, c, p);
+		int k = c->kept - 1;
 		char rbf[64] = "";
 		if (!conf->brief)
 			snprintf(rbf, sizeof rbf, " (radial basis functions %.3f)", c->rbf[k]);
-		stage_note(stage, "%s: %ld frames, %d of %d components hold 99 %%; held-out error %.3f%s, %.2f px; ridge %g", parts[p],
-		           r->used[p], r->components99[p], k + 1, c->linear[k], rbf, c->linear_px, c->ridge);
+		int most = p == TRAIN_SKIN ? conf->skin_components : conf->lid_components;
+		stage_note(stage, "%s: %ld frames, %d components, %d hold 99 %%; held-out error %.3f%s, %.2f px; ridge %g", parts[p],
+		           r->used[p], k + 1, r->components99[p], c->linear[k], rbf, c->linear_px, c->ridge);
+		if (conf->choose && k + 1 < most)
+			stage_skipped(stage, "%s: %d of %d components: frames held out are predicted no better with more", parts[p], k + 1, most);
 		char key[64];
 		snprintf(key, sizeof key, "train_%s_error", keys[p]);
 		stage_figure(stage, key, c->linear[k], "");

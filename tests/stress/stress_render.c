@@ -247,7 +247,7 @@ int main(int argc, char **argv)
 		one(&s, &at, true, ANY_LIGHT);
 	for (stress_family(&s, "an even room", 20000 / LOOKS); stress_case(&s);)
 		one(&s, &at, false, EVEN_ROOM);
-	for (stress_family(&s, "an even room, the model alone", 8000 / LOOKS); stress_case(&s);)
+	for (stress_family(&s, "an even room, the model alone", 2000 / LOOKS); stress_case(&s);)
 		one(&s, &at, false, MODEL_ALONE);
 	scratch_close();
 	return stress_end(&s);
