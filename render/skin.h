@@ -39,6 +39,8 @@ struct skin_conf {
 	OPT_REAL("skin_texture", &(c)->portrait.texture, 0, 3, "", "strength of pores and blotches"), \
 	OPT_REAL("skin_scatter_mm", &(c)->portrait.scatter_mm, 0, 20, "mm", "how far red light travels in skin"), \
 	OPT_REAL("tear_mm", &(c)->portrait.tear_mm, 0, 3, "mm", "height of the tear line along the lids; 0: none"), \
+	OPT_REALS("tear_absorb", (c)->portrait.tear_absorb, 3, 0, 10, "1/mm", "what tear fluid absorbs of red, green and blue"), \
+	OPT_REAL("caruncle_wet", &(c)->portrait.caruncle_wet, 0, 1, "", "how moist and red the inner corners of the eyes are"), \
 	OPT_REAL("lash_mm", &(c)->portrait.lash_mm, 0, 30, "mm", "length of the upper lashes on an eye of 12 mm; 0: none"), \
 	OPT_REALS("iris_rgb", (c)->glb.iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
 	OPT_INT("glb_targets", &(c)->glb.targets, 1, 200, "", "morph targets of the animation, at most"), \

@@ -61,7 +61,7 @@ static void put(struct image *sheet, const struct image *cell, int x, int y)
 
 static bool layers_write(struct skin_job *job, struct skin_target *t, const char *rel, const struct image *layers, struct err *err)
 {
-	static const char *const names[] = { "Z", "distance" };
+	static const char *const names[] = { "Z", "distance", "lake" };
 	struct exr_info info = { .made_by = stage_made_by(job->stage, t->n_in, t->in) };
 	return exr_write(stage_path(job->stage, "%s", rel), layers, names, EXR_FLOAT, &info, err)
 	       && stage_made(job->stage, rel, t->n_in, t->in, err);

@@ -181,7 +181,7 @@ static int put_mesh(json_t *out, struct face *f)
 	for (int i = 0; i < n; i++) {
 		for (int c = 0; c < 3; c++)
 			skin[4 * i + c] = byte(255 * sqrt(fmax(f->order[i] < m->n ? m->albedo[f->order[i]][c] : hair[c], 0)));
-		skin[4 * i + 3] = f->order[i] < m->n ? 0 : 255;
+		skin[4 * i + 3] = f->order[i] < m->n ? byte(127 * m->wet[f->order[i]]) : 255;  // a hair, or half of how moist it is
 		memcpy(still + (long)i * RECORD, f->record[REST] + (long)f->order[i] * RECORD, RECORD);
 		for (int k = 0; k < POSES && i < f->moving; k++)
 			memcpy(poses + ((long)k * f->moving + i) * RECORD, f->record[k] + (long)f->order[i] * RECORD, RECORD);
@@ -225,13 +225,24 @@ json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive 
 	return json_pack("{s:s,s:o}", "name", name, "rows", rows);
 }
 
+/* Inner corner of an eye, from its centre, and the share of mm there that a mean eyeball would have; 0: not known. */
+static json_t *corner_of(const struct face *f, int side)
+{
+	float h[3] = { 0 }, d[3];
+	for (int c = 0; c < 3; c++)
+		d[c] = f->portrait->corner[side][c] - (float)f->rig->globe[side].center[c];
+	to_head(h, f, d, false);
+	double v[4] = { h[0], h[1], h[2], f->portrait->corner_known[side] ? f->rig->globe[side].radius / 12 : 0 };
+	return json_numbers(4, v);
+}
+
 json_t *viewer_face(const char *name, struct portrait *portrait, const struct skin_model *model, double gain, const struct scene *const eyes[2], struct err *err)
 {
 	struct face f = { .rig = portrait->rig, .portrait = portrait, .n = portrait->mesh.n, .n_au = model->n_au };
 	for (int i = portrait->first_lash; i < portrait->mesh.n_faces; i++)
 		for (int j = 0; j < 3; j++)
 			f.n = portrait->mesh.faces[i][j] < f.n ? f.n : portrait->mesh.faces[i][j] + 1;
-	json_t *out = json_object(), *globes = json_array();
+	json_t *out = json_object(), *globes = json_array(), *corners = json_array();
 	double reach_mm = reach;
 	for (int c = 0; c < 3; c++)
 		f.middle[c] = 0.5 * (f.rig->globe[0].center[c] + f.rig->globe[1].center[c]);
@@ -239,9 +250,11 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 	json_object_set_new(out, "name", template_text(name));
 	json_object_set_new(out, "reach", json_number(reach_mm));
 	json_object_set_new(out, "gain", json_number(gain));
-	double shadow_mm = TEAR_SHADOW_MM;
+	double shadow_mm = TEAR_SHADOW_MM, lake = 1 + LAKE_RISE;
 	json_object_set_new(out, "tear_mm", json_number(portrait->conf.tear_mm));
 	json_object_set_new(out, "shadow_mm", json_number(shadow_mm));
+	json_object_set_new(out, "lake", json_number(lake));
+	json_object_set_new(out, "tear_absorb", json_numbers(3, portrait->conf.tear_absorb));
 	json_object_set_new(out, "skin_rgb", json_numbers(3, portrait->conf.skin_rgb));
 	json_object_set_new(out, "h", json_numbers(NH, at_h));
 	json_object_set_new(out, "v", json_numbers(NV, at_v));
@@ -251,8 +264,10 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 		to_head(h, &f, center, true);
 		double v[4] = { h[0], h[1], h[2], f.rig->globe[s].radius / eyes[s]->conf.sclera_radius };
 		json_array_append_new(globes, json_numbers(4, v));
+		json_array_append_new(corners, corner_of(&f, s));
 	}
 	json_object_set_new(out, "globes", globes);
+	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
 	json_object_set_new(out, "sky", viewer_base64(f.sky, (size_t)POSES * SKY * SKY * 2));
 	int n = put_mesh(out, &f);

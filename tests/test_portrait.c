@@ -1,9 +1,11 @@
 /* Portraits of a made face: light in closed form, no holes, eyes where they are, the same bytes on any number of threads. */
+#include "eye/scene_impl.h"
 #include "math/rng.h"
 #include "math/stats.h"
 #include "math/vec.h"
 #include "skin/drive.h"
 #include "skin/portrait_impl.h"
+#include "skin/skin_look.h"
 #include "tests/lib/face.h"
 #include "tests/lib/unit.h"
 
@@ -15,6 +17,7 @@ struct made {
 	struct scene eye;
 	struct envmap env;  // the same radiance from everywhere: 1
 	double tear;  // mm
+	double wet;   // of the caruncles
 };
 
 static int setup(void **state)
@@ -58,7 +61,7 @@ static struct portrait *portrait_of(const struct made *m, double scatter)
 {
 	const struct scene *eyes[2] = { &m->eye, &m->eye };
 	struct portrait_conf conf = { .lights = 64, .subdivide = 1, .samples = 2, .eye_samples = 1, .skin_rgb = { 0.5, 0.4, 0.3 }, .scatter_mm = scatter,
-		                          .tear_mm = m->tear };
+		                          .tear_mm = m->tear, .caruncle_wet = m->wet };
 	return portrait_new(&m->rig, eyes, &m->env, &conf);
 }
 
@@ -187,7 +190,7 @@ static void distances_are_to_the_lids(void **state)
 	double mm = 110.0 / W;  // at the globes' depth; the made lids stand up to 2 % nearer
 	int seen = 0;
 	for (int i = 0; i < W * H; i++) {
-		const float *px = layers.px + 2 * i;
+		const float *px = layers.px + 3 * i;
 		if (isinf(px[1]))
 			continue;
 		double nearest = INFINITY;
@@ -244,6 +247,112 @@ static void tears_stay_at_the_lids(void **state)
 	free(spots);
 	image_free(&image[0]);
 	image_free(&image[1]);
+}
+
+/* Depth of the lake: its slope is the meniscus' own lean. What it absorbs: Beer and Lambert over the way down, a mean over
+ * diffuse light refracted into it (by quadrature here), and the way up. */
+static void lake_absorbs(void **state)
+{
+	(void)state;
+	const float up[3] = { 0, 0, 1 }, from[3] = { 1, 0, 0 };
+	NEAR(portrait_lake_depth(0, 0.4f), 0.4, 1e-6);
+	NEAR(portrait_lake_depth(0.4f, 0.4f), 0, 1e-6);
+	for (float d = 0.05f; d < 0.4f; d += 0.05f) {
+		float n[3];
+		portrait_meniscus(n, up, from, d, 0.4f);
+		double slope = (double)(portrait_lake_depth(d + 1e-3f, 0.4f) - portrait_lake_depth(d - 1e-3f, 0.4f)) / 2e-3;
+		NEAR(slope, (double)(-n[0] / n[2]), 2e-3 * (1 + fabs(slope)));  // differences of floats
+	}
+	double n = (double)SCENE_FILM_INDEX, way = 0;
+	enum { STEPS = 1000 };
+	for (int k = 0; k < STEPS; k++)
+		way += 1 / sqrt(1 - (k + 0.5) / STEPS / (n * n)) / STEPS;  // over sin^2 of the incidence: cosine-weighted
+	NEAR(way, LAKE_LIGHT_WAY, 1e-3);
+	const double absorb[3] = { 0.5, 0.05, 0 };
+	float straight[3], aslant[3];
+	portrait_lake_light(straight, 0.4f, 1, absorb);
+	portrait_lake_light(aslant, 0.4f, 0.5f, absorb);
+	for (int c = 0; c < 3; c++) {
+		NEAR(straight[c], exp(-absorb[c] * 0.4 * (1 + way)), 1e-4);
+		NEAR(aslant[c], exp(-absorb[c] * 0.4 * (1 / cos(asin(sqrt(0.75) / n)) + way)), 1e-4);
+	}
+}
+
+/* Tear fluid that absorbs red darkens red alone, and only where the layer says that a lake stands; the lake is deepest at the
+ * inner corner, and nowhere deeper than it is high. */
+static void lake_is_deep_at_the_corner(void **state)
+{
+	struct made *m = *state;
+	enum { W = 500, H = 200 };
+	double c[12], deepest[2] = { 0, 0 };
+	struct image image[2], layers = { 0 };
+	for (int k = 0; k < 2; k++) {
+		struct portrait *p = portrait_of(m, 2);
+		p->conf.tear_absorb[0] = k;
+		drive_look(c, &m->rig, 0, 0, 1);
+		portrait_pose(p, c);
+		struct portrait_view view = portrait_front(&m->rig, -1, 110, 0, 0, W, H);
+		portrait_light(p, &view, true);
+		image[k] = portrait_draw(p, &view);
+		if (k)
+			layers = portrait_layers(p, &view);
+		assert_true(p->corner_known[0] && p->corner_known[1]);
+		const float *near = p->corner[0], far[3] = { near[0] + 15, near[1], near[2] };
+		NEAR(portrait_lake_height(p, 0, near), m->tear * (1 + LAKE_RISE), 1e-5);
+		NEAR(portrait_lake_height(p, 0, far), m->tear, 1e-5);
+		portrait_free(p);
+	}
+	int darker = 0;
+	for (int i = 0; i < W * H; i++) {
+		const float *a = image[0].px + 4 * i, *b = image[1].px + 4 * i, lake = layers.px[3 * i + 2];
+		int middle = abs(i % W - W / 2) < W / 5;  // the inner corners stand there
+		assert_true(a[1] == b[1] && a[2] == b[2] && a[0] >= b[0]);
+		assert_true(lake >= 0 && lake <= (float)(m->tear * (1 + LAKE_RISE)) + 1e-6f);
+		darker += a[0] > b[0];
+		deepest[middle] = fmax(deepest[middle], (double)lake);
+	}
+	print_message("lake: %d pixels darker, at most %.2f mm deep at the inner corners, %.2f elsewhere\n", darker, deepest[1], deepest[0]);
+	assert_true(darker > 50);
+	assert_true(deepest[1] > m->tear);
+	image_free(&image[0]);
+	image_free(&image[1]);
+	image_free(&layers);
+}
+
+/* A film in an even room: what it mirrors replaces what it keeps from below. And it lies on the inner corners alone. */
+static void caruncle_is_wet(void **state)
+{
+	struct made *m = *state;
+	m->wet = 1;
+	struct portrait *p = portrait_of(m, 2);
+	m->wet = 0;
+	struct portrait *dry = portrait_of(m, 2);
+	int wet = 0;
+	for (int i = 0; i < p->mesh.n; i++) {
+		double least = INFINITY;
+		for (int s = 0; s < 2; s++) {
+			double d[3];
+			for (int k = 0; k < 3; k++)
+				d[k] = (double)(p->mesh.rest[i][k] - p->corner[s][k]);
+			least = fmin(least, vec_norm(d) * 12 / m->rig.globe[s].radius);
+		}
+		wet += p->mesh.wet[i] > 0;
+		assert_true(p->mesh.wet[i] >= 0 && p->mesh.wet[i] <= 1 && dry->mesh.wet[i] == 0);
+		// Its middle lies so far aside, and skin there up to 6 mm before the globe.
+		assert_true(p->mesh.wet[i] == 0 || least < CARUNCLE_END_MM + hypot(CARUNCLE_OFF, 6));
+		for (int k = 0; k < 3; k++)
+			assert_true(p->mesh.wet[i] > 0 ? p->mesh.albedo[i][k] < dry->mesh.albedo[i][k] : p->mesh.albedo[i][k] == dry->mesh.albedo[i][k]);
+	}
+	print_message("caruncles: %d vertices moist\n", wet);
+	assert_true(wet > 2);
+	const float axes[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, n[3] = { 0, 0, -1 }, dir[3] = { 0.6f, 0, 0.8f };
+	float rgb[3] = { 0.5f, 0.25f, 0.125f };
+	portrait_wet_shade(rgb, p, axes, n, dir, 1, 1);
+	double t = asin(0.6 / (double)SCENE_FILM_INDEX), i = asin(0.6), share = 0.5 * (pow(sin(i - t) / sin(i + t), 2) + pow(tan(i - t) / tan(i + t), 2));
+	NEAR(rgb[0], 0.5 + share * 0.5, 1e-3);
+	NEAR(rgb[2], 0.125 + share * 0.875, 1e-3);
+	portrait_free(p);
+	portrait_free(dry);
 }
 
 static double depth_of(const struct rig_camera *camera, const float x[3])
@@ -319,6 +428,9 @@ int main(void)
 		cmocka_unit_test(eyes_are_where_they_are),
 		cmocka_unit_test(same_bytes_on_any_number_of_threads),
 		cmocka_unit_test(meniscus),
+		cmocka_unit_test(lake_absorbs),
+		cmocka_unit_test(lake_is_deep_at_the_corner),
+		cmocka_unit_test(caruncle_is_wet),
 		cmocka_unit_test(distances_are_to_the_lids),
 		cmocka_unit_test(tears_stay_at_the_lids),
 	};

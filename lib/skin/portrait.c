@@ -65,6 +65,7 @@ struct portrait *portrait_new(const struct rig *rig, const struct scene *const e
 	for (int s = 0; s < 2; s++)
 		rig_globe_rotation(p->target_from_globe[s], rig, (double[]){ 0, 0, 0 });
 	portrait_mesh_move(p);
+	portrait_wet_make(p);
 	portrait_lashes_make(p);
 	return p;
 }

@@ -20,6 +20,8 @@ struct portrait_conf {
 	double texture;        // strength of pores and blotches: 1 as on a face, 0 none
 	double scatter_mm;     // how far red light travels in skin: 1.5 times the root mean square; 0: not at all
 	double tear_mm;        // height of the tear line along the lids; 0: none, and no dark under their edges
+	double tear_absorb[3]; // absorption of tear fluid, 1/mm
+	double caruncle_wet;   // 0..1: how moist and red the inner corners are
 	double lash_mm;        // length of the upper lashes; 0: none
 };
 
@@ -54,7 +56,8 @@ void portrait_light(struct portrait *portrait, const struct portrait_view *view,
 struct image portrait_draw(struct portrait *portrait, const struct portrait_view *view);
 
 /* What such a picture is of: Z, depth along the camera's axis, mm, 0 where nothing is; and distance, mm, from each point of
- * the globes to the lid's edge as it stands on the screen, INFINITY off the globes and more than PORTRAIT_REACH_MM from it.
+ * the globes to the lid's edge as it stands on the screen, INFINITY off the globes and more than PORTRAIT_REACH_MM from it;
+ * and depth of the tear fluid there, mm, 0 where there is but the film.
  * image_free. */
 #define PORTRAIT_REACH_MM 12.0
 struct image portrait_layers(struct portrait *portrait, const struct portrait_view *view);

@@ -12,6 +12,7 @@ struct portrait_mesh {
 	int32_t (*faces)[3];
 	float (*x)[3], (*normal)[3], (*rest)[3], (*bare)[3], (*light)[3], (*albedo)[3];  // bare: light before skin spreads it
 	float *open;                // share of the light that reaches it
+	float *wet;                 // how moist it is, 0..1
 	float (*home)[2];           // where the modelling camera sees it at rest, px; null without wrinkles
 };
 
@@ -34,6 +35,8 @@ struct portrait {
 	int *wrinkle_input;         // [wrinkles.n] control that it follows; -1: none
 	float *wrinkle_strength;    // in this pose
 	bool folded;                // any of them
+	float corner[2][3];         // the globes' inner corners at rest, where known
+	bool corner_known[2];
 };
 
 /* portrait_lash.c: planted at rest; stretched out for a pose, as wide as they are towards that camera. */
@@ -64,6 +67,7 @@ float portrait_noise(const float p[3], float per_mm);
 struct portrait_sky {
 	int n;
 	float detail;  // 0..1: how much of pores a pixel of the view resolves
+	float rig_from_cam[3][3];
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
 /* light: irradiance there; null: the vertices'. */
@@ -96,6 +100,26 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *por
 /* portrait_tear.c: tear line and the dark under the lids' edges, into those pictures. */
 void portrait_tears(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                     const struct portrait_spot *spots, int samples);
+
+/* portrait_wet.c: finds the inner corners, once, and wets the skin there. */
+void portrait_wet_make(struct portrait *portrait);
+
+/* Height of the meniscus on a point of a globe: the lake at the inner corner is wider. */
+float portrait_lake_height(const struct portrait *portrait, int side, const float at[3]);
+
+/* Depth of a meniscus of that height at distance d from the lid: a quarter of a circle. */
+float portrait_lake_depth(float d, float height);
+
+/* What so deep a lake lets pass of the light that comes from all round, is thrown back below it and leaves under that cosine
+ * (Beer and Lambert); absorb: 1/mm. */
+void portrait_lake_light(float through[3], float depth, float cos_i, const double absorb[3]);
+
+/* Fresnel reflectance of the film of tears, unpolarised. */
+float portrait_film_share(float cos_i);
+
+/* What a film on skin with that normal mirrors, over its colour; open: share of the room that is seen from there. */
+void portrait_wet_shade(float rgb[3], const struct portrait *portrait, const float rig_from_cam[3][3], const float normal[3], const float dir[3],
+                        float wet, float open);
 
 /* enum distance_material of a pixel for the eye of that side, and how much of it is skin: from its samples, rows apart. */
 uint8_t portrait_material(float *cover, const struct portrait *portrait, const struct portrait_spot *spots, long row, int samples,

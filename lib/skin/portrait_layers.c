@@ -6,8 +6,21 @@
 #include "image/distance.h"
 #include "math/vec.h"
 #include "skin/portrait_impl.h"
+#include "skin/skin_look.h"
 
-enum { Z, DISTANCE, CHANNELS };
+enum { Z, DISTANCE, LAKE, CHANNELS };
+
+static float lake_at(const struct portrait *p, const struct portrait_rays *rays, int side, double x, double y, float d)
+{
+	float dir[3], at[3];
+	if (!(p->conf.tear_mm > 0) || !(d < (1 + (float)LAKE_RISE) * (float)p->conf.tear_mm))
+		return 0;
+	portrait_ray(dir, rays, x, y);
+	float t = portrait_eye_hit(p, side, rays->origin, dir);
+	for (int c = 0; c < 3; c++)
+		at[c] = rays->origin[c] + t * dir[c];
+	return isfinite(t) ? portrait_lake_depth(d, portrait_lake_height(p, side, at)) : 0;
+}
 
 /* The field of one eye into the picture. per_mm: the camera's unit in one of the rig's. */
 static void eye_field(struct image *out, const struct portrait *p, const struct portrait_view *v, const struct portrait_spot *spots, int side,
@@ -26,14 +39,19 @@ static void eye_field(struct image *out, const struct portrait *p, const struct 
 			long i = (long)y * w + x;
 			material[i] = portrait_material(&cover[i], p, spots + y * samples * row + (long)x * samples, row, samples, side);
 		}
+	struct portrait_rays rays = portrait_rays_of(v);
 	// Across the screen, as the tear line takes it.
 	double mm = away / (v->focal_px * per_mm);
 	struct distance_scene scene = { w, h, material, cover, 0, 0, { 0, 0 } };
 	if (away > 0)
 		distance_band(distance, 0, &scene, PORTRAIT_REACH_MM / mm, 0);
-	for (size_t i = 0; i < n && away > 0; i++)
-		if (material[i] == DISTANCE_GLOBE)
-			out->px[CHANNELS * i + DISTANCE] = distance[i] * (float)mm;
+	for (size_t i = 0; i < n && away > 0; i++) {
+		float *px = out->px + CHANNELS * i;
+		if (material[i] != DISTANCE_GLOBE)
+			continue;
+		px[DISTANCE] = distance[i] * (float)mm;
+		px[LAKE] = lake_at(p, &rays, side, (double)(i % (size_t)w) + 0.5, (double)(i / (size_t)w) + 0.5, px[DISTANCE]);
+	}
 	free(material);
 	free(cover);
 	free(distance);

@@ -14,6 +14,9 @@ struct portrait_sky portrait_sky_of(const struct portrait *p, const struct portr
 	// Pores are half a millimetre apart.
 	double mm = vec_norm((double[]){ view->cam_from_target[0][3], view->cam_from_target[1][3], view->cam_from_target[2][3] }) / view->focal_px;
 	sky.detail = (float)fmin(fmax((0.22 - mm) / 0.1, 0), 1);
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 3; k++)
+			sky.rig_from_cam[i][k] = (float)rays.rig_from_cam[i][k];
 	sky.n = envmap_lights(sky.light, p->conf.lights, p->env);
 	for (int i = 0; i < sky.n; i++) {
 		float cam[3];

@@ -165,6 +165,7 @@ void portrait_mesh_make(struct portrait *p)
 	m->light = fresh(n, sizeof *m->light);
 	m->albedo = fresh(n, sizeof *m->albedo);
 	m->open = fresh(n, sizeof *m->open);
+	m->wet = fresh(n, sizeof *m->wet);
 	memcpy(m->rest, rig->rest, (size_t)rig->n * sizeof *m->rest);
 	between(m->rest, m);
 }
@@ -196,6 +197,7 @@ void portrait_mesh_free(struct portrait_mesh *m)
 	free(m->light);
 	free(m->albedo);
 	free(m->open);
+	free(m->wet);
 	free(m->home);
 	*m = (struct portrait_mesh){ 0 };
 }

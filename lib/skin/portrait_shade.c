@@ -37,10 +37,10 @@ float portrait_noise(const float p[3], float per_mm)
 	return v[0] + f[2] * (v[1] - v[0]);
 }
 
-/* Pores: the slope of a noise of 0.5 mm cells tilts the normal. */
-static void pores(float n[3], const float rest[3], float strength)
+/* The slope of a noise of two grains (cells in a mm) tilts the normal. */
+static void pores(float n[3], const float rest[3], float strength, float coarse, float fine)
 {
-	static const float step = (float)SKIN_PORES_STEP, coarse = (float)SKIN_PORES_COARSE, fine = (float)SKIN_PORES_FINE;
+	static const float step = (float)SKIN_PORES_STEP;
 	float at = portrait_noise(rest, coarse) + 0.5f * portrait_noise(rest, fine);
 	for (int c = 0; c < 3; c++) {
 		float q[3] = { rest[0], rest[1], rest[2] };
@@ -72,7 +72,7 @@ static float gloss(const float n[3], const float l[3], const float v[3], float r
 }
 
 struct point {
-	float x[3], rest[3], normal[3], light[3], albedo[3], open, weight[3];
+	float x[3], rest[3], normal[3], light[3], albedo[3], open, wet, weight[3];
 };
 
 /* Where in the face the ray meets its plane: weights of its vertices. */
@@ -123,6 +123,7 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 			p.albedo[d] += w[j] * m->albedo[i][d];
 		}
 		p.open += w[j] * m->open[i];
+		p.wet += w[j] * m->wet[i];
 	}
 	for (int d = 0; d < 3; d++)
 		len += p.normal[d] * p.normal[d];
@@ -132,24 +133,38 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 	return p;
 }
 
+static void unit(float n[3])
+{
+	float len = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+	for (int c = 0; c < 3; c++)
+		n[c] /= len;
+}
+
+/* Mucous membrane: lobes a millimetre across below a film of tears. */
+static void moist(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, const struct point *q, const float dir[3])
+{
+	float n[3] = { q->normal[0], q->normal[1], q->normal[2] };
+	if (sky->detail > 0)
+		pores(n, q->rest, (float)CARUNCLE_LOBES * sky->detail, (float)CARUNCLE_COARSE, (float)CARUNCLE_FINE);
+	unit(n);
+	portrait_wet_shade(rgb, p, sky->rig_from_cam, n, dir, q->wet, q->open);
+}
+
 void portrait_shade(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, int face, const float origin[3],
                     const float dir[3], const float *light)
 {
 	struct point q = point_of(&p->mesh, face, origin, dir);
 	if (light)
 		memcpy(q.light, light, sizeof q.light);
-	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, len = 0, n[3], grain = 0;
+	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, n[3], grain = 0;
 	if (p->folded)
 		portrait_fold(q.normal, q.light, p, sky, face, q.weight);
 	memcpy(n, q.normal, sizeof n);
 	if (strength > 0) {
-		pores(n, q.rest, (float)SKIN_PORES * strength);
+		pores(n, q.rest, (float)SKIN_PORES * strength, (float)SKIN_PORES_COARSE, (float)SKIN_PORES_FINE);
 		grain = (float)SKIN_GRAIN * strength * portrait_noise(q.rest, (float)SKIN_GRAIN_CELLS);
 	}
-	for (int c = 0; c < 3; c++)
-		len += n[c] * n[c];
-	for (int c = 0; c < 3; c++)
-		n[c] /= sqrtf(len);
+	unit(n);
 	float spec[3] = { 0 };
 	for (int k = 0; k < sky->n; k++) {
 		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_WIDE)
@@ -162,5 +177,7 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	for (int c = 0; c < 3; c++)
 		relief += (float)SKIN_PORES_LIGHT * (n[c] - q.normal[c]) * sky->light[0].dir[c];
 	for (int c = 0; c < 3; c++)
-		rgb[c] = q.albedo[c] * (1 + grain) * q.light[c] * relief + spec[c] * q.open;
+		rgb[c] = q.albedo[c] * (1 + grain) * q.light[c] * relief + spec[c] * q.open * (1 - q.wet);
+	if (q.wet > 0)
+		moist(rgb, p, sky, &q, dir);
 }

@@ -2,7 +2,8 @@
  *
  * The meniscus is a quarter of a circle that leaves the globe flat and meets the lid upright: with d the distance to the lid
  * and R its height, depth R - sqrt(R^2 - (R - d)^2); so its normal leans away from the lid, and along a lower lid mirrors what
- * is above. The lid's edge takes light from the globe below it. */
+ * is above. It is higher at the inner corner, and takes of the light what it absorbs on its way in and out (portrait_wet.c).
+ * The lid's edge takes light from the globe below it. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -124,8 +125,7 @@ static void mirrored(float rgb[3], float *fresnel, const struct portrait *p, con
 	if (ray_blocked(p->shadow, at, r, 0.3f, 60))
 		for (int i = 0; i < 3; i++)
 			rgb[i] = (float)(TEAR_SKIN * p->conf.skin_rgb[i]);
-	float m = SCENE_FILM_INDEX, k = c > 0 ? c : 0, t = sqrtf(m * m - 1 + k * k), s = (k - t) / (k + t), q = (m * m * k - t) / (m * m * k + t);
-	*fresnel = 0.5f * (s * s + q * q);
+	*fresnel = portrait_film_share(c);
 }
 
 /* The normal of the meniscus at distance d from the lid, between the globe's and the direction away from the lid. */
@@ -142,7 +142,7 @@ struct wet {
 	const struct portrait *p;
 	const struct portrait_rays *rays;
 	int side;
-	float height;  // of the meniscus, in the rig's mm
+	float reach;   // of the highest meniscus, in the rig's mm
 	float per_mm;  // the camera's unit in one of the rig's
 	float pixel;   // mm
 };
@@ -157,7 +157,7 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	float t = portrait_eye_hit(w->p, w->side, w->rays->origin, dir);
 	for (int c = 0; c < 3; c++)
 		px[c] *= dark;
-	if (!isfinite(t) || d >= w->height)
+	if (!isfinite(t) || d >= w->reach)
 		return;
 	for (int c = 0; c < 3; c++) {
 		at[c] = w->rays->origin[c] + t * dir[c];
@@ -166,21 +166,26 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	}
 	for (int c = 0; c < 3; c++)
 		n[c] /= sqrtf(len);
-	towards(off, f, u, v, (int)fminf(w->height / w->pixel, 6) + 1);
+	float height = portrait_lake_height(w->p, w->side, at);
+	if (d >= height)
+		return;
+	towards(off, f, u, v, (int)fminf(height / w->pixel, 6) + 1);
 	if (!away(out, w->rays, at, n, x, y, off))
 		return;
 	// The meniscus turns by a right angle within a few pixels: what a pixel mirrors of it is a mean.
-	float sum[3] = { 0 }, through = 0;
+	float sum[3] = { 0 }, through[3] = { 0 }, below[3], cos_i = -(dir[0] * n[0] + dir[1] * n[1] + dir[2] * n[2]);
 	for (int k = 0; k < ACROSS; k++) {
-		float dk = d + ((float)k + 0.5f - 0.5f * ACROSS) / ACROSS * w->pixel, part = 1 - smooth((float)TEAR_END * w->height, w->height, dk);
-		portrait_meniscus(lean, n, out, dk, w->height);
+		float dk = d + ((float)k + 0.5f - 0.5f * ACROSS) / ACROSS * w->pixel, part = 1 - smooth((float)TEAR_END * height, height, dk);
+		portrait_meniscus(lean, n, out, dk, height);
 		mirrored(rgb, &fresnel, w->p, w->rays, at, lean, dir);
-		through += (1 - part * fresnel) / ACROSS;
-		for (int c = 0; c < 3; c++)
+		portrait_lake_light(below, portrait_lake_depth(dk, height), cos_i, w->p->conf.tear_absorb);
+		for (int c = 0; c < 3; c++) {
+			through[c] += (1 - part * fresnel) * below[c] / ACROSS;
 			sum[c] += part * fresnel * rgb[c] / ACROSS;
+		}
 	}
 	for (int c = 0; c < 3; c++)
-		px[c] = px[c] * through + sum[c];
+		px[c] = px[c] * through[c] + sum[c];
 }
 
 void portrait_tears(struct image out[2], int at[2][2], const struct portrait *p, const struct portrait_view *v, const struct portrait_spot *spots,
@@ -193,12 +198,12 @@ void portrait_tears(struct image out[2], int at[2][2], const struct portrait *p,
 		struct image *eye = &out[side];
 		if (!eye->px || !(p->conf.tear_mm > 0))
 			continue;
-		struct wet wet = { p, &rays, side, (float)p->conf.tear_mm, (float)scale, 0 };
+		struct wet wet = { p, &rays, side, (float)(p->conf.tear_mm * (1 + LAKE_RISE)), (float)scale, 0 };
 		double away = v->cam_from_target[2][3];
 		for (int c = 0; c < 3; c++)
 			away += v->cam_from_target[2][c] * p->rig->globe[side].center[c];
 		wet.pixel = (float)(away / (v->focal_px * scale));
-		struct field f = field_make(p, v, spots, samples, side, eye, at[side], fmax(p->conf.tear_mm, (double)shadow_mm) * scale, away);
+		struct field f = field_make(p, v, spots, samples, side, eye, at[side], fmax((double)wet.reach, (double)shadow_mm) * scale, away);
 #pragma omp parallel for schedule(dynamic, 8)
 		for (int y = 0; y < eye->height; y++)
 			for (int x = 0; x < eye->width; x++) {

@@ -35,4 +35,20 @@
 #define TEAR_ROUGH 0.15
 #define TEAR_SKIN 0.5
 
+// The lacrimal lake: at the inner corner the meniscus is so much higher than along the lids, within so many mm (on an eyeball
+// of 12 mm radius; so are the lengths below). Mean way down of diffuse light that has entered a film of index 1.336, in depths:
+// 2 n^2 (1 - sqrt(1 - 1 / n^2)).
+#define LAKE_RISE 1.6
+#define LAKE_MM 2.2
+#define LAKE_LIGHT_WAY 1.203
+// The caruncle, 4 to 5 mm high and 3 to 5 mm wide: how far its middle lies from the globe's edge towards the nose; out to where
+// it is all moist and where dry skin begins; mucous membrane against skin; slope and grain (cells in a mm) of its lobes.
+#define CARUNCLE_OFF 1.7
+#define CARUNCLE_MM 0.9
+#define CARUNCLE_END_MM 2.2
+#define CARUNCLE_RED 0.95, 0.66, 0.64
+#define CARUNCLE_LOBES 0.9
+#define CARUNCLE_COARSE 1.1
+#define CARUNCLE_FINE 2.6
+
 #endif

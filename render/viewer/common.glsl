@@ -20,3 +20,11 @@ float mirror_share(float cos_i, float n)
 	float s = (c - t) / (c + t), p = (n * n * c - t) / (n * n * c + t);
 	return 0.5 * (s * s + p * p);
 }
+
+// Place in a map on the octahedron unfolded about -z: lib/image/envmap.h.
+vec2 unfolded(vec3 d)
+{
+	d /= abs(d.x) + abs(d.y) + abs(d.z);
+	vec2 u = d.z > 0.0 ? vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(d.yx)) : d.xy;
+	return 0.5 * u + 0.5;
+}

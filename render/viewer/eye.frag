@@ -1,10 +1,7 @@
 // A ray of sight for each pixel: lib/eye/scene_trace.c, scene_sclera.c.
 vec3 environment(vec3 r, float rough)
 {
-	vec3 d = env_from_eye * r;
-	d /= abs(d.x) + abs(d.y) + abs(d.z);
-	vec2 u = d.z > 0.0 ? vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(d.yx)) : d.xy;
-	u = 0.5 * u + 0.5;
+	vec2 u = unfolded(env_from_eye * r);
 	return mix(textureLod(sharp_map, u, 0.0).rgb, textureLod(rough_map, u, 0.0).rgb, rough);
 }
 

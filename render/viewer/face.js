@@ -214,7 +214,7 @@ class FaceScene {
 
 	/* How far it is to the lids, from the skin as drawn: along rows, then along columns. */
 	field_of_lids(per_mm, s) {
-		const { g } = this, gl = g.gl, reach = Math.min(64, Math.ceil(1.2 * per_mm * Math.max(this.data.shadow_mm, this.data.tear_mm * s.tear)) + 2);
+		const { g } = this, gl = g.gl, reach = Math.min(64, Math.ceil(1.2 * per_mm * Math.max(this.data.shadow_mm, this.data.lake * this.data.tear_mm * s.tear)) + 2);
 		gl.disable(gl.DEPTH_TEST);
 		for (const rows of [0, 1]) {
 			g.target(this.fields[rows]);
@@ -242,6 +242,7 @@ class FaceScene {
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),
 			globes: this.data.globes.flatMap(([x, y, z, scale], side) => [x, y, z, scale * eye_scenes[side].sclera(s)[1]]),
 			quadric: light.quadric.flat().map(v => v * s.light_gain), still_quadric: first.lights[0].quadric.flat(),
+			sharp_map: light.sharp_map || first.lights[0].sharp_map, rough_map: light.rough_map || first.lights[0].rough_map, mirror_on: light.sharp_map ? s.light_gain : 0,
 			pores: !preset.pores ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
 		gl.disable(gl.CULL_FACE);
 		gl.enable(gl.SCISSOR_TEST);
@@ -254,7 +255,8 @@ class FaceScene {
 			g.target(this.frame, 0, 0, this.frame.depth);
 			gl.enable(gl.DEPTH_TEST);
 			eye_scenes[side].trace(s, v, preset, jitter, { side: v.side, lidded_from_eye: v.lidded_from_eye, depth: v.depth, sky_map: this.sky_map,
-				lid_map: this.fields[1], tear_height: Math.max(this.data.tear_mm * s.tear, 1e-3), skin_rgb: this.data.skin_rgb }, [width, height], this.eye);
+				lid_map: this.fields[1], tear_height: Math.max(this.data.tear_mm * s.tear, 1e-3), tear_absorb: this.data.tear_absorb,
+				canthus: this.data.corners[side], skin_rgb: this.data.skin_rgb }, [width, height], this.eye);
 		});
 		gl.disable(gl.SCISSOR_TEST);
 		gl.disable(gl.DEPTH_TEST);

@@ -1,10 +1,12 @@
 // What lids do to the eye below them: they leave it some of the sky, darken it under their edge, and hold the tear line, a quarter
-// of a circle that leaves the globe flat and meets the lid upright: lib/skin/portrait_eye.c, portrait_tear.c.
+// of a circle that leaves the globe flat and meets the lid upright: lib/skin/portrait_eye.c, portrait_tear.c, portrait_wet.c.
 uniform mat3 lidded_from_eye;     // to the axes in which lids leave sky over places of the globe
 uniform float side;               // left eye 0, right eye 1
 uniform sampler2D sky_map, lid_map;  // lid_map: tear.frag
 uniform vec3 depth;               // of clip space, and the face's mm in one of the eye's
 uniform float tear_height;        // mm of the face
+uniform vec3 tear_absorb;         // 1/mm
+uniform vec4 canthus;             // the inner corner from the globe's middle, head's axes; mm of a mean eyeball's, 0: not known
 uniform vec3 skin_rgb;
 
 vec3 environment(vec3 r, float rough);
@@ -23,22 +25,37 @@ vec2 towards(ivec2 at, int reach)
 	return sum / (length(sum) + 1e-6);
 }
 
+// Height of the meniscus on a place of the globe: the lake at the inner corner is wider.
+float lake_height(vec3 place)
+{
+	vec3 off = place - canthus.xyz;
+	return tear_height * (canthus.w > 0.0 ? 1.0 + LAKE_RISE * exp(-dot(off, off) / (LAKE_MM * LAKE_MM * canthus.w * canthus.w)) : 1.0);
+}
+
+// What so deep a lake lets pass of the light that leaves under that cosine.
+vec3 lake_light(float deep, float cos_i)
+{
+	float s2 = (1.0 - cos_i * cos_i) / (LOOK_FILM_INDEX * LOOK_FILM_INDEX);
+	return exp(-tear_absorb * deep * (inversesqrt(1.0 - s2) + LAKE_LIGHT_WAY));
+}
+
 // Of the meniscus, with the normal n of the globe and the direction `away` from the lid, in its tangent plane; d in px.
-vec3 wet(vec3 rgb, vec3 from, vec3 dir, vec3 n, vec3 away, float d, float mm, float open)
+vec3 wet(vec3 rgb, vec3 dir, vec3 n, vec3 away, float d, float height, float mm, float open)
 {
 	const int ACROSS = 4;
 	vec3 sum = vec3(0.0);
-	float through = 0.0;
+	vec3 through = vec3(0.0);
 	for (int k = 0; k < ACROSS; k++) {
-		float dk = d + ((float(k) + 0.5) / float(ACROSS) - 0.5) * mm, part = 1.0 - step_smooth(TEAR_END * tear_height, tear_height, dk);
-		float lean = 1.0 - clamp(dk, 0.0, tear_height) / tear_height;
+		float dk = d + ((float(k) + 0.5) / float(ACROSS) - 0.5) * mm, part = 1.0 - step_smooth(TEAR_END * height, height, dk);
+		float lean = 1.0 - clamp(dk, 0.0, height) / height;
 		vec3 normal = sqrt(1.0 - lean * lean) * n + lean * away;
 		float c = -dot(dir, normal), share = part * mirror_share(c, LOOK_FILM_INDEX);
 		vec3 r = dir + 2.0 * c * normal;
 		// The lids stand before what is low over the globe: as much of it as they take of the sky.
 		float free = step_smooth(0.5 * (1.0 - open), 1.5 * (1.0 - open) + 0.01, dot(r, n));
 		sum += share * mix(TEAR_SKIN * skin_rgb, mirror_on * environment(r, TEAR_ROUGH), free);
-		through += 1.0 - share;
+		float x = height - clamp(dk, 0.0, height);
+		through += (1.0 - share) * lake_light(height - sqrt(height * height - x * x), -dot(dir, n));
 	}
 	return (rgb * through + sum) / float(ACROSS);
 }
@@ -51,10 +68,11 @@ vec3 below_lids(vec3 rgb, vec3 at, vec3 dir)
 	ivec2 px = ivec2(gl_FragCoord.xy);
 	float mm = pixel * depth.z, d = (texelFetch(lid_map, px, 0).z - 0.5) * mm;
 	rgb *= 1.0 - TEAR_SHADOW * exp(-TEAR_SHADOW_FADE * max(d, 0.0) / TEAR_SHADOW_MM) * (1.0 - step_smooth(TEAR_SHADOW_END * TEAR_SHADOW_MM, TEAR_SHADOW_MM, d));
-	if (d >= tear_height)
+	float height = lake_height(place * length(at - vec3(0.0, 0.0, sclera.x)) * depth.z);
+	if (d >= height)
 		return rgb;
-	vec2 off = towards(px, clamp(int(0.4 * tear_height / mm), 1, 3));
+	vec2 off = towards(px, clamp(int(0.4 * height / mm), 1, 3));
 	vec3 beside = eye_from_cam * ray_at(vec2(gl_FragCoord.x + off.x, size.y - gl_FragCoord.y - off.y) + jitter);
 	vec3 away = at - (origin + beside * (dot(at - origin, n) / dot(beside, n)));
-	return length(away) > 1e-5 ? wet(rgb, at, dir, n, normalize(away), d, mm, open) : rgb;
+	return length(away) > 1e-5 ? wet(rgb, dir, n, normalize(away), d, height, mm, open) : rgb;
 }
