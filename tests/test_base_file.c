@@ -2,10 +2,14 @@
 #include "tests/lib/unit.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/work.h"
 #include "tests/lib/scratch.h"
 
 static int setup(void **state)
@@ -218,6 +222,76 @@ static void errors_keep_the_first(void **state)
 	assert_true(strlen(cut.msg) < sizeof cut.msg);
 }
 
+/* Programs that write one file at the same moment all succeed, and what stands there is whole and of one of them. */
+static void written_by_many(void **state)
+{
+	(void)state;
+	enum { PROGRAMS = 6, TIMES = 300, SIZE = 40000 };
+	const char *path = scratch_path("plan.json");
+	pid_t child[PROGRAMS];
+	for (int p = 0; p < PROGRAMS; p++)
+		if (!(child[p] = fork())) {
+			static char data[SIZE];
+			struct err err = { 0 };
+			memset(data, 'a' + p, sizeof data);
+			for (int i = 0; i < TIMES && !err_is(&err); i++)
+				file_write(path, data, (size_t)(SIZE - 1000 * p), &err);
+			if (err_is(&err))
+				fprintf(stderr, "%s\n", err.msg);
+			_exit(err_is(&err));
+		}
+	for (int p = 0; p < PROGRAMS; p++) {
+		int status;
+		assert_int_equal(waitpid(child[p], &status, 0), child[p]);
+		assert_int_equal(status, 0);
+	}
+	char *data;
+	size_t size;
+	struct err err = { 0 };
+	assert_true(file_read(&data, &size, path, 1 << 20, &err));
+	assert_int_equal(size, SIZE - 1000 * (data[0] - 'a'));
+	for (size_t i = 0; i < size; i++)
+		assert_int_equal(data[i], data[0]);
+	free(data);
+}
+
+/* What a killed program left is swept away, what another is writing is not, and nothing else is touched. */
+static void swept(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	bool busy = true;
+	char *capture = mem_str(scratch_path("capture"));
+	char *left = mem_printf("%s/work/iris/.0123456789abcdef.new", capture), *held = mem_printf("%s/work/.fedcba9876543210.new", capture);
+	const char *others[] = { "work/iris/texture.exr", "work/iris/.hidden", "work/.0123.new", "work/.0123456789abcdef.new.exr", ".0123456789abcdef.new" };
+	assert_true(file_write(left, "x", 1, &err) && file_write(held, "x", 1, &err));
+	for (int i = 0; i < COUNT(others); i++) {
+		char *path = mem_printf("%s/%s", capture, others[i]);
+		assert_true(file_write(path, "x", 1, &err));
+		free(path);
+	}
+	int writer = open(held, O_WRONLY), lock = work_lock(capture, &busy, &err), again;
+	assert_true(writer >= 0 && lock >= 0 && !busy && !flock(writer, LOCK_EX));
+	work_sweep(capture);
+	assert_false(file_exists(left));
+	assert_true(file_exists(held));
+	close(writer);
+	work_sweep(capture);
+	assert_false(file_exists(held));
+	for (int i = 0; i < COUNT(others); i++) {
+		char *path = mem_printf("%s/%s", capture, others[i]);
+		assert_true(file_exists(path));
+		free(path);
+	}
+	again = work_lock(capture, &busy, &err);
+	assert_true(again >= 0 && busy);
+	close(again);
+	close(lock);
+	free(capture);
+	free(left);
+	free(held);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -228,6 +302,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(only_regular_files_are_read, setup, teardown),
 		cmocka_unit_test_setup_teardown(paths_stay_inside, setup, teardown),
 		cmocka_unit_test_setup_teardown(hashes_and_lists, setup, teardown),
+		cmocka_unit_test_setup_teardown(written_by_many, setup, teardown),
+		cmocka_unit_test_setup_teardown(swept, setup, teardown),
 		cmocka_unit_test(errors_keep_the_first),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

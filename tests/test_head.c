@@ -60,7 +60,7 @@ static bool load(struct clip *c, const char *name)
 	struct video_info info;
 	struct video_frame frame;
 	bool got;
-	struct video *video = video_open(&info, files[2], &(struct video_conf){ 40, 100000, 1 }, &err);
+	struct video *video = video_open(&info, files[2], &(struct video_conf){ 40, 100000, 1, 0 }, &err);
 	assert_true(video && video_next(&frame, &got, video, &err) && got);
 	c->rgb = mem_new(3 * 1280 * 720, 1);
 	video_frame_rgb(c->rgb, 3 * 1280, &frame, 0, 0, 1280, 720);

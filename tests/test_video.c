@@ -9,7 +9,7 @@
 #include "tests/lib/unit.h"
 
 enum { W = 160, H = 96, FRAMES = 24 };
-static const struct video_conf conf = { 10, 1000, 2 };
+static const struct video_conf conf = { 10, 1000, 2, 0 };
 
 /* A smooth picture that drifts. */
 static void paint(uint8_t *rgb, int w, int h, int frame)
@@ -245,11 +245,14 @@ static void limits(void **state)
 	struct err err = { 0 };
 	struct video_info info;
 	const char *path = write_video("l.mp4", W, H, even);
-	assert_null(video_open(&info, path, &(struct video_conf){ 0.01, 1000, 1 }, &err));
+	assert_null(video_open(&info, path, &(struct video_conf){ 0.01, 1000, 1, 0 }, &err));
 	ERR_HAS(err, "limit.video_mpx");
 	err = (struct err){ 0 };
-	assert_null(video_open(&info, path, &(struct video_conf){ 10, 5, 1 }, &err));
+	assert_null(video_open(&info, path, &(struct video_conf){ 10, 5, 1, 0 }, &err));
 	ERR_HAS(err, "limit.video_frames");
+	err = (struct err){ 0 };
+	assert_null(video_open(&info, path, &(struct video_conf){ 10, 1000, 1, 0.01 }, &err));
+	ERR_HAS(err, "limit.video_s");
 }
 
 /* Bytes changed at random: an error or frames, never a crash. */

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -95,6 +96,11 @@ char *file_temporary(const char *path)
 	return mem_printf("%.*s.%s.new", slash ? (int)(slash - path + 1) : 0, path, hash);
 }
 
+bool file_is_temporary(const char *name)
+{
+	return name[0] == '.' && strspn(name + 1, "0123456789abcdef") == 16 && !strcmp(name + 17, ".new");
+}
+
 static bool write_all(int fd, const char *data, size_t size)
 {
 	while (size) {
@@ -109,6 +115,36 @@ static bool write_all(int fd, const char *data, size_t size)
 	return true;
 }
 
+/* Opens the temporary file, empty, for this writer alone: another that writes the same file at the same moment waits, and
+ * finds that what it waited for has been renamed. */
+static int open_alone(const char *tmp)
+{
+	for (;;) {
+		struct stat is, named;
+		int fd = open(tmp, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+		if (fd < 0)
+			return fd;
+		while (flock(fd, LOCK_EX) && errno == EINTR)
+			;
+		if (!fstat(fd, &is) && !lstat(tmp, &named) && is.st_ino == named.st_ino && is.st_dev == named.st_dev) {
+			if (!ftruncate(fd, 0))
+				return fd;
+			int why = errno;
+			close(fd);
+			errno = why;
+			return -1;
+		}
+		close(fd);
+	}
+}
+
+/* Says what the file system has put off so far; the file itself, and its lock, stay. */
+static bool flushed(int fd)
+{
+	int same = dup(fd);
+	return same >= 0 && !close(same);
+}
+
 bool file_write(const char *path, const void *data, size_t size, struct err *err)
 {
 	char *slash = strrchr(path, '/');
@@ -120,22 +156,15 @@ bool file_write(const char *path, const void *data, size_t size, struct err *err
 			return false;
 	}
 	char *tmp = file_temporary(path);
-	int fd = open(tmp, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-	bool ok = fd >= 0 && write_all(fd, data, size);
+	int fd = open_alone(tmp);
+	bool ok = fd >= 0 && write_all(fd, data, size) && flushed(fd) && !rename(tmp, path);
 	int why = errno;
-	if (fd >= 0 && close(fd) && ok) {
-		ok = false;
-		why = errno;
-	}
-	if (ok && rename(tmp, path)) {
-		ok = false;
-		why = errno;
-	}
-	if (!ok) {
-		if (fd >= 0)
-			unlink(tmp);
+	if (!ok && fd >= 0)
+		unlink(tmp);
+	if (fd >= 0)
+		close(fd);
+	if (!ok)
 		err_set(err, "%s: cannot write: %s", path, strerror(why));
-	}
 	free(tmp);
 	return ok;
 }

@@ -54,7 +54,10 @@ bool file_inside(char **out, const char *root, const char *rel, struct err *err)
 }
 #endif
 /* A name beside `path` to write under until it is whole: short whatever the path's length, the same at every run, so that
- * a killed run leaves at most one behind, which the next overwrites. free(). */
+ * a killed run leaves at most one behind, which the next overwrites, or work_sweep (work.h) removes. free(). */
 char *file_temporary(const char *path);
+
+/* Whether file_temporary gives such names (without folders). */
+bool file_is_temporary(const char *name);
 
 #endif

@@ -1,14 +1,11 @@
 #include "base/stage.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <omp.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -17,6 +14,7 @@
 #include "base/record.h"
 #include "base/say.h"
 #include "base/version.h"
+#include "base/work.h"
 
 /* Parts of a stage that run at the same time record what they make and say in one place. Recursive: some of these call others. */
 static pthread_mutex_t busy = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
@@ -46,17 +44,15 @@ _Noreturn static void die(const struct stage *stage, const struct err *err, int 
 /* One stage at a time in a folder: a second make waits for the first instead of writing beside it. */
 static bool lock_work(struct stage *stage, struct err *err)
 {
-	const char *dir = stage_path(stage, "work/.made"), *path = stage_path(stage, "work/.made/lock");
-	if (!file_mkdirs(dir, err))
-		return false;
-	stage->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+	bool busy = false;
+	stage->lock = work_lock(stage->capture, &busy, err);
 	if (stage->lock < 0)
-		return err_set(err, "%s: %s", path, strerror(errno));
-	if (flock(stage->lock, LOCK_EX | LOCK_NB)) {
+		return false;
+	if (busy) {
 		stage_note(stage, "waiting for another program in %s", stage->capture);
-		while (flock(stage->lock, LOCK_EX) && errno == EINTR)
-			;
+		work_wait(stage->lock);
 	}
+	work_sweep(stage->capture);
 	return true;
 }
 

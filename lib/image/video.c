@@ -121,7 +121,7 @@ static bool describe(struct video *v, const struct video_conf *conf, struct err 
 	double mpx = 1e-6 * info->width * info->height;
 	if (mpx > conf->limit_mpx)
 		return err_set(err, "%s: %d x %d px, must be at most %g Mpx (limit.video_mpx)", v->path, info->width, info->height, conf->limit_mpx);
-	return video_source_scan(&v->source, info, v->path, conf->limit_frames, err);
+	return video_source_scan(&v->source, info, v->path, conf, err);
 }
 
 struct video *video_open(struct video_info *info, const char *path, const struct video_conf *conf, struct err *err)

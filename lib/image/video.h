@@ -14,12 +14,14 @@ struct video_conf {
 	double limit_mpx;    // of a frame, million pixels
 	int limit_frames;    // of the file
 	int threads;         // of the decoder; the pictures do not depend on it
+	double limit_s;      // of the file, from its first picture to its last; 0: any
 };
 
 /* Rows for a stage's option table. */
 #define VIDEO_OPTS(c) \
 	OPT_REAL("limit.video_mpx", &(c)->limit_mpx, 0.01, 200, "Mpx", "largest frame that is decoded"), \
-	OPT_INT("limit.video_frames", &(c)->limit_frames, 1, 10000000, "", "longest video that is read, frames")
+	OPT_INT("limit.video_frames", &(c)->limit_frames, 1, 10000000, "", "longest video that is read, frames"), \
+	OPT_REAL("limit.video_s", &(c)->limit_s, 0, 1e6, "s", "the same in seconds; 0: any")
 
 struct video_info {
 	int width, height;   // px, upright

@@ -18,7 +18,7 @@ bool video_source_decode(struct video_source *source, const char *path, int thre
 void video_source_close(struct video_source *source);
 
 /* Times and number of its frames, read from its packets; goes back to the start. */
-bool video_source_scan(struct video_source *source, struct video_info *info, const char *path, long limit, struct err *err);
+bool video_source_scan(struct video_source *source, struct video_info *info, const char *path, const struct video_conf *limits, struct err *err);
 
 /* Degrees clockwise, a multiple of 90, that make its pictures upright. */
 int video_source_rotation(const struct video_source *source);

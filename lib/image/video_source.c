@@ -111,11 +111,16 @@ static void intervals(struct video_info *info, double *first, long n, double *ti
 	free(step);
 }
 
-bool video_source_scan(struct video_source *s, struct video_info *info, const char *path, long limit, struct err *err)
+static bool too_long(double seconds, const struct video_conf *limits)
+{
+	return limits->limit_s > 0 && seconds > limits->limit_s;
+}
+
+bool video_source_scan(struct video_source *s, struct video_info *info, const char *path, const struct video_conf *limits, struct err *err)
 {
 	AVStream *st = s->file->streams[s->stream];
 	AVPacket *packet = av.av_packet_alloc();
-	double *time = 0;
+	double *time = 0, first = INFINITY, last = -INFINITY;
 	long n = 0, room = 0;
 	while (packet && av.av_read_frame(s->file, packet) >= 0) {
 		bool ours = packet->stream_index == s->stream && !(packet->flags & AV_PKT_FLAG_DISCARD) && packet->size > 0;
@@ -124,10 +129,12 @@ bool video_source_scan(struct video_source *s, struct video_info *info, const ch
 			time = mem_grow(time, (size_t)(room = 2 * room + 1024), sizeof *time);
 		if (ours) {
 			double unstamped = (double)n / fmax(1, av_q2d(st->avg_frame_rate));
-			time[n++] = at == AV_NOPTS_VALUE ? unstamped : (double)at * av_q2d(st->time_base);
+			time[n] = at == AV_NOPTS_VALUE ? unstamped : (double)at * av_q2d(st->time_base);
+			first = fmin(first, time[n]);
+			last = fmax(last, time[n++]);
 		}
 		av.av_packet_unref(packet);
-		if (n > limit)
+		if (n > limits->limit_frames || too_long(last - first, limits))
 			break;
 	}
 	av.av_packet_free(&packet);
@@ -135,16 +142,18 @@ bool video_source_scan(struct video_source *s, struct video_info *info, const ch
 	free(time);
 	info->frames = n;
 	info->promised = st->nb_frames;
-	if (n > limit)
-		return err_set(err, "%s: has more than %ld frames (limit.video_frames): cut it, or raise the limit", path, limit);
+	if (n > limits->limit_frames)
+		return err_set(err, "%s: has more than %d frames (limit.video_frames): cut it, or raise the limit", path, limits->limit_frames);
+	if (too_long(last - first, limits))
+		return err_set(err, "%s: takes more than %g s (limit.video_s): cut it, or raise the limit", path, limits->limit_s);
 	if (n == 0)
 		return err_set(err, "%s: holds no frame: copy it again, whole", path);
 	// Opened again, not sought: containers differ in what they take for the start, and MP4's own seek ends in the last
 	// group of pictures.
-	double first = s->first;
+	double begin = s->first;
 	video_source_close(s);
 	bool again = video_source_open(s, path, err);
-	s->first = first;
+	s->first = begin;
 	return again;
 }
 

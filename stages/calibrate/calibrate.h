@@ -14,7 +14,7 @@
 
 struct calibrate_options {
 	int video_frames, video_frames_beside, limit_video_frames;
-	double limit_video_mpx;
+	double limit_video_mpx, limit_video_s;
 	int picture_px, features, first_octave, max_views, min_matches, lens;
 	double same_level, blur_warning, limit_mpx, regrow;
 	struct sfm_overlap_conf overlap;

@@ -29,6 +29,7 @@ int main(int argc, char **argv)
 		OPT_REAL("limit.photo_mpx", &o.limit_mpx, 1, 1000, "Mpx", "larger photographs are refused"),
 		OPT_REAL("limit.video_mpx", &o.limit_video_mpx, 0.01, 200, "Mpx", "largest frame that is decoded"),
 		OPT_INT("limit.video_frames", &o.limit_video_frames, 1, 10000000, "", "longest video that is read, frames"),
+		OPT_REAL("limit.video_s", &o.limit_video_s, 0, 1e6, "s", "the same in seconds; 0: any"),
 		OPT_INT("video_frames", &o.video_frames, 2, 1000, "", "frames of a video that are looked at, where there are no views"),
 		OPT_INT("video_frames_beside", &o.video_frames_beside, 0, 1000, "", "the same beside views, for the video's lens"),
 		OPT_INT("max_views", &o.max_views, 10, 2000, "", "of more, so many are taken"),

@@ -1,7 +1,9 @@
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/say.h"
+#include "base/work.h"
 #include "plan.h"
 
 static char *slice_of(const struct opt opts[PLAN_STAGES], const struct conf *conf)
@@ -14,6 +16,19 @@ static char *slice_of(const struct opt opts[PLAN_STAGES], const struct conf *con
 	return text;
 }
 
+/* Where nothing has to run no stage would do it. A stage that is running does. */
+static void sweep(const char *capture)
+{
+	struct err unwritable = { 0 };
+	bool busy = false;
+	int lock = work_lock(capture, &busy, &unwritable);
+	if (lock < 0)
+		return;
+	if (!busy)
+		work_sweep(capture);
+	close(lock);
+}
+
 static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
                       const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, struct err *err)
 {
@@ -23,6 +38,8 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
+	if (ok)
+		sweep(call->capture);
 	if (ok && asked->show)
 		plan_show(&plan, call);
 	for (int i = 0; i < PLAN_STAGES; i++)

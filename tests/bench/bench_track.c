@@ -89,7 +89,7 @@ static void decode_only(const char *path)
 	struct video_info info;
 	struct err err = { 0 };
 	double start = now();
-	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2 }, &err);
+	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2, 0 }, &err);
 	bool got = video != 0;
 	long n = 0;
 	while (got) {

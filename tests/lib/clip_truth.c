@@ -108,7 +108,7 @@ void clip_truth_push(struct eye_track *track, const struct clip_truth *t, const 
 	struct err err = { 0 };
 	struct video_info info;
 	snprintf(path, sizeof path, "%s/video.mp4", dir);
-	struct video *video = video_open(&info, path, &(struct video_conf){ 10, 100000, 1 }, &err);
+	struct video *video = video_open(&info, path, &(struct video_conf){ 10, 100000, 1, 0 }, &err);
 	uint8_t *rgb = mem_new((size_t)(info.width * info.height), 3);
 	for (int i = 0; video && i < t->frames; i++) {
 		struct video_frame frame;

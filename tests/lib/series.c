@@ -182,7 +182,7 @@ static bool read_mesh(struct series_list *list, const char *path, struct err *er
 static bool read_video(struct series_list *list, const char *path, struct err *err)
 {
 	struct video_info info;
-	struct video *video = video_open(&info, path, &(struct video_conf){ 200, 1000000, 1 }, err);
+	struct video *video = video_open(&info, path, &(struct video_conf){ 200, 1000000, 1, 0 }, err);
 	struct video_frame frame;
 	bool got = video, ok = video;
 	while (ok && got && (ok = video_next(&frame, &got, video, err)) && got) {

@@ -180,7 +180,7 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 	struct sums s = { .all = mem_new(room, sizeof(double)), .first = mem_new(room, sizeof(double)), .last = mem_new(room, sizeof(double)), .again = mem_new(room, sizeof(double)) };
 	struct skin_point_state *state = mem_new((size_t)points.n + 1, sizeof *state);
 	char *path = mem_printf("%s/video.mp4", dir);
-	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2 }, err);
+	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2, 0 }, err);
 	struct skin_track *track = 0;
 	size_t area = (size_t)info.width * (size_t)info.height;
 	long tenth = t.n / TENTH;

@@ -28,7 +28,7 @@ static bool read_part(struct part *p, const char *text)
 /* Frames that a part wants, as sRGB; the others null. */
 static bool load(uint8_t **rgb, struct video_info *info, const char *path, int n, const struct part part[], struct err *err)
 {
-	struct video *video = video_open(info, path, &(struct video_conf){ 40, FRAMES, 2 }, err);
+	struct video *video = video_open(info, path, &(struct video_conf){ 40, FRAMES, 2, 0 }, err);
 	bool got = video;
 	while (got) {
 		struct video_frame f;
