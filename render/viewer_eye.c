@@ -67,6 +67,7 @@ static json_t *geometry(const struct scene *s, double gain)
 	double back[] = { c->R_post, c->p_post, c->thickness, c->two_surface ? c->n_cornea : 0 };
 	put(out, "back", COUNT(back), back);
 	json_object_set_new(out, "march", rules(s));
+	json_object_set_new(out, "search", json_integer(s->conf.search));
 	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
 	json_object_set_new(out, "levels", json_integer(s->n_levels));
 	json_object_set_new(out, "marched", json_integer(scene_marched(s)));

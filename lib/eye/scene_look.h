@@ -32,6 +32,8 @@
 #define LOOK_SOURCE 0.15
 #define LOOK_FILL 0.4
 #define LOOK_BIAS 0.004
+// A ray of sight that leans more than that to the iris' axis may cross the relief several times.
+#define LOOK_LEANS 0.3
 // The march's quadrature: ways of light to and fro through a cornea, over the depth (about 1.05 and 1.3 times it).
 #define LOOK_WAYS 2.35
 // The albedo step: most that a texel brightens, and that its channels differ from their mean.

@@ -159,9 +159,8 @@ void quick_bend(struct quick_found *f, int n, const struct quick_look *k)
 	memcpy(f->bent[2], f->spots.nz, (size_t)n * sizeof(float));
 }
 
-/* The relief along each ray, by Newton's steps from the iris plane: it is flat enough against the slope of sight in the
- * aqueous that the first crossing is the only one. */
-SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+/* The relief along each ray, by Newton's steps from the iris plane. */
+SIMD_CLONES static void meet_straight(struct quick_spots *s, int n, const struct quick_look *k)
 {
 	enum { STEPS = 2 };
 	const int *restrict pairs = k->level->pairs;
@@ -169,16 +168,16 @@ SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, c
 	const float *restrict vx = s->vx, *restrict vy = s->vy, *restrict vz = s->vz;
 	float *restrict iu = s->iu, *restrict iv = s->iv, per_mm = k->level->per_mm, plane = (float)k->scene->eye.iris_depth;
 	float most = plane - k->scene->height_min, least = plane - k->scene->height_max;
-	int n = k->level->n;
+	int size = k->level->n;
 	SIMD_LOOP
-	for (int i = 0; i < r->n; i++) {
+	for (int i = 0; i < n; i++) {
 		float x = fx[i] + k->slip[0][0] * fx[i] + k->slip[0][1] * fy[i] + k->slip[0][2];
 		float y = fy[i] + k->slip[1][0] * fx[i] + k->slip[1][1] * fy[i] + k->slip[1][2];
 		float a = vx[i] + k->slip[0][0] * vx[i] + k->slip[0][1] * vy[i], b = vy[i] + k->slip[1][0] * vx[i] + k->slip[1][1] * vy[i];
 		float c = vz[i] > 0.1f ? vz[i] : 0.1f, low = (least - fz[i]) / c, high = (most - fz[i]) / c, t = (plane - fz[i]) / c;
 #pragma GCC unroll 2
 		for (int j = 0; j < STEPS; j++) {
-			float gx, gy, f = fz[i] + t * c - plane + quick_height_at(pairs, n, per_mm, x + t * a, y + t * b, &gx, &gy);
+			float gx, gy, f = fz[i] + t * c - plane + quick_height_at(pairs, size, per_mm, x + t * a, y + t * b, &gx, &gy);
 			float slope = c + gx * a + gy * b;
 			t -= f / (slope > 0.3f ? slope : 0.3f);
 			t = t > low ? t < high ? t : high : low;
@@ -186,6 +185,33 @@ SIMD_CLONES void quick_iris(struct quick_spots *s, const struct quick_rays *r, c
 		iu[i] = x + t * a;
 		iv[i] = y + t * b;
 	}
+}
+
+/* The same by a search for the first crossing, as the reference does it. */
+static void meet_leaning(struct quick_spots *s, int n, const struct quick_look *k)
+{
+	struct iris_batch b = { .n = n };
+	for (int i = 0; i < n; i++) {
+		bool seen = s->hit[i] > 0 && s->lid[i] < 1;
+		float fx = seen ? s->fx[i] : 0, fy = seen ? s->fy[i] : 0, vx = seen ? s->vx[i] : 0, vy = seen ? s->vy[i] : 0;
+		b.fx[i] = fx + k->slip[0][0] * fx + k->slip[0][1] * fy + k->slip[0][2];
+		b.fy[i] = fy + k->slip[1][0] * fx + k->slip[1][1] * fy + k->slip[1][2];
+		b.fz[i] = seen ? s->fz[i] : 0;
+		b.vx[i] = vx + k->slip[0][0] * vx + k->slip[0][1] * vy;
+		b.vy[i] = vy + k->slip[1][0] * vx + k->slip[1][1] * vy;
+		b.vz[i] = seen ? fmaxf(s->vz[i], 0.1f) : 1;
+	}
+	scene_meet(&b, k->scene, k->level);
+	memcpy(s->iu, b.px, (size_t)n * sizeof(float));
+	memcpy(s->iv, b.py, (size_t)n * sizeof(float));
+}
+
+void quick_iris(struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+{
+	bool leans = false;
+	for (int i = 0; i < r->n && !leans; i++)
+		leans = s->hit[i] > 0 && s->lid[i] < 1 && quick_leans(s->vx[i], s->vy[i], s->vz[i]);
+	(leans ? meet_leaning : meet_straight)(s, r->n, k);
 }
 
 SIMD_CLONES void quick_reflect(float *restrict out_x, float *restrict out_y, float *restrict out_z, struct quick_found *f, const struct quick_rays *r,

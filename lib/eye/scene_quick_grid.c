@@ -41,19 +41,23 @@ SIMD_CLONES void quick_lay(float *restrict out, const float node[NODE_LANES])
 	}
 }
 
-/* All nodes well inside the limbus, or well outside, or about it; and none seen at a grazing angle, where places run away. */
+/* All nodes well inside the limbus, or well outside, or about it; and none seen at a grazing angle, where places run away, nor
+ * so far from the side that relief hides relief. */
 static enum quick_kind kind_of(const struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
 {
 	float inner = fminf((float)LOOK_SEAM_FROM, 1 - 0.5f * k->lid_width), outer = fmaxf(1.08f, 1 + 0.5f * k->lid_width);
 	float wide = fabsf(r->ox[r->n - 1] - r->ox[0]) + fabsf(r->oy[r->n - 1] - r->oy[0]) + fabsf(r->oz[r->n - 1] - r->oz[0]);
-	int in = 0, out = 0, faces = 0, through = 0;
+	int in = 0, out = 0, faces = 0, through = 0, leans = 0;
 	for (int i = 0; i < r->n; i++) {
 		bool good = s->hit[i] > 0 && -(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]) > 0.3f;
 		in += good && s->rho[i] < inner;
 		out += good && s->rho[i] > outer;
 		faces += good;
 		through += s->vz[i] > 0.3f && s->fz[i] > -0.1f && s->fz[i] < 5;  // whether there is an entry or the conic goes on as one
+		leans += quick_leans(s->vx[i], s->vy[i], s->vz[i]);
 	}
+	if (leans && out < r->n)
+		return QUICK_MIXED;
 	if (wide * k->limbus[0] > 0.4f || faces < r->n)
 		return QUICK_MIXED;
 	return in == r->n ? QUICK_CORNEA : out == r->n ? QUICK_SCLERA : through == r->n ? QUICK_LIMBUS : QUICK_MIXED;

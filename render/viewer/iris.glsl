@@ -10,17 +10,52 @@ uniform float sclera_reach;       // angle at the edge of the maps of the sclera
 uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
 uniform float pixel;              // mm on the iris
 uniform vec2 heights;
+uniform int search;               // steps of the search for the relief
 uniform sampler2D colour_map, light_map, vein_map, film_map, sharp_map, rough_map;
 uniform float detail;
 uniform vec3 quadric[9], even;    // irradiance of the environment
 uniform float mirror_on, tear;
 out vec4 seen;
 
-// Where the ray meets the relief, by Newton's steps from the iris plane: lib/eye/scene_quick.c. The relief is flat enough
-// against the slope of sight in the aqueous that the first crossing is the only one.
+// How far below the relief the ray is at t.
+float below(vec3 f, vec3 v, float t)
+{
+	vec3 p = f + t * v;
+	return p.z - iris_depth + relief_at(p.xy).x;
+}
+
+// Where a ray first meets the relief, which may hide itself from it: lib/eye/scene_meet.c.
+float search_relief(vec3 f, vec3 v, float a, float e)
+{
+	float stride = (e - a) / float(search), fa = -1e-6, b = a, fb = fa;
+	for (int k = 0; k < SEARCH; k++) {
+		b += stride;
+		fb = below(f, v, b);
+		if (fb >= 0.0 || k + 1 >= search)
+			break;
+		a = b;
+		fa = fb;
+	}
+	for (int k = 0; k < 2; k++) {
+		float t = a - fa * (b - a) / (fb - fa + 1e-12), ft = below(f, v, t);
+		if (ft >= 0.0) {
+			b = t;
+			fb = ft;
+		}
+		else {
+			a = t;
+			fa = ft;
+		}
+	}
+	return fb - fa > 1e-12 ? a - fa * (b - a) / (fb - fa) : b;
+}
+
+// Where the ray meets the relief; of a ray that leans little by Newton's steps from the iris plane: lib/eye/scene_quick.c.
 vec3 meet(vec3 f, vec3 v)
 {
 	float c = max(v.z, 0.1), low = (iris_depth - heights.y - f.z) / c, high = (iris_depth - heights.x - f.z) / c, t = (iris_depth - f.z) / c;
+	if (dot(v.xy, v.xy) > LOOK_LEANS * LOOK_LEANS * v.z * v.z)
+		return f + search_relief(f, vec3(v.xy, c), low - 1e-4, high + 1e-4) * v;
 	for (int k = 0; k < 2; k++) {
 		vec3 p = f + t * v;
 		vec4 h = relief_slope(p.xy);

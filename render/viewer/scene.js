@@ -32,6 +32,7 @@ class EyeScene {
 	static LIGHTS = 8;        // beams at most; and the way to the camera
 	static DIRECTIONS = 128;  // in all of them
 	static NODES = 12;
+	static SEARCH = 32;       // steps at most towards the relief
 
 	constructor(g, data) {
 		Object.assign(this, { g, data, count: 0, target: null });
@@ -204,7 +205,7 @@ class EyeScene {
 			...solved, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), lens: cam.lens, corner: cam.corner,
 			size, jitter, slip: cam.slip ? [...cam.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0],
 			back: e.back, sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
-			heights: e.heights, level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
+			heights: e.heights, search: Math.min(e.search, EyeScene.SEARCH), level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
 			light_map: this.shades[name].map, detail: s.detail,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),

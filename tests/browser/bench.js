@@ -17,11 +17,11 @@ const frames = (preset, n) => `(() => { const p = eyewright, gl = p.graphics.gl,
 /* Operations and texture reads, from the shaders' text. */
 async function count(b) {
 	const d = JSON.parse(await b.value(`(() => { const p = eyewright, e = p.eye; return JSON.stringify({ shaders: p.graphics.shaders, presets, face: !!p.face,
-		directions: e.lights[0].lights.length, grid: e.constants.grid, coarse: e.constants.coarse, map: e.eye.map_px }); })()`));
+		directions: e.lights[0].lights.length, grid: e.constants.grid, coarse: e.constants.coarse, map: e.eye.map_px, search: e.eye.search }); })()`));
 	const below = { eye: ["ground", "iris"], march: ["ground"] };
 	const text = (name, parts) => ["common", ...(below[name] || []), ...parts, name].map(p => d.shaders[p]).join("\n");
 	for (const p of d.presets) {
-		const sum = picture(text, p, 1280, 1024, d.directions, d.grid, d.coarse, d.map, d.face);
+		const sum = picture(text, p, 1280, 1024, d.directions, d.grid, d.coarse, d.map, d.search, d.face);
 		for (const [name, gpu] of Object.entries(GPUS))
 			console.log(`count ${p.name} ${sum[0]} ${sum[1]} ${seconds_on(gpu, sum)} ${name}`);
 	}

@@ -10,7 +10,7 @@ capture="$root/<b>eye & \"co\""
 new_capture "$capture"
 cp "$PHOTO" "$capture/photos/right_<img src=x onerror=alert(1)>.jpg"
 # The eye's pictures as a review has them, and the page of the same maps.
-for key in map_size shadow steps shading_apart bands vein_map_px lights samples size_px; do
+for key in map_size search shadow steps shading_apart bands vein_map_px lights samples size_px; do
 	sed -n "s/^$key = /render.$key = /p" config/render.conf
 done >>"$capture/capture.conf"
 printf 'render.frames = 1\nrender.exr = no\n' >>"$capture/capture.conf"
