@@ -43,7 +43,7 @@ SAN ?=
 B := build$(if $(SAN),-san)
 BIN := $(if $(SAN),$(B)/bin,bin)
 
-PACKAGES := gcc g++ make pkg-config libopencv-dev libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
+PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
 	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
 	libopenblas-dev libsuitesparse-dev libflann-dev libembree-dev libsqlite3-dev libzip-dev libavformat-dev libavcodec-dev \
 	libswscale-dev libavutil-dev libqhull-dev libcmocka-dev gnuplot-nox
@@ -62,7 +62,7 @@ ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenm
 # Asked when a recipe runs, not when this file is read: on a fresh machine set-up comes in between.
 EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
-LIBS = -lopencv_aruco -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
+LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
 	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lsqlite3 -lzip \
 	-llapacke -lopenblas -ljansson -linih -lxxhash -lm
 

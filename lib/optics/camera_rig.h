@@ -33,8 +33,8 @@ struct camera_rig {
 	struct rig_camera *cameras;  // owned
 	int n;
 	double scale_sigma;    // relative standard deviation of all lengths; NAN: the scale is an assumption
-	char scale_source[32]; // "ruler", "marker", "distance", "limbus", "assumed"
-	char frame_source[32]; // "eyes and mouth", "cameras"
+	char scale_source[32]; // "ruler", "marker", "distance", "limbus", "eyes" (how far they lie apart), "assumed"
+	char frame_source[32]; // "eyes and mouth", "eyes", "cameras"
 	bool has_eyes;
 	double eye_center[2][3];  // of the left and the right eyeball, head, mm
 };

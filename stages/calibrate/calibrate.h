@@ -22,7 +22,8 @@ struct calibrate_options {
 	double filter_px, tri_deg;
 	int ba_rounds;
 	double focal_px, focal_mm, sensor_mm;
-	double head_radius_mm, ruler_mm, marker_mm, limbus_radius_mm;
+	double head_radius_mm, eyes_apart_mm, ruler_mm, marker_mm, limbus_radius_mm;
+	bool find_eyes;
 	struct opt_each_list left_eye, right_eye, mouth, ruler, distance;
 	struct cloud_conf cloud;
 	double best_angle_deg, max_slant_deg;

@@ -49,6 +49,8 @@ int main(int argc, char **argv)
 		OPT_REAL("min_angle_deg", &o.tri_deg, 0.1, 20, "deg", "smallest angle under which a point is seen"),
 		OPT_INT("adjustments", &o.ba_rounds, 1, 20, "", "rounds of a bundle adjustment"),
 		OPT_REAL("regrow", &o.regrow, 0, 1, "", "share of new pictures from which on all cameras are found anew"),
+		OPT_BOOL("find_eyes", &o.find_eyes, "eyes that are not named are looked for in the views"),
+		OPT_REAL("eyes_apart_mm", &o.eyes_apart_mm, 30, 90, "mm", "between the pupils, where nothing else has a known length"),
 		OPT_REAL("head_radius_mm", &o.head_radius_mm, 20, 1000, "mm", "half the head's height, where nothing has a known length"),
 		OPT_INT("neighbours", &o.cloud.neighbours, 1, 20, "", "pictures each one is matched with densely"),
 		OPT_REAL("best_angle_deg", &o.best_angle_deg, 1, 45, "deg", "angle between two such views that suits best"),

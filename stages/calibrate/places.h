@@ -10,6 +10,12 @@ struct places_lengths {
 	int n;
 };
 
+/* Eyes and mouth in views, as capture.conf's keys have them: named by a hand, or found. */
+struct places_face {
+	const struct opt_each_list *eye[2], *mouth;
+	bool found;
+};
+
 /* Each appends what it finds; what is given but cannot be used is an error that says why. */
 bool places_ruler(struct places_lengths *out, const struct head *head, const struct views *views,
                   const struct calibrate_options *o, struct err *err);
@@ -19,7 +25,7 @@ bool places_distances(struct places_lengths *out, const struct head *head, const
                       const struct calibrate_options *o, struct err *err);
 /* The limbus's horizontal diameter; `common`: the share of the sigma all have alike, for people differ. */
 bool places_limbus(struct places_lengths *out, double *common, const struct head *head, const struct views *views,
-                   struct stage *stage, const struct calibrate_options *o, struct err *err);
+                   const struct places_face *face, struct stage *stage, const struct calibrate_options *o, struct err *err);
 
 /* Whether capture.conf's NAME means this view: its file without folder and ending. */
 bool view_is_named(const struct view *view, const char *name);

@@ -1,0 +1,155 @@
+#include "bridge/cv_face.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/objdetect.hpp>
+#include <vector>
+
+struct cv_face_finder {
+	cv::CascadeClassifier face, eye[2];
+};
+
+namespace {
+
+const char *const folders[] = { "/usr/share/opencv4/haarcascades/", "/usr/share/opencv/haarcascades/",
+	                            "/usr/local/share/opencv4/haarcascades/" };
+
+/* Faces are looked for in a picture so large, eyes in a face so wide: several times what the cascades were taught on (20 px). */
+const int picture_px = 640, face_px = 300;
+/* Smallest face, of the picture's shorter side. */
+const double least_face = 0.12;
+/* Where eyes lie in the cascade's square of a face, of its side: rows, and the least and most width of an eye's own square. */
+const double eye_rows[2] = { 0.18, 0.60 }, eye_side[2] = { 0.13, 0.40 };
+/* Mouth below the middle of the eyes, of the distance of the eyes: mean of adults (Farkas 1994: 63 mm apart; 68 to 72 mm down). */
+const double mouth_below = 1.1;
+
+bool load(cv::CascadeClassifier *c, const char *folder, const char *name)
+{
+	return c->load(std::string(folder) + name);
+}
+
+/* OpenCV's threads hand over what they find in any order. */
+void sort(std::vector<cv::Rect> *r)
+{
+	std::sort(r->begin(), r->end(), [](const cv::Rect &a, const cv::Rect &b) {
+		return a.width != b.width ? a.width > b.width : a.y != b.y ? a.y < b.y : a.x < b.x;
+	});
+}
+
+/* The two eyes of a face that fit best, as shares of its square: nearly level, as far from the middle. */
+bool pair_of(cv::Point2d eye[2], const std::vector<cv::Rect> &found, double side, double top)
+{
+	double best = 0.35;
+	for (const cv::Rect &a : found)
+		for (const cv::Rect &b : found) {
+			const cv::Point2d p((a.x + 0.5 * a.width) / side, (a.y + 0.5 * a.height) / side + top);
+			const cv::Point2d q((b.x + 0.5 * b.width) / side, (b.y + 0.5 * b.height) / side + top);
+			const double apart = q.x - p.x;
+			if (apart < 0.25 || apart > 0.6 || p.x > 0.5 || q.x < 0.5)
+				continue;
+			const double cost = std::abs(p.y - q.y) / apart + 0.5 * std::abs(p.x + q.x - 1) / apart
+			                    + std::abs(std::log(static_cast<double>(a.width) / b.width)) / 2;
+			if (cost < best) {
+				best = cost;
+				// The picture's left eye is the person's right one.
+				eye[1] = p;
+				eye[0] = q;
+			}
+		}
+	return best < 0.35;
+}
+
+bool eyes_of(cv::Point2d eye[2], cv_face_finder *finder, const cv::Mat &grey, const cv::Rect &face)
+{
+	const cv::Rect strip(face.x, face.y + static_cast<int>(eye_rows[0] * face.height), face.width,
+	                     static_cast<int>((eye_rows[1] - eye_rows[0]) * face.height));
+	cv::Mat part;
+	const double scale = static_cast<double>(face_px) / face.width;
+	cv::resize(grey(strip & cv::Rect(0, 0, grey.cols, grey.rows)), part, cv::Size(), scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+	const cv::Size least(static_cast<int>(eye_side[0] * face_px), static_cast<int>(eye_side[0] * face_px));
+	const cv::Size most(static_cast<int>(eye_side[1] * face_px), static_cast<int>(eye_side[1] * face_px));
+	// The first was taught on eyes with glasses, too, and errs least; the second finds more.
+	for (cv::CascadeClassifier &c : finder->eye) {
+		std::vector<cv::Rect> found;
+		c.detectMultiScale(part, found, 1.05, 3, 0, least, most);
+		sort(&found);
+		if (pair_of(eye, found, face_px, eye_rows[0]))
+			return true;
+	}
+	return false;
+}
+
+/* Of a picture after `turn` quarter turns clockwise, width x height before. */
+void turn_back(double out[2], double x, double y, int turn, int width, int height)
+{
+	const double at[4][2] = { { x, y }, { y, height - x }, { width - x, height - y }, { width - y, x } };
+	out[0] = at[turn][0];
+	out[1] = at[turn][1];
+}
+
+}  // namespace
+
+bool cv_face_open(struct cv_face_finder **finder, struct err *err)
+{
+	*finder = nullptr;
+	try {
+		cv_face_finder *f = new cv_face_finder;
+		for (const char *folder : folders)
+			if (load(&f->face, folder, "haarcascade_frontalface_alt2.xml") && load(&f->eye[0], folder, "haarcascade_eye_tree_eyeglasses.xml")
+			    && load(&f->eye[1], folder, "haarcascade_eye.xml")) {
+				*finder = f;
+				return true;
+			}
+		delete f;
+		return err_set(err, "OpenCV's cascades are not installed: apt-get install opencv-data");
+	} catch (const std::exception &e) {
+		return err_set(err, "OpenCV's cascades: %s", e.what());
+	}
+}
+
+void cv_face_close(struct cv_face_finder *finder)
+{
+	delete finder;
+}
+
+bool cv_face_find(int *n, struct cv_face *faces, int most, struct cv_face_finder *finder, const uint8_t *grey, int width,
+                  int height, int turn, struct err *err)
+{
+	static const int turns[4] = { -1, cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180, cv::ROTATE_90_COUNTERCLOCKWISE };
+	*n = 0;
+	try {
+		const cv::Mat whole(height, width, CV_8U, const_cast<uint8_t *>(grey));
+		const double small = std::min(1.0, static_cast<double>(picture_px) / std::max(width, height));
+		cv::Mat picture;
+		if (turn)
+			cv::rotate(whole, picture, turns[turn & 3]);
+		else
+			picture = whole;
+		cv::Mat reduced;
+		cv::resize(picture, reduced, cv::Size(), small, small, cv::INTER_AREA);
+		const int least = std::max(20, static_cast<int>(least_face * std::min(reduced.cols, reduced.rows)));
+		std::vector<cv::Rect> found;
+		finder->face.detectMultiScale(reduced, found, 1.1, 3, 0, cv::Size(least, least));
+		sort(&found);
+		const double sx = static_cast<double>(picture.cols) / reduced.cols, sy = static_cast<double>(picture.rows) / reduced.rows;
+		for (const cv::Rect &r : found) {
+			const cv::Rect face(static_cast<int>(r.x * sx), static_cast<int>(r.y * sy), static_cast<int>(r.width * sx),
+			                    static_cast<int>(r.height * sy));
+			cv::Point2d eye[2];
+			if (*n == most || !eyes_of(eye, finder, picture, face))
+				continue;
+			cv_face *out = &faces[(*n)++];
+			out->width = face.width;
+			for (cv::Point2d &e : eye)
+				e = cv::Point2d(face.x + e.x * face.width, face.y + e.y * face.height);
+			const cv::Point2d middle = 0.5 * (eye[0] + eye[1]), across = eye[0] - eye[1];
+			for (int e = 0; e < 2; e++)
+				turn_back(out->eye[e], eye[e].x, eye[e].y, turn & 3, width, height);
+			turn_back(out->mouth, middle.x - mouth_below * across.y, middle.y + mouth_below * across.x, turn & 3, width, height);
+		}
+		return true;
+	} catch (const std::exception &e) {
+		return err_set(err, "faces: %s", e.what());
+	}
+}

@@ -1,0 +1,19 @@
+/* eyes: the face's eyes and mouth in the views, where nobody has named them. */
+#ifndef STAGES_CALIBRATE_EYES_H
+#define STAGES_CALIBRATE_EYES_H
+#include "stages/calibrate/places.h"
+
+/* As a hand would name them: in the photographs' own px, the iris's radius with each eye where its edge is seen, else NAN. */
+struct eyes {
+	struct opt_each_list side[2], mouth;  // owned
+	double apart;                         // of the eyes, world; 0: not found
+	double sigma;                         // of that, relative
+};
+
+/* Faces seen from the front, in pictures that agree on where its eyes are. What is not found, and why, is said; false, err
+ * set, only where a picture cannot be read. eyes_free. */
+bool eyes_find(struct eyes *eyes, const struct head *head, const struct views *views, struct stage *stage,
+               const struct calibrate_options *o, struct err *err);
+void eyes_free(struct eyes *eyes);
+
+#endif
