@@ -158,6 +158,27 @@ static void finds_none_where_there_is_none(void **state)
 	assert_false(head_find(&found, rgb, W, H, &camera, opening, false, &conf) || head_find(&found, rgb, W, H, &camera, opening, true, &conf));
 }
 
+/* Heads that face the camera, leaning any way: the eyes' places alone tell where they are; not so with one eye shut. */
+static void poses_from_two_eyes(void **state)
+{
+	(void)state;
+	const struct camera camera = { .focal_px = 1600, .center_px = { 640, 360 } };
+	struct rng rng = { 9 };
+	for (int round = 0; round < 50; round++) {
+		struct eye_opening opening[2] = { { .open = true, .center = { 30, 5, 9 } }, { .open = true, .center = { -32, 5, 9 } } };
+		double roll = rng_range(&rng, -M_PI, M_PI), c = cos(roll), s = sin(roll), eye[2][2];
+		const double truth[4][4] = { { c, s, 0, rng_range(&rng, -40, 40) }, { s, -c, 0, rng_range(&rng, -40, 40) }, { 0, 0, -1, rng_range(&rng, 300, 900) }, { 0, 0, 0, 1 } };
+		struct head_found found;
+		for (int e = 0; e < 2; e++)
+			assert_true(head_project(eye[e], &camera, truth, opening[e].center));
+		assert_true(head_find_from_eyes(&found, (const double(*)[2])eye, &camera, opening));
+		for (int i = 0; i < 16; i++)
+			NEAR(found.cam_from_head[i / 4][i % 4], truth[i / 4][i % 4], 1e-9);
+		opening[round % 2].open = false;
+		assert_false(head_find_from_eyes(&found, (const double(*)[2])eye, &camera, opening));
+	}
+}
+
 /* A turned head from exact places, then with a tenth of them elsewhere. */
 static void poses_from_points(void **state)
 {
@@ -195,6 +216,7 @@ int main(void)
 		cmocka_unit_test(finds_two_eyes),
 		cmocka_unit_test(finds_one_eye),
 		cmocka_unit_test(finds_none_where_there_is_none),
+		cmocka_unit_test(poses_from_two_eyes),
 		cmocka_unit_test(poses_from_points),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

@@ -228,3 +228,16 @@ bool head_find(struct head_found *found, const uint8_t *rgb, int width, int heig
 	facing(found->cam_from_head, camera, origin, px, best->px_per_mm * s.factor, best->roll);
 	return true;
 }
+
+bool head_find_from_eyes(struct head_found *found, const double eye[2][2], const struct camera *camera, const struct eye_opening opening[2])
+{
+	double origin[3], mm = hypot(opening[0].center[0] - opening[1].center[0], opening[0].center[1] - opening[1].center[1]);
+	const double across[2] = { eye[0][0] - eye[1][0], eye[0][1] - eye[1][1] };
+	const double middle[2] = { 0.5 * (eye[0][0] + eye[1][0]), 0.5 * (eye[0][1] + eye[1][1]) };
+	if (!opening[0].open || !opening[1].open)
+		return false;
+	origin_of(origin, opening);
+	*found = (struct head_found){ .seen = { true, true }, .score = INFINITY, .edge_px = NAN };
+	facing(found->cam_from_head, camera, origin, middle, hypot(across[0], across[1]) / mm, atan2(across[1], across[0]));
+	return true;
+}

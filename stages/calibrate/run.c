@@ -43,6 +43,14 @@ static void report(struct stage *stage, const struct views *views, const struct 
 		stage_figure(stage, "scale_sigma", 100 * head->scale_sigma, "%");
 }
 
+/* A face that talks before a still camera bends: the few frames in which it does so alike make a model that is wrong, lens and
+ * all. */
+static bool is_believed(const struct colmap_model *m, const struct views *views, const struct stage *stage, struct err *err)
+{
+	return !views_are_video(views) || 2 * m->n_images >= views->n_used
+	       || err_set(err, "%s/views: %d of the video's %d frames alone fit together", stage->capture, m->n_images, views->n_used);
+}
+
 static bool from_views(struct stage *stage, struct views *views, const struct calibrate_options *o, struct err *err)
 {
 	bool grows;
@@ -56,6 +64,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	bool ok = state_check(stage, o, err) && state_save(stage, o, err)
 	          && kept_record(stage, views, false, err) && features_make(&grows, views, stage, o, err)
 	          && pairs_match(views, stage, o, err) && model_make(&model, views, grows, stage, o, err)
+	          && is_believed(&model, views, stage, err)
 	          && kept_record(stage, views, false, err)
 	          && head_place(&head, views, stage, o, err)
 	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, n, in), err)
@@ -125,7 +134,7 @@ bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struc
 		             views.n_used);
 	else if (ok)
 		ok = from_views(stage, &views, o, err)
-		     || (video && is_advice(err, stage) && give_up(stage, &views, "neither camera nor head move enough in it", err));
+		     || (video && is_advice(err, stage) && give_up(stage, &views, "neither camera nor head move enough in it, or the face moves in itself", err));
 	views_free(&views);
 	return ok;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "bridge/cv_face.h"
 #include "optics/camera_rig.h"
 #include "stages/track/track.h"
 
@@ -130,11 +131,28 @@ static void assume_distance(struct track_clip *clip, const struct track_subject 
 	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
 }
 
-/* The head one way up, in the kept frame. */
-static bool look_so(struct head_found *found, struct track_clip *clip, bool upside_down, const struct track_subject *s, const struct track_conf *conf)
+/* A whole face in the kept frame, upright; close-ups show none. */
+static bool look_for_face(struct cv_face *face, const struct track_clip *clip)
+{
+	struct cv_face_finder *finder;
+	struct err none = { 0 };
+	int n = 0;
+	if (!cv_face_open(&finder, &none))
+		return false;
+	bool ok = cv_face_find(&n, face, 1, finder, clip->luma, clip->info.width, clip->info.height, 0, &none);
+	cv_face_close(finder);
+	return ok && n > 0;
+}
+
+enum way { UPRIGHT, UPSIDE_DOWN };
+
+/* The head one way up, or as the eyes of a face that was found say, in the kept frame. */
+static bool look_so(struct head_found *found, struct track_clip *clip, enum way way, const struct cv_face *face, const struct track_subject *s,
+                    const struct track_conf *conf)
 {
 	int w = clip->info.width, h = clip->info.height;
-	if (!head_find(found, clip->rgb, w, h, &clip->camera, s->opening, upside_down, &conf->head))
+	if (face ? !head_find_from_eyes(found, face->eye, &clip->camera, s->opening)
+	         : !head_find(found, clip->rgb, w, h, &clip->camera, s->opening, way == UPSIDE_DOWN, &conf->head))
 		return false;
 	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
 	if (clip->focal_assumed) {
@@ -150,10 +168,16 @@ static bool look(struct track_clip *clip, const struct track_subject *s, const s
 {
 	struct head_found up, over;
 	struct camera camera = clip->camera, upright;
-	bool is_up = look_so(&up, clip, false, s, conf);
+	struct cv_face face;
+	bool is_face = look_for_face(&face, clip), is_up = is_face && look_so(&up, clip, UPRIGHT, &face, s, conf);
+	is_face = is_up;
+	if (!is_face) {
+		clip->camera = camera;
+		is_up = look_so(&up, clip, UPRIGHT, 0, s, conf);
+	}
 	upright = clip->camera;
 	clip->camera = camera;
-	bool is_over = look_so(&over, clip, true, s, conf) && !(is_up && (up.score >= over.score || up.edge_px <= over.edge_px));
+	bool is_over = !is_face && look_so(&over, clip, UPSIDE_DOWN, 0, s, conf) && !(is_up && (up.score >= over.score || up.edge_px <= over.edge_px));
 	if (!is_up && !is_over)
 		return false;
 	if (!is_over)

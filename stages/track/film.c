@@ -185,6 +185,17 @@ static void draw_eye(const struct cell *c, const struct eye_state *s)
 			line(c, s->lid_points, (const double(*)[2])s->lid[k], false, 1, lids[k]);
 }
 
+/* Too narrow for one line of text. */
+static bool is_narrow(const struct film *film)
+{
+	return film->width < 460;
+}
+
+static int text_height(const struct film *film)
+{
+	return is_narrow(film) ? 3 * LINE - 8 : LINE;
+}
+
 static void draw_cell(const struct cv_picture *sheet, const struct film *film, int k, int x0, int y0, const struct track_result *r)
 {
 	static const uint8_t white[3] = { 235, 235, 235 };
@@ -194,17 +205,24 @@ static void draw_cell(const struct cv_picture *sheet, const struct film *film, i
 			memset(sheet->px + 3 * ((long)(y0 + y) * sheet->width + x0 + x), film->px[k][y * film->width + x], 3);
 	struct cell c = { *sheet, x0 - (double)film->x0 / film->step, y0 - (double)film->y0 / film->step, film->step };
 	draw_points(&c, r, f);
-	char text[160];
-	int at = snprintf(text, sizeof text, "%ld  %.2f s", f, r->time[f]);
+	const int x = x0 + 4, y = y0 + film->height + LINE - 7;
+	char text[80];
+	snprintf(text, sizeof text, "%ld  %.2f s", f, r->time[f]);
+	int at = cv_draw_text(sheet, x, y, 11, text, white), line = 0;
 	for (int e = SIDES - 1; e >= 0 && r->has_eyes; e--) {
 		const struct eye_state *s = &r->eyes.state[f][e];
 		draw_eye(&c, s);
 		if (isfinite(s->gaze[0]))
-			at += snprintf(text + at, sizeof text - (size_t)at, "   %s %+.1f %+.1f", e ? "right" : "left", s->gaze[0] * 180 / M_PI, s->gaze[1] * 180 / M_PI);
+			snprintf(text, sizeof text, "%s %+.1f %+.1f", e ? "right" : "left", s->gaze[0] * 180 / M_PI, s->gaze[1] * 180 / M_PI);
 		else if (r->eyes.globe[e].seen)
-			at += snprintf(text + at, sizeof text - (size_t)at, "   %s -", e ? "right" : "left");
+			snprintf(text, sizeof text, "%s -", e ? "right" : "left");
+		else
+			continue;
+		if (is_narrow(film))
+			cv_draw_text(sheet, x, y + ++line * (LINE - 4), 11, text, white);
+		else
+			at += 24 + cv_draw_text(sheet, x + at + 24, y, 11, text, white);
 	}
-	cv_draw_text(sheet, x0 + 4, y0 + film->height + LINE - 7, 11, text, white);
 }
 
 bool film_sheet(const struct film *film, const char *path, const struct track_result *r, const struct track_clip *clip,
@@ -215,12 +233,12 @@ bool film_sheet(const struct film *film, const char *path, const struct track_re
 	choose(chosen, film, r, clip, conf);
 	for (int i = 0; i < film->n; i++)
 		n += chosen[i];
-	int rows = (n + COLUMNS - 1) / COLUMNS, w = COLUMNS * (film->width + GAP) + GAP, h = rows * (film->height + LINE + GAP) + GAP;
+	int rows = (n + COLUMNS - 1) / COLUMNS, w = COLUMNS * (film->width + GAP) + GAP, below = film->height + text_height(film) + GAP, h = rows * below + GAP;
 	struct cv_picture sheet = { mem_new(3 * (size_t)w * (size_t)h + 1, 1), w, h, 3 };
 	memset(sheet.px, 24, 3 * (size_t)w * (size_t)h);
 	for (int i = 0, k = 0; i < film->n; i++)
 		if (chosen[i]) {
-			draw_cell(&sheet, film, i, GAP + k % COLUMNS * (film->width + GAP), GAP + k / COLUMNS * (film->height + LINE + GAP), r);
+			draw_cell(&sheet, film, i, GAP + k % COLUMNS * (film->width + GAP), GAP + k / COLUMNS * below, r);
 			k++;
 		}
 	bool ok = picture_png_write(path, sheet.px, w, h, 3, err);
