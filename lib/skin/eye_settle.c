@@ -69,20 +69,6 @@ static void level_torsion(struct eye_side *eye)
 	free(off);
 }
 
-static void settle_lids(struct eye_side *eye)
-{
-	lid_track_end(&eye->lids);
-	for (long i = 0; i < eye->frames; i++) {
-		struct eye_record *record = &eye->record[i];
-		if (!record->measured)
-			continue;
-		lid_track_again(&record->found, &eye->lids, &eye->kept[i]);
-		record->open = record->found.open;
-		if (record->open)
-			eye_fill_lids(&eye->state[i], &record->found, eye->lids.points);
-	}
-}
-
 void eye_side_settle(struct eye_side *eye)
 {
 	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
@@ -108,7 +94,7 @@ void eye_side_settle(struct eye_side *eye)
 		}
 	}
 	level_torsion(eye);
-	settle_lids(eye);
+	eye_settle_lids(eye);
 	free(frame);
 	free(index);
 }

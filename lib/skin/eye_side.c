@@ -98,12 +98,12 @@ static bool find_corners(struct eye_side *eye, struct eye_record *record, const 
 			                     + view->cam_from_head[2][i] * at[2];
 	}
 	eye->corners_guessed = false;
-	lid_track_start(&eye->lids, eye->conf->lid_columns, eye->conf->lid_points);
+	lid_track_start(&eye->lids, eye->conf->lid_columns, eye->conf->lid_points, eye->conf->lid_wet);
 	return lid_track_push(&record->found, &eye->lids, picture, look);
 }
 
 /* Lids, then gaze between them. */
-static void look(struct eye_state *state, struct eye_record *record, struct eye_side *eye, const struct eye_frame *frame,
+static void look(struct eye_state *state, struct eye_record *record, struct lid_fine *fine, struct eye_side *eye, const struct eye_frame *frame,
                  const struct gaze_view *view)
 {
 	const struct eye_scene *scene = eye->scene;
@@ -129,19 +129,22 @@ static void look(struct eye_state *state, struct eye_record *record, struct eye_
 	if (!record->found.open)
 		return;
 	eye_fill_lids(state, &record->found, eye->lids.points);
+	lid_fine_look(fine, LID_UPPER, eye->lids.points, record->found.p[LID_UPPER], look.mm, &picture);
 	eye_measure(state, record, eye, &luma, view);
 }
 
-static void append(struct eye_side *eye, const struct eye_state *state, const struct eye_record *record)
+static void append(struct eye_side *eye, const struct eye_state *state, const struct eye_record *record, const struct lid_fine *fine)
 {
 	if (eye->frames == eye->space) {
 		eye->space = 2 * eye->space + 256;
 		eye->state = mem_grow(eye->state, (size_t)eye->space, sizeof *eye->state);
 		eye->record = mem_grow(eye->record, (size_t)eye->space, sizeof *eye->record);
 		eye->kept = mem_grow(eye->kept, (size_t)eye->space, sizeof *eye->kept);
+		eye->fine = mem_grow(eye->fine, (size_t)eye->space, sizeof *eye->fine);
 	}
 	eye->state[eye->frames] = *state;
 	lid_track_keep(&eye->kept[eye->frames], &eye->lids);
+	eye->fine[eye->frames] = *fine;
 	eye->record[eye->frames++] = *record;
 }
 
@@ -149,6 +152,7 @@ void eye_side_push(struct eye_side *eye, const struct eye_frame *frame)
 {
 	struct eye_state state = blank(frame->time);
 	struct eye_record record = { 0 };
+	struct lid_fine fine = { .known = false };
 	struct gaze_view view;
 	memcpy(record.cam_from_head, frame->cam_from_head, sizeof record.cam_from_head);
 	eye_view(&view, eye->scene, record.cam_from_head);
@@ -162,14 +166,15 @@ void eye_side_push(struct eye_side *eye, const struct eye_frame *frame)
 		if (still) {
 			state = eye->state[eye->frames - 1];
 			record = eye->record[eye->frames - 1];
+			fine = eye->fine[eye->frames - 1];
 			state.time = frame->time;
 			record.still = true;
 		} else {
-			look(&state, &record, eye, frame, &view);
+			look(&state, &record, &fine, eye, frame, &view);
 			eye->have = state.confidence > 0 || (eye->have && eye->lost < 60);
 			eye->lost = state.confidence > 0 ? 0 : eye->lost + 1;
 		}
 	}
-	append(eye, &state, &record);
+	append(eye, &state, &record, &fine);
 	eye->last = state;
 }

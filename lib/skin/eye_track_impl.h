@@ -4,6 +4,7 @@
 #include "skin/eye_track.h"
 #include "skin/gaze_edge.h"
 #include "skin/gaze_torsion.h"
+#include "skin/lid_fine.h"
 #include "skin/lid_track.h"
 
 enum { EYE_STILL_SIDE = 24 };
@@ -41,6 +42,7 @@ struct eye_side {
 	struct eye_state *state;   // [frames]
 	struct eye_record *record; // [frames]
 	struct lid_kept *kept;     // [frames]
+	struct lid_fine *fine;     // [frames] the upper margin
 	long edges, edge_space;
 	struct gaze_edge *edge;
 };
@@ -74,6 +76,9 @@ void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int p
 
 /* All frames once more with what the whole clip tells: eyeball, gaze, torsion, lids. */
 void eye_side_settle(struct eye_side *eye);
+
+/* All margins once more. */
+void eye_settle_lids(struct eye_side *eye);
 
 /* The eyeball as the clip has it. */
 void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye);

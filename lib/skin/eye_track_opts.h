@@ -7,6 +7,7 @@ struct eye_track_conf {
 	int limbus_arcs;        // edges measured round the limbus
 	int lid_columns;        // profiles measured across a lid's margin
 	int lid_points;         // control points of a margin
+	double lid_wet;         // mm of tears between a lid's margin and what is seen of the eye
 	int torsion_rays;       // directions of the iris pattern compared; 0: no torsion
 	double still;           // mean change of brightness, of 255, below which a frame is taken for the one before
 	double center_sigma;    // mm: eyeball centre off its prior, each way
@@ -21,6 +22,7 @@ struct eye_track_conf {
 	OPT_INT("limbus_arcs", &(c)->limbus_arcs, 16, 360, "", "edges measured round the limbus"), \
 	OPT_INT("lid_columns", &(c)->lid_columns, 16, 96, "", "profiles measured across a lid's margin"), \
 	OPT_INT("lid_points", &(c)->lid_points, 17, 22, "", "control points of a lid's margin"), \
+	OPT_REAL("lid_wet_mm", &(c)->lid_wet, 0, 1, "mm", "tears between a lid's margin and what is seen of the eye"), \
 	OPT_INT("torsion_rays", &(c)->torsion_rays, 0, 720, "", "directions of the iris compared; 0: no torsion"), \
 	OPT_REAL("still", &(c)->still, 0, 20, "", "mean change of brightness (of 255) of a frame that stands still"), \
 	OPT_REAL("eye_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "eyeball centre off its prior, each way"), \

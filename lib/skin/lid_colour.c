@@ -6,9 +6,7 @@
 
 #include "base/mem.h"
 
-/* Brightness on a logarithmic scale, and two differences of colour over brightness: light that falls off moves the first
- * alone. */
-static int bin_of(const uint8_t rgb[3])
+int lid_colour_bin(const uint8_t rgb[3])
 {
 	int r = rgb[0], g = rgb[1], b = rgb[2], light = r + 2 * g + b;
 	// log2 of 32 .. 1052 by the exponent and the next two bits.
@@ -20,11 +18,25 @@ static int bin_of(const uint8_t rgb[3])
 	return (l * LID_RED + red) * LID_BLUE + blue;
 }
 
-void lid_colour_learn(struct lid_colour *colour, const struct lid_chart *chart, const double upper[],
-                      const double lower[], const double clear[2], double band, double keep)
+/* Zone of the eye: rings of the iris, then white towards the nose and away from it; the last, all of it, where nobody knows the iris. */
+static int ring_of(const struct lid_iris *iris, double cols, double rows)
 {
-	float *all = &colour->seen[0][0][0];
-	for (int i = 0; i < LID_ZONES * 2 * LID_BINS; i++)
+	static const double outer[] = { 0.4, 0.6, 0.8, 1.04 };
+	double u = (cols - iris->col) / iris->cols, v = (rows - iris->row) / iris->rows, r2 = u * u + v * v;
+	if (!(iris->cols > 0) || !(iris->rows > 0))
+		return LID_ZONES - 1;
+	for (int k = 0; k < COUNT(outer); k++)
+		if (r2 < outer[k] * outer[k])
+			return LID_THIRDS + k;
+	return LID_THIRDS + COUNT(outer) + (u > 0);
+}
+
+void lid_colour_learn(struct lid_colour *colour, const struct lid_chart *chart, const double upper[],
+                      const double lower[], const struct lid_iris *iris, const double clear[2], double band,
+                      double keep)
+{
+	float *all = &colour->seen[0][0];
+	for (int i = 0; i < LID_ZONES * LID_BINS; i++)
 		all[i] *= (float)keep;
 	colour->frames = colour->frames * keep + 1;
 	for (int i = 0; i < chart->cols; i++) {
@@ -34,8 +46,12 @@ void lid_colour_learn(struct lid_colour *colour, const struct lid_chart *chart, 
 			           || (j > lower[i] + clear[0] && j < lower[i] + band);
 			if (lower[i] <= upper[i])
 				lid = fabs(j - 0.5 * (upper[i] + lower[i])) < band, eye = false;
-			if (eye || lid)
-				colour->seen[i * LID_ZONES / chart->cols][eye][bin_of(chart->rgb[j][i])]++;
+			if (!eye && !lid)
+				continue;
+			int bin = lid_colour_bin(chart->rgb[j][i]), zone = eye ? ring_of(iris, i, j) : i * LID_THIRDS / chart->cols;
+			colour->seen[zone][bin]++;
+			if (eye && zone != LID_ZONES - 1)
+				colour->seen[LID_ZONES - 1][bin]++;
 		}
 	}
 }
@@ -55,38 +71,34 @@ static void blur(float *x, int count, int stride, int inner)
 	}
 }
 
-static void settle_zone(float says[LID_BINS], float seen[2][LID_BINS])
+void lid_colour_log(float says[LID_BINS], const float seen[LID_BINS])
 {
-	float *part[2];
-	double sum[2] = { 1, 1 };
-	for (int k = 0; k < 2; k++) {
-		part[k] = mem_array(LID_BINS, sizeof *part[k]);
-		memcpy(part[k], seen[k], LID_BINS * sizeof *part[k]);
-		blur(part[k], LID_LIGHT, LID_RED * LID_BLUE, LID_RED * LID_BLUE);
-		blur(part[k], LID_RED, LID_BLUE, LID_BLUE);
-		blur(part[k], LID_BLUE, 1, 1);
-		for (int i = 0; i < LID_BINS; i++)
-			sum[k] += part[k][i];
-	}
+	double sum = 1;
+	memcpy(says, seen, LID_BINS * sizeof *says);
+	blur(says, LID_LIGHT, LID_RED * LID_BLUE, LID_RED * LID_BLUE);
+	blur(says, LID_RED, LID_BLUE, LID_BLUE);
+	blur(says, LID_BLUE, 1, 1);
+	for (int i = 0; i < LID_BINS; i++)
+		sum += (double)says[i];
 	// What was hardly ever seen says nothing.
 	const double rare = 2e-4;
-	for (int i = 0; i < LID_BINS; i++) {
-		double odds = log((part[1][i] / sum[1] + rare) / (part[0][i] / sum[0] + rare));
-		says[i] = (float)fmax(-LID_SURE, fmin(LID_SURE, odds));
-	}
-	free(part[0]);
-	free(part[1]);
+	for (int i = 0; i < LID_BINS; i++)
+		says[i] = (float)log((double)says[i] / sum + rare);
 }
 
 void lid_colour_settle(struct lid_colour *colour)
 {
 	for (int z = 0; z < LID_ZONES; z++)
-		settle_zone(colour->says[z], colour->seen[z]);
+		lid_colour_log(colour->says[z], colour->seen[z]);
 }
 
-void lid_colour_ask(float odds[LID_ROWS][LID_COLS_MAX], const struct lid_colour *colour, const struct lid_chart *chart)
+void lid_colour_ask(float odds[LID_ROWS][LID_COLS_MAX], const struct lid_colour *colour, const struct lid_chart *chart,
+                    const struct lid_iris *iris)
 {
 	for (int j = 0; j < LID_ROWS; j++)
-		for (int i = 0; i < chart->cols; i++)
-			odds[j][i] = colour->says[i * LID_ZONES / chart->cols][bin_of(chart->rgb[j][i])];
+		for (int i = 0; i < chart->cols; i++) {
+			int bin = lid_colour_bin(chart->rgb[j][i]);
+			float says = colour->says[ring_of(iris, i, j)][bin] - colour->says[i * LID_THIRDS / chart->cols][bin];
+			odds[j][i] = fmaxf(-LID_SURE, fminf(LID_SURE, says));
+		}
 }

@@ -3,6 +3,8 @@
  */
 #ifndef SKIN_LID_CORNER_H
 #define SKIN_LID_CORNER_H
+#include <math.h>
+
 #include "skin/lid_chart.h"
 
 enum { CORNER_SIDE = 21, CORNER_REACH = 11, CORNER_FIELD = CORNER_SIDE + 2 * CORNER_REACH };
@@ -11,6 +13,19 @@ struct lid_picture {
 	const uint8_t *rgb;    // [height][stride]
 	int stride, width, height;
 };
+
+/* The colour at a place, px, between the pixels; beyond the picture that of its edge. */
+static inline void lid_picture_at(double out[3], const struct lid_picture *pic, double x, double y)
+{
+	double u = fmin(fmax(x - 0.5, 0), pic->width - 1.001), v = fmin(fmax(y - 0.5, 0), pic->height - 1.001);
+	int i = (int)u, j = (int)v;
+	double fu = u - i, fv = v - j;
+	const uint8_t *p = pic->rgb + (long)j * pic->stride + 3L * i, *q = p + pic->stride;
+	for (int c = 0; c < 3; c++) {
+		double top = p[c] + fu * (p[c + 3] - p[c]), low = q[c] + fu * (q[c + 3] - q[c]);
+		out[c] = top + fv * (low - top);
+	}
+}
 
 struct lid_corner {
 	bool known;

@@ -4,18 +4,6 @@
 
 enum { SAMPLES = 33, MIDDLE = SAMPLES / 2 };
 
-static void colour_at(double out[3], const struct lid_picture *pic, double x, double y)
-{
-	double u = fmin(fmax(x - 0.5, 0), pic->width - 1.001), v = fmin(fmax(y - 0.5, 0), pic->height - 1.001);
-	int i = (int)u, j = (int)v;
-	double fu = u - i, fv = v - j;
-	const uint8_t *p = pic->rgb + (long)j * pic->stride + 3L * i, *q = p + pic->stride;
-	for (int c = 0; c < 3; c++) {
-		double top = p[c] + fu * (p[c + 3] - p[c]), low = q[c] + fu * (q[c + 3] - q[c]);
-		out[c] = top + fv * (low - top);
-	}
-}
-
 static void mean_of(double out[3], double v[SAMPLES][3], int first, int last)
 {
 	for (int c = 0; c < 3; c++) {
@@ -70,7 +58,7 @@ static double column_step(double *rows, const struct lid_curves *curves, int low
 	normal_at(n, curves, lower, i, first, last, chart);
 	lid_chart_px(p, chart, i, curves->row[lower][i]);
 	for (int k = 0; k < SAMPLES; k++)
-		colour_at(v[k], picture, p[0] + (k - MIDDLE) * px * n[0], p[1] + (k - MIDDLE) * px * n[1]);
+		lid_picture_at(v[k], picture, p[0] + (k - MIDDLE) * px * n[0], p[1] + (k - MIDDLE) * px * n[1]);
 	double contrast = step_at(&at, v, px);
 	double dv2 = chart->dv[0] * chart->dv[0] + chart->dv[1] * chart->dv[1];
 	double up = (n[0] * chart->dv[0] + n[1] * chart->dv[1]) / dv2;  // rows a px along the normal

@@ -3,10 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-void lid_track_start(struct lid_track *lids, int columns, int points)
+void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm)
 {
 	memset(lids, 0, sizeof *lids);
 	lids->columns = columns;
+	lids->wet_mm = wet_mm;
 	lids->points = points < LID_TRACK_POINTS ? points : LID_TRACK_POINTS;
 }
 
@@ -38,6 +39,15 @@ static struct lid_path_conf path_conf(const struct lid_track *lids, const struct
 	return conf;
 }
 
+static struct lid_iris iris_on(const struct lid_chart *chart, const struct lid_look *look)
+{
+	struct lid_iris iris;
+	lid_chart_of(&iris.col, &iris.row, chart, look->iris);
+	iris.cols = look->iris_px / hypot(chart->du[0], chart->du[1]);
+	iris.rows = look->iris_px / hypot(chart->dv[0], chart->dv[1]);
+	return iris;
+}
+
 /* The first frame: colours of what is surely eye (a lens much too small, the iris) and surely lid (outside one too large),
  * then in turns lids from colours and colours from lids. */
 static void learn(struct lid_track *lids, const struct lid_look *look)
@@ -56,12 +66,13 @@ static void learn(struct lid_track *lids, const struct lid_look *look)
 		small.row[1][i] = fmax(small.row[1][i], iris ? row + 0.5 * high : 0);
 	}
 	struct lid_curves none = large;
-	lid_colour_learn(&lids->colour, chart, small.row[0], small.row[1], (double[2]){ 0, 0 }, -1, 1);
+	struct lid_iris iris = iris_on(chart, look);
+	lid_colour_learn(&lids->colour, chart, small.row[0], small.row[1], &iris, (double[2]){ 0, 0 }, -1, 1);
 	for (int i = 0; i < chart->cols; i++)
 		if (none.row[1][i] <= none.row[0][i])
 			none.row[0][i] = none.row[1][i] = LID_ROWS / 2;
 	// What is between the two is not known yet.
-	lid_colour_learn(&lids->colour, chart, none.row[0], none.row[1], (double[2]){ 0, LID_ROWS }, LID_ROWS, 1);
+	lid_colour_learn(&lids->colour, chart, none.row[0], none.row[1], &iris, (double[2]){ 0, LID_ROWS }, LID_ROWS, 1);
 	lids->curves = usual;
 }
 
@@ -170,16 +181,17 @@ static void find(struct lid_found *found, struct lid_track *lids, const struct l
 	struct lid_curves expect = lids->curves;
 	double rows = lids->chart.width / hypot(lids->chart.dv[0], lids->chart.dv[1]);
 	struct lid_path_conf conf = path_conf(lids, look, 0.12, fresh ? 0.08 : 0.04);
+	struct lid_iris iris = iris_on(&lids->chart, look);
 	lids->match.known = false;
 	if (!fresh)
 		ask_strips(lids, &expect);
 	for (int k = 0; k < (fresh ? 4 : 1); k++) {
 		if (fresh || lids->frames % 4 == 0)
 			lid_colour_settle(&lids->colour);
-		lid_colour_ask(odds, &lids->colour, &lids->chart);
+		lid_colour_ask(odds, &lids->colour, &lids->chart, &iris);
 		found->sense = lid_path(&lids->curves, &lids->chart, odds, &lids->match, &expect, &conf);
 		if (fresh)
-			lid_colour_learn(&lids->colour, &lids->chart, lids->curves.row[0], lids->curves.row[1],
+			lid_colour_learn(&lids->colour, &lids->chart, lids->curves.row[0], lids->curves.row[1], &iris,
 			                 (double[2]){ 1, 1 }, 0.12 * rows, 0.3);
 	}
 }
@@ -209,14 +221,15 @@ bool lid_track_push(struct lid_found *found, struct lid_track *lids, const struc
 	lids->known = true;
 	settle(found, lids, picture, fresh);
 	if (lids->frames % 8 == 0)
-		place(lids, lids->wet = 0.1 * look->mm / high);
+		place(lids, lids->wet = lids->wet_mm * look->mm / high);
 	margins(found, lids);
 	lids->frames++;
 	if (!found->open)
 		return true;
 	report(found, lids);
+	struct lid_iris iris = iris_on(&lids->chart, look);
 	if (found->sense > 1 && lids->frames % 2 == 0)
-		lid_colour_learn(&lids->colour, &lids->chart, lids->margins.row[0], lids->margins.row[1], (double[2]){ 1, 3 },
+		lid_colour_learn(&lids->colour, &lids->chart, lids->margins.row[0], lids->margins.row[1], &iris, (double[2]){ 1, 3 },
 		                 0.12 * rows, 0.97);
 	for (int k = 0; k < 2; k++)
 		if (fresh || found->misfit[k] < 1.5)

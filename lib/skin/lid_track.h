@@ -18,7 +18,7 @@ struct lid_track {
 	struct lid_strip strip[2]; // what the lids look like along `curves`
 	struct lid_curves curves;  // lines on the lids that are found again in every frame, near the margins
 	double offset[2][LID_COLS_MAX];  // rows from them to the margins, outwards
-	double wet;                // rows that a margin is thought to be outside of the edge seen
+	double wet_mm, wet;        // mm and rows that a margin is thought to be outside of the edge seen
 	struct lid_corner corner[2];
 	double at[2][2];           // the corners now: column, row
 	struct lid_curves margins; // of the last frame
@@ -49,7 +49,8 @@ struct lid_kept {
 	float row[2][LID_COLS_MAX], at[2][2];
 };
 
-void lid_track_start(struct lid_track *lids, int columns, int points);
+/* wet_mm: the tear meniscus between a margin and what is seen of the eye. */
+void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm);
 
 /* False: nothing is known yet of this eye's colours and it cannot be learnt here (no iris, or corners too near). */
 bool lid_track_push(struct lid_found *found, struct lid_track *lids, const struct lid_picture *picture,
