@@ -35,7 +35,7 @@ static struct image look_with(struct skin_job *job, struct skin_target *t, doubl
 	portrait_light(t->portrait, &view, true);
 	struct image rgba = portrait_draw(t->portrait, &view), seen = picture_on_grey(&rgba, job->gain);
 	if (layers)
-		*layers = portrait_layers(t->portrait, &view);
+		*layers = portrait_layers(t->portrait, &view, &rgba);
 	image_free(&rgba);
 	free(controls);
 	return seen;
@@ -61,7 +61,8 @@ static void put(struct image *sheet, const struct image *cell, int x, int y)
 
 static bool layers_write(struct skin_job *job, struct skin_target *t, const char *rel, const struct image *layers, struct err *err)
 {
-	static const char *const names[] = { "Z", "distance", "lake" };
+	static const char *const names[PORTRAIT_LAYERS] = { "Z", "distance", "lake", "N.X", "N.Y", "N.Z", "diffuse.R", "diffuse.G", "diffuse.B",
+		                                                "specular.R", "specular.G", "specular.B" };
 	struct exr_info info = { .made_by = stage_made_by(job->stage, t->n_in, t->in) };
 	return exr_write(stage_path(job->stage, "%s", rel), layers, names, EXR_FLOAT, &info, err)
 	       && stage_made(job->stage, rel, t->n_in, t->in, err);

@@ -185,12 +185,12 @@ static void distances_are_to_the_lids(void **state)
 	drive_look(c, &m->rig, 0, 0, 1);
 	portrait_pose(p, c);
 	struct portrait_view view = portrait_front(&m->rig, -1, 110, 0, 0, W, H);
-	struct image layers = portrait_layers(p, &view);
+	struct image picture = portrait_draw(p, &view), layers = portrait_layers(p, &view, &picture);
 	struct portrait_spot *spots = portrait_raster(p, &view, 1);
 	double mm = 110.0 / W;  // at the globes' depth; the made lids stand up to 2 % nearer
 	int seen = 0;
 	for (int i = 0; i < W * H; i++) {
-		const float *px = layers.px + 3 * i;
+		const float *px = layers.px + PORTRAIT_LAYERS * i;
 		if (isinf(px[1]))
 			continue;
 		double nearest = INFINITY;
@@ -204,6 +204,56 @@ static void distances_are_to_the_lids(void **state)
 	}
 	assert_true(seen > 100);
 	free(spots);
+	image_free(&picture);
+	image_free(&layers);
+	portrait_free(p);
+}
+
+/* Diffuse and specular light are the picture, neither is negative; normals stand on the plane through neighbours' depths. */
+static void layers_make_the_picture(void **state)
+{
+	struct made *m = *state;
+	enum { W = 240, H = 96 };
+	double c[12];
+	m->wet = 1;
+	struct portrait *p = portrait_of(m, 2);
+	m->wet = 0;
+	drive_look(c, &m->rig, 8, 0, 1);
+	portrait_pose(p, c);
+	struct portrait_view view = portrait_front(&m->rig, -1, 110, 0.2, 0, W, H);
+	portrait_light(p, &view, true);
+	struct image picture = portrait_draw(p, &view), layers = portrait_layers(p, &view, &picture);
+	double shine = 0, off[W * H];
+	int n = 0;
+	for (int y = 0; y + 1 < H; y++)
+		for (int x = 0; x + 1 < W; x++) {
+			const float *q = image_at(&layers, x, y), *r = image_at(&layers, x + 1, y), *s = image_at(&layers, x, y + 1), *N = q + PORTRAIT_NORMAL;
+			for (int k = 0; k < 3; k++) {
+				NEAR(q[PORTRAIT_DIFFUSE + k] + q[PORTRAIT_SPECULAR + k], image_at(&picture, x, y)[k], 1e-6);
+				assert_true(q[PORTRAIT_DIFFUSE + k] >= 0 && q[PORTRAIT_SPECULAR + k] >= -1e-6f);
+			}
+			shine += (double)q[PORTRAIT_SPECULAR];
+			if (!(q[0] > 0 && r[0] > 0 && s[0] > 0 && N[2] != 0) || fabsf(q[0] - r[0]) > 0.3f || fabsf(q[0] - s[0]) > 0.3f)
+				continue;
+			double a[3], b[3], o[3], e[2][3], flat[3];
+			double (*const at[3])[3] = { &o, &a, &b };
+			for (int k = 0; k < 3; k++) {
+				double z = (double)(k == 0 ? q : k == 1 ? r : s)[0];
+				double at_k[3] = { (x + 0.5 + (k == 1) - view.center_px[0]) / view.focal_px * z, (y + 0.5 + (k == 2) - view.center_px[1]) / view.focal_px * z, z };
+				memcpy(*at[k], at_k, sizeof at_k);
+			}
+			vec_add(e[0], a, -1, o);
+			vec_add(e[1], b, -1, o);
+			vec_cross(flat, e[1], e[0]);
+			vec_unit(flat, flat);
+			NEAR(N[0] * N[0] + N[1] * N[1] + N[2] * N[2], 1, 1e-4);
+			off[n++] = acos(fmin(1, flat[0] * (double)N[0] + flat[1] * (double)N[1] + flat[2] * (double)N[2])) * 180 / M_PI;
+		}
+	print_message("layers: normals of %d pixels, off by %.2f degrees in the median, %.1f at 95 %%\n", n, stats_quantile(n, off, 0.5), stats_quantile(n, off, 0.95));
+	assert_true(n > 5000 && shine > 1);
+	assert_true(stats_quantile(n, off, 0.5) < 3);  // facets against smooth normals
+	assert_true(stats_quantile(n, off, 0.95) < 20);
+	image_free(&picture);
 	image_free(&layers);
 	portrait_free(p);
 }
@@ -295,7 +345,7 @@ static void lake_is_deep_at_the_corner(void **state)
 		portrait_light(p, &view, true);
 		image[k] = portrait_draw(p, &view);
 		if (k)
-			layers = portrait_layers(p, &view);
+			layers = portrait_layers(p, &view, &image[k]);
 		assert_true(p->corner_known[0] && p->corner_known[1]);
 		const float *near = p->corner[0], far[3] = { near[0] + 15, near[1], near[2] };
 		NEAR(portrait_lake_height(p, 0, near), m->tear * (1 + LAKE_RISE), 1e-5);
@@ -304,7 +354,7 @@ static void lake_is_deep_at_the_corner(void **state)
 	}
 	int darker = 0;
 	for (int i = 0; i < W * H; i++) {
-		const float *a = image[0].px + 4 * i, *b = image[1].px + 4 * i, lake = layers.px[3 * i + 2];
+		const float *a = image[0].px + 4 * i, *b = image[1].px + 4 * i, lake = layers.px[PORTRAIT_LAYERS * i + PORTRAIT_LAKE];
 		int middle = abs(i % W - W / 2) < W / 5;  // the inner corners stand there
 		assert_true(a[1] == b[1] && a[2] == b[2] && a[0] >= b[0]);
 		assert_true(lake >= 0 && lake <= (float)(m->tear * (1 + LAKE_RISE)) + 1e-6f);
@@ -431,6 +481,7 @@ int main(void)
 		cmocka_unit_test(lake_absorbs),
 		cmocka_unit_test(lake_is_deep_at_the_corner),
 		cmocka_unit_test(caruncle_is_wet),
+		cmocka_unit_test(layers_make_the_picture),
 		cmocka_unit_test(distances_are_to_the_lids),
 		cmocka_unit_test(tears_stay_at_the_lids),
 	};

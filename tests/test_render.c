@@ -509,6 +509,30 @@ static void surface(void **state)
 
 /* In a white room a white eye cannot be told from the room, whichever way it is drawn: what the film does not mirror, the
  * sclera returns. (Red, near the limbus: further away the model has fat in it, which is not white.) */
+/* Vessels: one without width leaves all light; at the surface a wide one leaves what Beer and Lambert say; the deeper it lies the less
+ * is seen of it, first in the blue, which scatters most: so what is deep looks bluish. */
+static void vessels_of_the_white(void **state)
+{
+	(void)state;
+	float none[3], top[3], deep[3], deeper[3], blue = 0;
+	scene_vessel(none, 0.1, 0, 0.6);
+	scene_vessel(top, 0, 0.1, 1);
+	scene_vessel(deep, 0.3, 0.1, 0.6);
+	scene_vessel(deeper, 0.6, 0.1, 0.6);
+	assert_true(fabs((double)top[1] - exp(-2 * M_PI / 4 * 0.1 * 23)) < 1e-3);
+	for (int c = 0; c < 3; c++) {
+		assert_true(none[c] == 1);
+		assert_true(deep[c] > 0 && deep[c] < deeper[c] && deeper[c] < 1);
+	}
+	assert_true(top[0] > 0.8f && top[1] < 0.1f && top[2] < 0.1f);  // red blood
+	for (double depth = 0; depth < 1.5; depth += 0.25) {
+		float left[3];
+		scene_vessel(left, depth, 0.3, 0.6);
+		assert_true(left[2] / left[0] >= blue);
+		blue = left[2] / left[0];
+	}
+}
+
 static void white_furnace(void **state)
 {
 	(void)state;
@@ -661,6 +685,7 @@ int main(void)
 		cmocka_unit_test(places),              cmocka_unit_test(photograph_comes_back),
 		cmocka_unit_test(mirror_at_normal),    cmocka_unit_test(threads_and_numbers),
 		cmocka_unit_test(texels_against_rays), cmocka_unit_test(exponential_rule),
+		cmocka_unit_test(vessels_of_the_white),
 		cmocka_unit_test(white_furnace),       cmocka_unit_test(tissue_furnace),
 		cmocka_unit_test(converges),           cmocka_unit_test(kept_and_hidden),
 		cmocka_unit_test(surface),

@@ -119,15 +119,35 @@ static struct image ripples(int seed)
 	return noise;
 }
 
-/* What sclera and vessels leave of white light. a: fine vessels, b: deep ones. Blood takes green and blue; what lies deep is
- * seen through white and turns bluish. Away from the cornea it gets a little yellower and redder: fat of the orbit. */
-static void albedo_put(float p[3], const struct scene *s, float r, float a, float b)
+/* Red, green and blue stand for 610, 550 and 460 nm. Reduced scattering of tissue of collagen: 7.37 l^-0.22 + 1.1e11 l^-4
+ * (Bashkatov, Genina, Kochubey and Tuchin 2005; the iris paper's eq. 14 is its double). Absorption of blood, 150 g of haemoglobin
+ * in a litre, with all of its oxygen and with none (Prahl 1999). 1/mm. */
+static const double wavelength[3] = { 610, 550, 460 };
+static const double arterial[3] = { 0.81, 23.0, 23.8 }, without_oxygen[3] = { 5.06, 28.6, 12.5 };
+
+/* A layer of vessels: how deep it lies and how wide they are, mm; the share of their blood's oxygen. */
+struct layer_of {
+	double depth, width, oxygen;
+};
+static const struct layer_of conjunctiva = { 0.05, 0.04, 0.95 }, episclera = { 0.35, 0.12, 0.6 };
+
+void scene_vessel(float left[3], double depth, double width, double oxygen)
+{
+	for (int c = 0; c < 3; c++) {
+		double l = wavelength[c], scatter = 7.37 * pow(l, -0.22) + 1.1e11 * pow(l, -4);
+		double blood = oxygen * arterial[c] + (1 - oxygen) * without_oxygen[c], seen = 1 / (1 + 0.75 * scatter * depth);
+		left[c] = (float)(1 - seen * (1 - exp(-2 * M_PI / 4 * width * blood)));
+	}
+}
+
+/* What sclera and vessels leave of white light. a, b: how much of a texel vessels of the conjunctiva and of the episclera cover.
+ * Away from the cornea it gets a little yellower and redder: fat of the orbit. */
+static void albedo_put(float p[3], const struct scene *s, const float left[2][3], float r, float a, float b)
 {
 	float away = smooth(0.35f, 1.1f, r * (float)(reach / 1.3));
 	float tint[3] = { 1 - 0.01f * away, 1 - 0.06f * away, 1 - 0.11f * away };
-	float blood[3] = { (1 - 0.22f * a) * (1 - 0.26f * b), (1 - 0.80f * a) * (1 - 0.38f * b), (1 - 0.78f * a) * (1 - 0.26f * b) };
 	for (int c = 0; c < 3; c++)
-		p[c] = (float)s->conf.sclera_rgb[c] * tint[c] * blood[c];
+		p[c] = (float)s->conf.sclera_rgb[c] * tint[c] * (1 - a * (1 - left[0][c])) * (1 - b * (1 - left[1][c]));
 }
 
 void scene_veins_make(struct scene *s)
@@ -140,12 +160,15 @@ void scene_veins_make(struct scene *s)
 	for (long i = 0; i < (long)n * n; i++)
 		blurred[i] = (float)deep[i] / 255;
 	struct err err = { 0 };
-	cv_blur(blurred, blurred, n, n, 1, 0.13 / mm_per_px, &err);  // deep ones show through a scattering layer
+	cv_blur(blurred, blurred, n, n, 1, 0.4 * episclera.depth / mm_per_px, &err);  // light that comes up through the tissue spreads
+	float left[2][3];
+	scene_vessel(left[0], conjunctiva.depth, conjunctiva.width, conjunctiva.oxygen);
+	scene_vessel(left[1], episclera.depth, episclera.width, episclera.oxygen);
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
 			long i = (long)y * n + x;
 			float r = hypotf((float)x + 0.5f - 0.5f * (float)n, (float)y + 0.5f - 0.5f * (float)n) * 2 / (float)n;
-			albedo_put(s->veins.px + 4 * i, s, r, 0.66f * (float)fine[i] / 255, 0.5f * blurred[i]);
+			albedo_put(s->veins.px + 4 * i, s, (const float(*)[3])left, r, 0.66f * (float)fine[i] / 255, 0.5f * blurred[i]);
 		}
 	scene_texels_make(&s->white, s->veins.px, n);
 	struct image height = ripples(s->conf.seed + 2);

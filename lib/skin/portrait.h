@@ -55,12 +55,18 @@ void portrait_light(struct portrait *portrait, const struct portrait_view *view,
 /* RGB and A (cover), premultiplied. image_free. The same bytes for any number of threads. */
 struct image portrait_draw(struct portrait *portrait, const struct portrait_view *view);
 
-/* What such a picture is of: Z, depth along the camera's axis, mm, 0 where nothing is; and distance, mm, from each point of
- * the globes to the lid's edge as it stands on the screen, INFINITY off the globes and more than PORTRAIT_REACH_MM from it;
- * and depth of the tear fluid there, mm, 0 where there is but the film.
+/* What such a picture (of portrait_draw, in the same view) is of, a channel each:
+ * Z          depth along the camera's axis, mm; 0 where nothing is.
+ * DISTANCE   from each point of the globes to the lid's edge as it stands on the screen, mm; INFINITY off the globes and more
+ *            than PORTRAIT_REACH_MM from it.
+ * LAKE       depth of the tear fluid there, mm; 0 where there is but the film.
+ * NORMAL     unit, in the camera's frame; 0 where nothing is, or where a globe ends.
+ * DIFFUSE, SPECULAR   RGB each; together the picture.
  * image_free. */
 #define PORTRAIT_REACH_MM 12.0
-struct image portrait_layers(struct portrait *portrait, const struct portrait_view *view);
+enum portrait_layer { PORTRAIT_Z, PORTRAIT_DISTANCE, PORTRAIT_LAKE, PORTRAIT_NORMAL, PORTRAIT_DIFFUSE = PORTRAIT_NORMAL + 3,
+	                  PORTRAIT_SPECULAR = PORTRAIT_DIFFUSE + 3, PORTRAIT_LAYERS = PORTRAIT_SPECULAR + 3 };
+struct image portrait_layers(struct portrait *portrait, const struct portrait_view *view, const struct image *picture);
 
 /* A view of both eyes (side < 0) or one (0 left, 1 right) from the front, field mm across, turned by yaw and pitch (rad). */
 struct portrait_view portrait_front(const struct rig *rig, int side, double field, double yaw, double pitch, int width, int height);

@@ -209,7 +209,7 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *p, 
 		unsigned char *visible = visible_of(window, v, spots, samples, side);
 		view.visible = visible;
 		if (!light.n)
-			light = scene_lighting(p->env, p->env, 8);
+			light = scene_lighting(p->env, p->matte ? 0 : p->env, 8);
 		out[side] = scene_render(p->eye[side], &view, &light, &count);
 		free(visible);
 		shade_eye(&out[side], at[side], p, &rays, side);

@@ -35,6 +35,7 @@ struct portrait {
 	int *wrinkle_input;         // [wrinkles.n] control that it follows; -1: none
 	float *wrinkle_strength;    // in this pose
 	bool folded;                // any of them
+	bool matte;                 // nothing mirrors
 	float corner[2][3];         // the globes' inner corners at rest, where known
 	bool corner_known[2];
 };
@@ -73,6 +74,9 @@ struct portrait_sky {
 /* light: irradiance there; null: the vertices'. */
 void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
                     const float origin[3], const float dir[3], const float *light);
+
+/* Unit normal of such a point, without folds and pores; of a hair, its flat side's. */
+void portrait_normal(float normal[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);
 
 /* Irradiance of such a point, before skin spreads it. */
 void portrait_bare_light(float rgb[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);

@@ -8,8 +8,6 @@
 #include "skin/portrait_impl.h"
 #include "skin/skin_look.h"
 
-enum { Z, DISTANCE, LAKE, CHANNELS };
-
 static float lake_at(const struct portrait *p, const struct portrait_rays *rays, int side, double x, double y, float d)
 {
 	float dir[3], at[3];
@@ -46,33 +44,84 @@ static void eye_field(struct image *out, const struct portrait *p, const struct 
 	if (away > 0)
 		distance_band(distance, 0, &scene, PORTRAIT_REACH_MM / mm, 0);
 	for (size_t i = 0; i < n && away > 0; i++) {
-		float *px = out->px + CHANNELS * i;
+		float *px = out->px + PORTRAIT_LAYERS * i;
 		if (material[i] != DISTANCE_GLOBE)
 			continue;
-		px[DISTANCE] = distance[i] * (float)mm;
-		px[LAKE] = lake_at(p, &rays, side, (double)(i % (size_t)w) + 0.5, (double)(i / (size_t)w) + 0.5, px[DISTANCE]);
+		px[PORTRAIT_DISTANCE] = distance[i] * (float)mm;
+		px[PORTRAIT_LAKE] = lake_at(p, &rays, side, (double)(i % (size_t)w) + 0.5, (double)(i / (size_t)w) + 0.5, px[PORTRAIT_DISTANCE]);
 	}
 	free(material);
 	free(cover);
 	free(distance);
 }
 
-struct image portrait_layers(struct portrait *p, const struct portrait_view *v)
+/* Of a globe: from where rays a little aside meet it. */
+static void eye_normal(float n[3], const struct portrait *p, const struct portrait_rays *rays, int side, double x, double y)
 {
-	struct image out = image_new(v->width, v->height, CHANNELS);
+	static const double aside[3][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 } };
+	double at[3][3], d[2][3], v[3] = { 0 };
+	bool whole = true;
+	for (int k = 0; k < 3; k++) {
+		float dir[3];
+		portrait_ray(dir, rays, x + aside[k][0], y + aside[k][1]);
+		float t = portrait_eye_hit(p, side, rays->origin, dir);
+		whole = whole && isfinite(t);
+		for (int c = 0; c < 3; c++)
+			at[k][c] = (double)t * (double)dir[c];
+	}
+	if (whole) {
+		vec_add(d[0], at[1], -1, at[0]);
+		vec_add(d[1], at[2], -1, at[0]);
+		vec_cross(v, d[1], d[0]);  // rows run down: towards the camera
+		vec_unit(v, v);
+	}
+	for (int c = 0; c < 3; c++)
+		n[c] = (float)v[c];
+}
+
+static void normal_of(float out[3], const struct portrait *p, const struct portrait_rays *rays, const struct portrait_spot *spot, double x, double y)
+{
+	float n[3], dir[3];
+	portrait_ray(dir, rays, x, y);
+	if (spot->face < -1)
+		eye_normal(n, p, rays, -2 - spot->face, x, y);
+	else
+		portrait_normal(n, p, spot->face, rays->origin, dir);
+	for (int k = 0; k < 3; k++)
+		out[k] = (float)(rays->rig_from_cam[0][k] * (double)n[0] + rays->rig_from_cam[1][k] * (double)n[1] + rays->rig_from_cam[2][k] * (double)n[2]);
+}
+
+static void pixel(float *px, const struct portrait *p, const struct portrait_rays *rays, const struct portrait_spot *spot, double per_mm, const float *full,
+                  const float *matte, double x, double y)
+{
+	px[PORTRAIT_Z] = isfinite(spot->depth) ? spot->depth / (float)per_mm : 0;
+	px[PORTRAIT_DISTANCE] = INFINITY;
+	if (spot->face != -1)
+		normal_of(px + PORTRAIT_NORMAL, p, rays, spot, x, y);
+	for (int c = 0; c < 3; c++) {
+		px[PORTRAIT_DIFFUSE + c] = matte[c];
+		px[PORTRAIT_SPECULAR + c] = full[c] - matte[c];
+	}
+}
+
+struct image portrait_layers(struct portrait *p, const struct portrait_view *v, const struct image *picture)
+{
+	struct image out = image_new(v->width, v->height, PORTRAIT_LAYERS);
 	int samples = p->conf.samples;
 	double per_mm = vec_norm(v->cam_from_target[0]);
-	portrait_lashes_move(p, v);
+	p->matte = true;
+	struct image matte = portrait_draw(p, v);
+	p->matte = false;
 	struct portrait_spot *spots = portrait_raster(p, v, samples);
+	struct portrait_rays rays = portrait_rays_of(v);
 	for (int y = 0; y < v->height; y++)
 		for (int x = 0; x < v->width; x++) {
-			float *px = image_at(&out, x, y);
-			float depth = spots[((long)y * samples + samples / 2) * v->width * samples + (long)x * samples + samples / 2].depth;
-			px[Z] = isfinite(depth) ? depth / (float)per_mm : 0;
-			px[DISTANCE] = INFINITY;
+			const struct portrait_spot *spot = &spots[((long)y * samples + samples / 2) * v->width * samples + (long)x * samples + samples / 2];
+			pixel(image_at(&out, x, y), p, &rays, spot, per_mm, image_at(picture, x, y), image_at(&matte, x, y), x + 0.5, y + 0.5);
 		}
 	for (int side = 0; side < 2; side++)
 		eye_field(&out, p, v, spots, side, per_mm);
+	image_free(&matte);
 	free(spots);
 	return out;
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/vec.h"
 #include "skin/portrait_impl.h"
 #include "skin/skin_look.h"
 
@@ -150,6 +151,26 @@ static void moist(float rgb[3], const struct portrait *p, const struct portrait_
 	portrait_wet_shade(rgb, p, sky->rig_from_cam, n, dir, q->wet, q->open);
 }
 
+void portrait_normal(float n[3], const struct portrait *p, int face, const float origin[3], const float dir[3])
+{
+	const struct portrait_mesh *m = &p->mesh;
+	if (face < p->first_lash) {
+		struct point q = point_of(m, face, origin, dir);
+		memcpy(n, q.normal, sizeof q.normal);
+		return;
+	}
+	const int32_t *v = m->faces[face];
+	double a[3], b[3], flat[3];
+	for (int c = 0; c < 3; c++) {
+		a[c] = (double)m->x[v[1]][c] - (double)m->x[v[0]][c];
+		b[c] = (double)m->x[v[2]][c] - (double)m->x[v[0]][c];
+	}
+	vec_cross(flat, a, b);
+	vec_unit(flat, flat);
+	for (int c = 0; c < 3; c++)
+		n[c] = (float)flat[c];
+}
+
 void portrait_shade(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, int face, const float origin[3],
                     const float dir[3], const float *light)
 {
@@ -166,7 +187,7 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	}
 	unit(n);
 	float spec[3] = { 0 };
-	for (int k = 0; k < sky->n; k++) {
+	for (int k = 0; k < sky->n && !p->matte; k++) {
 		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_WIDE)
 		              + (float)SKIN_LOBE_NARROW * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_NARROW);
 		for (int c = 0; c < 3; c++)

@@ -181,7 +181,7 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 		portrait_lake_light(below, portrait_lake_depth(dk, height), cos_i, w->p->conf.tear_absorb);
 		for (int c = 0; c < 3; c++) {
 			through[c] += (1 - part * fresnel) * below[c] / ACROSS;
-			sum[c] += part * fresnel * rgb[c] / ACROSS;
+			sum[c] += w->p->matte ? 0 : part * fresnel * rgb[c] / ACROSS;
 		}
 	}
 	for (int c = 0; c < 3; c++)

@@ -127,5 +127,5 @@ void portrait_wet_shade(float rgb[3], const struct portrait *p, const float rig_
 			cam[k] += rig_from_cam[i][k] * (dir[i] + 2 * c * n[i]);
 	envmap_at(room, p->env, cam, (float)TEAR_ROUGH);
 	for (int i = 0; i < 3; i++)
-		rgb[i] += share * (open * room[i] - rgb[i]);
+		rgb[i] += share * ((p->matte ? 0 : open * room[i]) - rgb[i]);
 }
