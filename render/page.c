@@ -50,6 +50,22 @@ json_t *page_text(const char *fmt, ...)
 	return json;
 }
 
+json_t *page_facts(const json_t *log)
+{
+	json_t *list = json_array(), *value;
+	const char *key;
+	json_object_foreach(json_object_get(log, "figures"), key, value) {
+		const char *unit = json_string_value(json_object_get(value, "unit"));
+		char *label = mem_str(key);
+		for (char *p = label; *p; p++)
+			*p = *p == '_' ? ' ' : *p;
+		json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value",
+		                                      page_text("%.4g %s", json_number_value(json_object_get(value, "value")), unit ? unit : "")));
+		free(label);
+	}
+	return list;
+}
+
 void page_say(json_t *list, const char *fmt, ...)
 {
 	va_list ap;

@@ -45,6 +45,9 @@ void page_say(json_t *list, const char *fmt, ...);
 __attribute__((format(printf, 1, 2)))
 json_t *page_text(const char *fmt, ...);
 
+/* [{label, value}] of the numbers in a stage's log; an empty array where there are none. */
+json_t *page_facts(const json_t *log);
+
 json_t *page_photos(struct page *page);
 /* Null where no cameras were found from views/. */
 json_t *page_rig(struct page *page);

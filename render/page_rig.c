@@ -5,22 +5,6 @@
 #include "base/mem.h"
 #include "render/page.h"
 
-static json_t *facts(json_t *log)
-{
-	json_t *list = json_array(), *value;
-	const char *key;
-	json_object_foreach(json_object_get(log, "figures"), key, value) {
-		const char *unit = json_string_value(json_object_get(value, "unit"));
-		char *label = mem_str(key);
-		for (char *p = label; *p; p++)
-			*p = *p == '_' ? ' ' : *p;
-		json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value",
-		                                      page_text("%.6g %s", json_number_value(json_object_get(value, "value")), unit ? unit : "")));
-		free(label);
-	}
-	return list;
-}
-
 enum { WIDTH = 1120 };
 
 /* Characters laid onto the mesh, where no video has taught them anything yet: those that move have a section of their own. */
@@ -52,7 +36,7 @@ json_t *page_rig(struct page *page)
 	json_array_foreach(json_object_get(log, "skipped"), i, line)
 		if (json_is_string(line))
 			json_array_append(skipped, line);
-	json_t *rig = picture ? json_pack("{s:o,s:o,s:o,s:o}", "picture", picture, "facts", facts(log), "skipped", json_incref(skipped), "laid",
+	json_t *rig = picture ? json_pack("{s:o,s:o,s:o,s:o}", "picture", picture, "facts", page_facts(log), "skipped", json_incref(skipped), "laid",
 	                                    laid_on(page)) : 0;
 	json_decref(skipped);
 	json_decref(log);

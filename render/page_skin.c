@@ -35,17 +35,7 @@ static json_t *data_uri(const char *path, const char *type, size_t limit)
 /* Numbers that a stage left for the page. */
 static json_t *facts(struct page *page, const char *stage)
 {
-	json_t *log = page_json(page, page_file(page, "work/log/%s.json", stage)), *list = json_array(), *value;
-	const char *key;
-	json_object_foreach(json_object_get(log, "figures"), key, value) {
-		const char *unit = json_string_value(json_object_get(value, "unit"));
-		char *label = mem_str(key);
-		for (char *p = label; *p; p++)
-			*p = *p == '_' ? ' ' : *p;
-		json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value",
-		                                      page_text("%.4g %s", json_number_value(json_object_get(value, "value")), unit ? unit : "")));
-		free(label);
-	}
+	json_t *log = page_json(page, page_file(page, "work/log/%s.json", stage)), *list = page_facts(log);
 	json_t *skips = json_object_get(log, "skipped"), *line;
 	size_t i;
 	json_array_foreach(skips, i, line)

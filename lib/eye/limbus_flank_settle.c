@@ -1,6 +1,5 @@
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "eye/limbus_flank.h"
@@ -64,37 +63,16 @@ static double sclera_warmth(const struct log_map *m, const struct ellipse *e)
 	return n ? stats_quantile(n, v, 0.12) : 0;
 }
 
-static double worth(const struct log_map *m, const struct ellipse *e, double white)
-{
-	double z = (e->b / e->a - ASPECT) / SPREAD;
-	return support(m, e, white) - 0.01 * z * z;
-}
+struct climb {
+	const struct log_map *map;
+	double white;
+};
 
-static double climb(struct ellipse *e, const struct log_map *m, double white, double step, double end)
+static double worth(const void *ctx, const struct ellipse *e)
 {
-	double q[ELLIPSE_N], best = worth(m, e, white);
-	ellipse_to_q(q, e);
-	while (step > end) {
-		bool moved = false;
-		for (int i = 0; i < 2 * ELLIPSE_N; i++) {
-			double try[ELLIPSE_N];
-			struct ellipse f;
-			memcpy(try, q, sizeof try);
-			try[i / 2] += i % 2 ? -step : step;
-			if (!ellipse_from_q(&f, try) || f.b < 0.6 * f.a)
-				continue;
-			double now = worth(m, &f, white);
-			if (now > best + 1e-9) {
-				best = now;
-				memcpy(q, try, sizeof q);
-				*e = f;
-				moved = true;
-			}
-		}
-		if (!moved)
-			step /= 2;
-	}
-	return best;
+	const struct climb *c = ctx;
+	double z = (e->b / e->a - ASPECT) / SPREAD;
+	return support(c->map, e, c->white) - 0.01 * z * z;
 }
 
 bool limbus_flank_settle(struct seek_found *found, const struct photo *photo)
@@ -103,20 +81,20 @@ bool limbus_flank_settle(struct seek_found *found, const struct photo *photo)
 	double reach = 1.7 * c->a, box[4] = { c->cx - reach, c->cy - reach, c->cx + reach, c->cy + reach }, best = -INFINITY;
 	struct log_map m = log_map_make(photo, box, c->a / RADIUS_PX);
 	struct ellipse top = *c;
-	double white = sclera_warmth(&m, c);
+	const double white = sclera_warmth(&m, c), least_aspect = 0.6;
 	for (int i = 0; i < ROUND * ROUND * ROUND; i++) {
 		struct ellipse e = *c;
 		e.cx += 0.12 * c->a * (i % ROUND - 1);
 		e.cy += 0.12 * c->a * (i / ROUND % ROUND - 1);
 		e.a *= pow(1.1, i / ROUND / ROUND - 1);
 		e.b = ASPECT * e.a;
-		double now = climb(&e, &m, white, 0.06 * c->a, 0.03 * c->a);
+		double now = ellipse_climb(&e, 0.06 * c->a, 0.03 * c->a, least_aspect, worth, &(struct climb){ &m, white });
 		if (now > best) {
 			best = now;
 			top = e;
 		}
 	}
-	climb(&top, &m, white, 0.04 * c->a, 0.005 * c->a);
+	ellipse_climb(&top, 0.04 * c->a, 0.005 * c->a, least_aspect, worth, &(struct climb){ &m, white });
 	found->e = top;
 	found->score = support(&m, &top, white);
 	free(m.px);

@@ -1,7 +1,6 @@
 #include "eye/limbus_score.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { POINTS = 64 };
 
@@ -31,30 +30,19 @@ double score_ellipse(const struct grey *g, const struct ellipse *e, double contr
 	return sum / POINTS;
 }
 
-double score_climb(const struct grey *g, struct ellipse *e, double step, double end, double contrast,
-                   enum score_reach reach)
+struct climb {
+	const struct grey *grey;
+	double contrast;
+	enum score_reach reach;
+};
+
+static double worth(const void *ctx, const struct ellipse *e)
 {
-	double q[ELLIPSE_N], best = score_ellipse(g, e, contrast, reach);
-	ellipse_to_q(q, e);
-	while (step > end) {
-		bool moved = false;
-		for (int i = 0; i < 2 * ELLIPSE_N; i++) {
-			double try[ELLIPSE_N];
-			struct ellipse f;
-			memcpy(try, q, sizeof try);
-			try[i / 2] += i % 2 ? -step : step;
-			if (!ellipse_from_q(&f, try) || f.b < 0.55 * f.a)
-				continue;
-			double score = score_ellipse(g, &f, contrast, reach);
-			if (score > best + 1e-9) {
-				best = score;
-				memcpy(q, try, sizeof q);
-				*e = f;
-				moved = true;
-			}
-		}
-		if (!moved)
-			step /= 2;
-	}
-	return best;
+	const struct climb *c = ctx;
+	return score_ellipse(c->grey, e, c->contrast, c->reach);
+}
+
+double score_climb(const struct grey *g, struct ellipse *e, double step, double end, double contrast, enum score_reach reach)
+{
+	return ellipse_climb(e, step, end, 0.55, worth, &(struct climb){ g, contrast, reach });
 }

@@ -124,3 +124,31 @@ double ellipse_perimeter(const struct ellipse *e)
 	double h = (e->a - e->b) * (e->a - e->b) / ((e->a + e->b) * (e->a + e->b));
 	return M_PI * (e->a + e->b) * (1 + 3 * h / (10 + sqrt(4 - 3 * h)));
 }
+
+double ellipse_climb(struct ellipse *e, double step, double end, double least_aspect,
+                     double (*worth)(const void *ctx, const struct ellipse *e), const void *ctx)
+{
+	double q[ELLIPSE_N], best = worth(ctx, e);
+	ellipse_to_q(q, e);
+	while (step > end) {
+		bool moved = false;
+		for (int i = 0; i < 2 * ELLIPSE_N; i++) {
+			double try[ELLIPSE_N];
+			struct ellipse f;
+			memcpy(try, q, sizeof try);
+			try[i / 2] += i % 2 ? -step : step;
+			if (!ellipse_from_q(&f, try) || f.b < least_aspect * f.a)
+				continue;
+			double now = worth(ctx, &f);
+			if (now > best + 1e-9) {
+				best = now;
+				memcpy(q, try, sizeof q);
+				*e = f;
+				moved = true;
+			}
+		}
+		if (!moved)
+			step /= 2;
+	}
+	return best;
+}

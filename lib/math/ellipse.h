@@ -16,6 +16,12 @@ void ellipse_to_q(double q[ELLIPSE_N], const struct ellipse *e);
 /* Angle in [0, pi). False when S is not positive definite: no ellipse. */
 bool ellipse_from_q(struct ellipse *e, const double q[ELLIPSE_N]);
 
+/* Moves, resizes and turns e uphill, one parameter of q after the other, with steps from `step` down to `end` px; never
+ * narrower than b = least_aspect a. Returns the worth reached. */
+double ellipse_climb(struct ellipse *e, double step, double end, double least_aspect,
+                     double (*worth)(const void *ctx, const struct ellipse *e), const void *ctx);
+
+
 /* 1 sigma of cx, cy, a, b, angle from the covariance of q; the angle's is at most pi / sqrt(12), that of no idea. */
 void ellipse_sigma(double sigma[ELLIPSE_N], const struct ellipse *e, const double cov_q[ELLIPSE_N][ELLIPSE_N]);
 

@@ -26,12 +26,7 @@ static void pose(struct poser *p, const double *controls, double turn[2][3][3])
 {
 	double e[RIG_COMPONENTS];
 	rig_components(e, p->rig, controls);
-	for (int s = 0; s < 2; s++) {
-		double gaze[3];
-		for (int k = 0; k < 3; k++)
-			gaze[k] = controls[5 * s + k] * M_PI / 180;
-		rig_globe_rotation(turn[s], p->rig, gaze);
-	}
+	rig_globes_turned(turn, p->rig, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->x, p->n);
 }
 

@@ -92,12 +92,7 @@ void portrait_pose(struct portrait *p, const double *controls)
 {
 	double e[RIG_COMPONENTS], turn[2][3][3];
 	rig_components(e, p->rig, controls);
-	for (int s = 0; s < 2; s++) {
-		double gaze[3];
-		for (int k = 0; k < 3; k++)
-			gaze[k] = controls[5 * s + k] * M_PI / 180;
-		rig_globe_rotation(turn[s], p->rig, gaze);
-	}
+	rig_globes_turned(turn, p->rig, controls);
 	memcpy(p->target_from_globe, turn, sizeof turn);
 	portrait_fold_pose(p, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);

@@ -61,6 +61,16 @@ void rig_globe_rotation(double target_from_globe[3][3], const struct rig *rig, c
 	mat_mul(target_from_globe, back, turn);
 }
 
+void rig_globes_turned(double target_from_globe[2][3][3], const struct rig *rig, const double *controls)
+{
+	for (int s = 0; s < 2; s++) {
+		double gaze[3];
+		for (int k = 0; k < 3; k++)
+			gaze[k] = controls[5 * s + k] * M_PI / 180;
+		rig_globe_rotation(target_from_globe[s], rig, gaze);
+	}
+}
+
 double rig_globe_distance(const struct rig *rig, int side, const double target_from_globe[3][3], const float x[3])
 {
 	const struct rig_globe *globe = &rig->globe[side];

@@ -79,6 +79,9 @@ void rig_components(double e[RIG_COMPONENTS], const struct rig *rig, const doubl
 /* Rotation of a globe in the character's axes for a gaze in Fick's order (rad): horizontal, vertical, torsion. */
 void rig_globe_rotation(double target_from_globe[3][3], const struct rig *rig, const double gaze[3]);
 
+/* Of both globes, left and right, as controls g~ (deg) turn them. */
+void rig_globes_turned(double target_from_globe[2][3][3], const struct rig *rig, const double *controls);
+
 /* Signed distance of a point from that globe turned so: |r| - D; < 0 inside. mm. */
 double rig_globe_distance(const struct rig *rig, int side, const double target_from_globe[3][3], const float x[3]);
 

@@ -5,13 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-
-static int root_of(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
+#include "mesh/topology.h"
 
 static double area_of(const struct mesh *m, const int32_t f[3])
 {
@@ -50,30 +44,26 @@ static void compact(struct mesh *m)
 
 void surface_largest(struct mesh *m, const bool *keep)
 {
-	int *parent = mem_array((size_t)m->n_vertices, sizeof *parent), best = -1, n = 0;
 	double *area = mem_new((size_t)m->n_vertices, sizeof *area);
-	for (int i = 0; i < m->n_vertices; i++)
-		parent[i] = i;
+	int best = -1, n = 0;
 	for (int f = 0; f < m->n_faces; f++) {
 		const int32_t *c = m->faces[f];
-		if (keep && !(keep[c[0]] && keep[c[1]] && keep[c[2]]))
-			continue;
-		memmove(m->faces[n++], c, sizeof *m->faces);
-		for (int k = 1; k < 3; k++)
-			parent[root_of(parent, m->faces[n - 1][k])] = root_of(parent, m->faces[n - 1][0]);
+		if (!keep || (keep[c[0]] && keep[c[1]] && keep[c[2]]))
+			memmove(m->faces[n++], c, sizeof *m->faces);
 	}
 	m->n_faces = n;
+	int *piece = mesh_pieces(m->n_vertices, n, (const int32_t(*)[3])m->faces);
 	for (int f = 0; f < n; f++)
-		area[root_of(parent, m->faces[f][0])] += area_of(m, m->faces[f]);
+		area[piece[m->faces[f][0]]] += area_of(m, m->faces[f]);
 	for (int i = 0; i < m->n_vertices; i++)
 		if (area[i] > 0 && (best < 0 || area[i] > area[best]))
 			best = i;
 	n = 0;
 	for (int f = 0; f < m->n_faces; f++)
-		if (root_of(parent, m->faces[f][0]) == best)
+		if (piece[m->faces[f][0]] == best)
 			memmove(m->faces[n++], m->faces[f], sizeof *m->faces);
 	m->n_faces = n;
-	free(parent);
+	free(piece);
 	free(area);
 	compact(m);
 }
