@@ -51,6 +51,9 @@ void portrait_mesh_make(struct portrait *portrait);
 void portrait_mesh_move(struct portrait *portrait);
 void portrait_mesh_free(struct portrait_mesh *mesh);
 
+/* Where in the face a ray meets its plane: weights of its vertices. */
+void portrait_mesh_weights(float w[3], const struct portrait_mesh *m, int face, const float origin[3], const float dir[3]);
+
 /* What a sample of the picture shows. */
 struct portrait_spot {
 	int face;      // of the mesh; -1: nothing, -2 and -3: the left and right eye

@@ -41,25 +41,6 @@ static void find_rim(struct rim *rim, const struct portrait_spot *spots, int sid
 		}
 }
 
-/* Weights of the corners where a pixel's ray meets a face. */
-static void corner_weights(float w[3], const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
-{
-	const int32_t *v = m->faces[face];
-	const float *a = m->x[v[0]], *b = m->x[v[1]], *c = m->x[v[2]];
-	float e[3], g[3], s[3], h[3], q[3];
-	for (int k = 0; k < 3; k++) {
-		e[k] = b[k] - a[k];
-		g[k] = c[k] - a[k];
-		s[k] = origin[k] - a[k];
-	}
-	h[0] = dir[1] * g[2] - dir[2] * g[1], h[1] = dir[2] * g[0] - dir[0] * g[2], h[2] = dir[0] * g[1] - dir[1] * g[0];
-	q[0] = s[1] * e[2] - s[2] * e[1], q[1] = s[2] * e[0] - s[0] * e[2], q[2] = s[0] * e[1] - s[1] * e[0];
-	float det = e[0] * h[0] + e[1] * h[1] + e[2] * h[2], k = fabsf(det) > 1e-12f ? 1 / det : 0;
-	w[1] = fminf(fmaxf((s[0] * h[0] + s[1] * h[1] + s[2] * h[2]) * k, 0), 1);
-	w[2] = fminf(fmaxf((dir[0] * q[0] + dir[1] * q[1] + dir[2] * q[2]) * k, 0), 1 - w[1]);
-	w[0] = 1 - w[1] - w[2];
-}
-
 static void plant(struct portrait *p, const struct rim *rim, const struct portrait_rays *rays, int side, bool upper, struct rng *rng)
 {
 	int hairs = upper ? UPPER : LOWER, reach = 6;
@@ -75,7 +56,7 @@ static void plant(struct portrait *p, const struct rim *rim, const struct portra
 		float dir[3];
 		portrait_ray(dir, rays, rim->px[at][0], rim->px[at][1]);
 		memcpy(l->vertex, p->mesh.faces[rim->face[at]], sizeof l->vertex);
-		corner_weights(l->weight, &p->mesh, rim->face[at], rays->origin, dir);
+		portrait_mesh_weights(l->weight, &p->mesh, rim->face[at], rays->origin, dir);
 		double size = p->rig->globe[side].radius / 12 * p->conf.lash_mm / 9;
 		l->side = side;
 		l->upper = upper;

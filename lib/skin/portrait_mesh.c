@@ -201,3 +201,24 @@ void portrait_mesh_free(struct portrait_mesh *m)
 	free(m->home);
 	*m = (struct portrait_mesh){ 0 };
 }
+
+void portrait_mesh_weights(float w[3], const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
+{
+	const int32_t *v = m->faces[face];
+	const float *a = m->x[v[0]], *b = m->x[v[1]], *c = m->x[v[2]];
+	float e[3], g[3], s[3], h[3], q[3];
+	for (int k = 0; k < 3; k++) {
+		e[k] = b[k] - a[k];
+		g[k] = c[k] - a[k];
+		s[k] = origin[k] - a[k];
+	}
+	h[0] = dir[1] * g[2] - dir[2] * g[1], h[1] = dir[2] * g[0] - dir[0] * g[2], h[2] = dir[0] * g[1] - dir[1] * g[0];
+	q[0] = s[1] * e[2] - s[2] * e[1], q[1] = s[2] * e[0] - s[0] * e[2], q[2] = s[0] * e[1] - s[1] * e[0];
+	float det = e[0] * h[0] + e[1] * h[1] + e[2] * h[2], k = fabsf(det) > 1e-12f ? 1 / det : 0;
+	float w1 = (s[0] * h[0] + s[1] * h[1] + s[2] * h[2]) * k, w2 = (dir[0] * q[0] + dir[1] * q[1] + dir[2] * q[2]) * k;
+	w1 = fminf(fmaxf(w1, 0), 1);  // samples at an edge may lie a hair outside
+	w2 = fminf(fmaxf(w2, 0), 1 - w1);
+	w[0] = 1 - w1 - w2;
+	w[1] = w1;
+	w[2] = w2;
+}
