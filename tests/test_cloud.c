@@ -4,6 +4,7 @@
 #include "math/stats.h"
 #include "math/vec.h"
 #include "skin/cloud.h"
+#include "skin/cloud_impl.h"
 #include "skin/surface.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/sfm_scene.h"
@@ -196,11 +197,27 @@ static void test_marker(void **state)
 	free(picture);
 }
 
+/* A burnt-out wall beside noise of +-2 levels: the wall goes, but for what lies within reach of the noise. */
+static void test_plain(void **state)
+{
+	(void)state;
+	enum { W = 60, H = 40, REACH = 5 };
+	uint8_t grey[W * H], mask[W * H];
+	for (int i = 0; i < W * H; i++) {
+		grey[i] = i % W < 30 ? 255 : (uint8_t)(126 + (i * 7919 + i / W * 104729) % 5);
+		mask[i] = i % 11 ? 255 : 0;
+	}
+	cloud_mask_plain(mask, grey, W, H, REACH, 3);
+	for (int i = 0; i < W * H; i++)
+		assert_int_equal(mask[i], i % 11 && i % W >= 30 - REACH ? 255 : 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_ball),    cmocka_unit_test(test_pairs),
 		cmocka_unit_test(test_largest), cmocka_unit_test(test_marker),
+		cmocka_unit_test(test_plain),
 	};
 	scratch_open();
 	int failed = cmocka_run_group_tests(tests, 0, 0);
