@@ -7,11 +7,12 @@
 #include "base/mem.h"
 #include "skin/lid_line.h"
 #include "stages/track/beside.h"
+#include "stages/track/shut.h"
 
 enum { ENDS = 2 };
 
-/* Shares of the distance between the corners: what the mesh shapes at either end; how far skin tells of a corner. */
-static const double shaped = 0.14;
+/* Shares of the distance between the corners: what the mesh shapes at the inner and the outer end. */
+static const double shaped[ENDS] = { 0.09, 0.14 };
 /* How far skin is believed where it is near what is seen of either margin, and how near that is, mm: skin of the lower lid runs into
  * its margin; that of the upper hangs over it. */
 static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.35;
@@ -99,7 +100,7 @@ static void add_end(struct line *out, const struct line *mesh, const double corn
 {
 	for (int i = 0; i < mesh->n; i++) {
 		double u = line_along(mesh->p[i], corners[0], corners[1]), p[2];
-		if (end ? u < 1 - shaped : u > shaped)
+		if (end ? u < 1 - shaped[1] : u > shaped[0])
 			continue;
 		for (int k = 0; k < 2; k++)
 			p[k] = m[k][0] * mesh->p[i][0] + m[k][1] * mesh->p[i][1] + m[k][2];
@@ -119,7 +120,7 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 		memcpy(found[k].p, state->lid[k], (size_t)state->lid_points * sizeof *found[k].p);
 	}
 	for (int c = 0; c < ENDS; c++) {
-		double a[3][2], b[3][2], u = c ? 1 - shaped : shaped;
+		double a[3][2], b[3][2], u = c ? 1 - shaped[1] : shaped[0];
 		memcpy(a[0], from[c], sizeof a[0]);
 		memcpy(b[0], corner[c], sizeof b[0]);
 		for (int k = 0; k < LIDS; k++)
@@ -132,7 +133,7 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 		add_end(&out[k], &mesh[k], from, 0, map[0]);
 		for (int i = 0; i < found[k].n; i++) {
 			double u = line_along(found[k].p[i], corner[0], corner[1]);
-			if (u > shaped && u < 1 - shaped)
+			if (u > shaped[0] && u < 1 - shaped[1])
 				line_add(&out[k], found[k].p[i]);
 		}
 		add_end(&out[k], &mesh[k], from, 1, map[1]);
@@ -169,12 +170,18 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 	rim_of(&rim, &s->margin[side]);
 	for (int k = 0; k < LIDS; k++)
 		skin[k] = beside_new(rim.n[k], rim.head[k], r, side, clip, points);
+	int below = rim.n[LID_LOWER];
+	double(*carried)[2] = mem_array((size_t)below * (size_t)r->n + 1, sizeof *carried);
 	double near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
 	for (long f = 0; f < r->n; f++) {
 		struct eye_state *state = &r->eyes.state[f][side];
 		struct line mesh[LIDS];
 		double corner[ENDS][2];
-		if (!isfinite(state->lid[0][0][0]) || !project_rim(mesh, &rim, clip, r->pose[f]))
+		bool known = project_rim(mesh, &rim, clip, r->pose[f]);
+		for (int i = 0; i < below; i++)
+			for (int k = 0; k < 2; k++)
+				carried[f * below + i][k] = known ? mesh[LID_LOWER].p[i][k] : NAN;
+		if (!isfinite(state->lid[0][0][0]) || !known)
 			continue;
 		for (int c = 0; c < ENDS; c++) {
 			int end = c ? mesh[0].n - 1 : 0;
@@ -185,6 +192,8 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 		for (int k = 0; k < LIDS; k++)
 			draw_to_skin(state, k, &mesh[k], &skin[k], f, near_px);
 	}
+	shut_carry(r, side, below, (const double(*)[2])carried);
+	free(carried);
 	for (int k = 0; k < LIDS; k++)
 		beside_free(&skin[k]);
 }
