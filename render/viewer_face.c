@@ -199,25 +199,30 @@ static int put_mesh(json_t *out, struct face *f)
 	return n;
 }
 
-/* What drives, as the grid has it: time, gaze of the left eye, aperture against what people do at that gaze, gaze of the right
- * eye, expressions; one row a frame. */
+/* How far the lids of one eye are open, against what people do at this gaze. */
+static double opened(const struct rig *rig, const double *c, int side, const double gaze[2])
+{
+	double open = 0, usual = 0;
+	for (int k = 2 * side; k < 2 * side + 2; k++) {
+		open += c[k < 2 ? 3 + k : 6 + k];
+		usual += rig->baseline[k][0] * gaze[0] + rig->baseline[k][1] * gaze[1] + rig->baseline[k][2];
+	}
+	return fmin(fmax(usual > 0.05 ? open / usual : 1, 0), 1.4);
+}
+
+/* What drives, as the grid has it: time; gaze and aperture of the left eye, then of the right; expressions; one row a frame. */
 json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive *drive)
 {
 	json_t *rows = json_array();
 	double step = 1 / 60.0, next = -1e9;
 	for (int i = 0; i < drive->n; i++) {
 		const double *c = drive_at(drive, i);
-		double gaze[2] = { 0.5 * (c[0] + c[5]), 0.5 * (c[1] + c[6]) }, open = 0, usual = 0;
+		double gaze[2] = { 0.5 * (c[0] + c[5]), 0.5 * (c[1] + c[6]) };
 		if (drive->time[i] < next)
 			continue;
 		next = drive->time[i] + step * 0.9;
-		for (int k = 0; k < 4; k++) {
-			open += c[k < 2 ? 3 + k : 6 + k];
-			usual += rig->baseline[k][0] * gaze[0] + rig->baseline[k][1] * gaze[1] + rig->baseline[k][2];
-		}
-		double aperture = usual > 0.05 ? open / usual : 1;
-		json_t *row = json_pack("[f,f,f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * c[0]) / 100,
-		                        round(100 * c[1]) / 100, round(1e3 * fmin(fmax(aperture, 0), 1.4)) / 1e3, round(100 * c[5]) / 100, round(100 * c[6]) / 100);
+		json_t *row = json_pack("[f,f,f,f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * c[0]) / 100, round(100 * c[1]) / 100,
+		                        round(1e3 * opened(rig, c, 0, gaze)) / 1e3, round(100 * c[5]) / 100, round(100 * c[6]) / 100, round(1e3 * opened(rig, c, 1, gaze)) / 1e3);
 		for (int k = SKIN_EYE_INPUTS; k < drive->n_inputs; k++)
 			json_array_append_new(row, json_real(round(1e3 * c[k]) / 1e3));
 		json_array_append_new(rows, row);

@@ -327,6 +327,25 @@ static void keyframes(void **state)
 	skin_model_free(&m);
 }
 
+/* One eye's lids shut and open again, the other's stay as they are. */
+static void winks(void **state)
+{
+	(void)state;
+	struct skin_model m = small_model();
+	struct animate_conf conf = usual;
+	conf.gaze = steady();
+	conf.blinks = false;
+	struct animation a = keyed("time_s,wink_left,wink_right\n0,0,0\n1,1,\n2,0,0.5\n", &m, &conf);
+	const double *open = a.controls, *shut = a.controls + 60 * a.n_inputs, *right = a.controls + 120 * a.n_inputs;
+	NEAR(shut[3], 0, 1e-9);
+	NEAR(shut[4], 0, 1e-9);
+	NEAR(shut[8], open[8] * (1 - 0.5 * minimum_jerk(0.5)), 1e-9);
+	NEAR(right[3], open[3], 1e-9);
+	NEAR(right[9], 0.5 * open[9], 1e-9);
+	animation_free(&a);
+	skin_model_free(&m);
+}
+
 static void deterministic(void **state)
 {
 	(void)state;
@@ -498,7 +517,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(main_sequence), cmocka_unit_test(closed_forms),      cmocka_unit_test(vergence_geometry),
 		cmocka_unit_test(a_saccade),     cmocka_unit_test(reflex),            cmocka_unit_test(pursuit),
-		cmocka_unit_test(vergence_dynamics), cmocka_unit_test(blinks),        cmocka_unit_test(keyframes),
+		cmocka_unit_test(vergence_dynamics), cmocka_unit_test(blinks),        cmocka_unit_test(keyframes), cmocka_unit_test(winks),
 		cmocka_unit_test(deterministic), cmocka_unit_test(recorded),          cmocka_unit_test(bad_scripts),
 		cmocka_unit_test(popping_out), cmocka_unit_test(orientation_pops_out),
 	};

@@ -202,12 +202,13 @@ static void move_lids(struct run *r)
 		}
 		for (int e = 0; e < 2; e++) {
 			double lids[2], nasal = e ? 1 : -1;  // the nose is to the right of the left eye
-			skin_model_baseline(lids, m, e, open * (1 - a->closure[i]), g[5 * e], g[5 * e + 1]);
+			double wink = r->keys ? script_smooth(&r->keys->key[e ? KEY_WINK_RIGHT : KEY_WINK_LEFT], t, 0) : 0, still_open = (1 - a->closure[i]) * (1 - wink);
+			skin_model_baseline(lids, m, e, open * still_open, g[5 * e], g[5 * e + 1]);
 			for (int k = 0; k < 2; k++) {
 				int at = 5 * e + 3 + k;
 				g[at] = within(m, at, m->closed[at] + (m->open[at] - m->closed[at]) * lids[k], r->conf->beyond);
 				if (apertures && !isnan(own[at]))
-					g[at] = m->closed[at] + (own[at] - m->closed[at]) * (1 - a->closure[i]);
+					g[at] = m->closed[at] + (own[at] - m->closed[at]) * still_open;
 			}
 			g[5 * e] += nasal * turned * r->conf->blink.eye_deg / M_SQRT2;
 			g[5 * e + 1] -= turned * r->conf->blink.eye_deg / M_SQRT2;

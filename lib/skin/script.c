@@ -16,6 +16,7 @@ static const struct {
 	[KEY_HORIZONTAL] = { "horizontal_deg", -80, 80, "degrees" }, [KEY_VERTICAL] = { "vertical_deg", -80, 80, "degrees" },
 	[KEY_DISTANCE] = { "distance_mm", 50, 1e7, "mm" },           [KEY_PURSUIT] = { "pursuit", 0, 1, "" },
 	[KEY_HEAD_H] = { "head_horizontal_deg", -90, 90, "degrees" }, [KEY_HEAD_V] = { "head_vertical_deg", -90, 90, "degrees" },
+	[KEY_WINK_LEFT] = { "wink_left", 0, 1, "" },                  [KEY_WINK_RIGHT] = { "wink_right", 0, 1, "" },
 	[KEY_OPENNESS] = { "openness", 0, 3, "" },                   [KEY_BLINK] = { "blink", 0, 2, "" },
 };
 

@@ -6,6 +6,7 @@
  *     pursuit                        1: from the key before to this one, the target moves steadily; else it jumps there
  *     head_horizontal_deg, head_vertical_deg   turn of the head
  *     openness                       factor c of equation 3.11: 1 as the gaze has it, 0 shut, above 1 wide
+ *     wink_left, wink_right          how far the lids of that eye alone are shut: 1 wholly
  *     blink                          a blink begins: 1 a full one, less a partial one
  *     NAME or auN                    strength of an expression, 0..1
  * Recorded gaze: time_s and g1_deg, g2_deg, may be followed by g3_deg, g4_px, g5_px, g6_deg .. g10_px, au1 .. as in
@@ -24,7 +25,7 @@ struct script_track {
 	double *t, *v;
 };
 
-enum { KEY_HORIZONTAL, KEY_VERTICAL, KEY_DISTANCE, KEY_PURSUIT, KEY_HEAD_H, KEY_HEAD_V, KEY_OPENNESS, KEY_BLINK, KEYS };
+enum { KEY_HORIZONTAL, KEY_VERTICAL, KEY_DISTANCE, KEY_PURSUIT, KEY_HEAD_H, KEY_HEAD_V, KEY_OPENNESS, KEY_WINK_LEFT, KEY_WINK_RIGHT, KEY_BLINK, KEYS };
 
 struct script {
 	enum script_kind kind;

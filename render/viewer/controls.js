@@ -29,11 +29,9 @@ class Controls {
 			for (const c of list)
 				if (!c.lids || this.scene.has_lids)
 					set.append(this.slider(c));
-			if (title === "Cornea")
-				set.append(this.keeping());
 			box.append(set);
 		}
-		box.append(this.machine());
+		box.append(this.keeping(), this.machine());
 	}
 
 	button(text, on, pressed) {
@@ -61,9 +59,9 @@ class Controls {
 			return element("label", { textContent: label }, input);
 		};
 		this.following = ["pointer", "typed", "wander"].map(mode => this.button({ pointer: "Follow the pointer", typed: "Look where typed", wander: "Look about" }[mode], () => this.set_follow(mode), mode === this.follow));
-		const blink = this.button("Blink", () => this.blink());
+		const lids = [this.button("Blink", () => this.blink()), ...["left", "right"].map((side, k) => this.button(`Wink ${side}`, () => this.wink(k)))];
 		this.players = (this.face && data.face.clips || []).map((clip, i) => this.button(`▶ ${clip.name}`, () => this.play(this.playing === i ? null : i), false));
-		return element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? [blink] : []), ...this.players),
+		return element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? lids : []), ...this.players),
 			element("div", { className: "numbers" }, number("To the person's left, degrees", 0), number("Up, degrees", 1)));
 	}
 
@@ -89,8 +87,8 @@ class Controls {
 		const tick = element("span", { className: "fit" });
 		tick.style.left = at(t_of(c.value));
 		track.append(tick, input);
-		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track);
-		const plus = c.sigma ? ` ± ${c.show(c.sigma)}` : "";
+		const plus = c.sigma ? ` ± ${c.show(c.sigma)}` : "", fitted = element("span", { className: "fitted", textContent: `${c.assumed ? "configured" : "fitted"} ${c.show(c.value)}${plus}` });
+		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, ...(c.sigma ? [fitted] : []));
 		row.title = `${c.assumed ? "Configured" : "Fitted"}: ${c.show(c.value)}${plus}`;
 		c.update = () => {
 			const v = this.values[c.key];
@@ -129,7 +127,7 @@ class Controls {
 			}
 			said("Copied");
 		});
-		this.keep_box = element("div", { hidden: true }, element("p", { className: "note" }, element("label", { htmlFor: "lines", textContent: "Keep these values: put the lines into capture.conf and run make again." })), this.kept, element("div", { className: "buttons" }, copy));
+		this.keep_box = element("fieldset", { hidden: true }, element("legend", { textContent: "Keep" }), element("p", { className: "note" }, element("label", { htmlFor: "lines", textContent: "Keep these values: put the lines into capture.conf and run make again." })), this.kept, element("div", { className: "buttons" }, copy));
 		return this.keep_box;
 	}
 
@@ -222,6 +220,14 @@ class Controls {
 
 	blink() {
 		this.eyes.blink_now(performance.now() / 1000);
+		this.wake();
+	}
+
+	/* side: left 0, right 1. */
+	wink(side) {
+		if (this.playing !== null)
+			this.play(null);
+		this.eyes.wink_now(performance.now() / 1000, side);
 		this.wake();
 	}
 

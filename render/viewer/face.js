@@ -2,6 +2,7 @@
 class FaceScene {
 	static RECORD = 12;
 	static DISTANCE = 900;
+	static BRIDGE = 12;
 
 	constructor(g, data) {
 		const gl = g.gl, bytes = Graphics.bytes;
@@ -44,6 +45,8 @@ class FaceScene {
 		this.field = 2.3 * Math.hypot(...[0, 1, 2].map(k => data.globes[0][k] - data.globes[1][k]));
 		this.sky_map = g.texture(2 * data.sky_px, data.sky_px, gl.R8);
 		this.still = this.values.slice();
+		// Lids of one eye end at the bridge of the nose.
+		this.left = Float32Array.from({ length: data.moving }, (_, i) => Math.min(1, Math.max(0, 0.5 + this.still[9 * i] / FaceScene.BRIDGE)));
 		this.strengths = data.expressions.map(() => 0);
 	}
 
@@ -113,17 +116,24 @@ class FaceScene {
 		return out;
 	}
 
-	/* h, v degrees; a: aperture, 1 as people open their eyes at that gaze; strengths: of expressions. */
-	pose(h, v, a, strengths) {
+	/* For either side its poses and, between them, both. */
+	sides(h, v, open) {
+		const [left, right] = open.map(a => this.mixture(h, v, a));
+		return open[0] === open[1] ? () => left : share => share >= 1 ? left : share <= 0 ? right
+			: [...left.map(([w, pose]) => [share * w, pose]), ...right.map(([w, pose]) => [(1 - share) * w, pose])];
+	}
+
+	/* h, v degrees; open: aperture of the left eye and the right, 1 as people open them at that gaze; strengths: of expressions. */
+	pose(h, v, open, strengths) {
 		strengths = this.strengths.map((s, k) => strengths && strengths[k] || 0);
-		const key = [h, v, a, ...strengths].map(x => x.toFixed(2)).join(), gl = this.g.gl, d = this.data;
+		const key = [h, v, ...open, ...strengths].map(x => x.toFixed(2)).join(), gl = this.g.gl, d = this.data;
 		if (key === this.key)
 			return;
 		this.key = key;
-		const mix = this.mixture(h, v, a), b = this.poses, size = d.moving * FaceScene.RECORD, out = this.values, k16 = 2 * d.reach / 65535;
+		const side = this.sides(h, v, open), b = this.poses, size = d.moving * FaceScene.RECORD, out = this.values, k16 = 2 * d.reach / 65535;
 		for (let i = 0; i < d.moving; i++) {
 			let x = 0, y = 0, z = 0, nx = 0, ny = 0, nz = 0, r = 0, g = 0, l = 0;
-			for (const [w, pose] of mix) {
+			for (const [w, pose] of side(this.left[i])) {
 				const at = pose * size + i * FaceScene.RECORD;
 				x += w * (b[at] + 256 * b[at + 1]);
 				y += w * (b[at + 2] + 256 * b[at + 3]);
@@ -151,7 +161,7 @@ class FaceScene {
 		gl.bufferSubData(gl.ARRAY_BUFFER, 0, more ? out : out.subarray(0, 9 * d.moving));
 		const n = 2 * d.sky_px * d.sky_px, sky = new Uint8Array(n);
 		for (let i = 0; i < n; i++)
-			sky[i] = mix.reduce((sum, [w, pose]) => sum + w * this.skies[pose * n + i], 0);
+			sky[i] = side(i % (2 * d.sky_px) < d.sky_px ? 1 : 0).reduce((sum, [w, pose]) => sum + w * this.skies[pose * n + i], 0);
 		gl.bindTexture(gl.TEXTURE_2D, this.sky_map.texture);
 		gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
 		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * d.sky_px, d.sky_px, gl.RED, gl.UNSIGNED_BYTE, sky);

@@ -13,7 +13,7 @@ class Live extends Controls {
 			return { pose: p.cam_from_eye, slip: p.slip, camera: p.camera, window: p.window, rows: p.height };
 		if (this.mode === "face")
 			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), expressions: this.playing === null ? data.face.expressions.map((e, k) => this.values[`au${k}`]) : this.clip_expressions,
-				open: this.values.aperture * (this.playing === null ? 1 - this.eyes.closure : this.clip_open), orbit: this.orbit,
+				open: this.lids(), orbit: this.orbit,
 				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
 		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
 	}
@@ -23,6 +23,12 @@ class Live extends Controls {
 		if (this.playing !== null)
 			return this.clip_gazes;
 		return data.face.globes.map(g => [h - Math.atan(g[0] * this.values.near / 1000) * 180 / Math.PI, v]);
+	}
+
+	/* How far the left lids are open, and the right ones; 1: as people open them at that gaze. */
+	lids() {
+		const v = this.values, shut = [v.wink_left, v.wink_right];
+		return shut.map((s, k) => v.aperture * (1 - s) * (this.playing === null ? 1 - Math.max(this.eyes.closure, this.eyes.winking[k]) : this.clip_open[k]));
 	}
 
 	/* ---- drawing: only when something has changed; then finer and finer */
@@ -74,8 +80,8 @@ class Live extends Controls {
 		this.eyes.target = [...this.eyes.eye];
 		this.eyes.drift = [0, 0];
 		this.eyes.closure = 0;
-		this.clip_open = v[2];
-		this.clip_expressions = v.slice(5);
+		this.clip_open = [v[2], v[5]];
+		this.clip_expressions = v.slice(6);
 	}
 
 	wander(t) {

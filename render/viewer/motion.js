@@ -8,7 +8,7 @@ const motion = (() => {
 	};
 	const drawn = normal => Math.max(0.3 * normal[0], normal[0] + normal[1] * random());
 
-	/* "key = value" lines; what the folder says goes before the defaults. */
+	/* "key = value" lines; what the folder says goes before the defaults, where it is of their kind. */
 	function configuration(data) {
 		const conf = {};
 		for (const line of data.defaults.split("\n")) {
@@ -16,10 +16,15 @@ const motion = (() => {
 			if (m)
 				conf[m[1]] = m[2];
 		}
-		Object.assign(conf, data.own);
+		const numbers = text => {
+			const v = text.trim().split(/\s+/).map(Number);
+			return v.some(Number.isNaN) ? text : v.length > 1 ? v : v[0];
+		};
 		for (const key of Object.keys(conf)) {
-			const v = conf[key].trim().split(/\s+/).map(Number);
-			conf[key] = v.some(Number.isNaN) ? conf[key] : v.length > 1 ? v : v[0];
+			conf[key] = numbers(conf[key]);
+			const own = key in data.own ? numbers(data.own[key]) : undefined;
+			if (typeof own === typeof conf[key] && own.length === conf[key].length)
+				conf[key] = own;
 		}
 		return conf;
 	}
@@ -85,11 +90,16 @@ const motion = (() => {
 	class Eyes {
 		constructor(conf) {
 			Object.assign(this, { conf, target: [0, 0], eye: [0, 0], drift: [0, 0], pursuit: [0, 0], last: [0, 0], time: null,
-				slip: [], now: null, pending: null, rest: 0, lids: null, next: null, blinking: true, still: false, saccades: 0, closure: 0 });
+				slip: [], now: null, pending: null, rest: 0, lids: null, next: null, blinking: true, still: false, saccades: 0, closure: 0, winks: [null, null], winking: [0, 0] });
 		}
 
 		blink_now(t, amplitude) {
 			this.lids = this.lids && this.lids.end > t ? this.lids : blink(t, amplitude || this.conf.blink_deg[0], this.conf);
+		}
+
+		/* One eye's lids, held shut for a moment: nobody winks as fast as he blinks. */
+		wink_now(t, side) {
+			this.winks[side] = blink(t, this.conf.blink_full_deg, { ...this.conf, blink_hold_ms: 200 });
 		}
 
 		blinks(t) {
@@ -105,6 +115,7 @@ const motion = (() => {
 				this.next = null;
 			}
 			this.closure = this.lids ? this.lids.closure(t) : 0;
+			this.winking = this.winks.map(w => w ? w.closure(t) : 0);
 		}
 
 		begin(error, delayed, t) {
@@ -165,10 +176,11 @@ const motion = (() => {
 
 		/* To time t; true where the eyes or the lids have moved. */
 		step(t) {
-			const before = [...this.eye, this.closure];
+			const before = [...this.eye, this.closure, ...this.winking];
 			if (this.still) {
 				this.eye = [...this.target];
 				this.closure = 0;
+				this.winking = [0, 0];
 				this.time = t;
 			} else {
 				// What the target did since the last picture it did steadily; a pause is none of its motion.
@@ -181,7 +193,7 @@ const motion = (() => {
 					this.tick(this.time, from.map((v, k) => v + (this.target[k] - v) * (this.time + 1e-3 < t ? (this.time - begin) / (t - begin) : 1)));
 				this.blinks(t);
 			}
-			return Math.hypot(this.eye[0] - before[0], this.eye[1] - before[1]) > 2e-3 || this.closure !== before[2];
+			return Math.hypot(this.eye[0] - before[0], this.eye[1] - before[1]) > 2e-3 || [this.closure, ...this.winking].some((c, k) => c !== before[2 + k]);
 		}
 	}
 	return { configuration, saccade, blink, Eyes };

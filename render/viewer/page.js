@@ -124,6 +124,8 @@ class Page extends Live {
 			this.set("field", this.values.field * (e.key === "-" ? 1.1 : 1 / 1.1));
 		else if (e.key === "b" || e.key === "B")
 			this.blink();
+		else if (e.key === "l" || e.key === "L" || e.key === "r" || e.key === "R")
+			this.wink(e.key.toLowerCase() === "l" ? 0 : 1);
 		else if (e.key === "0")
 			this.reset();
 		else

@@ -30,6 +30,7 @@ function sliders(eye) {
 	return [
 		["Eye", [
 			{ key: "aperture", label: "Lids: how far open", lo: 0, hi: 1.6, value: 1, show: v => `${(100 * v).toFixed(0)} %`, lids: true },
+			...["left", "right"].map(side => ({ key: `wink_${side}`, label: `Wink: ${side} lids shut`, lo: 0, hi: 1, value: 0, show: v => `${(100 * v).toFixed(0)} %`, lids: true })),
 			{ key: "near", label: "Both eyes on something near", lo: 0, hi: 10, value: 0, lids: true,
 				show: v => v > 0.05 ? `${(100 / v).toFixed(0)} cm away` : "far away" },
 			{ key: "pupil", label: "Pupil, radius", lo: 0.7, hi: 4.2, value: e.pupil[2], show: mm(2) },
