@@ -12,26 +12,25 @@ uniform sampler2D sharp_map, rough_map;
 uniform float mirror_on;
 out vec4 seen;
 
-float hash(ivec3 c)
+// Of four corners.
+vec4 hash(uvec4 h)
 {
-	uint h = uint(c.x) * 0x8da6b343u ^ uint(c.y) * 0xd8163841u ^ uint(c.z) * 0xcb1ab31fu;
 	h ^= h >> 15;
 	h *= 0x2c1b3c6du;
 	h ^= h >> 12;
 	h *= 0x297a2d39u;
 	h ^= h >> 15;
-	return float(h & 0xffffu) / 32767.5 - 1.0;
+	return vec4(h & 0xffffu) / 32767.5 - 1.0;
 }
 
 float noise(vec3 p)
 {
-	ivec3 i = ivec3(floor(p));
+	const uvec3 KEY = uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
 	vec3 f = fract(p);
 	f = f * f * (3.0 - 2.0 * f);
-	vec4 low = vec4(hash(i), hash(i + ivec3(1, 0, 0)), hash(i + ivec3(0, 1, 0)), hash(i + ivec3(1, 1, 0)));
-	i.z++;
-	vec4 high = vec4(hash(i), hash(i + ivec3(1, 0, 0)), hash(i + ivec3(0, 1, 0)), hash(i + ivec3(1, 1, 0)));
-	vec4 v = mix(low, high, f.z);
+	uvec3 a = uvec3(ivec3(floor(p))) * KEY, b = a + KEY;
+	uvec4 corners = uvec4(a.x ^ a.y, b.x ^ a.y, a.x ^ b.y, b.x ^ b.y);
+	vec4 v = mix(hash(corners ^ a.z), hash(corners ^ b.z), f.z);
 	return mix(mix(v.x, v.y, f.x), mix(v.z, v.w, f.x), f.y);
 }
 
@@ -68,15 +67,13 @@ vec3 irradiance(vec3 d, vec3 q[9])
 	           + q[7] * (d.x * d.z) + q[8] * (d.x * d.x - d.y * d.y), 0.02);
 }
 
-float gloss(vec3 n, vec3 l, vec3 v, float rough)
+// A light's mirror image in both lobes, but for what the beholder's side of shadowing takes; a2: roughness to the fourth power.
+vec2 gloss(vec3 n, vec3 l, vec3 v, vec2 a2, vec2 k)
 {
 	vec3 h = normalize(l + v);
-	float nh = dot(n, h), nl = dot(n, l), nv = dot(n, v), vh = max(dot(v, h), 0.0), a2 = rough * rough * rough * rough;
-	if (nl <= 0.0 || nv <= 0.0)
-		return 0.0;
-	float d = nh * nh * (a2 - 1.0) + 1.0, k = 0.5 * rough * rough, g = nl / (nl * (1.0 - k) + k) * nv / (nv * (1.0 - k) + k);
-	float s = 1.0 - vh, s2 = s * s, f = SKIN_MIRROR + (1.0 - SKIN_MIRROR) * s2 * s2 * s;
-	return a2 / (d * d) * g * f / (4.0 * nv);
+	float nh = dot(n, h), nl = max(dot(n, l), 0.0), s = 1.0 - max(dot(v, h), 0.0), s2 = s * s;
+	vec2 d = nh * nh * (a2 - 1.0) + 1.0;
+	return a2 / (d * d * (nl - nl * k + k)) * (nl * (SKIN_MIRROR + (1.0 - SKIN_MIRROR) * s2 * s2 * s));
 }
 
 void main()
@@ -101,10 +98,14 @@ void main()
 		grain = SKIN_GRAIN * pores * noise(SKIN_GRAIN_CELLS * seen_rest);
 		relief += SKIN_PORES_LIGHT * dot(n - smooth_n, sky_dir[0]);
 	}
+	const vec2 ROUGH = vec2(SKIN_ROUGH_WIDE, SKIN_ROUGH_NARROW);
+	vec2 k = 0.5 * ROUGH * ROUGH, a2 = 4.0 * k * k;
+	float nv = dot(n, to);
+	vec2 lobes = vec2(SKIN_LOBE_WIDE, SKIN_LOBE_NARROW) * (0.25 / (nv - nv * k + k));
 	vec3 spec = vec3(0.0);
-	for (int k = 0; k < LIGHTS; k++)
-		if (k < skies)
-			spec += (SKIN_LOBE_WIDE * gloss(n, sky_dir[k], to, SKIN_ROUGH_WIDE) + SKIN_LOBE_NARROW * gloss(n, sky_dir[k], to, SKIN_ROUGH_NARROW)) * sky_rgb[k];
+	for (int i = 0; i < LIGHTS; i++)
+		if (i < skies && nv > 0.0)
+			spec += dot(lobes, gloss(n, sky_dir[i], to, a2, k)) * sky_rgb[i];
 	// What reaches the skin of its light, reaches the mirror too.
 	float open = clamp(dot(light, vec3(0.33)) / dot(irradiance(env_from_head * smooth_n, quadric), vec3(0.33)), 0.0, 1.0);
 	float wet = min(seen_skin.a * (255.0 / 127.0), 1.0);
