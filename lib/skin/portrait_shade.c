@@ -38,10 +38,10 @@ float portrait_noise(const float p[3], float per_mm)
 	return v[0] + f[2] * (v[1] - v[0]);
 }
 
-/* The slope of a noise of two grains (cells in a mm) tilts the normal. */
-static void pores(float n[3], const float rest[3], float strength, float coarse, float fine)
+/* Pores: the slope of a noise of 0.5 mm cells tilts the normal. */
+static void pores(float n[3], const float rest[3], float strength)
 {
-	static const float step = (float)SKIN_PORES_STEP;
+	static const float step = (float)SKIN_PORES_STEP, coarse = (float)SKIN_PORES_COARSE, fine = (float)SKIN_PORES_FINE;
 	float at = portrait_noise(rest, coarse) + 0.5f * portrait_noise(rest, fine);
 	for (int c = 0; c < 3; c++) {
 		float q[3] = { rest[0], rest[1], rest[2] };
@@ -119,14 +119,14 @@ static void unit(float n[3])
 		n[c] /= len;
 }
 
-/* Mucous membrane: lobes a millimetre across below a film of tears. */
-static void moist(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, const struct point *q, const float dir[3])
+/* Mucous membrane: the grain of skin's pores, but higher, below a film of tears. */
+static void moist(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, const struct point *q, const float n[3], const float dir[3])
 {
-	float n[3] = { q->normal[0], q->normal[1], q->normal[2] };
-	if (sky->detail > 0)
-		pores(n, q->rest, (float)CARUNCLE_LOBES * sky->detail, (float)CARUNCLE_COARSE, (float)CARUNCLE_FINE);
-	unit(n);
-	portrait_wet_shade(rgb, p, sky->rig_from_cam, n, dir, q->wet, q->open);
+	float film[3];
+	for (int c = 0; c < 3; c++)
+		film[c] = q->normal[c] + (float)CARUNCLE_LOBES * (n[c] - q->normal[c]);
+	unit(film);
+	portrait_wet_shade(rgb, p, sky->rig_from_cam, film, dir, q->wet, q->open);
 }
 
 void portrait_normal(float n[3], const struct portrait *p, int face, const float origin[3], const float dir[3])
@@ -160,7 +160,7 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 		portrait_fold(q.normal, q.light, p, sky, face, q.weight);
 	memcpy(n, q.normal, sizeof n);
 	if (strength > 0) {
-		pores(n, q.rest, (float)SKIN_PORES * strength, (float)SKIN_PORES_COARSE, (float)SKIN_PORES_FINE);
+		pores(n, q.rest, (float)SKIN_PORES * strength);
 		grain = (float)SKIN_GRAIN * strength * portrait_noise(q.rest, (float)SKIN_GRAIN_CELLS);
 	}
 	unit(n);
@@ -178,5 +178,5 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	for (int c = 0; c < 3; c++)
 		rgb[c] = q.albedo[c] * (1 + grain) * q.light[c] * relief + spec[c] * q.open * (1 - q.wet);
 	if (q.wet > 0)
-		moist(rgb, p, sky, &q, dir);
+		moist(rgb, p, sky, &q, n, dir);
 }

@@ -42,13 +42,11 @@
 #define LAKE_MM 2.2
 #define LAKE_LIGHT_WAY 1.203
 // The caruncle, 4 to 5 mm high and 3 to 5 mm wide: how far its middle lies from the globe's edge towards the nose; out to where
-// it is all moist and where dry skin begins; mucous membrane against skin; slope and grain (cells in a mm) of its lobes.
+// it is all moist and where dry skin begins; mucous membrane against skin; its film's slopes, in those of pores.
 #define CARUNCLE_OFF 1.7
 #define CARUNCLE_MM 0.9
 #define CARUNCLE_END_MM 2.2
 #define CARUNCLE_RED 0.95, 0.66, 0.64
-#define CARUNCLE_LOBES 0.9
-#define CARUNCLE_COARSE 1.1
-#define CARUNCLE_FINE 2.6
+#define CARUNCLE_LOBES 4.0
 
 #endif

@@ -34,17 +34,9 @@ float noise(vec3 p)
 	return mix(mix(v.x, v.y, f.x), mix(v.z, v.w, f.x), f.y);
 }
 
-float pore(vec3 p, vec2 cells)
+float pore(vec3 p)
 {
-	return noise(cells.x * p) + 0.5 * noise(cells.y * p);
-}
-
-// The normal, tilted by the slope of a noise of two grains.
-vec3 rough(vec3 n, float strength, vec2 cells)
-{
-	float at = pore(seen_rest, cells);
-	const vec2 step_ = vec2(SKIN_PORES_STEP, 0.0);
-	return normalize(n - strength * vec3(pore(seen_rest + step_.xyy, cells) - at, pore(seen_rest + step_.yxy, cells) - at, pore(seen_rest + step_.yyx, cells) - at));
+	return noise(SKIN_PORES_COARSE * p) + 0.5 * noise(SKIN_PORES_FINE * p);
 }
 
 // 1, or less where a globe stands before it: what is behind an eye is no edge of a lid (tear.frag).
@@ -94,8 +86,11 @@ void main()
 	}
 	float grain = 0.0, relief = 1.0;
 	if (pores > 0.0) {
-		n = rough(n, SKIN_PORES * pores, vec2(SKIN_PORES_COARSE, SKIN_PORES_FINE));
+		float at = pore(seen_rest);
+		const vec2 step_ = vec2(SKIN_PORES_STEP, 0.0);
+		n -= SKIN_PORES * pores * vec3(pore(seen_rest + step_.xyy) - at, pore(seen_rest + step_.yxy) - at, pore(seen_rest + step_.yyx) - at);
 		grain = SKIN_GRAIN * pores * noise(SKIN_GRAIN_CELLS * seen_rest);
+		n = normalize(n);
 		relief += SKIN_PORES_LIGHT * dot(n - smooth_n, sky_dir[0]);
 	}
 	const vec2 ROUGH = vec2(SKIN_ROUGH_WIDE, SKIN_ROUGH_NARROW);
@@ -112,7 +107,7 @@ void main()
 	vec3 rgb = albedo * (1.0 + grain) * light * relief + spec * open * (1.0 - wet);
 	if (wet > 0.0) {
 		// Mucous membrane below a film of tears.
-		n = pores > 0.0 ? rough(smooth_n, CARUNCLE_LOBES * pores, vec2(CARUNCLE_COARSE, CARUNCLE_FINE)) : smooth_n;
+		n = normalize(smooth_n + CARUNCLE_LOBES * (n - smooth_n));
 		float c = dot(to, n);
 		vec2 u = unfolded(env_from_head * (2.0 * c * n - to));
 		rgb += wet * mirror_share(c, LOOK_FILM_INDEX) * (open * mirror_on * mix(textureLod(sharp_map, u, 0.0).rgb, textureLod(rough_map, u, 0.0).rgb, TEAR_ROUGH) - rgb);
