@@ -24,6 +24,7 @@ struct found {
 	struct csv_table gaze;
 	json_t *track, *clip;
 	long n, reference;
+	double scale;          // px of the truth in one px of the video
 };
 
 static int by_value(const void *a, const void *b)
@@ -78,6 +79,14 @@ static bool load(struct found *f, struct err *err)
 	          && npy(&f->vertex, f->dir, "vertices.npy", err) && npy(&f->head, f->dir, "head.npy", err) && npy(&f->lids, f->dir, "lids.npy", err)
 	          && (f->track = json_read(track, 1 << 24, err)) && (f->clip = json_read(clip, 1 << 24, err))
 	          && json_get(&reference, f->track, "reference_frame", track, err);
+	// a clip of fewer pixels is measured in those of its truth
+	double wide = 1, full = 1;
+	ok = ok && json_get(&wide, json_object_get(f->track, "camera"), "width", track, err) && json_get(&full, f->clip, "width", clip, err);
+	f->scale = full / wide;
+	for (long i = 0; ok && i < f->skin.shape[0] * f->skin.shape[1] * 2; i++)
+		f->skin.x[i] *= f->scale;
+	for (long i = 0; ok && i < f->lids.shape[0] * f->lids.shape[1] * f->lids.shape[2] * 2; i++)
+		f->lids.x[i] *= f->scale;
 	f->reference = (long)reference;
 	f->n = f->skin.shape[0];
 	free(csv);
@@ -253,7 +262,7 @@ static void score_aperture(struct track_score *s, const struct found *f)
 		int a = csv_column(&f->gaze, side ? "g9_px" : "g4_px"), b = csv_column(&f->gaze, side ? "g10_px" : "g5_px");
 		for (long t = 0; t < f->n && up.x && low.x; t++) {
 			const double *u = up.x + 2 * (t * up.shape[1] + up.shape[1] / 2), *l = low.x + 2 * (t * low.shape[1] + low.shape[1] / 2);
-			double d = csv_at(&f->gaze, t, a) + csv_at(&f->gaze, t, b) - (l[1] - u[1]);
+			double d = f->scale * (csv_at(&f->gaze, t, a) + csv_at(&f->gaze, t, b)) - (l[1] - u[1]);
 			if (isfinite(d))
 				e[n++] = fabs(d);
 		}

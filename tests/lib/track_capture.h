@@ -1,0 +1,12 @@
+/* track_capture: a rendered clip of data/video as a capture, with what a person who films would know of it, and the stage `track` run on it. */
+#ifndef TESTS_TRACK_CAPTURE_H
+#define TESTS_TRACK_CAPTURE_H
+#include <stdbool.h>
+
+/* dir: is made. how: of worsen.h, or null: the clip as it is. units: n action units whose frames are marked, in review. */
+bool track_capture_make(const char *dir, const char *clip, const char *quality, const char *how, int n, const char *const units[]);
+
+/* Seconds bin/track took; NAN when it failed. */
+double track_capture_run(const char *dir);
+
+#endif
