@@ -23,6 +23,6 @@ beyond photo limbus limit.photo_mpx 1 'photos/right_a.jpg: .*1600 x 1200 = 2 meg
 beyond views calibrate limit.photo_mpx 1 'views/a.jpg: .*2 megapixels: must be <= 1 \(limit.photo_mpx\)'
 beyond face track limit.video_mpx 0.1 'face.mp4: 1280 x 720 px, must be at most 0.1 Mpx \(limit.video_mpx\)'
 beyond face track limit.video_frames 5 'face.mp4: has more than 5 frames \(limit.video_frames\)'
-beyond face track limit.video_s 2 'face.mp4: takes more than 2 s \(limit.video_s\)'
+beyond face track limit.video_s 0.1 'face.mp4: takes more than 0.1 s \(limit.video_s\)'
 beyond face transfer transfer.limit_vertices 1000 'subject.ply: 4490 vert.* must be <= 1000'
 exit 0
