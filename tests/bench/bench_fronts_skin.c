@@ -1,6 +1,7 @@
-/* Fronts of the skin column: knobs of `train` and `transfer` on the bundled clip and character, time and error of the same run.
- * train: error of lids and skin in frames held out, px of the video. transfer: how far the registered character lies from
- * where the finest setting puts it, mm.
+/* Fronts of the skin column: knobs of `train`, `transfer` and `extrapolate` on the bundled clip and character, time and error of
+ * the same run. train: error of lids and skin in frames held out, px of the video. transfer: how far the registered character
+ * lies from where the finest setting puts it, mm. extrapolate: how far the maps of globes and skull are from the
+ * finest ones, mm.
  */
 #include <math.h>
 #include <stdio.h>
@@ -11,6 +12,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
+#include "image/exr.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/fronts.h"
 #include "tests/lib/scratch.h"
@@ -60,6 +62,55 @@ static double registered_off(const char *capture, const char *reference)
 	return sum;
 }
 
+static bool map_of(struct image *map, const char *folder, const char *file, int n, const char *const channels[])
+{
+	struct exr_info info = { 0 };
+	struct err err = { 0 };
+	char *path = mem_printf("%s/targets/mpfb/%s", folder, file);
+	bool ok = exr_read(map, path, n, channels, 1 << 26, &info, &err);
+	if (!ok)
+		fprintf(stderr, "%s\n", err.msg);
+	free(path);
+	return ok;
+}
+
+/* rms distance of a map's points from the finest one's, at the finest one's nodes. Both begin at one place; `whole`: they end at
+ * one, too, else their steps are powers of two of each other. */
+static double map_off(const char *capture, const char *reference, const char *file, int n, bool whole)
+{
+	static const char *const names[2][3] = { { "Y" }, { "R", "G", "B" } };
+	struct image a = { 0 }, b = { 0 };
+	char *work = mem_printf("%s/work", capture);
+	double sum = 0;
+	long count = 0;
+	if (map_of(&a, work, file, n, names[n == 3]) && map_of(&b, reference, file, n, names[n == 3])) {
+		double step = whole ? (a.width - 1.0) / (b.width - 1) : exp2(round(log2((double)a.width / b.width)));
+		for (int y = 0; y < b.height; y++)
+			for (int x = 0; x < b.width; x++) {
+				double squared = 0;
+				for (int c = 0; c < n; c++) {
+					double d = (double)image_sample(&a, 0.5 + x * step, 0.5 + y * step, c) - (double)image_at(&b, x, y)[c];
+					squared += d * d;
+				}
+				if (isfinite(squared)) {
+					sum += squared;
+					count++;
+				}
+			}
+	}
+	image_free(&a);
+	image_free(&b);
+	free(work);
+	return count ? sqrt(sum / (double)count) : NAN;
+}
+
+/* The larger of the globes' and the skull's. */
+static double maps_off(const char *capture, const char *reference)
+{
+	double globe = fmax(map_off(capture, reference, "globe_left.exr", 1, true), map_off(capture, reference, "globe_right.exr", 1, true));
+	return fmax(globe, map_off(capture, reference, "skull.exr", 3, false));
+}
+
 static const struct fronts_stage stages[] = {
 	{ .stage = "transfer", .keys = "rounds, polish_rounds", .finest = { "finest", "8 8 6, 4" },
 	  .more = { { "two", "2 2 1, 1" }, { "least", "1 1 1, 1" }, { "thorough", "6 6 3, 2" }, { "no_polish", "4 4 2, 0" } },
@@ -67,6 +118,9 @@ static const struct fronts_stage stages[] = {
 	{ .stage = "train", .keys = "lid_components, skin_components", .always = "--rbf=no",
 	  .more = { { "one", "1, 1" }, { "two", "2, 2" }, { "three", "3, 3" }, { "four", "4, 4" }, { "eight", "8, 4" }, { "many", "20, 8" } },
 	  .unit = "px", .error_of = "lids and skin held out, mean", .error = held_out, .reps = 3 },
+	{ .stage = "extrapolate", .keys = "map_step_px, globe_cells", .finest = { "finest", "0.5, 1024" },
+	  .more = { { "small", "8, 64" }, { "coarse_map", "4, 192" }, { "coarse_globe", "2, 96" }, { "large_globe", "2, 512" } },
+	  .unit = "mm", .error_of = "globes or skull, rms, against the finest", .error = maps_off, .reps = 1 },
 };
 
 int main(int argc, char **argv)
@@ -76,7 +130,7 @@ int main(int argc, char **argv)
 	scratch_open();
 	char *dir = mem_str(scratch_path("face"));
 	char *command = mem_printf("cp -r samples/face '%s' && rm -rf '%s/work' && echo 'quality = draft' >>'%s/capture.conf'", dir, dir, dir);
-	if (!system(command) && fronts_make(dir, "train") && fronts_make(dir, "transfer"))
+	if (!system(command) && fronts_make(dir, "train") && fronts_make(dir, "extrapolate"))
 		for (int i = 0; i < COUNT(stages); i++)
 			fronts_measure(&stages[i], dir, 0, (const double[2]){ 1, 0 });
 	if (!fronts_write(bench_out(), "fronts_skin", &err))

@@ -232,12 +232,13 @@ static void score_lids(struct track_score *s, const struct found *f)
 	long n = 0, frames = 0, have = 0, m = f->lids.shape[2];
 	for (int lid = 0; lid < 4; lid++) {
 		struct array at = truth(f, px[lid % 2], sides[lid / 2]), visible = truth(f, sight[lid % 2], sides[lid / 2]);
-		for (long t = 0; t < f->n && at.x && visible.x; t++) {
+		for (long t = 0; t < f->n && at.x; t++) {
 			const double *margin = f->lids.x + 2 * m * (4 * t + lid);
 			int seen = 0;
 			for (long i = 0; i < at.shape[1]; i++) {
-				double d = visible.x[t * at.shape[1] + i] > 0 ? off_margin(margin, m, at.x + 2 * (t * at.shape[1] + i)) : NAN;
-				seen += visible.x[t * at.shape[1] + i] > 0;
+				bool there = !visible.x || visible.x[t * at.shape[1] + i] > 0;  // a truth without it: all of the face is in the picture
+				double d = there ? off_margin(margin, m, at.x + 2 * (t * at.shape[1] + i)) : NAN;
+				seen += there;
 				if (isfinite(d))
 					e[n++] = d;
 			}

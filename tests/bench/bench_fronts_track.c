@@ -1,0 +1,52 @@
+/* Fronts of `track`: its knobs on the first frames of the bundled clip, time and error of the same run: margins of the lids and
+ * points of the skin off the clip's truth, px.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "tests/lib/bench.h"
+#include "tests/lib/fronts.h"
+#include "tests/lib/scratch.h"
+#include "tests/lib/track_score.h"
+
+static double off_truth(const char *capture, const char *reference)
+{
+	(void)reference;
+	struct track_score s;
+	struct err err = { 0 };
+	if (!track_score(&s, capture, "samples/face/truth", &err)) {
+		fprintf(stderr, "%s\n", err.msg);
+		return NAN;
+	}
+	return (s.lid.median + s.skin.median) / 2;
+}
+
+static const struct fronts_stage track = {
+	.stage = "track",
+	.keys = "settle_frames, patch_radius_px, patch_iterations, patch_every, patch_stop_px, agree_px, sweeps, skin_quiet, limbus_arcs, lid_columns, torsion_rays",
+	.more = { { "quickest", "20, 6, 6, 2, 0.1, 1, 1, 0.5, 40, 24, 45" }, { "quick_skin", "180, 8, 8, 2, 0.05, 0.6, 1, 0.3, 120, 48, 360" },
+		  { "quick_eyes", "40, 10, 12, 1, 0.02, 0.1, 2, 0, 60, 36, 90" }, { "one_sweep", "180, 10, 12, 1, 0.02, 0.1, 1, 0, 120, 48, 360" },
+		  { "thorough", "300, 12, 20, 1, 0.01, 0.1, 3, 0, 180, 64, 360" } },
+	.unit = "px", .error_of = "lids and skin off the truth, mean of the medians", .error = off_truth, .reps = 0,
+};
+
+int main(int argc, char **argv)
+{
+	struct err err = { 0 };
+	bench_open("fronts_track", argc, argv);
+	scratch_open();
+	char *dir = mem_str(scratch_path("face"));
+	// Half of the clip: what a copy that broke off leaves is followed as far as it goes.
+	char *command = mem_printf("mkdir -p '%s/video' && cp samples/face/capture.conf samples/face/subject.ply '%s' && sed -i '/^expression/d' '%s/capture.conf' && "
+	                           "head -c 1300000 samples/face/video/face.mp4 >'%s/video/face.mp4'", dir, dir, dir, dir);
+	if (!system(command) && fronts_make(dir, "track"))
+		fronts_measure(&track, dir, 0, (const double[2]){ 1, 0 });
+	if (!fronts_write(bench_out(), "fronts_track", &err))
+		fprintf(stderr, "%s\n", err.msg);
+	scratch_close();
+	free(command);
+	free(dir);
+	return bench_close();
+}
