@@ -1,5 +1,6 @@
 #!/bin/bash
-# Runs every fuzz target for $FUZZ seconds, from seeds made anew; a target that crashes leaves its input beside it.
+# Runs every fuzz target for $FUZZ seconds, from seeds made anew and from what earlier runs found, which is kept in
+# build-fuzz/corpus; a target that crashes leaves its input beside it.
 . tests/lib/check.sh
 if ! command -v clang >/dev/null 2>&1; then
 	skip "fuzzing" "clang is not installed"
@@ -18,8 +19,9 @@ trap 'rm -rf "$seeds"' EXIT
 for target in build-fuzz/fuzz_*; do
 	case $target in *.*) continue ;; esac
 	name=${target##*/fuzz_}
+	mkdir -p "build-fuzz/corpus/$name"
 	if said=$("$target" -max_total_time="$FUZZ" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
-		-artifact_prefix="build-fuzz/crash-$name-" "$seeds/$name" 2>&1 </dev/null); then
+		-artifact_prefix="build-fuzz/crash-$name-" "build-fuzz/corpus/$name" "$seeds/$name" 2>&1 </dev/null); then
 		pass "fuzz $name: $(printf %s "$said" | sed -n 's/stat::number_of_executed_units: */runs /p')"
 	else
 		fail "fuzz $name" "$(printf %s "$said" | grep -E 'ERROR|SUMMARY|Test unit' | head -n 4)"

@@ -5,6 +5,7 @@
 
 #include "bridge/nls.h"
 #include "eye/limbus_ramp.h"
+#include "eye/limbus_tilt.h"
 #include "math/chol.h"
 #include "math/vec.h"
 #include "optics/lightpath.h"
@@ -166,9 +167,8 @@ static bool set_up(struct problem *p, const struct pose_view *view, const struct
 /* Start tilted by `tilt` towards `phi` against the line of sight to the ellipse's centre. */
 static void start(double *x, const struct problem *p, double tilt, double phi)
 {
-	double sight[3] = { -p->center[0], -p->center[1], p->focal }, up[3] = { 0, 0, 1 }, R[3][3], z[3];
-	vec_unit(sight, sight);
-	mat_smallest_rotation(R, up, sight);
+	double R[3][3], z[3];
+	limbus_sight(R, p->center, p->focal);
 	double local[3] = { sin(tilt) * cos(phi), sin(tilt) * sin(phi), cos(tilt) };
 	mat_vec(z, R, local);
 	double angle = acos(fmin(z[2], 1)), k = angle > 1e-9 ? angle / sin(angle) : 1;
@@ -262,8 +262,12 @@ bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct e
 	struct problem p;
 	if (!set_up(&p, view, eye, conf))
 		return err_set(err, "the limbus is no ellipse once the lens distortion is undone");
-	const double ratio = fmin(view->limbus.b / view->limbus.a, 1), across = view->limbus.angle + M_PI / 2;
-	const double tilt = fmax(acos(ratio), 0.02);
+	const double ratio = fmin(view->limbus.b / view->limbus.a, 1);
+	double tilt, across;
+	struct ellipse e;
+	ellipse_from_q(&e, p.q);
+	limbus_tilt(&tilt, &across, &e, p.center, p.focal);
+	tilt = fmax(tilt, 0.02);
 	struct solution s[2];
 	bool ok[2];
 	for (int i = 0; i < 2; i++) {

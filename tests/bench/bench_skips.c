@@ -40,6 +40,17 @@ static const struct skip skips[] = {
 	  { "true", "bin/unrefract --force --capture=\"$C\" --method=newton" }, false },
 	{ "relief's sharpening filter", "not wanted (relief.filter = no)", "photo", { "true", "bin/relief --force --capture=\"$C\" --filter=no" },
 	  { "true", "bin/relief --force --capture=\"$C\"" }, false },
+	{ "stages that a changed key does not reach", "render.size_px changed", "photo",
+	  { MAKE "render; sed -i /size_px/d \"$C/capture.conf\"; echo \"render.size_px = $((400 + RANDOM % 100))\" >>\"$C/capture.conf\"", MAKE "render" },
+	  { "rm -rf \"$C/work\"", MAKE "render" }, true },
+	{ "film of the turntable", "not wanted (render.film = no)", "photo", { "true", "bin/render --force --capture=\"$C\" --film=no" },
+	  { "true", "bin/render --force --capture=\"$C\" --film=yes" }, true },
+	{ "the skin column and its pictures", "a photograph alone", "photo", { "rm -rf \"$C/work\"", MAKE "render" },
+	  { "rm -rf \"$ROOT/both/work\"", "make --no-print-directory CAPTURE=\"$ROOT/both\" render" }, true },
+	{ "skin, lashes and clips in render alone", "a photograph alone", "photo", { "true", "bin/render --force --capture=\"$C\"" },
+	  { "true", "bin/render --force --capture=\"$ROOT/both\"" }, true },
+	{ "folds of expressions", "none is marked", "face", { "sed -i /^expression/d \"$C/capture.conf\"", "bin/track --force --capture=\"$C\"" },
+	  { "sed -i /^expression/d \"$C/capture.conf\"; grep ^expression samples/face/capture.conf >>\"$C/capture.conf\"", "bin/track --force --capture=\"$C\"" }, true },
 	{ "eyes and skin that stand still between two frames", "moving eyes and skin", "face", { "true", "bin/track --force --capture=\"$C\"" },
 	  { "true", "bin/track --force --capture=\"$C\" --still=0 --skin-still=0" }, true },
 	{ "the comparison with radial basis functions", "not wanted (train.rbf = no)", "face", { "true", "bin/train --force --capture=\"$C\" --rbf=no" },
@@ -94,7 +105,8 @@ static bool make_captures(const char *root)
 	             "cp samples/demo/photos/right_softbox.jpg \"$ROOT/photo/photos\";"
 	             "for i in 1 2 3 4; do { cat samples/demo/photos/right_softbox.jpg; echo $i; } >\"$ROOT/four/photos/right_$i.jpg\"; done;"
 	             "mkdir -p \"$ROOT/face\"; cp -r samples/face/video samples/face/subject.ply samples/face/capture.conf \"$ROOT/face\";"
-	             "echo 'quality = draft' >>\"$ROOT/face/capture.conf\"");
+	             "cp -r \"$ROOT/face\" \"$ROOT/both\"; cp -r samples/face/targets \"$ROOT/photo/photos\" \"$ROOT/both\"; cat samples/demo/capture.conf | sed /camera/d >>\"$ROOT/both/capture.conf\";"
+	             "for c in face both; do echo 'quality = draft' >>\"$ROOT/$c/capture.conf\"; done");
 }
 
 int main(int argc, char **argv)

@@ -156,12 +156,19 @@ static void time_all(int n, struct point points[], const struct fronts_stage *s,
 		*(small ? &points[i].small : &points[i].time) = jobs[i].ok ? times[i] : (struct bench_time){ NAN, NAN, NAN };
 }
 
-/* Beaten: another is as exact and faster by a tenth beyond the spread, or as fast and more exact by a tenth. */
+/* What a time may be of a run made once: a tenth more or less. */
+static struct bench_time with_spread(struct bench_time t)
+{
+	return t.low < t.high ? t : (struct bench_time){ t.median, 0.9 * t.median, 1.1 * t.median };
+}
+
+/* Beaten, beyond the spread: another is as exact and faster by a tenth, or no slower and more exact by a tenth. */
 static bool beats(const struct point *a, const struct point *b)
 {
-	bool faster = a->time.high < b->time.low && a->time.median < 0.9 * b->time.median;
+	struct bench_time ta = with_spread(a->time), tb = with_spread(b->time);
+	bool faster = ta.high < tb.low && ta.median < 0.9 * tb.median, no_slower = ta.high <= tb.median;
 	bool exacter = a->error < 0.9 * b->error;
-	return (faster && a->error <= b->error) || (exacter && a->time.median <= b->time.median);
+	return (faster && a->error <= b->error) || (exacter && no_slower);
 }
 
 static void add_line(const struct fronts_stage *s, const struct point *p, const double mpx[2], bool two)
