@@ -7,7 +7,7 @@ class FaceScene {
 	constructor(g, data) {
 		const gl = g.gl, bytes = Graphics.bytes;
 		Object.assign(this, { g, data, poses: bytes(data.poses), skies: bytes(data.sky), key: "" });
-		this.skin = g.program("skin", "skin_vert", data.folds ? ["skin_look", "folds"] : ["skin_look"]);
+		this.skin(g.first);
 		this.eye = g.program("eye", null, ["skin_look", "lids"]);
 		this.tear = g.program("tear");
 		this.copy = g.program("copy");
@@ -48,6 +48,10 @@ class FaceScene {
 		// Lids of one eye end at the bridge of the nose.
 		this.left = Float32Array.from({ length: data.moving }, (_, i) => Math.min(1, Math.max(0, 0.5 + this.still[9 * i] / FaceScene.BRIDGE)));
 		this.strengths = data.expressions.map(() => 0);
+	}
+
+	skin(preset) {
+		return this.g.variant(preset.pores, "skin", "skin_vert", this.data.folds ? ["skin_look", "folds"] : ["skin_look"], "pores");
 	}
 
 	async load() {
@@ -246,7 +250,7 @@ class FaceScene {
 		gl.enable(gl.CULL_FACE);
 		gl.clearColor(0, 0, 0, 0);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-		g.draw(this.skin, { ...this.folds(), cam_from_head: c.R, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
+		g.draw(this.skin(preset), { ...this.folds(), cam_from_head: c.R, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
 			shift: [2 * (c.aim[0] - jitter[0]) / width, 2 * (jitter[1] - c.aim[1]) / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
 			sky_dir: EyeScene.padded(skies.flatMap(l => turns.apply(turns.transpose(env), l)), 3 * EyeScene.LIGHTS),
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),

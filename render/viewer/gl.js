@@ -16,6 +16,7 @@ class Graphics {
 		this.gl = gl;
 		this.shaders = shaders;
 		this.constants = Object.entries(constants).map(([name, value]) => `#define ${name} ${value}\n`).join("");
+		this.variants = {};
 		this.compiled = [];  // in order: what a scene does not show is not compiled
 		this.frame = gl.createFramebuffer();
 		this.whole = gl.createVertexArray();
@@ -30,7 +31,8 @@ class Graphics {
 		this.software = /swiftshader|llvmpipe|software|basic render/i.test(this.name);
 	}
 
-	/* A program of the page's shaders; parts: others whose text goes before it, each defined by its name in capitals. The driver is
+	/* A program of the page's shaders; parts: others whose text, if they have any, goes before it, each
+	 * defined by its name in capitals. The driver is
 	 * not waited for before the program is used: it compiles while maps are decoded. */
 	program(name, vertex, parts) {
 		const gl = this.gl, program = gl.createProgram();
@@ -49,6 +51,13 @@ class Graphics {
 		return { name, program, fragment, uniforms: null };
 	}
 
+	/* One of two programs, with a part or without, made when first asked for: what a preset leaves out is not compiled before. */
+	variant(with_part, name, vertex, parts, part) {
+		const key = [name, ...parts, with_part ? part : ""].join("+");
+		this.variants[key] = this.variants[key] || this.program(name, vertex, with_part ? [...parts, part] : parts);
+		return this.variants[key];
+	}
+
 	/* What it wants to be told, once it is linked. */
 	linked(p) {
 		const gl = this.gl;
@@ -65,7 +74,7 @@ class Graphics {
 	/* What a shader builds on comes before it. */
 	text(name, parts) {
 		const below = { eye: ["ground", "iris"], march: ["ground"] }[name] || [];
-		return [...below, ...parts, name].map(p => this.shaders[p]).join("");
+		return [...below, ...parts.filter(p => p in this.shaders), name].map(p => this.shaders[p]).join("");
 	}
 
 	/* Draws the whole target, or a shape, with these uniforms; a uniform that is a texture takes the next unit. */

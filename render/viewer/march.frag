@@ -12,7 +12,9 @@ uniform mat4 band_rgb;            // columns: wavelengths; rows: R, G, B
 uniform float abl, exposure, tissue_gain, detail;
 uniform int nodes[2];
 uniform vec2 node[2 * NODES];     // place and weight, of the anterior border layer, then of the stroma
-uniform float shadow_grow;        // of the distances at which the relief is looked at for shadows; 0: none
+#ifdef SHADOWS
+uniform float shadow_grow;        // of the distances at which the relief is looked at for shadows
+#endif
 out vec4 light;
 
 // The same place as stretch() knows it, the other way round.
@@ -44,6 +46,7 @@ vec4 path_to(int beam, vec3 p)
 	return vec4(w.xy, down, down < 0.0 ? max(w.z, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t)) : 0.0);
 }
 
+#ifdef SHADOWS
 // The steepest slope that the relief rises to from p in one azimuth, looked at where lib/eye/scene_shadow.c does.
 float horizon(vec3 p, float turn)
 {
@@ -68,6 +71,7 @@ float shadow(vec3 p, vec3 l)
 	float steepest = mix(horizon(p, at * STEP), horizon(p, (at + 1.0) * STEP), turn - at);
 	return LOOK_FILL + (1.0 - LOOK_FILL) * clamp((-l.z / across - steepest) / LOOK_SOURCE, 0.0, 1.0);
 }
+#endif
 
 // Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
 vec3 scatter(vec3 p, vec3 v)
@@ -98,7 +102,10 @@ vec3 scatter(vec3 p, vec3 v)
 		if (b >= beams)
 			break;
 		vec4 near_light = path_to(b, p), far_light = path_to(b, p + span * v), lit = vec4(0.0);
-		float open = shadow_grow > 0.0 ? shadow(p, near_light.xyz) : 1.0;
+		float open = 1.0;
+#ifdef SHADOWS
+		open = shadow(p, near_light.xyz);
+#endif
 		for (int j = 0; j < NODES; j++) {
 			if (j >= total)
 				break;

@@ -5,6 +5,7 @@ class Page extends Live {
 		this.graphics = graphics;
 		this.eyes = new motion.Eyes(motion.configuration(data.motion));
 		this.preset = graphics.software ? presets.length - 1 : 0;  // a processor shows the first picture sooner so
+		graphics.first = presets[this.preset];
 		this.automatic = true;
 		this.times = [];
 		this.orbit = [0, 0];

@@ -38,9 +38,13 @@ class EyeScene {
 		Object.assign(this, { g, data, count: 0, target: null });
 		for (const name of ["paths", "present"])
 			this[name] = g.program(name);
-		this.marcher = g.program("march");
+		this.marcher(g.first);
 		this.path_maps = {};
 		this.shades = {};
+	}
+
+	marcher(preset) {
+		return this.g.variant(preset.shadow > 0, "march", null, [], "shadows");
 	}
 
 	/* The eye alone; in a face the face's own program draws it, and this is never compiled. */
@@ -174,7 +178,7 @@ class EyeScene {
 			gl.deleteTexture(old.map.texture);
 		const map = old && old.map.width === n ? old.map : g.texture(n, n, gl.RGBA16F);
 		g.target(map);
-		g.draw(this.marcher, { ...solved, ...own, ...this.maps, sclera: this.sclera(s), pupil: e.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px,
+		g.draw(this.marcher(preset), { ...solved, ...own, ...this.maps, sclera: this.sclera(s), pupil: e.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px,
 			abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, model_top: m.tops[level - m.from] });
 		this.shades[name] = { key, map };
 	}

@@ -6,12 +6,15 @@ uniform mat3 env_from_head, still_from_head;  // the surroundings as they are, a
 uniform int skies;
 uniform vec3 sky_dir[LIGHTS], sky_rgb[LIGHTS];  // head's axes
 uniform vec3 quadric[9], still_quadric[9];
+#ifdef PORES
 uniform float pores;
+#endif
 uniform vec4 globes[2];           // middle and radius, head's axes
 uniform sampler2D sharp_map, rough_map;
 uniform float mirror_on;
 out vec4 seen;
 
+#ifdef PORES
 // Of four corners.
 vec4 hash(uvec4 h)
 {
@@ -38,6 +41,7 @@ float pore(vec3 p)
 {
 	return noise(SKIN_PORES_COARSE * p) + 0.5 * noise(SKIN_PORES_FINE * p);
 }
+#endif
 
 // 1, or less where a globe stands before it: what is behind an eye is no edge of a lid (tear.frag).
 float before_globes()
@@ -85,6 +89,7 @@ void main()
 		return;
 	}
 	float grain = 0.0, relief = 1.0;
+#ifdef PORES
 	if (pores > 0.0) {
 		float at = pore(seen_rest);
 		const vec2 step_ = vec2(SKIN_PORES_STEP, 0.0);
@@ -93,6 +98,7 @@ void main()
 		n = normalize(n);
 		relief += SKIN_PORES_LIGHT * dot(n - smooth_n, sky_dir[0]);
 	}
+#endif
 	const vec2 ROUGH = vec2(SKIN_ROUGH_WIDE, SKIN_ROUGH_NARROW);
 	vec2 k = 0.5 * ROUGH * ROUGH, a2 = 4.0 * k * k;
 	float nv = dot(n, to);
