@@ -247,6 +247,8 @@ class Controls {
 			parts.push(`view=${this.mode}`);
 		if (this.index)
 			parts.push(`eye=${this.index}`);
+		if (this.playing !== null)
+			parts.push(`play=${this.playing}`);
 		history.replaceState(null, "", parts.length ? `#${parts.join("&")}` : location.pathname + location.search);
 	}
 
@@ -273,6 +275,9 @@ class Controls {
 		const mode = q.get("view");
 		if (mode && this.modes.some(m => m.mode === mode))
 			this.set_mode(mode);
+		const clip = Number(q.get("play"));
+		if (q.has("play") && this.players[clip] && this.playing !== clip)
+			this.play(clip);
 		if (!this.beside && Number.isInteger(light) && light > 0 && light < this.eye.lights.length)
 			this.set_light(light);
 		for (const c of this.controls)

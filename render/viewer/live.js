@@ -57,6 +57,7 @@ class Live extends Controls {
 		this.eyes.pending = null;
 		if (i !== null)
 			this.set_mode("face");
+		this.to_hash();
 		this.changed();
 	}
 
