@@ -12,11 +12,12 @@
 
 static const double extent_mm = 6.4, iris_edge_mm = 0.25;
 
-/* The photograph's camera; x and y of the truth's eye, which the texture has. */
-static struct scene_view view_of(const struct truth *t, int width, int height)
+/* The photograph's camera, at every pixel or, every = 2, at the middles of pixels 0, 2, 4 ...; x and y of the truth's eye, which the
+ * texture has. */
+static struct scene_view view_of(const struct truth *t, int width, int height, int every)
 {
 	struct scene_view view = { .camera = { .focal_px = t->focal_px, .center_px = { t->center_px[0], t->center_px[1] }, .source = CAMERA_CONF },
-		                       .scale = 1, .width = width, .height = height, .samples = 1, .textured = true };
+		                       .x0 = 0.5 - 0.5 * every, .y0 = 0.5 - 0.5 * every, .scale = every, .width = width, .height = height, .samples = 1, .textured = true };
 	double c = cos(t->turn), d = sin(t->turn);
 	for (int i = 0; i < 4; i++) {
 		const double *m = t->cam_from_eye[i];
@@ -30,7 +31,7 @@ static struct scene_view view_of(const struct truth *t, int width, int height)
 
 /* The capture's eye with an iris of the colours that a texture [n][n][3] has, as the photograph's view shows it in even light.
  * image_free. */
-static struct image picture_of(const struct truth *t, int shading, int n, const float *rgb, int width, int height)
+static struct image picture_of(const struct truth *t, int shading, int n, const float *rgb, int width, int height, int every)
 {
 	struct scene_conf conf = { .map_size = 512, .search = 8, .steps = 2, .shading = shading, .bands = 3, .detail = 1, .limbus_width = 0.05,
 		                       .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .veins_px = 128, .seed = 1 };
@@ -53,7 +54,7 @@ static struct image picture_of(const struct truth *t, int shading, int n, const 
 	scene_levels_make(&s);
 	struct envmap room = envmap_room(32, (double[]){ 1, 1, 1 }, (double[]){ 1, 1, 1 }, 1, 0, 0);
 	struct scene_lighting light = scene_lighting(&room, 0, 4);
-	struct scene_view view = view_of(t, width, height);
+	struct scene_view view = view_of(t, width, height, every);
 	struct scene_count count = { 0 };
 	scene_fit_colour(&s, &view, &light);
 	struct image out = scene_render(&s, &view, &light, &count);
@@ -62,7 +63,7 @@ static struct image picture_of(const struct truth *t, int shading, int n, const 
 	return out;
 }
 
-/* Where every pixel's ray meets the iris, [height][width][2] mm: a picture of coordinates over one of a constant. image_free. */
+/* Where every second pixel's ray meets the iris, [height][width][2] mm: a picture of coordinates over one of a constant. image_free. */
 static struct image points_of(const struct truth *t, int width, int height)
 {
 	enum { N = 1024 };
@@ -73,7 +74,7 @@ static struct image points_of(const struct truth *t, int width, int height)
 		for (int i = 0; i < N * N; i++)
 			for (int c = 0; c < 3; c++)
 				rgb[3 * i + c] = k || c == 2 ? half : half * (0.5f + ((float)(c ? i / N : i % N) + 0.5f) / N);
-		seen[k] = picture_of(t, SCENE_RAYS, N, rgb, width, height);
+		seen[k] = picture_of(t, SCENE_RAYS, N, rgb, width, height, 2);
 	}
 	for (long i = 0; i < (long)width * height; i++)
 		for (int c = 0; c < 2; c++) {
@@ -104,7 +105,7 @@ static void close_sums(struct registered *r)
  * next (two px apart). */
 static bool map_offset(double off[2], const struct image *map, const struct image *ours, int x, int y)
 {
-	const float *a = image_at(map, x, y), *b = image_at(map, x + 1, y), *c = image_at(map, x, y + 1), *p = image_at(ours, 2 * x, 2 * y);
+	const float *a = image_at(map, x, y), *b = image_at(map, x + 1, y), *c = image_at(map, x, y + 1), *p = image_at(ours, x, y);
 	if (!(a[3] == 1 && b[3] == 1 && c[3] == 1))
 		return false;
 	double J[2][2] = { { (double)(b[0] - a[0]) / 2, (double)(c[0] - a[0]) / 2 }, { (double)(b[1] - a[1]) / 2, (double)(c[1] - a[1]) / 2 } };
@@ -125,7 +126,7 @@ bool registered_map(struct registered *out, const struct truth *t, const char *d
 	free(path);
 	if (!ok)
 		return false;
-	struct image ours = points_of(t, 2 * map.width, 2 * map.height);
+	struct image ours = points_of(t, map.width, map.height);
 	for (int y = 0; y + 1 < map.height; y++)
 		for (int x = 0; x + 1 < map.width; x++) {
 			const float *a = image_at(&map, x, y);
@@ -187,7 +188,7 @@ static bool pair_of(struct pair *p, const struct truth *t, const char *dir, int 
 	if (ok && (w != p->width || h != p->height))
 		ok = err_set(err, "%s: labels of another size", dir);
 	if (ok) {
-		struct image ours = picture_of(t, shading, n, rgb, w, h);
+		struct image ours = picture_of(t, shading, n, rgb, w, h, 1);
 		long size = (long)w * h;
 		p->photo = mem_array((size_t)size, 1);
 		p->ours = mem_array((size_t)size, 1);
