@@ -39,9 +39,10 @@ struct scene_conf {
 	int veins_px, seed;
 };
 
-/* A square map for quick pictures: [n][n][4] of which three count, in multiples of step. */
+/* A square map for quick pictures: [n][stride][4] of which three count, in multiples of step. Rows are a line of the cache
+ * longer than a power of two, or a tile's rows would push each other out of it. */
 struct scene_texels {
-	int n;
+	int n, stride;
 	float step;
 	uint16_t *px;
 };
@@ -51,10 +52,10 @@ struct scene_level {
 	int n;
 	float per_mm;                 // texels in a mm
 	float *relief;                // [n][n][2]: height mm, + towards the cornea; stroma mm
-	int *pairs;                   // [n][n]: heights of a texel and of the next one to the right, 16 bits each; null: SCENE_RAYS
+	int *pairs;                   // [n][SCENE_PAIR_STRIDE(n)]: heights of a texel and of the next one to the right, 16 bits each; null: SCENE_RAYS
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
-	float *horizon;               // scene_march.h; null: level is not marched from
+	struct march_horizon *horizon;  // of its tiles (scene_march.h); null: level is not marched from
 	struct scene_texels shown, bare;  // colour (to the power of detail) with the pupil cut out; the same without the
 	                                  // photograph's light; empty: SCENE_RAYS
 };

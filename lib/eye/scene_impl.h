@@ -61,6 +61,7 @@ void scene_pupil(float cover[3], const struct scene *scene, float x, float y, fl
 
 /* Heights in a level's pairs are multiples of that, mm. */
 #define SCENE_PAIR_MM (1.0f / 32768)
+#define SCENE_PAIR_STRIDE(n) ((n) + 16)
 void scene_pairs_make(struct scene_level *level);
 
 /* Packs [n][n][4]; negatives become 0. Frees what *out had. */
@@ -74,10 +75,10 @@ struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
 
 /* The iris as one view shows it: detail times light, both bilinear. */
 struct scene_shade {
-	int light_n;
+	int light_n, light_stride;
 	float per_mm, light_per_mm;  // texels in a mm: of detail, of light
 	const struct scene_texels *detail;  // of the scene's: what a photograph shows and the march does not
-	float *light;                // [light_n][light_n][4]: the march from these texels; owned
+	float *light;                // [light_n][light_stride][4]: the march from these texels; owned
 	bool even;                   // light is that of a flat iris: smooth
 };
 

@@ -57,9 +57,13 @@ SIMD_INLINE float scene_shadow_open(float clear)
 
 /* Eight by eight texels of a level, as one part: corner, step between texels, mm. */
 enum { TILE_SIDE = 8, HORIZONS = 16 };
+struct march_horizon {
+	float steepest[HORIZONS];     // of its texels
+	float slope[HORIZONS][PART];  // under which the relief hides the sky, by azimuth
+};
 struct march_tile {
 	float x, y, step;
-	const float (*horizon)[PART];  // [HORIZONS] slope under which the relief hides the sky, by azimuth; null: no shadows
+	const struct march_horizon *horizon;  // null: no shadows
 };
 _Static_assert(TILE_SIDE * TILE_SIDE == PART, "a tile is a part");
 
@@ -82,8 +86,8 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 /* Without a march: the model's mean colour at a point of the iris plane, lit. */
 void scene_flat_at(float rgb[4], float x, float y, const struct scene *scene, const struct scene_beams *beams);
 
-/* Horizons of a level's tiles, [tile][HORIZONS][PART]. free(). */
-float *scene_horizons(const struct scene *scene, const struct scene_level *level);
+/* Horizons of a level's tiles. free(). */
+struct march_horizon *scene_horizons(const struct scene *scene, const struct scene_level *level);
 
 /* Dims the light by the share of it that the relief between it and the points hides. */
 void scene_shadow(struct march_light *light, int n, const float *x, const float *y, const float *z,

@@ -57,11 +57,12 @@ static int pair_half(float height)
 
 void scene_pairs_make(struct scene_level *l)
 {
-	l->pairs = mem_array((size_t)l->n * (size_t)l->n, sizeof *l->pairs);
+	int stride = SCENE_PAIR_STRIDE(l->n);
+	l->pairs = mem_array((size_t)l->n * (size_t)stride, sizeof *l->pairs);
 	for (int y = 0; y < l->n; y++)
 		for (int x = 0; x < l->n; x++) {
 			long at = (long)y * l->n + x, next = x + 1 < l->n ? at + 1 : at;
 			unsigned low = (unsigned)pair_half(l->relief[2 * at]) & 0xffff, high = (unsigned)pair_half(l->relief[2 * next]);
-			l->pairs[at] = (int)(high << 16 | low);
+			l->pairs[(long)y * stride + x] = (int)(high << 16 | low);
 		}
 }

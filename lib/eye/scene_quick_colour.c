@@ -13,11 +13,11 @@ SIMD_CLONES static void put_iris(float rgba[][4], const struct quick_spots *s, i
 {
 	const struct scene_shade *h = k->shade;
 	struct quick_places p, q;
-	quick_places_of(&p, s->iu, s->iv, h->per_mm, 0.5f * (float)h->detail->n - 0.5f, h->detail->n, n);
-	quick_places_of(&q, s->iu, s->iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, n);
+	quick_places_of(&p, s->iu, s->iv, h->per_mm, 0.5f * (float)h->detail->n - 0.5f, h->detail->n, h->detail->stride, n);
+	quick_places_of(&q, s->iu, s->iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, h->light_stride, n);
 	for (int i = 0; i < n; i++) {
 		float part = s->hit[i] * (1 - s->lid[i]) * (1 - s->mirror[i]);
-		quick_four c = part > 0 ? part * h->detail->step * quick_texel(h->detail, &p, i) * quick_look_up(h->light, h->light_n, &q, i) : (quick_four){ 0 };
+		quick_four c = part > 0 ? part * h->detail->step * quick_texel(h->detail, &p, i) * quick_look_up(h->light, h->light_stride, &q, i) : (quick_four){ 0 };
 		c[3] = s->hit[i];
 		memcpy(rgba[i], &c, sizeof c);
 	}
@@ -27,7 +27,7 @@ SIMD_CLONES static void put_sclera(float rgba[][4], const struct quick_spots *s,
 {
 	const struct scene_texels *map = &k->scene->white;
 	struct quick_places p;
-	quick_places_of(&p, s->su, s->sv, (float)map->n, 0.5f * (float)map->n - 0.5f, map->n, n);
+	quick_places_of(&p, s->su, s->sv, (float)map->n, 0.5f * (float)map->n - 0.5f, map->n, map->stride, n);
 	for (int i = 0; i < n; i++) {
 		quick_four light = { s->sky[0][i], s->sky[1][i], s->sky[2][i], 0 }, before = { 0, 0, 0, s->hit[i] };
 		float part = s->hit[i] * s->lid[i] * (1 - s->mirror[i]) * map->step;
@@ -43,8 +43,8 @@ SIMD_CLONES static void put_mirror(float rgba[][4], const struct quick_spots *s,
 {
 	struct quick_places p, q;
 	float w = (float)env->sharp.width, m = (float)env->rough.width;
-	quick_places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, n);
-	quick_places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, n);
+	quick_places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, env->sharp.width, n);
+	quick_places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, env->rough.width, n);
 	for (int i = 0; i < n; i++) {
 		if (s->hit[i] == 0)
 			continue;

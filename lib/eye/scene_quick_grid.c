@@ -171,9 +171,9 @@ static void ahead(const struct quick_found *f, const struct quick_look *k)
 			int x = (int)(x0 + 0.5f * (float)i * wide), row = (int)(y0 + 0.5f * (float)i * slant);
 			if (x < 0 || row < 0 || x >= map->n || row >= map->n)
 				continue;
-			__builtin_prefetch(map->px + 4 * ((long)row * map->n + x));
+			__builtin_prefetch(map->px + 4 * ((long)row * map->stride + x));
 			if (i < 2)
-				__builtin_prefetch(k->level->pairs + (long)row * map->n + x);
+				__builtin_prefetch(k->level->pairs + (long)row * SCENE_PAIR_STRIDE(map->n) + x);
 		}
 	}
 }

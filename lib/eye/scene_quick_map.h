@@ -26,7 +26,7 @@ SIMD_INLINE float quick_height_at(const int *map, int n, float per_mm, float x, 
 	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f, u = x * per_mm + h, v = y * per_mm + h;
 	u = quick_clamp(u, 0, top);
 	v = quick_clamp(v, 0, top);
-	int iu = (int)u, iv = (int)v, at = iv * n + iu, p = map[at], q = map[at + n];
+	int iu = (int)u, iv = (int)v, stride = SCENE_PAIR_STRIDE(n), at = iv * stride + iu, p = map[at], q = map[at + stride];
 	u -= (float)iu;
 	v -= (float)iv;
 	float a = (float)(int16_t)p, b = (float)(p >> 16), c = (float)(int16_t)q, d = (float)(q >> 16);
@@ -43,15 +43,15 @@ struct quick_places {
 	float u[BATCH], v[BATCH];
 };
 
-/* n texels across; coordinates times `per` plus `off`, from the first texel's centre. */
-SIMD_INLINE void quick_places_of(struct quick_places *restrict p, const float *restrict x, const float *restrict y, float per, float off, int n, int count)
+/* n texels across, rows `stride` apart; coordinates times `per` plus `off`, from the first texel's centre. */
+SIMD_INLINE void quick_places_of(struct quick_places *restrict p, const float *restrict x, const float *restrict y, float per, float off, int n, int stride, int count)
 {
 	float top = (float)n - 1.001f;
 	SIMD_LOOP
 	for (int i = 0; i < count; i++) {
 		float u = quick_clamp(x[i] * per + off, 0, top), v = quick_clamp(y[i] * per + off, 0, top);
 		int iu = (int)u, iv = (int)v;
-		p->at[i] = 4 * (iv * n + iu);
+		p->at[i] = 4 * (iv * stride + iu);
 		p->u[i] = u - (float)iu;
 		p->v[i] = v - (float)iv;
 	}
@@ -64,9 +64,9 @@ SIMD_INLINE quick_four quick_read(const float *p)
 	return c;
 }
 
-SIMD_INLINE quick_four quick_look_up(const float *map, int n, const struct quick_places *p, int i)
+SIMD_INLINE quick_four quick_look_up(const float *map, int stride, const struct quick_places *p, int i)
 {
-	const float *a = map + p->at[i], *b = a + 4L * n;
+	const float *a = map + p->at[i], *b = a + 4L * stride;
 	quick_four s = quick_read(a), t = quick_read(b);
 	s += p->u[i] * (quick_read(a + 4) - s);
 	t += p->u[i] * (quick_read(b + 4) - t);
@@ -82,7 +82,7 @@ SIMD_INLINE quick_four quick_texel(const struct scene_texels *map, const struct 
 	half a, b;
 	const uint16_t *at = map->px + p->at[i];
 	memcpy(&a, at, sizeof a);
-	memcpy(&b, at + 4L * map->n, sizeof b);
+	memcpy(&b, at + 4L * map->stride, sizeof b);
 	quick_four s = (quick_four)__builtin_shufflevector(a, high, 0, 8, 1, 9, 2, 10, 3, 11), t = (quick_four)__builtin_shufflevector(b, high, 0, 8, 1, 9, 2, 10, 3, 11);
 	s += p->u[i] * ((quick_four)__builtin_shufflevector(a, high, 4, 12, 5, 13, 6, 14, 7, 15) - s);
 	t += p->u[i] * ((quick_four)__builtin_shufflevector(b, high, 4, 12, 5, 13, 6, 14, 7, 15) - t);

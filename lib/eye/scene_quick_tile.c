@@ -25,8 +25,8 @@ SIMD_CLONES static void film_mirror(struct film *f, const struct quick_nodes *s,
 {
 	struct quick_places p, q;
 	float w = (float)env->sharp.width, m = (float)env->rough.width;
-	quick_places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, NODE_LANES);
-	quick_places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, NODE_LANES);
+	quick_places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, env->sharp.width, NODE_LANES);
+	quick_places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, env->rough.width, NODE_LANES);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
 		quick_four c = quick_look_up(env->sharp.px, env->sharp.width, &p, i);
 		if (rough)
@@ -84,11 +84,11 @@ SIMD_CLONES static void film_iris(struct film *f, const struct quick_found *foun
 {
 	const struct scene_shade *h = k->shade;
 	struct quick_places p;
-	quick_places_of(&p, found->nodes.iu, found->nodes.iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, NODES_IN_TILE);
+	quick_places_of(&p, found->nodes.iu, found->nodes.iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, h->light_stride, NODES_IN_TILE);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
 		float through = h->detail->step * (1 - found->nodes.mirror[i]);
 		quick_four c = { through, through, through, 0 };
-		f->iris[i] = h->even ? c * quick_look_up(h->light, h->light_n, &p, i) : c;
+		f->iris[i] = h->even ? c * quick_look_up(h->light, h->light_stride, &p, i) : c;
 	}
 }
 
@@ -130,16 +130,16 @@ SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_nodes *s, c
 {
 	const struct scene_shade *h = k->shade;
 	int n = h->detail->n;
-	quick_places_of(&m->detail, s->first[0], s->first[1], h->per_mm, 0.5f * (float)n - 0.5f, n, BATCH);
+	quick_places_of(&m->detail, s->first[0], s->first[1], h->per_mm, 0.5f * (float)n - 0.5f, n, h->detail->stride, BATCH);
 	if (!h->even)
-		quick_places_of(&m->light, s->first[0], s->first[1], h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, BATCH);
+		quick_places_of(&m->light, s->first[0], s->first[1], h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, h->light_stride, BATCH);
 }
 
 SIMD_CLONES static void maps_white(struct maps *m, const struct quick_nodes *s, const struct quick_look *k, bool lid)
 {
 	float w = (float)k->scene->white.n, inv = 1 / k->lid_width, lo = 1 - 0.5f * k->lid_width;
 	const float(*at)[BATCH] = lid ? s->second : s->first;
-	quick_places_of(&m->white, at[0], at[1], w, 0.5f * w - 0.5f, k->scene->white.n, BATCH);
+	quick_places_of(&m->white, at[0], at[1], w, 0.5f * w - 0.5f, k->scene->white.n, k->scene->white.stride, BATCH);
 	if (!lid)
 		return;
 	quick_lay(m->lid, s->rho);
@@ -154,10 +154,10 @@ SIMD_CLONES static void maps_mirror(struct maps *m, const struct quick_nodes *s,
 	quick_lay(u, s->eu);
 	quick_lay(v, s->ev);
 	quick_lay(m->mirror, s->mirror);
-	quick_places_of(&m->sharp, u, v, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, BATCH);
+	quick_places_of(&m->sharp, u, v, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, env->sharp.width, BATCH);
 	if (rough) {
 		quick_lay(m->roughness, s->rough);
-		quick_places_of(&m->rough, u, v, 0.5f * r, 0.5f * r - 0.5f, env->rough.width, BATCH);
+		quick_places_of(&m->rough, u, v, 0.5f * r, 0.5f * r - 0.5f, env->rough.width, env->rough.width, BATCH);
 	}
 }
 
@@ -216,7 +216,7 @@ SIMD_INLINE void paint(float *restrict out, long stride, const struct film *rest
 				if (iris) {
 					quick_four seen = q * quick_texel(h->detail, &m->detail, i);
 					if (!even)
-						seen *= quick_look_up(h->light, h->light_n, &m->light, i);
+						seen *= quick_look_up(h->light, h->light_stride, &m->light, i);
 					colour += white ? (1 - m->lid[i]) * seen : seen;
 				}
 				if (white) {

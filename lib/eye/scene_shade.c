@@ -20,17 +20,18 @@ struct painter {
 	const struct scene_beam *sight;
 	const struct scene_beams *beams;
 	int tiles;      // across
-	float *light;   // [level->n][level->n][4]
+	int stride;     // of light
+	float *light;   // [level->n][stride][4]
 	float through;  // over 0: light times that goes there, not its ratio to the model
 };
 
 /* Texel of a tile's ray; the map's edge repeats. */
-static long texel(const struct scene_level *l, int tx, int ty, int i)
+static long texel(const struct scene_level *l, int stride, int tx, int ty, int i)
 {
 	int x = tx * TILE_SIDE + i % TILE_SIDE, y = ty * TILE_SIDE + i / TILE_SIDE;
 	x = x < l->n ? x : l->n - 1;
 	y = y < l->n ? y : l->n - 1;
-	return (long)y * l->n + x;
+	return (long)y * stride + x;
 }
 
 SIMD_CLONES static void sight_lay(struct iris_batch *b, float way[4][SCENE_WAY], float x, float y, float step)
@@ -60,7 +61,7 @@ static void tile_rays(struct iris_batch *b, const struct painter *p, const struc
 	b->n = PART;
 	sight_lay(b, way, t->x, t->y, t->step);
 	for (int i = 0; i < PART; i++)
-		b->pz[i] = plane - p->level->relief[2 * texel(p->level, tx, ty, i)];
+		b->pz[i] = plane - p->level->relief[2 * texel(p->level, p->level->n, tx, ty, i)];
 }
 
 /* What the photograph's colour is to be multiplied by: see scene_colour.c. */
@@ -71,22 +72,23 @@ static void tile_put(struct iris_batch *b, const struct painter *p, int tx, int 
 	bool ratio = l->model && !(p->through > 0), whole = (tx + 1) * TILE_SIDE <= l->n && (ty + 1) * TILE_SIDE <= l->n;
 	for (int y = 0; y < TILE_SIDE && ratio; y++)
 		if (whole)
-			memcpy(model[y * TILE_SIDE], l->model + 4 * texel(l, tx, ty, y * TILE_SIDE), TILE_SIDE * sizeof *model);
+			memcpy(model[y * TILE_SIDE], l->model + 4 * texel(l, l->n, tx, ty, y * TILE_SIDE), TILE_SIDE * sizeof *model);
 		else
 			for (int i = y * TILE_SIDE; i < (y + 1) * TILE_SIDE; i++)
-				memcpy(model[i], l->model + 4 * texel(l, tx, ty, i), sizeof model[i]);
+				memcpy(model[i], l->model + 4 * texel(l, l->n, tx, ty, i), sizeof model[i]);
 	for (int i = 0; i < PART && p->through > 0; i++)
 		for (int c = 0; c < 3; c++)
 			b->rgb[c][i] = fmaxf(p->through * b->rgb[c][i], SCENE_DARK);
 	if (ratio)
 		scene_colour_ratio(PART, b->rgb, p->scene, (const float(*)[4])model);
 	for (int y = 0; y < TILE_SIDE; y++)
-		row[y] = p->light + 4 * texel(l, tx, ty, y * TILE_SIDE);
+		row[y] = p->light + 4 * texel(l, p->stride, tx, ty, y * TILE_SIDE);
 	for (int i = 0; i < PART; i++) {
-		float *out = whole ? row[i / TILE_SIDE] + 4 * (i % TILE_SIDE) : p->light + 4 * texel(l, tx, ty, i);
+		float *out = whole ? row[i / TILE_SIDE] + 4 * (i % TILE_SIDE) : p->light + 4 * texel(l, p->stride, tx, ty, i);
 		out[0] = b->rgb[0][i];
 		out[1] = b->rgb[1][i];
 		out[2] = b->rgb[2][i];
+		out[3] = 0;
 	}
 }
 
@@ -103,10 +105,13 @@ static void tile_paint(const struct painter *p, int tx, int ty)
 	struct iris_batch b;
 	float step = 1 / p->level->per_mm, extent = (float)s->extent;
 	struct march_tile t = { (float)(tx * TILE_SIDE) * step - extent, (float)(ty * TILE_SIDE) * step - extent, step, 0 };
-	if (!tile_seen(s, &t))
+	if (!tile_seen(s, &t)) {
+		for (int i = 0; i < PART && !(p->through > 0); i++)
+			memset(p->light + 4 * texel(p->level, p->stride, tx, ty, i), 0, 4 * sizeof *p->light);
 		return;
+	}
 	if (p->level->horizon)
-		t.horizon = (const float(*)[PART])p->level->horizon + (long)(ty * p->tiles + tx) * HORIZONS;
+		t.horizon = p->level->horizon + (long)ty * p->tiles + tx;
 	tile_rays(&b, p, &t, tx, ty);
 	scene_scatter_tile(&b, &t, s, p->level, p->beams);
 	tile_put(&b, p, tx, ty);
@@ -122,7 +127,7 @@ static void paint(const struct painter *p)
 void scene_shade_model(struct scene_level *level, const struct scene *s, const double C[3], const struct scene_beams *beams, float through)
 {
 	struct scene_beam *sight = scene_sight(s, C);
-	paint(&(struct painter){ s, level, sight, beams, (level->n + TILE_SIDE - 1) / TILE_SIDE, level->model, through });
+	paint(&(struct painter){ s, level, sight, beams, (level->n + TILE_SIDE - 1) / TILE_SIDE, level->n, level->model, through });
 	free(sight);
 }
 
@@ -130,7 +135,7 @@ void scene_shade_model(struct scene_level *level, const struct scene *s, const d
 static struct scene_shade flat_make(const struct scene *s, const struct scene_level *level, const struct scene_beams *beams)
 {
 	enum { N = 80 };
-	struct scene_shade out = { N, level->per_mm, (float)(N / (2 * s->extent)), &level->bare, mem_array(N * N, 4 * sizeof *out.light), true };
+	struct scene_shade out = { N, N, level->per_mm, (float)(N / (2 * s->extent)), &level->bare, mem_array(N * N, 4 * sizeof *out.light), true };
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < N; y++)
 		for (int x = 0; x < N; x++)
@@ -155,9 +160,9 @@ struct scene_shade scene_shade_make(const struct scene *s, const struct scene_le
 	if (flat)
 		return flat_make(s, level, beams);
 	struct scene_beam *sight = scene_sight(s, C);
-	struct painter p = { s, coarse, sight, beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, 0, 0 };
-	p.light = mem_new((size_t)coarse->n * (size_t)coarse->n, 4 * sizeof *p.light);
+	struct painter p = { s, coarse, sight, beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, coarse->n + 4, 0, 0 };
+	p.light = mem_array((size_t)coarse->n * (size_t)p.stride, 4 * sizeof *p.light);
 	paint(&p);
 	free(sight);
-	return (struct scene_shade){ coarse->n, level->per_mm, coarse->per_mm, &level->shown, p.light, false };
+	return (struct scene_shade){ coarse->n, p.stride, level->per_mm, coarse->per_mm, &level->shown, p.light, false };
 }

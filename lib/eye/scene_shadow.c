@@ -84,7 +84,7 @@ static void tile_look(float *restrict steepest, const float *restrict at, long s
 }
 
 /* Slopes that a tile's texels see in all azimuths, at distances that grow by a quarter from a texel on. */
-static void tile_horizons(float (*out)[PART], const struct scene_level *l, const struct heights *h, int tx, int ty, float top, float reach)
+static void tile_horizons(struct march_horizon *out, const struct scene_level *l, const struct heights *h, int tx, int ty, float top, float reach)
 {
 	const float *at = h->px + (long)(ty * TILE_SIDE + h->pad) * h->stride + tx * TILE_SIDE + h->pad;
 	float low = top, step = 1 / l->per_mm;
@@ -93,21 +93,24 @@ static void tile_horizons(float (*out)[PART], const struct scene_level *l, const
 	for (int a = 0; a < HORIZONS; a++) {
 		float turn = (float)(2 * M_PI) * (float)a / HORIZONS, c = cosf(turn), s = sinf(turn);
 		for (int i = 0; i < PART; i++)
-			out[a][i] = -1;
+			out->slope[a][i] = -1;
 		for (float off = step; off * 0.5f < top - low && off < reach; off += fmaxf(step, 0.25f * off))
-			tile_look(out[a], at, h->stride, (const float[2]){ off * c * l->per_mm, off * s * l->per_mm }, off, 1 / off, top);
+			tile_look(out->slope[a], at, h->stride, (const float[2]){ off * c * l->per_mm, off * s * l->per_mm }, off, 1 / off, top);
+		out->steepest[a] = -1;
+		for (int i = 0; i < PART; i++)
+			out->steepest[a] = fmaxf(out->steepest[a], out->slope[a][i]);
 	}
 }
 
-float *scene_horizons(const struct scene *s, const struct scene_level *l)
+struct march_horizon *scene_horizons(const struct scene *s, const struct scene_level *l)
 {
 	int tiles = (l->n + TILE_SIDE - 1) / TILE_SIDE;
-	float(*out)[HORIZONS][PART] = mem_array((size_t)tiles * (size_t)tiles, sizeof *out);
+	struct march_horizon *out = mem_array((size_t)tiles * (size_t)tiles, sizeof *out);
 	float reach = fminf(2 * (s->height_max - s->height_min), 2 * (float)s->extent);
 	struct heights heights = heights_make(l, reach);
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int i = 0; i < tiles * tiles; i++)
-		tile_horizons(out[i], l, &heights, i % tiles, i / tiles, s->height_max, reach);
+		tile_horizons(&out[i], l, &heights, i % tiles, i / tiles, s->height_max, reach);
 	free(heights.px);
-	return &out[0][0][0];
+	return out;
 }

@@ -72,17 +72,6 @@ SIMD_CLONES static void shade(struct march_light *w, const float *restrict low, 
 	}
 }
 
-SIMD_CLONES static float steepest(const float *restrict a, const float *restrict b)
-{
-	float most = -1;
-#pragma omp simd reduction(max : most)
-	for (int i = 0; i < PART; i++) {
-		float m = a[i] > b[i] ? a[i] : b[i];
-		most = m > most ? m : most;
-	}
-	return most;
-}
-
 /* Slope of the lowest of a light's directions over the tile, and whether there is any light. */
 static bool lowest(float *slope, float corner[SCENE_WAY][8], float width)
 {
@@ -115,9 +104,9 @@ bool scene_light_tile(struct march_light *light, const struct march_body *body, 
 	if (!tile->horizon)
 		return true;
 	float turn = atan2f(corner[1][0] + corner[1][3], corner[0][0] + corner[0][3]) * (float)(HORIZONS / (2 * M_PI));
-	int at = (int)floorf(turn);
-	const float *a = tile->horizon[(at + HORIZONS) % HORIZONS], *b = tile->horizon[(at + 1 + HORIZONS) % HORIZONS];
-	if (low - steepest(a, b) < SCENE_SOURCE)
-		shade(light, a, b, turn - (float)at);
+	int whole = (int)floorf(turn), a = (whole + HORIZONS) % HORIZONS, b = (a + 1) % HORIZONS;
+	const struct march_horizon *h = tile->horizon;
+	if (low - fmaxf(h->steepest[a], h->steepest[b]) < SCENE_SOURCE)
+		shade(light, h->slope[a], h->slope[b], turn - (float)whole);
 	return true;
 }

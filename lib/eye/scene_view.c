@@ -247,7 +247,7 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 #pragma omp parallel reduction(+ : rays, iris, kept, hidden)
 	{
 		struct scene_count mine = { 0 };
-#pragma omp for schedule(dynamic, 4)
+#pragma omp for schedule(dynamic, 40)
 		for (int i = 0; i < tiles; i++)
 			first_rays(&c, i, i % across * TILE, i / across * TILE, &mine);
 #pragma omp for schedule(static)
