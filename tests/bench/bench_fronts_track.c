@@ -27,7 +27,7 @@ static const struct fronts_stage track = {
 	.stage = "track",
 	.keys = "settle_frames, patch_radius_px, patch_iterations, patch_every, patch_stop_px, agree_px, sweeps, skin_quiet, limbus_arcs, lid_columns, torsion_rays",
 	.more = { { "quickest", "20, 6, 6, 2, 0.1, 1, 1, 0.5, 40, 24, 45" }, { "quick_skin", "180, 8, 8, 2, 0.05, 0.6, 1, 0.3, 120, 48, 360" },
-		  { "quick_eyes", "40, 10, 12, 1, 0.02, 0.1, 1, 0, 60, 36, 90" }, { "two_sweeps", "180, 10, 12, 1, 0.02, 0.1, 2, 0, 120, 48, 360" },
+		  { "quick_eyes", "40, 10, 12, 1, 0.02, 0.1, 1, 0, 60, 36, 90" }, { "one_sweep", "180, 10, 12, 1, 0.02, 0.1, 1, 0, 120, 48, 360" },
 		  { "thorough", "300, 12, 20, 1, 0.01, 0.1, 3, 0, 180, 64, 360" } },
 	.unit = "px", .error_of = "lids and skin off the truth, mean of the medians", .error = off_truth, .reps = 0,
 };
