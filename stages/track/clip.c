@@ -163,7 +163,13 @@ static bool look_so(struct head_found *found, struct track_clip *clip, enum way 
 }
 
 /* Openings turned upside down look much like themselves: a head is taken to be so where its openings stand out more, and their outlines
- * fit better, than those of one that is upright. */
+ * fit better, than those of one that is upright, and as many of them are seen: eyes that look up or down change their openings'
+ * shape, too. */
+static bool stands(const struct head_found *up, const struct head_found *over)
+{
+	return up->score >= over->score || up->edge_px <= over->edge_px || up->seen[0] + up->seen[1] > over->seen[0] + over->seen[1];
+}
+
 static bool look(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
 	struct head_found up, over;
@@ -177,7 +183,7 @@ static bool look(struct track_clip *clip, const struct track_subject *s, const s
 	}
 	upright = clip->camera;
 	clip->camera = camera;
-	bool is_over = !is_face && look_so(&over, clip, UPSIDE_DOWN, 0, s, conf) && !(is_up && (up.score >= over.score || up.edge_px <= over.edge_px));
+	bool is_over = !is_face && look_so(&over, clip, UPSIDE_DOWN, 0, s, conf) && !(is_up && stands(&up, &over));
 	if (!is_up && !is_over)
 		return false;
 	if (!is_over)
