@@ -4,7 +4,6 @@
 #include "math/stats.h"
 #include "math/vec.h"
 #include "skin/cloud.h"
-#include "skin/cloud_impl.h"
 #include "skin/surface.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/sfm_scene.h"
@@ -207,7 +206,8 @@ static void test_plain(void **state)
 		grey[i] = i % W < 30 ? 255 : (uint8_t)(126 + (i * 7919 + i / W * 104729) % 5);
 		mask[i] = i % 11 ? 255 : 0;
 	}
-	cloud_mask_plain(mask, grey, W, H, REACH, 3);
+	struct err err = { 0 };
+	assert_true(cv_mask_plain(mask, grey, W, H, REACH, 3, &err));
 	for (int i = 0; i < W * H; i++)
 		assert_int_equal(mask[i], i % 11 && i % W >= 30 - REACH ? 255 : 0);
 }

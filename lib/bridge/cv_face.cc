@@ -140,7 +140,6 @@ bool cv_face_find(int *n, struct cv_face *faces, int most, struct cv_face_finder
 			if (*n == most || !eyes_of(eye, finder, picture, face))
 				continue;
 			cv_face *out = &faces[(*n)++];
-			out->width = face.width;
 			for (cv::Point2d &e : eye)
 				e = cv::Point2d(face.x + e.x * face.width, face.y + e.y * face.height);
 			const cv::Point2d middle = 0.5 * (eye[0] + eye[1]), across = eye[0] - eye[1];

@@ -33,6 +33,21 @@ bool cv_stereo(float *disparity, const uint8_t *left, const uint8_t *right, cons
 	}
 }
 
+bool cv_mask_plain(uint8_t *mask, const uint8_t *grey, int width, int height, int reach, int least, struct err *err)
+{
+	try {
+		const cv::Mat from(height, width, CV_8U, const_cast<uint8_t *>(grey));
+		const cv::Mat window = cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U);
+		cv::Mat low, high, to(height, width, CV_8U, mask);
+		cv::erode(from, low, window);
+		cv::dilate(from, high, window);
+		to.setTo(0, high - low < least);
+		return true;
+	} catch (const std::exception &e) {
+		return err_set(err, "plain parts of %d x %d: %s", width, height, e.what());
+	}
+}
+
 bool cv_warp8(uint8_t *out, uint8_t *mask, int width, int height, const float *x, const float *y, const uint8_t *px,
               int px_width, int px_height, struct err *err)
 {

@@ -20,6 +20,9 @@ struct cv_stereo_conf {
 bool cv_stereo(float *disparity, const uint8_t *left, const uint8_t *right, const uint8_t *mask, int width, int height,
                int min_disparity, int range, const struct cv_stereo_conf *conf, struct err *err);
 
+/* mask[height][width] becomes 0 where no two pixels of grey within `reach` px, across and down, differ by `least` levels. */
+bool cv_mask_plain(uint8_t *mask, const uint8_t *grey, int width, int height, int reach, int least, struct err *err);
+
 /* out[height][width]: the grey picture at (x[i], y[i]) px (first pixel's centre at 0.5), bilinear; mask: 255 where the
  * picture reaches, else 0. */
 bool cv_warp8(uint8_t *out, uint8_t *mask, int width, int height, const float *x, const float *y, const uint8_t *px,

@@ -5,7 +5,6 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "math/vec.h"
-#include "skin/cloud_impl.h"
 #include "skin/cloud.h"
 
 /* Two pictures of one size whose rows see the same planes. */
@@ -242,11 +241,11 @@ bool cloud_stereo(struct cloud_points *points, const struct colmap_model *m, con
 		mask[i] = mem_array(n, 1);
 		ok = ok && warp(grey[i], mask[i], &r, i, m, im[i], pictures[i], err);
 	}
-	// Noise alone spreads over more levels.
+	// Noise alone spreads over more levels. What a matcher puts where there is nothing to match by, burnt-out walls or black
+	// cloth, it has carried over from the next edge, and pairs agree on it: they carry it over alike.
 	enum { PLAIN_REACH = 5, PLAIN_LEVELS = 3 };
-	cloud_mask_plain(mask[r.left], grey[r.left], r.width, r.height, PLAIN_REACH, PLAIN_LEVELS);
 	float *disparity = mem_array(n, sizeof *disparity);
-	ok = ok && cv_stereo(disparity, grey[r.left], grey[1 - r.left], mask[r.left], r.width, r.height, r.min_disparity, r.range,
+	ok = ok && cv_mask_plain(mask[r.left], grey[r.left], r.width, r.height, PLAIN_REACH, PLAIN_LEVELS, err) && cv_stereo(disparity, grey[r.left], grey[1 - r.left], mask[r.left], r.width, r.height, r.min_disparity, r.range,
 	                     &conf->stereo, err);
 	if (ok)
 		take_points(points, &r, disparity, subject, conf);

@@ -3,7 +3,7 @@
 #define STAGES_CALIBRATE_EYES_H
 #include "stages/calibrate/places.h"
 
-/* As a hand would name them: in the photographs' own px, the iris's radius with each eye where its edge is seen, else NAN. */
+/* As a hand would name them, in the photographs' own px: with each eye the radius that an iris of mean size has there. */
 struct eyes {
 	struct opt_each_list side[2], mouth;  // owned
 	double apart;                         // of the eyes, world; 0: not found

@@ -27,7 +27,7 @@ static struct photo crop(const struct photo *p, int x0, int y0, int w, int h)
 
 /* Uphill from circles of three sizes all over the opening, for of an eye that was found its middle alone is known, and of how
  * large an iris is the mean of people. */
-static double seek(struct ellipse *e, const struct grey *grey, double contrast)
+static void seek(struct ellipse *e, const struct grey *grey, double contrast)
 {
 	static const double size[] = { 0.86, 1, 1.16 };
 	struct ellipse start = *e;
@@ -41,7 +41,6 @@ static double seek(struct ellipse *e, const struct grey *grey, double contrast)
 			*e = here;
 		}
 	}
-	return best;
 }
 
 /* The ellipse's larger semi-axis from where a hand has put it, px: the width of a circle does not shrink with its turn.
@@ -74,28 +73,20 @@ static int find_view(const struct views *views, const struct head *head, int ima
 	return -1;
 }
 
-static bool add_view(struct places_lengths *out, const struct head *head, const struct view *view, const double *hint,
-                     const double eye[3], bool by_hand, struct stage *stage, const struct calibrate_options *o, struct err *err)
+/* photo: of the view; null for a video's frame, of which none is kept: the hand's circle has to do. */
+static void add_view(struct places_lengths *out, const struct head *head, const struct view *view, const struct photo *photo,
+                     const double *hint, const double eye[3], double limbus_mm, bool by_hand)
 {
-	struct photo photo;
 	const struct colmap_image *im = head_image(head, view);
 	double a = hint[2], R[3][3], p[3], scale = (double)view->picture_width / view->width;
-	bool found = false;
-	// Of a video's frame no photograph is kept: the hand's circle has to do.
-	if (view->frame < 0) {
-		if (!photo_load(&photo, stage_path(stage, "%s", view->file), o->limit_mpx, err))
-			return false;
-		found = measure(&a, &photo, hint, !by_hand);
-		photo_free(&photo);
-	}
+	bool found = photo && measure(&a, photo, hint, !by_hand);
 	colmap_rotation(R, im->q);
 	mat_vec(p, R, eye);
 	double depth = p[2] + im->t[2], focal = head->model->cameras[im->camera].params[0] / scale;
 	// A hand draws the circle to a tenth of its size; the edge is found to half a pixel. Where eyes were found without a hand,
 	// and no edge is, nothing was measured.
 	if (out->n < PLACES_LENGTHS && (found || by_hand))
-		out->l[out->n++] = (struct sfm_length){ a * depth / focal, o->limbus_radius_mm, found ? 0.5 / a : 0.1 };
-	return true;
+		out->l[out->n++] = (struct sfm_length){ a * depth / focal, limbus_mm, found ? 0.5 / a : 0.1 };
 }
 
 /* Leaves out what lies far from the middle of all. */
@@ -114,22 +105,38 @@ static void keep_alike(struct places_lengths *l)
 	free(size);
 }
 
+/* What both eyes of a view tell; its photograph is read once, and only where one of them is named there. */
+static bool add_eyes(struct places_lengths *out, const struct head *head, const struct view *view, const struct places_face *face,
+                     const double eye[2][3], const bool has[2], struct stage *stage, const struct calibrate_options *o, struct err *err)
+{
+	struct photo photo = { 0 };
+	bool read = false;
+	for (int e = 0; e < 2; e++)
+		for (int i = 0; i < face->eye[e]->n && has[e]; i++) {
+			if (!view_is_named(view, face->eye[e]->items[i].name))
+				continue;
+			if (!read && view->frame < 0 && !(read = photo_load(&photo, stage_path(stage, "%s", view->file), o->limit_mpx, err)))
+				return false;
+			add_view(out, head, view, read ? &photo : 0, face->eye[e]->items[i].value, eye[e], o->limbus_radius_mm, !face->found);
+		}
+	if (read)
+		photo_free(&photo);
+	return true;
+}
+
 bool places_limbus(struct places_lengths *out, double *common, const struct head *head, const struct views *views,
                    const struct places_face *face, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
+	double eye[2][3];
+	bool has[2];
 	*common = limbus_sigma_mm / o->limbus_radius_mm;
-	for (int e = 0; e < 2; e++) {
-		double eye[3];
-		bool found;
-		if (!places_point(eye, &found, head, views, face->eye[e], 0, err))
+	for (int e = 0; e < 2; e++)
+		if (!places_point(eye[e], &has[e], head, views, face->eye[e], 0, err))
 			return err_wrap(err, "capture.conf: view.*.%s_eye_px", e ? "right" : "left");
-		for (int i = 0; i < face->eye[e]->n && found; i++)
-			for (int k = 0; k < head->model->n_images; k++) {
-				int v = find_view(views, head, k);
-				if (v >= 0 && view_is_named(&views->v[v], face->eye[e]->items[i].name)
-				    && !add_view(out, head, &views->v[v], face->eye[e]->items[i].value, eye, !face->found, stage, o, err))
-					return false;
-			}
+	for (int k = 0; k < head->model->n_images; k++) {
+		int v = find_view(views, head, k);
+		if (v >= 0 && !add_eyes(out, head, &views->v[v], face, (const double(*)[3])eye, has, stage, o, err))
+			return false;
 	}
 	if (face->found && out->n)
 		keep_alike(out);

@@ -132,16 +132,12 @@ static void assume_distance(struct track_clip *clip, const struct track_subject 
 }
 
 /* A whole face in the kept frame, upright; close-ups show none. */
-static bool look_for_face(struct cv_face *face, const struct track_clip *clip)
+static bool look_for_face(struct cv_face *face, struct track_clip *clip)
 {
-	struct cv_face_finder *finder;
 	struct err none = { 0 };
 	int n = 0;
-	if (!cv_face_open(&finder, &none))
-		return false;
-	bool ok = cv_face_find(&n, face, 1, finder, clip->luma, clip->info.width, clip->info.height, 0, &none);
-	cv_face_close(finder);
-	return ok && n > 0;
+	return (clip->faces || cv_face_open(&clip->faces, &none))
+	       && cv_face_find(&n, face, 1, clip->faces, clip->luma, clip->info.width, clip->info.height, 0, &none) && n > 0;
 }
 
 enum way { UPRIGHT, UPSIDE_DOWN };
@@ -175,8 +171,7 @@ static bool look(struct track_clip *clip, const struct track_subject *s, const s
 	struct head_found up, over;
 	struct camera camera = clip->camera, upright;
 	struct cv_face face;
-	bool is_face = look_for_face(&face, clip), is_up = is_face && look_so(&up, clip, UPRIGHT, &face, s, conf);
-	is_face = is_up;
+	bool is_face = look_for_face(&face, clip) && look_so(&up, clip, UPRIGHT, &face, s, conf), is_up = is_face;
 	if (!is_face) {
 		clip->camera = camera;
 		is_up = look_so(&up, clip, UPRIGHT, 0, s, conf);
@@ -296,4 +291,5 @@ void track_clip_free(struct track_clip *clip)
 	free(clip->luma);
 	free(clip->rgb);
 	free(clip->known);
+	cv_face_close(clip->faces);
 }

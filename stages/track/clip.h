@@ -24,6 +24,7 @@ struct track_clip {
 	bool pose_given;       // from track.landmark_*, or known
 	struct track_known *known;       // by rig.json, of this video and of its own mesh; owned
 	int n_known;
+	struct cv_face_finder *faces;  // null: not opened yet, or not installed
 };
 
 /* Points of skin: rows of the mesh and where they are at the reference. */
