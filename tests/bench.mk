@@ -17,11 +17,10 @@ bench-%: build $B/tests/bench/bench_% FORCE
 	@$B/tests/bench/bench_$* $(BENCH_ARGS)
 bench-report: $B/tests/bench/report
 	@$< --out=bench --compiler="$$($(CC) --version | head -n 1)" --flags="$(CFLAGS) $(MATHFLAGS)"
-# Settings that no other beats in time and error, of the stages that have such knobs. The one of track is measured and drawn alone: its
-# eleven keys do not fit a line of a configuration.
+# Settings that no other beats in time and error, of the stages that have such knobs.
 .PHONY: fronts
 fronts: bench-fronts bench-fronts_skin bench-fronts_track bench-fronts_render
 	@{ printf '; Settings of each stage that no other beats in both time and error: error against the finest setting or the truth, and\n'; \
 	printf '; time on two processors, fixed and for each megapixel of photographs. Made by make fronts on samples/.\n'; \
-	cat bench/fronts.front bench/fronts_skin.front bench/fronts_render.front; } > config/fronts.conf
+	cat bench/fronts.front bench/fronts_skin.front bench/fronts_track.front bench/fronts_render.front; } > config/fronts.conf
 FORCE:

@@ -117,6 +117,22 @@ static void the_stage_reads_what_was_chosen(void **state)
 	assert_true(stage_reads(&v, "error = 2 %\n", &err) && v.sigma == 3);
 }
 
+static void settings_too_long_for_a_line_go_on_in_the_next(void **state)
+{
+	(void)state;
+	struct values v;
+	struct front front;
+	struct err err = { 0 };
+	scratch_text("config/fronts.conf", "blur.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: sigma = 4\n" "blur.exact = 0.01 mm, 1 s + 1 s/Mpx: sigma = 1\n"
+	                                   "blur.exact.more = steps = 7\n");
+	assert_string_equal(choose("error = 0.1 mm\n", all_run, 1, 0), "exact -");
+	assert_true(stage_reads(&v, "error = 0.1 mm\n", &err) && v.sigma == 1 && v.steps == 7);
+	assert_string_equal(choose("error = 0.5 mm\n", all_run, 1, 0), "fast -");
+	assert_true(stage_reads(&v, "error = 0.5 mm\n", &err) && v.sigma == 4 && v.steps == 3);
+	assert_true(front_load(&front, scratch_path("config/fronts.conf"), &err) && front.n == 2);
+	front_free(&front);
+}
+
 static void nonsense_is_refused_in_one_line(void **state)
 {
 	(void)state;
@@ -149,7 +165,7 @@ static void a_damaged_file_of_fronts_is_refused(void **state)
 {
 	(void)state;
 	static const char *const bad[] = { "blur.fast = 0.4 mm\n", "blur.fast = mm, 1 s + 1 s/Mpx: a = 1\n", "fast = 0.4 mm, 1 s + 1 s/Mpx: a = 1\n",
-		                           "blur.fast = 0.4 mm, -1 s + 1 s/Mpx: a = 1\n", "blur.fast = nan mm, 1 s + 1 s/Mpx: a = 1\n" };
+		                           "blur.fast = 0.4 mm, -1 s + 1 s/Mpx: a = 1\n", "blur.fast = nan mm, 1 s + 1 s/Mpx: a = 1\n", "blur.fast.more = a = 1\n" };
 	for (int i = 0; i < (int)(sizeof bad / sizeof *bad); i++) {
 		struct front front;
 		struct err err = { 0 };
@@ -186,6 +202,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(an_error_takes_the_fastest_that_is_as_exact, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_time_is_spent_where_it_helps_most, setup, teardown),
 		cmocka_unit_test_setup_teardown(the_stage_reads_what_was_chosen, setup, teardown),
+		cmocka_unit_test_setup_teardown(settings_too_long_for_a_line_go_on_in_the_next, setup, teardown),
 		cmocka_unit_test_setup_teardown(nonsense_is_refused_in_one_line, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_damaged_file_of_fronts_is_refused, setup, teardown),
 		cmocka_unit_test(the_recorded_fronts_are_fronts),

@@ -19,7 +19,27 @@ static bool read_point(struct front_point *p, const struct conf_item *item, stru
 		               item->line, item->key, item->value);
 	p->stage = mem_printf("%.*s", (int)(dot - item->key), item->key);
 	p->name = mem_str(dot + 1);
-	p->settings = item->value + end;
+	p->settings = mem_str(item->value + end);
+	return true;
+}
+
+/* "unrefract.small.more = survey_size = 320" after a line of unrefract.small: goes on with its settings. Any other line: false. */
+static bool read_more(struct front *front, const struct conf_item *item, struct err *err)
+{
+	const char *dot = strchr(item->key, '.'), *more = dot ? strstr(dot + 1, ".more") : 0;
+	struct front_point *p = front->n ? &front->points[front->n - 1] : 0;
+	if (!more)
+		return false;
+	char *of = mem_printf("%.*s", (int)(more - item->key), item->key), *name = mem_printf("%s.%s", p ? p->stage : "", p ? p->name : "");
+	if (strcmp(of, name)) {
+		err_set(err, "%s:%d: %.60s: must follow the line of %.60s", item->file, item->line, item->key, of);
+	} else {
+		char *all = mem_printf("%s, %s", p->settings, item->value);
+		free(p->settings);
+		p->settings = all;
+	}
+	free(of);
+	free(name);
 	return true;
 }
 
@@ -29,10 +49,10 @@ bool front_load(struct front *front, const char *path, struct err *err)
 	if (!conf_load(&front->conf, path, "", 0, err))
 		return false;
 	front->points = mem_new((size_t)front->conf.n + 1, sizeof *front->points);
-	for (int i = 0; i < front->conf.n; i++, front->n++)
-		if (!read_point(&front->points[i], &front->conf.items[i], err))
-			return false;
-	return true;
+	for (int i = 0; i < front->conf.n && !err_is(err); i++)
+		if (!read_more(front, &front->conf.items[i], err) && read_point(&front->points[front->n], &front->conf.items[i], err))
+			front->n++;
+	return !err_is(err);
 }
 
 void front_free(struct front *front)
@@ -40,6 +60,7 @@ void front_free(struct front *front)
 	for (int i = 0; i < front->n; i++) {
 		free(front->points[i].stage);
 		free(front->points[i].name);
+		free(front->points[i].settings);
 	}
 	free(front->points);
 	conf_free(&front->conf);

@@ -5,7 +5,8 @@
  *
  *     unrefract.small = 0.012 mm, 0.05 s + 0.04 s/Mpx: scale = 0.5, max_size = 512
  *
- * error against the finest setting or the truth, and time: fixed, and for each megapixel of the photographs.
+ * error against the finest setting or the truth, and time: fixed, and for each megapixel of the photographs. What does not fit
+ * its line goes on in the next ones: unrefract.small.more = key = value, ...; unrefract.small.more2 = ...
  * plan chooses one point for each stage that runs and leaves its choice in work/.made/front; the stages take their
  * settings from there. What capture.conf says of a single key goes before it, as before a preset.
  */
@@ -19,7 +20,7 @@ struct front_point {
 	char *stage, *name;
 	double error, fixed_s, mpx_s;
 	char unit[8];          // of the error
-	const char *settings;  // "key = value, key = value"; owned by the front
+	char *settings;        // "key = value, key = value"
 	int line;
 };
 

@@ -171,21 +171,33 @@ static bool beats(const struct point *a, const struct point *b)
 	return (faster && a->error <= b->error) || (exacter && no_slower);
 }
 
+/* One line of config/fronts.conf, and further ones where the keys do not fit it. */
 static void add_line(const struct fronts_stage *s, const struct point *p, const double mpx[2], bool two)
 {
+	enum { LINE = 190 };  // of the 198 bytes that a configuration's line may have
 	double slope = two ? fmax((p->time.median - p->small.median) / (mpx[0] - mpx[1]), 0) : 0, fixed = fmax(p->time.median - slope * mpx[0], 0);
 	const char *keys = s->keys, *values = p->values;
-	char *line = mem_printf("%s%s.%s = %.3g %s, %.3g s + %.3g s/Mpx:", lines ? lines : "", s->stage, p->name, p->error, s->unit, fixed, slope), *key;
-	for (int i = 0; (key = next_of(&keys)); i++) {
-		char *value = next_of(&values), *more = mem_printf("%s%s %s = %s", line, i ? "," : "", key, value ? value : "");
-		free(line);
-		line = more;
+	char *text = 0, *key;
+	size_t size = 0;
+	FILE *f = open_memstream(&text, &size);
+	int at = fprintf(f, "%s.%s = %.3g %s, %.3g s + %.3g s/Mpx: ", s->stage, p->name, p->error, s->unit, fixed, slope);
+	for (int i = 0, more = 0; (key = next_of(&keys)); i++) {
+		char *value = next_of(&values);
+		if (at + (int)strlen(key) + (int)strlen(value ? value : "") + 5 > LINE) {
+			at = fprintf(f, "\n%s.%s.more%.0d = ", s->stage, p->name, more) - 1;  // .more, .more2, .more3
+			more += more ? 1 : 2;
+		} else if (i) {
+			at += fprintf(f, ", ");
+		}
+		at += fprintf(f, "%s = %s", key, value ? value : "");
 		free(key);
 		free(value);
 	}
+	fclose(f);
+	char *all = mem_printf("%s%s\n", lines ? lines : "", text);
 	free(lines);
-	lines = mem_printf("%s\n", line);
-	free(line);
+	free(text);
+	lines = all;
 }
 
 static void judge(int n, const struct point points[], const struct fronts_stage *s, const double mpx[2], bool two)
