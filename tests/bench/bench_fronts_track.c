@@ -1,5 +1,5 @@
-/* Fronts of `track`: its knobs on the first frames of the bundled clip, time and error of the same run: margins of the lids and
- * points of the skin off the clip's truth, px.
+/* Fronts of `track`: its knobs on the first frames of the bundled clip, time and error of the same run: margins of the lids
+ * off the clip's truth, px, 95 % of them: gaze and skin come well within what they need at every setting.
  */
 #include <math.h>
 #include <stdio.h>
@@ -20,7 +20,7 @@ static double off_truth(const char *capture, const char *reference)
 		fprintf(stderr, "%s\n", err.msg);
 		return NAN;
 	}
-	return (s.lid.median + s.skin.median) / 2;
+	return s.lid.p95;
 }
 
 static const struct fronts_stage track = {
@@ -29,7 +29,7 @@ static const struct fronts_stage track = {
 	.more = { { "quickest", "20, 6, 6, 2, 0.1, 1, 1, 0.5, 40, 24, 45" }, { "quick_skin", "180, 8, 8, 2, 0.05, 0.6, 1, 0.3, 120, 48, 360" },
 		  { "quick_eyes", "40, 10, 12, 1, 0.02, 0.1, 1, 0, 60, 36, 90" }, { "one_sweep", "180, 10, 12, 1, 0.02, 0.1, 1, 0, 120, 48, 360" },
 		  { "thorough", "300, 12, 20, 1, 0.01, 0.1, 3, 0, 180, 64, 360" } },
-	.unit = "px", .error_of = "lids and skin off the truth, mean of the medians", .error = off_truth, .reps = 0,
+	.unit = "px", .error_of = "margins of the lids off the truth, 95 %", .error = off_truth, .reps = 0,
 };
 
 int main(int argc, char **argv)

@@ -12,6 +12,7 @@
 #include "math/rng.h"
 #include "math/scatter.h"
 #include "tests/lib/bench.h"
+#include "tests/lib/peer.h"
 #include "tests/lib/scratch.h"
 
 enum { P = 400, K = 12, INPUTS = 40, OUTPUTS = 6, REPS = 5 };
@@ -139,56 +140,24 @@ static bool give(const char *name, long n, int width, const double *x)
 	return npy_save(scratch_path("%s.npy", name), &array, &err);
 }
 
-/* What the peer found, in a file of that name; null where it found nothing. */
-static double *taken(const char *name, long n)
-{
-	struct npy array;
-	struct err err = { 0 };
-	if (!npy_read(&array, scratch_path("%s.npy", name), NPY_LIMIT, &err))
-		return 0;
-	double *x = npy_count(&array) == n ? npy_doubles(&array) : 0;
-	npy_free(&array);
-	return x;
-}
-
-static struct bench_time read_times(FILE *from)
-{
-	double t[REPS];
-	int n = 0;
-	char line[1000], *at = line;
-	if (!fgets(line, sizeof line, from))
-		return (struct bench_time){ NAN, NAN, NAN };
-	for (char *end; n < REPS; at = end) {
-		t[n] = strtod(at, &end);
-		if (end == at)
-			break;
-		n++;
-	}
-	return n ? bench_time_of(n, t) : (struct bench_time){ NAN, NAN, NAN };
-}
-
 static void scikit_learn(const struct rows *r, int reps, const char *setting)
 {
 	static const char *const methods[] = { "scikit-learn PCA, full", "scikit-learn PCA, randomized", "scikit-learn IncrementalPCA" };
-	if (system("/usr/bin/python3 -c 'import sklearn' 2>/dev/null")) {
-		fprintf(stderr, "bench_peers: scikit-learn is not installed: apt-get install python3-sklearn; its rows are left out\n");
+	if (!peer_installed("bench_peers", "sklearn", "python3-sklearn"))
 		return;
-	}
 	give("x", r->n, P, r->x);
 	give("inputs", r->n, INPUTS, r->inputs);
 	give("outputs", r->n, OUTPUTS, r->outputs);
 	char *command = mem_printf("/usr/bin/python3 tests/bench/peer_sklearn.py '%s' %d %d", scratch_path("."), reps, K);
 	FILE *from = popen(command, "r");
 	for (int i = 0; from && i < COUNT(methods); i++) {
-		struct bench_time time = read_times(from);
-		char *name = mem_printf("values_%d", i);
-		double *found = taken(name, K);
+		struct bench_time time = peer_times(from);
+		double *found = peer_array(scratch_path("values_%d.npy", i), K);
 		bench_row("principal components", methods[i], setting, time, "fit", found ? values_off(r, found) : NAN, "", of_values);
 		free(found);
-		free(name);
 	}
-	struct bench_time time = from ? read_times(from) : (struct bench_time){ NAN, NAN, NAN };
-	double *predicted = taken("predicted", r->n * OUTPUTS);
+	struct bench_time time = peer_times(from);
+	double *predicted = peer_array(scratch_path("predicted.npy"), r->n * OUTPUTS);
 	bench_row("linear regression", "scikit-learn LinearRegression", setting, time, "fit", predicted ? lines_off(r, predicted) : NAN, "", of_lines);
 	free(predicted);
 	if (from)

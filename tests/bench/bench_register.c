@@ -1,5 +1,6 @@
-/* register: pairs of meshes with truth brought together as transfer does it, beside the published figures of other
- * programs on the same pairs. Errors in per cent of the diagonal, processor seconds of one core from files to the result. */
+/* register: pairs of meshes with truth brought together as transfer does it, beside Open3D's rigid registration, where that is
+ * installed (apt-get install python3-open3d), and the published figures of other programs on the same pairs. Errors in per cent
+ * of the diagonal, processor seconds of one core from files to the result. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -11,6 +12,8 @@
 #include "bridge/om_mesh.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/pair.h"
+#include "tests/lib/peer.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/transfer_conf.h"
 
 /* Other programs' measured figures: the whole program, one core of a desktop. The last of each pair is the fastest. */
@@ -89,6 +92,37 @@ static void show_peers(const char *name)
 	}
 }
 
+/* Open3D moves and turns the mesh: what a registration that bends nothing leaves. */
+static void open3d(const struct pair *pair, int reps)
+{
+	static const char *const methods[] = { "Open3D ICP, point to plane (rigid)", "Open3D features, RANSAC, ICP (rigid)" };
+	char rel[2][256], table[64], *out = mem_str(scratch_path("open3d_%s", pair->name));
+	snprintf(rel[0], sizeof rel[0], "registration/%s/source.ply", pair->name);
+	snprintf(rel[1], sizeof rel[1], "registration/%s/target.ply", pair->name);
+	char *command = mem_printf("OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/peer_open3d.py '%s' '%s' '%s' %d", bench_data(rel[0]),
+	                           bench_data(rel[1]), out, reps);
+	FILE *from = popen(command, "r");
+	long n = 3L * pair->source.n_vertices;
+	float(*place)[3] = mem_array((size_t)n, sizeof **place);
+	for (int i = 0; from && i < COUNT(methods); i++) {
+		struct bench_time time = peer_times(from);
+		double *at = peer_array(scratch_path("open3d_%s_%d.npy", pair->name, i), n);
+		for (long k = 0; at && k < n; k++)
+			place[k / 3][k % 3] = (float)at[k];
+		struct pair_error e = at ? pair_measure(pair, (const float(*)[3])place) : (struct pair_error){ NAN, NAN, NAN, NAN, -1 };
+		snprintf(table, sizeof table, "register %s", pair->name);
+		bench_row(table, methods[i], "run here", time, "pair", e.surface, "%", "surface, mean");
+		snprintf(table, sizeof table, "register %s, truth", pair->name);
+		bench_row(table, methods[i], "run here", time, "pair", e.truth, "%", "true place, mean");
+		free(at);
+	}
+	if (from)
+		pclose(from);
+	free(place);
+	free(command);
+	free(out);
+}
+
 static double best(const char *name, bool of_surface)
 {
 	double least = INFINITY;
@@ -114,7 +148,7 @@ static void goals(const char *name, double most_s, double seconds, const struct 
 	bench_goal(measure, "none", e->flipped, "", e->flipped == 0);
 }
 
-static void one(const char *name, double most_s)
+static void one(const char *name, double most_s, bool peer)
 {
 	enum { REPS = 5 };
 	struct pair pair;
@@ -141,6 +175,8 @@ static void one(const char *name, double most_s)
 	bench_row(table, "transfer", "review", time, "pair", e.surface, "%", "surface, mean");
 	snprintf(table, sizeof table, "register %s, truth", name);
 	bench_row(table, "transfer", "review", time, "pair", e.truth, "%", "true place, mean");
+	if (peer)
+		open3d(&pair, reps < 3 ? reps : 3);
 	show_peers(name);
 	goals(name, most_s, time.median, &e);
 	pair_free(&pair);
@@ -149,9 +185,12 @@ static void one(const char *name, double most_s)
 int main(int argc, char **argv)
 {
 	bench_open("register", argc, argv);
+	scratch_open();
+	bool peer = peer_installed("bench_register", "open3d", "python3-open3d");
 	omp_set_num_threads(1);
 	for (int i = 0; i < COUNT(pairs); i++)
 		if (!bench_quick() || strcmp(pairs[i].name, "ict_id_100k"))
-			one(pairs[i].name, pairs[i].seconds);
+			one(pairs[i].name, pairs[i].seconds, peer);
+	scratch_close();
 	return bench_close();
 }
