@@ -52,9 +52,11 @@ void lightpath_batch_point_double(int n, const double *px, const double *py, con
                                   const struct cornea *cornea, int steps);
 
 /* lightpath_batch() with an error in mm that is good enough (0: as good as float is), from starts of the caller's:
- * where the ray from P in direction q (any length) leaves the surface; q null: the closed form. Returns how many had to be
- * done again in double. */
-long lightpath_batch_from(int n, const float *qx, const float *qy, const float *qz, const float *px, const float *py, const float *pz,
+ * where the ray from P in direction q (any length) leaves the surface; q null: the closed form. */
+struct lightpath_again {
+	long longer, in_double;  // problems that took more steps than asked for; that float could not tell
+};
+struct lightpath_again lightpath_batch_from(int n, const float *qx, const float *qy, const float *qz, const float *px, const float *py, const float *pz,
                           const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
                           unsigned char *status, const struct cornea *cornea, int steps, double error_mm);
 

@@ -178,7 +178,7 @@ int path_search(double K[][3], int max, const struct path *path)
 	return n;
 }
 
-double lightpath_clear_depth(const struct cornea *cornea)
+static double clear_depth(const struct cornea *cornea)
 {
 	double least = INFINITY, R = cornea->R, p = cornea->p, n = cornea->n;
 	for (int i = 0; i <= 32; i++) {
@@ -189,6 +189,19 @@ double lightpath_clear_depth(const struct cornea *cornea)
 		least = fmin(least, z + n * cos_t * cos_t / power * down);
 	}
 	return 0.97 * least;
+}
+
+double lightpath_clear_depth(const struct cornea *cornea)
+{
+	// Asked for again and again about one cornea, and as dear as a whole path.
+	static _Thread_local struct {
+		double R, p, n, rim, depth;
+	} last;
+	if (cornea->R != last.R || cornea->p != last.p || cornea->n != last.n || cornea->rim != last.rim) {
+		last.depth = clear_depth(cornea);
+		last.R = cornea->R, last.p = cornea->p, last.n = cornea->n, last.rim = cornea->rim;
+	}
+	return last.depth;
 }
 
 int lightpath_all(double K[][3], int max, const struct cornea *cornea, const double P[3], const double C[3],

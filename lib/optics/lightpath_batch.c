@@ -57,7 +57,7 @@ void lightpath_batch_point_double(int n, const double *px, const double *py, con
 	double_run(&(struct double_batch){ { px, py, pz }, { kx, ky, kz }, status, cornea, C, 0 }, n, steps);
 }
 
-long lightpath_batch_from(int n, const float *qx, const float *qy, const float *qz, const float *px, const float *py, const float *pz,
+struct lightpath_again lightpath_batch_from(int n, const float *qx, const float *qy, const float *qz, const float *px, const float *py, const float *pz,
                           const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
                           unsigned char *status, const struct cornea *cornea, int steps, double error_mm)
 {

@@ -123,34 +123,81 @@ static bool NAME(doubtful)(const struct NAME(block) *b, int i, const struct corn
 	return b->pz[i] > *clear || (C ? C[2] > b->kz[i] : b->wz[i] > 0);
 }
 
-/* Those lanes, or that float cannot tell well enough, gathered and polished in double; their number. */
-static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *batch, double *clear)
+/* Lanes that have not converged, or grazed; their number. */
+static int NAME(unsure)(int lane[BLOCK + 1], const struct NAME(block) *b, int m)
 {
-	int lane[BLOCK + 1], n = 0, any = 0;
-#pragma omp simd reduction(| : any)
-	for (int i = 0; i < m; i++)
-		any |= b->again[i] | (b->status[i] == LIGHTPATH_GRAZING);
-	if (!any)
-		return 0;
-	for (int i = 0; i < m; i++) {
-		lane[n] = i;
-		n += NAME(doubtful)(b, i, batch->cornea, batch->C, clear);
+	int n = 0;
+	for (int from = 0; from < m; from += 8) {
+		int any = 0, to = from + 8 < m ? from + 8 : m;
+		for (int i = from; i < to; i++)
+			any |= b->again[i] | (b->status[i] == LIGHTPATH_GRAZING);
+		for (int i = from; any && i < to; i++) {
+			lane[n] = i;
+			n += b->again[i] | (b->status[i] == LIGHTPATH_GRAZING);
+		}
+	}
+	return n;
+}
+
+/* Few lanes of a block, in whole vectors, as a block of their own, of either type; the last one repeated. */
+#define GATHER(few, spare, b, lane, n)                                                                                 \
+	for (int j = 0; j < ((n) + 7) / 8 * 8; j++) {                                                                  \
+		int i = (lane)[j < (n) ? j : (n) - 1];                                                                 \
+		(spare).in[0][j] = (b)->px[i], (spare).in[1][j] = (b)->py[i], (spare).in[2][j] = (b)->pz[i];           \
+		(spare).in[3][j] = (b)->wx[i], (spare).in[4][j] = (b)->wy[i], (spare).in[5][j] = (b)->wz[i];           \
+		(few).x[j] = (b)->x[i], (few).y[j] = (b)->y[i];                                                        \
+	}
+
+/* More steps for those that have not converged: few problems need them, and only these pay. Returns their number. */
+static int NAME(persist)(struct NAME(block) *b, const int lane[], int all, const struct NAME(batch) *batch, const struct NAME(shared) *shared)
+{
+	enum { STEPS = 3 };
+	int late[BLOCK + 1], n = 0;
+	for (int j = 0; j < all; j++) {
+		late[n] = lane[j];
+		n += b->again[lane[j]];
 	}
 	if (!n)
 		return 0;
+	struct NAME(block) few;
+	struct NAME(spare_lanes) spare;
+	GATHER(few, spare, b, late, n)
+	const REAL *const in[] = { spare.in[0], spare.in[1], spare.in[2], spare.in[3], spare.in[4], spare.in[5], 0, 0, 0 };
+	REAL *const out[] = { spare.out[0], spare.out[1], spare.out[2] };
+	int whole = NAME(load)(&few, &spare, in, out, 0, (n + 7) / 8 * 8);
+	(batch->C ? NAME(polish_point) : NAME(polish_directional))(&few, shared, whole, STEPS);
+	for (int j = 0; j < n; j++) {
+		int i = late[j];
+		b->x[i] = few.x[j], b->y[i] = few.y[j];
+		b->kx[i] = few.kx[j], b->ky[i] = few.ky[j], b->kz[i] = few.kz[j];
+		b->status[i] = few.status[j];
+		b->again[i] = few.again[j];
+	}
+	return n;
+}
+
+/* What is doubtful even so, or float cannot tell well enough, gathered and polished in double. */
+static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *batch, const struct NAME(shared) *shared, double *clear,
+                       struct lightpath_again *count)
+{
+	int lane[BLOCK + 1], all = NAME(unsure)(lane, b, m), n = 0;
+	if (!all)
+		return;
+	if (sizeof(REAL) < sizeof(double))
+		count->longer += NAME(persist)(b, lane, all, batch, shared);
+	for (int j = 0; j < all; j++)
+		if (NAME(doubtful)(b, lane[j], batch->cornea, batch->C, clear))
+			lane[n++] = lane[j];
+	if (!n)
+		return;
+	count->in_double += n;
 	struct double_block again;
 	struct double_spare_lanes spare;
-	for (int j = 0; j < (n + 7) / 8 * 8; j++) {
-		int i = lane[j < n ? j : n - 1];
-		const double of[] = { b->px[i], b->py[i], b->pz[i], b->wx[i], b->wy[i], b->wz[i] };
-		for (int k = 0; k < COUNT(of); k++)
-			spare.in[k][j] = of[k];
-		again.x[j] = b->x[i], again.y[j] = b->y[i];
-	}
+	GATHER(again, spare, b, lane, n)
 	const double *const in[] = { spare.in[0], spare.in[1], spare.in[2], spare.in[3], spare.in[4], spare.in[5], 0, 0, 0 };
 	double *const out[] = { spare.out[0], spare.out[1], spare.out[2] };
-	struct double_shared shared = double_share(batch->cornea, batch->C);
-	(batch->C ? double_polish_point : double_polish_directional)(&again, &shared, double_load(&again, &spare, in, out, 0, (n + 7) / 8 * 8), 4);
+	struct double_shared exact = double_share(batch->cornea, batch->C);
+	(batch->C ? double_polish_point : double_polish_directional)(&again, &exact, double_load(&again, &spare, in, out, 0, (n + 7) / 8 * 8), 4);
 	for (int j = 0; j < n; j++) {
 		int i = lane[j];
 		b->kx[i] = again.kx[j], b->ky[i] = again.ky[j], b->kz[i] = again.kz[j];
@@ -158,8 +205,8 @@ static int NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *ba
 		if (double_doubtful(&again, j, batch->cornea, batch->C, clear) || again.status[j] != LIGHTPATH_OK)
 			NAME(alone)(b, i, batch);
 	}
-	return n;
 }
+#undef GATHER
 
 /* The effort that an error allows: after a last step of s mm, s² mm are left at most. */
 static void NAME(spare)(struct NAME(shared) *shared, double error)
@@ -178,23 +225,23 @@ SIMD_CLONES static void NAME(tell)(unsigned char *restrict out, const int *restr
 		out[i] = (unsigned char)status[i];
 }
 
-static long NAME(run)(const struct NAME(batch) *batch, int n, int steps)
+static struct lightpath_again NAME(run)(const struct NAME(batch) *batch, int n, int steps)
 {
 	struct NAME(shared) shared = NAME(share)(batch->cornea, batch->C);
 	NAME(spare)(&shared, batch->error);
 	struct NAME(block) block;
 	struct NAME(spare_lanes) spare;
-	long redone = 0;
+	struct lightpath_again count = { 0 };
 	double clear = 0;
 	for (int from = 0; from < n; from += BLOCK) {
 		int m = n - from < BLOCK ? n - from : BLOCK, whole = NAME(load)(&block, &spare, batch->in, batch->out, from, m);
 		(batch->in[6] ? NAME(start_along) : batch->C ? NAME(start_point) : NAME(start_directional))(&block, &shared, whole);
 		(batch->C ? NAME(polish_point) : NAME(polish_directional))(&block, &shared, whole, steps);
-		redone += NAME(redo)(&block, m, batch, &clear);
+		NAME(redo)(&block, m, batch, &shared, &clear, &count);
 		for (int k = 0; k < NAME(OUT) && whole != m; k++)
 			memcpy(batch->out[k] + from, spare.out[k], (size_t)m * sizeof(REAL));
 		if (batch->status)
 			NAME(tell)(batch->status + from, block.status, m);
 	}
-	return redone;
+	return count;
 }

@@ -39,16 +39,25 @@ SIMD_INLINE REAL NAME(outward)(REAL u[3], const struct NAME(block) *b, int i, co
 	return inv;
 }
 
-/* Where the ray from P in direction q leaves the surface. */
-SIMD_INLINE void NAME(leave)(REAL K[3], const struct NAME(block) *b, int i, const struct NAME(shared) *c, const REAL q[3])
+/* How far the ray from P in direction q is inside, in lengths of q: num / den. */
+SIMD_INLINE void NAME(reach)(REAL *num, REAL *den, const struct NAME(block) *b, int i, const struct NAME(shared) *c, const REAL q[3])
 {
 	REAL px = b->px[i], py = b->py[i], pz = b->pz[i], s = c->R - c->p * pz;
 	REAL A = q[0] * q[0] + q[1] * q[1] + c->p * q[2] * q[2], B = px * q[0] + py * q[1] - s * q[2];
 	REAL C = px * px + py * py - pz * (c->R + s), disc = B * B - A * C;
-	REAL t = -C / (B + SQRT(disc > 0 ? disc : 0));
-	K[0] = px + t * q[0];
-	K[1] = py + t * q[1];
-	K[2] = pz + t * q[2];
+	*num = -C;
+	*den = B + SQRT(disc > 0 ? disc : 0);
+}
+
+/* Where it leaves the surface. */
+SIMD_INLINE void NAME(leave)(REAL K[3], const struct NAME(block) *b, int i, const struct NAME(shared) *c, const REAL q[3])
+{
+	REAL num, den;
+	NAME(reach)(&num, &den, b, i, c, q);
+	REAL t = num / den;
+	K[0] = b->px[i] + t * q[0];
+	K[1] = b->py[i] + t * q[1];
+	K[2] = b->pz[i] + t * q[2];
 }
 
 /* The closed-form start of lightpath.c in three loops (why: see lengths()): bent(), refracted(), started(). */
@@ -76,12 +85,12 @@ SIMD_INLINE void NAME(refracted)(struct NAME(block) *b, int i, const struct NAME
 
 SIMD_INLINE void NAME(started)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool given)
 {
-	REAL q[3] = { given ? b->qx[i] : b->gx[i], given ? b->qy[i] : b->gy[i], given ? b->qz[i] : b->hxx[i] }, K[3];
-	NAME(leave)(K, b, i, c, q);
-	// The chart: where the line from the far end of the axis meets the plane z = 0, over 2R.
-	REAL inv_t = 1 / (2 * c->R - c->p * K[2]);
-	b->x[i] = K[0] * inv_t;
-	b->y[i] = K[1] * inv_t;
+	REAL q[3] = { given ? b->qx[i] : b->gx[i], given ? b->qy[i] : b->gy[i], given ? b->qz[i] : b->hxx[i] }, num, den;
+	NAME(reach)(&num, &den, b, i, c, q);
+	// The chart: where the line from the far end of the axis meets the plane z = 0, over 2R: K_x / (2 R - p K_z).
+	REAL inv_t = 1 / (2 * c->R * den - c->p * (den * b->pz[i] + num * q[2]));
+	b->x[i] = (den * b->px[i] + num * q[0]) * inv_t;
+	b->y[i] = (den * b->py[i] + num * q[1]) * inv_t;
 }
 
 /* One Newton step on L, in the rational chart K = t (x, y, rho²), t = R tau, tau = 2 / (1 + p rho²), rho² = x² + y²:
@@ -89,10 +98,12 @@ SIMD_INLINE void NAME(started)(struct NAME(block) *b, int i, const struct NAME(s
  * processor works on several vectors of lanes at a time, instead of waiting for the roots and quotients of one. */
 SIMD_INLINE void NAME(lengths)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
 {
-	REAL x = b->x[i], y = b->y[i], rho2 = x * x + y * y, tau = 2 / (1 + c->p * rho2), t = c->R * tau;
-	REAL vx = t * x - b->px[i], vy = t * y - b->py[i], vz = t * rho2 - b->pz[i];
-	b->tau[i] = tau;
-	b->inv_d[i] = 1 / SQRT(vx * vx + vy * vy + vz * vz);
+	// (1 + p rho²) / 2 times K - P, and one quotient for both.
+	REAL x = b->x[i], y = b->y[i], rho2 = x * x + y * y, inv_tau = (REAL)0.5 + (REAL)0.5 * c->p * rho2;
+	REAL vx = c->R * x - inv_tau * b->px[i], vy = c->R * y - inv_tau * b->py[i], vz = c->R * rho2 - inv_tau * b->pz[i];
+	REAL far = SQRT(vx * vx + vy * vy + vz * vz), q = 1 / (inv_tau * far);
+	b->tau[i] = far * q;
+	b->inv_d[i] = inv_tau * inv_tau * q;
 }
 
 /* Gradient and Hessian of L over the tangents e + (x, y) m, m = tau (−p x, −p y, 1), of length 1 / t against the

@@ -58,8 +58,8 @@ static void judge(const struct refraction *f, int n, const float *wx, const floa
 	}
 }
 
-/* At most BLOCK of them. Returns how many were done again in double. */
-static long evaluate(const struct refraction *f, int n, const float *px, const float *py, const float *pz,
+/* At most BLOCK of them. */
+static struct lightpath_again evaluate(const struct refraction *f, int n, const float *px, const float *py, const float *pz,
                      const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
                      unsigned char *status)
 {
@@ -68,7 +68,7 @@ static long evaluate(const struct refraction *f, int n, const float *px, const f
 	if (good && is_table(f)) {
 		refraction_look_up(f, n, px, py, wx, wy, wz, kx, ky, kz);
 		judge(f, n, wx, wy, wz, kx, ky, kz, status);
-		return 0;
+		return (struct lightpath_again){ 0 };
 	}
 	if (good)
 		refraction_start(f, n, px, py, wx, wy, wz, qx, qy, qz);
@@ -129,15 +129,18 @@ static struct probe *probe_new(const struct cornea *cornea, double depth, double
 	return probe;
 }
 
-/* Fills worst_mm and mean_mm; returns the share of evaluations that had to be done again in double. */
-static double measure(struct refraction *f, struct probe *p)
+/* Fills worst_mm and mean_mm; returns how many of the PROBE evaluations took more than the steps asked for. */
+static struct lightpath_again measure(struct refraction *f, struct probe *p)
 {
-	long again = 0, n = 0;
+	struct lightpath_again again = { 0 };
+	long n = 0;
 	double sum = 0, worst = 0;
 	for (int i = 0; i < PROBE; i += BLOCK) {
 		int m = PROBE - i < BLOCK ? PROBE - i : BLOCK;
-		again += evaluate(f, m, p->px + i, p->py + i, p->pz + i, p->wx + i, p->wy + i, p->wz + i, p->kx + i, p->ky + i,
-		                  p->kz + i, p->status + i);
+		struct lightpath_again more = evaluate(f, m, p->px + i, p->py + i, p->pz + i, p->wx + i, p->wy + i, p->wz + i, p->kx + i,
+		                                       p->ky + i, p->kz + i, p->status + i);
+		again.longer += more.longer;
+		again.in_double += more.in_double;
 	}
 	for (int i = 0; i < PROBE; i++) {
 		if (p->truth[i] != LIGHTPATH_OK)
@@ -149,15 +152,15 @@ static double measure(struct refraction *f, struct probe *p)
 	}
 	f->worst_mm = worst;
 	f->mean_mm = n ? sum / n : 0;
-	return (double)again / PROBE;
+	return again;
 }
 
 /* Nanoseconds of one evaluation, as measured with AVX2 (bench_refraction): fixed figures, so that the choice is the same on
- * every machine. */
-static double cost(const struct refraction *f, double again)
+ * every machine. What float cannot tell ends, for the most part, in the scalar solver. */
+static double cost(const struct refraction *f, struct lightpath_again again)
 {
 	double start = f->method == REFRACTION_POLYNOMIAL ? 2.5 + 0.06 * refraction_monomials(f->degree) : 3.4;
-	return start + 2.25 * f->steps + 150 * again;
+	return start + 2.25 * f->steps + (15.0 * (double)again.longer + 1000.0 * (double)again.in_double) / PROBE;
 }
 
 /* The cheapest start and number of steps within the error, among those of the method. */
