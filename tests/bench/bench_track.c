@@ -131,7 +131,7 @@ static void points_alone(const char *clip, const struct skin_track_conf *conf, c
 	struct skin_points_score s;
 	struct err err = { 0 };
 	char *from = mem_printf("video/%s", clip), *setting = mem_printf("%s, %s", clip, quality);
-	if (!skin_points_follow(&s, bench_data(from), 1000, conf, &err)) {
+	if (!skin_points_follow(&s, bench_data(from), 1000, &(struct skin_points_way){ .conf = conf }, &err)) {
 		printf("%s: %s\n", clip, err.msg);
 	} else {
 		struct bench_time each = { s.seconds, s.seconds, s.seconds }, none = { NAN, NAN, NAN };

@@ -168,7 +168,55 @@ static double now(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-bool skin_points_follow(struct skin_points_score *score, const char *dir, int most, const struct skin_track_conf *conf, struct err *err)
+struct follower {
+	const struct skin_points_way *way;
+	const struct skin_points *points;
+	const uint8_t *mask;
+	struct skin_track *track;
+	uint8_t *first, *last;  // pictures of the flow: what it is compared with, and the newest
+	double (*at)[2];
+};
+
+static bool push_flow(struct follower *w, const uint8_t *luma, long stride, int width, int height, struct skin_point_state *state, struct err *err)
+{
+	size_t area = (size_t)width * (size_t)height;
+	bool begin = !w->first, ok = true;
+	if (begin) {
+		w->first = mem_new(area, 1);
+		w->last = mem_new(area, 1);
+		w->at = mem_array((size_t)w->points->n + 1, sizeof *w->at);
+		memcpy(w->at, w->points->at, (size_t)w->points->n * sizeof *w->at);
+	}
+	for (int y = 0; y < height; y++)
+		memcpy((begin ? w->first : w->last) + (size_t)y * (size_t)width, luma + y * stride, (size_t)width);
+	if (!begin)
+		ok = cv_flow(w->at, w->way->chained ? w->at : w->points->at, w->points->n, w->first, w->last, width, height, w->way->flow, err);
+	if (!begin && w->way->chained)
+		memcpy(w->first, w->last, area);
+	for (int i = 0; i < w->points->n; i++)
+		state[i] = (struct skin_point_state){ .at = { w->at[i][0], w->at[i][1] }, .confidence = 1 };
+	return ok;
+}
+
+static bool push(struct follower *w, const uint8_t *luma, long stride, int width, int height, struct skin_point_state *state, struct err *err)
+{
+	if (!w->way->conf)
+		return push_flow(w, luma, stride, width, height, state, err);
+	if (!w->track)
+		w->track = skin_track_new(w->points, luma, (int)stride, width, height, w->mask, w->way->conf);
+	skin_track_push(w->track, luma, (int)stride, state);
+	return true;
+}
+
+static void follower_free(struct follower *w)
+{
+	skin_track_free(w->track);
+	free(w->first);
+	free(w->last);
+	free(w->at);
+}
+
+bool skin_points_follow(struct skin_points_score *score, const char *dir, int most, const struct skin_points_way *way, struct err *err)
 {
 	struct truth t;
 	struct skin_points points;
@@ -181,23 +229,21 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 	struct skin_point_state *state = mem_new((size_t)points.n + 1, sizeof *state);
 	char *path = mem_printf("%s/video.mp4", dir);
 	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2, 0 }, err);
-	struct skin_track *track = 0;
+	long n_frames = way->frames && way->frames < t.n ? way->frames : t.n;
 	size_t area = (size_t)info.width * (size_t)info.height;
 	long tenth = t.n / TENTH;
 	uint8_t *begin = mem_new(area * (size_t)tenth + 1, 1);
 	uint8_t *mask = mem_new(area + 1, 1);
 	for (long i = 0; i < (long)info.width * info.height; i++)
 		mask[i] = in_opening(&t, (double)(i % info.width) + 0.5, (double)(i / info.width) + 0.5) ? 0 : 255;
+	struct follower follower = { .way = way, .points = &points, .mask = mask };
 	bool got = video != 0;
 	double seconds = 0;
-	for (long f = 0; got && f < t.n; f++) {
+	for (long f = 0; got && f < n_frames; f++) {
 		struct video_frame frame;
 		got = video_next(&frame, &got, video, err) && got;
 		double start = now();
-		if (got && !track)
-			track = skin_track_new(&points, frame.luma, frame.luma_stride, frame.width, frame.height, mask, conf);
-		if (got) {
-			skin_track_push(track, frame.luma, frame.luma_stride, state);
+		if (got && push(&follower, frame.luma, frame.luma_stride, frame.width, frame.height, state, err)) {
 			seconds += now() - start;
 			count(&s, &t, state, points.n, row, f, false);
 			for (int y = 0; y < frame.height && f < tenth; y++)
@@ -205,13 +251,13 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 		}
 		video_frame_free(&frame);
 	}
-	for (long f = 0; track && f < tenth; f++) {
-		skin_track_push(track, begin + (size_t)f * area, info.width, state);
+	for (long f = 0; follower.track && n_frames == t.n && f < tenth; f++) {
+		skin_track_push(follower.track, begin + (size_t)f * area, info.width, state);
 		count(&s, &t, state, points.n, row, f, true);
 	}
 	*score = (struct skin_points_score){ points.n, spread_of(s.n, s.all), spread_of(s.n_first, s.first), spread_of(s.n_last, s.last), spread_of(s.n_again, s.again),
-		                                 (double)s.n / fmax(1, s.sight), seconds / (double)t.n };
-	skin_track_free(track);
+		                                 (double)s.n / fmax(1, s.sight), seconds / (double)n_frames };
+	follower_free(&follower);
 	video_close(video);
 	skin_points_free(&points);
 	free(row);

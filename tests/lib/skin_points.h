@@ -1,6 +1,8 @@
-/* skin_points: skin_track on a rendered clip, every point begun at its true place in the first frame. */
+/* skin_points: skin_track, or OpenCV's motion between pictures, on a rendered clip, every point begun at its true place in the first
+ * frame. */
 #ifndef TESTS_SKIN_POINTS_H
 #define TESTS_SKIN_POINTS_H
+#include "bridge/cv_flow.h"
 #include "skin/skin_track.h"
 #include "tests/lib/track_score.h"
 
@@ -22,7 +24,16 @@ struct skin_points_score {
 	double seconds;                  // a frame, without decoding
 };
 
-/* dir: folder of video.mp4 and truth.npz. At most `most` points, spread evenly. False, err set, where a file is missing. */
-bool skin_points_follow(struct skin_points_score *score, const char *dir, int most, const struct skin_track_conf *conf, struct err *err);
+/* How they are followed: by skin_track, or by motion from each frame to the next (chained) or from the first to each. */
+struct skin_points_way {
+	const struct skin_track_conf *conf;  // null: the motion
+	enum cv_flow_method flow;
+	bool chained;
+	long frames;                         // at most; 0: all
+};
+
+/* dir: folder of video.mp4 and truth.npz. At most `most` points, spread evenly. `again` of skin_track on the whole clip alone.
+ * False, err set, where a file is missing. */
+bool skin_points_follow(struct skin_points_score *score, const char *dir, int most, const struct skin_points_way *way, struct err *err);
 
 #endif
