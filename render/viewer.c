@@ -66,7 +66,7 @@ static void programs(json_t *data, bool face)
 	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths }, { "refine", viewer_refine }, { "ground", viewer_ground }, { "march", viewer_march },
 		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present } },
 	  of_face[] = { { "skin_look", skin_look }, { "lids", viewer_lids }, { "tear", viewer_tear }, { "skin", viewer_skin_frag },
-		            { "skin_vert", viewer_skin_vert }, { "folds", viewer_folds }, { "copy", viewer_copy } };
+		            { "skin_vert", viewer_skin_vert }, { "folds", viewer_folds }, { "pose", viewer_pose }, { "copy", viewer_copy } };
 	json_t *sub = json_object();
 	for (int i = 0; i < COUNT(part); i++)
 		json_object_set_new(data, part[i].key, json_string(part[i].text));
@@ -74,7 +74,7 @@ static void programs(json_t *data, bool face)
 		json_object_set_new(sub, of_face[i].key, json_string(of_face[i].text));
 	json_object_set_new(data, "face", face ? json_pack("[o]", json_incref(sub)) : json_array());
 	json_decref(sub);
-	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_face_js : "",
+	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_pose_js : "", face ? viewer_face_js : "",
 	                      viewer_sliders_js, viewer_controls_js, viewer_live_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);
@@ -177,7 +177,7 @@ static bool add_eyes(json_t *eyes, struct parts *p, struct err *err)
 }
 
 /* Recorded gaze and the script's, where they are. */
-static bool add_clips(json_t *face, struct skin_job *skin, const struct rig *rig, struct err *err)
+static bool add_clips(json_t *face, struct skin_job *skin, struct err *err)
 {
 	static const char *const clips[][2] = { { "work/skin/gaze.csv", "As recorded" }, { "work/skin/animation.csv", "Cut-scene" } };
 	json_t *list = json_array();
@@ -189,7 +189,7 @@ static bool add_clips(json_t *face, struct skin_job *skin, const struct rig *rig
 			continue;
 		ok = drive_load(&drive, &skin->model, path, err);
 		if (ok) {
-			json_array_append_new(list, viewer_clip(clips[i][1], rig, &drive));
+			json_array_append_new(list, viewer_clip(clips[i][1], &drive));
 			drive_free(&drive);
 		}
 	}
@@ -211,7 +211,7 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 	}
 	if (ok) {
 		*face = viewer_face(name, target.portrait, &skin->model, skin->gain, skin->eyes, err);
-		ok = *face && add_clips(*face, skin, &target.rig, err);
+		ok = *face && add_clips(*face, skin, err);
 	}
 	portrait_free(target.portrait);
 	rig_free(&target.rig);

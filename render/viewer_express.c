@@ -1,4 +1,4 @@
-/* Expressions of a character for the interactive page, and the wrinkles that fold with them. */
+/* Wrinkles of a character for the interactive page, that fold with its expressions. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,31 +11,11 @@
 #include "skin/model.h"
 #include "skin/wrinkle_map.h"
 
-json_t *viewer_expressions(const struct face *f, int n, char *const names[])
-{
-	json_t *all = json_array();
-	for (int k = 0; k < f->n_au; k++) {
-		uint32_t *index = mem_array((size_t)n + 1, sizeof *index);
-		uint8_t *to = mem_array((size_t)n * RECORD + 1, 1);
-		size_t m = 0;
-		for (int i = 0; i < n; i++) {
-			const uint8_t *a = f->record[REST] + (long)f->order[i] * RECORD, *b = f->record[POSES + k] + (long)f->order[i] * RECORD;
-			if (!memcmp(a, b, RECORD))
-				continue;
-			index[m] = (uint32_t)i;
-			memcpy(to + RECORD * m++, b, RECORD);
-		}
-		json_array_append_new(all, json_pack("{s:o,s:o,s:o}", "name", template_text(names[k]), "index", viewer_base64(index, m * sizeof *index), "to", viewer_base64(to, m * RECORD)));
-		free(index);
-		free(to);
-	}
-	return all;
-}
-
 /* Where each vertex lies in the chart of the wrinkles: sixteenths of a px from its corner. */
-static json_t *places(const struct face *f, int n, const struct wrinkle_maps *maps)
+static json_t *places(const struct face *f, const struct wrinkle_maps *maps)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
+	int n = f->n_shown;
 	uint16_t *at = mem_array((size_t)n * 2 + 1, sizeof *at);
 	for (int i = 0; i < n; i++)
 		for (int c = 0; c < 2; c++) {
@@ -47,7 +27,7 @@ static json_t *places(const struct face *f, int n, const struct wrinkle_maps *ma
 	return out;
 }
 
-bool viewer_put_folds(json_t *out, const struct face *f, int n, struct err *err)
+bool viewer_put_folds(json_t *out, const struct face *f, struct err *err)
 {
 	const struct wrinkle_maps *maps = f->portrait->wrinkles;
 	enum { FOLDS = 8 };
@@ -62,7 +42,7 @@ bool viewer_put_folds(json_t *out, const struct face *f, int n, struct err *err)
 	if (map) {
 		const double *row = f->rig->camera.from_target[0];
 		double corner[] = { maps->map.width, maps->map.height }, subject_mm = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]), px = maps->px_per_mm * subject_mm;
-		json_object_set_new(out, "folds", json_pack("{s:o,s:O,s:o,s:o,s:f,s:f}", "map", map, "follows", follows, "size", json_numbers(2, corner), "home", places(f, n, maps),
+		json_object_set_new(out, "folds", json_pack("{s:o,s:O,s:o,s:o,s:f,s:f}", "map", map, "follows", follows, "size", json_numbers(2, corner), "home", places(f, maps),
 		                                            "subject_mm", subject_mm, "px", px));
 	}
 	json_decref(follows);

@@ -1,6 +1,5 @@
-/* A driven character for the interactive page: its mesh as portrait.h poses and lights it, on a grid of gazes and apertures
- * between which the page interpolates. Lengths mm, in the head's axes about the middle of both eyes. */
-#include <limits.h>
+/* A driven character for the interactive page: its rig, which the page evaluates, and how portrait.h lights it on a grid of
+ * gazes and apertures between which the page interpolates. Lengths mm, in the head's axes about the middle of both eyes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,24 +29,12 @@ static uint8_t byte(double t)
 	return (uint8_t)lrint(fmin(fmax(t, 0), 255));
 }
 
-/* The pose as it stands. */
-static void record(uint8_t *to, const struct face *f)
+/* Light as it stands. */
+static void record(uint8_t (*to)[3], const struct face *f)
 {
-	const struct portrait_mesh *m = &f->portrait->mesh;
-	static const float up[3] = { 0, 0, 1 }, even[3] = { 0.8f, 0.8f, 0.8f };  // hairs know neither normal nor light
-	for (int i = 0; i < f->n; i++, to += RECORD) {
-		float x[3], n[3];
-		const float *light = i < m->n ? m->light[i] : even;
-		to_head(x, f, m->x[i], true);
-		to_head(n, f, i < m->n ? m->normal[i] : up, false);
-		for (int c = 0; c < 3; c++) {
-			unsigned v = (unsigned)lrint(fmin(fmax((x[c] / (2 * reach) + 0.5) * 65535, 0), 65535));
-			to[2 * c] = (uint8_t)(v & 255);
-			to[2 * c + 1] = (uint8_t)(v >> 8);
-			to[6 + c] = byte(127.5 + 127.5 * n[c]);
-			to[9 + c] = byte(255 * sqrt(fmax(light[c], 0) / 3));
-		}
-	}
+	for (int i = 0; i < f->rig->n; i++)
+		for (int c = 0; c < 3; c++)
+			to[i][c] = byte(255 * sqrt(fmax(f->portrait->mesh.light[i][c], 0) / 3));
 }
 
 /* Share of the sky over places of both globes: their front halves, seen along the line of sight straight ahead. */
@@ -76,50 +63,29 @@ static void sky(uint8_t *to, const struct face *f)
 		}
 }
 
+/* Light of every pose of the grid and of every expression; leaves the portrait at rest. */
 static void pose_all(struct face *f)
 {
 	double *controls = mem_new((size_t)f->rig->n_inputs + 1, sizeof *controls);
+	struct portrait_view view = portrait_front(f->rig, -1, 140, 0, 0, 1280, 720);
 	f->sky = mem_new((size_t)POSES * SKY * SKY, 2);
-	f->record = mem_new((size_t)(POSES + f->n_au), sizeof *f->record);
+	f->light = mem_new((size_t)(POSES + f->n_au), sizeof *f->light);
 	for (int k = 0; k < POSES + f->n_au; k++) {
 		int pose = k < POSES ? k : REST;
 		drive_look(controls, f->rig, at_h[pose % NH], at_v[pose / NH % NV], at_a[pose / NH / NV]);
 		if (k >= POSES)
 			controls[SKIN_EYE_INPUTS + k - POSES] = 1;
 		portrait_pose(f->portrait, controls);
-		struct portrait_view view = portrait_front(f->rig, -1, 140, 0, 0, 1280, 720);
 		portrait_light(f->portrait, &view, k == 0);
-		portrait_lashes_move(f->portrait, &view);
-		f->record[k] = mem_array((size_t)f->n * RECORD, 1);
-		record(f->record[k], f);
+		f->light[k] = mem_array((size_t)f->rig->n + 1, sizeof **f->light);
+		record(f->light[k], f);
 		if (k < POSES)
 			sky(f->sky + (long)k * SKY * SKY * 2, f);
 	}
+	drive_look(controls, f->rig, 0, 0, 1);
+	portrait_pose(f->portrait, controls);
+	portrait_lashes_move(f->portrait, &view);
 	free(controls);
-}
-
-/* What differs by more than that or a few steps of light anywhere on the grid moves. */
-static bool moves(const struct face *f, int i)
-{
-	const uint8_t *a = f->record[0] + (long)i * RECORD;
-	for (int k = 1; k < POSES; k++) {
-		const uint8_t *b = f->record[k] + (long)i * RECORD;
-		for (int c = 0; c < 3; c++)
-			if (abs(a[2 * c] + 256 * a[2 * c + 1] - b[2 * c] - 256 * b[2 * c + 1]) > f->least || abs(a[9 + c] - b[9 + c]) > (f->least + 7) / 4)
-				return true;
-	}
-	return false;
-}
-
-static bool shown(const struct face *f, const int32_t v[3])
-{
-	for (int j = 0; j < 3; j++) {
-		float x[3];
-		to_head(x, f, f->portrait->mesh.x[v[j]], true);
-		if (fabsf(x[0]) > 0.98f * reach || fabsf(x[1]) > 0.98f * reach || fabsf(x[2]) > 0.98f * reach)
-			return false;
-	}
-	return true;
 }
 
 json_t *viewer_base64(const void *bytes, size_t size)
@@ -130,101 +96,50 @@ json_t *viewer_base64(const void *bytes, size_t size)
 	return out;
 }
 
-/* Orders the vertices that faces within reach use, moving ones first; returns their number. */
-static int order(struct face *f, uint32_t **faces, int *n_faces)
+/* Roots of albedo, and a hair or half of how moist it is; light of the rig's own vertices. */
+static void put_colours(json_t *out, const struct face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
-	int *place = mem_array((size_t)f->n, sizeof *place), n = 0;
-	bool *used = mem_new((size_t)f->n, sizeof *used);
-	*faces = mem_array((size_t)m->n_faces * 3, sizeof **faces);
-	*n_faces = 0;
-	for (int i = 0; i < m->n_faces; i++)
-		if (shown(f, m->faces[i])) {
-			for (int j = 0; j < 3; j++) {
-				used[m->faces[i][j]] = true;
-				(*faces)[3 * *n_faces + j] = (uint32_t)m->faces[i][j];
-			}
-			++*n_faces;
-		}
-	f->order = mem_array((size_t)f->n, sizeof *f->order);
-	// A page that is too large for the post is of no use: then less counts as motion.
-	long count = LONG_MAX;
-	for (f->least = 6; count > MOST;) {
-		f->least *= 2;
-		count = 0;
-		for (int i = 0; i < f->n; i++)
-			count += used[i] && moves(f, i);
-	}
-	for (int pass = 0; pass < 2; pass++) {
-		for (int i = 0; i < f->n; i++)
-			if (used[i] && moves(f, i) == !pass) {
-				place[i] = n;
-				f->order[n++] = i;
-			}
-		f->moving = pass ? f->moving : n;
-	}
-	for (int i = 0; i < 3 * *n_faces; i++)
-		(*faces)[i] = (uint32_t)place[(*faces)[i]];
-	free(place);
-	free(used);
-	return n;
-}
-
-static int put_mesh(json_t *out, struct face *f)
-{
-	const struct portrait_mesh *m = &f->portrait->mesh;
-	uint32_t *faces;
-	int n_faces, n = order(f, &faces, &n_faces);
 	static const float hair[3] = { 0.022f, 0.014f, 0.010f };
-	uint8_t *skin = mem_array((size_t)n * 4 + 1, 1), *still = mem_array((size_t)n * RECORD + 1, 1);
-	uint8_t *poses = mem_array((size_t)f->moving * RECORD * POSES + 1, 1);
+	int n = f->n_shown, base = f->level[0].end, posed = f->level[0].posed, poses = POSES + f->n_au;
+	uint8_t *skin = mem_array((size_t)n * 4 + 1, 1), *still = mem_array((size_t)base * 3 + 1, 1), *light = mem_array((size_t)posed * 3 * (size_t)poses + 1, 1);
 	for (int i = 0; i < n; i++) {
+		int at = f->order[i];
 		for (int c = 0; c < 3; c++)
-			skin[4 * i + c] = byte(255 * sqrt(fmax(f->order[i] < m->n ? m->albedo[f->order[i]][c] : hair[c], 0)));
-		skin[4 * i + 3] = f->order[i] < m->n ? byte(127 * m->wet[f->order[i]]) : 255;  // a hair, or half of how moist it is
-		memcpy(still + (long)i * RECORD, f->record[REST] + (long)f->order[i] * RECORD, RECORD);
-		for (int k = 0; k < POSES && i < f->moving; k++)
-			memcpy(poses + ((long)k * f->moving + i) * RECORD, f->record[k] + (long)f->order[i] * RECORD, RECORD);
+			skin[4 * i + c] = byte(255 * sqrt(fmax(at < m->n ? m->albedo[at][c] : hair[c], 0)));
+		skin[4 * i + 3] = at < m->n ? byte(127 * m->wet[at]) : 255;
+	}
+	for (int i = 0; i < base; i++) {
+		memcpy(still + 3L * i, f->light[REST][f->order[i]], 3);
+		for (int k = 0; k < poses && i < posed; k++)
+			memcpy(light + 3 * ((long)k * posed + i), f->light[k][f->order[i]], 3);
 	}
 	json_object_set_new(out, "n", json_integer(n));
-	json_object_set_new(out, "moving", json_integer(f->moving));
-	json_object_set_new(out, "faces", viewer_base64(faces, (size_t)n_faces * 3 * sizeof *faces));
+	json_object_set_new(out, "faces", viewer_base64(f->faces, (size_t)f->n_faces * sizeof *f->faces));
 	json_object_set_new(out, "skin", viewer_base64(skin, (size_t)n * 4));
-	json_object_set_new(out, "still", viewer_base64(still, (size_t)n * RECORD));
-	json_object_set_new(out, "poses", viewer_base64(poses, (size_t)f->moving * RECORD * POSES));
-	free(faces);
+	json_object_set_new(out, "still", viewer_base64(still, (size_t)base * 3));
+	json_object_set_new(out, "light", viewer_base64(light, (size_t)posed * 3 * (size_t)poses));
+	json_object_set_new(out, "rest_pose", json_integer(REST));
 	free(skin);
 	free(still);
-	free(poses);
-	return n;
+	free(light);
 }
 
-/* How far the lids of one eye are open, against what people do at this gaze. */
-static double opened(const struct rig *rig, const double *c, int side, const double gaze[2])
-{
-	double open = 0, usual = 0;
-	for (int k = 2 * side; k < 2 * side + 2; k++) {
-		open += c[k < 2 ? 3 + k : 6 + k];
-		usual += rig->baseline[k][0] * gaze[0] + rig->baseline[k][1] * gaze[1] + rig->baseline[k][2];
-	}
-	return fmin(fmax(usual > 0.05 ? open / usual : 1, 0), 1.4);
-}
-
-/* What drives, as the grid has it: time; gaze and aperture of the left eye, then of the right; expressions; one row a frame. */
-json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive *drive)
+/* What drives, one row a frame: time and all controls. */
+json_t *viewer_clip(const char *name, const struct drive *drive)
 {
 	json_t *rows = json_array();
 	double step = 1 / 60.0, next = -1e9;
 	for (int i = 0; i < drive->n; i++) {
 		const double *c = drive_at(drive, i);
-		double gaze[2] = { 0.5 * (c[0] + c[5]), 0.5 * (c[1] + c[6]) };
 		if (drive->time[i] < next)
 			continue;
 		next = drive->time[i] + step * 0.9;
-		json_t *row = json_pack("[f,f,f,f,f,f,f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3, round(100 * c[0]) / 100, round(100 * c[1]) / 100,
-		                        round(1e3 * opened(rig, c, 0, gaze)) / 1e3, round(100 * c[5]) / 100, round(100 * c[6]) / 100, round(1e3 * opened(rig, c, 1, gaze)) / 1e3);
-		for (int k = SKIN_EYE_INPUTS; k < drive->n_inputs; k++)
-			json_array_append_new(row, json_real(round(1e3 * c[k]) / 1e3));
+		json_t *row = json_pack("[f]", round(1e3 * (drive->time[i] - drive->time[0])) / 1e3);
+		for (int k = 0; k < drive->n_inputs; k++) {
+			double unit = k < SKIN_EYE_INPUTS && k % 5 < 3 ? 1e2 : 1e4;  // degrees; else shares
+			json_array_append_new(row, json_real(round(unit * c[k]) / unit));
+		}
 		json_array_append_new(rows, row);
 	}
 	return json_pack("{s:s,s:o}", "name", name, "rows", rows);
@@ -248,12 +163,10 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 		for (int j = 0; j < 3; j++)
 			f.n = portrait->mesh.faces[i][j] < f.n ? f.n : portrait->mesh.faces[i][j] + 1;
 	json_t *out = json_object(), *globes = json_array(), *corners = json_array();
-	double reach_mm = reach;
 	for (int c = 0; c < 3; c++)
 		f.middle[c] = 0.5 * (f.rig->globe[0].center[c] + f.rig->globe[1].center[c]);
 	pose_all(&f);
 	json_object_set_new(out, "name", template_text(name));
-	json_object_set_new(out, "reach", json_number(reach_mm));
 	json_object_set_new(out, "gain", json_number(gain));
 	double shadow_mm = TEAR_SHADOW_MM, lake = 1 + LAKE_RISE;
 	json_object_set_new(out, "tear_mm", json_number(portrait->conf.tear_mm));
@@ -275,16 +188,21 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
 	json_object_set_new(out, "sky", viewer_base64(f.sky, (size_t)POSES * SKY * SKY * 2));
-	int n = put_mesh(out, &f);
-	json_object_set_new(out, "expressions", viewer_expressions(&f, n, model->au_names));
-	if (!viewer_put_folds(out, &f, n, err)) {
+	viewer_order(&f, 0.98 * reach);
+	put_colours(out, &f);
+	viewer_put_rig(out, &f);
+	json_t *names = json_array();
+	for (int k = 0; k < f.n_au; k++)
+		json_array_append_new(names, json_pack("{s:o}", "name", template_text(model->au_names[k])));
+	json_object_set_new(out, "expressions", names);
+	if (!viewer_put_folds(out, &f, err)) {
 		json_decref(out);
 		out = 0;
 	}
+	viewer_order_free(&f);
 	for (int k = 0; k < POSES + f.n_au; k++)
-		free(f.record[k]);
-	free(f.record);
+		free(f.light[k]);
+	free(f.light);
 	free(f.sky);
-	free(f.order);
 	return out;
 }

@@ -5,12 +5,12 @@
 
 #include "render/skin.h"
 
-/* Everything the page needs of a character besides its eyes: its mesh, the model's expressions and their wrinkles. Leaves the
+/* Everything the page needs of a character besides its eyes: its mesh and rig, the model's expressions and their wrinkles. Leaves the
  * portrait in another pose. gain: exposure. Null: err is set. json_decref. */
 json_t *viewer_face(const char *name, struct portrait *portrait, const struct skin_model *model, double gain,
                     const struct scene *const eyes[2], struct err *err);
 
 /* What a video or a script has the eyes do, for the page to play. json_decref. */
-json_t *viewer_clip(const char *name, const struct rig *rig, const struct drive *drive);
+json_t *viewer_clip(const char *name, const struct drive *drive);
 
 #endif

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "math/simd.h"
 #include "math/vec.h"
+#include "skin/deform_terms.h"
 
 enum { BLOCK = 256 };
 
@@ -35,39 +36,21 @@ static float **columns(struct deform *d, int k)
 	return k < COUNT(all) ? all[k] : k < COUNT(all) + RIG_BASIS ? &d->basis[k - COUNT(all)] : 0;
 }
 
-static bool moves(const struct rig *rig, int i)
-{
-	const float *b = rig->basis[i];
-	for (int k = 0; k < RIG_BASIS; k++)
-		if (b[k] != 0)
-			return true;
-	return rig->glue[i] > 0;
-}
-
 static void take_vertex(struct deform *d, int k, int i)
 {
 	const struct rig *rig = d->rig;
-	const struct rig_globe *globe = &rig->globe[rig->side[i]];
-	float at[3], facing[3];
-	double from[3];
-	skull_map_at(at, facing, &rig->skull, rig->home[i]);
-	for (int c = 0; c < 3; c++)
-		from[c] = rig->rest[i][c] - globe->center[c];
-	vec_unit(from, from);
+	struct deform_terms t;
+	deform_terms_of(&t, rig, i);
 	for (int c = 0; c < 3; c++) {
-		d->offset[c][k] = rig->rest[i][c] - at[c];
-		d->lean[c][k] = rig->normal[i][c] - facing[c];
+		d->offset[c][k] = t.offset[c];
+		d->lean[c][k] = t.lean[c];
 		d->normal0[c][k] = rig->normal[i][c];
-		d->tau0[c][k] = (float)from[c];
+		d->tau0[c][k] = t.tau0[c];
 	}
-	for (int c = 0; c < 2; c++) {
-		double mean = rig->home[i][c];
-		for (int j = 0; j < RIG_COMPONENTS; j++) {
-			mean -= (double)rig->basis[i][c * RIG_COMPONENTS + j] * rig->rest_e[j];
-			d->basis[c * RIG_COMPONENTS + j][k] = rig->basis[i][c * RIG_COMPONENTS + j];
-		}
-		d->mean[c][k] = (float)mean;
-	}
+	for (int c = 0; c < 2; c++)
+		d->mean[c][k] = t.mean[c];
+	for (int j = 0; j < RIG_BASIS; j++)
+		d->basis[j][k] = t.basis[j];
 	d->thickness[k] = rig->thickness[i];
 	d->gap[k] = rig->gap[i];
 	d->glue[k] = rig->glue[i];
@@ -92,7 +75,7 @@ struct deform *deform_new(const struct rig *rig)
 	for (int i = 0; i < rig->n; i++)
 		if (rig_is_globe(rig->part[i]))
 			d->globe_vertex[d->n_globe++] = i;
-		else if (moves(rig, i))
+		else if (deform_terms_moves(rig, i))
 			d->vertex[d->n++] = i;
 	d->n_blocks = (d->n + BLOCK - 1) / BLOCK;
 	for (int k = 0; columns(d, k); k++)

@@ -45,6 +45,13 @@ void portrait_lashes_make(struct portrait *portrait);
 void portrait_lashes_move(struct portrait *portrait, const struct portrait_view *view);
 void portrait_lash_colour(float rgb[3], const struct portrait *portrait, int face);
 
+/* Where a hair's vertex stands now in the frame that its root carries along: off the globe, along the lid, up over it (mm). The
+ * root: a point of three vertices of the mesh. */
+struct portrait_pin {
+	int vertex[3], side;
+	float weight[3], local[3];
+};
+void portrait_lash_pin(struct portrait_pin *pin, const struct portrait *portrait, int vertex);
 
 /* portrait_mesh.c: topology once, vertices for each pose. */
 void portrait_mesh_make(struct portrait *portrait);

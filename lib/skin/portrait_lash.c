@@ -173,6 +173,22 @@ void portrait_lashes_move(struct portrait *p, const struct portrait_view *view)
 	}
 }
 
+void portrait_lash_pin(struct portrait_pin *pin, const struct portrait *p, int vertex)
+{
+	const struct portrait_lash *l = &p->lash[(vertex - p->lash_vertex) / (2 * POINTS)];
+	const float *x = p->mesh.x[vertex];
+	float root[3], off[3], along[3], up[3];
+	frame_of(root, off, along, up, p, l);
+	*pin = (struct portrait_pin){ .side = l->side };
+	memcpy(pin->vertex, l->vertex, sizeof pin->vertex);
+	memcpy(pin->weight, l->weight, sizeof pin->weight);
+	for (int c = 0; c < 3; c++) {
+		pin->local[0] += off[c] * (x[c] - root[c]);
+		pin->local[1] += along[c] * (x[c] - root[c]);
+		pin->local[2] += up[c] * (x[c] - root[c]);
+	}
+}
+
 void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)
 {
 	static const float hair[3] = { 0.022f, 0.014f, 0.010f };

@@ -77,8 +77,40 @@ class Graphics {
 		return [...below, ...parts.filter(p => p in this.shaders), name].map(p => this.shaders[p]).join("");
 	}
 
-	/* Draws the whole target, or a shape, with these uniforms; a uniform that is a texture takes the next unit. */
-	draw(p, values, shape, n_indices) {
+	/* A pass of pose.glsl that draws nothing: what its vertices come to goes into buffers. */
+	feedback(part, outputs) {
+		const gl = this.gl, program = gl.createProgram(), add = (type, text) => {
+			const shader = gl.createShader(type);
+			gl.shaderSource(shader, "#version 300 es\n" + text);
+			gl.compileShader(shader);
+			gl.attachShader(program, shader);
+			return shader;
+		};
+		const shader = add(gl.VERTEX_SHADER, `${this.constants}#define ${part}\n${this.shaders.pose}`);
+		add(gl.FRAGMENT_SHADER, "void main() {}\n");
+		gl.transformFeedbackVaryings(program, outputs, gl.SEPARATE_ATTRIBS);
+		gl.linkProgram(program);
+		this.compiled.push(part.toLowerCase());
+		return { name: part, program, fragment: shader, uniforms: null };
+	}
+
+	/* Runs such a pass over vertices of a shape; buffers: [buffer, first byte] of each output. */
+	feed(p, values, shape, first, count, buffers) {
+		const gl = this.gl;
+		this.set(p, values);
+		gl.bindVertexArray(shape);
+		gl.enable(gl.RASTERIZER_DISCARD);
+		buffers.forEach(([buffer, from], k) => gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, k, buffer, from, 16 * count));
+		gl.beginTransformFeedback(gl.POINTS);
+		gl.drawArrays(gl.POINTS, first, count);
+		gl.endTransformFeedback();
+		buffers.forEach((_, k) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, k, null));
+		gl.disable(gl.RASTERIZER_DISCARD);
+		gl.bindVertexArray(null);
+	}
+
+	/* Makes a program the current one, with these uniforms; one that is a texture takes the next unit. */
+	set(p, values) {
 		const gl = this.gl;
 		let unit = 0;
 		gl.useProgram(p.program);
@@ -102,6 +134,12 @@ class Graphics {
 			default: throw new Error(`uniform ${name}: unknown type`);
 			}
 		}
+	}
+
+	/* Draws the whole target, or a shape. */
+	draw(p, values, shape, n_indices) {
+		const gl = this.gl;
+		this.set(p, values);
 		gl.bindVertexArray(shape || this.whole);
 		if (shape)
 			gl.drawElements(gl.TRIANGLES, n_indices, gl.UNSIGNED_INT, 0);

@@ -12,7 +12,8 @@ class Live extends Controls {
 		if (this.beside && p)
 			return { pose: p.cam_from_eye, slip: p.slip, camera: p.camera, window: p.window, rows: p.height };
 		if (this.mode === "face")
-			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), expressions: this.playing === null ? data.face.expressions.map((e, k) => this.values[`au${k}`]) : this.clip_expressions,
+			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), recorded: this.playing === null ? null : this.clip_controls,
+				expressions: this.playing === null ? data.face.expressions.map((e, k) => this.values[`au${k}`]) : this.clip_controls.slice(10),
 				open: this.lids(), orbit: this.orbit,
 				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
 		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
@@ -25,10 +26,10 @@ class Live extends Controls {
 		return data.face.globes.map(g => [h - Math.atan(g[0] * this.values.near / 1000) * 180 / Math.PI, v]);
 	}
 
-	/* How far the left lids are open, and the right ones; 1: as people open them at that gaze. */
+	/* How far the left lids are open, and the right ones; 1: as people open them at that gaze, or as a clip has them. */
 	lids() {
 		const v = this.values, shut = [v.wink_left, v.wink_right];
-		return shut.map((s, k) => v.aperture * (1 - s) * (this.playing === null ? 1 - Math.max(this.eyes.closure, this.eyes.winking[k]) : this.clip_open[k]));
+		return shut.map((s, k) => v.aperture * (1 - s) * (this.playing === null ? 1 - Math.max(this.eyes.closure, this.eyes.winking[k]) : 1));
 	}
 
 	/* ---- drawing: only when something has changed; then finer and finer */
@@ -61,7 +62,7 @@ class Live extends Controls {
 		this.changed();
 	}
 
-	/* The clip's gaze and lids at time t, between its frames. */
+	/* The clip's controls at time t, between its frames. */
 	clip_at(t) {
 		const rows = data.face.clips[this.playing].rows, last = rows[rows.length - 1][0];
 		this.began = this.began === null ? t : this.began;
@@ -75,14 +76,13 @@ class Live extends Controls {
 				j = k;
 		}
 		const a = rows[i], b = rows[j], u = b[0] > a[0] ? Math.min(1, Math.max(0, (at - a[0]) / (b[0] - a[0]))) : 0;
-		const v = a.map((x, k) => x + u * (b[k] - x)).slice(1);
-		this.clip_gazes = [[v[0], v[1]], [v[3], v[4]]];
-		this.eyes.eye = [(v[0] + v[3]) / 2, (v[1] + v[4]) / 2];
+		const c = a.map((x, k) => x + u * (b[k] - x)).slice(1);
+		this.clip_controls = c;
+		this.clip_gazes = [c.slice(0, 3), c.slice(5, 8)];
+		this.eyes.eye = [(c[0] + c[5]) / 2, (c[1] + c[6]) / 2];
 		this.eyes.target = [...this.eyes.eye];
 		this.eyes.drift = [0, 0];
 		this.eyes.closure = 0;
-		this.clip_open = [v[2], v[5]];
-		this.clip_expressions = v.slice(6);
 	}
 
 	wander(t) {

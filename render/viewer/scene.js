@@ -8,6 +8,11 @@ const turns = {
 		const cy = Math.cos(yaw), sy = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch);
 		return [cy, 0, -sy, sp * sy, cp, sp * cy, cp * sy, -sp, cp * cy];
 	},
+	/* Of an eye in the head's axes: Ry(h) Rx(-v) Rz(t); radians. */
+	fick(h, v, t) {
+		const ch = Math.cos(h), sh = Math.sin(h), cv = Math.cos(v), sv = Math.sin(v), ct = Math.cos(t), st = Math.sin(t);
+		return turns.multiply([ch, -sh * sv, sh * cv, 0, cv, sv, -sh, -ch * sv, ch * cv], [ct, -st, 0, st, ct, 0, 0, 0, 1]);
+	},
 };
 
 /* Place between the knots of a list: index and share; held at the ends. */

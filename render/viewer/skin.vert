@@ -1,11 +1,13 @@
-// Skin of a driven character: posed on the page, head's axes (x to the person's left, y up, z out of the face), mm.
+// Skin of a driven character: posed on the page (pose.glsl), seen in the head's axes (x to the person's left, y up, z out of the
+// face; middle of both eyes), mm.
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 light;
 layout(location = 3) in vec4 skin;
 layout(location = 4) in vec3 rest;
 layout(location = 5) in vec2 home;  // in the chart of wrinkles, px
-uniform mat3 cam_from_head;
+uniform mat3 cam_from_head, head_from_rig;
+uniform vec3 middle;              // of both eyes, the rig's axes
 uniform vec3 camera;              // focal length over half the width, over half the height; distance
 uniform vec2 clip_depth, shift;
 out vec3 seen_at, seen_normal, seen_light, seen_rest;
@@ -14,10 +16,10 @@ out vec2 seen_home;
 
 void main()
 {
-	vec3 p = cam_from_head * at + vec3(0.0, 0.0, camera.z);
+	seen_at = head_from_rig * (at - middle);
+	vec3 p = cam_from_head * seen_at + vec3(0.0, 0.0, camera.z);
 	gl_Position = vec4(vec2(camera.x * p.x, -camera.y * p.y) + shift * p.z, clip_depth.x * p.z + clip_depth.y, p.z);
-	seen_at = at;
-	seen_normal = normal;
+	seen_normal = head_from_rig * normal;
 	seen_light = light;
 	seen_rest = rest;
 	seen_skin = skin;

@@ -43,7 +43,7 @@ for spoilt in "$capture hostile" "$root/spoilt"; do
 done
 timeout 300 node tests/browser/hostile.js "$capture hostile" "$root/spoilt" >"$root/said" 2>&1
 timeout 600 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" \
-	"$character/work/review/viewer.html" >>"$root/said" 2>&1
+	"$character/work/review/viewer.html" "$character/work/targets/made/rig.npz" "${B:-build}/tests/tools" >>"$root/said" 2>&1
 while IFS= read -r line; do
 	case $line in
 	"pass "*) pass "${line#pass }" ;;
