@@ -2,7 +2,7 @@
 #   make check            everything; ends with one line: N passed, N failed, N skipped
 #   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others
 #   make check-compilers  every artifact of the bundled captures by gcc's and by clang's programs, number by number
-#   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30
+#   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30; KEEP=1: what it found is kept in tests/fuzz/
 TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c))
 SECONDS_EACH ?= 30
 SEED ?= 1
@@ -19,7 +19,7 @@ check: setup
 	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/bench/compare
 	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory -j$(CORES) SAN=1 tests-sanitised
-	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=5 \
+	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=6 \
 		tests/check.sh
 
 check-compilers: build $(TOOLS)
@@ -51,4 +51,4 @@ build-fuzz/fuzz_%: build-fuzz/tests/fuzz/fuzz_%.o build-fuzz/libeyewright.a
 
 fuzzers: $(FUZZERS) $(TOOLS)
 fuzz: fuzzers
-	@FUZZ=$(SECONDS_EACH) B=$B tests/fuzz.sh
+	@FUZZ=$(SECONDS_EACH) B=$B KEEP=$(KEEP) VERBOSE=1 tests/fuzz.sh

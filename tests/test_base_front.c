@@ -165,7 +165,7 @@ static void a_damaged_file_of_fronts_is_refused(void **state)
 {
 	(void)state;
 	static const char *const bad[] = { "blur.fast = 0.4 mm\n", "blur.fast = mm, 1 s + 1 s/Mpx: a = 1\n", "fast = 0.4 mm, 1 s + 1 s/Mpx: a = 1\n",
-		                           "blur.fast = 0.4 mm, -1 s + 1 s/Mpx: a = 1\n", "blur.fast = nan mm, 1 s + 1 s/Mpx: a = 1\n", "blur.fast.more = a = 1\n" };
+		                           "blur.fast = 0.4 mm, -1 s + 1 s/Mpx: a = 1\n", "blur.fast = nan mm, 1 s + 1 s/Mpx: a = 1\n", "blur.fast.more = a = 1\n", "..more = a = 1\n" };
 	for (int i = 0; i < (int)(sizeof bad / sizeof *bad); i++) {
 		struct front front;
 		struct err err = { 0 };

@@ -219,6 +219,52 @@ static void a_damaged_record_is_none(void **state)
 	assert_true(holds(0));
 }
 
+/* With a stranger's capture comes a stranger's record: it is as good as none, and nothing outside the folder is removed for it. */
+static void a_record_of_a_strangers_making_is_refused(void **state)
+{
+	(void)state;
+	static const char *const bad[] = {
+		"{\"complete\": true, \"program\": \"%s\", \"config\": {\"stage.sigma\": 2}}",
+		"{\"complete\": true, \"program\": \"%s\", \"lists\": {\"photos\": 7}}",
+		"{\"complete\": true, \"program\": \"%s\", \"outputs\": {\"/dev/zero\": {\"hash\": \"0\"}}}",
+		"{\"complete\": true, \"program\": \"%s\", \"outputs\": {\"work/x\": []}}",
+	};
+	char hash[33];
+	struct err err = { 0 };
+	assert_true(file_hash(hash, scratch_path("program"), &err));
+	for (int i = 0; i < COUNT(bad); i++) {
+		char *text = mem_printf(bad[i], hash), *why = 0;
+		struct conf conf = load_conf();
+		scratch_text("work/.made/stage.json", text);
+		assert_false(record_holds(scratch_path("."), "stage", scratch_path("program"), &conf, &why));
+		assert_non_null(why);
+		free(why);
+		free(text);
+		conf_free(&conf);
+	}
+}
+
+static void count_dropped(void *ctx, const char *rel)
+{
+	(void)rel;
+	++*(int *)ctx;
+}
+
+static void nothing_outside_the_folder_is_dropped(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	int n = 0;
+	scratch_text("precious", "mine");
+	scratch_text("work/kept/altered", "new");
+	scratch_text("work/.made/stage.json", "{\"outputs\": {\"work/kept/../../precious\": {\"hash\": \"0\"}, \"work/kept/altered\": {\"hash\": \"0\"}}}");
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), "");
+	assert_true(record_drop_altered(r, "work/kept", count_dropped, &n, &err));
+	assert_int_equal(n, 1);
+	assert_true(file_exists(scratch_path("precious")) && !file_exists(scratch_path("work/kept/altered")));
+	record_free(r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -230,6 +276,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(an_unfinished_run_does_not_hold, setup, teardown),
 		cmocka_unit_test_setup_teardown(altered_files_are_dropped, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_damaged_record_is_none, setup, teardown),
+		cmocka_unit_test_setup_teardown(a_record_of_a_strangers_making_is_refused, setup, teardown),
+		cmocka_unit_test_setup_teardown(nothing_outside_the_folder_is_dropped, setup, teardown),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

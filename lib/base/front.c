@@ -31,7 +31,7 @@ static bool read_more(struct front *front, const struct conf_item *item, struct 
 	if (!more)
 		return false;
 	char *of = mem_printf("%.*s", (int)(more - item->key), item->key), *name = mem_printf("%s.%s", p ? p->stage : "", p ? p->name : "");
-	if (strcmp(of, name)) {
+	if (!p || strcmp(of, name)) {
 		err_set(err, "%s:%d: %.60s: must follow the line of %.60s", item->file, item->line, item->key, of);
 	} else {
 		char *all = mem_printf("%s, %s", p->settings, item->value);

@@ -117,7 +117,7 @@ const char *record_hash(struct record *r, const char *rel)
 	char *path = record_in_capture(r->capture, rel), *key = json_key(rel);
 	struct stat st;
 	const char *hash = 0;
-	if (stat(path, &st) == 0) {
+	if (stat(path, &st) == 0 && S_ISREG(st.st_mode)) {
 		json_t *entry = json_object_get(r->hashes, key);
 		struct timespec now;
 		clock_gettime(CLOCK_REALTIME, &now);

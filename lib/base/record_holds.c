@@ -27,7 +27,7 @@ static bool config_holds(const json_t *old, const char *stage, const struct conf
 	json_t *value;
 	json_object_foreach((json_t *)config, key, value) {
 		const struct conf_item *item = conf_find(conf, key, q ? q->value : 0);
-		if (!item || strcmp(item->value, json_string_value(value))) {
+		if (!item || !json_is_string(value) || strcmp(item->value, json_string_value(value))) {
 			*why = mem_printf("%s has changed", key);
 			return false;
 		}
@@ -75,7 +75,7 @@ static bool lists_hold(struct record *r, char **why)
 		record_listing_hash(hash, list.n, list.names);
 		file_list_free(&list);
 		free(path);
-		if (strcmp(hash, json_string_value(value))) {
+		if (!json_is_string(value) || strcmp(hash, json_string_value(value))) {
 			*why = mem_printf("files have come or gone in %s/", dir);
 			return false;
 		}
@@ -121,7 +121,8 @@ bool record_drop_altered(struct record *r, const char *dir, record_dropped *drop
 	size_t n = strlen(dir);
 	json_object_foreach(json_object_get(r->old, "outputs"), rel, made) {
 		const char *was = json_string_value(json_object_get(made, "hash")), *hash = 0;
-		if (strncmp(rel, dir, n) || rel[n] != '/' || !was || !(hash = record_hash(r, rel)) || !strcmp(hash, was))
+		// A record may come with a stranger's capture: what is not below the folder is not ours to remove.
+		if (strncmp(rel, dir, n) || rel[n] != '/' || strstr(rel, "..") || !was || !(hash = record_hash(r, rel)) || !strcmp(hash, was))
 			continue;
 		char *path = record_in_capture(r->capture, rel);
 		ok = file_remove(path, err) && ok;

@@ -10,6 +10,7 @@
 
 /* The matrices: one .npy each, its shape by the model's counts. */
 enum { M_L0, M_K, M_L, M_U0, M_J, M_M, M_L0_S, M_L_S, M_U0_S, M_M_S, M_K_S, M_J_S, M_W_S, M_RMS, M_VERTICES, MATRICES };
+enum { MODEL_NUMBERS = 1 << 26 };  // of a matrix, before any of it is read
 
 const char *const skin_model_files[] = { "model.json",         "model_l0.npy",         "model_K.npy",
 	                                     "model_L.npy",        "model_u0.npy",         "model_J.npy",
@@ -177,6 +178,8 @@ static bool load_json(struct skin_model *m, const json_t *j, const char *path, s
 	    || !count_of(&m->n_skin_pc, j, "skin_components", 1, 256, path, err)
 	    || !count_of(&m->reference_frame, j, "reference_frame", 0, 1 << 30, path, err))
 		return false;
+	if ((long)m->n_vertices * m->n_skin_pc > MODEL_NUMBERS)
+		return err_set(err, "%s: vertices, skin_components: more than %d numbers", path, MODEL_NUMBERS);
 	skin_model_alloc(m);
 	return load_inputs(m, inputs, path, err) && load_camera(&m->camera, json_object_get(j, "camera"), path, err)
 	       && json_get_array(m->closed, SKIN_EYE_INPUTS, j, "closed_px", path, err)

@@ -62,6 +62,13 @@ static char *next_of(const char **at)
 	return word;
 }
 
+static void remove_work(const char *capture)
+{
+	char *work = mem_printf("%s/work", capture);
+	run((char *const[]){ "rm", "-rf", work, 0 }, "/dev/null");
+	free(work);
+}
+
 static bool run_stage(const char *stage, const char *keys, const char *values, const char *always, const char *capture)
 {
 	char *argv[8 + FRONTS_KEYS + 4], *key, *value, *log = mem_printf("%s.log", capture);
@@ -236,6 +243,8 @@ void fronts_measure(const struct fronts_stage *s, const char *capture, const cha
 			return;
 	}
 	for (int i = 0; i < n; i++) {
+		if (s->anew)
+			remove_work(capture);
 		double begin = now_s();
 		bool ok = run_stage(s->stage, s->keys, points[i].values, s->always, capture);
 		double took = ok ? now_s() - begin : NAN;
@@ -248,11 +257,13 @@ void fronts_measure(const struct fronts_stage *s, const char *capture, const cha
 	if (small)
 		time_all(n, points, s, small, true);
 	judge(n, points, s, mpx, small);
+	free(reference);
+	if (s->anew)
+		return;
 	char *const restore[] = { mem_printf("bin/%s", s->stage), mem_str("--force"), mem_str("--quiet"), mem_printf("--capture=%s", capture), 0 };
 	run(restore, "/dev/null");
 	for (int i = 0; restore[i]; i++)
 		free(restore[i]);
-	free(reference);
 }
 
 bool fronts_keep(const char *capture, const char *reference)
@@ -277,7 +288,7 @@ bool fronts_make(const char *capture, const char *stage)
 bool fronts_write(const char *dir, const char *name, struct err *err)
 {
 	char *path = mem_printf("%s/%s.front", dir, name);
-	bool ok = file_write(path, lines ? lines : "", lines ? strlen(lines) : 0, err);
+	bool ok = !lines || file_write(path, lines, strlen(lines), err);
 	free(path);
 	free(lines);
 	lines = 0;

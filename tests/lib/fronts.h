@@ -6,7 +6,7 @@
 #define TESTS_LIB_FRONTS_H
 #include "base/err.h"
 
-enum { FRONTS_SETTINGS = 12, FRONTS_KEYS = 12 };
+enum { FRONTS_SETTINGS = 12, FRONTS_KEYS = 14 };
 
 struct fronts_setting {
 	const char *name, *values;  // of the keys, in their order: "0.5, 512"
@@ -26,6 +26,7 @@ struct fronts_stage {
 	const char *after;                      // a stage run after it, untimed, before the error is taken; or null
 	int reps;                               // timed runs beside the one whose error is taken; 0: that one alone
 	bool draft_to_review;                   // `final` would take too long here
+	bool anew;                              // the stage keeps what it can from its last run: work/ goes before each
 };
 
 /* Measures the stage in `capture`, which has been made; `small`: the same of fewer megapixels, for the time's slope, or null
@@ -38,7 +39,7 @@ bool fronts_keep(const char *capture, const char *reference);
 /* `make` of one stage, after those it needs; the log beside the folder. False: it failed, and a line says so. */
 bool fronts_make(const char *capture, const char *stage);
 
-/* The lines of all stages measured so far into DIR/NAME.front, as config/fronts.conf has them. */
+/* The lines of all stages measured so far, if any, into DIR/NAME.front, as config/fronts.conf has them. */
 bool fronts_write(const char *dir, const char *name, struct err *err);
 
 #endif

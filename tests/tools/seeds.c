@@ -1,7 +1,8 @@
 /* seeds: small valid files of every kind that the fuzz targets begin from.
  *
- *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/front/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/...
+ *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/front/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/..., DIR/json/...
  */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +11,7 @@
 #include "base/mem.h"
 #include "base/npy.h"
 #include "image/exr.h"
+#include "optics/camera_rig.h"
 #include "optics/colmap.h"
 #include "tests/lib/variant.h"
 
@@ -129,6 +131,44 @@ static void models(const char *dir)
 	colmap_free(&model);
 }
 
+/* One a reader: the byte before the text says which. */
+static void objects(const char *dir)
+{
+	static const char eye[] = "{\"abl\":{\"melanin\":0.1,\"eumelanin_ratio\":0.5,\"thickness_mm\":0.05},\"stroma\":{\"melanin\":0.01,"
+		"\"eumelanin_ratio\":0.5,\"thickness_scale\":1},\"exposure\":1,\"illuminant\":\"D65\",\"scattering\":\"single\",\"white_red\":"
+		"{\"value\":1},\"white_blue\":{\"value\":1},\"veil\":{\"value\":0},\"white\":{\"rgb\":[1,1,1]},\"cos_view\":1,\"cos_light\":1,\"bands\":4}";
+	char program[33], *text = 0;
+	struct camera_rig rig = { .cameras = mem_new(1, sizeof *rig.cameras), .n = 1, .scale_sigma = NAN, .scale_source = "assumed",
+		.frame_source = "cameras" };
+	struct err err = { 0 };
+	rig.cameras[0] = (struct rig_camera){ .name = mem_str("a"), .file = mem_str("views/a.jpg"), .frame = -1, .width = 80, .height = 60,
+		.camera = { .focal_px = 90, .source = CAMERA_RIG }, .focal = { 90, 90 }, .has_pose = true, .residual_px = 0.5, .points = 9 };
+	for (int k = 0; k < 4; k++)
+		rig.cameras[0].cam_from_head[k][k] = 1;
+	char *path = mem_printf("%s/json-rig", dir);
+	size_t size;
+	if (!camera_rig_save(&rig, path, 0, 0, &err) || !file_read(&text, &size, path, 1 << 16, &err))
+		fprintf(stderr, "seeds: %s\n", err.msg);
+	char *all = mem_printf("%c%s", 7, text ? text : "");
+	put_text(dir, "json/rig", all);
+	free(all);
+	free(text);
+	free(path);
+	camera_rig_free(&rig);
+	all = mem_printf("%c%s", 2, eye);
+	put_text(dir, "json/pigment", all);
+	free(all);
+	put_text(dir, "json/pupil", "\3{\"pupil\":{\"cx\":0.1,\"cy\":0,\"r\":1.9}}");
+	put_text(dir, "json/folds", "\4{\"chart\":[0,0,10,10],\"px_per_mm\":2,\"expressions\":[{\"name\":\"brows_up\",\"lines\":[[1,2]]}]}");
+	put_text(dir, "json/model", "\5{\"inputs\":[\"g1_deg\",\"g2_deg\",\"g3_deg\",\"g4_px\",\"g5_px\"],\"points_per_lid\":2,\"vertices\":3,"
+	                            "\"lid_components\":1,\"skin_components\":1,\"reference_frame\":0,\"camera\":{}}");
+	file_hash_bytes(program, "1", 1);
+	all = mem_printf("%c{\"complete\":true,\"program\":\"%s\",\"config\":{\"blur.sigma\":\"3\"},\"each\":[\"view.*.mm\"],\"lists\":{\"photos\":\"0\"},"
+	                 "\"outputs\":{\"model.json\":{\"hash\":\"0\",\"inputs\":{\"photos/a.jpg\":\"0\"}}}}", 6, program);
+	put_text(dir, "json/record", all);
+	free(all);
+}
+
 int main(int argc, char **argv)
 {
 	if (argc != 2)
@@ -138,6 +178,7 @@ int main(int argc, char **argv)
 	maps(dir);
 	models(dir);
 	arrays(dir);
+	objects(dir);
 	put_text(dir, "conf/a.conf", "; comment\ns.a = 0.25\ns.b = 3\ns.c = yes\ns.d = green\ns.e = 0 0.5 1\ns.f = x y\nphoto.n.g = 0 1\n");
 	put_text(dir, "front/error.conf", "; made\nblur.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: sigma = 4, steps = 2\nblur.fine = 0.01 mm, 1 s + 1 s/Mpx: sigma = 1\n"
 	                                  "\ferror = 0.05 mm\n");
