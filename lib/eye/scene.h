@@ -75,6 +75,7 @@ struct scene {
 	struct image film;            // the same: slopes of the tear film's ripples
 	struct tissue tissue;
 	struct tissue_optics optics;
+	struct scene_paths *paths;    // the light's ways, for beams of several lights (scene_paths.h); owned; null: solved for each
 	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march, in each layer
 	double node[2][SCENE_NODES_MAX], weight[2][SCENE_NODES_MAX];  // on 0..1

@@ -3,7 +3,7 @@
  * of SCENE_GRID^2 points solved exactly. Neighbours share a table: behind the cornea, which draws the whole sky together
  * to 48 degrees, they differ little. It keeps their power and their mean direction, not of unit length: so what falls on any
  * plane is exactly their sum, and what lies behind the eye's horizon counts for nothing. */
-#include "eye/scene_march.h"
+#include "eye/scene_paths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -179,10 +179,18 @@ static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lig
 		way[i][3] = way[i][3] > 1e-7f ? way[i][3] : 0;
 }
 
+void scene_planes(double z[2], const struct scene *s)
+{
+	z[0] = s->eye.iris_depth - s->height_max;
+	z[1] = s->eye.iris_depth - s->height_min + s->optics.abl_thickness + s->thickness_max;
+}
+
 static void beam_depths(struct scene_beam *beam, const struct scene *s)
 {
-	beam->z[0] = (float)(s->eye.iris_depth - s->height_max);
-	beam->z[1] = (float)(s->eye.iris_depth - s->height_min + s->optics.abl_thickness) + s->thickness_max;
+	double z[2];
+	scene_planes(z, s);
+	beam->z[0] = (float)z[0];
+	beam->z[1] = (float)z[1];
 }
 
 /* Colour and mean direction of a beam, and what shares its lights have in it. */
@@ -216,8 +224,12 @@ struct scene_beams scene_beams(const struct scene *s, const struct scene_lightin
 		beam_begin(&beams.beam[i], &in[i], s);
 #pragma omp parallel for schedule(dynamic)
 	for (int i = 0; i < 2 * beams.n; i++) {
-		struct plane_work *work = mem_array(1, sizeof *work);
 		struct scene_beam *b = &beams.beam[i / 2];
+		if (s->paths && in[i / 2].n > 1) {
+			scene_paths_beam(b->way[i % 2][0], s, i % 2, &in[i / 2]);
+			continue;
+		}
+		struct plane_work *work = mem_array(1, sizeof *work);
 		plane_make(b->way[i % 2][0], work, in[i / 2].n, in[i / 2].dir, in[i / 2].share, s, b->z[i % 2]);
 		free(work);
 	}

@@ -42,6 +42,9 @@ void scene_geometry(struct scene *scene);
 extern const double scene_plain_stroma;
 void scene_plain_tissue(struct scene *scene);
 
+/* Depths of the planes between which all of the iris lies, mm. */
+void scene_planes(double z[2], const struct scene *scene);
+
 /* The lights that reach the iris, for one view. free(beams.beam). */
 struct scene_beams scene_beams(const struct scene *scene, const struct scene_lighting *light,
                                const double eye_from_cam[3][3]);

@@ -1,4 +1,4 @@
-#include "eye/scene_march.h"
+#include "eye/scene_paths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -143,7 +143,8 @@ static bool load_refraction(struct scene *s, const char *path, struct err *err)
 	const struct cornea *a = &s->refraction.cornea, *b = &s->cornea;
 	bool same = fabs(a->R - b->R) + fabs(a->p - b->p) + fabs(a->n - b->n) < 1e-6;
 	if (!same || s->refraction.method > REFRACTION_POLYNOMIAL) {  // a table is for the iris plane alone
-		refraction_free(&s->refraction);
+		free(s->paths);
+	refraction_free(&s->refraction);
 		s->refraction = (struct refraction){ 0 };
 	}
 	return true;
@@ -176,6 +177,7 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
 	scene_levels_make(s);
 	scene_nodes_make(s);
 	scene_veins_make(s);
+	s->paths = scene_paths_make(s);
 	return true;
 }
 
@@ -193,6 +195,7 @@ void scene_free(struct scene *s)
 	image_free(&s->veins);
 	free(s->white.px);
 	image_free(&s->film);
+	free(s->paths);
 	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };
 }

@@ -214,26 +214,28 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 
 void scene_flat(struct iris_batch *r, const struct scene *s, const struct scene_beams *beams)
 {
-	struct march_light w;
-	memset(r->rgb, 0, sizeof r->rgb);
-	for (int l = 0; l < beams->n; l++)
-		for (int first = 0; first < r->n; first += PART) {
-			int n = r->n - first < PART ? r->n - first : PART;
-			scene_light_at(&w, 0, n, r->px + first, r->py + first, r->pz + first, s, &beams->beam[l]);
-			for (int c = 0; c < 3; c++)
-				for (int i = 0; i < n; i++)
-					r->rgb[c][first + i] += beams->beam[l].rgb[c] * s->flat[c] * w.power[0][i] * w.fall[0][i];
-		}
+	for (int first = 0; first < r->n; first += PART) {
+		int n = r->n - first < PART ? r->n - first : PART;
+		float *rgb[3] = { r->rgb[0] + first, r->rgb[1] + first, r->rgb[2] + first };
+		scene_flat_at(rgb, n, r->px + first, r->py + first, r->pz + first, s, beams);
+	}
 }
 
-void scene_flat_at(float rgb[4], float x, float y, const struct scene *s, const struct scene_beams *beams)
+SIMD_CLONES static void fall_add(float *restrict out, int n, const struct march_light *restrict w, float f)
 {
-	float z = (float)s->eye.iris_depth;
-	memset(rgb, 0, 4 * sizeof *rgb);
+	SIMD_LOOP
+	for (int i = 0; i < n; i++)
+		out[i] += f * w->power[0][i] * w->fall[0][i];
+}
+
+void scene_flat_at(float *const rgb[3], int n, const float *x, const float *y, const float *z, const struct scene *s, const struct scene_beams *beams)
+{
+	struct march_light w;
+	for (int c = 0; c < 3; c++)
+		memset(rgb[c], 0, (size_t)n * sizeof *rgb[c]);
 	for (int l = 0; l < beams->n; l++) {
-		struct march_light w;
-		scene_light_at(&w, 0, 1, &x, &y, &z, s, &beams->beam[l]);
+		scene_light_at(&w, 0, n, x, y, z, s, &beams->beam[l]);
 		for (int c = 0; c < 3; c++)
-			rgb[c] += beams->beam[l].rgb[c] * s->flat[c] * w.power[0][0] * w.fall[0][0];
+			fall_add(rgb[c], n, &w, beams->beam[l].rgb[c] * s->flat[c]);
 	}
 }

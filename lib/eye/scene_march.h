@@ -83,8 +83,8 @@ bool scene_light_tile(struct march_light *light, const struct march_body *body, 
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene,
                         const struct scene_level *level, const struct scene_beams *beams);
 
-/* Without a march: the model's mean colour at a point of the iris plane, lit. */
-void scene_flat_at(float rgb[4], float x, float y, const struct scene *scene, const struct scene_beams *beams);
+/* Without a march: the model's mean colour at n <= PART points, lit. */
+void scene_flat_at(float *const rgb[3], int n, const float *x, const float *y, const float *z, const struct scene *scene, const struct scene_beams *beams);
 
 /* Horizons of a level's tiles. free(). */
 struct march_horizon *scene_horizons(const struct scene *scene, const struct scene_level *level);

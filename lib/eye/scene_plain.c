@@ -1,5 +1,5 @@
 /* An eye that nobody photographed: fibres, crypts and a collarette from a seed, over a plain tissue. */
-#include "eye/scene_impl.h"
+#include "eye/scene_paths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -62,4 +62,5 @@ void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf
 	scene_levels_make(s);
 	scene_nodes_make(s);
 	scene_veins_make(s);
+	s->paths = scene_paths_make(s);
 }

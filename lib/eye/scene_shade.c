@@ -134,13 +134,21 @@ void scene_shade_model(struct scene_level *level, const struct scene *s, const d
 /* The alternative: irradiance on the iris plane alone, which is smooth. */
 static struct scene_shade flat_make(const struct scene *s, const struct scene_level *level, const struct scene_beams *beams)
 {
-	enum { N = 80 };
-	struct scene_shade out = { N, N, level->per_mm, (float)(N / (2 * s->extent)), &level->bare, mem_array(N * N, 4 * sizeof *out.light), true };
+	enum { N = PART };
+	float step = (float)(2 * s->extent / N), extent = (float)s->extent;
+	struct scene_shade out = { N, N, level->per_mm, 1 / step, &level->bare, mem_new(N * N, 4 * sizeof *out.light), true };
 #pragma omp parallel for schedule(dynamic, 8)
-	for (int y = 0; y < N; y++)
-		for (int x = 0; x < N; x++)
-			scene_flat_at(out.light + 4 * (y * N + x), ((float)x + 0.5f) / out.light_per_mm - (float)s->extent,
-			              ((float)y + 0.5f) / out.light_per_mm - (float)s->extent, s, beams);
+	for (int j = 0; j < N; j++) {
+		float x[N], y[N], z[N], rgb[3][N];
+		for (int i = 0; i < N; i++) {
+			x[i] = ((float)i + 0.5f) * step - extent;
+			y[i] = ((float)j + 0.5f) * step - extent;
+			z[i] = (float)s->eye.iris_depth;
+		}
+		scene_flat_at((float *[3]){ rgb[0], rgb[1], rgb[2] }, N, x, y, z, s, beams);
+		for (int i = 0; i < 3 * N; i++)
+			out.light[4 * (j * N + i / 3) + i % 3] = rgb[i % 3][i / 3];
+	}
 	return out;
 }
 
