@@ -143,8 +143,7 @@ static bool load_refraction(struct scene *s, const char *path, struct err *err)
 	const struct cornea *a = &s->refraction.cornea, *b = &s->cornea;
 	bool same = fabs(a->R - b->R) + fabs(a->p - b->p) + fabs(a->n - b->n) < 1e-6;
 	if (!same || s->refraction.method > REFRACTION_POLYNOMIAL) {  // a table is for the iris plane alone
-		free(s->paths);
-	refraction_free(&s->refraction);
+		refraction_free(&s->refraction);
 		s->refraction = (struct refraction){ 0 };
 	}
 	return true;
