@@ -175,8 +175,6 @@ static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lig
 	}
 	if (lights > 1)
 		refine(way, (const float(*)[SCENE_WAY])coarse);
-	for (int i = 0; i < NODES; i++)
-		way[i][3] = way[i][3] > 1e-7f ? way[i][3] : 0;
 }
 
 void scene_planes(double z[2], const struct scene *s)
@@ -225,13 +223,18 @@ struct scene_beams scene_beams(const struct scene *s, const struct scene_lightin
 #pragma omp parallel for schedule(dynamic)
 	for (int i = 0; i < 2 * beams.n; i++) {
 		struct scene_beam *b = &beams.beam[i / 2];
+		float(*way)[SCENE_WAY] = b->way[i % 2][0];
 		if (s->paths && in[i / 2].n > 1) {
-			scene_paths_beam(b->way[i % 2][0], s, i % 2, &in[i / 2]);
-			continue;
+			float coarse[SCENE_COARSE * SCENE_COARSE][SCENE_WAY];
+			scene_paths_beam(coarse, s, i % 2, &in[i / 2]);
+			refine(way, (const float(*)[SCENE_WAY])coarse);
+		} else {
+			struct plane_work *work = mem_array(1, sizeof *work);
+			plane_make(way, work, in[i / 2].n, in[i / 2].dir, in[i / 2].share, s, b->z[i % 2]);
+			free(work);
 		}
-		struct plane_work *work = mem_array(1, sizeof *work);
-		plane_make(b->way[i % 2][0], work, in[i / 2].n, in[i / 2].dir, in[i / 2].share, s, b->z[i % 2]);
-		free(work);
+		for (int k = 0; k < NODES; k++)
+			way[k][3] = way[k][3] > 1e-7f ? way[k][3] : 0;
 	}
 	free(in);
 	return beams;

@@ -16,14 +16,14 @@
 
 /* Unit direction from the point to where the light comes in, irradiance of a plane that faces it, and the place on the cornea. */
 enum { DIR_X, DIR_Y, DIR_Z, POWER, AT_X, AT_Y, CHANNELS };
-enum { ANGLES = 64, RINGS = 16, TURNS = 64, WRAP = 4, ROW = TURNS + WRAP, FIELD = RINGS * ROW };
+enum { ANGLES = 64, RINGS = 48, TURNS = 64, WRAP = 4, ROW = TURNS + WRAP, FIELD = RINGS * ROW };
 static const double lowest = 0.16;  // z of the last angle's light: see scene_lights_turn
 
 struct scene_paths {
 	double most;                                 // radius of the last ring, mm
 	float field[2][ANGLES][CHANNELS][FIELD];     // a row is a ring, and its first turns once more
-	float at[SCENE_GRID * SCENE_GRID][8];        // weights of four rings and four turns for a node of a beam's table
-	int first[SCENE_GRID * SCENE_GRID];          // ring and turn of the first of them
+	float at[SCENE_COARSE * SCENE_COARSE][8];        // weights of four rings and four turns for a coarse node of a beam's table
+	int first[SCENE_COARSE * SCENE_COARSE];          // ring and turn of the first of them
 };
 
 static void cubic(float w[4], float t)
@@ -94,13 +94,13 @@ static void angle_make(float field[CHANNELS][FIELD], const struct scene *s, doub
 	free(n);
 }
 
-/* Where the nodes of a beam's table lie among rings and turns. Outside the limbus there is no iris to light: those nodes only
+/* Where the coarse nodes of a beam's table lie among rings and turns. Outside the limbus there is no iris to light: those nodes only
  * bound the others' cells, and stand at its edge. */
 static void nodes_place(struct scene_paths *p, const struct scene *s)
 {
-	double step = 2 * s->extent / (SCENE_GRID - 1);
-	for (int i = 0; i < SCENE_GRID * SCENE_GRID; i++) {
-		double x = i % SCENE_GRID * step - s->extent, y = i / SCENE_GRID * step - s->extent, turn = atan2(y, x) / (2 * M_PI) * TURNS;
+	double step = 2 * s->extent / (SCENE_COARSE - 1);
+	for (int i = 0; i < SCENE_COARSE * SCENE_COARSE; i++) {
+		double x = i % SCENE_COARSE * step - s->extent, y = i / SCENE_COARSE * step - s->extent, turn = atan2(y, x) / (2 * M_PI) * TURNS;
 		double ring = fmin(hypot(x, y) / p->most, 1) * (RINGS - 1);
 		turn += turn < 0 ? TURNS : 0;
 		int first = cubic_of(p->at[i], (float)ring, RINGS), column = (int)turn % TURNS;
@@ -191,14 +191,13 @@ SIMD_CLONES static void ways_put(float (*restrict way)[SCENE_WAY], const struct 
 
 SIMD_CLONES static void table_put(float (*restrict way)[SCENE_WAY], const float (*restrict polar)[SCENE_WAY], const struct scene_paths *p)
 {
-	for (int i = 0; i < SCENE_GRID * SCENE_GRID; i++) {
+	for (int i = 0; i < SCENE_COARSE * SCENE_COARSE; i++) {
 		const float *w = p->at[i];
 		const float(*restrict from)[SCENE_WAY] = polar + p->first[i];
 		float sum[SCENE_WAY] = { 0 };
 		for (int k = 0; k < 4; k++)
 			for (int c = 0; c < SCENE_WAY; c++)
 				sum[c] += w[k] * (w[4] * from[k * ROW][c] + w[5] * from[k * ROW + 1][c] + w[6] * from[k * ROW + 2][c] + w[7] * from[k * ROW + 3][c]);
-		sum[3] = sum[3] > 1e-7f ? sum[3] : 0;
 		memcpy(way[i], sum, sizeof sum);
 	}
 }
