@@ -28,9 +28,9 @@ check-compilers: build $(TOOLS)
 .PHONY: tests-sanitised
 tests-sanitised: $(TESTS)
 
-# Side by side, one to a core; what each says comes when it is through.
+# Side by side, one to a core, the longest first; what each says comes when it is through.
 stress: build $(STRESSES)
-	@printf '%s\n' $(STRESSES) | xargs -P $(CORES) -I{} sh -c 'said=$$({} --share=$(SHARE) --seed=$(SEED) 2>&1); bad=$$?; printf "== %s\n%s\n" {} "$$said"; exit $$bad'
+	@printf '%s\n' $(filter %_render,$(STRESSES)) $(filter-out %_render,$(STRESSES)) | xargs -P $(CORES) -I{} sh -c 'said=$$({} --share=$(SHARE) --seed=$(SEED) 2>&1); bad=$$?; printf "== %s\n%s\n" {} "$$said"; exit $$bad'
 
 # Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
 FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w
