@@ -50,6 +50,16 @@ time = 2 s"; do
 	check "refused: $bad" test "$?" != 0
 	same "refused in one line: $bad" "$(grep -c '^plan: .*capture.conf' "$log") $(ran)" "1 "
 done
+# More keys than fit a line of the measured fronts.
+face=$root/face
+mkdir -p "$face/video" && cp samples/face/subject.ply samples/face/capture.conf "$face" && cp samples/face/video/face.mp4 "$face/video"
+of_track() { "$BIN/track" --capture="$face" --print-config | sed -n "s/^track.$1 = //p"; }
+asks_face() { { cat samples/face/capture.conf; echo "$1"; } >"$face/capture.conf" && "$BIN/plan" --capture="$face" >"$log" 2>&1; }
+check "an error of the video" asks_face "error = 2.9 px"
+exact="$(of_track sweeps) $(of_track torsion_rays)"
+check "a larger one" asks_face "error = 6 px"
+check "takes quicker settings, to the last key" test "$(of_track sweeps)" -le "${exact% *}" -a "$(of_track torsion_rays)" -lt "${exact#* }"
+
 asks "time = 2 s"
 rm -rf "$capture/work"
 "$BIN/unrefract" --capture="$capture" >"$log" 2>&1
