@@ -1,6 +1,7 @@
 #include "image/subsurface.h"
 
 #include <math.h>
+#include <omp.h>
 
 #include "image/subsurface_level.h"
 
@@ -41,14 +42,14 @@ static void add(struct subsurface_level *level, int l, double v, double px2, con
 	subsurface_blur(level, &taps, own * cell / px2, weight, room);
 }
 
-/* What the levels need: at the top three sums and a blur's four planes, further down the picture's own four too. */
+/* What the levels need: at the top three sums, further down the picture's own four planes, too; and what a blur has at hand. */
 static size_t size_of(int width, int height, int deepest)
 {
-	enum { TOP = 7, BELOW = 11, ROUNDING = 16 };
-	size_t n = 0;
+	enum { TOP = 3, BELOW = 7, ROUNDING = 16 };
+	size_t n = (size_t)omp_get_max_threads() * subsurface_band_size(width) + ROUNDING;
 	for (int l = 0; l <= deepest; l++) {
 		size_t stride = (size_t)(width + 7) / 8 * 8;
-		n += (l ? BELOW : TOP) * (stride * (size_t)height + ROUNDING);
+		n += (l ? BELOW : TOP) * (stride * (size_t)height + ROUNDING) + (stride / SUBSURFACE_PART + 1) * (size_t)height / 4 + ROUNDING;
 		width = (width + 1) / 2;
 		height = (height + 1) / 2;
 	}

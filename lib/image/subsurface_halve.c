@@ -1,4 +1,7 @@
 /* From a level of the pyramid to the one below: each texel the mean of the frontmost of four. */
+#include <math.h>
+#include <stdbool.h>
+
 #include "image/subsurface_level.h"
 #include "math/simd.h"
 
@@ -32,6 +35,7 @@ SIMD_INLINE struct quad shares(float *depth, float a, float b, float c, float d,
 struct pair {
 	const float *z[2], *rgb[2][3];
 	float *z_out, *rgb_out[3];
+	unsigned char *even;
 };
 
 SIMD_INLINE void halve_uneven(const struct pair *p, int from, int to, float gap)
@@ -54,30 +58,45 @@ SIMD_INLINE void halve_even(const struct pair *p, int from, int to)
 	for (int k = 0; k < 4; k++) {
 		const float *restrict a = k < 3 ? p->rgb[0][k] : p->z[0], *restrict b = k < 3 ? p->rgb[1][k] : p->z[1];
 		float *restrict out = k < 3 ? p->rgb_out[k] : p->z_out;
-		SIMD_LOOP
-		for (int i = from; i < to; i++)
-			out[i] = 0.25f * ((a[2 * i] + a[2 * i + 1]) + (b[2 * i] + b[2 * i + 1]));
+		int i = from;
+		for (; i + SUBSURFACE_LANES <= to; i += SUBSURFACE_LANES) {
+			const subsurface_lanes *above = (const subsurface_lanes *)(a + 2 * i), *below = (const subsurface_lanes *)(b + 2 * i);
+			subsurface_lanes u = above[0] + below[0], v = above[1] + below[1];
+			subsurface_lanes left = __builtin_shufflevector(u, v, 0, 2, 4, 6, 8, 10, 12, 14);
+			subsurface_lanes right = __builtin_shufflevector(u, v, 1, 3, 5, 7, 9, 11, 13, 15);
+			*(subsurface_lanes *)(out + i) = 0.25f * (left + right);
+		}
+		for (; i < to; i++)
+			out[i] = 0.25f * ((a[2 * i] + b[2 * i]) + (a[2 * i + 1] + b[2 * i + 1]));
 	}
+}
+
+/* Whether texels [from, to) and their sums come from one surface: depths of all that touch differ by less than the gap. */
+SIMD_INLINE bool one_surface(const float *restrict a, const float *restrict b, int from, int to, float gap)
+{
+	float across = 0, along = 0, front = INFINITY;
+#pragma omp simd reduction(max : across, along) reduction(min : front)
+	for (int i = 2 * from; i < 2 * to - 1; i++) {
+		float d = fabsf(a[i] - b[i]), e = fabsf(a[i] - a[i + 1]), z = a[i] < b[i] ? a[i] : b[i];
+		across = d > across ? d : across;
+		along = e > along ? e : along;
+		front = z < front ? z : front;
+	}
+	float end = fabsf(a[2 * to - 1] - b[2 * to - 1]);
+	across = end > across ? end : across;
+	return front > 0 && a[2 * to - 1] > 0 && b[2 * to - 1] > 0 && 2 * across + along < gap;
 }
 
 SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
 {
-	enum { PART = 64 };
-	const float *restrict a = p->z[0], *restrict b = p->z[1];
 	for (int from = 0, to; from < n; from = to) {
-		int uneven = 0;
-		to = from + PART < n ? from + PART : n;
-#pragma omp simd reduction(| : uneven)
-		for (int i = from; i < to; i++) {
-			float l = a[2 * i], r = a[2 * i + 1], u = b[2 * i], w = b[2 * i + 1];
-			float lr0 = l < r ? l : r, lr1 = l < r ? r : l, uw0 = u < w ? u : w, uw1 = u < w ? w : u;
-			float front = lr0 < uw0 ? lr0 : uw0, back = lr1 < uw1 ? uw1 : lr1;
-			uneven |= !(front > 0 && back < front + gap);
-		}
-		if (uneven)
-			halve_uneven(p, from, to, gap);
-		else
+		to = from + SUBSURFACE_PART < n ? from + SUBSURFACE_PART : n;
+		bool one = one_surface(p->z[0], p->z[1], from, to, gap);
+		p->even[from / SUBSURFACE_PART] = one;
+		if (one)
 			halve_even(p, from, to);
+		else
+			halve_uneven(p, from, to, gap);
 	}
 }
 
@@ -99,6 +118,8 @@ void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_
 		l->rgb[c] = subsurface_room_take(room, n);
 	float *z = subsurface_room_take(room, n);
 	l->z = z;
+	l->parts = (l->width + SUBSURFACE_PART - 1) / SUBSURFACE_PART;
+	l->even = (unsigned char *)subsurface_room_take(room, ((size_t)l->parts * (size_t)l->height + 3) / 4);
 	float gap = (float)(4 / texels_per_mm);  // a surface seen at 60 degrees falls by 2.4 texels across their diagonal
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < l->height; y++) {
@@ -112,8 +133,10 @@ void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_
 				p.rgb[k][c] = above->rgb[c] + from;
 		}
 		p.z_out = z + to;
+		p.even = l->even + (size_t)y * (size_t)l->parts;
 		for (int c = 0; c < 3; c++)
 			p.rgb_out[c] = l->rgb[c] + to;
+		p.even[l->parts - 1] = 0;
 		halve_row(&p, above->width / 2, gap);
 		if (above->width % 2)
 			halve_last(&p, l->width - 1, gap);

@@ -21,10 +21,11 @@ SIMD_INLINE float share(float z, float there, float inv, float part)
 struct row {
 	const float *z, *below[2][4];
 	float *out[3], keep[3], *mean[3];  // mean: room for the two rows below, 3 : 1
+	const unsigned char *even;  // of the nearer row below
 	int n, n_below;
 };
 
-enum { PART = 64 };  // texels that take one way or the other
+enum { PART = 2 * SUBSURFACE_PART };  // texels that take one way or the other
 
 /* The farther neighbour of texel x in a row below; the nearer one is x / 2. */
 SIMD_INLINE int farther(const struct row *r, int x)
@@ -75,40 +76,42 @@ SIMD_INLINE void join_even(const struct row *row, int from, int to)
 	for (int c = 0; c < 3; c++) {
 		float *restrict out = row->out[c] + from, keep = row->keep[c];
 		const float *restrict mean = row->mean[c] + from / 2;
-		SIMD_LOOP
-		for (int i = 0; i < (to - from) / 2; i++) {
-			float left = 0.75f * mean[i] + 0.25f * mean[i - 1], right = 0.75f * mean[i] + 0.25f * mean[i + 1];
-			out[2 * i] = keep * out[2 * i] + left;
-			out[2 * i + 1] = keep * out[2 * i + 1] + right;
+		int i = 0, n = (to - from) / 2;
+		for (; i + SUBSURFACE_LANES <= n; i += SUBSURFACE_LANES) {
+			subsurface_lanes here = 0.75f * *(const subsurface_lanes *)(mean + i), *to2 = (subsurface_lanes *)(out + 2 * i);
+			subsurface_lanes left = here + 0.25f * *(const subsurface_lanes *)(mean + i - 1);
+			subsurface_lanes right = here + 0.25f * *(const subsurface_lanes *)(mean + i + 1);
+			to2[0] = keep * to2[0] + __builtin_shufflevector(left, right, 0, 8, 1, 9, 2, 10, 3, 11);
+			to2[1] = keep * to2[1] + __builtin_shufflevector(left, right, 4, 12, 5, 13, 6, 14, 7, 15);
+		}
+		for (; i < n; i++) {
+			out[2 * i] = keep * out[2 * i] + (0.75f * mean[i] + 0.25f * mean[i - 1]);
+			out[2 * i + 1] = keep * out[2 * i + 1] + (0.75f * mean[i] + 0.25f * mean[i + 1]);
 		}
 	}
 }
 
-/* Whether all that is looked at lies on one surface, at up to 60 degrees to the camera: half of where shares end. */
-SIMD_INLINE bool even(const struct row *row, int from, int to, float inv)
+/* Whether all that is looked at lies on one surface, at up to 60 degrees to the camera, about half of where shares end: what
+ * lies above each texel of the level below does; so do these and their neighbours, if they differ by no more than `most`. */
+SIMD_INLINE bool even(const struct row *row, int from, int to, float most)
 {
-	const float *restrict z = row->z + from;
 	const float *restrict a = row->below[0][3] + from / 2, *restrict b = row->below[1][3] + from / 2;
-	float most = sqrtf(0.25f / inv);
-	int off = 0;
-#pragma omp simd reduction(| : off)
-	for (int i = 0; i < (to - from) / 2; i++) {
-		float l = z[2 * i], r = z[2 * i + 1];
-		float high = a[i] > b[i] ? a[i] : b[i], low = a[i] > b[i] ? b[i] : a[i];
-		float high_l = a[i - 1] > b[i - 1] ? a[i - 1] : b[i - 1], low_l = a[i - 1] > b[i - 1] ? b[i - 1] : a[i - 1];
-		float high_r = a[i + 1] > b[i + 1] ? a[i + 1] : b[i + 1], low_r = a[i + 1] > b[i + 1] ? b[i + 1] : a[i + 1];
-		high_l = high > high_l ? high : high_l;
-		low_l = low < low_l ? low : low_l;
-		high_r = high > high_r ? high : high_r;
-		low_r = low < low_r ? low : low_r;
-		float worst_l = high_l - l > l - low_l ? high_l - l : l - low_l, worst_r = high_r - r > r - low_r ? high_r - r : r - low_r;
-		off |= !((worst_l > worst_r ? worst_l : worst_r) <= most) | !((l < r ? l : r) > 0);
+	float across = 0, along = 0;
+	for (int k = from / 2 / SUBSURFACE_PART; k <= (to / 2 - 1) / SUBSURFACE_PART; k++)
+		if (!row->even[k])
+			return false;
+#pragma omp simd reduction(max : across, along)
+	for (int i = -1; i < (to - from) / 2; i++) {
+		float d = fabsf(a[i] - b[i]), e = fabsf(a[i] - a[i + 1]);
+		across = d > across ? d : across;
+		along = e > along ? e : along;
 	}
-	return !off;
+	return across + along <= most;
 }
 
 SIMD_CLONES static void join_row(const struct row *row, float inv)
 {
+	float most = sqrtf(0.25f / inv);
 	for (int k = 0; k < 3; k++) {
 		const float *restrict a = row->below[0][k], *restrict b = row->below[1][k];
 		float *restrict mean = row->mean[k];
@@ -117,10 +120,10 @@ SIMD_CLONES static void join_row(const struct row *row, float inv)
 			mean[i] = 0.75f * a[i] + 0.25f * b[i];
 	}
 	for (int from = 0, to; from < row->n; from = to) {
-		to = from ? from + PART : 2;  // the ends, whose neighbours lie outside, alone
+		to = from ? (from / PART + 1) * PART : 2;  // the ends, whose neighbours lie outside, alone
 		to = to < row->n - 2 ? to : from < row->n - 2 ? (row->n - 2) / 2 * 2 : row->n;
 		to = to > from ? to : row->n;
-		if (from > 0 && to < row->n && even(row, from, to, inv))
+		if (from > 0 && to < row->n && even(row, from, to, most))
 			join_even(row, from, to);
 		else
 			join_uneven(row, from, to, inv);
@@ -146,6 +149,7 @@ void subsurface_level_join(struct subsurface_level *l, const struct subsurface_l
 #pragma omp for schedule(static)
 		for (int y = 0; y < l->height; y++) {
 			struct row row = { .z = l->z + (size_t)y * (size_t)l->stride, .n = l->width, .n_below = below->width };
+			row.even = below->even + (size_t)(y / 2) * (size_t)below->parts;
 			for (int c = 0; c < 3; c++) {
 				row.out[c] = stays ? l->rgb[c] + (size_t)y * (size_t)l->stride : l->sum[c] + (size_t)y * (size_t)stride;
 				row.keep[c] = stays && !l->sum[0] ? (float)stays[c] : 1;

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <omp.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +10,8 @@
 #include "base/mem.h"
 #include "math/simd.h"
 
-enum { LANES = 8 };
-typedef float lanes __attribute__((vector_size(32), aligned(4)));
+enum { LANES = SUBSURFACE_LANES };
+typedef subsurface_lanes lanes;
 typedef int mask __attribute__((vector_size(32)));
 
 static int rounded(int n)
@@ -37,7 +38,7 @@ void subsurface_taps_gauss(struct subsurface_taps *t, double variance)
 
 void subsurface_level_top(struct subsurface_level *l, const struct subsurface_picture *p)
 {
-	*l = (struct subsurface_level){ p->width, p->height, p->width, { p->rgb[0], p->rgb[1], p->rgb[2] }, p->depth, { 0 } };
+	*l = (struct subsurface_level){ p->width, p->height, p->width, { p->rgb[0], p->rgb[1], p->rgb[2] }, .z = p->depth };
 }
 
 void subsurface_room_make(struct subsurface_room *room, size_t n)
@@ -117,62 +118,96 @@ static void pad(float *out, const float *in, int n, int stride, int side)
 	memset(out + side + n, 0, (size_t)(stride - n + side) * sizeof *out);
 }
 
-static void blur_x(float *const out[3], float *z_out, const struct subsurface_level *l, const struct subsurface_taps *t, float inv_8v,
-                   int channels, int stride)
+/* A thread's rows on their way: blurred along x, from `radius` above a band to as many below it; planes r, g, b, z. */
+enum { BAND = 16 };
+
+struct band {
+	float *plane[4], *padded;  // padded: room for one row of each
+	int y, rows;               // the screen's row of the first; rows in all
+};
+
+size_t subsurface_band_size(int width)
 {
-#pragma omp parallel
-	{
-		int side = SUBSURFACE_RADIUS, wide = stride + 2 * side;
-		float *row = mem_array(4 * (size_t)wide, sizeof *row);
-#pragma omp for schedule(static)
-		for (int y = 0; y < l->height; y++) {
-			size_t from = (size_t)y * (size_t)l->stride, to = (size_t)y * (size_t)stride;
-			struct line line = { .z = row + 3 * wide + side, .n = stride, .step = 1, .from = -t->radius, .to = t->radius,
-				             .channels = channels };
-			pad(row + 3 * wide, l->z + from, l->width, stride, side);
-			memcpy(z_out + to, line.z, (size_t)stride * sizeof *z_out);
-			for (int c = 0; c < channels; c++) {
-				pad(row + c * wide, l->rgb[c] + from, l->width, stride, side);
-				line.in[c] = row + c * wide + side;
-				line.out[c] = out[c] + to;
-				line.gain[c] = 1;
-			}
-			along(&line, t, inv_8v);
-		}
-		free(row);
-	}
+	return 4 * ((size_t)(BAND + 2 * SUBSURFACE_RADIUS) * (size_t)rounded(width) + (size_t)(rounded(width) + 2 * SUBSURFACE_RADIUS));
 }
 
+static struct band band_in(float *room, int stride, int radius)
+{
+	size_t n = (size_t)(BAND + 2 * radius) * (size_t)stride, wide = (size_t)(stride + 2 * SUBSURFACE_RADIUS);
+	struct band b = { .padded = room };
+	for (int c = 0; c < 4; c++)
+		b.plane[c] = room + 4 * wide + (size_t)c * n;
+	return b;
+}
+
+/* One row of the level along x into the band. */
+static void blur_x(const struct band *b, int y, const struct subsurface_level *l, const struct subsurface_taps *t, float inv_8v, int channels,
+                   int stride)
+{
+	int side = SUBSURFACE_RADIUS, wide = stride + 2 * side;
+	size_t from = (size_t)y * (size_t)l->stride, to = (size_t)(y - b->y) * (size_t)stride;
+	struct line line = { .z = b->padded + 3 * wide + side, .n = stride, .step = 1, .from = -t->radius, .to = t->radius, .channels = channels };
+	pad(b->padded + 3 * wide, l->z + from, l->width, stride, side);
+	memcpy(b->plane[3] + to, line.z, (size_t)stride * sizeof *b->padded);
+	for (int c = 0; c < channels; c++) {
+		pad(b->padded + c * wide, l->rgb[c] + from, l->width, stride, side);
+		line.in[c] = b->padded + c * wide + side;
+		line.out[c] = b->plane[c] + to;
+		line.gain[c] = 1;
+	}
+	along(&line, t, inv_8v);
+}
+
+/* Moves the band on to the rows that [y, end) needs; those that it has already are kept. */
+static void band_move(struct band *b, int y, int end, const struct subsurface_level *l, const struct subsurface_taps *t, float inv_8v, int channels,
+                      int stride)
+{
+	int from = y > t->radius ? y - t->radius : 0, to = end + t->radius < l->height ? end + t->radius : l->height;
+	int had = b->y + b->rows, kept = had > from ? had - from : 0;
+	for (int c = 0; c < 4 && kept; c++)
+		memmove(b->plane[c], b->plane[c] + (size_t)(from - b->y) * (size_t)stride, (size_t)kept * (size_t)stride * sizeof *b->padded);
+	b->y = from;
+	b->rows = to - from;
+	for (int row = from + kept; row < to; row++)
+		blur_x(b, row, l, t, inv_8v, channels, stride);
+}
+
+/* Both ways a band at a time: what lies between the two never leaves the cache next to the core. */
 void subsurface_blur(struct subsurface_level *l, const struct subsurface_taps *t, double variance, const double weight[3],
                      struct subsurface_room *room)
 {
-	int stride = rounded(l->width);
-	size_t n = (size_t)stride * (size_t)l->height;
-	int channels = weight[2] > 0 ? 3 : weight[1] > 0 ? 2 : 1;
+	int stride = rounded(l->width), channels = weight[2] > 0 ? 3 : weight[1] > 0 ? 2 : 1, bands = (l->height + BAND - 1) / BAND;
+	size_t n = (size_t)stride * (size_t)l->height, each = subsurface_band_size(l->width);
 	bool first = !l->sum[0];
+	float inv_8v = (float)(1 / (8 * variance));
 	for (int c = 0; c < 3 && first; c++) {
 		l->sum[c] = subsurface_room_take(room, n);
 		if (c >= channels)
 			memset(l->sum[c], 0, n * sizeof *l->sum[c]);
 	}
 	size_t back = room->used;
-	float *between[3] = { 0 }, *z = subsurface_room_take(room, n), inv_8v = (float)(1 / (8 * variance));
-	for (int c = 0; c < channels; c++)
-		between[c] = subsurface_room_take(room, n);
-	blur_x(between, z, l, t, inv_8v, channels, stride);
-#pragma omp parallel for schedule(static)
-	for (int y = 0; y < l->height; y++) {
-		size_t at = (size_t)y * (size_t)stride;
-		struct line line = { .z = z + at, .n = stride, .step = stride, .channels = channels };
-		line.from = y < t->radius ? -y : -t->radius;
-		line.to = l->height - 1 - y < t->radius ? l->height - 1 - y : t->radius;
-		for (int c = 0; c < channels; c++) {
-			line.in[c] = between[c] + at;
-			line.out[c] = l->sum[c] + at;
-			line.gain[c] = (float)weight[c];
-			line.adds[c] = !first;
+	float *bands_room = subsurface_room_take(room, (size_t)omp_get_max_threads() * each);
+#pragma omp parallel
+	{
+		struct band band = band_in(bands_room + (size_t)omp_get_thread_num() * each, stride, t->radius);
+#pragma omp for schedule(static)
+		for (int k = 0; k < bands; k++) {
+			int end = (k + 1) * BAND < l->height ? (k + 1) * BAND : l->height;
+			band_move(&band, k * BAND, end, l, t, inv_8v, channels, stride);
+			for (int y = k * BAND; y < end; y++) {
+				size_t at = (size_t)(y - band.y) * (size_t)stride;
+				struct line line = { .z = band.plane[3] + at, .n = stride, .step = stride, .channels = channels };
+				line.from = y < t->radius ? -y : -t->radius;
+				line.to = l->height - 1 - y < t->radius ? l->height - 1 - y : t->radius;
+				for (int c = 0; c < channels; c++) {
+					line.in[c] = band.plane[c] + at;
+					line.out[c] = l->sum[c] + (size_t)y * (size_t)stride;
+					line.gain[c] = (float)weight[c];
+					line.adds[c] = !first;
+				}
+				along(&line, t, inv_8v);
+			}
 		}
-		along(&line, t, inv_8v);
 	}
 	room->used = back;
 }

@@ -3,12 +3,16 @@
 #define IMAGE_SUBSURFACE_LEVEL_H
 #include "image/subsurface.h"
 
-enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40 };
+enum { SUBSURFACE_LANES = 8 };
+typedef float subsurface_lanes __attribute__((vector_size(32), aligned(4)));
+enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40, SUBSURFACE_PART = 32 };
 
 struct subsurface_level {
 	int width, height, stride;
 	float *rgb[3];     // irradiance; the caller's at the top
 	const float *z;    // depth of the skin nearest to the camera, mm; 0: none
+	unsigned char *even;  // [height][parts] 1: what SUBSURFACE_PART texels of a row were made of is one surface; null at the top
+	int parts;
 	float *sum[3];     // of weighted Gaussians; null until there is one
 };
 
@@ -30,6 +34,9 @@ void subsurface_room_make(struct subsurface_room *room, size_t n);
 
 /* The next n numbers of the room: multiples of 16 apart, valid until room->used is set back. */
 float *subsurface_room_take(struct subsurface_room *room, size_t n);
+
+/* What subsurface_blur() takes of the room for each thread at a level so wide, and gives back. */
+size_t subsurface_band_size(int width);
 
 /* Adds weight times the blurred picture to the sum, along x and then along y. variance: of the fall-off in depth, mm². */
 void subsurface_blur(struct subsurface_level *level, const struct subsurface_taps *taps, double variance, const double weight[3],
