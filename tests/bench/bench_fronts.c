@@ -153,6 +153,8 @@ int main(int argc, char **argv)
 	static const double mpx[2] = { 1.92, 0.48 };
 	struct err err = { 0 };
 	bench_open("fronts", argc, argv);
+	if (fronts_left_out())
+		return bench_close();
 	scratch_open();
 	char *big = make_capture("big", false), *small = make_capture("small", true);
 	for (int i = 0; big && small && i < COUNT(stages); i++)

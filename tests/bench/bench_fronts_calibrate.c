@@ -65,8 +65,10 @@ int main(int argc, char **argv)
 	struct err err = { 0 };
 	bench_open("fronts_calibrate", argc, argv);
 	const char *data = bench_data("views/buddha");
-	if (bench_quick() || !run_exists("colmap") || !data) {
-		printf("%s\n", bench_quick() ? "--quick: these runs take minutes and are left out" : "COLMAP or views/buddha is not there: left out");
+	if (fronts_left_out())
+		return bench_close();
+	if (!run_exists("colmap") || !data) {
+		printf("COLMAP or views/buddha is not there: left out\n");
 		return bench_close();
 	}
 	scratch_open();

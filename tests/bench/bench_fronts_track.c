@@ -36,6 +36,8 @@ int main(int argc, char **argv)
 {
 	struct err err = { 0 };
 	bench_open("fronts_track", argc, argv);
+	if (fronts_left_out())
+		return bench_close();
 	scratch_open();
 	char *dir = mem_str(scratch_path("face"));
 	// Half of the clip: what a copy that broke off leaves is followed as far as it goes.

@@ -3,7 +3,7 @@
 # Afterwards a plain make gives the bytes of an undisturbed run, leaves nothing half made, and what was put in is as it was.
 #   KILLS=1000 SEED=2 tests/chain/kill.sh          a third of them on each column; MINUTES=30: each column stops there
 #   ONLY=skin                                      this column alone
-#   EACH=70                                        beside them so many of each stage's program by itself
+#   EACH=70 STAGES="transfer extrapolate"          beside them so many of each stage's program by itself, or of these
 . "$(dirname "$0")/../lib/chain.sh"
 KILLS=${KILLS:-9}
 MINUTES=${MINUTES:-1000}
@@ -85,7 +85,7 @@ strike() {
 strike_each() {
 	local column=$1 wanted=$2 stage begin took ms pid struck
 	export OPENBLAS_NUM_THREADS=1 # as make has it
-	for stage in $all; do
+	for stage in ${STAGES:-$all}; do
 		begin=$(date +%s%N) struck=0
 		"$BIN/$stage" --capture="$root/hit" --force --quiet >"$log" 2>&1
 		took=$((($(date +%s%N) - begin) / 1000000))

@@ -150,15 +150,15 @@ static int points_of(struct point points[3 + FRONTS_SETTINGS], const struct fron
 static void time_all(int n, struct point points[], const struct fronts_stage *s, const char *capture, bool small)
 {
 	struct job jobs[3 + FRONTS_SETTINGS];
-	void (*fn[3 + FRONTS_SETTINGS])(void *);
-	void *ctx[3 + FRONTS_SETTINGS];
+	void (*fn[3 + FRONTS_SETTINGS])(void *) = { 0 };
+	void *ctx[3 + FRONTS_SETTINGS] = { 0 };
 	struct bench_time times[3 + FRONTS_SETTINGS];
 	for (int i = 0; i < n; i++) {
 		jobs[i] = (struct job){ s, points[i].values, capture, true };
 		fn[i] = timed;
 		ctx[i] = &jobs[i];
 	}
-	bench_times(n, times, fn, ctx, bench_quick() ? 1 : s->reps);
+	bench_times(n, times, fn, ctx, s->reps);
 	for (int i = 0; i < n; i++)
 		*(small ? &points[i].small : &points[i].time) = jobs[i].ok ? times[i] : (struct bench_time){ NAN, NAN, NAN };
 }
@@ -229,6 +229,13 @@ static void judge(int n, const struct point points[], const struct fronts_stage 
 	char *measure = mem_printf("%s: presets that another setting beats in time and error", s->stage);
 	bench_goal(measure, "none", beaten, "", beaten == 0);
 	free(measure);
+}
+
+bool fronts_left_out(void)
+{
+	if (bench_quick())
+		printf("--quick: fronts take minutes and are left out; config/fronts.conf has those measured last\n");
+	return bench_quick();
 }
 
 void fronts_measure(const struct fronts_stage *s, const char *capture, const char *small, const double mpx[2])

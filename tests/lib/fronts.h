@@ -29,6 +29,9 @@ struct fronts_stage {
 	bool anew;                              // the stage keeps what it can from its last run: work/ goes before each
 };
 
+/* True, said, in a quick run: config/fronts.conf has the fronts as they were measured last. */
+bool fronts_left_out(void);
+
 /* Measures the stage in `capture`, which has been made; `small`: the same of fewer megapixels, for the time's slope, or null
  * (all the time is fixed then). mpx: of the two. Rows, goals and the front's lines: bench/NAME.front. */
 void fronts_measure(const struct fronts_stage *stage, const char *capture, const char *small, const double mpx[2]);
