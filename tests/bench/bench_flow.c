@@ -9,7 +9,7 @@
 #include "tests/lib/bench.h"
 #include "tests/lib/skin_points.h"
 
-enum { POINTS = 1000, FRAMES = 100, QUICK_FRAMES = 8 };
+enum { POINTS = 1000, FRAMES = 100, QUICK_FRAMES = 5 };
 
 static const struct {
 	const char *name;
