@@ -25,6 +25,7 @@ EMBED(viewer_skin_frag, "render/viewer/skin.frag");
 EMBED(viewer_folds, "render/viewer/folds.glsl");
 EMBED(viewer_skin_vert, "render/viewer/skin.vert");
 EMBED(viewer_pose, "render/viewer/pose.glsl");
+EMBED(viewer_probe, "render/viewer/probe.frag");
 EMBED(viewer_copy, "render/viewer/copy.frag");
 EMBED(viewer_tissue_js, "render/viewer/tissue.js");
 EMBED(viewer_motion_js, "render/viewer/motion.js");

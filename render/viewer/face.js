@@ -1,12 +1,16 @@
 /* A driven character: its mesh as the rig has it posed (pose.js), its eyes in it. Head's axes, mm. */
 class FaceScene {
 	static DISTANCE = 900;
+	static PROBE = 16;
 
 	constructor(g, data) {
 		const gl = g.gl, bytes = Graphics.bytes;
 		Object.assign(this, { g, data, skies: bytes(data.sky), strengths: [] });
 		this.skin(g.first);
 		this.eye = g.program("eye", null, ["skin_look", "lids"]);
+		this.probe = g.program("probe");
+		this.probed = g.texture(FaceScene.PROBE, FaceScene.PROBE, gl.RGBA8);
+		this.shut = [{}, {}];
 		this.tear = g.program("tear");
 		this.copy = g.program("copy");
 		this.poser = new FacePose(g, data);
@@ -78,6 +82,7 @@ class FaceScene {
 			gl.deleteRenderbuffer(this.frame.depth);
 		}
 		this.frame = this.g.texture(width, height, gl.RGBA16F);
+		this.fielded = ["", ""];
 		this.fields = [0, 1].map(() => this.g.texture(width, height, gl.RGBA16F));
 		this.frame.depth = gl.createRenderbuffer();
 		gl.bindRenderbuffer(gl.RENDERBUFFER, this.frame.depth);
@@ -122,13 +127,40 @@ class FaceScene {
 	}
 
 	/* How far it is to the lids, from the skin as drawn: along rows, then along columns. */
-	field_of_lids(per_mm, s) {
+	field_of_lids(side, key, per_mm, s) {
+		if (this.fielded[side] === key)
+			return;
 		const { g } = this, gl = g.gl, reach = Math.min(64, Math.ceil(1.2 * per_mm * Math.max(this.data.shadow_mm, this.data.lake * this.data.tear_mm * s.tear)) + 2);
 		gl.disable(gl.DEPTH_TEST);
 		for (const rows of [0, 1]) {
 			g.target(this.fields[rows]);
 			g.draw(this.tear, { picture: rows ? this.fields[0] : this.frame, rows, reach });
 		}
+		this.fielded[side] = key;
+		g.counted("fielded");
+	}
+
+	/* Whether shut lids leave as good as nothing of an eye's disc (middle and radius, px) to be seen in the frame: looked at once for
+	 * each key. A character's lids may not quite meet: the crease between them is filled. */
+	is_hidden(side, key, disc) {
+		const { g } = this, gl = g.gl, n = FaceScene.PROBE, px = new Uint8Array(4 * n * n);
+		if (this.shut[side].key !== key) {
+			gl.disable(gl.DEPTH_TEST);
+			gl.disable(gl.SCISSOR_TEST);
+			g.target(this.probed);
+			g.draw(this.probe, { picture: this.frame, globe: disc });
+			gl.readPixels(0, 0, n, n, gl.RGBA, gl.UNSIGNED_BYTE, px);
+			gl.enable(gl.SCISSOR_TEST);
+			this.shut[side] = { key, hidden: px.reduce((sum, v) => sum + v, 0) / 255 < 0.01 * px.length };
+		}
+		if (this.shut[side].hidden) {
+			g.target(this.frame, 0, 0, this.frame.depth);
+			gl.enable(gl.DEPTH_TEST);
+			gl.depthFunc(gl.LEQUAL);  // only where nothing has been drawn
+			g.draw(g.variant(true, "probe", null, [], "crease"), { globe: disc, skin_rgb: this.data.skin_rgb });
+			gl.depthFunc(gl.LESS);
+		}
+		return this.shut[side].hidden;
 	}
 
 	/* A picture of skin and eyes into frame. */
@@ -137,8 +169,6 @@ class FaceScene {
 		this.pose(view);
 		const light = first.lights[s.light] || first.lights[0], turn = turns.turned(s.light_yaw * Math.PI / 180, s.light_pitch * Math.PI / 180);
 		const still = [1, 0, 0, 0, -1, 0, 0, 0, -1], env = turns.multiply(turns.transpose(turn), still), skies = FaceScene.fewer(light.skies, preset.skies);
-		const views = [0, 1].map(side => this.eye_view(eye_scenes[side], s, view, side, width, height));
-		views.forEach((v, side) => eye_scenes[side].solve(s, v, preset, `face${side}`));
 		g.target(this.frame, 0, 0, this.frame.depth);
 		gl.disable(gl.BLEND);
 		gl.enable(gl.DEPTH_TEST);
@@ -155,20 +185,35 @@ class FaceScene {
 			pores: !preset.pores ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
 		gl.disable(gl.CULL_FACE);
 		gl.enable(gl.SCISSOR_TEST);
-		views.forEach((v, side) => {
-			// Only where the globe can be seen.
-			const [x, y, z, scale] = this.data.globes[side], p = turns.apply(c.R, [x, y, z]), Z = p[2] + FaceScene.DISTANCE, r = 14.5 * scale * c.focal / Z;
-			const cx = width / 2 + c.aim[0] + c.focal * p[0] / Z, cy = height / 2 - c.aim[1] - c.focal * p[1] / Z;
-			gl.scissor(Math.floor(cx - r), Math.floor(cy - r), Math.ceil(2 * r), Math.ceil(2 * r));
-			this.field_of_lids(c.focal / FaceScene.DISTANCE, s);
-			g.target(this.frame, 0, 0, this.frame.depth);
-			gl.enable(gl.DEPTH_TEST);
-			eye_scenes[side].trace(s, v, preset, jitter, { side: v.side, lidded_from_eye: v.lidded_from_eye, depth: v.depth, sky_map: this.sky_map,
-				lid_map: this.fields[1], tear_height: Math.max(this.data.tear_mm * s.tear, 1e-3), tear_absorb: this.data.tear_absorb,
-				canthus: this.data.corners[side], skin_rgb: this.data.skin_rgb }, [width, height], this.eye);
-		});
+		for (const side of [0, 1])
+			this.draw_eye(side, eye_scenes[side], s, view, c, preset, jitter);
 		gl.disable(gl.SCISSOR_TEST);
 		gl.disable(gl.DEPTH_TEST);
+	}
+
+	/* One eye where its globe can be seen. */
+	draw_eye(side, scene, s, view, c, preset, jitter) {
+		const { g, data } = this, gl = g.gl, { width, height } = this.frame, [x, y, z, scale] = data.globes[side], p = turns.apply(c.R, [x, y, z]), Z = p[2] + FaceScene.DISTANCE;
+		const r = 14.5 * scale * c.focal / Z, cx = width / 2 + c.aim[0] + c.focal * p[0] / Z, cy = height / 2 - c.aim[1] - c.focal * p[1] / Z;
+		const box = [Math.floor(cx - r), Math.floor(cy - r), Math.ceil(2 * r), Math.ceil(2 * r)];
+		gl.scissor(...box);
+		if (!(view.open[side] > 0) && this.is_hidden(side, [width, height, ...c.R, ...c.aim, c.focal, this.poser.key].join(), [cx, cy, scene.sclera(s)[1] * scale * c.focal / Z])) {
+			g.counted("hidden");
+			return;
+		}
+		const v = this.eye_view(scene, s, view, side, width, height);
+		gl.disable(gl.DEPTH_TEST);
+		gl.disable(gl.SCISSOR_TEST);
+		scene.solve(s, v, preset, `face${side}`);
+		gl.enable(gl.SCISSOR_TEST);
+		gl.scissor(...box);
+		this.field_of_lids(side, [...box, ...c.R, ...c.aim, c.focal, ...jitter, s.tear, this.poser.key].join(), c.focal / FaceScene.DISTANCE, s);
+		scene.trace(s, v, preset, jitter, { side: v.side, lidded_from_eye: v.lidded_from_eye, depth: v.depth, sky_map: this.sky_map,
+			lid_map: this.fields[1], tear_height: Math.max(data.tear_mm * s.tear, 1e-3), tear_absorb: data.tear_absorb,
+			canthus: data.corners[side], skin_rgb: data.skin_rgb }, [width, height], () => {
+				g.target(this.frame, 0, 0, this.frame.depth);
+				gl.enable(gl.DEPTH_TEST);
+			}, () => this.eye, () => g.variant(true, "eye", null, ["skin_look", "lids"], "kept"));
 	}
 
 	/* Adds one picture to the mean in target. */

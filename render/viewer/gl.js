@@ -11,12 +11,14 @@ function graphics_context(canvas) {
 /* WebGL 2: programs, maps, targets. */
 class Graphics {
 	constructor(gl, shaders, constants) {
-		if (!gl.getExtension("EXT_color_buffer_float") && !gl.getExtension("EXT_color_buffer_half_float"))
+		this.exact = !!gl.getExtension("EXT_color_buffer_float");  // pictures of single precision, too
+		if (!this.exact && !gl.getExtension("EXT_color_buffer_half_float"))
 			throw new Error("this graphics driver cannot draw into floating-point pictures");
 		this.gl = gl;
 		this.shaders = shaders;
 		this.constants = Object.entries(constants).map(([name, value]) => `#define ${name} ${value}\n`).join("");
 		this.variants = {};
+		this.counts = {};    // how often each kind of work was done
 		this.compiled = [];  // in order: what a scene does not show is not compiled
 		this.frame = gl.createFramebuffer();
 		this.whole = gl.createVertexArray();
@@ -29,6 +31,10 @@ class Graphics {
 		const info = gl.getExtension("WEBGL_debug_renderer_info");
 		this.name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 		this.software = /swiftshader|llvmpipe|software|basic render/i.test(this.name);
+	}
+
+	counted(what) {
+		this.counts[what] = (this.counts[what] || 0) + 1;
 	}
 
 	/* A program of the page's shaders; parts: others whose text, if they have any, goes before it, each
@@ -157,6 +163,18 @@ class Graphics {
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
 		return { texture, width, height };
+	}
+
+	/* A texture whose texels are read as they are; list: what is in it. */
+	plain(width, height, format, kind, type, list) {
+		const gl = this.gl, t = this.texture(width, height, format);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+		if (list) {
+			gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+			gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, kind, type, list);
+		}
+		return t;
 	}
 
 	/* Draws into a texture (and another of its size, also), or (null) onto the page. */

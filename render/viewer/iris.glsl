@@ -78,16 +78,22 @@ vec3 pupil_cover(vec2 p)
 	return step_smooth(edge - LOOK_RUFF_BLUR - soft, edge + LOOK_RUFF_BLUR + soft, r) * (1.0 + LOOK_RUFF_SHARE * ruff * (vec3(LOOK_RUFF_COLOUR) - 1.0));
 }
 
-// The photograph's colour times what the march changes it by (march.frag).
-vec3 iris(vec3 f, vec3 v)
+// Where a ray from f behind the cornea meets the iris.
+vec2 iris_place(vec3 f, vec3 v)
 {
 	f.xy += (slip * vec3(f.xy, 1.0)).xy;
 	v.xy += mat2(slip) * v.xy;
+	return meet(f, v).xy;
+}
+
+// The photograph's colour times what the march changes it by (march.frag).
+vec3 iris(vec2 p)
+{
 	float along, across;
-	vec3 p = meet(f, v), cover = pupil_cover(p.xy);
+	vec3 cover = pupil_cover(p);
 	if (cover.r <= 0.0)
 		return vec3(0.0);
-	vec2 at = map_place(stretch(p.xy, along, across));
+	vec2 at = map_place(stretch(p, along, across));
 	vec3 shown = textureLod(colour_map, at, float(level)).rgb;
 	if (detail < 1.0)
 		shown = pow(max(shown, 1e-5), vec3(detail));

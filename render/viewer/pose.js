@@ -10,7 +10,7 @@ class FacePose {
 
 	constructor(g, data) {
 		const rig = data.rig, floats = b => new Float32Array(Graphics.bytes(b).buffer);
-		Object.assign(this, { g, data, rig, key: "", n: data.n, base: rig.levels[0][2], posed: rig.levels[0][1], passes: 0 });
+		Object.assign(this, { g, data, rig, key: "", n: data.n, base: rig.levels[0][2], posed: rig.levels[0][1] });
 		this.rest = floats(rig.rest);
 		this.deform = g.feedback("DEFORM", ["at_now", "light_now"]);
 		this.normal = g.feedback("NORMAL", ["normal_now"]);
@@ -28,19 +28,7 @@ class FacePose {
 		const { gl } = this.g, rows = Math.ceil(this.n / FacePose.WIDE), buffer = gl.createBuffer();
 		gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
 		gl.bufferData(gl.ARRAY_BUFFER, 16 * FacePose.WIDE * rows, gl.DYNAMIC_COPY);
-		return { buffer, map: this.exact(gl.RGBA32F, FacePose.WIDE, rows) };
-	}
-
-	/* A map that is read as it is. */
-	exact(format, width, height, kind, type, list) {
-		const { gl } = this.g, t = this.g.texture(width, height, format);
-		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-		if (list) {
-			gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-			gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, kind, type, list);
-		}
-		return t;
+		return { buffer, map: this.g.plain(FacePose.WIDE, rows, gl.RGBA32F) };
 	}
 
 	/* Skull, globes, light of all poses. */
@@ -49,9 +37,9 @@ class FacePose {
 		const light = Graphics.bytes(data.light), poses = posed ? light.length / 3 / posed : 0, rows = Math.ceil(posed / FacePose.WIDE), padded = new Uint8Array(3 * FacePose.WIDE * rows * poses);
 		for (let k = 0; k < poses; k++)
 			padded.set(light.subarray(3 * posed * k, 3 * posed * (k + 1)), 3 * FacePose.WIDE * rows * k);
-		this.maps = { skull_map: this.exact(gl.RGB32F, rig.skull.part[2], rig.skull.part[3], gl.RGB, gl.FLOAT, floats(rig.skull.mm)),
-			globe_map: this.exact(gl.R32F, side, 2 * side, gl.RED, gl.FLOAT, floats(rig.globe.mm)),
-			pose_map: this.exact(gl.RGB8, FacePose.WIDE, Math.max(rows * poses, 1), gl.RGB, gl.UNSIGNED_BYTE, padded),
+		this.maps = { skull_map: this.g.plain(rig.skull.part[2], rig.skull.part[3], gl.RGB32F, gl.RGB, gl.FLOAT, floats(rig.skull.mm)),
+			globe_map: this.g.plain(side, 2 * side, gl.R32F, gl.RED, gl.FLOAT, floats(rig.globe.mm)),
+			pose_map: this.g.plain(FacePose.WIDE, Math.max(rows * poses, 1), gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, padded),
 			skull_grid: [rig.skull.grid[0], rig.skull.grid[1], 1 / step], skull_most: [w - 1.001, h - 1.001], skull_part: rig.skull.part, cells: rig.globe.cells,
 			globe_center: rig.globe.centers.flat(), lit_rows: rows, outward: rig.head_from_rig.slice(0, 3) };
 	}
@@ -85,7 +73,7 @@ class FacePose {
 		for (let f = 0; f < faces.length; f += 3)
 			for (let k = 0; k < 3; k++)
 				pairs.set([faces[f + (k + 1) % 3], faces[f + (k + 2) % 3]], 2 * at[faces[f + k]]++);
-		this.maps.ring_map = this.exact(gl.RG32F, FacePose.WIDE, rows, gl.RG, gl.FLOAT, pairs);
+		this.maps.ring_map = this.g.plain(FacePose.WIDE, rows, gl.RG32F, gl.RG, gl.FLOAT, pairs);
 		this.normal.shape = this.shape(ring, 2);
 		this.ends = floats(rig.between);
 		this.between.shape = this.shape(this.ends, 2);
@@ -155,7 +143,6 @@ class FacePose {
 			rooms.map(r => [r.buffer, 16 * first]));
 		for (const r of rooms)
 			this.mapped(r, first, end);
-		this.passes++;
 	}
 
 	/* Normals, what lies between, hairs; all of them or what does not stand still. */
@@ -232,6 +219,7 @@ class FacePose {
 		const sides = open[0] === open[1] ? [c, c] : open.map(a => this.controls(gazes, [a, a], strengths, recorded));
 		const e = sides.flatMap(s => this.components(s)), lit = this.lit(c), rad = Math.PI / 180;
 		this.posed_as = c;
+		this.g.counted("posed");
 		const globes = [0, 1].flatMap(side => turns.multiply(turns.transpose(turns.fick(...c.slice(5 * side, 5 * side + 3).map(v => v * rad))), this.rig.head_from_rig));
 		this.key = key;
 		this.run(this.deform, { component: e, globe_from_rig: globes, lit: EyeScene.padded(lit.flat(), 3 * FacePose.LIT), n_lit: lit.length }, 0, 0, this.posed, [this.at, this.light]);

@@ -46,6 +46,7 @@ class EyeScene {
 		this.marcher(g.first);
 		this.path_maps = {};
 		this.shades = {};
+		this.seen = {};  // rays' ways, by name
 	}
 
 	marcher(preset) {
@@ -164,8 +165,10 @@ class EyeScene {
 		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, path_bend: c.path_bend,
 			light_dir: EyeScene.padded(made.dir, 4 * EyeScene.DIRECTIONS), first: EyeScene.padded(made.first, EyeScene.LIGHTS + 2), origin: cam.origin,
 			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + data.tissue.abl + e.thickness_max] };
-		if (!old || old.key !== key)
+		if (!old || old.key !== key) {
 			this.solve_all(map, values, made);
+			g.counted("solved");
+		}
 		this.path_maps[name] = { key, map };
 		const beam_rgb = EyeScene.padded(made.rgb.map(v => v * s.light_gain), 3 * EyeScene.LIGHTS);
 		this.solved = { ...this.solved, [name]: { ...values, key, path_map: map, down_map: map.also, env_from_eye, beams: made.n, beam_rgb, light } };
@@ -186,6 +189,7 @@ class EyeScene {
 		g.draw(this.marcher(preset), { ...solved, ...own, ...this.maps, sclera: this.sclera(s), pupil: e.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px,
 			abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, model_top: m.tops[level - m.from] });
 		this.shades[name] = { key, map };
+		g.counted("marched");
 	}
 
 	/* Several lights together are smooth: fewer points, and cubics between. */
@@ -207,20 +211,41 @@ class EyeScene {
 		gl.disable(gl.SCISSOR_TEST);
 	}
 
-	/* Every pixel of the target's ray. */
-	trace(s, cam, preset, jitter, extra, size, program) {
+	/* Every pixel of the target's ray, drawn by to(): program, or kept, which only shades what an earlier picture found. Where
+	 * nothing but light has changed since the last one, the rays' ways are kept and no ray is traced again; extra: uniforms. */
+	trace(s, cam, preset, jitter, extra, size, to, program, kept) {
 		const { g, data } = this, e = data.eye, name = cam.side === undefined ? "eye" : `face${cam.side}`, solved = this.solved[name], light = solved.light;
-		g.draw(program || this.eye, {
-			...solved, origin: cam.origin, eye_from_cam: turns.transpose(cam.R), lens: cam.lens, corner: cam.corner,
-			size, jitter, slip: cam.slip ? [...cam.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0],
-			back: e.back, sclera: this.sclera(s), sclera_reach: data.constants.sclera_reach, pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel,
-			heights: e.heights, search: Math.min(e.search, EyeScene.SEARCH), level: this.level(cam.pixel), map_size: e.map_px, ...this.maps,
+		const ways = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, origin: cam.origin, eye_from_cam: turns.transpose(cam.R),
+			lens: cam.lens, corner: cam.corner, size, jitter, slip: cam.slip ? [...cam.slip, 0, 0, 0] : [0, 0, 0, 0, 0, 0, 0, 0, 0], back: e.back, sclera: this.sclera(s),
+			pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, pixel: cam.pixel, heights: e.heights, search: Math.min(e.search, EyeScene.SEARCH),
+			level: this.level(cam.pixel), map_size: e.map_px };
+		const key = JSON.stringify(ways), seen = this.seen[name] = this.seen[name] || { key: "", found: "", map: null };
+		const all = { ...solved, ...ways, ...this.maps, sclera_reach: data.constants.sclera_reach,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
 			light_map: this.shades[name].map, detail: s.detail,
 			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
-			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear,
-			...extra,
-		});
+			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear, ...extra };
+		const same = g.exact && !jitter[0] && !jitter[1] && (seen.key === key || seen.found === key);
+		if (same && seen.found !== key)
+			this.find(seen, key, all, size);
+		to();
+		g.counted(same ? "shaded" : "traced");
+		g.draw(same ? kept() : program(), { ...all, kept_map: seen.map });
+		seen.key = jitter[0] || jitter[1] ? seen.key : key;
+	}
+
+	/* Ways of all rays, in full precision. */
+	find(seen, key, all, size) {
+		const { g } = this, gl = g.gl;
+		if (!seen.map || seen.map.width !== size[0] || seen.map.height !== size[1]) {
+			if (seen.map)
+				gl.deleteTexture(seen.map.texture);
+			seen.map = g.plain(...size, gl.RGBA32F);
+		}
+		g.target(seen.map);
+		g.counted("traced");
+		g.draw(g.variant(true, "eye", null, [], "crossings"), all);
+		seen.found = key;
 	}
 
 	/* Adds one picture to the mean of those since restart(). s: state; view: where from; jitter: px. */
@@ -236,8 +261,7 @@ class EyeScene {
 			gl.enable(gl.BLEND);
 		gl.blendColor(0, 0, 0, 1 / (this.count + 1));
 		gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
-		g.target(this.target);
-		this.trace(s, cam, preset, jitter, {}, [width, height]);
+		this.trace(s, cam, preset, jitter, {}, [width, height], () => g.target(this.target), () => this.eye, () => g.variant(true, "eye", null, [], "kept"));
 		gl.disable(gl.BLEND);
 		this.count++;
 	}

@@ -85,7 +85,7 @@ void main()
 	n = smooth_n = normalize(smooth_n - fold);
 #endif
 	if (seen_skin.a > 0.5) {
-		seen = vec4(albedo * 1.5 * (0.4 + light), 0.99);  // hairs hang before a lid's edge and are not it: tear.frag
+		seen = vec4(albedo * 1.5 * (0.4 + light), 0.98);  // hairs hang before a lid's edge and are not it: tear.frag, probe.frag
 		return;
 	}
 	float grain = 0.0, relief = 1.0;

@@ -73,6 +73,28 @@ static void count_row(const char *what, const char *line)
 	free(setting);
 }
 
+/* Pictures that leave something out, against those that do not: "skip WHAT SECONDS ...". */
+static void skip_rows(const char *what, const char *line)
+{
+	static const char *const names[] = { "open", "shut", "none", "traced", "shaded" };
+	double s[COUNT(names)];
+	for (int i = 0; i < COUNT(names); i++) {
+		char *key = mem_printf(" %s ", names[i]);
+		const char *at = strstr(line, key);
+		s[i] = at ? atof(at + strlen(key)) : NAN;
+		free(key);
+		if (at)
+			bench_row("what is skipped, 1280 x 1024", what, i == 0 ? "eyes open, gaze moves" : i == 1 ? "eyes shut" : i == 2 ? "eyes left out" : i == 3 ? "light moves, rays traced again" : "light moves, rays kept",
+			          (struct bench_time){ s[i], s[i], s[i] }, "frame", NAN, "", "");
+	}
+	double share = (s[1] - s[2]) / (s[0] - s[2]);
+	if (isfinite(share)) {
+		char *goal = mem_printf("page with %s: a closed eye's cost of an open one's (frames less the skin's)", what);
+		bench_goal(goal, "< 10 %", 100 * share, "%", share < 0.1);
+		free(goal);
+	}
+}
+
 static bool browse(struct said *said, const char *what, const char *page)
 {
 	char *command = mem_printf("timeout 100 node tests/browser/bench.js '%s' %d", page, bench_quick());
@@ -85,6 +107,8 @@ static bool browse(struct said *said, const char *what, const char *page)
 		sscanf(line, "fallback %31s %31s %lf", said->starts, said->fallback, &said->fallback_s);
 		count_row(what, line);
 		frame_row(what, line, said->driver);
+		if (!strncmp(line, "skip ", 5))
+			skip_rows(what, line + 4);
 		if (!strncmp(line, "failed", 6))
 			fprintf(stderr, "bench_viewer: %s: %s", what, line);
 	}

@@ -1,7 +1,7 @@
 "use strict";
 /* Times of the interactive page in a headless Chromium. Called by tests/bench/bench_viewer.c: node bench.js KIND PAGE QUICK
  * Prints lines of "opened SECONDS", "driver NAME", "frame PRESET SECONDS...", "count PRESET OPERATIONS READS SECONDS GPU" (estimates
- * for GPUs of 2015) and "fallback FROM TO SECONDS". */
+ * for GPUs of 2015), "skip WHAT SECONDS ..." and "fallback FROM TO SECONDS". */
 const { pathToFileURL } = require("url");
 const { Browser } = require("./browser.js");
 const { picture, seconds_on, GPUS } = require("./count.js");
@@ -27,6 +27,29 @@ async function count(b) {
 	}
 }
 
+/* What skipping saves: least seconds of pictures in turn - eyes open, shut, not drawn at all; all traced, and only shaded. */
+const skips = n => `(() => { const p = eyewright, gl = p.graphics.gl, one = new Uint8Array(4), least = {};
+	const take = (name, prepare) => { prepare(); p.scene.restart(); const t = performance.now(); p.draw(presets[1]); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, one);
+		least[name] = Math.min(least[name] || 1e9, (performance.now() - t) / 1000); };
+	for (let i = 0; i <= 2 * ${n}; i++) {
+		const turn = () => { p.eyes.eye = [i % 7 + 0.5, i % 5]; }, light = () => { p.values.light_yaw = 5 * i; };
+		if (p.face) {
+			take("open", turn);
+			take("shut", () => { p.values.aperture = 0; turn(); p.eyes.eye[0] += 0.1; });
+			p.values.aperture = 1;
+			p.face.draw_eye = () => 0;
+			take("none", turn);
+			delete p.face.draw_eye;
+		}
+		take("traced", () => { p.scene.seen = {}; light(); });
+		take("found", light);
+		take("shaded", () => { p.values.light_yaw += 2; });
+		if (!i)
+			for (const k in least)
+				least[k] = 1e9;
+	}
+	return Object.entries(least).map(e => e.join(" ")).join(" "); })()`;
+
 (async () => {
 	const b = await Browser.start();
 	try {
@@ -43,6 +66,7 @@ async function count(b) {
 		for (let k = 0; k < names.length; k++)
 			if (quick !== "1" || k === 0 || k + 1 === names.length)
 				console.log(`frame ${names[k]} ${await b.value(frames(k, quick === "1" ? 1 : 3), 120000)}`);
+		console.log(`skip ${await b.value(skips(quick === "1" ? 1 : 2), 120000)}`);
 		await count(b);
 		await b.value(`eyewright.preset = 0; eyewright.times = []; eyewright.automatic = true; eyewright.busy = false; eyewright.set_follow('wander');
 			eyewright.eyes.still = false; eyewright.changed()`);

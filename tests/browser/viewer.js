@@ -121,6 +121,49 @@ async function hands(b) {
 	say(Math.abs(await b.value("eyewright.values.stroma_eu") / value - 1) < 1e-4, "the address restores the view", hash);
 }
 
+/* What need not be done is not: pictures with only the light changed trace no ray, shade what the others traced, and show what
+ * tracing all again shows; what must be done is counted by the page itself. */
+async function skips(b) {
+	await calm(b, true);
+	await open(b, "#gaze=0,0");
+	const counts = JSON.parse(await b.value(`(() => {
+		const p = eyewright, g = p.graphics, out = {};
+		p.busy = true;
+		const look = () => { p.scene.restart(); p.draw(presets[1]); return ${sum}; }, of = change => { g.counts = {}; change(); const shown = look(); return { shown, ...g.counts }; };
+		look();
+		out.found = of(() => { p.values.light_yaw = 20; });
+		out.moved = of(() => { p.values.light_yaw = 40; });
+		out.strength = of(() => { p.values.light_gain = 0.5; });
+		p.scene.seen = {};
+		out.again = of(() => {});
+		out.gaze = of(() => { p.eyes.eye = [10, 0]; });
+		p.values.light_yaw = 0;
+		p.values.light_gain = 1;
+		p.busy = false;
+		return JSON.stringify(out);
+	})()`, 120000));
+	const { found, moved, strength, again, gaze } = counts, n = again.traced, text = JSON.stringify(counts);
+	say(n > 0 && found.traced === n && found.shaded === n && !moved.traced && !moved.fielded && moved.shaded === n && moved.solved === n, "while only a light moves, no ray is traced again", text);
+	say(!strength.traced && !strength.solved && strength.marched === n, "and while it only brightens, its ways stay", text);
+	say(again.shown === strength.shown && gaze.traced === n && gaze.shown !== again.shown, "what is only shaded again is the same picture", text);
+}
+
+/* Lids shut over an eye: nothing of it is drawn or lit; a wink hides one. */
+async function shut(b) {
+	const counts = JSON.parse(await b.value(`(() => {
+		const p = eyewright, g = p.graphics, look = (open, gaze) => { p.values.aperture = open[0]; p.values.wink_left = open[1]; p.eyes.eye = gaze; g.counts = {}; p.scene.restart(); p.draw(presets[presets.length - 1]); return g.counts; };
+		p.busy = true;
+		const out = { open: look([1, 0], [0, 0]), shut: look([0, 0], [3, 2]), wink: look([1, 1], [5, 0]) };
+		p.values.wink_left = 0;
+		p.values.aperture = 1;
+		p.eyes.eye = [0, 0];
+		p.busy = false;
+		return JSON.stringify(out);
+	})()`, 120000)), text = JSON.stringify(counts);
+	say(!counts.shut.traced && !counts.shut.solved && !counts.shut.marched && !counts.shut.fielded && counts.shut.hidden === 2, "of shut eyes nothing is drawn", text);
+	say(counts.wink.hidden === 1 && counts.wink.traced === 1, "of a wink one eye is", text);
+}
+
 /* Every slider: its fitted value is marked, moving it changes the picture, its own reset brings the first back. */
 async function sliders(b) {
 	await calm(b, true);
@@ -264,6 +307,7 @@ async function character(b) {
 		say(await b.value(`data.face.clips[${k}].name`) === name && await b.value("eyewright.began") !== null && await b.value(`location.hash.includes("play=${k}")`), `a clip plays: ${name}`, await b.value(`data.face.clips[${k}].name + location.hash`));
 	}
 	await b.value("eyewright.play(null)");
+	await shut(b);
 	await expressions(b);
 	// Either eye turned to one place: 62 mm apart they turn by 2 atan(31 / 200) against each other at 20 cm.
 	const turned = await b.value(`(() => { const v = eyewright; v.values.near = 5; const g = v.gazes(0, 0), x = data.face.globes; v.values.near = 0;
@@ -361,6 +405,7 @@ async function without(b) {
 		say(!(await b.value("eyewright.graphics.software")) || /(^|,)march(,|$)/.test(compiled.split("march+shadows")[0]), "a processor compiles the cheapest march first", compiled);
 		await agreement(b);
 		await hands(b);
+		await skips(b);
 		await sliders(b);
 		await keys(b);
 		await eyes(b);
