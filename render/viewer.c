@@ -166,9 +166,12 @@ static bool add_eyes(json_t *eyes, struct parts *p, struct err *err)
 			continue;
 		if (!job_ready(job, err))
 			return false;
+		const struct shot *shot = &job->shots[job->reference];
+		char *edge = mem_printf("%s", stage_path(job->stage, "%.*s.edge.json", (int)(strlen(shot->photo->fit) - strlen(".json")), shot->photo->fit));
 		const struct viewer_source source = { &job->scene, job->names->side, stage_path(job->stage, "%s", job->in[3]),
-			                                  &job->studio, job->gain, &job->shots[job->reference], job->conf->lights, job->conf->light_directions };
+			                                  &job->studio, job->gain, shot, edge, job->conf->lights, job->conf->light_directions };
 		json_t *one = viewer_eye(&source, err);
+		free(edge);
 		if (!one)
 			return false;
 		json_array_append_new(eyes, one);
@@ -203,7 +206,7 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 	struct skin_target target = { .name = name, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
 	bool ok = skin_open(skin, &target, err);
 	if (ok && !json_array_size(eyes)) {
-		const struct viewer_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, skin->render->lights, skin->render->light_directions };
+		const struct viewer_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, 0, skin->render->lights, skin->render->light_directions };
 		json_t *one = viewer_eye(&plain, err);
 		ok = one;
 		if (one)

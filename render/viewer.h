@@ -14,6 +14,7 @@ struct viewer_source {
 	const struct envmap *studio;
 	double gain;                     // exposure
 	const struct shot *shot;         // the photograph its colours are of, decoded; null: none
+	const char *edge;                // path of what limbus measured in it (eye/limbus_record.h), or null
 	int lights, directions;          // beams, and directions in each
 };
 

@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "eye/limbus_record.h"
 #include "eye/scene_impl.h"
 #include "optics/lightpath_path.h"
 #include "render/page.h"
@@ -44,7 +45,19 @@ static json_t *rules(const struct scene *s)
 	                 json_numbers(FADES, fade), "rules", all);
 }
 
-static json_t *geometry(const struct scene *s, double gain)
+/* Of the pupil's radius, mm: of its margin and of the limbus that tells the scale, in the photograph; 0: not known. Points round an
+ * ellipse tell its radius sqrt(2) times as well as its centre. */
+static double pupil_sigma(const struct viewer_source *source)
+{
+	struct limbus_record record;
+	struct err err = { 0 };
+	const struct shot *shot = source->shot;
+	if (!shot || !shot->fit.has_pupil || !source->edge || !file_exists(source->edge) || !limbus_record_load(&record, source->edge, &err) || !record.view.has_pupil)
+		return 0;
+	return source->scene->pupil[2] * hypot(record.view.pupil_sigma / M_SQRT2 / shot->fit.pupil.a, shot->fit.ellipse_sigma[2] / shot->fit.limbus.a);
+}
+
+static json_t *geometry(const struct scene *s, double gain, double sigma_of_pupil)
 {
 	const struct cornea *c = &s->cornea;
 	json_t *out = json_object();
@@ -57,6 +70,7 @@ static json_t *geometry(const struct scene *s, double gain)
 	put(out, "limbus", 2, limbus);
 	put(out, "sclera", 3, sclera);
 	put(out, "pupil", 3, s->pupil);
+	put(out, "pupil_sigma", 1, &sigma_of_pupil);
 	put(out, "extent", 1, &s->extent);
 	put(out, "heights", 2, heights);
 	put(out, "thickness_max", 1, &thickness);
@@ -139,7 +153,7 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 	struct err errs[PARTS] = { 0 };
 	json_object_set_new(out, "side", template_text(source->side));
 	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:i,s:i}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
-	json_object_set_new(out, "eye", geometry(s, source->gain));
+	json_object_set_new(out, "eye", geometry(s, source->gain, pupil_sigma(source)));
 	json_object_set_new(out, "tissue", viewer_tissue(source));
 #pragma omp parallel for schedule(dynamic, 1)
 	for (int i = 0; i < PARTS; i++)

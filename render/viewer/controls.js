@@ -24,8 +24,6 @@ class Controls {
 			const set = element("fieldset", {}, element("legend", { textContent: title }));
 			if (title === "Light")
 				set.append(this.light_choice());
-			if (title === "Cornea")
-				set.append(element("p", { className: "note", textContent: "As configured; the band is the spread between people (R ± 0.27 mm, p ± 0.12)." }));
 			for (const c of list)
 				if (!c.lids || this.scene.has_lids)
 					set.append(this.slider(c));
@@ -78,8 +76,9 @@ class Controls {
 		reset.setAttribute("aria-label", `${c.label}: back to ${c.show(c.value)}`);
 		reset.title = "Back";
 		const at = t => `calc(${t} * (100% - 16px) + 8px)`, track = element("span", { className: "track" });
-		if (c.sigma) {
-			const a = t_of(c.value - c.sigma), b = t_of(c.value + c.sigma), band = element("span", { className: "sigma" });
+		const ends = c.band || (c.sigma ? [c.value - c.sigma, c.value + c.sigma] : null);
+		if (ends) {
+			const [a, b] = ends.map(t_of), band = element("span", { className: "sigma" });
 			band.style.left = at(a);
 			band.style.width = `calc(${Math.max(b - a, 0.005)} * (100% - 16px))`;
 			track.append(band);
@@ -87,9 +86,9 @@ class Controls {
 		const tick = element("span", { className: "fit" });
 		tick.style.left = at(t_of(c.value));
 		track.append(tick, input);
-		const plus = c.sigma ? ` ± ${c.show(c.sigma)}` : "", fitted = element("span", { className: "fitted", textContent: `${c.assumed ? "configured" : "fitted"} ${c.show(c.value)}${plus}` });
-		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, ...(c.sigma ? [fitted] : []));
-		row.title = `${c.assumed ? "Configured" : "Fitted"}: ${c.show(c.value)}${plus}`;
+		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: c.why ? `${origin}, ${c.why}` : origin });
+		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, fitted);
+		row.title = origin[0].toUpperCase() + origin.slice(1);
 		c.update = () => {
 			const v = this.values[c.key];
 			input.value = Math.round(1000 * t_of(v));

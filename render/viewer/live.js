@@ -44,7 +44,7 @@ class Live extends Controls {
 	wake() {
 		if (!this.awake) {
 			this.awake = true;
-			requestAnimationFrame(t => this.tick(t));
+			requestAnimationFrame(t => this.run(t));
 		}
 	}
 
@@ -161,11 +161,21 @@ class Live extends Controls {
 		by_id("time").textContent = `${this.frame_ms.toFixed(1)} ms a frame, ${presets[this.preset].name} quality while moving`;
 	}
 
+	/* A driver that refuses a shader says so only when it is used. */
+	run(t) {
+		try {
+			this.tick(t);
+		} catch (e) {
+			give_up(e.message);
+			throw e;
+		}
+	}
+
 	tick(t) {
 		const now = t / 1000;
 		this.awake = true;
 		if (this.busy) {
-			requestAnimationFrame(u => this.tick(u));
+			requestAnimationFrame(u => this.run(u));
 			return;
 		}
 		if (this.follow === "wander")
@@ -198,7 +208,7 @@ class Live extends Controls {
 		else {
 			delete document.documentElement.dataset.settled;
 			this.awake = true;
-			requestAnimationFrame(u => this.tick(u));
+			requestAnimationFrame(u => this.run(u));
 		}
 	}
 }

@@ -22,41 +22,45 @@ function pigments(t) {
 	return out;
 }
 
-/* Everything a hand can move. value: as fitted or assumed. power: how the slider is bent. conf: what capture.conf calls it. */
+/* Everything a hand can move. value: as fitted or assumed; from: how it came about, in a word; why: more of that. sigma: of the
+ * fit, or between people (show_sigma: finer than the value is shown); band: the same where it is not even. power: how the slider is bent. conf: what capture.conf calls it. */
 function sliders(eye) {
-	const e = eye.eye, t = eye.tissue, p = pigments(t), scale = t.interval.thickness_scale, per_cent = v => `${(100 * v).toPrecision(3)} %`;
-	const degrees = v => `${v.toFixed(0)}°`, mm = n => v => `${v.toFixed(n)} mm`;
-	const melanin = key => ({ key, lo: 0, hi: 0.6, power: 3, show: per_cent, ...p[key] });
+	const e = eye.eye, t = eye.tissue, p = pigments(t), scale = t.interval.thickness_scale, share = v => `${(100 * v).toFixed(0)} %`, per_cent = v => `${(100 * v).toPrecision(3)} %`;
+	const degrees = v => `${v.toFixed(0)}°`, mm = n => v => `${v.toFixed(n)} mm`, fitted = !!t.interval.abl_melanin, film = data.face ? data.face.tear_mm : 0;
+	const melanin = key => ({ key, lo: 0, hi: 0.6, power: 3, show: per_cent, from: fitted ? "fitted" : "chosen", ...p[key] });
 	return [
 		["Eye", [
-			{ key: "aperture", label: "Lids: how far open", lo: 0, hi: 1.6, value: 1, show: v => `${(100 * v).toFixed(0)} %`, lids: true },
-			...["left", "right"].map(side => ({ key: `wink_${side}`, label: `Wink: ${side} lids shut`, lo: 0, hi: 1, value: 0, show: v => `${(100 * v).toFixed(0)} %`, lids: true })),
-			{ key: "near", label: "Both eyes on something near", lo: 0, hi: 10, value: 0, lids: true,
+			{ key: "aperture", label: "Lids: how far open", lo: 0, hi: 1.6, value: 1, show: share, lids: true, from: "learnt from the video", why: "as these lids follow the gaze; the spread between people is not known" },
+			...["left", "right"].map(side => ({ key: `wink_${side}`, label: `Wink: ${side} lids shut`, lo: 0, hi: 1, value: 0, show: share, lids: true, from: "at rest" })),
+			{ key: "near", label: "Both eyes on something near", lo: 0, hi: 10, value: 0, lids: true, from: "chosen",
 				show: v => v > 0.05 ? `${(100 / v).toFixed(0)} cm away` : "far away" },
-			{ key: "pupil", label: "Pupil, radius", lo: 0.7, hi: 4.2, value: e.pupil[2], show: mm(2) },
-			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, show: v => `${(100 * v).toFixed(0)} %` },
-			{ key: "field", label: "Zoom: height shown", lo: 8, hi: 60, value: 30, power: 2, show: mm(1) },
+			{ key: "pupil", label: "Pupil, radius", lo: 0.7, hi: 4.2, value: e.pupil[2], sigma: e.pupil_sigma, show: mm(2), show_sigma: mm(3), from: eye.photo ? "fitted" : "chosen",
+				why: eye.photo ? `in an iris taken as ${(2 * e.limbus[0]).toFixed(1)} mm across` : "no photograph tells it" },
+			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, show: share, from: "from the literature", band: film ? [0.2 / film, 0.35 / film] : null,
+				why: film ? `${film.toFixed(2)} mm high; healthy eyes have 0.2 to 0.35 mm` : "a healthy eye's film" },
+			{ key: "field", label: "Zoom: height shown", lo: 8, hi: 60, value: 30, power: 2, show: mm(1), from: "chosen" },
 		]],
 		...(data.face && data.face.expressions.length ? [["Expressions", data.face.expressions.map((x, k) => (
-			{ key: `au${k}`, label: x.name, lo: 0, hi: 1, value: 0, lids: true, show: v => `${(100 * v).toFixed(0)} %` }))]] : []),
+			{ key: `au${k}`, label: x.name, lo: 0, hi: 1, value: 0, lids: true, show: share, from: "at rest", why: "100 % is the video's own peak" }))]] : []),
 		["Pigment of the iris", [
 			{ ...melanin("abl_eu"), label: "Anterior border layer: eumelanin" },
 			{ ...melanin("abl_pheo"), label: "Anterior border layer: pheomelanin" },
 			{ ...melanin("stroma_eu"), label: "Stroma: eumelanin" },
 			{ ...melanin("stroma_pheo"), label: "Stroma: pheomelanin" },
 			{ key: "thickness_scale", label: "Stroma: optical over anatomical thickness", lo: 0.02, hi: 2.5, power: 2, value: t.fitted.thickness_scale,
-				sigma: scale ? (scale[1] - scale[0]) / 2 : 0, show: v => v.toFixed(3) },
-			{ key: "detail", label: "Of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, show: v => `${(100 * v).toFixed(0)} %` },
+				sigma: scale ? (scale[1] - scale[0]) / 2 : 0, show: v => v.toFixed(3), from: fitted ? "fitted" : "chosen" },
+			{ key: "detail", label: "Of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, show: share, from: "configured", why: "0 % is the model alone" },
 		]],
 		["Cornea", [
-			{ key: "R", label: "Apical radius R", lo: 6.5, hi: 9.5, value: e.R, sigma: 0.27, show: mm(2), conf: "eye.cornea_radius_mm", assumed: true },
-			{ key: "p", label: "Asphericity p", lo: 0.3, hi: 1.2, value: e.p, sigma: 0.12, show: v => v.toFixed(3), conf: "eye.cornea_asphericity", assumed: true },
-			{ key: "n", label: "Index of refraction", lo: 1, hi: 1.5, value: e.n, show: v => v.toFixed(4), conf: "eye.index", assumed: true },
+			{ key: "R", label: "Apical radius R", lo: 6.5, hi: 9.5, value: e.R, sigma: 0.27, show: mm(2), conf: "eye.cornea_radius_mm", from: "configured", why: "people's spread" },
+			{ key: "p", label: "Asphericity p", lo: 0.3, hi: 1.2, value: e.p, sigma: 0.12, show: v => v.toFixed(3), conf: "eye.cornea_asphericity", from: "configured", why: "people's spread" },
+			{ key: "n", label: "Index of refraction", lo: 1, hi: 1.5, value: e.n, show: v => v.toFixed(4), conf: "eye.index", from: "configured", why: "the literature's for the aqueous humour; photographs do not tell it" },
 		]],
 		["Light", [
-			{ key: "light_yaw", label: "Round", lo: -180, hi: 180, value: 0, show: degrees },
-			{ key: "light_pitch", label: "Up and down", lo: -80, hi: 80, value: 0, show: degrees },
-			{ key: "light_gain", label: "Strength", lo: 0.1, hi: 3, power: 2, value: 1, show: v => `${(100 * v).toFixed(0)} %` },
+			{ key: "light_yaw", label: "Round", lo: -180, hi: 180, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
+			{ key: "light_pitch", label: "Up and down", lo: -80, hi: 80, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
+			{ key: "light_gain", label: "Strength", lo: 0.1, hi: 3, power: 2, value: 1, show: share, from: eye.photo ? "fitted" : "chosen",
+				why: eye.photo ? "100 % is the photograph's own exposure; its error goes into the pigments'" : "" },
 		]],
 	];
 }

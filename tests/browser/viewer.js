@@ -169,7 +169,7 @@ async function sliders(b) {
 	await calm(b, true);
 	await open(b, "#gaze=0,0");
 	const said = JSON.parse(await b.value(`(() => {
-		const p = eyewright, gl = p.graphics.gl, of = key => document.getElementById("s-" + key), out = { all: [], stuck: [], bare: [], unsure: [] };
+		const p = eyewright, gl = p.graphics.gl, of = key => document.getElementById("s-" + key), out = { all: [], stuck: [], bare: [], unsure: [], mute: [] };
 		p.busy = true;
 		const look = () => { p.scene.restart(); p.draw(presets[presets.length - 1]); return ${sum}; };
 		const first = look();
@@ -185,6 +185,8 @@ async function sliders(b) {
 				out.bare.push(c.key);
 			if (!row.querySelector(".sigma"))
 				out.unsure.push(c.key);
+			if (!/^(fitted|configured|chosen|at rest|learnt from the video|from the literature): \\S/.test(row.querySelector(".fitted").textContent))
+				out.mute.push(c.key);
 		}
 		p.busy = false;
 		return JSON.stringify(out);
@@ -193,7 +195,8 @@ async function sliders(b) {
 	say(wanted.every(k => said.all.includes(k)), "sliders for pupil, tears, pigments, thickness, cornea and light", said.all.join());
 	say(!said.stuck.length, "each slider changes the picture, and its reset brings it back", said.stuck.join());
 	say(!said.bare.length, "each slider marks its fitted value", said.bare.join());
-	say(["abl_eu", "abl_pheo", "stroma_eu", "stroma_pheo", "thickness_scale", "R", "p"].every(k => !said.unsure.includes(k)), "what is uncertain shows how much", said.unsure.join());
+	say(["pupil", "abl_eu", "abl_pheo", "stroma_eu", "stroma_pheo", "thickness_scale", "R", "p"].every(k => !said.unsure.includes(k)), "what is uncertain shows how much", said.unsure.join());
+	say(!said.mute.length, "each slider says where its value comes from", said.mute.join());
 }
 
 /* The picture's own keys, and what a screen reader is told. */
