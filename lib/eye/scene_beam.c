@@ -243,9 +243,10 @@ struct scene_beams scene_beams(const struct scene *s, const struct scene_lightin
 struct scene_beam *scene_sight(const struct scene *s, const double C[3])
 {
 	struct scene_beam *beam = mem_new(1, sizeof *beam);
-	struct plane *plane = mem_array(1, sizeof *plane);
 	beam_depths(beam, s);
+#pragma omp parallel for
 	for (int k = 0; k < 2; k++) {
+		struct plane *plane = mem_array(1, sizeof *plane);
 		plane_points(plane, SCENE_GRID, s, beam->z[k]);
 		lightpath_batch_point(NODES, plane->p[0], plane->p[1], plane->p[2], C, plane->k[0], plane->k[1], plane->k[2], plane->status,
 		                      &s->cornea, SCENE_PATH_STEPS);
@@ -256,7 +257,7 @@ struct scene_beam *scene_sight(const struct scene *s, const double C[3])
 			float at[3] = { plane->k[0][i], plane->k[1][i], plane->k[2][i] };
 			node_put(beam->way[k][i / SCENE_GRID][i % SCENE_GRID], p, none ? up : at, 1, s->limbus);
 		}
+		free(plane);
 	}
-	free(plane);
 	return beam;
 }

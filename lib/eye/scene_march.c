@@ -123,15 +123,43 @@ static struct rates rates_of(const struct tissue_optics *o, int layer)
 	return r;
 }
 
-SIMD_CLONES static void add_light(struct iris_batch *r, int first, int n, const struct tissue_optics *o, const float rgb[3], const float (*sum)[PART])
+/* Bands' sums as one colour: per[c][k] of band k. */
+SIMD_INLINE void colour_add(float (*restrict rgb)[BATCH], int first, int n, int bands, const float per[3][TISSUE_BANDS_MAX], const float (*restrict sum)[PART])
 {
-	for (int c = 0; c < 3; c++)
-		for (int k = 0; k < o->n; k++) {
-			float f = (float)(o->rgb[k][c] * o->exposure * rgb[c]), *to = r->rgb[c] + first;
-			SIMD_LOOP
-			for (int i = 0; i < n; i++)
-				to[i] += f * sum[k][i];
+	for (int c = 0; c < 3; c++) {
+		float *restrict to = rgb[c] + first;
+		SIMD_LOOP
+		for (int i = 0; i < n; i++) {
+			float all = to[i];
+#pragma GCC unroll 8
+			for (int k = 0; k < bands; k++)
+				all += per[c][k] * sum[k][i];
+			to[i] = all;
 		}
+	}
+}
+
+SIMD_CLONES static void colour_add_4(float (*rgb)[BATCH], int first, int n, const float per[3][TISSUE_BANDS_MAX], const float (*sum)[PART])
+{
+	colour_add(rgb, first, n, 4, per, sum);
+}
+
+SIMD_CLONES static void colour_add_1(float (*rgb)[BATCH], int first, int n, const float per[3][TISSUE_BANDS_MAX], const float (*sum)[PART])
+{
+	colour_add(rgb, first, n, 1, per, sum);
+}
+
+static void add_light(struct iris_batch *r, int first, int n, const struct tissue_optics *o, const float rgb[3], const float (*sum)[PART])
+{
+	for (int from = 0; from < o->n;) {
+		bool four = from + 4 <= o->n;
+		float per[3][TISSUE_BANDS_MAX];
+		for (int c = 0; c < 3; c++)
+			for (int k = 0; k < (four ? 4 : 1); k++)
+				per[c][k] = (float)(o->rgb[from + k][c] * o->exposure * rgb[c]);
+		(four ? colour_add_4 : colour_add_1)(r->rgb, first, n, per, sum + from);
+		from += four ? 4 : 1;
+	}
 }
 
 /* Points of a part's rays at the share u of each. */

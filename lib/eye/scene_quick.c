@@ -8,13 +8,6 @@
 #pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
-SIMD_INLINE float step_smooth(float lo, float inv, float x)
-{
-	float t = (x - lo) * inv;
-	t = t > 0 ? t < 1 ? t : 1 : 0;
-	return t * t * (3 - 2 * t);
-}
-
 struct lane {
 	float o[3], d[3];
 };
@@ -75,10 +68,10 @@ SIMD_INLINE void outside_lane(int i, struct quick_spots *restrict s, const struc
 	float x = ball > 0 ? ox + ts * dx : K[0], y = ball > 0 ? oy + ts * dy : K[1], z = ball > 0 ? oz + ts * dz + k->sphere_z : K[2];
 	float hit = ball > 0 ? 1 : cornea, fz = k->front.p * z - k->front.R, inv = 1 / sqrtf(x * x + y * y + fz * fz);
 	float u = x * k->limbus[0], v = y * k->limbus[1], deep = z - k->sphere_z, rho = deep < 0 ? sqrtf(u * u + v * v) : 2;
-	float blend = step_smooth(LOOK_SEAM_FROM, (float)(1 / (LOOK_SEAM_TO - LOOK_SEAM_FROM)), rho), per = 1 / k->sphere_r;
+	float blend = quick_ramp(LOOK_SEAM_FROM, (float)(1 / (LOOK_SEAM_TO - LOOK_SEAM_FROM)), rho), per = 1 / k->sphere_r;
 	float nx = x * inv + blend * (x * per - x * inv), ny = y * inv + blend * (y * per - y * inv), nz = fz * inv + blend * (deep * per - fz * inv);
 	float norm = 1 / sqrtf(nx * nx + ny * ny + nz * nz);
-	float lid = step_smooth(1 - 0.5f * k->lid_width, 1 / k->lid_width, rho), far = 1 / sqrtf(x * x + y * y + deep * deep);
+	float lid = quick_ramp(1 - 0.5f * k->lid_width, 1 / k->lid_width, rho), far = 1 / sqrtf(x * x + y * y + deep * deep);
 	float place = angle_over_sine(-deep * far) * far * (float)(0.5 / SCENE_SCLERA_REACH);
 	s->hit[i] = hit;
 	s->nx[i] = hit > 0 ? nx * norm : 0;
@@ -122,7 +115,7 @@ SIMD_CLONES void quick_sclera(float out[3][BATCH], int n, const float *restrict 
 		float *restrict sky = out[c];
 		SIMD_LOOP
 		for (int i = 0; i < n; i++) {
-			float x = nx[i], y = ny[i], z = nz[i], edge = 1 - step_smooth(LOOK_RIM_FROM, (float)(1 / (LOOK_RIM_TO - LOOK_RIM_FROM)), rho[i]);
+			float x = nx[i], y = ny[i], z = nz[i], edge = 1 - quick_ramp(LOOK_RIM_FROM, (float)(1 / (LOOK_RIM_TO - LOOK_RIM_FROM)), rho[i]);
 			float light = q[0] + x * (q[1] + y * q[4] + z * q[7] + x * q[8]) + y * (q[2] + z * q[5] - y * q[8]) + z * (q[3] + z * q[6]);
 			light = light > 0 ? light : 0;
 			sky[i] = (light + bleed[c] * (k->even[c] - light)) * (1 - rim[c] * edge * edge);
@@ -225,7 +218,7 @@ SIMD_CLONES void quick_reflect(float *restrict out_x, float *restrict out_y, flo
 		float c = -(dx * nx + dy * ny + dz * nz), rx = dx + 2 * c * nx, ry = dy + 2 * c * ny, rz = dz + 2 * c * nz;
 		s->mirror[i] = fresnel(c);
 		// The film is smooth on the cornea, and lies on a rough ground beyond the limbus.
-		s->rough[i] = (float)LOOK_FILM_ROUGH * step_smooth(LOOK_FILM_FROM, (float)(1 / (LOOK_FILM_TO - LOOK_FILM_FROM)), s->rho[i]);
+		s->rough[i] = (float)LOOK_FILM_ROUGH * quick_ramp(LOOK_FILM_FROM, (float)(1 / (LOOK_FILM_TO - LOOK_FILM_FROM)), s->rho[i]);
 		out_x[i] = m[0][0] * rx + m[0][1] * ry + m[0][2] * rz;
 		out_y[i] = m[1][0] * rx + m[1][1] * ry + m[1][2] * rz;
 		out_z[i] = m[2][0] * rx + m[2][1] * ry + m[2][2] * rz;

@@ -46,8 +46,8 @@ struct quick_look quick_look(const struct scene *scene, const struct scene_view 
 /* What a tile shows: everything, or nothing that changes fast within it but maps: of the iris, the white, or both. */
 enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA, QUICK_LIMBUS };
 
-/* A tile's nodes: every fourth pixel of its 16 x 16 and of the next ones, five by five; sparse: every eighth, three by three. */
-enum { QUICK_TILE = 16, NODE_STEP = 4, NODE_SIDE = 5, NODES_IN_TILE = 25, NODE_LANES = 32, SPARSE_SIDE = 3, SPARSE_LANES = 16 };
+/* A tile's nodes: every eighth pixel of its 16 x 16 and of the next ones, three by three. */
+enum { QUICK_TILE = 16, NODE_STEP = 8, NODE_SIDE = 3, NODES_IN_TILE = 9, NODE_LANES = 16 };
 
 /* A tile that is not mixed: as in quick_spots at its nodes, and where all its pixels look into the maps. */
 struct quick_nodes {
@@ -74,8 +74,7 @@ void quick_reflect(float *x, float *y, float *z, struct quick_found *found, cons
 void quick_unfold(int n, float *x, float *y, const float *z);
 void quick_sclera(float sky[3][BATCH], int n, const float *nx, const float *ny, const float *nz, const float *rho, const struct quick_look *look);
 
-/* From nodes to the 16 pixels right of each row of them; and to all 256. */
-void quick_rows(float (*rows)[QUICK_TILE], const float node[NODE_LANES]);
+/* From nodes to all 256 pixels. */
 void quick_lay(float *out, const float node[NODE_LANES]);
 
 /* Finds a tile whose first pixel's middle is at x, y by the rays at its nodes. make: rays through n points of the picture.

@@ -1,6 +1,6 @@
 /* Tiles of scene_quick.h where nothing but the maps varies fast. Rays are followed at nodes alone; between them places,
- * directions and Fresnel are linear, to 1e-3 px of what each ray would find (over 4 px the refracted place bends by
- * (4 px)^2 / 8 of 0.014 / mm; where all is cornea, whose film is smooth, over 8 px). */
+ * directions and Fresnel are linear, to 2e-3 px of what each ray would find (over 8 px the refracted place bends by
+ * (8 px)^2 / 8 of 0.014 / mm). */
 #include "eye/scene_quick.h"
 
 #include <math.h>
@@ -10,22 +10,19 @@
 #pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
-_Static_assert(NODE_STEP == 4 && NODE_SIDE == QUICK_TILE / NODE_STEP + 1, "a row is four vectors of four");
+_Static_assert(NODE_STEP == 8 && NODE_SIDE == QUICK_TILE / NODE_STEP + 1, "a row is two vectors of eight");
 
 SIMD_INLINE void rows_lay(float (*restrict rows)[QUICK_TILE], const float *restrict node)
 {
-	const quick_four ramp = { 0, 0.25f, 0.5f, 0.75f };
-	for (int k = 0; k < NODE_SIDE; k++)
-		for (int i = 0; i < NODE_SIDE - 1; i++) {
-			float left = node[k * NODE_SIDE + i];
-			quick_four c = left + ramp * (node[k * NODE_SIDE + i + 1] - left);
-			memcpy(rows[k] + NODE_STEP * i, &c, sizeof c);
+	for (int k = 0; k < NODE_SIDE; k++) {
+		float a = node[k * NODE_SIDE], b = node[k * NODE_SIDE + 1], c = node[k * NODE_SIDE + 2];
+		SIMD_LOOP
+		for (int i = 0; i < NODE_STEP; i++) {
+			float u = (float)i / NODE_STEP;
+			rows[k][i] = a + u * (b - a);
+			rows[k][NODE_STEP + i] = b + u * (c - b);
 		}
-}
-
-SIMD_CLONES void quick_rows(float (*rows)[QUICK_TILE], const float node[NODE_LANES])
-{
-	rows_lay(rows, node);
+	}
 }
 
 SIMD_CLONES void quick_lay(float *restrict out, const float node[NODE_LANES])
@@ -45,20 +42,20 @@ SIMD_CLONES void quick_lay(float *restrict out, const float node[NODE_LANES])
  * so far from the side that relief hides relief. */
 static enum quick_kind kind_of(const struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
 {
-	float inner = fminf((float)LOOK_SEAM_FROM, 1 - 0.5f * k->lid_width), outer = fmaxf(1.08f, 1 + 0.5f * k->lid_width);
+	float inner = 1 - 0.5f * k->lid_width, outer = 1 + 0.5f * k->lid_width;
 	float wide = fabsf(r->ox[r->n - 1] - r->ox[0]) + fabsf(r->oy[r->n - 1] - r->oy[0]) + fabsf(r->oz[r->n - 1] - r->oz[0]);
 	int in = 0, out = 0, faces = 0, through = 0, leans = 0;
 	for (int i = 0; i < r->n; i++) {
-		bool good = s->hit[i] > 0 && -(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]) > 0.3f;
-		in += good && s->rho[i] < inner;
-		out += good && s->rho[i] > outer;
+		int good = (s->hit[i] > 0) & (-(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]) > 0.3f);
+		in += good & (s->rho[i] < inner);
+		out += good & (s->rho[i] > outer);
 		faces += good;
-		through += s->vz[i] > 0.3f && s->fz[i] > -0.1f && s->fz[i] < 5;  // whether there is an entry or the conic goes on as one
+		through += (s->vz[i] > 0.3f) & (s->fz[i] > -0.1f) & (s->fz[i] < 5);  // whether there is an entry or the conic goes on as one
 		leans += quick_leans(s->vx[i], s->vy[i], s->vz[i]);
 	}
 	if (leans && out < r->n)
 		return QUICK_MIXED;
-	if (wide * k->limbus[0] > 0.4f || faces < r->n)
+	if (wide * k->limbus[0] > 0.1f || faces < r->n)
 		return QUICK_MIXED;
 	return in == r->n ? QUICK_CORNEA : out == r->n ? QUICK_SCLERA : through == r->n ? QUICK_LIMBUS : QUICK_MIXED;
 }
@@ -80,12 +77,12 @@ SIMD_INLINE float meet(float h, float u, float v, float aside, float across, con
 	return h;
 }
 
-SIMD_CLONES static void meet_nodes(float (*restrict q)[NODE_LANES], int n, const struct quick_spots *restrict s, const struct quick_look *look)
+SIMD_CLONES static void meet_nodes(float (*restrict q)[NODE_LANES], const struct quick_spots *restrict s, const struct quick_look *look)
 {
 	const struct quick_look k = *look;
 	float plane = (float)k.scene->eye.iris_depth;
 	SIMD_LOOP
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < NODE_LANES; i++) {
 		float fx = s->fx[i], fy = s->fy[i], vx = s->vx[i], vy = s->vy[i], c = s->vz[i] > 0.1f ? s->vz[i] : 0.1f;
 		float a = (vx + k.slip[0][0] * vx + k.slip[0][1] * vy) / c, b = (vy + k.slip[1][0] * vx + k.slip[1][1] * vy) / c, t = plane - s->fz[i];
 		float u = fx + k.slip[0][0] * fx + k.slip[0][1] * fy + k.slip[0][2] + t * a;
@@ -121,26 +118,14 @@ SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const 
 	}
 }
 
-/* Three by three nodes become five by five. */
-static void refine(float node[NODE_LANES])
+static void nodes_make(struct quick_rays *r, float x, float y, quick_make *make, const void *ctx)
 {
-	float q[SPARSE_SIDE * SPARSE_SIDE];
-	memcpy(q, node, sizeof q);
-	for (int y = 0; y < NODE_SIDE; y++)
-		for (int x = 0; x < NODE_SIDE; x++) {
-			const float *a = q + y / 2 * SPARSE_SIDE + x / 2, *b = a + y % 2 * SPARSE_SIDE;
-			node[y * NODE_SIDE + x] = 0.25f * (a[0] + a[x % 2] + b[0] + b[x % 2]);
-		}
-}
-
-static void nodes_make(struct quick_rays *r, int side, float x, float y, quick_make *make, const void *ctx)
-{
-	float u[NODE_LANES], v[NODE_LANES], step = (float)QUICK_TILE / (float)(side - 1);
-	r->n = side == SPARSE_SIDE ? SPARSE_LANES : NODE_LANES;
-	for (int i = 0; i < r->n; i++) {  // the lanes behind the nodes repeat the last
-		int k = i < side * side ? i : side * side - 1;
-		u[i] = x + step * (float)(k % side);
-		v[i] = y + step * (float)(k / side);
+	float u[NODE_LANES], v[NODE_LANES];
+	r->n = NODE_LANES;
+	for (int i = 0; i < NODE_LANES; i++) {  // the lanes behind the nodes repeat the last
+		int k = i < NODES_IN_TILE ? i : NODES_IN_TILE - 1;
+		u[i] = x + (float)(NODE_STEP * (k % NODE_SIDE));
+		v[i] = y + (float)(NODE_STEP * (k / NODE_SIDE));
 	}
 	make(r, u, v, ctx);
 }
@@ -178,12 +163,10 @@ static void ahead(const struct quick_found *f, const struct quick_look *k)
 	}
 }
 
-static void iris_lay(struct quick_found *f, int nodes, bool sparse, const struct quick_look *k)
+static void iris_lay(struct quick_found *f, const struct quick_look *k)
 {
 	float q[NODE_CHANNELS][NODE_LANES];
-	meet_nodes(q, nodes, &f->spots, k);
-	for (int c = 0; c < NODE_CHANNELS && sparse; c++)
-		refine(q[c]);
+	meet_nodes(q, &f->spots, k);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
 		f->nodes.iu[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
 		f->nodes.iv[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
@@ -206,15 +189,9 @@ bool quick_grid(struct quick_found *f, float x, float y, quick_make *make, const
 	struct quick_spots *s = &f->spots;
 	struct quick_rays r;
 	float back[NODE_LANES];
-	nodes_make(&r, SPARSE_SIDE, x, y, make, ctx);
+	nodes_make(&r, x, y, make, ctx);
 	quick_outside(s, &r, k);
 	f->kind = kind_of(s, &r, k);
-	bool sparse = f->kind == QUICK_CORNEA;
-	if (!sparse) {
-		nodes_make(&r, NODE_SIDE, x, y, make, ctx);
-		quick_outside(s, &r, k);
-		f->kind = kind_of(s, &r, k);
-	}
 	if (f->kind == QUICK_MIXED)
 		return false;
 	f->hit = BATCH;
@@ -225,13 +202,8 @@ bool quick_grid(struct quick_found *f, float x, float y, quick_make *make, const
 	quick_unfold(r.n, s->eu, s->ev, back);
 	if (jumps(s->eu, s->ev, r.n))
 		return false;
-	if (sparse) {
-		refine(s->mirror);
-		refine(s->eu);
-		refine(s->ev);
-	}
 	if (f->seen)
-		iris_lay(f, r.n, sparse, k);
+		iris_lay(f, k);
 	nodes_put(&f->nodes, s);
 	if (f->white) {
 		float(*at)[BATCH] = f->seen ? f->nodes.second : f->nodes.first;

@@ -13,6 +13,13 @@ SIMD_INLINE float quick_clamp(float x, float low, float high)
 	return x < high ? x : high;
 }
 
+/* From 0 at lo to 1, smoothly; inv: of its width. */
+SIMD_INLINE float quick_ramp(float lo, float inv, float x)
+{
+	float t = quick_clamp((x - lo) * inv, 0, 1);
+	return t * t * (3 - 2 * t);
+}
+
 /* Whether relief may hide relief from a ray behind the cornea: it leans more than LOOK_LEANS to the iris' axis. The first
  * crossing is searched for then; of straighter rays it is the only one, to 0.04 % of a picture's light. */
 SIMD_INLINE bool quick_leans(float vx, float vy, float vz)

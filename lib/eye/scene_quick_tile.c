@@ -1,6 +1,7 @@
 /* Colours of tiles that scene_quick_grid.c has found. What light and film make of the maps' colours is smooth: it is known at
  * the nodes and added up from pixel to pixel; only where the mirror shows an edge is the environment looked up in every one. */
 #include <math.h>
+#include <string.h>
 
 #include "eye/scene_quick.h"
 
@@ -8,9 +9,12 @@
 #pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
+/* The mirror image is looked up at every fourth pixel, five by five. */
+enum { FILM_STEP = 4, FILM_SIDE = 5, FILM_LANES = 32 };
+
 /* At the nodes: what the iris' colour, and the white's, is multiplied by; and what is mirrored, with the cover. */
 struct film {
-	quick_four iris[NODE_LANES], white[NODE_LANES], mirror[NODE_LANES];
+	quick_four iris[NODE_LANES], white[NODE_LANES], mirror[FILM_SIDE * FILM_SIDE];
 	bool edge;  // the mirror image has one, and is not in it
 };
 
@@ -20,39 +24,65 @@ struct maps {
 	float lid[BATCH], mirror[BATCH], roughness[BATCH];
 };
 
-/* Places of the environment's pixels that the tile's nodes see. */
+/* Three by three nodes become five by five. */
+SIMD_INLINE void film_refine(float *restrict out, const float *restrict node)
+{
+	float row[NODE_SIDE][8];
+	for (int y = 0; y < NODE_SIDE; y++) {
+		const float *q = node + y * NODE_SIDE;
+		const float wide[8] = { q[0], 0.5f * (q[0] + q[1]), q[1], 0.5f * (q[1] + q[2]), q[2] };
+		memcpy(row[y], wide, sizeof wide);
+	}
+	for (int y = 0; y < FILM_SIDE; y++)
+		for (int x = 0; x < FILM_SIDE; x++)
+			out[y * FILM_SIDE + x] = 0.5f * (row[y / 2][x] + row[(y + 1) / 2][x]);
+}
+
+/* Places of the environment's pixels that the tile sees. */
 SIMD_CLONES static void film_mirror(struct film *f, const struct quick_nodes *s, const struct envmap *env, bool rough)
 {
 	struct quick_places p, q;
-	float w = (float)env->sharp.width, m = (float)env->rough.width;
-	quick_places_of(&p, s->eu, s->ev, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, env->sharp.width, NODE_LANES);
-	quick_places_of(&q, s->eu, s->ev, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, env->rough.width, NODE_LANES);
-	for (int i = 0; i < NODES_IN_TILE; i++) {
+	float w = (float)env->sharp.width, m = (float)env->rough.width, u[FILM_LANES], v[FILM_LANES], mirror[FILM_LANES], roughness[FILM_LANES];
+	film_refine(u, s->eu);
+	film_refine(v, s->ev);
+	film_refine(mirror, s->mirror);
+	quick_places_of(&p, u, v, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, env->sharp.width, FILM_SIDE * FILM_SIDE);
+	if (rough) {
+		film_refine(roughness, s->rough);
+		quick_places_of(&q, u, v, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, env->rough.width, FILM_SIDE * FILM_SIDE);
+	}
+	for (int i = 0; i < FILM_SIDE * FILM_SIDE; i++) {
 		quick_four c = quick_look_up(env->sharp.px, env->sharp.width, &p, i);
 		if (rough)
-			c += s->rough[i] * (quick_look_up(env->rough.px, env->rough.width, &q, i) - c);
-		c *= s->mirror[i];
+			c += roughness[i] * (quick_look_up(env->rough.px, env->rough.width, &q, i) - c);
+		c *= mirror[i];
 		c[3] = 1;
 		f->mirror[i] = c;
 	}
 }
 
 struct span {
-	float low, high, step;  // step: the longest between neighbours
+	float low, high, step;  // step: the longest between neighbours of the five by five
 };
+
+SIMD_INLINE float most_of(float a, float b)
+{
+	return a > b ? a : b;
+}
 
 static struct span span_of(const float *u)
 {
 	struct span s = { u[0], u[0], 0 };
-	for (int i = 0; i < NODES_IN_TILE; i++) {
-		float right = i % NODE_SIDE < NODE_SIDE - 1 ? u[i + 1] - u[i] : 0, down = i < NODES_IN_TILE - NODE_SIDE ? u[i + NODE_SIDE] - u[i] : 0;
+	for (int i = 1; i < NODES_IN_TILE; i++) {
 		s.low = u[i] < s.low ? u[i] : s.low;
-		s.high = u[i] > s.high ? u[i] : s.high;
-		right = right < 0 ? -right : right;
-		down = down < 0 ? -down : down;
-		s.step = right > s.step ? right : s.step;
-		s.step = down > s.step ? down : s.step;
+		s.high = most_of(s.high, u[i]);
 	}
+	for (int i = 0; i < NODE_SIDE; i++) {
+		const float *row = u + i * NODE_SIDE, *column = u + i;
+		s.step = most_of(s.step, most_of(fabsf(row[1] - row[0]), fabsf(row[2] - row[1])));
+		s.step = most_of(s.step, most_of(fabsf(column[NODE_SIDE] - column[0]), fabsf(column[2 * NODE_SIDE] - column[NODE_SIDE])));
+	}
+	s.step *= (float)FILM_STEP / NODE_STEP;
 	return s;
 }
 
@@ -105,25 +135,16 @@ static void film_white(struct film *f, const struct quick_nodes *s, const struct
 static void film_make(struct film *f, struct quick_found *found, const struct quick_look *k)
 {
 	const struct envmap *env = k->light->mirror;
-	f->edge = false;
-	for (int i = 0; i < NODES_IN_TILE; i++)
-		f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
-	if (env) {
+	f->edge = env && !film_even(&found->nodes, env);
+	if (env && !f->edge)
 		film_mirror(f, &found->nodes, env, found->white);
-		f->edge = !film_even(&found->nodes, env);
-		for (int i = 0; i < NODES_IN_TILE && f->edge; i++)
+	else
+		for (int i = 0; i < FILM_SIDE * FILM_SIDE; i++)
 			f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
-	}
 	if (found->seen)
 		film_iris(f, found, k);
 	if (found->white)
 		film_white(f, &found->nodes, k);
-}
-
-SIMD_INLINE float ramp(float lo, float inv, float x)
-{
-	float t = quick_clamp((x - lo) * inv, 0, 1);
-	return t * t * (3 - 2 * t);
 }
 
 SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_nodes *s, const struct quick_look *k)
@@ -145,7 +166,7 @@ SIMD_CLONES static void maps_white(struct maps *m, const struct quick_nodes *s, 
 	quick_lay(m->lid, s->rho);
 	SIMD_LOOP
 	for (int i = 0; i < BATCH; i++)
-		m->lid[i] = ramp(lo, inv, m->lid[i]);
+		m->lid[i] = quick_ramp(lo, inv, m->lid[i]);
 }
 
 SIMD_CLONES static void maps_mirror(struct maps *m, const struct quick_nodes *s, const struct envmap *env, bool rough)
@@ -163,15 +184,16 @@ SIMD_CLONES static void maps_mirror(struct maps *m, const struct quick_nodes *s,
 
 /* Nodes' values along the pixel row y of a tile, and what a step to the next row adds. */
 struct steps {
-	quick_four at[NODE_SIDE], by[NODE_SIDE];
+	quick_four at[FILM_SIDE], by[FILM_SIDE];
 };
 
-SIMD_INLINE void steps_on(struct steps *s, const quick_four node[], int y)
+SIMD_INLINE void steps_on(struct steps *s, const quick_four node[], int y, int side)
 {
-	const quick_four *a = node + y / NODE_STEP * NODE_SIDE, *b = a + NODE_SIDE;
-	for (int i = 0; i < NODE_SIDE; i++) {
-		if (y % NODE_STEP == 0) {
-			s->by[i] = 0.25f * (b[i] - a[i]);
+	int step = QUICK_TILE / (side - 1);
+	const quick_four *a = node + y / step * side, *b = a + side;
+	for (int i = 0; i < side; i++) {
+		if (y % step == 0) {
+			s->by[i] = (1.0f / (float)step) * (b[i] - a[i]);
 			s->at[i] = a[i];
 		} else {
 			s->at[i] += s->by[i];
@@ -199,18 +221,25 @@ SIMD_INLINE void paint(float *restrict out, long stride, const struct film *rest
 	struct steps a, b, c;
 	for (int y = 0; y < QUICK_TILE; y++) {
 		float *restrict row = out + y * stride;
-		steps_on(&a, f->mirror, y);
+		steps_on(&a, f->mirror, y, FILM_SIDE);
 		if (iris)
-			steps_on(&b, f->iris, y);
+			steps_on(&b, f->iris, y, NODE_SIDE);
 		if (white)
-			steps_on(&c, f->white, y);
-		for (int x = 0; x < QUICK_TILE; x += NODE_STEP) {
-			int j = x / NODE_STEP;
-			quick_four p = a.at[j], dp = 0.25f * (a.at[j + 1] - p);
-			quick_four q = iris ? b.at[j] : none, dq = iris ? 0.25f * (b.at[j + 1] - q) : none;
-			quick_four r = white ? c.at[j] : none, dr = white ? 0.25f * (c.at[j + 1] - r) : none;
+			steps_on(&c, f->white, y, NODE_SIDE);
+		quick_four q = none, r = none, dq = none, dr = none;
+		for (int x = 0; x < QUICK_TILE; x += FILM_STEP) {
+			int i = x / FILM_STEP, j = x / NODE_STEP;
+			quick_four p = a.at[i], dp = 0.25f * (a.at[i + 1] - p);
+			if (iris && x % NODE_STEP == 0) {
+				q = b.at[j];
+				dq = 0.125f * (b.at[j + 1] - q);
+			}
+			if (white && x % NODE_STEP == 0) {
+				r = c.at[j];
+				dr = 0.125f * (c.at[j + 1] - r);
+			}
 #pragma GCC unroll 4
-			for (int t = 0; t < NODE_STEP; t++, p += dp, q += dq, r += dr) {
+			for (int t = 0; t < FILM_STEP; t++, p += dp, q += dq, r += dr) {
 				int i = y * QUICK_TILE + x + t;
 				quick_four colour = p;
 				if (iris) {

@@ -78,7 +78,7 @@ static bool lowest(float *slope, float corner[SCENE_WAY][8], float width)
 	bool any = false;
 	*slope = 1e3f;
 	for (int k = 0; k < 8; k++) {
-		float flat = hypotf(corner[0][k], corner[1][k]);
+		float flat = sqrtf(corner[0][k] * corner[0][k] + corner[1][k] * corner[1][k]);
 		*slope = -corner[2][k] < *slope * flat ? -corner[2][k] / flat : *slope;
 		any = any || (corner[3][k] > 0 && corner[4][k] < 1 + width / 2);
 	}
@@ -106,7 +106,8 @@ bool scene_light_tile(struct march_light *light, const struct march_body *body, 
 	float turn = atan2f(corner[1][0] + corner[1][3], corner[0][0] + corner[0][3]) * (float)(HORIZONS / (2 * M_PI));
 	int whole = (int)floorf(turn), a = (whole + HORIZONS) % HORIZONS, b = (a + 1) % HORIZONS;
 	const struct march_horizon *h = tile->horizon;
-	if (low - fmaxf(h->steepest[a], h->steepest[b]) < SCENE_SOURCE)
+	float steepest = h->steepest[a] > h->steepest[b] ? h->steepest[a] : h->steepest[b];
+	if (low - steepest < SCENE_SOURCE)
 		shade(light, h->slope[a], h->slope[b], turn - (float)whole);
 	return true;
 }
