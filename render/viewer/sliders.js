@@ -38,7 +38,7 @@ function sliders(eye) {
 				why: eye.photo ? `in an iris taken as ${(2 * e.limbus[0]).toFixed(1)} mm across` : "no photograph tells it" },
 			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, show: share, from: "from the literature", band: film ? [0.2 / film, 0.35 / film] : null,
 				why: film ? `${film.toFixed(2)} mm high; healthy eyes have 0.2 to 0.35 mm` : "a healthy eye's film" },
-			{ key: "field", label: "Zoom: height shown", lo: 8, hi: 60, value: 30, power: 2, show: mm(1), from: "chosen" },
+			{ key: "field", label: "Zoom", lo: 8, hi: 60, value: 30, power: 2, show: v => `${(3000 / v).toFixed(0)} %`, from: "chosen", why: "which shows 30 mm of an eye, or a face from brow to mouth" },
 		]],
 		...(data.face && data.face.expressions.length ? [["Expressions", data.face.expressions.map((x, k) => (
 			{ key: `au${k}`, label: x.name, lo: 0, hi: 1, value: 0, lids: true, show: share, from: "at rest", why: "100 % is the video's own peak" }))]] : []),

@@ -14,10 +14,27 @@ function closed(text, at) {
 	return text.length;
 }
 
+/* What is left with these names defined. */
+function chosen(source, defines) {
+	const on = [true], out = [];
+	for (const line of source.split("\n")) {
+		const [, word, name] = /^\s*#(ifdef|ifndef|else|endif)\s*(\w*)/.exec(line) || [];
+		if (word === "else")
+			on.push(!on.pop());
+		else if (word === "endif")
+			on.pop();
+		else if (word)
+			on.push(defines.includes(name) === (word === "ifdef"));
+		else if (on.every(v => v))
+			out.push(line);
+	}
+	return out.join("\n");
+}
+
 class Count {
 	/* limits: how often loops run whose bound has that name. */
-	constructor(source, limits) {
-		this.text = source.replace(/\/\/.*|\/\*[\s\S]*?\*\//g, "").replace(/^#.*$/gm, "");
+	constructor(source, limits, defines) {
+		this.text = chosen(source, defines).replace(/\/\/.*|\/\*[\s\S]*?\*\//g, "").replace(/^#.*$/gm, "");
 		this.limits = limits;
 		this.known = {};
 		this.bodies = {};
@@ -85,21 +102,21 @@ function picture(text, preset, width, height, directions, grid, coarse, map, sea
 	const beams = preset.beams, all = Math.min(directions, preset.directions), nodes = Math.min(preset.steps, 3), pixels = width * height * preset.scale * preset.scale;
 	// Newton's way from its closed start takes five steps; horizons are looked at in eight places, lids within 16 px.
 	const limits = { 40: 5, SEARCH: search, 14: 1, 24: preset.shadow > 0 ? 8 : 0, NODES: nodes, LIGHTS: beams, first: all / beams, 64: 16, ACROSS: 4 };
-	const main = (name, parts, own) => new Count(text(name, parts || []), { ...limits, ...own }).of("main");
+	const main = (name, parts, own) => new Count(text(name, parts || []), { ...limits, ...own }, (parts || []).map(p => p.toUpperCase())).of("main");
 	const eyes = face ? 2 : 1, several = all > beams, points = 2 * (several ? coarse : grid) ** 2;
 	let sum = [0, 0];
 	const add = (cost, n) => { sum = Count.add(sum, cost, n); };
 	add(main("paths"), eyes * points * beams);
 	if (several)
 		add(main("refine"), eyes * 2 * grid * grid * (beams + 1));
-	add(main("march"), eyes * (map >> 1 + preset.apart) ** 2);
+	add(main("march", preset.shadow > 0 ? ["shadows"] : []), eyes * (map >> 1 + preset.apart) ** 2);
 	add(main("present"), pixels);
 	if (!face)
 		add(main("eye"), pixels);
 	else {
-		// Both globes, each a sixth of the picture's width across.
+		// A face at rest: nothing folds. Both globes, each a sixth of the picture's width across.
 		const globes = 2 * (width * preset.scale / 6) ** 2;
-		add(main("skin", ["skin_look"], { LIGHTS: preset.skies }), pixels);
+		add(main("skin", ["skin_look", ...(preset.pores ? ["pores"] : [])], { LIGHTS: preset.skies }), pixels);
 		add(main("tear"), 2 * globes);
 		add(main("eye", ["skin_look", "lids"]), globes);
 		add(main("copy"), pixels);
