@@ -8,7 +8,6 @@ class FaceScene {
 		Object.assign(this, { g, data, skies: bytes(data.sky), strengths: [] });
 		this.skin(g.first);
 		this.eye = g.program("eye", null, ["skin_look", "lids"]);
-		this.probe = g.program("probe");
 		this.probed = g.texture(FaceScene.PROBE, FaceScene.PROBE, gl.RGBA8);
 		this.shut = [{}, {}];
 		this.tear = g.program("tear");
@@ -148,7 +147,7 @@ class FaceScene {
 			gl.disable(gl.DEPTH_TEST);
 			gl.disable(gl.SCISSOR_TEST);
 			g.target(this.probed);
-			g.draw(this.probe, { picture: this.frame, globe: disc });
+			g.draw(g.variant(false, "probe", null, [], "crease"), { picture: this.frame, globe: disc });
 			gl.readPixels(0, 0, n, n, gl.RGBA, gl.UNSIGNED_BYTE, px);
 			gl.enable(gl.SCISSOR_TEST);
 			this.shut[side] = { key, hidden: px.reduce((sum, v) => sum + v, 0) / 255 < 0.01 * px.length };
