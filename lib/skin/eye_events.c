@@ -11,6 +11,8 @@
 static const double BLINK_LONGEST = 0.8, AROUND = 0.5;
 // Share of the opening below which the eye counts as closed, and share of a blink's depth at which it begins and ends.
 static const double CLOSED = 0.15, ONSET = 0.15;
+// What an eye that shuts alone shuts at least.
+static const double WINK = 0.5;
 
 static struct eye_event *new_event(struct eye_clip *clip, int kind, int side)
 {
@@ -197,4 +199,33 @@ void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side)
 	}
 	saccades(clip, eye, side);
 	free(gap);
+}
+
+/* The eye's frames of an event are those of an open one. */
+static void unmark(struct eye_side *eye, const struct eye_event *event)
+{
+	for (int i = event->first; i <= event->last; i++)
+		eye->state[i].blink = BLINK_OPEN;
+}
+
+void eye_pair_blinks(struct eye_clip *clip, struct eye_side side[SIDES])
+{
+	int n = 0;
+	bool *lone = mem_new((size_t)clip->events + 1, sizeof *lone);
+	for (int i = 0; i < clip->events; i++) {
+		const struct eye_event *e = &clip->event[i];
+		lone[i] = e->kind == EVENT_BLINK && e->amplitude < WINK && clip->globe[!e->side].seen && side[!e->side].state[e->peak].openness > WINK;
+		for (int k = 0; k < clip->events && lone[i]; k++) {
+			const struct eye_event *o = &clip->event[k];
+			lone[i] = !(o->kind == EVENT_BLINK && o->side != e->side && o->first <= e->last && o->last >= e->first);
+		}
+	}
+	for (int i = 0; i < clip->events; i++) {
+		if (lone[i])
+			unmark(&side[clip->event[i].side], &clip->event[i]);
+		else
+			clip->event[n++] = clip->event[i];
+	}
+	clip->events = n;
+	free(lone);
 }

@@ -144,10 +144,12 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 		eye_side_globe(&clip->globe[side], eye);
 		if (clip->globe[side].seen)
 			eye_side_events(clip, eye, side);
-		for (int i = 0; i < clip->frames; i++)
-			clip->state[i][side] = eye->state[i];
 		seen |= clip->globe[side].seen;
 	}
+	eye_pair_blinks(clip, track->side);
+	for (int i = 0; i < clip->frames; i++)
+		for (int side = 0; side < SIDES; side++)
+			clip->state[i][side] = track->side[side].state[i];
 	if (clip->events)
 		qsort(clip->event, (size_t)clip->events, sizeof *clip->event, earlier);
 	if (!seen)

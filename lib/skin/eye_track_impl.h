@@ -89,4 +89,7 @@ void eye_pair_level(struct eye_side *left, struct eye_side *right);
 /* Openness and blinks of one eye, and its saccades; events are appended to clip. */
 void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side);
 
+/* Then: both eyes blink together. What one of them alone did, by less than a wink and while the other was open, was no blink. */
+void eye_pair_blinks(struct eye_clip *clip, struct eye_side side[SIDES]);
+
 #endif

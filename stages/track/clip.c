@@ -118,97 +118,6 @@ static bool pose_from_marks(struct track_clip *clip, const struct track_subject 
 	return true;
 }
 
-/* A camera of which nothing is known: as far away as faces are filmed from. */
-static void assume_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
-{
-	double eye[3] = { 0 }, p[3], n = s->opening[0].open + s->opening[1].open;
-	for (int e = 0; e < SIDES; e++)
-		for (int k = 0; k < 3 && s->opening[e].open; k++)
-			eye[k] += s->opening[e].center[k] / n;
-	head_from(p, clip->cam_from_head, eye);
-	double k = conf->distance_mm / p[2];
-	clip->camera.focal_px *= k;
-	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
-}
-
-/* A whole face in the kept frame, upright; close-ups show none. */
-static bool look_for_face(struct cv_face *face, struct track_clip *clip)
-{
-	struct err none = { 0 };
-	int n = 0;
-	return (clip->faces || cv_face_open(&clip->faces, &none))
-	       && cv_face_find(&n, face, 1, clip->faces, clip->luma, clip->info.width, clip->info.height, 0, &none) && n > 0;
-}
-
-enum way { UPRIGHT, UPSIDE_DOWN };
-
-/* The head one way up, or as the eyes of a face that was found say, in the kept frame. */
-static bool look_so(struct head_found *found, struct track_clip *clip, enum way way, const struct cv_face *face, const struct track_subject *s,
-                    const struct track_conf *conf)
-{
-	int w = clip->info.width, h = clip->info.height;
-	if (face ? !head_find_from_eyes(found, face->eye, &clip->camera, s->opening)
-	         : !head_find(found, clip->rgb, w, h, &clip->camera, s->opening, way == UPSIDE_DOWN, &conf->head))
-		return false;
-	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
-	if (clip->focal_assumed) {
-		assume_distance(clip, s, conf);
-		memcpy(found->cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
-	}
-	return head_find_refine(found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head);
-}
-
-/* Openings turned upside down look much like themselves: a head is taken to be so where its openings stand out more, and their outlines
- * fit better, than those of one that is upright, and as many of them are seen: eyes that look up or down change their openings'
- * shape, too. */
-static bool stands(const struct head_found *up, const struct head_found *over)
-{
-	return up->score >= over->score || up->edge_px <= over->edge_px || up->seen[0] + up->seen[1] > over->seen[0] + over->seen[1];
-}
-
-static bool look(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
-{
-	struct head_found up, over;
-	struct camera camera = clip->camera, upright;
-	struct cv_face face;
-	bool is_face = look_for_face(&face, clip) && look_so(&up, clip, UPRIGHT, &face, s, conf), is_up = is_face;
-	if (!is_face) {
-		clip->camera = camera;
-		is_up = look_so(&up, clip, UPRIGHT, 0, s, conf);
-	}
-	upright = clip->camera;
-	clip->camera = camera;
-	bool is_over = !is_face && look_so(&over, clip, UPSIDE_DOWN, 0, s, conf) && !(is_up && stands(&up, &over));
-	if (!is_up && !is_over)
-		return false;
-	if (!is_over)
-		clip->camera = upright;
-	const struct head_found *found = is_over ? &over : &up;
-	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
-	memcpy(clip->eye_seen, found->seen, sizeof clip->eye_seen);
-	clip->pose_px = found->edge_px;
-	return true;
-}
-
-/* A frame of known pose, if open eyes are seen where they then are. */
-static bool look_known(struct track_clip *clip, long frame, const struct track_subject *s, const struct track_conf *conf)
-{
-	for (int i = 0; i < clip->n_known; i++) {
-		const struct track_known *k = &clip->known[i];
-		struct head_found found = { .seen = { s->opening[0].open, s->opening[1].open } };
-		if (k->frame != frame)
-			continue;
-		memcpy(found.cam_from_head, k->cam_from_head, sizeof found.cam_from_head);
-		if (!head_find_refine(&found, clip->rgb, clip->info.width, clip->info.height, &clip->camera, s->opening, &conf->head))
-			return false;
-		memcpy(clip->cam_from_head, k->cam_from_head, sizeof clip->cam_from_head);
-		memcpy(clip->eye_seen, found.seen, sizeof clip->eye_seen);
-		clip->pose_px = k->residual_px;
-		return clip->pose_given = true;
-	}
-	return false;
-}
-
 static bool is_known(const struct track_clip *clip, long frame)
 {
 	for (int i = 0; i < clip->n_known; i++)
@@ -229,8 +138,8 @@ static void keep(struct track_clip *clip, const struct video_frame *f)
 static bool try_frame(struct track_clip *clip, bool known, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	if (known)
-		return look_known(clip, clip->reference, s, conf);
-	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : look(clip, s, conf);
+		return track_look_known(clip, clip->reference, s, conf);
+	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : track_look(clip, WAY_EITHER, s, conf);
 }
 
 /* Decodes up to the reference frame: the one asked for, or the first in which eyes are found; known: of those alone whose pose
@@ -264,6 +173,22 @@ static bool find_reference(struct track_clip *clip, struct video *video, bool kn
 		return err_set(err, "%s: %ld frames: track.reference_frame = %d is none of them", clip->file, clip->info.frames, conf->reference);
 	return found || err_set(err, "%s: no face with open eyes in %s: film the face from in front, upright, eyes open at the start; or mark the corners of the eyes (track.landmark_left_inner_canthus = x y ...)",
 	                        clip->file, conf->reference >= 0 ? "the reference frame" : "its first frames");
+}
+
+bool track_clip_take(struct track_clip *clip, long frame, struct stage *stage, const struct track_conf *conf, struct err *err)
+{
+	struct video_info info;
+	struct video *video = video_open(&info, stage_path(stage, "%s", clip->file), &conf->video, err);
+	bool got = video;
+	for (long i = 0; got && i <= frame; i++) {
+		struct video_frame f;
+		got = video_next(&f, &got, video, err) && got;
+		if (got && i == frame)
+			keep(clip, &f);
+		video_frame_free(&f);
+	}
+	video_close(video);
+	return got;
 }
 
 bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf,

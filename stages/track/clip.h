@@ -44,6 +44,16 @@ bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct 
                      const struct track_conf *conf, struct err *err);
 void track_clip_free(struct track_clip *clip);
 
+/* Keeps another frame as the reference; where the head is in it is for track_look to find. False, err set or not, where there is none. */
+bool track_clip_take(struct track_clip *clip, long frame, struct stage *stage, const struct track_conf *conf, struct err *err);
+
+/* The head in the kept frame, one way up or as its eyes say. A failure leaves the pose as it was. */
+enum track_way { WAY_EITHER, WAY_UP, WAY_OVER };
+bool track_look(struct track_clip *clip, enum track_way way, const struct track_subject *subject, const struct track_conf *conf);
+
+/* A frame of known pose, if open eyes are seen where they then are. */
+bool track_look_known(struct track_clip *clip, long frame, const struct track_subject *subject, const struct track_conf *conf);
+
 /* Improves the pose by the centres that the eyes turn about in the first frames. */
 void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf);
 

@@ -24,7 +24,8 @@ struct track_conf {
 	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
 	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
 	int points;            // of skin
-	long limit;            // frames followed; 0: all
+	int span;              // of the clip that those are spread over
+	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	double meniscus_mm;    // that the edge of a lid's margin stands off the eye in the corners
 	double reach_mm;       // round an eyeball's centre
 	double gap_px;         // points are no closer

@@ -15,7 +15,7 @@ struct track_eyes {
 
 struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf)
 {
-	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps,
+	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)(conf->every ? conf->every : 1),
 		                       .camera = clip->camera, .eye = conf->eye, .head_known = true };
 	struct eye_track_conf free_centers = conf->eyes;
 	// where eyes are taken to be as in most people, they are sought further from there

@@ -158,10 +158,11 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	struct behind *behind = behind_new(eyes, r->film, r->folds);
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);
+	const long every = conf->every ? conf->every : 1;
 	while (ok && got && (!conf->limit || r->n < conf->limit)) {
 		struct video_frame f;
 		ok = video_next(&f, &got, video, err);
-		if (ok && got) {
+		if (ok && got && f.index % every == clip->reference % every) {
 			grow(r, &room);
 			bool lost = skin_frame(r, skin, state, &f, conf);
 			if (!lost && points->n)
@@ -201,6 +202,7 @@ void track_result_free(struct track_result *r)
 	free(r->lids);
 	free(r->lids_model);
 	free(r->g);
+	free(r->misfit);
 	eye_clip_free(&r->eyes);
 	film_free(r->film);
 	folds_free(r->folds);

@@ -1,12 +1,15 @@
 /* The head's pose at the reference, settled by what the eyes turn about: their centres lie 12 mm behind the lids, so that a head
  * that is thought to be turned wrongly has them in the wrong place beside the lids' outlines. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "math/chol.h"
-#include "stages/track/track.h"
+#include "math/stats.h"
+#include "stages/track/reference.h"
 
-enum { FEW_POINTS = 120, LEAST_FRAMES = 20, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4 };
+enum { FEW_POINTS = 120, LEAST_FRAMES = 20, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, LOOKS = 4 };
 
 static const double margin_weight = 0.05;  // px^-2: margins err together, by what lashes shade
 static const double open_enough = 0.8;     // of the usual opening
@@ -39,15 +42,15 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 }
 
 /* Lids follow the eye, by a quarter of a millimetre a degree up and down, and a little sideways. Those of a mesh are taken for those of
- * an eye that looks straight on, as high as in the reference frame: what each control point's place would be then, from all frames of
- * open eyes, px of the modelling camera = rest + h turn[0] + (v - v of the reference) turn[1], robustly. Where too few
- * tell, that of the reference frame. */
-static void rest_of(double rest[2], const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
+ * an eye that looks straight on, as high as it mostly does: what each control point's place would be then, from all frames of
+ * open eyes in a face at rest (skin off the head no more than `calm` px), px of the modelling camera = rest + h turn[0] + (v - usual v)
+ * turn[1], robustly. Where too few tell, that of the reference frame. */
+static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
                     const struct track_conf *conf)
 {
-	double scale = INFINITY, turn[2][2] = { { 0 } }, up = r->eyes.state[clip->reference][side].gaze[1];
-	memcpy(rest, r->eyes.state[clip->reference][side].lid[point / conf->eyes.lid_points][point % conf->eyes.lid_points], 2 * sizeof *rest);
-	for (int round = 0; round < REST_ROUNDS; round++) {
+	double scale = INFINITY, turn[2][2] = { { 0 } }, up = reference_usual_height(r, side);
+	memcpy(rest, r->eyes.state[clip->reference / conf->every][side].lid[point / conf->eyes.lid_points][point % conf->eyes.lid_points], 2 * sizeof *rest);
+	for (int round = 0; round < REST_ROUNDS && isfinite(up); round++) {
 		double a[3][3] = { { 0 } }, b[2][3] = { { 0 } }, square = 0, weight = 0;
 		for (long f = 0; f < r->n; f++) {
 			const struct eye_state *state = &r->eyes.state[f][side];
@@ -59,7 +62,9 @@ static void rest_of(double rest[2], const struct track_result *r, const struct t
 			track_to_model(at, p, s->opening[side].center, r->pose[f], clip);
 			for (int c = 0; c < 2; c++)
 				off[c] = round ? (double)at[c] - rest[c] - row[1] * turn[c][0] - row[2] * turn[c][1] : 0;
-			w = exp(-pow(row[2] / like_v, 2)) * (round ? pow(1 + (off[0] * off[0] + off[1] * off[1]) / (scale * scale), -2) : 1);
+			// an expression moves the lids, too
+			double stir = calm > 0 ? r->misfit[f] / calm : 0;
+			w = exp(-pow(row[2] / like_v, 2)) / (1 + pow(stir, 4)) * (round ? pow(1 + (off[0] * off[0] + off[1] * off[1]) / (scale * scale), -2) : 1);
 			square += w * (off[0] * off[0] + off[1] * off[1]);
 			weight += w;
 			for (int i = 0; i < 3; i++) {
@@ -69,7 +74,7 @@ static void rest_of(double rest[2], const struct track_result *r, const struct t
 					b[c][i] += w * row[i] * (double)at[c];
 			}
 		}
-		if (!(weight > LEAST_FRAMES / 2))
+		if (!(weight > LEAST_FRAMES / 4))
 			return;
 		for (int c = 0; c < 2; c++) {
 			double m[3][3];
@@ -130,8 +135,14 @@ static void refine(struct track_clip *clip, const struct track_result *r, const 
 	struct head_prior prior = { .sigma = { turn, turn, INFINITY, INFINITY, INFINITY, INFINITY } };
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	memcpy(prior.cam_from_head, pose, sizeof pose);
+	double *room = mem_array((size_t)r->n + 1, sizeof *room), calm = 0;
+	if (r->misfit) {
+		memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
+		calm = stats_median((int)r->n, room);
+	}
+	free(room);
 	for (int i = 0; i < SIDES * points; i++)
-		rest_of(rest[i / points][i % points], r, clip, s, i / points, i % points, conf);
+		rest_of(rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
 	for (int round = 0; round < ROUNDS; round++) {
 		int n = centers(sights, r, clip, s, conf);
 		if (!n)
@@ -148,21 +159,82 @@ static void refine(struct track_clip *clip, const struct track_result *r, const 
 	clip->pose_px = px;
 }
 
+/* Frames spread over the clip, followed from the reference and back, with the eyeballs' centres free. */
+static bool follow_few(struct track_result *r, const struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *few)
+{
+	struct track_points points = { 0 };
+	struct err none = { 0 };
+	// what cannot be followed here is said when the whole clip is
+	bool ok = track_points_choose(&points, clip, s, few, &none) && track_follow(r, stage, clip, s, &points, few, &none)
+	          && clip->reference / few->every < r->n;
+	track_points_free(&points);
+	return ok;
+}
+
+static void tell_worse(struct stage *stage, const struct track_clip *clip, const struct reference_view *view)
+{
+	const char *what = "the eyes are not open in it";
+	char text[120];
+	if (view->open) {
+		snprintf(text, sizeof text, "in it the eyes look %.0f degrees to the side and %.0f %s from where they mostly do", fabs(view->aside), fabs(view->up),
+		         view->up < 0 ? "down" : "up");
+		what = text;
+	}
+	stage_skipped(stage, "%s: track.reference_frame = %ld: %s, and gaze may be off by degrees: take %ld, or leave it to be found", clip->file, clip->reference, what,
+	              view->better);
+}
+
+/* The head in another frame. False: it is not found there, and nothing has changed. */
+static bool look_anew(struct track_clip *clip, long frame, enum track_way way, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct track_clip was = *clip;
+	struct err none = { 0 };
+	if (frame != clip->reference) {
+		size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
+		clip->luma = mem_array(area + 1, 1);
+		clip->rgb = mem_array(3 * area + 1, 1);
+	}
+	bool ok = (frame == clip->reference || track_clip_take(clip, frame, stage, conf, &none)) && track_look(clip, way, s, conf);
+	if (frame != was.reference) {
+		free(ok ? was.luma : clip->luma);
+		free(ok ? was.rgb : clip->rgb);
+	}
+	was.faces = clip->faces;
+	if (!ok)
+		*clip = was;
+	return ok;
+}
+
 void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
 	struct track_conf few = *conf;
-	struct track_points points = { 0 };
-	struct track_result r = { 0 };
-	struct err none = { 0 };
 	if (s->assumed || clip->pose_given || !conf->settle)
 		return;
 	few.points = FEW_POINTS;
 	few.limit = conf->settle;
+	few.every = ((clip->info.frames < conf->span ? clip->info.frames : conf->span) + conf->settle - 1) / conf->settle;
 	few.eyes.center_sigma = conf->settle_sigma;
 	few.eyes.torsion_rays = 0;
-	// what cannot be followed here is said when the whole clip is
-	if (track_points_choose(&points, clip, s, &few, &none) && track_follow(&r, stage, clip, s, &points, &few, &none) && clip->reference < r.n)
-		refine(clip, &r, s, conf);
-	track_result_free(&r);
-	track_points_free(&points);
+	enum track_way way = WAY_EITHER;
+	bool moved = false, turned = false, again = true;
+	for (int round = 0; again && round < LOOKS; round++) {
+		struct track_result r = { 0 };
+		again = false;
+		if (follow_few(&r, clip, stage, s, &few)) {
+			struct reference_view view = reference_judge(&r, clip, few.every);
+			// a frame that shows little does not tell which way up it is
+			if (conf->reference < 0 && view.better >= 0 && (!moved || !view.open) && round + 1 < LOOKS)
+				again = moved = look_anew(clip, view.better, turned ? way : WAY_EITHER, stage, s, conf);
+			if (!again && !turned && reference_is_overturned(&r, clip, s)) {
+				way = clip->cam_from_head[1][1] > 0 ? WAY_UP : WAY_OVER;
+				again = turned = look_anew(clip, clip->reference, way, stage, s, conf);
+			}
+			if (!again) {
+				refine(clip, &r, s, &few);
+				if (conf->reference >= 0 && view.better >= 0)
+					tell_worse(stage, clip, &view);
+			}
+		}
+		track_result_free(&r);
+	}
 }

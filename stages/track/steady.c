@@ -103,36 +103,45 @@ static void smooth(struct track_result *r, const double *misfit, double usual, c
 	free(room);
 }
 
-static void follow_path(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
+/* Frame by frame, into r->misfit. */
+static void misfits(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
 {
 	bool *lid = mem_new((size_t)points->n + 1, sizeof *lid);
-	double *room = mem_array((size_t)points->n + (size_t)r->n + 1, sizeof *room), *off = mem_array((size_t)r->n + 1, sizeof *off), pivot[3] = { 0 };
+	double *room = mem_array((size_t)points->n + 1, sizeof *room);
+	r->misfit = mem_array((size_t)r->n + 1, sizeof *r->misfit);
+	for (int i = 0; i < points->n; i++)
+		lid[i] = track_on_lid(points->head[i], s);
+	for (long f = 0; f < r->n; f++)
+		r->misfit[f] = r->lost_at[f] ? INFINITY : misfit(r, f, points, lid, clip, room);
+	free(lid);
+	free(room);
+}
+
+static void follow_path(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
+{
+	double *room = mem_array((size_t)r->n + 1, sizeof *room), pivot[3] = { 0 };
 	for (int i = 0; i < points->n; i++) {
 		double p[3];
-		lid[i] = track_on_lid(points->head[i], s);
 		head_from(p, clip->cam_from_head, points->head[i]);
 		for (int k = 0; k < 3; k++)
 			pivot[k] += p[k] / points->n;
 	}
-	for (long f = 0; f < r->n; f++)
-		off[f] = r->lost_at[f] ? INFINITY : misfit(r, f, points, lid, clip, room);
-	memcpy(room, off, (size_t)r->n * sizeof *off);
+	memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
 	double usual = stats_median((int)r->n, room);
 	if (isfinite(usual) && usual > 0)
-		smooth(r, off, usual, pivot, clip);
-	free(lid);
+		smooth(r, r->misfit, usual, pivot, clip);
 	free(room);
-	free(off);
 }
 
 void track_steady(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
 {
 	r->rests = rests(r);
+	misfits(r, points, s, clip);
 	if (r->rests) {
 		for (long f = 0; f < r->n; f++)
 			memcpy(r->pose[f], clip->cam_from_head, sizeof r->pose[f]);
 	} else if (r->n > 2) {
-		follow_path(r, points, s, clip);
+		follow_path(r, points, clip);
 	}
 	model_again(r, points, clip);
 }

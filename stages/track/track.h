@@ -17,6 +17,7 @@ struct track_result {
 	struct film *film;     // null where the clip is only looked at
 	struct folds *folds;   // null, too, where there are no expressions or no points
 	bool has_eyes;
+	double *misfit;        // [n] px that skin, but for the lids, is off where the head takes it, median; null without points
 	bool rests;            // the head, on a rest: every pose is the reference's
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points]
 	int lid_points;

@@ -133,3 +133,15 @@ for n in 1 3; do
 	bytes_of "$root/threads" >"$root/bytes$n"
 done
 same "the same bytes on 1 and 3 threads" "$(cat "$root/bytes1")" "$(cat "$root/bytes3")"
+
+# A take that begins on a glance down and aside is compared with another of its frames; where one asks for that frame, it is said.
+if [ -x "$RECUT" ]; then
+	take glance 150-209
+	check "track a take that begins on a glance" "$BIN/track" --quiet --capture="$root/glance" --points=300
+	check "another reference is taken" grep -qE '"reference_frame": [1-9]' "$root/glance/work/skin/track.json"
+	for column in g1_deg g2_deg g6_deg g7_deg; do
+		near "glance: $column as in the whole clip" "$(cell glance 45 $column)" "$(cell threads 195 $column)" 1.2
+	done
+	said=$("$BIN/track" --capture="$root/glance" --points=60 --reference-frame=0 2>&1)
+	check "a bad reference is named (it says: $said)" grep -qE "track.reference_frame = 0: in it the eyes look .* degrees .*: take [1-9]" <<<"$said"
+fi

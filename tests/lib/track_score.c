@@ -24,6 +24,7 @@ struct found {
 	struct csv_table gaze;
 	json_t *track, *clip;
 	long n, reference;
+	long first;            // frame of the truth at which the video begins
 	double scale;          // px of the truth in one px of the video
 };
 
@@ -53,6 +54,18 @@ static bool npy(struct array *a, const char *dir, const char *name, struct err *
 	return ok;
 }
 
+/* What the truth says of each frame from the video's first on. */
+static void begin(struct array *a, const struct found *f)
+{
+	long each = 1;
+	if (!a->x || a->shape[0] != f->n + f->first)
+		return;
+	for (int k = 1; k < 4 && a->shape[k]; k++)
+		each *= a->shape[k];
+	memmove(a->x, a->x + f->first * each, (size_t)(f->n * each) * sizeof *a->x);
+	a->shape[0] = f->n;
+}
+
 /* An array of the truth; x null where it has none. free(). */
 static struct array truth(const struct found *f, const char *name, const char *side)
 {
@@ -65,6 +78,8 @@ static struct array truth(const struct found *f, const char *name, const char *s
 		memcpy(a.shape, file.shape, sizeof a.shape);
 		npy_free(&file);
 	}
+	if (f->first)
+		begin(&a, f);
 	free(path);
 	free(key);
 	return a;
@@ -279,24 +294,31 @@ static void score_blinks(struct track_score *s, const struct found *f)
 	const json_t *real = json_object_get(json_object_get(f->clip, "intervals_s"), "blinks"), *got = json_object_get(f->track, "blinks");
 	double fps = json_number_value(json_object_get(f->clip, "fps"));
 	bool hit[64] = { 0 };
-	s->blinks = (int)json_array_size(real);
+	double begun = (double)f->first / fps;
+	for (size_t k = 0; k < json_array_size(real); k++)
+		s->blinks += json_number_value(json_object_get(json_array_get(real, k), "start")) > begun;
 	for (size_t i = 0; i < json_array_size(got); i++) {
 		double at = json_number_value(json_object_get(json_array_get(got, i), "peak")) / fps;
 		bool right = false;
-		for (int k = 0; k < s->blinks && k < 64; k++) {
-			double start = json_number_value(json_object_get(json_array_get(real, (size_t)k), "start"));
+		for (int k = 0; k < (int)json_array_size(real) && k < 64; k++) {
+			double start = json_number_value(json_object_get(json_array_get(real, (size_t)k), "start")) - begun;
 			if (at >= start - 0.02 && at <= start + blink_s)
-				right = hit[k] = true;
+				right = true, hit[k] = start > 0;
 		}
 		s->wrong += !right;
 	}
-	for (int k = 0; k < s->blinks && k < 64; k++)
+	for (int k = 0; k < 64; k++)
 		s->found += hit[k];
 }
 
-bool track_score(struct track_score *s, const char *dir, const char *truth_dir, struct err *err)
+bool track_score(struct track_score *s, const char *dir, const char *truth, struct err *err)
 {
-	struct found f = { .dir = dir, .truth = truth_dir };
+	return track_score_from(s, dir, truth, 0, err);
+}
+
+bool track_score_from(struct track_score *s, const char *dir, const char *truth_dir, long first, struct err *err)
+{
+	struct found f = { .dir = dir, .truth = truth_dir, .first = first };
 	*s = (struct track_score){ 0 };
 	bool ok = load(&f, err);
 	if (ok) {

@@ -30,4 +30,7 @@ struct track_score {
 /* dir: the capture; truth: folder of truth.npz and truth.json. False, err set, where a file is missing. */
 bool track_score(struct track_score *score, const char *dir, const char *truth, struct err *err);
 
+/* The same where the video begins at frame `first` of the truth's. */
+bool track_score_from(struct track_score *score, const char *dir, const char *truth, long first, struct err *err);
+
 #endif

@@ -77,17 +77,22 @@ bool worsen_video(const char *out, const char *in, const char *how, struct err *
 	uint8_t *rgb = mem_array((size_t)w * (size_t)h, 3);
 	struct rng rng = { 11 };
 	bool got = writer;
-	for (long n = 0; got; n++) {
+	long first = strtol(how, 0, 10);
+	for (long n = -first; got; n++) {
 		struct video_frame f;
 		if (!video_next(&f, &got, video, err) || !got)
 			break;
+		if (n < 0) {
+			video_frame_free(&f);
+			continue;
+		}
 		video_frame_rgb(rgb, 3 * w, &f, 0, 0, w, h);
 		video_frame_free(&f);
 		if (half == 2)
 			halve(rgb, w, h);
 		else if (!strcmp(how, "noise"))
 			add_noise(rgb, 3L * w * h, &rng);
-		else
+		else if (!strcmp(how, "blur"))
 			blur(rgb, w, h);
 		got = video_writer_put(writer, rgb, (double)n / info.fps, err);
 	}

@@ -1,10 +1,10 @@
-/* worsen: a video as a lesser camera would have taken it. */
+/* worsen: a video as a lesser camera would have taken it, or begun later. */
 #ifndef TESTS_WORSEN_H
 #define TESTS_WORSEN_H
 #include "base/err.h"
 
 /* how: "noise" (Gaussian, 8 of 255 in every channel: a small sensor indoors), "blur" (Gaussian, 2 px: out of focus), "half" (half as many pixels either
- * way). */
+ * way), "150" (from its frame 150 on). */
 bool worsen_video(const char *out, const char *in, const char *how, struct err *err);
 
 #endif
