@@ -9,7 +9,7 @@
 #include "math/stats.h"
 #include "stages/track/reference.h"
 
-enum { FEW_POINTS = 120, LEAST_FRAMES = 20, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, LOOKS = 4 };
+enum { FEW_POINTS = 120, LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, LOOKS = 4 };
 
 static const double margin_weight = 0.05;  // px^-2: margins err together, by what lashes shade
 static const double open_enough = 0.8;     // of the usual opening
@@ -74,7 +74,7 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 					b[c][i] += w * row[i] * (double)at[c];
 			}
 		}
-		if (!(weight > LEAST_FRAMES / 4))
+		if (!(weight > LEAST_FRAMES / 3))
 			return;
 		for (int c = 0; c < 2; c++) {
 			double m[3][3];
