@@ -246,7 +246,7 @@ int main(int argc, char **argv)
 	finding(n, dirs);
 	static struct results results;
 	for (int i = 0; i < n; i++)
-		if (strstr(dirs[i], "/G01") || strstr(dirs[i], "/G08") || (strstr(dirs[i], "/L02") && !bench_quick()))
+		if (strstr(dirs[i], "/G01") || ((strstr(dirs[i], "/G08") || strstr(dirs[i], "/L02")) && !bench_quick()))
 			filling(&results, dirs[i]);
 	for (int i = 0; i < results.n; i++)
 		bench_row("fibres painted", method_names[results.items[i].method], results.items[i].setting, results.items[i].time,

@@ -256,13 +256,18 @@ int main(int argc, char **argv)
 	if (truth_load(&t, dirs[n - 1], &err)) {
 		time_chain(&t, root, "draft", 2);
 		time_chain(&t, root, "review", 10);
-		time_24_megapixels(t, root);
+		if (!bench_quick())
+			time_24_megapixels(t, root);
 	}
+	int made = 0;
 	for (int i = 0; i < n; i++) {
-		one_capture(&e, dirs[i], root);
+		if (!bench_quick() || i % 4 == 0) {
+			one_capture(&e, dirs[i], root);
+			made++;
+		}
 		free(dirs[i]);
 	}
-	bench_goal("limbus found, captures", "100 %", 100.0 * e.found / n, "%", e.found == n);
+	bench_goal("limbus found, captures", "100 %", 100.0 * e.found / made, "%", e.found == made);
 	goal("ellipse centre, median", e.centre_px, e.n, 0.5, 0.3, "px");
 	goal("ellipse centre, worst", e.centre_px, e.n, 1, 1.5, "px");
 	goal("ellipse semi-axes, median", e.axes_px, e.n, 0.5, 0.3, "px");
