@@ -30,6 +30,7 @@ static void need(bool *used, const struct face *f)
 		struct portrait_pin pin;
 		if (!used[i])
 			continue;
+		used[m->n + ((i - m->n) ^ 1)] = true;  // the other side of the hair
 		portrait_lash_pin(&pin, f->portrait, i);
 		for (int j = 0; j < 3; j++)
 			used[pin.vertex[j]] = true;

@@ -181,6 +181,7 @@ class FaceScene {
 			globes: this.data.globes.flatMap(([x, y, z, scale], side) => [x, y, z, scale * eye_scenes[side].sclera(s)[1]]),
 			quadric: light.quadric.flat().map(v => v * s.light_gain), still_quadric: first.lights[0].quadric.flat(),
 			sharp_map: light.sharp_map || first.lights[0].sharp_map, rough_map: light.rough_map || first.lights[0].rough_map, mirror_on: light.sharp_map ? s.light_gain : 0,
+			at_map: this.poser.at.map, first_hair: this.data.n - this.poser.hairs, hair_px: [c.focal, preset.hair], skin_rgb: this.data.skin_rgb,
 			pores: !preset.pores ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
 		gl.disable(gl.CULL_FACE);
 		gl.enable(gl.SCISSOR_TEST);

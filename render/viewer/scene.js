@@ -26,11 +26,11 @@ function between(list, x) {
 /* What costs time, dearest first. No more steps are taken than the model in the maps was made with: the photograph's own view
  * then shows the photograph. */
 const presets = [
-	{ name: "full", steps: 12, scale: 1, beams: 8, directions: 128, shadow: 0.25, apart: 0, skies: 8, pores: true },
-	{ name: "high", steps: 6, scale: 1, beams: 4, directions: 32, shadow: 0.5, apart: 0, skies: 8, pores: true },
-	{ name: "medium", steps: 3, scale: 0.66, beams: 4, directions: 8, shadow: 1, apart: 1, skies: 4, pores: true },
-	{ name: "low", steps: 3, scale: 0.66, beams: 4, directions: 4, shadow: 0, apart: 1, skies: 4, pores: false },
-	{ name: "least", steps: 2, scale: 0.4, beams: 2, directions: 2, shadow: 0, apart: 2, skies: 2, pores: false },
+	{ name: "full", steps: 12, scale: 1, beams: 8, directions: 128, shadow: 0.25, apart: 0, skies: 8, pores: true, hair: 0.45 },
+	{ name: "high", steps: 6, scale: 1, beams: 4, directions: 32, shadow: 0.5, apart: 0, skies: 8, pores: true, hair: 0.45 },
+	{ name: "medium", steps: 3, scale: 0.66, beams: 4, directions: 8, shadow: 1, apart: 1, skies: 4, pores: true, hair: 0.6 },
+	{ name: "low", steps: 3, scale: 0.66, beams: 4, directions: 4, shadow: 0, apart: 1, skies: 4, pores: false, hair: 0.6 },
+	{ name: "least", steps: 2, scale: 0.4, beams: 2, directions: 2, shadow: 0, apart: 2, skies: 2, pores: false, hair: 0.6 },
 ];
 
 class EyeScene {
