@@ -235,11 +235,11 @@ void scene_levels_make(struct scene *s)
 		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
 		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
 		l[k].model = l[k - 1].model ? halve(l[k - 1].model, l[k - 1].n, 4) : 0;
-		if (s->conf.shading == SCENE_TEXELS && s->conf.shadow > 0 && k >= scene_marched(s))
-			l[k].horizon = scene_horizons(s, &l[k]);
 	}
 	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++) {
 		free(l[k].pairs);
+		free(l[k].horizon);
+		l[k].horizon = s->conf.shadow > 0 && k >= scene_marched(s) ? scene_horizons(s, &l[k]) : 0;
 		scene_pairs_make(&l[k]);
 		scene_shown_make(&l[k], s);
 	}
