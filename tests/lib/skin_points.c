@@ -1,4 +1,5 @@
 #include "tests/lib/skin_points.h"
+#include "tests/lib/skin_moved.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -136,6 +137,8 @@ static int *choose(struct skin_points *p, const struct truth *t, int most)
 struct sums {
 	double *all, *first, *last, *again, sight;
 	long n, n_first, n_last, n_again;
+	struct skin_moved *moved;  // [n_first] of the first tenth
+	double far[SKIN_MOTIONS];  // of the last tenth: points that have moved as far as that
 };
 
 /* Errors of one frame; `again`: shown after the end of the clip. */
@@ -154,10 +157,15 @@ static void count(struct sums *s, const struct truth *t, const struct skin_point
 			continue;
 		}
 		s->all[s->n++] = e;
-		if (f < t->n / TENTH)
+		int far = skin_how_far(t->px + 2 * k, t->px + 2 * row[i]);
+		if (f < t->n / TENTH) {
+			s->moved[s->n_first] = (struct skin_moved){ e, far };
 			s->first[s->n_first++] = e;
-		if (f >= t->n - t->n / TENTH)
+		}
+		if (f >= t->n - t->n / TENTH) {
+			s->far[far]++;
 			s->last[s->n_last++] = e;
+		}
 	}
 }
 
@@ -225,7 +233,7 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 		return false;
 	int *row = choose(&points, &t, most);
 	size_t room = (size_t)t.n * (size_t)points.n + 1;
-	struct sums s = { .all = mem_new(room, sizeof(double)), .first = mem_new(room, sizeof(double)), .last = mem_new(room, sizeof(double)), .again = mem_new(room, sizeof(double)) };
+	struct sums s = { .all = mem_new(room, sizeof(double)), .first = mem_new(room, sizeof(double)), .last = mem_new(room, sizeof(double)), .again = mem_new(room, sizeof(double)), .moved = mem_array(room, sizeof(struct skin_moved)) };
 	struct skin_point_state *state = mem_new((size_t)points.n + 1, sizeof *state);
 	char *path = mem_printf("%s/video.mp4", dir);
 	struct video *video = video_open(&info, path, &(struct video_conf){ 40, 100000, 2, 0 }, err);
@@ -256,7 +264,7 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 		count(&s, &t, state, points.n, row, f, true);
 	}
 	*score = (struct skin_points_score){ points.n, spread_of(s.n, s.all), spread_of(s.n_first, s.first), spread_of(s.n_last, s.last), spread_of(s.n_again, s.again),
-		                                 (double)s.n / fmax(1, s.sight), seconds / (double)n_frames };
+		                                 skin_alike(s.n_first, s.moved, s.far), (double)s.n / fmax(1, s.sight), seconds / (double)n_frames };
 	follower_free(&follower);
 	video_close(video);
 	skin_points_free(&points);
@@ -268,6 +276,7 @@ bool skin_points_follow(struct skin_points_score *score, const char *dir, int mo
 	free(s.first);
 	free(s.last);
 	free(s.again);
+	free(s.moved);
 	free(begin);
 	free(t.px);
 	free(t.visible);

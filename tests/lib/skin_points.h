@@ -20,6 +20,7 @@ struct skin_points_score {
 	int points;
 	struct spread all, first, last;  // px: points in sight that are seen; in the first and last tenth of the clip
 	struct spread again;             // in the first tenth, shown a second time after the last: what is worse than the first time is drift
+	double first_alike;              // px, median of the first tenth, as if its points had moved as far since the reference as the last's
 	double seen;                     // share of those in sight
 	double seconds;                  // a frame, without decoding
 };
