@@ -9,7 +9,7 @@
 #include "math/stats.h"
 #include "stages/track/reference.h"
 
-enum { FEW_POINTS = 120, LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, LOOKS = 4 };
+enum { FEW_POINTS = 120, LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, LOOKS = 4, LATER = 15 };
 
 static const double margin_weight = 0.05;  // px^-2: margins err together, by what lashes shade
 static const double open_enough = 0.8;     // of the usual opening
@@ -220,7 +220,11 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 	for (int round = 0; again && round < LOOKS; round++) {
 		struct track_result r = { 0 };
 		again = false;
-		if (follow_few(&r, clip, stage, s, &few)) {
+		if (!follow_few(&r, clip, stage, s, &few)) {
+			// no eye was seen from there: the face was not where it was found to be
+			for (long f = clip->reference + LATER; conf->reference < 0 && !again && f < clip->info.frames && f < conf->span; f += LATER)
+				again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
+		} else {
 			struct reference_view view = reference_judge(&r, clip, few.every);
 			// a frame that shows little does not tell which way up it is
 			if (conf->reference < 0 && view.better >= 0 && (!moved || !view.open) && round + 1 < LOOKS)
