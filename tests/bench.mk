@@ -25,4 +25,6 @@ fronts: bench-fronts bench-fronts_skin bench-fronts_track bench-fronts_render be
 	printf '; eight photographs of a head with known cameras.\n'; \
 	cat bench/fronts.front bench/fronts_skin.front bench/fronts_track.front bench/fronts_render.front; \
 	cat bench/fronts_calibrate.front 2>/dev/null || grep '^calibrate' config/fronts.conf; } > config/fronts.new && mv config/fronts.new config/fronts.conf
+	@$(MAKE) --no-print-directory bench-report
+	@for s in unrefract track; do cp bench/fronts*-front-of-$$s-*.png samples/front_$$s.png; done
 FORCE:
