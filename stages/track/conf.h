@@ -24,7 +24,9 @@ struct track_conf {
 	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
 	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
 	int points;            // of skin
-	int span;              // of the clip that those are spread over
+	struct {
+		int frames, span;  // so many, spread over so many of the clip
+	} look, doubt;         // that the reference is judged by; where the first raised a doubt
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	double meniscus_mm;    // that the edge of a lid's margin stands off the eye in the corners
 	double reach_mm;       // round an eyeball's centre
@@ -32,5 +34,14 @@ struct track_conf {
 	double cut;            // share of the points that must be seen again, or there was a cut
 	double still_pose_px;  // robust scale of a point off the head's motion
 };
+
+#define SETTLE_OPTS(c)                                                                                                              \
+	OPT_INT("settle_frames", &(c)->settle, 0, 10000, "", "from which the eyeballs' centres settle the head's pose; 0: not"),            \
+		OPT_INT("look_frames", &(c)->look.frames, 12, 1000, "", "that tell whether the reference frame is a good one"),                 \
+		OPT_INT("look_span", &(c)->look.span, 12, 100000, "", "frames of the clip that those are spread over"),                         \
+		OPT_INT("doubt_frames", &(c)->doubt.frames, 12, 1000, "", "that are followed where those raise a doubt, until one is good"),    \
+		OPT_INT("doubt_span", &(c)->doubt.span, 12, 100000, "", "frames of the clip that those are spread over"),                       \
+		OPT_REAL("settle_sigma_mm", &(c)->settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),                   \
+		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them")
 
 #endif

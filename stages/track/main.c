@@ -1,6 +1,5 @@
 /* track: gaze, lids and skin of a video, followed frame by frame.
- * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json. Writes work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkle.c)
- */
+ * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json. Writes work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkle.c) */
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -39,10 +38,7 @@ int main(int argc, char **argv)
 		OPT_INT("reference_frame", &c.reference, -1, 10000000, "", "frame the mesh is laid on; -1: found"),
 		OPT_INT("search_frames", &c.search, 1, 100000, "", "searched for a face at most"),
 		OPT_REAL("distance_mm", &c.distance_mm, 50, 10000, "mm", "of the face from a camera of unknown focal length"),
-		OPT_INT("settle_frames", &c.settle, 0, 10000, "", "from which the eyeballs' centres settle the head's pose; 0: not"),
-		OPT_INT("settle_span", &c.span, 1, 100000, "", "frames of the clip that those are spread over"),
-		OPT_REAL("settle_sigma_mm", &c.settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),
-		OPT_REAL("mesh_center_sigma_mm", &c.center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),
+		SETTLE_OPTS(&c),
 		OPT_REAL("meniscus_mm", &c.meniscus_mm, 0, 3, "mm", "that a lid's margin stands off the eye in its corners"),
 		OPT_INT("points", &c.points, 20, 20000, "", "of skin"),
 		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),

@@ -42,14 +42,15 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 }
 
 /* Lids follow the eye, by a quarter of a millimetre a degree up and down, and a little sideways. Those of a mesh are taken for those of
- * an eye that looks straight on, as high as it mostly does: what each control point's place would be then, from all frames of
- * open eyes in a face at rest (skin off the head no more than `calm` px), px of the modelling camera = rest + h turn[0] + (v - usual v)
- * turn[1], robustly. Where too few tell, that of the reference frame. */
+ * an eye that looks straight on, as high as in a good reference frame (calm 0), or else as it mostly does: what each control point's
+ * place would be then, from all frames of open eyes, with calm > 0 of a face at rest (skin off the head no more than so many px),
+ * px of the modelling camera = rest + h turn[0] + (v - that height) turn[1], robustly. Where too few tell, that of the reference frame. */
 static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
                     const struct track_conf *conf)
 {
-	double scale = INFINITY, turn[2][2] = { { 0 } }, up = reference_usual_height(r, side);
-	memcpy(rest, r->eyes.state[clip->reference / conf->every][side].lid[point / conf->eyes.lid_points][point % conf->eyes.lid_points], 2 * sizeof *rest);
+	const struct eye_state *here = &r->eyes.state[clip->reference / conf->every][side];
+	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1];
+	memcpy(rest, here->lid[point / conf->eyes.lid_points][point % conf->eyes.lid_points], 2 * sizeof *rest);
 	for (int round = 0; round < REST_ROUNDS && isfinite(up); round++) {
 		double a[3][3] = { { 0 } }, b[2][3] = { { 0 } }, square = 0, weight = 0;
 		for (long f = 0; f < r->n; f++) {
@@ -126,7 +127,19 @@ static int margins(struct head_sight *sights, int points, double (*rest)[2], con
 	return n;
 }
 
-static void refine(struct track_clip *clip, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+/* Px that skin is usually off the head, at least a little; 0 where there is no skin. */
+static double usual_stir(const struct track_result *r)
+{
+	double *room = mem_array((size_t)r->n + 1, sizeof *room), usual = 0;
+	if (r->misfit) {
+		memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
+		usual = fmax(stats_median((int)r->n, room), 1e-3);
+	}
+	free(room);
+	return usual;
+}
+
+static void refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
 {
 	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
 	int points = LIDS * conf->eyes.lid_points;
@@ -135,12 +148,7 @@ static void refine(struct track_clip *clip, const struct track_result *r, const 
 	struct head_prior prior = { .sigma = { turn, turn, INFINITY, INFINITY, INFINITY, INFINITY } };
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	memcpy(prior.cam_from_head, pose, sizeof pose);
-	double *room = mem_array((size_t)r->n + 1, sizeof *room), calm = 0;
-	if (r->misfit) {
-		memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
-		calm = stats_median((int)r->n, room);
-	}
-	free(room);
+	double calm = doubted ? usual_stir(r) : 0;
 	for (int i = 0; i < SIDES * points; i++)
 		rest_of(rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
 	for (int round = 0; round < ROUNDS; round++) {
@@ -205,39 +213,83 @@ static bool look_anew(struct track_clip *clip, long frame, enum track_way way, s
 	return ok;
 }
 
-void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+/* Settings for looking at so many frames, spread over so many of the clip. */
+static struct track_conf few_of(const struct track_conf *conf, const struct track_clip *clip, int frames, long span)
 {
 	struct track_conf few = *conf;
-	if (s->assumed || clip->pose_given || !conf->settle)
-		return;
+	span = clip->info.frames < span ? clip->info.frames : span;
 	few.points = FEW_POINTS;
-	few.limit = conf->settle;
-	few.every = ((clip->info.frames < conf->span ? clip->info.frames : conf->span) + conf->settle - 1) / conf->settle;
+	few.limit = frames;
+	few.every = span > frames ? (span + frames - 1) / frames : 1;
 	few.eyes.center_sigma = conf->settle_sigma;
 	few.eyes.torsion_rays = 0;
-	enum track_way way = WAY_EITHER;
-	bool moved = false, turned = false, again = true;
+	return few;
+}
+
+/* A reference that nothing spoke against: settle_frames of the clip, one after another from its start, settle the head, where the
+ * reference is among them; otherwise those that it was judged by. */
+static void settle(struct track_clip *clip, const struct track_result *judged, struct stage *stage, const struct track_subject *s, const struct track_conf *few,
+                   const struct track_conf *conf)
+{
+	struct track_conf all = few_of(conf, clip, conf->settle, conf->settle);
+	struct track_result r = { 0 };
+	if (all.limit > few->limit && clip->reference < all.limit && follow_few(&r, clip, stage, s, &all))
+		refine(clip, false, &r, s, &all);
+	else
+		refine(clip, false, judged, s, few);
+	track_result_free(&r);
+}
+
+/* What the frames that were looked at say of the reference. True: another frame, or another way up, is to be tried. */
+struct doubts {
+	enum track_way way;
+	bool any, moved, turned, last;  // last: no further frame is tried
+};
+
+static bool look_again(struct track_clip *clip, struct doubts *d, const struct track_result *r, const struct reference_view *view, struct stage *stage,
+                       const struct track_subject *s, const struct track_conf *conf)
+{
+	// a frame that shows little does not tell which way up it is
+	if (conf->reference < 0 && view->better >= 0 && (!d->moved || !view->open) && !d->last
+	    && (d->moved = look_anew(clip, view->better, d->turned ? d->way : WAY_EITHER, stage, s, conf)))
+		return true;
+	if (d->turned || !reference_is_overturned(r, clip, s))
+		return false;
+	d->way = clip->cam_from_head[1][1] > 0 ? WAY_UP : WAY_OVER;
+	return d->turned = look_anew(clip, clip->reference, d->way, stage, s, conf);
+}
+
+void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	if (s->assumed || clip->pose_given || !conf->settle)
+		return;
+	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->look.span);
+	struct doubts d = { .way = WAY_EITHER };
+	bool again = true;
 	for (int round = 0; again && round < LOOKS; round++) {
 		struct track_result r = { 0 };
+		bool followed = follow_few(&r, clip, stage, s, &few);
+		struct reference_view view = { .better = -1 };
 		again = false;
-		if (!follow_few(&r, clip, stage, s, &few)) {
+		d.last = round + 1 == LOOKS;
+		if (followed)
+			view = reference_judge(&r, clip, few.every);
+		if (!d.any && (!followed || view.better >= 0 || reference_is_overturned(&r, clip, s))) {
+			// few frames raise a doubt; many settle it
+			d.any = again = true;
+			few = few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
+			round = -1;
+		} else if (!followed) {
 			// no eye was seen from there: the face was not where it was found to be
-			for (long f = clip->reference + LATER; conf->reference < 0 && !again && f < clip->info.frames && f < conf->span; f += LATER)
+			for (long f = clip->reference + LATER; conf->reference < 0 && !again && f < clip->info.frames && f < conf->doubt.span; f += LATER)
 				again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
-		} else {
-			struct reference_view view = reference_judge(&r, clip, few.every);
-			// a frame that shows little does not tell which way up it is
-			if (conf->reference < 0 && view.better >= 0 && (!moved || !view.open) && round + 1 < LOOKS)
-				again = moved = look_anew(clip, view.better, turned ? way : WAY_EITHER, stage, s, conf);
-			if (!again && !turned && reference_is_overturned(&r, clip, s)) {
-				way = clip->cam_from_head[1][1] > 0 ? WAY_UP : WAY_OVER;
-				again = turned = look_anew(clip, clip->reference, way, stage, s, conf);
-			}
-			if (!again) {
-				refine(clip, &r, s, &few);
-				if (conf->reference >= 0 && view.better >= 0)
-					tell_worse(stage, clip, &view);
-			}
+		} else if (!(again = look_again(clip, &d, &r, &view, stage, s, conf))) {
+			if (d.any)
+				refine(clip, true, &r, s, &few);
+			else
+				settle(clip, &r, stage, s, &few, conf);
+			if (conf->reference >= 0 && view.better >= 0)
+				tell_worse(stage, clip, &view);
 		}
 		track_result_free(&r);
 	}
