@@ -1,5 +1,7 @@
 /* track: gaze, lids and skin of a video, followed frame by frame.
- * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json. Writes work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkle.c) */
+ * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
+ * writes  work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkle.c)
+ */
 #include <stdlib.h>
 #include <unistd.h>
 

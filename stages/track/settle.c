@@ -240,12 +240,13 @@ static void settle(struct track_clip *clip, const struct track_result *judged, s
 	track_result_free(&r);
 }
 
-/* What the frames that were looked at say of the reference. True: another frame, or another way up, is to be tried. */
+/* What has been tried since the reference was doubted. */
 struct doubts {
 	enum track_way way;
 	bool any, moved, turned, last;  // last: no further frame is tried
 };
 
+/* True: the frames that were followed speak against the reference, and the head was found in another frame, or the other way up. */
 static bool look_again(struct track_clip *clip, struct doubts *d, const struct track_result *r, const struct reference_view *view, struct stage *stage,
                        const struct track_subject *s, const struct track_conf *conf)
 {
@@ -283,11 +284,10 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 			// no eye was seen from there: the face was not where it was found to be
 			for (long f = clip->reference + LATER; conf->reference < 0 && !again && f < clip->info.frames && f < conf->doubt.span; f += LATER)
 				again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
+		} else if (!d.any) {
+			settle(clip, &r, stage, s, &few, conf);
 		} else if (!(again = look_again(clip, &d, &r, &view, stage, s, conf))) {
-			if (d.any)
-				refine(clip, true, &r, s, &few);
-			else
-				settle(clip, &r, stage, s, &few, conf);
+			refine(clip, true, &r, s, &few);
 			if (conf->reference >= 0 && view.better >= 0)
 				tell_worse(stage, clip, &view);
 		}
