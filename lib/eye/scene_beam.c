@@ -98,22 +98,6 @@ SIMD_CLONES static void plane_add(struct plane_sum *sum, const struct plane *n, 
 	}
 }
 
-/* The one direction in which a beam's light makes tissue as bright as its lights do. A surface that light meets at the cosine
- * m sends back R = m / (m + v) of it at the cosine v; the mean over lights of covariance C about their mean d is R at
- * m - C_nn / (m + v), n the normal: linear in n about the axis, where v is 1, that is a direction's. */
-static void beam_direction(float out[SCENE_WAY], const struct plane_sum *sum, int i)
-{
-	float per = 1 / sum->power[i], d[3], c[3];
-	for (int k = 0; k < 3; k++)
-		d[k] = per * sum->dir[k][i];
-	float m = -d[2] > 0.05f ? -d[2] : 0.05f, part = 1 / (m + 1);
-	for (int k = 0; k < 3; k++)
-		c[k] = per * sum->down[k][i] + d[k] * d[2];  // covariance with the cosine
-	for (int k = 0; k < 3; k++)
-		out[k] = d[k] * (1 - part * c[2] / m) - 2 * part * c[k];
-	out[5] = -d[2];
-}
-
 static void cubic(float w[4], int *at, int i)
 {
 	float x = (float)i * (SCENE_COARSE - 1) / (SCENE_GRID - 1);
@@ -169,7 +153,8 @@ static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lig
 	}
 	for (int i = 0; i < n->n; i++) {
 		float node[SCENE_WAY] = { [3] = sum->power[i], [4] = sum->rho[i] / sum->power[i] };
-		beam_direction(node, sum, i);
+		scene_beam_direction(node, sum->power[i], (float[3]){ sum->dir[0][i], sum->dir[1][i], sum->dir[2][i] },
+		                     (float[3]){ sum->down[0][i], sum->down[1][i], sum->down[2][i] });
 		for (int c = 0; c < SCENE_WAY; c++)
 			to[i][c] = node[c];
 	}

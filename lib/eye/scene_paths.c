@@ -168,23 +168,13 @@ SIMD_CLONES static void light_add(struct sum *sum, const float (*restrict f)[FIE
 	}
 }
 
-/* The one direction in which a beam's light makes tissue as bright as its lights do. A surface that light meets at the cosine
- * m sends back R = m / (m + v) of it at the cosine v; the mean over lights of covariance C about their mean d is R at
- * m - C_nn / (m + v), n the normal: linear in n about the axis, where v is 1, that is a direction's. */
 SIMD_CLONES static void ways_put(float (*restrict way)[SCENE_WAY], const struct sum *restrict sum)
 {
 	for (int i = 0; i < FIELD; i++) {
-		float per = 1 / sum->power[i], d[3], c[3];
-		for (int k = 0; k < 3; k++)
-			d[k] = per * sum->dir[k][i];
-		float m = -d[2] > 0.05f ? -d[2] : 0.05f, part = 1 / (m + 1);
-		for (int k = 0; k < 3; k++)
-			c[k] = per * sum->down[k][i] + d[k] * d[2];  // covariance with the cosine
-		for (int k = 0; k < 3; k++)
-			way[i][k] = d[k] * (1 - part * c[2] / m) - 2 * part * c[k];
+		scene_beam_direction(way[i], sum->power[i], (float[3]){ sum->dir[0][i], sum->dir[1][i], sum->dir[2][i] },
+		                     (float[3]){ sum->down[0][i], sum->down[1][i], sum->down[2][i] });
 		way[i][3] = sum->power[i];
-		way[i][4] = per * sum->rho[i];
-		way[i][5] = -d[2];
+		way[i][4] = 1 / sum->power[i] * sum->rho[i];
 		way[i][6] = way[i][7] = 0;
 	}
 }
