@@ -10,9 +10,15 @@ one() { # COMPILER NAME FILE ARGS...
 	if said=$("$compiler" $flags "$@" 2>&1); then pass "$name"; else fail "$name" "$said"; fi
 }
 
+# One to a core.
+beside() {
+	while [ "$(jobs -r | wc -l)" -ge "${JOBS:-$(nproc)}" ]; do wait -n; done
+	one "$@" &
+}
+
 if command -v clang >/dev/null 2>&1; then
 	while IFS= read -r f; do
-		one clang "clang $f" "$f"
+		beside clang "clang $f" "$f"
 	done < <(find lib stages render tests -name '*.c' 2>/dev/null | sort)
 	cc=clang
 else
@@ -21,5 +27,6 @@ else
 fi
 while IFS= read -r f; do
 	grep -q '^#ifndef' "$f" || continue # without a guard: a part that one source file includes
-	one $cc "header alone $f" -x c -Wno-unused-function -Wno-unused-const-variable -Wno-empty-translation-unit "$f"
+	beside $cc "header alone $f" -x c -Wno-unused-function -Wno-unused-const-variable -Wno-empty-translation-unit "$f"
 done < <(find lib stages render tests -name '*.h' 2>/dev/null | sort)
+wait

@@ -46,18 +46,30 @@ static bool config_holds(const json_t *old, const char *stage, const struct conf
 	return true;
 }
 
-static bool files_hold(struct record *r, const json_t *files, const char *kind, char **why)
+/* record_hash, each file looked at once: every output may have the same hundred inputs. seen: path -> hash, or null. */
+static const char *hash_once(struct record *r, json_t *seen, const char *rel)
+{
+	json_t *known = json_object_get(seen, rel);
+	if (!known) {
+		const char *hash = *rel == '%' ? 0 : record_hash(r, rel);
+		known = hash ? json_string(hash) : json_null();
+		json_object_set_new(seen, rel, known);
+	}
+	return json_string_value(known);
+}
+
+static bool files_hold(struct record *r, json_t *seen, const json_t *files, const char *kind, char **why)
 {
 	const char *rel;
 	json_t *value;
 	json_object_foreach((json_t *)files, rel, value) {
 		const json_t *was = json_is_object(value) ? json_object_get(value, "hash") : value;
-		const char *hash = *rel == '%' ? 0 : record_hash(r, rel), *old = json_string_value(was);
+		const char *hash = hash_once(r, seen, rel), *old = json_string_value(was);
 		if (!old || strcmp(hash ? hash : "", old)) {
 			*why = mem_printf("%s %s %s", kind, rel, hash ? "has changed" : "is missing");
 			return false;
 		}
-		if (json_is_object(value) && !files_hold(r, json_object_get(value, "inputs"), "input", why))
+		if (json_is_object(value) && !files_hold(r, seen, json_object_get(value, "inputs"), "input", why))
 			return false;
 	}
 	return true;
@@ -88,6 +100,7 @@ bool record_holds(const char *capture, const char *stage, const char *program_pa
 {
 	char *reason = 0;
 	struct record *r = record_open_old(capture, stage);
+	json_t *seen = json_object();
 	const char *program = record_hash(r, program_path),
 	           *was = json_string_value(json_object_get(r->old, "program"));
 	bool holds = false;
@@ -98,13 +111,14 @@ bool record_holds(const char *capture, const char *stage, const char *program_pa
 	else
 		holds = config_holds(r->old, stage, conf, &reason)
 		        && lists_hold(r, &reason)
-		        && files_hold(r, json_object_get(r->old, "outputs"), "output", &reason);
+		        && files_hold(r, seen, json_object_get(r->old, "outputs"), "output", &reason);
 	if (r->hashes_changed) {
 		char *hashes = record_in_capture(capture, RECORD_HASHES);
 		struct err err = { 0 };
 		record_save_json(hashes, r->hashes, &err);  // only a memory: losing it costs time, nothing else
 		free(hashes);
 	}
+	json_decref(seen);
 	record_free(r);
 	if (why)
 		*why = reason;

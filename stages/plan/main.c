@@ -10,6 +10,7 @@
 
 #define ABOUT "which stages a capture folder needs, and why the others are not needed\n\n" \
 	"  --show             print the plan as a table: what would run, why, how long\n" \
+	"  --todo             exit 0 when every stage's last run still holds, 3 when one has to run\n" \
 	"  --fresh=STAGE      exit 0 when that stage's last run still holds, 3 when it has to run\n" \
 	"  --clean            remove the folder's work/ and nothing else"
 
@@ -20,6 +21,8 @@ static struct plan_asked take_asked(int *argc, char **argv)
 	for (int i = 1; i < *argc; i++)
 		if (!strcmp(argv[i], "--show"))
 			asked.show = true;
+		else if (!strcmp(argv[i], "--todo"))
+			asked.todo = true;
 		else if (!strcmp(argv[i], "--clean"))
 			asked.clean = true;
 		else if (!strncmp(argv[i], "--fresh=", 8))

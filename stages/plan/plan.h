@@ -36,7 +36,7 @@ struct plan {
 
 /* What is asked for beside planning: not part of the configuration, so not in the option table. */
 struct plan_asked {
-	bool show, clean;
+	bool show, clean, todo;
 	const char *fresh;
 };
 
@@ -61,6 +61,9 @@ bool plan_write(const struct plan *plan, const char *slice, struct err *err);
 
 /* The table people read, to stdout. */
 void plan_show(const struct plan *plan, const struct call *call);
+
+/* Whether the last run of every stage that the folder needs still holds. */
+bool plan_all_fresh(const struct plan *plan, const struct call *call);
 
 /* Whether that stage's last run still holds. False, err set, for a stage nobody knows. */
 bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *stage, struct err *err);

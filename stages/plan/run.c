@@ -29,8 +29,17 @@ static void sweep(const char *capture)
 	close(lock);
 }
 
+/* What make says at its end, where it has nothing to do. */
+static bool nothing_to_do(const struct plan *plan, const struct call *call)
+{
+	bool fresh = plan_all_fresh(plan, call);
+	if (fresh && plan->rows[PLAN_STAGES - 1].run)
+		printf("review page: %s/work/review/index.html\n", plan->capture);
+	return fresh;
+}
+
 static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
-                      const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, struct err *err)
+                      const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, bool *fresh, struct err *err)
 {
 	struct plan plan;
 	char *slice = slice_of(opts, conf);
@@ -42,6 +51,8 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 		sweep(call->capture);
 	if (ok && asked->show)
 		plan_show(&plan, call);
+	if (ok && asked->todo)
+		*fresh = nothing_to_do(&plan, call);
 	for (int i = 0; i < PLAN_STAGES; i++)
 		free(plan.rows[i].setting);
 	if (ok && !plan.n_run)
@@ -62,7 +73,7 @@ int plan_run(const struct call *call, const struct plan_asked *asked, const stru
 		if (call->print_config)
 			opt_print(stdout, "plan", PLAN_STAGES, opts, conf);
 		else
-			make_plan(call, asked, opts, cost, conf, err);
+			make_plan(call, asked, opts, cost, conf, &fresh, err);
 	}
 	free(why);
 	if (!err_is(err))

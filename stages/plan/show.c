@@ -27,6 +27,21 @@ bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *st
 	return ok;
 }
 
+bool plan_all_fresh(const struct plan *plan, const struct call *call)
+{
+	for (int i = 1; i < PLAN_STAGES; i++) {
+		struct err err = { 0 };
+		bool fresh = true;
+		char *why = 0;
+		if (plan->rows[i].run && !plan_fresh(&fresh, &why, call, plan->rows[i].name, &err))
+			fresh = false;
+		free(why);
+		if (!fresh)
+			return false;
+	}
+	return true;
+}
+
 /* Seconds the stage took last time; negative when it left no log. */
 static double seconds_taken(const char *capture, const char *stage)
 {

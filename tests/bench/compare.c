@@ -3,8 +3,8 @@
  *
  *     compare BEFORE AFTER
  *
- * Time: worse when the quartiles no longer overlap and the median grew by more than a tenth; a machine of another speed
- * shows as the median ratio over all rows, which is taken out first. Error: worse by more than a fiftieth (the same cases
+ * Time: worse when the quartiles no longer overlap and the median grew by more than a tenth; how fast the machine was tells
+ * the yardstick that each benchmark measures with its rows (NAME.yard), and is taken out first. Error: worse by more than a fiftieth (the same cases
  * give the same errors; another compiler's rounding does not reach that).
  */
 #include <math.h>
@@ -23,6 +23,7 @@ static const double least_time = 1.1, least_error = 1.02;
 struct pair {
 	const struct csv_row *before, *after;
 	const char *name;
+	double slower;  // the machine, after to before
 };
 
 struct result {
@@ -58,25 +59,32 @@ static void tell(const char *what, const struct pair *p, double before, double a
 	printf("%-7s %s: %s, %s, %s: %s %.4g -> %.4g %s\n", what, p->name, c[TABLE], c[METHOD], c[SETTING], of, before, after, unit);
 }
 
-/* How much slower the machine was: the median ratio of all times. */
-static double machine(const struct result *r)
+/* Seconds of the yardstick beside a table; NAN without one. */
+static double yard_of(const char *dir, const char *name, int stem)
 {
-	double *ratio = mem_new((size_t)r->n + 1, sizeof *ratio);
-	int n = 0;
-	for (int i = 0; i < r->n; i++) {
-		double q = number(r->pairs[i].after, MEDIAN) / number(r->pairs[i].before, MEDIAN);
-		if (isfinite(q) && q > 0)
-			ratio[n++] = q;
-	}
-	double median = n > 4 ? stats_median(n, ratio) : 1;  // of fewer rows, the change itself would be taken for the machine
-	free(ratio);
-	return median;
+	char *path = mem_printf("%s/%.*s.yard", dir, stem, name), *text = 0;
+	size_t size;
+	struct err none = { 0 };
+	double s = file_read(&text, &size, path, 64, &none) ? csv_number(text) : NAN;
+	free(text);
+	free(path);
+	return s > 0 && isfinite(s) ? s : NAN;
 }
 
-static void judge(struct result *r, const struct pair *p, double slower)
+/* How much slower the machine was; without a yardstick in both the times stand as they are. */
+static double machine(const char *const dir[2], const char *name, int stem)
 {
-	double was = number(p->before, MEDIAN) * slower, is = number(p->after, MEDIAN);
-	double was_low = number(p->before, LOW) * slower, was_high = number(p->before, HIGH) * slower;
+	double slower = yard_of(dir[1], name, stem) / yard_of(dir[0], name, stem);
+	if (!isnan(slower))
+		return slower;
+	printf("note    %s: no yardstick in both: times as they stand\n", name);
+	return 1;
+}
+
+static void judge(struct result *r, const struct pair *p)
+{
+	double was = number(p->before, MEDIAN) * p->slower, is = number(p->after, MEDIAN);
+	double was_low = number(p->before, LOW) * p->slower, was_high = number(p->before, HIGH) * p->slower;
 	const char *unit = p->after->cell[UNIT], *of = p->after->cell[ERROR_OF];
 	if (is > least_time * was && number(p->after, LOW) > was_high) {
 		tell("SLOWER", p, was, is, "s", "time");
@@ -95,7 +103,7 @@ static void judge(struct result *r, const struct pair *p, double slower)
 	}
 }
 
-static void match(struct result *r, const char *name, const struct csv *before, const struct csv *after)
+static void match(struct result *r, const char *name, double slower, const struct csv *before, const struct csv *after)
 {
 	for (int i = 0; i < after->n; i++) {
 		const struct csv_row *old = find(before, &after->rows[i]);
@@ -103,7 +111,7 @@ static void match(struct result *r, const char *name, const struct csv *before, 
 		if (!old)
 			continue;
 		r->pairs = mem_grow(r->pairs, (size_t)r->n + 1, sizeof *r->pairs);
-		r->pairs[r->n++] = (struct pair){ old, &after->rows[i], name };
+		r->pairs[r->n++] = (struct pair){ old, &after->rows[i], name, slower };
 	}
 	for (int i = 0; i < before->n; i++)
 		if (!find(after, &before->rows[i])) {
@@ -159,17 +167,20 @@ static bool compare(const char *const dir[2], struct err *err)
 		load_pair(tables[i], dir, list.names[i], stem, ".csv");
 		load_pair(goals, dir, list.names[i], stem, ".goals.csv");
 		if (tables[i][0].n) {
-			match(&r, list.names[i], &tables[i][0], &tables[i][1]);
+			match(&r, list.names[i], machine(dir, list.names[i], stem), &tables[i][0], &tables[i][1]);
 			judge_goals(&r, list.names[i], &goals[0], &goals[1]);
 		}
 		csv_free(&goals[0]);
 		csv_free(&goals[1]);
 	}
-	double slower = machine(&r);
-	for (int i = 0; i < r.n; i++)
-		judge(&r, &r.pairs[i], slower);
-	printf("%d rows in both (machine %.2f times as slow): %d worse, %d better; %d gone, %d new\n", r.n, slower, r.worse, r.better, r.gone,
-	       r.added);
+	double *slower = mem_new((size_t)r.n + 1, sizeof *slower);
+	for (int i = 0; i < r.n; i++) {
+		judge(&r, &r.pairs[i]);
+		slower[i] = r.pairs[i].slower;
+	}
+	printf("%d rows in both (machine %.2f times as slow): %d worse, %d better; %d gone, %d new\n", r.n, r.n ? stats_median(r.n, slower) : 1,
+	       r.worse, r.better, r.gone, r.added);
+	free(slower);
 	if (!r.n)
 		err_set(err, "%s, %s: no row in both: run make bench in both", dir[0], dir[1]);
 	for (int i = 0; i < list.n; i++)

@@ -19,8 +19,31 @@ static struct {
 	size_t rows_size, goals_size;
 	FILE *rows_file, *goals_file;
 	char table[80];  // last one printed: its head is printed once
-	int least_reps, most_reps;
+	int least_reps, most_reps, n_yard;
+	double *yard;    // seconds of the yardstick, all samples
+	volatile double end_of_loop;
 } bench;
+
+static double now_s(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The same work in every revision, about a millisecond: how fast the processor is just now. Each step waits for the one
+ * before, so that no compiler makes it shorter. */
+static void yardstick(int samples)
+{
+	bench.yard = mem_grow(bench.yard, (size_t)(bench.n_yard + samples), sizeof *bench.yard);
+	for (int i = 0; i < samples; i++) {
+		double x = 0.3, start = now_s();
+		for (int k = 0; k < 200000; k++)
+			x = 3.9 * x * (1 - x);
+		bench.end_of_loop = x;
+		bench.yard[bench.n_yard++] = now_s() - start;
+	}
+}
 
 void bench_open(const char *name, int argc, char **argv)
 {
@@ -40,6 +63,7 @@ void bench_open(const char *name, int argc, char **argv)
 	fputs("table,method,setting,per,median_s,low_s,high_s,error,error_unit,error_of\n", bench.rows_file);
 	fputs("measure,reach,got,unit,reached\n", bench.goals_file);
 	bench.least_reps = bench.most_reps = 0;
+	yardstick(10);
 	printf("== %s%s\n", name, bench.quick ? " (quick)" : "");
 }
 
@@ -51,13 +75,6 @@ bool bench_quick(void)
 const char *bench_out(void)
 {
 	return bench.out;
-}
-
-static double now_s(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static int by_value(const void *a, const void *b)
@@ -93,13 +110,16 @@ void bench_times(int n, struct bench_time out[], void (*const fn[])(void *), voi
 {
 	reps = reps > 1 ? reps : 1;
 	double *seconds = mem_new((size_t)n * (size_t)reps, sizeof *seconds);
-	for (int r = -1; r < reps; r++)  // the first round fills caches and wakes threads
+	for (int r = -1; r < reps; r++) {  // the first round fills caches and wakes threads
 		for (int i = 0; i < n; i++) {
 			double start = now_s();
 			fn[i](ctx[i]);
 			if (r >= 0)
 				seconds[(size_t)i * (size_t)reps + (size_t)r] = now_s() - start;
 		}
+		if (r < 10)
+			yardstick(1);
+	}
 	for (int i = 0; i < n; i++)
 		out[i] = bench_time_of(reps, seconds + (size_t)i * (size_t)reps);
 	free(seconds);
@@ -189,11 +209,16 @@ int bench_close(void)
 	struct err err = { 0 };
 	fclose(bench.rows_file);
 	fclose(bench.goals_file);
+	yardstick(10);
+	qsort(bench.yard, (size_t)bench.n_yard, sizeof *bench.yard, by_value);
 	char *reps = mem_printf("%d to %d", bench.least_reps, bench.most_reps);
+	char *yard = mem_printf("%.9g\n", quantile(bench.n_yard, bench.yard, 0.5));
 	bool ok = write_out(".csv", bench.rows, bench.rows_size, &err)
 	          && write_out(".goals.csv", bench.goals, bench.goals_size, &err)
-	          && write_out(".reps", reps, strlen(reps), &err);
+	          && write_out(".reps", reps, strlen(reps), &err) && write_out(".yard", yard, strlen(yard), &err);
 	free(reps);
+	free(yard);
+	free(bench.yard);
 	if (!ok)
 		fprintf(stderr, "%s\n", err.msg);
 	free(bench.rows);

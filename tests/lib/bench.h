@@ -1,7 +1,8 @@
 /* bench: one harness for all benchmark programs.
  * A program measures, calls bench_row() for each method and setting (speed and error of the same run) and
  * bench_goal() for each figure that has a bar. Output: bench/NAME.csv and NAME.goals.csv; `make bench` turns
- * all of them into tables and plots of error against time (tests/bench/report.c).
+ * all of them into tables and plots of error against time (tests/bench/report.c). NAME.yard: seconds of a loop that is the
+ * same in every revision, taken in between: how fast the machine was (tests/bench/compare.c).
  */
 #ifndef TESTS_BENCH_H
 #define TESTS_BENCH_H
