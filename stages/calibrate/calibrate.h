@@ -1,6 +1,6 @@
 /* calibrate: cameras and the person's mesh from overlapping photographs, through the COLMAP program.
- * What is kept between runs stands in work/calibrate/: pictures/ (what COLMAP looks at), pictures.json, database.db,
- * model/ (sealed), colmap.log. A photograph added is compared with the others, nothing else is done again.
+ * What is kept between runs stands in work/calibrate/: pictures/ (what COLMAP looks at), pictures.json, faces.json,
+ * database.db, model/ (sealed), colmap.log. A photograph added is compared with the others, nothing else is done again.
  */
 #ifndef STAGES_CALIBRATE_CALIBRATE_H
 #define STAGES_CALIBRATE_CALIBRATE_H

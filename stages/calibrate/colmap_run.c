@@ -29,7 +29,8 @@ static void take_line(void *ctx, const char *line)
 	}
 }
 
-static const char *const env[] = { "QT_QPA_PLATFORM=offscreen", "OPENBLAS_NUM_THREADS=1", 0 };
+// Its own log would lie in the folder for temporary files for ever.
+static const char *const env[] = { "QT_QPA_PLATFORM=offscreen", "OPENBLAS_NUM_THREADS=1", "GLOG_logtostderr=1", 0 };
 
 static const char **arguments(const char *task, const char *const args[])
 {

@@ -36,7 +36,7 @@ static void record_one(struct stage *stage, const char *name)
 
 bool kept_record(struct stage *stage, const struct views *views, bool whole, struct err *err)
 {
-	static const char *const kept[] = { "database.db", "options.txt", "pictures.json", "frames.json", "cloud.grid", "cloud.ply",
+	static const char *const kept[] = { "database.db", "options.txt", "pictures.json", "frames.json", "faces.json", "cloud.grid", "cloud.ply",
 		                                "model/cameras.bin", "model/images.bin", "model/points3D.bin", "model/seal" };
 	for (int i = whole ? 0 : 1; i < COUNT(kept); i++)
 		record_one(stage, kept[i]);

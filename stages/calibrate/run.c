@@ -67,6 +67,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	          && is_believed(&model, views, stage, err)
 	          && kept_record(stage, views, false, err)
 	          && head_place(&head, views, stage, o, err)
+	          && kept_record(stage, views, false, err)
 	          && rig_out(&rig, &head, views, stage_path(stage, RIG), stage_made_by(stage, n, in), err)
 	          && stage_made(stage, RIG, n, in, err);
 	if (ok && subject_given(stage))

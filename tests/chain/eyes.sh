@@ -43,6 +43,18 @@ near=$(grep -o '[0-9.]* mm from it in the median' "$log" | cut -d' ' -f1)
 # Dense matching at 350 px of a head of 240 mm: a pixel is 0.7 mm.
 check "it lies on the mesh from the photographs: $near mm" awk -v d="${near:-9}" 'BEGIN { exit !(d <= 0.7) }'
 
+# A photograph less, and faces that somebody has changed; then that photograph again: the others' faces are known.
+rm -r "$head/targets"
+mv "$head/views/005.png" "$root/005.png"
+echo "{}" >"$head/work/calibrate/faces.json"
+"$BIN/calibrate" --capture="$head" >"$log" 2>&1 </dev/null
+check "faces that somebody changed are looked for again" grep -q "faces.json: not as the last run left it" "$log"
+same "all of them" "$(grep -c 'searches, each picture' "$log")" 0
+mv "$root/005.png" "$head/views/005.png"
+"$BIN/calibrate" --capture="$head" >"$log" 2>&1 </dev/null
+check "a photograph more: the others' faces are known" grep -q "of 12 searches, each picture 1 of 4 ways up, 11 were done" "$log"
+same "and the scale still comes from the irises" "$(value scale_source)" limbus
+
 # Not looked for on request.
 printf '%s\n' "quality = draft" "calibrate.find_eyes = no" >"$head/capture.conf"
 "$BIN/calibrate" --capture="$head" >"$log" 2>&1 </dev/null
