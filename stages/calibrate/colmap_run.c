@@ -29,8 +29,8 @@ static void take_line(void *ctx, const char *line)
 	}
 }
 
-// Its own log would lie in the folder for temporary files for ever.
-static const char *const env[] = { "QT_QPA_PLATFORM=offscreen", "OPENBLAS_NUM_THREADS=1", "GLOG_logtostderr=1", 0 };
+// Ceres inside it would leave a log of every adjustment in the folder for temporary files.
+static const char *const env[] = { "QT_QPA_PLATFORM=offscreen", "OPENBLAS_NUM_THREADS=1", "GLOG_minloglevel=2", 0 };
 
 static const char **arguments(const char *task, const char *const args[])
 {
