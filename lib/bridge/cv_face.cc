@@ -7,7 +7,7 @@
 #include <vector>
 
 struct cv_face_finder {
-	cv::CascadeClassifier face, eye[2];
+	cv::CascadeClassifier face, eye[2], mouth;
 };
 
 namespace {
@@ -23,6 +23,8 @@ const double least_face = 0.12;
 const double eye_rows[2] = { 0.18, 0.60 }, eye_side[2] = { 0.13, 0.40 };
 /* Mouth below the middle of the eyes, of the distance of the eyes: mean of adults (Farkas 1994: 63 mm apart; 68 to 72 mm down). */
 const double mouth_below = 1.1;
+/* How far from there it can lie: below the eyes, to the side; and of what is looked at the extent, of the distance of the eyes. */
+const double mouth_least = 0.85, mouth_most = 1.45, mouth_aside = 0.25, mouth_region[2] = { 2, 1.4 };
 
 bool load(cv::CascadeClassifier *c, const char *folder, const char *name)
 {
@@ -80,6 +82,37 @@ bool eyes_of(cv::Point2d eye[2], cv_face_finder *finder, const cv::Mat &grey, co
 	return false;
 }
 
+/* Of what the cascade of smiles finds below the eyes, the one found most often: it takes mouths at rest for smiles, too, and
+ * noses, which lie too high. */
+bool mouth_of(cv::Point2d *mouth, cv_face_finder *finder, const cv::Mat &grey, const cv::Point2d &middle, const cv::Point2d &across)
+{
+	const double apart = std::hypot(across.x, across.y), scale = 0.4 * face_px / apart;
+	const cv::Point2d down(-across.y, across.x), at = middle + mouth_below * down;
+	const cv::Rect around(static_cast<int>(at.x - 0.5 * mouth_region[0] * apart), static_cast<int>(at.y - 0.5 * mouth_region[1] * apart),
+	                      static_cast<int>(mouth_region[0] * apart), static_cast<int>(mouth_region[1] * apart));
+	const cv::Rect inside = around & cv::Rect(0, 0, grey.cols, grey.rows);
+	if (inside.width < 0.5 * around.width || inside.height < 0.5 * around.height)
+		return false;
+	cv::Mat part;
+	cv::resize(grey(inside), part, cv::Size(), scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+	std::vector<cv::Rect> found;
+	std::vector<int> times;
+	finder->mouth.detectMultiScale(part, found, times, 1.05, 3, 0, cv::Size(face_px / 5, face_px / 10));
+	int most = 0;
+	double nearest = 0;
+	for (size_t i = 0; i < found.size(); i++) {
+		const cv::Point2d c(inside.x + (found[i].x + 0.5 * found[i].width) / scale, inside.y + (found[i].y + 0.5 * found[i].height) / scale);
+		const double below = (c - middle).dot(down) / (apart * apart), aside = std::abs((c - middle).dot(across)) / (apart * apart);
+		const double off = std::hypot(below - mouth_below, aside);
+		if (below < mouth_least || below > mouth_most || aside > mouth_aside || times[i] < most || (times[i] == most && off >= nearest))
+			continue;
+		most = times[i];
+		nearest = off;
+		*mouth = c;
+	}
+	return most > 0;
+}
+
 /* Of a picture after `turn` quarter turns clockwise, width x height before. */
 void turn_back(double out[2], double x, double y, int turn, int width, int height)
 {
@@ -97,7 +130,7 @@ bool cv_face_open(struct cv_face_finder **finder, struct err *err)
 		cv_face_finder *f = new cv_face_finder;
 		for (const char *folder : folders)
 			if (load(&f->face, folder, "haarcascade_frontalface_alt2.xml") && load(&f->eye[0], folder, "haarcascade_eye_tree_eyeglasses.xml")
-			    && load(&f->eye[1], folder, "haarcascade_eye.xml")) {
+			    && load(&f->eye[1], folder, "haarcascade_eye.xml") && load(&f->mouth, folder, "haarcascade_smile.xml")) {
 				*finder = f;
 				return true;
 			}
@@ -145,7 +178,9 @@ bool cv_face_find(int *n, struct cv_face *faces, int most, struct cv_face_finder
 			const cv::Point2d middle = 0.5 * (eye[0] + eye[1]), across = eye[0] - eye[1];
 			for (int e = 0; e < 2; e++)
 				turn_back(out->eye[e], eye[e].x, eye[e].y, turn & 3, width, height);
-			turn_back(out->mouth, middle.x - mouth_below * across.y, middle.y + mouth_below * across.x, turn & 3, width, height);
+			cv::Point2d mouth(middle.x - mouth_below * across.y, middle.y + mouth_below * across.x);
+			out->mouth_found = mouth_of(&mouth, finder, picture, middle, across);
+			turn_back(out->mouth, mouth.x, mouth.y, turn & 3, width, height);
 		}
 		return true;
 	} catch (const std::exception &e) {

@@ -12,7 +12,8 @@ extern "C" {
 
 struct cv_face {
 	double eye[2][2];  // px, first pixel's centre at 0.5: the middle of the person's left eye, of the right one
-	double mouth[2];   // where its middle is to be expected
+	double mouth[2];   // its middle; where that is to be expected, if it was not found
+	bool mouth_found;
 };
 
 struct cv_face_finder;

@@ -94,6 +94,48 @@ static double apart(const double eye[2][3])
 	return vec_norm(d);
 }
 
+/* Marks the faces that have found a mouth within `near` of that point; how many. */
+static int mouth_votes(bool *seen, const struct colmap_model *m, int n, const struct sfm_face faces[], const bool *agrees, const double mouth[3],
+                       double near)
+{
+	int votes = 0;
+	for (int i = 0; i < n; i++) {
+		const struct sfm_face *f = &faces[i];
+		double px[2], focal, far = near * hypot(f->eye[0][0] - f->eye[1][0], f->eye[0][1] - f->eye[1][1]);
+		seen[i] = agrees[i] && f->mouth_found && sfm_project(px, &focal, m, f->image, mouth)
+		          && hypot(px[0] - f->mouth[0], px[1] - f->mouth[1]) <= far;
+		votes += seen[i];
+	}
+	return votes;
+}
+
+/* The mouth that most of the faces have found, `least` of them or more: every two propose one. 0: there is none. */
+static int mouth_from(double mouth[3], const struct colmap_model *m, int n, const struct sfm_face faces[], const bool *agrees, int least,
+                      double near)
+{
+	bool *seen = mem_new((size_t)n + 1, sizeof *seen);
+	double unused, at[3];
+	int most = 0;
+	for (int i = 0; i < n; i++)
+		for (int k = i + 1; k < n; k++) {
+			if (!agrees[i] || !agrees[k] || !faces[i].mouth_found || !faces[k].mouth_found)
+				continue;
+			memset(seen, 0, (size_t)n * sizeof *seen);
+			seen[i] = seen[k] = true;
+			int votes = point(at, &unused, m, n, faces, seen, 2) ? mouth_votes(seen, m, n, faces, agrees, at, near) : 0;
+			if (votes > most) {
+				most = votes;
+				memcpy(mouth, at, sizeof at);
+			}
+		}
+	for (int round = 0; round < 3 && most >= least; round++) {
+		most = mouth_votes(seen, m, n, faces, agrees, mouth, near);
+		most = most >= least && point(mouth, &unused, m, n, faces, seen, 2) ? most : 0;
+	}
+	free(seen);
+	return most >= least ? most : 0;
+}
+
 bool sfm_eyes(struct sfm_eyes *out, bool *agrees, const struct colmap_model *m, int n, const struct sfm_face faces[], int least,
               double near)
 {
@@ -125,5 +167,8 @@ bool sfm_eyes(struct sfm_eyes *out, bool *agrees, const struct colmap_model *m, 
 	memcpy(out->eye, best, sizeof best);
 	out->n = vote(agrees, &sum, m, n, faces, best, near);
 	out->sigma = fmax(sigma[0], sigma[1]) / apart(best);
-	return out->n >= least && out->sigma < near && point(out->mouth, &unused, m, n, faces, agrees, 2);
+	if (out->n < least || out->sigma >= near)
+		return false;
+	out->mouths = mouth_from(out->mouth, m, n, faces, agrees, least, near);
+	return out->mouths || point(out->mouth, &unused, m, n, faces, agrees, 2);
 }

@@ -9,12 +9,14 @@
 struct sfm_face {
 	int image;  // index into the model's images
 	double eye[2][2], mouth[2];
+	bool mouth_found;  // else mouth is where it is to be expected
 };
 
 struct sfm_eyes {
 	double eye[2][3], mouth[3];  // world
 	double sigma;                // 1 sd of an eye's place, of the eyes' distance
 	int n;                       // pictures that agree
+	int mouths;                  // of them those with a mouth that agrees; 0: it is only where it is to be expected
 };
 
 /* The pair of points that most pictures agree on, each eye within a share `near` of the eyes' distance in the picture; from

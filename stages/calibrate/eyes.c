@@ -29,7 +29,9 @@ static void take(struct eyes *eyes, const struct sfm_face *f, const struct sfm_e
 		sfm_project(px, &focal, head->model, f->image, at->eye[e]);
 		name(&eyes->side[e], v, (double[]){ f->eye[e][0] * s, f->eye[e][1] * s, o->limbus_radius_mm / o->eyes_apart_mm * eyes->apart * focal * s, 0 });
 	}
-	name(&eyes->mouth, v, (double[]){ f->mouth[0] * s, f->mouth[1] * s, f->mouth[0] * s, f->mouth[1] * s });
+	double mouth[2], focal;
+	if (sfm_project(mouth, &focal, head->model, f->image, at->mouth))
+		name(&eyes->mouth, v, (double[]){ mouth[0] * s, mouth[1] * s, mouth[0] * s, mouth[1] * s });
 }
 
 static void take_all(struct eyes *eyes, const struct faces *faces, const bool *agrees, const struct sfm_eyes *at, const struct head *head,
@@ -39,6 +41,7 @@ static void take_all(struct eyes *eyes, const struct faces *faces, const bool *a
 	vec_add(across, at->eye[0], -1, at->eye[1]);
 	eyes->apart = vec_norm(across);
 	eyes->sigma = at->sigma;
+	eyes->mouth_found = at->mouths > 0;
 	for (int k = 0; k < 3; k++)
 		(k < 2 ? &eyes->side[k] : &eyes->mouth)->items = mem_new((size_t)at->n + 1, sizeof(struct opt_each));
 	for (int i = 0; i < faces->n; i++)
@@ -58,6 +61,7 @@ bool eyes_find(struct eyes *eyes, const struct head *head, const struct views *v
 	if (ok && sfm_eyes(&at, agrees, head->model, faces.n, faces.f, LEAST_VIEWS, near)) {
 		take_all(eyes, &faces, agrees, &at, head, views, o);
 		stage_figure(stage, "eyes_found", at.n, "views");
+		stage_figure(stage, "mouth_found", at.mouths, "views");
 	} else if (ok && faces.f)
 		stage_skipped(stage, "eyes in the views: no face that %d views agree on is seen from the front. Photograph it from there, too, or "
 		              "name the eyes in two views (view.NAME.left_eye_px)", LEAST_VIEWS);

@@ -8,6 +8,7 @@ struct eyes {
 	struct opt_each_list side[2], mouth;  // owned
 	double apart;                         // of the eyes, world; 0: not found
 	double sigma;                         // of that, relative
+	bool mouth_found;                     // else mouth is where it is to be expected below the eyes
 };
 
 /* Faces seen from the front, in pictures that agree on where its eyes are. What is not found, and why, is said; false, err

@@ -9,10 +9,10 @@
 #include "bridge/cv_face.h"
 #include "image/picture.h"
 
-enum { MOST_FACES = 4, TURNS = 4, NUMBERS = 6, FILE_LIMIT = 64 << 20 };
+enum { MOST_FACES = 4, TURNS = 4, NUMBERS = 7, FILE_LIMIT = 64 << 20 };
 
 struct search {
-	json_t *known;  // picture -> for each turn that was tried the faces, each six numbers: left eye, right eye, mouth
+	json_t *known;  // picture -> for each turn that was tried the faces, each seven numbers: left eye, right eye, mouth, whether that was found
 	struct cv_face_finder *finder;
 	struct stage *stage;
 	const struct calibrate_options *o;
@@ -75,7 +75,7 @@ static bool look_at(struct search *s, const char *picture, int turn, struct err 
 	for (int k = 0; k < n; k++) {
 		const struct cv_face *f = &found[k];
 		const double x[NUMBERS] = { rounded(f->eye[0][0]), rounded(f->eye[0][1]), rounded(f->eye[1][0]),
-			                        rounded(f->eye[1][1]), rounded(f->mouth[0]), rounded(f->mouth[1]) };
+			                        rounded(f->eye[1][1]), rounded(f->mouth[0]), rounded(f->mouth[1]), f->mouth_found };
 		json_array_append_new(list, json_numbers(NUMBERS, x));
 	}
 	remember(s, picture, turn, list);
@@ -88,7 +88,7 @@ static void take(struct faces *faces, const json_t *found, int image)
 		double x[NUMBERS];
 		for (size_t i = 0; i < NUMBERS; i++)
 			x[i] = rounded(json_number_value(json_array_get(json_array_get(found, k), i)));
-		faces->f[faces->n++] = (struct sfm_face){ image, { { x[0], x[1] }, { x[2], x[3] } }, { x[4], x[5] } };
+		faces->f[faces->n++] = (struct sfm_face){ image, { { x[0], x[1] }, { x[2], x[3] } }, { x[4], x[5] }, x[6] > 0 };
 	}
 	faces->images += json_array_size(found) > 0;
 }

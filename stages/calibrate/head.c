@@ -70,8 +70,8 @@ static bool place(struct head *head, const struct views *views, const struct pla
 	for (int i = 0; i < 3; i++)
 		middle[i] = 0.5 * (mouth[0][i] + mouth[1][i]);
 	bool eyes = has[0] && has[1];
-	// A mouth that was not named is put below the eyes: it tells which way is down, not how the face is tilted.
-	head->frame_source = !eyes ? "cameras" : has_mouth && face->mouth == &o->mouth ? "eyes and mouth" : "eyes";
+	// A mouth only put below the eyes tells which way is down, not how the face is tilted.
+	head->frame_source = !eyes ? "cameras" : has_mouth && face->has_mouth ? "eyes and mouth" : "eyes";
 	if (eyes) {
 		sfm_frame_eyes(&head->frame, head->model, eye[0], eye[1], has_mouth ? middle : 0, scale);
 		place_eyes(head, eye[0], eye[1], o->limbus_radius_mm);
@@ -85,14 +85,14 @@ bool head_place(struct head *head, const struct views *views, struct stage *stag
 {
 	double scale;
 	struct eyes eyes = { .apart = 0 };
-	struct places_face face = { { &o->left_eye, &o->right_eye }, &o->mouth, false };
+	struct places_face face = { { &o->left_eye, &o->right_eye }, &o->mouth, false, true };
 	if (!sfm_subject(&head->subject, head->model, err))
 		return err_wrap(err, "%s/views", stage->capture);
 	if (o->find_eyes && !o->left_eye.n && !o->right_eye.n) {
 		if (!eyes_find(&eyes, head, views, stage, o, err))
 			return false;
 		if (eyes.apart > 0)
-			face = (struct places_face){ { &eyes.side[0], &eyes.side[1] }, o->mouth.n ? &o->mouth : &eyes.mouth, true };
+			face = (struct places_face){ { &eyes.side[0], &eyes.side[1] }, o->mouth.n ? &o->mouth : &eyes.mouth, true, o->mouth.n || eyes.mouth_found };
 	}
 	bool ok = find_scale(&scale, head, views, &face, &eyes, stage, o, err) && place(head, views, &face, scale, o, err);
 	eyes_free(&eyes);

@@ -13,7 +13,7 @@ struct places_lengths {
 /* Eyes and mouth in views, as capture.conf's keys have them: named by a hand, or found. */
 struct places_face {
 	const struct opt_each_list *eye[2], *mouth;
-	bool found;
+	bool found, has_mouth;  // has_mouth: named or found, not only expected below the eyes
 };
 
 /* Each appends what it finds; what is given but cannot be used is an error that says why. */

@@ -15,7 +15,7 @@ run_make "$head"
 same "photographs of a head and a character, nothing named: exit status" "$?" 0
 value() { grep -o "\"$1\": *[-\"a-z0-9.]*" "$head/work/rig.json" | head -n 1 | sed 's/.*: *//; s/"//g'; }
 same "the scale comes from the irises" "$(value scale_source)" limbus
-same "the frame from the eyes" "$(value frame_source)" eyes
+same "the frame from the eyes and the mouth" "$(grep -o '"frame_source": *"[a-z ]*"' "$head/work/rig.json" | cut -d\" -f4)" "eyes and mouth"
 # How much people's irises differ is known: 4.3 %.
 awk -v s="$(value scale_sigma)" 'BEGIN { exit !(s >= 0.042 && s < 0.06) }'
 check "as well as people's irises are alike: $(value scale_sigma)" test "$?" = 0
