@@ -74,19 +74,74 @@ static void spread(void *ctx)
 	r->taps ? subsurface_separable(&p, &r->profile, r->taps, &s->room) : subsurface_spread(&p, &r->profile, &s->room);
 }
 
-/* What memory allows: the light and the depth read once, the light written once, all threads. */
-static void stream(void *ctx)
+/* What memory allows, all threads: the light and the depth read once and the light written once, the same picture again and
+ * again; and what a pyramid moves, each time of another picture: the picture read and a quarter of it written, then the light
+ * read again, written, and a quarter of it read. */
+enum { COPIES = 8 };
+
+struct stream {
+	float *copy[COPIES];  // [3 + 1][N] light and depth, [4][N / 4] the level below
+	int n, next;
+	bool pyramid;
+};
+
+static void down(const float *in, float *below)
 {
-	(void)ctx;
-#pragma omp parallel for schedule(static)
+#pragma omp for schedule(static)
+	for (int y = 0; y < H / 2; y++)
+		for (int c = 0; c < 4; c++) {
+			const float *a = in + (size_t)c * N + (size_t)y * 2 * W, *b = a + W;
+			float *out = below + (size_t)c * (N / 4) + (size_t)y * (W / 2);
+#pragma omp simd
+			for (int x = 0; x < W / 2; x++)
+				out[x] = a[x] + a[x + W / 2] + b[x] + b[x + W / 2];
+		}
+}
+
+static void up(float *light, const float *below, bool pyramid)
+{
+#pragma omp for schedule(static)
 	for (int y = 0; y < H; y++)
 		for (int c = 0; c < 3; c++) {
-			float *out = s->out[c] + (size_t)y * W;
-			const float *z = s->depth + (size_t)y * W;
+			float *out = light + (size_t)c * N + (size_t)y * W;
+			const float *in = pyramid ? below + (size_t)c * (N / 4) + (size_t)(y / 2) * (W / 2) : light + 3 * (size_t)N + (size_t)y * W;
+			for (int half = 0; half < W; half += W / 2)
 #pragma omp simd
-			for (int x = 0; x < W; x++)
-				out[x] = z[x] > 0 ? 1.0001f * out[x] : out[x];
+				for (int x = 0; x < W / 2; x++)
+					out[half + x] = in[pyramid ? x : half + x] > 0 ? 1.0001f * out[half + x] : out[half + x];
 		}
+}
+
+static void stream(void *ctx)
+{
+	struct stream *t = ctx;
+	float *picture = t->copy[t->next++ % t->n], *below = picture + 4 * (size_t)N;
+#pragma omp parallel
+	{
+		if (t->pyramid)
+			down(picture, below);
+		up(picture, below, t->pyramid);
+	}
+}
+
+static void limits(void)
+{
+	struct stream t = { .n = 1 };
+	for (int k = 0; k < COPIES; k++) {
+		t.copy[k] = mem_array(5 * (size_t)N, sizeof(float));
+		for (size_t i = 0; i < 5 * (size_t)N; i++)
+			t.copy[k][i] = 1;
+	}
+	bench_row("scattering, a smooth face", "limit: memory", "the light read and written once, from the cache",
+	          bench_time(stream, &t, 20), "frame", NAN, "", "");
+	t.n = COPIES;
+	bench_row("scattering, a smooth face", "limit: memory", "the light read and written once, from memory",
+	          bench_time(stream, &t, 20), "frame", NAN, "", "");
+	t.pyramid = true;
+	bench_row("scattering, a smooth face", "limit: memory", "a pyramid's first level alone: 63 MB, from memory",
+	          bench_time(stream, &t, 20), "frame", NAN, "", "");
+	for (int k = 0; k < COPIES; k++)
+		free(t.copy[k]);
 }
 
 enum { PROBES = 400 };
@@ -138,8 +193,7 @@ int main(int argc, char **argv)
 	table("scattering, a smooth face", false);
 	table("scattering, an edge in depth", true);
 	subsurface_room_free(&s->room);
-	struct bench_time t = bench_time(stream, 0, 20);
-	bench_row("scattering, a smooth face", "limit: memory", "the light read and written once", t, "frame", NAN, "", "");
+	limits();
 	free(s);
 	return bench_close();
 }
