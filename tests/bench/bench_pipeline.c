@@ -254,7 +254,8 @@ int main(int argc, char **argv)
 		return bench_close();
 	}
 	if (truth_load(&t, dirs[n - 1], &err)) {
-		time_chain(&t, root, "draft", 2);
+		if (!bench_quick())
+			time_chain(&t, root, "draft", 2);
 		time_chain(&t, root, "review", 10);
 		if (!bench_quick())
 			time_24_megapixels(t, root);

@@ -80,6 +80,8 @@ const skips = n => `(() => { const p = eyewright, gl = p.graphics.gl, one = new 
 				console.log(`frame ${names[k]} ${await b.value(frames(k, quick === "1" ? 1 : 3), 120000)}`);
 		console.log(`skip ${await b.value(skips(quick === "1" ? 1 : 3), 120000)}`);
 		await count(b);
+		if (quick === "1")
+			return;
 		await b.value(`eyewright.preset = 0; eyewright.times = []; eyewright.automatic = true; eyewright.busy = false; eyewright.set_follow('wander');
 			eyewright.eyes.still = false; eyewright.changed()`);
 		await b.until("eyewright.preset + 1 === presets.length || eyewright.times.length > 20", 20).catch(() => 0);
