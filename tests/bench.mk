@@ -12,6 +12,8 @@ bench: $(BENCHES:$B/tests/bench/bench_%=bench-%)
 bench-compare: $B/tests/bench/compare
 	@test -n "$(BEFORE)" || { echo "make: say which: make bench-compare BEFORE=old/bench [AFTER=bench]" >&2; exit 2; }
 	@$< "$(BEFORE)" "$(or $(AFTER),bench)"
+# Parts of a frame follow each other within a fraction of a millisecond: threads stay awake between them, as a viewer's do.
+bench-distance bench-scatter bench-render: export OMP_WAIT_POLICY = active
 bench-%: build $B/tests/bench/bench_% FORCE
 	@mkdir -p bench
 	@$B/tests/bench/bench_$* $(BENCH_ARGS)
