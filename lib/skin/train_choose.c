@@ -13,6 +13,8 @@ static const double worth = 0.995, least_worth = 1e-9;  // what a larger number 
 static int fewest(const double error[], int most)
 {
 	int best = 0;
+	if (isnan(error[0]))  // no frame was held out
+		return most;
 	for (int k = 1; k < most; k++)
 		if (error[k] < worth * error[best] - least_worth)
 			best = k;

@@ -177,6 +177,7 @@ void cv_least(double *least, const struct cv *cv, int K)
 
 void train_validate(struct train *t, int p)
 {
+	static const char *const parts[TRAIN_PARTS] = { "the left eye's lids", "the right eye's lids", "the skin" };
 	struct cv cv = cv_new(t, p);
 	struct train_curve *curve = &t->report->curve[p];
 	int most = t->part[p].kept, K = (int)fmin(cv.R, fmax(t->conf->curve_components, most)), kept = (most < K ? most : K) - 1;
@@ -186,6 +187,8 @@ void train_validate(struct train *t, int p)
 	for (int i = 0; i < COUNT(curves); i++)
 		*curves[i] = mem_new((size_t)K + 1, sizeof(double));
 	t->part[p].ridge = validate_linear(curve, &cv, K, kept);
+	if (isnan(curve->linear_px))
+		train_warn(t, "%s: no frame could be held out: how well the model foretells it is not known: film longer", parts[p]);
 	if (!t->conf->brief)
 		validate_rbf(curve, &cv, K, kept);
 	cv_shuffle(&cv);

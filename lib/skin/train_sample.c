@@ -67,11 +67,13 @@ void train_weigh(const struct train *t, struct frames *f, long n, const long *fr
 	}
 }
 
-/* Time blocks of conf->block_s, but at least four for every fold; the first guard_s of each belong to none. */
+/* Time blocks of conf->block_s, but at least four for every fold where they hold four frames each; the first guard_s of each
+ * belong to none. */
 static void set_blocks(struct train *t)
 {
 	const double *time = t->clip->time;
 	double span = time[t->clip->n - 1] - time[0], length = fmin(t->conf->block_s, span / (4 * t->conf->folds));
+	length = fmax(length, 4 * span / (double)t->clip->n);
 	for (long i = 0; i < t->n_sample; i++) {
 		double at = time[t->sample[i]] - time[0];
 		int block = length > 0 ? (int)(at / length) : (int)(i * 4 * t->conf->folds / t->n_sample);

@@ -397,6 +397,8 @@ static void clip(struct stress *s, bool zeros)
 				said += report.curve[p].linear_px;
 			if (isnan(rms) || isinf(rms))
 				stress_wrong(s, "predictions that are not numbers");
+			else if (isnan(said) && report.n_warnings)
+				stress_flagged(s);  // nothing could be held out
 			else
 				stress_measure(s, rms / said, "times the error it states");
 			if (rms > 10 * said)
