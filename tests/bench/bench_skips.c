@@ -108,12 +108,13 @@ static bool make_captures(const char *root)
 {
 	setenv("ROOT", root, 1);
 	setenv("C", root, 1);
+	setenv("QUICK", bench_quick() ? "photo four" : "", 1);
 	return shell("for c in photo four; do mkdir -p \"$ROOT/$c/photos\"; cp samples/demo/capture.conf \"$ROOT/$c\"; done;"
 	             "cp samples/demo/photos/right_softbox.jpg \"$ROOT/photo/photos\";"
 	             "for i in 1 2 3 4; do { cat samples/demo/photos/right_softbox.jpg; echo $i; } >\"$ROOT/four/photos/right_$i.jpg\"; done;"
 	             "mkdir -p \"$ROOT/face\"; cp -r samples/face/video samples/face/subject.ply samples/face/capture.conf \"$ROOT/face\";"
 	             "cp -r \"$ROOT/face\" \"$ROOT/both\"; cp -r samples/face/targets \"$ROOT/photo/photos\" \"$ROOT/both\"; cat samples/demo/capture.conf | sed /camera/d >>\"$ROOT/both/capture.conf\";"
-	             "for c in face both; do echo 'quality = draft' >>\"$ROOT/$c/capture.conf\"; done");
+	             "for c in face both $QUICK; do echo 'quality = draft' >>\"$ROOT/$c/capture.conf\"; done");
 }
 
 /* A make that has nothing to do, as its user waits for it: what it looks at grows with the photographs. */
