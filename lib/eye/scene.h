@@ -53,8 +53,10 @@ struct scene_level {
 	float per_mm;                 // texels in a mm
 	float *relief;                // [n][n][2]: height mm, + towards the cornea; stroma mm
 	int *pairs;                   // [n][SCENE_PAIR_STRIDE(n)]: heights of a texel and of the next one to the right, 16 bits each; null: SCENE_RAYS
+	int *bottom;                  // the same of half the height of the epithelium below; null: the level is not marched from
 	float *colour;                // [n][n][4]: the photograph's, and 1 where a photograph saw it
 	float *model;                 // [n][n][4]: what the model showed in the photograph's light and view
+	float *per_model;             // [tiles of it][3][64]: 1 over that; null: no model, or the level is not marched from
 	struct march_horizon *horizon;  // of its tiles (scene_march.h); null: level is not marched from
 	struct scene_texels shown, bare;  // colour (to the power of detail) with the pupil cut out; the same without the
 	                                  // photograph's light; empty: SCENE_RAYS

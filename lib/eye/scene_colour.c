@@ -141,14 +141,15 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 	free(beams.beam);
 }
 
-SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float (*restrict model)[4])
+SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float *const per_model[3])
 {
 	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // brighter only a texel gets that was in a shadow of the model's
+	const float *restrict per_r = per_model[0], *restrict per_g = per_model[1], *restrict per_b = per_model[2];
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
 		// A few wavelengths stand for the spectrum: what light of hardly any colour is left deep in dark tissue they may put below zero.
-		float x = fmaxf(r[i], 0) / model[i][0], y = fmaxf(g[i], 0) / model[i][1], z = fmaxf(b[i], 0) / model[i][2], mean = (x + y + z) / 3;
-		float lit = mean < most ? mean : most, low = lit / chroma, high = lit * chroma, k = mean > 1e-6f ? lit / mean : 1;
+		float x = (r[i] > 0 ? r[i] : 0) * per_r[i], y = (g[i] > 0 ? g[i] : 0) * per_g[i], z = (b[i] > 0 ? b[i] : 0) * per_b[i], mean = (x + y + z) * (1 / 3.0f);
+		float lit = mean < most ? mean : most, low = lit * (1 / chroma), high = lit * chroma, k = mean > 1e-6f ? lit / mean : 1;
 		x *= k;
 		y *= k;
 		z *= k;
@@ -158,13 +159,13 @@ SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g,
 	}
 }
 
-void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const float (*model)[4])
+void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const float *const per_model[3])
 {
 	float d = (float)s->conf.detail, alone[3][BATCH];
 	for (int c = 0; c < 3 && d < 1; c++)
 		for (int i = 0; i < n; i++)
 			alone[c][i] = s->gain * rgb[c][i];
-	ratio_whole(n, rgb[0], rgb[1], rgb[2], model);
+	ratio_whole(n, rgb[0], rgb[1], rgb[2], per_model);
 	for (int c = 0; c < 3 && d < 1; c++)
 		for (int i = 0; i < n; i++)
 			rgb[c][i] = alone[c][i] > 0 && rgb[c][i] > 0 ? powf(rgb[c][i], d) * powf(alone[c][i], 1 - d) : 0;
@@ -172,14 +173,14 @@ void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const
 
 void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
 {
-	float model[1][4], ratio[3][BATCH], d = (float)s->conf.detail;
+	float per[3], ratio[3][BATCH], d = (float)s->conf.detail;
 	if (!level->model)
 		return;
 	for (int c = 0; c < 3; c++) {
-		model[0][c] = channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
+		per[c] = 1 / channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
 		ratio[c][0] = rgb[c];
 	}
-	scene_colour_ratio(1, ratio, s, (const float(*)[4])model);
+	scene_colour_ratio(1, ratio, s, (const float *const[3]){ &per[0], &per[1], &per[2] });
 	for (int c = 0; c < 3; c++) {
 		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
 		rgb[c] = ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) : 0);

@@ -62,10 +62,10 @@ void scene_flat(struct iris_batch *b, const struct scene *scene, const struct sc
 /* What is seen of the iris' colour at a point near the pupil's margin: none inside, less on the ruff. soft: half a pixel, mm. */
 void scene_pupil(float cover[3], const struct scene *scene, float x, float y, float soft);
 
-/* Heights in a level's pairs are multiples of that, mm. */
+/* Heights in a level's pairs are multiples of that, mm. marched: with its bottom. */
 #define SCENE_PAIR_MM (1.0f / 32768)
 #define SCENE_PAIR_STRIDE(n) ((n) + 16)
-void scene_pairs_make(struct scene_level *level);
+void scene_pairs_make(struct scene_level *level, bool marched);
 
 /* Packs [n][n][4]; negatives become 0. Frees what *out had. */
 void scene_texels_make(struct scene_texels *out, const float *rgba, int n);
@@ -104,8 +104,8 @@ const struct scene_level *scene_level_for(const struct scene *scene, double mm);
 /* The model's colour at a point of the iris (in) made the photograph's (out). */
 void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y);
 
-/* What that is without the photograph's colour, at n points. model: what the model showed there, [n][4]. */
-void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *scene, const float (*model)[4]);
+/* What that is without the photograph's colour, at n points. per_model: 1 over what the model showed there, by channel. */
+void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *scene, const float *const per_model[3]);
 
 /* Where the march's steps lie and what they weigh, for this tissue and thickness. */
 void scene_nodes_make(struct scene *scene);

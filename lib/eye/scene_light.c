@@ -22,6 +22,9 @@ struct scene_lighting scene_lighting(const struct envmap *env, const struct envm
 	return scene_lighting_of(env, mirror, lights, 8);
 }
 
+/* All channels of a node as one vector. */
+typedef float way_vector __attribute__((vector_size(4 * SCENE_WAY), aligned(4), may_alias));
+
 SIMD_CLONES
 void scene_table_at(float out[SCENE_WAY], const struct scene_beam *beam, const float p[3], float extent)
 {
@@ -32,11 +35,10 @@ void scene_table_at(float out[SCENE_WAY], const struct scene_beam *beam, const f
 	int iu = (int)u, iv = (int)v;
 	u -= (float)iu;
 	v -= (float)iv;
-	const float(*restrict a)[SCENE_WAY] = &beam->way[0][iv][iu], (*restrict b)[SCENE_WAY] = &beam->way[1][iv][iu];
+	const way_vector *a = (const way_vector *)beam->way[0][iv][iu], *b = (const way_vector *)beam->way[1][iv][iu];
+	const way_vector *c = (const way_vector *)beam->way[0][iv + 1][iu], *d = (const way_vector *)beam->way[1][iv + 1][iu];
 	float w00 = (1 - u) * (1 - v), w10 = u * (1 - v), w01 = (1 - u) * v, w11 = u * v;
-	for (int c = 0; c < SCENE_WAY; c++)
-		out[c] = r * (w00 * a[0][c] + w10 * a[1][c] + w01 * a[SCENE_GRID][c] + w11 * a[SCENE_GRID + 1][c])
-		         + q * (w00 * b[0][c] + w10 * b[1][c] + w01 * b[SCENE_GRID][c] + w11 * b[SCENE_GRID + 1][c]);
+	*(way_vector *)out = r * (w00 * a[0] + w10 * a[1] + w01 * c[0] + w11 * c[1]) + q * (w00 * b[0] + w10 * b[1] + w01 * d[0] + w11 * d[1]);
 }
 
 /* The sclera begins at the limbus, gradually: light that would enter further out is stopped. */

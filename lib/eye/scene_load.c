@@ -186,8 +186,10 @@ void scene_free(struct scene *s)
 		free(s->level[i].relief);
 		free(s->level[i].colour);
 		free(s->level[i].model);
+		free(s->level[i].per_model);
 		free(s->level[i].horizon);
 		free(s->level[i].pairs);
+		free(s->level[i].bottom);
 		free(s->level[i].shown.px);
 		free(s->level[i].bare.px);
 	}
@@ -227,8 +229,10 @@ void scene_levels_make(struct scene *s)
 		free(l[k].relief);
 		free(l[k].colour);
 		free(l[k].model);
+		free(l[k].per_model);
 		free(l[k].horizon);
 		free(l[k].pairs);
+		free(l[k].bottom);
 		free(l[k].shown.px);
 		free(l[k].bare.px);
 		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
@@ -237,10 +241,9 @@ void scene_levels_make(struct scene *s)
 		l[k].model = l[k - 1].model ? halve(l[k - 1].model, l[k - 1].n, 4) : 0;
 	}
 	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++) {
-		free(l[k].pairs);
 		free(l[k].horizon);
 		l[k].horizon = s->conf.shadow > 0 && k >= scene_marched(s) ? scene_horizons(s, &l[k]) : 0;
-		scene_pairs_make(&l[k]);
+		scene_pairs_make(&l[k], k >= scene_marched(s));
 		scene_shown_make(&l[k], s);
 	}
 }

@@ -224,15 +224,16 @@ void scene_scatter(struct iris_batch *r, const struct scene *s, const struct sce
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *s, const struct scene_level *level,
                         const struct scene_beams *beams)
 {
-	struct ground g = ground_of(s, level);
 	struct march_node node[s->n_nodes[0] + s->n_nodes[1]];
 	struct march_body body;
 	const struct rates rates[TISSUE_LAYERS] = { rates_of(&s->optics, 0), rates_of(&s->optics, 1) };
-	scene_spans(r, &g);
+	scene_tile_ground(r, tile, s, level);
 	scene_body_make(&body, r, tile);
 	for (int i = 0; i < PART; i++)
 		r->rgb[0][i] = r->rgb[1][i] = r->rgb[2][i] = 0;
-	nodes_make(node, r, 0, PART, s, &g);
+	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++)
+		for (int j = 0; j < s->n_nodes[l]; j++, k++)
+			scene_tile_node(&node[k], r, s, level, l, j);
 	for (int k = 0; k < beams->n; k++) {
 		struct march_light light;
 		if (scene_light_tile(&light, &body, s, &beams->beam[k]))

@@ -55,7 +55,7 @@ SIMD_INLINE float scene_shadow_open(float clear)
 	return (float)LOOK_FILL + (float)(1 - LOOK_FILL) * (t > 0 ? t < 1 ? t : 1 : 0);
 }
 
-/* Eight by eight texels of a level, as one part: corner, step between texels, mm. */
+/* Eight by eight texels of a level, as one part: corner, step between texels, mm; which one it is. */
 enum { TILE_SIDE = 8, HORIZONS = 16 };
 struct march_horizon {
 	float steepest[HORIZONS];     // of its texels
@@ -63,6 +63,7 @@ struct march_horizon {
 };
 struct march_tile {
 	float x, y, step;
+	int tx, ty;
 	const struct march_horizon *horizon;  // null: no shadows
 };
 _Static_assert(TILE_SIDE * TILE_SIDE == PART, "a tile is a part");
@@ -79,7 +80,11 @@ void scene_body_make(struct march_body *body, const struct iris_batch *rays, con
  * shadow. False: none comes here. */
 bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *scene, const struct scene_beam *beam);
 
-/* Fills near, span and rgb of the 64 rays that begin at a tile's texels. */
+/* The rays of sight that begin at a tile's texels, on maps of pairs: fills pz, near and span; a node of the quadrature on them. */
+void scene_tile_ground(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_level *level);
+void scene_tile_node(struct march_node *node, const struct iris_batch *r, const struct scene *scene, const struct scene_level *level, int layer, int k);
+
+/* Fills pz, near, span and rgb of the 64 rays that begin at a tile's texels. */
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene,
                         const struct scene_level *level, const struct scene_beams *beams);
 

@@ -55,14 +55,34 @@ static int pair_half(float height)
 	return (int)lrintf(fmaxf(-32768, fminf(32767, height / SCENE_PAIR_MM)));
 }
 
-void scene_pairs_make(struct scene_level *l)
+/* Pairs of what `height` says of texels; the last one of a row repeats. */
+static int *pairs_of(const struct scene_level *l, float height(const float relief[2]))
 {
-	int stride = SCENE_PAIR_STRIDE(l->n);
-	l->pairs = mem_array((size_t)l->n * (size_t)stride, sizeof *l->pairs);
+	int stride = SCENE_PAIR_STRIDE(l->n), *out = mem_array((size_t)l->n * (size_t)stride, sizeof *out);
 	for (int y = 0; y < l->n; y++)
-		for (int x = 0; x < l->n; x++) {
-			long at = (long)y * l->n + x, next = x + 1 < l->n ? at + 1 : at;
-			unsigned low = (unsigned)pair_half(l->relief[2 * at]) & 0xffff, high = (unsigned)pair_half(l->relief[2 * next]);
-			l->pairs[(long)y * stride + x] = (int)(high << 16 | low);
+		for (int x = 0; x < stride; x++) {
+			int last = l->n - 1, at = x < last ? x : last, next = x + 1 < last ? x + 1 : last;
+			const float *row = l->relief + 2 * (long)y * l->n;
+			unsigned low = (unsigned)pair_half(height(row + 2 * at)) & 0xffff, high = (unsigned)pair_half(height(row + 2 * next));
+			out[(long)y * stride + x] = (int)(high << 16 | low);
 		}
+	return out;
+}
+
+static float top_of(const float relief[2])
+{
+	return relief[0];
+}
+
+static float half_bottom_of(const float relief[2])
+{
+	return 0.5f * (relief[0] - relief[1]);
+}
+
+void scene_pairs_make(struct scene_level *l, bool marched)
+{
+	free(l->pairs);
+	free(l->bottom);
+	l->pairs = pairs_of(l, top_of);
+	l->bottom = marched ? pairs_of(l, half_bottom_of) : 0;
 }

@@ -25,12 +25,12 @@ struct painter {
 	float through;  // over 0: light times that goes there, not its ratio to the model
 };
 
-/* Texel of a tile's ray; the map's edge repeats. */
-static long texel(const struct scene_level *l, int stride, int tx, int ty, int i)
+/* Texel of a tile's ray in a map of n; the edge repeats. */
+static long texel(int n, int stride, int tx, int ty, int i)
 {
 	int x = tx * TILE_SIDE + i % TILE_SIDE, y = ty * TILE_SIDE + i / TILE_SIDE;
-	x = x < l->n ? x : l->n - 1;
-	y = y < l->n ? y : l->n - 1;
+	x = x < n ? x : n - 1;
+	y = y < n ? y : n - 1;
 	return (long)y * stride + x;
 }
 
@@ -52,42 +52,50 @@ SIMD_CLONES static void sight_lay(struct iris_batch *b, float way[4][SCENE_WAY],
 	}
 }
 
-/* Rays of sight that end at a tile's texels. */
-static void tile_rays(struct iris_batch *b, const struct painter *p, const struct march_tile *t, int tx, int ty)
+/* Rays of sight that end at a tile's texels; all but their depth. */
+static void tile_rays(struct iris_batch *b, const struct painter *p, const struct march_tile *t)
 {
 	float way[4][SCENE_WAY], side = TILE_SIDE * t->step, plane = (float)p->scene->eye.iris_depth;
 	for (int k = 0; k < 4; k++)
 		scene_table_at(way[k], p->sight, (float[3]){ t->x + (k & 1 ? side : 0), t->y + (k & 2 ? side : 0), plane }, (float)p->scene->extent);
 	b->n = PART;
 	sight_lay(b, way, t->x, t->y, t->step);
-	for (int i = 0; i < PART; i++)
-		b->pz[i] = plane - p->level->relief[2 * texel(p->level, p->level->n, tx, ty, i)];
+}
+
+SIMD_CLONES static void rows_put(float *restrict out, long stride, const float (*restrict rgb)[BATCH])
+{
+	for (int y = 0; y < TILE_SIDE; y++) {
+		float *restrict row = out + 4 * y * stride;
+		const float *restrict r = rgb[0] + y * TILE_SIDE, *restrict g = rgb[1] + y * TILE_SIDE, *restrict b = rgb[2] + y * TILE_SIDE;
+		SIMD_LOOP
+		for (int i = 0; i < TILE_SIDE; i++) {
+			row[4 * i] = r[i];
+			row[4 * i + 1] = g[i];
+			row[4 * i + 2] = b[i];
+			row[4 * i + 3] = 0;
+		}
+	}
 }
 
 /* What the photograph's colour is to be multiplied by: see scene_colour.c. */
 static void tile_put(struct iris_batch *b, const struct painter *p, int tx, int ty)
 {
 	const struct scene_level *l = p->level;
-	float model[PART][4], *row[TILE_SIDE];
-	bool ratio = l->model && !(p->through > 0), whole = (tx + 1) * TILE_SIDE <= l->n && (ty + 1) * TILE_SIDE <= l->n;
-	for (int y = 0; y < TILE_SIDE && ratio; y++)
-		if (whole)
-			memcpy(model[y * TILE_SIDE], l->model + 4 * texel(l, l->n, tx, ty, y * TILE_SIDE), TILE_SIDE * sizeof *model);
-		else
-			for (int i = y * TILE_SIDE; i < (y + 1) * TILE_SIDE; i++)
-				memcpy(model[i], l->model + 4 * texel(l, l->n, tx, ty, i), sizeof model[i]);
+	bool whole = (tx + 1) * TILE_SIDE <= p->level->n && (ty + 1) * TILE_SIDE <= p->level->n;
+	const float *per = p->through > 0 || !l->per_model ? 0 : l->per_model + 3 * PART * ((long)ty * p->tiles + tx);
 	for (int i = 0; i < PART && p->through > 0; i++)
 		for (int c = 0; c < 3; c++)
 			b->rgb[c][i] = fmaxf(p->through * b->rgb[c][i], SCENE_DARK);
-	if (ratio)
-		scene_colour_ratio(PART, b->rgb, p->scene, (const float(*)[4])model);
-	for (int y = 0; y < TILE_SIDE; y++)
-		row[y] = p->light + 4 * texel(l, p->stride, tx, ty, y * TILE_SIDE);
+	if (per)
+		scene_colour_ratio(PART, b->rgb, p->scene, (const float *const[3]){ per, per + PART, per + 2 * PART });
+	if (whole) {
+		rows_put(p->light + 4 * texel(p->level->n, p->stride, tx, ty, 0), p->stride, (const float(*)[BATCH])b->rgb);
+		return;
+	}
 	for (int i = 0; i < PART; i++) {
-		float *out = whole ? row[i / TILE_SIDE] + 4 * (i % TILE_SIDE) : p->light + 4 * texel(l, p->stride, tx, ty, i);
-		out[0] = b->rgb[0][i];
-		out[1] = b->rgb[1][i];
-		out[2] = b->rgb[2][i];
+		float *out = p->light + 4 * texel(p->level->n, p->stride, tx, ty, i);
+		for (int c = 0; c < 3; c++)
+			out[c] = b->rgb[c][i];
 		out[3] = 0;
 	}
 }
@@ -104,15 +112,15 @@ static void tile_paint(const struct painter *p, int tx, int ty)
 	const struct scene *s = p->scene;
 	struct iris_batch b;
 	float step = 1 / p->level->per_mm, extent = (float)s->extent;
-	struct march_tile t = { (float)(tx * TILE_SIDE) * step - extent, (float)(ty * TILE_SIDE) * step - extent, step, 0 };
+	struct march_tile t = { (float)(tx * TILE_SIDE) * step - extent, (float)(ty * TILE_SIDE) * step - extent, step, tx, ty, 0 };
 	if (!tile_seen(s, &t)) {
 		for (int i = 0; i < PART && !(p->through > 0); i++)
-			memset(p->light + 4 * texel(p->level, p->stride, tx, ty, i), 0, 4 * sizeof *p->light);
+			memset(p->light + 4 * texel(p->level->n, p->stride, tx, ty, i), 0, 4 * sizeof *p->light);
 		return;
 	}
 	if (p->level->horizon)
 		t.horizon = p->level->horizon + (long)ty * p->tiles + tx;
-	tile_rays(&b, p, &t, tx, ty);
+	tile_rays(&b, p, &t);
 	scene_scatter_tile(&b, &t, s, p->level, p->beams);
 	tile_put(&b, p, tx, ty);
 }
@@ -124,11 +132,23 @@ static void paint(const struct painter *p)
 		tile_paint(p, i % p->tiles, i / p->tiles);
 }
 
+static void per_model_make(struct scene_level *l)
+{
+	int tiles = (l->n + TILE_SIDE - 1) / TILE_SIDE;
+	free(l->per_model);
+	l->per_model = mem_array((size_t)tiles * (size_t)tiles, 3 * PART * sizeof *l->per_model);
+	for (int k = 0; k < tiles * tiles; k++)
+		for (int i = 0; i < PART; i++)
+			for (int c = 0; c < 3; c++)
+				l->per_model[(3L * k + c) * PART + i] = 1 / l->model[4 * texel(l->n, l->n, k % tiles, k / tiles, i) + c];
+}
+
 void scene_shade_model(struct scene_level *level, const struct scene *s, const double C[3], const struct scene_beams *beams, float through)
 {
 	struct scene_beam *sight = scene_sight(s, C);
 	paint(&(struct painter){ s, level, sight, beams, (level->n + TILE_SIDE - 1) / TILE_SIDE, level->n, level->model, through });
 	free(sight);
+	per_model_make(level);
 }
 
 /* The alternative: irradiance on the iris plane alone, which is smooth. */

@@ -32,32 +32,50 @@ SIMD_CLONES void scene_body_make(struct march_body *b, const struct iris_batch *
 /* One channel over the tile: c[face][y][x], at each ray's end. */
 SIMD_INLINE void channel_lay(float *restrict out0, float *restrict out1, const float c[8], const struct march_body *restrict b)
 {
-	SIMD_LOOP
-	for (int i = 0; i < PART; i++) {
-		float u = ((float)(i % TILE_SIDE) + 0.5f) / TILE_SIDE, v = ((float)(i / TILE_SIDE) + 0.5f) / TILE_SIDE;
-		float n0 = c[0] + u * (c[1] - c[0]), n1 = c[2] + u * (c[3] - c[2]), near = n0 + v * (n1 - n0);
-		float f0 = c[4] + u * (c[5] - c[4]), f1 = c[6] + u * (c[7] - c[6]), rise = f0 + v * (f1 - f0) - near;
-		out0[i] = near + b->q[0][i] * rise;
-		out1[i] = near + b->q[1][i] * rise;
+	for (int y = 0; y < TILE_SIDE; y++) {
+		float v = ((float)y + 0.5f) / TILE_SIDE, near = c[0] + v * (c[2] - c[0]), by = c[1] + v * (c[3] - c[1]) - near;
+		float far = c[4] + v * (c[6] - c[4]), rise = far - near, more = c[5] + v * (c[7] - c[5]) - far - by;
+		const float *restrict q0 = b->q[0] + y * TILE_SIDE, *restrict q1 = b->q[1] + y * TILE_SIDE;
+		float *restrict to0 = out0 + y * TILE_SIDE, *restrict to1 = out1 + y * TILE_SIDE;
+		SIMD_LOOP
+		for (int i = 0; i < TILE_SIDE; i++) {
+			float u = ((float)i + 0.5f) / TILE_SIDE, at = near + u * by, up = rise + u * more;
+			to0[i] = at + q0[i] * up;
+			to1[i] = at + q1[i] * up;
+		}
 	}
 }
 
-SIMD_CLONES static void lay(struct march_light *w, float corner[SCENE_WAY][8], const struct march_body *b, float rim_width)
+/* What light comes; at the limbus, where the sclera begins gradually, less. */
+SIMD_CLONES static void power_lay(struct march_light *w, float corner[SCENE_WAY][8], const struct march_body *b, float rim_width)
 {
-	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width;
+	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width, most = 0;
+	channel_lay(w->power[0], w->power[1], corner[3], b);
+	for (int k = 0; k < 8; k++)
+		most = corner[4][k] > most ? corner[4][k] : most;
+	if (most > lo)
+		channel_lay(rho[0], rho[1], corner[4], b);
+	for (int end = 0; end < 2; end++) {
+		float *restrict power = w->power[end], *restrict at = rho[end];
+		SIMD_LOOP
+		for (int i = 0; i < PART; i++)
+			power[i] = power[i] > 0 ? power[i] : 0;
+		if (!(most > lo))
+			continue;
+		SIMD_LOOP
+		for (int i = 0; i < PART; i++) {
+			float t = (at[i] - lo) * inv;
+			t = t > 0 ? t < 1 ? t : 1 : 0;
+			power[i] *= 1 - t * t * (3 - 2 * t);
+		}
+	}
+}
+
+SIMD_CLONES static void lay(struct march_light *w, float corner[SCENE_WAY][8], const struct march_body *b)
+{
 	channel_lay(w->x[0], w->x[1], corner[0], b);
 	channel_lay(w->y[0], w->y[1], corner[1], b);
 	channel_lay(w->z[0], w->z[1], corner[2], b);
-	channel_lay(w->power[0], w->power[1], corner[3], b);
-	channel_lay(rho[0], rho[1], corner[4], b);
-	for (int end = 0; end < 2; end++) {
-		SIMD_LOOP
-		for (int i = 0; i < PART; i++) {
-			float t = (rho[end][i] - lo) * inv, p = w->power[end][i];
-			t = t > 0 ? t < 1 ? t : 1 : 0;
-			w->power[end][i] = p > 0 ? p * (1 - t * t * (3 - 2 * t)) : 0;
-		}
-	}
 }
 
 SIMD_CLONES static void shade(struct march_light *w, const float *restrict low, const float *restrict high, float part)
@@ -85,6 +103,16 @@ static bool lowest(float *slope, float corner[SCENE_WAY][8], float width)
 	return any;
 }
 
+/* Azimuth of x, y in parts of a turn, 0..n, to 3e-4 rad. */
+SIMD_INLINE float turn_of(float x, float y, float n)
+{
+	float ax = fabsf(x), ay = fabsf(y), low = ax < ay ? ax : ay, high = (ax < ay ? ay : ax) + 1e-20f, t = low / high;
+	float part = t * (0.1594643f + t * (-0.0015261f + t * (-0.0560489f + t * 0.0231544f)));
+	part = ax < ay ? 0.25f - part : part;
+	part = x < 0 ? 0.5f - part : part;
+	return n * (y < 0 ? 1 - part : part);
+}
+
 bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *s, const struct scene_beam *beam)
 {
 	const struct march_tile *tile = body->tile;
@@ -100,11 +128,12 @@ bool scene_light_tile(struct march_light *light, const struct march_body *body, 
 	}
 	if (!lowest(&low, corner, width))
 		return false;
-	lay(light, corner, body, width);
+	lay(light, corner, body);
+	power_lay(light, corner, body, width);
 	if (!tile->horizon)
 		return true;
-	float turn = atan2f(corner[1][0] + corner[1][3], corner[0][0] + corner[0][3]) * (float)(HORIZONS / (2 * M_PI));
-	int whole = (int)floorf(turn), a = (whole + HORIZONS) % HORIZONS, b = (a + 1) % HORIZONS;
+	float turn = turn_of(corner[0][0] + corner[0][3], corner[1][0] + corner[1][3], HORIZONS);
+	int whole = (int)turn, a = whole % HORIZONS, b = (a + 1) % HORIZONS;
 	const struct march_horizon *h = tile->horizon;
 	float steepest = h->steepest[a] > h->steepest[b] ? h->steepest[a] : h->steepest[b];
 	if (low - steepest < SCENE_SOURCE)
