@@ -148,18 +148,40 @@ static void append(struct eye_side *eye, const struct eye_state *state, const st
 	eye->record[eye->frames++] = *record;
 }
 
+/* The eyeball's centre is in the picture. */
+static bool in_picture(double center[2], double *mm, const struct eye_side *eye, const struct gaze_view *view)
+{
+	*mm = eye_scale(&eye->globe, view);
+	return to_pixel(center, view, eye->globe.center) && *mm > 0 && center[0] > 0 && center[1] > 0 && center[0] < eye->scene->width
+	       && center[1] < eye->scene->height;
+}
+
+void eye_side_learn(struct eye_side *eye, const struct eye_frame *frame)
+{
+	struct eye_state state = blank(frame->time);
+	struct eye_record record = { 0 };
+	struct lid_fine fine;
+	struct gaze_view view;
+	double center[2], mm;
+	memcpy(record.cam_from_head, frame->cam_from_head, sizeof record.cam_from_head);
+	eye_view(&view, eye->scene, record.cam_from_head);
+	if (eye->absent || !in_picture(center, &mm, eye, &view))
+		return;
+	look(&state, &record, &fine, eye, frame, &view);
+	eye->have = state.confidence > 0;
+	eye->edges = 0;
+}
+
 void eye_side_push(struct eye_side *eye, const struct eye_frame *frame)
 {
 	struct eye_state state = blank(frame->time);
 	struct eye_record record = { 0 };
 	struct lid_fine fine = { .known = false };
 	struct gaze_view view;
+	double center[2], mm;
 	memcpy(record.cam_from_head, frame->cam_from_head, sizeof record.cam_from_head);
 	eye_view(&view, eye->scene, record.cam_from_head);
-	double center[2], mm = eye_scale(&eye->globe, &view);
-	bool inside = to_pixel(center, &view, eye->globe.center) && mm > 0 && center[0] > 0 && center[1] > 0
-	              && center[0] < eye->scene->width && center[1] < eye->scene->height;
-	if (!eye->absent && inside) {
+	if (!eye->absent && in_picture(center, &mm, eye, &view)) {
 		struct luma luma = { frame->luma, eye->scene->width, eye->scene->height, frame->luma_stride };
 		bool still = change(eye, &luma, center, eye->globe.radius * mm) < eye->conf->still && eye->started;
 		eye->started = true;

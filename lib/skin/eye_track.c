@@ -101,6 +101,11 @@ const struct eye_state *eye_track_push(struct eye_track *track, int side, const 
 	return &track->side[side].last;
 }
 
+void eye_track_learn(struct eye_track *track, int side, const struct eye_frame *frame)
+{
+	eye_side_learn(&track->side[side], frame);
+}
+
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4])
 {
 	for (int side = 0; side < SIDES; side++)

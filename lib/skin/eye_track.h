@@ -6,6 +6,7 @@
  * Image: px, x right, y down, centre of the first pixel (0.5, 0.5).
  *
  *     struct eye_track *track = eye_track_new(&scene, &conf);
+ *     eye_track_learn(track, eye, &open) for each eye, where the clip may not begin with open eyes
  *     for each frame: for each eye: eye_track_push(track, eye, &frame);
  *     eye_track_finish(&clip, track); ... eye_clip_free(&clip); eye_track_free(track);
  */
@@ -89,6 +90,10 @@ struct eye_track *eye_track_new(const struct eye_scene *scene, const struct eye_
 /* The next frame of one eye; frames in order, the same for both eyes. The two eyes may be pushed from two threads
  * at once. The frame is not kept. Returns what was found so far, valid until the next push of this eye. */
 const struct eye_state *eye_track_push(struct eye_track *track, int side, const struct eye_frame *frame);
+
+/* Before the first push of an eye: the looks of the opening, of its corners and of the iris are learnt from this frame, in which it is open, and not from
+ * whatever the clip begins with. Nothing is kept of it otherwise. */
+void eye_track_learn(struct eye_track *track, int side, const struct eye_frame *frame);
 
 /* The head turns out to have been there in a frame pushed before. Before eye_track_finish. */
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);

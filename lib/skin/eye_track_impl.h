@@ -71,6 +71,9 @@ void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_
 /* One frame of one eye; the result is appended. */
 void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);
 
+/* The looks of a frame that is not one of the clip's. */
+void eye_side_learn(struct eye_side *eye, const struct eye_frame *frame);
+
 /* Lids of a frame into its state, as found. */
 void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int points);
 

@@ -181,7 +181,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n)
-		track_steady(r, points, subject, clip);
+		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip);
 	ok = ok && (r->n < 2 || track_eyes_finish(r, eyes, err));
 	track_eyes_free(eyes);
 	rigid_free(&rigid);

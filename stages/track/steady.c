@@ -17,21 +17,21 @@ static const double rest_px = 0.3, rest_share = 0.1;
 /* Least motion from frame to frame that is reckoned with: degrees, mm. */
 static const double least_turn = 0.01, least_shift = 0.01;
 
-/* How far a frame's skin is from where it is in the reference: what a tenth of the points stays below, px. */
-static double away(const struct track_result *r, long frame, double *room)
+/* How far a frame's skin is from where it is in the reference frame: what a tenth of the points stays below, px. */
+static double away(const struct track_result *r, long reference, long frame, double *room)
 {
 	int n = 0;
 	for (int i = 0; i < r->n_points; i++) {
-		long at = frame * r->n_points + i;
+		long at = frame * r->n_points + i, was = reference * r->n_points + i;
 		if (r->confidence[at] > 0.5f)
-			room[n++] = hypot((double)(r->skin[at][0] - r->skin[i][0]), (double)(r->skin[at][1] - r->skin[i][1]));
+			room[n++] = hypot((double)(r->skin[at][0] - r->skin[was][0]), (double)(r->skin[at][1] - r->skin[was][1]));
 	}
 	return n > r->n_points / 4 ? stats_quantile(n, room, 0.1) : INFINITY;
 }
 
 /* A head on a rest: whatever the face does, it comes back to the very same place, early and late. Skin alone does not tell
  * raised cheeks from a head that comes nearer. */
-static bool rests(const struct track_result *r)
+static bool rests(const struct track_result *r, long reference)
 {
 	enum { PARTS = 3 };
 	double *room = mem_array((size_t)r->n_points + 1, sizeof *room);
@@ -39,7 +39,7 @@ static bool rests(const struct track_result *r)
 	for (int part = 0; part < PARTS && yes; part++) {
 		long back = 0, from = part * r->n / PARTS, to = (part + 1) * r->n / PARTS;
 		for (long i = from; i < to; i++)
-			back += away(r, i, room) < rest_px;
+			back += away(r, reference, i, room) < rest_px;
 		yes = (double)back >= rest_share * (double)(to - from);
 	}
 	free(room);
@@ -133,9 +133,9 @@ static void follow_path(struct track_result *r, const struct track_points *point
 	free(room);
 }
 
-void track_steady(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
+void track_steady(struct track_result *r, long reference, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
 {
-	r->rests = rests(r);
+	r->rests = rests(r, reference);
 	misfits(r, points, s, clip);
 	if (r->rests) {
 		for (long f = 0; f < r->n; f++)

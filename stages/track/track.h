@@ -31,8 +31,8 @@ bool track_follow(struct track_result *result, struct stage *stage, const struct
                   const struct track_subject *subject, const struct track_points *points, const struct track_conf *conf,
                   struct err *err);
 
-/* After the last frame: whether the head rests, and else its path. */
-void track_steady(struct track_result *result, const struct track_points *points, const struct track_subject *subject,
+/* After the last frame: whether the head rests, and else its path. reference: which of the frames that were followed it is. */
+void track_steady(struct track_result *result, long reference, const struct track_points *points, const struct track_subject *subject,
                   const struct track_clip *clip);
 
 struct track_eyes;

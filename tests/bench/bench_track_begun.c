@@ -12,8 +12,7 @@
 
 static const struct {
 	const char *clip, *first, *name;
-} begun[] = { { "clip_a", "174", "in a blink" }, { "clip_a", "150", "15 deg down, 17 aside" }, { "clip_a", "30", "11 deg up" },
-	{ "clip_a", "200", "9 deg aside" }, { "clip_b", "30", "15 deg aside" }, { "clip_b", "128", "in a blink" } };
+} begun[] = { { "clip_a", "174", "in a blink" }, { "clip_a", "150", "15 deg down, 17 aside" }, { "clip_b", "30", "15 deg aside" }, { "clip_b", "128", "in a blink" } };
 
 static void row(const char *setting, double each, const char *of, const struct spread *s, const char *unit)
 {
