@@ -137,6 +137,8 @@ static void fit_skin(struct train *t)
 	struct part *part = &t->part[TRAIN_SKIN];
 	train_choose_skin(t);
 	int n = part->n, ne = m->n_skin_pc, q = m->n_lid_pc + m->n_au;
+	if (part->sum.n <= q)
+		train_warn(t, "%s: %ld frames show the skin, no more than the %d numbers it is foretold from: film longer", t->clip->place, part->sum.n, q);
 	for (int i = 0; i < n; i++) {
 		m->u0[i] = part->seen[i] ? part->sum.mean[part->from + i] : NAN;
 		t->report->unseen_vertices += i % 2 == 0 && !part->seen[i];
