@@ -17,6 +17,7 @@ struct track_clip {
 	struct camera camera;
 	bool focal_assumed;
 	long reference;
+	bool begins_shut;      // no open eyes where the clip begins: how they look is learnt from the reference
 	double cam_from_head[4][4];      // at the reference
 	bool eye_seen[SIDES];
 	uint8_t *luma, *rgb;             // of the reference [height][width]; owned

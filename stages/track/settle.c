@@ -252,8 +252,10 @@ static bool look_again(struct track_clip *clip, struct doubts *d, const struct t
 {
 	// a frame that shows little does not tell which way up it is
 	if (conf->reference < 0 && view->better >= 0 && (!d->moved || !view->open) && !d->last
-	    && (d->moved = look_anew(clip, view->better, d->turned ? d->way : WAY_EITHER, stage, s, conf)))
+	    && (d->moved = look_anew(clip, view->better, d->turned ? d->way : WAY_EITHER, stage, s, conf))) {
+		clip->begins_shut = clip->begins_shut || !view->open;
 		return true;
+	}
 	if (d->turned || !reference_is_overturned(r, clip, s))
 		return false;
 	d->way = clip->cam_from_head[1][1] > 0 ? WAY_UP : WAY_OVER;
@@ -267,6 +269,7 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->look.span);
 	struct doubts d = { .way = WAY_EITHER };
 	bool again = true;
+	clip->begins_shut = clip->reference > 0;
 	for (int round = 0; again && round < LOOKS; round++) {
 		struct track_result r = { 0 };
 		bool followed = follow_few(&r, clip, stage, s, &few);
@@ -283,7 +286,7 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 		} else if (!followed) {
 			// no eye was seen from there: the face was not where it was found to be
 			for (long f = clip->reference + LATER; conf->reference < 0 && !again && f < clip->info.frames && f < conf->doubt.span; f += LATER)
-				again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
+				clip->begins_shut = again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
 		} else if (!d.any) {
 			settle(clip, &r, stage, s, &few, conf);
 		} else if (!(again = look_again(clip, &d, &r, &view, stage, s, conf))) {
