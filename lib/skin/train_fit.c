@@ -99,6 +99,23 @@ static void fit_lids(struct train *t, int eye)
 	free(zero);
 }
 
+/* A component of the lids so much smaller than the largest, standard deviations, drowns in the rounding of squares: it would
+ * get slopes of any size. It tells nothing of the skin. */
+static void leave_unresolved(double *Gxx, double *Gxy, int n_lid_pc, int q, int ne)
+{
+	const double least = 1e-7;
+	double top = 0;
+	for (int i = 0; i < n_lid_pc; i++)
+		top = fmax(top, Gxx[i * q + i]);
+	for (int i = 0; i < n_lid_pc; i++) {
+		if (Gxx[i * q + i] > least * least * top)
+			continue;
+		for (int j = 0; j < q; j++)
+			Gxx[i * q + j] = Gxx[j * q + i] = 0;
+		memset(Gxy + i * ne, 0, (size_t)ne * sizeof *Gxy);
+	}
+}
+
 /* Cross moments of [lids, action units] with themselves and with the skin's components, lids in theirs. */
 static void skin_moments(double *Gxx, double *Gxy, double *mx, const struct train *t)
 {
@@ -151,6 +168,7 @@ static void fit_skin(struct train *t)
 	double *mx = mem_new((size_t)q + 1, sizeof *mx), *b = mem_new((size_t)(q * ne) + 1, sizeof *b);
 	double *zero = mem_new((size_t)ne + 1, sizeof *zero);
 	skin_moments(Gxx, Gxy, mx, t);
+	leave_unresolved(Gxx, Gxy, m->n_lid_pc, q, ne);
 	part->rank_inputs = regress(b, q, ne, Gxx, Gxy, part->sum.weight, mx, part->ridge);
 	t->report->rank_inputs[TRAIN_SKIN] = part->rank_inputs;
 	train_set_M(m, b, mx, zero);
