@@ -1,9 +1,8 @@
-/* plain_scene: a usual eye with a painted iris, for the renderer's tests. After cmocka.h. */
+/* plain_scene: a usual eye with a painted iris, for the renderer's tests. */
 #ifndef TESTS_PLAIN_SCENE_H
 #define TESTS_PLAIN_SCENE_H
-#include <math.h>
-
 #include "tests/lib/painted.h"
+#include "tests/lib/unit.h"
 
 static const struct eye plain_eye = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75, 0.55, 1.376 };
 static const double grey[3] = { 1, 1, 1 };
