@@ -176,7 +176,7 @@ int scene_marched(const struct scene *s)
 {
 	// A map that is smaller than it may be has no texels to spare: as many are marched from as of a full one, to a fifth.
 	int apart = s->conf.apart > 0 ? s->conf.apart : 2, enough = s->conf.map_size / apart * 6 / 5, k = 0;
-	for (int step = apart; step > 1 && s->level[0].n >> k > enough; step /= 2)
+	for (int step = apart; step > 1 && k + 1 < s->n_levels && s->level[0].n >> k > enough; step /= 2)
 		k++;
 	return k;
 }
