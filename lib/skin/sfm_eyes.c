@@ -22,10 +22,16 @@ bool sfm_project(double px[2], double *focal, const struct colmap_model *m, int 
 	return p[2] > 0 && camera_project(px, &camera, p);
 }
 
+/* Of a face's eyes, px. */
+static double apart_in(const struct sfm_face *f)
+{
+	return hypot(f->eye[0][0] - f->eye[1][0], f->eye[0][1] - f->eye[1][1]);
+}
+
 /* Distance of the worse eye from where the face has it, of the distance of that face's eyes. */
 static double off(const struct colmap_model *m, const struct sfm_face *f, const double eye[2][3])
 {
-	double worst = 0, apart = hypot(f->eye[0][0] - f->eye[1][0], f->eye[0][1] - f->eye[1][1]);
+	double worst = 0, apart = apart_in(f);
 	for (int e = 0; e < 2; e++) {
 		double px[2], focal;
 		if (!sfm_project(px, &focal, m, f->image, eye[e]))
@@ -101,7 +107,7 @@ static int mouth_votes(bool *seen, const struct colmap_model *m, int n, const st
 	int votes = 0;
 	for (int i = 0; i < n; i++) {
 		const struct sfm_face *f = &faces[i];
-		double px[2], focal, far = near * hypot(f->eye[0][0] - f->eye[1][0], f->eye[0][1] - f->eye[1][1]);
+		double px[2], focal, far = near * apart_in(f);
 		seen[i] = agrees[i] && f->mouth_found && sfm_project(px, &focal, m, f->image, mouth)
 		          && hypot(px[0] - f->mouth[0], px[1] - f->mouth[1]) <= far;
 		votes += seen[i];
