@@ -11,8 +11,8 @@ SHARE ?= 1
 .PHONY: tests fuzz fuzzers check-compilers
 tests: $(TESTS) $(TOOLS)
 
-# Without these the interactive page is not driven, and the summary says so.
-CHECK_PACKAGES := chromium nodejs
+# Without these the interactive page is not driven and no cameras are found, and the summary says so.
+CHECK_PACKAGES := chromium nodejs colmap
 
 CORES = $(shell nproc)
 check: setup
