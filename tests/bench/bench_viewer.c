@@ -1,6 +1,7 @@
 /* The interactive page in a headless Chromium, at 1280 x 1024: size, time until the first picture stands, frames by preset, what
  * they would take on GPUs of 2015 by what the shaders compute and read (tests/browser/count.js), and which preset the page falls
- * back to by itself. Run from the top of the checkout; needs chromium and node. */
+ * back to by itself. Run from the top of the checkout; needs chromium and node. EYEWRIGHT_BROWSER_GL=vulkan (or gl, gl-egl): on
+ * this machine's graphics processor instead of software. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -63,9 +64,14 @@ static void count_row(const char *what, const char *line)
 	char *method = mem_printf("%s, %s (estimate)", what, gpu);
 	char *setting = mem_printf("%s: %.2f G operations, %.1f M reads", preset, operations / 1e9, reads / 1e6);
 	bench_row("interactive page, 1280 x 1024", method, setting, (struct bench_time){ s, s, s }, "frame", NAN, "", "");
-	if (!strcmp(preset, "full") && strstr(gpu, "GTX")) {
-		char *goal = mem_printf("page with %s, best preset, on a GPU of 2015 (%s; estimate from counted operations and reads, a third of its peak)", what, gpu);
-		bench_goal(goal, "60 frames/s", 1 / s, "frames/s", s <= 1 / 60.0);
+	// The best preset, and the one that the page falls back to where that is too slow.
+	static bool holds;
+	bool best = !strcmp(preset, "full");
+	if (strstr(gpu, "GTX") && (best || !holds)) {
+		holds = s <= 1 / 60.0;
+		char *goal = mem_printf("page with %s, %s, on a GPU of 2015 (%s; estimate from counted operations and reads, a third of its peak)", what,
+		                        best ? "best preset" : setting, gpu);
+		bench_goal(goal, "60 frames/s", 1 / s, "frames/s", holds);
 		free(goal);
 	}
 	free(gpu);

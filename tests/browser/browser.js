@@ -5,12 +5,16 @@ const fs = require("fs");
 const os = require("os");
 const path = require("path");
 
+/* What draws: software, unless EYEWRIGHT_BROWSER_GL names one of ANGLE's ways to a graphics processor: vulkan, gl-egl, gl. */
+const GL = process.env.EYEWRIGHT_BROWSER_GL || "swiftshader";
+const GL_FLAGS = { swiftshader: ["--enable-unsafe-swiftshader"], vulkan: ["--enable-features=Vulkan", "--disable-vulkan-surface", "--ignore-gpu-blocklist"] };
+
 class Browser {
 	static async start(extra) {
 		const b = new Browser();
 		b.profile = fs.mkdtempSync(path.join(os.tmpdir(), "eyewright-browser-"));
-		b.process = spawn("chromium", ["--headless=new", "--no-sandbox", "--disable-gpu-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-			"--enable-unsafe-swiftshader", "--remote-debugging-pipe", "--hide-scrollbars", "--mute-audio", "--no-first-run",
+		b.process = spawn("chromium", ["--headless=new", "--no-sandbox", "--disable-gpu-sandbox", "--use-gl=angle", `--use-angle=${GL}`,
+			...(GL_FLAGS[GL] || ["--ignore-gpu-blocklist"]), "--remote-debugging-pipe", "--hide-scrollbars", "--mute-audio", "--no-first-run",
 			"--disable-background-networking", "--host-resolver-rules=MAP * ~NOTFOUND", `--user-data-dir=${b.profile}`, ...(extra || []), "about:blank"],
 			{ stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], detached: true });
 		Object.assign(b, { next: 1, waiting: new Map(), problems: [], requests: [], text: "" });
