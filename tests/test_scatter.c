@@ -294,11 +294,59 @@ static void network(void **state)
 	rbf_free(&again);
 }
 
+/* The leverage of rows is the diagonal of the hat matrix, by LAPACK's singular vectors: it sums to the rank. What no row varies
+ * in is outside, however little; a constant input at its least difference. */
+static void leverage(void **state)
+{
+	(void)state;
+	enum { N = 30, Q = 5 };
+	struct rng rng = { 3 };
+	double x[N * Q], y[N] = { 0 }, w[N], Gxx[Q * Q], Gxy[Q], mx[Q], my[1], reach[Q * (Q + 1)], u[N * 3], s[3], vt[9], rest[3], sum = 0;
+	double least[Q] = { INFINITY, INFINITY, INFINITY, INFINITY, 0.01 };
+	for (int i = 0; i < N; i++) {
+		w[i] = 1;
+		for (int k = 0; k < 3; k++)
+			x[i * Q + k] = 5 + pow(10, 3 * k) * rng_normal(&rng);
+		x[i * Q + 3] = x[i * Q] - 2e-3 * x[i * Q + 1];
+		x[i * Q + 4] = 7;
+	}
+	double weight = regress_moments(Gxx, Gxy, mx, my, N, Q, 1, x, y, w);
+	regress_reach(reach, Q, Gxx, weight, mx, least);
+	for (int i = 0; i < N; i++)
+		for (int k = 0; k < 3; k++)
+			u[i * 3 + k] = x[i * Q + k] - mx[k];
+	assert_int_equal(LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'O', 'N', N, 3, u, 3, s, 0, 1, vt, 3, rest), 0);
+	for (int i = 0; i < N; i++) {
+		double h = regress_leverage(reach, Q, x + i * Q), want = 0;
+		for (int k = 0; k < 3; k++)
+			want += u[i * 3 + k] * u[i * 3 + k];
+		NEAR(h, want, 1e-9);
+		sum += h;
+	}
+	NEAR(sum, 3, 1e-9);
+	double off[Q] = { x[0], x[1], x[2], x[3] + 0.01, 7 };
+	assert_true(regress_leverage(reach, Q, off) > 1e3);
+	double other[Q] = { mx[0], mx[1], mx[2], mx[3], 7.01 };
+	NEAR(regress_leverage(reach, Q, other), 1, 1e-9);
+	off[1] = NAN;
+	assert_true(isnan(regress_leverage(reach, Q, off)));
+	// In other units, the same.
+	for (int i = 0; i < N * Q; i++)
+		x[i] *= i % Q == 1 ? 1e-30 : 1;
+	for (int i = 0; i < N; i++)
+		x[i * Q + 3] = x[i * Q] - 2e27 * x[i * Q + 1];
+	weight = regress_moments(Gxx, Gxy, mx, my, N, Q, 1, x, y, w);
+	regress_reach(reach, Q, Gxx, weight, mx, least);
+	for (int i = 0; i < N; i++)
+		sum -= regress_leverage(reach, Q, x + i * Q);
+	NEAR(sum, 0, 1e-9);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equals_direct), cmocka_unit_test(split), cmocka_unit_test(chan), cmocka_unit_test(stress),
-		cmocka_unit_test(recovers_slopes), cmocka_unit_test(network),
+		cmocka_unit_test(recovers_slopes), cmocka_unit_test(network), cmocka_unit_test(leverage),
 	};
 	linalg_serial();
 	return cmocka_run_group_tests(tests, 0, 0);

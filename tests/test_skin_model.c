@@ -24,6 +24,7 @@ static struct skin_model random_model(uint64_t seed)
 	fill(m.J, 2 * m.n_vertices * m.n_skin_pc, &rng);
 	fill(m.M, m.n_skin_pc * (m.n_lid + m.n_au + 1), &rng);
 	fill(m.low, m.n_inputs, &rng);
+	fill(m.skin_reach, m.n_inputs * (m.n_inputs + 1), &rng);
 	fill(m.rest_e, m.n_skin_pc, &rng);
 	fill(&m.baseline[0][0][0], 12, &rng);
 	for (int i = 0; i < m.n_vertices; i++)
@@ -111,6 +112,7 @@ static void files(void **state)
 	assert_true(skin_model_load(&r, scratch_path("skin"), &err));
 	assert_memory_equal(r.K, m.K, (size_t)(m.n_lid * m.n_lid_pc) * sizeof(double));
 	assert_memory_equal(r.M, m.M, (size_t)(m.n_skin_pc * (m.n_lid + m.n_au + 1)) * sizeof(double));
+	assert_memory_equal(r.skin_reach, m.skin_reach, (size_t)(m.n_inputs * (m.n_inputs + 1)) * sizeof(double));
 	assert_true(isnan(r.l0[3]) && r.l0[4] == m.l0[4]);
 	assert_string_equal(r.au_names[1], "frown");
 	assert_int_equal(r.vertices[6], 18);

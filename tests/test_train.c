@@ -262,6 +262,65 @@ static void never_shown(void **state)
 	linear_clip_free(c);
 }
 
+/* A clip whose lids are lost in every blink: what they do then, and when eyes open wide, is not known and said to be, for the
+ * frames concerned and no others. */
+struct blinkless {
+	struct linear_clip *clip;
+	bool (*read)(void *ctx, long first, long n, double *lid, double *skin, double *seen, struct err *err);
+};
+
+static bool apart(const struct linear_clip *c, long frame)
+{
+	const double *g = c->g + frame * 12;
+	double plane = c->A[0][0][0] * g[0] + c->A[0][0][1] * g[1] + c->A[0][0][2];
+	return fabs((g[3] - c->closed[3]) / (c->open[3] - c->closed[3]) - plane) > 1e-9;
+}
+
+static bool read_blinkless(void *ctx, long first, long n, double *lid, double *skin, double *seen, struct err *err)
+{
+	struct blinkless *b = ctx;
+	int n_lid = SKIN_LIDS * b->clip->conf.n_points * 2;
+	if (!b->read(b->clip, first, n, lid, skin, seen, err))
+		return false;
+	for (long i = 0; i < n; i++)
+		for (int k = 0; k < n_lid && apart(b->clip, first + i); k++)
+			lid[i * n_lid + k] = NAN;
+	return true;
+}
+
+static void outside(void **state)
+{
+	(void)state;
+	struct linear_clip *c = linear_clip_new(&usual);
+	struct train_clip clip = linear_clip_train(c);
+	struct blinkless lost = { c, clip.read };
+	struct train_conf conf = train_defaults;
+	struct skin_model model;
+	struct train_report report;
+	struct err err = { 0 };
+	long blinks = 0;
+	conf.brief = true;
+	clip.read = read_blinkless;
+	clip.ctx = &lost;
+	assert_true(train_run(&model, &report, &clip, &conf, &err));
+	assert_int_equal(report.rank_inputs[TRAIN_LEFT], 3);
+	for (long i = 0; i < c->conf.n; i++) {
+		double h[TRAIN_PARTS];
+		skin_model_leverage(h, &model, c->g + i * 12);
+		assert_true((h[TRAIN_LEFT] > SKIN_REACH) == apart(c, i) && (h[TRAIN_SKIN] > SKIN_REACH) == apart(c, i));
+		blinks += apart(c, i);
+	}
+	assert_true(blinks > 20 && blinks < 200);
+	assert_int_equal(report.outside[TRAIN_LEFT], blinks);
+	assert_int_equal(report.outside[TRAIN_RIGHT], blinks);
+	assert_int_equal(report.outside[TRAIN_SKIN], 0);  // told of the lids already
+	assert_int_equal(report.n_warnings, 2);
+	assert_non_null(strstr(report.warnings[0], "the left eye's lids are lost"));
+	skin_model_free(&model);
+	train_report_free(&report);
+	linear_clip_free(c);
+}
+
 static void threads(void **state)
 {
 	(void)state;
@@ -321,7 +380,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(known_maps), cmocka_unit_test(same_in_all_ways), cmocka_unit_test(robust),
 		cmocka_unit_test(calibrated), cmocka_unit_test(half_a_face),      cmocka_unit_test(not_enough),
-		cmocka_unit_test(never_shown), cmocka_unit_test(threads),         cmocka_unit_test(rendered),
+		cmocka_unit_test(never_shown), cmocka_unit_test(outside),         cmocka_unit_test(threads),
+		cmocka_unit_test(rendered),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

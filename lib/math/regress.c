@@ -58,6 +58,49 @@ int regress(double *b, int q, int r, const double *Gxx, const double *Gxy, doubl
 	return rank;
 }
 
+void regress_reach(double *reach, int q, const double *Gxx, double weight, const double *mean, const double *least)
+{
+	double *sd = mem_new((size_t)q + 1, sizeof *sd), *C = mem_new((size_t)(q * q) + 1, sizeof *C);
+	double *d = mem_new((size_t)q + 1, sizeof *d), *unit = mem_new((size_t)q + 1, sizeof *unit);
+	bool ok = weight > 0;
+	scales(sd, q, Gxx, weight, mean);
+	for (int i = 0; i < q; i++) {
+		sd[i] = isinf(least[i]) || sd[i] > least[i] ? sd[i] : 0;
+		unit[i] = sd[i] > 0 ? sd[i] : least[i] / sqrt(weight);
+	}
+	for (int i = 0; i < q; i++)
+		for (int j = 0; j < q; j++) {
+			C[i * q + j] = sd[i] > 0 && sd[j] > 0 ? Gxx[i * q + j] / weight / sd[i] / sd[j] : i == j;
+			ok = ok && isfinite(C[i * q + j]);
+		}
+	ok = ok && q && !LAPACKE_dsyevd(LAPACK_ROW_MAJOR, 'V', 'L', q, C, q, d);
+	for (int i = 0; i < q; i++) {
+		double *row = reach + (size_t)i * (size_t)(q + 1), spread = sqrt(weight * fmax(d[i], smallest_eigenvalue * d[q - 1]));
+		row[q] = ok ? 0 : NAN;
+		for (int j = 0; j < q; j++) {
+			row[j] = ok ? C[j * q + i] / spread / unit[j] : NAN;
+			row[q] -= row[j] != 0 ? row[j] * mean[j] : 0;
+		}
+	}
+	free(sd);
+	free(C);
+	free(d);
+	free(unit);
+}
+
+double regress_leverage(const double *reach, int q, const double *x)
+{
+	double h = 0;
+	for (int i = 0; i < q; i++) {
+		const double *row = reach + (size_t)i * (size_t)(q + 1);
+		double sum = row[q];
+		for (int j = 0; j < q; j++)
+			sum += row[j] != 0 ? row[j] * x[j] : 0;
+		h += sum * sum;
+	}
+	return h;
+}
+
 static void weighted_mean(double *mean, long n, int q, const double *x, const double *w, double weight)
 {
 	memset(mean, 0, (size_t)q * sizeof *mean);

@@ -5,6 +5,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/regress.h"
+
+enum { EYE_INPUTS = SKIN_EYE_INPUTS / 2 };
 
 static double *numbers(int rows, int columns)
 {
@@ -36,6 +39,8 @@ void skin_model_alloc(struct skin_model *m)
 	m->skin_pc = numbers(m->n_skin_pc, 1);
 	m->skin_pc_sigma = numbers(m->n_skin_pc, 1);
 	m->vertex_rms = numbers(m->n_vertices, 1);
+	m->lid_reach = numbers(2 * EYE_INPUTS, EYE_INPUTS + 1);
+	m->skin_reach = numbers(m->n_inputs, m->n_inputs + 1);
 	m->low = numbers(m->n_inputs, 1);
 	m->high = numbers(m->n_inputs, 1);
 	m->mean = numbers(m->n_inputs, 1);
@@ -52,7 +57,8 @@ void skin_model_free(struct skin_model *m)
 	double *const all[] = { m->l0,     m->l0_sigma, m->K,      m->L,            m->L_sigma, m->u0,
 		                    m->u0_sigma, m->J,      m->M,      m->M_sigma,      m->lid_pc,  m->lid_pc_sigma,
 		                    m->skin_pc,  m->skin_pc_sigma, m->vertex_rms, m->low, m->high,  m->mean,
-		                    m->rest_controls, m->rest_e, m->K_sigma, m->J_sigma, m->W_sigma };
+		                    m->rest_controls, m->rest_e, m->K_sigma, m->J_sigma, m->W_sigma,
+		                    m->lid_reach, m->skin_reach };
 	for (int i = 0; i < COUNT(all); i++)
 		free(all[i]);
 	*m = (struct skin_model){ 0 };
@@ -162,6 +168,13 @@ void skin_model_fold(double *W, const struct skin_model *m)
 		w[n] += M[from];
 	}
 	free(H);
+}
+
+void skin_model_leverage(double h[3], const struct skin_model *m, const double *g)
+{
+	for (int eye = 0; eye < 2; eye++)
+		h[eye] = regress_leverage(m->lid_reach + eye * EYE_INPUTS * (EYE_INPUTS + 1), EYE_INPUTS, g + EYE_INPUTS * eye);
+	h[2] = regress_leverage(m->skin_reach, m->n_inputs, g);
 }
 
 void skin_model_baseline(double control[2], const struct skin_model *m, int eye, double c, double g1, double g2)

@@ -14,7 +14,8 @@
  * What the clip did not show (an eye out of the picture, a vertex hardly seen) is not modelled: NAN in l0, l, u0 and u,
  * zeros in K, M and J.
  * Fitted numbers have standard errors beside them (delete-a-block jackknife over time, so that neighbouring frames do
- * not count as independent). Everything row-major; owned by the model.
+ * not count as independent); they tell nothing of inputs that the clip does not show, skin_model_leverage does. Everything
+ * row-major; owned by the model.
  */
 #ifndef SKIN_MODEL_H
 #define SKIN_MODEL_H
@@ -52,7 +53,12 @@ struct skin_model {
 	double *rest_controls;        // [n_inputs] c at the reference frame, in which the subject's mesh lies on the picture
 	double *rest_e;               // [n_skin_pc] e there, as measured: J^T (u - u0)
 
-	double *low, *high, *mean;    // [n_inputs] range and mean of the inputs learnt from; NAN: input never measured
+	/* How far inputs lie from those learnt from, as regress_reach has it: of each eye's own five for its lids, of all for
+	 * the skin. NAN: not modelled. */
+	double *lid_reach;            // [2][5][6]
+	double *skin_reach;           // [n_inputs][n_inputs + 1]
+
+	double *low, *high, *mean;    // [n_inputs] range and mean of the clip's inputs; NAN: input never measured
 	double closed[SKIN_EYE_INPUTS], open[SKIN_EYE_INPUTS];  // px, g_closed and g_open; apertures alone, else 0
 	double aperture_sigma;        // px, of closed and open
 	double baseline[2][2][3], baseline_sigma[2][2][3];  // A, eq. 3.11: [left, right][upper, lower][g1, g2, 1] degrees
@@ -86,6 +92,12 @@ void skin_model_predict(double *u, double *l, const struct skin_model *model, co
 /* Equation 3.10: W[n_skin_pc][n_inputs + 1], homogeneous, so that u = u0 + J W [c; 1]. U~ of the subject mesh is J with
  * the mean u0; of a character, B+ J with the mean B+ u0. */
 void skin_model_fold(double *W, const struct skin_model *model);
+
+/* What the clip tells of inputs g: the leverage h of the left lids, the right lids and the skin (TRAIN_PARTS' order), the
+ * variance that the fitted slopes leave there over that of one frame. Above SKIN_REACH less than one frame tells of them:
+ * lids and skin there are a guess. NAN: not modelled, or g is not known. */
+#define SKIN_REACH 1.1  // 1 and the rounding of squares
+void skin_model_leverage(double h[3], const struct skin_model *model, const double *g);
 
 /* Equation 3.11: upper and lower control of one eye (0 left, 1 right) looking at g1, g2 degrees, scaled by c >= 0. */
 void skin_model_baseline(double control[2], const struct skin_model *model, int eye, double c, double g1, double g2);

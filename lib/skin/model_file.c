@@ -9,7 +9,7 @@
 #include "skin/model.h"
 
 /* The matrices: one .npy each, its shape by the model's counts. */
-enum { M_L0, M_K, M_L, M_U0, M_J, M_M, M_L0_S, M_L_S, M_U0_S, M_M_S, M_K_S, M_J_S, M_W_S, M_RMS, M_VERTICES, MATRICES };
+enum { M_L0, M_K, M_L, M_U0, M_J, M_M, M_L0_S, M_L_S, M_U0_S, M_M_S, M_K_S, M_J_S, M_W_S, M_RMS, M_REACH_L, M_REACH_S, M_VERTICES, MATRICES };
 enum { MODEL_NUMBERS = 1 << 26 };  // of a matrix, before any of it is read
 
 const char *const skin_model_files[] = { "model.json",         "model_l0.npy",         "model_K.npy",
@@ -17,7 +17,7 @@ const char *const skin_model_files[] = { "model.json",         "model_l0.npy",  
 	                                     "model_M.npy",        "model_l0_sigma.npy",   "model_L_sigma.npy",
 	                                     "model_u0_sigma.npy", "model_M_sigma.npy",    "model_K_sigma.npy",
 	                                     "model_J_sigma.npy",  "model_W_sigma.npy",    "model_vertex_rms.npy",
-	                                     "model_vertices.npy", 0 };
+	                                     "model_lid_reach.npy", "model_skin_reach.npy", "model_vertices.npy", 0 };
 _Static_assert(sizeof skin_model_files / sizeof *skin_model_files == MATRICES + 2, "model.json, the matrices, null");
 
 struct matrix {
@@ -42,6 +42,8 @@ static void matrices(struct matrix out[MATRICES], struct skin_model *m)
 	out[M_J_S] = (struct matrix){ &m->J_sigma, u, m->n_skin_pc };
 	out[M_W_S] = (struct matrix){ &m->W_sigma, m->n_skin_pc, m->n_inputs + 1 };
 	out[M_RMS] = (struct matrix){ &m->vertex_rms, m->n_vertices, 0 };
+	out[M_REACH_L] = (struct matrix){ &m->lid_reach, SKIN_EYE_INPUTS, SKIN_EYE_INPUTS / 2 + 1 };
+	out[M_REACH_S] = (struct matrix){ &m->skin_reach, m->n_inputs, m->n_inputs + 1 };
 	out[M_VERTICES] = (struct matrix){ 0, m->n_vertices, 0 };
 }
 

@@ -167,9 +167,11 @@ bool train_run(struct skin_model *model, struct train_report *report, const stru
 		train_apertures(&t);
 		train_fit(&t);
 		train_sigmas(&t);
+		train_reach(&t);
 	}
 	for (int p = 0; p < TRAIN_PARTS; p++)
 		part_free(&t.part[p]);
+	scatter_free(&t.inputs);
 	free(t.g);
 	free(t.sample);
 	free(t.block);

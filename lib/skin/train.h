@@ -56,10 +56,11 @@ struct train_curve {
 
 struct train_report {
 	struct train_curve curve[TRAIN_PARTS];
-	int rank_inputs[TRAIN_PARTS]; // of the regressions
+	int rank_inputs[TRAIN_PARTS]; // of the regressions: inputs that vary by themselves
 	int rank[TRAIN_PARTS];        // components that stand out of rounding, at most curve_components
 	int components95[TRAIN_PARTS], components99[TRAIN_PARTS];  // that hold so much of the variance
 	long used[TRAIN_PARTS];       // frames with a weight
+	long outside[TRAIN_PARTS];    // frames whose inputs no frame with a weight is like (skin_model_leverage)
 	double outlying[TRAIN_PARTS], filled[TRAIN_PARTS];  // share of frames weighed down; of numbers filled in
 	int unseen_vertices;
 	double folding_px;            // largest difference between the folded and the unfolded path over the sample

@@ -36,6 +36,7 @@ struct train {
 	double *g;           // [n][n_inputs], gaps carried over; still NAN where that is not possible
 	bool eye[2];         // inputs and lids of that eye are there
 	struct part part[TRAIN_PARTS];
+	struct scatter inputs;  // [n_inputs] of the frames that the skin is learnt from
 	int n_lid, n_eye;    // coordinates of all lids, of one eye's
 	long n_sample, *sample;  // frames of the sample
 	int n_blocks, *block;    // time block of each sample frame; -1: in the gap between two
@@ -83,6 +84,8 @@ void train_choose_skin(struct train *t);               // the same, once the lid
 void train_validate(struct train *t, int part);        // ridge, curves
 void train_fit(struct train *t);
 void train_sigmas(struct train *t);
+
+void train_reach(struct train *t);                     // what lids and skin were learnt from; frames outside of it are told
 
 /* Regressors of the sample's frames for that part: [n_sample][q], rows with a NAN have weight 0 in w. *q set; free(). */
 double *train_regressors(const struct train *t, int part, int *q);

@@ -14,6 +14,7 @@ struct block {
 	long at, n;
 	double *lid, *skin, *seen;
 	double *w[TRAIN_PARTS], *share[TRAIN_PARTS], *d[TRAIN_PARTS];
+	double *w_inputs;  // the skin's, where all inputs are known
 };
 
 static struct block block_new(const struct train *t)
@@ -26,6 +27,7 @@ static struct block block_new(const struct train *t)
 		b.share[p] = mem_array(n, sizeof(double));
 		b.d[p] = mem_array(n, sizeof(double));
 	}
+	b.w_inputs = mem_array(n, sizeof(double));
 	return b;
 }
 
@@ -39,6 +41,7 @@ static void block_free(struct block *b)
 		free(b->share[p]);
 		free(b->d[p]);
 	}
+	free(b->w_inputs);
 }
 
 /* Rows from `to` on of the parts' scatters: inputs or lids, then coordinates. */
@@ -63,6 +66,24 @@ static void assemble(struct train *t, long to, const struct frames *f, long n, c
 	}
 }
 
+/* Rows from `to` on of the inputs' scatter; those of an eye that is not learnt stay 0. */
+static void add_inputs(struct train *t, struct block *b, long to, const double *w_skin, long n)
+{
+	int n_in = t->model->n_inputs;
+	for (long i = 0; i < n; i++) {
+		const double *g = t->g + (b->at + to + i) * n_in;
+		double *row = scatter_rows(&t->inputs) + (to + i) * n_in;
+		bool known = true;
+		for (int k = 0; k < n_in; k++) {
+			row[k] = k < SKIN_EYE_INPUTS && !t->part[k / EYE_INPUTS].used ? 0 : g[k];
+			known = known && !isnan(row[k]);
+		}
+		b->w_inputs[to + i] = known ? w_skin[i] : 0;
+		if (!known)
+			memset(row, 0, (size_t)n_in * sizeof *row);
+	}
+}
+
 /* Rows at..at+n-1 of the block: from numbers read to numbers to be summed. f: room for ROWS frames. */
 static void prepare(struct train *t, struct block *b, long at, long n, struct frames *f)
 {
@@ -74,6 +95,7 @@ static void prepare(struct train *t, struct block *b, long at, long n, struct fr
 		part_complete_few(&t->part[p], (int)n, f->x[p], f->c[p], f->d[p], f->share[p]);
 	train_weigh(t, f, n, frame);
 	assemble(t, at, f, n, frame);
+	add_inputs(t, b, at, f->w[TRAIN_SKIN], n);
 	for (int p = 0; p < TRAIN_PARTS; p++) {
 		memcpy(b->w[p] + at, f->w[p], (size_t)n * sizeof(double));
 		memcpy(b->share[p] + at, f->share[p], (size_t)n * sizeof(double));
@@ -107,6 +129,7 @@ static void add_block(struct train *t, struct block *b)
 	for (int p = 0; p < TRAIN_PARTS; p++)
 		if (t->part[p].used)
 			scatter_take(&t->part[p].sum, b->n, b->w[p]);
+	scatter_take(&t->inputs, b->n, b->w_inputs);
 }
 
 bool train_stream(struct train *t, struct err *err)
@@ -120,6 +143,8 @@ bool train_stream(struct train *t, struct err *err)
 			scatter_split(&part->sum, part->from, part->k, part->V);
 		scatter_rows(&part->sum);
 	}
+	scatter_new(&t->inputs, t->model->n_inputs, 0);
+	scatter_rows(&t->inputs);
 	bool ok = true;
 	for (; b.at < t->clip->n && ok; b.at += b.n) {
 		b.n = t->clip->n - b.at < SCATTER_BLOCK ? t->clip->n - b.at : SCATTER_BLOCK;

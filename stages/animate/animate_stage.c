@@ -100,6 +100,25 @@ static bool save_json(const struct animation *a, const char *path, const char *m
 	return ok;
 }
 
+/* Frames that ask for what the film of the person does not tell of the lids. Of the skin it is not asked: its ridge holds what
+ * one eye does without the other, which a film hardly shows. */
+static void tell_outside(struct stage *stage, const struct animation *a, const struct skin_model *model)
+{
+	long outside = 0, first = 0;
+	for (long i = a->n - 1; i >= 0; i--) {
+		double h[3];
+		skin_model_leverage(h, model, a->g + i * a->n_inputs);
+		if (h[0] > SKIN_REACH || h[1] > SKIN_REACH) {
+			outside++;
+			first = i;
+		}
+	}
+	stage_figure(stage, "animation_outside", (double)outside, "frames");
+	if (outside)
+		stage_warn(stage, "%ld of %ld frames, the first at %.2f s: no frame of the person's video tells of eyes that look and open so: "
+		           "their lids are a guess: film it, or leave it out of the script", outside, a->n, (double)first / a->fps);
+}
+
 static void tell(struct stage *stage, const struct animation *a, const struct sources *s)
 {
 	stage_note(stage, "%ld frames at %g frames/s from %s%s%s: %d saccades, %d blinks", a->n, a->fps,
@@ -130,6 +149,8 @@ static bool make(struct stage *stage, struct sources *s, const struct skin_model
 	          && stage_made(stage, svg_rel, n, in, err) && stage_made(stage, json_rel, n, in, err);
 	if (ok)
 		tell(stage, &a, s);
+	if (ok)
+		tell_outside(stage, &a, model);
 	animation_free(&a);
 	return ok;
 }

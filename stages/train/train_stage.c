@@ -69,6 +69,7 @@ static json_t *curve_json(const struct train_report *r, int p)
 	json_object_set_new(j, "components_for_95_percent", json_integer(r->components95[p]));
 	json_object_set_new(j, "components_for_99_percent", json_integer(r->components99[p]));
 	json_object_set_new(j, "frames", json_integer(r->used[p]));
+	json_object_set_new(j, "outside_frames", json_integer(r->outside[p]));
 	json_object_set_new(j, "outlying_share", json_number(r->outlying[p]));
 	json_object_set_new(j, "filled_share", json_number(r->filled[p]));
 	return j;

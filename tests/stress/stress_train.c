@@ -1,7 +1,7 @@
 /* What train rests on, where numbers are hard: principal components and regressions of condition numbers to 1e16, constant
  * and duplicated columns and frames, more columns than rows, values of 1e-30 and 1e30; one block of frames after another
  * against all at once; clips with frames that are not numbers. Truth: the matrices are put together from their factors.
- * Flagged: a rank below the number of columns, or a clip refused. */
+ * Flagged: a rank below the number of columns, a clip refused, or frames told to lie outside of what was learnt. */
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -327,7 +327,30 @@ static bool all_finite(const double *x, size_t n)
 	return true;
 }
 
-/* Predicted skin of the clip's own inputs against the clip without noise, px rms. */
+static bool is_outside(const struct skin_model *m, const double *g)
+{
+	double h[TRAIN_PARTS];
+	skin_model_leverage(h, m, g);
+	return h[TRAIN_LEFT] > SKIN_REACH || h[TRAIN_RIGHT] > SKIN_REACH || h[TRAIN_SKIN] > SKIN_REACH;
+}
+
+/* Frames that the model calls outside of what it learnt are told by a warning, and are none that it learnt from with their
+ * full weight: it may not talk itself out of those. g: the inputs it was given; where one was lost it has learnt from what it
+ * made of the neighbours'. *n: how many. */
+static bool outside_is_right(long *n, const struct skin_model *m, const double *g, long frames, const struct train_report *r)
+{
+	long without = 0, told = 0;
+	*n = 0;
+	for (long i = 0; i < frames; i++)
+		*n += is_outside(m, g + i * m->n_inputs);
+	for (int p = 0; p < TRAIN_PARTS; p++)
+		without += r->curve[p].n ? frames - r->used[p] + lround(r->outlying[p] * (double)frames) : 0;
+	for (int i = 0; i < r->n_warnings; i++)
+		told += strstr(r->warnings[i], "is a guess") != 0;
+	return *n <= without && (*n == 0 || told > 0);
+}
+
+/* Predicted skin of the clip's own inputs against the clip without noise, px rms; of inputs that it says it has learnt. */
 static double prediction(const struct skin_model *m, const struct linear_clip *c)
 {
 	int nu = 2 * m->n_vertices, n = 0;
@@ -335,6 +358,8 @@ static double prediction(const struct skin_model *m, const struct linear_clip *c
 	double *l = mem_new((size_t)m->n_lid, sizeof *l);
 	for (long i = 0; i < c->conf.n; i += 37) {
 		const double *g = c->g + i * m->n_inputs;
+		if (is_outside(m, g))
+			continue;
 		linear_clip_truth(l, u, c, g);
 		skin_model_lids(l, m, g);
 		skin_model_skin(u1, 0, m, l, g + SKIN_EYE_INPUTS);
@@ -401,6 +426,11 @@ static void clip(struct stress *s, bool zeros)
 				stress_flagged(s);  // nothing could be held out
 			else
 				stress_measure(s, rms / said, "times the error it states");
+			long outside;
+			if (!outside_is_right(&outside, &m, g, f.n, &report))
+				stress_wrong(s, "%ld of %ld frames are called outside", outside, f.n);
+			if (outside)
+				stress_flagged(s);
 			bool few = false;
 			for (int i = 0; i < report.n_warnings; i++)
 				few |= strstr(report.warnings[i], "frames show the skin, no more") != 0;
