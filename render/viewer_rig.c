@@ -79,7 +79,9 @@ static json_t *skull(const struct face *f)
 		for (int x = 0; x < width; x++)
 			memcpy(px + 3 * ((long)y * width + x), map->texel + SKULL_CHANNELS * ((long)(box[1] + y) * map->width + box[0] + x), 3 * sizeof *px);
 	double grid[] = { map->x0, map->y0, map->step, map->width, map->height }, part[] = { box[0], box[1], width, height };
-	return json_pack("{s:o,s:o,s:o}", "grid", json_numbers(COUNT(grid), grid), "part", json_numbers(COUNT(part), part), "mm", floats(px, 3L * width * height));
+	json_t *mm = viewer_field(px, width, height, 3);
+	free(px);
+	return json_pack("{s:o,s:o,s:o}", "grid", json_numbers(COUNT(grid), grid), "part", json_numbers(COUNT(part), part), "mm", mm);
 }
 
 static json_t *globe_maps(const struct rig *rig)
@@ -89,7 +91,9 @@ static json_t *globe_maps(const struct rig *rig)
 	float *mm = mem_array(2 * (size_t)size, sizeof *mm);
 	for (int s = 0; s < 2; s++)
 		memcpy(mm + s * size, rig->globe[s].map.radius, (size_t)size * sizeof *mm);
-	return json_pack("{s:i,s:o,s:[o,o]}", "cells", n, "mm", floats(mm, 2 * size), "centers", json_numbers(3, rig->globe[0].center), json_numbers(3, rig->globe[1].center));
+	json_t *field = viewer_field(mm, n + 1, 2 * (n + 1), 1);
+	free(mm);
+	return json_pack("{s:i,s:o,s:[o,o]}", "cells", n, "mm", field, "centers", json_numbers(3, rig->globe[0].center), json_numbers(3, rig->globe[1].center));
 }
 
 static json_t *hairs(const struct face *f)

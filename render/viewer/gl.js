@@ -197,6 +197,22 @@ class Graphics {
 		return out;
 	}
 
+	/* Of render/viewer_field.c: whole steps, each foretold by its neighbours on the left and above. */
+	static field(m, width, height, channels) {
+		const bytes = Graphics.bytes(m.bytes), row = width * channels, whole = new Int32Array(2 * row), out = new Float32Array(row * height);
+		for (let y = 0, at = 0; y < height; y++)
+			for (let i = 0, now = y % 2 * row, above = row - now; i < row; i++, now++, above++) {
+				let v = 0, byte = 128;
+				for (let shift = 0; byte > 127; shift += 7) {
+					byte = bytes[at++];
+					v |= (byte & 127) << shift;
+				}
+				whole[now] = (v >>> 1 ^ -(v & 1)) + whole[above] + (i < channels ? 0 : whole[now - channels] - whole[above - channels]);
+				out[y * row + i] = whole[now] * m.step;
+			}
+		return out;
+	}
+
 	async bitmap(base64, type) {
 		return createImageBitmap(new Blob([Graphics.bytes(base64)], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
 	}

@@ -33,12 +33,12 @@ class FacePose {
 
 	/* Skull, globes, light of all poses. */
 	maps_of_rig() {
-		const { gl } = this.g, { rig, data, posed } = this, floats = b => new Float32Array(Graphics.bytes(b).buffer), [, , step, w, h] = rig.skull.grid, side = rig.globe.cells + 1;
+		const { gl } = this.g, { rig, data, posed } = this, [, , step, w, h] = rig.skull.grid, side = rig.globe.cells + 1;
 		const light = Graphics.bytes(data.light), poses = posed ? light.length / 3 / posed : 0, rows = Math.ceil(posed / FacePose.WIDE), padded = new Uint8Array(3 * FacePose.WIDE * rows * poses);
 		for (let k = 0; k < poses; k++)
 			padded.set(light.subarray(3 * posed * k, 3 * posed * (k + 1)), 3 * FacePose.WIDE * rows * k);
-		this.maps = { skull_map: this.g.plain(rig.skull.part[2], rig.skull.part[3], gl.RGB32F, gl.RGB, gl.FLOAT, floats(rig.skull.mm)),
-			globe_map: this.g.plain(side, 2 * side, gl.R32F, gl.RED, gl.FLOAT, floats(rig.globe.mm)),
+		this.maps = { skull_map: this.g.plain(rig.skull.part[2], rig.skull.part[3], gl.RGB32F, gl.RGB, gl.FLOAT, Graphics.field(rig.skull.mm, rig.skull.part[2], rig.skull.part[3], 3)),
+			globe_map: this.g.plain(side, 2 * side, gl.R32F, gl.RED, gl.FLOAT, Graphics.field(rig.globe.mm, side, 2 * side, 1)),
 			pose_map: this.g.plain(FacePose.WIDE, Math.max(rows * poses, 1), gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, padded),
 			skull_grid: [rig.skull.grid[0], rig.skull.grid[1], 1 / step], skull_most: [w - 1.001, h - 1.001], skull_part: rig.skull.part, cells: rig.globe.cells,
 			globe_center: rig.globe.centers.flat(), lit_rows: rows, outward: rig.head_from_rig.slice(0, 3) };
