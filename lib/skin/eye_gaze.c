@@ -8,6 +8,8 @@
 
 // Grey levels of the step from iris to sclera, at least.
 static const double CONTRAST_LEAST = 10;
+// Seconds over which that step is averaged.
+static const double CONTRAST_S = 1 / 6.0;
 // Score of gaze_seek() below which an eye counts as lost.
 static const double LOST = 0.15;
 
@@ -141,7 +143,7 @@ void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_
 		return;
 	for (int i = 0; i < n; i++)
 		rise += edge[i].strength / n;
-	eye->contrast = fmax(CONTRAST_LEAST, 0.9 * eye->contrast + 0.1 * rise);
+	eye->contrast = fmax(CONTRAST_LEAST, eye->contrast + fmin(1, 1 / (CONTRAST_S * eye->scene->fps)) * (rise - eye->contrast));
 	fill_gaze(state, eye, &fit, view);
 	keep_edges(eye, record, n, edge);
 	fill_torsion(state, eye, luma, view, limbus_px);

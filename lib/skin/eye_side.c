@@ -6,6 +6,9 @@
 #include "math/vec.h"
 #include "skin/eye_track_impl.h"
 
+// Seconds for which a gaze that is hidden is taken to be near where it was.
+static const double LOST_S = 1;
+
 void eye_view(struct gaze_view *view, const struct eye_scene *scene, const double cam_from_head[3][4])
 {
 	view->camera = scene->camera;
@@ -98,7 +101,7 @@ static bool find_corners(struct eye_side *eye, struct eye_record *record, const 
 			                     + view->cam_from_head[2][i] * at[2];
 	}
 	eye->corners_guessed = false;
-	lid_track_start(&eye->lids, eye->conf->lid_columns, eye->conf->lid_points, eye->conf->lid_wet);
+	lid_track_start(&eye->lids, eye->conf->lid_columns, eye->conf->lid_points, eye->conf->lid_wet, eye->scene->fps);
 	return lid_track_push(&record->found, &eye->lids, picture, look);
 }
 
@@ -193,8 +196,8 @@ void eye_side_push(struct eye_side *eye, const struct eye_frame *frame)
 			record.still = true;
 		} else {
 			look(&state, &record, &fine, eye, frame, &view);
-			eye->have = state.confidence > 0 || (eye->have && eye->lost < 60);
-			eye->lost = state.confidence > 0 ? 0 : eye->lost + 1;
+			eye->have = state.confidence > 0 || (eye->have && eye->lost_s < LOST_S);
+			eye->lost_s = state.confidence > 0 ? 0 : eye->lost_s + 1 / eye->scene->fps;
 		}
 	}
 	append(eye, &state, &record, &fine);

@@ -64,7 +64,7 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 	if (!known(6, &prior->canthus_in_head[0][0]))
 		guess_corners(eye, side);
 	eye->torsion.rays = track->conf.torsion_rays < TORSION_RAYS_MAX ? track->conf.torsion_rays : TORSION_RAYS_MAX;
-	lid_track_start(&eye->lids, track->conf.lid_columns, track->conf.lid_points, track->conf.lid_wet);
+	lid_track_start(&eye->lids, track->conf.lid_columns, track->conf.lid_points, track->conf.lid_wet, track->scene.fps);
 }
 
 /* A camera of unknown focal length is a metre away; without a centre, it looks at the picture's middle. */

@@ -32,7 +32,7 @@ struct eye_side {
 	bool corners_guessed;      // until lids are found
 	double fick[2];            // last gaze
 	bool have;                 // it is of the last frame but for a blink
-	int lost;                  // frames without gaze
+	double lost_s;             // seconds without gaze
 	double contrast;           // grey levels from iris to sclera
 	struct lid_track lids;
 	struct gaze_torsion torsion;

@@ -3,11 +3,15 @@
 #include <math.h>
 #include <string.h>
 
-void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm)
+// Frames of a second that are learnt from: looks are remembered for some seconds, however fast they were filmed.
+static const double LEARNT_FPS = 60;
+
+void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm, double fps)
 {
 	memset(lids, 0, sizeof *lids);
 	lids->columns = columns;
 	lids->wet_mm = wet_mm;
+	lids->every = fps > 1.5 * LEARNT_FPS ? (int)lround(fps / LEARNT_FPS) : 1;
 	lids->points = points < LID_TRACK_POINTS ? points : LID_TRACK_POINTS;
 }
 
@@ -186,7 +190,7 @@ static void find(struct lid_found *found, struct lid_track *lids, const struct l
 	if (!fresh)
 		ask_strips(lids, &expect);
 	for (int k = 0; k < (fresh ? 4 : 1); k++) {
-		if (fresh || lids->frames % 4 == 0)
+		if (fresh || lids->frames % (4 * lids->every) == 0)
 			lid_colour_settle(&lids->colour);
 		lid_colour_ask(odds, &lids->colour, &lids->chart, &iris);
 		found->sense = lid_path(&lids->curves, &lids->chart, odds, &lids->match, &expect, &conf);
@@ -220,7 +224,7 @@ bool lid_track_push(struct lid_found *found, struct lid_track *lids, const struc
 	find(found, lids, look, fresh);
 	lids->known = true;
 	settle(found, lids, picture, fresh);
-	if (lids->frames % 8 == 0)
+	if (lids->frames % (8 * lids->every) == 0)
 		place(lids, lids->wet = lids->wet_mm * look->mm / high);
 	margins(found, lids);
 	lids->frames++;
@@ -228,10 +232,10 @@ bool lid_track_push(struct lid_found *found, struct lid_track *lids, const struc
 		return true;
 	report(found, lids);
 	struct lid_iris iris = iris_on(&lids->chart, look);
-	if (found->sense > 1 && lids->frames % 2 == 0)
+	if (found->sense > 1 && lids->frames % (2 * lids->every) == 0)
 		lid_colour_learn(&lids->colour, &lids->chart, lids->margins.row[0], lids->margins.row[1], &iris, (double[2]){ 1, 3 },
 		                 0.12 * rows, 0.97);
-	for (int k = 0; k < 2; k++)
+	for (int k = 0; k < 2 && (lids->frames - 1) % lids->every == 0; k++)
 		if (fresh || found->misfit[k] < 1.5)
 			lid_strip_learn(&lids->strip[k], &lids->chart, lids->curves.row[k], found->first, found->last);
 	return true;

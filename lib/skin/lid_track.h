@@ -11,8 +11,8 @@ enum { LID_TRACK_POINTS = 22 };
 struct lid_track {
 	int columns, points;
 	bool known;                // colours have been learnt
-	int poor;                  // frames in a row that made no sense
 	long frames;
+	int every;                 // one frame in so many is learnt from
 	struct lid_colour colour;
 	struct lid_chart chart;    // of the last frame
 	struct lid_strip strip[2]; // what the lids look like along `curves`
@@ -49,8 +49,8 @@ struct lid_kept {
 	float row[2][LID_COLS_MAX], at[2][2];
 };
 
-/* wet_mm: the tear meniscus between a margin and what is seen of the eye. */
-void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm);
+/* wet_mm: the tear meniscus between a margin and what is seen of the eye. fps: frames of a second that will be pushed. */
+void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm, double fps);
 
 /* False: nothing is known yet of this eye's colours and it cannot be learnt here (no iris, or corners too near). */
 bool lid_track_push(struct lid_found *found, struct lid_track *lids, const struct lid_picture *picture,

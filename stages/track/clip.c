@@ -25,6 +25,11 @@ bool track_video(char file[320], int *others, struct stage *stage, struct err *e
 	return ok;
 }
 
+long track_frames_of(const struct track_clip *clip, long n)
+{
+	return clip->info.fps > 60 ? lround((double)n * clip->info.fps / 60) : n;
+}
+
 /* Where calibrate saw the head: in its own mesh's frame. */
 static void take_poses(struct track_clip *clip, const struct camera_rig *rig)
 {
@@ -149,14 +154,15 @@ static bool find_reference(struct track_clip *clip, struct video *video, bool kn
 {
 	enum { EVERY = 5 };
 	bool found = false, any = false;
-	for (long i = 0; !found && (conf->reference >= 0 ? i <= conf->reference : i < conf->search); i++) {
+	const long search = track_frames_of(clip, conf->search), every = track_frames_of(clip, EVERY);
+	for (long i = 0; !found && (conf->reference >= 0 ? i <= conf->reference : i < search); i++) {
 		struct video_frame f;
 		bool got;
 		if (!video_next(&f, &got, video, err))
 			return false;
 		if (!got)
 			break;
-		if (known ? is_known(clip, i) : conf->reference >= 0 ? i == conf->reference : i % EVERY == 0) {
+		if (known ? is_known(clip, i) : conf->reference >= 0 ? i == conf->reference : i % every == 0) {
 			keep(clip, &f);
 			any = true;
 			found = try_frame(clip, known, s, conf, err);

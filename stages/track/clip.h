@@ -28,6 +28,9 @@ struct track_clip {
 	struct cv_face_finder *faces;  // null: not opened yet, or not installed
 };
 
+/* As many frames as make the time of n at 60 a second; of slower clips n. */
+long track_frames_of(const struct track_clip *clip, long n);
+
 /* Points of skin: rows of the mesh and where they are at the reference. */
 struct track_points {
 	int n;

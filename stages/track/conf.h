@@ -20,7 +20,7 @@ struct track_conf {
 	struct opt_each_list landmark_px, expression;
 	double distance_mm;    // of the face from a camera of which nothing is known
 	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
-	int search;            // frames looked through for it
+	int search;            // frames looked through for it; this and the spans below: of clips of more than 60 a second, as many as make the same time
 	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
 	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
 	int points;            // of skin

@@ -14,11 +14,11 @@ struct rigid {
 	struct head_sight *sights;
 };
 
-static const double forget = 0.02;  // share a frame
+static const double forget = 1.2;  // share a second
 /* How far skin is expected to move on its own, mm: over the bridge of the nose, the cheeks, the brows, the lids. */
 static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids = 0.6;
-/* How much a head moves from one frame to the next: degrees, mm. */
-static const double turn_step = 0.2, shift_step = 0.6;
+/* How much a head moves in a second, as one that wanders: degrees, mm; as the square root of the time. */
+static const double turn_step = 1.55, shift_step = 4.65;
 
 bool track_on_lid(const double head[3], const struct track_subject *s)
 {
@@ -58,10 +58,11 @@ static void rigid_free(struct rigid *r)
 	free(r->sights);
 }
 
-static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust)
+/* dt: seconds since the frame before. */
+static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust, double dt)
 {
-	double next[4][4], turn = turn_step * M_PI / 180;
-	struct head_prior prior = { .sigma = { turn, turn, turn, shift_step, shift_step, shift_step } };
+	double next[4][4], turn = sqrt(dt) * turn_step * M_PI / 180, shift = sqrt(dt) * shift_step, new = fmin(1, forget * dt);
+	struct head_prior prior = { .sigma = { turn, turn, turn, shift, shift, shift } };
 	memcpy(next, pose, sizeof next);
 	memcpy(prior.cam_from_head, pose, sizeof prior.cam_from_head);
 	for (int i = 0; i < r->n; i++) {
@@ -74,7 +75,7 @@ static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_
 	for (int i = 0; i < r->n; i++) {
 		double px[2];
 		if (state[i].confidence > 0 && head_project(px, camera, pose, r->sights[i].head))
-			r->off2[i] += forget * (fmin(100, pow(px[0] - state[i].at[0], 2) + pow(px[1] - state[i].at[1], 2)) - r->off2[i]);
+			r->off2[i] += new * (fmin(100, pow(px[0] - state[i].at[0], 2) + pow(px[1] - state[i].at[1], 2)) - r->off2[i]);
 	}
 }
 
@@ -166,7 +167,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 			grow(r, &room);
 			bool lost = skin_frame(r, skin, state, &f, conf);
 			if (!lost && points->n)
-				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px);
+				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px, fmax(1e-4, r->n ? f.time - r->time[r->n - 1] : 1 / info.fps));
 			r->time[r->n] = f.time;
 			r->lost_at[r->n] = lost;
 			store(r, state, pose, lost, points, clip);

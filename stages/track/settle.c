@@ -213,10 +213,11 @@ static bool look_anew(struct track_clip *clip, long frame, enum track_way way, s
 	return ok;
 }
 
-/* Settings for looking at so many frames, spread over so many of the clip. */
+/* Settings for looking at so many frames, spread over the time of so many at 60 a second. */
 static struct track_conf few_of(const struct track_conf *conf, const struct track_clip *clip, int frames, long span)
 {
 	struct track_conf few = *conf;
+	span = track_frames_of(clip, span);
 	span = clip->info.frames < span ? clip->info.frames : span;
 	few.points = FEW_POINTS;
 	few.limit = frames;
@@ -226,14 +227,14 @@ static struct track_conf few_of(const struct track_conf *conf, const struct trac
 	return few;
 }
 
-/* A reference that nothing spoke against: settle_frames of the clip, one after another from its start, settle the head, where the
- * reference is among them; otherwise those that it was judged by. */
+/* A reference that nothing spoke against: settle_frames of the clip, from its start and no more than 60 a second, settle the head, where the
+ * reference is in their time; otherwise those that it was judged by. */
 static void settle(struct track_clip *clip, const struct track_result *judged, struct stage *stage, const struct track_subject *s, const struct track_conf *few,
                    const struct track_conf *conf)
 {
 	struct track_conf all = few_of(conf, clip, conf->settle, conf->settle);
 	struct track_result r = { 0 };
-	if (all.limit > few->limit && clip->reference < all.limit && follow_few(&r, clip, stage, s, &all))
+	if (all.limit > few->limit && clip->reference < all.limit * all.every && follow_few(&r, clip, stage, s, &all))
 		refine(clip, false, &r, s, &all);
 	else
 		refine(clip, false, judged, s, few);
@@ -285,7 +286,7 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 			round = -1;
 		} else if (!followed) {
 			// no eye was seen from there: the face was not where it was found to be
-			for (long f = clip->reference + LATER; conf->reference < 0 && !again && f < clip->info.frames && f < conf->doubt.span; f += LATER)
+			for (long later = track_frames_of(clip, LATER), f = clip->reference + later; conf->reference < 0 && !again && f < clip->info.frames && f < track_frames_of(clip, conf->doubt.span); f += later)
 				clip->begins_shut = again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
 		} else if (!d.any) {
 			settle(clip, &r, stage, s, &few, conf);

@@ -145,3 +145,35 @@ if [ -x "$RECUT" ]; then
 	said=$("$BIN/track" --capture="$root/glance" --points=60 --reference-frame=0 2>&1)
 	check "a bad reference is named (it says: $said)" grep -qE "track.reference_frame = 0: in it the eyes look .* degrees .*: take [1-9]" <<<"$said"
 fi
+
+# A painted film of known gaze, saccades, blinks and head at the slowest and at the fastest rate: what is looked for lasts seconds, not frames.
+PAINTED=${B:-build}/tests/tools/painted_clip
+if [ -x "$PAINTED" ]; then
+	# at_most NAME KEY LIMIT, of the figures last scored
+	at_most() { check "$1: $2 at most $3 (it says: $figures)" awk -v k="$2" -v most="$3" '{ for (i = 1; i < NF; i += 2) if ($i == k) { v = $(i + 1); got = 1 } } END { exit !(got && v + 0 == v && v <= most) }' <<<"$figures"; }
+	figure() { awk -v k="$1" '{ for (i = 1; i < NF; i += 2) if ($i == k) print $(i + 1) }' <<<"$figures"; }
+	# A saccade of 2 degrees is over in 25 ms: 30 frames a second show two halves of it, too slow for one. Ends of blinks: to a frame.
+	for rate in "30 6 0.035" "240 8 0.006"; do
+		read -r fps saccades ends <<<"$rate"
+		name="$fps frames/s"
+		"$PAINTED" make "$root/painted$fps" "$fps"
+		check "$name: track" "$BIN/track" --quiet --capture="$root/painted$fps"
+		figures=$("$PAINTED" score "$root/painted$fps")
+		same "$name: rate" "$(figure fps)" "$fps.000"
+		same "$name: blinks of both eyes" "$(figure blinks) $(figure blinks_wrong)" "4 0"
+		same "$name: saccades of both eyes" "$(figure saccades) $(figure saccades_wrong)" "$saccades 0"
+		at_most "$name" blinks_s "$ends"
+		at_most "$name" blinks_size 0.1
+		at_most "$name" saccades_size 0.15
+		for k in gaze_h gaze_v; do
+			at_most "$name" $k 0.5
+			at_most "$name" ${k}95 1.5
+		done
+		at_most "$name" torsion 1
+		at_most "$name" skin 0.5
+	done
+	at_most "$name" saccades_s 0.0125
+	at_most "$name" saccades_speed 0.15
+else
+	skip "painted films of 30 and 240 frames/s" "tests/tools/painted_clip is not built"
+fi

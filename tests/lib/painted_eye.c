@@ -54,6 +54,22 @@ static void globe_colour(double out[3], const struct painted_eye *eye, const dou
 	}
 }
 
+void painted_eye_globe(double out[3], const struct painted_eye *eye, double x, double y)
+{
+	// The ray through the pixel and the sphere, in the head's axes.
+	double d[3] = { (x - PAINTED_W / 2.0) / PAINTED_FOCAL, -(y - PAINTED_H / 2.0) / PAINTED_FOCAL, -1 };
+	double o[3] = { -eye->center[0], -eye->center[1], PAINTED_FAR - eye->center[2] };
+	double a = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], b = o[0] * d[0] + o[1] * d[1] + o[2] * d[2];
+	double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - PAINTED_R * PAINTED_R, root = b * b - a * c;
+	double t = (-b - sqrt(fmax(0, root))) / a, n[3];
+	for (int k = 0; k < 3; k++)
+		n[k] = (o[k] + t * d[k]) / PAINTED_R;
+	if (root > 0)
+		globe_colour(out, eye, n);
+	else
+		out[0] = 190, out[1] = 120, out[2] = 115;
+}
+
 static void skin_colour(double out[3], const struct painted_eye *eye, double x, double y, double away, bool lower)
 {
 	// The rim is bare; lashes begin a little outside it and move with the lid.
@@ -71,18 +87,7 @@ static void sample(double out[3], const struct painted_eye *eye, double x, doubl
 		skin_colour(out, eye, x, y, isnan(up) ? 30 : lower ? y - low : up - y, lower);
 		return;
 	}
-	// The ray through the pixel and the sphere, in the head's axes.
-	double d[3] = { (x - PAINTED_W / 2.0) / PAINTED_FOCAL, -(y - PAINTED_H / 2.0) / PAINTED_FOCAL, -1 };
-	double o[3] = { -eye->center[0], -eye->center[1], PAINTED_FAR - eye->center[2] };
-	double a = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], b = o[0] * d[0] + o[1] * d[1] + o[2] * d[2];
-	double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - PAINTED_R * PAINTED_R, root = b * b - a * c;
-	double t = (-b - sqrt(fmax(0, root))) / a, n[3];
-	for (int k = 0; k < 3; k++)
-		n[k] = (o[k] + t * d[k]) / PAINTED_R;
-	if (root > 0)
-		globe_colour(out, eye, n);
-	else
-		out[0] = 190, out[1] = 120, out[2] = 115;
+	painted_eye_globe(out, eye, x, y);
 }
 
 void painted_eye_draw(uint8_t *rgb, uint8_t *luma, const struct painted_eye *eye)

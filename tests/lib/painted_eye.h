@@ -29,4 +29,7 @@ void painted_eye_camera(double cam_from_head[4][4]);
 /* Row of a margin (0 upper, 1 lower) at x px; NAN beyond the corners. */
 double painted_eye_lid(const struct painted_eye *eye, int lower, double x);
 
+/* What the ray through x, y px meets where no lid is before it: the globe, or the pink of the corners. */
+void painted_eye_globe(double out[3], const struct painted_eye *eye, double x, double y);
+
 #endif
