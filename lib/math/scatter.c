@@ -1,8 +1,6 @@
 #include "math/scatter_impl.h"
 
 #include <cblas.h>
-#include <float.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -194,8 +192,7 @@ void scatter_take(struct scatter *s, long n, const double *w)
 	s->work = rows;
 }
 
-/* Columns from..from+n-1 of the rows kept, centred and weighted: [s->n][n]. */
-static double *centred(const struct scatter *s, int from, int n)
+double *scatter_centred(const struct scatter *s, int from, int n)
 {
 	double *y = mem_array((size_t)s->n * (size_t)n + 1, sizeof *y);
 	for (long r = 0; r < s->n; r++) {
@@ -216,7 +213,7 @@ void scatter_cross(double *out, const struct scatter *s, int i0, int ni, int j0,
 			}
 		return;
 	}
-	double *a = centred(s, i0, ni), *b = centred(s, j0, nj);
+	double *a = scatter_centred(s, i0, ni), *b = scatter_centred(s, j0, nj);
 	cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, ni, nj, (int)s->n, 1, a, ni, b, nj, 0, out, nj);
 	free(a);
 	free(b);
@@ -228,92 +225,10 @@ double scatter_energy(const struct scatter *s, int from, int n)
 	for (int c = from; s->S && c < from + n; c++)
 		sum += s->S[(size_t)c * (size_t)s->p + (size_t)c];
 	if (!s->S) {
-		double *y = centred(s, from, n);
+		double *y = scatter_centred(s, from, n);
 		for (long i = 0; i < s->n * n; i++)
 			sum += y[i] * y[i];
 		free(y);
 	}
 	return sum;
-}
-
-/* Column k of vectors gets the sign that makes its largest number positive. */
-static void settle_signs(double *vectors, int n, int k)
-{
-	for (int c = 0; c < k; c++) {
-		int top = 0;
-		for (int i = 1; i < n; i++)
-			if (fabs(vectors[i * k + c]) > fabs(vectors[top * k + c]) * (1 + 1e-9))
-				top = i;
-		bool flip = vectors[top * k + c] < 0;
-		for (int i = 0; i < n && flip; i++)
-			vectors[i * k + c] = -vectors[i * k + c];
-	}
-}
-
-/* n_rows x n singular value decomposition of the kept rows; *resolved: below that, values are rounding. */
-static bool by_rows(double *vectors, double *values, double *resolved, const struct scatter *s, int from, int n, int k)
-{
-	int m = (int)s->n, least = m < n ? m : n;
-	double *y = centred(s, from, n), *d = mem_new((size_t)least + 1, sizeof *d);
-	double *vt = mem_new((size_t)least * (size_t)n + 1, sizeof *vt), *u = mem_new((size_t)m * (size_t)least + 1, sizeof *u);
-	bool ok = least > 0 && !LAPACKE_dgesdd(LAPACK_ROW_MAJOR, 'S', m, n, y, n, d, u, least, vt, n);
-	for (int c = 0; c < k && ok; c++) {
-		values[c] = c < least ? d[c] : 0;
-		for (int i = 0; i < n && c < least; i++)
-			vectors[i * k + c] = vt[(size_t)c * (size_t)n + (size_t)i];
-	}
-	*resolved = ok ? d[0] * (m > n ? m : n) * DBL_EPSILON : 0;
-	free(y);
-	free(d);
-	free(vt);
-	free(u);
-	return ok;
-}
-
-static bool by_matrix(double *vectors, double *values, double *resolved, const struct scatter *s, int from, int n, int k)
-{
-	double *A = mem_array((size_t)n * (size_t)n + 1, sizeof *A), *d = mem_new((size_t)n + 1, sizeof *d);
-	double *z = mem_new((size_t)n * (size_t)k + 1, sizeof *z);
-	lapack_int *support = mem_new(2 * (size_t)k + 2, sizeof *support), found = 0;
-	// Column-major upper is row-major lower: no copy inside LAPACKE.
-	for (int i = 0; i < n; i++)
-		memcpy(A + (size_t)i * (size_t)n, s->S + (size_t)(from + i) * (size_t)s->p + from, (size_t)(i + 1) * sizeof *A);
-	bool ok = !LAPACKE_dsyevr(LAPACK_COL_MAJOR, 'V', 'I', 'U', n, A, n, 0, 0, n - k + 1, n, 0, &found, d, z, n, support)
-	          && found == k;
-	for (int c = 0; c < k && ok; c++) {
-		values[c] = sqrt(d[k - 1 - c] > 0 ? d[k - 1 - c] : 0);
-		for (int i = 0; i < n; i++)
-			vectors[i * k + c] = z[(size_t)(k - 1 - c) * (size_t)n + (size_t)i];
-	}
-	*resolved = ok ? sqrt(fmax(d[k - 1], 0) * n * DBL_EPSILON) : 0;
-	free(A);
-	free(d);
-	free(z);
-	free(support);
-	return ok;
-}
-
-int scatter_components(double *vectors, double *values, const struct scatter *s, int from, int n, int k)
-{
-	double resolved = 0;
-	memset(vectors, 0, (size_t)n * (size_t)k * sizeof *vectors);
-	memset(values, 0, (size_t)k * sizeof *values);
-	if (!n || !k || !s->n)
-		return 0;
-	if (!(s->S ? by_matrix : by_rows)(vectors, values, &resolved, s, from, n, k))
-		return 0;
-	double mean2 = 0;  // what does not move at all differs from its mean by rounding
-	for (int i = from; i < from + n; i++)
-		mean2 += s->mean[i] * s->mean[i];
-	resolved = fmax(resolved, 8 * DBL_EPSILON * sqrt(s->weight * mean2));
-	int rank = 0;
-	while (rank < k && values[rank] > resolved)
-		rank++;
-	for (int c = rank; c < k; c++) {
-		values[c] = 0;
-		for (int i = 0; i < n; i++)
-			vectors[i * k + c] = 0;
-	}
-	settle_signs(vectors, n, k);
-	return rank;
 }

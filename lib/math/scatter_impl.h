@@ -1,4 +1,4 @@
-/* scatter_impl: what scatter.c and scatter_split.c share. */
+/* scatter_impl: what scatter.c, scatter_components.c and scatter_split.c share. */
 #ifndef MATH_SCATTER_IMPL_H
 #define MATH_SCATTER_IMPL_H
 #include "math/scatter.h"
@@ -11,6 +11,9 @@ struct scatter_tile {
 };
 struct scatter_tile scatter_tile(int p, int t);
 int scatter_tiles(int p);
+
+/* Columns from..from+n-1 of the rows kept, centred and weighted: [s->n][n]. free(). */
+double *scatter_centred(const struct scatter *s, int from, int n);
 
 /* S += Y^T Y of the first `rows` rows of work, by the split. */
 void scatter_split_add(struct scatter *s, int rows);
