@@ -16,6 +16,7 @@ EMBED(viewer_paths, "render/viewer/paths.frag");
 EMBED(viewer_refine, "render/viewer/refine.frag");
 EMBED(viewer_ground, "render/viewer/ground.glsl");
 EMBED(viewer_march, "render/viewer/march.frag");
+EMBED(viewer_horizon, "render/viewer/horizon.frag");
 EMBED(viewer_iris, "render/viewer/iris.glsl");
 EMBED(viewer_eye_frag, "render/viewer/eye.frag");
 EMBED(viewer_present, "render/viewer/present.frag");

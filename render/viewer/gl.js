@@ -79,7 +79,7 @@ class Graphics {
 
 	/* What a shader builds on comes before it. */
 	text(name, parts) {
-		const below = { eye: ["ground", "iris"], march: ["ground"] }[name] || [];
+		const below = { eye: ["ground", "iris"], march: ["ground"], horizon: ["ground"] }[name] || [];
 		return [...below, ...parts.filter(p => p in this.shaders), name].map(p => this.shaders[p]).join("");
 	}
 

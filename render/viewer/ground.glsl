@@ -20,6 +20,22 @@ vec2 stretch(vec2 p, out float along, out float across)
 	return pupil.xy + d * across;
 }
 
+// The same place as stretch() knows it, the other way round.
+vec2 shrink(vec2 q)
+{
+	vec2 d = q - pupil.xy;
+	float r = length(d), root = rim * 1.02;
+	if (abs(pupil_now - pupil.z) < 1e-4 || r >= root)
+		return q;
+	return pupil.xy + d * ((pupil_now + (r - pupil.z) * (root - pupil_now) / (root - pupil.z)) / max(r, 1e-3));
+}
+
+// Whether a picture may show the map's place q, texels apart.
+bool marched(vec2 q, float texel)
+{
+	return length(q) < 1.06 * rim + 3.0 * texel && length(q - pupil.xy) > pupil.z - 0.1 - 3.0 * texel;
+}
+
 vec2 map_place(vec2 p)
 {
 	return p / (2.0 * extent) + 0.5;

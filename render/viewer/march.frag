@@ -2,7 +2,6 @@
 // camera; lib/eye/scene_shade.c, scene_tile.c, scene_march.c, scene_colour.c.
 const int NODES = 12;
 uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
-uniform vec2 heights;
 uniform sampler2D path_map, down_map, model_map;
 uniform int model_top;            // of this level's rows in model_map
 uniform int beams;
@@ -13,19 +12,9 @@ uniform float abl, exposure, tissue_gain, detail;
 uniform int nodes[2];
 uniform vec2 node[2 * NODES];     // place and weight, of the anterior border layer, then of the stroma
 #ifdef SHADOWS
-uniform float shadow_grow;        // of the distances at which the relief is looked at for shadows
+uniform sampler2D horizon_map;
 #endif
 out vec4 light;
-
-// The same place as stretch() knows it, the other way round.
-vec2 shrink(vec2 q)
-{
-	vec2 d = q - pupil.xy;
-	float r = length(d), root = rim * 1.02;
-	if (abs(pupil_now - pupil.z) < 1e-4 || r >= root)
-		return q;
-	return pupil.xy + d * ((pupil_now + (r - pupil.z) * (root - pupil_now) / (root - pupil.z)) / max(r, 1e-3));
-}
 
 vec2 path_place(int beam, int plane, vec2 p)
 {
@@ -47,34 +36,26 @@ vec4 path_to(int beam, vec3 p)
 }
 
 #ifdef SHADOWS
-// The steepest slope that the relief rises to from p in one azimuth, looked at where lib/eye/scene_shadow.c does.
-float horizon(vec3 p, float turn)
+// The steepest slope that the relief rises to from a texel, in one of sixteen azimuths: horizon.frag.
+float horizon(ivec2 at, int azimuth)
 {
-	float own = iris_depth - p.z, texel = 2.0 * extent / float(map_size >> level), steepest = -1.0, off = texel;
-	float reach = 2.0 * (heights.y - heights.x);
-	vec2 to = vec2(cos(turn), sin(turn));
-	for (int k = 0; k < 24; k++) {
-		if (off >= reach || 0.5 * off >= heights.y - own)
-			break;
-		steepest = max(steepest, (relief_at(p.xy + off * to).x - own - LOOK_BIAS) / off);
-		off += max(texel, shadow_grow * off);
-	}
-	return steepest;
+	return texelFetch(horizon_map, at + (map_size >> level) * ivec2(azimuth >> 2 & 1, azimuth >> 3), 0)[azimuth & 3];
 }
 
 // Share of the light that comes in over the horizon, which is linear between azimuths: sources are 0.15 wide; tissue that
 // stands around in the light fills shadows in.
-float shadow(vec3 p, vec3 l)
+float shadow(ivec2 at, vec3 l)
 {
 	const float STEP = 0.39269908;
-	float across = max(length(l.xy), 1e-6), turn = atan(l.y, l.x) / STEP, at = floor(turn);
-	float steepest = mix(horizon(p, at * STEP), horizon(p, (at + 1.0) * STEP), turn - at);
+	float across = max(length(l.xy), 1e-6), turn = atan(l.y, l.x) / STEP, whole = floor(turn);
+	int azimuth = int(whole) & 15;
+	float steepest = mix(horizon(at, azimuth), horizon(at, azimuth + 1 & 15), turn - whole);
 	return LOOK_FILL + (1.0 - LOOK_FILL) * clamp((-l.z / across - steepest) / LOOK_SOURCE, 0.0, 1.0);
 }
 #endif
 
 // Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
-vec3 scatter(vec3 p, vec3 v)
+vec3 scatter(ivec2 texel, vec3 p, vec3 v)
 {
 	vec4 top = relief_slope(p.xy);
 	float rate = max(v.z + dot(top.zw, v.xy), 0.2), most = 3.0 * (abl + top.y), span = (abl + top.y) / rate;
@@ -104,7 +85,7 @@ vec3 scatter(vec3 p, vec3 v)
 		vec4 near_light = path_to(b, p), far_light = path_to(b, p + span * v), lit = vec4(0.0);
 		float open = 1.0;
 #ifdef SHADOWS
-		open = shadow(p, near_light.xyz);
+		open = shadow(texel, near_light.xyz);
 #endif
 		for (int j = 0; j < NODES; j++) {
 			if (j >= total)
@@ -134,9 +115,9 @@ void main()
 	float texel = 2.0 * extent / float(map_size >> level);
 	vec2 q = (vec2(at) + 0.5) * texel - extent, xy = shrink(q);
 	light = vec4(0.0, 0.0, 0.0, 1.0);
-	if (length(q) > 1.06 * rim + 3.0 * texel || length(q - pupil.xy) < pupil.z - 0.1 - 3.0 * texel)
+	if (!marched(q, texel))
 		return;
 	vec3 p = vec3(xy, iris_depth - relief_at(xy).x), sight = -normalize(path_to(beams, vec3(xy, iris_depth)).xyz);
 	sight.z = max(sight.z, 0.2);  // flatter, nobody sees it
-	light.rgb = ratio(scatter(p, sight), texelFetch(model_map, at + ivec2(0, model_top), 0).rgb);
+	light.rgb = ratio(scatter(at, p, sight), texelFetch(model_map, at + ivec2(0, model_top), 0).rgb);
 }

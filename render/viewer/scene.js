@@ -46,6 +46,7 @@ class EyeScene {
 		this.marcher(g.first);
 		this.path_maps = {};
 		this.shades = {};
+		this.horizons = [];  // of two eyes, the latest first
 		this.seen = {};  // rays' ways, by name
 	}
 
@@ -179,17 +180,37 @@ class EyeScene {
 	march(s, cam, preset, name) {
 		const { g, data } = this, gl = g.gl, e = data.eye, solved = this.solved[name], level = this.marched(cam.pixel, preset), n = e.map_px >> level, m = data.maps.model;
 		const own = { ...this.tissue(s), ...this.nodes(preset.steps, this.optics.extinction), pupil_now: s.pupil, detail: s.detail, shadow_grow: preset.shadow, level };
+		const ground = { ...this.maps, extent: e.extent, rim: e.limbus[0], pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px, level };
 		const key = solved.key + solved.beam_rgb.join() + JSON.stringify(own), old = this.shades[name];
 		if (old && old.key === key)
 			return;
 		if (old && old.map.width !== n)
 			gl.deleteTexture(old.map.texture);
 		const map = old && old.map.width === n ? old.map : g.texture(n, n, gl.RGBA16F);
+		const horizon_map = preset.shadow > 0 ? this.horizon(ground, preset.shadow) : null;
 		g.target(map);
-		g.draw(this.marcher(preset), { ...solved, ...own, ...this.maps, sclera: this.sclera(s), pupil: e.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px,
-			abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, model_top: m.tops[level - m.from] });
+		g.draw(this.marcher(preset), { ...solved, ...own, ...ground, sclera: this.sclera(s), horizon_map, abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, model_top: m.tops[level - m.from] });
 		this.shades[name] = { key, map };
 		g.counted("marched");
+	}
+
+	/* What the relief hides of the sky, for each change of the pupil. */
+	horizon(ground, shadow_grow) {
+		const { g, horizons } = this, n = ground.map_size >> ground.level, key = [ground.pupil_now, ground.level, shadow_grow].join(), at = horizons.findIndex(h => h.key === key);
+		if (at >= 0) {
+			horizons.unshift(...horizons.splice(at, 1));
+			return horizons[0].map;
+		}
+		const last = horizons.length > 1 ? horizons.pop() : null, fits = last && last.map.width === 2 * n;
+		if (last && !fits)
+			g.gl.deleteTexture(last.map.texture);
+		const map = fits ? last.map : g.texture(2 * n, 2 * n, g.gl.RGBA16F);
+		this.horizons_of = this.horizons_of || g.program("horizon");
+		g.target(map);
+		g.draw(this.horizons_of, { ...ground, shadow_grow });
+		g.counted("horizons");
+		horizons.unshift({ key, map });
+		return map;
 	}
 
 	/* Several lights together are smooth: fewer points, and cubics between. */

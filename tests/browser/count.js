@@ -100,8 +100,8 @@ function seconds_on(gpu, [operations, reads]) {
  * text(name, parts): of a shader; directions: of the surroundings. */
 function picture(text, preset, width, height, directions, grid, coarse, map, search, face) {
 	const beams = preset.beams, all = Math.min(directions, preset.directions), nodes = Math.min(preset.steps, 3), pixels = width * height * preset.scale * preset.scale;
-	// Newton's way from its closed start takes five steps; horizons are looked at in eight places, lids within 16 px.
-	const limits = { 40: 5, SEARCH: search, 14: 1, 24: preset.shadow > 0 ? 8 : 0, NODES: nodes, LIGHTS: beams, first: all / beams, 64: 16, ACROSS: 4 };
+	// Newton's way from its closed start takes five steps; lids are looked for within 16 px; horizons stand with the pupil.
+	const limits = { 40: 5, SEARCH: search, 14: 1, NODES: nodes, LIGHTS: beams, first: all / beams, 64: 16, ACROSS: 4 };
 	const main = (name, parts, own) => new Count(text(name, parts || []), { ...limits, ...own }, (parts || []).map(p => p.toUpperCase())).of("main");
 	const eyes = face ? 2 : 1, several = all > beams, points = 2 * (several ? coarse : grid) ** 2;
 	let sum = [0, 0];

@@ -137,15 +137,19 @@ async function skips(b) {
 		p.scene.seen = {};
 		out.again = of(() => {});
 		out.gaze = of(() => { p.eyes.eye = [10, 0]; });
+		const pupil = p.values.pupil;
+		out.pupil = of(() => { p.values.pupil = 0.8 * pupil; });
+		p.values.pupil = pupil;
 		p.values.light_yaw = 0;
 		p.values.light_gain = 1;
 		p.busy = false;
 		return JSON.stringify(out);
 	})()`, 120000));
-	const { found, moved, strength, again, gaze } = counts, n = again.traced, text = JSON.stringify(counts);
+	const { found, moved, strength, again, gaze, pupil } = counts, n = again.traced, text = JSON.stringify(counts);
 	say(n > 0 && found.traced === n && found.shaded === n && !moved.traced && !moved.fielded && moved.shaded === n && moved.solved === n, "while only a light moves, no ray is traced again", text);
 	say(!strength.traced && !strength.solved && strength.marched === n, "and while it only brightens, its ways stay", text);
 	say(again.shown === strength.shown && gaze.traced === n && gaze.shown !== again.shown, "what is only shaded again is the same picture", text);
+	say(gaze.marched === n && !gaze.horizons && pupil.horizons > 0 && pupil.marched === n, "the relief's horizons stand until the pupil changes", text);
 }
 
 /* Lids shut over an eye: nothing of it is drawn or lit; a wink hides one. */
