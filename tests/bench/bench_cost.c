@@ -1,5 +1,6 @@
-/* What each stage costs on the bundled captures: time on one processor and on all of them, peak memory, and how much it reads, its
- * program's own libraries not counted. Each is run as make runs it, in turn, behind all that comes before it.
+/* What each stage costs on the bundled captures, calibrate on eight photographs of the data, at draft: time on one processor and
+ * on all of them, peak memory, and how much it reads, its program's own libraries not counted. Each is run as make runs it, in
+ * turn, behind all that comes before it. --quick: the photograph at draft alone.
  */
 #include <fcntl.h>
 #include <math.h>
@@ -13,6 +14,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/run.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/scratch.h"
 
@@ -22,13 +24,17 @@ struct column {
 	const char *name, *make, *stages[8];  // make: shell text, fills the folder $C
 	const char *qualities[2];
 	bool slow;  // once each; left out of a quick run
+	bool anew;  // what a stage keeps of an earlier run, even a forced one, is taken away before each
+	const char *data, *program;  // what it needs: of bench_data, handed to `make` as $V; in PATH. Or null
 };
 
 static const struct column columns[] = {
 	{ "photograph", "mkdir -p \"$C/photos\" && cp samples/demo/photos/right_softbox.jpg \"$C/photos\" && cat samples/demo/capture.conf",
-	  { "limbus", "unrefract", "freckles", "heightfield", "pigment", "relief", "refraction", "render" }, { "draft", "review" }, false },
+	  { "limbus", "unrefract", "freckles", "heightfield", "pigment", "relief", "refraction", "render" }, { "draft", "review" }, .slow = false },
 	{ "video", "mkdir -p \"$C\" && cp -r samples/face/video samples/face/targets samples/face/script samples/face/subject.ply \"$C\" && cat samples/face/capture.conf",
-	  { "track", "train", "transfer", "extrapolate", "animate", "render" }, { "draft" }, true },
+	  { "track", "train", "transfer", "extrapolate", "animate", "render" }, { "draft" }, .slow = true },
+	{ "views", "mkdir -p \"$C/views\" && for v in 13 16 22 31 34 36 62 63; do cp \"$V/images/000$v.jpg\" \"$C/views\" || exit 1; done",
+	  { "calibrate" }, { "draft" }, .slow = true, .anew = true, .data = "views/buddha", .program = "colmap" },
 };
 
 struct cost {
@@ -74,8 +80,18 @@ static bool run(struct cost *cost, const char *const argv[], const char *log)
 	return WIFEXITED(status) && !WEXITSTATUS(status);
 }
 
+static bool forget(const char *dir, const char *log)
+{
+	struct cost none;
+	char *work = mem_printf("%s/work", dir);
+	const char *const argv[] = { "rm", "-rf", work, 0 };
+	bool ok = run(&none, argv, log);
+	free(work);
+	return ok;
+}
+
 /* One processor and all, in turn. */
-static void stage(const char *name, const char *quality, const char *dir, const char *log, int reps)
+static void stage(const char *name, const char *quality, const char *dir, const char *log, int reps, bool anew)
 {
 	char *program = mem_printf("bin/%s", name), *capture = mem_printf("--capture=%s", dir);
 	double seconds[2][MOST_REPS];
@@ -83,7 +99,7 @@ static void stage(const char *name, const char *quality, const char *dir, const 
 	bool ok = true;
 	for (int i = 0; i < 2 * reps && ok; i++) {
 		const char *const argv[] = { program, capture, "--force", "--quiet", i % 2 ? 0 : "--threads=1", 0 };
-		ok = run(&cost[i % 2], argv, log);
+		ok = (!anew || forget(dir, log)) && run(&cost[i % 2], argv, log);
 		seconds[i % 2][i / 2] = cost[i % 2].seconds;
 	}
 	for (int k = 0; k < 2 && ok; k++) {
@@ -96,6 +112,21 @@ static void stage(const char *name, const char *quality, const char *dir, const 
 		fprintf(stderr, "%s failed; see %s\n", name, log);
 	free(program);
 	free(capture);
+}
+
+/* Whether all that the column needs is here; said, if not. */
+static bool can_run(const struct column *c)
+{
+	const char *data = c->data ? bench_data(c->data) : 0;
+	if (data)
+		setenv("V", data, 1);
+	if (c->data && !data)
+		printf("%s: no %s among the data: left out\n", c->name, c->data);
+	else if (c->program && !run_exists(c->program))
+		printf("%s: %s is not installed: left out\n", c->name, c->program);
+	else
+		return true;
+	return false;
 }
 
 static void column(const struct column *c, const char *quality)
@@ -112,7 +143,7 @@ static void column(const struct column *c, const char *quality)
 		bench_row("what a make costs", c->name, quality, (struct bench_time){ all.seconds, all.seconds, all.seconds }, "make", all.memory_mib, "MiB",
 		          "peak memory, the largest of its programs");
 		for (int i = 0; i < COUNT(c->stages) && c->stages[i]; i++)
-			stage(c->stages[i], quality, dir, log, c->slow || bench_quick() ? 1 : MOST_REPS);
+			stage(c->stages[i], quality, dir, log, c->slow || bench_quick() ? 1 : MOST_REPS, c->anew);
 	} else
 		fprintf(stderr, "%s: cannot be made; see %s\n", dir, log);
 	free(fill);
@@ -131,7 +162,7 @@ int main(int argc, char **argv)
 	setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
 	for (int i = 0; i < COUNT(columns); i++)
 		for (int q = 0; q < COUNT(columns[i].qualities) && columns[i].qualities[q]; q++)
-			if (!bench_quick() || !(columns[i].slow || q))
+			if ((!bench_quick() || !(columns[i].slow || q)) && can_run(&columns[i]))
 				column(&columns[i], columns[i].qualities[q]);
 	scratch_close();
 	return bench_close();
