@@ -12,7 +12,7 @@
 #include "math/vec.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 enum { NODES = SCENE_GRID * SCENE_GRID };

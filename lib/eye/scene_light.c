@@ -5,7 +5,7 @@
 
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 struct scene_lighting scene_lighting_of(const struct envmap *env, const struct envmap *mirror, int lights, int each)

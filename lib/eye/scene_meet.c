@@ -5,7 +5,7 @@
 
 #if defined(__GNUC__) && !defined(__clang__)
 // This pass turns the bounds of relief_at and exp_negative into branches, and no loop over them is vector code then.
-#pragma GCC optimize("no-tree-pre")
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")
 #endif
 
 /* A bracket of the crossing along each ray: the relief lies below it at a, above it at b. */

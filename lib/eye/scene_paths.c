@@ -11,12 +11,12 @@
 #include "math/vec.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 /* Unit direction from the point to where the light comes in, irradiance of a plane that faces it, and the place on the cornea. */
 enum { DIR_X, DIR_Y, DIR_Z, POWER, AT_X, AT_Y, CHANNELS };
-enum { ANGLES = 64, RINGS = 48, TURNS = 64, WRAP = 4, ROW = TURNS + WRAP, FIELD = RINGS * ROW };
+enum { ANGLES = 64, RINGS = 24, TURNS = 64, WRAP = 4, ROW = TURNS + WRAP, FIELD = RINGS * ROW };
 static const double lowest = 0.16;  // z of the last angle's light: see scene_lights_turn
 
 struct scene_paths {

@@ -52,9 +52,13 @@ enum { QUICK_TILE = 16, NODE_STEP = 8, NODE_SIDE = 3, NODES_IN_TILE = 9, NODE_LA
 /* A tile that is not mixed: as in quick_spots at its nodes, and where all its pixels look into the maps. */
 struct quick_nodes {
 	float nx[NODE_LANES], ny[NODE_LANES], nz[NODE_LANES], rho[NODE_LANES], mirror[NODE_LANES], rough[NODE_LANES];
-	float eu[NODE_LANES], ev[NODE_LANES], iu[NODE_LANES], iv[NODE_LANES];
+	float eu[NODE_LANES], ev[NODE_LANES], iu[NODE_LANES], iv[NODE_LANES], wu[NODE_LANES], wv[NODE_LANES];
 	float first[2][BATCH], second[2][BATCH];  // on the iris, or else the white; on the white beyond the iris' limbus
 };
+
+/* What is laid between nodes: where rays behind the cornea cross the iris plane, how far aside they go in a mm of depth, and
+ * how high the relief stands there. */
+enum { NODE_U, NODE_V, NODE_ASIDE, NODE_ACROSS, NODE_HEIGHT, NODE_CHANNELS };
 
 /* Where the rays end, once: what they see is found in it. */
 struct quick_found {
@@ -63,6 +67,7 @@ struct quick_found {
 	struct quick_nodes nodes;
 	struct quick_spots spots;  // mixed: normals before the film has bent them
 	float bent[3][BATCH];      // and after
+	float between[NODE_CHANNELS][NODE_LANES];  // of a tile's iris that quick_grid_pixels has yet to lay
 };
 
 /* In this order; quick_iris where something of the iris is seen, sclera where something white is; reflect into the camera's
@@ -81,6 +86,12 @@ void quick_lay(float *out, const float node[NODE_LANES]);
  * False: something in it wants every ray. */
 typedef void quick_make(struct quick_rays *rays, const float *x, const float *y, const void *ctx);
 bool quick_grid(struct quick_found *found, float x, float y, quick_make *make, const void *ctx, const struct quick_look *look);
+
+/* Then, where all its pixels look into the iris' maps: reads the relief. */
+void quick_grid_pixels(struct quick_found *found, const struct quick_look *look);
+
+/* Asks memory for what of the maps a tile that is not mixed will read: a while before it does. */
+void quick_ask(const struct quick_found *found, const struct quick_look *look);
 
 /* Finds it by every ray. */
 void quick_find(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);

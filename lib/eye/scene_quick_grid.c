@@ -1,13 +1,14 @@
 /* Tiles of scene_quick.h where nothing but the maps varies fast. Rays are followed at nodes alone; between them places,
  * directions and Fresnel are linear, to 2e-3 px of what each ray would find (over 8 px the refracted place bends by
  * (8 px)^2 / 8 of 0.014 / mm). */
+#include "base/mem.h"
 #include "eye/scene_quick.h"
 
 #include <math.h>
 #include <string.h>
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 _Static_assert(NODE_STEP == 8 && NODE_SIDE == QUICK_TILE / NODE_STEP + 1, "a row is two vectors of eight");
@@ -59,10 +60,6 @@ static enum quick_kind kind_of(const struct quick_spots *s, const struct quick_r
 		return QUICK_MIXED;
 	return in == r->n ? QUICK_CORNEA : out == r->n ? QUICK_SCLERA : through == r->n ? QUICK_LIMBUS : QUICK_MIXED;
 }
-
-/* What is laid between nodes: where rays behind the cornea cross the iris plane, how far aside they go in a mm of depth, and
- * how high the relief stands there. */
-enum { NODE_U, NODE_V, NODE_ASIDE, NODE_ACROSS, NODE_HEIGHT, NODE_CHANNELS };
 
 /* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets the relief. */
 SIMD_INLINE float meet(float h, float u, float v, float aside, float across, const struct quick_look *k, int steps)
@@ -143,44 +140,74 @@ static bool jumps(const float *u, const float *v, int n)
 	return high[0] - low[0] > 0.5f || high[1] - low[1] > 0.5f;
 }
 
-/* The tile on the right comes next, and looks on where this one ends: its texels are asked for while this one is worked on. */
-static void ahead(const struct quick_found *f, const struct quick_look *k)
-{
-	const struct scene_texels *map = k->shade->detail;
-	const float *u = f->nodes.iu, *v = f->nodes.iv, per = k->shade->per_mm, off = 0.5f * (float)map->n - 0.5f;
-	float wide = (u[NODE_SIDE - 1] - u[0]) * per, slant = (v[NODE_SIDE - 1] - v[0]) * per;
-	for (int y = 0; y < QUICK_TILE; y++) {
-		int a = (y / NODE_STEP + 1) * NODE_SIDE - 1, b = a + NODE_SIDE;
-		float w = (float)(y % NODE_STEP) / NODE_STEP, x0 = (u[a] + w * (u[b] - u[a])) * per + off, y0 = (v[a] + w * (v[b] - v[a])) * per + off;
-		for (int i = 0; i < 3; i++) {
-			int x = (int)(x0 + 0.5f * (float)i * wide), row = (int)(y0 + 0.5f * (float)i * slant);
-			if (x < 0 || row < 0 || x >= map->n || row >= map->n)
-				continue;
-			__builtin_prefetch(map->px + 4 * ((long)row * map->stride + x));
-			if (i < 2)
-				__builtin_prefetch(k->level->pairs + (long)row * SCENE_PAIR_STRIDE(map->n) + x);
-		}
-	}
-}
-
 static void iris_lay(struct quick_found *f, const struct quick_look *k)
 {
-	float q[NODE_CHANNELS][NODE_LANES];
+	float(*q)[NODE_LANES] = f->between;
 	meet_nodes(q, &f->spots, k);
 	for (int i = 0; i < NODES_IN_TILE; i++) {
 		f->nodes.iu[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
 		f->nodes.iv[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
 	}
-	ahead(f, k);
-	meet_pixels(f->nodes.first[0], f->nodes.first[1], (const float(*)[NODE_LANES])q, k);
+}
+
+void quick_grid_pixels(struct quick_found *f, const struct quick_look *k)
+{
+	if (f->kind != QUICK_MIXED && f->seen)
+		meet_pixels(f->nodes.first[0], f->nodes.first[1], (const float(*)[NODE_LANES])f->between, k);
+}
+
+/* Texels of a map of n x n, `per` in a unit of the nodes' places, at three columns of a tile: its first, its middle, the next tile's
+ * first. */
+enum { ROWS = QUICK_TILE + 1 };
+
+SIMD_CLONES static void columns(int *restrict x, int *restrict y, const float *u, const float *v, float per, int n)
+{
+	float off = 0.5f * (float)n - 0.5f, top = (float)n - 1;
+	for (int i = 0; i < NODE_SIDE; i++) {
+		float u0 = u[i], u1 = u[NODE_SIDE + i], u2 = u[2 * NODE_SIDE + i], v0 = v[i], v1 = v[NODE_SIDE + i], v2 = v[2 * NODE_SIDE + i];
+		SIMD_LOOP
+		for (int k = 0; k < ROWS; k++) {
+			float w = (float)k / NODE_STEP, s = w > 1 ? w - 1 : 0;
+			w = w < 1 ? w : 1;
+			x[i * ROWS + k] = (int)quick_clamp((u0 + w * (u1 - u0) + s * (u2 - u1)) * per + off, 0, top);
+			y[i * ROWS + k] = (int)quick_clamp((v0 + w * (v1 - v0) + s * (v2 - v1)) * per + off, 0, top);
+		}
+	}
+}
+
+void quick_ask(const struct quick_found *f, const struct quick_look *k)
+{
+	const struct scene_shade *h = k->shade;
+	const struct scene_texels *t = h->detail, *w = &k->scene->white;
+	const struct quick_nodes *n = &f->nodes;
+	int x[NODE_SIDE * ROWS], y[NODE_SIDE * ROWS];
+	if (f->kind == QUICK_MIXED)
+		return;
+	if (f->seen) {
+		columns(x, y, n->iu, n->iv, h->per_mm, t->n);
+		for (int i = 0; i < NODE_SIDE * ROWS; i++) {
+			__builtin_prefetch(t->px + 4 * (y[i] * (long)t->stride + x[i]));
+			__builtin_prefetch(k->level->pairs + y[i] * (long)SCENE_PAIR_STRIDE(t->n) + x[i]);
+		}
+	}
+	if (f->seen && !h->even) {
+		columns(x, y, n->iu, n->iv, h->light_per_mm, h->light_n);
+		for (int i = 0; i < NODE_SIDE * ROWS; i += 2)
+			__builtin_prefetch(h->light + 4 * (y[i] * (long)h->light_stride + x[i]));
+	}
+	if (f->white) {
+		columns(x, y, n->wu, n->wv, (float)w->n, w->n);
+		for (int i = 0; i < NODE_SIDE * ROWS; i += 4)
+			__builtin_prefetch(w->px + 4 * (y[i] * (long)w->stride + x[i]));
+	}
 }
 
 /* What is kept of the rays at the nodes. */
 static void nodes_put(struct quick_nodes *n, const struct quick_spots *s)
 {
-	float *const to[] = { n->nx, n->ny, n->nz, n->rho, n->mirror, n->rough, n->eu, n->ev };
-	const float *const from[] = { s->nx, s->ny, s->nz, s->rho, s->mirror, s->rough, s->eu, s->ev };
-	for (int k = 0; k < 8; k++)
+	float *const to[] = { n->nx, n->ny, n->nz, n->rho, n->mirror, n->rough, n->eu, n->ev, n->wu, n->wv };
+	const float *const from[] = { s->nx, s->ny, s->nz, s->rho, s->mirror, s->rough, s->eu, s->ev, s->su, s->sv };
+	for (int k = 0; k < COUNT(to); k++)
 		memcpy(to[k], from[k], NODE_LANES * sizeof(float));
 }
 

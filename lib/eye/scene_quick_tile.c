@@ -6,7 +6,7 @@
 #include "eye/scene_quick.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 /* The mirror image is looked up at every fourth pixel, five by five. */

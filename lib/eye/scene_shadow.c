@@ -7,7 +7,7 @@
 #include "base/mem.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 static const float bias = (float)LOOK_BIAS;  // mm: a surface does not shadow itself

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
+#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
 SIMD_CLONES void scene_body_make(struct march_body *b, const struct iris_batch *r, const struct march_tile *tile)

@@ -1,16 +1,14 @@
 /* Pictures: every pixel's middle first, then more rays where neighbours differ. Tiles are independent of each other, so
  * that the bytes do not depend on the number of threads. */
-#include "eye/scene_trace.h"
+#include "eye/scene_canvas.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "math/vec.h"
 
-enum { TILE = QUICK_TILE };
-_Static_assert(TILE * TILE == BATCH, "a tile's first rays are one batch");
+enum { RUN = 40 };  // tiles in a row are one thread's
 
 static void look_make(struct scene_look *look, const struct scene *s, const struct scene_view *view,
                       const struct scene_lighting *light, const struct scene_beams *beams)
@@ -29,122 +27,6 @@ static void look_make(struct scene_look *look, const struct scene *s, const stru
 	double mm = view->scale * away / view->camera.focal_px;
 	look->level = scene_level_for(s, mm);
 	look->soft = (float)(0.5 * mm);
-}
-
-struct canvas {
-	const struct scene *scene;
-	const struct scene_view *view;
-	const struct scene_look *look;
-	struct image *image;
-	bool bent;  // the lens distorts
-	struct sight_plane plane;
-};
-
-static void quick_points(struct quick_found *found, int n, const float *x, const float *y, const struct canvas *c)
-{
-	struct quick_rays r = { .n = n };
-	sight_rays_make(&r, x, y, &c->plane);
-	quick_find(found, &r, c->look->quick);
-}
-
-/* Middles of a tile's pixels. */
-static void tile_points(float *x, float *y, int tx, int ty)
-{
-	for (int i = 0; i < BATCH; i++) {
-		x[i] = (float)(tx + i % TILE) + 0.5f;
-		y[i] = (float)(ty + i / TILE) + 0.5f;
-	}
-}
-
-/* Rays through n points of the picture (px), traced. */
-static void trace_points(float rgba[][4], int n, const float *x, const float *y, const struct canvas *c, long *iris)
-{
-	float dx[BATCH], dy[BATCH], dz[BATCH];
-	const struct scene_view *v = c->view;
-	if (c->look->quick && !c->bent) {
-		struct quick_found found;
-		quick_points(&found, n, x, y, c);
-		quick_colour(rgba, &found, n, c->look->quick);
-		*iris += found.seen;
-		return;
-	}
-	for (int i = 0; i < n; i++) {
-		double px[2] = { v->x0 + v->scale * x[i], v->y0 + v->scale * y[i] }, cam[3], d[3];
-		if (c->bent) {
-			camera_ray(cam, &v->camera, px);
-		} else {
-			cam[0] = (px[0] - v->camera.center_px[0]) / v->camera.focal_px;
-			cam[1] = (px[1] - v->camera.center_px[1]) / v->camera.focal_px;
-			cam[2] = 1;
-		}
-		for (int j = 0; j < 3; j++)
-			d[j] = v->cam_from_eye[0][j] * cam[0] + v->cam_from_eye[1][j] * cam[1] + v->cam_from_eye[2][j] * cam[2];
-		vec_unit(d, d);
-		dx[i] = (float)d[0];
-		dy[i] = (float)d[1];
-		dz[i] = (float)d[2];
-	}
-	scene_trace(rgba, n, dx, dy, dz, c->scene, c->look, iris);
-}
-
-/* A tile of a quick picture, n of whose rays are of the picture: by the rays at its nodes if these are enough. What its rays
- * met may be known from the picture before. out: rows `stride` floats apart. */
-static void quick_tile(float *out, long stride, int n, int tx, int ty, int tile, const struct canvas *c, struct scene_count *count)
-{
-	struct quick_found mine, *kept = c->view->hits ? scene_hits_tile(c->view->hits, tile) : 0, *found = kept ? kept : &mine;
-	if (!kept && !quick_grid(found, (float)tx + 0.5f, (float)ty + 0.5f, sight_rays_make, &c->plane, c->look->quick)) {
-		float x[BATCH], y[BATCH];
-		tile_points(x, y, tx, ty);
-		quick_points(found, BATCH, x, y, c);
-	}
-	if (c->view->hits && !kept)
-		scene_hits_keep(c->view->hits, tile, found);
-	*(kept ? &count->kept : &count->rays) += n;
-	count->iris += found->seen;
-	if (found->kind != QUICK_MIXED) {
-		quick_tile_colour(out, stride, found, c->look->quick);
-		return;
-	}
-	float rgba[BATCH][4];
-	quick_colour(rgba, found, BATCH, c->look->quick);
-	for (int y = 0; y < TILE; y++)
-		memcpy(out + y * stride, rgba[y * TILE], TILE * sizeof *rgba);
-}
-
-static bool any_visible(const struct scene_view *v, int tx, int ty, int x1, int y1)
-{
-	for (int y = ty; y < y1; y++)
-		if (!v->visible || memchr(v->visible + (long)y * v->width + tx, 1, (size_t)(x1 - tx)))
-			return true;
-	return false;
-}
-
-static void first_rays(const struct canvas *c, int tile, int tx, int ty, struct scene_count *count)
-{
-	float rgba[BATCH][4];
-	int x1 = tx + TILE < c->view->width ? tx + TILE : c->view->width, y1 = ty + TILE < c->view->height ? ty + TILE : c->view->height;
-	int n = (x1 - tx) * (y1 - ty);
-	bool whole = n == BATCH;
-	if (!any_visible(c->view, tx, ty, x1, y1)) {
-		count->hidden += n;
-		for (int y = ty; y < y1; y++)
-			memset(image_at(c->image, tx, y), 0, (size_t)(x1 - tx) * sizeof *rgba);
-		return;
-	}
-	if (c->look->quick && whole) {
-		quick_tile(image_at(c->image, tx, ty), 4L * c->image->width, n, tx, ty, tile, c, count);
-		return;
-	}
-	if (c->look->quick) {
-		quick_tile(rgba[0], 4 * TILE, n, tx, ty, tile, c, count);
-	} else {
-		float x[BATCH], y[BATCH];
-		tile_points(x, y, tx, ty);
-		trace_points(rgba, BATCH, x, y, c, &count->iris);
-		count->rays += n;
-	}
-	for (int y = ty; y < y1; y++)
-		memcpy(image_at(c->image, tx, y), rgba[(y - ty) * TILE], (size_t)(x1 - tx) * sizeof *rgba);
 }
 
 /* About what the eye makes of a value: steps of it, not of light, decide where more rays go. */
@@ -183,7 +65,7 @@ static void refine_flush(struct refine *r, const struct canvas *c, struct scene_
 	float rgba[BATCH][4];
 	if (!r->n)
 		return;
-	trace_points(rgba, r->n, r->x, r->y, c, &count->iris);
+	canvas_trace(rgba, r->n, r->x, r->y, c, &count->iris);
 	for (int i = 0; i < r->n; i++)
 		for (int k = 0; k < 4; k++)  // a mirror image brighter than white counts as a little more than white
 			r->sum[r->pixel[i]][k] += rgba[i][k] < 2 ? rgba[i][k] : 2;
@@ -247,9 +129,9 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 #pragma omp parallel reduction(+ : rays, iris, kept, hidden)
 	{
 		struct scene_count mine = { 0 };
-#pragma omp for schedule(dynamic, 40)
-		for (int i = 0; i < tiles; i++)
-			first_rays(&c, i, i % across * TILE, i / across * TILE, &mine);
+#pragma omp for schedule(dynamic)
+		for (int i = 0; i < tiles; i += RUN)
+			canvas_first(&c, i, i + RUN < tiles ? i + RUN : tiles, across, &mine);
 #pragma omp for schedule(static)
 		for (int y = 0; y < (mark ? view->height : 0); y++)
 			for (int x = 0; x < view->width; x++)

@@ -1,8 +1,12 @@
 /* simd: one loop, compiled for several instruction sets, the best chosen when the program starts.
- * The bits do not depend on which: floating-point contraction is off for all of them (Makefile).
+ * The bits do not depend on which: floating-point contraction is off for all of them (Makefile). Where a file turns it on (the
+ * renderer's, whose pictures round to 1 / 255 or to half precision), a multiplication and a sum are one rounding on processors
+ * that have it, and the versions differ in the last digit.
  */
 #ifndef MATH_SIMD_H
 #define MATH_SIMD_H
+
+_Static_assert(sizeof(float) == 4, "lanes are of 32 bits");
 
 #if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && (!defined(__clang__) || __clang_major__ >= 17)
 #define SIMD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
