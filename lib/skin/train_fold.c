@@ -168,7 +168,7 @@ void cv_components(const struct cv *cv, const double *w, double *mean, double *V
 	LAPACKE_dsyevd(LAPACK_ROW_MAJOR, 'V', 'L', R, G, R, d);
 	for (int i = 0; i < R; i++)
 		for (int c = 0; c < R; c++)
-			V[i * R + c] = G[i * R + R - 1 - c];
+			V[i * R + c] = d[R - 1 - c] > train_rounding(R, d[R - 1]) ? G[i * R + R - 1 - c] : 0;
 	free(G);
 	free(same);
 	free(d);

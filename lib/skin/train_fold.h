@@ -40,7 +40,8 @@ void cv_shuffle(struct cv *cv);
 /* Weights of the frames that fold f is trained on (test false) or tested with. free(). */
 double *cv_weights(const struct cv *cv, int f, bool test);
 
-/* Components of the training frames of a fold, within those of the clip: mean[R], V[R][R], largest first. */
+/* Components of the training frames of a fold, within those of the clip: mean[R], V[R][R], largest first; 0 where those frames
+ * have no more. */
 void cv_components(const struct cv *cv, const double *w, double *mean, double *V);
 
 /* Adds fold f's held-out errors of predicted scores y[m][R] (null: the shapes' own, for the components alone). */

@@ -1,6 +1,8 @@
 /* train_impl: what the pieces of train share. */
 #ifndef SKIN_TRAIN_IMPL_H
 #define SKIN_TRAIN_IMPL_H
+#include <float.h>
+
 #include "math/scatter.h"
 #include "skin/train.h"
 
@@ -86,6 +88,13 @@ void train_fit(struct train *t);
 void train_sigmas(struct train *t);
 
 void train_reach(struct train *t);                     // what lids and skin were learnt from; frames outside of it are told
+
+/* Eigenvalues of n x n moments that are no larger are rounding: fewer frames than components have directions beside them, and
+ * which is any compiler's choice. */
+static inline double train_rounding(int n, double largest)
+{
+	return 8 * n * DBL_EPSILON * largest;
+}
 
 /* Regressors of the sample's frames for that part: [n_sample][q], rows with a NAN have weight 0 in w. *q set; free(). */
 double *train_regressors(const struct train *t, int part, int *q);

@@ -101,7 +101,7 @@ static void refit_components(struct replica *r, const struct part *part, double 
 	for (int c = 0; c < k; c++) {
 		double sign = G[c * R + R - 1 - c] < 0 ? -1 : 1;
 		for (int i = 0; i < R; i++)
-			z[i * k + c] = sign * G[i * R + R - 1 - c];
+			z[i * k + c] = d[R - 1 - c] > train_rounding(R, d[R - 1]) ? sign * G[i * R + R - 1 - c] : 0;
 		r->sd[c] = sqrt(fmax(0, d[R - 1 - c]) / weight);
 	}
 	cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, k, R, 1, part->V_all, R, z, k, 0, r->V, r->kept);
