@@ -22,9 +22,6 @@ struct scene_lighting scene_lighting(const struct envmap *env, const struct envm
 	return scene_lighting_of(env, mirror, lights, 8);
 }
 
-/* All channels of a node as one vector. */
-typedef float way_vector __attribute__((vector_size(4 * SCENE_WAY), aligned(4), may_alias));
-
 SIMD_CLONES
 void scene_table_at(float out[SCENE_WAY], const struct scene_beam *beam, const float p[3], float extent)
 {

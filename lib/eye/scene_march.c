@@ -1,6 +1,7 @@
 /* The iris paper's section 5.3, vectorised over rays: single scattering below the relief. What a node of the quadrature
  * needs of the maps is the same for every light, and is read once. */
 #include "eye/scene_march.h"
+#include "eye/scene_quick_map.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,42 +10,64 @@
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
-/* at, weight: of the quadrature, on 0..1 of its layer. r: the part's first ray on. */
-SIMD_CLONES
-static void node_make(int n, struct march_node *m, const struct iris_batch *r, int first, const struct ground *g, bool stroma,
-                      float at, float weight)
+/* at, weight: of the quadrature, on 0..1 of its layer. r: the part's first ray on. pairs: a tile's rays, on its maps. */
+SIMD_INLINE void node_make(int n, struct march_node *restrict m, const struct iris_batch *restrict r, int first, const struct ground *g,
+                           const struct march_tissue *t, bool pairs, int layer, float at, float weight)
 {
 	const float *restrict px = r->px + first, *restrict py = r->py + first, *restrict pz = r->pz + first;
 	const float *restrict vx = r->vx + first, *restrict vy = r->vy + first, *restrict vz = r->vz + first;
 	const float *restrict near = r->near + first, *restrict span = r->span + first, *restrict relief = g->relief;
-	float *restrict u = m->u, *restrict slope_x = m->gx, *restrict slope_y = m->gy, *restrict length = m->length;
-	float *restrict above_abl = m->above[0], *restrict above_stroma = m->above[1];
-	float *restrict seen_abl = m->seen[0], *restrict seen_stroma = m->seen[1];
-	float per_mm = g->per_mm, z_plane = g->z_plane, abl = g->abl;
+	const int *restrict pair = g->pairs;
+	float per_mm = g->per_mm, z_plane = g->z_plane, abl = g->abl, over[PART], under[PART], seen_over[PART], seen_under[PART];
 	int size = g->size;
-	float of_span = stroma ? 1 : 0, of_near = 1 - 2 * of_span;
+	float of_span = layer == TISSUE_STROMA ? 1 : 0, of_near = 1 - 2 * of_span;
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		float layer = of_span * span[i] + of_near * near[i], s = of_span * near[i] + at * layer, gx, gy;
+		float thick = of_span * span[i] + of_near * near[i], s = of_span * near[i] + at * thick, gx, gy;
 		float x = px[i] + s * vx[i], y = py[i] + s * vy[i], z = pz[i] + s * vz[i];
-		float depth = z - z_plane + relief_at(relief, size, per_mm, x, y, &gx, &gy);
+		float depth = z - z_plane + (pairs ? quick_height_at(pair, size, per_mm, x, y, &gx, &gy) : relief_at(relief, size, per_mm, x, y, &gx, &gy));
 		depth = depth > 0 ? depth : 0;
-		u[i] = s / span[i];
-		slope_x[i] = gx;
-		slope_y[i] = gy;
-		above_abl[i] = depth < abl ? depth : abl;
-		above_stroma[i] = depth > abl ? depth - abl : 0;
-		seen_abl[i] = s < near[i] ? s : near[i];
-		seen_stroma[i] = s > near[i] ? s - near[i] : 0;
-		length[i] = weight * layer;
+		m->u[i] = s / span[i];
+		m->gx[i] = gx;
+		m->gy[i] = gy;
+		m->length[i] = weight * thick;
+		over[i] = depth < abl ? depth : abl;
+		under[i] = depth > abl ? depth - abl : 0;
+		seen_over[i] = s < near[i] ? s : near[i];
+		seen_under[i] = s > near[i] ? s - near[i] : 0;
+	}
+	// Least: what is darker is none, and four times the one and the other stay exponents of a float.
+	for (int k = 0; k < t->bands; k++) {
+		float of_over = t->fade[TISSUE_ABL][k], of_under = t->fade[TISSUE_STROMA][k], source = t->source[layer][k];
+		SIMD_LOOP
+		for (int i = 0; i < n; i++) {
+			float rise = over[i] * of_over + under[i] * of_under, seen = seen_over[i] * of_over + seen_under[i] * of_under + source;
+			m->rise[k][i] = rise > -16 ? rise : -16;
+			m->seen[k][i] = seen > -56 ? seen : -56;
+		}
 	}
 }
 
-/* exp2 of what is not positive, to 1e-4: a cubic on -1/2..1/2 times a power of 2, which is added to its exponent. The nearest
- * whole number is what a sum with 1.5 2^23 is rounded to. */
-SIMD_INLINE float exp2_negative(float t)
+SIMD_CLONES static void node_of_rays(int n, struct march_node *m, const struct iris_batch *r, int first, const struct ground *g,
+                                     const struct march_tissue *t, int layer, float at, float weight)
 {
-	t = t > -120 ? t : -120;
+	node_make(n, m, r, first, g, t, false, layer, at, weight);
+	memcpy(m->q, m->u, sizeof m->u);
+}
+
+SIMD_CLONES static void node_of_tile(struct march_node *m, const struct iris_batch *r, const struct ground *g, const struct march_tissue *t,
+                                     const struct march_body *body, int layer, float at, float weight)
+{
+	node_make(PART, m, r, 0, g, t, true, layer, at, weight);
+	SIMD_LOOP
+	for (int i = 0; i < PART; i++)
+		m->q[i] = body->q[0][i] + m->u[i] * (body->q[1][i] - body->q[0][i]);
+}
+
+/* exp2 between -120 and 120, to 1e-4: a cubic on -1/2..1/2 times a power of 2, which is added to its exponent. The nearest whole
+ * number is what a sum with 1.5 2^23 is rounded to. */
+SIMD_INLINE float exp2_quick(float t)
+{
 	union {
 		float f;
 		unsigned i;
@@ -55,111 +78,81 @@ SIMD_INLINE float exp2_negative(float t)
 	return p.f;
 }
 
-/* What a layer makes of light, in every band: per mm, of 2. */
-struct rates {
-	float source[TISSUE_BANDS_MAX], fade[TISSUE_LAYERS][TISSUE_BANDS_MAX];
-};
-
-/* One node, one light, all bands: adds to sum[band][ray]. Up along l the relief falls away by its slope: depth lost in a
- * mm of the way. A slope that faces away from the light makes the way long: that is the shading of the relief. */
-SIMD_INLINE void node_light(int n, int bands, float (*restrict sum)[PART], const struct march_node *restrict m,
-                            const struct march_light *restrict w, const struct rates *restrict r)
+/* tissue.h's integral, times pi (a white plane's radiance is its irradiance / pi). */
+struct march_tissue scene_march_tissue(const struct tissue_optics *o)
 {
+	struct march_tissue t = { .bands = o->n };
+	for (int k = 0; k < o->n; k++) {
+		for (int l = 0; l < TISSUE_LAYERS; l++) {
+			t.source[l][k] = (float)fmax(log2(M_PI * o->source[l][k] * TISSUE_PHASE), -100);
+			t.fade[l][k] = (float)(-M_LOG2E * o->extinction[l][k]);
+		}
+		for (int c = 0; c < 3; c++)
+			t.rgb[c][k] = (float)(o->rgb[k][c] * o->exposure);
+	}
+	return t;
+}
+
+/* Some nodes' light in some bands, from the first on: per[c][k] of it into a colour. Up along l the relief falls away by its slope:
+ * depth lost in a mm of the way. A slope that faces away from the light makes the way long: that is the shading of the relief. */
+SIMD_INLINE void light_some(int nodes, int bands, int n, float (*restrict rgb)[BATCH], int first, const struct march_node *restrict node, int band,
+                            const struct march_light *restrict w, const float (*restrict per)[TISSUE_BANDS_MAX])
+{
+	float *restrict red = rgb[0] + first, *restrict green = rgb[1] + first, *restrict blue = rgb[2] + first;
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		float u = m->u[i], lx = w->x[0][i] + u * (w->x[1][i] - w->x[0][i]), ly = w->y[0][i] + u * (w->y[1][i] - w->y[0][i]),
-		      lz = w->z[0][i] + u * (w->z[1][i] - w->z[0][i]), lost = -lz - m->gx[i] * lx - m->gy[i] * ly;
-		float inv = 1 / (lost > 0.25f ? lost : 0.25f);
-		float a = m->above[0][i] * inv + m->seen[0][i], b = m->above[1][i] * inv + m->seen[1][i];
-		float light = m->length[i] * (w->power[0][i] + u * (w->power[1][i] - w->power[0][i]));
-#pragma GCC unroll 8
-		for (int k = 0; k < bands; k++)
-			sum[k][i] += r->source[k] * light * exp2_negative(a * r->fade[0][k] + b * r->fade[1][k]);
-	}
-}
-
-SIMD_CLONES static void node_light_3(int n, float (*sum)[PART], const struct march_node *m, const struct march_light *w, const struct rates *r)
-{
-	node_light(n, 3, sum, m, w, r);
-}
-
-SIMD_CLONES static void node_light_4(int n, float (*sum)[PART], const struct march_node *m, const struct march_light *w, const struct rates *r)
-{
-	node_light(n, 4, sum, m, w, r);
-}
-
-SIMD_CLONES static void node_light_1(int n, float (*sum)[PART], const struct march_node *m, const struct march_light *w, const struct rates *r)
-{
-	node_light(n, 1, sum, m, w, r);
-}
-
-static void node_lights(int n, int bands, float (*sum)[PART], const struct march_node *m, const struct march_light *w, const struct rates *r)
-{
-	if (bands == 4) {
-		node_light_4(n, sum, m, w, r);
-		return;
-	}
-	int k = bands / 3 * 3;
-	for (int from = 0; from < bands; from += from < k ? 3 : 1) {
-		struct rates part;
-		for (int j = 0; j < 3 && from + j < bands; j++) {
-			part.source[j] = r->source[from + j];
-			part.fade[0][j] = r->fade[0][from + j];
-			part.fade[1][j] = r->fade[1][from + j];
-		}
-		(from < k ? node_light_3 : node_light_1)(n, sum + from, m, w, &part);
-	}
-}
-
-/* tissue.h's integral, times pi (a white plane's radiance is its irradiance / pi). */
-static struct rates rates_of(const struct tissue_optics *o, int layer)
-{
-	struct rates r = { 0 };
-	for (int k = 0; k < o->n; k++) {
-		r.source[k] = (float)(M_PI * o->source[layer][k] * TISSUE_PHASE);
-		for (int l = 0; l < TISSUE_LAYERS; l++)
-			r.fade[l][k] = (float)(-M_LOG2E * o->extinction[l][k]);
-	}
-	return r;
-}
-
-/* Bands' sums as one colour: per[c][k] of band k. */
-SIMD_INLINE void colour_add(float (*restrict rgb)[BATCH], int first, int n, int bands, const float per[3][TISSUE_BANDS_MAX], const float (*restrict sum)[PART])
-{
-	for (int c = 0; c < 3; c++) {
-		float *restrict to = rgb[c] + first;
-		SIMD_LOOP
-		for (int i = 0; i < n; i++) {
-			float all = to[i];
-#pragma GCC unroll 8
+		float sum[4] = { 0 }, r = red[i], g = green[i], b = blue[i];
+#pragma GCC unroll 3
+		for (int j = 0; j < nodes; j++) {
+			const struct march_node *restrict m = node + j;
+			float q = m->q[i], lx = w->x[0][i] + q * w->x[1][i], ly = w->y[0][i] + q * w->y[1][i], lz = w->z[0][i] + q * w->z[1][i];
+			float lost = -(lz + m->gx[i] * lx + m->gy[i] * ly), inv = 1 / (lost > 0.25f ? lost : 0.25f);
+			float light = m->length[i] * (w->power[0][i] + m->u[i] * w->power[1][i]);
+#pragma GCC unroll 4
 			for (int k = 0; k < bands; k++)
-				all += per[c][k] * sum[k][i];
-			to[i] = all;
+				sum[k] += light * exp2_quick(m->rise[band + k][i] * inv + m->seen[band + k][i]);
 		}
+#pragma GCC unroll 4
+		for (int k = 0; k < bands; k++) {
+			r += per[0][band + k] * sum[k];
+			g += per[1][band + k] * sum[k];
+			b += per[2][band + k] * sum[k];
+		}
+		red[i] = r;
+		green[i] = g;
+		blue[i] = b;
 	}
 }
 
-SIMD_CLONES static void colour_add_4(float (*rgb)[BATCH], int first, int n, const float per[3][TISSUE_BANDS_MAX], const float (*sum)[PART])
-{
-	colour_add(rgb, first, n, 4, per, sum);
-}
-
-SIMD_CLONES static void colour_add_1(float (*rgb)[BATCH], int first, int n, const float per[3][TISSUE_BANDS_MAX], const float (*sum)[PART])
-{
-	colour_add(rgb, first, n, 1, per, sum);
-}
-
-static void add_light(struct iris_batch *r, int first, int n, const struct tissue_optics *o, const float rgb[3], const float (*sum)[PART])
-{
-	for (int from = 0; from < o->n;) {
-		bool four = from + 4 <= o->n;
-		float per[3][TISSUE_BANDS_MAX];
-		for (int c = 0; c < 3; c++)
-			for (int k = 0; k < (four ? 4 : 1); k++)
-				per[c][k] = (float)(o->rgb[from + k][c] * o->exposure * rgb[c]);
-		(four ? colour_add_4 : colour_add_1)(r->rgb, first, n, per, sum + from);
-		from += four ? 4 : 1;
+#define LIGHT(name, nodes, bands)                                                                                                                       \
+	SIMD_CLONES static void name(int n, float (*rgb)[BATCH], int first, const struct march_node *node, int band, const struct march_light *w, \
+	                             const float (*per)[TISSUE_BANDS_MAX])                                                                                      \
+	{                                                                                                                                                   \
+		light_some(nodes, bands, n, rgb, first, node, band, w, per);                                                                                    \
 	}
+LIGHT(light_1_1, 1, 1)
+LIGHT(light_1_3, 1, 3)
+LIGHT(light_1_4, 1, 4)
+LIGHT(light_3_1, 3, 1)
+LIGHT(light_3_3, 3, 3)
+LIGHT(light_3_4, 3, 4)
+
+static void light_add(struct iris_batch *r, int first, int n, int nodes, const struct march_node *node, const struct march_light *w, const struct march_tissue *t,
+                      const float rgb[3])
+{
+	typedef void lighter(int, float (*)[BATCH], int, const struct march_node *, int, const struct march_light *, const float (*)[TISSUE_BANDS_MAX]);
+	static lighter *const with[2][3] = { { light_1_1, light_1_3, light_1_4 }, { light_3_1, light_3_3, light_3_4 } };
+	static const int of[3] = { 1, 3, 4 };
+	float per[3][TISSUE_BANDS_MAX];
+	for (int c = 0; c < 3; c++)
+		for (int k = 0; k < TISSUE_BANDS_MAX; k++)
+			per[c][k] = t->rgb[c][k] * rgb[c];
+	for (int j = 0; j < nodes; j += nodes - j >= 3 ? 3 : 1)
+		for (int k = 0; k < t->bands;) {
+			int left = t->bands - k, some = left >= 4 ? 2 : left == 3 ? 1 : 0;
+			with[nodes - j >= 3][some](n, r->rgb, first, node + j, k, w, (const float(*)[TISSUE_BANDS_MAX])per);
+			k += of[some];
+		}
 }
 
 /* Points of a part's rays at the share u of each. */
@@ -173,31 +166,27 @@ static void points(float p[3][PART], const struct iris_batch *r, int first, int 
 	}
 }
 
-static void nodes_make(struct march_node *node, const struct iris_batch *r, int first, int n, const struct scene *s, const struct ground *g)
+/* From both ends to one and the way to the other. */
+SIMD_CLONES static void light_ends(struct march_light *w, int n)
 {
-	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++)
-		for (int j = 0; j < s->n_nodes[l]; j++, k++)
-			node_make(n, &node[k], r, first, g, l == TISSUE_STROMA, (float)s->node[l][j], (float)s->weight[l][j]);
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		w->x[1][i] -= w->x[0][i];
+		w->y[1][i] -= w->y[0][i];
+		w->z[1][i] -= w->z[0][i];
+		w->power[1][i] -= w->power[0][i];
+	}
 }
 
-static void light_add(struct iris_batch *r, int first, int n, const struct scene *s, const struct march_node *node,
-                      const struct march_light *light, const float rgb[3], const struct rates rates[TISSUE_LAYERS])
+static void march_part(struct iris_batch *r, int first, int n, const struct scene *s, const struct ground *g, const struct scene_beams *beams,
+                       const struct march_tissue *tissue)
 {
-	float sum[TISSUE_BANDS_MAX][PART];
-	for (int k = 0; k < s->optics.n; k++)
-		memset(sum[k], 0, sizeof sum[k]);
-	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++)
-		for (int j = 0; j < s->n_nodes[l]; j++, k++)
-			node_lights(n, s->optics.n, sum, &node[k], light, &rates[l]);
-	add_light(r, first, n, &s->optics, rgb, (const float(*)[PART])sum);
-}
-
-static void march_part(struct iris_batch *r, int first, int n, const struct scene *s, const struct ground *g, const struct scene_beams *beams)
-{
-	struct march_node node[s->n_nodes[0] + s->n_nodes[1]];
-	const struct rates rates[TISSUE_LAYERS] = { rates_of(&s->optics, 0), rates_of(&s->optics, 1) };
+	int nodes = s->n_nodes[0] + s->n_nodes[1];
+	struct march_node node[nodes];
 	float near[3][PART], far[3][PART];
-	nodes_make(node, r, first, n, s, g);
+	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++)
+		for (int j = 0; j < s->n_nodes[l]; j++, k++)
+			node_of_rays(n, &node[k], r, first, g, tissue, l, (float)s->node[l][j], (float)s->weight[l][j]);
 	points(near, r, first, n, 0);
 	points(far, r, first, n, 1);
 	for (int k = 0; k < beams->n; k++) {
@@ -207,7 +196,8 @@ static void march_part(struct iris_batch *r, int first, int n, const struct scen
 		scene_light_at(&light, 1, n, far[0], far[1], far[2], s, beam);
 		if (s->conf.shadow > 0)
 			scene_shadow(&light, n, near[0], near[1], near[2], g, s->conf.shadow);
-		light_add(r, first, n, s, node, &light, beam->rgb, rates);
+		light_ends(&light, n);
+		light_add(r, first, n, nodes, node, &light, tissue, beam->rgb);
 	}
 }
 
@@ -215,29 +205,31 @@ void scene_scatter(struct iris_batch *r, const struct scene *s, const struct sce
                    const struct scene_beams *beams)
 {
 	struct ground g = ground_of(s, level);
+	struct march_tissue tissue = scene_march_tissue(&s->optics);
 	scene_spans(r, &g);
 	memset(r->rgb, 0, sizeof r->rgb);
 	for (int i = 0; i < r->n; i += PART)
-		march_part(r, i, r->n - i < PART ? r->n - i : PART, s, &g, beams);
+		march_part(r, i, r->n - i < PART ? r->n - i : PART, s, &g, beams, &tissue);
 }
 
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *s, const struct scene_level *level,
-                        const struct scene_beams *beams)
+                        const struct scene_beams *beams, const struct march_tissue *tissue)
 {
-	struct march_node node[s->n_nodes[0] + s->n_nodes[1]];
+	int nodes = s->n_nodes[0] + s->n_nodes[1];
+	struct march_node node[nodes];
 	struct march_body body;
-	const struct rates rates[TISSUE_LAYERS] = { rates_of(&s->optics, 0), rates_of(&s->optics, 1) };
+	struct ground g = ground_of(s, level);
 	scene_tile_ground(r, tile, s, level);
-	scene_body_make(&body, r, tile);
+	scene_body_make(&body, r, tile, s);
 	for (int i = 0; i < PART; i++)
 		r->rgb[0][i] = r->rgb[1][i] = r->rgb[2][i] = 0;
 	for (int l = 0, k = 0; l < TISSUE_LAYERS; l++)
 		for (int j = 0; j < s->n_nodes[l]; j++, k++)
-			scene_tile_node(&node[k], r, s, level, l, j);
+			node_of_tile(&node[k], r, &g, tissue, &body, l, (float)s->node[l][j], (float)s->weight[l][j]);
 	for (int k = 0; k < beams->n; k++) {
 		struct march_light light;
 		if (scene_light_tile(&light, &body, s, &beams->beam[k]))
-			light_add(r, 0, PART, s, node, &light, beams->beam[k].rgb, rates);
+			light_add(r, 0, PART, nodes, node, &light, tissue, beams->beam[k].rgb);
 	}
 }
 

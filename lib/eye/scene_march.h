@@ -8,6 +8,7 @@ enum { PART = 64 };  // rays that march together: what is known of all their nod
 /* What the loops read of the maps. */
 struct ground {
 	const float *relief;
+	const int *pairs;
 	int size;
 	float per_mm, z_plane, z_high, z_low, abl;
 };
@@ -16,14 +17,25 @@ struct ground ground_of(const struct scene *scene, const struct scene_level *lev
 /* Fills near and span: down to the epithelium, which lies the layers' thickness below the relief. */
 void scene_spans(struct iris_batch *r, const struct ground *g);
 
-/* A node of the quadrature, on every ray of a part, whatever the light: its place between the ray's ends (0..1), slope of
- * the relief there, tissue above it and towards the beholder (mm, of each layer), and the length it stands for. */
+/* What a tissue makes of light, in every band: fade per mm, log2; log2 of what it scatters back per mm; what that adds to a
+ * colour. */
+struct march_tissue {
+	int bands;
+	float source[TISSUE_LAYERS][TISSUE_BANDS_MAX], fade[TISSUE_LAYERS][TISSUE_BANDS_MAX], rgb[3][TISSUE_BANDS_MAX];
+};
+struct march_tissue scene_march_tissue(const struct tissue_optics *optics);
+
+/* A node of the quadrature, on every ray of a part, whatever the light: its place between the ray's ends (u: 0..1) and between
+ * where its light is known (q), slope of the relief there, and the length it stands for; log2 of what is left in a band of light
+ * that comes from straight above (rise; from aside, that over the cosine), and of what goes to the beholder (seen). */
 struct march_node {
-	float u[PART], gx[PART], gy[PART], above[TISSUE_LAYERS][PART], seen[TISSUE_LAYERS][PART], length[PART];
+	float u[PART], q[PART], gx[PART], gy[PART], length[PART];
+	float rise[TISSUE_BANDS_MAX][PART], seen[TISSUE_BANDS_MAX][PART];
 };
 
-/* One light at both ends of every ray: direction towards it (scene_beam.c), irradiance of a plane that faces it; fall: what of
- * it falls on the iris plane (scene_light_at alone). */
+/* One light on every ray: direction towards it (scene_beam.c) at q = 0 and what it changes by to q = 1, irradiance of a plane that
+ * faces it at u = 0 and what it changes by to u = 1. From scene_light_at: at both ends of the ray; fall: what of it falls on the
+ * iris plane. */
 struct march_light {
 	float x[2][PART], y[2][PART], z[2][PART], power[2][PART], fall[2][PART];
 };
@@ -42,6 +54,9 @@ struct beam_lights {
  * their number. */
 void scene_lights_turn(struct beam_lights *in, const struct scene_lighting *light, const double eye_from_cam[3][3]);
 int scene_lights_split(struct beam_lights *in, int most);
+
+/* All channels of a node as one vector. */
+typedef float way_vector __attribute__((vector_size(4 * SCENE_WAY), aligned(4), may_alias));
 
 /* All channels of a beam's table at a point. */
 void scene_table_at(float way[SCENE_WAY], const struct scene_beam *beam, const float point[3], float extent);
@@ -73,20 +88,21 @@ struct march_body {
 	const struct march_tile *tile;
 	float z, over[3];  // depth of the near face; from it to the far one
 	float q[2][PART];  // where each ray's ends lie between the two
+	int node[8];       // of the beams' tables, below each corner: x first, then y, then depth
+	float of_near[8][4], of_far[8][4];  // weights of that and the next ones there
 };
-void scene_body_make(struct march_body *body, const struct iris_batch *rays, const struct march_tile *tile);
+void scene_body_make(struct march_body *body, const struct iris_batch *rays, const struct march_tile *tile, const struct scene *scene);
 
 /* The light on a tile's rays: the table's at the corners of their body, linear between these; dimmed by the relief's
  * shadow. False: none comes here. */
 bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *scene, const struct scene_beam *beam);
 
-/* The rays of sight that begin at a tile's texels, on maps of pairs: fills pz, near and span; a node of the quadrature on them. */
+/* The rays of sight that begin at a tile's texels, on maps of pairs: fills pz, near and span. */
 void scene_tile_ground(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_level *level);
-void scene_tile_node(struct march_node *node, const struct iris_batch *r, const struct scene *scene, const struct scene_level *level, int layer, int k);
 
 /* Fills pz, near, span and rgb of the 64 rays that begin at a tile's texels. */
-void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene,
-                        const struct scene_level *level, const struct scene_beams *beams);
+void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_level *level,
+                        const struct scene_beams *beams, const struct march_tissue *tissue);
 
 /* Without a march: the model's mean colour at n <= PART points, lit. */
 void scene_flat_at(float *const rgb[3], int n, const float *x, const float *y, const float *z, const struct scene *scene, const struct scene_beams *beams);

@@ -16,7 +16,7 @@ struct bracket {
 struct ground ground_of(const struct scene *s, const struct scene_level *level)
 {
 	float z = (float)s->eye.iris_depth, slack = 1e-4f;  // mm: the search never starts on the very highest point
-	return (struct ground){ level->relief, level->n, level->per_mm, z, z - s->height_max - slack,
+	return (struct ground){ level->relief, level->pairs, level->n, level->per_mm, z, z - s->height_max - slack,
 	                        z - s->height_min + slack, (float)s->optics.abl_thickness };
 }
 

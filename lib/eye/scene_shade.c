@@ -19,6 +19,7 @@ struct painter {
 	const struct scene_level *level;  // that is marched from
 	const struct scene_beam *sight;
 	const struct scene_beams *beams;
+	struct march_tissue tissue;
 	int tiles;      // across
 	int stride;     // of light
 	float *light;   // [level->n][stride][4]
@@ -121,7 +122,7 @@ static void tile_paint(const struct painter *p, int tx, int ty)
 	if (p->level->horizon)
 		t.horizon = p->level->horizon + (long)ty * p->tiles + tx;
 	tile_rays(&b, p, &t);
-	scene_scatter_tile(&b, &t, s, p->level, p->beams);
+	scene_scatter_tile(&b, &t, s, p->level, p->beams, &p->tissue);
 	tile_put(&b, p, tx, ty);
 }
 
@@ -146,7 +147,7 @@ static void per_model_make(struct scene_level *l)
 void scene_shade_model(struct scene_level *level, const struct scene *s, const double C[3], const struct scene_beams *beams, float through)
 {
 	struct scene_beam *sight = scene_sight(s, C);
-	paint(&(struct painter){ s, level, sight, beams, (level->n + TILE_SIDE - 1) / TILE_SIDE, level->n, level->model, through });
+	paint(&(struct painter){ s, level, sight, beams, scene_march_tissue(&s->optics), (level->n + TILE_SIDE - 1) / TILE_SIDE, level->n, level->model, through });
 	free(sight);
 	per_model_make(level);
 }
@@ -189,7 +190,7 @@ struct scene_shade scene_shade_make(const struct scene *s, const struct scene_le
 	if (flat)
 		return flat_make(s, level, beams);
 	struct scene_beam *sight = scene_sight(s, C);
-	struct painter p = { s, coarse, sight, beams, (coarse->n + TILE_SIDE - 1) / TILE_SIDE, coarse->n + 4, 0, 0 };
+	struct painter p = { s, coarse, sight, beams, scene_march_tissue(&s->optics), (coarse->n + TILE_SIDE - 1) / TILE_SIDE, coarse->n + 4, 0, 0 };
 	p.light = mem_array((size_t)coarse->n * (size_t)p.stride, 4 * sizeof *p.light);
 	paint(&p);
 	free(sight);

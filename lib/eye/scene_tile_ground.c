@@ -63,30 +63,3 @@ void scene_tile_ground(struct iris_batch *r, const struct march_tile *t, const s
 	texels_read(&x, r->pz, t, l, (float)s->eye.iris_depth);
 	spans(r, &x, l, (float)s->eye.iris_depth, (float)s->optics.abl_thickness);
 }
-
-/* As scene_march.c's. */
-SIMD_CLONES static void node_make(struct march_node *restrict m, const struct iris_batch *restrict r, const struct scene_level *l, float plane, float abl, bool stroma, float at, float weight)
-{
-	const int *restrict pairs = l->pairs;
-	float per_mm = l->per_mm, of_span = stroma ? 1 : 0, of_near = 1 - 2 * of_span;
-	int size = l->n;
-	SIMD_LOOP
-	for (int i = 0; i < PART; i++) {
-		float near = r->near[i], span = r->span[i], layer = of_span * span + of_near * near, s = of_span * near + at * layer, gx, gy;
-		float depth = r->pz[i] + s * r->vz[i] - plane + quick_height_at(pairs, size, per_mm, r->px[i] + s * r->vx[i], r->py[i] + s * r->vy[i], &gx, &gy);
-		depth = depth > 0 ? depth : 0;
-		m->u[i] = s / span;
-		m->gx[i] = gx;
-		m->gy[i] = gy;
-		m->above[0][i] = depth < abl ? depth : abl;
-		m->above[1][i] = depth > abl ? depth - abl : 0;
-		m->seen[0][i] = s < near ? s : near;
-		m->seen[1][i] = s > near ? s - near : 0;
-		m->length[i] = weight * layer;
-	}
-}
-
-void scene_tile_node(struct march_node *m, const struct iris_batch *r, const struct scene *s, const struct scene_level *l, int layer, int k)
-{
-	node_make(m, r, l, (float)s->eye.iris_depth, (float)s->optics.abl_thickness, layer == TISSUE_STROMA, (float)s->node[layer][k], (float)s->weight[layer][k]);
-}
