@@ -53,7 +53,7 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 	eye->absent = prior->absent || !(given || seen);
 	eye->globe.radius = isfinite(prior->radius) && prior->radius > 3 ? prior->radius : RADIUS;
 	eye->globe.limbus = fmin(track->scene.eye.limbus_radius, 0.95 * eye->globe.radius);
-	eye->center_guess = track->conf.center_sigma;
+	eye->center_guess = prior->center_sigma > 0 ? prior->center_sigma : track->conf.center_sigma;
 	eye->contrast = CONTRAST;
 	if (given)
 		memcpy(eye->globe.center, prior->center_in_head, sizeof eye->globe.center);

@@ -25,6 +25,7 @@ enum { LID_POINTS_MAX = 22 };
 struct eye_prior {
 	bool absent;                // known not to be in the video
 	double center_in_head[3];   // eyeball
+	double center_sigma;        // mm: how far off that may be, each way; 0: as far as conf says
 	double radius;              // of the sphere that the limbus lies on, mm
 	double canthus_in_head[2][3];  // inner, outer corner of the opening
 	double limbus_px[3];        // centre and radius of the limbus in the first frame: where no mesh tells

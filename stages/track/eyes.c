@@ -25,6 +25,8 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 		struct eye_prior *p = &scene.prior[e];
 		p->absent = !clip->eye_seen[e];
 		p->radius = subject->radius;
+		// what is told of the mesh is as sure here as where the head is settled by it
+		p->center_sigma = subject->center_given[e] && !conf->limit ? fmin(conf->center_sigma, free_centers.center_sigma) : 0;
 		for (int k = 0; k < 3; k++) {
 			p->limbus_px[k] = NAN;
 			p->center_in_head[k] = subject->center[e][k];

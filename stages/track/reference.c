@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "math/stats.h"
@@ -13,6 +14,8 @@ static const double open_enough = 0.8;   // of the usual opening
 static const double off_most = 4, nearer = 2;
 /* degrees that a shut eye counts as, and the end of the clip: all is followed from its start on, where a head that moves lies otherwise. */
 static const double half_shut = 20, late = 10;
+/* degrees that a frame counts as whose skin is twice as far off the head as is usual: an expression; at most. */
+static const double stirred = 4, stirred_most = 20;
 /* The lower lid goes along with a half or less of what the upper one does. */
 static const double turned = 1.5;
 
@@ -96,6 +99,8 @@ struct reference_view reference_judge(const struct track_result *r, const struct
 	bool *open = mem_new(room, sizeof *open);
 	long here = clip->reference / every, best = 0;
 	int n = 0;
+	memcpy(x, r->misfit, (size_t)r->n * sizeof *x);
+	const double calm = fmax(stats_median((int)r->n, x), 1e-3);
 	for (long f = 0; f < r->n; f++)
 		n += open[f] = gaze_of(gaze[f], &wide[f], r, f);
 	for (int k = 0; k < 2; k++) {
@@ -113,6 +118,7 @@ struct reference_view reference_judge(const struct track_result *r, const struct
 				moves = open[g] ? fmin(moves, hypot(gaze[f][0] - gaze[g][0], gaze[f][1] - gaze[g][1])) : moves;
 				off += open[g] ? 0 : off_most;
 			}
+		off += fmin(stirred_most, stirred * fmax(0, r->misfit[f] / calm - 1));
 		cost[f] = off + 0.25 * fmin(moves, 20) + late * (double)f / (double)r->n;
 		best = cost[f] < cost[best] ? f : best;
 	}

@@ -149,6 +149,7 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 	bool any = false, usual = false;
 	for (int e = 0; e < SIDES; e++) {
 		const double *center = given(&conf->eye_center, sides[e]);
+		s->center_given[e] = center;
 		for (int k = 0; k < 3; k++)
 			s->center[e][k] = center ? center[k] * s->unit_mm : rig.has_eyes ? rig.eye_center[e][k] : NAN;
 		if (!center && !rig.has_eyes && !center_from_marks(s->center[e], s, e))

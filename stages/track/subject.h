@@ -14,6 +14,7 @@ struct track_subject {
 	double unit_mm;
 	int mark[SIDES][MARKS];          // rows; -1: not known
 	double center[SIDES][3], radius; // of the eyeballs; NAN where not known
+	bool center_given[SIDES];        // by capture.conf: not estimated
 	struct eye_opening opening[SIDES];
 	struct eye_opening margin[SIDES];  // where the lids stand clear of the eye and its tears: the inner edge of their margins
 	bool assumed;          // there is no mesh: openings of a usual face, to find eyes with
