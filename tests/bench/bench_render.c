@@ -1,4 +1,4 @@
-/* The march through the iris, the light's way to it, and whole frames: error against time of the same run. */
+/* Whole frames: where their time goes, what bounds it, and their error against the converging reference. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -7,203 +7,15 @@
 
 #include "base/mem.h"
 #include "eye/scene_march.h"
-#include "math/rng.h"
-#include "optics/lightpath.h"
 #include "tests/lib/bench.h"
-#include "tests/lib/painted.h"
+#include "tests/lib/ridged.h"
 
-enum { BATCHES = 24, LIGHTS = 8 };
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=fast")  // the rate of operations is that of the renderer's loops: see math/simd.h
+#endif
 
-static const struct eye eye = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75, 0.55, 1.376 };
-static const double id[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-
-static struct scene_conf conf_of(int steps, int quadrature, int path)
-{
-	return (struct scene_conf){ .map_size = 1024, .search = 8, .shadow = 8, .steps = steps, .quadrature = quadrature,
-		                        .path = path, .bands = 4, .detail = 1, .limbus_width = 0.4, .sclera_radius = 11.8,
-		                        .sclera_rgb = { 0.7, 0.65, 0.6 }, .vein_density = 1, .veins_px = 512, .seed = 1 };
-}
-
-static void fibres(float rgb[3], double x, double y)
-{
-	double r = hypot(x, y), t = atan2(y, x), v = 0.3 + 0.12 * sin(40 * t + 3 * sin(2 * r)) * sin(5 * r);
-	rgb[0] = (float)(0.7 * v);
-	rgb[1] = (float)(0.9 * v);
-	rgb[2] = (float)v;
-}
-
-static double ridges(double x, double y)
-{
-	double r = hypot(x, y), t = atan2(y, x);
-	return 0.05 * sin(40 * t + 3 * sin(2 * r)) * sin(5 * r) + 0.06 * exp(-(r - 3) * (r - 3) / 0.1);
-}
-
-struct work {
-	struct scene scene;
-	struct scene_beams beams;
-	struct iris_batch *batches;  // BATCHES rays of sight, met with the relief
-};
-
-static void rays(struct work *w)
-{
-	struct rng rng = { 21 };
-	w->batches = mem_new(BATCHES, sizeof *w->batches);
-	for (int k = 0; k < BATCHES; k++) {
-		struct iris_batch *b = &w->batches[k];
-		b->n = BATCH;
-		for (int i = 0; i < BATCH; i++) {
-			double r = sqrt(rng_range(&rng, 3, 25)), t = rng_range(&rng, 0, 2 * M_PI), a = rng_range(&rng, 0, 0.5), f = rng_range(&rng, 0, 6.28);
-			b->vx[i] = (float)(sin(a) * cos(f));
-			b->vy[i] = (float)(sin(a) * sin(f));
-			b->vz[i] = (float)cos(a);
-			b->fx[i] = (float)(r * cos(t)) - 2 * b->vx[i];
-			b->fy[i] = (float)(r * sin(t)) - 2 * b->vy[i];
-			b->fz[i] = 3.3f - 2 * b->vz[i];
-		}
-		scene_meet(b, &w->scene, &w->scene.level[0]);
-	}
-}
-
-static bool work_make(struct work *w, const struct scene_conf *conf, const struct scene_lighting *light)
-{
-	struct err err = { 0 };
-	if (!painted_scene(&w->scene, 1024, &eye, conf, fibres, ridges, 1.6, &err)) {
-		fprintf(stderr, "bench_render: %s\n", err.msg);
-		return false;
-	}
-	w->beams = scene_beams(&w->scene, light, id);
-	rays(w);
-	return true;
-}
-
-static void work_free(struct work *w)
-{
-	free(w->batches);
-	free(w->beams.beam);
-	scene_free(&w->scene);
-}
-
-static void scatter_all(void *ctx)
-{
-	struct work *w = ctx;
-	for (int k = 0; k < BATCHES; k++)
-		scene_scatter(&w->batches[k], &w->scene, &w->scene.level[0], &w->beams);
-}
-
-static void flat_all(void *ctx)
-{
-	struct work *w = ctx;
-	for (int k = 0; k < BATCHES; k++)
-		scene_flat(&w->batches[k], &w->scene, &w->beams);
-}
-
-/* Mean difference of the colours, relative to the reference's mean. */
-static double differs(const struct work *w, const struct iris_batch *reference)
-{
-	double sum = 0, all = 0;
-	for (int k = 0; k < BATCHES; k++)
-		for (int c = 0; c < 3; c++)
-			for (int i = 0; i < BATCH; i++) {
-				sum += fabs(w->batches[k].rgb[c][i] - reference[k].rgb[c][i]);
-				all += reference[k].rgb[c][i];
-			}
-	return 100 * sum / all;
-}
-
-static struct bench_time each(struct bench_time t, double n)
-{
-	return (struct bench_time){ t.median / n, t.low / n, t.high / n };
-}
-
-static struct iris_batch *reference_make(const struct scene_lighting *light)
-{
-	struct work w = { 0 };
-	struct scene_conf conf = conf_of(256, SCENE_GAUSS, SCENE_PATH_ENDS);
-	if (!work_make(&w, &conf, light))
-		return 0;
-	scatter_all(&w);
-	struct iris_batch *reference = w.batches;
-	w.batches = 0;
-	work_free(&w);
-	return reference;
-}
-
-/* One row; the time of a ray with its eight lights, one thread. Returns the error. */
-static double row(const char *table, const char *method, const char *setting, const struct scene_conf *conf, bool flat,
-                  const struct scene_lighting *light, const struct iris_batch *reference)
-{
-	struct work w = { 0 };
-	if (!work_make(&w, conf, light))
-		return NAN;
-	struct bench_time t = bench_time(flat ? flat_all : scatter_all, &w, bench_quick() ? 3 : 9);
-	double error = differs(&w, reference);
-	bench_row(table, method, setting, each(t, BATCHES * BATCH), "ray", error, "%", "colour, mean, against 256 steps");
-	work_free(&w);
-	return error;
-}
-
-static void marches(const struct scene_lighting *light, const struct iris_batch *reference)
-{
-	static const int steps[] = { 3, 4, 6, 8, 16, 32 };
-	struct scene_conf conf = conf_of(6, SCENE_GAUSS, SCENE_PATH_GRID);
-	row("march", "texture without scattering", "no steps", &conf, true, light, reference);
-	for (int i = 0; i < COUNT(steps); i += bench_quick() ? 2 : 1) {
-		char setting[32];
-		snprintf(setting, sizeof setting, "%d steps", steps[i]);
-		conf = conf_of(steps[i], SCENE_MIDPOINT, SCENE_PATH_GRID);
-		row("march", "half-step rule in each layer", setting, &conf, false, light, reference);
-		conf = conf_of(steps[i], SCENE_GAUSS, SCENE_PATH_GRID);
-		row("march", "Gauss-Legendre in each layer", setting, &conf, false, light, reference);
-		conf = conf_of(steps[i], SCENE_EXPONENTIAL, SCENE_PATH_GRID);
-		double error = row("march", "Gauss for fading light", setting, &conf, false, light, reference);
-		if (steps[i] == 3)
-			bench_goal("iris march, 3 steps of Gauss's rule for fading light", "<= 0.5 % against 256 steps", error, "%", error <= 0.5);
-	}
-}
-
-static void paths(const struct scene_lighting *light, const struct iris_batch *reference)
-{
-	struct scene_conf conf = conf_of(16, SCENE_GAUSS, SCENE_PATH_ENDS);
-	row("light path", "solved at both ends of each ray", "4 Newton steps", &conf, false, light, reference);
-	conf = conf_of(16, SCENE_GAUSS, SCENE_PATH_GRID);
-	row("light path", "a table of the light's own", "48 x 48 x 2", &conf, false, light, reference);
-}
-
-/* The table against the solver: direction and irradiance of the light on the relief. */
-static void table_error(const struct scene_lighting *light)
-{
-	struct work w = { 0 };
-	struct scene_conf conf = conf_of(6, SCENE_GAUSS, SCENE_PATH_GRID);
-	double off = 0, worst = 0, power = 0, all = 0, n = 0;
-	if (!work_make(&w, &conf, light))
-		return;
-	for (int l = 0; l < w.beams.n; l++)
-		for (int k = 0; k < BATCHES * BATCH / PART; k++) {
-			const struct iris_batch *b = &w.batches[k * PART / BATCH];
-			int first = k * PART % BATCH;
-			double dir[3] = { w.beams.beam[l].dir[0], w.beams.beam[l].dir[1], w.beams.beam[l].dir[2] }, K[3];
-			struct march_light at;
-			scene_light_at(&at, 0, PART, b->px + first, b->py + first, b->pz + first, &w.scene, &w.beams.beam[l]);
-			for (int i = 0; i < PART; i++) {
-				double P[3] = { b->px[first + i], b->py[first + i], b->pz[first + i] };
-				if (lightpath_solve_directional(K, &w.scene.cornea, P, dir) != LIGHTPATH_OK || hypot(K[0], K[1]) > 5.6)
-					continue;
-				double d[3] = { K[0] - P[0], K[1] - P[1], K[2] - P[2] }, len = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-				double e = hypot(hypot(at.x[0][i] - d[0] / len, at.y[0][i] - d[1] / len), at.z[0][i] - d[2] / len);
-				off += e;
-				worst = fmax(worst, e);
-				double gain = lightpath_gain(&w.scene.cornea, P, dir, K);
-				power += fabs(-at.power[0][i] * at.z[0][i] - gain);
-				all += gain;
-				n++;
-			}
-		}
-	struct bench_time none = { NAN, NAN, NAN };
-	bench_row("a light's table", "table", "48 x 48 x 2", none, "point", 1e3 * off / n, "mrad", "direction, mean");
-	bench_row("a light's table", "table", "48 x 48 x 2", none, "point", 1e3 * worst, "mrad", "direction, worst");
-	bench_row("a light's table", "table", "48 x 48 x 2", none, "point", 100 * power / all, "%", "irradiance, mean");
-	work_free(&w);
-}
+// Beams of the presets, each of eight of the environment's directions.
+enum { BEAMS = 8, BEAMS_DRAFT = 4 };
 
 struct frame {
 	const struct scene *scene;
@@ -224,7 +36,7 @@ static void frame_render(void *ctx)
 /* Presets as config/render.conf has them, less the rays added at edges. */
 static struct scene_conf preset(bool draft)
 {
-	struct scene_conf conf = conf_of(3, SCENE_EXPONENTIAL, SCENE_PATH_GRID);
+	struct scene_conf conf = ridged_conf(3, SCENE_EXPONENTIAL, SCENE_PATH_GRID);
 	conf.apart = draft ? 4 : 2;
 	conf.shading = SCENE_TEXELS;
 	conf.bands = draft ? 3 : 4;
@@ -305,10 +117,9 @@ static struct bench_time frame_row(struct frame *f, const char *name)
 static void frames(const struct envmap *env, bool draft)
 {
 	struct scene s;
-	struct err err = { 0 };
 	struct scene_conf conf = preset(draft);
-	struct scene_lighting light = scene_lighting(env, env, draft ? 4 : 8), one = scene_lighting(env, env, 1);
-	if (!painted_scene(&s, 1024, &eye, &conf, fibres, ridges, 1.6, &err))
+	struct scene_lighting light = scene_lighting(env, env, draft ? BEAMS_DRAFT : BEAMS), one = scene_lighting(env, env, 1);
+	if (!ridged_scene(&s, &conf))
 		return;
 	struct frame f = { .scene = &s, .view = filling(&s), .light = &light };
 	scene_fit_colour(&s, &f.view, &light);
@@ -385,11 +196,10 @@ static void accuracy(const struct envmap *env)
 {
 	enum { N = 120, PASSES = 32 };
 	struct scene fast, slow;
-	struct err err = { 0 };
-	struct scene_conf conf = preset(false), best = conf_of(16, SCENE_EXPONENTIAL, SCENE_PATH_ENDS);
+	struct scene_conf conf = preset(false), best = ridged_conf(16, SCENE_EXPONENTIAL, SCENE_PATH_ENDS);
 	best.shadow = best.search = 32;
 	best.bands = 6;
-	if (!painted_scene(&fast, 1024, &eye, &conf, fibres, ridges, 1.6, &err) || !painted_scene(&slow, 1024, &eye, &best, fibres, ridges, 1.6, &err))
+	if (!ridged_scene(&fast, &conf) || !ridged_scene(&slow, &best))
 		return;
 	struct scene_view view = scene_view_turned(&fast, 0.25, 0.15, 17.1, 1280);
 	view.x0 = 780;  // all iris
@@ -398,12 +208,15 @@ static void accuracy(const struct envmap *env)
 	double error;
 	struct bench_time none = { NAN, NAN, NAN };
 	struct image b = scene_converge(&slow, &view, env, 0, 64, bench_quick() ? 2 : PASSES, &error, 0);
-	for (int k = 0; k < 2; k++) {
-		struct scene_lighting light = scene_lighting_of(env, 0, k ? 16 : 8, k ? 4 : 8);
+	static const int beams[] = { BEAMS, 12, 16 };
+	for (int k = 0; k < COUNT(beams); k++) {
+		struct scene_lighting light = scene_lighting(env, 0, beams[k]);
 		struct image a = scene_render(&fast, &view, &light, 0);
 		struct judged j = judge(&a, &b);
-		bench_row("against the reference", "review", k ? "64 lights in 16 beams" : "64 lights in 8 beams", none, "frame", 100 * j.off, "%", "luminance in the iris, mean");
-		bench_row("against the reference", "review", k ? "64 lights in 16 beams" : "64 lights in 8 beams", none, "frame", 100 * j.wrong, "%", "pixels off by 5 %, away from edges");
+		char setting[32];
+		snprintf(setting, sizeof setting, "%d lights in %d beams", light.n, beams[k]);
+		bench_row("against the reference", "review", setting, none, "frame", 100 * j.off, "%", "luminance in the iris, mean");
+		bench_row("against the reference", "review", setting, none, "frame", 100 * j.wrong, "%", "pixels off by 5 %, away from edges");
 		if (!k) {
 			bench_goal("review against the converged reference", "<= 1 % mean luminance in the iris", 100 * j.off, "%", j.off <= 0.01);
 			bench_goal("review against the converged reference, away from edges", "no pixel off by 5 %", 100 * j.wrong, "% of pixels", j.wrong == 0);
@@ -447,11 +260,12 @@ static void calculate(void *ctx)
 			polynomials(x + 256 * k, 0.5f);
 }
 
-/* Of the march, a texel: its span and nodes; a beam laid over it; a node in a beam's light; its colour. */
+/* Of the march, a texel: its span and nodes, and their exponents in each band; a beam laid over it; a node in a beam's light; its
+ * colour. */
 static double march_operations(void)
 {
-	const double texels = M_PI * (6.4 * 6.4 - 1.35 * 1.35) * 40 * 40, nodes = 3, beams = LIGHTS, bands = 4;
-	return texels * (70 + 45 * nodes + beams * (52 + nodes * (16 + 17 * bands) + 6 * bands));
+	const double texels = M_PI * (6.4 * 6.4 - 1.35 * 1.35) * 40 * 40, nodes = 3, beams = BEAMS, bands = 4;
+	return texels * (70 + nodes * (45 + 9 * bands) + beams * (36 + nodes * (17 + 15 * bands) + 6 * bands));
 }
 
 static void limit(void)
@@ -479,24 +293,12 @@ static void limit(void)
 int main(int argc, char **argv)
 {
 	bench_open("render", argc, argv);
-	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.15, 0.2 }, { 25, 25, 25 } },
-		                         { { 0.7, -0.1, -0.7071 }, { 0.1, 0.2 }, { 10, 10, 11 } } };
-	struct envmap env = envmap_room(128, (double[3]){ 0.6, 0.6, 0.7 }, (double[3]){ 0.2, 0.2, 0.2 }, 0.5, 2, box);
-	envmap_normalise(&env);
-	struct scene_lighting light = { .env = &env, .mirror = &env, .n = 0 };  // every direction a beam of its own
-	light.n = envmap_lights(light.light, LIGHTS, &env);
-	struct iris_batch *reference = reference_make(&light);
-	if (reference) {
-		marches(&light, reference);
-		paths(&light, reference);
-		table_error(&light);
-		frames(&env, false);
-		frames(&env, true);
-		if (!bench_quick())  // its reference takes as long as all the rest
-			accuracy(&env);
-		limit();
-	}
-	free(reference);
+	struct envmap env = ridged_room();
+	frames(&env, false);
+	frames(&env, true);
+	if (!bench_quick())  // its reference takes as long as all the rest
+		accuracy(&env);
+	limit();
 	envmap_free(&env);
 	return bench_close();
 }
