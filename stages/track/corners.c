@@ -172,27 +172,30 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 		skin[k] = beside_new(rim.n[k], rim.head[k], r, side, clip, points);
 	int below = rim.n[LID_LOWER];
 	double(*carried)[2] = mem_array((size_t)below * (size_t)r->n + 1, sizeof *carried);
-	double near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
+	double(*corner)[ENDS][2] = mem_array((size_t)r->n + 1, sizeof *corner), near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
 	for (long f = 0; f < r->n; f++) {
 		struct eye_state *state = &r->eyes.state[f][side];
 		struct line mesh[LIDS];
-		double corner[ENDS][2];
 		bool known = project_rim(mesh, &rim, clip, r->pose[f]);
 		for (int i = 0; i < below; i++)
 			for (int k = 0; k < 2; k++)
 				carried[f * below + i][k] = known ? mesh[LID_LOWER].p[i][k] : NAN;
+		for (int c = 0; c < ENDS; c++)
+			corner[f][c][0] = corner[f][c][1] = NAN;
 		if (!isfinite(state->lid[0][0][0]) || !known)
 			continue;
 		for (int c = 0; c < ENDS; c++) {
 			int end = c ? mesh[0].n - 1 : 0;
 			for (int k = 0; k < 2; k++)
-				corner[c][k] = mesh[0].p[end][k] + beside_moved(&skin[0], end, f)[k];
+				corner[f][c][k] = mesh[0].p[end][k] + beside_moved(&skin[0], end, f)[k];
 		}
-		reshape(state, mesh, (const double(*)[2])corner);
+		reshape(state, mesh, (const double(*)[2])corner[f]);
 		for (int k = 0; k < LIDS; k++)
 			draw_to_skin(state, k, &mesh[k], &skin[k], f, near_px);
 	}
 	shut_carry(r, side, below, (const double(*)[2])carried);
+	fall_carry(r, side, corner, below, (const double(*)[2])carried, near_px);
+	free(corner);
 	free(carried);
 	for (int k = 0; k < LIDS; k++)
 		beside_free(&skin[k]);

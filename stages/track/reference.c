@@ -91,6 +91,15 @@ static bool gaze_of(double gaze[2], double *wide, const struct track_result *r, 
 	return n > 0;
 }
 
+/* px; 0 where there is no skin. */
+static double usual_misfit(const struct track_result *r, double *room)
+{
+	if (!r->misfit)
+		return 0;
+	memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
+	return fmax(stats_median((int)r->n, room), 1e-3);
+}
+
 struct reference_view reference_judge(const struct track_result *r, const struct track_clip *clip, long every)
 {
 	struct reference_view view = { .aside = NAN, .up = NAN, .better = -1 };
@@ -99,8 +108,7 @@ struct reference_view reference_judge(const struct track_result *r, const struct
 	bool *open = mem_new(room, sizeof *open);
 	long here = clip->reference / every, best = 0;
 	int n = 0;
-	memcpy(x, r->misfit, (size_t)r->n * sizeof *x);
-	const double calm = fmax(stats_median((int)r->n, x), 1e-3);
+	const double calm = usual_misfit(r, x);
 	for (long f = 0; f < r->n; f++)
 		n += open[f] = gaze_of(gaze[f], &wide[f], r, f);
 	for (int k = 0; k < 2; k++) {
@@ -118,7 +126,7 @@ struct reference_view reference_judge(const struct track_result *r, const struct
 				moves = open[g] ? fmin(moves, hypot(gaze[f][0] - gaze[g][0], gaze[f][1] - gaze[g][1])) : moves;
 				off += open[g] ? 0 : off_most;
 			}
-		off += fmin(stirred_most, stirred * fmax(0, r->misfit[f] / calm - 1));
+		off += calm > 0 ? fmin(stirred_most, stirred * fmax(0, r->misfit[f] / calm - 1)) : 0;
 		cost[f] = off + 0.25 * fmin(moves, 20) + late * (double)f / (double)r->n;
 		best = cost[f] < cost[best] ? f : best;
 	}
