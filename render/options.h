@@ -24,7 +24,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_REAL("vein_density", &(c)->scene.vein_density, 0, 5, "", "vessels of the sclera"), \
 	OPT_INT("vein_map_px", &(c)->scene.veins_px, 128, 8192, "px", "texels across the map of the sclera"), \
 	OPT_INT("seed", &(c)->scene.seed, 0, 1000000, "", "of the vessels"), \
-	OPT_INT("lights", &(c)->lights, 1, 64, "", "beams into the eye, each of eight directions of the environment; a power of 2"), \
+	OPT_INT("lights", &(c)->lights, 1, 64, "", "beams into the eye, each of light_directions of the environment"), \
 	OPT_INT("light_directions", &(c)->light_directions, 1, 8, "", "directions of the environment in a beam: 1, 2, 4 or 8"), \
 	OPT_INT("passes", &(c)->passes, 1, 4096, "", "light drawn anew within its areas; more than one: converging to area light"), \
 	OPT_INT("samples", &(c)->samples, 1, 8, "", "rays across a pixel, at edges"), \

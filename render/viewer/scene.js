@@ -26,7 +26,7 @@ function between(list, x) {
 /* What costs time, dearest first. No more steps are taken than the model in the maps was made with: the photograph's own view
  * then shows the photograph. */
 const presets = [
-	{ name: "full", steps: 12, scale: 1, beams: 8, directions: 128, shadow: 0.25, apart: 0, skies: 8, pores: true, hair: 0.45 },
+	{ name: "full", steps: 12, scale: 1, beams: 12, directions: 128, shadow: 0.25, apart: 0, skies: 8, pores: true, hair: 0.45 },
 	{ name: "high", steps: 6, scale: 1, beams: 4, directions: 32, shadow: 0.5, apart: 0, skies: 8, pores: true, hair: 0.45 },
 	{ name: "medium", steps: 3, scale: 0.66, beams: 4, directions: 8, shadow: 1, apart: 1, skies: 4, pores: true, hair: 0.6 },
 	{ name: "low", steps: 3, scale: 0.66, beams: 4, directions: 4, shadow: 0, apart: 1, skies: 4, pores: false, hair: 0.6 },
@@ -34,7 +34,7 @@ const presets = [
 ];
 
 class EyeScene {
-	static LIGHTS = 8;        // beams at most; and the way to the camera
+	static LIGHTS = 12;       // beams at most; and the way to the camera
 	static DIRECTIONS = 128;  // in all of them
 	static NODES = 12;
 	static SEARCH = 32;       // steps at most towards the relief
