@@ -33,6 +33,13 @@ struct march_node {
 	float rise[TISSUE_BANDS_MAX][PART], seen[TISSUE_BANDS_MAX][PART];
 };
 
+/* Layer and place (at: 0..1 of it, weight) of the quadrature on n rays from the first on, or on a tile's, read from its maps. */
+void scene_node_of_rays(int n, struct march_node *node, const struct iris_batch *r, int first, const struct ground *ground,
+                        const struct march_tissue *tissue, int layer, float at, float weight);
+struct march_body;
+void scene_node_of_tile(struct march_node *node, const struct iris_batch *r, const struct ground *ground, const struct march_tissue *tissue,
+                        const struct march_body *body, int layer, float at, float weight);
+
 /* One light on every ray: direction towards it (scene_beam.c) at q = 0 and what it changes by to q = 1, irradiance of a plane that
  * faces it at u = 0 and what it changes by to u = 1. From scene_light_at: at both ends of the ray; fall: what of it falls on the
  * iris plane. */

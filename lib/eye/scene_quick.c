@@ -5,7 +5,7 @@
 #include <string.h>
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
 struct lane {

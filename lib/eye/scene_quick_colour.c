@@ -5,7 +5,7 @@
 #include "eye/scene_quick.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
 /* Starts every ray's colour with what shows under the film: the photograph's detail times what this light makes of it. */

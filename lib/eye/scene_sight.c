@@ -4,7 +4,7 @@
 #include <math.h>
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
 struct sight_plane sight_plane(const struct scene_look *look, const struct scene_view *v, double sphere_z)

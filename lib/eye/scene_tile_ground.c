@@ -5,7 +5,7 @@
 #include "eye/scene_quick_map.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
+#pragma GCC optimize("no-tree-pre")  // see scene_meet.c
 #endif
 
 /* At the texels: slope of the relief to the next ones, and the stroma's thickness. */
