@@ -1,4 +1,4 @@
-/* How the stage `track` finishes margins, against closed forms: the eye's end by colours, skin beside a place, corners of the eye, lower lids in blinks. */
+/* How the stage `track` finishes margins, against closed forms: the eye's end by colours, skin beside a place, corners of the eye, lids in blinks. */
 #include <math.h>
 #include <string.h>
 
@@ -268,11 +268,58 @@ static void blinks_hold_lower_lids(void **state)
 	scene_free(&s);
 }
 
+/* An upper margin that falls as a share of the way from its open arc to the lower one: where lashes drag what is found down, and the corner with it, it is put
+ * where the rest of it is. The head takes all along. */
+static void blinks_fall_evenly(void **state)
+{
+	(void)state;
+	enum { PLACES = 2, WIDE = 400, UP = 60, LOW = 25 };
+	struct scene s;
+	scene_make(&s, 5);
+	double carried[FRAMES][PLACES][2], corner[FRAMES][2][2];
+	for (int f = 0; f < FRAMES; f++) {
+		struct eye_state *e = &s.r.eyes.state[f][0];
+		bool shut = f >= 20 && f < 30;
+		double closure = shut ? 1 - fabs(f - 24.5) / 5 : 0, x0 = 100 + 0.5 * f, y0 = 200;
+		e->blink = shut ? BLINK_CLOSING : BLINK_OPEN;
+		e->lid_points = 20;
+		for (int i = 0; i < 20; i++) {
+			double u = i / 19.0, bow = 4 * u * (1 - u), dragged = shut && u > 0.7 ? 30 : 0;
+			for (int k = 0; k < LIDS; k++)
+				e->lid[k][i][0] = x0 + WIDE * u;
+			e->lid[LID_UPPER][i][1] = y0 + bow * ((1 - closure) * -UP + closure * LOW) + dragged;
+			e->lid[LID_LOWER][i][1] = y0 + bow * LOW;
+		}
+		for (int c = 0; c < 2; c++) {
+			carried[f][c][0] = x0 + c * WIDE;
+			carried[f][c][1] = y0 + 3;
+			corner[f][c][0] = x0 + c * WIDE + (shut && c ? 45 : 0);
+			corner[f][c][1] = y0 + (shut && c ? 45 : 0);
+		}
+	}
+	fall_carry(&s.r, 0, corner, PLACES, (const double(*)[2])carried[0], 4);
+	for (int f = 0; f < FRAMES; f++) {
+		const struct eye_state *e = &s.r.eyes.state[f][0];
+		bool shut = f >= 20 && f < 30;
+		double closure = shut ? 1 - fabs(f - 24.5) / 5 : 0, x0 = 100 + 0.5 * f;
+		for (int c = 0; c < 2; c++) {
+			NEAR(corner[f][c][0], x0 + c * WIDE, 1e-9);
+			NEAR(corner[f][c][1], 200, 1e-9);
+		}
+		for (int i = 0; i < 20; i++) {
+			double u = (e->lid[LID_UPPER][i][0] - x0) / WIDE, want = 200 + 4 * u * (1 - u) * ((1 - closure) * -UP + closure * LOW);
+			// chords between control points of an arc; what drags leaves 30 px / (1 + 7.5^4)
+			NEAR(e->lid[LID_UPPER][i][1], want, 0.3);
+		}
+	}
+	scene_free(&s);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_eye_ends), cmocka_unit_test(skin_beside_a_place), cmocka_unit_test(unseen_skin_goes_evenly),
-		cmocka_unit_test(corners_are_the_meshs), cmocka_unit_test(blinks_hold_lower_lids),
+		cmocka_unit_test(corners_are_the_meshs), cmocka_unit_test(blinks_hold_lower_lids), cmocka_unit_test(blinks_fall_evenly),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
