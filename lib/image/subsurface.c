@@ -5,6 +5,10 @@
 
 #include "image/subsurface_level.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=fast")  // see math/simd.h
+#endif
+
 struct subsurface_profile subsurface_skin(double red_mm)
 {
 	struct subsurface_profile skin = {

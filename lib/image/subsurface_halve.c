@@ -5,6 +5,10 @@
 #include "image/subsurface_level.h"
 #include "math/simd.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=fast")  // see math/simd.h
+#endif
+
 /* One texel out of four, with their shares: those about as near as the nearest. */
 struct quad {
 	float a, b, c, d;

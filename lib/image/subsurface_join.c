@@ -8,6 +8,10 @@
 #include "image/subsurface_level.h"
 #include "math/simd.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=fast")  // see math/simd.h
+#endif
+
 /* A texel of the level below: its share as far as its depth is this one's; a trace of it whatever its depth, where all
  * four lie elsewhere. */
 SIMD_INLINE float share(float z, float there, float inv, float part)

@@ -10,6 +10,10 @@
 #include "base/mem.h"
 #include "math/simd.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=fast")  // see math/simd.h
+#endif
+
 enum { LANES = SUBSURFACE_LANES };
 typedef subsurface_lanes lanes;
 typedef int mask __attribute__((vector_size(32)));

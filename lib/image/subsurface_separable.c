@@ -7,6 +7,10 @@
 #include "image/subsurface_level.h"
 #include "math/simd.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=fast")  // see math/simd.h
+#endif
+
 enum { MOST = 65 };
 
 struct kernel {
