@@ -50,12 +50,13 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 {
 	const struct eye_state *here = &r->eyes.state[clip->reference / conf->every][side];
 	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1];
-	memcpy(rest, here->lid[point / conf->eyes.lid_points][point % conf->eyes.lid_points], 2 * sizeof *rest);
+	const int points = conf->eyes.lid_points;  // of a frame without lids NAN
+	memcpy(rest, here->lid[point / points][point % points], 2 * sizeof *rest);
 	for (int round = 0; round < REST_ROUNDS && isfinite(up); round++) {
 		double a[3][3] = { { 0 } }, b[2][3] = { { 0 } }, square = 0, weight = 0;
 		for (long f = 0; f < r->n; f++) {
 			const struct eye_state *state = &r->eyes.state[f][side];
-			const double *p = state->lid[point / state->lid_points][point % state->lid_points], row[3] = { 1, state->gaze[0], state->gaze[1] - up };
+			const double *p = state->lid[point / points][point % points], row[3] = { 1, state->gaze[0], state->gaze[1] - up };
 			float at[2];
 			double off[2], w = 1;
 			if (r->lost_at[f] || state->blink != BLINK_OPEN || !(state->openness > open_enough) || !isfinite(row[1] + p[0]))
