@@ -23,7 +23,7 @@ bench-report: $B/tests/bench/report
 .PHONY: fronts
 fronts: bench-fronts bench-fronts_skin bench-fronts_track bench-fronts_render bench-fronts_calibrate
 	@{ printf '; Settings of each stage that no other beats in both time and error: error against the finest setting or the truth, and\n'; \
-	printf '; time on two processors, fixed and for each megapixel of photographs. Made by make fronts on samples/, of calibrate on\n'; \
+	printf '; time on two processors, fixed and for each megapixel of photographs. Made by make fronts on samples/, of track on a close-up, too, of calibrate on\n'; \
 	printf '; eight photographs of a head with known cameras.\n'; \
 	cat bench/fronts.front bench/fronts_skin.front bench/fronts_track.front bench/fronts_render.front; \
 	cat bench/fronts_calibrate.front 2>/dev/null || grep '^calibrate' config/fronts.conf; } > config/fronts.new && mv config/fronts.new config/fronts.conf

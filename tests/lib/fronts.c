@@ -258,6 +258,8 @@ void fronts_measure(const struct fronts_stage *s, const char *capture, const cha
 		points[i].time = (struct bench_time){ took, took, took };
 		ok = ok && (!s->after || run_stage(s->after, 0, 0, 0, capture));
 		points[i].error = ok ? s->error(capture, reference) : NAN;
+		if (s->also)
+			points[i].error = (points[i].error + (run_stage(s->stage, s->keys, points[i].values, s->always, s->also) ? s->error(s->also, reference) : NAN)) / 2;
 	}
 	if (s->reps)
 		time_all(n, points, s, capture, false);

@@ -25,6 +25,7 @@ struct fronts_stage {
 	fronts_error *error;
 	const char *after;                      // a stage run after it, untimed, before the error is taken; or null
 	int reps;                               // timed runs beside the one whose error is taken; 0: that one alone
+	const char *also;                       // another capture: the error is the mean over both, the time that of the first; or null
 	bool draft_to_review;                   // `final` would take too long here
 	bool anew;                              // the stage keeps what it can from its last run: work/ goes before each
 };
