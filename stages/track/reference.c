@@ -91,13 +91,15 @@ static bool gaze_of(double gaze[2], double *wide, const struct track_result *r, 
 	return n > 0;
 }
 
-/* px; 0 where there is no skin. */
-static double usual_misfit(const struct track_result *r, double *room)
+double reference_usual_misfit(const struct track_result *r)
 {
-	if (!r->misfit)
-		return 0;
-	memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
-	return fmax(stats_median((int)r->n, room), 1e-3);
+	double *room = mem_array((size_t)r->n + 1, sizeof *room), usual = 0;
+	if (r->misfit) {
+		memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
+		usual = fmax(stats_median((int)r->n, room), 1e-3);
+	}
+	free(room);
+	return usual;
 }
 
 struct reference_view reference_judge(const struct track_result *r, const struct track_clip *clip, long every)
@@ -108,7 +110,7 @@ struct reference_view reference_judge(const struct track_result *r, const struct
 	bool *open = mem_new(room, sizeof *open);
 	long here = clip->reference / every, best = 0;
 	int n = 0;
-	const double calm = usual_misfit(r, x);
+	const double calm = reference_usual_misfit(r);
 	for (long f = 0; f < r->n; f++)
 		n += open[f] = gaze_of(gaze[f], &wide[f], r, f);
 	for (int k = 0; k < 2; k++) {

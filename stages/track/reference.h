@@ -19,6 +19,9 @@ struct reference_view reference_judge(const struct track_result *few, const stru
 /* The usual height of an eye's gaze in those frames, radians; NAN where none has any. */
 double reference_usual_height(const struct track_result *few, int side);
 
+/* Px that skin is usually off the head in those frames, at least a little; 0 where there is no skin. */
+double reference_usual_misfit(const struct track_result *few);
+
 /* The head's pose in the reference frame by the eyes' centres and the lids at rest that the frames followed show, into clip. doubted: the reference may be of
  * another expression than most frames. conf: that they were followed with. */
 void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *few, const struct track_subject *subject, const struct track_conf *conf);

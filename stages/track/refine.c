@@ -1,12 +1,9 @@
 /* The head's pose at the reference, settled by what the eyes turn about: their centres lie 12 mm behind the lids, so that a head
  * that is thought to be turned wrongly has them in the wrong place beside the lids' outlines. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "math/chol.h"
-#include "math/stats.h"
 #include "stages/track/reference.h"
 
 enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2 };
@@ -132,18 +129,6 @@ static int margins(struct head_sight *sights, int points, double (*rest)[2], con
 	return n;
 }
 
-/* Px that skin is usually off the head, at least a little; 0 where there is no skin. */
-static double usual_stir(const struct track_result *r)
-{
-	double *room = mem_array((size_t)r->n + 1, sizeof *room), usual = 0;
-	if (r->misfit) {
-		memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
-		usual = fmax(stats_median((int)r->n, room), 1e-3);
-	}
-	free(room);
-	return usual;
-}
-
 void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
 {
 	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
@@ -153,7 +138,7 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 	struct head_prior prior = { .sigma = { turn, turn, INFINITY, INFINITY, INFINITY, INFINITY } };
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	memcpy(prior.cam_from_head, pose, sizeof pose);
-	double calm = doubted ? usual_stir(r) : 0;
+	double calm = doubted ? reference_usual_misfit(r) : 0;
 	for (int i = 0; i < SIDES * points; i++)
 		rest_of(rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
 	for (int round = 0; round < ROUNDS; round++) {
