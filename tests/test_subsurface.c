@@ -121,23 +121,43 @@ static void light_crosses_no_gap(void **state)
 	free(p);
 }
 
+/* Light and a surface with a step, holes and slopes, of any size; what n threads make of it. */
+static float *spread_by(int threads, int width, int height, double px_per_mm)
+{
+	size_t n = (size_t)width * (size_t)height;
+	float *px = mem_array(4 * n, sizeof *px);
+	struct rng rng = { 9 };
+	struct subsurface_profile skin = subsurface_skin(1.67);
+	struct subsurface_room room = { 0 };
+	for (size_t i = 0; i < n; i++) {
+		int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
+		for (size_t c = 0; c < 3; c++)
+			px[c * n + i] = (float)rng_uniform(&rng);
+		px[3 * n + i] = rng_uniform(&rng) < 0.01 ? 0 : (float)(900 + (x > y ? 5 : 0) + 0.3 * y / px_per_mm);
+	}
+	omp_set_num_threads(threads);
+	subsurface_spread(&(struct subsurface_picture){ width, height, { px, px + n, px + 2 * n }, px + 3 * n, px_per_mm }, &skin, &room);
+	subsurface_room_free(&room);
+	return px;
+}
+
 static void threads_change_nothing(void **state)
 {
 	(void)state;
-	struct picture *one = fresh(0), *more = fresh(0);
-	struct rng rng = { 9 };
-	for (int i = 0; i < N; i++)
-		for (int c = 0; c < 3; c++)
-			one->rgb[c][i] = more->rgb[c][i] = (float)rng_uniform(&rng);
+	const int sizes[][2] = { { W, H }, { 1, 1 }, { 1, 37 }, { 41, 1 }, { 2, 3 }, { 64, 33 }, { 131, 66 } };
+	const double scale[] = { 0.2, 1, 4, 7, 20 };
 	int threads = omp_get_max_threads();
-	omp_set_num_threads(1);
-	spread(one, 7, 0);
-	omp_set_num_threads(5);
-	spread(more, 7, 0);
+	for (int i = 0; i < COUNT(sizes); i++)
+		for (int k = 0; k < COUNT(scale); k++) {
+			int width = sizes[i][0], height = sizes[i][1];
+			float *one = spread_by(1, width, height, scale[k]), *more = spread_by(5, width, height, scale[k]);
+			assert_memory_equal(one, more, (size_t)(4 * width * height) * sizeof *one);
+			for (int px = 0; px < 3 * width * height; px++)
+				assert_true(one[px] >= 0 && one[px] <= 1);  // a mean of what there was
+			free(one);
+			free(more);
+		}
 	omp_set_num_threads(threads);
-	assert_memory_equal(one, more, sizeof *one);
-	free(one);
-	free(more);
 }
 
 int main(void)

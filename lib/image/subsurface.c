@@ -36,52 +36,28 @@ static int level_of(double v)
 	return l;
 }
 
-/* Adds one Gaussian, blurred at its own level, to that level's sum. */
-static void add(struct subsurface_level *level, int l, double v, double px2, const double weight[3],
-                struct subsurface_room *room)
-{
-	double cell = pow(4, l), own = (v - (cell - 1) / 3) / cell;
-	struct subsurface_taps taps;
-	subsurface_taps_gauss(&taps, own);
-	subsurface_blur(level, &taps, own * cell / px2, weight, room);
-}
-
-/* What the levels need: at the top three sums, further down the picture's own four planes, too; and what a blur has at hand. */
-static size_t size_of(int width, int height, int deepest)
-{
-	enum { TOP = 3, BELOW = 7, ROUNDING = 16 };
-	size_t n = (size_t)omp_get_max_threads() * subsurface_band_size(width) + ROUNDING;
-	for (int l = 0; l <= deepest; l++) {
-		size_t stride = (size_t)(width + 7) / 8 * 8;
-		n += (l ? BELOW : TOP) * (stride * (size_t)height + ROUNDING) + (stride / SUBSURFACE_PART + 1) * (size_t)height / 4 + ROUNDING;
-		width = (width + 1) / 2;
-		height = (height + 1) / 2;
-	}
-	return n;
-}
-
 void subsurface_spread(const struct subsurface_picture *p, const struct subsurface_profile *profile, struct subsurface_room *room)
 {
-	struct subsurface_level level[SUBSURFACE_LEVELS];
+	struct subsurface_level level[SUBSURFACE_LEVELS] = { 0 };
 	double px2 = p->px_per_mm * p->px_per_mm, stays[3] = { 0 };
 	int deepest = 0;
+	for (int l = 0; l < SUBSURFACE_LEVELS; l++)
+		level[l].texels_per_mm = p->px_per_mm / (1 << l);
 	for (int i = 0; i < profile->n; i++) {
-		int l = level_of(profile->variance[i] * px2);
+		double v = profile->variance[i] * px2;
+		int l = level_of(v);
 		deepest = l > deepest ? l : deepest;
 		for (int c = 0; c < 3 && l < 0; c++)
 			stays[c] += profile->weight[i][c];
+		if (l >= 0) {
+			double cell = pow(4, l);
+			subsurface_gauss_make(&level[l].gauss[level[l].n++], (v - (cell - 1) / 3) / cell, level[l].texels_per_mm, profile->weight[i]);
+		}
 	}
-	subsurface_room_make(room, size_of(p->width, p->height, deepest));
-	subsurface_level_top(&level[0], p);
-	for (int l = 1; l <= deepest; l++)
-		subsurface_level_halve(&level[l], &level[l - 1], p->px_per_mm / (1 << (l - 1)), room);
-	for (int l = deepest; l >= 0; l--) {
-		for (int i = 0; i < profile->n; i++)
-			if (level_of(profile->variance[i] * px2) == l)
-				add(&level[l], l, profile->variance[i] * px2, px2, profile->weight[i], room);
-		if (l < deepest)
-			subsurface_level_join(&level[l], &level[l + 1], p->px_per_mm / (1 << l), l ? 0 : stays, room);
-	}
-	if (!deepest)
-		subsurface_level_give(&level[0], stays);
+	size_t size = 0;
+	for (int l = 0, width = p->width, height = p->height; l <= deepest; l++, width = (width + 1) / 2, height = (height + 1) / 2)
+		size += subsurface_level_size(&level[l], width, height, !l);
+	subsurface_room_make(room, size + (size_t)omp_get_max_threads() * subsurface_sum_size(level, deepest));
+	subsurface_level_fill(level, deepest, p, room);
+	subsurface_sum(level, deepest, p, stays, room);
 }

@@ -112,39 +112,43 @@ static void halve_last(const struct pair *p, int i, float gap)
 		p->rgb_out[c][i] = q.a * p->rgb[0][c][2 * i] + q.c * p->rgb[1][c][2 * i];
 }
 
-void subsurface_level_halve(struct subsurface_level *l, const struct subsurface_level *above, double texels_per_mm,
-                            struct subsurface_room *room)
+/* Row y of a level, out of the one above. */
+static void halve(const struct subsurface_level *l, const struct subsurface_level *above, int y)
 {
-	*l = (struct subsurface_level){ .width = (above->width + 1) / 2, .height = (above->height + 1) / 2 };
-	l->stride = (l->width + 7) / 8 * 8;
-	size_t n = (size_t)l->stride * (size_t)l->height;
-	for (int c = 0; c < 3; c++)
-		l->rgb[c] = subsurface_room_take(room, n);
-	float *z = subsurface_room_take(room, n);
-	l->z = z;
-	l->parts = (l->width + SUBSURFACE_PART - 1) / SUBSURFACE_PART;
-	l->even = (unsigned char *)subsurface_room_take(room, ((size_t)l->parts * (size_t)l->height + 3) / 4);
-	float gap = (float)(4 / texels_per_mm);  // a surface seen at 60 degrees falls by 2.4 texels across their diagonal
-#pragma omp parallel for schedule(static)
-	for (int y = 0; y < l->height; y++) {
-		struct pair p;
-		size_t to = (size_t)y * (size_t)l->stride;
-		for (int k = 0; k < 2; k++) {
-			int row = 2 * y + k < above->height ? 2 * y + k : 2 * y;  // counted twice, the last of an odd height
-			size_t from = (size_t)row * (size_t)above->stride;
-			p.z[k] = above->z + from;
-			for (int c = 0; c < 3; c++)
-				p.rgb[k][c] = above->rgb[c] + from;
-		}
-		p.z_out = z + to;
-		p.even = l->even + (size_t)y * (size_t)l->parts;
+	struct pair p;
+	size_t to = (size_t)y * (size_t)l->stride;
+	for (int k = 0; k < 2; k++) {
+		int row = 2 * y + k < above->height ? 2 * y + k : 2 * y;  // counted twice, the last of an odd height
+		size_t from = (size_t)row * (size_t)above->stride;
+		p.z[k] = above->in[3] + from;
 		for (int c = 0; c < 3; c++)
-			p.rgb_out[c] = l->rgb[c] + to;
-		p.even[l->parts - 1] = 0;
-		halve_row(&p, above->width / 2, gap);
-		if (above->width % 2)
-			halve_last(&p, l->width - 1, gap);
-		for (int i = l->width; i < l->stride; i++)
-			p.z_out[i] = p.rgb_out[0][i] = p.rgb_out[1][i] = p.rgb_out[2][i] = 0;
+			p.rgb[k][c] = above->in[c] + from;
+	}
+	p.z_out = l->own[3] + to;
+	p.even = l->even + (size_t)y * (size_t)l->parts;
+	for (int c = 0; c < 3; c++)
+		p.rgb_out[c] = l->own[c] + to;
+	p.even[l->parts - 1] = 0;
+	float gap = (float)(4 / above->texels_per_mm);  // a surface seen at 60 degrees falls by 2.4 texels across their diagonal
+	halve_row(&p, above->width / 2, gap);
+	if (above->width % 2)
+		halve_last(&p, l->width - 1, gap);
+	subsurface_level_sides(l, y);
+}
+
+/* All levels at once: what lies above a row of the deepest is halved down to it while it is in the cache. Each thread goes
+ * upwards, so that subsurface_sum(), which goes downwards, starts with what was read last. */
+void subsurface_level_halve(const struct subsurface_level *level, int deepest)
+{
+#pragma omp parallel
+	{
+		int first, end;
+		subsurface_share(&first, &end, level[deepest].height);
+		for (int k = end - 1; k >= first; k--)
+			for (int l = 1; l <= deepest; l++) {
+				int each = 1 << (deepest - l), to = (k + 1) * each < level[l].height ? (k + 1) * each : level[l].height;
+				for (int y = k * each; y < to; y++)
+					halve(&level[l], &level[l - 1], y);
+			}
 	}
 }

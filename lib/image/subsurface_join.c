@@ -1,10 +1,7 @@
 /* From a level of the pyramid to the one above: bilinear, over the four texels as far as their depth is the pixel's. */
 #include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "image/subsurface_level.h"
 #include "math/simd.h"
 
@@ -134,39 +131,18 @@ SIMD_CLONES static void join_row(const struct row *row, float inv)
 	}
 }
 
-void subsurface_level_join(struct subsurface_level *l, const struct subsurface_level *below, double texels_per_mm,
-                           const double stays[3], struct subsurface_room *room)
+void subsurface_join(float *const out[3], const float keep[3], const struct subsurface_level *l, const struct subsurface_level *lower,
+                     int y, const float *const below[2][4], float *mean)
 {
 	// At 60 degrees a surface falls by 1.7 texels in one; the farthest of the four is 2.1 off.
-	float inv = (float)(texels_per_mm * texels_per_mm / 36);
-	int stride = (l->width + 7) / 8 * 8;
-	for (int c = 0; c < 3 && !stays; c++)
-		if (!l->sum[c]) {
-			l->sum[c] = subsurface_room_take(room, (size_t)stride * (size_t)l->height);
-			memset(l->sum[c], 0, (size_t)stride * (size_t)l->height * sizeof *l->sum[c]);
-		}
-	if (stays && l->sum[0])
-		subsurface_level_give(l, stays);
-#pragma omp parallel
-	{
-		float *mean = mem_array(3 * (size_t)below->width, sizeof *mean);
-#pragma omp for schedule(static)
-		for (int y = 0; y < l->height; y++) {
-			struct row row = { .z = l->z + (size_t)y * (size_t)l->stride, .n = l->width, .n_below = below->width };
-			row.even = below->even + (size_t)(y / 2) * (size_t)below->parts;
-			for (int c = 0; c < 3; c++) {
-				row.out[c] = stays ? l->rgb[c] + (size_t)y * (size_t)l->stride : l->sum[c] + (size_t)y * (size_t)stride;
-				row.keep[c] = stays && !l->sum[0] ? (float)stays[c] : 1;
-				row.mean[c] = mean + (size_t)c * (size_t)below->width;
-			}
-			for (int k = 0; k < 2; k++) {
-				int at = k ? y % 2 ? y / 2 + 1 : y / 2 - 1 : y / 2;
-				at = at < 0 ? 0 : at < below->height ? at : below->height - 1;
-				for (int c = 0; c < 4; c++)
-					row.below[k][c] = (c < 3 ? below->sum[c] : below->z) + (size_t)at * (size_t)below->stride;
-			}
-			join_row(&row, inv);
-		}
-		free(mean);
+	float inv = (float)(l->texels_per_mm * l->texels_per_mm / 36);
+	struct row row = { .z = l->in[3] + (size_t)y * (size_t)l->stride, .n = l->width, .n_below = lower->width };
+	row.even = lower->even + (size_t)(y / 2) * (size_t)lower->parts;
+	memcpy(row.below, below, sizeof row.below);
+	for (int c = 0; c < 3; c++) {
+		row.out[c] = out[c];
+		row.keep[c] = keep[c];
+		row.mean[c] = mean + (size_t)c * (size_t)lower->width;
 	}
+	join_row(&row, inv);
 }

@@ -1,53 +1,67 @@
-/* One level of subsurface.c's pyramid: the picture, halved so many times, and the sum of what was blurred there. */
+/* One level of subsurface.c's pyramid: the picture, halved so many times, and what is blurred there. */
 #ifndef IMAGE_SUBSURFACE_LEVEL_H
 #define IMAGE_SUBSURFACE_LEVEL_H
+#include <stdbool.h>
+
 #include "image/subsurface.h"
 
 enum { SUBSURFACE_LANES = 8 };
 typedef float subsurface_lanes __attribute__((vector_size(32), aligned(4)));
 enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40, SUBSURFACE_PART = 32 };
 
+/* One Gaussian at its level: weights of the taps -radius .. radius, whose sum is 1; 1 / 8v of the fall-off in depth, 1/mm²;
+ * what each channel carries of it, the first `channels` of them. */
+struct subsurface_gauss {
+	int radius, channels;
+	float taps[2 * SUBSURFACE_RADIUS + 1], inv_8v, weight[3];
+};
+
+/* Planes of `stride` numbers a row; where it has Gaussians, `side` texels of nothing lie on either hand of each row. */
 struct subsurface_level {
-	int width, height, stride;
-	float *rgb[3];     // irradiance; the caller's at the top
-	const float *z;    // depth of the skin nearest to the camera, mm; 0: none
+	int width, height, stride, side;
+	double texels_per_mm;
+	const float *in[4];   // irradiance; depth of the skin nearest to the camera, mm, 0: none. The first texel of the first row
+	float *own[4];        // the same to write; null at a top without Gaussians, which is the caller's picture
 	unsigned char *even;  // [height][parts] 1: what SUBSURFACE_PART texels of a row were made of is one surface; null at the top
 	int parts;
-	float *sum[3];     // of weighted Gaussians; null until there is one
+	int n;
+	struct subsurface_gauss gauss[SUBSURFACE_MAX];
 };
 
-/* Weights of the taps -radius .. radius; their sum is 1. */
-struct subsurface_taps {
-	int radius;
-	float weight[2 * SUBSURFACE_RADIUS + 1];
-};
+/* A Gaussian of so much variance, texels², at a level of so many texels a mm. */
+void subsurface_gauss_make(struct subsurface_gauss *gauss, double variance, double texels_per_mm, const double weight[3]);
 
-void subsurface_taps_gauss(struct subsurface_taps *taps, double variance);
+/* Sets width, height, stride and side of a level that has its Gaussians; numbers of the room that its planes take. */
+size_t subsurface_level_size(struct subsurface_level *level, int width, int height, bool top);
 
-/* The picture itself; the level below another, each of its texels the mean of the frontmost of four. */
-void subsurface_level_top(struct subsurface_level *level, const struct subsurface_picture *picture);
-void subsurface_level_halve(struct subsurface_level *level, const struct subsurface_level *above, double texels_per_mm,
-                            struct subsurface_room *room);
+/* Gives planes to level[0 .. deepest] out of the room and fills them: the picture itself, and below each texel the mean of the
+ * frontmost of four. */
+void subsurface_level_fill(struct subsurface_level *level, int deepest, const struct subsurface_picture *picture, struct subsurface_room *room);
+
+/* Halves the first into all the others. */
+void subsurface_level_halve(const struct subsurface_level *level, int deepest);
+
+/* Nothing on either hand of row y. */
+void subsurface_level_sides(const struct subsurface_level *level, int y);
+
+/* Thread's share of n rows: [from, to). */
+void subsurface_share(int *from, int *to, int n);
 
 /* Room for at least so many, all of it free. */
 void subsurface_room_make(struct subsurface_room *room, size_t n);
 
-/* The next n numbers of the room: multiples of 16 apart, valid until room->used is set back. */
+/* The next n numbers of the room: multiples of 16 apart. */
 float *subsurface_room_take(struct subsurface_room *room, size_t n);
 
-/* What subsurface_blur() takes of the room for each thread at a level so wide, and gives back. */
-size_t subsurface_band_size(int width);
+/* Writes the picture: what stays where it is, and every level's Gaussians, interpolated up from level to level. room: of
+ * subsurface_sum_size() numbers for each thread. */
+void subsurface_sum(const struct subsurface_level *level, int deepest, const struct subsurface_picture *picture, const double stays[3],
+                    struct subsurface_room *room);
+size_t subsurface_sum_size(const struct subsurface_level *level, int deepest);
 
-/* Adds weight times the blurred picture to the sum, along x and then along y. variance: of the fall-off in depth, mm². */
-void subsurface_blur(struct subsurface_level *level, const struct subsurface_taps *taps, double variance, const double weight[3],
-                     struct subsurface_room *room);
-
-/* Adds the sum of the level below, interpolated, to this one's; at the top (stays: null elsewhere) to what stays where it
- * is, with its own sum, in the picture. */
-void subsurface_level_join(struct subsurface_level *level, const struct subsurface_level *below, double texels_per_mm,
-                           const double stays[3], struct subsurface_room *room);
-
-/* The top with no level below: what stays where it is, and the sum. */
-void subsurface_level_give(struct subsurface_level *top, const double stays[3]);
+/* One row: out[c] = keep[c] out[c] + the sum of the level below, interpolated, where there is skin. below: its two rows
+ * nearest to y, the nearer one first, r, g, b, depth. mean: room for 3 rows of the level below. */
+void subsurface_join(float *const out[3], const float keep[3], const struct subsurface_level *level, const struct subsurface_level *lower,
+                     int y, const float *const below[2][4], float *mean);
 
 #endif
