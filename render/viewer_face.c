@@ -68,7 +68,7 @@ static void pose_all(struct face *f)
 {
 	double *controls = mem_new((size_t)f->rig->n_inputs + 1, sizeof *controls);
 	struct portrait_view view = portrait_front(f->rig, -1, 140, 0, 0, 1280, 720);
-	f->sky = mem_new((size_t)POSES * SKY * SKY, 2);
+	f->sky = mem_new((size_t)(POSES + f->n_au) * SKY * SKY, 2);
 	f->light = mem_new((size_t)(POSES + f->n_au), sizeof *f->light);
 	for (int k = 0; k < POSES + f->n_au; k++) {
 		int pose = k < POSES ? k : REST;
@@ -79,8 +79,7 @@ static void pose_all(struct face *f)
 		portrait_light(f->portrait, &view, k == 0);
 		f->light[k] = mem_array((size_t)f->rig->n + 1, sizeof **f->light);
 		record(f->light[k], f);
-		if (k < POSES)
-			sky(f->sky + (long)k * SKY * SKY * 2, f);
+		sky(f->sky + (long)k * SKY * SKY * 2, f);
 	}
 	drive_look(controls, f->rig, 0, 0, 1);
 	portrait_pose(f->portrait, controls);
@@ -187,7 +186,7 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 	json_object_set_new(out, "globes", globes);
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
-	json_object_set_new(out, "sky", viewer_base64(f.sky, (size_t)POSES * SKY * SKY * 2));
+	json_object_set_new(out, "sky", viewer_base64(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2));
 	viewer_order(&f, 0.98 * reach);
 	put_colours(out, &f);
 	viewer_put_rig(out, &f);

@@ -20,7 +20,7 @@ struct face {
 	double middle[3];                // of both eyes
 	int n_au;                        // expressions: a pose of each follows the grid's
 	uint8_t (**light)[3];            // [POSES + n_au][rig n]: roots of irradiance
-	uint8_t *sky;                    // [POSES][SKY][2 SKY]: left, right
+	uint8_t *sky;                    // [POSES + n_au][SKY][2 SKY]: left, right
 	int n_shown, *order, *place;     // the page's vertices: the mesh's row; and back, -1: not on the page
 	int n_levels;
 	struct face_level level[LEVELS];

@@ -63,12 +63,16 @@ class FaceScene {
 			return;
 		const c = this.poser.posed_as;
 		this.strengths = [...c.slice(10)];
-		const n = 2 * d.sky_px * d.sky_px, sky = new Uint8Array(n), lit = this.poser.lit(c).filter(([pose]) => (pose + 1) * n <= this.skies.length);
-		for (let i = 0; i < n; i++)
-			sky[i] = lit.reduce((sum, [pose, left, right]) => sum + (i % (2 * d.sky_px) < d.sky_px ? left : right) * this.skies[pose * n + i], 0);
+		const sky = this.sky(c);
 		gl.bindTexture(gl.TEXTURE_2D, this.sky_map.texture);
 		gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
 		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * d.sky_px, d.sky_px, gl.RED, gl.UNSIGNED_BYTE, sky);
+	}
+
+	/* Share of the sky that lids leave over places of both globes, of 255: of the poses that light comes from, expressions too. */
+	sky(controls) {
+		const wide = 2 * this.data.sky_px, n = wide * this.data.sky_px, lit = this.poser.lit(controls);
+		return Uint8ClampedArray.from({ length: n }, (_, i) => lit.reduce((sum, [pose, left, right]) => sum + (i % wide < wide / 2 ? left : right) * this.skies[pose * n + i], 0));
 	}
 
 	resize(width, height) {

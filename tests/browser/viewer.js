@@ -387,6 +387,26 @@ async function expressions(b) {
 		return JSON.stringify(out);
 	})()`, 120000));
 	say(seen.brow && !seen.squint && !seen.rest, "skin folds with the expression that folds it", JSON.stringify(seen));
+	// Lids that stay where they are leave the eye its light: the middles of both globes, 3 mm round, with expressions and without.
+	const lit = JSON.parse(await b.value(`(() => {
+		const p = eyewright, gl = p.graphics.gl, n = gl.canvas.width, rows = gl.canvas.height, px = new Uint8Array(4 * n * rows);
+		p.busy = true;
+		const look = (au0, au1) => {
+			p.values.au0 = au0; p.values.au1 = au1; p.scene.restart(); p.draw(presets[0]);
+			gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.readPixels(0, 0, n, rows, gl.RGBA, gl.UNSIGNED_BYTE, px);
+			const v = p.view(), f = FaceScene.DISTANCE * rows / v.field(rows) / FaceScene.DISTANCE;
+			let sum = 0, count = 0;
+			for (const [x, y] of data.face.globes)
+				for (let i = -3; i <= 3; i += 0.25)
+					for (let j = -3; j <= 3; j += 0.25, count++)
+						sum += px[4 * (Math.round(rows / 2 + f * (y + i)) * n + Math.round(n / 2 + f * (x + j))) + 1];
+			return sum / count;
+		};
+		const out = [look(1, 0), look(0, 1), look(0, 0)];
+		p.busy = false;
+		return JSON.stringify(out);
+	})()`, 120000));
+	say(lit[2] > 20 && Math.abs(lit[0] / lit[2] - 1) < 0.05 && Math.abs(lit[1] / lit[2] - 1) < 0.05, "an expression does not dim the eyes", JSON.stringify(lit));
 	say(await b.value("!!document.getElementById('s-au0') && !!document.getElementById('s-au1')"), "each expression has a slider", "one is missing");
 }
 
