@@ -40,6 +40,7 @@ struct pair {
 	const float *z[2], *rgb[2][3];
 	float *z_out, *rgb_out[3];
 	unsigned char *even;
+	long ahead;  // from there to the next pair; 0: none, or it is at hand
 };
 
 SIMD_INLINE void halve_uneven(const struct pair *p, int from, int to, float gap)
@@ -97,6 +98,8 @@ SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
 		to = from + SUBSURFACE_PART < n ? from + SUBSURFACE_PART : n;
 		bool one = one_surface(p->z[0], p->z[1], from, to, gap);
 		p->even[from / SUBSURFACE_PART] = one;
+		for (int k = 0; k < 8 && p->ahead; k++)
+			subsurface_ahead((k < 6 ? p->rgb[k / 3][k % 3] : p->z[k - 6]) + p->ahead + 2 * from, 2 * (to - from));
 		if (one)
 			halve_even(p, from, to);
 		else
@@ -129,6 +132,7 @@ static void halve(const struct subsurface_level *l, const struct subsurface_leve
 	for (int c = 0; c < 3; c++)
 		p.rgb_out[c] = l->own[c] + to;
 	p.even[l->parts - 1] = 0;
+	p.ahead = above->own[0] || 2 * y + 3 >= above->height ? 0 : 2 * above->stride;
 	float gap = (float)(4 / above->texels_per_mm);  // a surface seen at 60 degrees falls by 2.4 texels across their diagonal
 	halve_row(&p, above->width / 2, gap);
 	if (above->width % 2)
@@ -136,19 +140,14 @@ static void halve(const struct subsurface_level *l, const struct subsurface_leve
 	subsurface_level_sides(l, y);
 }
 
-/* All levels at once: what lies above a row of the deepest is halved down to it while it is in the cache. Each thread goes
- * upwards, so that subsurface_sum(), which goes downwards, starts with what was read last. */
+/* All levels at once: what lies above a row of the deepest is halved down to it while it is in the cache. */
 void subsurface_level_halve(const struct subsurface_level *level, int deepest)
 {
-#pragma omp parallel
-	{
-		int first, end;
-		subsurface_share(&first, &end, level[deepest].height);
-		for (int k = end - 1; k >= first; k--)
-			for (int l = 1; l <= deepest; l++) {
-				int each = 1 << (deepest - l), to = (k + 1) * each < level[l].height ? (k + 1) * each : level[l].height;
-				for (int y = k * each; y < to; y++)
-					halve(&level[l], &level[l - 1], y);
-			}
-	}
+#pragma omp parallel for schedule(static)
+	for (int k = 0; k < level[deepest].height; k++)
+		for (int l = 1; l <= deepest; l++) {
+			int each = 1 << (deepest - l), to = (k + 1) * each < level[l].height ? (k + 1) * each : level[l].height;
+			for (int y = k * each; y < to; y++)
+				halve(&level[l], &level[l - 1], y);
+		}
 }

@@ -24,6 +24,7 @@ struct row {
 	float *out[3], keep[3], *mean[3];  // mean: room for the two rows below, 3 : 1
 	const unsigned char *even;  // of the nearer row below
 	int n, n_below;
+	long ahead;  // from there to what will be asked for soon; 0: it is at hand
 };
 
 enum { PART = 2 * SUBSURFACE_PART };  // texels that take one way or the other
@@ -124,6 +125,8 @@ SIMD_CLONES static void join_row(const struct row *row, float inv)
 		to = from ? (from / PART + 1) * PART : 2;  // the ends, whose neighbours lie outside, alone
 		to = to < row->n - 2 ? to : from < row->n - 2 ? (row->n - 2) / 2 * 2 : row->n;
 		to = to > from ? to : row->n;
+		for (int c = 0; c < 3 && row->ahead; c++)
+			subsurface_ahead(row->out[c] + row->ahead + from, to - from);
 		if (from > 0 && to < row->n && even(row, from, to, most))
 			join_even(row, from, to);
 		else
@@ -137,6 +140,7 @@ void subsurface_join(float *const out[3], const float keep[3], const struct subs
 	// At 60 degrees a surface falls by 1.7 texels in one; the farthest of the four is 2.1 off.
 	float inv = (float)(l->texels_per_mm * l->texels_per_mm / 36);
 	struct row row = { .z = l->in[3] + (size_t)y * (size_t)l->stride, .n = l->width, .n_below = lower->width };
+	row.ahead = l->own[0] || y + 2 >= l->height ? 0 : 2 * l->stride;  // of the picture itself
 	row.even = lower->even + (size_t)(y / 2) * (size_t)lower->parts;
 	memcpy(row.below, below, sizeof row.below);
 	for (int c = 0; c < 3; c++) {

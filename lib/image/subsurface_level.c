@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +13,6 @@ void subsurface_gauss_make(struct subsurface_gauss *g, double variance, double t
 	*g = (struct subsurface_gauss){
 		.radius = (int)fmin(fmax(ceil(2.3 * sqrt(variance)), 1), SUBSURFACE_RADIUS),
 		.channels = weight[2] > 0 ? 3 : weight[1] > 0 ? 2 : 1,
-		.inv_8v = (float)(texels_per_mm * texels_per_mm / (8 * variance)),
 		.weight = { (float)weight[0], (float)weight[1], (float)weight[2] },
 	};
 	for (int round = 0; round < 20; round++) {  // what is cut off is made up for: the taps' own variance is the one asked for
@@ -26,8 +24,11 @@ void subsurface_gauss_make(struct subsurface_gauss *g, double variance, double t
 		}
 		inner *= variance * sum / second;
 	}
-	for (int k = 0; k <= 2 * g->radius; k++)
-		g->taps[k] = (float)(w[k] / sum);
+	for (int k = 0; k <= 2 * g->radius; k++) {
+		double root = sqrt(sqrt(w[k] / sum));
+		g->root[k] = (float)root;
+		g->fall[k] = (float)(root * texels_per_mm * texels_per_mm / (8 * variance));
+	}
 }
 
 void subsurface_room_make(struct subsurface_room *room, size_t n)
@@ -45,11 +46,9 @@ void subsurface_room_free(struct subsurface_room *room)
 	*room = (struct subsurface_room){ 0 };
 }
 
-enum { ROUNDING = 16 };
-
 static size_t rounded(size_t n)
 {
-	return (n + ROUNDING - 1) / ROUNDING * ROUNDING;
+	return (n + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
 }
 
 float *subsurface_room_take(struct subsurface_room *room, size_t n)
@@ -85,13 +84,6 @@ void subsurface_level_sides(const struct subsurface_level *l, int y)
 		memset(row - l->side, 0, (size_t)l->side * sizeof *row);
 		memset(row + l->width, 0, (size_t)(l->stride - l->side - l->width) * sizeof *row);
 	}
-}
-
-void subsurface_share(int *from, int *to, int n)
-{
-	int threads = omp_get_num_threads(), own = omp_get_thread_num();
-	*from = (int)((long)n * own / threads);
-	*to = (int)((long)n * (own + 1) / threads);
 }
 
 /* The picture, with nothing on either hand. */

@@ -7,14 +7,24 @@
 
 enum { SUBSURFACE_LANES = 8 };
 typedef float subsurface_lanes __attribute__((vector_size(32), aligned(4)));
-enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40, SUBSURFACE_PART = 32 };
+enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40, SUBSURFACE_PART = 32, SUBSURFACE_ROUNDING = 16 };
 
-/* One Gaussian at its level: weights of the taps -radius .. radius, whose sum is 1; 1 / 8v of the fall-off in depth, 1/mm²;
+/* One Gaussian at its level: taps -radius .. radius, whose weights w sum to 1; with v its variance in mm², w^1/4 and w^1/4 / 8v;
  * what each channel carries of it, the first `channels` of them. */
 struct subsurface_gauss {
 	int radius, channels;
-	float taps[2 * SUBSURFACE_RADIUS + 1], inv_8v, weight[3];
+	float root[2 * SUBSURFACE_RADIUS + 1], fall[2 * SUBSURFACE_RADIUS + 1], weight[3];
 };
+
+/* n texels and the taps [from, to] of each, a step apart, in so many channels: out = gain times their mean, or that more. n is a
+ * multiple of SUBSURFACE_ROUNDING; what is beyond the picture has depth 0. */
+struct subsurface_line {
+	const float *in[3], *z;
+	float *out[3], gain[3];
+	int n, step, z_step, from, to, channels;
+	bool adds;
+};
+void subsurface_line(const struct subsurface_line *line, const struct subsurface_gauss *gauss);
 
 /* Planes of `stride` numbers a row; where it has Gaussians, `side` texels of nothing lie on either hand of each row. */
 struct subsurface_level {
@@ -44,8 +54,12 @@ void subsurface_level_halve(const struct subsurface_level *level, int deepest);
 /* Nothing on either hand of row y. */
 void subsurface_level_sides(const struct subsurface_level *level, int y);
 
-/* Thread's share of n rows: [from, to). */
-void subsurface_share(int *from, int *to, int n);
+/* Asks for n numbers to be at hand when they are wanted. */
+static inline void subsurface_ahead(const float *px, int n)
+{
+	for (int i = 0; i < n; i += 16)
+		__builtin_prefetch(px + i);
+}
 
 /* Room for at least so many, all of it free. */
 void subsurface_room_make(struct subsurface_room *room, size_t n);

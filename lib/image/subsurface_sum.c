@@ -10,55 +10,7 @@
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h
 #endif
 
-enum { LANES = SUBSURFACE_LANES, BAND = 16, ROUNDING = 16 };
-typedef subsurface_lanes lanes;
-typedef int mask __attribute__((vector_size(32)));
-
-/* Taps [from, to] of n texels; a step apart. */
-struct line {
-	const float *in[3], *z;
-	float *out[3];
-	int n, step, z_step, from, to, channels;  // the first so many
-	bool adds;
-	float gain[3];
-};
-
-SIMD_INLINE void tap(const struct line *l, const struct subsurface_gauss *g, int channels)
-{
-	const float *restrict z = l->z, *restrict in[3] = { l->in[0], l->in[1], l->in[2] }, *restrict weight = g->taps + g->radius;
-	const int from = l->from, to = l->to;
-	const long step = l->step, z_step = l->z_step;
-	const float inv_8v = g->inv_8v;
-	const lanes zero = { 0 };
-	for (int x = 0; x < l->n; x += LANES) {
-		lanes here = *(const lanes *)(z + x), sum[3] = { zero, zero, zero }, all = zero;
-		for (int k = from; k <= to; k++) {
-			// exp(-dz² / 2v) as (1 - dz² / 8v)^4, 0 beyond: within 0.02 of it.
-			lanes dz = *(const lanes *)(z + x + k * z_step) - here, f = 1 - dz * dz * inv_8v;
-			f = (lanes)((mask)f & (f > 0));
-			f *= f;
-			f = weight[k] * (f * f);
-			all += f;
-			for (int c = 0; c < channels; c++)
-				sum[c] += f * *(const lanes *)(in[c] + x + k * step);
-		}
-		all = 1 / all;  // the middle one is always there
-		for (int c = 0; c < channels; c++) {
-			lanes *out = (lanes *)(l->out[c] + x), now = sum[c] * all * l->gain[c];
-			*out = l->adds ? *out + now : now;
-		}
-	}
-}
-
-SIMD_CLONES static void along(const struct line *l, const struct subsurface_gauss *g)
-{
-	if (l->channels == 1)
-		tap(l, g, 1);
-	else if (l->channels == 2)
-		tap(l, g, 2);
-	else
-		tap(l, g, 3);
-}
+enum { BAND = 32 };
 
 /* A thread's rows [y, y + n) of three planes. */
 struct window {
@@ -91,7 +43,7 @@ struct state {
 
 static int wide(const struct subsurface_level *l)
 {
-	return (l->width + ROUNDING - 1) / ROUNDING * ROUNDING;
+	return (l->width + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
 }
 
 /* Rows of level l's sum that a band of the picture needs. */
@@ -139,18 +91,18 @@ static void state_make(struct state *s, const struct subsurface_level *level, in
 static void blur_x(const struct window *w, const struct subsurface_level *l, const struct subsurface_gauss *g, int y)
 {
 	size_t at = (size_t)y * (size_t)l->stride;
-	struct line line = { .z = l->in[3] + at, .n = w->stride, .step = 1, .z_step = 1, .from = -g->radius, .to = g->radius, .channels = g->channels };
+	struct subsurface_line line = { .z = l->in[3] + at, .n = w->stride, .step = 1, .z_step = 1, .from = -g->radius, .to = g->radius, .channels = g->channels };
 	for (int c = 0; c < g->channels; c++) {
 		line.in[c] = l->in[c] + at;
 		line.out[c] = window_row(w, c, y);
 		line.gain[c] = 1;
 	}
-	along(&line, g);
+	subsurface_line(&line, g);
 }
 
 static void blur_y(const struct window *out, const struct window *in, const struct subsurface_level *l, const struct subsurface_gauss *g, int y, bool adds)
 {
-	struct line line = { .z = l->in[3] + (size_t)y * (size_t)l->stride, .n = out->stride, .step = in->stride, .z_step = l->stride, .channels = g->channels };
+	struct subsurface_line line = { .z = l->in[3] + (size_t)y * (size_t)l->stride, .n = out->stride, .step = in->stride, .z_step = l->stride, .channels = g->channels };
 	line.from = y < g->radius ? -y : -g->radius;
 	line.to = l->height - 1 - y < g->radius ? l->height - 1 - y : g->radius;
 	line.adds = adds;
@@ -159,7 +111,7 @@ static void blur_y(const struct window *out, const struct window *in, const stru
 		line.out[c] = window_row(out, c, y);
 		line.gain[c] = g->weight[c];
 	}
-	along(&line, g);
+	subsurface_line(&line, g);
 }
 
 /* Rows [from, to) of the level's own Gaussians into its sum. */
@@ -231,9 +183,9 @@ void subsurface_sum(const struct subsurface_level *level, int deepest, const str
 	{
 		struct state state[SUBSURFACE_LEVELS];
 		const struct window out = { { p->rgb[0], p->rgb[1], p->rgb[2] }, 0, p->height, p->width };
-		int first, end;
-		state_make(state, level, deepest, rooms + (size_t)omp_get_thread_num() * each);
-		subsurface_share(&first, &end, p->height);
+		int threads = omp_get_num_threads(), own = omp_get_thread_num();
+		int first = (int)((long)p->height * own / threads), end = (int)((long)p->height * (own + 1) / threads);
+		state_make(state, level, deepest, rooms + (size_t)own * each);
 		for (int from = first, to; from < end; from = to) {
 			to = from + BAND < end ? from + BAND : end;
 			if (deepest && !level->n) {

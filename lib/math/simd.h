@@ -18,6 +18,18 @@ _Static_assert(sizeof(float) == 4, "lanes are of 32 bits");
 #define SIMD_CLONES
 #endif
 
+// For loops written in vectors of 64 bytes, which compilers take to pieces badly where a processor has shorter ones: a function
+// to call if SIMD_IS_WIDE, beside one in shorter vectors.
+#if defined(__x86_64__) && defined(__linux__) && (!defined(__clang__) || __clang_major__ >= 17)
+#define SIMD_WIDE __attribute__((target("arch=x86-64-v4")))
+#define SIMD_IS_WIDE \
+	(__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") \
+	 && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+#else
+#define SIMD_WIDE
+#define SIMD_IS_WIDE 0
+#endif
+
 #define SIMD_LOOP _Pragma("omp simd")
 #define SIMD_INLINE static inline __attribute__((always_inline))
 
