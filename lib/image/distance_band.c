@@ -23,41 +23,46 @@ static uint8_t holds(const uint8_t m[LANES])
 	                 | ((a & b & skin) == skin ? DISTANCE_ALL_SKIN : 0) | ((a & b & globe) == globe ? DISTANCE_ALL_GLOBE : 0));
 }
 
-/* What a group of blocks holds; most are of one material. */
-SIMD_INLINE uint64_t mark(const uint8_t m[TEXELS])
+/* Whether n texels, a multiple of eight, are all of one material. */
+SIMD_INLINE bool uniform(const uint8_t *m, int n)
 {
-	uint64_t some = 0, every = ~UINT64_C(0), has = 0;
-	for (int i = 0; i < TEXELS; i += 8) {
+	uint64_t first = DISTANCE_EACH * m[0], other = 0;
+	for (int i = 0; i < n; i += 8) {
 		uint64_t word;
 		memcpy(&word, m + i, sizeof word);
-		some |= word;
-		every &= word;
+		other |= word ^ first;
 	}
-	if (some == every && some == DISTANCE_EACH * DISTANCE_SKIN)
-		return DISTANCE_EACH * (DISTANCE_HAS_SKIN | DISTANCE_ALL_SKIN);
-	if (some == every && some == DISTANCE_EACH * DISTANCE_GLOBE)
-		return DISTANCE_EACH * (DISTANCE_HAS_GLOBE | DISTANCE_ALL_GLOBE);
-	for (int k = 0; k < GROUP; k++)
-		has |= (uint64_t)holds(m + k * LANES) << 8 * k;
-	return has;
+	return !other;
 }
 
-/* What the groups of a row hold; returns whether any holds globe. */
-SIMD_CLONES static bool mark_row(uint64_t *restrict has, const uint8_t *restrict material, int width)
+/* What n groups of blocks hold; returns the bits of all of them. */
+SIMD_INLINE uint8_t mark(uint8_t *restrict has, const uint8_t *restrict m, int n)
 {
-	uint64_t all = 0;
-	uint8_t cut[TEXELS] = { 0 };
-	int n = width / TEXELS, rest = width - n * TEXELS;
-	for (int k = 0; k < n; k++) {
-		has[k] = mark(material + k * TEXELS);
-		all |= has[k];
+	uint8_t all = 0;
+	if (uniform(m, n * TEXELS)) {
+		memset(has, holds(m), (size_t)n * GROUP);
+		return has[0];
 	}
+	for (int k = 0; k < n * GROUP; k++)
+		all |= has[k] = holds(m + k * LANES);
+	return all;
+}
+
+/* What the groups of a row hold; returns whether any holds globe. Most of a screen is of one material. */
+SIMD_CLONES static bool mark_row(uint8_t *restrict has, const uint8_t *restrict material, int width)
+{
+	enum { SPAN = 4 };
+	uint8_t all = 0, cut[TEXELS] = { 0 };
+	int n = width / TEXELS, rest = width - n * TEXELS, k = 0;
+	for (; k + SPAN <= n; k += SPAN)
+		all |= mark(has + k * GROUP, material + k * TEXELS, SPAN);
+	for (; k < n; k++)
+		all |= mark(has + k * GROUP, material + k * TEXELS, 1);
 	if (rest) {
 		memcpy(cut, material + n * TEXELS, (size_t)rest);
-		has[n] = mark(cut);
-		all |= has[n];
+		all |= mark(has + n * GROUP, cut, 1);
 	}
-	return all & DISTANCE_EACH * DISTANCE_HAS_GLOBE;
+	return all & DISTANCE_HAS_GLOBE;
 }
 
 /* Largest distance in px that `reach` is anywhere on the globe. */
@@ -78,34 +83,36 @@ static double reach_px(const struct distance_scene *s, double reach)
 static bool window(struct distance_field *f, const uint8_t *globe, double reach)
 {
 	const struct distance_scene *s = f->scene;
-	int far = s->width > s->height ? s->width : s->height, top = s->height, bottom = -1;
-	f->from = f->groups;
+	int far = s->width > s->height ? s->width : s->height, top = s->height, bottom = -1, groups = f->blocks / GROUP;
+	f->from = groups;
 	for (int y = 0; y < s->height; y++) {
 		if (!globe[y])
 			continue;
-		const uint64_t *has = f->has + (size_t)y * (size_t)f->groups;
+		const uint8_t *has = distance_has(f, y);
 		top = top < y ? top : y;
 		bottom = y;
 		for (int k = 0; k < f->from; k++)
-			if (has[k] & DISTANCE_EACH * DISTANCE_HAS_GLOBE)
+			if (distance_group(has + k * GROUP) & DISTANCE_EACH * DISTANCE_HAS_GLOBE)
 				f->from = k;
-		for (int k = f->groups; k > f->to; k--)
-			if (has[k - 1] & DISTANCE_EACH * DISTANCE_HAS_GLOBE)
+		for (int k = groups; k > f->to; k--)
+			if (distance_group(has + (k - 1) * GROUP) & DISTANCE_EACH * DISTANCE_HAS_GLOBE)
 				f->to = k;
 	}
 	if (bottom < 0)
 		return false;
 	double px = ceil(reach_px(s, reach));
 	f->band = px < far ? (int)px : far;
-	int wide = (f->band + 3 + TEXELS) / (TEXELS), end = bottom + 1 + f->band;
-	f->first = f->from > wide ? f->from - wide : 0;
-	f->last = f->to + wide < f->groups ? f->to + wide : f->groups;
+	int more = (f->band + 3 + TEXELS) / (TEXELS), end = bottom + 1 + f->band;
+	f->first = f->from > more ? (f->from - more) * GROUP : 0;
+	f->last = (f->to + more < groups ? f->to + more : groups) * GROUP;
+	f->wide = (f->band + 3 + LANES) / LANES;
+	f->pitch = f->last - f->first + 2 * f->wide;
 	f->globe_y0 = top;
 	f->globe_y1 = bottom + 1;
 	f->y0 = top > f->band ? top - f->band : 0;
 	f->rows = (end < s->height ? end : s->height) - f->y0;
-	size_t n = (size_t)(f->last - f->first) * (size_t)f->rows;
-	f->v = mem_array(n * TEXELS, sizeof *f->v);
+	size_t n = (size_t)f->pitch * (size_t)f->rows;
+	f->v = mem_array(n * LANES, sizeof *f->v);
 	f->edge = mem_new(n, sizeof *f->edge);
 	return true;
 }
@@ -121,21 +128,21 @@ SIMD_CLONES static int globe_texels(const uint8_t *material, int n)
 
 void distance_band(float *out, float (*nearest)[2], const struct distance_scene *s, double reach, struct distance_cost *cost)
 {
-	struct distance_field f = { .scene = s, .groups = (s->width + TEXELS - 1) / (TEXELS) };
+	struct distance_field f = { .scene = s, .blocks = (s->width + TEXELS - 1) / (TEXELS) * GROUP };
 	size_t width = (size_t)s->width;
 	double reads = (double)s->width * s->height;
-	f.has = mem_array((size_t)s->height * (size_t)f.groups, sizeof *f.has);
+	f.has = mem_array((size_t)s->height * (size_t)f.blocks, sizeof *f.has);
 	uint8_t *globe = mem_array((size_t)s->height, 1);
 	bool any = false;
 #pragma omp parallel reduction(+ : reads)
 	{
 #pragma omp for schedule(static)
 		for (int y = 0; y < s->height; y++)
-			globe[y] = mark_row(f.has + (size_t)y * (size_t)f.groups, s->material + (size_t)y * width, s->width);
+			globe[y] = mark_row(f.has + (size_t)y * (size_t)f.blocks, s->material + (size_t)y * width, s->width);
 #pragma omp single
 		any = window(&f, globe, reach);
 #pragma omp for schedule(dynamic)
-		for (int k = f.first; k < (any ? f.last : f.first); k++)
+		for (int k = f.first / GROUP; k < (any ? f.last : f.first) / GROUP; k++)
 			reads += distance_columns(&f, k);
 #pragma omp for schedule(dynamic, 16)
 		for (int y = f.globe_y0; y < (any ? f.globe_y1 : f.globe_y0); y++)
