@@ -72,8 +72,8 @@ static void an_edge_is_the_profiles_integral(void **state)
 				double truth = 0;
 				for (int j = 0; j < skin.n; j++)
 					truth += skin.weight[j][c] * 0.5 * (1 + erf(mm / sqrt(2 * skin.variance[j])));
-				// The narrowest Gaussians are below a pixel; taps end at three sigma; levels are interpolated.
-				double wide = fabs(mm) < 0.4 ? 0.12 : 0.015;
+				// The narrowest Gaussian is below a pixel; taps end at three sigma; levels are interpolated.
+				double wide = fabs(mm) < 0.4 ? 0.07 : 0.015;
 				if (!(fabs((double)p->rgb[c][i] - truth) < wide))
 					fail_msg("%g mm from the edge, channel %d: %g, not %g", mm, c, (double)p->rgb[c][i], truth);
 			}

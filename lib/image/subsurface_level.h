@@ -34,6 +34,7 @@ struct subsurface_level {
 	float *own[4];        // the same to write; null at a top without Gaussians, which is the caller's picture
 	unsigned char *even;  // [height][parts] 1: what SUBSURFACE_PART texels of a row were made of is one surface; null at the top
 	int parts;
+	float plain[3];  // what each channel carries of the level's light as it is
 	int n;
 	struct subsurface_gauss gauss[SUBSURFACE_MAX];
 };

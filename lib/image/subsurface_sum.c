@@ -114,19 +114,28 @@ static void blur_y(const struct window *out, const struct window *in, const stru
 	subsurface_line(&line, g);
 }
 
-/* Rows [from, to) of the level's own Gaussians into its sum. */
+SIMD_CLONES static void scale(float *restrict out, const float *restrict in, int n, float by)
+{
+	SIMD_LOOP
+	for (int i = 0; i < n; i++)
+		out[i] = by * in[i];
+}
+
+/* Rows [from, to) of the level's own light and Gaussians into its sum. */
 static void blur(struct state *s, int from, int to)
 {
 	const struct subsurface_level *l = s->level;
-	for (int c = l->n ? l->gauss[0].channels : 0; c < 3; c++)
-		memset(window_row(&s->sum, c, from), 0, (size_t)(to - from) * (size_t)s->sum.stride * sizeof(float));
+	bool plain = l->plain[0] > 0 || l->plain[1] > 0 || l->plain[2] > 0;
+	for (int c = l->n && !plain ? l->gauss[0].channels : 0; c < 3; c++)
+		for (int y = from; y < to; y++)
+			scale(window_row(&s->sum, c, y), l->in[c] + (size_t)y * (size_t)l->stride, s->sum.stride, l->plain[c]);
 	for (int i = 0; i < l->n; i++) {
 		const struct subsurface_gauss *g = &l->gauss[i];
 		int first = from > g->radius ? from - g->radius : 0, end = to + g->radius < l->height ? to + g->radius : l->height;
 		for (int y = window_move(&s->across[i], first, end); y < end; y++)
 			blur_x(&s->across[i], l, g, y);
 		for (int y = from; y < to; y++)
-			blur_y(&s->sum, &s->across[i], l, g, y, i > 0);
+			blur_y(&s->sum, &s->across[i], l, g, y, i || plain);
 	}
 }
 
