@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "image/subsurface_lanes.h"
 #include "image/subsurface_level.h"
 #include "math/simd.h"
 
@@ -76,27 +77,11 @@ SIMD_INLINE void halve_even(const struct pair *p, int from, int to)
 	}
 }
 
-/* Whether texels [from, to) and their sums come from one surface: depths of all that touch differ by less than the gap. */
-SIMD_INLINE bool one_surface(const float *restrict a, const float *restrict b, int from, int to, float gap)
-{
-	float across = 0, along = 0, front = INFINITY;
-#pragma omp simd reduction(max : across, along) reduction(min : front)
-	for (int i = 2 * from; i < 2 * to - 1; i++) {
-		float d = fabsf(a[i] - b[i]), e = fabsf(a[i] - a[i + 1]), z = a[i] < b[i] ? a[i] : b[i];
-		across = d > across ? d : across;
-		along = e > along ? e : along;
-		front = z < front ? z : front;
-	}
-	float end = fabsf(a[2 * to - 1] - b[2 * to - 1]);
-	across = end > across ? end : across;
-	return front > 0 && a[2 * to - 1] > 0 && b[2 * to - 1] > 0 && 2 * across + along < gap;
-}
-
 SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
 {
 	for (int from = 0, to; from < n; from = to) {
 		to = from + SUBSURFACE_PART < n ? from + SUBSURFACE_PART : n;
-		bool one = one_surface(p->z[0], p->z[1], from, to, gap);
+		bool one = subsurface_smooth(p->z[0], p->z[1], 2 * from, 2 * to - 1, gap);
 		p->even[from / SUBSURFACE_PART] = one;
 		for (int k = 0; k < 8 && p->ahead; k++)
 			subsurface_ahead((k < 6 ? p->rgb[k / 3][k % 3] : p->z[k - 6]) + p->ahead + 2 * from, 2 * (to - from));

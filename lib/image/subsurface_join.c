@@ -2,12 +2,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "image/subsurface_lanes.h"
 #include "image/subsurface_level.h"
-#include "math/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h
 #endif
+
+typedef subsurface_lanes lanes;
+typedef subsurface_mask mask;
+enum { LANES = SUBSURFACE_LANES };
 
 /* A texel of the level below: its share as far as its depth is this one's; a trace of it whatever its depth, where all
  * four lie elsewhere. */
@@ -22,12 +26,20 @@ SIMD_INLINE float share(float z, float there, float inv, float part)
 struct row {
 	const float *z, *below[2][4];
 	float *out[3], keep[3], *mean[3];  // mean: room for the two rows below, 3 : 1
-	const unsigned char *even;  // of the nearer row below
+	const unsigned char *flat;         // of each part
 	int n, n_below;
 	long ahead;  // from there to what will be asked for soon; 0: it is at hand
 };
 
-enum { PART = 2 * SUBSURFACE_PART };  // texels that take one way or the other
+/* Parts of a row, which take one way or the other: where one that begins at `from` ends. The ends of the row, whose neighbours
+ * lie outside, are alone. */
+SIMD_INLINE int part_end(int from, int n)
+{
+	enum { PART = 2 * SUBSURFACE_PART };
+	int to = from ? (from / PART + 1) * PART : 2;
+	to = to < n - 2 ? to : from < n - 2 ? (n - 2) / 2 * 2 : n;
+	return to > from ? to : n;
+}
 
 /* The farther neighbour of texel x in a row below; the nearer one is x / 2. */
 SIMD_INLINE int farther(const struct row *r, int x)
@@ -36,40 +48,49 @@ SIMD_INLINE int farther(const struct row *r, int x)
 	return at < 0 ? 0 : at < r->n_below ? at : r->n_below - 1;
 }
 
-/* Texels [from, to): out = keep out + what comes from below, where there is skin. */
-SIMD_INLINE void join_uneven(const struct row *row, int from, int to, float inv)
+/* Texels [from, to), one by one: out = keep out + what comes from below, where there is skin. */
+SIMD_INLINE void join_single(const struct row *r, int from, int to, float inv)
 {
-	float part[4][4][PART], weight[4][PART];
-	const float *restrict z = row->z + from;
-	int n = to - from;
-	for (int i = 0; i < n; i++) {
-		int a = (from + i) / 2, b = farther(row, from + i);
-		for (int k = 0; k < 4; k++) {
-			part[k][0][i] = row->below[0][k][a];
-			part[k][1][i] = row->below[0][k][b];
-			part[k][2][i] = row->below[1][k][a];
-			part[k][3][i] = row->below[1][k][b];
-		}
-	}
-	SIMD_LOOP
-	for (int i = 0; i < n; i++) {
-		float p = share(z[i], part[3][0][i], inv, 9), q = share(z[i], part[3][1][i], inv, 3);
-		float s = share(z[i], part[3][2][i], inv, 3), t = share(z[i], part[3][3][i], inv, 1);
+	for (int x = from; x < to; x++) {
+		const float *near = r->below[0][3], *far = r->below[1][3];
+		int a = x / 2, b = farther(r, x);
+		float p = share(r->z[x], near[a], inv, 9), q = share(r->z[x], near[b], inv, 3);
+		float s = share(r->z[x], far[a], inv, 3), t = share(r->z[x], far[b], inv, 1);
 		float all = (p + q) + (s + t), each = 1 / (all > 0 ? all : 1);
-		weight[0][i] = p * each;
-		weight[1][i] = q * each;
-		weight[2][i] = s * each;
-		weight[3][i] = t * each;
-	}
-	for (int c = 0; c < 3; c++) {
-		float *restrict out = row->out[c] + from, keep = row->keep[c];
-		SIMD_LOOP
-		for (int i = 0; i < n; i++) {
-			float now = keep * out[i] + ((weight[0][i] * part[c][0][i] + weight[1][i] * part[c][1][i])
-			                             + (weight[2][i] * part[c][2][i] + weight[3][i] * part[c][3][i]));
-			out[i] = z[i] > 0 ? now : out[i];
+		for (int c = 0; c < 3 && r->z[x] > 0; c++) {
+			const float *u = r->below[0][c], *v = r->below[1][c];
+			r->out[c][x] = r->keep[c] * r->out[c][x] + each * ((p * u[a] + q * u[b]) + (s * v[a] + t * v[b]));
 		}
 	}
+}
+
+/* The same in vectors. from is even; neither is at an end of the row. */
+SIMD_INLINE void join_uneven(const struct row *r, int from, int to, float inv)
+{
+	static const float bilinear[4] = { 9, 3, 3, 1 };
+	int x = from;
+	for (; x + LANES <= to; x += LANES) {
+		lanes z = *(const lanes *)(r->z + x), part[4][4], weight[4], all = { 0 };
+		for (int k = 0; k < 2; k++)
+			for (int c = 0; c < 4; c++) {
+				lanes v = *(const lanes *)(r->below[k][c] + x / 2 - 1);
+				part[2 * k][c] = __builtin_shufflevector(v, v, 1, 1, 2, 2, 3, 3, 4, 4);
+				part[2 * k + 1][c] = __builtin_shufflevector(v, v, 0, 2, 1, 3, 2, 4, 3, 5);
+			}
+		for (int k = 0; k < 4; k++) {
+			lanes there = part[k][3], f = 1 - (z - there) * (z - there) * inv;
+			f = bilinear[k] * ((lanes)((mask)f & (f > 0)) + 1e-4f);
+			weight[k] = (lanes)((mask)f & (there > 0));
+			all += weight[k];
+		}
+		all = 1 / (all + 1e-30f);  // none: nothing
+		for (int c = 0; c < 3; c++) {
+			lanes *out = (lanes *)(r->out[c] + x);
+			lanes sum = (weight[0] * part[0][c] + weight[1] * part[1][c]) + (weight[2] * part[2][c] + weight[3] * part[3][c]);
+			*out = SUBSURFACE_SELECT(z > 0, r->keep[c] * *out + all * sum, *out);
+		}
+	}
+	join_single(r, x, to, inv);
 }
 
 /* The same where all depths are as good as one: bilinear. from and to are even, neither at an end of the row. */
@@ -79,10 +100,10 @@ SIMD_INLINE void join_even(const struct row *row, int from, int to)
 		float *restrict out = row->out[c] + from, keep = row->keep[c];
 		const float *restrict mean = row->mean[c] + from / 2;
 		int i = 0, n = (to - from) / 2;
-		for (; i + SUBSURFACE_LANES <= n; i += SUBSURFACE_LANES) {
-			subsurface_lanes here = 0.75f * *(const subsurface_lanes *)(mean + i), *to2 = (subsurface_lanes *)(out + 2 * i);
-			subsurface_lanes left = here + 0.25f * *(const subsurface_lanes *)(mean + i - 1);
-			subsurface_lanes right = here + 0.25f * *(const subsurface_lanes *)(mean + i + 1);
+		for (; i + LANES <= n; i += LANES) {
+			lanes here = 0.75f * *(const lanes *)(mean + i), *to2 = (lanes *)(out + 2 * i);
+			lanes left = here + 0.25f * *(const lanes *)(mean + i - 1);
+			lanes right = here + 0.25f * *(const lanes *)(mean + i + 1);
 			to2[0] = keep * to2[0] + __builtin_shufflevector(left, right, 0, 8, 1, 9, 2, 10, 3, 11);
 			to2[1] = keep * to2[1] + __builtin_shufflevector(left, right, 4, 12, 5, 13, 6, 14, 7, 15);
 		}
@@ -93,27 +114,8 @@ SIMD_INLINE void join_even(const struct row *row, int from, int to)
 	}
 }
 
-/* Whether all that is looked at lies on one surface, at up to 60 degrees to the camera, about half of where shares end: what
- * lies above each texel of the level below does; so do these and their neighbours, if they differ by no more than `most`. */
-SIMD_INLINE bool even(const struct row *row, int from, int to, float most)
-{
-	const float *restrict a = row->below[0][3] + from / 2, *restrict b = row->below[1][3] + from / 2;
-	float across = 0, along = 0;
-	for (int k = from / 2 / SUBSURFACE_PART; k <= (to / 2 - 1) / SUBSURFACE_PART; k++)
-		if (!row->even[k])
-			return false;
-#pragma omp simd reduction(max : across, along)
-	for (int i = -1; i < (to - from) / 2; i++) {
-		float d = fabsf(a[i] - b[i]), e = fabsf(a[i] - a[i + 1]);
-		across = d > across ? d : across;
-		along = e > along ? e : along;
-	}
-	return across + along <= most;
-}
-
 SIMD_CLONES static void join_row(const struct row *row, float inv)
 {
-	float most = sqrtf(0.25f / inv);
 	for (int k = 0; k < 3; k++) {
 		const float *restrict a = row->below[0][k], *restrict b = row->below[1][k];
 		float *restrict mean = row->mean[k];
@@ -121,27 +123,41 @@ SIMD_CLONES static void join_row(const struct row *row, float inv)
 		for (int i = 0; i < row->n_below; i++)
 			mean[i] = 0.75f * a[i] + 0.25f * b[i];
 	}
+	const unsigned char *flat = row->flat;
 	for (int from = 0, to; from < row->n; from = to) {
-		to = from ? (from / PART + 1) * PART : 2;  // the ends, whose neighbours lie outside, alone
-		to = to < row->n - 2 ? to : from < row->n - 2 ? (row->n - 2) / 2 * 2 : row->n;
-		to = to > from ? to : row->n;
+		to = part_end(from, row->n);
 		for (int c = 0; c < 3 && row->ahead; c++)
 			subsurface_ahead(row->out[c] + row->ahead + from, to - from);
-		if (from > 0 && to < row->n && even(row, from, to, most))
+		if (!from || to == row->n)
+			join_single(row, from, to, inv);
+		else if (*flat++)
 			join_even(row, from, to);
 		else
 			join_uneven(row, from, to, inv);
 	}
 }
 
-void subsurface_join(float *const out[3], const float keep[3], const struct subsurface_level *l, const struct subsurface_level *lower,
-                     int y, const float *const below[2][4], float *mean)
+/* At 60 degrees a surface falls by 1.7 texels in one; the farthest of the four is 2.1 off. Shares end at 6. */
+enum { SHARES_END = 6 };
+
+SIMD_CLONES void subsurface_join_look(unsigned char *flat, const struct subsurface_level *l, const struct subsurface_level *lower, const int y[2])
 {
-	// At 60 degrees a surface falls by 1.7 texels in one; the farthest of the four is 2.1 off.
-	float inv = (float)(l->texels_per_mm * l->texels_per_mm / 36);
-	struct row row = { .z = l->in[3] + (size_t)y * (size_t)l->stride, .n = l->width, .n_below = lower->width };
+	const float *a = lower->in[3] + (size_t)y[0] * (size_t)lower->stride, *b = lower->in[3] + (size_t)y[1] * (size_t)lower->stride;
+	const unsigned char *even = lower->even + (size_t)y[0] * (size_t)lower->parts, *even1 = lower->even + (size_t)y[1] * (size_t)lower->parts;
+	// What lies above each texel lies on one surface, and so do these and their neighbours, half as far apart as where shares end.
+	float most = (float)(SHARES_END / (2 * l->texels_per_mm));
+	for (int from = 2, to; (to = part_end(from, l->width)) < l->width; from = to) {
+		int k = from / 2 / SUBSURFACE_PART;
+		*flat++ = even[k] && even1[k] && subsurface_smooth(a, b, from / 2 - 1, to / 2, most);
+	}
+}
+
+void subsurface_join(float *const out[3], const float keep[3], const struct subsurface_level *l, const struct subsurface_level *lower,
+                     int y, const float *const below[2][4], const unsigned char *flat, float *mean)
+{
+	float inv = (float)(l->texels_per_mm * l->texels_per_mm / (SHARES_END * SHARES_END));
+	struct row row = { .z = l->in[3] + (size_t)y * (size_t)l->stride, .flat = flat, .n = l->width, .n_below = lower->width };
 	row.ahead = l->own[0] || y + 2 >= l->height ? 0 : 2 * l->stride;  // of the picture itself
-	row.even = lower->even + (size_t)(y / 2) * (size_t)lower->parts;
 	memcpy(row.below, below, sizeof row.below);
 	for (int c = 0; c < 3; c++) {
 		row.out[c] = out[c];

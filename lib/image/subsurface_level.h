@@ -5,8 +5,6 @@
 
 #include "image/subsurface.h"
 
-enum { SUBSURFACE_LANES = 8 };
-typedef float subsurface_lanes __attribute__((vector_size(32), aligned(4)));
 enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40, SUBSURFACE_PART = 32, SUBSURFACE_ROUNDING = 16 };
 
 /* One Gaussian at its level: taps -radius .. radius, whose weights w sum to 1; with v its variance in mm², w^1/4 and w^1/4 / 8v;
@@ -75,8 +73,11 @@ void subsurface_sum(const struct subsurface_level *level, int deepest, const str
 size_t subsurface_sum_size(const struct subsurface_level *level, int deepest);
 
 /* One row: out[c] = keep[c] out[c] + the sum of the level below, interpolated, where there is skin. below: its two rows
- * nearest to y, the nearer one first, r, g, b, depth. mean: room for 3 rows of the level below. */
+ * nearest to y, the nearer one first, r, g, b, depth. flat: of subsurface_join_look(). mean: room for 3 rows of the level below. */
 void subsurface_join(float *const out[3], const float keep[3], const struct subsurface_level *level, const struct subsurface_level *lower,
-                     int y, const float *const below[2][4], float *mean);
+                     int y, const float *const below[2][4], const unsigned char *flat, float *mean);
+
+/* Which parts of a row between rows y[0] and y[1] of the level below need no depth weights. flat: [lower->parts + 1]. */
+void subsurface_join_look(unsigned char *flat, const struct subsurface_level *level, const struct subsurface_level *lower, const int y[2]);
 
 #endif

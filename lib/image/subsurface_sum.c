@@ -39,11 +39,19 @@ struct state {
 	const struct subsurface_level *level, *deepest;
 	struct window sum, across[SUBSURFACE_MAX];
 	float *mean;
+	unsigned char *flat;  // of the level below: parts between two of its rows
 };
 
 static int wide(const struct subsurface_level *l)
 {
 	return (l->width + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
+}
+
+/* Numbers of the room that a byte for each part of a row takes, one more for a part that ends the row alone. */
+static size_t flat_size(const struct subsurface_level *l)
+{
+	size_t bytes = (size_t)l->width / (2 * SUBSURFACE_PART) + 2;
+	return (bytes / sizeof(float) / SUBSURFACE_ROUNDING + 1) * SUBSURFACE_ROUNDING;
 }
 
 /* Rows of level l's sum that a band of the picture needs. */
@@ -62,7 +70,7 @@ size_t subsurface_sum_size(const struct subsurface_level *level, int deepest)
 		size_t rows = (size_t)rows_of(l) + 1;  // and one for means
 		for (int i = 0; i < level[l].n; i++)
 			rows += (size_t)(rows_of(l) + 2 * level[l].gauss[i].radius);
-		n += 3 * rows * (size_t)wide(&level[l]);
+		n += 3 * rows * (size_t)wide(&level[l]) + flat_size(&level[l]);
 	}
 	return n;
 }
@@ -85,6 +93,8 @@ static void state_make(struct state *s, const struct subsurface_level *level, in
 			room = window_make(&s[l].across[i], room, rows_of(l) + 2 * level[l].gauss[i].radius, wide(&level[l]));
 		s[l].mean = room;
 		room += 3 * wide(&level[l]);
+		s[l].flat = (unsigned char *)room;
+		room += flat_size(&level[l]);
 	}
 }
 
@@ -128,7 +138,7 @@ static void blur(struct state *s, int from, int to)
 	bool plain = l->plain[0] > 0 || l->plain[1] > 0 || l->plain[2] > 0;
 	for (int c = l->n && !plain ? l->gauss[0].channels : 0; c < 3; c++)
 		for (int y = from; y < to; y++)
-			scale(window_row(&s->sum, c, y), l->in[c] + (size_t)y * (size_t)l->stride, s->sum.stride, l->plain[c]);
+			scale(window_row(&s->sum, c, y), l->in[c] + (size_t)y * (size_t)l->stride, l->width, l->plain[c]);
 	for (int i = 0; i < l->n; i++) {
 		const struct subsurface_gauss *g = &l->gauss[i];
 		int first = from > g->radius ? from - g->radius : 0, end = to + g->radius < l->height ? to + g->radius : l->height;
@@ -150,16 +160,18 @@ static void join(struct state *s, const struct window *out, int from, int to, co
 	for (int y = from; y < to; y++) {
 		const float *below[2][4];
 		float *rows[3];
+		int upper = (y + 1) / 2 - 1, two[2] = { upper < 0 ? 0 : upper, upper + 1 < lower->height ? upper + 1 : lower->height - 1 };
+		if (y == from || y % 2)
+			subsurface_join_look(s->flat, s->level, lower, two);
 		for (int k = 0; k < 2; k++) {
-			int at = k ? y % 2 ? y / 2 + 1 : y / 2 - 1 : y / 2;
-			at = at < 0 ? 0 : at < lower->height ? at : lower->height - 1;
+			int at = two[y % 2 ? k : 1 - k];
 			for (int c = 0; c < 3; c++)
 				below[k][c] = window_row(&s[1].sum, c, at);
 			below[k][3] = lower->in[3] + (size_t)at * (size_t)lower->stride;
 		}
 		for (int c = 0; c < 3; c++)
 			rows[c] = window_row(out, c, y);
-		subsurface_join(rows, keep, s->level, lower, y, below, s[1].mean);
+		subsurface_join(rows, keep, s->level, lower, y, below, s->flat, s[1].mean);
 	}
 }
 
