@@ -3,7 +3,8 @@
  *
  * Beyond the paper: the skull map moves vertices, it does not place them (x = rest + T(u) - T(u at rest)), so that the
  * character keeps what the texture cannot hold: pores, folds, and where a lid overlaps itself. And delta0 fades with the
- * distance from the globe (rig.glue), so that a brow does not bob with the cornea.
+ * distance from the globe (rig.glue), so that a brow does not bob with the cornea. Vertices that neither keep a distance nor stand
+ * where a globe reaches in this very pose are left where the skull map has them: what algorithm 1 would do, too.
  */
 #ifndef SKIN_DEFORM_H
 #define SKIN_DEFORM_H

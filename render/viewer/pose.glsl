@@ -70,10 +70,10 @@ void main()
 	u = clamp((u - skull_grid.xy) * skull_grid.z, vec2(0.0), skull_most);
 	ivec2 i = ivec2(u);
 	u -= vec2(i);
-	vec3 p = skull(i), q = skull(i + ivec2(0, 1));
-	vec3 top = p + u.x * (skull(i + ivec2(1, 0)) - p), bottom = q + u.x * (skull(i + 1) - q);
+	vec3 p = skull(i), q = skull(i + ivec2(1, 0));
+	vec3 left = p + u.y * (skull(i + ivec2(0, 1)) - p), right = q + u.y * (skull(i + 1) - q);
 	int side = int(hold.y);
-	vec3 x = top + u.y * (bottom - top) + offset.xyz - globe_center[side];
+	vec3 x = left + u.x * (right - left) + offset.xyz - globe_center[side];
 	float far = length(x) + 1e-12, D = radius(globe_from_rig[side] * x, side), pushed = max(far, D + chart.z);
 	at_now.xyz = globe_center[side] + (pushed + hold.x * (D + chart.w - pushed)) / far * x;
 }
