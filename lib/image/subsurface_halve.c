@@ -1,10 +1,7 @@
 /* From a level of the pyramid to the one below: each texel the mean of the frontmost of four. */
-#include <math.h>
-#include <stdbool.h>
 
 #include "image/subsurface_lanes.h"
 #include "image/subsurface_level.h"
-#include "math/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h

@@ -1,5 +1,4 @@
 /* From a level of the pyramid to the one above: bilinear, over the four texels as far as their depth is the pixel's. */
-#include <math.h>
 #include <string.h>
 
 #include "image/subsurface_lanes.h"
