@@ -9,7 +9,7 @@
 
 /* What the pixel's middle shows; lashes hang before the skin, and it takes their place in their light. */
 static void pixel(struct portrait_glow *g, const struct portrait *p, const struct portrait_rays *rays, const struct portrait_spot *spot,
-                  float scale, int x, int y)
+                  int x, int y)
 {
 	float dir[3], rgb[3] = { 0 };
 	long at = (long)y * g->width + x;
@@ -18,7 +18,7 @@ static void pixel(struct portrait_glow *g, const struct portrait *p, const struc
 		portrait_ray(dir, rays, x + 0.5, y + 0.5);
 		portrait_bare_light(rgb, p, spot->face, rays->origin, dir);
 	}
-	g->depth[at] = skin ? spot->depth / scale : 0;
+	g->depth[at] = skin ? spot->depth / g->scale : 0;
 	for (int c = 0; c < 3; c++)
 		g->rgb[c][at] = rgb[c];
 }
@@ -38,17 +38,16 @@ static double mean_depth(const struct portrait_glow *g)
 
 struct portrait_glow portrait_glow_of(const struct portrait *p, const struct portrait_view *v, const struct portrait_spot *spots, int samples)
 {
-	struct portrait_glow g = { .width = v->width, .height = v->height };
+	struct portrait_glow g = { .width = v->width, .height = v->height, .scale = (float)vec_norm(v->cam_from_target[0]) };
 	struct portrait_rays rays = portrait_rays_of(v);
 	size_t n = (size_t)v->width * (size_t)v->height;
-	float scale = (float)vec_norm(v->cam_from_target[0]);  // the camera's unit in one of the rig's
 	for (int c = 0; c < 3; c++)
 		g.rgb[c] = mem_array(n, sizeof *g.rgb[c]);
 	g.depth = mem_array(n, sizeof *g.depth);
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < v->height; y++)
 		for (int x = 0; x < v->width; x++)
-			pixel(&g, p, &rays, &spots[((long)y * samples + samples / 2) * v->width * samples + (long)x * samples + samples / 2], scale, x, y);
+			pixel(&g, p, &rays, &spots[((long)y * samples + samples / 2) * v->width * samples + (long)x * samples + samples / 2], x, y);
 	double depth = mean_depth(&g);
 	if (depth > 0 && p->conf.scatter_mm > 0) {
 		struct subsurface_profile skin = subsurface_skin(p->conf.scatter_mm / 1.5);
@@ -57,6 +56,30 @@ struct portrait_glow portrait_glow_of(const struct portrait *p, const struct por
 		subsurface_room_free(&room);
 	}
 	return g;
+}
+
+bool portrait_glow_at(float rgb[3], const struct portrait_glow *g, double x, double y, float depth)
+{
+	static const float apart = 0.3f;  // mm: further behind each other are two surfaces
+	int u = (int)x, v = (int)y;
+	float sum = 0;
+	rgb[0] = rgb[1] = rgb[2] = 0;
+	for (int k = 0; k < 9; k++) {
+		int a = u + k % 3 - 1, b = v + k / 3 - 1;
+		if (a < 0 || b < 0 || a >= g->width || b >= g->height || !(g->depth[(long)b * g->width + a] > 0))
+			continue;
+		long at = (long)b * g->width + a;
+		float dx = (float)(a + 0.5 - x), dy = (float)(b + 0.5 - y), dz = (g->depth[at] - depth / g->scale) / apart;
+		float w = fmaxf(1.0f - fabsf(dx), 0.01f) * fmaxf(1.0f - fabsf(dy), 0.01f) / ((1 + dz * dz) * (1 + dz * dz));
+		sum += w;
+		for (int c = 0; c < 3; c++)
+			rgb[c] += w * g->rgb[c][at];
+	}
+	if (!(sum > 1e-4f))
+		return false;
+	for (int c = 0; c < 3; c++)
+		rgb[c] /= sum;
+	return true;
 }
 
 void portrait_glow_free(struct portrait_glow *g)

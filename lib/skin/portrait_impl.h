@@ -95,10 +95,14 @@ struct portrait_sky portrait_sky_of(const struct portrait *portrait, const struc
 /* portrait_glow.c: irradiance of the skin at every pixel's middle, spread beneath it. */
 struct portrait_glow {
 	int width, height;
-	float *rgb[3], *depth;  // [height][width]; depth 0: no skin there. Owned
+	float *rgb[3], *depth;  // [height][width]; depth (mm of the rig) 0: no skin there. Owned
+	float scale;            // the camera's unit in one of the rig's
 };
 struct portrait_glow portrait_glow_of(const struct portrait *portrait, const struct portrait_view *view, const struct portrait_spot *spots,
                                       int samples);
+/* Of a point of the picture (px) on skin so deep (the camera's unit), from the pixels round it that show that skin and no other
+ * behind or before it. False: none does. */
+bool portrait_glow_at(float rgb[3], const struct portrait_glow *glow, double x, double y, float depth);
 void portrait_glow_free(struct portrait_glow *glow);
 
 /* portrait_wrinkle.c: strengths for a pose; what a fold does to the normal of a point of a face (weights w) and to its light.
