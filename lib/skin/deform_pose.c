@@ -105,35 +105,55 @@ SIMD_INLINE void unit_normals(struct block *restrict b, int n)
 	}
 }
 
-/* D by the octahedron: globe_map_at without branches. */
-SIMD_INLINE float radius_at(const float *restrict map, int n, float x, float y, float z)
+/* Seen from the globe: x, y, z and distance from its centre; where that direction is on the octahedron (globe_map_at, without
+ * branches): cell, place in it, D at its corners. */
+struct from_globe {
+	float x[3][BLOCK], far[BLOCK], u[BLOCK], v[BLOCK], corner[BLOCK][4] __attribute__((aligned(64)));
+	int cell[BLOCK];
+};
+
+SIMD_INLINE void look_from(struct from_globe *restrict s, const struct block *restrict b, const struct globe *restrict g, int n)
 {
-	float ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, az = z < 0 ? -z : z, k = 1 / (ax + ay + az), top = (float)n;
-	float u = x * k, v = y * k, au = ax * k, av = ay * k;
-	float fu = (1 - av) * (u < 0 ? -1.0f : 1.0f), fv = (1 - au) * (v < 0 ? -1.0f : 1.0f);
-	u = 0.5f * ((z < 0 ? fu : u) + 1) * top;
-	v = 0.5f * ((z < 0 ? fv : v) + 1) * top;
-	u = u < top - 1e-3f ? u : top - 1e-3f;
-	v = v < top - 1e-3f ? v : top - 1e-3f;
-	int iu = (int)u, iv = (int)v, at = iv * (n + 1) + iu;
-	u -= (float)iu;
-	v -= (float)iv;
-	float a = map[at], b = map[at + 1], c = map[at + n + 1], e = map[at + n + 2];
-	return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * e);
+	const float *R = g->R, top = (float)g->map->n;
+	float ox = g->o[0], oy = g->o[1], oz = g->o[2];
+	int nodes = g->map->n + 1;
+	SIMD_LOOP
+	for (int i = 0; i < n; i++) {
+		float x = b->x[0][i] - ox, y = b->x[1][i] - oy, z = b->x[2][i] - oz;
+		float rx = R[0] * x + R[1] * y + R[2] * z, ry = R[3] * x + R[4] * y + R[5] * z, rz = R[6] * x + R[7] * y + R[8] * z;
+		float ax = rx < 0 ? -rx : rx, ay = ry < 0 ? -ry : ry, az = rz < 0 ? -rz : rz, k = 1 / (ax + ay + az);
+		float u = rx * k, v = ry * k, au = ax * k, av = ay * k;
+		float fu = (1 - av) * (u < 0 ? -1.0f : 1.0f), fv = (1 - au) * (v < 0 ? -1.0f : 1.0f);
+		u = 0.5f * ((rz < 0 ? fu : u) + 1) * top;
+		v = 0.5f * ((rz < 0 ? fv : v) + 1) * top;
+		u = u < top - 1e-3f ? u : top - 1e-3f;
+		v = v < top - 1e-3f ? v : top - 1e-3f;
+		int iu = (int)u, iv = (int)v;
+		s->x[0][i] = x;
+		s->x[1][i] = y;
+		s->x[2][i] = z;
+		s->far[i] = sqrtf(rx * rx + ry * ry + rz * rz) + 1e-12f;
+		s->cell[i] = iv * nodes + iu;
+		s->u[i] = u - (float)iu;
+		s->v[i] = v - (float)iv;
+	}
+	for (int i = 0; i < n; i++) {
+		const float *map = g->map->radius + s->cell[i];
+		memcpy(s->corner[i], map, 2 * sizeof *map);
+		memcpy(s->corner[i] + 2, map + nodes, 2 * sizeof *map);
+	}
 }
 
 /* The rest of algorithm 1: radial displacement and normals (eqs. 3.17 to 3.19). */
 SIMD_INLINE void on_globe(struct block *restrict b, const struct deform_terms_block *restrict t, const struct globe *restrict g, int n)
 {
-	const float *restrict map = g->map->radius, *R = g->R;
 	float ox = g->o[0], oy = g->o[1], oz = g->o[2];
-	int cells = g->map->n;
+	struct from_globe s;
+	look_from(&s, b, g, n);
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		float x = b->x[0][i] - ox, y = b->x[1][i] - oy, z = b->x[2][i] - oz;
-		float rx = R[0] * x + R[1] * y + R[2] * z, ry = R[3] * x + R[4] * y + R[5] * z, rz = R[6] * x + R[7] * y + R[8] * z;
-		float far = sqrtf(rx * rx + ry * ry + rz * rz) + 1e-12f, inverse = 1 / far, w = t->glue[i];
-		float D = radius_at(map, cells, rx, ry, rz);
+		float x = s.x[0][i], y = s.x[1][i], z = s.x[2][i], far = s.far[i], inverse = 1 / far, u = s.u[i], v = s.v[i], w = t->glue[i];
+		float D = (1 - v) * ((1 - u) * s.corner[i][0] + u * s.corner[i][1]) + v * ((1 - u) * s.corner[i][2] + u * s.corner[i][3]);
 		float out = D + t->thickness[i], pushed = far < out ? out : far, to = pushed + w * (D + t->gap[i] - pushed), k = to * inverse;
 		float tx = x * inverse, ty = y * inverse, tz = z * inverse;
 		// eq. 3.19: the rest's normal, turned by the smallest rotation from tau0 to tau.
