@@ -65,26 +65,52 @@ static bool any_visible(const struct scene_view *v, const struct tile *t)
 	return false;
 }
 
-/* Of a quick picture: by the rays at the tile's nodes if these are enough. */
-static void tile_begin(struct tile *t, int at, int across, const struct canvas *c)
+/* Whether what the tile shows has yet to be found. */
+static bool tile_place(struct tile *t, int at, int across, const struct canvas *c)
 {
 	const struct scene_view *v = c->view;
-	int tx = at % across * TILE, ty = at / across * TILE;
 	t->at = at;
-	t->x = tx;
-	t->y = ty;
-	t->x1 = tx + TILE < v->width ? tx + TILE : v->width;
-	t->y1 = ty + TILE < v->height ? ty + TILE : v->height;
+	t->x = at % across * TILE;
+	t->y = at / across * TILE;
+	t->x1 = t->x + TILE < v->width ? t->x + TILE : v->width;
+	t->y1 = t->y + TILE < v->height ? t->y + TILE : v->height;
 	t->hidden = !any_visible(v, t);
+	t->found = !t->hidden && v->hits && c->look->quick ? scene_hits_tile(v->hits, at) : 0;
+	t->kept = t->found;
+	return !t->hidden && !t->kept;
+}
+
+/* Tiles of a row from first on, as far as they have yet to be found, whose nodes' rays have been followed. */
+struct strip {
+	int first, end;
+	struct quick_strip nodes;
+};
+
+static void strip_begin(struct strip *s, int first, int most, int across, const struct canvas *c)
+{
+	struct tile t;
+	int row = (first / across + 1) * across;
+	s->first = first;
+	most = most < row ? most : row;
+	most = most < first + STRIP_TILES ? most : first + STRIP_TILES;
+	for (s->end = first + 1; s->end < most && tile_place(&t, s->end, across, c); s->end++)
+		;
+	quick_strip(&s->nodes, (float)(first % across * TILE) + 0.5f, (float)(first / across * TILE) + 0.5f, s->end - first, sight_rays_make, &c->plane, c->look->quick);
+}
+
+/* Of a quick picture: by the rays at the tile's nodes if these are enough. most: tiles from there on are others'. */
+static void tile_begin(struct tile *t, struct strip *strip, int at, int most, int across, const struct canvas *c)
+{
+	bool find = tile_place(t, at, across, c);
 	if (t->hidden || !c->look->quick)
 		return;
-	t->found = v->hits ? scene_hits_tile(v->hits, at) : 0;
-	t->kept = t->found;
-	if (!t->kept) {
+	if (find) {
 		t->found = &t->mine;
-		if (!quick_grid(t->found, (float)tx + 0.5f, (float)ty + 0.5f, sight_rays_make, &c->plane, c->look->quick)) {
+		if (at >= strip->end)
+			strip_begin(strip, at, most, across, c);
+		if (!quick_grid(t->found, &strip->nodes, at - strip->first, c->look->quick)) {
 			float x[BATCH], y[BATCH];
-			tile_points(x, y, tx, ty);
+			tile_points(x, y, t->x, t->y);
 			quick_points(t->found, BATCH, x, y, c);
 		}
 	}
@@ -139,9 +165,10 @@ static void tile_end(struct tile *t, const struct canvas *c, struct scene_count 
 void canvas_first(const struct canvas *c, int from, int to, int across, struct scene_count *count)
 {
 	struct tile tile[2];
+	struct strip strip = { .end = from };
 	for (int i = from; i <= to; i++) {
 		if (i < to)
-			tile_begin(&tile[i % 2], i, across, c);
+			tile_begin(&tile[i % 2], &strip, i, to, across, c);
 		if (i > from)
 			tile_end(&tile[(i - 1) % 2], c, count);
 	}

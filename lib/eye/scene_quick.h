@@ -70,6 +70,19 @@ struct quick_found {
 	float between[NODE_CHANNELS][NODE_LANES];  // of a tile's iris that quick_grid_pixels has yet to lay
 };
 
+/* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets the relief. */
+SIMD_INLINE float quick_meet(float h, float u, float v, float aside, float across, const struct quick_look *k, int steps)
+{
+	float per_mm = k->level->per_mm, most = k->scene->height_max, least = k->scene->height_min;
+#pragma GCC unroll 3
+	for (int j = 0; j < steps; j++) {
+		float gx, gy, off = quick_height_at(k->level->pairs, k->level->n, per_mm, u - h * aside, v - h * across, &gx, &gy) - h;
+		float slope = 1 + gx * aside + gy * across;
+		h = quick_clamp(h + off / (slope > 0.3f ? slope : 0.3f), least, most);
+	}
+	return h;
+}
+
 /* In this order; quick_iris where something of the iris is seen, sclera where something white is; reflect into the camera's
  * frame, then unfolded (x, y) onto the octahedron. */
 void quick_outside(struct quick_spots *spots, const struct quick_rays *rays, const struct quick_look *look);
@@ -82,10 +95,26 @@ void quick_sclera(float sky[3][BATCH], int n, const float *nx, const float *ny, 
 /* From nodes to all 256 pixels. */
 void quick_lay(float *out, const float node[NODE_LANES]);
 
-/* Finds a tile whose first pixel's middle is at x, y by the rays at its nodes. make: rays through n points of the picture.
- * False: something in it wants every ray. */
+/* Tiles side by side share the rays at their nodes: three rows of them, followed at once. */
+enum { STRIP_TILES = 40 };
+_Static_assert(NODE_SIDE * (STRIP_TILES * (NODE_SIDE - 1) + 1) <= BATCH, "a strip's nodes are one batch");
+
+enum { NODE_FACES = 1, NODE_IN = 2, NODE_OUT = 4, NODE_THROUGH = 8, NODE_STRAIGHT = 16 };
+
+struct quick_strip {
+	int across;                              // nodes in a row
+	float far;                               // |dx| + |dy| + |dz| from a tile's first node to its last, mm before the eye
+	unsigned char is[BATCH];                 // what a tile may be for a node's sake
+	struct quick_found found;                // spots and bent, of the nodes
+	float between[NODE_CHANNELS][BATCH];     // where a node may see the iris
+};
+
+/* Of 1..STRIP_TILES tiles, the middle of the first one's first pixel at x, y. make: rays through n points of the picture. */
 typedef void quick_make(struct quick_rays *rays, const float *x, const float *y, const void *ctx);
-bool quick_grid(struct quick_found *found, float x, float y, quick_make *make, const void *ctx, const struct quick_look *look);
+void quick_strip(struct quick_strip *strip, float x, float y, int tiles, quick_make *make, const void *ctx, const struct quick_look *look);
+
+/* Finds a strip's tile by the rays at its nodes. False: something in it wants every ray. */
+bool quick_grid(struct quick_found *found, const struct quick_strip *strip, int tile, const struct quick_look *look);
 
 /* Then, where all its pixels look into the iris' maps: reads the relief. */
 void quick_grid_pixels(struct quick_found *found, const struct quick_look *look);

@@ -41,55 +41,17 @@ SIMD_CLONES void quick_lay(float *restrict out, const float node[NODE_LANES])
 
 /* All nodes well inside the limbus, or well outside, or about it; and none seen at a grazing angle, where places run away, nor
  * so far from the side that relief hides relief. */
-static enum quick_kind kind_of(const struct quick_spots *s, const struct quick_rays *r, const struct quick_look *k)
+static enum quick_kind kind_of(const struct quick_strip *strip, int first, const struct quick_look *k)
 {
-	float inner = 1 - 0.5f * k->lid_width, outer = 1 + 0.5f * k->lid_width;
-	float wide = fabsf(r->ox[r->n - 1] - r->ox[0]) + fabsf(r->oy[r->n - 1] - r->oy[0]) + fabsf(r->oz[r->n - 1] - r->oz[0]);
-	int in = 0, out = 0, faces = 0, through = 0, leans = 0;
-	for (int i = 0; i < r->n; i++) {
-		int good = (s->hit[i] > 0) & (-(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]) > 0.3f);
-		in += good & (s->rho[i] < inner);
-		out += good & (s->rho[i] > outer);
-		faces += good;
-		through += (s->vz[i] > 0.3f) & (s->fz[i] > -0.1f) & (s->fz[i] < 5);  // whether there is an entry or the conic goes on as one
-		leans += quick_leans(s->vx[i], s->vy[i], s->vz[i]);
-	}
-	if (leans && out < r->n)
+	unsigned char all = 0xff;
+	for (int y = 0; y < NODE_SIDE; y++)
+		for (int x = 0; x < NODE_SIDE; x++)
+			all &= strip->is[first + y * strip->across + x];
+	if (strip->far * k->limbus[0] > 0.1f || !(all & NODE_FACES))
 		return QUICK_MIXED;
-	if (wide * k->limbus[0] > 0.1f || faces < r->n)
-		return QUICK_MIXED;
-	return in == r->n ? QUICK_CORNEA : out == r->n ? QUICK_SCLERA : through == r->n ? QUICK_LIMBUS : QUICK_MIXED;
-}
-
-/* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets the relief. */
-SIMD_INLINE float meet(float h, float u, float v, float aside, float across, const struct quick_look *k, int steps)
-{
-	float per_mm = k->level->per_mm, most = k->scene->height_max, least = k->scene->height_min;
-#pragma GCC unroll 3
-	for (int j = 0; j < steps; j++) {
-		float gx, gy, off = quick_height_at(k->level->pairs, k->level->n, per_mm, u - h * aside, v - h * across, &gx, &gy) - h;
-		float slope = 1 + gx * aside + gy * across;
-		h = quick_clamp(h + off / (slope > 0.3f ? slope : 0.3f), least, most);
-	}
-	return h;
-}
-
-SIMD_CLONES static void meet_nodes(float (*restrict q)[NODE_LANES], const struct quick_spots *restrict s, const struct quick_look *look)
-{
-	const struct quick_look k = *look;
-	float plane = (float)k.scene->eye.iris_depth;
-	SIMD_LOOP
-	for (int i = 0; i < NODE_LANES; i++) {
-		float fx = s->fx[i], fy = s->fy[i], vx = s->vx[i], vy = s->vy[i], c = s->vz[i] > 0.1f ? s->vz[i] : 0.1f;
-		float a = (vx + k.slip[0][0] * vx + k.slip[0][1] * vy) / c, b = (vy + k.slip[1][0] * vx + k.slip[1][1] * vy) / c, t = plane - s->fz[i];
-		float u = fx + k.slip[0][0] * fx + k.slip[0][1] * fy + k.slip[0][2] + t * a;
-		float v = fy + k.slip[1][0] * fx + k.slip[1][1] * fy + k.slip[1][2] + t * b;
-		q[NODE_U][i] = u;
-		q[NODE_V][i] = v;
-		q[NODE_ASIDE][i] = a;
-		q[NODE_ACROSS][i] = b;
-		q[NODE_HEIGHT][i] = meet(0, u, v, a, b, &k, 3);
-	}
+	if (all & NODE_OUT)
+		return QUICK_SCLERA;
+	return !(all & NODE_STRAIGHT) ? QUICK_MIXED : all & NODE_IN ? QUICK_CORNEA : all & NODE_THROUGH ? QUICK_LIMBUS : QUICK_MIXED;
 }
 
 /* From the nodes' heights one more step is enough. */
@@ -108,23 +70,11 @@ SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const 
 #pragma GCC unroll 5
 			for (int c = 0; c < NODE_CHANNELS; c++)
 				p[c] = rows[c][a][i] + w * (rows[c][b][i] - rows[c][a][i]);
-			float h = meet(p[NODE_HEIGHT], p[NODE_U], p[NODE_V], p[NODE_ASIDE], p[NODE_ACROSS], &k, 1);
+			float h = quick_meet(p[NODE_HEIGHT], p[NODE_U], p[NODE_V], p[NODE_ASIDE], p[NODE_ACROSS], &k, 1);
 			out_u[i] = p[NODE_U] - h * p[NODE_ASIDE];
 			out_v[i] = p[NODE_V] - h * p[NODE_ACROSS];
 		}
 	}
-}
-
-static void nodes_make(struct quick_rays *r, float x, float y, quick_make *make, const void *ctx)
-{
-	float u[NODE_LANES], v[NODE_LANES];
-	r->n = NODE_LANES;
-	for (int i = 0; i < NODE_LANES; i++) {  // the lanes behind the nodes repeat the last
-		int k = i < NODES_IN_TILE ? i : NODES_IN_TILE - 1;
-		u[i] = x + (float)(NODE_STEP * (k % NODE_SIDE));
-		v[i] = y + (float)(NODE_STEP * (k / NODE_SIDE));
-	}
-	make(r, u, v, ctx);
 }
 
 /* Places on the environment's octahedron jump where its far corners meet. */
@@ -138,16 +88,6 @@ static bool jumps(const float *u, const float *v, int n)
 		high[1] = v[i] > high[1] ? v[i] : high[1];
 	}
 	return high[0] - low[0] > 0.5f || high[1] - low[1] > 0.5f;
-}
-
-static void iris_lay(struct quick_found *f, const struct quick_look *k)
-{
-	float(*q)[NODE_LANES] = f->between;
-	meet_nodes(q, &f->spots, k);
-	for (int i = 0; i < NODES_IN_TILE; i++) {
-		f->nodes.iu[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
-		f->nodes.iv[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
-	}
 }
 
 void quick_grid_pixels(struct quick_found *f, const struct quick_look *k)
@@ -202,40 +142,58 @@ void quick_ask(const struct quick_found *f, const struct quick_look *k)
 	}
 }
 
-/* What is kept of the rays at the nodes. */
-static void nodes_put(struct quick_nodes *n, const struct quick_spots *s)
+/* A tile's nodes of the strip's; nothing in the lanes behind them. */
+SIMD_INLINE void nodes_take(float *restrict out, const float *restrict in, int across)
 {
+	typedef float four __attribute__((vector_size(16), aligned(4)));
+	_Static_assert(NODE_SIDE == 3 && NODE_LANES == 16, "each row's fourth lane is the next row's");
+	for (int i = 0; i < NODE_LANES; i += 4)
+		*(four *)(out + i) = (four){ 0 };
+	for (int y = 0; y < NODE_SIDE; y++)
+		memcpy(out + y * NODE_SIDE, in + y * across, NODE_SIDE * sizeof *out);
+}
+
+SIMD_INLINE void iris_lay(struct quick_found *f)
+{
+	const float(*q)[NODE_LANES] = (const float(*)[NODE_LANES])f->between;
+	SIMD_LOOP
+	for (int i = 0; i < NODE_LANES; i++) {
+		f->nodes.iu[i] = q[NODE_U][i] - q[NODE_HEIGHT][i] * q[NODE_ASIDE][i];
+		f->nodes.iv[i] = q[NODE_V][i] - q[NODE_HEIGHT][i] * q[NODE_ACROSS][i];
+	}
+}
+
+SIMD_CLONES static void tile_take(struct quick_found *f, const struct quick_strip *strip, int first)
+{
+	const struct quick_spots *s = &strip->found.spots;
+	struct quick_nodes *n = &f->nodes;
 	float *const to[] = { n->nx, n->ny, n->nz, n->rho, n->mirror, n->rough, n->eu, n->ev, n->wu, n->wv };
 	const float *const from[] = { s->nx, s->ny, s->nz, s->rho, s->mirror, s->rough, s->eu, s->ev, s->su, s->sv };
 	for (int k = 0; k < COUNT(to); k++)
-		memcpy(to[k], from[k], NODE_LANES * sizeof(float));
+		nodes_take(to[k], from[k] + first, strip->across);
+	if (!f->seen)
+		return;
+	for (int k = 0; k < NODE_CHANNELS; k++)
+		nodes_take(f->between[k], strip->between[k] + first, strip->across);
+	iris_lay(f);
 }
 
-bool quick_grid(struct quick_found *f, float x, float y, quick_make *make, const void *ctx, const struct quick_look *k)
+bool quick_grid(struct quick_found *f, const struct quick_strip *strip, int tile, const struct quick_look *k)
 {
-	struct quick_spots *s = &f->spots;
-	struct quick_rays r;
-	float back[NODE_LANES];
-	nodes_make(&r, x, y, make, ctx);
-	quick_outside(s, &r, k);
-	f->kind = kind_of(s, &r, k);
+	int first = tile * (NODE_SIDE - 1);
+	f->kind = kind_of(strip, first, k);
 	if (f->kind == QUICK_MIXED)
 		return false;
 	f->hit = BATCH;
 	f->seen = f->kind == QUICK_SCLERA ? 0 : BATCH;
 	f->white = f->kind == QUICK_CORNEA ? 0 : BATCH;
-	quick_bend(f, r.n, k);
-	quick_reflect(s->eu, s->ev, back, f, &r, k);
-	quick_unfold(r.n, s->eu, s->ev, back);
-	if (jumps(s->eu, s->ev, r.n))
+	tile_take(f, strip, first);
+	if (jumps(f->nodes.eu, f->nodes.ev, NODES_IN_TILE))
 		return false;
-	if (f->seen)
-		iris_lay(f, k);
-	nodes_put(&f->nodes, s);
 	if (f->white) {
 		float(*at)[BATCH] = f->seen ? f->nodes.second : f->nodes.first;
-		quick_lay(at[0], s->su);
-		quick_lay(at[1], s->sv);
+		quick_lay(at[0], f->nodes.wu);
+		quick_lay(at[1], f->nodes.wv);
 	}
 	return true;
 }
