@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "bridge/imf_read.h"
-#include "eye/scene_march.h"
+#include "eye/scene_paths.h"
 #include "math/rng.h"
 #include "optics/lightpath.h"
 #include "tests/lib/bench.h"
@@ -215,6 +215,52 @@ static void table_against_solver(void **state)
 	scene_free(&s);
 }
 
+/* Light on a flat iris against the solver: three lights of a colour each, the lowest one 8 degrees above the plane of the iris. */
+static void flat_against_solver(void **state)
+{
+	(void)state;
+	struct scene s;
+	struct scene_conf conf = conf_of(6);
+	conf.shading = SCENE_TEXELS;
+	conf.path = SCENE_PATH_GRID;
+	scene_of(&s, &plain_eye, &conf, even, 0, 1.5);
+	struct scene_lighting light = { .n = 3 };
+	light.light[0] = (struct envmap_light){ { 0, 0, -1 }, { 1, 0, 0 } };
+	light.light[1] = (struct envmap_light){ { 0.6f, -0.48f, -0.64f }, { 0, 1, 0 } };
+	light.light[2] = (struct envmap_light){ { -0.792f, 0.594f, -0.14f }, { 0, 0, 1 } };
+	const double id[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+	float *flat = scene_paths_flat(&s, &light, id);
+	double mean[3] = { 0 }, worst[3] = { 0 }, most[3] = { 0 }, n = 0, width = s.conf.limbus_width / s.limbus[0];
+	for (int i = 0; i < SCENE_FLAT * SCENE_FLAT; i++) {
+		double step = 2 * s.extent / SCENE_FLAT, P[3] = { (i % SCENE_FLAT + 0.5) * step - s.extent, (i / SCENE_FLAT + 0.5) * step - s.extent, s.eye.iris_depth };
+		if (hypot(P[0], P[1]) > s.limbus[0])
+			continue;
+		n++;
+		for (int l = 0; l < 3; l++) {
+			double w[3] = { light.light[l].dir[0], light.light[l].dir[1], light.light[l].dir[2] }, K[3], expected = 0;
+			enum lightpath_status status = lightpath_solve_directional(K, &s.cornea, P, w);
+			if (status == LIGHTPATH_OK || status == LIGHTPATH_BEYOND_RIM) {
+				double t = (hypot(K[0] / s.limbus[0], K[1] / s.limbus[1]) - 1 + width / 2) / width;
+				t = fmin(fmax(t, 0), 1);
+				expected = lightpath_gain(&s.cornea, P, w, K) * (1 - t * t * (3 - 2 * t));
+			}
+			double off = fabs((double)flat[4 * i + l] - s.flat[l] * expected);
+			mean[l] += off;
+			worst[l] = fmax(worst[l], off);
+			most[l] = fmax(most[l], s.flat[l] * expected);
+		}
+	}
+	for (int l = 0; l < 3; l++) {
+		print_message("flat light %d: off by %.2g on the mean, %.2g at worst, of the brightest\n", l, mean[l] / n / most[l], worst[l] / most[l]);
+		assert_true(most[l] > 0);
+		assert_true(mean[l] / n < 2e-3 * most[l]);
+		// Where the limbus stops the light within three of the field's rings; and where the focus of a low light ends, next to the rim.
+		assert_true(worst[l] < (l < 2 ? 0.03 : 0.25) * most[l]);
+	}
+	free(flat);
+	scene_free(&s);
+}
+
 /* Gauss's rule for fading light: 4 steps are what 24 of Gauss-Legendre's are. */
 static void exponential_rule(void **state)
 {
@@ -234,6 +280,7 @@ int main(void)
 		cmocka_unit_test(strange_maps),
 		cmocka_unit_test(march_closed_form),
 		cmocka_unit_test(table_against_solver),
+		cmocka_unit_test(flat_against_solver),
 		cmocka_unit_test(exponential_rule),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

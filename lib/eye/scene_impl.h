@@ -23,6 +23,7 @@ struct iris_batch {
  * came in (1: at the limbus), and what of the irradiance falls on the iris plane. */
 enum { SCENE_PATH_STEPS = 4 };  // Newton's, from the closed-form start: 2e-5 mm at worst
 enum { SCENE_WAY = 8 };  // six, and room for a whole vector
+enum { SCENE_FLAT = 64 };  // texels of flat light, across
 enum { SCENE_COARSE = 24 };  // several lights together are smooth: a coarser grid, and cubics (Catmull and Rom's) between
 struct scene_beam {
 	float dir[3], rgb[3];
@@ -88,10 +89,11 @@ struct scene_shade {
 /* Levels finer than that are not marched from. */
 int scene_marched(const struct scene *scene);
 
-/* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel. flat: the
- * alternative, light on the photograph's colours alone. free(shade.light). */
-struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3], bool flat,
-                                    const struct scene_beams *beams);
+/* For a camera at C whose pixels are about as large as the texels of `level`: the march from every second texel. free(shade.light). */
+struct scene_shade scene_shade_make(const struct scene *scene, const struct scene_level *level, const double C[3], const struct scene_beams *beams);
+
+/* The alternative: light on the photograph's colours alone, without beams. The scene has paths. */
+struct scene_shade scene_shade_flat(const struct scene *scene, const struct scene_level *level, const struct scene_lighting *light, const double eye_from_cam[3][3]);
 
 /* Fills the model of a level with the march from its own texels, times through: what a later march from them is compared with. */
 void scene_shade_model(struct scene_level *level, const struct scene *scene, const double C[3], const struct scene_beams *beams, float through);

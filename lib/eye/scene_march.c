@@ -178,15 +178,6 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 	}
 }
 
-void scene_flat(struct iris_batch *r, const struct scene *s, const struct scene_beams *beams)
-{
-	for (int first = 0; first < r->n; first += PART) {
-		int n = r->n - first < PART ? r->n - first : PART;
-		float *rgb[3] = { r->rgb[0] + first, r->rgb[1] + first, r->rgb[2] + first };
-		scene_flat_at(rgb, n, r->px + first, r->py + first, r->pz + first, s, beams);
-	}
-}
-
 SIMD_CLONES static void fall_add(float *restrict out, int n, const struct march_light *restrict w, float f)
 {
 	SIMD_LOOP
@@ -194,7 +185,8 @@ SIMD_CLONES static void fall_add(float *restrict out, int n, const struct march_
 		out[i] += f * w->power[0][i] * w->fall[0][i];
 }
 
-void scene_flat_at(float *const rgb[3], int n, const float *x, const float *y, const float *z, const struct scene *s, const struct scene_beams *beams)
+/* Without a march: the model's mean colour at n <= PART points, lit. */
+static void flat_at(float *const rgb[3], int n, const float *x, const float *y, const float *z, const struct scene *s, const struct scene_beams *beams)
 {
 	struct march_light w;
 	for (int c = 0; c < 3; c++)
@@ -203,5 +195,14 @@ void scene_flat_at(float *const rgb[3], int n, const float *x, const float *y, c
 		scene_light_at(&w, 0, n, x, y, z, s, &beams->beam[l]);
 		for (int c = 0; c < 3; c++)
 			fall_add(rgb[c], n, &w, beams->beam[l].rgb[c] * s->flat[c]);
+	}
+}
+
+void scene_flat(struct iris_batch *r, const struct scene *s, const struct scene_beams *beams)
+{
+	for (int first = 0; first < r->n; first += PART) {
+		int n = r->n - first < PART ? r->n - first : PART;
+		float *rgb[3] = { r->rgb[0] + first, r->rgb[1] + first, r->rgb[2] + first };
+		flat_at(rgb, n, r->px + first, r->py + first, r->pz + first, s, beams);
 	}
 }

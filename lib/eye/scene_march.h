@@ -111,9 +111,6 @@ void scene_tile_ground(struct iris_batch *r, const struct march_tile *tile, cons
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_level *level,
                         const struct scene_beams *beams, const struct march_tissue *tissue);
 
-/* Without a march: the model's mean colour at n <= PART points, lit. */
-void scene_flat_at(float *const rgb[3], int n, const float *x, const float *y, const float *z, const struct scene *scene, const struct scene_beams *beams);
-
 /* Horizons of a level's tiles. free(). */
 struct march_horizon *scene_horizons(const struct scene *scene, const struct scene_level *level);
 

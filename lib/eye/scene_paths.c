@@ -1,7 +1,7 @@
 /* Fields of a light's ways on two planes of the iris, by the light's angle from the axis: at rings of turns about it, the light
  * standing at azimuth 0. A light between two angles and turned to any azimuth is their cubic (Catmull and Rom's); all nodes of
  * the field share its weights. */
-#include "eye/scene_paths.h"
+#include "eye/scene_paths_impl.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,17 +14,7 @@
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
 
-/* Unit direction from the point to where the light comes in, irradiance of a plane that faces it, and the place on the cornea. */
-enum { DIR_X, DIR_Y, DIR_Z, POWER, AT_X, AT_Y, CHANNELS };
-enum { ANGLES = 64, RINGS = 24, TURNS = 64, WRAP = 4, ROW = TURNS + WRAP, FIELD = RINGS * ROW };
 static const double lowest = 0.16;  // z of the last angle's light: see scene_lights_turn
-
-struct scene_paths {
-	double most;                                 // radius of the last ring, mm
-	float field[2][ANGLES][CHANNELS][FIELD];     // a row is a ring, and its first turns once more
-	float at[SCENE_COARSE * SCENE_COARSE][8];        // weights of four rings and four turns for a coarse node of a beam's table
-	int first[SCENE_COARSE * SCENE_COARSE];          // ring and turn of the first of them
-};
 
 static void cubic(float w[4], float t)
 {
@@ -94,18 +84,39 @@ static void angle_make(float field[CHANNELS][FIELD], const struct scene *s, doub
 	free(n);
 }
 
-/* Where the coarse nodes of a beam's table lie among rings and turns. Outside the limbus there is no iris to light: those nodes only
+/* Where the points of a square grid lie among rings and turns. Outside the limbus there is no iris to light: those points only
  * bound the others' cells, and stand at its edge. */
-static void nodes_place(struct scene_paths *p, const struct scene *s)
+static void nodes_place(struct paths_place *to, int side, double from, double step, double most, int rings)
 {
-	double step = 2 * s->extent / (SCENE_COARSE - 1);
-	for (int i = 0; i < SCENE_COARSE * SCENE_COARSE; i++) {
-		double x = i % SCENE_COARSE * step - s->extent, y = i / SCENE_COARSE * step - s->extent, turn = atan2(y, x) / (2 * M_PI) * TURNS;
-		double ring = fmin(hypot(x, y) / p->most, 1) * (RINGS - 1);
+	for (int i = 0; i < side * side; i++) {
+		double x = i % side * step - from, y = i / side * step - from, turn = atan2(y, x) / (2 * M_PI) * TURNS;
+		double ring = fmin(hypot(x, y) / most, 1) * (rings - 1);
 		turn += turn < 0 ? TURNS : 0;
-		int first = cubic_of(p->at[i], (float)ring, RINGS), column = (int)turn % TURNS;
-		cubic(p->at[i] + 4, (float)(turn - floor(turn)));
-		p->first[i] = first * ROW + (column + TURNS - 1) % TURNS;
+		int first = cubic_of(to[i].ring, (float)ring, rings), column = (int)turn % TURNS;
+		cubic(to[i].turn, (float)(turn - floor(turn)));
+		to[i].first = first * ROW + (column + TURNS - 1) % TURNS;
+	}
+}
+
+/* What flat light needs of the two planes' fields, on the iris plane between them: a finer ring is the cubic of four. */
+static void plain_make(struct scene_paths *p, int angle, float q)
+{
+	const float(*near)[FIELD] = (const float(*)[FIELD])p->field[0][angle], (*far)[FIELD] = (const float(*)[FIELD])p->field[1][angle];
+	float plane[PLAIN_CHANNELS][FIELD];
+	for (int i = 0; i < FIELD; i++) {
+		float power = near[POWER][i] + q * (far[POWER][i] - near[POWER][i]), z = near[DIR_Z][i] + q * (far[DIR_Z][i] - near[DIR_Z][i]);
+		plane[PLAIN_FALL][i] = z < 0 ? -z * power : 0;
+		plane[PLAIN_X][i] = near[AT_X][i] + q * (far[AT_X][i] - near[AT_X][i]);
+		plane[PLAIN_Y][i] = near[AT_Y][i] + q * (far[AT_Y][i] - near[AT_Y][i]);
+	}
+	for (int ring = 0; ring < PLAIN_RINGS; ring++) {
+		float w[4];
+		int first = cubic_of(w, (float)ring / PLAIN_FINER, RINGS) * ROW;
+		for (int c = 0; c < PLAIN_CHANNELS; c++)
+			for (int i = 0; i < ROW; i++) {
+				const float *a = plane[c] + first + i;
+				p->plain[angle][c][ring * ROW + i] = w[0] * a[0] + w[1] * a[ROW] + w[2] * a[2 * ROW] + w[3] * a[3 * ROW];
+			}
 	}
 }
 
@@ -117,10 +128,14 @@ struct scene_paths *scene_paths_make(const struct scene *s)
 	double z[2];
 	scene_planes(z, s);
 	p->most = 1.04 * s->limbus[0];
-	nodes_place(p, s);
+	nodes_place(p->coarse, SCENE_COARSE, s->extent, 2 * s->extent / (SCENE_COARSE - 1), p->most, RINGS);
+	nodes_place(p->flat, SCENE_FLAT, s->extent * (1 - 1.0 / SCENE_FLAT), 2 * s->extent / SCENE_FLAT, p->most, PLAIN_RINGS);
 #pragma omp parallel for schedule(dynamic)
 	for (int i = 0; i < 2 * ANGLES; i++)
 		angle_make(p->field[i % 2][i / 2], s, acos(-lowest) * (i / 2) / (ANGLES - 1), z[i % 2], p->most);
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < ANGLES; i++)
+		plain_make(p, i, (float)((s->eye.iris_depth - z[0]) / (z[1] - z[0])));
 	return p;
 }
 
@@ -130,22 +145,10 @@ struct sum {
 	float power[FIELD], dir[3][FIELD], down[3][FIELD], rho[FIELD];
 };
 
-/* A light's field: four angles and, of each ring, four turns. */
-SIMD_CLONES static void field_at(float *restrict out, const float *restrict a, const float *restrict b, const float *restrict c, const float *restrict d,
-                                 const float in_angle[4], const float in_turn[4], int turn)
+SIMD_CLONES static void field_at(float *restrict out, const float *restrict field, const struct paths_light *light)
 {
-	for (int ring = 0; ring < RINGS; ring++) {
-		float row[2 * ROW];
-		long at = (long)ring * ROW;
-		SIMD_LOOP
-		for (int i = 0; i < TURNS; i++)
-			row[i] = row[i + TURNS] = in_angle[0] * a[at + i] + in_angle[1] * b[at + i] + in_angle[2] * c[at + i] + in_angle[3] * d[at + i];
-		memcpy(row + 2 * TURNS, row, (2 * ROW - 2 * TURNS) * sizeof *row);
-		const float *restrict from = row + turn;
-		SIMD_LOOP
-		for (int i = 0; i < ROW; i++)
-			out[at + i] = in_turn[0] * from[i] + in_turn[1] * from[i + 1] + in_turn[2] * from[i + 2] + in_turn[3] * from[i + 3];
-	}
+	for (int ring = 0; ring < RINGS; ring++)
+		scene_paths_row(out + ring * ROW, field + ring * ROW, CHANNELS * FIELD, light);
 }
 
 SIMD_CLONES static void light_add(struct sum *sum, const float (*restrict f)[FIELD], float cosine, float sine, float share, const double limbus[2])
@@ -182,14 +185,27 @@ SIMD_CLONES static void ways_put(float (*restrict way)[SCENE_WAY], const struct 
 SIMD_CLONES static void table_put(float (*restrict way)[SCENE_WAY], const float (*restrict polar)[SCENE_WAY], const struct scene_paths *p)
 {
 	for (int i = 0; i < SCENE_COARSE * SCENE_COARSE; i++) {
-		const float *w = p->at[i];
-		const float(*restrict from)[SCENE_WAY] = polar + p->first[i];
+		const float *w = p->coarse[i].ring, *t = p->coarse[i].turn;
+		const float(*restrict from)[SCENE_WAY] = polar + p->coarse[i].first;
 		float sum[SCENE_WAY] = { 0 };
 		for (int k = 0; k < 4; k++)
 			for (int c = 0; c < SCENE_WAY; c++)
-				sum[c] += w[k] * (w[4] * from[k * ROW][c] + w[5] * from[k * ROW + 1][c] + w[6] * from[k * ROW + 2][c] + w[7] * from[k * ROW + 3][c]);
+				sum[c] += w[k] * (t[0] * from[k * ROW][c] + t[1] * from[k * ROW + 1][c] + t[2] * from[k * ROW + 2][c] + t[3] * from[k * ROW + 3][c]);
 		memcpy(way[i], sum, sizeof sum);
 	}
+}
+
+struct paths_light scene_paths_light(const float d[3])
+{
+	struct paths_light light;
+	float flat = hypotf(d[0], d[1]);
+	light.cosine = flat > 0 ? d[0] / flat : 1;
+	light.sine = flat > 0 ? d[1] / flat : 0;
+	light.angle = cubic_of(light.in_angle, (float)(atan2(flat, -d[2]) / acos(-lowest) * (ANGLES - 1)), ANGLES);
+	float back = -atan2f(light.sine, light.cosine) * (float)(TURNS / (2 * M_PI)), whole = floorf(back);
+	cubic(light.in_turn, back - whole);
+	light.turn = ((int)whole - 1 + 2 * TURNS) % TURNS;
+	return light;
 }
 
 void scene_paths_beam(float way[][SCENE_WAY], const struct scene *s, int plane, const struct beam_lights *in)
@@ -201,15 +217,10 @@ void scene_paths_beam(float way[][SCENE_WAY], const struct scene *s, int plane, 
 	} *work = mem_array(1, sizeof *work);
 	work->sum = (struct sum){ 0 };
 	for (int l = 0; l < in->n; l++) {
-		const float *d = in->dir[l];
-		float flat = hypotf(d[0], d[1]), in_angle[4], in_turn[4], cosine = flat > 0 ? d[0] / flat : 1, sine = flat > 0 ? d[1] / flat : 0;
-		int k = cubic_of(in_angle, (float)(atan2(flat, -d[2]) / acos(-lowest) * (ANGLES - 1)), ANGLES);
-		float back = -atan2f(sine, cosine) * (float)(TURNS / (2 * M_PI)), whole = floorf(back);
-		cubic(in_turn, back - whole);
+		struct paths_light light = scene_paths_light(in->dir[l]);
 		for (int c = 0; c < CHANNELS; c++)
-			field_at(work->field[c], p->field[plane][k][c], p->field[plane][k + 1][c], p->field[plane][k + 2][c], p->field[plane][k + 3][c], in_angle, in_turn,
-			         ((int)whole - 1 + 2 * TURNS) % TURNS);
-		light_add(&work->sum, (const float(*)[FIELD])work->field, cosine, sine, in->share[l], s->limbus);
+			field_at(work->field[c], p->field[plane][light.angle][c], &light);
+		light_add(&work->sum, (const float(*)[FIELD])work->field, light.cosine, light.sine, in->share[l], s->limbus);
 	}
 	ways_put(work->polar, &work->sum);
 	table_put(way, (const float(*)[SCENE_WAY])work->polar, p);

@@ -2,7 +2,7 @@
  * the photograph shows: the march is done at every second or fourth texel each way, and only its ratio to what the model showed in the
  * photograph's light is multiplied into the photograph's own texels. Sight comes to each texel by its own way through the
  * cornea; so a picture's pixel sees just what a march along its ray would have made, up to what lies between texels. */
-#include "eye/scene_march.h"
+#include "eye/scene_paths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -152,25 +152,9 @@ void scene_shade_model(struct scene_level *level, const struct scene *s, const d
 	per_model_make(level);
 }
 
-/* The alternative: irradiance on the iris plane alone, which is smooth. */
-static struct scene_shade flat_make(const struct scene *s, const struct scene_level *level, const struct scene_beams *beams)
+struct scene_shade scene_shade_flat(const struct scene *s, const struct scene_level *level, const struct scene_lighting *light, const double eye_from_cam[3][3])
 {
-	enum { N = PART };
-	float step = (float)(2 * s->extent / N), extent = (float)s->extent;
-	struct scene_shade out = { N, N, level->per_mm, 1 / step, &level->bare, mem_new(N * N, 4 * sizeof *out.light), true };
-#pragma omp parallel for schedule(dynamic, 8)
-	for (int j = 0; j < N; j++) {
-		float x[N], y[N], z[N], rgb[3][N];
-		for (int i = 0; i < N; i++) {
-			x[i] = ((float)i + 0.5f) * step - extent;
-			y[i] = ((float)j + 0.5f) * step - extent;
-			z[i] = (float)s->eye.iris_depth;
-		}
-		scene_flat_at((float *[3]){ rgb[0], rgb[1], rgb[2] }, N, x, y, z, s, beams);
-		for (int i = 0; i < 3 * N; i++)
-			out.light[4 * (j * N + i / 3) + i % 3] = rgb[i % 3][i / 3];
-	}
-	return out;
+	return (struct scene_shade){ SCENE_FLAT, SCENE_FLAT, level->per_mm, (float)(SCENE_FLAT / (2 * s->extent)), &level->bare, scene_paths_flat(s, light, eye_from_cam), true };
 }
 
 int scene_marched(const struct scene *s)
@@ -182,13 +166,10 @@ int scene_marched(const struct scene *s)
 	return k;
 }
 
-struct scene_shade scene_shade_make(const struct scene *s, const struct scene_level *level, const double C[3], bool flat,
-                                    const struct scene_beams *beams)
+struct scene_shade scene_shade_make(const struct scene *s, const struct scene_level *level, const double C[3], const struct scene_beams *beams)
 {
 	int k = (int)(level - s->level) + scene_marched(s);
 	const struct scene_level *coarse = s->level + (k < s->n_levels ? k : s->n_levels - 1);
-	if (flat)
-		return flat_make(s, level, beams);
 	struct scene_beam *sight = scene_sight(s, C);
 	struct painter p = { s, coarse, sight, beams, scene_march_tissue(&s->optics), (coarse->n + TILE_SIDE - 1) / TILE_SIDE, coarse->n + 4, 0, 0 };
 	p.light = mem_array((size_t)coarse->n * (size_t)p.stride, 4 * sizeof *p.light);

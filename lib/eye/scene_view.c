@@ -107,8 +107,8 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 	double eye_from_cam[3][3];
 	for (int k = 0; k < 9; k++)
 		eye_from_cam[k / 3][k % 3] = view->cam_from_eye[k % 3][k / 3];
-	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
 	struct scene_look look;
+	struct scene_beams beams = { 0 };
 	look_make(&look, s, view, light, &beams);
 	struct image image = { view->width, view->height, 4, mem_array(4 * (size_t)view->width * (size_t)view->height, sizeof(float)) };
 	struct canvas c = { s, view, &look, &image, false, sight_plane(&look, view, s->sclera_z) };
@@ -118,8 +118,11 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 	long rays = 0, iris = 0, kept = 0, hidden = 0;
 	struct scene_shade shade = { 0 };
 	struct quick_look quick;
-	if (s->conf.shading == SCENE_TEXELS && !c.bent) {
-		shade = scene_shade_make(s, look.level, look.origin, view->textured, &beams);
+	bool texels = s->conf.shading == SCENE_TEXELS && !c.bent && (!view->textured || s->paths);
+	if (!texels || !view->textured)
+		beams = scene_beams(s, light, eye_from_cam);
+	if (texels) {
+		shade = view->textured ? scene_shade_flat(s, look.level, light, eye_from_cam) : scene_shade_make(s, look.level, look.origin, &beams);
 		quick = quick_look(s, view, light, &shade, look.level);
 		look.quick = &quick;
 		if (view->hits)
