@@ -259,6 +259,8 @@ struct quick_look quick_look(const struct scene *s, const struct scene_view *vie
 	const struct cornea *c = &s->cornea;
 	double n1 = c->two_surface ? c->n_cornea : c->n, m = c->n / n1, edge = cornea_edge(c);
 	struct quick_look k = { .scene = s, .light = light, .shade = shade, .level = level, .two = c->two_surface };
+	long coarse = level - s->level + 3;  // 2^3 is NODE_STEP
+	k.smooth = s->level + (coarse < s->n_levels ? coarse : s->n_levels - 1);
 	k.front = (struct quick_quadric){ (float)c->R, (float)c->p, 0, (float)(n1 * n1 - 1) };
 	k.back = (struct quick_quadric){ (float)c->R_post, (float)c->p_post, (float)c->thickness, (float)(m * m - 1) };
 	k.rim2 = (float)(edge * edge);

@@ -33,6 +33,7 @@ struct quick_look {
 	const struct scene_lighting *light;
 	const struct scene_shade *shade;
 	const struct scene_level *level;  // of the relief
+	const struct scene_level *smooth; // of the relief about as coarse as nodes
 	struct quick_quadric front, back;
 	bool two;
 	float rim2, index;
@@ -70,13 +71,12 @@ struct quick_found {
 	float between[NODE_CHANNELS][NODE_LANES];  // of a tile's iris that quick_grid_pixels has yet to lay
 };
 
-/* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets the relief. */
-SIMD_INLINE float quick_meet(float h, float u, float v, float aside, float across, const struct quick_look *k, int steps)
+/* Newton's steps for the height at which a ray that crosses the iris plane at u, v meets a level's relief. */
+SIMD_INLINE float quick_meet(float h, float u, float v, float aside, float across, const struct scene_level *level, float least, float most, int steps)
 {
-	float per_mm = k->level->per_mm, most = k->scene->height_max, least = k->scene->height_min;
 #pragma GCC unroll 3
 	for (int j = 0; j < steps; j++) {
-		float gx, gy, off = quick_height_at(k->level->pairs, k->level->n, per_mm, u - h * aside, v - h * across, &gx, &gy) - h;
+		float gx, gy, off = quick_height_at(level->pairs, level->n, level->per_mm, u - h * aside, v - h * across, &gx, &gy) - h;
 		float slope = 1 + gx * aside + gy * across;
 		h = quick_clamp(h + off / (slope > 0.3f ? slope : 0.3f), least, most);
 	}

@@ -57,7 +57,8 @@ static enum quick_kind kind_of(const struct quick_strip *strip, int first, const
 /* From the nodes' heights one more step is enough. */
 SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const float (*restrict q)[NODE_LANES], const struct quick_look *look)
 {
-	const struct quick_look k = *look;
+	const struct scene_level level = *look->level;
+	float least = look->scene->height_min, most = look->scene->height_max;
 	float rows[NODE_CHANNELS][NODE_SIDE][QUICK_TILE];
 	for (int c = 0; c < NODE_CHANNELS; c++)
 		rows_lay(rows[c], q[c]);
@@ -70,7 +71,7 @@ SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const 
 #pragma GCC unroll 5
 			for (int c = 0; c < NODE_CHANNELS; c++)
 				p[c] = rows[c][a][i] + w * (rows[c][b][i] - rows[c][a][i]);
-			float h = quick_meet(p[NODE_HEIGHT], p[NODE_U], p[NODE_V], p[NODE_ASIDE], p[NODE_ACROSS], &k, 1);
+			float h = quick_meet(p[NODE_HEIGHT], p[NODE_U], p[NODE_V], p[NODE_ASIDE], p[NODE_ACROSS], &level, least, most, 1);
 			out_u[i] = p[NODE_U] - h * p[NODE_ASIDE];
 			out_v[i] = p[NODE_V] - h * p[NODE_ACROSS];
 		}
@@ -146,11 +147,10 @@ void quick_ask(const struct quick_found *f, const struct quick_look *k)
 SIMD_INLINE void nodes_take(float *restrict out, const float *restrict in, int across)
 {
 	typedef float four __attribute__((vector_size(16), aligned(4)));
-	_Static_assert(NODE_SIDE == 3 && NODE_LANES == 16, "each row's fourth lane is the next row's");
-	for (int i = 0; i < NODE_LANES; i += 4)
-		*(four *)(out + i) = (four){ 0 };
+	_Static_assert(NODE_SIDE == 3 && NODE_LANES == 16, "each row's fourth lane is the next row's first");
 	for (int y = 0; y < NODE_SIDE; y++)
-		memcpy(out + y * NODE_SIDE, in + y * across, NODE_SIDE * sizeof *out);
+		*(four *)(out + y * NODE_SIDE) = *(const four *)(in + y * across);
+	*(four *)(out + NODES_IN_TILE) = *(four *)(out + NODES_IN_TILE + 3) = (four){ 0 };
 }
 
 SIMD_INLINE void iris_lay(struct quick_found *f)

@@ -36,11 +36,13 @@ SIMD_CLONES static void judge(unsigned char *restrict is, const struct quick_spo
 	}
 }
 
-/* Where rays cross the iris plane and meet the relief, and how they lean. */
+/* Where rays cross the iris plane and meet the relief, and how they lean. Pixels start from what is laid between nodes: the relief as
+ * coarse as these is as good a start as the relief at them, and stays in the cache. */
 SIMD_CLONES static void meet_nodes(float (*restrict q)[BATCH], int n, const struct quick_spots *restrict s, const struct quick_look *look)
 {
 	const struct quick_look k = *look;
-	float plane = (float)k.scene->eye.iris_depth;
+	const struct scene_level level = *k.smooth;
+	float plane = (float)k.scene->eye.iris_depth, least = k.scene->height_min, most = k.scene->height_max;
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
 		float fx = s->fx[i], fy = s->fy[i], vx = s->vx[i], vy = s->vy[i], c = s->vz[i] > 0.1f ? s->vz[i] : 0.1f;
@@ -51,7 +53,7 @@ SIMD_CLONES static void meet_nodes(float (*restrict q)[BATCH], int n, const stru
 		q[NODE_V][i] = v;
 		q[NODE_ASIDE][i] = a;
 		q[NODE_ACROSS][i] = b;
-		q[NODE_HEIGHT][i] = quick_meet(0, u, v, a, b, &k, 3);
+		q[NODE_HEIGHT][i] = quick_meet(0, u, v, a, b, &level, least, most, 3);
 	}
 }
 
