@@ -3,149 +3,17 @@
 #include <math.h>
 #include <string.h>
 
-#include "eye/scene_quick.h"
+#include "eye/scene_quick_film.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
 #endif
-
-/* The mirror image is looked up at every fourth pixel, five by five. */
-enum { FILM_STEP = 4, FILM_SIDE = 5, FILM_LANES = 32 };
-
-/* At the nodes: what the iris' colour, and the white's, is multiplied by; and what is mirrored, with the cover. */
-struct film {
-	quick_four iris[NODE_LANES], white[NODE_LANES], mirror[FILM_SIDE * FILM_SIDE];
-	bool edge;  // the mirror image has one, and is not in it
-};
 
 /* What the tile looks up in every pixel. */
 struct maps {
 	struct quick_places detail, light, white, sharp, rough;
 	float lid[BATCH], mirror[BATCH], roughness[BATCH];
 };
-
-/* Three by three nodes become five by five. */
-SIMD_INLINE void film_refine(float *restrict out, const float *restrict node)
-{
-	float row[NODE_SIDE][8];
-	for (int y = 0; y < NODE_SIDE; y++) {
-		const float *q = node + y * NODE_SIDE;
-		const float wide[8] = { q[0], 0.5f * (q[0] + q[1]), q[1], 0.5f * (q[1] + q[2]), q[2] };
-		memcpy(row[y], wide, sizeof wide);
-	}
-	for (int y = 0; y < FILM_SIDE; y++)
-		for (int x = 0; x < FILM_SIDE; x++)
-			out[y * FILM_SIDE + x] = 0.5f * (row[y / 2][x] + row[(y + 1) / 2][x]);
-}
-
-/* Places of the environment's pixels that the tile sees. */
-SIMD_CLONES static void film_mirror(struct film *f, const struct quick_nodes *s, const struct envmap *env, bool rough)
-{
-	struct quick_places p, q;
-	float w = (float)env->sharp.width, m = (float)env->rough.width, u[FILM_LANES], v[FILM_LANES], mirror[FILM_LANES], roughness[FILM_LANES];
-	film_refine(u, s->eu);
-	film_refine(v, s->ev);
-	film_refine(mirror, s->mirror);
-	quick_places_of(&p, u, v, 0.5f * w, 0.5f * w - 0.5f, env->sharp.width, env->sharp.width, FILM_SIDE * FILM_SIDE);
-	if (rough) {
-		film_refine(roughness, s->rough);
-		quick_places_of(&q, u, v, 0.5f * m, 0.5f * m - 0.5f, env->rough.width, env->rough.width, FILM_SIDE * FILM_SIDE);
-	}
-	for (int i = 0; i < FILM_SIDE * FILM_SIDE; i++) {
-		quick_four c = quick_look_up(env->sharp.px, env->sharp.width, &p, i);
-		if (rough)
-			c += roughness[i] * (quick_look_up(env->rough.px, env->rough.width, &q, i) - c);
-		c *= mirror[i];
-		c[3] = 1;
-		f->mirror[i] = c;
-	}
-}
-
-struct span {
-	float low, high, step;  // step: the longest between neighbours of the five by five
-};
-
-SIMD_INLINE float most_of(float a, float b)
-{
-	return a > b ? a : b;
-}
-
-static struct span span_of(const float *u)
-{
-	struct span s = { u[0], u[0], 0 };
-	for (int i = 1; i < NODES_IN_TILE; i++) {
-		s.low = u[i] < s.low ? u[i] : s.low;
-		s.high = most_of(s.high, u[i]);
-	}
-	for (int i = 0; i < NODE_SIDE; i++) {
-		const float *row = u + i * NODE_SIDE, *column = u + i;
-		s.step = most_of(s.step, most_of(fabsf(row[1] - row[0]), fabsf(row[2] - row[1])));
-		s.step = most_of(s.step, most_of(fabsf(column[NODE_SIDE] - column[0]), fabsf(column[2 * NODE_SIDE] - column[NODE_SIDE])));
-	}
-	s.step *= (float)FILM_STEP / NODE_STEP;
-	return s;
-}
-
-/* Straight lines between nodes miss a mirror image that bends by b a pixel^2 of its by step^2 b / 8: less than an eighth of a
- * hundredth of white? */
-static bool film_even(const struct quick_nodes *s, const struct envmap *env)
-{
-	const float least = 0.01f;
-	enum { MOST = 6 };
-	float half = 0.5f * (float)env->sharp.width, mirror = 0, bend = 0;
-	struct span u = span_of(s->eu), v = span_of(s->ev);
-	float step = half * (u.step > v.step ? u.step : v.step);
-	int top = env->bend.width - 1, x0 = (int)((u.low + 1) * half) / ENVMAP_BLOCK, x1 = (int)((u.high + 1) * half) / ENVMAP_BLOCK;
-	int y0 = (int)((v.low + 1) * half) / ENVMAP_BLOCK, y1 = (int)((v.high + 1) * half) / ENVMAP_BLOCK;
-	if (x1 - x0 > MOST || y1 - y0 > MOST)
-		return false;
-	for (int i = 0; i < NODES_IN_TILE; i++)
-		mirror = s->mirror[i] > mirror ? s->mirror[i] : mirror;
-	for (int y = y0; y <= y1 && y <= top; y++)
-		for (int x = x0; x <= x1 && x <= top; x++) {
-			float b = *image_at(&env->bend, x, y);
-			bend = b > bend ? b : bend;
-		}
-	return mirror * bend * (step * step > 1 ? step * step : 1) < 3 * least;
-}
-
-/* Light on the iris at the nodes, where it is smooth. */
-SIMD_CLONES static void film_iris(struct film *f, const struct quick_found *found, const struct quick_look *k)
-{
-	const struct scene_shade *h = k->shade;
-	struct quick_places p;
-	quick_places_of(&p, found->nodes.iu, found->nodes.iv, h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, h->light_stride, NODES_IN_TILE);
-	for (int i = 0; i < NODES_IN_TILE; i++) {
-		float through = h->detail->step * (1 - found->nodes.mirror[i]);
-		quick_four c = { through, through, through, 0 };
-		f->iris[i] = h->even ? c * quick_look_up(h->light, h->light_stride, &p, i) : c;
-	}
-}
-
-static void film_white(struct film *f, const struct quick_nodes *s, const struct quick_look *k)
-{
-	float sky[3][BATCH];
-	quick_sclera(sky, NODE_LANES, s->nx, s->ny, s->nz, s->rho, k);
-	for (int i = 0; i < NODES_IN_TILE; i++) {
-		float through = k->scene->white.step * (1 - s->mirror[i]);
-		f->white[i] = (quick_four){ through * sky[0][i], through * sky[1][i], through * sky[2][i], 0 };
-	}
-}
-
-static void film_make(struct film *f, struct quick_found *found, const struct quick_look *k)
-{
-	const struct envmap *env = k->light->mirror;
-	f->edge = env && !film_even(&found->nodes, env);
-	if (env && !f->edge)
-		film_mirror(f, &found->nodes, env, found->white);
-	else
-		for (int i = 0; i < FILM_SIDE * FILM_SIDE; i++)
-			f->mirror[i] = (quick_four){ 0, 0, 0, 1 };
-	if (found->seen)
-		film_iris(f, found, k);
-	if (found->white)
-		film_white(f, &found->nodes, k);
-}
 
 SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_nodes *s, const struct quick_look *k)
 {
@@ -213,7 +81,7 @@ SIMD_INLINE quick_four mirrored(const struct maps *m, const struct envmap *env, 
 	return c;
 }
 
-SIMD_INLINE void paint(float *restrict out, long stride, const struct film *restrict f, const struct maps *restrict m, const struct quick_look *k, int what)
+SIMD_INLINE void paint(float *restrict out, long stride, const struct quick_film *restrict f, const struct maps *restrict m, const struct quick_look *k, int what)
 {
 	const struct scene_shade *h = k->shade;
 	const bool iris = what & PAINT_IRIS, white = what & PAINT_WHITE, even = what & PAINT_EVEN, edge = what & PAINT_EDGE;
@@ -261,7 +129,7 @@ SIMD_INLINE void paint(float *restrict out, long stride, const struct film *rest
 }
 
 #define PAINT(name, what)                                                                                                                             \
-	SIMD_CLONES static void name(float *out, long stride, const struct film *f, const struct maps *m, const struct quick_look *k) \
+	SIMD_CLONES static void name(float *out, long stride, const struct quick_film *f, const struct maps *m, const struct quick_look *k) \
 	{                                                                                                                                                 \
 		paint(out, stride, f, m, k, what);                                                                                                            \
 	}
@@ -278,21 +146,22 @@ PAINT(paint_limbus_even_edge, PAINT_IRIS | PAINT_WHITE | PAINT_EVEN | PAINT_EDGE
 
 void quick_tile_colour(float *out, long stride, struct quick_found *found, const struct quick_look *k)
 {
-	typedef void painter(float *, long, const struct film *, const struct maps *, const struct quick_look *);
+	typedef void painter(float *, long, const struct quick_film *, const struct maps *, const struct quick_look *);
 	static painter *const with[3][2][2] = {  // iris, white, both; light looked up, even; mirror image even, looked up
 		{ { paint_iris, paint_iris_edge }, { paint_even, paint_even_edge } },
 		{ { paint_white, paint_white_edge }, { paint_white, paint_white_edge } },
 		{ { paint_limbus, paint_limbus_edge }, { paint_limbus_even, paint_limbus_even_edge } },
 	};
-	struct film film;
+	struct quick_film film;
 	struct maps maps;
-	film_make(&film, found, k);
+	quick_film_make(&film, found, k);
 	if (found->seen)
 		maps_iris(&maps, &found->nodes, k);
 	if (found->white)
 		maps_white(&maps, &found->nodes, k, found->seen);
-	if (film.edge)
+	bool edge = film.step == 1;
+	if (edge)
 		maps_mirror(&maps, &found->nodes, k->light->mirror, found->white);
 	int what = !found->white ? 0 : found->seen ? 2 : 1;
-	with[what][k->shade->even][film.edge](out, stride, &film, &maps, k);
+	with[what][k->shade->even][edge](out, stride, &film, &maps, k);
 }
