@@ -148,7 +148,7 @@ struct sum {
 SIMD_CLONES static void field_at(float *restrict out, const float *restrict field, const struct paths_light *light)
 {
 	for (int ring = 0; ring < RINGS; ring++)
-		scene_paths_row(out + ring * ROW, field + ring * ROW, CHANNELS * FIELD, light);
+		scene_paths_row(out + ring * ROW, ROW, field + ring * ROW, CHANNELS * FIELD, light);
 }
 
 SIMD_CLONES static void light_add(struct sum *sum, const float (*restrict f)[FIELD], float cosine, float sine, float share, const double limbus[2])

@@ -21,14 +21,14 @@ typedef float texel __attribute__((vector_size(16), aligned(4)));
 /* One ring's irradiance by all lights. */
 SIMD_CLONES static void ring_sum(float (*restrict out)[4], int ring, int n, const struct flat_light *light, const struct scene *s)
 {
-	float sum[3][ROW] = { 0 }, way[PLAIN_CHANNELS][ROW], width = (float)(s->conf.limbus_width / s->limbus[0]), lo = 1 - width / 2, inv = 1 / width;
+	float sum[3][TURNS] = { 0 }, way[PLAIN_CHANNELS][TURNS], width = (float)(s->conf.limbus_width / s->limbus[0]), lo = 1 - width / 2, inv = 1 / width;
 	float per_x = (float)(1 / s->limbus[0]), per_y = (float)(1 / s->limbus[1]);
 	for (int l = 0; l < n; l++) {
 		float cosine = light[l].at.cosine, sine = light[l].at.sine;
 		for (int c = 0; c < PLAIN_CHANNELS; c++)
-			scene_paths_row(way[c], s->paths->plain[light[l].at.angle][c] + ring * ROW, PLAIN_CHANNELS * PLAIN_FIELD, &light[l].at);
+			scene_paths_row(way[c], TURNS, s->paths->plain[light[l].at.angle][c] + ring * ROW, PLAIN_CHANNELS * PLAIN_FIELD, &light[l].at);
 		SIMD_LOOP
-		for (int i = 0; i < ROW; i++) {
+		for (int i = 0; i < TURNS; i++) {
 			float x = per_x * (cosine * way[PLAIN_X][i] - sine * way[PLAIN_Y][i]), y = per_y * (sine * way[PLAIN_X][i] + cosine * way[PLAIN_Y][i]);
 			float t = (sqrtf(x * x + y * y) - lo) * inv, e = way[PLAIN_FALL][i] > 0 ? way[PLAIN_FALL][i] : 0;
 			t = t > 0 ? t < 1 ? t : 1 : 0;
@@ -40,7 +40,7 @@ SIMD_CLONES static void ring_sum(float (*restrict out)[4], int ring, int n, cons
 	}
 	for (int i = 0; i < ROW; i++) {
 		for (int c = 0; c < 3; c++)
-			out[i][c] = s->flat[c] * sum[c][i];
+			out[i][c] = s->flat[c] * sum[c][i % TURNS];
 		out[i][3] = 0;
 	}
 }

@@ -35,8 +35,8 @@ struct paths_light {
 /* Of a unit direction in the eye's frame, z at most 0.16. */
 struct paths_light scene_paths_light(const float dir[3]);
 
-/* A ring of the light's field; `field` is that of its first angle, the next ones `apart` numbers on. */
-SIMD_INLINE void scene_paths_row(float *restrict out, const float *restrict field, long apart, const struct paths_light *light)
+/* n (TURNS or ROW) turns of a ring of the light's field; `field` is that of its first angle, the next ones `apart` numbers on. */
+SIMD_INLINE void scene_paths_row(float *restrict out, int n, const float *restrict field, long apart, const struct paths_light *light)
 {
 	const float *restrict a = field, *restrict b = a + apart, *restrict c = b + apart, *restrict d = c + apart, *p = light->in_angle, *q = light->in_turn;
 	float row[2 * ROW];
@@ -46,7 +46,7 @@ SIMD_INLINE void scene_paths_row(float *restrict out, const float *restrict fiel
 	memcpy(row + 2 * TURNS, row, (2 * ROW - 2 * TURNS) * sizeof *row);
 	const float *restrict from = row + light->turn;
 	SIMD_LOOP
-	for (int i = 0; i < ROW; i++)
+	for (int i = 0; i < n; i++)
 		out[i] = q[0] * from[i] + q[1] * from[i + 1] + q[2] * from[i + 2] + q[3] * from[i + 3];
 }
 

@@ -116,6 +116,18 @@ SIMD_CLONES static void columns(int *restrict x, int *restrict y, const float *u
 	}
 }
 
+/* The environment where the nodes mirror it. */
+SIMD_CLONES static void ask_mirror(const struct quick_nodes *n, const struct image *map)
+{
+	struct quick_places p;
+	float w = (float)map->width;
+	quick_places_of(&p, n->eu, n->ev, 0.5f * w, 0.5f * w - 0.5f, map->width, map->width, NODES_IN_TILE);
+	for (int i = 0; i < NODES_IN_TILE; i++) {
+		__builtin_prefetch(map->px + p.at[i]);
+		__builtin_prefetch(map->px + p.at[i] + 4L * map->width);
+	}
+}
+
 void quick_ask(const struct quick_found *f, const struct quick_look *k)
 {
 	const struct scene_shade *h = k->shade;
@@ -124,6 +136,8 @@ void quick_ask(const struct quick_found *f, const struct quick_look *k)
 	int x[NODE_SIDE * ROWS], y[NODE_SIDE * ROWS];
 	if (f->kind == QUICK_MIXED)
 		return;
+	if (k->light->mirror)
+		ask_mirror(n, &k->light->mirror->sharp);
 	if (f->seen) {
 		columns(x, y, n->iu, n->iv, h->per_mm, t->n);
 		for (int i = 0; i < NODE_SIDE * ROWS; i++) {
