@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
@@ -144,6 +145,41 @@ static struct glint flood(unsigned char *marks, const struct image *m, const str
 	return g;
 }
 
+/* Two pieces of one mirror image: on the dark margin of the pupil it may stand out from neither side. They face each other across no
+ * more than that margin. Returns the pixels between them; -1: they are two. */
+static long between(const struct glint *g, const struct glint *h, const struct shot *shot)
+{
+	for (int i = 0; i < 2 && shot->fit.has_pupil; i++) {
+		int low[2], high[2], j = 1 - i;  // where both boxes are; high < low: the gap between them
+		for (int k = 0; k < 2; k++) {
+			low[k] = g->lo[k] > h->lo[k] ? g->lo[k] : h->lo[k];
+			high[k] = g->hi[k] < h->hi[k] ? g->hi[k] : h->hi[k];
+		}
+		int gap = low[i] - high[i] - 1, both = high[j] - low[j] + 1, size_g = g->hi[j] - g->lo[j] + 1, size_h = h->hi[j] - h->lo[j] + 1;
+		double u = shot->window[0] + 0.5 * (low[0] + high[0] + 1) * shot->scale, v = shot->window[1] + 0.5 * (low[1] + high[1] + 1) * shot->scale;
+		if (gap <= 0.05 * shot->fit.limbus.a / shot->scale && both > 0.6 * (size_g < size_h ? size_g : size_h) && fabs(ellipse_radius(&shot->fit.pupil, u, v) - 1) < 0.15)
+			return gap > 0 ? (long)gap * both : 0;
+	}
+	return -1;
+}
+
+static void join(struct glint *g, const struct glint *h, long gap)
+{
+	double sum = g->sum + h->sum, n = (double)(g->n + h->n);
+	g->x = (g->sum * g->x + h->sum * h->x) / sum;
+	g->y = (g->sum * g->y + h->sum * h->y) / sum;
+	g->over = ((double)g->n * g->over + (double)h->n * h->over) / n;
+	for (int c = 0; c < 3; c++)
+		g->rgb[c] = ((double)g->n * g->rgb[c] + (double)h->n * h->rgb[c]) / n;
+	g->sum = sum;
+	g->n += h->n + gap;
+	g->edge = g->edge || h->edge;
+	for (int i = 0; i < 2; i++) {
+		g->lo[i] = g->lo[i] < h->lo[i] ? g->lo[i] : h->lo[i];
+		g->hi[i] = g->hi[i] > h->hi[i] ? g->hi[i] : h->hi[i];
+	}
+}
+
 static void keep(struct glint glints[], int *n, const struct glint *g)
 {
 	int at = *n < GLINTS_MAX ? *n : GLINTS_MAX - 1;
@@ -153,6 +189,26 @@ static void keep(struct glint glints[], int *n, const struct glint *g)
 		glints[at] = glints[at - 1];
 	glints[at] = *g;
 	*n += *n < GLINTS_MAX;
+}
+
+/* Pieces of one are one. */
+static int join_all(struct glint glints[GLINTS_MAX], int n, const struct shot *shot)
+{
+	struct glint of[GLINTS_MAX];
+	int left = 0;
+	for (int i = 0; i < n; i++) {
+		for (int j = n - 1; j > i; j--) {
+			long gap = between(&glints[i], &glints[j], shot);
+			if (gap < 0)
+				continue;
+			join(&glints[i], &glints[j], gap);
+			n--;
+			memmove(&glints[j], &glints[j + 1], (size_t)(n - j) * sizeof *glints);
+		}
+		keep(of, &left, &glints[i]);
+	}
+	memcpy(glints, of, (size_t)left * sizeof *of);
+	return left;
 }
 
 /* Neither noise nor a wet lash, no lid, and more or less of one piece. What is small and not bright may be a pale fibre of
@@ -185,5 +241,5 @@ int glints_find(struct glint glints[GLINTS_MAX], const struct shot *shot)
 	free(s.least);
 	free(marks);
 	free(stack);
-	return n;
+	return join_all(glints, n, shot);
 }
