@@ -155,6 +155,19 @@ static json_t *corner_of(const struct face *f, int side)
 	return json_numbers(4, v);
 }
 
+/* How far aside (to the person's right, left) and up (down, up) eyes looked in the video, degrees; what was not measured: as far as they turn. */
+static json_t *looked(const struct skin_model *m)
+{
+	static const double turn[4] = { -40, 40, -30, 30 };
+	double v[4];
+	for (int k = 0; k < 4; k++) {
+		const double *of = k % 2 ? m->high : m->low, a = of[k / 2], b = of[5 + k / 2];
+		v[k] = k % 2 ? fmax(a, b) : fmin(a, b);
+		v[k] = isfinite(v[k]) ? v[k] : turn[k];
+	}
+	return json_numbers(4, v);
+}
+
 json_t *viewer_face(const char *name, struct portrait *portrait, const struct skin_model *model, double gain, const struct scene *const eyes[2], struct err *err)
 {
 	struct face f = { .rig = portrait->rig, .portrait = portrait, .n = portrait->mesh.n, .n_au = model->n_au };
@@ -183,6 +196,7 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 		json_array_append_new(globes, json_numbers(4, v));
 		json_array_append_new(corners, corner_of(&f, s));
 	}
+	json_object_set_new(out, "looked", looked(model));
 	json_object_set_new(out, "globes", globes);
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));

@@ -1,4 +1,4 @@
-/* Controls, and the address that keeps them. */
+/* Controls. */
 function element(tag, attributes, ...children) {
 	const out = document.createElement(tag);
 	for (const [key, value] of Object.entries(attributes || {}))
@@ -7,7 +7,7 @@ function element(tag, attributes, ...children) {
 	return out;
 }
 
-class Controls {
+class Controls extends Address {
 	/* ---- controls */
 	build() {
 		const box = by_id("controls");
@@ -30,6 +30,17 @@ class Controls {
 			box.append(set);
 		}
 		box.append(this.keeping(), this.machine());
+		this.show_controls();
+	}
+
+	/* Only what changes the view that is shown. */
+	show_controls() {
+		const shown = { lids: this.mode === "face", gaze: !this.beside };
+		for (const e of document.querySelectorAll("#controls [data-of]"))
+			e.hidden = !shown[e.dataset.of];
+		for (const set of document.querySelectorAll("#controls fieldset"))
+			if (set.querySelector(".row"))
+				set.hidden = ![...set.querySelectorAll(".row")].some(row => !row.hidden);
 	}
 
 	button(text, on, pressed) {
@@ -58,9 +69,17 @@ class Controls {
 		};
 		this.following = ["pointer", "typed", "wander"].map(mode => this.button({ pointer: "Follow the pointer", typed: "Look where typed", wander: "Look about" }[mode], () => this.set_follow(mode), mode === this.follow));
 		const lids = [this.button("Blink", () => this.blink()), ...["left", "right"].map((side, k) => this.button(`Wink ${side}`, () => this.wink(k)))];
+		lids.forEach(b => { b.dataset.of = "lids"; });
 		this.players = (this.face && data.face.clips || []).map((clip, i) => this.button(`▶ ${clip.name}`, () => this.play(this.playing === i ? null : i), false));
-		return element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? lids : []), ...this.players),
+		const set = element("fieldset", {}, element("legend", { textContent: "Gaze" }), element("div", { className: "buttons", role: "group", ariaLabel: "What the eye follows" }, ...this.following, ...(this.scene.has_lids ? lids : []), ...this.players),
 			element("div", { className: "numbers" }, number("To the person's left, degrees", 0), number("Up, degrees", 1)));
+		set.dataset.of = "gaze";
+		if (this.face) {
+			const [right, left, down, up] = data.face.looked.map(v => `${Math.abs(v).toFixed(0)}°`), note = element("p", { className: "note", textContent: `The video shows gazes to ${left} left and ${right} right, ${up} up and ${down} down; lids much beyond are guessed.` });
+			note.dataset.of = "lids";
+			set.append(note);
+		}
+		return set;
 	}
 
 	light_choice() {
@@ -88,6 +107,8 @@ class Controls {
 		track.append(tick, input);
 		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: c.why ? `${origin}, ${c.why}` : origin });
 		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, fitted);
+		if (c.lids || c.key === "field")
+			row.dataset.of = c.lids ? "lids" : "gaze";
 		row.title = origin[0].toUpperCase() + origin.slice(1);
 		c.update = () => {
 			const v = this.values[c.key];
@@ -171,9 +192,12 @@ class Controls {
 	reset() {
 		for (const c of this.controls)
 			this.values[c.key] = c.value;
+		if (this.playing !== null)
+			this.play(null);
 		this.orbit = [0, 0];
 		this.eyes.target = [0, 0];
-		this.set_light(0);
+		this.typed.forEach(input => { input.value = 0; });
+		this.set_light(this.own_light());
 		for (const c of this.controls)
 			c.update && c.update();
 		this.lines();
@@ -206,9 +230,11 @@ class Controls {
 			photo.src = this.eye.photo.uri;
 			photo.alt = `Photograph ${this.eye.photo.name}`;
 		}
+		by_id("frame").classList.toggle("beside", on);
 		photo.hidden = by_id("bar").hidden = by_id("wipe-box").hidden = !on;
 		if (on !== was)
-			this.set_light(on && this.eye.lights.length > 1 ? 1 : 0);
+			this.set_light(this.own_light());
+		this.show_controls();
 		this.to_hash();
 		this.changed();
 	}
@@ -228,59 +254,5 @@ class Controls {
 			this.play(null);
 		this.eyes.wink_now(performance.now() / 1000, side);
 		this.wake();
-	}
-
-	/* ---- the address */
-	to_hash() {
-		const parts = [];
-		for (const c of this.controls)
-			if (Math.abs(this.values[c.key] - c.value) > 1e-9)
-				parts.push(`${c.key}=${Number(this.values[c.key].toPrecision(6))}`);
-		if (this.orbit[0] || this.orbit[1])
-			parts.push(`orbit=${this.orbit.map(v => (v * 180 / Math.PI).toFixed(1)).join(",")}`);
-		if (this.follow === "typed")
-			parts.push(`gaze=${this.eyes.target.map(v => v.toFixed(1)).join(",")}`);
-		if (this.light)
-			parts.push(`light=${this.light}`);
-		if (this.mode !== (this.face ? "face" : "eye"))
-			parts.push(`view=${this.mode}`);
-		if (this.index)
-			parts.push(`eye=${this.index}`);
-		if (this.playing !== null)
-			parts.push(`play=${this.playing}`);
-		history.replaceState(null, "", parts.length ? `#${parts.join("&")}` : location.pathname + location.search);
-	}
-
-	from_hash() {
-		const q = new URLSearchParams(location.hash.slice(1)), pair = key => {
-			const v = (q.get(key) || "").split(",").map(Number);
-			return v.length === 2 && v.every(Number.isFinite) ? v : null;
-		};
-		for (const c of this.controls) {
-			const v = Number(q.get(c.key));
-			if (q.has(c.key) && Number.isFinite(v))
-				this.values[c.key] = Math.min(Math.max(v, c.lo), c.hi);
-		}
-		const orbit = pair("orbit"), gaze = pair("gaze"), light = Number(q.get("light"));
-		if (orbit)
-			this.orbit = [Math.max(-Math.PI, Math.min(Math.PI, orbit[0] * Math.PI / 180)), Math.max(-1.2, Math.min(1.2, orbit[1] * Math.PI / 180))];
-		if (gaze) {
-			this.set_follow("typed");
-			this.eyes.target = gaze.map(v => Math.min(45, Math.max(-45, v)));
-			this.eyes.eye = [...this.eyes.target];
-			this.eyes.last = [...this.eyes.target];
-			this.typed.forEach((input, k) => { input.value = this.eyes.target[k]; });
-		}
-		const mode = q.get("view");
-		if (mode && this.modes.some(m => m.mode === mode))
-			this.set_mode(mode);
-		const clip = Number(q.get("play"));
-		if (q.has("play") && this.players[clip] && this.playing !== clip)
-			this.play(clip);
-		if (!this.beside && Number.isInteger(light) && light > 0 && light < this.eye.lights.length)
-			this.set_light(light);
-		for (const c of this.controls)
-			c.update && c.update();
-		this.lines();
 	}
 }

@@ -1,5 +1,7 @@
 /* What is drawn when: only what has changed; then finer and finer. */
 class Live extends Controls {
+	static BEYOND = 1.3;
+
 	/* ---- what the shader is told */
 	state() {
 		const v = this.values, ratio = (eu, pheo) => eu + pheo > 0 ? eu / (eu + pheo) : 0.5;
@@ -17,6 +19,12 @@ class Live extends Controls {
 				open: this.lids(), orbit: this.orbit,
 				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
 		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
+	}
+
+	/* How far eyes turn after what they follow, degrees: right, left, down, up. A face's lids are known as far as the video shows them,
+	 * and a little further. */
+	range() {
+		return this.mode === "face" ? data.face.looked.map(v => Live.BEYOND * v) : [-40, 40, -30, 30];
 	}
 
 	/* Of either eye, degrees: a clip's own; else both look at one place, so far away. */
@@ -88,7 +96,8 @@ class Live extends Controls {
 	wander(t) {
 		if (!(t < this.wander_until)) {
 			this.wander_until = t + 0.6 + 1.8 * Math.random();
-			this.eyes.target = [(Math.random() - 0.5) * 44, (Math.random() - 0.5) * 24];
+			const [right, left, down, up] = this.range();
+			this.eyes.target = [[Math.max(-22, right), Math.min(22, left)], [Math.max(-12, down), Math.min(12, up)]].map(([a, b]) => a + Math.random() * (b - a));
 		}
 	}
 
@@ -201,7 +210,7 @@ class Live extends Controls {
 				this.watch(false);
 			}
 		}
-		const idle = settled && this.scene.count >= finest && this.follow !== "wander" && (this.eyes.still || this.beside || !this.scene.has_lids);
+		const idle = settled && this.scene.count >= finest && this.follow !== "wander" && (this.eyes.still && !this.eyes.lids_move(now) || this.beside || !this.scene.has_lids);
 		this.awake = false;
 		if (idle)
 			document.documentElement.dataset.settled = "1";

@@ -102,6 +102,11 @@ const motion = (() => {
 			this.winks[side] = blink(t, this.conf.blink_full_deg, { ...this.conf, blink_hold_ms: 200 });
 		}
 
+		/* Whether lids are on their way. */
+		lids_move(t) {
+			return [this.lids, ...this.winks].some(l => l && l.end > t);
+		}
+
 		blinks(t) {
 			const c = this.conf;
 			if (this.next === null || this.lids && this.lids.end > t) {
@@ -179,9 +184,8 @@ const motion = (() => {
 			const before = [...this.eye, this.closure, ...this.winking];
 			if (this.still) {
 				this.eye = [...this.target];
-				this.closure = 0;
-				this.winking = [0, 0];
 				this.time = t;
+				this.blinks(t);
 			} else {
 				// What the target did since the last picture it did steadily; a pause is none of its motion.
 				if (this.time === null || t - this.time > 0.25) {

@@ -66,18 +66,29 @@ class Page extends Live {
 
 	/* ---- hands */
 	listen() {
-		const canvas = by_id("view");
+		const canvas = by_id("view"), fingers = new Map();  // where each pointer that is down stands
+		const apart = () => fingers.size > 1 ? Math.hypot(...[0, 1].map(k => [...fingers.values()][0][k] - [...fingers.values()][1][k])) : 0;
 		let drag = null;
 		canvas.addEventListener("pointerdown", e => {
-			drag = { x: e.clientX, y: e.clientY, orbit: [...this.orbit], moved: false };
+			fingers.set(e.pointerId, [e.clientX, e.clientY]);
 			canvas.setPointerCapture(e.pointerId);
+			if (this.beside)
+				this.wipe_to(e, canvas.getBoundingClientRect());
+			drag = { x: e.clientX, y: e.clientY, orbit: [...this.orbit], moved: fingers.size > 1, apart: this.beside ? 0 : apart(), field: this.values.field };
 		});
 		canvas.addEventListener("pointermove", e => {
 			const box = canvas.getBoundingClientRect();
-			if (drag) {
+			if (fingers.has(e.pointerId))
+				fingers.set(e.pointerId, [e.clientX, e.clientY]);
+			if (drag && this.beside)
+				this.wipe_to(e, box);
+			else if (drag && drag.apart > 0) {
+				if (apart() > 0)
+					this.set("field", drag.field * drag.apart / apart(), true);
+			} else if (drag) {
 				const dx = e.clientX - drag.x, dy = e.clientY - drag.y;
 				drag.moved = drag.moved || Math.hypot(dx, dy) > 4;
-				if (!drag.moved || this.beside)
+				if (!drag.moved)
 					return;
 				this.orbit = [drag.orbit[0] + 3 * dx / box.height, Math.max(-1.2, Math.min(1.2, drag.orbit[1] - 3 * dy / box.height))];
 				this.changed();
@@ -86,9 +97,12 @@ class Page extends Live {
 			}
 		});
 		const end = e => {
-			if (drag && !drag.moved && this.follow === "pointer" && e.type === "pointerup")
+			fingers.delete(e.pointerId);
+			if (!drag || fingers.size)
+				return;  // the finger that is left does not turn what two have zoomed
+			if (!drag.moved && this.follow === "pointer" && !this.beside && e.type === "pointerup")
 				this.look_at(e, canvas.getBoundingClientRect());
-			if (drag && drag.moved)
+			if (drag.moved)
 				this.to_hash();
 			drag = null;
 		};
@@ -106,9 +120,17 @@ class Page extends Live {
 		canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); give_up("the graphics driver was lost; load the page again"); });
 	}
 
+	/* The bar between rendering and photograph follows the pointer. */
+	wipe_to(e, box) {
+		const wipe = by_id("wipe");
+		wipe.value = 100 * (e.clientX - box.left) / box.width;
+		wipe.dispatchEvent(new Event("input"));
+	}
+
 	look_at(e, box) {
 		const x = (e.clientX - box.left) / box.height - 0.5 * box.width / box.height, y = (e.clientY - box.top) / box.height - 0.5;
-		this.eyes.target = [Math.max(-40, Math.min(40, 60 * x)), Math.max(-30, Math.min(30, -60 * y))];
+		const [right, left, down, up] = this.range();
+		this.eyes.target = [Math.max(right, Math.min(left, 60 * x)), Math.max(down, Math.min(up, -60 * y))];
 		this.wake();
 	}
 

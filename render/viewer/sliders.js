@@ -41,7 +41,7 @@ function sliders(eye) {
 			{ key: "field", label: "Zoom", lo: 8, hi: 60, value: 30, power: 2, show: v => `${(3000 / v).toFixed(0)} %`, from: "chosen", why: "which shows 30 mm of an eye, or a face from brow to mouth" },
 		]],
 		...(data.face && data.face.expressions.length ? [["Expressions", data.face.expressions.map((x, k) => (
-			{ key: `au${k}`, label: x.name, lo: 0, hi: 1, value: 0, lids: true, show: share, from: "at rest", why: "100 % is the video's own peak" }))]] : []),
+			{ key: `au${k}`, label: x.name.replace(/_/g, " "), lo: 0, hi: 1, value: 0, lids: true, show: share, from: "at rest", why: "100 % is the video's own peak" }))]] : []),
 		["Pigment of the iris", [
 			{ ...melanin("abl_eu"), label: "Anterior border layer: eumelanin" },
 			{ ...melanin("abl_pheo"), label: "Anterior border layer: pheomelanin" },
@@ -49,7 +49,7 @@ function sliders(eye) {
 			{ ...melanin("stroma_pheo"), label: "Stroma: pheomelanin" },
 			{ key: "thickness_scale", label: "Stroma: optical over anatomical thickness", lo: 0.02, hi: 2.5, power: 2, value: t.fitted.thickness_scale,
 				sigma: scale ? (scale[1] - scale[0]) / 2 : 0, show: v => v.toFixed(3), from: fitted ? "fitted" : "chosen" },
-			{ key: "detail", label: "Of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, show: share, from: "configured", why: "0 % is the model alone" },
+			{ key: "detail", label: "Detail of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, show: share, from: "configured", why: "0 % is the model alone" },
 		]],
 		["Cornea", [
 			{ key: "R", label: "Apical radius R", lo: 6.5, hi: 9.5, value: e.R, sigma: 0.27, show: mm(2), conf: "eye.cornea_radius_mm", from: "configured", why: "people's spread" },
@@ -57,8 +57,8 @@ function sliders(eye) {
 			{ key: "n", label: "Index of refraction", lo: 1, hi: 1.5, value: e.n, show: v => v.toFixed(4), conf: "eye.index", from: "configured", why: "the literature's for the aqueous humour; photographs do not tell it" },
 		]],
 		["Light", [
-			{ key: "light_yaw", label: "Round", lo: -180, hi: 180, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
-			{ key: "light_pitch", label: "Up and down", lo: -80, hi: 80, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
+			{ key: "light_yaw", label: "Turned sideways", lo: -180, hi: 180, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
+			{ key: "light_pitch", label: "Turned up and down", lo: -80, hi: 80, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
 			{ key: "light_gain", label: "Strength", lo: 0.1, hi: 3, power: 2, value: 1, show: share, from: eye.photo ? "fitted" : "chosen",
 				why: eye.photo ? "100 % is the photograph's own exposure; its error goes into the pigments'" : "" },
 		]],
