@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "render/page.h"
+#include "skin/model.h"
 
 /* Clips larger than this are linked, not put into the page. */
 static const size_t clip_limit = 12 << 20;
@@ -87,19 +88,40 @@ static json_t *clip(struct page *page, const char *name, const char *suffix, con
 	return json_pack("{s:s,s:s,s:o,s:o}", "title", title, "alt", alt, "uri", uri, "file", page_text("work/render/%s%s", name, suffix));
 }
 
+/* What the cells of the sheet of expressions show, in their order. */
+static json_t *expressions_title(struct page *page)
+{
+	json_t *model = page_json(page, page_file(page, "work/skin/model.json")), *in;
+	char *title = mem_str("At rest, and each expression in full");
+	size_t i;
+	json_array_foreach(json_object_get(model, "inputs"), i, in) {
+		const char *expression = json_string_value(json_object_get(in, "name"));
+		if (i < SKIN_EYE_INPUTS || !expression)
+			continue;
+		char *more = mem_printf("%s%s %s", title, i == SKIN_EYE_INPUTS ? ":" : ",", expression);
+		free(title);
+		title = more;
+	}
+	json_t *out = template_text(title);
+	free(title);
+	json_decref(model);
+	return out;
+}
+
 static json_t *target(struct page *page, const char *name)
 {
 	static const char *const stills[][3] = {
 		{ "_look.png", "Looking as render.gaze says", "The character from the front" },
 		{ "_sheet.png", "Nine gazes: the character looks to its right (left in the picture) .. left, up .. down", "Nine pictures of the eyes looking in nine directions" },
 		{ "_blink.png", "A blink", "The left eye closing and opening" },
-		{ "_expressions.png", "At rest, and each expression in full", "The character's eyes at rest and with each expression" },
+		{ "_expressions.png", 0, "The character's eyes at rest and with each expression" },
 	};
 	json_t *entry = json_object(), *pictures = json_array(), *clips = json_array();
 	for (int i = 0; i < COUNT(stills); i++) {
 		json_t *picture = page_picture(page, page_file(page, "work/render/%s%s", name, stills[i][0]), 2 * page->width);
 		if (picture)
-			json_array_append_new(pictures, json_pack("{s:s,s:s,s:o}", "title", stills[i][1], "alt", stills[i][2], "picture", picture));
+			json_array_append_new(pictures, json_pack("{s:o,s:s,s:o}", "title", stills[i][1] ? json_string(stills[i][1]) : expressions_title(page), "alt", stills[i][2],
+			                                                "picture", picture));
 	}
 	json_t *registration = page_picture(page, page_file(page, "work/targets/%s/registration.png", name), 2 * page->width);
 	if (registration)

@@ -61,7 +61,11 @@ static json_t *row(struct page *page, const char *name, const json_t *plan, json
 	if (setting && run)
 		json_object_set(entry, "setting", setting);
 	if (!log && !self) {
-		json_object_set_new(entry, "idle", json_true());
+		bool planned = plan && reason && !strcmp(name, names[0]);  // plan keeps no log: what it wrote is there
+		if (planned)
+			json_object_set(entry, "note", reason);
+		else
+			json_object_set_new(entry, "idle", json_true());
 		return entry;
 	}
 	// This very stage has no log yet: its time so far.

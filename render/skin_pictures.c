@@ -135,21 +135,21 @@ static bool blink(struct skin_job *job, struct skin_target *t, struct err *err)
 	return ok;
 }
 
-/* At rest, and each expression in full with its wrinkles. */
+/* At rest, and each expression in full with its wrinkles; three beside each other, as in the gaze sheet. */
 static bool expressions(struct skin_job *job, struct skin_target *t, struct err *err)
 {
-	enum { GAP = 4, MOST = 7 };
+	enum { GAP = 4, MOST = 8, ACROSS = 3 };
 	const char *rel = output(job, t->name, "_expressions.png");
 	int w = job->conf->cell_px, h = w * 3 / 7;
 	if (!file_exists(stage_path(job->stage, "work/skin/wrinkles.json")) || skin_kept(job, rel, t->n_in, t->in, err))
 		return !err_is(err);
 	if (!skin_open(job, t, err))
 		return false;
-	int n = job->model.n_au < MOST ? job->model.n_au + 1 : MOST + 1;
-	struct image image = image_new(w, n * h + (n - 1) * GAP, 3);
+	int n = job->model.n_au < MOST ? job->model.n_au + 1 : MOST + 1, across = n < ACROSS ? n : ACROSS, rows = (n + ACROSS - 1) / ACROSS;
+	struct image image = image_new(across * w + (across - 1) * GAP, rows * h + (rows - 1) * GAP, 3);
 	for (int k = 0; k < n; k++) {
 		struct image cell = look_with(job, t, 0, 0, 1, k - 1, -1, 0.86 * job->conf->field * eye_distance(&t->rig), w, h, 0);
-		put(&image, &cell, 0, k * (h + GAP));
+		put(&image, &cell, k % ACROSS * (w + GAP), k / ACROSS * (h + GAP));
 		image_free(&cell);
 	}
 	bool ok = save(job, t, rel, &image, err);
