@@ -74,6 +74,14 @@ vec2 gloss(vec3 n, vec3 l, vec3 v, vec2 a2, vec2 k)
 	return a2 / (d * d * (nl - nl * k + k)) * (nl * (SKIN_MIRROR + (1.0 - SKIN_MIRROR) * s2 * s2 * s));
 }
 
+// What the head itself leaves of a light that has been moved behind it: as a ball about the middle of the head does, seen from its
+// surface. Of the surroundings as they were made the light of the vertices knows it exactly.
+float before_head(vec3 l)
+{
+	const vec3 MIDDLE = vec3(0.0, -20.0, -80.0);
+	return step_smooth(-0.35, -0.05, dot(normalize(seen_at - MIDDLE), l));
+}
+
 void main()
 {
 	vec3 smooth_n = normalize(seen_normal), n = smooth_n, to = normalize(head_camera - seen_at), albedo = seen_skin.rgb * seen_skin.rgb;
@@ -108,7 +116,7 @@ void main()
 	vec3 spec = vec3(0.0);
 	for (int i = 0; i < LIGHTS; i++)
 		if (i < skies && nv > 0.0)
-			spec += dot(lobes, gloss(n, sky_dir[i], to, a2, k)) * sky_rgb[i];
+			spec += dot(lobes, gloss(n, sky_dir[i], to, a2, k)) * before_head(sky_dir[i]) * sky_rgb[i];
 	// What reaches the skin of its light, reaches the mirror too.
 	float open = clamp(dot(light, vec3(0.33)) / dot(irradiance(env_from_head * smooth_n, quadric), vec3(0.33)), 0.0, 1.0);
 	float wet = min(seen_skin.a * (255.0 / 127.0), 1.0);
