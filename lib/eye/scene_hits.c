@@ -52,9 +52,21 @@ void scene_hits_for(struct scene_hits *h, const struct scene *scene, const struc
 	h->found = mem_new((size_t)tiles, sizeof *h->found);
 }
 
+static void ask(const char *from, size_t size)
+{
+	for (size_t i = 0; i < size; i += 64)
+		__builtin_prefetch(from + i);
+}
+
+/* Its places are read a tile later, its nodes at once: those of the next are asked for. */
 struct quick_found *scene_hits_tile(const struct scene_hits *h, int tile)
 {
-	return h->found[tile];
+	struct quick_found *found = h->found[tile];
+	if (found && tile + 1 < h->tiles && h->found[tile + 1])
+		ask((const char *)h->found[tile + 1], offsetof(struct quick_found, nodes.place));
+	if (found && found->kind != QUICK_MIXED && found->seen)
+		ask((const char *)found->nodes.place, sizeof found->nodes.place);
+	return found;
 }
 
 /* No more than is read of it again. */
@@ -62,7 +74,7 @@ void scene_hits_keep(struct scene_hits *h, int tile, const struct quick_found *f
 {
 	size_t size = sizeof *found;
 	if (found->kind != QUICK_MIXED)
-		size = found->kind == QUICK_LIMBUS ? offsetof(struct quick_found, spots) : offsetof(struct quick_found, nodes.second);
+		size = found->seen ? offsetof(struct quick_found, spots) : offsetof(struct quick_found, nodes.place);
 	h->found[tile] = mem_array(1, size);
 	memcpy(h->found[tile], found, size);
 }

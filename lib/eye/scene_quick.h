@@ -50,11 +50,11 @@ enum quick_kind { QUICK_MIXED, QUICK_CORNEA, QUICK_SCLERA, QUICK_LIMBUS };
 /* A tile's nodes: every eighth pixel of its 16 x 16 and of the next ones, three by three. */
 enum { QUICK_TILE = 16, NODE_STEP = 8, NODE_SIDE = 3, NODES_IN_TILE = 9, NODE_LANES = 16 };
 
-/* A tile that is not mixed: as in quick_spots at its nodes, and where all its pixels look into the maps. */
+/* A tile that is not mixed: as in quick_spots at its nodes, and where on the iris all its pixels look, if they do. */
 struct quick_nodes {
 	float nx[NODE_LANES], ny[NODE_LANES], nz[NODE_LANES], rho[NODE_LANES], mirror[NODE_LANES], rough[NODE_LANES];
 	float eu[NODE_LANES], ev[NODE_LANES], iu[NODE_LANES], iv[NODE_LANES], wu[NODE_LANES], wv[NODE_LANES];
-	float first[2][BATCH], second[2][BATCH];  // on the iris, or else the white; on the white beyond the iris' limbus
+	float place[2][BATCH];
 };
 
 /* What is laid between nodes: where rays behind the cornea cross the iris plane, how far aside they go in a mm of depth, and

@@ -94,7 +94,7 @@ static bool jumps(const float *u, const float *v, int n)
 void quick_grid_pixels(struct quick_found *f, const struct quick_look *k)
 {
 	if (f->kind != QUICK_MIXED && f->seen)
-		meet_pixels(f->nodes.first[0], f->nodes.first[1], (const float(*)[NODE_LANES])f->between, k);
+		meet_pixels(f->nodes.place[0], f->nodes.place[1], (const float(*)[NODE_LANES])f->between, k);
 }
 
 /* Texels of a map of n x n, `per` in a unit of the nodes' places, at three columns of a tile: its first, its middle, the next tile's
@@ -204,10 +204,5 @@ bool quick_grid(struct quick_found *f, const struct quick_strip *strip, int tile
 	tile_take(f, strip, first);
 	if (jumps(f->nodes.eu, f->nodes.ev, NODES_IN_TILE))
 		return false;
-	if (f->white) {
-		float(*at)[BATCH] = f->seen ? f->nodes.second : f->nodes.first;
-		quick_lay(at[0], f->nodes.wu);
-		quick_lay(at[1], f->nodes.wv);
-	}
 	return true;
 }

@@ -19,16 +19,17 @@ SIMD_CLONES static void maps_iris(struct maps *m, const struct quick_nodes *s, c
 {
 	const struct scene_shade *h = k->shade;
 	int n = h->detail->n;
-	quick_places_of(&m->detail, s->first[0], s->first[1], h->per_mm, 0.5f * (float)n - 0.5f, n, h->detail->stride, BATCH);
+	quick_places_of(&m->detail, s->place[0], s->place[1], h->per_mm, 0.5f * (float)n - 0.5f, n, h->detail->stride, BATCH);
 	if (!h->even)
-		quick_places_of(&m->light, s->first[0], s->first[1], h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, h->light_stride, BATCH);
+		quick_places_of(&m->light, s->place[0], s->place[1], h->light_per_mm, 0.5f * (float)h->light_n - 0.5f, h->light_n, h->light_stride, BATCH);
 }
 
 SIMD_CLONES static void maps_white(struct maps *m, const struct quick_nodes *s, const struct quick_look *k, bool lid)
 {
-	float w = (float)k->scene->white.n, inv = 1 / k->lid_width, lo = 1 - 0.5f * k->lid_width;
-	const float(*at)[BATCH] = lid ? s->second : s->first;
-	quick_places_of(&m->white, at[0], at[1], w, 0.5f * w - 0.5f, k->scene->white.n, k->scene->white.stride, BATCH);
+	float u[BATCH], v[BATCH], w = (float)k->scene->white.n, inv = 1 / k->lid_width, lo = 1 - 0.5f * k->lid_width;
+	quick_lay(u, s->wu);
+	quick_lay(v, s->wv);
+	quick_places_of(&m->white, u, v, w, 0.5f * w - 0.5f, k->scene->white.n, k->scene->white.stride, BATCH);
 	if (!lid)
 		return;
 	quick_lay(m->lid, s->rho);
