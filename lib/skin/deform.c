@@ -26,7 +26,6 @@ static int kind_of(const struct rig *rig, int i)
 	return (rig->side[i] ? RIGHT : 0) + (lids ? LIDS : 0) + (rig->glue[i] > 0 ? GLUE : 0);
 }
 
-
 static void take_vertex(struct deform_terms_block *to, int k, const struct rig *rig, int i, const float most[2])
 {
 	struct deform_terms t;
