@@ -74,12 +74,11 @@ vec2 gloss(vec3 n, vec3 l, vec3 v, vec2 a2, vec2 k)
 	return a2 / (d * d * (nl - nl * k + k)) * (nl * (SKIN_MIRROR + (1.0 - SKIN_MIRROR) * s2 * s2 * s));
 }
 
-// What the head itself leaves of a light that has been moved behind it: as a ball about the middle of the head does, seen from its
-// surface. Of the surroundings as they were made the light of the vertices knows it exactly.
-float before_head(vec3 l)
+// What the head itself leaves of a light that has been moved behind it, as a ball would at a point that faces so from its middle.
+// Of the surroundings as they were made the light of the vertices knows it exactly.
+float before_head(vec3 facing, vec3 l)
 {
-	const vec3 MIDDLE = vec3(0.0, -20.0, -80.0);
-	return step_smooth(-0.35, -0.05, dot(normalize(seen_at - MIDDLE), l));
+	return step_smooth(-0.35, -0.05, dot(facing, l));
 }
 
 void main()
@@ -113,10 +112,10 @@ void main()
 	vec2 k = 0.5 * ROUGH * ROUGH, a2 = 4.0 * k * k;
 	float nv = dot(n, to);
 	vec2 lobes = vec2(SKIN_LOBE_WIDE, SKIN_LOBE_NARROW) * (0.25 / (nv - nv * k + k));
-	vec3 spec = vec3(0.0);
+	vec3 spec = vec3(0.0), facing = normalize(seen_at - vec3(0.0, -20.0, -80.0));
 	for (int i = 0; i < LIGHTS; i++)
 		if (i < skies && nv > 0.0)
-			spec += dot(lobes, gloss(n, sky_dir[i], to, a2, k)) * before_head(sky_dir[i]) * sky_rgb[i];
+			spec += dot(lobes, gloss(n, sky_dir[i], to, a2, k)) * before_head(facing, sky_dir[i]) * sky_rgb[i];
 	// What reaches the skin of its light, reaches the mirror too.
 	float open = clamp(dot(light, vec3(0.33)) / dot(irradiance(env_from_head * smooth_n, quadric), vec3(0.33)), 0.0, 1.0);
 	float wet = min(seen_skin.a * (255.0 / 127.0), 1.0);
