@@ -72,6 +72,23 @@ static void damaged_files_are_refused(void **state)
 	unlink(path);
 }
 
+/* A pupil larger than the iris: the file, the value, the rule. */
+static void large_pupil_is_refused(void **state)
+{
+	(void)state;
+	char path[] = "/tmp/eyewright-fit-XXXXXX";
+	int fd = mkstemp(path);
+	close(fd);
+	struct fit fit = sample(), back;
+	struct err err = { 0 };
+	fit.pupil.a = 520;
+	assert_true(fit_save(&fit, path, "{\"stage\":\"limbus\"}", "{\"more\":1}", &err));
+	assert_false(fit_load(&back, path, &err));
+	assert_non_null(strstr(err.msg, path));
+	assert_non_null(strstr(err.msg, "pupil: a = 520 px, must be less than the limbus' 500"));
+	unlink(path);
+}
+
 /* A ray through a pixel must project back to it at any distance: distortion and its inverse cancel. */
 static void rays_project_back(void **state)
 {
@@ -119,6 +136,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_written_is_read),
 		cmocka_unit_test(damaged_files_are_refused),
+		cmocka_unit_test(large_pupil_is_refused),
 		cmocka_unit_test(rays_project_back),
 		cmocka_unit_test(truth_pose_gives_truth_ellipse),
 	};

@@ -131,6 +131,8 @@ static bool fit_read(struct fit *fit, const json_t *json, const char *path, stru
 	          && json_get(&fit->limbus_aspect, json, "limbus_aspect", path, err)
 	          && json_get(&fit->limbus_aspect_sigma, json, "limbus_aspect_sigma", path, err)
 	          && camera_read(fit, json_object_get(json, "camera"), path, err);
+	if (ok && fit->has_pupil && fit->pupil.a >= fit->limbus.a)
+		ok = err_set(err, "%s: pupil: a = %g px, must be less than the limbus' %g", path, fit->pupil.a, fit->limbus.a);
 	fit->theta *= deg;
 	fit->phi *= deg;
 	fit->theta_sigma *= deg;

@@ -47,6 +47,7 @@ refused "an iris at the cornea" "echo 'eye.iris_depth_mm = 0' >>capture.conf" "e
 refused "an iris in front of the limbus" "echo 'eye.iris_depth_mm = 1.5
 eye.cornea_radius_mm = 6.5
 eye.limbus_radius_mm = 6.2' >>capture.conf" "eye.iris_depth_mm = 1.5: "
+refused "a pupil wider than the limbus" "sed -i '/\"pupil\": {/,/}/s/\"a\": [0-9.]*/\"a\": 99999/' work/limbus/*.json" "pupil: a = 99999 px, must be less than the limbus'"
 
 left_out "no relief" "rm work/iris/relief.exr" "relief of right eye: work/iris/relief.exr is missing"
 left_out "no pigment" "rm work/iris/pigment.json" "pigment of right eye: work/iris/pigment.json is missing"
