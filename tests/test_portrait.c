@@ -6,16 +6,13 @@
 #include "skin/drive.h"
 #include "skin/portrait_impl.h"
 #include "skin/skin_look.h"
-#include "tests/lib/face.h"
+#include "tests/lib/portrayed.h"
 #include "tests/lib/unit.h"
 
 #include <omp.h>
 
 struct made {
-	struct face face;
-	struct rig rig;
-	struct scene eye;
-	struct envmap env;  // the same radiance from everywhere: 1
+	struct portrayed of;  // the same radiance from everywhere: 1
 	double tear;  // mm
 	double wet;   // of the caruncles
 };
@@ -23,24 +20,10 @@ struct made {
 static int setup(void **state)
 {
 	struct made *m = calloc(1, sizeof *m);
-	struct rig_motion motion;
-	struct rig_report report;
-	struct err err = { 0 };
-	struct rig_conf conf = face_conf();
-	face_make(&m->face, false);
-	conf.map_step = 4;
-	rig_motion_of_model(&motion, &m->face.model);
-	struct rig_character c = face_character(&m->face);
-	bool ok = rig_make(&m->rig, &report, &motion, &c, &conf, &err);
-	rig_motion_free(&motion);
-	struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 };
-	struct scene_conf scene = { .map_size = 256, .search = 2, .steps = 4, .bands = 3, .detail = 1, .limbus_width = 0.5,
-		                        .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .vein_density = 0, .veins_px = 128, .seed = 1 };
-	scene_plain(&m->eye, &eye, &scene, (double[]){ 0.2, 0.2, 0.2 }, 1);
-	m->env = envmap_room(64, (double[]){ 1, 1, 1 }, (double[]){ 1, 1, 1 }, 1, 0, 0);
-	struct scene_view view = scene_view_turned(&m->eye, 0, 0, 27, 64);
-	struct scene_lighting light = scene_lighting(&m->env, 0, 4);
-	scene_fit_colour(&m->eye, &view, &light);
+	bool ok = portrayed_make(&m->of, 1);
+	struct scene_view view = scene_view_turned(&m->of.eye, 0, 0, 27, 64);
+	struct scene_lighting light = scene_lighting(&m->of.env, 0, 4);
+	scene_fit_colour(&m->of.eye, &view, &light);
 	m->tear = 0.3;
 	*state = m;
 	return ok ? 0 : 1;
@@ -49,20 +32,17 @@ static int setup(void **state)
 static int teardown(void **state)
 {
 	struct made *m = *state;
-	scene_free(&m->eye);
-	envmap_free(&m->env);
-	rig_free(&m->rig);
-	face_free(&m->face);
+	portrayed_free(&m->of);
 	free(m);
 	return 0;
 }
 
 static struct portrait *portrait_of(const struct made *m, double scatter)
 {
-	const struct scene *eyes[2] = { &m->eye, &m->eye };
+	const struct scene *eyes[2] = { &m->of.eye, &m->of.eye };
 	struct portrait_conf conf = { .lights = 64, .subdivide = 1, .samples = 2, .eye_samples = 1, .skin_rgb = { 0.5, 0.4, 0.3 }, .scatter_mm = scatter,
 		                          .tear_mm = m->tear, .caruncle_wet = m->wet };
-	return portrait_new(&m->rig, eyes, &m->env, &conf);
+	return portrait_new(&m->of.rig, eyes, &m->of.env, &conf);
 }
 
 /* Light from everywhere gives an open surface irradiance 1 whichever way it faces; median cut stands for it by 64
@@ -72,13 +52,13 @@ static void even_light_is_one(void **state)
 	struct made *m = *state;
 	struct portrait *p = portrait_of(m, 0.01);
 	double c[12];
-	drive_look(c, &m->rig, 0, 0, 1);
+	drive_look(c, &m->of.rig, 0, 0, 1);
 	portrait_pose(p, c);
-	struct portrait_view view = portrait_front(&m->rig, -1, 130, 0, 0, 130, 60);
+	struct portrait_view view = portrait_front(&m->of.rig, -1, 130, 0, 0, 130, 60);
 	portrait_light(p, &view, true);
 	int n = 0;
-	for (int i = 0; i < m->rig.n; i++)
-		if (p->mesh.open[i] > 0.999f && m->rig.part[i] == RIG_SKIN && p->near_start[i + 1] > p->near_start[i]) {
+	for (int i = 0; i < m->of.rig.n; i++)
+		if (p->mesh.open[i] > 0.999f && m->of.rig.part[i] == RIG_SKIN && p->near_start[i + 1] > p->near_start[i]) {
 			NEAR(p->mesh.light[i][1], 1, 0.06);
 			n++;
 		}
@@ -94,9 +74,9 @@ static void no_holes(void **state)
 	struct rng rng = { 31 };
 	double c[12];
 	for (int round = 0; round < 6; round++) {
-		drive_look(c, &m->rig, rng_range(&rng, -20, 20), rng_range(&rng, -12, 12), rng_uniform(&rng));
+		drive_look(c, &m->of.rig, rng_range(&rng, -20, 20), rng_range(&rng, -12, 12), rng_uniform(&rng));
 		portrait_pose(p, c);
-		struct portrait_view view = portrait_front(&m->rig, -1, 90, 0, 0, 240, 80);
+		struct portrait_view view = portrait_front(&m->of.rig, -1, 90, 0, 0, 240, 80);
 		struct portrait_spot *spots = portrait_raster(p, &view, 2);
 		int eye = 0;
 		for (int i = 0; i < 480 * 160; i++) {
@@ -114,18 +94,18 @@ static void eyes_are_where_they_are(void **state)
 	struct made *m = *state;
 	struct portrait *p = portrait_of(m, 2);
 	double c[12];
-	drive_look(c, &m->rig, 0, 0, 1);
+	drive_look(c, &m->of.rig, 0, 0, 1);
 	portrait_pose(p, c);
-	const double *o = m->rig.globe[0].center;
-	double scale = m->rig.globe[0].radius / 11.8;
+	const double *o = m->of.rig.globe[0].center;
+	double scale = m->of.rig.globe[0].radius / 11.8;
 	// From the front: the corneal apex; from the side and from behind: the sclera, which is the globe's own sphere.
 	float front[3] = { (float)o[0], (float)o[1], (float)o[2] + 100 }, side[3] = { (float)o[0] + 100, (float)o[1], (float)o[2] - 2 };
-	double apex = m->eye.sclera_z * scale, r = m->rig.globe[0].radius;
+	double apex = m->of.eye.sclera_z * scale, r = m->of.rig.globe[0].radius;
 	NEAR(portrait_eye_hit(p, 0, front, (float[]){ 0, 0, -1 }), 100 - apex, 1e-3);
 	NEAR(portrait_eye_hit(p, 0, side, (float[]){ -1, 0, 0 }), 100 - sqrt(r * r - 4), 1e-3);
 	assert_true(isinf(portrait_eye_hit(p, 0, front, (float[]){ 0, 0, 1 })));
 	// Turned by 20 degrees to the left, the apex stands where Fick's formula says.
-	drive_look(c, &m->rig, 20, 0, 1);
+	drive_look(c, &m->of.rig, 20, 0, 1);
 	portrait_pose(p, c);
 	float from[3] = { (float)(o[0] + 100 * sin(M_PI / 9)), (float)o[1], (float)(o[2] + 100 * cos(M_PI / 9)) };
 	NEAR(portrait_eye_hit(p, 0, from, (float[]){ (float)-sin(M_PI / 9), 0, (float)-cos(M_PI / 9) }), 100 - apex, 1e-3);
@@ -141,9 +121,9 @@ static void same_bytes_on_any_number_of_threads(void **state)
 	for (int k = 0; k < 2; k++) {
 		omp_set_num_threads(k ? 3 : 1);
 		struct portrait *p = portrait_of(m, 2);
-		drive_look(c, &m->rig, 10, -5, 0.7);
+		drive_look(c, &m->of.rig, 10, -5, 0.7);
 		portrait_pose(p, c);
-		struct portrait_view view = portrait_front(&m->rig, -1, 110, 0.1, 0, 150, 60);
+		struct portrait_view view = portrait_front(&m->of.rig, -1, 110, 0.1, 0, 150, 60);
 		portrait_light(p, &view, true);
 		image[k] = portrait_draw(p, &view);
 		portrait_free(p);
@@ -182,9 +162,9 @@ static void distances_are_to_the_lids(void **state)
 	enum { W = 150, H = 60 };
 	double c[12];
 	struct portrait *p = portrait_of(m, 2);
-	drive_look(c, &m->rig, 0, 0, 1);
+	drive_look(c, &m->of.rig, 0, 0, 1);
 	portrait_pose(p, c);
-	struct portrait_view view = portrait_front(&m->rig, -1, 110, 0, 0, W, H);
+	struct portrait_view view = portrait_front(&m->of.rig, -1, 110, 0, 0, W, H);
 	struct image picture = portrait_draw(p, &view), layers = portrait_layers(p, &view, &picture);
 	struct portrait_spot *spots = portrait_raster(p, &view, 1);
 	double mm = 110.0 / W;  // at the globes' depth; the made lids stand up to 2 % nearer
@@ -218,9 +198,9 @@ static void layers_make_the_picture(void **state)
 	m->wet = 1;
 	struct portrait *p = portrait_of(m, 2);
 	m->wet = 0;
-	drive_look(c, &m->rig, 8, 0, 1);
+	drive_look(c, &m->of.rig, 8, 0, 1);
 	portrait_pose(p, c);
-	struct portrait_view view = portrait_front(&m->rig, -1, 110, 0.2, 0, W, H);
+	struct portrait_view view = portrait_front(&m->of.rig, -1, 110, 0.2, 0, W, H);
 	portrait_light(p, &view, true);
 	struct image picture = portrait_draw(p, &view), layers = portrait_layers(p, &view, &picture);
 	double shine = 0, off[W * H];
@@ -270,9 +250,9 @@ static void tears_stay_at_the_lids(void **state)
 	for (int k = 0; k < 2; k++) {
 		m->tear = k ? 0.5 : 0;
 		struct portrait *p = portrait_of(m, 2);
-		drive_look(c, &m->rig, 0, 0, 1);
+		drive_look(c, &m->of.rig, 0, 0, 1);
 		portrait_pose(p, c);
-		struct portrait_view view = portrait_front(&m->rig, -1, 110, 0, 0, W, H);
+		struct portrait_view view = portrait_front(&m->of.rig, -1, 110, 0, 0, W, H);
 		portrait_light(p, &view, true);
 		image[k] = portrait_draw(p, &view);
 		if (k)
@@ -339,9 +319,9 @@ static void lake_is_deep_at_the_corner(void **state)
 	for (int k = 0; k < 2; k++) {
 		struct portrait *p = portrait_of(m, 2);
 		p->conf.tear_absorb[0] = k;
-		drive_look(c, &m->rig, 0, 0, 1);
+		drive_look(c, &m->of.rig, 0, 0, 1);
 		portrait_pose(p, c);
-		struct portrait_view view = portrait_front(&m->rig, -1, 110, 0, 0, W, H);
+		struct portrait_view view = portrait_front(&m->of.rig, -1, 110, 0, 0, W, H);
 		portrait_light(p, &view, true);
 		image[k] = portrait_draw(p, &view);
 		if (k)
@@ -384,7 +364,7 @@ static void caruncle_is_wet(void **state)
 			double d[3];
 			for (int k = 0; k < 3; k++)
 				d[k] = (double)(p->mesh.rest[i][k] - p->corner[s][k]);
-			least = fmin(least, vec_norm(d) * 12 / m->rig.globe[s].radius);
+			least = fmin(least, vec_norm(d) * 12 / m->of.rig.globe[s].radius);
 		}
 		wet += p->mesh.wet[i] > 0;
 		assert_true(p->mesh.wet[i] >= 0 && p->mesh.wet[i] <= 1 && dry->mesh.wet[i] == 0);
@@ -426,7 +406,7 @@ static void wrinkles_bend_normals(void **state)
 	}
 	struct portrait *p = portrait_of(m, 2);
 	double c[16] = { 0 };
-	struct portrait_view view = portrait_front(&m->rig, -1, 130, 0, 0, 130, 60);
+	struct portrait_view view = portrait_front(&m->of.rig, -1, 130, 0, 0, 130, 60);
 	struct portrait_sky sky = portrait_sky_of(p, &view);
 	portrait_wear(p, &maps, 2, aus);
 	portrait_fold_pose(p, c);
@@ -452,7 +432,7 @@ static void wrinkles_bend_normals(void **state)
 		if (!portrait_fold(normal, light, p, &sky, f, third))
 			continue;
 		double along = ((double)normal[0] * flat[0] + (double)normal[1] * flat[1] + (double)normal[2] * flat[2]) / vec_norm(flat);
-		double want = 0.5 * (double)slope * m->rig.camera.focal_px[0] / depth_of(&m->rig.camera, p->mesh.x[v[0]]);
+		double want = 0.5 * (double)slope * m->of.rig.camera.focal_px[0] / depth_of(&m->of.rig.camera, p->mesh.x[v[0]]);
 		off[n] = tan(acos(fmin(1, along))) / want - 1;
 		within += fabs(off[n]) < 0.1;
 		assert_true((double)normal[1] < flat[1] / vec_norm(flat));

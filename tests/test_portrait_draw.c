@@ -2,53 +2,27 @@
 #include "eye/scene_impl.h"
 #include "skin/drive.h"
 #include "skin/portrait_impl.h"
-#include "tests/lib/face.h"
+#include "tests/lib/portrayed.h"
 #include "tests/lib/unit.h"
 
 enum { WIDTH = 240, HEIGHT = 100, FINER = 4 };
 
-struct made {
-	struct face face;
-	struct rig rig;
-	struct scene eye;
-	struct envmap env;
-};
-
 static int setup(void **state)
 {
-	struct made *m = calloc(1, sizeof *m);
-	struct rig_motion motion;
-	struct rig_report report;
-	struct err err = { 0 };
-	struct rig_conf conf = face_conf();
-	face_make(&m->face, false);
-	conf.map_step = 4;
-	rig_motion_of_model(&motion, &m->face.model);
-	struct rig_character c = face_character(&m->face);
-	bool ok = rig_make(&m->rig, &report, &motion, &c, &conf, &err);
-	rig_motion_free(&motion);
-	struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 };
-	struct scene_conf scene = { .map_size = 256, .search = 2, .steps = 4, .bands = 3, .detail = 1, .limbus_width = 0.5,
-		                        .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .vein_density = 0, .veins_px = 128, .seed = 1 };
-	scene_plain(&m->eye, &eye, &scene, (double[]){ 0.2, 0.2, 0.2 }, 1);
-	m->env = envmap_room(64, (double[]){ 1, 1, 1 }, (double[]){ 0, 0, 0 }, 1, 0, 0);
+	struct portrayed *m = calloc(1, sizeof *m);
 	*state = m;
-	return ok ? 0 : 1;
+	return portrayed_make(m, 0) ? 0 : 1;
 }
 
 static int teardown(void **state)
 {
-	struct made *m = *state;
-	scene_free(&m->eye);
-	envmap_free(&m->env);
-	rig_free(&m->rig);
-	face_free(&m->face);
-	free(m);
+	portrayed_free(*state);
+	free(*state);
 	return 0;
 }
 
 /* The left eye from a little below, so that the upper lid's rim hides some of what is behind it. */
-static struct image draw(struct made *m, double lash_mm, int samples, int finer, unsigned char *kind)
+static struct image draw(struct portrayed *m, double lash_mm, int samples, int finer, unsigned char *kind)
 {
 	const struct scene *eyes[2] = { &m->eye, &m->eye };
 	struct portrait_conf conf = { .lights = 64, .subdivide = 1, .samples = samples, .eye_samples = 1, .skin_rgb = { 0.5, 0.4, 0.3 }, .scatter_mm = 0.2, .lash_mm = lash_mm };
@@ -93,7 +67,7 @@ static void mean_at(double rgb[3], const struct image *large, int x, int y, bool
 }
 
 /* Root mean square difference from the large picture over the pixels of a kind; how many of them: more than 100. */
-static double off(struct made *m, double lash_mm, int kind, double *step)
+static double off(struct portrayed *m, double lash_mm, int kind, double *step)
 {
 	unsigned char *kinds = calloc(WIDTH * HEIGHT, 1);
 	struct image small = draw(m, lash_mm, 3, 1, kinds), large = draw(m, lash_mm, 3, FINER, 0);
