@@ -20,16 +20,11 @@ struct made {
 static int setup(void **state)
 {
 	struct made *m = calloc(1, sizeof *m);
-	struct rig_motion motion;
-	struct rig_report report;
 	struct err err = { 0 };
 	struct rig_conf conf = face_conf();
 	face_make(&m->face, false);
 	conf.map_step = 4;
-	rig_motion_of_model(&motion, &m->face.model);
-	struct rig_character c = face_character(&m->face);
-	bool ok = rig_make(&m->rig, &report, &motion, &c, &conf, &err);
-	rig_motion_free(&motion);
+	bool ok = face_rig(&m->rig, 0, &m->face, &conf, &err);
 	m->drive = drive_new(FRAMES, 12);
 	for (int f = 0; f < FRAMES; f++) {
 		m->drive.time[f] = f / 30.0;

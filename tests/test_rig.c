@@ -9,13 +9,8 @@
 
 static void rig_of(struct rig *rig, struct rig_report *report, const struct face *face, const struct rig_conf *conf)
 {
-	struct rig_motion motion;
-	struct rig_character c = face_character(face);
 	struct err err = { 0 };
-	rig_motion_of_model(&motion, &face->model);
-	bool ok = rig_make(rig, report, &motion, &c, conf, &err);
-	rig_motion_free(&motion);
-	if (!ok)
+	if (!face_rig(rig, report, face, conf, &err))
 		fail_msg("%s", err.msg);
 }
 

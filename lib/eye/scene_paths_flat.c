@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "eye/scene_quick_map.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see scene_meet.c, simd.h
@@ -15,8 +16,6 @@ struct flat_light {
 	struct paths_light at;
 	float rgb[3];
 };
-
-typedef float texel __attribute__((vector_size(16), aligned(4)));
 
 /* One ring's irradiance by all lights. */
 SIMD_CLONES static void ring_sum(float (*restrict out)[4], int ring, int n, const struct flat_light *light, const struct scene *s)
@@ -50,14 +49,14 @@ SIMD_CLONES static void texels_put(float *restrict out, const float (*restrict p
 	for (int i = 0; i < SCENE_FLAT * SCENE_FLAT; i++) {
 		const float *w = place[i].ring, *t = place[i].turn;
 		const float(*from)[4] = polar + place[i].first;
-		texel sum = { 0 };
+		quick_four sum = { 0 };
 		for (int k = 0; k < 4; k++) {
-			const texel *row = (const texel *)from[k * ROW];
-			sum += w[k] * (t[0] * row[0] + t[1] * row[1] + t[2] * row[2] + t[3] * row[3]);
+			const float(*row)[4] = from + k * ROW;
+			sum += w[k] * (t[0] * quick_read(row[0]) + t[1] * quick_read(row[1]) + t[2] * quick_read(row[2]) + t[3] * quick_read(row[3]));
 		}
 		for (int c = 0; c < 3; c++)  // cubics go below where light ends
 			sum[c] = sum[c] > 0 ? sum[c] : 0;
-		*(texel *)(out + 4 * i) = sum;
+		memcpy(out + 4 * i, &sum, sizeof sum);
 	}
 }
 

@@ -160,11 +160,12 @@ void quick_ask(const struct quick_found *f, const struct quick_look *k)
 /* A tile's nodes of the strip's; nothing in the lanes behind them. */
 SIMD_INLINE void nodes_take(float *restrict out, const float *restrict in, int across)
 {
-	typedef float four __attribute__((vector_size(16), aligned(4)));
 	_Static_assert(NODE_SIDE == 3 && NODE_LANES == 16, "each row's fourth lane is the next row's first");
-	for (int y = 0; y < NODE_SIDE; y++)
-		*(four *)(out + y * NODE_SIDE) = *(const four *)(in + y * across);
-	*(four *)(out + NODES_IN_TILE) = *(four *)(out + NODES_IN_TILE + 3) = (four){ 0 };
+	for (int y = 0; y < NODE_SIDE; y++) {
+		quick_four row = quick_read(in + y * across);
+		memcpy(out + y * NODE_SIDE, &row, sizeof row);
+	}
+	memset(out + NODES_IN_TILE, 0, (NODE_LANES - NODES_IN_TILE) * sizeof *out);
 }
 
 SIMD_INLINE void iris_lay(struct quick_found *f)

@@ -30,9 +30,8 @@ SIMD_CLONES static void judge(unsigned char *restrict is, const struct quick_spo
 		int faces = (s->hit[i] > 0) & (cosine > 0.3f);
 		// Whether there is an entry or the conic goes on as one.
 		int through = (s->vz[i] > 0.3f) & (s->fz[i] > -0.1f) & (s->fz[i] < 5);
-		int leans = s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i] > (float)(LOOK_LEANS * LOOK_LEANS) * s->vz[i] * s->vz[i];
 		int in = faces & (s->rho[i] < inner), out = faces & (s->rho[i] > outer);
-		is[i] = (unsigned char)((faces ? NODE_FACES : 0) | (in ? NODE_IN : 0) | (out ? NODE_OUT : 0) | (through ? NODE_THROUGH : 0) | (leans ? 0 : NODE_STRAIGHT));
+		is[i] = (unsigned char)((faces ? NODE_FACES : 0) | (in ? NODE_IN : 0) | (out ? NODE_OUT : 0) | (through ? NODE_THROUGH : 0) | (quick_leans(s->vx[i], s->vy[i], s->vz[i]) ? 0 : NODE_STRAIGHT));
 	}
 }
 

@@ -84,27 +84,27 @@ static bool window(struct distance_field *f, const uint8_t *globe, double reach)
 {
 	const struct distance_scene *s = f->scene;
 	int far = s->width > s->height ? s->width : s->height, top = s->height, bottom = -1, groups = f->blocks / GROUP;
-	f->from = groups;
+	int from = groups, to = 0;  // groups that hold globe
 	for (int y = 0; y < s->height; y++) {
 		if (!globe[y])
 			continue;
 		const uint8_t *has = distance_has(f, y);
 		top = top < y ? top : y;
 		bottom = y;
-		for (int k = 0; k < f->from; k++)
+		for (int k = 0; k < from; k++)
 			if (distance_group(has + k * GROUP) & DISTANCE_EACH * DISTANCE_HAS_GLOBE)
-				f->from = k;
-		for (int k = groups; k > f->to; k--)
+				from = k;
+		for (int k = groups; k > to; k--)
 			if (distance_group(has + (k - 1) * GROUP) & DISTANCE_EACH * DISTANCE_HAS_GLOBE)
-				f->to = k;
+				to = k;
 	}
 	if (bottom < 0)
 		return false;
 	double px = ceil(reach_px(s, reach));
 	f->band = px < far ? (int)px : far;
 	int more = (f->band + 3 + TEXELS) / (TEXELS), end = bottom + 1 + f->band;
-	f->first = f->from > more ? (f->from - more) * GROUP : 0;
-	f->last = (f->to + more < groups ? f->to + more : groups) * GROUP;
+	f->first = from > more ? (from - more) * GROUP : 0;
+	f->last = (to + more < groups ? to + more : groups) * GROUP;
 	f->wide = (f->band + 3 + LANES) / LANES;
 	f->pitch = f->last - f->first + 2 * f->wide;
 	f->globe_y0 = top;

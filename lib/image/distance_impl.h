@@ -17,8 +17,7 @@ struct distance_field {
 	const struct distance_scene *scene;
 	int blocks;             // in a row of the screen, in whole groups
 	uint8_t *has;           // [screen's height][blocks]
-	int from, to;           // groups that hold globe
-	int first, last;        // the window's blocks, in whole groups: those, widened by what the band reaches into
+	int first, last;        // the window's blocks, in whole groups: those that hold globe, widened by what the band reaches into
 	int wide;               // blocks that the band reaches into
 	int y0, rows, band;     // the window's rows, widened by the band; px
 	int globe_y0, globe_y1; // rows that hold globe

@@ -46,15 +46,10 @@ void subsurface_room_free(struct subsurface_room *room)
 	*room = (struct subsurface_room){ 0 };
 }
 
-static size_t rounded(size_t n)
-{
-	return (n + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
-}
-
 float *subsurface_room_take(struct subsurface_room *room, size_t n)
 {
 	float *px = room->px + room->used;
-	room->used += rounded(n);
+	room->used += subsurface_rounded(n);
 	assert(room->used <= room->n);
 	return px;
 }
@@ -71,10 +66,10 @@ size_t subsurface_level_size(struct subsurface_level *l, int width, int height, 
 		radius = l->gauss[i].radius > radius ? l->gauss[i].radius : radius;
 	l->width = width;
 	l->height = height;
-	l->side = (int)rounded((size_t)radius);
-	l->stride = top && !l->n ? width : 2 * l->side + (int)rounded((size_t)width);
+	l->side = (int)subsurface_rounded((size_t)radius);
+	l->stride = top && !l->n ? width : 2 * l->side + (int)subsurface_rounded((size_t)width);
 	l->parts = top ? 0 : (width + SUBSURFACE_PART - 1) / SUBSURFACE_PART;
-	return top && !l->n ? 0 : 4 * rounded((size_t)l->stride * (size_t)height) + rounded(even_size(l));
+	return top && !l->n ? 0 : 4 * subsurface_rounded((size_t)l->stride * (size_t)height) + subsurface_rounded(even_size(l));
 }
 
 void subsurface_level_sides(const struct subsurface_level *l, int y)

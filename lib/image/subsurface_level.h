@@ -53,6 +53,12 @@ void subsurface_level_halve(const struct subsurface_level *level, int deepest);
 /* Nothing on either hand of row y. */
 void subsurface_level_sides(const struct subsurface_level *level, int y);
 
+/* n, to whole vectors. */
+static inline size_t subsurface_rounded(size_t n)
+{
+	return (n + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
+}
+
 /* Asks for n numbers to be at hand when they are wanted. */
 static inline void subsurface_ahead(const float *px, int n)
 {

@@ -44,7 +44,7 @@ struct state {
 
 static int wide(const struct subsurface_level *l)
 {
-	return (l->width + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
+	return (int)subsurface_rounded((size_t)l->width);
 }
 
 /* Numbers of the room that a byte for each part of a row takes, one more for a part that ends the row alone. */

@@ -191,3 +191,14 @@ struct rig_character face_character(const struct face *f)
 	memcpy(c.eye_center, f->center, sizeof c.eye_center);
 	return c;
 }
+
+bool face_rig(struct rig *rig, struct rig_report *report, const struct face *face, const struct rig_conf *conf, struct err *err)
+{
+	struct rig_motion motion;
+	struct rig_report own;
+	struct rig_character c = face_character(face);
+	rig_motion_of_model(&motion, &face->model);
+	bool ok = rig_make(rig, report ? report : &own, &motion, &c, conf, err);
+	rig_motion_free(&motion);
+	return ok;
+}

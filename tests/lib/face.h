@@ -24,4 +24,7 @@ void face_free(struct face *face);
 struct rig_conf face_conf(void);
 struct rig_character face_character(const struct face *face);
 
+/* The character's rig, moved as the model says. As rig_make; report may be null. */
+bool face_rig(struct rig *rig, struct rig_report *report, const struct face *face, const struct rig_conf *conf, struct err *err);
+
 #endif

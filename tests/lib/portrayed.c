@@ -4,17 +4,12 @@
 
 bool portrayed_make(struct portrayed *p, double below)
 {
-	struct rig_motion motion;
-	struct rig_report report;
 	struct err err = { 0 };
 	struct rig_conf conf = face_conf();
 	*p = (struct portrayed){ 0 };
 	face_make(&p->face, false);
 	conf.map_step = 4;
-	rig_motion_of_model(&motion, &p->face.model);
-	struct rig_character c = face_character(&p->face);
-	bool ok = rig_make(&p->rig, &report, &motion, &c, &conf, &err);
-	rig_motion_free(&motion);
+	bool ok = face_rig(&p->rig, 0, &p->face, &conf, &err);
 	struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 };
 	struct scene_conf scene = { .map_size = 256, .search = 2, .steps = 4, .bands = 3, .detail = 1, .limbus_width = 0.5,
 		                        .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .vein_density = 0, .veins_px = 128, .seed = 1 };
