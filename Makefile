@@ -66,7 +66,7 @@ LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_photo -lopencv_video -lopencv_
 	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lsqlite3 -lzip \
 	-llapacke -lopenblas -ljansson -linih -lxxhash -lm
 
-LIB_SRC := $(wildcard lib/*/*.c)
+LIB_SRC := $(wildcard lib/*/*.c lib/*/*/*.c lib/*/*/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
 LIB_OBJ := $(LIB_SRC:%.c=$B/%.o) $(BRIDGE_SRC:%.cc=$B/%.o)
 STAGES := $(notdir $(patsubst %/,%,$(dir $(wildcard stages/*/main.c render/main.c))))
@@ -74,7 +74,7 @@ PROGRAMS := $(STAGES:%=$(BIN)/%)
 TESTS := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/test_*.c))
 BENCHES := $(patsubst tests/bench/%.c,$B/tests/bench/%,$(wildcard tests/bench/bench_*.c))
 STRESSES := $(patsubst tests/stress/%.c,$B/tests/stress/%,$(wildcard tests/stress/stress_*.c))
-TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c))
+TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c tests/peers/*.c))
 
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -103,10 +103,11 @@ $B/%.o: %.cc | $B/.setup
 	$(call tell,c++ $<)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) $(EXR_CFLAGS) -c $< -o $@
 
+# q, not r: rooms may hold files of one name.
 # Archives and programs are replaced only when their bytes change, so that a comment reruns no stage.
 $B/libeyewright.a: $(LIB_OBJ)
 	@rm -f $@
-	@$(AR) rcsD $@ $(LIB_OBJ)
+	@$(AR) qcsD $@ $(LIB_OBJ)
 
 define program
 $(BIN)/$(1): $(2) $B/libeyewright.a
@@ -115,8 +116,8 @@ $(BIN)/$(1): $(2) $B/libeyewright.a
 	$$(Q)$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $$@ $(2) $B/libeyewright.a $$(LIBS)
 endef
 $(foreach s,$(filter-out render,$(STAGES)),$(eval $(call program,$s,$(patsubst %.c,$B/%.o,$(wildcard stages/$s/*.c)))))
-$B/render/embed.o: render/page.html render/page.css render/page.js config/animate.conf lib/eye/scene_look.h lib/skin/skin_look.h $(wildcard render/viewer/*)
-$(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c))))
+$B/render/page/embed.o: $(wildcard render/page/page.*) config/animate.conf lib/draw/eye/look.h lib/draw/face/skin_look.h $(wildcard render/viewer/*)
+$(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c render/*/*.c))))
 
 $B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a
 	@mkdir -p $(@D)

@@ -6,8 +6,8 @@
  */
 #include "base/mem.h"
 #include "render/options.h"
-#include "render/skin.h"
-#include "render/viewer.h"
+#include "render/face/skin.h"
+#include "render/viewer/viewer.h"
 
 /* A folder without photographs has no fitted eye, and need not have one: its characters get plain ones. */
 static bool photos_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)

@@ -4,8 +4,8 @@
 #include <jansson.h>
 
 #include "base/stage.h"
-#include "eye/capture.h"
-#include "eye/scene.h"
+#include "anatomy/capture.h"
+#include "draw/eye/scene.h"
 
 struct render_conf {
 	struct scene_conf scene;

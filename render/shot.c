@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "render/render.h"
 
 double ellipse_radius(const struct ellipse *e, double x, double y)

@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "image/exr.h"
-#include "image/video.h"
+#include "image/video/video.h"
 #include "render/render.h"
 
 enum { SECONDS = 4, FPS = 30 };

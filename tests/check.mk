@@ -44,7 +44,7 @@ build-fuzz/%.o: %.cc
 	@clang++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -c $< -o $@
 build-fuzz/libeyewright.a: $(FUZZ_OBJ)
 	@rm -f $@
-	@$(AR) rcsD $@ $(FUZZ_OBJ)
+	@$(AR) qcsD $@ $(FUZZ_OBJ)
 build-fuzz/fuzz_%: build-fuzz/tests/fuzz/fuzz_%.o build-fuzz/libeyewright.a
 	@clang++ -fsanitize=fuzzer,address,undefined -Wl,--as-needed -o $@ $^ $(LIBS) -lgomp
 -include $(FUZZ_OBJ:.o=.d)

@@ -1,9 +1,14 @@
 #!/bin/bash
-# Includes point down only: stages, render -> skin -> eye -> bridge -> optics, image, mesh -> math -> base. Stages never
-# include each other; C++ lives in lib/bridge alone; no shell is started with text of a user's.
+# The floors of the house. Includes point down only: stages, render -> the rooms of lib/ -> bridge -> ... -> base. Stages never
+# include each other; what a header marked private (impl.h, NAME_impl.h) says stays in its folder and those below it; C++ lives in
+# lib/bridge alone; no shell is started with text of a user's. B: build folder, for what is read from objects.
 . tests/lib/check.sh
 
-declare -A rank=([base]=0 [math]=1 [optics]=2 [image]=2 [mesh]=2 [bridge]=3 [eye]=4 [skin]=5)
+# A room may include rooms of lower rank, and itself.
+declare -A rank=([base]=0 [math]=1 [optics]=2 [image]=2 [mesh]=2 [bridge]=3 [anatomy]=4
+	[limbus]=5 [iris]=6 [tissue]=7 [model]=5 [register]=5 [sfm]=6 [rig]=6 [motion]=6 [track]=7 [draw]=8)
+
+includes() { grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' -r "$@" --include='*.[ch]' --include='*.cc'; }
 
 bad=
 while IFS=: read -r file line text; do
@@ -11,24 +16,43 @@ while IFS=: read -r file line text; do
 	to=${text#*\"} to=${to%\"*}
 	case $to in */*) into=${to%%/*} ;; *) continue ;; esac
 	if [ -z "${rank[$into]:-}" ]; then
-		bad+=" $file:$line includes $to, which is no layer;"
+		bad+=" $file:$line includes $to, which is no room;"
 	elif [ "$into" != "$of" ] && [ "${rank[$into]}" -ge "${rank[$of]:-9}" ]; then
 		bad+=" $file:$line: $of includes $into/;"
 	fi
-done < <(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' -r lib --include='*.[ch]' --include='*.cc')
-if [ -z "$bad" ]; then pass "layers of lib/"; else fail "layers of lib/" "$bad"; fi
+done < <(includes lib)
+if [ -z "$bad" ]; then pass "floors of lib/"; else fail "floors of lib/" "$bad"; fi
+
+bad=
+while IFS=: read -r file line text; do
+	to=${text#*\"} to=${to%\"*}
+	case ${to##*/} in impl.h | *_impl.h) ;; *) continue ;; esac
+	case $to in */*) [ -e "lib/$to" ] && to=lib/$to ;; *) continue ;; esac
+	case $file in "${to%/*}"/*) ;; *) bad+=" $file:$line includes $to;" ;; esac
+done < <(includes lib stages render)
+if [ -z "$bad" ]; then pass "private headers stay in their rooms"; else fail "private headers stay in their rooms" "$bad"; fi
+
+facts() { # NAME KIND: passes where house.sh finds none
+	local said
+	said=$(tests/house.sh "$2")
+	if [ -z "$said" ]; then pass "$1"; else fail "$1" "$(tr '\n' ';' <<<"$said")"; fi
+}
+facts "no files call each other in a circle" circles
+facts "what is exported is called from elsewhere" unused
+facts "every file has its header" headless
 
 bad=
 while IFS=: read -r file line text; do
 	to=${text#*\"} to=${to%\"*}
 	dir=${file%/*}
+	case $file in render/*) own=render ;; *) own=$dir ;; esac
 	case $to in
-	"$dir"/*) ;;
+	"$own"/*) ;;
 	*..*) bad+=" $file:$line includes $to;" ;;
 	*/*) [ -n "${rank[${to%%/*}]:-}" ] || [ -e "$dir/$to" ] || bad+=" $file:$line includes $to;" ;;
 	*) [ -e "$dir/$to" ] || bad+=" $file:$line includes $to, which is not its own;" ;;
 	esac
-done < <(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' -r stages render --include='*.[ch]' 2>/dev/null)
+done < <(includes stages render)
 if [ -z "$bad" ]; then pass "stages include lib/ and their own"; else fail "stages include lib/ and their own" "$bad"; fi
 
 bad=$(find lib stages render tests \( -name '*.cc' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.cxx' \) 2>/dev/null |

@@ -1,5 +1,5 @@
 /* Eyes and lids in motion: the main sequence, minimum jerk, blinks, the reflex, vergence, pursuit, saliency, scripts. */
-#include "skin/animate.h"
+#include "motion/animate.h"
 
 #include "base/mem.h"
 #include "image/saliency.h"

@@ -2,7 +2,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 

@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/vec.h"
-#include "optics/colmap.h"
+#include "sfm/colmap/colmap.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/sfm_scene.h"
 #include "tests/lib/unit.h"

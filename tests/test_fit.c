@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "base/file.h"
-#include "eye/fit.h"
+#include "anatomy/fit.h"
 #include "math/vec.h"
 #include "tests/lib/truth.h"
 

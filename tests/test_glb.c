@@ -1,7 +1,7 @@
 /* The glTF of a driven face: what its morph targets reproduce, its container, and what Khronos's own validator says. */
 #include "base/file.h"
 #include "math/rng.h"
-#include "skin/glb_bake.h"
+#include "rig/glb/bake.h"
 #include "tests/lib/face.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"

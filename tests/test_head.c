@@ -5,11 +5,11 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
-#include "image/video.h"
+#include "image/video/video.h"
 #include "math/rng.h"
-#include "skin/head_find.h"
+#include "track/head/find.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/unit.h"
 

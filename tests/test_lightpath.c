@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/light_case.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };

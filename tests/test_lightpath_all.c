@@ -3,7 +3,7 @@
 #include "tests/lib/unit.h"
 
 #include "base/mem.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/light_case.h"
 
 static double gap(const double a[3], const double b[3])

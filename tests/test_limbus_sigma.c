@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "eye/limbus_record.h"
+#include "limbus/record.h"
 #include "math/rng.h"
 #include "tests/lib/limbus_conf.h"
 #include "tests/lib/synth_eye.h"

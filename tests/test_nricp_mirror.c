@@ -3,7 +3,7 @@
 #include "tests/lib/unit.h"
 
 #include "base/mem.h"
-#include "skin/nricp_mirror.h"
+#include "register/nricp/mirror.h"
 #include "tests/lib/sheet.h"
 #include "tests/lib/transfer_conf.h"
 

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "image/picture.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/variant.h"

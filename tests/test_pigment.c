@@ -10,8 +10,8 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "eye/pigment.h"
-#include "eye/pigment_white.h"
+#include "tissue/pigment/pigment.h"
+#include "tissue/pigment/white.h"
 #include "math/rng.h"
 #include "tests/lib/photon.h"
 

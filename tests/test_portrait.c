@@ -1,11 +1,11 @@
 /* Portraits of a made face: light in closed form, no holes, eyes where they are, the same bytes on any number of threads. */
-#include "eye/scene_impl.h"
+#include "draw/eye/impl.h"
 #include "math/rng.h"
 #include "math/stats.h"
 #include "math/vec.h"
-#include "skin/drive.h"
-#include "skin/portrait_impl.h"
-#include "skin/skin_look.h"
+#include "rig/drive.h"
+#include "draw/face/impl.h"
+#include "draw/face/skin_look.h"
 #include "tests/lib/portrayed.h"
 #include "tests/lib/unit.h"
 

@@ -1,7 +1,7 @@
 /* Edges and hairs of a portrait, against the same picture drawn four times as large and averaged. */
-#include "eye/scene_impl.h"
-#include "skin/drive.h"
-#include "skin/portrait_impl.h"
+#include "draw/eye/impl.h"
+#include "rig/drive.h"
+#include "draw/face/impl.h"
 #include "tests/lib/portrayed.h"
 #include "tests/lib/unit.h"
 

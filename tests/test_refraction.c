@@ -12,7 +12,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "eye/refraction_file.h"
+#include "iris/refraction_file.h"
 #include "image/exr.h"
 #include "tests/lib/light_case.h"
 

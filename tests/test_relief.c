@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "eye/relief.h"
+#include "tissue/relief/relief.h"
 #include "tests/lib/irisphantom.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))

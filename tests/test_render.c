@@ -10,7 +10,7 @@
 #include <cmocka.h>
 #include <omp.h>
 
-#include "eye/scene_march.h"
+#include "draw/eye/march/march.h"
 #include "math/rng.h"
 #include "tests/lib/plain_scene.h"
 

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "eye/scene_march.h"
+#include "draw/eye/march/march.h"
 #include "image/colour.h"
 #include "tests/lib/plain_scene.h"
 

@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "bridge/imf_read.h"
-#include "eye/scene_paths.h"
+#include "draw/eye/march/paths.h"
 #include "math/rng.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/plain_scene.h"
 

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "math/rng.h"
 #include "math/vec.h"
-#include "skin/deform.h"
+#include "rig/deform/deform.h"
 #include "tests/lib/face.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "skin/rig_make.h"
-#include "skin/train.h"
+#include "rig/make/make.h"
+#include "model/train/train.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/face.h"
 #include "tests/lib/linear_clip.h"

@@ -7,7 +7,7 @@
 #include "math/rbf.h"
 #include "math/regress.h"
 #include "math/rng.h"
-#include "math/scatter.h"
+#include "math/scatter/scatter.h"
 #include "tests/lib/unit.h"
 
 /* n rows of p columns: k directions of falling strength, noise, a large mean. */

@@ -2,9 +2,9 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/vec.h"
-#include "skin/sfm_frame.h"
-#include "skin/sfm_frames.h"
-#include "skin/sfm_match.h"
+#include "sfm/head/sfm_frame.h"
+#include "sfm/match/frames.h"
+#include "sfm/match/match.h"
 #include "tests/lib/sfm_scene.h"
 #include "tests/lib/unit.h"
 

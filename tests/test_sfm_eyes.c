@@ -8,7 +8,7 @@
 #include "bridge/cv_face.h"
 #include "math/rng.h"
 #include "math/vec.h"
-#include "skin/sfm_eyes.h"
+#include "sfm/head/sfm_eyes.h"
 #include "tests/lib/drawn_head.h"
 #include "tests/lib/sfm_scene.h"
 #include "tests/lib/unit.h"

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "math/rng.h"
-#include "skin/model.h"
+#include "model/model.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 

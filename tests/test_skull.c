@@ -1,8 +1,8 @@
 /* Natural neighbours, the skull map and the globe map against closed forms. */
 #include "math/natural.h"
 #include "math/rng.h"
-#include "skin/globe_map.h"
-#include "skin/skull_map.h"
+#include "rig/globe_map.h"
+#include "rig/skull_map.h"
 #include "tests/lib/unit.h"
 
 enum { SITES = 600 };

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "optics/spectrum.h"
+#include "tissue/spectrum.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/subsurface.h"
+#include "image/subsurface/subsurface.h"
 #include "math/rng.h"
 
 enum { W = 203, H = 157, N = W * H };

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "eye/tissue.h"
+#include "tissue/tissue.h"
 #include "tests/lib/photon.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))

@@ -4,9 +4,9 @@
 
 #include "base/mem.h"
 #include "math/rng.h"
-#include "skin/lid_fine.h"
-#include "stages/track/beside.h"
-#include "stages/track/shut.h"
+#include "track/lid/fine.h"
+#include "track/clip/beside.h"
+#include "track/clip/shut.h"
 #include "tests/lib/unit.h"
 
 enum { W = 400, H = 260, FILM = 12, POINTS = 20 };

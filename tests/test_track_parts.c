@@ -5,7 +5,7 @@
 #include "math/chol.h"
 #include "math/rng.h"
 #include "math/walk.h"
-#include "skin/lid_line.h"
+#include "track/lid/line.h"
 #include "tests/lib/unit.h"
 
 enum { N = 30 };

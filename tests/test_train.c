@@ -1,5 +1,5 @@
 /* Training: a clip of known maps gives them back; noise, gaps, lost frames, half a face; rendered clips. */
-#include "skin/train.h"
+#include "model/train/train.h"
 
 #include <omp.h>
 

@@ -1,5 +1,5 @@
 /* How many components train keeps: those that the clip's own equations have, and on a short noisy clip no more than help. */
-#include "skin/train.h"
+#include "model/train/train.h"
 
 #include "base/mem.h"
 #include "math/rng.h"

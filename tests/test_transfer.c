@@ -3,10 +3,10 @@
 #include "tests/lib/unit.h"
 
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "image/picture.h"
-#include "skin/transfer_file.h"
-#include "skin/transfer_picture.h"
+#include "register/transfer_file.h"
+#include "register/transfer_picture.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/sheet.h"
 #include "tests/lib/transfer_conf.h"

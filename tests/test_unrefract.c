@@ -12,8 +12,8 @@
 
 #include "base/mem.h"
 #include "bridge/cv_photo.h"
-#include "eye/iris_map.h"
-#include "eye/unrefract.h"
+#include "iris/iris_map.h"
+#include "iris/unrefract/unrefract.h"
 #include "image/exr.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/iris.h"

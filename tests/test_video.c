@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/cut.h"
-#include "image/video.h"
+#include "image/video/video.h"
 #include "math/rng.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"

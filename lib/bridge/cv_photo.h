@@ -1,10 +1,10 @@
-/* cv_photo: pictures resampled by OpenCV. Reading and writing them is image/photo.h's and image/picture.h's. */
+/* cv_photo: pictures resampled by OpenCV. Reading and writing them is image/photo/photo.h's and image/picture.h's. */
 #ifndef BRIDGE_CV_PHOTO_H
 #define BRIDGE_CV_PHOTO_H
 #ifdef __cplusplus
 extern "C" {
 #endif
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "image/picture.h"
 
 /* Area-averaged (smaller) or bicubic (larger) copy; free(). */

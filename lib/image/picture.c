@@ -9,7 +9,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "image/photo.h"
+#include "image/photo/photo.h"
 
 
 struct png_sink {

@@ -2,8 +2,8 @@
  * The bits do not depend on which: floating-point contraction is off for all of them (Makefile). Where a file turns it on (the
  * renderer's and skin's, whose pictures round to 1 / 255 or to half precision), a multiplication and a sum are one rounding on processors
  * that have it, and the versions differ in the last digit. Not where such a digit decides what is seen: in where a ray meets the
- * eye, in which texels it looks, in Newton's steps that end before they have settled (scene_sight.c, scene_quick.c,
- * scene_quick_colour.c, scene_tile_ground.c, scene_node.c).
+ * eye, in which texels it looks, in Newton's steps that end before they have settled (draw/eye/exact/sight.c, draw/eye/quick/quick.c,
+ * draw/eye/quick/colour.c, draw/eye/march/tile_ground.c, draw/eye/march/node.c).
  */
 #ifndef MATH_SIMD_H
 #define MATH_SIMD_H

@@ -1,4 +1,4 @@
-/* Which of the surroundings' directions go into the eye together: lib/eye/scene_beam_split.c. A light: {dir, rgb, share}, in the
+/* Which of the surroundings' directions go into the eye together: lib/draw/eye/march/beam_split.c. A light: {dir, rgb, share}, in the
  * eye's frame. */
 const beams = (() => {
 	const share_of = rgb => 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];

@@ -1,7 +1,7 @@
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-// What the passes share. Eye frame as in lib/eye/scene.h: origin at the corneal apex, z into the eye, mm.
+// What the passes share. Eye frame as in lib/draw/eye/scene.h: origin at the corneal apex, z into the eye, mm.
 uniform float cornea_R, cornea_p, cornea_n;
 uniform float extent;   // half-width of the iris maps
 uniform vec2 beam_z;    // depths of the two planes of a beam's table
@@ -21,7 +21,7 @@ float mirror_share(float cos_i, float n)
 	return 0.5 * (s * s + p * p);
 }
 
-// Place in a map on the octahedron unfolded about -z: lib/image/envmap.h.
+// Place in a map on the octahedron unfolded about -z: lib/image/envmap/envmap.h.
 vec2 unfolded(vec3 d)
 {
 	d /= abs(d.x) + abs(d.y) + abs(d.z);

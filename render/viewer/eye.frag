@@ -1,4 +1,4 @@
-// A ray of sight for each pixel: lib/eye/scene_trace.c, scene_sclera.c. With CROSSINGS it only finds where the ray goes, which does
+// A ray of sight for each pixel: lib/draw/eye/exact/trace.c, draw/eye/sclera.c. With CROSSINGS it only finds where the ray goes, which does
 // not depend on light; with KEPT it shades what was found so.
 vec3 environment(vec3 r, float rough)
 {
@@ -28,7 +28,7 @@ vec3 white(inout vec3 normal, vec3 at, float rho)
 }
 
 // Unit direction behind the cornea of a ray d that meets it at `from`, which becomes the place where that direction starts:
-// lib/optics/cornea.c. back: radius, asphericity, depth of the posterior surface's apex, index of the cornea; index 0: none.
+// lib/optics/cornea/cornea.c. back: radius, asphericity, depth of the posterior surface's apex, index of the cornea; index 0: none.
 vec3 sight(inout vec3 from, vec3 d)
 {
 	vec3 N = normalize(vec3(from.xy, cornea_p * from.z - cornea_R));

@@ -1,5 +1,5 @@
-// Wrinkles of expressions: the subject's bump maps where its skin would be, as strong as the expressions; lib/skin/wrinkle_map.c,
-// portrait_wrinkle.c.
+// Wrinkles of expressions: the subject's bump maps where its skin would be, as strong as the expressions; lib/draw/face/wrinkle_map.c,
+// draw/face/wrinkle.c.
 in vec2 seen_home;
 uniform sampler2D fold_map;       // one below the other
 uniform int folds;

@@ -197,7 +197,7 @@ class Graphics {
 		return out;
 	}
 
-	/* Of render/viewer_field.c: whole steps, each foretold by its neighbours on the left and above. */
+	/* Of render/viewer/viewer_field.c: whole steps, each foretold by its neighbours on the left and above. */
 	static field(m, width, height, channels) {
 		const bytes = Graphics.bytes(m.bytes), row = width * channels, whole = new Int32Array(2 * row), out = new Float32Array(row * height);
 		for (let y = 0, at = 0; y < height; y++)

@@ -1,5 +1,5 @@
 // Slopes to which the relief rises from the texels that light is marched from, in sixteen azimuths, looked at where
-// lib/eye/scene_shadow.c does: four to a channel each, the next four beside them, eight more below. They stand as long as the
+// lib/draw/eye/march/shadow.c does: four to a channel each, the next four beside them, eight more below. They stand as long as the
 // pupil does.
 uniform vec2 heights;
 uniform float shadow_grow;        // of the distances at which the relief is looked at

@@ -1,4 +1,4 @@
-// The iris as a ray behind the cornea meets it: lib/eye/scene_meet.c, scene_pupil.c; and all that the eye is told.
+// The iris as a ray behind the cornea meets it: lib/draw/eye/march/meet.c, draw/eye/pupil.c; and all that the eye is told.
 uniform vec3 origin;              // of all rays: the camera, eye frame
 uniform mat3 eye_from_cam, env_from_eye;
 uniform vec4 lens;                // focal length, middle (px of the camera), px of the camera in one of the picture
@@ -24,7 +24,7 @@ float below(vec3 f, vec3 v, float t)
 	return p.z - iris_depth + relief_at(p.xy).x;
 }
 
-// Where a ray first meets the relief, which may hide itself from it: lib/eye/scene_meet.c.
+// Where a ray first meets the relief, which may hide itself from it: lib/draw/eye/march/meet.c.
 float search_relief(vec3 f, vec3 v, float a, float e)
 {
 	float stride = (e - a) / float(search), fa = -1e-6, b = a, fb = fa;
@@ -50,7 +50,7 @@ float search_relief(vec3 f, vec3 v, float a, float e)
 	return fb - fa > 1e-12 ? a - fa * (b - a) / (fb - fa) : b;
 }
 
-// Where the ray meets the relief; of a ray that leans little by Newton's steps from the iris plane: lib/eye/scene_quick.c.
+// Where the ray meets the relief; of a ray that leans little by Newton's steps from the iris plane: lib/draw/eye/quick/quick.c.
 vec3 meet(vec3 f, vec3 v)
 {
 	float c = max(v.z, 0.1), low = (iris_depth - heights.y - f.z) / c, high = (iris_depth - heights.x - f.z) / c, t = (iris_depth - f.z) / c;

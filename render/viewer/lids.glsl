@@ -1,5 +1,5 @@
 // What lids do to the eye below them: they leave it some of the sky, darken it under their edge, and hold the tear line, a quarter
-// of a circle that leaves the globe flat and meets the lid upright: lib/skin/portrait_eye.c, portrait_tear.c, portrait_wet.c.
+// of a circle that leaves the globe flat and meets the lid upright: lib/draw/face/eye.c, draw/face/tear.c, draw/face/wet.c.
 uniform mat3 lidded_from_eye;     // to the axes in which lids leave sky over places of the globe
 uniform float side;               // left eye 0, right eye 1
 uniform sampler2D sky_map, lid_map;  // lid_map: tear.frag

@@ -1,5 +1,5 @@
 // Light in the iris, from the map's texels: what each texel of the photograph is multiplied by in this light, seen from this
-// camera; lib/eye/scene_shade.c, scene_tile.c, scene_march.c, scene_colour.c.
+// camera; lib/draw/eye/march/shade.c, draw/eye/march/tile.c, draw/eye/march/march.c, draw/eye/colour.c.
 const int NODES = 12;
 uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
 uniform sampler2D path_map, down_map, model_map;
@@ -54,7 +54,7 @@ float shadow(ivec2 at, vec3 l)
 }
 #endif
 
-// Single scattering in both layers over the epithelium, all beams: the march of lib/eye/scene_march.c.
+// Single scattering in both layers over the epithelium, all beams: the march of lib/draw/eye/march/march.c.
 vec3 scatter(ivec2 texel, vec3 p, vec3 v)
 {
 	vec4 top = relief_slope(p.xy);
@@ -100,7 +100,7 @@ vec3 scatter(ivec2 texel, vec3 p, vec3 v)
 	return max(sum * exposure, 0.0);
 }
 
-// What the photograph's colour is multiplied by: lib/eye/scene_colour.c.
+// What the photograph's colour is multiplied by: lib/draw/eye/colour.c.
 vec3 ratio(vec3 rgb, vec3 model)
 {
 	vec3 k = rgb / model;

@@ -1,4 +1,4 @@
-/* How eyes move: lib/skin/saccade.c, blink.c and gaze_sim.c, live. Numbers are config/animate.conf's. Degrees, seconds. */
+/* How eyes move: lib/motion/saccade.c, blink.c and motion/gaze_sim.c, live. Numbers are config/animate.conf's. Degrees, seconds. */
 const motion = (() => {
 	const random = () => {
 		let u = 0;

@@ -1,6 +1,6 @@
 // The light's way through the cornea (iris paper, eq. 15): for each beam, over the iris on two planes of side x side
 // points, the direction that stands for its lights' (x, y; z in down), the irradiance of a plane that faces it, and where on the
-// cornea it came in (1: at the limbus); lib/eye/scene_beam.c and lib/optics/lightpath_lane.h. A tile a beam and plane.
+// cornea it came in (1: at the limbus); lib/draw/eye/march/beam.c and lib/optics/lightpath/lane.h. A tile a beam and plane.
 uniform vec4 light_dir[DIRECTIONS];   // towards each light, and its share in its beam
 uniform int first[TILES + 1];         // of each beam's lights; the last beam is the way to the camera: its light has no direction
 uniform vec3 origin;                  // the camera
@@ -78,7 +78,7 @@ float longer(vec3 a, vec3 b, vec3 P, vec3 w)
 	return cornea_n * dot(way, both) / (length(a - P) + length(b - P)) - dot(w, way);
 }
 
-// Newton's steps, kept downhill (lib/optics/lightpath.c); false where they do not end in a minimum.
+// Newton's steps, kept downhill (lib/optics/lightpath/lightpath.c); false where they do not end in a minimum.
 bool descend(inout vec2 x, vec3 P, vec3 w)
 {
 	for (int i = 0; i < 40; i++) {
@@ -139,7 +139,7 @@ void main()
 		down_sum += power * -l.z * l.xyz;
 		in_at += power * rho;
 	}
-	// The one direction in which tissue is as bright as under all of them: beam_direction() of lib/eye/scene_beam.c.
+	// The one direction in which tissue is as bright as under all of them: beam_direction() of lib/draw/eye/march/beam.c.
 	vec3 mean = sum / all, with_cosine = down_sum / all + mean * mean.z;
 	float m = max(-mean.z, 0.05), part = 1.0 / (m + 1.0);
 	vec3 d = mean * (1.0 - part * with_cosine.z / m) - 2.0 * part * with_cosine;

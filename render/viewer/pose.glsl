@@ -1,4 +1,4 @@
-// A character's pose, in passes that write vertices to buffers: lib/skin/deform.c, portrait_mesh.c, portrait_lash.c. The rig's own
+// A character's pose, in passes that write vertices to buffers: lib/rig/deform/deform.c, draw/face/mesh.c, draw/face/lash.c. The rig's own
 // axes, mm.
 precision highp float;
 precision highp int;
@@ -34,7 +34,7 @@ vec3 skull(ivec2 at)
 	return texelFetch(skull_map, clamp(at - ivec2(skull_part.xy), ivec2(0), ivec2(skull_part.zw) - 1), 0).xyz;
 }
 
-// D on the octahedron: lib/skin/globe_map.h.
+// D on the octahedron: lib/rig/globe_map.h.
 float radius(vec3 d, int side)
 {
 	float top = float(cells);

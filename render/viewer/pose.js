@@ -160,7 +160,7 @@ class FacePose {
 		return h * gaze[0] + v * gaze[1] + one;
 	}
 
-	/* g~ (lib/skin/model.h) for eyes that look so and are opened by so much of what is usual there; strengths: of expressions.
+	/* g~ (lib/model/model.h) for eyes that look so and are opened by so much of what is usual there; strengths: of expressions.
 	 * recorded: controls that the lids are taken from. */
 	controls(gazes, open, strengths, recorded) {
 		const c = new Float64Array(this.rig.inputs);

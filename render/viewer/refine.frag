@@ -1,5 +1,5 @@
 // A table of the light's ways on SIDE x SIDE points made one on GRID x GRID: Catmull and Rom's cubics, linear at the border;
-// lib/eye/scene_beam.c.
+// lib/draw/eye/march/beam.c.
 uniform sampler2D path_map, down_map;
 layout(location = 0) out vec4 way;
 layout(location = 1) out float down;

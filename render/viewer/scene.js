@@ -1,4 +1,4 @@
-/* One eye as the shaders see it: lib/eye/scene.h with everything that a hand can change. Matrices are rows. */
+/* One eye as the shaders see it: lib/draw/eye/scene.h with everything that a hand can change. Matrices are rows. */
 const turns = {
 	multiply: (a, b) => [0, 1, 2].flatMap(i => [0, 1, 2].map(j => a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j])),
 	transpose: a => [a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]],
@@ -127,7 +127,7 @@ class EyeScene {
 	}
 
 	/* Places and weights of the march's steps in both layers, for tissue that fades light as this does: between the rules that
-	 * lib/eye/scene_nodes.c makes. */
+	 * lib/draw/eye/march/nodes.c makes. */
 	nodes(steps, extinction) {
 		const m = this.data.eye.march, all = Math.max(2, Math.min(steps, m.steps, EyeScene.NODES)), abl = Math.max(1, Math.floor(all / m.share)), out = { nodes: [abl, all - abl], node: [] };
 		out.nodes.forEach((n, layer) => {

@@ -1,4 +1,4 @@
-// lib/skin/portrait_shade.c: diffuse light as spread in the skin, pores, and two rough lobes.
+// lib/draw/face/shade.c: diffuse light as spread in the skin, pores, and two rough lobes.
 in vec3 seen_at, seen_normal, seen_light, seen_rest;
 in vec4 seen_skin;
 in float seen_cover;

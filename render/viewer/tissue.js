@@ -1,5 +1,5 @@
 "use strict";
-/* The tissue of lib/eye/tissue.c and tissue_all.c: coefficients for the shader from melanin. Spectra come from there; a test
+/* The tissue of lib/tissue/tissue.c and tissue/all.c: coefficients for the shader from melanin. Spectra come from there; a test
  * holds the results against it. */
 const tissue = (() => {
 	const CELLS_ABL = 4, CELLS_STROMA = 14, CELLS = CELLS_ABL + CELLS_STROMA;

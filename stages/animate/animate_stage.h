@@ -2,8 +2,8 @@
 #ifndef ANIMATE_STAGE_H
 #define ANIMATE_STAGE_H
 #include "base/stage.h"
-#include "skin/animate.h"
-#include "stages/animate/scene.h"
+#include "motion/animate.h"
+#include "motion/scene.h"
 
 bool animate_stage(struct stage *stage, const struct animate_conf *conf, const struct scene_conf *scene, struct err *err);
 

@@ -1,7 +1,7 @@
 /* draw: the curves of an animation, for people to look at. */
 #ifndef DRAW_H
 #define DRAW_H
-#include "skin/animate.h"
+#include "motion/animate.h"
 
 /* Gaze, speed, lids and expressions over time, the saccades' main sequence: SVG. */
 bool draw_animation(const char *path, const struct animation *animation, const struct skin_model *model,

@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "skin/transfer_opts.h"
+#include "register/transfer_opts.h"
 #include "stages/calibrate/run.h"
 
 int main(int argc, char **argv)

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "base/run.h"
-#include "stages/calibrate/figure.h"
-#include "stages/calibrate/kept.h"
+#include "sfm/figure/figure.h"
+#include "sfm/kept.h"
 #include "stages/calibrate/state.h"
-#include "stages/calibrate/subject.h"
+#include "sfm/subject.h"
 
 #define RIG "work/rig.json"
 

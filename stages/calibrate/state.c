@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "stages/calibrate/kept.h"
-#include "stages/calibrate/model.h"
+#include "sfm/kept.h"
+#include "sfm/model.h"
 
 #define STATE CALIBRATE_DIR "/options.txt"
 

@@ -1,7 +1,7 @@
 /* state: with which options the database and the model were made: others make them anew. */
 #ifndef STAGES_CALIBRATE_STATE_H
 #define STAGES_CALIBRATE_STATE_H
-#include "stages/calibrate/calibrate.h"
+#include "sfm/calibrate.h"
 
 /* Removes the database when features or matches would come out otherwise now (or with --force), and the model when it or
  * the database would. */

@@ -6,11 +6,11 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
 #include "image/exr.h"
-#include "skin/deform.h"
-#include "skin/drive.h"
+#include "rig/deform/deform.h"
+#include "rig/drive.h"
 
 /* Everything of one character that is read. */
 struct character {

@@ -2,7 +2,7 @@
 #ifndef STAGES_EXTRAPOLATE_H
 #define STAGES_EXTRAPOLATE_H
 #include "base/stage.h"
-#include "skin/rig_make.h"
+#include "rig/make/make.h"
 
 struct extrapolate_conf {
 	struct rig_conf rig;

@@ -3,7 +3,7 @@
  * writes  work/iris/freckles.exr, freckles.json, clean.exr
  */
 #include "base/mem.h"
-#include "eye/freckle_opts.h"
+#include "iris/freckle/opts.h"
 #include "freckles.h"
 
 int main(int argc, char **argv)

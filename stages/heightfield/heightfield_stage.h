@@ -1,8 +1,8 @@
 #ifndef STAGES_HEIGHTFIELD_STAGE_H
 #define STAGES_HEIGHTFIELD_STAGE_H
-#include "eye/capture.h"
-#include "eye/eye.h"
-#include "eye/heightfield.h"
+#include "anatomy/capture.h"
+#include "anatomy/eye.h"
+#include "iris/heightfield/heightfield.h"
 
 struct heightfield_stage_conf {
 	struct heightfield_conf field;

@@ -3,7 +3,7 @@
  * writes  IRIS/thickness.exr (Y mm, S its sigma mm)
  */
 #include "base/mem.h"
-#include "eye/relief_opts.h"
+#include "tissue/relief/opts.h"
 #include "stages/heightfield/heightfield_stage.h"
 
 int main(int argc, char **argv)

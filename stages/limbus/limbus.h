@@ -2,8 +2,8 @@
 #ifndef STAGES_LIMBUS_H
 #define STAGES_LIMBUS_H
 #include "base/stage.h"
-#include "eye/capture.h"
-#include "eye/limbus_record.h"
+#include "anatomy/capture.h"
+#include "limbus/record.h"
 
 struct limbus_options {
 	struct eye eye;

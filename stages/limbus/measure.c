@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "optics/camera_rig.h"
 #include "optics/sensor.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "eye/limbus_overlay.h"
+#include "limbus/overlay.h"
 #include "image/picture.h"
 
 static const double DEG = M_PI / 180;

@@ -3,7 +3,7 @@
  * writes  IRIS/pigment.json
  */
 #include "base/mem.h"
-#include "eye/relief_opts.h"
+#include "tissue/relief/opts.h"
 #include "stages/pigment/pigment_opts.h"
 
 int main(int argc, char **argv)

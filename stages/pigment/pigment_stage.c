@@ -5,7 +5,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "eye/relief_opts.h"
+#include "tissue/relief/opts.h"
 #include "image/exr.h"
 #include "stages/pigment/pigment_run.h"
 

@@ -1,9 +1,9 @@
 #ifndef STAGES_PIGMENT_STAGE_H
 #define STAGES_PIGMENT_STAGE_H
-#include "eye/capture.h"
-#include "eye/eye.h"
-#include "eye/pigment_white.h"
-#include "eye/relief.h"
+#include "anatomy/capture.h"
+#include "anatomy/eye.h"
+#include "tissue/pigment/white.h"
+#include "tissue/relief/relief.h"
 
 extern const char *const pigment_orders[], *const pigment_whites[];  // "single", "multiple"; in the order of WHITE_FROM
 enum { WHITE_FROM_SCLERA, WHITE_FROM_CARD, WHITE_FROM_CAMERA };

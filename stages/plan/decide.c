@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/record.h"
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "plan.h"
 
 /* What the folder holds, one bit each. */

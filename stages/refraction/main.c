@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "eye/capture.h"
-#include "eye/eye.h"
-#include "eye/refraction_file.h"
+#include "anatomy/capture.h"
+#include "anatomy/eye.h"
+#include "iris/refraction_file.h"
 
 static void report(struct stage *stage, const struct refraction *f, const struct eye *eye)
 {

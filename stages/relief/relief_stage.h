@@ -1,8 +1,8 @@
 #ifndef STAGES_RELIEF_STAGE_H
 #define STAGES_RELIEF_STAGE_H
-#include "eye/capture.h"
-#include "eye/eye.h"
-#include "eye/relief_opts.h"
+#include "anatomy/capture.h"
+#include "anatomy/eye.h"
+#include "tissue/relief/opts.h"
 
 struct relief_stage_conf {
 	struct relief_conf relief;

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "stages/track/track.h"
+#include "track/clip/track.h"
 
 /* Beside a decoder threads that spin while they wait take more than they win; OpenMP has to be told before it starts. */
 static void start_calm(char **argv)

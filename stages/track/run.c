@@ -1,8 +1,8 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "stages/track/film.h"
-#include "stages/track/wrinkle.h"
+#include "track/clip/film.h"
+#include "track/clip/folds.h"
 
 /* What the video is that nobody asked for, one line each. */
 static void tell_video(struct stage *stage, const struct track_clip *clip)

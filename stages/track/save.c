@@ -5,8 +5,8 @@
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
-#include "stages/track/track.h"
+#include "base/npy/npy.h"
+#include "track/clip/track.h"
 
 enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
 

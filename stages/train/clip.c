@@ -8,7 +8,7 @@
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 
 /* Lids in the modelling camera where the head moved; else those of the video's frames are the same. */
 static const char *const files[] = { "work/skin/gaze.csv",       "work/skin/lids.npy",       "work/skin/lids_model.npy",

@@ -2,7 +2,7 @@
 #ifndef CLIP_H
 #define CLIP_H
 #include "base/stage.h"
-#include "skin/train.h"
+#include "model/train/train.h"
 
 struct clip {
 	struct train_clip train;     // its arrays belong to the clip

@@ -2,7 +2,7 @@
 #ifndef TRAIN_STAGE_H
 #define TRAIN_STAGE_H
 #include "base/stage.h"
-#include "skin/train.h"
+#include "model/train/train.h"
 
 bool train_stage(struct stage *stage, const struct train_conf *conf, const struct opt_each_list *expressions,
                  struct err *err);

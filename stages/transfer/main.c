@@ -4,7 +4,7 @@
  *         barycentric.npz (B, eq. 3.4), transfer.json, registration.png
  */
 #include "base/mem.h"
-#include "skin/transfer_opts.h"
+#include "register/transfer_opts.h"
 #include "stages/transfer/transfer_stage.h"
 
 int main(int argc, char **argv)

@@ -10,9 +10,9 @@
 #include "math/stats.h"
 #include "mesh/mesh_part.h"
 #include "optics/camera_rig.h"
-#include "skin/transfer_file.h"
-#include "skin/transfer_picture.h"
-#include "stages/transfer/eyes.h"
+#include "register/transfer_file.h"
+#include "register/transfer_picture.h"
+#include "register/eyes.h"
 
 enum { OUT = 4, IN = 2 };
 

@@ -1,7 +1,7 @@
 #ifndef STAGES_TRANSFER_STAGE_H
 #define STAGES_TRANSFER_STAGE_H
 #include "base/stage.h"
-#include "skin/transfer.h"
+#include "register/transfer.h"
 
 struct transfer_stage_conf {
 	struct transfer_conf transfer;

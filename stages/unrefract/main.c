@@ -3,7 +3,7 @@
  * writes  work/iris/texture.exr, texture.json; with write_map, NAME.map.exr
  */
 #include "base/mem.h"
-#include "eye/unrefract_opts.h"
+#include "iris/unrefract/opts.h"
 #include "unrefract.h"
 
 int main(int argc, char **argv)

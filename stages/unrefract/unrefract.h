@@ -1,8 +1,8 @@
 /* One eye's photographs into its texture. */
 #ifndef STAGES_UNREFRACT_H
 #define STAGES_UNREFRACT_H
-#include "eye/capture.h"
-#include "eye/unrefract.h"
+#include "anatomy/capture.h"
+#include "iris/unrefract/unrefract.h"
 
 struct run {
 	struct stage *stage;

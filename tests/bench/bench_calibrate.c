@@ -15,7 +15,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/run.h"
-#include "optics/colmap.h"
+#include "sfm/colmap/colmap.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/colmap_defaults.h"
 #include "tests/lib/sfm_scene.h"

@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 #include "bridge/cv_distance.h"
-#include "image/distance.h"
+#include "image/distance/distance.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/lid_scene.h"
 

@@ -11,7 +11,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/light_case.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "bridge/cv_ellipse.h"
-#include "eye/limbus_record.h"
+#include "limbus/record.h"
 #include "tests/bench/integro.h"
 #include "math/stats.h"
 #include "tests/lib/bench.h"

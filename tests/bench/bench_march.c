@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "eye/scene_march.h"
+#include "draw/eye/march/march.h"
 #include "math/rng.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/ridged.h"
 

@@ -7,10 +7,10 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "math/regress.h"
 #include "math/rng.h"
-#include "math/scatter.h"
+#include "math/scatter/scatter.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/peer.h"
 #include "tests/lib/scratch.h"

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 #include "bridge/nls.h"
-#include "eye/pigment.h"
+#include "tissue/pigment/pigment.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/photon.h"
 

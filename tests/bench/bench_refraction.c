@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/cornea_sag.h"
-#include "optics/refraction.h"
+#include "optics/cornea/sag.h"
+#include "optics/refraction/refraction.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/light_case.h"
 #include "tests/lib/storage.h"

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
-#include "eye/relief.h"
+#include "tissue/relief/relief.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/irisphantom.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "eye/scene_march.h"
+#include "draw/eye/march/march.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/ridged.h"
 

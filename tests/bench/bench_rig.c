@@ -10,8 +10,8 @@
 #include "math/rng.h"
 #include "math/simd.h"
 #include "math/vec.h"
-#include "skin/deform.h"
-#include "skin/deform_impl.h"
+#include "rig/deform/deform.h"
+#include "rig/deform/impl.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/face.h"
 #include "tests/lib/fronts.h"
@@ -138,7 +138,7 @@ struct stream {
 	float out[6 * LARGE];
 };
 
-/* Numbers of the rig that a frame reads (deform_impl.h); the maps come on top. */
+/* Numbers of the rig that a frame reads (rig/deform/impl.h); the maps come on top. */
 static long numbers(const struct deform *d)
 {
 	long n = (long)(sizeof *d->globe / sizeof(float)) * d->n_globe_blocks;

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "image/plane.h"
-#include "image/subsurface.h"
+#include "image/subsurface/subsurface.h"
 #include "math/rng.h"
 #include "tests/lib/bench.h"
 

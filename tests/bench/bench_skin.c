@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "tests/lib/bench.h"
 
 static const char sample[] = "samples/face";

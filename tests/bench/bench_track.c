@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "image/video.h"
+#include "image/video/video.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/skin_points.h"
 #include "tests/lib/track_capture.h"

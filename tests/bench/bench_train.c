@@ -13,7 +13,7 @@
 
 #include "base/mem.h"
 #include "math/rng.h"
-#include "math/scatter.h"
+#include "math/scatter/scatter.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/linear_clip.h"
 #include "tests/lib/tracked.h"

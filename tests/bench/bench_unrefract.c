@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "eye/iris_map.h"
+#include "iris/iris_map.h"
 #include "image/exr.h"
 #include "tests/lib/bench.h"
 #include "tests/lib/iris.h"

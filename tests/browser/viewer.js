@@ -334,7 +334,7 @@ async function character(b) {
 	say(fs.statSync(face).size < 20e6, "with a face the page is below 20 MB", `${fs.statSync(face).size}`);
 }
 
-/* What the page's shaders make of the rig, against lib/skin/deform.c: positions to a millionth of the face's width (a few units in
+/* What the page's shaders make of the rig, against lib/rig/deform/deform.c: positions to a millionth of the face's width (a few units in
  * the last place of what stands in single precision), normals of what does not always stand still. Of a wink either side's lids
  * are as with both eyes opened so; what lies between them is neither's. */
 async function posed(b) {

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "optics/colmap.h"
+#include "sfm/colmap/colmap.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

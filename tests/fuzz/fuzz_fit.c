@@ -1,7 +1,7 @@
 /* limbus/NAME.json, which a user may have edited or taken from elsewhere. */
 #include "tests/fuzz/fuzz.h"
 
-#include "eye/fit.h"
+#include "anatomy/fit.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

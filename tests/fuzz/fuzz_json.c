@@ -7,12 +7,12 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/record.h"
-#include "eye/heightfield.h"
-#include "eye/limbus_record.h"
-#include "eye/pigment.h"
+#include "iris/heightfield/heightfield.h"
+#include "limbus/record.h"
+#include "tissue/pigment/pigment.h"
 #include "optics/camera_rig.h"
-#include "skin/model.h"
-#include "skin/wrinkle_map.h"
+#include "model/model.h"
+#include "draw/face/wrinkle_map.h"
 
 /* A capture whose record, model and list of folds are the file in memory; where nothing else is. */
 static const char *capture(const char *file)

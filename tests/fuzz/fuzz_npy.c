@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/npy.h"
+#include "base/npy/npy.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

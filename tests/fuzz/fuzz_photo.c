@@ -1,7 +1,7 @@
 /* Photographs of every kind: head, then decoder. */
 #include "tests/fuzz/fuzz.h"
 
-#include "image/photo.h"
+#include "image/photo/photo.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/npy.h"
-#include "image/video.h"
+#include "base/npy/npy.h"
+#include "image/video/video.h"
 #include "math/stats.h"
 
 static const char *const side_name[SIDES] = { "left", "right" };

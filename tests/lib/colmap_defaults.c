@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "optics/colmap.h"
+#include "sfm/colmap/colmap.h"
 
 static bool recall(struct spent *spent, const char *path)
 {

@@ -4,8 +4,8 @@
 #ifndef TESTS_FACE_H
 #define TESTS_FACE_H
 #include "mesh/mesh.h"
-#include "skin/model.h"
-#include "skin/rig_make.h"
+#include "model/model.h"
+#include "rig/make/make.h"
 
 struct face {
 	struct mesh skin;              // the subject: the sheet alone

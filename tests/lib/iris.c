@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 #include "bridge/cv_photo.h"
-#include "eye/freckle_opts.h"
-#include "eye/unrefract_opts.h"
+#include "iris/freckle/opts.h"
+#include "iris/unrefract/opts.h"
 
 static const double painted_extent = 6.4;  // mm, half-width of the renderer's maps
 

@@ -3,8 +3,8 @@
  */
 #ifndef TESTS_IRIS_H
 #define TESTS_IRIS_H
-#include "eye/freckle.h"
-#include "eye/unrefract.h"
+#include "iris/freckle/freckle.h"
+#include "iris/unrefract/unrefract.h"
 #include "tests/lib/truth.h"
 
 /* As config/unrefract.conf and config/freckles.conf have them. quality: "review". */

@@ -1,7 +1,7 @@
 /* irisphantom: a patch of iris of known relief and pigment, photographed by photons (photon.h). */
 #ifndef TESTS_IRISPHANTOM_H
 #define TESTS_IRISPHANTOM_H
-#include "eye/tissue.h"
+#include "tissue/tissue.h"
 #include "image/image.h"
 
 struct irisphantom {

@@ -2,7 +2,7 @@
  * project's own is compared with. */
 #ifndef TESTS_LID_SCENE_H
 #define TESTS_LID_SCENE_H
-#include "image/distance.h"
+#include "image/distance/distance.h"
 
 struct lid_scene {
 	struct distance_scene scene;  // points into what follows

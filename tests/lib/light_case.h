@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "math/rng.h"
-#include "optics/cornea.h"
+#include "optics/cornea/cornea.h"
 
 struct light_case {
 	struct cornea cornea;

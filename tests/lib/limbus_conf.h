@@ -1,8 +1,8 @@
 /* The defaults of config/limbus.conf, for tests that call the library. */
 #ifndef TESTS_LIMBUS_CONF_H
 #define TESTS_LIMBUS_CONF_H
-#include "eye/limbus_find.h"
-#include "eye/limbus_pose.h"
+#include "limbus/find.h"
+#include "limbus/pose.h"
 
 static const struct limbus_conf limbus_defaults = {
 	.seek = { .min_radius = 0.015, .max_radius = 0.52, .contrast = 0.15, .candidates = 8 },

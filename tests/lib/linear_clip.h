@@ -5,7 +5,7 @@
 #define TESTS_LINEAR_CLIP_H
 #include <stdint.h>
 
-#include "skin/train.h"
+#include "model/train/train.h"
 
 struct linear_clip_conf {
 	long n;

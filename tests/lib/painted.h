@@ -1,7 +1,7 @@
 /* painted: scenes from painted iris maps, written to files and read back as the stages' artifacts are. */
 #ifndef TESTS_PAINTED_H
 #define TESTS_PAINTED_H
-#include "eye/scene.h"
+#include "draw/eye/scene.h"
 
 /* Colour of a point of the iris, mm; its height above the iris plane, mm. */
 typedef void painted_colour(float rgb[3], double x, double y);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 
 bool peer_installed(const char *bench, const char *module, const char *package)
 {

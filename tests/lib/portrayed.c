@@ -1,6 +1,6 @@
 #include "tests/lib/portrayed.h"
 
-#include "eye/scene_impl.h"
+#include "draw/eye/impl.h"
 
 bool portrayed_make(struct portrayed *p, double below)
 {

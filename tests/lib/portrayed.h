@@ -1,7 +1,7 @@
 /* portrayed: a made face with its rig, plain eyes for it and a room round it, for tests of portraits. */
 #ifndef TESTS_PORTRAYED_H
 #define TESTS_PORTRAYED_H
-#include "eye/scene.h"
+#include "draw/eye/scene.h"
 #include "tests/lib/face.h"
 
 struct portrayed {

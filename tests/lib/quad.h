@@ -1,11 +1,11 @@
 /* quad: the cornea's light path in 128 bits (33 digits), to hold results in double and float against. Shares no code with
- * lib/optics. Eye frame, mm (optics/cornea.h).
+ * lib/optics. Eye frame, mm (optics/cornea/cornea.h).
  */
 #ifndef TESTS_QUAD_H
 #define TESTS_QUAD_H
 #include <stdbool.h>
 
-#include "optics/cornea.h"
+#include "optics/cornea/cornea.h"
 
 typedef __float128 quad;
 

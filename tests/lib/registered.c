@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "eye/scene_impl.h"
+#include "draw/eye/impl.h"
 #include "image/exr.h"
-#include "image/patch.h"
+#include "image/patch/patch.h"
 #include "image/picture.h"
 
 static const double extent_mm = 6.4, iris_edge_mm = 0.25;

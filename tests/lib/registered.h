@@ -3,7 +3,7 @@
  */
 #ifndef TESTS_REGISTERED_H
 #define TESTS_REGISTERED_H
-#include "eye/scene.h"
+#include "draw/eye/scene.h"
 #include "tests/lib/truth.h"
 
 struct registered {

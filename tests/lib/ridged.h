@@ -1,7 +1,7 @@
 /* ridged: the eye that the renderer's benchmarks draw: painted fibres, their relief and a collarette, in a room with two lamps. */
 #ifndef TESTS_RIDGED_H
 #define TESTS_RIDGED_H
-#include "eye/scene.h"
+#include "draw/eye/scene.h"
 
 struct scene_conf ridged_conf(int steps, int quadrature, int path);
 

@@ -10,11 +10,11 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
 #include "image/exr.h"
-#include "image/photo.h"
-#include "image/video.h"
+#include "image/photo/photo.h"
+#include "image/video/video.h"
 
 static const size_t LIMIT = (size_t)1 << 30;
 

@@ -3,7 +3,7 @@
 #define TESTS_SFM_SCENE_H
 #include <stdbool.h>
 
-#include "optics/colmap.h"
+#include "sfm/colmap/colmap.h"
 
 /* n_images views on a circle of radius 5 round the origin, n_points points in a ball of radius 1, each seen by all; noise of
  * sigma 0.3 px; errors of points as COLMAP stores them. SIMPLE_RADIAL, 1000 x 800 px. colmap_free. */

@@ -8,8 +8,8 @@
 #include <time.h>
 
 #include "base/mem.h"
-#include "base/npy.h"
-#include "image/video.h"
+#include "base/npy/npy.h"
+#include "image/video/video.h"
 
 enum { TENTH = 10, NEAR = 24, NEIGHBOURS = 12, OUTLINE = 128 };
 

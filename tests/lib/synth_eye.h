@@ -6,7 +6,7 @@
 #define TESTS_SYNTH_EYE_H
 #include <stdint.h>
 
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "math/ellipse.h"
 
 struct synth_eye {

@@ -8,7 +8,7 @@
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 
 enum { TENTH = 10 };
 static const double blink_s = 0.4;  // a blink's peak lies within this after its start

@@ -8,7 +8,7 @@
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 
 static const double begins = 0.03, least = 0.05;  // shares of the peak's weight; weight of a unit that is shown at all
 

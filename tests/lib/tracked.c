@@ -9,7 +9,7 @@
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "math/rng.h"
 
 /* An array of the truth as double; null where the clip has none (the eye is not in view). free(). */

@@ -3,7 +3,7 @@
  */
 #ifndef TESTS_TRACKED_H
 #define TESTS_TRACKED_H
-#include "skin/train.h"
+#include "model/train/train.h"
 
 enum { TRACKED_POINTS = 20, TRACKED_AU = 2, TRACKED_INPUTS = SKIN_EYE_INPUTS + TRACKED_AU };
 

@@ -1,7 +1,7 @@
 /* The defaults of config/transfer.conf, for tests and benchmarks that call the library. */
 #ifndef TESTS_TRANSFER_CONF_H
 #define TESTS_TRANSFER_CONF_H
-#include "skin/transfer.h"
+#include "register/transfer.h"
 
 static const struct transfer_conf transfer_defaults = {
 	.nricp = { .nodes = { 300, 2500, 12000 }, .rounds = { 4, 4, 2 }, .stiff = { 0.2, 0.016 }, .noise = 2.7, .rigid = 0.06, .growth = 0.6,

@@ -3,8 +3,8 @@
  */
 #ifndef TESTS_TRUTH_H
 #define TESTS_TRUTH_H
-#include "eye/eye.h"
-#include "eye/fit.h"
+#include "anatomy/eye.h"
+#include "anatomy/fit.h"
 
 struct truth {
 	char name[64], photo[1024];       // path of the photograph

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/video.h"
+#include "image/video/video.h"
 #include "math/rng.h"
 
 enum { REACH = 5 };

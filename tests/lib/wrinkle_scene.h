@@ -2,7 +2,7 @@
  * (rays over the height field, no 2D valley) and by a lamp, moved, patterned, with a mole and a brow, photographed with noise. */
 #ifndef TESTS_WRINKLE_SCENE_H
 #define TESTS_WRINKLE_SCENE_H
-#include "skin/wrinkle.h"
+#include "track/wrinkle/wrinkle.h"
 
 enum { SCENE_W = 440, SCENE_H = 300, SCENE_FRAMES = 3, GROOVES = 3 };
 

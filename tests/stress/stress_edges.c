@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "optics/lightpath.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/quad.h"
 #include "tests/lib/stress.h"
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "optics/lightpath.h"
-#include "optics/lightpath_path.h"
+#include "optics/lightpath/lightpath.h"
+#include "optics/lightpath/path.h"
 #include "tests/lib/light_case.h"
 #include "tests/lib/stress.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "eye/pigment.h"
+#include "tissue/pigment/pigment.h"
 #include "tests/lib/stress.h"
 
 /* The priors of config/pigment.conf, first order and all orders. */

@@ -1,7 +1,7 @@
 /* The eye's renderer over random scenes: anatomy, settings, light and view over their whole ranges; iris maps and pigments as
  * strangers make them; each eye in four lights and views. Nothing that comes out is not a number, is negative or covers more
  * than all of a pixel. Energy: the fitted model alone is never brighter than the even room it stands in; with the photograph's
- * detail, a texel is brightened no more than scene_colour.c says. Flagged: a scene that was refused. */
+ * detail, a texel is brightened no more than draw/eye/colour.c says. Flagged: a scene that was refused. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -10,8 +10,8 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "eye/scene.h"
-#include "eye/scene_look.h"
+#include "draw/eye/scene.h"
+#include "draw/eye/look.h"
 #include "image/exr.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/stress.h"

@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 #include "math/regress.h"
-#include "math/scatter.h"
+#include "math/scatter/scatter.h"
 #include "tests/lib/linear_clip.h"
 #include "tests/lib/stress.h"
 

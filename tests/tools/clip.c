@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "bridge/cv_photo.h"
-#include "image/video.h"
+#include "image/video/video.h"
 
 static bool put(struct video_writer **writer, long *frame, const char *out, int width, int times, const char *picture, struct err *err)
 {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/video.h"
+#include "image/video/video.h"
 
 static double difference(const struct video_frame *f, const uint8_t *first)
 {

@@ -9,10 +9,10 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
 #include "image/exr.h"
-#include "image/video.h"
+#include "image/video/video.h"
 #include "tests/lib/face.h"
 
 enum { FRAMES = 12, W = 160, H = 90 };

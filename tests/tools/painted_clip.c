@@ -14,8 +14,8 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy.h"
-#include "image/video.h"
+#include "base/npy/npy.h"
+#include "image/video/video.h"
 #include "math/stats.h"
 #include "tests/lib/painted_eye.h"
 #include "tests/lib/painted_film.h"
@@ -148,7 +148,7 @@ static bool score_skin(long reference, double fps, struct err *err)
 	return ok;
 }
 
-/* When a blink has fallen to, and risen from, the share of its depth at which it is said to begin and end (eye_events.c). */
+/* When a blink has fallen to, and risen from, the share of its depth at which it is said to begin and end (track/eye/events.c). */
 static void blink_ends(double end[2], const struct film_event *e)
 {
 	const double onset = 0.15, step = 1e-4;

@@ -1,4 +1,4 @@
-/* posed RIG.npz: a rig's vertices and their normals (area-weighted) as lib/skin/deform.c poses them, for each line of standard
+/* posed RIG.npz: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
  * input: gaze of the left eye and of the right (two numbers each, degrees), how far open each is of what is usual there, and
  * expressions. Standard output: floats [lines][2][vertices][3]. */
 #include <stdio.h>
@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 #include "mesh/mesh.h"
-#include "skin/deform.h"
-#include "skin/drive.h"
+#include "rig/deform/deform.h"
+#include "rig/drive.h"
 
 /* Controls of one line; false where it does not say them all. */
 static bool controls_of(double *c, const struct rig *rig, char *line)

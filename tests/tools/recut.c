@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/video.h"
+#include "image/video/video.h"
 
 enum { FRAMES = 4000, PARTS = 16 };
 

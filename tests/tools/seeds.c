@@ -9,10 +9,10 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/npy.h"
+#include "base/npy/npy.h"
 #include "image/exr.h"
 #include "optics/camera_rig.h"
-#include "optics/colmap.h"
+#include "sfm/colmap/colmap.h"
 #include "tests/lib/variant.h"
 
 static const char *const stems[] = { "cameras", "images", "points3D" };

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
-#include "image/photo.h"
+#include "image/photo/photo.h"
 #include "tests/lib/bent.h"
 #include "tests/lib/variant.h"
 

@@ -1,0 +1,112 @@
+#include "anatomy/capture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+enum { SIDES = 3 };
+static const char *const side_names[SIDES] = { "eye", "left", "right" };
+static const char *const iris_dirs[SIDES] = { "work/iris_eye", "work/iris_left", "work/iris_right" };
+static const char *const render_dirs[SIDES] = { "work/render_eye", "work/render_left", "work/render_right" };
+
+const struct opt_each *capture_each(const struct opt_each_list *list, const char *name)
+{
+	for (int i = 0; i < list->n; i++)
+		if (!strcmp(list->items[i].name, name))
+			return &list->items[i];
+	return 0;
+}
+
+static int side_of(const char *name, const struct opt_each_list *eye_of, struct err *err)
+{
+	const struct opt_each *given = capture_each(eye_of, name);
+	if (given) {
+		for (int s = 1; s < SIDES; s++)
+			if (!strcmp(given->text, side_names[s]))
+				return s;
+		err_set(err, "capture.conf: photo.%s.eye = %.40s: must be left or right", name, given->text);
+		return -1;
+	}
+	for (int s = 1; s < SIDES; s++) {
+		size_t n = strlen(side_names[s]);
+		if (!strncmp(name, side_names[s], n) && (name[n] == '_' || !name[n]))
+			return s;
+	}
+	return 0;
+}
+
+static char *stem(const char *file)
+{
+	const char *dot = strrchr(file, '.');
+	return dot && dot != file ? mem_printf("%.*s", (int)(dot - file), file) : mem_str(file);
+}
+
+static void add_photo(struct capture *capture, struct stage *stage, char *name, const char *file, int side)
+{
+	for (int i = 0; i < capture->n_photos; i++)
+		if (!strcmp(capture->photos[i].name, name)) {
+			stage_warn(stage, "photos/%s: left out: %s has the same name", file, capture->photos[i].file);
+			free(name);
+			return;
+		}
+	capture->photos = mem_grow(capture->photos, (size_t)capture->n_photos + 1, sizeof *capture->photos);
+	capture->photos[capture->n_photos++] = (struct capture_photo){
+		.name = name, .file = mem_printf("photos/%s", file), .fit = mem_printf("work/limbus/%s.json", name), .eye = side
+	};
+}
+
+/* Sides present become eyes[], the first of them in work/iris. */
+static void number_eyes(struct capture *capture)
+{
+	int index[SIDES];
+	for (int s = 0; s < SIDES; s++) {
+		bool present = false;
+		for (int i = 0; i < capture->n_photos; i++)
+			present |= capture->photos[i].eye == s;
+		index[s] = present ? capture->n_eyes : -1;
+		if (!present)
+			continue;
+		bool first = !capture->n_eyes;
+		capture->eyes[capture->n_eyes++] = (struct capture_eye){
+			side_names[s], first ? "work/iris" : iris_dirs[s], first ? "work/render" : render_dirs[s]
+		};
+	}
+	for (int i = 0; i < capture->n_photos; i++)
+		capture->photos[i].eye = index[capture->photos[i].eye];
+}
+
+bool capture_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
+{
+	struct file_list files;
+	*capture = (struct capture){ 0 };
+	if (!stage_list(stage, &files, "photos", err))
+		return false;
+	for (int i = 0; i < files.n; i++) {
+		char *name = stem(files.names[i]);
+		int side = side_of(name, eye_of, err);
+		if (side < 0) {
+			free(name);
+			break;
+		}
+		add_photo(capture, stage, name, files.names[i], side);
+	}
+	file_list_free(&files);
+	if (err_is(err)) {
+		capture_free(capture);
+		return false;
+	}
+	number_eyes(capture);
+	return capture->n_photos ? true : err_set(err, "%s/photos: no photograph there", stage->capture);
+}
+
+void capture_free(struct capture *capture)
+{
+	for (int i = 0; i < capture->n_photos; i++) {
+		free(capture->photos[i].name);
+		free(capture->photos[i].file);
+		free(capture->photos[i].fit);
+	}
+	free(capture->photos);
+	*capture = (struct capture){ 0 };
+}

@@ -1,0 +1,130 @@
+#include "draw/face/impl.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/vec.h"
+
+/* Neighbours along the skin, and how much light comes from them. */
+static void neighbours(struct portrait *p)
+{
+	const struct rig *rig = p->rig;
+	int n = rig->n;
+	p->near_start = mem_new((size_t)n + 2, sizeof *p->near_start);
+	for (int f = 0; f < rig->n_faces; f++)
+		for (int k = 0; k < 3 && rig->part[rig->faces[f][0]] == RIG_SKIN; k++)
+			p->near_start[rig->faces[f][k] + 2] += 2;
+	for (int i = 2; i <= n + 1; i++)
+		p->near_start[i] += p->near_start[i - 1];
+	p->near = mem_new((size_t)p->near_start[n + 1] + 1, sizeof *p->near);
+	p->spread = mem_new((size_t)p->near_start[n + 1] + 1, sizeof *p->spread);
+	for (int f = 0; f < rig->n_faces; f++)
+		for (int k = 0; k < 3 && rig->part[rig->faces[f][0]] == RIG_SKIN; k++)
+			for (int j = 1; j < 3; j++) {
+				int a = rig->faces[f][k], b = rig->faces[f][(k + j) % 3], at = p->near_start[a + 1]++;
+				double d[3];
+				for (int c = 0; c < 3; c++)
+					d[c] = rig->rest[a][c] - rig->rest[b][c];
+				p->near[at] = b;
+				p->spread[at] = (float)(0.5 * exp(-vec_norm(d) / fmax(p->conf.scatter_mm, 0.01)));
+			}
+}
+
+/* Albedo: the skin's, in blotches; redder and darker where it is thin (lids, their margins, the canthi). */
+static void colours(struct portrait *p)
+{
+	static const double thin[3] = { 0.93, 0.80, 0.80 }, margin[3] = { 0.98, 0.66, 0.64 };
+	struct portrait_mesh *m = &p->mesh;
+	for (int i = 0; i < p->rig->n; i++) {
+		double gap = p->rig->gap[i];
+		double radius = p->rig->globe[p->rig->side[i]].radius, lid = exp(-pow(fmax(gap, 0) / (0.28 * radius), 2));
+		double rim = exp(-pow(fmax(gap - 0.2, 0) / (0.055 * radius), 2));
+		static const double redder[3] = { 0.03, -0.14, -0.13 };
+		double blotch = p->conf.texture * (0.6 * portrait_noise(m->rest[i], 0.13f) + 0.4 * portrait_noise(m->rest[i], 0.45f));
+		for (int c = 0; c < 3; c++)
+			m->albedo[i][c] = (float)(p->conf.skin_rgb[c] * (1 + redder[c] * blotch) * (1 + 0.7 * lid * (thin[c] - 1)) * (1 + 0.8 * rim * (margin[c] - 1)));
+	}
+	for (int i = m->n_base; i < m->n; i++)
+		for (int c = 0; c < 3; c++)
+			m->albedo[i][c] = 0.5f * (m->albedo[m->between[i - m->n_base][0]][c] + m->albedo[m->between[i - m->n_base][1]][c]);
+}
+
+struct portrait *portrait_new(const struct rig *rig, const struct scene *const eyes[2], const struct envmap *env,
+                              const struct portrait_conf *conf)
+{
+	struct portrait *p = mem_new(1, sizeof *p);
+	*p = (struct portrait){ .rig = rig, .eye = { eyes[0], eyes[1] }, .env = env, .conf = *conf, .deform = deform_new(rig) };
+	portrait_mesh_make(p);
+	neighbours(p);
+	colours(p);
+	p->lit = mem_new((size_t)rig->n + 1, sizeof *p->lit);
+	p->lit_at = mem_new((size_t)rig->n + 1, sizeof *p->lit_at);
+	deform_rest(p->deform, p->mesh.x, p->mesh.normal);
+	for (int s = 0; s < 2; s++)
+		rig_globe_rotation(p->target_from_globe[s], rig, (double[]){ 0, 0, 0 });
+	portrait_mesh_move(p);
+	portrait_wet_make(p);
+	portrait_lashes_make(p);
+	return p;
+}
+
+void portrait_free(struct portrait *p)
+{
+	if (!p)
+		return;
+	portrait_mesh_free(&p->mesh);
+	ray_scene_free(p->shadow);
+	deform_free(p->deform);
+	free(p->lash);
+	free(p->wrinkle_input);
+	free(p->wrinkle_strength);
+	free(p->lit);
+	free(p->lit_at);
+	free(p->near_start);
+	free(p->near);
+	free(p->spread);
+	free(p);
+}
+
+void portrait_pose(struct portrait *p, const double *controls)
+{
+	double e[RIG_COMPONENTS], turn[2][3][3];
+	rig_components(e, p->rig, controls);
+	rig_globes_turned(turn, p->rig, controls);
+	memcpy(p->target_from_globe, turn, sizeof turn);
+	portrait_fold_pose(p, controls);
+	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);
+	portrait_mesh_move(p);
+}
+
+const float (*portrait_vertices(const struct portrait *p))[3]
+{
+	return (const float(*)[3])p->mesh.x;
+}
+
+const float (*portrait_normals(const struct portrait *p))[3]
+{
+	return (const float(*)[3])p->mesh.normal;
+}
+
+struct portrait_view portrait_front(const struct rig *rig, int side, double field, double yaw, double pitch, int width, int height)
+{
+	// A long lens, as portraits are taken.
+	double distance = 900, cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch), aim[3], t[3];
+	struct portrait_view v = { .width = width, .height = height, .center_px = { width / 2.0, height / 2.0 }, .focal_px = distance * width / field };
+	double turn[3][3] = { { cy, 0, -sy }, { sp * sy, cp, sp * cy }, { cp * sy, -sp, cp * cy } };
+	double cam_from_head[3][3] = { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } }, m[3][3];
+	mat_mul(m, turn, cam_from_head);
+	mat_mul(m, m, rig->head_from_target);
+	for (int c = 0; c < 3; c++)
+		aim[c] = side < 0 ? 0.5 * (rig->globe[0].center[c] + rig->globe[1].center[c]) : rig->globe[side].center[c];
+	mat_vec(t, (const double(*)[3])m, aim);
+	for (int i = 0; i < 3; i++) {
+		for (int j = 0; j < 3; j++)
+			v.cam_from_target[i][j] = m[i][j];
+		v.cam_from_target[i][3] = (i == 2 ? distance : 0) - t[i];
+	}
+	return v;
+}

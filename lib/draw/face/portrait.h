@@ -1,0 +1,74 @@
+/* portrait: a driven character drawn: skin as a smooth surface lit by an environment, with the eyes of scene.h in it.
+ *
+ * Frames   the rig's (mm) and the camera's (x right, y down, z forward), in which the environment stands.
+ * Skin     Phong tessellation of the mesh round the eyes (Boubekeur and Alexa 2008; it keeps the vertices); irradiance
+ *          with shadows at the vertices, spread beneath the skin on the screen (subsurface.h), and a rough mirror.
+ * Colour   linear Rec. 709; a white plane facing the camera has value 1.
+ */
+#ifndef DRAW_FACE_PORTRAIT_H
+#define DRAW_FACE_PORTRAIT_H
+#include "draw/eye/scene.h"
+#include "rig/deform/deform.h"
+#include "draw/face/wrinkle_map.h"
+
+struct portrait_conf {
+	int lights;            // directions that stand for the environment
+	int subdivide;         // times the triangles near the eyes are cut in four
+	int samples;           // samples^2 of a pixel where it shows more than one thing
+	int eye_samples;       // the same inside the eyes
+	double skin_rgb[3];    // albedo
+	double texture;        // strength of pores and blotches: 1 as on a face, 0 none
+	double scatter_mm;     // how far red light travels in skin: 1.5 times the root mean square; 0: not at all
+	double tear_mm;        // height of the tear line along the lids; 0: none, and no dark under their edges
+	double tear_absorb[3]; // absorption of tear fluid, 1/mm
+	double caruncle_wet;   // 0..1: how moist and red the inner corners are
+	double lash_mm;        // length of the upper lashes; 0: none
+};
+
+/* What one frame shows. */
+struct portrait_view {
+	double cam_from_target[3][4];
+	double focal_px, center_px[2];
+	int width, height;
+};
+
+struct portrait;
+
+/* env, eyes (left, right) and rig must outlive it. portrait_free. */
+struct portrait *portrait_new(const struct rig *rig, const struct scene *const eyes[2], const struct envmap *env,
+                              const struct portrait_conf *conf);
+void portrait_free(struct portrait *portrait);
+
+/* Puts an expression's wrinkles on: as strong as its action unit, by name. maps must outlive it. */
+void portrait_wear(struct portrait *portrait, const struct wrinkle_maps *maps, int n_au, char *const au_names[]);
+
+/* Poses it: controls g~ [rig.n_inputs]. */
+void portrait_pose(struct portrait *portrait, const double *controls);
+
+/* Its vertices as posed, [rig.n][3], and unit normals. Borrowed. */
+const float (*portrait_vertices(const struct portrait *portrait))[3];
+const float (*portrait_normals(const struct portrait *portrait))[3];
+
+/* Lights the vertices for a camera that stands so. all: every vertex; else those that have moved since the last time. */
+void portrait_light(struct portrait *portrait, const struct portrait_view *view, bool all);
+
+/* RGB and A (cover), premultiplied. image_free. The same bytes for any number of threads. */
+struct image portrait_draw(struct portrait *portrait, const struct portrait_view *view);
+
+/* What such a picture (of portrait_draw, in the same view) is of, a channel each:
+ * Z          depth along the camera's axis, mm; 0 where nothing is.
+ * DISTANCE   from each point of the globes to the lid's edge as it stands on the screen, mm; INFINITY off the globes and more
+ *            than PORTRAIT_REACH_MM from it.
+ * LAKE       depth of the tear fluid there, mm; 0 where there is but the film.
+ * NORMAL     unit, in the camera's frame; 0 where nothing is, or where a globe ends.
+ * DIFFUSE, SPECULAR   RGB each; together the picture.
+ * image_free. */
+#define PORTRAIT_REACH_MM 12.0
+enum portrait_layer { PORTRAIT_Z, PORTRAIT_DISTANCE, PORTRAIT_LAKE, PORTRAIT_NORMAL, PORTRAIT_DIFFUSE = PORTRAIT_NORMAL + 3,
+	                  PORTRAIT_SPECULAR = PORTRAIT_DIFFUSE + 3, PORTRAIT_LAYERS = PORTRAIT_SPECULAR + 3 };
+struct image portrait_layers(struct portrait *portrait, const struct portrait_view *view, const struct image *picture);
+
+/* A view of both eyes (side < 0) or one (0 left, 1 right) from the front, field mm across, turned by yaw and pitch (rad). */
+struct portrait_view portrait_front(const struct rig *rig, int side, double field, double yaw, double pitch, int width, int height);
+
+#endif

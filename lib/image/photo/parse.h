@@ -1,0 +1,60 @@
+/* photo_parse: what header.c and the files beside it share; nobody else includes this. */
+#ifndef IMAGE_PHOTO_PARSE_H
+#define IMAGE_PHOTO_PARSE_H
+#include "image/photo/photo.h"
+
+/* Bytes of a stranger's file. Reads past the end give 0: every parser then runs into its own checks. */
+struct bytes {
+	const uint8_t *p;
+	size_t n;
+};
+
+static inline struct bytes bytes_from(struct bytes b, size_t at)
+{
+	return at < b.n ? (struct bytes){ b.p + at, b.n - at } : (struct bytes){ b.p, 0 };
+}
+
+static inline uint32_t bytes_be(struct bytes b, size_t at, int n)
+{
+	uint32_t v = 0;
+	for (int i = 0; i < n; i++)
+		v = v << 8 | (at < b.n && b.n - at > (size_t)i ? b.p[at + (size_t)i] : 0);
+	return v;
+}
+
+static inline uint32_t bytes_le(struct bytes b, size_t at, int n)
+{
+	uint32_t v = 0;
+	for (int i = n - 1; i >= 0; i--)
+		v = v << 8 | (at < b.n && b.n - at > (size_t)i ? b.p[at + (size_t)i] : 0);
+	return v;
+}
+
+/* Each fills width, height, bits, grey and exif; false, err set, when the file should not be decoded. */
+bool photo_parse_jpeg(struct photo *photo, struct bytes file, struct err *err);
+bool photo_parse_png(struct photo *photo, struct bytes file, struct err *err);
+bool photo_parse_tiff(struct photo *photo, struct bytes file, struct err *err);
+bool photo_parse_exr(struct photo *photo, struct bytes file, struct err *err);
+
+/* What the camera says of its lens, in EXIF's terms; NAN where it does not. */
+struct photo_lens {
+	double focal_mm, focal_35mm;
+	double plane_res, plane_unit_mm;  // pixels a unit on the sensor; length of the unit
+	double full_width, full_height;   // pixels of the picture as the camera wrote it
+};
+
+/* exif->focal_px for a picture of width × height, where the lens' numbers are believable. */
+void photo_focal(struct photo_exif *exif, const struct photo_lens *lens, int width, int height);
+
+/* A block of EXIF data as JPEG and PNG carry it: TIFF header first. */
+void photo_exif_block(struct photo *photo, struct bytes tiff);
+
+/* Decoders: encoded values of what photo_header has accepted, rgb[height][width][3] before orientation. */
+bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err);
+bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err);
+bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err);
+
+/* 8-bit values times 257, n of them. */
+void photo_widen(uint16_t *out, const uint8_t *in, size_t n);
+
+#endif

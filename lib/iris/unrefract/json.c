@@ -1,0 +1,72 @@
+#include <math.h>
+#include <stdio.h>
+
+#include "base/json.h"
+#include "iris/unrefract/unrefract.h"
+
+static const double deg = M_PI / 180;
+
+static json_t *view_json(const struct unrefract_view *view)
+{
+	json_t *json = json_object();
+	json_object_set_new(json, "name", json_string(view->name));
+	json_object_set_new(json, "used", json_boolean(view->used));
+	if (!view->used) {
+		json_object_set_new(json, "reason", json_string(view->note));
+		return json;
+	}
+	double gain[3] = { view->gain[0], view->gain[1], view->gain[2] };
+	json_object_set_new(json, "rotation_deg", json_number(view->rotation / deg));
+	json_object_set_new(json, "photo_from_map", json_numbers(6, &view->iris.a[0][0]));
+	json_object_set_new(json, "gain", json_numbers(3, gain));
+	json_object_set_new(json, "correlation", json_number(view->correlation));
+	json_object_set_new(json, "px_per_mm", json_number(iris_view_px_per_mm(&view->iris)));
+	json_object_set_new(json, "lid_share", json_number(view->survey.lid_share));
+	json_object_set_new(json, "glint_share", json_number(view->survey.glint_share));
+	return json;
+}
+
+/* What would make the next capture better. */
+static json_t *advice(const struct unrefract_texture *texture, int n, const struct unrefract_view views[])
+{
+	json_t *list = json_array();
+	double lid = 1, glint = 1, fine = 0, tilt = 10;
+	for (int i = 0; i < n; i++)
+		if (views[i].used) {
+			lid = fmin(lid, views[i].survey.lid_share);
+			glint = fmin(glint, views[i].survey.glint_share);
+			fine = fmax(fine, iris_view_px_per_mm(&views[i].iris));
+			tilt = fmin(tilt, views[i].fit->theta);
+		}
+	if (texture->seen < 0.9 && lid > 0.03)
+		json_array_append_new(list, json_string("Lids or lashes hide part of the iris: open the eye wide, or lift the "
+		                                        "upper lid, or add a photograph from another side."));
+	if (glint > 0.02)
+		json_array_append_new(list, json_string("Reflections cover part of the iris: cross-polarise, move the light "
+		                                        "to the side, or add a photograph with the light elsewhere."));
+	if (fine < 40)
+		json_array_append_new(list, json_string("The iris is small in the photograph: move closer or use a longer "
+		                                        "lens, so that it spans 800 pixels or more."));
+	if (tilt > 30 * deg)
+		json_array_append_new(list, json_string("The eye is seen from the side only: add a photograph from the front."));
+	return list;
+}
+
+bool unrefract_save_json(const char *path, const struct unrefract_texture *texture, int n,
+                         const struct unrefract_view views[], const char *made_by, struct err *err)
+{
+	json_t *json = json_object(), *photos = json_array();
+	json_object_set_new(json, "size", json_integer(texture->rgbw.width));
+	json_object_set_new(json, "extent_mm", json_number(texture->extent));
+	json_object_set_new(json, "texels_per_mm", json_number(texture->rgbw.width / (2 * texture->extent)));
+	json_object_set_new(json, "pupil", json_pack("{s:f,s:f,s:f}", "cx", texture->pupil.cx, "cy", texture->pupil.cy,
+	                                             "r", texture->pupil.r));
+	json_object_set_new(json, "seen", json_number(texture->seen));
+	for (int i = 0; i < n; i++)
+		json_array_append_new(photos, view_json(&views[i]));
+	json_object_set_new(json, "photos", photos);
+	json_object_set_new(json, "photograph_better", advice(texture, n, views));
+	bool ok = json_write(path, json, made_by, err);
+	json_decref(json);
+	return ok;
+}

@@ -1,0 +1,116 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "iris/unrefract/mask.h"
+#include "image/plane.h"
+
+enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };
+
+/* How unlike its ring each cell of the sheet is in one plane, the most of the planes so far; NAN where unseen. */
+static void add_evidence(float (*cell)[RINGS], const float *plane, const float *weight, const struct sheet *sheet)
+{
+	const float least_spread = 0.2f;  // log: shading alone makes as much
+	double to = sheet->size / (2 * sheet->extent);
+	struct rings rings = rings_of(plane, weight, sheet, true, least_spread);
+	rings_even(&rings);
+	for (int a = 0; a < ANGLES; a++)
+		for (int r = 0; r < RINGS; r++) {
+			double p[2], t = (r + 0.5) / RINGS;
+			sheet_point(p, sheet, t, 2 * M_PI * (a + 0.5) / ANGLES);
+			double x = (p[0] + sheet->extent) * to, y = (p[1] + sheet->extent) * to;
+			float z = fabsf(rings_z(&rings, plane_sample(plane, sheet->size, sheet->size, x, y), t));
+			bool seen = plane_sample(weight, sheet->size, sheet->size, x, y) >= 0.5f;
+			cell[a][r] = seen ? fmaxf(cell[a][r], z) : NAN;
+		}
+}
+
+/* Positive where rather lid than iris: in brightness, or in hue, which shading leaves alone. */
+static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *weight,
+                         const struct sheet *sheet, double lid_z)
+{
+	long n = (long)sheet->size * sheet->size;
+	float *hue = mem_array((size_t)n, sizeof *hue);
+	for (int c = 0; c < 3; c++)
+		add_evidence(cell, logs[c], weight, sheet);
+	for (int c = 0; c < 2; c++) {
+		for (long i = 0; i < n; i++)
+			hue[i] = logs[c][i] - logs[c + 1][i];
+		add_evidence(cell, hue, weight, sheet);
+	}
+	for (int a = 0; a < ANGLES; a++)
+		for (int r = 0; r < RINGS; r++)
+			cell[a][r] = isfinite(cell[a][r]) ? fminf(cell[a][r], 2 * (float)lid_z) - (float)lid_z : 0;
+	free(hue);
+}
+
+/* The best closed path: at each angle the first covered ring, RINGS where open. Dynamic programming twice round, so
+ * that the seam at angle 0 is an angle like any other. */
+static void lid_path(int path[ANGLES], float (*const gain)[RINGS + 1], double smooth)
+{
+	enum { STATES = RINGS + 1, STEPS = 2 * ANGLES };
+	short(*from)[STATES] = mem_array(STEPS, sizeof *from);
+	double best[STATES] = { 0 };
+	for (int k = 0; k < STEPS; k++) {
+		double next[STATES];
+		for (int s = 0; s < STATES; s++) {
+			int arg = s;
+			for (int q = 0; q < STATES; q++)
+				if (best[q] - smooth * abs(q - s) > best[arg] - smooth * abs(arg - s))
+					arg = q;
+			from[k][s] = (short)arg;
+			next[s] = best[arg] - smooth * abs(arg - s) + gain[k % ANGLES][s];
+		}
+		for (int s = 0; s < STATES; s++)
+			best[s] = next[s];
+	}
+	int s = 0;
+	for (int q = 1; q < STATES; q++)
+		s = best[q] > best[s] ? q : s;
+	for (int k = STEPS - 1; k >= 0; k--) {
+		if (k < STEPS - ANGLES / 2 && k >= ANGLES / 2)
+			path[k % ANGLES] = s;
+		s = from[k][s];
+	}
+	free(from);
+}
+
+/* A lid covers a long arc of the limbus; what is shorter is a shadow, a crypt or a reflection. */
+static void drop_short(int path[ANGLES])
+{
+	int start = 0;
+	while (start < ANGLES && path[start] < RINGS)
+		start++;
+	for (int i = 0; i < ANGLES && start < ANGLES; i++) {
+		int a = (start + i) % ANGLES, n = 0;
+		while (n < ANGLES && path[(a + n) % ANGLES] < RINGS)
+			n++;
+		for (int k = 0; k < n && n < LID_MIN_DEG * ANGLES / 360; k++)
+			path[(a + k) % ANGLES] = RINGS;
+		i += n;
+	}
+}
+
+void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], const float *weight,
+                    const struct sheet *sheet, const struct unrefract_conf *conf)
+{
+	float(*cell)[RINGS] = mem_new(ANGLES, sizeof *cell);
+	float(*gain)[RINGS + 1] = mem_array(ANGLES, sizeof *gain);
+	lid_evidence(cell, logs, weight, sheet, conf->lid_z);
+	for (int a = 0; a < ANGLES; a++) {
+		gain[a][RINGS] = 0;
+		for (int r = RINGS - 1; r >= 0; r--)
+			gain[a][r] = gain[a][r + 1] + cell[a][r];
+	}
+	int path[ANGLES];
+	lid_path(path, gain, conf->lid_smooth);
+	drop_short(path);
+	const int reach = 2;  // the path is good to a ring; its mean over a few angles to less
+	for (int a = 0; a < ANGLES; a++) {
+		lid_t[a] = 0;
+		for (int k = -reach; k <= reach; k++)
+			lid_t[a] += (double)path[(a + k + ANGLES) % ANGLES] / RINGS / (2 * reach + 1);
+	}
+	free(gain);
+	free(cell);
+}

@@ -1,0 +1,165 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "iris/unrefract/align.h"
+#include "iris/unrefract/mask.h"
+#include "iris/unrefract/sample.h"
+#include "image/plane.h"
+
+enum { MARGIN_POINTS = 72 };
+
+/* Circle through points in the least-squares sense: x² + y² = 2 cx x + 2 cy y + k, solved about the mean. */
+static struct circle circle_fit(int n, const double p[][2])
+{
+	double mx = 0, my = 0, xx = 0, xy = 0, yy = 0, xr = 0, yr = 0, rr = 0;
+	for (int i = 0; i < n; i++) {
+		mx += p[i][0] / n;
+		my += p[i][1] / n;
+	}
+	for (int i = 0; i < n; i++) {
+		double x = p[i][0] - mx, y = p[i][1] - my, r2 = x * x + y * y;
+		xx += x * x, xy += x * y, yy += y * y;
+		xr += x * r2, yr += y * r2, rr += r2;
+	}
+	double det = 2 * (xx * yy - xy * xy);
+	double cx = (xr * yy - yr * xy) / det, cy = (yr * xx - xr * xy) / det;
+	return (struct circle){ mx + cx, my + cy, sqrt(rr / n + cx * cx + cy * cy) };
+}
+
+/* The pupil's margin, seen through the cornea as an ellipse, in the iris plane. */
+static struct circle pupil_in_plane(const struct unrefract_view *view)
+{
+	const struct ellipse *e = &view->fit->pupil;
+	double p[MARGIN_POINTS][2];
+	int n = 0;
+	for (int i = 0; i < MARGIN_POINTS && view->fit->has_pupil; i++) {
+		double s = 2 * M_PI * i / MARGIN_POINTS, a = e->a * cos(s), b = e->b * sin(s);
+		double px[2] = { e->cx + a * cos(e->angle) - b * sin(e->angle), e->cy + a * sin(e->angle) + b * cos(e->angle) };
+		n += iris_see(p[n], 0, &view->iris, px);
+	}
+	return n < MARGIN_POINTS / 2 ? (struct circle){ 0 } : circle_fit(n, p);
+}
+
+/* Where no pupil was found: the radius at which the brightness of the rings rises most. */
+static struct circle pupil_from_rings(const float *lum, const float *seen, int size, double extent, double limbus)
+{
+	struct sheet disc = { size, extent, { 0, 0, 0 }, limbus, 0 };
+	struct rings rings = rings_of(lum, seen, &disc, true, 0.1f);
+	int best = 0;
+	float rise = 0;
+	for (int i = SHEET_RINGS / 8; i + 3 < SHEET_RINGS * 3 / 4; i++)
+		if (rings.median[i + 2] - rings.median[i] > rise) {
+			rise = rings.median[i + 2] - rings.median[i];
+			best = i + 1;
+		}
+	return (struct circle){ 0, 0, best ? limbus * (best + 0.5) / SHEET_RINGS : 0.3 * limbus };
+}
+
+/* Brightness against its surroundings, in units of the local contrast; and the energy of its finest part. */
+void unrefract_detail(struct unrefract_survey *s)
+{
+	double mm = 2 * s->extent / s->size;
+	long n = (long)s->size * s->size;
+	s->detail = mem_array((size_t)n, sizeof(float));
+	s->sharp = mem_array((size_t)n, sizeof(float));
+	float *mean = mem_array((size_t)n, sizeof(float)), *power = mem_array((size_t)n, sizeof(float));
+	for (long i = 0; i < n; i++)
+		s->detail[i] = mean[i] = s->sharp[i]
+			= logf(0.3f * s->rgb[3 * i] + 0.6f * s->rgb[3 * i + 1] + 0.1f * s->rgb[3 * i + 2] + 1e-3f);
+	plane_blur_weighted(mean, s->weight, s->size, s->size, 0.35 / mm, 0);
+	plane_blur_weighted(s->sharp, s->weight, s->size, s->size, 1, 0);
+	for (long i = 0; i < n; i++) {
+		float fine = s->weight[i] > 0 ? s->detail[i] - s->sharp[i] : 0;
+		s->sharp[i] = fine * fine;
+		s->detail[i] = s->weight[i] > 0 ? s->detail[i] - mean[i] : 0;
+		power[i] = s->detail[i] * s->detail[i];
+	}
+	plane_blur_weighted(s->sharp, s->weight, s->size, s->size, 0.35 / mm, 0);
+	plane_blur_weighted(power, s->weight, s->size, s->size, 0.7 / mm, 1);
+	for (long i = 0; i < n; i++)
+		s->detail[i] /= sqrtf(power[i] + 1e-3f);
+	free(power);
+	free(mean);
+}
+
+enum { MUCH_HIDDEN = 2 * FIT_SECTORS / 5 };
+
+/* Where the limbus is in sight no lid covers the iris beside it. False: most of it is in sight, and the ring's left and
+ * right say more; or nobody knows. */
+static bool open_angles(double open[SHEET_ANGLES], const struct fit *fit, const struct sheet *sheet, const struct eye *eye)
+{
+	int hidden = 0;
+	for (int i = 0; i < FIT_SECTORS; i++)
+		hidden += fit->seen[i] < 0.5;
+	if (hidden < MUCH_HIDDEN || hidden == FIT_SECTORS)
+		return false;
+	for (int a = 0; a < SHEET_ANGLES; a++) {
+		double p[3], px[2];
+		sheet_point(p, sheet, 1, 2 * M_PI * (a + 0.5) / SHEET_ANGLES);
+		p[2] = eye_limbus_depth(eye);
+		open[a] = 0;
+		if (!fit_project(px, fit, p))
+			continue;
+		double turn = atan2(px[1] - fit->limbus.cy, px[0] - fit->limbus.cx) / (2 * M_PI);
+		open[a] = fit->seen[(int)((turn < 0 ? turn + 1 : turn) * FIT_SECTORS) % FIT_SECTORS];
+	}
+	return true;
+}
+
+static void look(struct unrefract_view *view, const struct iris_map *map, double limbus, const struct eye *eye,
+                 const struct unrefract_conf *conf)
+{
+	struct unrefract_survey *s = &view->survey;
+	size_t n = (size_t)s->size * (size_t)s->size;
+	float *seen = mem_array(n, sizeof *seen);
+	float *lum = mem_array(n, sizeof *lum);
+	for (size_t i = 0; i < n; i++) {
+		const float *rgb = s->rgb + 3 * i;
+		seen[i] = map->rim[i] < (float)limbus && rgb[0] + rgb[1] + rgb[2] > 0;
+		lum[i] = logf(rgb[0] + rgb[1] + rgb[2] + 1e-3f);
+	}
+	if (!(view->pupil.r > 0))
+		view->pupil = pupil_from_rings(lum, seen, s->size, s->extent, limbus);
+	double open[SHEET_ANGLES];
+	struct sheet sheet = { s->size, s->extent, view->pupil, limbus, 0 };
+	if (open_angles(open, view->fit, &sheet, eye))
+		sheet.open = open;
+	unrefract_mask(s, seen, &sheet, conf);
+	free(lum);
+	free(seen);
+}
+
+bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit,
+                      const struct eye *eye, const struct unrefract_conf *conf, struct err *err)
+{
+	view->fit = fit;
+	view->iris = iris_view_new(fit, eye);
+	view->pupil = pupil_in_plane(view);
+	view->gain[0] = view->gain[1] = view->gain[2] = 1;
+	struct unrefract_survey *s = &view->survey;
+	s->size = conf->survey_size;
+	s->extent = conf->extent * eye->limbus_radius;
+	size_t n = (size_t)s->size * (size_t)s->size;
+	s->rgb = mem_array(n * 3, sizeof(float));
+	s->weight = mem_array(n, sizeof(float));
+	struct iris_map_conf coarse = { .method = IRIS_LATTICE, .node = 8 };
+	struct iris_map map = iris_map_new(&view->iris, s->size, s->extent, eye->limbus_radius, &coarse);
+	struct crop crop = crop_new(photo, &map);
+	long sampled = crop_sample(s->rgb, &crop, &map, 0);
+	if (sampled)
+		look(view, &map, eye->limbus_radius, eye, conf);
+	crop_free(&crop);
+	iris_map_free(&map);
+	view->used = sampled > 0;
+	return sampled || err_set(err, "the iris lies outside the photograph: move the eye into the frame");
+}
+
+void unrefract_view_free(struct unrefract_view *view)
+{
+	free(view->survey.rgb);
+	free(view->survey.weight);
+	free(view->survey.detail);
+	free(view->survey.sharp);
+	view->survey = (struct unrefract_survey){ 0 };
+}

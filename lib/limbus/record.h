@@ -1,0 +1,25 @@
+/* limbus_record: what was measured in one photograph, kept as work/limbus/NAME.edge.json: the pose of all photographs
+ * of an eye can be fitted again without looking at them again.
+ */
+#ifndef LIMBUS_RECORD_H
+#define LIMBUS_RECORD_H
+#include "limbus/find.h"
+#include "limbus/pose.h"
+
+struct limbus_record {
+	bool ok;
+	char reason[256];
+	int width, height;             // px
+	struct pose_view view;         // camera as used
+	double coverage, share_used, rms, blur, contrast, score;
+	double point[ARCS][2];         // edge points, px
+	enum { ARC_HIDDEN, ARC_SEEN, ARC_USED } state[ARCS];
+};
+
+/* Everything but the camera and the lean. */
+void limbus_record_fill(struct limbus_record *record, const struct limbus_found *found, const struct photo *photo);
+
+bool limbus_record_save(const struct limbus_record *record, const char *path, const char *made_by, struct err *err);
+bool limbus_record_load(struct limbus_record *record, const char *path, struct err *err);
+
+#endif

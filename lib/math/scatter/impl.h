@@ -1,0 +1,22 @@
+/* scatter_impl: what scatter.c, components.c and split.c share. */
+#ifndef MATH_SCATTER_IMPL_H
+#define MATH_SCATTER_IMPL_H
+#include "math/scatter/scatter.h"
+
+enum { SCATTER_TILE = 256 };
+
+/* The t-th tile of the lower triangle of p columns: row and column it begins at, and its extent. */
+struct scatter_tile {
+	int i0, j0, ni, nj;
+};
+struct scatter_tile scatter_tile(int p, int t);
+int scatter_tiles(int p);
+
+/* Columns from..from+n-1 of the rows kept, centred and weighted: [s->n][n]. free(). */
+double *scatter_centred(const struct scatter *s, int from, int n);
+
+/* S += Y^T Y of the first `rows` rows of work, by the split. */
+void scatter_split_add(struct scatter *s, int rows);
+void scatter_split_free(struct scatter *s);
+
+#endif

@@ -1,0 +1,298 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/regress.h"
+#include "math/stats.h"
+#include "model/train/impl.h"
+
+enum { TORSION = 2, BASELINE_STEPS = 20 };
+
+static bool is_aperture(int input)
+{
+	return input < SKIN_EYE_INPUTS && input % EYE_INPUTS >= 3;
+}
+
+/* One input over time: gaps of at most `longest` s are bridged linearly, at the ends the nearest value is held. */
+static void bridge(double *g, int stride, const struct train_clip *clip, double longest)
+{
+	long before = -1;
+	for (long i = 0; i <= clip->n; i++) {
+		if (i < clip->n && isnan(g[i * stride]))
+			continue;
+		long from = before + 1;
+		bool first = before < 0, last = i == clip->n;
+		double t0 = clip->time[first ? 0 : before], t1 = clip->time[last ? clip->n - 1 : i];
+		if (from < i && !(first && last) && t1 - t0 <= longest)
+			for (long k = from; k < i; k++) {
+				double a = t1 > t0 ? (clip->time[k] - t0) / (t1 - t0) : 0;
+				a = first ? 1 : last ? 0 : a;
+				g[k * stride] = (first ? 0 : (1 - a) * g[before * stride]) + (last ? 0 : a * g[i * stride]);
+			}
+		before = i;
+	}
+}
+
+static long measured(const struct train *t, int input)
+{
+	long n = 0;
+	for (long i = 0; i < t->clip->n; i++)
+		n += !isnan(t->g[i * t->model->n_inputs + input]);
+	return n;
+}
+
+static void set_column(struct train *t, int input, double value)
+{
+	for (long i = 0; i < t->clip->n; i++)
+		t->g[i * t->model->n_inputs + input] = value;
+}
+
+static void range_of(struct train *t, int input)
+{
+	struct skin_model *m = t->model;
+	double low = INFINITY, high = -INFINITY, sum = 0, n = 0;
+	for (long i = 0; i < t->clip->n; i++) {
+		double x = t->clip->g[i * m->n_inputs + input];
+		if (isnan(x))
+			continue;
+		low = fmin(low, x);
+		high = fmax(high, x);
+		sum += x;
+		n++;
+	}
+	m->low[input] = n > 0 ? low : NAN;
+	m->high[input] = n > 0 ? high : NAN;
+	m->mean[input] = n > 0 ? sum / n : NAN;
+}
+
+static void expressions(struct train *t)
+{
+	struct skin_model *m = t->model;
+	for (int a = SKIN_EYE_INPUTS; a < m->n_inputs; a++) {
+		if (!(m->high[a] >= 0.5)) {
+			train_warn(t, "expression %d of %d is never shown in the clip: film it, or take its line out of capture.conf",
+			           a - SKIN_EYE_INPUTS + 1, t->clip->n_au);
+			set_column(t, a, 0);
+		}
+		for (long i = 0; i < t->clip->n; i++)
+			if (isnan(t->g[i * m->n_inputs + a]))
+				t->g[i * m->n_inputs + a] = 0;
+	}
+}
+
+bool train_inputs(struct train *t, struct err *err)
+{
+	const struct train_clip *clip = t->clip;
+	int n = t->model->n_inputs;
+	t->g = mem_array((size_t)clip->n * (size_t)n + 1, sizeof *t->g);
+	memcpy(t->g, clip->g, (size_t)clip->n * (size_t)n * sizeof *t->g);
+	for (int i = 0; i < n; i++)
+		range_of(t, i);
+	for (int i = 0; i < SKIN_EYE_INPUTS; i++) {
+		long have = measured(t, i);
+		bool enough = have > 0 && (double)have >= t->conf->min_seen * (double)clip->n;
+		if (!enough && i % EYE_INPUTS == TORSION)
+			set_column(t, i, 0);
+		else if (!enough)
+			t->eye[i / EYE_INPUTS] = false;
+		bridge(t->g + i, n, clip, i % EYE_INPUTS == TORSION ? INFINITY : t->conf->gap_s);
+	}
+	if (!t->eye[0] && !t->eye[1])
+		return err_set(err, "%s: gaze and lids of neither eye are measured in enough frames (train.min_seen = %g): film an open eye, close and sharp",
+		               clip->place, t->conf->min_seen);
+	expressions(t);
+	return true;
+}
+
+struct closure {
+	double iota;
+	long frame;
+};
+
+static int by_iota(const void *a, const void *b)
+{
+	const struct closure *x = a, *y = b;
+	return x->iota != y->iota ? (x->iota > y->iota) - (x->iota < y->iota) : (x->frame > y->frame) - (x->frame < y->frame);
+}
+
+/* Equation 3.6 over the eyes that are there, of frames in which both their apertures are measured. */
+static long closures(struct closure *out, const struct train *t)
+{
+	long n = 0;
+	int stride = t->model->n_inputs;
+	for (long i = 0; i < t->clip->n; i++) {
+		const double *g = t->clip->g + i * stride;
+		double iota = 0;
+		for (int e = 0; e < 2; e++)
+			iota += t->eye[e] ? fabs(g[5 * e + 3] + g[5 * e + 4]) : 0;
+		if (!isnan(iota))
+			out[n++] = (struct closure){ iota, i };
+	}
+	qsort(out, (size_t)n, sizeof *out, by_iota);
+	return n;
+}
+
+/* Mean of every aperture over those frames; *sigma: their standard deviation, of all apertures together. */
+static void mean_apertures(double out[SKIN_EYE_INPUTS], double *sigma, const struct train *t, long n,
+                           const struct closure *of)
+{
+	double squares = 0, count = 0;
+	for (int i = 0; i < SKIN_EYE_INPUTS; i++) {
+		out[i] = 0;
+		if (!is_aperture(i) || !t->eye[i / EYE_INPUTS])
+			continue;
+		for (long k = 0; k < n; k++)
+			out[i] += t->clip->g[of[k].frame * t->model->n_inputs + i] / (double)n;
+		for (long k = 0; k < n; k++)
+			squares += pow(t->clip->g[of[k].frame * t->model->n_inputs + i] - out[i], 2);
+		count += (double)n - 1;
+	}
+	*sigma = count > 0 ? sqrt(squares / count) : NAN;
+}
+
+struct calm {
+	long n;
+	double *x, *y;  // [n][2] g1 g2, [n] control
+	int *block;     // [n] of time
+	double *w, *r;
+};
+
+/* a: slopes and constant of y over x by Huber's weights (1.345 sigma), without one block (-1: all). An eye that did not
+ * move gets a constant. */
+static void baseline_fit(double a[3], struct calm *c, int without)
+{
+	double Gxx[4], Gxy[2], mx[2], my;
+	for (long i = 0; i < c->n; i++)
+		c->w[i] = c->block[i] != without;
+	for (int step = 0; step < BASELINE_STEPS; step++) {
+		double weight = regress_moments(Gxx, Gxy, mx, &my, c->n, 2, 1, c->x, c->y, c->w);
+		regress(a, 2, 1, Gxx, Gxy, weight, mx, 0);
+		a[2] = my - a[0] * mx[0] - a[1] * mx[1];
+		for (long i = 0; i < c->n; i++) {
+			c->r[i] = fabs(c->y[i] - a[0] * c->x[2 * i] - a[1] * c->x[2 * i + 1] - a[2]);
+			c->w[i] = c->r[i];
+		}
+		double limit = 1.345 * 1.4826 * stats_median((int)c->n, c->w);
+		for (long i = 0; i < c->n; i++)
+			c->w[i] = c->block[i] == without ? 0 : c->r[i] <= limit ? 1 : limit / c->r[i];
+	}
+}
+
+/* With standard errors by the jackknife over blocks of time. */
+static void baseline_with_sigma(double a[3], double sigma[3], struct calm *c, int blocks)
+{
+	double sum[3] = { 0 }, squares[3] = { 0 };
+	int k = 0;
+	for (int b = 0; b < blocks; b++, k++) {
+		baseline_fit(a, c, b);
+		for (int p = 0; p < 3; p++) {
+			sum[p] += a[p];
+			squares[p] += a[p] * a[p];
+		}
+	}
+	for (int p = 0; p < 3; p++)
+		sigma[p] = k > 1 ? sqrt(fmax(0, squares[p] - sum[p] * sum[p] / k) * (k - 1) / k) : NAN;
+	baseline_fit(a, c, -1);
+}
+
+/* Whether the eye is open in that frame as gaze alone opens it: no blink, no expression. */
+static bool is_calm(const struct train *t, const double *g, int eye, double usual)
+{
+	bool calm = g[5 * eye + 3] + g[5 * eye + 4] > 0.6 * usual && !isnan(g[5 * eye] + g[5 * eye + 1]);
+	for (int a = SKIN_EYE_INPUTS; a < t->model->n_inputs; a++)
+		calm = calm && !(g[a] > 0.1);
+	return calm;
+}
+
+static double usual_opening(const struct train *t, int eye)
+{
+	double *sum = mem_array((size_t)t->clip->n + 1, sizeof *sum);
+	long n = 0;
+	for (long i = 0; i < t->clip->n; i++) {
+		const double *g = t->clip->g + i * t->model->n_inputs + 5 * eye;
+		if (!isnan(g[3] + g[4]))
+			sum[n++] = g[3] + g[4];
+	}
+	double usual = stats_median((int)n, sum);
+	free(sum);
+	return usual;
+}
+
+/* Equation 3.11 from the calm frames; at most as many as a sample has, spread evenly. */
+static void baseline(struct train *t, int eye)
+{
+	struct skin_model *m = t->model;
+	const struct train_clip *clip = t->clip;
+	long step = 1 + clip->n / (t->conf->sample + 1);
+	size_t room = (size_t)(clip->n / step + 2);
+	struct calm c = { 0, mem_array(2 * room, sizeof *c.x), mem_array(room, sizeof *c.y), mem_array(room, sizeof *c.block),
+		              mem_array(room, sizeof *c.w), mem_array(room, sizeof *c.r) };
+	double usual = usual_opening(t, eye), *controls = mem_new((size_t)m->n_inputs, sizeof *controls);
+	double span = clip->time[clip->n - 1] - clip->time[0];
+	int blocks = (int)fmin(20, fmax(2, span / t->conf->block_s));
+	for (int lid = 0; lid < 2; lid++) {
+		c.n = 0;
+		for (long i = 0; i < clip->n; i += step) {
+			const double *g = clip->g + i * m->n_inputs;
+			if (!is_calm(t, g, eye, usual))
+				continue;
+			skin_model_controls(controls, m, g);
+			memcpy(c.x + 2 * c.n, g + 5 * eye, 2 * sizeof *c.x);
+			c.y[c.n] = controls[5 * eye + 3 + lid];
+			c.block[c.n++] = (int)(i * blocks / clip->n);
+		}
+		if (c.n >= 4)
+			baseline_with_sigma(m->baseline[eye][lid], m->baseline_sigma[eye][lid], &c, blocks);
+	}
+	free(c.x);
+	free(c.y);
+	free(c.block);
+	free(c.w);
+	free(c.r);
+	free(controls);
+}
+
+/* A lid that moves with the gaze rather than with the opening stands at almost the same place in the shut and in the wide
+ * eye: equation 3.7 would divide by nothing. Its range is then what it covers in the clip. */
+static void widen(struct train *t)
+{
+	struct skin_model *m = t->model;
+	double *x = mem_array((size_t)t->clip->n + 1, sizeof *x);
+	for (int i = 0; i < SKIN_EYE_INPUTS; i++) {
+		int n = 0;
+		for (long k = 0; k < t->clip->n && is_aperture(i) && t->eye[i / EYE_INPUTS]; k++)
+			if (!isnan(t->clip->g[k * m->n_inputs + i]))
+				x[n++] = t->clip->g[k * m->n_inputs + i];
+		double range = n ? stats_quantile(n, x, 0.95) - stats_quantile(n, x, 0.05) : 0;
+		if (n && m->open[i] - m->closed[i] < 0.5 * range)
+			m->open[i] = m->closed[i] + range;
+	}
+	free(x);
+}
+
+void train_apertures(struct train *t)
+{
+	struct skin_model *m = t->model;
+	struct closure *of = mem_array((size_t)t->clip->n + 1, sizeof *of);
+	long n = closures(of, t), share = lround(t->conf->aperture_share * (double)n);
+	double closed_sigma, open_sigma;
+	share = share < 1 ? 1 : share;
+	if (n) {
+		mean_apertures(m->closed, &closed_sigma, t, share, of);
+		mean_apertures(m->open, &open_sigma, t, share, of + n - share);
+		m->aperture_sigma = fmax(closed_sigma, open_sigma) / sqrt((double)share);
+		double least = of[share / 2].iota, most = of[n - 1 - share / 2].iota;
+		if (least > 0.35 * most) {
+			t->report->never_closed = true;
+			memset(m->closed, 0, sizeof m->closed);
+			train_warn(t, "%s: the lids never close (openness %.0f to %.0f px): closed is taken as the closed lids' plane; film a blink",
+			           t->clip->place, least, most);
+		}
+	}
+	widen(t);
+	for (int e = 0; e < 2; e++)
+		if (t->eye[e] && n)
+			baseline(t, e);
+	free(of);
+}

@@ -1,0 +1,333 @@
+#include <cblas.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/chol.h"
+#include "math/stats.h"
+#include "model/train/impl.h"
+
+enum { CHUNK = 64, IRLS_STEPS = 10 };
+static const double settled = 0.01;  // change of any weight
+static const double smallest_distance = 1e-4;  // of the motion: below that, numbers agree to rounding of their files
+
+void part_free(struct part *p)
+{
+	scatter_free(&p->sum);
+	free(p->seen);
+	free(p->mean);
+	free(p->V);
+	free(p->variance);
+	free(p->x);
+	free(p->w);
+	free(p->V_all);
+	free(p->sd_all);
+	*p = (struct part){ 0 };
+}
+
+static bool is_missing(const struct part *p, int i, double c)
+{
+	return p->seen[i] && !(c > 0);
+}
+
+/* Scores of one row of which some numbers are missing: the most probable ones under the pilot's normal distribution
+ * (Tipping and Bishop 1999), s = (V'V + noise^2 / variance)^-1 V'y over what is there. s holds V'y. */
+static void solve_scores(double *s, const struct part *p, const double *c)
+{
+	double A[PILOT_COMPONENTS][PILOT_COMPONENTS] = { 0 };
+	int k = p->k;
+	for (int a = 0; a < k; a++)
+		A[a][a] = 1 + p->usual * p->usual / fmax(p->variance[a], 1e-12 * p->variance[0] + 1e-300);
+	for (int i = 0; i < p->n; i++) {
+		if (!is_missing(p, i, c[i]))
+			continue;
+		const double *v = p->V + i * k;
+		for (int a = 0; a < k; a++)
+			for (int b = 0; b <= a; b++)
+				A[a][b] -= v[a] * v[b];
+	}
+	chol_solve(k, PILOT_COMPONENTS, A[0], s);
+}
+
+/* fit[m][n]: what the pilot makes of each row's measured numbers. */
+static void fit_rows(double *fit, const struct part *p, int m, const double *x, const double *c)
+{
+	int n = p->n, k = p->k;
+	double *scores = mem_new((size_t)(m * k) + 1, sizeof *scores);
+	bool *missing = mem_new((size_t)m + 1, sizeof *missing);
+	for (int r = 0; r < m; r++)
+		for (int i = 0; i < n; i++) {
+			bool gone = is_missing(p, i, c[r * n + i]);
+			missing[r] |= gone;
+			fit[r * n + i] = gone || !p->seen[i] ? 0 : x[r * n + i] - p->mean[i];
+		}
+	if (k) {
+		cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, k, n, 1, fit, n, p->V, k, 0, scores, k);
+		for (int r = 0; r < m; r++)
+			if (missing[r])
+				solve_scores(scores + r * k, p, c + r * n);
+		cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, m, n, k, 1, scores, k, p->V, k, 0, fit, n);
+	} else
+		memset(fit, 0, (size_t)m * (size_t)n * sizeof *fit);
+	for (int r = 0; r < m; r++)
+		for (int i = 0; i < n; i++)
+			fit[r * n + i] += p->mean[i];
+	free(scores);
+	free(missing);
+}
+
+/* Distance of a row from its fit over what is measured of it. */
+static void distance(double *d, double *share, const struct part *p, const double *x, const double *fit, const double *c)
+{
+	double sum = 0, weight = 0, seen = 0, all = 0;
+	for (int i = 0; i < p->n; i++) {
+		if (!p->seen[i])
+			continue;
+		all++;
+		if (!(c[i] > 0))
+			continue;
+		sum += c[i] * (x[i] - fit[i]) * (x[i] - fit[i]);
+		weight += c[i];
+		seen++;
+	}
+	*d = weight > 0 ? sqrt(sum / weight) : 0;
+	*share = all > 0 ? seen / all : 0;
+}
+
+static bool all_measured(const struct part *p, int m, const double *c)
+{
+	for (int r = 0; r < m; r++)
+		for (int i = 0; i < p->n; i++)
+			if (p->seen[i] && !(c[r * p->n + i] >= 1))
+				return false;
+	return true;
+}
+
+/* Nothing is missing in these rows: their distance is what their scores leave of their length. */
+static void measure_chunk(const struct part *p, int m, double *x, double *d, double *share)
+{
+	int n = p->n, k = p->k, seen = 0;
+	double *y = mem_array((size_t)(m * n) + 1, sizeof *y), *scores = mem_new((size_t)(m * k) + 1, sizeof *scores);
+	for (int i = 0; i < n; i++)
+		seen += p->seen[i];
+	for (int r = 0; r < m; r++) {
+		double *xr = x + r * n, *yr = y + r * n, squares = 0;
+#pragma omp simd reduction(+ : squares)
+		for (int i = 0; i < n; i++) {
+			double to = p->seen[i] ? xr[i] : p->mean[i], one = to - p->mean[i];
+			xr[i] = to;
+			yr[i] = one;
+			squares += one * one;
+		}
+		d[r] = squares;
+	}
+	if (k)
+		cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, k, n, 1, y, n, p->V, k, 0, scores, k);
+	for (int r = 0; r < m; r++) {
+		for (int a = 0; a < k; a++)
+			d[r] -= scores[r * k + a] * scores[r * k + a];
+		d[r] = seen ? sqrt(fmax(d[r], 0) / seen) : 0;
+		share[r] = seen > 0;
+	}
+	free(y);
+	free(scores);
+}
+
+void part_complete_few(const struct part *p, int m, double *x, const double *c, double *d, double *share)
+{
+	int n = p->n;
+	if (all_measured(p, m, c)) {
+		measure_chunk(p, m, x, d, share);
+		return;
+	}
+	double *fit = mem_array((size_t)(m * n) + 1, sizeof *fit);
+	fit_rows(fit, p, m, x, c);
+	for (int r = 0; r < m; r++) {
+		distance(&d[r], &share[r], p, x + r * n, fit + r * n, c + r * n);
+		for (int i = 0; i < n; i++) {
+			double believed = p->seen[i] && c[r * n + i] > 0 ? c[r * n + i] : 0, *to = &x[r * n + i];
+			if (believed < 1)
+				*to = believed > 0 ? believed * *to + (1 - believed) * fit[r * n + i] : fit[r * n + i];
+		}
+	}
+	free(fit);
+}
+
+void part_complete(struct part *p, long n, double *x, const double *c, double *d, double *share)
+{
+#pragma omp parallel for schedule(dynamic)
+	for (long at = 0; at < n; at += CHUNK) {
+		int m = n - at < CHUNK ? (int)(n - at) : CHUNK;
+		size_t o = (size_t)at * (size_t)p->n;
+		part_complete_few(p, m, x + o, c + o, d + at, share + at);
+	}
+}
+
+double part_weight(const struct part *p, const struct train_conf *conf, double d)
+{
+	double ratio = p->usual > 0 ? d / p->usual : 0;
+	return ratio <= conf->huber ? 1 : ratio > conf->trim ? 0 : conf->huber * conf->huber / ratio / ratio;
+}
+
+/* A number missing for a while lies between those before and after it: a beginning. */
+static void bridge(const struct part *p, int i, long m, double *x, const double *c)
+{
+	long before = -1, n = p->n;
+	for (long r = 0; r <= m; r++) {
+		if (r < m && !(c[r * n + i] > 0))
+			continue;
+		for (long k = before + 1; k < r; k++) {
+			double a = before < 0 ? 1 : r == m ? 0 : (double)(k - before) / (double)(r - before);
+			x[k * n + i] = (a < 1 ? (1 - a) * x[before * n + i] : 0) + (a > 0 ? a * x[r * n + i] : 0);
+		}
+		before = r;
+	}
+}
+
+/* Which coordinates are measured often enough; the median of each; the others are 0 and stay so. */
+static void begin_pilot(struct part *p, long m, double *x, double *c, const struct train_conf *conf)
+{
+	double *column = mem_array((size_t)m + 1, sizeof *column);
+	for (int i = 0; i < p->n; i++) {
+		int n = 0;
+		for (long r = 0; r < m; r++)
+			if (c[r * p->n + i] > 0)
+				column[n++] = x[r * p->n + i];
+		p->seen[i] = n > 0 && n >= conf->min_seen * (double)m;
+		p->mean[i] = p->seen[i] ? stats_median(n, column) : 0;
+		for (long r = 0; r < m && !p->seen[i]; r++)
+			c[r * p->n + i] = x[r * p->n + i] = 0;
+		if (p->seen[i])
+			bridge(p, i, m, x, c);
+	}
+	free(column);
+}
+
+/* The k directions of largest scatter of m < n rows, out of their m x m products; lambda: sums of squares. */
+static void components(struct part *p, double *lambda, long m, const double *x, const double *w)
+{
+	int n = p->n, rows = (int)m, k = p->k, found = 0;
+	double *y = mem_array((size_t)m * (size_t)n + 1, sizeof *y), *A = mem_array((size_t)(m * m) + 1, sizeof *A);
+	double *d = mem_new((size_t)m + 1, sizeof *d), *z = mem_new((size_t)(m * k) + 1, sizeof *z);
+	lapack_int *support = mem_new(2 * (size_t)k + 2, sizeof *support);
+	for (long r = 0; r < m; r++)
+		for (int i = 0; i < n; i++)
+			y[r * n + i] = sqrt(w[r]) * (x[r * n + i] - p->mean[i]);
+	cblas_dsyrk(CblasRowMajor, CblasLower, CblasNoTrans, rows, n, 1, y, n, 0, A, rows);
+	bool ok = k && !LAPACKE_dsyevr(LAPACK_ROW_MAJOR, 'V', 'I', 'L', rows, A, rows, 0, 0, rows - k + 1, rows, 0, &found, d, z,
+	                               k, support);
+	memset(p->V, 0, (size_t)(n * k) * sizeof *p->V);
+	if (ok)
+		cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, k, rows, 1, y, n, z, k, 0, p->V, k);
+	for (int c = 0; c < k; c++) {
+		lambda[c] = ok && d[c] > d[k - 1] * 1e-12 ? d[c] : 0;
+		for (int i = 0; i < n; i++)
+			p->V[i * k + c] = lambda[c] > 0 ? p->V[i * k + c] / sqrt(lambda[c]) : 0;
+	}
+	free(y);
+	free(A);
+	free(d);
+	free(z);
+	free(support);
+}
+
+/* A frame that makes a component by itself has no distance from it: what it has inside the components then counts. */
+static void add_leverage(struct part *p, double *d, const double *lambda, long m, const double *x, const double *w)
+{
+#pragma omp parallel for
+	for (long r = 0; r < m; r++) {
+		double leverage = 0, inside = 0;
+		for (int c = 0; c < p->k; c++) {
+			double s = 0;
+			for (int i = 0; i < p->n; i++)
+				s += p->V[i * p->k + c] * (x[r * p->n + i] - p->mean[i]);
+			leverage += lambda[c] > 0 ? w[r] * s * s / lambda[c] : 0;
+			inside += s * s;
+		}
+		double own = fmax(0, (leverage - 0.4) / 0.6);
+		d[r] = sqrt(d[r] * d[r] + own * inside / p->n);
+	}
+}
+
+static void weighted_mean(struct part *p, long m, const double *x, const double *w)
+{
+	double sum = 0;
+	for (long r = 0; r < m; r++)
+		sum += w[r];
+	if (sum > 0)
+		memset(p->mean, 0, (size_t)p->n * sizeof *p->mean);
+	for (long r = 0; r < m && sum > 0; r++)
+		for (int i = 0; i < p->n; i++)
+			p->mean[i] += w[r] / sum * x[r * p->n + i];
+}
+
+/* Spherical principal components (Locantore et al. 1999) to begin with: every frame weighs one direction, however far
+ * out it is. */
+static void spherical(const struct part *p, double *w, long m, const double *x)
+{
+	for (long r = 0; r < m; r++) {
+		double sum = 0;
+		for (int i = 0; i < p->n; i++)
+			sum += (x[r * p->n + i] - p->mean[i]) * (x[r * p->n + i] - p->mean[i]);
+		w[r] = sum > 0 ? 1 / sum : 0;
+	}
+}
+
+/* Of each component in one frame. spread > 0: w are those of spherical components, which leave only proportions. */
+static void set_variance(struct part *p, const double *lambda, long m, const double *w, double spread)
+{
+	double weight = 0;
+	for (long r = 0; r < m; r++)
+		weight += spread > 0 ? (w[r] > 0) : w[r];
+	for (int k = 0; k < PILOT_COMPONENTS; k++)
+		p->variance[k] = k < p->k && weight > 0 ? lambda[k] / weight * (spread > 0 ? spread / weight : 1) : 0;
+}
+
+void part_pilot(struct part *p, long m, double *x, double *c, const struct train_conf *conf)
+{
+	double *lambda = mem_new(PILOT_COMPONENTS + 1, sizeof *lambda), *w = mem_new((size_t)m + 1, sizeof *w);
+	double *d = mem_new((size_t)m + 1, sizeof *d), *share = mem_new((size_t)m + 1, sizeof *share);
+	double *sorted = mem_new((size_t)m + 1, sizeof *sorted), *was = mem_array((size_t)m * (size_t)p->n + 1, sizeof *was);
+	p->seen = mem_new((size_t)p->n + 1, sizeof *p->seen);
+	p->mean = mem_new((size_t)p->n + 1, sizeof *p->mean);
+	p->V = mem_new((size_t)p->n * PILOT_COMPONENTS + 1, sizeof *p->V);
+	begin_pilot(p, m, x, c, conf);
+	memcpy(was, x, (size_t)m * (size_t)p->n * sizeof *was);
+	p->variance = mem_new(PILOT_COMPONENTS + 1, sizeof *p->variance);
+	spherical(p, w, m, x);
+	bool missing = !all_measured(p, (int)m, c);
+	double spread = 0;  // sum of squares about the medians
+	for (long r = 0; r < m; r++)
+		spread += w[r] > 0 ? 1 / w[r] : 0;
+	for (int step = 0; step < IRLS_STEPS; step++) {
+		p->k = (int)fmin(fmin(PILOT_COMPONENTS, (double)m / 4), p->n);
+		components(p, lambda, m, x, w);
+		set_variance(p, lambda, m, w, step ? 0 : spread);
+		for (long i = 0; i < m * p->n; i++)
+			x[i] = c[i] > 0 ? was[i] : x[i];
+		part_complete(p, m, x, c, d, share);
+		add_leverage(p, d, lambda, m, x, w);
+		memcpy(sorted, d, (size_t)m * sizeof *d);
+		p->usual = fmax(stats_median((int)m, sorted), smallest_distance * sqrt(spread / (double)m / fmax(p->n, 1)));
+		double change = 0;
+		for (long r = 0; r < m; r++) {
+			double to = part_weight(p, conf, d[r]) * (share[r] > 0);
+			change = fmax(change, fabs(to - w[r]));
+			w[r] = to;
+		}
+		weighted_mean(p, m, x, w);
+		if (step && change < settled && !missing)
+			break;
+	}
+	components(p, lambda, m, x, w);
+	set_variance(p, lambda, m, w, 0);
+	free(lambda);
+	free(w);
+	free(d);
+	free(share);
+	free(sorted);
+	free(was);
+}

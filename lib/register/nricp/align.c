@@ -1,0 +1,152 @@
+#include "register/nricp/align.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/vec.h"
+#include "register/nricp/align_impl.h"
+#include "register/nricp/impl.h"
+
+double mesh_size(double center[3], const struct mesh *mesh)
+{
+	double *area = mesh_vertex_areas(mesh), sum = 0, size = 0;
+	memset(center, 0, 3 * sizeof *center);
+	for (int i = 0; i < mesh->n_vertices; i++) {
+		sum += area[i];
+		for (int k = 0; k < 3; k++)
+			center[k] += area[i] * (double)mesh->vertices[i][k];
+	}
+	for (int k = 0; k < 3 && sum > 0; k++)
+		center[k] /= sum;
+	for (int i = 0; i < mesh->n_vertices && sum > 0; i++)
+		for (int k = 0; k < 3; k++)
+			size += area[i] * pow((double)mesh->vertices[i][k] - center[k], 2) / sum;
+	free(area);
+	return sqrt(size);
+}
+
+struct mesh nricp_carried(const struct mesh *mesh, const double m[4][4], const double center[3], double scale)
+{
+	struct mesh out = *mesh;
+	out.colours = 0;
+	out.vertices = mem_array((size_t)mesh->n_vertices + 1, sizeof *out.vertices);
+	for (int i = 0; i < mesh->n_vertices; i++)
+		for (int r = 0; r < 3; r++) {
+			double x = m[r][3];
+			for (int c = 0; c < 3; c++)
+				x += m[r][c] * (double)mesh->vertices[i][c];
+			out.vertices[i][r] = (float)((x - center[r]) * scale);
+		}
+	return out;
+}
+
+/* Vertices of the fixed mesh in even steps of the area before them. */
+static void take_samples(struct search *s, const struct mesh *fixed, const double center[3], double size)
+{
+	double *area = mesh_vertex_areas(fixed), sum = 0, passed = 0;
+	float (*normal)[3] = mesh_normals(fixed);
+	s->samples = mem_new((size_t)s->conf->samples + 1, sizeof *s->samples);
+	for (int i = 0; i < fixed->n_vertices; i++)
+		sum += area[i];
+	for (int i = 0; i < fixed->n_vertices && s->n < s->conf->samples; i++) {
+		passed += area[i];
+		if (!(passed > sum * (s->n + 0.5) / s->conf->samples))
+			continue;
+		for (int k = 0; k < 3; k++) {
+			s->samples[s->n].at[k] = ((double)fixed->vertices[i][k] - center[k]) / size;
+			s->samples[s->n].normal[k] = normal[i][k];
+		}
+		s->n++;
+	}
+	s->face = mem_array((size_t)s->n + 1, sizeof *s->face);
+	free(area);
+	free(normal);
+}
+
+static void take_landmarks(struct search *s, const struct nricp_landmarks *l, const struct mesh *fixed, const double center[3],
+                           double size)
+{
+	if (!l || l->n < 3)
+		return;
+	s->held = mem_new((size_t)l->n, sizeof *s->held);
+	for (int i = 0; i < l->n; i++) {
+		for (int k = 0; k < 3; k++)
+			s->held[i].at[k] = ((double)fixed->vertices[l->fixed[i]][k] - center[k]) / size;
+		s->held[i].row = l->moving[i];
+	}
+	s->n_held = l->n;
+}
+
+/* From landmarks: the rotation, scale and shift of least squares, by refinement from the identity. */
+static bool from_landmarks(struct pose *pose, const struct search *s)
+{
+	enum { ROUNDS = 50 };
+	*pose = pose_still;
+	for (int round = 0; round < ROUNDS && s->n_held; round++) {
+		struct sums sums = { 0 };
+		align_hold(&sums, s, pose, s->n_held);
+		for (int k = 0; k < 7; k++)
+			sums.a[k][k] += 1e-9;
+		if (!sums_move(pose, &sums, s->conf->scale_max))
+			return false;
+	}
+	return s->n_held;
+}
+
+/* The inverse of the pose, in the meshes' own unit. */
+static void give(struct nricp_align_result *out, const struct best *best, const double moving_center[3], const double fixed_center[3],
+                 double size)
+{
+	double inverse = 1 / best->pose.scale, back[3];
+	*out = (struct nricp_align_result){ .scale = inverse, .matched = best->matched, .rms = best->rms * size, .start = best->start - 1 };
+	mat_tvec(back, best->pose.rotation, best->pose.shift);
+	for (int r = 0; r < 3; r++) {
+		double moved = 0;
+		for (int c = 0; c < 3; c++) {
+			out->fixed_from_moving[r][c] = inverse * best->pose.rotation[c][r];
+			moved += out->fixed_from_moving[r][c] * moving_center[c];
+		}
+		out->fixed_from_moving[r][3] = fixed_center[r] - inverse * size * back[r] - moved;
+	}
+	out->fixed_from_moving[3][3] = 1;
+}
+
+bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, const struct mesh *fixed,
+                 const struct nricp_landmarks *landmarks, const struct nricp_align_conf *conf, struct err *err)
+{
+	static const double same[4][4] = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 }, { 0, 0, 0, 1 } };
+	double fixed_center[3], moving_center[3], offset[3], size = mesh_size(fixed_center, fixed);
+	*out = (struct nricp_align_result){ 0 };
+	if (!(size > 0) || !(mesh_size(moving_center, moving) > 0))
+		return err_set(err, "no surface to align");
+	struct search s = { .conf = conf };
+	s.moving = nricp_carried(moving, same, moving_center, 1 / size);
+	s.normals = mesh_normals(&s.moving);
+	topology_make(&s.topology, &s.moving);
+	s.scene = closest_new(&s.moving, (const float(*)[3])s.normals);
+	take_samples(&s, fixed, fixed_center, size);
+	take_landmarks(&s, landmarks, fixed, fixed_center, size);
+	for (int k = 0; k < 3; k++)
+		offset[k] = (fixed_center[k] - moving_center[k]) / size;
+	struct best best = { .pose = pose_still };
+	if (from_landmarks(&best.pose, &s)) {
+		const double narrow[2] = { conf->welsch[1], conf->welsch[1] };
+		best.matched = align_refine(&best.pose, &best.rms, &s, conf->rounds, narrow);
+	} else {
+		s.n_held = 0;
+		best = align_find(&s, offset);
+	}
+	give(out, &best, moving_center, fixed_center, size);
+	free(s.moving.vertices);
+	free(s.normals);
+	topology_free(&s.topology);
+	closest_free(s.scene);
+	free(s.samples);
+	free(s.face);
+	free(s.held);
+	return best.matched >= conf->least
+	       || err_set(err, "%.0f %% of the subject lies on it wherever it is put, must be at least %.0f %%", 100 * best.matched,
+	                  100 * conf->least);
+}

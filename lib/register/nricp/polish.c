@@ -1,0 +1,134 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+#include "register/nricp/match.h"
+
+static double mean_edge(const struct mesh *mesh, const struct topology *t)
+{
+	double sum = 0;
+	for (int i = 0; i < t->n; i++)
+		for (int32_t e = t->start[i]; e < t->start[i + 1]; e++) {
+			const float *a = mesh->vertices[i], *b = mesh->vertices[t->neighbour[e]];
+			float d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+			sum += sqrt((double)(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+		}
+	return t->start[t->n] ? sum / t->start[t->n] : 0;
+}
+
+/* share: of a neighbour's normal beside a vertex's own. */
+static void smooth_normals(float (*normals)[3], const struct topology *t, float share)
+{
+	float (*was)[3] = mem_array((size_t)t->n + 1, sizeof *was);
+	memcpy(was, normals, (size_t)t->n * sizeof *was);
+	for (int i = 0; i < t->n; i++) {
+		float *n = normals[i];
+		for (int32_t e = t->start[i]; e < t->start[i + 1]; e++)
+			for (int k = 0; k < 3; k++)
+				n[k] += share * was[t->neighbour[e]][k];
+		float len = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+		for (int k = 0; k < 3; k++)
+			n[k] = len > 0 ? n[k] / len : was[i][k];
+	}
+	free(was);
+}
+
+double nricp_noise(float (*normals)[3], const struct mesh *mesh, const struct topology *t)
+{
+	static const double usual = 0.2;  // radians that normals are off by where neighbours count as much as a vertex's own
+
+	double *off = mem_array((size_t)t->n + 1, sizeof *off);
+	int n = 0;
+	for (int i = 0; i < t->n; i++) {
+		int32_t degree = t->start[i + 1] - t->start[i];
+		if (t->boundary[i] || !degree)
+			continue;
+		double across = 0;
+		for (int32_t e = t->start[i]; e < t->start[i + 1]; e++)
+			for (int k = 0; k < 3; k++)
+				across += (double)normals[i][k] * ((double)mesh->vertices[t->neighbour[e]][k] - (double)mesh->vertices[i][k]) / degree;
+		off[n++] = across / sqrt(1 + 1.0 / degree);  // its own noise, and that of the mean
+	}
+	double sigma = n ? stats_mad(n, off, 0) : 0;
+	free(off);
+	double edge = mean_edge(mesh, t), turned = edge > 0 ? sigma / (usual * edge) : 0;
+	smooth_normals(normals, t, (float)fmin(turned * turned, 1));
+	return sigma;
+}
+
+/* (weight + length^2 Laplacian) s = weight offset by conjugate gradients with the diagonal: close to the identity, so few
+ * steps do. Edges count alike: cotangents would do so on equilateral triangles, where each is 1 / sqrt(3). */
+struct screened {
+	const struct nricp_graph *graph;
+	double edge;       // length^2 / sqrt(3)
+	double *weight, *s, *r, *p, *q, *inverse;
+};
+
+static void times(double *y, const struct screened *e, const double *x)
+{
+	const struct nricp_graph *g = e->graph;
+	for (int i = 0; i < g->n; i++) {
+		double sum = 0;
+		for (int32_t k = g->start[i]; k < g->start[i + 1]; k++)
+			sum += x[i] - x[g->neighbour[k]];
+		y[i] = e->weight[i] * x[i] + e->edge * sum;
+	}
+}
+
+static void solve(struct screened *e, const double *offset)
+{
+	enum { STEPS = 20 };
+	int n = e->graph->n;
+	double rz = 0, stop;
+	for (int i = 0; i < n; i++) {
+		double d = e->weight[i] + e->edge * (e->graph->start[i + 1] - e->graph->start[i]);
+		e->inverse[i] = d > 0 ? 1 / d : 0;
+		e->s[i] = 0;
+		e->r[i] = e->weight[i] * offset[i];
+		e->p[i] = e->inverse[i] * e->r[i];
+		rz += e->r[i] * e->p[i];
+	}
+	stop = 1e-6 * rz;
+	for (int step = 0; step < STEPS && rz > stop; step++) {
+		double pq = 0, next = 0;
+		times(e->q, e, e->p);
+		for (int i = 0; i < n; i++)
+			pq += e->p[i] * e->q[i];
+		if (!(pq > 0))
+			break;
+		for (int i = 0; i < n; i++) {
+			e->s[i] += rz / pq * e->p[i];
+			e->r[i] -= rz / pq * e->q[i];
+			next += e->r[i] * e->r[i] * e->inverse[i];
+		}
+		for (int i = 0; i < n; i++)
+			e->p[i] = e->inverse[i] * e->r[i] + next / rz * e->p[i];
+		rz = next;
+	}
+}
+
+void nricp_polish(struct nricp_point *points, struct nricp_match *match, const struct nricp_graph *graph, const struct nricp_fixed *fixed,
+                  const struct nricp_conf *conf, double length)
+{
+	size_t n = (size_t)graph->n + 1;
+	double *room = mem_array(7 * n, sizeof *room), *offset = room + 6 * n;
+	struct screened e = { graph, length * length / sqrt(3), room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n };
+	for (int round = 0; round < conf->polish_rounds; round++) {
+		nricp_match_all(match, graph->n, points, fixed, conf, conf->welsch[1]);
+		for (int i = 0; i < graph->n; i++) {
+			const struct nricp_match *m = &match[i];
+			double across = 0;
+			for (int k = 0; k < 3; k++)
+				across += (double)points[i].normal[k] * (double)(m->goal[k] - points[i].at[k]);
+			e.weight[i] = m->on_rim ? 0 : (double)m->weight * graph->area[i];
+			offset[i] = e.weight[i] > 0 ? across : 0;
+		}
+		solve(&e, offset);
+		for (int i = 0; i < graph->n; i++)
+			for (int k = 0; k < 3; k++)
+				points[i].at[k] += (float)e.s[i] * points[i].normal[k];
+	}
+	free(room);
+}

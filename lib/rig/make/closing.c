@@ -1,0 +1,52 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/chol.h"
+#include "rig/drive.h"
+#include "rig/make/make.h"
+
+/* The pose's components from rest, into the normal equations of direction . components = want. */
+static void add_pose(double m[RIG_COMPONENTS][RIG_COMPONENTS], double right[RIG_COMPONENTS], const struct rig *rig, const double *controls, double want)
+{
+	double e[RIG_COMPONENTS];
+	rig_components(e, rig, controls);
+	for (int i = 0; i < RIG_COMPONENTS; i++)
+		e[i] -= rig->rest_e[i];
+	for (int i = 0; i < RIG_COMPONENTS; i++) {
+		right[i] += want * e[i];
+		for (int j = 0; j < RIG_COMPONENTS; j++)
+			m[i][j] += e[i] * e[j];
+	}
+}
+
+void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, const double closed[RIG_COMPONENTS])
+{
+	static const double gazes[] = { -20, -10, 0, 10, 20 }, ridge = 0.05;
+	double m[RIG_COMPONENTS][RIG_COMPONENTS] = { 0 }, square = 0, along = 0;
+	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c);
+	memset(out, 0, RIG_COMPONENTS * sizeof *out);
+	for (int v = 0; v < COUNT(gazes); v++)
+		for (int h = 0; h < COUNT(gazes); h += 2)
+			for (int open = 0; open < 2; open++) {
+				drive_look(c, rig, gazes[h], gazes[v], open);
+				add_pose(m, out, rig, c, !open);
+			}
+	for (int i = SKIN_EYE_INPUTS; i < rig->n_inputs; i++) {
+		drive_look(c, rig, 0, 0, 1);
+		c[i] = 1;
+		add_pose(m, out, rig, c, 0);
+	}
+	free(c);
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		square += closed[k] * closed[k];
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		m[k][k] += ridge * square;
+	bool known = chol_solve(RIG_COMPONENTS, RIG_COMPONENTS, &m[0][0], out);
+	for (int k = 0; k < RIG_COMPONENTS && known; k++)
+		along += out[k] * closed[k];
+	// Baselines that were never learnt, or poses that all look alike: by the way there alone.
+	bool usable = known && along > 0.2;
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		out[k] = usable ? out[k] / along : square > 0 ? closed[k] / square : 0;
+}

@@ -1,0 +1,295 @@
+/* Lids of a rig. Two things that flow and components leave undone: skin at the margins follows the margins' own
+ * splines, and eyes that are told to close do close. Both are corrections of U~: evaluation does not change. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "rig/make/make.h"
+
+static const double lid_gap = 5;  // mm from the globe: skin further away is no lid
+
+static double ramp(double x, double from, double to)
+{
+	double t = fmin(fmax((x - from) / (to - from), 0), 1);
+	return t * t * (3 - 2 * t);
+}
+
+/* Places along a lid's margin at rest: px, and what its skin still lacks of the margin's motion. */
+struct margin {
+	int n;
+	double (*at)[2], (*lack)[RIG_BASIS];
+};
+
+/* How the skin at a place of the margin moves as it is: vertices near it, nearer ones more. */
+static bool moves_there(double basis[RIG_BASIS], const struct rig *rig, const double at[2], double px_per_mm)
+{
+	double total = 0;
+	memset(basis, 0, RIG_BASIS * sizeof *basis);
+	for (int i = 0; i < rig->n; i++) {
+		double d = hypot(rig->home[i][0] - at[0], rig->home[i][1] - at[1]) / px_per_mm;
+		if (d > 4 || rig->part[i] != RIG_SKIN || rig->gap[i] > lid_gap || rig->gap[i] < -2)
+			continue;
+		double w = exp(-0.5 * d * d / (0.8 * 0.8));
+		total += w;
+		for (int k = 0; k < RIG_BASIS; k++)
+			basis[k] += w * rig->basis[i][k];
+	}
+	for (int k = 0; k < RIG_BASIS && total > 1e-3; k++)
+		basis[k] /= total;
+	return total > 1e-3;
+}
+
+static struct margin margin_of(const struct rig *rig, const struct rig_motion *m, int lid, double px_per_mm)
+{
+	struct margin g = { .at = mem_new((size_t)m->n_points + 1, sizeof *g.at), .lack = mem_new((size_t)m->n_points + 1, sizeof *g.lack) };
+	for (int i = 0; i < m->n_points; i++) {
+		const double *at = m->lid[lid * m->n_points + i];
+		double basis[RIG_BASIS];
+		if (!isfinite(at[0] + at[1]) || !moves_there(basis, rig, at, px_per_mm))
+			continue;
+		memcpy(g.at[g.n], at, sizeof *g.at);
+		for (int k = 0; k < RIG_BASIS; k++)
+			g.lack[g.n][k] = m->lid_basis[lid * m->n_points + i][k] - basis[k];
+		g.n++;
+	}
+	return g;
+}
+
+/* Distance of a point from the margin, px; lack there. */
+static double nearest(double lack[RIG_BASIS], const struct margin *g, const float px[2])
+{
+	double least = INFINITY;
+	for (int i = 0; i + 1 < g->n; i++) {
+		const double *a = g->at[i], *b = g->at[i + 1];
+		double x = b[0] - a[0], y = b[1] - a[1], t = ((px[0] - a[0]) * x + (px[1] - a[1]) * y) / (x * x + y * y + 1e-12);
+		t = fmin(fmax(t, 0), 1);
+		double d = hypot(px[0] - a[0] - t * x, px[1] - a[1] - t * y);
+		if (d >= least)
+			continue;
+		least = d;
+		for (int k = 0; k < RIG_BASIS; k++)
+			lack[k] = (1 - t) * g->lack[i][k] + t * g->lack[i + 1][k];
+	}
+	return least;
+}
+
+/* Lid skin that was not tracked moves as the middle of what it hangs together with: a margin's inner edge does not run
+ * ahead of its outer one. */
+static void even_out(struct rig *rig)
+{
+	enum { ROUNDS = 6 };
+	float (*sum)[RIG_BASIS] = mem_new((size_t)rig->n + 1, sizeof *sum), *n = mem_new((size_t)rig->n + 1, sizeof *n);
+	for (int round = 0; round < ROUNDS; round++) {
+		memset(sum, 0, (size_t)rig->n * sizeof *sum);
+		memset(n, 0, (size_t)rig->n * sizeof *n);
+		for (int f = 0; f < 3 * rig->n_faces; f++) {
+			int a = rig->faces[f / 3][f % 3], b = rig->faces[f / 3][(f + 1) % 3];
+			for (int k = 0; k < RIG_BASIS; k++) {
+				sum[a][k] += rig->basis[b][k];
+				sum[b][k] += rig->basis[a][k];
+			}
+			n[a]++;
+			n[b]++;
+		}
+		for (int i = 0; i < rig->n; i++)
+			for (int k = 0; k < RIG_BASIS && n[i] > 0; k++)
+				if (rig->source[i] == RIG_EXTRAPOLATED && !rig_is_globe(rig->part[i]) && rig->gap[i] < lid_gap)
+					rig->basis[i][k] += 0.6f * (sum[i][k] / n[i] - rig->basis[i][k]);
+	}
+	free(sum);
+	free(n);
+}
+
+void rig_follow_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm, double reach_mm, struct rig_report *report)
+{
+	struct margin margin[SKIN_LIDS];
+	if (!(reach_mm > 0))
+		return;
+	even_out(rig);
+	for (int lid = 0; lid < SKIN_LIDS; lid++)
+		margin[lid] = margin_of(rig, m, lid, px_per_mm);
+	for (int i = 0; i < rig->n; i++) {
+		double sum[RIG_BASIS] = { 0 }, total = 0, most = 0;
+		if (rig_is_globe(rig->part[i]) || rig->gap[i] > lid_gap + 2)
+			continue;
+		for (int lid = 0; lid < SKIN_LIDS; lid++) {
+			double lack[RIG_BASIS] = { 0 }, d = nearest(lack, &margin[lid], rig->home[i]) / px_per_mm;
+			double reach = 1 - ramp(d, 0.25 * reach_mm, reach_mm), w = reach / (0.05 + d * d);
+			most = fmax(most, reach);
+			total += w;
+			for (int k = 0; k < RIG_BASIS; k++)
+				sum[k] += w * lack[k];
+		}
+		most *= 1 - ramp(rig->gap[i], lid_gap - 2, lid_gap + 2);
+		report->lid += most > 0.5;
+		for (int k = 0; k < RIG_BASIS && total > 0; k++)
+			rig->basis[i][k] += (float)(most * sum[k] / total);
+	}
+	for (int lid = 0; lid < SKIN_LIDS; lid++) {
+		free(margin[lid].at);
+		free(margin[lid].lack);
+	}
+}
+
+/* The modelling camera's view of one eye, posed: which pixels skin covers, and what is left open in each column. */
+struct fissure {
+	int x0, y0, width, height;
+	uint8_t *cover;
+	float (*at)[2];        // of every vertex, px
+	float *top, *bottom;   // of the open part of a column; equal where none is
+};
+
+/* Skin before the globe: what lines the socket behind it does not close an eye. */
+static bool before_globe(const struct rig *rig, int i, int side)
+{
+	double z = 0;
+	for (int c = 0; c < 3; c++)
+		z += rig->head_from_target[2][c] * (rig->rest[i][c] - rig->globe[side].center[c]);
+	return rig->part[i] == RIG_SKIN && rig->side[i] == side && z > 0.2 * rig->globe[side].radius;
+}
+
+static void cover_triangle(struct fissure *f, const float a[2], const float b[2], const float c[2])
+{
+	float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+	if (area == 0)
+		return;
+	int x0 = (int)fmaxf(floorf(fminf(fminf(a[0], b[0]), c[0])) - (float)f->x0, 0);
+	int x1 = (int)fminf(ceilf(fmaxf(fmaxf(a[0], b[0]), c[0])) - (float)f->x0, (float)f->width - 1);
+	int y0 = (int)fmaxf(floorf(fminf(fminf(a[1], b[1]), c[1])) - (float)f->y0, 0);
+	int y1 = (int)fminf(ceilf(fmaxf(fmaxf(a[1], b[1]), c[1])) - (float)f->y0, (float)f->height - 1);
+	for (int y = y0; y <= y1; y++)
+		for (int x = x0; x <= x1; x++) {
+			float p[2] = { (float)(f->x0 + x) + 0.5f, (float)(f->y0 + y) + 0.5f };
+			float wa = ((c[0] - b[0]) * (p[1] - b[1]) - (c[1] - b[1]) * (p[0] - b[0])) / area;
+			float wb = ((a[0] - c[0]) * (p[1] - c[1]) - (a[1] - c[1]) * (p[0] - c[0])) / area;
+			if (wa >= -1e-4f && wb >= -1e-4f && wa + wb <= 1.0001f)
+				f->cover[(long)y * f->width + x] = 1;
+		}
+}
+
+static void look(struct fissure *f, const struct rig *rig, int side, const double de[RIG_COMPONENTS])
+{
+	memset(f->cover, 0, (size_t)f->width * (size_t)f->height);
+	for (int i = 0; i < rig->n; i++)
+		for (int c = 0; c < 2; c++) {
+			double px = rig->home[i][c];
+			for (int k = 0; k < RIG_COMPONENTS; k++)
+				px += rig->basis[i][c * RIG_COMPONENTS + k] * de[k];
+			f->at[i][c] = (float)px;
+		}
+	for (int t = 0; t < rig->n_faces; t++) {
+		const int32_t *v = rig->faces[t];
+		if (before_globe(rig, v[0], side) && before_globe(rig, v[1], side) && before_globe(rig, v[2], side))
+			cover_triangle(f, f->at[v[0]], f->at[v[1]], f->at[v[2]]);
+	}
+	for (int x = 0; x < f->width; x++) {
+		// The longest run between covered pixels: what is open towards the window's rim is not the fissure.
+		int best = 0, at = 0, from = -1;
+		for (int y = 0; y < f->height; y++) {
+			if (!f->cover[(long)y * f->width + x])
+				continue;
+			if (from >= 0 && y - from - 1 > best) {
+				best = y - from - 1;
+				at = y;
+			}
+			from = y;
+		}
+		f->bottom[x] = (float)(f->y0 + at);
+		f->top[x] = f->bottom[x] - (float)best;
+	}
+}
+
+/* Where the eye is open at rest: the window in which it has to close. */
+static bool window(struct fissure *f, const struct rig *rig, const struct rig_motion *m, int side, double px_per_mm)
+{
+	double box[4] = { INFINITY, INFINITY, -INFINITY, -INFINITY };
+	for (int i = 2 * side * m->n_points; i < 2 * (side + 1) * m->n_points; i++)
+		for (int c = 0; c < 2 && isfinite(m->lid[i][c]); c++) {
+			box[c] = fmin(box[c], m->lid[i][c]);
+			box[c + 2] = fmax(box[c + 2], m->lid[i][c]);
+		}
+	if (!(box[2] > box[0]) || box[2] - box[0] > 1e4 || box[3] - box[1] > 1e4)
+		return false;
+	// Registration may be off by 2 mm; the canthi themselves are never open.
+	double rim = 2 * px_per_mm;
+	*f = (struct fissure){ .x0 = (int)(box[0] + 0.5 * rim), .y0 = (int)(box[1] - rim), .width = (int)fmax(box[2] - box[0] - rim, 0) + 1,
+		                   .height = (int)(box[3] - box[1] + 2 * rim) + 1 };
+	f->cover = mem_new((size_t)f->width * (size_t)f->height + 1, 1);
+	f->at = mem_new((size_t)rig->n + 1, sizeof *f->at);
+	f->top = mem_new((size_t)f->width + 1, sizeof *f->top);
+	f->bottom = mem_new((size_t)f->width + 1, sizeof *f->bottom);
+	return true;
+}
+
+/* What is still open, smoothed along the fissure so that the margin stays a curve. */
+static double open_columns(float *open, const struct fissure *f, double seal_mm, double px_per_mm)
+{
+	int reach = (int)fmax(2 * px_per_mm, 1);
+	double worst = 0;
+	float *most = mem_new((size_t)f->width + 1, sizeof *most);
+	for (int x = 0; x < f->width; x++) {
+		worst = fmax(worst, f->bottom[x] - f->top[x]);
+		for (int k = x - reach < 0 ? 0 : x - reach; k <= x + reach && k < f->width; k++)
+			most[k] = fmaxf(most[k], f->bottom[x] - f->top[x]);
+	}
+	for (int x = 0; x < f->width; x++) {
+		double sum = 0, total = 0;
+		for (int k = x - 2 * reach; k <= x + 2 * reach; k++) {
+			double w = exp(-0.5 * (k - x) * (k - x) / ((double)reach * reach)), here = k < 0 || k >= f->width ? 0 : most[k];
+			sum += w * (here > 0 ? here + seal_mm * px_per_mm : 0);
+			total += w;
+		}
+		open[x] = (float)(sum / total);
+	}
+	free(most);
+	return worst;
+}
+
+/* The upper lid comes down by what is open, all of it at its margin and less and less further up. */
+static void close_once(struct rig *rig, const struct fissure *f, const float *open, int side, const double closing[RIG_COMPONENTS],
+                       double px_per_mm)
+{
+	for (int i = 0; i < rig->n; i++) {
+		double column = f->at[i][0] - f->x0, beyond = fmax(-column, column - f->width) / px_per_mm;
+		int x = (int)fmin(fmax(lrint(column), 0), f->width - 1);
+		if (rig_is_globe(rig->part[i]) || rig->side[i] != side || rig->gap[i] > lid_gap + 3 || !(open[x] > 0) || !(beyond < 3))
+			continue;
+		double middle = 0.5 * (f->top[x] + f->bottom[x]), above = (f->top[x] - f->at[i][1]) / px_per_mm;
+		double w = (1 - ramp(above, 1, 9)) * (1 - ramp(beyond, 0, 3)) * (1 - ramp(rig->gap[i], lid_gap, lid_gap + 3)) * (f->at[i][1] < middle + 0.2 * px_per_mm);
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			rig->basis[i][RIG_COMPONENTS + k] += (float)(w * open[x] * closing[k]);
+	}
+}
+
+void rig_seal_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm, double seal_mm, struct rig_report *report)
+{
+	enum { ROUNDS = 12 };
+	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c), de[RIG_COMPONENTS], closing[RIG_COMPONENTS];
+	rig_components(de, rig, c);  // straight ahead, both eyes closed
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		de[k] -= rig->rest_e[k];
+	free(c);
+	rig_closing_direction(closing, rig, de);
+	for (int side = 0; side < 2; side++) {
+		struct fissure f;
+		if (!window(&f, rig, m, side, px_per_mm))
+			continue;
+		float *open = mem_new((size_t)f.width + 1, sizeof *open);
+		double left = 0;
+		for (int round = 0; round <= ROUNDS; round++) {
+			look(&f, rig, side, de);
+			left = open_columns(open, &f, seal_mm, px_per_mm);
+			report->open_before[side] = round ? report->open_before[side] : left / px_per_mm;
+			if (left == 0 || round == ROUNDS)
+				break;
+			close_once(rig, &f, open, side, closing, px_per_mm);
+		}
+		report->open_after[side] = left / px_per_mm;
+		free(open);
+		free(f.cover);
+		free(f.at);
+		free(f.top);
+		free(f.bottom);
+	}
+}

@@ -1,0 +1,196 @@
+#include "rig/rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/npy/npy.h"
+
+static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" };
+
+/* Small numbers that belong together, in the order in which they stand in the file. */
+struct small {
+	double e[RIG_COMPONENTS], aperture[4], baseline[4][3], rotation[3][3], center[2][3], radius[2], own[2];
+	double grid[3], from_target[3][4], focal[2], middle[2], size[2];
+};
+
+static struct small small_of(const struct rig *r)
+{
+	struct small s = { .grid = { r->skull.x0, r->skull.y0, r->skull.step },
+		               .size = { r->camera.width, r->camera.height } };
+	memcpy(s.e, r->rest_e, sizeof s.e);
+	memcpy(s.aperture, r->rest_aperture, sizeof s.aperture);
+	memcpy(s.baseline, r->baseline, sizeof s.baseline);
+	memcpy(s.rotation, r->head_from_target, sizeof s.rotation);
+	memcpy(s.from_target, r->camera.from_target, sizeof s.from_target);
+	memcpy(s.focal, r->camera.focal_px, sizeof s.focal);
+	memcpy(s.middle, r->camera.center_px, sizeof s.middle);
+	for (int i = 0; i < 2; i++) {
+		memcpy(s.center[i], r->globe[i].center, sizeof s.center[i]);
+		s.radius[i] = r->globe[i].radius;
+		s.own[i] = r->globe[i].own;
+	}
+	return s;
+}
+
+static void small_to(struct rig *r, const struct small *s)
+{
+	r->skull.x0 = s->grid[0];
+	r->skull.y0 = s->grid[1];
+	r->skull.step = s->grid[2];
+	memcpy(r->rest_e, s->e, sizeof s->e);
+	memcpy(r->rest_aperture, s->aperture, sizeof s->aperture);
+	memcpy(r->baseline, s->baseline, sizeof s->baseline);
+	memcpy(r->head_from_target, s->rotation, sizeof s->rotation);
+	memcpy(r->camera.from_target, s->from_target, sizeof s->from_target);
+	memcpy(r->camera.focal_px, s->focal, sizeof s->focal);
+	memcpy(r->camera.center_px, s->middle, sizeof s->middle);
+	r->camera.width = (int)s->size[0];
+	r->camera.height = (int)s->size[1];
+	for (int i = 0; i < 2; i++) {
+		memcpy(r->globe[i].center, s->center[i], sizeof s->center[i]);
+		r->globe[i].radius = s->radius[i];
+		r->globe[i].own = s->own[i] != 0;
+	}
+}
+
+/* One array of the file: where it goes, and its shape (-1: any, learnt when read). */
+struct entry {
+	const char *name;
+	enum npy_type type;
+	int ndim;
+	long shape[3];
+	void **data;
+};
+
+enum { ENTRIES_MAX = 32 };
+
+static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **small, float **mean)
+{
+	long n = r->n, cells = r->globe[0].map.n + 1;
+	const struct entry small_entries[] = {
+		{ "parameters", NPY_F8, 1, { sizeof(struct small) / sizeof(double) }, (void **)small },
+		{ "U", NPY_F4, 3, { n, 2, RIG_COMPONENTS }, (void **)&r->basis },
+		{ "mean", NPY_F4, 2, { n, 2 }, (void **)mean },
+		{ "home", NPY_F4, 2, { n, 2 }, (void **)&r->home },
+		{ "W", NPY_F8, 2, { RIG_COMPONENTS, r->n_inputs + 1 }, (void **)&r->W },
+		{ "vertices", NPY_F4, 2, { n, 3 }, (void **)&r->rest },
+		{ "normals", NPY_F4, 2, { n, 3 }, (void **)&r->normal },
+		{ "faces", NPY_I4, 2, { r->n_faces, 3 }, (void **)&r->faces },
+		{ "fade", NPY_F4, 1, { n }, (void **)&r->fade },
+		{ "thickness", NPY_F4, 1, { n }, (void **)&r->thickness },
+		{ "delta0", NPY_F4, 1, { n }, (void **)&r->gap },
+		{ "glue", NPY_F4, 1, { n }, (void **)&r->glue },
+		{ "part", NPY_U1, 1, { n }, (void **)&r->part },
+		{ "source", NPY_U1, 1, { n }, (void **)&r->source },
+		{ "side", NPY_U1, 1, { n }, (void **)&r->side },
+		{ "bplus_indptr", NPY_I4, 1, { n + 1 }, (void **)&r->bplus.start },
+		{ "bplus_indices", NPY_I4, 1, { r->bplus.start ? r->bplus.start[n] : -1 }, (void **)&r->bplus.column },
+		{ "bplus_data", NPY_F4, 1, { r->bplus.start ? r->bplus.start[n] : -1 }, (void **)&r->bplus.weight },
+		{ "skull", NPY_F4, 3, { r->skull.height, r->skull.width, SKULL_CHANNELS }, (void **)&r->skull.texel },
+		{ globe_keys[0], NPY_F4, 2, { cells, cells }, (void **)&r->globe[0].map.radius },
+		{ globe_keys[1], NPY_F4, 2, { cells, cells }, (void **)&r->globe[1].map.radius },
+	};
+	memcpy(out, small_entries, sizeof small_entries);
+	return COUNT(small_entries);
+}
+
+bool rig_save(const struct rig *rig, const char *path, const char *made_by, struct err *err)
+{
+	struct rig view = *rig;
+	struct small small = small_of(rig), *at = &small;
+	float *mean = mem_new(2 * (size_t)rig->n + 1, sizeof *mean);
+	for (int i = 0; i < 2 * rig->n; i++) {
+		double m = rig->home[i / 2][i % 2];
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			m -= (double)rig->basis[i / 2][i % 2 * RIG_COMPONENTS + k] * rig->rest_e[k];
+		mean[i] = (float)m;
+	}
+	struct entry all[ENTRIES_MAX];
+	struct npz_item items[ENTRIES_MAX];
+	int n = entries(all, &view, &at, &mean);
+	for (int i = 0; i < n; i++)
+		items[i] = (struct npz_item){ all[i].name, npy_of(all[i].type, all[i].ndim, all[i].shape, *all[i].data) };
+	bool ok = npz_save(path, n, items, made_by, err);
+	free(mean);
+	return ok;
+}
+
+/* Reads one array; the first that has a dimension tells how long it is. */
+static bool read_entry(const char *path, const struct entry *e, long got[3], struct err *err)
+{
+	struct npy a;
+	if (!npz_read(&a, path, e->name, NPY_LIMIT, err))
+		return false;
+	if (a.type != e->type) {
+		npy_free(&a);
+		return err_set(err, "%s: %s: another type of number than extrapolate writes: run it again", path, e->name);
+	}
+	if (!npy_expect(&a, path, e->ndim, e->shape, err)) {
+		npy_free(&a);
+		return err_wrap(err, "%s", e->name);
+	}
+	size_t size = (size_t)npy_count(&a) * npy_type_size(a.type);
+	*e->data = mem_array(size + 64, 1);  // aligned, as the texels want it
+	memcpy(*e->data, a.data, size);
+	for (int i = 0; i < e->ndim; i++)
+		got[i] = a.shape[i];
+	npy_free(&a);
+	return true;
+}
+
+/* What indices point at is there. */
+static bool check(const struct rig *r, const char *path, struct err *err)
+{
+	for (int i = 0; i < 3 * r->n_faces; i++)
+		if (r->faces[i / 3][i % 3] < 0 || r->faces[i / 3][i % 3] >= r->n)
+			return err_set(err, "%s: faces: %d is no vertex", path, r->faces[i / 3][i % 3]);
+	for (int i = 0; i < r->n; i++)
+		if (r->side[i] > 1 || r->part[i] >= RIG_PARTS)
+			return err_set(err, "%s: vertex %d belongs to no part", path, i);
+	for (int i = 0; i < r->n; i++)
+		if (r->bplus.start[i] < 0 || r->bplus.start[i] > r->bplus.start[i + 1])
+			return err_set(err, "%s: bplus_indptr: must not fall", path);
+	for (int i = 0; i < r->bplus.start[r->n]; i++)
+		if (r->bplus.column[i] < 0 || r->bplus.column[i] >= r->n)
+			return err_set(err, "%s: bplus_indices: %d is no vertex", path, r->bplus.column[i]);
+	if (r->skull.width < 2 || r->skull.height < 2 || !(r->skull.step > 0))
+		return err_set(err, "%s: skull: must have at least 2 x 2 texels", path);
+	return true;
+}
+
+bool rig_load(struct rig *rig, const char *path, struct err *err)
+{
+	struct small *small = 0;
+	float *mean = 0;
+	struct entry all[ENTRIES_MAX];
+	bool ok = true;
+	*rig = (struct rig){ .n = -1, .n_faces = -1, .n_inputs = -2, .skull = { .width = -1, .height = -1 } };
+	rig->globe[0].map.n = rig->globe[1].map.n = -2;
+	int n = entries(all, rig, &small, &mean);
+	for (int i = 0; ok && i < n; i++) {
+		long got[3] = { 0 };
+		entries(all, rig, &small, &mean);  // with the shapes known by now
+		ok = read_entry(path, &all[i], got, err);
+		if (ok && !strcmp(all[i].name, "U"))
+			rig->n = (int)got[0];
+		else if (ok && !strcmp(all[i].name, "W"))
+			rig->n_inputs = (int)got[1] - 1;
+		else if (ok && !strcmp(all[i].name, "faces"))
+			rig->n_faces = (int)got[0];
+		else if (ok && !strcmp(all[i].name, "skull"))
+			rig->skull.height = (int)got[0], rig->skull.width = (int)got[1];
+		else if (ok && !strcmp(all[i].name, globe_keys[0]))
+			rig->globe[0].map.n = rig->globe[1].map.n = (int)got[0] - 1;
+	}
+	if (ok) {
+		small_to(rig, small);
+		ok = check(rig, path, err);
+	}
+	free(small);
+	free(mean);
+	if (!ok)
+		rig_free(rig);
+	return ok;
+}

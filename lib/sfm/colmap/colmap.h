@@ -1,0 +1,102 @@
+/* colmap: the model files of the COLMAP program, in memory.
+ * Frame  a camera looks along +z, x right, y down; cam_from_world = rotation(q), then t; lengths in the model's own unit.
+ * Image  px, x right, y down, centre of the first pixel at (0.5, 0.5).
+ * Files  cameras, images and points3D, each .bin or .txt, as the program writes them (version 3.8).
+ * Files are strangers': counts are held against the bytes behind them, every number has a range, every observation
+ * has to name a point that names it back.
+ */
+#ifndef SFM_COLMAP_COLMAP_H
+#define SFM_COLMAP_COLMAP_H
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/err.h"
+#include "optics/camera.h"
+
+enum colmap_kind {
+	COLMAP_SIMPLE_PINHOLE, COLMAP_PINHOLE, COLMAP_SIMPLE_RADIAL, COLMAP_RADIAL, COLMAP_OPENCV, COLMAP_OPENCV_FISHEYE,
+	COLMAP_FULL_OPENCV, COLMAP_FOV, COLMAP_SIMPLE_RADIAL_FISHEYE, COLMAP_RADIAL_FISHEYE, COLMAP_THIN_PRISM_FISHEYE,
+	COLMAP_KINDS
+};
+enum { COLMAP_PARAMS = 12 };
+
+struct colmap_camera {
+	uint32_t id;
+	enum colmap_kind kind;
+	int width, height;             // px
+	double params[COLMAP_PARAMS];  // in the order of the program's camera model
+};
+
+struct colmap_seen {
+	double px[2];
+	int point;  // index into points; -1: of none
+};
+
+struct colmap_image {
+	uint32_t id;
+	char *name;        // owned
+	int camera;        // index into cameras
+	double q[4], t[3]; // cam_from_world: quaternion w x y z of length 1; translation
+	struct colmap_seen *seen;
+	int n_seen;
+};
+
+struct colmap_track {
+	int image, seen;  // indices into images, and into that image's seen
+};
+
+struct colmap_point {
+	uint64_t id;
+	double xyz[3];
+	uint8_t rgb[3];
+	double error;  // mean distance of its observations from its projections, px; negative: never computed
+	struct colmap_track *track;
+	int n_track;
+};
+
+struct colmap_model {
+	struct colmap_camera *cameras;
+	struct colmap_image *images;
+	struct colmap_point *points;
+	int n_cameras, n_images, n_points;
+};
+
+enum colmap_format { COLMAP_BINARY, COLMAP_TEXT };
+
+/* The model of a folder: binary where it holds cameras.bin, else text. Cameras, images and points come sorted by their
+ * ids. False, err set ("path: rule broken"), when anything is not as it should be. colmap_free. */
+bool colmap_load(struct colmap_model *model, const char *dir, struct err *err);
+
+/* The same from bytes: data[3] and size[3] of cameras, images, points3D; `where` names them in errors. */
+bool colmap_parse(struct colmap_model *model, enum colmap_format format, const char *const data[3], const size_t size[3],
+                  const char *const where[3], struct err *err);
+
+bool colmap_save(const struct colmap_model *model, const char *dir, enum colmap_format format, struct err *err);
+void colmap_free(struct colmap_model *model);
+
+/* Seals a model: work that comes later refuses files whose bytes have changed since. colmap_load looks at the seal where
+ * there is one. */
+bool colmap_seal(const char *dir, struct err *err);
+
+const char *colmap_kind_name(enum colmap_kind kind);
+int colmap_kind_params(enum colmap_kind kind);
+
+/* The camera as a pinhole with OpenCV's distortion; *fx, *fy px. False, err set, for a lens that this cannot express. */
+bool colmap_to_camera(struct camera *out, double focal[2], const struct colmap_camera *camera, struct err *err);
+
+/* Rotation of a unit quaternion w x y z, and back (w >= 0). */
+void colmap_rotation(double R[3][3], const double q[4]);
+void colmap_quaternion(double q[4], const double R[3][3]);
+
+/* World coordinates of an image's camera centre. */
+void colmap_center(double center[3], const struct colmap_image *image);
+
+/* Mean distance between observations and projections, px: of image i (NAN where it sees no point), or of all
+ * with i = -1. A model whose lens colmap_to_camera refuses gives NAN. */
+double colmap_residual(const struct colmap_model *model, int i);
+
+/* False, err set, when a point's stored error is not what its observations give: files of two models mixed, or bytes
+ * changed. Points without a stored error are passed over. */
+bool colmap_check_errors(const struct colmap_model *model, const char *where, struct err *err);
+
+#endif

@@ -1,0 +1,276 @@
+/* Photographs into pictures: decoded once by the same checks as everywhere, upright, reduced, named by their content. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/record.h"
+#include "bridge/cv_photo.h"
+#include "image/photo/photo.h"
+#include "optics/sensor.h"
+#include "sfm/calibrate.h"
+#include "sfm/frames.h"
+
+enum { SHARP_PX = 800, JPEG_QUALITY = 96 };
+
+static uint8_t *narrow(const struct photo *photo, int channels)
+{
+	long n = (long)photo->width * photo->height;
+	uint8_t *px = mem_array((size_t)n * (size_t)channels, 1);
+	for (long i = 0; i < n; i++)
+		for (int c = 0; c < channels; c++)
+			px[channels * i + c] = (uint8_t)(photo->rgb[3 * i + c] >> 8);
+	return px;
+}
+
+static uint8_t *grey_at(const uint8_t *px, int w, int h, int channels, int new_w, int new_h)
+{
+	uint8_t *small = cv_resize8(px, w, h, channels, new_w, new_h), *grey = mem_array((size_t)new_w * (size_t)new_h, 1);
+	for (long i = 0; i < (long)new_w * new_h; i++)
+		grey[i] = channels == 1 ? small[i] : (uint8_t)((54 * small[3 * i] + 183 * small[3 * i + 1] + 19 * small[3 * i + 2]) >> 8);
+	free(small);
+	return grey;
+}
+
+/* Mean squared Laplacian: drops with blur (Pech-Pacheco et al. 2000 use its variance). */
+double view_sharpness(const uint8_t *px, int w, int h, int channels)
+{
+	double f = fmin(1, (double)SHARP_PX / fmax(w, h)), sum = 0;
+	int W = (int)fmax(3, lround(f * w)), H = (int)fmax(3, lround(f * h));
+	uint8_t *g = grey_at(px, w, h, channels, W, H);
+	for (int y = 1; y < H - 1; y++)
+		for (int x = 1; x < W - 1; x++) {
+			const uint8_t *p = g + (long)y * W + x;
+			double laplacian = 4.0 * p[0] - p[-1] - p[1] - p[-W] - p[W];
+			sum += laplacian * laplacian;
+		}
+	free(g);
+	return sum / ((double)(W - 2) * (H - 2));
+}
+
+void view_thumb(uint8_t thumb[THUMB * THUMB], const uint8_t *px, int width, int height, int channels)
+{
+	uint8_t *grey = grey_at(px, width, height, channels, THUMB, THUMB);
+	memcpy(thumb, grey, THUMB * THUMB);
+	free(grey);
+}
+
+bool view_picture(struct view *view, const char *path, const uint8_t *px, int channels, int picture_px, struct err *err)
+{
+	double f = fmin(1, (double)picture_px / fmax(view->width, view->height));
+	int w = (int)fmax(1, lround(f * view->width)), h = (int)fmax(1, lround(f * view->height));
+	uint8_t *reduced = f < 1 ? cv_resize8(px, view->width, view->height, channels, w, h) : 0, *jpeg = 0;
+	const uint8_t *small = reduced ? reduced : px;
+	view->picture_width = w;
+	view->picture_height = h;
+	view->sharpness = view_sharpness(small, w, h, channels);
+	view_thumb(view->thumb, small, w, h, channels);
+	size_t size;
+	bool ok = picture_jpeg_encode(&jpeg, &size, small, w, h, channels, JPEG_QUALITY, err) && file_write(path, jpeg, size, err);
+	free(reduced);
+	free(jpeg);
+	return ok;
+}
+
+static bool make_picture(struct view *view, const char *path, const struct photo *photo, int picture_px, struct err *err)
+{
+	int channels = photo->grey ? 1 : 3;
+	view->width = photo->width;
+	view->height = photo->height;
+	view->focal_px = photo->exif.focal_px;
+	if (!isfinite(view->focal_px))
+		view->focal_px = sensor_focal_px(photo->exif.model, photo->exif.focal_mm, photo->width > photo->height ? photo->width : photo->height);
+	strcpy(view->maker, photo->exif.model);
+	uint8_t *px = narrow(photo, channels);
+	bool ok = view_picture(view, path, px, channels, picture_px, err);
+	free(px);
+	return ok;
+}
+
+/* Decodes one photograph unless its picture stands. A bad photograph is left out; only what cannot be written fails. */
+static bool prepare(struct view *view, const char *path, const char *picture, const struct calibrate_options *o,
+                    struct err *err)
+{
+	struct photo photo = { 0 };
+	struct err why = { 0 };
+	if (!photo_load(&photo, path, o->limit_mpx, &why)) {
+		size_t n = strlen(path);
+		const char *msg = strncmp(why.msg, path, n) ? why.msg : why.msg + n + 1;
+		snprintf(view->reason, sizeof view->reason, "%.250s", msg + strspn(msg, " "));
+		return true;
+	}
+	bool ok = make_picture(view, picture, &photo, o->picture_px, err);
+	photo_free(&photo);
+	return ok;
+}
+
+static void add_folder(struct views *views, struct stage *stage, const char *dir, struct err *err)
+{
+	struct file_list list;
+	if (!stage_list(stage, &list, dir, err))
+		return;
+	views->v = mem_grow(views->v, (size_t)(views->n + list.n), sizeof *views->v);
+	for (int i = 0; i < list.n; i++)
+		views->v[views->n++] = (struct view){ .file = mem_printf("%s/%s", dir, list.names[i]), .focal_px = NAN, .frame = -1 };
+	file_list_free(&list);
+}
+
+/* The name says what is in it: content, and the size it was reduced to. */
+static void name_pictures(struct views *views, struct stage *stage, const struct calibrate_options *o)
+{
+	for (int i = 0; i < views->n; i++) {
+		struct view *v = &views->v[i];
+		const char *hash = record_hash(stage->record, v->file);
+		if (hash)
+			snprintf(v->picture, sizeof v->picture, "%.16s-%d.jpg", hash, o->picture_px);
+		else
+			snprintf(v->reason, sizeof v->reason, "cannot be read");
+		for (int k = 0; k < i && !*v->reason; k++)
+			if (!strcmp(views->v[k].picture, v->picture))
+				snprintf(v->reason, sizeof v->reason, "the same file as %.200s", views->v[k].file);
+	}
+}
+
+static bool prepare_all(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
+{
+	int done = 0;
+	char **paths = mem_new((size_t)views->n, sizeof *paths), **pictures = mem_new((size_t)views->n, sizeof *pictures);
+	for (int i = 0; i < views->n; i++) {
+		paths[i] = (char *)stage_path(stage, "%s", views->v[i].file);
+		pictures[i] = (char *)stage_path(stage, CALIBRATE_DIR "/pictures/%s", views->v[i].picture);
+	}
+	bool ok = true;
+#pragma omp parallel for schedule(dynamic)
+	for (int i = 0; i < views->n; i++) {
+		struct view *v = &views->v[i];
+		struct err mine = { 0 };
+		bool stands = v->picture_width && file_exists(pictures[i]);
+		if (!*v->reason && !stands && !prepare(v, paths[i], pictures[i], o, &mine))
+#pragma omp critical
+			ok = err_set(err, "%s", mine.msg);
+#pragma omp critical
+		stage_progress(stage, ++done, views->n, "photographs");
+	}
+	free(paths);
+	free(pictures);
+	return ok;
+}
+
+double view_difference(const uint8_t *thumb, const uint8_t *other)
+{
+	double sum = 0;
+	for (int i = 0; i < THUMB * THUMB; i++)
+		sum += abs(thumb[i] - other[i]);
+	return sum / (THUMB * THUMB);
+}
+
+/* Pictures hardly different from the one kept before them say nothing new; of very many, every so manieth is kept. */
+static void thin(struct views *views, struct stage *stage, const struct calibrate_options *o)
+{
+	int last = -1, same = 0, kept = 0, over = 0;
+	for (int i = 0; i < views->n; i++) {
+		struct view *v = &views->v[i];
+		if (*v->reason)
+			continue;
+		if (last >= 0 && view_difference(v->thumb, views->v[last].thumb) < o->same_level) {
+			snprintf(v->reason, sizeof v->reason, "nearly the same as %.200s", views->v[last].file);
+			same++;
+		} else {
+			last = i;
+			kept++;
+		}
+	}
+	for (int i = 0, k = 0; i < views->n && kept > o->max_views; i++) {
+		struct view *v = &views->v[i];
+		if (*v->reason)
+			continue;
+		k++;
+		// The k-th of `kept` stays where k max_views / kept passes a whole number.
+		if ((long)k * o->max_views / kept != (long)(k - 1) * o->max_views / kept)
+			continue;
+		snprintf(v->reason, sizeof v->reason, "%d views are enough", o->max_views);
+		over++;
+	}
+	if (same || over)
+		stage_warn(stage, "views: %d of %d left out: %d hardly differ from the one before, %d for there are more than %d", same + over,
+		           views->n, same, over, o->max_views);
+}
+
+static void say_left_out(const struct views *views, struct stage *stage)
+{
+	for (int i = 0; i < views->n; i++)
+		if (*views->v[i].reason && strncmp(views->v[i].reason, "nearly", 6) && !strstr(views->v[i].reason, "are enough"))
+			stage_skipped(stage, "%s: %s", views->v[i].file, views->v[i].reason);
+}
+
+/* Those in use first, the order kept. */
+static void sort_used(struct views *views)
+{
+	struct view *out = mem_new((size_t)views->n, sizeof *out);
+	int n = 0;
+	for (int left_out = 0; left_out < 2; left_out++) {
+		for (int i = 0; i < views->n; i++)
+			if (!!*views->v[i].reason == left_out)
+				out[n++] = views->v[i];
+		views->n_used = left_out ? views->n_used : n;
+	}
+	free(views->v);
+	views->v = out;
+}
+
+/* A few are enough for the video's lens beside photographs; alone they have to carry everything. */
+static int frames_wanted(const struct views *views, const struct calibrate_options *o)
+{
+	int n = 0;
+	for (int i = 0; i < views->n; i++)
+		n += !*views->v[i].reason && !strncmp(views->v[i].file, "views/", 6);
+	return n >= 2 ? o->video_frames_beside : o->video_frames;
+}
+
+bool views_gather(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
+{
+	*views = (struct views){ 0 };
+	add_folder(views, stage, "views", err);
+	add_folder(views, stage, "photos", err);
+	if (err_is(err) || !file_mkdirs(stage_path(stage, CALIBRATE_DIR "/pictures"), err))
+		return false;
+	name_pictures(views, stage, o);
+	struct pictures known;
+	pictures_load(&known, stage_path(stage, CALIBRATE_DIR "/pictures.json"));
+	pictures_recall(views, &known);
+	bool ok = prepare_all(views, stage, o, err) && frames_add(views, frames_wanted(views, o), &known, stage, o, err);
+	if (ok) {
+		thin(views, stage, o);
+		say_left_out(views, stage);
+		sort_used(views);
+		pictures_cameras(views, &known, o);
+		ok = pictures_save(views, &known, stage_path(stage, CALIBRATE_DIR "/pictures.json"), err);
+	}
+	pictures_free(&known);
+	return ok;
+}
+
+char *view_name(const struct view *view)
+{
+	const char *slash = strrchr(view->file, '/'), *file = slash ? slash + 1 : view->file, *dot = strrchr(file, '.');
+	int n = dot && dot != file ? (int)(dot - file) : (int)strlen(file);
+	return view->frame < 0 ? mem_printf("%.*s", n, file) : mem_printf("%.*s_%ld", n, file, view->frame);
+}
+
+bool views_are_video(const struct views *views)
+{
+	for (int i = 0; i < views->n_used; i++)
+		if (!strncmp(views->v[i].file, "views/", 6))
+			return false;
+	return true;
+}
+
+void views_free(struct views *views)
+{
+	for (int i = 0; i < views->n; i++)
+		free(views->v[i].file);
+	free(views->v);
+	free(views->cameras);
+	free(views->has_focal);
+	*views = (struct views){ 0 };
+}

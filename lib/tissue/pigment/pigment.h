@@ -1,0 +1,94 @@
+/* pigment: melanin of the iris from its texture: the automatic search that the iris paper leaves as future work.
+ *
+ * The texture is reduced to classes of like thickness and radius; their colours, against the white of the sclera, are
+ * fitted by the forward model of tissue/tissue.h. What one photograph cannot tell apart is held by priors and shown by the
+ * covariance.
+ */
+#ifndef TISSUE_PIGMENT_PIGMENT_H
+#define TISSUE_PIGMENT_PIGMENT_H
+#include "iris/heightfield/heightfield.h"
+#include "tissue/tissue.h"
+
+/* The unknowns. Concentrations, scale and gains by their natural logarithms. */
+enum pigment_unknown {
+	PIGMENT_ABL_MELANIN, PIGMENT_ABL_RATIO, PIGMENT_STROMA_MELANIN, PIGMENT_STROMA_RATIO, PIGMENT_SCALE,
+	PIGMENT_EXPOSURE,
+	PIGMENT_RED, PIGMENT_BLUE,  // ln gain of red and of blue against green: error of the white
+	PIGMENT_VEIL,               // light of the cornea's reflection over the iris, white = 1
+	PIGMENT_N
+};
+extern const char *const pigment_names[PIGMENT_N];
+
+struct pigment_class {
+	double thickness;         // mm, median
+	double share;             // iris_share, mean
+	double rgb[3], spread[3]; // reflectance factor (white Lambertian = 1): robust mean, and the scatter of texels about it
+	double texels;            // independent ones
+};
+
+enum { PIGMENT_CLASSES_MAX = 64 };
+struct pigment_classes {
+	int n;
+	struct pigment_class of[PIGMENT_CLASSES_MAX];
+};
+
+struct pigment_classes_conf {
+	int rings, levels;             // rings of radius times levels of thickness
+	double inner, outer;           // iris_share between which tissue is trusted
+	double grain;                  // mm: detail below it is not independent
+};
+
+/* clean: R, G, B, W; thickness: map of `channels` floats a texel, the first is mm; same grid. white: rgb of a white
+ * Lambertian surface in that light. Classes with too few texels are left out. False, err set, when fewer than 3 remain. */
+bool pigment_classify(struct pigment_classes *out, const struct image *clean, const struct image *thickness,
+                      double extent, const struct pupil *pupil, double root, const double white[3],
+                      const struct pigment_classes_conf *conf, struct err *err);
+
+struct pigment_conf {
+	double prior[PIGMENT_N][2];  // mean and sigma, in the unknowns' own units; veil: mean 0
+	double abl_thickness;        // mm
+	double cos_light, cos_view;
+	double light_error, model_error;  // of ln light and of ln colour of a class, 1 sigma
+	double floor;                // absolute, of reflectance
+	enum illuminant illuminant;
+	int bands, starts;
+	bool polarised;              // no veil
+	bool multiple;               // all orders of scattering
+};
+
+enum { PIGMENT_MINIMA_MAX = 8 };
+struct pigment_fit {
+	double x[PIGMENT_N], sigma[PIGMENT_N], correlation[PIGMENT_N][PIGMENT_N];
+	double residual_rgb[3];  // rms over the classes, reflectance
+	double residual;         // rms over classes and channels, relative to their own rms
+	double residual_colour;  // rms of ln red/green and ln blue/green
+	double cost;             // half the sum of squares, priors in it
+	int iterations;          // over all starts
+	int starts, minima;      // distinct minima found, within 2 of the lowest cost
+	double other[PIGMENT_MINIMA_MAX][PIGMENT_N + 1];  // the others': unknowns, then cost
+	int directions;          // combinations that the priors hold rather than the photograph
+	double direction[PIGMENT_N][PIGMENT_N], information[PIGMENT_N];  // in units of the priors' sigma; data over prior
+};
+
+/* The tissue that unknowns stand for. */
+struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_conf *conf);
+
+/* What a photograph shows of a reflectance: exposure, white error, veil. */
+void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N]);
+
+/* Reflectance that a photograph would show of stroma that thick: exposure, white error and veil included. */
+void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
+                   const struct pigment_conf *conf);
+
+/* from: where to start, once; or null: conf->starts places, the first of them the priors' middle. */
+bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
+                   const double *from, struct err *err);
+
+/* IRIS/pigment.json. extra: JSON object text of further keys, or null. */
+bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
+                  const char *path, const char *made_by, const char *extra, struct err *err);
+
+/* The unknowns again, the white they were found with, and of conf what shapes the forward model. */
+bool pigment_load(double x[PIGMENT_N], double white[3], struct pigment_conf *conf, const char *path, struct err *err);
+
+#endif

@@ -1,0 +1,37 @@
+/* pigment_white: what white looks like in a photograph: from its sclera, or from a grey card in it. */
+#ifndef TISSUE_PIGMENT_WHITE_H
+#define TISSUE_PIGMENT_WHITE_H
+#include "anatomy/fit.h"
+#include "image/photo/photo.h"
+
+enum white_source { WHITE_CAMERA, WHITE_SCLERA, WHITE_CARD };
+extern const char *const white_names[];  // "camera", "sclera", "card"
+
+struct white {
+	double rgb[3];   // of a white Lambertian surface in that light
+	double spread;   // of what it was measured from, relative, 1 sigma
+	double share;    // of the ring about the limbus that is sclera
+	enum white_source source;
+};
+
+struct white_conf {
+	double sclera[3];          // reflectance of the sclera
+	double inner, outer;       // the ring, in semi-axes of the limbus
+	double redness;            // ln R/G above the palest, that is skin already
+	double reddest;            // ln R/G, at which even the palest is skin
+	double dark;               // share of the ring's brightest, that is shadow already
+	double share_min;          // less sclera than that is none
+	double card;               // reflectance of the card
+};
+
+/* From the ring outside the limbus: pale, bright, not clipped. False, with no error, when there is too little sclera. */
+bool white_sclera(struct white *out, const struct photo *photo, const struct fit *fit, const struct white_conf *conf);
+
+/* From a disc of the photograph: x, y, radius px. False, err set, when it is outside or clipped. */
+bool white_card(struct white *out, const struct photo *photo, const double disc[3], const struct white_conf *conf,
+                struct err *err);
+
+/* The camera's own white balance and exposure: (1, 1, 1). */
+struct white white_camera(void);
+
+#endif

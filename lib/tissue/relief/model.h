@@ -1,0 +1,28 @@
+/* relief_model: reflectance over ln thickness as a table, for maps of a million texels. */
+#ifndef TISSUE_RELIEF_MODEL_H
+#define TISSUE_RELIEF_MODEL_H
+#include "tissue/pigment/pigment.h"
+
+enum { RELIEF_TABLE = 512 };
+
+struct relief_table {
+	double low, step;                  // ln mm of the first entry, between entries
+	float rgb[RELIEF_TABLE][3];        // as pigment_model gives it
+	float light[RELIEF_TABLE], slope[RELIEF_TABLE];  // luminance, and its derivative to ln thickness
+};
+
+/* From low to high mm. white: multiplied in. */
+void relief_table_make(struct relief_table *table, double low, double high, const double white[3],
+                       const double x[PIGMENT_N], const struct pigment_conf *conf);
+
+/* Place of ln thickness in the table: entry (0 .. RELIEF_TABLE - 2) and fraction; clamped. */
+static inline int relief_place(const struct relief_table *table, float ln_thickness, float *fraction)
+{
+	float at = (ln_thickness - (float)table->low) / (float)table->step;
+	at = at < 0 ? 0 : at > RELIEF_TABLE - 1.001f ? RELIEF_TABLE - 1.001f : at;
+	int i = (int)at;
+	*fraction = at - (float)i;
+	return i;
+}
+
+#endif

@@ -1,0 +1,47 @@
+/* conf: what config/track.conf and capture.conf say. */
+#ifndef TRACK_CLIP_CONF_H
+#define TRACK_CLIP_CONF_H
+#include "image/video/video.h"
+#include "track/eye/track.h"
+#include "track/head/find.h"
+#include "track/points/track.h"
+#include "track/wrinkle/wrinkle.h"
+
+struct track_conf {
+	struct video_conf video;
+	struct eye eye;
+	struct eye_track_conf eyes;
+	struct skin_track_conf skin;
+	struct head_find_conf head;
+	struct wrinkle_conf wrinkle;
+	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
+	double unit_mm, eye_radius;                  // subject.*: NAN where not given
+	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
+	struct opt_each_list landmark_px, expression;
+	double distance_mm;    // of the face from a camera of which nothing is known
+	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
+	int search;            // frames looked through for it; this and the spans below: of clips of more than 60 a second, as many as make the same time
+	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
+	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
+	int points;            // of skin
+	struct {
+		int frames, span;  // so many, spread over so many of the clip
+	} look, doubt;         // that the reference is judged by; where the first raised a doubt
+	long every, limit;     // one frame in so many is followed, so many in all; 0: all
+	double meniscus_mm;    // that the edge of a lid's margin stands off the eye in the corners
+	double reach_mm;       // round an eyeball's centre
+	double gap_px;         // points are no closer
+	double cut;            // share of the points that must be seen again, or there was a cut
+	double still_pose_px;  // robust scale of a point off the head's motion
+};
+
+#define SETTLE_OPTS(c)                                                                                                              \
+	OPT_INT("settle_frames", &(c)->settle, 0, 10000, "", "from which the eyeballs' centres settle the head's pose; 0: not"),            \
+		OPT_INT("look_frames", &(c)->look.frames, 12, 1000, "", "that tell whether the reference frame is a good one"),                 \
+		OPT_INT("look_span", &(c)->look.span, 12, 100000, "", "frames of the clip that those are spread over"),                         \
+		OPT_INT("doubt_frames", &(c)->doubt.frames, 12, 1000, "", "that are followed where those raise a doubt, until one is good"),    \
+		OPT_INT("doubt_span", &(c)->doubt.span, 12, 100000, "", "frames of the clip that those are spread over"),                       \
+		OPT_REAL("settle_sigma_mm", &(c)->settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),                   \
+		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them")
+
+#endif

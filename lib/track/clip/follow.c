@@ -1,0 +1,210 @@
+/* The pipeline: frames as the decoder gives them, skin, head, eyes. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+#include "track/clip/behind.h"
+
+/* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
+struct rigid {
+	int n;
+	double *off2, *least;
+	struct head_sight *sights;
+};
+
+static const double forget = 1.2;  // share a second
+/* How far skin is expected to move on its own, mm: over the bridge of the nose, the cheeks, the brows, the lids. */
+static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids = 0.6;
+/* How much a head moves in a second, as one that wanders: degrees, mm; as the square root of the time. */
+static const double turn_step = 1.55, shift_step = 4.65;
+
+bool track_on_lid(const double head[3], const struct track_subject *s)
+{
+	for (int e = 0; e < SIDES; e++) {
+		double dx = head[0] - s->center[e][0], dy = head[1] - s->center[e][1];
+		if (dx * dx + dy * dy < 1.4 * 1.4 * s->radius * s->radius)
+			return true;
+	}
+	return false;
+}
+
+static double expected_off(const double head[3], const struct track_subject *s)
+{
+	double nose = 0.5 * (s->center[SIDE_LEFT][0] + s->center[SIDE_RIGHT][0]);
+	if (track_on_lid(head, s))
+		return off_lids;
+	double up = head[1] - (isnan(s->center[SIDE_LEFT][1]) ? s->center[SIDE_RIGHT][1] : s->center[SIDE_LEFT][1]);
+	if (fabs(head[0] - (isnan(nose) ? 0 : nose)) < s->radius && up < 0.5 * s->radius)
+		return off_nose;
+	return up > 0.5 * s->radius ? off_brow : off_cheek;
+}
+
+static struct rigid rigid_new(const struct track_points *points, const struct track_subject *s, double px_per_mm)
+{
+	struct rigid r = { .n = points->n, .off2 = mem_new((size_t)points->n + 1, sizeof *r.off2), .least = mem_new((size_t)points->n + 1, sizeof *r.least), .sights = mem_new((size_t)points->n + 1, sizeof *r.sights) };
+	for (int i = 0; i < r.n; i++) {
+		memcpy(r.sights[i].head, points->head[i], sizeof r.sights[i].head);
+		r.off2[i] = r.least[i] = pow(px_per_mm * expected_off(points->head[i], s), 2);
+	}
+	return r;
+}
+
+static void rigid_free(struct rigid *r)
+{
+	free(r->off2);
+	free(r->least);
+	free(r->sights);
+}
+
+/* dt: seconds since the frame before. */
+static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust, double dt)
+{
+	double next[4][4], turn = sqrt(dt) * turn_step * M_PI / 180, shift = sqrt(dt) * shift_step, new = fmin(1, forget * dt);
+	struct head_prior prior = { .sigma = { turn, turn, turn, shift, shift, shift } };
+	memcpy(next, pose, sizeof next);
+	memcpy(prior.cam_from_head, pose, sizeof prior.cam_from_head);
+	for (int i = 0; i < r->n; i++) {
+		r->sights[i].weight = state[i].confidence / fmax(r->least[i], r->off2[i]);
+		memcpy(r->sights[i].px, state[i].at, sizeof r->sights[i].px);
+	}
+	if (isnan(head_pose_fit(next, r->n, r->sights, camera, robust, &prior)))
+		return;
+	memcpy(pose, next, sizeof next);
+	for (int i = 0; i < r->n; i++) {
+		double px[2];
+		if (state[i].confidence > 0 && head_project(px, camera, pose, r->sights[i].head))
+			r->off2[i] += new * (fmin(100, pow(px[0] - state[i].at[0], 2) + pow(px[1] - state[i].at[1], 2)) - r->off2[i]);
+	}
+}
+
+void track_to_model(float out[2], const double px[2], const double head[3], const double pose[4][4], const struct track_clip *clip)
+{
+	double p[3], ray[3], h[3], model[2] = { NAN, NAN };
+	head_from(p, pose, head);
+	camera_ray(ray, &clip->camera, px);
+	for (int k = 0; k < 3; k++)
+		ray[k] *= p[2] / ray[2];
+	head_to(h, pose, ray);
+	head_project(model, &clip->camera, clip->cam_from_head, h);
+	out[0] = (float)model[0];
+	out[1] = (float)model[1];
+}
+
+static void grow(struct track_result *r, long *room)
+{
+	if (r->n < *room)
+		return;
+	*room = *room ? 2 * *room : 256;
+	size_t n = (size_t)*room, m = n * (size_t)r->n_points;
+	r->time = mem_grow(r->time, n, sizeof *r->time);
+	r->lost_at = mem_grow(r->lost_at, n, sizeof *r->lost_at);
+	r->pose = mem_grow(r->pose, n, sizeof *r->pose);
+	r->skin = mem_grow(r->skin, m + 1, sizeof *r->skin);
+	r->skin_model = mem_grow(r->skin_model, m + 1, sizeof *r->skin_model);
+	r->confidence = mem_grow(r->confidence, m + 1, sizeof *r->confidence);
+}
+
+static void store(struct track_result *r, const struct skin_point_state *state, const double pose[4][4], bool lost,
+                  const struct track_points *points, const struct track_clip *clip)
+{
+	long at = r->n * r->n_points;
+	for (int i = 0; i < r->n_points; i++) {
+		r->skin[at + i][0] = (float)state[i].at[0];
+		r->skin[at + i][1] = (float)state[i].at[1];
+		r->confidence[at + i] = lost ? 0 : (float)state[i].confidence;
+		track_to_model(r->skin_model[at + i], state[i].at, points->head[i], pose, clip);
+	}
+	memcpy(r->pose[r->n], pose, sizeof r->pose[r->n]);
+}
+
+/* One frame of skin and head; true when what was followed is lost. */
+static bool skin_frame(struct track_result *r, struct skin_track *skin, struct skin_point_state *state, const struct video_frame *f,
+                       const struct track_conf *conf)
+{
+	if (!skin)
+		return false;
+	double seen = skin_track_push(skin, f->luma, f->luma_stride, state);
+	r->still += skin_track_was_still(skin);
+	if (seen >= conf->cut)
+		return false;
+	// perhaps the camera jumped there and back
+	skin_track_restart(skin);
+	seen = skin_track_push(skin, f->luma, f->luma_stride, state);
+	if (seen >= conf->cut)
+		return false;
+	if (r->cut < 0)
+		r->cut = f->index;
+	r->lost++;
+	return true;
+}
+
+bool track_follow(struct track_result *r, struct stage *stage, const struct track_clip *clip, const struct track_subject *subject,
+                  const struct track_points *points, const struct track_conf *conf, struct err *err)
+{
+	struct video_info info;
+	struct video *video = video_open(&info, stage_path(stage, "%s", clip->file), &conf->video, err);
+	*r = (struct track_result){ .n_points = points->n, .cut = -1, .lid_points = conf->eyes.lid_points, .n_au = conf->expression.n };
+	if (!video)
+		return false;
+	struct skin_track *skin = !points->n ? 0 : skin_track_new(&points->points, clip->luma, info.width, info.width, info.height, points->mask, &conf->skin);
+	struct skin_point_state *state = mem_new((size_t)points->n + 1, sizeof *state);
+	struct rigid rigid = rigid_new(points, subject, clip->camera.focal_px / clip->cam_from_head[2][3]);
+	struct track_eyes *eyes = track_eyes_new(clip, subject, conf);
+	double pose[4][4];
+	long room = 0;
+	r->film = conf->limit ? 0 : film_new(clip, subject, points);
+	r->folds = conf->limit ? 0 : folds_new(clip, points, conf);
+	struct behind *behind = behind_new(eyes, r->film, r->folds);
+	bool ok = true, got = true;
+	memcpy(pose, clip->cam_from_head, sizeof pose);
+	const long every = conf->every ? conf->every : 1;
+	while (ok && got && (!conf->limit || r->n < conf->limit)) {
+		struct video_frame f;
+		ok = video_next(&f, &got, video, err);
+		if (ok && got && f.index % every == clip->reference % every) {
+			grow(r, &room);
+			bool lost = skin_frame(r, skin, state, &f, conf);
+			if (!lost && points->n)
+				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px, fmax(1e-4, r->n ? f.time - r->time[r->n - 1] : 1 / info.fps));
+			r->time[r->n] = f.time;
+			r->lost_at[r->n] = lost;
+			store(r, state, pose, lost, points, clip);
+			r->n++;
+			behind_push(behind, &f, (const double(*)[4])pose);
+			if (!conf->limit)
+				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
+		}
+		video_frame_free(&f);
+	}
+	behind_end(behind);
+	if (video_damaged(video))
+		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
+	if (ok && points->n)
+		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip);
+	ok = ok && (r->n < 2 || track_eyes_finish(r, eyes, err));
+	track_eyes_free(eyes);
+	rigid_free(&rigid);
+	free(state);
+	skin_track_free(skin);
+	video_close(video);
+	return ok;
+}
+
+void track_result_free(struct track_result *r)
+{
+	free(r->time);
+	free(r->lost_at);
+	free(r->pose);
+	free(r->skin);
+	free(r->skin_model);
+	free(r->confidence);
+	free(r->lids);
+	free(r->lids_model);
+	free(r->g);
+	free(r->misfit);
+	eye_clip_free(&r->eyes);
+	film_free(r->film);
+	folds_free(r->folds);
+}

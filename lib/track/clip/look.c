@@ -1,0 +1,94 @@
+/* Where the head is in the kept frame, by its eyes. */
+#include <string.h>
+
+#include "bridge/cv_face.h"
+#include "track/clip/clip.h"
+
+/* A camera of which nothing is known: as far away as faces are filmed from. */
+static void assume_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	double eye[3] = { 0 }, p[3], n = s->opening[0].open + s->opening[1].open;
+	for (int e = 0; e < SIDES; e++)
+		for (int k = 0; k < 3 && s->opening[e].open; k++)
+			eye[k] += s->opening[e].center[k] / n;
+	head_from(p, clip->cam_from_head, eye);
+	double k = conf->distance_mm / p[2];
+	clip->camera.focal_px *= k;
+	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
+}
+
+/* A whole face in the kept frame, upright; close-ups show none. */
+static bool look_for_face(struct cv_face *face, struct track_clip *clip)
+{
+	struct err none = { 0 };
+	int n = 0;
+	return (clip->faces || cv_face_open(&clip->faces, &none))
+	       && cv_face_find(&n, face, 1, clip->faces, clip->luma, clip->info.width, clip->info.height, 0, &none) && n > 0;
+}
+
+/* The head one way up, or as the eyes of a face that was found say, in the kept frame. */
+static bool look_so(struct head_found *found, struct track_clip *clip, enum track_way way, const struct cv_face *face, const struct track_subject *s,
+                    const struct track_conf *conf)
+{
+	int w = clip->info.width, h = clip->info.height;
+	if (face ? !head_find_from_eyes(found, face->eye, &clip->camera, s->opening)
+	         : !head_find(found, clip->rgb, w, h, &clip->camera, s->opening, way == WAY_OVER, &conf->head))
+		return false;
+	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
+	if (clip->focal_assumed) {
+		assume_distance(clip, s, conf);
+		memcpy(found->cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
+	}
+	return head_find_refine(found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head);
+}
+
+/* Openings turned upside down look much like themselves: a head is taken to be so where its openings stand out more, and their outlines
+ * fit better, than those of one that is upright, and as many of them are seen: eyes that look up or down change their openings'
+ * shape, too. */
+static bool stands(const struct head_found *up, const struct head_found *over)
+{
+	return up->score >= over->score || up->edge_px <= over->edge_px || up->seen[0] + up->seen[1] > over->seen[0] + over->seen[1];
+}
+
+bool track_look(struct track_clip *clip, enum track_way way, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct head_found up, over;
+	struct camera camera = clip->camera, upright;
+	struct cv_face face;
+	bool is_face = way != WAY_OVER && look_for_face(&face, clip) && look_so(&up, clip, WAY_UP, &face, s, conf), is_up = is_face;
+	if (!is_face && way != WAY_OVER) {
+		clip->camera = camera;
+		is_up = look_so(&up, clip, WAY_UP, 0, s, conf);
+	}
+	upright = clip->camera;
+	clip->camera = camera;
+	bool is_over = !is_face && way != WAY_UP && look_so(&over, clip, WAY_OVER, 0, s, conf) && !(is_up && stands(&up, &over));
+	if (!is_up && !is_over)
+		return false;
+	if (!is_over)
+		clip->camera = upright;
+	const struct head_found *found = is_over ? &over : &up;
+	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
+	memcpy(clip->eye_seen, found->seen, sizeof clip->eye_seen);
+	clip->pose_px = found->edge_px;
+	return true;
+}
+
+/* A frame of known pose, if open eyes are seen where they then are. */
+bool track_look_known(struct track_clip *clip, long frame, const struct track_subject *s, const struct track_conf *conf)
+{
+	for (int i = 0; i < clip->n_known; i++) {
+		const struct track_known *k = &clip->known[i];
+		struct head_found found = { .seen = { s->opening[0].open, s->opening[1].open } };
+		if (k->frame != frame)
+			continue;
+		memcpy(found.cam_from_head, k->cam_from_head, sizeof found.cam_from_head);
+		if (!head_find_refine(&found, clip->rgb, clip->info.width, clip->info.height, &clip->camera, s->opening, &conf->head))
+			return false;
+		memcpy(clip->cam_from_head, k->cam_from_head, sizeof clip->cam_from_head);
+		memcpy(clip->eye_seen, found.seen, sizeof clip->eye_seen);
+		clip->pose_px = k->residual_px;
+		return clip->pose_given = true;
+	}
+	return false;
+}

@@ -1,0 +1,158 @@
+/* The head's pose at the reference, settled by what the eyes turn about: their centres lie 12 mm behind the lids, so that a head
+ * that is thought to be turned wrongly has them in the wrong place beside the lids' outlines. */
+#include <math.h>
+#include <string.h>
+
+#include "math/chol.h"
+#include "track/clip/reference.h"
+
+enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2 };
+
+static const double margin_weight = 0.05;  // px^-2: margins err together, by what lashes shade
+static const double open_enough = 0.8;     // of the usual opening
+static const double still_gaze = 0.01, like_v = 0.05;  // radians
+
+/* A centre found is known the better along either axis of the head. */
+static int centers(struct head_sight sights[SIDES * 2], const struct track_result *r, const struct track_clip *clip, const struct track_subject *s,
+                   const struct track_conf *conf)
+{
+	int n = 0;
+	for (int e = 0; e < SIDES; e++) {
+		const struct eye_globe *g = &r->eyes.globe[e];
+		double px[2];
+		if (!g->seen || g->frames < LEAST_FRAMES || !head_project(px, &clip->camera, clip->cam_from_head, g->center_in_head))
+			continue;
+		for (int k = 0; k < 2; k++) {
+			double off[3] = { g->center_in_head[0], g->center_in_head[1], g->center_in_head[2] }, there[2];
+			off[k] += 1;
+			head_project(there, &clip->camera, clip->cam_from_head, off);
+			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(conf->center_sigma, g->center_sigma[k]);
+			struct head_sight *to = &sights[n++];
+			*to = (struct head_sight){ .line = true, .sure = true, .weight = 1 / (sigma * sigma) };
+			memcpy(to->head, s->center[e], sizeof to->head);
+			memcpy(to->px, px, sizeof px);
+			for (int c = 0; c < 2; c++)
+				to->normal[c] = (there[c] - px[c]) / px_per_mm;
+		}
+	}
+	return n;
+}
+
+/* Lids follow the eye, by a quarter of a millimetre a degree up and down, and a little sideways. Those of a mesh are taken for those of
+ * an eye that looks straight on, as high as in a good reference frame (calm 0), or else as it mostly does: what each control point's
+ * place would be then, from all frames of open eyes, with calm > 0 of a face at rest (skin off the head no more than so many px),
+ * px of the modelling camera = rest + h turn[0] + (v - that height) turn[1], robustly. Where too few tell, that of the reference frame. */
+static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
+                    const struct track_conf *conf)
+{
+	const struct eye_state *here = &r->eyes.state[clip->reference / conf->every][side];
+	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1];
+	const int points = conf->eyes.lid_points;  // of a frame without lids NAN
+	memcpy(rest, here->lid[point / points][point % points], 2 * sizeof *rest);
+	for (int round = 0; round < REST_ROUNDS && isfinite(up); round++) {
+		double a[3][3] = { { 0 } }, b[2][3] = { { 0 } }, square = 0, weight = 0;
+		for (long f = 0; f < r->n; f++) {
+			const struct eye_state *state = &r->eyes.state[f][side];
+			const double *p = state->lid[point / points][point % points], row[3] = { 1, state->gaze[0], state->gaze[1] - up };
+			float at[2];
+			double off[2], w = 1;
+			if (r->lost_at[f] || state->blink != BLINK_OPEN || !(state->openness > open_enough) || !isfinite(row[1] + p[0]))
+				continue;
+			track_to_model(at, p, s->opening[side].center, r->pose[f], clip);
+			for (int c = 0; c < 2; c++)
+				off[c] = round ? (double)at[c] - rest[c] - row[1] * turn[c][0] - row[2] * turn[c][1] : 0;
+			// an expression moves the lids, too
+			double stir = calm > 0 ? r->misfit[f] / calm : 0;
+			w = exp(-pow(row[2] / like_v, 2)) / (1 + pow(stir, 4)) * (round ? pow(1 + (off[0] * off[0] + off[1] * off[1]) / (scale * scale), -2) : 1);
+			square += w * (off[0] * off[0] + off[1] * off[1]);
+			weight += w;
+			for (int i = 0; i < 3; i++) {
+				for (int j = 0; j < 3; j++)
+					a[i][j] += w * row[i] * row[j];
+				for (int c = 0; c < 2; c++)
+					b[c][i] += w * row[i] * (double)at[c];
+			}
+		}
+		if (!(weight > LEAST_FRAMES / 3))
+			return;
+		for (int c = 0; c < 2; c++) {
+			double m[3][3];
+			memcpy(m, a, sizeof m);
+			// a gaze that hardly moves tells no slope
+			m[1][1] += weight * still_gaze * still_gaze;
+			m[2][2] += weight * still_gaze * still_gaze;
+			if (!chol_solve(3, 3, &m[0][0], b[c]))
+				return;
+			rest[c] = b[c][0];
+			turn[c][0] = b[c][1];
+			turn[c][1] = b[c][2];
+		}
+		scale = round ? fmax(1, 2 * sqrt(square / weight)) : 8;
+	}
+}
+
+/* Margins at rest against the mesh's opening under a pose: each control point lies on the outline where that comes nearest. Towards the corners of the
+ * eye a margin was drawn to where the pose that is to be improved has them: they would confirm it. */
+static int margins(struct head_sight *sights, int points, double (*rest)[2], const struct track_clip *clip, const struct track_subject *s, int side,
+                   const double pose[4][4])
+{
+	const struct eye_opening *o = &s->opening[side];
+	double px[OPENING_POINTS][2];
+	int n = 0;
+	for (int i = 0; i < OPENING_POINTS; i++)
+		if (!o->open || !head_project(px[i], &clip->camera, pose, o->edge[i]))
+			return 0;
+	for (int k = 0; k < points; k++) {
+		const double *p = rest[k];
+		int along = k % (points / LIDS);
+		if (along < ENDS || along >= points / LIDS - ENDS)
+			continue;
+		double best = INFINITY;
+		struct head_sight to = { .line = true, .weight = margin_weight };
+		for (int i = 0; i < OPENING_POINTS && isfinite(p[0]); i++) {
+			const double *a = px[i], *b = px[(i + 1) % OPENING_POINTS], d[2] = { b[0] - a[0], b[1] - a[1] };
+			double length = fmax(hypot(d[0], d[1]), 1e-9), t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (length * length);
+			t = fmax(0, fmin(1, t));
+			double off = hypot(p[0] - a[0] - t * d[0], p[1] - a[1] - t * d[1]);
+			if (off >= best)
+				continue;
+			best = off;
+			to.normal[0] = d[1] / length;
+			to.normal[1] = -d[0] / length;
+			for (int c = 0; c < 3; c++)
+				to.head[c] = (1 - t) * o->edge[i][c] + t * o->edge[(i + 1) % OPENING_POINTS][c];
+		}
+		memcpy(to.px, p, sizeof to.px);
+		if (isfinite(best))
+			sights[n++] = to;
+	}
+	return n;
+}
+
+void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
+	int points = LIDS * conf->eyes.lid_points;
+	double rest[SIDES][LIDS * LID_POINTS_MAX][2];
+	double turn = conf->head.turn_sigma * M_PI / 180, pose[4][4], px = NAN;
+	struct head_prior prior = { .sigma = { turn, turn, INFINITY, INFINITY, INFINITY, INFINITY } };
+	memcpy(pose, clip->cam_from_head, sizeof pose);
+	memcpy(prior.cam_from_head, pose, sizeof pose);
+	double calm = doubted ? reference_usual_misfit(r) : 0;
+	for (int i = 0; i < SIDES * points; i++)
+		rest_of(rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
+	for (int round = 0; round < ROUNDS; round++) {
+		int n = centers(sights, r, clip, s, conf);
+		if (!n)
+			return;
+		for (int e = 0; e < SIDES; e++)
+			n += margins(sights + n, points, rest[e], clip, s, e, pose);
+		if (n < LEAST_MARGIN)
+			return;
+		px = head_pose_fit(pose, n, sights, &clip->camera, fmax(2, 16 - 2 * round), &prior);
+		if (isnan(px))
+			return;
+	}
+	memcpy(clip->cam_from_head, pose, sizeof pose);
+	clip->pose_px = px;
+}

@@ -1,0 +1,145 @@
+/* Which frame the others are compared with, and the head's pose in it: frames of the clip are followed and looked at, again where they raise a doubt. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "track/clip/reference.h"
+
+enum { FEW_POINTS = 120, LOOKS = 4, LATER = 15 };
+
+/* Frames spread over the clip, followed from the reference and back, with the eyeballs' centres free. */
+static bool follow_few(struct track_result *r, const struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *few)
+{
+	struct track_points points = { 0 };
+	struct err none = { 0 };
+	// what cannot be followed here is said when the whole clip is
+	bool ok = track_points_choose(&points, clip, s, few, &none) && track_follow(r, stage, clip, s, &points, few, &none)
+	          && clip->reference / few->every < r->n;
+	track_points_free(&points);
+	return ok;
+}
+
+static void tell_worse(struct stage *stage, const struct track_clip *clip, const struct reference_view *view)
+{
+	const char *what = "the eyes are not open in it";
+	char text[120];
+	if (view->open) {
+		snprintf(text, sizeof text, "in it the eyes look %.0f degrees to the side and %.0f %s from where they mostly do", fabs(view->aside), fabs(view->up),
+		         view->up < 0 ? "down" : "up");
+		what = text;
+	}
+	stage_skipped(stage, "%s: track.reference_frame = %ld: %s, and gaze may be off by degrees: take %ld, or leave it to be found", clip->file, clip->reference, what,
+	              view->better);
+}
+
+/* The head in another frame. False: it is not found there, and nothing has changed. */
+static bool look_anew(struct track_clip *clip, long frame, enum track_way way, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct track_clip was = *clip;
+	struct err none = { 0 };
+	if (frame != clip->reference) {
+		size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
+		clip->luma = mem_array(area + 1, 1);
+		clip->rgb = mem_array(3 * area + 1, 1);
+	}
+	bool ok = (frame == clip->reference || track_clip_take(clip, frame, stage, conf, &none)) && track_look(clip, way, s, conf);
+	if (frame != was.reference) {
+		free(ok ? was.luma : clip->luma);
+		free(ok ? was.rgb : clip->rgb);
+	}
+	was.faces = clip->faces;
+	if (!ok)
+		*clip = was;
+	return ok;
+}
+
+/* Settings for looking at so many frames, spread over the time of so many at 60 a second. */
+static struct track_conf few_of(const struct track_conf *conf, const struct track_clip *clip, int frames, long span)
+{
+	struct track_conf few = *conf;
+	span = track_frames_of(clip, span);
+	span = clip->info.frames < span ? clip->info.frames : span;
+	few.points = FEW_POINTS;
+	few.limit = frames;
+	few.every = span > frames ? (span + frames - 1) / frames : 1;
+	few.eyes.center_sigma = conf->settle_sigma;
+	few.eyes.torsion_rays = 0;
+	return few;
+}
+
+/* A reference that nothing spoke against: settle_frames of the clip, from its start and no more than 60 a second, settle the head, where the
+ * reference is in their time; otherwise those that it was judged by. */
+static void settle(struct track_clip *clip, const struct track_result *judged, struct stage *stage, const struct track_subject *s, const struct track_conf *few,
+                   const struct track_conf *conf)
+{
+	struct track_conf all = few_of(conf, clip, conf->settle, conf->settle);
+	struct track_result r = { 0 };
+	if (all.limit > few->limit && clip->reference < all.limit * all.every && follow_few(&r, clip, stage, s, &all))
+		reference_refine(clip, false, &r, s, &all);
+	else
+		reference_refine(clip, false, judged, s, few);
+	track_result_free(&r);
+}
+
+/* What has been tried since the reference was doubted. */
+struct doubts {
+	enum track_way way;
+	bool any, moved, turned, last;  // last: no further frame is tried
+};
+
+/* True: the frames that were followed speak against the reference, and the head was found in another frame, or the other way up. */
+static bool look_again(struct track_clip *clip, struct doubts *d, const struct track_result *r, const struct reference_view *view, struct stage *stage,
+                       const struct track_subject *s, const struct track_conf *conf)
+{
+	// a frame that shows little does not tell which way up it is
+	if (conf->reference < 0 && view->better >= 0 && (!d->moved || !view->open) && !d->last
+	    && (d->moved = look_anew(clip, view->better, d->turned ? d->way : WAY_EITHER, stage, s, conf))) {
+		clip->begins_shut = clip->begins_shut || !view->open;
+		return true;
+	}
+	if (d->turned || !reference_is_overturned(r, clip, s))
+		return false;
+	d->way = clip->cam_from_head[1][1] > 0 ? WAY_UP : WAY_OVER;
+	return d->turned = look_anew(clip, clip->reference, d->way, stage, s, conf);
+}
+
+void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	if (s->assumed || clip->pose_given || !conf->settle)
+		return;
+	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->look.span);
+	struct doubts d = { .way = WAY_EITHER };
+	bool again = true;
+	clip->begins_shut = clip->reference > 0;
+	for (int round = 0; again && round < LOOKS; round++) {
+		struct track_result r = { 0 };
+		bool followed = follow_few(&r, clip, stage, s, &few);
+		struct reference_view view = { .better = -1 };
+		again = false;
+		d.last = round + 1 == LOOKS;
+		if (followed)
+			view = reference_judge(&r, clip, few.every);
+		if (!d.any && (!followed || view.better >= 0 || reference_is_overturned(&r, clip, s))) {
+			// few frames raise a doubt; many settle it
+			d.any = again = true;
+			few = few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
+			round = -1;
+		} else if (!followed) {
+			// no eye was seen from there: the face was not where it was found to be
+			for (long later = track_frames_of(clip, LATER), f = clip->reference + later; conf->reference < 0 && !again && f < clip->info.frames && f < track_frames_of(clip, conf->doubt.span); f += later)
+				clip->begins_shut = again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
+		} else if (!d.any) {
+			settle(clip, &r, stage, s, &few, conf);
+		} else if (!(again = look_again(clip, &d, &r, &view, stage, s, conf))) {
+			reference_refine(clip, true, &r, s, &few);
+			// what was found where a badly placed head led to it is found anew from where that is now
+			track_result_free(&r);
+			if (follow_few(&r, clip, stage, s, &few))
+				reference_refine(clip, true, &r, s, &few);
+			if (conf->reference >= 0 && view.better >= 0)
+				tell_worse(stage, clip, &view);
+		}
+		track_result_free(&r);
+	}
+}

@@ -1,0 +1,147 @@
+/* The head's path over the whole clip: what expressions do to all skin in sight is not the head's motion. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+#include "math/walk.h"
+#include "track/clip/track.h"
+
+enum { MOTIONS = 6, LEAST_POINTS = 20 };
+
+/* A head rests that comes back to within so many px of where it was in this share of the frames of each third of the clip. In
+ * rendered films of heads on a rest 0.3 to 0.5 of the frames are so, of heads held freely none after the first second. */
+static const double rest_px = 0.3, rest_share = 0.1;
+
+/* Least motion from frame to frame that is reckoned with: degrees, mm. */
+static const double least_turn = 0.01, least_shift = 0.01;
+
+/* How far a frame's skin is from where it is in the reference frame: what a tenth of the points stays below, px. */
+static double away(const struct track_result *r, long reference, long frame, double *room)
+{
+	int n = 0;
+	for (int i = 0; i < r->n_points; i++) {
+		long at = frame * r->n_points + i, was = reference * r->n_points + i;
+		if (r->confidence[at] > 0.5f)
+			room[n++] = hypot((double)(r->skin[at][0] - r->skin[was][0]), (double)(r->skin[at][1] - r->skin[was][1]));
+	}
+	return n > r->n_points / 4 ? stats_quantile(n, room, 0.1) : INFINITY;
+}
+
+/* A head on a rest: whatever the face does, it comes back to the very same place, early and late. Skin alone does not tell
+ * raised cheeks from a head that comes nearer. */
+static bool rests(const struct track_result *r, long reference)
+{
+	enum { PARTS = 3 };
+	double *room = mem_array((size_t)r->n_points + 1, sizeof *room);
+	bool yes = r->n_points > 0 && r->n >= 10L * PARTS;
+	for (int part = 0; part < PARTS && yes; part++) {
+		long back = 0, from = part * r->n / PARTS, to = (part + 1) * r->n / PARTS;
+		for (long i = from; i < to; i++)
+			back += away(r, reference, i, room) < rest_px;
+		yes = (double)back >= rest_share * (double)(to - from);
+	}
+	free(room);
+	return yes;
+}
+
+/* Skin in the modelling camera, with poses that are other than they were thought to be. */
+static void model_again(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
+{
+	for (long f = 0; f < r->n; f++) {
+		for (int i = 0; i < r->n_points; i++) {
+			const float *at = r->skin[f * r->n_points + i];
+			const double px[2] = { (double)at[0], (double)at[1] };
+			track_to_model(r->skin_model[f * r->n_points + i], px, points->head[i], r->pose[f], clip);
+		}
+	}
+}
+
+/* How far a frame's skin, but for the lids, is from where the head takes it: median, px. */
+static double misfit(const struct track_result *r, long frame, const struct track_points *points, const bool *lid, const struct track_clip *clip, double *room)
+{
+	int n = 0;
+	for (int i = 0; i < r->n_points; i++) {
+		long at = frame * r->n_points + i;
+		double px[2];
+		if (!lid[i] && r->confidence[at] > 0 && head_project(px, &clip->camera, r->pose[frame], points->head[i]))
+			room[n++] = hypot((double)r->skin[at][0] - px[0], (double)r->skin[at][1] - px[1]);
+	}
+	return n >= LEAST_POINTS ? stats_median(n, room) : INFINITY;
+}
+
+/* Poses as motions since the reference, each of the six smoothed over the clip. A frame whose skin moves k times further off the head
+ * than is usual tells the head's pose k times worse: a brow that is raised takes along what is seen of nose and cheek. */
+static void smooth(struct track_result *r, const double *misfit, double usual, const double pivot[3], const struct track_clip *clip)
+{
+	size_t n = (size_t)r->n;
+	double *x = mem_array(MOTIONS * n, sizeof *x), *sigma = mem_array(n, sizeof *sigma), *room = mem_array(n, sizeof *room);
+	for (long f = 0; f < r->n; f++) {
+		double d[MOTIONS];
+		head_motion(d, r->pose[f], clip->cam_from_head, pivot);
+		for (int k = 0; k < MOTIONS; k++)
+			x[(size_t)k * n + (size_t)f] = d[k];
+	}
+	for (int k = 0; k < MOTIONS; k++) {
+		double *own = x + (size_t)k * n, step;
+		for (size_t f = 0; f + 1 < n; f++)
+			room[f] = fabs(own[f + 1] - own[f]);
+		step = fmax(k < 3 ? least_turn * M_PI / 180 : least_shift, stats_median((int)n - 1, room));
+		for (size_t f = 0; f < n; f++)
+			sigma[f] = step * fmin(1e4, fmax(1, misfit[f] / usual));
+		walk_smooth(r->n, own, sigma, step, room);
+	}
+	for (long f = 0; f < r->n; f++) {
+		double d[MOTIONS];
+		for (int k = 0; k < MOTIONS; k++)
+			d[k] = x[(size_t)k * n + (size_t)f];
+		head_moved(r->pose[f], clip->cam_from_head, d, pivot);
+	}
+	free(x);
+	free(sigma);
+	free(room);
+}
+
+/* Frame by frame, into r->misfit. */
+static void misfits(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
+{
+	bool *lid = mem_new((size_t)points->n + 1, sizeof *lid);
+	double *room = mem_array((size_t)points->n + 1, sizeof *room);
+	r->misfit = mem_array((size_t)r->n + 1, sizeof *r->misfit);
+	for (int i = 0; i < points->n; i++)
+		lid[i] = track_on_lid(points->head[i], s);
+	for (long f = 0; f < r->n; f++)
+		r->misfit[f] = r->lost_at[f] ? INFINITY : misfit(r, f, points, lid, clip, room);
+	free(lid);
+	free(room);
+}
+
+static void follow_path(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
+{
+	double *room = mem_array((size_t)r->n + 1, sizeof *room), pivot[3] = { 0 };
+	for (int i = 0; i < points->n; i++) {
+		double p[3];
+		head_from(p, clip->cam_from_head, points->head[i]);
+		for (int k = 0; k < 3; k++)
+			pivot[k] += p[k] / points->n;
+	}
+	memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
+	double usual = stats_median((int)r->n, room);
+	if (isfinite(usual) && usual > 0)
+		smooth(r, r->misfit, usual, pivot, clip);
+	free(room);
+}
+
+void track_steady(struct track_result *r, long reference, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
+{
+	r->rests = rests(r, reference);
+	misfits(r, points, s, clip);
+	if (r->rests) {
+		for (long f = 0; f < r->n; f++)
+			memcpy(r->pose[f], clip->cam_from_head, sizeof r->pose[f]);
+	} else if (r->n > 2) {
+		follow_path(r, points, clip);
+	}
+	model_again(r, points, clip);
+}

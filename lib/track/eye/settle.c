@@ -1,0 +1,110 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+#include "track/eye/track_impl.h"
+#include "track/gaze/clip.h"
+#include "motion/gaze_sim.h"
+
+/* The frames that have edges, for gaze_clip_fit(). */
+static int frames_of(struct gaze_frame *out, int *index, const struct eye_side *eye)
+{
+	int n = 0;
+	for (long i = 0; i < eye->frames; i++) {
+		const struct eye_record *record = &eye->record[i];
+		if (!record->edges || record->still)
+			continue;
+		eye_view(&out[n].view, eye->scene, record->cam_from_head);
+		out[n].fick[0] = eye->state[i].gaze[0];
+		out[n].fick[1] = eye->state[i].gaze[1];
+		out[n].edge = eye->edge + record->first_edge;
+		out[n].n = record->edges;
+		index[n++] = (int)i;
+	}
+	return n;
+}
+
+/* What the eyeball's own uncertainty does to all directions alike, radians. */
+static void add_common(struct eye_state *state, const struct eye_side *eye)
+{
+	double plane = fmax(1, gaze_plane(&eye->globe));
+	for (int k = 0; k < 2; k++) {
+		double common = fmin(0.5, eye->center_sigma[k] / plane);
+		state->sigma[k] = hypot(state->sigma[k], common);
+	}
+}
+
+static void refit(struct eye_state *state, const struct eye_side *eye, const struct gaze_frame *frame)
+{
+	struct gaze_fit fit = { .fick = { frame->fick[0], frame->fick[1] } };
+	if (!gaze_fit_edges(&fit, frame->n, frame->edge, &eye->globe, &frame->view, 0.05))
+		return;
+	struct ellipse e;
+	for (int k = 0; k < 2; k++) {
+		state->gaze[k] = fit.fick[k];
+		state->sigma[k] = sqrt(fit.cov[k][k]);
+	}
+	add_common(state, eye);
+	if (gaze_ellipse(&e, &eye->globe, &frame->view, fit.fick)) {
+		double v[5] = { e.cx, e.cy, e.a, e.b, e.angle };
+		memcpy(state->limbus, v, sizeof v);
+	}
+}
+
+/* Listing's law on the average: the first frame's torsion was a guess. */
+static void level_torsion(struct eye_side *eye)
+{
+	double *off = mem_array((size_t)eye->frames + 1, sizeof *off), degree = M_PI / 180;
+	int n = 0;
+	for (long i = 0; i < eye->frames; i++) {
+		const double *g = eye->state[i].gaze;
+		if (isfinite(g[2]))
+			off[n++] = g[2] - degree * listing_torsion(g[0] / degree, g[1] / degree);
+	}
+	double middle = n ? stats_median(n, off) : 0;
+	for (long i = 0; i < eye->frames; i++)
+		eye->state[i].gaze[2] -= middle;
+	free(off);
+}
+
+void eye_side_settle(struct eye_side *eye)
+{
+	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
+	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
+	struct gaze_clip_conf conf = { eye->center_guess, eye->conf->radius_sigma, eye->conf->limbus_sigma };
+	struct gaze_clip_fit fit;
+	struct gaze_globe best = eye->first_globe;
+	if (gaze_clip_fit(&best, &fit, n, frame, &conf)) {
+		eye->globe = best;
+		memcpy(eye->center_sigma, fit.sigma + GAZE_X, sizeof eye->center_sigma);
+		eye->rms = fit.rms;
+	} else {
+		for (int k = 0; k < 3; k++)
+			eye->center_sigma[k] = eye->center_guess;
+	}
+	for (int i = 0; i < n; i++)
+		refit(&eye->state[index[i]], eye, &frame[i]);
+	for (long i = 1; i < eye->frames; i++) {
+		double time = eye->state[i].time;
+		if (eye->record[i].still) {
+			eye->state[i] = eye->state[i - 1];
+			eye->state[i].time = time;
+		}
+	}
+	level_torsion(eye);
+	eye_settle_lids(eye);
+	free(frame);
+	free(index);
+}
+
+void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye)
+{
+	*globe = (struct eye_globe){ .radius = eye->globe.radius, .limbus_radius = eye->globe.limbus, .rms_px = eye->rms };
+	memcpy(globe->center_in_head, eye->globe.center, sizeof globe->center_in_head);
+	memcpy(globe->center_sigma, eye->center_sigma, sizeof globe->center_sigma);
+	for (long i = 0; i < eye->frames; i++)
+		globe->frames += eye->state[i].confidence > 0;
+	globe->seen = globe->frames > 0;
+}

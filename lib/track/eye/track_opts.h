@@ -1,0 +1,35 @@
+/* eye_track_opts: the numbers that shape eye_track, and their rows for a stage's option table. */
+#ifndef TRACK_EYE_TRACK_OPTS_H
+#define TRACK_EYE_TRACK_OPTS_H
+#include "base/opt.h"
+
+struct eye_track_conf {
+	int limbus_arcs;        // edges measured round the limbus
+	int lid_columns;        // profiles measured across a lid's margin
+	int lid_points;         // control points of a margin
+	double lid_wet;         // mm of tears between a lid's margin and what is seen of the eye
+	int torsion_rays;       // directions of the iris pattern compared; 0: no torsion
+	double still;           // mean change of brightness, of 255, below which a frame is taken for the one before
+	double center_sigma;    // mm: eyeball centre off its prior, each way
+	double radius_sigma;    // mm: eyeball radius off its prior
+	double limbus_sigma;    // mm: limbus radius off eye.limbus_radius_mm
+	double saccade_speed;   // degrees/s above which the eye is in a saccade
+	double saccade_size;    // degrees: smaller ones are not told from noise
+	double blink_depth;     // share of the opening that must shut to count as a blink
+};
+
+#define EYE_TRACK_OPTS(c) \
+	OPT_INT("limbus_arcs", &(c)->limbus_arcs, 16, 360, "", "edges measured round the limbus"), \
+	OPT_INT("lid_columns", &(c)->lid_columns, 16, 96, "", "profiles measured across a lid's margin"), \
+	OPT_INT("lid_points", &(c)->lid_points, 17, 22, "", "control points of a lid's margin"), \
+	OPT_REAL("lid_wet_mm", &(c)->lid_wet, 0, 1, "mm", "tears between a lid's margin and what is seen of the eye"), \
+	OPT_INT("torsion_rays", &(c)->torsion_rays, 0, 720, "", "directions of the iris compared; 0: no torsion"), \
+	OPT_REAL("still", &(c)->still, 0, 20, "", "mean change of brightness (of 255) of a frame that stands still"), \
+	OPT_REAL("eye_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "eyeball centre off its prior, each way"), \
+	OPT_REAL("eye_radius_sigma_mm", &(c)->radius_sigma, 0.01, 5, "mm", "eyeball radius off its prior"), \
+	OPT_REAL("limbus_sigma_mm", &(c)->limbus_sigma, 0.01, 2, "mm", "limbus radius off eye.limbus_radius_mm"), \
+	OPT_REAL("saccade_speed", &(c)->saccade_speed, 5, 200, "degrees/s", "speed above which the eye is in a saccade"), \
+	OPT_REAL("saccade_size", &(c)->saccade_size, 0.1, 10, "degrees", "saccades smaller than this are not reported"), \
+	OPT_REAL("blink_depth", &(c)->blink_depth, 0.05, 0.9, "", "share of the opening that shuts in a blink")
+
+#endif

@@ -1,0 +1,55 @@
+/* gaze_globe: the limbus as a circle in space on an eyeball that turns about its centre, and what a camera sees of it.
+ * Head frame mm; eye axes: z out through the pupil, x and y those of the head turned by Fick's angles
+ * Ry(h) Rx(-v) Rz(t). The limbus: radius `limbus` about the axis, at sqrt(radius² − limbus²) from the centre.
+ */
+#ifndef TRACK_GAZE_GLOBE_H
+#define TRACK_GAZE_GLOBE_H
+#include <stdbool.h>
+
+#include "math/ellipse_type.h"
+#include "optics/camera.h"
+
+struct gaze_globe {
+	double center[3];       // in the head frame
+	double radius, limbus;  // mm
+};
+
+struct gaze_view {
+	struct camera camera;   // focal_px finite
+	double cam_from_head[4][4];
+};
+
+/* Columns: the eye's x, y and z axes in the head frame. */
+void gaze_rotation(double head_from_eye[3][3], const double fick[3]);
+
+/* h and v of a direction (unit, head frame): fick[2] is left alone. */
+void gaze_fick(double fick[2], const double dir_in_head[3]);
+
+/* Distance of the plane of the limbus from the centre, mm; 0 where the circle is larger than the sphere. */
+double gaze_plane(const struct gaze_globe *globe);
+
+enum { GAZE_H, GAZE_V, GAZE_X, GAZE_Y, GAZE_Z, GAZE_RADIUS, GAZE_LIMBUS, GAZE_N };
+
+struct gaze_arc {
+	double p[2], normal[2];    // px, outward
+	double row[GAZE_N];        // d(p·normal) by h, v (radians), centre, radius, limbus (mm); only where asked for
+};
+
+/* One place of the limbus, `angle` from the eye's x axis towards its y axis. with_row: fills row. False: behind the
+ * camera. */
+bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
+              const double fick[2], double angle, bool with_row);
+
+/* Pixel of a point of the eye frame (origin at the eyeball's centre). */
+bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, const double fick[3],
+                const double point_in_eye[3]);
+
+/* The ellipse of the limbus, px, to a fraction of a pixel (exact but for distortion). */
+bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struct gaze_view *view,
+                  const double fick[2]);
+
+/* The direction of gaze whose limbus centre appears at px; false where no point of the globe does. */
+bool gaze_from_pixel(double fick[2], const struct gaze_globe *globe, const struct gaze_view *view,
+                     const double px[2]);
+
+#endif

@@ -1,0 +1,46 @@
+/* head_find: a head in a picture, by the openings of its eyes: what lies in them, sclera, iris and pupil, has another colour
+ * than the skin round them, whoever it is.
+ * Head frame  the subject mesh's axes, mm.  Image  px, centre of the first pixel (0.5, 0.5).
+ */
+#ifndef TRACK_HEAD_FIND_H
+#define TRACK_HEAD_FIND_H
+#include "base/opt.h"
+#include "track/eye/opening.h"
+#include "track/head/pose.h"
+
+struct head_find_conf {
+	double width[2];       // of an opening, as a share of the picture's: least, most
+	double roll;           // degrees: heads leaning more are not looked for
+	double turn_sigma;     // degrees: how far the face may be turned from the camera
+	double min_score;      // below it there are no eyes
+	double edge;           // px at 1280: how far off an outline may begin
+};
+
+#define HEAD_FIND_OPTS(c) \
+	OPT_REALS("eye_width", (c)->width, 2, 0.01, 1, "", "least and most of an eye's opening, of the picture's width"), \
+	OPT_REAL("roll_deg", &(c)->roll, 0, 80, "degrees", "heads leaning more are not looked for"), \
+	OPT_REAL("turn_sigma_deg", &(c)->turn_sigma, 0.1, 45, "degrees", "how far the face is turned from the camera, 1 sigma"), \
+	OPT_REAL("min_score", &(c)->min_score, 0, 10, "", "contrast of eyes against skin below which there are none"), \
+	OPT_REAL("edge_px", &(c)->edge, 1, 200, "px", "how far off an outline may begin, at 1280 px")
+
+struct head_found {
+	double cam_from_head[4][4];
+	bool seen[2];          // openings in the picture, left and right
+	double score;          // contrast of openings against skin, in its spread
+	double edge_px;        // rms of the outlines found against the mesh's; NAN: not refined
+};
+
+/* rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. upside_down: heads
+ * that are so, instead of upright ones; openings alone hardly tell the two apart. False: no eyes. */
+bool head_find(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
+               const struct eye_opening opening[2], bool upside_down, const struct head_find_conf *conf);
+
+/* From where the picture shows the left and the right eye, px, however it was found: facing the camera. False: the subject has
+ * not two open eyes. */
+bool head_find_from_eyes(struct head_found *found, const double eye[2][2], const struct camera *camera, const struct eye_opening opening[2]);
+
+/* Improves a pose by the openings' outlines in the picture; found->cam_from_head as it is expected to be. False: no outline. */
+bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
+                      const struct eye_opening opening[2], const struct head_find_conf *conf);
+
+#endif

@@ -1,0 +1,202 @@
+#include "track/head/pose.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "math/chol.h"
+#include "math/vec.h"
+
+enum { P = 6, STEPS = 30 };
+
+void head_from(double out[3], const double m[4][4], const double head[3])
+{
+	double t[3];
+	for (int r = 0; r < 3; r++)
+		t[r] = m[r][0] * head[0] + m[r][1] * head[1] + m[r][2] * head[2] + m[r][3];
+	memcpy(out, t, sizeof t);
+}
+
+void head_to(double out[3], const double m[4][4], const double cam[3])
+{
+	double t[3] = { cam[0] - m[0][3], cam[1] - m[1][3], cam[2] - m[2][3] }, h[3];
+	for (int c = 0; c < 3; c++)
+		h[c] = m[0][c] * t[0] + m[1][c] * t[1] + m[2][c] * t[2];
+	memcpy(out, h, sizeof h);
+}
+
+bool head_project(double px[2], const struct camera *camera, const double m[4][4], const double head[3])
+{
+	double p[3];
+	head_from(p, m, head);
+	return camera_project(px, camera, p);
+}
+
+/* Rotation by |w| about w. */
+static void turn(double R[3][3], const double w[3])
+{
+	double angle = vec_norm(w), s = angle > 1e-9 ? sin(angle) / angle : 1, c = angle > 1e-9 ? (1 - cos(angle)) / (angle * angle) : 0.5;
+	double K[3][3] = { { 0, -w[2], w[1] }, { w[2], 0, -w[0] }, { -w[1], w[0], 0 } }, KK[3][3];
+	mat_mul(KK, K, K);
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			R[i][j] = (i == j) + s * K[i][j] + c * KK[i][j];
+}
+
+/* The rotation vector of a R b^T. */
+static void turned(double w[3], const double a[4][4], const double b[4][4])
+{
+	double R[3][3];
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			R[i][j] = a[i][0] * b[j][0] + a[i][1] * b[j][1] + a[i][2] * b[j][2];
+	double v[3] = { R[2][1] - R[1][2], R[0][2] - R[2][0], R[1][0] - R[0][1] };
+	double s = 0.5 * vec_norm(v), c = 0.5 * (R[0][0] + R[1][1] + R[2][2] - 1), angle = atan2(s, c);
+	for (int i = 0; i < 3; i++)
+		w[i] = s > 1e-12 ? 0.5 * v[i] * angle / s : 0;
+}
+
+double head_angle(const double a[4][4], const double b[4][4])
+{
+	double w[3];
+	turned(w, a, b);
+	return vec_norm(w);
+}
+
+void head_moved(double out[4][4], const double m[4][4], const double d[P], const double pivot[3])
+{
+	double R[3][3], now[3][3], was[3][3], arm[3];
+	turn(R, d);
+	for (int i = 0; i < 3; i++) {
+		memcpy(was[i], m[i], sizeof was[i]);
+		arm[i] = m[i][3] - pivot[i];
+	}
+	mat_mul(now, R, was);
+	mat_vec(arm, R, arm);
+	memcpy(out, m, 16 * sizeof(double));
+	for (int i = 0; i < 3; i++) {
+		memcpy(out[i], now[i], sizeof now[i]);
+		out[i][3] = pivot[i] + arm[i] + d[3 + i];
+	}
+}
+
+/* Residuals (2, or 1 along a line's normal) and their derivatives by the six motions. Distortion moves with the point: its
+ * own derivative is left out, which costs a step and no accuracy. */
+static int look(double r[2], double J[2][P], const struct head_sight *s, const double m[4][4], const struct camera *camera,
+                const double pivot[3])
+{
+	double p[3], px[2], D[2][P];
+	head_from(p, m, s->head);
+	if (!camera_project(px, camera, p))
+		return 0;
+	double f = camera->focal_px / p[2], x = p[0] / p[2], y = p[1] / p[2];
+	double a[3] = { p[0] - pivot[0], p[1] - pivot[1], p[2] - pivot[2] };
+	// motion of the point: w x a + shift
+	double du[3] = { f, 0, -f * x }, dv[3] = { 0, f, -f * y };
+	vec_cross(D[0], a, du);
+	vec_cross(D[1], a, dv);
+	memcpy(D[0] + 3, du, sizeof du);
+	memcpy(D[1] + 3, dv, sizeof dv);
+	double e[2] = { px[0] - s->px[0], px[1] - s->px[1] };
+	for (int k = 0; k < 2; k++) {
+		r[k] = s->line ? s->normal[0] * e[0] + s->normal[1] * e[1] : e[k];
+		for (int j = 0; j < P; j++)
+			J[k][j] = s->line ? s->normal[0] * D[0][j] + s->normal[1] * D[1][j] : D[k][j];
+	}
+	return s->line ? 1 : 2;
+}
+
+/* Cost of a pose; fills the normal equations where H is not null. */
+static double sum(double H[P][P], double g[P], double *weight, const double m[4][4], int n, const struct head_sight *s,
+                  const struct camera *camera, double robust, const double pivot[3])
+{
+	double cost = 0;
+	*weight = 0;
+	for (int i = 0; i < n; i++) {
+		double r[2], J[2][P];
+		int rows = s[i].weight > 0 ? look(r, J, &s[i], m, camera, pivot) : 0;
+		double e2 = (rows > 0 ? r[0] * r[0] : 0) + (rows > 1 ? r[1] * r[1] : 0);
+		double k = isinf(robust) || s[i].sure ? 1 : 1 / (1 + e2 / (robust * robust)), w = s[i].weight * k * k;
+		cost += rows ? s[i].weight * k * e2 : 0;
+		*weight += rows ? s[i].weight : 0;
+		for (int a = 0; H && a < rows; a++)
+			for (int c = 0; c < P; c++) {
+				g[c] -= w * J[a][c] * r[a];
+				for (int d = 0; d < P; d++)
+					H[c][d] += w * J[a][c] * J[a][d];
+			}
+	}
+	return cost;
+}
+
+void head_motion(double e[P], const double m[4][4], const double from[4][4], const double pivot[3])
+{
+	double head[3];
+	turned(e, m, from);
+	// shifts are those of the pivot, so that a turn of the head is not taken for one
+	head_to(head, m, pivot);
+	head_from(head, from, head);
+	for (int i = 0; i < 3; i++)
+		e[3 + i] = pivot[i] - head[i];
+}
+
+static double expect(double H[P][P], double g[P], const double m[4][4], const struct head_prior *prior, const double pivot[3])
+{
+	double e[P], cost = 0;
+	if (!prior)
+		return 0;
+	head_motion(e, m, prior->cam_from_head, pivot);
+	for (int i = 0; i < P; i++) {
+		double w = 1 / (prior->sigma[i] * prior->sigma[i]);
+		cost += w * e[i] * e[i];
+		if (H) {
+			H[i][i] += w;
+			g[i] -= w * e[i];
+		}
+	}
+	return cost;
+}
+
+double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
+                     const struct head_prior *prior)
+{
+	double m[4][4], pivot[3] = { 0 }, weight, total = 0, damp = 1e-9;
+	memcpy(m, cam_from_head, sizeof m);
+	for (int i = 0; i < n; i++) {
+		double p[3];
+		head_from(p, m, s[i].head);
+		vec_add(pivot, pivot, s[i].weight, p);
+		total += s[i].weight;
+	}
+	if (!(total > 0))
+		return NAN;
+	for (int k = 0; k < 3; k++)
+		pivot[k] /= total;
+	double cost = sum(0, 0, &weight, m, n, s, camera, robust, pivot) + expect(0, 0, m, prior, pivot);
+	for (int it = 0; it < STEPS; it++) {
+		double H[P][P] = { { 0 } }, g[P] = { 0 }, next[4][4];
+		sum(H, g, &weight, m, n, s, camera, robust, pivot);
+		expect(H, g, m, prior, pivot);
+		for (int k = 0; k < P; k++)
+			H[k][k] *= 1 + damp;
+		if (!chol_solve(P, P, &H[0][0], g))
+			return NAN;
+		head_moved(next, m, g, pivot);
+		double now = sum(0, 0, &weight, next, n, s, camera, robust, pivot) + expect(0, 0, next, prior, pivot);
+		double step = fmax(vec_norm(g) * 100, vec_norm(g + 3));
+		if (now < cost) {
+			bool small = cost - now < 1e-7 * cost;
+			memcpy(m, next, sizeof m);
+			cost = now;
+			damp = fmax(0.1 * damp, 1e-9);
+			if (small)
+				break;
+		} else {
+			if (step < 1e-6 || damp > 1e6)
+				break;
+			damp = fmax(10 * damp, 1e-5);
+		}
+	}
+	double one = sum(0, 0, &weight, m, n, s, camera, INFINITY, pivot);
+	memcpy(cam_from_head, m, sizeof m);
+	return sqrt(one / fmax(weight, 1e-300));
+}

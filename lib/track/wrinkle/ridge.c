@@ -1,0 +1,132 @@
+/* Multi-scale ridges (Lindeberg 1998), their place to a part of a texel (Steger 1998). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "bridge/cv_ridge.h"
+#include "image/plane.h"
+#include "math/stats.h"
+#include "track/wrinkle/impl.h"
+
+/* A line -c exp(-s^2 / 2 w^2) rises by sigma^2 c'' = c sigma^2 w / (w^2 + sigma^2)^1.5: most at sigma = sqrt(2) w, where it
+ * is 2 / 3^1.5 of c. */
+static const double best_sigma = M_SQRT2, best_rise = 0.3849;
+static const double lineness = 0.6;  // curvature along a line against that across
+static const double least_px = 0.75; // a narrower line is the camera's noise
+
+/* Larger eigenvalue of the second derivatives, its direction, the other one. */
+static void across(float *most, float *least, float n[2], const float d[5])
+{
+	float half = 0.5f * (d[2] - d[4]), root = hypotf(half, d[3]), mean = 0.5f * (d[2] + d[4]);
+	*most = mean + root;
+	*least = mean - root;
+	float x = half + root, y = d[3];
+	if (half < 0) {
+		x = d[3];
+		y = root - half;
+	}
+	float len = hypotf(x, y);
+	n[0] = len > 0 ? x / len : 1;
+	n[1] = len > 0 ? y / len : 0;
+}
+
+/* What rises where there is no line: median and spread over the skin. */
+static double usual(const float (*d)[5], const uint8_t *skin, long area, double sigma2, double significance)
+{
+	double *room = mem_array((size_t)area / 7 + 1, sizeof *room), *copy = mem_array((size_t)area / 7 + 1, sizeof *copy);
+	int n = 0;
+	for (long i = 0; i < area; i += 7)
+		if (skin[i]) {
+			float most, least, dir[2];
+			across(&most, &least, dir, d[i]);
+			room[n++] = sigma2 * (double)most;
+		}
+	memcpy(copy, room, (size_t)n * sizeof *room);
+	double mid = n ? stats_median(n, copy) : 0, out = n ? fmax(mid, 0) + significance * stats_mad(n, room, mid) : INFINITY;
+	free(room);
+	free(copy);
+	return out;
+}
+
+/* How strongly the neutral skin itself is patterned thereabouts at that scale: hairs, lashes, moles. Their frames are never
+ * brought onto each other well enough, so no line is told from them that is not stronger. */
+static float *pattern(const float (*d)[5], long area, int width, int height, double sigma, double px_per_mm)
+{
+	float *t = mem_array((size_t)area, sizeof *t);
+	for (long i = 0; i < area; i++)
+		t[i] = (float)pow(sigma, 4) * (d[i][2] * d[i][2] + 2 * d[i][3] * d[i][3] + d[i][4] * d[i][4]);
+	plane_blur(t, width, height, fmax(2 * sigma, px_per_mm));
+	for (long i = 0; i < area; i++)
+		t[i] = sqrtf(fmaxf(0, t[i]));
+	return t;
+}
+
+static void take(struct wrinkle_ridges *r, const float (*d)[5], const float *pat, const uint8_t *skin, double floor, double sigma,
+                 const struct wrinkle_conf *conf)
+{
+	float least_rise = (float)(best_rise * conf->drop), s2 = (float)(sigma * sigma), share = (float)conf->pattern;
+	for (int y = 0; y < r->height; y++)
+		for (int x = 0; x < r->width; x++) {
+			long i = (long)y * r->width + x;
+			float most, least, n[2];
+			if (!skin[i])
+				continue;
+			across(&most, &least, n, d[i]);
+			float rise = s2 * most, limit = fmaxf(least_rise, fmaxf((float)floor, share * pat[i]));
+			if (!(rise > limit) || rise <= r->rise[i] || fabsf(least) > (float)lineness * most)
+				continue;
+			float t = -(d[i][0] * n[0] + d[i][1] * n[1]) / most;
+			if (fabsf(t * n[0]) > 0.6f || fabsf(t * n[1]) > 0.6f)
+				continue;
+			r->rise[i] = rise;
+			r->trust[i] = rise / limit;
+			r->at[i][0] = (float)x + 0.5f + t * n[0];
+			r->at[i][1] = (float)y + 0.5f + t * n[1];
+			r->along[i][0] = -n[1];
+			r->along[i][1] = n[0];
+			r->half[i] = (float)(sigma / best_sigma);
+		}
+}
+
+bool wrinkle_ridges_find(struct wrinkle_ridges *r, const float *change, const float *neutral, const uint8_t *skin,
+                         const struct wrinkle_ground *g, const struct wrinkle_conf *conf, struct err *err)
+{
+	long area = (long)g->width * g->height;
+	*r = (struct wrinkle_ridges){ .width = g->width, .height = g->height };
+	r->rise = mem_new((size_t)area, sizeof *r->rise);
+	r->trust = mem_new((size_t)area, sizeof *r->trust);
+	r->half = mem_new((size_t)area, sizeof *r->half);
+	r->at = mem_new((size_t)area, sizeof *r->at);
+	r->along = mem_new((size_t)area, sizeof *r->along);
+	float (*d)[5] = mem_array((size_t)area, sizeof *d);
+	uint8_t *inside = mem_array((size_t)area, 1);
+	bool ok = true;
+	for (int k = 0; k < conf->scales && ok; k++) {
+		double t = conf->scales > 1 ? (double)k / (conf->scales - 1) : 0;
+		double w = g->px_per_mm * conf->width_mm[0] * pow(conf->width_mm[1] / conf->width_mm[0], t), sigma = best_sigma * w;
+		if (w < least_px)
+			continue;
+		memcpy(inside, skin, (size_t)area);
+		mask_grow(inside, g->width, g->height, -1.5 * sigma);
+		ok = cv_ridge(d, neutral, g->width, g->height, sigma, err);
+		float *pat = pattern((const float(*)[5])d, area, g->width, g->height, sigma, g->px_per_mm);
+		ok = ok && cv_ridge(d, change, g->width, g->height, sigma, err);
+		if (ok)
+			take(r, (const float(*)[5])d, pat, inside, usual((const float(*)[5])d, inside, area, sigma * sigma, conf->significance), sigma, conf);
+		free(pat);
+	}
+	free(inside);
+	free(d);
+	return ok;
+}
+
+void wrinkle_ridges_free(struct wrinkle_ridges *r)
+{
+	free(r->rise);
+	free(r->trust);
+	free(r->half);
+	free(r->at);
+	free(r->along);
+	*r = (struct wrinkle_ridges){ 0 };
+}

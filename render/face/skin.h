@@ -1,0 +1,106 @@
+/* skin: driven characters: pictures, clips and glTF of every rig that extrapolate has made. */
+#ifndef RENDER_FACE_SKIN_H
+#define RENDER_FACE_SKIN_H
+#include "image/video/video.h"
+#include "render/render.h"
+#include "rig/drive.h"
+#include "rig/glb/glb.h"
+#include "draw/face/portrait.h"
+
+struct skin_conf {
+	struct portrait_conf portrait;
+	double gaze[2], aperture;            // typed by the user: degrees; times what the eye is open at that gaze
+	double sheet_deg[2];                 // the gaze sheet goes so far to both sides, up and down
+	double field;                        // what both eyes' pictures show, times the distance of the eyes
+	int look_px, cell_px, blink_frames;  // the typed gaze; a cell of sheet and strip
+	int clip_px, clip_samples;           // width of the driven face in the clip; 0: no clip
+	double clip_fps, clip_crf, clip_seconds;
+	struct glb_conf glb;
+	struct video_conf video;
+};
+
+#define SKIN_OPTS(c) \
+	OPT_REALS("gaze", (c)->gaze, 2, -60, 60, "deg", "where NAME_look.png looks: horizontal (+: person's left), vertical (+: up)"), \
+	OPT_REAL("aperture", &(c)->aperture, 0, 2, "", "how far its eyes are open: 0 closed, 1 as people do at that gaze"), \
+	OPT_REALS("sheet_deg", (c)->sheet_deg, 2, 1, 45, "deg", "the gaze sheet goes so far to the sides, and up and down"), \
+	OPT_REAL("face_field", &(c)->field, 1, 6, "", "width of a picture of both eyes, in distances between them"), \
+	OPT_INT("look_px", &(c)->look_px, 64, 8192, "px", "width of NAME_look.png"), \
+	OPT_INT("cell_px", &(c)->cell_px, 64, 4096, "px", "width of a cell of the gaze sheet and the blink strip"), \
+	OPT_INT("blink_frames", &(c)->blink_frames, 3, 31, "", "cells of the blink strip"), \
+	OPT_INT("clip_px", &(c)->clip_px, 0, 4096, "px", "width of the driven face in the clips; 0: no clips"), \
+	OPT_INT("clip_samples", &(c)->clip_samples, 1, 8, "", "rays across a pixel of the clips where it shows more than one thing"), \
+	OPT_REAL("clip_fps", &(c)->clip_fps, 1, 240, "1/s", "frames a second of the clips, at most"), \
+	OPT_REAL("clip_crf", &(c)->clip_crf, 0, 51, "", "quality of the clips: 0 lossless, 51 worst"), \
+	OPT_REAL("clip_seconds", &(c)->clip_seconds, 0, 1e5, "s", "of a clip, at most"), \
+	OPT_INT("skin_lights", &(c)->portrait.lights, 1, 64, "", "directions that stand for the environment on skin; a power of 2"), \
+	OPT_INT("skin_subdivide", &(c)->portrait.subdivide, 0, 4, "", "times the triangles round the eyes are cut in four"), \
+	OPT_INT("skin_samples", &(c)->portrait.samples, 1, 8, "", "rays across a pixel of skin where it shows more than one thing"), \
+	OPT_REALS("skin_rgb", (c)->portrait.skin_rgb, 3, 0, 1, "", "colour of the skin"), \
+	OPT_REAL("skin_texture", &(c)->portrait.texture, 0, 3, "", "strength of pores and blotches"), \
+	OPT_REAL("skin_scatter_mm", &(c)->portrait.scatter_mm, 0, 20, "mm", "how far red light travels in skin"), \
+	OPT_REAL("tear_mm", &(c)->portrait.tear_mm, 0, 3, "mm", "height of the tear line along the lids; 0: none"), \
+	OPT_REALS("tear_absorb", (c)->portrait.tear_absorb, 3, 0, 10, "1/mm", "what tear fluid absorbs of red, green and blue"), \
+	OPT_REAL("caruncle_wet", &(c)->portrait.caruncle_wet, 0, 1, "", "how moist and red the inner corners of the eyes are"), \
+	OPT_REAL("lash_mm", &(c)->portrait.lash_mm, 0, 30, "mm", "length of the upper lashes on an eye of 12 mm; 0: none"), \
+	OPT_REALS("iris_rgb", (c)->glb.iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
+	OPT_INT("glb_targets", &(c)->glb.targets, 1, 200, "", "morph targets of the animation, at most"), \
+	OPT_REAL("glb_tolerance_mm", &(c)->glb.tolerance, 0, 10, "mm", "no more targets than it takes to keep every vertex so close"), \
+	OPT_BOOL("glb_poses", &(c)->glb.poses, "named targets, too: eyeBlinkLeft, eyeLookUpRight ..."), \
+	VIDEO_OPTS(&(c)->video)
+
+/* All characters of one capture share the eyes and the light. */
+struct skin_job {
+	struct stage *stage;
+	const struct render_conf *render;
+	const struct skin_conf *conf;
+	const struct capture *capture;
+	const struct eye *eye;
+	struct jobs *photographed;        // eyes that photographs were fitted to
+	const char *video;                // the input video, relative to the folder; null: none
+	// Made when the first picture needs them:
+	bool ready;
+	struct scene plain;               // what the others get
+	const struct scene *eyes[2];      // left, right
+	struct envmap studio;
+	struct skin_model model;
+	struct wrinkle_maps wrinkles;
+	double gain;
+};
+
+/* show.c: the contact sheets and the two pages; drawn: all pictures are there, else only the review page is made. */
+bool show(struct skin_job *faces, bool drawn, struct err *err);
+
+/* One character. */
+struct skin_target {
+	const char *name, *rig_path;      // rig_path relative to the folder
+	struct rig rig;
+	struct portrait *portrait;        // of the stills; null until needed
+	const char *in[28];               // inputs that all its pictures have in common
+	int n_in;
+};
+
+/* Everything of every character that is not fresh. A capture without rigs is no fault. */
+bool render_skin(struct skin_job *job, struct err *err);
+
+/* The typed gaze is of NAME_look.png alone: what else was made is kept when only that has changed (skin_keep.c).
+ * skin_kept: stage_fresh, or else made by the same program from the same bytes with a configuration that differs in gaze
+ * and aperture at most; then it is recorded anew. skin_made: stage_made, and remembers how. */
+bool skin_kept(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
+bool skin_made(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
+
+/* Frees what the job has made, but not photographed. */
+void skin_close(struct skin_job *job);
+
+/* Eyes, light and the model, once. */
+bool skin_ready(struct skin_job *job, struct err *err);
+
+/* skin_pictures.c: NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_expressions.png. */
+bool skin_pictures(struct skin_job *job, struct skin_target *target, struct err *err);
+
+/* skin_clip.c: NAME_clip.mp4 (the input video and the character beside it), NAME_script.mp4 (animation.csv), NAME.glb. */
+bool skin_clips(struct skin_job *job, struct skin_target *target, struct err *err);
+
+/* Loads the rig and makes the portrait, once. */
+bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);
+
+#endif

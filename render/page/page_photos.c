@@ -1,0 +1,127 @@
+/* The photographs with what was found in them, and each beside its rendering. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/page/page.h"
+
+static const double deg = M_PI / 180;
+
+static json_t *ellipse(const struct ellipse *e)
+{
+	return json_pack("{s:f,s:f,s:f,s:f,s:f}", "cx", e->cx, "cy", e->cy, "a", e->a, "b", e->b, "angle", e->angle / deg);
+}
+
+static void fact(json_t *facts, const char *label, json_t *value)
+{
+	json_array_append_new(facts, json_pack("{s:s,s:o}", "label", label, "value", value));
+}
+
+static json_t *facts(const struct fit *f)
+{
+	json_t *list = json_array();
+	fact(list, "Tilt of the optical axis", page_text("%.2f° ± %.2f°, towards %.0f°", f->theta / deg, f->theta_sigma / deg, f->phi / deg));
+	fact(list, "Iris across", page_text("%.1f × %.1f px", 2 * f->limbus.a, 2 * f->limbus.b));
+	fact(list, "Centre", page_text("%.2f, %.2f px (± %.2f, ± %.2f)", f->limbus.cx, f->limbus.cy, f->ellipse_sigma[0], f->ellipse_sigma[1]));
+	fact(list, "Limbus seen", page_text("%.0f %%, residual %.2f px", 100 * f->coverage, f->rms_px));
+	if (f->has_pupil)
+		fact(list, "Pupil across", page_text("%.1f × %.1f px", 2 * f->pupil.a, 2 * f->pupil.b));
+	static const char *const sources[] = { "not known: weak perspective", "capture.conf", "EXIF", "calibrated rig" };
+	fact(list, "Camera", isfinite(f->camera.focal_px) && f->camera.source != CAMERA_NONE
+	                             ? page_text("focal length %.0f px, from %s", f->camera.focal_px, sources[f->camera.source])
+	                             : page_text("%s", sources[CAMERA_NONE]));
+	return list;
+}
+
+static void advise(struct page *page, const char *name, const struct fit *f)
+{
+	if (!f->ok) {
+		page_say(page->advice, "%s was not used: %s", name, f->reason);
+		return;
+	}
+	if (f->coverage < 0.6)
+		page_say(page->advice, "%s: lids hide %.0f %% of the limbus. Open the eye wider, or hold the upper lid.", name,
+		         100 * (1 - f->coverage));
+	if (f->limbus.a < 200)
+		page_say(page->advice, "%s: the iris is only %.0f px across. Go closer, or use a longer lens: 800 px and more show its fibres.",
+		         name, 2 * f->limbus.a);
+	if (f->camera.source == CAMERA_NONE)
+		page_say(page->advice, "%s: no focal length is known. Keep the EXIF data, or set camera.focal_px: off the middle of "
+		         "the picture the pose is wrong by degrees without it.", name);
+	if (f->theta_sigma > 2 * deg)
+		page_say(page->advice, "%s: the direction of the eye is known to ± %.1f° only. Nearly frontal views say little about "
+		         "it: add photographs from 20–30° to the side.", name, f->theta_sigma / deg);
+	if (f->edge_sigma_px > 0.02 * f->limbus.a && f->edge_sigma_px > 3)
+		page_say(page->advice, "%s: the limbus is blurred over %.1f px. Focus on the iris, close the aperture, use a shorter exposure.",
+		         name, f->edge_sigma_px);
+}
+
+static void add(json_t *object, const char *key, json_t *value)
+{
+	if (value)
+		json_object_set_new(object, key, value);
+}
+
+static void likeness(struct page *page, json_t *entry, const char *dir, const char *name)
+{
+	const char *compare = page_file(page, "%s/%s_compare.png", dir, name);
+	json_t *numbers = page_json(page, page_file(page, "%s/%s_compare.json", dir, name)), *like = json_object();
+	json_t *panels[3];
+	if (page_panels(panels, page, compare)) {
+		add(like, "photo", panels[0]);
+		add(like, "render", panels[1]);
+		add(like, "difference", panels[2]);
+		json_object_set_new(like, "name", template_text(name));
+		double mean = json_number_value(json_object_get(numbers, "difference_mean"));
+		double high = json_number_value(json_object_get(numbers, "difference_95"));
+		double explained = json_number_value(json_object_get(numbers, "explained_by_model"));
+		if (mean > 0) {
+			add(like, "mean", page_text("%.1f", mean));
+			add(like, "high", page_text("%.1f", high));
+			add(like, "explained", page_text("%.0f", 100 * explained));
+		}
+		json_object_set_new(entry, "likeness", like);
+	} else {
+		json_decref(like);
+	}
+	json_decref(numbers);
+}
+
+static json_t *photo(struct page *page, const struct capture_photo *p)
+{
+	struct err err = { 0 };
+	struct fit fit;
+	const char *path = page_file(page, "%s", p->fit), *file = page_file(page, "%s", p->file);
+	json_t *entry = json_object();
+	json_object_set_new(entry, "name", template_text(p->name));
+	json_object_set_new(entry, "file", template_text(p->file));
+	add(entry, "picture", page_picture(page, file, 2 * page->width));
+	if (!path || !fit_load(&fit, path, &err)) {
+		json_object_set_new(entry, "reason", template_text(path ? err.msg : "the stage limbus has not looked at it"));
+		page_say(page->missing, "%s: %s", p->name, path ? err.msg : "no fit; the stage limbus has not looked at it");
+		return entry;
+	}
+	advise(page, p->name, &fit);
+	if (!fit.ok) {
+		json_object_set_new(entry, "reason", template_text(fit.reason));
+		return entry;
+	}
+	json_object_set_new(entry, "ok", json_true());
+	json_object_set_new(entry, "px_width", json_integer(fit.width));
+	json_object_set_new(entry, "px_height", json_integer(fit.height));
+	json_object_set_new(entry, "stroke", json_real(fit.width / 450.0));
+	json_object_set_new(entry, "limbus", ellipse(&fit.limbus));
+	if (fit.has_pupil)
+		json_object_set_new(entry, "pupil", ellipse(&fit.pupil));
+	json_object_set_new(entry, "facts", facts(&fit));
+	likeness(page, entry, page->capture->eyes[p->eye].render, p->name);
+	return entry;
+}
+
+json_t *page_photos(struct page *page)
+{
+	json_t *list = json_array();
+	for (int i = 0; i < page->capture->n_photos; i++)
+		json_array_append_new(list, photo(page, &page->capture->photos[i]));
+	return list;
+}

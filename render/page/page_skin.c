@@ -1,0 +1,179 @@
+/* The skin column: what was tracked and learnt, and every character driven by it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/mem.h"
+#include "render/page/page.h"
+#include "model/model.h"
+
+/* Clips larger than this are linked, not put into the page. */
+static const size_t clip_limit = 12 << 20;
+
+static void add(json_t *object, const char *key, json_t *value)
+{
+	if (value)
+		json_object_set_new(object, key, value);
+}
+
+/* A file as a data: URI; beyond the limit, or not there: null. */
+static json_t *data_uri(const char *path, const char *type, size_t limit)
+{
+	struct err err = { 0 };
+	char *bytes;
+	size_t size;
+	if (!path || !file_read(&bytes, &size, path, limit, &err))
+		return 0;
+	char *head = mem_printf("data:%s;base64,", type), *uri = page_base64((const uint8_t *)bytes, size, head);
+	json_t *json = json_string_nocheck(uri);
+	free(uri);
+	free(head);
+	free(bytes);
+	return json;
+}
+
+/* Numbers that a stage left for the page. */
+static json_t *facts(struct page *page, const char *stage)
+{
+	json_t *log = page_json(page, page_file(page, "work/log/%s.json", stage)), *list = page_facts(log);
+	json_t *skips = json_object_get(log, "skipped"), *line;
+	size_t i;
+	json_array_foreach(skips, i, line)
+		if (json_is_string(line))
+			page_say(page->film, "%s: %s", stage, json_string_value(line));
+	json_decref(log);
+	return list;
+}
+
+static void column(struct page *page, json_t *list, const char *stage, const char *title)
+{
+	json_t *all = facts(page, stage);
+	if (json_array_size(all))
+		json_array_append_new(list, json_pack("{s:s,s:o}", "title", title, "facts", all));
+	else
+		json_decref(all);
+}
+
+/* What transfer.json says of one character, as far as it is numbers. */
+static json_t *transfer_facts(struct page *page, const char *name)
+{
+	json_t *root = page_json(page, page_file(page, "work/targets/%s/transfer.json", name)), *list = json_array(), *value;
+	const char *key;
+	json_object_foreach(root, key, value)
+		if (json_is_number(value)) {
+			char *label = mem_str(key);
+			for (char *p = label; *p; p++)
+				*p = *p == '_' ? ' ' : *p;
+			json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value", page_text("%.4g", json_number_value(value))));
+			free(label);
+		}
+	json_t *better = json_object_get(root, "skipped"), *line;
+	size_t i;
+	json_array_foreach(better, i, line)
+		if (json_is_string(line))
+			page_say(page->film, "%s: %s", name, json_string_value(line));
+	json_decref(root);
+	return list;
+}
+
+static json_t *clip(struct page *page, const char *name, const char *suffix, const char *title, const char *alt)
+{
+	const char *path = page_file(page, "work/render/%s%s", name, suffix);
+	if (!path)
+		return 0;
+	json_t *uri = data_uri(path, "video/mp4", clip_limit);
+	if (!uri)
+		uri = page_text("../render/%s%s", name, suffix);
+	return json_pack("{s:s,s:s,s:o,s:o}", "title", title, "alt", alt, "uri", uri, "file", page_text("work/render/%s%s", name, suffix));
+}
+
+/* What the cells of the sheet of expressions show, in their order. */
+static json_t *expressions_title(struct page *page)
+{
+	json_t *model = page_json(page, page_file(page, "work/skin/model.json")), *in;
+	char *title = mem_str("At rest, and each expression in full");
+	size_t i;
+	json_array_foreach(json_object_get(model, "inputs"), i, in) {
+		const char *expression = json_string_value(json_object_get(in, "name"));
+		if (i < SKIN_EYE_INPUTS || !expression)
+			continue;
+		char *more = mem_printf("%s%s %s", title, i == SKIN_EYE_INPUTS ? ":" : ",", expression);
+		free(title);
+		title = more;
+	}
+	json_t *out = template_text(title);
+	free(title);
+	json_decref(model);
+	return out;
+}
+
+static json_t *target(struct page *page, const char *name)
+{
+	static const char *const stills[][3] = {
+		{ "_look.png", "Looking as render.gaze says", "The character from the front" },
+		{ "_sheet.png", "Nine gazes: the character looks to its right (left in the picture) .. left, up .. down", "Nine pictures of the eyes looking in nine directions" },
+		{ "_blink.png", "A blink", "The left eye closing and opening" },
+		{ "_expressions.png", 0, "The character's eyes at rest and with each expression" },
+	};
+	json_t *entry = json_object(), *pictures = json_array(), *clips = json_array();
+	for (int i = 0; i < COUNT(stills); i++) {
+		json_t *picture = page_picture(page, page_file(page, "work/render/%s%s", name, stills[i][0]), 2 * page->width);
+		if (picture)
+			json_array_append_new(pictures, json_pack("{s:o,s:s,s:o}", "title", stills[i][1] ? json_string(stills[i][1]) : expressions_title(page), "alt", stills[i][2],
+			                                                "picture", picture));
+	}
+	json_t *registration = page_picture(page, page_file(page, "work/targets/%s/registration.png", name), 2 * page->width);
+	if (registration)
+		json_array_append_new(pictures, json_pack("{s:s,s:s,s:o}", "title", "Laid onto the subject; how far from it as colours", "alt",
+		                                          "The subject, the character on it, one in the other", "picture", registration));
+	json_t *driven = clip(page, name, "_clip.mp4", "Driven by the video", "The input video, and the character beside it");
+	json_t *script = clip(page, name, "_script.mp4", "Driven by script/", "The character, moved by the script");
+	if (driven)
+		json_array_append_new(clips, driven);
+	if (script)
+		json_array_append_new(clips, script);
+	struct stat st;
+	const char *glb = page_file(page, "work/render/%s.glb", name);
+	if (glb && !stat(glb, &st))
+		add(entry, "glb", page_text("work/render/%s.glb, %.1f MB", name, (double)st.st_size / 1e6));
+	add(entry, "name", template_text(name));
+	add(entry, "pictures", pictures);
+	add(entry, "clips", clips);
+	json_t *registered = transfer_facts(page, name);
+	json_object_set_new(entry, "any_registered", json_boolean(json_array_size(registered)));
+	add(entry, "registered", registered);
+	return entry;
+}
+
+json_t *page_skin(struct page *page)
+{
+	if (!page_file(page, "work/skin/model.json") && !page_file(page, "work/skin/gaze.csv"))
+		return 0;
+	struct file_list targets;
+	struct err err = { 0 };
+	json_t *skin = json_object(), *columns = json_array(), *list = json_array();
+	column(page, columns, "track", "Tracked");
+	column(page, columns, "train", "Learnt");
+	column(page, columns, "transfer", "Registered");
+	column(page, columns, "extrapolate", "Rigged");
+	column(page, columns, "animate", "Animated");
+	add(skin, "columns", columns);
+	add(skin, "track", page_picture(page, page_file(page, "work/skin/track.png"), 2 * page->width));
+	add(skin, "wrinkles", page_picture(page, page_file(page, "work/skin/wrinkles.png"), 2 * page->width));
+	add(skin, "curves", data_uri(page_file(page, "work/skin/curves.svg"), "image/svg+xml", 4 << 20));
+	if (stage_list(page->stage, &targets, "targets", &err))
+		for (int i = 0; i < targets.n; i++) {
+			const char *dot = strrchr(targets.names[i], '.');
+			char *name = mem_printf("%.*s", dot ? (int)(dot - targets.names[i]) : (int)strlen(targets.names[i]), targets.names[i]);
+			if (page_file(page, "work/targets/%s/rig.npz", name))
+				json_array_append_new(list, target(page, name));
+			else
+				page_say(page->missing, "targets/%s: it was not rigged.", targets.names[i]);
+			free(name);
+		}
+	file_list_free(&targets);
+	json_object_set_new(skin, "any_target", json_boolean(json_array_size(list)));
+	add(skin, "targets", list);
+	return skin;
+}

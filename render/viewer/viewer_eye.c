@@ -1,0 +1,169 @@
+/* One eye for the interactive page: the scene of the C renderer in numbers, maps and lights. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "base/mem.h"
+#include "limbus/record.h"
+#include "draw/eye/impl.h"
+#include "optics/lightpath/path.h"
+#include "render/page/page.h"
+#include "render/viewer/viewer.h"
+
+static void put(json_t *out, const char *key, int n, const double *x)
+{
+	json_object_set_new(out, key, n == 1 ? json_number(*x) : json_numbers(n, x));
+}
+
+/* The march's rules: for each number of nodes, how fast light fades, and each node its place and weight. */
+static json_t *rules(const struct scene *s)
+{
+	enum { RULES = 9, FADES = 25 };  // of twelve steps
+	double thick[] = { scene_thickness(s, TISSUE_ABL), scene_thickness(s, TISSUE_STROMA) }, ways = LOOK_WAYS, fade[FADES];
+	json_t *all = json_array();
+	for (int k = 0; k < FADES; k++)
+		fade[k] = SCENE_FADE_MAX * pow((double)k / (FADES - 1), 2);
+	double pairs[RULES][FADES][2 * RULES];
+#pragma omp parallel for collapse(2) schedule(dynamic, 4)
+	for (int n = RULES; n >= 1; n--)
+		for (int k = 0; k < FADES; k++) {
+			double node[RULES], weight[RULES];
+			scene_exponential(n, fade[k], node, weight);
+			for (int i = 0; i < n; i++) {
+				pairs[n - 1][k][2 * i] = node[i];
+				pairs[n - 1][k][2 * i + 1] = weight[i];
+			}
+		}
+	for (int n = 1; n <= RULES; n++) {
+		json_t *of_n = json_array();
+		for (int k = 0; k < FADES; k++)
+			json_array_append_new(of_n, json_numbers(2 * n, pairs[n - 1][k]));
+		json_array_append_new(all, of_n);
+	}
+	return json_pack("{s:i,s:o,s:f,s:i,s:o,s:o}", "steps", s->conf.steps, "thickness", json_numbers(2, thick), "ways", ways, "share", SCENE_SHARE, "fade",
+	                 json_numbers(FADES, fade), "rules", all);
+}
+
+/* Of the pupil's radius, mm: of its margin and of the limbus that tells the scale, in the photograph; 0: not known. Points round an
+ * ellipse tell its radius sqrt(2) times as well as its centre. */
+static double pupil_sigma(const struct viewer_source *source)
+{
+	struct limbus_record record;
+	struct err err = { 0 };
+	const struct shot *shot = source->shot;
+	if (!shot || !shot->fit.has_pupil || !source->edge || !file_exists(source->edge) || !limbus_record_load(&record, source->edge, &err) || !record.view.has_pupil)
+		return 0;
+	return source->scene->pupil[2] * hypot(record.view.pupil_sigma / M_SQRT2 / shot->fit.pupil.a, shot->fit.ellipse_sigma[2] / shot->fit.limbus.a);
+}
+
+static json_t *geometry(const struct scene *s, double gain, double sigma_of_pupil)
+{
+	const struct cornea *c = &s->cornea;
+	json_t *out = json_object();
+	double limbus[] = { s->limbus[0], s->limbus[1] }, sclera[] = { s->sclera_z, s->conf.sclera_radius, s->conf.limbus_width };
+	double heights[] = { s->height_min, s->height_max }, model = s->gain;
+	double thickness = s->thickness_max;
+	put(out, "R", 1, &c->R);
+	put(out, "p", 1, &c->p);
+	put(out, "n", 1, &c->n);
+	put(out, "limbus", 2, limbus);
+	put(out, "sclera", 3, sclera);
+	put(out, "pupil", 3, s->pupil);
+	put(out, "pupil_sigma", 1, &sigma_of_pupil);
+	put(out, "extent", 1, &s->extent);
+	put(out, "heights", 2, heights);
+	put(out, "thickness_max", 1, &thickness);
+	put(out, "iris_depth", 1, &s->eye.iris_depth);
+	put(out, "gain", 1, &model);
+	put(out, "exposure", 1, &gain);
+	put(out, "detail", 1, &s->conf.detail);
+	double back[] = { c->R_post, c->p_post, c->thickness, c->two_surface ? c->n_cornea : 0 };
+	put(out, "back", COUNT(back), back);
+	json_object_set_new(out, "march", rules(s));
+	json_object_set_new(out, "search", json_integer(s->conf.search));
+	json_object_set_new(out, "map_px", json_integer(s->level[0].n));
+	json_object_set_new(out, "levels", json_integer(s->n_levels));
+	json_object_set_new(out, "marched", json_integer(scene_marched(s)));
+	return out;
+}
+
+/* The photograph's own view, for the comparison beside it. */
+static json_t *photo(const struct shot *shot)
+{
+	struct scene_view v = shot_view(shot);
+	double pose[16], slip[6], camera[3] = { v.camera.focal_px, v.camera.center_px[0], v.camera.center_px[1] };
+	double window[3] = { v.x0, v.y0, v.scale };
+	memcpy(pose, v.cam_from_eye, sizeof pose);
+	memcpy(slip, v.slip, sizeof slip);
+	uint8_t *px = image_to_srgb8(&shot->image);
+	json_t *out = page_pixels(px, shot->image.width, shot->image.height);
+	free(px);
+	if (!out)
+		return 0;
+	put(out, "cam_from_eye", 16, pose);
+	put(out, "slip", 6, slip);
+	put(out, "camera", 3, camera);
+	put(out, "window", 3, window);
+	json_object_set_new(out, "name", template_text(shot->photo->name));
+	json_object_set_new(out, "lens_bends", json_boolean(v.camera.distortion[0] != 0));
+	return out;
+}
+
+/* Everything that is a picture, dearest first: each is encoded by itself, as many at a time as there are processors. */
+enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, FILM, PARTS };
+
+static json_t *part_make(enum part part, const struct viewer_source *source, struct err *err)
+{
+	const struct scene *s = source->scene;
+	const struct scene_level *l = &s->level[0];
+	const struct shot *shot = source->shot;
+	switch (part) {
+	case VEINS: return viewer_map_log(s->veins.px, s->veins.width, s->veins.height, 4, SCENE_DARK, err);
+	case PHOTO: return shot ? photo(shot) : 0;
+	case RELIEF: return viewer_map_relief(l, err);
+	case COLOUR: return viewer_map_colour(l, err);
+	case MODEL: return l->model ? viewer_map_model(s, err) : 0;
+	case PHOTOGRAPHED: return shot ? viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source, err) : 0;
+	case STUDIO: return viewer_light("Studio", source->studio, source->studio, source, err);
+	default: return viewer_map_plain(&s->film, err);
+	}
+}
+
+static void put_parts(json_t *out, json_t *part[PARTS])
+{
+	json_t *lights = json_array(), *maps = json_object();
+	static const char *const names[PARTS] = { [VEINS] = "veins", [RELIEF] = "relief", [COLOUR] = "colour", [MODEL] = "model", [FILM] = "film" };
+	for (int i = 0; i < PARTS; i++)
+		if (names[i] && part[i])
+			json_object_set_new(maps, names[i], part[i]);
+	json_array_append_new(lights, part[STUDIO]);
+	if (part[PHOTOGRAPHED])
+		json_array_append_new(lights, part[PHOTOGRAPHED]);
+	if (part[PHOTO])
+		json_object_set_new(out, "photo", part[PHOTO]);
+	json_object_set_new(out, "lights", lights);
+	json_object_set_new(out, "maps", maps);
+}
+
+json_t *viewer_eye(const struct viewer_source *source, struct err *err)
+{
+	const struct scene *s = source->scene;
+	json_t *out = json_object(), *part[PARTS];
+	struct err errs[PARTS] = { 0 };
+	json_object_set_new(out, "side", template_text(source->side));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:i,s:i}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
+	json_object_set_new(out, "eye", geometry(s, source->gain, pupil_sigma(source)));
+	json_object_set_new(out, "tissue", viewer_tissue(source));
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = 0; i < PARTS; i++)
+		part[i] = part_make((enum part)i, source, &errs[i]);
+	put_parts(out, part);
+	for (int i = 0; i < PARTS; i++)
+		if (err_is(&errs[i])) {
+			*err = errs[i];
+			json_decref(out);
+			return 0;
+		}
+	return out;
+}

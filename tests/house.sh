@@ -1,0 +1,87 @@
+#!/bin/bash
+# Facts about the structure of lib/, stages/ and render/, from sources and compiled objects. B: build folder.
+#   house.sh circles    files that call each other in a circle, one circle a line
+#   house.sh unused     FILE SYMBOL: exported by lib/, called from no other file of lib/, stages/ or render/
+#   house.sh headless   .c files of lib/ without a header of their own name, in a room without one header for all of it
+#   house.sh folders    COUNT FOLDER: .c, .h and .cc files of every folder
+cd "$(dirname "$0")/.." || exit 1
+B=${B:-build}
+
+# Lines "def SOURCE SYMBOL" and "use SOURCE SYMBOL". Objects whose source is gone are passed over.
+symbols() {
+	find lib stages render \( -name '*.c' -o -name '*.cc' \) | sort | while IFS= read -r source; do
+		[ -e "$B/${source%.*}.o" ] || continue
+		nm "$B/${source%.*}.o" 2>/dev/null | awk -v f="$source" '
+			NF == 3 && $2 ~ /^[TDBRi]$/ && $3 !~ /\./ { print "def", f, $3 }
+			NF == 2 && $1 == "U" { print "use", f, $2 }'
+	done
+}
+
+circles() {
+	symbols | awk '
+		$1 == "def" { at[$3] = $2 }
+		$1 == "use" { user[++n] = $2; used[n] = $3 }
+		function reach(from, to, key, b, list, i) { # depth first; seen[] is cleared by the caller
+			if (from == to && deep++) return 1
+			if (from in seen) return 0
+			seen[from] = 1
+			split(out[from], list, " ")
+			for (i in list) if (list[i] == to || reach(list[i], to)) return 1
+			return 0
+		}
+		END {
+			for (i = 1; i <= n; i++) {
+				a = user[i]; b = at[used[i]]
+				if (b == "" || a == b || (a, b) in edge) continue
+				edge[a, b] = 1; out[a] = out[a] " " b; node[a]; node[b]
+			}
+			for (a in node) {
+				if (a in done) continue
+				line = ""
+				for (b in node) {
+					if (a == b || b in done) continue
+					split("", seen); deep = 1
+					if (!reach(a, b)) continue
+					split("", seen); deep = 1
+					if (reach(b, a)) { line = line " " b; done[b] = 1 }
+				}
+				if (line != "") { done[a] = 1; print a line }
+			}
+		}' | awk '{ n = split($0, f, " "); for (i = 2; i <= n; i++) for (k = i; k > 1 && f[k] < f[k - 1]; k--) { t = f[k]; f[k] = f[k - 1]; f[k - 1] = t }
+			s = f[1]; for (i = 2; i <= n; i++) s = s " " f[i]; print s }' | sort
+}
+
+case ${1:-} in
+circles) circles ;;
+unused)
+	find lib -name '*.h' -exec cat {} + | grep -oE '\b[a-z_][a-z0-9_]*\(' | tr -d '(' | sort -u >"$B/house.declared"
+	symbols | awk -v declared="$B/house.declared" '
+		BEGIN { while ((getline s < declared) > 0) told[s] = 1 }
+		$1 == "def" && $2 ~ /^lib\// && $3 in told { at[$3] = $2 }
+		$1 == "use" { called[$3] = 1 }
+		END { for (s in at) if (!(s in called)) print at[s], s }' | sort
+	;;
+headless)
+	# What a file without a header of its own exports has to stand in the room's header: the folder's namesake, or the only one
+	# without a source file; or in a private one of the room.
+	find lib -name '*.c' | sort | while IFS= read -r c; do
+		[ -e "${c%.c}.h" ] && continue
+		dir=${c%/*} n=0 room=
+		for h in "$dir"/*.h; do
+			case ${h##*/} in impl.h | *_impl.h | opts.h | look.h) ;; *) [ -e "${h%.h}.c" ] || { n=$((n + 1)) && room=$h; } ;; esac
+		done
+		[ "$n" = 1 ] || room=
+		[ -e "$dir/${dir##*/}.h" ] && room=$dir/${dir##*/}.h
+		missing=$(nm "$B/${c%.c}.o" 2>/dev/null | awk 'NF == 3 && $2 == "T" && $3 !~ /\./ { print $3 }' | while IFS= read -r s; do
+			grep -qE "\b$s\(" $room "$dir"/impl.h "$dir"/*_impl.h 2>/dev/null && continue
+			grep -rqE --include='*.h' "\b$s\(" lib && printf ' %s' "$s"
+		done)
+		[ -z "$missing" ] || echo "$c:$missing"
+	done
+	;;
+folders)
+	find lib stages render tests \( -name '*.c' -o -name '*.h' -o -name '*.cc' \) | sed 's#/[^/]*$##' | sort | uniq -c | sort -rn |
+		sed 's/^ *//'
+	;;
+*) sed -n 's/^#   //p' "$0" >&2; exit 2 ;;
+esac
