@@ -12,6 +12,7 @@
 #$
 #$   make bench                      speed and error of every method in tables and plots: bench/README.md
 #$   make bench-NAME                 one benchmark; QUICK=1 with both: fewer cases
+#$   make test_NAME                  one unit test
 #$   make stress                     long runs over random and hostile cases
 #$   make fuzz SECONDS_EACH=60       everything that reads strangers' files, with clang's libFuzzer
 #$   make build                      the programs alone: bin/
@@ -71,10 +72,10 @@ BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
 LIB_OBJ := $(LIB_SRC:%.c=$B/%.o) $(BRIDGE_SRC:%.cc=$B/%.o)
 STAGES := $(notdir $(patsubst %/,%,$(dir $(wildcard stages/*/main.c render/main.c))))
 PROGRAMS := $(STAGES:%=$(BIN)/%)
-TESTS := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/test_*.c))
-BENCHES := $(patsubst tests/bench/%.c,$B/tests/bench/%,$(wildcard tests/bench/bench_*.c))
-STRESSES := $(patsubst tests/stress/%.c,$B/tests/stress/%,$(wildcard tests/stress/stress_*.c))
-TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c tests/peers/*.c))
+TESTS := $(patsubst %.c,$B/%,$(wildcard tests/unit/*/test_*.c))
+BENCHES := $(patsubst %.c,$B/%,$(wildcard tests/bench/bench_*.c tests/bench/*/bench_*.c))
+STRESSES := $(patsubst %.c,$B/%,$(wildcard tests/stress/stress_*.c))
+TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c tests/lib/*/*.c tests/peers/*.c))
 
 .DELETE_ON_ERROR:
 .SECONDARY:

@@ -5,19 +5,22 @@
 #   make bench-compare BEFORE=DIR AFTER=DIR   what became worse beyond the spread; AFTER: bench if not said
 BENCH_ARGS = --out=bench $(if $(QUICK),--quick)
 
-bench: $(BENCHES:$B/tests/bench/bench_%=bench-%)
+bench: $(patsubst bench_%,bench-%,$(notdir $(BENCHES)))
 	@$(MAKE) --no-print-directory bench-report
 
 .PHONY: bench-report bench-compare
-bench-compare: $B/tests/bench/compare
+bench-compare: $B/tests/bench/report/compare
 	@test -n "$(BEFORE)" || { echo "make: say which: make bench-compare BEFORE=old/bench [AFTER=bench]" >&2; exit 2; }
 	@$< "$(BEFORE)" "$(or $(AFTER),bench)"
 # Parts of a frame follow each other within a fraction of a millisecond: threads stay awake between them, as a viewer's do.
 bench-distance bench-scatter bench-render: export OMP_WAIT_POLICY = active
-bench-%: build $B/tests/bench/bench_% FORCE
+define bench
+$(patsubst bench_%,bench-%,$(notdir $(1))): build $(1) FORCE
 	@mkdir -p bench
-	@$B/tests/bench/bench_$* $(BENCH_ARGS)
-bench-report: $B/tests/bench/report
+	@$(1) $$(BENCH_ARGS)
+endef
+$(foreach b,$(BENCHES),$(eval $(call bench,$b)))
+bench-report: $B/tests/bench/report/report
 	@$< --out=bench --compiler="$$($(CC) --version | head -n 1)" --flags="$(CFLAGS) $(MATHFLAGS)"
 # Settings that no other beats in time and error, of the stages that have such knobs.
 .PHONY: fronts

@@ -16,11 +16,19 @@ CHECK_PACKAGES := chromium nodejs colmap
 
 CORES = $(shell nproc)
 check: setup
-	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/bench/compare
+	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/bench/report/compare
 	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory -j$(CORES) SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=6 \
 		tests/check.sh
+
+# make test_NAME: one of them, on its own.
+define test
+.PHONY: $(notdir $(1))
+$(notdir $(1)): $(1)
+	@$(1)
+endef
+$(foreach t,$(TESTS),$(eval $(call test,$t)))
 
 check-compilers: build $(TOOLS)
 	@B=$B BIN=$(BIN) tests/compilers.sh

@@ -48,7 +48,7 @@ double tissue_scattering(double nm);
 /* A few wavelengths that stand for the whole spectrum: linear Rec. 709 of a smooth reflectance is
  * sum_k rgb[k][c] reflectance(nm[k]). Nodes of Chebyshev, weights from the interpolating polynomial under the observer;
  * the reflectances of this tissue are so smooth that, against the full integral,
- * 3 bands are within 0.5 % (of the brightest channel), 4 within 0.06 %, 6 within 0.02 % (tests/test_tissue.c). */
+ * 3 bands are within 0.5 % (of the brightest channel), 4 within 0.06 %, 6 within 0.02 % (tests/unit/tissue/test_tissue.c). */
 struct tissue_bands {
 	int n;
 	double nm[TISSUE_BANDS_MAX], rgb[TISSUE_BANDS_MAX][3];

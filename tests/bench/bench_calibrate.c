@@ -16,12 +16,12 @@
 #include "base/mem.h"
 #include "base/run.h"
 #include "sfm/colmap/colmap.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/colmap_defaults.h"
-#include "tests/lib/sfm_scene.h"
-#include "tests/lib/sweep.h"
-#include "tests/lib/views_capture.h"
-#include "tests/lib/views_truth.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/peers/colmap_defaults.h"
+#include "tests/lib/scenes/sfm_scene.h"
+#include "tests/peers/sweep.h"
+#include "tests/lib/capture/views_capture.h"
+#include "tests/lib/truth/views_truth.h"
 
 static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
 {

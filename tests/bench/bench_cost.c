@@ -15,7 +15,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/run.h"
-#include "tests/lib/bench.h"
+#include "tests/lib/bench/bench.h"
 #include "tests/lib/scratch.h"
 
 enum { MOST_REPS = 3 };

@@ -10,8 +10,8 @@
 #include "base/mem.h"
 #include "bridge/cv_distance.h"
 #include "image/distance/distance.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/lid_scene.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/scenes/lid_scene.h"
 
 enum { W = 1280, H = 1024, N = W * H };
 static const double REACH = 32;

@@ -8,7 +8,7 @@
 #include "math/ellipse.h"
 #include "math/rng.h"
 #include "math/stats.h"
-#include "tests/lib/bench.h"
+#include "tests/lib/bench/bench.h"
 
 enum { POINTS = 360, METHODS = 6 };
 static const struct ellipse TRUTH = { 320.3, 239.1, 100, 90, 0.6 };

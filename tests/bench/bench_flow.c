@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/skin_points.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/score/skin_points.h"
 
 enum { POINTS = 1000, FRAMES = 100, QUICK_FRAMES = 5 };
 

@@ -10,8 +10,8 @@
 #include "bridge/cv_inpaint.h"
 #include "image/plane.h"
 #include "math/rng.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/iris.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/iris.h"
 
 enum { CAPTURES = 64, HOLES = 10, METHODS = 4 };
 static const char *const method_names[METHODS] = { "pattern from the iris", "Telea (OpenCV)", "Navier-Stokes (OpenCV)",

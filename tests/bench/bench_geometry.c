@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "math/stats.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/registered.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/score/registered.h"
 
 enum { CAPTURES = 64 };
 static const char *const ways[] = { "rays of sight (reference)", "texels (review)" };

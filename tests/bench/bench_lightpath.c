@@ -12,8 +12,8 @@
 #include "base/mem.h"
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/light_case.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/light_case.h"
 
 // Pieces whose inputs and outputs stay in the second-level cache; timed over so few that other programs seldom cut in.
 enum { N = 65536, PIECE = 4096, TIMED = 2 * PIECE };

@@ -11,10 +11,10 @@
 #include "limbus/record.h"
 #include "tests/bench/integro.h"
 #include "math/stats.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/limbus_conf.h"
-#include "tests/lib/synth_eye.h"
-#include "tests/lib/truth.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/conf/limbus_conf.h"
+#include "tests/lib/scenes/synth_eye.h"
+#include "tests/lib/truth/truth.h"
 
 enum { OURS, OTSU, HOUGH, INTEGRO, METHODS };
 static const char *const names[METHODS] = { "ours", "Otsu + OpenCV fitEllipse", "OpenCV Hough circle",

@@ -8,8 +8,8 @@
 #include "draw/eye/march/march.h"
 #include "math/rng.h"
 #include "optics/lightpath/lightpath.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/ridged.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/scenes/ridged.h"
 
 enum { BATCHES = 24, LIGHTS = 8 };
 

@@ -11,8 +11,8 @@
 #include "math/regress.h"
 #include "math/rng.h"
 #include "math/scatter/scatter.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/peer.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/peers/peer.h"
 #include "tests/lib/scratch.h"
 
 enum { P = 400, K = 12, INPUTS = 40, OUTPUTS = 6, REPS = 5 };
@@ -148,7 +148,7 @@ static void scikit_learn(const struct rows *r, int reps, const char *setting)
 	give("x", r->n, P, r->x);
 	give("inputs", r->n, INPUTS, r->inputs);
 	give("outputs", r->n, OUTPUTS, r->outputs);
-	char *command = mem_printf("/usr/bin/python3 tests/bench/peer_sklearn.py '%s' %d %d", scratch_path("."), reps, K);
+	char *command = mem_printf("/usr/bin/python3 tests/peers/peer_sklearn.py '%s' %d %d", scratch_path("."), reps, K);
 	FILE *from = popen(command, "r");
 	for (int i = 0; from && i < COUNT(methods); i++) {
 		struct bench_time time = peer_times(from);

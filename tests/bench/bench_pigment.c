@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "bridge/nls.h"
 #include "tissue/pigment/pigment.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/photon.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/photon.h"
 
 enum { EYES = 5, DEPTHS = 5, N = PIGMENT_N };
 static const double melanin[EYES] = { 0.003, 0.01, 0.03, 0.1, 0.3 };

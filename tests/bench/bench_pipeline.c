@@ -15,8 +15,8 @@
 #include "base/mem.h"
 #include "bridge/cv_photo.h"
 #include "image/exr.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/truth.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/truth.h"
 
 enum { MAX_CAPTURES = 64, LIMIT_PX = 1 << 26 };
 

@@ -9,9 +9,9 @@
 #include "math/vec.h"
 #include "optics/cornea/sag.h"
 #include "optics/refraction/refraction.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/light_case.h"
-#include "tests/lib/storage.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/light_case.h"
+#include "tests/lib/bench/storage.h"
 
 enum { N = 65536, TIMED = 4096 };  // timed over so few that other programs seldom cut in
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };

@@ -10,11 +10,11 @@
 
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/pair.h"
-#include "tests/lib/peer.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/pair.h"
+#include "tests/peers/peer.h"
 #include "tests/lib/scratch.h"
-#include "tests/lib/transfer_conf.h"
+#include "tests/lib/conf/transfer_conf.h"
 
 /* Other programs' measured figures: the whole program, one core of a desktop. The last of each pair is the fastest. */
 struct peer {
@@ -99,7 +99,7 @@ static void open3d(const struct pair *pair, int reps)
 	char rel[2][256], table[64], *out = mem_str(scratch_path("open3d_%s", pair->name));
 	snprintf(rel[0], sizeof rel[0], "registration/%s/source.ply", pair->name);
 	snprintf(rel[1], sizeof rel[1], "registration/%s/target.ply", pair->name);
-	char *command = mem_printf("OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/peer_open3d.py '%s' '%s' '%s' %d", bench_data(rel[0]),
+	char *command = mem_printf("OMP_NUM_THREADS=1 /usr/bin/python3 tests/peers/peer_open3d.py '%s' '%s' '%s' %d", bench_data(rel[0]),
 	                           bench_data(rel[1]), out, reps);
 	FILE *from = popen(command, "r");
 	long n = 3L * pair->source.n_vertices;

@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 #include "tissue/relief/relief.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/irisphantom.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/scenes/irisphantom.h"
 
 enum { PATCH = 48, SIZE = 1024 };
 static const double white[3] = { 1, 1, 1 }, root = 6;

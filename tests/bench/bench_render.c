@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 #include "draw/eye/march/march.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/ridged.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/scenes/ridged.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=fast")  // the rate of operations is that of the renderer's loops: see math/simd.h

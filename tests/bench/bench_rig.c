@@ -12,9 +12,9 @@
 #include "math/vec.h"
 #include "rig/deform/deform.h"
 #include "rig/deform/impl.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/face.h"
-#include "tests/lib/fronts.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/scenes/face.h"
+#include "tests/lib/bench/fronts.h"
 #include "tests/lib/scratch.h"
 
 struct general {

@@ -10,7 +10,7 @@
 #include "image/plane.h"
 #include "image/subsurface/subsurface.h"
 #include "math/rng.h"
-#include "tests/lib/bench.h"
+#include "tests/lib/bench/bench.h"
 
 enum { W = 1280, H = 1024, N = W * H };
 static const double PX_PER_MM = 9;  // both eyes across the screen

@@ -15,7 +15,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/npy/npy.h"
-#include "tests/lib/bench.h"
+#include "tests/lib/bench/bench.h"
 
 static const char sample[] = "samples/face";
 static const char *const stages[] = { "track", "train", "transfer", "extrapolate", "animate", "render" };

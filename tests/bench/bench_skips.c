@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "tests/lib/bench.h"
+#include "tests/lib/bench/bench.h"
 #include "tests/lib/scratch.h"
 
 /* A command before each run, and the command that is timed: shell text, $C the capture, the text this file's own. */

@@ -13,11 +13,11 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "image/video/video.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/skin_points.h"
-#include "tests/lib/track_capture.h"
-#include "tests/lib/track_score.h"
-#include "tests/lib/track_units.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/score/skin_points.h"
+#include "tests/lib/capture/track_capture.h"
+#include "tests/lib/score/track_score.h"
+#include "tests/lib/score/track_units.h"
 
 static const char *const clips[] = { "clip_a", "clip_b" };
 

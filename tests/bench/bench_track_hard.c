@@ -6,9 +6,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/track_capture.h"
-#include "tests/lib/track_score.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/capture/track_capture.h"
+#include "tests/lib/score/track_score.h"
 
 static void row(const char *of, const char *how, double each, double got, const char *unit, const char *share)
 {

@@ -14,9 +14,9 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/scatter/scatter.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/linear_clip.h"
-#include "tests/lib/tracked.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/scenes/linear_clip.h"
+#include "tests/lib/truth/tracked.h"
 
 enum { TABLE = 1 << 20, DIRECT_ROWS = 4000, DIRECT_COLUMNS = 500 };
 

@@ -9,8 +9,8 @@
 #include "base/mem.h"
 #include "iris/iris_map.h"
 #include "image/exr.h"
-#include "tests/lib/bench.h"
-#include "tests/lib/iris.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/truth/iris.h"
 
 enum { CAPTURES = 64 };
 

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/mem.h"
-#include "tests/lib/bench.h"
+#include "tests/lib/bench/bench.h"
 #include "tests/lib/scratch.h"
 
 enum { REPS = 8 };

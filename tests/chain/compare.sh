@@ -1,7 +1,7 @@
 #!/bin/bash
 # Two benchmark runs compared: what is worse beyond the spread is named, and what is not, is not.
 . "$(dirname "$0")/../lib/chain.sh"
-COMPARE=${B:-build}/tests/bench/compare
+COMPARE=${B:-build}/tests/bench/report/compare
 mkdir "$root/a" "$root/b"
 head="table,method,setting,per,median_s,low_s,high_s,error,error_unit,error_of"
 rows() { # MEDIAN LOW HIGH ERROR of the last row; how much slower the others are: $5

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "optics/lightpath/lightpath.h"
-#include "tests/lib/quad.h"
+#include "tests/lib/truth/quad.h"
 #include "tests/lib/stress.h"
 
 struct range {

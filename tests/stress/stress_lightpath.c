@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "optics/lightpath/lightpath.h"
 #include "optics/lightpath/path.h"
-#include "tests/lib/light_case.h"
+#include "tests/lib/truth/light_case.h"
 #include "tests/lib/stress.h"
 
 static const struct family {

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "tests/lib/limbus_conf.h"
+#include "tests/lib/conf/limbus_conf.h"
 #include "tests/lib/stress.h"
-#include "tests/lib/synth_eye.h"
+#include "tests/lib/scenes/synth_eye.h"
 
 enum kind { FAIR, ASIDE, CLOSED, BURNT, DARK, BLURRED, NOISY, NO_LIDS, KINDS };
 static const char *const kinds[] = { "fair", "cut by the frame", "nearly closed", "over-exposed", "dark", "blurred", "noisy", "without lids" };

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "tests/lib/stress.h"
-#include "tests/lib/transfer_conf.h"
+#include "tests/lib/conf/transfer_conf.h"
 
 enum { MOST = 900 };
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "tests/lib/limbus_conf.h"
+#include "tests/lib/conf/limbus_conf.h"
 #include "tests/lib/stress.h"
 
 static const double BEST = 1e-5;  // noise of the best ellipses, of their size

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "math/regress.h"
 #include "math/scatter/scatter.h"
-#include "tests/lib/linear_clip.h"
+#include "tests/lib/scenes/linear_clip.h"
 #include "tests/lib/stress.h"
 
 /* X[n][p] = mean + U diag(value) V^T with orthonormal U, V; U orthogonal to the ones, so that values are the singular

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "tests/lib/series.h"
+#include "tests/lib/score/series.h"
 
 struct worst {
 	double off, beyond;  // of all series; the largest share beyond MOST

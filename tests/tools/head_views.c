@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "image/picture.h"
 #include "math/vec.h"
-#include "tests/lib/drawn_head.h"
+#include "tests/lib/scenes/drawn_head.h"
 
 int main(int argc, char **argv)
 {

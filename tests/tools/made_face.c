@@ -1,4 +1,4 @@
-/* made_face DIR: the made face of tests/lib/face.h as a capture folder in which track, train and transfer have run: what
+/* made_face DIR: the made face of tests/lib/scenes/face.h as a capture folder in which track, train and transfer have run: what
  * extrapolate and render start from. */
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 #include "bridge/om_mesh.h"
 #include "image/exr.h"
 #include "image/video/video.h"
-#include "tests/lib/face.h"
+#include "tests/lib/scenes/face.h"
 
 enum { FRAMES = 12, W = 160, H = 90 };
 static const char *root;

@@ -1,4 +1,4 @@
-/* painted_clip: a capture whose video shows two painted eyes (tests/lib/painted_film.h) at any frame rate, and what `track` made of it against what was painted.
+/* painted_clip: a capture whose video shows two painted eyes (tests/lib/scenes/painted_film.h) at any frame rate, and what `track` made of it against what was painted.
  *
  *     painted_clip make DIR FPS
  *     painted_clip score DIR      one line to standard output: "NAME VALUE NAME VALUE ..."
@@ -17,8 +17,8 @@
 #include "base/npy/npy.h"
 #include "image/video/video.h"
 #include "math/stats.h"
-#include "tests/lib/painted_eye.h"
-#include "tests/lib/painted_film.h"
+#include "tests/lib/scenes/painted_eye.h"
+#include "tests/lib/scenes/painted_film.h"
 
 enum { COLUMNS = 97, ROWS = 12 };
 

@@ -13,7 +13,7 @@
 #include "image/exr.h"
 #include "optics/camera_rig.h"
 #include "sfm/colmap/colmap.h"
-#include "tests/lib/variant.h"
+#include "tests/lib/variants/variant.h"
 
 static const char *const stems[] = { "cameras", "images", "points3D" };
 

@@ -13,8 +13,8 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "image/photo/photo.h"
-#include "tests/lib/bent.h"
-#include "tests/lib/variant.h"
+#include "tests/lib/variants/bent.h"
+#include "tests/lib/variants/variant.h"
 
 static struct pixels crop(const struct photo *photo, int x0, int y0, int width, int height, int step)
 {

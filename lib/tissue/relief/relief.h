@@ -4,7 +4,7 @@
  * The filter works on ln thickness: ln T' = base + sum_b (1 + gain_b) band_b, the bands differences of Gaussians. The
  * rendering is the forward model of tissue/tissue.h at every texel, times what the surroundings take away from hollows:
  *     ln L = ln R(T) + kappa (T - G T) / reach,  G a Gaussian of `reach`.
- * Both against Monte Carlo (tests/test_relief.c): where scattering prevails, lateral spread and shading cancel and R(T)
+ * Both against Monte Carlo (tests/unit/tissue/test_relief.c): where scattering prevails, lateral spread and shading cancel and R(T)
  * alone is within 3 to 5 %; where melanin prevails, R hardly depends on T and the second term is what shows relief.
  */
 #ifndef TISSUE_RELIEF_RELIEF_H

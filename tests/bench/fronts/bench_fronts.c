@@ -1,0 +1,168 @@
+/* Fronts of the photograph column: its stages' knobs on the bundled photograph, time and error of the same run. Errors are
+ * lengths: how far the iris texture is shifted or its thickness off against the finest setting, how far K is off.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/mem.h"
+#include "bridge/cv_photo.h"
+#include "image/exr.h"
+#include "tests/lib/bench/bench.h"
+#include "tests/lib/bench/fronts.h"
+#include "tests/lib/scratch.h"
+
+enum { LIMIT_PX = 1 << 26 };
+static const char *const rgb[] = { "R", "G", "B" }, *const y[] = { "Y" };
+
+static bool read_map(struct image *map, double *extent, const char *dir, const char *file, int n, const char *const channels[])
+{
+	struct exr_info info = { 0 };
+	struct err err = { 0 };
+	char *path = mem_printf("%s/iris/%s", dir, file);
+	bool ok = exr_read(map, path, n, channels, LIMIT_PX, &info, &err);
+	if (!ok)
+		fprintf(stderr, "%s\n", err.msg);
+	*extent = info.extent_mm;
+	free(path);
+	return ok;
+}
+
+/* The value of `map` at a texel of another map of the same iris. */
+static double at(const struct image *map, double extent, const struct image *as, double as_extent, int i, int j, int c)
+{
+	double x = as_extent * (2 * (i + 0.5) / as->width - 1), z = as_extent * (2 * (j + 0.5) / as->height - 1);
+	return (double)image_sample(map, 0.5 * (x / extent + 1) * map->width, 0.5 * (z / extent + 1) * map->height, c);
+}
+
+/* The shift that would explain the difference from the finest texture: rms difference over rms gradient, mm. */
+static double shift_of_texture(const char *capture, const char *reference)
+{
+	struct image a = { 0 }, b = { 0 };
+	double ea, eb, difference = 0, gradient = 0;
+	char *work = mem_printf("%s/work", capture);
+	if (read_map(&a, &ea, work, "texture.exr", 3, rgb) && read_map(&b, &eb, reference, "texture.exr", 3, rgb)) {
+		double step = 2 * eb / b.width;
+		for (int j = 0; j + 1 < b.height; j++)
+			for (int i = 0; i + 1 < b.width; i++) {
+				double here = (double)image_at(&b, i, j)[1], d = at(&a, ea, &b, eb, i, j, 1) - here;
+				double gx = (double)image_at(&b, i + 1, j)[1] - here, gy = (double)image_at(&b, i, j + 1)[1] - here;
+				if (isfinite(d + gx + gy)) {
+					difference += d * d;
+					gradient += (gx * gx + gy * gy) / (step * step);
+				}
+			}
+	}
+	image_free(&a);
+	image_free(&b);
+	free(work);
+	return sqrt(difference / gradient);
+}
+
+/* rms difference from the finest setting's thickness, mm. */
+static double thickness_off(const char *capture, const char *reference)
+{
+	struct image a = { 0 }, b = { 0 };
+	double ea, eb, sum = 0;
+	long n = 0;
+	char *work = mem_printf("%s/work", capture);
+	if (read_map(&a, &ea, work, "relief.exr", 1, y) && read_map(&b, &eb, reference, "relief.exr", 1, y))
+		for (int j = 0; j < b.height; j++)
+			for (int i = 0; i < b.width; i++) {
+				double d = at(&a, ea, &b, eb, i, j, 0) - (double)image_at(&b, i, j)[0];
+				if (isfinite(d)) {
+					sum += d * d;
+					n++;
+				}
+			}
+	image_free(&a);
+	image_free(&b);
+	free(work);
+	return n ? sqrt(sum / (double)n) : NAN;
+}
+
+/* K's worst error as the stage measured it, mm. */
+static double k_off(const char *capture, const char *reference)
+{
+	(void)reference;
+	struct err err = { 0 };
+	char *path = mem_printf("%s/work/log/refraction.json", capture);
+	json_t *log = json_read(path, 1 << 20, &err);
+	json_t *value = json_object_get(json_object_get(json_object_get(log, "figures"), "refraction_error_worst"), "value");
+	double off = value ? json_number_value(value) : NAN;
+	json_decref(log);
+	free(path);
+	return off;
+}
+
+static const struct fronts_stage stages[] = {
+	{ .stage = "unrefract", .keys = "scale, max_size, survey_size", .finest = { "finest", "2, 4096, 1024" },
+	  .more = { { "quarter", "0.25, 512, 320" }, { "third", "0.35, 512, 320" }, { "two_thirds", "0.7, 1536, 512" },
+		    { "quick_survey", "1, 1536, 320" }, { "finer", "1.4, 2048, 512" } },
+	  .unit = "mm", .error_of = "shift against the finest texture", .error = shift_of_texture, .reps = 3 },
+	{ .stage = "refraction", .keys = "method, error_mm",
+	  .more = { { "newton", "newton, 0.001" }, { "newton_fine", "newton, 0.0001" }, { "auto_coarse", "auto, 0.01" },
+		    { "auto_fine", "auto, 0.0001" }, { "table", "table_linear, 0.001" }, },
+	  .unit = "mm", .error_of = "K, worst", .error = k_off, .reps = 3 },
+	{ .stage = "pigment", .keys = "bands, starts, rounds", .finest = { "finest", "8, 12, 4" }, .after = "relief",
+	  .more = { { "one_start_turns", "4, 1, 3" }, { "few_bands", "3, 4, 3" }, { "fewest", "3, 1, 1" } },
+	  .unit = "mm", .error_of = "thickness of the relief, rms, against the finest", .error = thickness_off, .reps = 1 },
+};
+
+/* The photograph at a half of its width and height, and its focal length. */
+static bool halve(const char *dir, const char *photo, struct err *err)
+{
+	uint8_t *px = 0, *jpeg = 0;
+	int w, h;
+	size_t size;
+	bool ok = picture_read(&px, &w, &h, photo, 100, err);
+	uint8_t *half = ok ? cv_resize8(px, w, h, 3, w / 2, h / 2) : 0;
+	ok = ok && picture_jpeg_encode(&jpeg, &size, half, w / 2, h / 2, 3, 95, err) && file_write(photo, jpeg, size, err);
+	char *conf = mem_printf("%s/capture.conf", dir);
+	const char text[] = "camera.focal_px = 5913.045\nlight.illuminant = D65\n";
+	ok = ok && file_write(conf, text, strlen(text), err);
+	free(conf);
+	free(half);
+	free(jpeg);
+	free(px);
+	return ok;
+}
+
+/* The bundled capture, made as far as the stages here need it. */
+static char *make_capture(const char *name, bool small)
+{
+	struct err err = { 0 };
+	char *dir = mem_str(scratch_path("%s", name)), *photo = mem_printf("%s/photos/right_softbox.jpg", dir);
+	char *command = mem_printf("mkdir -p '%s/photos' && cp samples/demo/capture.conf '%s' && cp samples/demo/photos/right_softbox.jpg '%s'", dir, dir, photo);
+	bool ok = !system(command) && (!small || halve(dir, photo, &err));
+	free(photo);
+	free(command);
+	if (!ok || !fronts_make(dir, "relief") || !fronts_make(dir, "refraction")) {
+		fprintf(stderr, "%s\n", err.msg);
+		free(dir);
+		return 0;
+	}
+	return dir;
+}
+
+int main(int argc, char **argv)
+{
+	static const double mpx[2] = { 1.92, 0.48 };
+	struct err err = { 0 };
+	bench_open("fronts", argc, argv);
+	if (fronts_left_out())
+		return bench_close();
+	scratch_open();
+	char *big = make_capture("big", false), *small = make_capture("small", true);
+	for (int i = 0; big && small && i < COUNT(stages); i++)
+		fronts_measure(&stages[i], big, small, mpx);
+	if (!fronts_write(bench_out(), "fronts", &err))
+		fprintf(stderr, "%s\n", err.msg);
+	scratch_close();
+	free(big);
+	free(small);
+	return bench_close();
+}

@@ -1,0 +1,361 @@
+/* Photographs: every format that is promised gives the pixels that went in; everything else is one clear line. */
+#include "tests/lib/unit.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/exr.h"
+#include "image/photo/photo.h"
+#include "image/picture.h"
+#include "tests/lib/scratch.h"
+#include "tests/lib/variants/variant.h"
+
+enum { W = 70, H = 45 };
+
+static int setup(void **state)
+{
+	(void)state;
+	scratch_open();
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	(void)state;
+	scratch_close();
+	return 0;
+}
+
+static struct photo load(struct blob file)
+{
+	struct photo photo;
+	struct err err = { 0 };
+	// The name says nothing true: kinds come from bytes.
+	const char *path = scratch_write("photo.txt", file.data, file.size);
+	if (!photo_load(&photo, path, 100, &err))
+		fail_msg("%s", err.msg);
+	free(file.data);
+	return photo;
+}
+
+/* bits: of the file, how exact the values have to be. */
+static void compare(struct photo *photo, int bits, bool grey)
+{
+	assert_int_equal(photo->width, W);
+	assert_int_equal(photo->height, H);
+	assert_int_equal(photo->bits, bits);
+	assert_int_equal(photo->grey, grey);
+	for (int y = 0; y < H; y++)
+		for (int x = 0; x < W; x++)
+			for (int c = 0; c < 3; c++) {
+				uint16_t want = pattern_value(x, y, grey ? 0 : c), got = photo->rgb[3 * (y * W + x) + c];
+				if (got != (bits == 8 ? (want >> 8) * 257 : want))
+					fail_msg("(%d, %d) %d: %d, must be %d", x, y, c, got, want);
+			}
+	photo_free(photo);
+}
+
+static void png_is_exact(void **state)
+{
+	(void)state;
+	for (int channels = 1; channels <= 4; channels += channels == 1 ? 2 : 1)
+		for (int bits = 8; bits <= 16; bits += 8) {
+			struct pixels p = pattern(W, H, channels);
+			struct photo photo = load(encode_png(&p, bits));
+			assert_int_equal(photo.kind, PHOTO_PNG);
+			compare(&photo, bits, channels == 1);
+			pixels_free(&p);
+		}
+}
+
+static void tiff_is_exact(void **state)
+{
+	(void)state;
+	static const int how[] = { AS_PLAIN, AS_PLANAR, AS_TILED, AS_LZW, AS_PLANAR | AS_TILED | AS_LZW,
+		                   AS_BIG_ENDIAN, AS_BIG_ENDIAN | AS_TILED };
+	for (int channels = 1; channels <= 4; channels += channels == 1 ? 2 : 1)
+		for (int bits = 8; bits <= 16; bits += 8)
+			for (size_t i = 0; i < sizeof how / sizeof *how; i++) {
+				struct pixels p = pattern(W, H, channels);
+				struct photo photo = load(encode_tiff(&p, bits, how[i], 1));
+				assert_int_equal(photo.kind, PHOTO_TIFF);
+				compare(&photo, bits, channels == 1);
+				pixels_free(&p);
+			}
+}
+
+/* JPEG is lossy. At quality 95 the quantiser's step is at most 12 of 255 in the highest frequencies and 2 in the lowest:
+ * a ramp stays within 3; a channel mixed up or a colour transform left out is off by more than 20. */
+static void jpeg_is_close(void **state)
+{
+	(void)state;
+	for (int channels = 1; channels <= 3; channels += 2) {
+		struct pixels p = { W, H, channels, mem_new((size_t)W * H * 3, 2) };
+		for (int y = 0; y < H; y++)
+			for (int x = 0; x < W; x++)
+				for (int c = 0; c < channels; c++)
+					p.px[(y * W + x) * channels + c] = (uint16_t)((60 + x + 40 * c + (c == 1) * y) * 257);
+		struct photo photo = load(encode_jpeg(&p, 0));
+		assert_int_equal(photo.kind, PHOTO_JPEG);
+		assert_int_equal(photo.grey, channels == 1);
+		for (int i = 0; i < W * H; i++)
+			for (int c = 0; c < 3; c++)
+				NEAR(photo.rgb[3 * i + c] / 257.0, p.px[i * channels + (channels == 3 ? c : 0)] / 257.0, 3);
+		photo_free(&photo);
+		pixels_free(&p);
+	}
+}
+
+static void exr_is_linear(void **state)
+{
+	(void)state;
+	static const char *const rgb[] = { "R", "G", "B" };
+	struct image image = image_new(W, H, 3);
+	struct err err = { 0 };
+	struct photo photo;
+	for (int i = 0; i < W * H * 3; i++)
+		image.px[i] = (float)i / (W * H * 3);
+	const char *path = scratch_path("photo.jpg");
+	assert_true(exr_write(path, &image, rgb, EXR_FLOAT, 0, &err));
+	assert_true(photo_load(&photo, path, 1, &err));
+	assert_int_equal(photo.kind, PHOTO_EXR);
+	struct image back = photo_linear(&photo, 0, 0, W, H);
+	for (int i = 0; i < W * H * 3; i++)  // half a 16-bit sRGB step is at most 1.8e-5 in linear values
+		NEAR(back.px[i], image.px[i], 2e-5);
+	image_free(&back);
+	image_free(&image);
+	photo_free(&photo);
+}
+
+/* Where the stored pixel (x, y) has to stand in the upright picture: the picture of tag 274 in EXIF 2.3, by hand. */
+static void upright(int o, int x, int y, int *u, int *v)
+{
+	int at[8][2] = { { x, y },         { W - 1 - x, y }, { W - 1 - x, H - 1 - y }, { x, H - 1 - y },
+		         { y, x },         { H - 1 - y, x }, { H - 1 - y, W - 1 - x }, { y, W - 1 - x } };
+	*u = at[o - 1][0];
+	*v = at[o - 1][1];
+}
+
+static void orientation_is_applied(void **state)
+{
+	(void)state;
+	struct pixels p = pattern(W, H, 3);
+	for (int o = 1; o <= 8; o++) {
+		struct photo photo = load(encode_tiff(&p, 16, AS_PLAIN, o));
+		assert_int_equal(photo.exif.orientation, o);
+		assert_int_equal(photo.width, o < 5 ? W : H);
+		assert_int_equal(photo.height, o < 5 ? H : W);
+		for (int y = 0; y < H; y++)
+			for (int x = 0; x < W; x++) {
+				int u, v;
+				upright(o, x, y, &u, &v);
+				assert_int_equal(photo.rgb[3 * (v * photo.width + u)], pattern_value(x, y, 0));
+			}
+		photo_free(&photo);
+	}
+	// The same through libexif, with 8-bit TIFF and with JPEG.
+	struct blob jpeg = encode_jpeg(&p, 0);
+	for (int o = 1; o <= 8; o++) {
+		struct photo photo = load(with_exif(jpeg, &(struct exif_block){ o, -1, -1, -1, -1, -1 }));
+		assert_int_equal(photo.width, o < 5 ? W : H);
+		assert_int_equal(photo.exif.orientation, o);
+		photo_free(&photo);
+		photo = load(encode_tiff(&p, 8, AS_PLAIN, o));
+		int u, v;
+		upright(o, 3, 9, &u, &v);
+		assert_int_equal(photo.rgb[3 * (v * photo.width + u)] >> 8, pattern_value(3, 9, 0) >> 8);
+		photo_free(&photo);
+	}
+	free(jpeg.data);
+	pixels_free(&p);
+}
+
+static void focal_length_where_it_can_be_believed(void **state)
+{
+	(void)state;
+	struct pixels p = pattern(600, 400, 3);
+	struct blob jpeg = encode_jpeg(&p, 0);
+	double diagonal = hypot(600, 400) / 43.2666;
+	const struct {
+		struct exif_block exif;
+		double focal_px;
+	} cases[] = {
+		{ { 1, 100, -1, -1, -1, -1 }, NAN },                       // of what sensor?
+		{ { 1, 100, 150, -1, -1, -1 }, 150 * diagonal },           // CIPA: by the diagonal
+		{ { 1, 100, 0, -1, -1, -1 }, NAN },                        // 0: unknown, EXIF 2.3
+		{ { 1, 100, -1, 250, -1, -1 }, 2500 },                     // 600 px at 25 px/mm: 24 mm, 100 mm lens
+		{ { 1, 100, 150, 250, -1, -1 }, 2500 },                    // 150 by diagonal is 2500: both agree
+		{ { 1, 100, 250, 250, -1, -1 }, NAN },                     // they contradict each other
+		{ { 1, 100, -1, 2500, 6000, 4000 }, 2500 },                // a tenth of the camera's picture
+		{ { 1, 100, 150, 250, 600, 300 }, NAN },                   // cropped
+		{ { 1, 100, -1, 0.5, -1, -1 }, NAN },                      // a sensor of 12 m
+		{ { 6, 100, 150, -1, -1, -1 }, 150 * diagonal },           // turning changes nothing
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct photo photo = load(with_exif(jpeg, &cases[i].exif));
+		if (isnan(cases[i].focal_px) != isnan(photo.exif.focal_px))
+			fail_msg("case %zu: focal_px = %g", i, photo.exif.focal_px);
+		if (isfinite(cases[i].focal_px))
+			NEAR(photo.exif.focal_px, cases[i].focal_px, 0.002 * cases[i].focal_px);  // rounding in EXIF: 150 for 150.1
+		photo_free(&photo);
+	}
+	free(jpeg.data);
+	pixels_free(&p);
+}
+
+static void refused(const char *what, const void *data, size_t size, const char *says)
+{
+	struct photo photo;
+	struct err err = { 0 };
+	const char *path = scratch_write("photo.jpg", data, size);
+	if (photo_load(&photo, path, 100, &err))
+		fail_msg("%s was accepted", what);
+	ERR_HAS(err, says);
+	ERR_HAS(err, "photo.jpg: ");
+	assert_null(strchr(err.msg, '\n'));
+	assert_null(photo.rgb);
+}
+
+static void refused_blob(const char *what, struct blob b, const char *says)
+{
+	refused(what, b.data, b.size, says);
+	free(b.data);
+}
+
+static void faults_are_one_clear_line(void **state)
+{
+	(void)state;
+	struct pixels p = pattern(200, 150, 3), q = pattern(200, 150, 4), tiny = pattern(10, 10, 3);
+	struct blob b;
+	refused("nothing", "", 0, "is empty");
+	refused("text", "hello, world\n", 13, "is no photograph");
+	refused("one byte", "\xff", 1, "is no photograph");
+	refused("BMP", "BM..............", 16, "save it as PNG");
+	refused("HEIC", "\0\0\0\x18" "ftypheic", 12, "HEIC");
+	refused("raw", "II*\0\x10\0\0\0CR\2\0", 12, "raw file");
+	refused("BigTIFF", "II+\0\x08\0\0\0", 8, "BigTIFF");
+	refused_blob("CMYK JPEG", encode_jpeg(&q, 1), "CMYK");
+	refused_blob("CMYK TIFF", encode_tiff(&q, 8, AS_CMYK, 1), "CMYK");
+	refused_blob("float TIFF", encode_tiff(&p, 16, AS_FLOAT, 1), "floating-point");
+	refused_blob("tiny PNG", encode_png(&tiny, 8), "at least 16 x 16");
+	b = encode_jpeg(&p, 0);
+	claim_size(b, 20000, 10000);
+	refused_blob("200-megapixel JPEG", b, "200 megapixels: must be <= 100 (limit.photo_mpx)");
+	b = encode_png(&p, 8);
+	claim_size(b, 2000000000, 2000000000);
+	refused_blob("huge PNG", b, "megapixels");
+	b = encode_png(&p, 8);
+	b.data[b.size / 2] ^= 0x55;
+	refused_blob("PNG with a flipped bit", b, "is damaged");
+	b = encode_jpeg(&p, 0);
+	for (size_t i = b.size / 2; i < b.size / 2 + 40; i++)
+		b.data[i] = 0xfe;  // no code of it is in the tables
+	refused_blob("JPEG with a hole", b, "is damaged");
+	pixels_free(&p);
+	pixels_free(&q);
+	pixels_free(&tiny);
+}
+
+/* Cut anywhere, a file is refused, never decoded in part and never read past its end. */
+static void truncation_is_noticed(void **state)
+{
+	(void)state;
+	struct pixels p = pattern(W, H, 3);
+	struct blob files[] = { encode_jpeg(&p, 0), encode_png(&p, 8), encode_png(&p, 16), encode_tiff(&p, 8, 0, 1),
+		                encode_tiff(&p, 16, AS_LZW | AS_TILED, 1) };
+	for (int f = 0; f < COUNT(files); f++) {
+		for (size_t n = 0; n < files[f].size; n += n < 600 || n > files[f].size - 40 ? 1 : 37) {
+			struct photo photo;
+			struct err err = { 0 };
+			uint8_t *cut = mem_array(n, 1);  // of its own, so that the sanitiser sees the end
+			memcpy(cut, files[f].data, n);
+			if (photo_header(&photo, cut, n, 100, &err)) {
+				const char *path = scratch_write("cut", cut, n);
+				if (photo_load(&photo, path, 100, &err))
+					fail_msg("file %d cut to %zu of %zu bytes was accepted", f, n, files[f].size);
+			}
+			assert_true(err_is(&err));
+			free(cut);
+		}
+		free(files[f].data);
+	}
+	pixels_free(&p);
+}
+
+static void no_file(void **state)
+{
+	(void)state;
+	struct photo photo;
+	struct err err = { 0 };
+	scratch_text("folder.jpg/x", "x");
+	assert_false(photo_load(&photo, scratch_path("folder.jpg"), 100, &err));
+	ERR_HAS(err, "is a folder");
+	err = (struct err){ 0 };
+	assert_false(photo_load(&photo, scratch_path("none.jpg"), 100, &err));
+	ERR_HAS(err, "No such file");
+	photo_free(&photo);
+}
+
+static void linear_crop(void **state)
+{
+	(void)state;
+	for (int bits = 8; bits <= 16; bits += 8) {
+		struct pixels p = pattern(W, H, 3);
+		struct photo photo = load(encode_png(&p, bits));
+		struct image image = photo_linear(&photo, 10, 7, 20, 30);
+		for (int y = 0; y < 30; y++)
+			for (int x = 0; x < 20; x++)
+				for (int c = 0; c < 3; c++) {
+					// IEC 61966-2-1, in double; the table is float: 1e-6 is a few of its roundings.
+					double v = photo.rgb[3 * ((y + 7) * W + x + 10) + c] / 65535.0;
+					double want = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+					NEAR(image_at(&image, x, y)[c], want, 1e-6);
+				}
+		image_free(&image);
+		photo_free(&photo);
+		pixels_free(&p);
+	}
+}
+
+static void pictures_go_out_and_come_back(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	uint8_t px[W * H * 4], *back;
+	size_t size;
+	int w, h;
+	for (int channels = 1; channels <= 4; channels += channels == 1 ? 2 : 1) {
+		for (int i = 0; i < W * H * channels; i++)
+			px[i] = (uint8_t)(i * 31 >> 2);
+		const char *path = scratch_path("picture.png");
+		assert_true(picture_png_write(path, px, W, H, channels, &err));
+		assert_true(picture_read(&back, &w, &h, path, 1, &err));
+		assert_true(w == W && h == H);
+		for (int i = 0; i < W * H; i++)
+			for (int c = 0; c < 3; c++)
+				assert_int_equal(back[3 * i + c], px[i * channels + (channels == 1 ? 0 : c)]);
+		free(back);
+		assert_true(picture_jpeg_encode(&back, &size, px, W, H, channels, 90, &err));
+		assert_true(size > 100 && back[0] == 0xff && back[size - 1] == 0xd9);
+		free(back);
+	}
+	assert_false(picture_png_write(scratch_path("p.png"), px, W, 0, 3, &err));
+	ERR_HAS(err, "cannot be");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(png_is_exact, setup, teardown),
+		cmocka_unit_test_setup_teardown(tiff_is_exact, setup, teardown),
+		cmocka_unit_test_setup_teardown(jpeg_is_close, setup, teardown),
+		cmocka_unit_test_setup_teardown(exr_is_linear, setup, teardown),
+		cmocka_unit_test_setup_teardown(orientation_is_applied, setup, teardown),
+		cmocka_unit_test_setup_teardown(focal_length_where_it_can_be_believed, setup, teardown),
+		cmocka_unit_test_setup_teardown(faults_are_one_clear_line, setup, teardown),
+		cmocka_unit_test_setup_teardown(truncation_is_noticed, setup, teardown),
+		cmocka_unit_test_setup_teardown(no_file, setup, teardown),
+		cmocka_unit_test_setup_teardown(linear_crop, setup, teardown),
+		cmocka_unit_test_setup_teardown(pictures_go_out_and_come_back, setup, teardown),
+	};
+	return cmocka_run_group_tests(tests, 0, 0);
+}
