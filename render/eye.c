@@ -188,6 +188,23 @@ static bool turntable(struct job *job, struct err *err)
 	return ok;
 }
 
+static json_t *figures_of(const struct job *job, const struct shot *shot, const struct shot_difference *differs)
+{
+	json_t *out = json_object();
+	if (differs->n) {
+		json_object_set_new(out, "difference_mean", json_real(differs->mean));
+		json_object_set_new(out, "difference_95", json_real(differs->high));
+		json_object_set_new(out, "difference", json_string("CIEDE2000"));
+		stage_note(job->stage, "%s: differs from the photograph by %.2f on average, %.2f at 95 %% (CIEDE2000)",
+		           shot->photo->name, differs->mean, differs->high);
+	}
+	json_object_set_new(out, "compared_px", json_integer(differs->n));
+	json_object_set_new(out, "exposure", json_real(job->scene.gain));
+	json_object_set_new(out, "explained_by_model", json_real(job->scene.explained));
+	json_object_set_new(out, "lamps", json_integer(shot->n_lamps));
+	return out;
+}
+
 static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 {
 	const char *in[COUNT(job->in) + 2];
@@ -207,9 +224,10 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
 	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, job->conf->light_directions);
 	struct scene_view view = shot_view(shot);
-	json_t *figures;
+	struct shot_difference differs;
 	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
-	struct image beside = compare_shot(job, shot, &seen, &figures);
+	struct image beside = compare_shot(&differs, &job->scene, shot, &seen);
+	json_t *figures = figures_of(job, shot, &differs);
 	const struct picture_out out[] = { { png, &seen }, { compare, &beside }, { exr, &rgba } };
 	bool ok = pictures_save(job, job->conf->exr ? 3 : 2, out, n, in, err)
 	          && json_write(stage_path(job->stage, "%s", numbers), figures, stage_made_by(job->stage, n, in), err)

@@ -1,11 +1,10 @@
 /* render: pictures of a fitted eye, and the page that shows everything (DESIGN section 2, `render`). */
 #ifndef RENDER_RENDER_H
 #define RENDER_RENDER_H
-#include <jansson.h>
-
 #include "base/stage.h"
 #include "anatomy/capture.h"
 #include "draw/eye/scene.h"
+#include "draw/photo/photo.h"
 
 struct render_conf {
 	struct scene_conf scene;
@@ -20,17 +19,6 @@ struct render_conf {
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
 	double limit_mpx;
-};
-
-/* One photograph with its fit. */
-struct shot {
-	const struct capture_photo *photo;
-	struct fit fit;
-	struct image image;              // the window, linear, at the size of its view; px null: not decoded yet
-	struct envmap env, lamps;        // its light; what the cornea mirrors beyond what is in the texture already
-	int n_lamps;
-	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view
-	double slip[2][3];               // as in struct scene_view
 };
 
 /* One eye of the capture, on its way to pictures. */
@@ -80,26 +68,8 @@ bool shot_ready(struct job *job, struct shot *shot, struct err *err);
 void shot_done(struct shot *shot);
 void shots_free(struct job *job);
 
-/* align.c: turns the fit's eye frame into that of the maps, as unrefract registered this photograph; what a turn about
- * the axis does not explain goes into shot->slip. texture_json: path; a photograph it does not name stays as it is. */
-bool shot_align(struct shot *shot, const char *texture_json, struct err *err);
-
-/* The photograph's own view. */
-struct scene_view shot_view(const struct shot *shot);
-
-/* 1 on the ellipse, more outside. */
-double ellipse_radius(const struct ellipse *e, double x, double y);
-
 /* Rows of an environment's map: sharper than the pictures need it. */
 int env_height(const struct render_conf *conf);
-
-/* light.c: the room of a photograph with its n lamps where the cornea mirrors them; or, where it mirrors none, the studio.
- * lamps: the lamps alone, in the dark. envmap_free both. */
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n);
-struct envmap light_studio(int height);
-
-/* sclera.c: what the photograph shows of the sclera beside the limbus, linear; false when lids leave too little. */
-bool sclera_of_photo(double rgb[3], const struct shot *shot);
 
 /* picture.c: the eye on neutral grey, brightened by gain. image_free. */
 struct image picture_on_grey(const struct image *rgba, double gain);
@@ -111,11 +81,6 @@ struct picture_out {
 	const struct image *image;
 };
 bool pictures_save(struct job *job, int n, const struct picture_out out[], int n_in, const char *const in[], struct err *err);
-
-/* compare.c: photograph, rendering and their difference, side by side, COMPARE_GAP px apart. image_free. figures: a
- * JSON object for NAME_compare.json, json_decref. */
-enum { COMPARE_GAP = 6 };
-struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view, json_t **figures);
 
 /* sheet.c: pictures side by side; the contact sheet, from the files of this eye. image_free. */
 struct image sheet_strip(int n, const struct image frames[]);

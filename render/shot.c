@@ -7,13 +7,6 @@
 #include "image/photo/photo.h"
 #include "render/render.h"
 
-double ellipse_radius(const struct ellipse *e, double x, double y)
-{
-	double c = cos(e->angle), s = sin(e->angle), dx = x - e->cx, dy = y - e->cy;
-	double u = (c * dx + s * dy) / e->a, v = (c * dy - s * dx) / e->b;
-	return sqrt(u * u + v * v);
-}
-
 /* The eye fills the window: 2.2 semi-axes round the limbus, as far as the photograph goes. */
 static void window_make(struct shot *shot, int most_px)
 {

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "render/render.h"
+#include "draw/photo/photo.h"
 
 enum { TEXTURE_JSON_LIMIT = 1 << 22 };
 
@@ -15,6 +15,13 @@ struct scene_view shot_view(const struct shot *shot)
 	struct scene_view view = scene_view_photo(&shot->fit, shot->window, shot->scale);
 	memcpy(view.slip, shot->slip, sizeof view.slip);
 	return view;
+}
+
+double ellipse_radius(const struct ellipse *e, double x, double y)
+{
+	double c = cos(e->angle), s = sin(e->angle), dx = x - e->cx, dy = y - e->cy;
+	double u = (c * dx + s * dy) / e->a, v = (c * dy - s * dx) / e->b;
+	return sqrt(u * u + v * v);
 }
 
 /* m: photo_from_map, [2][3]. With m = turn · rest, the turn goes into the pose and the inverse of the rest is the slip. */

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "draw/photo/photo.h"
 #include "image/colour.h"
 #include "math/vec.h"
-#include "render/render.h"
 
 static const double shown = 1.3;  // semi-axes round the limbus
 
@@ -24,9 +24,8 @@ static struct frame frame_of(const struct shot *shot, const struct image *view)
 }
 
 /* Weight of the texture where each pixel looks: 0 off the iris, where no photograph saw it, in the pupil, on a glint. */
-static void weights_row(float *weight, const struct job *job, const struct shot *shot, int y)
+static void weights_row(float *weight, const struct scene *s, const struct shot *shot, int y)
 {
-	const struct scene *s = &job->scene;
 	const struct scene_level *level = &s->level[0];
 	for (int x = 0; x < shot->image.width; x++) {
 		double px[2] = { shot->window[0] + (x + 0.5) * shot->scale, shot->window[1] + (y + 0.5) * shot->scale };
@@ -80,9 +79,9 @@ static int compare_floats(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-static json_t *figures_make(struct job *job, const struct shot *shot, const struct image *view, const float *weight)
+static struct shot_difference measure(const struct shot *shot, const struct image *view, const float *weight)
 {
-	json_t *out = json_object();
+	struct shot_difference out = { 0 };
 	long n = 0, all = (long)view->width * view->height;
 	float *error = mem_array((size_t)all, sizeof *error);
 	double sum = 0;
@@ -92,34 +91,24 @@ static json_t *figures_make(struct job *job, const struct shot *shot, const stru
 			sum += error[n++];
 		}
 	qsort(error, (size_t)n, sizeof *error, compare_floats);
-	if (n) {
-		double mean = sum / (double)n, high = error[n * 95 / 100];
-		json_object_set_new(out, "difference_mean", json_real(mean));
-		json_object_set_new(out, "difference_95", json_real(high));
-		json_object_set_new(out, "difference", json_string("CIEDE2000"));
-		stage_note(job->stage, "%s: differs from the photograph by %.2f on average, %.2f at 95 %% (CIEDE2000)",
-		           shot->photo->name, mean, high);
-	}
-	json_object_set_new(out, "compared_px", json_integer(n));
-	json_object_set_new(out, "exposure", json_real(job->scene.gain));
-	json_object_set_new(out, "explained_by_model", json_real(job->scene.explained));
-	json_object_set_new(out, "lamps", json_integer(shot->n_lamps));
+	if (n)
+		out = (struct shot_difference){ n, sum / (double)n, error[n * 95 / 100] };
 	free(error);
 	return out;
 }
 
-struct image compare_shot(struct job *job, const struct shot *shot, const struct image *view, json_t **figures)
+struct image compare_shot(struct shot_difference *difference, const struct scene *scene, const struct shot *shot, const struct image *view)
 {
 	struct frame f = frame_of(shot, view);
 	struct image out = image_new(3 * f.width + 2 * COMPARE_GAP, f.height, 3);
 	float *weight = mem_array((size_t)view->width * (size_t)view->height, sizeof *weight);
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < view->height; y++)
-		weights_row(weight + (long)y * view->width, job, shot, y);
+		weights_row(weight + (long)y * view->width, scene, shot, y);
 	put(&out, 0, &f, &shot->image);
 	put(&out, f.width + COMPARE_GAP, &f, view);
 	put_difference(&out, 2 * (f.width + COMPARE_GAP), &f, shot, view, weight);
-	*figures = figures_make(job, shot, view, weight);
+	*difference = measure(shot, view, weight);
 	free(weight);
 	return out;
 }

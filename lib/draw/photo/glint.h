@@ -1,7 +1,7 @@
 /* glint: mirror images of lamps in the cornea. */
 #ifndef DRAW_PHOTO_GLINT_H
 #define DRAW_PHOTO_GLINT_H
-#include "render/render.h"
+#include "draw/photo/photo.h"
 
 enum { GLINTS_MAX = 6 };
 

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "render/render.h"
+#include "draw/photo/photo.h"
 
 struct white {
 	float key, rgb[3];
