@@ -1,6 +1,7 @@
 /* The options of render. */
 #ifndef RENDER_OPTIONS_H
 #define RENDER_OPTIONS_H
+#include "anatomy/keys.h"
 #include "render/render.h"
 
 static const char *const render_quadratures[] = { "gauss", "midpoint", "exponential", 0 };
@@ -41,7 +42,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_BOOL("film", &(c)->film, "the turntable as a film"), \
 	OPT_INT("sheet_px", &(c)->sheet_px, 300, 6000, "px", "width of the contact sheet"), \
 	OPT_INT("page_px", &(c)->page_px, 100, 2000, "px", "width of the review page's pictures"), \
-	OPT_BOOL("light.polarised", &(c)->polarised, "no corneal reflection in the photographs"), \
-	OPT_REAL("limit.photo_mpx", &(c)->limit_mpx, 1, 1000, "megapixels", "larger photographs are refused")
+	LIGHT_POLARISED_OPT(&(c)->polarised), \
+	LIMIT_PHOTO_OPT(&(c)->limit_mpx)
 
 #endif

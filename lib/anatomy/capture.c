@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "anatomy/keys.h"
 #include "base/mem.h"
 
 enum { SIDES = 3 };
@@ -80,7 +81,7 @@ bool capture_load(struct capture *capture, struct stage *stage, const struct opt
 {
 	struct file_list files;
 	*capture = (struct capture){ 0 };
-	if (!stage_list(stage, &files, "photos", err))
+	if (!keys_check_names(&stage->conf, stage->capture, err) || !stage_list(stage, &files, "photos", err))
 		return false;
 	for (int i = 0; i < files.n; i++) {
 		char *name = stem(files.names[i]);

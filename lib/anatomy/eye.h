@@ -14,12 +14,13 @@ struct eye {
 	double post_radius, post_asphericity, thickness, cornea_index;
 };
 
-/* Rows for a stage's option table. */
+/* Rows for a stage's option table; the first for one that needs no more of the eye. */
+#define EYE_LIMBUS_RADIUS_OPT(radius) OPT_REAL("eye.limbus_radius_mm", radius, 4, 8, "mm", "half the horizontal visible iris diameter")
 #define EYE_OPTS(e) \
 	OPT_REAL("eye.cornea_radius_mm", &(e)->cornea_radius, 5, 12, "mm", "apical radius R of the cornea"), \
 	OPT_REAL("eye.cornea_asphericity", &(e)->cornea_asphericity, 0, 2, "", "asphericity p of the cornea"), \
 	OPT_REAL("eye.index", &(e)->index, 1, 2, "", "index of the aqueous; behind the one-surface cornea"), \
-	OPT_REAL("eye.limbus_radius_mm", &(e)->limbus_radius, 4, 8, "mm", "half the horizontal visible iris diameter"), \
+	EYE_LIMBUS_RADIUS_OPT(&(e)->limbus_radius), \
 	OPT_REAL_UNSET("eye.limbus_aspect", &(e)->limbus_aspect, 0.7, 1.2, "", "vertical / horizontal; 1 declares a circle; unset: the anatomical prior"), \
 	OPT_REAL("eye.iris_depth_mm", &(e)->iris_depth, 1.5, 6, "mm", "iris plane behind the apex"), \
 	OPT_BOOL("eye.two_surface", &(e)->two_surface, "model the posterior surface of the cornea too"), \

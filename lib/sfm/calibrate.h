@@ -4,7 +4,10 @@
  */
 #ifndef SFM_CALIBRATE_H
 #define SFM_CALIBRATE_H
+#include "anatomy/eye.h"
+#include "anatomy/keys.h"
 #include "base/stage.h"
+#include "image/video/video.h"
 #include "sfm/colmap/colmap.h"
 #include "sfm/cloud/cloud.h"
 #include "sfm/match/match.h"
@@ -13,15 +16,15 @@
 #define CALIBRATE_DIR "work/calibrate"
 
 struct calibrate_options {
-	int video_frames, video_frames_beside, limit_video_frames;
-	double limit_video_mpx, limit_video_s;
+	struct video_conf video;
+	int video_frames, video_frames_beside;
 	int picture_px, features, first_octave, max_views, min_matches, lens;
 	double same_level, blur_warning, limit_mpx, regrow;
 	struct sfm_overlap_conf overlap;
 	int sequence_neighbours;
 	double filter_px, tri_deg;
 	int ba_rounds;
-	double focal_px, focal_mm, sensor_mm;
+	struct camera_keys camera;
 	double head_radius_mm, eyes_apart_mm, ruler_mm, marker_mm, limbus_radius_mm;
 	bool find_eyes;
 	struct opt_each_list left_eye, right_eye, mouth, ruler, distance;

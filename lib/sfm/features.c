@@ -11,12 +11,8 @@
 double view_focal_known(const struct view *view, const struct calibrate_options *o)
 {
 	// capture.conf speaks of the eye's photographs and the views alike: one camera took them, or EXIF tells.
-	double longer = fmax(view->width, view->height);
-	if (isfinite(o->focal_px))
-		return o->focal_px;
-	if (isfinite(o->focal_mm / o->sensor_mm))
-		return o->focal_mm / o->sensor_mm * longer;
-	return view->focal_px;
+	double focal = camera_keys_focal(&o->camera, view->width, view->height);
+	return isfinite(focal) ? focal : view->focal_px;
 }
 
 static bool open_database(struct db **db, struct stage *stage, struct err *err)

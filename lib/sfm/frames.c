@@ -132,7 +132,8 @@ static void append(struct views *views, int n, const long *chosen, const char *f
 bool frames_add(struct views *views, int n, const struct pictures *known, struct stage *stage, const struct calibrate_options *o,
                 struct err *err)
 {
-	const struct video_conf conf = { o->limit_video_mpx, o->limit_video_frames, stage->threads, o->limit_video_s };
+	struct video_conf conf = o->video;
+	conf.threads = stage->threads;
 	struct file_list list;
 	struct err why = { 0 };
 	if (!stage_list(stage, &list, "video", err))

@@ -230,6 +230,8 @@ static int frames_wanted(const struct views *views, const struct calibrate_optio
 bool views_gather(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	*views = (struct views){ 0 };
+	if (!keys_check_names(&stage->conf, stage->capture, err))
+		return false;
 	add_folder(views, stage, "views", err);
 	add_folder(views, stage, "photos", err);
 	if (err_is(err) || !file_mkdirs(stage_path(stage, CALIBRATE_DIR "/pictures"), err))

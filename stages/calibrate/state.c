@@ -19,8 +19,8 @@ static char *matching_text(const struct calibrate_options *o)
 
 static char *mapping_text(const struct calibrate_options *o)
 {
-	return mem_printf("mapping: %d %.9g %.9g %d %.9g %.9g %.9g\n", o->lens, o->filter_px, o->tri_deg, o->ba_rounds, o->focal_px,
-	                  o->focal_mm, o->sensor_mm);
+	return mem_printf("mapping: %d %.9g %.9g %d %.9g %.9g %.9g\n", o->lens, o->filter_px, o->tri_deg, o->ba_rounds, o->camera.focal_px,
+	                  o->camera.focal_mm, o->camera.sensor_mm);
 }
 
 bool state_check(struct stage *stage, const struct calibrate_options *o, struct err *err)

@@ -5,6 +5,7 @@
  *         is in mm and the subject's axes)
  * writes  work/targets/NAME/rig.npz, skull.exr, skull_normal.exr, globe_left.exr, globe_right.exr
  */
+#include "anatomy/keys.h"
 #include "base/mem.h"
 #include "stages/extrapolate/extrapolate.h"
 
@@ -26,9 +27,8 @@ int main(int argc, char **argv)
 		OPT_REAL("cornea_bulge", &r->cornea_bulge, 0, 2, "", "apex over radius below which a character's globe gets a cornea; 0: never"),
 		OPT_INT("polar_px", &conf.polar_px, 16, 4096, "px", "rows of the globe map's picture"),
 		OPT_REAL("limit_vertices", &conf.limit_vertices, 100, 1e8, "", "larger meshes are refused"),
-		OPT_REAL_UNSET("subject.unit_mm", &conf.subject_unit, 1e-6, 1e6, "mm", "one unit of the subject's mesh"),
-		OPT_REAL_UNSET("subject.eye_radius", &conf.eye_radius, 1e-6, 1e6, "unit", "of the subject's eyeballs, in the mesh's unit"),
-		OPT_EACH("subject.eye_center.*", &conf.eye_center, 3, -1e6, 1e6, "unit", "centre of an eyeball, in the mesh's unit and axes"),
+		SUBJECT_UNIT_OPT(&conf.subject_unit),
+		SUBJECT_EYE_OPTS(&conf.eye_radius, &conf.eye_center),
 	};
 	struct stage stage;
 	struct err err = { 0 };

@@ -3,13 +3,14 @@
 #define STAGES_LIMBUS_H
 #include "base/stage.h"
 #include "anatomy/capture.h"
+#include "anatomy/keys.h"
 #include "limbus/record.h"
 
 struct limbus_options {
 	struct eye eye;
 	struct limbus_conf find;
 	struct pose_conf pose;
-	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
+	struct camera_keys camera;
 	struct opt_each_list photo_focal, photo_center, photo_hint, photo_eye;
 	double limit_mpx;
 	int overlay_px;

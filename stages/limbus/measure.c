@@ -32,16 +32,14 @@ static struct camera camera_of(const struct limbus_options *o, const char *name,
 	const struct opt_each *focal = capture_each(&o->photo_focal, name), *center = capture_each(&o->photo_center, name);
 	const double longer = fmax(photo->width, photo->height);
 	const struct photo_exif *exif = &photo->exif;
-	double by_mm = o->focal_mm / o->sensor_mm * longer, by_exif = exif->focal_px;
+	double by_keys = camera_keys_focal(&o->camera, photo->width, photo->height), by_exif = exif->focal_px;
 	if (!isfinite(by_exif))
 		by_exif = sensor_focal_px(exif->model, exif->focal_mm, (int)longer);
 	if (focal)
 		c.focal_px = focal->value[0];
-	else if (isfinite(o->focal_px))
-		c.focal_px = o->focal_px;
-	else if (isfinite(by_mm))
-		c.focal_px = by_mm;
-	if (focal || isfinite(o->focal_px) || isfinite(by_mm)) {
+	else if (isfinite(by_keys))
+		c.focal_px = by_keys;
+	if (focal || isfinite(by_keys)) {
 		c.source = CAMERA_CONF;
 	} else if (calibrated) {
 		return calibrated->camera;
@@ -55,9 +53,9 @@ static struct camera camera_of(const struct limbus_options *o, const char *name,
 		return c;
 	}
 	for (int i = 0; i < 2; i++)
-		if (center || isfinite(o->center_px[i]))
-			c.center_px[i] = center ? center->value[i] : o->center_px[i];
-	memcpy(c.distortion, o->distortion, sizeof c.distortion);
+		if (center || isfinite(o->camera.center_px[i]))
+			c.center_px[i] = center ? center->value[i] : o->camera.center_px[i];
+	memcpy(c.distortion, o->camera.distortion, sizeof c.distortion);
 	return c;
 }
 

@@ -2,6 +2,7 @@
  * reads   IRIS/clean.exr, IRIS/texture.json, IRIS/thickness.exr, photos/, work/limbus/
  * writes  IRIS/pigment.json
  */
+#include "anatomy/keys.h"
 #include "base/mem.h"
 #include "tissue/relief/opts.h"
 #include "stages/pigment/pigment_opts.h"
@@ -16,8 +17,8 @@ int main(int argc, char **argv)
 		IRIS_OPTS(&c.root_beyond_limbus, &c.pupil_radius),
 		OPT_EACH("photo.*.card_px", &c.card, 3, 0, 1e6, "px", "a grey card: x y radius"),
 		OPT_CHOICE("light.illuminant", &c.illuminant, illuminant_names, "that the photograph was balanced for"),
-		OPT_BOOL("light.polarised", &c.fit.polarised, "no corneal reflection in the photographs"),
-		OPT_REAL("limit.photo_mpx", &c.limit_mpx, 0.01, 1000, "Mpx", "largest photograph decoded"),
+		LIGHT_POLARISED_OPT(&c.fit.polarised),
+		LIMIT_PHOTO_OPT(&c.limit_mpx),
 		PIGMENT_OPTS(&c),
 	};
 	struct stage stage;

@@ -2,6 +2,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "anatomy/keys.h"
 #include "base/say.h"
 #include "base/work.h"
 #include "plan.h"
@@ -43,7 +44,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 {
 	struct plan plan;
 	char *slice = slice_of(opts, conf);
-	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && plan_setting(&plan, call, conf, err)
+	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && plan_setting(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);

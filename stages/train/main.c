@@ -2,6 +2,7 @@
  * reads   work/skin/gaze.csv, lids.npy, skin_model.npy, confidence.npy, vertices.npy, track.json
  * writes  work/skin/model.json and model_*.npy, curves.svg (error against components), train.json
  */
+#include "anatomy/keys.h"
 #include "base/mem.h"
 #include "stages/train/train_stage.h"
 
@@ -11,7 +12,7 @@ int main(int argc, char **argv)
 	struct opt_each_list expressions = { 0 };
 	bool rbf = true;
 	const struct opt opts[] = {
-		OPT_EACH("expression.*", &expressions, 2, 0, 1e7, "", "neutral and peak frame of an expression"),
+		EXPRESSION_OPT(&expressions),
 		OPT_INT("lid_components", &conf.lid_components, 1, 60, "", "components of one eye's lids"),
 		OPT_INT("skin_components", &conf.skin_components, 1, 60, "", "components of the skin"),
 		OPT_BOOL("choose", &conf.choose, "of these, only as many as make frames held out better predicted"),

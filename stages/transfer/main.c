@@ -3,6 +3,7 @@
  * writes  work/targets/NAME/registered.ply (mm, the subject's axes; the target's vertices and faces),
  *         barycentric.npz (B, eq. 3.4), transfer.json, registration.png
  */
+#include "anatomy/keys.h"
 #include "base/mem.h"
 #include "register/transfer_opts.h"
 #include "stages/transfer/transfer_stage.h"
@@ -14,8 +15,8 @@ int main(int argc, char **argv)
 	const struct opt opts[] = {
 		TRANSFER_OPTS("", &conf.transfer, nodes, rounds),
 		OPT_REAL("limit_vertices", &conf.limit_vertices, 100, 1e8, "", "larger meshes are refused"),
-		OPT_REAL_UNSET("subject.unit_mm", &conf.subject_unit, 1e-6, 1e6, "mm", "one unit of the subject's mesh"),
-		OPT_EACH("subject.landmark.*", &conf.subject_landmark, 1, 0, 1e9, "", "row of the subject's mesh"),
+		SUBJECT_UNIT_OPT(&conf.subject_unit),
+		SUBJECT_LANDMARK_OPT(&conf.subject_landmark),
 		OPT_EACH("target.*.unit_mm", &conf.target_unit, 1, 1e-6, 1e6, "mm", "one unit of that character's mesh"),
 		OPT_EACH("target.*.landmarks", &conf.target_landmarks, 0, 0, 0, "", "\"name row, name row\": the subject's landmarks on it"),
 	};

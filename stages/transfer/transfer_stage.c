@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "anatomy/keys.h"
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
@@ -261,7 +262,7 @@ bool transfer_stage(struct stage *stage, const struct transfer_stage_conf *conf,
 	struct file_list targets = { 0 };
 	struct subject s = { 0 };
 	int n = 0, done = 0;
-	if (stage_list(stage, &targets, "targets", err) && load_subject(&s, stage, conf, err))
+	if (keys_check_names(&stage->conf, stage->capture, err) && stage_list(stage, &targets, "targets", err) && load_subject(&s, stage, conf, err))
 		for (int i = 0; i < targets.n && !err_is(err); i++)
 			if (is_mesh(targets.names[i])) {
 				stage_progress(stage, n++, targets.n, "character");

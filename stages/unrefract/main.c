@@ -2,6 +2,7 @@
  * reads   photos/, work/limbus/NAME.json
  * writes  work/iris/texture.exr, texture.json; with write_map, NAME.map.exr
  */
+#include "anatomy/keys.h"
 #include "base/mem.h"
 #include "iris/unrefract/opts.h"
 #include "unrefract.h"
@@ -18,7 +19,7 @@ int main(int argc, char **argv)
 		EYE_OPTS(&eye),
 		CAPTURE_OPTS(&eye_of),
 		UNREFRACT_OPTS(&c),
-		OPT_REAL("limit.photo_mpx", &run.limit_mpx, 1, 1000, "Mpx", "larger photographs are refused"),
+		LIMIT_PHOTO_OPT(&run.limit_mpx),
 		OPT_BOOL("write_map", &run.write_map, "write NAME.map.exr"),
 	};
 	stage_start(&stage, "unrefract", "unrefract the iris: see it without its cornea", argc, argv, COUNT(opts), opts);

@@ -1,6 +1,7 @@
 /* unrefract_opts: rows for the option table of unrefract. */
 #ifndef IRIS_UNREFRACT_OPTS_H
 #define IRIS_UNREFRACT_OPTS_H
+#include "anatomy/keys.h"
 #include "base/opt.h"
 #include "iris/unrefract/unrefract.h"
 
@@ -9,7 +10,7 @@ static const char *const unrefract_methods[] = { "lattice", "newton", "algorithm
 
 /* c: struct unrefract_conf *. */
 #define UNREFRACT_OPTS(c) \
-	OPT_BOOL("light.polarised", &(c)->polarised, "no corneal reflection in the photographs"), \
+	LIGHT_POLARISED_OPT(&(c)->polarised), \
 	OPT_CHOICE("method", &(c)->map.method, unrefract_methods, "how texels find their photo pixels"), \
 	OPT_INT("node", &(c)->map.node, 2, 64, "texels", "between the nodes of the lattice"), \
 	OPT_REAL("alpha", &(c)->map.alpha, 1e-3, 10, "mm", "first step of algorithm 1"), \

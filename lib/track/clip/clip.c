@@ -48,12 +48,11 @@ static bool set_camera(struct track_clip *clip, struct stage *stage, const struc
                        struct err *err)
 {
 	struct camera *c = &clip->camera;
-	*c = (struct camera){ .focal_px = conf->focal_px, .center_px = { 0.5 * clip->info.width, 0.5 * clip->info.height }, .source = CAMERA_CONF };
-	memcpy(c->distortion, conf->distortion, sizeof c->distortion);
-	if (isfinite(conf->center_px[0]))
-		memcpy(c->center_px, conf->center_px, sizeof c->center_px);
-	if (isnan(c->focal_px) && isfinite(conf->focal_mm) && isfinite(conf->sensor_mm))
-		c->focal_px = conf->focal_mm / conf->sensor_mm * clip->info.width;
+	*c = (struct camera){ .focal_px = camera_keys_focal(&conf->camera, clip->info.width, clip->info.height),
+	                      .center_px = { 0.5 * clip->info.width, 0.5 * clip->info.height }, .source = CAMERA_CONF };
+	memcpy(c->distortion, conf->camera.distortion, sizeof c->distortion);
+	if (isfinite(conf->camera.center_px[0]))
+		memcpy(c->center_px, conf->camera.center_px, sizeof c->center_px);
 	struct camera_rig rig = { 0 };
 	const char *path = stage_path(stage, "work/rig.json");
 	if (isnan(c->focal_px) && file_exists(path)) {

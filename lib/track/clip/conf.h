@@ -1,6 +1,7 @@
 /* conf: what config/track.conf and capture.conf say. */
 #ifndef TRACK_CLIP_CONF_H
 #define TRACK_CLIP_CONF_H
+#include "anatomy/keys.h"
 #include "image/video/video.h"
 #include "track/eye/track.h"
 #include "track/head/find.h"
@@ -14,7 +15,7 @@ struct track_conf {
 	struct skin_track_conf skin;
 	struct head_find_conf head;
 	struct wrinkle_conf wrinkle;
-	double focal_px, focal_mm, sensor_mm, center_px[2], distortion[5];
+	struct camera_keys camera;
 	double unit_mm, eye_radius;                  // subject.*: NAN where not given
 	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
 	struct opt_each_list landmark_px, expression;

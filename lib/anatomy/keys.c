@@ -1,0 +1,113 @@
+#include "anatomy/keys.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+
+double camera_keys_focal(const struct camera_keys *keys, int width, int height)
+{
+	if (isfinite(keys->focal_px))
+		return keys->focal_px;
+	return keys->focal_mm / keys->sensor_mm * (width > height ? width : height);
+}
+
+/* Keys FAMILY.NAME.* name a file of one of these folders. */
+struct family {
+	const char *prefix, *what;
+	const char *folders[3];  // null-terminated
+	bool frames;             // of a video of video/, too: STEM_NUMBER
+};
+
+static const struct family families[] = {
+	{ "photo.", "photograph", { "photos" }, false },
+	{ "view.", "view", { "views", "photos" }, true },
+	{ "target.", "character", { "targets" }, false },
+};
+
+/* Bytes of a file's name before its ending. */
+static size_t stem_length(const char *file)
+{
+	const char *dot = strrchr(file, '.');
+	return dot && dot != file ? (size_t)(dot - file) : strlen(file);
+}
+
+static bool is_stem(const char *file, const char *name, size_t length)
+{
+	return stem_length(file) == length && !strncmp(file, name, length);
+}
+
+/* name: "clip_120" of the file "clip.mp4". */
+static bool is_frame(const char *file, const char *name, size_t length)
+{
+	size_t n = stem_length(file);
+	if (length < n + 2 || strncmp(file, name, n) || name[n] != '_')
+		return false;
+	return strspn(name + n + 1, "0123456789") >= length - n - 1;
+}
+
+/* Whether a file bears that name. *there gains the names that there are, each once; its owner frees it. */
+static bool look(bool *found, char **there, const struct family *family, const char *capture, const char *name, size_t length,
+                 struct err *err)
+{
+	enum { MOST = 12 };
+	int n = 0;
+	for (int f = 0; f < 3; f++) {
+		const char *folder = f < 2 ? family->folders[f] : family->frames ? "video" : 0;
+		struct file_list list = { 0 };
+		if (!folder)
+			continue;
+		char *path = mem_printf("%s/%s", capture, folder);
+		bool ok = file_list(&list, path, err);
+		free(path);
+		if (!ok)
+			return false;
+		for (int i = 0; i < list.n; i++) {
+			const char *file = list.names[i];
+			bool video = f == 2, twice = i && is_stem(list.names[i - 1], file, stem_length(file));
+			*found |= video ? is_frame(file, name, length) : is_stem(file, name, length);
+			if (twice || ++n > MOST)
+				continue;
+			char *more = mem_printf("%s%s%.*s%s", *there, **there ? ", " : "", (int)stem_length(file), file, video ? "_FRAME" : "");
+			free(*there);
+			*there = more;
+		}
+		file_list_free(&list);
+	}
+	if (n > MOST) {
+		char *more = mem_printf("%s and %d more", *there, n - MOST);
+		free(*there);
+		*there = more;
+	}
+	return true;
+}
+
+static bool check_one(const struct conf_item *item, const struct family *family, const char *capture, struct err *err)
+{
+	const char *name = item->key + strlen(family->prefix), *end = strrchr(name, '.');
+	size_t length = end ? (size_t)(end - name) : strlen(name);
+	char place[16] = "", *there = mem_str("");
+	bool found = length == 1 && *name == '*';
+	if (found || look(&found, &there, family, capture, name, length, err)) {
+		if (item->line)
+			snprintf(place, sizeof place, ":%d", item->line);
+		if (!found)
+			err_set(err, "%s%s: %s: no %s is called %.*s: %s%s", item->file, place, item->key, family->what, (int)length, name,
+			        *there ? "there are " : "there is none", there);
+	}
+	free(there);
+	return found;
+}
+
+bool keys_check_names(const struct conf *conf, const char *capture, struct err *err)
+{
+	for (int i = 0; i < conf->n; i++)
+		for (int f = 0; f < COUNT(families); f++)
+			if (conf->items[i].layer && !strncmp(conf->items[i].key, families[f].prefix, strlen(families[f].prefix))
+			    && !check_one(&conf->items[i], &families[f], capture, err))
+				return false;
+	return true;
+}
