@@ -32,6 +32,10 @@ while IFS=: read -r file line text; do
 done < <(includes lib stages render)
 if [ -z "$bad" ]; then pass "private headers stay in their rooms"; else fail "private headers stay in their rooms" "$bad"; fi
 
+# A key with a dot is shared: one declaration, so one range, unit and meaning (lib/anatomy/keys.h, eye.h, image/video/video.h ...).
+bad=$(grep -rhoE 'OPT_[A-Z_]+\("[a-z_*]+\.[^"]+"' lib stages render --include='*.[ch]' | sed 's/.*("//; s/"$//' | sort | uniq -d | tr '\n' ' ')
+if [ -z "$bad" ]; then pass "shared keys are declared once"; else fail "shared keys are declared once" "$bad"; fi
+
 facts() { # NAME KIND: passes where house.sh finds none
 	local said
 	said=$(tests/house.sh "$2")

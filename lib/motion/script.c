@@ -87,6 +87,18 @@ static int expression_of(const struct skin_model *m, const char *name)
 	return -1;
 }
 
+/* The error of a column that is neither; lists the expressions that the model has. Always false. */
+static bool no_such_column(const char *name, const struct skin_model *m, const char *path, struct err *err)
+{
+	err_set(err, "%s: column %s: must be a key (animate --help) or an expression of capture.conf: there %s", path, name,
+	        m->n_au ? "are" : "is none");
+	for (int a = 0; a < m->n_au; a++) {
+		size_t n = strlen(err->msg);
+		snprintf(err->msg + n, sizeof err->msg - n, "%s %s", a ? "," : "", m->au_names[a]);
+	}
+	return false;
+}
+
 static bool read_keys(struct script *s, const struct csv_table *table, const struct skin_model *m, const char *path,
                       struct err *err)
 {
@@ -104,7 +116,7 @@ static bool read_keys(struct script *s, const struct csv_table *table, const str
 		if (key < 0 && au >= 0 && !read_track(&s->au[au], table, c, 0, 1, "", path, err))
 			return false;
 		if (key < 0 && au < 0 && strcmp(name, "time_s") && strcmp(name, "frame"))
-			return err_set(err, "%s: column %s: must be a key (animate --help) or an expression of capture.conf", path, name);
+			return no_such_column(name, m, path, err);
 	}
 	if (s->key[KEY_HORIZONTAL].n != s->key[KEY_VERTICAL].n)
 		return err_set(err, "%s: horizontal_deg and vertical_deg: both or neither in each line", path);
