@@ -1,5 +1,6 @@
 #include "base/conf.h"
 
+#include <ctype.h>
 #include <ini.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,31 +15,60 @@ struct reading {
 	struct conf *conf;
 	const char *prefix, *at;  // at: next unread byte
 	const char *file;
+	const char *value;        // of the line that inih has the key of alone, or null
+	size_t value_size;
 	int line, layer, first_item;
 	struct err *err;
 };
 
-/* inih's own reader silently cuts long lines and does not tell line numbers to the handler; this one does. */
+/* Gives inih (ini_parse_stream) the next line. inih's own reader cuts a line where its buffer ends (`size` bytes; 200 as Debian builds
+ * it) and does not pass line numbers to the handler. Of a line that does not fit, inih gets the key alone and take() reads the value. */
 static char *next_line(char *buf, int size, void *user)
 {
 	struct reading *r = user;
 	if (!*r->at || err_is(r->err))
 		return 0;
-	const char *end = strchr(r->at, '\n');
-	size_t n = end ? (size_t)(end - r->at) + 1 : strlen(r->at);
+	size_t n = strcspn(r->at, "\n"), room = (size_t)size - 1;
+	// An indented line would continue the value above in inih: here a line is a line.
+	size_t indent = strspn(r->at, " \t"), length = n - (indent < n ? indent : n);
+	const char *line = r->at + n - length;
 	r->line++;
-	if (n > CONF_LINE_LIMIT || n + 1 > (size_t)size) {
-		err_set(r->err, "%s:%d: line of %zu bytes, must be <= %d", r->file, r->line, n,
-		        size - 2 < CONF_LINE_LIMIT ? size - 2 : CONF_LINE_LIMIT);
+	r->at += n + (r->at[n] == '\n');
+	r->value = 0;
+	if (n > CONF_LINE_LIMIT) {
+		err_set(r->err, "%s:%d: line of %zu bytes, must be <= %d", r->file, r->line, n, CONF_LINE_LIMIT);
 		return 0;
 	}
-	memcpy(buf, r->at, n);
-	buf[n] = 0;
-	r->at += n;
-	// An indented line would continue the value above in inih: here a line is a line.
-	if (*buf == ' ' || *buf == '\t')
-		memmove(buf, buf + strspn(buf, " \t"), n + 1 - strspn(buf, " \t"));
+	if (length > room && !strchr(";#[", *line)) {
+		size_t key = strcspn(line, "=:");
+		if (key < length) {
+			r->value = line + key + 1;
+			r->value_size = length - key - 1;
+			length = key + 1;
+		}
+		if (length > room && r->value) {
+			err_set(r->err, "%s:%d: key of %zu bytes, must be <= %zu", r->file, r->line, key, room - 1);
+			return 0;
+		}
+	}
+	length = length < room ? length : room;  // what is cut here is a comment, or no "key = value" anyway
+	memcpy(buf, line, length);
+	buf[length] = 0;
 	return buf;
+}
+
+/* The value of a long line as inih would have read it: without spaces round it, and without a comment, which begins with a
+ * semicolon behind a space. free(). */
+static char *long_value(const char *at, size_t n)
+{
+	size_t end = 0;
+	while (end < n && !(at[end] == ';' && end && isspace((unsigned char)at[end - 1])))
+		end++;
+	while (end && isspace((unsigned char)at[end - 1]))
+		end--;
+	while (end && isspace((unsigned char)*at))
+		at++, end--;
+	return mem_printf("%.*s", (int)end, at);
 }
 
 static void append(struct conf *conf, struct conf_item item)
@@ -62,7 +92,8 @@ static int take(void *user, const char *section, const char *name, const char *v
 			free(key);
 			return 0;
 		}
-	append(r->conf, (struct conf_item){ key, mem_str(value ? value : ""), r->file, r->line, r->layer });
+	char *own = r->value ? long_value(r->value, r->value_size) : mem_str(value ? value : "");
+	append(r->conf, (struct conf_item){ key, own, r->file, r->line, r->layer });
 	return 1;
 }
 

@@ -20,9 +20,12 @@ struct conf {
 	int n_files;
 };
 
-/* Appends the file's items. prefix: put before each key ("limbus."), or "". A key twice in one file, a line
- * longer than 1000 bytes, a zero byte, or a line that is not "key = value" is an error naming file and line.
- * A missing file: error, except in layer 1 (an empty capture.conf and none are the same). */
+/* Appends the items of a file: one "key = value" a line, at most 1000 bytes each without the line's end, the key of them about 200;
+ * a comment begins with ; or # at the line's beginning, or with ; behind a space.
+ * prefix  put before each key ("limbus."), or ""
+ * layer   as in struct conf_item
+ * Returns false, err set with file, line and rule, for a key given twice in the file, a longer line, a zero byte, or a line that is
+ * not "key = value"; and for a missing file, except in layer 1 (an empty capture.conf and none are the same). */
 bool conf_load(struct conf *conf, const char *path, const char *prefix, int layer, struct err *err);
 
 /* Appends one item of the command line. */

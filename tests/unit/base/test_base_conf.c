@@ -132,6 +132,71 @@ static const struct {
 	{ "photo.a.hint = 1 101\n", { "capture.conf:1", "[0, 100]" } },
 };
 
+/* A line of `size` bytes in all: "stage.text = aa a aaa..." and, where it has room for them, a comment. */
+static void line_of(char *to, size_t size, const char *key, const char *comment)
+{
+	size_t head = (size_t)sprintf(to, "%s = ", key), tail = strlen(comment);
+	for (size_t i = head; i < size - tail; i++)
+		to[i] = i % 3 && i > head && i + 1 < size - tail ? ' ' : (char)('a' + i % 26);
+	strcpy(to + size - tail, comment);
+}
+
+/* A line is read whole up to 1000 bytes, whatever inih's own buffer holds; a longer one is refused by file, line and rule. */
+static void long_lines(void **state)
+{
+	(void)state;
+	for (size_t size = 150; size <= 1000; size += size < 300 ? 1 : 50)
+		for (int comment = 0; comment < 2; comment++) {
+			char line[1100], text[2300];
+			struct conf conf = { 0 };
+			struct err err = { 0 };
+			line_of(line, size, "stage.text", comment ? "  ; it has = one: too" : "");
+			snprintf(text, sizeof text, "; %0*d\n%s\r\nstage.count = 3", (int)size - 2, 0, line);
+			bool fits = size < 1000;  // the carriage return is one byte more
+			assert_int_equal(conf_load(&conf, scratch_text("long.conf", text), "", 1, &err), fits);
+			if (fits) {
+				size_t n = size - strlen("stage.text = ") - (comment ? strlen("  ; it has = one: too") : 0);
+				const struct conf_item *item = conf_find(&conf, "stage.text", 0);
+				assert_int_equal(strlen(item->value), n);
+				assert_memory_equal(item->value, line + strlen("stage.text = "), n);
+				assert_int_equal(item->line, 2);
+				assert_int_equal(conf_find(&conf, "stage.count", 0)->line, 3);
+			} else
+				ERR_HAS(err, "long.conf:2: line of 1001 bytes, must be <= 1000");
+			conf_free(&conf);
+		}
+}
+
+/* Long lines that are wrong: what the one line about them has to say. */
+static void long_faults(void **state)
+{
+	(void)state;
+	char text[3000], words[601];
+	memset(words, 'x', 600);
+	words[600] = 0;
+	const struct {
+		const char *head, *tail, *says;
+	} cases[] = {
+		{ "\n", "\n", "bad.conf:2: not of the form key = value" },
+		{ "\n[", "]\na = 1\n", "bad.conf:2: not of the form key = value" },
+		{ "a = 1\na = ", "\n", "bad.conf:2: a: given twice, first in line 1" },
+		{ "", "= 1\n", "bad.conf:1: key of 600 bytes, must be <= " },
+		{ "b = ", "", 0 },
+		{ "   b = ", "  ", 0 },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct conf conf = { 0 };
+		struct err err = { 0 };
+		snprintf(text, sizeof text, "%s%s%s", cases[i].head, words, cases[i].tail);
+		assert_int_equal(conf_load(&conf, scratch_text("bad.conf", text), "", 1, &err), !cases[i].says);
+		if (cases[i].says)
+			ERR_HAS(err, cases[i].says);
+		else
+			assert_string_equal(conf_find(&conf, "b", 0)->value, words);
+		conf_free(&conf);
+	}
+}
+
 static void faults_name_place_value_and_rule(void **state)
 {
 	(void)state;
@@ -209,6 +274,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(faults_name_place_value_and_rule, setup, teardown),
 		cmocka_unit_test_setup_teardown(hostile_files_are_refused, setup, teardown),
 		cmocka_unit_test_setup_teardown(slice_is_sorted_and_effective, setup, teardown),
+		cmocka_unit_test_setup_teardown(long_lines, setup, teardown),
+		cmocka_unit_test_setup_teardown(long_faults, setup, teardown),
 		cmocka_unit_test(patterns),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
