@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/front.h"
+#include "base/front_use.h"
 #include "base/mem.h"
 #include "base/say.h"
 #include "base/version.h"

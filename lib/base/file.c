@@ -244,7 +244,8 @@ void file_list_free(struct file_list *list)
 	*list = (struct file_list){ 0 };
 }
 
-bool file_is_relative(const char *rel)
+/* True when `rel` stays inside the folder it is joined to: relative, without "..". Links are not followed here. */
+static bool is_relative(const char *rel)
 {
 	if (!*rel || *rel == '/')
 		return false;
@@ -259,7 +260,7 @@ bool file_is_relative(const char *rel)
 bool file_inside(char **out, const char *root, const char *rel, struct err *err)
 {
 	*out = 0;
-	if (!file_is_relative(rel))
+	if (!is_relative(rel))
 		return err_set(err, "%s: leads out of the capture folder", rel);
 	char *joined = mem_printf("%s/%s", root, rel);
 	char *real_root = realpath(root, 0), *real = realpath(joined, 0);

@@ -42,17 +42,10 @@ struct file_list {
 bool file_list(struct file_list *out, const char *dir, struct err *err);
 void file_list_free(struct file_list *list);
 
-/* True when `rel` stays inside the folder it is joined to: relative, without "..". Links are not followed
- * here: file_inside() does. */
-bool file_is_relative(const char *rel);
-
 /* Joins and resolves links; false, err set, when the result lies outside `root` or does not exist.
  * *out: free(). */
 bool file_inside(char **out, const char *root, const char *rel, struct err *err);
 
-#ifdef __cplusplus
-}
-#endif
 /* A name beside `path` to write under until it is whole: short whatever the path's length, the same at every run, so that
  * a killed run leaves at most one behind, which the next overwrites, or work_sweep (work.h) removes. free(). */
 char *file_temporary(const char *path);
@@ -60,4 +53,7 @@ char *file_temporary(const char *path);
 /* Whether file_temporary gives such names (without folders). */
 bool file_is_temporary(const char *name);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

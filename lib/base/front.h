@@ -14,8 +14,6 @@
 #define BASE_FRONT_H
 #include "base/conf.h"
 
-#define FRONT_FILE "work/.made/front"
-
 struct front_point {
 	char *stage, *name;
 	double error, fixed_s, mpx_s;
@@ -53,13 +51,5 @@ void front_choose(const struct front *front, const struct front_ask *ask, int n,
                   const bool runs[], double mpx, double others_s, int chosen[]);
 
 double front_seconds(const struct front_point *point, double mpx);
-
-/* The choice, for the stages. Written only when it differs: *changed. */
-bool front_save(const struct front *front, const struct front_ask *ask, int n, const int chosen[], const char *capture,
-                bool *changed, struct err *err);
-
-/* Puts the chosen settings of this stage before the defaults of conf, which has been loaded already. Nothing when
- * neither error nor time is asked for. False, err set, when plan has not chosen yet. */
-bool front_apply(struct conf *conf, const char *stage, const char *capture, const char *config_dir, struct err *err);
 
 #endif

@@ -1,11 +1,13 @@
-/* The choice on its way from plan to the stages. */
+#include "base/front_use.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
-#include "base/front.h"
 #include "base/mem.h"
+
+#define FRONT_FILE "work/.made/front"
 
 enum { FILE_LIMIT = 1 << 16 };
 

@@ -1,4 +1,5 @@
-/* What of a record still holds. */
+#include "base/record_holds.h"
+
 #include <stdlib.h>
 #include <string.h>
 

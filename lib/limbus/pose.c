@@ -7,6 +7,7 @@
 #include "limbus/ramp.h"
 #include "limbus/tilt.h"
 #include "math/chol.h"
+#include "math/ellipse_fit.h"
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
 

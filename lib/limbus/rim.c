@@ -9,6 +9,7 @@
 #include "limbus/propose/colour.h"
 #include "limbus/propose/consensus.h"
 #include "limbus/cover.h"
+#include "math/ellipse_fit.h"
 #include "math/stats.h"
 
 enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, SHARP_PASSES = 5 };

@@ -1,4 +1,4 @@
-/* ellipse: ellipses in the plane, and fitting them to edge points.
+/* ellipse: ellipses in the plane: parameters, points, distances. Fits: ellipse_fit.h.
  *
  * Two parametrisations. `struct ellipse` is what people read. Fits and covariances use q = (cx, cy, r, e, f):
  * the curve is c + S u for unit u, S = [[r + e, f], [f, r - e]], so r = (a + b) / 2 and
@@ -21,7 +21,6 @@ bool ellipse_from_q(struct ellipse *e, const double q[ELLIPSE_N]);
 double ellipse_climb(struct ellipse *e, double step, double end, double least_aspect,
                      double (*worth)(const void *ctx, const struct ellipse *e), const void *ctx);
 
-
 /* 1 sigma of cx, cy, a, b, angle from the covariance of q; the angle's is at most pi / sqrt(12), that of no idea. */
 void ellipse_sigma(double sigma[ELLIPSE_N], const struct ellipse *e, const double cov_q[ELLIPSE_N][ELLIPSE_N]);
 
@@ -37,30 +36,6 @@ void ellipse_normal_shift(double row[ELLIPSE_N], const struct ellipse *e, double
 /* A x² + B xy + C y² + D x + E y + F = 0. False: not a real ellipse. */
 bool ellipse_from_conic(struct ellipse *e, const double conic[6]);
 void ellipse_to_conic(double conic[6], const struct ellipse *e);
-
-/* Direct least squares fit (Halir and Flusser 1998, numerically stable Fitzgibbon), coordinates normalised.
- * weight may be null. False: fewer than 5 points, or they hold no ellipse. */
-bool ellipse_fit_direct(struct ellipse *e, int n, const double p[n][2], const double *weight);
-
-struct ellipse_fit {
-	double sigma;       // robust scale of the distances, px
-	double cov_q[ELLIPSE_N][ELLIPSE_N];
-	int iterations;
-	double inliers;     // sum of the Tukey weights over n
-};
-
-/* Maximum likelihood fit, robust: geometric distances, iteratively reweighted with Tukey's biweight (c = 5.5, 97.5 %
- * efficient on clean data).
- * start   e as given, when `have_start`; else random five-point samples (seeded), the best by truncated distance
- * sigma   0: scale from the median absolute deviation; else the known noise of the points, px
- * weights may be null; in: prior weight of a point (1 / variance, relative); out[n] (may be null): Tukey weights
- * Returns false when no ellipse is supported. */
-bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2],
-                        const double *prior, double *out, double sigma, bool have_start);
-
-/* Cramér-Rao bound on q for noise sigma (px, along the normal) at the eccentric angles t[n]. False: singular. */
-bool ellipse_bound(double cov_q[ELLIPSE_N][ELLIPSE_N], const struct ellipse *e, int n, const double t[n],
-                   double sigma);
 
 /* Ramanujan's second formula. */
 double ellipse_perimeter(const struct ellipse *e);

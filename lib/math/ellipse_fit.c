@@ -1,10 +1,11 @@
+#include "math/ellipse_fit.h"
+
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "math/ellipse.h"
 #include "math/rng.h"
 #include "math/stats.h"
 
@@ -109,19 +110,6 @@ bool ellipse_fit_direct(struct ellipse *e, int n, const double p[n][2], const do
 	e->a *= scale;
 	e->b *= scale;
 	return true;
-}
-
-bool ellipse_bound(double cov_q[N][N], const struct ellipse *e, int n, const double t[n], double sigma)
-{
-	double h[N][N] = { 0 };
-	for (int i = 0; i < n; i++) {
-		double row[N];
-		ellipse_normal_shift(row, e, t[i]);
-		for (int a = 0; a < N; a++)
-			for (int b = 0; b < N; b++)
-				h[a][b] += row[a] * row[b] / (sigma * sigma);
-	}
-	return invert(cov_q, h);
 }
 
 /* The best of SAMPLES five-point ellipses by the sum of |distance| cut at the best median's multiple: least trimmed

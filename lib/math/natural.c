@@ -1,6 +1,11 @@
-#include "math/natural_type.h"
+#include "math/natural.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/natural_delaunay.h"
 
 enum { CAVITY_MAX = NATURAL_MAX };
 
@@ -126,4 +131,25 @@ int natural_weights(int site[NATURAL_MAX], double weight[NATURAL_MAX], const str
 	for (int i = 0; i < n; i++)
 		weight[i] /= sum;
 	return isfinite(sum) && sum > 0 ? n : 0;
+}
+
+struct natural *natural_new(int n, const double (*sites)[2], struct err *err)
+{
+	struct natural *nat = mem_new(1, sizeof *nat);
+	nat->n_sites = n;
+	nat->site = mem_new((size_t)(n ? n : 1), sizeof *nat->site);
+	memcpy(nat->site, sites, (size_t)n * sizeof *nat->site);
+	if (natural_triangulate(nat, err))
+		return nat;
+	natural_free(nat);
+	return 0;
+}
+
+void natural_free(struct natural *nat)
+{
+	if (nat) {
+		free(nat->site);
+		free(nat->triangle);
+		free(nat);
+	}
 }

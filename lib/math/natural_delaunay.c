@@ -1,9 +1,8 @@
-#include "math/natural_type.h"
+#include "math/natural_delaunay.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <libqhull_r/qhull_ra.h>
 
@@ -85,7 +84,7 @@ static void join(struct natural *nat)
 	free(edges);
 }
 
-static bool triangulate(struct natural *nat, struct err *err)
+bool natural_triangulate(struct natural *nat, struct err *err)
 {
 	qhT state, *qh = &state;
 	char *said = 0;
@@ -109,25 +108,4 @@ static bool triangulate(struct natural *nat, struct err *err)
 		return err_set(err, "%d points span no area: nothing can be interpolated between them", nat->n_sites);
 	join(nat);
 	return true;
-}
-
-struct natural *natural_new(int n, const double (*sites)[2], struct err *err)
-{
-	struct natural *nat = mem_new(1, sizeof *nat);
-	nat->n_sites = n;
-	nat->site = mem_new((size_t)(n ? n : 1), sizeof *nat->site);
-	memcpy(nat->site, sites, (size_t)n * sizeof *nat->site);
-	if (triangulate(nat, err))
-		return nat;
-	natural_free(nat);
-	return 0;
-}
-
-void natural_free(struct natural *nat)
-{
-	if (nat) {
-		free(nat->site);
-		free(nat->triangle);
-		free(nat);
-	}
 }

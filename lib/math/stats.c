@@ -9,7 +9,8 @@ static void swap(double *a, double *b)
 	*b = t;
 }
 
-double stats_select(int n, double x[n], int k)
+/* The k-th smallest (k from 0) in linear time on average (Hoare's quickselect); reorders x. n >= 1. */
+static double select_kth(int n, double x[n], int k)
 {
 	int lo = 0, hi = n - 1;
 	while (lo < hi) {
@@ -39,10 +40,10 @@ double stats_quantile(int n, double x[n], double q)
 		return NAN;
 	double at = q * (n - 1);
 	int k = (int)at;
-	double low = stats_select(n, x, k);
+	double low = select_kth(n, x, k);
 	if (k + 1 >= n || at == k)
 		return low;
-	double high = stats_select(n - k - 1, x + k + 1, 0);
+	double high = select_kth(n - k - 1, x + k + 1, 0);
 	return low + (at - k) * (high - low);
 }
 

@@ -2,9 +2,6 @@
 #ifndef MATH_STATS_H
 #define MATH_STATS_H
 
-/* The k-th smallest (k from 0), in linear time; reorders x. n >= 1. */
-double stats_select(int n, double x[n], int k);
-
 /* Quantile 0..1 by linear interpolation; reorders x. NAN when n = 0. */
 double stats_quantile(int n, double x[n], double q);
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "math/scatter/scatter.h"
+#include "math/linalg.h"
 #include "mesh/closest.h"
 #include "mesh/kdtree.h"
 #include "mesh/mesh_part.h"

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/record.h"
+#include "base/record_holds.h"
 
 bool kept_remove_database(struct stage *stage, struct err *err)
 {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/front.h"
+#include "base/front_use.h"
 #include "base/mem.h"
 #include "base/say.h"
 #include "plan.h"

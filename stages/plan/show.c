@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/record.h"
+#include "base/record_holds.h"
 #include "plan.h"
 
 bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *stage, struct err *err)

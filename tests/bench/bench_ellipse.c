@@ -5,10 +5,11 @@
 #include <string.h>
 
 #include "bridge/cv_ellipse.h"
-#include "math/ellipse.h"
+#include "math/ellipse_fit.h"
 #include "math/rng.h"
 #include "math/stats.h"
 #include "tests/lib/bench/bench.h"
+#include "tests/peers/ellipse_bound.h"
 
 enum { POINTS = 360, METHODS = 6 };
 static const struct ellipse TRUTH = { 320.3, 239.1, 100, 90, 0.6 };

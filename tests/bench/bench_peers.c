@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "base/npy/npy.h"
+#include "math/linalg.h"
 #include "math/regress.h"
 #include "math/rng.h"
 #include "math/scatter/scatter.h"

@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "base/mem.h"
+#include "math/linalg.h"
 #include "math/rng.h"
 #include "math/scatter/scatter.h"
 #include "tests/lib/bench/bench.h"

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/record.h"
+#include "base/record_holds.h"
 #include "iris/heightfield/heightfield.h"
 #include "limbus/record.h"
 #include "tissue/pigment/pigment.h"

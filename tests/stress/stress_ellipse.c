@@ -7,8 +7,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "math/ellipse.h"
+#include "math/ellipse_fit.h"
 #include "tests/lib/stress.h"
+#include "tests/peers/ellipse_bound.h"
 
 enum { N = ELLIPSE_N, MOST = 400, DRAWS = 200 };
 

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "tests/lib/conf/limbus_conf.h"
 #include "tests/lib/stress.h"
+#include "tests/peers/ellipse_bound.h"
 
 static const double BEST = 1e-5;  // noise of the best ellipses, of their size
 enum { N = ELLIPSE_N, POINTS = 60, DRAWS = 40 };

@@ -45,7 +45,6 @@ double *npy_doubles(const struct npy *array);
 
 /* The array NAME (without ".npy") of an .npz file. A missing one: err. */
 bool npz_read(struct npy *out, const char *path, const char *name, size_t limit, struct err *err);
-bool npz_has(const char *path, const char *name);
 
 struct npz_item {
 	const char *name;
@@ -63,14 +62,6 @@ bool npy_rows_next(struct npy_rows *rows, long n, double *out, long *got, struct
 /* The next row read is row `first`. */
 bool npy_rows_seek(struct npy_rows *rows, long first, struct err *err);
 void npy_rows_close(struct npy_rows *rows);
-
-/* Rows appended one block after another; the file appears, whole, at npy_sink_close. row: type and shape of the array,
- * shape[0] ignored, data null. Null, err set, when it cannot be written. */
-struct npy_sink;
-struct npy_sink *npy_sink_open(const char *path, const struct npy *row, struct err *err);
-bool npy_sink_put(struct npy_sink *sink, long n, const void *data, struct err *err);
-/* keep false: gives up what was written. Frees sink in any case; null is accepted. */
-bool npy_sink_close(struct npy_sink *sink, bool keep, struct err *err);
 
 #ifdef __cplusplus
 }

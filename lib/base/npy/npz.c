@@ -72,21 +72,6 @@ bool npz_read(struct npy *out, const char *path, const char *name, size_t limit,
 	return ok;
 }
 
-bool npz_has(const char *path, const char *name)
-{
-	struct err err = { 0 };
-	char *bytes;
-	zip_t *zip = open_zip(&bytes, path, NPY_LIMIT, &err);
-	if (!zip)
-		return false;
-	char *entry = mem_printf("%s.npy", name);
-	bool has = zip_name_locate(zip, entry, 0) >= 0;
-	zip_discard(zip);
-	free(bytes);
-	free(entry);
-	return has;
-}
-
 /* bytes: taken over. Stored, not packed, and dated 1980-01-01: the same bytes with every zlib and on every day. */
 static bool add_entry(zip_t *zip, const char *name, void *bytes, size_t size)
 {

@@ -1,4 +1,4 @@
-/* scatter_impl: what scatter.c, components.c and split.c share. */
+/* scatter_impl: what the files of this folder share. */
 #ifndef MATH_SCATTER_IMPL_H
 #define MATH_SCATTER_IMPL_H
 #include "math/scatter/scatter.h"

@@ -9,18 +9,6 @@
 
 enum { STRIPE = 64 };
 
-int linalg_serial(void)
-{
-	int n = openblas_get_num_threads();
-	openblas_set_num_threads(1);
-	return n;
-}
-
-void linalg_threads(int n)
-{
-	openblas_set_num_threads(n);
-}
-
 void scatter_new(struct scatter *s, int p, int keep)
 {
 	*s = (struct scatter){ .p = p, .keep = keep };
@@ -41,19 +29,6 @@ void scatter_free(struct scatter *s)
 	free(s->work);
 	scatter_split_free(s);
 	*s = (struct scatter){ 0 };
-}
-
-int scatter_tiles(int p)
-{
-	int n = (p + SCATTER_TILE - 1) / SCATTER_TILE;
-	return n * (n + 1) / 2;
-}
-
-struct scatter_tile scatter_tile(int p, int t)
-{
-	int i = (int)((sqrt(8.0 * t + 1) - 1) / 2), j = t - i * (i + 1) / 2, i0 = i * SCATTER_TILE, j0 = j * SCATTER_TILE;
-	return (struct scatter_tile){ i0, j0, p - i0 < SCATTER_TILE ? p - i0 : SCATTER_TILE,
-		                          p - j0 < SCATTER_TILE ? p - j0 : SCATTER_TILE };
 }
 
 /* S += Y^T Y for the first `rows` rows of work, tile by tile of the lower triangle. */

@@ -57,8 +57,4 @@ double scatter_energy(const struct scatter *s, int from, int n);
  * over weight: variances). Returns how many of them stand out of rounding: the rank, at most k; the others are 0. */
 int scatter_components(double *vectors, double *values, const struct scatter *s, int from, int n, int k);
 
-/* BLAS and LAPACK on one thread until linalg_threads(what this returned): the same bits on any machine. */
-int linalg_serial(void);
-void linalg_threads(int n);
-
 #endif

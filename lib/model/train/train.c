@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/linalg.h"
 #include "model/train/impl.h"
 
 static const double farthest = 1e6;  // px: nothing in a picture is further away

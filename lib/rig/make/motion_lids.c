@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "math/chol.h"
+#include "math/linalg.h"
 #include "math/scatter/scatter.h"
 #include "rig/make/make.h"
 

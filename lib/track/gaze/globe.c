@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "math/ellipse.h"
+#include "math/ellipse_fit.h"
 #include "math/vec.h"
 
 void gaze_rotation(double head_from_eye[3][3], const double fick[3])

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/ellipse_fit.h"
 #include "math/rng.h"
 
 const double SYNTH_CORNEA_R = 7.8, SYNTH_LIMBUS_R = 5.85, SYNTH_IRIS_DEPTH = 3.3, SYNTH_INDEX = 1.336;

@@ -162,7 +162,10 @@ static void paths_stay_inside(void **state)
 	free(real);
 	assert_true(file_inside(&real, root, "good", &err));
 	free(real);
-	static const char *const bad[] = { "../out", "/etc/passwd", "", "a/../../out", "link", "..", "../rootless/file" };
+	scratch_text("in/root/a..b/..c", "x");
+	assert_true(file_inside(&real, root, "a..b/..c", &err));
+	free(real);
+	static const char *const bad[] = { "../out", "/etc/passwd", "", "a/..", "a/../../out", "link", "..", "../rootless/file" };
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
 		err = (struct err){ 0 };
 		if (file_inside(&real, root, bad[i], &err))
@@ -170,8 +173,6 @@ static void paths_stay_inside(void **state)
 		assert_true(err_is(&err));
 		assert_null(real);
 	}
-	assert_true(file_is_relative("a..b/..c"));
-	assert_false(file_is_relative("a/.."));
 }
 
 static void hashes_and_lists(void **state)

@@ -3,7 +3,7 @@
 
 #include "base/call.h"
 #include "base/file.h"
-#include "base/front.h"
+#include "base/front_use.h"
 #include "base/opt.h"
 #include "tests/lib/scratch.h"
 

@@ -7,7 +7,7 @@
 #include "base/conf.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/record.h"
+#include "base/record_holds.h"
 #include "tests/lib/scratch.h"
 
 static const char *const inputs[] = { "photos/a.jpg" };

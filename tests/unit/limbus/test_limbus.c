@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "limbus/record.h"
+#include "math/ellipse_fit.h"
 #include "math/rng.h"
 #include "math/vec.h"
 #include "tests/lib/conf/limbus_conf.h"

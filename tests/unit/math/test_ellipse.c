@@ -7,9 +7,10 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "math/ellipse.h"
+#include "math/ellipse_fit.h"
 #include "math/rng.h"
 #include "math/stats.h"
+#include "tests/peers/ellipse_bound.h"
 
 static const struct ellipse E = { 321.25, -40.5, 100, 62, 0.7 };
 

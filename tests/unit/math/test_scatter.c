@@ -4,6 +4,7 @@
 #include <lapacke.h>
 
 #include "base/mem.h"
+#include "math/linalg.h"
 #include "math/rbf.h"
 #include "math/regress.h"
 #include "math/rng.h"
