@@ -10,7 +10,7 @@
 #include "mesh/kdtree.h"
 #include "mesh/mesh_part.h"
 #include "mesh/openness.h"
-#include "register/transfer_impl.h"
+#include "register/nricp/frame.h"
 
 void transfer_free(struct transfer *t)
 {
@@ -39,7 +39,8 @@ static void room(struct transfer *out, int n)
 	out->confidence = mem_new(m, sizeof *out->confidence);
 }
 
-void transfer_row(struct transfer *out, int i, const struct mesh *subject, int face, const float bary[3])
+/* Row i of B: the corners of that face of the subject, rising. */
+static void set_row(struct transfer *out, int i, const struct mesh *subject, int face, const float bary[3])
 {
 	int order[3] = { 0, 1, 2 };
 	const int32_t *v = subject->faces[face];
@@ -88,14 +89,21 @@ static void same(struct transfer *out, const struct mesh *target, const struct m
 	for (int f = 0; f < subject->n_faces; f++)
 		for (int k = 0; k < 3; k++) {
 			float bary[3] = { k == 0, k == 1, k == 2 };
-			transfer_row(out, subject->faces[f][k], subject, f, bary);
+			set_row(out, subject->faces[f][k], subject, f, bary);
 		}
 	free(row);
 }
 
+/* m x */
+static void place(double out[3], const double m[4][4], const float x[3])
+{
+	for (int r = 0; r < 3; r++)
+		out[r] = m[r][0] * (double)x[0] + m[r][1] * (double)x[1] + m[r][2] * (double)x[2] + m[r][3];
+}
+
 /* Vertices that were not matched follow those that were and lie nearest: the mean of their displacements by inverse
  * squared distance, after the similarity. */
-static void carry(struct transfer *out, const struct mesh *target, const struct mesh_part *part, const float (*place)[3])
+static void carry(struct transfer *out, const struct mesh *target, const struct mesh_part *part, const float (*placed)[3])
 {
 	enum { NEAR = 8 };
 	int index[NEAR], near = part->mesh.n_vertices < NEAR ? part->mesh.n_vertices : NEAR;
@@ -105,25 +113,19 @@ static void carry(struct transfer *out, const struct mesh *target, const struct 
 		if (part->of[i] >= 0)
 			continue;
 		double at[3], sum[3] = { 0 }, weight = 0;
-		transfer_place(at, out->subject_from_target, target->vertices[i]);
+		place(at, out->subject_from_target, target->vertices[i]);
 		kdtree_find(tree, 1, target->vertices[i], near, index, d2);
 		for (int k = 0; k < near; k++) {
 			double was[3], w = 1 / ((double)d2[k] + 1e-6 * (double)d2[near - 1] + 1e-300);
-			transfer_place(was, out->subject_from_target, part->mesh.vertices[index[k]]);
+			place(was, out->subject_from_target, part->mesh.vertices[index[k]]);
 			for (int c = 0; c < 3; c++)
-				sum[c] += w * ((double)place[index[k]][c] - was[c]);
+				sum[c] += w * ((double)placed[index[k]][c] - was[c]);
 			weight += w;
 		}
 		for (int c = 0; c < 3; c++)
 			out->registered[i][c] = (float)(at[c] + sum[c] / weight);
 	}
 	kdtree_free(tree);
-}
-
-void transfer_place(double out[3], const double m[4][4], const float x[3])
-{
-	for (int r = 0; r < 3; r++)
-		out[r] = m[r][0] * (double)x[0] + m[r][1] * (double)x[1] + m[r][2] * (double)x[2] + m[r][3];
 }
 
 static float distance_to(const struct transfer *t, int i, const struct mesh *subject)
@@ -162,7 +164,7 @@ static void snap(struct transfer *out, const struct mesh *target, const struct m
 			c = closest_find(scene, out->registered[i], own[i], turn, INFINITY, -1);
 		c.face = c.face < 0 ? 0 : c.face;
 		// The part's faces name the first of doubled vertices; the subject's own rows are what was tracked.
-		transfer_row(out, i, subject, subject_part->face[c.face], c.bary);
+		set_row(out, i, subject, subject_part->face[c.face], c.bary);
 		out->distance[i] = distance_to(out, i, subject);
 		double away = (double)out->distance[i] / (conf->snap * size);
 		out->confidence[i] = p < 0 ? 0 : (float)((double)result->confidence[p] * exp(-away * away));

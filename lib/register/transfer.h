@@ -36,9 +36,4 @@ void transfer_free(struct transfer *transfer);
 /* Whether two meshes have the same faces of the same vertices. */
 bool transfer_same_topology(const struct mesh *a, const struct mesh *b);
 
-/* mm in one unit of a mesh, guessed: of a subject by the size of a face; of a target by how well it then lies on the
- * subject (in mm). Modelling programs' units (mm, cm, dm, m) first, powers of ten where none of them fits. */
-double transfer_subject_unit(const struct mesh *subject);
-double transfer_target_unit(const struct mesh *target, const struct mesh *subject, const struct transfer_conf *conf);
-
 #endif

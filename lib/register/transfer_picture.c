@@ -9,7 +9,7 @@
 #include "bridge/cv_draw.h"
 #include "image/image.h"
 #include "image/picture.h"
-#include "math/stats.h"
+#include "register/transfer_quality.h"
 
 enum { PANELS = 3, HIGH = 620, FINE = 2, HEAD = 34, FOOT = 46, GAP = 12 };
 
@@ -170,15 +170,10 @@ static void draw_words(struct cv_picture *pic, const struct scene *s, int wide)
 static double scale_of(const struct transfer *t)
 {
 	static const double usual[] = { 0.2, 0.5, 1, 2, 5, 10, 20, 50 };
-	double *d = mem_array((size_t)t->n + 1, sizeof *d);
-	int n = 0, i = 0;
-	for (int v = 0; v < t->n; v++)
-		if (t->confidence[v] > 0.2f)
-			d[n++] = (double)t->distance[v];
-	double most = n ? stats_quantile(n, d, 0.95) : 0;
+	double most = transfer_trusted(t) ? transfer_distance(t, 0.95) : 0;
+	int i = 0;
 	while (i < COUNT(usual) - 1 && usual[i] < most)
 		i++;
-	free(d);
 	return usual[i];
 }
 

@@ -1,11 +1,11 @@
+#include "register/transfer_unit.h"
+
 #include <math.h>
-#include <string.h>
 
 #include "mesh/mesh_part.h"
-#include "register/nricp/impl.h"
-#include "register/transfer.h"
+#include "register/nricp/frame.h"
 
-/* Size (register/nricp/align.h) of the skin of a face or a head, and of a whole body, mm: from a patch round the eyes to a giant's
+/* Size (register/nricp/frame.h) of the skin of a face or a head, and of a whole body, mm: from a patch round the eyes to a giant's
  * bust; the middle of it. */
 static const double face_least = 30, face_most = 250, face_usual = 85, body_most = 1100;
 static const double units[] = { 1, 10, 100, 1000 };

@@ -7,7 +7,8 @@
 #include "base/csv.h"
 #include "base/mem.h"
 
-struct drive drive_new(int n, int n_inputs)
+/* n frames of zeros. */
+static struct drive drive_new(int n, int n_inputs)
 {
 	return (struct drive){ .n = n, .n_inputs = n_inputs, .time = mem_new((size_t)n + 1, sizeof(double)),
 		                   .controls = mem_new((size_t)n * (size_t)n_inputs + 1, sizeof(double)) };

@@ -18,8 +18,6 @@ struct drive {
  * pupil) is carried over in time; what never was is as at rest. drive_free. */
 bool drive_load(struct drive *drive, const struct skin_model *model, const char *path, struct err *err);
 
-/* n frames of zeros. */
-struct drive drive_new(int n, int n_inputs);
 void drive_free(struct drive *drive);
 
 static inline double *drive_at(const struct drive *drive, int frame)

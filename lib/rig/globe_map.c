@@ -17,7 +17,8 @@ void globe_map_free(struct globe_map *map)
 	*map = (struct globe_map){ 0 };
 }
 
-void globe_map_direction(float dir[3], int n, int column, int row)
+/* The direction of a node; unit length. */
+static void node_direction(float dir[3], int n, int column, int row)
 {
 	float u = 2 * (float)column / (float)n - 1, v = 2 * (float)row / (float)n - 1, z = 1 - fabsf(u) - fabsf(v);
 	if (z < 0) {
@@ -93,7 +94,7 @@ bool globe_map_from_mesh(struct globe_map *map, int n, const struct mesh *mesh, 
 	for (int v = 0; v < w; v++)
 		for (int u = 0; u < w; u++) {
 			float dir[3], from[3], in[3];
-			globe_map_direction(dir, n, u, v);
+			node_direction(dir, n, u, v);
 			for (int k = 0; k < 3; k++) {
 				from[k] = far * dir[k];
 				in[k] = -dir[k];
@@ -119,7 +120,7 @@ struct globe_map globe_map_round(int n, double radius, double cornea_radius, dou
 	for (int v = 0; v <= n; v++)
 		for (int u = 0; u <= n; u++) {
 			float dir[3];
-			globe_map_direction(dir, n, u, v);
+			node_direction(dir, n, u, v);
 			double z = dir[2], disc = cornea_radius * cornea_radius - shift * shift * (1 - z * z);
 			double cap = apex > 0 && z > 0 && disc > 0 ? shift * z + sqrt(disc) : 0;
 			map.radius[(long)v * (n + 1) + u] = (float)fmax(radius, cap);

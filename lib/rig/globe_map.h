@@ -25,9 +25,6 @@ void globe_map_free(struct globe_map *map);
 /* D in a direction of any length but 0. */
 float globe_map_at(const struct globe_map *map, const float dir[3]);
 
-/* The direction of a node; unit length. */
-void globe_map_direction(float dir[3], int n, int column, int row);
-
 /* The paper's chart: columns atan2(x, z) from -pi to pi, rows acos(y / r) from 0 to pi; one channel. image_free. */
 struct image globe_map_polar(const struct globe_map *map, int height);
 

@@ -7,6 +7,7 @@
 #include "bridge/om_mesh.h"
 #include "math/stats.h"
 #include "mesh/closest.h"
+#include "register/transfer_unit.h"
 
 enum { POINTS = 20000, TEMPLATE_VERTICES = 2000000 };
 

@@ -9,8 +9,7 @@
 #include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
 #include "image/exr.h"
-#include "rig/deform/deform.h"
-#include "rig/drive.h"
+#include "rig/deform/clearance.h"
 
 /* Everything of one character that is read. */
 struct character {
@@ -107,30 +106,6 @@ static bool save_map(struct stage *stage, const char *rel, struct image image, i
 	return ok;
 }
 
-/* Posed all over the range of gaze, open and shut: the least distance of skin from a globe, mm. */
-static double least_distance(const struct rig *rig)
-{
-	struct deform *deform = deform_new(rig);
-	float (*x)[3] = mem_new((size_t)rig->n + 1, sizeof *x);
-	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c), least = INFINITY;
-	deform_rest(deform, x, 0);
-	for (int pose = 0; pose < 27; pose++) {
-		double h = 20 * (pose % 3 - 1), v = 15 * (pose / 3 % 3 - 1), e[RIG_COMPONENTS], turn[2][3][3];
-		drive_look(c, rig, h, v, pose / 9 * 0.5);
-		rig_components(e, rig, c);
-		for (int s = 0; s < 2; s++)
-			rig_globe_rotation(turn[s], rig, (double[]){ h * M_PI / 180, v * M_PI / 180, 0 });
-		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-		for (int i = 0; i < rig->n; i++)
-			if (!rig_is_globe(rig->part[i]))
-				least = fmin(least, rig_globe_distance(rig, rig->side[i], (const double(*)[3])turn[rig->side[i]], x[i]));
-	}
-	free(x);
-	free(c);
-	deform_free(deform);
-	return least;
-}
-
 static void report(struct stage *stage, const char *name, const struct rig *rig, const struct rig_report *r, const struct rig_motion *motion)
 {
 	stage_note(stage, "%s: %d vertices tracked, %d on the lid margins, %d extrapolated, %d still; globes of %.1f and %.1f mm%s",
@@ -142,7 +117,7 @@ static void report(struct stage *stage, const char *name, const struct rig *rig,
 	stage_figure(stage, "globe_radius", 0.5 * (rig->globe[0].radius + rig->globe[1].radius), "mm");
 	stage_figure(stage, "lids_beside_skin", motion->lid_error_skin, "px rms: what the skin's components do not know of the lids");
 	stage_figure(stage, "lids_folded_error", motion->lid_error, "px rms: what is left of it with components of the lids' own");
-	stage_figure(stage, "least_distance", least_distance(rig), "mm of skin from an eyeball, over 27 poses");
+	stage_figure(stage, "least_distance", deform_clearance(rig), "mm of skin from an eyeball, over 27 poses");
 	stage_figure(stage, "off_chart", r->off_chart, "px, median: the model's skin at rest against the registered mesh as the camera sees it");
 	if (r->off_chart > 12)
 		stage_skipped(stage, "%s: its skin is seen %.0f px from where it was tracked: check camera.focal_px, subject.unit_mm and subject.landmark.*",

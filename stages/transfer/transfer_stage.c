@@ -8,12 +8,14 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
-#include "math/stats.h"
 #include "mesh/mesh_part.h"
 #include "optics/camera_rig.h"
+#include "register/landmarks.h"
 #include "register/transfer_file.h"
+#include "register/transfer_lay.h"
 #include "register/transfer_picture.h"
-#include "register/eyes.h"
+#include "register/transfer_quality.h"
+#include "register/transfer_unit.h"
 
 enum { OUT = 4, IN = 2 };
 
@@ -106,27 +108,6 @@ static bool load_target(struct target *t, struct stage *stage, const struct subj
 	return true;
 }
 
-/* Quantile of the distances that B spans, over vertices it can be trusted for. */
-static double distance_at(const struct transfer *t, double q)
-{
-	double *d = mem_array((size_t)t->n + 1, sizeof *d);
-	int n = 0;
-	for (int i = 0; i < t->n; i++)
-		if (t->confidence[i] > 0.2f)
-			d[n++] = (double)t->distance[i];
-	double at = stats_quantile(n, d, q);
-	free(d);
-	return at;
-}
-
-static int trusted(const struct transfer *t)
-{
-	int n = 0;
-	for (int i = 0; i < t->n; i++)
-		n += t->confidence[i] > 0.2f;
-	return n;
-}
-
 static bool save_json(const struct target *t, const struct subject *s, const char *path, const char *made_by, struct err *err)
 {
 	const struct transfer *r = &t->result;
@@ -141,10 +122,10 @@ static bool save_json(const struct target *t, const struct subject *s, const cha
 	json_object_set_new(root, "aligned_share", json_number(r->matched));
 	json_object_set_new(root, "matched_share", json_number(r->covered));
 	json_object_set_new(root, "residual_rms_mm", json_number(r->rms));
-	json_object_set_new(root, "distance_median_mm", json_number(distance_at(r, 0.5)));
-	json_object_set_new(root, "distance_95_mm", json_number(distance_at(r, 0.95)));
+	json_object_set_new(root, "distance_median_mm", json_number(transfer_distance(r, 0.5)));
+	json_object_set_new(root, "distance_95_mm", json_number(transfer_distance(r, 0.95)));
 	json_object_set_new(root, "vertices", json_integer(t->mesh.n_vertices));
-	json_object_set_new(root, "trusted_vertices", json_integer(trusted(r)));
+	json_object_set_new(root, "trusted_vertices", json_integer(transfer_trusted(r)));
 	json_object_set_new(root, "mended", json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "doubled_vertices", p->doubled, "flat_faces", p->flat,
 	                                              "tangled_edges", p->tangled, "boundaries", p->rims, "pieces", p->pieces,
 	                                              "pieces_carried", p->left_out));
@@ -177,11 +158,11 @@ static void report(struct stage *stage, const struct target *t)
 		return;
 	}
 	stage_note(stage, "%s: %.4g mm a unit%s, scale %.3f, %.0f %% of the subject found on it; %d of %d vertices follow the subject, %.2f mm from it in the median",
-	           t->name, t->unit, t->guessed ? " (guessed)" : "", r->scale, 100 * r->matched, trusted(r), t->mesh.n_vertices,
-	           distance_at(r, 0.5));
+	           t->name, t->unit, t->guessed ? " (guessed)" : "", r->scale, 100 * r->matched, transfer_trusted(r), t->mesh.n_vertices,
+	           transfer_distance(r, 0.5));
 	stage_figure(stage, "aligned_share", 100 * r->matched, "%");
 	stage_figure(stage, "residual_rms", r->rms, "mm");
-	stage_figure(stage, "distance_95", distance_at(r, 0.95), "mm");
+	stage_figure(stage, "distance_95", transfer_distance(r, 0.95), "mm");
 }
 
 static void target_names(struct target *t, const char *file, const char *subject)
@@ -207,22 +188,6 @@ static void target_free(struct target *t)
 	transfer_free(&t->result);
 }
 
-/* By the landmarks that are given; else by the eyes, where both have some; else, or where that leads nowhere, by the shapes alone. */
-static bool lay(struct target *t, const struct subject *s, const struct nricp_landmarks *given, const struct transfer_stage_conf *conf,
-                struct err *err)
-{
-	struct nricp_landmarks eyes = { 0 };
-	double eye[2][3], radius;
-	bool done = false;
-	if (!given->n && s->has_eyes && eyes_of_target(eye, &radius, &t->mesh)
-	    && eyes_landmarks(&eyes, &t->part, (const double(*)[3])eye, radius, &s->mesh, s->eye)) {
-		struct err why = { 0 };
-		done = transfer_run(&t->result, &t->mesh, &s->mesh, &eyes, &conf->transfer, &why);
-	}
-	free((void *)eyes.moving);
-	return done || transfer_run(&t->result, &t->mesh, &s->mesh, given, &conf->transfer, err) || err_wrap(err, "%s", t->in[0]);
-}
-
 /* True when it is registered, or was already. What is wrong with one character is said, and the others go on. */
 static bool one(struct stage *stage, const char *file, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
 {
@@ -235,8 +200,10 @@ static bool one(struct stage *stage, const char *file, const struct subject *s, 
 		fresh = stage_fresh(stage, t.out[i], IN, (const char *const *)t.in) && fresh;
 	if (!fresh) {
 		done = load_target(&t, stage, s, conf, &why)
-		       && transfer_landmarks(&landmarks, t.name, t.mesh.n_vertices, s->mesh.n_vertices, conf, err)
-		       && lay(&t, s, &landmarks, conf, &why)
+		       && landmarks_pair(&landmarks, t.name, &conf->target_landmarks, t.mesh.n_vertices, s->mesh.n_vertices,
+		                         &conf->subject_landmark, err)
+		       && (transfer_lay(&t.result, &t.mesh, &t.part, &s->mesh, s->has_eyes ? s->eye : 0, &landmarks, &conf->transfer, &why)
+		           || err_wrap(&why, "%s", t.in[0]))
 		       && save(&t, s, stage, err);
 		if (done)
 			report(stage, &t);

@@ -14,9 +14,4 @@ struct transfer_stage_conf {
 /* Registers every target of the folder; one that cannot be is said, and left out. */
 bool transfer_stage(struct stage *stage, const struct transfer_stage_conf *conf, struct err *err);
 
-/* Pairs of rows: those of `target.NAME.landmarks` ("name row, name row") whose name the subject has too. rows: owned by
- * the caller, free(out->moving). */
-bool transfer_landmarks(struct nricp_landmarks *out, const char *name, int target_vertices, int subject_vertices,
-                        const struct transfer_stage_conf *conf, struct err *err);
-
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "model/train/fold.h"
+#include "model/train/cv.h"
 
 static const double worth = 0.995, least_worth = 1e-9;  // what a larger number has to make of the error: half a per cent less, beyond rounding
 

@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "math/rbf.h"
 #include "math/regress.h"
-#include "model/train/fold.h"
+#include "model/train/cv.h"
 
 static const double ridges[] = { 0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1 };
 static const int functions[] = { 10, 20, 40, 80 };

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "math/regress.h"
-#include "model/train/impl.h"
+#include "model/train/cv.h"
 
 enum { MOST_COMPONENTS = 40 };
 

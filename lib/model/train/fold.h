@@ -47,7 +47,4 @@ void cv_components(const struct cv *cv, const double *w, double *mean, double *V
 /* Adds fold f's held-out errors of predicted scores y[m][R] (null: the shapes' own, for the components alone). */
 void cv_add_errors(struct errors *e, const struct cv *cv, int f, const double *y, const double *mean, const double *V);
 
-/* Normalised held-out error of the linear model for 1..K components, each with its best ridge. */
-void cv_least(double *least, const struct cv *cv, int K);
-
 #endif

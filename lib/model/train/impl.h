@@ -83,7 +83,6 @@ bool train_sample(struct train *t, struct err *err);
 bool train_stream(struct train *t, struct err *err);
 void train_choose_lids(struct train *t);               // how many components are kept, of those of the configuration
 void train_choose_skin(struct train *t);               // the same, once the lids are fitted
-void train_validate(struct train *t, int part);        // ridge, curves
 void train_fit(struct train *t);
 void train_sigmas(struct train *t);
 

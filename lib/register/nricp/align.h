@@ -35,7 +35,4 @@ struct nricp_align_result {
 bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, const struct mesh *fixed,
                  const struct nricp_landmarks *landmarks, const struct nricp_align_conf *conf, struct err *err);
 
-/* Root mean square distance of the surface from its centroid; 0 for none. */
-double mesh_size(double center[3], const struct mesh *mesh);
-
 #endif

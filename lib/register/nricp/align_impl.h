@@ -44,12 +44,6 @@ struct best {
 	int start;
 };
 
-/* Where the pose puts x. */
-void pose_place(double at[3], const struct pose *pose, const double x[3]);
-
-/* One point at `about` from the pose's shift that should go by `off`: along m alone, or (null) in all directions. */
-void sums_add(struct sums *sums, const double about[3], const double off[3], const double m[3], double weight);
-
 /* Moves the pose by the sums' answer; growth is kept within 1 / scale_max .. scale_max. False: they have none. */
 bool sums_move(struct pose *pose, struct sums *sums, double scale_max);
 

@@ -5,7 +5,8 @@
 #include "math/vec.h"
 #include "register/nricp/align_impl.h"
 
-void pose_place(double at[3], const struct pose *p, const double x[3])
+/* Where the pose puts x. */
+static void pose_place(double at[3], const struct pose *p, const double x[3])
 {
 	mat_vec(at, p->rotation, x);
 	for (int k = 0; k < 3; k++)
@@ -21,7 +22,8 @@ static void add_row(struct sums *s, const double row[7], double residual, double
 	}
 }
 
-void sums_add(struct sums *sums, const double about[3], const double off[3], const double m[3], double weight)
+/* Adds one point at `about` from the pose's shift that should move by `off`: along m alone, or (null) in all directions. */
+static void sums_add(struct sums *sums, const double about[3], const double off[3], const double m[3], double weight)
 {
 	static const double axes[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
 	for (int k = 0; k < (m ? 1 : 3); k++) {

@@ -1,10 +1,10 @@
+#include "register/nricp/energy.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "register/nricp/graph.h"
-#include "register/nricp/impl.h"
 
 /* out = m^-1, m symmetric positive definite. */
 static void inverse(double out[3][3], const double m[3][3])

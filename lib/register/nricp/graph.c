@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "register/nricp/impl.h"
+#include "register/nricp/energy.h"
+#include "register/nricp/sample.h"
 
 void nricp_graph_free(struct nricp_graph *g)
 {

@@ -44,9 +44,6 @@ void nricp_graph_affine(double affine[3][3], const struct nricp_graph *graph, in
  * A_i grows (0: rigid as the paper's; 1: similarities cost nothing). */
 void nricp_graph_turns(double (*turn)[9], const struct nricp_graph *graph, const double (*t)[4], double growth);
 
-/* out = what the rotations ask for: R t = out where the energy is least. */
-void nricp_graph_pull(double (*out)[4], const struct nricp_graph *graph, const double (*turn)[9]);
-
 /* Displacements of the finer graph's nodes from the coarser one's: each node's affine map, blended between the node a
  * point belongs to and its neighbours by distance. */
 void nricp_graph_spread(double (*fine_t)[4], const struct nricp_graph *fine, const struct nricp_graph *coarse, const double (*t)[4]);

@@ -1,9 +1,10 @@
+#include "register/nricp/level.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "register/nricp/impl.h"
 
 static void level_room(struct nricp_level *l)
 {

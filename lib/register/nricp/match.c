@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "register/nricp/noise.h"
 
 enum { RIM_PARTS = 4, SMOOTH = 3 };
 

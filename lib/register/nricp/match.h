@@ -45,17 +45,4 @@ struct nricp_match {
 void nricp_match_all(struct nricp_match *match, int n, const struct nricp_point *points, const struct nricp_fixed *fixed,
                      const struct nricp_conf *conf, double scale);
 
-/* Standard deviation of the noise of a mesh, across its surface: of vertices against the mean of their neighbours. The
- * normals of a noisy mesh, which are off by noise over the edges' length, are then made means with their neighbours'. */
-double nricp_noise(float (*normals)[3], const struct mesh *mesh, const struct topology *topology);
-
-/* The last step: all points stand where the graph (of every vertex) has put them; they go along their normals towards the
- * fixed mesh, smoothly over `length`. */
-void nricp_polish(struct nricp_point *points, struct nricp_match *match, const struct nricp_graph *graph, const struct nricp_fixed *fixed,
-                  const struct nricp_conf *conf, double length);
-
-/* Triangles that the registration has turned over are put right: around them, displacements are made smooth over as many
- * vertices as that needs. rest: the moving mesh as it was, in the points' frame. Returns how many stay folded. */
-int nricp_unfold(struct nricp_point *points, const struct mesh *rest, const struct nricp_graph *graph);
-
 #endif

@@ -5,10 +5,11 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "register/nricp/align.h"
-#include "register/nricp/impl.h"
-#include "register/nricp/match.h"
-#include "register/nricp/mirror.h"
+#include "register/nricp/energy.h"
+#include "register/nricp/frame.h"
+#include "register/nricp/level.h"
+#include "register/nricp/polish.h"
+#include "register/nricp/unfold.h"
 
 static const double working_size = 100;  // lengths are brought to a fixed mesh of this size: float has room both ways
 

@@ -1,11 +1,9 @@
-#include "register/nricp/graph.h"
+#include "register/nricp/sample.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
-#include "register/nricp/impl.h"
 
 struct entry {
 	double distance;

@@ -1,10 +1,10 @@
+#include "register/nricp/unfold.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "register/nricp/impl.h"
-#include "register/nricp/match.h"
 
 /* Least cosine between a triangle's normal at rest and now: above 0, so that the similarity may turn it too. */
 static const double upright = 0.35;

@@ -134,11 +134,6 @@ void deform_free(struct deform *d)
 	free(d);
 }
 
-int deform_moving(const struct deform *d)
-{
-	return d->n + d->n_globe;
-}
-
 void deform_rest(const struct deform *d, float (*xyz)[3], float (*normal)[3])
 {
 	memcpy(xyz, d->rig->rest, (size_t)d->rig->n * sizeof *xyz);

@@ -16,9 +16,6 @@ struct deform;
 struct deform *deform_new(const struct rig *rig);
 void deform_free(struct deform *deform);
 
-/* How many vertices can move at all; the others stay where the mesh has them. */
-int deform_moving(const struct deform *deform);
-
 /* Everything at rest: [n][3] each. normal may be null, here and below. */
 void deform_rest(const struct deform *deform, float (*xyz)[3], float (*normal)[3]);
 

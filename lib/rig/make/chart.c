@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "mesh/ray.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 static void *fresh(int n, size_t size)
 {

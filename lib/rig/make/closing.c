@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "math/chol.h"
 #include "rig/drive.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 /* The pose's components from rest, into the normal equations of direction . components = want. */
 static void add_pose(double m[RIG_COMPONENTS][RIG_COMPONENTS], double right[RIG_COMPONENTS], const struct rig *rig, const double *controls, double want)

@@ -6,7 +6,7 @@
 #include "math/chol.h"
 #include "math/vec.h"
 #include "mesh/topology.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 enum { LEAST_VERTICES = 20, ROUNDS = 8 };
 /* A human eye: cornea of 7.8 mm on a sclera of 11.8, limbus radius 5.85: apex at 12.95 mm from the centre. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 static const double lid_gap = 5;  // mm from the globe: skin further away is no lid
 

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "math/vec.h"
-#include "rig/deform/deform.h"
+#include "rig/make/make_impl.h"
 
 static const struct rig_camera no_camera;
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 static double finite_or(double x, double otherwise)
 {
@@ -17,16 +17,6 @@ static double *rest_controls(const struct skin_model *model)
 	for (int i = 0; i < model->n_inputs; i++)
 		c[i] = finite_or(model->rest_controls[i], 0);
 	return c;
-}
-
-void rig_motion_components(double e[RIG_COMPONENTS], const struct rig_motion *m, const double *c)
-{
-	for (int k = 0; k < RIG_COMPONENTS; k++) {
-		const double *row = m->W + k * (m->n_inputs + 1);
-		e[k] = row[m->n_inputs];
-		for (int i = 0; i < m->n_inputs; i++)
-			e[k] += row[i] * c[i];
-	}
 }
 
 static void take_skin(struct rig_motion *m, const struct skin_model *model)

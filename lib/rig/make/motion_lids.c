@@ -9,7 +9,7 @@
 #include "math/chol.h"
 #include "math/linalg.h"
 #include "math/scatter/scatter.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 enum { GAZES = 5, CLOSINGS = 6, APART = 3 };
 

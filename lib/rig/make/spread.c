@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 
 /* Edges of the mesh, compressed rows: both directions of each. */
 struct graph {

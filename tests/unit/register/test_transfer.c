@@ -7,6 +7,7 @@
 #include "image/picture.h"
 #include "register/transfer_file.h"
 #include "register/transfer_picture.h"
+#include "register/transfer_unit.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/scenes/sheet.h"
 #include "tests/lib/conf/transfer_conf.h"

@@ -25,7 +25,7 @@ static int setup(void **state)
 	face_make(&m->face, false);
 	conf.map_step = 4;
 	bool ok = face_rig(&m->rig, 0, &m->face, &conf, &err);
-	m->drive = drive_new(FRAMES, 12);
+	m->drive = (struct drive){ FRAMES, 12, calloc(FRAMES, sizeof(double)), calloc(12 * FRAMES, sizeof(double)), 0 };
 	for (int f = 0; f < FRAMES; f++) {
 		m->drive.time[f] = f / 30.0;
 		drive_look(drive_at(&m->drive, f), &m->rig, 15 * sin(f / 7.0), 10 * cos(f / 11.0), f > 25 && f < 32 ? 0 : 1);

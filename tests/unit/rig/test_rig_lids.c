@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "rig/make/make.h"
+#include "rig/make/make_impl.h"
 #include "model/train/train.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/face.h"

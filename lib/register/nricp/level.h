@@ -1,17 +1,7 @@
-/* nricp_impl: what the parts of nricp share. */
-#ifndef REGISTER_NRICP_IMPL_H
-#define REGISTER_NRICP_IMPL_H
-#include "register/nricp/match.h"
+/* nricp_level: one level of a registration, its graph and everything of its nodes. */
+#ifndef REGISTER_NRICP_LEVEL_H
+#define REGISTER_NRICP_LEVEL_H
 #include "register/nricp/mirror.h"
-
-/* Nodes about evenly spaced along the graph's edges: parent[n], row[returned]. */
-int nricp_sample(int32_t *parent, int32_t *row, const struct nricp_graph *graph, int nodes);
-
-/* star, ridge and R from places, areas and edges. */
-void nricp_graph_energy(struct nricp_graph *graph, double rigidity);
-
-/* Vertices (m x - center) scale: the caller's, free(); faces are the mesh's own, no colours. */
-struct mesh nricp_carried(const struct mesh *mesh, const double m[4][4], const double center[3], double scale);
 
 /* A graph of the moving mesh, where its nodes stand, and what they are asked to do. */
 struct nricp_level {

@@ -1,22 +1,23 @@
-#include <math.h>
+#include "register/landmarks.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "stages/transfer/transfer_stage.h"
 
-static int subject_row(const struct transfer_stage_conf *conf, const char *name)
+/* -1: the subject has no landmark of that name. */
+static int subject_row(const struct opt_each_list *subject, const char *name)
 {
-	for (int i = 0; i < conf->subject_landmark.n; i++)
-		if (!strcmp(conf->subject_landmark.items[i].name, name))
-			return (int)conf->subject_landmark.items[i].value[0];
+	for (int i = 0; i < subject->n; i++)
+		if (!strcmp(subject->items[i].name, name))
+			return (int)subject->items[i].value[0];
 	return -1;
 }
 
 /* One "name row" of the list. */
 static bool take(int *moving, int *fixed, const char *text, const char *name, int target_vertices, int subject_vertices,
-                 const struct transfer_stage_conf *conf, struct err *err)
+                 const struct opt_each_list *subject, struct err *err)
 {
 	char landmark[64];
 	int row, end = 0;
@@ -26,28 +27,28 @@ static bool take(int *moving, int *fixed, const char *text, const char *name, in
 	if (row < 0 || row >= target_vertices)
 		return err_set(err, "capture.conf: target.%s.landmarks = %s: must be in [0, %d]", name, text, target_vertices - 1);
 	*moving = row;
-	*fixed = subject_row(conf, landmark);
+	*fixed = subject_row(subject, landmark);
 	if (*fixed >= subject_vertices)
 		return err_set(err, "capture.conf: subject.landmark.%s = %d: must be in [0, %d]", landmark, *fixed, subject_vertices - 1);
 	return true;
 }
 
-bool transfer_landmarks(struct nricp_landmarks *out, const char *name, int target_vertices, int subject_vertices,
-                        const struct transfer_stage_conf *conf, struct err *err)
+bool landmarks_pair(struct nricp_landmarks *out, const char *name, const struct opt_each_list *lists, int target_vertices,
+                    int subject_vertices, const struct opt_each_list *subject, struct err *err)
 {
 	enum { MAX = 256 };
 	*out = (struct nricp_landmarks){ 0 };
 	const char *text = 0;
-	for (int i = 0; i < conf->target_landmarks.n; i++)
-		if (!strcmp(conf->target_landmarks.items[i].name, name))
-			text = conf->target_landmarks.items[i].text;
+	for (int i = 0; i < lists->n; i++)
+		if (!strcmp(lists->items[i].name, name))
+			text = lists->items[i].text;
 	if (!text)
 		return true;
 	int *rows = mem_new(2 * MAX, sizeof *rows);
 	char *copy = mem_str(text), *save = 0;
 	bool ok = true;
 	for (char *one = strtok_r(copy, ",", &save); one && ok && out->n < MAX; one = strtok_r(0, ",", &save)) {
-		ok = take(&rows[out->n], &rows[MAX + out->n], one, name, target_vertices, subject_vertices, conf, err);
+		ok = take(&rows[out->n], &rows[MAX + out->n], one, name, target_vertices, subject_vertices, subject, err);
 		out->n += ok && rows[MAX + out->n] >= 0;
 	}
 	free(copy);

@@ -1,0 +1,15 @@
+/* transfer_unit: the unit of a mesh, guessed from its size. */
+#ifndef REGISTER_TRANSFER_UNIT_H
+#define REGISTER_TRANSFER_UNIT_H
+#include "register/transfer.h"
+
+/* Millimetres in one unit of a subject's mesh: of the units that modelling programs use (mm, cm, dm, m) the one in which it has most
+ * nearly the size of a face; where none fits, a power of ten. */
+double transfer_subject_unit(const struct mesh *subject);
+
+/* Millimetres in one unit of a target's mesh: of the same units the one in which it aligns best with the subject.
+ * subject  in mm
+ * conf     its align and least_piece are used */
+double transfer_target_unit(const struct mesh *target, const struct mesh *subject, const struct transfer_conf *conf);
+
+#endif
