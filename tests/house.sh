@@ -1,7 +1,8 @@
 #!/bin/bash
 # Facts about the structure of lib/, stages/ and render/, from sources and compiled objects. B: build folder.
 #   house.sh circles    files that call each other in a circle, one circle a line
-#   house.sh unused     FILE SYMBOL: exported by lib/, called from no other file of lib/, stages/ or render/
+#   house.sh unused     FILE SYMBOL: exported by lib/, called from no other file of lib/, stages/ or render/; but for those of
+#                       tests/house_kept.txt (SYMBOL  REASON)
 #   house.sh headless   .c files of lib/ without a header of their own name, in a room without one header for all of it
 #   house.sh folders    COUNT FOLDER: .c, .h and .cc files of every folder
 cd "$(dirname "$0")/.." || exit 1
@@ -55,8 +56,8 @@ case ${1:-} in
 circles) circles ;;
 unused)
 	find lib -name '*.h' -exec cat {} + | grep -oE '\b[a-z_][a-z0-9_]*\(' | tr -d '(' | sort -u >"$B/house.declared"
-	symbols | awk -v declared="$B/house.declared" '
-		BEGIN { while ((getline s < declared) > 0) told[s] = 1 }
+	symbols | awk -v declared="$B/house.declared" -v kept=tests/house_kept.txt '
+		BEGIN { while ((getline s < declared) > 0) told[s] = 1; while ((getline s < kept) > 0) { sub(/ .*/, "", s); delete told[s] } }
 		$1 == "def" && $2 ~ /^lib\// && $3 in told { at[$3] = $2 }
 		$1 == "use" { called[$3] = 1 }
 		END { for (s in at) if (!(s in called)) print at[s], s }' | sort
