@@ -1,16 +1,17 @@
-/* What went wrong with the photographs, in words of photography. */
+#include "sfm/advice.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "math/stats.h"
 #include "sfm/colmap/db.h"
-#include "sfm/model.h"
+#include "sfm/colmap/db_matches.h"
 
 /* Share of pairs without depth that no walk round a head has (measured: 0 to 0.03; pictures from one place: 1). */
 static const double mostly_flat = 0.7;
 
-bool model_advice(const struct views *views, struct stage *stage, struct err *err)
+bool advice_refuse(const struct views *views, struct stage *stage, struct err *err)
 {
 	struct db *db;
 	int pairs = 0;
@@ -32,7 +33,7 @@ bool model_advice(const struct views *views, struct stage *stage, struct err *er
 	               "degrees, while the person sits still", stage->capture);
 }
 
-bool model_is_flat(bool *flat, struct stage *stage, struct err *err)
+bool advice_is_flat(bool *flat, struct stage *stage, struct err *err)
 {
 	struct db *db;
 	double share = 0;
@@ -44,7 +45,7 @@ bool model_is_flat(bool *flat, struct stage *stage, struct err *err)
 	return ok;
 }
 
-void model_warn(const struct colmap_model *model, const struct views *views, struct stage *stage)
+void advice_warn(const struct colmap_model *model, const struct views *views, struct stage *stage)
 {
 	// Of the middling sharpness: pictures of one head in one light hardly differ by more.
 	const double blurred = 0.25;

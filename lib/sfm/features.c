@@ -1,19 +1,11 @@
-/* The database and the features of every picture in it. */
-#include <math.h>
+#include "sfm/features.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "sfm/calibrate.h"
 #include "sfm/colmap/db.h"
-#include "sfm/kept.h"
-
-double view_focal_known(const struct view *view, const struct calibrate_options *o)
-{
-	// capture.conf speaks of the eye's photographs and the views alike: one camera took them, or EXIF tells.
-	double focal = camera_keys_focal(&o->camera, view->width, view->height);
-	return isfinite(focal) ? focal : view->focal_px;
-}
+#include "sfm/colmap/run.h"
 
 static bool open_database(struct db **db, struct stage *stage, struct err *err)
 {
@@ -21,7 +13,7 @@ static bool open_database(struct db **db, struct stage *stage, struct err *err)
 	const char *const args[] = { "--database_path", path, 0 };
 	if (file_exists(path) && !db_is_sound(path)) {
 		stage_warn(stage, "%s: damaged: made anew", path);
-		if (!kept_remove_database(stage, err))
+		if (!db_remove(path, err))
 			return false;
 	}
 	return (file_exists(path) || colmap_run(stage, "database_creator", args, 0, "", err)) && db_open(db, path, err);

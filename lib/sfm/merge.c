@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "sfm/colmap/run.h"
+#include "sfm/mapper.h"
 
 #define MERGED CALIBRATE_DIR "/merged"
 #define LESS CALIBRATE_DIR "/less"
@@ -35,7 +37,7 @@ static bool run_all(const struct colmap_model *best, const char *one, const char
 	char *name = mem_printf("%s\n", best_held(best));
 	bool ok = file_mkdirs(merged, err) && file_mkdirs(less, err) && file_write(list, name, strlen(name), err)
 	          && colmap_run(stage, "model_merger", merge, 0, "", err) && colmap_run(stage, "image_deleter", take, 0, "", err)
-	          && model_map(stage, views, &(struct model_step){ LESS, JOINED, false, true, true }, o, err);
+	          && mapper_run(stage, views, &(struct mapper_step){ LESS, JOINED, false, true, true }, o, err);
 	file_remove(list, &(struct err){ 0 });
 	free(name);
 	return ok;
@@ -93,16 +95,16 @@ bool merge_models(struct colmap_model *best, int *n_models, int at, const struct
 		ok = join(&joined, best, one, other, views, stage, o, err);
 		if (joined) {
 			// What is joined next is joined to this.
-			model_remove(stage, TRIALS "/joined");
+			mapper_remove(stage, TRIALS "/joined");
 			ok = file_mkdirs(stage_path(stage, TRIALS), err) && colmap_save(best, stage_path(stage, TRIALS "/joined"), COLMAP_BINARY, err);
 			one = stage_path(stage, TRIALS "/joined");
 			stage_note(stage, "two models share pictures: joined to one of %d", best->n_images);
 			--*n_models;
 		}
 	}
-	model_remove(stage, MERGED);
-	model_remove(stage, LESS);
-	model_remove(stage, JOINED);
-	model_remove(stage, TRIALS "/joined");
+	mapper_remove(stage, MERGED);
+	mapper_remove(stage, LESS);
+	mapper_remove(stage, JOINED);
+	mapper_remove(stage, TRIALS "/joined");
 	return ok;
 }

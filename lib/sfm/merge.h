@@ -1,7 +1,7 @@
 /* merge: models of one subject that the mapper has left apart, joined where they share pictures. */
 #ifndef SFM_MERGE_H
 #define SFM_MERGE_H
-#include "sfm/model.h"
+#include "sfm/views.h"
 
 enum { MODEL_TRIALS = 8 };
 #define TRIALS CALIBRATE_DIR "/models"

@@ -1,11 +1,13 @@
-/* Which pictures are compared, their matches, and COLMAP's check of those by the geometry of two views. */
+#include "sfm/pairs.h"
+
 #include <cblas.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "sfm/calibrate.h"
 #include "sfm/colmap/db.h"
+#include "sfm/colmap/db_matches.h"
+#include "sfm/colmap/run.h"
 
 /* The check draws at random: in so many parts, whatever the number of threads, its result is always the same. */
 enum { PARTS = 4 };
@@ -137,7 +139,7 @@ static void pairs_free(struct db_pair *pairs, int n)
 	free(pairs);
 }
 
-bool pairs_match(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
+bool pairs_match(const struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct db *db = 0;
 	bool any_new = false;

@@ -4,7 +4,7 @@
 #define SFM_PICTURES_H
 #include <jansson.h>
 
-#include "sfm/calibrate.h"
+#include "sfm/views.h"
 
 struct pictures {
 	json_t *all;      // picture -> {width, height, ...}

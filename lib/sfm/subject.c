@@ -8,8 +8,10 @@
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
 #include "image/picture.h"
-#include "sfm/cloud/surface.h"
 #include "sfm/cloud/dense.h"
+#include "sfm/cloud/surface.h"
+#include "sfm/cloud/surface_colour.h"
+#include "sfm/colmap/run.h"
 #include "sfm/template.h"
 
 enum { MESH_LIMIT = 20000000 };

@@ -6,9 +6,12 @@
 
 #include "base/run.h"
 #include "sfm/figure/figure.h"
-#include "sfm/kept.h"
-#include "stages/calibrate/state.h"
+#include "sfm/features.h"
+#include "sfm/model.h"
+#include "sfm/pairs.h"
 #include "sfm/subject.h"
+#include "stages/calibrate/kept.h"
+#include "stages/calibrate/state.h"
 
 #define RIG "work/rig.json"
 

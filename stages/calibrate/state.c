@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "sfm/kept.h"
+#include "sfm/colmap/db.h"
+#include "sfm/mapper.h"
 #include "sfm/model.h"
 
 #define STATE CALIBRATE_DIR "/options.txt"
@@ -33,9 +34,9 @@ bool state_check(struct stage *stage, const struct calibrate_options *o, struct 
 		was = mem_str("");
 	bool ok = true, matches = !stage->force && strstr(was, matching), maps = matches && strstr(was, mapping);
 	if (!matches)
-		ok = kept_remove_database(stage, err);
+		ok = db_remove(stage_path(stage, CALIBRATE_DIR "/database.db"), err);
 	if (!maps)
-		model_remove(stage, MODEL_DIR);
+		mapper_remove(stage, MODEL_DIR);
 	free(was);
 	free(matching);
 	free(mapping);

@@ -1,7 +1,8 @@
 /* state: with which options the database and the model were made: others make them anew. */
 #ifndef STAGES_CALIBRATE_STATE_H
 #define STAGES_CALIBRATE_STATE_H
-#include "sfm/calibrate.h"
+#include "base/stage.h"
+#include "sfm/options.h"
 
 /* Removes the database when features or matches would come out otherwise now (or with --force), and the model when it or
  * the database would. */

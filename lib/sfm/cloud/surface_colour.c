@@ -1,3 +1,5 @@
+#include "sfm/cloud/surface_colour.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -5,7 +7,6 @@
 #include "image/image.h"
 #include "math/vec.h"
 #include "mesh/ray.h"
-#include "sfm/cloud/surface.h"
 
 /* Pixel of a mesh point in a view; false outside. */
 static bool project(double px[2], double p[3], const struct surface_view *v, const float x[3])

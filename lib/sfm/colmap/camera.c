@@ -51,30 +51,6 @@ void colmap_rotation(double R[3][3], const double q[4])
 	R[2][2] = 1 - 2 * (x * x + y * y);
 }
 
-void colmap_quaternion(double q[4], const double R[3][3])
-{
-	// The largest of the four is found first: the others divide by it.
-	double trace = R[0][0] + R[1][1] + R[2][2], four[4] = { trace, 2 * R[0][0] - trace, 2 * R[1][1] - trace, 2 * R[2][2] - trace };
-	int k = 0;
-	for (int i = 1; i < 4; i++)
-		k = four[i] > four[k] ? i : k;
-	double s = 2 * sqrt(1 + four[k]);
-	q[k] = s / 4;
-	if (k == 0) {
-		q[1] = (R[2][1] - R[1][2]) / s;
-		q[2] = (R[0][2] - R[2][0]) / s;
-		q[3] = (R[1][0] - R[0][1]) / s;
-	} else {
-		int a = k - 1, b = (a + 1) % 3, c = (a + 2) % 3;
-		q[0] = (R[c][b] - R[b][c]) / s;
-		q[1 + b] = (R[a][b] + R[b][a]) / s;
-		q[1 + c] = (R[a][c] + R[c][a]) / s;
-	}
-	for (int i = 0; i < 4 && q[0] < 0; i++)
-		q[i] = i ? -q[i] : q[i];
-	q[0] = fabs(q[0]);
-}
-
 void colmap_center(double center[3], const struct colmap_image *image)
 {
 	double R[3][3];

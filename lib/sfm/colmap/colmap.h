@@ -84,9 +84,8 @@ int colmap_kind_params(enum colmap_kind kind);
 /* The camera as a pinhole with OpenCV's distortion; *fx, *fy px. False, err set, for a lens that this cannot express. */
 bool colmap_to_camera(struct camera *out, double focal[2], const struct colmap_camera *camera, struct err *err);
 
-/* Rotation of a unit quaternion w x y z, and back (w >= 0). */
+/* Rotation of a unit quaternion w x y z. */
 void colmap_rotation(double R[3][3], const double q[4]);
-void colmap_quaternion(double q[4], const double R[3][3]);
 
 /* World coordinates of an image's camera centre. */
 void colmap_center(double center[3], const struct colmap_image *image);

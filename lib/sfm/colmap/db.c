@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "sfm/colmap/db_impl.h"
 
@@ -53,6 +54,19 @@ void db_close(struct db *db)
 	sqlite3_close(db->sql);
 	free(db->path);
 	free(db);
+}
+
+bool db_remove(const char *path, struct err *err)
+{
+	// Changes that were not written back yet belong to the database that goes, and to no other.
+	static const char *const ends[] = { "", "-wal", "-shm", "-journal" };
+	bool ok = true;
+	for (int i = 0; i < COUNT(ends); i++) {
+		char *file = mem_printf("%s%s", path, ends[i]);
+		ok = file_remove(file, err) && ok;
+		free(file);
+	}
+	return ok;
 }
 
 bool db_is_sound(const char *path)

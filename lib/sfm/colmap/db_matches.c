@@ -1,3 +1,5 @@
+#include "sfm/colmap/db_matches.h"
+
 #include <math.h>
 #include <sqlite3.h>
 #include <stdlib.h>
@@ -51,17 +53,6 @@ bool db_features(struct sfm_features *out, struct db *db, uint32_t image, struct
 	sqlite3_finalize(d);
 	sqlite3_finalize(k);
 	return ok;
-}
-
-bool db_has_pair(bool *has, struct db *db, uint32_t a, uint32_t b, struct err *err)
-{
-	sqlite3_stmt *s = db_prepare(db, "SELECT 1 FROM two_view_geometries WHERE pair_id=?1", err);
-	if (!s)
-		return false;
-	sqlite3_bind_int64(s, 1, key_of(a, b));
-	*has = sqlite3_step(s) == SQLITE_ROW;
-	sqlite3_finalize(s);
-	return true;
 }
 
 static bool put_matches(struct db *db, const struct db_pair *pair, struct err *err)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "sfm/colmap/parse.h"
+#include "sfm/colmap/parse_impl.h"
 
 static bool finite_within(int n, const double *x, double limit)
 {

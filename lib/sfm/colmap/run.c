@@ -1,10 +1,12 @@
+#include "sfm/colmap/run.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "base/run.h"
-#include "sfm/calibrate.h"
+#include "sfm/options.h"
 
 #define INSTALL "apt-get install colmap (or give the cameras in capture.conf and take views/ away)"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "sfm/colmap/parse.h"
+#include "sfm/colmap/parse_impl.h"
 
 /* Lines of a text, comments left out; words of a line. Nothing is copied: the text ends with a zero byte. */
 struct lines {

@@ -4,7 +4,7 @@
 #ifndef SFM_HEAD_FACES_H
 #define SFM_HEAD_FACES_H
 #include "sfm/head/sfm_eyes.h"
-#include "sfm/calibrate.h"
+#include "sfm/views.h"
 
 struct faces {
 	struct sfm_face *f;  // owned; sorted by image

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "sfm/head/eyes.h"
+#include "sfm/head/limbus_scale.h"
 
 /* Among adults (Dodgson 2004). */
 static const double eyes_apart_sigma_mm = 3.8;

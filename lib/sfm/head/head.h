@@ -2,7 +2,7 @@
 #ifndef SFM_HEAD_HEAD_H
 #define SFM_HEAD_HEAD_H
 #include "sfm/head/sfm_frame.h"
-#include "sfm/calibrate.h"
+#include "sfm/views.h"
 
 struct head {
 	struct colmap_model *model;

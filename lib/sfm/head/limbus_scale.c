@@ -1,4 +1,5 @@
-/* The scale from the eye itself: the visible iris has much the same width in all adults. */
+#include "sfm/head/limbus_scale.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +9,6 @@
 #include "image/photo/photo.h"
 #include "math/stats.h"
 #include "math/vec.h"
-#include "sfm/head/places.h"
 
 /* 11.7 mm, 0.5 mm s.d. among adults: of half of it, 0.25 mm. */
 static const double limbus_sigma_mm = 0.25;

@@ -15,14 +15,6 @@ static const double least_sigma = 0.002;
 /* px: how exactly a hand points, and how exactly a corner is found. */
 static const double hand_px = 1.5, corner_px = 0.3;
 
-bool view_is_named(const struct view *view, const char *name)
-{
-	char *own = view_name(view);
-	bool same = !strcmp(own, name);
-	free(own);
-	return same;
-}
-
 /* Index of the registered image of the view of that name; -1: none. *scale: picture px for a px of the photograph. */
 static int image_of(double *scale, const struct head *head, const struct views *views, const char *name)
 {

@@ -23,13 +23,6 @@ bool places_markers(struct places_lengths *out, const struct head *head, struct 
                     const struct calibrate_options *o, struct err *err);
 bool places_distances(struct places_lengths *out, const struct head *head, const struct views *views,
                       const struct calibrate_options *o, struct err *err);
-/* The limbus's horizontal diameter; `common`: the share of the sigma all have alike, for people differ. */
-bool places_limbus(struct places_lengths *out, double *common, const struct head *head, const struct views *views,
-                   const struct places_face *face, struct stage *stage, const struct calibrate_options *o, struct err *err);
-
-/* Whether capture.conf's NAME means this view: its file without folder and ending. */
-bool view_is_named(const struct view *view, const char *name);
-
 /* Points of the face: world. *found false where fewer than two registered views name it. which: column of the key. */
 bool places_point(double xyz[3], bool *found, const struct head *head, const struct views *views,
                   const struct opt_each_list *key, int which, struct err *err);

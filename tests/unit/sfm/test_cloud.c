@@ -5,6 +5,7 @@
 #include "math/vec.h"
 #include "sfm/cloud/cloud.h"
 #include "sfm/cloud/surface.h"
+#include "sfm/cloud/surface_colour.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/scenes/sfm_scene.h"
 #include "tests/lib/unit.h"

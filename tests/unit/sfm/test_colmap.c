@@ -115,7 +115,7 @@ static void test_rotations(void **state)
 		mat_mul(I, R, T);
 		for (int a = 0; a < 9; a++)
 			NEAR(I[a / 3][a % 3], a % 4 == 0, 1e-14);
-		colmap_quaternion(back, R);
+		sfm_quaternion(back, R);
 		double dot = 0;
 		for (int k = 0; k < 4; k++)
 			dot += q[k] * back[k];

@@ -131,7 +131,7 @@ static void a_head(void **state)
 		int k, l;
 		m.images[i] = (struct colmap_image){ .id = (uint32_t)i + 1, .name = mem_printf("%d", i), .seen = mem_new(1, sizeof *m.images->seen) };
 		drawn_head_camera(R, m.images[i].t, (i % 5 - 2) * 0.21, (i / 5 - 0.5) * 0.2, 600);
-		colmap_quaternion(m.images[i].q, R);
+		sfm_quaternion(m.images[i].q, R);
 		drawn_head_draw(rgb, &head, R, m.images[i].t, 1100, WIDTH, HEIGHT);
 		for (int p = 0; p < WIDTH * HEIGHT; p++)
 			grey[p] = rgb[3 * p + 1];

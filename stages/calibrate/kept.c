@@ -1,20 +1,10 @@
-#include "sfm/kept.h"
+#include "stages/calibrate/kept.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "base/record_holds.h"
-
-bool kept_remove_database(struct stage *stage, struct err *err)
-{
-	// Changes that were not written back yet belong to the database that goes, and to no other.
-	static const char *const ends[] = { "", "-wal", "-shm", "-journal" };
-	bool ok = true;
-	for (int i = 0; i < COUNT(ends); i++)
-		ok = file_remove(stage_path(stage, CALIBRATE_DIR "/database.db%s", ends[i]), err) && ok;
-	return ok;
-}
 
 static void say(void *ctx, const char *rel)
 {
