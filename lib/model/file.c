@@ -8,9 +8,9 @@
 #include "base/npy/npy.h"
 #include "model/model.h"
 
-/* The matrices: one .npy each, its shape by the model's counts. */
+/* The matrices: one .npy each; its shape follows from the model's counts. */
 enum { M_L0, M_K, M_L, M_U0, M_J, M_M, M_L0_S, M_L_S, M_U0_S, M_M_S, M_K_S, M_J_S, M_W_S, M_RMS, M_REACH_L, M_REACH_S, M_VERTICES, MATRICES };
-enum { MODEL_NUMBERS = 1 << 26 };  // of a matrix, before any of it is read
+enum { MODEL_NUMBERS = 1 << 26 };  // most numbers in a matrix; checked before any of it is read
 
 const char *const skin_model_files[] = { "model.json",         "model_l0.npy",         "model_K.npy",
 	                                     "model_L.npy",        "model_u0.npy",         "model_J.npy",

@@ -81,7 +81,7 @@ void skin_model_controls(double *controls, const struct skin_model *m, const dou
 	}
 }
 
-/* out[rows] = A[rows][columns + 1] [x; 1]; columns whose coefficient is 0 do not look at x, which may be NAN there. */
+/* out[rows] = A[rows][columns + 1] [x; 1]. Where a coefficient is 0, x may be NAN. */
 static void affine(double *out, int rows, int columns, const double *A, const double *x)
 {
 	for (int r = 0; r < rows; r++) {

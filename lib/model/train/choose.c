@@ -1,6 +1,6 @@
-/* How many components the model keeps. Those that carry little but noise are foretold by nothing, and as inputs of the skin's
- * regression they make it worse: of the configuration's numbers, the fewest are kept that no larger number beats in frames
- * held out. */
+/* Chooses how many components the model keeps, by cross-validation. Components that carry little but noise cannot be predicted, and
+ * as inputs of the skin's regression they make it worse: up to the configuration's numbers, the fewest are kept that no larger
+ * number beats in held-out frames. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,8 +8,9 @@
 #include "base/mem.h"
 #include "model/train/cv.h"
 
-static const double worth = 0.995, least_worth = 1e-9;  // what a larger number has to make of the error: half a per cent less, beyond rounding
+static const double worth = 0.995, least_worth = 1e-9;  // a larger number must lower the error by half a per cent, and beyond rounding
 
+/* error[k]: with k + 1 components. Returns a number of components, 1..most. */
 static int fewest(const double error[], int most)
 {
 	int best = 0;
@@ -21,7 +22,7 @@ static int fewest(const double error[], int most)
 	return best + 1;
 }
 
-/* The same frames with so many components of each eye's lids as inputs. x: free(). */
+/* The same frames with the first k (of most) components of each eye's lids as inputs. x: free(). */
 static struct cv with_lids(const struct cv *all, int most, int k)
 {
 	struct cv cv = *all;
@@ -37,7 +38,7 @@ static struct cv with_lids(const struct cv *all, int most, int k)
 	return cv;
 }
 
-/* Adds the skin's error with so many components of each eye's lids, 1..most. */
+/* Adds to error[k - 1] the skin's held-out error with k components of each eye's lids as inputs, k = 1..most. */
 static void add_skin(double error[], const struct train *t, int most)
 {
 	struct cv all = cv_new(t, TRAIN_SKIN);

@@ -1,4 +1,5 @@
-/* Cross-validation over blocks of time, on the sample: the ridge, figure 3.7's curves, the networks to compare with. */
+/* Cross-validation over blocks of time, on the sample: chooses the ridge, computes figure 3.7's curves, and trains the radial basis
+ * functions to compare with. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,6 +13,7 @@ static const int functions[] = { 10, 20, 40, 80 };
 static const double widths[] = { 1, 2, 4, 8 }, rbf_ridges[] = { 1e-7, 1e-5, 1e-3 };
 enum { RBFS = COUNT(functions) * COUNT(widths) * COUNT(rbf_ridges) };
 
+/* Scores y[m][R] of all frames, predicted by the linear model fitted with weights w. free(). */
 static double *predict_linear(const struct cv *cv, const double *w, double ridge)
 {
 	int q = cv->q, R = cv->R;
@@ -35,7 +37,7 @@ static double *predict_linear(const struct cv *cv, const double *w, double ridge
 	return y;
 }
 
-/* All ridges and the components alone; fold by fold. */
+/* Held-out errors with every ridge, and of the projection onto the components (pca), fold by fold. */
 static void linear_errors(struct errors of[COUNT(ridges)], struct errors *pca, const struct cv *cv)
 {
 	int R = cv->R;
@@ -56,7 +58,7 @@ static void linear_errors(struct errors of[COUNT(ridges)], struct errors *pca, c
 	}
 }
 
-/* Rows of y that fold f is tested with. */
+/* Predicts the rows of y that fold f is tested with; the others are left as they are. */
 static void predict_fold(double *y, const struct rbf *rbf, const struct cv *cv, int f)
 {
 	for (long i = 0, n; i < cv->m; i += n) {
@@ -105,7 +107,7 @@ static void rbf_errors(struct errors of[RBFS], const struct cv *cv)
 	}
 }
 
-/* The one of n with the least error at the components kept; a later one must be better by half a per cent. */
+/* Index of the method with the least error with k + 1 components; a later one must be better by half a per cent. */
 static int best_of(int n, const struct errors of[], int folds, int k)
 {
 	int best = 0;
@@ -120,7 +122,8 @@ static void curve_of(double *out, double *sigma, const struct errors *e, int fol
 	for (int k = 0; k < e->K; k++)
 		out[k] = errors_normalised(e, folds, k, sigma ? &sigma[k] : 0);
 }
-/* Squared px of the best model's held-out errors into a root mean square a coordinate. */
+
+/* Root mean square held-out error of one coordinate with kept + 1 components, px. */
 static double held_out_px(const struct errors *e, const struct cv *cv, int kept)
 {
 	double sum = 0, weight = 0;

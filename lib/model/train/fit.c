@@ -1,4 +1,4 @@
-/* Components and regressions of the whole clip, out of its scatters; what follows from them. */
+/* Components and regressions of the whole clip, from its scatters. */
 #include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +10,7 @@
 
 enum { MOST_COMPONENTS = 40 };
 
+/* A part's principal components (V_all, sd_all), and what the report says of them. */
 static void components(struct train *t, int p)
 {
 	struct part *part = &t->part[p];
@@ -99,8 +100,8 @@ static void fit_lids(struct train *t, int eye)
 	free(zero);
 }
 
-/* A component of the lids so much smaller than the largest, standard deviations, drowns in the rounding of squares: it would
- * get slopes of any size. It tells nothing of the skin. */
+/* Lid components with a standard deviation below 1e-7 of the largest are lost in the rounding of squares and would get slopes of any
+ * size: they are taken out of the skin's regression. */
 static void leave_unresolved(double *Gxx, double *Gxy, int n_lid_pc, int q, int ne)
 {
 	const double least = 1e-7;
@@ -116,7 +117,8 @@ static void leave_unresolved(double *Gxx, double *Gxy, int n_lid_pc, int q, int 
 	}
 }
 
-/* Cross moments of [lids, action units] with themselves and with the skin's components, lids in theirs. */
+/* Centred cross moments of the regressors [lid scores, action units] with themselves (Gxx) and with the skin's scores (Gxy); means mx
+ * of the regressors. */
 static void skin_moments(double *Gxx, double *Gxy, double *mx, const struct train *t)
 {
 	const struct skin_model *m = t->model;
@@ -179,7 +181,8 @@ static void fit_skin(struct train *t)
 	free(zero);
 }
 
-/* Equation 3.9 against equations 3.7, 3.2 and 3.3 one after the other, over the sample's controls. */
+/* Largest difference, px, between the folded equation 3.9 and equations 3.7, 3.2 and 3.3 one after the other, over the sample's
+ * controls. */
 static double folding_error(const struct train *t)
 {
 	const struct skin_model *m = t->model;

@@ -46,7 +46,7 @@ double *train_regressors(const struct train *t, int p, int *q)
 		const double *g = t->g + t->sample[i] * m->n_inputs;
 		double *to = x + i * *q;
 		for (int k = 0; k < EYE_INPUTS && p != TRAIN_SKIN; k++)
-			to[k] = isnan(g[EYE_INPUTS * p + k]) ? 0 : g[EYE_INPUTS * p + k];  // such frames weigh nothing
+			to[k] = isnan(g[EYE_INPUTS * p + k]) ? 0 : g[EYE_INPUTS * p + k];  // such frames have weight 0
 		if (p != TRAIN_SKIN)
 			continue;
 		for (int e = 0; e < 2; e++)
@@ -59,7 +59,8 @@ double *train_regressors(const struct train *t, int p, int *q)
 	return x;
 }
 
-/* Gaussians see distances: angles share one scale, apertures another, lid components the largest one's. */
+/* Radial basis functions measure distances: angles are divided by one common scale, apertures by another, lid components by that of
+ * the largest. [m][q], free(). */
 static double *comparable(const struct cv *cv, int p)
 {
 	double *x = mem_array((size_t)cv->m * (size_t)cv->q + 1, sizeof *x), *sd = mem_new((size_t)cv->q + 1, sizeof *sd);
@@ -93,8 +94,8 @@ void cv_shuffle(struct cv *cv)
 		cv->fold[i] = rng_below(&rng, cv->folds);
 }
 
-/* An expression that was shown once cannot be foretold by a model that has not seen it: frames with more of one than twice
- * what the other folds show are not asked about. */
+/* A model cannot predict an expression that its training frames do not show: frames with more than twice the strength that the other
+ * folds show are not held out. */
 static void leave_unshown(struct cv *cv, int n_au)
 {
 	double *most = mem_array((size_t)cv->folds, sizeof *most);

@@ -14,7 +14,7 @@ static bool is_aperture(int input)
 	return input < SKIN_EYE_INPUTS && input % EYE_INPUTS >= 3;
 }
 
-/* One input over time: gaps of at most `longest` s are bridged linearly, at the ends the nearest value is held. */
+/* Interpolates one input over gaps of at most `longest` s, linearly; at the ends the nearest value is held. */
 static void bridge(double *g, int stride, const struct train_clip *clip, double longest)
 {
 	long before = -1;
@@ -48,6 +48,7 @@ static void set_column(struct train *t, int input, double value)
 		t->g[i * t->model->n_inputs + input] = value;
 }
 
+/* Range and mean of an input as measured, into the model. */
 static void range_of(struct train *t, int input)
 {
 	struct skin_model *m = t->model;
@@ -66,6 +67,7 @@ static void range_of(struct train *t, int input)
 	m->mean[input] = n > 0 ? sum / n : NAN;
 }
 
+/* Action units: one that is never shown is set to 0, with a warning; not measured counts as 0. */
 static void expressions(struct train *t)
 {
 	struct skin_model *m = t->model;
@@ -116,7 +118,8 @@ static int by_iota(const void *a, const void *b)
 	return x->iota != y->iota ? (x->iota > y->iota) - (x->iota < y->iota) : (x->frame > y->frame) - (x->frame < y->frame);
 }
 
-/* Equation 3.6 over the eyes that are there, of frames in which both their apertures are measured. */
+/* Openness iota (equation 3.6, as corrected in tests/ERRATA.md) of the frames in which the apertures of all modelled eyes are measured,
+ * sorted from closed to open. Returns how many. */
 static long closures(struct closure *out, const struct train *t)
 {
 	long n = 0;
@@ -133,7 +136,7 @@ static long closures(struct closure *out, const struct train *t)
 	return n;
 }
 
-/* Mean of every aperture over those frames; *sigma: their standard deviation, of all apertures together. */
+/* Mean of every aperture over n frames; *sigma: standard deviation of one frame, pooled over the apertures. */
 static void mean_apertures(double out[SKIN_EYE_INPUTS], double *sigma, const struct train *t, long n,
                            const struct closure *of)
 {
@@ -151,6 +154,7 @@ static void mean_apertures(double out[SKIN_EYE_INPUTS], double *sigma, const str
 	*sigma = count > 0 ? sqrt(squares / count) : NAN;
 }
 
+/* Frames in which gaze alone opens the eye, of one lid. */
 struct calm {
 	long n;
 	double *x, *y;  // [n][2] g1 g2, [n] control
@@ -158,8 +162,8 @@ struct calm {
 	double *w, *r;
 };
 
-/* a: slopes and constant of y over x by Huber's weights (1.345 sigma), without one block (-1: all). An eye that did not
- * move gets a constant. */
+/* Slopes and constant a of y over x by iteratively reweighted least squares with Huber weights (1.345 sigma), without one block (-1:
+ * all). An eye that did not move gets a constant. */
 static void baseline_fit(double a[3], struct calm *c, int without)
 {
 	double Gxx[4], Gxy[2], mx[2], my;
@@ -179,7 +183,7 @@ static void baseline_fit(double a[3], struct calm *c, int without)
 	}
 }
 
-/* With standard errors by the jackknife over blocks of time. */
+/* The same with standard errors, by the jackknife over blocks of time. */
 static void baseline_with_sigma(double a[3], double sigma[3], struct calm *c, int blocks)
 {
 	double sum[3] = { 0 }, squares[3] = { 0 };
@@ -196,7 +200,7 @@ static void baseline_with_sigma(double a[3], double sigma[3], struct calm *c, in
 	baseline_fit(a, c, -1);
 }
 
-/* Whether the eye is open in that frame as gaze alone opens it: no blink, no expression. */
+/* Whether gaze alone opens the eye in that frame: no blink, no expression. usual: median opening, px. */
 static bool is_calm(const struct train *t, const double *g, int eye, double usual)
 {
 	bool calm = g[5 * eye + 3] + g[5 * eye + 4] > 0.6 * usual && !isnan(g[5 * eye] + g[5 * eye + 1]);
@@ -205,6 +209,7 @@ static bool is_calm(const struct train *t, const double *g, int eye, double usua
 	return calm;
 }
 
+/* Median opening of an eye over the clip, px. */
 static double usual_opening(const struct train *t, int eye)
 {
 	double *sum = mem_array((size_t)t->clip->n + 1, sizeof *sum);
@@ -219,7 +224,7 @@ static double usual_opening(const struct train *t, int eye)
 	return usual;
 }
 
-/* Equation 3.11 from the calm frames; at most as many as a sample has, spread evenly. */
+/* Fits equation 3.11 to calm frames, at most as many as a sample has, spread evenly. */
 static void baseline(struct train *t, int eye)
 {
 	struct skin_model *m = t->model;
@@ -253,8 +258,8 @@ static void baseline(struct train *t, int eye)
 	free(controls);
 }
 
-/* A lid that moves with the gaze rather than with the opening stands at almost the same place in the shut and in the wide
- * eye: equation 3.7 would divide by nothing. Its range is then what it covers in the clip. */
+/* A lid that moves with the gaze rather than with the opening stands at almost the same place in the closed and in the open eye, and
+ * equation 3.7 would divide by almost 0. Its range then becomes that of 90 % of the clip. */
 static void widen(struct train *t)
 {
 	struct skin_model *m = t->model;

@@ -11,8 +11,8 @@
 #include "model/train/impl.h"
 
 enum { CHUNK = 64, IRLS_STEPS = 10 };
-static const double settled = 0.01;  // change of any weight
-static const double smallest_distance = 1e-4;  // of the motion: below that, numbers agree to rounding of their files
+static const double settled = 0.01;  // largest change of a weight at which the iteration ends
+static const double smallest_distance = 1e-4;  // over the motion's size: nearer, frames agree to the rounding of their files
 
 void part_free(struct part *p)
 {
@@ -33,8 +33,8 @@ static bool is_missing(const struct part *p, int i, double c)
 	return p->seen[i] && !(c > 0);
 }
 
-/* Scores of one row of which some numbers are missing: the most probable ones under the pilot's normal distribution
- * (Tipping and Bishop 1999), s = (V'V + noise^2 / variance)^-1 V'y over what is there. s holds V'y. */
+/* Scores of one frame with missing numbers: the most probable ones under the pilot's normal distribution (probabilistic principal
+ * components, Tipping and Bishop 1999), s = (V'V + noise^2 / variance)^-1 V'y over the numbers measured. s[k]: V'y in, s out. */
 static void solve_scores(double *s, const struct part *p, const double *c)
 {
 	double A[PILOT_COMPONENTS][PILOT_COMPONENTS] = { 0 };
@@ -52,7 +52,7 @@ static void solve_scores(double *s, const struct part *p, const double *c)
 	chol_solve(k, PILOT_COMPONENTS, A[0], s);
 }
 
-/* fit[m][n]: what the pilot makes of each row's measured numbers. */
+/* fit[m][n], out: each frame projected onto the pilot, from its measured numbers. */
 static void fit_rows(double *fit, const struct part *p, int m, const double *x, const double *c)
 {
 	int n = p->n, k = p->k;
@@ -79,7 +79,7 @@ static void fit_rows(double *fit, const struct part *p, int m, const double *x, 
 	free(missing);
 }
 
-/* Distance of a row from its fit over what is measured of it. */
+/* Weighted root mean square distance d of a frame's measured numbers from its fit; share of its numbers measured. */
 static void distance(double *d, double *share, const struct part *p, const double *x, const double *fit, const double *c)
 {
 	double sum = 0, weight = 0, seen = 0, all = 0;
@@ -106,7 +106,7 @@ static bool all_measured(const struct part *p, int m, const double *c)
 	return true;
 }
 
-/* Nothing is missing in these rows: their distance is what their scores leave of their length. */
+/* The same for frames without missing numbers, faster: the squared distance is the squared length less that of the scores. */
 static void measure_chunk(const struct part *p, int m, double *x, double *d, double *share)
 {
 	int n = p->n, k = p->k, seen = 0;
@@ -172,7 +172,7 @@ double part_weight(const struct part *p, const struct train_conf *conf, double d
 	return ratio <= conf->huber ? 1 : ratio > conf->trim ? 0 : conf->huber * conf->huber / ratio / ratio;
 }
 
-/* A number missing for a while lies between those before and after it: a beginning. */
+/* Interpolates gaps of one coordinate over time: the first guess of the missing numbers. */
 static void bridge(const struct part *p, int i, long m, double *x, const double *c)
 {
 	long before = -1, n = p->n;
@@ -187,7 +187,7 @@ static void bridge(const struct part *p, int i, long m, double *x, const double 
 	}
 }
 
-/* Which coordinates are measured often enough; the median of each; the others are 0 and stay so. */
+/* Finds the coordinates that are measured often enough and starts at their medians; the others become 0 and stay so. */
 static void begin_pilot(struct part *p, long m, double *x, double *c, const struct train_conf *conf)
 {
 	double *column = mem_array((size_t)m + 1, sizeof *column);
@@ -206,7 +206,8 @@ static void begin_pilot(struct part *p, long m, double *x, double *c, const stru
 	free(column);
 }
 
-/* The k directions of largest scatter of m < n rows, out of their m x m products; lambda: sums of squares. */
+/* The k directions of largest scatter of m weighted rows, from the eigenvectors of their m x m inner products. lambda[k], out: sums
+ * of squares along them. */
 static void components(struct part *p, double *lambda, long m, const double *x, const double *w)
 {
 	int n = p->n, rows = (int)m, k = p->k, found = 0;
@@ -234,7 +235,8 @@ static void components(struct part *p, double *lambda, long m, const double *x, 
 	free(support);
 }
 
-/* A frame that makes a component by itself has no distance from it: what it has inside the components then counts. */
+/* A frame of high leverage pulls a component onto itself and then has no distance from it: its length inside the components is added
+ * to its distance. */
 static void add_leverage(struct part *p, double *d, const double *lambda, long m, const double *x, const double *w)
 {
 #pragma omp parallel for
@@ -264,8 +266,8 @@ static void weighted_mean(struct part *p, long m, const double *x, const double 
 			p->mean[i] += w[r] / sum * x[r * p->n + i];
 }
 
-/* Spherical principal components (Locantore et al. 1999) to begin with: every frame weighs one direction, however far
- * out it is. */
+/* Weights of spherical principal components (Locantore et al. 1999), where the iteration starts: every frame counts by its direction
+ * alone, however far out it is. */
 static void spherical(const struct part *p, double *w, long m, const double *x)
 {
 	for (long r = 0; r < m; r++) {
@@ -276,7 +278,8 @@ static void spherical(const struct part *p, double *w, long m, const double *x)
 	}
 }
 
-/* Of each component in one frame. spread > 0: w are those of spherical components, which leave only proportions. */
+/* Variance of a frame along each component. spread > 0: w are spherical weights, which give proportions only; spread, the sum of
+ * squares about the medians, gives the size. */
 static void set_variance(struct part *p, const double *lambda, long m, const double *w, double spread)
 {
 	double weight = 0;

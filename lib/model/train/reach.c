@@ -1,6 +1,6 @@
-/* What the clip does not tell: inputs of its own frames that no frame with a weight is like. Frames of lids that were lost,
- * or unlike all others, do not count; if nothing else shows a gaze or an opening like theirs, the regressions have no slope in
- * that direction, and neither held-out frames nor the jackknife show it. */
+/* Finds frames of the clip at which the model extrapolates, by the leverage of their inputs (Hoaglin and Welsch 1978). Frames whose
+ * lids were lost, or outliers, have no weight; where no other frame shows a similar gaze or opening, the regressions have no slope in
+ * that direction, and neither the held-out error nor the jackknife reveals it. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,15 +8,15 @@
 #include "math/regress.h"
 #include "model/train/impl.h"
 
-static const double least_share = 1e-6;   // of its mean: an input that varies less is constant
+static const double least_share = 1e-6;   // of an input's mean: one that varies less is constant
 static const double least_action = 0.05;  // of an expression's strength: less is noise
 
-/* Inputs from..from+n-1 of all, the first columns of sum. */
+/* Leverage factor (regress_reach) of the inputs from..from+n-1, which are the first n columns of sum. */
 static void set_reach(double *reach, const struct scatter *sum, int from, int n)
 {
 	double *Gxx = mem_new((size_t)(n * n) + 1, sizeof *Gxx), *least = mem_new((size_t)n + 1, sizeof *least);
 	for (int i = 0; i < n; i++) {
-		double size = fabs(sum->mean[i]);  // 0 throughout: not measured, nothing depends on it
+		double size = fabs(sum->mean[i]);  // 0 throughout: not measured, the model does not depend on it
 		least[i] = from + i >= SKIN_EYE_INPUTS ? least_action : size > 0 ? least_share * size : INFINITY;
 	}
 	scatter_cross(Gxx, sum, 0, n, 0, n);
@@ -25,7 +25,7 @@ static void set_reach(double *reach, const struct scatter *sum, int from, int n)
 	free(least);
 }
 
-/* A line of the frames that lie outside for this part: how many, and the longest run of them. */
+/* Warns of a part's extrapolated frames: how many, and the longest run of them. */
 static void tell(struct train *t, int part, const bool *outside)
 {
 	static const char *const what[TRAIN_PARTS] = { "the left eye's lids are", "the right eye's lids are", "the skin is" };
@@ -64,7 +64,7 @@ void train_reach(struct train *t)
 		skin_model_leverage(h, m, t->g + i * m->n_inputs);
 		for (int p = 0; p < TRAIN_PARTS; p++)
 			outside[p][i] = t->part[p].used && h[p] > SKIN_REACH;
-		// Skin that follows lids which are a guess is no second finding.
+		// Skin follows the lids: where these are extrapolated already, that is reported once.
 		outside[TRAIN_SKIN][i] = outside[TRAIN_SKIN][i] && !outside[TRAIN_LEFT][i] && !outside[TRAIN_RIGHT][i];
 	}
 	for (int p = 0; p < TRAIN_PARTS; p++) {

@@ -7,6 +7,7 @@
 
 static const double farthest = 1e6;  // px: nothing in a picture is further away
 
+/* A number and its confidence; NAN and 0 where it is not measured. */
 static inline void keep_if_measured(double *x, double *c, double to, double belief)
 {
 	bool ok = fabs(to) <= farthest && belief > 0;
@@ -14,7 +15,7 @@ static inline void keep_if_measured(double *x, double *c, double to, double beli
 	*c = !ok ? 0 : belief < 1 ? belief : 1;
 }
 
-/* Points that all lie in the very same place are no lids and no skin: what a tracker writes that has nothing to write. */
+/* Whether all measured points lie in the very same place: some trackers write that when they have lost the part. */
 static bool collapsed(int n, const double *x, const double *c)
 {
 	double place[2] = { NAN, NAN };

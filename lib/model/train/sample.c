@@ -1,4 +1,4 @@
-/* The bounded sample of frames, pilots, and what becomes of rows before they count. */
+/* Draws the sample, estimates the pilots, and weighs frames. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +31,7 @@ void frames_free(struct frames *f)
 	}
 }
 
-/* How much of the part the frames show: a part hardly ever seen is not modelled. */
+/* Decides which parts are modelled: those of which most coordinates were measured often enough (of the skin, any). */
 static void set_used(struct train *t)
 {
 	for (int p = 0; p < TRAIN_PARTS; p++) {
@@ -57,7 +57,7 @@ void train_weigh(const struct train *t, struct frames *f, long n, const long *fr
 			bool known = f->share[p][i] >= TRAIN_LEAST_SHARE;
 			for (int k = 0; k < EYE_INPUTS; k++)
 				known = known && !isnan(g[EYE_INPUTS * p + k]);
-			// A closed eye has no gaze of its own to be confident of, but its lids are what a blink is learnt from.
+			// The gaze of a closed eye is not measured and has no confidence, but the blink is learnt from its lids.
 			trust = isnan(trust) || isnan(t->clip->g[frame[i] * t->model->n_inputs + EYE_INPUTS * p]) ? 1 : fmax(0, fmin(trust, 1));
 			f->w[p][i] = t->part[p].used && known ? trust * part_weight(&t->part[p], t->conf, f->d[p][i]) : 0;
 			lids = lids && (!t->part[p].used || f->share[p][i] >= TRAIN_LEAST_SHARE);
@@ -67,8 +67,8 @@ void train_weigh(const struct train *t, struct frames *f, long n, const long *fr
 	}
 }
 
-/* Time blocks of conf->block_s, but at least four for every fold where they hold four frames each; the first guard_s of each
- * belong to none. */
+/* Divides the sample into time blocks of conf->block_s; of a short clip, into four for every fold, of at least four frames each. The
+ * first guard_s of each block belong to none (-1). */
 static void set_blocks(struct train *t)
 {
 	const double *time = t->clip->time;
@@ -83,7 +83,7 @@ static void set_blocks(struct train *t)
 	}
 }
 
-/* The sample's frame i as row `at` of f. */
+/* Reads the sample's frame i into row `at` of f. */
 static bool read_into(struct frames *f, long at, struct train *t, long i, struct err *err)
 {
 	double *x[TRAIN_PARTS], *c[TRAIN_PARTS];
@@ -94,7 +94,7 @@ static bool read_into(struct frames *f, long at, struct train *t, long i, struct
 	return train_read(t, t->sample[i], 1, x, c, err);
 }
 
-/* The pilots from every few of the sample's frames. */
+/* Estimates the pilots from at most PILOT_FRAMES of the sample's frames. */
 static bool pilots(struct train *t, struct err *err)
 {
 	long step = (t->n_sample + PILOT_FRAMES - 1) / PILOT_FRAMES, m = 0;

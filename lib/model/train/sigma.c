@@ -1,6 +1,6 @@
-/* Standard errors by the jackknife over blocks of time (Tukey; Kuensch 1989 for dependent data): everything is fitted
- * again without one block of the sample after the other. Neighbouring frames fall into the same block and do not pass
- * for independent measurements. And what each vertex shows that its block's model did not foresee. */
+/* Standard errors by the delete-a-block jackknife (Tukey; Kuensch 1989 for dependent data): the model is fitted again to the sample
+ * without each block of time in turn. Neighbouring frames fall into the same block, so they do not count as independent
+ * measurements. The frames left out also give each vertex's held-out error. */
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
@@ -25,7 +25,7 @@ static struct jack jack_new(size_t n)
 	return (struct jack){ n, 0, mem_new(n + 1, sizeof(double)), mem_new(n + 1, sizeof(double)) };
 }
 
-/* Around `origin`, so that squares of large means cost no digits. */
+/* Adds a replicate x[n], relative to `origin` so that squares of large means cost no digits. */
 static void jack_add(struct jack *j, const double *x, const double *origin)
 {
 	for (size_t i = 0; i < j->n; i++) {
@@ -92,7 +92,7 @@ static void replica_free(struct replica *r)
 	free(r->mean);
 }
 
-/* Components without the block: those of the scores' moments G, signs as in the whole clip's. */
+/* Principal components without the block, from the scores' moments G; signs as in the whole clip's. */
 static void refit_components(struct replica *r, const struct part *part, double *G, double weight)
 {
 	int R = r->R, n = part->n, k = r->kept < R ? r->kept : R;
@@ -109,7 +109,7 @@ static void refit_components(struct replica *r, const struct part *part, double 
 	free(z);
 }
 
-/* The part fitted to the frames with weights w. */
+/* Fits the part to the frames with weights w. */
 static void refit(struct replica *r, const struct train *t, int p, const double *w)
 {
 	const struct part *part = &t->part[p];
@@ -146,7 +146,7 @@ static void add_replica(struct replica *r, const struct train *t, int p)
 	free(V);
 }
 
-/* Squared held-out errors of every vertex in the frames of the block, at the components kept. */
+/* Adds each vertex's weighted squared error in the frames left out, with the components kept. */
 static void add_vertex_errors(double *error, double *weight, const struct train *t, const struct replica *r, const bool *out)
 {
 	const struct part *part = &t->part[TRAIN_SKIN];
@@ -171,6 +171,7 @@ static void add_vertex_errors(double *error, double *weight, const struct train 
 	free(e);
 }
 
+/* Standard errors of components and means into the model. */
 static void collect(struct train *t, struct replica *r)
 {
 	struct skin_model *m = t->model;
@@ -194,7 +195,7 @@ static void collect(struct train *t, struct replica *r)
 
 void train_sigmas(struct train *t)
 {
-	struct skin_model *m = t->model, again = *m;  // the same components with other regressions
+	struct skin_model *m = t->model, again = *m;  // again: the same components with the replicate's regressions
 	int groups = (int)fmin(GROUPS, (double)t->n_sample / 4), nW = m->n_skin_pc * (m->n_inputs + 1);
 	size_t nL = (size_t)(m->n_lid_pc * (SKIN_EYE_INPUTS + 1)), nM = (size_t)(m->n_skin_pc * (m->n_lid + m->n_au + 1));
 	double *W = mem_new((size_t)nW + 1, sizeof *W), *W0 = mem_new((size_t)nW + 1, sizeof *W0), seen = 0;

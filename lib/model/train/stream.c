@@ -1,5 +1,5 @@
-/* The pass over all frames: a block is read, its rows are filled in, weighed and laid out a few at a time, as they fit the
- * caches, then summed. */
+/* The pass over all frames. Block by block, frames are read, then filled in, weighed and laid out as rows of the scatters, a few at a
+ * time so that they stay in the caches, then summed. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,9 +7,9 @@
 #include "base/mem.h"
 #include "model/train/impl.h"
 
-enum { LONG_CLIP = 8192, ROWS = 32 };  // frames from which on speed counts; of one thread at a time
+enum { LONG_CLIP = 8192, ROWS = 32 };  // frames from which the faster split scatter is used; frames that a thread takes at a time
 
-/* What a block holds of its rows: as read; weight, share measured and distance from the pilot by part. */
+/* A block of frames: as read; weight, share measured and distance from the pilot by part. */
 struct block {
 	long at, n;
 	double *lid, *skin, *seen;
@@ -44,7 +44,8 @@ static void block_free(struct block *b)
 	free(b->w_inputs);
 }
 
-/* Rows from `to` on of the parts' scatters: inputs or lids, then coordinates. */
+/* Writes n frames as rows `to`.. of the parts' scatters: regressors (inputs; for the skin lids and action units), then
+ * coordinates. */
 static void assemble(struct train *t, long to, const struct frames *f, long n, const long *frame)
 {
 	int n_in = t->model->n_inputs, n_au = t->clip->n_au;
@@ -66,7 +67,7 @@ static void assemble(struct train *t, long to, const struct frames *f, long n, c
 	}
 }
 
-/* Rows from `to` on of the inputs' scatter; those of an eye that is not learnt stay 0. */
+/* Writes n frames as rows `to`.. of the inputs' scatter; inputs of an eye that is not modelled are 0. */
 static void add_inputs(struct train *t, struct block *b, long to, const double *w_skin, long n)
 {
 	int n_in = t->model->n_inputs;
@@ -84,7 +85,7 @@ static void add_inputs(struct train *t, struct block *b, long to, const double *
 	}
 }
 
-/* Rows at..at+n-1 of the block: from numbers read to numbers to be summed. f: room for ROWS frames. */
+/* Turns frames at..at+n-1 of the block, as read, into rows to be summed. f: room for ROWS frames. */
 static void prepare(struct train *t, struct block *b, long at, long n, struct frames *f)
 {
 	long frame[ROWS];

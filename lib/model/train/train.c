@@ -7,6 +7,7 @@
 #include "math/linalg.h"
 #include "model/train/impl.h"
 
+/* Whether the clip is long enough and fits into the memory allowed. */
 static bool check(const struct train_clip *clip, const struct train_conf *conf, struct err *err)
 {
 	double p = SKIN_LIDS * clip->n_points * 2 + clip->n_au + 2.0 * clip->n_vertices, sample = fmin(conf->sample, (double)clip->n);
@@ -33,6 +34,7 @@ static bool enough_frames(struct train *t, struct err *err)
 	return true;
 }
 
+/* Sizes of the model and of its parts. */
 static void set_up(struct train *t)
 {
 	const struct train_clip *clip = t->clip;
