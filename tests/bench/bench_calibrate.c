@@ -5,7 +5,6 @@
  * CALIBRATE_SETS="small defaults review more final mesh fountain" (any of them) measures a part. --quick: the reading of
  * COLMAP's files alone. Run from the top of the checkout.
  */
-#include <ftw.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,19 +16,12 @@
 #include "base/run.h"
 #include "sfm/colmap/colmap.h"
 #include "tests/lib/bench/bench.h"
-#include "tests/peers/colmap_defaults.h"
-#include "tests/lib/scenes/sfm_scene.h"
-#include "tests/peers/sweep.h"
 #include "tests/lib/capture/views_capture.h"
+#include "tests/lib/scenes/sfm_scene.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/truth/views_truth.h"
-
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
-{
-	(void)st;
-	(void)kind;
-	(void)ftw;
-	return remove(path);
-}
+#include "tests/peers/colmap_defaults.h"
+#include "tests/peers/sweep.h"
 
 static bool wanted(const char *set)
 {
@@ -184,14 +176,16 @@ static void quality_set(struct spent *s, const char *root, const char *images, c
 
 static void head_set(const char *data)
 {
-	char root[] = "/tmp/eyewright-bench-XXXXXX", *images = mem_printf("%s/images", data);
+	const char *root = scratch_open();
+	char *images = mem_printf("%s/images", data);
 	struct views_truth truth = { 0 };
 	struct sweep_points surface = { 0 };
 	struct spent s;
 	struct err err = { 0 };
-	if (!mkdtemp(root) || !views_truth_load(&truth, data, &err)
+	if (!views_truth_load(&truth, data, &err)
 	    || (wanted("mesh") && (wanted("review") || wanted("final")) && !sweep(&surface, &truth, images, 6, 128, &err))) {
 		fprintf(stderr, "%s\n", err.msg);
+		scratch_close();
 		free(images);
 		return;
 	}
@@ -210,7 +204,7 @@ static void head_set(const char *data)
 	if (getenv("CALIBRATE_KEEP"))
 		printf("all of it stands in %s\n", root);
 	else
-		nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+		scratch_close();
 	free(images);
 	sweep_free(&surface);
 	views_truth_free(&truth);
@@ -219,14 +213,15 @@ static void head_set(const char *data)
 /* Strecha et al. 2008: eleven photographs of a fountain, 15 m across, cameras from a laser scan; at half their resolution. */
 static void fountain(const char *data)
 {
-	char root[] = "/tmp/eyewright-bench-XXXXXX", *images = mem_printf("%s/images", data), *cameras = mem_printf("%s/gt_dense_cameras", data);
+	const char *root = scratch_open();
+	char *images = mem_printf("%s/images", data), *cameras = mem_printf("%s/gt_dense_cameras", data);
 	char *path = mem_printf("%s/work/rig.json", root);
 	struct views_truth truth = { 0 };
 	struct views_fit fit;
 	struct camera_rig rig = { 0 };
 	struct spent s;
 	struct err err = { 0 };
-	bool ok = mkdtemp(root) && views_truth_load_cameras(&truth, cameras, &err);
+	bool ok = views_truth_load_cameras(&truth, cameras, &err);
 	free(path);
 	path = mem_printf("%s/work/rig.json", root);
 	ok = ok && views_capture(root, images, 0, 0, "quality = review\ncalibrate.picture_px = 1536\n", &err)
@@ -238,7 +233,7 @@ static void fountain(const char *data)
 		bench_goal("fountain, registered of 11", "all", fit.n, "", fit.n == truth.n);
 	} else
 		fprintf(stderr, "%s\n", err.msg);
-	nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+	scratch_close();
 	camera_rig_free(&rig);
 	views_truth_free(&truth);
 	free(path);
@@ -258,11 +253,9 @@ static void load_model(void *ctx)
 /* A model of 60 pictures and 2000 points that all of them see. */
 static void reading(void)
 {
-	char root[] = "/tmp/eyewright-bench-XXXXXX";
+	const char *root = scratch_open();
 	struct colmap_model m;
 	struct err err = { 0 };
-	if (!mkdtemp(root))
-		return;
 	sfm_scene(&m, 60, 2000, 1);
 	for (int format = 0; format < 2; format++) {
 		char *dir = mem_printf("%s/%d", root, format);
@@ -274,7 +267,7 @@ static void reading(void)
 		free(dir);
 	}
 	colmap_free(&m);
-	nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+	scratch_close();
 }
 
 int main(int argc, char **argv)

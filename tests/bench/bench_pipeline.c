@@ -1,7 +1,6 @@
 /* The whole chain, as a user runs it: make on each rendered capture with truth; time, memory, and error of what came
  * out: limbus ellipse, optical axis, unrefracted position. Run from the top of the checkout.
  */
-#include <ftw.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,17 +15,10 @@
 #include "bridge/cv_photo.h"
 #include "image/exr.h"
 #include "tests/lib/bench/bench.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/truth/truth.h"
 
 enum { MAX_CAPTURES = 64, LIMIT_PX = 1 << 26 };
-
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
-{
-	(void)st;
-	(void)kind;
-	(void)ftw;
-	return remove(path);
-}
 
 static double now_s(void)
 {
@@ -244,15 +236,16 @@ static void goal(const char *measure, double *values, int n, double q, double ba
 int main(int argc, char **argv)
 {
 	bench_open("pipeline", argc, argv);
-	char *dirs[MAX_CAPTURES], root[] = "/tmp/eyewright-bench-XXXXXX";
+	char *dirs[MAX_CAPTURES];
 	int n = truth_captures(dirs, MAX_CAPTURES);
 	struct errors e = { 0 };
 	struct truth t;
 	struct err err = { 0 };
-	if (!n || !mkdtemp(root)) {
+	if (!n) {
 		printf("no captures with truth: nothing measured\n");
 		return bench_close();
 	}
+	const char *root = scratch_open();
 	if (truth_load(&t, dirs[n - 1], &err)) {
 		if (!bench_quick())
 			time_chain(&t, root, "draft", 2);
@@ -277,6 +270,6 @@ int main(int argc, char **argv)
 	goal("optical axis, worst", e.axis_deg, e.n, 1, 2, "deg");
 	goal("unrefracted position, median of the worst capture", e.map_median, e.n_map, 1, 0.03, "mm");
 	goal("unrefracted position, 95 % of the worst capture", e.map_95, e.n_map, 1, 0.1, "mm");
-	nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+	scratch_close();
 	return bench_close();
 }

@@ -1,7 +1,6 @@
 /* bench_skin: the whole skin column as a user runs it: a video of 300 frames, a mesh, a character of 14 000 vertices; make;
  * time by stage, and the error of what came out against the capture's own truth. Run from the top of the checkout. */
 #include <fcntl.h>
-#include <ftw.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,17 +15,10 @@
 #include "base/mem.h"
 #include "base/npy/npy.h"
 #include "tests/lib/bench/bench.h"
+#include "tests/lib/scratch.h"
 
 static const char sample[] = "samples/face";
 static const char *const stages[] = { "track", "train", "transfer", "extrapolate", "animate", "render" };
-
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
-{
-	(void)st;
-	(void)kind;
-	(void)ftw;
-	return remove(path);
-}
 
 /* Seconds a program took; negative when it failed. What it says goes to `log`. */
 static double run(const char *log, char *const argv[])
@@ -190,7 +182,6 @@ static void measure(const char *root, const char *quality, bool goal)
 int main(int argc, char **argv)
 {
 	bench_open("skin", argc, argv);
-	char root[] = "/tmp/eyewright-skin-XXXXXX";
 	for (int i = 0; i < (int)(sizeof stages / sizeof *stages); i++) {
 		char *program = mem_printf("bin/%s", stages[i]);
 		bool built = file_exists(program);
@@ -200,11 +191,10 @@ int main(int argc, char **argv)
 			return bench_close();
 		}
 	}
-	if (!mkdtemp(root))
-		return 1;
+	const char *root = scratch_open();
 	measure(root, "draft", false);
 	if (!bench_quick())
 		measure(root, "review", true);
-	nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+	scratch_close();
 	return bench_close();
 }

@@ -17,6 +17,7 @@
 #include "tests/lib/score/skin_points.h"
 #include "tests/lib/capture/track_capture.h"
 #include "tests/lib/score/track_score.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/score/track_units.h"
 
 static const char *const clips[] = { "clip_a", "clip_b" };
@@ -163,13 +164,13 @@ static void precision(const struct worst *w)
 int main(int argc, char **argv)
 {
 	bench_open("track", argc, argv);
-	char root[] = "/tmp/eyewright-track-XXXXXX";
 	struct worst w = { .rate = { INFINITY, INFINITY } };
 	double points = 0, drift = -INFINITY, later = -INFINITY, alike = -INFINITY;
-	if (!bench_data("video/clip_a/truth.npz") || !file_exists("bin/track") || !mkdtemp(root)) {
+	if (!bench_data("video/clip_a/truth.npz") || !file_exists("bin/track")) {
 		printf("bench_track: shared data video/ or bin/track is not there: nothing measured\n");
 		return bench_close();
 	}
+	const char *root = scratch_open();
 	for (int c = 0; c < (bench_quick() ? 1 : 2); c++) {
 		if (!bench_quick()) {  // bench_flow has the points' first frames
 			points_alone(clips[c], &skin_track_review, "review", &points, &drift, &later, &alike);
@@ -191,9 +192,6 @@ int main(int argc, char **argv)
 	bench_goal("blinks missed or invented", "none", w.missed + w.wrong, "", w.missed + w.wrong == 0);
 	if (!bench_quick())  // review's
 		precision(&w);
-	char *clean = mem_printf("rm -rf %s", root);
-	if (system(clean))
-		fprintf(stderr, "bench_track: %s is left\n", root);
-	free(clean);
+	scratch_close();
 	return bench_close();
 }

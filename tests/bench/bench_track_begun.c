@@ -9,6 +9,7 @@
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/capture/track_capture.h"
 #include "tests/lib/score/track_score.h"
+#include "tests/lib/scratch.h"
 
 static const struct {
 	const char *clip, *first, *name;
@@ -55,9 +56,8 @@ static void measure(double worst[3], const char *root, int k)
 int main(int argc, char **argv)
 {
 	bench_open("track_begun", argc, argv);
-	char root[] = "/tmp/eyewright-track-XXXXXX";
 	double worst[3] = { 0 };
-	if (!bench_data("video/clip_a/truth.npz") || !file_exists("bin/track") || !mkdtemp(root)) {
+	if (!bench_data("video/clip_a/truth.npz") || !file_exists("bin/track")) {
 		printf("bench_track_begun: shared data video/ or bin/track is not there: nothing measured\n");
 		return bench_close();
 	}
@@ -65,14 +65,12 @@ int main(int argc, char **argv)
 		printf("bench_track_begun: left out of a quick run\n");
 		return bench_close();
 	}
+	const char *root = scratch_open();
 	for (int k = 0; k < COUNT(begun); k++)
 		measure(worst, root, k);
 	bench_goal("gaze of clips begun on a glance or in a blink, median", "<= 0.5 deg", worst[0], "deg", worst[0] <= 0.5);
 	bench_goal("gaze of clips begun on a glance or in a blink, 95 %", "<= 1.5 deg", worst[1], "deg", worst[1] <= 1.5);
 	bench_goal("blinks missed or invented in them", "none", worst[2], "", worst[2] == 0);
-	char *clean = mem_printf("rm -rf %s", root);
-	if (system(clean))
-		fprintf(stderr, "bench_track_begun: %s is left\n", root);
-	free(clean);
+	scratch_close();
 	return bench_close();
 }

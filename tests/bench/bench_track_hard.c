@@ -9,6 +9,7 @@
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/capture/track_capture.h"
 #include "tests/lib/score/track_score.h"
+#include "tests/lib/scratch.h"
 
 static void row(const char *of, const char *how, double each, double got, const char *unit, const char *share)
 {
@@ -21,15 +22,15 @@ int main(int argc, char **argv)
 {
 	static const char *const hows[] = { 0, "noise", "blur", "half" }, *const names[] = { "as it is", "noise of 8", "blur of 2 px", "half the size" };
 	bench_open("track_hard", argc, argv);
-	char root[] = "/tmp/eyewright-track-XXXXXX";
 	if (bench_quick()) {
 		printf("--quick: left out; bench_track has the clip as it is\n");
 		return bench_close();
 	}
-	if (!bench_data("video/clip_b/truth.npz") || !file_exists("bin/track") || !mkdtemp(root)) {
+	if (!bench_data("video/clip_b/truth.npz") || !file_exists("bin/track")) {
 		printf("bench_track_hard: shared data video/ or bin/track is not there: nothing measured\n");
 		return bench_close();
 	}
+	const char *root = scratch_open();
 	for (int k = 0; k < 4; k++) {
 		struct track_score s;
 		struct err err = { 0 };
@@ -52,9 +53,6 @@ int main(int argc, char **argv)
 		}
 		free(dir);
 	}
-	char *clean = mem_printf("rm -rf %s", root);
-	if (system(clean))
-		fprintf(stderr, "bench_track_hard: %s is left\n", root);
-	free(clean);
+	scratch_close();
 	return bench_close();
 }

@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 
-static char root[64];
+static char *root;
 
 static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
 {
@@ -20,19 +20,46 @@ static int remove_one(const char *path, const struct stat *st, int kind, struct 
 	return remove(path);
 }
 
-const char *scratch_open(void)
+char *scratch_folder(void)
 {
-	strcpy(root, "/tmp/eyewright-test-XXXXXX");
-	if (!mkdtemp(root)) {
-		perror(root);
+	const char *tmp = getenv("TMPDIR");
+	char *folder = mem_printf("%s/eyewright-test-XXXXXX", tmp && *tmp ? tmp : "/tmp");
+	if (!mkdtemp(folder)) {
+		perror(folder);
 		exit(1);
 	}
-	return root;
+	return folder;
+}
+
+void scratch_folder_remove(char *folder)
+{
+	nftw(folder, remove_one, 32, FTW_DEPTH | FTW_PHYS);
+	free(folder);
+}
+
+const char *scratch_open(void)
+{
+	return root = scratch_folder();
 }
 
 void scratch_close(void)
 {
-	nftw(root, remove_one, 32, FTW_DEPTH | FTW_PHYS);
+	scratch_folder_remove(root);
+	root = 0;
+}
+
+int scratch_setup(void **state)
+{
+	(void)state;
+	scratch_open();
+	return 0;
+}
+
+int scratch_teardown(void **state)
+{
+	(void)state;
+	scratch_close();
+	return 0;
 }
 
 const char *scratch_path(const char *fmt, ...)

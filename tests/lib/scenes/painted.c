@@ -3,10 +3,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "image/exr.h"
+#include "tests/lib/scratch.h"
 
 static bool write_maps(const struct scene_files *files, int size, painted_colour *colour, painted_height *height,
                        double pupil, struct err *err)
@@ -35,17 +36,13 @@ static bool write_maps(const struct scene_files *files, int size, painted_colour
 bool painted_scene(struct scene *scene, int size, const struct eye *eye, const struct scene_conf *conf,
                    painted_colour *colour, painted_height *height, double pupil, struct err *err)
 {
-	char dir[] = "/tmp/painted_XXXXXX", texture[64], json[64], relief[64];
-	if (!mkdtemp(dir))
-		return err_set(err, "%s: cannot be made", dir);
-	snprintf(texture, sizeof texture, "%s/texture.exr", dir);
-	snprintf(json, sizeof json, "%s/texture.json", dir);
-	snprintf(relief, sizeof relief, "%s/relief.exr", dir);
+	char *dir = scratch_folder();
+	char *texture = mem_printf("%s/texture.exr", dir), *json = mem_printf("%s/texture.json", dir), *relief = mem_printf("%s/relief.exr", dir);
 	struct scene_files files = { texture, json, relief, 0, 0 };
 	bool ok = write_maps(&files, size, colour, height, pupil, err) && scene_load(scene, &files, eye, conf, err);
-	unlink(texture);
-	unlink(json);
-	unlink(relief);
-	rmdir(dir);
+	free(texture);
+	free(json);
+	free(relief);
+	scratch_folder_remove(dir);
 	return ok;
 }

@@ -1,20 +1,10 @@
 /* fit: what limbus writes can be read back; rays and projections agree with each other and with the truth. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
-
 #include "base/file.h"
 #include "anatomy/fit.h"
 #include "math/vec.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/truth/truth.h"
+#include "tests/lib/unit.h"
 
 static struct fit sample(void)
 {
@@ -37,10 +27,7 @@ static struct fit sample(void)
 static void what_is_written_is_read(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/eyewright-fit-XXXXXX";
-	int fd = mkstemp(path);
-	assert_true(fd >= 0);
-	close(fd);
+	const char *path = scratch_path("fit.json");
 	struct fit fit = sample(), back;
 	struct err err = { 0 };
 	assert_true(fit_save(&fit, path, "{\"stage\":\"limbus\"}", "{\"more\":1}", &err));
@@ -51,7 +38,6 @@ static void what_is_written_is_read(void **state)
 	assert_float_equal(back.cam_from_eye[1][3], -2, 1e-11);
 	assert_int_equal(back.camera.source, CAMERA_CONF);
 	assert_float_equal(back.camera.distortion[3], -2e-3, 1e-12);
-	unlink(path);
 }
 
 static void damaged_files_are_refused(void **state)
@@ -59,9 +45,7 @@ static void damaged_files_are_refused(void **state)
 	(void)state;
 	static const char *const texts[] = { "", "[]", "{", "{\"status\": \"ok\"}", "{\"status\": 1, \"reason\": \"\"}",
 		"{\"status\": \"ok\", \"reason\": \"\", \"ellipse\": {\"cx\": null}}" };
-	char path[] = "/tmp/eyewright-fit-XXXXXX";
-	int fd = mkstemp(path);
-	close(fd);
+	const char *path = scratch_path("fit.json");
 	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
 		struct err err = { 0 };
 		struct fit fit;
@@ -69,16 +53,13 @@ static void damaged_files_are_refused(void **state)
 		assert_false(fit_load(&fit, path, &err));
 		assert_non_null(strstr(err.msg, path));
 	}
-	unlink(path);
 }
 
 /* A pupil larger than the iris: the file, the value, the rule. */
 static void large_pupil_is_refused(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/eyewright-fit-XXXXXX";
-	int fd = mkstemp(path);
-	close(fd);
+	const char *path = scratch_path("fit.json");
 	struct fit fit = sample(), back;
 	struct err err = { 0 };
 	fit.pupil.a = 520;
@@ -86,7 +67,6 @@ static void large_pupil_is_refused(void **state)
 	assert_false(fit_load(&back, path, &err));
 	assert_non_null(strstr(err.msg, path));
 	assert_non_null(strstr(err.msg, "pupil: a = 520 px, must be less than the limbus' 500"));
-	unlink(path);
 }
 
 /* A ray through a pixel must project back to it at any distance: distortion and its inverse cancel. */
@@ -134,9 +114,9 @@ static void truth_pose_gives_truth_ellipse(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(what_is_written_is_read),
-		cmocka_unit_test(damaged_files_are_refused),
-		cmocka_unit_test(large_pupil_is_refused),
+		SCRATCH_TEST(what_is_written_is_read),
+		SCRATCH_TEST(damaged_files_are_refused),
+		SCRATCH_TEST(large_pupil_is_refused),
 		cmocka_unit_test(rays_project_back),
 		cmocka_unit_test(truth_pose_gives_truth_ellipse),
 	};

@@ -6,20 +6,6 @@
 #include "base/opt.h"
 #include "tests/lib/scratch.h"
 
-static int setup(void **state)
-{
-	(void)state;
-	scratch_open();
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 struct values {
 	double sigma, three[3], unset;
 	int count, choice;
@@ -269,13 +255,13 @@ static void patterns(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(defaults_presets_and_overrides, setup, teardown),
-		cmocka_unit_test_setup_teardown(command_line_wins, setup, teardown),
-		cmocka_unit_test_setup_teardown(faults_name_place_value_and_rule, setup, teardown),
-		cmocka_unit_test_setup_teardown(hostile_files_are_refused, setup, teardown),
-		cmocka_unit_test_setup_teardown(slice_is_sorted_and_effective, setup, teardown),
-		cmocka_unit_test_setup_teardown(long_lines, setup, teardown),
-		cmocka_unit_test_setup_teardown(long_faults, setup, teardown),
+		SCRATCH_TEST(defaults_presets_and_overrides),
+		SCRATCH_TEST(command_line_wins),
+		SCRATCH_TEST(faults_name_place_value_and_rule),
+		SCRATCH_TEST(hostile_files_are_refused),
+		SCRATCH_TEST(slice_is_sorted_and_effective),
+		SCRATCH_TEST(long_lines),
+		SCRATCH_TEST(long_faults),
 		cmocka_unit_test(patterns),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

@@ -12,20 +12,6 @@
 #include "base/work.h"
 #include "tests/lib/scratch.h"
 
-static int setup(void **state)
-{
-	(void)state;
-	scratch_open();
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 static void written_is_read(void **state)
 {
 	(void)state;
@@ -296,15 +282,15 @@ static void swept(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(written_is_read, setup, teardown),
-		cmocka_unit_test_setup_teardown(replaced_at_once, setup, teardown),
-		cmocka_unit_test_setup_teardown(failed_write_leaves_what_was, setup, teardown),
-		cmocka_unit_test_setup_teardown(a_link_beside_is_not_followed, setup, teardown),
-		cmocka_unit_test_setup_teardown(only_regular_files_are_read, setup, teardown),
-		cmocka_unit_test_setup_teardown(paths_stay_inside, setup, teardown),
-		cmocka_unit_test_setup_teardown(hashes_and_lists, setup, teardown),
-		cmocka_unit_test_setup_teardown(written_by_many, setup, teardown),
-		cmocka_unit_test_setup_teardown(swept, setup, teardown),
+		SCRATCH_TEST(written_is_read),
+		SCRATCH_TEST(replaced_at_once),
+		SCRATCH_TEST(failed_write_leaves_what_was),
+		SCRATCH_TEST(a_link_beside_is_not_followed),
+		SCRATCH_TEST(only_regular_files_are_read),
+		SCRATCH_TEST(paths_stay_inside),
+		SCRATCH_TEST(hashes_and_lists),
+		SCRATCH_TEST(written_by_many),
+		SCRATCH_TEST(swept),
 		cmocka_unit_test(errors_keep_the_first),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

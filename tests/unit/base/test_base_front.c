@@ -18,19 +18,11 @@ static const bool all_run[] = { true, true, true, true };
 
 static int setup(void **state)
 {
-	(void)state;
-	scratch_open();
+	scratch_setup(state);
 	scratch_text("config/fronts.conf", FRONTS);
 	scratch_text("config/capture.conf", "quality = review\nerror =\ntime =\n");
 	scratch_text("config/blur.conf", "sigma = 3\nsigma.draft = 5\nsteps = 3\n");
 	scratch_text("config/plan.conf", "");
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
 	return 0;
 }
 
@@ -199,12 +191,12 @@ static void the_recorded_fronts_are_fronts(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(an_error_takes_the_fastest_that_is_as_exact, setup, teardown),
-		cmocka_unit_test_setup_teardown(a_time_is_spent_where_it_helps_most, setup, teardown),
-		cmocka_unit_test_setup_teardown(the_stage_reads_what_was_chosen, setup, teardown),
-		cmocka_unit_test_setup_teardown(settings_too_long_for_a_line_go_on_in_the_next, setup, teardown),
-		cmocka_unit_test_setup_teardown(nonsense_is_refused_in_one_line, setup, teardown),
-		cmocka_unit_test_setup_teardown(a_damaged_file_of_fronts_is_refused, setup, teardown),
+		cmocka_unit_test_setup_teardown(an_error_takes_the_fastest_that_is_as_exact, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_time_is_spent_where_it_helps_most, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(the_stage_reads_what_was_chosen, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(settings_too_long_for_a_line_go_on_in_the_next, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(nonsense_is_refused_in_one_line, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_damaged_file_of_fronts_is_refused, setup, scratch_teardown),
 		cmocka_unit_test(the_recorded_fronts_are_fronts),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

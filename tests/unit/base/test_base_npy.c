@@ -199,8 +199,5 @@ int main(void)
 		cmocka_unit_test(hostile),    cmocka_unit_test(bomb),        cmocka_unit_test(tables),
 		cmocka_unit_test(bad_tables),
 	};
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -15,20 +15,12 @@ static const char out[] = "work/out.json";
 
 static int setup(void **state)
 {
-	(void)state;
-	scratch_open();
+	scratch_setup(state);
 	scratch_text("program", "program 1");
 	scratch_text("defaults", "sigma = 2\nsigma.draft = 4\n");
 	scratch_text("shared", "quality = review\nphoto.*.hint =\nview.*.mm =\neye.index = 1.336\n");
 	scratch_text("capture.conf", "");
 	scratch_text("photos/a.jpg", "picture");
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
 	return 0;
 }
 
@@ -268,16 +260,16 @@ static void nothing_outside_the_folder_is_dropped(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(nothing_changed, setup, teardown),
-		cmocka_unit_test_setup_teardown(bytes_changed, setup, teardown),
-		cmocka_unit_test_setup_teardown(changed_behind_the_date, setup, teardown),
-		cmocka_unit_test_setup_teardown(files_came_and_went, setup, teardown),
-		cmocka_unit_test_setup_teardown(configuration_changed, setup, teardown),
-		cmocka_unit_test_setup_teardown(an_unfinished_run_does_not_hold, setup, teardown),
-		cmocka_unit_test_setup_teardown(altered_files_are_dropped, setup, teardown),
-		cmocka_unit_test_setup_teardown(a_damaged_record_is_none, setup, teardown),
-		cmocka_unit_test_setup_teardown(a_record_of_a_strangers_making_is_refused, setup, teardown),
-		cmocka_unit_test_setup_teardown(nothing_outside_the_folder_is_dropped, setup, teardown),
+		cmocka_unit_test_setup_teardown(nothing_changed, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(bytes_changed, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(changed_behind_the_date, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(files_came_and_went, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(configuration_changed, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(an_unfinished_run_does_not_hold, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(altered_files_are_dropped, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_damaged_record_is_none, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_record_of_a_strangers_making_is_refused, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(nothing_outside_the_folder_is_dropped, setup, scratch_teardown),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -114,8 +114,5 @@ int main(void)
 		cmocka_unit_test(test_says), cmocka_unit_test(test_ends),   cmocka_unit_test(test_not_installed),
 		cmocka_unit_test(test_many), cmocka_unit_test(test_floods),
 	};
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

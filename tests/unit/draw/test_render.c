@@ -1,18 +1,10 @@
 /* render: views against the light path solved the other way round, and one way to draw them against another. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 #include <omp.h>
 
 #include "draw/eye/march/march.h"
 #include "math/rng.h"
 #include "tests/lib/scenes/plain_scene.h"
+#include "tests/lib/unit.h"
 
 static struct fit fit_at(double theta, int width, int height, double focal)
 {

@@ -1,18 +1,9 @@
 /* render: energy that is conserved, vessels, pictures that converge, what no photograph saw, distances of colours. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "base/mem.h"
 #include "draw/eye/march/march.h"
 #include "image/colour.h"
 #include "tests/lib/scenes/plain_scene.h"
+#include "tests/lib/unit.h"
 
 /* Vessels: one without width leaves all light; at the surface a wide one leaves what Beer and Lambert say; the deeper it lies the less
  * is seen of it, first in the blue, which scatters most: so what is deep looks bluish. */

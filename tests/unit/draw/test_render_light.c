@@ -1,20 +1,11 @@
 /* render: lights, their ways into the eye and the march against closed forms. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "bridge/imf_read.h"
 #include "draw/eye/march/paths.h"
 #include "math/rng.h"
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/plain_scene.h"
+#include "tests/lib/unit.h"
 
 /* An even surrounding of radiance 1 gives every plane irradiance pi, whichever way that is reckoned. */
 static void even_light(void **state)

@@ -12,20 +12,6 @@ enum { W = 61, H = 37, LIMIT = 1 << 20 };
 
 static const char *const rgbw[] = { "R", "G", "B", "W" };
 
-static int setup(void **state)
-{
-	(void)state;
-	scratch_open();
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 /* IEC 61966-2-1. */
 static void srgb_by_the_standard(void **state)
 {
@@ -241,12 +227,12 @@ int main(void)
 		cmocka_unit_test(srgb_by_the_standard),
 		cmocka_unit_test(bytes_are_the_nearest),
 		cmocka_unit_test(sampling_is_bilinear),
-		cmocka_unit_test_setup_teardown(exr_round_trip, setup, teardown),
-		cmocka_unit_test_setup_teardown(channels_by_name, setup, teardown),
-		cmocka_unit_test_setup_teardown(any_subset_of_channels, setup, teardown),
-		cmocka_unit_test_setup_teardown(same_bytes_on_any_threads, setup, teardown),
-		cmocka_unit_test_setup_teardown(damage_does_no_harm, setup, teardown),
-		cmocka_unit_test_setup_teardown(limits_and_faults, setup, teardown),
+		SCRATCH_TEST(exr_round_trip),
+		SCRATCH_TEST(channels_by_name),
+		SCRATCH_TEST(any_subset_of_channels),
+		SCRATCH_TEST(same_bytes_on_any_threads),
+		SCRATCH_TEST(damage_does_no_harm),
+		SCRATCH_TEST(limits_and_faults),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -11,20 +11,6 @@
 
 enum { W = 70, H = 45 };
 
-static int setup(void **state)
-{
-	(void)state;
-	scratch_open();
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 static struct photo load(struct blob file)
 {
 	struct photo photo;
@@ -345,17 +331,17 @@ static void pictures_go_out_and_come_back(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(png_is_exact, setup, teardown),
-		cmocka_unit_test_setup_teardown(tiff_is_exact, setup, teardown),
-		cmocka_unit_test_setup_teardown(jpeg_is_close, setup, teardown),
-		cmocka_unit_test_setup_teardown(exr_is_linear, setup, teardown),
-		cmocka_unit_test_setup_teardown(orientation_is_applied, setup, teardown),
-		cmocka_unit_test_setup_teardown(focal_length_where_it_can_be_believed, setup, teardown),
-		cmocka_unit_test_setup_teardown(faults_are_one_clear_line, setup, teardown),
-		cmocka_unit_test_setup_teardown(truncation_is_noticed, setup, teardown),
-		cmocka_unit_test_setup_teardown(no_file, setup, teardown),
-		cmocka_unit_test_setup_teardown(linear_crop, setup, teardown),
-		cmocka_unit_test_setup_teardown(pictures_go_out_and_come_back, setup, teardown),
+		SCRATCH_TEST(png_is_exact),
+		SCRATCH_TEST(tiff_is_exact),
+		SCRATCH_TEST(jpeg_is_close),
+		SCRATCH_TEST(exr_is_linear),
+		SCRATCH_TEST(orientation_is_applied),
+		SCRATCH_TEST(focal_length_where_it_can_be_believed),
+		SCRATCH_TEST(faults_are_one_clear_line),
+		SCRATCH_TEST(truncation_is_noticed),
+		SCRATCH_TEST(no_file),
+		SCRATCH_TEST(linear_crop),
+		SCRATCH_TEST(pictures_go_out_and_come_back),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -304,19 +304,6 @@ static void cuts(void **state)
 	}
 }
 
-static int setup(void **state)
-{
-	(void)state;
-	return scratch_open() ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -324,5 +311,5 @@ int main(void)
 		cmocka_unit_test(variable_rate), cmocka_unit_test(rotation_tag), cmocka_unit_test(broken_files),
 		cmocka_unit_test(limits),       cmocka_unit_test(noise_in_files), cmocka_unit_test(cuts),
 	};
-	return cmocka_run_group_tests(tests, setup, teardown);
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -1,15 +1,8 @@
 /* Coarse thickness: the profile at its knots, flat and tilted light, spots, hidden tissue, bad input. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
-
 #include "base/file.h"
 #include "iris/heightfield/heightfield.h"
+#include "tests/lib/scratch.h"
+#include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 
@@ -183,20 +176,18 @@ static void test_refusals(void **state)
 	struct heightfield_result out;
 	struct err err = { 0 };
 	struct pupil pupil;
-	char path[] = "/tmp/heightfield-test-XXXXXX";
+	const char *path = scratch_path("pupil.json");
 	(void)state;
 	assert_false(heightfield_run(&out, &clean, extent, &(struct pupil) { 0, 0, 5.8 }, limbus, &conf, &err));
 	assert_non_null(strstr(err.msg, "brighter light"));
 	image_free(&clean);
 	err = (struct err) { 0 };
-	assert_true(mkstemp(path) >= 0);
 	assert_true(file_write(path, "{\"pupil\": {\"cx\": 0, \"cy\": 9, \"r\": 2}}", 36, &err));
 	assert_false(pupil_load(&pupil, path, 1.8, &err));
 	err = (struct err) { 0 };
 	assert_true(file_write(path, "{\"pupil\": null}", 15, &err));
 	assert_true(pupil_load(&pupil, path, 1.7, &err));
 	CHECK_NEAR(pupil.r, 1.7, 0);
-	file_remove(path, &err);
 }
 
 int main(void)
@@ -204,7 +195,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_share), cmocka_unit_test(test_profile), cmocka_unit_test(test_wide_pupil),
 		cmocka_unit_test(test_light), cmocka_unit_test(test_lighter_is_thicker), cmocka_unit_test(test_hidden),
-		cmocka_unit_test(test_refusals),
+		SCRATCH_TEST(test_refusals),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

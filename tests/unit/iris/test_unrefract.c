@@ -1,13 +1,5 @@
 /* unrefract: maps of the iris plane against an independent ray tracer's, the inverse against the forward map, masks and
  * merging against labelled renderings. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 #include <omp.h>
 
 #include "base/mem.h"
@@ -17,6 +9,7 @@
 #include "image/exr.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/iris.h"
+#include "tests/lib/unit.h"
 
 enum { CAPTURES = 32 };
 

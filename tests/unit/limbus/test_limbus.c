@@ -1,13 +1,4 @@
 /* limbus: rendered captures with truth, synthetic eyes, and pictures that must be refused. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
-
 #include "base/mem.h"
 #include "limbus/record.h"
 #include "math/ellipse_fit.h"
@@ -16,6 +7,7 @@
 #include "tests/lib/conf/limbus_conf.h"
 #include "tests/lib/scenes/synth_eye.h"
 #include "tests/lib/truth/truth.h"
+#include "tests/lib/unit.h"
 
 static const double DEG = M_PI / 180;
 

@@ -1,18 +1,10 @@
 /* The sigmas that limbus reports against the errors it makes: 204 noisy renderings of synthetic eyes. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
-
 #include "base/mem.h"
 #include "limbus/record.h"
 #include "math/rng.h"
 #include "tests/lib/conf/limbus_conf.h"
 #include "tests/lib/scenes/synth_eye.h"
+#include "tests/lib/unit.h"
 
 enum { PARAMS = 6 };  // cx, cy, a, b, angle, theta
 // Sanitised, a few: memory faults show as well, and the plain run counts.

@@ -1,15 +1,9 @@
 /* Ellipses: closed forms, round trips, and the robust fit against the Cramér-Rao bound. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "base/mem.h"
 #include "math/ellipse_fit.h"
 #include "math/rng.h"
 #include "math/stats.h"
+#include "tests/lib/unit.h"
 #include "tests/peers/ellipse_bound.h"
 
 static const struct ellipse E = { 321.25, -40.5, 100, 62, 0.7 };

@@ -9,20 +9,6 @@
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scratch.h"
 
-static int setup(void **state)
-{
-	(void)state;
-	scratch_open();
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 /* A closed sphere of radius 2, rings × around, colours by place. */
 static struct mesh sphere(int rings, int around)
 {
@@ -378,15 +364,15 @@ static void real_meshes_load(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(ply_round_trip, setup, teardown),
-		cmocka_unit_test_setup_teardown(ply_by_hand, setup, teardown),
-		cmocka_unit_test_setup_teardown(obj_by_hand, setup, teardown),
-		cmocka_unit_test_setup_teardown(hostile_files_are_refused, setup, teardown),
-		cmocka_unit_test_setup_teardown(damage_does_no_harm, setup, teardown),
-		cmocka_unit_test_setup_teardown(fans_without_end_are_refused, setup, teardown),
-		cmocka_unit_test_setup_teardown(long_polygons_count_as_triangles, setup, teardown),
-		cmocka_unit_test_setup_teardown(three_faces_at_one_edge, setup, teardown),
-		cmocka_unit_test_setup_teardown(what_is_no_surface_is_taken_apart, setup, teardown),
+		SCRATCH_TEST(ply_round_trip),
+		SCRATCH_TEST(ply_by_hand),
+		SCRATCH_TEST(obj_by_hand),
+		SCRATCH_TEST(hostile_files_are_refused),
+		SCRATCH_TEST(damage_does_no_harm),
+		SCRATCH_TEST(fans_without_end_are_refused),
+		SCRATCH_TEST(long_polygons_count_as_triangles),
+		SCRATCH_TEST(three_faces_at_one_edge),
+		SCRATCH_TEST(what_is_no_surface_is_taken_apart),
 		cmocka_unit_test(decimated_sphere_stays_one),
 		cmocka_unit_test(real_meshes_load),
 	};

@@ -143,8 +143,5 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(aperture), cmocka_unit_test(folded), cmocka_unit_test(baseline), cmocka_unit_test(files),
 	};
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

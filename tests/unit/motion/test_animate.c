@@ -521,8 +521,5 @@ int main(void)
 		cmocka_unit_test(deterministic), cmocka_unit_test(recorded),          cmocka_unit_test(bad_scripts),
 		cmocka_unit_test(popping_out), cmocka_unit_test(orientation_pops_out),
 	};
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

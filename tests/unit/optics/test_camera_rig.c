@@ -101,8 +101,5 @@ static void test_refused(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = { cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refused) };
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -1,17 +1,10 @@
 /* The light path: closed forms, round trips with the ray of sight, a bracketed solve in long double, the batches against the
  * solver, several paths, input that is none. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <cmocka.h>
-
 #include "base/mem.h"
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/truth/light_case.h"
+#include "tests/lib/unit.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
 

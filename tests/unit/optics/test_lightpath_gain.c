@@ -1,15 +1,9 @@
 /* The irradiance gain (caustic): closed form, and photons counted forwards; and the paper's algorithm 1. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
+#include "tests/lib/unit.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
 

@@ -1,20 +1,11 @@
 /* The refraction function: every method against the solver, budgets kept, symmetry, the file. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-#include <cmocka.h>
-
 #include "base/file.h"
 #include "base/mem.h"
 #include "iris/refraction_file.h"
 #include "image/exr.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/truth/light_case.h"
+#include "tests/lib/unit.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
 
@@ -175,8 +166,7 @@ static void turning_the_eye_turns_the_answer(void **state)
 static void the_file_keeps_it(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/refraction_XXXXXX";
-	close(mkstemp(path));
+	const char *path = scratch_path("refraction.exr");
 	struct set *a = set_new(90), *b = set_new(90);
 	for (int method = REFRACTION_NEWTON; method < REFRACTION_METHODS; method++) {
 		struct refraction f, g;
@@ -196,14 +186,12 @@ static void the_file_keeps_it(void **state)
 	}
 	free(a);
 	free(b);
-	unlink(path);
 }
 
 static void a_file_that_is_none_is_refused(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/refraction_XXXXXX";
-	close(mkstemp(path));
+	const char *path = scratch_path("refraction.exr");
 	struct refraction f;
 	struct err err = { 0 };
 	assert_false(refraction_load(&f, path, &err));
@@ -220,7 +208,6 @@ static void a_file_that_is_none_is_refused(void **state)
 		assert_non_null(strstr(err.msg, "refraction"));
 		image_free(&image);
 	}
-	unlink(path);
 }
 
 static void odd_corneas_get_something_that_works(void **state)
@@ -248,8 +235,8 @@ int main(void)
 		cmocka_unit_test(tables_are_as_good_as_known),
 		cmocka_unit_test(light_from_behind_the_limbus),
 		cmocka_unit_test(turning_the_eye_turns_the_answer),
-		cmocka_unit_test(the_file_keeps_it),
-		cmocka_unit_test(a_file_that_is_none_is_refused),
+		SCRATCH_TEST(the_file_keeps_it),
+		SCRATCH_TEST(a_file_that_is_none_is_refused),
 		cmocka_unit_test(odd_corneas_get_something_that_works),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

@@ -12,20 +12,6 @@
 #include "tests/lib/scenes/sheet.h"
 #include "tests/lib/conf/transfer_conf.h"
 
-static int setup(void **state)
-{
-	(void)state;
-	scratch_open();
-	return 0;
-}
-
-static int teardown(void **state)
-{
-	(void)state;
-	scratch_close();
-	return 0;
-}
-
 /* Rows of B: rising columns of the subject, weights that sum to one and make the point that distance is counted from. */
 static void check_rows(const struct transfer *t, const struct mesh *subject)
 {
@@ -306,5 +292,5 @@ int main(void)
 		cmocka_unit_test(test_same_topology), cmocka_unit_test(test_similar),           cmocka_unit_test(test_affine), cmocka_unit_test(test_unlike),
 		cmocka_unit_test(test_units),         cmocka_unit_test(test_nothing_in_common), cmocka_unit_test(test_file), cmocka_unit_test(test_far_away), cmocka_unit_test(test_picture),
 	};
-	return cmocka_run_group_tests(tests, setup, teardown);
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -1,21 +1,13 @@
 /* review: the template engine, and the page of folders with little or hostile things in them. */
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
-#include <unistd.h>
-
-#include <cmocka.h>
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/template.h"
 #include "image/picture.h"
+#include "tests/lib/scratch.h"
+#include "tests/lib/unit.h"
 
 static void fills(const char *template, const char *json, const char *expected)
 {
@@ -110,25 +102,15 @@ static char *put(const char *dir, const char *name)
 	return mem_printf("%s/%s", dir, name);
 }
 
-static void remove_all(const char *dir)
-{
-	if (fork() == 0) {
-		execlp("rm", "rm", "-rf", "--", dir, (char *)0);
-		_exit(127);
-	}
-	wait(0);
-}
-
 /* A photograph whose name is HTML, a fit with HTML in its reason, a log and pigments that are no JSON: the page is made,
  * says so, and nothing of it is live. */
 static void hostile_folder(void **state)
 {
 	(void)state;
 	struct err err = { 0 };
-	char dir[] = "/tmp/review_XXXXXX", name[] = "photos/<img src=x onerror=alert(1)>&\"'.png";
+	const char *dir = scratch_path("capture"), *name = "photos/<img src=x onerror=alert(1)>&\"'.png";
 	if (!program())
 		skip();  // only where the programs have been built
-	assert_non_null(mkdtemp(dir));
 	uint8_t px[32 * 24 * 3] = { 200 };
 	char *photo = put(dir, name), *fit = put(dir, "work/limbus/<img src=x onerror=alert(1)>&\"'.json");
 	char *log = put(dir, "work/log/limbus.json"), *pigment = put(dir, "work/iris/pigment.json");
@@ -156,7 +138,6 @@ static void hostile_folder(void **state)
 		if (!strstr(html, shown[i]))
 			fail_msg("the page does not say %s", shown[i]);
 	char *const all[] = { photo, fit, log, pigment, conf, page, folder, html };
-	remove_all(dir);
 	for (int i = 0; i < COUNT(all); i++)
 		free(all[i]);
 }
@@ -165,11 +146,11 @@ static void hostile_folder(void **state)
 static void empty_folder(void **state)
 {
 	(void)state;
-	char dir[] = "/tmp/review_XXXXXX";
+	const char *dir = scratch_path("capture");
 	struct err err = { 0 };
 	if (!program())
 		skip();
-	assert_non_null(mkdtemp(dir));
+	assert_true(file_mkdirs(dir, &err));
 	int status = render(program(), dir);
 	char *page = put(dir, "work/review/index.html"), *html = 0;
 	size_t size;
@@ -178,14 +159,13 @@ static void empty_folder(void **state)
 	assert_true(status == 0 || status == 1);
 	free(html);
 	free(page);
-	remove_all(dir);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(holes),          cmocka_unit_test(mismatched),   cmocka_unit_test(not_utf8),
-		cmocka_unit_test(hostile_folder), cmocka_unit_test(empty_folder),
+		SCRATCH_TEST(hostile_folder), SCRATCH_TEST(empty_folder),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

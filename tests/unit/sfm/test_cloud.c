@@ -6,8 +6,8 @@
 #include "sfm/cloud/cloud.h"
 #include "sfm/cloud/surface.h"
 #include "sfm/cloud/surface_colour.h"
-#include "tests/lib/scratch.h"
 #include "tests/lib/scenes/sfm_scene.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
 /* Brightness of a point of space: many frequencies, none that repeats over the ball. */
@@ -220,8 +220,5 @@ int main(void)
 		cmocka_unit_test(test_largest), cmocka_unit_test(test_marker),
 		cmocka_unit_test(test_plain),
 	};
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

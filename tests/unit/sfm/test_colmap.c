@@ -6,8 +6,8 @@
 #include "math/rng.h"
 #include "math/vec.h"
 #include "sfm/colmap/colmap.h"
-#include "tests/lib/scratch.h"
 #include "tests/lib/scenes/sfm_scene.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
 /* What stands in memory comes back bit for bit from both formats. */
@@ -183,8 +183,5 @@ int main(void)
 		cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refused), cmocka_unit_test(test_residual),
 		cmocka_unit_test(test_rotations),  cmocka_unit_test(test_against_program),
 	};
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

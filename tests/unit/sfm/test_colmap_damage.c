@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "sfm/colmap/colmap.h"
-#include "tests/lib/scratch.h"
 #include "tests/lib/scenes/sfm_scene.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
 static const char *const stems[3] = { "cameras", "images", "points3D" };
@@ -230,8 +230,5 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = { cmocka_unit_test(test_cut), cmocka_unit_test(test_flipped), cmocka_unit_test(test_mutated),
 		                                cmocka_unit_test(test_counts) };
-	scratch_open();
-	int failed = cmocka_run_group_tests(tests, 0, 0);
-	scratch_close();
-	return failed;
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -1,19 +1,12 @@
 /* Melanin: known parameters, honest sigmas, Monte Carlo as the truth that the model does not make, white from a picture. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
-
 #include "base/file.h"
 #include "base/mem.h"
 #include "tissue/pigment/pigment.h"
 #include "tissue/pigment/white.h"
 #include "math/rng.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/truth/photon.h"
+#include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 
@@ -181,13 +174,12 @@ static void test_files(void **state)
 	struct rng rng = { 1 };
 	const double truth[PIGMENT_N] = { log(0.03), 0.7, log(0.01), 0.6, log(0.3), 0.1, 0.02, -0.01, 0.004 };
 	double x[PIGMENT_N], white[3];
-	char path[] = "/tmp/pigment-test-XXXXXX";
+	const char *path = scratch_path("pigment.json");
 	struct err err = { 0 };
 	struct pigment_fit fit;
 	struct tissue tissue;
 	(void)state;
 	struct pigment_classes classes = photograph(truth, &conf, &rng);
-	assert_true(mkstemp(path) >= 0);
 	assert_true(pigment_solve(&fit, &classes, &conf, 0, &err));
 	assert_true(pigment_save(&fit, &classes, &conf, path, 0, "{\"white\": {\"rgb\": [1, 0.9, 0.8]}}", &err));
 	assert_true(pigment_load(x, white, &back, path, &err) && tissue_load(&tissue, path, &err));
@@ -202,7 +194,6 @@ static void test_files(void **state)
 	err = (struct err) { 0 };
 	assert_true(file_write(path, "{", 1, &err));
 	assert_false(tissue_load(&tissue, path, &err));
-	file_remove(path, &(struct err) { 0 });
 }
 
 /* ---- white -------------------------------------------------------------------------------------------------------- */
@@ -257,7 +248,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_coverage), cmocka_unit_test(test_recovery), cmocka_unit_test(test_starts),
-		cmocka_unit_test(test_monte_carlo), cmocka_unit_test(test_files), cmocka_unit_test(test_white),
+		cmocka_unit_test(test_monte_carlo), SCRATCH_TEST(test_files), cmocka_unit_test(test_white),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -1,15 +1,7 @@
 /* Relief: the filter against its own rendering, and against photons, which the model does not make. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
-
 #include "tissue/relief/relief.h"
 #include "tests/lib/scenes/irisphantom.h"
+#include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 

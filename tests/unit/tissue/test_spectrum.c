@@ -1,12 +1,6 @@
 /* Spectra against what the CIE publishes, and the observer's exact properties. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "tissue/spectrum.h"
+#include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 

@@ -1,14 +1,7 @@
 /* The tissue in closed form, against Chandrasekhar's H function, and against Monte Carlo. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <cmocka.h>
-
 #include "tissue/tissue.h"
 #include "tests/lib/truth/photon.h"
+#include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 

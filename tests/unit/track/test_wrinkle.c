@@ -2,9 +2,9 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "math/stats.h"
+#include "tests/lib/scenes/wrinkle_scene.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
-#include "tests/lib/scenes/wrinkle_scene.h"
 
 /* The defaults of config/track.conf. */
 static const struct wrinkle_conf conf = { .width_mm = { 0.12, 0.8 }, .scales = 6, .drop = 0.04, .significance = 6, .pattern = 2.5, .length_mm = 4, .slope = 1.5, .frames = 8 };
