@@ -1,4 +1,4 @@
-/* exr: half or float maps in and out, through OpenEXRCore. Written beside and renamed. */
+/* exr: maps of half or float values as OpenEXR files, through OpenEXRCore. */
 #ifndef IMAGE_EXR_H
 #define IMAGE_EXR_H
 #include "image/image.h"
@@ -11,17 +11,21 @@ struct exr_info {
 
 enum exr_type { EXR_HALF, EXR_FLOAT };
 
-/* channels: one name for each channel of the image, in its order, e.g. { "R", "G", "B" }, { "Y" }.
- * Scan lines, losslessly compressed: PIZ for half, ZIP for float; "Z" is float in either. The bytes do not depend on the threads. */
+/* Writes an image beside `path`, then renames it.
+ * channels  one name for each channel of the image, in its order, e.g. { "R", "G", "B" }, { "Y" }
+ * type      of all channels but "Z", which is always float
+ * info      may be null
+ * Scan lines, losslessly compressed: PIZ for half, ZIP for float. The bytes do not depend on the number of threads.
+ * False, err set, when the file cannot be written. */
 bool exr_write(const char *path, const struct image *image, const char *const channels[], enum exr_type type,
                const struct exr_info *info, struct err *err);
 
-/* Reads the named channels, in that order, as float; a channel that the file lacks is an error naming it.
- * limit_px: more pixels than that are refused before they are read. info may be null; info->made_by is not read. */
+/* Reads n named channels of a flat scan-line file, in the order asked for, as float.
+ * image     overwritten; image_free; empty on failure
+ * limit_px  a file of more pixels is refused before they are read
+ * info      may be null; extent_mm is filled, made_by is not read
+ * False, err set ("path: rule"), for a channel that the file lacks, a size beyond the limit, tiles, depth, damage. */
 bool exr_read(struct image *image, const char *path, int n, const char *const channels[], long limit_px,
               struct exr_info *info, struct err *err);
-
-/* The names of the file's channels, comma-separated; free(). */
-bool exr_channels(char **names, const char *path, struct err *err);
 
 #endif

@@ -1,5 +1,6 @@
-/* image: pixels in memory. Row-major, channels interleaved, row 0 on top; linear Rec. 709 radiance where colour.
- * The centre of the first pixel is (0.5, 0.5).
+/* image: pixels in memory, as float.
+ * Row-major, channels interleaved, row 0 on top. Colour is linear Rec. 709 radiance.
+ * Places are px, x right, y down; the centre of the first pixel is (0.5, 0.5).
  */
 #ifndef IMAGE_IMAGE_H
 #define IMAGE_IMAGE_H
@@ -12,10 +13,13 @@ struct image {
 	float *px;  // [height][width][channels]; owned; 64-byte aligned
 };
 
-/* A zeroed image; caller owns, image_free. */
+/* A zeroed image; the caller owns it: image_free. */
 struct image image_new(int width, int height, int channels);
+
+/* Accepts an empty image, and leaves one. */
 void image_free(struct image *image);
 
+/* The channels of the pixel in column x, row y, which must be inside. */
 static inline float *image_at(const struct image *image, int x, int y)
 {
 	return image->px + ((long)y * image->width + x) * image->channels;
@@ -28,7 +32,7 @@ float image_sample(const struct image *image, double x, double y, int channel);
 float srgb_from_linear(float linear);
 float linear_from_srgb(float srgb);
 
-/* 8-bit sRGB pixels of a colour (3) or grey (1) image, values clamped to 0..1; [height][width][channels]; free(). */
+/* 8-bit sRGB of a colour (3) or grey (1) image, values clamped to 0..1; [height][width][channels]; free(). */
 uint8_t *image_to_srgb8(const struct image *image);
 
 #endif

@@ -1,8 +1,9 @@
+#include "image/mask.h"
+
 #include <stdbool.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "image/plane.h"
 
 enum { STRAIGHT = 3, DIAGONAL = 4, FAR = 1 << 20 };  // chamfer lengths, in thirds of a pixel
 

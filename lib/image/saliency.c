@@ -295,3 +295,11 @@ void saliency_push(struct saliency *s, const unsigned char *px, int width, int h
 	free(sum.px);
 	free(all.px);
 }
+
+void saliency_free(struct saliency *s)
+{
+	free(s->map);
+	free(s->inhibited);
+	free(s->last);
+	*s = (struct saliency){ 0 };
+}

@@ -1,7 +1,6 @@
-#include <math.h>
-#include <stdlib.h>
+#include "image/saliency_pick.h"
 
-#include "image/saliency.h"
+#include <math.h>
 
 bool saliency_next(double place[2], const struct saliency *s)
 {
@@ -34,12 +33,4 @@ void saliency_decay(struct saliency *s, double seconds, double tau)
 	double keep = exp(-seconds / tau);
 	for (int i = 0; i < s->width * s->height; i++)
 		s->inhibited[i] *= keep;
-}
-
-void saliency_free(struct saliency *s)
-{
-	free(s->map);
-	free(s->inhibited);
-	free(s->last);
-	*s = (struct saliency){ 0 };
 }

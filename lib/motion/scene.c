@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "image/saliency.h"
+#include "image/saliency_pick.h"
 #include "math/rng.h"
 
 struct watch {

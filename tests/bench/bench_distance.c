@@ -12,6 +12,7 @@
 #include "image/distance/distance.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/lid_scene.h"
+#include "tests/peers/distance_samplers.h"
 
 enum { W = 1280, H = 1024, N = W * H };
 static const double REACH = 32;

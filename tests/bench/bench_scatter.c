@@ -11,6 +11,7 @@
 #include "image/subsurface/subsurface.h"
 #include "math/rng.h"
 #include "tests/lib/bench/bench.h"
+#include "tests/peers/subsurface_separable.h"
 
 enum { W = 1280, H = 1024, N = W * H };
 static const double PX_PER_MM = 9;  // both eyes across the screen

@@ -1,9 +1,10 @@
 /* The skin paper's three samplers of the screen-space distance field, as printed: what distance_band is compared with. */
+#include "tests/peers/distance_samplers.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "image/distance/distance.h"
 
 static bool is_skin(const struct distance_scene *s, const double u[2])
 {

@@ -1,10 +1,12 @@
 /* The separable kernel of Jimenez, Zsolnai, Jarabo, Freude, Auzinger, Wu, von der Pahlen, Wimmer and Gutierrez 2015. */
+#include "tests/peers/subsurface_separable.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 #include "math/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)

@@ -28,11 +28,6 @@ SIMD_CLONES static void sums(float out[P + 3], const float *restrict rows, const
 	}
 }
 
-bool patch_usable(const struct patch_set *s, int i, int level)
-{
-	return s->template[(long)i * SCALES_LEVELS + level].usable;
-}
-
 /* Correlation, gain and the mean square that they leave from the sums; false when the picture is plain there. */
 static bool compare(double *ncc, double *gain, double *left, const struct template *t, const float sum[P + 3])
 {

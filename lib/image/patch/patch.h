@@ -47,9 +47,6 @@ struct patch_set *patch_set_new(const struct scales *reference, int n, const dou
                                 const struct patch_conf *conf);
 void patch_set_free(struct patch_set *set);
 
-/* Whether patch i has a template at that level: inside the picture, enough of its pixels count, and not plain. */
-bool patch_usable(const struct patch_set *set, int i, int level);
-
 /* Improves *warp at one level. prior may be null. False, warp untouched, when the patch leaves the picture, has no template
  * at that level, or the warp degenerates. Any number of threads at once. */
 bool patch_align(struct patch_warp *warp, struct patch_fit *fit, const struct patch_set *set, int i, int level,

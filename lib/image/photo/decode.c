@@ -8,7 +8,13 @@
 #include <turbojpeg.h>
 
 #include "base/mem.h"
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
+
+void photo_widen(uint16_t *out, const uint8_t *in, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		out[i] = (uint16_t)(in[i] * 257);
+}
 
 /* Cameras write these and mean no harm. */
 static bool is_harmless(const char *warning)

@@ -3,7 +3,7 @@
 #include <tiffio.h>
 
 #include "base/mem.h"
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 enum { BLOCK_MAX = 1 << 30 };  // bytes of a strip or tile
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 /* The entry in any of the blocks; null if absent. */
 static ExifEntry *entry_of(ExifData *data, ExifTag tag)

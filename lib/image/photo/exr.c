@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 enum { FLAG_DEEP = 0x800, FLAG_PARTS = 0x1000 };
 

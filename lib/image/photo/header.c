@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 enum { JPEG_SCANS_MAX = 200, PNG_CHUNKS_MAX = 100000 };
 
@@ -79,7 +79,7 @@ static bool take_frame(struct photo *photo, struct bytes file, size_t at, int ma
 }
 
 /* Walks all markers to the end of the image: a picture cut short anywhere has none. */
-bool photo_parse_jpeg(struct photo *photo, struct bytes file, struct err *err)
+static bool parse_jpeg(struct photo *photo, struct bytes file, struct err *err)
 {
 	struct bytes exif = { 0 };
 	size_t at = 2;
@@ -117,7 +117,7 @@ bool photo_parse_jpeg(struct photo *photo, struct bytes file, struct err *err)
 	return err_set(err, "is truncated: the JPEG has no end; copy it from the camera again");
 }
 
-bool photo_parse_png(struct photo *photo, struct bytes file, struct err *err)
+static bool parse_png(struct photo *photo, struct bytes file, struct err *err)
 {
 	size_t at = 8;
 	bool data = false;
@@ -150,8 +150,8 @@ bool photo_header(struct photo *photo, const void *data, size_t size, double lim
 	if (!size)
 		return err_set(err, "is empty");
 	static bool (*const parse[])(struct photo *, struct bytes, struct err *) = {
-		[PHOTO_JPEG] = photo_parse_jpeg,
-		[PHOTO_PNG] = photo_parse_png,
+		[PHOTO_JPEG] = parse_jpeg,
+		[PHOTO_PNG] = parse_png,
 		[PHOTO_TIFF] = photo_parse_tiff,
 		[PHOTO_EXR] = photo_parse_exr,
 	};

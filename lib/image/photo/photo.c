@@ -6,13 +6,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
-#include "image/photo/parse.h"
-
-void photo_widen(uint16_t *out, const uint8_t *in, size_t n)
-{
-	for (size_t i = 0; i < n; i++)
-		out[i] = (uint16_t)(in[i] * 257);
-}
+#include "image/photo/impl.h"
 
 /* Linear values are kept as sRGB code values of 16 bits, as every other kind comes. */
 static bool decode_exr(const struct photo *photo, uint16_t *rgb, const char *path, double limit_mpx, struct err *err)

@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 enum {
 	TAG_SUBFILE = 254, TAG_WIDTH = 256, TAG_HEIGHT, TAG_BITS, TAG_PHOTOMETRIC = 262, TAG_MODEL = 272,

@@ -1,7 +1,7 @@
 /* From a level of the pyramid to the one below: each texel the mean of the frontmost of four. */
 
 #include "image/subsurface/lanes.h"
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "image/subsurface/lanes.h"
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h

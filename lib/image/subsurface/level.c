@@ -1,4 +1,4 @@
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 
 #include <assert.h>
 #include <math.h>
@@ -105,6 +105,4 @@ void subsurface_level_fill(struct subsurface_level *level, int deepest, const st
 	}
 	if (level->n)
 		copy(level, p);
-	if (deepest)
-		subsurface_level_halve(level, deepest);
 }

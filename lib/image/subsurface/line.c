@@ -1,5 +1,5 @@
 /* A Gaussian along a line, with depth weights: exp(-dz² / 2v) as (1 - dz² / 8v)^4, 0 beyond, which is within 0.02 of it. */
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 #include "math/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <omp.h>
 
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h
@@ -73,5 +73,7 @@ void subsurface_spread(const struct subsurface_picture *p, const struct subsurfa
 		size += subsurface_level_size(&level[l], width, height, !l);
 	subsurface_room_make(room, size + (size_t)omp_get_max_threads() * subsurface_sum_size(level, deepest));
 	subsurface_level_fill(level, deepest, p, room);
+	if (deepest)
+		subsurface_level_halve(level, deepest);
 	subsurface_sum(level, deepest, p, stays, room);
 }

@@ -38,8 +38,4 @@ void subsurface_room_free(struct subsurface_room *room);
 /* Spreads the light in place. The same bits on any number of threads. */
 void subsurface_spread(const struct subsurface_picture *picture, const struct subsurface_profile *profile, struct subsurface_room *room);
 
-/* Jimenez et al. 2015: one separable kernel of `taps` samples (odd, at most 65), denser towards the middle, the profile
- * integrated over one direction ("pre-integrated"), with depth weights. What subsurface_spread() is compared with. */
-void subsurface_separable(const struct subsurface_picture *picture, const struct subsurface_profile *profile, int taps, struct subsurface_room *room);
-
 #endif

@@ -3,7 +3,7 @@
 #include <omp.h>
 #include <string.h>
 
-#include "image/subsurface/level.h"
+#include "image/subsurface/impl.h"
 #include "math/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)

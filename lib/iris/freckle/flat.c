@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "iris/freckle/search.h"
+#include "image/mask.h"
 #include "image/plane.h"
 
 /* Lengths in mm. The surroundings begin where a spot's blur ends. */

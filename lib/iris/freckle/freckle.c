@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "iris/freckle/ground.h"
 #include "iris/freckle/search.h"
+#include "image/mask.h"
 #include "image/plane.h"
 
 /* Weighted means of step x step texels. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "image/mask.h"
 #include "image/plane.h"
 
 enum { OUTSIDE, IRIS, LID, GLINT, LASH };

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "image/exr.h"
-#include "image/plane.h"
+#include "image/mask.h"
 
 static const double margin_px = 24;
 static const size_t room_bytes = 200 << 20;  // for the frames that are kept

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "bridge/cv_ridge.h"
+#include "image/mask.h"
 #include "image/plane.h"
 #include "math/stats.h"
 #include "track/wrinkle/impl.h"

@@ -15,6 +15,7 @@
 #include "image/exr.h"
 #include "image/photo/photo.h"
 #include "image/video/video.h"
+#include "tests/peers/exr_channels.h"
 
 static const size_t LIMIT = (size_t)1 << 30;
 

@@ -12,6 +12,7 @@
 #include "image/distance/distance.h"
 #include "math/rng.h"
 #include "tests/lib/scenes/lid_scene.h"
+#include "tests/peers/distance_samplers.h"
 
 enum { W = 61, H = 43 };
 

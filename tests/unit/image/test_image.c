@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "tests/lib/scratch.h"
+#include "tests/peers/exr_channels.h"
 
 enum { W = 61, H = 37, LIMIT = 1 << 20 };
 

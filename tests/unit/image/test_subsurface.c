@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "image/subsurface/subsurface.h"
 #include "math/rng.h"
+#include "tests/peers/subsurface_separable.h"
 
 enum { W = 203, H = 157, N = W * H };
 

@@ -2,7 +2,6 @@
  * changed in known places. */
 #include "base/file.h"
 #include "base/mem.h"
-#include "image/cut.h"
 #include "image/video/video.h"
 #include "math/rng.h"
 #include "tests/lib/scratch.h"
@@ -285,31 +284,12 @@ static void noise_in_files(void **state)
 	free(data);
 }
 
-static void cuts(void **state)
-{
-	(void)state;
-	static uint8_t grey[H * W];
-	struct rng rng = { 3 };
-	struct cut_finder finder = { 0 };
-	for (int i = 0; i < 40; i++) {
-		double phase = i < 25 ? 0 : 2.5;  // another picture from frame 25 on
-		double gain = i == 12 ? 0.6 : 1;  // a flash the other way round is no cut
-		for (int y = 0; y < H; y++)
-			for (int x = 0; x < W; x++)
-				grey[y * W + x] = (uint8_t)(gain * (128 + 80 * sin((x + 0.5 * i) / 25.0 + phase) * cos(y / 19.0 + phase))
-				                            + 3 * rng_uniform(&rng));
-		struct cut_view view;
-		cut_view_of(&view, grey, W, W, H);
-		assert_int_equal(cut_found(&finder, &view, 0.1), i == 25);
-	}
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(round_trip),   cmocka_unit_test(read_from_its_start), cmocka_unit_test(same_bytes),   cmocka_unit_test(odd_sides),
 		cmocka_unit_test(variable_rate), cmocka_unit_test(rotation_tag), cmocka_unit_test(broken_files),
-		cmocka_unit_test(limits),       cmocka_unit_test(noise_in_files), cmocka_unit_test(cuts),
+		cmocka_unit_test(limits),       cmocka_unit_test(noise_in_files),
 	};
 	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -3,6 +3,7 @@
 
 #include "base/mem.h"
 #include "image/saliency.h"
+#include "image/saliency_pick.h"
 #include "math/stats.h"
 #include "math/vec.h"
 #include "tests/lib/scratch.h"

@@ -1,6 +1,6 @@
 /* One level of subsurface.c's pyramid: the picture, halved so many times, and what is blurred there. */
-#ifndef IMAGE_SUBSURFACE_LEVEL_H
-#define IMAGE_SUBSURFACE_LEVEL_H
+#ifndef IMAGE_SUBSURFACE_IMPL_H
+#define IMAGE_SUBSURFACE_IMPL_H
 #include <stdbool.h>
 
 #include "image/subsurface/subsurface.h"

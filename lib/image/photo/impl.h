@@ -1,6 +1,6 @@
 /* photo_parse: what header.c and the files beside it share; nobody else includes this. */
-#ifndef IMAGE_PHOTO_PARSE_H
-#define IMAGE_PHOTO_PARSE_H
+#ifndef IMAGE_PHOTO_IMPL_H
+#define IMAGE_PHOTO_IMPL_H
 #include "image/photo/photo.h"
 
 /* Bytes of a stranger's file. Reads past the end give 0: every parser then runs into its own checks. */
@@ -31,8 +31,6 @@ static inline uint32_t bytes_le(struct bytes b, size_t at, int n)
 }
 
 /* Each fills width, height, bits, grey and exif; false, err set, when the file should not be decoded. */
-bool photo_parse_jpeg(struct photo *photo, struct bytes file, struct err *err);
-bool photo_parse_png(struct photo *photo, struct bytes file, struct err *err);
 bool photo_parse_tiff(struct photo *photo, struct bytes file, struct err *err);
 bool photo_parse_exr(struct photo *photo, struct bytes file, struct err *err);
 
