@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/version.h"
+#include "plan/stages.h"
 #include "render/page/embed.h"
 
 static const char *const out = "work/review/index.html";
@@ -101,8 +102,6 @@ static void add(struct inputs *in, const char *fmt, ...)
 /* Everything the page shows. What is not there counts, too: the page changes when it comes. */
 static struct inputs inputs(const struct capture *capture, const struct file_list *targets)
 {
-	static const char *const stages[] = { "calibrate", "limbus", "unrefract", "freckles", "heightfield", "pigment", "relief",
-		                                  "refraction", "track", "train", "transfer", "extrapolate", "animate" };
 	static const char *const iris[] = { "texture.exr", "texture.json", "freckles.exr", "freckles.json", "thickness.exr",
 		                                "relief.exr", "pigment.json" };
 	static const char *const pictures[] = { "front", "three_quarter", "turntable", "contact_sheet" };
@@ -110,8 +109,8 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 	add(&in, "work/plan.json");
 	add(&in, "work/calibrate/rig.png");
 	add(&in, "work/review/viewer.html");
-	for (int i = 0; i < COUNT(stages); i++)
-		add(&in, "work/log/%s.json", stages[i]);
+	for (int i = 1; i < PLAN_STAGES - 1; i++)  // plan keeps no log; render's own is being written
+		add(&in, "work/log/%s.json", plan_stages[i].name);
 	for (int e = 0; e < capture->n_eyes; e++) {
 		for (int i = 0; i < COUNT(iris); i++)
 			add(&in, "%s/%s", capture->eyes[e].iris, iris[i]);

@@ -5,8 +5,9 @@
 #include <sys/stat.h>
 
 #include "base/mem.h"
-#include "render/page/page.h"
 #include "model/model.h"
+#include "plan/stages.h"
+#include "render/page/page.h"
 
 /* Clips larger than this are linked, not put into the page. */
 static const size_t clip_limit = 12 << 20;
@@ -153,11 +154,9 @@ json_t *page_skin(struct page *page)
 	struct file_list targets;
 	struct err err = { 0 };
 	json_t *skin = json_object(), *columns = json_array(), *list = json_array();
-	column(page, columns, "track", "Tracked");
-	column(page, columns, "train", "Learnt");
-	column(page, columns, "transfer", "Registered");
-	column(page, columns, "extrapolate", "Rigged");
-	column(page, columns, "animate", "Animated");
+	for (int i = 0; i < PLAN_STAGES; i++)
+		if (plan_stages[i].title)
+			column(page, columns, plan_stages[i].name, plan_stages[i].title);
 	add(skin, "columns", columns);
 	add(skin, "track", page_picture(page, page_file(page, "work/skin/track.png"), 2 * page->width));
 	add(skin, "wrinkles", page_picture(page, page_file(page, "work/skin/wrinkles.png"), 2 * page->width));

@@ -3,12 +3,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/mem.h"
+#include "plan/stages.h"
 #include "render/page/page.h"
-
-/* DESIGN's order. */
-static const char *const names[] = { "plan", "calibrate", "limbus", "unrefract", "freckles", "heightfield", "pigment",
-	                                 "relief", "refraction", "track", "train", "transfer", "extrapolate", "animate" };
 
 static json_t *figures(const json_t *log)
 {
@@ -61,7 +57,7 @@ static json_t *row(struct page *page, const char *name, const json_t *plan, json
 	if (setting && run)
 		json_object_set(entry, "setting", setting);
 	if (!log && !self) {
-		bool planned = plan && reason && !strcmp(name, names[0]);  // plan keeps no log: what it wrote is there
+		bool planned = plan && reason && !strcmp(name, plan_stages[0].name);  // plan keeps no log: what it wrote is there
 		if (planned)
 			json_object_set(entry, "note", reason);
 		else
@@ -96,12 +92,12 @@ json_t *page_stages(struct page *page, double *seconds)
 {
 	json_t *list = json_array(), *plan = page_json(page, page_file(page, "work/plan.json"));
 	*seconds = 0;
-	for (int i = 0; i < COUNT(names); i++) {
-		json_t *log = page_json(page, page_file(page, "work/log/%s.json", names[i]));
-		json_array_append_new(list, row(page, names[i], plan, log, seconds));
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		const char *name = plan_stages[i].name;
+		json_t *log = strcmp(name, "render") ? page_json(page, page_file(page, "work/log/%s.json", name)) : 0;
+		json_array_append_new(list, row(page, name, plan, log, seconds));
 		json_decref(log);
 	}
-	json_array_append_new(list, row(page, "render", plan, 0, seconds));
 	json_decref(plan);
 	shares(list);
 	return list;

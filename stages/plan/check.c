@@ -23,7 +23,7 @@ struct child {
 /* STAGE --print-config reads, checks and prints; a file in memory takes what it has to say. */
 static bool start(struct child *child, const char *stage, const char *capture)
 {
-	char *program = plan_program(stage), *arg = mem_printf("--capture=%s", capture);
+	char *program = plan_stage_program(stage), *arg = mem_printf("--capture=%s", capture);
 	char *argv[] = { program, arg, "--print-config", 0 };
 	posix_spawn_file_actions_t files;
 	child->out = memfd_create("check", MFD_CLOEXEC);
@@ -60,8 +60,8 @@ static bool concerns(const struct conf *conf, const char *stage)
 		const struct conf_item *item = &conf->items[i];
 		bool of_stage = false;
 		for (int s = 0; s < PLAN_STAGES; s++) {
-			size_t m = strlen(plan_names[s]);
-			of_stage |= !strncmp(item->key, plan_names[s], m) && item->key[m] == '.';
+			size_t m = strlen(plan_stages[s].name);
+			of_stage |= !strncmp(item->key, plan_stages[s].name, m) && item->key[m] == '.';
 		}
 		bool own = !strncmp(item->key, stage, n) && item->key[n] == '.';
 		if (item->layer && (own || !of_stage))

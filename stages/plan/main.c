@@ -37,7 +37,7 @@ static struct plan_asked take_asked(int *argc, char **argv)
 static void fill_table(struct opt opts[PLAN_STAGES], struct plan_cost cost[PLAN_STAGES])
 {
 	for (int i = 0; i < PLAN_STAGES; i++) {
-		char *key = mem_printf("%s_seconds", plan_names[i]);
+		char *key = mem_printf("%s_seconds", plan_stages[i].name);
 		opts[i] = (struct opt)OPT_REALS(key, cost[i].fixed_mpx, 2, 0, 1e6, "s; s/Mpx", "estimated time of the stage");
 	}
 }

@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include "anatomy/keys.h"
+#include "base/front_use.h"
 #include "base/say.h"
 #include "base/work.h"
 #include "plan.h"
+#include "plan/setting.h"
 
 static char *slice_of(const struct opt opts[PLAN_STAGES], const struct conf *conf)
 {
@@ -39,12 +41,24 @@ static bool nothing_to_do(const struct plan *plan, const struct call *call)
 	return fresh;
 }
 
+/* The settings that capture.conf asks for, left where the stages find them; said where the choice is a new one. */
+static bool settle(struct plan *plan, const struct call *call, const struct conf *conf, struct err *err)
+{
+	struct plan_choice choice;
+	bool changed, ok = plan_setting(&choice, plan, call->config_dir, conf, err);
+	if (ok && choice.line && front_save(&choice.front, &choice.ask, PLAN_STAGES, choice.chosen, plan->capture, &changed, err)
+	    && changed && !call->quiet)
+		say_error("plan", choice.line);
+	plan_choice_free(&choice);
+	return !err_is(err);
+}
+
 static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
                       const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, bool *fresh, struct err *err)
 {
 	struct plan plan;
 	char *slice = slice_of(opts, conf);
-	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && plan_setting(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
+	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
@@ -57,7 +71,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 	for (int i = 0; i < PLAN_STAGES; i++)
 		free(plan.rows[i].setting);
 	if (ok && !plan.n_run)
-		return err_set(err, "%s: nothing to run: %s", call->capture, plan.rows[2].reason);
+		return err_set(err, "%s: nothing to run: %s", call->capture, plan.rows[plan_stage_find("limbus")].reason);
 	return ok;
 }
 

@@ -10,16 +10,13 @@
 bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *stage, struct err *err)
 {
 	struct conf conf = { 0 };
-	bool known = false;
 	*fresh = false;
 	*why = 0;
-	for (int i = 0; i < PLAN_STAGES; i++)
-		known |= !strcmp(stage, plan_names[i]);
-	if (!known)
+	if (plan_stage_find(stage) < 0)
 		return err_set(err, "--fresh = %.60s: no such stage", stage);
 	bool ok = call_load(call, stage, &conf, err);
 	if (ok) {
-		char *program = plan_program(stage);
+		char *program = plan_stage_program(stage);
 		*fresh = record_holds(call->capture, stage, program, &conf, why);
 		free(program);
 	}

@@ -67,7 +67,7 @@ static void write_rule(FILE *mk, const struct plan *plan, int i)
 		return;
 	}
 	for (int j = 1; j < i; j++)
-		if (plan->rows[j].run && (i == PLAN_STAGES - 1 || plan_needs(i, j)))
+		if (plan->rows[j].run && (i == PLAN_STAGES - 1 || plan_stage_needs(i, j)))
 			fprintf(mk, " %s", plan->rows[j].name);
 	fprintf(mk, "\n\t@\"$$BIN/plan\" --capture=\"$$CAPTURE\" --fresh=%s || \\\n"
 	            "\t\"$$BIN/%s\" --capture=\"$$CAPTURE\" $${THREADS:+\"--threads=$$THREADS\"}\n",

@@ -1,12 +1,11 @@
-/* In place of a preset: the settings that `error = ...` or `time = ...` asks for, from the measured fronts. */
+#include "plan/setting.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/front_use.h"
+#include "base/call.h"
 #include "base/mem.h"
-#include "base/say.h"
-#include "plan.h"
 
 static bool has_front(const struct front *front, const char *stage)
 {
@@ -68,39 +67,43 @@ static char *tell(struct plan *plan, const struct front *front, const struct fro
 	return more;
 }
 
-bool plan_setting(struct plan *plan, const struct call *call, const struct conf *conf, struct err *err)
+bool plan_setting(struct plan_choice *choice, struct plan *plan, const char *config_dir, const struct conf *conf, struct err *err)
 {
-	struct front_ask ask;
-	struct front front = { 0 };
-	bool runs[PLAN_STAGES], changed;
-	int chosen[PLAN_STAGES];
+	struct front *front = &choice->front;
+	const struct front_ask *ask = &choice->ask;
+	const char *names[PLAN_STAGES];
+	bool runs[PLAN_STAGES];
 	double others_s = 0;
-	if (!front_ask(&ask, conf, err) || (!ask.error && !ask.time))
+	*choice = (struct plan_choice){ 0 };
+	if (!front_ask(&choice->ask, conf, err) || (!ask->error && !ask->time))
 		return !err_is(err);
-	char *dir = call->config_dir ? mem_str(call->config_dir) : call_config_dir(), *path = mem_printf("%s/fronts.conf", dir);
-	bool ok = front_load(&front, path, err);
+	char *dir = config_dir ? mem_str(config_dir) : call_config_dir(), *path = mem_printf("%s/fronts.conf", dir);
+	bool ok = front_load(front, path, err);
 	for (int i = 0; i < PLAN_STAGES; i++) {
+		names[i] = plan_stages[i].name;
 		runs[i] = plan->rows[i].run;
-		others_s += has_front(&front, plan_names[i]) ? 0 : plan->rows[i].seconds;
+		others_s += has_front(front, names[i]) ? 0 : plan->rows[i].seconds;
 	}
 	if (ok) {
-		front_choose(&front, &ask, PLAN_STAGES, plan_names, runs, plan->mpx, others_s, chosen);
-		if (none_chosen(chosen)) {
-			char *known = units(&front);
-			ok = err_set(err, "%s/capture.conf: %s: no stage that runs here is measured in %s; %s has %s", plan->capture, ask.text,
-			             ask.unit, path, known);
+		front_choose(front, ask, PLAN_STAGES, names, runs, plan->mpx, others_s, choice->chosen);
+		if (none_chosen(choice->chosen)) {
+			char *known = units(front);
+			ok = err_set(err, "%s/capture.conf: %s: no stage that runs here is measured in %s; %s has %s", plan->capture, ask->text,
+			             ask->unit, path, known);
 			free(known);
 		}
 	}
-	if (ok && front_save(&front, &ask, PLAN_STAGES, chosen, plan->capture, &changed, err)) {
-		char *line = tell(plan, &front, &ask, chosen);
-		snprintf(plan->asked, sizeof plan->asked, "%s", ask.text);
-		if (changed && !call->quiet)
-			say_error("plan", line);
-		free(line);
+	if (ok) {
+		choice->line = tell(plan, front, ask, choice->chosen);
+		snprintf(plan->asked, sizeof plan->asked, "%s", ask->text);
 	}
-	front_free(&front);
 	free(dir);
 	free(path);
-	return !err_is(err);
+	return ok;
+}
+
+void plan_choice_free(struct plan_choice *choice)
+{
+	front_free(&choice->front);
+	free(choice->line);
 }

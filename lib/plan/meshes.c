@@ -1,10 +1,11 @@
+#include "plan/meshes.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "mesh/mesh_peek.h"
-#include "plan.h"
 
 /* Longer files are not looked into: plan is started by every make. transfer says the same of them when it has read them. */
 enum { MOST = 64 << 20 };

@@ -1,3 +1,5 @@
+#include "plan/decide.h"
+
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,60 +10,7 @@
 #include "base/mem.h"
 #include "base/record.h"
 #include "image/photo/photo.h"
-#include "plan.h"
-
-/* What the folder holds, one bit each. */
-enum { PHOTOS = 1, VIEWS = 2, VIDEO = 4, SUBJECT = 8, TARGETS = 16, SCRIPT = 32 };
-
-/* A stage runs when the folder has any of `any` and all of `all`, and the stage it needs runs (or the other way of `others` is open). */
-static const struct rule {
-	const char *name, *needs;  // needs: a stage whose result it cannot do without
-	int any, all;
-	const char *does, *without;  // reasons: why it runs, why not when the folder lacks what it works on
-} rules[PLAN_STAGES] = {
-	{ "plan", 0, 0, 0, "decides what the others do", "" },
-	{ "calibrate", 0, VIEWS | VIDEO, 0, "cameras from the overlapping views, or from the video",
-	  "one photograph or no views/: cameras come from EXIF or capture.conf" },
-	{ "limbus", 0, PHOTOS, 0, "finds the eye in each photograph", "no photos/" },
-	{ "unrefract", "limbus", PHOTOS, 0, "takes the cornea off the iris", "no photos/" },
-	{ "freckles", "unrefract", PHOTOS, 0, "finds and fills freckles of the iris", "no photos/" },
-	{ "heightfield", "freckles", PHOTOS, 0, "coarse thickness of the stroma", "no photos/" },
-	{ "pigment", "heightfield", PHOTOS, 0, "melanin of the iris", "no photos/" },
-	{ "relief", "pigment", PHOTOS, 0, "relief that renders like the photograph", "no photos/" },
-	{ "refraction", "unrefract", PHOTOS, 0, "how light reaches the iris", "no photos/" },
-	{ "track", 0, VIDEO, 0, "follows gaze, lids and skin", "no video/: there is no motion to follow" },
-	{ "train", "track", VIDEO, 0, "learns how the skin moves with the eye", "no video/: there is no motion to learn" },
-	{ "transfer", "train", TARGETS, VIDEO, "fits the characters to the subject",
-	  "no targets/, or neither video/ to learn from nor views/ to make the subject's mesh from" },
-	{ "extrapolate", "transfer", TARGETS, VIDEO, "rigs the characters", "no targets/, or no video/ to learn from" },
-	{ "animate", "train", SCRIPT, VIDEO, "moves the eyes as script/ says", "no script/, or no video/ to learn from" },
-	{ "render", "relief", PHOTOS, 0, "pictures and the review page", "neither photos/ of an eye, nor views/, nor video/ and targets/ to show" },
-};
-
-/* Stages that run for another reason, too: the folder has all of `all`, and the stage needed runs. */
-static const struct {
-	const char *name, *needs;
-	int all;
-} others[] = {
-	{ "transfer", "calibrate", VIEWS | TARGETS },
-	{ "render", "extrapolate", VIDEO | TARGETS },
-	{ "render", "calibrate", VIEWS },
-};
-
-const char *const plan_names[PLAN_STAGES] = {
-	"plan",       "calibrate", "limbus", "unrefract", "freckles",    "heightfield", "pigment", "relief",
-	"refraction", "track",     "train",  "transfer",  "extrapolate", "animate",     "render",
-};
-
-bool plan_needs(int i, int j)
-{
-	// Cameras and mesh come first: whatever looks at pictures, or at the person, takes them from there.
-	static const char *const takers[] = { "limbus", "track", "transfer" };
-	bool cameras = false;
-	for (int k = 0; k < COUNT(takers); k++)
-		cameras |= !strcmp(plan_names[j], "calibrate") && !strcmp(plan_names[i], takers[k]);
-	return cameras || (rules[i].needs && !strcmp(rules[i].needs, plan_names[j]));
-}
+#include "plan/meshes.h"
 
 /* The lens is in capture.conf: without views there is nothing left to be found. */
 static bool lens_given(const struct conf *conf)
@@ -109,11 +58,11 @@ static bool holdings(int *have, struct plan *plan, struct err *err)
 		const char *dir;
 		int bit, least;
 		const char *const *kinds;
-	} dirs[] = { { "photos", PHOTOS, 1, 0 },
-		     { "views", VIEWS, 2, 0 },
-		     { "video", VIDEO, 1, 0 },
-		     { "targets", TARGETS, 1, meshes },
-		     { "script", SCRIPT, 1, 0 } };
+	} dirs[] = { { "photos", HAS_PHOTOS, 1, 0 },
+		     { "views", HAS_VIEWS, 2, 0 },
+		     { "video", HAS_VIDEO, 1, 0 },
+		     { "targets", HAS_TARGETS, 1, meshes },
+		     { "script", HAS_SCRIPT, 1, 0 } };
 	char *names = mem_str("");
 	bool ok = true;
 	*have = 0;
@@ -121,7 +70,7 @@ static bool holdings(int *have, struct plan *plan, struct err *err)
 		int n;
 		ok = look(&n, &names, plan->capture, dirs[i].dir, dirs[i].kinds, err);
 		*have |= n >= dirs[i].least ? dirs[i].bit : 0;
-		plan->n_photos = dirs[i].bit == PHOTOS ? n : plan->n_photos;
+		plan->n_photos = dirs[i].bit == HAS_PHOTOS ? n : plan->n_photos;
 	}
 	file_hash_bytes(plan->listing, names, strlen(names));
 	free(names);
@@ -163,17 +112,9 @@ static void measure(struct plan *plan)
 	free(dir);
 }
 
-char *plan_program(const char *stage)
-{
-	char *self = call_program_path(), *slash = strrchr(self, '/');
-	char *path = mem_printf("%.*s%s", slash ? (int)(slash - self + 1) : 0, self, stage);
-	free(self);
-	return path;
-}
-
 static bool is_built(const char *stage)
 {
-	char *path = plan_program(stage);
+	char *path = plan_stage_program(stage);
 	bool built = access(path, X_OK) == 0;
 	free(path);
 	return built;
@@ -181,18 +122,15 @@ static bool is_built(const char *stage)
 
 static bool runs(const struct plan *plan, const char *name)
 {
-	for (int i = 0; i < PLAN_STAGES; i++)
-		if (!strcmp(plan->rows[i].name, name))
-			return plan->rows[i].run;
-	return false;
+	return plan->rows[plan_stage_find(name)].run;
 }
 
-/* The stage that lets this one run the other way with such a folder; null when there is none. */
-static const char *other_way(const char *name, int have)
+/* The stage that lets this one run in another way with such a folder; null when there is none. */
+static const char *other_way(const struct plan_stage *s, int have)
 {
-	for (int i = 0; i < COUNT(others); i++)
-		if (!strcmp(others[i].name, name) && (have & others[i].all) == others[i].all)
-			return others[i].needs;
+	for (int i = 0; i < COUNT(s->other) && s->other[i].needs; i++)
+		if ((have & s->other[i].all) == s->other[i].all)
+			return s->other[i].needs;
 	return 0;
 }
 
@@ -221,17 +159,17 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		return err_set(err, "%s/work: is a link: results are written inside the capture folder alone", capture);
 	if (!holdings(&have, plan, err))
 		return false;
-	if (!(have & (PHOTOS | VIEWS | VIDEO)))
+	if (!(have & (HAS_PHOTOS | HAS_VIEWS | HAS_VIDEO)))
 		return err_set(err, "%s: nothing to work on: put macro photographs of an eye into %s/photos/", capture, capture);
 	measure(plan);
 	for (int i = 0; i < PLAN_STAGES; i++)
-		plan->rows[i].name = plan_names[i];
+		plan->rows[i].name = plan_stages[i].name;
 	for (int i = 0; i < PLAN_STAGES; i++) {
-		const struct rule *r = &rules[i];
+		const struct plan_stage *r = &plan_stages[i];
 		struct plan_row *row = &plan->rows[i];
 		bool calibrates = !strcmp(r->name, "calibrate");
-		bool has = (!calibrates || have & VIEWS || !lens_given(conf)) && (!r->any || have & r->any) && (have & r->all) == r->all;
-		const char *other = other_way(r->name, have);
+		bool has = (!calibrates || have & HAS_VIEWS || !lens_given(conf)) && (!r->any || have & r->any) && (have & r->all) == r->all;
+		const char *other = other_way(r, have);
 		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));
 		row->reason = r->does;
 		if (!has && !other)

@@ -1,0 +1,40 @@
+/* decide: which stages a capture folder needs, why the others are not needed, and about how long each takes. It reads names and the
+ * first bytes of photographs, and a character's mesh only where that has as many vertices as the subject's: every make calls it.
+ */
+#ifndef PLAN_DECIDE_H
+#define PLAN_DECIDE_H
+#include "base/conf.h"
+#include "plan/stages.h"
+
+/* Seconds of a stage on two processors: fixed, and for each megapixel of its input. */
+struct plan_cost {
+	double fixed_mpx[2];
+};
+
+struct plan_row {
+	const char *name;
+	bool run;
+	const char *reason;  // fixed texts: they go into plan.mk
+	double seconds;      // estimate; 0 when it does not run
+	char *setting;       // chosen from the measured fronts; null: the preset. Owned by the plan
+};
+
+struct plan {
+	const char *capture;
+	struct plan_row rows[PLAN_STAGES];
+	int n_run;           // plan itself not counted
+	int n_photos;
+	double mpx;          // of all photographs, as far as their heads tell
+	char asked[64];      // "error = 0.05 mm", or ""
+	char listing[33];    // hash of the names that decide
+};
+
+/* Decides from what the folder holds, from capture.conf (conf: whether it gives the lens) and from which programs are built.
+ * plan     out; its texts are constants, but for rows[].setting (setting.h)
+ * capture  path of the folder; kept in plan
+ * cost     one for each stage, in the order of plan_stages
+ * Returns false, err set, when there is no such folder, its work/ is a link, or it holds nothing to work on. */
+bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
+                 struct err *err);
+
+#endif

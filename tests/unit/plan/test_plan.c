@@ -1,0 +1,200 @@
+/* The table of stages against the programs and configuration files that there are; what a folder's names decide. */
+#include "tests/lib/unit.h"
+
+#include <glob.h>
+
+#include "base/conf.h"
+#include "base/file.h"
+#include "base/mem.h"
+#include "plan/decide.h"
+#include "plan/meshes.h"
+#include "plan/setting.h"
+#include "tests/lib/scratch.h"
+
+static int teardown(void **state)
+{
+	(void)state;
+	scratch_close();
+	return 0;
+}
+
+static int setup(void **state)
+{
+	(void)state;
+	scratch_open();
+	return 0;
+}
+
+/* The folder that holds the source of that stage. */
+static const char *source_of(const char *name)
+{
+	static char path[100];
+	snprintf(path, sizeof path, strcmp(name, "render") ? "stages/%s/main.c" : "%s/main.c", name);
+	return path;
+}
+
+static void every_program_is_in_the_table(void **state)
+{
+	(void)state;
+	glob_t found;
+	assert_int_equal(glob("stages/*/main.c", 0, 0, &found), 0);
+	assert_int_equal(found.gl_pathc, PLAN_STAGES - 1);  // render's stands in a folder of its own
+	for (size_t i = 0; i < found.gl_pathc; i++) {
+		char name[100];
+		assert_int_equal(sscanf(found.gl_pathv[i], "stages/%99[^/]", name), 1);
+		if (plan_stage_find(name) < 0)
+			fail_msg("%s: not in lib/plan/stages.c", found.gl_pathv[i]);
+	}
+	globfree(&found);
+	for (int i = 0; i < PLAN_STAGES; i++)
+		if (!file_exists(source_of(plan_stages[i].name)))
+			fail_msg("%s: no such program: %s", plan_stages[i].name, source_of(plan_stages[i].name));
+	assert_int_equal(plan_stage_find("render"), PLAN_STAGES - 1);
+	assert_int_equal(plan_stage_find("rende"), -1);
+}
+
+static void every_stage_has_its_configuration_and_its_cost(void **state)
+{
+	(void)state;
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	assert_true(conf_load(&conf, "config/plan.conf", "", 0, &err));
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		char *path = mem_printf("config/%s.conf", plan_stages[i].name), *key = mem_printf("%s_seconds", plan_stages[i].name);
+		if (!file_exists(path))
+			fail_msg("%s is missing", path);
+		if (!conf_find(&conf, key, 0))
+			fail_msg("config/plan.conf: no row %s", key);
+		free(path);
+		free(key);
+	}
+	for (int i = 0; i < conf.n; i++) {
+		char name[100];
+		if (sscanf(conf.items[i].key, "%99[a-z]_seconds", name) == 1 && plan_stage_find(name) < 0)
+			fail_msg("config/plan.conf: %s: no such stage", conf.items[i].key);
+	}
+	conf_free(&conf);
+}
+
+static void what_a_stage_needs_runs_before_it(void **state)
+{
+	(void)state;
+	for (int i = 0; i < PLAN_STAGES; i++) {
+		const struct plan_stage *s = &plan_stages[i];
+		assert_non_null(s->does);
+		assert_non_null(s->without);
+		if (s->needs)
+			assert_in_range(plan_stage_find(s->needs), 1, i - 1);
+		for (int k = 0; k < 2 && s->other[k].needs; k++)
+			assert_in_range(plan_stage_find(s->other[k].needs), 1, i - 1);
+		for (int j = 0; j < PLAN_STAGES; j++)
+			assert_false(j >= i && plan_stage_needs(i, j));
+	}
+}
+
+/* Why each stage does or does not run in a folder with these files; no program stands beside the test's. */
+static struct plan decided(const char *const files[], const char *capture_conf)
+{
+	struct plan plan;
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	const struct plan_cost cost[PLAN_STAGES] = { 0 };
+	for (int i = 0; files[i]; i++)
+		scratch_text(files[i], "x");
+	assert_true(conf_load(&conf, scratch_text("capture.conf", capture_conf), "", 1, &err));
+	if (!plan_decide(&plan, scratch_path("."), cost, &conf, &err))
+		fail_msg("%s", err.msg);
+	conf_free(&conf);
+	return plan;
+}
+
+static const char *why(const struct plan *plan, const char *name)
+{
+	return plan->rows[plan_stage_find(name)].reason;
+}
+
+static void names_decide(void **state)
+{
+	(void)state;
+	const char *const unbuilt = "its program is not built";
+	struct plan p = decided((const char *[]){ "photos/a.jpg", 0 }, "");
+	assert_string_equal(why(&p, "limbus"), unbuilt);
+	assert_string_equal(why(&p, "render"), unbuilt);
+	assert_string_equal(why(&p, "track"), plan_stages[plan_stage_find("track")].without);
+	assert_string_equal(why(&p, "calibrate"), plan_stages[plan_stage_find("calibrate")].without);
+	assert_int_equal(p.n_run, 0);
+	assert_int_equal(p.n_photos, 1);
+	p = decided((const char *[]){ "video/a.mp4", "targets/a.txt", 0 }, "");
+	assert_string_equal(why(&p, "calibrate"), unbuilt);
+	assert_string_equal(why(&p, "transfer"), plan_stages[plan_stage_find("transfer")].without);  // that is no mesh
+	p = decided((const char *[]){ "targets/a.ply", 0 }, "camera.focal_px = 1000\n");
+	assert_string_equal(why(&p, "transfer"), unbuilt);
+	assert_string_equal(why(&p, "calibrate"), plan_stages[plan_stage_find("calibrate")].without);  // the lens is given
+	p = decided((const char *[]){ "views/a.jpg", "views/b.jpg", 0 }, "camera.focal_px = 1000\n");
+	assert_string_equal(why(&p, "calibrate"), unbuilt);
+}
+
+static void an_empty_folder_is_refused(void **state)
+{
+	(void)state;
+	struct plan plan;
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	const struct plan_cost cost[PLAN_STAGES] = { 0 };
+	assert_false(plan_decide(&plan, scratch_path("."), cost, &conf, &err));
+	assert_false(plan_decide(&plan, scratch_path("none"), cost, &conf, &(struct err){ 0 }));
+}
+
+#define SUBJECT "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n"
+
+static void characters_of_the_subjects_topology_are_counted(void **state)
+{
+	(void)state;
+	int all, same;
+	scratch_text("subject.obj", SUBJECT);
+	scratch_text("targets/a.obj", "v 0 0 5\nv 2 0 0\nv 0 2 0\nv 2 2 1\nf 1 2 3\nf 2 4 3\n");
+	scratch_text("targets/b.obj", "v 0 0 5\nv 2 0 0\nv 0 2 0\nv 2 2 1\nf 1 2 4\nf 1 4 3\n");
+	scratch_text("targets/c.obj", "v 0 0 5\nv 2 0 0\nv 0 2 0\nf 1 2 3\n");
+	scratch_text("targets/d.txt", SUBJECT);
+	plan_characters(&all, &same, scratch_path("."));
+	assert_int_equal(all, 3);
+	assert_int_equal(same, 1);
+}
+
+static void a_setting_is_chosen_for_stages_that_run(void **state)
+{
+	(void)state;
+	struct plan plan = { .capture = scratch_path("."), .mpx = 2 };
+	struct plan_choice choice;
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	int limbus = plan_stage_find("limbus");
+	for (int i = 0; i < PLAN_STAGES; i++)
+		plan.rows[i].name = plan_stages[i].name;
+	plan.rows[limbus].run = true;
+	scratch_text("config/fronts.conf", "limbus.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: a = 4\nlimbus.fine = 0.1 mm, 0.2 s + 0.2 s/Mpx: a = 2\n");
+	assert_true(conf_load(&conf, scratch_text("capture.conf", "error = 0.2 mm\n"), "", 1, &err));
+	if (!plan_setting(&choice, &plan, scratch_path("config"), &conf, &err))
+		fail_msg("%s", err.msg);
+	assert_int_equal(choice.chosen[limbus], 1);
+	assert_non_null(strstr(choice.line, "limbus fine"));
+	assert_non_null(strstr(plan.rows[limbus].setting, "a = 2"));
+	NEAR(plan.rows[limbus].seconds, 0.2 + 2 * 0.2, 1e-12);
+	free(plan.rows[limbus].setting);
+	plan_choice_free(&choice);
+	conf_free(&conf);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_program_is_in_the_table),
+		cmocka_unit_test(every_stage_has_its_configuration_and_its_cost),
+		cmocka_unit_test(what_a_stage_needs_runs_before_it),
+		cmocka_unit_test_setup_teardown(names_decide, setup, teardown),
+		cmocka_unit_test_setup_teardown(an_empty_folder_is_refused, setup, teardown),
+		cmocka_unit_test_setup_teardown(characters_of_the_subjects_topology_are_counted, setup, teardown),
+		cmocka_unit_test_setup_teardown(a_setting_is_chosen_for_stages_that_run, setup, teardown),
+	};
+	return cmocka_run_group_tests(tests, 0, 0);
+}
