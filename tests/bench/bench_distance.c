@@ -191,7 +191,7 @@ int main(int argc, char **argv)
 		if (i == 0 || i == 2) {
 			struct bench_time t = bench_time(fill, &runs[i], reps * 20);
 			bench_goal(i ? "distance field with crossings, 1280 x 1024, reach 8 px: time, all threads" : "distance field on the mask, 1280 x 1024, reach 8 px: time, all threads",
-			           "<= 0.2 ms", 1e3 * t.median, "ms", t.median <= 2e-4);
+			           "<= 0.2 ms (first worded without size and reach)", 1e3 * t.median, "ms", t.median <= 2e-4);
 		}
 		if (i == 3)
 			bench_goal("distance field with crossings against the lids, mean", "<= 0.05 px", e[1].mean, "px", e[1].mean <= 0.05);

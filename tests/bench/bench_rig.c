@@ -267,9 +267,10 @@ static void bundled(const struct folded *like)
 		f.rig = &rig;
 		rig_globes_turned(f.turn, &rig, f.c);
 		struct bench_time t = large(&f, "the bundled head");
-		bench_goal("deformation of 20 000 vertices of which as many move as of the bundled head's, one core", "<= 0.01 ms a frame", 1e3 * t.median, "ms", t.median <= 1e-5);
+		bench_goal("deformation of 20 000 vertices of which as many move as of the bundled head's, one core", "<= 0.01 ms a frame (first worded: all of them moving)", 1e3 * t.median, "ms", t.median <= 1e-5);
 	} else {
 		fprintf(stderr, "bench_rig: the bundled head has no rig: %s\n", err.msg);
+		bench_goal("deformation of the bundled head", "measured", NAN, "", false);
 	}
 	rig_free(&rig);
 	scratch_close();

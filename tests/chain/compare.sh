@@ -1,5 +1,6 @@
 #!/bin/bash
-# Two benchmark runs compared: what is worse beyond the spread is named, and what is not, is not.
+# Two benchmark runs compared: what is worse beyond the spread is named, and what is not, is not. And the report of one run: a goal
+# that is missed is named last and is its exit status.
 . "$(dirname "$0")/../lib/chain.sh"
 COMPARE=${B:-build}/tests/bench/report/compare
 mkdir "$root/a" "$root/b"
@@ -45,4 +46,14 @@ cp "$root/a/x.csv" "$root/b" && goals 1.5 no >"$root/b/x.goals.csv"
 says "a goal lost" 1 "^MISSED  x.csv: worst: 0.5 -> 1.5 px"
 rm "$root"/b/*
 says "nothing to compare" 1 "no row in both"
+
+reports() { # NAME STATUS LAST-LINE
+	"${B:-build}/tests/bench/report/report" --out="$root/a" >"$log" 2>&1
+	same "$1: exit status" "$?" "$2"
+	check "$1: $3" grep -qE "$3" <(tail -n 1 "$log")
+}
+goals 0.5 yes >"$root/a/x.goals.csv"
+reports "all goals reached" 0 "^tables and plots: "
+{ goals 1.5 no; echo "second,none,0,,yes"; } >"$root/a/x.goals.csv"
+reports "a goal missed" 1 "^missed: bench-x: worst: below 1; got 1.5 px"
 exit 0

@@ -1,5 +1,5 @@
 /* report: joins bench/NAME.csv and NAME.goals.csv of all benchmarks into bench/README.md and one plot of error
- * against time for every table that has both.
+ * against time for every table that has both. Names the goals that were missed last; exit status 1 where there are any.
  *
  *     report --out=bench --compiler="gcc ..." --flags="-O3 ..."
  */
@@ -153,7 +153,23 @@ static bool ends_with(const char *s, const char *tail)
 	return n > m && !strcmp(s + n - m, tail);
 }
 
-static bool report(const char *out, const char *compiler, const char *flags, struct err *err)
+/* How many goals were missed; names them. */
+static int name_missed(int n, const struct csv goals[], const char *const names[])
+{
+	int missed = 0;
+	for (int i = 0; i < n; i++)
+		for (int r = 0; r < goals[i].n; r++) {
+			char *const *c = goals[i].rows[r].cell;
+			if (!strcmp(c[4], "yes"))
+				continue;
+			printf("missed: bench-%s: %s: %s; got %.4g %s\n", names[i], c[0], c[1], csv_number(c[2]), c[3]);
+			missed++;
+		}
+	return missed;
+}
+
+/* missed: so many goals. */
+static bool report(int *missed, const char *out, const char *compiler, const char *flags, struct err *err)
 {
 	struct file_list list;
 	if (!file_list(&list, out, err))
@@ -184,6 +200,7 @@ static bool report(const char *out, const char *compiler, const char *flags, str
 	bool ok = !err_is(err) && file_write(path, text, size, err);
 	if (ok)
 		printf("tables and plots: %s\n", path);
+	*missed = name_missed(n, goals, names);
 	for (int i = 0; i < n; i++) {
 		csv_free(&rows[i]);
 		csv_free(&goals[i]);
@@ -209,8 +226,9 @@ int main(int argc, char **argv)
 			flags = argv[i] + 8;
 	}
 	struct err err = { 0 };
-	if (report(out, compiler, flags, &err))
-		return 0;
+	int missed;
+	if (report(&missed, out, compiler, flags, &err))
+		return missed ? 1 : 0;
 	fprintf(stderr, "report: %s\n", err.msg);
 	return 1;
 }

@@ -15,9 +15,9 @@
 static struct {
 	const char *name, *out;
 	bool quick;
-	char *rows, *goals;
-	size_t rows_size, goals_size;
-	FILE *rows_file, *goals_file;
+	char *rows, *goals, *missed;
+	size_t rows_size, goals_size, missed_size;
+	FILE *rows_file, *goals_file, *missed_file;
 	char table[80];  // last one printed: its head is printed once
 	int least_reps, most_reps, n_yard;
 	double *yard;    // seconds of the yardstick, all samples
@@ -60,6 +60,7 @@ void bench_open(const char *name, int argc, char **argv)
 		}
 	bench.rows_file = open_memstream(&bench.rows, &bench.rows_size);
 	bench.goals_file = open_memstream(&bench.goals, &bench.goals_size);
+	bench.missed_file = open_memstream(&bench.missed, &bench.missed_size);
 	fputs("table,method,setting,per,median_s,low_s,high_s,error,error_unit,error_of\n", bench.rows_file);
 	fputs("measure,reach,got,unit,reached\n", bench.goals_file);
 	bench.least_reps = bench.most_reps = 0;
@@ -193,6 +194,8 @@ void bench_goal(const char *measure, const char *reach, double got, const char *
 {
 	csv(bench.goals_file, "ssnss", measure, reach, got, unit, reached ? "yes" : "no");
 	printf("  goal %-7s %s: %s; got %.4g %s\n", reached ? "reached" : "MISSED", measure, reach, got, unit);
+	if (!reached)
+		fprintf(bench.missed_file, "missed: %s: %s; got %.4g %s\n", measure, reach, got, unit);
 	fflush(stdout);
 }
 
@@ -209,6 +212,7 @@ int bench_close(void)
 	struct err err = { 0 };
 	fclose(bench.rows_file);
 	fclose(bench.goals_file);
+	fclose(bench.missed_file);
 	yardstick(10);
 	qsort(bench.yard, (size_t)bench.n_yard, sizeof *bench.yard, by_value);
 	char *reps = mem_printf("%d to %d", bench.least_reps, bench.most_reps);
@@ -221,9 +225,12 @@ int bench_close(void)
 	free(bench.yard);
 	if (!ok)
 		fprintf(stderr, "%s\n", err.msg);
+	printf("%s", bench.missed);
+	bool reached = !bench.missed_size;
 	free(bench.rows);
 	free(bench.goals);
-	return ok ? 0 : 1;
+	free(bench.missed);
+	return ok && reached ? 0 : 1;
 }
 
 const char *bench_data(const char *rel)

@@ -37,10 +37,13 @@ struct bench_time bench_time_each(struct bench_time time, double n);
 void bench_row(const char *table, const char *method, const char *setting, struct bench_time time, const char *per,
                double error, const char *error_unit, const char *error_of);
 
-/* A bar of the project: measure, what is to be reached in words, the figure, its unit, whether it is reached. */
+/* A goal of the project: what is measured, the bar in words, the figure, its unit, whether it is reached. Where measuring failed:
+ * NAN and false. A goal whose wording was changed says in `reach` how it was worded first, and the goal in its first wording, where
+ * that can still be measured, comes before it. */
 void bench_goal(const char *measure, const char *reach, double got, const char *unit, bool reached);
 
-/* Writes the files; exit status for main. A missed goal is reported, it is no failure. */
+/* Writes the files, then names the goals that were missed. Returns the exit status for main: 1 if any goal was missed or a file
+ * could not be written, else 0. */
 int bench_close(void);
 
 /* A folder of shared ground-truth data: $EYEWRIGHT_DATA, or ../shared/data beside the checkout. Null: not there.
