@@ -1,12 +1,13 @@
 /* track: gaze, lids and skin of a video, followed frame by frame.
  * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
- * writes  work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkle.c)
+ * writes  work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkles.c)
  */
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "track/clip/track.h"
+#include "base/stage.h"
+#include "stages/track/run.h"
 
 /* Beside a decoder threads that spin while they wait take more than they win; OpenMP has to be told before it starts. */
 static void start_calm(char **argv)

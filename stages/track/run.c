@@ -1,8 +1,16 @@
+#include "stages/track/run.h"
+
 #include <math.h>
 
 #include "base/mem.h"
-#include "track/clip/film.h"
-#include "track/clip/folds.h"
+#include "stages/track/save.h"
+#include "stages/track/sheet.h"
+#include "stages/track/wrinkles.h"
+#include "track/clip/apertures.h"
+#include "track/clip/corners.h"
+#include "track/clip/expressions.h"
+#include "track/clip/follow.h"
+#include "track/clip/settle.h"
 
 /* What the video is that nobody asked for, one line each. */
 static void tell_video(struct stage *stage, const struct track_clip *clip)
@@ -57,9 +65,9 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	track_corners(result, clip, subject, points);
 	track_apertures(result, clip, subject);
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
-	    || !film_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)
+	    || !track_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)
 	    || !track_save(stage, result, clip, points, n, in, err)
-	    || !folds_finish(result->folds, stage, result, clip, subject, points, conf, n, in, err))
+	    || !wrinkles_finish(stage, result, clip, subject, points, conf, n, in, err))
 		return false;
 	tell(stage, result, clip);
 	return true;

@@ -1,4 +1,5 @@
-/* work/skin/ as the design fixes it. */
+#include "stages/track/save.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -6,7 +7,6 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/npy/npy.h"
-#include "track/clip/track.h"
 
 enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
 

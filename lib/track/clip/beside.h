@@ -1,18 +1,19 @@
-/* beside: how the skin beside places of the mesh moves on its own, frame by frame, so that what cannot be seen well is carried by
- * what can. */
+/* beside: how the skin beside given places of the mesh moves relative to the rigid head, frame by frame, so that places that are hard to see are
+ * carried by skin that is seen well. */
 #ifndef TRACK_CLIP_BESIDE_H
 #define TRACK_CLIP_BESIDE_H
-#include "track/clip/track.h"
+#include "track/clip/points.h"
+#include "track/clip/result.h"
 
 struct beside {
 	int n;                 // places
 	long frames;
-	double (*moved)[2];    // [n][frames] px: off where the head alone would take them, the mesh's face at rest being 0
-	double *weight;        // [n][frames] how much skin told of it, 0..1
+	double (*moved)[2];    // [n][frames] px: off where the rigid head would take them; 0 for the mesh's face at rest
+	double *weight;        // [n][frames] how much skin was seen there, 0..1; 0: interpolated
 };
 
-/* Places of the head frame, mm, in a row from one corner of an eye to the other, which tells how far skin beside them is asked. Frames
- * in which too little of it is seen are filled in between the others. */
+/* head: n places in the head frame, mm, in a row from one corner of an eye to the other; their distance scales how far away skin
+ * counts. Frames in which too little skin is seen are interpolated. beside_free. */
 struct beside beside_new(int n, const double (*head)[3], const struct track_result *result, int side, const struct track_clip *clip,
                          const struct track_points *points);
 void beside_free(struct beside *beside);

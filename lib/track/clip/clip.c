@@ -1,4 +1,5 @@
-/* What the clip is before it is followed: the camera, the reference frame, and the head in it. */
+#include "track/clip/clip.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +7,7 @@
 #include "base/mem.h"
 #include "bridge/cv_face.h"
 #include "optics/camera_rig.h"
-#include "track/clip/track.h"
+#include "track/clip/look.h"
 
 static const char *const marks[] = { "left_inner_canthus",  "left_outer_canthus",  "left_upper_lid_mid",  "left_lower_lid_mid",
 	                                 "right_inner_canthus", "right_outer_canthus", "right_upper_lid_mid", "right_lower_lid_mid" };
@@ -222,4 +223,17 @@ void track_clip_free(struct track_clip *clip)
 	free(clip->rgb);
 	free(clip->known);
 	cv_face_close(clip->faces);
+}
+
+void track_to_model(float out[2], const double px[2], const double head[3], const double pose[4][4], const struct track_clip *clip)
+{
+	double p[3], ray[3], h[3], model[2] = { NAN, NAN };
+	head_from(p, pose, head);
+	camera_ray(ray, &clip->camera, px);
+	for (int k = 0; k < 3; k++)
+		ray[k] *= p[2] / ray[2];
+	head_to(h, pose, ray);
+	head_project(model, &clip->camera, clip->cam_from_head, h);
+	out[0] = (float)model[0];
+	out[1] = (float)model[1];
 }

@@ -3,9 +3,9 @@
 #define TRACK_CLIP_CONF_H
 #include "anatomy/keys.h"
 #include "image/video/video.h"
-#include "track/eye/track.h"
+#include "track/eye/eye_track.h"
 #include "track/head/find.h"
-#include "track/points/track.h"
+#include "track/points/skin_track.h"
 #include "track/wrinkle/wrinkle.h"
 
 struct track_conf {

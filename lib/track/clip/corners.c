@@ -1,5 +1,5 @@
-/* The margins where they run into the corners of the eye. There the picture shows little: what is white goes over into what is wet and
- * red. The mesh knows how a corner is shaped, and the skin beside it how it moves. */
+#include "track/clip/corners.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,8 @@
 #include "base/mem.h"
 #include "track/lid/line.h"
 #include "track/clip/beside.h"
-#include "track/clip/shut.h"
+#include "track/clip/blink_lower.h"
+#include "track/clip/blink_upper.h"
 
 enum { ENDS = 2 };
 
@@ -193,8 +194,8 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 		for (int k = 0; k < LIDS; k++)
 			draw_to_skin(state, k, &mesh[k], &skin[k], f, near_px);
 	}
-	shut_carry(r, side, below, (const double(*)[2])carried);
-	fall_carry(r, side, corner, below, (const double(*)[2])carried, near_px);
+	blink_lower_carry(r, side, below, (const double(*)[2])carried);
+	blink_upper_carry(r, side, corner, below, (const double(*)[2])carried, near_px);
 	free(corner);
 	free(carried);
 	for (int k = 0; k < LIDS; k++)

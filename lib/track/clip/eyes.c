@@ -1,10 +1,10 @@
-/* What happens in the openings of the eyes: track/eye/track.h, fed from the pipeline. */
+#include "track/clip/eyes.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "track/clip/track.h"
 
 struct track_eyes {
 	struct eye_track *track;

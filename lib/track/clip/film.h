@@ -1,16 +1,23 @@
-/* film: small grey pictures of frames spread over the clip, and the contact sheet made of some of them. */
+/* film: small grey pictures of frames spread over the clip, kept while it is followed, for a contact sheet. */
 #ifndef TRACK_CLIP_FILM_H
 #define TRACK_CLIP_FILM_H
-#include "track/clip/track.h"
+#include "track/clip/points.h"
 
-/* The part of the picture round the points and the eyes is kept, at most FILM_WIDTH wide, of at most FILM_MOST frames. */
-struct film;
+enum { FILM_WIDTH = 640, FILM_MOST = 200 };
+
+/* The part of the picture round the points and the eyes, at most FILM_WIDTH wide, of at most FILM_MOST frames. */
+struct film {
+	int x0, y0, step;              // first pixel of the part that is kept; pixels averaged each way
+	int width, height;             // of a small picture
+	int every, n;                  // one frame in so many; kept
+	long frame[FILM_MOST];
+	uint8_t *px[FILM_MOST];        // [height][width]; owned
+};
+
 struct film *film_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_points *points);
+
+/* Keeps a frame whose turn it is; when full, drops every other one. */
 void film_add(struct film *film, const struct video_frame *frame);
 void film_free(struct film *film);
-
-/* The reference, blinks, peaks of expressions, the furthest gazes, others between, with margins, limbus and points drawn. */
-bool film_sheet(const struct film *film, const char *path, const struct track_result *result, const struct track_clip *clip,
-                const struct track_conf *conf, struct err *err);
 
 #endif

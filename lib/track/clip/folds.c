@@ -5,13 +5,10 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "image/exr.h"
 #include "image/mask.h"
 
 static const double margin_px = 24;
 static const size_t room_bytes = 200 << 20;  // for the frames that are kept
-
-const char *const wrinkle_files[WRINKLE_FILES] = { "work/skin/wrinkles.json", "work/skin/wrinkles.exr", "work/skin/wrinkles.png" };
 
 struct folds {
 	int x0, y0, width, height;     // part of the picture that is kept
@@ -20,11 +17,6 @@ struct folds {
 	long *frame;                   // [n] rising
 	uint8_t **grey;                // [n][height][width]
 };
-
-bool wrinkles_wanted(const struct track_conf *conf, bool has_mesh)
-{
-	return conf->expression.n && has_mesh;
-}
 
 /* Frame k of those between neutral and peak of an expression. */
 static long frame_of(const struct opt_each *e, int k, int n)
@@ -147,89 +139,33 @@ static bool one(struct wrinkles *w, struct wrinkle_frame ends[2], const struct f
 	return ok;
 }
 
-static bool save_bumps(struct stage *stage, const struct wrinkles *w, int n, const char *const in[], struct err *err)
-{
-	struct image all = image_new(w->width, w->height, 2 * w->n);
-	char **name = mem_new(2 * (size_t)w->n + 1, sizeof *name);
-	for (int i = 0; i < w->n; i++) {
-		struct image one = wrinkle_bump(w, &w->pose[i]);
-		for (long k = 0; k < (long)w->width * w->height; k++)
-			memcpy(all.px + 2 * (k * w->n + i), one.px + 2 * k, 2 * sizeof *one.px);
-		name[2 * i] = mem_printf("%s.height", w->pose[i].name);
-		name[2 * i + 1] = mem_printf("%s.open", w->pose[i].name);
-		image_free(&one);
-	}
-	struct exr_info info = { .made_by = stage_made_by(stage, n, in) };
-	bool ok = exr_write(stage_path(stage, "%s", wrinkle_files[1]), &all, (const char *const *)name, EXR_HALF, &info, err);
-	for (int i = 0; i < 2 * w->n; i++)
-		free(name[i]);
-	free(name);
-	image_free(&all);
-	return ok;
-}
-
-static void tell(struct stage *stage, const struct wrinkles *w)
-{
-	int lines = 0;
-	double deepest = 0;
-	for (int i = 0; i < w->n; i++) {
-		const struct wrinkle_pose *p = &w->pose[i];
-		double most = 0, length = 0;
-		for (int k = 0; k < p->n; k++) {
-			length += p->line[k].length;
-			for (int j = 0; j < p->line[k].n; j++)
-				most = fmax(most, p->line[k].point[j].depth);
-		}
-		lines += p->n;
-		deepest = fmax(deepest, most);
-		if (p->n)
-			stage_note(stage, "expression.%s: %d wrinkle lines, %.0f mm in all, up to %.2f mm deep", p->name, p->n, length, most);
-		else if (p->n_frames)
-			stage_note(stage, "expression.%s: the skin folds into no line that its neutral frame does not have", p->name);
-	}
-	stage_figure(stage, "wrinkle_lines", lines, "");
-	stage_figure(stage, "wrinkle_deepest", deepest, "mm");
-}
-
-bool folds_finish(struct folds *f, struct stage *stage, const struct track_result *r, const struct track_clip *clip,
-                  const struct track_subject *s, const struct track_points *points, const struct track_conf *conf, int n,
-                  const char *const in[], struct err *err)
+bool folds_find(struct folds_found *found, const struct folds *f, struct stage *stage, const struct track_result *r, const struct track_clip *clip,
+                const struct track_subject *s, const struct track_points *points, const struct track_conf *conf, struct err *err)
 {
 	const struct opt_each_list *list = &conf->expression;
-	if (!f) {
-		stage_skipped(stage, "wrinkles: %s", list->n ? "no mesh of the person to find their depth on" : "capture.conf marks no expression: set expression.NAME to its neutral and peak frame");
-		for (int i = 0; i < WRINKLE_FILES; i++)
-			if (file_exists(stage_path(stage, "%s", wrinkle_files[i])) && !file_remove(stage_path(stage, "%s", wrinkle_files[i]), err))
-				return false;
-		return true;
-	}
 	double px_per_mm = clip->camera.focal_px / clip->cam_from_head[2][3];
-	uint8_t *mask = skin_of(f, clip, points, conf->wrinkle.lash_mm * px_per_mm);
-	struct ray_scene *rays = ray_scene_new(s->mesh.n_vertices, (const float(*)[3])s->mesh.vertices, s->mesh.n_faces, (const int32_t(*)[3])s->mesh.faces);
-	float (*normals)[3] = mesh_normals(&s->mesh);
-	struct wrinkle_ground ground = { f->x0, f->y0, f->width, f->height, px_per_mm, points->n, (const double(*)[2])points->points.at, mask,
-		                             &s->mesh, (const float(*)[3])normals, rays, &clip->camera, clip->cam_from_head };
-	struct wrinkles w = { 0 };
-	struct wrinkle_frame *neutral = mem_new((size_t)list->n, sizeof *neutral), *peak = mem_new((size_t)list->n, sizeof *peak);
+	*found = (struct folds_found){ .mask = skin_of(f, clip, points, conf->wrinkle.lash_mm * px_per_mm), .normals = mesh_normals(&s->mesh) };
+	found->rays = ray_scene_new(s->mesh.n_vertices, (const float(*)[3])s->mesh.vertices, s->mesh.n_faces, (const int32_t(*)[3])s->mesh.faces);
+	found->ground = (struct wrinkle_ground){ f->x0, f->y0, f->width, f->height, px_per_mm, points->n, (const double(*)[2])points->points.at, found->mask,
+		                                     &s->mesh, (const float(*)[3])found->normals, found->rays, &clip->camera, clip->cam_from_head };
+	found->neutral = mem_new((size_t)list->n, sizeof *found->neutral);
+	found->peak = mem_new((size_t)list->n, sizeof *found->peak);
 	bool ok = true;
 	for (int e = 0; e < list->n && ok; e++) {
 		struct wrinkle_frame ends[2];
-		ok = one(&w, ends, f, r, &list->items[e], &ground, &conf->wrinkle, stage, err);
-		neutral[e] = ends[0];
-		peak[e] = ends[1];
+		ok = one(&found->wrinkles, ends, f, r, &list->items[e], &found->ground, &conf->wrinkle, stage, err);
+		found->neutral[e] = ends[0];
+		found->peak[e] = ends[1];
 	}
-	ok = ok && wrinkles_save(&w, stage_path(stage, "%s", wrinkle_files[0]), stage_made_by(stage, n, in), err)
-	     && save_bumps(stage, &w, n, in, err)
-	     && wrinkle_sheet(stage_path(stage, "%s", wrinkle_files[2]), &w, &ground, list->n, neutral, peak, err);
-	for (int i = 0; i < WRINKLE_FILES && ok; i++)
-		ok = stage_made(stage, wrinkle_files[i], n, in, err);
-	if (ok)
-		tell(stage, &w);
-	free(neutral);
-	free(peak);
-	free(mask);
-	free(normals);
-	ray_scene_free(rays);
-	wrinkles_free(&w);
 	return ok;
+}
+
+void folds_found_free(struct folds_found *found)
+{
+	free(found->neutral);
+	free(found->peak);
+	free(found->mask);
+	free(found->normals);
+	ray_scene_free(found->rays);
+	wrinkles_free(&found->wrinkles);
 }

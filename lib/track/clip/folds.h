@@ -1,26 +1,34 @@
-/* wrinkle: wrinkle lines of capture.conf's expressions: the frames they are seen in, kept while the clip is followed. */
+/* folds: wrinkle lines of capture.conf's expressions: keeps the frames that show them while the clip is followed, then finds them. */
 #ifndef TRACK_CLIP_FOLDS_H
 #define TRACK_CLIP_FOLDS_H
-#include "track/clip/track.h"
-
-enum { WRINKLE_FILES = 3 };
-extern const char *const wrinkle_files[WRINKLE_FILES];  // relative to the capture; made where wrinkles_wanted
-
-/* There are expressions, and a mesh to find their skin on. */
-bool wrinkles_wanted(const struct track_conf *conf, bool has_mesh);
+#include "track/clip/points.h"
+#include "track/clip/result.h"
 
 struct folds;
+
+/* Null where there are no expressions or no points. */
 struct folds *folds_new(const struct track_clip *clip, const struct track_points *points, const struct track_conf *conf);
+
+/* Keeps the green channel of a frame between an expression's neutral and peak frame; folds may be null. */
 void folds_add(struct folds *folds, const struct video_frame *frame);
 void folds_free(struct folds *folds);
 
-/* Finds them and writes their files; says what was not found, and why. in: what stage_made wants. */
-bool folds_finish(struct folds *folds, struct stage *stage, const struct track_result *result, const struct track_clip *clip,
-                  const struct track_subject *subject, const struct track_points *points, const struct track_conf *conf, int n,
-                  const char *const in[], struct err *err);
+/* The lines found, and what they were found in. */
+struct folds_found {
+	struct wrinkles wrinkles;
+	struct wrinkle_ground ground;
+	struct wrinkle_frame *neutral, *peak;  // [expressions]; owned; their pictures and points are borrowed of folds and result
+	uint8_t *mask;             // borrowed by ground; owned, as are the next two
+	float (*normals)[3];
+	struct ray_scene *rays;
+};
 
-/* folds_sheet.c: each expression's neutral frame, its peak with the lines drawn, and its bump map. */
-bool wrinkle_sheet(const char *path, const struct wrinkles *w, const struct wrinkle_ground *ground, int n,
-                   const struct wrinkle_frame neutral[], const struct wrinkle_frame peak[], struct err *err);
+/* Finds the lines of every expression; those of an expression whose frames are lost are none, which stage is told.
+ * found: overwritten; folds_found_free in any case. folds, result, clip, subject and points must outlive it.
+ * Returns false, err set, as wrinkle_find does. */
+bool folds_find(struct folds_found *found, const struct folds *folds, struct stage *stage, const struct track_result *result,
+                const struct track_clip *clip, const struct track_subject *subject, const struct track_points *points,
+                const struct track_conf *conf, struct err *err);
+void folds_found_free(struct folds_found *found);
 
 #endif

@@ -1,11 +1,13 @@
-/* The pipeline: frames as the decoder gives them, skin, head, eyes. */
+#include "track/clip/follow.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/clip/behind.h"
+#include "track/clip/background.h"
+#include "track/clip/steady.h"
 
 /* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
 struct rigid {
@@ -19,16 +21,6 @@ static const double forget = 1.2;  // share a second
 static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids = 0.6;
 /* How much a head moves in a second, as one that wanders: degrees, mm; as the square root of the time. */
 static const double turn_step = 1.55, shift_step = 4.65;
-
-bool track_on_lid(const double head[3], const struct track_subject *s)
-{
-	for (int e = 0; e < SIDES; e++) {
-		double dx = head[0] - s->center[e][0], dy = head[1] - s->center[e][1];
-		if (dx * dx + dy * dy < 1.4 * 1.4 * s->radius * s->radius)
-			return true;
-	}
-	return false;
-}
 
 static double expected_off(const double head[3], const struct track_subject *s)
 {
@@ -77,19 +69,6 @@ static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_
 		if (state[i].confidence > 0 && head_project(px, camera, pose, r->sights[i].head))
 			r->off2[i] += new * (fmin(100, pow(px[0] - state[i].at[0], 2) + pow(px[1] - state[i].at[1], 2)) - r->off2[i]);
 	}
-}
-
-void track_to_model(float out[2], const double px[2], const double head[3], const double pose[4][4], const struct track_clip *clip)
-{
-	double p[3], ray[3], h[3], model[2] = { NAN, NAN };
-	head_from(p, pose, head);
-	camera_ray(ray, &clip->camera, px);
-	for (int k = 0; k < 3; k++)
-		ray[k] *= p[2] / ray[2];
-	head_to(h, pose, ray);
-	head_project(model, &clip->camera, clip->cam_from_head, h);
-	out[0] = (float)model[0];
-	out[1] = (float)model[1];
 }
 
 static void grow(struct track_result *r, long *room)
@@ -156,7 +135,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	long room = 0;
 	r->film = conf->limit ? 0 : film_new(clip, subject, points);
 	r->folds = conf->limit ? 0 : folds_new(clip, points, conf);
-	struct behind *behind = behind_new(eyes, r->film, r->folds);
+	struct background *background = background_new(eyes, r->film, r->folds);
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	const long every = conf->every ? conf->every : 1;
@@ -172,13 +151,13 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 			r->lost_at[r->n] = lost;
 			store(r, state, pose, lost, points, clip);
 			r->n++;
-			behind_push(behind, &f, (const double(*)[4])pose);
+			background_push(background, &f, (const double(*)[4])pose);
 			if (!conf->limit)
 				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
 		}
 		video_frame_free(&f);
 	}
-	behind_end(behind);
+	background_end(background);
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n)
@@ -190,21 +169,4 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	skin_track_free(skin);
 	video_close(video);
 	return ok;
-}
-
-void track_result_free(struct track_result *r)
-{
-	free(r->time);
-	free(r->lost_at);
-	free(r->pose);
-	free(r->skin);
-	free(r->skin_model);
-	free(r->confidence);
-	free(r->lids);
-	free(r->lids_model);
-	free(r->g);
-	free(r->misfit);
-	eye_clip_free(&r->eyes);
-	film_free(r->film);
-	folds_free(r->folds);
 }

@@ -1,8 +1,9 @@
-/* Where the head is in the kept frame, by its eyes. */
+#include "track/clip/look.h"
+
 #include <string.h>
 
 #include "bridge/cv_face.h"
-#include "track/clip/clip.h"
+#include "track/head/refine.h"
 
 /* A camera of which nothing is known: as far away as faces are filmed from. */
 static void assume_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)

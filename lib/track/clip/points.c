@@ -1,11 +1,11 @@
-/* Which points of skin are followed: rows of the mesh round the eyes, spread over the picture, in sight of the camera. */
+#include "track/clip/points.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "track/clip/track.h"
 
 enum { NEAR = 24, NEIGHBOURS = 12 };
 

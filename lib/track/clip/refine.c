@@ -1,5 +1,5 @@
-/* The head's pose at the reference, settled by what the eyes turn about: their centres lie 12 mm behind the lids, so that a head
- * that is thought to be turned wrongly has them in the wrong place beside the lids' outlines. */
+#include "track/clip/refine.h"
+
 #include <math.h>
 #include <string.h>
 

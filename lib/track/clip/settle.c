@@ -1,10 +1,14 @@
-/* Which frame the others are compared with, and the head's pose in it: frames of the clip are followed and looked at, again where they raise a doubt. */
+#include "track/clip/settle.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "track/clip/follow.h"
+#include "track/clip/look.h"
 #include "track/clip/reference.h"
+#include "track/clip/refine.h"
 
 enum { FEW_POINTS = 120, LOOKS = 4, LATER = 15 };
 

@@ -1,4 +1,5 @@
-/* The head's path over the whole clip: what expressions do to all skin in sight is not the head's motion. */
+#include "track/clip/steady.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +7,6 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "math/walk.h"
-#include "track/clip/track.h"
 
 enum { MOTIONS = 6, LEAST_POINTS = 20 };
 

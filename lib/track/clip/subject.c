@@ -1,3 +1,5 @@
+#include "track/clip/subject.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +8,6 @@
 #include "bridge/om_mesh.h"
 #include "math/vec.h"
 #include "optics/camera_rig.h"
-#include "track/clip/track.h"
 
 static const long limit_vertices = 2000000;
 static const double usual_radius = 12;  // mm: an eyeball
@@ -216,4 +217,14 @@ bool track_subject_load(struct track_subject *s, struct stage *stage, const stru
 void track_subject_free(struct track_subject *s)
 {
 	mesh_free(&s->mesh);
+}
+
+bool track_on_lid(const double head[3], const struct track_subject *s)
+{
+	for (int e = 0; e < SIDES; e++) {
+		double dx = head[0] - s->center[e][0], dy = head[1] - s->center[e][1];
+		if (dx * dx + dy * dy < 1.4 * 1.4 * s->radius * s->radius)
+			return true;
+	}
+	return false;
 }

@@ -1,4 +1,6 @@
-/* subject: the person's mesh, and where its eyes are. */
+/* subject: the person's mesh and the eyes in it.
+ * Head frame: the mesh's axes (x to the person's left, y up, z out of the face), mm.
+ */
 #ifndef TRACK_CLIP_SUBJECT_H
 #define TRACK_CLIP_SUBJECT_H
 #include "base/stage.h"
@@ -7,23 +9,26 @@
 
 enum { MARK_INNER, MARK_OUTER, MARK_UPPER, MARK_LOWER, MARKS };
 
-/* In mm. */
 struct track_subject {
-	struct mesh mesh;      // n_vertices 0: there is none
-	const char *file;      // relative to the capture; owned by the stage
-	double unit_mm;
-	int mark[SIDES][MARKS];          // rows; -1: not known
-	double center[SIDES][3], radius; // of the eyeballs; NAN where not known
+	struct mesh mesh;      // mm; n_vertices 0: there is none
+	const char *file;      // relative to the capture; static text; null without a mesh
+	double unit_mm;        // of the file
+	int mark[SIDES][MARKS];          // rows of the mesh; -1: not known
+	double center[SIDES][3], radius; // eyeballs; NAN where not known
 	bool center_given[SIDES];        // by capture.conf: not estimated
 	struct eye_opening opening[SIDES];
-	struct eye_opening margin[SIDES];  // where the lids stand clear of the eye and its tears: the inner edge of their margins
-	bool assumed;          // there is no mesh: openings of a usual face, to find eyes with
+	struct eye_opening margin[SIDES];  // inner edge of the lids' margins: outline at the eyeball's radius plus meniscus_mm
+	bool assumed;          // no mesh: eyes and openings of an average face
 };
 
+/* Loads subject.ply, subject.obj or work/subject.ply, whichever is first, and finds its eyes: their centres from capture.conf,
+ * work/rig.json or the marked lids; their openings from the mesh, the marks or an average face. Without a mesh, the eyes of an average
+ * face. subject: overwritten; track_subject_free in any case.
+ * Returns false, err set, when the mesh or rig cannot be read, a mark is no row of the mesh, or no eye is found. */
 bool track_subject_load(struct track_subject *subject, struct stage *stage, const struct track_conf *conf, struct err *err);
 void track_subject_free(struct track_subject *subject);
 
-/* Whether a point of the skin moves with the eyelids. */
+/* True where skin moves with the eyelids: within 1.4 eyeball radii of a centre, in x and y. head: mm. */
 bool track_on_lid(const double head[3], const struct track_subject *subject);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/eye/track_impl.h"
+#include "track/eye/eye_track_impl.h"
 
 // Seconds: a blink lasts no longer (table 3.1: closing, closed and opening, long tails cut), and within so many on both
 // sides of it the eye was open.

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "track/eye/track_impl.h"
+#include "track/eye/eye_track_impl.h"
 #include "track/gaze/seek.h"
 #include "motion/gaze_sim.h"
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "track/eye/track_impl.h"
+#include "track/eye/eye_track_impl.h"
 
 /* By the strips of the lids as they are known now. */
 static void again(struct eye_side *eye)

@@ -3,7 +3,7 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/eye/track_impl.h"
+#include "track/eye/eye_track_impl.h"
 
 // Radians: eyes that look at one thing are level to within a fraction of a degree, or it would be seen double.
 static const double LEVEL = 0.25 * M_PI / 180;

@@ -4,11 +4,11 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/eye/track_impl.h"
-#include "track/gaze/clip.h"
+#include "track/eye/eye_track_impl.h"
+#include "track/gaze/bundle.h"
 #include "motion/gaze_sim.h"
 
-/* The frames that have edges, for gaze_clip_fit(). */
+/* The frames that have edges, for gaze_bundle_fit(). */
 static int frames_of(struct gaze_frame *out, int *index, const struct eye_side *eye)
 {
 	int n = 0;
@@ -73,10 +73,10 @@ void eye_side_settle(struct eye_side *eye)
 {
 	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
 	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
-	struct gaze_clip_conf conf = { eye->center_guess, eye->conf->radius_sigma, eye->conf->limbus_sigma };
-	struct gaze_clip_fit fit;
+	struct gaze_bundle_conf conf = { eye->center_guess, eye->conf->radius_sigma, eye->conf->limbus_sigma };
+	struct gaze_bundle_fit fit;
 	struct gaze_globe best = eye->first_globe;
-	if (gaze_clip_fit(&best, &fit, n, frame, &conf)) {
+	if (gaze_bundle_fit(&best, &fit, n, frame, &conf)) {
 		eye->globe = best;
 		memcpy(eye->center_sigma, fit.sigma + GAZE_X, sizeof eye->center_sigma);
 		eye->rms = fit.rms;

@@ -39,8 +39,4 @@ bool head_find(struct head_found *found, const uint8_t *rgb, int width, int heig
  * not two open eyes. */
 bool head_find_from_eyes(struct head_found *found, const double eye[2][2], const struct camera *camera, const struct eye_opening opening[2]);
 
-/* Improves a pose by the openings' outlines in the picture; found->cam_from_head as it is expected to be. False: no outline. */
-bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
-                      const struct eye_opening opening[2], const struct head_find_conf *conf);
-
 #endif

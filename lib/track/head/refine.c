@@ -1,10 +1,11 @@
-/* Fine: the outlines of the openings against the picture. Which colours lie in the eyes and which round them is learnt from the
- * picture under the pose as it stands; along each normal of an outline, the split that parts them best is looked for
- * (Prisacariu and Reid 2012 for the two histograms, here on lines, with the pose by least squares). */
+#include "track/head/refine.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "track/head/find.h"
+/* Fine: the outlines of the openings against the picture. Which colours lie in the eyes and which round them is learnt from the
+ * picture under the pose as it stands; along each normal of an outline, the split that parts them best is looked for
+ * (Prisacariu and Reid 2012 for the two histograms, here on lines, with the pose by least squares). */
 
 enum { ROUNDS = 10, REACH = 96, ACROSS = 5, HUES = 24, GREYS = 16 };
 

@@ -2,7 +2,7 @@
 #ifndef TRACK_LID_LINE_H
 #define TRACK_LID_LINE_H
 #include "track/eye/opening.h"
-#include "track/eye/track.h"
+#include "track/eye/eye_track.h"
 
 enum { LINE = OPENING_POINTS + 2 * LID_POINTS_MAX };
 

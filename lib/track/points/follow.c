@@ -1,7 +1,7 @@
 /* One frame: every point for itself, then with its neighbours. */
 #include <math.h>
 
-#include "track/points/track_impl.h"
+#include "track/points/skin_track_impl.h"
 
 /* Stretching of skin from frame to frame, and against its neighbours: standard deviations of the warp's matrix. */
 static const double stretch_in_time = 0.1, stretch_in_space = 0.1;

@@ -1,7 +1,7 @@
 /* The defaults of config/track.conf that lib/skin/eye_track reads, for tests that call the library. */
 #ifndef TESTS_EYE_TRACK_CONF_H
 #define TESTS_EYE_TRACK_CONF_H
-#include "track/eye/track_opts.h"
+#include "track/eye/eye_track_opts.h"
 
 static const struct eye_track_conf eye_track_review = {
 	.limbus_arcs = 120, .lid_columns = 48, .lid_points = 20, .lid_wet = 0.13, .torsion_rays = 360, .still = 0.4, .center_sigma = 0.5,

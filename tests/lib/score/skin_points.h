@@ -3,7 +3,7 @@
 #ifndef TESTS_SKIN_POINTS_H
 #define TESTS_SKIN_POINTS_H
 #include "bridge/cv_flow.h"
-#include "track/points/track.h"
+#include "track/points/skin_track.h"
 #include "tests/lib/score/track_score.h"
 
 /* The defaults of config/track.conf. */

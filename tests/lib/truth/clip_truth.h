@@ -3,7 +3,7 @@
 #ifndef TESTS_CLIP_TRUTH_H
 #define TESTS_CLIP_TRUTH_H
 #include "base/err.h"
-#include "track/eye/track.h"
+#include "track/eye/eye_track.h"
 
 enum { CLIP_UPPER = 20, CLIP_LOWER = 24 };  // points of the true margins
 

@@ -3,7 +3,7 @@
 #include "limbus/record.h"
 #include "iris/unrefract/unrefract.h"
 #include "math/stats.h"
-#include "track/eye/track.h"
+#include "track/eye/eye_track.h"
 #include "track/head/pose.h"
 #include "tests/lib/variants/bent.h"
 #include "tests/lib/conf/eye_track_conf.h"

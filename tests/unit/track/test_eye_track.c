@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/stats.h"
-#include "track/eye/track.h"
-#include "track/gaze/clip.h"
+#include "track/eye/eye_track.h"
+#include "track/gaze/bundle.h"
 #include "track/lid/path.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/clip_truth.h"
@@ -80,7 +80,7 @@ static void globe_from_clip(void **state)
 	struct gaze_globe truth = { { 30, 36, 78 }, 12.4, 5.95 }, found = { { 30.5, 35.6, 78 }, 12, 5.85 };
 	static struct gaze_edge edge[FRAMES][ARCS];
 	struct gaze_frame frame[FRAMES];
-	struct gaze_clip_fit fit;
+	struct gaze_bundle_fit fit;
 	struct rng rng = { 7 };
 	for (int i = 0; i < FRAMES; i++) {
 		double fick[2] = { 0.35 * sin(i), 0.25 * cos(2.3 * i) };
@@ -93,7 +93,7 @@ static void globe_from_clip(void **state)
 				(float)(arc.p[1] + off * arc.normal[1]), 50 };
 		}
 	}
-	assert_true(gaze_clip_fit(&found, &fit, FRAMES, frame, &(struct gaze_clip_conf){ 1, 1, 0.3 }));
+	assert_true(gaze_bundle_fit(&found, &fit, FRAMES, frame, &(struct gaze_bundle_conf){ 1, 1, 0.3 }));
 	// One edge in eight is a lid; the others' noise of 0.05 px leaves 0.02 mm.
 	NEAR(found.center[0], truth.center[0], 0.06);
 	NEAR(found.center[1], truth.center[1], 0.06);

@@ -9,7 +9,7 @@
 #include "bridge/om_mesh.h"
 #include "image/video/video.h"
 #include "math/rng.h"
-#include "track/head/find.h"
+#include "track/head/refine.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/unit.h"
 

@@ -6,7 +6,7 @@
 #include "math/rng.h"
 #include "track/lid/fine.h"
 #include "track/clip/beside.h"
-#include "track/clip/shut.h"
+#include "track/clip/blink_lower.h"
 #include "tests/lib/unit.h"
 
 enum { W = 400, H = 260, FILM = 12, POINTS = 20 };
@@ -257,7 +257,7 @@ static void blinks_hold_lower_lids(void **state)
 			carried[f][i][1] = 100;
 		}
 	}
-	shut_carry(&s.r, 0, PLACES, (const double(*)[2])carried[0]);
+	blink_lower_carry(&s.r, 0, PLACES, (const double(*)[2])carried[0]);
 	for (int f = 0; f < FRAMES; f++)
 		for (int i = 0; i < 20; i++) {
 			double share = f < 20 ? 0 : f < 30 ? (f - 19) / 11.0 : 1;
@@ -297,7 +297,7 @@ static void blinks_fall_evenly(void **state)
 			corner[f][c][1] = y0 + (shut && c ? 45 : 0);
 		}
 	}
-	fall_carry(&s.r, 0, corner, PLACES, (const double(*)[2])carried[0], 4);
+	blink_upper_carry(&s.r, 0, corner, PLACES, (const double(*)[2])carried[0], 4);
 	for (int f = 0; f < FRAMES; f++) {
 		const struct eye_state *e = &s.r.eyes.state[f][0];
 		bool shut = f >= 20 && f < 30;

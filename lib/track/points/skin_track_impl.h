@@ -1,7 +1,7 @@
 /* skin_track_impl: what the files of skin_track share. */
-#ifndef TRACK_POINTS_TRACK_IMPL_H
-#define TRACK_POINTS_TRACK_IMPL_H
-#include "track/points/track.h"
+#ifndef TRACK_POINTS_SKIN_TRACK_IMPL_H
+#define TRACK_POINTS_SKIN_TRACK_IMPL_H
+#include "track/points/skin_track.h"
 
 struct skin_warp {
 	struct patch_warp warp, before;  // now, and in the frame before
@@ -35,8 +35,13 @@ struct skin_track {
 /* Brings all points to t->frame. follow.c */
 void skin_track_follow(struct skin_track *t);
 
-/* Mean change of brightness about a place since the frame before; INFINITY where that is not known. track.c */
+/* still.c */
+/* Factor by which the frame before must be multiplied to be as bright as this one; 0 where their windows differ. */
+double skin_track_gain(const struct skin_track *t);
+/* Mean change of brightness about a place since the frame before, after t->gain; INFINITY where that is not known. */
 double skin_track_changed(const struct skin_track *t, const double at[2]);
+/* True when the frame differs from the last one worked on by less than conf.still: slow changes add up until they are seen. */
+bool skin_track_stands_still(const struct skin_track *t);
 
 /* Fills t->field from the points that are seen. field.c */
 void skin_track_ask(struct skin_track *t);

@@ -1,7 +1,7 @@
 /* lid_track: the lids of one eye from frame to frame.
  */
-#ifndef TRACK_LID_TRACK_H
-#define TRACK_LID_TRACK_H
+#ifndef TRACK_LID_LID_TRACK_H
+#define TRACK_LID_LID_TRACK_H
 #include "track/lid/colour.h"
 #include "track/lid/margin.h"
 #include "track/lid/strip.h"

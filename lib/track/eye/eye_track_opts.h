@@ -1,6 +1,6 @@
 /* eye_track_opts: the numbers that shape eye_track, and their rows for a stage's option table. */
-#ifndef TRACK_EYE_TRACK_OPTS_H
-#define TRACK_EYE_TRACK_OPTS_H
+#ifndef TRACK_EYE_EYE_TRACK_OPTS_H
+#define TRACK_EYE_EYE_TRACK_OPTS_H
 #include "base/opt.h"
 
 struct eye_track_conf {

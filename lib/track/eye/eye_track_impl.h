@@ -1,11 +1,11 @@
 /* eye_track_impl: one eye of eye_track, between the frames. */
-#ifndef TRACK_EYE_TRACK_IMPL_H
-#define TRACK_EYE_TRACK_IMPL_H
-#include "track/eye/track.h"
+#ifndef TRACK_EYE_EYE_TRACK_IMPL_H
+#define TRACK_EYE_EYE_TRACK_IMPL_H
+#include "track/eye/eye_track.h"
 #include "track/gaze/edge.h"
 #include "track/gaze/torsion.h"
 #include "track/lid/fine.h"
-#include "track/lid/track.h"
+#include "track/lid/lid_track.h"
 
 enum { EYE_STILL_SIDE = 24 };
 

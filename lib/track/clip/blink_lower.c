@@ -1,4 +1,4 @@
-#include "track/clip/shut.h"
+#include "track/clip/blink_lower.h"
 
 #include <math.h>
 #include <string.h>
@@ -49,7 +49,7 @@ static void carry(struct track_result *r, int side, long first, long last, int n
 	}
 }
 
-void shut_carry(struct track_result *r, int side, int n, const double (*carried)[2])
+void blink_lower_carry(struct track_result *r, int side, int n, const double (*carried)[2])
 {
 	for (long f = 0; f < r->n; f++) {
 		long last = f;

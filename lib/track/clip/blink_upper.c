@@ -1,10 +1,10 @@
-/* The upper lid on its way down and up: shut.h's fall_carry. */
+#include "track/clip/blink_upper.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "math/stats.h"
 #include "track/lid/line.h"
-#include "track/clip/shut.h"
 
 enum { SHARES = 24 };
 
@@ -83,7 +83,7 @@ static void steady(double (*corner)[2][2], long first, long last, long frames, i
 			}
 }
 
-void fall_carry(struct track_result *r, int side, double (*corner)[2][2], int n, const double (*carried)[2], double near_px)
+void blink_upper_carry(struct track_result *r, int side, double (*corner)[2][2], int n, const double (*carried)[2], double near_px)
 {
 	for (long f = 0; f < r->n; f++) {
 		long last = f;

@@ -3,10 +3,11 @@
  * mesh do says where it should be, starts it anew when it was lost, and steadies it.
  * Image  px, centre of the first pixel (0.5, 0.5).
  */
-#ifndef TRACK_POINTS_TRACK_H
-#define TRACK_POINTS_TRACK_H
+#ifndef TRACK_POINTS_SKIN_TRACK_H
+#define TRACK_POINTS_SKIN_TRACK_H
 #include "base/opt.h"
 #include "image/patch/patch.h"
+#include "track/points/points.h"
 
 struct skin_track_conf {
 	int radius;            // px of a patch at each level
@@ -42,18 +43,6 @@ struct skin_track_conf {
 	OPT_INT("sweeps", &(c)->sweeps, 1, 10, "", "rounds of asking the neighbours"), \
 	OPT_REAL("skin_still", &(c)->still, 0, 20, "", "mean change of brightness (of 255) of a frame that stands still"), \
 	OPT_REAL("skin_quiet", &(c)->quiet, 0, 20, "", "and of the skin about a point that stays; 0: all are measured in every frame")
-
-/* Points and who neighbours whom: near[first[i] .. first[i + 1] - 1]. */
-struct skin_points {
-	int n;
-	double (*at)[2];       // in the reference frame
-	int *first, *near;
-};
-void skin_points_free(struct skin_points *points);
-
-/* Neighbours: the `count` nearest in the image among those `linked` by at most two edges of a mesh, or, without edges
- * (n_edges 0), among all. */
-void skin_points_join(struct skin_points *points, int n_edges, const int (*edges)[2], int count);
 
 struct skin_point_state {
 	double at[2];          // best estimate; also where the point is not seen

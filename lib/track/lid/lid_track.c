@@ -1,4 +1,4 @@
-#include "track/lid/track.h"
+#include "track/lid/lid_track.h"
 
 #include <math.h>
 #include <string.h>

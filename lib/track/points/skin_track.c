@@ -1,11 +1,11 @@
-#include "track/points/track.h"
+#include "track/points/skin_track.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "track/points/track_impl.h"
+#include "track/points/skin_track_impl.h"
 
 enum { STEP = 64 };
 
@@ -98,65 +98,14 @@ bool skin_track_was_still(const struct skin_track *t)
 	return t->was_still;
 }
 
-enum { STILL_LEVEL = 2 };
-
-static int still_level(const struct skin_track *t)
-{
-	return t->frame.levels - 1 < STILL_LEVEL ? t->frame.levels - 1 : STILL_LEVEL;
-}
-
-/* What the frame before has to be multiplied by to be as bright as this one; 0 where their windows differ. */
-static double gain_of(const struct skin_track *t)
-{
-	const struct scales *a = &t->frame, *b = &t->last;
-	const struct scale_level *p = &a->level[still_level(t)], *q = &b->level[still_level(t)];
-	if (!t->has_last || a->x0 != b->x0 || a->y0 != b->y0 || p->width != q->width || p->height != q->height)
-		return 0;
-	double sa = 0, sb = 0;
-	for (int y = 0; y < p->height; y++)
-		for (int x = 0; x < p->width; x++) {
-			sa += p->px[(long)y * p->stride + x];
-			sb += q->px[(long)y * q->stride + x];
-		}
-	return sb > 0 ? sa / sb : 1;
-}
-
-/* Mean change from the frame before, after that gain. */
-static double change(const struct skin_track *t, int x0, int y0, int x1, int y1)
-{
-	const struct scale_level *p = &t->frame.level[still_level(t)], *q = &t->last.level[still_level(t)];
-	double d = 0;
-	for (int y = y0; y < y1; y++)
-		for (int x = x0; x < x1; x++)
-			d += fabs(p->px[(long)y * p->stride + x] - t->gain * q->px[(long)y * q->stride + x]);
-	return d / ((double)(x1 - x0) * (y1 - y0));
-}
-
-double skin_track_changed(const struct skin_track *t, const double at[2])
-{
-	const struct scale_level *p = &t->frame.level[still_level(t)];
-	int size = 1 << still_level(t), x = ((int)at[0] - t->frame.x0) / size, y = ((int)at[1] - t->frame.y0) / size;
-	int reach = (t->conf.radius + size - 1) / size;
-	if (!(t->gain > 0) || x < reach || y < reach || x + reach >= p->width || y + reach >= p->height)
-		return INFINITY;
-	return change(t, x - reach, y - reach, x + reach + 1, y + reach + 1);
-}
-
-/* Changes add up until they are seen: the frame before is the last that was worked on. */
-static bool stands_still(const struct skin_track *t)
-{
-	const struct scale_level *p = &t->frame.level[still_level(t)];
-	return t->gain > 0 && change(t, 0, 0, p->width, p->height) < t->conf.still;
-}
-
 double skin_track_push(struct skin_track *t, const uint8_t *luma, int stride, struct skin_point_state *state)
 {
 	struct scales swap = t->last;
 	t->last = t->frame;
 	t->frame = swap;
 	fill(&t->frame, t, luma, stride);
-	t->gain = gain_of(t);
-	t->was_still = stands_still(t);
+	t->gain = skin_track_gain(t);
+	t->was_still = skin_track_stands_still(t);
 	if (t->was_still) {
 		// compared with the frame that was worked on, so that slow motion adds up until it is seen
 		swap = t->last;

@@ -1,11 +1,11 @@
-#include "track/eye/track.h"
+#include "track/eye/eye_track.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "track/eye/track_impl.h"
+#include "track/eye/eye_track_impl.h"
 
 static bool known(int n, const double x[])
 {

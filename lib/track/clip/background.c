@@ -1,4 +1,4 @@
-#include "track/clip/behind.h"
+#include "track/clip/background.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ struct task {
 	double cam_from_head[4][4];
 };
 
-struct behind {
+struct background {
 	struct track_eyes *eyes;
 	struct film *film;
 	struct folds *folds;
@@ -25,7 +25,7 @@ struct behind {
 	struct task task[ROOM];
 };
 
-static void work(struct behind *b, struct task *t)
+static void work(struct background *b, struct task *t)
 {
 	track_eyes_push(b->eyes, &t->frame, (const double(*)[4])t->cam_from_head);
 	if (b->film)
@@ -36,7 +36,7 @@ static void work(struct behind *b, struct task *t)
 
 static void *run(void *data)
 {
-	struct behind *b = data;
+	struct background *b = data;
 	for (;;) {
 		pthread_mutex_lock(&b->lock);
 		while (b->in == b->out && !b->ending)
@@ -53,9 +53,9 @@ static void *run(void *data)
 	}
 }
 
-struct behind *behind_new(struct track_eyes *eyes, struct film *film, struct folds *folds)
+struct background *background_new(struct track_eyes *eyes, struct film *film, struct folds *folds)
 {
-	struct behind *b = mem_new(1, sizeof *b);
+	struct background *b = mem_new(1, sizeof *b);
 	b->eyes = eyes;
 	b->film = film;
 	b->folds = folds;
@@ -65,7 +65,7 @@ struct behind *behind_new(struct track_eyes *eyes, struct film *film, struct fol
 	return b;
 }
 
-void behind_push(struct behind *b, struct video_frame *frame, const double cam_from_head[4][4])
+void background_push(struct background *b, struct video_frame *frame, const double cam_from_head[4][4])
 {
 	struct task task = { .frame = *frame };
 	*frame = (struct video_frame){ 0 };
@@ -82,7 +82,7 @@ void behind_push(struct behind *b, struct video_frame *frame, const double cam_f
 	pthread_mutex_unlock(&b->lock);
 }
 
-void behind_end(struct behind *b)
+void background_end(struct background *b)
 {
 	if (b->threaded) {
 		pthread_mutex_lock(&b->lock);

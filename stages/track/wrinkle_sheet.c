@@ -1,4 +1,5 @@
-/* A row for each expression: neutral frame, peak with its lines, bump map lit from the upper left. */
+#include "stages/track/wrinkle_sheet.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +7,6 @@
 #include "base/mem.h"
 #include "bridge/cv_draw.h"
 #include "bridge/cv_photo.h"
-#include "image/plane.h"
-#include "track/clip/folds.h"
 
 enum { CELL = 620, GAP = 6, LINE = 24 };
 

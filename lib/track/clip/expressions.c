@@ -1,13 +1,13 @@
-/* Strengths of expressions (skin paper, section 3.3: action units from sample poses): how much of the motion from an
- * expression's neutral frame to its peak is in a frame, beside the motions that gaze and blinks make. */
+#include "track/clip/expressions.h"
+
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/stage.h"
 #include "math/chol.h"
-#include "track/clip/track.h"
 
 enum { EYE_INPUTS = 10, OTHER = 4, SAMPLE = 160, AU_MAX = 24, BASIS = AU_MAX + OTHER };
 

@@ -1,4 +1,4 @@
-#include "track/gaze/clip.h"
+#include "track/gaze/bundle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -139,8 +139,8 @@ static double distinct(int n, struct gaze_frame *const frame[])
 	return m;
 }
 
-static bool iterate(struct gaze_globe *globe, struct gaze_clip_fit *fit, int n, struct gaze_frame *const frame[],
-                    const struct gaze_clip_conf *conf, struct own own[])
+static bool iterate(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n, struct gaze_frame *const frame[],
+                    const struct gaze_bundle_conf *conf, struct own own[])
 {
 	struct gaze_globe start = *globe;
 	double sigma[SHARED] = { conf->center_sigma, conf->center_sigma, conf->center_sigma, conf->radius_sigma,
@@ -179,12 +179,12 @@ static bool iterate(struct gaze_globe *globe, struct gaze_clip_fit *fit, int n, 
 	return true;
 }
 
-bool gaze_clip_fit(struct gaze_globe *globe, struct gaze_clip_fit *fit, int n, struct gaze_frame frame[],
-                   const struct gaze_clip_conf *conf)
+bool gaze_bundle_fit(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n, struct gaze_frame frame[],
+                   const struct gaze_bundle_conf *conf)
 {
 	int m = n < FRAMES ? n : FRAMES;
 	struct gaze_globe start = *globe;
-	*fit = (struct gaze_clip_fit){ 0 };
+	*fit = (struct gaze_bundle_fit){ 0 };
 	if (n < 2)
 		return false;
 	struct gaze_frame **some = mem_array((size_t)m, sizeof *some);

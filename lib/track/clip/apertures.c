@@ -1,11 +1,11 @@
-/* Lids in the modelling camera, and how far they stand from where they meet: g4, g5, g9, g10. */
+#include "track/clip/apertures.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/clip/track.h"
 
 enum { EYE_INPUTS = 5 };
 

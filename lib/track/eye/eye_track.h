@@ -10,12 +10,12 @@
  *     for each frame: for each eye: eye_track_push(track, eye, &frame);
  *     eye_track_finish(&clip, track); ... eye_clip_free(&clip); eye_track_free(track);
  */
-#ifndef TRACK_EYE_TRACK_H
-#define TRACK_EYE_TRACK_H
+#ifndef TRACK_EYE_EYE_TRACK_H
+#define TRACK_EYE_EYE_TRACK_H
 #include <stdint.h>
 
 #include "anatomy/eye.h"
-#include "track/eye/track_opts.h"
+#include "track/eye/eye_track_opts.h"
 
 enum { SIDE_LEFT, SIDE_RIGHT, SIDES };  // the person's
 enum { LID_UPPER, LID_LOWER, LIDS };

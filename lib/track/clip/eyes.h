@@ -1,0 +1,20 @@
+/* eyes: feeds eye_track (track/eye/eye_track.h) from the pipeline: gaze and lids of every frame. */
+#ifndef TRACK_CLIP_EYES_H
+#define TRACK_CLIP_EYES_H
+#include "track/clip/clip.h"
+#include "track/clip/result.h"
+
+struct track_eyes;
+
+/* clip and subject are borrowed until track_eyes_free. */
+struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
+
+/* The next frame, and the head's pose in it. */
+void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, const double cam_from_head[4][4]);
+
+/* Clip-wide fit with result's final poses; fills result's eyes and has_eyes, NAN in frames that are lost.
+ * Returns false, err set, when no eye was found in any frame. */
+bool track_eyes_finish(struct track_result *result, struct track_eyes *eyes, struct err *err);
+void track_eyes_free(struct track_eyes *eyes);
+
+#endif
