@@ -29,7 +29,8 @@ void animation_free(struct animation *a)
 	*a = (struct animation){ 0 };
 }
 
-void animate_direction(double out[2], const double at[2], double width_deg, double aspect)
+/* Direction, degrees, of a place of the scene (share of its width and height). aspect: height over width. */
+static void direction(double out[2], const double at[2], double width_deg, double aspect)
 {
 	// A plane before the eyes: x of the picture to its right, which is the person's left if they face the viewer; the person
 	// who watches the scene sees its right on their right, so -x.
@@ -74,13 +75,13 @@ static void source(void *ctx, double t, struct gaze_input *in)
 	if (r->places) {
 		long i = before(r->places->n, r->places->t, t);
 		if (r->places->n)
-			animate_direction(in->target, r->places->at[i], c->scene_deg, r->places->aspect);
+			direction(in->target, r->places->at[i], c->scene_deg, r->places->aspect);
 		in->distance = c->scene_distance;
 	} else if (r->gaze && r->gaze->kind == SCRIPT_SCREEN) {
 		double at[2] = { recorded(r->gaze, 2, r->gaze->screen, 0, t) / c->screen[0],
 			             recorded(r->gaze, 2, r->gaze->screen, 1, t) / c->screen[1] };
 		if (!isnan(at[0]) && !isnan(at[1]))
-			animate_direction(in->target, at, c->scene_deg, c->screen[1] / c->screen[0]);
+			direction(in->target, at, c->scene_deg, c->screen[1] / c->screen[0]);
 		in->distance = c->scene_distance;
 	} else if (r->keys)
 		script_target(in->target, &in->distance, r->keys, t);

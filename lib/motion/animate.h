@@ -50,9 +50,6 @@ bool animate_run(struct animation *out, const struct skin_model *model, const st
                  struct err *err);
 void animation_free(struct animation *animation);
 
-/* Direction, degrees, of a place of the scene. */
-void animate_direction(double out[2], const double at[2], double width_deg, double aspect);
-
 /* frame, time_s, g1_deg .. g10_px, au1 .., then a4 a5 a9 a10 (aperture controls), closure, head_horizontal_deg,
  * head_vertical_deg. */
 bool animation_save(const char *path, const struct animation *animation, struct err *err);

@@ -8,11 +8,6 @@ double minimum_jerk(double t)
 	return t * t * t * (10 + t * (6 * t - 15));
 }
 
-double minimum_jerk_speed(double t)
-{
-	return t <= 0 || t >= 1 ? 0 : 30 * t * t * (1 - t) * (1 - t);
-}
-
 /* Peak over mean of t^a (1 - t)^b with a + b = n and the peak at t = m: closed form by the beta function. */
 static double peak_over_mean(double n, double m)
 {

@@ -179,7 +179,8 @@ static int key_before(const struct script_track *track, double t)
 	return low;
 }
 
-double script_held(const struct script_track *track, double t, double otherwise)
+/* Value at t, held from key to key. */
+static double held(const struct script_track *track, double t, double otherwise)
 {
 	int i = key_before(track, t);
 	return !track->n ? otherwise : track->v[i < 0 ? 0 : i];
@@ -206,13 +207,13 @@ static bool is_steady(const struct script_track *pursuit, double t)
 void script_target(double out[2], double *distance, const struct script *s, double t)
 {
 	const struct script_track *h = &s->key[KEY_HORIZONTAL], *v = &s->key[KEY_VERTICAL];
-	out[0] = script_held(h, t, 0);
-	out[1] = script_held(v, t, 0);
-	*distance = script_held(&s->key[KEY_DISTANCE], t, INFINITY);
+	out[0] = held(h, t, 0);
+	out[1] = held(v, t, 0);
+	*distance = held(&s->key[KEY_DISTANCE], t, INFINITY);
 	int i = key_before(h, t);
 	if (i < 0 || i + 1 >= h->n || !is_steady(&s->key[KEY_PURSUIT], h->t[i + 1]))
 		return;
-	double a = (t - h->t[i]) / (h->t[i + 1] - h->t[i]), to = script_held(&s->key[KEY_DISTANCE], h->t[i + 1], INFINITY);
+	double a = (t - h->t[i]) / (h->t[i + 1] - h->t[i]), to = held(&s->key[KEY_DISTANCE], h->t[i + 1], INFINITY);
 	out[0] += a * (h->v[i + 1] - h->v[i]);
 	out[1] += a * (v->v[i + 1] - v->v[i]);
 	if (isfinite(*distance) && isfinite(to))

@@ -43,10 +43,11 @@ struct script {
 bool script_read(struct script *script, const char *path, const struct skin_model *model, struct err *err);
 void script_free(struct script *script);
 
-/* Value at t: held from key to key; along the way of minimum jerk; or, for the target, held or steady (pursuit).
- * `otherwise` where the channel has no key. */
-double script_held(const struct script_track *track, double t, double otherwise);
+/* Value of a channel at t (s), along the path of minimum jerk from key to key; `otherwise` where it has no key. */
 double script_smooth(const struct script_track *track, double t, double otherwise);
+
+/* Target at t: held from key to key, or moving steadily to the next where that is one of pursuit. out: degrees, horizontal and vertical;
+ * distance: mm, INFINITY where no key says. */
 void script_target(double out[2], double *distance, const struct script *script, double t);
 
 #endif

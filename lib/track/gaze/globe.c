@@ -17,13 +17,6 @@ void gaze_rotation(double head_from_eye[3][3], const double fick[3])
 	}
 }
 
-void gaze_fick(double fick[2], const double dir_in_head[3])
-{
-	double y = fmax(-1, fmin(1, dir_in_head[1]));
-	fick[0] = atan2(dir_in_head[0], dir_in_head[2]);
-	fick[1] = asin(y);
-}
-
 double gaze_plane(const struct gaze_globe *globe)
 {
 	double square = globe->radius * globe->radius - globe->limbus * globe->limbus;
@@ -134,22 +127,4 @@ bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struc
 			return false;
 	}
 	return ellipse_fit_direct(e, 16, p, 0);
-}
-
-bool gaze_from_pixel(double fick[2], const struct gaze_globe *globe, const struct gaze_view *view, const double px[2])
-{
-	double ray[3], center[3], dir[3], head[3];
-	camera_ray(ray, &view->camera, px);
-	to_camera(center, view, globe->center);
-	double plane = gaze_plane(globe), along = vec_dot(ray, center);
-	double square = along * along - vec_dot(center, center) + plane * plane;
-	if (!(square >= 0) || plane == 0)
-		return false;
-	for (int i = 0; i < 3; i++)
-		dir[i] = (ray[i] * (along - sqrt(square)) - center[i]) / plane;
-	for (int i = 0; i < 3; i++)
-		head[i] = view->cam_from_head[0][i] * dir[0] + view->cam_from_head[1][i] * dir[1]
-		          + view->cam_from_head[2][i] * dir[2];
-	gaze_fick(fick, head);
-	return true;
 }

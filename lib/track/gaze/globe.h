@@ -22,9 +22,6 @@ struct gaze_view {
 /* Columns: the eye's x, y and z axes in the head frame. */
 void gaze_rotation(double head_from_eye[3][3], const double fick[3]);
 
-/* h and v of a direction (unit, head frame): fick[2] is left alone. */
-void gaze_fick(double fick[2], const double dir_in_head[3]);
-
 /* Distance of the plane of the limbus from the centre, mm; 0 where the circle is larger than the sphere. */
 double gaze_plane(const struct gaze_globe *globe);
 
@@ -47,9 +44,5 @@ bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_
 /* The ellipse of the limbus, px, to a fraction of a pixel (exact but for distortion). */
 bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struct gaze_view *view,
                   const double fick[2]);
-
-/* The direction of gaze whose limbus centre appears at px; false where no point of the globe does. */
-bool gaze_from_pixel(double fick[2], const struct gaze_globe *globe, const struct gaze_view *view,
-                     const double px[2]);
 
 #endif

@@ -14,7 +14,8 @@ static double luma_near(const struct luma *luma, double x, double y)
 	return luma->px[(long)j * luma->stride + i];
 }
 
-double gaze_seek_score(const struct gaze_sight *sight, const double fick[2])
+/* The score of one direction. */
+static double score_of(const struct gaze_sight *sight, const double fick[2])
 {
 	const struct luma *luma = sight->luma;
 	const struct gaze_globe *globe = sight->globe;
@@ -62,7 +63,7 @@ static double try_around(double best[2], double score, double step, int reach, c
 			double fick[2] = { from[0] + i * step, from[1] + j * step };
 			if ((i == 0 && j == 0) || hypot(fick[0], fick[1]) > TURN_MAX)
 				continue;
-			double s = gaze_seek_score(sight, fick);
+			double s = score_of(sight, fick);
 			if (s > score || isnan(score)) {
 				score = s;
 				best[0] = fick[0];
@@ -75,7 +76,7 @@ static double try_around(double best[2], double score, double step, int reach, c
 
 double gaze_seek(double fick[2], const struct gaze_sight *sight, double reach, double step, double fine)
 {
-	double score = gaze_seek_score(sight, fick);
+	double score = score_of(sight, fick);
 	score = try_around(fick, score, step, (int)ceil(reach / step), sight);
 	for (double h = step / 2; h > fine / 2; h /= 2)
 		score = try_around(fick, score, h, 1, sight);

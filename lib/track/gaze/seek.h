@@ -18,7 +18,4 @@ struct gaze_sight {
  * `fine`. Returns the mean share of a full step, -1..1: about 0 by chance, NAN when the eye is out of the picture. */
 double gaze_seek(double fick[2], const struct gaze_sight *sight, double reach, double step, double fine);
 
-/* The score of one direction. */
-double gaze_seek_score(const struct gaze_sight *sight, const double fick[2]);
-
 #endif

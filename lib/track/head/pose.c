@@ -55,13 +55,6 @@ static void turned(double w[3], const double a[4][4], const double b[4][4])
 		w[i] = s > 1e-12 ? 0.5 * v[i] * angle / s : 0;
 }
 
-double head_angle(const double a[4][4], const double b[4][4])
-{
-	double w[3];
-	turned(w, a, b);
-	return vec_norm(w);
-}
-
 void head_moved(double out[4][4], const double m[4][4], const double d[P], const double pivot[3])
 {
 	double R[3][3], now[3][3], was[3][3], arm[3];

@@ -42,7 +42,4 @@ void head_moved(double out[4][4], const double cam_from_head[4][4], const double
 /* That motion to cam_from_head from another pose; what lies at `pivot` afterwards counts for the shift. */
 void head_motion(double d[6], const double cam_from_head[4][4], const double from[4][4], const double pivot[3]);
 
-/* Angle between two poses' orientations, radians. */
-double head_angle(const double a[4][4], const double b[4][4]);
-
 #endif

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/stats.h"
+#include "math/vec.h"
 #include "track/eye/eye_track.h"
 #include "track/gaze/bundle.h"
 #include "track/lid/path.h"
@@ -56,6 +57,26 @@ static void arc_slopes(void **state)
 	}
 }
 
+/* Direction of gaze whose limbus centre appears at px: the pixel's ray against the sphere that the centre lies on. */
+static bool gaze_from_pixel(double fick[2], const struct gaze_globe *globe, const struct gaze_view *view, const double px[2])
+{
+	double ray[3], center[3], dir[3], head[3] = { 0 }, plane = gaze_plane(globe);
+	camera_ray(ray, &view->camera, px);
+	for (int i = 0; i < 3; i++)
+		center[i] = vec_dot(view->cam_from_head[i], globe->center) + view->cam_from_head[i][3];
+	double along = vec_dot(ray, center), square = along * along - vec_dot(center, center) + plane * plane;
+	if (!(square >= 0))
+		return false;
+	for (int i = 0; i < 3; i++)
+		dir[i] = (ray[i] * (along - sqrt(square)) - center[i]) / plane;
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 3; k++)
+			head[i] += view->cam_from_head[k][i] * dir[k];
+	fick[0] = atan2(head[0], head[2]);
+	fick[1] = asin(head[1]);
+	return true;
+}
+
 /* Pixel and direction are each other's inverse. */
 static void pixel_round_trip(void **state)
 {
@@ -63,7 +84,7 @@ static void pixel_round_trip(void **state)
 	struct gaze_view view = tilted_view();
 	struct gaze_globe globe = { { 30, 36, 78 }, 12.5, 5.9 };
 	for (int i = 0; i < 50; i++) {
-		double fick[3] = { 0.5 * sin(i), 0.4 * cos(1.7 * i), 0 }, px[2], back[2];
+		double fick[3] = { 0.5 * sin(i), 0.4 * cos(1.7 * i), 0 }, px[2], back[2] = { NAN, NAN };
 		assert_true(gaze_pixel(px, &globe, &view, fick, (double[3]){ 0, 0, gaze_plane(&globe) }));
 		assert_true(gaze_from_pixel(back, &globe, &view, px));
 		NEAR(back[0], fick[0], 1e-9);

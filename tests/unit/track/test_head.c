@@ -13,6 +13,16 @@
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/unit.h"
 
+/* Angle between two poses' orientations, radians: half the chord between the rotations, in Frobenius' norm, is sqrt(2) sin(angle / 2). */
+static double head_angle(const double a[4][4], const double b[4][4])
+{
+	double square = 0;
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 3; k++)
+			square += pow(a[i][k] - b[i][k], 2);
+	return 2 * asin(fmin(1, sqrt(square / 8)));
+}
+
 static const struct head_find_conf conf = { .width = { 0.05, 0.6 }, .roll = 20, .turn_sigma = 3, .min_score = 1, .edge = 40 };
 
 struct clip {

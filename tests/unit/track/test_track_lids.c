@@ -7,6 +7,8 @@
 #include "track/lid/fine.h"
 #include "track/clip/beside.h"
 #include "track/clip/blink_lower.h"
+#include "track/clip/blink_upper.h"
+#include "track/clip/corners.h"
 #include "tests/lib/unit.h"
 
 enum { W = 400, H = 260, FILM = 12, POINTS = 20 };
