@@ -13,7 +13,7 @@ struct ball {
 	double center[3], radius;
 };
 
-/* A piece all round its middle, at much the same distance. */
+/* Whether a connected piece is a ball: its vertices lie all round its middle at much the same distance. Sets ball. */
 static bool is_ball(struct ball *ball, const struct mesh *mesh, const int *piece, int which)
 {
 	// A cornea stands out by a tenth; lashes, lids and teeth spread over more than a third.
@@ -90,7 +90,7 @@ static int nearest(const struct mesh *mesh, const double p[3])
 	return best;
 }
 
-/* Lids lie before their eyeballs, not behind: the character looks along +z. */
+/* Whether the skin near an eyeball lies before it, so that the character looks along +z. */
 static bool looks_ahead(const struct mesh_part *part, const double center[3], double radius)
 {
 	double sum[3] = { 0 };
@@ -111,7 +111,7 @@ static bool looks_ahead(const struct mesh_part *part, const double center[3], do
 bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, const double target_eye[2][3], double target_radius,
                     const struct mesh *subject, const double subject_eye[2][3])
 {
-	// The lids' middles and corners before the eyeball's centre, in its radii; a human one has 12 mm.
+	// The lids' middles and corners from the eyeball's centre, in its radii; a human eyeball has a radius of 12 mm.
 	static const double places[][3] = { { 0, 0.6, 1 }, { 0, -0.6, 1 }, { 1, 0, 0.7 }, { -1, 0, 0.7 } };
 	const double subject_radius = 12;
 	*out = (struct nricp_landmarks){ 0 };

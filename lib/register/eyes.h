@@ -1,15 +1,22 @@
-/* eyes: where a character's eyeballs are, and which of its vertices belong on which of the subject's because of them. */
+/* eyes: finds a target's eyeballs and derives landmarks of the lids from them.
+ * Axes: x to the character's left, y up, z out of the face. */
 #ifndef REGISTER_EYES_H
 #define REGISTER_EYES_H
 #include "mesh/mesh_part.h"
 #include "register/nricp/align.h"
 
-/* Eyeballs among a character's pieces: the two rounds ones of one size that lie beside each other. center: left (of larger x),
- * right, in the mesh's unit. False: it has none. */
+/* Finds the eyeballs among a target's connected pieces: the largest two round pieces of one size beside each other.
+ * center  out: left (of larger x), right, in the mesh's unit
+ * radius  out: their mean radius, in the mesh's unit
+ * Returns false when there is no such pair. */
 bool eyes_of_target(double center[2][3], double *radius, const struct mesh *target);
 
-/* Places of the lids round both eyes as pairs of rows. part: of the character, without its eyeballs; the subject's axes are the
- * head's, its unit mm. False: it does not look along +z as the subject does. rows: owned by the caller, free(out->moving). */
+/* Pairs vertices at the lids' middles and corners, round both eyes of a target and of the subject.
+ * out          overwritten; out->moving is the caller's, free((void *)out->moving)
+ * part         of the target, without its eyeballs
+ * target_eye   centres, left and right, and target_radius: of eyes_of_target
+ * subject      mm, in the head's axes; subject_eye: its eyeballs' centres, left and right
+ * Returns false when the target's lids do not lie in front of its eyeballs: it does not look along +z. */
 bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, const double target_eye[2][3], double target_radius,
                     const struct mesh *subject, const double subject_eye[2][3]);
 

@@ -60,7 +60,7 @@ static void set_row(struct transfer *out, int i, const struct mesh *subject, int
 	}
 }
 
-/* Vertex i is vertex i: its row of B is one 1. */
+/* The same topology: vertex i is vertex i, and its row of B is one 1. */
 static void same(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct nricp_align_conf *conf,
                  struct err *err)
 {
@@ -101,8 +101,8 @@ static void place(double out[3], const double m[4][4], const float x[3])
 		out[r] = m[r][0] * (double)x[0] + m[r][1] * (double)x[1] + m[r][2] * (double)x[2] + m[r][3];
 }
 
-/* Vertices that were not matched follow those that were and lie nearest: the mean of their displacements by inverse
- * squared distance, after the similarity. */
+/* Places vertices that were not matched: the similarity, and the mean displacement of the nearest matched vertices, weighted by
+ * inverse squared distance. placed: of part's vertices. */
 static void carry(struct transfer *out, const struct mesh *target, const struct mesh_part *part, const float (*placed)[3])
 {
 	enum { NEAR = 8 };
@@ -128,6 +128,7 @@ static void carry(struct transfer *out, const struct mesh *target, const struct 
 	kdtree_free(tree);
 }
 
+/* Distance of a registered vertex from its place by B. */
 static float distance_to(const struct transfer *t, int i, const struct mesh *subject)
 {
 	double d2 = 0;
@@ -140,7 +141,7 @@ static float distance_to(const struct transfer *t, int i, const struct mesh *sub
 	return (float)sqrt(d2);
 }
 
-/* Onto the nearest faces of the subject that look the same way. */
+/* Snaps every vertex to the nearest face of the subject that faces the same way: its row of B, distance and confidence. */
 static void snap(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct mesh_part *target_part,
                  const struct mesh_part *subject_part, const struct nricp_result *result, const struct transfer_conf *conf)
 {
@@ -163,7 +164,7 @@ static void snap(struct transfer *out, const struct mesh *target, const struct m
 		} else
 			c = closest_find(scene, out->registered[i], own[i], turn, INFINITY, -1);
 		c.face = c.face < 0 ? 0 : c.face;
-		// The part's faces name the first of doubled vertices; the subject's own rows are what was tracked.
+		// Where vertices are doubled, the part's faces name the first; the tracked rows are those of the subject's own faces.
 		set_row(out, i, subject, subject_part->face[c.face], c.bary);
 		out->distance[i] = distance_to(out, i, subject);
 		double away = (double)out->distance[i] / (conf->snap * size);
@@ -174,8 +175,8 @@ static void snap(struct transfer *out, const struct mesh *target, const struct m
 	free(normals);
 }
 
-/* Sockets behind the lids, insides of nose and mouth: what a scan or a face cut out of one does not have. Matched, they
- * would be drawn into the openings. Null: none, a mesh that is inside out, or a subject that has them too. */
+/* Marks a target's hidden surface: sockets behind the lids, insides of nose and mouth. A scanned subject has none, and matching would
+ * draw them into its openings. Null: there is none, the mesh is inside out, or the subject has such surface, too. free(). */
 static bool *only_hidden(const struct mesh *target, const struct mesh *subject, double least)
 {
 	enum { SAMPLES = 700 };

@@ -1,4 +1,4 @@
-/* transfer_lay: a registration from the best start that is known. */
+/* transfer_lay: registers a target from the best initial alignment that is known. */
 #ifndef REGISTER_TRANSFER_LAY_H
 #define REGISTER_TRANSFER_LAY_H
 #include "mesh/mesh_part.h"

@@ -1,5 +1,7 @@
-/* transfer_opts: the numbers that shape a registration, as rows of a stage's option table. p: what its keys begin with ("", or
- * "template_"); nodes, rounds: double[NRICP_LEVELS], which transfer_conf_take then puts in their place.
+/* transfer_opts: the parameters of a registration as rows of a stage's option table, for the stages that register meshes.
+ * p              prefix of the keys ("", or "template_")
+ * c              struct transfer_conf *, filled in but for the two arrays
+ * nodes, rounds  double[NRICP_LEVELS]; transfer_conf_take copies them to c once the options are parsed
  */
 #ifndef REGISTER_TRANSFER_OPTS_H
 #define REGISTER_TRANSFER_OPTS_H

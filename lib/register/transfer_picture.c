@@ -13,7 +13,7 @@
 
 enum { PANELS = 3, HIGH = 620, FINE = 2, HEAD = 34, FOOT = 46, GAP = 12 };
 
-/* What is seen in a pixel of a fine grid: the face in front, -1: none. */
+/* The foremost face in a pixel of the fine grid; -1: none. */
 struct seen {
 	float z;
 	int32_t face;
@@ -25,7 +25,7 @@ struct view {
 	int width, height;       // fine pixels
 };
 
-/* The subject fills it, with a little round it; of a body, more does not help. */
+/* A view that the subject fills, with a border. */
 static struct view view_of(const struct mesh *subject)
 {
 	double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
@@ -42,6 +42,7 @@ static struct view view_of(const struct mesh *subject)
 	return v;
 }
 
+/* Rasterises a triangle with a depth buffer. */
 static void fill(struct seen *seen, const struct view *view, const float *p[3], int32_t face)
 {
 	double x[3], y[3];
@@ -78,12 +79,13 @@ static struct seen *look(const struct view *view, const float (*vertices)[3], co
 	return seen;
 }
 
+/* Interpolates between a face's corners. */
 static double mixed(const struct seen *s, double a, double b, double c)
 {
 	return (1 - (double)s->b - (double)s->c) * a + (double)s->b * b + (double)s->c * c;
 }
 
-/* Light from the camera, and a little from everywhere. */
+/* Shading: light from the camera, and a little ambient light. */
 static double light_on(const struct seen *s, const int32_t v[3], const float (*normal)[3])
 {
 	double n[3], len2 = 0;
@@ -94,7 +96,7 @@ static double light_on(const struct seen *s, const int32_t v[3], const float (*n
 	return 0.2 + 0.8 * (len2 > 0 ? fabs(n[2]) / sqrt(len2) : 1);
 }
 
-/* Blue, green, yellow, red: 0 to 1. Linear values. */
+/* Colour scale: blue, green, yellow, red for x from 0 to 1. Linear values. */
 static void spectrum(float out[3], double x)
 {
 	static const float stops[5][3] = { { 0.03f, 0.08f, 0.4f }, { 0.02f, 0.4f, 0.55f }, { 0.15f, 0.6f, 0.12f }, { 0.85f, 0.65f, 0.05f }, { 0.7f, 0.04f, 0.03f } };
@@ -110,12 +112,12 @@ struct scene {
 	struct view view;
 	struct seen *seen[2];         // of the subject, of the character
 	float (*normal[2])[3];
-	double most;                  // mm at the colours' end
+	double most;                  // mm at the end of the colour scale
 };
 
 static const float skin[3] = { 0.55f, 0.5f, 0.46f }, blue[3] = { 0.1f, 0.3f, 0.7f }, orange[3] = { 0.85f, 0.35f, 0.06f };
 
-/* Colour of a fine pixel; nothing is added where nothing is seen. */
+/* Adds a fine pixel's share of colour, none where no surface is seen. */
 static void add_pixel(float sum[3], const struct scene *s, int panel, size_t at)
 {
 	const struct seen *of[2] = { &s->seen[0][at], &s->seen[1][at] };
@@ -166,7 +168,7 @@ static void draw_words(struct cv_picture *pic, const struct scene *s, int wide)
 		cv_draw_text(pic, end + 16, y, 10, "plain: not matched", white);
 }
 
-/* The shortest usual length that 95 in 100 of what is trusted stay below. */
+/* End of the colour scale, mm: the first round number above the distance of 95 % of the trusted vertices. */
 static double scale_of(const struct transfer *t)
 {
 	static const double usual[] = { 0.2, 0.5, 1, 2, 5, 10, 20, 50 };

@@ -5,12 +5,13 @@
 #include "mesh/mesh_part.h"
 #include "register/nricp/frame.h"
 
-/* Size (register/nricp/frame.h) of the skin of a face or a head, and of a whole body, mm: from a patch round the eyes to a giant's
- * bust; the middle of it. */
+/* Sizes (mesh_size), mm: the least and the largest of the skin of a face or a head, from a patch round the eyes to a giant's bust;
+ * the usual one; the largest of a whole body. */
 static const double face_least = 30, face_most = 250, face_usual = 85, body_most = 1100;
 static const double units[] = { 1, 10, 100, 1000 };
 enum { UNITS = sizeof units / sizeof *units };
 
+/* Distance from the usual size, by ratio. */
 static double off(double size)
 {
 	return fabs(log(size / face_usual));
@@ -24,7 +25,7 @@ double transfer_subject_unit(const struct mesh *subject)
 	for (int i = 0; i < UNITS; i++)
 		if (off(size * units[i]) < off(size * best))
 			best = units[i];
-	// No unit anyone models in: a scale of its own.
+	// None of the usual units fits: a power of ten.
 	return size * best > face_least && size * best < face_most ? best : pow(10, round(log10(face_usual / size)));
 }
 
@@ -54,7 +55,7 @@ double transfer_target_unit(const struct mesh *target, const struct mesh *subjec
 				struct nricp_align_result pose;
 				struct err none = { 0 };
 				nricp_align(&pose, &scaled, &fixed.mesh, 0, &conf->align, &none);
-				// Of units that fit equally well, the one that asks for the least scaling.
+				// Of units that fit equally well, the one that needs the least scaling.
 				double fit = pose.matched - 0.05 * fabs(log(pose.scale));
 				if (fit > top) {
 					top = fit;

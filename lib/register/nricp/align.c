@@ -9,7 +9,7 @@
 #include "register/nricp/align_impl.h"
 #include "register/nricp/frame.h"
 
-/* Vertices of the fixed mesh in even steps of the area before them. */
+/* Samples vertices of the fixed mesh in even steps of cumulated area. */
 static void take_samples(struct search *s, const struct mesh *fixed, const double center[3], double size)
 {
 	double *area = mesh_vertex_areas(fixed), sum = 0, passed = 0;
@@ -46,7 +46,8 @@ static void take_landmarks(struct search *s, const struct nricp_landmarks *l, co
 	s->n_held = l->n;
 }
 
-/* From landmarks: the rotation, scale and shift of least squares, by refinement from the identity. */
+/* The similarity that fits the landmarks best (least squares), by Gauss-Newton steps from the identity. False: no landmarks, or no
+ * solution. */
 static bool from_landmarks(struct pose *pose, const struct search *s)
 {
 	enum { ROUNDS = 50 };
@@ -62,7 +63,7 @@ static bool from_landmarks(struct pose *pose, const struct search *s)
 	return s->n_held;
 }
 
-/* The inverse of the pose, in the meshes' own unit. */
+/* Inverts the pose and returns to the meshes' own unit. */
 static void give(struct nricp_align_result *out, const struct best *best, const double moving_center[3], const double fixed_center[3],
                  double size)
 {

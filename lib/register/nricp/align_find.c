@@ -23,22 +23,23 @@ static int cube_rotations(double out[24][3][3])
 	return n;
 }
 
+/* Refines the pose from one start and keeps it when it is better. */
 static void attempt(struct best *best, struct search *s, struct pose pose, int start)
 {
 	double rms, matched = align_refine(&pose, &rms, s, s->conf->rounds, s->conf->welsch);
-	// Of starts that end alike the first is kept: it needed the least turning.
+	// Of starts that end alike the first is kept: it needed the least rotation.
 	if (matched > best->matched * 1.02 || !best->start)
 		*best = (struct best){ pose, matched, rms, start + 1 };
 }
 
-/* Places all over the moving mesh, the fixed one upright there: a face is found on a body. */
+/* Starts with the fixed mesh upright at places all over the moving one, to find a face on a body. A few rounds at each choose one. */
 static void attempt_places(struct best *best, struct search *s)
 {
 	static const double coarse[2] = { 0.5, 0.3 };
 	double *area = mesh_vertex_areas(&s->moving), sum = 0, passed = 0, top = -1, rms, out[3] = { 0 };
 	struct pose chosen = pose_still;
 	int n = 0;
-	for (int k = 0; k < s->n; k++)  // the fixed mesh's surface lies this way of its centroid: the mean of its normals
+	for (int k = 0; k < s->n; k++)  // mean normal: the direction from the fixed mesh's centroid to its surface
 		vec_add(out, out, 1.0 / s->n, s->samples[k].normal);
 	for (int i = 0; i < s->moving.n_vertices; i++)
 		sum += area[i];

@@ -1,12 +1,12 @@
-/* nricp_align_impl: the parts of nricp_align: the search's state, one start refined, and the starts. */
+/* nricp_align_impl: the parts of nricp_align: the state of the search, the refinement of one start, and the starts. */
 #ifndef REGISTER_NRICP_ALIGN_IMPL_H
 #define REGISTER_NRICP_ALIGN_IMPL_H
 #include "mesh/closest.h"
 #include "mesh/topology.h"
 #include "register/nricp/align.h"
 
-/* x of the moving mesh = scale rotation p + shift, p of the fixed one: the search goes from the fixed mesh to the
- * moving, of which the fixed may be a small part. */
+/* moving_from_fixed: x = scale rotation p + shift. Samples of the fixed mesh are matched to the moving one, because the fixed mesh may
+ * be a small part of it. */
 struct pose {
 	double rotation[3][3], shift[3], scale;
 };
@@ -23,8 +23,8 @@ struct search {
 	struct closest_scene *scene;
 	struct sample *samples;
 	int n;
-	int *face;           // [n] matched last
-	int n_held;          // landmarks that a refinement keeps together: p of the fixed mesh on the vertex `row` of the moving one
+	int *face;           // [n] last match of each sample, where the next search begins
+	int n_held;          // landmarks: the point `at` of the fixed mesh belongs on the vertex `row` of the moving one
 	struct held {
 		double at[3];
 		int row;
@@ -33,7 +33,7 @@ struct search {
 
 static const struct pose pose_still = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0 }, 1 };
 
-/* A round's sums of least squares for the 7 unknowns: turn, shift, growth. */
+/* Normal equations of a round for the 7 unknowns: rotation vector, shift, relative growth. */
 struct sums {
 	double a[7][7], b[7], weight, square;
 };
@@ -44,16 +44,18 @@ struct best {
 	int start;
 };
 
-/* Moves the pose by the sums' answer; growth is kept within 1 / scale_max .. scale_max. False: they have none. */
+/* Solves the normal equations and moves the pose; its scale stays within 1 / scale_max .. scale_max. Returns false when they are
+ * singular. */
 bool sums_move(struct pose *pose, struct sums *sums, double scale_max);
 
-/* Rounds of matching; returns the share matched at the end. welsch: first and last scale. */
+/* Refines the pose by rounds of matching and solving. welsch: first and last scale of the weight. *rms: of the matches' distances
+ * across the surface. Returns the share of the samples matched at the end. */
 double align_refine(struct pose *pose, double *rms, struct search *search, int rounds, const double welsch[2]);
 
-/* All landmarks' pulls, of that weight together. */
+/* Adds the landmarks to the normal equations; `weight` is that of all together. */
 void align_hold(struct sums *sums, const struct search *search, const struct pose *pose, double weight);
 
-/* The best of all starts. offset: between the centroids, in units of the search. */
+/* Refines all starts until one is good, and returns the best. offset: fixed centroid less moving centroid, in units of the search. */
 struct best align_find(struct search *search, const double offset[3]);
 
 #endif

@@ -36,7 +36,7 @@ static void sums_add(struct sums *sums, const double about[3], const double off[
 	}
 }
 
-/* exp of a rotation vector (Rodrigues). */
+/* The rotation of a rotation vector (Rodrigues). */
 static void rotation_of(double out[3][3], const double v[3])
 {
 	double angle = vec_norm(v), s = angle > 1e-12 ? sin(angle) / angle : 1, c = angle > 1e-12 ? (1 - cos(angle)) / (angle * angle) : 0.5;
@@ -65,6 +65,7 @@ bool sums_move(struct pose *pose, struct sums *sums, double scale_max)
 	return true;
 }
 
+/* Whether the closest point lies on the boundary of the moving mesh: there it is no match. */
 static bool at_end(const struct search *s, const struct closest_point *c)
 {
 	const int32_t *v = s->moving.faces[c->face];
@@ -93,7 +94,7 @@ static void match_one(struct sums *sums, struct search *s, int i, const struct p
 		return;
 	double weight = exp(-vec_dot(d, d) / (welsch * welsch)), across = vec_dot(m, d);
 	sums_add(sums, about, d, m, weight);
-	sums_add(sums, about, d, 0, 0.02 * weight);  // a little along the surface, so that spheres and planes have an answer
+	sums_add(sums, about, d, 0, 0.02 * weight);  // a little along the surface: else spheres and planes are singular
 	sums->weight += weight;
 	sums->square += weight * across * across;
 }

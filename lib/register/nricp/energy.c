@@ -47,8 +47,8 @@ static void factor_star(struct nricp_graph *g, int i, double rigidity)
 	}
 }
 
-/* Weight of a star: its residual is half the second derivative times the squared spacing, so that the sum over all
- * stars is the integral of the squared second derivatives, whatever the spacing. */
+/* Weight of a star. Its residual is half the second derivative times the squared spacing; with this weight the sum over all stars
+ * approximates the integral of the squared second derivatives, whatever the spacing. */
 static double star_weight(const struct nricp_graph *g, int i, double floor2)
 {
 	int32_t degree = g->start[i + 1] - g->start[i];
@@ -78,7 +78,7 @@ static void star_form(double *s, const struct nricp_graph *g, int i, double weig
 	}
 }
 
-/* The pattern of R: nodes that share a star. */
+/* The sparsity pattern of R: nodes that share a star. */
 static void pattern(struct nricp_graph *g)
 {
 	int32_t *seen = mem_array((size_t)g->n + 1, sizeof *seen), room = 24 * g->n + 64, n = 0;
@@ -108,6 +108,7 @@ static void pattern(struct nricp_graph *g)
 	free(seen);
 }
 
+/* Sums all stars into R. */
 static void fill(struct nricp_graph *g, double floor2)
 {
 	int32_t *at = mem_array((size_t)g->n + 1, sizeof *at);
@@ -165,7 +166,7 @@ void nricp_graph_pull(double (*out)[4], const struct nricp_graph *g, const doubl
 {
 	memset(out, 0, (size_t)g->n * sizeof *out);
 	for (int i = 0; i < g->n; i++) {
-		// Sum_k Q_jk (R_i - I) e_k = w (R_i - I) ridge_i e_j: what the affine map cannot follow for free.
+		// Sum_k Q_jk (R_i - I) e_k = w (R_i - I) ridge_i e_j: the part that the best affine map does not absorb.
 		const double *t = turn[i], *m = g->ridge + 9 * (size_t)i;
 		double tm[3][3], w = star_weight(g, i, g->floor2);
 		for (int r = 0; r < 3; r++)

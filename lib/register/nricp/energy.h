@@ -4,7 +4,7 @@
 #include "register/nricp/graph.h"
 
 /* Computes spacing2, floor2, star, ridge and the matrix R (r_start, r_column, r_value) of a graph from its places, areas and edges.
- * rigidity  rho over the mean squared edge; a length, in the unit of the places */
+ * rigidity  a length in the unit of the places: rho is the sum of a node's squared edges times their mean over rigidity^2 */
 void nricp_graph_energy(struct nricp_graph *graph, double rigidity);
 
 /* The right side that given rotations contribute: the energy is least where R t = out.

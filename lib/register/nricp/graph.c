@@ -17,7 +17,7 @@ void nricp_graph_free(struct nricp_graph *g)
 	*g = (struct nricp_graph){ 0 };
 }
 
-/* Which nodes of the coarser graph touch: those that own the two ends of an edge of the finer. */
+/* Edges of the coarser graph: between the parents of the two ends of each edge of the finer. */
 static void join_owners(struct nricp_graph *out, const struct nricp_graph *fine)
 {
 	int n = out->n;
@@ -107,7 +107,7 @@ static void nearest_rotation(double a[3][3])
 				cof[i][j] = a[p][r] * a[q][s] - a[p][s] * a[q][r];
 			}
 		double det = a[0][0] * cof[0][0] + a[0][1] * cof[0][1] + a[0][2] * cof[0][2];
-		if (!(det > 1e-3)) {  // turned inside out, or flat: no rotation is near
+		if (!(det > 1e-3)) {  // inverted or flat: no nearest rotation, take the identity
 			memset(a, 0, 9 * sizeof(double));
 			a[0][0] = a[1][1] = a[2][2] = 1;
 			return;
@@ -143,7 +143,7 @@ void nricp_graph_turns(double (*turn)[9], const struct nricp_graph *g, const dou
 	}
 }
 
-/* Share of `a` in the blend at a point: falls to 0 at the distance of the node furthest away. */
+/* Weight of a node at `a` in the blend at p; falls to 0 at the distance sqrt(reach2). */
 static double blend(const double p[4], const double a[4], double reach2)
 {
 	double d2 = 0;

@@ -79,7 +79,7 @@ static void unit(float v[3])
 		v[k] = len > 0 ? v[k] / len : 0;
 }
 
-/* They face as the plane of two tangents does, carried by the affine map. */
+/* Normals are the cross products of two tangents carried by the affine map. */
 void nricp_level_stand(struct nricp_level *l)
 {
 	for (int i = 0; i < l->graph.n; i++) {
@@ -108,7 +108,7 @@ void nricp_level_stand(struct nricp_level *l)
 	}
 }
 
-/* K = area weight (n n' + slide I): across the surface, and a little along it. */
+/* K = area weight (n n' + slide I): point to plane, and a little point to point. */
 void nricp_level_ask(struct nricp_level *l, const struct nricp_conf *conf)
 {
 	for (int i = 0; i < l->graph.n; i++) {

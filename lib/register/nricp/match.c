@@ -14,7 +14,7 @@ static float dot(const float a[3], const float b[3])
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Which way the surface ends at an edge: square to it, away from the surface. Its length is the edge's. */
+/* The direction off the surface at a boundary edge: perpendicular to the edge, in the tangent plane, as long as the edge. */
 static void off_edge(float out[3], const float a[3], const float b[3], const float n[3])
 {
 	float d[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
@@ -57,7 +57,7 @@ void nricp_outward(float (*out)[3], const struct mesh *mesh, const struct topolo
 	free(once);
 }
 
-/* Points along the rim: the ends of its edges, and between them. */
+/* Samples points along the boundary: the ends of its edges, and between them. */
 static void take_rim(struct nricp_fixed *f)
 {
 	const struct topology *t = &f->topology;
@@ -109,7 +109,7 @@ static float welsch(double distance, double scale)
 	return (float)exp(-(distance * distance) / (scale * scale));
 }
 
-/* A point that lies on the fixed mesh's edge: the surface goes on beyond it in the moving mesh, and nothing is known. */
+/* Whether the closest point lies on the fixed mesh's boundary: the moving surface goes on beyond it and has no counterpart there. */
 static bool is_at_end(const struct nricp_fixed *f, const struct closest_point *p)
 {
 	const int32_t *v = f->mesh->faces[p->face];

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "math/vec.h"
 
-/* A match of less weight is none. */
+/* A match of a smaller weight counts as none. */
 static const float nothing = 0.01f;
 
 static void reflect(double out[3], const struct nricp_plane *p, const double x[3])
@@ -17,7 +17,7 @@ static void reflect(double out[3], const struct nricp_plane *p, const double x[3
 	vec_add(out, x, -2 * (vec_dot(p->normal, x) - p->at), p->normal);
 }
 
-/* Whether sampled vertices have one at their mirror images: nine in ten, for a mole or a parting breaks no symmetry. */
+/* Whether nine in ten of sampled vertices have one at their mirror images: a mole or a parting breaks no symmetry. */
 static bool is_mirror(const struct nricp_plane *plane, const struct mesh *mesh, const struct kdtree *tree, double tolerance)
 {
 	enum { SAMPLES = 500 };
@@ -91,7 +91,7 @@ void nricp_twins_free(struct nricp_twins *t)
 	*t = (struct nricp_twins){ 0 };
 }
 
-/* Where the mirror image of node i at rest has gone. */
+/* Where the registration has moved the mirror image of node i. */
 static void place_of_image(double out[3], const struct nricp_twins *t, int i, const struct nricp_point *points, const double (*affine)[3][3])
 {
 	int twin = t->node[i];
@@ -100,8 +100,9 @@ static void place_of_image(double out[3], const struct nricp_twins *t, int i, co
 		out[k] += (double)points[twin].at[k];
 }
 
-/* The plane about which the nodes stand most nearly symmetric, from those of which both halves were found: of all n that
- * which makes sum w (n'a)(n'b) least, a and b from the middle of all to a node and to where its image has gone. False: none. */
+/* The plane about which the moved nodes are most nearly symmetric, from those matched on both sides: its normal n minimises
+ * sum w (n'a)(n'b), an eigenvalue problem, with a and b from the centroid to a node and to its moved mirror image. False: less than a
+ * tenth of the area is matched on both sides. */
 static bool fit_plane(struct nricp_plane *out, const struct nricp_twins *t, const struct nricp_graph *g, const struct nricp_point *points,
                       const struct nricp_match *match, const double (*affine)[3][3])
 {

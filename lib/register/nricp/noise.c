@@ -19,7 +19,7 @@ static double mean_edge(const struct mesh *mesh, const struct topology *t)
 	return t->start[t->n] ? sum / t->start[t->n] : 0;
 }
 
-/* share: of a neighbour's normal beside a vertex's own. */
+/* share: weight of a neighbour's normal against a vertex's own. */
 static void smooth_normals(float (*normals)[3], const struct topology *t, float share)
 {
 	float (*was)[3] = mem_array((size_t)t->n + 1, sizeof *was);
@@ -38,7 +38,7 @@ static void smooth_normals(float (*normals)[3], const struct topology *t, float 
 
 double nricp_noise(float (*normals)[3], const struct mesh *mesh, const struct topology *t)
 {
-	static const double usual = 0.2;  // radians that normals are off by where neighbours count as much as a vertex's own
+	static const double usual = 0.2;  // error of the normals, radians, at which neighbours count as much as a vertex's own
 
 	double *off = mem_array((size_t)t->n + 1, sizeof *off);
 	int n = 0;
@@ -50,7 +50,7 @@ double nricp_noise(float (*normals)[3], const struct mesh *mesh, const struct to
 		for (int32_t e = t->start[i]; e < t->start[i + 1]; e++)
 			for (int k = 0; k < 3; k++)
 				across += (double)normals[i][k] * ((double)mesh->vertices[t->neighbour[e]][k] - (double)mesh->vertices[i][k]) / degree;
-		off[n++] = across / sqrt(1 + 1.0 / degree);  // its own noise, and that of the mean
+		off[n++] = across / sqrt(1 + 1.0 / degree);  // its own noise and that of the mean of its neighbours
 	}
 	double sigma = n ? stats_mad(n, off, 0) : 0;
 	free(off);

@@ -11,21 +11,21 @@
 #include "register/nricp/polish.h"
 #include "register/nricp/unfold.h"
 
-static const double working_size = 100;  // lengths are brought to a fixed mesh of this size: float has room both ways
+static const double working_size = 100;  // the fixed mesh is scaled to this size, which suits single precision
 
 struct run {
-	struct mesh moving, fixed_mesh;  // scaled copies; faces are the caller's
+	struct mesh moving, fixed_mesh;  // copies in working units; faces are the caller's
 	struct nricp_fixed fixed;
 	struct nricp_conf conf;
 	struct nricp_level level[NRICP_LEVELS + 1];
-	int n_levels;                    // level[0] is all vertices, each further one is coarser
-	enum { MAYBE, YES, NO } mirror;  // whether the moving mesh is its own mirror image
-	struct nricp_plane plane;        // about which it is
-	double own[4][4];                // run's frame from the moving mesh's own
-	int first;                       // 1: there are too many vertices, level[0] is polished alone
+	int n_levels;                    // level[0] has all vertices, each further one is coarser
+	enum { MAYBE, YES, NO } mirror;  // whether the moving mesh is symmetric; MAYBE: not looked at yet
+	struct nricp_plane plane;        // of symmetry
+	double own[4][4];                // working frame from the moving mesh's own
+	int first;                       // the finest level solved: 1 with too many vertices, level[0] is then only polished
 };
 
-/* Whether so much of the moving mesh has nothing to lie on that it is worth to ask the other half; which it then has. */
+/* Whether the symmetry prior is needed: more than `much` of the moving mesh is unmatched, and it is symmetric. Then l->twins is made. */
 static bool is_lacking(struct run *run, struct nricp_level *l)
 {
 	static const double much = 0.05, tolerance = 0.002 * working_size;
@@ -43,6 +43,8 @@ static bool is_lacking(struct run *run, struct nricp_level *l)
 	return run->mirror == YES;
 }
 
+/* Rounds of matching and solving on one level. first, total: numbers of its first round and of all rounds, for the schedules of
+ * stiffness and weight. */
 static void one_level(struct run *run, struct nricp_level *l, int rounds, int first, int total, bool direct)
 {
 	const struct nricp_conf *c = &run->conf;
@@ -64,6 +66,7 @@ static void one_level(struct run *run, struct nricp_level *l, int rounds, int fi
 	nricp_solver_free(solver);
 }
 
+/* Solves the levels from coarse to fine; each starts from the displacements of the one before. */
 static void deform(struct run *run)
 {
 	int total = 0, done = 0, last = run->n_levels - 1;
@@ -74,7 +77,7 @@ static void deform(struct run *run)
 		int rounds = i >= run->first ? run->conf.rounds[NRICP_LEVELS - 1 - i + run->first] : 0;
 		if (i < last) {
 			nricp_graph_spread(l->t, &l->graph, &l[1].graph, (const double(*)[4])l[1].t);
-			for (int v = 0; v < l->graph.n; v++)  // where to look first
+			for (int v = 0; v < l->graph.n; v++)  // where the search for matches begins
 				l->match[v].face = l[1].match[l[1].graph.parent[v]].face;
 		}
 		nricp_graph_turns(l->turn, &l->graph, (const double(*)[4])l->t, run->conf.growth);
@@ -114,6 +117,7 @@ static struct nricp_conf in_working_units(const struct nricp_conf *conf)
 	return c;
 }
 
+/* The result, back in the meshes' own unit. */
 static void give(struct nricp_result *out, const struct run *run, const double center[3], double size)
 {
 	const struct nricp_level *l = &run->level[0];

@@ -5,8 +5,8 @@
 
 #include "base/mem.h"
 
-/* (weight + length^2 Laplacian) s = weight offset by conjugate gradients with the diagonal: close to the identity, so few
- * steps do. Edges count alike: cotangents would do so on equilateral triangles, where each is 1 / sqrt(3). */
+/* (weight + length^2 Laplacian) s = weight offset, by conjugate gradients preconditioned with the diagonal; the matrix is close to the
+ * identity, so few steps are enough. All edges have the weight 1 / sqrt(3) that cotangents have on equilateral triangles. */
 struct screened {
 	const struct nricp_graph *graph;
 	double edge;       // length^2 / sqrt(3)

@@ -8,8 +8,8 @@
 #include "math/simd.h"
 #include "math/spd.h"
 
-/* x y z and nothing, as one register. The descent works in single precision: it looks for a correction to what t is, of the
- * residual that double precision leaves. */
+/* x, y, z and 0 in one register. Conjugate gradients work in single precision: they solve for a correction of t, from a residual
+ * computed in double precision. */
 typedef float four __attribute__((vector_size(16), aligned(16)));
 
 struct nricp_solver {
@@ -20,12 +20,12 @@ struct nricp_solver {
 	four *d, *r, *z, *p, *q;
 	four (*block)[3], (*inverse)[3];  // columns of the diagonal blocks
 	float *off;                     // stiffness R beside the diagonal, R's pattern
-	struct spd *spd;                // the direct way: 3 n rows
+	struct spd *spd;                // of the direct solver: 3 n rows; null: conjugate gradients
 	int32_t *start;
 	double *value;
 };
 
-/* Rows of the full system: R's pattern, each entry a block of three. */
+/* The pattern of the full system, 3 n rows: R's, each entry a block of 3 x 3. */
 static void expand(struct nricp_solver *s)
 {
 	const struct nricp_graph *g = s->graph;
@@ -104,7 +104,7 @@ static four columns(const double *x)
 	return (four){ (float)x[0], (float)x[1], (float)x[2], 0 };
 }
 
-/* stiffness R + K in single precision, and the inverses of its diagonal blocks. */
+/* stiffness R + K in single precision, and the inverses of its diagonal blocks, the preconditioner. */
 static void take_system(struct nricp_solver *s, const double (*k)[6], double stiffness)
 {
 	const struct nricp_graph *g = s->graph;
@@ -156,7 +156,7 @@ static double times(four *restrict q, const struct nricp_solver *s, const four *
 	return sum;
 }
 
-/* d goes by step p, r by -step q; z = the inverses of the blocks times r. Returns r' z. */
+/* d += step p, r -= step q, z = preconditioner r. Returns r' z. */
 static double go(struct nricp_solver *s, float step)
 {
 	double sum = 0;
@@ -169,7 +169,7 @@ static double go(struct nricp_solver *s, float step)
 	return sum;
 }
 
-/* Conjugate gradients, preconditioned by the blocks of the diagonal. */
+/* Conjugate gradients, preconditioned by the inverse diagonal blocks (block Jacobi). */
 static void descend(struct nricp_solver *s, double (*t)[4], const double (*k)[6], double stiffness)
 {
 	int n = s->graph->n;
@@ -195,6 +195,7 @@ static void descend(struct nricp_solver *s, double (*t)[4], const double (*k)[6]
 			t[i][c] += (double)s->d[i][c];
 }
 
+/* The direct solve. False: the matrix is not positive definite. */
 static bool factored(struct nricp_solver *s, double (*t)[4], const double (*k)[6], double stiffness)
 {
 	static const int entry[3][3] = { { 0, 1, 2 }, { 1, 3, 4 }, { 2, 4, 5 } };
@@ -223,7 +224,7 @@ static bool factored(struct nricp_solver *s, double (*t)[4], const double (*k)[6
 void nricp_solver_run(struct nricp_solver *s, double (*t)[4], const struct nricp_pulls *data, const double (*pull)[4], double stiffness)
 {
 	residual(s->left, s->graph, (const double(*)[4])t, data, pull, stiffness);
-	// Gradients do without a full rank: where nothing pulls, nothing moves.
+	// Conjugate gradients need no full rank: nodes without a pull stay where they are.
 	if (!s->spd || !factored(s, t, (const double(*)[6])data->k, stiffness))
 		descend(s, t, (const double(*)[6])data->k, stiffness);
 }

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 
-/* Least cosine between a triangle's normal at rest and now: above 0, so that the similarity may turn it too. */
+/* A triangle is folded when the cosine between its normal at rest and now is smaller. */
 static const double upright = 0.35;
 
 static void face_normal(double n[3], const float *a, const float *b, const float *c)
@@ -47,6 +47,7 @@ static bool is_folded(const struct unfold *u, const int32_t f[3])
 	return dot < upright * sqrt(was2 * is2);
 }
 
+/* Marks neighbours, ring after ring; marked[] is 1 at the start. */
 static void grow(uint8_t *marked, const struct nricp_graph *g, int rings)
 {
 	for (int ring = 1; ring <= rings; ring++)
@@ -56,7 +57,7 @@ static void grow(uint8_t *marked, const struct nricp_graph *g, int rings)
 					marked[g->neighbour[e]] = (uint8_t)(ring + 1);
 }
 
-/* The triangle as the maps of its corners' surroundings lay it, about its middle. */
+/* Places a triangle about its middle by the mean affine map of its corners. */
 static void lay(struct unfold *u, const int32_t f[3])
 {
 	const struct nricp_graph *g = u->graph;
@@ -79,7 +80,7 @@ static void lay(struct unfold *u, const int32_t f[3])
 		}
 }
 
-/* Displacements go towards the means of the neighbours' (Gauss and Seidel). */
+/* Replaces displacements by the mean of the neighbours' (a Gauss-Seidel sweep of the Laplace equation). */
 static void relax(struct unfold *u, const uint8_t *marked)
 {
 	const struct nricp_graph *g = u->graph;
@@ -96,7 +97,7 @@ static void relax(struct unfold *u, const uint8_t *marked)
 	}
 }
 
-/* Folded triangles of the whole mesh; the region becomes what lies round them. */
+/* Finds the folded triangles of the whole mesh; the region is `rings` rings of vertices around them. Returns how many. */
 static int find_region(struct unfold *u, int rings)
 {
 	int folded = 0;
@@ -119,7 +120,7 @@ static int find_region(struct unfold *u, int rings)
 	return folded;
 }
 
-/* First each folded triangle alone; what does not come right so, with a growing neighbourhood. */
+/* Places each folded triangle by itself; what stays folded is smoothed with a growing neighbourhood. */
 static void unfold_region(struct unfold *u, int rings)
 {
 	enum { ALONE = 12, SWEEPS = 4 };
