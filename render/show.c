@@ -2,7 +2,7 @@
  * needs nothing of the rest: they are made at the same time. */
 #include <omp.h>
 
-#include "render/page/page.h"
+#include "render/page/index.h"
 #include "render/viewer/viewer.h"
 
 static bool sheets(struct jobs *eyes, struct err *err)

@@ -17,19 +17,6 @@ struct page {
 	json_t *missing;    // what the page cannot show, and why: sentences
 };
 
-/* work/review/index.html on its way. */
-struct page_work {
-	struct page page;
-	json_t *data;       // null: nothing to do
-	char **in;          // every file that it shows
-	int n_in;
-};
-
-/* Reads and shrinks what the page shows, all but the interactive page, which it only links to and which may be written
- * meanwhile; then writes it. page_end after page_begin in any case: it frees. */
-bool page_begin(struct page_work *work, struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err);
-bool page_end(struct page_work *work, struct err *err);
-
 /* The folder's file of that name if it is there, else null. Owned by the stage. */
 __attribute__((format(printf, 2, 3)))
 const char *page_file(struct page *page, const char *fmt, ...);
@@ -55,9 +42,6 @@ json_t *page_rig(struct page *page);
 json_t *page_skin(struct page *page);
 json_t *page_eyes(struct page *page);
 json_t *page_stages(struct page *page, double *seconds);
-
-/* head, then the bytes in base 64; free(). */
-char *page_base64(const uint8_t *data, size_t size, const char *head);
 
 /* {uri, width, height} of a picture as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. */
 json_t *page_picture(struct page *page, const char *path, int width);

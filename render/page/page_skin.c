@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "base/mem.h"
+#include "draw/web/base64.h"
 #include "model/model.h"
 #include "plan/stages.h"
 #include "render/page/page.h"
@@ -26,7 +27,7 @@ static json_t *data_uri(const char *path, const char *type, size_t limit)
 	size_t size;
 	if (!path || !file_read(&bytes, &size, path, limit, &err))
 		return 0;
-	char *head = mem_printf("data:%s;base64,", type), *uri = page_base64((const uint8_t *)bytes, size, head);
+	char *head = mem_printf("data:%s;base64,", type), *uri = base64_encode(bytes, size, head);
 	json_t *json = json_string_nocheck(uri);
 	free(uri);
 	free(head);

@@ -3,8 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/json.h"
+#include "base/mem.h"
+#include "draw/web/base64.h"
 #include "render/page/page.h"
 #include "render/viewer/viewer.h"
 #include "render/viewer/viewer_face_impl.h"
@@ -22,7 +23,7 @@ static json_t *places(const struct face *f, const struct wrinkle_maps *maps)
 			double px = f->order[i] < m->n ? m->home[f->order[i]][c] - (c ? maps->y0 : maps->x0) : 0;
 			at[2 * i + c] = (uint16_t)lrint(fmin(fmax(16 * px, 0), 65535));
 		}
-	json_t *out = viewer_base64(at, (size_t)n * 2 * sizeof *at);
+	json_t *out = base64_json(at, (size_t)n * 2 * sizeof *at);
 	free(at);
 	return out;
 }

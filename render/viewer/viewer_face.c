@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "draw/web/base64.h"
 #include "math/vec.h"
 #include "render/page/page.h"
 #include "render/viewer/viewer_face_impl.h"
@@ -87,14 +88,6 @@ static void pose_all(struct face *f)
 	free(controls);
 }
 
-json_t *viewer_base64(const void *bytes, size_t size)
-{
-	char *text = page_base64(bytes, size, "");
-	json_t *out = json_string(text);
-	free(text);
-	return out;
-}
-
 /* Roots of albedo, and a hair or half of how moist it is; light of the rig's own vertices. */
 static void put_colours(json_t *out, const struct face *f)
 {
@@ -114,10 +107,10 @@ static void put_colours(json_t *out, const struct face *f)
 			memcpy(light + 3 * ((long)k * posed + i), f->light[k][f->order[i]], 3);
 	}
 	json_object_set_new(out, "n", json_integer(n));
-	json_object_set_new(out, "faces", viewer_base64(f->faces, (size_t)f->n_faces * sizeof *f->faces));
-	json_object_set_new(out, "skin", viewer_base64(skin, (size_t)n * 4));
-	json_object_set_new(out, "still", viewer_base64(still, (size_t)base * 3));
-	json_object_set_new(out, "light", viewer_base64(light, (size_t)posed * 3 * (size_t)poses));
+	json_object_set_new(out, "faces", base64_json(f->faces, (size_t)f->n_faces * sizeof *f->faces));
+	json_object_set_new(out, "skin", base64_json(skin, (size_t)n * 4));
+	json_object_set_new(out, "still", base64_json(still, (size_t)base * 3));
+	json_object_set_new(out, "light", base64_json(light, (size_t)posed * 3 * (size_t)poses));
 	json_object_set_new(out, "rest_pose", json_integer(REST));
 	free(skin);
 	free(still);
@@ -200,7 +193,7 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 	json_object_set_new(out, "globes", globes);
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
-	json_object_set_new(out, "sky", viewer_base64(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2));
+	json_object_set_new(out, "sky", base64_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2));
 	viewer_order(&f, 0.98 * reach);
 	put_colours(out, &f);
 	viewer_put_rig(out, &f);

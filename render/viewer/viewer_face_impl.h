@@ -29,13 +29,6 @@ struct face {
 	uint32_t (*faces)[3], (*ring)[3];
 };
 
-json_t *viewer_base64(const void *bytes, size_t size);
-
-/* viewer_field.c: numbers in mm, px[height][width][channels], of which neighbours differ little: {step, bytes}, which
- * Graphics.field() (render/viewer/gl.js) brings back to half a step, 2^-17 mm of what is not above 16 m. What is not finite
- * becomes 0. */
-json_t *viewer_field(const float *px, int width, int height, int channels);
-
 /* viewer_order.c: which vertices the page has, and their order. viewer_order_free. */
 void viewer_order(struct face *face, double reach_mm);
 void viewer_order_free(struct face *face);

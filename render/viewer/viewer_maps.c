@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "draw/web/base64.h"
 #include "draw/eye/impl.h"
 #include "image/picture.h"
 #include "render/page/page.h"
@@ -17,7 +18,7 @@ static json_t *png(const uint8_t *px, int width, int height, int channels, const
 	size_t size;
 	if (!picture_png_encode(&data, &size, px, width, height, channels, err))
 		return 0;
-	char *text = page_base64(data, size, "");
+	char *text = base64_encode(data, size, "");
 	json_t *map = json_pack("{s:s,s:i,s:i}", "png", text, "width", width, "height", height);
 	json_object_set_new(map, "low", json_numbers(3, low));
 	json_object_set_new(map, "high", json_numbers(3, high));

@@ -5,6 +5,8 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "draw/web/base64.h"
+#include "draw/web/field.h"
 #include "render/viewer/viewer_face_impl.h"
 #include "rig/deform/terms.h"
 
@@ -14,8 +16,19 @@ _Static_assert(RIG_COMPONENTS == 8, "deform.vert has two vectors of components")
 
 static json_t *floats(float *x, long n)
 {
-	json_t *out = viewer_base64(x, (size_t)n * sizeof *x);
+	json_t *out = base64_json(x, (size_t)n * sizeof *x);
 	free(x);
+	return out;
+}
+
+/* Numbers in mm, px[height][width][channels], of which neighbours differ little: {step, bytes}. */
+static json_t *packed(const float *px, int width, int height, int channels)
+{
+	size_t size;
+	double step;
+	uint8_t *bytes = field_encode(&size, &step, px, width, height, channels);
+	json_t *out = json_pack("{s:f,s:o}", "step", step, "bytes", base64_json(bytes, size));
+	free(bytes);
 	return out;
 }
 
@@ -79,7 +92,7 @@ static json_t *skull(const struct face *f)
 		for (int x = 0; x < width; x++)
 			memcpy(px + 3 * ((long)y * width + x), map->texel + SKULL_CHANNELS * ((long)(box[1] + y) * map->width + box[0] + x), 3 * sizeof *px);
 	double grid[] = { map->x0, map->y0, map->step, map->width, map->height }, part[] = { box[0], box[1], width, height };
-	json_t *mm = viewer_field(px, width, height, 3);
+	json_t *mm = packed(px, width, height, 3);
 	free(px);
 	return json_pack("{s:o,s:o,s:o}", "grid", json_numbers(COUNT(grid), grid), "part", json_numbers(COUNT(part), part), "mm", mm);
 }
@@ -91,7 +104,7 @@ static json_t *globe_maps(const struct rig *rig)
 	float *mm = mem_array(2 * (size_t)size, sizeof *mm);
 	for (int s = 0; s < 2; s++)
 		memcpy(mm + s * size, rig->globe[s].map.radius, (size_t)size * sizeof *mm);
-	json_t *field = viewer_field(mm, n + 1, 2 * (n + 1), 1);
+	json_t *field = packed(mm, n + 1, 2 * (n + 1), 1);
 	free(mm);
 	return json_pack("{s:i,s:o,s:[o,o]}", "cells", n, "mm", field, "centers", json_numbers(3, rig->globe[0].center), json_numbers(3, rig->globe[1].center));
 }
@@ -141,7 +154,7 @@ void viewer_put_rig(json_t *out, const struct face *f)
 		json_array_append_new(baseline, json_numbers(3, rig->baseline[k]));
 	json_object_set_new(out, "rig", json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "inputs", rig->n_inputs,
 	    "W", json_numbers(RIG_COMPONENTS * (rig->n_inputs + 1), rig->W), "baseline", baseline, "head_from_rig", json_numbers(9, &rig->head_from_target[0][0]),
-	    "middle", json_numbers(3, f->middle), "levels", levels, "rows", viewer_base64(f->order, (size_t)n * sizeof *f->order), "rest", floats(rest, 3L * n),
-	    "terms", floats(of, (long)posed * TERMS), "ring", viewer_base64(f->ring, (size_t)f->n_ring * sizeof *f->ring), "between", between(f),
+	    "middle", json_numbers(3, f->middle), "levels", levels, "rows", base64_json(f->order, (size_t)n * sizeof *f->order), "rest", floats(rest, 3L * n),
+	    "terms", floats(of, (long)posed * TERMS), "ring", base64_json(f->ring, (size_t)f->n_ring * sizeof *f->ring), "between", between(f),
 	    "hairs", hairs(f), "skull", skull(f), "globe", globe_maps(rig)));
 }

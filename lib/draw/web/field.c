@@ -1,11 +1,9 @@
-/* Smooth fields of numbers for the page, small: whole steps of 2^-16 mm (below the resolution of a float beyond 128 mm), and of
- * each only what its neighbours on the left and above do not foretell. */
+#include "draw/web/field.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/json.h"
 #include "base/mem.h"
-#include "render/viewer/viewer_face_impl.h"
 
 /* 2^-16 mm, or as fine as 31 bits hold the largest. */
 static double step_of(const float *px, long n)
@@ -17,7 +15,8 @@ static double step_of(const float *px, long n)
 	return ldexp(1, bits > 14 ? bits - 30 : -16);
 }
 
-/* Seven bits a byte, the lowest first, the eighth where more follow; signs in the lowest bit, so that small numbers are short. */
+/* Seven bits a byte, the lowest first, the eighth set where more follow (LEB128); the sign in the lowest bit (zigzag), so that
+ * small numbers are short. */
 static long put(uint8_t *to, uint32_t residual)
 {
 	uint32_t v = residual << 1 ^ (residual >> 31 ? 0xffffffffu : 0);
@@ -28,10 +27,10 @@ static long put(uint8_t *to, uint32_t residual)
 	return n;
 }
 
-json_t *viewer_field(const float *px, int width, int height, int channels)
+uint8_t *field_encode(size_t *size, double *unit, const float *px, int width, int height, int channels)
 {
 	long row = (long)width * channels, n = row * height, used = 0;
-	double step = step_of(px, n);
+	double step = *unit = step_of(px, n);
 	uint32_t *whole = mem_new((size_t)row * 2 + 1, sizeof *whole);  // this row and the one above, each modulo 2^32
 	uint8_t *bytes = mem_array((size_t)n * 5 + 1, 1);
 	for (int y = 0; y < height; y++) {
@@ -43,8 +42,7 @@ json_t *viewer_field(const float *px, int width, int height, int channels)
 			used += put(bytes + used, now[i] - left - above[i] + corner);
 		}
 	}
-	json_t *out = json_pack("{s:f,s:o}", "step", step, "bytes", viewer_base64(bytes, (size_t)used));
 	free(whole);
-	free(bytes);
-	return out;
+	*size = (size_t)used;
+	return bytes;
 }
