@@ -3,7 +3,7 @@
 #   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others
 #   make check-compilers  every artifact of the bundled captures by gcc's and by clang's programs, number by number
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30; KEEP=1: what it found is kept in tests/fuzz/
-TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c))
+TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c)) $B/tests/evidence/make_eyes
 SECONDS_EACH ?= 30
 SEED ?= 1
 SHARE ?= 1
@@ -16,7 +16,7 @@ CHECK_PACKAGES := chromium nodejs colmap
 
 CORES = $(shell nproc)
 check: setup
-	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/bench/report/compare $B/tests/bench/report/report
+	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/evidence/make_eyes $B/tests/bench/report/compare $B/tests/bench/report/report
 	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory -j$(CORES) SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=6 \

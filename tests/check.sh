@@ -38,6 +38,7 @@ for script in tests/chain/{views,track,viewer,head,kill}.sh tests/chain/*.sh; do
 	beside "$script" "$script"
 done
 wait
+part "a short training of the evidence network" tests/evidence/short.sh
 [ -n "${FUZZ:-}" ] && part "fuzzing" tests/fuzz.sh
 
 passed=$(grep -c '^pass ' "$RESULTS") failed=$(grep -c '^fail ' "$RESULTS") skipped=$(grep -c '^skip ' "$RESULTS")

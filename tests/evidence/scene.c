@@ -1,0 +1,271 @@
+#include "scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "ball.h"
+#include "glasses.h"
+#include "lens.h"
+#include "other.h"
+
+struct set {
+	struct face face;
+	struct ball ball[2];
+	struct light light;
+	float white[3];
+};
+
+/* Eyes that look the same way, lids that follow; one in twenty pairs is closed. */
+static void eyes_make(struct set *s, struct rng *rng, bool test)
+{
+	const bool wide = rng_below(rng, 3) == 0;
+	const float turn = range_of(rng, 0, 6.2831853), away = wide ? sinf(range_of(rng, 0, 0.79)) : sinf((float)fabs(0.14 * rng_normal(rng)));
+	const float gx = away * cosf(turn), gy = away * sinf(turn);
+	float open = rng_below(rng, 20) == 0 ? 0 : rng_below(rng, 4) ? range_of(rng, 0.5, 1.1) : range_of(rng, 0.12, 0.6);
+	struct rng again = { rng_bits(rng) };
+	s->ball[0] = ball_make(rng, test);
+	s->ball[1] = s->ball[0];
+	for (int e = 0; e < 2; e++) {
+		struct rng same = again;
+		s->face.lids[e] = lids_make(&same, test, open * (e ? range_of(rng, 0.93, 1.07) : 1), gy);
+		const float side = e ? -1 : 1;
+		s->face.frame[e] = (struct eye_frame){ { side * 31 * s->face.narrow, range_of(rng, -0.7, 0.7) }, side, s->face.narrow };
+		ball_look(&s->ball[e], gx - 0.02F * side + (float)(0.01 * rng_normal(rng)), gy);
+	}
+}
+
+/* Irises of 6 to 150 px radius in a picture of 256 px; the eye somewhere in it, or the face round a small one. */
+static void look(struct canvas *c, const struct set *s, struct rng *rng, bool no_eye)
+{
+	const float size = (float)c->width / 256, radius = size * expf(range_of(rng, logf(6), logf(150)));
+	const float turn = rng_below(rng, 3) ? (float)(0.2 * rng_normal(rng)) : range_of(rng, 0, 6.2831853);
+	const int e = rng_below(rng, 2);
+	const float *at = s->face.frame[e].at, fine = radius / size / 256;
+	float u = at[0], v = at[1];
+	if (no_eye) {
+		u = range_of(rng, -60, 60);
+		v = range_of(rng, -75, -42);
+	}
+	const float spread = fine < 0.1F ? 0.25F : 0.15F;
+	const float x = (float)c->width * (0.5F + spread * (float)rng_normal(rng)), y = (float)c->height * (0.5F + spread * (float)rng_normal(rng));
+	canvas_view(c, u, v, x, y, 5.9F / (no_eye ? fminf(radius, 30 * size) : radius), turn, rng_below(rng, 2));
+}
+
+static void face_uv(float uv[2], const struct canvas *c, int i, int j)
+{
+	const float x = (float)i + 0.5F, y = (float)j + 0.5F;
+	uv[0] = c->at[0] + c->m[0][0] * x + c->m[0][1] * y;
+	uv[1] = c->at[1] + c->m[1][0] * x + c->m[1][1] * y;
+}
+
+/* Skin lit by its relief; what is behind the face is taken as it is. */
+static void draw_skin(struct canvas *c, const struct set *s)
+{
+	const int w = c->width, h = c->height;
+	struct skin_point *skin = malloc((size_t)w * (size_t)h * sizeof *skin);
+	bool *on = malloc((size_t)w * (size_t)h);
+	for (int j = 0; j < h; j++)
+		for (int i = 0; i < w; i++) {
+			float uv[2];
+			face_uv(uv, c, i, j);
+			on[j * w + i] = face_at(&skin[j * w + i], &s->face, uv[0] / s->face.narrow, uv[1]);
+		}
+	for (int j = 0; j < h; j++)
+		for (int i = 0; i < w; i++) {
+			const struct skin_point *p = &skin[j * w + i];
+			float *rgb = c->rgb + 3 * ((long)j * w + i), lit[3] = { s->white[0], s->white[1], s->white[2] }, shine = 0;
+			if (on[j * w + i]) {
+				const int l = i > 0 ? -1 : 0, r = i < w - 1, u = j > 0 ? -w : 0, d = j < h - 1 ? w : 0;
+				const float hx = (p[r].height - p[l].height) / (float)(r - l), hy = (p[d].height - p[u].height) / ((float)(d - u) / (float)w);
+				float n[3] = { -(c->inv[0][0] * hx + c->inv[1][0] * hy), -(c->inv[0][1] * hx + c->inv[1][1] * hy), 1 };
+				const float length = 1 / sqrtf(n[0] * n[0] + n[1] * n[1] + 1);
+				for (int k = 0; k < 3; k++)
+					n[k] *= length;
+				light_on(lit, &s->light, n, 0.25F);
+				float uv[2];
+				face_uv(uv, c, i, j);
+				const float shade = light_shade(&s->light, uv[0], uv[1]);
+				for (int q = 0; q < s->light.n; q++) {
+					const float *t = s->light.source[q].dir, half = (n[0] * t[0] + n[1] * t[1] + n[2] * (t[2] + 1)) / sqrtf(2 + 2 * t[2]);
+					shine += s->face.oil * shade * powf(fmaxf(half, 0), 24) * s->light.source[q].irradiance[1];
+				}
+				for (int k = 0; k < 3; k++)
+					lit[k] *= shade * p->open;
+			}
+			for (int k = 0; k < 3; k++)
+				rgb[k] = p->albedo[k] * lit[k] + shine * p->open;
+		}
+	free(skin);
+	free(on);
+}
+
+static float luma(const float rgb[3])
+{
+	return 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
+}
+
+/* One pixel of an open eye at (x, y) mm of its frame; d: distance inside of the lids, mm. */
+static void eye_pixel(struct canvas *c, long i, const struct set *s, int e, float x, float y, float d, const struct lid_heights *h, float shade)
+{
+	const struct lids *l = &s->face.lids[e];
+	struct ball_point p;
+	ball_at(&p, &s->ball[e], &s->light, s->face.frame[e].side * x * s->face.narrow, y);
+	const float caruncle = 1 - smooth_step(x, l->inner[0] + l->caruncle - 1, l->inner[0] + l->caruncle + 1);
+	if (caruncle > 0) {
+		const float lit = 0.8F * caruncle;
+		for (int k = 0; k < 3; k++)
+			p.body[k] += lit * (s->ball[e].canthus[k] * s->white[k] - p.body[k]);
+		if (caruncle > 0.5F)
+			p.label = EVIDENCE_SCLERA;
+	}
+	// Lids and lashes keep light away, the upper ones more.
+	const float above = fmaxf(h->upper - y, 0), below = fmaxf(y - h->lower, 0), corner = fminf(x - l->inner[0], l->outer[0] - x);
+	const float kept = shade * (1 - 0.6F * expf(-above / 1.3F)) * (1 - 0.3F * expf(-below / 0.8F)) * (1 - 0.35F * expf(-fmaxf(corner, 0) / 3));
+	const float hid = smooth_step(above, 0.1F, 1.2F);
+	float rgb[3], mirror[3];
+	for (int k = 0; k < 3; k++) {
+		mirror[k] = p.mirror[k] * (0.25F + 0.75F * hid);
+		rgb[k] = p.body[k] * kept + mirror[k] + (below < 0.35F ? 0.12F * s->white[k] * (1 - below / 0.35F) : 0);
+	}
+	const float cover = fminf(fmaxf(0.5F + d / c->mm, 0), 1);
+	for (int k = 0; k < 3; k++)
+		c->rgb[3 * i + k] += cover * (rgb[k] - c->rgb[3 * i + k]);
+	if (cover > 0.5F) {
+		const float m = luma(mirror);
+		c->label[i] = (uint8_t)(m > 0.12F * luma(s->white) && m > 0.8F * luma(p.body) * kept ? EVIDENCE_REFLECTION : p.label);
+	}
+}
+
+static void draw_eye(struct canvas *c, const struct set *s, int e)
+{
+	const struct lids *l = &s->face.lids[e];
+	const struct eye_frame *f = &s->face.frame[e];
+	if (l->open <= 0)
+		return;
+	for (int j = 0; j < c->height; j++)
+		for (int i = 0; i < c->width; i++) {
+			float uv[2];
+			face_uv(uv, c, i, j);
+			const float x = (uv[0] - f->at[0]) * f->side / f->narrow, y = uv[1] - f->at[1];
+			if (x < l->inner[0] - 1 || x > l->outer[0] + 1 || fabsf(y) > 14)
+				continue;
+			const struct lid_heights h = lids_at(l, x), next = lids_at(l, x + 0.3F);
+			const float su = fminf(fabsf(next.upper - h.upper) / 0.3F, 2), sl = fminf(fabsf(next.lower - h.lower) / 0.3F, 2);
+			const float d = fminf((h.upper - y) / sqrtf(1 + su * su), (y - h.lower) / sqrtf(1 + sl * sl));
+			if (d > -c->mm && h.upper - h.lower > 0.02F)
+				eye_pixel(c, (long)j * c->width + i, s, e, x, y, d, &h, light_shade(&s->light, uv[0], uv[1]));
+		}
+}
+
+/* An ellipse of the ball's frame in px of the picture. */
+static void to_picture(float out[5], const float in[5], const struct canvas *c, const struct eye_frame *f)
+{
+	float p[2], q[2];
+	canvas_px(p, c, f->at[0] + in[0], f->at[1] + in[1]);
+	canvas_px(q, c, f->at[0] + in[0] + cosf(in[4]), f->at[1] + in[1] + sinf(in[4]));
+	out[0] = p[0];
+	out[1] = p[1];
+	out[2] = in[2] / c->mm;
+	out[3] = in[3] / c->mm;
+	out[4] = atan2f(q[1] - p[1], q[0] - p[0]);
+}
+
+static float shown(const struct drawn *d, const float e[5])
+{
+	int in = 0;
+	const float co = cosf(e[4]), si = sinf(e[4]);
+	for (int j = 0; j < d->height; j++)
+		for (int i = 0; i < d->width; i++) {
+			const float dx = (float)i + 0.5F - e[0], dy = (float)j + 0.5F - e[1], a = (co * dx + si * dy) / e[2], b = (co * dy - si * dx) / e[3];
+			in += a * a + b * b < 1 && d->label[j * d->width + i] >= EVIDENCE_SCLERA;
+		}
+	return (float)in / (3.14159265F * e[2] * e[3]);
+}
+
+static void note_eyes(struct drawn *d, const struct set *s, const struct canvas *c)
+{
+	for (int e = 0; e < 2; e++) {
+		struct drawn_eye *eye = &d->eye[d->n_eyes];
+		float limbus[5], pupil[5];
+		ball_limbus(limbus, &s->ball[e]);
+		ball_pupil(pupil, &s->ball[e]);
+		to_picture(eye->limbus, limbus, c, &s->face.frame[e]);
+		to_picture(eye->pupil, pupil, c, &s->face.frame[e]);
+		eye->openness = s->face.lids[e].open / (2 * s->ball[e].limbus);
+		const float *m = eye->limbus;
+		if (m[0] < -m[2] || m[1] < -m[2] || m[0] > (float)c->width + m[2] || m[1] > (float)c->height + m[2])
+			continue;
+		eye->shown = shown(d, eye->limbus);
+		d->n_eyes++;
+	}
+}
+
+/* Hair of the head that falls over the face. */
+static void draw_strands(struct canvas *c, const struct set *s, struct rng *rng)
+{
+	float lit[3];
+	for (int k = 0; k < 3; k++)
+		lit[k] = 0.8F * s->white[k] * s->face.hair[k];
+	const int n = 3 + rng_below(rng, 50);
+	const float at = range_of(rng, -60, 60), to = range_of(rng, -60, 60), wide = range_of(rng, 0.06, 0.2), spread = range_of(rng, 3, 30);
+	for (int i = 0; i < n; i++) {
+		const float a = at + spread * (float)rng_normal(rng), b = to + spread * (float)rng_normal(rng);
+		const float p[3][2] = { { a, 70 }, { 0.5F * (a + b) + 12 * (float)rng_normal(rng), 10 }, { b, range_of(rng, -60, 10) } };
+		canvas_hair(c, p, wide, lit, 0.9F);
+	}
+}
+
+static void draw_face(struct canvas *c, const struct set *s, struct rng *rng)
+{
+	draw_skin(c, s);
+	for (int e = 0; e < 2; e++)
+		draw_eye(c, s, e);
+	float dim[3];
+	for (int k = 0; k < 3; k++)
+		dim[k] = 0.8F * s->white[k];
+	struct rng again = { rng_bits(rng) };
+	for (int e = 0; e < 2; e++) {
+		struct rng same = again;
+		lids_draw_lashes(c, &s->face.lids[e], &s->face.frame[e], &same, dim);
+		lids_draw_brow(c, &s->face.lids[e], &s->face.frame[e], &same, dim);
+	}
+	if (!rng_below(rng, 8))
+		draw_strands(c, s, rng);
+	canvas_label_hair(c);
+	if (!rng_below(rng, 6))
+		glasses_draw(c, &s->face, s->white, rng);
+}
+
+struct drawn drawn_make(uint64_t number, bool test, int width, int height)
+{
+	struct rng rng = { (number * 2 + test) * 0xd1342543de82ef95 + 77 };
+	rng_bits(&rng);
+	struct drawn d = { .width = width, .height = height, .rgb = malloc((size_t)width * (size_t)height * 3), .label = malloc((size_t)width * (size_t)height) };
+	struct canvas c = canvas_new(width, height);
+	struct set s = { 0 };
+	s.face = face_make(&rng, test);
+	s.light = light_make(&rng, test);
+	light_on(s.white, &s.light, (const float[3]){ 0, 0, 1 }, 0.3F);
+	eyes_make(&s, &rng, test);
+	d.light = (int)s.light.kind;
+	d.iris = (int)s.ball[0].iris.family;
+	d.other = rng_below(&rng, 9) ? OTHER_NONE : 1 + rng_below(&rng, OTHER_KINDS - 1);
+	look(&c, &s, &rng, d.other == OTHER_FACE);
+	if (d.other == OTHER_NONE || d.other == OTHER_FACE)
+		draw_face(&c, &s, &rng);
+	else
+		other_draw(&c, (enum other_kind)d.other, &rng, test);
+	lens_expose(d.rgb, &c, d.other && d.other != OTHER_FACE ? (const float[3]){ 1, 1, 1 } : s.white, &rng);
+	memcpy(d.label, c.label, (size_t)width * (size_t)height);
+	if (d.other == OTHER_NONE)
+		note_eyes(&d, &s, &c);
+	canvas_free(&c);
+	return d;
+}
+
+void drawn_free(struct drawn *d)
+{
+	free(d->rgb);
+	free(d->label);
+	*d = (struct drawn){ 0 };
+}

@@ -1,0 +1,34 @@
+/* scene: eyes and faces drawn from a number, with the class of every pixel, to train and to test the network that tells iris
+ * from sclera, lid, lash and reflection.
+ * A model of its own: nothing of the product's limbus or renderer is in it. Pictures of the test split share no texture with
+ * those for training, and some families of irises, lids, lashes and lights are drawn there alone.
+ */
+#ifndef EVIDENCE_SCENE_H
+#define EVIDENCE_SCENE_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum evidence_class { EVIDENCE_SKIN, EVIDENCE_LASH, EVIDENCE_SCLERA, EVIDENCE_IRIS, EVIDENCE_PUPIL, EVIDENCE_REFLECTION, EVIDENCE_CLASSES };
+
+/* px of the picture, centre of the first at 0.5; angle in radians from x towards y (down). */
+struct drawn_eye {
+	float limbus[5], pupil[5];  // x, y, semi-axes, angle
+	float openness;             // height of the opening over the limbus's diameter; 0 closed
+	float shown;                // share of the limbus's disc that neither lid nor the picture's edge hides
+};
+
+struct drawn {
+	int width, height;
+	uint8_t *rgb, *label;  // [height][width][3], [height][width]
+	int n_eyes;
+	struct drawn_eye eye[2];
+	int light;             // enum light_kind
+	int iris;              // enum iris_family
+	int other;             // 0 an eye; else which kind of picture without one
+};
+
+/* Picture `number` of a split. drawn_free. Not for several threads at once. */
+struct drawn drawn_make(uint64_t number, bool test, int width, int height);
+void drawn_free(struct drawn *drawn);
+
+#endif

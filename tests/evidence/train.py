@@ -1,0 +1,250 @@
+#!/usr/bin/python3
+"""Trains the network that tells pupil, iris, sclera, lash and reflection from skin, on drawn eyes, and writes it as ONNX.
+
+    train.py --make build/tests/evidence/make_eyes --minutes 60 --out config/evidence.onnx
+    train.py --make build/tests/evidence/make_eyes --short        a minute: the loss falls, asserted
+    train.py --make build/tests/evidence/make_eyes --judge FILE   IoU of a checkpoint on the test split
+
+Pictures are made while training runs; none is stored. Needs python3-torch and python3-numpy.
+Input of the network: 1 x 3 x H x W, sRGB as encoded, 0..1, H and W multiples of 32. Output: 1 x 6 x H/2 x W/2, logits of
+skin, lash, sclera, iris, pupil, reflection; its pixel (i, j) covers the input's 2i, 2i + 1 and 2j, 2j + 1.
+"""
+import argparse
+import copy
+import math
+import queue
+import subprocess
+import threading
+import time
+
+import numpy as np
+import torch
+from torch import nn
+from torch.nn import functional as F
+
+CLASSES = ("skin", "lash", "sclera", "iris", "pupil", "reflection")
+WEIGHT = (0.8, 1.0, 1.2, 1.2, 1.5, 1.5)
+CHANNELS = (16, 24, 40, 64, 80)
+SMALL, LARGE = (128, 96), (256, 192)
+
+
+def step(i, o, stride=1):
+    return nn.Sequential(nn.Conv2d(i, o, 3, stride, 1, bias=False), nn.BatchNorm2d(o), nn.ReLU(inplace=True))
+
+
+class Net(nn.Module):
+    """A thin U-Net whose finest level is half of the picture's."""
+
+    def __init__(self, c=CHANNELS):
+        super().__init__()
+        n = len(c)
+        self.down = nn.ModuleList()
+        for k in range(n):
+            again = 2 if k >= 3 else 1
+            self.down.append(nn.Sequential(step(c[k - 1] if k else 3, c[k], 2), *[step(c[k], c[k]) for _ in range(again)]))
+        self.thin = nn.ModuleList([nn.Conv2d(c[k], c[k - 1], 1) for k in range(n - 1, 0, -1)])
+        self.up = nn.ModuleList([step(c[k - 1], c[k - 1]) for k in range(n - 1, 0, -1)])
+        self.out = nn.Conv2d(c[0], len(CLASSES), 1)
+
+    def forward(self, x):
+        x = x * 4 - 2
+        kept = []
+        for down in self.down:
+            x = down(x)
+            kept.append(x)
+        for k, (thin, up) in enumerate(zip(self.thin, self.up)):
+            x = up(F.interpolate(thin(x), scale_factor=2, mode="nearest") + kept[len(kept) - 2 - k])
+        return self.out(x)
+
+
+class Pictures:
+    """Batches from the generator, made beside the training."""
+
+    def __init__(self, make, first, size, batch, test=False):
+        self.size, self.batch = size, batch
+        command = [make, str(first), "100000000", str(size[0]), str(size[1])] + (["test"] if test else [])
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, bufsize=1 << 22)
+        self.queue = queue.Queue(4)
+        threading.Thread(target=self.read, daemon=True).start()
+
+    def read(self):
+        w, h = self.size
+        one = w * h * 4
+        while True:
+            data = self.process.stdout.read(one * self.batch)
+            if len(data) < one * self.batch:
+                return
+            a = np.frombuffer(data, np.uint8).reshape(self.batch, one)
+            rgb = a[:, : 3 * w * h].reshape(self.batch, h, w, 3).transpose(0, 3, 1, 2)
+            self.queue.put((torch.from_numpy(np.ascontiguousarray(rgb)), torch.from_numpy(a[:, 3 * w * h:].reshape(self.batch, h, w).copy())))
+
+    def next(self):
+        return self.queue.get()
+
+    def close(self):
+        self.process.terminate()
+        while not self.queue.empty():
+            self.queue.get()
+
+
+def soft_label(label):
+    """Shares of the classes in each 2 x 2 pixels."""
+    hot = torch.zeros(label.shape[0], len(CLASSES), *label.shape[1:])
+    hot.scatter_(1, label[:, None].long(), 1)
+    return F.avg_pool2d(hot, 2)
+
+
+def jitter(rgb, rng):
+    """Mirror, colour, gamma, patches of noise: what is cheap here."""
+    x = rgb.float() / 255
+    n = x.shape[0]
+    gamma = torch.exp(0.25 * torch.randn(n, 1, 1, 1, generator=rng))
+    gain = torch.exp(0.12 * torch.randn(n, 3, 1, 1, generator=rng) + 0.15 * torch.randn(n, 1, 1, 1, generator=rng))
+    x = (x.clamp(min=1e-4) ** gamma * gain).clamp(0, 1)
+    for i in range(n):
+        if torch.rand(1, generator=rng) < 0.12:
+            h, w = x.shape[2:]
+            a, b = int(torch.randint(4, h // 3, (1,), generator=rng)), int(torch.randint(4, w // 3, (1,), generator=rng))
+            y, z = int(torch.randint(0, h - a, (1,), generator=rng)), int(torch.randint(0, w - b, (1,), generator=rng))
+            x[i, :, y:y + a, z:z + b] = torch.rand(3, 1, 1, generator=rng)
+    return x
+
+
+def loss_of(out, hot):
+    weight = torch.tensor(WEIGHT)
+    cross = -(F.log_softmax(out, 1) * hot * weight[None, :, None, None]).sum(1).mean()
+    p = out.softmax(1)
+    dice = 1 - (2 * (p * hot).sum((0, 2, 3)) + 50) / ((p + hot).sum((0, 2, 3)) + 50)
+    return cross + 0.3 * dice[1:].mean()
+
+
+def judge(net, make, first, batches, batch=16):
+    """IoU per class on the test split, at the labels' resolution halved."""
+    net.eval()
+    pictures = Pictures(make, first, LARGE, batch, True)
+    both, either = np.zeros(6), np.zeros(6)
+    with torch.no_grad():
+        for _ in range(batches):
+            rgb, label = pictures.next()
+            got, true = net(rgb.float() / 255).argmax(1), soft_label(label).argmax(1)
+            for c in range(6):
+                both[c] += int(((got == c) & (true == c)).sum())
+                either[c] += int(((got == c) | (true == c)).sum())
+    pictures.close()
+    iou = both / np.maximum(either, 1)
+    print("  test split, %d pictures: " % (batch * batches) + " ".join("%s %.3f" % p for p in zip(CLASSES, iou)), flush=True)
+    return iou
+
+
+def export(net, path):
+    net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
+    torch.onnx.export(net, torch.zeros(1, 3, LARGE[1], LARGE[0]), path, opset_version=11, input_names=["rgb"], output_names=["logits"])
+
+
+class Average:
+    """The weights' running mean, which is better than their last value."""
+
+    def __init__(self, net):
+        self.net, self.n = copy.deepcopy(net), 0
+
+    def add(self, net):
+        self.n += 1
+        keep = min(0.998, self.n / (self.n + 10))
+        for a, b in zip(self.net.state_dict().values(), net.state_dict().values()):
+            if a.dtype.is_floating_point:
+                a.mul_(keep).add_(b, alpha=1 - keep)
+            else:
+                a.copy_(b)
+
+
+def train(args):
+    torch.manual_seed(args.seed)
+    rng = torch.Generator().manual_seed(args.seed)
+    net = Net().to(memory_format=torch.channels_last)
+    if args.start:
+        net.load_state_dict(torch.load(args.start)["net"])
+    print("%d parameters" % sum(p.numel() for p in net.parameters()), flush=True)
+    best = Average(net)
+    optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
+    begun, kept, number, seen, losses = time.time(), time.time(), args.first, 0, []
+    size = SMALL if args.small > 0 else LARGE
+    pictures = Pictures(args.make, number, size, args.batch)
+    while True:
+        done = (time.time() - begun) / (60 * args.minutes) if not args.short else len(losses) / args.short_steps
+        if done >= 1:
+            break
+        if size == SMALL and done > args.small:
+            pictures.close()
+            size = LARGE
+            number += seen + 1000
+            pictures = Pictures(args.make, number, size, args.batch)
+        for group in optimiser.param_groups:
+            group["lr"] = args.rate * min(1, len(losses) / (20 if args.short else 200) + 0.02) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+        rgb, label = pictures.next()
+        x = jitter(rgb, rng)
+        if torch.rand(1, generator=rng) < 0.5:
+            x, label = x.flip(3), label.flip(2)
+        if torch.rand(1, generator=rng) < 0.3:
+            x, label = x.flip(2), label.flip(1)
+        loss = loss_of(net(x.to(memory_format=torch.channels_last)), soft_label(label))
+        optimiser.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(net.parameters(), 2)
+        optimiser.step()
+        best.add(net)
+        losses.append(float(loss.detach()))
+        seen += args.batch
+        if len(losses) % 50 == 0:
+            print("%5.1f min, step %d, %d pictures, loss %.4f" % ((time.time() - begun) / 60, len(losses), seen, np.mean(losses[-50:])), flush=True)
+        if args.keep and time.time() - kept > 60 * args.every:
+            kept = time.time()
+            torch.save({"net": best.net.state_dict(), "steps": len(losses)}, args.keep)
+            export(best.net, args.out)
+            judge(best.net, args.make, 0, 4)
+            net.train()
+    pictures.close()
+    return best.net, losses
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("--make", required=True)
+    p.add_argument("--out", default="evidence.onnx")
+    p.add_argument("--keep", help="checkpoint file")
+    p.add_argument("--start", help="checkpoint to begin with")
+    p.add_argument("--every", type=float, default=4, help="minutes between checkpoints")
+    p.add_argument("--minutes", type=float, default=60)
+    p.add_argument("--small", type=float, default=0.6, help="share of the time on small pictures")
+    p.add_argument("--rate", type=float, default=2e-3)
+    p.add_argument("--batch", type=int, default=8)
+    p.add_argument("--first", type=int, default=0)
+    p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--short", action="store_true")
+    p.add_argument("--short-steps", type=int, default=80)
+    p.add_argument("--judge", metavar="FILE")
+    p.add_argument("--pictures", type=int, default=512, help="of the test split, for --judge")
+    args = p.parse_args()
+    torch.set_num_threads(args.threads)
+    torch.set_flush_denormal(True)
+    if args.judge:
+        net = Net()
+        net.load_state_dict(torch.load(args.judge)["net"])
+        judge(net, args.make, 0, args.pictures // 16)
+        return
+    if args.short:
+        args.batch, args.small, args.keep = 8, 1, None
+    net, losses = train(args)
+    if args.short:
+        first, last = np.mean(losses[:10]), np.mean(losses[-20:])
+        print("loss %.3f, at the end %.3f" % (first, last))
+        assert last < 0.8 * first, "the loss does not fall"
+        return
+    export(net, args.out)
+    if args.keep:
+        torch.save({"net": net.state_dict(), "steps": len(losses)}, args.keep)
+    judge(net, args.make, 0, args.pictures // 16)
+
+
+if __name__ == "__main__":
+    main()
