@@ -40,7 +40,8 @@ static bool columns_of(int *column, const struct csv_table *t, const struct skin
 	return normalised;
 }
 
-/* What is missing of one input: straight between its neighbours in time, level before the first and after the last. */
+/* Fills the gaps of one input: linearly between its neighbours in time, constant before the first and after the last; `otherwise` when
+ * there is no value at all. Returns how many were filled. */
 static long fill(struct drive *d, int input, double otherwise)
 {
 	long filled = 0;

@@ -49,7 +49,7 @@ float globe_map_at(const struct globe_map *map, const float d[3])
 	return (1 - v) * ((1 - u) * p[0] + u * p[1]) + v * ((1 - u) * p[w] + u * p[w + 1]);
 }
 
-/* Nodes that no ray met take the mean of their neighbours that have a value, ring after ring. */
+/* Fills nodes that no ray met (0) with the mean of their filled neighbours, ring after ring. */
 static void fill(struct globe_map *map)
 {
 	int w = map->n + 1;

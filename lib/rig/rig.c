@@ -56,7 +56,7 @@ void rig_globe_rotation(double target_from_globe[3][3], const struct rig *rig, c
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++)
 			back[i][j] = rig->head_from_target[j][i];
-	// The globe's own axes at rest are the head's: D is made in them.
+	// The globe's own axes, in which D is stored, are the head's at rest.
 	fick(turn, gaze);
 	mat_mul(target_from_globe, back, turn);
 }

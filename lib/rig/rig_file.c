@@ -9,7 +9,7 @@
 
 static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" };
 
-/* Small numbers that belong together, in the order in which they stand in the file. */
+/* The single numbers of a rig, in their order in the file's array `parameters`. */
 struct small {
 	double e[RIG_COMPONENTS], aperture[4], baseline[4][3], rotation[3][3], center[2][3], radius[2], own[2];
 	double grid[3], from_target[3][4], focal[2], middle[2], size[2];
@@ -55,7 +55,7 @@ static void small_to(struct rig *r, const struct small *s)
 	}
 }
 
-/* One array of the file: where it goes, and its shape (-1: any, learnt when read). */
+/* One array of the file: where it is stored, and its shape (-1: any, known once it is read). */
 struct entry {
 	const char *name;
 	enum npy_type type;
@@ -117,7 +117,7 @@ bool rig_save(const struct rig *rig, const char *path, const char *made_by, stru
 	return ok;
 }
 
-/* Reads one array; the first that has a dimension tells how long it is. */
+/* Reads one array; got: its shape. */
 static bool read_entry(const char *path, const struct entry *e, long got[3], struct err *err)
 {
 	struct npy a;
@@ -132,7 +132,7 @@ static bool read_entry(const char *path, const struct entry *e, long got[3], str
 		return err_wrap(err, "%s", e->name);
 	}
 	size_t size = (size_t)npy_count(&a) * npy_type_size(a.type);
-	*e->data = mem_array(size + 64, 1);  // aligned, as the texels want it
+	*e->data = mem_array(size + 64, 1);  // aligned, as the texels of the skull map require
 	memcpy(*e->data, a.data, size);
 	for (int i = 0; i < e->ndim; i++)
 		got[i] = a.shape[i];
@@ -140,7 +140,7 @@ static bool read_entry(const char *path, const struct entry *e, long got[3], str
 	return true;
 }
 
-/* What indices point at is there. */
+/* Whether all indices are in range. */
 static bool check(const struct rig *r, const char *path, struct err *err)
 {
 	for (int i = 0; i < 3 * r->n_faces; i++)
@@ -171,7 +171,7 @@ bool rig_load(struct rig *rig, const char *path, struct err *err)
 	int n = entries(all, rig, &small, &mean);
 	for (int i = 0; ok && i < n; i++) {
 		long got[3] = { 0 };
-		entries(all, rig, &small, &mean);  // with the shapes known by now
+		entries(all, rig, &small, &mean);  // again, with the shapes that are known by now
 		ok = read_entry(path, &all[i], got, err);
 		if (ok && !strcmp(all[i].name, "U"))
 			rig->n = (int)got[0];

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "math/natural.h"
 
-enum { FRAME = 24, WITH = 6 };  // sites put round the map; numbers a site carries
+enum { FRAME = 24, WITH = 6 };  // sites added around the map; numbers of a site
 
 struct sites {
 	int n;
@@ -15,7 +15,7 @@ struct sites {
 	double (*value)[WITH];
 };
 
-/* Least-squares value = a + b x + c y of every number; about the sites' mean. */
+/* Least-squares fit value = a + b x + c y of every number, x and y relative to the sites' mean. */
 struct affine {
 	double mean[2], a[WITH], b[WITH], c[WITH];
 };
@@ -48,7 +48,7 @@ static struct affine affine_fit(const struct sites *s)
 	return f;
 }
 
-/* One more site: the nearest one's value, carried there by the affine map's slope. */
+/* Adds a site with the value of the nearest of the first n, extrapolated by the affine map's slope. */
 static void frame_site(struct sites *s, int n, const struct affine *f, double x, double y)
 {
 	int best = 0;
@@ -109,7 +109,7 @@ static void row_make(struct skull_map *map, const struct natural *natural, const
 		for (int i = 0; i < n; i++)
 			for (int k = 0; k < WITH; k++)
 				sum[k] += weight[i] * s->value[id[i]][k];
-		if (!n && x)  // rounding at the hull's very edge
+		if (!n && x)  // on the hull's edge, by rounding outside
 			memcpy(texel, texel - SKULL_CHANNELS, SKULL_CHANNELS * sizeof *texel);
 		for (int k = 0; n && k < WITH; k++)
 			texel[k] = (float)sum[k];

@@ -11,7 +11,7 @@
 #include "image/exr.h"
 #include "rig/deform/clearance.h"
 
-/* Everything of one character that is read. */
+/* A character as read. */
 struct character {
 	struct mesh mesh, registered;
 	struct npy start, column, weight, confidence;

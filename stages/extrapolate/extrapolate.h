@@ -1,4 +1,4 @@
-/* extrapolate: the rigs of a capture's characters. */
+/* extrapolate: reads a registered character, makes its rig (lib/rig/make/make.h) and writes it. */
 #ifndef STAGES_EXTRAPOLATE_H
 #define STAGES_EXTRAPOLATE_H
 #include "base/stage.h"
@@ -6,15 +6,16 @@
 
 struct extrapolate_conf {
 	struct rig_conf rig;
-	double subject_unit, eye_radius;     // mm a unit; the subject's unit; NAN: not given
-	struct opt_each_list eye_center;     // left, right: the subject's unit and axes
+	double subject_unit, eye_radius;     // mm in one unit of the subject's mesh; in that unit; NAN: not given
+	struct opt_each_list eye_center;     // left, right: in the subject's unit and axes
 	int polar_px;                        // rows of the globe map's picture
 	double limit_vertices;
 };
 
-/* Rigs targets/FILE, unless its rig stands already. Skips, with the reason, one that transfer has not registered. */
+/* Makes the rig of targets/FILE unless it is up to date; skips, with the reason, one that transfer has not registered.
+ * motion  of the person's skin model
+ * Returns false, err set, when a file cannot be read or written or the character cannot be rigged. */
 bool extrapolate_target(struct stage *stage, const char *file, const struct rig_motion *motion,
                         const struct extrapolate_conf *conf, struct err *err);
-
 
 #endif

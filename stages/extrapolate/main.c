@@ -1,4 +1,4 @@
-/* extrapolate: rigs every character that transfer has registered.
+/* extrapolate: makes the rig of every character that transfer has registered.
  * reads   work/skin/model.json and matrices, targets/NAME.*, work/targets/NAME/registered.ply, barycentric.npz, transfer.json
  *         (transfer.json: subject_from_target [16] row-major similarity, mm to mm; target_unit_mm, subject_unit_mm. barycentric.npz:
  *         indptr, indices int32, data, confidence float32; rows are the vertices of targets/NAME and of registered.ply, which

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "base/npy/npy.h"
 
-/* Lids in the modelling camera where the head moved; else those of the video's frames are the same. */
+/* lids_model.npy, lids in the modelling camera, exists only where the head moved; else those of the video's frames are the same. */
 static const char *const files[] = { "work/skin/gaze.csv",       "work/skin/lids.npy",       "work/skin/lids_model.npy",
 	                                 "work/skin/skin_model.npy", "work/skin/confidence.npy", "work/skin/vertices.npy",
 	                                 "work/skin/track.json" };

@@ -1,4 +1,4 @@
-/* train: how lids and skin move with the eyes, learnt from the tracked clip.
+/* train: fits the model of lids and skin (lib/model/) to the tracked clip.
  * reads   work/skin/gaze.csv, lids.npy, skin_model.npy, confidence.npy, vertices.npy, track.json
  * writes  work/skin/model.json and model_*.npy, curves.svg (error against components), train.json
  */

@@ -12,7 +12,7 @@ static const char *const parts[TRAIN_PARTS] = { "left lids", "right lids", "skin
 static const char *const keys[TRAIN_PARTS] = { "lids_left", "lids_right", "skin" };
 static const char *const curves_rel = "work/skin/curves.svg", *const report_rel = "work/skin/train.json";
 
-/* Figure 3.7: error against the number of components. */
+/* Draws figure 3.7: held-out error against the number of components. */
 static bool draw(const struct train_report *r, const struct train_conf *conf, const char *path, const char *made_by,
                  struct err *err)
 {
@@ -91,6 +91,7 @@ static bool save_report(const struct train_report *r, const char *path, const ch
 	return ok;
 }
 
+/* Log, figures and warnings. */
 static void tell(struct stage *stage, const struct train_report *r, const struct train_conf *conf,
                  const struct skin_model *model)
 {
@@ -129,7 +130,7 @@ static void tell(struct stage *stage, const struct train_report *r, const struct
 	stage_figure(stage, "train_aperture_sigma", model->aperture_sigma, "px");
 }
 
-/* The names, rows and camera that the matrices belong to. */
+/* Names of the action units, rows of the mesh and camera, which train_run does not fill in. */
 static void identify(struct skin_model *model, struct clip *clip)
 {
 	model->camera = clip->camera;

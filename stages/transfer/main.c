@@ -1,4 +1,4 @@
-/* transfer: lays every character onto the subject, and says what of the subject's skin each of its vertices follows.
+/* transfer: registers every character on the subject and writes its vertices' barycentric coordinates there.
  * reads   subject.ply or subject.obj (else work/subject.ply), targets/NAME.ply or .obj
  * writes  work/targets/NAME/registered.ply (mm, the subject's axes; the target's vertices and faces),
  *         barycentric.npz (B, eq. 3.4), transfer.json, registration.png

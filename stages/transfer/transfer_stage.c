@@ -43,7 +43,7 @@ static void scale(struct mesh *mesh, double unit)
 			mesh->vertices[i][k] = (float)((double)mesh->vertices[i][k] * unit);
 }
 
-/* What had to be mended, one line a mesh. */
+/* Reports defects of a mesh that were mended. */
 static void say_mended(struct stage *stage, const char *file, const struct mesh_part *p)
 {
 	if (p->doubled)
@@ -57,7 +57,7 @@ static void say_mended(struct stage *stage, const char *file, const struct mesh_
 		           file, p->left_out, p->pieces);
 }
 
-/* calibrate's mesh stands in the frame of its cameras, and where they were named, its eyes are known there. */
+/* A subject made by calibrate is in the frame of work/rig.json, which may hold the centres of its eyeballs. */
 static bool load_eyes(struct subject *s, struct stage *stage, struct err *err)
 {
 	struct camera_rig rig = { 0 };
@@ -82,7 +82,7 @@ static bool load_subject(struct subject *s, struct stage *stage, const struct tr
 		return err_set(err, "no subject.ply or subject.obj: a character is laid onto the person's mesh; give one, or views/ to make it from");
 	if (!om_mesh_load(&s->mesh, stage_path(stage, "%s", s->file), (long)conf->limit_vertices, err))
 		return false;
-	bool own = !strncmp(s->file, "work/", 5);  // calibrate's is in mm
+	bool own = !strncmp(s->file, "work/", 5);  // made by calibrate, in mm
 	s->guessed = !own && !isfinite(conf->subject_unit);
 	s->unit = own ? 1 : s->guessed ? transfer_subject_unit(&s->mesh) : conf->subject_unit;
 	scale(&s->mesh, s->unit);
@@ -188,7 +188,7 @@ static void target_free(struct target *t)
 	transfer_free(&t->result);
 }
 
-/* True when it is registered, or was already. What is wrong with one character is said, and the others go on. */
+/* Registers one target. Returns true when it is registered or was already; a target at fault is reported, without err. */
 static bool one(struct stage *stage, const char *file, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
 {
 	struct target t = { 0 };

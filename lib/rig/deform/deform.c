@@ -10,7 +10,8 @@
 
 enum { BLOCK = DEFORM_BLOCK };
 
-/* Which way a vertex takes; those that take the same stand together, in the mesh's order. */
+/* Kinds of vertices by the computations they need: sums of RIGHT, LIDS and GLUE; globes; still. Blocks hold one kind, in the mesh's
+ * order. */
 enum { RIGHT = 1, LIDS = 2, GLUE = 4, KINDS = 8, GLOBE = KINDS, STILL = GLOBE + 2 };
 
 static int kind_of(const struct rig *rig, int i)
@@ -47,7 +48,7 @@ static void take_vertex(struct deform_terms_block *to, int k, const struct rig *
 	to->thickness[k] = rig->thickness[i];
 	to->gap[k] = rig->gap[i];
 	to->glue[k] = rig->glue[i];
-	float clear = (most[rig->side[i]] + rig->thickness[i]) * 1.0001f;  // more than single precision's rounding
+	float clear = (most[rig->side[i]] + rig->thickness[i]) * 1.0001f;  // a margin above single precision's rounding
 	to->clear[k] = clear * clear;
 }
 
@@ -60,7 +61,7 @@ static void take_globe(struct deform_globe_block *to, int k, const struct rig *r
 	}
 }
 
-/* The farthest that a globe reaches from its centre. */
+/* Largest distance of a globe's surface from its centre, mm. */
 static float most_of(const struct globe_map *map)
 {
 	float most = 0;
@@ -69,7 +70,7 @@ static float most_of(const struct globe_map *map)
 	return most;
 }
 
-/* n vertices of one kind into blocks; run: how many runs there are. */
+/* Puts n vertices of one kind into blocks. run: number of runs so far, in and out. */
 static void into_blocks(struct deform *d, int kind, int n, const int *vertex, int *run)
 {
 	const struct rig *rig = d->rig;

@@ -9,18 +9,18 @@
 
 enum { BLOCK = DEFORM_BLOCK };
 
-/* A texel, and two of a row. */
+/* Two neighbouring texels, and one. */
 typedef float texel_pair __attribute__((vector_size(64), aligned(32)));
 typedef float texel_row __attribute__((vector_size(32), aligned(32)));
 _Static_assert(RIG_SKIN_COMPONENTS == 4 && RIG_LID_COMPONENTS == 4, "components are added in fours");
 _Static_assert(sizeof(texel_row) == SKULL_CHANNELS * sizeof(float), "a texel is one vector");
 
-/* A block on its way. */
+/* A block being evaluated: skin coordinates, positions, normals. */
 struct block {
 	float u[2][BLOCK], x[3][BLOCK], n[3][BLOCK];
 };
 
-/* A globe as it is turned: rotation rows of globe_from_target, centre. */
+/* A globe in the pose: rotation globe_from_target, row-major; centre. */
 struct globe {
 	float R[9], o[3];
 	const struct globe_map *map;
@@ -43,7 +43,7 @@ SIMD_INLINE void skin_coordinates(struct block *restrict b, const struct deform_
 	}
 }
 
-/* Equations 3.15 and 3.16: four texels a vertex, position and normal each. */
+/* Equations 3.15 and 3.16: position and normal by bilinear interpolation of the skull map. */
 SIMD_INLINE void on_skull(struct block *restrict b, const struct deform_terms_block *t, const struct skull_map *map, int n, bool normals)
 {
 	float k = 1 / (float)map->step, x0 = (float)map->x0, y0 = (float)map->y0;
@@ -81,7 +81,7 @@ SIMD_INLINE void on_skull(struct block *restrict b, const struct deform_terms_bl
 	}
 }
 
-/* Whether no vertex is where the globe reaches: then algorithm 1 leaves them, unless they keep their distance from it. */
+/* Whether no vertex is within the globe's reach: algorithm 1 then leaves them, unless they keep their distance from it. */
 SIMD_INLINE bool off_globe(const struct block *b, const struct deform_terms_block *t, const struct globe *g, int n)
 {
 	float least = INFINITY;
@@ -105,8 +105,8 @@ SIMD_INLINE void unit_normals(struct block *restrict b, int n)
 	}
 }
 
-/* Seen from the globe: x, y, z and distance from its centre; where that direction is on the octahedron (globe_map_at, without
- * branches): cell, place in it, D at its corners. */
+/* Vertices relative to the globe: x, y, z and distance from its centre; the cell of the octahedral map in that direction, the place in
+ * it, and D at its corners (globe_map_at without branches). */
 struct from_globe {
 	float x[3][BLOCK], far[BLOCK], u[BLOCK], v[BLOCK], corner[BLOCK][4] __attribute__((aligned(64)));
 	int cell[BLOCK];
@@ -156,13 +156,13 @@ SIMD_INLINE void on_globe(struct block *restrict b, const struct deform_terms_bl
 		float D = (1 - v) * ((1 - u) * s.corner[i][0] + u * s.corner[i][1]) + v * ((1 - u) * s.corner[i][2] + u * s.corner[i][3]);
 		float out = D + t->thickness[i], pushed = far < out ? out : far, to = pushed + w * (D + t->gap[i] - pushed), k = to * inverse;
 		float tx = x * inverse, ty = y * inverse, tz = z * inverse;
-		// eq. 3.19: the rest's normal, turned by the smallest rotation from tau0 to tau.
+		// eq. 3.19: the normal at rest, turned by the smallest rotation from tau0 to tau.
 		float ax = t->tau0[0][i], ay = t->tau0[1][i], az = t->tau0[2][i], mx = t->normal0[0][i], my = t->normal0[1][i], mz = t->normal0[2][i];
 		float vx = ay * tz - az * ty, vy = az * tx - ax * tz, vz = ax * ty - ay * tx;
 		float c = ax * tx + ay * ty + az * tz, q = (vx * mx + vy * my + vz * mz) / (1.000001f + c);
 		float hx = c * mx + vy * mz - vz * my + q * vx, hy = c * my + vz * mx - vx * mz + q * vy;
 		float hz = c * mz + vx * my - vy * mx + q * vz;
-		// eq. 3.17, over a tenth of a millimetre: no crease stands where skin comes to lie on the globe.
+		// eq. 3.17, blended in over a tenth of a millimetre: no crease forms where skin begins to touch the globe.
 		float on = 10 * (out - far), nx = b->n[0][i], ny = b->n[1][i], nz = b->n[2][i];
 		on = on > 0 ? on : 0;
 		on = on < 1 ? on : 1;
@@ -178,7 +178,7 @@ SIMD_INLINE void on_globe(struct block *restrict b, const struct deform_terms_bl
 	}
 }
 
-/* Rows of three, where they belong. */
+/* Writes positions or normals to the rows of the mesh. */
 SIMD_INLINE void put(float (*out)[3], const float x[3][BLOCK], const struct deform_run *run, int n_runs, int n)
 {
 	float rows[BLOCK][3];
@@ -193,7 +193,7 @@ SIMD_INLINE void put(float (*out)[3], const float x[3][BLOCK], const struct defo
 		memcpy(out[run[r].vertex], rows[i], (size_t)run[r].n * sizeof *rows);
 }
 
-/* Loops over a block run over whole vectors: what is beyond its vertices repeats the last. */
+/* Loops over a block run over whole vectors: its entries beyond n repeat the last vertex. */
 SIMD_INLINE int whole(int n)
 {
 	return (n + 15) & ~15;

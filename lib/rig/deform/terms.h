@@ -1,5 +1,5 @@
-/* deform_terms: what algorithm 1 (deform.h) knows of one vertex: the numbers that deform.c and the interactive page's shader
- * (render/viewer/deform.vert) both begin from. Lengths mm, px of the modelling camera. */
+/* deform_terms: constants of a vertex in algorithm 1 (deform.h), which deform.c and the interactive page's shader
+ * (render/viewer/deform.vert) share. Lengths mm, px of the modelling camera. */
 #ifndef RIG_DEFORM_TERMS_H
 #define RIG_DEFORM_TERMS_H
 #include "rig/rig.h"
@@ -10,9 +10,10 @@ struct deform_terms {
 	float tau0[3];                    // at rest: unit direction from the globe's centre
 };
 
-/* Whether a vertex that is no globe's can leave its place. */
+/* Whether a vertex that is not a globe's can move. */
 bool deform_terms_moves(const struct rig *rig, int vertex);
 
+/* Computes the constants of one vertex. terms: overwritten. */
 void deform_terms_of(struct deform_terms *terms, const struct rig *rig, int vertex);
 
 #endif

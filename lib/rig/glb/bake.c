@@ -13,7 +13,7 @@ const char *const glb_pose_names[GLB_POSES] = { "eyeBlinkLeft", "eyeBlinkRight",
 	                                            "eyeLookDownRight", "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft",
 	                                            "eyeLookOutRight", "eyeWideLeft", "eyeWideRight" };
 
-/* Frames the decomposition is learnt from, at most; the others are projected onto it. */
+/* Most frames that the decomposition is computed from; the others are projected onto it. */
 enum { LEARN = 320 };
 
 struct poser {
@@ -64,7 +64,7 @@ static void find_moving(struct glb_bake *b, const struct rig *rig)
 	}
 }
 
-/* One evaluated animation: displacements of the frames learnt from. */
+/* Displacements of the frames that the decomposition is computed from. */
 struct learnt {
 	int n, *frame;
 	float *x, *nrm;   // [n][3 moving]
@@ -110,7 +110,7 @@ static bool decompose(double *gram, double *value, const struct learnt *l, size_
 				sum += part[q];
 			gram[(size_t)i * (size_t)n + (size_t)j] = gram[(size_t)j * (size_t)n + (size_t)i] = sum;
 		}
-	openblas_set_num_threads(1);  // its sums depend on how many there are
+	openblas_set_num_threads(1);  // rounding of its sums depends on their number
 	bool ok = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'L', n, gram, n, value) == 0;
 	openblas_set_num_threads(threads);
 	return ok || err_set(err, "morph targets: the decomposition did not converge");
@@ -128,6 +128,7 @@ static void component(float *out, const float *frames, const double *gram, doubl
 	}
 }
 
+/* Subtracts the last target's part from what is left of the frames; returns the largest remaining displacement, mm. */
 static double worst_of(float *left, const struct learnt *l, const struct glb_bake *b)
 {
 	size_t row = 3 * (size_t)b->n;
@@ -147,7 +148,7 @@ static double worst_of(float *left, const struct learnt *l, const struct glb_bak
 	return worst;
 }
 
-/* Weights of every frame, then both scaled so that no weight exceeds 1. */
+/* Weights of every frame, by projection; then weights and targets are scaled so that no weight exceeds 1. */
 static void weigh(struct glb_bake *b, struct poser *p, const struct drive *drive)
 {
 	size_t row = 3 * (size_t)b->n;

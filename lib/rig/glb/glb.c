@@ -10,7 +10,7 @@
 
 static const double metres = 1e-3;
 
-/* Rows of the rig that are skin, numbered; -1: not. */
+/* The row of each vertex in the skin's mesh; -1: a globe's. *n: how many there are. free(). */
 static int *skin_rows(int *n, const struct rig *rig)
 {
 	int *row = mem_new((size_t)rig->n + 1, sizeof *row);
@@ -91,7 +91,7 @@ static json_t *skin_mesh(struct glb_buffer *g, const struct rig *rig, const stru
 	return mesh;
 }
 
-/* One eyeball as D has it, in the globe's own frame (the head's axes), with vertex colours: sclera, iris, pupil. */
+/* An eyeball from its globe map, in the globe's own frame (the head's axes), with vertex colours: sclera, iris, pupil. */
 static json_t *eye_mesh(struct glb_buffer *g, const struct rig *rig, int side, const struct glb_conf *conf)
 {
 	enum { AROUND = 64, RINGS = 80, N = AROUND * (RINGS + 1) };
@@ -135,7 +135,7 @@ static json_t *real3(const double x[3], double scale)
 	return json_pack("[f,f,f]", scale * x[0], scale * x[1], scale * x[2]);
 }
 
-/* Rows of head_from_target as the quaternion of the root. */
+/* The quaternion of the root: head_from_target. */
 static json_t *root_rotation(const double m[3][3])
 {
 	double w = 0.5 * sqrt(fmax(1 + m[0][0] + m[1][1] + m[2][2], 0)), v[4];
@@ -165,7 +165,7 @@ static json_t *nodes(const struct rig *rig, const char *name)
 	return list;
 }
 
-/* Globe meshes are in the head's axes, their nodes in the rig's: target_from_globe is what turns them. */
+/* Rotation q of a globe's node, target_from_globe: its mesh is in the head's axes, its node in the rig's. */
 static void turn_of(float q[4], const float from_rest[4], const double head_from_target[3][3])
 {
 	json_t *back = root_rotation(head_from_target);  // its conjugate takes the head's axes to the rig's

@@ -1,10 +1,10 @@
-/* glb: a driven character as glTF 2.0 binary: skin as a mesh with morph targets, eyeballs as nodes that turn, one baked
- * animation. Metres, y up, the face towards +z, as glTF has it.
+/* glb: exports a driven character as binary glTF 2.0: the skin as a mesh with morph targets, the eyeballs as rotating nodes, one baked
+ * animation. Metres, y up, the face towards +z, as glTF requires.
  *
- * Algorithm 1 is not linear in e once skin slides over a round skull and a turning cornea; so the animation is evaluated,
- * and its displacements are decomposed: the fewest morph targets that keep every vertex of every frame within a
- * tolerance (at most `targets`), with their weights over time. Further targets of poses by themselves (eyeBlinkLeft,
- * eyeLookUpRight ..., the names of Apple's ARKit) stand ready with weight 0.
+ * Algorithm 1 is not linear in e, because skin slides over a round skull and a turning cornea. So the animation is evaluated and its
+ * displacements are decomposed (principal components): the fewest morph targets that keep every vertex of every frame within a
+ * tolerance (at most `targets`), with their weights over time. Further targets of single poses (eyeBlinkLeft, eyeLookUpRight ..., the
+ * names of Apple's ARKit) are included with weight 0.
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H
@@ -13,17 +13,20 @@
 struct glb_conf {
 	int targets;           // at most, of the animation
 	double tolerance;      // mm, worst vertex of all frames
-	bool poses;            // the named targets, too
+	bool poses;            // include the named targets
 	double skin_rgb[3], iris_rgb[3], sclera_rgb[3];  // linear
 };
 
 struct glb_report {
 	int targets, moving;   // of the animation; vertices that move
-	double worst;          // mm, that the decomposition is off by at most
-	long bytes;
+	double worst;          // largest error of the decomposition, mm
+	long bytes;            // of the file
 };
 
-/* name: of the character; made_by: JSON text kept in asset.extras, or null. */
+/* Writes the file.
+ * report   overwritten
+ * name     of the root node; made_by: JSON text for asset.extras, or null
+ * Returns false, err set, when the decomposition fails or the file cannot be written. */
 bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive, const char *name,
                const struct glb_conf *conf, const char *made_by, struct err *err);
 

@@ -12,7 +12,7 @@ static void *fresh(int n, size_t size)
 	return mem_new((size_t)n + 1, size);
 }
 
-/* Where the modelling camera sees a point of the subject; the lens's distortion is in the tracked points and so in home. */
+/* With the lens's distortion, which the tracked points contain, too. */
 void rig_project(double px[2], double cam[3], const struct skin_camera *c, const float x[3])
 {
 	for (int i = 0; i < 3; i++)
@@ -35,7 +35,7 @@ void rig_take_homes(struct rig *rig, const struct rig_motion *m, const struct ri
 	}
 }
 
-/* Vertices that the modelling camera sees at rest: of those the skull map is made. */
+/* Marks skin that the modelling camera sees at rest: it faces the camera, and nothing lies in front. free(). */
 static bool *visible_of(const struct rig *rig, const struct rig_motion *m, const struct rig_character *ch)
 {
 	bool *visible = fresh(rig->n, sizeof *visible);
@@ -63,7 +63,7 @@ static bool *visible_of(const struct rig *rig, const struct rig_motion *m, const
 	return visible;
 }
 
-/* The part of the picture in which skin can be: where it is at rest, and as far round that as it moves at most. */
+/* The part of the picture that moving skin can reach: its bounding box at rest, with a border. px. */
 static void reach_of(double box[4], const struct rig *rig)
 {
 	double span = 0;

@@ -6,7 +6,7 @@
 #include "rig/drive.h"
 #include "rig/make/make_impl.h"
 
-/* The pose's components from rest, into the normal equations of direction . components = want. */
+/* Adds a pose to the normal equations of direction . (e - rest_e) = want. */
 static void add_pose(double m[RIG_COMPONENTS][RIG_COMPONENTS], double right[RIG_COMPONENTS], const struct rig *rig, const double *controls, double want)
 {
 	double e[RIG_COMPONENTS];
@@ -45,7 +45,7 @@ void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, co
 	bool known = chol_solve(RIG_COMPONENTS, RIG_COMPONENTS, &m[0][0], out);
 	for (int k = 0; k < RIG_COMPONENTS && known; k++)
 		along += out[k] * closed[k];
-	// Baselines that were never learnt, or poses that all look alike: by the way there alone.
+	// Without usable solution (baselines not learnt, poses all alike): the projection onto the closed pose alone.
 	bool usable = known && along > 0.2;
 	for (int k = 0; k < RIG_COMPONENTS; k++)
 		out[k] = usable ? out[k] / along : square > 0 ? closed[k] / square : 0;

@@ -1,4 +1,4 @@
-/* Eyeballs of a mesh: round components where an eye is expected. */
+/* Finds the eyeballs of a mesh: round connected pieces where an eye is expected. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,7 +17,7 @@ struct ball {
 	int n, component;
 };
 
-/* Area that each vertex stands for: corneas are meshed finely, and would outvote the sclera. free(). */
+/* Area of the surface around each vertex, the weight of a sphere fit: corneas are meshed finely and would otherwise dominate. free(). */
 static double *areas_of(const struct rig *rig)
 {
 	double *area = mem_new((size_t)rig->n + 1, sizeof *area);
@@ -35,7 +35,8 @@ static double *areas_of(const struct rig *rig)
 	return area;
 }
 
-/* The sphere nearest to a component's vertices; a cornea on it counts less from round to round. */
+/* Fits a sphere to a component's vertices by iteratively reweighted least squares (Cauchy weights), so that a cornea on it counts
+ * little. False: too few vertices, or no sphere. */
 static bool fit_ball(struct ball *ball, const struct rig *rig, const int *component, const double *area, int which)
 {
 	double origin[3] = { 0 };
@@ -85,11 +86,11 @@ static bool fit_ball(struct ball *ball, const struct rig *rig, const int *compon
 	}
 	for (int c = 0; c < 3; c++)
 		ball->center[c] = origin[c] + x[c];
-	// A strip of lid lies on the sphere, too, but not all round: globe_map_from_mesh sees to that.
+	// A strip of lid lies on a sphere, too, but does not surround its centre: globe_map_from_mesh refuses that.
 	return isfinite(ball->radius) && total > 0.4 * all;
 }
 
-/* On that side of the face, where nobody knows more. */
+/* Whether the ball lies on that side of the face: all that is checked where no centre is known. */
 static bool on_side(const struct rig *rig, const struct ball *ball, int side)
 {
 	const double *across = rig->head_from_target[0];
@@ -100,6 +101,7 @@ static bool on_side(const struct rig *rig, const struct ball *ball, int side)
 	return (vec_dot(across, ball->center) < mean) == side;
 }
 
+/* Whether the ball can be that side's eyeball. */
 static bool expected(const struct rig *rig, const struct ball *ball, int side, const double center[3], double radius)
 {
 	double d[3];
@@ -136,8 +138,8 @@ static struct mesh own_mesh(const struct rig *rig, const double center[3], enum 
 	return mesh;
 }
 
-/* How a component lies about a globe: nearest and furthest vertex over the radius, least cosine from the axis, and how
- * far its middle is off the axis over the radius. */
+/* How a component lies around a globe: distances of its nearest and farthest vertex over the radius, least cosine from the axis, and
+ * the sum of its vertices over the radius, for the distance of its middle from the axis. */
 struct lie {
 	double low, high, least_cos, off[3];
 	int n;
@@ -161,8 +163,8 @@ static void look_round(struct lie *lie, const struct rig *rig, const struct ball
 	}
 }
 
-/* Marks the ball, what else is part of the eyeball (a cornea of its own, an iris, a lens) and what lies round it (lashes,
- * tear film). */
+/* Marks the ball and further pieces of the eyeball (a separate cornea, an iris, a lens) as globe, and pieces around it (lashes, tear
+ * film) as RIG_NEAR_EYE. */
 static void mark(struct rig *rig, int side, const struct ball *ball, const int *component)
 {
 	struct lie *lie = mem_new((size_t)rig->n + 1, sizeof *lie);
@@ -181,11 +183,11 @@ static void mark(struct rig *rig, int side, const struct ball *ball, const int *
 	free(lie);
 }
 
-/* A globe without a cornea gets one: lids bulge as it passes below them, and what is drawn has it. */
+/* Adds a cornea to a globe that has none, as the renderer draws one and lids bulge where it passes below them. False: it has one. */
 static bool add_cornea(struct globe_map *map, double radius, double bulge)
 {
 	float front = 0;
-	for (int k = -1; k <= 1; k++)  // a little off the axis, too: irises are drawn with a dent there
+	for (int k = -1; k <= 1; k++)  // a little off the axis, too: modelled irises have a dent there
 		front = fmaxf(front, globe_map_at(map, (float[3]){ 0.1f * (float)k, 0, 1 }));
 	if (front > bulge * radius)
 		return false;
@@ -197,6 +199,7 @@ static bool add_cornea(struct globe_map *map, double radius, double bulge)
 	return true;
 }
 
+/* Makes a globe from the character's own ball. */
 static void take_own(struct rig *rig, int side, const struct ball *ball, const int *component, int cells)
 {
 	struct rig_globe *globe = &rig->globe[side];
@@ -205,7 +208,7 @@ static void take_own(struct rig *rig, int side, const struct ball *ball, const i
 	struct mesh mesh = own_mesh(rig, ball->center, side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT);
 	globe->own = globe_map_from_mesh(&globe->map, cells, &mesh, &none);
 	mesh_free(&mesh);
-	if (!globe->own)  // a cap, not a ball: part of something else
+	if (!globe->own)  // a cap, not a ball: not an eyeball
 		for (int i = 0; i < rig->n; i++)
 			rig->part[i] = rig->part[i] == (side ? RIG_GLOBE_RIGHT : RIG_GLOBE_LEFT) ? RIG_NEAR_EYE : rig->part[i];
 	vec_add(globe->center, ball->center, 0, ball->center);

@@ -1,5 +1,5 @@
-/* Lids of a rig. Two things that flow and components leave undone: skin at the margins follows the margins' own
- * splines, and eyes that are told to close do close. Both are corrections of U~: evaluation does not change. */
+/* Two corrections of U~ at the lids, for errors of optical flow and of the few components: skin at the margins follows the margins' own
+ * splines, and eyes close completely. The evaluation of the rig does not change. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,13 +15,13 @@ static double ramp(double x, double from, double to)
 	return t * t * (3 - 2 * t);
 }
 
-/* Places along a lid's margin at rest: px, and what its skin still lacks of the margin's motion. */
+/* Points along a lid's margin at rest, px, and the difference of the margin's motion from that of the skin there. */
 struct margin {
 	int n;
 	double (*at)[2], (*lack)[RIG_BASIS];
 };
 
-/* How the skin at a place of the margin moves as it is: vertices near it, nearer ones more. */
+/* Mean motion of the skin near a point of the margin, weighted by distance. False: there is none. */
 static bool moves_there(double basis[RIG_BASIS], const struct rig *rig, const double at[2], double px_per_mm)
 {
 	double total = 0;
@@ -56,7 +56,7 @@ static struct margin margin_of(const struct rig *rig, const struct rig_motion *m
 	return g;
 }
 
-/* Distance of a point from the margin, px; lack there. */
+/* Distance of a point from the margin, px; lack: out, interpolated at the closest place. */
 static double nearest(double lack[RIG_BASIS], const struct margin *g, const float px[2])
 {
 	double least = INFINITY;
@@ -74,8 +74,7 @@ static double nearest(double lack[RIG_BASIS], const struct margin *g, const floa
 	return least;
 }
 
-/* Lid skin that was not tracked moves as the middle of what it hangs together with: a margin's inner edge does not run
- * ahead of its outer one. */
+/* Smooths the motion of extrapolated lid skin over the mesh, so that a margin's inner edge does not move farther than its outer one. */
 static void even_out(struct rig *rig)
 {
 	enum { ROUNDS = 6 };
@@ -132,7 +131,7 @@ void rig_follow_lids(struct rig *rig, const struct rig_motion *m, double px_per_
 	}
 }
 
-/* The modelling camera's view of one eye, posed: which pixels skin covers, and what is left open in each column. */
+/* The modelling camera's view of one eye in a pose: the pixels that skin covers, and the gap left open in each column. */
 struct fissure {
 	int x0, y0, width, height;
 	uint8_t *cover;
@@ -140,7 +139,7 @@ struct fissure {
 	float *top, *bottom;   // of the open part of a column; equal where none is
 };
 
-/* Skin before the globe: what lines the socket behind it does not close an eye. */
+/* Whether a vertex is skin in front of the globe; that behind it lines the socket and does not cover the eye. */
 static bool before_globe(const struct rig *rig, int i, int side)
 {
 	double z = 0;
@@ -168,6 +167,7 @@ static void cover_triangle(struct fissure *f, const float a[2], const float b[2]
 		}
 }
 
+/* Renders the pose de (components from rest): cover, top, bottom. */
 static void look(struct fissure *f, const struct rig *rig, int side, const double de[RIG_COMPONENTS])
 {
 	memset(f->cover, 0, (size_t)f->width * (size_t)f->height);
@@ -184,7 +184,7 @@ static void look(struct fissure *f, const struct rig *rig, int side, const doubl
 			cover_triangle(f, f->at[v[0]], f->at[v[1]], f->at[v[2]]);
 	}
 	for (int x = 0; x < f->width; x++) {
-		// The longest run between covered pixels: what is open towards the window's rim is not the fissure.
+		// The longest gap between covered pixels: gaps at the window's border are not the fissure.
 		int best = 0, at = 0, from = -1;
 		for (int y = 0; y < f->height; y++) {
 			if (!f->cover[(long)y * f->width + x])
@@ -200,7 +200,7 @@ static void look(struct fissure *f, const struct rig *rig, int side, const doubl
 	}
 }
 
-/* Where the eye is open at rest: the window in which it has to close. */
+/* The window around the lids at rest, in which the eye must close. False: the lids were not learnt. Its arrays: free(). */
 static bool window(struct fissure *f, const struct rig *rig, const struct rig_motion *m, int side, double px_per_mm)
 {
 	double box[4] = { INFINITY, INFINITY, -INFINITY, -INFINITY };
@@ -222,7 +222,7 @@ static bool window(struct fissure *f, const struct rig *rig, const struct rig_mo
 	return true;
 }
 
-/* What is still open, smoothed along the fissure so that the margin stays a curve. */
+/* How far each column must still close, px, smoothed along the fissure so that the margin stays a curve. Returns the largest gap, px. */
 static double open_columns(float *open, const struct fissure *f, double seal_mm, double px_per_mm)
 {
 	int reach = (int)fmax(2 * px_per_mm, 1);
@@ -246,7 +246,7 @@ static double open_columns(float *open, const struct fissure *f, double seal_mm,
 	return worst;
 }
 
-/* The upper lid comes down by what is open, all of it at its margin and less and less further up. */
+/* Lowers the upper lid by `open`, fully at its margin and less further up. */
 static void close_once(struct rig *rig, const struct fissure *f, const float *open, int side, const double closing[RIG_COMPONENTS],
                        double px_per_mm)
 {

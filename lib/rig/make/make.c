@@ -75,7 +75,7 @@ static double off_chart(const struct rig *rig, const struct rig_motion *m, const
 	return median;
 }
 
-/* Vertices whose whole barycentric neighbourhood was tracked (eq. 3.4). */
+/* Motion of the vertices whose barycentric neighbours were all tracked (eq. 3.4); the others are to be extrapolated. */
 static void take_tracked(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double min_confidence,
                          struct rig_report *report)
 {
@@ -108,6 +108,7 @@ static void take_tracked(struct rig *rig, const struct rig_motion *m, const stru
 	free(row);
 }
 
+/* Motion of the others, by B+ and fade (eq. 3.5). */
 static void extrapolate(struct rig *rig)
 {
 	for (int i = 0; i < rig->n; i++) {
@@ -145,8 +146,8 @@ static void take_thickness(struct rig *rig, const struct rig_conf *conf)
 	for (int i = 0; i < rig->n; i++) {
 		double gap = fmax(rig->gap[i], conf->least), t = (gap - conf->glue[0]) / (conf->glue[1] - conf->glue[0]);
 		t = fmin(fmax(t, 0), 1);
-		// The paper holds extrapolated skin alone to its distance. Tracked lids are as thick wherever they slide, too: else
-		// a raised lid sinks into the socket behind its own margin.
+		// The paper keeps the distance of extrapolated skin only. Here tracked lids keep theirs, too: otherwise a raised lid
+		// sinks into the socket behind its own margin.
 		rig->glue[i] = rig_is_globe(rig->part[i]) ? 0 : (float)(1 - t * t * (3 - 2 * t));
 		rig->gap[i] = (float)gap;
 		rig->thickness[i] = (float)fmin(gap, conf->thickness);
@@ -164,7 +165,7 @@ static void count(struct rig_report *report, const struct rig *rig)
 	}
 }
 
-/* Picture elements of the modelling camera in a millimetre of the face. */
+/* Pixels of the modelling camera in a millimetre of the face. */
 static double rig_px_per_mm(const struct rig *rig, const struct rig_motion *m, const struct rig_character *ch)
 {
 	double sum = 0;

@@ -1,5 +1,5 @@
-/* rig_make: from a model of one person's skin and a character registered on that person's mesh to a rig of the
- * character (skin paper, sections 3.6 to 3.8).
+/* rig_make: makes the rig of a character from the model of one person's skin and the character's registration on that person's mesh
+ * (skin paper, sections 3.6 to 3.8).
  */
 #ifndef RIG_MAKE_MAKE_H
 #define RIG_MAKE_MAKE_H
@@ -7,7 +7,7 @@
 #include "model/model.h"
 #include "rig/rig.h"
 
-/* How the skin moves, from skin_model: everything folded to RIG_COMPONENTS numbers e. px of the modelling camera. */
+/* The motion of skin and lids as linear functions of RIG_COMPONENTS numbers e, from a skin_model. px of the modelling camera. Owned. */
 struct rig_motion {
 	int n_inputs;
 	double *W;                            // [RIG_COMPONENTS][n_inputs + 1]
@@ -15,20 +15,20 @@ struct rig_motion {
 	int n;                                // tracked rows of the subject mesh
 	int *vertex;
 	double (*basis)[RIG_BASIS];
-	double (*rest_px)[2];                 // where the model has them at rest
+	double (*rest_px)[2];                 // their places at rest by the model
 	int n_points;                         // control points of a lid
-	double (*lid)[2];                     // [4 n_points] where they are at rest; NAN: not learnt
-	double (*lid_basis)[RIG_BASIS];
-	double lid_error_skin, lid_error;     // px, rms: what the skin's part of e leaves of the lids; what all of it does
+	double (*lid)[2];                     // [4 n_points] their places at rest; NAN: not learnt
+	double (*lid_basis)[RIG_BASIS];       // [4 n_points]
+	double lid_error_skin, lid_error;     // px rms: the lids' motion that the skin's components leave unexplained; that all leave
 	struct skin_camera camera;
 };
 
-/* The lids are regressed on the skin's components over the gazes, blinks and action units the model has seen; what that
- * leaves of them are components of their own. model: at least one component. rig_motion_free. */
+/* Takes the motion from a model of at least one component. The lids are regressed on the skin's components over the gazes, blinks and
+ * action units that the model has seen; the principal components of the residual are the lids' own. rig_motion_free. */
 void rig_motion_of_model(struct rig_motion *motion, const struct skin_model *model);
 void rig_motion_free(struct rig_motion *motion);
 
-/* A character. Lengths mm. */
+/* A registered character. Lengths mm; everything is the caller's. */
 struct rig_character {
 	const struct mesh *mesh;              // in its own axes
 	const float (*registered)[3];         // its vertices on the subject, in the subject's axes
@@ -40,27 +40,31 @@ struct rig_character {
 };
 
 struct rig_conf {
-	int neighbours;                       // of an extrapolated vertex
+	int neighbours;                       // tracked vertices that an extrapolated one follows
 	double fade[2];                       // mm from tracked skin: all motion up to the first, none from the second
-	double glue[2];                       // mm from the globe at rest: kept up to the first, free from the second
-	double thickness, least;              // mm: t of skin that rests further away; and at least
-	double lid;                           // mm from the lid's margin over which skin follows its spline; 0: never
-	double seal;                          // mm that closed lids overlap; < 0: they close as far as they were learnt to
-	double min_confidence;
-	double map_step;                      // px of the modelling camera
-	int globe_cells;
+	double glue[2];                       // mm from the globe at rest: distance kept up to the first, free from the second
+	double thickness, least;              // mm: t, the least distance of skin from the globe; the same of skin that rests on it
+	double lid;                           // mm from the lid's margin over which skin follows its spline; 0: nowhere
+	double seal;                          // mm that closed lids overlap; < 0: lids are not sealed
+	double min_confidence;                // of the registration, below which a vertex counts as untracked
+	double map_step;                      // texel of the skull map, px of the modelling camera
+	int globe_cells;                      // cells across the globe map
 	double cornea_bulge;                  // apex over radius below which a globe gets a cornea; 0: never
 };
 
-/* What was found, for the log. */
+/* Figures for the log. Counts are of vertices. */
 struct rig_report {
 	int tracked, lid, extrapolated, still, inside_at_rest;
-	double off_chart;                     // px, median: what the model has at rest against where the mesh is seen
-	double deepest;                       // mm inside a globe at rest
-	double open_before[2], open_after[2]; // mm left open of closed eyes, before and after they were sealed
+	double off_chart;                     // median distance of tracked points at rest by the model from the projected mesh, px
+	double deepest;                       // depth of a vertex inside a globe at rest, mm
+	double open_before[2], open_after[2]; // gap of closed eyes, left and right, before and after sealing, mm
 	bool cornea_added[2];
 };
 
+/* Makes the rig.
+ * rig, report  overwritten; rig_free
+ * Returns false, err set, when an eyeball is missing and not given, or no vertex of the character lies on tracked skin; the rig is
+ * empty then. */
 bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motion *motion, const struct rig_character *character,
               const struct rig_conf *conf, struct err *err);
 

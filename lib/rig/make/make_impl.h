@@ -1,39 +1,42 @@
-/* rig_make_impl: the steps of rig_make. */
+/* rig_make_impl: the steps of rig_make, by file. Those that return false have set err. */
 #ifndef RIG_MAKE_MAKE_IMPL_H
 #define RIG_MAKE_MAKE_IMPL_H
 #include "rig/make/make.h"
 
-/* What follows is rig_make's own. e = W [c; 1]. rest: controls of the reference frame. motion.c, motion_lids.c */
+/* components.c: e = W [c; 1], out; controls[n_inputs]. */
 void rig_motion_components(double e[RIG_COMPONENTS], const struct rig_motion *motion, const double *controls);
+/* motion_lids.c: the lids' part of a motion, and the components of their own. rest: controls [n_inputs] of the reference frame. */
 void rig_motion_take_lids(struct rig_motion *motion, const struct skin_model *model, const double *rest);
 
-/* Where the modelling camera sees a point of the subject; cam: the point in its frame. chart.c */
+/* chart.c: projects a point x of the subject into the modelling camera. px: out; cam: out, the point in the camera's frame, mm. */
 void rig_project(double px[2], double cam[3], const struct skin_camera *camera, const float x[3]);
+/* Where the modelling camera sees the registered vertices: home. */
 void rig_take_homes(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character);
-/* The skull map, from what that camera sees of the character at rest. */
+/* The skull map, from the vertices that the camera sees at rest. step: texel, px. */
 bool rig_take_skull(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character, double step,
                     struct err *err);
 
-/* Where the character's eyeballs are to be expected, by what registration did to the skin round them. globe.c */
+/* globe.c: expects the character's eyeballs where the registration moves the subject's, by the skin around them. center (left, right)
+ * and radius: out, in the target's frame, mm. Centres are NAN where the subject's are unknown; its radius is then 12 mm. */
 void rig_expect_globes(double center[2][3], double *radius, const struct rig *rig, const struct rig_character *character);
 
-/* Skin at the lid margins moves as the margins' splines do. lids.c */
+/* lids.c: makes skin at the lid margins move as the margins' splines do, fading over reach_mm. */
 void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);
 
-/* The linear form of the components from rest that is 1 with eyes closed straight ahead (closed), and of all such nearest to
- * 1 with eyes closed and to 0 with eyes open, wherever they look, and in the expressions: what seals the lids by it leaves a
- * gaze downwards, which takes the lids halfway, as it was learnt. */
+/* closing.c: a linear form that measures how far eyes are closed: out . (e - rest_e). It is 1 in the pose `closed` (components from
+ * rest, eyes closed straight ahead) and, in the least-squares sense, 1 with eyes closed and 0 with eyes open, for all gazes and
+ * expressions. Sealing the lids in proportion to it leaves a gaze downwards, in which lids close halfway, as it was learnt. */
 void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, const double closed[RIG_COMPONENTS]);
 
-/* Upper lids come down as far as it takes to close an eye that is told to close. */
+/* lids.c: lowers the upper lids in closed poses until no gap is left, and by seal_mm more. */
 void rig_seal_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double seal_mm, struct rig_report *report);
 
-/* The eyeballs of a mesh: closed, round components about the expected centres; marks part[], fills globe[]. centre, radius:
- * where they are expected, in the mesh's axes, NAN where unknown. globe.c */
+/* globe.c: finds the eyeballs: closed, round connected pieces about the expected centres (of rig_expect_globes); marks part[], fills
+ * globe[]. Where none is found, a sphere with a cornea takes the expected place; an error where that is NAN. */
 bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, const struct rig_conf *conf,
                      struct rig_report *report, struct err *err);
 
-/* B+ and fade of every vertex whose source is RIG_EXTRAPOLATED, distances measured along the character's skin. spread.c */
+/* spread.c: B+ and fade of every vertex whose source is RIG_EXTRAPOLATED, by distances along the character's skin. */
 void rig_spread(struct rig *rig, const struct rig_conf *conf);
 
 #endif

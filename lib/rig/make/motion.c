@@ -10,7 +10,7 @@ static double finite_or(double x, double otherwise)
 	return isfinite(x) ? x : otherwise;
 }
 
-/* The reference frame's; 0 where an eye was not learnt. free(). */
+/* Controls of the reference frame; 0 where an eye was not learnt. free(). */
 static double *rest_controls(const struct skin_model *model)
 {
 	double *c = mem_new((size_t)model->n_inputs, sizeof *c);
@@ -24,7 +24,7 @@ static void take_skin(struct rig_motion *m, const struct skin_model *model)
 	int kept = model->n_skin_pc < RIG_SKIN_COMPONENTS ? model->n_skin_pc : RIG_SKIN_COMPONENTS;
 	for (int i = 0; i < model->n_vertices; i++) {
 		if (!isfinite(model->vertex_rms[i]))
-			continue;  // never seen: it learns from its neighbours
+			continue;  // not modelled: its motion is extrapolated from its neighbours
 		m->vertex[m->n] = model->vertices[i];
 		for (int j = 0; j < 2; j++) {
 			m->rest_px[m->n][j] = model->u0[2 * i + j];

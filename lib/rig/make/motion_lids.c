@@ -1,6 +1,6 @@
-/* The lids of a rig. What a person's skin does in a blink and in a gaze downwards is nearly the same, so the skin's components
- * cannot tell how far the lids come down in each; and skin that never saw a wink knows nothing of one. What the margins'
- * own model says beyond them becomes components of its own. */
+/* Components of the lids. Skin moves nearly alike in a blink and in a gaze downwards, so the skin's components cannot distinguish how
+ * far the lids come down in each; nor do they contain a wink that the clip does not show. The lids by the model (equation 3.2) are
+ * regressed on the skin's components over many poses, and the principal components of the residual are added as the lids' own. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@ static double finite_or(double x, double otherwise)
 	return isfinite(x) ? x : otherwise;
 }
 
-/* One eye looks, closed so far. */
+/* Sets one eye's controls: gaze h, v (degrees), and `closing` times the usual aperture there. */
 static void open_at(double *c, const struct skin_model *model, int eye, double h, double v, double closing)
 {
 	double control[2] = { 0 };
@@ -32,11 +32,11 @@ static void open_at(double *c, const struct skin_model *model, int eye, double h
 /* Poses over which the lids are regressed. */
 struct poses {
 	int n, n_inputs, n_lid;
-	double *c, *e, *l;  // [n][n_inputs] controls, [n][RIG_SKIN_COMPONENTS] and [n][n_lid] from rest; lids not learnt: 0
+	double *c, *e, *l;  // [n][n_inputs] controls; [n][RIG_SKIN_COMPONENTS], [n][n_lid] from rest; lids not learnt: 0
 	double rest_e[RIG_COMPONENTS], *rest;
 };
 
-/* Lids that the model gives to controls. */
+/* The lids by the model, l[n_lid] px, out, for controls. */
 static void lids_of(double *l, const struct skin_model *model, const double *c)
 {
 	double *g = mem_new((size_t)model->n_inputs + 1, sizeof *g);
@@ -54,7 +54,7 @@ static double *next(struct poses *p)
 	return c;
 }
 
-/* Gazes the model has seen with eyes more or less closed; each eye closed alone, and eyes that converge; expressions. */
+/* Gathers poses: gazes in the model's range with eyes more or less closed; winks; convergence; expressions. */
 static void gather(struct poses *p, const struct skin_model *model)
 {
 	double at[2][GAZES];
@@ -86,6 +86,7 @@ static void gather(struct poses *p, const struct skin_model *model)
 	}
 }
 
+/* Components and lids of every pose, from rest. */
 static void evaluate(struct poses *p, const struct rig_motion *m, const struct skin_model *model)
 {
 	p->e = mem_new((size_t)p->n * RIG_SKIN_COMPONENTS + 1, sizeof *p->e);
@@ -102,8 +103,8 @@ static void evaluate(struct poses *p, const struct rig_motion *m, const struct s
 	}
 }
 
-/* l = basis e, least squares with a trace of ridge that keeps components which nothing moves at zero; no constant, so that
- * the lids at rest are where they are. What is left stays in p->l. */
+/* Regresses l = basis e by least squares, with a small ridge that keeps components without variance at zero, and without a constant, so
+ * that the lids at rest stay in place. The residual replaces p->l. */
 static void regress_on_skin(struct rig_motion *m, struct poses *p)
 {
 	enum { K = RIG_SKIN_COMPONENTS };
@@ -131,6 +132,7 @@ static void regress_on_skin(struct rig_motion *m, struct poses *p)
 	}
 }
 
+/* Root mean square length of what is left in p->l, px a control point. */
 static double rms(const struct poses *p)
 {
 	double sum = 0;
@@ -139,8 +141,8 @@ static double rms(const struct poses *p)
 	return sqrt(2 * sum / fmax((double)p->n * p->n_lid, 1));
 }
 
-/* V[n_lid][RIG_LID_COMPONENTS]: the directions of what the skin's components leave; 0 beyond its rank. About rest, not
- * about their mean: each counts in both senses. */
+/* Principal components V[n_lid][RIG_LID_COMPONENTS] of the residual, out; 0 beyond its rank. About rest, not about the mean: every row
+ * is added with both signs. */
 static void directions(double *V, struct poses *p)
 {
 	struct scatter s;
@@ -162,7 +164,7 @@ static void directions(double *V, struct poses *p)
 	free(mirrored);
 }
 
-/* Component j of what is left at these controls: V_j . (lids from rest - basis (e - e_rest)). */
+/* Score j of the residual at controls c: V_j . (lids from rest - basis (e - e_rest)). */
 static double score(const struct rig_motion *m, const struct skin_model *model, const struct poses *p, const double *V, int j, const double *c)
 {
 	double *l = mem_new((size_t)p->n_lid + 1, sizeof *l), e[RIG_COMPONENTS], sum = 0;
@@ -178,7 +180,7 @@ static double score(const struct rig_motion *m, const struct skin_model *model, 
 	return sum;
 }
 
-/* The lids' own rows of W: scores are affine in the controls. */
+/* Adds the lids' own rows of W, from scores at unit controls (they are affine), and their columns of the basis. */
 static void add_components(struct rig_motion *m, const struct skin_model *model, struct poses *p, const double *V)
 {
 	int n = m->n_inputs;
@@ -198,7 +200,7 @@ static void add_components(struct rig_motion *m, const struct skin_model *model,
 	free(c);
 }
 
-/* What no component explains. */
+/* Subtracts the lids' own components from p->l. */
 static void subtract(struct poses *p, const double *V)
 {
 	for (int i = 0; i < p->n; i++) {

@@ -1,5 +1,5 @@
-/* What was not tracked follows what was: weights by inverse distance (skin paper, eq. 3.5). The paper leaves open what
- * distance; measured along the skin, an upper lid does not follow the lower one across the fissure. */
+/* Extrapolates motion to untracked vertices by inverse distance weighting (skin paper, eq. 3.5). The paper leaves the distance open; here
+ * it is geodesic, along the skin's edges, so that an upper lid does not follow the lower one across the fissure. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +48,7 @@ static void graph_free(struct graph *g)
 	free(g->length);
 }
 
-/* A queue by distance (binary heap, lazily pruned), and the distances found in this search. */
+/* Dijkstra's priority queue (a binary heap; outdated entries are skipped), and the distances found in this search. */
 struct front {
 	int n, room;
 	struct item {
@@ -137,12 +137,13 @@ static float *from_tracked(const struct rig *rig, const struct graph *g, float r
 	return q.best;
 }
 
-/* The nearest tracked vertices of one: neighbours of it, then one more, whose distance is where the weights end. */
+/* The nearest tracked vertices of one: its neighbours, and one more, at whose distance the weights reach zero. */
 struct nearest {
 	int n, vertex[65];
 	float d[65];
 };
 
+/* Finds them by geodesic distance, up to `reach`. */
 static void along_skin(struct nearest *near, const struct rig *rig, const struct graph *g, struct front *q, int i, int k, float reach)
 {
 	struct item at;
@@ -158,6 +159,7 @@ static void along_skin(struct nearest *near, const struct rig *rig, const struct
 	front_reset(q);
 }
 
+/* Finds them by Euclidean distance, for pieces that no edge joins to tracked skin. */
 static void through_space(struct nearest *near, const struct rig *rig, int n, const int *tracked, int i, int k)
 {
 	near->n = 0;
@@ -175,8 +177,8 @@ static void through_space(struct nearest *near, const struct rig *rig, int n, co
 	}
 }
 
-/* Normalised inverse distances that reach zero at the last neighbour (Franke and Little 1982): no jump where one
- * neighbour takes another's place. */
+/* Normalised inverse distance weights that reach zero at the last neighbour (Franke and Little 1982): continuous where one neighbour
+ * takes another's place. Returns how many there are. */
 static int weigh(float weight[64], const struct nearest *near, int k)
 {
 	int n = near->n <= k ? near->n : k;
