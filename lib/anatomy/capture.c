@@ -5,6 +5,7 @@
 
 #include "anatomy/keys.h"
 #include "base/mem.h"
+#include "image/photo/photo.h"
 
 enum { SIDES = 3 };
 static const char *const side_names[SIDES] = { "eye", "left", "right" };
@@ -43,17 +44,33 @@ static char *stem(const char *file)
 	return dot && dot != file ? mem_printf("%.*s", (int)(dot - file), file) : mem_str(file);
 }
 
+/* Which of several files of one name shows the eye best: developed photographs, then raw ones, then what is none. */
+static int rank_of(struct stage *stage, const char *file)
+{
+	enum photo_kind kind = photo_kind_of(stage_path(stage, "%s", file));
+	return kind == PHOTO_NONE ? 0 : kind == PHOTO_RAW ? 1 : 2;
+}
+
+/* Of files with one name (IMG_7.CR2, IMG_7.JPG, and what a telephone wrote beside them, IMG_7.AAE) one is taken. */
 static void add_photo(struct capture *capture, struct stage *stage, char *name, const char *file, int side)
 {
+	struct capture_photo *twin = 0;
+	char *path = mem_printf("photos/%s", file);
 	for (int i = 0; i < capture->n_photos; i++)
-		if (!strcmp(capture->photos[i].name, name)) {
-			stage_warn(stage, "photos/%s: left out: %s has the same name", file, capture->photos[i].file);
-			free(name);
-			return;
-		}
+		if (!strcmp(capture->photos[i].name, name))
+			twin = &capture->photos[i];
+	if (twin) {
+		bool better = rank_of(stage, path) > rank_of(stage, twin->file);
+		char *left = better ? twin->file : path;
+		twin->file = better ? path : twin->file;
+		stage_warn(stage, "%s: left out: %s has the same name", left, twin->file);
+		free(left);
+		free(name);
+		return;
+	}
 	capture->photos = mem_grow(capture->photos, (size_t)capture->n_photos + 1, sizeof *capture->photos);
 	capture->photos[capture->n_photos++] = (struct capture_photo){
-		.name = name, .file = mem_printf("photos/%s", file), .fit = mem_printf("work/limbus/%s.json", name), .eye = side
+		.name = name, .file = path, .fit = mem_printf("work/limbus/%s.json", name), .eye = side
 	};
 }
 
