@@ -47,7 +47,8 @@ BIN := $(if $(SAN),$(B)/bin,bin)
 PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
 	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
 	libopenblas-dev libsuitesparse-dev libflann-dev libembree-dev libsqlite3-dev libzip-dev libavformat-dev libavcodec-dev \
-	libswscale-dev libavutil-dev libqhull-dev libcmocka-dev gnuplot-nox
+	libswscale-dev libavutil-dev libqhull-dev liblcms2-dev libheif-dev libwebp-dev libraw-dev \
+	libcmocka-dev gnuplot-nox
 
 # Sanitised programs are built to be built fast: they run no longer for it.
 CFLAGS ?= $(if $(SAN),-O1,-O3) -g
@@ -65,7 +66,7 @@ EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/de
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
 LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
 	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lsqlite3 -lzip \
-	-llapacke -lopenblas -ljansson -linih -lxxhash -lm
+	-llapacke -lopenblas -ljansson -linih -lxxhash -llcms2 -lm
 
 LIB_SRC := $(wildcard lib/*/*.c lib/*/*/*.c lib/*/*/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
@@ -123,7 +124,7 @@ $(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c render/
 
 $B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a
 	@mkdir -p $(@D)
-	@$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $@ $< $(TEST_LIB_OBJ) $B/libeyewright.a -lcmocka $(LIBS)
+	@$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $@ $< $(TEST_LIB_OBJ) $B/libeyewright.a -lcmocka -lheif -lwebp -lz $(LIBS)
 
 # ---- a capture ---------------------------------------------------------------------------------------------------
 # plan looks at the folder and writes what has to run; each stage then runs only if its inputs, configuration or

@@ -22,7 +22,7 @@ static bool is_harmless(const char *warning)
 	return strstr(warning, "extraneous bytes before marker") || strstr(warning, "Unknown Adobe color transform");
 }
 
-bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err)
+bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err)
 {
 	size_t n = (size_t)photo->width * (size_t)photo->height * 3;
 	tjhandle tj = tjInitDecompress();
@@ -40,8 +40,10 @@ bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct bytes fi
 			break;
 	}
 	tjDestroy(tj);
-	if (ok)
+	if (ok) {
 		photo_widen(rgb, px, n);
+		photo_space_jpeg(space, file);
+	}
 	free(px);
 	return ok ? true : err_set(err, "is damaged (%.200s): copy it from the camera again", why);
 }
@@ -76,7 +78,7 @@ static void png_warned(png_structp png, const char *why)
 }
 
 /* Everything becomes RGB of the file's depth; rows: one pointer for each line. */
-static bool read_rows(png_structp png, png_infop info, struct png_source *s, const struct photo *photo,
+static bool read_rows(png_structp png, png_infop info, struct png_source *s, const struct photo *photo, struct photo_space *space,
                       png_bytep *rows)
 {
 	if (setjmp(s->failed))
@@ -84,6 +86,12 @@ static bool read_rows(png_structp png, png_infop info, struct png_source *s, con
 	png_set_read_fn(png, s, png_feed);
 	png_set_user_limits(png, (png_uint_32)photo->width, (png_uint_32)photo->height);
 	png_read_info(png, info);
+	png_charp name;
+	png_bytep icc;
+	png_uint_32 size;
+	int method;
+	if (png_get_iCCP(png, info, &name, &method, &icc, &size))
+		photo_space_take(space, (struct bytes){ icc, size });
 	png_set_expand(png);
 	png_set_strip_alpha(png);
 	png_set_gray_to_rgb(png);
@@ -98,7 +106,7 @@ static bool read_rows(png_structp png, png_infop info, struct png_source *s, con
 	return true;
 }
 
-bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err)
+bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err)
 {
 	struct png_source s = { .file = file };
 	png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, png_failed, png_warned);
@@ -110,7 +118,7 @@ bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct bytes fil
 	png_bytep *rows = mem_new((size_t)photo->height, sizeof *rows);
 	for (size_t y = 0; y < (size_t)photo->height; y++)
 		rows[y] = px ? px + y * line : (png_bytep)(rgb + y * line);
-	bool ok = read_rows(png, info, &s, photo, rows);
+	bool ok = read_rows(png, info, &s, photo, space, rows);
 	if (ok && px)
 		photo_widen(rgb, px, n);
 	png_destroy_read_struct(&png, &info, 0);

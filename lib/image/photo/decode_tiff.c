@@ -168,7 +168,7 @@ static bool read_plain(TIFF *tif, const struct photo *photo, uint16_t *rgb, stru
 	return ok;
 }
 
-bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err)
+bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err)
 {
 	struct source s = { .file = file };
 	TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
@@ -177,6 +177,10 @@ bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct bytes fi
 	TIFF *tif = TIFFClientOpenExt("photograph", "rm", &s, feed, no_write, seek, no_close, size_of, 0, 0, options);
 	TIFFOpenOptionsFree(options);
 	bool ok = tif && read_plain(tif, photo, rgb, &s);
+	uint32_t size = 0;
+	void *icc = 0;
+	if (ok && TIFFGetField(tif, TIFFTAG_ICCPROFILE, &size, &icc))
+		photo_space_take(space, (struct bytes){ icc, size });
 	if (tif)
 		TIFFClose(tif);
 	return ok ? true : err_set(err, "is damaged (%s): save it again", *s.why ? s.why : "its pixels do not fit its header");

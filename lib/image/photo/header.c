@@ -1,7 +1,12 @@
+#include <fcntl.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "image/photo/heif.h"
 #include "image/photo/impl.h"
+#include "image/photo/raw.h"
+#include "image/photo/webp.h"
 
 enum { JPEG_SCANS_MAX = 200, PNG_CHUNKS_MAX = 100000 };
 
@@ -11,19 +16,11 @@ static const struct {
 	int at, n;
 	const char *advice;
 } refused[] = {
-	{ "ftyphei", 4, 7, "HEIC: save it as JPEG, PNG or 16-bit TIFF" },
-	{ "ftypmif1", 4, 8, "HEIF: save it as JPEG, PNG or 16-bit TIFF" },
-	{ "ftypavif", 4, 8, "AVIF: save it as JPEG, PNG or 16-bit TIFF" },
-	{ "ftypcrx", 4, 7, "a camera's raw file: develop it to 16-bit TIFF" },
 	{ "ftyp", 4, 4, "a video: photographs go into photos/, videos into video/" },
-	{ "WEBP", 8, 4, "WebP: save it as JPEG, PNG or 16-bit TIFF" },
 	{ "GIF8", 0, 4, "GIF: 256 colours are too few, photograph it as JPEG" },
 	{ "BM", 0, 2, "BMP: save it as PNG" },
 	{ "8BPS", 0, 4, "Photoshop: export it as 16-bit TIFF" },
 	{ "%PDF", 0, 4, "PDF, must be a photograph" },
-	{ "FUJIFILMCCD-RAW", 0, 15, "a camera's raw file: develop it to 16-bit TIFF" },
-	{ "IIU\0", 0, 4, "a camera's raw file: develop it to 16-bit TIFF" },
-	{ "IIRO", 0, 4, "a camera's raw file: develop it to 16-bit TIFF" },
 	{ "\0\0\0\fjP  ", 0, 8, "JPEG 2000: save it as JPEG, PNG or 16-bit TIFF" },
 };
 
@@ -32,17 +29,37 @@ static bool starts(struct bytes file, const char *magic, size_t n)
 	return file.n >= n && !memcmp(file.p, magic, n);
 }
 
+/* What tells the kinds apart. The raw kinds that are TIFF files inside are told by their tags (tiff.c), but for Canon's. */
+static const struct {
+	const char *magic;
+	int at, n;
+	enum photo_kind kind;
+} kinds[] = {
+	{ "\xff\xd8\xff", 0, 3, PHOTO_JPEG }, { "\x89PNG\r\n\x1a\n", 0, 8, PHOTO_PNG }, { "CR\2", 8, 3, PHOTO_RAW },
+	{ "II*\0", 0, 4, PHOTO_TIFF }, { "MM\0*", 0, 4, PHOTO_TIFF }, { "II+\0", 0, 4, PHOTO_TIFF }, { "MM\0+", 0, 4, PHOTO_TIFF },
+	{ "\x76\x2f\x31\x01", 0, 4, PHOTO_EXR }, { "ftyphei", 4, 7, PHOTO_HEIF }, { "ftypmif1", 4, 8, PHOTO_HEIF },
+	{ "ftypavif", 4, 8, PHOTO_HEIF }, { "WEBP", 8, 4, PHOTO_WEBP }, { "ftypcrx", 4, 7, PHOTO_RAW },
+	{ "FUJIFILMCCD-RAW", 0, 15, PHOTO_RAW }, { "IIU\0", 0, 4, PHOTO_RAW }, { "IIRO", 0, 4, PHOTO_RAW }, { "IIRS", 0, 4, PHOTO_RAW },
+	{ "MMOR", 0, 4, PHOTO_RAW },
+};
+
 static enum photo_kind kind_of(struct bytes file)
 {
-	if (starts(file, "\xff\xd8\xff", 3))
-		return PHOTO_JPEG;
-	if (starts(file, "\x89PNG\r\n\x1a\n", 8))
-		return PHOTO_PNG;
-	if (starts(file, "II*\0", 4) || starts(file, "MM\0*", 4) || starts(file, "II+\0", 4) || starts(file, "MM\0+", 4))
-		return PHOTO_TIFF;
-	if (starts(file, "\x76\x2f\x31\x01", 4))
-		return PHOTO_EXR;
+	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+		if (starts(bytes_from(file, (size_t)kinds[i].at), kinds[i].magic, (size_t)kinds[i].n))
+			return kinds[i].kind;
 	return PHOTO_NONE;
+}
+
+enum photo_kind photo_kind_of(const char *path)
+{
+	uint8_t head[32];
+	// Not to wait for a pipe's other end.
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	ssize_t n = fd >= 0 ? read(fd, head, sizeof head) : -1;
+	if (fd >= 0)
+		close(fd);
+	return n > 0 ? kind_of((struct bytes){ head, (size_t)n }) : PHOTO_NONE;
 }
 
 static bool refuse_kind(struct bytes file, struct err *err)
@@ -50,7 +67,7 @@ static bool refuse_kind(struct bytes file, struct err *err)
 	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
 		if (starts(bytes_from(file, (size_t)refused[i].at), refused[i].magic, (size_t)refused[i].n))
 			return err_set(err, "is %s", refused[i].advice);
-	return err_set(err, "is no photograph: must be JPEG, PNG, TIFF or EXR");
+	return err_set(err, "is no photograph: must be JPEG, PNG, TIFF, HEIC, AVIF, WebP, EXR or a camera's raw file");
 }
 
 /* SOF0 to SOF15 without DHT, JPG and DAC, which share their numbers. */
@@ -154,12 +171,17 @@ bool photo_header(struct photo *photo, const void *data, size_t size, double lim
 		[PHOTO_PNG] = parse_png,
 		[PHOTO_TIFF] = photo_parse_tiff,
 		[PHOTO_EXR] = photo_parse_exr,
+		[PHOTO_HEIF] = photo_parse_heif,
+		[PHOTO_WEBP] = photo_parse_webp,
+		[PHOTO_RAW] = photo_parse_raw,
 	};
 	photo->kind = kind_of(file);
 	if (photo->kind == PHOTO_NONE)
 		return refuse_kind(file, err);
 	struct err why = { 0 };
 	bool ok = parse[photo->kind](photo, file, &why);
+	if (ok && photo->kind == PHOTO_RAW && !photo->width)  // a TIFF file that turned out to be one
+		ok = photo_parse_raw(photo, file, &why);
 	// The size first: of two faults it is the one that no new copy mends.
 	double mpx = 1e-6 * photo->width * photo->height;
 	if (mpx > limit_mpx)

@@ -2,7 +2,7 @@
  */
 #ifndef IMAGE_PHOTO_HEIF_H
 #define IMAGE_PHOTO_HEIF_H
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 /* Reads the boxes of the file: upright width and height (its own turns and mirrors are applied on decoding), bits, EXIF. False, err
  * set, where it is damaged, holds several pictures (a burst, a film), or libheif is not there. */

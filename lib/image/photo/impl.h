@@ -2,6 +2,7 @@
 #ifndef IMAGE_PHOTO_IMPL_H
 #define IMAGE_PHOTO_IMPL_H
 #include "image/photo/photo.h"
+#include "image/photo/profile.h"
 
 /* Bytes of a stranger's file. Reads past the end give 0: every parser then runs into its own checks. */
 struct bytes {
@@ -31,6 +32,7 @@ static inline uint32_t bytes_le(struct bytes b, size_t at, int n)
 }
 
 /* Each fills width, height, bits, grey and exif; false, err set, when the file should not be decoded. */
+/* Of a raw file it sets kind alone. */
 bool photo_parse_tiff(struct photo *photo, struct bytes file, struct err *err);
 bool photo_parse_exr(struct photo *photo, struct bytes file, struct err *err);
 
@@ -47,10 +49,26 @@ void photo_focal(struct photo_exif *exif, const struct photo_lens *lens, int wid
 /* A block of EXIF data as JPEG and PNG carry it: TIFF header first. */
 void photo_exif_block(struct photo *photo, struct bytes tiff);
 
-/* Decoders: encoded values of what photo_header has accepted, rgb[height][width][3] before orientation. */
-bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err);
-bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err);
-bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct bytes file, struct err *err);
+/* In which colour space a decoder's values are: an ICC profile (owned; null: none), or else code points. */
+struct photo_space {
+	uint8_t *icc;
+	size_t size;
+	struct photo_cicp cicp;
+};
+
+/* No profile is longer; those of printers, which are refused, reach a few megabytes. */
+#define PHOTO_ICC_MOST ((size_t)16 << 20)
+
+/* A copy of the profile's bytes, where there are any, and not too many. */
+void photo_space_take(struct photo_space *space, struct bytes icc);
+
+/* The profile that a JPEG carries in its segments APP2; none where a part of it is missing or it has none. */
+void photo_space_jpeg(struct photo_space *space, struct bytes file);
+
+/* Decoders: encoded values of what photo_header has accepted, rgb[height][width][3] before orientation, and their colour space. */
+bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
+bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
+bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
 
 /* 8-bit values times 257, n of them. */
 void photo_widen(uint16_t *out, const uint8_t *in, size_t n);

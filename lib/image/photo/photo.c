@@ -6,7 +6,10 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "image/photo/heif.h"
 #include "image/photo/impl.h"
+#include "image/photo/raw.h"
+#include "image/photo/webp.h"
 
 /* Linear values are kept as sRGB code values of 16 bits, as every other kind comes. */
 static bool decode_exr(const struct photo *photo, uint16_t *rgb, const char *path, double limit_mpx, struct err *err)
@@ -27,22 +30,37 @@ static bool decode_exr(const struct photo *photo, uint16_t *rgb, const char *pat
 	return same ? true : err_set(err, "has a size that is not the one its header gives");
 }
 
-static bool decode(const struct photo *photo, uint16_t *rgb, struct bytes file, const char *path, double limit_mpx,
-                   struct err *err)
+static bool decode(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, const char *path,
+                   double limit_mpx, struct err *err)
 {
 	switch (photo->kind) {
 	case PHOTO_JPEG:
-		return photo_decode_jpeg(photo, rgb, file, err);
+		return photo_decode_jpeg(photo, rgb, space, file, err);
 	case PHOTO_PNG:
-		return photo_decode_png(photo, rgb, file, err);
+		return photo_decode_png(photo, rgb, space, file, err);
 	case PHOTO_TIFF:
-		return photo_decode_tiff(photo, rgb, file, err);
+		return photo_decode_tiff(photo, rgb, space, file, err);
 	case PHOTO_EXR:
 		return decode_exr(photo, rgb, path, limit_mpx, err);
+	case PHOTO_HEIF:
+		return photo_decode_heif(photo, rgb, space, file, err);
+	case PHOTO_WEBP:
+		return photo_decode_webp(photo, rgb, space, file, err);
+	case PHOTO_RAW:
+		return photo_decode_raw(photo, rgb, file, err);
 	case PHOTO_NONE:
 		break;
 	}
 	return err_set(err, "is no photograph");
+}
+
+/* To sRGB. */
+static bool convert(struct photo *photo, const struct photo_space *space, struct err *err)
+{
+	size_t n = (size_t)photo->width * (size_t)photo->height;
+	if (space->size)
+		return photo_profile_apply(photo->profile, photo->rgb, n, photo->grey, space->icc, space->size, err);
+	return photo_cicp_apply(photo->profile, photo->rgb, n, &space->cicp, err);
 }
 
 /* EXIF 2.3, tag 274: orientations 5 to 8 exchange the axes; each but 1 and 5 reverses one or both. */
@@ -79,7 +97,10 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 	bool ok = photo_header(photo, data, size, limit_mpx, &why);
 	if (ok) {
 		photo->rgb = mem_array((size_t)photo->width * (size_t)photo->height * 3, sizeof *photo->rgb);
-		ok = decode(photo, photo->rgb, (struct bytes){ (const uint8_t *)data, size }, path, limit_mpx, &why);
+		struct photo_space space = { 0 };
+		ok = decode(photo, photo->rgb, &space, (struct bytes){ (const uint8_t *)data, size }, path, limit_mpx, &why)
+		     && convert(photo, &space, &why);
+		free(space.icc);
 	}
 	free(data);
 	if (!ok) {

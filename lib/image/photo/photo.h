@@ -9,7 +9,7 @@
 
 #include "image/image.h"
 
-enum photo_kind { PHOTO_NONE, PHOTO_JPEG, PHOTO_PNG, PHOTO_TIFF, PHOTO_EXR };
+enum photo_kind { PHOTO_NONE, PHOTO_JPEG, PHOTO_PNG, PHOTO_TIFF, PHOTO_EXR, PHOTO_HEIF, PHOTO_WEBP, PHOTO_RAW };
 
 struct photo_exif {
 	int orientation;    // 1..8; 1 where not given
@@ -25,8 +25,12 @@ struct photo {
 	bool grey;          // one channel in the file
 	enum photo_kind kind;
 	struct photo_exif exif;
+	char profile[64];   // name of the colour space that the pixels were converted from; "": sRGB, or none was stated
 	uint16_t *rgb;      // [height][width][3]; encoded values (sRGB), 8-bit ones times 257; owned
 };
+
+/* The kind of a file by its first bytes; PHOTO_NONE where it cannot be read or is none. */
+enum photo_kind photo_kind_of(const char *path);
 
 /* Looks at the head and the tail of a file in memory: kind from its bytes (never from its name), dimensions,
  * channels, bits, whether it is whole. False, err set (rule broken), when it should not be decoded:

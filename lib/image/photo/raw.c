@@ -11,7 +11,7 @@
 
 #define RAW_API(X) \
 	X(libraw_close) X(libraw_dcraw_clear_mem) X(libraw_dcraw_make_mem_image) X(libraw_dcraw_process) X(libraw_init) \
-	X(libraw_open_buffer) X(libraw_strerror) X(libraw_unpack)
+	X(libraw_open_buffer) X(libraw_set_dataerror_handler) X(libraw_strerror) X(libraw_unpack)
 
 #define ONE(name) __typeof__(name) *name;
 static struct { RAW_API(ONE) } api;
@@ -55,8 +55,7 @@ static libraw_data_t *open_raw(bool *damaged, struct bytes file, struct err *err
 		err_set(err, "cannot start the raw decoder");
 		return 0;
 	}
-	raw->callbacks.data_cb = on_damage;
-	raw->callbacks.datacb_data = damaged;
+	api.libraw_set_dataerror_handler(raw, on_damage, damaged);
 	libraw_output_params_t *p = &raw->params;
 	p->use_camera_wb = 1;
 	p->output_color = 1;      // sRGB

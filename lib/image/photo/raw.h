@@ -3,7 +3,7 @@
  */
 #ifndef IMAGE_PHOTO_RAW_H
 #define IMAGE_PHOTO_RAW_H
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 /* Size (upright), lens and camera. False, err set, where libraw does not know the camera or the file is cut short. */
 bool photo_parse_raw(struct photo *photo, struct bytes file, struct err *err);

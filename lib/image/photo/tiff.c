@@ -103,12 +103,17 @@ static bool is_whole(const struct ifd *d)
 	return true;
 }
 
+/* A camera's raw file: the first picture is a thumbnail, or one of a colour filter array, or the file is a DNG. */
+static bool is_raw(const struct ifd *d)
+{
+	struct entry e;
+	return (int)number(d, TAG_SUBFILE, 0) & 1 || (int)number(d, TAG_PHOTOMETRIC, -1) == 32803 || find(d, TAG_DNG, &e)
+	       || find(d, TAG_CFA, &e);
+}
+
 static bool check_pixels(struct photo *photo, const struct ifd *d, struct err *err)
 {
 	int photometric = (int)number(d, TAG_PHOTOMETRIC, -1), samples = (int)number(d, TAG_SAMPLES, 1);
-	struct entry e;
-	if ((int)number(d, TAG_SUBFILE, 0) & 1 || photometric == 32803 || find(d, TAG_DNG, &e) || find(d, TAG_CFA, &e))
-		return err_set(err, "is a camera's raw file: develop it to 16-bit TIFF");
 	if (photometric == 5)
 		return err_set(err, "is a CMYK picture: convert it to RGB");
 	if (photometric < 0 || (photometric > 3 && photometric != 6))
@@ -157,6 +162,10 @@ bool photo_parse_tiff(struct photo *photo, struct bytes file, struct err *err)
 		return err_set(err, "is a camera's raw file: develop it to 16-bit TIFF");
 	if (!open_ifd(&d, get(&d, 4, 4)))
 		return err_set(err, "is truncated: the TIFF's index lies behind its end; copy it again");
+	if (is_raw(&d)) {
+		photo->kind = PHOTO_RAW;
+		return true;
+	}
 	double width = number(&d, TAG_WIDTH, 0), height = number(&d, TAG_HEIGHT, 0);
 	if (width > 1 << 30 || height > 1 << 30)
 		return err_set(err, "%.0f x %.0f px: no photograph is that large", width, height);

@@ -2,7 +2,7 @@
  */
 #ifndef IMAGE_PHOTO_WEBP_H
 #define IMAGE_PHOTO_WEBP_H
-#include "image/photo/parse.h"
+#include "image/photo/impl.h"
 
 /* Walks the RIFF chunks: size, EXIF; false, err set, where one of them is cut off, or the file is an animation. */
 bool photo_parse_webp(struct photo *photo, struct bytes file, struct err *err);

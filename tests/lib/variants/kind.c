@@ -229,7 +229,7 @@ struct blob encode_heif(const struct pixels *p, int bits, bool avif, struct blob
 		return out;
 	}
 	heif_encoder_set_lossy_quality(encoder, 100);
-	heif_encoder_set_parameter_string(encoder, "chroma", "444");
+	// 4:2:0 stays: with 4:4:4 x265 writes beyond its own memory, and aom stops at an assertion.
 	struct heif_image *image = 0;
 	heif_image_create(p->width, p->height, heif_colorspace_RGB, bits > 8 ? heif_chroma_interleaved_RRGGBB_LE : heif_chroma_interleaved_RGB, &image);
 	heif_image_add_plane(image, heif_channel_interleaved, p->width, p->height, bits);
@@ -255,6 +255,7 @@ struct blob encode_heif(const struct pixels *p, int bits, bool avif, struct blob
 		heif_nclx_color_profile_set_color_primaries(nclx, (uint16_t)primaries);
 		heif_nclx_color_profile_set_transfer_characteristics(nclx, 13);
 		nclx->full_range_flag = 1;
+		heif_nclx_color_profile_set_matrix_coefficients(nclx, 6);
 		heif_image_set_nclx_color_profile(image, nclx);
 		options->output_nclx_profile = nclx;
 		options->macOS_compatibility_workaround_no_nclx_profile = 0;

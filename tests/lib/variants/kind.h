@@ -27,7 +27,7 @@ struct blob with_icc_webp(struct blob webp, struct blob icc, int width, int heig
 /* Exact (lossless). */
 struct blob encode_webp(const struct pixels *p);
 
-/* Near-lossless HEIC or AVIF of 8 or 10 bits; icc.size 0: none, then the space is named by its code point of primaries (1, 12) where that is
+/* Near-lossless HEIC or AVIF of 8 or (HEIC) 10 bits; icc.size 0: none, then the space is named by its code point of primaries (1, 12) where that is
  * not 0. Empty where libheif has no encoder for it. */
 struct blob encode_heif(const struct pixels *p, int bits, bool avif, struct blob icc, int primaries);
 

@@ -216,7 +216,8 @@ static void faults_are_one_clear_line(void **state)
 	refused("text", "hello, world\n", 13, "is no photograph");
 	refused("one byte", "\xff", 1, "is no photograph");
 	refused("BMP", "BM..............", 16, "save it as PNG");
-	refused("HEIC", "\0\0\0\x18" "ftypheic", 12, "HEIC");
+	refused("HEIC", "\0\0\0\x18" "ftypheic", 12, "is damaged");
+	refused("WebP", "RIFF\x40\0\0\0WEBPVP8 ", 16, "truncated");
 	refused("raw", "II*\0\x10\0\0\0CR\2\0", 12, "raw file");
 	refused("BigTIFF", "II+\0\x08\0\0\0", 8, "BigTIFF");
 	refused_blob("CMYK JPEG", encode_jpeg(&q, 1), "CMYK");

@@ -102,15 +102,15 @@ static void profiles_are_honoured(void **state)
 		struct pixels p = patches();
 		struct photo photo = load(with_icc_png(encode_png(&p, 16), icc_of(spaces[s])));
 		assert_int_equal(*photo.profile != 0, s < 2);
-		compare(&photo, spaces[s], false, 0.25);
+		compare(&photo, spaces[s], false, 0.4);
 		photo = load(with_icc_png(encode_png(&p, 8), icc_of(spaces[s])));
-		compare(&photo, spaces[s], false, 0.3);
+		compare(&photo, spaces[s], false, 0.4);
 		photo = load(with_icc_jpeg(encode_jpeg(&p, 0), icc_of(spaces[s]), 1));
 		compare(&photo, spaces[s], true, 3);
 		photo = load(with_icc_jpeg(encode_jpeg(&p, 0), icc_of(spaces[s]), 3));
 		compare(&photo, spaces[s], true, 3);
 		photo = load(with_icc_webp(encode_webp(&p), icc_of(spaces[s]), W, H));
-		compare(&photo, spaces[s], false, 0.3);
+		compare(&photo, spaces[s], false, 0.4);
 		pixels_free(&p);
 	}
 }
@@ -182,7 +182,8 @@ static void heif_and_avif(void **state)
 	(void)state;
 	int met = 0;
 	for (int avif = 0; avif < 2; avif++)
-		for (int bits = 8; bits <= 10; bits += 2) {
+		// Debian 12's libheif has no encoder of AV1 with 10 bits: aom stops at an assertion.
+		for (int bits = 8; bits <= (avif ? 8 : 10); bits += 2) {
 			struct pixels p = patches();
 			struct blob file = encode_heif(&p, bits, avif, (struct blob){ 0 }, 0);
 			if (file.size) {
