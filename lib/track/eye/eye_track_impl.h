@@ -1,4 +1,4 @@
-/* eye_track_impl: one eye of eye_track, between the frames. */
+/* eye_track_impl: the state of one eye of eye_track, and what its files share. */
 #ifndef TRACK_EYE_EYE_TRACK_IMPL_H
 #define TRACK_EYE_EYE_TRACK_IMPL_H
 #include "track/eye/eye_track.h"
@@ -9,15 +9,15 @@
 
 enum { EYE_STILL_SIDE = 24 };
 
-/* What the fit over the whole clip needs of a frame. */
+/* What the fit over the whole clip keeps of a frame. */
 struct eye_record {
 	double cam_from_head[3][4];
 	double fick[2];
-	float mm;                  // px
+	float mm;                  // px in a millimetre
 	struct lid_found found;
-	long first_edge;           // in struct eye_side
+	long first_edge;           // index into eye_side.edge
 	int edges;                 // 0: no gaze
-	bool measured, open;       // lids were looked for; there was an opening
+	bool measured, open;       // lids were searched; an opening was found
 	bool still;
 };
 
@@ -27,12 +27,12 @@ struct eye_side {
 	const struct eye_track_conf *conf;
 	struct gaze_globe globe, first_globe;
 	double center_sigma[3], rms;
-	double center_guess;       // mm: how far the centre may be off what was given
+	double center_guess;       // mm: standard deviation of the centre given
 	double canthus[2][3];      // head frame
 	bool corners_guessed;      // until lids are found
 	double fick[2];            // last gaze
-	bool have;                 // it is of the last frame but for a blink
-	double lost_s;             // seconds without gaze
+	bool have;                 // fick is valid: measured less than a second ago
+	double lost_s;             // seconds since gaze was measured
 	double contrast;           // grey levels from iris to sclera
 	struct lid_track lids;
 	struct gaze_torsion torsion;
@@ -56,43 +56,44 @@ struct eye_track {
 /* Camera of a frame; an unknown focal length is that of a camera one metre away. */
 void eye_view(struct gaze_view *view, const struct eye_scene *scene, const double cam_from_head[3][4]);
 
-/* px of a millimetre at the eyeball's front. NAN behind the camera. */
+/* px in a millimetre at the eyeball's front; NAN behind the camera. */
 double eye_scale(const struct gaze_globe *globe, const struct gaze_view *view);
 
-/* Roughly where it looks, into eye->fick: near where it last did, else anywhere. Returns the score of gaze_seek(); from
- * EYE_FOUND on it is an eye. */
+/* Rough gaze into eye->fick by gaze_seek(): near the last gaze, else (or where `anywhere`) in a range of 36 degrees. Returns its score; from
+ * EYE_FOUND on an eye is there. */
 double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere);
 static const double EYE_FOUND = 0.35;
 
-/* Gaze and torsion between the lids found in this frame; nothing where they cannot be measured. */
+/* Gaze and torsion from what is visible between the lids of this frame; state is left as it was where they cannot be measured. */
 void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_side *eye, const struct luma *luma,
                  const struct gaze_view *view);
 
-/* One frame of one eye; the result is appended. */
+/* Measures one frame of one eye and appends the result. */
 void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);
 
-/* The looks of a frame that is not one of the clip's. */
+/* Learns the appearance of the eye from a frame without appending it. */
 void eye_side_learn(struct eye_side *eye, const struct eye_frame *frame);
 
-/* Lids of a frame into its state, as found. */
+/* Copies the lids found in a frame into its state. */
 void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int points);
 
-/* All frames once more with what the whole clip tells: eyeball, gaze, torsion, lids. */
+/* Estimates eyeball, gaze, torsion and lids of all frames again from the whole clip. */
 void eye_side_settle(struct eye_side *eye);
 
-/* All margins once more. */
+/* Estimates all margins again with the colours of the whole clip. */
 void eye_settle_lids(struct eye_side *eye);
 
-/* The eyeball as the clip has it. */
+/* The eyeball that was fitted. */
 void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye);
 
-/* After both have settled: what is not level by no more than the eyeballs' centres are unsure of is shared between them. */
+/* After both have settled: removes a constant vertical disparity between the eyes by shifting their centres in proportion to their variances.
+ * A disparity beyond three sigma is strabismus and is left. */
 void eye_pair_level(struct eye_side *left, struct eye_side *right);
 
-/* Openness and blinks of one eye, and its saccades; events are appended to clip. */
+/* Sets openness and blink of one eye's states; appends its blinks and saccades to clip. */
 void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side);
 
-/* Then: both eyes blink together. What one of them alone did, by less than a wink and while the other was open, was no blink. */
+/* After both: removes blinks that one eye made alone, shut by less than half while the other was open. */
 void eye_pair_blinks(struct eye_clip *clip, struct eye_side side[SIDES]);
 
 #endif

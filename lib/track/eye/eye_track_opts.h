@@ -1,4 +1,4 @@
-/* eye_track_opts: the numbers that shape eye_track, and their rows for a stage's option table. */
+/* eye_track_opts: settings of eye_track, and their rows of a stage's option table. */
 #ifndef TRACK_EYE_EYE_TRACK_OPTS_H
 #define TRACK_EYE_EYE_TRACK_OPTS_H
 #include "base/opt.h"
@@ -7,14 +7,14 @@ struct eye_track_conf {
 	int limbus_arcs;        // edges measured round the limbus
 	int lid_columns;        // profiles measured across a lid's margin
 	int lid_points;         // control points of a margin
-	double lid_wet;         // mm of tears between a lid's margin and what is seen of the eye
+	double lid_wet;         // mm: width of the tear meniscus between a lid's margin and the visible eye
 	int torsion_rays;       // directions of the iris pattern compared; 0: no torsion
-	double still;           // mean change of brightness, of 255, below which a frame is taken for the one before
+	double still;           // mean change of brightness, of 255, below which a frame counts as unchanged
 	double center_sigma;    // mm: eyeball centre off its prior, each way
 	double radius_sigma;    // mm: eyeball radius off its prior
 	double limbus_sigma;    // mm: limbus radius off eye.limbus_radius_mm
 	double saccade_speed;   // degrees/s above which the eye is in a saccade
-	double saccade_size;    // degrees: smaller ones are not told from noise
+	double saccade_size;    // degrees: smaller ones cannot be distinguished from noise
 	double blink_depth;     // share of the opening that must shut to count as a blink
 };
 

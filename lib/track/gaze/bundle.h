@@ -1,29 +1,28 @@
-/* gaze_bundle: eyeball, limbus and all directions of gaze of one eye together, from the edges of a whole clip.
- */
+/* bundle: bundle adjustment of one eye: globe, limbus radius and the gaze of every frame, from the limbus edges of a whole clip. */
 #ifndef TRACK_GAZE_BUNDLE_H
 #define TRACK_GAZE_BUNDLE_H
 #include "track/gaze/edge.h"
 
 struct gaze_frame {
 	struct gaze_view view;
-	double fick[2];           // in: roughly; out
+	double fick[2];           // h, v, radians; in: start; out: estimate
 	const struct gaze_edge *edge;
 	int n;
 };
 
 struct gaze_bundle_conf {
-	double center_sigma, radius_sigma, limbus_sigma;  // mm: how far the truth may be from the start
+	double center_sigma, radius_sigma, limbus_sigma;  // mm, standard deviations of the prior about the start
 };
 
 struct gaze_bundle_fit {
 	double sigma[GAZE_N];     // mm; of centre, radius, limbus (GAZE_X ..)
-	double rms;               // px, of the edges that agree
+	double rms;               // px, of the inliers
 	int iterations;
 };
 
-/* Robust (Tukey) Gauss-Newton with the directions eliminated frame by frame (Schur complement); at most 400 frames and 48
- * edges of each are used. globe: in, the start and the centre of the prior. False: fewer than two frames, or singular;
- * globe then is as it was. */
+/* Gauss-Newton with Tukey weights; the directions are eliminated frame by frame (Schur complement). At most 400 frames and 48
+ * edges of each are used. globe: in: start and mean of the prior; out: estimate.
+ * Returns false, globe unchanged, with fewer than two frames or a singular system. */
 bool gaze_bundle_fit(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n, struct gaze_frame frame[],
                    const struct gaze_bundle_conf *conf);
 

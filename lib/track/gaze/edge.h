@@ -1,5 +1,4 @@
-/* gaze_edge: where the limbus is in one frame: edges along the normals of the expected one, and the direction of gaze
- * that fits them.
+/* edge: limbus edges of one frame, searched along the normals of the expected limbus, and the direction of gaze fitted to them.
  */
 #ifndef TRACK_GAZE_EDGE_H
 #define TRACK_GAZE_EDGE_H
@@ -14,7 +13,7 @@ struct luma {
 	int width, height, stride;
 };
 
-/* Bilinear, clamped; px with the first centre at 0.5. */
+/* Bilinear, clamped at the border; x, y px, centre of the first pixel (0.5, 0.5). */
 static inline double luma_at(const struct luma *luma, double x, double y)
 {
 	double u = x - 0.5, v = y - 0.5;
@@ -45,22 +44,23 @@ struct gaze_search {
 	const void *ctx;
 };
 
-/* The strongest dark-to-bright step of each arc, to a fraction of a pixel: the peak of the difference of the means on
- * both sides, which blur and motion do not move. Returns how many arcs show one. */
+/* Finds on each arc the strongest dark-to-bright step along the normal, to a fraction of a pixel: the peak of the difference between the means on
+ * both sides, which blur and motion do not shift. fick: expected gaze. Returns how many arcs have one. */
 int gaze_edges(struct gaze_edge edge[GAZE_ARCS_MAX], const struct luma *luma, const struct gaze_globe *globe,
                const struct gaze_view *view, const double fick[2], const struct gaze_search *search);
 
 struct gaze_fit {
 	double fick[2];        // radians
 	double cov[2][2];      // radians², from the scatter
-	double bias;           // median distance of the edges outside the circle, mm on the limbus
+	double bias;           // radial offset of the edges from the circle, mm, positive outside
 	double rms;            // of the inliers' distances, px
-	double inliers;        // sum of the weights
+	double inliers;        // sum of the robust weights
 	double span;           // 0..1: how evenly the inliers lie round the limbus; 0 all in one place
 };
 
-/* Robust (Tukey) least squares of h and v, and of the circle's radius under the prior bias_sigma (mm), because an
- * edge's half height lies not where another's does; from fit->fick. False: too few edges agree. */
+/* Estimates h and v by least squares with Tukey weights, starting from fit->fick, together with a radial offset of all edges (prior
+ * standard deviation bias_sigma, mm): how far out a blurred limbus has its half height differs between eyes.
+ * Returns false when too few edges agree. */
 bool gaze_fit_edges(struct gaze_fit *fit, int n, const struct gaze_edge edge[], const struct gaze_globe *globe,
                     const struct gaze_view *view, double bias_sigma);
 

@@ -1,4 +1,4 @@
-/* gaze_globe: the limbus as a circle in space on an eyeball that turns about its centre, and what a camera sees of it.
+/* globe: the limbus as a circle in space on an eyeball that rotates about its centre, and its projection into a camera.
  * Head frame mm; eye axes: z out through the pupil, x and y those of the head turned by Fick's angles
  * Ry(h) Rx(-v) Rz(t). The limbus: radius `limbus` about the axis, at sqrt(radius² − limbus²) from the centre.
  */
@@ -19,29 +19,29 @@ struct gaze_view {
 	double cam_from_head[4][4];
 };
 
-/* Columns: the eye's x, y and z axes in the head frame. */
+/* Rotation of Fick angles (h, v, torsion, radians). Columns: the eye's x, y and z axes in the head frame. */
 void gaze_rotation(double head_from_eye[3][3], const double fick[3]);
 
-/* Distance of the plane of the limbus from the centre, mm; 0 where the circle is larger than the sphere. */
+/* Distance of the plane of the limbus from the globe's centre, mm; 0 where the circle is larger than the sphere. */
 double gaze_plane(const struct gaze_globe *globe);
 
 enum { GAZE_H, GAZE_V, GAZE_X, GAZE_Y, GAZE_Z, GAZE_RADIUS, GAZE_LIMBUS, GAZE_N };
 
 struct gaze_arc {
 	double p[2], normal[2];    // px, outward
-	double row[GAZE_N];        // d(p·normal) by h, v (radians), centre, radius, limbus (mm); only where asked for
+	double row[GAZE_N];        // Jacobian: d(p·normal) by h, v (radians), centre, radius, limbus (mm); only with_row
 };
 
-/* One place of the limbus, `angle` from the eye's x axis towards its y axis. with_row: fills row. False: behind the
- * camera. */
+/* Projects the point of the limbus at `angle` (radians from the eye's x axis towards its y axis). fick: h, v, radians. with_row: fills row.
+ * Returns false when it is behind the camera. */
 bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
               const double fick[2], double angle, bool with_row);
 
-/* Pixel of a point of the eye frame (origin at the eyeball's centre). */
+/* Pixel of a point of the eye frame (origin at the globe's centre, mm); false behind the camera. */
 bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, const double fick[3],
                 const double point_in_eye[3]);
 
-/* The ellipse of the limbus, px, to a fraction of a pixel (exact but for distortion). */
+/* The ellipse that the limbus projects to, px (exact but for lens distortion); false behind the camera. */
 bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struct gaze_view *view,
                   const double fick[2]);
 

@@ -1,5 +1,5 @@
-/* gaze_torsion: how far an eye is turned about its line of sight: the pattern of its iris on rings about the axis, seen
- * through the cornea, turned until it lies on what it was before.
+/* torsion: rotation of an eye about its line of sight, by correlating the iris pattern, sampled on rings about the axis as seen through the
+ * cornea, with the pattern of the frames before.
  */
 #ifndef TRACK_GAZE_TORSION_H
 #define TRACK_GAZE_TORSION_H
@@ -15,7 +15,7 @@ struct gaze_torsion {
 	double last;                    // radians
 };
 
-/* seen, ctx: as in struct gaze_search. eye: sizes for a usual limbus; scaled to globe's. */
+/* One frame. seen, ctx: as in struct gaze_search. eye: sizes of an average eye; scaled to globe's limbus. fick: h, v, radians. */
 struct torsion_look {
 	const struct luma *luma;
 	const struct gaze_globe *globe;
@@ -26,8 +26,8 @@ struct torsion_look {
 	const void *ctx;
 };
 
-/* torsion, sigma in radians, against the first frame, which is given the torsion `first`. False: too little iris to be seen,
- * or it is not like what it was. */
+/* Estimates torsion and its sigma (radians) and adds the frame to the pattern. The first frame has the torsion `first` by definition.
+ * Returns false when too little of the iris is visible or it does not match the pattern. */
 bool gaze_torsion(double *torsion, double *sigma, struct gaze_torsion *state, const struct torsion_look *look,
                   double first);
 

@@ -1,5 +1,5 @@
-/* head_find: a head in a picture, by the openings of its eyes: what lies in them, sclera, iris and pupil, has another colour
- * than the skin round them, whoever it is.
+/* find: coarse head pose in a picture, from the openings of its eyes: sclera, iris and pupil differ in colour from the skin around them,
+ * in any person.
  * Head frame  the subject mesh's axes, mm.  Image  px, centre of the first pixel (0.5, 0.5).
  */
 #ifndef TRACK_HEAD_FIND_H
@@ -10,10 +10,10 @@
 
 struct head_find_conf {
 	double width[2];       // of an opening, as a share of the picture's: least, most
-	double roll;           // degrees: heads leaning more are not looked for
-	double turn_sigma;     // degrees: how far the face may be turned from the camera
-	double min_score;      // below it there are no eyes
-	double edge;           // px at 1280: how far off an outline may begin
+	double roll;           // degrees: largest roll searched
+	double turn_sigma;     // degrees: standard deviation of the face's turn from the camera
+	double min_score;      // below it no eyes are reported
+	double edge;           // px at a width of 1280: search range of the refinement
 };
 
 #define HEAD_FIND_OPTS(c) \
@@ -25,18 +25,19 @@ struct head_find_conf {
 
 struct head_found {
 	double cam_from_head[4][4];
-	bool seen[2];          // openings in the picture, left and right
-	double score;          // contrast of openings against skin, in its spread
+	bool seen[2];          // openings visible in the picture, left and right
+	double score;          // contrast of openings against skin, in units of its spread
 	double edge_px;        // rms of the outlines found against the mesh's; NAN: not refined
 };
 
-/* rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. upside_down: heads
- * that are so, instead of upright ones; openings alone hardly tell the two apart. False: no eyes. */
+/* Slides the outlines of the openings, in a range of sizes and rolls, over a reduced picture, and takes the pose of best contrast.
+ * rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. upside_down: searches for an inverted head
+ * instead of an upright one; openings alone hardly distinguish the two. found: overwritten. Returns false when no eyes are found. */
 bool head_find(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
                const struct eye_opening opening[2], bool upside_down, const struct head_find_conf *conf);
 
-/* From where the picture shows the left and the right eye, px, however it was found: facing the camera. False: the subject has
- * not two open eyes. */
+/* Pose of a head that faces the camera, from the pixels of the left and the right eye (a detector's). found: overwritten.
+ * Returns false when the subject has not two open eyes. */
 bool head_find_from_eyes(struct head_found *found, const double eye[2][2], const struct camera *camera, const struct eye_opening opening[2]);
 
 #endif

@@ -1,4 +1,4 @@
-/* refine: a head pose refined by the outlines of the eyes' openings.
+/* refine: head pose refined by the outlines of the eyes' openings in the picture.
  * Head frame  the subject mesh's axes, mm.  Image  px, centre of the first pixel (0.5, 0.5).
  */
 #ifndef TRACK_HEAD_REFINE_H
