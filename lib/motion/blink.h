@@ -1,6 +1,6 @@
-/* blink: when the eyes blink, how far, and how the lids go down and up.
+/* blink: onset, amplitude and time course of blinks.
  * Spontaneous blinks as in the skin paper's table 3.1, truncated: a frequency below the least has no meaning. Both phases
- * follow the way of minimum jerk (Flash and Hogan 1985), whose ratio of peak to mean speed, 1.875, is that of lids
+ * follow the path of minimum jerk (Flash and Hogan 1985), whose ratio of peak to mean speed, 1.875, is that of lids
  * (Evinger et al. 1984); the durations grow linearly with the amplitude (Evinger et al. 1991; Guitton et al. 1991).
  * Time seconds, amplitudes degrees of lid rotation.
  */
@@ -23,19 +23,20 @@ struct blink {
 	double amplitude, closure;     // degrees; share of the opening that is shut at the deepest
 };
 
-/* amplitude degrees. */
+/* A blink that starts at `start` (s); amplitude degrees. */
 struct blink blink_make(double start, double amplitude, const struct blink_conf *conf);
 
-/* Seconds to the next spontaneous blink; its amplitude. */
+/* Draws the seconds to the next spontaneous blink; its amplitude, degrees. */
 double blink_interval(struct rng *rng, const struct blink_conf *conf);
 double blink_amplitude(struct rng *rng, const struct blink_conf *conf);
 
-/* 0 open .. closure, at time t. */
+/* Closure of the lids at time t (s, at or after the onset): 0 open .. blink->closure. */
 double blink_closure(const struct blink *blink, double t);
 
-/* Rotation of the eye that goes with it, 0..1 of eye_deg: over before the lids are (Riggs et al.). */
+/* Rotation of the eye meanwhile, 0..1 of eye_deg; it ends before the lids' motion does (Riggs et al. 1987). */
 double blink_eye(const struct blink *blink, double t);
 
+/* Time (s) at which the lids are open again. */
 double blink_end(const struct blink *blink);
 
 #endif

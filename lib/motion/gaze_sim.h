@@ -1,5 +1,5 @@
-/* gaze_sim: eyes that look where they are told to: saccades, smooth pursuit, vestibulo-ocular reflex, vergence, in steps
- * of one millisecond. Not the muscles: what comes out of them.
+/* gaze_sim: eyes that follow a target: saccades, smooth pursuit, vestibulo-ocular reflex, vergence, in steps of one millisecond. A kinematic
+ * model, not one of the muscles.
  * Directions: degrees, horizontal (towards the person's left) and vertical (up), as Fick angles: of the target in the
  * world (the head's axes while it looks straight ahead), of the eyes in the head. Distances mm, time seconds.
  *
@@ -30,7 +30,7 @@ struct gaze_conf {
 	double ipd;                 // mm between the eyes' centres
 };
 
-/* What is looked at and what the head does at a time: filled in by the caller. */
+/* Target and head at a time: filled in by the caller. */
 struct gaze_input {
 	double target[2];           // world
 	double distance;            // of the target from between the eyes; INFINITY: far
@@ -44,25 +44,25 @@ struct gaze_output {
 	bool in_saccade;
 };
 
-struct gaze_saccade {
+struct gaze_saccade {           // s, degrees, s, degrees/s
 	double start, amplitude, duration, peak;
 };
 
 struct gaze_sim;
+/* Copies conf; source is called with ctx for every millisecond. gaze_sim_free, which accepts null. */
 struct gaze_sim *gaze_sim_new(const struct gaze_conf *conf, gaze_source *source, void *ctx, uint64_t seed);
 void gaze_sim_free(struct gaze_sim *sim);
 
-/* Advances to time t (not before the last one) and says how the eyes stand. */
+/* Advances to time t (s, not before the last one). out: the eyes at t. */
 void gaze_sim_at(struct gaze_sim *sim, double t, struct gaze_output *out);
 
 /* The saccades so far, in order; owned by sim. */
 const struct gaze_saccade *gaze_sim_saccades(const struct gaze_sim *sim, int *n);
 
-/* Both eyes' angles for a cyclopean direction in the head and a distance along it. */
+/* Angles of both eyes (vergence, then Listing's law) for a cyclopean direction in the head and a distance along it (mm; INFINITY: far). */
 void gaze_eyes(double eye[2][3], const double direction[2], double distance, double ipd);
 
-/* Torsion (degrees, Fick's) that Listing's law gives an eye at those angles: its rotation from straight ahead has its axis
- * in the frontal plane. */
+/* Fick torsion (degrees) of an eye at those angles by Listing's law: the axis of its rotation from straight ahead lies in the frontal plane. */
 double listing_torsion(double horizontal, double vertical);
 
 #endif

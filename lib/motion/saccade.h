@@ -1,4 +1,4 @@
-/* saccade: the main sequence and the course of one saccade.
+/* saccade: main sequence and time course of one saccade.
  * Duration grows linearly with amplitude (Bahill, Clark and Stark 1975; Carpenter 1988); peak velocity is a constant times
  * the mean velocity (Evinger et al. 1984; Becker 1989), which makes it saturate as measured. The velocity is a skewed bell,
  * t^a (1 - t)^b: human trajectories are neither bang-bang nor of minimum jerk (Harwood, Mezey and Harris 1999), and decelerate
@@ -21,7 +21,7 @@ struct saccade {
 	double course[SACCADE_TABLE + 1];     // share of the way after i / SACCADE_TABLE of the duration
 };
 
-/* amplitude >= 0. */
+/* saccade: overwritten. amplitude: degrees, >= 0. */
 void saccade_make(struct saccade *saccade, double amplitude, const struct saccade_conf *conf);
 
 /* Share of the way after t seconds: 0 before, 1 after. */

@@ -1,4 +1,4 @@
-/* scene: where a video draws the eye, one place after the other. */
+/* scene: fixations of somebody who watches a video, by saliency (image/saliency.h) with inhibition of return. */
 #ifndef MOTION_SCENE_H
 #define MOTION_SCENE_H
 #include "base/stage.h"
@@ -13,7 +13,8 @@ struct scene_conf {
 	uint64_t seed;
 };
 
-/* places: scene_places_free. */
+/* Reads the video `rel` (relative to the capture). places: overwritten; scene_places_free in any case.
+ * Returns false, err set, when it cannot be read or its frames differ in size. */
 bool scene_places(struct animate_places *places, struct stage *stage, const char *rel, const struct scene_conf *conf,
                   struct err *err);
 void scene_places_free(struct animate_places *places);

@@ -1,4 +1,4 @@
-/* script: what somebody wants the eyes to do, out of a .csv file of keyframes or of recorded gaze.
+/* script: keyframes or recorded gaze, from a .csv file.
  *
  * Keyframes: time_s and any of these columns; an empty field is no key.
  *     horizontal_deg, vertical_deg   where to look, of the world: towards the person's left, up (both or neither)
@@ -34,12 +34,13 @@ struct script {
 	struct script_track *au;        // [n_au]
 	int n_au;
 	long n;                         // rows of recorded gaze
-	double *time, *g;               // [n], [n][inputs of the model]: NAN where not recorded
-	double *screen;                 // [n][2] px
+	double *time, *g;               // [n] s, [n][inputs of the model], units of gaze.csv; NAN where not recorded
+	double *screen;                 // [n][2] px of a screen
 	bool has_apertures;
 };
 
-/* script_free in any case. False, err set (file, line, column, value, rule), for what is no such file. */
+/* script: overwritten; script_free in any case. model: names of its expressions. Returns false, err set (file, line, column, value, rule), when the
+ * file is neither. */
 bool script_read(struct script *script, const char *path, const struct skin_model *model, struct err *err);
 void script_free(struct script *script);
 

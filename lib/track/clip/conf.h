@@ -1,4 +1,4 @@
-/* conf: what config/track.conf and capture.conf say. */
+/* conf: settings of a clip, from config/track.conf and capture.conf. */
 #ifndef TRACK_CLIP_CONF_H
 #define TRACK_CLIP_CONF_H
 #include "anatomy/keys.h"
@@ -19,21 +19,21 @@ struct track_conf {
 	double unit_mm, eye_radius;                  // subject.*: NAN where not given
 	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
 	struct opt_each_list landmark_px, expression;
-	double distance_mm;    // of the face from a camera of which nothing is known
+	double distance_mm;    // of the face from a camera of unknown focal length
 	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
-	int search;            // frames looked through for it; this and the spans below: of clips of more than 60 a second, as many as make the same time
-	int settle;            // frames in which the eyeballs' centres are looked for before the head's pose is settled
-	double settle_sigma, center_sigma;  // mm: eyeballs' centres meanwhile; how well the mesh knows them
+	int search;            // frames searched for it; this and the spans below are frames at 60 a second: scaled for faster clips
+	int settle;            // frames from which the eyeballs' centres are estimated to refine the reference pose; 0: none
+	double settle_sigma, center_sigma;  // mm, standard deviations of the eyeballs' centres: the prior meanwhile; those of the mesh
 	int points;            // of skin
 	struct {
-		int frames, span;  // so many, spread over so many of the clip
-	} look, doubt;         // that the reference is judged by; where the first raised a doubt
+		int frames, span;  // so many frames, spread over so many of the clip
+	} look, doubt;         // by which the reference is judged: at first; again where those raise a doubt
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
-	double meniscus_mm;    // that the edge of a lid's margin stands off the eye in the corners
-	double reach_mm;       // round an eyeball's centre
-	double gap_px;         // points are no closer
-	double cut;            // share of the points that must be seen again, or there was a cut
-	double still_pose_px;  // robust scale of a point off the head's motion
+	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
+	double reach_mm;       // points are followed within it of an eyeball's centre
+	double gap_px;         // least distance between points
+	double cut;            // share of the points that must be seen, or the clip was cut there
+	double still_pose_px;  // px: scale of the robust weights of a point off the rigid head
 };
 
 #define SETTLE_OPTS(c)                                                                                                              \

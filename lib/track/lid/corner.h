@@ -1,5 +1,5 @@
-/* lid_corner: the corners of an eye found again by the skin beside them: they give way when the eye turns and when the lids
- * are pressed together, a millimetre or two.
+/* corner: the corners of an eye tracked by the skin beside them. They move a millimetre or two when the eye turns and when the lids are pressed
+ * together.
  */
 #ifndef TRACK_LID_CORNER_H
 #define TRACK_LID_CORNER_H
@@ -14,7 +14,7 @@ struct lid_picture {
 	int stride, width, height;
 };
 
-/* The colour at a place, px, between the pixels; beyond the picture that of its edge. */
+/* Bilinear colour at x, y (px), 0..255; clamped at the border. */
 static inline void lid_picture_at(double out[3], const struct lid_picture *pic, double x, double y)
 {
 	double u = fmin(fmax(x - 0.5, 0), pic->width - 1.001), v = fmin(fmax(y - 0.5, 0), pic->height - 1.001);
@@ -29,11 +29,11 @@ static inline void lid_picture_at(double out[3], const struct lid_picture *pic, 
 
 struct lid_corner {
 	bool known;
-	uint8_t look[CORNER_SIDE][CORNER_SIDE];  // brightness beside the corner in the first frame
+	uint8_t look[CORNER_SIDE][CORNER_SIDE];  // template: brightness beside the corner in the first frame
 };
 
-/* Where corner `which` (0 inner, 1 outer) is: shift[2], columns and rows off the place that the chart was laid by. The first
- * call learns its looks and gives 0, 0. */
+/* Tracks corner `which` (0 inner, 1 outer) by template matching. shift: columns and rows off the corner that the chart was laid by, drawn
+ * towards 0 where the match is poor (blinks). The first call learns the template and gives 0, 0. */
 void lid_corner_find(double shift[2], struct lid_corner *corner, int which, const struct lid_chart *chart,
                      const struct lid_picture *picture);
 

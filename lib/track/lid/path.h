@@ -1,4 +1,4 @@
-/* lid_path: both margins of an opening on its chart, each as the best path through all columns.
+/* path: both margins of an opening on its chart, each the cheapest path through all columns (dynamic programming).
  */
 #ifndef TRACK_LID_PATH_H
 #define TRACK_LID_PATH_H
@@ -9,12 +9,12 @@ struct lid_curves {
 };
 
 struct lid_path_conf {
-	double sigma[2];       // rows: how far the upper, the lower margin may be from where it is expected, amid the eye
-	double certain;        // what a row of cells is worth, for each unit of its log odds
+	double sigma[2];       // rows: standard deviation of the upper, the lower margin about the expected one, midway between the corners
+	double certain;        // weight of a cell's log odds
 	double bend;           // cost of one row of change of slope against the expected one, squared
-	double edge;           // what a full edge is worth
-	double cross;          // what an edge costs that is taken for one inside the eye
-	double strip;          // what a strip (strip.h) that matches in no cell costs
+	double edge;           // gain of a full edge
+	double cross;          // cost of an edge left inside the eye
+	double strip;          // cost of a strip (strip.h) that matches in no cell
 	int columns[2];        // between the corners of the eye: nothing is open before the first, after the second
 	double iris[4];        // limbus on the chart: column, row, radius in columns and rows; NAN: not known
 };
@@ -26,14 +26,14 @@ struct lid_match {
 	float cost[2][LID_ROWS + 1][LID_COLS_MAX];  // 0 .. LID_STRIP_WORST
 };
 
-/* odds: log odds of eye against lid of each cell. match: may say nothing (known false). expect: where the margins are thought to be, and their slopes; may be
- * out itself. Rows are whole numbers. Returns the mean odds inside the opening, minus that in a rim outside it. */
+/* odds: log odds of eye against lid of each cell. match: ignored where not known. expect: expected margins and their slopes; may be out itself.
+ * The margins are fitted in turns, each given the other. out: rows between cells. Returns the mean odds inside the opening minus that in a rim outside it. */
 double lid_path(struct lid_curves *out, const struct lid_chart *chart, float odds[LID_ROWS][LID_COLS_MAX],
                 const struct lid_match *match, const struct lid_curves *expect,
                 const struct lid_path_conf *conf);
 
-/* Moves whole rows to where the strips match best, to a fraction of a row, and smooths; columns first..last. Returns the
- * mean cost there. */
+/* Refines columns first..last of whole rows to the parabola's minimum of the strips' cost, a fraction of a row, and smooths. Returns the
+ * mean cost before that. */
 double lid_path_refine(double row[], const struct lid_match *match, int lower, int first, int last, double bend);
 
 /* Penalised least squares (Whittaker 1923, second differences): out[n] smooths y[n] of weight w[n]; bend: their relative

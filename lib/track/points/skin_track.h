@@ -1,6 +1,6 @@
-/* skin_track: many points of skin followed through a video, each against the one reference frame, so that nothing drifts.
- * Every point is a patch under its own affine warp (patch.h), started from the frame before; what its neighbours on the
- * mesh do says where it should be, starts it anew when it was lost, and steadies it.
+/* skin_track: tracks many points of skin through a video, each against one reference frame, so that errors do not accumulate.
+ * Every point is a patch under its own affine warp (image/patch/patch.h), started from the frame before. The motion of its neighbours on the
+ * mesh predicts its place: it detects outliers, restarts lost points and serves as a prior.
  * Image  px, centre of the first pixel (0.5, 0.5).
  */
 #ifndef TRACK_POINTS_SKIN_TRACK_H
@@ -16,15 +16,15 @@ struct skin_track_conf {
 	int iterations;
 	double stop;           // px
 	double noise;          // of a pixel, 0..255
-	double misfit;         // pixels that err together where a patch does not fit
+	double misfit;         // number of pixels whose errors are correlated where a patch does not fit (image/patch/patch.h)
 	double min_ncc;        // below it a point counts as not seen
-	double smooth;         // px: how far a point may differ from its neighbours' field and be as good as measured
-	double agree;          // px: a point that fits and is so near to that field is not asked again
-	double outlier;        // px from that field beyond which a point is taken for lost
+	double smooth;         // px: standard deviation of a point from its neighbours' field
+	double agree;          // px: a point that fits and is so near to that field is not measured again
+	double outlier;        // px from that field beyond which a point counts as lost
 	double back;           // px: forward-backward check; 0: none
-	int sweeps;            // rounds of asking the neighbours
-	double still;          // mean change of brightness (of 255) of a frame that stands still
-	double quiet;          // and of the skin about a point that is where it was; 0: every point is measured in every frame
+	int sweeps;            // rounds of prediction from the neighbours
+	double still;          // mean change of brightness (of 255) below which a frame counts as unchanged
+	double quiet;          // likewise of the skin about one point; 0: every point is measured in every frame
 };
 
 #define SKIN_TRACK_OPTS(c) \
@@ -52,18 +52,19 @@ struct skin_point_state {
 
 struct skin_track;
 
-/* Luma of the reference; mask[height][width] (may be null): 0 where there is no skin, else 255. Copies all. */
+/* luma: the reference frame, [height][stride]; mask[height][width] (may be null): 0 where there is no skin, else 255. Copies all;
+ * skin_track_free, which accepts null. */
 struct skin_track *skin_track_new(const struct skin_points *points, const uint8_t *luma, int stride, int width, int height,
                                   const uint8_t *mask, const struct skin_track_conf *conf);
 void skin_track_free(struct skin_track *track);
 
-/* The next frame. state[n] is overwritten. Returns the share of points seen. */
+/* Tracks the points in the next frame, of the reference's size. state[n] is overwritten. Returns the share of points seen. */
 double skin_track_push(struct skin_track *track, const uint8_t *luma, int stride, struct skin_point_state *state);
 
-/* The last push found the frame standing still. */
+/* True when the last push found the frame unchanged. */
 bool skin_track_was_still(const struct skin_track *track);
 
-/* Forgets where points were last: after a cut, or to go through the video from its reference another way. */
+/* Puts all points back to their places in the reference: after a cut, or to start from the reference in another direction. */
 void skin_track_restart(struct skin_track *track);
 
 #endif

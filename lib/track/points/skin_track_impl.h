@@ -5,19 +5,19 @@
 
 struct skin_warp {
 	struct patch_warp warp, before;  // now, and in the frame before
-	double best[2];        // warp.at steadied by the neighbours
+	double best[2];        // best estimate of the place
 	double ncc, usual;     // now; running mean while seen
 	double sigma;          // px, of warp.at from the patch alone
 	double confidence;
-	double changed;        // mean change of brightness about it since it was measured
-	int seen;              // measured in this frame, or as it was
+	double changed;        // sum of mean changes of brightness about it since it was measured
+	int seen;              // measured in this frame, or unchanged
 };
 
-/* What the neighbours say of a point. */
+/* Prediction of a point's warp from its neighbours. */
 struct skin_field {
 	struct patch_warp warp;
-	double spread;         // px: how far they agree
-	int n;                 // how many were asked; 0: no one knows
+	double spread;         // px: rms disagreement of the neighbours
+	int n;                 // neighbours seen; 0: no prediction
 };
 
 struct skin_track {
@@ -32,7 +32,7 @@ struct skin_track {
 	struct skin_field *field;
 };
 
-/* Brings all points to t->frame. follow.c */
+/* Measures all points in t->frame. follow.c */
 void skin_track_follow(struct skin_track *t);
 
 /* still.c */
@@ -43,7 +43,7 @@ double skin_track_changed(const struct skin_track *t, const double at[2]);
 /* True when the frame differs from the last one worked on by less than conf.still: slow changes add up until they are seen. */
 bool skin_track_stands_still(const struct skin_track *t);
 
-/* Fills t->field from the points that are seen. field.c */
+/* Predicts every point from its neighbours that are seen, into t->field. field.c */
 void skin_track_ask(struct skin_track *t);
 
 #endif
