@@ -1,11 +1,13 @@
-/* frames: a video as photographs: the frames that say most, spread over what the camera saw, the sharpest of each stretch. */
+/* frames: frames of a video as views: spread evenly over the change of the picture, the sharpest of each stretch.
+ */
 #ifndef SFM_FRAMES_H
 #define SFM_FRAMES_H
 #include "sfm/pictures.h"
 
-/* Appends frames of the first file of video/ to the views, n at most, named and with their pictures written; those that
- * pictures.json knows are not decoded again. A video that cannot be read is said and passed over. False, err set, when a
- * picture cannot be written. */
-bool frames_add(struct views *views, int n, const struct pictures *known, struct stage *stage, const struct calibrate_options *o, struct err *err);
+/* Selects at most n frames of the first file of video/, writes their pictures and appends them to the views. The selection is kept
+ * in work/calibrate/frames.json; frames in `known` are not decoded again.
+ * A video that cannot be read is recorded as skipped. Returns false, err set, when a picture cannot be written. */
+bool frames_add(struct views *views, int n, const struct pictures *known, struct stage *stage, const struct calibrate_options *o,
+                struct err *err);
 
 #endif

@@ -1,4 +1,5 @@
-/* merge: models of one subject that the mapper has left apart, joined where they share pictures. */
+/* merge: joins models of one subject that the mapper left apart, where they share pictures.
+ */
 #ifndef SFM_MERGE_H
 #define SFM_MERGE_H
 #include "sfm/views.h"
@@ -6,9 +7,11 @@
 enum { MODEL_TRIALS = 8 };
 #define TRIALS CALIBRATE_DIR "/models"
 
-/* best: the model of TRIALS/at, replaced by what it becomes with those others that fit: COLMAP's merger, then its mapper, which
- * adjusts all of it and leaves out what then does not fit. *n_models: how many there are, and then are left. False, err set, when a program or the
- * disk fails; that models do not fit is no error. */
+/* Merges the model of TRIALS/at with each other one of TRIALS that shares pictures with it: COLMAP's merger, then its mapper, which
+ * adjusts the whole and removes what then does not fit.
+ * best      in: the model of TRIALS/at; out: the merged one, or the same where none fits
+ * n_models  in: models in TRIALS; out: those that are left
+ * Returns false, err set, when a program or the disk fails; that models do not fit is no error. */
 bool merge_models(struct colmap_model *best, int *n_models, int at, const struct views *views, struct stage *stage,
                   const struct calibrate_options *o, struct err *err);
 

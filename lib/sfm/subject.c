@@ -1,4 +1,3 @@
-/* The person's mesh from the pictures. */
 #include "sfm/subject.h"
 
 #include <math.h>

@@ -17,13 +17,13 @@ struct view {
 	int width, height;        // of the photograph, upright, px
 	int picture_width, picture_height;
 	double focal_px;          // of the photograph; NAN: unknown
-	char maker[64];           // EXIF's camera model, or ""
+	char maker[64];           // EXIF's camera model; of a frame the video's file; or ""
 	double sharpness;         // mean squared Laplacian of the picture at a fixed size, grey levels squared
 	uint8_t thumb[THUMB * THUMB];
 	int camera;               // index into the cameras
-	char reason[256];         // why it is left out; "": it is not
+	char reason[256];         // why it is left out; "": it is in use
 	uint32_t id;              // image_id of the database
-	bool is_new;              // not there when the stage ran last
+	bool is_new;              // no model has been made with it yet
 };
 
 /* The name by which capture.conf's keys name it: the file without folder and ending; of a frame with its number: "clip_120".

@@ -7,11 +7,10 @@
 #include "sfm/view.h"
 
 struct views {
-	struct view *v;
-	int n;                    // those not left out come first
-	int n_used;
-	struct colmap_camera *cameras;  // of the pictures
-	bool *has_focal;
+	struct view *v;                 // [n]: those in use first, then those that are left out
+	int n, n_used;
+	struct colmap_camera *cameras;  // [n_cameras], px of the pictures: initial values, which the mapper adjusts
+	bool *has_focal;                // [n_cameras]: the focal length is measured or given, not guessed
 	int n_cameras;
 };
 

@@ -1,4 +1,6 @@
-/* db: COLMAP's database, where pictures, features and matches are kept between runs: what is in it is not made again. */
+/* db: COLMAP's SQLite database of cameras, pictures, features and matches, which is kept between runs.
+ * All return false, err set (the file, and SQLite's message), when SQLite fails.
+ */
 #ifndef SFM_COLMAP_DB_H
 #define SFM_COLMAP_DB_H
 #include "base/err.h"
@@ -6,14 +8,14 @@
 
 struct db;
 
-/* An existing database. db_close. Errors name the file and what SQLite says. */
+/* Opens an existing database. db_close. */
 bool db_open(struct db **db, const char *path, struct err *err);
 void db_close(struct db *db);
 
 /* Removes the file, with what SQLite keeps beside it. */
 bool db_remove(const char *path, struct err *err);
 
-/* False where SQLite finds the file damaged, or no database at all. */
+/* SQLite's quick check. False where the file is damaged, or no database. */
 bool db_is_sound(const char *path);
 
 struct db_image {
@@ -23,14 +25,16 @@ struct db_image {
 	bool is_new;       // out: no model has been made with it
 };
 
-/* Brings the tables to these pictures: others are removed with all that belongs to them, missing ones are added, in this
- * order. has_focal: the focal length is measured or given, not guessed. *same: cameras and pictures that were there before
- * are as they were, only added to. */
+/* Brings the tables to these cameras and pictures: others are removed with their features and matches, missing ones are added, in
+ * this order.
+ * same       out: nothing was removed or changed, only added
+ * has_focal  [n_cameras]: the focal length is measured or given, not guessed
+ * images     id and is_new are filled */
 bool db_sync(bool *same, struct db *db, int n_cameras, const struct colmap_camera cameras[], const bool has_focal[], int n,
              struct db_image images[], struct err *err);
 
-/* From here on no picture that is in it now is new: a run that is interrupted before takes up what it lacks when it comes
- * again. */
+/* Marks all pictures of the database as used in a finished model: from now on they are not new. A run that was interrupted before
+ * this is resumed by the next one. */
 bool db_done(const char *path, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* db_impl: what db.c and db_matches.c share; nobody else includes this. */
+/* db_impl: private to db.c and db_matches.c. */
 #ifndef SFM_COLMAP_DB_IMPL_H
 #define SFM_COLMAP_DB_IMPL_H
 #include <sqlite3.h>

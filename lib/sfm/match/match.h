@@ -1,6 +1,6 @@
-/* sfm_match: which pictures show the same thing, and which points of them are the same.
- * Descriptors are COLMAP's SIFT: 128 bytes, Euclidean length 512. Nearest neighbours are exact: inner products are whole
- * numbers below 2^24, so that single precision holds them and no order of adding, nor number of threads, changes any.
+/* sfm_match: which pictures overlap, and which of their SIFT features correspond.
+ * Descriptors are COLMAP's: 128 bytes, Euclidean length 512. Nearest neighbours are exact: inner products are whole numbers
+ * below 2^24, which single precision holds exactly, so that neither the order of the sums nor the number of threads matters.
  */
 #ifndef SFM_MATCH_MATCH_H
 #define SFM_MATCH_MATCH_H
@@ -9,7 +9,7 @@
 
 enum { SIFT_DIM = 128 };
 
-/* What one picture shows. */
+/* The features of one picture. */
 struct sfm_features {
 	int n;
 	uint8_t (*descriptors)[SIFT_DIM];  // owned
@@ -28,7 +28,8 @@ struct sfm_matches {
 	uint32_t (*index)[2];  // rows of the first and of the second picture, sorted by the first; owned
 };
 
-/* Mutual nearest neighbours that pass both limits (Lowe 2004, section 7.1). free(out->index). */
+/* Matches features that are each other's nearest neighbours and pass both limits, the ratio test among them (Lowe 2004,
+ * section 7.1). free(out->index). */
 void sfm_match(struct sfm_matches *out, const struct sfm_features *a, const struct sfm_features *b,
                const struct sfm_match_conf *conf);
 
@@ -45,13 +46,15 @@ struct sfm_pair {
 	int score; // matches among the strongest
 };
 
-/* Pairs worth comparing: pair[] sorted by (a, b), *n of them; free(). Only pairs with one picture at or behind
- * `first_new` are looked at: 0 for all. Small sets (n_pictures <= always + 1) keep every pair. */
+/* Selects the pairs worth a full comparison: those with enough matches among the strongest features, and each picture's best.
+ * n          out: pairs
+ * first_new  only pairs with one picture at or behind it are considered; 0: all
+ * Returns the pairs, sorted by (a, b); free(). Small sets (n_pictures <= always + 1) keep every pair. */
 struct sfm_pair *sfm_overlap(int *n, int n_pictures, const struct sfm_features f[], int first_new,
                              const struct sfm_overlap_conf *conf);
 
-/* True when the order of the pictures is the order they were taken in: most overlap with the one before more than with the
- * typical picture. pairs: from sfm_overlap with first_new 0. */
+/* True when the pictures stand in the order in which they were taken: at least 80 % of them have at most two neighbours closer than
+ * the one before. pairs: of sfm_overlap with first_new 0. */
 bool sfm_is_sequence(int n_pictures, const struct sfm_pair pairs[], int n_pairs);
 
 #endif

@@ -16,7 +16,7 @@ static int by_scale(const void *a, const void *b)
 	return p->scale != q->scale ? (p->scale < q->scale) - (p->scale > q->scale) : p->index - q->index;
 }
 
-/* Large features are seen from near and far and under blur: few of them tell whether two pictures show the same. */
+/* The features of the largest scale: these are seen from near and far and under blur, so that few of them suffice. */
 static struct sfm_features strongest(const struct sfm_features *f, int most)
 {
 	struct ranked *order = mem_array((size_t)f->n, sizeof *order);
