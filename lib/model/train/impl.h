@@ -54,6 +54,9 @@ void part_complete(struct part *part, long n, double *x, const double *c, double
 /* The same for a few rows, on the calling thread. */
 void part_complete_few(const struct part *part, int n, double *x, const double *c, double *d, double *share);
 
+/* Whether every number of these frames, c[n][part->n], that the part uses is measured with confidence 1. */
+bool part_all_measured(const struct part *part, int n, const double *c);
+
 /* Robust weight of a frame at distance d from the pilot: Huber's weight for scatter, (huber / ratio)^2 beyond huber times the
  * median distance, 0 beyond trim times. */
 double part_weight(const struct part *part, const struct train_conf *conf, double d);
