@@ -1,6 +1,6 @@
-/* animate: gaze, lids and expressions over time (skin paper, sections 3.7, 3.9 and 3.10).
- * Targets come from keyframes, recorded gaze or places of a scene; gaze_sim.h moves the eyes to them; apertures come from the model's
- * baseline (eq. 3.11), blinks and keys.
+/* animate: gaze, lids and expressions over time (skin paper, sections 3.7, 3.9 and 3.10). Targets come from keyframes, recorded
+ * gaze or places of a scene; gaze_sim.h moves the eyes to them; apertures come from the model's baseline (eq. 3.11), blinks and
+ * keys.
  */
 #ifndef MOTION_ANIMATE_H
 #define MOTION_ANIMATE_H
@@ -43,8 +43,8 @@ struct animation {
 	struct gaze_saccade *saccades;
 };
 
-/* Animates by any of gaze (recorded), keys and places; null where there is none. keys may add head, lids and expressions to recorded gaze or
- * places. Recorded gaze is replayed, all else simulated. out: overwritten; animation_free in any case.
+/* Animates by any of gaze (recorded), keys and places; null where there is none. keys may add head, lids and expressions to
+ * recorded gaze or places. Recorded gaze is replayed, all else simulated. out: overwritten; animation_free in any case.
  * Returns false, err set, when the animation would have too many frames. */
 bool animate_run(struct animation *out, const struct skin_model *model, const struct script *gaze,
                  const struct script *keys, const struct animate_places *places, const struct animate_conf *conf,

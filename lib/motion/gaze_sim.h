@@ -59,10 +59,12 @@ void gaze_sim_at(struct gaze_sim *sim, double t, struct gaze_output *out);
 /* The saccades so far, in order; owned by sim. */
 const struct gaze_saccade *gaze_sim_saccades(const struct gaze_sim *sim, int *n);
 
-/* Angles of both eyes (vergence, then Listing's law) for a cyclopean direction in the head and a distance along it (mm; INFINITY: far). */
+/* Angles of both eyes (vergence, then Listing's law) for a cyclopean direction in the head and a distance along it (mm;
+ * INFINITY: far). */
 void gaze_eyes(double eye[2][3], const double direction[2], double distance, double ipd);
 
-/* Fick torsion (degrees) of an eye at those angles by Listing's law: the axis of its rotation from straight ahead lies in the frontal plane. */
+/* Fick torsion (degrees) of an eye at those angles by Listing's law: the axis of its rotation from straight ahead lies in the
+ * frontal plane. */
 double listing_torsion(double horizontal, double vertical);
 
 #endif

@@ -27,7 +27,8 @@ void saccade_make(struct saccade *saccade, double amplitude, const struct saccad
 /* Share of the way after t seconds: 0 before, 1 after. */
 double saccade_at(const struct saccade *saccade, double t);
 
-/* Share of the way along the path of minimum jerk (Flash and Hogan 1985), s = 10 t^3 - 15 t^4 + 6 t^5; t: share of the time, clamped to 0..1. */
+/* Share of the way along the path of minimum jerk (Flash and Hogan 1985), s = 10 t^3 - 15 t^4 + 6 t^5; t: share of the time,
+ * clamped to 0..1. */
 double minimum_jerk(double t);
 
 #endif

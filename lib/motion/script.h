@@ -39,15 +39,16 @@ struct script {
 	bool has_apertures;
 };
 
-/* script: overwritten; script_free in any case. model: names of its expressions. Returns false, err set (file, line, column, value, rule), when the
- * file is neither. */
+/* script: overwritten; script_free in any case. model: names of its expressions. Returns false, err set (file, line, column,
+ * value, rule), when the file is neither. */
 bool script_read(struct script *script, const char *path, const struct skin_model *model, struct err *err);
 void script_free(struct script *script);
 
 /* Value of a channel at t (s), along the path of minimum jerk from key to key; `otherwise` where it has no key. */
 double script_smooth(const struct script_track *track, double t, double otherwise);
 
-/* Target at t: held from key to key, or moving steadily to the next where that is one of pursuit. out: degrees, horizontal and vertical;
+/* Target at t: held from key to key, or moving steadily to the next where that is one of pursuit. out: degrees, horizontal and
+ * vertical;
  * distance: mm, INFINITY where no key says. */
 void script_target(double out[2], double *distance, const struct script *script, double t);
 

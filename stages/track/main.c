@@ -9,7 +9,7 @@
 #include "base/stage.h"
 #include "stages/track/run.h"
 
-/* Beside a decoder threads that spin while they wait take more than they win; OpenMP has to be told before it starts. */
+/* Threads that spin while they wait would take time from the decoder; OpenMP reads its policy when the program starts. */
 static void start_calm(char **argv)
 {
 	if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)

@@ -12,7 +12,7 @@
 #include "track/clip/follow.h"
 #include "track/clip/settle.h"
 
-/* What the video is that nobody asked for, one line each. */
+/* Warns of shortcomings of the video, one line each. */
 static void tell_video(struct stage *stage, const struct track_clip *clip)
 {
 	const struct video_info *v = &clip->info;

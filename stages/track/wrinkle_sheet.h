@@ -3,7 +3,8 @@
 #define STAGES_TRACK_WRINKLE_SHEET_H
 #include "track/wrinkle/wrinkle.h"
 
-/* Writes a PNG with a row for each of n expressions: its neutral frame, its peak with the lines drawn, and its bump map lit from the upper left. */
+/* Writes a PNG with a row for each of n expressions: its neutral frame, its peak with the lines drawn, and its bump map lit
+ * from the upper left. */
 bool wrinkle_sheet(const char *path, const struct wrinkles *w, const struct wrinkle_ground *ground, int n,
                    const struct wrinkle_frame neutral[], const struct wrinkle_frame peak[], struct err *err);
 

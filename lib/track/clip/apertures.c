@@ -9,7 +9,7 @@
 
 enum { EYE_INPUTS = 5 };
 
-static const double shut = 0.3;  // of the usual opening: below it the lids are taken to meet
+static const double shut = 0.3;  // of the usual opening: below it the lids count as meeting
 
 /* Height of a margin where it passes x: NAN where it does not. */
 static double height_at(int n, const float (*lid)[2], double x)
@@ -52,8 +52,8 @@ static double column(const struct track_result *r, int side)
 	return mid;
 }
 
-/* Where upper and lower margin meet when the eye shuts: over the most closed frames; where it never shuts, on the line
- * between the corners. */
+/* Height at which upper and lower margin meet: median over the most closed frames; where the eye never shuts, the line between
+ * the corners. usual: the median opening. */
 static double meeting(const struct track_result *r, int side, const double *up, const double *low, double *usual)
 {
 	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), *at = mem_new((size_t)r->n + 1, sizeof *at), least = INFINITY;

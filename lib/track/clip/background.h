@@ -1,5 +1,5 @@
-/* background: a thread that works on frames whose head pose is known (eyes, contact sheet, wrinkles), while the skin of the next frames is
- * followed. */
+/* background: a thread that works on frames whose head pose is known (eyes, contact sheet, wrinkles), while the skin of the
+ * next frames is followed. */
 #ifndef TRACK_CLIP_BACKGROUND_H
 #define TRACK_CLIP_BACKGROUND_H
 #include "track/clip/eyes.h"
@@ -8,8 +8,8 @@
 
 struct background;
 
-/* film, folds: may be null. None of the three may be used by others before background_end. Where no thread can be started, the work is done
- * in background_push. */
+/* film, folds: may be null. None of the three may be used by others before background_end. Where no thread can be started, the
+ * work is done in background_push. */
 struct background *background_new(struct track_eyes *eyes, struct film *film, struct folds *folds);
 
 /* Takes over a frame, which is emptied; waits while four are under way. Frames in order. */

@@ -10,14 +10,14 @@
 
 enum { TERMS = 3, ROUNDS = 6, LEAST_FRAMES = 20 };
 
-/* How far skin tells of a place beside it, as a share of the opening's width; the weight of skin that tells all there is to tell. */
+/* Reach of the Gaussian weight of skin about a place, as a share of the opening's width; sum of weights that counts as full. */
 static const double reach_share = 0.055, full = 0.15;
-/* An eye is open that is open so far. */
+/* Openness of an open eye. */
 static const double open_enough = 0.8;
-/* Radians: a gaze that hardly moves tells no slope. px: no measurement of skin is better. */
+/* Radians: ridge where gaze hardly moves. px: noise floor of skin measurements. */
 static const double still_gaze = 0.01, least_scale = 0.3;
 
-/* What a point of skin has moved on its own since the reference, px. */
+/* Motion of a point of skin relative to the rigid head since the reference, px. */
 static bool own(double moved[2], const struct track_result *r, const struct track_clip *clip, const struct track_points *points, long frame, int i)
 {
 	double now[2], was[2];
@@ -53,7 +53,7 @@ static void gather(double (*moved)[2], double *weight, const double head[3], dou
 	}
 }
 
-/* Where no skin is seen, the place moves from where it was last to where it is next. */
+/* Interpolates linearly over frames in which no skin is seen. */
 static void fill(long n, double (*moved)[2], const double *weight)
 {
 	long last = -1;
@@ -77,7 +77,7 @@ static bool terms(double t[TERMS], const struct eye_state *s)
 	return isfinite(t[1]) && isfinite(t[2]) && s->openness > open_enough && s->blink == BLINK_OPEN;
 }
 
-/* One round of weighted least squares: moved = c . terms. Returns how many frames told. */
+/* One round of weighted least squares: moved = c . terms. Returns how many frames were used. */
 static int round_of(double c[2][TERMS], double *off, double scale, const struct track_result *r, int side, const double (*moved)[2], const double *weight)
 {
 	double H[TERMS][TERMS] = { { 0 } }, b[2][TERMS] = { { 0 } }, t[TERMS], sum = 0;
@@ -110,8 +110,9 @@ static int round_of(double c[2][TERMS], double *off, double scale, const struct 
 	return n;
 }
 
-/* The mesh is that of a face that looks straight on; in the reference frame the eye may look to the side, and has taken the skin along:
- * by as much as the clip shows that skin moves with the gaze. Up and down the mesh's lids are as high as at the reference. */
+/* The mesh's face looks straight on; in the reference frame the eye may look to the side and has pulled the skin along. Adds
+ * that motion, by regression of the skin's motion on gaze over the clip; horizontally alone: the mesh's lids are assumed as
+ * high as at the reference. */
 static void from_straight(double (*moved)[2], const double *weight, const struct track_result *r, int side, const struct track_clip *clip, double *room)
 {
 	double c[2][TERMS] = { { 0 } }, h = r->eyes.state[clip->reference][side].gaze[0], scale = 1e9;

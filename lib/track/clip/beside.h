@@ -1,5 +1,5 @@
-/* beside: how the skin beside given places of the mesh moves relative to the rigid head, frame by frame, so that places that are hard to see are
- * carried by skin that is seen well. */
+/* beside: how the skin beside given places of the mesh moves relative to the rigid head, frame by frame, so that places that
+ * are hard to see are carried by skin that is seen well. */
 #ifndef TRACK_CLIP_BESIDE_H
 #define TRACK_CLIP_BESIDE_H
 #include "track/clip/points.h"

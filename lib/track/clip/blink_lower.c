@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* How far the place of the margin nearest to p has gone from one frame to another. */
+/* Motion, from one frame to another, of the point of the mesh's margin nearest to p. */
 static bool gone(double d[2], int n, const double (*from)[2], const double (*to)[2], const double p[2])
 {
 	double least = INFINITY;
@@ -18,7 +18,7 @@ static bool gone(double d[2], int n, const double (*from)[2], const double (*to)
 	return isfinite(least);
 }
 
-/* A lower margin of an open eye. */
+/* True when the frame shows the lower margin of an open eye. */
 static bool clear(const struct track_result *r, int side, long f)
 {
 	return f >= 0 && f < r->n && !r->lost_at[f] && r->eyes.state[f][side].blink == BLINK_OPEN && isfinite(r->eyes.state[f][side].lid[LID_LOWER][0][0]);

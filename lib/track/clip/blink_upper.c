@@ -8,7 +8,8 @@
 
 enum { SHARES = 24 };
 
-/* Between these shares of the way from the inner corner to the outer no corner draws the lashes together: there is seen how far the lid has come down. */
+/* Shares of the way from the inner corner to the outer between which lashes do not hide the margin: the closure is measured
+ * there. */
 static const double clear[2] = { 0.3, 0.65 };
 
 static double share_of(int i)
@@ -16,8 +17,8 @@ static double share_of(int i)
 	return 0.04 + 0.92 * i / (SHARES - 1);
 }
 
-/* Heights of a margin beside the line between the corners of the eye, shares of its length; beyond its own ends it stays as high as there. False: it is not
- * known. */
+/* Heights of a margin above the line between the corners of the eye, as shares of its length; beyond its ends constant. Returns
+ * false when it is not known. */
 static bool heights(double h[SHARES], const struct eye_state *state, int lid, const double ends[2][2])
 {
 	struct line line = { .n = state->lid_points };
@@ -65,7 +66,8 @@ static void fall(struct eye_state *state, const double ends[2][2], const double 
 	line_spread(state->lid[LID_UPPER], state->lid_points, &out);
 }
 
-/* The corners in frames first..last of a blink, between where skin has taken them before and after it: under lashes skin is not followed. */
+/* Interpolates the corners in frames first..last of a blink between those before and after it: under lashes skin is not
+ * tracked. */
 static void steady(double (*corner)[2][2], long first, long last, long frames, int n, const double (*carried)[2])
 {
 	long from[2] = { first - 1, last + 1 };

@@ -31,7 +31,7 @@ long track_frames_of(const struct track_clip *clip, long n)
 	return clip->info.fps > 60 ? lround((double)n * clip->info.fps / 60) : n;
 }
 
-/* Where calibrate saw the head: in its own mesh's frame. */
+/* Poses of the head estimated by calibrate, in its own mesh's frame. */
 static void take_poses(struct track_clip *clip, const struct camera_rig *rig)
 {
 	for (int i = 0; i < rig->n; i++) {
@@ -95,7 +95,7 @@ static bool pose_from_marks(struct track_clip *clip, const struct track_subject 
 	}
 	if (n < 4)
 		return err_set(err, "capture.conf: track.landmark_*: %d marked, at least 4 are needed", n);
-	// Start: facing the camera, at the distance that the marks' spread tells.
+	// Start: facing the camera, at the distance given by the spread of the marks.
 	double at[2] = { 0 }, mid[3] = { 0 }, px = 0, mm = 0, R[3] = { 1, -1, -1 };
 	for (int i = 0; i < n; i++)
 		for (int c = 0; c < 3; c++) {
@@ -139,7 +139,7 @@ static void keep(struct track_clip *clip, const struct video_frame *f)
 	clip->reference = f->index;
 }
 
-/* Whether the head is where the kept frame shows it. */
+/* Finds the head in the kept frame. */
 static bool try_frame(struct track_clip *clip, bool known, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	if (known)
@@ -147,8 +147,8 @@ static bool try_frame(struct track_clip *clip, bool known, const struct track_su
 	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : track_look(clip, WAY_EITHER, s, conf);
 }
 
-/* Decodes up to the reference frame: the one asked for, or the first in which eyes are found; known: of those alone whose pose
- * is known, and none is no error. */
+/* Decodes up to the reference frame: the one configured, or the first in which eyes are found. known: only frames of known pose
+ * are tried, and finding none is no error. */
 static bool find_reference(struct track_clip *clip, struct video *video, bool known, const struct track_subject *s,
                            const struct track_conf *conf, struct err *err)
 {

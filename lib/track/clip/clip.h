@@ -46,8 +46,9 @@ void track_clip_free(struct track_clip *clip);
  * Returns false when the clip has no such frame; err is set only when it cannot be decoded. */
 bool track_clip_take(struct track_clip *clip, long frame, struct stage *stage, const struct track_conf *conf, struct err *err);
 
-/* Carries a pixel of a frame into the modelling camera: the point of the head that it shows, assumed at the depth of `head` (mm), is
- * moved with the head to its place at the reference. pose: cam_from_head of that frame. out: px; NAN where it cannot be projected. */
+/* Carries a pixel of a frame into the modelling camera: the point of the head that it shows, assumed at the depth of `head`
+ * (mm), is moved with the head to its place at the reference. pose: cam_from_head of that frame. out: px; NAN where it cannot
+ * be projected. */
 void track_to_model(float out[2], const double px[2], const double head[3], const double pose[4][4], const struct track_clip *clip);
 
 #endif

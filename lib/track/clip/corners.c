@@ -12,10 +12,10 @@
 
 enum { ENDS = 2 };
 
-/* Shares of the distance between the corners: what the mesh shapes at the inner and the outer end. */
+/* Shares of the distance between the corners in which the mesh gives the shape, at the inner and the outer end. */
 static const double shaped[ENDS] = { 0.09, 0.14 };
-/* How far skin is believed where it is near what is seen of either margin, and how near that is, mm: skin of the lower lid runs into
- * its margin; that of the upper hangs over it. */
+/* Weight of the skin's motion, upper and lower lid, and the distance (mm) between it and the margin seen at which it has lost
+ * half: skin of the lower lid runs into its margin; that of the upper lid hangs over it. */
 static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.35;
 
 /* The margin of the mesh, both lids from the inner corner to the outer, head frame. */
@@ -24,7 +24,7 @@ struct rim {
 	double head[LIDS][OPENING_POINTS + 2][3];
 };
 
-/* The place of the outline after which a corner lies. */
+/* The point of the outline after which a corner lies. */
 static int after(const struct eye_opening *o, const double corner[3])
 {
 	int best = 0;
@@ -96,7 +96,7 @@ static bool affine(double m[2][3], const double from[3][2], const double to[3][2
 	return true;
 }
 
-/* The mesh's margin between a corner and the share u, mapped, in the order from inner to outer. */
+/* Appends the mesh's margin at one end, mapped by m, in the order from inner to outer. */
 static void add_end(struct line *out, const struct line *mesh, const double corners[ENDS][2], int end, double m[2][3])
 {
 	for (int i = 0; i < mesh->n; i++) {
@@ -109,7 +109,8 @@ static void add_end(struct line *out, const struct line *mesh, const double corn
 	}
 }
 
-/* Both margins of a frame, their ends as the mesh has them between the corners and where the margins are clear. */
+/* Replaces the ends of both margins by the mesh's, mapped affinely onto the corner and the points where the margins become
+ * clear. */
 static void reshape(struct eye_state *state, const struct line mesh[LIDS], const double corner[ENDS][2])
 {
 	double from[ENDS][2], map[ENDS][2][3];
@@ -145,7 +146,7 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 		line_spread(state->lid[k], state->lid_points, &out[k]);
 }
 
-/* A margin drawn towards where the mesh's is carried by the skin beside it, as far as the two are not at odds. */
+/* Averages a margin with the mesh's, carried by the skin beside it; the weight falls where the two disagree. */
 static void draw_to_skin(struct eye_state *state, int lid, const struct line *mesh, const struct beside *skin, long frame, double near_px)
 {
 	struct line found = { .n = state->lid_points }, out = { .n = mesh->n };

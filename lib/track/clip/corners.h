@@ -1,5 +1,5 @@
-/* corners: the lid margins near the corners of the eye. There the picture shows little contrast: white sclera passes into the wet red of the
- * caruncle. The mesh gives a corner's shape, the skin beside it gives its motion. */
+/* corners: the lid margins near the corners of the eye. There the picture shows little contrast: white sclera passes into the
+ * wet red of the caruncle. The mesh gives a corner's shape, the skin beside it gives its motion. */
 #ifndef TRACK_CLIP_CORNERS_H
 #define TRACK_CLIP_CORNERS_H
 #include "track/clip/points.h"

@@ -11,12 +11,12 @@
 
 enum { EYE_INPUTS = 10, OTHER = 4, SAMPLE = 160, AU_MAX = 24, BASIS = AU_MAX + OTHER };
 
-static const double noise_px = 0.3, shown_px = 0.7;  // of a point; rms between neutral and peak below which nothing is shown
+static const double noise_px = 0.3, shown_px = 0.7;  // of a point; least rms motion between neutral and peak
 
 struct space {
 	const struct track_result *r;
 	int n, m;              // points; motions
-	double *zero;          // [2 n] where the points rest
+	double *zero;          // [2 n] places of the points at rest
 	double *weight;        // [n]
 	double *motion[BASIS]; // [2 n] expressions, then others
 };
@@ -51,7 +51,7 @@ static bool check(const struct track_result *r, const struct opt_each_list *list
 	return true;
 }
 
-/* No expression is about to be shown, shown, or fading. */
+/* True when no expression rises, shows or fades in the frame. */
 static bool plain(const struct opt_each_list *list, long f)
 {
 	for (int i = 0; i < list->n; i++) {
@@ -62,7 +62,7 @@ static bool plain(const struct opt_each_list *list, long f)
 	return true;
 }
 
-/* Frames without expression: how far each point wanders (its weight), and the motions that all do together. */
+/* From frames without expression: variance of each point (its weight) and the principal components of their motion. */
 static void learn_rest(struct space *s, const struct opt_each_list *list)
 {
 	const struct track_result *r = s->r;
@@ -124,7 +124,7 @@ static void strengths(double out[BASIS], const struct space *s, long f)
 		memset(out, 0, BASIS * sizeof *out);
 }
 
-/* The motion of each expression; those never shown are all zeros. */
+/* The motion of each expression; zero where the skin hardly moves. */
 static void learn_shown(struct space *s, struct stage *stage, const struct opt_each_list *list)
 {
 	double *peak = mem_new(2 * (size_t)s->n + 1, sizeof *peak), *neutral = mem_new(2 * (size_t)s->n + 1, sizeof *neutral);

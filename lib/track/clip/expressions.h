@@ -1,5 +1,6 @@
-/* expressions: strengths of capture.conf's expressions in every frame (skin paper, section 3.3: action units from sample poses): how
- * much of the skin's motion from the expression's neutral frame to its peak is in a frame, beside the motions of gaze and blinks. */
+/* expressions: strengths of capture.conf's expressions in every frame (skin paper, section 3.3: action units from sample
+ * poses): how much of the skin's motion from the expression's neutral frame to its peak is in a frame, beside the motions of
+ * gaze and blinks. */
 #ifndef TRACK_CLIP_EXPRESSIONS_H
 #define TRACK_CLIP_EXPRESSIONS_H
 #include "track/clip/conf.h"

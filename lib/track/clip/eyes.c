@@ -18,14 +18,14 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)(conf->every ? conf->every : 1),
 		                       .camera = clip->camera, .eye = conf->eye, .head_known = true };
 	struct eye_track_conf free_centers = conf->eyes;
-	// where eyes are taken to be as in most people, they are sought further from there
+	// eyes of an average face: a wider prior
 	if (subject->assumed)
 		free_centers.center_sigma = fmax(free_centers.center_sigma, conf->settle_sigma);
 	for (int e = 0; e < SIDES; e++) {
 		struct eye_prior *p = &scene.prior[e];
 		p->absent = !clip->eye_seen[e];
 		p->radius = subject->radius;
-		// what is told of the mesh is as sure here as where the head is settled by it
+		// centres from capture.conf are as certain here as when the reference pose is refined by them
 		p->center_sigma = subject->center_given[e] && !conf->limit ? fmin(conf->center_sigma, free_centers.center_sigma) : 0;
 		for (int k = 0; k < 3; k++) {
 			p->limbus_px[k] = NAN;
@@ -37,7 +37,7 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 	struct track_eyes *eyes = mem_new(1, sizeof *eyes);
 	*eyes = (struct track_eyes){ eye_track_new(&scene, &free_centers), clip, subject, 0 };
 	eyes->rgb = mem_new(3 * (size_t)clip->info.width * (size_t)clip->info.height, 1);
-	// otherwise what the clip begins with teaches better: gaze errs by 0.4 degrees less
+	// else the first frames are learnt from, which lowers the error of gaze by 0.4 degrees
 	if (clip->begins_shut) {
 		struct eye_frame frame = { clip->luma, clip->rgb, clip->info.width, 3 * clip->info.width, 0, { { 0 } } };
 		memcpy(frame.cam_from_head, clip->cam_from_head, sizeof frame.cam_from_head);
@@ -48,7 +48,8 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 	return eyes;
 }
 
-/* What eye_track looks at: the opening, and as much skin as lids move over. False: it is not in the picture. */
+/* The part of the picture that eye_track reads: the opening and the skin that lids move over. Returns false when it is not in
+ * the picture. */
 static bool box_of(int box[4], const struct track_eyes *eyes, int side, const double pose[4][4])
 {
 	double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
@@ -77,7 +78,7 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 	bool in[SIDES], both;
 	for (int e = 0; e < SIDES; e++)
 		in[e] = eyes->clip->eye_seen[e] && box_of(box[e], eyes, e, pose);
-	// openings that lie close share columns: filled one after the other then
+	// boxes that share columns are filled one after the other
 	both = in[0] && in[1] && !(box[SIDE_RIGHT][2] <= box[SIDE_LEFT][0] || box[SIDE_LEFT][2] <= box[SIDE_RIGHT][0]);
 	for (int e = 0; e < SIDES && both; e++)
 		video_frame_rgb(eyes->rgb, 3 * f->width, f, box[e][0], box[e][1], box[e][2], box[e][3]);

@@ -37,7 +37,7 @@ struct film *film_new(const struct track_clip *clip, const struct track_subject 
 	return film;
 }
 
-/* Every second one is given up. */
+/* Drops every second picture. */
 static void thin(struct film *film)
 {
 	int n = 0;

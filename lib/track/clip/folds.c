@@ -72,7 +72,7 @@ static int kept(const struct folds *f, long frame)
 	return at ? (int)(at - f->frame) : -1;
 }
 
-/* Green: the colour in which blood makes most of a face's relief, and the one a camera measures best. */
+/* Green: haemoglobin absorbs it most, which shows a face's relief, and a camera measures it best. */
 void folds_add(struct folds *f, const struct video_frame *frame)
 {
 	int at = f ? kept(f, frame->index) : -1;
@@ -105,7 +105,7 @@ static struct wrinkle_frame seen(const struct folds *f, const struct track_resul
 		                           r->confidence + frame * r->n_points };
 }
 
-/* The chart's skin: not the openings of the eyes, nor what lashes stand before. */
+/* Mask of the chart's skin, without the openings of the eyes and what lashes cover. */
 static uint8_t *skin_of(const struct folds *f, const struct track_clip *clip, const struct track_points *points, double lash_px)
 {
 	uint8_t *mask = mem_array((size_t)f->width * (size_t)f->height, 1);

@@ -1,4 +1,5 @@
-/* folds: wrinkle lines of capture.conf's expressions: keeps the frames that show them while the clip is followed, then finds them. */
+/* folds: wrinkle lines of capture.conf's expressions: keeps the frames that show them while the clip is followed, then finds
+ * them. */
 #ifndef TRACK_CLIP_FOLDS_H
 #define TRACK_CLIP_FOLDS_H
 #include "track/clip/points.h"

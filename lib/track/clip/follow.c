@@ -9,17 +9,17 @@
 #include "track/clip/background.h"
 #include "track/clip/steady.h"
 
-/* Points tell where the head is as far as they move with it: what each has been off so far, px^2. */
+/* Points weigh in the head's pose by how rigidly they have moved with it: running mean of their squared residuals, px^2. */
 struct rigid {
 	int n;
 	double *off2, *least;
 	struct head_sight *sights;
 };
 
-static const double forget = 1.2;  // share a second
-/* How far skin is expected to move on its own, mm: over the bridge of the nose, the cheeks, the brows, the lids. */
+static const double forget = 1.2;  // rate of that running mean, 1/s
+/* Expected motion of skin relative to the head, mm: bridge of the nose, cheeks, brows, lids. */
 static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids = 0.6;
-/* How much a head moves in a second, as one that wanders: degrees, mm; as the square root of the time. */
+/* Random walk of the head: standard deviations after a second, degrees, mm. */
 static const double turn_step = 1.55, shift_step = 4.65;
 
 static double expected_off(const double head[3], const struct track_subject *s)
@@ -98,7 +98,7 @@ static void store(struct track_result *r, const struct skin_point_state *state, 
 	memcpy(r->pose[r->n], pose, sizeof r->pose[r->n]);
 }
 
-/* One frame of skin and head; true when what was followed is lost. */
+/* Tracks the skin in one frame; returns true when it is lost. */
 static bool skin_frame(struct track_result *r, struct skin_track *skin, struct skin_point_state *state, const struct video_frame *f,
                        const struct track_conf *conf)
 {
@@ -108,7 +108,7 @@ static bool skin_frame(struct track_result *r, struct skin_track *skin, struct s
 	r->still += skin_track_was_still(skin);
 	if (seen >= conf->cut)
 		return false;
-	// perhaps the camera jumped there and back
+	// the camera may have jumped there and back
 	skin_track_restart(skin);
 	seen = skin_track_push(skin, f->luma, f->luma_stride, state);
 	if (seen >= conf->cut)

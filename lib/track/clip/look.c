@@ -5,7 +5,7 @@
 #include "bridge/cv_face.h"
 #include "track/head/refine.h"
 
-/* A camera of which nothing is known: as far away as faces are filmed from. */
+/* Unknown focal length: scales it so that the eyes are distance_mm away. */
 static void assume_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
 	double eye[3] = { 0 }, p[3], n = s->opening[0].open + s->opening[1].open;
@@ -18,7 +18,7 @@ static void assume_distance(struct track_clip *clip, const struct track_subject 
 	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
 }
 
-/* A whole face in the kept frame, upright; close-ups show none. */
+/* Detects a whole, upright face in the reference frame; close-ups show none. */
 static bool look_for_face(struct cv_face *face, struct track_clip *clip)
 {
 	struct err none = { 0 };
@@ -27,7 +27,7 @@ static bool look_for_face(struct cv_face *face, struct track_clip *clip)
 	       && cv_face_find(&n, face, 1, clip->faces, clip->luma, clip->info.width, clip->info.height, 0, &none) && n > 0;
 }
 
-/* The head one way up, or as the eyes of a face that was found say, in the kept frame. */
+/* Finds the head one way up, or from the eyes of a detected face, in the reference frame. */
 static bool look_so(struct head_found *found, struct track_clip *clip, enum track_way way, const struct cv_face *face, const struct track_subject *s,
                     const struct track_conf *conf)
 {
@@ -43,9 +43,9 @@ static bool look_so(struct head_found *found, struct track_clip *clip, enum trac
 	return head_find_refine(found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head);
 }
 
-/* Openings turned upside down look much like themselves: a head is taken to be so where its openings stand out more, and their outlines
- * fit better, than those of one that is upright, and as many of them are seen: eyes that look up or down change their openings'
- * shape, too. */
+/* True when the upright pose is kept. Openings look much the same upside down, and eyes that look up or down change their
+ * shape: the inverted pose is accepted only where its openings have more contrast, their outlines fit better, and as many of
+ * them are seen. */
 static bool stands(const struct head_found *up, const struct head_found *over)
 {
 	return up->score >= over->score || up->edge_px <= over->edge_px || up->seen[0] + up->seen[1] > over->seen[0] + over->seen[1];
@@ -75,7 +75,6 @@ bool track_look(struct track_clip *clip, enum track_way way, const struct track_
 	return true;
 }
 
-/* A frame of known pose, if open eyes are seen where they then are. */
 bool track_look_known(struct track_clip *clip, long frame, const struct track_subject *s, const struct track_conf *conf)
 {
 	for (int i = 0; i < clip->n_known; i++) {

@@ -10,7 +10,7 @@
 enum { NEAR = 24, NEIGHBOURS = 12 };
 
 static const double facing = 0.15;      // cosine of the steepest skin that is followed
-static const double rim_px = 1.5;       // what lies so close to an opening is half eye
+static const double rim_px = 1.5;       // so close to an opening pixels are half eye
 
 /* Clears the openings of the eyes, and a rim round them, in a mask of 255. */
 static void cut_openings(uint8_t *mask, const struct track_clip *clip, const struct track_subject *s)
@@ -75,7 +75,7 @@ static int thin(int *taken, int n, const double (*px)[2], double gap)
 	return m;
 }
 
-/* No part of the straight way leads through an opening. */
+/* True when the segment a..b does not cross an opening. */
 static bool over_skin(const uint8_t *mask, int width, const double a[2], const double b[2])
 {
 	int steps = (int)ceil(hypot(b[0] - a[0], b[1] - a[1]) / 2) + 1;
@@ -115,7 +115,7 @@ static void join(struct track_points *p, int width)
 	free(edge);
 }
 
-/* Rows within reach of an eye that is seen. */
+/* Vertices that are visible and within reach (mm) of an eye that is seen. Returns how many. */
 static int candidates(int *row, double (*px)[2], const struct track_clip *clip, const struct track_subject *s, const uint8_t *mask,
                       double reach)
 {

@@ -9,14 +9,16 @@
 
 enum { LEAST_FRAMES = 8 };
 
-static const double open_enough = 0.8;   // of the usual opening
-/* degrees: a gaze so far off the usual one takes the lids along by more than they can be seen to; a better frame is so much nearer. */
+static const double open_enough = 0.8;   // openness of an open eye
+/* degrees: beyond this distance from the median gaze the lids have moved by more than their measurement error; a better frame
+ * must be so much nearer. */
 static const double off_most = 4, nearer = 2;
-/* degrees that a shut eye counts as, and the end of the clip: all is followed from its start on, where a head that moves lies otherwise. */
+/* Penalties in degrees: of a shut eye; of the last frame against the first (tracking starts at the first, where a moving head
+ * lies elsewhere). */
 static const double half_shut = 20, late = 10;
-/* degrees that a frame counts as whose skin is twice as far off the head as is usual: an expression; at most. */
+/* Penalty in degrees of a frame whose skin misfits the rigid head twice as much as the median (an expression), and its maximum. */
 static const double stirred = 4, stirred_most = 20;
-/* The lower lid goes along with a half or less of what the upper one does. */
+/* Upside down where the lower lid moves so many times as much as the upper: in truth it moves by half or less of it. */
 static const double turned = 1.5;
 
 static bool is_open(const struct eye_state *s)
@@ -69,7 +71,8 @@ double reference_usual_height(const struct track_result *r, int side)
 	return usual;
 }
 
-/* Mean gaze of the eyes that are seen, degrees, and how far the less open one is. False: one of them is not open. */
+/* Mean gaze of the eyes that are seen, degrees; wide: openness of the less open one. Returns false when one of them is not
+ * open. */
 static bool gaze_of(double gaze[2], double *wide, const struct track_result *r, long f)
 {
 	int n = 0;
@@ -121,7 +124,7 @@ struct reference_view reference_judge(const struct track_result *r, const struct
 		usual[k] = m ? stats_median(m, x) : NAN;
 	}
 	for (long f = 0; f < r->n && n >= LEAST_FRAMES; f++) {
-		// in a frame of a saccade the eyes are smeared, before and after a blink the lids are on their way
+		// motion blur in a saccade; moving lids before and after a blink
 		double off = open[f] ? hypot(gaze[f][0] - usual[0], gaze[f][1] - usual[1]) + half_shut * (1 - wide[f]) : INFINITY, moves = INFINITY;
 		for (long g = f - 1; g <= f + 1; g += 2)
 			if (g >= 0 && g < r->n) {

@@ -8,11 +8,11 @@
 
 enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2 };
 
-static const double margin_weight = 0.05;  // px^-2: margins err together, by what lashes shade
+static const double margin_weight = 0.05;  // px^-2: errors of margins are correlated (shadows of lashes)
 static const double open_enough = 0.8;     // of the usual opening
 static const double still_gaze = 0.01, like_v = 0.05;  // radians
 
-/* A centre found is known the better along either axis of the head. */
+/* Each centre found gives two measurements: one along either axis of the head, of its own variance. */
 static int centers(struct head_sight sights[SIDES * 2], const struct track_result *r, const struct track_clip *clip, const struct track_subject *s,
                    const struct track_conf *conf)
 {
@@ -38,10 +38,11 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 	return n;
 }
 
-/* Lids follow the eye, by a quarter of a millimetre a degree up and down, and a little sideways. Those of a mesh are taken for those of
- * an eye that looks straight on, as high as in a good reference frame (calm 0), or else as it mostly does: what each control point's
- * place would be then, from all frames of open eyes, with calm > 0 of a face at rest (skin off the head no more than so many px),
- * px of the modelling camera = rest + h turn[0] + (v - that height) turn[1], robustly. Where too few tell, that of the reference frame. */
+/* Place of one control point of a margin (px of the modelling camera) when the eye looks straight on, as the mesh's lids are assumed to be. Lids follow
+ * the eye, by a quarter of a millimetre a degree up and down, and a little sideways: regresses over all frames of open eyes, with robust weights,
+ *     place = rest + h turn[0] + (v - v0) turn[1],
+ * v0 the reference's vertical gaze (calm 0) or the median one (calm > 0; frames then also weigh by the skin's misfit over calm px). With too few
+ * frames rest is the reference frame's. */
 static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
                     const struct track_conf *conf)
 {
@@ -61,7 +62,7 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 			track_to_model(at, p, s->opening[side].center, r->pose[f], clip);
 			for (int c = 0; c < 2; c++)
 				off[c] = round ? (double)at[c] - rest[c] - row[1] * turn[c][0] - row[2] * turn[c][1] : 0;
-			// an expression moves the lids, too
+			// expressions move the lids, too
 			double stir = calm > 0 ? r->misfit[f] / calm : 0;
 			w = exp(-pow(row[2] / like_v, 2)) / (1 + pow(stir, 4)) * (round ? pow(1 + (off[0] * off[0] + off[1] * off[1]) / (scale * scale), -2) : 1);
 			square += w * (off[0] * off[0] + off[1] * off[1]);
@@ -78,7 +79,7 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 		for (int c = 0; c < 2; c++) {
 			double m[3][3];
 			memcpy(m, a, sizeof m);
-			// a gaze that hardly moves tells no slope
+			// ridge: a gaze that hardly moves leaves the slopes undetermined
 			m[1][1] += weight * still_gaze * still_gaze;
 			m[2][2] += weight * still_gaze * still_gaze;
 			if (!chol_solve(3, 3, &m[0][0], b[c]))
@@ -91,8 +92,8 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 	}
 }
 
-/* Margins at rest against the mesh's opening under a pose: each control point lies on the outline where that comes nearest. Towards the corners of the
- * eye a margin was drawn to where the pose that is to be improved has them: they would confirm it. */
+/* Measurements of margins at rest: each control point lies on the nearest segment of the mesh's opening under the pose (ICP).
+ * The ends are left out: margins were corrected there by the very pose that is to be refined. */
 static int margins(struct head_sight *sights, int points, double (*rest)[2], const struct track_clip *clip, const struct track_subject *s, int side,
                    const double pose[4][4])
 {

@@ -1,4 +1,5 @@
-/* refine: the head's pose in the reference frame, refined by the eyeballs' centres of rotation and the lids at rest. The centres lie 12 mm behind
+/* refine: the head's pose in the reference frame, refined by the eyeballs' centres of rotation and the lids at rest. The
+ * centres lie 12 mm behind
  * the lids: a head that is turned wrongly has them beside where the lids' outlines want them. */
 #ifndef TRACK_CLIP_REFINE_H
 #define TRACK_CLIP_REFINE_H
@@ -7,8 +8,8 @@
 
 /* clip: cam_from_head and pose_px are replaced; left as they are where too few centres or margins are known.
  * few, conf: frames that were followed, and the settings they were followed with.
- * doubted: the reference may show another expression than most frames; lids at rest are then estimated at the clip's median gaze from
- * frames whose skin fits the rigid head. */
+ * doubted: the reference may show another expression than most frames; lids at rest are then estimated at the clip's median
+ * gaze from frames whose skin fits the rigid head. */
 void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *few, const struct track_subject *subject, const struct track_conf *conf);
 
 #endif

@@ -17,7 +17,7 @@ static bool follow_few(struct track_result *r, const struct track_clip *clip, st
 {
 	struct track_points points = { 0 };
 	struct err none = { 0 };
-	// what cannot be followed here is said when the whole clip is
+	// errors are reported when the whole clip is followed
 	bool ok = track_points_choose(&points, clip, s, few, &none) && track_follow(r, stage, clip, s, &points, few, &none)
 	          && clip->reference / few->every < r->n;
 	track_points_free(&points);
@@ -37,7 +37,7 @@ static void tell_worse(struct stage *stage, const struct track_clip *clip, const
 	              view->better);
 }
 
-/* The head in another frame. False: it is not found there, and nothing has changed. */
+/* Makes another frame the reference and finds the head there. Returns false, nothing changed, when it is not found. */
 static bool look_anew(struct track_clip *clip, long frame, enum track_way way, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
 	struct track_clip was = *clip;
@@ -72,8 +72,8 @@ static struct track_conf few_of(const struct track_conf *conf, const struct trac
 	return few;
 }
 
-/* A reference that nothing spoke against: settle_frames of the clip, from its start and no more than 60 a second, settle the head, where the
- * reference is in their time; otherwise those that it was judged by. */
+/* Refines the pose of a reference that was not doubted: by settle_frames from the clip's start (at 60 a second), where the
+ * reference lies among them; else by the frames that it was judged by. */
 static void settle(struct track_clip *clip, const struct track_result *judged, struct stage *stage, const struct track_subject *s, const struct track_conf *few,
                    const struct track_conf *conf)
 {
@@ -92,11 +92,11 @@ struct doubts {
 	bool any, moved, turned, last;  // last: no further frame is tried
 };
 
-/* True: the frames that were followed speak against the reference, and the head was found in another frame, or the other way up. */
+/* Returns true when the frames followed contradict the reference and the head was found in another frame, or the other way up. */
 static bool look_again(struct track_clip *clip, struct doubts *d, const struct track_result *r, const struct reference_view *view, struct stage *stage,
                        const struct track_subject *s, const struct track_conf *conf)
 {
-	// a frame that shows little does not tell which way up it is
+	// a frame without open eyes does not show which way up the head is
 	if (conf->reference < 0 && view->better >= 0 && (!d->moved || !view->open) && !d->last
 	    && (d->moved = look_anew(clip, view->better, d->turned ? d->way : WAY_EITHER, stage, s, conf))) {
 		clip->begins_shut = clip->begins_shut || !view->open;
@@ -125,19 +125,19 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 		if (followed)
 			view = reference_judge(&r, clip, few.every);
 		if (!d.any && (!followed || view.better >= 0 || reference_is_overturned(&r, clip, s))) {
-			// few frames raise a doubt; many settle it
+			// few frames raised a doubt: judge by more
 			d.any = again = true;
 			few = few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
 			round = -1;
 		} else if (!followed) {
-			// no eye was seen from there: the face was not where it was found to be
+			// no eye was found: the face was a false detection
 			for (long later = track_frames_of(clip, LATER), f = clip->reference + later; conf->reference < 0 && !again && f < clip->info.frames && f < track_frames_of(clip, conf->doubt.span); f += later)
 				clip->begins_shut = again = look_anew(clip, f, WAY_EITHER, stage, s, conf);
 		} else if (!d.any) {
 			settle(clip, &r, stage, s, &few, conf);
 		} else if (!(again = look_again(clip, &d, &r, &view, stage, s, conf))) {
 			reference_refine(clip, true, &r, s, &few);
-			// what was found where a badly placed head led to it is found anew from where that is now
+			// eyes were measured under the old pose: measure and refine once more
 			track_result_free(&r);
 			if (follow_few(&r, clip, stage, s, &few))
 				reference_refine(clip, true, &r, s, &few);

@@ -3,9 +3,9 @@
 #define TRACK_CLIP_SETTLE_H
 #include "track/clip/clip.h"
 
-/* Follows a few frames; judges the reference by them (reference.h); takes a better frame, or the head the other way up, where they call
- * for it; refines the pose by the eyeballs' centres and the lids at rest (refine.h). Does nothing without a mesh, where pose_given, or
- * where conf->settle is 0. What cannot be followed is no error here: the clip is left as it was. */
+/* Follows a few frames; judges the reference by them (reference.h); takes a better frame, or the head the other way up, where
+ * they call for it; refines the pose by the eyeballs' centres and the lids at rest (refine.h). Does nothing without a mesh,
+ * where pose_given, or where conf->settle is 0. What cannot be followed is no error here: the clip is left as it was. */
 void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf);
 
 #endif

@@ -10,14 +10,14 @@
 
 enum { MOTIONS = 6, LEAST_POINTS = 20 };
 
-/* A head rests that comes back to within so many px of where it was in this share of the frames of each third of the clip. In
- * rendered films of heads on a rest 0.3 to 0.5 of the frames are so, of heads held freely none after the first second. */
+/* A head is on a rest when it returns to within rest_px of the reference in rest_share of the frames of each third of the clip.
+ * In rendered films of heads on a rest 0.3 to 0.5 of the frames do, of heads held freely none after the first second. */
 static const double rest_px = 0.3, rest_share = 0.1;
 
-/* Least motion from frame to frame that is reckoned with: degrees, mm. */
+/* Least motion assumed from frame to frame: degrees, mm. */
 static const double least_turn = 0.01, least_shift = 0.01;
 
-/* How far a frame's skin is from where it is in the reference frame: what a tenth of the points stays below, px. */
+/* Distance of a frame's skin from the reference frame's: 10 % quantile over the points, px. */
 static double away(const struct track_result *r, long reference, long frame, double *room)
 {
 	int n = 0;
@@ -29,8 +29,8 @@ static double away(const struct track_result *r, long reference, long frame, dou
 	return n > r->n_points / 4 ? stats_quantile(n, room, 0.1) : INFINITY;
 }
 
-/* A head on a rest: whatever the face does, it comes back to the very same place, early and late. Skin alone does not tell
- * raised cheeks from a head that comes nearer. */
+/* True for a head on a rest: it returns to the same place in every third of the clip. Skin alone cannot distinguish raised
+ * cheeks from a head that comes nearer. */
 static bool rests(const struct track_result *r, long reference)
 {
 	enum { PARTS = 3 };
@@ -46,7 +46,7 @@ static bool rests(const struct track_result *r, long reference)
 	return yes;
 }
 
-/* Skin in the modelling camera, with poses that are other than they were thought to be. */
+/* Recomputes the skin in the modelling camera with the final poses. */
 static void model_again(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
 {
 	for (long f = 0; f < r->n; f++) {
@@ -58,7 +58,7 @@ static void model_again(struct track_result *r, const struct track_points *point
 	}
 }
 
-/* How far a frame's skin, but for the lids, is from where the head takes it: median, px. */
+/* Median residual of a frame's skin, lids excepted, against the rigid head, px; INFINITY with too few points. */
 static double misfit(const struct track_result *r, long frame, const struct track_points *points, const bool *lid, const struct track_clip *clip, double *room)
 {
 	int n = 0;
@@ -71,8 +71,9 @@ static double misfit(const struct track_result *r, long frame, const struct trac
 	return n >= LEAST_POINTS ? stats_median(n, room) : INFINITY;
 }
 
-/* Poses as motions since the reference, each of the six smoothed over the clip. A frame whose skin moves k times further off the head
- * than is usual tells the head's pose k times worse: a brow that is raised takes along what is seen of nose and cheek. */
+/* Smooths each of the six parameters of the motion since the reference over the clip, as a random walk. A frame whose skin
+ * misfits the head k times the
+ * median has k times the standard deviation: a raised brow pulls nose and cheek along. */
 static void smooth(struct track_result *r, const double *misfit, double usual, const double pivot[3], const struct track_clip *clip)
 {
 	size_t n = (size_t)r->n;
@@ -103,7 +104,7 @@ static void smooth(struct track_result *r, const double *misfit, double usual, c
 	free(room);
 }
 
-/* Frame by frame, into r->misfit. */
+/* Fills r->misfit. */
 static void misfits(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
 {
 	bool *lid = mem_new((size_t)points->n + 1, sizeof *lid);

@@ -59,7 +59,7 @@ static const float *at(const struct track_subject *s, int side, int mark)
 	return s->mark[side][mark] < 0 ? 0 : s->mesh.vertices[s->mark[side][mark]];
 }
 
-/* The eyeball touches the middles of both lids from behind. */
+/* Centre of an eyeball that touches the middles of both lids from behind. */
 static bool center_from_marks(double center[3], const struct track_subject *s, int side)
 {
 	const float *up = at(s, side, MARK_UPPER), *low = at(s, side, MARK_LOWER), *in = at(s, side, MARK_INNER), *out = at(s, side, MARK_OUTER);
@@ -94,7 +94,7 @@ static void opening_through(struct eye_opening *o, const float *in, const float 
 	}
 }
 
-/* A corner that is round has no end of its own: where it is marked, that is it. */
+/* A round corner has no end of its own: marked corners replace those found. */
 static void corners_from_marks(struct eye_opening *margin, const struct track_subject *s, int side)
 {
 	const float *mark[2] = { at(s, side, MARK_INNER), at(s, side, MARK_OUTER) };
@@ -112,8 +112,8 @@ static void opening_from_marks(struct eye_opening *o, const struct track_subject
 		opening_through(o, in, out, (const float *const *)mid);
 }
 
-/* Where nothing is known but the eyeball: people's mean fissure (Farkas 1994: 30 mm long; the upper lid stands 4 mm above the
- * pupil's centre, the lower 5.5 mm below), laid on the mesh; where that has holes, on the eyeball. */
+/* Opening where nothing but the eyeball is known: the mean palpebral fissure (Farkas 1994: 30 mm long; the upper lid stands 4
+ * mm above the pupil's centre, the lower 5.5 mm below), laid on the mesh; where that has holes, on the eyeball. */
 static void opening_usual(struct eye_opening *o, const struct ray_scene *rays, const double center[3], double radius)
 {
 	static const float offsets[4][2] = { { -15, -1 }, { 15, 0 }, { 0, 4 }, { 0, -5.5f } };
@@ -131,7 +131,7 @@ static void opening_usual(struct eye_opening *o, const struct ray_scene *rays, c
 	opening_through(o, p[0], p[1], mid);
 }
 
-/* Eyeballs that calibrate has seen, where the mesh is its own. */
+/* Eyeballs estimated by calibrate, where the mesh is its own. */
 static bool eyes_of_rig(struct camera_rig *rig, const struct track_subject *s, struct stage *stage, struct err *err)
 {
 	const char *path = stage_path(stage, "work/rig.json");

@@ -22,8 +22,8 @@ struct track_subject {
 };
 
 /* Loads subject.ply, subject.obj or work/subject.ply, whichever is first, and finds its eyes: their centres from capture.conf,
- * work/rig.json or the marked lids; their openings from the mesh, the marks or an average face. Without a mesh, the eyes of an average
- * face. subject: overwritten; track_subject_free in any case.
+ * work/rig.json or the marked lids; their openings from the mesh, the marks or an average face. Without a mesh, the eyes of an
+ * average face. subject: overwritten; track_subject_free in any case.
  * Returns false, err set, when the mesh or rig cannot be read, a mark is no row of the mesh, or no eye is found. */
 bool track_subject_load(struct track_subject *subject, struct stage *stage, const struct track_conf *conf, struct err *err);
 void track_subject_free(struct track_subject *subject);

@@ -87,18 +87,19 @@ struct eye_track;
 /* Copies scene and conf; eye_track_free. An eye whose prior lies outside the picture is absent. Never fails. */
 struct eye_track *eye_track_new(const struct eye_scene *scene, const struct eye_track_conf *conf);
 
-/* Measures one eye in the next frame. Frames come in order, the same ones for both eyes; the two eyes may be pushed from two threads
- * at once. The frame is not kept. Returns the first estimate, valid until the next push of this eye. */
+/* Measures one eye in the next frame. Frames come in order, the same ones for both eyes; the two eyes may be pushed from two
+ * threads at once. The frame is not kept. Returns the first estimate, valid until the next push of this eye. */
 const struct eye_state *eye_track_push(struct eye_track *track, int side, const struct eye_frame *frame);
 
-/* Learns the appearance of the opening, its corners and the iris from a frame in which the eye is open, instead of from the first frames of the
- * clip. Before the first push of that eye. The frame is not part of the result. */
+/* Learns the appearance of the opening, its corners and the iris from a frame in which the eye is open, instead of from the
+ * first frames of the clip. Before the first push of that eye. The frame is not part of the result. */
 void eye_track_learn(struct eye_track *track, int side, const struct eye_frame *frame);
 
 /* Replaces the head's pose in a frame already pushed, for the fit of eye_track_finish. */
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);
 
-/* Fits the eyeballs to the whole clip (gaze/bundle.h), then estimates gaze, lids and openness again and finds blinks and saccades.
+/* Fits the eyeballs to the whole clip (gaze/bundle.h), then estimates gaze, lids and openness again and finds blinks and
+ * saccades.
  * clip: overwritten; eye_clip_free in any case. Returns false, err set, when no eye was found in any frame. */
 bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err *err);
 void eye_clip_free(struct eye_clip *clip);

@@ -59,8 +59,8 @@ void eye_view(struct gaze_view *view, const struct eye_scene *scene, const doubl
 /* px in a millimetre at the eyeball's front; NAN behind the camera. */
 double eye_scale(const struct gaze_globe *globe, const struct gaze_view *view);
 
-/* Rough gaze into eye->fick by gaze_seek(): near the last gaze, else (or where `anywhere`) in a range of 36 degrees. Returns its score; from
- * EYE_FOUND on an eye is there. */
+/* Rough gaze into eye->fick by gaze_seek(): near the last gaze, else (or where `anywhere`) in a range of 36 degrees. Returns
+ * its score; from EYE_FOUND on an eye is there. */
 double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere);
 static const double EYE_FOUND = 0.35;
 
@@ -86,8 +86,8 @@ void eye_settle_lids(struct eye_side *eye);
 /* The eyeball that was fitted. */
 void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye);
 
-/* After both have settled: removes a constant vertical disparity between the eyes by shifting their centres in proportion to their variances.
- * A disparity beyond three sigma is strabismus and is left. */
+/* After both have settled: removes a constant vertical disparity between the eyes by shifting their centres in proportion to
+ * their variances. A disparity beyond three sigma is strabismus and is left. */
 void eye_pair_level(struct eye_side *left, struct eye_side *right);
 
 /* Sets openness and blink of one eye's states; appends its blinks and saccades to clip. */

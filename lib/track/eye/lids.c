@@ -47,8 +47,8 @@ static void from_fine(struct eye_state *state, const struct lid_fine_frame *f, d
 	line_spread(state->lid[LID_UPPER], state->lid_points, &margin);
 }
 
-/* The upper margin where the eye is seen to end, and as far outside as the edge of the lid is. (Of lower margins, which lashes do not shade, the strips
- * know the edge itself.) */
+/* The upper margin where the eye is seen to end, and as far outside as the edge of the lid is. (Of lower margins, which lashes
+ * do not shade, the strips know the edge itself.) */
 static void refine(struct eye_side *eye)
 {
 	struct lid_fine_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);

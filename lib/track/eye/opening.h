@@ -16,9 +16,9 @@ struct eye_opening {
 	double canthus[2][3];                 // its ends nearest the nose, and farthest from it
 };
 
-/* Traces rays from `from` (a point in front of the face, mm) to the eyeball (center, radius, mm) and finds where the mesh begins to hide it, in
- * 256 directions about its axis. opening: overwritten; open is false where the mesh hides the middle of the eyeball or leaves it open in
- * some direction. */
+/* Traces rays from `from` (a point in front of the face, mm) to the eyeball (center, radius, mm) and finds where the mesh
+ * begins to hide it, in 256 directions about its axis. opening: overwritten; open is false where the mesh hides the middle of
+ * the eyeball or leaves it open in some direction. */
 void eye_opening_find(struct eye_opening *opening, const struct ray_scene *mesh, const double from[3], const double center[3],
                       double radius);
 

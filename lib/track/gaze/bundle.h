@@ -1,4 +1,5 @@
-/* bundle: bundle adjustment of one eye: globe, limbus radius and the gaze of every frame, from the limbus edges of a whole clip. */
+/* bundle: bundle adjustment of one eye: globe, limbus radius and the gaze of every frame, from the limbus edges of a whole
+ * clip. */
 #ifndef TRACK_GAZE_BUNDLE_H
 #define TRACK_GAZE_BUNDLE_H
 #include "track/gaze/edge.h"

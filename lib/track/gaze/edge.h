@@ -44,8 +44,8 @@ struct gaze_search {
 	const void *ctx;
 };
 
-/* Finds on each arc the strongest dark-to-bright step along the normal, to a fraction of a pixel: the peak of the difference between the means on
- * both sides, which blur and motion do not shift. fick: expected gaze. Returns how many arcs have one. */
+/* Finds on each arc the strongest dark-to-bright step along the normal, to a fraction of a pixel: the peak of the difference
+ * between the means on both sides, which blur and motion do not shift. fick: expected gaze. Returns how many arcs have one. */
 int gaze_edges(struct gaze_edge edge[GAZE_ARCS_MAX], const struct luma *luma, const struct gaze_globe *globe,
                const struct gaze_view *view, const double fick[2], const struct gaze_search *search);
 
@@ -58,8 +58,8 @@ struct gaze_fit {
 	double span;           // 0..1: how evenly the inliers lie round the limbus; 0 all in one place
 };
 
-/* Estimates h and v by least squares with Tukey weights, starting from fit->fick, together with a radial offset of all edges (prior
- * standard deviation bias_sigma, mm): how far out a blurred limbus has its half height differs between eyes.
+/* Estimates h and v by least squares with Tukey weights, starting from fit->fick, together with a radial offset of all edges
+ * (prior standard deviation bias_sigma, mm): how far out a blurred limbus has its half height differs between eyes.
  * Returns false when too few edges agree. */
 bool gaze_fit_edges(struct gaze_fit *fit, int n, const struct gaze_edge edge[], const struct gaze_globe *globe,
                     const struct gaze_view *view, double bias_sigma);

@@ -32,7 +32,8 @@ struct gaze_arc {
 	double row[GAZE_N];        // Jacobian: d(p·normal) by h, v (radians), centre, radius, limbus (mm); only with_row
 };
 
-/* Projects the point of the limbus at `angle` (radians from the eye's x axis towards its y axis). fick: h, v, radians. with_row: fills row.
+/* Projects the point of the limbus at `angle` (radians from the eye's x axis towards its y axis). fick: h, v, radians.
+ * with_row: fills row.
  * Returns false when it is behind the camera. */
 bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
               const double fick[2], double angle, bool with_row);

@@ -1,5 +1,5 @@
-/* seek: rough direction of gaze by grid search: the direction whose projected limbus has the greatest contrast between dark inside and bright
- * outside. No edges are measured.
+/* seek: rough direction of gaze by grid search: the direction whose projected limbus has the greatest contrast between dark
+ * inside and bright outside. No edges are measured.
  */
 #ifndef TRACK_GAZE_SEEK_H
 #define TRACK_GAZE_SEEK_H
@@ -14,8 +14,9 @@ struct gaze_sight {
 	const void *ctx;
 };
 
-/* fick: h, v, radians; in: middle of the grid; out: the best direction within `reach` of it on a grid of `step`, refined by halving the step
- * down to `fine`. Returns the contrast as a mean share of sight->contrast, -1..1, about 0 by chance; NAN when the eye is out of the picture. */
+/* fick: h, v, radians; in: middle of the grid; out: the best direction within `reach` of it on a grid of `step`, refined by
+ * halving the step down to `fine`. Returns the contrast as a mean share of sight->contrast, -1..1, about 0 by chance; NAN when
+ * the eye is out of the picture. */
 double gaze_seek(double fick[2], const struct gaze_sight *sight, double reach, double step, double fine);
 
 #endif

@@ -1,5 +1,5 @@
-/* torsion: rotation of an eye about its line of sight, by correlating the iris pattern, sampled on rings about the axis as seen through the
- * cornea, with the pattern of the frames before.
+/* torsion: rotation of an eye about its line of sight, by correlating the iris pattern, sampled on rings about the axis as seen
+ * through the cornea, with the pattern of the frames before.
  */
 #ifndef TRACK_GAZE_TORSION_H
 #define TRACK_GAZE_TORSION_H
@@ -26,7 +26,8 @@ struct torsion_look {
 	const void *ctx;
 };
 
-/* Estimates torsion and its sigma (radians) and adds the frame to the pattern. The first frame has the torsion `first` by definition.
+/* Estimates torsion and its sigma (radians) and adds the frame to the pattern. The first frame has the torsion `first` by
+ * definition.
  * Returns false when too little of the iris is visible or it does not match the pattern. */
 bool gaze_torsion(double *torsion, double *sigma, struct gaze_torsion *state, const struct torsion_look *look,
                   double first);

@@ -30,9 +30,10 @@ struct head_found {
 	double edge_px;        // rms of the outlines found against the mesh's; NAN: not refined
 };
 
-/* Slides the outlines of the openings, in a range of sizes and rolls, over a reduced picture, and takes the pose of best contrast.
- * rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. upside_down: searches for an inverted head
- * instead of an upright one; openings alone hardly distinguish the two. found: overwritten. Returns false when no eyes are found. */
+/* Slides the outlines of the openings, in a range of sizes and rolls, over a reduced picture, and takes the pose of best
+ * contrast. rgb[height][3 width]. opening[2]: left, right; at least one open. camera->focal_px must be known. upside_down:
+ * searches for an inverted head instead of an upright one; openings alone hardly distinguish the two. found: overwritten.
+ * Returns false when no eyes are found. */
 bool head_find(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
                const struct eye_opening opening[2], bool upside_down, const struct head_find_conf *conf);
 

@@ -22,8 +22,8 @@ struct head_sight {
 	double weight;         // 1 / sigma^2, px^-2; 0: left out
 };
 
-/* Refines cam_from_head by Gauss-Newton with Geman-McClure weights of scale `robust` px (INFINITY: least squares).
- * prior may be null. camera->focal_px must be known. Returns the weighted rms of the residuals, px; NAN, cam_from_head unchanged, when the
+/* Refines cam_from_head by Gauss-Newton with Geman-McClure weights of scale `robust` px (INFINITY: least squares). prior may be
+ * null. camera->focal_px must be known. Returns the weighted rms of the residuals, px; NAN, cam_from_head unchanged, when the
  * points do not determine a pose. */
 double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *sights, const struct camera *camera,
                      double robust, const struct head_prior *prior);
@@ -37,10 +37,12 @@ void head_to(double out[3], const double cam_from_head[4][4], const double cam[3
 /* Pixel of a point of the head; false behind the camera. */
 bool head_project(double px[2], const struct camera *camera, const double cam_from_head[4][4], const double head[3]);
 
-/* The pose after a rotation by the vector d[0..2] (camera axes, radians) about `pivot` (camera frame, mm), then a shift d[3..5] (mm). */
+/* The pose after a rotation by the vector d[0..2] (camera axes, radians) about `pivot` (camera frame, mm), then a shift d[3..5]
+ * (mm). */
 void head_moved(double out[4][4], const double cam_from_head[4][4], const double d[6], const double pivot[3]);
 
-/* The motion d, as in head_moved, that takes the pose `from` to cam_from_head; the shift is that of the point at `pivot` afterwards. */
+/* The motion d, as in head_moved, that takes the pose `from` to cam_from_head; the shift is that of the point at `pivot`
+ * afterwards. */
 void head_motion(double d[6], const double cam_from_head[4][4], const double from[4][4], const double pivot[3]);
 
 #endif

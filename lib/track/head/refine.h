@@ -5,8 +5,8 @@
 #define TRACK_HEAD_REFINE_H
 #include "track/head/find.h"
 
-/* Refines found->cam_from_head, which must be roughly right, and sets seen and edge_px. rgb[height][3 width]; opening[2]: left, right;
- * camera->focal_px must be known. Returns false when no outline is found. */
+/* Refines found->cam_from_head, which must be roughly right, and sets seen and edge_px. rgb[height][3 width]; opening[2]: left,
+ * right; camera->focal_px must be known. Returns false when no outline is found. */
 bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
                       const struct eye_opening opening[2], const struct head_find_conf *conf);
 

@@ -17,8 +17,9 @@ struct lid_chart {
 	uint8_t rgb[LID_ROWS][LID_COLS_MAX][3];
 };
 
-/* Sets the geometry from the corners of the eye (px): `columns` from one to the other and an eighth more at each end, the line of corners
- * at row LID_ROWS / 2. down: direction towards the chin, roughly. rgb is left as it was. Returns false when the corners are nearer than 8 px. */
+/* Sets the geometry from the corners of the eye (px): `columns` from one to the other and an eighth more at each end, the line
+ * of corners at row LID_ROWS / 2. down: direction towards the chin, roughly. rgb is left as it was. Returns false when the
+ * corners are nearer than 8 px. */
 bool lid_chart_lay(struct lid_chart *chart, int columns, const double inner[2], const double outer[2],
                    const double down[2]);
 

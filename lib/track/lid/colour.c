@@ -18,7 +18,8 @@ int lid_colour_bin(const uint8_t rgb[3])
 	return (l * LID_RED + red) * LID_BLUE + blue;
 }
 
-/* Zone of the eye: rings of the iris, then white towards the nose and away from it; the last, all of it, where nobody knows the iris. */
+/* Zone of the eye: rings of the iris, then white towards the nose and away from it; the last, all of it, where nobody knows the
+ * iris. */
 static int ring_of(const struct lid_iris *iris, double cols, double rows)
 {
 	static const double outer[] = { 0.4, 0.6, 0.8, 1.04 };

@@ -1,5 +1,5 @@
-/* corner: the corners of an eye tracked by the skin beside them. They move a millimetre or two when the eye turns and when the lids are pressed
- * together.
+/* corner: the corners of an eye tracked by the skin beside them. They move a millimetre or two when the eye turns and when the
+ * lids are pressed together.
  */
 #ifndef TRACK_LID_CORNER_H
 #define TRACK_LID_CORNER_H
@@ -32,8 +32,8 @@ struct lid_corner {
 	uint8_t look[CORNER_SIDE][CORNER_SIDE];  // template: brightness beside the corner in the first frame
 };
 
-/* Tracks corner `which` (0 inner, 1 outer) by template matching. shift: columns and rows off the corner that the chart was laid by, drawn
- * towards 0 where the match is poor (blinks). The first call learns the template and gives 0, 0. */
+/* Tracks corner `which` (0 inner, 1 outer) by template matching. shift: columns and rows off the corner that the chart was laid
+ * by, drawn towards 0 where the match is poor (blinks). The first call learns the template and gives 0, 0. */
 void lid_corner_find(double shift[2], struct lid_corner *corner, int which, const struct lid_chart *chart,
                      const struct lid_picture *picture);
 

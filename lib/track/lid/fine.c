@@ -10,8 +10,8 @@
 
 enum { PLACES = 6, RINGS = 10, ZONES = PLACES + RINGS, ROUNDS = 2, LEAN = 4 };
 
-/* mm: how far the eye's end may be from where it is expected, halfway between the corners; what is surely eye and surely lid begins so far from it,
- * and lids are looked at so far; the length of a row of independent cells. */
+/* mm: how far the eye's end may be from where it is expected, halfway between the corners; what is surely eye and surely lid
+ * begins so far from it, and lids are looked at so far; the length of a row of independent cells. */
 static const double sigma_mm = 0.5, clear_eye = 0.19, clear_lid = 0.09, band_mm = 0.75, row_mm = 1.0 / 16;
 /* What a change of slope by a cell costs; how far odds are believed; bend of the smoothed curve. */
 static const double bend = 0.3, sure = 3, soft = 2;

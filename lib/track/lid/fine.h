@@ -25,7 +25,8 @@ static inline double lid_fine_step(const struct lid_fine *fine)
 	return (double)fine->mm / 32;
 }
 
-/* Samples the picture along a margin of n points (px, inner to outer corner). lower: 0 upper, 1 lower lid; mm: px in a millimetre. fine: overwritten. */
+/* Samples the picture along a margin of n points (px, inner to outer corner). lower: 0 upper, 1 lower lid; mm: px in a
+ * millimetre. fine: overwritten. */
 void lid_fine_look(struct lid_fine *fine, int lower, int n, const double margin[][2], double mm, const struct lid_picture *picture);
 
 /* A frame for lid_fine_settle(). */

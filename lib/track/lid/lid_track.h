@@ -51,12 +51,12 @@ struct lid_kept {
 	float row[2][LID_COLS_MAX], at[2][2];
 };
 
-/* columns: of the chart between the corners; points: control points of a margin; wet_mm: width of the tear meniscus; fps: frames a second that will
- * be pushed. lids: overwritten; owns no memory. */
+/* columns: of the chart between the corners; points: control points of a margin; wet_mm: width of the tear meniscus; fps:
+ * frames a second that will be pushed. lids: overwritten; owns no memory. */
 void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm, double fps);
 
-/* Finds the lids in the next frame. found: overwritten; open is false where the eye is shut. Returns false when the corners are nearer than 8 px, or the
- * eye's colours are not known yet and cannot be learnt here, for want of an iris. */
+/* Finds the lids in the next frame. found: overwritten; open is false where the eye is shut. Returns false when the corners are
+ * nearer than 8 px, or the eye's colours are not known yet and cannot be learnt here, for want of an iris. */
 bool lid_track_push(struct lid_found *found, struct lid_track *lids, const struct lid_picture *picture,
                     const struct lid_look *look);
 

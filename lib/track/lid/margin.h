@@ -15,7 +15,8 @@ struct lid_margin_conf {
 double lid_margin_settle(struct lid_curves *curves, int lower, int first, int last, const struct lid_chart *chart,
                          const struct lid_picture *picture, const struct lid_margin_conf *conf);
 
-/* First and last column of the longest run that is open by more than `gap` rows. Returns false when it has fewer than five columns (shut). */
+/* First and last column of the longest run that is open by more than `gap` rows. Returns false when it has fewer than five
+ * columns (shut). */
 bool lid_opening(int *first, int *last, const struct lid_curves *curves, int cols, double gap);
 
 /* n points (px) at equal arc lengths along a margin, from corner to corner (chart column and row). */

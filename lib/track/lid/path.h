@@ -26,14 +26,15 @@ struct lid_match {
 	float cost[2][LID_ROWS + 1][LID_COLS_MAX];  // 0 .. LID_STRIP_WORST
 };
 
-/* odds: log odds of eye against lid of each cell. match: ignored where not known. expect: expected margins and their slopes; may be out itself.
- * The margins are fitted in turns, each given the other. out: rows between cells. Returns the mean odds inside the opening minus that in a rim outside it. */
+/* odds: log odds of eye against lid of each cell. match: ignored where not known. expect: expected margins and their slopes;
+ * may be out itself. The margins are fitted in turns, each given the other. out: rows between cells. Returns the mean odds
+ * inside the opening minus that in a rim outside it. */
 double lid_path(struct lid_curves *out, const struct lid_chart *chart, float odds[LID_ROWS][LID_COLS_MAX],
                 const struct lid_match *match, const struct lid_curves *expect,
                 const struct lid_path_conf *conf);
 
-/* Refines columns first..last of whole rows to the parabola's minimum of the strips' cost, a fraction of a row, and smooths. Returns the
- * mean cost before that. */
+/* Refines columns first..last of whole rows to the parabola's minimum of the strips' cost, a fraction of a row, and smooths.
+ * Returns the mean cost before that. */
 double lid_path_refine(double row[], const struct lid_match *match, int lower, int first, int last, double bend);
 
 /* Penalised least squares (Whittaker 1923, second differences): out[n] smooths y[n] of weight w[n]; bend: their relative

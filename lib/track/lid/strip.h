@@ -1,5 +1,6 @@
-/* strip: appearance of a lid in a strip along its margin: mean and variance of every cell over the clip. Skin moves with the margin and keeps its
- * appearance, the eye behind it does not. The strip therefore locates the lid in any frame, and the eye begins where the variance rises.
+/* strip: appearance of a lid in a strip along its margin: mean and variance of every cell over the clip. Skin moves with the
+ * margin and keeps its appearance, the eye behind it does not. The strip therefore locates the lid in any frame, and the eye
+ * begins where the variance rises.
  */
 #ifndef TRACK_LID_STRIP_H
 #define TRACK_LID_STRIP_H
@@ -14,9 +15,9 @@ struct lid_strip {
 	float mean[LID_STRIP][LID_COLS_MAX * 3], var[LID_STRIP][LID_COLS_MAX * 3];  // grey levels, squared
 };
 
-/* cost[j][i]: mismatch with the margin between rows j - 1 and j of column i, for rows first..last. Mean over the strip's cells: outside the margin
- * squared difference over expected variance, at most LID_STRIP_WORST; in a few cells inside, LID_STRIP_WORST less that, since they must
- * not look like the lid's rim. */
+/* cost[j][i]: mismatch with the margin between rows j - 1 and j of column i, for rows first..last. Mean over the strip's cells:
+ * outside the margin squared difference over expected variance, at most LID_STRIP_WORST; in a few cells inside, LID_STRIP_WORST
+ * less that, since they must not look like the lid's rim. */
 void lid_strip_cost(float cost[LID_ROWS + 1][LID_COLS_MAX], const struct lid_strip *strip, const struct lid_chart *chart,
                     int first, int last);
 static const float LID_STRIP_WORST = 4;

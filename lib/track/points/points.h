@@ -14,8 +14,8 @@ struct skin_points {
 };
 void skin_points_free(struct skin_points *points);
 
-/* Sets first and near, of n and at: of each point the `count` (at most SKIN_NEAR_MAX) nearest in the image among those within three edges
- * of a mesh, or, without edges (n_edges 0), among all. */
+/* Sets first and near, of n and at: of each point the `count` (at most SKIN_NEAR_MAX) nearest in the image among those within
+ * three edges of a mesh, or, without edges (n_edges 0), among all. */
 void skin_points_join(struct skin_points *points, int n_edges, const int (*edges)[2], int count);
 
 #endif

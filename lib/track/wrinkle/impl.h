@@ -19,11 +19,13 @@ bool wrinkle_ridges_find(struct wrinkle_ridges *ridges, const float *change, con
                          const struct wrinkle_ground *ground, const struct wrinkle_conf *conf, struct err *err);
 void wrinkle_ridges_free(struct wrinkle_ridges *ridges);
 
-/* link.c: links ridges into curves with control points a mm apart on the surface; widths are the ridges'. lines: owned by the caller. Returns how many. */
+/* link.c: links ridges into curves with control points a mm apart on the surface; widths are the ridges'. lines: owned by the
+ * caller. Returns how many. */
 int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *ridges, const struct wrinkle_ground *ground,
                  const struct wrinkle_conf *conf);
 
-/* light.c: the light, first from the shading of the neutral face; then the share of ambient in frontal light, which that leaves open, from the
+/* light.c: the light, first from the shading of the neutral face; then the share of ambient in frontal light, which that leaves
+ * open, from the
  * shading of the lines: a lamp darkens their walls, a sky their bottom. */
 void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin, const struct wrinkle_ground *ground);
 struct wrinkle_grooves;

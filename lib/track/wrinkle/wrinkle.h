@@ -89,7 +89,8 @@ struct wrinkles {
 };
 void wrinkles_free(struct wrinkles *wrinkles);
 
-/* Finds the lines of the next expression and appends a pose to w; wrinkles_free. frames[0]: neutral, frames[n - 1]: peak; n < 2: the pose has none.
+/* Finds the lines of the next expression and appends a pose to w; wrinkles_free. frames[0]: neutral, frames[n - 1]: peak; n <
+ * 2: the pose has none.
  * Returns false, err set, when the ridge filter fails. */
 bool wrinkle_find(struct wrinkles *w, const char *name, int n, const struct wrinkle_frame frames[],
                   const struct wrinkle_ground *ground, const struct wrinkle_conf *conf, struct err *err);
