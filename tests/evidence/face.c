@@ -11,7 +11,7 @@ static void skin_colour(struct face *f, struct rng *rng)
 	f->ring = range_of(rng, 0, 0.8);
 }
 
-struct face face_make(struct rng *rng, bool test)
+struct face drawn_face_make(struct rng *rng, bool test)
 {
 	struct face f = { 0 };
 	skin_colour(&f, rng);
@@ -131,7 +131,7 @@ static void behind(struct skin_point *out, const struct face *f, float u, float 
 		out->albedo[c] = (f->back[0][c] + mix * (f->back[1][c] - f->back[0][c])) * (0.3F + 1.2F * a);
 }
 
-bool face_at(struct skin_point *out, const struct face *f, float u, float v)
+bool drawn_face_at(struct skin_point *out, const struct face *f, float u, float v)
 {
 	*out = (struct skin_point){ .open = 1 };
 	const float a = u / f->half[0], b = (v - f->half_at) / f->half[1], r = a * a + b * b;

@@ -16,11 +16,11 @@ struct face {
 	struct eye_frame frame[2];
 };
 
-struct face face_make(struct rng *rng, bool test);
+struct face drawn_face_make(struct rng *rng, bool test);
 
 /* Height (mm, towards the camera), albedo and shine of the skin at (u, v); occlusion 0..1 of ambient light. False: behind the
  * face; albedo is then the background's radiance. */
 struct skin_point { float height, albedo[3], open; };
-bool face_at(struct skin_point *out, const struct face *face, float u, float v);
+bool drawn_face_at(struct skin_point *out, const struct face *face, float u, float v);
 
 #endif

@@ -68,7 +68,7 @@ static void draw_skin(struct canvas *c, const struct set *s)
 		for (int i = 0; i < w; i++) {
 			float uv[2];
 			face_uv(uv, c, i, j);
-			on[j * w + i] = face_at(&skin[j * w + i], &s->face, uv[0] / s->face.narrow, uv[1]);
+			on[j * w + i] = drawn_face_at(&skin[j * w + i], &s->face, uv[0] / s->face.narrow, uv[1]);
 		}
 	for (int j = 0; j < h; j++)
 		for (int i = 0; i < w; i++) {
@@ -243,7 +243,7 @@ struct drawn drawn_make(uint64_t number, bool test, int width, int height)
 	struct drawn d = { .width = width, .height = height, .rgb = malloc((size_t)width * (size_t)height * 3), .label = malloc((size_t)width * (size_t)height) };
 	struct canvas c = canvas_new(width, height);
 	struct set s = { 0 };
-	s.face = face_make(&rng, test);
+	s.face = drawn_face_make(&rng, test);
 	s.light = light_make(&rng, test);
 	light_on(s.white, &s.light, (const float[3]){ 0, 0, 1 }, 0.3F);
 	eyes_make(&s, &rng, test);

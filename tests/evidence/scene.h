@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum evidence_class { EVIDENCE_SKIN, EVIDENCE_LASH, EVIDENCE_SCLERA, EVIDENCE_IRIS, EVIDENCE_PUPIL, EVIDENCE_REFLECTION, EVIDENCE_CLASSES };
+#include "limbus/evidence.h"
 
 /* px of the picture, centre of the first at 0.5; angle in radians from x towards y (down). */
 struct drawn_eye {

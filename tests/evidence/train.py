@@ -3,7 +3,7 @@
 
     train.py --make build/tests/evidence/make_eyes --minutes 60 --out config/evidence.onnx
     train.py --make build/tests/evidence/make_eyes --short        a minute: the loss falls, asserted
-    train.py --make build/tests/evidence/make_eyes --judge FILE   IoU of a checkpoint on the test split
+    train.py --make build/tests/evidence/make_eyes --judge FILE   IoU of a checkpoint on the test split; with --out it is written as ONNX
 
 Pictures are made while training runs; none is stored. Needs python3-torch and python3-numpy.
 Input of the network: 1 x 3 x H x W, sRGB as encoded, 0..1, H and W multiples of 32. Output: 1 x 6 x H/2 x W/2, logits of
@@ -139,6 +139,18 @@ def judge(net, make, first, batches, batch=16):
 def export(net, path):
     net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
     torch.onnx.export(net, torch.zeros(1, 3, LARGE[1], LARGE[0]), path, opset_version=11, input_names=["rgb"], output_names=["logits"])
+    seal(path)
+
+
+def seal(path):
+    """Appends an entry of ONNX's metadata with the FNV-1a hash of all before it, which lib/bridge/cv_net.cc asks for."""
+    with open(path, "rb") as file:
+        data = file.read()
+    value = 0xcbf29ce484222325
+    for byte in data:
+        value = ((value ^ byte) * 0x100000001b3) & 0xffffffffffffffff
+    with open(path, "ab") as file:
+        file.write(b"\x72\x1b\x0a\x07fnv1a64\x12\x10" + b"%016x" % value)
 
 
 class Average:
@@ -199,7 +211,8 @@ def train(args):
         if args.keep and time.time() - kept > 60 * args.every:
             kept = time.time()
             torch.save({"net": best.net.state_dict(), "steps": len(losses)}, args.keep)
-            export(best.net, args.out)
+            if args.out:
+                export(best.net, args.out)
             judge(best.net, args.make, 0, 4)
             net.train()
     pictures.close()
@@ -209,7 +222,7 @@ def train(args):
 def main():
     p = argparse.ArgumentParser()
     p.add_argument("--make", required=True)
-    p.add_argument("--out", default="evidence.onnx")
+    p.add_argument("--out", help="ONNX file")
     p.add_argument("--keep", help="checkpoint file")
     p.add_argument("--start", help="checkpoint to begin with")
     p.add_argument("--every", type=float, default=4, help="minutes between checkpoints")
@@ -230,6 +243,8 @@ def main():
     if args.judge:
         net = Net()
         net.load_state_dict(torch.load(args.judge)["net"])
+        if args.out:
+            export(net, args.out)
         judge(net, args.make, 0, args.pictures // 16)
         return
     if args.short:
@@ -240,7 +255,8 @@ def main():
         print("loss %.3f, at the end %.3f" % (first, last))
         assert last < 0.8 * first, "the loss does not fall"
         return
-    export(net, args.out)
+    if args.out:
+        export(net, args.out)
     if args.keep:
         torch.save({"net": net.state_dict(), "steps": len(losses)}, args.keep)
     judge(net, args.make, 0, args.pictures // 16)
