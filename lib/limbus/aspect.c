@@ -1,6 +1,6 @@
-#include <math.h>
+#include "limbus/aspect.h"
 
-#include "limbus/pose.h"
+#include <math.h>
 
 enum { STEPS = 7, ROUNDS = 3 };
 

@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "limbus/judge.h"
+#include "limbus/propose/sides.h"
 #include "math/stats.h"
 
 static const double OUTER = 0.3;   // least support of a limbus round a pupil, of the pupil's

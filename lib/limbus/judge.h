@@ -30,16 +30,4 @@ bool limbus_has_sides_around(const struct ellipse *e, const struct photo *photo,
 bool limbus_is_cut(const struct ellipse *e, const struct photo *photo);
 /* Smaller and inside. */
 bool limbus_within(const struct ellipse *e, const struct ellipse *around);
-/* The blurred step's ellipse says what the sides of the limbus said. */
-bool limbus_agrees(const struct ellipse *e, const struct ellipse *settled);
-
-/* An ellipse of which little shows, measured without looking far from where it is thought to be: for what it is its
- * pupil vouches, in its middle. False, rim as it was, where it does not. */
-bool limbus_measure_centred(struct rim *rim, const struct ellipse *start, const struct photo *photo,
-                            const struct pyramid *pyramid, const struct limbus_conf *conf);
-
-/* The eye by the two sides of its limbus; found->ok. around: what lies inside is the pupil of what was tried before. */
-bool limbus_measure_flanks(struct limbus_found *found, struct ellipse around, const struct photo *photo,
-                           const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf);
-
 #endif

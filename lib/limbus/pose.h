@@ -44,10 +44,6 @@ struct pose {
 bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct eye *eye, const struct pose_conf *conf,
                  struct err *err);
 
-/* Aspect of one eye from n photographs: the most likely value under the prior, and its sigma. */
-bool limbus_aspect(double *aspect, double *sigma, int n, const struct pose_view views[n], const struct eye *eye,
-                   const struct pose_conf *conf, struct err *err);
-
 /* A camera 1000 mm away for photographs whose camera is not known (weak perspective). */
 struct camera pose_nominal_camera(const struct ellipse *limbus, const struct eye *eye, int width, int height);
 

@@ -4,7 +4,7 @@
  */
 #include "base/mem.h"
 #include "tissue/relief/opts.h"
-#include "stages/heightfield/heightfield_stage.h"
+#include "heightfield.h"
 
 int main(int argc, char **argv)
 {

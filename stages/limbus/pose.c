@@ -8,8 +8,9 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "limbus/overlay.h"
 #include "image/picture.h"
+#include "limbus/joint.h"
+#include "limbus/overlay.h"
 
 static const double DEG = M_PI / 180;
 
@@ -21,97 +22,12 @@ struct eye_work {
 	int n;                               // of this eye
 	const struct capture_photo **photo;  // [n]
 	struct limbus_record *record;        // [n]
-	struct pose_conf pose;               // aspect as fitted or declared
-	double aspect_sigma;
+	struct limbus_joint joint;
 	int usable;
 	struct limbus_kept *kept;
 };
 
-/* What is common to the eye: its aspect, declared or fitted to all its photographs under the prior. */
-static bool share_aspect(struct eye_work *w, struct err *err)
-{
-	const struct eye *eye = &w->o->eye;
-	w->pose = w->o->pose;
-	w->aspect_sigma = 0;
-	w->pose.aspect_sigma = 0;
-	if (isfinite(eye->limbus_aspect)) {
-		w->pose.aspect_mean = eye->limbus_aspect;
-		return true;
-	}
-	if (w->usable == 0)
-		return true;
-	struct pose_view *views = mem_new((size_t)w->usable, sizeof *views);
-	int n = 0;
-	for (int i = 0; i < w->n; i++)
-		if (w->record[i].ok)
-			views[n++] = w->record[i].view;
-	bool ok = limbus_aspect(&w->pose.aspect_mean, &w->aspect_sigma, n, views, eye, &w->o->pose, err);
-	free(views);
-	return ok;
-}
-
-/* Pose of one photograph; the fitted aspect's uncertainty is added to theta's. */
-static bool pose_of(struct pose *pose, const struct eye_work *w, const struct limbus_record *record, struct err *err)
-{
-	const struct eye *eye = &w->o->eye;
-	if (!limbus_pose(pose, &record->view, eye, &w->pose, err))
-		return false;
-	if (w->aspect_sigma > 0) {
-		struct pose_conf moved = w->pose;
-		struct pose other;
-		moved.aspect_mean += w->aspect_sigma;
-		if (!limbus_pose(&other, &record->view, eye, &moved, err))
-			return false;
-		double dot = 0;
-		for (int i = 0; i < 3; i++)
-			dot += pose->cam_from_eye[i][2] * other.cam_from_eye[i][2];
-		double turn = fabs(dot) < 1 ? acos(dot) : 0;
-		pose->theta_sigma = hypot(pose->theta_sigma, turn > 1 ? fabs(other.theta - pose->theta) : turn);
-		pose->aspect_sigma = w->aspect_sigma;
-	}
-	return true;
-}
-
-/* Share of each sector's edge points that are in sight. */
-static void seen_of(double seen[FIT_SECTORS], const struct limbus_record *r)
-{
-	double all[FIT_SECTORS] = { 0 };
-	memset(seen, 0, FIT_SECTORS * sizeof *seen);
-	for (int i = 0; i < ARCS; i++) {
-		double phi = atan2(r->point[i][1] - r->view.limbus.cy, r->point[i][0] - r->view.limbus.cx) / (2 * M_PI);
-		int at = (int)((phi < 0 ? phi + 1 : phi) * FIT_SECTORS) % FIT_SECTORS;
-		all[at]++;
-		seen[at] += r->state[i] != ARC_HIDDEN;
-	}
-	for (int i = 0; i < FIT_SECTORS; i++)
-		seen[i] = all[i] > 0 ? seen[i] / all[i] : 0;
-}
-
-static struct fit fit_of(const struct limbus_record *r, const struct pose *pose)
-{
-	struct fit fit = { .ok = r->ok, .width = r->width, .height = r->height };
-	memcpy(fit.reason, r->reason, sizeof fit.reason);
-	if (!r->ok)
-		return fit;
-	fit.limbus = r->view.limbus;
-	fit.pupil = r->view.pupil;
-	fit.has_pupil = r->view.has_pupil;
-	ellipse_sigma(fit.ellipse_sigma, &fit.limbus, r->view.cov_q);
-	memcpy(fit.cam_from_eye, pose->cam_from_eye, sizeof fit.cam_from_eye);
-	fit.theta = pose->theta;
-	fit.phi = pose->phi;
-	fit.theta_sigma = pose->theta_sigma;
-	fit.coverage = r->coverage;
-	seen_of(fit.seen, r);
-	fit.rms_px = r->rms;
-	fit.edge_sigma_px = r->blur;
-	fit.camera = r->view.camera;
-	fit.limbus_aspect = pose->aspect;
-	fit.limbus_aspect_sigma = pose->aspect_sigma;
-	return fit;
-}
-
-/* Keys beyond DESIGN's, as JSON text; free(). */
+/* Keys of limbus/NAME.json beyond those of lib/README.md, as JSON text; free(). */
 static char *extra_of(const struct limbus_record *r, const struct pose *pose)
 {
 	json_t *json = json_object();
@@ -175,9 +91,9 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 	struct pose pose = { 0 };
 	if (!r->ok)
 		stage_warn(w->stage, "%s: rejected: %s", p->file, r->reason);
-	else if (!pose_of(&pose, w, r, err))
+	else if (!limbus_joint_pose(&pose, &w->joint, r, &w->o->eye, err))
 		return err_wrap(err, "%s", p->file);
-	struct fit fit = fit_of(r, &pose);
+	struct fit fit = limbus_joint_fit(r, &pose);
 	if (r->ok)
 		note(w, i, &fit, &pose);
 	else
@@ -206,7 +122,7 @@ static bool fit_eye(struct eye_work *w, struct err *err)
 		ok = limbus_record_load(&w->record[i], stage_path(w->stage, "%s", paths[i]), err);
 		w->usable += w->record[i].ok;
 	}
-	ok = ok && share_aspect(w, err);
+	ok = ok && limbus_joint(&w->joint, w->n, w->record, &w->o->eye, &w->o->pose, err);
 	/* With the aspect fitted, every photograph of the eye is an input of each. */
 	bool shared = !isfinite(w->o->eye.limbus_aspect) && w->usable >= 2;
 	for (int i = 0; i < w->n && ok; i++) {

@@ -1,4 +1,4 @@
-/* photo_parse: what header.c and the files beside it share; nobody else includes this. */
+/* What the files of image/photo share. */
 #ifndef IMAGE_PHOTO_IMPL_H
 #define IMAGE_PHOTO_IMPL_H
 #include "image/photo/photo.h"
@@ -31,8 +31,8 @@ static inline uint32_t bytes_le(struct bytes b, size_t at, int n)
 	return v;
 }
 
-/* Each fills width, height, bits, grey and exif; false, err set, when the file should not be decoded. */
-/* Of a raw file it sets kind alone. */
+/* Parsers of file headers. Each fills width, height, bits, grey and exif; that of TIFF sets only kind for a camera's raw file.
+ * False, err set (the rule broken), when the file should not be decoded. */
 bool photo_parse_tiff(struct photo *photo, struct bytes file, struct err *err);
 bool photo_parse_exr(struct photo *photo, struct bytes file, struct err *err);
 
@@ -70,7 +70,7 @@ bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_sp
 bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
 bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
 
-/* 8-bit values times 257, n of them. */
+/* out = 257 in: 8-bit values to 16 bits, n of them. */
 void photo_widen(uint16_t *out, const uint8_t *in, size_t n);
 
 #endif

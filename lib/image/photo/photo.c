@@ -27,7 +27,7 @@ static bool decode_exr(const struct photo *photo, uint16_t *rgb, const char *pat
 			rgb[3 * i + c] = (uint16_t)(65535 * srgb_from_linear(v > 0 ? v < 1 ? v : 1 : 0) + 0.5f);
 		}
 	image_free(&image);
-	return same ? true : err_set(err, "has a size that is not the one its header gives");
+	return same ? true : err_set(err, "%s: has a size that is not the one its header gives", path);
 }
 
 static bool decode(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, const char *path,
@@ -90,6 +90,7 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 	// No file of a sane photograph is longer than its pixels in 16 bits, four channels, and some metadata.
 	size_t limit = (size_t)(8e6 * limit_mpx) + ((size_t)64 << 20), size;
 	struct err why = { 0 };
+	bool named = false;  // why names the file itself
 	char *data;
 	*photo = (struct photo){ 0 };
 	if (!file_read(&data, &size, path, limit, err))
@@ -97,6 +98,7 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 	bool ok = photo_header(photo, data, size, limit_mpx, &why);
 	if (ok) {
 		photo->rgb = mem_array((size_t)photo->width * (size_t)photo->height * 3, sizeof *photo->rgb);
+		named = photo->kind == PHOTO_EXR;
 		struct photo_space space = { 0 };
 		ok = decode(photo, photo->rgb, &space, (struct bytes){ (const uint8_t *)data, size }, path, limit_mpx, &why)
 		     && convert(photo, &space, &why);
@@ -105,8 +107,7 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 	free(data);
 	if (!ok) {
 		photo_free(photo);
-		// The reader of an EXR names the file itself.
-		return strncmp(why.msg, path, strlen(path)) ? err_set(err, "%s: %s", path, why.msg) : err_set(err, "%s", why.msg);
+		return named ? err_set(err, "%s", why.msg) : err_set(err, "%s: %s", path, why.msg);
 	}
 	turn_upright(photo);
 	return true;

@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 #include "iris/freckle/freckle.h"
-#include "iris/unrefract/mask.h"
+#include "iris/unrefract/rings.h"
 #include "image/mask.h"
 
 static const float seen = 0.02f, darkest = 1e-4f;

@@ -1,9 +1,10 @@
+#include "iris/freckle/flat.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "iris/freckle/search.h"
 #include "image/mask.h"
 #include "image/plane.h"
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "iris/freckle/flat.h"
 #include "iris/freckle/ground.h"
-#include "iris/freckle/search.h"
 #include "image/mask.h"
 #include "image/plane.h"
 

@@ -1,8 +1,9 @@
+#include "iris/unrefract/lids.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "iris/unrefract/mask.h"
 #include "image/plane.h"
 
 enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "image/mask.h"
 #include "image/plane.h"
+#include "iris/unrefract/lids.h"
 
 enum { OUTSIDE, IRIS, LID, GLINT, LASH };
 

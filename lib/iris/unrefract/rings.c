@@ -1,8 +1,8 @@
+#include "iris/unrefract/rings.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/mem.h"
-#include "iris/unrefract/mask.h"
 #include "image/plane.h"
 
 double sheet_t(const struct sheet *sheet, double x, double y)

@@ -2,10 +2,8 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "iris/unrefract/align.h"
 #include "iris/unrefract/mask.h"
 #include "iris/unrefract/sample.h"
-#include "image/plane.h"
 
 enum { MARGIN_POINTS = 72 };
 
@@ -54,33 +52,6 @@ static struct circle pupil_from_rings(const float *lum, const float *seen, int s
 			best = i + 1;
 		}
 	return (struct circle){ 0, 0, best ? limbus * (best + 0.5) / SHEET_RINGS : 0.3 * limbus };
-}
-
-/* Brightness against its surroundings, in units of the local contrast; and the energy of its finest part. */
-void unrefract_detail(struct unrefract_survey *s)
-{
-	double mm = 2 * s->extent / s->size;
-	long n = (long)s->size * s->size;
-	s->detail = mem_array((size_t)n, sizeof(float));
-	s->sharp = mem_array((size_t)n, sizeof(float));
-	float *mean = mem_array((size_t)n, sizeof(float)), *power = mem_array((size_t)n, sizeof(float));
-	for (long i = 0; i < n; i++)
-		s->detail[i] = mean[i] = s->sharp[i]
-			= logf(0.3f * s->rgb[3 * i] + 0.6f * s->rgb[3 * i + 1] + 0.1f * s->rgb[3 * i + 2] + 1e-3f);
-	plane_blur_weighted(mean, s->weight, s->size, s->size, 0.35 / mm, 0);
-	plane_blur_weighted(s->sharp, s->weight, s->size, s->size, 1, 0);
-	for (long i = 0; i < n; i++) {
-		float fine = s->weight[i] > 0 ? s->detail[i] - s->sharp[i] : 0;
-		s->sharp[i] = fine * fine;
-		s->detail[i] = s->weight[i] > 0 ? s->detail[i] - mean[i] : 0;
-		power[i] = s->detail[i] * s->detail[i];
-	}
-	plane_blur_weighted(s->sharp, s->weight, s->size, s->size, 0.35 / mm, 0);
-	plane_blur_weighted(power, s->weight, s->size, s->size, 0.7 / mm, 1);
-	for (long i = 0; i < n; i++)
-		s->detail[i] /= sqrtf(power[i] + 1e-3f);
-	free(power);
-	free(mean);
 }
 
 enum { MUCH_HIDDEN = 2 * FIT_SECTORS / 5 };

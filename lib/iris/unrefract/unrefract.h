@@ -1,8 +1,12 @@
-/* unrefract: photographs of one eye into the texture of its iris, as if there were no cornea.
+/* unrefract: the texture of an iris from photographs of the eye, as if there were no cornea (iris paper, section 3).
  *
- * A small *survey* of each photograph, in its own eye frame, finds what must not be taken for iris (lids, lashes,
- * glints, the pupil). Where there are several, the surveys tell how they lie against one another. The *merge* then
- * samples each at full resolution through the exact light path.
+ * A small *survey* of each photograph, in its own eye frame, finds what is not iris (lids, lashes, reflections, the pupil).
+ * Surveys of several photographs are registered to one another. The *merge* then samples each photograph at full resolution
+ * through the exact light path.
+ *
+ * Order of calls: unrefract_survey of each photograph, unrefract_align, unrefract_size, unrefract_begin, unrefract_add of each
+ * view that is used, unrefract_finish. A photograph is read by survey and add alone: it need not stay in memory between them.
+ * Maps are square, centred on the optical axis, half-width `extent` mm, row 0 at -y.
  */
 #ifndef IRIS_UNREFRACT_UNREFRACT_H
 #define IRIS_UNREFRACT_UNREFRACT_H
@@ -13,77 +17,85 @@ struct unrefract_conf {
 	struct iris_map_conf map;
 	double scale;             // texels a photo pixel at the middle of the iris
 	int max_size;             // texels a side, at most
-	double extent;            // half-width over the limbus radius
+	double extent;            // half-width of the maps over the limbus radius
 	int survey_size;          // texels a side of the survey
-	double pupil_margin;      // mm
-	double limbus_ramp;       // mm over which the weight falls to nothing at the limbus
-	double lid_z, lid_smooth; // outlier level, and stiffness of the lid's edge
-	double glint_z, glint_grow, saturated;  // outlier level, mm, share of full scale
+	double pupil_margin;      // mm over which the weight rises at the pupil's margin
+	double limbus_ramp;       // mm over which the weight falls to 0 at the limbus
+	double lid_z, lid_smooth; // standard score of a lid; stiffness of the lid's edge
+	double glint_z, glint_grow, saturated;  // standard score of a reflection, its margin in mm, share of full scale
 	double lash_contrast, lash_width;       // log, mm
 	double foreshortening;    // exponent of a foreshortened texel's weight
-	double torsion_max_deg;   // range searched between photographs
-	double correlation_min;   // photographs that agree less are left out
-	bool polarised;
+	double torsion_max_deg;   // torsion searched between photographs, each way
+	double correlation_min;   // photographs that correlate less are left out
+	bool polarised;           // cross-polarised photographs: without reflections of the cornea
 };
 
 struct circle {
 	double cx, cy, r;  // iris plane, mm
 };
 
-/* What is known of one photograph. Planes are [size][size] of its own eye frame, half-width `extent`. */
+/* The survey of one photograph. Planes are [size][size] of its own eye frame, half-width `extent`; owned by the view. */
 struct unrefract_survey {
 	int size;
-	double extent;
-	float *rgb;     // [size][size][3]
+	double extent;  // mm
+	float *rgb;     // [size][size][3], linear
 	float *weight;  // 0..1: share that is iris and well seen
-	float *detail;  // local contrast, zero mean, unit variance; where there are several photographs
+	float *detail;  // local contrast, zero mean, unit variance; null where there is one photograph alone
 	float *sharp;   // local energy of the finest structure seen; likewise
 	double lid_share, glint_share;  // of the iris
 };
 
 struct unrefract_view {
-	const char *name;
-	const struct fit *fit;
+	const char *name;         // of the photograph; the caller's
+	const struct fit *fit;    // the caller's, must outlive the view
 	struct iris_view iris;
 	struct unrefract_survey survey;
 	struct circle pupil;      // this photograph's own frame; r = 0: not found
 	double rotation;          // of the map against this photograph's frame, radians
-	double correlation;       // with the first photograph used; 1 for itself
-	float gain[3];            // that brings its colour to the first photograph's
+	double correlation;       // with the photograph that the others are registered to; 1 for itself
+	float gain[3];            // factors that bring its colour to that photograph's
 	bool used;
 	char note[160];           // why not used
 };
 
-/* An iris map with what it is. rgbw: R, G, B, W. */
+/* The merged iris map. */
 struct unrefract_texture {
-	struct image rgbw;
-	double extent;
+	struct image rgbw;        // R, G, B (linear), W (weight 0..1); image_free
+	double extent;            // half-width, mm
 	struct circle pupil;
 	double seen;              // share of the iris' texels with weight
-	long texels;              // sampled
+	long texels;              // sampled, of all photographs
 };
 
-/* Looks at one photograph. view: zeroed but for name. unrefract_view_free. */
+/* Surveys one photograph.
+ * view  zeroed but for name; unrefract_view_free
+ * False, err set, when the iris lies outside the photograph. */
 bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit,
                       const struct eye *eye, const struct unrefract_conf *conf, struct err *err);
 void unrefract_view_free(struct unrefract_view *view);
 
-/* Lays the views over the best one: rotation, shift and stretch of each, its colour gain, and weights where they
- * disagree or one is sharper. Those that do not match are not `used`. Returns the index of the best. */
+/* Registers the views to the best of them (most iris, seen largest): rotation, shift and stretch of each, its colour gain; and
+ * lowers weights where a view is brighter than the others (a missed reflection) or less sharp. Views that do not match are no
+ * longer `used`; their note says why. Returns the index of the best view. */
 int unrefract_align(int n, struct unrefract_view views[], const struct unrefract_conf *conf);
 
-/* Resolution of the merged texture, texels a side. */
+/* Resolution of the merged texture, texels a side: conf->scale times the finest view's, at most conf->max_size. */
 int unrefract_size(int n, const struct unrefract_view views[], const struct eye *eye,
                    const struct unrefract_conf *conf);
 
-/* An empty sum; then unrefract_add for each used view; then unrefract_finish. */
+/* An empty weighted sum of size x size texels; image_free its rgbw. */
 struct unrefract_texture unrefract_begin(int size, const struct eye *eye, const struct circle *pupil,
                                          const struct unrefract_conf *conf);
+
+/* Adds one used view, sampled from its photograph. */
 void unrefract_add(struct unrefract_texture *texture, const struct unrefract_view *view, const struct photo *photo,
                    const struct eye *eye, const struct unrefract_conf *conf);
+
+/* Divides by the weights and fills `seen`. */
 void unrefract_finish(struct unrefract_texture *texture, const struct eye *eye);
 
-/* texture.json. names of the views, what to photograph better. */
+/* Writes texture.json: pupil, share seen, each view's alignment, and advice on what to photograph better.
+ * made_by: stage_made_by(). False, err set, when it cannot be written. */
 bool unrefract_save_json(const char *path, const struct unrefract_texture *texture, int n,
                          const struct unrefract_view views[], const char *made_by, struct err *err);
 

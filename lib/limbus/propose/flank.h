@@ -11,19 +11,11 @@
  * and radii within a factor 1.5 alone. */
 int limbus_flanks(struct seek_found out[SEEK_MAX], const struct photo *photo, const double *hint, double lo, double hi);
 
-/* The circle made an ellipse on the longest stretch of such edge near it; few arcs far from the rest, the lids', do not
- * count. score: mean step along it, arcs without one counted as 0. False: no edge is left. */
-bool limbus_flank_settle(struct seek_found *found, const struct photo *photo);
-
 enum { FLANK_ROUND = 3 };
 #define FLANK_GAP 0.15  // of the radius: steps are measured over so much on both sides
 
 /* The clearest circles round an ellipse, 1.5 to 4.5 times as large, best first: where that is a pupil, its limbus is
  * one of them. gap: share of the radius that steps are measured over, each way. Returns how many; score as in limbus_flanks, at most 1.4. */
 int limbus_flank_around(struct seek_found out[FLANK_ROUND], const struct photo *photo, const struct ellipse *e, double gap);
-
-/* Share of the photograph, what is dark left out, that is less warm in colour than what lies beside the ellipse: little,
- * where that is sclera. */
-double limbus_flank_cooler(const struct photo *photo, const struct ellipse *e);
 
 #endif

@@ -1,8 +1,9 @@
+#include "limbus/propose/flank_settle.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "limbus/propose/flank.h"
 #include "limbus/propose/flank_map.h"
 #include "math/stats.h"
 

@@ -189,7 +189,23 @@ static void search_level(struct seek_found out[SEEK_MAX], int *n, const struct p
 	}
 }
 
-void limbus_seek_settle(struct seek_found *f, const struct pyramid *pyramid, const struct seek_conf *conf)
+int pyramid_index(const struct pyramid *pyramid, double radius, double px)
+{
+	int l = 0;
+	while (l + 1 < pyramid->n && radius / pyramid->level[l].scale > px)
+		l++;
+	return l;
+}
+
+/* The edge score of one ellipse, on the level fit for its size. */
+static double edge_score(const struct pyramid *pyramid, const struct ellipse *e, const struct seek_conf *conf)
+{
+	return score_ellipse(&pyramid->level[pyramid_index(pyramid, e->a, 60)], e, conf->contrast, SCORE_NARROW);
+}
+
+/* Moves a rough ellipse to the one that most edges near it agree on: lids do not, in whiteness, and the arcs between
+ * them can be few. */
+static void settle(struct seek_found *f, const struct pyramid *pyramid, const struct seek_conf *conf)
 {
 	const struct grey *g = &pyramid->level[pyramid_index(pyramid, f->e.a, 130)];
 	const int w = (int)(pyramid->level[0].width * pyramid->level[0].scale), h = (int)(pyramid->level[0].height * pyramid->level[0].scale);
@@ -197,8 +213,8 @@ void limbus_seek_settle(struct seek_found *f, const struct pyramid *pyramid, con
 	for (int i = 0; i < 2; i++)
 		if (!rim_consensus(&f->e, g, 0, (i ? 0.09 : 0.2) * f->e.a, w, h))
 			break;
-	f->score = f->e.b < 0.55 * f->e.a ? 0 : limbus_seek_score(pyramid, &f->e, conf);
-	as_is.score = limbus_seek_score(pyramid, &as_is.e, conf);
+	f->score = f->e.b < 0.55 * f->e.a ? 0 : edge_score(pyramid, &f->e, conf);
+	as_is.score = edge_score(pyramid, &as_is.e, conf);
 	if (as_is.score > f->score)
 		*f = as_is;
 	f->score = score_climb(g, &f->e, 0.02 * f->e.a, 0.005 * f->e.a, conf->contrast, SCORE_NARROW);
@@ -230,21 +246,8 @@ bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, co
 			*out = best[i];
 	}
 	if (out->score > 0)
-		limbus_seek_settle(out, pyramid, conf);
+		settle(out, pyramid, conf);
 	return out->score > 0;
-}
-
-int pyramid_index(const struct pyramid *pyramid, double radius, double px)
-{
-	int l = 0;
-	while (l + 1 < pyramid->n && radius / pyramid->level[l].scale > px)
-		l++;
-	return l;
-}
-
-double limbus_seek_score(const struct pyramid *pyramid, const struct ellipse *e, const struct seek_conf *conf)
-{
-	return score_ellipse(&pyramid->level[pyramid_index(pyramid, e->a, 60)], e, conf->contrast, SCORE_NARROW);
 }
 
 int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, const double *hint,
@@ -268,7 +271,7 @@ int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, 
 	n = n < conf->candidates ? n : conf->candidates;
 #pragma omp parallel for schedule(dynamic, 1)
 	for (int i = 0; i < n; i++)
-		limbus_seek_settle(&out[i], pyramid, conf);
+		settle(&out[i], pyramid, conf);
 	struct seek_found sorted[SEEK_MAX];
 	int m = 0;
 	for (int i = 0; i < n; i++)

@@ -26,13 +26,6 @@ enum { SEEK_MAX = 12 };
 int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, const double *hint,
                 const struct seek_conf *conf);
 
-/* The edge score of one ellipse, on the level fit for its size. */
-double limbus_seek_score(const struct pyramid *pyramid, const struct ellipse *e, const struct seek_conf *conf);
-
-/* Moves a rough ellipse to the one that most edges near it agree on: lids do not, in whiteness, and the arcs between
- * them can be few. */
-void limbus_seek_settle(struct seek_found *found, const struct pyramid *pyramid, const struct seek_conf *conf);
-
 /* The best ellipse round `inner`: where that is a pupil, its limbus. False: none with any support. */
 bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, const struct ellipse *inner,
                        const struct seek_conf *conf);

@@ -1,9 +1,12 @@
+#include "limbus/propose/sides.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "limbus/propose/flank.h"
 #include "limbus/judge.h"
+#include "limbus/propose/flank.h"
+#include "limbus/propose/flank_settle.h"
 
 enum { FLANK_TRY = 8, ROUND_TRY = 3 };
 static const double FLANK_LEAST = 0.03;     // of the longer side: smaller eyes are not looked for by their sides
@@ -159,4 +162,3 @@ bool limbus_measure_flanks(struct limbus_found *found, struct ellipse around, co
 	free(rim);
 	return found->ok;
 }
-

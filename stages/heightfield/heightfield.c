@@ -1,4 +1,4 @@
-#include "stages/heightfield/heightfield_stage.h"
+#include "heightfield.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
-#ifndef STAGES_HEIGHTFIELD_STAGE_H
-#define STAGES_HEIGHTFIELD_STAGE_H
+#ifndef STAGES_HEIGHTFIELD_H
+#define STAGES_HEIGHTFIELD_H
 #include "anatomy/capture.h"
 #include "anatomy/eye.h"
 #include "iris/heightfield/heightfield.h"

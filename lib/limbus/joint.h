@@ -1,0 +1,28 @@
+/* joint: all photographs of one eye together. They share the aspect of its limbus, which is declared or fitted to all of them
+ * under the anatomical prior; each has a pose of its own.
+ */
+#ifndef LIMBUS_JOINT_H
+#define LIMBUS_JOINT_H
+#include "anatomy/fit.h"
+#include "limbus/record.h"
+
+/* What the photographs share. */
+struct limbus_joint {
+	struct pose_conf pose;  // its aspect_mean as declared or fitted, its aspect_sigma 0
+	double aspect_sigma;    // of the fitted aspect; 0: declared
+};
+
+/* Fits what n photographs of one eye share; records that are not ok are left out.
+ * False, err set, when a record has no pose. */
+bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record records[n], const struct eye *eye,
+                  const struct pose_conf *conf, struct err *err);
+
+/* The pose of one record that is ok, under the shared aspect. theta_sigma includes the aspect's uncertainty: the pose is fitted
+ * again at one sigma more. False, err set, when no pose fits. */
+bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record,
+                       const struct eye *eye, struct err *err);
+
+/* What limbus/NAME.json says: record and pose as a fit. pose is not read where the record is not ok. */
+struct fit limbus_joint_fit(const struct limbus_record *record, const struct pose *pose);
+
+#endif

@@ -1,0 +1,79 @@
+#include "limbus/measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "optics/sensor.h"
+
+/* The camera from the first source that gives a focal length: struct limbus_camera. */
+static struct camera camera_of(const struct limbus_camera *known, const struct photo *photo, const struct ellipse *limbus,
+                               const struct eye *eye)
+{
+	struct camera c = pose_nominal_camera(limbus, eye, photo->width, photo->height);
+	const struct rig_camera *calibrated = known->calibrated;
+	const double longer = fmax(photo->width, photo->height);
+	const struct photo_exif *exif = &photo->exif;
+	double by_keys = camera_keys_focal(known->keys, photo->width, photo->height), by_exif = exif->focal_px;
+	if (!isfinite(by_exif))
+		by_exif = sensor_focal_px(exif->model, exif->focal_mm, (int)longer);
+	if (isfinite(known->focal_px) || isfinite(by_keys)) {
+		c.focal_px = isfinite(known->focal_px) ? known->focal_px : by_keys;
+		c.source = CAMERA_CONF;
+	} else if (calibrated && calibrated->width == photo->width && calibrated->height == photo->height) {
+		return calibrated->camera;
+	} else if (isfinite(by_exif)) {
+		/* EXIF states the focal length at infinity: close up the picture lies (1 + magnification) times as far behind
+		 * the lens. */
+		double m = isfinite(exif->focal_mm) ? limbus->a / eye->limbus_radius * exif->focal_mm / by_exif : 0;
+		c.focal_px = by_exif * (1 + m);
+		c.source = CAMERA_EXIF;
+	} else {
+		return c;
+	}
+	for (int i = 0; i < 2; i++)
+		if (known->center_px || isfinite(known->keys->center_px[i]))
+			c.center_px[i] = known->center_px ? known->center_px[i] : known->keys->center_px[i];
+	memcpy(c.distortion, known->keys->distortion, sizeof c.distortion);
+	return c;
+}
+
+/* Fills the record's lean: the log likelihood ratio of the two trial poses by the brightness of the iris. */
+static bool lean(struct limbus_record *record, const struct limbus_found *found, const struct eye *eye,
+                 const struct pose_conf *pose_conf, struct err *err)
+{
+	struct pose_view *view = &record->view;
+	struct pose_conf conf = *pose_conf;
+	struct pose pose;
+	if (isfinite(eye->limbus_aspect)) {
+		conf.aspect_mean = eye->limbus_aspect;
+		conf.aspect_sigma = 0;
+	}
+	if (!limbus_pose(&pose, view, eye, &conf, err))
+		return false;
+	if (isfinite(pose.margin)) {
+		double sum = lean_iris(&found->band, &view->camera, pose.cam_from_eye, pose.other_cam_from_eye, eye);
+		view->lean[0] = sum * cos(pose.phi);
+		view->lean[1] = sum * sin(pose.phi);
+	}
+	return true;
+}
+
+void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint,
+                          const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf,
+                          const struct pose_conf *pose_conf)
+{
+	struct err err = { 0 };
+	struct limbus_found *found = mem_new(1, sizeof *found);
+	limbus_find(found, photo, hint, conf);
+	limbus_record_fill(record, found, photo);
+	if (record->ok)
+		record->view.camera = camera_of(known, photo, &record->view.limbus, eye);
+	if (record->ok && !lean(record, found, eye, pose_conf, &err)) {
+		record->ok = false;
+		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
+	}
+	free(found);
+}
