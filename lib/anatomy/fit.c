@@ -6,7 +6,6 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath/lightpath.h"
 
 enum { FIT_FILE_LIMIT = 1 << 20 };
 static const double deg = M_PI / 180;
@@ -179,11 +178,4 @@ bool fit_project(double px[2], const struct fit *fit, const double P[3])
 	for (int i = 0; i < 3; i++)
 		c[i] = vec_dot(fit->cam_from_eye[i], P) + fit->cam_from_eye[i][3];
 	return camera_project(px, &fit->camera, c);
-}
-
-bool fit_project_refracted(double px[2], const struct fit *fit, const struct cornea *cornea, const double P[3])
-{
-	double C[3], K[3];
-	fit_camera_in_eye(C, fit);
-	return lightpath_solve(K, cornea, P, C) == LIGHTPATH_OK && fit_project(px, fit, K);
 }

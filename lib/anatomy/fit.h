@@ -37,7 +37,4 @@ void fit_ray(double origin[3], double dir[3], const struct fit *fit, const doubl
 /* Photo pixel of a point in the eye frame, no refraction. False behind the camera. */
 bool fit_project(double px[2], const struct fit *fit, const double point_in_eye[3]);
 
-/* Photo pixel in which an iris point (eye frame) is seen through the cornea: exact light path. */
-bool fit_project_refracted(double px[2], const struct fit *fit, const struct cornea *cornea, const double P[3]);
-
 #endif

@@ -135,10 +135,7 @@ bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *e
 		return false;
 	bool ok = false;
 	try {
-		enum mesh_kind kind;
-		ok = mesh_kind_of(&kind, data, size, &why)
-		     && (kind == MESH_PLY ? mesh_clean_ply : mesh_clean_obj)(mesh, data, size, limit, &why)
-		     && mesh_check(mesh, &why) && make_sound(mesh, &why);
+		ok = mesh_clean(mesh, data, size, limit, &why) && mesh_check(mesh, &why) && make_sound(mesh, &why);
 	} catch (const std::exception &e) {
 		err_set(&why, "cannot be read: %s", e.what());
 	} catch (...) {

@@ -1,4 +1,4 @@
-#include "mesh/mesh_clean.h"
+#include "mesh/mesh_clean_obj.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -128,14 +128,4 @@ bool mesh_clean_obj(struct mesh *mesh, const char *data, size_t size, long limit
 		mesh->colours = 0;
 	}
 	return mesh_joins_check(mesh, err);
-}
-
-bool mesh_kind_of(enum mesh_kind *kind, const char *data, size_t size, struct err *err)
-{
-	*kind = !strncmp(data, "ply\n", 4) || !strncmp(data, "ply\r\n", 5) ? MESH_PLY : MESH_OBJ;
-	if (!size)
-		return err_set(err, "is empty");
-	if (*kind == MESH_OBJ && memchr(data, 0, size))
-		return err_set(err, "is no mesh: must be PLY or OBJ");
-	return true;
 }

@@ -1,3 +1,5 @@
+#include "mesh/mesh_clean_ply.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -5,7 +7,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "mesh/mesh_clean.h"
 #include "mesh/mesh_joins.h"
 #include "mesh/mesh_ply.h"
 

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "mesh/mesh_clean.h"
+#include "mesh/mesh_clean_obj.h"
 #include "mesh/mesh_ply.h"
 
 /* The first bytes of a file that is none longer than `most`, a zero behind them; null: there is none. */
@@ -68,13 +69,11 @@ bool mesh_peek_faces(struct mesh *mesh, const char *path, size_t most)
 {
 	char *data;
 	size_t size;
-	enum mesh_kind kind;
 	struct err err = { 0 };
 	*mesh = (struct mesh){ 0 };
 	if (!file_read(&data, &size, path, most, &err))
 		return false;
-	bool ok = mesh_kind_of(&kind, data, size, &err)
-	          && (kind == MESH_PLY ? mesh_clean_ply : mesh_clean_obj)(mesh, data, size, INT_MAX / 4, &err);
+	bool ok = mesh_clean(mesh, data, size, INT_MAX / 4, &err);
 	free(data);
 	if (!ok)
 		mesh_free(mesh);

@@ -39,7 +39,8 @@ static const struct {
 	{ "NIKON D750", 35.9 },  { "NIKON D780", 35.9 },  { "NIKON D80", 23.6 },   { "NIKON D90", 23.6 },
 };
 
-double sensor_mm(const char *model)
+/* Longer side of the sensor, mm, of a camera as EXIF calls it ("Canon EOS 600D"); NAN for one that is not in the table. */
+static double sensor_mm(const char *model)
 {
 	for (int i = 0; i < COUNT(others); i++)
 		if (!strcmp(model, others[i].name))

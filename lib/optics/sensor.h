@@ -2,9 +2,6 @@
 #ifndef OPTICS_SENSOR_H
 #define OPTICS_SENSOR_H
 
-/* Longer side of the sensor, mm, of a camera as EXIF calls it ("Canon EOS 600D"); NAN for one that is not in the table. */
-double sensor_mm(const char *model);
-
 /* Focal length, px, of a whole picture of that camera with that focal length, mm; longer: its longer side, px. NAN where one of
  * them is not known. */
 double sensor_focal_px(const char *model, double focal_mm, int longer);

@@ -10,6 +10,7 @@
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/light_case.h"
+#include "tests/peers/lightpath_gain.h"
 
 enum { N = 20000, TIMED = 4096, CELLS = 24 };
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };

@@ -10,6 +10,7 @@
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/ridged.h"
+#include "tests/peers/lightpath_gain.h"
 
 enum { BATCHES = 24, LIGHTS = 8 };
 

@@ -7,11 +7,11 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/cornea/sag.h"
 #include "optics/refraction/refraction.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/light_case.h"
 #include "tests/lib/bench/storage.h"
+#include "tests/peers/cornea_sag.h"
 
 enum { N = 65536, TIMED = 4096 };  // timed over so few that other programs seldom cut in
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };

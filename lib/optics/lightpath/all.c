@@ -1,9 +1,9 @@
+#include "optics/lightpath/all.h"
+
 #include <math.h>
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath/lightpath.h"
-#include "optics/lightpath/path.h"
 
 /* All paths are the zeros of the miss (path_miss) over the lit cornea. The cornea is cut into squares of the chart; a square
  * is dropped when no zero can be in it, polished when it holds one at most, and cut in four otherwise. Both are known

@@ -163,7 +163,7 @@ SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(sh
 	b->again[i] = b->last2[i] * (1 + 4 * near * near) <= c->far2 ? far : 1;
 }
 
-/* Irradiance gain of lightpath_gain(), from the Hessian of curve() at K. */
+/* Irradiance gain of lightpath_gain_batch(), from the Hessian of curve() at K. */
 SIMD_INLINE void NAME(caustic)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
 {
 	REAL x = b->x[i], y = b->y[i], p = c->p, tau = b->tau[i], inv_d = b->inv_d[i], t = c->R * tau, rho2 = x * x + y * y;

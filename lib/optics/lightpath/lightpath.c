@@ -4,6 +4,7 @@
 #include <stdbool.h>
 
 #include "math/vec.h"
+#include "optics/lightpath/all.h"
 #include "optics/lightpath/path.h"
 
 /* Newton's step, made a descent step where L is not convex. Returns the least curvature of L, 1/mm. */

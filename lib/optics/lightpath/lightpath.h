@@ -68,16 +68,11 @@ struct algorithm1_conf {
 enum lightpath_status lightpath_algorithm1(double K[3], const struct cornea *cornea, const double P[3],
                                            const double C[3], const struct algorithm1_conf *conf);
 
-/* Irradiance at P on a plane facing -z, over the irradiance of the same light on a plane facing it outside:
- * T cos i |dK/dP| / N_z (the caustic). K as solved for P and w. */
-double lightpath_gain(const struct cornea *cornea, const double P[3], const double w[3], const double K[3]);
-
-/* The same of n paths, in float; 0 where the light stands behind the surface at K. */
+/* Irradiance gain (caustic) of n paths: irradiance at P on a plane facing -z, over the irradiance of the same light on a plane facing it
+ * outside: gain[n] = T cos i |dK/dP| / N_z, with T Fresnel's transmittance, i the angle of incidence and N the normal at K. In float;
+ * 0 where the light stands behind the surface at K. P, w (unit, towards the light) and K (as solved for them): structure of arrays. */
 void lightpath_gain_batch(int n, const float *px, const float *py, const float *pz, const float *wx, const float *wy,
                           const float *wz, const float *kx, const float *ky, const float *kz, float *gain,
                           const struct cornea *cornea);
-
-/* The sum of the gains of all paths from direction w to P. */
-double lightpath_irradiance(const struct cornea *cornea, const double P[3], const double w[3]);
 
 #endif

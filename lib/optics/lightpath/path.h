@@ -62,9 +62,6 @@ bool path_is_sound(const struct path *path);
  * past 90 degrees of incidence. */
 enum lightpath_status path_shortest(double K[3], const struct path *path);
 
-/* lightpath_all() of a sound problem. */
-int path_search(double K[][3], int max, const struct path *path);
-
 /* Where the ray from P inside, in direction q, leaves the surface. */
 struct chart path_leave(const struct path *path, const double q[3]);
 

@@ -1,3 +1,5 @@
+#include "optics/refraction/poly.h"
+
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
@@ -7,7 +9,6 @@
 #include "math/simd.h"
 #include "math/vec.h"
 #include "optics/lightpath/path.h"
-#include "optics/refraction/parts.h"
 
 /* The direction in which light goes on inside is bent from w towards the axis by beta and towards P by gamma:
  * w + (gamma P_x, gamma P_y, -beta). The eye is the same after a turn about its axis and in a mirror: both are functions

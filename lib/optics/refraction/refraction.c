@@ -7,7 +7,8 @@
 #include "base/mem.h"
 #include "math/simd.h"
 #include "optics/lightpath/path.h"
-#include "optics/refraction/parts.h"
+#include "optics/refraction/poly.h"
+#include "optics/refraction/table.h"
 
 const char *const refraction_methods[] = { "auto", "newton", "polynomial", "table_linear", "table_nearest", 0 };
 _Static_assert(COUNT(refraction_methods) == REFRACTION_METHODS + 1, "a name for each method");

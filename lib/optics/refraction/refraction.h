@@ -46,7 +46,7 @@ void refraction_free(struct refraction *f);
 
 /* n evaluations, structure of arrays. P on the iris plane or near it (relief); a table knows the plane only. Light
  * from outside the hemisphere is solved without start or table.
- * gain  [n] or null: irradiance gain (lightpath_gain), 0 where there is no path
+ * gain  [n] or null: irradiance gain (lightpath_gain_batch), 0 where there is no path
  * status [n] or null: enum lightpath_status */
 void refraction_batch(const struct refraction *f, int n, const float *px, const float *py, const float *pz,
                       const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz, float *gain,

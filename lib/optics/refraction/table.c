@@ -1,9 +1,10 @@
+#include "optics/refraction/table.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
 #include "optics/lightpath/path.h"
-#include "optics/refraction/parts.h"
 
 /* The table of the paper, its hemisphere in angle from the axis × azimuth. A mirror maps an azimuth to its negative:
  * half a circle is stored, which makes the paper's table twice as fine as printed. */

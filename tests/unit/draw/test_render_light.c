@@ -6,6 +6,7 @@
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/plain_scene.h"
 #include "tests/lib/unit.h"
+#include "tests/peers/lightpath_gain.h"
 
 /* An even surrounding of radiance 1 gives every plane irradiance pi, whichever way that is reckoned. */
 static void even_light(void **state)

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "math/rng.h"
 #include "math/vec.h"
-#include "optics/cornea/sag.h"
+#include "tests/peers/cornea_sag.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
 

@@ -1,4 +1,4 @@
-#include "optics/cornea/sag.h"
+#include "tests/peers/cornea_sag.h"
 
 #include <math.h>
 

@@ -1,8 +1,9 @@
+#include "tests/peers/lightpath_gain.h"
+
 #include <math.h>
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "optics/lightpath/lightpath.h"
 #include "optics/lightpath/path.h"
 
 double lightpath_gain(const struct cornea *cornea, const double P[3], const double w[3], const double K[3])

@@ -3,8 +3,8 @@
  * z = conic(x, y) + sum of coefficients times monomials of x / rim, y / rim up to the fourth degree, mm: toricity, tilt, a
  * decentred apex, coma, trefoil. Eye frame, mm; apex near the origin, z into the eye.
  */
-#ifndef OPTICS_CORNEA_SAG_H
-#define OPTICS_CORNEA_SAG_H
+#ifndef PEERS_CORNEA_SAG_H
+#define PEERS_CORNEA_SAG_H
 #include "optics/lightpath/lightpath.h"
 
 /* Order: x y, xx xy yy, xxx xxy xyy yyy, xxxx xxxy xxyy xyyy yyyy. */
