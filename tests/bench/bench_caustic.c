@@ -10,6 +10,7 @@
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/light_case.h"
+#include "tests/peers/fresnel.h"
 #include "tests/peers/lightpath_gain.h"
 
 enum { N = 20000, TIMED = 4096, CELLS = 24 };

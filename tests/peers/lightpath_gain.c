@@ -5,11 +5,13 @@
 #include "base/mem.h"
 #include "math/vec.h"
 #include "optics/lightpath/path.h"
+#include "tests/peers/fresnel.h"
 
 double lightpath_gain(const struct cornea *cornea, const double P[3], const double w[3], const double K[3])
 {
 	struct path path = { cornea, P, 0, w };
-	struct chart at = chart_of(cornea, K);
+	double t = 2 * cornea->R - cornea->p * K[2];
+	struct chart at = chart_at(cornea, K[0] / t, K[1] / t);
 	double g[2], H[3], v[3], N[3];
 	path_derivatives(g, H, &path, &at);
 	vec_add(v, K, -1, P);

@@ -10,6 +10,7 @@
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/truth/quad.h"
 #include "tests/lib/stress.h"
+#include "tests/peers/fresnel.h"
 
 struct range {
 	double incidence[2];  // degrees

@@ -94,12 +94,3 @@ bool cornea_sight(double K[3], double from[3], double inside[3], const struct co
 	quadric_normal(N, &back, from);
 	return refract(inside, within, N, cornea->n_cornea, cornea->n);
 }
-
-double fresnel_transmittance(double cos_i, double n1, double n2)
-{
-	double c1 = fmin(fabs(cos_i), 1), eta = n1 / n2, k = 1 - eta * eta * (1 - c1 * c1);
-	if (!(k > 0))
-		return 0;
-	double c2 = sqrt(k), rs = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2), rp = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
-	return 1 - 0.5 * (rs * rs + rp * rp);
-}

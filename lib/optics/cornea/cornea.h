@@ -35,9 +35,6 @@ bool refract(double out[3], const double dir[3], const double N[3], double n1, d
 bool cornea_sight(double K[3], double from[3], double inside[3], const struct cornea *cornea,
                   const double origin[3], const double dir[3]);
 
-/* Unpolarised Fresnel transmittance, cos_i on the side of index n1, into n2; 0 in total reflection. */
-double fresnel_transmittance(double cos_i, double n1, double n2);
-
 /* Many rays of sight at once, vectorised, structure of arrays; computed in double, stored in float. */
 struct sight_rays {
 	int n;

@@ -10,7 +10,7 @@ struct chart chart_at(const struct cornea *cornea, double x, double y)
 	return (struct chart){ x, y, tau, rho2, { t * x, t * y, t * rho2 } };
 }
 
-struct chart chart_of(const struct cornea *cornea, const double K[3])
+static struct chart chart_of(const struct cornea *cornea, const double K[3])
 {
 	double t = 2 * cornea->R - cornea->p * K[2];
 	return chart_at(cornea, K[0] / t, K[1] / t);

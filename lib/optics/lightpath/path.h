@@ -28,7 +28,6 @@ struct chart {
 };
 
 struct chart chart_at(const struct cornea *cornea, double x, double y);
-struct chart chart_of(const struct cornea *cornea, const double K[3]);
 
 /* The point reached by a step along the tangents (mm, to first order). */
 struct chart chart_moved(const struct cornea *cornea, const struct chart *at, const double step[2]);

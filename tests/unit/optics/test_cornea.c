@@ -4,6 +4,7 @@
 #include "math/vec.h"
 #include "optics/cornea/cornea.h"
 #include "tests/lib/unit.h"
+#include "tests/peers/fresnel.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85, .R_post = 6.5, .p_post = 0.75,
 	                               .thickness = 0.55, .n_cornea = 1.376 };

@@ -4,6 +4,7 @@
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/unit.h"
+#include "tests/peers/fresnel.h"
 #include "tests/peers/lightpath_gain.h"
 
 static const struct cornea generic = { .R = 7.8, .p = 0.75, .n = 1.336, .rim = 5.85 };
