@@ -32,8 +32,7 @@ void animation_free(struct animation *a)
 /* Direction, degrees, of a place of the scene (share of its width and height). aspect: height over width. */
 static void direction(double out[2], const double at[2], double width_deg, double aspect)
 {
-	// A plane before the eyes: x of the picture to its right, which is the person's left if they face the viewer; the person
-	// who watches the scene sees its right on their right, so -x.
+	// The scene is a plane before the person, who sees its right side on their right: -x of the head.
 	double half = tan(0.5 * width_deg * M_PI / 180), x = -(2 * at[0] - 1) * half, y = -(2 * at[1] - 1) * half * aspect;
 	out[0] = atan(x) * 180 / M_PI;
 	out[1] = atan2(y, hypot(x, 1)) * 180 / M_PI;
@@ -50,7 +49,7 @@ static long before(long n, const double *time, double t)
 	return low;
 }
 
-/* A number of the recording at t: linear between the rows that have it. */
+/* A column of the recording at t: linear between the rows that have a value; NAN without any. */
 static double recorded(const struct script *s, int stride, const double *x, int column, double t)
 {
 	long a = before(s->n, s->time, t), b = a + 1;
@@ -66,7 +65,7 @@ static double recorded(const struct script *s, int stride, const double *x, int 
 	return x[a * stride + column] + share * (x[b * stride + column] - x[a * stride + column]);
 }
 
-/* What the simulated eyes look at. */
+/* Target and head at t, for gaze_sim. */
 static void source(void *ctx, double t, struct gaze_input *in)
 {
 	const struct run *r = ctx;
@@ -108,7 +107,7 @@ static bool near_blink(const struct animation *a, double start, double end)
 	return false;
 }
 
-/* Keys first, then those that come with large saccades, then spontaneous ones where there is room. */
+/* Blinks of keys first, then those of large saccades, then spontaneous ones that overlap no other. */
 static void plan_blinks(struct run *r)
 {
 	const struct animate_conf *c = r->conf;
@@ -131,7 +130,7 @@ static void plan_blinks(struct run *r)
 	}
 }
 
-/* The deepest closure at t, and how far the eyes have turned with it. */
+/* Deepest closure at t; turned: share of the blinks' own rotation of the eyes. */
 static double closure_at(const struct animation *a, double t, double *turned)
 {
 	double closure = 0;
@@ -179,14 +178,14 @@ static void move_eyes(struct run *r)
 	gaze_sim_free(sim);
 }
 
-/* An aperture kept to what the clip has shown, and a share of that range beyond. */
+/* Clamps an aperture to the clip's range, extended by the share `beyond` on either side. */
 static double within(const struct skin_model *m, int input, double g, double beyond)
 {
 	double pad = beyond * (m->high[input] - m->low[input]);
 	return isnan(pad) ? g : fmin(m->high[input] + pad, fmax(m->low[input] - pad, g));
 }
 
-/* Expressions, apertures (eq. 3.11 with c of keys and blinks) and the blink's own turn of the eyes. */
+/* Expressions, apertures (eq. 3.11 with c from keys and blinks) and the rotation of the eyes in a blink. */
 static void move_lids(struct run *r)
 {
 	struct animation *a = r->out;

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "math/vec.h"
 
-enum { HISTORY = 512 };  // ms kept of what happened
+enum { HISTORY = 512 };  // ms kept for delays
 static const double step_s = 1e-3, jump_speed = 120;  // degrees/s: a faster target has jumped
 
 struct gaze_sim {
@@ -18,7 +18,7 @@ struct gaze_sim {
 	long now;                       // ms
 	struct gaze_input input, last;
 	double eye[2], pursuit[2], drift[2], nearness;  // degrees, degrees/s, degrees, 1/mm
-	double slip[HISTORY][2];        // velocity asked of pursuit, by ms
+	double slip[HISTORY][2];        // input velocity of pursuit, degrees/s, by ms
 	double near[HISTORY];
 	bool moving, pending, catch_up;
 	double begin, origin[2], way[2];  // of the saccade now or next
@@ -75,12 +75,12 @@ void gaze_eyes(double eye[2][3], const double cyclopean[2], double distance, dou
 	}
 }
 
-/* The target as the head sees it. */
+/* Direction of the target in the head. */
 static void in_head(double out[2], const struct gaze_input *in)
 {
 	double d[3], h = radians(in->head[0]), v = radians(in->head[1]), p[3], q[3];
 	direction(d, in->target);
-	// The head's turn is Ry(h) Rx(-v): undone from outside in.
+	// The head's rotation is Ry(h) Rx(-v): inverted here.
 	p[0] = cos(h) * d[0] - sin(h) * d[2];
 	p[1] = d[1];
 	p[2] = sin(h) * d[0] + cos(h) * d[2];
@@ -125,7 +125,7 @@ static double drawn(struct rng *rng, const double normal[2])
 	return fmax(0.3 * normal[0], normal[0] + normal[1] * rng_normal(rng));
 }
 
-/* What pursuit is asked for: the target's own velocity and what the reflex leaves of the head's. */
+/* Input velocity of pursuit: the target's, and the part of the head's that the vestibulo-ocular reflex leaves. */
 static void sense(struct gaze_sim *s, double head_speed[2])
 {
 	double *slip = s->slip[s->now % HISTORY], speed[2];
@@ -139,7 +139,7 @@ static void sense(struct gaze_sim *s, double head_speed[2])
 	s->near[s->now % HISTORY] = isinf(s->input.distance) ? 0 : 1 / s->input.distance;
 }
 
-/* Whether pursuit will bring the eye across the target soon enough by itself: by the error and its change of now. */
+/* True when pursuit alone will bring the eye onto the target within conf.crossing, extrapolating the error linearly. */
 static bool will_cross(const struct gaze_sim *s, const double error[2], double length)
 {
 	double closing = 0;
@@ -159,7 +159,7 @@ static void plan_saccade(struct gaze_sim *s, const double error[2], double t)
 	s->pending = true;
 }
 
-/* A saccade is called off while there is time for it, not later than a catch-up saccade's latency before it. */
+/* Cancels a pending saccade that pursuit makes needless, no later than crossing_lead before its start. */
 static void decide_saccade(struct gaze_sim *s, const double error[2], double t)
 {
 	double length = hypot(error[0], error[1]);
@@ -168,7 +168,7 @@ static void decide_saccade(struct gaze_sim *s, const double error[2], double t)
 
 }
 
-/* The saccade goes where the target will be when it ends. */
+/* Starts a saccade to where the target will be when it ends. */
 static void begin_saccade(struct gaze_sim *s, const double error[2], double t)
 {
 	double length = hypot(error[0], error[1]);
@@ -208,7 +208,7 @@ static void move(struct gaze_sim *s, const double head_speed[2], double t)
 			s->origin[k] = to;
 		}
 		s->eye[k] = fmin(c->range, fmax(-c->range, s->eye[k]));
-		// A random walk held back: variance drift^2.
+		// Ornstein-Uhlenbeck process of variance drift^2.
 		double back = step_s / c->drift_tau;
 		s->drift[k] += -back * s->drift[k] + c->drift * sqrt(2 * back) * rng_normal(&s->rng);
 	}

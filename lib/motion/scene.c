@@ -24,8 +24,8 @@ static void add_place(struct animate_places *p, double t, const double at[2])
 	p->at[p->n++][1] = at[1];
 }
 
-/* Frames between fixations are decoded, no more: the map is made of the one in which the eye moves on and of the one
- * looked at before, whose difference is what flickered. */
+/* Frames between fixations are only decoded: saliency is computed from the frame in which gaze moves on and the one looked at
+ * before, whose difference is flicker. */
 static void watch_frame(struct animate_places *places, struct watch *w, const struct video_frame *f,
                         const struct scene_conf *conf)
 {

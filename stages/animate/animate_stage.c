@@ -14,7 +14,7 @@ static const char *const json_rel = "work/skin/animation.json";
 /* What script/ holds: one file of each kind. */
 struct sources {
 	struct script gaze, keys;
-	bool has_gaze, has_keys, keys_look;  // keys_look: they say where to look
+	bool has_gaze, has_keys, keys_look;  // keys_look: the keys have targets
 	char *gaze_rel, *keys_rel, *video_rel;
 	struct animate_places places;
 };
@@ -100,8 +100,8 @@ static bool save_json(const struct animation *a, const char *path, const char *m
 	return ok;
 }
 
-/* Frames that ask for what the film of the person does not tell of the lids. Of the skin it is not asked: its ridge holds what
- * one eye does without the other, which a film hardly shows. */
+/* Warns of frames whose leverage in the lids' regression is too high: the model extrapolates there. The skin's is not tested:
+ * its ridge holds motions of one eye without the other, which a film hardly shows. */
 static void tell_outside(struct stage *stage, const struct animation *a, const struct skin_model *model)
 {
 	long outside = 0, first = 0;
@@ -162,7 +162,7 @@ bool animate_stage(struct stage *stage, const struct animate_conf *conf, const s
 	struct sources sources = { 0 };
 	if (!stage_list(stage, &list, "script", err))
 		return false;
-	// Of the model: what says how lids follow the gaze; and every file of script/.
+	// Inputs: the model (the lids' baseline), and every file of script/.
 	char **in = mem_new((size_t)list.n + 1, sizeof *in);
 	int n = 0;
 	in[n++] = mem_str("work/skin/model.json");

@@ -9,7 +9,7 @@
 enum { MOST_POINTS = 3000, WIDTH = 640, HEIGHT = 260 };
 static const char *const colours[] = { "#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b", "#17becf" };
 
-/* One number of every frame (every few of a long animation). free(). */
+/* One column of every frame, thinned to MOST_POINTS. free(). */
 static double *column(const struct animation *a, const double *of, int stride, int which, int *n)
 {
 	long step = 1 + a->n / MOST_POINTS;
@@ -20,7 +20,7 @@ static double *column(const struct animation *a, const double *of, int stride, i
 	return x;
 }
 
-/* Peak velocity against amplitude, with the line that the configuration asks for. */
+/* Peak velocity against amplitude, with the configured curve. */
 static void main_sequence(struct chart_series out[2], const struct animation *a, const struct saccade_conf *conf,
                           double *memory)
 {

@@ -11,7 +11,7 @@
 static const double BLINK_LONGEST = 0.8, AROUND = 0.5;
 // Share of the opening below which the eye counts as closed, and share of a blink's depth at which it begins and ends.
 static const double CLOSED = 0.15, ONSET = 0.15;
-// What an eye that shuts alone shuts at least.
+// Least closure of a wink.
 static const double WINK = 0.5;
 
 static struct eye_event *new_event(struct eye_clip *clip, int kind, int side)
@@ -23,7 +23,7 @@ static struct eye_event *new_event(struct eye_clip *clip, int kind, int side)
 	return event;
 }
 
-/* How high the middle of the lower lid is above the line between the corners, mm. */
+/* Height of the middle of the lower lid above the line between the corners, mm. */
 static double lower_height(const struct eye_record *record, int points)
 {
 	const struct lid_found *found = &record->found;
@@ -37,8 +37,8 @@ static double lower_height(const struct eye_record *record, int points)
 	return side * away / hypot(dx, dy) / record->mm;
 }
 
-/* Height of the opening in mm, 0 shut, NAN not looked at; that of the lower lid, held while shut; and the vertical gaze,
- * filled in between. */
+/* Time series: height of the opening, mm, 0 shut, NAN not measured; of the lower lid, held while shut; vertical gaze,
+ * interpolated. */
 static void series(double gap[], double lower[], double v[], const struct eye_side *eye)
 {
 	long n = eye->frames, last = -1;
@@ -62,8 +62,8 @@ static void series(double gap[], double lower[], double v[], const struct eye_si
 		v[k] = last < 0 ? 0 : v[last];
 }
 
-/* The usual opening at a gaze: gap = line[0] + line[1] v, least squares in which frames that are shut further count less and
- * less. False: too few. */
+/* Usual opening as a function of vertical gaze, gap = line[0] + line[1] v: least squares with Tukey weights on the side of frames
+ * that are shut further. Returns false with too few frames. */
 static bool usual(double line[2], long n, const double gap[], const double v[])
 {
 	line[0] = line[1] = 0;
@@ -131,7 +131,7 @@ static void blinks(struct eye_clip *clip, struct eye_side *eye, int side, const 
 		long end = last;
 		while (end + 1 < n && base - open[end + 1] > ONSET * depth && open[end + 1] >= open[end] && end - last < longest)
 			end++;
-		// A blink is the upper lid's; a squint raises the lower one.
+		// In a blink the upper lid moves; a squint raises the lower one.
 		bool falls = lower[low] - lower[first] < 0.5 * depth * usual_gap;
 		if (last - i <= longest && falls) {
 			struct eye_event *event = new_event(clip, EVENT_BLINK, side);
@@ -201,7 +201,7 @@ void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side)
 	free(gap);
 }
 
-/* The eye's frames of an event are those of an open one. */
+/* Marks the frames of an event as open. */
 static void unmark(struct eye_side *eye, const struct eye_event *event)
 {
 	for (int i = event->first; i <= event->last; i++)

@@ -15,7 +15,7 @@ static bool known(int n, const double x[])
 	return true;
 }
 
-// mm: radius of an eyeball of which nothing is known; how far its guessed centre may be off.
+// mm: radius of an unknown eyeball; standard deviation of its guessed centre.
 static const double RADIUS = 12, GUESS_SIGMA = 3;
 // Grey levels taken for the step from iris to sclera before one was measured.
 static const double CONTRAST = 60;
@@ -67,7 +67,7 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 	lid_track_start(&eye->lids, track->conf.lid_columns, track->conf.lid_points, track->conf.lid_wet, track->scene.fps);
 }
 
-/* A camera of unknown focal length is a metre away; without a centre, it looks at the picture's middle. */
+/* Unknown focal length: as if the eye were a metre away. Unknown principal point: the middle of the picture. */
 static void settle_camera(struct eye_scene *scene)
 {
 	struct camera *camera = &scene->camera;

@@ -47,7 +47,7 @@ double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze
 	return score;
 }
 
-/* Gaze from the edges of the limbus in the opening. */
+/* Gaze from the limbus edges in the opening, in three rounds of ever narrower search. */
 static bool measure(struct gaze_fit *fit, struct gaze_edge edge[GAZE_ARCS_MAX], int *n, struct eye_side *eye,
                     const struct luma *luma, const struct gaze_view *view, double limbus_px)
 {
@@ -118,7 +118,7 @@ static void keep_edges(struct eye_side *eye, struct eye_record *record, int n, c
 	eye->edges += n;
 }
 
-/* The pupil's centre must be seen: a circle guessed from what a lid leaves of it is no measurement. */
+/* True when the pupil's centre is visible: a circle extrapolated from the part that a lid leaves is no measurement. */
 static bool pupil_seen(const struct eye_side *eye, const struct gaze_view *view, const double fick[2], double limbus_px)
 {
 	double pupil[2], below, above, in_eye[3] = { 0, 0, gaze_plane(&eye->globe) };
@@ -135,7 +135,7 @@ void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_
 	struct gaze_fit fit;
 	double limbus_px = record->mm * eye->globe.limbus, rise = 0;
 	int n = 0;
-	// Once more with the lids where they are now.
+	// A second search, anywhere, with the lids of this frame.
 	if (!measure(&fit, edge, &n, eye, luma, view, limbus_px)
 	    && (!(eye_seek(eye, luma, view, true) > EYE_FOUND) || !measure(&fit, edge, &n, eye, luma, view, limbus_px)))
 		return;

@@ -1,4 +1,4 @@
-/* The lids of a clip, when all of it has been seen. */
+/* Lids re-estimated when the whole clip has been seen. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "track/eye/eye_track_impl.h"
 
-/* By the strips of the lids as they are known now. */
+/* Margins by the strips as learnt over the whole clip. */
 static void again(struct eye_side *eye)
 {
 	lid_track_end(&eye->lids);
@@ -21,7 +21,7 @@ static void again(struct eye_side *eye)
 	}
 }
 
-/* A frame as lid_fine_settle() wants it: its upper margin as found so far, less the tears. */
+/* Input of lid_fine_settle(): the upper margin found so far, less the tear meniscus. */
 static void to_fine(struct lid_fine_frame *f, const struct lid_fine *look, const struct eye_state *state, const double iris[3], double wet_mm)
 {
 	struct line margin = { .n = state->lid_points };
@@ -47,15 +47,15 @@ static void from_fine(struct eye_state *state, const struct lid_fine_frame *f, d
 	line_spread(state->lid[LID_UPPER], state->lid_points, &margin);
 }
 
-/* The upper margin where the eye is seen to end, and as far outside as the edge of the lid is. (Of lower margins, which lashes
- * do not shade, the strips know the edge itself.) */
+/* Refines the upper margin: the visible end of the eye, plus the tear meniscus. (Lower margins are not shaded by lashes: the
+ * strips locate their edge well enough.) */
 static void refine(struct eye_side *eye)
 {
 	struct lid_fine_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
 	long *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = 0;
 	const double *iris = 0;
 	for (long i = 0; i < eye->frames; i++) {
-		// an eye whose gaze a lid hides has not gone far
+		// where a lid hides the gaze the last limbus is used
 		if (isfinite(eye->state[i].limbus[0]))
 			iris = eye->state[i].limbus;
 		if (!iris || !eye->fine[i].known || !eye->record[i].open)

@@ -21,7 +21,7 @@ static void on_globe(double out[3], const struct view *v, double off, double phi
 		         + v->radius * (cos(off) * v->axis[k] + sin(off) * (cos(phi) * v->right[k] + sin(phi) * v->up[k]));
 }
 
-/* Whether the mesh hides that point; where it does, what hides it. */
+/* True when the mesh hides that point; edge: the point that hides it. */
 static bool hidden(double edge[3], const struct view *v, double off, double phi)
 {
 	double p[3], dir[3];
@@ -37,7 +37,7 @@ static bool hidden(double edge[3], const struct view *v, double off, double phi)
 	return true;
 }
 
-/* First of what hides the eyeball on the way outwards. False: nothing does. */
+/* The first point of the mesh that hides the eyeball going outwards. Returns false when none does. */
 static bool outward(double edge[3], const struct view *v, double phi)
 {
 	const double end = 1.5;

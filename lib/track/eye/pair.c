@@ -5,11 +5,11 @@
 #include "math/stats.h"
 #include "track/eye/eye_track_impl.h"
 
-// Radians: eyes that look at one thing are level to within a fraction of a degree, or it would be seen double.
+// Radians: vertical disparity of fused vision; more would be seen double.
 static const double LEVEL = 0.25 * M_PI / 180;
 enum { LEAST = 10 };
 
-/* Up-shift of all directions of an eye, and of where its centre must be for that. */
+/* Shifts all directions of an eye upwards, and its centre accordingly. */
 static void lift(struct eye_side *eye, double up)
 {
 	for (long i = 0; i < eye->frames; i++)
@@ -30,7 +30,7 @@ void eye_pair_level(struct eye_side *left, struct eye_side *right)
 	var[0] = pow(left->center_sigma[1] / fmax(1, gaze_plane(&left->globe)), 2);
 	var[1] = pow(right->center_sigma[1] / fmax(1, gaze_plane(&right->globe)), 2);
 	sum = var[0] + var[1] + LEVEL * LEVEL;
-	// More than the measurement can be wrong by is a squint, and is left as it is.
+	// A disparity beyond three sigma of the measurement is strabismus and is left.
 	if (m < LEAST || !(apart * apart < 9 * sum))
 		return;
 	lift(left, -apart * var[0] / sum);

@@ -8,7 +8,7 @@
 #include "track/gaze/bundle.h"
 #include "motion/gaze_sim.h"
 
-/* The frames that have edges, for gaze_bundle_fit(). */
+/* Collects the frames that have edges, for gaze_bundle_fit(). */
 static int frames_of(struct gaze_frame *out, int *index, const struct eye_side *eye)
 {
 	int n = 0;
@@ -26,7 +26,7 @@ static int frames_of(struct gaze_frame *out, int *index, const struct eye_side *
 	return n;
 }
 
-/* What the eyeball's own uncertainty does to all directions alike, radians. */
+/* Adds the common error of all directions that comes from the eyeball's centre, radians. */
 static void add_common(struct eye_state *state, const struct eye_side *eye)
 {
 	double plane = fmax(1, gaze_plane(&eye->globe));
@@ -53,7 +53,7 @@ static void refit(struct eye_state *state, const struct eye_side *eye, const str
 	}
 }
 
-/* Listing's law on the average: the first frame's torsion was a guess. */
+/* Shifts torsion so that its median difference from Listing's law is zero: the first frame's was assumed. */
 static void level_torsion(struct eye_side *eye)
 {
 	double *off = mem_array((size_t)eye->frames + 1, sizeof *off), degree = M_PI / 180;

@@ -6,7 +6,7 @@
 #include "math/vec.h"
 #include "track/eye/eye_track_impl.h"
 
-// Seconds for which a gaze that is hidden is taken to be near where it was.
+// Seconds for which a hidden gaze is assumed to be near its last direction.
 static const double LOST_S = 1;
 
 static bool to_pixel(double px[2], const struct gaze_view *view, const double p[3])
@@ -20,7 +20,7 @@ static bool to_pixel(double px[2], const struct gaze_view *view, const double p[
 	return camera_project(px, &view->camera, cam);
 }
 
-/* Mean change of brightness since the last frame that was looked at, at some places round the eye. */
+/* Mean change of brightness since the last frame that was measured, on a grid round the eye. */
 static double change(struct eye_side *eye, const struct luma *luma, const double center[2], double radius)
 {
 	uint8_t now[EYE_STILL_SIDE * EYE_STILL_SIDE];
@@ -62,7 +62,7 @@ void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int p
 	}
 }
 
-/* The corners were a guess: now they are where the opening just found ends, and the lids begin anew. */
+/* Replaces guessed corners by the ends of the opening just found, and restarts the lids with them. */
 static bool find_corners(struct eye_side *eye, struct eye_record *record, const struct lid_picture *picture,
                          struct lid_look *look, const struct gaze_view *view)
 {
@@ -88,7 +88,7 @@ static bool find_corners(struct eye_side *eye, struct eye_record *record, const 
 	return lid_track_push(&record->found, &eye->lids, picture, look);
 }
 
-/* Lids, then gaze between them. */
+/* Finds the lids, then measures gaze between them. */
 static void look(struct eye_state *state, struct eye_record *record, struct lid_fine *fine, struct eye_side *eye, const struct eye_frame *frame,
                  const struct gaze_view *view)
 {

@@ -11,7 +11,7 @@
 enum { SHARED = GAZE_N - 2, FRAMES = 400, EDGES = 48, ROUNDS = 12 };
 
 struct sums {
-	double a[SHARED][SHARED], b[SHARED];  // reduced to what all frames share
+	double a[SHARED][SHARED], b[SHARED];  // reduced normal equations of the shared unknowns
 	double weight, square;
 };
 
@@ -56,7 +56,7 @@ static int gather(struct own *own, double dist[EDGES], const struct gaze_frame *
 	return n;
 }
 
-/* The frame's own two unknowns out of its equations, what is left added to the sums. */
+/* Eliminates the frame's own two unknowns (Schur complement) and adds the rest to the sums. */
 static void reduce(struct sums *sums, struct own *own)
 {
 	double det = own->c[0][0] * own->c[1][1] - own->c[0][1] * own->c[1][0];
@@ -83,7 +83,7 @@ static double *shared(struct gaze_globe *globe, int k)
 	return k < 3 ? &globe->center[k] : k == 3 ? &globe->radius : &globe->limbus;
 }
 
-/* The step of all, with the prior; noise: variance of an edge, px². */
+/* Gauss-Newton step of all unknowns, with the prior; noise: variance of an edge, px². */
 static bool solve(double step[SHARED], struct sums *sums, struct gaze_globe *globe, const struct gaze_globe *start,
                   const double sigma[SHARED], double noise, double out_sigma[GAZE_N])
 {
@@ -107,7 +107,7 @@ static bool solve(double step[SHARED], struct sums *sums, struct gaze_globe *glo
 	return true;
 }
 
-/* Half of the distances are smaller. */
+/* Median of the distances. */
 static double scale_of(int n, struct gaze_frame *const frame[], const struct gaze_globe *globe)
 {
 	double *all = mem_array((size_t)n * EDGES, sizeof *all);
@@ -121,7 +121,7 @@ static double scale_of(int n, struct gaze_frame *const frame[], const struct gaz
 	return fmax(0.2, scale);
 }
 
-/* How many frames say something of their own: those that look the same way see the same shading and the same lids. */
+/* Number of independent frames: those of one gaze share shading and lids. */
 static double distinct(int n, struct gaze_frame *const frame[])
 {
 	double seen[FRAMES][2], apart = 4 * M_PI / 180;
@@ -153,7 +153,7 @@ static bool iterate(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n
 			gather(&own[i], NULL, frame[i], globe, 3 * scale);
 			reduce(&sums, &own[i]);
 		}
-		// Edges round one limbus share its lobes and shading: a frame is worth about three of them, not all.
+		// Errors round one limbus are correlated (lobes, shading): a frame counts as about three edges.
 		double noise = sums.weight > 0 ? sums.square / sums.weight * same * EDGES / 3 : 1;
 		if (!solve(step, &sums, globe, &start, sigma, fmax(noise, 0.01), fit->sigma))
 			return false;

@@ -8,7 +8,8 @@
 
 enum { PROFILE_MAX = 256 };
 
-/* Cumulative sums of the profile turn the two means into four look-ups. */
+/* The strongest rise of a profile; cumulative sums give the means on both sides by look-ups. Returns false at the profile's
+ * ends. */
 static bool best_step(double *at, double *rise, int m, const double v[], int half)
 {
 	double sum[PROFILE_MAX + 1] = { 0 }, score[PROFILE_MAX];
@@ -81,7 +82,7 @@ static void add_row(struct normal_system *sys, const struct gaze_arc *arc, doubl
 	sys->sin1 += w * sin(angle);
 }
 
-/* What the last step says of the fit. */
+/* Statistics of the fit from its last step. */
 static void describe(struct gaze_fit *fit, const struct normal_system *sys, double noise, int n)
 {
 	fit->rms = sqrt(sys->square / sys->weight);
@@ -91,7 +92,7 @@ static void describe(struct gaze_fit *fit, const struct normal_system *sys, doub
 		double e[FREE] = { k == 0, k == 1, 0 }, a[FREE][FREE];
 		memcpy(a, sys->a, sizeof a);
 		chol_solve(FREE, FREE, &a[0][0], e);
-		// Neighbouring edges share lobes and shading of the limbus: all of them are worth about three.
+		// Errors of neighbouring edges are correlated (lobes and shading of the limbus): all count as about three.
 		fit->cov[0][k] = n / 3.0 * noise * e[0];
 		fit->cov[1][k] = n / 3.0 * noise * e[1];
 	}
@@ -110,7 +111,7 @@ static bool one_step(struct gaze_fit *fit, struct gaze_globe *globe, double *shi
 		s[i] = (edge[i].x - arc[i].p[0]) * arc[i].normal[0] + (edge[i].y - arc[i].p[1]) * arc[i].normal[1];
 		copy[i] = fabs(s[i]);
 	}
-	// Half of the edges may be lids: the scale comes from the better part of them.
+	// Half of the edges may be lids: the scale is estimated from the better part.
 	double spread = 1.4826 * stats_median(n, copy);
 	*scale = fmax(0.3, fmin(*scale, spread));
 	double cut = 4.7 * *scale;

@@ -26,7 +26,7 @@ static double score_of(const struct gaze_sight *sight, const double fick[2])
 			return NAN;
 	if (!(at[0][0] > 0 && at[0][1] > 0 && at[0][0] < luma->width && at[0][1] < luma->height))
 		return NAN;
-	// Close to the circle the perspective of its rim is that of a plane seen from afar: an affine map.
+	// Near the circle its projection is close to affine.
 	double ax = at[1][0] - at[0][0], ay = at[1][1] - at[0][1], bx = at[2][0] - at[0][0], by = at[2][1] - at[0][1];
 	static const double tap[4] = { 0.80, 0.90, 1.10, 1.20 }, pupil[2] = { 0.18, 0.65 };
 	double sum = 0, dark = 0;
@@ -34,7 +34,7 @@ static double score_of(const struct gaze_sight *sight, const double fick[2])
 	for (int i = 0; i < ARCS; i++) {
 		double c = cos(2 * M_PI * (i + 0.5) / ARCS), s = sin(2 * M_PI * (i + 0.5) / ARCS), v[4];
 		double ux = c * ax + s * bx, uy = c * ay + s * by;
-		// A pupil darker than the iris tells what a limbus of which little is seen does not.
+		// A pupil darker than the iris helps where little of the limbus is visible.
 		double in[2] = { at[0][0] + pupil[1] * ux, at[0][1] + pupil[1] * uy };
 		if (!sight->seen || sight->seen(sight->ctx, in)) {
 			double rise = (luma_near(luma, in[0], in[1])
@@ -48,10 +48,10 @@ static double score_of(const struct gaze_sight *sight, const double fick[2])
 		for (int k = 0; k < 4; k++)
 			v[k] = luma_near(luma, at[0][0] + tap[k] * ux, at[0][1] + tap[k] * uy);
 		double rise = (0.5 * (v[2] + v[3]) - 0.5 * (v[0] + v[1])) / sight->contrast;
-		// Reflections and lids say the opposite in places: no arc has more than its share.
+		// Clamped: reflections and lids contradict in places.
 		sum += rise > 1 ? 1 : rise < -0.5 ? -0.5 : rise;
 	}
-	// Few arcs prove little.
+	// Few arcs count less.
 	return sum / (n > LEAST ? n : LEAST) + 0.5 * dark / (m > LEAST ? m : LEAST);
 }
 

@@ -16,7 +16,7 @@ struct pattern {
 	float value[TORSION_RINGS][TORSION_RAYS_MAX], weight[TORSION_RINGS][TORSION_RAYS_MAX];
 };
 
-/* Pixels in which the rings of the iris are seen. */
+/* Pixels of the rings of the iris, refracted by the cornea. */
 static bool see(float px[][2], int rays, const struct torsion_look *look)
 {
 	enum { ALL = TORSION_RINGS * TORSION_RAYS_MAX };
@@ -56,8 +56,8 @@ static bool see(float px[][2], int rays, const struct torsion_look *look)
 	return true;
 }
 
-/* What differs from the neighbourhood along the ring, in units of its usual size; reflections and hidden parts count for
- * nothing. */
+/* Subtracts the running mean along the ring (a twelfth of a turn) and divides by the robust spread; outliers (reflections) and
+ * hidden parts get no weight. */
 static void flatten(struct pattern *pattern, int r, int rays)
 {
 	double sum[2 * TORSION_RAYS_MAX + 1], weight[2 * TORSION_RAYS_MAX + 1], size[TORSION_RAYS_MAX];
@@ -171,7 +171,7 @@ bool gaze_torsion(double *torsion, double *sigma, struct gaze_torsion *state, co
 	double bend = score[best - 1] - 2 * top + score[best + 1];
 	double off = bend < 0 ? 0.5 * (score[best - 1] - score[best + 1]) / bend : 0;
 	*torsion = (middle + best - reach + off) * ray;
-	// Neighbouring samples see the same pixels: one in twelve counts.
+	// Neighbouring samples share pixels: one in twelve is independent.
 	*sigma = ray * sqrt((1 - top * top) / fmax(1e-6, -bend * top * used / 12)) + 1e-3;
 	state->last = *torsion;
 	if (top > 0.5)

@@ -1,4 +1,4 @@
-/* Coarse: the openings' outlines, of every size and a few slants, slid over a small picture. */
+/* The openings' outlines, in a range of sizes and rolls, slid over a reduced picture. */
 #include "track/head/find.h"
 
 #include <math.h>
@@ -7,11 +7,11 @@
 
 #include "base/mem.h"
 
-static const double pair = 1.5;  // what two eyes that fit are worth above one
+static const double pair = 1.5;  // factor of the score of two eyes over one
 
 enum { SMALL = 160, SIZES = 16, ROLLS = 5, ROWS = 128, CHANNELS = 4 };
 
-/* Sums along rows of what the small picture holds: red's share, its square, brightness, its square. */
+/* Prefix sums along rows of the small picture: share of red, its square, brightness, its square. */
 struct small {
 	int width, height;
 	double factor;          // px of the picture a small pixel
@@ -122,8 +122,8 @@ static double add(double total[CHANNELS], double *whole, const struct small *s, 
 	return n;
 }
 
-/* How much less red the opening is than the skin round it, in that skin's own spread, and how much more it varies in
- * brightness. NAN: not in the picture. */
+/* Contrast of an opening: how much less red it is than the skin round it, in units of that skin's spread, and how much more its
+ * brightness varies. NAN when it is not in the picture. */
 static double contrast(const struct small *s, const struct shape *p, int x, int y)
 {
 	double in[CHANNELS] = { 0 }, out[CHANNELS] = { 0 }, whole, most;
@@ -161,8 +161,8 @@ static void slide(struct best *best, const struct small *s, const struct shape s
 				score += isnan(c[e]) ? 0 : c[e];
 				n += !isnan(c[e]);
 			}
-			// an eye that should be there and is not tells against one that might be; two are worth more than one that the
-			// picture's border leaves alone
+			// an eye missing inside the picture counts against the other; two eyes score higher than one whose partner lies
+			// beyond the border
 			score = n == 2 ? fmin(0.5 * score, fmin(c[0], c[1]) + 0.5) + pair : score;
 			if (n && score > best->score)
 				*best = (struct best){ score, px_per_mm, roll, { x, y }, { !isnan(c[0]), !isnan(c[1]) } };

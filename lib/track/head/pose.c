@@ -72,8 +72,8 @@ void head_moved(double out[4][4], const double m[4][4], const double d[P], const
 	}
 }
 
-/* Residuals (2, or 1 along a line's normal) and their derivatives by the six motions. Distortion moves with the point: its
- * own derivative is left out, which costs a step and no accuracy. */
+/* Residuals (2, or 1 along a line's normal) and their Jacobian by the six parameters. The derivative of the distortion is left
+ * out, which costs a step and no accuracy. */
 static int look(double r[2], double J[2][P], const struct head_sight *s, const double m[4][4], const struct camera *camera,
                 const double pivot[3])
 {
@@ -125,7 +125,7 @@ void head_motion(double e[P], const double m[4][4], const double from[4][4], con
 {
 	double head[3];
 	turned(e, m, from);
-	// shifts are those of the pivot, so that a turn of the head is not taken for one
+	// shifts are those of the pivot, which decouples them from rotation
 	head_to(head, m, pivot);
 	head_from(head, from, head);
 	for (int i = 0; i < 3; i++)

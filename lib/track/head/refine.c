@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Fine: the outlines of the openings against the picture. Which colours lie in the eyes and which round them is learnt from the
- * picture under the pose as it stands; along each normal of an outline, the split that parts them best is looked for
- * (Prisacariu and Reid 2012 for the two histograms, here on lines, with the pose by least squares). */
+/* Colour histograms of the eyes and of the skin round them are learnt from the picture under the current pose; along each
+ * normal of an outline the best split between the two is found, and the pose is fitted to the splits by least squares (the two
+ * histograms: Prisacariu and Reid 2012). */
 
 enum { ROUNDS = 10, REACH = 96, ACROSS = 5, HUES = 24, GREYS = 16 };
 
@@ -104,7 +104,7 @@ static void learn(struct picture *p, const struct head_found *found, const struc
 		p->eye[i] = fmax(-1.5, fmin(1.5, log(in[i] / out[i])));
 }
 
-/* The best split within +- range of px: *at px along the normal, *sure: how well it parts. False: none. */
+/* The best split within +- range of px: *at px along the normal, *sure: its margin. Returns false when there is none. */
 static bool split(double *at, double *sure, const struct picture *p, const double px[2], const double normal[2], double range)
 {
 	const double tangent[2] = { -normal[1], normal[0] };
@@ -116,13 +116,13 @@ static bool split(double *at, double *sure, const struct picture *p, const doubl
 			double c[3], s = p->scale * 1.5 * (j - (ACROSS - 1) / 2);
 			if (!colour(c, p, px[0] + k * pitch * normal[0] + s * tangent[0], px[1] + k * pitch * normal[1] + s * tangent[1]))
 				return false;
-			// lashes are as dark as pupils: what is nearly black tells nothing
+			// lashes are as dark as pupils: near black is no evidence
 			v[k + n] += c[0] + c[1] + c[2] < 150 ? 0 : p->eye[bin(c)] / ACROSS;
 		}
 		sum[k + n + 1] = sum[k + n] + v[k + n];
 	}
 	for (int k = flank; k <= 2 * n + 1 - flank; k++) {
-		// what is parted: `flank` samples either side
+		// evidence of `flank` samples on either side
 		double gain = 2 * sum[k] - sum[k - flank] - sum[k + flank], off = (k - 0.5 - n) * pitch / range;
 		double score = gain - 2 * off * off;
 		if (fabs(off) <= 1.5 && score > top) {
@@ -133,7 +133,7 @@ static bool split(double *at, double *sure, const struct picture *p, const doubl
 	}
 	if (best <= flank || best >= 2 * n + 1 - flank || *sure < 0.15)
 		return false;
-	// between two samples: where the evidence turns
+	// between two samples: where the evidence changes sign
 	double a = v[best - 1], b = v[best];
 	*at = (best - 0.5 - n + (a > 0 && b < 0 ? a / (a - b) - 0.5 : 0)) * pitch;
 	return true;
@@ -183,7 +183,7 @@ bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, i
 				n += look(sights + n, &p, found->cam_from_head, camera, &opening[e], range);
 		if (n < OPENING_POINTS / 3)
 			return false;
-		// edges of neighbouring places err together, by what lashes shade
+		// errors of neighbouring edges are correlated (shadows of lashes)
 		for (int i = 0; i < n; i++)
 			sights[i].weight *= edge_weight / (p.scale * p.scale);
 		double rms = head_pose_fit(found->cam_from_head, n, sights, camera, fmax(1.5, 0.3 * range), &prior);

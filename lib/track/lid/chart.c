@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-// Of the distance between the corners: shown beyond each of them, and from the top to the bottom row.
+// Shares of the distance between the corners: extent beyond each of them, and from the top to the bottom row.
 static const double BEYOND = 0.125, HIGH = 0.8;
 
 bool lid_chart_lay(struct lid_chart *chart, int columns, const double inner[2], const double outer[2],
@@ -39,7 +39,7 @@ void lid_chart_of(double *col, double *row, const struct lid_chart *chart, const
 
 void lid_chart_fill(struct lid_chart *chart, const uint8_t *rgb, int stride, int width, int height)
 {
-	// Four samples a cell, the two across further apart than the two down: lashes blur, lids do not.
+	// Four samples a cell, further apart across than down: blurs lashes, not lids.
 	static const double part[4][2] = { { -0.3, -0.2 }, { 0.1, -0.2 }, { -0.1, 0.2 }, { 0.3, 0.2 } };
 	for (int j = 0; j < LID_ROWS; j++) {
 		for (int i = 0; i < chart->cols; i++) {

@@ -18,8 +18,8 @@ int lid_colour_bin(const uint8_t rgb[3])
 	return (l * LID_RED + red) * LID_BLUE + blue;
 }
 
-/* Zone of the eye: rings of the iris, then white towards the nose and away from it; the last, all of it, where nobody knows the
- * iris. */
+/* Zone of the eye: rings of the iris, then sclera towards the nose and away from it; the last zone, all of it, where the iris is
+ * unknown. */
 static int ring_of(const struct lid_iris *iris, double cols, double rows)
 {
 	static const double outer[] = { 0.4, 0.6, 0.8, 1.04 };
@@ -81,7 +81,7 @@ void lid_colour_log(float says[LID_BINS], const float seen[LID_BINS])
 	blur(says, LID_BLUE, 1, 1);
 	for (int i = 0; i < LID_BINS; i++)
 		sum += (double)says[i];
-	// What was hardly ever seen says nothing.
+	// A floor: colours hardly ever seen are no evidence.
 	const double rare = 2e-4;
 	for (int i = 0; i < LID_BINS; i++)
 		says[i] = (float)log((double)says[i] / sum + rare);

@@ -7,7 +7,7 @@
 
 // Shares of the distance between the corners: a sample of the patch, and how far outside the corner its middle lies.
 static const double SAMPLE = 0.008, BESIDE = 0.04;
-// Grey levels of a usual mismatch; how far a corner moves, in samples.
+// Grey levels of a usual mismatch; standard deviation of a corner's motion, in samples.
 static const double NOISE = 6, MOVES = 8;
 
 /* Brightness on a square round the patch, side samples wide. */
@@ -66,14 +66,14 @@ void lid_corner_find(double shift[2], struct lid_corner *corner, int which, cons
 	for (int j = 0; j < N; j++) {
 		for (int i = 0; i < N; i++) {
 			double off = hypot(i - CORNER_REACH, j - CORNER_REACH) / MOVES;
-			// Neighbouring samples err together: of all of them a dozen count.
+			// Errors of neighbouring samples are correlated: all count as a dozen.
 			double fit = (double)square(&field[j * CORNER_FIELD + i], &corner->look[0][0]) / (CORNER_SIDE * CORNER_SIDE);
 			cost[j][i] = 0.5 * 12 * fit / (NOISE * NOISE) + 0.5 * off * off;
 			if (cost[j][i] < least)
 				least = cost[j][i], bi = i, bj = j;
 		}
 	}
-	// What no longer looks like it, as in a blink, tells little.
+	// A poor match, as in a blink, is trusted little.
 	double fit = (double)square(&field[bj * CORNER_FIELD + bi], &corner->look[0][0]) / (CORNER_SIDE * CORNER_SIDE);
 	double strange = fit / (18 * NOISE * NOISE), trust = 1 / (1 + pow(strange, 4));
 	double x = bi - CORNER_REACH, y = bj - CORNER_REACH, step = SAMPLE * chart->width;

@@ -10,10 +10,10 @@
 
 enum { PLACES = 6, RINGS = 10, ZONES = PLACES + RINGS, ROUNDS = 2, LEAN = 4 };
 
-/* mm: how far the eye's end may be from where it is expected, halfway between the corners; what is surely eye and surely lid
- * begins so far from it, and lids are looked at so far; the length of a row of independent cells. */
+/* mm: standard deviation of the eye's end, halfway between the corners; distances from it beyond which cells are surely eye,
+ * surely lid, and no longer read as lid; size of independent cells. */
 static const double sigma_mm = 0.5, clear_eye = 0.19, clear_lid = 0.09, band_mm = 0.75, row_mm = 1.0 / 16;
-/* What a change of slope by a cell costs; how far odds are believed; bend of the smoothed curve. */
+/* Cost of a squared step of one cell; clamp of the log odds; smoothing of the curve. */
 static const double bend = 0.3, sure = 3, soft = 2;
 
 static double amid(int i)
@@ -48,7 +48,7 @@ void lid_fine_look(struct lid_fine *fine, int lower, int n, const double margin[
 	}
 }
 
-/* The ring of the eye that cell j of column i would lie on. */
+/* Zone of the eye, a ring about the iris, of cell j of column i. */
 static int ring_of(const struct lid_fine_frame *f, int i, int j)
 {
 	static const double outer[] = { 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.6 };
@@ -80,7 +80,7 @@ static void learn(float (*seen)[LID_BINS], const struct lid_fine_frame *f)
 		}
 }
 
-/* What it costs that the eye ends between cells j - 1 and j of column i. */
+/* Cost of the boundary between cells j - 1 and j of column i. */
 static void costs(float cost[FINE_COLS][FINE_CELLS], const struct lid_fine_frame *f, float (*says)[LID_BINS])
 {
 	double step = lid_fine_step(f->look), mm = (double)f->look->mm, worth = step / (row_mm * mm);
@@ -95,7 +95,7 @@ static void costs(float cost[FINE_COLS][FINE_CELLS], const struct lid_fine_frame
 	}
 }
 
-/* The cheapest way through all columns. */
+/* The cheapest path through all columns (dynamic programming). */
 static void way(int path[FINE_COLS], float cost[FINE_COLS][FINE_CELLS])
 {
 	signed char from[FINE_COLS][FINE_CELLS] = { { 0 } };

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-// Frames of a second that are learnt from: looks are remembered for some seconds, however fast they were filmed.
+// Frames a second that are learnt from: appearance is averaged over some seconds at any frame rate.
 static const double LEARNT_FPS = 60;
 
 void lid_track_start(struct lid_track *lids, int columns, int points, double wet_mm, double fps)
@@ -52,8 +52,8 @@ static struct lid_iris iris_on(const struct lid_chart *chart, const struct lid_l
 	return iris;
 }
 
-/* The first frame: colours of what is surely eye (a lens much too small, the iris) and surely lid (outside one too large),
- * then in turns lids from colours and colours from lids. */
+/* First frame: histograms of cells that are surely eye (inside a lens too small, the iris) and surely lid (outside one too
+ * large); find() then alternates between lids from colours and colours from lids. */
 static void learn(struct lid_track *lids, const struct lid_look *look)
 {
 	const struct lid_chart *chart = &lids->chart;
@@ -75,12 +75,12 @@ static void learn(struct lid_track *lids, const struct lid_look *look)
 	for (int i = 0; i < chart->cols; i++)
 		if (none.row[1][i] <= none.row[0][i])
 			none.row[0][i] = none.row[1][i] = LID_ROWS / 2;
-	// What is between the two is not known yet.
+	// Cells between the two are left out.
 	lid_colour_learn(&lids->colour, chart, none.row[0], none.row[1], &iris, (double[2]){ 0, LID_ROWS }, LID_ROWS, 1);
 	lids->curves = usual;
 }
 
-/* The lines on the lids to a fraction of a row: by their strips, or, before these are known, by the edges. */
+/* Refines the lines on the lids to a fraction of a row: by their strips, in the first frame by edges. */
 static void settle(struct lid_found *found, struct lid_track *lids, const struct lid_picture *picture, bool fresh)
 {
 	struct lid_chart *chart = &lids->chart;
@@ -96,7 +96,7 @@ static void settle(struct lid_found *found, struct lid_track *lids, const struct
 			found->clear[k] = fmax(0, 1 - found->misfit[k] / LID_STRIP_WORST);
 		}
 	}
-	// Columns outside the opening: both margins run on, shut.
+	// Columns outside the opening: both margins continue, shut.
 	for (int i = 0; i < chart->cols; i++) {
 		int e = i < first ? first : i > last ? last : -1;
 		double mid = e < 0 ? 0 : 0.5 * (lids->curves.row[0][e] + lids->curves.row[1][e]);
@@ -105,7 +105,7 @@ static void settle(struct lid_found *found, struct lid_track *lids, const struct
 	}
 }
 
-/* Rows from the lines that are followed to the margins, as far as the clip has shown by now. */
+/* Updates the offset from lines to margins, from the strips so far; wet: prior, rows. */
 static void place(struct lid_track *lids, double wet)
 {
 	int n = lids->chart.cols;

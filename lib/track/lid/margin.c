@@ -13,8 +13,8 @@ static void mean_of(double out[3], double v[SAMPLES][3], int first, int last)
 	}
 }
 
-/* Where along the profile (px, outward positive) eye turns into lid: the place of the sharp step that has the same
- * area. Returns the contrast of the two, grey levels. */
+/* Place along the profile (px, outward positive) of the step from eye to lid: the sharp step of equal area. Returns the
+ * contrast of the two, grey levels. */
 static double step_at(double *at, double v[SAMPLES][3], double px)
 {
 	double eye[3], lid[3], along[3], size = 0;

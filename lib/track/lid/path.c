@@ -12,7 +12,7 @@ struct ground {
 	float cross[LID_ROWS + 1][LID_COLS_MAX]; // of the edges above that are no part of the iris
 };
 
-/* How much an edge there speaks against the eye: that of the limbus not at all, the pupil's and reflections' little. */
+/* Weight of an edge as evidence against eye: none at the limbus, little inside it (pupil, reflections). */
 static double strange(const double iris[4], int i, int j)
 {
 	double r = hypot((i - iris[0]) / iris[2], (j - 0.5 - iris[1]) / iris[3]);
@@ -30,9 +30,9 @@ static void survey(struct ground *ground, const struct lid_chart *chart, float o
 			int a = j > 1 ? j - 2 : 0, b = j < LID_ROWS - 1 ? j + 1 : LID_ROWS - 1, d = 0;
 			for (int c = 0; c < 3; c++)
 				d += abs(chart->rgb[a][i][c] - chart->rgb[b][i][c]);
-			// Three channels that differ by 25 make an edge that is worth all; more is not surer.
+			// A difference of 25 in three channels is a full edge.
 			ground->edge[j][i] = d > 75 ? 1 : (float)d / 75;
-			// An edge is seen from three rows.
+			// An edge shows in three rows.
 			float e = ground->edge[j][i] > 0.3F ? ground->edge[j][i] / 3 * (float)strange(iris, i, j) : 0;
 			if (j < LID_ROWS)
 				ground->cross[j + 1][i] = ground->cross[j][i] + e;
@@ -44,11 +44,11 @@ struct margin {
 	const struct ground *ground;
 	const struct lid_match *match;
 	const struct lid_path_conf *conf;
-	const double *other, *expect;  // rows of the other margin, and where this one is thought to be
+	const double *other, *expect;  // rows of the other margin; expected rows of this one
 	int lower;
 };
 
-/* What it costs that column i's margin lies between rows j - 1 and j; edge: where the other one is. */
+/* Cost of column i's margin between rows j - 1 and j; edge: row of the other one. */
 static double cost_of(const struct margin *m, int i, int j, int edge, double sigma)
 {
 	const struct ground *ground = m->ground;
@@ -56,7 +56,7 @@ static double cost_of(const struct margin *m, int i, int j, int edge, double sig
 	if (i < conf->columns[0] || i > conf->columns[1])
 		return 2.0 * abs(j - edge);
 	double off = (j - 0.5 - m->expect[i]) / sigma, cost = 0.5 * off * off, crossed = 0;
-	// Its own edge is not crossed.
+	// The margin's own edge is not counted.
 	if (m->lower && j > edge + 2)
 		crossed = ground->cross[j - 2][i] - ground->cross[edge][i];
 	if (!m->lower && j < edge - 2)
@@ -81,7 +81,7 @@ static void one_path(double path[], const struct margin *m, const struct lid_cha
 	int cols = chart->cols, end = 0;
 	for (int i = 0; i < cols; i++) {
 		float *now = cost[i & 1], *before = cost[!(i & 1)];
-		// The corners of the eye move less than what lies between.
+		// The corners of the eye move less than the middle.
 		double t = (i - a) / (b - a), amid = t > 0 && t < 1 ? sqrt(4 * t * (1 - t)) : 0;
 		double sigma = m->conf->sigma[m->lower] * (0.35 + 0.85 * amid), slope = i ? m->expect[i] - m->expect[i - 1] : 0;
 		int lean = (int)lround(fmax(-100, fmin(100, slope))), edge = (int)fmin(LID_ROWS, fmax(0, m->other[i]));
@@ -176,7 +176,7 @@ double lid_path_refine(double row[], const struct lid_match *match, int lower, i
 
 void lid_smooth(double out[], int n, const double y[], const double w[], double bend)
 {
-	// Pentadiagonal LDL': one pass down, one up.
+	// Pentadiagonal LDL' factorisation: one pass down, one up.
 	double d[LID_COLS_MAX], e[LID_COLS_MAX], f[LID_COLS_MAX], z[LID_COLS_MAX];
 	for (int i = 0; i < n; i++) {
 		int a = i < n - 2, b = i >= 1 && i < n - 1, c = i >= 2;

@@ -5,12 +5,11 @@
 
 #include "math/simd.h"
 
-// Grey levels: noise and shading of a picture that matches, one sigma; and what a cell of unknown variance is thought to do
-// inside and outside of the margin.
+// Grey levels, one sigma: noise and shading of a matching picture; prior spread of a cell inside and outside of the margin.
 static const float NOISE = 7, VARIES = 60, KEEPS = 12;
-// Frames after which older ones begin to count less.
+// Frames after which older ones weigh less.
 static const float MEMORY = 120;
-// A rise of the spread from lid to eye by as many NOISE is trusted by half.
+// A rise of the spread from lid to eye by as many NOISE has weight 1/2.
 static const double SURE = 3;
 
 static float doubt(const struct lid_strip *strip, int k, int i3)
@@ -33,7 +32,7 @@ SIMD_CLONES static void add_lid(float *sum, const uint8_t *px, const float *mean
 	}
 }
 
-/* The other way round: what is no lid must not look like one. */
+/* Reversed: cells inside the margin must not look like the lid. */
 SIMD_CLONES static void add_eye(float *sum, const uint8_t *px, const float *rim, const float *per, int n)
 {
 	for (int i = 0; i < n; i++) {
@@ -90,7 +89,7 @@ void lid_strip_learn(struct lid_strip *strip, const struct lid_chart *chart, con
 	}
 }
 
-/* Spread of a cell's looks over the clip, grey levels, with its neighbours along the margin. */
+/* Standard deviation of a cell over the clip, grey levels, averaged with its neighbours along the margin. */
 static double spread(const struct lid_strip *strip, int k, int i, int cols)
 {
 	double sum = 0;
@@ -111,7 +110,7 @@ void lid_strip_edge(double out[], double weight[], const struct lid_strip *strip
 		double v[LID_STRIP], in = 0, skin = 1e9;
 		for (int k = 0; k < LID_STRIP; k++)
 			v[k] = spread(strip, k, i, cols);
-		// The quietest three cells together are skin; the liveliest inside them, eye.
+		// The three adjacent cells of least spread are skin; the cell of greatest spread inside them is eye.
 		int quiet = 0;
 		for (int k = 1; k + 3 < LID_STRIP; k++) {
 			double m = (v[k] + v[k + 1] + v[k + 2]) / 3;

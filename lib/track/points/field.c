@@ -4,7 +4,7 @@
 #include "math/stats.h"
 #include "track/points/skin_track_impl.h"
 
-/* Where neighbour j sees point i: its own warp carried on. */
+/* Place of point i predicted by neighbour j: its affine warp extrapolated. */
 static void seen_from(double out[2], const struct skin_track *t, int i, int j)
 {
 	const struct patch_warp *w = &t->point[j].warp;
@@ -18,7 +18,7 @@ static double pow2(double x)
 	return x * x;
 }
 
-/* A robust mean: from the median on, with Tukey's weights; near neighbours count more. */
+/* Robust mean of the predictions: one step from the median with Tukey weights; near neighbours weigh more. */
 static void ask(struct skin_field *f, const struct skin_track *t, int i)
 {
 	double at[SKIN_NEAR_MAX][2], x[SKIN_NEAR_MAX], weight[SKIN_NEAR_MAX], mid[2];

@@ -1,4 +1,4 @@
-/* One frame: every point for itself, then with its neighbours. */
+/* Measures one frame: every point by itself, then with its neighbours as a prior. */
 #include <math.h>
 
 #include "track/points/skin_track_impl.h"
@@ -13,7 +13,7 @@ static bool at_level(struct patch_warp *w, struct patch_fit *fit, const struct s
 	return patch_align(w, fit, t->patches, i, level, &t->frame, &prior);
 }
 
-/* Keeps a result if it is better than what the point has. */
+/* Keeps a result of higher correlation than the point's. */
 static void keep(struct skin_warp *p, const struct patch_warp *w, double ncc, double sigma)
 {
 	if (ncc <= p->ncc)
@@ -23,7 +23,7 @@ static void keep(struct skin_warp *p, const struct patch_warp *w, double ncc, do
 	p->sigma = sigma;
 }
 
-/* From `start` down from a level. */
+/* Aligns the patch from `start`, coarse to fine from a level. */
 static void try(struct skin_track *t, int i, int level, const struct patch_warp *start, const struct patch_warp *expected,
                 double at_sigma, double A_sigma)
 {
@@ -33,7 +33,7 @@ static void try(struct skin_track *t, int i, int level, const struct patch_warp 
 		at_level(&w, &fit, t, i, l, expected, at_sigma, 0.5 * A_sigma);
 	if (!at_level(&w, &fit, t, i, 0, expected, at_sigma, A_sigma))
 		return;
-	// the correlation is that before the last step, which is small where the patch has been found
+	// fit.ncc is that before the last step: good enough where that step was small
 	struct patch_fit look = fit;
 	if (fit.step < 4 * t->conf.stop || patch_look(&look, t->patches, i, 0, &t->frame, &w))
 		keep(&t->point[i], &w, look.ncc, fit.sigma);
@@ -60,8 +60,8 @@ static void alone(struct skin_track *t, int i)
 		p->warp = start;
 }
 
-/* A point that its neighbours contradict, or that is lost, starts anew from where they see it; one that they agree with
- * is measured again in the light of what they say: along a line, or where skin is plain, they know better. */
+/* Restarts lost points and outliers from their neighbours' prediction; measures the others again with the prediction as a
+ * prior, which resolves the aperture problem along lines and on plain skin. */
 static void with_others(struct skin_track *t, int i)
 {
 	struct skin_warp *p = &t->point[i];
@@ -70,7 +70,7 @@ static void with_others(struct skin_track *t, int i)
 		return;
 	double limit = t->conf.outlier + fmin(2 * f->spread, t->conf.outlier), sigma = hypot(t->conf.smooth, f->spread);
 	double usual = p->usual, apart = hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]);
-	// what fits as ever, and is where its neighbours see it, need not be asked again
+	// a point that fits as usual and agrees with its neighbours is done
 	if (p->seen && p->ncc > usual - 0.04 && apart < t->conf.agree)
 		return;
 	p->ncc = -1;
@@ -96,7 +96,7 @@ static void settle(struct skin_track *t, int i)
 		p->best[r] = p->warp.at[r];
 	double off = f->n ? hypot(p->warp.at[0] - f->warp.at[0], p->warp.at[1] - f->warp.at[1]) / (t->conf.outlier + fmin(2 * f->spread, t->conf.outlier)) : 0.5;
 	p->confidence = p->seen ? fmin(1, (p->ncc - t->conf.min_ncc) / (1 - t->conf.min_ncc) * 1.5 + 0.05) * (1 - fmin(0.9, off * off)) : 0;
-	// where neighbours contradict each other, none of them is to be believed: lashes, and folds that open and close
+	// where neighbours disagree (lashes, folds that open and close) confidence falls
 	double torn = f->n ? f->spread / t->conf.outlier : 0;
 	p->confidence = torn > 2 ? 0 : p->confidence / (1 + torn * torn);
 	if (p->seen)

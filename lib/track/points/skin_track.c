@@ -9,7 +9,7 @@
 
 enum { STEP = 64 };
 
-/* Patches and the search round them must stay inside the window that is kept of a frame. */
+/* The window kept of a frame: patches and the search round them. */
 static void window(int box[4], const struct skin_track *t)
 {
 	double lo[2] = { t->width, t->height }, hi[2] = { 0, 0 };
@@ -18,7 +18,7 @@ static void window(int box[4], const struct skin_track *t)
 			lo[k] = fmin(lo[k], t->point[i].warp.at[k]);
 			hi[k] = fmax(hi[k], t->point[i].warp.at[k]);
 		}
-	// in steps, so that it mostly stays the same from frame to frame
+	// rounded, so that it rarely changes from frame to frame
 	int margin = (t->conf.radius + 6) << (t->conf.levels - 1);
 	for (int k = 0; k < 2; k++) {
 		box[k] = (int)floor((lo[k] - margin) / STEP) * STEP;
@@ -107,7 +107,7 @@ double skin_track_push(struct skin_track *t, const uint8_t *luma, int stride, st
 	t->gain = skin_track_gain(t);
 	t->was_still = skin_track_stands_still(t);
 	if (t->was_still) {
-		// compared with the frame that was worked on, so that slow motion adds up until it is seen
+		// the last frame worked on is kept for comparison, so that slow motion adds up until it is seen
 		swap = t->last;
 		t->last = t->frame;
 		t->frame = swap;

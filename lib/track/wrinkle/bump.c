@@ -1,4 +1,4 @@
-/* The lines of a pose as a map of heights, and of how much of an even sky is seen. */
+/* Lines rendered to a map of heights and of the visible share of an even sky. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 
 static const double reach = 3.5;    // of a groove, in w
 
-/* Deepest wins; a line fades over its first and last two mm (from Gaussian tails nothing is left to see). */
+/* Draws one segment; where lines overlap the deepest counts. A line fades over its first and last two mm. */
 static void put(struct image *map, const struct wrinkles *w, const struct wrinkle_line *line, int i)
 {
 	const struct wrinkle_point *a = &line->point[i], *b = &line->point[i + 1];

@@ -1,4 +1,4 @@
-/* How deep a line is: the groove whose shading looks so under the light that the neutral face is seen in. */
+/* Depth of a line: the groove whose shading, in the light of the neutral face, fits its profiles (shape from shading). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,14 +20,14 @@ static const double explained = 0.6; // of the profile's variance, by a groove
 
 double wrinkle_sky(double s, double slope)
 {
-	// Horizons on both sides: the steepest line of sight to the groove's own wall. Light that the walls send on is left out.
+	// Horizon on either side: the steepest line of sight to the groove's own wall. Interreflection is neglected.
 	double here = -slope * exp(-0.5 * s * s), rise[2] = { 0, 0 };
 	for (int side = 0; side < 2; side++)
 		for (int i = 1; i <= 48; i++) {
 			double d = 0.08 * i, x = s + (side ? -d : d), up = -slope * exp(-0.5 * x * x) - here;
 			rise[side] = fmax(rise[side], up / d);
 		}
-	// A sky of even light over a 2D valley, received by the tilted skin: the mean of cosine over what is open.
+	// Even sky over a 2D valley, received by the tilted skin: mean cosine over the open angle.
 	double tilt = slope * s * exp(-0.5 * s * s), norm = hypot(1, tilt), n[2] = { -tilt / norm, 1 / norm };
 	double a = atan2(1, rise[0]), b = atan2(1, rise[1]);  // from straight up
 	return fmax(0, 0.5 * (n[1] * (sin(a) + sin(b)) + n[0] * (cos(b) - cos(a))));
@@ -91,12 +91,13 @@ static double residual(const double got[SAMPLES], const double model[SAMPLES])
 	return left;
 }
 
-/* What light does at a control point: from the side, and straight on; mm. */
+/* Light at a control point: its components across the line, along the skin's normal, and ambient. */
 struct sight {
 	double across, flat, ambient;
 };
 
-/* Depth (mm) of a groove of half width `width` that fits a profile of `seen` half width best, and how well. */
+/* Depth (mm) of the groove of half width `width` that fits a profile sampled for half width `seen` best; left: its squared
+ * residual. */
 static double fit_depth(double *left, const double got[SAMPLES], const struct sight *sight, const struct wrinkle_grooves *t, double seen,
                         double width)
 {
@@ -140,7 +141,7 @@ static bool sight_of(struct sight *sight, const struct wrinkle_point *p, const s
 	return true;
 }
 
-/* What a control point is measured to be, and how much of its profile a groove explains. */
+/* A groove fitted at a control point (mm), the share of the profile's variance that it explains, and its squared residual. */
 struct found {
 	double depth, width, shift, share, left;
 };
@@ -199,7 +200,7 @@ static double middle(const struct found *f, int n, int i, int which)
 	return stats_median(m, v);
 }
 
-/* All points, in the light of the face, or as if it came evenly from everywhere; returns how much is explained, median. */
+/* Fits all points in the light of the face, or (even) under an even sky; returns the median share of variance explained. */
 static double measure_all(struct found *f, struct wrinkle_line *line, bool even, const struct wrinkles *w, const float *change,
                           const struct wrinkle_ground *g, const struct wrinkle_grooves *t)
 {
@@ -221,7 +222,7 @@ void wrinkle_measure(struct wrinkle_line *line, const struct wrinkles *w, const 
 {
 	struct found *f = mem_new((size_t)line->n + 1, sizeof *f);
 	double *width = mem_new((size_t)line->n + 1, sizeof *width), share = measure_all(f, line, false, w, change, g, t);
-	if (share < explained)  // the nose or a brow may stand before the lamp
+	if (share < explained)  // the nose or a brow may shade the line
 		share = measure_all(f, line, true, w, change, g, t);
 	int deep = 0;
 	for (int i = 0; i < line->n; i++) {
@@ -254,7 +255,7 @@ void wrinkle_follow(struct wrinkle_line *line, int k, const struct wrinkles *w, 
 			double left, shift = 0.25 * p->width * step;
 			profile(got, line, i, shift, change, g);
 			double d = fit_depth(&left, got, &sight, t, p->width, p->width);
-			left += step ? 1e-5 * SAMPLES : 0;  // a faint line stays where it was
+			left += step ? 1e-5 * SAMPLES : 0;  // a faint line keeps its place
 			if (left < best) {
 				best = left;
 				line->depth[(long)k * line->n + i] = (float)d;

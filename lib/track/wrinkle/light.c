@@ -1,4 +1,4 @@
-/* The light that the neutral face is seen in: from its shading, and from that of the lines themselves. */
+/* Estimates the light of the neutral face from its shading and from that of the lines. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,12 +12,12 @@
 
 enum { ROUNDS = 6, SHARES = 7 };
 
-static const double usual_ambient = 0.5, usual_pull = 0.001;  // of the mean light; weight of a point
+static const double usual_ambient = 0.5, usual_pull = 0.001;  // prior of the ambient light, of the mean light; its weight, of a point
 static const double least_share = 0.1;  // of the light: some of it has no direction, even in a dark room with one lamp
 
 void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin, const struct wrinkle_ground *g)
 {
-	// light = albedo (ambient + from . n), one albedo for all; what differs much (brows, moles, gloss) counts little
+	// Least squares of light = albedo (ambient + from . n), one albedo for all; Cauchy weights against brows, moles, gloss.
 	double x[4] = { 1, 0, 0, 0 }, (*n)[3] = mem_array((size_t)g->n + 1, sizeof *n), *v = mem_array((size_t)g->n + 1, sizeof *v);
 	double *off = mem_array((size_t)g->n + 1, sizeof *off), mean = 0;
 	int m = 0;
@@ -45,7 +45,7 @@ void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin
 			}
 		}
 		scale = fmax(0.02, 1.5 * stats_median(m, off));
-		// a face seen from the front does not tell a lamp before it from light everywhere: half and half, as in a room
+		// A frontal face cannot distinguish a lamp before it from ambient light: a prior of half, as in a room.
 		H[0] += usual_pull * m;
 		b[0] += usual_pull * usual_ambient * m;
 		for (int j = 1; j < 4; j++)
@@ -53,7 +53,7 @@ void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin
 		if (chol_solve(4, 4, H, b))
 			memcpy(x, b, sizeof x);
 	}
-	// a sky lights every groove
+	// some light is ambient in any case
 	double all = x[0] + vec_norm(x + 1);
 	w->ambient = fmax(x[0], least_share * fmax(all, 0.1));
 	memcpy(w->from, x + 1, sizeof w->from);
@@ -62,7 +62,7 @@ void wrinkle_light(struct wrinkles *w, const float *neutral, const uint8_t *skin
 	free(off);
 }
 
-/* Of the light that falls straight on the skin, the share that comes from everywhere. */
+/* Sets the ambient share of the light that falls along a normal, keeping its sum. */
 static void divide(struct wrinkles *w, const struct wrinkles *as, const double normal[3], double share)
 {
 	double straight = vec_dot(as->from, normal), whole = as->ambient + fmax(0, straight);

@@ -7,7 +7,7 @@
 #include "math/vec.h"
 #include "track/wrinkle/impl.h"
 
-static const double seed = 1.5;     // a line holds a place that stands out so many times
+static const double seed = 1.5;     // a line contains a place of so many times the threshold
 static const double step_mm = 1;    // between control points
 static const double turn = 0.5;     // cosine of the sharpest turn from one place to the next
 
@@ -27,7 +27,7 @@ static void chain_add(struct chain *c, const struct wrinkle_ridges *r, long i)
 	c->half[c->n++] = r->half[i];
 }
 
-/* No other line begins or runs within w of this place. */
+/* True when no other line begins or runs within w of this place. */
 static void claim(uint8_t *taken, const struct wrinkle_ridges *r, long i)
 {
 	int x = (int)(i % r->width), y = (int)(i / r->width), reach = (int)ceilf(1.5f * r->half[i]);
@@ -141,7 +141,7 @@ static bool set_across(struct wrinkle_point *p, const double normal[3], const st
 	return mm > 0 && isfinite(mm);
 }
 
-/* Mean place and width over a mm on each side: what a place alone says is good to a part of a px. */
+/* Mean place and width over a mm on each side, to reduce noise. */
 static void smooth(double px[2], double *half, const struct chain *c, double i, double reach)
 {
 	double sum = 0;

@@ -1,4 +1,4 @@
-/* Multi-scale ridges (Lindeberg 1998), their place to a part of a texel (Steger 1998). */
+/* Multi-scale ridges (Lindeberg 1998), located to a fraction of a texel (Steger 1998). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
  * is 2 / 3^1.5 of c. */
 static const double best_sigma = M_SQRT2, best_rise = 0.3849;
 static const double lineness = 0.6;  // curvature along a line against that across
-static const double least_px = 0.75; // a narrower line is the camera's noise
+static const double least_px = 0.75; // narrower lines are camera noise
 
 /* Larger eigenvalue of the second derivatives, its direction, the other one. */
 static void across(float *most, float *least, float n[2], const float d[5])
@@ -32,7 +32,7 @@ static void across(float *most, float *least, float n[2], const float d[5])
 	n[1] = len > 0 ? y / len : 0;
 }
 
-/* What rises where there is no line: median and spread over the skin. */
+/* Threshold of the response: median over the skin plus `significance` times the median absolute deviation. */
 static double usual(const float (*d)[5], const uint8_t *skin, long area, double sigma2, double significance)
 {
 	double *room = mem_array((size_t)area / 7 + 1, sizeof *room), *copy = mem_array((size_t)area / 7 + 1, sizeof *copy);
@@ -50,8 +50,8 @@ static double usual(const float (*d)[5], const uint8_t *skin, long area, double 
 	return out;
 }
 
-/* How strongly the neutral skin itself is patterned thereabouts at that scale: hairs, lashes, moles. Their frames are never
- * brought onto each other well enough, so no line is told from them that is not stronger. */
+/* Strength of the neutral skin's own pattern (hairs, lashes, moles) nearby at that scale. Frames are never registered well
+ * enough to cancel it, so a line must be stronger. */
 static float *pattern(const float (*d)[5], long area, int width, int height, double sigma, double px_per_mm)
 {
 	float *t = mem_array((size_t)area, sizeof *t);

@@ -1,4 +1,4 @@
-/* Frames brought to the chart: between the points that were followed the skin moves as they do (moving least squares). */
+/* Warps frames to the chart: the motion between the tracked points is interpolated by moving least squares. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,7 +13,7 @@ struct motion {
 	float (*shift)[3];  // x, y, weight
 };
 
-/* Affine motion of the points round p, at p. Weights fall to e^-1/2 at `reach`. */
+/* Affine fit, at p, to the motion of the points round it; Gaussian weights, e^-1/2 at `reach`. */
 static void motion_at(float out[3], const struct wrinkle_ground *g, const struct wrinkle_frame *f, const double p[2], double reach)
 {
 	double H[9] = { 0 }, b[2][3] = { { 0 } }, total = 0;
@@ -62,7 +62,7 @@ static void shift_at(float out[3], const struct motion *m, double x, double y)
 		out[k] = (1 - v) * ((1 - u) * s[0][k] + u * s[1][k]) + v * ((1 - u) * s[m->nx][k] + u * s[m->nx + 1][k]);
 }
 
-/* Keys' cubic (a = -1/2): a frame moved by half a px is not blurred against one that was not. */
+/* Keys' cubic convolution (a = -1/2): shifting by half a px blurs hardly more than not shifting. */
 static void cubic(float w[4], float t)
 {
 	w[0] = ((-0.5f * t + 1) * t - 0.5f) * t;
@@ -101,7 +101,7 @@ void wrinkle_unwrap(float *log_light, uint8_t *sure, const struct wrinkle_ground
 			double u = x + 0.5 + s[0], v = y + 0.5 + s[1];
 			long at = (long)y * g->width + x;
 			sure[at] = s[2] > 0.05f && u > 2 && v > 2 && u < g->width - 2 && v < g->height - 2 ? 255 : 0;
-			// Half of 8 bits' first step: black has a logarithm.
+			// Offset of half an 8-bit step: the logarithm of black is finite.
 			log_light[at] = sure[at] ? logf(fmaxf(light_at(g, f->grey, linear, u, v), 0) + 1e-3f) : 0;
 		}
 	free(m.shift);

@@ -29,7 +29,7 @@ void wrinkles_free(struct wrinkles *w)
 	*w = (struct wrinkles){ 0 };
 }
 
-/* Log of a frame's light against the neutral one's. What no frame shows takes what is beside it: no edge to find there. */
+/* Log ratio of a frame's light to the neutral one's. Gaps are filled from their surroundings, so that they give no edges. */
 static void change_of(float *change, uint8_t *skin, const float *neutral, const uint8_t *known, const struct wrinkle_ground *g,
                       const struct wrinkle_frame *frame)
 {
@@ -64,7 +64,7 @@ static void follow(struct wrinkle_pose *p, const struct wrinkles *w, const struc
 	free(skin);
 }
 
-/* The lines that are any: the others are dropped. */
+/* Drops lines without points. */
 static void keep(struct wrinkle_pose *p)
 {
 	int n = 0;
@@ -82,7 +82,7 @@ static void keep(struct wrinkle_pose *p)
 	p->n = n;
 }
 
-/* The neutral frame and the peak, brought to the chart. */
+/* The neutral frame, and the change to the peak, on the chart. */
 struct faces {
 	float *neutral, *change;
 	uint8_t *known, *skin;
