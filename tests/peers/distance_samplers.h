@@ -1,5 +1,5 @@
 /* distance_samplers: the three sampling methods of the skin paper (section 4.4), which distance_band() is compared with.
- * Frames, units, out, reach and cost: as image/distance/distance.h says.
+ * Frames, units, out, reach and cost are those of distance_band(); results do not depend on the number of threads.
  */
 #ifndef TESTS_DISTANCE_SAMPLERS_H
 #define TESTS_DISTANCE_SAMPLERS_H

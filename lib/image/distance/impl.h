@@ -1,4 +1,4 @@
-/* distance_impl: what the two passes of the distance field in the band share. */
+/* What the two passes of the distance field share. */
 #ifndef IMAGE_DISTANCE_IMPL_H
 #define IMAGE_DISTANCE_IMPL_H
 #include <stddef.h>
@@ -32,7 +32,7 @@ static inline const uint8_t *distance_has(const struct distance_field *f, int y)
 	return f->has + (size_t)y * (size_t)f->blocks;
 }
 
-/* A group of them; no byte's place in the word is asked about. */
+/* A group of them as one word; the order of its bytes does not matter. */
 static inline uint64_t distance_group(const uint8_t *has)
 {
 	uint64_t word;
@@ -46,9 +46,10 @@ static inline size_t distance_at(const struct distance_field *f, int block, int 
 	return (size_t)(y - f->y0) * (size_t)f->pitch + (size_t)(block - f->first + f->wide);
 }
 
-/* Where the edge runs between four texels of a line, the middle two of which are skin and not: distance from the third
- * one's centre towards skin. A straight edge that leaves the outer two whole lies where their sum says, whatever its
- * slope; a steeper one is a long ramp, and lies where one half is crossed. */
+/* Sub-pixel place of the edge among the coverages of four texels of a line; of the middle two the first is skin, the second not.
+ * Returns the distance from the third texel's centre towards skin. Where the outer two are wholly skin and wholly not, the sum of
+ * the four gives the place of a straight edge of any slope; otherwise the edge is a long ramp, and lies where coverage crosses
+ * one half. */
 __attribute__((always_inline)) static inline float distance_crossing(float beyond, float skin, float other, float behind)
 {
 	float drop = skin - other, ramp = (0.5f - other) / (drop > 1e-6f ? drop : 1);
@@ -57,10 +58,10 @@ __attribute__((always_inline)) static inline float distance_crossing(float beyon
 	return t > 1 ? 1 : t;
 }
 
-/* columns.c: v and edge of a group's columns. Returns the texture reads. */
+/* columns.c: the first pass: v and edge of a group's columns. Returns the texture reads. */
 double distance_columns(struct distance_field *field, int group);
 
-/* rows.c: every texel of a row that has an edge near it. nearest: null, or as distance_band()'s. Returns the
+/* rows.c: the second pass: every texel of a row that has an edge near it. nearest: null, or as distance_band()'s. Returns the
  * texture reads. */
 double distance_row(const struct distance_field *field, int y, double reach, float *out, float (*nearest)[2]);
 
@@ -79,7 +80,7 @@ struct distance_span {
  * each side, of all blocks. */
 int distance_blocks(const struct distance_span *span, int from, int to);
 
-/* n texels of a row that are far from all skin: the globe's; all of them, where nothing else is among them. */
+/* Writes INFINITY to those of n texels that are globe, far from all skin. all: every one of them is globe. */
 void distance_far(float *out, const uint8_t *material, int n, bool all);
 
 /* world.c: world distance between texel (x, y) and the skin at `off` px from it, d2 px squared away (eq. 4.21). */

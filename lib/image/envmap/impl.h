@@ -1,21 +1,21 @@
-/* envmap_impl: what the files of the environment map share. */
+/* What the files of envmap share. */
 #ifndef IMAGE_ENVMAP_IMPL_H
 #define IMAGE_ENVMAP_IMPL_H
 #include "image/envmap/envmap.h"
 
-/* Direction of a place in the map, u and v 0..1. */
+/* latlong.c: unit direction of a place in the map, u (across) and v (down) 0..1. */
 void envmap_dir(double dir[3], double u, double v);
 
-/* The map averaged down to that many rows at most. image_free. */
+/* latlong.c: the map averaged down to `rows` rows at most. image_free. */
 struct image envmap_coarse(const struct image *map, int rows);
 
-/* Sharp enough for the light that falls on a surface. */
+/* Rows of the coarse map that irradiance and lights are computed from. */
 enum { ENVMAP_ROWS = 64 };
 
-/* Of a pixel in row y. */
+/* latlong.c: solid angle of a pixel in row y, sr. */
 double envmap_solid_angle(const struct image *map, int y);
 
-/* Fills sharp and rough from the map. */
+/* at.c: fills sharp, rough and bend from the map. */
 void envmap_unfold(struct envmap *env);
 
 #endif

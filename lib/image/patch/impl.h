@@ -1,4 +1,4 @@
-/* patch_impl: what the files of patch share. */
+/* What the files of patch share. */
 #ifndef IMAGE_PATCH_IMPL_H
 #define IMAGE_PATCH_IMPL_H
 #include "image/patch/patch.h"
@@ -8,7 +8,8 @@ enum { P = 6, LANES = 16 };  // x, y, and A row by row
 /* One patch at one level. */
 struct template {
 	bool usable;
-	float *rows;        // [P + 2][padded]: weighted derivatives less template and constant; weighted template less its mean; weight
+	float *rows;        // [P + 2][padded]: weighted derivatives made orthogonal to template and constant; weighted template less
+	                    // its mean; weight
 	double H[P][P];     // of the derivatives
 	double weight, energy;  // sum of the weights; of weight (T - mean)^2
 };
@@ -23,10 +24,10 @@ struct patch_set {
 /* Rows of scratch live on the stack: patches are small. */
 enum { RADIUS_MAX = 24, ROOM = (2 * RADIUS_MAX + 1) * (2 * RADIUS_MAX + 1) + LANES };
 
-/* The level's brightness at m[0] + m[2] dx + m[3] dy, m[1] + m[4] dx + m[5] dy, bilinear. */
+/* Samples a level's brightness at (m[0] + m[2] dx + m[3] dy, m[1] + m[4] dx + m[5] dy), bilinear, for n offsets. */
 void patch_sample(float *restrict out, const float *restrict px, int stride, int n, const float *restrict dx, const float *restrict dy, const float m[6]);
 
-/* Place of the warp in index coordinates of a level; false when a corner, `reach` away, is outside. */
+/* The warp in index coordinates of a level; false when a corner of the patch, `reach` px from its centre, is outside. */
 bool patch_place(float m[6], const struct scales *picture, int level, const struct patch_warp *warp, double reach);
 
 #endif

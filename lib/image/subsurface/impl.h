@@ -1,4 +1,4 @@
-/* One level of subsurface.c's pyramid: the picture, halved so many times, and what is blurred there. */
+/* What the files of subsurface share: the levels of the pyramid, scratch memory, and one line of a Gaussian. */
 #ifndef IMAGE_SUBSURFACE_IMPL_H
 #define IMAGE_SUBSURFACE_IMPL_H
 #include <stdbool.h>
@@ -7,15 +7,15 @@
 
 enum { SUBSURFACE_LEVELS = 7, SUBSURFACE_RADIUS = 40, SUBSURFACE_PART = 32, SUBSURFACE_ROUNDING = 16 };
 
-/* One Gaussian at its level: taps -radius .. radius, whose weights w sum to 1; with v its variance in mm², w^1/4 and w^1/4 / 8v;
- * what each channel carries of it, the first `channels` of them. */
+/* One Gaussian at its level: taps -radius .. radius with weights w that sum to 1, stored as root = w^1/4 and fall = w^1/4 / 8v,
+ * v its variance in mm²; weight: its share in each of the first `channels` channels. */
 struct subsurface_gauss {
 	int radius, channels;
 	float root[2 * SUBSURFACE_RADIUS + 1], fall[2 * SUBSURFACE_RADIUS + 1], weight[3];
 };
 
-/* n texels and the taps [from, to] of each, a step apart, in so many channels: out = gain times their mean, or that more. n is a
- * multiple of SUBSURFACE_ROUNDING; what is beyond the picture has depth 0. */
+/* One line: for each of n texels out = gain times the weighted mean of the taps [from, to], `step` apart; added to out where
+ * `adds`. n is a multiple of SUBSURFACE_ROUNDING; what is beyond the picture has depth 0. */
 struct subsurface_line {
 	const float *in[3], *z;
 	float *out[3], gain[3];
@@ -24,7 +24,8 @@ struct subsurface_line {
 };
 void subsurface_line(const struct subsurface_line *line, const struct subsurface_gauss *gauss);
 
-/* Planes of `stride` numbers a row; where it has Gaussians, `side` texels of nothing lie on either hand of each row. */
+/* One level: the picture halved so many times, and the Gaussians that are applied there. Planes have `stride` numbers a row; where
+ * the level has Gaussians, `side` empty texels border each row on either side. */
 struct subsurface_level {
 	int width, height, stride, side;
 	double texels_per_mm;
@@ -32,48 +33,48 @@ struct subsurface_level {
 	float *own[4];        // the same to write; null at a top without Gaussians, which is the caller's picture
 	unsigned char *even;  // [height][parts] 1: what SUBSURFACE_PART texels of a row were made of is one surface; null at the top
 	int parts;
-	float plain[3];  // what each channel carries of the level's light as it is
+	float plain[3];  // share of each channel that the level adds without blur
 	int n;
 	struct subsurface_gauss gauss[SUBSURFACE_MAX];
 };
 
-/* A Gaussian of so much variance, texels², at a level of so many texels a mm. */
+/* Makes a Gaussian of that variance (texels²) at a level of that resolution. */
 void subsurface_gauss_make(struct subsurface_gauss *gauss, double variance, double texels_per_mm, const double weight[3]);
 
-/* Sets width, height, stride and side of a level that has its Gaussians; numbers of the room that its planes take. */
+/* Sets width, height, stride, side and parts of a level whose Gaussians are made. Returns how many numbers its planes take. */
 size_t subsurface_level_size(struct subsurface_level *level, int width, int height, bool top);
 
-/* Gives planes to level[0 .. deepest] out of the room and fills them: the picture itself, and below each texel the mean of the
- * frontmost of four. */
+/* Gives planes to level[0 .. deepest] out of the room and copies the picture into level 0 where that has Gaussians; without them
+ * level 0 reads the caller's picture. subsurface_level_halve fills the others. */
 void subsurface_level_fill(struct subsurface_level *level, int deepest, const struct subsurface_picture *picture, struct subsurface_room *room);
 
-/* Halves the first into all the others. */
+/* Fills levels 1 .. deepest: each texel is the mean of the frontmost of four above it. */
 void subsurface_level_halve(const struct subsurface_level *level, int deepest);
 
-/* Nothing on either hand of row y. */
+/* Clears the borders of row y. */
 void subsurface_level_sides(const struct subsurface_level *level, int y);
 
-/* n, to whole vectors. */
+/* n rounded up to whole vectors. */
 static inline size_t subsurface_rounded(size_t n)
 {
 	return (n + SUBSURFACE_ROUNDING - 1) / SUBSURFACE_ROUNDING * SUBSURFACE_ROUNDING;
 }
 
-/* Asks for n numbers to be at hand when they are wanted. */
+/* Prefetches n numbers. */
 static inline void subsurface_ahead(const float *px, int n)
 {
 	for (int i = 0; i < n; i += 16)
 		__builtin_prefetch(px + i);
 }
 
-/* Room for at least so many, all of it free. */
+/* Makes room for at least n numbers, and frees all of it for subsurface_room_take. */
 void subsurface_room_make(struct subsurface_room *room, size_t n);
 
 /* The next n numbers of the room: multiples of 16 apart. */
 float *subsurface_room_take(struct subsurface_room *room, size_t n);
 
-/* Writes the picture: what stays where it is, and every level's Gaussians, interpolated up from level to level. room: of
- * subsurface_sum_size() numbers for each thread. */
+/* Writes the picture: the unblurred share `stays`, and every level's Gaussians, interpolated up from level to level.
+ * room: with subsurface_sum_size() numbers left for each thread. */
 void subsurface_sum(const struct subsurface_level *level, int deepest, const struct subsurface_picture *picture, const double stays[3],
                     struct subsurface_room *room);
 size_t subsurface_sum_size(const struct subsurface_level *level, int deepest);

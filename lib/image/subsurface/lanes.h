@@ -1,4 +1,4 @@
-/* What subsurface*.c do in vectors. */
+/* Vectors of floats for the files of subsurface. */
 #ifndef IMAGE_SUBSURFACE_LANES_H
 #define IMAGE_SUBSURFACE_LANES_H
 #include <stdbool.h>

@@ -1,7 +1,8 @@
-/* subsurface: light that enters skin and leaves it some way off, spread on the screen (after Jimenez et al. 2015, whose
- * separable kernel is the comparison): each channel's diffusion profile as a sum of Gaussians (d'Eon and Luebke 2007), every
- * Gaussian at the level of a pyramid where a few taps do. Light crosses no gap in depth: with distance d in the picture and
- * dz in depth a Gaussian of variance v weighs exp(-(d² + dz²) / 2v), which on a slanted plane is the distance along it.
+/* subsurface: screen-space subsurface scattering: the irradiance of drawn skin blurred by its diffusion profile. Each channel's
+ * profile is a sum of Gaussians (d'Eon and Luebke 2007); each Gaussian is applied at the pyramid level where a few taps suffice.
+ * Light crosses no gap in depth: with distance d in the picture and dz in depth a Gaussian of variance v has the weight
+ * exp(-(d² + dz²) / 2v), which on a slanted plane is the distance along it. The comparison, the separable kernel of Jimenez et
+ * al. 2015, is in tests/peers.
  */
 #ifndef IMAGE_SUBSURFACE_SUBSURFACE_H
 #define IMAGE_SUBSURFACE_SUBSURFACE_H
@@ -9,7 +10,7 @@
 
 enum { SUBSURFACE_MAX = 8 };
 
-/* Radially symmetric profile: of each channel sum of weight times a normalised Gaussian; weights sum to 1. */
+/* A radially symmetric diffusion profile: for each channel a sum of weighted normalised Gaussians; the weights sum to 1. */
 struct subsurface_profile {
 	int n;
 	double variance[SUBSURFACE_MAX];  // mm², along one axis, ascending
@@ -24,18 +25,18 @@ struct subsurface_profile subsurface_skin(double red_mm);
 struct subsurface_picture {
 	int width, height;
 	float *rgb[3];
-	const float *depth;  // mm; 0 where there is no skin: it gives and takes nothing
+	const float *depth;  // mm; 0 where there is no skin: such pixels neither give nor take light
 	double px_per_mm;
 };
 
-/* Room to work in, kept from frame to frame: { 0 } at first. */
+/* Scratch memory, kept from frame to frame: { 0 } at first; owned by the caller. */
 struct subsurface_room {
 	float *px;
 	size_t n, used;
 };
 void subsurface_room_free(struct subsurface_room *room);
 
-/* Spreads the light in place. The same bits on any number of threads. */
+/* Blurs picture->rgb in place. The result is the same to the bit on any number of threads. */
 void subsurface_spread(const struct subsurface_picture *picture, const struct subsurface_profile *profile, struct subsurface_room *room);
 
 #endif

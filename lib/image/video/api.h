@@ -1,6 +1,6 @@
-/* video_api: the functions of libavformat and its kin that reader and writer call, loaded when the first video is
- * opened. They bring some hundred libraries with them, which a program without a video has no use for: finding and
- * relocating these took longer than its work on a small photograph.
+/* api: the functions of libavformat, libavcodec, libswscale and libavutil that reader and writer call, loaded with dlopen when
+ * the first video is opened. Linking them would load some hundred libraries into every program, which took longer than the work
+ * on a small photograph.
  */
 #ifndef IMAGE_VIDEO_API_H
 #define IMAGE_VIDEO_API_H
@@ -42,8 +42,8 @@ struct video_api {
 /* Null until video_api_load has succeeded; not changed after it. */
 extern struct video_api av;
 
-/* The libraries of the version that was compiled against; once in a program, from any thread. False, err set (which
- * library is missing), every time when they cannot be loaded. */
+/* Loads the libraries, of the version that was compiled against; once in a program, from any thread. False, err set (which
+ * library is missing), at every call when they cannot be loaded. */
 bool video_api_load(struct err *err);
 
 #endif

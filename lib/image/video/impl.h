@@ -1,4 +1,4 @@
-/* video_impl: what the files of the reader share. */
+/* What the files of the reader share. */
 #ifndef IMAGE_VIDEO_IMPL_H
 #define IMAGE_VIDEO_IMPL_H
 #include "image/video/video.h"
@@ -12,7 +12,7 @@ struct video_source {
 	double first;             // seconds of the earliest frame, in the file's own time
 };
 
-/* Opens and chooses the stream. */
+/* Opens the file and chooses its stream of pictures. False, err set, when there is none. */
 bool video_source_open(struct video_source *source, const char *path, struct err *err);
 bool video_source_decode(struct video_source *source, const char *path, int threads, struct err *err);
 void video_source_close(struct video_source *source);

@@ -1,6 +1,6 @@
-/* video: frames out of a file and into one, through libavformat and libavcodec.
- * A file is a stranger's: playlists and links to other files are not followed, size and length are bounded, what is
- * broken is left out and counted. Decoding runs in a thread of its own, some frames ahead of the reader.
+/* video: reads and writes video files through libavformat and libavcodec.
+ * Files are not trusted: playlists and links to other files are not followed, size and length are bounded, broken frames are
+ * left out and counted. Decoding runs in a thread of its own, some frames ahead of the reader.
  * Image  px, upright: a rotation that the file asks for has been applied; centre of the first pixel (0.5, 0.5).
  */
 #ifndef IMAGE_VIDEO_VIDEO_H
@@ -30,7 +30,7 @@ struct video_info {
 	double jitter;       // largest deviation of an interval from the median, as a share of it
 	bool variable;       // more than one interval in a hundred is off by more than a fifth
 	long frames;         // that the file holds
-	long promised;       // that its header speaks of; more than `frames` when it was cut off; 0: it does not say
+	long promised;       // frames that its header states; more than `frames` when the file was cut off; 0: not stated
 	char codec[32];
 };
 
@@ -40,30 +40,31 @@ struct video_frame {
 	int width, height;
 	const uint8_t *luma; // [height][luma_stride], the decoder's own plane
 	int luma_stride;
-	void *hold;          // what keeps the planes alive
+	void *hold;          // the decoder's frame, which owns the planes
 };
 
 struct video;
 
-/* Reads the whole file's packets once, without decoding, for info. Null, err set ("path: rule"), when there is no
- * picture in it, it is no video, or it is beyond the limits. */
+/* Opens a video; reads all packets of the file once, without decoding, to fill info. video_close.
+ * Null, err set ("path: rule"), when it is no video, holds no picture, or is beyond the limits. */
 struct video *video_open(struct video_info *info, const char *path, const struct video_conf *conf, struct err *err);
 
-/* The next frame; *got = false at the end. video_frame_free in any case; frames may be held, and freed in any order and
+/* Reads the next frame; *got = false at the end. video_frame_free in any case: frames may be kept, and freed in any order and
  * from any thread, also after video_close. False, err set, when decoding cannot go on. */
 bool video_next(struct video_frame *frame, bool *got, struct video *video, struct err *err);
 void video_frame_free(struct video_frame *frame);
 
-/* Pictures so far that were damaged and left out. */
+/* Number of frames so far that were damaged and left out. */
 long video_damaged(const struct video *video);
 
 /* Null is accepted; may be called before the end. */
 void video_close(struct video *video);
 
-/* sRGB of the pixels x0 <= x < x1, y0 <= y < y1, at their place in rgb[height][stride]; the rest is not touched. */
+/* Converts the pixels x0 <= x < x1, y0 <= y < y1 to 8-bit sRGB at their place in rgb [height][stride] bytes; the rest is not
+ * touched. */
 void video_frame_rgb(uint8_t *rgb, int stride, const struct video_frame *frame, int x0, int y0, int x1, int y1);
 
-/* H.264 in MP4. The bytes depend on the pictures, their times and the settings alone. */
+/* Settings of a file that is written: H.264 in MP4. Its bytes depend on the pictures, their times and the settings alone. */
 struct video_writer_conf {
 	int width, height;   // px; an odd one is filled up with its last row or column
 	double fps;
@@ -73,13 +74,13 @@ struct video_writer_conf {
 };
 struct video_writer;
 
-/* The file appears, whole, at video_writer_close. Null, err set, when it cannot be made. */
+/* Starts a file beside `path`, which video_writer_close renames. Null, err set, when it cannot be made. */
 struct video_writer *video_writer_open(const char *path, const struct video_writer_conf *conf, struct err *err);
 
-/* rgb[height][width][3], sRGB. time: seconds, growing; a multiple of 1 / 90000 s is kept exactly. */
+/* Adds a frame. rgb: [height][width][3], 8-bit sRGB; time: seconds, increasing; multiples of 1 / 90000 s are kept exactly. */
 bool video_writer_put(struct video_writer *writer, const uint8_t *rgb, double time, struct err *err);
 
-/* keep false: gives up what was written. Frees writer in any case; null is accepted. */
+/* Ends the file. keep: false discards what was written. Frees the writer in any case; null is accepted. */
 bool video_writer_close(struct video_writer *writer, bool keep, struct err *err);
 
 #endif
