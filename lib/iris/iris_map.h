@@ -1,6 +1,8 @@
-/* iris_map: where in a photograph each point of the iris plane is seen through the cornea, and the other way round.
- * Eye frame; the iris plane is z = depth, mm. Iris maps are square, centred on the axis: texel (col, row) is at
- * x = (col + ½) 2 extent / size − extent, y likewise, row 0 on −y.
+/* iris_map: the correspondence between photo pixels and points of the iris plane, refracted by the cornea (iris paper,
+ * section 3).
+ * Frame  eye: origin at the corneal apex, z into the eye, mm; the iris plane is z = depth.
+ * Maps   square, centred on the optical axis, half-width `extent` mm: texel (col, row) lies at
+ *        x = (col + ½) 2 extent / size − extent, y likewise; row 0 is at −y.
  */
 #ifndef IRIS_IRIS_MAP_H
 #define IRIS_IRIS_MAP_H
@@ -13,15 +15,17 @@ enum iris_method {
 	IRIS_ALGORITHM1,  // the paper's algorithm 1 for each texel
 };
 
-/* One photograph's view of the iris plane. rim is no bound of the cornea here: paths that leave beyond the limbus
- * are followed, so that everything stays smooth; `rim` of the result says where they left. */
+/* One photograph's view of the iris plane. The cornea has no rim here: paths that leave it beyond the limbus are followed too, so
+ * that the map stays smooth; the results' `rim` is the distance from the axis at which they left. */
 struct iris_view {
 	const struct fit *fit;
 	struct cornea cornea;   // without a rim
 	double depth;           // of the iris plane, mm
-	double a[2][3];         // this photograph's eye-frame point of the map's (x, y): a (x, y, 1); identity when alone
+	double a[2][3];         // affine map from the map frame to this photograph's eye frame: a (x, y, 1), mm; identity for one
+	                        // photograph alone
 };
 
+/* fit: must outlive the view. */
 struct iris_view iris_view_new(const struct fit *fit, const struct eye *eye);
 
 struct iris_map_conf {
@@ -38,23 +42,26 @@ struct iris_map {
 	float *rim;    // [size][size] mm from the axis at which the path leaves the cornea
 };
 
-/* Point of the iris plane (this photograph's own frame) that a photo pixel sees, and where its ray enters the cornea,
- * mm from the axis. False when the ray misses. rim may be null. */
+/* From a photo pixel to the iris plane: Snell's law at the cornea.
+ * P    out: the point (x, y) in this photograph's own eye frame, mm
+ * rim  out: distance from the axis at which the ray enters the cornea, mm; may be null
+ * False when the ray misses the cornea or the plane. */
 bool iris_see(double P[2], double *rim, const struct iris_view *view, const double px[2]);
 
-/* Photo pixel in which a point (this photograph's own frame) is seen. rim may be null. */
+/* From a point P of the iris plane (this photograph's own frame) to the photo pixel that shows it: the exact light path. rim as
+ * above. False when no path leads to the camera. */
 bool iris_find(double px[2], double *rim, const struct iris_view *view, const double P[2]);
 
-/* The inverse for a whole map, texels within `radius` mm of the axis. iris_map_free. */
+/* iris_find for a whole map of size x size texels, those within `radius` mm of the axis. iris_map_free. */
 struct iris_map iris_map_new(const struct iris_view *view, int size, double extent, double radius,
                              const struct iris_map_conf *conf);
 void iris_map_free(struct iris_map *map);
 
-/* X, Y (map frame) for each pixel of the photograph, exact; NAN where the ray misses the cornea or meets the plane
- * beyond `radius`, or further from the axis at the cornea than `rim`. Two channels; image_free. */
+/* iris_see for each pixel of the photograph: channels X and Y, mm, map frame. NAN where the ray misses the cornea, meets the iris
+ * plane beyond `radius`, or enters the cornea farther than `rim` from the axis (mm). image_free. */
 struct image iris_map_forward(const struct iris_view *view, double radius, double rim);
 
-/* Photo pixels a mm at the middle of the map: the geometric mean over both directions. */
+/* Resolution at the middle of the map, photo pixels a mm: the geometric mean over both directions. */
 double iris_view_px_per_mm(const struct iris_view *view);
 
 #endif

@@ -9,9 +9,10 @@
 #include "base/err.h"
 #include "optics/refraction/refraction.h"
 
+/* Writes it beside `path`, then renames it. made_by: stage_made_by(). False, err set, when it cannot. */
 bool refraction_save(const struct refraction *f, const char *path, const char *made_by, struct err *err);
 
-/* f: refraction_free. False, err set, for a file that is no refraction function. */
+/* Reads one. f: overwritten; refraction_free. False, err set, for a file that is no refraction function. */
 bool refraction_load(struct refraction *f, const char *path, struct err *err);
 
 #endif

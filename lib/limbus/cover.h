@@ -1,17 +1,19 @@
-/* limbus_cover: which part of the limbus is in sight. */
+/* cover: which arcs of the limbus are visible, and which lie against skin. */
 #ifndef LIMBUS_COVER_H
 #define LIMBUS_COVER_H
 #include "limbus/rim.h"
 
-// Arcs less white outside than this share of the ring's whiter part lie against skin.
+// Arcs whose outside is less white than this share of the ring's whiter part lie against skin.
 static const double RIM_WHITE = 0.35;
 
-/* Tint of what lies outside each arc, against the whiter arcs of the ring; 1 where tint is null. */
+/* Whiteness of what lies outside each arc, relative to the whiter arcs of the ring.
+ * white  out
+ * tint   pyramid.tint; null: all are 1 */
 void rim_tint(double white[ARCS], const struct ring *ring, const struct grey *tint);
 
-/* Sets rim->seen and rim->coverage, the share of the ring that shows iris against sclera: brighter outside than inside
- * by a good part of what is typical, or used; short gaps (a streak, a vein, a lash) are bridged, lone arcs are not
- * believed. */
+/* Sets rim->seen and rim->coverage, the share of the ring that shows iris against sclera. An arc is seen where it is used or is
+ * brighter outside than inside by a good part of the typical step. Short gaps (a streak, a vein, a lash) are closed, isolated arcs
+ * removed. width, height: of the photograph, px. */
 void rim_cover(struct rim *rim, const struct grey *grey, const struct grey *tint, int width, int height);
 
 #endif

@@ -1,9 +1,9 @@
-/* limbus_edge: brightness across an ellipse, and where a blurred step lies in it.
+/* edge: brightness profiles across an ellipse, and the sub-pixel place of a blurred step in each.
  * The limbus is a ramp: sclera over iris with an opacity that rises across it. In linear light
  *     I(s) = (1 - A) i0 exp(k s) + A s0 (1 + m max(s - d - 2 w, 0)),   A = Phi((s - d) / w)
  * s along the outward normal, d the middle of the ramp (opacity one half), w its width. The iris darkens towards its
- * root (k); the sclera is shaded (m) from where the ramp ends, because the surface turns in the sulcus behind it. A
- * plain half-way crossing would lie up to 0.05 mm off.
+ * root (k); the sclera is shaded (m) from where the ramp ends, because the surface turns in the sulcus behind it. The
+ * half-height crossing of the profile alone is biased by up to 0.05 mm.
  */
 #ifndef LIMBUS_EDGE_H
 #define LIMBUS_EDGE_H
@@ -22,7 +22,10 @@ struct ring {
 	float *v;              // [ARCS][m]; owned
 };
 
-/* lo < 0 < hi px; each sample is the mean of at most `across` across the arc. ring_free. */
+/* Samples the profiles of an ellipse from lo to hi px (lo < 0 < hi) along the outward normal, every `step` px.
+ * across         each sample is the mean of at most so many places along the arc
+ * width, height  of the photograph, px
+ * ring_free. */
 struct ring ring_sample(const struct grey *grey, const struct ellipse *e, double lo, double hi, double step,
                         int across, int width, int height);
 void ring_free(struct ring *ring);
@@ -45,15 +48,15 @@ enum { EDGE_CANDIDATES = 4 };
 int edge_candidates(double at[EDGE_CANDIDATES], double strength[EDGE_CANDIDATES], const struct ring *ring, int arc,
                     double half);
 
-/* Median over the arcs in `use` of the profile moved by shift[arc] and scaled to 0 inside, 1 outside; as a ring
- * whose arc 0 holds it. ring_free. */
+/* The typical profile: the median over the arcs in `use` of the profile moved by shift[arc] px and scaled to 0 inside, 1 outside.
+ * Returned as arc 0 of a ring; ring_free. */
 struct ring ring_typical(const struct ring *ring, const bool use[ARCS], const double shift[ARCS]);
 
-/* Slopes k and m of every arc, from the brightness beyond reach px of the step, smoothed along the ring. */
+/* Estimates the slopes k and m of every arc from the brightness farther than `reach` px from the step, smoothed along the ring. */
 void edge_slopes(struct step step[ARCS], const struct ring *ring, double reach);
 
-/* Fits d, in, out (and w where free_width) of one arc, starting from step->d and step->w; k and m are taken as
- * given. window: px of the Gaussian weight round d. step->ok = false when there is no step. */
+/* Fits the step model to one arc by least squares: d, in, out (and w where free_width), from the start step->d and step->w, with
+ * k and m fixed. window: sigma of the Gaussian weight round d, px. step->ok is false when there is no step. */
 void edge_fit(struct step *step, const struct ring *ring, int arc, double window, bool free_width);
 
 #endif

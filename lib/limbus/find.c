@@ -110,7 +110,7 @@ static bool measure(struct limbus_found *found, struct ellipse *around, const st
 	return reject(found, "no eye found: photograph one open eye close up, or say where it is with photo.NAME.hint_px");
 }
 
-/* What the search by whiteness does not vouch for is asked of the sides of the limbus. */
+/* An ellipse that the search by whiteness is not sure of is replaced by the one of the limbus' two sides, or rejected. */
 static void second_opinion(struct limbus_found *found, const struct photo *photo, const struct pyramid *pyramid,
                            const struct limbus_conf *conf)
 {

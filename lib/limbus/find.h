@@ -1,5 +1,5 @@
-/* limbus_find: one photograph to the ellipses of its limbus and pupil, or the reason why not.
- * Needs no hint, no camera, no size. Rather none than a wrong one: what is doubtful is rejected.
+/* find: detects the limbus and pupil ellipses of one photograph, or states why there are none. Needs no hint, no camera and no
+ * size. Doubtful ellipses are rejected.
  */
 #ifndef LIMBUS_FIND_H
 #define LIMBUS_FIND_H
@@ -29,7 +29,8 @@ struct limbus_found {
 	double score;      // of the search, 0..1
 };
 
-/* hint: x, y, radius px, or null. found is overwritten; owns nothing. */
+/* found  overwritten; owns no memory; found->ok false with found->reason when no limbus is accepted
+ * hint   x, y, radius px, or null */
 void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
                  const struct limbus_conf *conf);
 

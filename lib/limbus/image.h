@@ -1,7 +1,7 @@
-/* limbus_image: a photograph made ready for looking: a small pyramid of encoded brightness to find the eye in, and
- * linear light around it, weighted to set the iris off against the sclera, to measure in.
- * Coordinates are always px of the photograph; a level's pixel (i, j) is centred at ((i + 0.5), (j + 0.5)) * scale
- * from the level's origin.
+/* image: what the search and the measurement read of a photograph: a small pyramid of encoded brightness to search in, and linear
+ * light around the eye, as the mixture of channels that best separates iris and sclera, to measure in.
+ * Places are always px of the photograph; a level's pixel (i, j) is centred at ((i + 0.5), (j + 0.5)) * scale from the level's
+ * origin.
  */
 #ifndef LIMBUS_IMAGE_H
 #define LIMBUS_IMAGE_H
@@ -17,8 +17,8 @@ struct grey {
 enum { PYRAMID_MAX = 6, PYRAMID_LONG = 640, PYRAMID_SHORT_MIN = 28 };
 
 /* level[0] the finest, at most PYRAMID_LONG px on its longer side; each next is half of it. Encoded (sRGB) values.
- * level   whiteness 0..1: the darkest of the three channels, less where the colour is redder than the whitest of what
- *         is light. The sclera is lighter in it than irises of every colour, and than skin
+ * level   whiteness 0..1: the darkest of the three channels, lowered where the colour is redder than the whitest of the light
+ *         pixels. The sclera is lighter in it than irises of every colour, and than skin
  * bright  the lightest of the three channels
  * tint    0..1, the size of level[0]: 1 as white as sclera, less for skin */
 struct pyramid {

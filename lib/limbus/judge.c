@@ -21,7 +21,7 @@ static const double EXACT = 0.0045;
 static const double STEEP = 0.62;       // semi-axes of an eye turned by 52 degrees
 static const double LITTLE = 0.37, HALF = 0.5;  // of the limbus seen: less of it can be exact and wrong
 
-/* A pupil passes for a limbus but for this: what lies round it is an iris, and farther out it gets whiter. */
+/* Separates pupil from limbus: a pupil is surrounded by the iris, and farther out it gets whiter. */
 static bool is_pupil(const struct rim *rim, const struct grey *white)
 {
 	enum { RINGS = 6 };

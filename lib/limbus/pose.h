@@ -1,7 +1,7 @@
-/* limbus_pose: where the eye is and which way it looks, from the ellipses of one photograph.
- * The limbus is an ellipse in space (half axes r and r * aspect, x and y of the eye frame) seen in perspective; the
- * pupil is seen through the cornea. Ceres finds axis, place and pupil; anatomy that one photograph does not tell is
- * held by priors. A conic has two poses (tilted this way or that): both are fitted, the likelier one is kept.
+/* pose: position and orientation of the eye from the ellipses of one photograph (iris paper, section 3, eq. 9).
+ * The limbus is an ellipse in space (half axes r and r * aspect along x and y of the eye frame) seen in perspective; the pupil is
+ * seen through the cornea. Non-linear least squares (Ceres) estimate axis, position and pupil; anatomy that one photograph does
+ * not determine has Gaussian priors. A conic has two poses (tilted to either side): both are fitted, the likelier one is kept.
  */
 #ifndef LIMBUS_POSE_H
 #define LIMBUS_POSE_H
@@ -33,18 +33,18 @@ struct pose {
 	double theta, phi;          // radians
 	double theta_sigma;
 	double theta_weak;          // arccos(b/a)
-	double cost;                // ½ chi²
-	double margin;              // ½ chi² of the other pose less this one's: log likelihood ratio
+	double cost;                // ½ chi² with the terms of ramp and lean: minus log likelihood
+	double margin;              // cost of the other pose minus this one's: log likelihood ratio; INFINITY: there is no other
 	double other_theta, other_phi, other_cam_from_eye[4][4];
 	double aspect, aspect_sigma;
 	double pupil_offset[2], iris_depth;  // mm
 };
 
-/* False, err set, when no pose fits. */
+/* Fits the pose of one view. False, err set, when no pose fits or the ellipse is none after undoing the lens distortion. */
 bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct eye *eye, const struct pose_conf *conf,
                  struct err *err);
 
-/* A camera 1000 mm away for photographs whose camera is not known (weak perspective). */
+/* A camera 1000 mm away, for photographs whose camera is not known: weak perspective. source: CAMERA_NONE. */
 struct camera pose_nominal_camera(const struct ellipse *limbus, const struct eye *eye, int width, int height);
 
 #endif

@@ -1,6 +1,6 @@
-/* limbus_ramp: how well a pose explains the width of the limbal ramp around the iris.
+/* ramp: the likelihood of a pose given the width of the limbal ramp around the iris.
  * The ramp lies on the slope of the cornea: turned to the camera on the near side, it looks wider there; on the far
- * side it is seen edge-on and looks sharper. That tells the two poses of one ellipse apart, and a tilted eye from one
+ * side it is seen edge-on and looks sharper. This separates the two poses of one ellipse, and a tilted eye from one
  * whose limbus is no circle.
  */
 #ifndef LIMBUS_RAMP_H

@@ -1,5 +1,5 @@
-/* limbus_record: what was measured in one photograph, kept as work/limbus/NAME.edge.json: the pose of all photographs
- * of an eye can be fitted again without looking at them again.
+/* record: what was measured in one photograph, kept as work/limbus/NAME.edge.json, so that the poses of all photographs of an eye
+ * can be fitted again without measuring again.
  */
 #ifndef LIMBUS_RECORD_H
 #define LIMBUS_RECORD_H
@@ -16,10 +16,12 @@ struct limbus_record {
 	enum { ARC_HIDDEN, ARC_SEEN, ARC_USED } state[ARCS];
 };
 
-/* Everything but the camera and the lean. */
+/* Fills everything but the camera and the lean (measure.h). */
 void limbus_record_fill(struct limbus_record *record, const struct limbus_found *found, const struct photo *photo);
 
+/* Writes a record beside `path`, then renames it. False, err set, when it cannot. */
 bool limbus_record_save(const struct limbus_record *record, const char *path, const char *made_by, struct err *err);
+/* Reads one; record is overwritten. False, err set ("path: key: rule"), for a file that is none. */
 bool limbus_record_load(struct limbus_record *record, const char *path, struct err *err);
 
 #endif

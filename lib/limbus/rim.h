@@ -1,7 +1,6 @@
-/* limbus_rim: the limbus ellipse to a fraction of a pixel, from a rough one.
+/* rim: refines a rough limbus ellipse to a fraction of a pixel.
  * A robust edge search along the normals, then the blurred step fitted in every arc, then a geometric ellipse
- * through the arcs that show iris against sclera; lids, lashes and glints are left out by contrast, by residual and by
- * distance.
+ * through the arcs that show iris against sclera. Lids, lashes and glints are rejected by contrast, by residual and by distance.
  */
 #ifndef LIMBUS_RIM_H
 #define LIMBUS_RIM_H
@@ -9,11 +8,11 @@
 
 struct rim_conf {
 	double search;        // first search range, share of the semi-axis
-	double max_rms;       // residual of a step, in units of its height, beyond which an arc is not trusted
+	double max_rms;       // residual of a step, in units of its height, beyond which an arc is rejected
 	double min_contrast;  // of an arc's step, relative to the ring's median
-	double irregularity;  // sigma that noise does not show, share of the step's width: no limbus is this exact a step
-	bool grey;            // measure in brightness, not in the best mixture of colours
-	bool settled;         // the start is good to a few hundredths: no edge is looked for farther away
+	double irregularity;  // sigma that is added for the limbus' own irregularity, share of the step's width
+	bool grey;            // measure in brightness, not in the discriminant of propose/colour.h
+	bool settled;         // the start is good to a few hundredths of the radius: only edges near it are searched
 };
 
 struct rim {
@@ -24,7 +23,7 @@ struct rim {
 	double coverage;         // share of the ring that shows the step
 	double share_used;       // share that is good enough to measure
 	double rms;              // of the used arcs' distances, px
-	double correlation;      // arcs that err together
+	double correlation;      // number of neighbouring arcs whose errors are correlated
 	double contrast;         // median Weber contrast of the used arcs, linear light
 	double out, in;          // median brightness outside and inside, linear
 	struct step step[ARCS];
@@ -34,8 +33,10 @@ struct rim {
 	double own_width[ARCS];  // of each arc alone, px; 0 where not measured
 };
 
-/* tint: pyramid.tint, to tell sclera outside from skin; null where that does not matter (pupil).
- * False: no ellipse could be fitted near `start`. */
+/* Refines the ellipse `start`.
+ * rim   overwritten
+ * tint  pyramid.tint, to separate sclera outside from skin; null where that does not matter (pupil)
+ * False when no ellipse can be fitted near `start`. */
 bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint, const struct ellipse *start,
              const struct rim_conf *conf);
 

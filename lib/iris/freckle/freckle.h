@@ -1,8 +1,9 @@
-/* freckle: spots of pigment on the iris: found by what melanin does to colour, and painted over.
+/* freckle: detects spots of pigment on the iris and fills them in (iris paper, section 4).
  *
- * A crypt is dark because little light comes back: all colours fall alike. Melanin takes blue and green before red: the
- * log ratio of red to green rises where the spot darkens, against the iris around it. On a brown iris, whose colour
- * melanin makes already, only a flat patch that hides the fibres tells a freckle.
+ * A crypt is dark because little light comes back from it: all colours fall alike. Melanin absorbs blue and green before red: in a
+ * freckle the log ratio of red to green rises against the surrounding iris while the spot darkens. A brown iris has the colour of
+ * melanin everywhere; there a freckle is a flat dark patch that hides the fibres.
+ * Maps are square iris maps with half-width `extent` mm; places are mm in the iris plane.
  */
 #ifndef IRIS_FRECKLE_FRECKLE_H
 #define IRIS_FRECKLE_FRECKLE_H
@@ -37,21 +38,27 @@ struct freckles {
 	int n;
 	struct freckle *items;  // largest first
 	int size;
-	float *opacity;         // [size][size] 0..1; 0.5 at a spot's edge
+	float *opacity;         // [size][size] 0..1 over the same extent; 0.5 at a spot's edge
 };
 
-/* rgbw: an iris map with weights, half-width `extent` mm. freckles_free. */
+/* Detects the freckles of an iris map.
+ * rgbw    R, G, B (linear), W (weight)
+ * extent  half-width, mm
+ * limbus  radius, mm
+ * freckles_free. */
 struct freckles freckles_find(const struct image *rgbw, double extent, const struct circle *pupil, double limbus,
                               const struct freckle_conf *conf);
 void freckles_free(struct freckles *freckles);
 
-/* Paints over every texel of rgb(w) with mask set: for each blob the piece of iris at the same radii, some angle away,
- * whose surroundings fit best, its colours carried over by gradients (Poisson, in log colour). Texels without weight
- * are never copied. Returns the number of blobs filled. */
+/* Fills every texel of rgbw with mask set. Each connected region takes the piece of iris at the same radii, some angle away, whose
+ * surroundings fit best, blended in by Poisson editing (Perez, Gangnet and Blake 2003) of log colour. Texels without weight are
+ * never copied.
+ * mask  [size][size], 0 or 1; channels of rgbw beyond three are left as they are
+ * Returns the number of regions filled. */
 int freckle_fill(struct image *rgbw, const uint8_t *mask, double extent, const struct circle *pupil, double limbus,
                  const struct freckle_conf *conf);
 
-/* The mask that freckle_fill wants: the spots and the blur of their edges. [size][size]; free(). */
+/* The mask for freckle_fill: the spots and the blur of their edges (blur: mm). [size][size]; free(). */
 uint8_t *freckle_mask(const struct freckles *freckles, double extent, double blur);
 
 #endif

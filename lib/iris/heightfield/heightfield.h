@@ -1,6 +1,6 @@
-/* heightfield: coarse thickness of the iris stroma (iris paper section 4, figs. 5-6): a generic radial profile times local
- * detail from the photograph, where lighter is taken for thicker.
- * Maps: square, [size][size], centred on the optical axis, half-width extent mm, row 0 at -y.
+/* heightfield: coarse thickness of the iris stroma (iris paper, section 4, figs. 5-6): a generic radial profile times local detail
+ * of the photograph, where lighter is taken as thicker.
+ * Maps   square, [size][size], centred on the optical axis, half-width `extent` mm, row 0 at -y.
  */
 #ifndef IRIS_HEIGHTFIELD_HEIGHTFIELD_H
 #define IRIS_HEIGHTFIELD_HEIGHTFIELD_H
@@ -10,11 +10,12 @@ struct pupil {
 	double x, y, r;  // in the iris plane, mm
 };
 
-/* From IRIS/texture.json, key "pupil" {cx, cy, r}. No pupil there: centred, `fallback` mm. */
+/* Reads the key "pupil" {cx, cy, r} of IRIS/texture.json. Where none was found: centred, radius `fallback` mm.
+ * False, err set, when the file cannot be read. */
 bool pupil_load(struct pupil *pupil, const char *texture_json, double fallback, struct err *err);
 
-/* How far from the pupil's margin (0) to the iris root (1) a point lies, along circles that go over from one into the
- * other; negative in the pupil, above 1 outside the root. */
+/* The radial coordinate of a point (mm): 0 at the pupil's margin, 1 at the iris root, constant on circles between the two;
+ * negative in the pupil, above 1 outside the root. root: radius, mm. */
 double iris_share(const struct pupil *pupil, double root, double x, double y);
 
 struct profile_conf {
@@ -26,17 +27,18 @@ struct profile_conf {
 
 enum { PROFILE_KNOTS = 5 };
 
-/* Thickness over iris_share(): monotone between its knots. */
+/* Thickness (mm) and its sigma over iris_share(), as monotone cubic splines. */
 struct profile {
 	int n;
 	double share[PROFILE_KNOTS], mm[PROFILE_KNOTS], sigma[PROFILE_KNOTS];
 	double slope[PROFILE_KNOTS], sigma_slope[PROFILE_KNOTS];
 };
 
-/* width: from the pupil's margin to the root, mm. ID2 is left out where a wide pupil leaves it no place. */
+/* Makes the profile of an iris that is `width` mm wide from the pupil's margin to the root. ID2 is left out where a wide pupil
+ * leaves no place for it. */
 void profile_make(struct profile *profile, const struct profile_conf *conf, double width);
 
-/* Thickness and its sigma, mm; held constant beyond the edges. sigma may be null. */
+/* Thickness, mm, at a share; constant beyond the knots at either end. sigma: out, mm; may be null. */
 double profile_at(const struct profile *profile, double share, double *sigma);
 
 struct heightfield_conf {
@@ -55,7 +57,11 @@ struct heightfield_result {
 	double detail_rms;     // of ln thickness
 };
 
-/* clean: R, G, B, W. limbus: radius mm. */
+/* Computes the thickness map.
+ * out     overwritten; image_free its map
+ * clean   R, G, B (linear), W (weight): the texture without freckles
+ * limbus  radius, mm
+ * False, err set, when no iris is left between pupil and root or none of it was seen. */
 bool heightfield_run(struct heightfield_result *out, const struct image *clean, double extent, const struct pupil *pupil,
                      double limbus, const struct heightfield_conf *conf, struct err *err);
 

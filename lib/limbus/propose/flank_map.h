@@ -1,4 +1,4 @@
-/* limbus_flank_map: a part of a photograph as logarithms of its channels, for limbus_flank alone. */
+/* flank_map: a part of a photograph as logarithms of its channels. Internal to flank. */
 #ifndef LIMBUS_PROPOSE_FLANK_MAP_H
 #define LIMBUS_PROPOSE_FLANK_MAP_H
 #include "image/photo/photo.h"
@@ -10,13 +10,13 @@ struct log_map {
 	float (*px)[4];  // [height * width] log of encoded red, green, blue, a little above black; owned
 };
 
-/* The box x0..x1, y0..y1 (px; cut to the photograph) reduced by a whole factor near `scale`. free(map.px). */
+/* The part in box = { x0, y0, x1, y1 } (px; clipped to the photograph), reduced by a whole factor near `scale`. free(map.px). */
 struct log_map log_map_make(const struct photo *photo, const double box[4], double scale);
 
-/* Half the size. */
+/* A map of half the size. free(map.px). */
 struct log_map log_map_halve(const struct log_map *map);
 
-/* The least of the three channels' steps from (x0, y0) in to (x1, y1) out, map px, nearest; 0 off the map. */
+/* The smallest of the three channels' steps from (x0, y0) inside to (x1, y1) outside, map px, nearest pixel; 0 off the map. */
 static inline float log_map_step(const struct log_map *m, float x0, float y0, float x1, float y1)
 {
 	int i0 = (int)(x0 + 0.5f), j0 = (int)(y0 + 0.5f), i1 = (int)(x1 + 0.5f), j1 = (int)(y1 + 0.5f);

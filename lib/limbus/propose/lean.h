@@ -1,7 +1,7 @@
-/* limbus_lean: which of the two poses of a limbus is the right one, from the iris itself.
+/* lean: the likelihood ratio of the two poses of a limbus from the brightness of the iris.
  * Seen through the cornea, the iris' dark outer border lies farther in on the side turned to the camera and farther
- * out on the other. Taken back to the iris plane under the right pose, brightness is a function of radius, the same
- * on all sides; under the other pose it is shifted to and fro.
+ * out on the other. Projected back to the iris plane under the right pose, brightness depends on the radius alone; under the
+ * other pose it also varies round the iris.
  */
 #ifndef LIMBUS_PROPOSE_LEAN_H
 #define LIMBUS_PROPOSE_LEAN_H
@@ -17,9 +17,10 @@ struct band {
 	bool use[BAND_ARCS];
 };
 
+/* Samples the band inside a measured limbus. */
 void band_sample(struct band *band, const struct pyramid *pyramid, const struct rim *limbus);
 
-/* Log likelihood of pose `a` against pose `b` (cam_from_eye), positive for a, by the iris' brightness. */
+/* Log likelihood ratio of pose a against pose b (cam_from_eye): positive where a is likelier. */
 double lean_iris(const struct band *band, const struct camera *camera, const double a[4][4], const double b[4][4],
                  const struct eye *eye);
 

@@ -15,7 +15,7 @@ struct peak {
 	double x, y, votes;  // level px
 };
 
-/* Every pixel with a clear gradient votes along its dark side. */
+/* Every pixel with a clear gradient votes for centres along the gradient, on its dark side. */
 static void vote(float *acc, const struct grey *g, int high)
 {
 	const int w = g->width, h = g->height;
@@ -94,7 +94,7 @@ static int find_peaks(struct peak out[PEAKS], float *acc, int w, int h)
 	return n;
 }
 
-/* Rank of a candidate: mostly the length of edge that supports it, so that half a limbus does not pass for a whole
+/* Rank of a candidate: mainly the length of edge that supports it, so that half a limbus does not outrank the whole as a
  * narrow ellipse. */
 static double rank(const struct seek_found *f)
 {
@@ -197,14 +197,14 @@ int pyramid_index(const struct pyramid *pyramid, double radius, double px)
 	return l;
 }
 
-/* The edge score of one ellipse, on the level fit for its size. */
+/* Edge score of one ellipse on the level that suits its size. */
 static double edge_score(const struct pyramid *pyramid, const struct ellipse *e, const struct seek_conf *conf)
 {
 	return score_ellipse(&pyramid->level[pyramid_index(pyramid, e->a, 60)], e, conf->contrast, SCORE_NARROW);
 }
 
-/* Moves a rough ellipse to the one that most edges near it agree on: lids do not, in whiteness, and the arcs between
- * them can be few. */
+/* Refines a rough ellipse by RANSAC over the edges near it (consensus.h), then by hill climbing. In whiteness lids are no
+ * edges; the arcs between them may be few. */
 static void settle(struct seek_found *f, const struct pyramid *pyramid, const struct seek_conf *conf)
 {
 	const struct grey *g = &pyramid->level[pyramid_index(pyramid, f->e.a, 130)];

@@ -1,7 +1,7 @@
-/* limbus_seek: where in the photograph the eye may be. Coarse to fine, no hint needed.
- * A limbus is an ellipse dark inside and bright outside along a good part of its edge. Centres come from votes of
- * brightness gradients along their own line (fast radial symmetry, Loy and Zelinsky 2003, dark side only), ellipses
- * around them from climbing an edge score on the pyramid level where their radius is 14 to 60 px.
+/* seek: candidates for the limbus in a photograph, coarse to fine, without a hint.
+ * A limbus is an ellipse that is dark inside and bright outside along a good part of its edge. Centres come from votes of brightness
+ * gradients along their own direction (fast radial symmetry, Loy and Zelinsky 2003, dark side only); ellipses around them by hill
+ * climbing of score.h on the pyramid level where their radius is 14 to 60 px.
  */
 #ifndef LIMBUS_PROPOSE_SEEK_H
 #define LIMBUS_PROPOSE_SEEK_H
@@ -21,16 +21,16 @@ struct seek_found {
 
 enum { SEEK_MAX = 12 };
 
-/* Writes at most conf->candidates ellipses, best first; returns how many.
- * hint: x, y, radius in px, or null: only centres within half a radius and radii within a factor 1.5 of it. */
+/* Finds at most conf->candidates ellipses, best first; returns how many.
+ * hint  x, y, radius px, or null: restricts centres to half its radius and radii to a factor 1.5 */
 int limbus_seek(struct seek_found out[SEEK_MAX], const struct pyramid *pyramid, const double *hint,
                 const struct seek_conf *conf);
 
-/* The best ellipse round `inner`: where that is a pupil, its limbus. False: none with any support. */
+/* The best ellipse round `inner`: if that is a pupil, its limbus. False when none has any support. */
 bool limbus_seek_outer(struct seek_found *out, const struct pyramid *pyramid, const struct ellipse *inner,
                        const struct seek_conf *conf);
 
-/* Index of the level on which a radius is nearest below `px` pixels, or of the finest. */
+/* Index of the finest level on which a radius (photo px) is at most `px` level pixels; the coarsest where it is larger on all. */
 int pyramid_index(const struct pyramid *pyramid, double radius, double px);
 
 #endif

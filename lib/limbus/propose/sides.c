@@ -21,7 +21,8 @@ static const double LITTLE = 0.37;         // of the limbus seen, where it is no
 static const double OFF = 0.2;             // limbus_pupil_off: more is none in the middle
 static const double SIDES_CLEAR = 0.9;      // the same: of a limbus that must be
 
-/* What such an ellipse is worth: both sides of a pupil are clear too, but the limbus is larger. A hint says how large. */
+/* Value of a settled ellipse: its score, weighted by size, because both sides of a pupil are clear too; with a hint, by the
+ * agreement of its radius. */
 static double settle(struct seek_found *f, const struct photo *photo, const double *hint)
 {
 	double before = f->score;
@@ -111,8 +112,8 @@ bool limbus_measure_centred(struct rim *rim, const struct ellipse *start, const 
 	return ok;
 }
 
-/* A pupil, by the sides of what is round it, or one with nothing white beside it, or with
- * the pupil far off its middle. */
+/* True for a pupil (a larger circle round it has clear sides), an ellipse without white beside it, or one whose pupil lies far
+ * from its middle. */
 static bool is_doubtful(const struct rim *rim, bool strict, const struct photo *photo, const struct pyramid *pyramid,
                         const struct limbus_conf *conf)
 {
@@ -130,9 +131,8 @@ static bool is_like(const struct ellipse *e, const struct ellipse *pupil)
 	return e->a < 1.3 * pupil->a && hypot(e->cx - pupil->cx, e->cy - pupil->cy) < 0.5 * pupil->a;
 }
 
-/* around: what lies inside is the pupil of what was tried before.
- * Where the search by whiteness found nothing it could vouch for, or a hint says where the eye is: by the sides of the
- * limbus. Real sclera is shaded and coloured, and lids are at its rim: the edge scatters more than a step should. */
+/* Real sclera is shaded and coloured, and lids touch its rim: the edge scatters more than a clean step does, hence the looser
+ * limits. */
 bool limbus_measure_flanks(struct limbus_found *found, struct ellipse around, const struct photo *photo,
                            const struct pyramid *pyramid, const double *hint, const struct limbus_conf *conf)
 {
