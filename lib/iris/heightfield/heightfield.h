@@ -61,7 +61,7 @@ struct heightfield_result {
  * out     overwritten; image_free its map
  * clean   R, G, B (linear), W (weight): the texture without freckles
  * limbus  radius, mm
- * False, err set, when no iris is left between pupil and root or none of it was seen. */
+ * False, err set, when clean is not square or the pupil leaves less than 0.5 mm of iris. */
 bool heightfield_run(struct heightfield_result *out, const struct image *clean, double extent, const struct pupil *pupil,
                      double limbus, const struct heightfield_conf *conf, struct err *err);
 
