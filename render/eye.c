@@ -1,4 +1,4 @@
-/* The pictures of one eye: made only where they are not fresh, from one scene, loaded when the first is needed. */
+/* The pictures of one eye: made only where they are not fresh, from one scene that is loaded when the first is needed (job.c). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "bridge/imf_read.h"
+#include "draw/studio.h"
 #include "render/render.h"
 
 static double now_s(void)
@@ -25,101 +25,6 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 	                                : scene_render(&job->scene, view, light, &job->count);
 	job->seconds += now_s() - start;
 	return image;
-}
-
-bool job_studio(struct job *job, struct err *err)
-{
-	if (!job->conf->environment) {
-		job->studio = light_studio(env_height(job->conf));
-		return true;
-	}
-	struct image map;
-	const char *path = stage_path(job->stage, "%s", job->conf->environment);
-	if (!imf_read_rgb(&map, path, 1L << 26, err) || !envmap_take(&job->studio, &map, path, err))
-		return false;
-	envmap_normalise(&job->studio);
-	return true;
-}
-
-/* What the photograph shows of the sclera, without the light that falls on it beside the limbus. */
-static void unlight(double rgb[3], const struct shot *shot, const struct eye *eye, const struct scene_conf *conf)
-{
-	enum { TURNS = 16 };
-	double mean[3] = { 0 };
-	for (int k = 0; k < TURNS; k++) {
-		double polar = asin(1.35 * eye->limbus_radius / conf->sclera_radius), turn = 2 * M_PI * k / TURNS;
-		double n[3] = { sin(polar) * cos(turn), sin(polar) * sin(turn), -cos(polar) };
-		float cam[3], light[3];
-		for (int i = 0; i < 3; i++)
-			cam[i] = (float)(shot->fit.cam_from_eye[i][0] * n[0] + shot->fit.cam_from_eye[i][1] * n[1]
-			                 + shot->fit.cam_from_eye[i][2] * n[2]);
-		envmap_irradiance(light, &shot->env, cam);
-		for (int c = 0; c < 3; c++)
-			mean[c] += light[c] / TURNS;
-	}
-	for (int c = 0; c < 3; c++)
-		rgb[c] = fmin(rgb[c] / fmax(mean[c], 0.3), 0.95);
-}
-
-/* The beauty views are exposed for the sclera of an eye that looks into the camera: between its mean and its brightest
- * side it comes out at 62 %. */
-static double exposure(const struct envmap *env, const double sclera[3])
-{
-	enum { TURNS = 16 };
-	double mean = 0, most = 0;
-	for (int k = 0; k < TURNS; k++) {
-		double turn = 2 * M_PI * k / TURNS;
-		float light[3], n[3] = { (float)(0.7071 * cos(turn)), (float)(0.7071 * sin(turn)), -0.7071f };
-		envmap_irradiance(light, env, n);
-		double lum = 0.2126 * sclera[0] * light[0] + 0.7152 * sclera[1] * light[1] + 0.0722 * sclera[2] * light[2];
-		mean += lum / TURNS;
-		most = fmax(most, lum);
-	}
-	return fmin(fmax(0.62 * 2 / (mean + most), 0.05), 3);
-}
-
-/* mm from clear to white, as the photograph shows it. A smooth step of width w has the spread 0.22 w of its slope. */
-static double limbus_width(const struct shot *reference)
-{
-	double mm = reference->fit.cam_from_eye[2][3] / reference->fit.camera.focal_px;
-	double width = mm * reference->fit.edge_sigma_px / 0.2236;
-	return isfinite(width) ? fmin(fmax(width, 0.2), 1.2) : 0.4;
-}
-
-/* Everything that all pictures share. */
-bool job_ready(struct job *job, struct err *err)
-{
-	struct shot *reference = &job->shots[job->reference];
-	struct scene_conf conf = job->conf->scene;
-	if (job->ready)
-		return true;
-	if (!shot_ready(job, reference, err) || !job_studio(job, err))
-		return false;
-	if (sclera_of_photo(conf.sclera_rgb, reference))
-		unlight(conf.sclera_rgb, reference, job->eye, &conf);
-	else
-		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
-	job->gain = exposure(&job->studio, conf.sclera_rgb);
-	struct eye eye = *job->eye;
-	if (!isfinite(eye.limbus_aspect))
-		eye.limbus_aspect = reference->fit.limbus_aspect;
-	if (!isfinite(conf.limbus_width))
-		conf.limbus_width = limbus_width(reference);
-	const char *path[5];
-	for (int i = 0; i < 5; i++)
-		path[i] = stage_path(job->stage, "%s", job->in[i]);
-	struct scene_files files = { path[0], path[1], path[2], path[3], path[4] };
-	if (!scene_load(&job->scene, &files, &eye, &conf, err))
-		return false;
-	job_say_what_lacks(job);
-	job->ready = true;
-	struct scene_view view = shot_view(reference);
-	struct scene_lighting light = scene_lighting_of(&reference->env, 0, job->conf->lights, job->conf->light_directions);
-	scene_fit_colour(&job->scene, &view, &light);
-	stage_figure(job->stage, "lamps_found", reference->n_lamps, "");
-	stage_figure(job->stage, "exposure", job->scene.gain, "");
-	stage_figure(job->stage, "explained_by_model", 100 * job->scene.explained, "%");
-	return true;
 }
 
 /* An eye turned by yaw, pitch (degrees) in the studio; view: as it was seen. */
@@ -150,7 +55,7 @@ static bool still(struct job *job, const char *name, double yaw, double pitch, s
 	if (!job_ready(job, err))
 		return false;
 	struct scene_view view;
-	struct image rgba = turned(job, &view, yaw, pitch, job->conf->size_px, true), seen = picture_on_grey(&rgba, job->gain);
+	struct image rgba = turned(job, &view, yaw, pitch, job->conf->size_px, true), seen = studio_on_grey(&rgba, job->gain);
 	const struct picture_out out[] = { { png, &seen }, { exr, &rgba } };
 	bool ok = pictures_save(job, job->conf->exr ? 2 : 1, out, job->n_in, job->in, err);
 	if (ok && job->conf->exr) {
@@ -176,7 +81,7 @@ static bool turntable(struct job *job, struct err *err)
 		double yaw = n > 1 ? job->conf->frame_deg * (2.0 * i / (n - 1) - 1) : 0;
 		struct scene_view view;
 		struct image rgba = turned(job, &view, yaw, 0, job->conf->frame_px, true);
-		frames[i] = picture_on_grey(&rgba, job->gain);
+		frames[i] = studio_on_grey(&rgba, job->gain);
 		image_free(&rgba);
 	}
 	struct image strip = sheet_strip(n, frames);
@@ -225,7 +130,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, job->conf->light_directions);
 	struct scene_view view = shot_view(shot);
 	struct shot_difference differs;
-	struct image rgba = trace(job, &view, &light), seen = picture_on_grey(&rgba, 1);
+	struct image rgba = trace(job, &view, &light), seen = studio_on_grey(&rgba, 1);
 	struct image beside = compare_shot(&differs, &job->scene, shot, &seen);
 	json_t *figures = figures_of(job, shot, &differs);
 	const struct picture_out out[] = { { png, &seen }, { compare, &beside }, { exr, &rgba } };

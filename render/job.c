@@ -1,8 +1,12 @@
 /* One eye on its way to pictures: what it is made of, and whether there is enough of it. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "bridge/imf_read.h"
+#include "draw/photo/reference.h"
+#include "draw/studio.h"
 #include "render/render.h"
 
 static const char *artifact(struct job *job, const char *name)
@@ -58,7 +62,8 @@ bool jobs_open(struct jobs *jobs, struct stage *stage, const struct capture *cap
 	return ok;
 }
 
-void job_say_what_lacks(struct job *job)
+/* What is drawn in place of artifacts that are missing or unusable: recorded as skipped. */
+static void say_what_lacks(struct job *job)
 {
 	static const char *const instead[] = { [2] = "an iris without relief is drawn", [3] = "the tissue of a blue eye is drawn" };
 	const struct scene *s = &job->scene;
@@ -70,6 +75,56 @@ void job_say_what_lacks(struct job *job)
 	if (s->odd_pupil != 0)
 		stage_skipped(job->stage, "pupil of the %s eye: %s says a radius of %g mm, in an iris of %.2f mm: one of %.1f mm is drawn", job->names->side,
 		              job->in[1], s->odd_pupil, s->limbus[0], s->pupil[2]);
+}
+
+bool job_studio(struct job *job, struct err *err)
+{
+	if (!job->conf->environment) {
+		job->studio = light_studio(env_height(job->conf));
+		return true;
+	}
+	struct image map;
+	const char *path = stage_path(job->stage, "%s", job->conf->environment);
+	if (!imf_read_rgb(&map, path, 1L << 26, err) || !envmap_take(&job->studio, &map, path, err))
+		return false;
+	envmap_normalise(&job->studio);
+	return true;
+}
+
+/* Everything that all pictures share. */
+bool job_ready(struct job *job, struct err *err)
+{
+	struct shot *reference = &job->shots[job->reference];
+	struct scene_conf conf = job->conf->scene;
+	if (job->ready)
+		return true;
+	if (!shot_ready(job, reference, err) || !job_studio(job, err))
+		return false;
+	if (sclera_of_photo(conf.sclera_rgb, reference))
+		shot_unlight(conf.sclera_rgb, reference, job->eye, conf.sclera_radius);
+	else
+		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
+	job->gain = studio_exposure(&job->studio, conf.sclera_rgb);
+	struct eye eye = *job->eye;
+	if (!isfinite(eye.limbus_aspect))
+		eye.limbus_aspect = reference->fit.limbus_aspect;
+	if (!isfinite(conf.limbus_width))
+		conf.limbus_width = shot_limbus_width(reference);
+	const char *path[5];
+	for (int i = 0; i < 5; i++)
+		path[i] = stage_path(job->stage, "%s", job->in[i]);
+	struct scene_files files = { path[0], path[1], path[2], path[3], path[4] };
+	if (!scene_load(&job->scene, &files, &eye, &conf, err))
+		return false;
+	say_what_lacks(job);
+	job->ready = true;
+	struct scene_view view = shot_view(reference);
+	struct scene_lighting light = scene_lighting_of(&reference->env, 0, job->conf->lights, job->conf->light_directions);
+	scene_fit_colour(&job->scene, &view, &light);
+	stage_figure(job->stage, "lamps_found", reference->n_lamps, "");
+	stage_figure(job->stage, "exposure", job->scene.gain, "");
+	stage_figure(job->stage, "explained_by_model", 100 * job->scene.explained, "%");
+	return true;
 }
 
 static void job_close(struct job *job)

@@ -58,8 +58,6 @@ void jobs_close(struct jobs *jobs);
 /* job_ready: loads the scene, once. job_studio: the light of the beauty views alone. */
 bool job_ready(struct job *job, struct err *err);
 bool job_studio(struct job *job, struct err *err);
-/* What is drawn in place of artifacts that are missing, or cannot be: recorded as skipped. After scene_load. */
-void job_say_what_lacks(struct job *job);
 
 /* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free.
  * shot_ready: decodes the photograph and reads its light, once; shot_done: forgets both. */
@@ -70,9 +68,6 @@ void shots_free(struct job *job);
 
 /* Rows of an environment's map: sharper than the pictures need it. */
 int env_height(const struct render_conf *conf);
-
-/* picture.c: the eye on neutral grey, brightened by gain. image_free. */
-struct image picture_on_grey(const struct image *rgba, double gain);
 
 /* At most PICTURES_MAX pictures at once, from the same inputs: 3 channels become a PNG, 4 an EXR. rel: in the folder. */
 enum { PICTURES_MAX = 4 };

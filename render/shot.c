@@ -1,30 +1,11 @@
-/* The photographs: which part of each is looked at, and at what size. */
-#include <math.h>
+/* The photographs of an eye: those that have a fit, the reference among them; their decoding. */
 #include <stdlib.h>
 
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
+#include "draw/photo/reference.h"
 #include "image/photo/photo.h"
 #include "render/render.h"
-
-/* The eye fills the window: 2.2 semi-axes round the limbus, as far as the photograph goes. */
-static void window_make(struct shot *shot, int most_px)
-{
-	const struct ellipse *e = &shot->fit.limbus;
-	double reach = 2.2 * e->a, at[2] = { e->cx, e->cy }, size[2] = { shot->fit.width, shot->fit.height };
-	for (int i = 0; i < 2; i++) {
-		shot->window[i] = floor(fmax(at[i] - reach, 0));
-		shot->window[2 + i] = ceil(fmin(at[i] + reach, size[i]));
-	}
-	double longest = fmax(shot->window[2] - shot->window[0], shot->window[3] - shot->window[1]);
-	shot->scale = fmax(longest / most_px, 1);
-}
-
-/* More of the limbus, larger, and seen from the front. */
-static double merit(const struct fit *fit)
-{
-	return fit->limbus.a * fit->coverage * cos(fit->theta) * cos(fit->theta);
-}
 
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err)
 {
@@ -46,13 +27,13 @@ bool shots_load(struct job *job, const struct capture *capture, int eye_index, s
 			stage_skipped_as_said(job->stage, "%s: its fit was rejected: %s", photo->name, shot.fit.reason);
 			continue;
 		}
-		window_make(&shot, job->conf->photo_px);
+		shot_window(&shot, job->conf->photo_px);
 		if (!(shot.window[2] - shot.window[0] >= 16 && shot.window[3] - shot.window[1] >= 16)) {
 			stage_skipped(job->stage, "%s: the eye lies outside the photograph", photo->name);
 			continue;
 		}
 		job->shots[job->n_shots] = shot;
-		if (merit(&shot.fit) > merit(&job->shots[job->reference].fit))
+		if (shot_merit(&shot.fit) > shot_merit(&job->shots[job->reference].fit))
 			job->reference = job->n_shots;
 		job->n_shots++;
 	}
