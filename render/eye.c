@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "draw/eye/converge.h"
 #include "draw/studio.h"
 #include "render/render.h"
 

@@ -3,7 +3,7 @@
 #define RENDER_RENDER_H
 #include "base/stage.h"
 #include "anatomy/capture.h"
-#include "draw/eye/scene.h"
+#include "draw/eye/render.h"
 #include "draw/photo/photo.h"
 
 struct render_conf {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/eye/surface.h"
 #include "draw/studio.h"
 #include "image/exr.h"
 #include "image/video/video.h"

@@ -69,7 +69,7 @@ headless)
 		[ -e "${c%.c}.h" ] && continue
 		dir=${c%/*} n=0 room=
 		for h in "$dir"/*.h; do
-			case ${h##*/} in impl.h | *_impl.h | opts.h | look.h) ;; *) [ -e "${h%.h}.c" ] || { n=$((n + 1)) && room=$h; } ;; esac
+			case ${h##*/} in impl.h | *_impl.h | opts.h | *look.h) ;; *) [ -e "${h%.h}.c" ] || { n=$((n + 1)) && room=$h; } ;; esac
 		done
 		[ "$n" = 1 ] || room=
 		[ -e "$dir/${dir##*/}.h" ] && room=$dir/${dir##*/}.h

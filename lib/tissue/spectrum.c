@@ -85,15 +85,6 @@ static void white(double xyz[3], enum illuminant light)
 		xyz[c] /= y;
 }
 
-void illuminant_chromaticity(double xy[2], enum illuminant light)
-{
-	double xyz[3];
-	white(xyz, light);
-	double sum = xyz[0] + xyz[1] + xyz[2];
-	xy[0] = xyz[0] / sum;
-	xy[1] = xyz[1] / sum;
-}
-
 void observer_make(struct observer *observer, enum illuminant light)
 {
 	/* Rec. 709 from XYZ (IEC 61966-2-1); Bradford's sharpened cone responses and their inverse. */

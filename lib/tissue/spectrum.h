@@ -33,7 +33,4 @@ struct observer {
 };
 void observer_make(struct observer *observer, enum illuminant light);
 
-/* Chromaticity x, y of the light itself. */
-void illuminant_chromaticity(double xy[2], enum illuminant light);
-
 #endif

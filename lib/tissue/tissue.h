@@ -80,11 +80,6 @@ double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const doub
 double tissue_reflectance_all(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
                               double stroma, double cos_view, double cos_light);
 
-/* By the full integral over 380-780 nm, exact for the order asked for: what bands and effective coefficients are
- * measured against. */
-void tissue_reflectance_full(double rgb[3], const struct tissue *tissue, const struct observer *observer, double stroma,
-                             double cos_view, double cos_light);
-
 /* From work/iris/pigment.json. */
 bool tissue_load(struct tissue *tissue, const char *path, struct err *err);
 

@@ -2,7 +2,7 @@
 #ifndef RENDER_VIEWER_VIEWER_FACE_IMPL_H
 #define RENDER_VIEWER_VIEWER_FACE_IMPL_H
 #include "render/viewer/viewer_face.h"
-#include "draw/face/impl.h"
+#include "draw/face/parts.h"
 
 /* The grid of poses on which light is kept: horizontal, vertical, aperture; the pose at rest. LEVELS: of the mesh, at most. */
 enum { NH = 5, NV = 3, NA = 4, POSES = NH * NV * NA, SKY = 24, REST = (NA - 2) * NH * NV + NV / 2 * NH + NH / 2, LEVELS = 6 };

@@ -5,8 +5,10 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "draw/eye/colour.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/lighting.h"
 #include "draw/web/base64.h"
-#include "draw/eye/impl.h"
 #include "image/picture.h"
 #include "render/page/page.h"
 #include "render/viewer/viewer.h"

@@ -1,11 +1,11 @@
 #include "stages/relief/relief_stage.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/json.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "tissue/relief/height.h"
 
 enum { MAP_LIMIT_PX = 1 << 26, INPUTS = 4 };
 static const char *const input_names[INPUTS] = { "clean.exr", "texture.json", "thickness.exr", "pigment.json" };
@@ -18,35 +18,6 @@ struct work {
 	struct relief_fit fit;
 	double height_rms;
 };
-
-/* Height of the anterior surface against its mean over the iris: the iris' back is straight (Pavlin et al.), so what is
- * thicker stands higher. Border layer: of even thickness, no part of it. */
-static void heights(struct work *w)
-{
-	int n = w->sharp.width;
-	double mm = w->info.extent_mm, (*rows)[3] = mem_new((size_t)n, sizeof *rows), sum[3] = { 0 };
-	w->out = image_new(n, n, 2);
-#pragma omp parallel for schedule(static)
-	for (int y = 0; y < n; y++)
-		for (int x = 0; x < n; x++) {
-			double t = image_at(&w->sharp, x, y)[0];
-			double share = iris_share(&w->pupil, w->root, (2 * (x + 0.5) / n - 1) * mm, (2 * (y + 0.5) / n - 1) * mm);
-			bool iris = share > 0 && share < 1;
-			rows[y][0] += iris;
-			rows[y][1] += iris ? t : 0;
-			rows[y][2] += iris ? t * t : 0;
-		}
-	for (int y = 0; y < n; y++)  // in this order whatever the threads
-		for (int k = 0; k < 3; k++)
-			sum[k] += rows[y][k];
-	double count = fmax(sum[0], 1), mean = sum[1] / count;
-	w->height_rms = sqrt(fmax(sum[2] / count - mean * mean, 0));
-	for (long i = 0; i < (long)n * n; i++) {
-		w->out.px[2 * i] = (float)(w->sharp.px[i] - mean);
-		w->out.px[2 * i + 1] = w->sharp.px[i];
-	}
-	free(rows);
-}
 
 static bool compute(struct work *w, char *const in[], struct stage *stage, const struct eye *anatomy,
                     const struct relief_stage_conf *c, struct err *err)
@@ -65,7 +36,7 @@ static bool compute(struct work *w, char *const in[], struct stage *stage, const
 	if (!relief_solve(&w->fit, &w->clean, &w->thickness, w->info.extent_mm, &w->pupil, w->root, white, x, &pigment, &c->relief, err)
 	    || !relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err))
 		return false;
-	heights(w);
+	w->height_rms = relief_heights(&w->out, &w->sharp, w->info.extent_mm, &w->pupil, w->root);
 	return true;
 }
 

@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "bridge/nls.h"
 #include "tissue/pigment/pigment.h"
+#include "tests/peers/reflectance_full.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/photon.h"
 
@@ -128,7 +129,9 @@ static bool full_residuals(void *ctx, const double *x, double *r, double *J)
 	for (int i = 0; i < s->eyes->n; i++) {
 		double rgb[3], seen[3];
 		tissue_reflectance_full(rgb, &tissue, &observer, s->eyes->of[i].thickness, s->conf.cos_view, s->conf.cos_light);
-		pigment_photograph(seen, rgb, x);
+		double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) };
+		for (int k = 0; k < 3; k++)
+			seen[k] = exp(x[PIGMENT_EXPOSURE]) * gain[k] * rgb[k] + x[PIGMENT_VEIL];
 		for (int k = 0; k < 3; k++)
 			*r++ = log(seen[k] / s->eyes->of[i].rgb[k]) / s->conf.model_error;
 	}

@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "draw/eye/march/march.h"
+#include "draw/eye/converge.h"
+#include "draw/eye/march/shade.h"
+#include "draw/eye/quick/hits.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/ridged.h"
 

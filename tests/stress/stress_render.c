@@ -10,8 +10,8 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "draw/eye/scene.h"
 #include "draw/eye/look.h"
+#include "draw/eye/render.h"
 #include "image/exr.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/stress.h"

@@ -1,13 +1,14 @@
 /* What no photograph saw of the iris (under a lid, behind a reflection, at the far edge) is continued from what was seen:
  * round the axis at the same radius, and outwards along the same fibre, whichever is nearer, cross-faded. Both unfold the
  * seen part like a mirror, so that nothing is smeared, and keep the brightness that the ring has elsewhere. */
-#include "draw/eye/impl.h"
+#include "draw/eye/fill.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/eye/batch_impl.h"
 
 enum { TURNS = 1024, ENOUGH = TURNS / 12 };  // samples round a ring; 30 degrees of it seen say what it is like
 

@@ -1,5 +1,4 @@
-#include "draw/eye/march/paths.h"
-
+/* A scene from the artifacts of one eye. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,16 +6,16 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
-#include "iris/refraction_file.h"
+#include "draw/eye/fill.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/make.h"
+#include "draw/eye/march/nodes.h"
+#include "draw/eye/march/paths.h"
+#include "draw/eye/sclera.h"
 #include "image/exr.h"
+#include "iris/refraction_file.h"
 
 static const long limit_px = 1L << 27;
-
-/* The stroma's thickness where no relief says: the mean of the three places of the iris paper, section 4, weighted by
- * their share of the area. A layer without melanin to speak of, as in a blue eye. */
-const double scene_plain_stroma = 0.48;
-static const struct tissue plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
-	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };
 
 /* Channels of an EXR map; *extent its half-width. What is not finite becomes 0, and is counted. image_free. */
 static bool read_map(struct image *out, struct scene *s, const char *path, int channels, const char *const names[], double *extent,
@@ -107,30 +106,13 @@ static void load_pupil(struct scene *s, const char *path)
 	json_decref(root);
 }
 
-static void take_tissue(struct scene *s, const struct tissue *tissue)
-{
-	struct tissue_bands bands;
-	s->tissue = *tissue;
-	tissue_bands_make(&bands, s->conf.bands, tissue->illuminant);
-	tissue_optics_make(&s->optics, tissue, &bands);
-	double flat[3];
-	tissue_reflectance(flat, &s->optics, scene_plain_stroma, 1, 1);
-	for (int c = 0; c < 3; c++)
-		s->flat[c] = (float)(flat[c] * s->optics.exposure);
-}
-
 static bool load_tissue(struct scene *s, const char *path, struct err *err)
 {
-	struct tissue tissue = plain_tissue;
+	struct tissue tissue = scene_plain_tissue;
 	if (path && file_exists(path) && !tissue_load(&tissue, path, err))
 		return false;
-	take_tissue(s, &tissue);
+	scene_set_tissue(s, &tissue);
 	return true;
-}
-
-void scene_plain_tissue(struct scene *s)
-{
-	take_tissue(s, &plain_tissue);
 }
 
 /* Made for this very cornea, or not used: the folder may have been changed since. */
@@ -147,18 +129,6 @@ static bool load_refraction(struct scene *s, const char *path, struct err *err)
 		s->refraction = (struct refraction){ 0 };
 	}
 	return true;
-}
-
-void scene_geometry(struct scene *s)
-{
-	double aspect = isfinite(s->eye.limbus_aspect) ? s->eye.limbus_aspect : 1;
-	s->cornea = eye_cornea(&s->eye);
-	s->limbus[0] = s->eye.limbus_radius;
-	s->limbus[1] = s->eye.limbus_radius * aspect;
-	s->limbus_depth = eye_limbus_depth(&s->eye);
-	s->cornea.rim = 1.06 * s->limbus[0];
-	double R = s->conf.sclera_radius, r = s->limbus[0];
-	s->sclera_z = s->limbus_depth + sqrt(fmax(R * R - r * r, 0));
 }
 
 bool scene_load(struct scene *s, const struct scene_files *files, const struct eye *eye, const struct scene_conf *conf,
@@ -199,59 +169,4 @@ void scene_free(struct scene *s)
 	free(s->paths);
 	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };
-}
-
-static float *halve(const float *map, int n, int channels)
-{
-	int m = n / 2;
-	float *out = mem_array((size_t)m * (size_t)m * (size_t)channels, sizeof *out);
-	for (int y = 0; y < m; y++)
-		for (int x = 0; x < m; x++)
-			for (int c = 0; c < channels; c++) {
-				const float *p = map + ((long)2 * y * n + 2 * x) * channels + c;
-				out[((long)y * m + x) * channels + c] = (p[0] + p[channels] + p[(long)n * channels] + p[(long)(n + 1) * channels]) / 4;
-			}
-	return out;
-}
-
-void scene_levels_make(struct scene *s)
-{
-	struct scene_level *l = s->level;
-	s->height_min = s->height_max = 0;
-	s->thickness_max = 0;
-	for (long i = 0; i < (long)l->n * l->n; i++) {
-		s->thickness_max = fmaxf(s->thickness_max, l->relief[2 * i + 1]);
-		s->height_min = fminf(s->height_min, l->relief[2 * i]);
-		s->height_max = fmaxf(s->height_max, l->relief[2 * i]);
-	}
-	s->n_levels = 1;
-	for (int k = 1; k < SCENE_LEVELS && l[k - 1].n >= 64; k++, s->n_levels++) {
-		free(l[k].relief);
-		free(l[k].colour);
-		free(l[k].model);
-		free(l[k].per_model);
-		free(l[k].horizon);
-		free(l[k].pairs);
-		free(l[k].bottom);
-		free(l[k].shown.px);
-		free(l[k].bare.px);
-		l[k] = (struct scene_level){ .n = l[k - 1].n / 2, .per_mm = (float)(l[k - 1].n / 2 / (2 * s->extent)) };
-		l[k].relief = halve(l[k - 1].relief, l[k - 1].n, 2);
-		l[k].colour = halve(l[k - 1].colour, l[k - 1].n, 4);
-		l[k].model = l[k - 1].model ? halve(l[k - 1].model, l[k - 1].n, 4) : 0;
-	}
-	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++) {
-		free(l[k].horizon);
-		l[k].horizon = s->conf.shadow > 0 && k >= scene_marched(s) ? scene_horizons(s, &l[k]) : 0;
-		scene_pairs_make(&l[k], k >= scene_marched(s));
-		scene_shown_make(&l[k], s);
-	}
-}
-
-const struct scene_level *scene_level_for(const struct scene *s, double mm)
-{
-	int k = 0;
-	while (k + 1 < s->n_levels && s->level[k + 1].per_mm * mm > 0.8)
-		k++;
-	return &s->level[k];
 }

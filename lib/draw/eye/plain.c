@@ -1,11 +1,14 @@
 /* An eye that nobody photographed: fibres, crypts and a collarette from a seed, over a plain tissue. */
-#include "draw/eye/march/paths.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/make.h"
+#include "draw/eye/march/nodes.h"
+#include "draw/eye/march/paths.h"
+#include "draw/eye/sclera.h"
 #include "math/rng.h"
 
 enum { TEXELS = 512, FIBRES = 420 };
@@ -58,7 +61,7 @@ void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf
 			l->relief[2 * ((long)y * n + x)] = 0;
 			l->relief[2 * ((long)y * n + x) + 1] = (float)scene_plain_stroma;
 		}
-	scene_plain_tissue(s);
+	scene_set_tissue(s, &scene_plain_tissue);
 	scene_levels_make(s);
 	scene_nodes_make(s);
 	scene_veins_make(s);

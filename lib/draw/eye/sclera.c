@@ -1,6 +1,6 @@
 /* The white of the eye: vessels grown over it, and the ripples of its tear film. The map is azimuthal and equidistant
  * about the eye's axis: radius in the map is the angle at the centre of the sphere. */
-#include "draw/eye/impl.h"
+#include "draw/eye/sclera.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,6 +8,8 @@
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 #include "bridge/cv_draw.h"
+#include "draw/eye/batch_impl.h"
+#include "draw/eye/texels.h"
 #include "math/rng.h"
 
 static const double reach = SCENE_SCLERA_REACH;

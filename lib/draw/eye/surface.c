@@ -1,7 +1,7 @@
-/* The eye's outside as a compositor wants it: depth and normal of every pixel. */
+#include "draw/eye/surface.h"
+
 #include <math.h>
 
-#include "draw/eye/scene.h"
 #include "math/vec.h"
 
 struct sight {

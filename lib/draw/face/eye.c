@@ -4,38 +4,9 @@
 
 #include "base/mem.h"
 #include "draw/eye/look.h"
-#include "math/vec.h"
+#include "draw/eye/render.h"
 #include "draw/face/impl.h"
-
-struct portrait_rays portrait_rays_of(const struct portrait_view *view)
-{
-	struct portrait_rays r = { .view = view };
-	double scale2 = 0;
-	for (int k = 0; k < 3; k++)
-		scale2 += view->cam_from_target[0][k] * view->cam_from_target[0][k];
-	for (int i = 0; i < 3; i++) {
-		double o = 0;
-		for (int k = 0; k < 3; k++) {
-			r.rig_from_cam[i][k] = view->cam_from_target[k][i] / sqrt(scale2);
-			o -= view->cam_from_target[k][i] * view->cam_from_target[k][3] / scale2;
-		}
-		r.origin[i] = (float)o;
-	}
-	return r;
-}
-
-float portrait_ray(float dir[3], const struct portrait_rays *r, double x, double y)
-{
-	const struct portrait_view *v = r->view;
-	double cam[3] = { (x - v->center_px[0]) / v->focal_px, (y - v->center_px[1]) / v->focal_px, 1 }, d[3], len = vec_norm(cam);
-	mat_vec(d, r->rig_from_cam, cam);
-	for (int c = 0; c < 3; c++)
-		dir[c] = (float)(d[c] / len);
-	// The camera's own scale: depth is measured in its frame.
-	double scale = sqrt(v->cam_from_target[0][0] * v->cam_from_target[0][0] + v->cam_from_target[0][1] * v->cam_from_target[0][1]
-	                    + v->cam_from_target[0][2] * v->cam_from_target[0][2]);
-	return (float)(scale / len);
-}
+#include "math/vec.h"
 
 /* rig_from_eye: columns x, y, z of the eye's frame (DESIGN: z into the eye, x and y as a camera before it has them), for a
  * globe turned so. */

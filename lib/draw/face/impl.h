@@ -1,65 +1,7 @@
 /* portrait_impl: what the files of the portrait share. */
 #ifndef DRAW_FACE_IMPL_H
 #define DRAW_FACE_IMPL_H
-#include "mesh/ray.h"
-#include "draw/face/portrait.h"
-
-/* Drawn triangles: the skin's, near the eyes cut in four. The first rig.n vertices are the rig's; each further one lies
- * between two of them. */
-struct portrait_mesh {
-	int n, n_faces, n_base;
-	int (*between)[2];          // [n - n_base]
-	int32_t (*faces)[3];
-	float (*x)[3], (*normal)[3], (*rest)[3], (*bare)[3], (*light)[3], (*albedo)[3];  // bare: light before skin spreads it
-	float *open;                // share of the light that reaches it
-	float *wet;                 // how moist it is, 0..1
-	float (*home)[2];           // where the modelling camera sees it at rest, px; null without wrinkles
-};
-
-struct portrait {
-	const struct rig *rig;
-	const struct scene *eye[2];
-	const struct envmap *env;
-	struct portrait_conf conf;
-	struct deform *deform;
-	struct portrait_mesh mesh;
-	struct ray_scene *shadow;   // the skin's own triangles
-	float (*lit)[3];            // irradiance at the rig's vertices, before it is spread
-	float (*lit_at)[3];         // where they were then
-	int *near_start, *near;     // neighbours of the rig's vertices
-	float *spread;              // weight of each neighbour, of red
-	double target_from_globe[2][3][3];
-	struct portrait_lash *lash; // their triangles are the mesh's last, from first_lash; their vertices from lash_vertex
-	int n_lashes, first_lash, lash_vertex;
-	const struct wrinkle_maps *wrinkles;
-	int *wrinkle_input;         // [wrinkles.n] control that it follows; -1: none
-	float *wrinkle_strength;    // in this pose
-	bool folded;                // any of them
-	bool matte;                 // nothing mirrors
-	float corner[2][3];         // the globes' inner corners at rest, where known
-	bool corner_known[2];
-};
-
-/* lash.c: planted at rest; stretched out for a pose, as wide as they are towards that camera. */
-void portrait_lashes_make(struct portrait *portrait);
-void portrait_lashes_move(struct portrait *portrait, const struct portrait_view *view);
-void portrait_lash_colour(float rgb[3], const struct portrait *portrait, int face);
-
-/* Where a hair's vertex stands now in the frame that its root carries along: off the globe, along the lid, up over it (mm). The
- * root: a point of three vertices of the mesh. */
-struct portrait_pin {
-	int vertex[3], side;
-	float weight[3], local[3];
-};
-void portrait_lash_pin(struct portrait_pin *pin, const struct portrait *portrait, int vertex);
-
-/* mesh.c: topology once, vertices for each pose. */
-void portrait_mesh_make(struct portrait *portrait);
-void portrait_mesh_move(struct portrait *portrait);
-void portrait_mesh_free(struct portrait_mesh *mesh);
-
-/* Where in the face a ray meets its plane: weights of its vertices. */
-void portrait_mesh_weights(float w[3], const struct portrait_mesh *m, int face, const float origin[3], const float dir[3]);
+#include "draw/face/parts.h"
 
 /* What a sample of the picture shows. */
 struct portrait_spot {

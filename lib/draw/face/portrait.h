@@ -45,10 +45,6 @@ void portrait_wear(struct portrait *portrait, const struct wrinkle_maps *maps, i
 /* Poses it: controls g~ [rig.n_inputs]. */
 void portrait_pose(struct portrait *portrait, const double *controls);
 
-/* Its vertices as posed, [rig.n][3], and unit normals. Borrowed. */
-const float (*portrait_vertices(const struct portrait *portrait))[3];
-const float (*portrait_normals(const struct portrait *portrait))[3];
-
 /* Lights the vertices for a camera that stands so. all: every vertex; else those that have moved since the last time. */
 void portrait_light(struct portrait *portrait, const struct portrait_view *view, bool all);
 

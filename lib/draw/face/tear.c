@@ -8,10 +8,10 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "draw/eye/impl.h"
-#include "image/distance/distance.h"
 #include "draw/face/impl.h"
 #include "draw/face/skin_look.h"
+#include "draw/smooth.h"
+#include "image/distance/distance.h"
 
 static const float shadow_mm = (float)TEAR_SHADOW_MM, shadow_part = (float)TEAR_SHADOW;
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "draw/eye/impl.h"
+#include "draw/eye/look.h"
 #include "draw/face/impl.h"
 #include "draw/face/skin_look.h"
 
@@ -107,14 +107,14 @@ float portrait_lake_depth(float d, float height)
 
 void portrait_lake_light(float through[3], float depth, float cos_i, const double absorb[3])
 {
-	float s2 = (1 - cos_i * cos_i) / (SCENE_FILM_INDEX * SCENE_FILM_INDEX), way = depth * (1 / sqrtf(1 - s2) + (float)LAKE_LIGHT_WAY);
+	float s2 = (1 - cos_i * cos_i) / ((float)LOOK_FILM_INDEX * (float)LOOK_FILM_INDEX), way = depth * (1 / sqrtf(1 - s2) + (float)LAKE_LIGHT_WAY);
 	for (int c = 0; c < 3; c++)
 		through[c] = expf(-(float)absorb[c] * way);
 }
 
 float portrait_film_share(float cos_i)
 {
-	float n = SCENE_FILM_INDEX, c = fmaxf(cos_i, 0), t = sqrtf(n * n - 1 + c * c), s = (c - t) / (c + t), q = (n * n * c - t) / (n * n * c + t);
+	float n = (float)LOOK_FILM_INDEX, c = fmaxf(cos_i, 0), t = sqrtf(n * n - 1 + c * c), s = (c - t) / (c + t), q = (n * n * c - t) / (n * n * c + t);
 	return 0.5f * (s * s + q * q);
 }
 

@@ -10,7 +10,7 @@
 
 #include "anatomy/capture.h"
 #include "anatomy/fit.h"
-#include "draw/eye/scene.h"
+#include "draw/eye/view.h"
 
 /* One photograph with its fit. */
 struct shot {

@@ -35,7 +35,8 @@ struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_con
 	};
 }
 
-void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N])
+/* What a photograph shows of a reflectance: exposure, error of the white, veil. */
+static void photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N])
 {
 	double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) };
 	for (int k = 0; k < 3; k++)
@@ -47,7 +48,7 @@ void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue
 {
 	double bare[3];
 	tissue_reflectance(bare, optics, stroma, c->cos_view, c->cos_light);
-	pigment_photograph(rgb, bare, x);
+	photograph(rgb, bare, x);
 }
 
 /* Relative error of a channel from noise alone; the model's own errors are added where residuals are formed. */
@@ -86,7 +87,7 @@ static void compare(double r[], const struct problem *p, const double *x, double
 {
 	for (int i = 0; i < p->classes->n; i++, r += 3) {
 		double seen[3];
-		pigment_photograph(seen, rgb[i], x);
+		photograph(seen, rgb[i], x);
 		class_residuals(r, &p->classes->of[i], seen, p->conf);
 	}
 	for (int j = 0; j < PIGMENT_N; j++)

@@ -73,9 +73,6 @@ struct pigment_fit {
 /* The tissue that unknowns stand for. */
 struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_conf *conf);
 
-/* What a photograph shows of a reflectance: exposure, white error, veil. */
-void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N]);
-
 /* Reflectance that a photograph would show of stroma that thick: exposure, white error and veil included. */
 void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
                    const struct pigment_conf *conf);

@@ -36,6 +36,11 @@ struct white white_camera(void)
 	return (struct white) { .rgb = { 1, 1, 1 }, .source = WHITE_CAMERA, .spread = 0.5 };
 }
 
+bool white_better(const struct white *a, const struct white *b)
+{
+	return a->source > b->source || (a->source == b->source && a->share > b->share);
+}
+
 bool white_card(struct white *out, const struct photo *photo, const double disc[3], const struct white_conf *conf,
                 struct err *err)
 {

@@ -31,6 +31,9 @@ bool white_sclera(struct white *out, const struct photo *photo, const struct fit
 bool white_card(struct white *out, const struct photo *photo, const double disc[3], const struct white_conf *conf,
                 struct err *err);
 
+/* Whether a is the better white: a card before sclera before none; of two from sclera, the one that shows more of it. */
+bool white_better(const struct white *a, const struct white *b);
+
 /* The camera's own white balance and exposure: (1, 1, 1). */
 struct white white_camera(void);
 

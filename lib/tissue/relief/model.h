@@ -1,4 +1,5 @@
-/* relief_model: reflectance over ln thickness as a table, for maps of a million texels. */
+/* model: what the photograph shows of stroma of a thickness, as a table for maps of a million texels; and how strongly hollows are
+ * darkened. */
 #ifndef TISSUE_RELIEF_MODEL_H
 #define TISSUE_RELIEF_MODEL_H
 #include "tissue/pigment/pigment.h"
@@ -14,6 +15,10 @@ struct relief_table {
 /* From low to high mm. white: multiplied in. */
 void relief_table_make(struct relief_table *table, double low, double high, const double white[3],
                        const double x[PIGMENT_N], const struct pigment_conf *conf);
+
+/* kappa: how strongly surroundings darken what lies lower: an empirical fit to Monte Carlo of 13 tissues at 550 nm, within
+ * 0.05. Grows with absorption; none where light goes on through the walls. */
+double relief_kappa(const struct tissue *tissue);
 
 /* Place of ln thickness in the table: entry (0 .. RELIEF_TABLE - 2) and fraction; clamped. */
 static inline int relief_place(const struct relief_table *table, float ln_thickness, float *fraction)

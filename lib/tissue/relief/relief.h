@@ -33,10 +33,6 @@ struct relief_fit {
 	int iterations;
 };
 
-/* kappa: how strongly surroundings darken what lies lower: an empirical fit to Monte Carlo of 13 tissues at 550 nm, within
- * 0.05. Grows with absorption; none where light goes on through the walls. */
-double relief_kappa(const struct tissue *tissue);
-
 /* clean: R, G, B, W; thickness: first channel mm; same square grid. x: as pigment_solve found it; white as there. */
 bool relief_solve(struct relief_fit *fit, const struct image *clean, const struct image *thickness, double extent,
                   const struct pupil *pupil, double root, const double white[3], const double x[PIGMENT_N],
@@ -45,10 +41,5 @@ bool relief_solve(struct relief_fit *fit, const struct image *clean, const struc
 /* out: thickness after the filter, one channel, new; image_free. */
 bool relief_apply(struct image *out, const struct image *thickness, double extent, const struct relief_fit *fit,
                   const struct relief_conf *conf, struct err *err);
-
-/* Linear Rec. 709 of a thickness map as the photograph would show it: exposure, white error, veil. out: R, G, B, new. */
-bool relief_render(struct image *out, const struct image *thickness, double extent, const double white[3],
-                   const double x[PIGMENT_N], const struct pigment_conf *pigment, const struct relief_conf *conf,
-                   struct err *err);
 
 #endif

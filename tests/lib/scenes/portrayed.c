@@ -1,6 +1,6 @@
 #include "tests/lib/scenes/portrayed.h"
 
-#include "draw/eye/impl.h"
+#include "draw/eye/levels.h"
 
 bool portrayed_make(struct portrayed *p, double below)
 {

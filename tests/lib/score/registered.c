@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "draw/eye/impl.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/make.h"
+#include "draw/eye/render.h"
 #include "image/exr.h"
 #include "image/patch/patch.h"
 #include "image/picture.h"

@@ -1,11 +1,13 @@
 /* Portraits of a made face: light in closed form, no holes, eyes where they are, the same bytes on any number of threads. */
-#include "draw/eye/impl.h"
+#include "draw/eye/look.h"
+#include "draw/eye/lighting.h"
+#include "draw/eye/view.h"
+#include "draw/face/impl.h"
+#include "draw/face/skin_look.h"
 #include "math/rng.h"
 #include "math/stats.h"
 #include "math/vec.h"
 #include "rig/drive.h"
-#include "draw/face/impl.h"
-#include "draw/face/skin_look.h"
 #include "tests/lib/scenes/portrayed.h"
 #include "tests/lib/unit.h"
 
@@ -293,7 +295,7 @@ static void lake_absorbs(void **state)
 		double slope = (double)(portrait_lake_depth(d + 1e-3f, 0.4f) - portrait_lake_depth(d - 1e-3f, 0.4f)) / 2e-3;
 		NEAR(slope, (double)(-n[0] / n[2]), 2e-3 * (1 + fabs(slope)));  // differences of floats
 	}
-	double n = (double)SCENE_FILM_INDEX, way = 0;
+	double n = (double)(float)LOOK_FILM_INDEX, way = 0;
 	enum { STEPS = 1000 };
 	for (int k = 0; k < STEPS; k++)
 		way += 1 / sqrt(1 - (k + 0.5) / STEPS / (n * n)) / STEPS;  // over sin^2 of the incidence: cosine-weighted
@@ -378,7 +380,7 @@ static void caruncle_is_wet(void **state)
 	const float axes[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, n[3] = { 0, 0, -1 }, dir[3] = { 0.6f, 0, 0.8f };
 	float rgb[3] = { 0.5f, 0.25f, 0.125f };
 	portrait_wet_shade(rgb, p, axes, n, dir, 1, 1);
-	double t = asin(0.6 / (double)SCENE_FILM_INDEX), i = asin(0.6), share = 0.5 * (pow(sin(i - t) / sin(i + t), 2) + pow(tan(i - t) / tan(i + t), 2));
+	double t = asin(0.6 / (double)(float)LOOK_FILM_INDEX), i = asin(0.6), share = 0.5 * (pow(sin(i - t) / sin(i + t), 2) + pow(tan(i - t) / tan(i + t), 2));
 	NEAR(rgb[0], 0.5 + share * 0.5, 1e-3);
 	NEAR(rgb[2], 0.125 + share * 0.875, 1e-3);
 	portrait_free(p);

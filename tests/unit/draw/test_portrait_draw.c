@@ -1,7 +1,6 @@
 /* Edges and hairs of a portrait, against the same picture drawn four times as large and averaged. */
-#include "draw/eye/impl.h"
-#include "rig/drive.h"
 #include "draw/face/impl.h"
+#include "rig/drive.h"
 #include "tests/lib/scenes/portrayed.h"
 #include "tests/lib/unit.h"
 

@@ -1,7 +1,9 @@
 /* render: views against the light path solved the other way round, and one way to draw them against another. */
 #include <omp.h>
 
-#include "draw/eye/march/march.h"
+#include "draw/eye/quick/hits.h"
+#include "draw/eye/render.h"
+#include "draw/eye/surface.h"
 #include "math/rng.h"
 #include "tests/lib/scenes/plain_scene.h"
 #include "tests/lib/unit.h"

@@ -1,6 +1,8 @@
 /* render: energy that is conserved, vessels, pictures that converge, what no photograph saw, distances of colours. */
 #include "base/mem.h"
-#include "draw/eye/march/march.h"
+#include "draw/eye/converge.h"
+#include "draw/eye/fill.h"
+#include "draw/eye/sclera.h"
 #include "image/colour.h"
 #include "tests/lib/scenes/plain_scene.h"
 #include "tests/lib/unit.h"

@@ -1,6 +1,6 @@
 /* render: lights, their ways into the eye and the march against closed forms. */
 #include "bridge/imf_read.h"
-#include "draw/eye/march/paths.h"
+#include "draw/eye/march/paths_flat.h"
 #include "math/rng.h"
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench/bench.h"

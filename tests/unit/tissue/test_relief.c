@@ -2,6 +2,7 @@
 #include "tissue/relief/relief.h"
 #include "tests/lib/scenes/irisphantom.h"
 #include "tests/lib/unit.h"
+#include "tests/peers/relief_render.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 

@@ -1,5 +1,6 @@
 /* The tissue in closed form, against Chandrasekhar's H function, and against Monte Carlo. */
 #include "tissue/tissue.h"
+#include "tests/peers/reflectance_full.h"
 #include "tests/lib/truth/photon.h"
 #include "tests/lib/unit.h"
 

@@ -1,7 +1,8 @@
 /* scene_canvas: a picture while its rays are traced; between first.c and view.c. */
 #ifndef DRAW_EYE_EXACT_CANVAS_H
 #define DRAW_EYE_EXACT_CANVAS_H
-#include "draw/eye/exact/trace.h"
+#include "draw/eye/exact/sight.h"
+#include "draw/eye/render.h"
 
 enum { TILE = QUICK_TILE };
 _Static_assert(TILE * TILE == BATCH, "a tile's first rays are one batch");

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "draw/eye/exact/canvas.h"
+#include "draw/eye/quick/hits.h"
 #include "math/vec.h"
 
 static void quick_points(struct quick_found *found, int n, const float *x, const float *y, const struct canvas *c)

@@ -1,5 +1,5 @@
 /* Rays of sight through a pinhole. */
-#include "draw/eye/exact/trace.h"
+#include "draw/eye/exact/sight.h"
 
 #include <math.h>
 

@@ -3,10 +3,15 @@
 
 #include <math.h>
 
+#include "draw/eye/colour.h"
+#include "draw/eye/march/march.h"
+#include "draw/eye/pupil.h"
+#include "draw/eye/sclera.h"
+
 /* Fresnel reflectance, unpolarised, from air. */
 static float mirror(float cos_i)
 {
-	float n = SCENE_FILM_INDEX, c = cos_i > 0 ? cos_i : 0, t = sqrtf(n * n - 1 + c * c);
+	float n = (float)LOOK_FILM_INDEX, c = cos_i > 0 ? cos_i : 0, t = sqrtf(n * n - 1 + c * c);
 	float s = (c - t) / (c + t), p = (n * n * c - t) / (n * n * c + t);
 	return 0.5f * (s * s + p * p);
 }

@@ -16,16 +16,6 @@ struct scene_look {
 	bool textured;
 };
 
-/* Direction of the ray through a point of the picture in the eye's frame, and where it meets a plane before the eye: constant,
- * times x, times y. */
-struct sight_plane {
-	float dir[3][3], from[3][3];
-};
-struct sight_plane sight_plane(const struct scene_look *look, const struct scene_view *view, double sphere_z);
-
-/* Rays through points of the picture, from that plane: a quick_make. */
-void sight_rays_make(struct quick_rays *rays, const float *x, const float *y, const void *plane);
-
 /* Colour of n <= BATCH rays of unit direction; A = 1 where the eye is hit. Adds to *iris those that saw the iris. */
 void scene_trace(float rgba[][4], int n, const float *dx, const float *dy, const float *dz, const struct scene *s,
                  const struct scene_look *look, long *iris);

@@ -3,13 +3,16 @@
  * of SCENE_GRID^2 points solved exactly. Neighbours share a table: behind the cornea, which draws the whole sky together
  * to 48 degrees, they differ little. It keeps their power and their mean direction, not of unit length: so what falls on any
  * plane is exactly their sum, and what lies behind the eye's horizon counts for nothing. */
-#include "draw/eye/march/paths.h"
+#include "draw/eye/march/beam.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "draw/eye/make.h"
+#include "draw/eye/march/paths.h"
 #include "math/vec.h"
+#include "optics/lightpath/lightpath.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see meet.c, simd.h
@@ -160,12 +163,6 @@ static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lig
 	}
 	if (lights > 1)
 		refine(way, (const float(*)[SCENE_WAY])coarse);
-}
-
-void scene_planes(double z[2], const struct scene *s)
-{
-	z[0] = s->eye.iris_depth - s->height_max;
-	z[1] = s->eye.iris_depth - s->height_min + s->optics.abl_thickness + s->thickness_max;
 }
 
 static void beam_depths(struct scene_beam *beam, const struct scene *s)

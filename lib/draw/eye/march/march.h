@@ -1,9 +1,20 @@
 /* scene_march: single scattering along rays of sight; between meet.c, light.c, march.c, shadow.c. */
 #ifndef DRAW_EYE_MARCH_MARCH_H
 #define DRAW_EYE_MARCH_MARCH_H
-#include "draw/eye/impl.h"
+#include "draw/eye/batch_impl.h"
+#include "draw/eye/march/beam.h"
 
 enum { PART = 64 };  // rays that march together: what is known of all their nodes stays in the first cache
+
+/* Fills px..pz: the first crossing of the relief. */
+void scene_meet(struct iris_batch *b, const struct scene *scene, const struct scene_level *level);
+
+/* Fills near, span and rgb. */
+void scene_scatter(struct iris_batch *b, const struct scene *scene, const struct scene_level *level,
+                   const struct scene_beams *beams);
+
+/* The alternative to scatter: the mean colour of the model, lit, without a march. */
+void scene_flat(struct iris_batch *b, const struct scene *scene, const struct scene_beams *beams);
 
 /* What the loops read of the maps. */
 struct ground {

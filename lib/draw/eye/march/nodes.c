@@ -1,8 +1,10 @@
 /* Quadrature of the march. */
+#include "draw/eye/march/nodes.h"
+
 #include <math.h>
 #include <pthread.h>
 
-#include "draw/eye/impl.h"
+#include "draw/eye/look.h"
 
 /* Gauss-Legendre on 0..1: Newton on the Legendre polynomial from Tricomi's start. */
 static void gauss(int n, double node[], double weight[])

@@ -8,7 +8,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/eye/make.h"
 #include "math/vec.h"
+#include "optics/lightpath/lightpath.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see meet.c, simd.h

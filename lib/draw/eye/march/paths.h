@@ -27,8 +27,4 @@ SIMD_INLINE void scene_beam_direction(float way[SCENE_WAY], float power, const f
 /* One plane (0, 1) of a beam's table, SCENE_COARSE points each way, from its lights; in: shares that sum to one. */
 void scene_paths_beam(float way[][SCENE_WAY], const struct scene *scene, int plane, const struct beam_lights *in);
 
-/* Colour of a flat iris under these lights, [SCENE_FLAT][SCENE_FLAT][4] over the square of the maps, texels' centres half a step from
- * its edge: the model's mean colour times the irradiance of the iris plane. free(). The scene has paths. */
-float *scene_paths_flat(const struct scene *scene, const struct scene_lighting *light, const double eye_from_cam[3][3]);
-
 #endif

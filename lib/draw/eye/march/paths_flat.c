@@ -1,11 +1,12 @@
 /* Irradiance of the iris plane: what a picture without scattering multiplies the photograph's colours by. It needs no directions:
  * no beam's table is made for it, and every light is stopped at the limbus by itself. */
-#include "draw/eye/march/paths_impl.h"
+#include "draw/eye/march/paths_flat.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "draw/eye/march/paths_impl.h"
 #include "draw/eye/quick/map.h"
 
 #if defined(__GNUC__) && !defined(__clang__)

@@ -2,13 +2,17 @@
  * the photograph shows: the march is done at every second or fourth texel each way, and only its ratio to what the model showed in the
  * photograph's light is multiplied into the photograph's own texels. Sight comes to each texel by its own way through the
  * cornea; so a picture's pixel sees just what a march along its ray would have made, up to what lies between texels. */
-#include "draw/eye/march/paths.h"
+#include "draw/eye/march/shade.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/eye/colour.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/march/march.h"
+#include "draw/eye/march/paths_flat.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see meet.c, simd.h
@@ -155,15 +159,6 @@ void scene_shade_model(struct scene_level *level, const struct scene *s, const d
 struct scene_shade scene_shade_flat(const struct scene *s, const struct scene_level *level, const struct scene_lighting *light, const double eye_from_cam[3][3])
 {
 	return (struct scene_shade){ SCENE_FLAT, SCENE_FLAT, level->per_mm, (float)(SCENE_FLAT / (2 * s->extent)), &level->bare, scene_paths_flat(s, light, eye_from_cam), true };
-}
-
-int scene_marched(const struct scene *s)
-{
-	// A map that is smaller than it may be has no texels to spare: as many are marched from as of a full one, to a fifth.
-	int apart = s->conf.apart > 0 ? s->conf.apart : 2, enough = s->conf.map_size / apart * 6 / 5, k = 0;
-	for (int step = apart; step > 1 && k + 1 < s->n_levels && s->level[0].n >> k > enough; step /= 2)
-		k++;
-	return k;
 }
 
 struct scene_shade scene_shade_make(const struct scene *s, const struct scene_level *level, const double C[3], const struct scene_beams *beams)

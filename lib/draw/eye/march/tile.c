@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "draw/eye/make.h"
+
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see meet.c, simd.h
 #endif

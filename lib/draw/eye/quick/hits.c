@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "draw/eye/quick/quick.h"
+#include "draw/eye/quick/hits.h"
 
 struct scene_hits {
 	const struct scene *scene;

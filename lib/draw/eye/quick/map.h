@@ -4,7 +4,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "draw/eye/impl.h"
+#include "draw/eye/batch_impl.h"
+#include "draw/eye/texels.h"
 
 /* Between low and high, as two instructions. */
 SIMD_INLINE float quick_clamp(float x, float low, float high)

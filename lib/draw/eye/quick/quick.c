@@ -4,6 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "draw/eye/march/march.h"
+#include "draw/eye/sclera.h"
+
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre")  // see draw/eye/march/meet.c
 #endif
@@ -46,7 +49,7 @@ SIMD_INLINE float angle_over_sine(float c)
 
 SIMD_INLINE float fresnel(float cosine)
 {
-	float n = SCENE_FILM_INDEX, c = cosine > 0 ? cosine : 0, t = sqrtf(n * n - 1 + c * c);
+	float n = (float)LOOK_FILM_INDEX, c = cosine > 0 ? cosine : 0, t = sqrtf(n * n - 1 + c * c);
 	float s = (c - t) / (c + t), p = (n * n * c - t) / (n * n * c + t);
 	return 0.5f * (s * s + p * p);
 }

@@ -1,8 +1,9 @@
 /* scene_quick: a picture whose march has been done already (scene_shade_make): geometry in vectors, colours looked up. */
 #ifndef DRAW_EYE_QUICK_QUICK_H
 #define DRAW_EYE_QUICK_QUICK_H
-#include "draw/eye/impl.h"
+#include "draw/eye/march/shade.h"
 #include "draw/eye/quick/map.h"
+#include "draw/eye/view.h"
 
 /* Rays that start a little before the eye, where float has all the digits that a texel needs. */
 struct quick_rays {
@@ -124,11 +125,6 @@ void quick_ask(const struct quick_found *found, const struct quick_look *look);
 
 /* Finds it by every ray. */
 void quick_find(struct quick_found *found, const struct quick_rays *rays, const struct quick_look *look);
-
-/* Makes hits those of this view: empty, where they were another's. Then one tile's; null: not found yet; and keeps it. */
-void scene_hits_for(struct scene_hits *hits, const struct scene *scene, const struct scene_view *view, int tiles);
-struct quick_found *scene_hits_tile(const struct scene_hits *hits, int tile);
-void scene_hits_keep(struct scene_hits *hits, int tile, const struct quick_found *found);
 
 /* Colours of n rays. */
 void quick_colour(float rgba[][4], struct quick_found *found, int n, const struct quick_look *look);

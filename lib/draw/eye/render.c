@@ -1,12 +1,16 @@
 /* Pictures: every pixel's middle first, then more rays where neighbours differ. Tiles are independent of each other, so
  * that the bytes do not depend on the number of threads. */
-#include "draw/eye/exact/canvas.h"
+#include "draw/eye/render.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/eye/exact/canvas.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/march/shade.h"
+#include "draw/eye/quick/hits.h"
 
 enum { RUN = 40 };  // tiles in a row are one thread's
 

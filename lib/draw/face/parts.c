@@ -98,33 +98,3 @@ void portrait_pose(struct portrait *p, const double *controls)
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);
 	portrait_mesh_move(p);
 }
-
-const float (*portrait_vertices(const struct portrait *p))[3]
-{
-	return (const float(*)[3])p->mesh.x;
-}
-
-const float (*portrait_normals(const struct portrait *p))[3]
-{
-	return (const float(*)[3])p->mesh.normal;
-}
-
-struct portrait_view portrait_front(const struct rig *rig, int side, double field, double yaw, double pitch, int width, int height)
-{
-	// A long lens, as portraits are taken.
-	double distance = 900, cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch), aim[3], t[3];
-	struct portrait_view v = { .width = width, .height = height, .center_px = { width / 2.0, height / 2.0 }, .focal_px = distance * width / field };
-	double turn[3][3] = { { cy, 0, -sy }, { sp * sy, cp, sp * cy }, { cp * sy, -sp, cp * cy } };
-	double cam_from_head[3][3] = { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } }, m[3][3];
-	mat_mul(m, turn, cam_from_head);
-	mat_mul(m, m, rig->head_from_target);
-	for (int c = 0; c < 3; c++)
-		aim[c] = side < 0 ? 0.5 * (rig->globe[0].center[c] + rig->globe[1].center[c]) : rig->globe[side].center[c];
-	mat_vec(t, (const double(*)[3])m, aim);
-	for (int i = 0; i < 3; i++) {
-		for (int j = 0; j < 3; j++)
-			v.cam_from_target[i][j] = m[i][j];
-		v.cam_from_target[i][3] = (i == 2 ? distance : 0) - t[i];
-	}
-	return v;
-}

@@ -1,8 +1,8 @@
-/* Views of an eye. */
+#include "draw/eye/view.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "draw/eye/scene.h"
 #include "math/vec.h"
 
 struct scene_view scene_view_turned(const struct scene *scene, double yaw, double pitch, double field, int size)

@@ -1,7 +1,7 @@
-/* The reference: what the quick pictures approach, by Monte Carlo over light and pixel. */
+#include "draw/eye/converge.h"
+
 #include <math.h>
 
-#include "draw/eye/scene.h"
 #include "math/rng.h"
 
 static float luminance(const float *p)

@@ -1,0 +1,144 @@
+/* The albedo step. The fitted model knows a handful of numbers; the photograph shows every fibre. So the photograph's
+ * colour is kept for each texel, and beside it what the model shows there in the light of the photograph, seen from its
+ * camera. Elsewhere, and in other light, the iris shows the photograph's colour times what the model changes by:
+ *     colour = gain model (texture / (gain model_of_photograph))^detail
+ * Where the model is dark its channels change by wildly different factors; they are held within CHROMA of their mean, for
+ * what the photograph cannot have shown in such a texel must not turn into colour. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "draw/eye/colour.h"
+#include "draw/eye/levels.h"
+#include "draw/eye/march/march.h"
+#include "draw/eye/march/shade.h"
+#include "draw/eye/view.h"
+#include "optics/lightpath/lightpath.h"
+
+/* What the model shows at n texels of row y, seen through the cornea from C. */
+static void model_row(struct iris_batch *b, const struct scene *s, const struct scene_level *level, int x0, int n, int y,
+                      const double C[3], const struct scene_beams *beams)
+{
+	float k[3][BATCH], gx, gy;
+	b->n = n;
+	for (int i = 0; i < n; i++) {
+		b->px[i] = ((float)(x0 + i) + 0.5f) / level->per_mm - (float)s->extent;
+		b->py[i] = ((float)y + 0.5f) / level->per_mm - (float)s->extent;
+		b->pz[i] = (float)s->eye.iris_depth
+		           - relief_at(level->relief, level->n, level->per_mm, b->px[i], b->py[i], &gx, &gy);
+	}
+	lightpath_batch_point(n, b->px, b->py, b->pz, C, k[0], k[1], k[2], 0, &s->cornea, 4);
+	for (int i = 0; i < n; i++) {
+		float d[3] = { b->px[i] - k[0][i], b->py[i] - k[1][i], b->pz[i] - k[2][i] };
+		float len = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		bool good = len > 0.1f && d[2] > 0.2f * len;  // else straight down: nobody sees it
+		b->vx[i] = good ? d[0] / len : 0;
+		b->vy[i] = good ? d[1] / len : 0;
+		b->vz[i] = good ? d[2] / len : 1;
+	}
+	scene_scatter(b, s, level, beams);
+}
+
+/* The cornea lets less light out towards its edge; the texture has that in it, the model not. Seen head-on it is 2 %
+ * less everywhere, which is what is put back here. */
+static const float through = 0.98f;
+
+/* The texture was read off the iris plane; a point of the relief lies before it, and the same ray of sight meets the
+ * plane a little further on. That is where the photograph shows the point. */
+static void put_row(float *colour, float *model, const float *texture, const struct iris_batch *b, const struct scene *s,
+                    const struct scene_level *level)
+{
+	for (int i = 0; i < b->n; i++, colour += 4, model += 4) {
+		float t = ((float)s->eye.iris_depth - b->pz[i]) / b->vz[i];
+		for (int c = 0; c < 4; c++)
+			colour[c] = channel_at(texture, level->n, level->per_mm, b->px[i] + t * b->vx[i], b->py[i] + t * b->vy[i], 4, c);
+		for (int c = 0; c < 3; c++) {
+			colour[c] = colour[c] > SCENE_DARK ? colour[c] : SCENE_DARK;
+			model[c] = b->rgb[c][i] * through > SCENE_DARK ? b->rgb[c][i] * through : SCENE_DARK;
+		}
+		model[3] = 0;
+	}
+}
+
+struct fit_sums {
+	double n, tex, mod, tt, mm, tm;
+};
+
+/* Sums of logarithms over a row, where a photograph saw the iris. */
+static struct fit_sums sums_row(const struct scene *s, int y)
+{
+	const struct scene_level *level = &s->level[0];
+	struct fit_sums f = { 0 };
+	for (int x = 0; x < level->n; x++) {
+		const float *tex = level->colour + 4 * ((long)y * level->n + x), *mod = level->model + 4 * ((long)y * level->n + x);
+		double u = (x + 0.5) / level->per_mm - s->extent, v = (y + 0.5) / level->per_mm - s->extent;
+		if (tex[3] < 0.5f || hypot(u - s->pupil[0], v - s->pupil[1]) < s->pupil[2] + 0.15 || hypot(u, v) > 0.92 * s->limbus[0])
+			continue;
+		for (int c = 0; c < 3; c++) {
+			if (!(mod[c] > SCENE_DARK))  // unlit: it says nothing of how bright the model is
+				continue;
+			double t = log(tex[c]), m = log(mod[c]);
+			f.n++;
+			f.tex += t;
+			f.mod += m;
+			f.tt += t * t;
+			f.mm += m * m;
+			f.tm += t * m;
+		}
+	}
+	return f;
+}
+
+/* Added up row by row, whatever the number of threads. */
+static void compare(struct scene *s)
+{
+	int n = s->level[0].n;
+	struct fit_sums *row = mem_new((size_t)n, sizeof *row), f = { 0 };
+#pragma omp parallel for schedule(dynamic, 8)
+	for (int y = 0; y < n; y++)
+		row[y] = sums_row(s, y);
+	for (int y = 0; y < n; y++) {
+		f.n += row[y].n;
+		f.tex += row[y].tex;
+		f.mod += row[y].mod;
+		f.tt += row[y].tt;
+		f.mm += row[y].mm;
+		f.tm += row[y].tm;
+	}
+	free(row);
+	if (!(f.n > 0))
+		return;
+	double vt = f.tt - f.tex * f.tex / f.n, vm = f.mm - f.mod * f.mod / f.n, cov = f.tm - f.tex * f.mod / f.n;
+	s->gain = (float)exp((f.tex - f.mod) / f.n);
+	s->explained = vt > 0 ? 1 - (vt + vm - 2 * cov) / vt : 0;
+}
+
+void scene_fit_colour(struct scene *s, const struct scene_view *view, const struct scene_lighting *light)
+{
+	struct scene_level *level = &s->level[0];
+	double eye_from_cam[3][3], C[3] = { 0 };
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++) {
+			eye_from_cam[j][i] = view->cam_from_eye[i][j];
+			C[j] -= view->cam_from_eye[i][j] * view->cam_from_eye[i][3];
+		}
+	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
+	size_t texels = (size_t)level->n * (size_t)level->n;
+	float *texture = level->colour;
+	level->colour = mem_array(4 * texels, sizeof *level->colour);
+	level->model = mem_array(4 * texels, sizeof *level->model);
+#pragma omp parallel for schedule(dynamic, 8)
+	for (int y = 0; y < level->n; y++)
+		for (int x = 0; x < level->n; x += BATCH) {
+			struct iris_batch b;
+			long at = 4 * ((long)y * level->n + x);
+			model_row(&b, s, level, x, level->n - x < BATCH ? level->n - x : BATCH, y, C, &beams);
+			put_row(level->colour + at, level->model + at, texture, &b, s, level);
+		}
+	free(texture);
+	compare(s);
+	scene_levels_make(s);
+	for (int k = scene_marched(s); k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
+		scene_shade_model(&s->level[k], s, C, &beams, through);
+	free(beams.beam);
+}

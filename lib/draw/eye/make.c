@@ -1,0 +1,39 @@
+#include "draw/eye/make.h"
+
+#include <math.h>
+
+/* The stroma's thickness where no relief says: the mean of the three places of the iris paper, section 4, weighted by
+ * their share of the area. A layer without melanin to speak of, as in a blue eye. */
+const double scene_plain_stroma = 0.48;
+const struct tissue scene_plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
+	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };
+
+void scene_geometry(struct scene *s)
+{
+	double aspect = isfinite(s->eye.limbus_aspect) ? s->eye.limbus_aspect : 1;
+	s->cornea = eye_cornea(&s->eye);
+	s->limbus[0] = s->eye.limbus_radius;
+	s->limbus[1] = s->eye.limbus_radius * aspect;
+	s->limbus_depth = eye_limbus_depth(&s->eye);
+	s->cornea.rim = 1.06 * s->limbus[0];
+	double R = s->conf.sclera_radius, r = s->limbus[0];
+	s->sclera_z = s->limbus_depth + sqrt(fmax(R * R - r * r, 0));
+}
+
+void scene_planes(double z[2], const struct scene *s)
+{
+	z[0] = s->eye.iris_depth - s->height_max;
+	z[1] = s->eye.iris_depth - s->height_min + s->optics.abl_thickness + s->thickness_max;
+}
+
+void scene_set_tissue(struct scene *s, const struct tissue *tissue)
+{
+	struct tissue_bands bands;
+	s->tissue = *tissue;
+	tissue_bands_make(&bands, s->conf.bands, tissue->illuminant);
+	tissue_optics_make(&s->optics, tissue, &bands);
+	double flat[3];
+	tissue_reflectance(flat, &s->optics, scene_plain_stroma, 1, 1);
+	for (int c = 0; c < 3; c++)
+		s->flat[c] = (float)(flat[c] * s->optics.exposure);
+}

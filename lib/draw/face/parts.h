@@ -1,0 +1,33 @@
+/* parts: what a portrait consists of, for the files that draw it and for the interactive page, which draws the same elsewhere. */
+#ifndef DRAW_FACE_PARTS_H
+#define DRAW_FACE_PARTS_H
+#include "draw/face/lash.h"
+#include "draw/face/mesh.h"
+#include "draw/face/portrait.h"
+#include "mesh/ray.h"
+
+struct portrait {
+	const struct rig *rig;
+	const struct scene *eye[2];
+	const struct envmap *env;
+	struct portrait_conf conf;
+	struct deform *deform;
+	struct portrait_mesh mesh;
+	struct ray_scene *shadow;   // the skin's own triangles
+	float (*lit)[3];            // irradiance at the rig's vertices, before it is spread
+	float (*lit_at)[3];         // where they were then
+	int *near_start, *near;     // neighbours of the rig's vertices
+	float *spread;              // weight of each neighbour, of red
+	double target_from_globe[2][3][3];
+	struct portrait_lash *lash; // their triangles are the mesh's last, from first_lash; their vertices from lash_vertex
+	int n_lashes, first_lash, lash_vertex;
+	const struct wrinkle_maps *wrinkles;
+	int *wrinkle_input;         // [wrinkles.n] control that it follows; -1: none
+	float *wrinkle_strength;    // in this pose
+	bool folded;                // any of them
+	bool matte;                 // nothing mirrors
+	float corner[2][3];         // the globes' inner corners at rest, where known
+	bool corner_known[2];
+};
+
+#endif

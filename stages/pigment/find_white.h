@@ -1,0 +1,17 @@
+/* find_white: the white that an eye's colours are measured against, from its photographs. */
+#ifndef STAGES_PIGMENT_FIND_WHITE_H
+#define STAGES_PIGMENT_FIND_WHITE_H
+#include "stages/pigment/pigment_stage.h"
+
+struct found_white {
+	struct white white;    // in the texture's colours
+	const char *photo;     // NAME of the photograph it is from; null: none
+	double cos_view;       // mean cosine, behind the cornea, of the directions that the photographs see the iris from
+};
+
+/* Reads every photograph of the eye that the texture was made of. One that cannot be read is warned of and left out.
+ * Returns false, err set, when the texture's record cannot be read. */
+bool find_white(struct found_white *out, struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
+                const struct pigment_stage_conf *conf, struct err *err);
+
+#endif
