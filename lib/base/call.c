@@ -148,7 +148,8 @@ void call_parse(struct call *call, const char *name, const char *about, int argc
 	}
 }
 
-/* Keys with a stage's name in front are that stage's to judge; all others must stand in config/capture.conf. */
+/* Checks the keys of capture.conf that are not of this stage: a key that begins with the name of a stage is left to that stage;
+ * all others must stand in config/capture.conf. */
 static bool check_shared(const struct conf *conf, const char *config_dir, struct err *err)
 {
 	for (int i = 0; i < conf->n; i++) {

@@ -21,8 +21,8 @@ struct reading {
 	struct err *err;
 };
 
-/* Gives inih (ini_parse_stream) the next line. inih's own reader cuts a line where its buffer ends (`size` bytes; 200 as Debian builds
- * it) and does not pass line numbers to the handler. Of a line that does not fit, inih gets the key alone and take() reads the value. */
+/* Gives inih (ini_parse_stream) the next line. inih's own reader cuts a line where its buffer ends (`size` bytes; 200 as Debian builds it)
+ * and does not pass line numbers to the handler. Of a line that does not fit, inih gets the key alone, and take() reads the value. */
 static char *next_line(char *buf, int size, void *user)
 {
 	struct reading *r = user;

@@ -1,5 +1,5 @@
 /* conf: keys and values from configuration files and the command line, each with the place it came from.
- * Three layers, later ones win: config/STAGE.conf, capture.conf, command line.
+ * There are three layers: config/STAGE.conf, capture.conf, command line; a later one has precedence.
  */
 #ifndef BASE_CONF_H
 #define BASE_CONF_H
@@ -20,19 +20,19 @@ struct conf {
 	int n_files;
 };
 
-/* Appends the items of a file: one "key = value" a line, at most 1000 bytes each without the line's end, the key of them about 200;
- * a comment begins with ; or # at the line's beginning, or with ; behind a space.
+/* Appends the items of a file: one "key = value" a line, of at most 1000 bytes without the line's end (the key, with inih as Debian
+ * builds it, of at most 198). A comment begins with ; or # at the beginning of a line, or with ; after a space.
  * prefix  put before each key ("limbus."), or ""
  * layer   as in struct conf_item
  * Returns false, err set with file, line and rule, for a key given twice in the file, a longer line, a zero byte, or a line that is
  * not "key = value"; and for a missing file, except in layer 1 (an empty capture.conf and none are the same). */
 bool conf_load(struct conf *conf, const char *path, const char *prefix, int layer, struct err *err);
 
-/* Appends one item of the command line. */
+/* Appends one item of the command line (layer 2). Key and value are copied. */
 void conf_add(struct conf *conf, const char *key, const char *value);
 
-/* The strongest item of that key, or 0. With quality q ("draft"), a default "key.q" goes before the default
- * "key"; what capture.conf or the command line say goes before both. */
+/* Finds the item that holds for `key`: that of the highest layer. quality: the preset in effect ("draft") or null: within the
+ * defaults, "key.draft" has precedence over "key". Returns null when there is none; owned by conf. */
 const struct conf_item *conf_find(const struct conf *conf, const char *key, const char *quality);
 
 void conf_free(struct conf *conf);

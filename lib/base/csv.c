@@ -18,7 +18,7 @@ struct text {
 	int line;
 };
 
-/* The next field of the line, as a string in place; *last: no more in this line. Null, err set, for an open quote. */
+/* Returns the next field of the line, a string in place; *last: the line has no more. Null, err set, where a quote does not end. */
 static char *next_field(struct text *t, bool *last, struct err *err)
 {
 	char *from = t->at, *p = from, *to = from;
@@ -48,7 +48,7 @@ static char *next_field(struct text *t, bool *last, struct err *err)
 	return from + strspn(from, " ");
 }
 
-/* Leaves t->at at the next line with content; false at the end. */
+/* Moves t->at to the next line with content. Returns false at the end. */
 static bool next_line(struct text *t)
 {
 	for (; t->at < t->end; t->line++) {

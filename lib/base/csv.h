@@ -1,7 +1,8 @@
-/* csv: tables of numbers with named columns. An empty field is NAN. Written with %.10g, one head line, no comment.
- * Read: comma, semicolon or tab between fields (what the head line has), CRLF, a byte-order mark, quotes round fields,
- * empty lines and lines that begin with # are all taken. A field that is no number, a row of another length than the
- * head, a column named twice, are refused with file and line.
+/* csv: tables of numbers with named columns. An empty field is NAN.
+ * Written: one head line, numbers with %.10g, commas, no comment.
+ * Read: fields separated by comma, semicolon or tab (whichever the head line has); CRLF, a byte-order mark, quotes round fields,
+ * empty lines and comment lines (#) are accepted. A field that is no number, a row of another length than the head, and a column
+ * named twice are errors that name file and line.
  */
 #ifndef BASE_CSV_H
 #define BASE_CSV_H
@@ -15,24 +16,26 @@ struct csv_table {
 	int *line;     // [n_rows] of the file, from 1
 };
 
-/* csv_table_free in any case. */
+/* Reads a file. Returns false, err set, when it cannot be read or is malformed; csv_table_free in any case. */
 bool csv_read(struct csv_table *table, const char *path, struct err *err);
 
-/* n_columns names; no row yet. */
+/* An empty table with columns names[n_columns], which are copied. csv_table_free. */
 struct csv_table csv_table_new(int n_columns, const char *const names[]);
 
-/* Appends a row of n_columns numbers. */
+/* Appends row[n_columns]. */
 void csv_add(struct csv_table *table, const double *row);
 
+/* Writes the table beside `path` and renames. Returns false, err set, when it cannot be written. */
 bool csv_save(const char *path, const struct csv_table *table, struct err *err);
 void csv_table_free(struct csv_table *table);
 
-/* Index of that column; -1 when there is none. */
+/* Returns the index of that column, or -1. */
 int csv_column(const struct csv_table *table, const char *name);
 
-/* The same; err names path and column when there is none. */
+/* As csv_column; where there is none, err names path and column. */
 int csv_need(const struct csv_table *table, const char *name, const char *path, struct err *err);
 
+/* The number in that row and column; NAN for column -1. */
 static inline double csv_at(const struct csv_table *table, long row, int column)
 {
 	return column < 0 ? __builtin_nan("") : table->cell[row * table->n_columns + column];

@@ -1,6 +1,6 @@
-/* err: what went wrong, in one line.
- * Faults of the input return false through struct err; our own bugs are asserts.
- * A zeroed struct err holds no error. The first error stays: later ones are dropped.
+/* err: an error message of one line, filled by the function that fails.
+ * A function that meets a fault of the input sets err and returns false (or null); our own bugs are asserts.
+ * A zeroed struct err holds no error. The first error is kept; later ones are dropped.
  */
 #ifndef BASE_ERR_H
 #define BASE_ERR_H
@@ -14,11 +14,11 @@ struct err {
 	char msg[1024];
 };
 
-/* Say place, key, value, rule: "%s: camera count = %d, must be >= 2". Always false. */
+/* Sets the message, unless there is one: place, key, value, rule ("%s: camera count = %d, must be >= 2"). Returns false. */
 __attribute__((format(printf, 2, 3)))
 bool err_set(struct err *err, const char *fmt, ...);
 
-/* Put "context: " before the message. Always false. */
+/* Puts "context: " before the message. Returns false. */
 __attribute__((format(printf, 2, 3)))
 bool err_wrap(struct err *err, const char *fmt, ...);
 

@@ -14,7 +14,7 @@
 
 #include "base/mem.h"
 
-/* Opens a regular file for reading; a pipe or device would hang or never end. */
+/* Opens a regular file for reading. A pipe or device is refused: it could block or never end. */
 static int open_regular(const char *path, struct stat *st, struct err *err)
 {
 	int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -115,8 +115,8 @@ static bool write_all(int fd, const char *data, size_t size)
 	return true;
 }
 
-/* Opens the temporary file, empty, for this writer alone: another that writes the same file at the same moment waits, and
- * finds that what it waited for has been renamed. */
+/* Opens the temporary file, empty and locked. Another program that writes the same file waits for the lock, finds that the file
+ * has been renamed meanwhile, and tries again. */
 static int open_alone(const char *tmp)
 {
 	for (;;) {
@@ -138,7 +138,7 @@ static int open_alone(const char *tmp)
 	}
 }
 
-/* Says what the file system has put off so far; the file itself, and its lock, stay. */
+/* Flushes, so that write errors that the file system has deferred appear now; the file stays open and locked. */
 static bool flushed(int fd)
 {
 	int same = dup(fd);

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-/* "0.012 mm, 0.05 s + 0.04 s/Mpx: scale = 0.5" */
+/* Parses "0.012 mm, 0.05 s + 0.04 s/Mpx: scale = 0.5". */
 static bool read_point(struct front_point *p, const struct conf_item *item, struct err *err)
 {
 	int end = 0;
@@ -23,7 +23,8 @@ static bool read_point(struct front_point *p, const struct conf_item *item, stru
 	return true;
 }
 
-/* "unrefract.small.more = survey_size = 320" after a line of unrefract.small: goes on with its settings. Any other line: false. */
+/* Appends a continuation line, "unrefract.small.more = survey_size = 320", to the settings of the point before it. Returns false
+ * where the line is no continuation. */
 static bool read_more(struct front *front, const struct conf_item *item, struct err *err)
 {
 	const char *dot = strchr(item->key, '.'), *more = dot ? strstr(dot + 1, ".more") : 0;
@@ -151,7 +152,8 @@ static int fastest(const struct front *front, const char *stage, double mpx)
 	return best;
 }
 
-/* Natural logarithms of error saved in a second of `more`; 0 when it is not more exact or does not fit. */
+/* Gain of going from point `now` to point `more`: decrease of the error's natural logarithm for each further second; 0 when
+ * `more` is not more exact or takes more than the seconds left. */
 static double worth(const struct front_point *now, const struct front_point *more, double mpx, double left_s)
 {
 	enum { ALL_EXACT = 20 };  // an error of exactly zero: nothing is left to save

@@ -32,7 +32,7 @@ bool front_save(const struct front *front, const struct front_ask *ask, int n, c
 	return ok;
 }
 
-/* The name of the point chosen for this stage, "" where none is; null when the file answers another question. free(). */
+/* The name of the point chosen for this stage, "" where none is; null when the choice was made for another request. free(). */
 static char *chosen_name(const char *path, const struct front_ask *ask, const char *stage)
 {
 	char *text = 0, *name = 0;
@@ -50,7 +50,8 @@ static char *chosen_name(const char *path, const struct front_ask *ask, const ch
 	return name;
 }
 
-/* "scale = 0.5, max_size = 512": as defaults of the preset in effect, so that capture.conf and the command line win. */
+/* Adds the point's settings ("scale = 0.5, max_size = 512") as defaults of the preset in effect, so that capture.conf and the
+ * command line have precedence. */
 static void add_settings(struct conf *conf, const struct front_point *p, const char *path)
 {
 	conf->files = mem_grow(conf->files, (size_t)conf->n_files + 1, sizeof *conf->files);

@@ -1,4 +1,4 @@
-/* mem: allocation that does not fail. Out of memory ends the program with exit 1 and one line. */
+/* mem: allocation that does not fail: running out of memory ends the program with one line and exit 1. */
 #ifndef BASE_MEM_H
 #define BASE_MEM_H
 #include <stddef.h>
@@ -9,15 +9,16 @@ extern "C" {
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
-/* n objects of `size` bytes, zeroed. Owned by the caller; free(). */
+/* Allocates n objects of `size` bytes, zeroed; free(). */
 void *mem_new(size_t n, size_t size);
 
-/* n objects of `size` bytes, not zeroed, aligned to 64 bytes for vector loads; free(). */
+/* Allocates n objects of `size` bytes, not zeroed, aligned to 64 bytes for vector loads; free(). */
 void *mem_array(size_t n, size_t size);
 
-/* p grown or shrunk to n objects of `size` bytes. */
+/* Resizes p (null: allocates) to n objects of `size` bytes; returns the new address; what is added is not zeroed. */
 void *mem_grow(void *p, size_t n, size_t size);
 
+/* A copy of a string; free(). */
 char *mem_str(const char *s);
 
 /* printf into a new string; free(). */

@@ -38,7 +38,7 @@ static const char *quality_of(const struct conf *conf)
 	return item ? item->value : 0;
 }
 
-/* "file:line: key = value" of an item, for messages. */
+/* Sets err to "file:line: key = value: rule". Returns false. */
 static bool refuse(const struct conf_item *item, const char *key, const char *rule, struct err *err)
 {
 	if (item->line)
@@ -141,7 +141,7 @@ static bool read_each(const struct opt *o, const char *pattern, const struct con
 		char *name;
 		if (!item->layer || !opt_match(pattern, item->key, &name))
 			continue;
-		if (conf_find(conf, item->key, 0) != item) {  // a later layer says otherwise
+		if (conf_find(conf, item->key, 0) != item) {  // a later layer overrides it
 			free(name);
 			continue;
 		}

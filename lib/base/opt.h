@@ -1,5 +1,5 @@
-/* opt: one table per program. The same rows drive the command line, the configuration files, --help,
- * --print-config and the range checks.
+/* opt: the table of a program's options. Its rows serve the command line, the configuration files, --help, --print-config and the
+ * range checks.
  *
  * A key without a dot belongs to the stage: "edge_sigma" is `limbus.edge_sigma` in capture.conf,
  * `edge_sigma` in config/limbus.conf and --edge-sigma on the command line. A key with a dot, and `quality`, is shared by
@@ -16,9 +16,9 @@ enum opt_type { OPT_T_REAL, OPT_T_INT, OPT_T_BOOL, OPT_T_CHOICE, OPT_T_REALS, OP
 
 enum { OPT_EACH_MAX = 4 };
 
-/* What a pattern key such as `photo.*.hint_px` found. */
+/* One match of a pattern key such as `photo.*.hint_px`. */
 struct opt_each {
-	char *name;  // what stood for the star
+	char *name;  // what the star matched; owned
 	double value[OPT_EACH_MAX];
 	const char *text;  // the value as written; owned by the conf
 };
@@ -57,24 +57,26 @@ struct opt {
 /* Key with one star: one entry for each name found; n = 0 reads text. */
 #define OPT_EACH(key, ptr, n, lo, hi, unit, help) { key, OPT_T_EACH, true, n, lo, hi, unit, help, 0, { .each = ptr } }
 
-/* The full key of an option of that stage: "limbus.edge_sigma", "camera.focal_px". free(). */
+/* The full key of an option of that stage ("limbus.edge_sigma", "camera.focal_px"); free(). */
 char *opt_full_key(const char *stage, const char *key);
 
-/* Fills every out pointer from conf. False, err set (file, line, key, value, rule), for a value that cannot
- * be read or is out of range, a key without a default, or a key of this stage that the table does not know. */
+/* Fills every out pointer of the table from conf; strings stay conf's. Returns false, err set (file, line, key, value, rule), for a
+ * value that cannot be read or is out of range, a key without a default, or a key of this stage that is not in the table.
+ * opt_free in any case. */
 bool opt_resolve(const char *stage, int n, const struct opt opts[], const struct conf *conf, struct err *err);
 
-/* Key and effective value of every row, pattern keys expanded, one "key = value" a line, sorted by key: the
- * stage's slice of the configuration. */
+/* Prints the stage's slice of the configuration: key and effective value of every row, pattern keys expanded, one "key = value" a
+ * line, sorted by key. */
 void opt_print(FILE *out, const char *stage, int n, const struct opt opts[], const struct conf *conf);
 
-/* --help's table: key, effective value, unit, range, help. */
+/* Prints the table of --help: key, effective value, range, unit, help. */
 void opt_help(FILE *out, const char *stage, int n, const struct opt opts[], const struct conf *conf);
 
-/* True when full key `key` matches `pattern` with at most one star; *name gets what the star stood for
- * (free()), or null. name may be null. */
+/* Whether the full key `key` matches `pattern`, which has at most one star. name: null, or set to what the star matched (free()),
+ * null without a match. */
 bool opt_match(const char *pattern, const char *key, char **name);
 
+/* Frees the lists of the table's pattern keys. */
 void opt_free(int n, const struct opt opts[]);
 
 #endif

@@ -19,7 +19,7 @@ static char *record_path(const char *capture, const char *stage)
 	return mem_printf("%s/work/.made/%s.json", capture, stage);
 }
 
-/* A record that cannot be read is as good as none: the stage runs again. */
+/* Loads a JSON object; an empty one where it cannot be read: the stage then runs again. */
 static json_t *load_object(const char *path)
 {
 	json_t *json = json_load_file(path, 0, 0);
@@ -97,7 +97,8 @@ static bool same_file(const json_t *entry, const struct stat *st)
 	       && json_integer_value(json_object_get(entry, "ctime")) == ns(st->st_ctim);
 }
 
-/* File names are bytes, JSON is UTF-8: bytes that are neither are escaped, so that no two names meet. */
+/* A file name as a JSON key: names are bytes, JSON is UTF-8. A name that is not UTF-8 is escaped so that no two names get one
+ * key. */
 static char *json_key(const char *rel)
 {
 	json_t *probe = json_string(rel);

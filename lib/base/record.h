@@ -1,6 +1,6 @@
-/* record: what a stage made from what, by the bytes; and whether that still holds.
- * Kept in work/.made/STAGE.json. Hashes of unchanged files are remembered by size, inode and times
- * (work/.made/hashes), so that checking a hundred photographs reads none of them.
+/* record: which files a stage made from which inputs, by hashes of their bytes. Kept in work/.made/STAGE.json.
+ * Hashes of files are cached by size, inode and times (work/.made/hashes), so that checking a hundred unchanged photographs reads
+ * none of them. Whether a record still holds: record_holds.h.
  */
 #ifndef BASE_RECORD_H
 #define BASE_RECORD_H
@@ -17,26 +17,35 @@ struct record {
 	bool hashes_changed;
 };
 
-/* Loads the old record, if any; begins a new one. config: the lines of opt_print. */
+/* Loads the stage's old record, if any, and begins a new one.
+ * capture, stage  folder and name; stage must outlive the record
+ * config          the lines of opt_print
+ * record_free. */
 struct record *record_open(const char *capture, const char *stage, const char *program_path, const char *config);
 void record_free(struct record *record);
 
-/* The hash of a file of the capture folder, from memory when it has not changed. Borrowed; null if unreadable. */
+/* The hash of a file of the capture folder (rel; or an absolute path), from the cache when the file has not changed. Owned by the
+ * record; null if unreadable. */
 const char *record_hash(struct record *record, const char *rel);
 
-/* The hash of a folder's sorted listing. Registers the listing as an input. */
+/* Registers a folder's sorted listing, by its hash (record_listing_hash), as an input. */
 void record_list(struct record *record, const char *dir, const char *hash);
 
-/* Registers a pattern of keys ("view.*.distance_mm", in full) that the stage reads: one more of them is a change. */
+/* Registers a pattern of keys ("view.*.distance_mm", in full) that the stage reads: a new key that matches is then a change. */
 void record_each(struct record *record, const char *pattern);
 
+/* Whether the file `out` stands as the last run recorded it, made by this program with this configuration from in[n] with these
+ * bytes. If so it is recorded for this run too. */
 bool record_fresh(struct record *record, const char *out, int n, const char *const in[]);
+
+/* Records that `out` has been made from in[n]. */
 void record_made(struct record *record, const char *out, int n, const char *const in[]);
 
-/* complete: the stage has done all its work. */
+/* Writes the record, and the cache of hashes if it changed. complete: the stage has done all its work. Returns false, err set, when
+ * that fails. */
 bool record_save(struct record *record, bool complete, struct err *err);
 
-/* Hash of the sorted names. */
+/* Hash of sorted names[n]. */
 void record_listing_hash(char out[33], int n, char *const names[]);
 
 #endif

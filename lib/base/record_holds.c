@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "base/record_impl.h"
 
-/* One of the stage's patterns stands for that key: "view.*.distance_mm" for "view.a.distance_mm". */
+/* Whether one of the stage's patterns matches the key: "view.*.distance_mm" matches "view.a.distance_mm". */
 static bool is_each(const json_t *patterns, const char *key)
 {
 	size_t i;
@@ -33,8 +33,8 @@ static bool config_holds(const json_t *old, const char *stage, const struct conf
 			return false;
 		}
 	}
-	// A key that was not there when the stage ran. Its own keys are all in the record, known ones as well as
-	// the shared ones it reads; one that a pattern stands for counts when it names something new.
+	// A key that was not set when the stage ran is a change if it is the stage's own or matches one of its patterns; the shared keys
+	// that it reads are all in the record.
 	size_t m = strlen(stage);
 	for (int i = 0; i < conf->n; i++) {
 		const char *k = conf->items[i].key;
@@ -47,7 +47,7 @@ static bool config_holds(const json_t *old, const char *stage, const struct conf
 	return true;
 }
 
-/* record_hash, each file looked at once: every output may have the same hundred inputs. seen: path -> hash, or null. */
+/* As record_hash, but looks at each file once, since every output may have the same hundred inputs. seen: path -> hash, or null. */
 static const char *hash_once(struct record *r, json_t *seen, const char *rel)
 {
 	json_t *known = json_object_get(seen, rel);

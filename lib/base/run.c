@@ -25,7 +25,7 @@ struct child {
 	pid_t pid;
 	int out, log;              // its output; the log
 	char line[LINE_MAX_BYTES + 1], reason[LINE_MAX_BYTES + 1];
-	int n_line, sure;          // sure: how much the reason looks like one
+	int n_line, sure;          // sure: how likely the line kept is the reason of a failure, 0 to 2
 	bool disk_full;
 };
 
@@ -43,8 +43,8 @@ bool run_exists(const char *name)
 	return found;
 }
 
-/* How much a line looks like what a program says that gives up: 2 an error by name, of which the first is the reason and the rest
- * a trace; 1 a result, of which the last counts. */
+/* How likely a line of output is the reason of a failure: 2 for a line that names an error (the first such line is the reason,
+ * the rest a trace), 1 for a result (the last such line counts). */
 static int looks_like_reason(const char *line)
 {
 	static const char *const words[] = { "ERROR", "Error", "error:", "Check failed", "terminate called", "what():" };
@@ -70,7 +70,7 @@ static void end_of_line(struct child *c)
 		c->run->line(c->run->ctx, c->line);
 }
 
-/* What it says now; false at the end. */
+/* Reads the output that is there now. Returns false at its end. */
 static bool take_output(struct child *c)
 {
 	char piece[4096];
@@ -89,7 +89,7 @@ static bool take_output(struct child *c)
 	return n > 0;
 }
 
-/* The environment with further settings behind it; those of the same name before them are left out. */
+/* The environment, variables of the same names replaced by the further settings. */
 static char **environment(const char *const *more)
 {
 	int n = 0, extra = 0, kept = 0;
@@ -140,7 +140,7 @@ static bool start(struct child *c, const struct run *run, struct err *err)
 	return true;
 }
 
-/* Less than the smallest thing worth writing is left where the log stands. */
+/* Whether the disk that the log is on is full. */
 static bool disk_is_full(const char *log)
 {
 	struct statvfs fs;
@@ -174,7 +174,7 @@ static bool finish(struct child *c, struct err *err)
 	return err_set(err, "%s %s: failed: %.200s; all it said: %s", program, task, reason, c->run->log);
 }
 
-/* Waits until one of the running children says something or ends. */
+/* Waits until one of the running children writes output or ends. */
 static bool attend(struct child children[], int n, int *running, struct err *err)
 {
 	struct pollfd *fds = mem_new((size_t)n, sizeof *fds);

@@ -1,4 +1,4 @@
-/* run: other programs, run as they are: no shell, what they say in a log and line by line to the caller. */
+/* run: other programs run as child processes, without a shell; their output goes to a log and line by line to the caller. */
 #ifndef BASE_RUN_H
 #define BASE_RUN_H
 #include "base/err.h"
@@ -9,19 +9,18 @@ struct run {
 	const char *log;                 // file its output is appended to
 	void (*line)(void *ctx, const char *line);  // every line of its output, control bytes left out; or null
 	void *ctx;
-	const char *install;             // what to say when it is not installed: "apt-get install colmap"
+	const char *install;             // named in the error when it is not installed: "apt-get install colmap"
 	const char *dir;                 // the folder it runs in; null: ours
 };
 
-/* Runs it to its end. False, err set in one line, when it is not installed, cannot be started, was killed (by which
- * signal), or failed: the error names the folder's disk if it is full, else the last thing it said that looks like a
- * reason. The child's own files are wherever it was told to put them; its current folder is ours unless `dir` says another. */
+/* Runs a program to its end. Returns false, err set, when it is not installed, cannot be started, was killed (by which signal), or
+ * failed: the error names the disk if it is full, else the last line of output that looks like a reason. */
 bool run_program(const struct run *run, struct err *err);
 
-/* As run_program, n of them, at most `threads` at a time. The first error is reported when all have ended. */
+/* Runs n programs, at most `threads` at a time. When all have ended, returns false with the first error, if there was one. */
 bool run_programs(int n, const struct run runs[], int threads, struct err *err);
 
-/* True when a program of this name stands in PATH. */
+/* Whether PATH has a program of this name. */
 bool run_exists(const char *name);
 
 #endif

@@ -16,7 +16,7 @@
 #include "base/version.h"
 #include "base/work.h"
 
-/* Parts of a stage that run at the same time record what they make and say in one place. Recursive: some of these call others. */
+/* Guards the record and the log, which threads of a stage share. Recursive, since some functions here call others. */
 static pthread_mutex_t busy = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
 
 static double now_s(void)
@@ -41,7 +41,7 @@ _Noreturn static void die(const struct stage *stage, const struct err *err, int 
 	exit(status);
 }
 
-/* One stage at a time in a folder: a second make waits for the first instead of writing beside it. */
+/* Locks the folder for one stage at a time: a second program waits for the first. */
 static bool lock_work(struct stage *stage, struct err *err)
 {
 	bool busy = false;
@@ -82,7 +82,7 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 		opt_print(stdout, name, n_opts, opts, &stage->conf);
 		exit(0);
 	}
-	// At most as many as there are: results do not depend on it, memory does.
+	// At most as many threads as there are cores: memory grows with them, results do not depend on them.
 	int all = omp_get_num_procs();
 	stage->threads = call.threads > 0 && call.threads < 4 * all ? call.threads : all;
 	omp_set_num_threads(stage->threads);
@@ -207,7 +207,7 @@ void stage_warn(struct stage *stage, const char *fmt, ...)
 void stage_progress(struct stage *stage, int done, int total, const char *what)
 {
 	double now = now_s(), passed = now - stage->start_s;
-	// What comes after another piece of work is timed from that one's end.
+	// A piece of work is timed from the end of the one before it.
 	if (strncmp(stage->progress_what, what, sizeof stage->progress_what - 1)) {
 		snprintf(stage->progress_what, sizeof stage->progress_what, "%s", what);
 		stage->what_s = stage->called_s > 0 ? stage->called_s : stage->start_s;
@@ -241,7 +241,7 @@ void stage_figure(struct stage *stage, const char *key, double value, const char
 	pthread_mutex_unlock(&busy);
 }
 
-/* The sentence, recorded; free(). */
+/* Formats and logs the sentence; free(). */
 static char *skip(const char *fmt, va_list ap)
 {
 	char *text = 0;

@@ -1,5 +1,5 @@
-/* stage: what every program has in common: its options, its capture folder, its log and progress, and the
- * record of what it made from what.
+/* stage: what every program has in common: its options, its capture folder, its log and progress, and the record of what it made
+ * from which inputs.
  *
  *     struct stage stage;
  *     struct err err = { 0 };
@@ -8,13 +8,12 @@
  *             stage_note(&stage, "...");
  *     return stage_end(&stage, &err);
  *
- * What follows stage_start may be called from several threads at once, but for stage_progress and stage_end.
- * Only stage_* prints or exits. Paths handed to stage_* are relative to the capture folder
- * ("photos/left.jpg", "work/iris/texture.exr").
+ * After stage_start, all functions but stage_progress and stage_end may be called from several threads at once.
+ * Only stage_* prints or exits. Paths passed to stage_* are relative to the capture folder ("photos/left.jpg",
+ * "work/iris/texture.exr").
  *
- * work/.made/STAGE.json records the program, its slice of the configuration, and the bytes (hashes) of every
- * file read and written. Whether a stage has to run again follows from that record and the bytes on disk,
- * never from dates: record.h.
+ * work/.made/STAGE.json records the program, its slice of the configuration, and the hash of every file read and written. Whether a
+ * stage has to run again follows from that record and the bytes on disk, never from dates (record.h).
  */
 #ifndef BASE_STAGE_H
 #define BASE_STAGE_H
@@ -30,7 +29,7 @@ struct record;
 struct stage {
 	const char *name;
 	const char *capture;  // path of the capture folder; "." when not given
-	int threads;          // what --threads says, or all; set in OpenMP already
+	int threads;          // of --threads, or all; set in OpenMP already
 	bool quiet, force;
 	struct conf conf;
 	int n_opts;
@@ -40,12 +39,14 @@ struct stage {
 	int n_strings, lock;
 	double start_s, progress_s;
 	int progress_shown;
-	char progress_what[64];  // the work that is counted now
+	char progress_what[64];  // the piece of work that progress is shown of
 	double what_s, called_s; // when it began; when stage_progress was last called
 	bool progress_open;  // an unfinished progress line stands on the terminal
 };
 
-/* Parses, loads the configuration, fills the table's pointers, locks work/ against a second make.
+/* Parses the command line, loads the configuration, fills the table's pointers, and locks work/ against a second program.
+ * name, about   of the program, for --help and messages
+ * opts[n_opts]  must outlive the stage
  * --help, --version and --print-config print and exit 0; a wrong call exits 2, bad configuration exits 1. */
 void stage_start(struct stage *stage, const char *name, const char *about, int argc, char **argv, int n_opts,
                  const struct opt opts[]);
@@ -54,39 +55,41 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 __attribute__((format(printf, 2, 3)))
 const char *stage_path(struct stage *stage, const char *fmt, ...);
 
-/* The names in a folder of the capture, sorted; the listing becomes an input, so that a file added or taken
- * away is noticed. Free with file_list_free. */
+/* Lists the names in a folder of the capture, sorted, as file_list. The listing is recorded as an input, so that a file added or
+ * removed makes the stage run again. file_list_free. */
 bool stage_list(struct stage *stage, struct file_list *out, const char *dir, struct err *err);
 
-/* True when `out` stands as this very program made it from these bytes with this configuration: skip it. */
+/* Whether `out` is up to date: made by this very program from in[n] with these bytes and this configuration. It need not be made
+ * again then. */
 bool stage_fresh(struct stage *stage, const char *out, int n, const char *const in[]);
 
-/* JSON text {stage, version, config, inputs} to embed in the artifact made from these inputs. Owned by the
- * stage. No date, no absolute path, no thread count: equal inputs give equal bytes. */
+/* JSON text {stage, version, config, inputs} to embed in the artifact made from in[n]. Owned by the stage, valid until stage_end.
+ * It has no date, absolute path or number of threads: equal inputs give equal bytes. */
 const char *stage_made_by(struct stage *stage, int n, const char *const in[]);
 
-/* Records that `out` has been made from `in`. Call after it is written. */
+/* Records that `out` has been made from in[n]; to be called after it is written. Returns false, err set, when the record cannot
+ * be saved. */
 bool stage_made(struct stage *stage, const char *out, int n, const char *const in[], struct err *err);
 
-/* One line of log to stderr, unless --quiet. */
+/* Prints one line of log to stderr, unless --quiet. */
 __attribute__((format(printf, 2, 3)))
 void stage_note(struct stage *stage, const char *fmt, ...);
 
-/* The same even with --quiet: something the user has to know. */
+/* The same with --quiet too: a warning. */
 __attribute__((format(printf, 2, 3)))
 void stage_warn(struct stage *stage, const char *fmt, ...);
 
 /* Shows progress with the time left: a bar on a terminal, plain lines elsewhere, nothing in short runs. */
 void stage_progress(struct stage *stage, int done, int total, const char *what);
 
-/* A number for the review page: work/log/STAGE.json, beside the seconds the stage took. */
+/* Logs a number for the review page, in work/log/STAGE.json. */
 void stage_figure(struct stage *stage, const char *key, double value, const char *unit);
 
-/* A sentence for the review page's list of what was not computed and why. */
+/* Prints, and logs for the review page, a sentence that says what was not computed and why. */
 __attribute__((format(printf, 2, 3)))
 void stage_skipped(struct stage *stage, const char *fmt, ...);
 
-/* The same for what another line, of this stage or of one before, has said already: recorded, not printed. */
+/* The same without printing, where this stage or one before it has printed as much already. */
 __attribute__((format(printf, 2, 3)))
 void stage_skipped_as_said(struct stage *stage, const char *fmt, ...);
 

@@ -47,7 +47,7 @@ static void put_escaped(FILE *out, const char *s)
 			fputs("&#39;", out);
 			break;
 		default:
-			// Control bytes mean nothing in HTML, and some of them are errors.
+			// Control bytes have no meaning in HTML; some are errors.
 			fputc((unsigned char)*s < 0x20 && *s != '\n' && *s != '\t' ? ' ' : *s, out);
 		}
 }
@@ -73,7 +73,8 @@ static bool is_there(const json_t *value)
 	return value && !json_is_false(value) && !json_is_null(value);
 }
 
-/* The next hole of [at, end): *kind is '&', '#', '^', '/' or 0. Returns its beginning; *after is behind it. Null: none. */
+/* Finds the next placeholder in [at, end). Returns its beginning, or null; *kind is '&', '#', '^', '/' or 0, *after the byte
+ * behind it. */
 static const char *next_hole(const char *at, const char *end, char *kind, char key[KEY], const char **after)
 {
 	const char *open = memmem(at, (size_t)(end - at), "{{", 2);
@@ -87,7 +88,8 @@ static const char *next_hole(const char *at, const char *end, char *kind, char k
 	return open;
 }
 
-/* The end of the section that begins at `at`; *after is behind its closing hole. Null: it is never closed. */
+/* Returns the end of the section that begins at `at`, or null where it is never closed; *after is behind its closing placeholder.
+ * */
 static const char *section_end(const char *at, const char *end, const char *key, const char **after)
 {
 	char kind, other[KEY];

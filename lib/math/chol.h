@@ -1,11 +1,14 @@
-/* chol: tiny symmetric positive definite systems, in place, without calls: for inner loops where LAPACK's own
- * overhead would be most of the time. Row-major [.][stride], lower triangle used. */
+/* chol: Cholesky's solution of tiny symmetric positive definite systems, in place and inline, for inner loops where LAPACK's
+ * overhead would be most of the time. */
 #ifndef MATH_CHOL_H
 #define MATH_CHOL_H
 #include <math.h>
 #include <stdbool.h>
 
-/* a becomes its factor L, b the solution. False: not positive definite. */
+/* Solves a x = b.
+ * a[n][stride]  row-major, lower triangle used; overwritten by the factor L
+ * b[n]          overwritten by the solution
+ * Returns false when a is not positive definite. */
 static inline bool chol_solve(int n, int stride, double *a, double *b)
 {
 	for (int j = 0; j < n; j++) {

@@ -12,7 +12,7 @@
 enum { N = ELLIPSE_N, SAMPLES = 150, RANK_POINTS = 90 };
 static const double TUKEY = 5.5;  // 97.5 % efficient on normal errors
 
-/* inverse of a symmetric positive definite matrix */
+/* Inverse of a symmetric positive definite matrix. Returns false when m is none. */
 static bool invert(double inv[N][N], const double m[N][N])
 {
 	memcpy(inv, m, sizeof(double[N][N]));
@@ -112,8 +112,8 @@ bool ellipse_fit_direct(struct ellipse *e, int n, const double p[n][2], const do
 	return true;
 }
 
-/* The best of SAMPLES five-point ellipses by the sum of |distance| cut at the best median's multiple: least trimmed
- * squares in spirit; survives outliers up to nearly half. */
+/* The best of SAMPLES five-point ellipses by the 55 % quantile of |distance|, akin to least median of squares: it tolerates
+ * nearly half of the points as outliers. */
 static bool sample_start(struct ellipse *best, int n, const double p[n][2])
 {
 	struct rng rng = { 0x11b5 };
@@ -172,7 +172,7 @@ static void build(struct pass *pass, const struct ellipse *e, int n, const doubl
 	}
 }
 
-/* Median absolute deviation, then of those within four of it alone: outliers widen the first. */
+/* Median absolute deviation, repeated on the points within four times of it, since outliers widen the first. */
 static double scale_of(int n, const double *d, const double *prior, double *work)
 {
 	double scale = INFINITY;
@@ -198,11 +198,12 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 	bool ok = true;
 	for (int i = 0; i < n; i++)
 		d[i] = ellipse_distance(&t, e, p[i]);
-	/* From a sample, points at the known noise may lie many sigma off: the scale comes down to it with the fit. */
+	/* Around a start from a sample, inliers may be many sigma off: the scale begins large and falls to the known noise with
+	 * the fit. */
 	const bool falls = sigma <= 0 || !have_start;
 	const double least = sigma > 0 ? sigma : 1e-9;
 	double scale = falls ? fmax(scale_of(n, d, prior, d + n), least) : sigma;
-	if (!isfinite(scale)) {  // five points tell nothing of their own noise
+	if (!isfinite(scale)) {  // five points fit exactly: their noise cannot be estimated
 		ok = sigma > 0;
 		scale = sigma;
 	}
@@ -227,7 +228,7 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 			ok = false;
 			break;
 		}
-		/* The scale may fall only while the fit still moves in: a scale that grows back would let outliers in. */
+		/* The scale may only fall: one that grew again would readmit outliers. */
 		if (falls)
 			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), least);
 		if (size >= 1e-4 * scale)

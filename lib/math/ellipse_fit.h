@@ -3,23 +3,26 @@
 #define MATH_ELLIPSE_FIT_H
 #include "math/ellipse.h"
 
-/* Direct least squares fit (Halir and Flusser 1998, numerically stable Fitzgibbon), coordinates normalised.
- * weight may be null. False: fewer than 5 points, or they hold no ellipse. */
+/* Fits an ellipse to points p[n] by direct least squares (Halir and Flusser 1998, a numerically stable form of Fitzgibbon, Pilu and
+ * Fisher's), coordinates normalised. weight: of each point, or null. Returns false for fewer than 5 points and where the solution
+ * is no ellipse. */
 bool ellipse_fit_direct(struct ellipse *e, int n, const double p[n][2], const double *weight);
 
 struct ellipse_fit {
 	double sigma;       // robust scale of the distances, px
-	double cov_q[ELLIPSE_N][ELLIPSE_N];
+	double cov_q[ELLIPSE_N][ELLIPSE_N];  // covariance of q (ellipse.h)
 	int iterations;
 	double inliers;     // sum of the Tukey weights over n
 };
 
-/* Maximum likelihood fit, robust: geometric distances, iteratively reweighted with Tukey's biweight (c = 5.5, 97.5 %
- * efficient on clean data).
- * start   e as given, when `have_start`; else random five-point samples (seeded), the best by truncated distance
- * sigma   0: scale from the median absolute deviation; else the known noise of the points, px
- * weights may be null; in: prior weight of a point (1 / variance, relative); out[n] (may be null): Tukey weights
- * Returns false when no ellipse is supported. */
+/* Fits an ellipse to points p[n] robustly: an M-estimate on geometric distances, iteratively reweighted least squares with Tukey's
+ * biweight (c = 5.5, 97.5 % efficient on clean data).
+ * e           in: the start, if have_start; else the start is the best of random five-point samples (seeded) by the 55 % quantile
+ *             of distances. out: the fit
+ * prior       [n] weights of the points, 1 / variance, relative; or null
+ * out         [n] Tukey weights, 0..1; or null
+ * sigma       noise of the points, px; 0: their scale is estimated by the median absolute deviation
+ * Returns false for fewer than 5 points and where too few agree on an ellipse. */
 bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2],
                         const double *prior, double *out, double sigma, bool have_start);
 

@@ -1,8 +1,8 @@
-/* ellipse_type: an ellipse as people read it. Apart from ellipse.h, so that bridges can name it too. */
+/* ellipse_type: an ellipse by centre, semi-axes and angle. Apart from ellipse.h because C++ can include it. */
 #ifndef MATH_ELLIPSE_TYPE_H
 #define MATH_ELLIPSE_TYPE_H
 
-/* px; a >= b semi-axes; angle of the major axis from +x towards +y, radians in memory. */
+/* Centre and semi-axes a >= b, px; angle of the major axis from +x towards +y, radians. */
 struct ellipse {
 	double cx, cy, a, b, angle;
 };

@@ -9,7 +9,8 @@
 
 enum { CAVITY_MAX = NATURAL_MAX };
 
-/* The triangles whose circumcircle holds the point: those that inserting it would dissolve. */
+/* The cavity of a point: the triangles whose circumcircle contains it, which its insertion into the triangulation would remove
+ * (Bowyer and Watson). */
 struct cavity {
 	int n, triangle[CAVITY_MAX];
 };
@@ -20,7 +21,7 @@ static double side_of(const struct natural *nat, const struct natural_triangle *
 	return (b[0] - a[0]) * (q[1] - a[1]) - (b[1] - a[1]) * (q[0] - a[0]);
 }
 
-/* Walks to the triangle with the point in it; -1 outside the hull. */
+/* Walks from triangle to triangle to the one that contains the point; -1 outside the hull. */
 static int locate(const struct natural *nat, const double q[2], int from)
 {
 	int at = from >= 0 && from < nat->n ? from : 0, came = -1;
@@ -59,7 +60,7 @@ static bool dissolve(struct cavity *c, const struct natural *nat, const double q
 				continue;
 			const struct natural_triangle *t = &nat->triangle[next];
 			double x = q[0] - t->center[0], y = q[1] - t->center[1];
-			if (x * x + y * y >= t->radius2 * (1 - 1e-12))  // on the circle: it takes nothing from there
+			if (x * x + y * y >= t->radius2 * (1 - 1e-12))  // on the circle: no area is taken from there
 				continue;
 			if (c->n == CAVITY_MAX)
 				return false;
@@ -78,8 +79,8 @@ static double cross(const double o[2], const double a[2], const double b[2])
 	return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
 }
 
-/* What the point's Voronoi cell takes from that of the site where boundary edge (a, b) of the cavity ends: the polygon of
- * the circumcentres met when turning about b from (a, b) to the next boundary edge (b, c). Twice its area. */
+/* Twice the area that the point's Voronoi cell takes from the cell of site b, where boundary edge (a, b) of the cavity ends: the
+ * polygon of circumcentres met when turning about b from (a, b) to the next boundary edge (b, c). */
 static double stolen(const struct natural *nat, const struct cavity *cavity, const double q[2], int triangle, int a, int b)
 {
 	double first[2], last[2], area = 0;

@@ -21,7 +21,7 @@ static double turn(const double a[2], const double b[2], const double c[2])
 	return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* The lower faces of the sites lifted onto a paraboloid are the Delaunay triangles. */
+/* Takes the Delaunay triangles from Qhull: the lower faces of the convex hull of the sites lifted onto a paraboloid. */
 static void take_facets(struct natural *nat, qhT *qh)
 {
 	facetT *facet;
@@ -37,7 +37,7 @@ static void take_facets(struct natural *nat, qhT *qh)
 				t.site[k++] = qh_pointid(qh, vertex->point);
 		const double *a = nat->site[t.site[0]], *b = nat->site[t.site[1]], *c = nat->site[t.site[2]];
 		double side = k == 3 ? turn(a, b, c) : 0;
-		if (side == 0)  // Qhull's joggled or merged slivers
+		if (side == 0)  // a sliver of Qhull's merging
 			continue;
 		if (side < 0) {
 			int s = t.site[1];

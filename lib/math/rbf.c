@@ -19,7 +19,8 @@ static double distance2(int q, const double *a, const double *b)
 	return sum;
 }
 
-/* k-means++: each next centre with the probability of its squared distance from those there are. */
+/* k-means++ (Arthur and Vassilvitskii 2007): draws each next centre with probability proportional to the squared distance from
+ * the nearest one so far. */
 static void seed_centers(struct rbf *rbf, long n, const double *x, const double *w, struct rng *rng)
 {
 	double *near = mem_array((size_t)n + 1, sizeof *near);
@@ -43,7 +44,7 @@ static void seed_centers(struct rbf *rbf, long n, const double *x, const double 
 	free(near);
 }
 
-/* One round of Lloyd's: every centre to the mean of the rows nearest to it. */
+/* One iteration of Lloyd's algorithm: moves every centre to the mean of the rows nearest to it. */
 static void move_centers(struct rbf *rbf, long n, const double *x, const double *w)
 {
 	int q = rbf->q;

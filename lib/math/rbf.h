@@ -12,15 +12,19 @@ struct rbf {
 	double *constant;  // [r]
 };
 
-/* Centres for rows x[n_rows][q] of weights w >= 0, chosen anew for every seed alone. Inputs should be of comparable
- * scale. The number of functions is lowered to the number of rows. rbf_free. */
+/* Finds centres by k-means on rows x[n_rows][q] of weights w[n_rows] >= 0; the result depends on the seed alone. Inputs should be
+ * of comparable scale.
+ * functions  how many centres; at most the number of rows
+ * rbf_free. */
 void rbf_centers(struct rbf *rbf, int functions, long n_rows, int q, const double *x, const double *w, uint64_t seed);
 
-/* The output layer for y[n_rows][r]; width: in units of the mean distance of a centre from the nearest other. May be
- * called again with another width or ridge. */
+/* Fits the output layer to y[n_rows][r] by ridge regression; may be called again with another width or ridge.
+ * width  of the Gaussians, in units of the mean distance between a centre and the nearest other one
+ * ridge  penalty on the weights, >= 0 */
 void rbf_train(struct rbf *rbf, double width, double ridge, long n_rows, int r, const double *x, const double *y,
                const double *w);
 
+/* y[n_rows][r] of inputs x[n_rows][q]. */
 void rbf_predict(double *y, const struct rbf *rbf, long n_rows, const double *x);
 void rbf_free(struct rbf *rbf);
 

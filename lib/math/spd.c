@@ -9,9 +9,9 @@
 
 struct spd {
 	cholmod_common common;
-	cholmod_sparse *matrix;   // upper triangle by columns: the lower by rows
+	cholmod_sparse *matrix;   // upper triangle by columns, which is the lower one by rows
 	cholmod_factor *factor;
-	int32_t *from;            // which of the caller's values an entry is
+	int32_t *from;            // index of each entry's value in the caller's array
 	cholmod_dense *y, *e;     // work space of the solves
 	cholmod_dense *x;
 };
@@ -25,7 +25,7 @@ struct spd *spd_new(int n, const int32_t *start, const int32_t *column)
 			entries += column[k] <= i;
 	cholmod_start(&s->common);
 	s->common.print = 0;
-	s->common.final_ll = 1;  // L L' alone notices a matrix that is not positive definite
+	s->common.final_ll = 1;  // L L', unlike L D L', fails for a matrix that is not positive definite
 	s->common.error_handler = 0;
 	s->matrix = cholmod_allocate_sparse((size_t)n, (size_t)n, entries, 0, 1, 1, CHOLMOD_REAL, &s->common);
 	s->from = mem_array(entries + 1, sizeof *s->from);

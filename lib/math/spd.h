@@ -1,5 +1,5 @@
-/* spd: sparse symmetric positive definite systems through CHOLMOD. The fill-reducing order is found once for a pattern and
- * serves every matrix of that pattern. */
+/* spd: sparse symmetric positive definite systems through CHOLMOD. The fill-reducing ordering is computed once for a pattern and
+ * used for every matrix of that pattern. */
 #ifndef MATH_SPD_H
 #define MATH_SPD_H
 #include <stdbool.h>
@@ -7,14 +7,15 @@
 
 struct spd;
 
-/* Pattern of n rows, compressed; of each entry i j only those with j <= i count. Keeps nothing of the caller's. spd_free. */
+/* Analyses a pattern of n rows in compressed rows: row i has the columns column[start[i]] .. column[start[i + 1] - 1], of which
+ * those <= i count (lower triangle). Both arrays are copied. spd_free. */
 struct spd *spd_new(int n, const int32_t *start, const int32_t *column);
 void spd_free(struct spd *spd);
 
-/* Factors the matrix with these values in the pattern's order. False: not positive definite. */
+/* Factors the matrix with these values, in the order of `column`. Returns false when it is not positive definite. */
 bool spd_factor(struct spd *spd, const double *value);
 
-/* x[n] gets the solution for b[n]; may be the same. */
+/* Solves for x[n] with right-hand side b[n], after spd_factor; x and b may be the same array. */
 void spd_solve(struct spd *spd, double *x, const double *b);
 
 #endif

@@ -1,13 +1,14 @@
-/* stats: order statistics and small sums. Arrays are reordered where said. */
+/* stats: order statistics, in linear time. The arrays are reordered. */
 #ifndef MATH_STATS_H
 #define MATH_STATS_H
 
-/* Quantile 0..1 by linear interpolation; reorders x. NAN when n = 0. */
+/* Quantile q in 0..1 by linear interpolation between order statistics. NAN when n = 0. */
 double stats_quantile(int n, double x[n], double q);
 
+/* Median; NAN when n = 0. */
 double stats_median(int n, double x[n]);
 
-/* 1.4826 times the median of |x - center|: sigma of a normal distribution. x is overwritten. */
+/* 1.4826 times the median absolute deviation from `center`, which estimates sigma of a normal distribution. x is overwritten. */
 double stats_mad(int n, double x[n], double center);
 
 #endif

@@ -5,7 +5,7 @@ void mat_smallest_rotation(double out[3][3], const double a[3], const double b[3
 	double v[3], c = vec_dot(a, b);
 	vec_cross(v, a, b);
 	if (c < -1 + 1e-12) {
-		// Half a turn: any axis across a will do; the one nearest a coordinate axis is stable.
+		// Half a turn: any axis perpendicular to a serves.
 		int k = fabs(a[0]) < fabs(a[1]) ? 0 : 1;
 		double e[3] = { k == 0, k == 1, 0 }, u[3];
 		vec_cross(u, a, e);

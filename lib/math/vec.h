@@ -1,4 +1,4 @@
-/* vec: small fixed-size vectors and matrices, double. Matrices are row-major [3][3]. */
+/* vec: vectors of 3 and matrices of 3 x 3 numbers, row-major, double. `out` may be an argument too. */
 #ifndef MATH_VEC_H
 #define MATH_VEC_H
 #include <math.h>
@@ -28,6 +28,7 @@ static inline void vec_add(double out[3], const double a[3], double s, const dou
 		out[i] = a[i] + s * b[i];
 }
 
+/* out = a / |a| */
 static inline void vec_unit(double out[3], const double a[3])
 {
 	double n = vec_norm(a);
@@ -63,7 +64,7 @@ static inline void mat_mul(double out[3][3], const double a[3][3], const double 
 			out[i][j] = t[i][j];
 }
 
-/* The smallest rotation that carries unit vector a onto unit vector b: out a = b. */
+/* The rotation of smallest angle with out a = b; a and b are unit vectors. */
 void mat_smallest_rotation(double out[3][3], const double a[3], const double b[3]);
 
 #endif

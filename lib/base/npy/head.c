@@ -103,7 +103,7 @@ bool npy_head_parse(struct npy_head *head, const unsigned char *bytes, size_t si
 		return err_set(err, "%s: head without fortran_order", path);
 	head->fortran = *order == 'T';
 	head->bytes = types[head->array.type].size;
-	size_t whole = head->bytes;  // as if no dimension were 0: rows of an empty array have a length too
+	size_t whole = head->bytes;  // dimensions of 0 counted as 1: rows of an empty array have a length too
 	for (int d = 0; d < head->array.ndim; d++) {
 		size_t n = (size_t)head->array.shape[d];
 		if (__builtin_mul_overflow(whole, n ? n : 1, &whole) || whole > SIZE_MAX / 4)

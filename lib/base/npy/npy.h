@@ -1,8 +1,8 @@
 /* npy: arrays of numbers in NumPy's files: .npy (formats 1.0 to 3.0) and .npz (a zip of them, stored or deflated).
- * In memory always row-major and in this machine's byte order, whatever the file has. Written: format 1.0, little
- * endian, row-major, no dates: equal arrays give equal bytes.
- * Files are strangers': a header that lies about its size, an unknown type, objects, an array larger than `limit` bytes
- * are refused in one line before any memory is taken for them.
+ * In memory arrays are row-major and in this machine's byte order, whatever the file has. Written: format 1.0, little endian,
+ * row-major, no dates: equal arrays give equal bytes.
+ * Files are not trusted: a header whose size does not fit the file, an unknown type, Python objects, and an array larger than
+ * `limit` bytes are errors before any memory is taken for them.
  */
 #ifndef BASE_NPY_NPY_H
 #define BASE_NPY_NPY_H
@@ -25,41 +25,48 @@ struct npy {
 	void *data;  // npy_free when read; may be the caller's own when written
 };
 
+/* Bytes of one number. */
 size_t npy_type_size(enum npy_type type);
+/* Numbers in the array: the product of its shape. */
 long npy_count(const struct npy *array);
 
-/* A view of the caller's memory, to be written. npy_of(NPY_F4, 2, (long[]){ n, 2 }, px). */
+/* An array for npy_save that refers to the caller's memory: npy_of(NPY_F4, 2, (long[]){ n, 2 }, px). Not to be freed. */
 struct npy npy_of(enum npy_type type, int ndim, const long *shape, const void *data);
 void npy_free(struct npy *array);
 
-/* Whole files. path stands in messages. */
+/* Read and write whole files; npy_parse reads the bytes of one, path standing in its messages. Return false, err set, on failure:
+ * out is empty then. npy_free. */
 bool npy_read(struct npy *out, const char *path, size_t limit, struct err *err);
 bool npy_parse(struct npy *out, const void *bytes, size_t size, const char *path, size_t limit, struct err *err);
 bool npy_save(const char *path, const struct npy *array, struct err *err);
 
-/* True when the array has these dimensions (−1: any); else err: "path: shape (3, 4), must be (n, 2)". */
+/* Whether the array has the shape shape[ndim] (−1: any); if not, err is set: "path: shape (3, 4), must be (n, 2)". */
 bool npy_expect(const struct npy *array, const char *path, int ndim, const long *shape, struct err *err);
 
-/* The numbers as double, row-major; free(). Integers beyond 2^53 are rounded. */
+/* A copy of the numbers as double, row-major; free(). Integers beyond 2^53 are rounded. */
 double *npy_doubles(const struct npy *array);
 
-/* The array NAME (without ".npy") of an .npz file. A missing one: err. */
+/* Reads the array `name` (without ".npy") of an .npz file. Returns false, err set, when it is missing or cannot be read.
+ * npy_free. */
 bool npz_read(struct npy *out, const char *path, const char *name, size_t limit, struct err *err);
 
 struct npz_item {
 	const char *name;
 	struct npy array;
 };
-/* made_by: text kept in the zip as made_by.json, or null. */
+/* Writes an .npz file. made_by: text kept in the zip as made_by.json, or null. Returns false, err set, when it cannot be written.
+ * */
 bool npz_save(const char *path, int n, const struct npz_item items[], const char *made_by, struct err *err);
 
-/* Rows of a large .npy one block after another, in memory that does not grow with the file. A row is what one step of
- * the first dimension holds. Fortran-ordered files are refused (their rows are not together). */
+/* Reads the rows of a large .npy file block by block, in memory that does not grow with the file. A row is one index of the first
+ * dimension. Fortran-ordered files are refused, since their rows are not contiguous.
+ * head  out: type and shape; data null
+ * Returns null, err set, on failure. npy_rows_close. */
 struct npy_rows;
-struct npy_rows *npy_rows_open(struct npy *head, const char *path, struct err *err);  // head: shape and type, data null
-/* Next at most n rows as double [rows][row length]; *got = 0 at the end. */
+struct npy_rows *npy_rows_open(struct npy *head, const char *path, struct err *err);
+/* Reads the next n rows, fewer at the end, as double: out[n][row length]; *got: how many, 0 at the end. */
 bool npy_rows_next(struct npy_rows *rows, long n, double *out, long *got, struct err *err);
-/* The next row read is row `first`. */
+/* Makes row `first` the next one to be read. */
 bool npy_rows_seek(struct npy_rows *rows, long first, struct err *err);
 void npy_rows_close(struct npy_rows *rows);
 

@@ -38,7 +38,7 @@ static bool read_entry(struct npy *out, zip_t *zip, const char *where, const cha
 	zip_file_t *file = zip_fopen(zip, entry, 0);
 	if (!file)
 		return err_set(err, "%s: cannot be unpacked: %s", where, zip_strerror(zip));
-	// The directory may promise more than the data gives: memory is taken as it comes.
+	// The directory may claim more bytes than the data holds: memory grows with what is read.
 	size_t have = 0, room = 1 << 16;
 	char *bytes = mem_array(room, 1);
 	zip_int64_t got;
@@ -72,7 +72,8 @@ bool npz_read(struct npy *out, const char *path, const char *name, size_t limit,
 	return ok;
 }
 
-/* bytes: taken over. Stored, not packed, and dated 1980-01-01: the same bytes with every zlib and on every day. */
+/* Adds an entry; bytes: ownership passes on. Stored uncompressed and dated 1980-01-01: the same bytes with every zlib on every
+ * day. */
 static bool add_entry(zip_t *zip, const char *name, void *bytes, size_t size)
 {
 	zip_source_t *source = zip_source_buffer(zip, bytes, size, 1);

@@ -1,4 +1,4 @@
-/* Principal components out of the rows kept or the scatter matrix. */
+/* Principal components from the rows kept or from the scatter matrix. */
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "math/scatter/impl.h"
 
-/* Column k of vectors gets the sign that makes its largest number positive. */
+/* Gives each column of vectors the sign that makes its largest number positive. */
 static void settle_signs(double *vectors, int n, int k)
 {
 	for (int c = 0; c < k; c++) {
@@ -22,8 +22,8 @@ static void settle_signs(double *vectors, int n, int k)
 	}
 }
 
-/* The rows' singular value decomposition: d[least], vt[least][n]. Divide and conquer is many times faster than the QR algorithm,
- * but does not always converge where many values agree; the latter does it then. */
+/* Singular value decomposition of the rows: d[least], vt[least][n]. Divide and conquer (dgesdd) is many times faster than the QR
+ * algorithm (dgesvd), which takes over where the former does not converge, as can happen with many equal values. */
 static bool decompose(double *d, double *vt, const struct scatter *s, int from, int n)
 {
 	int m = (int)s->n, least = m < n ? m : n;
@@ -41,7 +41,7 @@ static bool decompose(double *d, double *vt, const struct scatter *s, int from, 
 	return ok;
 }
 
-/* n_rows x n singular value decomposition of the kept rows; *resolved: below that, values are rounding. */
+/* Components from the rows kept. *resolved: values below it are rounding errors. */
 static bool by_rows(double *vectors, double *values, double *resolved, const struct scatter *s, int from, int n, int k)
 {
 	int m = (int)s->n, least = m < n ? m : n;
@@ -90,7 +90,7 @@ int scatter_components(double *vectors, double *values, const struct scatter *s,
 		return 0;
 	if (!(s->S ? by_matrix : by_rows)(vectors, values, &resolved, s, from, n, k))
 		return 0;
-	double mean2 = 0;  // what does not move at all differs from its mean by rounding
+	double mean2 = 0;  // a constant column differs from its mean by rounding
 	for (int i = from; i < from + n; i++)
 		mean2 += s->mean[i] * s->mean[i];
 	resolved = fmax(resolved, 8 * DBL_EPSILON * sqrt(s->weight * mean2));

@@ -5,17 +5,18 @@
 
 enum { SCATTER_TILE = 256 };
 
-/* The t-th tile of the lower triangle of p columns: row and column it begins at, and its extent. */
+/* The t-th tile of the lower triangle of a matrix of p columns: first row and column, number of rows and columns. */
 struct scatter_tile {
 	int i0, j0, ni, nj;
 };
 struct scatter_tile scatter_tile(int p, int t);
+/* Their number. */
 int scatter_tiles(int p);
 
-/* Columns from..from+n-1 of the rows kept, centred and weighted: [s->n][n]. free(). */
+/* Columns from..from+n-1 of the rows kept, centred and scaled by the roots of their weights: [s->n][n]; free(). */
 double *scatter_centred(const struct scatter *s, int from, int n);
 
-/* S += Y^T Y of the first `rows` rows of work, by the split. */
+/* S += Y^T Y, with Y the first `rows` rows of s->work, by the split (scatter_split). */
 void scatter_split_add(struct scatter *s, int rows);
 void scatter_split_free(struct scatter *s);
 

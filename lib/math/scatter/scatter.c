@@ -51,8 +51,8 @@ static void add_square(struct scatter *s, int rows)
 	}
 }
 
-/* The block's weighted mean, and its rows centred on it and scaled by the roots of their weights; columns in stripes, so
- * that threads share nothing. */
+/* Computes the block's weighted mean, centres its rows on it and scales them by the roots of their weights. Columns are taken in
+ * stripes, so that threads share nothing. */
 static void centre_block(double *mean, struct scatter *s, int n, const double *w, double weight)
 {
 	int p = s->p;
@@ -60,7 +60,7 @@ static void centre_block(double *mean, struct scatter *s, int n, const double *w
 #pragma omp parallel for
 	for (int from = 0; from < p; from += STRIPE) {
 		int to = from + STRIPE < p ? from + STRIPE : p;
-		for (int r = 1; r < n; r++)  // from the first row on: what does not vary is exact
+		for (int r = 1; r < n; r++)  // relative to the first row: a constant column is exact
 			for (int c = from; c < to; c++)
 				mean[c] += w[r] / weight * (y[(size_t)r * (size_t)p + (size_t)c] - y[c]);
 		for (int c = from; c < to; c++)
@@ -73,7 +73,7 @@ static void centre_block(double *mean, struct scatter *s, int n, const double *w
 	}
 }
 
-/* One block of rows already in work, weights w: centred on its own mean, squared, merged. */
+/* Adds the block of n rows that is in s->work, weights w: centres it on its own mean, squares and merges it. */
 static void merge_block(struct scatter *s, int n, const double *w)
 {
 	int p = s->p, used = 0;
@@ -84,7 +84,7 @@ static void merge_block(struct scatter *s, int n, const double *w)
 	}
 	if (weight > 0) {
 		centre_block(mean, s, n, w, weight);
-		// The means' own difference is one more row.
+		// The difference of the means is one more row (Chan, Golub and LeVeque).
 		double share = weight / (s->weight + weight), root = sqrt(s->weight * share), *row = y + (size_t)n * (size_t)p;
 		for (int c = 0; c < p; c++) {
 			double d = mean[c] - s->mean[c];
@@ -98,7 +98,7 @@ static void merge_block(struct scatter *s, int n, const double *w)
 	free(mean);
 }
 
-/* From rows to the matrix. */
+/* Turns the rows kept into the scatter matrix. */
 static void square_rows(struct scatter *s)
 {
 	long n = s->n;

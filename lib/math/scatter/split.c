@@ -47,7 +47,7 @@ void scatter_split_free(struct scatter *s)
 	s->split = 0;
 }
 
-/* T and R of the block, a few rows at a time: as many as fit the cache next to the core. */
+/* Computes T and R of the block, ROWS rows at a time: as many as fit the core's cache. */
 static void divide(struct scatter *s, int rows)
 {
 	struct scatter_split *q = s->split;
@@ -67,7 +67,7 @@ static void divide(struct scatter *s, int rows)
 	}
 }
 
-/* What is summed in double and does not grow with n: E^T E, T^T T, T^T E. */
+/* Adds the products whose size does not grow with n, in double: E^T E, T^T T, T^T E. */
 static void add_known(struct scatter *s, int rows)
 {
 	struct scatter_split *q = s->split;
@@ -112,7 +112,7 @@ void scatter_split_add(struct scatter *s, int rows)
 	struct scatter_split *q = s->split;
 	int n = q->n, tiles = scatter_tiles(n), stripes = (n + SCATTER_TILE - 1) / SCATTER_TILE;
 	divide(s, rows);
-	// The largest pieces first: at the end no thread waits for long.
+	// The largest pieces come first, so that no thread waits long at the end.
 #pragma omp parallel
 	{
 		float *sum = mem_array(SCATTER_TILE * SCATTER_TILE, sizeof *sum);
