@@ -10,7 +10,7 @@
 
 enum { EXR_MAX_CHANNELS = 16 };
 
-/* The file is built in memory and goes out in one atomic write. */
+/* The file is built in memory and written in one atomic step. */
 struct sink {
 	char *data;
 	size_t size, room;
@@ -66,7 +66,7 @@ static bool declare(exr_context_t file, const struct image *image, const char *c
 	return exr_write_header(file) == EXR_ERR_SUCCESS;
 }
 
-/* Points each of the chunk's channels at our interleaved floats; the library converts to half. */
+/* Points each of the chunk's channels at our interleaved floats; the library converts them to half. */
 static void attach(exr_encode_pipeline_t *pipe, const struct image *image, const char *const channels[], int y)
 {
 	for (int i = 0; i < pipe->channel_count; i++) {
@@ -167,8 +167,8 @@ static bool open_part(exr_context_t *file, const char *path, struct err *err)
 	return true;
 }
 
-/* Where each channel of the chunk goes. Those nobody asked for go to `spare`, which takes one channel's lines:
- * OpenEXRCore (3.1) would leave them out by a null pointer, but its fast paths for three and four half channels then
+/* Points the decoder at the place of each channel. Channels that are not asked for go to `spare`, which holds one channel's
+ * lines: OpenEXRCore (3.1) would skip them given a null pointer, but its fast paths for three and four half channels then
  * write through it. False for subsampled channels. */
 static bool aim(exr_decode_pipeline_t *pipe, const struct image *image, int line, int n, const char *const channels[],
                 float *spare)

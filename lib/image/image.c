@@ -48,7 +48,7 @@ float linear_from_srgb(float x)
 
 uint8_t *image_to_srgb8(const struct image *image)
 {
-	// 12 bits of linear value are not enough in the darks; a table of 2^14 is, to half an 8-bit step.
+	// 4096 steps of linear value are too coarse in the darks; a table of 2^14 is good to half an 8-bit step.
 	enum { STEPS = 1 << 14 };
 	uint8_t *table = mem_array(STEPS + 1, 1);
 	for (int i = 0; i <= STEPS; i++)

@@ -74,7 +74,7 @@ static void join(int *parent, int a, int b)
 
 int mask_label(int *label, const uint8_t *mask, int width, int height)
 {
-	// A new name starts at most every second pixel of every second row.
+	// A new label starts at most at every second pixel of every second row.
 	int *parent = mem_array(((size_t)width / 2 + 1) * ((size_t)height + 1) + 1, sizeof *parent);
 	int n = 0;
 	for (int y = 0; y < height; y++)

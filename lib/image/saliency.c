@@ -60,7 +60,7 @@ static void pyramid_free(struct pyramid *p)
 		free(p->level[l].px);
 }
 
-/* Value at the place that (x, y) of a map of that size stands for; bilinear. */
+/* Value of a level at the place of pixel (x, y) of a map of that size; bilinear. */
 static float resampled(const struct level *l, int x, int y, int width, int height)
 {
 	float u = ((float)x + 0.5f) * (float)l->width / (float)width - 0.5f;
@@ -70,8 +70,8 @@ static float resampled(const struct level *l, int x, int y, int width, int heigh
 	return (1 - b) * ((1 - a) * at(l, i, j) + a * at(l, i + 1, j)) + b * ((1 - a) * at(l, i, j + 1) + a * at(l, i + 1, j + 1));
 }
 
-/* The operator N: the map to 0..1, times (1 - mean of the other local maxima) squared: one peak is promoted, many alike
- * suppress each other. */
+/* The operator N (normalisation): scales the map to 0..1 and multiplies it by (1 - mean of the other local maxima) squared:
+ * a single peak is promoted, many alike are suppressed. */
 static void promote(struct level *m)
 {
 	float low = INFINITY, high = -INFINITY;
@@ -97,7 +97,7 @@ static void promote(struct level *m)
 		m->px[i] *= (float)((1 - others) * (1 - others));
 }
 
-/* |centre - surround| for c = 2, 3, 4 and s = c + 3, c + 4, each promoted, added into out (of the map's size). */
+/* |centre - surround| for c = 2, 3, 4 and s = c + 3, c + 4, each normalised and added to out. */
 static void centre_surround(struct level *out, const struct pyramid *p)
 {
 	for (int c = FIRST; c < FIRST + CENTRES; c++)
@@ -115,8 +115,8 @@ static void centre_surround(struct level *out, const struct pyramid *p)
 		}
 }
 
-/* Strength of one orientation at every level from FIRST on: Gabor functions of wavelength 7 px, sigma 7/3 px (Itti's),
- * cosine and sine. Their sum over the window is taken off: no answer to plain light. */
+/* Energy of one orientation at every level from FIRST on: Gabor functions of wavelength 7 px, sigma 7/3 px (Itti's), cosine
+ * and sine, made zero-mean so that uniform light gives no response. */
 static struct pyramid oriented(const struct pyramid *intensity, int angle)
 {
 	struct pyramid out = { 0 };
@@ -154,7 +154,7 @@ static struct pyramid oriented(const struct pyramid *intensity, int angle)
 	return out;
 }
 
-/* Orientations suppress each other at a place, as in the visual cortex: each keeps what it has above their mean. */
+/* Lateral inhibition of orientations at a place, as in the visual cortex: each keeps what exceeds their mean. */
 static void compete(struct pyramid o[ANGLES])
 {
 	for (int l = FIRST; l < LEVELS; l++)
@@ -167,7 +167,7 @@ static void compete(struct pyramid o[ANGLES])
 		}
 }
 
-/* Working size; red, green, blue 0..1 as averages over the pixels that fall together. */
+/* The picture at the working size: red, green, blue 0..1, averaged over the pixels that coincide. */
 static void shrink(struct level rgb[3], const unsigned char *px, int width, int height, int stride)
 {
 	int longer = width > height ? width : height, size = longer < SALIENCY_SIZE ? longer : SALIENCY_SIZE;
@@ -189,7 +189,7 @@ static void shrink(struct level rgb[3], const unsigned char *px, int width, int 
 	free(count);
 }
 
-/* Intensity and the two opponent colours, hue where there is light enough (a tenth of the brightest). */
+/* Intensity and the two colour opponencies; these are 0 where intensity is below a tenth of the maximum. */
 static void channels(struct level *intensity, struct level *rg, struct level *by, const struct level rgb[3])
 {
 	int n = rgb[0].width * rgb[0].height;

@@ -7,7 +7,7 @@
 
 enum { CELL = 1 << (SCALES_LEVELS - 1), SPARE = 16 };
 
-/* 1 2 1 across, on a row of bytes. */
+/* 1 2 1 along a row of bytes. */
 SIMD_CLONES static void row_of_bytes(float *restrict out, const uint8_t *restrict in, int n)
 {
 	out[0] = 0.25f * (float)(3 * in[0] + in[n > 1]);
@@ -42,7 +42,7 @@ SIMD_CLONES static void weighted(float *restrict out, const float *restrict a, c
 		out[x] = 0.25f * (a[x] + 2 * b[x] + c[x]);
 }
 
-/* 1 2 1 downwards, in place; rows above and below the picture repeat. */
+/* 1 2 1 along columns, in place; the first and last rows are repeated outwards. */
 static void down(struct scale_level *l, float *row)
 {
 	float *above = row, *keep = row + l->stride;

@@ -24,11 +24,11 @@ bool iris_see(double P[2], double *rim, const struct iris_view *view, const doub
 	P[1] = from[1] + t * inside[1];
 	if (rim)
 		*rim = hypot(K[0], K[1]);
-	// the posterior surface of a two-surface cornea reaches behind the iris' root: its paths are followed backwards
+	// the posterior surface of a two-surface cornea reaches behind the iris root: its paths are followed backwards
 	return t > (view->cornea.two_surface ? -1 : 0);
 }
 
-/* Two surfaces have no single K: Newton on iris_see, from the single-surface pixel. */
+/* With two surfaces there is no single point K: Newton's method on iris_see, from the single-surface pixel. */
 static bool find_two_surface(double px[2], double *rim, const struct iris_view *view, const double P[2])
 {
 	const double h = 0.25;  // px; the map is smooth over many
@@ -65,7 +65,7 @@ bool iris_find(double px[2], double *rim, const struct iris_view *view, const do
 	return find(px, rim, view, P, 0);
 }
 
-/* u, v and rim of the map's point (x, y); NAN where there is none. */
+/* u, v and rim of the map's point (x, y); NAN where no path leads. */
 static void find_texel(float out[3], const struct iris_view *view, double x, double y,
                        const struct algorithm1_conf *paper)
 {
@@ -104,7 +104,8 @@ static void cubic(float w[4], double t)
 	w[3] = (float)(t * t * (-0.5 + 0.5 * t));
 }
 
-/* Value at a node without a path from the three beyond it in direction (di, dj), quadratic; NAN where they lack too. */
+/* Quadratic extrapolation to a node without a path, from the three nodes beyond it in direction (di, dj); NAN where they
+ * lack one too. */
 static float extrapolate(const float *f, int n, int i, int j, int di, int dj)
 {
 	int far_i = i + 3 * di, far_j = j + 3 * dj;
@@ -115,7 +116,7 @@ static float extrapolate(const float *f, int n, int i, int j, int di, int dj)
 	return 3 * p[step] - 3 * p[2 * step] + p[3 * step];
 }
 
-/* A texel next to the last path that leads out needs nodes beyond it: continued smoothly, twice round. */
+/* Interpolation next to the last path that leads out needs nodes beyond it: extrapolates them smoothly, two nodes deep. */
 static void extend_lattice(float *f, int n)
 {
 	float *next = mem_array((size_t)n * (size_t)n, sizeof *next);

@@ -1,6 +1,6 @@
-/* The distance field's own method. Along each column the distance to the nearest edge of skin (columns.c); then
- * along each row the nearest of the columns (rows.c). Both passes are exact (separability of the squared distance:
- * Saito and Toriwaki 1994), and look only where blocks of texels that hold globe lie near skin. */
+/* The exact distance field in a band. Along each column the distance to the nearest edge of skin (columns.c); then along
+ * each row the minimum over the columns (rows.c). Both passes are exact (separability of the squared distance: Saito and
+ * Toriwaki 1994), and visit only blocks of texels that hold globe and lie near skin. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum { LANES = DISTANCE_LANES, GROUP = DISTANCE_GROUP, TEXELS = GROUP * LANES };
 
-/* What sixteen texels hold; a material is one bit, or none. */
+/* Contents of sixteen texels; a material is one bit, or none. */
 static uint8_t holds(const uint8_t m[LANES])
 {
 	_Static_assert(DISTANCE_OTHER == 0 && DISTANCE_GLOBE == 1 && DISTANCE_SKIN == 2, "one bit each");
@@ -23,7 +23,7 @@ static uint8_t holds(const uint8_t m[LANES])
 	                 | ((a & b & skin) == skin ? DISTANCE_ALL_SKIN : 0) | ((a & b & globe) == globe ? DISTANCE_ALL_GLOBE : 0));
 }
 
-/* Whether n texels, a multiple of eight, are all of one material. */
+/* True where n texels, a multiple of eight, are all of one material. */
 SIMD_INLINE bool uniform(const uint8_t *m, int n)
 {
 	uint64_t first = DISTANCE_EACH * m[0], other = 0;
@@ -35,7 +35,7 @@ SIMD_INLINE bool uniform(const uint8_t *m, int n)
 	return !other;
 }
 
-/* What n groups of blocks hold; returns the bits of all of them. */
+/* Contents of n groups of blocks; returns the union of their bits. */
 SIMD_INLINE uint8_t mark(uint8_t *restrict has, const uint8_t *restrict m, int n)
 {
 	uint8_t all = 0;
@@ -48,7 +48,7 @@ SIMD_INLINE uint8_t mark(uint8_t *restrict has, const uint8_t *restrict m, int n
 	return all;
 }
 
-/* What the groups of a row hold; returns whether any holds globe. Most of a screen is of one material. */
+/* Contents of the groups of a row; true where any holds globe. Most of a screen is of one material. */
 SIMD_CLONES static bool mark_row(uint8_t *restrict has, const uint8_t *restrict material, int width)
 {
 	enum { SPAN = 4 };
@@ -65,7 +65,7 @@ SIMD_CLONES static bool mark_row(uint8_t *restrict has, const uint8_t *restrict 
 	return all & DISTANCE_HAS_GLOBE;
 }
 
-/* Largest distance in px that `reach` is anywhere on the globe. */
+/* The largest distance in px to which `reach` projects anywhere on the globe. */
 static double reach_px(const struct distance_scene *s, double reach)
 {
 	double nearest = INFINITY;
@@ -79,7 +79,7 @@ static double reach_px(const struct distance_scene *s, double reach)
 	return reach * s->focal_px / nearest;
 }
 
-/* The groups that hold globe, widened by all that the passes look into. False: there is no globe. */
+/* Sets the window: the groups that hold globe, widened by the band. False: there is no globe. */
 static bool window(struct distance_field *f, const uint8_t *globe, double reach)
 {
 	const struct distance_scene *s = f->scene;

@@ -1,4 +1,4 @@
-/* The nearest edge of every texel of a block: the smallest of k^2 + v^2 over the columns k away, nearest first, until no
+/* The nearest edge of every texel of a block: the minimum of k^2 + v^2 over the columns k away, nearest first, until no
  * column farther away can be nearer. */
 #include <math.h>
 
@@ -7,13 +7,13 @@
 
 enum { LANES = DISTANCE_LANES };
 
-/* A block of texels on its way: squared distance in px, and what is nearest, relative to each: its column, and v there and
- * one column to either side; then the edge. */
+/* State of a block of texels: squared distance in px and, relative to each texel, the nearest column with v there and one
+ * column to either side; then the edge. */
 struct block {
 	float best[LANES], column[LANES], v[3][LANES], off[2][LANES];
 };
 
-/* Whether any column that the band reaches into has an edge within it. */
+/* True where any column within the band has an edge within the band. */
 SIMD_INLINE bool any_near(const float *v, int band)
 {
 	float least[LANES], low = INFINITY;
@@ -37,7 +37,7 @@ struct texel {
 	float best, column, v[3];
 };
 
-/* What the columns k away on the left and on the right have for it. */
+/* Takes the columns k away on the left and on the right into the minimum. */
 SIMD_INLINE struct texel look(struct texel t, const float *v, int k, bool columns)
 {
 	const float *left = v - k, *right = v + k;
@@ -54,8 +54,8 @@ SIMD_INLINE struct texel look(struct texel t, const float *v, int k, bool column
 	return t;
 }
 
-/* The smallest over columns out to the band; returns how many were looked at on each side. Whether any farther column can
- * be nearer is asked every ROUND columns. */
+/* The minimum over columns out to the band; returns how many were visited on each side. Every ROUND columns it tests whether
+ * any farther column can be nearer. */
 SIMD_INLINE int search(struct block *restrict b, const float *restrict v, int band, bool columns)
 {
 	enum { ROUND = 4 };
@@ -98,7 +98,7 @@ SIMD_INLINE void take_columns(struct block *b)
 	memcpy(b->off[1], b->v[1], sizeof b->off[1]);
 }
 
-/* The nearest point of the segment to what the next column has, where both belong to one edge. */
+/* The nearest point of the segment to the edge in the next column, where both belong to one edge. */
 SIMD_INLINE void along(float *restrict best, float *restrict offx, float *restrict offy, float ax, float ay, float by, float ex)
 {
 	const float break_px = 4;  // in one column: steeper is another edge
@@ -112,8 +112,8 @@ SIMD_INLINE void along(float *restrict best, float *restrict offx, float *restri
 	*best = nearer ? d : *best;
 }
 
-/* Between the edges found in two neighbouring columns runs the edge itself; or the row itself crosses it. Only with coverage:
- * a mask's texels are points. */
+/* Sub-pixel refinement with coverage: the edge runs as a segment between the edges of two neighbouring columns, or crosses
+ * the row itself. Without coverage texels are points. */
 SIMD_INLINE void refine(struct block *restrict b, const float *restrict left, const float *restrict right, float x0)
 {
 	SIMD_LOOP
@@ -152,7 +152,7 @@ SIMD_INLINE void give_flat_whole(float *restrict out, const float *restrict d2, 
 	}
 }
 
-/* What was found, into the texels of one block, one by one. */
+/* Writes the results of one block, texel by texel. */
 static void give(const struct distance_span *r, const struct block *b, int x)
 {
 	const struct distance_scene *s = r->f->scene;

@@ -1,5 +1,5 @@
-/* The distance field's first pass: along each column, by one scan down and one up, a group of blocks at a time. Its rows that
- * are skin throughout, or farther than the band from all skin of the group, cost one comparison. */
+/* First pass: along each column, by one scan down and one up, a group of blocks at a time. Rows of a group that are all
+ * skin, or farther than the band from all its skin, cost one comparison. */
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ struct scan {
 	float spare_cover[4][LANES];
 };
 
-/* A row of a block's texels, x0 px from the left, from the screen itself, or where it is cut from `spare`. */
+/* A row of a block's texels, x0 px from the left: from the screen itself, or from `spare` where the screen cuts the block. */
 SIMD_INLINE const uint8_t *materials(const struct distance_scene *s, int x0, int y, uint8_t spare[LANES])
 {
 	const uint8_t *m = s->material + (size_t)y * (size_t)s->width + (size_t)x0;
@@ -45,7 +45,7 @@ SIMD_INLINE const float *covers(const struct distance_scene *s, int x0, int y, f
 	return spare;
 }
 
-/* Materials in the width of a distance: of a block, one vector. */
+/* Materials of a block as one vector, each as wide as a distance. */
 SIMD_INLINE void widen(int32_t out[LANES], const uint8_t *material)
 {
 	SIMD_LOOP
@@ -53,8 +53,8 @@ SIMD_INLINE void widen(int32_t out[LANES], const uint8_t *material)
 		out[i] = material[i];
 }
 
-/* One step: distance to the last edge, from that of the row before. On a mask an edge lies at the centre of the skin's
- * texel, as the discrete transform has it. */
+/* One step of a scan: distance to the last edge, from that of the row before. Without coverage an edge lies at the centre of
+ * the skin's texel, as in the discrete transform. */
 SIMD_INLINE void step_mask(float *restrict d, const uint8_t *material)
 {
 	int32_t here[LANES];
@@ -85,7 +85,7 @@ SIMD_INLINE void step_fine(float *restrict d, const uint8_t *material_before, co
 	}
 }
 
-/* Joins the scan up with the one down; the first to come sets the row. */
+/* Joins the scan up with the one down; the first scan to reach a row sets it. */
 SIMD_INLINE void join(float *restrict v, const float *restrict d, float sign, bool first)
 {
 	if (first) {
@@ -121,7 +121,7 @@ SIMD_INLINE void advance(struct scan *c, int k, int y, uint8_t has, uint8_t was)
 	step_fine(c->d[k], materials(s, x0, y - c->step, c->spare[0]), here, cover);
 }
 
-/* The row before the window's first, and where nothing was before. Returns what its blocks hold. */
+/* Initial state: the row before the window's first, and nothing before that. Returns what its blocks hold. */
 static const uint8_t *begin(struct scan *c, int y)
 {
 	static const uint8_t nothing[GROUP];

@@ -1,5 +1,5 @@
-/* The distance field's second pass: along each row, blocks of globe with an edge in or near them look for the nearest
- * (blocks.c), the others are far from all skin. */
+/* Second pass: along each row, blocks of globe with an edge in or near them search for the nearest one (blocks.c); the
+ * others are far from all skin. */
 #include <math.h>
 
 #include "image/distance/impl.h"
@@ -24,7 +24,7 @@ SIMD_INLINE unsigned skin_bits(const struct distance_scene *s, const uint8_t *ma
 	return bits;
 }
 
-/* Where the row goes from skin to what is not, between x and x - step. */
+/* The sub-pixel place where the row changes from skin to other, between x and x - step. */
 static float row_edge(const struct distance_scene *s, const float *cover, int x, int step)
 {
 	float c[4];
@@ -35,7 +35,7 @@ static float row_edge(const struct distance_scene *s, const float *cover, int x,
 	return (float)x - (float)step * distance_crossing(c[0], c[1], c[2], c[3]);
 }
 
-/* Edges between the texels of a row, from block k on, n blocks in the direction of step: x of the last one passed. */
+/* Edges between the texels of a row, n blocks from block k in the direction of step: x of the last edge passed. */
 SIMD_INLINE void row_edges(const struct distance_span *r, float *last, const uint16_t *skin, int k, int n, int step)
 {
 	const float *cover = r->f->scene->coverage + (size_t)r->y * (size_t)r->f->scene->width;
@@ -57,7 +57,7 @@ SIMD_INLINE void row_edges(const struct distance_span *r, float *last, const uin
 	}
 }
 
-/* Blocks of globe with an edge or skin in or near them: 1. n: whole groups. */
+/* Marks with 1 the blocks of globe with an edge or skin in or near them. n: whole groups. */
 SIMD_INLINE void choose(uint8_t *restrict near, const uint8_t *restrict has, const uint8_t *restrict edge, int n, int wide)
 {
 	for (int k = 0; k < n; k += GROUP) {
@@ -69,7 +69,7 @@ SIMD_INLINE void choose(uint8_t *restrict near, const uint8_t *restrict has, con
 	}
 }
 
-/* Where the equal bytes that begin at `from` end, n at the latest. */
+/* The end of the run of equal bytes that begins at `from`, at most n. */
 SIMD_INLINE int run_end(const uint8_t *of, int from, int n)
 {
 	uint64_t same = DISTANCE_EACH * of[from];
@@ -81,7 +81,7 @@ SIMD_INLINE int run_end(const uint8_t *of, int from, int n)
 	return to;
 }
 
-/* Blocks [from, to), each with an edge near it. skin: as skin_bits() has them, coverage only. Returns the texture reads. */
+/* Blocks [from, to), each with an edge near it. skin: from skin_bits(), with coverage only. Returns the texture reads. */
 SIMD_CLONES static double near_skin(const struct distance_span *r, const uint8_t *edge, uint16_t *skin, int from, int to)
 {
 	const struct distance_scene *s = r->f->scene;

@@ -1,5 +1,5 @@
-/* Lookups: many of them, so from a map that needs no trigonometry. The octahedron |x| + |y| + |z| = 1 is unfolded into a
- * square, -z in its middle and +z at its corners. */
+/* Lookups without trigonometry: the octahedron |x| + |y| + |z| = 1 is unfolded into a square, -z in its middle and +z at its
+ * corners. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -80,7 +80,7 @@ static void lobe_at(float rgb[3], const struct low *low, const double d[3])
 		rgb[c] = (float)(total > 0 ? sum[c] / total : 0);
 }
 
-/* By how much a pixel (0..width - 1 each way) is off the middle between its neighbours, twice. */
+/* Second difference at a pixel (0..width - 1 each way), the larger of both directions, channels summed. */
 static float bend_at(const struct image *map, int x, int y)
 {
 	float most = 0;
@@ -97,7 +97,7 @@ static float bend_at(const struct image *map, int x, int y)
 	return most;
 }
 
-/* Of a block and the pixels round it. */
+/* The greatest second difference of each block and the pixels round it. */
 static void bends(struct envmap *env)
 {
 	int n = env->sharp.width, m = (n + ENVMAP_BLOCK - 1) / ENVMAP_BLOCK;

@@ -48,7 +48,7 @@ static void project(struct envmap *env)
 			env->quadric[k][c] = (float)(factor[k] * env->sh[from[k]][c] - (k ? 0 : 0.315391565252520 * env->sh[6][c]));
 }
 
-/* How much of a box a direction is in: 1 inside, falling to 0 over half a degree outside. */
+/* Coverage of a direction by a box: 1 inside, falling to 0 over half a degree outside. */
 static double box_cover(const struct envmap_box *box, const double side[3], const double up[3], const double dir[3])
 {
 	double z = dir[0] * box->dir[0] + dir[1] * box->dir[1] + dir[2] * box->dir[2];
@@ -160,7 +160,7 @@ void envmap_irradiance(float rgb[3], const struct envmap *env, const float n[3])
 
 double envmap_level(const struct envmap *env)
 {
-	// Degrees 0 to 2 only approximate a narrow light's cosine; the plane's own irradiance is summed exactly.
+	// Degrees 0 to 2 approximate the irradiance of a narrow light badly; here the cosine is summed exactly.
 	double sum = 0;
 	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
 	for (int y = 0; y < map.height; y++)

@@ -24,7 +24,7 @@ static double region_energy(const struct image *map, struct region r)
 	return sum;
 }
 
-/* Cuts across the longer side (in angle) where half of the energy lies on each side. */
+/* Cuts a region across its longer side (in angle) at half of its energy. */
 static void cut(const struct image *map, struct region r, struct region out[2])
 {
 	double width = (r.x1 - r.x0) * sin(M_PI * 0.5 * (r.y0 + r.y1) / map->height);
@@ -92,7 +92,7 @@ int envmap_lights(struct envmap_light lights[], int n, const struct envmap *env)
 	return out;
 }
 
-/* Energy times solid angle: what a region's single direction gets wrong. */
+/* Energy times solid angle: the error of replacing a region by a single direction. */
 static double region_spread(const struct image *map, struct region r)
 {
 	double angle = 0;
@@ -125,8 +125,8 @@ int envmap_lights_spread(struct envmap_light lights[], int n, const struct envma
 	return out;
 }
 
-/* A direction drawn in a region as its light lies in it; within a pixel, evenly. turn, 0..1: successive draws are turned on by
- * the golden section, so that they spread over the region's light evenly. */
+/* Draws a direction in a region with the density of its light, uniformly within a pixel. turn: successive draws are moved by
+ * the golden section, so that they are spread evenly over the region's light. */
 static void region_draw(double dir[3], const struct image *map, struct region r, double turn, struct rng *rng)
 {
 	double left = (turn - floor(turn)) * region_energy(map, r);

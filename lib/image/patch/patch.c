@@ -6,8 +6,8 @@
 #include "math/chol.h"
 #include "math/simd.h"
 
-/* Sums over i of rows[r][i] I[i], and of w I, w I^2. Lanes are summed in a fixed order: the bits do not depend on the
- * width of the machine's vectors. */
+/* Sums over i of rows[r][i] I[i], and of w I, w I^2. Lanes are summed in a fixed order, so that the bits do not depend on
+ * the width of the machine's vectors. */
 SIMD_CLONES static void sums(float out[P + 3], const float *restrict rows, const float *restrict in, int n)
 {
 	float lane[P + 3][LANES] = { { 0 } };
@@ -28,7 +28,7 @@ SIMD_CLONES static void sums(float out[P + 3], const float *restrict rows, const
 	}
 }
 
-/* Correlation, gain and the mean square that they leave from the sums; false when the picture is plain there. */
+/* Correlation, gain and mean square of the residual, from the sums; false where the picture has no contrast. */
 static bool compare(double *ncc, double *gain, double *left, const struct template *t, const float sum[P + 3])
 {
 	double mean = sum[P + 1] / t->weight, energy = sum[P + 2] - mean * sum[P + 1];
@@ -52,7 +52,7 @@ bool patch_look(struct patch_fit *fit, const struct patch_set *s, int i, int lev
 	return true;
 }
 
-/* Adds the prior to the normal equations: where the warp would go per parameter, d(at) = -A d(t), d(A) = -A dA. */
+/* Adds the prior to the normal equations. Derivatives of the warp by the parameters: d(at) = -A d(t), d(A) = -A dA. */
 static void add_prior(double H[P][P], double g[P], const struct patch_warp *w, const struct patch_prior *prior, double scale, double noise2)
 {
 	double pt = noise2 * scale * scale / (prior->at_sigma * prior->at_sigma), pa = noise2 / (prior->A_sigma * prior->A_sigma);
@@ -76,7 +76,7 @@ static void add_prior(double H[P][P], double g[P], const struct patch_warp *w, c
 	}
 }
 
-/* warp after the inverse of the step (t, A) has been put before it. False when it degenerates. */
+/* Composes the warp with the inverse of the step (t, A). False when it degenerates. */
 static bool compose(struct patch_warp *w, const double d[P], double scale)
 {
 	double a = 1 + d[2], b = d[3], c = d[4], e = 1 + d[5], det = a * e - b * c;
@@ -115,7 +115,7 @@ bool patch_align(struct patch_warp *warp, struct patch_fit *fit, const struct pa
 		sums(sum, t->rows, in, s->padded);
 		if (!compare(&fit->ncc, &gain, &left, t, sum))
 			gain = fmax(gain, 0.3);
-		// what does not fit is no noise: neighbouring pixels err together
+		// a misfit is no white noise: residuals of neighbouring pixels are correlated
 		noise2 = s->conf.noise * s->conf.noise + s->conf.misfit / s->conf.every * fmax(0, left) / (gain * gain);
 		double H[P][P], g[P];
 		for (int r = 0; r < P; r++) {

@@ -69,14 +69,14 @@ static void make(struct template *t, const struct patch_set *s, const float *T, 
 	}
 }
 
-/* Square of the share of the radius that a pixel lies from the centre; beyond FAR2 it has no weight. */
+/* Square of a pixel's distance from the centre over the radius; beyond FAR2 its weight is 0. */
 static const double FAR2 = 1.6;
 static double share2(double dx, double dy, int radius)
 {
 	return (dx * dx + dy * dy) / (radius * (radius + 1.0));
 }
 
-/* Weights of a patch's pixels: nearer ones count more; those of something else not. Returns their sum. */
+/* Weights of a patch's pixels: they fall with distance from the centre; pixels of something else have 0. Returns their sum. */
 static double weigh(float *w, const struct patch_set *s, const struct scales *p, int level, const double at[2], const float *mask)
 {
 	double sum = 0;
@@ -114,7 +114,7 @@ static void take(struct template *t, const struct patch_set *s, const struct sca
 			g[i] = 0.5f * (g[i] - far[i]);
 	}
 	make(t, s, T, gx, gy, w);
-	// a plain patch tells nothing: its contrast is below that of the noise
+	// a patch whose contrast is below the noise has no texture to align
 	t->usable = t->energy > 0.25 * s->conf.noise * s->conf.noise * t->weight && t->H[0][0] > 0 && t->H[1][1] > 0;
 }
 

@@ -93,13 +93,13 @@ void photo_focal(struct photo_exif *exif, const struct photo_lens *lens, int wid
 	double longer = fmax(width, height), shorter = fmin(width, height);
 	double full = fmax(lens->full_width, lens->full_height), full_short = fmin(lens->full_width, lens->full_height);
 	bool scaled = full >= 1 && full_short >= 1;
-	// Of another shape than the camera made it: cropped, and nothing follows from the lens.
+	// The picture has another aspect ratio than the camera gave it: it was cropped, and its focal length in px is unknown.
 	if (scaled && fabs(full / full_short - longer / shorter) > 0.02 * longer / shorter)
 		return;
 	// CIPA DCG-001: the equivalent focal length compares diagonals; that of 36 × 24 mm is 43.27 mm.
 	double by_35mm = exif->focal_35mm * hypot(width, height) / 43.2666;
 	double per_mm = lens->plane_res / lens->plane_unit_mm * (scaled ? longer / full : 1);
-	// Sensors are 3 mm (telephones) to 70 mm (medium format) long; cameras that write nonsense are known.
+	// Sensors are 3 mm (telephones) to 70 mm (medium format) long; some cameras write values outside of that.
 	double by_plane = within(longer / per_mm, 3, 70) ? exif->focal_mm * per_mm : NAN;
 	if (isfinite(by_plane) && isfinite(by_35mm) && fabs(by_plane - by_35mm) > 0.1 * by_35mm)
 		return;

@@ -95,7 +95,7 @@ static bool take_frame(struct photo *photo, struct bytes file, size_t at, int ma
 	return true;
 }
 
-/* Walks all markers to the end of the image: a picture cut short anywhere has none. */
+/* Walks all markers to the end of the image, which a truncated picture lacks. */
 static bool parse_jpeg(struct photo *photo, struct bytes file, struct err *err)
 {
 	struct bytes exif = { 0 };
@@ -182,7 +182,7 @@ bool photo_header(struct photo *photo, const void *data, size_t size, double lim
 	bool ok = parse[photo->kind](photo, file, &why);
 	if (ok && photo->kind == PHOTO_RAW && !photo->width)  // a TIFF file that turned out to be one
 		ok = photo_parse_raw(photo, file, &why);
-	// The size first: of two faults it is the one that no new copy mends.
+	// The size is tested first: of two faults it is the one that a new copy does not mend.
 	double mpx = 1e-6 * photo->width * photo->height;
 	if (mpx > limit_mpx)
 		return err_set(err, "%d x %d = %.0f megapixels: must be <= %g (limit.photo_mpx); photograph or save it smaller",

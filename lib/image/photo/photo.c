@@ -11,7 +11,7 @@
 #include "image/photo/raw.h"
 #include "image/photo/webp.h"
 
-/* Linear values are kept as sRGB code values of 16 bits, as every other kind comes. */
+/* Linear values are stored as 16-bit sRGB code values, like those of every other kind. */
 static bool decode_exr(const struct photo *photo, uint16_t *rgb, const char *path, double limit_mpx, struct err *err)
 {
 	static const char *const colour[] = { "R", "G", "B" }, *const grey[] = { "Y" };
@@ -87,7 +87,7 @@ static void turn_upright(struct photo *photo)
 
 bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct err *err)
 {
-	// No file of a sane photograph is longer than its pixels in 16 bits, four channels, and some metadata.
+	// An upper bound: pixels in 16 bits and four channels, and some metadata.
 	size_t limit = (size_t)(8e6 * limit_mpx) + ((size_t)64 << 20), size;
 	struct err why = { 0 };
 	bool named = false;  // why names the file itself

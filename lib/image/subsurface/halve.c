@@ -1,4 +1,4 @@
-/* From a level of the pyramid to the one below: each texel the mean of the frontmost of four. */
+/* Downsampling: each texel of a level is the mean of the frontmost of four texels of the level above. */
 
 #include "image/subsurface/lanes.h"
 #include "image/subsurface/impl.h"
@@ -7,7 +7,7 @@
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h
 #endif
 
-/* One texel out of four, with their shares: those about as near as the nearest. */
+/* Weights of four texels: equal for those about as near as the nearest, 0 for the others. */
 struct quad {
 	float a, b, c, d;
 };
@@ -55,7 +55,7 @@ SIMD_INLINE void halve_uneven(const struct pair *p, int from, int to, float gap)
 	}
 }
 
-/* Where each four lie within the gap, their mean. */
+/* The plain mean, where each four lie within the gap. */
 SIMD_INLINE void halve_even(const struct pair *p, int from, int to)
 {
 	for (int k = 0; k < 4; k++) {
@@ -89,7 +89,7 @@ SIMD_CLONES static void halve_row(const struct pair *p, int n, float gap)
 	}
 }
 
-/* The last column of an odd width, alone. */
+/* The last column of an odd width, which has no neighbour. */
 static void halve_last(const struct pair *p, int i, float gap)
 {
 	struct quad q = shares(&p->z_out[i], p->z[0][2 * i], 0, p->z[1][2 * i], 0, gap);
@@ -122,7 +122,7 @@ static void halve(const struct subsurface_level *l, const struct subsurface_leve
 	subsurface_level_sides(l, y);
 }
 
-/* All levels at once: what lies above a row of the deepest is halved down to it while it is in the cache. */
+/* All levels in one pass: the rows above a row of the deepest level are halved down to it while they are in the cache. */
 void subsurface_level_halve(const struct subsurface_level *level, int deepest)
 {
 #pragma omp parallel for schedule(static)

@@ -1,4 +1,4 @@
-/* From a level of the pyramid to the one above: bilinear, over the four texels as far as their depth is the pixel's. */
+/* Upsampling: bilinear interpolation of the level below, with weights that fall with the difference in depth. */
 #include <string.h>
 
 #include "image/subsurface/lanes.h"
@@ -12,8 +12,8 @@ typedef subsurface_lanes lanes;
 typedef subsurface_mask mask;
 enum { LANES = SUBSURFACE_LANES };
 
-/* A texel of the level below: its share as far as its depth is this one's; a trace of it whatever its depth, where all
- * four lie elsewhere. */
+/* Weight of a texel of the level below: falls with its difference in depth from this one; never 0, for the case that all
+ * four are elsewhere in depth. */
 SIMD_INLINE float share(float z, float there, float inv, float part)
 {
 	float d = z - there, f = 1 - d * d * inv;
@@ -21,7 +21,7 @@ SIMD_INLINE float share(float z, float there, float inv, float part)
 	return there > 0 ? part * f : 0;
 }
 
-/* A row, and of the level below the nearer row (0) and the farther one (1): r, g, b, z. */
+/* A row, and the nearer (0) and farther (1) row of the level below: r, g, b, z. */
 struct row {
 	const float *z, *below[2][4];
 	float *out[3], keep[3], *mean[3];  // mean: room for the two rows below, 3 : 1
@@ -30,8 +30,8 @@ struct row {
 	long ahead;  // from there to what will be asked for soon; 0: it is at hand
 };
 
-/* Parts of a row, which take one way or the other: where one that begins at `from` ends. The ends of the row, whose neighbours
- * lie outside, are alone. */
+/* The end of the run of parts beginning at `from` that are processed alike. The two ends of a row, whose neighbours lie
+ * outside, are processed alone. */
 SIMD_INLINE int part_end(int from, int n)
 {
 	enum { PART = 2 * SUBSURFACE_PART };
@@ -47,7 +47,7 @@ SIMD_INLINE int farther(const struct row *r, int x)
 	return at < 0 ? 0 : at < r->n_below ? at : r->n_below - 1;
 }
 
-/* Texels [from, to), one by one: out = keep out + what comes from below, where there is skin. */
+/* Texels [from, to), one by one: out = keep out + the interpolated level below, where there is skin. */
 SIMD_INLINE void join_single(const struct row *r, int from, int to, float inv)
 {
 	for (int x = from; x < to; x++) {
@@ -92,7 +92,7 @@ SIMD_INLINE void join_uneven(const struct row *r, int from, int to, float inv)
 	join_single(r, x, to, inv);
 }
 
-/* The same where all depths are as good as one: bilinear. from and to are even, neither at an end of the row. */
+/* The same where all depths are about equal: plain bilinear. from and to are even, neither at an end of the row. */
 SIMD_INLINE void join_even(const struct row *row, int from, int to)
 {
 	for (int c = 0; c < 3; c++) {
@@ -143,7 +143,8 @@ SIMD_CLONES void subsurface_join_look(unsigned char *flat, const struct subsurfa
 {
 	const float *a = lower->in[3] + (size_t)y[0] * (size_t)lower->stride, *b = lower->in[3] + (size_t)y[1] * (size_t)lower->stride;
 	const unsigned char *even = lower->even + (size_t)y[0] * (size_t)lower->parts, *even1 = lower->even + (size_t)y[1] * (size_t)lower->parts;
-	// What lies above each texel lies on one surface, and so do these and their neighbours, half as far apart as where shares end.
+	// The texels above each texel lie on one surface, and so do these and their neighbours, within half the distance at
+	// which weights end.
 	float most = (float)(SHARES_END / (2 * l->texels_per_mm));
 	for (int from = 2, to; (to = part_end(from, l->width)) < l->width; from = to) {
 		int k = from / 2 / SUBSURFACE_PART;

@@ -15,7 +15,7 @@ void subsurface_gauss_make(struct subsurface_gauss *g, double variance, double t
 		.channels = weight[2] > 0 ? 3 : weight[1] > 0 ? 2 : 1,
 		.weight = { (float)weight[0], (float)weight[1], (float)weight[2] },
 	};
-	for (int round = 0; round < 20; round++) {  // what is cut off is made up for: the taps' own variance is the one asked for
+	for (int round = 0; round < 20; round++) {  // corrects for the truncation: the variance of the taps is the one asked for
 		double second = 0;
 		sum = 0;
 		for (int k = -g->radius; k <= g->radius; k++) {
@@ -81,7 +81,7 @@ void subsurface_level_sides(const struct subsurface_level *l, int y)
 	}
 }
 
-/* The picture, with nothing on either hand. */
+/* Copies the picture into level 0, with empty borders. */
 static void copy(const struct subsurface_level *l, const struct subsurface_picture *p)
 {
 #pragma omp parallel for schedule(static)

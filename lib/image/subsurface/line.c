@@ -1,4 +1,4 @@
-/* A Gaussian along a line, with depth weights: exp(-dz² / 2v) as (1 - dz² / 8v)^4, 0 beyond, which is within 0.02 of it. */
+/* A Gaussian along a line with depth weights: exp(-dz² / 2v) is approximated by (1 - dz² / 8v)^4, 0 beyond, good to 0.02. */
 #include "image/subsurface/impl.h"
 #include "math/simd.h"
 
@@ -6,8 +6,8 @@
 #pragma GCC optimize("fp-contract=fast")  // see math/simd.h
 #endif
 
-/* The loop for vectors of so many numbers: a function `name` of a line, a Gaussian and a number of channels. A weight times
- * the power of four is the power of four of what the root of the weight gives. */
+/* The loop for one width of vectors: defines a function `name` of a line, a Gaussian and a number of channels. root and fall
+ * hold fourth roots, so that one fourth power gives weight times depth weight. */
 #define TAP(name, lanes, mask)                                                                                  \
 	typedef float lanes __attribute__((vector_size(sizeof(mask)), aligned(4)));                                 \
 	SIMD_INLINE void name(const struct subsurface_line *l, const struct subsurface_gauss *g, int channels)      \

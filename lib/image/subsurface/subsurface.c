@@ -24,8 +24,8 @@ struct subsurface_profile subsurface_skin(double red_mm)
 	return skin;
 }
 
-/* How often a Gaussian of that variance (px² of the picture) is halved before it is blurred: what averaging down and
- * interpolating up spread by themselves is (4^l - 1) / 3, and what is left must be worth some taps. -1: narrower than a pixel. */
+/* The level at which a Gaussian of variance v (px² of the picture) is applied. Averaging down and interpolating up l times
+ * spread by (4^l - 1) / 3 themselves; what remains must be wide enough for some taps. -1: narrower than a pixel. */
 static int level_of(double v)
 {
 	static const double narrow = 0.6;
@@ -35,8 +35,8 @@ static int level_of(double v)
 	return l;
 }
 
-/* Deals out the profile's Gaussians to the levels: which is the deepest. One narrower than a pixel is what stays where it is and
- * what was halved once, in shares that give its variance: halving and interpolating back spread by 1 px². */
+/* Assigns the profile's Gaussians to levels; returns the deepest. One narrower than a pixel is split between the unblurred
+ * picture and the unblurred level 1 in proportions that give its variance: halving and interpolating back spread by 1 px². */
 static int deal(struct subsurface_level level[SUBSURFACE_LEVELS], double stays[3], const struct subsurface_profile *profile, double px_per_mm)
 {
 	double px2 = px_per_mm * px_per_mm, halved[3] = { 0 };

@@ -1,5 +1,5 @@
-/* Every level's Gaussians blurred and interpolated up to the picture, a band of rows at a time: what lies between the pyramid
- * and the picture never leaves the cache next to the core. */
+/* Blurs every level by its Gaussians and interpolates up to the picture, a band of rows at a time, so that the intermediate
+ * rows stay in the core's cache. */
 #include <omp.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static float *window_row(const struct window *w, int c, int y)
 	return w->plane[c] + (size_t)(y - w->y) * (size_t)w->stride;
 }
 
-/* Moves it on to rows [from, to); those that it has already are kept. The first that it lacks. */
+/* Moves the buffer to rows [from, to), keeping those that it holds. Returns the first row that it lacks. */
 static int window_move(struct window *w, int from, int to)
 {
 	int had = w->y + w->n, kept = had > from ? had - from : 0;
@@ -34,7 +34,7 @@ static int window_move(struct window *w, int from, int to)
 	return from + kept;
 }
 
-/* What a thread has of a level: rows of its sum, with all that comes from below, and of each Gaussian's blur along x. */
+/* A thread's buffers of a level: rows of its sum, including the levels below, and of each Gaussian's blur along x. */
 struct state {
 	const struct subsurface_level *level, *deepest;
 	struct window sum, across[SUBSURFACE_MAX];
@@ -47,7 +47,7 @@ static int wide(const struct subsurface_level *l)
 	return (int)subsurface_rounded((size_t)l->width);
 }
 
-/* Numbers of the room that a byte for each part of a row takes, one more for a part that ends the row alone. */
+/* Numbers that a byte for each part of a row takes, with one more for a part that ends the row. */
 static size_t flat_size(const struct subsurface_level *l)
 {
 	size_t bytes = (size_t)l->width / (2 * SUBSURFACE_PART) + 2;
@@ -131,7 +131,7 @@ SIMD_CLONES static void scale(float *restrict out, const float *restrict in, int
 		out[i] = by * in[i];
 }
 
-/* Rows [from, to) of the level's own light and Gaussians into its sum. */
+/* Adds the level's unblurred light and Gaussians to its sum, rows [from, to). */
 static void blur(struct state *s, int from, int to)
 {
 	const struct subsurface_level *l = s->level;
@@ -151,7 +151,7 @@ static void blur(struct state *s, int from, int to)
 
 static void sum(struct state *s, int from, int to);
 
-/* out = keep out + what comes from the level below, rows [from, to). */
+/* out = keep out + the interpolated level below, rows [from, to). */
 static void join(struct state *s, const struct window *out, int from, int to, const float keep[3])
 {
 	const struct subsurface_level *lower = s[1].level;
@@ -175,7 +175,7 @@ static void join(struct state *s, const struct window *out, int from, int to, co
 	}
 }
 
-/* Rows [from, to) of the level's sum; from and to never fall from one call to the next. */
+/* Computes rows [from, to) of the level's sum; from and to never decrease from one call to the next. */
 static void sum(struct state *s, int from, int to)
 {
 	static const float all[3] = { 1, 1, 1 };

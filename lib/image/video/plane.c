@@ -4,7 +4,7 @@
 #include "image/video/impl.h"
 #include "math/simd.h"
 
-/* Whether the planes can be used as they are: 8 bits each, luma first, chroma (if any) in planes of its own. */
+/* True where the planes can be used as they are: 8 bits each, luma first, chroma (if any) in planes of its own. */
 static bool plain(int format)
 {
 	switch (format) {
@@ -49,7 +49,7 @@ static void turn(uint8_t *out, long out_stride, int width, int height, const uin
 			                                            : in[x * in_stride + height - 1 - y];
 }
 
-/* Turning exchanges the axes along which chroma is coarser. */
+/* A rotation by 90 degrees exchanges the axes along which chroma is subsampled. */
 static int turned_format(int format, int rotation)
 {
 	bool wide = format == AV_PIX_FMT_YUV422P || format == AV_PIX_FMT_YUVJ422P;
@@ -91,7 +91,7 @@ static struct matrix matrix_of(const AVFrame *f)
 {
 	bool full = f->color_range == AVCOL_RANGE_JPEG || f->format == AV_PIX_FMT_YUVJ420P || f->format == AV_PIX_FMT_YUVJ422P
 	            || f->format == AV_PIX_FMT_YUVJ444P;
-	// where the file does not say, television's habit: 601 for small pictures, 709 for large ones
+	// where the file does not state it, the convention of television: BT.601 for small pictures, BT.709 for large ones
 	bool old = f->colorspace == AVCOL_SPC_BT470BG || f->colorspace == AVCOL_SPC_SMPTE170M
 	           || (f->colorspace == AVCOL_SPC_UNSPECIFIED && f->height < 720 && f->width < 1280);
 	bool wide = f->colorspace == AVCOL_SPC_BT2020_NCL || f->colorspace == AVCOL_SPC_BT2020_CL;

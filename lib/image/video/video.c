@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "image/video/impl.h"
 
-/* Frames decoded ahead of the reader: enough to even out what one frame costs more than the next. */
+/* Frames decoded ahead of the reader: enough to even out the differing costs of frames. */
 enum { AHEAD = 8 };
 
 struct video {
@@ -84,7 +84,8 @@ static void *decode(void *arg)
 	AVPacket *packet = av.av_packet_alloc();
 	bool more = packet;
 	while (more && av.av_read_frame(s->file, packet) >= 0) {
-		// Where a file breaks off in a picture: what a decoder makes of the rest, and of its neighbours, hangs on its threads.
+		// Where a file ends within a picture, the decoder's output for it and its neighbours depends on the number of
+		// threads.
 		bool whole = !(packet->flags & AV_PKT_FLAG_CORRUPT);
 		if (packet->stream_index == s->stream && !whole)
 			count_damaged(v);
@@ -138,7 +139,7 @@ struct video *video_open(struct video_info *info, const char *path, const struct
 	pthread_mutex_init(&v->lock, 0);
 	pthread_cond_init(&v->changed, 0);
 	if (pthread_create(&v->thread, 0, decode, v))
-		abort();  // as with memory: a machine that gives no thread gives nothing
+		abort();  // as with memory: where no thread can be started the program ends
 	*info = v->info;
 	return v;
 }

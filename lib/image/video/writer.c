@@ -135,7 +135,7 @@ static bool encode(struct video_writer *w, AVFrame *frame, struct err *err)
 	return ok || err_set(err, "%s: cannot be written: is the disk full?", w->path);
 }
 
-/* The picture, its last column and row repeated where the file has one more. */
+/* Copies the picture; its last column and row are repeated where the file's size is rounded up to even. */
 static void fill_up(struct video_writer *w, const uint8_t *rgb)
 {
 	for (int y = 0; y < w->even_h; y++) {

@@ -22,7 +22,7 @@ struct patch {
 };
 enum { NEITHER, BAND, HOLE };
 
-/* A place to copy from: turned by `turn` about the pupil; or mirrored at the hole's middle first. */
+/* A source region for a hole: the map turned by `turn` about the pupil, or mirrored about the hole's middle first. */
 struct pattern {
 	double turn;
 	bool mirror;
@@ -38,7 +38,7 @@ static void cubic(float w[4], float t)
 	w[3] = t * t * (-0.5f + 0.5f * t);
 }
 
-/* log colour of the map at (x, y) px, bicubic; false where it is unseen or itself to be filled. */
+/* Log colour of the map at (x, y) px, bicubic; false where it is unseen or to be filled itself. */
 static bool take(float out[3], const struct patch *p, double x, double y)
 {
 	float fx = (float)floor(x - 0.5), fy = (float)floor(y - 0.5), wx[4], wy[4], sum[3] = { 0 };
@@ -60,7 +60,7 @@ static bool take(float out[3], const struct patch *p, double x, double y)
 	return true;
 }
 
-/* The same of the nearest texel: enough to tell places apart. */
+/* The same of the nearest texel: exact enough to compare regions. */
 static bool take_nearest(float out[3], const struct patch *p, double x, double y)
 {
 	int size = p->rgbw->width, col = (int)x, row = (int)y;
@@ -84,7 +84,8 @@ static bool take_pattern(float out[3], const struct patch *p, const struct patte
 	return fine ? take(out, p, u, v) : take_nearest(out, p, u, v);
 }
 
-/* How badly the pattern continues the band, its mean colour aside; INFINITY where part of it is unseen. */
+/* Mismatch between the pattern and the band round the hole, after removing the mean colour; INFINITY where part of it is
+ * unseen. */
 static void judge(struct pattern *pattern, const struct patch *p, int stride, bool fine)
 {
 	double sum[3] = { 0 }, square[3] = { 0 };
@@ -112,7 +113,7 @@ static void judge(struct pattern *pattern, const struct patch *p, int stride, bo
 	for (int c = 0; c < 3; c++) {
 		double mean = sum[c] / n;
 		pattern->offset[c] = (float)mean;
-		// a change of the mean costs less than one of the pattern: gradients carry it over
+		// a change of the mean costs less than one of the pattern: Poisson blending removes it
 		pattern->cost += square[c] / n - mean * mean + 0.3 * mean * mean;
 	}
 }
@@ -131,7 +132,7 @@ static double half_angle(const struct patch *p)
 	return widest;
 }
 
-/* The best of the places to both sides, plain and mirrored; coarsely, then finely about the best few. */
+/* The best source region to either side, plain and mirrored: a coarse search, then a fine one about the best few. */
 static struct pattern find_pattern(const struct patch *p, const struct freckle_conf *conf, double search)
 {
 	struct pattern best = { .cost = INFINITY };
@@ -163,7 +164,7 @@ static struct pattern find_pattern(const struct patch *p, const struct freckle_c
 	return best;
 }
 
-/* The pattern with its offset, or nothing but the mean of the band. */
+/* The pattern with its offset; without a pattern, the mean of the band. */
 static void lay_pattern(struct patch *p, const struct pattern *pattern)
 {
 	for (int y = 0; y < p->h; y++)
@@ -177,8 +178,8 @@ static void lay_pattern(struct patch *p, const struct pattern *pattern)
 		}
 }
 
-/* What has to be added to the pattern in the hole so that it meets the band without a step: the harmonic function with
- * the difference at the band as its border (Perez et al. 2003, Poisson image editing), by successive over-relaxation. */
+/* The correction that makes the pattern in the hole meet the band without a step: the harmonic function with the difference
+ * at the band as boundary values (Perez et al. 2003, Poisson image editing), by successive over-relaxation. */
 static void membrane(float *add, const struct patch *p, int c)
 {
 	int w = p->w, h = p->h, n = w > h ? w : h;

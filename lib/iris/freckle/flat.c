@@ -8,7 +8,7 @@
 #include "image/mask.h"
 #include "image/plane.h"
 
-/* Lengths in mm. The surroundings begin where a spot's blur ends. */
+/* Lengths in mm. The surroundings begin where the blur of a spot's edge ends. */
 static const double smooth = 0.03, opening = 0.07, rim = 0.03, gap = 0.05, reach = 0.14, ragged = 0.035;
 
 /* A candidate in its own box of the searched map. */
@@ -75,7 +75,7 @@ static void moments(struct spot *spot)
 	spot->y = spot->y0 + y + 0.5;
 }
 
-/* What a patch is like: inside against the band around it. */
+/* Statistics of a patch: inside against the band around it. */
 struct look {
 	struct quartiles in, out;  // log green
 	double red;                // rise of log(red / green)
@@ -96,7 +96,7 @@ static struct look look_at(const struct spot *spot, const float *level, const st
 	return look;
 }
 
-/* 0 when one of the tests fails; else from their margins. Melanin lowers green at least as much as red. */
+/* Confidence: 0 when one of the tests fails, else from their margins. Melanin lowers green at least as much as red. */
 static double confidence_of(const struct spot *spot, const struct look *look, double mm,
                             const struct freckle_conf *conf)
 {
@@ -108,7 +108,8 @@ static double confidence_of(const struct spot *spot, const struct look *look, do
 	return margin > 0 && look->red > red_least ? 1 - 0.5 * exp(-2 * margin) : 0;
 }
 
-/* The spot's own edge, half way between inside and around; what hangs on it by a thread is cut off. */
+/* Segments a spot at the level half way between inside and around; parts that hang on it by a narrow neck are cut off
+ * (opening). */
 static void find_edge(struct spot *spot, const struct look *look, const float *level, const struct search *s)
 {
 	double half = (look->in.middle + look->out.middle) / 2;

@@ -103,7 +103,7 @@ struct blob {
 	bool seeded;
 };
 
-/* 0 where a spot of that peak ends for good, 1 well inside, 0.5 at its edge. */
+/* Opacity of a texel of a spot with that peak: 1 well inside, 0.5 at its edge, 0 outside. */
 static float opacity_of(float ratio, float peak, double edge)
 {
 	float v = 0.5f + 0.5f * (ratio / peak - (float)edge) / (0.5f * (float)edge);
@@ -121,7 +121,7 @@ static bool may_grow(const struct search *s, long i, const struct freckle_conf *
 	return s->use[i] && s->ratio[i] > (float)(0.5 * conf->ratio) && s->fall[1][i] < -0.4f * (float)conf->darker;
 }
 
-/* How sure: each test's margin over its threshold, the weakest of them counts. */
+/* Confidence of a spot: from the smallest of the tests' margins over their thresholds. */
 static double confidence_of(const struct blob *b, double mm, const struct freckle_conf *conf)
 {
 	double red = b->fall[0] / b->fall[1], area = (double)b->area * mm * mm;
@@ -249,7 +249,7 @@ uint8_t *freckle_mask(const struct freckles *freckles, double extent, double blu
 	uint8_t *mask = mem_array((size_t)n, 1);
 	for (long i = 0; i < n; i++)
 		mask[i] = freckles->opacity[i] >= 0.25f;
-	// the photograph's own blur and the search's reach over the edge
+	// the photograph's own blur, and the search's over the edge
 	mask_grow(mask, freckles->size, freckles->size, 2 + 2 * blur * freckles->size / (2 * extent));
 	return mask;
 }

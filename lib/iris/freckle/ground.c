@@ -55,7 +55,7 @@ static void window(struct ground *g, histogram (*h)[RINGS], int s, int r, float 
 	                                 : (quantile(sum, total, 0.75, lo, hi) - quantile(sum, total, 0.25, lo, hi)) / 1.349f;
 }
 
-/* Windows that too little was seen of take the figures of their ring's nearest sector, or of the ring within. */
+/* Windows of which too little was seen take the values of the nearest sector in their ring, or of the ring within. */
 static void fill_gaps(float (*v)[RINGS])
 {
 	for (int r = 0; r < RINGS; r++) {

@@ -6,7 +6,8 @@
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 
-/* A weighted map: value times weight, weight. Blurring both and dividing is a mean over what was seen. */
+/* A weighted map: value times weight, and weight. Blurring both and dividing is normalised convolution: a mean over what was
+ * seen. */
 struct seen {
 	int n;        // texels a side
 	double scale; // texels a mm
@@ -34,8 +35,8 @@ static float luminance(const float p[])
 	return 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
 }
 
-/* ln luminance, weighted; nothing where no photograph saw the iris. shares: iris_share of every texel. Texels darker than
- * a hundredth of the mean say only that they are dark. */
+/* ln luminance, weighted; weight 0 where no photograph saw the iris. shares: iris_share of every texel. Luminance is limited
+ * to a hundredth of the mean from below: texels darker than that have no more information. */
 static double log_luminance(struct seen *out, const struct image *clean, const float shares[])
 {
 	double sum = 0, weight = 0;
@@ -59,7 +60,7 @@ static double log_luminance(struct seen *out, const struct image *clean, const f
 	return in ? (double)seen / (double)in : 0;
 }
 
-/* Detail = fine mean - coarse mean; texels not seen take their neighbours' detail, fading to none over `reach`.
+/* Detail = fine mean - coarse mean. Texels that were not seen take their neighbours' detail, fading to none over `reach`.
  * detail [n][n]; sure [n][n] gets 1 where seen, 0 where nothing near was. */
 static bool local_detail(float *detail, float *sure, const struct seen *light, const struct heightfield_conf *c,
                          struct err *err)
@@ -77,7 +78,7 @@ static bool local_detail(float *detail, float *sure, const struct seen *light, c
 	ok = ok && mean(&coarse, &fine, c->reach, err);
 	for (long i = 0; ok && i < n; i++) {
 		float near = coarse.px[2 * i + 1];
-		// A texel's own detail counts by its weight, its neighbours' by theirs, and none counts as a weight of 0.1.
+		// A texel's own detail has its weight, its neighbours' detail has theirs, and zero detail has a weight of 0.1.
 		float own = sure[i], rest = (1 - own) * near;
 		detail[i] = (own * detail[i] + rest * ratio(coarse.px + 2 * i)) / (own + rest + 0.1f * (1 - own) + 1e-6f);
 	}

@@ -29,7 +29,8 @@ double iris_share(const struct pupil *pupil, double root, double x, double y)
 	return (-b - sqrt(fmax(b * b - a * c, 0))) / a;
 }
 
-/* Slopes that keep a cubic monotone: weighted harmonic means, zero at turns (Fritsch and Butland 1984), one-sided ends. */
+/* Slopes that keep a cubic monotone: weighted harmonic means, zero at local extrema, one-sided at the ends (Fritsch and
+ * Butland 1984). */
 static void slopes(int n, const double x[], const double y[], double m[])
 {
 	double h[PROFILE_KNOTS], d[PROFILE_KNOTS];
@@ -61,7 +62,7 @@ static void knot(struct profile *p, double share, double mm, double sigma)
 void profile_make(struct profile *p, const struct profile_conf *c, double width)
 {
 	enum { ID1, ID2, ID3 };
-	// Knots keep a tenth of the iris between them, however narrow a wide pupil makes it.
+	// Neighbouring knots stay a tenth of the iris apart, however narrow a wide pupil makes it.
 	double s3 = fmin(c->id3_from_margin / width, 0.4), s1 = fmax(1 - c->id1_from_spur / width, 0.8);
 	double s2 = 1 - c->id2_from_root / width;
 	*p = (struct profile) { 0 };

@@ -13,7 +13,7 @@ static int by_value(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Median ratio of the colours where both see the iris well. */
+/* Colour gain: the median ratio of the colours where both views see the iris well. */
 static void take_gain(const struct unrefract_view *fixed, struct unrefract_view *view)
 {
 	const struct unrefract_survey *s = &fixed->survey;
@@ -39,7 +39,7 @@ static void take_gain(const struct unrefract_view *fixed, struct unrefract_view 
 	free(ratio);
 }
 
-/* log of the brightness as gained, blurred over 0.06 mm. */
+/* Log of the brightness after the gain, blurred over 0.06 mm. */
 static float *brightness(const struct unrefract_view *view)
 {
 	const struct unrefract_survey *s = &view->survey;
@@ -62,7 +62,7 @@ static void affine_invert(double out[2][3], const double a[2][3])
 	out[1][2] = -(out[1][0] * a[0][2] + out[1][1] * a[1][2]);
 }
 
-/* Factor on view k's weight at its own point p: against the darkest and the sharpest of the others there. */
+/* Factor on view k's weight at its own point p, from the darkest and the sharpest of the other views there. */
 static float against_others(int n, const struct unrefract_view views[], float *const bright[], int k,
                             const double back[2][3], const double p[2], float own_bright, float own_sharp)
 {
@@ -84,8 +84,8 @@ static float against_others(int n, const struct unrefract_view views[], float *c
 	return sharp > own_sharp ? factor * fmaxf(own_sharp / sharp, 0.05f) : factor;
 }
 
-/* Colour gains, and weights lowered where a view is brighter than others (a glint that its own mask missed) or less
- * sharp. */
+/* Estimates colour gains, and lowers weights where a view is brighter than the others (a reflection that its own mask
+ * missed) or less sharp. */
 static void agree(int n, struct unrefract_view views[], int fixed)
 {
 	float **bright = mem_new((size_t)n, sizeof *bright), **weight = mem_new((size_t)n, sizeof *weight);

@@ -8,7 +8,7 @@
 
 enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };
 
-/* How unlike its ring each cell of the sheet is in one plane, the most of the planes so far; NAN where unseen. */
+/* Evidence for each cell of the sheet: its standard score in its ring, the maximum over the planes so far; NAN where unseen. */
 static void add_evidence(float (*cell)[RINGS], const float *plane, const float *weight, const struct sheet *sheet)
 {
 	const float least_spread = 0.2f;  // log: shading alone makes as much
@@ -26,7 +26,8 @@ static void add_evidence(float (*cell)[RINGS], const float *plane, const float *
 		}
 }
 
-/* Positive where rather lid than iris: in brightness, or in hue, which shading leaves alone. */
+/* Evidence for lid (positive) against iris (negative): unlike its ring in brightness, or in hue, which shading does not
+ * change. */
 static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *weight,
                          const struct sheet *sheet, double lid_z)
 {
@@ -45,8 +46,8 @@ static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const
 	free(hue);
 }
 
-/* The best closed path: at each angle the first covered ring, RINGS where open. Dynamic programming twice round, so
- * that the seam at angle 0 is an angle like any other. */
+/* The best closed path by dynamic programming: at each angle the first covered ring, RINGS where open. It runs twice round,
+ * so that the seam at angle 0 has no effect. */
 static void lid_path(int path[ANGLES], float (*const gain)[RINGS + 1], double smooth)
 {
 	enum { STATES = RINGS + 1, STEPS = 2 * ANGLES };
@@ -76,7 +77,7 @@ static void lid_path(int path[ANGLES], float (*const gain)[RINGS + 1], double sm
 	free(from);
 }
 
-/* A lid covers a long arc of the limbus; what is shorter is a shadow, a crypt or a reflection. */
+/* Removes short covered arcs: a lid covers a long arc of the limbus; a shorter one is a shadow, a crypt or a reflection. */
 static void drop_short(int path[ANGLES])
 {
 	int start = 0;
@@ -106,7 +107,7 @@ void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], cons
 	int path[ANGLES];
 	lid_path(path, gain, conf->lid_smooth);
 	drop_short(path);
-	const int reach = 2;  // the path is good to a ring; its mean over a few angles to less
+	const int reach = 2;  // the path is quantised to rings; the mean over a few angles is finer
 	for (int a = 0; a < ANGLES; a++) {
 		lid_t[a] = 0;
 		for (int k = -reach; k <= reach; k++)

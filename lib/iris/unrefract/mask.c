@@ -26,7 +26,7 @@ static double plane_mm(int i, const struct unrefract_survey *survey)
 	return (i + 0.5) * 2 * survey->extent / survey->size - survey->extent;
 }
 
-/* log of each channel, blurred over `sigma` texels among what is seen. */
+/* Logarithm of each channel, blurred over `sigma` texels among what is seen. */
 static void take_logs(struct work *work, const struct unrefract_survey *survey, const float *seen, double sigma)
 {
 	long n = (long)work->size * work->size;
@@ -41,7 +41,7 @@ static void take_logs(struct work *work, const struct unrefract_survey *survey, 
 	}
 }
 
-/* The lid's edge at an angle, between the two it was found at. */
+/* The lid's edge at an angle, interpolated between the two nearest angles. */
 static double lid_at(const double lid_t[SHEET_ANGLES], double phi)
 {
 	double at = (phi < 0 ? phi + 2 * M_PI : phi) * SHEET_ANGLES / (2 * M_PI) - 0.5 + SHEET_ANGLES;
@@ -68,7 +68,7 @@ static void mark_lids(struct work *work, const struct unrefract_survey *survey, 
 		}
 }
 
-/* The channel in which the iris is darkest: an added reflection shows there most. */
+/* The channel in which the iris is darkest: an added reflection changes it most. */
 static int darkest_channel(const struct rings rings[3])
 {
 	int best = 0, middle = SHEET_RINGS / 2;
@@ -83,8 +83,8 @@ static void iris_weight(float *weight, const struct work *work, const float *see
 		weight[i] = work->kind[i] == IRIS ? seen[i] : 0;
 }
 
-/* A reflection adds its own white: the iris' weakest colour gains on its strongest, by the more the further apart they
- * are. A pale fibre scales all, a yellow fleck keeps its hue. */
+/* A reflection adds white: the ratio of the iris' weakest colour to its strongest rises, the more the further apart they
+ * are. A pale fibre scales all channels alike; a yellow fleck keeps its hue. */
 static bool turns_white(const float log_rgb[3], const struct rings rings[3], int weak, double t)
 {
 	const float least = 0.25f;  // of the way to white, in logarithms
@@ -95,7 +95,7 @@ static bool turns_white(const float log_rgb[3], const struct rings rings[3], int
 	return log_rgb[strong] - log_rgb[weak] < (1 - least) * iris;
 }
 
-/* A bright fibre is no reflection: blobs narrower than a reflection's blur stay, unless they are far off the ring. */
+/* Keeps bright fibres: blobs narrower than a reflection's blur stay, unless they are far brighter than their ring. */
 static void drop_small(uint8_t *glint, const float *z, const struct work *work, const struct unrefract_conf *conf)
 {
 	long n = (long)work->size * work->size;
@@ -116,7 +116,7 @@ static void drop_small(uint8_t *glint, const float *z, const struct work *work, 
 	free(label);
 }
 
-/* Reflections: too bright, over an area, in the iris' own darkest channel; or saturated. */
+/* Reflections: blobs too bright in the channel in which the iris is darkest, or saturated. */
 static void mark_glints(struct work *work, const struct unrefract_survey *survey, const float *seen,
                         const struct sheet *sheet, const struct unrefract_conf *conf)
 {
@@ -151,7 +151,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	free(weight);
 }
 
-/* Lashes: thin, darker than any crypt of the ring, and hanging on a lid or on the rim of the iris. */
+/* Lashes: thin, darker than any crypt of the ring, and connected to a lid or to the rim of the iris. */
 static void mark_lashes(struct work *work, const struct unrefract_survey *survey, const float *seen,
                         const struct unrefract_conf *conf)
 {
@@ -183,7 +183,7 @@ static void mark_lashes(struct work *work, const struct unrefract_survey *survey
 	free(fine);
 }
 
-/* Grown, so that nothing of a mask's own blur is left; then feathered inwards. */
+/* Dilates the mask beyond its own blur, then feathers it inwards. */
 static void weigh(struct unrefract_survey *survey, const struct work *work, const float *seen)
 {
 	int size = work->size;

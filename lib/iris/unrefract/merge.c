@@ -25,7 +25,7 @@ struct unrefract_texture unrefract_begin(int size, const struct eye *eye, const 
 		                               .pupil = *pupil };
 }
 
-/* 1 for texels that no photograph can show: deep in the pupil, beyond the limbus, or hidden in this one. */
+/* Marks with 1 the texels that need no sampling: deep in the pupil, beyond the limbus, or hidden in this photograph. */
 static uint8_t *texels_to_skip(const struct unrefract_texture *texture, const struct iris_map *map,
                                const struct unrefract_view *view, const struct eye *eye,
                                const struct unrefract_conf *conf)
@@ -56,8 +56,8 @@ static float smooth_step(double x)
 	return (float)(x * x * (3 - 2 * x));
 }
 
-/* Weight of a texel: the survey's mask, how much of a photo pixel it has in its worst direction, and its distance
- * from the pupil's margin and from the limbus, whose own blur reaches inwards. */
+/* Weight of a texel: the survey's mask, times a power of the share of a photo pixel that it spans in its most foreshortened
+ * direction, times ramps at the pupil's margin and at the limbus, whose blur reaches inwards. */
 static float texel_weight(const struct unrefract_texture *texture, const struct iris_map *map,
                           const struct unrefract_view *view, const struct eye *eye, int col, int row, double ramp,
                           const struct unrefract_conf *conf)
@@ -76,7 +76,7 @@ static float texel_weight(const struct unrefract_texture *texture, const struct 
 	return w * smooth_step(from_pupil / fmax(mm, conf->pupil_margin) + 0.5);
 }
 
-// A texel squeezed into less of a photo pixel than this, at the grazing limit, shows its neighbours' colours.
+// A texel that spans less of a photo pixel than this, at the grazing limit, shows its neighbours' colours.
 static const double grazing = 0.2;
 
 void unrefract_add(struct unrefract_texture *texture, const struct unrefract_view *view, const struct photo *photo,
@@ -97,7 +97,7 @@ void unrefract_add(struct unrefract_texture *texture, const struct unrefract_vie
 			if (skip[i] || rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2] <= 0
 			    || map_resolution(&map, col, row) * conf->scale < grazing)
 				continue;
-			// a trace even of what weighs nothing, so that it has a colour
+			// a trace of weight, so that a texel of weight 0 has a colour too
 			float w = texel_weight(texture, &map, view, eye, col, row, ramp, conf) + 1e-6f;
 			for (int c = 0; c < 3; c++)
 				out[c] += w * view->gain[c] * rgb[3 * i + c];

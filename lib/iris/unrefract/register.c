@@ -22,7 +22,8 @@ float survey_at(const struct unrefract_survey *s, const float *plane, const doub
 	return plane_sample(plane, s->size, s->size, (p[0] + s->extent) * to, (p[1] + s->extent) * to);
 }
 
-/* Brightness against its surroundings, in units of the local contrast; and the energy of its finest part. */
+/* Local contrast: log brightness minus its local mean, over its local standard deviation; and the local energy of its finest
+ * scale. */
 void unrefract_detail(struct unrefract_survey *s)
 {
 	double mm = 2 * s->extent / s->size;
@@ -49,7 +50,7 @@ void unrefract_detail(struct unrefract_survey *s)
 	free(mean);
 }
 
-/* Detail times weight, and weight, on rings about the axis. */
+/* Detail and weight on rings about the axis. */
 struct profile {
 	float value[RINGS][ANGLES], weight[RINGS][ANGLES];
 };
@@ -84,7 +85,7 @@ static struct score correlate(const struct profile *fixed, const struct profile 
 	return (struct score){ aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0, w / (RINGS * ANGLES) };
 }
 
-/* The turn about the axis that makes the rings agree best. */
+/* The turn about the axis with the highest correlation of the rings. */
 static double find_turn(const struct unrefract_view *fixed, const struct unrefract_view *view, double max_deg)
 {
 	double r0 = 1.1 * fmax(fixed->pupil.r, view->pupil.r), r1 = 0.93 * fixed->survey.extent;
@@ -104,7 +105,7 @@ static double find_turn(const struct unrefract_view *fixed, const struct unrefra
 	return 2 * M_PI * best / ANGLES;
 }
 
-/* Normal equations of one Gauss-Newton step for the six numbers of a. */
+/* Normal equations of one Gauss-Newton step for the six parameters of a. */
 struct normal {
 	double h[6][6], g[6];
 };
@@ -132,8 +133,8 @@ static void add_point(struct normal *eq, const struct unrefract_view *fixed, con
 	}
 }
 
-/* Gauss-Newton on the six numbers: what is left of the turn, and the stretch and shift that an error of the pose makes.
- * Blurred first, so that fibres a few texels apart find one another. */
+/* Gauss-Newton on the six parameters: what remains of the turn, and the stretch and shift that errors of the pose cause.
+ * Blurred first, so that fibres a few texels apart overlap. */
 static void refine(const struct unrefract_view *fixed, struct unrefract_view *view)
 {
 	static const double sigmas[] = { 3, 1.2 };
@@ -161,7 +162,7 @@ static void refine(const struct unrefract_view *fixed, struct unrefract_view *vi
 	free(to);
 }
 
-/* Correlation of the two in place. */
+/* Correlation and overlap of the two as registered. */
 static struct score agreement(const struct unrefract_view *fixed, const struct unrefract_view *view)
 {
 	const struct unrefract_survey *s = &fixed->survey;

@@ -14,7 +14,7 @@ double sheet_t(const struct sheet *sheet, double x, double y)
 
 void sheet_point(double xy[2], const struct sheet *sheet, double t, double phi)
 {
-	// The ray of angle phi from the pupil's centre: margin and limbus are both met on it.
+	// The ray of angle phi from the pupil's centre meets both margin and limbus.
 	double c = cos(phi), s = sin(phi), cx = sheet->pupil.cx, cy = sheet->pupil.cy;
 	double along = cx * c + cy * s, limbus = sheet->limbus;
 	double far = -along + sqrt(fmax(along * along - cx * cx - cy * cy + limbus * limbus, 0));
@@ -44,7 +44,7 @@ static float quantile(const struct weighted *v, int n, double total, double q)
 	return n ? v[n - 1].value : NAN;
 }
 
-/* Rings that nothing was seen of take their neighbour's figures. */
+/* Rings of which nothing was seen take their neighbour's values. */
 static void fill_gaps(float *v, int n)
 {
 	for (int i = 1; i < n; i++)

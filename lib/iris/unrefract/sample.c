@@ -43,7 +43,7 @@ static double map_pitch(const struct iris_map *map)
 	return r > 0 ? r : 1;
 }
 
-/* rows [y, y + step) of the photograph averaged into one row of the crop */
+/* Averages rows [y, y + step) of the photograph into one row of the crop. */
 static void crop_row(struct crop *crop, const struct photo *photo, int row)
 {
 	int s = crop->step, w = crop->image.width;

@@ -7,7 +7,7 @@
 
 enum { MARGIN_POINTS = 72 };
 
-/* Circle through points in the least-squares sense: x² + y² = 2 cx x + 2 cy y + k, solved about the mean. */
+/* Least-squares circle through points (Kasa): x² + y² = 2 cx x + 2 cy y + k, solved about the mean. */
 static struct circle circle_fit(int n, const double p[][2])
 {
 	double mx = 0, my = 0, xx = 0, xy = 0, yy = 0, xr = 0, yr = 0, rr = 0;
@@ -25,7 +25,7 @@ static struct circle circle_fit(int n, const double p[][2])
 	return (struct circle){ mx + cx, my + cy, sqrt(rr / n + cx * cx + cy * cy) };
 }
 
-/* The pupil's margin, seen through the cornea as an ellipse, in the iris plane. */
+/* The pupil's ellipse in the photograph, projected through the cornea to the iris plane, as a circle. */
 static struct circle pupil_in_plane(const struct unrefract_view *view)
 {
 	const struct ellipse *e = &view->fit->pupil;
@@ -39,7 +39,7 @@ static struct circle pupil_in_plane(const struct unrefract_view *view)
 	return n < MARGIN_POINTS / 2 ? (struct circle){ 0 } : circle_fit(n, p);
 }
 
-/* Where no pupil was found: the radius at which the brightness of the rings rises most. */
+/* The pupil where the fit has none: the radius at which the brightness of the rings rises most. */
 static struct circle pupil_from_rings(const float *lum, const float *seen, int size, double extent, double limbus)
 {
 	struct sheet disc = { size, extent, { 0, 0, 0 }, limbus, 0 };
@@ -56,8 +56,8 @@ static struct circle pupil_from_rings(const float *lum, const float *seen, int s
 
 enum { MUCH_HIDDEN = 2 * FIT_SECTORS / 5 };
 
-/* Where the limbus is in sight no lid covers the iris beside it. False: most of it is in sight, and the ring's left and
- * right say more; or nobody knows. */
+/* Where the limbus is visible no lid covers the iris beside it: fills the visible share for each angle. False where most of
+ * the limbus is visible, or nothing is known of it: then the left and right of the ring are favoured. */
 static bool open_angles(double open[SHEET_ANGLES], const struct fit *fit, const struct sheet *sheet, const struct eye *eye)
 {
 	int hidden = 0;
