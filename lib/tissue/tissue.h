@@ -1,5 +1,5 @@
-/* tissue: the iris as light meets it, shared by the fit and the renderer: an anterior border layer (ABL) over the stroma
- * over a pigment epithelium that absorbs everything (iris paper section 4, eqs. 10-14; single scattering, section 5.3).
+/* tissue: optical model of the iris, shared by the fit and the renderer: an anterior border layer (ABL) over the stroma over a
+ * pigment epithelium that absorbs everything (iris paper section 4, eqs. 10-14; single scattering, section 5.3).
  *
  * Scattering. Eq. 14 is a REDUCED coefficient in its source (tissue optics), so it goes with an ISOTROPIC phase function,
  * 1 / (4 pi): TISSUE_PHASE. Both layers scatter by it. It stands in the extinction too.
@@ -36,7 +36,7 @@ struct tissue {
 	struct tissue_layer layer[TISSUE_LAYERS];
 	double abl_thickness;       // mm
 	double thickness_scale;     // of the stroma
-	double exposure;            // what the photograph shows over what this model reflects: light, multiple scattering
+	double exposure;            // photograph over model: the light, multiple scattering
 	bool multiple;              // all orders of scattering, not only the first
 	enum illuminant illuminant; // that the photograph was balanced for
 };
@@ -65,13 +65,13 @@ struct tissue_optics {
 };
 void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands);
 
-/* pi times radiance towards the eye of the beholder over irradiance on the iris plane, first-order scattering, linear
+/* pi times radiance towards the camera over irradiance on the iris plane, first-order scattering, linear
  * Rec. 709 under white light; exposure not multiplied in. A white Lambertian surface would be 1; isotropic single
  * scattering without absorption is at most 1 / (4 (cos_view + cos_light)). stroma: anatomical mm; cosines in (0, 1]. */
 void tissue_reflectance(double rgb[3], const struct tissue_optics *optics, double stroma, double cos_view,
                         double cos_light);
 
-/* First order, one wavelength. */
+/* First order at one wavelength; arguments as below. */
 double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
                               double stroma, double cos_view, double cos_light);
 
@@ -80,7 +80,7 @@ double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const doub
 double tissue_reflectance_all(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
                               double stroma, double cos_view, double cos_light);
 
-/* From work/iris/pigment.json. */
+/* Reads work/iris/pigment.json. Returns false, err set, when a number is missing or out of range. */
 bool tissue_load(struct tissue *tissue, const char *path, struct err *err);
 
 #endif

@@ -28,10 +28,10 @@ struct pigment_stage_conf {
 	struct opt_each_list card;
 };
 
-/* Priors from the options; what ranges cannot check. */
+/* Sets the priors from the options; checks what ranges cannot. Returns false, err set. */
 bool pigment_stage_check(struct pigment_stage_conf *conf, struct err *err);
 
-/* One eye of the folder: reads its maps and its photograph, writes pigment.json, unless that stands already. */
+/* One eye of the folder: reads its maps and photographs, writes pigment.json, unless that is fresh. */
 bool pigment_stage(struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
                    const struct pigment_stage_conf *conf, struct err *err);
 

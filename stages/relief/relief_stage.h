@@ -11,7 +11,7 @@ struct relief_stage_conf {
 	double pupil_radius;        // mm, where none was found
 };
 
-/* One eye of the folder: reads its maps and pigment, writes its relief, unless that stands already. */
+/* One eye of the folder: reads its maps and pigment, writes its relief, unless that is fresh. */
 bool relief_stage(struct stage *stage, const struct capture_eye *eye, const struct eye *anatomy,
                   const struct relief_stage_conf *conf, struct err *err);
 

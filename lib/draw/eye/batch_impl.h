@@ -1,5 +1,5 @@
-/* batch_impl: rays of sight inside the eye, many at a time, and how loops over them read maps. One array for each coordinate, so that
- * the loops become vector code. */
+/* batch_impl: batches of rays of sight inside the eye, and how loops over them read maps. One array for each coordinate, so that
+ * the loops become vector code. Frame: eye, mm. */
 #ifndef DRAW_EYE_BATCH_IMPL_H
 #define DRAW_EYE_BATCH_IMPL_H
 #include "draw/eye/look.h"
@@ -16,10 +16,11 @@ struct iris_batch {
 	float vx[BATCH], vy[BATCH], vz[BATCH];  // its unit direction
 	float px[BATCH], py[BATCH], pz[BATCH];  // where it meets the relief
 	float near[BATCH], span[BATCH];         // length in the anterior border layer; in both layers
-	float rgb[3][BATCH];                    // scattered towards the beholder; a white plane = 1
+	float rgb[3][BATCH];                    // light scattered towards the camera; a white plane = 1
 };
 
-/* Bilinear: value and gradient (per mm) of the height, and the thickness, clamped to the map. */
+/* Height of a relief map [n][n][2] at the point (x, y) mm, bilinear, clamped to the map; *gx, *gy: its gradient. per_mm: texels in
+ * a mm. */
 SIMD_INLINE float relief_at(const float *map, int n, float per_mm, float x, float y, float *gx, float *gy)
 {
 	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f;
@@ -35,6 +36,7 @@ SIMD_INLINE float relief_at(const float *map, int n, float per_mm, float x, floa
 	return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
+/* One channel of a map [n][n][channels], likewise. */
 SIMD_INLINE float channel_at(const float *map, int n, float per_mm, float x, float y, int channels, int channel)
 {
 	float h = 0.5f * (float)n - 0.5f, top = (float)n - 1.001f;

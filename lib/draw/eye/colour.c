@@ -4,11 +4,11 @@
 
 SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float *const per_model[3])
 {
-	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // brighter only a texel gets that was in a shadow of the model's
+	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // a texel brightens much only where the model had it in shadow
 	const float *restrict per_r = per_model[0], *restrict per_g = per_model[1], *restrict per_b = per_model[2];
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
-		// A few wavelengths stand for the spectrum: what light of hardly any colour is left deep in dark tissue they may put below zero.
+		// A few wavelengths stand for the spectrum: deep in dark tissue their sum may fall below zero.
 		float x = (r[i] > 0 ? r[i] : 0) * per_r[i], y = (g[i] > 0 ? g[i] : 0) * per_g[i], z = (b[i] > 0 ? b[i] : 0) * per_b[i], mean = (x + y + z) * (1 / 3.0f);
 		float lit = mean < most ? mean : most, low = lit * (1 / chroma), high = lit * chroma, k = mean > 1e-6f ? lit / mean : 1;
 		x *= k;

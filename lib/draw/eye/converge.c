@@ -9,7 +9,7 @@ static float luminance(const float *p)
 	return 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
 }
 
-/* Adds a pass, with the squares of its luminance. */
+/* Adds a pass, and the squares of its luminance. */
 static void add(struct image *sum, float *square, const struct image *pass)
 {
 #pragma omp parallel for schedule(static)
@@ -21,7 +21,7 @@ static void add(struct image *sum, float *square, const struct image *pass)
 	}
 }
 
-/* Of the mean of n passes; the rows' sums are added in their order, whatever the number of threads. */
+/* Mean standard error of the mean of n passes, relative to the mean luminance. */
 static double standard_error(const struct image *mean, const float *square, int n)
 {
 	double off = 0, all = 0;

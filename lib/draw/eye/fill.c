@@ -1,6 +1,6 @@
-/* What no photograph saw of the iris (under a lid, behind a reflection, at the far edge) is continued from what was seen:
- * round the axis at the same radius, and outwards along the same fibre, whichever is nearer, cross-faded. Both unfold the
- * seen part like a mirror, so that nothing is smeared, and keep the brightness that the ring has elsewhere. */
+/* Inpainting of what no photograph saw of the iris (under a lid, behind a reflection, at the far edge): continued round the axis
+ * at the same radius, and outwards along the same fibre, cross-faded by distance. Both mirror the seen part at its edge, so that
+ * nothing is smeared, and keep the mean brightness of the ring. */
 #include "draw/eye/fill.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "draw/eye/batch_impl.h"
 
-enum { TURNS = 1024, ENOUGH = TURNS / 12 };  // samples round a ring; 30 degrees of it seen say what it is like
+enum { TURNS = 1024, ENOUGH = TURNS / 12 };  // samples round a ring; 30 degrees of it must be seen to be copied from
 
 /* Colour round the axis: rings of TURNS samples about the pupil's centre, outwards. */
 struct rings {
@@ -50,8 +50,8 @@ static int ring_read(struct rings *r, int k, const float *rgba, int n, double ex
 	return count;
 }
 
-/* For a ring without enough seen, the nearest one that has; the edge of what was seen at each angle, smoothed so that
- * neighbouring fibres are continued alike. */
+/* Finds for each ring the nearest one of which enough was seen, and at each angle the edge of what was seen, its minimum over
+ * neighbouring angles, so that neighbouring fibres are continued alike. */
 static void rings_relate(struct rings *r, const int *count)
 {
 	for (int k = 0; k < r->n; k++) {
@@ -76,7 +76,7 @@ static void rings_relate(struct rings *r, const int *count)
 	}
 }
 
-/* over: steps past an edge; length: how far the seen part reaches behind it. To and fro within that. */
+/* Mirrors `over` steps past an edge into the seen part behind it, which is `length` long: to and fro. */
 static int fold(int over, int length)
 {
 	int at = length > 0 ? over % (2 * length) : 0;
@@ -92,7 +92,7 @@ static const float *unfold(const struct rings *r, int k, int edge, int way, int 
 	return r->rgb[k][(edge + way * fold(over, length) + 4 * TURNS) % TURNS];
 }
 
-/* From both sides of the gap on the same ring; returns the way to its nearer end, mm. */
+/* Continues both sides of the gap on the same ring; returns the distance to its nearer end, mm. */
 static double fill_round(float rgb[3], const struct rings *r, int k, int j)
 {
 	int from = r->from[k], back = 0, ahead = 0;
@@ -107,7 +107,7 @@ static double fill_round(float rgb[3], const struct rings *r, int k, int j)
 	return (back < ahead ? back : ahead) * 2 * M_PI / TURNS * (k + 0.5) * r->step;
 }
 
-/* Outwards along the fibre; returns the way to the edge of what was seen, mm; INFINITY when this does not apply. */
+/* Continues outwards along the fibre; returns the distance to the edge of what was seen, mm; INFINITY inside of it. */
 static double fill_outwards(float rgb[3], const struct rings *r, int k, int j)
 {
 	int edge = r->outer[j], length = 0;

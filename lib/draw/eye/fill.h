@@ -1,9 +1,12 @@
-/* fill: what no photograph saw of the iris, continued from what was seen. */
+/* fill: inpaints what no photograph saw of the iris. */
 #ifndef DRAW_EYE_FILL_H
 #define DRAW_EYE_FILL_H
 
-/* RGB [n][n][4] with weight in A (0: no photograph saw it): what is missing is continued round the axis from what was
- * seen at the same radius, so that fibres go on. pupil: x, y, radius. */
+/* Continues the texture round the pupil's centre from what was seen at the same radius, and outwards along the same angle, so
+ * that fibres go on.
+ * rgba    [n][n][4], in place: linear colour, weight in A (0: no photograph saw it)
+ * extent  half-width of the map, mm; pupil: x, y, radius, mm
+ * A map that no photograph saw at all becomes grey. */
 void scene_fill(float *rgba, int n, double extent, const double pupil[3]);
 
 #endif

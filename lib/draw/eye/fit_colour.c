@@ -1,9 +1,9 @@
-/* The albedo step. The fitted model knows a handful of numbers; the photograph shows every fibre. So the photograph's
- * colour is kept for each texel, and beside it what the model shows there in the light of the photograph, seen from its
- * camera. Elsewhere, and in other light, the iris shows the photograph's colour times what the model changes by:
+/* The albedo step. The fitted model has a handful of parameters; the photograph shows every fibre. So each texel keeps the
+ * photograph's colour, and beside it the colour of the model in the light and view of the photograph. In any other light
+ * and view the iris shows the photograph's colour times the ratio by which the model's colour changes:
  *     colour = gain model (texture / (gain model_of_photograph))^detail
- * Where the model is dark its channels change by wildly different factors; they are held within CHROMA of their mean, for
- * what the photograph cannot have shown in such a texel must not turn into colour. */
+ * Where the model is dark its channels change by very different factors; they are clamped to within LOOK_CHROMA of their mean,
+ * so that noise of dark texels does not turn into colour. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,7 +15,7 @@
 #include "draw/eye/view.h"
 #include "optics/lightpath/lightpath.h"
 
-/* What the model shows at n texels of row y, seen through the cornea from C. */
+/* The model's colour at n texels of row y, seen through the cornea from the camera at C. */
 static void model_row(struct iris_batch *b, const struct scene *s, const struct scene_level *level, int x0, int n, int y,
                       const double C[3], const struct scene_beams *beams)
 {
@@ -39,12 +39,12 @@ static void model_row(struct iris_batch *b, const struct scene *s, const struct 
 	scene_scatter(b, s, level, beams);
 }
 
-/* The cornea lets less light out towards its edge; the texture has that in it, the model not. Seen head-on it is 2 %
- * less everywhere, which is what is put back here. */
+/* Transmittance of the cornea for light on its way out. The texture contains this loss, which grows towards the edge; the model
+ * does not. Seen head-on it is 2 % everywhere: that part is applied here. */
 static const float through = 0.98f;
 
-/* The texture was read off the iris plane; a point of the relief lies before it, and the same ray of sight meets the
- * plane a little further on. That is where the photograph shows the point. */
+/* The texture was sampled on the iris plane. A point of the relief lies in front of that plane, and its ray of sight meets the plane
+ * a little further on: there the texture shows the point. */
 static void put_row(float *colour, float *model, const float *texture, const struct iris_batch *b, const struct scene *s,
                     const struct scene_level *level)
 {
@@ -75,7 +75,7 @@ static struct fit_sums sums_row(const struct scene *s, int y)
 		if (tex[3] < 0.5f || hypot(u - s->pupil[0], v - s->pupil[1]) < s->pupil[2] + 0.15 || hypot(u, v) > 0.92 * s->limbus[0])
 			continue;
 		for (int c = 0; c < 3; c++) {
-			if (!(mod[c] > SCENE_DARK))  // unlit: it says nothing of how bright the model is
+			if (!(mod[c] > SCENE_DARK))  // unlit: no information on the model's brightness
 				continue;
 			double t = log(tex[c]), m = log(mod[c]);
 			f.n++;
@@ -89,7 +89,7 @@ static struct fit_sums sums_row(const struct scene *s, int y)
 	return f;
 }
 
-/* Added up row by row, whatever the number of threads. */
+/* Sets gain and explained from the sums of all rows, added in a fixed order, so that threads change nothing. */
 static void compare(struct scene *s)
 {
 	int n = s->level[0].n;

@@ -9,7 +9,7 @@
 
 int scene_marched(const struct scene *s)
 {
-	// A map that is smaller than it may be has no texels to spare: as many are marched from as of a full one, to a fifth.
+	// A map below the full size is marched from as many texels as a full one, to within a fifth.
 	int apart = s->conf.apart > 0 ? s->conf.apart : 2, enough = s->conf.map_size / apart * 6 / 5, k = 0;
 	for (int step = apart; step > 1 && k + 1 < s->n_levels && s->level[0].n >> k > enough; step /= 2)
 		k++;

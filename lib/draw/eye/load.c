@@ -17,7 +17,7 @@
 
 static const long limit_px = 1L << 27;
 
-/* Channels of an EXR map; *extent its half-width. What is not finite becomes 0, and is counted. image_free. */
+/* Reads channels of a square EXR map; *extent: its half-width, mm. Values that are not finite become 0 and are counted. image_free. */
 static bool read_map(struct image *out, struct scene *s, const char *path, int channels, const char *const names[], double *extent,
                      struct err *err)
 {
@@ -82,7 +82,7 @@ static bool load_relief(struct scene *s, const char *path, struct err *err)
 		for (long i = 0; i < (long)l->n * l->n; i++)
 			map.px[2 * i + 1] = (float)scene_plain_stroma;
 	}
-	for (long i = 0; i < (long)l->n * l->n; i++) {  // a relief beyond that is none, and the march counts on it
+	for (long i = 0; i < (long)l->n * l->n; i++) {  // beyond these bounds it is no relief, and the march relies on them
 		map.px[2 * i] = fmaxf(-0.6f, fminf(0.6f, map.px[2 * i]));
 		map.px[2 * i + 1] = fmaxf(0.02f, fminf(1, map.px[2 * i + 1]));
 	}
@@ -115,7 +115,7 @@ static bool load_tissue(struct scene *s, const char *path, struct err *err)
 	return true;
 }
 
-/* Made for this very cornea, or not used: the folder may have been changed since. */
+/* Used only when it was made for this very cornea: the folder may have been changed since. */
 static bool load_refraction(struct scene *s, const char *path, struct err *err)
 {
 	if (!path || !file_exists(path))

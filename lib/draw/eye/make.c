@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* The stroma's thickness where no relief says: the mean of the three places of the iris paper, section 4, weighted by
- * their share of the area. A layer without melanin to speak of, as in a blue eye. */
+/* The mean of the three places of the iris paper, section 4, weighted by their share of the area; tissue with hardly any melanin, as
+ * in a blue eye. */
 const double scene_plain_stroma = 0.48;
 const struct tissue scene_plain_tissue = { .layer = { { 0.01, 0.9 }, { 0.002, 0.9 } }, .abl_thickness = 0.03,
 	                                        .thickness_scale = 1, .exposure = 1, .illuminant = ILLUMINANT_D65 };

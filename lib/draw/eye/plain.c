@@ -1,4 +1,4 @@
-/* An eye that nobody photographed: fibres, crypts and a collarette from a seed, over a plain tissue. */
+/* An eye that nobody photographed: fibres and a collarette from a seed, over a plain tissue. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,8 @@
 #define DRAW_EYE_PUPIL_H
 #include "draw/eye/scene.h"
 
-/* What is seen of the iris' colour at a point near the pupil's margin: none inside, less on the ruff. soft: half a pixel, mm. */
+/* Factor of the iris' colour, by channel, at the point (x, y) of the iris plane (mm): 0 inside the pupil, less than 1 on the
+ * dark ruff. soft: half a pixel, mm, over which the margin is blurred. */
 void scene_pupil(float cover[3], const struct scene *scene, float x, float y, float soft);
 
 #endif

@@ -1,5 +1,5 @@
-/* Pictures: every pixel's middle first, then more rays where neighbours differ. Tiles are independent of each other, so
- * that the bytes do not depend on the number of threads. */
+/* A picture: a ray through the middle of every pixel first, then more rays where neighbours differ. Tiles are independent of each
+ * other, so that the bytes do not depend on the number of threads. */
 #include "draw/eye/render.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "draw/eye/march/shade.h"
 #include "draw/eye/quick/hits.h"
 
-enum { RUN = 40 };  // tiles in a row are one thread's
+enum { RUN = 40 };  // tiles in a row that one thread takes at a time
 
 static void look_make(struct scene_look *look, const struct scene *s, const struct scene_view *view,
                       const struct scene_lighting *light, const struct scene_beams *beams)
@@ -33,7 +33,7 @@ static void look_make(struct scene_look *look, const struct scene *s, const stru
 	look->soft = (float)(0.5 * mm);
 }
 
-/* About what the eye makes of a value: steps of it, not of light, decide where more rays go. */
+/* Approximate perceived brightness: steps of it, not of light, decide where more rays are traced. */
 static float seen(const float *p, int c)
 {
 	return sqrtf(p[c] > 0 ? p[c] < 1.2f ? p[c] : 1.2f : 0);
@@ -71,13 +71,13 @@ static void refine_flush(struct refine *r, const struct canvas *c, struct scene_
 		return;
 	canvas_trace(rgba, r->n, r->x, r->y, c, &count->iris);
 	for (int i = 0; i < r->n; i++)
-		for (int k = 0; k < 4; k++)  // a mirror image brighter than white counts as a little more than white
+		for (int k = 0; k < 4; k++)  // clamps reflections brighter than white, so that one sample does not dominate its pixel
 			r->sum[r->pixel[i]][k] += rgba[i][k] < 2 ? rgba[i][k] : 2;
 	count->rays += r->n;
 	r->n = 0;
 }
 
-/* samples^2 rays in the marked pixels of a tile, in place of the first one. */
+/* Traces samples^2 rays in the marked pixels of a tile, in place of the first one. */
 static void more_rays(const struct canvas *c, const unsigned char *mark, int tx, int ty, struct scene_count *count)
 {
 	struct refine r = { .n = 0 };

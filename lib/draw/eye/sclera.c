@@ -1,5 +1,3 @@
-/* The white of the eye: vessels grown over it, and the ripples of its tear film. The map is azimuthal and equidistant
- * about the eye's axis: radius in the map is the angle at the centre of the sphere. */
 #include "draw/eye/sclera.h"
 
 #include <math.h>
@@ -39,7 +37,7 @@ static void put(const struct grower *g, float xy[2], double polar, double turn)
 
 static void vessel_draw(const struct grower *g, int n, const float (*xy)[2], double width, double mm_per_px)
 {
-	// Thinner than a pixel: a pixel wide, and paler. Both ends fade: one comes from the depth, the other runs out.
+	// A vessel thinner than a pixel is drawn a pixel wide and paler. Both ends fade: one rises from the depth, the other runs out.
 	enum { PIECE = 5 };
 	for (int a = 0; a + 1 < n; a += PIECE) {
 		int b = a + PIECE + 1 < n ? a + PIECE + 1 : n;
@@ -94,7 +92,7 @@ static uint8_t *layer(const struct scene *s, int size, int seed, int count, doub
 	return g.picture.px;
 }
 
-/* A film that is not quite smooth breaks the mirror image up, off the cornea only: slopes from the noise's height, once. */
+/* Ripples break up reflections beyond the cornea: slopes from a height map of noise. */
 static void film_make(struct scene *s, const struct image *height)
 {
 	int n = height->width;
@@ -142,8 +140,8 @@ void scene_vessel(float left[3], double depth, double width, double oxygen)
 	}
 }
 
-/* What sclera and vessels leave of white light. a, b: how much of a texel vessels of the conjunctiva and of the episclera cover.
- * Away from the cornea it gets a little yellower and redder: fat of the orbit. */
+/* Albedo of sclera and vessels. a, b: share of the texel that vessels of the conjunctiva and of the episclera cover. Away from the
+ * cornea it gets a little yellower and redder by fat of the orbit. */
 static void albedo_put(float p[3], const struct scene *s, const float left[2][3], float r, float a, float b)
 {
 	float away = smooth(0.35f, 1.1f, r * (float)(reach / 1.3));

@@ -1,19 +1,23 @@
-/* sclera: the white of the eye: its vessels and the ripples of its tear film. */
+/* sclera: the white of the eye: its vessels and the ripples of its tear film. Its maps are azimuthal equidistant about the eye's
+ * axis: the radius in the map is the angle at the centre of the scleral sphere. */
 #ifndef DRAW_EYE_SCLERA_H
 #define DRAW_EYE_SCLERA_H
 #include <math.h>
 
 #include "draw/eye/scene.h"
 
-/* Maps of the sclera are azimuthal and equidistant about the axis: angle at the sphere's centre at their edge. */
+/* Angle at the edge of the maps, rad. */
 #define SCENE_SCLERA_REACH (110 * M_PI / 180)
+
+/* Fills veins, white and film of the scene, from conf.seed. */
 void scene_veins_make(struct scene *scene);
 
-/* What a vessel that lies so deep in the tissue leaves of its light: of what comes back from beyond that depth (diffusion without
- * absorption: 1 / (1 + 3/4 mu_s' depth)) its blood takes what it absorbs on two ways through a cylinder. mm; oxygen 0..1. */
+/* Share of the sclera's light, by channel, that is left over a vessel of that depth and width (mm) and oxygen saturation (0..1).
+ * Of the light that comes back from below the vessel (diffusion without absorption: 1 / (1 + 3/4 mu_s' depth)) the blood
+ * absorbs on two paths through a cylinder. */
 void scene_vessel(float left[3], double depth, double width, double oxygen);
 
-/* Albedo of the sclera and the ripple of its film at a point of it. */
+/* Albedo at a point of the sclera (eye's frame, mm). normal: unit, in and out: bent by the film's ripples. */
 void scene_sclera(float albedo[3], float normal[3], const struct scene *scene, const float point[3]);
 
 #endif

@@ -1,5 +1,5 @@
 /* view: how an eye is looked at: camera, pose, and the part of the camera's picture that is drawn.
- * Image px: x right, y down, centre of the first pixel at (0.5, 0.5). Frames: eye and camera as in scene.h, mm.
+ * Image px: x right, y down, centre of the first pixel at (0.5, 0.5). Frames: eye and camera (lib/README.md), mm.
  */
 #ifndef DRAW_EYE_VIEW_H
 #define DRAW_EYE_VIEW_H
@@ -15,14 +15,14 @@ struct scene_view {
 	int width, height;            // px
 	int samples;                  // samples^2 rays where the picture has edges, at most
 	bool textured;                // the photograph's colour alone, without scattering: the cheap alternative
-	const unsigned char *visible; // [height][width] 1, or 0: something stands before the eye there, and it is left out; null: all
-	struct scene_hits *hits;      // what rays meet is kept there and not sought again while only light changes; null: not
+	const unsigned char *visible; // [height][width] 1, or 0: something stands before the eye there, and it is not drawn; null: all
+	struct scene_hits *hits;      // keeps what rays meet while only the light changes (quick/hits.h); null: nothing is kept
 };
 
-/* View of an eye turned by yaw and pitch (radians) in front of a camera that frames `field` mm at distance mm. */
+/* An eye that is turned by yaw and pitch (rad) in front of a long lens; the square picture of size px shows field mm. */
 struct scene_view scene_view_turned(const struct scene *scene, double yaw, double pitch, double field, int size);
 
-/* The view of the photograph itself: a window of it (photo px) at `scale` photo px a pixel. */
+/* The view of the photograph itself: the window x0, y0, x1, y1 of it (photo px), scale photo px a pixel. */
 struct scene_view scene_view_photo(const struct fit *fit, const double window[4], double scale);
 
 #endif

@@ -1,4 +1,4 @@
-/* A portrait's picture: what its samples show, put together to pixels. */
+/* A portrait's picture: the colours of its samples, filtered to pixels. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,13 +44,13 @@ static void colour_at(float rgba[4], const struct canvas *c, double x, double y,
 	}
 }
 
-/* Three samples in a row that lie on no line: one edge of skin stands before another. */
+/* Whether three samples in a row are far from collinear in depth: one edge of skin occludes another. */
 static bool steps(const struct portrait_spot *a, const struct portrait_spot *b, const struct portrait_spot *c, float apart)
 {
 	return fabsf(a->depth - 2 * b->depth + c->depth) > 0.02f + 0.3f * apart;
 }
 
-/* All samples of the pixel show about the same: one colour does. */
+/* Whether all samples of the pixel show about the same: one colour is enough. */
 static bool is_plain(const struct canvas *c, int x, int y)
 {
 	int s = c->samples, w = c->rays.view->width * s;
@@ -91,7 +91,7 @@ static void fine_pixel(float (*fine)[4], const struct canvas *c, int x, int y)
 				memcpy(fine[j * s + i], fine[0], sizeof *fine);
 }
 
-/* Finds the pixels near hairs, whose samples their neighbours take a share of, too. */
+/* Marks the pixels at hairs and shades their samples: the filter of neighbouring pixels reads them, too. */
 static void find_hairs(struct canvas *c)
 {
 	int s = c->samples, width = c->rays.view->width, height = c->rays.view->height;
@@ -120,7 +120,7 @@ static void find_hairs(struct canvas *c)
 				fine_pixel(&c->fine[c->fine_at[(long)y * width + x]], c, x, y);
 }
 
-/* A pixel at hairs, which are finer than it: each sample weighs by a tent as wide as two pixels, so that they do not fall to dots. */
+/* A pixel at hairs, which are finer than it: samples are weighted by a tent two pixels wide, so that hairs do not break into dots. */
 static void draw_hairy(float rgba[4], const struct canvas *c, int x, int y)
 {
 	int s = c->samples, width = c->rays.view->width, height = c->rays.view->height;

@@ -1,4 +1,4 @@
-/* The eyes of a portrait: scene.h's own pictures of them, put where the grid shows an eye. */
+/* The eyes of a portrait: pictures of draw/eye, where samples show an eye. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,7 +8,7 @@
 #include "draw/face/impl.h"
 #include "math/vec.h"
 
-/* rig_from_eye: columns x, y, z of the eye's frame (DESIGN: z into the eye, x and y as a camera before it has them), for a
+/* rig_from_eye: columns x, y, z of the eye's frame (lib/README.md: z into the eye, x and y as a camera before it has them), for a
  * globe turned so. */
 static void eye_axes(double axes[3][3], const double target_from_globe[3][3])
 {
@@ -76,7 +76,7 @@ static struct scene_view eye_view(const struct portrait *p, const struct portrai
 	return view;
 }
 
-/* Pixels of which any sample shows that eye: x0, y0, x1, y1, exclusive; false: none. */
+/* The bounding box of pixels of which a sample shows that eye: x0, y0, x1, y1, exclusive; false: none. */
 static bool window_of(int window[4], const struct portrait_view *v, const struct portrait_spot *spots, int samples, int side)
 {
 	window[0] = v->width;
@@ -93,7 +93,7 @@ static bool window_of(int window[4], const struct portrait_view *v, const struct
 	return window[2] > window[0];
 }
 
-/* Pixels of the window that any sample shows the eye in, and their neighbours: colours are read a pixel away. free(). */
+/* Marks the pixels of the window of which a sample shows the eye, and their neighbours, whose colours are read, too. free(). */
 static unsigned char *visible_of(const int window[4], const struct portrait_view *v, const struct portrait_spot *spots, int samples, int side)
 {
 	int w = window[2] - window[0], h = window[3] - window[1];
@@ -112,7 +112,7 @@ static unsigned char *visible_of(const int window[4], const struct portrait_view
 	return out;
 }
 
-/* Share of the sky over a point of the eye that lids and brow leave: fixed directions about the normal. */
+/* Ambient occlusion: the share of the sky that lids and brow leave over a point of the eye, by fixed cosine-weighted directions. */
 static float sky_over(const struct portrait *p, const float at[3], const float normal[3])
 {
 	enum { RAYS = 20 };

@@ -1,4 +1,4 @@
-/* Light beneath the skin: the irradiance that the picture shows, spread on the screen. */
+/* Subsurface scattering: the irradiance of the skin in the picture, blurred on the screen by the skin's profile. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 #include "math/vec.h"
 #include "draw/face/impl.h"
 
-/* What the pixel's middle shows; lashes hang before the skin, and it takes their place in their light. */
+/* The irradiance at a pixel's middle; 0 and no depth where it shows no skin, but a lash or an eye. */
 static void pixel(struct portrait_glow *g, const struct portrait *p, const struct portrait_rays *rays, const struct portrait_spot *spot,
                   int x, int y)
 {

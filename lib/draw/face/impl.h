@@ -1,40 +1,40 @@
-/* portrait_impl: what the files of the portrait share. */
+/* impl: what the files of a portrait share. Samples of a picture are a grid `samples` times finer than its pixels. */
 #ifndef DRAW_FACE_IMPL_H
 #define DRAW_FACE_IMPL_H
 #include "draw/face/parts.h"
 
-/* What a sample of the picture shows. */
+/* The surface that a sample of the picture shows. */
 struct portrait_spot {
 	int face;      // of the mesh; -1: nothing, -2 and -3: the left and right eye
 	float depth;   // along the camera's axis, mm
 };
 
-/* raster.c: the nearest triangle at the middle of every cell of a grid samples times finer than the view;
- * [height samples][width samples]. free(). */
+/* raster.c: the nearest surface at every sample: [height samples][width samples]. free(). */
 struct portrait_spot *portrait_raster(const struct portrait *portrait, const struct portrait_view *view, int samples);
 
-/* Smooth noise in -1..1 at a point of the skin at rest, of cells so many to a mm. */
+/* Value noise in -1..1 at a point p of the skin at rest (mm); per_mm: cells in a mm. */
 float portrait_noise(const float p[3], float per_mm);
 
-/* shade.c: colour of a point of a face seen along dir (camera, unit). */
+/* light.c: the environment's directions in the rig's axes. */
 struct portrait_sky {
 	int n;
-	float detail;  // 0..1: how much of pores a pixel of the view resolves
+	float detail;  // 0..1: how far pixels of the view resolve pores
 	float rig_from_cam[3][3];
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
-/* light: irradiance there; null: the vertices'. */
+/* shade.c: colour of the point of a face that the ray from origin along dir (unit) meets. light: irradiance there; null:
+ * interpolated from the vertices. */
 void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
                     const float origin[3], const float dir[3], const float *light);
 
-/* Unit normal of such a point, without folds and pores; of a hair, its flat side's. */
+/* Unit normal of such a point, without folds and pores; of a hair the ribbon's. */
 void portrait_normal(float normal[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);
 
 /* Irradiance of such a point, before skin spreads it. */
 void portrait_bare_light(float rgb[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);
 struct portrait_sky portrait_sky_of(const struct portrait *portrait, const struct portrait_view *view);
 
-/* glow.c: irradiance of the skin at every pixel's middle, spread beneath it. */
+/* glow.c: irradiance of the skin at the middle of every pixel, after subsurface scattering. */
 struct portrait_glow {
 	int width, height;
 	float *rgb[3], *depth;  // [height][width]; depth (mm of the rig) 0: no skin there. Owned
@@ -42,46 +42,49 @@ struct portrait_glow {
 };
 struct portrait_glow portrait_glow_of(const struct portrait *portrait, const struct portrait_view *view, const struct portrait_spot *spots,
                                       int samples);
-/* Of a point of the picture (px) on skin so deep (the camera's unit), from the pixels round it that show that skin and no other
- * behind or before it. False: none does. */
+/* Irradiance at a point of the picture (px) on skin at that depth (the camera's unit), interpolated from neighbouring pixels that
+ * show the same surface. False: none does. */
 bool portrait_glow_at(float rgb[3], const struct portrait_glow *glow, double x, double y, float depth);
 void portrait_glow_free(struct portrait_glow *glow);
 
-/* wrinkle.c: strengths for a pose; what a fold does to the normal of a point of a face (weights w) and to its light.
- * False: none there. */
+/* wrinkle.c. portrait_fold_pose: the maps' strengths in a pose. portrait_fold: bends the normal at a point of a face (barycentric
+ * weights w) by the maps' slope, and changes its light. False: no fold there. */
 void portrait_fold_pose(struct portrait *portrait, const double *controls);
 bool portrait_fold(float normal[3], float light[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
                    const float w[3]);
 
-/* eye.c: both eyes' colours where the grid shows them, [height][width][4] each; null px where not in view. */
+/* eye.c: pictures of both eyes where samples show them, [height][width][4] each, at[side]: px of their corner; null px: not in
+ * view. image_free. */
 void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                    const struct portrait_spot *spots, int samples);
 
-/* tear.c: tear line and the dark under the lids' edges, into those pictures. */
+/* tear.c: draws the tear line and the shadow of the lids' edges into those pictures. */
 void portrait_tears(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                     const struct portrait_spot *spots, int samples);
 
-/* wet.c: finds the inner corners, once, and wets the skin there. */
+/* wet.c: finds the eyes' inner corners at rest, and makes the skin there moist. */
 void portrait_wet_make(struct portrait *portrait);
 
-/* Height of the meniscus on a point of a globe: the lake at the inner corner is wider. */
+/* Height of the meniscus at a point of a globe, mm: greater in the lacrimal lake at the inner corner. */
 float portrait_lake_height(const struct portrait *portrait, int side, const float at[3]);
 
 /* Depth of a meniscus of that height at distance d from the lid: a quarter of a circle. */
 float portrait_lake_depth(float d, float height);
 
-/* What so deep a lake lets pass of the light that comes from all round, is thrown back below it and leaves under that cosine
- * (Beer and Lambert); absorb: 1/mm. */
+/* Transmittance of tear fluid of that depth (mm) for diffuse light that is reflected below it and leaves under the cosine cos_i
+ * (Beer-Lambert). absorb: 1/mm. */
 void portrait_lake_light(float through[3], float depth, float cos_i, const double absorb[3]);
 
 /* Fresnel reflectance of the film of tears, unpolarised. */
 float portrait_film_share(float cos_i);
 
-/* What a film on skin with that normal mirrors, over its colour; open: share of the room that is seen from there. */
+/* Adds the reflection of a film of tears on moist skin with that normal to its colour. wet: moisture; open: share of the room that
+ * is visible from there. */
 void portrait_wet_shade(float rgb[3], const struct portrait *portrait, const float rig_from_cam[3][3], const float normal[3], const float dir[3],
                         float wet, float open);
 
-/* enum distance_material of a pixel for the eye of that side, and how much of it is skin: from its samples, rows apart. */
+/* enum distance_material of a pixel for the eye of that side, and the share of skin in it. spots: its first sample; row: samples in a
+ * row of the picture. */
 uint8_t portrait_material(float *cover, const struct portrait *portrait, const struct portrait_spot *spots, long row, int samples,
                           int side);
 
@@ -89,7 +92,7 @@ uint8_t portrait_material(float *cover, const struct portrait *portrait, const s
  * direction from the lid in the globe's tangent plane. */
 void portrait_meniscus(float normal[3], const float globe[3], const float away[3], float d, float height);
 
-/* Distance to the eye along a ray of the rig's frame; INFINITY: missed. */
+/* Distance to the eye along a ray in the rig's frame, mm; INFINITY: missed. */
 float portrait_eye_hit(const struct portrait *portrait, int side, const float origin[3], const float dir[3]);
 
 /* The camera in the rig's frame, and a pixel's ray there (dir: unit; scale: its length along the camera's axis). */

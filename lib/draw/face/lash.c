@@ -1,5 +1,4 @@
-/* Lashes: hairs that stand on the lids' margins and go with them. Where the margins are is seen, not told: above and below
- * what an eye shows at rest. */
+/* Lashes: hairs rooted on the lids' margins. The margins are found in pictures at rest: above and below what shows of an eye. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +47,7 @@ static void plant(struct portrait *p, const struct rim *rim, const struct portra
 		// None in the inner eighth: there the lids hold the tear ducts.
 		double outward = 0.12 + 0.86 * (i + rng_range(rng, 0.1, 0.9)) / hairs;  // 0 inner canthus, 1 outer
 		int at = (int)((side ? 1 - outward : outward) * (rim->n - 1));  // the person's left eye looks outward to the right
-		// A margin is a curve: a column that steps out of it has met something else.
+		// A margin is a smooth curve: a column off it has found something else.
 		int left = at > reach ? at - reach : 0, right = at + reach < rim->n ? at + reach : rim->n - 1;
 		if (fabsf(rim->px[at][1] - 0.5f * (rim->px[left][1] + rim->px[right][1])) > 3)
 			continue;
@@ -150,7 +149,7 @@ void portrait_lashes_move(struct portrait *p, const struct portrait_view *view)
 			for (int c = 0; c < 3; c++)
 				point[k][c] = root[c] + 0.12f * off[c] + l->length * (out * off[c] + side * along[c] + rise * up[c]);
 		}
-		// Never thinner than samples lie apart; what it covers too much then, its colour makes good.
+		// Never thinner than the distance of samples; the excess cover is compensated in its colour.
 		float apart = 0, half0 = 0.062f * (float)(p->rig->globe[l->side].radius / 12);
 		for (int c = 0; c < 3; c++)
 			apart += (rays.origin[c] - root[c]) * (rays.origin[c] - root[c]);

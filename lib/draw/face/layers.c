@@ -1,4 +1,4 @@
-/* What a picture is of, beside its colours. */
+/* Depth, distance, normal and other layers of a picture, for compositors. */
 #include <math.h>
 #include <stdlib.h>
 

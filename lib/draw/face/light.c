@@ -50,7 +50,7 @@ static void light_vertex(struct portrait *p, const struct portrait_sky *sky, int
 	p->mesh.open[i] = open / all;
 }
 
-/* One round of diffusion; reach: mm over which a colour travels in it. */
+/* One round of diffusion over the mesh; rate: of each colour. */
 static void spread(struct portrait *p, float (*light)[3], const float rate[3])
 {
 	int n = p->rig->n;

@@ -69,7 +69,7 @@ static void cut_edges(struct portrait_mesh *m, const bool *marked, int (*mid)[3]
 	free(e);
 }
 
-/* A face with some of its edges cut becomes triangles round its corners: no cracks where fine meets coarse. */
+/* Cuts a face whose marked edges have middles into triangles, without cracks between fine and coarse parts. */
 static int cut_face(int32_t out[4][3], const int32_t v[3], const int mid[3])
 {
 	int n = (mid[0] >= 0) + (mid[1] >= 0) + (mid[2] >= 0), k = 0;
@@ -112,7 +112,7 @@ static void subdivide(struct portrait_mesh *m, bool *marked)
 	free(next);
 }
 
-/* Middle of an edge on the curved surface that both normals ask for. */
+/* Middle of an edge on the curved surface of Phong tessellation. */
 static void middle(float out[3], float normal[3], const float a[3], const float b[3], const float na[3], const float nb[3])
 {
 	float p[3], da = 0, db = 0, len = 0;
@@ -173,8 +173,7 @@ void portrait_mesh_make(struct portrait *p)
 void portrait_mesh_move(struct portrait *p)
 {
 	struct portrait_mesh *m = &p->mesh;
-	// Of the surface as it stands: algorithm 1's normals are of the skull and the globe, and where skin bulges between
-	// them the light would not.
+	// Normals of the posed surface: algorithm 1's are those of skull and globe, and would not shade skin that bulges between them.
 	struct mesh base = { p->rig->n, p->rig->n_faces, m->x, p->rig->faces, 0 };
 	float (*normal)[3] = mesh_normals(&base);
 	memcpy(m->normal, normal, (size_t)p->rig->n * sizeof *normal);

@@ -1,4 +1,5 @@
-/* parts: what a portrait consists of, for the files that draw it and for the interactive page, which draws the same elsewhere. */
+/* parts: what a portrait consists of, for the files that draw it and for the interactive page, whose shaders draw the same. Frame: the
+ * rig's, mm. */
 #ifndef DRAW_FACE_PARTS_H
 #define DRAW_FACE_PARTS_H
 #include "draw/face/lash.h"
@@ -17,14 +18,14 @@ struct portrait {
 	float (*lit)[3];            // irradiance at the rig's vertices, before it is spread
 	float (*lit_at)[3];         // where they were then
 	int *near_start, *near;     // neighbours of the rig's vertices
-	float *spread;              // weight of each neighbour, of red
+	float *spread;              // diffusion weight of each neighbour, for red
 	double target_from_globe[2][3][3];
 	struct portrait_lash *lash; // their triangles are the mesh's last, from first_lash; their vertices from lash_vertex
 	int n_lashes, first_lash, lash_vertex;
 	const struct wrinkle_maps *wrinkles;
-	int *wrinkle_input;         // [wrinkles.n] control that it follows; -1: none
+	int *wrinkle_input;         // [wrinkles.n] control that each map follows; -1: none
 	float *wrinkle_strength;    // in this pose
-	bool folded;                // any of them
+	bool folded;                // any map shows in this pose
 	bool matte;                 // nothing mirrors
 	float corner[2][3];         // the globes' inner corners at rest, where known
 	bool corner_known[2];

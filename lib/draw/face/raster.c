@@ -1,4 +1,4 @@
-/* Which triangle every sample shows: rows in bands, one thread each, so that the result does not depend on threads. */
+/* Rasteriser: which surface every sample shows. Bands of rows, one thread each, so that the result does not depend on threads. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -48,7 +48,7 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 			float px = (float)x + 0.5f, py = (float)y + 0.5f;
 			float wa = ((c[0] - b[0]) * (py - b[1]) - (c[1] - b[1]) * (px - b[0])) * k;
 			float wb = ((a[0] - c[0]) * (py - c[1]) - (a[1] - c[1]) * (px - c[0])) * k, wc = 1 - wa - wb;
-			// A hair wider than it is: no sample falls between two triangles.
+			// Enlarged by 1e-5, so that no sample falls between two triangles.
 			if (wa < -1e-5f || wb < -1e-5f || wc < -1e-5f)
 				continue;
 			float depth = 1 / (wa * ia + wb * ib + wc * ic);

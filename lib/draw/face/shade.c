@@ -6,7 +6,7 @@
 #include "draw/face/impl.h"
 #include "draw/face/skin_look.h"
 
-/* A number in -1..1 that is always the same for the same cell. */
+/* Hash of a cell, in -1..1. */
 static float hash(int x, int y, int z)
 {
 	uint32_t h = (uint32_t)x * 0x8da6b343u ^ (uint32_t)y * 0xd8163841u ^ (uint32_t)z * 0xcb1ab31fu;

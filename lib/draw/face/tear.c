@@ -1,9 +1,8 @@
-/* The tear line (skin paper, chapter 4): what stands between lid and globe, from the screen's distance field alone.
+/* The tear line (skin paper, chapter 4) between lid and globe, from the distance field of the screen alone.
  *
- * The meniscus is a quarter of a circle that leaves the globe flat and meets the lid upright: with d the distance to the lid
- * and R its height, depth R - sqrt(R^2 - (R - d)^2); so its normal leans away from the lid, and along a lower lid mirrors what
- * is above. It is higher at the inner corner, and takes of the light what it absorbs on its way in and out (wet.c).
- * The lid's edge takes light from the globe below it. */
+ * The meniscus is a quarter of a circle, tangent to the globe and to the lid: with d the distance to the lid and R its height,
+ * its depth is R - sqrt(R^2 - (R - d)^2). Its normal leans away from the lid, so along a lower lid it reflects what is above.
+ * It is higher at the inner corner, and absorbs light on its way in and out (wet.c). The lid's edge shadows the globe below it. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,7 +14,7 @@
 
 static const float shadow_mm = (float)TEAR_SHADOW_MM, shadow_part = (float)TEAR_SHADOW;
 
-/* A part of the screen round one eye, with what the distance field asks about it. */
+/* A part of the screen round one eye: inputs and outputs of the distance field. */
 struct field {
 	int x0, y0, width, height;
 	uint8_t *material;
@@ -30,7 +29,7 @@ static void field_free(struct field *f)
 	free(f->nearest);
 }
 
-// Lashes hang before the lid's edge and are not it.
+// Lashes occlude the lid's edge; they are not part of it.
 uint8_t portrait_material(float *cover, const struct portrait *p, const struct portrait_spot *spots, long row, int samples, int side)
 {
 	int skin = 0, globe = 0;
@@ -67,7 +66,7 @@ static struct field field_make(const struct portrait *p, const struct portrait_v
 			long i = (long)y * f.width + x;
 			f.material[i] = portrait_material(&f.cover[i], p, of, row, samples, side);
 		}
-	// Across the screen: how far a lid stands off the globe, its mesh knows only to within its own facets.
+	// Distance on the screen, not in space: the gap between lid and globe is only known to within the facets of the mesh.
 	struct distance_scene scene = { f.width, f.height, f.material, f.cover, 0, 0, { 0, 0 } };
 	distance_band(f.distance, f.nearest, &scene, reach * v->focal_px / away, 0);
 	for (size_t i = 0; i < n; i++)
@@ -94,8 +93,8 @@ static bool away(float out[3], const struct portrait_rays *rays, const float at[
 	return d < -0.02f && len > 1e-5f;
 }
 
-/* Offset towards the lid, as the neighbours together see it: one texel's own leans with every step of the edge. Those that lie
- * further off know the direction better, and count for more. */
+/* Direction towards the lid, averaged over neighbours: one pixel's own follows every step of the edge. Offsets are summed, so that
+ * more distant pixels, whose direction is more exact, weigh more. */
 static void towards(float off[2], const struct field *f, int x, int y, int reach)
 {
 	off[0] = off[1] = 0;
@@ -112,7 +111,7 @@ static void towards(float off[2], const struct field *f, int x, int y, int reach
 	off[1] /= len;
 }
 
-/* What a film with that normal mirrors towards the beholder: the room, or the skin that stands before it. */
+/* What a film with that normal reflects towards the camera: the room, or skin that stands before it. */
 static void mirrored(float rgb[3], float *fresnel, const struct portrait *p, const struct portrait_rays *rays, const float at[3], const float n[3], const float dir[3])
 {
 	float c = -(dir[0] * n[0] + dir[1] * n[1] + dir[2] * n[2]), r[3], cam[3] = { 0 };
@@ -172,7 +171,7 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	towards(off, f, u, v, (int)fminf(height / w->pixel, 6) + 1);
 	if (!away(out, w->rays, at, n, x, y, off))
 		return;
-	// The meniscus turns by a right angle within a few pixels: what a pixel mirrors of it is a mean.
+	// The meniscus turns by a right angle within a few pixels: a pixel's reflection is the mean over it.
 	float sum[3] = { 0 }, through[3] = { 0 }, below[3], cos_i = -(dir[0] * n[0] + dir[1] * n[1] + dir[2] * n[2]);
 	for (int k = 0; k < ACROSS; k++) {
 		float dk = d + ((float)k + 0.5f - 0.5f * ACROSS) / ACROSS * w->pixel, part = 1 - smooth((float)TEAR_END * height, height, dk);

@@ -1,5 +1,6 @@
 /* The inner corner of the eye: the caruncle, a moist mound of mucous membrane between the lids, and the lacrimal lake that
- * stands before it. Where the corner is, is seen, not told: the innermost place of the globe between lids at rest. */
+ * stands before it. The corner is found in a picture at rest: the innermost place of the globe
+ * between the lids. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Wrinkles of expressions on a character: the subject's bump maps, laid where the modelling camera would see its skin at rest. */
+/* Wrinkles of expressions on a character: the subject's bump maps, looked up where the modelling camera sees the skin at rest. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +45,7 @@ static float dot(const float a[3], const float b[3])
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* A slope in the chart as a slope on the face: a groove grows with the character. */
+/* Turns a slope in the chart into a gradient on the face; grooves scale with the character. */
 static bool on_face(float g[3], const struct portrait *p, int face, const float slope[2])
 {
 	const struct portrait_mesh *m = &p->mesh;
@@ -68,7 +68,7 @@ static bool on_face(float g[3], const struct portrait *p, int face, const float 
 	for (int k = 0; k < 3; k++)
 		g[k] = (s * e[0][k] + t * e[1][k]) / subject_mm;
 	float px = (float)p->wrinkles->px_per_mm * subject_mm;
-	return seen > 0.1f * px * px * area;  // a face that the camera sees all but edge-on shows no lines
+	return seen > 0.1f * px * px * area;  // a face that the camera sees nearly edge-on shows no lines
 }
 
 bool portrait_fold(float normal[3], float light[3], const struct portrait *p, const struct portrait_sky *sky, int face, const float w[3])

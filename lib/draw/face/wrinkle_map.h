@@ -1,5 +1,5 @@
-/* wrinkle_map: the bump maps that `track` leaves of each expression, for whoever draws skin. They lie in the chart: where the
- * modelling camera sees skin at rest (rig.home of a character).
+/* wrinkle_map: the bump maps of expressions that `track` writes. Their chart: px of the modelling camera's picture of the skin at
+ * rest (rig.home of a character).
  */
 #ifndef DRAW_FACE_WRINKLE_MAP_H
 #define DRAW_FACE_WRINKLE_MAP_H
@@ -14,11 +14,12 @@ struct wrinkle_maps {
 	struct image map;          // channels 2 i: height of expression i (mm), 2 i + 1: share of an even sky that is seen
 };
 
-/* wrinkles.json and wrinkles.exr of that folder. A folder without them: n = 0, and true. wrinkle_maps_free. */
+/* Reads wrinkles.json and wrinkles.exr of a folder. A folder without them: n = 0, and true. False, err set: damaged files.
+ * wrinkle_maps_free in any case. */
 bool wrinkle_maps_load(struct wrinkle_maps *maps, const char *dir, struct err *err);
 void wrinkle_maps_free(struct wrinkle_maps *maps);
 
-/* Blended by strengths [n] at a px: height's slope (mm a px) and the share of sky. False: flat there. */
+/* Maps blended by strength [n] at a px of the chart: slope of the height (mm a px) and visible share of the sky. False: flat there. */
 bool wrinkle_maps_at(float slope[2], float *open, const struct wrinkle_maps *maps, const float *strength, const float px[2]);
 
 #endif

@@ -1,5 +1,5 @@
-/* A photograph's place in the merged maps. Poses know nothing of the turn of an eye about its axis: the eye frame of
- * each photograph follows its own camera. unrefract found the turn, and a little more, by comparing the pictures.
+/* A photograph's place in the merged maps. A pose does not contain the eye's torsion: the eye frame of each photograph follows its
+ * own camera. unrefract found the torsion, and a small affine rest, by registering the textures.
  */
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* The photograph beside the rendering of its own view, and what differs. */
+/* The photograph beside the rendering of its own view, and their difference. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +9,7 @@
 
 static const double shown = 1.3;  // semi-axes round the limbus
 
-/* What of the view the panels show. */
+/* The part of the view that the panels show. */
 struct frame {
 	int x0, y0, width, height;
 };

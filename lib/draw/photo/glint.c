@@ -25,8 +25,8 @@ static int ring_at(const struct shot *shot, int x, int y)
 	return shot->fit.has_pupil && ellipse_radius(&shot->fit.pupil, u, v) < 0.93 ? PUPIL : (int)(r / reach * RINGS);
 }
 
-/* A mirror image is white on top of a colour: the least of the channels gives it away on irises of all colours, against
- * the upper quarter of its own ring. */
+/* A reflection adds white to a colour: the least of the channels shows it on irises of all colours, relative to the upper quartile of
+ * its own ring. */
 struct survey {
 	short *ring;          // of each pixel
 	float *least;         // least channel, noise smoothed away
@@ -145,8 +145,8 @@ static struct glint flood(unsigned char *marks, const struct image *m, const str
 	return g;
 }
 
-/* Two pieces of one mirror image: on the dark margin of the pupil it may stand out from neither side. They face each other across no
- * more than that margin. Returns the pixels between them; -1: they are two. */
+/* Whether two regions are pieces of one reflection, which may be invisible on the dark margin of the pupil: they face each other across
+ * no more than that margin. Returns the pixels between them; -1: they are two. */
 static long between(const struct glint *g, const struct glint *h, const struct shot *shot)
 {
 	for (int i = 0; i < 2 && shot->fit.has_pupil; i++) {
@@ -191,7 +191,7 @@ static void keep(struct glint glints[], int *n, const struct glint *g)
 	*n += *n < GLINTS_MAX;
 }
 
-/* Pieces of one are one. */
+/* Joins pieces of one reflection. Returns how many are left. */
 static int join_all(struct glint glints[GLINTS_MAX], int n, const struct shot *shot)
 {
 	struct glint of[GLINTS_MAX];
@@ -211,8 +211,8 @@ static int join_all(struct glint glints[GLINTS_MAX], int n, const struct shot *s
 	return left;
 }
 
-/* Neither noise nor a wet lash, no lid, and more or less of one piece. What is small and not bright may be a pale fibre of
- * the iris: those are up to twice as light as the upper quarter of their ring, mirror images of lamps 2.5 times or more. */
+/* Rejects noise, wet lashes, lids and ragged regions. A small region that is not bright may be a pale fibre of the iris: those are up to
+ * twice as light as the upper quartile of their ring, reflections of lamps 2.5 times or more. a: semi-axis of the limbus, px. */
 static bool is_lamp(const struct glint *g, double a)
 {
 	double box = (g->hi[0] - g->lo[0] + 1.0) * (g->hi[1] - g->lo[1] + 1);

@@ -1,4 +1,4 @@
-/* glint: mirror images of lamps in the cornea. */
+/* glint: reflections of lamps in the cornea. */
 #ifndef DRAW_PHOTO_GLINT_H
 #define DRAW_PHOTO_GLINT_H
 #include "draw/photo/photo.h"
@@ -15,7 +15,7 @@ struct glint {
 	bool edge;             // reaches the limbus: a lid, more likely than a lamp
 };
 
-/* The brightest, in that order; returns how many. */
+/* Finds the brightest reflections in a decoded photograph, brightest first; returns how many. */
 int glints_find(struct glint glints[GLINTS_MAX], const struct shot *shot);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a photograph says about its own light: lamps, from their mirror images in the cornea; else a studio. */
+/* The light of a photograph: lamps from their reflections in the cornea; where there are none, a studio. */
 #include <math.h>
 
 #include "math/vec.h"
@@ -74,7 +74,7 @@ struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int
 	*lamps = envmap_room(height, dark, dark, 1, *n, boxes);
 	if (!*n)
 		return light_studio(height);
-	// What the lamps do not give of the light, the room does: at least a fifth.
+	// The room gives the rest of the light, at least a fifth.
 	double level = envmap_level(lamps), room = fmax(1 - level, 0.2 * fmax(level, 1));
 	struct envmap env = envmap_room(height, (double[3]){ 1.3 * room, 1.3 * room, 1.3 * room },
 	                                (double[3]){ 0.7 * room, 0.7 * room, 0.7 * room }, 1, *n, boxes);

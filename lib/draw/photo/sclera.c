@@ -52,8 +52,8 @@ bool sclera_of_photo(double rgb[3], const struct shot *shot)
 	n = candidates(list, shot, &ring);
 	bool enough = n > 200 && n > ring / 20;
 	if (enough) {
-		// The whiter half is neither skin nor vessel; of it, the brighter half without the very brightest is neither in
-		// the lids' shadow nor a wet highlight.
+		// The less red half excludes skin and vessels; of it, the brighter half without the brightest tenth excludes the lids'
+		// shadow and wet highlights.
 		qsort(list, (size_t)n, sizeof *list, before);
 		n /= 2;
 		for (long i = 0; i < n; i++)

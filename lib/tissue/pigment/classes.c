@@ -45,7 +45,7 @@ static struct texel *gather(long *n, const struct image *clean, const struct ima
 	return all;
 }
 
-/* Mean and scatter of the middle half by luminance: glints, shadows and spots are in neither tail. */
+/* Mean and scatter of the middle half by luminance (interquartile): glints, shadows and spots lie in the tails. */
 static struct pigment_class class_of(struct texel *t, long n, double texels_per_sample)
 {
 	struct pigment_class out = { .thickness = t[n / 2].thickness };  // still sorted by thickness

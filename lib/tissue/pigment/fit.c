@@ -58,8 +58,8 @@ static double noise(const struct pigment_class *class, int k, const struct pigme
 	return sqrt(sampling * sampling + c->floor * c->floor) / fmax(class->rgb[k], c->floor);
 }
 
-/* Three residuals of a class, in logarithms: its light, which shadows and unevenness change as well, and its two colours,
- * which they do not. */
+/* Three residuals of a class, in logarithms: its luminance (green), which shadows change as well, and two chromatic ratios, which they
+ * do not change. */
 static void class_residuals(double r[3], const struct pigment_class *class, const double rgb[3], const struct pigment_conf *c)
 {
 	double floor = fmax(c->floor / 4, 1e-6), d[3], s[3];
@@ -72,7 +72,7 @@ static void class_residuals(double r[3], const struct pigment_class *class, cons
 	r[2] = (d[2] - d[1]) / hypot(c->model_error, s[2]);
 }
 
-/* What the tissue alone reflects in every class: all that is slow. */
+/* Reflectance of the tissue alone in every class: the expensive part. */
 static void reflect(double rgb[][3], const struct problem *p, const double *x)
 {
 	struct tissue tissue = pigment_tissue(x, p->conf);
@@ -118,7 +118,7 @@ static bool residuals(void *ctx, const double *x, double *r, double *J)
 	return true;
 }
 
-/* Halton's sequence, base 2, 3, 5 ...: starts that fill the priors evenly. The first is the priors' middle. */
+/* Halton's sequence, base 2, 3, 5 ...: starts that fill the priors evenly, to two sigma. The first is the priors' means. */
 static void start_at(double x[PIGMENT_N], int start, const struct pigment_conf *c)
 {
 	static const int base[PIGMENT_N] = { 2, 3, 5, 7, 11, 13, 17, 19, 23 };
@@ -163,8 +163,8 @@ static void measure(struct pigment_fit *fit, const struct problem *p, double cov
 		fit->residual_rgb[k] = sqrt(fit->residual_rgb[k]);
 }
 
-/* Information of the classes alone, in units of the priors: eigenvectors below 1 are told by the priors, not by the
- * photograph. */
+/* Fisher information of the classes alone, in units of the priors' sigma: along eigenvectors of eigenvalue below 1 the priors determine
+ * the result, not the photograph. */
 static bool information(struct pigment_fit *fit, struct problem *p, struct err *err)
 {
 	enum { N = PIGMENT_N };
@@ -187,7 +187,7 @@ static bool information(struct pigment_fit *fit, struct problem *p, struct err *
 
 enum { STARTS_MAX = 64 };
 
-/* What one start came to. */
+/* Result of one start. */
 struct outcome {
 	bool ok;
 	double x[PIGMENT_N], cov[PIGMENT_N][PIGMENT_N];
@@ -195,7 +195,7 @@ struct outcome {
 	struct err err;
 };
 
-/* Every start on its own; starts are compared in their order, so that threads change nothing. */
+/* Solves from every start; results are compared in order, so that threads change nothing. False: all failed. */
 static bool run_starts(struct outcome out[], int n, const struct problem *problem, const double *from)
 {
 	// A cost that falls by less than a hundred-thousandth moves no unknown by a hundredth of its sigma.
@@ -216,7 +216,7 @@ static bool run_starts(struct outcome out[], int n, const struct problem *proble
 	return ok;
 }
 
-/* Same place: within a tenth of a sigma in every unknown. */
+/* Same minimum: within a tenth of a sigma in every unknown. */
 static bool same(const double a[PIGMENT_N], const double b[PIGMENT_N], const double sigma[PIGMENT_N])
 {
 	for (int j = 0; j < PIGMENT_N; j++)

@@ -1,20 +1,20 @@
-/* pigment: melanin of the iris from its texture: the automatic search that the iris paper leaves as future work.
+/* pigment: estimates the melanin of the iris from its texture: the automatic search that the iris paper leaves as future work.
  *
- * The texture is reduced to classes of like thickness and radius; their colours, against the white of the sclera, are
- * fitted by the forward model of tissue/tissue.h. What one photograph cannot tell apart is held by priors and shown by the
- * covariance.
+ * The texture is reduced to classes of similar thickness and radius. Their colours, relative to white, are fitted by the forward
+ * model of tissue/tissue.h: non-linear least squares with Gaussian priors, from several starts. Combinations of unknowns that one
+ * photograph does not determine are held by the priors; the covariance and `direction` show them.
  */
 #ifndef TISSUE_PIGMENT_PIGMENT_H
 #define TISSUE_PIGMENT_PIGMENT_H
 #include "iris/heightfield/heightfield.h"
 #include "tissue/tissue.h"
 
-/* The unknowns. Concentrations, scale and gains by their natural logarithms. */
+/* The unknowns. Concentrations, scale, exposure and gains are natural logarithms. */
 enum pigment_unknown {
 	PIGMENT_ABL_MELANIN, PIGMENT_ABL_RATIO, PIGMENT_STROMA_MELANIN, PIGMENT_STROMA_RATIO, PIGMENT_SCALE,
 	PIGMENT_EXPOSURE,
-	PIGMENT_RED, PIGMENT_BLUE,  // ln gain of red and of blue against green: error of the white
-	PIGMENT_VEIL,               // light of the cornea's reflection over the iris, white = 1
+	PIGMENT_RED, PIGMENT_BLUE,  // ln gain of red and of blue relative to green: error of the white balance
+	PIGMENT_VEIL,               // light that the cornea reflects over the iris, white = 1
 	PIGMENT_N
 };
 extern const char *const pigment_names[PIGMENT_N];
@@ -23,7 +23,7 @@ struct pigment_class {
 	double thickness;         // mm, median
 	double share;             // iris_share, mean
 	double rgb[3], spread[3]; // reflectance factor (white Lambertian = 1): robust mean, and the scatter of texels about it
-	double texels;            // independent ones
+	double texels;            // effective number of independent texels
 };
 
 enum { PIGMENT_CLASSES_MAX = 64 };
@@ -38,8 +38,12 @@ struct pigment_classes_conf {
 	double grain;                  // mm: detail below it is not independent
 };
 
-/* clean: R, G, B, W; thickness: map of `channels` floats a texel, the first is mm; same grid. white: rgb of a white
- * Lambertian surface in that light. Classes with too few texels are left out. False, err set, when fewer than 3 remain. */
+/* Reduces a texture to classes.
+ * clean      R, G, B, W (linear; weight), square, half-width extent mm, without freckles
+ * thickness  first channel mm; same grid
+ * root       radius of the iris' root, mm
+ * white      rgb of a white Lambertian surface in the same light
+ * Classes with too few texels are left out. Returns false, err set, when fewer than 3 remain. */
 bool pigment_classify(struct pigment_classes *out, const struct image *clean, const struct image *thickness,
                       double extent, const struct pupil *pupil, double root, const double white[3],
                       const struct pigment_classes_conf *conf, struct err *err);
@@ -66,26 +70,29 @@ struct pigment_fit {
 	int iterations;          // over all starts
 	int starts, minima;      // distinct minima found, within 2 of the lowest cost
 	double other[PIGMENT_MINIMA_MAX][PIGMENT_N + 1];  // the others': unknowns, then cost
-	int directions;          // combinations that the priors hold rather than the photograph
+	int directions;          // eigenvectors of the information matrix that the priors determine rather than the photograph
 	double direction[PIGMENT_N][PIGMENT_N], information[PIGMENT_N];  // in units of the priors' sigma; data over prior
 };
 
-/* The tissue that unknowns stand for. */
+/* The tissue of these unknowns. */
 struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_conf *conf);
 
-/* Reflectance that a photograph would show of stroma that thick: exposure, white error and veil included. */
+/* Forward model: reflectance that the photograph shows of stroma of that thickness (mm), with exposure, white error and veil. */
 void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
                    const struct pigment_conf *conf);
 
-/* from: where to start, once; or null: conf->starts places, the first of them the priors' middle. */
+/* Fits the unknowns to the classes.
+ * from  [PIGMENT_N] the one start, or null: conf->starts starts, the first at the priors' means
+ * Returns false, err set, when no start converges. */
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                    const double *from, struct err *err);
 
-/* IRIS/pigment.json. extra: JSON object text of further keys, or null. */
+/* Writes IRIS/pigment.json. extra: text of a JSON object with further keys, or null. */
 bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                   const char *path, const char *made_by, const char *extra, struct err *err);
 
-/* The unknowns again, the white they were found with, and of conf what shapes the forward model. */
+/* Reads it back: the unknowns, the white they were found with, and those fields of conf that shape the forward model. Returns false,
+ * err set, when the file is damaged. */
 bool pigment_load(double x[PIGMENT_N], double white[3], struct pigment_conf *conf, const char *path, struct err *err);
 
 #endif

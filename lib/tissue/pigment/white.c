@@ -82,8 +82,8 @@ static int ring(struct sample s[SAMPLES], const struct photo *photo, const struc
 	return n;
 }
 
-/* Sclera is the palest bright thing beside an iris: skin is redder, lashes and folds are darker. Of it, the brighter half:
- * what the lids do not shade, as little as the iris is. */
+/* Sclera is the palest bright surface beside an iris: skin is redder, lashes and folds are darker. The mean of its brighter half is
+ * taken, which the lids shade as little as the iris. */
 bool white_sclera(struct white *out, const struct photo *photo, const struct fit *fit, const struct white_conf *conf)
 {
 	struct sample *s = mem_array(SAMPLES, sizeof *s);

@@ -1,4 +1,4 @@
-/* pigment_white: what white looks like in a photograph: from its sclera, or from a grey card in it. */
+/* white: the colour of white in a photograph: from its sclera, or from a grey card in it. */
 #ifndef TISSUE_PIGMENT_WHITE_H
 #define TISSUE_PIGMENT_WHITE_H
 #include "anatomy/fit.h"
@@ -9,7 +9,7 @@ extern const char *const white_names[];  // "camera", "sclera", "card"
 
 struct white {
 	double rgb[3];   // of a white Lambertian surface in that light
-	double spread;   // of what it was measured from, relative, 1 sigma
+	double spread;   // of the pixels it was measured from, relative, 1 sigma
 	double share;    // of the ring about the limbus that is sclera
 	enum white_source source;
 };
@@ -17,17 +17,18 @@ struct white {
 struct white_conf {
 	double sclera[3];          // reflectance of the sclera
 	double inner, outer;       // the ring, in semi-axes of the limbus
-	double redness;            // ln R/G above the palest, that is skin already
-	double reddest;            // ln R/G, at which even the palest is skin
-	double dark;               // share of the ring's brightest, that is shadow already
-	double share_min;          // less sclera than that is none
+	double redness;            // ln R/G above the palest samples, from which on it is skin
+	double reddest;            // ln R/G from which on it is skin in any case
+	double dark;               // share of the ring's brightest, below which it is shadow
+	double share_min;          // least share of the ring that must be sclera
 	double card;               // reflectance of the card
 };
 
-/* From the ring outside the limbus: pale, bright, not clipped. False, with no error, when there is too little sclera. */
+/* From the ring outside the limbus: the mean of pale, bright samples that are not clipped, divided by the sclera's reflectance.
+ * Returns false, out the camera's white, when there is too little sclera. */
 bool white_sclera(struct white *out, const struct photo *photo, const struct fit *fit, const struct white_conf *conf);
 
-/* From a disc of the photograph: x, y, radius px. False, err set, when it is outside or clipped. */
+/* From a disc of the photograph: x, y, radius px. Returns false, err set, when it is outside or clipped. */
 bool white_card(struct white *out, const struct photo *photo, const double disc[3], const struct white_conf *conf,
                 struct err *err);
 

@@ -1,5 +1,4 @@
-/* model: what the photograph shows of stroma of a thickness, as a table for maps of a million texels; and how strongly hollows are
- * darkened. */
+/* model: the photograph's colour of stroma as a function of thickness, tabulated for maps of a million texels; the darkening of hollows. */
 #ifndef TISSUE_RELIEF_MODEL_H
 #define TISSUE_RELIEF_MODEL_H
 #include "tissue/pigment/pigment.h"
@@ -12,12 +11,12 @@ struct relief_table {
 	float light[RELIEF_TABLE], slope[RELIEF_TABLE];  // luminance, and its derivative to ln thickness
 };
 
-/* From low to high mm. white: multiplied in. */
+/* Fills the table from low to high mm. white: multiplied in; x: as pigment_solve found it. */
 void relief_table_make(struct relief_table *table, double low, double high, const double white[3],
                        const double x[PIGMENT_N], const struct pigment_conf *conf);
 
-/* kappa: how strongly surroundings darken what lies lower: an empirical fit to Monte Carlo of 13 tissues at 550 nm, within
- * 0.05. Grows with absorption; none where light goes on through the walls. */
+/* kappa of relief.h: how strongly surroundings darken hollows. An empirical fit to Monte Carlo of 13 tissues at 550 nm, within
+ * 0.05. It grows with absorption, and is 0 where light passes through the walls. */
 double relief_kappa(const struct tissue *tissue);
 
 /* Place of ln thickness in the table: entry (0 .. RELIEF_TABLE - 2) and fraction; clamped. */

@@ -1,4 +1,4 @@
-/* relief_opts: rows for the option tables of the stages of the tissue. */
+/* opts: option rows that the stages of the tissue share. */
 #ifndef TISSUE_RELIEF_OPTS_H
 #define TISSUE_RELIEF_OPTS_H
 #include "anatomy/capture.h"
@@ -19,8 +19,8 @@
 	OPT_REAL("tissue.root_beyond_limbus_mm", root, 0, 1, "mm", "iris root beyond the limbus"), \
 	OPT_REAL("tissue.pupil_mm", pupil, 0.5, 5, "mm", "pupil radius where none was found")
 
-/* True, and said, when this eye has no texture while the folder has other eyes: those go on. An only eye's missing texture
- * is an error where it is read. */
+/* True, and reported as skipped, when this eye has no texture while the folder has other eyes. The missing texture of an only eye is an
+ * error where it is read. */
 static inline bool iris_left_out(struct stage *stage, const struct capture *capture, const struct capture_eye *eye)
 {
 	if (capture->n_eyes < 2 || file_exists(stage_path(stage, "%s/clean.exr", eye->iris)))
@@ -29,7 +29,7 @@ static inline bool iris_left_out(struct stage *stage, const struct capture *capt
 	return true;
 }
 
-/* What ranges cannot check; moves the range into r. */
+/* Checks what ranges of single options cannot; copies the range into r. Returns false, err set. */
 static inline bool relief_conf_check(struct relief_conf *r, const double range[2], struct err *err)
 {
 	for (int b = 1; b < RELIEF_BANDS; b++)

@@ -193,8 +193,8 @@ static bool difference(double *rms, double *contrast, struct problem *p, const d
 	return true;
 }
 
-/* Error of the photograph and prior of the relief, both per independent texel: neighbours within the first band say the
- * same, so many texels are one. */
+/* Error of the photograph and prior of the relief, both per independent texel: neighbours within the width of the first band are
+ * correlated, and count as one. */
 static void weigh(struct problem *p)
 {
 	double one = fmax(p->conf->band[0] * p->scale * 2, 1);

@@ -1,4 +1,4 @@
-/* Rays through the middles of a picture's pixels, tile by tile. */
+/* The first rays of a picture: through the middle of every pixel, tile by tile. */
 #include <string.h>
 
 #include "draw/eye/exact/canvas.h"
@@ -51,9 +51,9 @@ void canvas_trace(float rgba[][4], int n, const float *x, const float *y, const 
 	scene_trace(rgba, n, dx, dy, dz, c->scene, c->look, iris);
 }
 
-/* A tile of the picture; of a quick one, what its rays met, found now or known from the picture before. */
+/* A tile of the picture. Of a quick one also what its rays met: found now (mine), or kept from the picture before. */
 struct tile {
-	int at, x, y, x1, y1;  // pixels to x1, y1 are the picture's
+	int at, x, y, x1, y1;  // number of the tile; its first pixel; end of its part inside the picture
 	bool hidden, kept;
 	struct quick_found mine, *found;
 };
@@ -66,7 +66,7 @@ static bool any_visible(const struct scene_view *v, const struct tile *t)
 	return false;
 }
 
-/* Whether what the tile shows has yet to be found. */
+/* Sets the tile's place; returns whether its rays have yet to be followed. */
 static bool tile_place(struct tile *t, int at, int across, const struct canvas *c)
 {
 	const struct scene_view *v = c->view;
@@ -81,7 +81,7 @@ static bool tile_place(struct tile *t, int at, int across, const struct canvas *
 	return !t->hidden && !t->kept;
 }
 
-/* Tiles of a row from first on, as far as they have yet to be found, whose nodes' rays have been followed. */
+/* Consecutive tiles of a row, first..end - 1, that have yet to be found, and the rays followed at their nodes. */
 struct strip {
 	int first, end;
 	struct quick_strip nodes;
@@ -99,7 +99,8 @@ static void strip_begin(struct strip *s, int first, int most, int across, const 
 	quick_strip(&s->nodes, (float)(first % across * TILE) + 0.5f, (float)(first / across * TILE) + 0.5f, s->end - first, sight_rays_make, &c->plane, c->look->quick);
 }
 
-/* Of a quick picture: by the rays at the tile's nodes if these are enough. most: tiles from there on are others'. */
+/* Finds a tile of a quick picture: by the rays at its nodes if these are enough, else by every ray. most: end of this thread's
+ * tiles. */
 static void tile_begin(struct tile *t, struct strip *strip, int at, int most, int across, const struct canvas *c)
 {
 	bool find = tile_place(t, at, across, c);
@@ -162,7 +163,7 @@ static void tile_end(struct tile *t, const struct canvas *c, struct scene_count 
 		memcpy(image_at(c->image, t->x, y), rgba[(y - t->y) * TILE], (size_t)(t->x1 - t->x) * sizeof *rgba);
 }
 
-/* What the next tile reads of the maps is under way while one is coloured. */
+/* While one tile is coloured, the memory that the next one reads is being prefetched. */
 void canvas_first(const struct canvas *c, int from, int to, int across, struct scene_count *count)
 {
 	struct tile tile[2];

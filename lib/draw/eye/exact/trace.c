@@ -1,4 +1,4 @@
-/* A batch of rays of sight: which part of the eye each meets, and what colour it has there. */
+/* A batch of rays of sight: which part of the eye each meets, and its colour there. */
 #include "draw/eye/exact/trace.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static void to_cam(float out[3], const struct scene_look *look, const float a[3]
 		out[i] = look->cam_from_eye[i][0] * a[0] + look->cam_from_eye[i][1] * a[1] + look->cam_from_eye[i][2] * a[2];
 }
 
-/* Where on the eye's outside a ray ends. */
+/* Where a ray meets the outside of the eye. */
 struct spot {
 	float at[3], normal[3];
 	float rho;     // 1 on the limbus
@@ -60,7 +60,7 @@ static struct spot spot_of(const struct scene *s, const struct scene_look *look,
 	}
 	if (!p.hit)
 		return p;
-	// The corneal normal turns into the sphere's across the sulcus: no crease stands where they meet.
+	// The corneal normal is blended into the sphere's across the sulcus, so that no crease shows where they meet.
 	float R = (float)s->cornea.R, q = (float)s->cornea.p, x = p.at[0], y = p.at[1], z = p.at[2];
 	float front[3] = { x, y, q * z - R }, round[3], n = 0;
 	float len = sqrtf(front[0] * front[0] + front[1] * front[1] + front[2] * front[2]);
@@ -90,7 +90,7 @@ static void add_mirror(float rgb[3], const struct spot *p, const struct scene_lo
 		rgb[c] += f * seen[c];
 }
 
-/* The white of the eye: diffuse, softened by what scatters below the surface, most in the red. */
+/* The white of the eye: diffuse, softened by subsurface scattering, most in the red. */
 static void sclera_colour(float rgb[3], struct spot *p, const struct scene *s, const struct scene_look *look)
 {
 	static const float bleed[3] = { LOOK_BLEED };
@@ -119,7 +119,7 @@ static void iris_colour(float rgb[3], const struct scene *s, const struct scene_
 		rgb[c] *= cover[c];
 }
 
-/* Those rays of a batch that look through the cornea, packed together. */
+/* Colours the rays of a batch that pass through the cornea, packed together. */
 static void see_iris(struct iris_batch *b, const struct scene *s, const struct scene_look *look)
 {
 	for (int i = 0; i < b->n; i++) {

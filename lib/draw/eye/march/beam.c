@@ -1,8 +1,8 @@
-/* Lights from the environment, carried into the eye. Each is so far away that its direction is one for the whole iris:
- * its refraction function f(P, w) -> K (iris paper, eq. 15) is then a smooth field over the iris, tabulated on two planes
- * of SCENE_GRID^2 points solved exactly. Neighbours share a table: behind the cornea, which draws the whole sky together
- * to 48 degrees, they differ little. It keeps their power and their mean direction, not of unit length: so what falls on any
- * plane is exactly their sum, and what lies behind the eye's horizon counts for nothing. */
+/* Lights of the environment refracted into the eye. Each is so far away that its direction is the same for the whole iris: its
+ * refraction function f(P, w) -> K (iris paper, eq. 15) is a smooth field over the iris, tabulated on two planes of SCENE_GRID^2
+ * points that are solved exactly. Neighbouring lights share a table: behind the cornea, which compresses the whole sky into 48
+ * degrees, they differ little. The table keeps their summed power and their mean direction, whose length is less than 1: the
+ * irradiance of any plane is exactly their sum, and lights below the eye's horizon contribute nothing. */
 #include "draw/eye/march/beam.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@
 
 enum { NODES = SCENE_GRID * SCENE_GRID };
 
-/* One plane of a beam's table. Its nodes are interpolated: they want the one path that goes on smoothly everywhere, the
- * shortest, not a focused one here and there. */
+/* One plane of a beam's table. Its nodes are interpolated, so they take the one path that is smooth everywhere, the shortest, not a
+ * focused one here and there. */
 struct plane {
 	int side, n;  // nodes across, and all
 	float p[3][NODES], w[3][NODES], k[3][NODES], gain[NODES];
@@ -40,8 +40,7 @@ static void plane_solve(struct plane *n, const struct scene *s)
 	                     &s->cornea);
 }
 
-/* What a node tells the march: unit direction towards the light, irradiance of a plane that faces it, and where on the
- * cornea it came in, 1 at the limbus. */
+/* Fills the channels of a node (beam.h). p: the point; k: where its path enters the cornea. */
 static void node_put(float out[SCENE_WAY], const double p[3], const float k[3], float gain, const double limbus[2])
 {
 	double d[3] = { k[0] - p[0], k[1] - p[1], k[2] - p[2] };
@@ -59,7 +58,7 @@ static void plane_points(struct plane *n, int side, const struct scene *s, float
 	n->side = side;
 	n->n = side * side;
 	for (int i = 0; i < n->n; i++) {
-		// Outside the limbus there is no iris to light: those nodes only bound the others' cells, and stand at its edge.
+		// Outside the limbus there is no iris: those nodes only bound the cells of others, and are placed at its edge.
 		double x = i % side * step - s->extent, y = i / side * step - s->extent, r = hypot(x, y);
 		double pull = r > most ? most / r : 1;
 		n->p[0][i] = (float)(pull * x);
@@ -68,8 +67,8 @@ static void plane_points(struct plane *n, int side, const struct scene *s, float
 	}
 }
 
-/* What the lights of a beam bring to a plane's nodes: power, that times direction, times direction and how far it goes down,
- * and times the place on the cornea. */
+/* Sums over the lights of a beam at a plane's nodes: power, power times direction, power times direction times cosine, power
+ * times the place of entry on the cornea (scene_beam_direction). */
 struct plane_sum {
 	float power[NODES], dir[3][NODES], down[3][NODES], rho[NODES];
 };
@@ -136,7 +135,7 @@ SIMD_CLONES static void refine(float (*restrict way)[SCENE_WAY], const float (*r
 				way[y * SCENE_GRID + x][c] = w[x][0] * row[y][at[x]][c] + w[x][1] * row[y][at[x] + 1][c] + w[x][2] * row[y][at[x] + 2][c] + w[x][3] * row[y][at[x] + 3][c];
 }
 
-/* Lights' directions and shares of the beam's. */
+/* dir, share: the lights' directions and their shares of the beam. */
 static void plane_make(float (*way)[SCENE_WAY], struct plane_work *work, int lights, const float (*dir)[3], const float *share,
                        const struct scene *s, float z)
 {
@@ -173,7 +172,7 @@ static void beam_depths(struct scene_beam *beam, const struct scene *s)
 	beam->z[1] = (float)z[1];
 }
 
-/* Colour and mean direction of a beam, and what shares its lights have in it. */
+/* Sets a beam's colour and mean direction, and makes its lights' shares sum to 1. */
 static void beam_begin(struct scene_beam *beam, struct beam_lights *in, const struct scene *s)
 {
 	float all = 0;

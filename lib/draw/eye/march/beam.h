@@ -1,32 +1,33 @@
-/* beam: lights as tables of their ways into the eye. */
+/* beam: lights of the environment as tables of their refracted paths into the eye. */
 #ifndef DRAW_EYE_MARCH_BEAM_H
 #define DRAW_EYE_MARCH_BEAM_H
 #include "draw/eye/lighting.h"
 #include "draw/eye/scene.h"
 
-/* One light in the eye's frame, or several neighbours (draw/eye/march/beam.c), with its own refraction function over the iris, on planes
- * at the depths z[0] and z[1]: direction towards it, irradiance of a plane that faces it, where on the cornea its light
- * came in (1: at the limbus), and what of the irradiance falls on the iris plane. */
 enum { SCENE_PATH_STEPS = 4 };  // Newton's, from the closed-form start: 2e-5 mm at worst
-enum { SCENE_WAY = 8 };  // six, and room for a whole vector
-enum { SCENE_FLAT = 64 };  // texels of flat light, across
-enum { SCENE_COARSE = 24 };  // several lights together are smooth: a coarser grid, and cubics (Catmull and Rom's) between
+enum { SCENE_WAY = 8 };         // channels of a table: six, padded to a whole vector
+enum { SCENE_FLAT = 64 };       // texels across the light of a flat iris (paths_flat.h)
+enum { SCENE_COARSE = 24 };     // nodes across the table of several lights, before cubic (Catmull-Rom) interpolation to SCENE_GRID
+
+/* One light, or several neighbouring ones (beam.c), with its refraction function tabulated on two planes across the iris. */
 struct scene_beam {
-	float dir[3], rgb[3];
-	float z[2];
-	float way[2][SCENE_GRID][SCENE_GRID][SCENE_WAY];
+	float dir[3], rgb[3];       // mean direction towards its lights outside of the eye, in the eye's frame; their sum, as in struct envmap_light
+	float z[2];                 // depths of the planes, mm
+	float way[2][SCENE_GRID][SCENE_GRID][SCENE_WAY];  // 0..2: direction towards the light inside the eye (unit for one light, see scene_beam_direction for several); 3: irradiance of a
+	                            // plane that faces it, as a share of rgb; 4: where it entered the cornea, 1 at the limbus;
+	                            // 5: cosine of incidence on the iris plane
 };
 
 struct scene_beams {
 	int n;
-	struct scene_beam *beam;  // owned
+	struct scene_beam *beam;    // owned
 };
 
-/* The lights that reach the iris, for one view. free(beams.beam). */
+/* The beams of a lighting for one view. free(beams.beam). */
 struct scene_beams scene_beams(const struct scene *scene, const struct scene_lighting *light,
                                const double eye_from_cam[3][3]);
 
-/* The way from points of the iris out to a camera at C, as if it were a light. free(). */
+/* The paths from points of the iris out to a camera at C (eye's frame, mm), tabulated like those of a light. free(). */
 struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);
 
 #endif

@@ -1,4 +1,4 @@
-/* Which of the environment's directions go into the eye together. */
+/* Which of the environment's directions share a beam. */
 #include "draw/eye/march/march.h"
 #include "math/vec.h"
 
@@ -9,7 +9,7 @@ void scene_lights_turn(struct beam_lights *in, const struct scene_lighting *ligh
 		const struct envmap_light *l = &light->light[i];
 		double d[3] = { l->dir[0], l->dir[1], l->dir[2] };
 		mat_vec(d, eye_from_cam, d);
-		if (d[2] > 0.16)  // further than about 99 degrees from the axis: no path leads into the eye (ANCHORS: 98.8)
+		if (d[2] > 0.16)  // further than about 99 degrees from the axis: no path leads into the eye
 			continue;
 		for (int c = 0; c < 3; c++) {
 			in->dir[in->n][c] = (float)d[c];
@@ -19,7 +19,7 @@ void scene_lights_turn(struct beam_lights *in, const struct scene_lighting *ligh
 	}
 }
 
-/* How far a beam's lights spread, across the axis as refraction draws them together: the worse of two axes, and its mean. */
+/* Weighted variance of a beam's lights along the worse of the axes x and y; its mean there. */
 static float spread(const struct beam_lights *in, int *axis, float *mean)
 {
 	float all = 0, first[2] = { 0 }, second[2] = { 0 }, most = -1;

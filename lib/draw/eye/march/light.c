@@ -1,4 +1,4 @@
-/* Lights at points of the iris: from their beams' tables (path = grid), or solved for every ray at both ends (path = ends). */
+/* Light at points of the iris: from the beams' tables (path = grid), or solved at both ends of every ray (path = ends). */
 #include "draw/eye/march/march.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ static void exact_paths(struct march_light *light, int end, int n, const float *
 void scene_light_at(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
                     const struct scene *s, const struct scene_beam *beam)
 {
-	// The power is the table's either way: it needs no more.
+	// The power is the table's either way: it is smooth enough.
 	table_paths(light, end, n, x, y, z, beam, (float)s->extent, (float)(s->conf.limbus_width / s->limbus[0]));
 	if (s->conf.path == SCENE_PATH_ENDS)
 		exact_paths(light, end, n, x, y, z, s, beam);

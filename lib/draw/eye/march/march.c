@@ -1,5 +1,5 @@
-/* The iris paper's section 5.3, vectorised over rays: single scattering below the relief. What a node of the quadrature
- * needs of the maps is the same for every light, and is read once. */
+/* Single scattering below the relief (iris paper, section 5.3), vectorised over rays. A node of the quadrature reads the maps once;
+ * all lights share that. */
 #include "draw/eye/march/march.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ SIMD_INLINE float exp2_quick(float t)
 	return p.f;
 }
 
-/* tissue.h's integral, times pi (a white plane's radiance is its irradiance / pi). */
+/* The coefficients of tissue.h's integral, times pi (a white plane's radiance is its irradiance / pi). */
 struct march_tissue scene_march_tissue(const struct tissue_optics *o)
 {
 	struct march_tissue t = { .bands = o->n };
@@ -38,8 +38,9 @@ struct march_tissue scene_march_tissue(const struct tissue_optics *o)
 	return t;
 }
 
-/* Some nodes' light in some bands, from the first on: per[c][k] of it into a colour. Up along l the relief falls away by its slope:
- * depth lost in a mm of the way. A slope that faces away from the light makes the way long: that is the shading of the relief. */
+/* Adds the light of some nodes in some bands, from the first on; per[c][k]: weight in the colour. Along the direction l towards the
+ * light the relief's slope changes how fast depth is lost. A slope that faces away from the light makes the path through tissue
+ * long: that is the shading of the relief. */
 SIMD_INLINE void light_some(int nodes, int bands, int n, float (*restrict rgb)[BATCH], int first, const struct march_node *restrict node, int band,
                             const struct march_light *restrict w, const float (*restrict per)[TISSUE_BANDS_MAX])
 {
@@ -111,7 +112,7 @@ static void points(float p[3][PART], const struct iris_batch *r, int first, int 
 	}
 }
 
-/* From both ends to one and the way to the other. */
+/* Turns values at both ends into the first and the difference. */
 SIMD_CLONES static void light_ends(struct march_light *w, int n)
 {
 	SIMD_LOOP

@@ -1,22 +1,22 @@
-/* scene_march: single scattering along rays of sight; between meet.c, light.c, march.c, shadow.c. */
+/* march: single scattering in the iris along rays of sight (iris paper, section 5.3). */
 #ifndef DRAW_EYE_MARCH_MARCH_H
 #define DRAW_EYE_MARCH_MARCH_H
 #include "draw/eye/batch_impl.h"
 #include "draw/eye/march/beam.h"
 
-enum { PART = 64 };  // rays that march together: what is known of all their nodes stays in the first cache
+enum { PART = 64 };  // rays that march together: the data of all their nodes stays in the first-level cache
 
-/* Fills px..pz: the first crossing of the relief. */
+/* Finds where the rays first cross the relief: fills px..pz. */
 void scene_meet(struct iris_batch *b, const struct scene *scene, const struct scene_level *level);
 
-/* Fills near, span and rgb. */
+/* Marches: fills near, span and rgb. */
 void scene_scatter(struct iris_batch *b, const struct scene *scene, const struct scene_level *level,
                    const struct scene_beams *beams);
 
-/* The alternative to scatter: the mean colour of the model, lit, without a march. */
+/* The alternative to scene_scatter: the model's mean colour, lit, without a march. */
 void scene_flat(struct iris_batch *b, const struct scene *scene, const struct scene_beams *beams);
 
-/* What the loops read of the maps. */
+/* The maps as the loops read them; depths in mm. */
 struct ground {
 	const float *relief;
 	const int *pairs;
@@ -25,40 +25,42 @@ struct ground {
 };
 struct ground ground_of(const struct scene *scene, const struct scene_level *level);
 
-/* Fills near and span: down to the epithelium, which lies the layers' thickness below the relief. */
+/* Fills near and span, the ray's length down to the epithelium, which lies the layers' thickness below the relief. */
 void scene_spans(struct iris_batch *r, const struct ground *g);
 
-/* What a tissue makes of light, in every band: fade per mm, log2; log2 of what it scatters back per mm; what that adds to a
- * colour. */
+/* A tissue's optics in every band: log2 of the extinction per mm (fade), log2 of the light scattered back per mm (source), and
+ * its weight in linear Rec. 709 (rgb). */
 struct march_tissue {
 	int bands;
 	float source[TISSUE_LAYERS][TISSUE_BANDS_MAX], fade[TISSUE_LAYERS][TISSUE_BANDS_MAX], rgb[3][TISSUE_BANDS_MAX];
 };
 struct march_tissue scene_march_tissue(const struct tissue_optics *optics);
 
-/* A node of the quadrature, on every ray of a part, whatever the light: its place between the ray's ends (u: 0..1) and between
- * where its light is known (q), slope of the relief there, and the length it stands for; log2 of what is left in a band of light
- * that comes from straight above (rise; from aside, that over the cosine), and of what goes to the beholder (seen). */
+/* One node of the quadrature on every ray of a part, independent of the light: its place between the ray's ends (u: 0..1) and
+ * between the points where the light is tabulated (q), the slope of the relief there, and the length it stands for (mm).
+ * In each band log2 of the transmittance of light from straight above (rise; oblique light: that over the cosine) and of the
+ * light that leaves towards the camera (seen). */
 struct march_node {
 	float u[PART], q[PART], gx[PART], gy[PART], length[PART];
 	float rise[TISSUE_BANDS_MAX][PART], seen[TISSUE_BANDS_MAX][PART];
 };
 
-/* Layer and place (at: 0..1 of it, weight) of the quadrature on n rays from the first on, or on a tile's, read from its maps. */
+/* Fills a node on n rays, from the ray `first` on, or on the rays of a tile, which read maps of pairs.
+ * layer, at, weight: of the quadrature: the layer, the place in it (0..1), the weight. */
 void scene_node_of_rays(int n, struct march_node *node, const struct iris_batch *r, int first, const struct ground *ground,
                         const struct march_tissue *tissue, int layer, float at, float weight);
 struct march_body;
 void scene_node_of_tile(struct march_node *node, const struct iris_batch *r, const struct ground *ground, const struct march_tissue *tissue,
                         const struct march_body *body, int layer, float at, float weight);
 
-/* One light on every ray: direction towards it (beam.c) at q = 0 and what it changes by to q = 1, irradiance of a plane that
- * faces it at u = 0 and what it changes by to u = 1. From scene_light_at: at both ends of the ray; fall: what of it falls on the
- * iris plane. */
+/* One light on every ray: direction towards it (beam.h) at q = 0 and the difference to q = 1; irradiance of a plane that faces it
+ * at u = 0 and the difference to u = 1. scene_light_at fills in the values at both ends of the ray instead, and in fall the cosine
+ * of incidence on the iris plane. */
 struct march_light {
 	float x[2][PART], y[2][PART], z[2][PART], power[2][PART], fall[2][PART];
 };
 
-/* The light at n points, into end `end` (0, 1) of its rays. */
+/* Looks up the light at n points, the ends `end` (0, 1) of the rays. */
 void scene_light_at(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
                     const struct scene *scene, const struct scene_beam *beam);
 
@@ -68,19 +70,19 @@ struct beam_lights {
 	float dir[ENVMAP_LIGHTS_MAX][3], rgb[ENVMAP_LIGHTS_MAX][3], share[ENVMAP_LIGHTS_MAX];
 };
 
-/* A lighting's directions that come from before the eye. Then split, the widest first, until there are `most` beams; returns
- * their number. */
+/* scene_lights_turn: those directions of a lighting from which light can enter the eye, in the eye's frame.
+ * scene_lights_split: splits in[0] into at most `most` beams, the widest first; returns their number. */
 void scene_lights_turn(struct beam_lights *in, const struct scene_lighting *light, const double eye_from_cam[3][3]);
 int scene_lights_split(struct beam_lights *in, int most);
 
-/* All channels of a node as one vector. */
+/* All channels of a table's node as one vector. */
 typedef float way_vector __attribute__((vector_size(4 * SCENE_WAY), aligned(4), may_alias));
 
-/* All channels of a beam's table at a point. */
+/* All channels of a beam's table at a point of the eye, trilinear. */
 void scene_table_at(float way[SCENE_WAY], const struct scene_beam *beam, const float point[3], float extent);
 
-/* Share of the light that comes in over a horizon which lies `clear` (slope) below it. A shadow is not
- * black: tissue that stands around it in the light fills it in. */
+/* Share of a light that is seen over a horizon `clear` (slope) below it; the light is LOOK_SOURCE wide. A shadow is not black:
+ * lit tissue around it fills it in by LOOK_FILL. */
 #define SCENE_SOURCE ((float)LOOK_SOURCE)
 SIMD_INLINE float scene_shadow_open(float clear)
 {
@@ -88,12 +90,14 @@ SIMD_INLINE float scene_shadow_open(float clear)
 	return (float)LOOK_FILL + (float)(1 - LOOK_FILL) * (t > 0 ? t < 1 ? t : 1 : 0);
 }
 
-/* Eight by eight texels of a level, as one part: corner, step between texels, mm; which one it is. */
+/* Horizons of 8 x 8 texels, in HORIZONS azimuths. */
 enum { TILE_SIDE = 8, HORIZONS = 16 };
 struct march_horizon {
 	float steepest[HORIZONS];     // of its texels
-	float slope[HORIZONS][PART];  // under which the relief hides the sky, by azimuth
+	float slope[HORIZONS][PART];  // of the relief's horizon, by azimuth
 };
+
+/* Eight by eight texels of a level, as one part: corner and step between texels, mm; column and row of the tile. */
 struct march_tile {
 	float x, y, step;
 	int tx, ty;
@@ -101,31 +105,32 @@ struct march_tile {
 };
 _Static_assert(TILE_SIDE * TILE_SIDE == PART, "a tile is a part");
 
-/* The body that a tile's rays go through (span filled): its relief's middle, and sheared by their mean to where they end. */
+/* The slanted box that a tile's rays pass through (their span is filled): its near face at the mean depth of the relief, its far
+ * face displaced by the mean ray. */
 struct march_body {
 	const struct march_tile *tile;
 	float z, over[3];  // depth of the near face; from it to the far one
-	float q[2][PART];  // where each ray's ends lie between the two
-	int node[8];       // of the beams' tables, below each corner: x first, then y, then depth
-	float of_near[8][4], of_far[8][4];  // weights of that and the next ones there
+	float q[2][PART];  // where each ray's ends lie between the two faces
+	int node[8];       // node of the beams' tables below each corner; corners by x first, then y, then depth
+	float of_near[8][4], of_far[8][4];  // weights of that node and its three neighbours on either plane
 };
 void scene_body_make(struct march_body *body, const struct iris_batch *rays, const struct march_tile *tile, const struct scene *scene);
 
-/* The light on a tile's rays: the table's at the corners of their body, linear between these; dimmed by the relief's
- * shadow. False: none comes here. */
+/* The light on a tile's rays: read from the table at the corners of their body, linear between these, dimmed by the relief's
+ * shadow. Returns false when none reaches the tile. */
 bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *scene, const struct scene_beam *beam);
 
-/* The rays of sight that begin at a tile's texels, on maps of pairs: fills pz, near and span. */
+/* For the rays of sight that begin at a tile's texels: fills pz, near and span from maps of pairs. */
 void scene_tile_ground(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_level *level);
 
-/* Fills pz, near, span and rgb of the 64 rays that begin at a tile's texels. */
+/* Marches the 64 rays that begin at a tile's texels: fills pz, near, span and rgb. */
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *scene, const struct scene_level *level,
                         const struct scene_beams *beams, const struct march_tissue *tissue);
 
-/* Horizons of a level's tiles. free(). */
+/* The horizons of all tiles of a level. free(). */
 struct march_horizon *scene_horizons(const struct scene *scene, const struct scene_level *level);
 
-/* Dims the light by the share of it that the relief between it and the points hides. */
+/* Dims the light at n points by the relief that stands before it: the steepest slope at `steps` places towards the light. */
 void scene_shadow(struct march_light *light, int n, const float *x, const float *y, const float *z,
                   const struct ground *ground, int steps);
 

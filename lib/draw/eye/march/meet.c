@@ -1,4 +1,4 @@
-/* Where rays of sight meet the relief, and how far they then go on in each layer (iris paper, section 5.3). */
+/* Where rays of sight meet the relief, and their length in each layer below it (iris paper, section 5.3). */
 #include "draw/eye/march/march.h"
 
 #include <math.h>
@@ -86,7 +86,7 @@ void scene_meet(struct iris_batch *r, const struct scene *s, const struct scene_
 	}
 }
 
-/* How far the ray goes on in each layer: down to the epithelium, which lies the layers' thickness below the relief. */
+/* The ray's length in each layer, down to the epithelium, by two fixed-point steps. */
 SIMD_CLONES
 void scene_spans(struct iris_batch *r, const struct ground *g)
 {

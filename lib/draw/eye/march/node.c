@@ -1,4 +1,4 @@
-/* What a node of the quadrature needs of the maps, whatever the light. */
+/* Nodes of the quadrature: what is read of the maps, once for all lights. */
 #include "draw/eye/march/march.h"
 #include "draw/eye/quick/map.h"
 
@@ -34,7 +34,7 @@ SIMD_INLINE void node_make(int n, struct march_node *restrict m, const struct ir
 		seen_over[i] = s < near[i] ? s : near[i];
 		seen_under[i] = s > near[i] ? s - near[i] : 0;
 	}
-	// Least: what is darker is none, and four times the one and the other stay exponents of a float.
+	// Lower bounds: darker is black, and four times rise plus seen stays within a float's exponents.
 	for (int k = 0; k < t->bands; k++) {
 		float of_over = t->fade[TISSUE_ABL][k], of_under = t->fade[TISSUE_STROMA][k], source = t->source[layer][k];
 		SIMD_LOOP

@@ -1,6 +1,6 @@
-/* Fields of a light's ways on two planes of the iris, by the light's angle from the axis: at rings of turns about it, the light
- * standing at azimuth 0. A light between two angles and turned to any azimuth is their cubic (Catmull and Rom's); all nodes of
- * the field share its weights. */
+/* Fields of refracted paths on two planes across the iris, tabulated over the light's angle from the axis, for a light at azimuth
+ * 0: nodes on rings about the axis. A light between two angles and at any azimuth is interpolated by cubics (Catmull-Rom); all
+ * nodes of the field share the weights. */
 #include "draw/eye/march/paths_impl.h"
 
 #include <math.h>
@@ -86,8 +86,8 @@ static void angle_make(float field[CHANNELS][FIELD], const struct scene *s, doub
 	free(n);
 }
 
-/* Where the points of a square grid lie among rings and turns. Outside the limbus there is no iris to light: those points only
- * bound the others' cells, and stand at its edge. */
+/* Places the points of a square grid among rings and turns. Outside the limbus there is no iris: those points only bound the
+ * cells of others, and are placed at its edge. */
 static void nodes_place(struct paths_place *to, int side, double from, double step, double most, int rings)
 {
 	for (int i = 0; i < side * side; i++) {
@@ -100,7 +100,7 @@ static void nodes_place(struct paths_place *to, int side, double from, double st
 	}
 }
 
-/* What flat light needs of the two planes' fields, on the iris plane between them: a finer ring is the cubic of four. */
+/* The field on the iris plane, between the two planes, for flat light; finer rings by cubic interpolation. */
 static void plain_make(struct scene_paths *p, int angle, float q)
 {
 	const float(*near)[FIELD] = (const float(*)[FIELD])p->field[0][angle], (*far)[FIELD] = (const float(*)[FIELD])p->field[1][angle];
@@ -141,8 +141,7 @@ struct scene_paths *scene_paths_make(const struct scene *s)
 	return p;
 }
 
-/* What the lights of a beam bring to the nodes: power, that times direction, times direction and how far it goes down, and times
- * the place on the cornea. */
+/* Sums over the lights of a beam at the nodes, as struct plane_sum (beam.c). */
 struct sum {
 	float power[FIELD], dir[3][FIELD], down[3][FIELD], rho[FIELD];
 };

@@ -1,16 +1,17 @@
-/* scene_paths: the light's ways into one eye, solved once a scene. The cornea is round: what a light's azimuth changes is only by
- * how much its field is turned about the axis. */
+/* paths: the refracted paths of light into one eye, solved once a scene. The cornea is rotationally symmetric: a light's azimuth only
+ * turns its field about the axis. */
 #ifndef DRAW_EYE_MARCH_PATHS_H
 #define DRAW_EYE_MARCH_PATHS_H
 #include "draw/eye/march/march.h"
 
-/* free(); null: this scene's pictures are not quick ones. Needs geometry, maps' heights and tissue. */
+/* Needs the scene's geometry, range of heights and tissue. Returns null when conf asks for no quick pictures; free(). */
 struct scene_paths *scene_paths_make(const struct scene *scene);
 
-/* The one direction (way[0..2]; way[5]: how far it goes down) in which a beam's light makes tissue as bright as its lights do,
- * from what they bring to a point: power, that times direction, times direction and how far it goes down. A surface that light
- * meets at the cosine m sends back R = m / (m + v) of it at the cosine v; the mean over lights of covariance C about their mean d
- * is R at m - C_nn / (m + v), n the normal: linear in n about the axis, where v is 1, that is a direction's. */
+/* The one direction (way[0..2]; way[5]: its cosine with the axis) from which a beam's light makes tissue as bright as its several
+ * lights do. power, dir, down: sums over the lights at a point of power, power times direction, power times direction times
+ * cosine. A surface that light meets at the cosine m reflects R = m / (m + v) of it at the cosine v (Lommel-Seeliger); the mean
+ * over lights of covariance C about their mean d is R at m - C_nn / (m + v), n the normal: linear in n about the axis, where
+ * v = 1, it is a direction's. */
 SIMD_INLINE void scene_beam_direction(float way[SCENE_WAY], float power, const float dir[3], const float down[3])
 {
 	float per = 1 / power, d[3], c[3];
@@ -24,7 +25,7 @@ SIMD_INLINE void scene_beam_direction(float way[SCENE_WAY], float power, const f
 	way[5] = -d[2];
 }
 
-/* One plane (0, 1) of a beam's table, SCENE_COARSE points each way, from its lights; in: shares that sum to one. */
+/* Fills one plane (0, 1) of a beam's table, SCENE_COARSE points each way. in: its lights, shares that sum to one. */
 void scene_paths_beam(float way[][SCENE_WAY], const struct scene *scene, int plane, const struct beam_lights *in);
 
 #endif

@@ -1,5 +1,5 @@
-/* Irradiance of the iris plane: what a picture without scattering multiplies the photograph's colours by. It needs no directions:
- * no beam's table is made for it, and every light is stopped at the limbus by itself. */
+/* Irradiance of the iris plane: a picture without scattering multiplies the photograph's colours by it. It needs no directions, so
+ * no beam's table is made; every light is stopped at the limbus by itself. */
 #include "draw/eye/march/paths_flat.h"
 
 #include <math.h>

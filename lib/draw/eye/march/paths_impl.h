@@ -1,4 +1,4 @@
-/* scene_paths_impl: fields of the light's ways into one eye; between paths.c and paths_flat.c. */
+/* paths_impl: fields of the paths of light into one eye; shared by paths.c and paths_flat.c. */
 #ifndef DRAW_EYE_MARCH_PATHS_IMPL_H
 #define DRAW_EYE_MARCH_PATHS_IMPL_H
 #include <string.h>
@@ -12,7 +12,7 @@ enum { PLAIN_FALL, PLAIN_X, PLAIN_Y, PLAIN_CHANNELS };
 enum { ANGLES = 64, RINGS = 24, TURNS = 64, WRAP = 4, ROW = TURNS + WRAP, FIELD = RINGS * ROW };
 enum { PLAIN_FINER = 2, PLAIN_RINGS = PLAIN_FINER * (RINGS - 1) + 1, PLAIN_FIELD = PLAIN_RINGS * ROW };  // the limbus stops light within a step of RINGS
 
-/* Weights of four rings and of four turns; the first of them in a field. */
+/* A point of the iris among a field's nodes: cubic weights of four rings and of four turns, and the first node. */
 struct paths_place {
 	float ring[4], turn[4];
 	int first;
@@ -26,16 +26,17 @@ struct scene_paths {
 	struct paths_place flat[SCENE_FLAT * SCENE_FLAT];        // texels of flat light
 };
 
-/* A light among the fields: the first of four angles, and by how many turns its field is turned about the axis. */
+/* A light among the fields: the first of four angles and their weights; by how many turns its field is turned about the axis. */
 struct paths_light {
 	int angle, turn;
 	float in_angle[4], in_turn[4], cosine, sine;
 };
 
-/* Of a unit direction in the eye's frame, z at most 0.16. */
+/* dir: unit, towards the light, in the eye's frame; z at most 0.16. */
 struct paths_light scene_paths_light(const float dir[3]);
 
-/* n (TURNS or ROW) turns of a ring of the light's field; `field` is that of its first angle, the next ones `apart` numbers on. */
+/* Interpolates one ring of the light's field: n (TURNS or ROW) turns. field: the ring in the field of the first angle; those of the next
+ * angles follow `apart` numbers on. */
 SIMD_INLINE void scene_paths_row(float *restrict out, int n, const float *restrict field, long apart, const struct paths_light *light)
 {
 	const float *restrict a = field, *restrict b = a + apart, *restrict c = b + apart, *restrict d = c + apart, *p = light->in_angle, *q = light->in_turn;

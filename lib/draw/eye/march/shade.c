@@ -1,7 +1,7 @@
-/* The march from the texels of the map instead of along the rays of sight. Light in tissue is smooth against the fibres that
- * the photograph shows: the march is done at every second or fourth texel each way, and only its ratio to what the model showed in the
- * photograph's light is multiplied into the photograph's own texels. Sight comes to each texel by its own way through the
- * cornea; so a picture's pixel sees just what a march along its ray would have made, up to what lies between texels. */
+/* The march from the texels of the map instead of along the rays of sight. Scattered light varies slowly compared with the fibres
+ * that the photograph shows: the march is done at every second or fourth texel each way, and only its ratio to the model's colour
+ * in the photograph's light is multiplied into the photograph's own texels. Each texel is seen along its own refracted path, so a
+ * pixel shows what a march along its ray would have given, up to interpolation between texels. */
 #include "draw/eye/march/shade.h"
 
 #include <math.h>
@@ -82,7 +82,7 @@ SIMD_CLONES static void rows_put(float *restrict out, long stride, const float (
 	}
 }
 
-/* What the photograph's colour is to be multiplied by: see draw/eye/colour.c. */
+/* Writes the factor of the photograph's colour (draw/eye/colour.h). */
 static void tile_put(struct iris_batch *b, const struct painter *p, int tx, int ty)
 {
 	const struct scene_level *l = p->level;

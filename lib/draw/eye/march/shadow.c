@@ -1,4 +1,4 @@
-/* Shadow of the relief on itself: light is hidden by what stands under a steeper slope than it comes from. */
+/* Shadow of the relief on itself, by horizons: light is hidden where the relief rises more steeply than the light's direction. */
 #include "draw/eye/march/march.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 static const float bias = (float)LOOK_BIAS;  // mm: a surface does not shadow itself
 
-/* The steepest slope so far, looking at the part `part` of the way out of the relief's reach. */
+/* Raises the steepest slope by what is seen at the share `part` of the distance at which a light ray leaves the relief. */
 SIMD_CLONES
 static void look_out(int n, float *restrict steepest, const struct march_light *m, const float *restrict px,
                      const float *restrict py, const float *restrict pz, const struct ground *g, float part)
@@ -45,7 +45,7 @@ void scene_shadow(struct march_light *m, int n, const float *x, const float *y, 
 	}
 }
 
-/* Heights of a level alone, its edge repeated all round, so that looking out needs no limits. */
+/* Heights of a level alone, padded by repeating its edge, so that lookups need no bounds. */
 struct heights {
 	float *px;
 	int stride, pad;
@@ -65,7 +65,7 @@ static struct heights heights_make(const struct scene_level *l, float reach)
 	return h;
 }
 
-/* A tile's texels look the same way and as far: what they see lies side by side, between the same four weights. */
+/* All texels of a tile look in the same direction and as far: they share the four bilinear weights. */
 SIMD_CLONES
 static void tile_look(float *restrict steepest, const float *restrict at, long stride, const float off[2], float distance, float per_distance, float top)
 {

@@ -1,4 +1,4 @@
-/* Light and film on a tile: smooth, and known at its nodes; the mirror image, too, where it shows no edge. */
+/* Light and film on a tile are smooth: computed at its nodes. So is the reflection where it shows no edge. */
 #include "draw/eye/quick/film.h"
 
 #include <math.h>
@@ -88,8 +88,8 @@ static struct span span_of(const float *u)
 	return s;
 }
 
-/* How many pixels may lie between what is looked up of the mirror image, 8, 4 or 1. Straight lines over a step miss an image that bends
- * by b a pixel^2 of its by step^2 b / 8: less than an eighth of a hundredth of white? */
+/* Pixels between lookups of the reflection: 8, 4 or 1. Linear interpolation over a step misses an image of second derivative b by
+ * step^2 b / 8; that must stay below 0.4 % of white. */
 static int film_step(const struct quick_nodes *s, const struct envmap *env)
 {
 	const float least = 0.01f;

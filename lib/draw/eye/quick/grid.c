@@ -1,5 +1,5 @@
-/* Tiles of quick.h where nothing but the maps varies fast. Rays are followed at nodes alone; between them places,
- * directions and Fresnel are linear, to 2e-3 px of what each ray would find (over 8 px the refracted place bends by
+/* Tiles of quick.h in which only the maps vary fast. Rays are followed at the nodes; between them places, directions and Fresnel
+ * reflectance are interpolated linearly, to 2e-3 px of what each ray would find (over 8 px the refracted place bends by
  * (8 px)^2 / 8 of 0.014 / mm). */
 #include "base/mem.h"
 #include "draw/eye/quick/quick.h"
@@ -39,8 +39,8 @@ SIMD_CLONES void quick_lay(float *restrict out, const float node[NODE_LANES])
 	}
 }
 
-/* All nodes well inside the limbus, or well outside, or about it; and none seen at a grazing angle, where places run away, nor
- * so far from the side that relief hides relief. */
+/* The kind of a tile: all nodes inside the limbus, all outside, or about it. Mixed, if one is seen at a grazing angle, where places
+ * change too fast, or so obliquely that relief hides relief. */
 static enum quick_kind kind_of(const struct quick_strip *strip, int first, const struct quick_look *k)
 {
 	unsigned char all = 0xff;
@@ -54,7 +54,7 @@ static enum quick_kind kind_of(const struct quick_strip *strip, int first, const
 	return !(all & NODE_STRAIGHT) ? QUICK_MIXED : all & NODE_IN ? QUICK_CORNEA : all & NODE_THROUGH ? QUICK_LIMBUS : QUICK_MIXED;
 }
 
-/* From the nodes' heights one more step is enough. */
+/* One Newton step from the interpolated heights is enough. */
 SIMD_CLONES static void meet_pixels(float *restrict u, float *restrict v, const float (*restrict q)[NODE_LANES], const struct quick_look *look)
 {
 	const struct scene_level level = *look->level;

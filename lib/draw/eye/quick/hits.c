@@ -1,4 +1,3 @@
-/* What rays of an unmoved view met, kept from picture to picture. */
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,7 +57,7 @@ static void ask(const char *from, size_t size)
 		__builtin_prefetch(from + i);
 }
 
-/* Its places are read a tile later, its nodes at once: those of the next are asked for. */
+/* Prefetches: this tile's places are read a tile later, the next one's nodes at once. */
 struct quick_found *scene_hits_tile(const struct scene_hits *h, int tile)
 {
 	struct quick_found *found = h->found[tile];
@@ -69,7 +68,7 @@ struct quick_found *scene_hits_tile(const struct scene_hits *h, int tile)
 	return found;
 }
 
-/* No more than is read of it again. */
+/* Copies only the part that is read again. */
 void scene_hits_keep(struct scene_hits *h, int tile, const struct quick_found *found)
 {
 	size_t size = sizeof *found;

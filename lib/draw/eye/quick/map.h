@@ -1,4 +1,4 @@
-/* scene_quick_map: lookups of quick pictures, for loops over rays. */
+/* map: lookups of quick pictures, for loops over rays. */
 #ifndef DRAW_EYE_QUICK_MAP_H
 #define DRAW_EYE_QUICK_MAP_H
 #include <stdint.h>
@@ -14,15 +14,15 @@ SIMD_INLINE float quick_clamp(float x, float low, float high)
 	return x < high ? x : high;
 }
 
-/* From 0 at lo to 1, smoothly; inv: of its width. */
+/* Smoothstep from 0 at lo to 1; inv: 1 over its width. */
 SIMD_INLINE float quick_ramp(float lo, float inv, float x)
 {
 	float t = quick_clamp((x - lo) * inv, 0, 1);
 	return t * t * (3 - 2 * t);
 }
 
-/* Whether relief may hide relief from a ray behind the cornea: it leans more than LOOK_LEANS to the iris' axis. The first
- * crossing is searched for then; of straighter rays it is the only one, to 0.04 % of a picture's light. */
+/* Whether a ray behind the cornea leans so much to the iris' axis (LOOK_LEANS) that relief may hide relief: its first crossing must
+ * be searched for. Straighter rays cross once, to 0.04 % of a picture's light. */
 SIMD_INLINE bool quick_leans(float vx, float vy, float vz)
 {
 	return vx * vx + vy * vy > (float)(LOOK_LEANS * LOOK_LEANS) * vz * vz;

@@ -183,7 +183,7 @@ SIMD_CLONES static void meet_straight(struct quick_spots *s, int n, const struct
 	}
 }
 
-/* The same by a search for the first crossing, as the reference does it. */
+/* The same by a search for the first crossing, as the exact tracer does it. */
 static void meet_leaning(struct quick_spots *s, int n, const struct quick_look *k)
 {
 	struct iris_batch b = { .n = n };

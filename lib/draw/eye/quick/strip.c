@@ -1,5 +1,4 @@
-/* Rays at the nodes of the tiles of grid.c, a strip of tiles at a time: neighbours share their nodes, and what one ray
- * waits for others fill. */
+/* Rays at the nodes of the tiles of grid.c, a strip of tiles at a time: neighbours share their nodes, and the vectors are full. */
 #include "draw/eye/quick/quick.h"
 
 #include <math.h>
@@ -20,7 +19,7 @@ static void nodes_make(struct quick_rays *r, float x, float y, int across, quick
 	make(r, u, v, ctx);
 }
 
-/* What a tile may be for each node's sake: one that wants every ray has none at a grazing angle, where places run away. */
+/* Sets the flags of the nodes: the kinds of tile that each allows. */
 SIMD_CLONES static void judge(unsigned char *restrict is, const struct quick_spots *restrict s, const struct quick_rays *restrict r, const struct quick_look *k)
 {
 	float inner = 1 - 0.5f * k->lid_width, outer = 1 + 0.5f * k->lid_width;

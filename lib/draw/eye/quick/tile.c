@@ -1,5 +1,5 @@
-/* Colours of tiles that grid.c has found. What light and film make of the maps' colours is smooth: it is known at
- * the nodes and added up from pixel to pixel; only where the mirror shows an edge is the environment looked up in every one. */
+/* Colours of tiles that grid.c has found. The factors of light and film are smooth: known at the nodes, incremented from pixel to
+ * pixel. Only where the reflection shows an edge is the environment looked up in every pixel. */
 #include <math.h>
 #include <string.h>
 
