@@ -6,7 +6,7 @@
 #include "draw/eye/look.h"
 #include "draw/smooth.h"
 
-/* How much of a point of the iris plane is iris; *ruff how much is the dark ruff. */
+/* Share of iris at a point of the iris plane; *ruff: share of the dark ruff. */
 static float margin(const struct scene *s, float x, float y, float soft, float *ruff)
 {
 	float dx = x - (float)s->pupil[0], dy = y - (float)s->pupil[1], r = sqrtf(dx * dx + dy * dy), off = r - (float)s->pupil[2];

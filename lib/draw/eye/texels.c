@@ -47,7 +47,7 @@ static int pair_half(float height)
 	return (int)lrintf(fmaxf(-32768, fminf(32767, height / SCENE_PAIR_MM)));
 }
 
-/* Pairs of what `height` says of texels; the last one of a row repeats. */
+/* Pairs of the values that `height` returns of neighbouring texels; the last one of a row repeats. */
 static int *pairs_of(const struct scene_level *l, float height(const float relief[2]))
 {
 	int stride = SCENE_PAIR_STRIDE(l->n), *out = mem_array((size_t)l->n * (size_t)stride, sizeof *out);

@@ -4,11 +4,11 @@
 #include <math.h>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// This pass turns the bounds of relief_at and exp_negative into branches, and no loop over them is vector code then.
+// This pass turns the bounds of relief_at into branches, and keeps loops over it from becoming vector code.
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")
 #endif
 
-/* A bracket of the crossing along each ray: the relief lies below it at a, above it at b. */
+/* A bracket of the crossing along each ray: at length a the ray is above the relief, at b below it; fa, fb: depth below it, mm. */
 struct bracket {
 	float a[BATCH], fa[BATCH], b[BATCH], fb[BATCH], found[BATCH], step[BATCH];
 };

@@ -26,8 +26,8 @@ static void gauss(int n, double node[], double weight[])
 	}
 }
 
-/* Gauss's rule for the weight exp(-c x) on 0..1: light that fades with depth is its polynomial of degree 0, so that what is
- * left to the nodes is only how it differs from that. Orthogonal polynomials by Stieltjes' procedure on a fine rule; roots by
+/* Gauss's rule for the weight exp(-c x) on 0..1: light that fades with depth is its polynomial of degree 0, so the nodes only have to
+ * integrate the deviation from that. Orthogonal polynomials by Stieltjes' procedure on a fine rule; roots by
  * bisection between their changes of sign. */
 enum { EXPONENTIAL_MAX = SCENE_EXPONENTIAL_MAX, FINE = 64 };
 
@@ -123,7 +123,7 @@ double scene_thickness(const struct scene *s, int layer)
 	return layer == TISSUE_ABL ? s->optics.abl_thickness : thick;
 }
 
-/* How fast light fades over a layer, to and fro: in the middle of the bands, at the layer's mean thickness. */
+/* Exponent c of light over a layer, in and out: mean extinction of the bands times the layer's mean thickness. */
 static double fading(const struct scene *s, int layer)
 {
 	const struct tissue_optics *o = &s->optics;

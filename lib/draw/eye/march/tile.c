@@ -1,4 +1,4 @@
-/* Light on a tile of the iris: what is smooth across it is looked up at its corners alone. */
+/* Light on a tile of the iris: what is smooth across it is looked up at the corners of the tile's body alone. */
 #include "draw/eye/march/march.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see meet.c, simd.h
 #endif
 
-/* Where the body's corners lie in the beams' tables: these are all of the same planes. */
+/* Places the body's corners in the beams' tables, which all have the same planes. */
 SIMD_INLINE void corners_place(struct march_body *b, float side, float extent, const double plane[2])
 {
 	float per = (SCENE_GRID - 1) / (2 * extent), top = SCENE_GRID - 1.001f, z0 = (float)plane[0], thick = 1 / (float)(plane[1] - plane[0]);
@@ -88,7 +88,7 @@ SIMD_INLINE void channel_lay(float *restrict out, float *restrict change, const 
 	}
 }
 
-/* What light comes; at the limbus, where the sclera begins gradually, less. */
+/* Irradiance at both ends of the rays, reduced at the limbus, where the sclera begins gradually. */
 SIMD_CLONES static void power_lay(struct march_light *restrict w, float corner[SCENE_WAY][8], const struct march_body *restrict b, float rim_width)
 {
 	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width, most = 0, *restrict p0 = w->power[0], *restrict p1 = w->power[1];
@@ -121,7 +121,7 @@ SIMD_CLONES static void lay(struct march_light *w, float corner[SCENE_WAY][8])
 	channel_lay(w->z[0], w->z[1], corner[2]);
 }
 
-/* By what the relief hides at the near ends. */
+/* Dims the light by the relief's horizon at the near ends. low, high: slopes in the two nearest azimuths; part: between them. */
 SIMD_CLONES static void shade(struct march_light *w, const struct march_body *b, const float *restrict low, const float *restrict high, float part)
 {
 	SIMD_LOOP

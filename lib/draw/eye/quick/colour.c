@@ -8,7 +8,7 @@
 #pragma GCC optimize("no-tree-pre")  // see draw/eye/march/meet.c
 #endif
 
-/* Starts every ray's colour with what shows under the film: the photograph's detail times what this light makes of it. */
+/* Starts every ray's colour with the iris under the film: the photograph's detail times the march's light. */
 SIMD_CLONES static void put_iris(float rgba[][4], const struct quick_spots *s, int n, const struct quick_look *k)
 {
 	const struct scene_shade *h = k->shade;

@@ -51,7 +51,7 @@ SIMD_CLONES static void film_mirror(struct quick_film *f, const struct quick_nod
 	mirror_at(f->mirror, FILM_SIDE * FILM_SIDE, u, v, mirror, roughness, env, rough);
 }
 
-/* The same where nodes are enough: between them it is linear. */
+/* The same by lookups at the nodes alone, interpolated linearly. */
 SIMD_CLONES static void film_mirror_nodes(struct quick_film *f, const struct quick_nodes *s, const struct envmap *env, bool rough)
 {
 	quick_four node[NODE_LANES], row[NODE_SIDE][FILM_SIDE];

@@ -27,14 +27,14 @@ SIMD_CLONES static void judge(unsigned char *restrict is, const struct quick_spo
 	for (int i = 0; i < r->n; i++) {
 		float cosine = -(s->nx[i] * r->dx[i] + s->ny[i] * r->dy[i] + s->nz[i] * r->dz[i]);
 		int faces = (s->hit[i] > 0) & (cosine > 0.3f);
-		// Whether there is an entry or the conic goes on as one.
+		// The ray enters the cornea, or would enter the conic continued beyond its rim.
 		int through = (s->vz[i] > 0.3f) & (s->fz[i] > -0.1f) & (s->fz[i] < 5);
 		int in = faces & (s->rho[i] < inner), out = faces & (s->rho[i] > outer);
 		is[i] = (unsigned char)((faces ? NODE_FACES : 0) | (in ? NODE_IN : 0) | (out ? NODE_OUT : 0) | (through ? NODE_THROUGH : 0) | (quick_leans(s->vx[i], s->vy[i], s->vz[i]) ? 0 : NODE_STRAIGHT));
 	}
 }
 
-/* Where rays cross the iris plane and meet the relief, and how they lean. Pixels start from what is laid between nodes: the relief as
+/* Where rays cross the iris plane and meet the relief, and how they lean. Pixels start from values interpolated between nodes: the relief as
  * coarse as these is as good a start as the relief at them, and stays in the cache. */
 SIMD_CLONES static void meet_nodes(float (*restrict q)[BATCH], int n, const struct quick_spots *restrict s, const struct quick_look *look)
 {
