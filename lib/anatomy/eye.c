@@ -25,7 +25,7 @@ bool eye_check(const struct eye *eye, struct err *err)
 	if (eye->two_surface && !(eye->iris_depth > eye->thickness))
 		return err_set(err, "eye.iris_depth_mm = %g: must be behind the cornea, %g mm thick", eye->iris_depth,
 		               eye->thickness);
-	// The iris is seen over the limbus' edge only where it lies behind the cornea's surface at every radius it spans.
+	// The iris must lie behind the cornea's surface over all of its radius to be seen through it.
 	if (eye->iris_depth < 0.6 * depth)
 		return err_set(err, "eye.iris_depth_mm = %g: in front of the limbus plane, %.2f mm", eye->iris_depth, depth);
 	return true;

@@ -1,4 +1,5 @@
-/* eye: the anatomy every stage shares, from the `eye.*` and `camera.*` keys. */
+/* eye: the eye's dimensions, which all stages share: the `eye.*` keys. Eye frame: origin at the corneal apex, z into the eye; mm.
+ * */
 #ifndef ANATOMY_EYE_H
 #define ANATOMY_EYE_H
 #include "base/opt.h"
@@ -8,10 +9,10 @@
 struct eye {
 	double cornea_radius, cornea_asphericity, index;  // R mm, p, n
 	double limbus_radius;    // mm, horizontal
-	double limbus_aspect;    // vertical / horizontal; NAN: unknown, use the prior
+	double limbus_aspect;    // vertical / horizontal; NAN: unknown, the anatomical prior holds
 	double iris_depth;       // mm behind the apex
 	bool two_surface;
-	double post_radius, post_asphericity, thickness, cornea_index;
+	double post_radius, post_asphericity, thickness, cornea_index;  // of the posterior surface, mm; read if two_surface
 };
 
 /* Rows for a stage's option table; the first for one that needs no more of the eye. */
@@ -29,9 +30,11 @@ struct eye {
 	OPT_REAL("eye.cornea_thickness_mm", &(e)->thickness, 0.2, 1.2, "mm", "central thickness of the cornea"), \
 	OPT_REAL("eye.cornea_index", &(e)->cornea_index, 1, 2, "", "index of the cornea, two-surface model")
 
-/* Checks what ranges cannot: the limbus lies on the cornea and before the iris' edge. */
+/* Checks what ranges of single keys cannot: that the limbus lies on the cornea and the iris behind it. Returns false, err set
+ * (key, value, rule), otherwise. */
 bool eye_check(const struct eye *eye, struct err *err);
 
+/* The cornea of the eye (optics/cornea/cornea.h). */
 struct cornea eye_cornea(const struct eye *eye);
 
 /* Depth of the limbus plane behind the apex, mm. */

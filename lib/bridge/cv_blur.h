@@ -6,12 +6,14 @@ extern "C" {
 #endif
 #include "base/err.h"
 
-/* out[height][width][channels] = in convolved with a Gaussian of `sigma` px; mirrored at the borders. in and out may be
- * the same. channels 1 to 4. Wide ones (sigma > 6 px) are computed on an area-averaged copy whose texels are a third of
- * sigma and interpolated back: against the direct sum the difference is below 0.5 % of a unit step. */
+/* out[height][width][channels] = in convolved with a Gaussian of `sigma` px, mirrored at the borders. in and out may be the same;
+ * channels 1 to 4. A wide Gaussian (sigma > 6 px) is computed on an area-averaged copy whose texels are a third of sigma, and
+ * interpolated back: it differs from the direct sum by less than 0.5 % of a unit step. Returns false, err set, where OpenCV
+ * fails. */
 bool cv_blur(float *out, const float *in, int width, int height, int channels, double sigma, struct err *err);
 
-/* out[new_height][new_width][channels]: area-averaged where smaller, bilinear where larger. */
+/* out[new_height][new_width][channels]: in resampled, area-averaged where smaller, bilinear where larger. Returns false, err set,
+ * where OpenCV fails. */
 bool cv_resize(float *out, int new_width, int new_height, const float *in, int width, int height, int channels,
                struct err *err);
 

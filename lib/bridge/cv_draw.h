@@ -1,5 +1,5 @@
 /* cv_draw: lines and words on 8-bit pictures, through OpenCV. px is [height][width][channels], 1 or 3 channels;
- * coordinates as in image.h: the centre of the first pixel is (0.5, 0.5). What lies outside is cut off. */
+ * coordinates as in image.h: the centre of the first pixel is (0.5, 0.5). What lies outside is clipped. */
 #ifndef BRIDGE_CV_DRAW_H
 #define BRIDGE_CV_DRAW_H
 #ifdef __cplusplus
@@ -13,12 +13,13 @@ struct cv_picture {
 	int width, height, channels;
 };
 
-/* Anti-aliased line through n points x, y; thickness in whole px. Subpixel positions to 1/16 px. */
+/* Draws an anti-aliased line through points xy[n], px, to 1/16 px. closed: back to the first; thickness: px. colour: R G B,
+ * 0..255. */
 void cv_draw_line(const struct cv_picture *picture, int n, const float (*xy)[2], bool closed, int thickness,
                   const uint8_t colour[3]);
 
-/* Text whose capitals are `height` px high, its base line beginning at (x, y). Characters outside ASCII become '?'.
- * Returns its width in px; draws nothing when colour is null. */
+/* Draws text whose capitals are `height` px high, with its base line beginning at (x, y), px. A character outside ASCII becomes
+ * '?'. Returns its width in px; colour null: draws nothing. */
 int cv_draw_text(const struct cv_picture *picture, double x, double y, double height, const char *text,
                  const uint8_t colour[3]);
 

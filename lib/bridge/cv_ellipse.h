@@ -1,4 +1,4 @@
-/* cv_ellipse: OpenCV's ellipse fits and detectors, as baselines for benchmarks. Pixel centres at (0.5, 0.5). */
+/* cv_ellipse: OpenCV's ellipse fits and detectors, baselines of benchmarks. Coordinates in px, pixel centres at (0.5, 0.5). */
 #ifndef BRIDGE_CV_ELLIPSE_H
 #define BRIDGE_CV_ELLIPSE_H
 #ifdef __cplusplus
@@ -11,13 +11,14 @@ extern "C" {
 
 enum cv_ellipse_method { CV_ELLIPSE_LS, CV_ELLIPSE_AMS, CV_ELLIPSE_DIRECT };
 
-/* xy: n points, x then y. False: no ellipse, or OpenCV refuses. */
+/* Fits an ellipse to n points xy[2 n], x then y. Returns false when there is none or OpenCV fails. */
 bool cv_ellipse_fit(struct ellipse *e, int n, const double *xy, enum cv_ellipse_method method);
 
-/* Largest dark blob after Otsu's threshold, its outline fitted. grey: [height][width]. */
+/* Fits an ellipse to the outline of the largest dark component after Otsu's threshold. grey: [height][width]. Returns false when
+ * there is none. */
 bool cv_otsu_ellipse(struct ellipse *e, const uint8_t *grey, int width, int height);
 
-/* The strongest circle of the Hough transform between two radii. */
+/* The strongest circle of the Hough transform with a radius in r_min..r_max, px. Returns false when there is none. */
 bool cv_hough_circle(struct ellipse *e, const uint8_t *grey, int width, int height, double r_min, double r_max);
 
 #ifdef __cplusplus

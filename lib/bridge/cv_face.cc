@@ -15,15 +15,18 @@ namespace {
 const char *const folders[] = { "/usr/share/opencv4/haarcascades/", "/usr/share/opencv/haarcascades/",
 	                            "/usr/local/share/opencv4/haarcascades/" };
 
-/* Faces are looked for in a picture so large, eyes in a face so wide: several times what the cascades were taught on (20 px). */
+/* Size, px, to which the picture is scaled for detecting faces, and a face for detecting eyes: several times that of the cascades'
+ * training samples (20 px). */
 const int picture_px = 640, face_px = 300;
-/* Smallest face, of the picture's shorter side. */
+/* Size of the smallest face, as a share of the picture's shorter side. */
 const double least_face = 0.12;
-/* Where eyes lie in the cascade's square of a face, of its side: rows, and the least and most width of an eye's own square. */
+/* Where eyes lie in a face's square, in shares of its side: rows, and least and greatest width of an eye's square. */
 const double eye_rows[2] = { 0.18, 0.60 }, eye_side[2] = { 0.13, 0.40 };
-/* Mouth below the middle of the eyes, of the distance of the eyes: mean of adults (Farkas 1994: 63 mm apart; 68 to 72 mm down). */
+/* Distance of the mouth below the middle of the eyes, over the distance of the eyes: mean of adults (Farkas 1994: 63 mm apart; 68
+ * to 72 mm down). */
 const double mouth_below = 1.1;
-/* How far from there it can lie: below the eyes, to the side; and of what is looked at the extent, of the distance of the eyes. */
+/* How far from there the mouth may lie, below the eyes and to the side, and the extent of the region searched, over the distance
+ * of the eyes. */
 const double mouth_least = 0.85, mouth_most = 1.45, mouth_aside = 0.25, mouth_region[2] = { 2, 1.4 };
 
 bool load(cv::CascadeClassifier *c, const char *folder, const char *name)
@@ -31,7 +34,7 @@ bool load(cv::CascadeClassifier *c, const char *folder, const char *name)
 	return c->load(std::string(folder) + name);
 }
 
-/* OpenCV's threads hand over what they find in any order. */
+/* Sorts detections, since OpenCV's threads return them in any order. */
 void sort(std::vector<cv::Rect> *r)
 {
 	std::sort(r->begin(), r->end(), [](const cv::Rect &a, const cv::Rect &b) {
@@ -39,7 +42,8 @@ void sort(std::vector<cv::Rect> *r)
 	});
 }
 
-/* The two eyes of a face that fit best, as shares of its square: nearly level, as far from the middle. */
+/* Chooses the pair of eye detections that fits a face best: nearly level and symmetric about the middle. Positions as shares of
+ * the face's square. */
 bool pair_of(cv::Point2d eye[2], const std::vector<cv::Rect> &found, double side, double top)
 {
 	double best = 0.35;
@@ -71,7 +75,7 @@ bool eyes_of(cv::Point2d eye[2], cv_face_finder *finder, const cv::Mat &grey, co
 	cv::resize(grey(strip & cv::Rect(0, 0, grey.cols, grey.rows)), part, cv::Size(), scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
 	const cv::Size least(static_cast<int>(eye_side[0] * face_px), static_cast<int>(eye_side[0] * face_px));
 	const cv::Size most(static_cast<int>(eye_side[1] * face_px), static_cast<int>(eye_side[1] * face_px));
-	// The first was taught on eyes with glasses, too, and errs least; the second finds more.
+	// The first cascade was trained on eyes with glasses too and errs least; the second detects more.
 	for (cv::CascadeClassifier &c : finder->eye) {
 		std::vector<cv::Rect> found;
 		c.detectMultiScale(part, found, 1.05, 3, 0, least, most);
@@ -82,8 +86,8 @@ bool eyes_of(cv::Point2d eye[2], cv_face_finder *finder, const cv::Mat &grey, co
 	return false;
 }
 
-/* Of what the cascade of smiles finds below the eyes, the one found most often: it takes mouths at rest for smiles, too, and
- * noses, which lie too high. */
+/* Finds the mouth by the cascade for smiles, which detects mouths at rest too, and noses, which lie too high: of the detections
+ * below the eyes that with the most neighbours. */
 bool mouth_of(cv::Point2d *mouth, cv_face_finder *finder, const cv::Mat &grey, const cv::Point2d &middle, const cv::Point2d &across)
 {
 	const double apart = std::hypot(across.x, across.y), scale = 0.4 * face_px / apart;

@@ -1,5 +1,5 @@
 /* cv_face: faces and their eyes in a picture by OpenCV's boosted cascades (Viola and Jones 2001; Lienhart and Maydt 2002),
- * which Debian's package opencv-data holds. They know faces seen from the front, to about 30 degrees.
+ * which are in Debian's package opencv-data. They detect faces seen from the front, up to about 30 degrees.
  */
 #ifndef BRIDGE_CV_FACE_H
 #define BRIDGE_CV_FACE_H
@@ -12,18 +12,21 @@ extern "C" {
 
 struct cv_face {
 	double eye[2][2];  // px, first pixel's centre at 0.5: the middle of the person's left eye, of the right one
-	double mouth[2];   // its middle; where that is to be expected, if it was not found
+	double mouth[2];   // px, its middle; where it is not found, the position expected from the eyes
 	bool mouth_found;
 };
 
 struct cv_face_finder;
 
-/* False, err set: the cascades are not installed. cv_face_close. */
+/* Loads the cascades: *finder, cv_face_close. Returns false, err set, when they are not installed. */
 bool cv_face_open(struct cv_face_finder **finder, struct err *err);
 void cv_face_close(struct cv_face_finder *finder);
 
-/* At most `most` faces of a grey picture in which both eyes are found; *n of them, the largest first. turn: the picture is
- * looked at after so many quarter turns clockwise; coordinates are the picture's own. The same on any number of threads. */
+/* Finds faces with both eyes in a picture.
+ * faces  [most] out, the largest first; *n of them
+ * grey   [height][width]
+ * turn   quarter turns clockwise after which the picture is upright; coordinates are those of the picture as given
+ * Returns false, err set, where OpenCV fails. The same result on any number of threads. */
 bool cv_face_find(int *n, struct cv_face *faces, int most, struct cv_face_finder *finder, const uint8_t *grey, int width,
                   int height, int turn, struct err *err);
 

@@ -22,7 +22,7 @@ static void sparse(double (*to)[2], const double (*from)[2], int n, const cv::Ma
 		}
 }
 
-/* The field at a point between pixels' centres. */
+/* The flow field at a point, bilinear between pixels' centres. */
 static cv::Vec2f at(const cv::Mat &flow, double x, double y)
 {
 	double u = std::clamp(x - 0.5, 0.0, flow.cols - 1.001), v = std::clamp(y - 0.5, 0.0, flow.rows - 1.001);

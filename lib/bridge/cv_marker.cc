@@ -5,7 +5,7 @@
 
 namespace {
 
-/* One family of each size of code, and the AprilTags most printed; families within a size share ids 0 to 49. */
+/* One family of each size of code, and the most common AprilTags. Families of one size share ids 0 to 49. */
 const cv::aruco::PREDEFINED_DICTIONARY_NAME families[] = {
 	cv::aruco::DICT_4X4_1000, cv::aruco::DICT_5X5_1000, cv::aruco::DICT_6X6_1000,
 	cv::aruco::DICT_7X7_1000, cv::aruco::DICT_ARUCO_ORIGINAL, cv::aruco::DICT_APRILTAG_36h11,

@@ -6,8 +6,8 @@ extern "C" {
 #endif
 #include "base/err.h"
 
-/* out[height][width][5] = d/dx, d/dy, d2/dx2, d2/dxdy, d2/dy2 of `in` convolved with a Gaussian of `sigma` px (>= 0.6), a
- * pixel's distance the unit; mirrored at the borders. */
+/* out[height][width][5] = d/dx, d/dy, d2/dx2, d2/dxdy, d2/dy2 of `in`[height][width] convolved with a Gaussian of `sigma` px (>=
+ * 0.6), in units per px; mirrored at the borders. Returns false, err set, where OpenCV fails. */
 bool cv_ridge(float (*out)[5], const float *in, int width, int height, double sigma, struct err *err);
 
 #ifdef __cplusplus

@@ -10,14 +10,14 @@ bool cv_stereo(float *disparity, const uint8_t *left, const uint8_t *right, cons
 {
 	try {
 		const int n = (range + 15) / 16 * 16, b = conf->block;
-		// A border as wide as the range: where the right picture ends, the left one still gets a value.
+		// A border as wide as the range, so that the left picture gets values where the right one ends.
 		const int pad_left = std::max(0, min_disparity + n), pad_right = std::max(0, -min_disparity);
 		cv::Mat l, r, d;
 		cv::copyMakeBorder(cv::Mat(height, width, CV_8U, const_cast<uint8_t *>(left)), l, 0, 0, pad_left, pad_right,
 		                   cv::BORDER_REPLICATE);
 		cv::copyMakeBorder(cv::Mat(height, width, CV_8U, const_cast<uint8_t *>(right)), r, 0, 0, pad_left, pad_right,
 		                   cv::BORDER_REPLICATE);
-		// P1 and P2 as OpenCV's own advice has them, for one channel.
+		// P1 and P2 as OpenCV's documentation recommends, for one channel.
 		auto sgbm = cv::StereoSGBM::create(min_disparity, n, b, 8 * b * b, 32 * b * b, conf->left_right, 31, conf->uniqueness,
 		                                   conf->speckle, 1, cv::StereoSGBM::MODE_SGBM);
 		sgbm->compute(l, r, d);

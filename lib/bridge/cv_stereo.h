@@ -1,4 +1,4 @@
-/* cv_stereo: dense matching of two rectified pictures by OpenCV (semi-global matching, Hirschmüller 2008). */
+/* cv_stereo: dense stereo matching of two rectified pictures by OpenCV (semi-global matching, Hirschmüller 2008). */
 #ifndef BRIDGE_CV_STEREO_H
 #define BRIDGE_CV_STEREO_H
 #ifdef __cplusplus
@@ -9,22 +9,28 @@ extern "C" {
 #include "base/err.h"
 
 struct cv_stereo_conf {
-	int block;         // px, odd: side of the window that is compared
-	int uniqueness;    // %, the best cost has to undercut the second best by
-	int left_right;    // px, the match from the other side may lie elsewhere by
-	int speckle;       // px, smaller patches of their own depth are taken out
+	int block;         // px, odd: side of the matching window
+	int uniqueness;    // %, by which the best cost must be below the second best
+	int left_right;    // px, greatest difference in the left-right consistency check
+	int speckle;       // px, smaller connected patches of disparity are removed
 };
 
-/* disparity[height][width]: x_left - x_right, px; NAN where nothing was found. Sought from min_disparity on, over `range`
- * values. Masked pixels (mask 0) get NAN. Results do not depend on threads. */
+/* Matches two rectified pictures.
+ * disparity             [height][width] out: x_left - x_right, px; NAN where there is no match or mask is 0
+ * left, right, mask     [height][width]
+ * min_disparity, range  disparities searched: `range` values from min_disparity on, px
+ * Returns false, err set, where OpenCV fails. The result does not depend on the number of threads. */
 bool cv_stereo(float *disparity, const uint8_t *left, const uint8_t *right, const uint8_t *mask, int width, int height,
                int min_disparity, int range, const struct cv_stereo_conf *conf, struct err *err);
 
-/* mask[height][width] becomes 0 where no two pixels of grey within `reach` px, across and down, differ by `least` levels. */
+/* Masks regions without texture: mask[height][width] is set to 0 where no two pixels of grey within `reach` px, horizontally and
+ * vertically, differ by `least` levels. Returns false, err set, where OpenCV fails. */
 bool cv_mask_plain(uint8_t *mask, const uint8_t *grey, int width, int height, int reach, int least, struct err *err);
 
-/* out[height][width]: the grey picture at (x[i], y[i]) px (first pixel's centre at 0.5), bilinear; mask: 255 where the
- * picture reaches, else 0. */
+/* Resamples a grey picture px[px_height][px_width] at positions (x[i], y[i]), px, first pixel's centre at 0.5, bilinearly.
+ * out   [height][width]
+ * mask  [height][width] out: 255 where the position is inside the picture, else 0
+ * Returns false, err set, where OpenCV fails. */
 bool cv_warp8(uint8_t *out, uint8_t *mask, int width, int height, const float *x, const float *y, const uint8_t *px,
               int px_width, int px_height, struct err *err);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/* Central differences with the step that balances truncation against rounding, one-sided where the function ends. */
+/* Central differences with the step that balances truncation and rounding, one-sided at the end of the function's domain. */
 bool differences(nls_fn fn, void *ctx, int n, int m, const double *x, double *J)
 {
 	std::vector<double> at(x, x + n), up(m), down(m);
@@ -57,8 +57,8 @@ private:
 	bool numeric_;
 };
 
-/* Rank and covariance from the singular values of the column-scaled Jacobian: parameters of unlike units are
- * compared fairly, and a direction the data does not see is reported instead of inverted. */
+/* Rank and covariance from the singular values of the column-scaled Jacobian: the scaling makes parameters of different units
+ * comparable, and a direction that the data does not determine is reported instead of inverted. */
 void covariance(nls_result *result, const Matrix &J, double *cov)
 {
 	const int n = static_cast<int>(J.cols());
@@ -105,7 +105,7 @@ ceres::Solver::Options options_of(const nls_conf *conf)
 	ceres::Solver::Options options;
 	options.linear_solver_type = ceres::DENSE_QR;
 	options.logging_type = ceres::SILENT;
-	options.num_threads = 1;  // one block: threads would only cost
+	options.num_threads = 1;  // one block: threads do not pay
 	options.max_num_iterations = conf && conf->max_iter ? conf->max_iter : 50;
 	if (conf && conf->ftol > 0)
 		options.function_tolerance = conf->ftol;
@@ -145,7 +145,7 @@ bool run(nls_result *result, Block *block, std::vector<double> &x, const Bounds 
 	return true;
 }
 
-/* Parameters that stand at a bound and would descend further behind it. */
+/* Finds the active bounds: parameters at a bound where the cost descends beyond it. */
 std::vector<int> pressed(const std::vector<double> &x, const Bounds &bounds, const Eigen::VectorXd &gradient)
 {
 	std::vector<int> held;
@@ -155,9 +155,9 @@ std::vector<int> pressed(const std::vector<double> &x, const Bounds &bounds, con
 	return held;
 }
 
-/* Ceres clips its step at the bounds, which changes its direction: with correlated parameters and a bound that is
- * reached it stops short of the minimum. So what presses against a bound is held there, and the rest solved again,
- * until the same parameters press. */
+/* Active set method round Ceres, which clips its step at the bounds and so changes its direction: with correlated parameters and
+ * an active bound it stops short of the minimum. Parameters at an active bound are held there and the others solved again, until
+ * the set stays the same. */
 bool solve(nls_result *result, int n, double *x, const Bounds &bounds, int m, nls_fn fn, void *ctx,
            const nls_conf *conf, double *cov, err *err)
 {
@@ -189,7 +189,7 @@ bool nls_solve(nls_result *result, int n, double *x, const double *lo, const dou
                const nls_conf *conf, double *cov, err *err)
 {
 	try {
-		FLAGS_minloglevel = google::GLOG_FATAL;  // what goes wrong comes back through struct err
+		FLAGS_minloglevel = google::GLOG_FATAL;  // errors are returned in struct err
 		return solve(result, n, x, Bounds{ lo, hi }, m, fn, ctx, conf, cov, err);
 	} catch (const std::exception &e) {
 		return err_set(err, "least squares: %s", e.what());

@@ -6,8 +6,8 @@ extern "C" {
 #endif
 #include "base/err.h"
 
-/* Fills r[m]; and J[m][n] row-major, J_ij = dr_i/dx_j, where J is not null. Returns false where x makes no sense
- * (the step is then shortened). Robust weights belong in r (square root of the weight). */
+/* The residuals r[m] at x[n], and where J is not null the Jacobian J[m][n], row-major, J_ij = dr_i/dx_j. Returns false where x is
+ * not admissible; the step is then shortened. Robust weights are applied within r (square root of the weight). */
 typedef bool (*nls_fn)(void *ctx, const double *x, double *r, double *J);
 
 struct nls_conf {
@@ -24,13 +24,17 @@ struct nls_result {
 	double condition;    // of the column-scaled Jacobian
 };
 
-/* x: n start values, overwritten. lo, hi: n bounds each, or null.
- * cov: [n][n], (JᵀJ)⁻¹ at the solution in units where each residual has unit variance, or null; parameters in the
- * null space of a rank-deficient J get +INFINITY on the diagonal and 0 beside it, and result->rank < n. */
+/* Minimises by Levenberg-Marquardt.
+ * x       [n] in: start; out: solution
+ * lo, hi  [n] bounds, or null
+ * fn      m residuals; ctx is passed on
+ * cov     [n][n] out: (JᵀJ)⁻¹ at the solution, the covariance if residuals have unit variance; or null. Parameters in the null
+ *         space of a rank-deficient J get +INFINITY on the diagonal and 0 elsewhere, and result->rank < n
+ * Returns false, err set, when Ceres finds no usable solution. */
 bool nls_solve(struct nls_result *result, int n, double *x, const double *lo, const double *hi, int m, nls_fn fn,
                void *ctx, const struct nls_conf *conf, double *cov, struct err *err);
 
-/* Largest difference between fn's J and central differences at x, relative to each column's norm. For tests. */
+/* Largest difference between fn's Jacobian and central differences at x, relative to each column's norm. For tests. */
 double nls_check_jacobian(int n, const double *x, int m, nls_fn fn, void *ctx);
 
 #ifdef __cplusplus

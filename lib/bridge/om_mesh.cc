@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-// gcc 12 sees an uninitialised allocator in OpenMesh's property vectors, which has no members.
+// gcc 12 warns of an uninitialised allocator, which has no members, in OpenMesh's property vectors.
 #ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -31,7 +31,7 @@ struct Traits : OpenMesh::DefaultTraits {
 };
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
-/* OpenMesh speaks to std::cerr of faces it cannot join; what matters comes back through struct err. */
+/* Silences OpenMesh, which prints faces it cannot join to std::cerr; errors are returned in struct err. */
 void be_quiet()
 {
 	omlog().disable();
@@ -39,7 +39,7 @@ void be_quiet()
 	omerr().disable();
 }
 
-/* Adds a triangle; one that would make an edge of three faces gets vertices of its own, behind all others. */
+/* Adds a triangle; one that would give an edge a third face gets vertices of its own, appended behind all others. */
 void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 {
 	if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
@@ -56,7 +56,7 @@ void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
 	om.add_face(own[0], own[1], own[2]);
 }
 
-/* What OpenMesh has made of it. Colours come as they were given, in sRGB. */
+/* Converts from OpenMesh. Colours stay in sRGB. */
 void take(struct mesh *mesh, const Mesh &om, bool colours)
 {
 	mesh->n_vertices = (int)om.n_vertices();
@@ -100,7 +100,7 @@ bool give(Mesh &om, const struct mesh *mesh, struct err *err)
 	return true;
 }
 
-/* Takes the place of the mesh. */
+/* Replaces the mesh by OpenMesh's. */
 void replace(struct mesh *mesh, const Mesh &om)
 {
 	struct mesh made = {};
@@ -109,7 +109,7 @@ void replace(struct mesh *mesh, const Mesh &om)
 	*mesh = made;
 }
 
-/* Edges of three faces and fans that meet in one vertex are taken apart by OpenMesh; what is a surface stays as it is. */
+/* Splits edges of three faces and fans that share one vertex, by OpenMesh; a manifold mesh stays as it is. */
 bool make_sound(struct mesh *mesh, struct err *err)
 {
 	if (mesh_joins_sound(mesh))

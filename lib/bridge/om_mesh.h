@@ -1,4 +1,4 @@
-/* om_mesh: triangle meshes in and out; what is no surface is taken apart, and decimated, by OpenMesh. */
+/* om_mesh: triangle meshes read from and written to files, split into manifolds and decimated by OpenMesh. */
 #ifndef BRIDGE_OM_MESH_H
 #define BRIDGE_OM_MESH_H
 #ifdef __cplusplus
@@ -6,14 +6,17 @@ extern "C" {
 #endif
 #include "mesh/mesh.h"
 
-/* PLY or OBJ by content. Polygons are cut into triangles. More than limit vertices or faces, an index out of range,
- * a number that is not finite: an error. mesh_free. */
+/* Reads a PLY or OBJ file, by content (mesh_clean.h). Polygons become triangles; where the mesh is not manifold, vertices are
+ * doubled; colours become linear. mesh_free. Returns false, err set, for more than `limit` vertices or faces, an index out of
+ * range, or a number that is not finite. */
 bool om_mesh_load(struct mesh *mesh, const char *path, long limit, struct err *err);
 
-/* Binary little-endian PLY; made_by becomes a comment; written beside and renamed. */
+/* Writes a binary little-endian PLY beside `path` and renames it; made_by becomes a comment. Returns false, err set, when that
+ * fails. */
 bool om_mesh_save(const struct mesh *mesh, const char *path, const char *made_by, struct err *err);
 
-/* Quadric decimation to at most target_faces faces. */
+/* Decimates to at most target_faces faces by quadric error (Garland and Heckbert 1997). Returns false, err set, where OpenMesh
+ * fails. */
 bool om_mesh_decimate(struct mesh *mesh, int target_faces, struct err *err);
 
 #ifdef __cplusplus

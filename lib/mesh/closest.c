@@ -8,7 +8,8 @@
 
 #include "base/mem.h"
 
-/* The plane of a triangle and those that stand on its edges, outwards: distances of a point from all four at once. */
+/* The plane of a triangle and the planes perpendicular to it through its edges, facing outwards: for distances of a point from
+ * all four. */
 typedef float four __attribute__((vector_size(16), aligned(16)));
 
 struct sides {
@@ -38,7 +39,7 @@ static void cross(double out[3], const double a[3], const double b[3])
 		out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-/* False for triangles without area. */
+/* The planes of a triangle. Returns false for triangles without area. */
 static bool take_sides(struct sides *out, const struct mesh *mesh, const int32_t v[3])
 {
 	double at[3][3], edge[3][3], n[3], m[3], longest = 0;
@@ -91,10 +92,10 @@ struct closest_scene *closest_new(const struct mesh *mesh, const float (*normals
 	s->scene = rtcNewScene(s->device);
 	if (s->n) {
 		RTCGeometry g = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-		// By Morton codes: built in a fifth of the time, and searched as fast.
+		// Built from Morton codes: in a fifth of the time, and as fast to search.
 		rtcSetSceneBuildQuality(s->scene, RTC_BUILD_QUALITY_LOW);
 		rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_LOW);
-		// Copied: Embree reads 16 bytes at a vertex, the last of the mesh's own has 12.
+		// Vertices are copied, since Embree reads 16 bytes at each and the mesh's last has 12.
 		void *v = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof *mesh->vertices,
 		                                  (size_t)mesh->n_vertices);
 		void *c = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof *s->corners, (size_t)s->n);
@@ -183,7 +184,7 @@ static void normal_at(float n[3], const struct closest_scene *s, const int32_t v
 		n[k] = len > 0 ? n[k] / len : 0;
 }
 
-/* Whether the triangle is further away than the best, told from its sides; it may be so and not be told. */
+/* Whether the planes show that the triangle is further away than the best so far; false where they do not decide it. */
 static bool is_beyond(const struct query *q, const struct sides *s)
 {
 	four away = q->at[0] * s->x + q->at[1] * s->y + q->at[2] * s->z + s->off;
@@ -193,7 +194,7 @@ static bool is_beyond(const struct query *q, const struct sides *s)
 	return (beside > 0 ? beside * beside : 0) + (before > 0 ? before * before : 0) > q->best;
 }
 
-/* Looks at one triangle; true when it is closer than all before. */
+/* Tests one triangle; returns true when it is closer than all before. */
 static bool look(struct query *q, int triangle)
 {
 	const struct closest_scene *s = q->scene;
@@ -241,7 +242,7 @@ struct closest_point closest_find(const struct closest_scene *s, const float at[
 	if (!s->n || !isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
 		return q.found;
 	q.slack = s->slack + 1e-6f * (fabsf(at[0]) + fabsf(at[1]) + fabsf(at[2]));
-	// Triangles keep the order of the faces: the guess is at its own number or before it.
+	// Triangles are in the order of the faces, some left out: the guess's triangle is at its own number or before it.
 	for (int t = guess < s->n ? guess : s->n - 1; guess >= 0 && t >= 0; t--)
 		if (s->face[t] <= guess) {
 			if (s->face[t] == guess)

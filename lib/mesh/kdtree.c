@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Its C header has a comment in a comment and a macro from C++.
+// FLANN's C header has a comment within a comment and a macro of C++.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
 #include <flann/flann.h>

@@ -1,4 +1,4 @@
-/* mesh: triangles in memory. Lengths in the file's own unit; conversion to mm is the caller's. */
+/* mesh: a triangle mesh in memory. Lengths in the file's own unit; the caller converts to mm. */
 #ifndef MESH_MESH_H
 #define MESH_MESH_H
 #include <stdint.h>
@@ -14,7 +14,7 @@ struct mesh {
 
 void mesh_free(struct mesh *mesh);
 
-/* False, err set, where a coordinate is no number, or further from 0 than any face in any unit. */
+/* Checks the coordinates. Returns false, err set, where one is not finite, or larger than any face's in any unit. */
 bool mesh_check(const struct mesh *mesh, struct err *err);
 
 /* Area-weighted unit normals, [n_vertices][3]; (0, 0, 1) where no face gives one. free(). */

@@ -22,15 +22,15 @@ bool mesh_joins_check(const struct mesh *mesh, struct err *err)
 	return steps <= STEPS_MAX || err_set(err, "%d faces meet in vertex %d: too many to be joined", most, busiest);
 }
 
-/* The two edges by which a face leaves a vertex and comes back to it. */
+/* The two edges of a face at a vertex: the one that leaves it, and the one that returns to it. */
 struct corner {
 	int32_t to, from;
 };
 
-/* Corners of one vertex: each edge once in either direction, and all of them in one walk. */
+/* Whether the corners of one vertex form one fan or ring: each edge occurs once in either direction, and one walk visits all. */
 static bool is_one_fan(const struct corner *c, int n)
 {
-	int before = 0;  // the corner that has none before it, or any one of a ring
+	int before = 0;  // the first corner of the fan, or any corner of a ring
 	for (int i = 0; i < n; i++) {
 		bool follows = false;
 		for (int j = 0; j < n; j++) {

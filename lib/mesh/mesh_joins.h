@@ -1,14 +1,15 @@
-/* mesh_joins: how the triangles of a mesh meet, and what it costs to join them. OpenMesh walks round a vertex for each of its
- * faces: a million that share one would take hours. */
+/* mesh_joins: connectivity of a mesh: whether it is a manifold surface, and what it costs OpenMesh to build its half-edges:
+ * OpenMesh walks round a vertex for each of its faces, so that a million faces at one vertex would take hours. */
 #ifndef MESH_MESH_JOINS_H
 #define MESH_MESH_JOINS_H
 #include "mesh/mesh.h"
 
-/* False, err set, when joining them would take more than seconds. */
+/* Returns false, err set, when OpenMesh would take more than seconds for the mesh. */
 bool mesh_joins_check(const struct mesh *mesh, struct err *err);
 
-/* Whether the mesh is a surface wherever it has faces: an edge has one face on either side at most, and the faces round a
- * vertex are one fan or one ring. False too for vertices of more than a hundred faces, which are not looked at. */
+/* Whether the mesh is a manifold (with boundary) wherever it has faces: each edge has at most one face on either side, and the
+ * faces round each vertex form one fan or one ring. Returns false for a mesh with a vertex of more than a hundred faces, which is
+ * not examined. */
 bool mesh_joins_sound(const struct mesh *mesh);
 
 #endif

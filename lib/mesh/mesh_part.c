@@ -25,7 +25,7 @@ static bool is_same(const float a[3], const float b[3])
 	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* first[i]: the first vertex at the very place of i. */
+/* first[i]: the first vertex with exactly the position of i. */
 static int32_t *join(int *doubled, const struct mesh *mesh)
 {
 	size_t room = 64;
@@ -60,7 +60,7 @@ static double area_of(const struct mesh *mesh, const int32_t v[3])
 	return a > 1e-7 * longest ? a : 0;
 }
 
-/* Which pieces stay. */
+/* Chooses the components that stay. */
 static bool *choose(struct mesh_part *out, const struct mesh *joined, const struct topology *t, double least)
 {
 	double *area = mem_new((size_t)t->n_pieces + 1, sizeof *area), largest = 0;

@@ -1,5 +1,5 @@
-/* mesh_part: what of a mesh is the surface to work on: doubled vertices joined, faces without area and small pieces
- * (eyeballs, teeth, lashes, strays of a scan) left out; and what had to be mended for it.
+/* mesh_part: the part of a mesh that is the surface to work on: coincident vertices merged, faces without area and small
+ * components (eyeballs, teeth, lashes, fragments of a scan) left out; with counts of what was repaired.
  */
 #ifndef MESH_MESH_PART_H
 #define MESH_MESH_PART_H
@@ -12,14 +12,16 @@ struct mesh_part {
 	int32_t *face;          // [mesh.n_faces] which face of the whole; owned
 	int doubled;            // vertices of the whole that lie exactly where another does and were joined to it
 	int flat;               // faces without area
-	int tangled;            // edges of three faces or more, of the part
-	int rims;               // boundaries (holes, ends) of the part
-	int pieces, left_out;   // of the whole, once joined; and how many were left out
+	int tangled;            // non-manifold edges (of three faces or more) of the part
+	int rims;               // boundary loops (holes, ends) of the part
+	int pieces, left_out;   // connected components of the whole after merging; how many of them were left out
 	double whole_area, area;
 };
 
-/* least: pieces smaller than this share of the largest's area are left out, and closed ones (balls) smaller than half of
- * it. leave: [whole's vertices] faces whose corners are all marked are left out too; or null. mesh_part_free. */
+/* Makes the part of a mesh. mesh_part_free.
+ * least  components with less than this share of the largest one's area are left out, and closed ones (balls) with less than half
+ *        of the largest one's
+ * leave  [whole's vertices] faces whose corners are all marked are left out too; or null */
 void mesh_part_make(struct mesh_part *out, const struct mesh *whole, double least, const bool *leave);
 void mesh_part_free(struct mesh_part *part);
 

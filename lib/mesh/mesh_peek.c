@@ -13,7 +13,7 @@
 #include "mesh/mesh_clean_obj.h"
 #include "mesh/mesh_ply.h"
 
-/* The first bytes of a file that is none longer than `most`, a zero behind them; null: there is none. */
+/* The first bytes of a regular file of at most `most` bytes, with a zero byte behind them; free(). Null: it cannot be read. */
 static char *head_of(size_t *n, const char *path, size_t most)
 {
 	enum { HEAD = 1 << 16 };

@@ -38,7 +38,7 @@ static enum ply_role role_of(const char *element, bool list, const char *name)
 	return PLY_UNUSED;
 }
 
-/* One line of the head into e. */
+/* Parses one line of the header into e. */
 static bool take_property(struct ply_element *e, char *line, struct err *err)
 {
 	char *word[6] = { 0 }, *save = 0;
@@ -69,7 +69,7 @@ static bool next_line(struct ply *ply, char line[HEAD_LINE_MAX + 1])
 	if (!nl || memchr(ply->at, 0, (size_t)(nl - ply->at)))
 		return false;
 	long n = nl - ply->at;
-	// Of a remark, however long (what made the mesh, from what), the beginning is enough.
+	// Of a comment (what made the mesh from what may be long) the beginning is enough.
 	if (n > HEAD_LINE_MAX && strncmp(ply->at, "comment ", 8))
 		return false;
 	n = n > HEAD_LINE_MAX ? HEAD_LINE_MAX : n;
@@ -100,7 +100,7 @@ static bool is_remark(const char *line)
 
 static bool take_element(struct ply *ply, const char *line, struct err *err)
 {
-	// Faces speak of vertices: these come first.
+	// Faces refer to vertices, so vertices must come first.
 	static const char *const names[PLY_ELEMENTS_MAX] = { "vertex", "face" };
 	struct ply_element *e = &ply->element[ply->n_elements < PLY_ELEMENTS_MAX ? ply->n_elements : 0];
 	int end = 0;

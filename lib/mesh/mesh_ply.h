@@ -1,4 +1,4 @@
-/* mesh_ply: what a PLY file says of itself, for mesh_clean_ply alone. */
+/* mesh_ply: the header of a PLY file, for mesh_clean_ply.c and mesh_peek.c. */
 #ifndef MESH_MESH_PLY_H
 #define MESH_MESH_PLY_H
 #include "base/err.h"
@@ -6,7 +6,7 @@
 enum { PLY_PROPERTIES_MAX = 64, PLY_ELEMENTS_MAX = 2 };
 enum ply_format { PLY_ASCII, PLY_LITTLE, PLY_BIG };
 
-/* What a value is to a mesh. */
+/* Meaning of a property. */
 enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_RED, PLY_GREEN, PLY_BLUE, PLY_CORNERS, PLY_UNUSED };
 
 struct ply_property {
@@ -30,7 +30,7 @@ struct ply {
 	struct ply_element element[PLY_ELEMENTS_MAX];  // vertex, then face
 };
 
-/* The head up to its last line; ply->at is then behind it. False, err set, where it is none that can be read. */
+/* Parses the header, from ply->at; ply->at is then behind its last line. Returns false, err set, where it is malformed. */
 bool ply_head(struct ply *ply, struct err *err);
 
 #endif

@@ -7,9 +7,9 @@
 #include "mesh/ray.h"
 
 enum { RAYS = 24 };
-static const float OFF = 3e-5f;  // of the mesh's extent: rays start so far from their own surface
+static const float OFF = 3e-5f;  // distance of a ray's start from its own surface, of the mesh's extent
 
-/* Evenly over the cosine-weighted hemisphere round z: Vogel's spiral on the disc, lifted. */
+/* Directions evenly over the cosine-weighted hemisphere about z: Vogel's spiral on the disc, projected up. */
 static void sky(float dir[RAYS][3])
 {
 	for (int i = 0; i < RAYS; i++) {
@@ -32,7 +32,7 @@ static void frame(float x[3], float y[3], const float n[3])
 	y[2] = -n[1];
 }
 
-/* Of every step-th vertex. No further rays go out once `enough` of them are free. */
+/* Measures every step-th vertex. Stops at a vertex once `enough` of its rays are free. */
 static void measure(float *open, const struct mesh *mesh, int step, int enough)
 {
 	float dir[RAYS][3], (*normal)[3] = mesh_normals(mesh);
@@ -71,7 +71,7 @@ void mesh_openness(float *open, const struct mesh *mesh)
 	measure(open, mesh, 1, RAYS);
 }
 
-/* Every step-th; returns how many of them there are and, in *n, how many are hidden. */
+/* Tests every step-th vertex; returns how many those are and, in *n, how many of them are hidden. */
 static int find_hidden(bool *hidden, int *n, const struct mesh *mesh, double least, int step)
 {
 	int all = 0;

@@ -69,7 +69,7 @@ static struct RTCRay ray_of(const float origin[3], const float dir[3], float nea
 		                    .dir_y = dir[1], .dir_z = dir[2], .tfar = far, .mask = 0xffffffff };
 }
 
-/* Embree ends the program at rays that it cannot reckon with; such hit nothing. */
+/* Whether Embree can trace the ray: it ends the program at numbers that are not finite or too large. Other rays hit nothing. */
 static bool can_be_traced(const float origin[3], const float dir[3])
 {
 	const float largest = 1e18f;  // its FLT_LARGE

@@ -10,7 +10,7 @@ static bool is_degenerate(const int32_t f[3])
 	return f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
 }
 
-/* Each edge of each face, seen from both its ends: vertex i holds 2 v + 1 for an edge i -> v, 2 v for v -> i, by rising v. */
+/* Lists each edge of each face at both its ends: vertex i gets 2 v + 1 for an edge i -> v and 2 v for v -> i, sorted by v. */
 static int32_t *half_edges(int32_t *start, const struct mesh *mesh)
 {
 	int n = mesh->n_vertices;
@@ -28,7 +28,7 @@ static int32_t *half_edges(int32_t *start, const struct mesh *mesh)
 			out[fill[a]++] = 2 * b + 1;
 			out[fill[b]++] = 2 * a;
 		}
-	// Gone through by rising vertex, what i holds of v is put where v holds what it has of i: the lists come out in order.
+	// Transposing the lists while visiting vertices in rising order sorts them.
 	int32_t *rising = mem_array((size_t)start[n] + 1, sizeof *rising);
 	for (int i = 0; i < n; i++)
 		fill[i] = start[i];
@@ -40,7 +40,7 @@ static int32_t *half_edges(int32_t *start, const struct mesh *mesh)
 	return rising;
 }
 
-/* Numbers the pieces by falling size; of equals the one with the lower vertex first. */
+/* Numbers the components by falling size; of equal ones that with the lower vertex first. */
 static void number_pieces(struct topology *t)
 {
 	int32_t *stack = mem_array((size_t)t->n + 1, sizeof *stack), *size = mem_new((size_t)t->n + 1, sizeof *size);
@@ -60,7 +60,7 @@ static void number_pieces(struct topology *t)
 		}
 		t->n_pieces++;
 	}
-	// A counting sort by size keeps the order of equals.
+	// Counting sort by size, which is stable.
 	int32_t *at = mem_new((size_t)t->n + 2, sizeof *at), *rank = mem_array((size_t)t->n_pieces + 1, sizeof *rank);
 	for (int p = 0; p < t->n_pieces; p++)
 		at[t->n - size[p] + 1]++;

@@ -4,7 +4,7 @@
 
 #include "math/vec.h"
 
-/* d = D(u), normalised coordinates, and its Jacobian J = dD/du. */
+/* Distortion d = D(u) in normalised coordinates, and its Jacobian J = dD/du. */
 static void distort(double d[2], double J[2][2], const double k[5], const double u[2])
 {
 	double x = u[0], y = u[1], r2 = x * x + y * y;

@@ -1,4 +1,4 @@
-/* camera_rig: the cameras `calibrate` has found, work/rig.json. A stage that looks at pictures takes its cameras from there:
+/* camera_rig: the cameras that `calibrate` found, work/rig.json. A stage that reads pictures takes its cameras from there:
  *
  *     struct camera_rig rig = { 0 };
  *     if (file_exists(path) && !camera_rig_load(&rig, path, err))       path: stage_path(stage, "work/rig.json"), an input
@@ -8,7 +8,7 @@
  *             camera = c->camera;                                source CAMERA_RIG, distortion included
  *     camera_rig_free(&rig);
  *
- * Lens distortion is in camera->distortion and nowhere else: camera_project and camera_ray take it in and out again.
+ * Lens distortion is in camera->distortion alone: camera_project applies it, camera_ray removes it.
  * Frame  head: the subject mesh's axes, x to the person's left, y up, z out of the face; mm.
  * Image  the picture's own size, upright (after its EXIF orientation), first pixel's centre at (0.5, 0.5).
  */
@@ -39,14 +39,15 @@ struct camera_rig {
 	double eye_center[2][3];  // of the left and the right eyeball, head, mm
 };
 
-/* camera_rig_free. False, err set, when the file cannot be used: nothing is filled then. */
+/* Loads a rig. camera_rig_free. Returns false, err set and rig empty, when the file cannot be used. */
 bool camera_rig_load(struct camera_rig *rig, const char *path, struct err *err);
 
-/* Further keys of the document: JSON object text, or null. */
+/* Writes a rig. made_by: stage_made_by(). extra: text of a JSON object with further keys, or null. Returns false, err set, when it
+ * cannot be written. */
 bool camera_rig_save(const struct camera_rig *rig, const char *path, const char *made_by, const char *extra, struct err *err);
 
-/* The camera of a picture by its path in the capture ("views/a.jpg"); null: it has none. Frames of a video are one camera's,
- * each with its own pose: the first of them. */
+/* Finds the camera of a picture by its path in the capture ("views/a.jpg"). Of a video, whose frames share one camera but each
+ * have a pose, the first frame's. Returns null when there is none; owned by the rig. */
 const struct rig_camera *camera_rig_find(const struct camera_rig *rig, const char *file);
 
 void camera_rig_free(struct camera_rig *rig);

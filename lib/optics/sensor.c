@@ -5,8 +5,8 @@
 
 #include "base/mem.h"
 
-/* The makers' own data sheets: effective area, longer side. A line serves every name that begins with it; longer names
- * stand before shorter ones. */
+/* From the makers' data sheets: longer side of the effective area. A line holds for every name that begins with it; the first match
+ * counts, so longer names stand before shorter ones. */
 static const struct {
 	const char *begins;
 	double mm;

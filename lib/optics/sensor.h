@@ -1,9 +1,12 @@
-/* sensor: how wide the sensors of cameras are that do not say it in EXIF themselves. */
+/* sensor: sensor sizes of cameras whose EXIF does not state them. */
 #ifndef OPTICS_SENSOR_H
 #define OPTICS_SENSOR_H
 
-/* Focal length, px, of a whole picture of that camera with that focal length, mm; longer: its longer side, px. NAN where one of
- * them is not known. */
+/* Focal length in px of an uncropped picture.
+ * model     the camera's name in EXIF ("Canon EOS 600D")
+ * focal_mm  focal length, mm
+ * longer    longer side of the picture, px
+ * Returns NAN where the camera is not in the table or focal_mm is NAN. */
 double sensor_focal_px(const char *model, double focal_mm, int longer);
 
 #endif

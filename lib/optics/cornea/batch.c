@@ -3,7 +3,7 @@
 #include "math/simd.h"
 #include "optics/cornea/cornea.h"
 
-/* Rays in double, float in and out: float alone is off by 1e-5 mm and more where a ray grazes. */
+/* Rays are traced in double, stored in float: float arithmetic errs by 1e-5 mm and more where a ray grazes. */
 struct ray {
 	double o[3], d[3];
 };
@@ -12,8 +12,8 @@ struct quadric {
 	double R, p, apex;
 };
 
-/* Moves the ray's origin to where it enters the quadric and bends it: Snell with index ratio m = n2/n1.
- * Directions keep whatever length they have times m. With G = (x, y, pz − R) at the entry, d·G is minus the root of
+/* Moves the ray's origin to where it enters the quadric and refracts it by Snell's law with index ratio m = n2/n1 (m2_1 = m² −
+ * 1). The direction's length is multiplied by m. With G = (x, y, pz − R) at the entry, d·G is minus the root of
  * the intersection's discriminant, and |G|² = R² + (1 − p) z (2R − pz): neither needs another root. */
 SIMD_INLINE bool enter(struct ray *ray, struct quadric q, double m2_1)
 {
@@ -44,7 +44,7 @@ struct sight {
 static struct sight sight_of(const struct cornea *c, const double o[3])
 {
 	double edge = cornea_edge(c), n1 = c->two_surface ? c->n_cornea : c->n, m = c->n / n1;
-	// The rays start a little before the eye instead of kilometres away: their discriminants keep their digits.
+	// The rays are started a little before the eye instead of kilometres away, so that their discriminants keep their digits.
 	double ahead = fmax(0, sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]) - 16);
 	return (struct sight){ { c->R, c->p, 0 }, { c->R_post, c->p_post, c->thickness }, n1 * n1 - 1, m * m - 1, c->n,
 		               edge * edge, { o[0], o[1], o[2] }, ahead };

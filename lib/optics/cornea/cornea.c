@@ -13,7 +13,7 @@ struct quadric {
 double cornea_depth(const struct cornea *cornea, double r)
 {
 	double R2 = cornea->R * cornea->R, s2 = R2 - cornea->p * r * r;
-	// at the equator rounding may put the point outside
+	// rounding may put a point of the equator outside
 	return s2 < -8 * DBL_EPSILON * R2 ? NAN : r * r / (cornea->R + sqrt(fmax(s2, 0)));
 }
 
@@ -36,7 +36,7 @@ void cornea_normal(double normal[3], const struct cornea *cornea, const double K
 /* First crossing into the quadric's inside, on its front half. dir is unit. */
 static bool quadric_enter(double K[3], const struct quadric *q, const double origin[3], const double dir[3])
 {
-	// From the point of the ray nearest to the apex: a camera 10 km away then costs no digits.
+	// Starts from the point of the ray nearest to the apex, so that a camera 10 km away costs no digits.
 	double o[3] = { origin[0], origin[1], origin[2] - q->apex }, near = fmin(0, vec_dot(o, dir));
 	vec_add(o, o, -near, dir);
 	double A = dir[0] * dir[0] + dir[1] * dir[1] + q->p * dir[2] * dir[2];

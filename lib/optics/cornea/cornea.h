@@ -1,4 +1,4 @@
-/* cornea: the refracting front of the eye, and a ray of sight through it.
+/* cornea: the cornea as one or two conic surfaces of revolution, and rays of sight through it.
  * Eye frame: origin at the corneal apex, z into the eye, mm. Front surface x² + y² − 2Rz + pz² = 0
  * (iris paper eq. 1 with z turned inwards).
  */
@@ -14,28 +14,32 @@ struct cornea {
 	double R_post, p_post, thickness, n_cornea;  // posterior surface, apex at z = thickness; n then is the aqueous
 };
 
-/* Depth of the front surface at radius r; NAN where r is beyond its equator. */
+/* Depth z of the front surface at distance r from the axis; NAN where r is beyond the surface's equator. */
 double cornea_depth(const struct cornea *cornea, double r);
 
-/* Radius at which the surface ends: the rim, or its equator where that comes first. */
+/* Distance from the axis at which the surface ends: the rim, or the equator where that is smaller. */
 double cornea_edge(const struct cornea *cornea);
 
 /* Unit normal at a point of the front surface, out of the eye (-z at the apex). */
 void cornea_normal(double normal[3], const struct cornea *cornea, const double K[3]);
 
-/* First hit of the ray origin + t dir, t > 0, with the front surface from outside, inside the rim. */
+/* First point K where the ray origin + t dir, t > 0, meets the front surface from outside and inside the rim. Returns false when
+ * there is none. */
 bool cornea_hit(double K[3], const struct cornea *cornea, const double origin[3], const double dir[3]);
 
-/* Snell: unit direction behind a surface of unit normal N, dir unit and against N (dir·N <= 0), from index n1
- * into n2. False in total reflection. */
+/* Snell's law: the unit direction behind a surface of unit normal N, of a ray with unit direction dir, against N (dir·N <= 0),
+ * from index n1 into n2. Returns false in total reflection. */
 bool refract(double out[3], const double dir[3], const double N[3], double n1, double n2);
 
-/* Ray of sight from outside: entry point K, and the unit direction behind the cornea; `from` is where that
- * direction starts (K, or the point on the posterior surface). False when the ray misses the cornea. */
+/* Traces a ray of sight from outside, origin + t dir, through the cornea.
+ * K       out: entry point on the front surface
+ * from    out: where the direction inside starts: K, or the point on the posterior surface
+ * inside  out: unit direction behind the cornea
+ * Returns false when the ray misses the cornea. */
 bool cornea_sight(double K[3], double from[3], double inside[3], const struct cornea *cornea,
                   const double origin[3], const double dir[3]);
 
-/* Many rays of sight at once, vectorised, structure of arrays; computed in double, stored in float. */
+/* n rays of sight, traced at once (vectorised): structure of arrays. Computed in double, stored in float. */
 struct sight_rays {
 	int n;
 	const float *dx, *dy, *dz;  // [n] unit directions
@@ -45,11 +49,10 @@ struct sight_rays {
 	unsigned char *hit;         // [n] 1, or 0 where the ray misses the cornea (the other outputs then are 0)
 };
 
-/* All rays start at `origin` (a camera in the eye frame, outside the surface). One or two surfaces. */
+/* Traces rays that all start at `origin` (a camera in the eye frame, outside the surface) through one or two surfaces. */
 void cornea_sight_batch(const struct sight_rays *rays, const struct cornea *cornea, const double origin[3]);
 
-/* The same up to the plane at depth z: qx[n], qy[n] mm, NAN where the ray misses the cornea: all that
- * unrefracting a photograph needs. */
+/* The same up to the plane at depth z: points qx[n], qy[n], mm; NAN where the ray misses the cornea. */
 void cornea_sight_plane(int n, const float *dx, const float *dy, const float *dz, float *qx, float *qy, double z,
                         const struct cornea *cornea, const double origin[3]);
 

@@ -3,7 +3,7 @@
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
 
-/* IntersectCornea(P, towards): where the ray from P inside leaves the quadric. */
+/* The paper's IntersectCornea(P, towards): the point where the ray from P inside leaves the quadric. */
 static void leave(double K[3], const struct cornea *c, const double P[3], const double towards[3])
 {
 	double q[3];
@@ -27,7 +27,7 @@ static void gradient(double g[3], const struct cornea *c, const double P[3], con
 	vec_add(g, g, -vec_dot(g, N), N);
 }
 
-/* The descent on one tangent plane, eq. 6. */
+/* Gradient descent on one tangent plane, eq. 6. */
 static void descend(double K[3], const struct cornea *c, const double P[3], const double C[3],
                     const struct algorithm1_conf *conf)
 {

@@ -5,13 +5,14 @@
 #include "base/mem.h"
 #include "math/vec.h"
 
-/* All paths are the zeros of the miss (path_miss) over the lit cornea. The cornea is cut into squares of the chart; a square
- * is dropped when no zero can be in it, polished when it holds one at most, and cut in four otherwise. Both are known
- * from the miss and its Jacobian at the centre, and from how much that can change up to the corners: no path is
- * overlooked, however thin the sliver of the cornea it goes through or however close to another it is. */
+/* Branch and bound: all paths are the zeros of the miss (path_miss) over the lit cornea. The cornea is divided into squares of
+ * the chart. A square is discarded when no zero can be in it, solved by Newton's method when it has one at most, and divided in
+ * four otherwise. Both tests use the miss and its Jacobian at the centre and a bound on how much the Jacobian changes up to the
+ * corners, so that no path is overlooked, however thin the sliver of the cornea that it goes through and however close it is to
+ * another. */
 
-/* Squares are cut down to this half side, over the edge's: two paths closer than that have met in a focus. And so many
- * are looked at: only where a whole ring of paths meets in P are there more. */
+/* Least half side of a square, relative to the radius of the edge: two paths closer than that have met in a focus. At most
+ * SQUARES_MAX are examined: there are more only where a whole ring of paths meets in P. */
 static const double SMALLEST = 1e-8;
 enum { SQUARES_MAX = 20000, LEVELS_MAX = 32 };
 
@@ -19,7 +20,7 @@ struct square {
 	double x, y, half;  // in the chart
 };
 
-/* What bounds the change of the Jacobian. */
+/* Constants of the surface that bound the change of the Jacobian. */
 struct bound {
 	double rho;      // radius of the edge in the chart
 	double kappa;    // largest curvature of the surface, 1/mm
@@ -44,15 +45,15 @@ static double cos_incidence(double *light, const struct path *path, const double
 	return vec_dot(u, N);
 }
 
-/* How the law of refraction turns with the surface: s' = κ (1 − bend). */
+/* Derivative of the refracted direction as the surface turns: s' = κ (1 − bend); returns bend. */
 static double law(double cos_i, double n)
 {
 	return cos_i / sqrt(n * n - 1 + cos_i * cos_i + 1e-300);
 }
 
-/* Most that the Jacobian can change within `radius` mm of K; half of it where it grows evenly. With s the unit direction
- * inside, τ its length to P, o = 1 / distance of the light, k = κ + o: |s'| <= k, and s'' is k² and what Snell's law
- * adds, suddenly at grazing incidence for n near 1. False when no point within is lit. */
+/* Bounds on the change of the Jacobian within `radius` mm of K: *most, and *least, in which the part that grows evenly counts
+ * half. With s the unit direction inside, τ its length to P, o = 1 / distance of the light, k = κ + o: |s'| <= k, and s'' is k²
+ * and what Snell's law adds, suddenly at grazing incidence for n near 1. Returns false when no point within the radius is lit. */
 static bool change(double *least, double *most, const struct path *path, const struct bound *b, const double K[3], double radius)
 {
 	double v[3], n = path->cornea->n, light, cos_i = cos_incidence(&light, path, K);
@@ -71,7 +72,7 @@ static bool change(double *least, double *most, const struct path *path, const s
 
 enum verdict { NONE, AT_MOST_ONE, MANY };
 
-/* Singular values of J and the miss along its left singular vectors. */
+/* Computes the singular values of J and the components of the miss along its left singular vectors. */
 static void across(double sigma[2], double along[2], const double J[2][2], const double miss[2])
 {
 	double A = J[0][0] * J[0][0] + J[0][1] * J[0][1], C = J[1][0] * J[1][0] + J[1][1] * J[1][1];
@@ -102,7 +103,7 @@ static enum verdict look(struct chart *at, double *radius, const struct path *pa
 	return most < 0.5 * sigma[1] ? AT_MOST_ONE : MANY;
 }
 
-/* Newton's steps to the zero of the miss. False when they do not end. */
+/* Newton's method to the zero of the miss, steps at most `longest` mm. Returns false when it does not converge. */
 static bool settle(struct chart *at, const struct path *path, double longest)
 {
 	for (int i = 0; i < 30; i++) {
@@ -123,7 +124,7 @@ static bool settle(struct chart *at, const struct path *path, double longest)
 	return false;
 }
 
-/* Adds K, in the order of optical length, unless it is there. */
+/* Inserts k into the list K[n] in the order of optical length, unless it is there already. Returns the new number. */
 static int add(double K[][3], int n, int max, const struct path *path, const double k[3])
 {
 	int place = 0;
@@ -145,7 +146,8 @@ static int add(double K[][3], int n, int max, const struct path *path, const dou
 	return last + 1;
 }
 
-/* Adds what Newton's steps from the centre of a square come to, where it is a path. False when they come to nothing. */
+/* Runs Newton's method from the centre of a square and adds what it converges to, if that is a path. Returns false when it does not
+ * converge. */
 static bool polish(double K[][3], int *n, int max, const struct path *path, struct chart at, double radius)
 {
 	const struct cornea *c = path->cornea;
@@ -193,7 +195,7 @@ static double clear_depth(const struct cornea *cornea)
 
 double lightpath_clear_depth(const struct cornea *cornea)
 {
-	// Asked for again and again about one cornea, and as dear as a whole path.
+	// Cached: it is needed again and again for one cornea, and costs as much as a whole path.
 	static _Thread_local struct {
 		double R, p, n, rim, depth;
 	} last;

@@ -1,4 +1,4 @@
-/* all: the search for every light path of one problem, which lightpath.c falls back on. */
+/* all: the search for all light paths of one problem, on which lightpath.c falls back. */
 #ifndef OPTICS_LIGHTPATH_ALL_H
 #define OPTICS_LIGHTPATH_ALL_H
 #include "optics/lightpath/path.h"

@@ -8,8 +8,8 @@
 
 enum { BLOCK = 256 };  // a block's arrays stay in the first-level cache
 
-// Newton converges quadratically: after a step of 2e-3 mm the error is below 1e-5, after 1e-7 1e-14. Where
-// the smaller curvature of L is below ILL (1/mm), float's rounding of the gradient (1e-7) moves K too far.
+// FAR: a last step of that length (mm) means convergence, which is quadratic: after a step of 2e-3 mm the error is below 1e-5 mm, after 1e-7
+// below 1e-14. ILL: where the smaller curvature of L (1/mm) is below it, rounding of the gradient (1e-7 in float) moves K too far.
 #define REAL double
 #define SQRT sqrt
 #define NAME(x) double_##x
@@ -65,7 +65,7 @@ struct lightpath_again lightpath_batch_from(int n, const float *qx, const float 
 	                 steps);
 }
 
-/* Gain at K, given in mm in the place of a start. */
+/* Gain at K, which is passed in place of a start, in mm. */
 SIMD_CLONES static void shine(struct float_block *b, const struct float_shared *c, int m)
 {
 	SIMD_LOOP

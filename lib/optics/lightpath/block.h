@@ -1,4 +1,4 @@
-/* Blocks of problems. Included by batch.c after lane.h, once for each type. */
+/* block: blocks of problems for lane.h. Included by batch.c after lane.h, once for each type; hence no include guard. */
 
 #define LOOP(m, call)                                                                                                  \
 	SIMD_LOOP                                                                                                      \
@@ -31,7 +31,7 @@ SIMD_CLONES static void NAME(polish_directional)(struct NAME(block) *b, const st
 		LOOP(m, NAME(curve)(b, i, c, false));
 		LOOP(m, NAME(move)(b, i, c));
 	}
-	struct NAME(shared) own = *c;  // that no store of K can be to
+	struct NAME(shared) own = *c;  // a copy that stores to K cannot alias
 	REAL *restrict K[] = { b->kx, b->ky, b->kz };
 	LOOP(m, NAME(finish)(b, i, &own, false, K));
 }
@@ -43,7 +43,7 @@ SIMD_CLONES static void NAME(polish_point)(struct NAME(block) *b, const struct N
 		LOOP(m, NAME(curve)(b, i, c, true));
 		LOOP(m, NAME(move)(b, i, c));
 	}
-	struct NAME(shared) own = *c;  // that no store of K can be to
+	struct NAME(shared) own = *c;  // a copy that stores to K cannot alias
 	REAL *restrict K[] = { b->kx, b->ky, b->kz };
 	LOOP(m, NAME(finish)(b, i, &own, true, K));
 }
@@ -52,13 +52,14 @@ SIMD_CLONES static void NAME(polish_point)(struct NAME(block) *b, const struct N
 
 enum { NAME(IN) = 9, NAME(OUT) = 3 };
 
-/* Lanes work in whole vectors: problems that fill none are moved here, the last one repeated. */
+/* Loops work on whole vectors of 8 lanes: a block that is not a multiple of 8 is copied here and padded by repeating its last
+ * problem. */
 struct NAME(spare_lanes) {
 	REAL in[NAME(IN)][BLOCK], out[NAME(OUT)][BLOCK];
 };
 
-/* The problems [from, from + m) of a call: straight from the caller's arrays, or from the spare lanes. Returns how many
- * lanes are filled. in: null where not used. */
+/* Points the block to the problems [from, from + m) of a call: in the caller's arrays, or copied to the spare lanes. in: null
+ * where not used. Returns the number of lanes, padded. */
 static int NAME(load)(struct NAME(block) *b, struct NAME(spare_lanes) *spare, const REAL *const in[NAME(IN)],
                       REAL *const out[NAME(OUT)], long from, int m)
 {
@@ -82,7 +83,7 @@ static struct NAME(shared) NAME(share)(const struct cornea *c, const double C[3]
 {
 	struct NAME(shared) shared = { .R = c->R, .p = c->p, .n = c->n, .n2_1 = c->n * c->n - 1, .inv_2R = 0.5 / c->R,
 		                       .rim2 = c->rim * c->rim, .bend = path_bend(c->n) };
-	// Near n = 1 the law of refraction bends sharply at grazing incidence: a step leaves more.
+	// Near n = 1 the law of refraction has a sharp bend at grazing incidence: a step leaves a larger error.
 	shared.far2 = FAR * FAR * fmin(fmax(4 * (c->n * c->n - 1), 0.01), 1);
 	shared.ill = ILL;
 	for (int k = 0; k < 3 && C; k++)
@@ -100,7 +101,7 @@ struct NAME(batch) {
 	double error;              // mm; 0: as good as the type is
 };
 
-/* The one lane, by the scalar solver. */
+/* Solves one lane by the scalar solver. */
 static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *in)
 {
 	double P[3] = { b->px[i], b->py[i], b->pz[i] }, w[3] = { b->wx[i], b->wy[i], b->wz[i] }, K[3];
@@ -110,9 +111,9 @@ static void NAME(alone)(struct NAME(block) *b, int i, const struct NAME(batch) *
 	b->kz[i] = K[2];
 }
 
-/* Whether a lane needs another look: not converged; or past grazing incidence though the light comes from behind or may have
- * met a focus before it came so deep: a step may have gone past the path, to where the surface turns its back. clear:
- * lightpath_clear_depth(), or 0 as long as nobody asked. */
+/* Whether a lane has to be solved again: it has not converged; or it ended past grazing incidence although the light comes from
+ * behind or may have passed a focus above P, so that a step may have overshot the path to where the surface faces away. *clear:
+ * lightpath_clear_depth(), computed at first need; 0 before. */
 static bool NAME(doubtful)(const struct NAME(block) *b, int i, const struct cornea *cornea, const double *C,
                            double *clear)
 {
@@ -123,7 +124,7 @@ static bool NAME(doubtful)(const struct NAME(block) *b, int i, const struct corn
 	return b->pz[i] > *clear || (C ? C[2] > b->kz[i] : b->wz[i] > 0);
 }
 
-/* Lanes that have not converged, or grazed; their number. */
+/* Lists the lanes that have not converged or ended past grazing incidence; returns their number. */
 static int NAME(unsure)(int lane[BLOCK + 1], const struct NAME(block) *b, int m)
 {
 	int n = 0;
@@ -139,7 +140,7 @@ static int NAME(unsure)(int lane[BLOCK + 1], const struct NAME(block) *b, int m)
 	return n;
 }
 
-/* Few lanes of a block, in whole vectors, as a block of their own, of either type; the last one repeated. */
+/* Gathers n lanes of a block, of either type, into a block of their own, padded to whole vectors by repeating the last. */
 #define GATHER(few, spare, b, lane, n)                                                                                 \
 	for (int j = 0; j < ((n) + 7) / 8 * 8; j++) {                                                                  \
 		int i = (lane)[j < (n) ? j : (n) - 1];                                                                 \
@@ -148,7 +149,7 @@ static int NAME(unsure)(int lane[BLOCK + 1], const struct NAME(block) *b, int m)
 		(few).x[j] = (b)->x[i], (few).y[j] = (b)->y[i];                                                        \
 	}
 
-/* More steps for those that have not converged: few problems need them, and only these pay. Returns their number. */
+/* Further Newton steps for the lanes that have not converged, which are few. Returns their number. */
 static int NAME(persist)(struct NAME(block) *b, const int lane[], int all, const struct NAME(batch) *batch, const struct NAME(shared) *shared)
 {
 	enum { STEPS = 3 };
@@ -176,7 +177,7 @@ static int NAME(persist)(struct NAME(block) *b, const int lane[], int all, const
 	return n;
 }
 
-/* What is doubtful even so, or float cannot tell well enough, gathered and polished in double. */
+/* Solves lanes that are still doubtful, for instance because float is not precise enough, again in double. */
 static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *batch, const struct NAME(shared) *shared, double *clear,
                        struct lightpath_again *count)
 {
@@ -208,7 +209,7 @@ static void NAME(redo)(struct NAME(block) *b, int m, const struct NAME(batch) *b
 }
 #undef GATHER
 
-/* The effort that an error allows: after a last step of s mm, s² mm are left at most. */
+/* Relaxes the criteria of convergence to a tolerance of `error` mm: after a last step of s mm, the error is s² mm at most. */
 static void NAME(spare)(struct NAME(shared) *shared, double error)
 {
 	if (!(error > FAR * FAR))
@@ -217,7 +218,7 @@ static void NAME(spare)(struct NAME(shared) *shared, double error)
 	shared->ill = error < ILL ? ILL * FAR * FAR / error : 0;
 }
 
-/* int to bytes. */
+/* Converts int to bytes. */
 SIMD_CLONES static void NAME(tell)(unsigned char *restrict out, const int *restrict status, int m)
 {
 	SIMD_LOOP

@@ -1,8 +1,8 @@
-/* The solve of lightpath.c for many problems at once, without branches. Included by batch.c once for
- * each type: REAL, SQRT, NAME(x) and BLOCK are defined there; hence no guard.
+/* lane: the method of lightpath.c for many problems at once, without branches. Included by batch.c once for each type, which
+ * defines REAL, SQRT, NAME(x) and BLOCK; hence no include guard.
  */
 
-/* A block of problems: structure of arrays. What comes in and goes out lies where the caller has it. */
+/* A block of problems: structure of arrays. Inputs and outputs stay in the caller's arrays. */
 struct NAME(block) {
 	const REAL *px, *py, *pz;              // P, mm
 	const REAL *wx, *wy, *wz;              // direction to the light; unused where it is a point
@@ -11,7 +11,7 @@ struct NAME(block) {
 	REAL x[BLOCK], y[BLOCK];               // the current K in the chart of lengths()
 	REAL tau[BLOCK], inv_d[BLOCK];         // one step's intermediate results
 	REAL gx[BLOCK], gy[BLOCK], hxx[BLOCK], hxy[BLOCK], hyy[BLOCK];
-	REAL last2[BLOCK];                     // square of the last step, mm²; huge where that says nothing
+	REAL last2[BLOCK];                     // square of the last step, mm²; huge where L is not convex
 	REAL gain[BLOCK];
 	int status[BLOCK], again[BLOCK];
 };
@@ -19,7 +19,7 @@ struct NAME(block) {
 /* What all problems share. */
 struct NAME(shared) {
 	REAL R, p, n, n2_1, inv_2R, rim2, bend, C[3];
-	REAL far2, ill;  // a longer last step, or a curvature below, and the lane is done again: mm², 1/mm
+	REAL far2, ill;  // a lane whose last step² is above far2 (mm²) or whose curvature is below ill (1/mm) is solved again
 };
 
 /* Unit direction from (x, y, z) to the light, and 1 / its distance. */
@@ -39,7 +39,7 @@ SIMD_INLINE REAL NAME(outward)(REAL u[3], const struct NAME(block) *b, int i, co
 	return inv;
 }
 
-/* How far the ray from P in direction q is inside, in lengths of q: num / den. */
+/* Length, in units of |q|, that the ray from P in direction q is inside the surface: num / den. */
 SIMD_INLINE void NAME(reach)(REAL *num, REAL *den, const struct NAME(block) *b, int i, const struct NAME(shared) *c, const REAL q[3])
 {
 	REAL px = b->px[i], py = b->py[i], pz = b->pz[i], s = c->R - c->p * pz;
@@ -49,7 +49,7 @@ SIMD_INLINE void NAME(reach)(REAL *num, REAL *den, const struct NAME(block) *b, 
 	*den = B + SQRT(disc > 0 ? disc : 0);
 }
 
-/* Where it leaves the surface. */
+/* The point where it leaves the surface. */
 SIMD_INLINE void NAME(leave)(REAL K[3], const struct NAME(block) *b, int i, const struct NAME(shared) *c, const REAL q[3])
 {
 	REAL num, den;
@@ -93,8 +93,8 @@ SIMD_INLINE void NAME(started)(struct NAME(block) *b, int i, const struct NAME(s
 	b->y[i] = (den * b->py[i] + num * q[1]) * inv_t;
 }
 
-/* One Newton step on L, in the rational chart K = t (x, y, rho²), t = R tau, tau = 2 / (1 + p rho²), rho² = x² + y²:
- * no root, no end at the equator. In three loops, lengths(), curve() and move(): each alone is short enough that a
+/* One Newton step on L, in the rational chart K = t (x, y, rho²), t = R tau, tau = 2 / (1 + p rho²), rho² = x² + y², which needs
+ * no root and has no end at the equator. It is done in three loops, lengths(), curve() and move(): each is short enough that a
  * processor works on several vectors of lanes at a time, instead of waiting for the roots and quotients of one. */
 SIMD_INLINE void NAME(lengths)(struct NAME(block) *b, int i, const struct NAME(shared) *c)
 {
@@ -144,7 +144,7 @@ SIMD_INLINE void NAME(move)(struct NAME(block) *b, int i, const struct NAME(shar
 	b->last2[i] = det > c->ill * (hxx + hyy) && hxx + hyy > 0 ? t * t * (dx * dx + dy * dy) : 1e9f;
 }
 
-/* K in mm, what came of it, and whether it needs another look. */
+/* K in mm, its status, and whether the lane has to be solved again. */
 SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(shared) *c, bool point, REAL *restrict out[3])
 {
 	REAL x = b->x[i], y = b->y[i], rho2 = x * x + y * y, t = 2 * c->R / (1 + c->p * rho2), u[3];
@@ -157,8 +157,8 @@ SIMD_INLINE void NAME(finish)(struct NAME(block) *b, int i, const struct NAME(sh
 	int beyond = kx * kx + ky * ky > c->rim2 ? LIGHTPATH_BEYOND_RIM : LIGHTPATH_OK;
 	beyond = c->p * kz > c->R ? LIGHTPATH_BEYOND_RIM : beyond;
 	b->status[i] = cos_i < 0 ? LIGHTPATH_GRAZING : beyond;
-	// Newton leaves the step squared over 2 mm or so; more where the light is near and L curves with it.
-	// And its steps look small at the surface's far end, wherever they lead.
+	// Newton's method leaves an error of about the last step squared over 2 mm; more where the light is near. At the surface's far end steps
+	// look small wherever they lead.
 	int far = c->p * kz > (REAL)1.9 * c->R;
 	b->again[i] = b->last2[i] * (1 + 4 * near * near) <= c->far2 ? far : 1;
 }

@@ -7,7 +7,7 @@
 #include "optics/lightpath/all.h"
 #include "optics/lightpath/path.h"
 
-/* Newton's step, made a descent step where L is not convex. Returns the least curvature of L, 1/mm. */
+/* Newton's step; where L is not convex its Hessian is shifted so that the step descends. Returns the least curvature of L, 1/mm. */
 static double newton_step(double step[2], const double g[2], const double H[3])
 {
 	double mean = 0.5 * (H[0] + H[2]), diff = 0.5 * (H[0] - H[2]), half = sqrt(diff * diff + H[1] * H[1]), least = mean - half;
@@ -18,7 +18,8 @@ static double newton_step(double step[2], const double g[2], const double H[3])
 	return least;
 }
 
-/* Closed form: along the outgoing direction bent towards the axis, refracted there, and once more. */
+/* Closed-form start: leaves P along the direction to the light, bent towards the axis; refracts the light there, and leaves P
+ * along that direction. */
 static struct chart first_guess(const struct path *path)
 {
 	double u[3], q[3];
@@ -29,8 +30,8 @@ static struct chart first_guess(const struct path *path)
 	return path_leave(path, q);
 }
 
-/* Newton's steps, kept downhill. False where they do not end in a minimum: at a focus, where L is flat. least: curvature
- * of L at the end. */
+/* Newton's method with backtracking. Returns false where it does not converge to a minimum: at a focus, where L is flat. *least:
+ * curvature of L at the end. */
 static bool descend(struct chart *at, double *least, const struct path *path)
 {
 	for (int i = 0; i < 60; i++) {
@@ -43,7 +44,7 @@ static bool descend(struct chart *at, double *least, const struct path *path)
 		if (size > 3)
 			k = 3 / size;
 		struct chart next = chart_moved(path->cornea, at, (double[]){ k * step[0], k * step[1] });
-		// Below 1e-7 mm L no longer tells the points apart; Newton's step is right there.
+		// Below 1e-7 mm L does not resolve the difference; Newton's step is right there.
 		while (size > 1e-7 && k > 1e-6 && !(path_length_change(path, at->K, next.K) <= 1e-4 * k * slope)) {
 			k *= 0.4;
 			next = chart_moved(path->cornea, at, (double[]){ k * step[0], k * step[1] });
@@ -83,8 +84,9 @@ enum lightpath_status path_shortest(double K[3], const struct path *path)
 	return found ? judge(K, path) : LIGHTPATH_NONE;
 }
 
-/* Whether the shortest path, which is none, can stand beside a real one that is no minimum, or another: where the light has
- * passed a focus. Beyond the rim, that takes light from the side: none was ever seen at less than 60 degrees, far light. */
+/* Whether there may be a physical path although the shortest one is none: another minimum, or a stationary point that is no
+ * minimum, as occurs where the light has passed a focus. With the shortest path beyond the rim that takes light from the side:
+ * none was found at less than 60 degrees (distant light). */
 static bool may_hide(enum lightpath_status shortest, const struct path *path)
 {
 	if (shortest == LIGHTPATH_OK || !path_is_sound(path))

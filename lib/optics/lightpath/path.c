@@ -36,7 +36,7 @@ double path_outward(double u[3], const struct path *path, const double K[3])
 	return 1 / d;
 }
 
-/* |CK| of a camera 10 km away has no digits to spare: differences only. */
+/* Differences of lengths are computed directly: |CK| of a camera 10 km away has no digits to spare. */
 double path_length_change(const struct path *path, const double a[3], const double b[3])
 {
 	double ab[3], pa[3], pb[3], sum[3], change;
@@ -96,7 +96,7 @@ struct chart path_leave(const struct path *path, const double q[3])
 	double A = q[0] * q[0] + q[1] * q[1] + p * q[2] * q[2], B = P[0] * q[0] + P[1] * q[1] + (p * P[2] - R) * q[2];
 	double C = P[0] * P[0] + P[1] * P[1] + P[2] * (p * P[2] - 2 * R), root = sqrt(fmax(B * B - A * C, 0)), K[3];
 	double t = B > 0 ? -C / (B + root) : (root - B) / A;
-	vec_add(K, P, fmin(t, 1e3 * R), q);  // a ray along the axis never leaves a paraboloid behind
+	vec_add(K, P, fmin(t, 1e3 * R), q);  // a ray along the axis never leaves a paraboloid at its open end
 	return chart_of(path->cornea, K);
 }
 
@@ -122,7 +122,7 @@ void path_miss(double miss[2], double J[2][2], const struct path *path, const st
 	double u[3], q[3], v[3], out = path_outward(u, path, at->K), m[3] = { -c->p * at->x, -c->p * at->y, 1 };
 	path_inside(q, path, at, u);
 	vec_add(v, at->K, -1, path->P);
-	// Two directions across the ray: the first from the axis it leans on least.
+	// Two directions across the ray: its cross product with the x or y axis, whichever is more nearly perpendicular to it, and the third.
 	int least = fabs(q[0]) < fabs(q[1]) ? 0 : 1;
 	double e[3] = { least == 0, least == 1, 0 }, B[2][3], t = vec_dot(v, q) / c->n;
 	vec_unit(q, q);

@@ -10,10 +10,10 @@
 #include "math/vec.h"
 #include "optics/lightpath/path.h"
 
-/* The direction in which light goes on inside is bent from w towards the axis by beta and towards P by gamma:
- * w + (gamma P_x, gamma P_y, -beta). The eye is the same after a turn about its axis and in a mirror: both are functions
- * of what such a turn leaves alone, |P_xy|², P_xy·w_xy and w_z, here of ranges about -1..1. Smooth across the horizon and
- * at the centre, and the ray along that direction meets the surface wherever P lies: relief asks for no fourth variable. */
+/* The start is the ray from P in direction w + (gamma P_x, gamma P_y, -beta): w bent towards the axis by beta and towards P by
+ * gamma. The eye is invariant to rotations about its axis and to reflection, so gamma and beta are polynomials in the invariants
+ * |P_xy|², P_xy·w_xy and w_z, scaled to about -1..1. They are smooth across the horizon and at the centre; the ray meets the
+ * surface wherever P lies, so that relief needs no fourth variable. */
 
 int refraction_monomials(int degree)
 {
@@ -32,7 +32,7 @@ SIMD_INLINE float polynomial(const float *restrict c, int degree, float a, float
 	return (c[0] + a * ((c[1] + a * aa) + (b * ab + d * ad))) + (b * ((c[2] + b * bb) + d * bd) + d * (c[3] + d * dd));
 }
 
-/* n in, structure of arrays. */
+/* Problems and starts, structure of arrays. */
 struct starts {
 	const float *px, *py, *wx, *wy, *wz;
 	float *qx, *qy, *qz;
@@ -82,7 +82,7 @@ void refraction_start(const struct refraction *f, int n, const float *px, const 
 	of_degree[f->degree - 1](&(struct starts){ px, py, wx, wy, wz, qx, qy, qz }, n, f);
 }
 
-/* One sample's three equations, linear in the coefficients: no component of (K - P) × q is left. weight: of the sample. */
+/* One sample's three equations (K - P) × q = 0, linear in the coefficients. weight: of the sample. */
 static void equations(double *rows, double *rhs, int n, const struct refraction *f, const double P[3], const double w[3],
                       const double K[3], double weight)
 {
@@ -121,7 +121,7 @@ bool refraction_fit(struct refraction *f)
 		equations(rows + (long)m * 2 * n, rhs + m, n, f, P, w, K, status == LIGHTPATH_OK ? 1 : 0.1);
 		m += 3;
 	}
-	// One thread: the same bits on every number of them.
+	// On one thread, so that the bits do not depend on the number of threads.
 	int threads = openblas_get_num_threads();
 	openblas_set_num_threads(1);
 	bool ok = m > 6 * n && !LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', m, 2 * n, 1, rows, 2 * n, rhs, 1);

@@ -31,7 +31,7 @@ static bool is_table(const struct refraction *f)
 	return f->method == REFRACTION_TABLE_LINEAR || f->method == REFRACTION_TABLE_NEAREST;
 }
 
-/* Whether start or table serve all of these. */
+/* Whether the polynomial or the table covers all of these problems: P inside the edge, w_z at most `most`. */
 SIMD_CLONES static bool all_within(int n, const float *px, const float *py, const float *wz, float edge2, float most)
 {
 	int out = 0;
@@ -59,7 +59,7 @@ static void judge(const struct refraction *f, int n, const float *wx, const floa
 	}
 }
 
-/* At most BLOCK of them. */
+/* Evaluates at most BLOCK problems. */
 static struct lightpath_again evaluate(const struct refraction *f, int n, const float *px, const float *py, const float *pz,
                      const float *wx, const float *wy, const float *wz, float *kx, float *ky, float *kz,
                      unsigned char *status)
@@ -73,7 +73,7 @@ static struct lightpath_again evaluate(const struct refraction *f, int n, const 
 	}
 	if (good)
 		refraction_start(f, n, px, py, wx, wy, wz, qx, qy, qz);
-	// Without its own start a block needs the closed form's steps.
+	// From the closed-form start a block needs three steps.
 	int steps = good || f->method == REFRACTION_NEWTON ? f->steps : 3;
 	return lightpath_batch_from(n, good ? qx : 0, good ? qy : 0, good ? qz : 0, px, py, pz, wx, wy, wz, kx, ky, kz, status,
 	                            &f->cornea, steps, f->error_mm);
@@ -97,8 +97,8 @@ void refraction_batch(const struct refraction *f, int n, const float *px, const 
 	}
 }
 
-/* Points of the iris and directions of the hemisphere, evenly spread by a low-discrepancy sequence, and the K the
- * solver finds in double. */
+/* Points of the iris and directions of the hemisphere, spread by a low-discrepancy sequence, and the K that the solver in double
+ * finds. */
 struct probe {
 	float px[PROBE], py[PROBE], pz[PROBE], wx[PROBE], wy[PROBE], wz[PROBE], kx[PROBE], ky[PROBE], kz[PROBE];
 	double K[PROBE][3];
@@ -109,7 +109,7 @@ static struct probe *probe_new(const struct cornea *cornea, double depth, double
 {
 	struct probe *probe = mem_new(1, sizeof *probe);
 	for (int i = 0; i < PROBE; i++) {
-		// Steps of the generalised golden ratio in four dimensions.
+		// The R4 sequence: steps of the generalised golden ratio in four dimensions (Roberts 2018).
 		double u[4], g = 1.1673039782614187;
 		for (int k = 0; k < 4; k++)
 			u[k] = fmod(0.5 + (i + 1) * pow(g, -k - 1), 1);
@@ -130,7 +130,7 @@ static struct probe *probe_new(const struct cornea *cornea, double depth, double
 	return probe;
 }
 
-/* Fills worst_mm and mean_mm; returns how many of the PROBE evaluations took more than the steps asked for. */
+/* Measures f->worst_mm and f->mean_mm on the probe. Returns how many of its evaluations took more steps, or double precision. */
 static struct lightpath_again measure(struct refraction *f, struct probe *p)
 {
 	struct lightpath_again again = { 0 };
@@ -156,15 +156,15 @@ static struct lightpath_again measure(struct refraction *f, struct probe *p)
 	return again;
 }
 
-/* Nanoseconds of one evaluation, as measured with AVX2 (bench_refraction): fixed figures, so that the choice is the same on
- * every machine. What float cannot tell ends, for the most part, in the scalar solver. */
+/* Nanoseconds of one evaluation. The figures were measured with AVX2 (bench_refraction) and are fixed, so that the choice is the
+ * same on every machine. Most problems that need double precision end in the scalar solver. */
 static double cost(const struct refraction *f, struct lightpath_again again)
 {
 	double start = f->method == REFRACTION_POLYNOMIAL ? 2.5 + 0.06 * refraction_monomials(f->degree) : 3.4;
 	return start + 2.25 * f->steps + (15.0 * (double)again.longer + 1000.0 * (double)again.in_double) / PROBE;
 }
 
-/* The cheapest start and number of steps within the error, among those of the method. */
+/* Chooses the cheapest start and number of steps within the tolerance, among those of the method. */
 static void choose(struct refraction *f, struct probe *probe, int method)
 {
 	struct refraction best = { 0 };
@@ -178,7 +178,7 @@ static void choose(struct refraction *f, struct probe *probe, int method)
 			continue;
 		for (f->steps = degree ? 0 : 1; f->steps <= 5; f->steps++) {
 			double price = cost(f, measure(f, probe));
-			// Float cannot be asked for more than it has.
+			// 2e-5 mm is the precision of float.
 			if (f->worst_mm <= fmax(f->error_mm, 2e-5) && price < least) {
 				least = price;
 				free(best.data);
@@ -191,7 +191,7 @@ static void choose(struct refraction *f, struct probe *probe, int method)
 	}
 	free(f->data);
 	if (!best.steps && !best.degree) {
-		// Nothing is good enough on this cornea: the start that stores nothing, with steps to spare.
+		// Nothing is within the tolerance on this cornea: the closed-form start with steps to spare.
 		best = *f;
 		best.method = REFRACTION_NEWTON;
 		best.steps = 6;

@@ -6,8 +6,8 @@
 #include "base/mem.h"
 #include "optics/lightpath/path.h"
 
-/* The table of the paper, its hemisphere in angle from the axis × azimuth. A mirror maps an azimuth to its negative:
- * half a circle is stored, which makes the paper's table twice as fine as printed. */
+/* The paper's table: radius of P × angle of w from the axis × azimuth. Reflection maps an azimuth to its negative, so half a
+ * circle is stored, which makes the paper's table twice as fine as printed. */
 
 static float *sample(const struct refraction *f, int point, int theta, int phi)
 {
@@ -32,7 +32,8 @@ void refraction_tabulate(struct refraction *f)
 	}
 }
 
-/* The place of a value 0..1 among n samples: the lower one and the share of the upper one; rounded for the nearest. */
+/* Position of a value 0..1 among n samples: *low, the lower sample; returns the weight of the upper one. nearest: rounded, weight
+ * 0. */
 static float place(int *low, double u, int n, bool nearest)
 {
 	double at = fmin(fmax(u, 0), 1) * (n - 1);
