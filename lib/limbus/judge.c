@@ -15,8 +15,8 @@ enum { SAMPLES = 48 };
 static const double WHITER = 1.45; // farther out than an edge's outside: that edge is a pupil's
 static const double FULL = 0.8, DARK = 0.15;  // share of an edge seen, encoded brightness inside: a pupil's
 static const double SIDES_SEEN = 0.55;        // limbus_flank_around: of a limbus that may be
-/* On 240 rendered eyes true ellipses scatter less than the first or have a pupil less than 0.1 off their middle; wrong
- * ones scatter more and have none nearer than 0.17. */
+/* Edge scatter, share of the semi-axis. On 240 rendered eyes true ellipses scatter less than this or have a pupil less than 0.1
+ * off their middle; wrong ones scatter more and have no pupil nearer than 0.17. */
 static const double EXACT = 0.0045;
 static const double STEEP = 0.62;       // semi-axes of an eye turned by 52 degrees
 static const double LITTLE = 0.37, HALF = 0.5;  // of the limbus seen: less of it can be exact and wrong

@@ -1,4 +1,4 @@
-/* limbus: the stage's own parts. */
+/* limbus: the stage's files: photographs in, work/limbus/ out. The algorithms are in lib/limbus. */
 #ifndef STAGES_LIMBUS_H
 #define STAGES_LIMBUS_H
 #include "base/stage.h"
@@ -16,17 +16,19 @@ struct limbus_options {
 	int overlay_px;
 };
 
-/* A photograph in memory, for who needs the same one next. */
+/* The photograph that was read last, kept in memory because the next step often needs the same one. */
 struct limbus_kept {
 	const struct capture_photo *of;  // null: none
 	struct photo photo;
 };
 
-/* work/limbus/NAME.edge.json of every photograph that is not up to date; the last of them is kept. photo_free(&kept->photo). */
+/* Measures every photograph whose work/limbus/NAME.edge.json is not up to date, and writes it; a photograph that cannot be used
+ * gets a record with the reason. kept: out; photo_free(&kept->photo). False, err set, when a file cannot be read or written. */
 bool limbus_measure(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
                     struct err *err);
 
-/* work/limbus/NAME.json and NAME.png, all photographs of an eye together. False when none is usable. */
+/* Fits the poses of all photographs of each eye together; writes work/limbus/NAME.json and NAME.png. False, err set, when no
+ * photograph is usable or a file cannot be read or written. */
 bool limbus_fit_poses(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
                       struct err *err);
 

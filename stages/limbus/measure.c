@@ -48,7 +48,7 @@ bool limbus_measure(struct limbus_kept *kept, struct stage *stage, const struct 
 	bool ok = !has_rig || camera_rig_load(&rig, path, err);
 	for (int i = 0; i < capture->n_photos && ok; i++) {
 		const struct capture_photo *p = &capture->photos[i];
-		// A photograph the rig does not know is measured the same with and without it.
+		// The rig is an input only of photographs that it has a camera for.
 		const int n_in = camera_rig_find(&rig, p->file) ? 2 : 1;
 		const char *in[] = { p->file, RIG };
 		char *out = limbus_record_path(p);

@@ -18,8 +18,8 @@ struct work {
 	struct fit *fits;                     // [n]
 	struct unrefract_view *views;         // [n]
 	int n_inputs;
-	const char **inputs;                  // photographs and fits; also fits that say no: they may come to say yes
-	struct photo kept;                    // the only photograph stays in memory between survey and merge
+	const char **inputs;                  // photographs and fits; also fits that are not ok: a change may make them usable
+	struct photo kept;                    // a single photograph stays in memory between survey and merge
 };
 
 static bool load_photo(struct photo *photo, const struct work *w, int i, struct err *err)

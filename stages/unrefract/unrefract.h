@@ -1,4 +1,4 @@
-/* One eye's photographs into its texture. */
+/* unrefract: the stage's files: the photographs of one eye in, its texture out. The algorithm is in lib/iris/unrefract. */
 #ifndef STAGES_UNREFRACT_H
 #define STAGES_UNREFRACT_H
 #include "anatomy/capture.h"
@@ -13,10 +13,11 @@ struct run {
 	bool write_map;
 };
 
-/* False, err set, when no photograph of that eye can be used. */
+/* Makes texture.exr and texture.json of eye `index` of the capture, unless they are up to date. False, err set, when no photograph
+ * of it can be used or a file cannot be written. */
 bool unrefract_eye(const struct run *run, int index, struct err *err);
 
-/* IRIS/NAME.map.exr */
+/* Writes IRIS/NAME.map.exr: the iris-plane point that each photo pixel sees (lib/README.md). */
 bool unrefract_write_map(const struct run *run, const struct capture_photo *photo, const struct unrefract_view *view,
                          const char *iris, struct err *err);
 
