@@ -45,8 +45,6 @@ json_t *page_stages(struct page *page, double *seconds);
 
 /* {uri, width, height} of a picture as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. */
 json_t *page_picture(struct page *page, const char *path, int width);
-/* The same of pixels [height][width][3]. */
-json_t *page_pixels(const uint8_t *px, int width, int height);
 /* The same of the thirds of a comparison: photograph, rendering, difference. False when it cannot be read. */
 bool page_panels(json_t *out[3], struct page *page, const char *path);
 

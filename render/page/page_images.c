@@ -5,35 +5,19 @@
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 #include "bridge/cv_photo.h"
-#include "draw/web/base64.h"
+#include "draw/web/picture.h"
 #include "draw/web/pseudocolour.h"
 #include "image/exr.h"
 #include "image/picture.h"
 #include "render/page/page.h"
 
-enum { JPEG_QUALITY = 86 };
-
-json_t *page_pixels(const uint8_t *px, int width, int height)
-{
-	struct err err = { 0 };
-	uint8_t *data;
-	size_t size;
-	if (!picture_jpeg_encode(&data, &size, px, width, height, 3, JPEG_QUALITY, &err))
-		return 0;
-	char *uri = base64_encode(data, size, "data:image/jpeg;base64,");
-	json_t *picture = json_pack("{s:s,s:i,s:i}", "uri", uri, "width", width, "height", height);
-	free(uri);
-	free(data);
-	return picture;
-}
-
 static json_t *pixels_at_most(const uint8_t *px, int w, int h, int width)
 {
 	if (w <= width)
-		return page_pixels(px, w, h);
+		return web_picture(px, w, h);
 	int height = (int)fmax(lrint((double)h * width / w), 1);
 	uint8_t *small = cv_resize8(px, w, h, 3, width, height);
-	json_t *picture = page_pixels(small, width, height);
+	json_t *picture = web_picture(small, width, height);
 	free(small);
 	return picture;
 }
@@ -95,7 +79,7 @@ bool page_map(struct image *out, struct page *page, const char *path, int n, con
 static json_t *linear_picture(struct image *rgb)
 {
 	uint8_t *px = image_to_srgb8(rgb);
-	json_t *picture = page_pixels(px, rgb->width, rgb->height);
+	json_t *picture = web_picture(px, rgb->width, rgb->height);
 	free(px);
 	image_free(rgb);
 	return picture;

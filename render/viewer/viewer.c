@@ -5,9 +5,10 @@
 
 #include "base/mem.h"
 #include "base/version.h"
+#include "draw/web/eye.h"
+#include "draw/web/face.h"
 #include "render/page/embed.h"
 #include "render/page/page.h"
-#include "render/viewer/viewer_face.h"
 
 static const char *const out = "work/review/viewer.html";
 
@@ -168,9 +169,9 @@ static bool add_eyes(json_t *eyes, struct parts *p, struct err *err)
 			return false;
 		const struct shot *shot = &job->shots[job->reference];
 		char *edge = mem_printf("%s", stage_path(job->stage, "%.*s.edge.json", (int)(strlen(shot->photo->fit) - strlen(".json")), shot->photo->fit));
-		const struct viewer_source source = { &job->scene, job->names->side, stage_path(job->stage, "%s", job->in[3]),
+		const struct web_source source = { &job->scene, job->names->side, stage_path(job->stage, "%s", job->in[3]),
 			                                  &job->studio, job->gain, shot, edge, job->conf->lights, job->conf->light_directions };
-		json_t *one = viewer_eye(&source, err);
+		json_t *one = web_eye(&source, err);
 		free(edge);
 		if (!one)
 			return false;
@@ -192,7 +193,7 @@ static bool add_clips(json_t *face, struct skin_job *skin, struct err *err)
 			continue;
 		ok = drive_load(&drive, &skin->model, path, err);
 		if (ok) {
-			json_array_append_new(list, viewer_clip(clips[i][1], &drive));
+			json_array_append_new(list, web_clip(clips[i][1], &drive));
 			drive_free(&drive);
 		}
 	}
@@ -206,14 +207,14 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 	struct skin_target target = { .name = name, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
 	bool ok = skin_open(skin, &target, err);
 	if (ok && !json_array_size(eyes)) {
-		const struct viewer_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, 0, skin->render->lights, skin->render->light_directions };
-		json_t *one = viewer_eye(&plain, err);
+		const struct web_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, 0, skin->render->lights, skin->render->light_directions };
+		json_t *one = web_eye(&plain, err);
 		ok = one;
 		if (one)
 			json_array_append_new(eyes, one);
 	}
 	if (ok) {
-		*face = viewer_face(name, target.portrait, &skin->model, skin->gain, skin->eyes, err);
+		*face = web_face(name, target.portrait, &skin->model, skin->gain, skin->eyes, err);
 		ok = *face && add_clips(*face, skin, err);
 	}
 	portrait_free(target.portrait);

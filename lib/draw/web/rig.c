@@ -1,4 +1,4 @@
-/* Algorithm 1 (rig/deform/deform.h) for the page's shader (render/viewer/deform.vert): numbers as floats, in the rig's own axes. */
+/* Algorithm 1 (rig/deform/deform.h) for the page's shader (render/viewer/pose.glsl): numbers as floats, in the rig's own axes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +6,8 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "draw/web/base64.h"
+#include "draw/web/face_impl.h"
 #include "draw/web/field.h"
-#include "render/viewer/viewer_face_impl.h"
 #include "rig/deform/terms.h"
 
 /* Of a vertex, as deform.vert has them; of a hair's, as lash.vert has them. */
@@ -44,7 +44,7 @@ static void terms(float to[TERMS], const struct rig *rig, int i)
 }
 
 /* Where the page can bring these vertices on the skull's map (texels: x0, y0, x1, y1), generously. */
-static void reach_on_map(int box[4], const struct face *f)
+static void reach_on_map(int box[4], const struct web_face *f)
 {
 	const struct rig *rig = f->rig;
 	const struct skull_map *map = &rig->skull;
@@ -81,7 +81,7 @@ static void reach_on_map(int box[4], const struct face *f)
 	}
 }
 
-static json_t *skull(const struct face *f)
+static json_t *skull(const struct web_face *f)
 {
 	const struct skull_map *map = &f->rig->skull;
 	int box[4];
@@ -109,7 +109,7 @@ static json_t *globe_maps(const struct rig *rig)
 	return json_pack("{s:i,s:o,s:[o,o]}", "cells", n, "mm", field, "centers", json_numbers(3, rig->globe[0].center), json_numbers(3, rig->globe[1].center));
 }
 
-static json_t *hairs(const struct face *f)
+static json_t *hairs(const struct web_face *f)
 {
 	int n = f->n_shown - f->first_hair;
 	float *pins = mem_new((size_t)n * PIN + 1, sizeof *pins);
@@ -127,7 +127,7 @@ static json_t *hairs(const struct face *f)
 	return floats(pins, (long)n * PIN);
 }
 
-static json_t *between(const struct face *f)
+static json_t *between(const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	int first = f->level[0].end, n = f->first_hair - first;
@@ -137,7 +137,7 @@ static json_t *between(const struct face *f)
 	return floats(ends, 2L * n);
 }
 
-void viewer_put_rig(json_t *out, const struct face *f)
+void web_put_rig(json_t *out, const struct web_face *f)
 {
 	const struct rig *rig = f->rig;
 	int n = f->level[0].end, posed = f->level[0].posed;

@@ -1,14 +1,14 @@
-/* Which vertices of a character the page has, and in what order: see viewer_face_impl.h. */
+/* Which vertices of a character the page has, and in what order: see face_impl.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "draw/web/face_impl.h"
 #include "math/vec.h"
-#include "render/viewer/viewer_face_impl.h"
 #include "rig/deform/terms.h"
 
-static bool shown(const struct face *f, const int32_t v[3], double reach)
+static bool shown(const struct web_face *f, const int32_t v[3], double reach)
 {
 	for (int j = 0; j < 3; j++) {
 		double d[3], x[3];
@@ -22,7 +22,7 @@ static bool shown(const struct face *f, const int32_t v[3], double reach)
 }
 
 /* What those shown are made from: roots of hairs, ends of edges, and round the rig's own vertices all that their normals need. */
-static void need(bool *used, const struct face *f)
+static void need(bool *used, const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	const struct rig *rig = f->rig;
@@ -50,7 +50,7 @@ static void need(bool *used, const struct face *f)
 }
 
 /* Light that differs by a few steps anywhere on the grid changes. */
-static bool light_changes(const struct face *f, int i)
+static bool light_changes(const struct web_face *f, int i)
 {
 	for (int k = 1; k < POSES + f->n_au; k++)
 		for (int c = 0; c < 3; c++)
@@ -60,7 +60,7 @@ static bool light_changes(const struct face *f, int i)
 }
 
 /* Vertices that do not always stand still in the same light: with a neighbour that moves, the normal does. */
-static bool *posed_of(const struct face *f)
+static bool *posed_of(const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	const struct rig *rig = f->rig;
@@ -90,7 +90,7 @@ static int *levels_of(const struct portrait_mesh *m)
 	return level;
 }
 
-static void put_in_order(struct face *f, const bool *used)
+static void put_in_order(struct web_face *f, const bool *used)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	bool *posed = posed_of(f);
@@ -100,7 +100,7 @@ static void put_in_order(struct face *f, const bool *used)
 	for (int i = 0; i < f->n; i++)
 		f->place[i] = -1;
 	for (f->n_levels = 0; f->n_levels < LEVELS; f->n_levels++) {
-		struct face_level *l = &f->level[f->n_levels];
+		struct web_level *l = &f->level[f->n_levels];
 		l->first = l->posed = n;
 		for (int still = 0; still < 2; still++) {
 			for (int i = 0; i < m->n; i++)
@@ -124,7 +124,7 @@ static void put_in_order(struct face *f, const bool *used)
 }
 
 /* Faces with all corners on the page, in its numbers; returns how many. */
-static int placed(uint32_t (*out)[3], const struct face *f, int n, const int32_t (*faces)[3])
+static int placed(uint32_t (*out)[3], const struct web_face *f, int n, const int32_t (*faces)[3])
 {
 	int count = 0;
 	for (int i = 0; i < n; i++) {
@@ -138,7 +138,7 @@ static int placed(uint32_t (*out)[3], const struct face *f, int n, const int32_t
 	return count;
 }
 
-void viewer_order(struct face *f, double reach)
+void web_order(struct web_face *f, double reach)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	bool *used = mem_new((size_t)f->n + 1, sizeof *used);
@@ -160,7 +160,7 @@ void viewer_order(struct face *f, double reach)
 	free(used);
 }
 
-void viewer_order_free(struct face *f)
+void web_order_free(struct web_face *f)
 {
 	free(f->order);
 	free(f->place);

@@ -1,4 +1,5 @@
-/* Maps for the interactive page. */
+#include "draw/web/map.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,11 +8,8 @@
 #include "base/mem.h"
 #include "draw/eye/colour.h"
 #include "draw/eye/levels.h"
-#include "draw/eye/lighting.h"
 #include "draw/web/base64.h"
 #include "image/picture.h"
-#include "render/page/page.h"
-#include "render/viewer/viewer.h"
 
 static json_t *png(const uint8_t *px, int width, int height, int channels, const double low[3], const double high[3],
                    struct err *err)
@@ -58,12 +56,12 @@ static json_t *map_height(const float *px, int width, int height, struct err *er
 	return map;
 }
 
-json_t *viewer_map_relief(const struct scene_level *level, struct err *err)
+json_t *web_map_relief(const struct scene_level *level, struct err *err)
 {
 	return map_height(level->relief, level->n, level->n, err);
 }
 
-json_t *viewer_map_folds(const struct image *map, int n, const int of[], struct err *err)
+json_t *web_map_folds(const struct image *map, int n, const int of[], struct err *err)
 {
 	long count = (long)map->width * map->height;
 	float *px = mem_array((size_t)count * (size_t)n * 2, sizeof *px);
@@ -75,7 +73,7 @@ json_t *viewer_map_folds(const struct image *map, int n, const int of[], struct 
 	return out;
 }
 
-json_t *viewer_map_colour(const struct scene_level *level, struct err *err)
+json_t *web_map_colour(const struct scene_level *level, struct err *err)
 {
 	static const double low[3] = { 0 }, high[3] = { 1, 1, 1 };
 	struct image rgb = image_new(level->n, level->n, 3);
@@ -89,7 +87,7 @@ json_t *viewer_map_colour(const struct scene_level *level, struct err *err)
 	return map;
 }
 
-json_t *viewer_map_log(const float *px, int width, int height, int stride, float dark, struct err *err)
+json_t *web_map_log(const float *px, int width, int height, int stride, float dark, struct err *err)
 {
 	float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
 	long n = (long)width * height;
@@ -126,7 +124,7 @@ static float darkest(const struct scene *s, const struct scene_level *l)
 	return fmaxf(least, SCENE_DARK);
 }
 
-json_t *viewer_map_model(const struct scene *s, struct err *err)
+json_t *web_map_model(const struct scene *s, struct err *err)
 {
 	int from = scene_marched(s) < s->n_levels ? scene_marched(s) : s->n_levels - 1, rows = 0;
 	const struct scene_level *first = &s->level[from];
@@ -142,7 +140,7 @@ json_t *viewer_map_model(const struct scene *s, struct err *err)
 	for (int k = from, y = 0; k < s->n_levels; y += s->level[k++].n)
 		for (int row = 0; row < s->level[k].n; row++)
 			memcpy(all + 4L * first->n * (y + row), s->level[k].model + 4L * s->level[k].n * row, 4 * (size_t)s->level[k].n * sizeof *all);
-	json_t *map = viewer_map_log(all, first->n, rows, 4, dark, err);
+	json_t *map = web_map_log(all, first->n, rows, 4, dark, err);
 	free(all);
 	if (map) {
 		json_object_set_new(map, "from", json_integer(from));
@@ -152,7 +150,7 @@ json_t *viewer_map_model(const struct scene *s, struct err *err)
 	return map;
 }
 
-json_t *viewer_map_plain(const struct image *map, struct err *err)
+json_t *web_map_plain(const struct image *map, struct err *err)
 {
 	double low[3] = { 0 }, high[3] = { 1, 1, 1 };
 	int n = map->channels < 3 ? map->channels : 3;
@@ -172,44 +170,4 @@ json_t *viewer_map_plain(const struct image *map, struct err *err)
 	json_t *json = png(out, map->width, map->height, 3, low, high, err);
 	free(out);
 	return json;
-}
-
-static json_t *directions(int n, const struct envmap_light *light)
-{
-	json_t *list = json_array();
-	for (int i = 0; i < n; i++) {
-		double v[6];
-		for (int c = 0; c < 3; c++) {
-			v[c] = light[i].dir[c];
-			v[3 + c] = light[i].rgb[c];
-		}
-		json_array_append_new(list, json_numbers(6, v));
-	}
-	return list;
-}
-
-json_t *viewer_light(const char *name, const struct envmap *env, const struct envmap *mirror, const struct viewer_source *source, struct err *err)
-{
-	enum { SKIES = 8 };  // what the skin mirrors
-	struct scene_lighting light = scene_lighting_of(env, mirror, source->lights, source->directions);
-	struct envmap_light sky[ENVMAP_LIGHTS_MAX];
-	int n = envmap_lights(sky, SKIES, env);
-	json_t *out = json_pack("{s:s,s:i}", "name", name, "beams", (light.n + light.each - 1) / light.each), *quadric = json_array();
-	json_object_set_new(out, "lights", directions(light.n, light.light));
-	json_object_set_new(out, "skies", directions(n, sky));
-	for (int k = 0; k < 9; k++) {
-		double v[3] = { env->quadric[k][0], env->quadric[k][1], env->quadric[k][2] };
-		json_array_append_new(quadric, json_numbers(3, v));
-	}
-	double even[3];
-	for (int c = 0; c < 3; c++)
-		even[c] = env->sh[0][c] * 0.282094791773878;
-	json_object_set_new(out, "quadric", quadric);
-	json_object_set_new(out, "even", json_numbers(3, even));
-	if (mirror) {
-		const struct image *s = &mirror->sharp, *r = &mirror->rough;
-		json_object_set_new(out, "sharp", viewer_map_log(s->px, s->width, s->height, s->channels, SCENE_DARK, err));
-		json_object_set_new(out, "rough", viewer_map_log(r->px, r->width, r->height, r->channels, SCENE_DARK, err));
-	}
-	return out;
 }

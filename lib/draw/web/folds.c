@@ -5,15 +5,14 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "draw/web/base64.h"
-#include "render/page/page.h"
-#include "render/viewer/viewer.h"
-#include "render/viewer/viewer_face_impl.h"
-#include "model/model.h"
 #include "draw/face/wrinkle_map.h"
+#include "draw/web/base64.h"
+#include "draw/web/face_impl.h"
+#include "draw/web/map.h"
+#include "model/model.h"
 
 /* Where each vertex lies in the chart of the wrinkles: sixteenths of a px from its corner. */
-static json_t *places(const struct face *f, const struct wrinkle_maps *maps)
+static json_t *places(const struct web_face *f, const struct wrinkle_maps *maps)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	int n = f->n_shown;
@@ -28,7 +27,7 @@ static json_t *places(const struct face *f, const struct wrinkle_maps *maps)
 	return out;
 }
 
-bool viewer_put_folds(json_t *out, const struct face *f, struct err *err)
+bool web_put_folds(json_t *out, const struct web_face *f, struct err *err)
 {
 	const struct wrinkle_maps *maps = f->portrait->wrinkles;
 	enum { FOLDS = 8 };
@@ -39,7 +38,7 @@ bool viewer_put_folds(json_t *out, const struct face *f, struct err *err)
 			of[n_folds++] = i;
 			json_array_append_new(follows, json_integer(f->portrait->wrinkle_input[i] - SKIN_EYE_INPUTS));
 		}
-	json_t *map = n_folds ? viewer_map_folds(&maps->map, n_folds, of, err) : 0;
+	json_t *map = n_folds ? web_map_folds(&maps->map, n_folds, of, err) : 0;
 	if (map) {
 		const double *row = f->rig->camera.from_target[0];
 		double corner[] = { maps->map.width, maps->map.height }, subject_mm = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]), px = maps->px_per_mm * subject_mm;

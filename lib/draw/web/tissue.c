@@ -1,10 +1,10 @@
-/* The tissue for the interactive page: what was fitted, how sure that is, and the spectra at the wavelengths that stand for
- * all. */
+#include "draw/web/tissue.h"
+
 #include <math.h>
 
+#include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
-#include "render/viewer/viewer.h"
 
 static const char *const names[] = { "abl_melanin", "abl_ratio", "stroma_melanin", "stroma_ratio", "thickness_scale" };
 static const char *const keys[][2] = { { "abl", "melanin" }, { "abl", "eumelanin_ratio" }, { "stroma", "melanin" },
@@ -42,7 +42,7 @@ static json_t *spectra(int n, enum illuminant illuminant)
 	return out;
 }
 
-json_t *viewer_tissue(const struct viewer_source *source)
+json_t *web_tissue(const struct web_source *source)
 {
 	enum { BANDS = 4 };  // what the shader carries in one vector
 	const struct tissue t = source->scene->tissue;

@@ -1,20 +1,25 @@
-/* One eye for the interactive page: the scene of the C renderer in numbers, maps and lights. */
+#include "draw/web/eye.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
+#include "base/template.h"
 #include "draw/eye/colour.h"
 #include "draw/eye/levels.h"
 #include "draw/eye/look.h"
 #include "draw/eye/march/beam.h"
 #include "draw/eye/march/nodes.h"
 #include "draw/eye/sclera.h"
+#include "draw/web/light.h"
+#include "draw/web/map.h"
+#include "draw/web/picture.h"
+#include "draw/web/tissue.h"
 #include "limbus/record.h"
 #include "optics/lightpath/path.h"
-#include "render/page/page.h"
-#include "render/viewer/viewer.h"
 
 static void put(json_t *out, const char *key, int n, const double *x)
 {
@@ -52,7 +57,7 @@ static json_t *rules(const struct scene *s)
 
 /* Of the pupil's radius, mm: of its margin and of the limbus that tells the scale, in the photograph; 0: not known. Points round an
  * ellipse tell its radius sqrt(2) times as well as its centre. */
-static double pupil_sigma(const struct viewer_source *source)
+static double pupil_sigma(const struct web_source *source)
 {
 	struct limbus_record record;
 	struct err err = { 0 };
@@ -102,7 +107,7 @@ static json_t *photo(const struct shot *shot)
 	memcpy(pose, v.cam_from_eye, sizeof pose);
 	memcpy(slip, v.slip, sizeof slip);
 	uint8_t *px = image_to_srgb8(&shot->image);
-	json_t *out = page_pixels(px, shot->image.width, shot->image.height);
+	json_t *out = web_picture(px, shot->image.width, shot->image.height);
 	free(px);
 	if (!out)
 		return 0;
@@ -118,20 +123,20 @@ static json_t *photo(const struct shot *shot)
 /* Everything that is a picture, dearest first: each is encoded by itself, as many at a time as there are processors. */
 enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, FILM, PARTS };
 
-static json_t *part_make(enum part part, const struct viewer_source *source, struct err *err)
+static json_t *part_make(enum part part, const struct web_source *source, struct err *err)
 {
 	const struct scene *s = source->scene;
 	const struct scene_level *l = &s->level[0];
 	const struct shot *shot = source->shot;
 	switch (part) {
-	case VEINS: return viewer_map_log(s->veins.px, s->veins.width, s->veins.height, 4, SCENE_DARK, err);
+	case VEINS: return web_map_log(s->veins.px, s->veins.width, s->veins.height, 4, SCENE_DARK, err);
 	case PHOTO: return shot ? photo(shot) : 0;
-	case RELIEF: return viewer_map_relief(l, err);
-	case COLOUR: return viewer_map_colour(l, err);
-	case MODEL: return l->model ? viewer_map_model(s, err) : 0;
-	case PHOTOGRAPHED: return shot ? viewer_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source, err) : 0;
-	case STUDIO: return viewer_light("Studio", source->studio, source->studio, source, err);
-	default: return viewer_map_plain(&s->film, err);
+	case RELIEF: return web_map_relief(l, err);
+	case COLOUR: return web_map_colour(l, err);
+	case MODEL: return l->model ? web_map_model(s, err) : 0;
+	case PHOTOGRAPHED: return shot ? web_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source, err) : 0;
+	case STUDIO: return web_light("Studio", source->studio, source->studio, source, err);
+	default: return web_map_plain(&s->film, err);
 	}
 }
 
@@ -151,7 +156,7 @@ static void put_parts(json_t *out, json_t *part[PARTS])
 	json_object_set_new(out, "maps", maps);
 }
 
-json_t *viewer_eye(const struct viewer_source *source, struct err *err)
+json_t *web_eye(const struct web_source *source, struct err *err)
 {
 	const struct scene *s = source->scene;
 	json_t *out = json_object(), *part[PARTS];
@@ -159,7 +164,7 @@ json_t *viewer_eye(const struct viewer_source *source, struct err *err)
 	json_object_set_new(out, "side", template_text(source->side));
 	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:i,s:i}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
 	json_object_set_new(out, "eye", geometry(s, source->gain, pupil_sigma(source)));
-	json_object_set_new(out, "tissue", viewer_tissue(source));
+	json_object_set_new(out, "tissue", web_tissue(source));
 #pragma omp parallel for schedule(dynamic, 1)
 	for (int i = 0; i < PARTS; i++)
 		part[i] = part_make((enum part)i, source, &errs[i]);

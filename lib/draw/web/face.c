@@ -6,16 +6,16 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "draw/web/base64.h"
-#include "math/vec.h"
-#include "render/page/page.h"
-#include "render/viewer/viewer_face_impl.h"
+#include "base/template.h"
 #include "draw/face/skin_look.h"
+#include "draw/web/base64.h"
+#include "draw/web/face_impl.h"
+#include "math/vec.h"
 
 static const double at_h[NH] = { -32, -16, 0, 16, 32 }, at_v[NV] = { -22, 0, 22 }, at_a[NA] = { 0, 0.5, 1, 1.4 };
 static const float reach = 110;  // mm about the eyes: what the page shows of the face
 
-static void to_head(float out[3], const struct face *f, const float x[3], bool point)
+static void to_head(float out[3], const struct web_face *f, const float x[3], bool point)
 {
 	double d[3], h[3];
 	for (int c = 0; c < 3; c++)
@@ -31,7 +31,7 @@ static uint8_t byte(double t)
 }
 
 /* Light as it stands. */
-static void record(uint8_t (*to)[3], const struct face *f)
+static void record(uint8_t (*to)[3], const struct web_face *f)
 {
 	for (int i = 0; i < f->rig->n; i++)
 		for (int c = 0; c < 3; c++)
@@ -39,7 +39,7 @@ static void record(uint8_t (*to)[3], const struct face *f)
 }
 
 /* Share of the sky over places of both globes: their front halves, seen along the line of sight straight ahead. */
-static void sky(uint8_t *to, const struct face *f)
+static void sky(uint8_t *to, const struct web_face *f)
 {
 	enum { RAYS = 20 };
 	for (int side = 0; side < 2; side++)
@@ -65,7 +65,7 @@ static void sky(uint8_t *to, const struct face *f)
 }
 
 /* Light of every pose of the grid and of every expression; leaves the portrait at rest. */
-static void pose_all(struct face *f)
+static void pose_all(struct web_face *f)
 {
 	double *controls = mem_new((size_t)f->rig->n_inputs + 1, sizeof *controls);
 	struct portrait_view view = portrait_front(f->rig, -1, 140, 0, 0, 1280, 720);
@@ -89,7 +89,7 @@ static void pose_all(struct face *f)
 }
 
 /* Roots of albedo, and a hair or half of how moist it is; light of the rig's own vertices. */
-static void put_colours(json_t *out, const struct face *f)
+static void put_colours(json_t *out, const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
 	static const float hair[3] = { 0.022f, 0.014f, 0.010f };
@@ -118,7 +118,7 @@ static void put_colours(json_t *out, const struct face *f)
 }
 
 /* What drives, one row a frame: time and all controls. */
-json_t *viewer_clip(const char *name, const struct drive *drive)
+json_t *web_clip(const char *name, const struct drive *drive)
 {
 	json_t *rows = json_array();
 	double step = 1 / 60.0, next = -1e9;
@@ -138,7 +138,7 @@ json_t *viewer_clip(const char *name, const struct drive *drive)
 }
 
 /* Inner corner of an eye, from its centre, and the share of mm there that a mean eyeball would have; 0: not known. */
-static json_t *corner_of(const struct face *f, int side)
+static json_t *corner_of(const struct web_face *f, int side)
 {
 	float h[3] = { 0 }, d[3];
 	for (int c = 0; c < 3; c++)
@@ -161,9 +161,9 @@ static json_t *looked(const struct skin_model *m)
 	return json_numbers(4, v);
 }
 
-json_t *viewer_face(const char *name, struct portrait *portrait, const struct skin_model *model, double gain, const struct scene *const eyes[2], struct err *err)
+json_t *web_face(const char *name, struct portrait *portrait, const struct skin_model *model, double gain, const struct scene *const eyes[2], struct err *err)
 {
-	struct face f = { .rig = portrait->rig, .portrait = portrait, .n = portrait->mesh.n, .n_au = model->n_au };
+	struct web_face f = { .rig = portrait->rig, .portrait = portrait, .n = portrait->mesh.n, .n_au = model->n_au };
 	for (int i = portrait->first_lash; i < portrait->mesh.n_faces; i++)
 		for (int j = 0; j < 3; j++)
 			f.n = portrait->mesh.faces[i][j] < f.n ? f.n : portrait->mesh.faces[i][j] + 1;
@@ -194,18 +194,18 @@ json_t *viewer_face(const char *name, struct portrait *portrait, const struct sk
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
 	json_object_set_new(out, "sky", base64_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2));
-	viewer_order(&f, 0.98 * reach);
+	web_order(&f, 0.98 * reach);
 	put_colours(out, &f);
-	viewer_put_rig(out, &f);
+	web_put_rig(out, &f);
 	json_t *names = json_array();
 	for (int k = 0; k < f.n_au; k++)
 		json_array_append_new(names, json_pack("{s:o}", "name", template_text(model->au_names[k])));
 	json_object_set_new(out, "expressions", names);
-	if (!viewer_put_folds(out, &f, err)) {
+	if (!web_put_folds(out, &f, err)) {
 		json_decref(out);
 		out = 0;
 	}
-	viewer_order_free(&f);
+	web_order_free(&f);
 	for (int k = 0; k < POSES + f.n_au; k++)
 		free(f.light[k]);
 	free(f.light);
