@@ -1,4 +1,6 @@
-/* render: pictures of a fitted eye, and the page that shows everything (DESIGN section 2, `render`). */
+/* render: pictures of a fitted eye: work/render/. Paths are relative to the capture folder; pictures are linear Rec. 709.
+ * Functions that return false set err.
+ */
 #ifndef RENDER_RENDER_H
 #define RENDER_RENDER_H
 #include "base/stage.h"
@@ -8,7 +10,8 @@
 
 struct render_conf {
 	struct scene_conf scene;
-	int lights, light_directions, passes, samples;     // of the environment; light drawn anew; rays across a pixel where there are edges
+	int lights, light_directions;    // beams that stand for an environment; directions in each
+	int passes, samples;             // passes > 1: light drawn anew in each, and averaged; rays across a pixel at edges
 	int size_px, photo_px;           // of front and three-quarter; longest side of the photograph's own view
 	int frames, frame_px;            // turntable
 	double frame_deg;                // it goes from -frame_deg to +frame_deg
@@ -18,10 +21,10 @@ struct render_conf {
 	bool freckles, exr, film, polarised;
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
-	double limit_mpx;
+	double limit_mpx;                // larger photographs are refused
 };
 
-/* One eye of the capture, on its way to pictures. */
+/* One eye of the capture, and what its pictures are made from. */
 struct job {
 	struct stage *stage;
 	const struct render_conf *conf;
@@ -31,8 +34,8 @@ struct job {
 	int n_shots, reference;          // the shot whose light and direction the colours are read in
 	const char *in[9];               // inputs that all pictures have in common, relative to the folder
 	int n_in;
-	bool usable;                     // there is enough to show
-	bool ready;                      // what follows has been made
+	bool usable;                     // a photograph has a fit, and there is a texture
+	bool ready;                      // what follows has been made (job_ready)
 	struct scene scene;
 	struct envmap studio;            // of the beauty views
 	double gain;                     // of the beauty views' exposure
@@ -42,11 +45,11 @@ struct job {
 	double seconds;                  // spent tracing
 };
 
-/* Makes whatever pictures of this eye are not fresh. */
+/* eye.c: makes the pictures of this eye that are not fresh; records as skipped what cannot be made. */
 bool render_eye(struct job *job, struct err *err);
 
-/* The eyes of a capture: what photographs there are of each, and whether there is enough of it to show. One scene serves
- * the pictures and the interactive page. jobs_close in any case. */
+/* job.c: the eyes of a capture, with the photographs of each. One scene serves the pictures and the interactive page. jobs_close in any
+ * case. */
 struct jobs {
 	int n;
 	struct job *job;
@@ -55,21 +58,21 @@ bool jobs_open(struct jobs *jobs, struct stage *stage, const struct capture *cap
                const struct render_conf *conf, struct err *err);
 void jobs_close(struct jobs *jobs);
 
-/* job_ready: loads the scene, once. job_studio: the light of the beauty views alone. */
+/* job_ready: decodes the reference photograph and loads the scene, once. job_studio: the light of the beauty views alone. */
 bool job_ready(struct job *job, struct err *err);
 bool job_studio(struct job *job, struct err *err);
 
-/* shot.c: the photographs of an eye that have a fit, and the best of them as reference. shots_free.
- * shot_ready: decodes the photograph and reads its light, once; shot_done: forgets both. */
+/* shot.c. shots_load: the photographs of an eye that have a fit, and the best of them as reference; shots_free.
+ * shot_ready: decodes the photograph and estimates its light, once; shot_done: frees both. */
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err);
 bool shot_ready(struct job *job, struct shot *shot, struct err *err);
 void shot_done(struct shot *shot);
 void shots_free(struct job *job);
 
-/* Rows of an environment's map: sharper than the pictures need it. */
+/* Rows of an environment's map: more than the pictures resolve. */
 int env_height(const struct render_conf *conf);
 
-/* At most PICTURES_MAX pictures at once, from the same inputs: 3 channels become a PNG, 4 an EXR. rel: in the folder. */
+/* picture.c: writes at most PICTURES_MAX pictures from the same inputs, in parallel: 3 channels as PNG, 4 as EXR. */
 enum { PICTURES_MAX = 4 };
 struct picture_out {
 	const char *rel;
@@ -77,15 +80,15 @@ struct picture_out {
 };
 bool pictures_save(struct job *job, int n, const struct picture_out out[], int n_in, const char *const in[], struct err *err);
 
-/* sheet.c: pictures side by side; the contact sheet, from the files of this eye. image_free. */
+/* sheet.c. sheet_strip: pictures of one size side by side; image_free. sheet_contact: the contact sheet, from this eye's files. */
 struct image sheet_strip(int n, const struct image frames[]);
 bool sheet_contact(struct job *job, struct err *err);
 
-/* turntable.c: the eye turned to and fro, MP4. */
+/* turntable.c: the eye turned to and fro, as MP4. */
 bool turntable_film(struct job *job, const char *rel, struct err *err);
 
-/* EXR of a picture in layers: what comes out of the eye (diffuse) and what the film mirrors (specular), which add up to it;
- * depth Z, mm; normal N in the camera's frame. diffuse: the picture without a mirror. */
+/* turntable.c: an EXR of a picture in layers: diffuse (out of the eye) and specular (mirrored by the tear film), whose sum is the picture;
+ * depth Z, mm; normal N in the camera's frame. diffuse: the picture rendered without a mirror. */
 bool layers_save(struct job *job, const char *rel, const struct image *full, const struct image *diffuse, const struct scene_view *view,
                  struct err *err);
 

@@ -1,4 +1,4 @@
-/* skin: driven characters: pictures, clips and glTF of every rig that extrapolate has made. */
+/* skin: pictures, clips and glTF of driven characters: of every rig that extrapolate has made. */
 #ifndef RENDER_FACE_SKIN_H
 #define RENDER_FACE_SKIN_H
 #include "image/video/video.h"
@@ -57,9 +57,9 @@ struct skin_job {
 	const struct eye *eye;
 	struct jobs *photographed;        // eyes that photographs were fitted to
 	const char *video;                // the input video, relative to the folder; null: none
-	// Made when the first picture needs them:
+	// Made by skin_ready, when the first picture needs them:
 	bool ready;
-	struct scene plain;               // what the others get
+	struct scene plain;               // an invented eye, for a side that no photograph was fitted to
 	const struct scene *eyes[2];      // left, right
 	struct envmap studio;
 	struct skin_model model;
@@ -67,7 +67,7 @@ struct skin_job {
 	double gain;
 };
 
-/* show.c: the contact sheets and the two pages; drawn: all pictures are there, else only the review page is made. */
+/* render/show.c: makes the contact sheets and the two pages. drawn: all pictures are there; false: only the review page is made. */
 bool show(struct skin_job *faces, bool drawn, struct err *err);
 
 /* One character. */
@@ -79,19 +79,19 @@ struct skin_target {
 	int n_in;
 };
 
-/* Everything of every character that is not fresh. A capture without rigs is no fault. */
+/* Makes everything of every character that is not fresh. A capture without rigs is no error. */
 bool render_skin(struct skin_job *job, struct err *err);
 
-/* The typed gaze is of NAME_look.png alone: what else was made is kept when only that has changed (skin_keep.c).
- * skin_kept: stage_fresh, or else made by the same program from the same bytes with a configuration that differs in gaze
- * and aperture at most; then it is recorded anew. skin_made: stage_made, and remembers how. */
+/* skin_keep.c: render.gaze and render.aperture matter for NAME_look.png alone: all else is kept when only they change.
+ * skin_kept: stage_fresh, or made by the same program from the same bytes with a configuration that differs in gaze and aperture at
+ * most; then it is recorded again. skin_made: stage_made, and stores the hash by which skin_kept decides. */
 bool skin_kept(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
 bool skin_made(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err);
 
 /* Frees what the job has made, but not photographed. */
 void skin_close(struct skin_job *job);
 
-/* Eyes, light and the model, once. */
+/* skin_open.c: loads eyes, light and the model, once. */
 bool skin_ready(struct skin_job *job, struct err *err);
 
 /* skin_pictures.c: NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_expressions.png. */
@@ -100,7 +100,7 @@ bool skin_pictures(struct skin_job *job, struct skin_target *target, struct err 
 /* skin_clip.c: NAME_clip.mp4 (the input video and the character beside it), NAME_script.mp4 (animation.csv), NAME.glb. */
 bool skin_clips(struct skin_job *job, struct skin_target *target, struct err *err);
 
-/* Loads the rig and makes the portrait, once. */
+/* skin_open.c: loads the rig and makes the portrait, once. */
 bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);
 
 #endif

@@ -4,7 +4,7 @@
 #define RENDER_PAGE_INDEX_H
 #include "render/page/page.h"
 
-/* work/review/index.html on its way. */
+/* The page between reading and writing. */
 struct page_work {
 	struct page page;
 	json_t *data;       // null: nothing to do
@@ -12,8 +12,8 @@ struct page_work {
 	int n_in;
 };
 
-/* Reads and shrinks what the page shows, all but the interactive page, which it only links to and which may be written
- * meanwhile; then writes it. page_end after page_begin in any case: it frees. */
+/* page_begin reads and shrinks what the page shows; page_end writes it. The interactive page, which is only linked to, may be written
+ * between them. page_end after page_begin in any case: it frees. Both return false, err set. */
 bool page_begin(struct page_work *work, struct stage *stage, const struct capture *capture, const struct render_conf *conf, struct err *err);
 bool page_end(struct page_work *work, struct err *err);
 

@@ -1,5 +1,6 @@
-/* page: work/review/index.html. Each page_* function reads what one part of the page needs and returns it as JSON for
- * page.html (base/template.h); what is missing is left out there and said so. */
+/* page: what the parts of the review page share. Each part (page_photos, page_eyes ...) reads what it shows and returns it as JSON for
+ * page.html (base/template.h). What is missing is left out there and listed in page->missing. json_decref what is returned.
+ */
 #ifndef RENDER_PAGE_PAGE_H
 #define RENDER_PAGE_PAGE_H
 #include <jansson.h>
@@ -17,42 +18,44 @@ struct page {
 	json_t *missing;    // what the page cannot show, and why: sentences
 };
 
-/* The folder's file of that name if it is there, else null. Owned by the stage. */
+/* Path of the capture folder's file of that name; null where there is none. Owned by the stage. */
 __attribute__((format(printf, 2, 3)))
 const char *page_file(struct page *page, const char *fmt, ...);
 
-/* The JSON object in that file; null where there is none. json_decref. */
+/* The JSON in that file; null where path is null, or where it cannot be read, which is listed as missing. */
 json_t *page_json(struct page *page, const char *path);
 
-/* One sentence more in a list; each only once. */
+/* Appends a sentence to a list (page->advice, film, missing) that does not hold it yet. */
 __attribute__((format(printf, 2, 3)))
 void page_say(json_t *list, const char *fmt, ...);
 
-/* printf to a JSON string. */
+/* A JSON string of formatted text; bytes that are not UTF-8 are replaced. */
 __attribute__((format(printf, 1, 2)))
 json_t *page_text(const char *fmt, ...);
 
 /* [{label, value}] of the numbers in a stage's log; an empty array where there are none. */
 json_t *page_facts(const json_t *log);
 
+/* The photographs with their fits, each beside its rendering. */
 json_t *page_photos(struct page *page);
-/* Null where no cameras were found from views/. */
+/* The cameras found from views/ and the mesh; null where there are none. */
 json_t *page_rig(struct page *page);
-/* Null where the folder has no video. */
+/* What was tracked and learnt, and the characters; null where the folder has no video. */
 json_t *page_skin(struct page *page);
+/* Maps, pigments and pictures of each eye. */
 json_t *page_eyes(struct page *page);
+/* Each stage's time, figures and what it left out; seconds: out, of all. */
 json_t *page_stages(struct page *page, double *seconds);
 
-/* {uri, width, height} of a picture as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. */
+/* {uri, width, height} of a picture file as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. */
 json_t *page_picture(struct page *page, const char *path, int width);
-/* The same of the thirds of a comparison: photograph, rendering, difference. False when it cannot be read. */
+/* The same of the thirds of a comparison (draw/photo): photograph, rendering, difference. False when it cannot be read. */
 bool page_panels(json_t *out[3], struct page *page, const char *path);
 
-/* Channels of an iris map, at most as wide as the page's pictures; false when there is none. image_free. */
+/* Reads n channels of an iris map, reduced to the width of the page's pictures; false when there is none. image_free. */
 bool page_map(struct image *out, struct page *page, const char *path, int n, const char *const names[]);
 
-/* Iris maps as pictures: colour with what was not seen striped; the outlines of a mask on it; a channel as colour; the
- * first channel as a lit relief. range: what the colours span. */
+/* Iris maps as {uri, width, height}, in the colours of draw/web/pseudocolour.h. range: out, what they span. */
 json_t *page_colour_map(const struct image *rgbw);
 json_t *page_mask_map(const struct image *mask, const struct image *rgbw);
 json_t *page_scalar_map(const struct image *map, int channel, double range[2]);

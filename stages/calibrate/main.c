@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "base/mem.h"
 #include "register/transfer_opts.h"
 #include "stages/calibrate/run.h"
 

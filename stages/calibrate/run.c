@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "base/run.h"
 #include "sfm/figure/figure.h"
 #include "sfm/features.h"

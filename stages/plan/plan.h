@@ -4,32 +4,35 @@
 #include "base/call.h"
 #include "plan/decide.h"
 
-/* What is asked for beside planning: not part of the configuration, so not in the option table. */
+/* Options of the command line beside planning: --show, --clean, --todo, --fresh=STAGE. They are no part of the configuration, so they
+ * are not in the option table. */
 struct plan_asked {
 	bool show, clean, todo;
 	const char *fresh;
 };
 
-/* work/plan.json and work/plan.mk. slice: opt_print's lines of plan's own configuration. */
+/* Writes work/plan.json and work/plan.mk where their bytes change. slice: opt_print's lines of plan's own configuration. */
 bool plan_write(const struct plan *plan, const char *slice, struct err *err);
 
-/* The table people read, to stdout. */
+/* Prints the table for people to stdout. */
 void plan_show(const struct plan *plan, const struct call *call);
 
-/* Whether the last run of every stage that the folder needs still holds. */
+/* True when the last run of every stage that the folder needs still holds (base/record_holds.h). */
 bool plan_all_fresh(const struct plan *plan, const struct call *call);
 
-/* Whether that stage's last run still holds. False, err set, for a stage nobody knows. */
+/* fresh: out, whether that stage's last run still holds. why: out, what does not hold, or null; free(). Returns false, err set, for an
+ * unknown stage or a configuration that cannot be read. */
 bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *stage, struct err *err);
 
-/* Every stage's keys of capture.conf against that stage's own table, before the first of them starts. What has
- * been found good is remembered by its bytes. False: the stage has already said why. */
+/* Has every stage that runs check its keys of capture.conf (STAGE --print-config), before the first of them starts. A configuration
+ * that was found good is remembered by a hash. Returns false, err set to the stage's own message. */
 bool plan_check_conf(const struct plan *plan, const struct conf *conf, struct err *err);
 
-/* Removes work/, never what a link leads to. */
+/* Removes work/. A link is removed itself, never what it points to. Returns false, err set, when a stage is running there. */
 bool plan_clean(const char *capture, struct err *err);
 
-/* Does what is asked, prints what is wrong; exit status. opts: cost's rows, conf: what the command line says. */
+/* Does what is asked and prints what is wrong. opts: cost's rows; conf: items of the command line. Returns the exit status: 0; 1, 2 with
+ * an error in data, in the call; 3 where --todo or --fresh finds something to do. */
 int plan_run(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
              const struct plan_cost cost[PLAN_STAGES], struct conf *conf, struct err *err);
 

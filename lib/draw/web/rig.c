@@ -10,9 +10,9 @@
 #include "draw/web/field.h"
 #include "rig/deform/terms.h"
 
-/* Of a vertex, as deform.vert has them; of a hair's, as lash.vert has them. */
+/* Floats of a vertex and of a hair's vertex, in the order in which pose.glsl reads them. */
 enum { TERMS = 12 + RIG_BASIS, PIN = 12 };
-_Static_assert(RIG_COMPONENTS == 8, "deform.vert has two vectors of components");
+_Static_assert(RIG_COMPONENTS == 8, "pose.glsl has two vectors of components");
 
 static json_t *floats(float *x, long n)
 {

@@ -1,5 +1,5 @@
 /* deform_terms: constants of a vertex in algorithm 1 (deform.h), which deform.c and the interactive page's shader
- * (render/viewer/deform.vert) share. Lengths mm, px of the modelling camera. */
+ * (render/viewer/pose.glsl) share. Lengths mm, px of the modelling camera. */
 #ifndef RIG_DEFORM_TERMS_H
 #define RIG_DEFORM_TERMS_H
 #include "rig/rig.h"
