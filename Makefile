@@ -64,7 +64,7 @@ ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenm
 # Asked when a recipe runs, not when this file is read: on a fresh machine set-up comes in between.
 EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
-LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
+LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_dnn -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
 	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lsqlite3 -lzip \
 	-llapacke -lopenblas -ljansson -linih -lxxhash -llcms2 -lm
 

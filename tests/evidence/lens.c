@@ -54,7 +54,7 @@ static void sharpen(struct canvas *c, struct rng *rng)
 
 static void optics(struct canvas *c, struct rng *rng)
 {
-	const float soft = expf((float)(-0.6 + 0.65 * rng_normal(rng))) * (float)c->width / 256;
+	const float soft = expf((float)(-0.75 + 0.65 * rng_normal(rng)));
 	if (soft > 0.25F)
 		blur(c, fminf(soft, 4));
 	if (!rng_below(rng, 12)) {

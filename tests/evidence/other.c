@@ -104,6 +104,63 @@ static void thing_draw(struct canvas *canvas, const struct thing *t, enum other_
 		}
 }
 
+struct shape {
+	int kind;  // 0 disc, 1 box, 2 strip, 3 triangle
+	float at[2], half[2], turn, soft, colour[2][3], light[2], stripes, grain;
+	const struct field *skin;
+};
+
+static struct shape shape_make(const struct canvas *c, struct rng *rng, bool test)
+{
+	struct shape s = { .kind = rng_below(rng, 4), .turn = range_of(rng, 0, 6.28) };
+	const float size = (float)c->width * 0.03F * expf(range_of(rng, 0, 2.8));
+	s.at[0] = range_of(rng, 0, c->width);
+	s.at[1] = range_of(rng, 0, c->height);
+	s.half[0] = size;
+	s.half[1] = s.kind == 2 ? 0.15F * size : size * range_of(rng, 0.3, 1);
+	s.soft = rng_below(rng, 3) ? 0.7F : range_of(rng, 1, 12);
+	colour(s.colour[0], rng);
+	colour(s.colour[1], rng);
+	s.light[0] = range_of(rng, -0.7, 0.7);
+	s.light[1] = range_of(rng, -0.7, 0.7);
+	s.stripes = rng_below(rng, 4) ? 0 : range_of(rng, 3, 40);
+	s.grain = range_of(rng, 0, 1.2);
+	s.skin = field_of(rng_below(rng, FIELD_KINDS), rng_below(rng, FIELD_SEEDS), test);
+	return s;
+}
+
+static void shape_draw(struct canvas *canvas, const struct shape *s, const bool *where)
+{
+	const float co = cosf(s->turn), si = sinf(s->turn), reach = s->half[0] * 1.5F + s->soft;
+	const int x0 = (int)fmaxf(s->at[0] - reach, 0), x1 = (int)fminf(s->at[0] + reach, (float)canvas->width - 1);
+	const int y0 = (int)fmaxf(s->at[1] - reach, 0), y1 = (int)fminf(s->at[1] + reach, (float)canvas->height - 1);
+	for (int j = y0; j <= y1; j++)
+		for (int i = x0; i <= x1; i++) {
+			if (where && !where[j * canvas->width + i])
+				continue;
+			const float dx = (float)i + 0.5F - s->at[0], dy = (float)j + 0.5F - s->at[1], x = co * dx + si * dy, y = co * dy - si * dx;
+			const float a = x / s->half[0], b = y / s->half[1];
+			const float in = s->kind == 0 ? 1 - hypotf(a, b) : s->kind == 3 ? 0.7F - fabsf(a) - fmaxf(b, -0.5F) * 0.7F - fmaxf(-b - 0.5F, 0) * 3 : 1 - fmaxf(fabsf(a), fabsf(b));
+			const float cover = smooth_step(in * s->half[1], -s->soft, s->soft);
+			if (cover <= 0)
+				continue;
+			const float stripe = s->stripes > 0 ? 0.5F + 0.5F * sinf(s->stripes * a) : 0;
+			const float lit = fmaxf(1 + s->light[0] * a + s->light[1] * b, 0) * (1 + s->grain * (field_at(s->skin, 2 * x, 2 * y) - 0.5F));
+			float *to = canvas->rgb + 3 * ((long)j * canvas->width + i);
+			for (int c = 0; c < 3; c++)
+				to[c] += cover * (lit * (s->colour[0][c] + stripe * (s->colour[1][c] - s->colour[0][c])) - to[c]);
+		}
+}
+
+void other_clutter(struct canvas *canvas, const bool *where, struct rng *rng, bool test)
+{
+	const int n = 2 + rng_below(rng, 24);
+	for (int k = 0; k < n; k++) {
+		const struct shape s = shape_make(canvas, rng, test);
+		shape_draw(canvas, &s, where);
+	}
+}
+
 void other_draw(struct canvas *canvas, enum other_kind kind, struct rng *rng, bool test)
 {
 	const struct field *a = field_of(rng_below(rng, FIELD_KINDS), rng_below(rng, FIELD_SEEDS), test);
@@ -119,7 +176,9 @@ void other_draw(struct canvas *canvas, enum other_kind kind, struct rng *rng, bo
 			for (int c = 0; c < 3; c++)
 				canvas->rgb[3 * ((long)j * canvas->width + i) + c] = (two[0][c] + q * (two[1][c] - two[0][c])) * (0.2F + 1.5F * p * p);
 		}
-	const int n = kind == OTHER_TEXTURE ? 0 : kind == OTHER_TEXT ? 1 : 1 + rng_below(rng, 4);
+	if (kind == OTHER_CLUTTER || !rng_below(rng, 3))
+		other_clutter(canvas, 0, rng, test);
+	const int n = kind == OTHER_TEXTURE || kind == OTHER_CLUTTER ? 0 : kind == OTHER_TEXT ? 1 : 1 + rng_below(rng, 4);
 	for (int k = 0; k < n; k++) {
 		const struct thing t = thing_make(canvas, rng, test);
 		thing_draw(canvas, &t, kind);

@@ -34,13 +34,15 @@ static void eyes_make(struct set *s, struct rng *rng, bool test)
 	}
 }
 
-/* Irises of 6 to 150 px radius in a picture of 256 px; the eye somewhere in it, or the face round a small one. */
+/* Irises of 6 to 48 px radius in a picture of any size, seldom less: the network is run at the scale where they suit. The eye lies
+ * somewhere in it, and round a small one the face. */
 static void look(struct canvas *c, const struct set *s, struct rng *rng, bool no_eye)
 {
-	const float size = (float)c->width / 256, radius = size * expf(range_of(rng, logf(6), logf(150)));
+	const bool far = rng_below(rng, 14) == 0;
+	const float radius = expf(far ? range_of(rng, logf(1.5F), logf(6)) : range_of(rng, logf(6), logf(48)));
 	const float turn = rng_below(rng, 3) ? (float)(0.2 * rng_normal(rng)) : range_of(rng, 0, 6.2831853);
 	const int e = rng_below(rng, 2);
-	const float *at = s->face.frame[e].at, fine = radius / size / 256;
+	const float *at = s->face.frame[e].at, fine = radius / (float)c->width;
 	float u = at[0], v = at[1];
 	if (no_eye) {
 		u = range_of(rng, -60, 60);
@@ -48,7 +50,7 @@ static void look(struct canvas *c, const struct set *s, struct rng *rng, bool no
 	}
 	const float spread = fine < 0.1F ? 0.25F : 0.15F;
 	const float x = (float)c->width * (0.5F + spread * (float)rng_normal(rng)), y = (float)c->height * (0.5F + spread * (float)rng_normal(rng));
-	canvas_view(c, u, v, x, y, 5.9F / (no_eye ? fminf(radius, 30 * size) : radius), turn, rng_below(rng, 2));
+	canvas_view(c, u, v, x, y, 5.9F / (no_eye ? fminf(radius, 30) : radius), turn, rng_below(rng, 2));
 }
 
 static void face_uv(float uv[2], const struct canvas *c, int i, int j)
@@ -58,8 +60,25 @@ static void face_uv(float uv[2], const struct canvas *c, int i, int j)
 	uv[1] = c->at[1] + c->m[1][0] * x + c->m[1][1] * y;
 }
 
+/* Clutter behind the face and, at times, over all but what is near the eyes: hats, hands, flowers, clothes. */
+static void hide_outside(struct canvas *c, bool *on, struct rng *rng, bool test)
+{
+	const int which = rng_below(rng, 6), side = rng_below(rng, 3);
+	if (which == 0)
+		return;
+	for (int j = 0; j < c->height; j++)
+		for (int i = 0; i < c->width; i++) {
+			float uv[2];
+			face_uv(uv, c, i, j);
+			const bool over = side == 0 ? uv[1] > 24 : side == 1 ? uv[1] < -26 : fabsf(uv[0]) > 52;
+			bool *o = &on[j * c->width + i];
+			*o = !*o || (which <= 2 && over);
+		}
+	other_clutter(c, on, rng, test);
+}
+
 /* Skin lit by its relief; what is behind the face is taken as it is. */
-static void draw_skin(struct canvas *c, const struct set *s)
+static void draw_skin(struct canvas *c, const struct set *s, struct rng *rng, bool test)
 {
 	const int w = c->width, h = c->height;
 	struct skin_point *skin = malloc((size_t)w * (size_t)h * sizeof *skin);
@@ -95,6 +114,7 @@ static void draw_skin(struct canvas *c, const struct set *s)
 			for (int k = 0; k < 3; k++)
 				rgb[k] = p->albedo[k] * lit[k] + shine * p->open;
 		}
+	hide_outside(c, on, rng, test);
 	free(skin);
 	free(on);
 }
@@ -215,9 +235,9 @@ static void draw_strands(struct canvas *c, const struct set *s, struct rng *rng)
 	}
 }
 
-static void draw_face(struct canvas *c, const struct set *s, struct rng *rng)
+static void draw_face(struct canvas *c, const struct set *s, struct rng *rng, bool test)
 {
-	draw_skin(c, s);
+	draw_skin(c, s, rng, test);
 	for (int e = 0; e < 2; e++)
 		draw_eye(c, s, e);
 	float dim[3];
@@ -249,10 +269,10 @@ struct drawn drawn_make(uint64_t number, bool test, int width, int height)
 	eyes_make(&s, &rng, test);
 	d.light = (int)s.light.kind;
 	d.iris = (int)s.ball[0].iris.family;
-	d.other = rng_below(&rng, 9) ? OTHER_NONE : 1 + rng_below(&rng, OTHER_KINDS - 1);
+	d.other = rng_below(&rng, 7) ? OTHER_NONE : 1 + rng_below(&rng, OTHER_KINDS - 1);
 	look(&c, &s, &rng, d.other == OTHER_FACE);
 	if (d.other == OTHER_NONE || d.other == OTHER_FACE)
-		draw_face(&c, &s, &rng);
+		draw_face(&c, &s, &rng, test);
 	else
 		other_draw(&c, (enum other_kind)d.other, &rng, test);
 	lens_expose(d.rgb, &c, d.other && d.other != OTHER_FACE ? (const float[3]){ 1, 1, 1 } : s.white, &rng);

@@ -13,7 +13,9 @@ import argparse
 import copy
 import math
 import queue
+import signal
 import subprocess
+import sys
 import threading
 import time
 
@@ -25,7 +27,7 @@ from torch.nn import functional as F
 CLASSES = ("skin", "lash", "sclera", "iris", "pupil", "reflection")
 WEIGHT = (0.8, 1.0, 1.2, 1.2, 1.5, 1.5)
 CHANNELS = (16, 24, 40, 64, 80)
-SMALL, LARGE = (128, 96), (256, 192)
+SMALL, LARGE = (128, 96), (192, 160)
 
 
 def step(i, o, stride=1):
@@ -85,6 +87,7 @@ class Pictures:
         self.process.terminate()
         while not self.queue.empty():
             self.queue.get()
+        self.process.wait()
 
 
 def soft_label(label):
@@ -98,9 +101,10 @@ def jitter(rgb, rng):
     """Mirror, colour, gamma, patches of noise: what is cheap here."""
     x = rgb.float() / 255
     n = x.shape[0]
-    gamma = torch.exp(0.25 * torch.randn(n, 1, 1, 1, generator=rng))
+    if torch.rand(1, generator=rng) < 0.3:
+        x = x.clamp(min=1e-4) ** torch.exp(0.25 * torch.randn(n, 1, 1, 1, generator=rng))
     gain = torch.exp(0.12 * torch.randn(n, 3, 1, 1, generator=rng) + 0.15 * torch.randn(n, 1, 1, 1, generator=rng))
-    x = (x.clamp(min=1e-4) ** gamma * gain).clamp(0, 1)
+    x = (x * gain).clamp(0, 1)
     for i in range(n):
         if torch.rand(1, generator=rng) < 0.12:
             h, w = x.shape[2:]
@@ -153,32 +157,60 @@ def seal(path):
         file.write(b"\x72\x1b\x0a\x07fnv1a64\x12\x10" + b"%016x" % value)
 
 
-class Average:
-    """The weights' running mean, which is better than their last value."""
+def blend(into, net, keep):
+    """into = keep into + (1 - keep) net, for all that a network holds."""
+    for a, b in zip(into.values(), net.values()):
+        if a.dtype.is_floating_point:
+            a.mul_(keep).add_(b, alpha=1 - keep)
+        else:
+            a.copy_(b)
+
+
+class Meeting:
+    """Weights in shared memory with which each worker now and then averages its own."""
 
     def __init__(self, net):
-        self.net, self.n = copy.deepcopy(net), 0
+        self.state = {name: value.clone().contiguous().share_memory_() for name, value in net.state_dict().items()}
+        self.lock = torch.multiprocessing.Lock()
 
-    def add(self, net):
-        self.n += 1
-        keep = min(0.998, self.n / (self.n + 10))
-        for a, b in zip(self.net.state_dict().values(), net.state_dict().values()):
-            if a.dtype.is_floating_point:
-                a.mul_(keep).add_(b, alpha=1 - keep)
-            else:
-                a.copy_(b)
+    def visit(self, net):
+        with torch.no_grad(), self.lock:
+            blend(self.state, net.state_dict(), 0.5)
+            blend(net.state_dict(), self.state, 0)
 
 
-def train(args):
+def optimise(net, optimiser, pictures, rng):
+    rgb, label = pictures.next()
+    x = jitter(rgb, rng)
+    if torch.rand(1, generator=rng) < 0.5:
+        x, label = x.flip(3), label.flip(2)
+    if torch.rand(1, generator=rng) < 0.3:
+        x, label = x.flip(2), label.flip(1)
+    loss = loss_of(net(x.to(memory_format=torch.channels_last)), soft_label(label))
+    optimiser.zero_grad()
+    loss.backward()
+    nn.utils.clip_grad_norm_(net.parameters(), 2)
+    optimiser.step()
+    return float(loss.detach())
+
+
+def new_net(args):
     torch.manual_seed(args.seed)
-    rng = torch.Generator().manual_seed(args.seed)
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
         net.load_state_dict(torch.load(args.start)["net"])
-    print("%d parameters" % sum(p.numel() for p in net.parameters()), flush=True)
-    best = Average(net)
+    return net
+
+
+def train(args, worker=0, meeting=None):
+    """One worker of args.workers; the first keeps the weights' running mean, which is better than their last value."""
+    torch.set_num_threads(args.threads)
+    torch.set_flush_denormal(True)
+    rng = torch.Generator().manual_seed(args.seed + worker)
+    net = new_net(args)
+    mean, visits = copy.deepcopy(net), 0
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
-    begun, kept, number, seen, losses = time.time(), time.time(), args.first, 0, []
+    begun, kept, number, losses = time.time(), time.time(), args.first + 100000000 * worker, []
     size = SMALL if args.small > 0 else LARGE
     pictures = Pictures(args.make, number, size, args.batch)
     while True:
@@ -187,36 +219,29 @@ def train(args):
             break
         if size == SMALL and done > args.small:
             pictures.close()
-            size = LARGE
-            number += seen + 1000
+            size, number = LARGE, number + 50000000
             pictures = Pictures(args.make, number, size, args.batch)
         for group in optimiser.param_groups:
-            group["lr"] = args.rate * min(1, len(losses) / (20 if args.short else 200) + 0.02) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
-        rgb, label = pictures.next()
-        x = jitter(rgb, rng)
-        if torch.rand(1, generator=rng) < 0.5:
-            x, label = x.flip(3), label.flip(2)
-        if torch.rand(1, generator=rng) < 0.3:
-            x, label = x.flip(2), label.flip(1)
-        loss = loss_of(net(x.to(memory_format=torch.channels_last)), soft_label(label))
-        optimiser.zero_grad()
-        loss.backward()
-        nn.utils.clip_grad_norm_(net.parameters(), 2)
-        optimiser.step()
-        best.add(net)
-        losses.append(float(loss.detach()))
-        seen += args.batch
+            warm = min(1, len(losses) / (20 if args.short else 200) + 0.02)
+            group["lr"] = args.rate * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+        losses.append(optimise(net, optimiser, pictures, rng))
+        if meeting and len(losses) % 20 == 0:
+            meeting.visit(net)
+        if worker:
+            continue
+        if len(losses) % 4 == 0:
+            visits += 1
+            blend(mean.state_dict(), net.state_dict(), min(0.995, visits / (visits + 10)))
         if len(losses) % 50 == 0:
-            print("%5.1f min, step %d, %d pictures, loss %.4f" % ((time.time() - begun) / 60, len(losses), seen, np.mean(losses[-50:])), flush=True)
+            print("%5.1f min, step %d, loss %.4f" % ((time.time() - begun) / 60, len(losses), np.mean(losses[-50:])), flush=True)
         if args.keep and time.time() - kept > 60 * args.every:
             kept = time.time()
-            torch.save({"net": best.net.state_dict(), "steps": len(losses)}, args.keep)
+            torch.save({"net": mean.state_dict(), "steps": len(losses)}, args.keep)
             if args.out:
-                export(best.net, args.out)
-            judge(best.net, args.make, 0, 4)
-            net.train()
+                export(mean, args.out)
+            judge(mean, args.make, 0, 8)
     pictures.close()
-    return best.net, losses
+    return mean, losses
 
 
 def main():
@@ -227,19 +252,19 @@ def main():
     p.add_argument("--start", help="checkpoint to begin with")
     p.add_argument("--every", type=float, default=4, help="minutes between checkpoints")
     p.add_argument("--minutes", type=float, default=60)
-    p.add_argument("--small", type=float, default=0.6, help="share of the time on small pictures")
+    p.add_argument("--small", type=float, default=0.8, help="share of the time on small pictures")
     p.add_argument("--rate", type=float, default=2e-3)
     p.add_argument("--batch", type=int, default=8)
     p.add_argument("--first", type=int, default=0)
     p.add_argument("--seed", type=int, default=1)
-    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--workers", type=int, default=1, help="processes that train side by side and average their weights")
+    p.add_argument("--threads", type=int, default=1, help="of each")
     p.add_argument("--short", action="store_true")
     p.add_argument("--short-steps", type=int, default=80)
     p.add_argument("--judge", metavar="FILE")
     p.add_argument("--pictures", type=int, default=512, help="of the test split, for --judge")
     args = p.parse_args()
     torch.set_num_threads(args.threads)
-    torch.set_flush_denormal(True)
     if args.judge:
         net = Net()
         net.load_state_dict(torch.load(args.judge)["net"])
@@ -248,8 +273,16 @@ def main():
         judge(net, args.make, 0, args.pictures // 16)
         return
     if args.short:
-        args.batch, args.small, args.keep = 8, 1, None
-    net, losses = train(args)
+        args.batch, args.small, args.keep, args.workers = 8, 1, None, 1
+    # Ended from outside, it ends the workers beside it.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    meeting = Meeting(new_net(args)) if args.workers > 1 else None
+    beside = [torch.multiprocessing.Process(target=train, args=(args, k, meeting), daemon=True) for k in range(1, args.workers)]
+    for process in beside:
+        process.start()
+    net, losses = train(args, 0, meeting)
+    for process in beside:
+        process.join()
     if args.short:
         first, last = np.mean(losses[:10]), np.mean(losses[-20:])
         print("loss %.3f, at the end %.3f" % (first, last))

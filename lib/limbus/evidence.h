@@ -1,0 +1,56 @@
+/* evidence: for each pixel the probability of being pupil, iris, sclera, lash or brow, reflection, or skin and all else, from a
+ * small convolutional network (config/evidence.onnx; trained on drawn eyes: tests/evidence/README.md).
+ * Coordinates are px of the photograph, centre of its first pixel (0.5, 0.5). A plane's pixel (i, j) is centred at
+ * (x0 + (i + 0.5) scale, y0 + (j + 0.5) scale).
+ */
+#ifndef LIMBUS_EVIDENCE_H
+#define LIMBUS_EVIDENCE_H
+#include "base/err.h"
+#include "image/photo/photo.h"
+
+enum evidence_class { EVIDENCE_SKIN, EVIDENCE_LASH, EVIDENCE_SCLERA, EVIDENCE_IRIS, EVIDENCE_PUPIL, EVIDENCE_REFLECTION, EVIDENCE_CLASSES };
+
+struct evidence {
+	int width, height;
+	double x0, y0, scale;            // photo px of the planes' corner; photo px in one of the planes'
+	float *plane[EVIDENCE_CLASSES];  // [height][width]; at each pixel they sum to 1; plane[0] owns them all
+};
+
+/* Where an iris may be. */
+struct evidence_region {
+	double x, y, radius;  // centre of iris and pupil by their evidence; radius of a disc as wide along its longer side; photo px
+	double score;         // 0..1: mean evidence of iris and pupil in it, less where no sclera or lid lies beside it
+};
+
+enum { EVIDENCE_REGIONS = 4 };
+
+struct evidence_net;
+
+/* Loads the network. False, err set: the file is missing, damaged or of another shape. evidence_close, which accepts null. */
+bool evidence_open(struct evidence_net **net, const char *path, struct err *err);
+void evidence_close(struct evidence_net *net);
+
+/* Evidence round (cx, cy), at the scale that suits an iris of so many px radius: it becomes EVIDENCE_RADIUS px in the network's
+ * input, so that the planes reach 3.2 radii to the sides, 2 up and down, with a pixel of 1/20 of the radius. What lies beyond the
+ * photograph repeats its border. evidence_free. */
+enum { EVIDENCE_RADIUS = 40 };
+bool evidence_window(struct evidence *out, struct evidence_net *net, const struct photo *photo, double cx, double cy, double radius,
+                     struct err *err);
+
+/* Evidence over the whole photograph, reduced (or enlarged) to long_px px on its longer side in the network's input; irises of 6 to
+ * 48 px radius there are told. The planes' scale is twice the reduction. evidence_free. */
+bool evidence_whole(struct evidence *out, struct evidence_net *net, const struct photo *photo, int long_px, struct err *err);
+
+/* Candidate irises of a photograph, best first, from the whole of it at 64, 128 and 256 px and, where those show none for sure, at
+ * 512 px: irises of 1.2 % to 75 % of the longer side in radius. *n at most EVIDENCE_REGIONS, 0 where nothing looks like an iris. */
+bool evidence_find(struct evidence_region out[EVIDENCE_REGIONS], int *n, struct evidence_net *net, const struct photo *photo, struct err *err);
+
+/* The candidates in planes that are already there; returns how many. */
+int evidence_regions(struct evidence_region out[EVIDENCE_REGIONS], const struct evidence *evidence);
+
+/* Probability of a class at (x, y) px of the photograph, bilinear, clamped to the border. */
+float evidence_at(const struct evidence *evidence, enum evidence_class class, double x, double y);
+
+void evidence_free(struct evidence *evidence);
+
+#endif
