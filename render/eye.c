@@ -28,7 +28,7 @@ static struct image trace(struct job *job, struct scene_view *view, const struct
 	return image;
 }
 
-/* An eye turned by yaw, pitch (degrees) in the studio; view: as it was seen. */
+/* Renders the eye turned by yaw and pitch (degrees) in the studio; view: out. */
 static struct image turned(struct job *job, struct scene_view *view, double yaw, double pitch, int size, bool mirror)
 {
 	struct scene_lighting light = scene_lighting_of(&job->studio, mirror ? &job->studio : 0, job->conf->lights, job->conf->light_directions);
@@ -127,7 +127,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 		return true;
 	if (!job_ready(job, err) || !shot_ready(job, shot, err))
 		return false;
-	// The room's even reflection is in the texture already; only its lamps, which the texture leaves out, come back.
+	// The even reflection of the room is part of the texture; only the lamps, which the texture leaves out, are mirrored.
 	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, job->conf->light_directions);
 	struct scene_view view = shot_view(shot);
 	struct shot_difference differs;

@@ -1,4 +1,4 @@
-/* One eye on its way to pictures: what it is made of, and whether there is enough of it. */
+/* One eye: the inputs of its pictures, whether there are enough, its scene and light. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,7 +62,7 @@ bool jobs_open(struct jobs *jobs, struct stage *stage, const struct capture *cap
 	return ok;
 }
 
-/* What is drawn in place of artifacts that are missing or unusable: recorded as skipped. */
+/* Records as skipped what is drawn in place of artifacts that are missing or unusable. */
 static void say_what_lacks(struct job *job)
 {
 	static const char *const instead[] = { [2] = "an iris without relief is drawn", [3] = "the tissue of a blue eye is drawn" };
@@ -91,7 +91,6 @@ bool job_studio(struct job *job, struct err *err)
 	return true;
 }
 
-/* Everything that all pictures share. */
 bool job_ready(struct job *job, struct err *err)
 {
 	struct shot *reference = &job->shots[job->reference];

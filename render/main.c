@@ -9,7 +9,7 @@
 #include "render/face/skin.h"
 #include "render/viewer/viewer.h"
 
-/* A folder without photographs has no fitted eye, and need not have one: its characters get plain ones. */
+/* A folder without photographs has no fitted eye and needs none: its characters get plain ones. */
 static bool photos_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
 {
 	struct file_list photos;

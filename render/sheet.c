@@ -21,7 +21,7 @@ struct image sheet_strip(int n, const struct image frames[])
 	return out;
 }
 
-/* Reads a picture and shrinks it to `width` px; null, and no fault, when it is not there. */
+/* Reads a picture and reduces it to `width` px; null when it cannot be read, which is no error. */
 static uint8_t *thumbnail(int *height, const char *path, int width)
 {
 	struct err err = { 0 };

@@ -1,5 +1,5 @@
-/* The last of a run: contact sheets and the two pages. Little of it runs on more than one core, and the interactive page
- * needs nothing of the rest: they are made at the same time. */
+/* The end of a run: contact sheets and the two pages. Little of it is parallel in itself, and the interactive page needs nothing of the
+ * rest: they are made at the same time. */
 #include <omp.h>
 
 #include "render/page/index.h"
@@ -28,7 +28,7 @@ bool show(struct skin_job *faces, bool drawn, struct err *err)
 		}
 #pragma omp section
 		{
-			// The page is made even where a picture could not be: it says what is missing and why.
+			// The page is made even where a picture failed: it lists what is missing and why.
 			if (drawn)
 				sheets(faces->photographed, &of_sheets);
 			page_begin(&page, faces->stage, faces->capture, faces->render, &of_page);

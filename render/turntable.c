@@ -1,4 +1,4 @@
-/* What programs that go on from here take: the eye turned to and fro as a film, and its layers. */
+/* For other programs: the eye turned to and fro as a film, and the layers of a picture. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

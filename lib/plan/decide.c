@@ -12,7 +12,7 @@
 #include "image/photo/photo.h"
 #include "plan/meshes.h"
 
-/* The lens is in capture.conf: without views there is nothing left to be found. */
+/* True when capture.conf gives the lens: of a video alone there is then nothing to find. */
 static bool lens_given(const struct conf *conf)
 {
 	static const char *const keys[] = { "camera.focal_px", "camera.focal_mm", "camera.sensor_mm" };
@@ -30,7 +30,7 @@ static bool ends_with(const char *s, const char *tail)
 	return n > m && !strcmp(s + n - m, tail);
 }
 
-/* One folder's names into the listing; *n gets how many of them end in one of `kinds` (null: all count). */
+/* Appends a folder's names to the listing. n: out, how many of them end in one of `kinds` (null: all). */
 static bool look(int *n, char **names, const char *capture, const char *dir, const char *const kinds[], struct err *err)
 {
 	struct file_list list;
@@ -77,7 +77,7 @@ static bool holdings(int *have, struct plan *plan, struct err *err)
 	return ok;
 }
 
-/* Megapixels of a photograph from the first part of its file; where that does not tell, from its length. */
+/* Megapixels of a photograph from the first part of its file, else estimated from the file's length. */
 static double megapixels(const char *path)
 {
 	enum { HEAD = 1 << 18 };
@@ -134,7 +134,7 @@ static const char *other_way(const struct plan_stage *s, int have)
 	return 0;
 }
 
-/* What transfer does, where the characters' meshes tell. */
+/* The reason shown for transfer, by how many characters have the subject's topology. */
 static const char *transfer_does(const char *usual, const char *capture)
 {
 	int all, same;

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "mesh/mesh_peek.h"
 
-/* Longer files are not looked into: plan is started by every make. transfer says the same of them when it has read them. */
+/* Longer files are not read: every make starts plan. transfer finds the same out when it reads them. */
 enum { MOST = 64 << 20 };
 
 static char *subject_of(const char *capture)
@@ -28,7 +28,7 @@ static bool is_mesh(const char *name)
 	return n > 4 && (!strcmp(name + n - 4, ".ply") || !strcmp(name + n - 4, ".obj"));
 }
 
-/* subject: read when it is first needed. */
+/* True when the mesh at `path` has exactly the subject's faces. subject: loaded at the first call that needs it. */
 static bool is_same(struct mesh *subject, const char *subject_path, long vertices, const char *path)
 {
 	struct mesh target;

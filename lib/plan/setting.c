@@ -15,7 +15,7 @@ static bool has_front(const struct front *front, const char *stage)
 	return false;
 }
 
-/* "mm, %": the units that the fronts have, each once. free(). */
+/* The units of the fronts, each once: "mm, %". free(). */
 static char *units(const struct front *front)
 {
 	char *list = mem_str("");
@@ -40,7 +40,7 @@ static bool none_chosen(const int chosen[PLAN_STAGES])
 	return true;
 }
 
-/* Each row's setting and time; the line of log: which, how exact, how long. free(). */
+/* Sets each row's setting and seconds; returns the line for the log: which points, their errors, seconds in all. free(). */
 static char *tell(struct plan *plan, const struct front *front, const struct front_ask *ask, const int chosen[PLAN_STAGES])
 {
 	char *line = mem_printf("%s:", ask->text), *more;

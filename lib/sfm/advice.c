@@ -8,7 +8,7 @@
 #include "sfm/colmap/db.h"
 #include "sfm/colmap/db_matches.h"
 
-/* Share of pairs without depth that no walk round a head has (measured: 0 to 0.03; pictures from one place: 1). */
+/* Share of flat pairs above which the pictures show no depth. Measured: 0 to 0.03 on walks round a head, 1 from one place. */
 static const double mostly_flat = 0.7;
 
 bool advice_refuse(const struct views *views, struct stage *stage, struct err *err)
@@ -47,7 +47,7 @@ bool advice_is_flat(bool *flat, struct stage *stage, struct err *err)
 
 void advice_warn(const struct colmap_model *model, const struct views *views, struct stage *stage)
 {
-	// Of the middling sharpness: pictures of one head in one light hardly differ by more.
+	// Of the median sharpness: pictures of one head in one light hardly differ by more.
 	const double blurred = 0.25;
 	double *sharp = mem_array((size_t)views->n_used + 1, sizeof *sharp);
 	for (int i = 0; i < views->n_used; i++)

@@ -42,7 +42,7 @@ static int by_id(const void *a, const void *b)
 static bool extract(struct stage *stage, const struct calibrate_options *o, int n_new, int threads, struct err *err)
 {
 	char *px = mem_printf("%d", o->picture_px), *features = mem_printf("%d", o->features), *t = mem_printf("%d", threads);
-	// The pictures come in the size that is looked at: their first octave is their own resolution.
+	// The pictures have the size that is searched: first octave 0 is their own resolution.
 	const char *const args[] = { "--database_path", stage_path(stage, CALIBRATE_DIR "/database.db"),
 		"--image_path", stage_path(stage, CALIBRATE_DIR "/pictures"),
 		"--image_list_path", stage_path(stage, CALIBRATE_DIR "/new.txt"),
@@ -83,7 +83,7 @@ bool features_make(bool *grows, struct views *views, struct stage *stage, const 
 		return false;
 	bool ok = sync(&same, views, db, err);
 	db_close(db);
-	// Pictures that are new come last.
+	// By id: new pictures have the highest ids and come last.
 	qsort(views->v, (size_t)views->n_used, sizeof *views->v, by_id);
 	const char *list = stage_path(stage, CALIBRATE_DIR "/new.txt");
 	ok = ok && list_new(&n_new, views, list, err) && (!n_new || extract(stage, o, n_new, stage->threads, err))

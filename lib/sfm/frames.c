@@ -17,7 +17,7 @@ struct look {
 	long n;
 };
 
-/* Every frame's luma, as sharp as it is and as far from the one before. */
+/* Measures every frame: its sharpness, and its difference from the one before. */
 static bool look_through(struct look *look, struct video *video, const struct video_info *info, struct stage *stage, struct err *err)
 {
 	uint8_t thumb[2][THUMB * THUMB];
@@ -43,7 +43,7 @@ static bool look_through(struct look *look, struct video *video, const struct vi
 	return true;
 }
 
-/* The choice of an earlier run on these bytes. */
+/* Reads the selection that an earlier run made from the same file; returns how many frames, 0 where there is none. */
 static int recall(long *chosen, int want, const char *key, struct stage *stage)
 {
 	enum { LIMIT = 1 << 20 };
@@ -89,7 +89,7 @@ static int choose(long *chosen, int want, const char *file, const char *key, con
 	return n;
 }
 
-/* The pictures of views[0..n) that do not stand yet. */
+/* Decodes the video and writes the pictures of views[0..n), which stand in the order of their frames. */
 static bool decode(struct view *views, int n, const struct video_conf *conf, struct stage *stage, const struct calibrate_options *o,
                    struct err *err)
 {
@@ -124,7 +124,7 @@ static void append(struct views *views, int n, const long *chosen, const char *f
 		struct view *v = &views->v[views->n++];
 		*v = (struct view){ .file = mem_str(file), .focal_px = NAN, .frame = chosen[i] };
 		snprintf(v->picture, sizeof v->picture, "%.16s-%d-%ld.jpg", hash, picture_px, chosen[i]);
-		// One lens took all of it, and no other picture.
+		// The file stands for the camera: its frames share one lens, with no other picture.
 		snprintf(v->maker, sizeof v->maker, "%.63s", file);
 	}
 }

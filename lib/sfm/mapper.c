@@ -22,7 +22,7 @@ bool mapper_run(struct stage *stage, const struct views *views, const struct map
 	char *filter = mem_printf("%g", o->filter_px), *angle = mem_printf("%g", o->tri_deg), *rounds = mem_printf("%d", o->ba_rounds);
 	char *least = mem_printf("%d", views->n_used < 10 ? 2 : 5), *matches = mem_printf("%d", o->min_matches);
 	const char *refine = step->refine ? "1" : "0", *to = stage_path(stage, "%s", step->to);
-	// Its sums depend on the number of threads; one is hardly slower, for most of its work is not shared out anyway.
+	// One thread: its sums depend on the number of threads, and most of its work is not parallel anyway.
 	const char *args[48] = { "--database_path", stage_path(stage, CALIBRATE_DIR "/database.db"),
 		"--image_path", stage_path(stage, CALIBRATE_DIR "/pictures"), "--output_path", to, "--Mapper.num_threads", "1",
 		"--Mapper.min_num_matches", matches, "--Mapper.min_model_size", least, "--Mapper.max_num_models", "5",

@@ -11,7 +11,7 @@
 #define LESS CALIBRATE_DIR "/less"
 #define JOINED CALIBRATE_DIR "/joined"
 
-/* The picture that sees the most points: it finds its way back in whatever else moves. */
+/* Name of the image that sees the most points: it can be registered again most surely. */
 static const char *best_held(const struct colmap_model *m)
 {
 	int most = -1, best = 0;
@@ -26,8 +26,9 @@ static const char *best_held(const struct colmap_model *m)
 	return m->images[best].name;
 }
 
-/* Merger and mapper: the result in JOINED. COLMAP's bundle adjuster alone cannot be held to one thread, and on several its
- * sums differ from run to run; its mapper can, and adjusts all when a picture comes: one is taken out for it to put back. */
+/* Runs merger and mapper; the result stands in JOINED. COLMAP's bundle adjuster cannot be restricted to one thread, and on several its
+ * sums differ from run to run. Its mapper can, and it adjusts everything when it registers a picture: so one picture is removed from
+ * the merged model for the mapper to register again. */
 static bool run_all(const struct colmap_model *best, const char *one, const char *other, const struct views *views,
                     struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
@@ -43,8 +44,8 @@ static bool run_all(const struct colmap_model *best, const char *one, const char
 	return ok;
 }
 
-/* Every picture still sees enough points, and the one taken out is back: where the models were laid onto each other wrongly,
- * that is not so. */
+/* Checks a merged model: every picture sees enough points, and the one that was removed is registered again. Neither holds where the
+ * models were aligned wrongly. */
 static bool holds(const struct colmap_model *m, const char *back, int least)
 {
 	bool is_back = false;
@@ -62,7 +63,7 @@ static bool holds(const struct colmap_model *m, const char *back, int least)
 	return true;
 }
 
-/* *joined: the other model brought pictures, and fits. */
+/* Merges one other model into best. joined: out, whether it brought pictures and fits. */
 static bool join(bool *joined, struct colmap_model *best, const char *one, const char *other, const struct views *views,
                  struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
@@ -94,7 +95,7 @@ bool merge_models(struct colmap_model *best, int *n_models, int at, const struct
 			continue;
 		ok = join(&joined, best, one, other, views, stage, o, err);
 		if (joined) {
-			// What is joined next is joined to this.
+			// The next one is merged into this result.
 			mapper_remove(stage, TRIALS "/joined");
 			ok = file_mkdirs(stage_path(stage, TRIALS), err) && colmap_save(best, stage_path(stage, TRIALS "/joined"), COLMAP_BINARY, err);
 			one = stage_path(stage, TRIALS "/joined");

@@ -16,7 +16,7 @@ static void remove_trials(struct stage *stage)
 	mapper_remove(stage, TRIALS);
 }
 
-/* Puts the chosen model where it is kept, under seal. */
+/* Saves the chosen model in MODEL_DIR and seals it. */
 static bool keep(const struct colmap_model *model, struct stage *stage, struct err *err)
 {
 	const char *dir = stage_path(stage, MODEL_DIR);
@@ -24,8 +24,8 @@ static bool keep(const struct colmap_model *model, struct stage *stage, struct e
 	return colmap_save(model, dir, COLMAP_BINARY, err) && colmap_seal(dir, err);
 }
 
-/* The model with the most pictures, then the most points. *n: how many models there are; *at: its number, -1 of one gone on
- * with. */
+/* Loads the model with the most images, then the most points. n: out, how many models there are; at: out, its number, -1 for one that
+ * was gone on with. */
 static bool best_trial(struct colmap_model *best, int *n, int *at, struct stage *stage, struct err *err)
 {
 	*best = (struct colmap_model){ 0 };
@@ -52,7 +52,8 @@ static bool best_trial(struct colmap_model *best, int *n, int *at, struct stage 
 	return true;
 }
 
-/* The model that was kept, when it still says what these pictures say. False without an error: there is none. */
+/* Loads the kept model where it can be gone on with: the old pictures are unchanged and the new ones few. Returns false, no error set,
+ * where there is none. */
 static bool recall(struct colmap_model *kept, const struct views *views, bool grows, struct stage *stage,
                    const struct calibrate_options *o)
 {
@@ -62,7 +63,7 @@ static bool recall(struct colmap_model *kept, const struct views *views, bool gr
 	*kept = (struct colmap_model){ 0 };
 	for (int i = 0; i < views->n_used; i++)
 		n_new += views->v[i].is_new;
-	// The seal is written last: a model without one is half a model.
+	// The seal is written last: a model without one is incomplete.
 	char *file = mem_printf("%s/seal", dir);
 	bool there = file_exists(file);
 	free(file);
@@ -74,7 +75,7 @@ static bool recall(struct colmap_model *kept, const struct views *views, bool gr
 	return false;
 }
 
-/* A picture has come whose lens none of the model's pictures has: all that is known of it is a guess. */
+/* True when a new picture has a camera that no image of the model has: its parameters are but a guess, and have to be refined. */
 static bool new_lens(const struct colmap_model *kept, const struct views *views)
 {
 	for (int i = 0; i < views->n_used; i++) {
@@ -93,7 +94,7 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
 	remove_trials(stage);
 	struct err why = { 0 };
 	bool ok = mapper_run(stage, views, step, o, &why);
-	// That it found no pair to begin with is a result, and for the photographs to answer for.
+	// That it finds no pair to begin with is a result, not a failure: the photographs are to blame.
 	if (!ok && !strstr(why.msg, "failed to create sparse model") && !strstr(why.msg, "No good initial image pair"))
 		return err_set(err, "%s", why.msg);
 	*n_models = 0;

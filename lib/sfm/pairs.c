@@ -9,7 +9,8 @@
 #include "sfm/colmap/db_matches.h"
 #include "sfm/colmap/run.h"
 
-/* The check draws at random: in so many parts, whatever the number of threads, its result is always the same. */
+/* The verification draws at random (RANSAC). It is run in this many parts whatever the number of threads, so that its result is always
+ * the same. */
 enum { PARTS = 4 };
 
 static bool load_features(struct sfm_features *f, const struct views *views, struct db *db, struct err *err)
@@ -20,7 +21,7 @@ static bool load_features(struct sfm_features *f, const struct views *views, str
 	return ok;
 }
 
-/* Only pictures that came now are compared: others have been. */
+/* Selects the pairs to match: those with a new picture; the others have been matched before. */
 static struct sfm_pair *choose(int *n, const struct sfm_features *f, const struct views *views, struct stage *stage,
                                const struct calibrate_options *o)
 {

@@ -78,7 +78,7 @@ bool pictures_save(const struct views *views, struct pictures *known, const char
 	return ok;
 }
 
-/* The number of that camera; new ones come behind those that are known. */
+/* The number of the camera of that key; a new one is appended. */
 static int camera_number(struct pictures *known, const char *key)
 {
 	size_t n = json_array_size(known->cameras);
@@ -91,7 +91,7 @@ static int camera_number(struct pictures *known, const char *key)
 	return (int)n;
 }
 
-/* COLMAP's parameters of a lens without distortion, which it then refines; the middle of the picture as centre. */
+/* Initial parameters in COLMAP's order: no distortion, principal point in the middle of the picture. */
 static struct colmap_camera first_guess(const struct view *v, int number, double focal, const struct calibrate_options *o)
 {
 	static const enum colmap_kind lenses[] = { COLMAP_SIMPLE_RADIAL, COLMAP_RADIAL, COLMAP_OPENCV };
@@ -105,7 +105,7 @@ static struct colmap_camera first_guess(const struct view *v, int number, double
 
 void pictures_cameras(struct views *views, struct pictures *known, const struct calibrate_options *o)
 {
-	// COLMAP's own guess where nothing is known, 1.2 times the longer side, is what people's lenses are like.
+	// COLMAP's own initial guess: a focal length of 1.2 times the longer side, as of common lenses.
 	const double guess = 1.2;
 	for (int i = 0; i < views->n_used; i++) {
 		struct view *v = &views->v[i];
@@ -120,7 +120,7 @@ void pictures_cameras(struct views *views, struct pictures *known, const struct 
 			int n = v->camera + 1;
 			views->cameras = mem_grow(views->cameras, (size_t)n, sizeof *views->cameras);
 			views->has_focal = mem_grow(views->has_focal, (size_t)n, sizeof *views->has_focal);
-			// Numbers between belong to cameras of views no longer there: any lens will do for them.
+			// Numbers between belong to cameras of views that are gone: their values do not matter.
 			for (int k = views->n_cameras; k < n; k++) {
 				views->cameras[k] = first_guess(v, k, focal, o);
 				views->has_focal[k] = has;

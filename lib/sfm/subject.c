@@ -22,8 +22,8 @@ bool subject_given(struct stage *stage)
 	return file_exists(stage_path(stage, "subject.ply")) || file_exists(stage_path(stage, "subject.obj"));
 }
 
-/* Debian builds COLMAP without CGAL: of its two meshers only this one is there. On several threads its sums, and so its
- * triangles, differ from run to run. */
+/* COLMAP's Poisson mesher; Debian builds COLMAP without CGAL, so that its other mesher is missing. One thread: on several its sums, and so
+ * its triangles, differ from run to run. */
 static bool poisson(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	char *depth = mem_printf("%d", o->mesh_depth), *trim = mem_printf("%g", o->mesh_trim);
@@ -36,7 +36,8 @@ static bool poisson(struct stage *stage, const struct calibrate_options *o, stru
 	return ok;
 }
 
-/* World to head, and the ball's inside alone: the mesher closes what it does not know with balloons. */
+/* Transforms the mesh from world to head and keeps the inside of the subject's ball: where it has no points the mesher closes the
+ * surface with balloons. */
 static void clean(struct mesh *mesh, const struct head *head)
 {
 	bool *keep = mem_new((size_t)mesh->n_vertices, sizeof *keep);

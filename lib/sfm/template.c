@@ -11,7 +11,7 @@
 
 enum { POINTS = 20000, TEMPLATE_VERTICES = 2000000 };
 
-/* Median distance of the cloud's points from a mesh, mm; those farther than `reach` lie so far off. */
+/* Median distance of the cloud's points from a mesh, mm; distances above `reach` count as `reach`. */
 static double residual(const struct mesh *mesh, const struct cloud_points *cloud, const struct sfm_frame *frame, double reach)
 {
 	struct closest_scene *scene = closest_new(mesh, 0);

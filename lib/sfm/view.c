@@ -84,7 +84,7 @@ double view_difference(const uint8_t *thumb, const uint8_t *other)
 
 double view_focal_known(const struct view *view, const struct calibrate_options *o)
 {
-	// capture.conf speaks of the eye's photographs and the views alike: one camera took them, or EXIF tells.
+	// capture.conf's camera.* holds for the eye's photographs and the views alike; without it EXIF counts.
 	double focal = camera_keys_focal(&o->camera, view->width, view->height);
 	return isfinite(focal) ? focal : view->focal_px;
 }

@@ -35,7 +35,8 @@ static bool make_picture(struct view *view, const char *path, const struct photo
 	return ok;
 }
 
-/* Decodes one photograph unless its picture stands. A bad photograph is left out; only what cannot be written fails. */
+/* Decodes one photograph and writes its picture. A photograph that cannot be read is left out with the reason; returns false only where
+ * the picture cannot be written. */
 static bool prepare(struct view *view, const char *path, const char *picture, const struct calibrate_options *o,
                     struct err *err)
 {
@@ -63,7 +64,7 @@ static void add_folder(struct views *views, struct stage *stage, const char *dir
 	file_list_free(&list);
 }
 
-/* The name says what is in it: content, and the size it was reduced to. */
+/* Names each picture by the hash of its photograph and the size to which it is reduced. */
 static void name_pictures(struct views *views, struct stage *stage, const struct calibrate_options *o)
 {
 	for (int i = 0; i < views->n; i++) {
@@ -104,7 +105,7 @@ static bool prepare_all(struct views *views, struct stage *stage, const struct c
 	return ok;
 }
 
-/* Pictures hardly different from the one kept before them say nothing new; of very many, every so manieth is kept. */
+/* Leaves out pictures that hardly differ from the one kept before them; of more than max_views keeps that many, evenly spaced. */
 static void thin(struct views *views, struct stage *stage, const struct calibrate_options *o)
 {
 	int last = -1, same = 0, kept = 0, over = 0;
@@ -143,7 +144,7 @@ static void say_left_out(const struct views *views, struct stage *stage)
 			stage_skipped(stage, "%s: %s", views->v[i].file, views->v[i].reason);
 }
 
-/* Those in use first, the order kept. */
+/* Puts those in use first; otherwise keeps the order. */
 static void sort_used(struct views *views)
 {
 	struct view *out = mem_new((size_t)views->n, sizeof *out);
@@ -158,7 +159,7 @@ static void sort_used(struct views *views)
 	views->v = out;
 }
 
-/* A few are enough for the video's lens beside photographs; alone they have to carry everything. */
+/* How many frames to take: beside photographs a few suffice, for the video's lens; without them all cameras come from frames. */
 static int frames_wanted(const struct views *views, const struct calibrate_options *o)
 {
 	int n = 0;

@@ -16,7 +16,7 @@ static const char *output(struct skin_job *job, const char *name, const char *su
 	return stage_path(job->stage, "work/render/%s%s", name, suffix) + strlen(job->stage->capture) + 1;
 }
 
-/* A clip on its way. */
+/* A clip while it is drawn. */
 struct clip {
 	struct skin_job *job;
 	struct skin_target *t;
@@ -31,7 +31,7 @@ struct clip {
 	int step;
 };
 
-/* The input's frame of that number, shrunk, in the left part of the picture. */
+/* Reads the input up to the frame of that number and puts it, reduced, into the left part of the picture. */
 static bool put_input(struct clip *c, int number, struct err *err)
 {
 	bool got = true;
@@ -80,7 +80,7 @@ static bool frames(struct clip *c, struct err *err)
 	return true;
 }
 
-/* Every so many frames make at most clip_fps a second. */
+/* Every how many frames one is drawn, so that there are at most `fps` a second. */
 static int step_of(const struct drive *d, double fps)
 {
 	double mean = d->n > 1 ? (d->time[d->n - 1] - d->time[0]) / (d->n - 1) : 1;

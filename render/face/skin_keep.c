@@ -1,4 +1,4 @@
-/* What a typed gaze does not touch. */
+/* Keeps pictures that do not depend on render.gaze and render.aperture when only these change. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "render/face/skin.h"
 
-/* Program, configuration but for the gaze, and inputs, in one hash. False where one of them cannot be read. */
+/* Hash of program, configuration without gaze and aperture, and inputs. False where one of them cannot be read. */
 static bool key_of(char key[33], struct skin_job *job, int n, const char *const in[])
 {
 	static const char *const typed[] = { "gaze = ", "aperture = ", "render.gaze = ", "render.aperture = " };

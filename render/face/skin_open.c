@@ -4,7 +4,7 @@
 
 #include "render/face/skin.h"
 
-/* The room of the beauty views, exposed for skin: a face in it comes out as in a portrait. */
+/* Gain of the beauty views' light for skin: a face comes out as in a portrait. */
 static const double exposure = 0.95;
 
 static bool light_ready(struct skin_job *job, struct err *err)
@@ -16,7 +16,7 @@ static bool light_ready(struct skin_job *job, struct err *err)
 	return ok;
 }
 
-/* A fitted eye on its own side; the only one, or the unnamed one, on both. */
+/* Assigns fitted eyes to their sides; a single or unnamed one to both. Without any an eye is invented. */
 static bool eyes_ready(struct skin_job *job, struct err *err)
 {
 	for (int i = 0, n = 0; i < job->photographed->n && n < 2; i++) {

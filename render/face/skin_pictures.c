@@ -22,8 +22,8 @@ static double eye_distance(const struct rig *rig)
 	return vec_norm(d);
 }
 
-/* One picture with these controls, on grey; au: expression shown in full, or -1. side < 0: both eyes. layers: null, or what it
- * is of. image_free both. */
+/* One picture on grey. h, v: gaze, degrees; au: expression shown in full, -1: none; side < 0: both eyes; layers: out, or null. image_free
+ * both. */
 static struct image look_with(struct skin_job *job, struct skin_target *t, double h, double v, double aperture, int au, int side, double field,
                               int width, int height, struct image *layers)
 {

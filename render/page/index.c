@@ -29,7 +29,7 @@ static void add(struct inputs *in, const char *fmt, ...)
 	in->rel[in->n++] = rel;
 }
 
-/* Everything the page shows. What is not there counts, too: the page changes when it comes. */
+/* All files that the page may show, missing ones, too: the page changes when one appears. */
 static struct inputs inputs(const struct capture *capture, const struct file_list *targets)
 {
 	static const char *const iris[] = { "texture.exr", "texture.json", "freckles.exr", "freckles.json", "thickness.exr",
@@ -132,7 +132,7 @@ static bool write(struct page_work *work, struct err *err)
 
 bool page_end(struct page_work *work, struct err *err)
 {
-	// What was fresh before the last of its files was made may not be after it.
+	// A page that was fresh at page_begin may be stale now: some of its files were made in between.
 	if (!work->data && work->in && !stage_fresh(work->page.stage, out, work->n_in, (const char *const *)work->in))
 		work->data = data_make(&work->page);
 	bool ok = !work->data || write(work, err);

@@ -7,7 +7,7 @@
 
 enum { WIDTH = 1120 };
 
-/* Characters laid onto the mesh, where no video has taught them anything yet: those that move have a section of their own. */
+/* Characters registered to the mesh, where there is no video: those that are driven have a section of their own. */
 static json_t *laid_on(struct page *page)
 {
 	json_t *list = json_array();

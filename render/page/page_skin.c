@@ -1,4 +1,4 @@
-/* The skin column: what was tracked and learnt, and every character driven by it. */
+/* The part about skin: what was tracked and learnt, and every character that is driven by it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,7 +35,7 @@ static json_t *data_uri(const char *path, const char *type, size_t limit)
 	return json;
 }
 
-/* Numbers that a stage left for the page. */
+/* The figures of a stage's log; what it left out goes into page->film. */
 static json_t *facts(struct page *page, const char *stage)
 {
 	json_t *log = page_json(page, page_file(page, "work/log/%s.json", stage)), *list = page_facts(log);

@@ -64,7 +64,7 @@ static json_t *row(struct page *page, const char *name, const json_t *plan, json
 			json_object_set_new(entry, "idle", json_true());
 		return entry;
 	}
-	// This very stage has no log yet: its time so far.
+	// render itself has no log yet: its time so far.
 	double s = self ? now_s() - page->stage->start_s : json_number_value(json_object_get(log, "seconds"));
 	*seconds += s;
 	json_object_set_new(entry, "time", json_real(s));

@@ -12,7 +12,7 @@
 
 static const char *const out = "work/review/viewer.html";
 
-/* JSON as the text of a script element: no "<" can end it. free(). */
+/* JSON as the text of a script element; every "<" is escaped, so that nothing can end the element. free(). */
 static char *script_text(const json_t *json)
 {
 	char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(9)), *safe, *to;
@@ -31,7 +31,7 @@ static char *script_text(const json_t *json)
 	return safe;
 }
 
-/* How eyes move: animate's own configuration, and what this folder says instead. */
+/* The configuration of eye movements: animate's defaults, and what this folder's capture.conf changes. */
 static json_t *motion(const struct stage *stage)
 {
 	json_t *own = json_object();
@@ -59,7 +59,7 @@ static json_t *stills(struct page *page)
 	return list;
 }
 
-/* The shaders and the program; of a face only where there is one. */
+/* Adds shaders and scripts; those of a face only where there is one. */
 static void programs(json_t *data, bool face)
 {
 	const struct {

@@ -16,7 +16,7 @@
 
 #define RIG "work/rig.json"
 
-/* The files the results are made from; of a video's frames the video, once. */
+/* The input files of the results; the video once, for all its frames. */
 static const char **inputs_of(int *n, const struct views *views, const struct calibrate_options *o)
 {
 	const char **in = mem_new((size_t)views->n + 1, sizeof *in), *video = 0;
@@ -47,8 +47,8 @@ static void report(struct stage *stage, const struct views *views, const struct 
 		stage_figure(stage, "scale_sigma", 100 * head->scale_sigma, "%");
 }
 
-/* A face that talks before a still camera bends: the few frames in which it does so alike make a model that is wrong, lens and
- * all. */
+/* Rejects a model of a video's frames with fewer than half of them: a face that talks before a still camera deforms, and the few frames
+ * in which it does so alike give a wrong model with a wrong lens. */
 static bool is_believed(const struct colmap_model *m, const struct views *views, const struct stage *stage, struct err *err)
 {
 	return !views_are_video(views) || 2 * m->n_images >= views->n_used
@@ -64,7 +64,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	int n;
 	const char **in = inputs_of(&n, views, o);
 	const char *const rig_alone[] = { RIG };
-	// What is kept belongs to these options from here on: a run that is interrupted is gone on with.
+	// From here on the kept files belong to these options: an interrupted run can be resumed.
 	bool ok = state_check(stage, o, err) && state_save(stage, o, err)
 	          && kept_record(stage, views, false, err) && features_make(&grows, views, stage, o, err)
 	          && pairs_match(views, stage, o, err) && model_make(&model, views, grows, stage, o, err)
@@ -77,7 +77,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	if (ok && subject_given(stage))
 		stage_skipped(stage, "subject mesh: the folder has one");
 	else if (ok)
-		// Made from the rig, which names all photographs: a mesh's head has to stay short.
+		// The mesh names the rig as its input, and that names all photographs: a PLY's header has to stay short.
 		ok = subject_make(&head, views, stage, o, stage_made_by(stage, 1, rig_alone), err)
 		     && (!file_exists(stage_path(stage, SUBJECT)) || stage_made(stage, SUBJECT, n, in, err));
 	ok = ok && figure_draw(&head, &rig, stage, err) && stage_made(stage, FIGURE, n, in, err);
@@ -90,7 +90,7 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	return ok;
 }
 
-/* Nothing but a video, and no camera to be had from it: what comes later takes a generic one, and the user is told. */
+/* Records that the video gives no camera and removes older results: later stages then assume a generic camera. */
 static bool give_up(struct stage *stage, const struct views *views, const char *why, struct err *err)
 {
 	static const char *const out[] = { RIG, SUBJECT, FIGURE };
@@ -106,7 +106,7 @@ static bool give_up(struct stage *stage, const struct views *views, const char *
 	return ok;
 }
 
-/* What the pictures themselves are to blame for begins with the folder's name: advice.c and head.c. */
+/* True for an error that the pictures are to blame for: advice.c and head.c begin it with the folder's name. */
 static bool is_advice(const struct err *err, const struct stage *stage)
 {
 	char *start = mem_printf("%s/views:", stage->capture);
@@ -115,7 +115,7 @@ static bool is_advice(const struct err *err, const struct stage *stage)
 	return is;
 }
 
-/* Before hours of work, not behind them. */
+/* Checks the template's path before the long work, not after it. */
 static bool check_template(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	char *path = 0;

@@ -20,7 +20,7 @@ struct child {
 	int out;  // what it says, in memory
 };
 
-/* STAGE --print-config reads, checks and prints; a file in memory takes what it has to say. */
+/* Starts STAGE --print-config, which reads and checks the configuration; its error goes into a file in memory. */
 static bool start(struct child *child, const char *stage, const char *capture)
 {
 	char *program = plan_stage_program(stage), *arg = mem_printf("--capture=%s", capture);
@@ -37,7 +37,7 @@ static bool start(struct child *child, const char *stage, const char *capture)
 	return ok;
 }
 
-/* False, err set with the stage's own line, when it refused. */
+/* Waits for it. Returns false, err set to its first line, when it failed. */
 static bool finish(struct child *child, struct err *err)
 {
 	int status = 0;
@@ -52,7 +52,7 @@ static bool finish(struct child *child, struct err *err)
 	return err_set(err, "%s", *said ? said : "a stage cannot read the configuration");
 }
 
-/* Whether capture.conf says anything that this stage alone can judge: its own keys, or shared ones. */
+/* True when capture.conf has a key that this stage has to check: one of its own, or a shared one. */
 static bool concerns(const struct conf *conf, const char *stage)
 {
 	size_t n = strlen(stage);
@@ -70,7 +70,7 @@ static bool concerns(const struct conf *conf, const char *stage)
 	return false;
 }
 
-/* Everything a verdict depends on but the programs, which judge again when they run. */
+/* Hash of what the result depends on: which stages run, and the configuration. Not the programs, which check again when they run. */
 static void hash_of(char out[33], const struct plan *plan, const struct conf *conf)
 {
 	char *text = mem_str("");

@@ -18,7 +18,7 @@ static int remove_one(const char *path, const struct stat *st, int kind, struct 
 	return (kind == FTW_DP ? rmdir(path) : unlink(path)) && errno != ENOENT ? -1 : 0;
 }
 
-/* Held by a running stage: base/stage.c. */
+/* True when a running stage holds the lock (base/stage.c). */
 static bool is_busy(const char *work)
 {
 	char *path = mem_printf("%s/.made/lock", work);

@@ -19,7 +19,7 @@ static char *slice_of(const struct opt opts[PLAN_STAGES], const struct conf *con
 	return text;
 }
 
-/* Where nothing has to run no stage would do it. A stage that is running does. */
+/* Removes half-written files: where no stage has to run none would do it. A running stage does it itself. */
 static void sweep(const char *capture)
 {
 	struct err unwritable = { 0 };
@@ -32,7 +32,7 @@ static void sweep(const char *capture)
 	close(lock);
 }
 
-/* What make says at its end, where it has nothing to do. */
+/* True when every stage's last run still holds; then prints what make prints at its end. */
 static bool nothing_to_do(const struct plan *plan, const struct call *call)
 {
 	bool fresh = plan_all_fresh(plan, call);
@@ -41,7 +41,7 @@ static bool nothing_to_do(const struct plan *plan, const struct call *call)
 	return fresh;
 }
 
-/* The settings that capture.conf asks for, left where the stages find them; said where the choice is a new one. */
+/* Chooses the settings that capture.conf asks for, writes them for the stages, and logs a choice that is new. */
 static bool settle(struct plan *plan, const struct call *call, const struct conf *conf, struct err *err)
 {
 	struct plan_choice choice;

@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "plan.h"
 
-/* Only when the bytes differ: a make that changes nothing writes nothing. */
+/* Writes a file only when its bytes differ. */
 static bool write_new(const char *path, const char *text, struct err *err)
 {
 	enum { LIMIT = 1 << 20 };
@@ -56,8 +56,8 @@ static bool write_json(const struct plan *plan, const char *slice, struct err *e
 	return ok;
 }
 
-/* What has to be there before a stage: the stage it needs; for the last, all. Names of the table alone: nothing
- * of the folder's text reaches make. */
+/* Writes a stage's rule; prerequisites: the stages it needs, for the last one all. Only names of the table are written: no text of
+ * the folder's reaches make. */
 static void write_rule(FILE *mk, const struct plan *plan, int i)
 {
 	const struct plan_row *row = &plan->rows[i];
@@ -80,7 +80,7 @@ static bool write_mk(const struct plan *plan, struct err *err)
 	size_t size = 0;
 	FILE *mk = open_memstream(&text, &size);
 	fputs("# Made by plan: which stages this folder needs. BIN: folder of the programs; CAPTURE: this folder.\n", mk);
-	// What stands on make's command line is expanded again in each make below it: a dollar in the name would be lost.
+	// A variable of make's command line is expanded again in each make below it: a dollar in the name would be lost.
 	fputs("override CAPTURE := $(value CAPTURE)\nexport CAPTURE\n.PHONY: all", mk);
 	for (int i = 1; i < PLAN_STAGES; i++)
 		fprintf(mk, " %s", plan->rows[i].name);

@@ -26,7 +26,7 @@ static void put(json_t *out, const char *key, int n, const double *x)
 	json_object_set_new(out, key, n == 1 ? json_number(*x) : json_numbers(n, x));
 }
 
-/* The march's rules: for each number of nodes, how fast light fades, and each node its place and weight. */
+/* Quadrature rules of the march: for each number of nodes and each rate of decay the nodes and weights. */
 static json_t *rules(const struct scene *s)
 {
 	enum { RULES = 9, FADES = 25 };  // of twelve steps
@@ -55,8 +55,8 @@ static json_t *rules(const struct scene *s)
 	                 json_numbers(FADES, fade), "rules", all);
 }
 
-/* Of the pupil's radius, mm: of its margin and of the limbus that tells the scale, in the photograph; 0: not known. Points round an
- * ellipse tell its radius sqrt(2) times as well as its centre. */
+/* Sigma of the pupil's radius, mm, from those of its margin and of the limbus, which gives the scale; 0: not known. A radius from
+ * points round an ellipse has a sigma sqrt(2) times smaller than its centre. */
 static double pupil_sigma(const struct web_source *source)
 {
 	struct limbus_record record;
@@ -120,7 +120,7 @@ static json_t *photo(const struct shot *shot)
 	return out;
 }
 
-/* Everything that is a picture, dearest first: each is encoded by itself, as many at a time as there are processors. */
+/* The parts that take long to encode, the longest first; they are encoded in parallel. */
 enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, FILM, PARTS };
 
 static json_t *part_make(enum part part, const struct web_source *source, struct err *err)

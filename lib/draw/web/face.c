@@ -1,5 +1,4 @@
-/* A driven character for the interactive page: its rig, which the page evaluates, and how portrait.h lights it on a grid of
- * gazes and apertures between which the page interpolates. Lengths mm, in the head's axes about the middle of both eyes. */
+/* The page evaluates the rig itself; light it interpolates between poses of a grid of gazes and apertures, which portrait.h lights. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +29,7 @@ static uint8_t byte(double t)
 	return (uint8_t)lrint(fmin(fmax(t, 0), 255));
 }
 
-/* Light as it stands. */
+/* Stores the present irradiance of the rig's vertices: its square root, 255 for 3. */
 static void record(uint8_t (*to)[3], const struct web_face *f)
 {
 	for (int i = 0; i < f->rig->n; i++)
@@ -38,7 +37,8 @@ static void record(uint8_t (*to)[3], const struct web_face *f)
 			to[i][c] = byte(255 * sqrt(fmax(f->portrait->mesh.light[i][c], 0) / 3));
 }
 
-/* Share of the sky over places of both globes: their front halves, seen along the line of sight straight ahead. */
+/* Share of the sky that lids leave open over points of both globes: SKY x SKY on the front half of each, seen along the line of sight
+ * straight ahead. */
 static void sky(uint8_t *to, const struct web_face *f)
 {
 	enum { RAYS = 20 };
@@ -64,7 +64,7 @@ static void sky(uint8_t *to, const struct web_face *f)
 		}
 }
 
-/* Light of every pose of the grid and of every expression; leaves the portrait at rest. */
+/* Computes the light of every pose of the grid and of every expression; leaves the portrait at rest. */
 static void pose_all(struct web_face *f)
 {
 	double *controls = mem_new((size_t)f->rig->n_inputs + 1, sizeof *controls);
@@ -88,7 +88,7 @@ static void pose_all(struct web_face *f)
 	free(controls);
 }
 
-/* Roots of albedo, and a hair or half of how moist it is; light of the rig's own vertices. */
+/* Square roots of albedo; with them 255 for a hair, else half of the wetness. Light of the rig's own vertices. */
 static void put_colours(json_t *out, const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
@@ -117,7 +117,6 @@ static void put_colours(json_t *out, const struct web_face *f)
 	free(light);
 }
 
-/* What drives, one row a frame: time and all controls. */
 json_t *web_clip(const char *name, const struct drive *drive)
 {
 	json_t *rows = json_array();
@@ -137,7 +136,7 @@ json_t *web_clip(const char *name, const struct drive *drive)
 	return json_pack("{s:s,s:o}", "name", name, "rows", rows);
 }
 
-/* Inner corner of an eye, from its centre, and the share of mm there that a mean eyeball would have; 0: not known. */
+/* Inner corner of an eye, from its centre, and the globe's radius over the mean of 12 mm; 0: the corner is not known. */
 static json_t *corner_of(const struct web_face *f, int side)
 {
 	float h[3] = { 0 }, d[3];
@@ -148,7 +147,7 @@ static json_t *corner_of(const struct web_face *f, int side)
 	return json_numbers(4, v);
 }
 
-/* How far aside (to the person's right, left) and up (down, up) eyes looked in the video, degrees; what was not measured: as far as they turn. */
+/* Range of the gaze in the video, degrees: to the person's right, left, down, up; where it was not measured, how far eyes turn. */
 static json_t *looked(const struct skin_model *m)
 {
 	static const double turn[4] = { -40, 40, -30, 30 };

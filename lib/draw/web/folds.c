@@ -1,4 +1,4 @@
-/* Wrinkles of a character for the interactive page, that fold with its expressions. */
+/* Wrinkle maps of a character that fold with its expressions. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "draw/web/map.h"
 #include "model/model.h"
 
-/* Where each vertex lies in the chart of the wrinkles: sixteenths of a px from its corner. */
+/* Each vertex's place in the wrinkle maps, in 1/16 px from their corner. */
 static json_t *places(const struct web_face *f, const struct wrinkle_maps *maps)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;

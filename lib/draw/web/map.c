@@ -32,7 +32,7 @@ static uint8_t byte(double t)
 	return (uint8_t)lrint(255 * fmin(fmax(t, 0), 1));
 }
 
-/* 12 bits of height in two channels, 8 of what goes with it in the third. px: [height][width][2]. */
+/* px[height][width][2]: the first number as 12 bits in two channels, the second as 8 bits in the third. */
 static json_t *map_height(const float *px, int width, int height, struct err *err)
 {
 	double low[3] = { INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY };
@@ -113,7 +113,7 @@ json_t *web_map_log(const float *px, int width, int height, int stride, float da
 	return map;
 }
 
-/* The least value that a map of the model has where there is iris: eight bits are for those. */
+/* The least value of the model's map inside the iris: the eight bits span from there. */
 static float darkest(const struct scene *s, const struct scene_level *l)
 {
 	float least = 1, reach = (float)(fmax(s->limbus[0], s->limbus[1]) * l->per_mm), middle = 0.5f * (float)l->n;

@@ -1,4 +1,4 @@
-/* Which vertices of a character the page has, and in what order: see face_impl.h. */
+/* Selects the vertices of a character that the page has, and orders them: face_impl.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,8 @@ static bool shown(const struct web_face *f, const int32_t v[3], double reach)
 	return true;
 }
 
-/* What those shown are made from: roots of hairs, ends of edges, and round the rig's own vertices all that their normals need. */
+/* Adds what those shown are made from: the roots of hairs, the ends of subdivided edges, and the neighbours that normals of the rig's
+ * own vertices need. */
 static void need(bool *used, const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
@@ -49,7 +50,7 @@ static void need(bool *used, const struct web_face *f)
 	free(mate);
 }
 
-/* Light that differs by a few steps anywhere on the grid changes. */
+/* True when a vertex's light differs by more than 3 steps of 255 between poses. */
 static bool light_changes(const struct web_face *f, int i)
 {
 	for (int k = 1; k < POSES + f->n_au; k++)
@@ -59,7 +60,7 @@ static bool light_changes(const struct web_face *f, int i)
 	return false;
 }
 
-/* Vertices that do not always stand still in the same light: with a neighbour that moves, the normal does. */
+/* Marks the vertices that move, whose light changes, or that have a neighbour that moves, since their normal changes. */
 static bool *posed_of(const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
@@ -123,7 +124,7 @@ static void put_in_order(struct web_face *f, const bool *used)
 	free(level);
 }
 
-/* Faces with all corners on the page, in its numbers; returns how many. */
+/* Renumbers the faces whose corners are all on the page; returns how many. */
 static int placed(uint32_t (*out)[3], const struct web_face *f, int n, const int32_t (*faces)[3])
 {
 	int count = 0;

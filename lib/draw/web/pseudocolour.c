@@ -45,7 +45,7 @@ struct image pseudocolour_mask(const struct image *mask, const struct image *rgb
 	return rgb;
 }
 
-/* Dark blue through green to yellow, even steps of lightness; sRGB. */
+/* Colour ramp, t 0..1: dark blue, green, yellow in even steps of lightness. The table is sRGB, the result linear. */
 static void ramp(float rgb[3], float t)
 {
 	static const float at[6][3] = { { 0.267f, 0.005f, 0.329f }, { 0.254f, 0.265f, 0.530f }, { 0.164f, 0.471f, 0.558f },
@@ -62,7 +62,7 @@ static int compare_floats(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Between the first and the last hundredth of the values of a channel: what the colours span. */
+/* The 1st and 99th percentile of a channel. */
 static void spread(double range[2], const struct image *map, int channel)
 {
 	long n = ((long)map->width * map->height + 6) / 7;  // every seventh texel says it as well

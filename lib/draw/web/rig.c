@@ -43,7 +43,7 @@ static void terms(float to[TERMS], const struct rig *rig, int i)
 	memcpy(to + COUNT(all), t.basis, sizeof t.basis);
 }
 
-/* Where the page can bring these vertices on the skull's map (texels: x0, y0, x1, y1), generously. */
+/* Upper bound of the part of the skull's map (texels: x0, y0, x1, y1) over which the page's controls can move the vertices. */
 static void reach_on_map(int box[4], const struct web_face *f)
 {
 	const struct rig *rig = f->rig;

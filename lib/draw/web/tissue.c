@@ -10,7 +10,7 @@ static const char *const names[] = { "abl_melanin", "abl_ratio", "stroma_melanin
 static const char *const keys[][2] = { { "abl", "melanin" }, { "abl", "eumelanin_ratio" }, { "stroma", "melanin" },
 	                                   { "stroma", "eumelanin_ratio" }, { "stroma", "thickness_scale" } };
 
-/* One sigma to either side, as the fit says; none where nothing was fitted. */
+/* The intervals of one sigma that pigment.json states; empty where nothing was fitted. */
 static json_t *intervals(const char *path)
 {
 	json_t *out = json_object();
@@ -26,7 +26,7 @@ static json_t *intervals(const char *path)
 	return out;
 }
 
-/* Absorption of either melanin, of neither, and scattering, 1/mm; and the colour of each wavelength. */
+/* For each wavelength: absorption with eumelanin alone, pheomelanin alone, neither; scattering (all 1/mm); its colour. */
 static json_t *spectra(int n, enum illuminant illuminant)
 {
 	static const struct tissue_layer eumelanin = { 1, 1 }, pheomelanin = { 1, 0 }, none = { 0, 0 };

@@ -12,7 +12,7 @@
 #define GRID CALIBRATE_DIR "/cloud.grid"
 enum { BATCH = 16 };
 
-/* The options a grid stands for; behind it, a line for each picture that is in it. */
+/* The tag of a grid file: its options, then a line for each picture that is in it. */
 static char *options_text(const struct cloud_conf *c)
 {
 	return mem_printf("%d %.9g %d %d %.9g %.9g %d %d %d %d\n", c->neighbours, c->best_angle, c->size_px, c->max_range, c->voxel,
@@ -32,7 +32,7 @@ static char *tag_of(const struct colmap_model *m, const struct cloud_conf *conf)
 	return text;
 }
 
-/* The grid that was kept, where it holds pictures of this model alone, and which are not in it yet. */
+/* Loads the kept grid where all its pictures are in this model; is_new: out, the pictures that are not in it yet. */
 static struct cloud_grid *recall(bool *is_new, const struct colmap_model *m, struct stage *stage, const struct cloud_conf *conf)
 {
 	struct cloud_grid *grid;
@@ -62,7 +62,7 @@ static struct cloud_grid *recall(bool *is_new, const struct colmap_model *m, str
 	return 0;
 }
 
-/* Grey, reduced so that the subject is about as large as it is matched at. */
+/* Reads a picture as grey, reduced to about the size at which the subject is matched. */
 static bool load(struct cloud_picture *out, const struct colmap_image *im, const struct head *head, struct stage *stage,
                  const char *path, const struct calibrate_options *o, struct err *err)
 {
@@ -90,7 +90,7 @@ static bool load(struct cloud_picture *out, const struct colmap_image *im, const
 	return true;
 }
 
-/* Pairs side by side, their points added in order: the same sums on any number of threads. */
+/* Matches pairs in parallel and adds their points in order: the same sums on any number of threads. */
 static bool match(struct cloud_grid *grid, const struct cloud_pair *pairs, int n, struct cloud_picture *pictures,
                   const struct sfm_subject *subject, const struct head *head, struct stage *stage,
                   const struct calibrate_options *o, struct err *err)
@@ -142,7 +142,7 @@ bool dense_cloud(struct cloud_points *cloud, const struct head *head, const stru
 	char *tag = tag_of(m, &o->cloud);
 	bool ok = match(grid, pairs, n, pictures, &subject, head, stage, o, err)
 	          && cloud_grid_save(grid, stage_path(stage, GRID), tag, err) && stage_made(stage, GRID, 0, 0, err);
-	// A small set has few pairs: what two agree on has to do.
+	// A small set has few pairs: agreement of two has to suffice.
 	enum { SMALL_SET = 20 };
 	struct cloud_conf conf = o->cloud;
 	conf.min_pairs = m->n_images < SMALL_SET && conf.min_pairs > 2 ? 2 : conf.min_pairs;

@@ -14,7 +14,7 @@ struct cell {
 	uint16_t pairs, last;    // how many pairs have points here; the last of them, counted from 1
 };
 
-/* Open addressing; at most half full. */
+/* A hash table with open addressing, at most half full. */
 struct cloud_grid {
 	double origin[3], edge;
 	long n, room;
@@ -110,7 +110,7 @@ static int by_key(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* The most pairs of any cell here and round it. */
+/* The largest number of pairs of any cell of the 3 x 3 x 3 neighbourhood. */
 static int support(const struct cloud_grid *g, const int at[3])
 {
 	int most = 0;
@@ -139,7 +139,7 @@ void cloud_grid_points(struct cloud_points *out, const struct cloud_grid *g, con
 		int at[3] = { (int)(key >> 42), (int)(key >> 21 & 0x1fffff), (int)(key & 0x1fffff) };
 		double length = sqrt((double)c->normal[0] * (double)c->normal[0] + (double)c->normal[1] * (double)c->normal[1]
 		                     + (double)c->normal[2] * (double)c->normal[2]);
-		// Normals that point everywhere: no surface.
+		// Normals that cancel: no surface.
 		if (support(g, at) < conf->min_pairs || !(length > 0.5 * (double)c->weight))
 			continue;
 		for (int k = 0; k < 3; k++) {
@@ -175,7 +175,7 @@ bool cloud_grid_save(const struct cloud_grid *g, const char *path, const char *t
 	return ok;
 }
 
-/* The whole cells behind the head; null where the file is not what it claims. */
+/* Reads the cells behind the file's header; null where the file's size is not what that states. */
 static struct cloud_grid *grid_of(const struct head *head, const char *cells, size_t size)
 {
 	if (head->n < 0 || (uint64_t)head->n != size / sizeof(struct cell) || size % sizeof(struct cell) || !(head->edge > 0))

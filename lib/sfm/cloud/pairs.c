@@ -5,8 +5,8 @@
 #include "math/vec.h"
 #include "sfm/cloud/cloud.h"
 
-/* Shared points, each weighed by how well the angle under which the two see it suits: full at the best angle, falling to
- * both sides (Goesele et al. 2007, section 3.1 choose views alike). */
+/* The shared points, each weighted by the angle between its two rays: 1 at the best angle, falling to both sides (cf. the view selection
+ * of Goesele et al. 2007, section 3.1). */
 static double *scores(const struct colmap_model *m, double best_angle)
 {
 	int n = m->n_images;

@@ -7,7 +7,7 @@
 #include "math/vec.h"
 #include "sfm/cloud/cloud.h"
 
-/* Two pictures of one size whose rows see the same planes. */
+/* A rectified pair: two pictures of one size whose rows are corresponding epipolar lines. */
 struct rectified {
 	double R[3][3];           // rect_from_world: x along the baseline, z between the two views
 	double focal;             // px
@@ -28,7 +28,7 @@ static void frame(struct rectified *r, const struct colmap_image *im[2])
 	}
 	vec_add(x, r->center[1], -1, r->center[0]);
 	vec_unit(x, x);
-	// The pictures stay upright as the first has them: the baseline then goes left or right.
+	// The pictures stay as upright as the first one: the baseline then points left or right.
 	colmap_rotation(R, im[0]->q);
 	double y[3];
 	vec_cross(y, z, x);
@@ -42,7 +42,7 @@ static void frame(struct rectified *r, const struct colmap_image *im[2])
 	r->left = flip ? 1 : 0;
 }
 
-/* Low and high end of values, the outermost of them left out, with a margin of a share of their span. */
+/* Range of the values without the outermost ones, with a margin of a share of its width. */
 static void span(double *low, double *high, int n, double *x, double margin)
 {
 	const double outermost = 0.01;
@@ -53,8 +53,8 @@ static void span(double *low, double *high, int n, double *x, double margin)
 	*high += more;
 }
 
-/* Points of the model that lie in the ball and are seen by one of the two, in the axes of the left camera and without its
- * focal length: x, y, and x of the other; n of them. */
+/* Points of the model in the ball that one of the two images sees, projected to the rectified cameras' plane at focal length 1: x, y of
+ * the left one and x of the other; n of them. */
 static int outline(double *xyo[3], const struct rectified *r, const struct colmap_model *m,
                    const struct colmap_image *im[2], const struct sfm_subject *s)
 {
@@ -79,8 +79,8 @@ static int outline(double *xyo[3], const struct rectified *r, const struct colma
 	return n;
 }
 
-/* Focal length, size and range of disparities such that what the two see of the subject fills the pictures. False when
- * that is next to nothing. */
+/* Chooses focal length, size and range of disparities so that what both see of the subject fills the pictures. False when that is next
+ * to nothing. */
 static bool fit(struct rectified *r, const struct colmap_model *m, const struct colmap_image *im[2],
                 const struct sfm_subject *s, const struct cloud_conf *conf, double focal_limit)
 {
@@ -104,7 +104,7 @@ static bool fit(struct rectified *r, const struct colmap_model *m, const struct 
 		return false;
 	r->width = (int)ceil(r->focal * (high[0] - low[0])) + 16;
 	r->height = (int)ceil(r->focal * (high[1] - low[1])) + 16;
-	// The other picture is moved so that the disparities begin at 0.
+	// The other picture is shifted so that disparities begin at 0.
 	r->middle[r->left][0] = 8 - r->focal * low[0];
 	r->middle[1 - r->left][0] = r->middle[r->left][0] + floor(low[2]) - 2;
 	r->middle[0][1] = r->middle[1][1] = 8 - r->focal * low[1];
@@ -113,7 +113,7 @@ static bool fit(struct rectified *r, const struct colmap_model *m, const struct 
 	return r->width < LARGEST && r->height < LARGEST && r->range < r->width;
 }
 
-/* Where in picture k each rectified pixel is seen. */
+/* For each rectified pixel its position in picture k. */
 static bool warp(uint8_t *out, uint8_t *mask, const struct rectified *r, int k, const struct colmap_model *m,
                  const struct colmap_image *im, const struct cloud_picture *picture, struct err *err)
 {
@@ -228,7 +228,7 @@ bool cloud_stereo(struct cloud_points *points, const struct colmap_model *m, con
 		limit = fmin(limit, c->params[0] * pictures[i]->width / c->width);
 	}
 	bool fits = fit(&r, m, im, subject, conf, limit);
-	// Close by, the same surface spreads over more disparities than it is worth: smaller pictures then.
+	// Close by, the same surface spreads over more disparities than needed: the pictures are then made smaller.
 	if (fits && r.range > conf->max_range)
 		fits = fit(&r, m, im, subject, conf, r.focal * conf->max_range / r.range);
 	if (!fits)
@@ -241,8 +241,8 @@ bool cloud_stereo(struct cloud_points *points, const struct colmap_model *m, con
 		mask[i] = mem_array(n, 1);
 		ok = ok && warp(grey[i], mask[i], &r, i, m, im[i], pictures[i], err);
 	}
-	// Noise alone spreads over more levels. What a matcher puts where there is nothing to match by, burnt-out walls or black
-	// cloth, it has carried over from the next edge, and pairs agree on it: they carry it over alike.
+	// Noise alone spreads over more grey levels. Where there is no texture (burnt-out walls, black cloth) the matcher carries disparities
+	// over from the nearest edge, in all pairs alike, so that their agreement does not reject them.
 	enum { PLAIN_REACH = 5, PLAIN_LEVELS = 3 };
 	float *disparity = mem_array(n, sizeof *disparity);
 	ok = ok && cv_mask_plain(mask[r.left], grey[r.left], r.width, r.height, PLAIN_REACH, PLAIN_LEVELS, err) && cv_stereo(disparity, grey[r.left], grey[1 - r.left], mask[r.left], r.width, r.height, r.min_disparity, r.range,

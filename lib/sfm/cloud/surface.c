@@ -18,7 +18,7 @@ static double area_of(const struct mesh *m, const int32_t f[3])
 	return 0.5 * sqrt(a * a + b * b + c * c);
 }
 
-/* Vertices that faces use, in their order; faces follow. */
+/* Removes the vertices that no face uses; renumbers the faces. */
 static void compact(struct mesh *m)
 {
 	int *to = mem_array((size_t)m->n_vertices, sizeof *to), n = 0;

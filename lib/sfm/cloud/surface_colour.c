@@ -41,7 +41,7 @@ static void view_center(double c[3], const struct surface_view *v)
 		         + v->cam_from_mesh[2][i] * v->cam_from_mesh[2][3]);
 }
 
-/* Pixels a millimetre of the surface covers: views that face it from near come first. */
+/* Score of a view: pixels that a millimetre of the surface covers in it; 0 outside the picture or where it hardly faces the camera. */
 static double rate(const struct surface_view *v, const float x[3], const float normal[3])
 {
 	double px[2], p[3], c[3], d[3];
@@ -118,7 +118,7 @@ void surface_set_colours(struct mesh *mesh, const float (*sum)[4])
 	for (int i = 0; i < mesh->n_vertices; i++)
 		for (int c = 0; c < 4; c++)
 			now[i][c] = sum[i][c];
-	// Colour spreads over what nothing saw, an edge a round.
+	// Colour spreads along the edges over vertices without one, one edge a round.
 	for (int round = 0; round < 50; round++)
 		for (int f = 0; f < mesh->n_faces; f++)
 			for (int k = 0; k < 3; k++) {

@@ -60,8 +60,8 @@ void colmap_center(double center[3], const struct colmap_image *image)
 		center[i] = -center[i];
 }
 
-/* Distance between an observation and the projection of its point, px. The two focal lengths differ in some models,
- * camera_project knows one: what is projected is scaled to it. */
+/* Reprojection error, px. Some camera models have two focal lengths, camera_project has one: the projection is scaled by their
+ * ratio. */
 static double distance(const struct colmap_image *image, const double R[3][3], const struct camera *camera,
                        const double focal[2], const struct colmap_seen *seen, const double xyz[3])
 {

@@ -58,7 +58,7 @@ void db_close(struct db *db)
 
 bool db_remove(const char *path, struct err *err)
 {
-	// Changes that were not written back yet belong to the database that goes, and to no other.
+	// SQLite's journals belong to the database that is removed; left behind they would be applied to the next one.
 	static const char *const ends[] = { "", "-wal", "-shm", "-journal" };
 	bool ok = true;
 	for (int i = 0; i < COUNT(ends); i++) {
@@ -112,7 +112,7 @@ static bool remove_image(struct db *db, int64_t id, struct err *err)
 	return true;
 }
 
-/* Pictures that are no longer there. */
+/* Removes the pictures that are not in the list. any: out, whether there were some. */
 static bool remove_gone(bool *any, struct db *db, int n, const struct db_image images[], struct err *err)
 {
 	int64_t *gone = 0;
@@ -137,7 +137,7 @@ static bool remove_gone(bool *any, struct db *db, int n, const struct db_image i
 	return ok;
 }
 
-/* Camera k has the id k + 1. *changed: one that was there before is another now. */
+/* Writes camera k, of id k + 1. changed: set where the database held another one. */
 static bool put_camera(bool *changed, struct db *db, int k, const struct colmap_camera *c, bool has_focal, struct err *err)
 {
 	size_t bytes = sizeof(double) * (size_t)colmap_kind_params(c->kind);

@@ -115,8 +115,8 @@ static bool link_images(struct colmap_model *m, const struct colmap_raw *raw, co
 	return true;
 }
 
-/* Every pair of a track has to be an observation of that point. When there are as many as the images have, and none
- * twice, the two sides say the same. */
+/* Checks that every element of a track is an observation of that point. As there are as many as the images have, and none twice, both
+ * sides then agree. */
 static bool link_points(struct colmap_model *m, const struct colmap_raw *raw, const struct orders *o, long n_linked,
                         const char *where, struct err *err)
 {
@@ -158,7 +158,7 @@ static void arrange(void *array, size_t size, int n, const struct order *orders,
 	free(was);
 }
 
-/* The program writes in the order of a hash table; results of ours come in an order that means something. */
+/* Sorts by id: COLMAP writes in the order of a hash table. */
 static void sort_all(struct colmap_model *m, const struct orders *o)
 {
 	int *camera = mem_array((size_t)m->n_cameras, sizeof(int)), *image = mem_array((size_t)m->n_images, sizeof(int)),

@@ -16,7 +16,7 @@ struct progress {
 	int total, done;
 };
 
-/* "Processed file [3/67]", "Matching block [1/9]", "Registering image #12 (5)": how far it is. */
+/* Reads the progress from a line of output: "Processed file [3/67]", "Registering image #12 (5)". */
 static void take_line(void *ctx, const char *line)
 {
 	struct progress *p = ctx;

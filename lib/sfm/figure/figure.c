@@ -18,7 +18,7 @@ enum { PANEL = 560, TITLE = 36, BARS = 240, WORST = 4, MESH_LIMIT = 20000000 };
 enum { MESH_TOP = TITLE + PANEL, BARS_TOP = MESH_TOP + TITLE + PANEL, WIDTH = 2 * PANEL, HEIGHT = BARS_TOP + BARS };
 static const uint8_t ink[3] = { 40, 44, 52 }, faint[3] = { 205, 208, 214 };
 
-/* Residual to colour: green as good as the best, red at three times the middling one. */
+/* Residual to colour: green at the least, red at three times the median. */
 static void heat(uint8_t rgb[3], double residual, double typical)
 {
 	double t = fmin(1, fmax(0, residual / typical / 3));
@@ -27,7 +27,7 @@ static void heat(uint8_t rgb[3], double residual, double typical)
 	rgb[2] = (uint8_t)(90 - 30 * t);
 }
 
-/* An orthographic look along -axis; head frame mm to px of a panel. */
+/* An orthographic view along -axis: head frame, mm, to px of a panel. */
 struct look {
 	double right[3], up[3], scale;
 	double x0, y0;

@@ -9,7 +9,7 @@
 
 enum { LEAST_VIEWS = 3 };
 
-/* Share of the eyes' distance by which a cascade misses an eye at most; a tenth is usual where gaze or head are turned. */
+/* Inlier limit: error of a detected eye as a share of the eyes' distance. A tenth is usual where gaze or head are turned. */
 static const double near = 0.2;
 
 static void name(struct opt_each_list *list, const struct view *view, const double value[4])
@@ -19,7 +19,7 @@ static void name(struct opt_each_list *list, const struct view *view, const doub
 	memcpy(to->value, value, 4 * sizeof *value);
 }
 
-/* The eyes of one view, as seen and with the iris's size to be expected there. */
+/* Adds the eyes of one view: as detected, with the radius that an iris of mean size has there. */
 static void take(struct eyes *eyes, const struct sfm_face *f, const struct sfm_eyes *at, const struct head *head, const struct view *v,
                  const struct calibrate_options *o)
 {

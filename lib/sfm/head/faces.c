@@ -20,7 +20,7 @@ struct search {
 	bool changed;
 };
 
-/* A float survives the file's digits: what is kept and what is found anew are the same to the bit. */
+/* Rounds to a float, which the file's digits hold exactly: cached and fresh detections are the same to the bit. */
 static double rounded(double x)
 {
 	return (float)x;
@@ -35,7 +35,7 @@ static bool is_face(const json_t *j)
 	return ok;
 }
 
-/* Borrowed; null: not looked at that way, or not what a run of this stage wrote. */
+/* The cached detections of a picture turned so; null where it was not searched, or where the entry is malformed. Borrowed. */
 static const json_t *recall(const struct search *s, const char *picture, int turn)
 {
 	const json_t *found = json_array_get(json_object_get(s->known, picture), (size_t)turn);
@@ -50,7 +50,7 @@ static void remember(struct search *s, const char *picture, int turn, json_t *fo
 	if (!json_array_size(json_object_get(s->known, picture)))
 		json_object_set_new(s->known, picture, json_array());
 	json_t *turns = json_object_get(s->known, picture);
-	// Ways up are tried in their order; one that does not count is taken again with all behind it.
+	// Turns are tried in order; an invalid entry is replaced, and all behind it are dropped.
 	while (json_array_size(turns) > (size_t)turn)
 		json_array_remove(turns, json_array_size(turns) - 1);
 	json_array_append_new(turns, found);
@@ -108,7 +108,7 @@ static bool look(struct faces *faces, struct search *s, const struct colmap_mode
 	return true;
 }
 
-/* Pictures that are not in the model are forgotten. */
+/* Writes the cache where it changed; pictures that are not in the model are dropped. */
 static bool save(struct search *s, const struct colmap_model *m, const char *path, struct err *err)
 {
 	json_t *all = json_object();
@@ -144,7 +144,7 @@ bool faces_find(struct faces *faces, const struct colmap_model *model, int least
 	faces->f = mem_new((size_t)model->n_images * MOST_FACES * TURNS, sizeof *faces->f);
 	bool ok = true;
 	int turn = 0;
-	// Cameras are held upright, mostly.
+	// Most cameras are held upright: further turns only where that finds too few faces.
 	for (; turn < TURNS && ok && (!turn || faces->images < least); turn++)
 		ok = look(faces, &s, model, turn, err);
 	if (ok && s.searched < turn * model->n_images)

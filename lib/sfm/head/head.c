@@ -5,10 +5,10 @@
 #include "sfm/head/eyes.h"
 #include "sfm/head/limbus_scale.h"
 
-/* Among adults (Dodgson 2004). */
+/* Standard deviation among adults (Dodgson 2004). */
 static const double eyes_apart_sigma_mm = 3.8;
 
-/* Eyeballs behind the irises: a sphere of 12 mm cut by the limbus's plane, the eyes looking ahead. */
+/* Places the eyeballs behind the irises: spheres of 12 mm radius, cut by the plane of the limbus, the eyes looking ahead. */
 static void place_eyes(struct head *head, const double left[3], const double right[3], double limbus_mm)
 {
 	const double globe_mm = 12;
@@ -19,7 +19,7 @@ static void place_eyes(struct head *head, const double left[3], const double rig
 	head->has_eyes = true;
 }
 
-/* The first source that says anything: rulers and markers are exact, a tape less, people's eyes least. */
+/* The scale from the first source that gives one, the most exact first: ruler, markers, tape, iris, eyes' distance. */
 static bool find_scale(double *scale, struct head *head, const struct views *views, const struct places_face *face,
                        const struct eyes *eyes, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
@@ -40,7 +40,7 @@ static bool find_scale(double *scale, struct head *head, const struct views *vie
 		ok = places_limbus(&lengths, &common, head, views, face, stage, o, err);
 	}
 	if (ok && face->found && lengths.n < 2) {
-		// One iris alone may be no iris; how far eyes lie apart differs more among people, but is seen in every view.
+		// A single iris may be a false detection. The eyes' distance varies more among people, but is seen in every view.
 		head->scale_source = "eyes";
 		lengths = (struct places_lengths){ .n = 1, .l = { { eyes->apart, o->eyes_apart_mm, fmax(0.01, eyes->sigma) } } };
 		common = eyes_apart_sigma_mm / o->eyes_apart_mm;
@@ -58,7 +58,7 @@ static bool find_scale(double *scale, struct head *head, const struct views *vie
 	return true;
 }
 
-/* Points of the face and the frame from them. */
+/* Triangulates the points of the face and derives the frame from them. */
 static bool place(struct head *head, const struct views *views, const struct places_face *face, double scale,
                   const struct calibrate_options *o, struct err *err)
 {
@@ -71,7 +71,7 @@ static bool place(struct head *head, const struct views *views, const struct pla
 	for (int i = 0; i < 3; i++)
 		middle[i] = 0.5 * (mouth[0][i] + mouth[1][i]);
 	bool eyes = has[0] && has[1];
-	// A mouth only put below the eyes tells which way is down, not how the face is tilted.
+	// A mouth that is only estimated below the eyes gives the direction of down, not the tilt of the face.
 	head->frame_source = !eyes ? "cameras" : has_mouth && face->has_mouth ? "eyes and mouth" : "eyes";
 	if (eyes) {
 		sfm_frame_eyes(&head->frame, head->model, eye[0], eye[1], has_mouth ? middle : 0, scale);

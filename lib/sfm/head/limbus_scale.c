@@ -13,7 +13,7 @@
 /* 11.7 mm, 0.5 mm s.d. among adults: of half of it, 0.25 mm. */
 static const double limbus_sigma_mm = 0.25;
 
-/* Part of a photograph, as a photograph of its own. */
+/* Copies a part of a photograph. */
 static struct photo crop(const struct photo *p, int x0, int y0, int w, int h)
 {
 	struct photo out = *p;
@@ -25,8 +25,8 @@ static struct photo crop(const struct photo *p, int x0, int y0, int w, int h)
 	return out;
 }
 
-/* Uphill from circles of three sizes all over the opening, for of an eye that was found its middle alone is known, and of how
- * large an iris is the mean of people. */
+/* Hill climbing from circles of three sizes on a grid over the eye's opening: of a detected eye only the middle is known, and of the
+ * iris only its mean size among people. */
 static void seek(struct ellipse *e, const struct grey *grey, double contrast)
 {
 	static const double size[] = { 0.86, 1, 1.16 };
@@ -43,11 +43,11 @@ static void seek(struct ellipse *e, const struct grey *grey, double contrast)
 	}
 }
 
-/* The ellipse's larger semi-axis from where a hand has put it, px: the width of a circle does not shrink with its turn.
- * False when no edge supports it. */
+/* Measures the larger semi-axis of the limbus, px, near the hint (x y radius): a circle's larger semi-axis does not shrink when it is
+ * tilted. False when the edge does not support an ellipse. */
 static bool measure(double *a, const struct photo *photo, const double hint[3], bool found)
 {
-	// Lids cover part of an iris: of one that nobody has pointed at the rest has to look like one.
+	// Lids cover part of an iris. Of a detected one, which may be false, the visible rest has to fit better than of a named one.
 	const double room = 2.2, contrast = 0.3, least_score = found ? 0.36 : 0.45, least_aspect = found ? 0.75 : 0;
 	int x0 = (int)fmax(0, hint[0] - room * hint[2]), y0 = (int)fmax(0, hint[1] - room * hint[2]);
 	int x1 = (int)fmin(photo->width, hint[0] + room * hint[2]), y1 = (int)fmin(photo->height, hint[1] + room * hint[2]);
@@ -73,7 +73,7 @@ static int find_view(const struct views *views, const struct head *head, int ima
 	return -1;
 }
 
-/* photo: of the view; null for a video's frame, of which none is kept: the hand's circle has to do. */
+/* photo: of the view; null for a frame of a video, which is not stored: the hint's circle is used as it is. */
 static void add_view(struct places_lengths *out, const struct head *head, const struct view *view, const struct photo *photo,
                      const double *hint, const double eye[3], double limbus_mm, bool by_hand)
 {
@@ -83,13 +83,13 @@ static void add_view(struct places_lengths *out, const struct head *head, const 
 	colmap_rotation(R, im->q);
 	mat_vec(p, R, eye);
 	double depth = p[2] + im->t[2], focal = head->model->cameras[im->camera].params[0] / scale;
-	// A hand draws the circle to a tenth of its size; the edge is found to half a pixel. Where eyes were found without a hand,
-	// and no edge is, nothing was measured.
+	// A circle drawn by hand is exact to a tenth of its size, a fitted edge to half a pixel. A detected eye without a fitted edge is no
+	// measurement.
 	if (out->n < PLACES_LENGTHS && (found || by_hand))
 		out->l[out->n++] = (struct sfm_length){ a * depth / focal, limbus_mm, found ? 0.5 / a : 0.1 };
 }
 
-/* Leaves out what lies far from the middle of all. */
+/* Rejects lengths that differ from the median by more than 12 %. */
 static void keep_alike(struct places_lengths *l)
 {
 	const double far = 0.12;
@@ -105,7 +105,7 @@ static void keep_alike(struct places_lengths *l)
 	free(size);
 }
 
-/* What both eyes of a view tell; its photograph is read once, and only where one of them is named there. */
+/* Adds the lengths of both eyes of a view. Its photograph is read once, and only where an eye is named or found in it. */
 static bool add_eyes(struct places_lengths *out, const struct head *head, const struct view *view, const struct places_face *face,
                      const double eye[2][3], const bool has[2], struct stage *stage, const struct calibrate_options *o, struct err *err)
 {

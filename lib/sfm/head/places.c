@@ -10,9 +10,9 @@
 #include "math/stats.h"
 #include "math/vec.h"
 
-/* A length that is measured no better than this: rulers bend, and are read to a share of a millimetre. */
+/* Least relative sigma of a length: rulers bend, and are read to a fraction of a millimetre. */
 static const double least_sigma = 0.002;
-/* px: how exactly a hand points, and how exactly a corner is found. */
+/* Sigmas, px: of a point set by hand, and of a detected corner. */
 static const double hand_px = 1.5, corner_px = 0.3;
 
 /* Index of the registered image of the view of that name; -1: none. *scale: picture px for a px of the photograph. */
@@ -99,7 +99,7 @@ struct seen_marker {
 	int image;
 };
 
-/* The same marker in two pictures or more: its corners in space, its four sides. */
+/* Triangulates the corners of a marker that two pictures or more show, and adds its four sides. */
 static void sides_of(struct places_lengths *out, const struct head *head, const struct seen_marker *seen, int n, int first,
                      double mm)
 {
@@ -122,7 +122,7 @@ static void sides_of(struct places_lengths *out, const struct head *head, const 
 		low = fmin(low, side[k]);
 		high = fmax(high, side[k]);
 	}
-	// What is no square was read wrongly, or two markers of one number lie about.
+	// Not a square: it was misread, or two markers have the same number.
 	for (int k = 0; k < 4 && high < 1.1 * low; k++)
 		add(out, side[k], mm, hypot(sigma[k], sigma[(k + 1) % 4]) / side[k]);
 }
@@ -168,7 +168,7 @@ bool places_markers(struct places_lengths *out, const struct head *head, struct 
 bool places_distances(struct places_lengths *out, const struct head *head, const struct views *views,
                       const struct calibrate_options *o, struct err *err)
 {
-	// From which part of the camera it was measured, and to which part of the face, is known to a few per cent.
+	// The end points of the tape, on the camera and on the face, are uncertain by a few per cent of the distance.
 	const double tape_sigma = 0.03;
 	const struct colmap_model *m = head->model;
 	for (int i = 0; i < o->distance.n; i++) {

@@ -1,4 +1,4 @@
-/* The cameras as the rest of the chain takes them: in the photographs' own pixels, mm, in the head's frame. */
+/* The cameras in the form of work/rig.json: px of the photographs, mm in the head's frame. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -22,13 +22,13 @@ bool sfm_project(double px[2], double *focal, const struct colmap_model *m, int 
 	return p[2] > 0 && camera_project(px, &camera, p);
 }
 
-/* Of a face's eyes, px. */
+/* Distance of a face's eyes, px. */
 static double apart_in(const struct sfm_face *f)
 {
 	return hypot(f->eye[0][0] - f->eye[1][0], f->eye[0][1] - f->eye[1][1]);
 }
 
-/* Distance of the worse eye from where the face has it, of the distance of that face's eyes. */
+/* Reprojection error of the worse eye, as a share of the distance of that face's eyes. */
 static double off(const struct colmap_model *m, const struct sfm_face *f, const double eye[2][3])
 {
 	double worst = 0, apart = apart_in(f);
@@ -41,7 +41,7 @@ static double off(const struct colmap_model *m, const struct sfm_face *f, const 
 	return worst / apart;
 }
 
-/* Pictures that agree, and by how much in all. Of a picture with two faces that do the nearer counts. */
+/* Counts the pictures that agree (inliers) and sums their errors. Of two faces in one picture the nearer one counts. */
 static int vote(bool *agrees, double *sum, const struct colmap_model *m, int n, const struct sfm_face faces[], const double eye[2][3],
                 double near)
 {
@@ -70,7 +70,7 @@ static int vote(bool *agrees, double *sum, const struct colmap_model *m, int n, 
 	return votes;
 }
 
-/* A point from the faces that agree: 0 and 1 the eyes, 2 the mouth. */
+/* Triangulates a point from the faces that agree: which 0, 1: an eye; 2: the mouth. */
 static bool point(double xyz[3], double *sigma, const struct colmap_model *m, int n, const struct sfm_face faces[], const bool *agrees,
                   int which)
 {
@@ -100,7 +100,7 @@ static double apart(const double eye[2][3])
 	return vec_norm(d);
 }
 
-/* Marks the faces that have found a mouth within `near` of that point; how many. */
+/* Marks the faces whose detected mouth lies within `near` of that point's projection; returns how many. */
 static int mouth_votes(bool *seen, const struct colmap_model *m, int n, const struct sfm_face faces[], const bool *agrees, const double mouth[3],
                        double near)
 {
@@ -115,7 +115,8 @@ static int mouth_votes(bool *seen, const struct colmap_model *m, int n, const st
 	return votes;
 }
 
-/* The mouth that most of the faces have found, `least` of them or more: every two propose one. 0: there is none. */
+/* The mouth by the same consensus: every two faces propose a point, the one with the most inliers is refined. Returns the number of
+ * inliers, 0 where there are fewer than `least`. */
 static int mouth_from(double mouth[3], const struct colmap_model *m, int n, const struct sfm_face faces[], const bool *agrees, int least,
                       double near)
 {

@@ -72,7 +72,7 @@ bool sfm_subject(struct sfm_subject *out, const struct colmap_model *m, struct e
 	return true;
 }
 
-/* Residuals of a sight, px, and their derivatives by the point. */
+/* Reprojection residuals of a sight, px, and their Jacobian by the point. */
 static bool sight_jacobian(double r[2], double J[2][3], const struct colmap_model *m, const struct sfm_sight *s,
                            const double xyz[3], struct err *err)
 {
@@ -100,7 +100,7 @@ static bool sight_jacobian(double r[2], double J[2][3], const struct colmap_mode
 	return true;
 }
 
-/* The point nearest to the rays: where Gauss and Newton begin. */
+/* The point nearest to all rays, from which Gauss-Newton starts. */
 static bool midpoint(double xyz[3], const struct colmap_model *m, int n, const struct sfm_sight sights[], struct err *err)
 {
 	double A[3][3] = { 0 }, b[3] = { 0 };
@@ -180,7 +180,7 @@ double sfm_scale(double *sigma, int n, const struct sfm_length lengths[])
 	return exp(mean);
 }
 
-/* Rows x, y, z of the head's axes: z as given, made perpendicular to y. */
+/* The head's axes as rows: y up, z the part of `front` perpendicular to it, x = y x z. */
 static void axes(double R[3][3], const double up[3], const double front[3])
 {
 	vec_unit(R[1], up);
@@ -200,7 +200,7 @@ static void place_origin(struct sfm_frame *f, const double origin[3])
 		f->t[i] *= -f->scale;
 }
 
-/* Mean direction that is up in the pictures, and from the middle to the cameras. */
+/* Sums of the pictures' up directions, and of the directions from the middle to the cameras. */
 static void mean_directions(double up[3], double front[3], const struct colmap_model *m, const double middle[3])
 {
 	for (int i = 0; i < 3; i++)
@@ -234,7 +234,7 @@ void sfm_frame_eyes(struct sfm_frame *f, const struct colmap_model *m, const dou
 	mean_directions(up, front, m, middle);
 	if (mouth)
 		vec_add(up, middle, -1, mouth);
-	// Perpendicular to the line of the eyes; the face is that side of it which the cameras see.
+	// Up is made perpendicular to the line of the eyes; x and up then give the direction of the face.
 	vec_unit(x, x);
 	vec_add(up, up, -vec_dot(up, x), x);
 	vec_cross(front, x, up);

@@ -9,7 +9,7 @@ int sfm_choose_frames(long *chosen, int want, long n, const double *sharpness, c
 	long best = -1;
 	for (long i = 1; i < n; i++)
 		whole += change[i];
-	// A camera on a tripod changes nothing but noise: it is not cut into more stretches than it shows different pictures.
+	// A camera on a tripod shows nothing but noise: no more stretches than the whole change has steps of `same`.
 	int stretches = (int)fmax(1, fmin(want, ceil(whole / fmax(same, 1e-9))));
 	for (long i = 0; i < n; i++) {
 		double before = at;

@@ -17,7 +17,7 @@ void sfm_features_free(struct sfm_features *f)
 	*f = (struct sfm_features){ 0 };
 }
 
-/* Nearest and second nearest of each, as inner products. */
+/* The two largest inner products of a feature, and the index of the largest. */
 struct nearest {
 	float best, second;
 	int index;
@@ -47,7 +47,7 @@ static void scan_row(struct nearest *out, const float *s, int m)
 	*out = (struct nearest){ best, second, at };
 }
 
-/* The columns' own best and second best, a row at a time: three arrays, so that the loop runs in vectors. */
+/* Updates each column's best and second best by one row; three arrays, so that the loop vectorises. */
 static void scan_columns(float *restrict best, float *restrict second, int *restrict index, const float *restrict s, int m,
                          int row)
 {

@@ -37,7 +37,7 @@ static int by_number(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
-/* The score that the `always`-th best pair of a picture has. */
+/* The score of a picture's `always`-th best pair. */
 static int bar_of(const int *scores, int n, int always)
 {
 	int *sorted = mem_array((size_t)n, sizeof *sorted);
@@ -76,7 +76,7 @@ struct sfm_pair *sfm_overlap(int *n, int n_pictures, const struct sfm_features f
 	struct sfm_pair *pairs = 0;
 	*n = 0;
 	for (int i = 0; i < n_pictures; i++)
-		// A picture that was there before has its pairs already.
+		// A picture that is not new has its pairs already.
 		bars[i] = i < first_new ? INT_MAX : bar_of(scores + (long)i * n_pictures, n_pictures, conf->always);
 	for (int a = 0; a < n_pictures; a++)
 		for (int b = a + 1 > first_new ? a + 1 : first_new; b < n_pictures; b++) {
