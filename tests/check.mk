@@ -2,13 +2,14 @@
 #   make check            everything; ends with one line: N passed, N failed, N skipped
 #   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others
 #   make check-compilers  every artifact of the bundled captures by gcc's and by clang's programs, number by number
+#   make check-same BASE=REV   every artifact of the bundled captures by this checkout and by another revision, byte by byte
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30; KEEP=1: what it found is kept in tests/fuzz/
 TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c)) $B/tests/evidence/make_eyes
 SECONDS_EACH ?= 30
 SEED ?= 1
 SHARE ?= 1
 
-.PHONY: tests fuzz fuzzers check-compilers
+.PHONY: tests fuzz fuzzers check-compilers check-same
 tests: $(TESTS) $(TOOLS)
 
 # Without these the interactive page is not driven and no cameras are found, and the summary says so.
@@ -32,6 +33,10 @@ $(foreach t,$(TESTS),$(eval $(call test,$t)))
 
 check-compilers: build $(TOOLS)
 	@B=$B BIN=$(BIN) tests/compilers.sh
+
+check-same: build $B/tests/tools/plain
+	@test -n "$(BASE)" || { echo "make: say which revision: make check-same BASE=REV" >&2; exit 2; }
+	@B=$B tests/same.sh "$(BASE)"
 
 .PHONY: tests-sanitised
 tests-sanitised: $(TESTS)

@@ -15,6 +15,18 @@ bool err_set(struct err *err, const char *fmt, ...)
 	return false;
 }
 
+bool err_usage(struct err *err, const char *fmt, ...)
+{
+	if (err_is(err))
+		return false;
+	va_list ap;
+	va_start(ap, fmt);
+	vsnprintf(err->msg, sizeof err->msg, fmt, ap);
+	va_end(ap);
+	err->usage = true;
+	return false;
+}
+
 bool err_wrap(struct err *err, const char *fmt, ...)
 {
 	char old[sizeof err->msg], context[sizeof err->msg];
@@ -26,4 +38,13 @@ bool err_wrap(struct err *err, const char *fmt, ...)
 	if (snprintf(err->msg, sizeof err->msg, "%.400s: %s", context, old) < 0)
 		err->msg[0] = '?';
 	return false;
+}
+
+const char *err_less(const struct err *err, const char *place)
+{
+	size_t n = strlen(place);
+	const char *msg = err->msg;
+	if (!strncmp(msg, place, n))
+		msg += n + (msg[n] == ':');
+	return msg + strspn(msg, " ");
 }

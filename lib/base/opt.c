@@ -43,7 +43,7 @@ static bool refuse(const struct conf_item *item, const char *key, const char *ru
 {
 	if (item->line)
 		return err_set(err, "%s:%d: %s = %.80s: %s", item->file, item->line, key, item->value, rule);
-	return err_set(err, "%s: %s = %.80s: %s", item->file, key, item->value, rule);
+	return err_usage(err, "%s: %s = %.80s: %s", item->file, key, item->value, rule);
 }
 
 static bool refuse_range(const struct conf_item *item, const struct opt *o, struct err *err)

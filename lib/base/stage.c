@@ -77,7 +77,7 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 	stage->quiet = call.quiet;
 	stage->force = call.force;
 	if (!call_load(&call, name, &stage->conf, &err) || !opt_resolve(name, n_opts, opts, &stage->conf, &err))
-		die(stage, &err, strncmp(err.msg, "command line:", 13) ? 1 : 2);
+		die(stage, &err, err.usage ? 2 : 1);
 	if (call.print_config) {
 		opt_print(stdout, name, n_opts, opts, &stage->conf);
 		exit(0);

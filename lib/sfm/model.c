@@ -106,10 +106,11 @@ static bool map(struct colmap_model *model, int *n_models, const struct views *v
 	return ok;
 }
 
-bool model_make(struct colmap_model *model, const struct views *views, bool grows, struct stage *stage,
+bool model_make(struct colmap_model *model, bool *unfit, const struct views *views, bool grows, struct stage *stage,
                 const struct calibrate_options *o, struct err *err)
 {
 	int n_models = 1, n_new = 0;
+	*unfit = false;
 	for (int i = 0; i < views->n_used; i++)
 		n_new += views->v[i].is_new;
 	bool kept = recall(model, views, grows, stage, o);
@@ -126,7 +127,8 @@ bool model_make(struct colmap_model *model, const struct views *views, bool grow
 		return false;
 	if (!flat && !map(model, &n_models, views, &step, stage, o, err))
 		return false;
-	if (!model->n_images)
+	*unfit = !model->n_images;
+	if (*unfit)
 		return advice_refuse(views, stage, err);
 	advice_warn(model, views, stage);
 	stage_note(stage, "%d of %d pictures registered, %d points, %.2f px%s", model->n_images, views->n_used, model->n_points,

@@ -22,6 +22,7 @@ struct view {
 	uint8_t thumb[THUMB * THUMB];
 	int camera;               // index into the cameras
 	char reason[256];         // why it is left out; "": it is in use
+	bool spare;               // left out because others show enough, not for a fault of its own
 	uint32_t id;              // image_id of the database
 	bool is_new;              // no model has been made with it yet
 };

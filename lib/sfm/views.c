@@ -43,9 +43,7 @@ static bool prepare(struct view *view, const char *path, const char *picture, co
 	struct photo photo = { 0 };
 	struct err why = { 0 };
 	if (!photo_load(&photo, path, o->limit_mpx, &why)) {
-		size_t n = strlen(path);
-		const char *msg = strncmp(why.msg, path, n) ? why.msg : why.msg + n + 1;
-		snprintf(view->reason, sizeof view->reason, "%.250s", msg + strspn(msg, " "));
+		snprintf(view->reason, sizeof view->reason, "%.250s", err_less(&why, path));
 		return true;
 	}
 	bool ok = make_picture(view, picture, &photo, o->picture_px, err);
@@ -114,6 +112,7 @@ static void thin(struct views *views, struct stage *stage, const struct calibrat
 		if (*v->reason)
 			continue;
 		if (last >= 0 && view_difference(v->thumb, views->v[last].thumb) < o->same_level) {
+			v->spare = true;
 			snprintf(v->reason, sizeof v->reason, "nearly the same as %.200s", views->v[last].file);
 			same++;
 		} else {
@@ -129,6 +128,7 @@ static void thin(struct views *views, struct stage *stage, const struct calibrat
 		// The k-th of `kept` stays where k max_views / kept passes a whole number.
 		if ((long)k * o->max_views / kept != (long)(k - 1) * o->max_views / kept)
 			continue;
+		v->spare = true;
 		snprintf(v->reason, sizeof v->reason, "%d views are enough", o->max_views);
 		over++;
 	}
@@ -140,7 +140,7 @@ static void thin(struct views *views, struct stage *stage, const struct calibrat
 static void say_left_out(const struct views *views, struct stage *stage)
 {
 	for (int i = 0; i < views->n; i++)
-		if (*views->v[i].reason && strncmp(views->v[i].reason, "nearly", 6) && !strstr(views->v[i].reason, "are enough"))
+		if (*views->v[i].reason && !views->v[i].spare)
 			stage_skipped(stage, "%s: %s", views->v[i].file, views->v[i].reason);
 }
 

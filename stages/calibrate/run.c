@@ -48,14 +48,15 @@ static void report(struct stage *stage, const struct views *views, const struct 
 }
 
 /* Rejects a model of a video's frames with fewer than half of them: a face that talks before a still camera deforms, and the few frames
- * in which it does so alike give a wrong model with a wrong lens. */
-static bool is_believed(const struct colmap_model *m, const struct views *views, const struct stage *stage, struct err *err)
+ * in which it does so alike give a wrong model with a wrong lens. unfit: out: rejected. */
+static bool is_believed(bool *unfit, const struct colmap_model *m, const struct views *views, const struct stage *stage, struct err *err)
 {
-	return !views_are_video(views) || 2 * m->n_images >= views->n_used
-	       || err_set(err, "%s/views: %d of the video's %d frames alone fit together", stage->capture, m->n_images, views->n_used);
+	*unfit = views_are_video(views) && 2 * m->n_images < views->n_used;
+	return !*unfit || err_set(err, "%s/views: %d of the video's %d frames alone fit together", stage->capture, m->n_images, views->n_used);
 }
 
-static bool from_views(struct stage *stage, struct views *views, const struct calibrate_options *o, struct err *err)
+/* unfit: out: the pictures are at fault, and err says what to photograph instead. */
+static bool from_views(bool *unfit, struct stage *stage, struct views *views, const struct calibrate_options *o, struct err *err)
 {
 	bool grows;
 	struct colmap_model model = { 0 };
@@ -64,11 +65,12 @@ static bool from_views(struct stage *stage, struct views *views, const struct ca
 	int n;
 	const char **in = inputs_of(&n, views, o);
 	const char *const rig_alone[] = { RIG };
+	*unfit = false;
 	// From here on the kept files belong to these options: an interrupted run can be resumed.
 	bool ok = state_check(stage, o, err) && state_save(stage, o, err)
 	          && kept_record(stage, views, false, err) && features_make(&grows, views, stage, o, err)
-	          && pairs_match(views, stage, o, err) && model_make(&model, views, grows, stage, o, err)
-	          && is_believed(&model, views, stage, err)
+	          && pairs_match(views, stage, o, err) && model_make(&model, unfit, views, grows, stage, o, err)
+	          && is_believed(unfit, &model, views, stage, err)
 	          && kept_record(stage, views, false, err)
 	          && head_place(&head, views, stage, o, err)
 	          && kept_record(stage, views, false, err)
@@ -106,15 +108,6 @@ static bool give_up(struct stage *stage, const struct views *views, const char *
 	return ok;
 }
 
-/* True for an error that the pictures are to blame for: advice.c and head.c begin it with the folder's name. */
-static bool is_advice(const struct err *err, const struct stage *stage)
-{
-	char *start = mem_printf("%s/views:", stage->capture);
-	bool is = !strncmp(err->msg, start, strlen(start));
-	free(start);
-	return is;
-}
-
 /* Checks the template's path before the long work, not after it. */
 static bool check_template(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
@@ -127,6 +120,7 @@ static bool check_template(struct stage *stage, const struct calibrate_options *
 bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct views views;
+	bool unfit;
 	if (!check_template(stage, o, err) || !kept_check(stage, err))
 		return false;
 	bool ok = views_gather(&views, stage, o, err), video = ok && file_exists(stage_path(stage, "video")) && views_are_video(&views);
@@ -138,8 +132,8 @@ bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struc
 		ok = err_set(err, "%s/views: %d usable photographs, at least 2 are needed, better 20 from all round", stage->capture,
 		             views.n_used);
 	else if (ok)
-		ok = from_views(stage, &views, o, err)
-		     || (video && is_advice(err, stage) && give_up(stage, &views, "neither camera nor head move enough in it, or the face moves in itself", err));
+		ok = from_views(&unfit, stage, &views, o, err)
+		     || (video && unfit && give_up(stage, &views, "neither camera nor head move enough in it, or the face moves in itself", err));
 	views_free(&views);
 	return ok;
 }

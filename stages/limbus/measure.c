@@ -26,9 +26,7 @@ static void measure_one(struct limbus_record *record, struct limbus_kept *kept, 
 	*record = (struct limbus_record){ 0 };
 	if (!photo_load(&photo, stage_path(stage, "%s", p->file), o->limit_mpx, &err)) {
 		record->width = record->height = 1;
-		// "path: rule": the rule alone
-		const size_t named = strlen(stage_path(stage, "%s", p->file)) + 2;
-		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg + (strlen(err.msg) > named ? named : 0));
+		snprintf(record->reason, sizeof record->reason, "%.250s", err_less(&err, stage_path(stage, "%s", p->file)));
 		return;
 	}
 	const struct opt_each *hint = capture_each(&o->photo_hint, p->name), *focal = capture_each(&o->photo_focal, p->name);

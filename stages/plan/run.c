@@ -94,6 +94,5 @@ int plan_run(const struct call *call, const struct plan_asked *asked, const stru
 	if (!err_is(err))
 		return fresh ? 0 : 3;
 	say_error("plan", err->msg);
-	bool call_is_wrong = !strncmp(err->msg, "command line:", 13) || !strncmp(err->msg, "--", 2);
-	return call_is_wrong ? 2 : 1;
+	return err->usage ? 2 : 1;
 }

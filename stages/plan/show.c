@@ -13,7 +13,7 @@ bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *st
 	*fresh = false;
 	*why = 0;
 	if (plan_stage_find(stage) < 0)
-		return err_set(err, "--fresh = %.60s: no such stage", stage);
+		return err_usage(err, "--fresh = %.60s: no such stage", stage);
 	bool ok = call_load(call, stage, &conf, err);
 	if (ok) {
 		char *program = plan_stage_program(stage);

@@ -29,7 +29,7 @@ static bool wanted(const char *set)
 	return !sets || strstr(sets, set);
 }
 
-/* Wall time tells what a user waits on this machine as busy as it is; the processors' hardly depends on that. */
+/* Wall time is what a user waits, on this machine as busy as it is; processor time hardly depends on other programs. */
 static void time_row(const char *method, const char *setting, struct spent s, const char *set, double error)
 {
 	struct bench_time wall = { s.wall, s.wall, s.wall }, cpu = { s.cpu, s.cpu, s.cpu };

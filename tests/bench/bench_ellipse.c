@@ -107,7 +107,7 @@ int main(int argc, char **argv)
 {
 	static const double share[] = { 0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5 };
 	bench_open("ellipse", argc, argv);
-	const int cases = bench_quick() ? 30 : 400, ours = bench_quick() ? 400 : 1200;  // the bar is judged on as many cases as tell 5 %
+	const int cases = bench_quick() ? 30 : 400, ours = bench_quick() ? 400 : 1200;  // so many cases determine the bar's ratio to 5 %
 	double worst = 0;
 	struct job job = { .rng = { 5 } };
 	double t[POINTS];

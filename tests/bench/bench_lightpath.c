@@ -40,7 +40,7 @@ static void draw(double grazing_from)
 	const struct light_range range = { false, { 3.3, 3.3 }, 5.85, 90, { grazing_from, 89.9 } };
 	for (int i = 0; i < N; i++) {
 		light_case_draw(&s->c[i], &rng, &range);
-		// Light from far away for all methods; the paper's knows points only.
+		// Light from far away for all methods; the paper's takes points only.
 		vec_add(s->c[i].C, s->c[i].K, 1e6, s->c[i].w);
 		for (int k = 0; k < 3; k++) {
 			s->p[k][i] = s->P[k][i] = s->c[i].P[k];

@@ -150,7 +150,7 @@ static void points_alone(const char *clip, const struct skin_track_conf *conf, c
 	free(setting);
 }
 
-/* What is asked of review. */
+/* The goals of the preset review. */
 static void precision(const struct worst *w)
 {
 	bench_goal("gaze, horizontal and vertical, open eyes, median", "<= 0.5 deg", w->gaze, "deg", w->gaze <= 0.5);

@@ -1,4 +1,4 @@
-/* JSON that stages leave for each other, which a user may have edited or got with a stranger's capture: cameras, edges, pigments, pupil,
+/* JSON that stages leave for each other, which a user may have edited or got with somebody's capture: cameras, edges, pigments, pupil,
  * folds, skin model, and the records of what was made from what. The first byte says which. */
 #include "tests/fuzz/fuzz.h"
 

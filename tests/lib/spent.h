@@ -1,4 +1,4 @@
-/* spent: what a program that is run costs. */
+/* spent: wall-clock and processor time of a program that is run. */
 #ifndef TESTS_SPENT_H
 #define TESTS_SPENT_H
 #include "base/err.h"

@@ -1,6 +1,6 @@
 /* stress: seeded runs over hostile cases, one family of cases after the other. Each family ends in one line: how many, how
  * many were flagged (refused, or said to be uncertain), how many wrong, and its worst case with the digits lost there and
- * the command that runs that case alone and tells about it; where all were flagged and nothing was measured, the first of them.
+ * the command that runs that case alone and prints it; where all were flagged and nothing was measured, the first of them.
  *
  *     struct stress s;
  *     stress_start(&s, "pca", argc, argv);

@@ -1,4 +1,4 @@
-/* unit: cmocka with all it wants before it. */
+/* unit: cmocka with the headers that it needs, and two checks of our own. */
 #ifndef TESTS_UNIT_H
 #define TESTS_UNIT_H
 #include <math.h>
@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+/* The error's message contains that text. */
 #define ERR_HAS(err, text) \
 	do { \
 		if (!strstr((err).msg, text)) \

@@ -134,7 +134,7 @@ static void one(struct stress *s, const struct range *range, bool single)
 		in_double(s, &t, s->index % 2 ? t.C : 0);
 }
 
-/* Out of the eye: reflected totally where 128 bits say so, with nothing let through; else bent as they say. */
+/* Out of the eye: totally reflected where the 128-bit solution is, with no transmission; else refracted as that solution. */
 static void leaving(struct stress *s)
 {
 	double n1 = rng_range(&s->rng, 1, 2), n2 = rng_range(&s->rng, 0.5, n1), critical = asin(n2 / n1);

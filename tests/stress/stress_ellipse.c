@@ -1,6 +1,6 @@
 /* Ellipse fits from circles to slivers, from all round to five degrees, five points, lines, far from the origin, among
  * outliers: against the Cramér-Rao bound. Without noise the rounding of the points themselves is the noise: no fit can
- * know them better. Flagged: refused, or an uncertainty of its own that tells as much. */
+ * know them better. Flagged: refused, or reported with a standard deviation that covers the error. */
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -101,7 +101,7 @@ static void starts(struct stress *s)
 	}
 }
 
-/* Parameters that the colours cannot tell apart: classes of nearly one thickness, few bands of light. Whatever is found explains
+/* Parameters that the colours do not separate: classes of nearly one thickness, few bands of light. Whatever is found explains
  * them as well as the truth does, and no number is surer than it is right. */
 static void correlated(struct stress *s)
 {

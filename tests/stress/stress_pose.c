@@ -1,7 +1,7 @@
 /* The eye's pose from one ellipse, from the front to the side, near and far, at the picture's edge: against the Cramér-Rao bound,
  * which for five numbers out of five is the noise of the ellipse through the inverse of its Jacobian. An ellipse has two poses; the
- * one next to the truth is judged. Flagged: refused, so near the front that the noise hides the tilt, or a sigma of its own
- * that tells as much. */
+ * one next to the truth is judged. Flagged: refused, so near the front that the noise hides the tilt, or reported with a sigma
+ * that covers the error. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
  *     compare BEFORE AFTER
  *
  * Time: worse when the quartiles no longer overlap and the median grew by more than a tenth (of a single
- * measurement, which tells no spread, three tenths); how fast the machine was tells
- * the yardstick that each benchmark measures with its rows (NAME.yard), and is taken out first. Error: worse by more than a fiftieth (the same cases
+ * measurement, which has no spread, three tenths). The machine's speed is divided out first: each benchmark measures a
+ * yardstick with its rows (NAME.yard). Error: worse by more than a fiftieth (the same cases
  * give the same errors; another compiler's rounding does not reach that).
  */
 #include <math.h>

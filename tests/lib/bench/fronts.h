@@ -1,5 +1,5 @@
-/* fronts: a stage run at many settings of its knobs on one capture: time and error of the same run; which settings no other
- * beats in both, and whether a preset is beaten. For tests/bench/bench_fronts*.c; `make fronts` makes config/fronts.conf of
+/* fronts: runs a stage at many settings on one capture and measures time and error of each run; finds the Pareto front, the
+ * settings that no other beats in both, and whether a preset is beaten. For tests/bench/bench_fronts*.c; `make fronts` makes config/fronts.conf of
  * what they write.
  */
 #ifndef TESTS_LIB_FRONTS_H
@@ -40,7 +40,7 @@ void fronts_measure(const struct fronts_stage *stage, const char *capture, const
 /* Copies work/ away as the reference of the errors. */
 bool fronts_keep(const char *capture, const char *reference);
 
-/* `make` of one stage, after those it needs; the log beside the folder. False: it failed, and a line says so. */
+/* `make` of one stage, after those it needs; the log beside the folder. Returns false when it failed, after one line about that. */
 bool fronts_make(const char *capture, const char *stage);
 
 /* The lines of all stages measured so far, if any, into DIR/NAME.front, as config/fronts.conf has them. */

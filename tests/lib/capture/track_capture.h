@@ -1,4 +1,4 @@
-/* track_capture: a rendered clip of data/video as a capture, with what a person who films would know of it, and the stage `track` run on it. */
+/* track_capture: a rendered clip of data/video as a capture, with the keys that a person who films could give (lens, mesh, landmarks), and the stage `track` run on it. */
 #ifndef TESTS_TRACK_CAPTURE_H
 #define TESTS_TRACK_CAPTURE_H
 #include <stdbool.h>

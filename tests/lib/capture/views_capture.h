@@ -1,4 +1,4 @@
-/* views_capture: photographs of a set with known cameras as a user's capture, calibrate run on it, what came of it. */
+/* views_capture: makes a capture of photographs with known cameras, runs calibrate on it, and compares the result. */
 #ifndef TESTS_VIEWS_CAPTURE_H
 #define TESTS_VIEWS_CAPTURE_H
 #include "tests/lib/spent.h"

@@ -1,4 +1,4 @@
-/* The defaults of config/track.conf that lib/skin/eye_track reads, for tests that call the library. */
+/* The defaults of config/track.conf that lib/track/eye reads, for tests that call the library. */
 #ifndef TESTS_EYE_TRACK_CONF_H
 #define TESTS_EYE_TRACK_CONF_H
 #include "track/eye/eye_track_opts.h"

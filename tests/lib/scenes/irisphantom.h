@@ -1,4 +1,4 @@
-/* irisphantom: a patch of iris of known relief and pigment, photographed by photons (photon.h). */
+/* irisphantom: a patch of iris of known relief and pigment, photographed by Monte Carlo (photon.h). */
 #ifndef TESTS_IRISPHANTOM_H
 #define TESTS_IRISPHANTOM_H
 #include "tissue/tissue.h"

@@ -1,5 +1,5 @@
-/* painted_film: two painted eyes (painted_eye.h) in a plane of skin that a head carries to and fro, at any frame rate: what they do is a closed form of
- * time, in seconds. No code of lib/ but random numbers.
+/* painted_film: two painted eyes (painted_eye.h) in a plane of skin that a head carries to and fro, at any frame rate: gaze, lids and head are closed forms
+ * of time, in seconds. No code of lib/ but random numbers.
  * Head frame: x to the person's left, y up, z out of the face, mm. The camera looks along -z from PAINTED_FAR.
  */
 #ifndef TESTS_PAINTED_FILM_H

@@ -1,4 +1,4 @@
-/* registered: our picture of a rendered capture's iris laid over the independent renderer's: how far apart they are.
+/* registered: how far our picture of a rendered capture's iris is from the independent renderer's.
  * Errors are px of the photograph. Captures with a painted, self-luminous or checkered iris: geometry alone.
  */
 #ifndef TESTS_REGISTERED_H

@@ -1,4 +1,4 @@
-/* skin_moved: errors of points of skin by how far they have moved since the reference, so that frames are compared that are as hard. */
+/* skin_moved: errors of skin points by classes of their motion since the reference, so that equally hard frames are compared. */
 #ifndef TESTS_SKIN_MOVED_H
 #define TESTS_SKIN_MOVED_H
 

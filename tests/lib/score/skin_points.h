@@ -1,4 +1,4 @@
-/* skin_points: skin_track, or OpenCV's motion between pictures, on a rendered clip, every point begun at its true place in the first
+/* skin_points: runs skin_track, or OpenCV's optical flow, on a rendered clip, every point begun at its true place in the first
  * frame. */
 #ifndef TESTS_SKIN_POINTS_H
 #define TESTS_SKIN_POINTS_H

@@ -1,4 +1,4 @@
-/* track_score: what `track` left in a capture, against a rendered clip's truth. */
+/* track_score: errors of the artifacts of `track` against a rendered clip's truth. */
 #ifndef TESTS_TRACK_SCORE_H
 #define TESTS_TRACK_SCORE_H
 #include "base/err.h"

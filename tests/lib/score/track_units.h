@@ -1,4 +1,4 @@
-/* track_units: strengths of expressions (action units) that `track` found, against a rendered clip's truth. */
+/* track_units: errors of the strengths of expressions (action units) by `track`, against a rendered clip's truth. */
 #ifndef TESTS_TRACK_UNITS_H
 #define TESTS_TRACK_UNITS_H
 #include "tests/lib/score/track_score.h"

@@ -1,4 +1,4 @@
-/* clip_truth: a rendered clip of data/video with its truth, for what looks at its eyes.
+/* clip_truth: a rendered clip of data/video with the truth of its eyes: gaze, lids, head.
  */
 #ifndef TESTS_CLIP_TRUTH_H
 #define TESTS_CLIP_TRUTH_H
@@ -22,7 +22,7 @@ struct clip_truth {
 bool clip_truth_load(struct clip_truth *truth, const char *dir, struct err *err);
 void clip_truth_free(struct clip_truth *truth);
 
-/* What a user would tell: camera, eyeballs `off` mm from where they are, corners of the eyes in the first frame. */
+/* What a user would give: camera, eyeballs `off` mm from where they are, corners of the eyes in the first frame. */
 struct eye_scene clip_truth_scene(const struct clip_truth *truth, const struct eye *eye, double off);
 
 /* Decodes the clip in `dir` and pushes all of it. */

@@ -1,4 +1,4 @@
-/* iris: textures of rendered captures with a perfect limbus, and what the renderer knows of them. The numbers are those
+/* iris: textures of rendered captures, unrefracted with the true limbus, and the renderer's truth about them. The numbers are those
  * of config/, read from there: run from the top of the checkout.
  */
 #ifndef TESTS_IRIS_H
@@ -19,7 +19,7 @@ bool iris_texture(struct unrefract_texture *texture, struct unrefract_view *view
  * *extent. size: texels a side. False where the capture has none. */
 bool iris_painted(struct image *rgbw, double *extent, const struct truth *truth, const char *dir, int size);
 
-/* 1 where the renderer painted a freckle of at least half its own opacity; on a map of that size in DESIGN's eye frame
+/* 1 where the renderer painted a freckle of at least half its own opacity; on a map of that size in the product's eye frame (lib/README.md)
  * (turned: as textures are) or the renderer's own. free(); null where the capture has no mask. */
 uint8_t *iris_freckle_mask(const struct truth *truth, const char *dir, int size, double extent, bool turned);
 

@@ -1,5 +1,5 @@
 /* photon: light in a two-layer slab by Monte Carlo, all orders of scattering: the truth that the single-scattering fits
- * are held against. Shares no line and no formula of transport with lib/eye.
+ * are held against. Shares no code and no formula of transport with lib/tissue.
  *
  * The slab stands on a black plane z = 0; the stroma reaches up to stroma[y][x] mm, the border layer `abl` mm beyond.
  * Periodic in x and y; indices matched; isotropic scattering.

@@ -1,4 +1,4 @@
-/* tracked: a rendered clip's truth in the shape in which `track` leaves a clip, for what comes after track. Lids and skin
+/* tracked: a rendered clip's truth in the shape in which `track` leaves a clip, for tests of train and later stages. Lids and skin
  * in the modelling camera (head fixed), which is the clip's own camera at its first frame.
  */
 #ifndef TESTS_TRACKED_H

@@ -39,7 +39,7 @@ static bool eye_load(struct truth *t, const json_t *json, const char *path, stru
 	       && json_get(&t->pupil_radius, json, "pupil_r", path, err);
 }
 
-/* The camera's pose in the rendered eye's frame, turned into DESIGN's. */
+/* The camera's pose in the rendered eye's frame, turned into the product's (lib/README.md). */
 static bool pose_load(struct truth *t, const json_t *camera, const char *path, struct err *err)
 {
 	const json_t *frame = json_object_get(camera, "eye_frame"), *rows = json_object_get(frame, "R"),

@@ -11,8 +11,8 @@ struct truth {
 	struct eye eye;                   // anatomy as rendered; limbus_aspect 1
 	double iris_radius, pupil_radius; // mm
 	double focal_px, center_px[2];
-	double cam_from_eye[4][4];        // in the frame of DESIGN: x and y carried from the camera's
-	double turn;                      // p_design = turn about z (radians) of p_truth
+	double cam_from_eye[4][4];        // in the product's frame (lib/README.md): x and y are the camera's, carried by the smallest rotation
+	double turn;                      // radians about z: p_product = Rz(turn) p_truth
 	double theta, phi;                // radians
 	double covered;                   // share of the limbus behind lids and lashes
 	struct ellipse limbus, pupil;     // exact projection; the pupil's seen through the cornea
@@ -28,7 +28,7 @@ int truth_captures(char *dirs[], int max);
 /* A fit as a perfect `limbus` would write it. */
 struct fit truth_fit(const struct truth *truth);
 
-/* A point of the truth's eye frame in DESIGN's. */
+/* Turns a point of the truth's eye frame into the product's. */
 void truth_turn(double out[2], const struct truth *truth, const double in[2]);
 
 /* Makes a capture folder at `dest` (must not exist): the photograph, and a capture.conf with camera and anatomy as

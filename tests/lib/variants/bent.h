@@ -1,5 +1,5 @@
-/* bent: pictures as a lens that distorts would have taken them. Its own formulas, no code of lib/ but structs: the
- * programs' are held against them.
+/* bent: pictures with lens distortion. Has formulas of its own and shares only structs with lib/: the programs are
+ * tested against it.
  */
 #ifndef TESTS_BENT_H
 #define TESTS_BENT_H

@@ -1,4 +1,4 @@
-/* variant: photographs in every shape a camera, an editor or an ill-meaning stranger gives them. Test tool. */
+/* variant: encodes a photograph in the formats, orientations and damaged forms that cameras, editors and attackers produce. */
 #ifndef TESTS_VARIANT_H
 #define TESTS_VARIANT_H
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* worsen: a video as a lesser camera would have taken it, or begun later. */
+/* worsen: a video with noise, blur or fewer pixels, or begun later. */
 #ifndef TESTS_WORSEN_H
 #define TESTS_WORSEN_H
 #include "base/err.h"

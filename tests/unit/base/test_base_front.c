@@ -167,7 +167,7 @@ static void a_damaged_file_of_fronts_is_refused(void **state)
 	}
 }
 
-/* Those of this project: every stage's settings are keys it knows, and none is beaten by another of the same stage. */
+/* Those of this project: every stage's settings are keys that it has, and none is beaten by another of the same stage. */
 static void the_recorded_fronts_are_fronts(void **state)
 {
 	(void)state;

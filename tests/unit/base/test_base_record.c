@@ -99,7 +99,7 @@ static void bytes_changed(void **state)
 	assert_false(holds("out.json is missing"));
 }
 
-/* Same length, same inode, same date: the change time alone tells, and has to be looked at. */
+/* Same length, same inode, same date: only the change time (ctime) differs, and has to be read. */
 static void changed_behind_the_date(void **state)
 {
 	(void)state;
@@ -211,7 +211,7 @@ static void a_damaged_record_is_none(void **state)
 	assert_true(holds(0));
 }
 
-/* With a stranger's capture comes a stranger's record: it is as good as none, and nothing outside the folder is removed for it. */
+/* A capture from elsewhere brings a record from elsewhere: it counts as none, and nothing outside of the folder is removed because of it. */
 static void a_record_of_a_strangers_making_is_refused(void **state)
 {
 	(void)state;

@@ -70,7 +70,7 @@ static void one_lamp(void **state)
 	envmap_free(&env);
 }
 
-/* Maps as strangers make them: negative light, none, no numbers, another shape. The shared ones are DWAB-compressed. */
+/* Hostile environment maps: negative light, none, no numbers, another shape. The shared ones are DWAB-compressed. */
 static void strange_maps(void **state)
 {
 	(void)state;

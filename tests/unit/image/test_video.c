@@ -1,4 +1,4 @@
-/* Videos: what is written is read again; what strangers' files do. Truth: the pictures that went in; the file's own bytes,
+/* Videos: what is written is read again; hostile and damaged files. Truth: the pictures that went in; the file's own bytes,
  * changed in known places. */
 #include "base/file.h"
 #include "base/mem.h"

@@ -251,7 +251,7 @@ static void test_bend(void **state)
 	mesh_free(&fixed);
 }
 
-/* What a stranger's mesh may hold: no surface, needles, points on each other, loose points, three faces at an edge. */
+/* What a mesh of unknown origin may hold: no surface, needles, points on each other, loose points, three faces at an edge. */
 static void test_hostile(void **state)
 {
 	(void)state;

@@ -76,7 +76,7 @@ static void targets_give_the_frames_back(void **state)
 		}
 		for (int t = 0; t < b.n_targets; t++)
 			assert_true(fabsf(b.weight[f * b.n_targets + t]) <= 1);
-		// The line of sight, (0, 0, 1) at rest, through the quaternion and by Fick's formula (DESIGN, section 4).
+		// The line of sight, (0, 0, 1) at rest, through the quaternion and by Fick's formula (lib/README.md).
 		const float *q = b.turn[0] + 4 * f;
 		double h = c[0] * M_PI / 180, v = c[1] * M_PI / 180;
 		NEAR(2 * (q[0] * q[2] + q[1] * q[3]), sin(h) * cos(v), 1e-5);

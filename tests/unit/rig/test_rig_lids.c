@@ -1,4 +1,4 @@
-/* Lids of a rig: the margins' own model comes through where skin alone cannot tell a blink from a gaze downwards. */
+/* Lids of a rig: the margins' own model is used where skin alone does not separate a blink from a gaze downwards. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -113,7 +113,7 @@ static void test_flipped(void **state)
 	colmap_free(&made);
 }
 
-/* One change of a file as disks, networks and strangers make them: bits, bytes, runs of one value, pieces lost or doubled, an
+/* One change of a file as disks, networks and attackers make them: bits, bytes, runs of one value, pieces lost or doubled, an
  * end cut off. *size never grows by more than SPARE. */
 enum { SPARE = 64 };
 static void mutate(char *data, size_t *size, struct rng *rng)

@@ -201,7 +201,7 @@ static void test_triangulate(void **state)
 		square += vec_dot(error, error) / TRIALS;
 		predicted += sigma * sigma / TRIALS;
 	}
-	// 400 trials tell a standard deviation to 1 / sqrt(2 * 3 * 400) = 2 %; each sigma itself comes from 7 degrees of freedom.
+	// 400 trials determine a standard deviation to 1 / sqrt(2 * 3 * 400) = 2 %; each sigma itself comes from 7 degrees of freedom.
 	NEAR(sqrt(predicted / square), 1, 0.1);
 	struct sfm_sight one = { 0, { 500, 400 } };
 	double xyz[3];

@@ -157,13 +157,13 @@ static void a_head(void **state)
 	}
 	assert_true(sfm_eyes(&at, agrees, &m, n, faces, 3, 0.2));
 	assert_true(at.n >= 6);
-	// What is found is the middle of the opening, some 13 mm before the eyeball's centre: a cascade tells it to a tenth of the
+	// What is found is the middle of the opening, some 13 mm before the eyeball's centre: a cascade locates it to a tenth of the
 	// eyes' distance in one picture.
 	for (int e = 0; e < 2; e++) {
 		double front[3] = { drawn_head_ball[e][0], drawn_head_ball[e][1], drawn_head_ball[e][2] + 13 };
 		assert_true(apart(at.eye[e], front) < 6);
 	}
-	// The lips meet at (0, 664, 158); what the cascade knows of a mouth is wider than it and reaches to the chin.
+	// The lips meet at (0, 664, 158); the cascade's window of a mouth is wider than it and reaches to the chin.
 	assert_true(at.mouths >= 6);
 	assert_true(fabs(at.mouth[0]) < 5 && fabs(at.mouth[1] - 664) < 15 && fabs(at.mouth[2] - 158) < 25);
 	NEAR(apart(at.eye[0], at.eye[1]) / 61.6, 1, 0.06);

@@ -1,4 +1,4 @@
-/* Melanin: known parameters, honest sigmas, Monte Carlo as the truth that the model does not make, white from a picture. */
+/* Melanin: known parameters are recovered, standard deviations hold, colours by Monte Carlo (independent of the model), white from a picture. */
 #include "base/file.h"
 #include "base/mem.h"
 #include "tissue/pigment/pigment.h"
@@ -106,7 +106,7 @@ static void test_starts(void **state)
 	assert_true(many.minima == 1 || many.other[0][PIGMENT_N] < many.cost + 2);
 	for (int j = 0; j < PIGMENT_N && many.minima == 1; j++)
 		CHECK_NEAR(one.x[j], many.x[j], 0.1 * one.sigma[j]);
-	// One photograph does not tell all nine: what it leaves to the priors is said, as unit vectors.
+	// One photograph does not determine all nine: the directions that the priors determine are reported, as unit vectors.
 	assert_true(many.directions >= 1 && many.directions < PIGMENT_N);
 	double norm = 0;
 	for (int j = 0; j < PIGMENT_N; j++)

@@ -92,8 +92,8 @@ static void pixel_round_trip(void **state)
 	}
 }
 
-/* Exact edges of a globe that is not where it was thought to be: all of it is found, but for what no clip tells (far away,
- * depth and size of the globe look alike). */
+/* Exact edges of a globe that is not where it was thought to be: all of it is recovered, except what no clip determines (far
+ * away, depth and size of the globe are confounded). */
 static void globe_from_clip(void **state)
 {
 	(void)state;

@@ -168,7 +168,7 @@ static void finds_none_where_there_is_none(void **state)
 	assert_false(head_find(&found, rgb, W, H, &camera, opening, false, &conf) || head_find(&found, rgb, W, H, &camera, opening, true, &conf));
 }
 
-/* Heads that face the camera, leaning any way: the eyes' places alone tell where they are; not so with one eye shut. */
+/* Heads that face the camera, leaning any way: the eyes' places alone determine the pose; with one eye shut they do not. */
 static void poses_from_two_eyes(void **state)
 {
 	(void)state;

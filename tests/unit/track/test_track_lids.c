@@ -150,7 +150,7 @@ static void skin_beside_a_place(void **state)
 	struct beside b = beside_new(3, places, &s.r, 0, &s.clip, &s.points);
 	for (int f = 0; f < FRAMES; f++) {
 		for (int k = 0; k < 2; k++) {
-			// half a pixel: a gaze of 0.01 rad tells no slope, which draws it towards none
+			// half a pixel: a gaze of 0.01 rad does not determine a slope, and the prior draws it towards none
 			NEAR(beside_moved(&b, 0, f)[k], a[k] * s.r.eyes.state[f][0].gaze[0] + (k && f == 30 ? 3 : 0), 0.05);
 			NEAR(beside_moved(&b, 1, f)[k], 0, 0);
 		}

@@ -73,7 +73,7 @@ static void grooves_found(const struct scene_light *light)
 		NEAR(r.width, 1, 0.2);
 		NEAR(r.half, 0.5, 0.15);
 	}
-	// a skin that all but faces the camera does not tell a lamp before it from light all round; its lines do
+	// a skin that all but faces the camera looks alike under a lamp before it and under light from all round; its lines do not
 	double share = w.ambient / (w.ambient + w.from[2]), is = light->sky / (light->sky + light->lamp[2]);
 	print_message("share of the light that comes from everywhere: %.2f, is %.2f\n", share, is);
 	NEAR(share, is, 0.2);
