@@ -1,6 +1,6 @@
-/* The address keeps what is seen: what is not as it opens. */
+/* The address (URL fragment) keeps the view: every value that differs from the one the page opens with. */
 class Address {
-	/* What a view opens with: beside the photograph its own light. */
+	/* The light a view opens with: beside the photograph the photograph's own. */
 	own_light() {
 		return this.beside && this.eye.lights.length > 1 ? 1 : 0;
 	}

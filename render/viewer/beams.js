@@ -26,7 +26,7 @@ const beams = (() => {
 		return most;
 	}
 
-	/* The widest first in two, until there are n groups. */
+	/* Splits the widest group in two, until there are n. */
 	function split(list, n) {
 		const groups = list.length ? [{ list, wide: list.length > 1 ? spread(list) : [0] }] : [];
 		while (groups.length < n) {

@@ -100,7 +100,7 @@ class FaceScene {
 		return { R, focal, at: turns.apply(turns.transpose(R), [0, 0, -D]), aim: [-k * p[0], -k * p[1]] };
 	}
 
-	/* What the skin mirrors: neighbours, as they were cut, become one. */
+	/* The lights that the skin mirrors: neighbours in the order in which they were split are joined. */
 	static fewer(list, n) {
 		while (list.length > n)
 			list = list.flatMap((a, i) => {
@@ -129,7 +129,7 @@ class FaceScene {
 			lens: [c.focal, width / 2 + c.aim[0], height / 2 + c.aim[1], 1], pixel: FaceScene.DISTANCE / c.focal / scale, depth: [...FaceScene.clip(), scale], side };
 	}
 
-	/* How far it is to the lids, from the skin as drawn: along rows, then along columns. */
+	/* Distance to the lids on the screen, from the skin as drawn: along rows, then along columns. */
 	field_of_lids(side, key, per_mm, s) {
 		if (this.fielded[side] === key)
 			return;

@@ -57,14 +57,14 @@ class Graphics {
 		return { name, program, fragment, uniforms: null };
 	}
 
-	/* One of two programs, with a part or without, made when first asked for: what a preset leaves out is not compiled before. */
+	/* One of two programs, with a part or without, compiled when it is first used: what a preset leaves out is not compiled. */
 	variant(with_part, name, vertex, parts, part) {
 		const key = [name, ...parts, with_part ? part : ""].join("+");
 		this.variants[key] = this.variants[key] || this.program(name, vertex, with_part ? [...parts, part] : parts);
 		return this.variants[key];
 	}
 
-	/* What it wants to be told, once it is linked. */
+	/* Its uniforms, once it is linked. */
 	linked(p) {
 		const gl = this.gl;
 		if (!gl.getProgramParameter(p.program, gl.LINK_STATUS))
@@ -77,13 +77,13 @@ class Graphics {
 		return p.uniforms;
 	}
 
-	/* What a shader builds on comes before it. */
+	/* The text of a shader with the parts that it uses before it. */
 	text(name, parts) {
 		const below = { eye: ["ground", "iris"], march: ["ground"], horizon: ["ground"] }[name] || [];
 		return [...below, ...parts.filter(p => p in this.shaders), name].map(p => this.shaders[p]).join("");
 	}
 
-	/* A pass of pose.glsl that draws nothing: what its vertices come to goes into buffers. */
+	/* A pass of pose.glsl that draws nothing: its vertices are written into buffers (transform feedback). */
 	feedback(part, outputs) {
 		const gl = this.gl, program = gl.createProgram(), add = (type, text) => {
 			const shader = gl.createShader(type);
@@ -197,7 +197,7 @@ class Graphics {
 		return out;
 	}
 
-	/* Of render/viewer/viewer_field.c: whole steps, each foretold by its neighbours on the left and above. */
+	/* Decodes lib/draw/web/field.c: whole steps, each stored as its difference from what its neighbours on the left and above foretell. */
 	static field(m, width, height, channels) {
 		const bytes = Graphics.bytes(m.bytes), row = width * channels, whole = new Int32Array(2 * row), out = new Float32Array(row * height);
 		for (let y = 0, at = 0; y < height; y++)

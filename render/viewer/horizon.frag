@@ -1,6 +1,6 @@
 // Slopes to which the relief rises from the texels that light is marched from, in sixteen azimuths, looked at where
-// lib/draw/eye/march/shadow.c does: four to a channel each, the next four beside them, eight more below. They stand as long as the
-// pupil does.
+// lib/draw/eye/march/shadow.c does: four to a channel each, the next four beside them, eight more below. They are valid as long as the pupil
+// does not change.
 uniform vec2 heights;
 uniform float shadow_grow;        // of the distances at which the relief is looked at
 out vec4 slopes;

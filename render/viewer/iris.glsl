@@ -1,4 +1,4 @@
-// The iris as a ray behind the cornea meets it: lib/draw/eye/march/meet.c, draw/eye/pupil.c; and all that the eye is told.
+// The iris as a ray behind the cornea meets it: lib/draw/eye/march/meet.c, draw/eye/pupil.c; and the eye's uniforms.
 uniform vec3 origin;              // of all rays: the camera, eye frame
 uniform mat3 eye_from_cam, env_from_eye;
 uniform vec4 lens;                // focal length, middle (px of the camera), px of the camera in one of the picture
@@ -17,14 +17,14 @@ uniform vec3 quadric[9], even;    // irradiance of the environment
 uniform float mirror_on, tear;
 out vec4 seen;
 
-// How far below the relief the ray is at t.
+// Depth of the ray below the relief at t.
 float below(vec3 f, vec3 v, float t)
 {
 	vec3 p = f + t * v;
 	return p.z - iris_depth + relief_at(p.xy).x;
 }
 
-// Where a ray first meets the relief, which may hide itself from it: lib/draw/eye/march/meet.c.
+// The first point at which a ray meets the relief, which may occlude itself: lib/draw/eye/march/meet.c.
 float search_relief(vec3 f, vec3 v, float a, float e)
 {
 	float stride = (e - a) / float(search), fa = -1e-6, b = a, fb = fa;

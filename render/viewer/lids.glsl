@@ -12,7 +12,7 @@ uniform vec3 skin_rgb;
 vec3 environment(vec3 r, float rough);
 vec3 ray_at(vec2 px);
 
-// Which way the lid lies, as the neighbours together see it: one pixel's own leans with every step of the edge.
+// Direction to the lid, averaged over the neighbours: a single pixel's follows every step of the edge.
 vec2 towards(ivec2 at, int reach)
 {
 	vec2 sum = vec2(0.0);
@@ -32,7 +32,7 @@ float lake_height(vec3 place)
 	return tear_height * (canthus.w > 0.0 ? 1.0 + LAKE_RISE * exp(-dot(off, off) / (LAKE_MM * LAKE_MM * canthus.w * canthus.w)) : 1.0);
 }
 
-// What so deep a lake lets pass of the light that leaves under that cosine.
+// Transmittance of a lake of that depth for light that leaves under that cosine.
 vec3 lake_light(float deep, float cos_i)
 {
 	float s2 = (1.0 - cos_i * cos_i) / (LOOK_FILM_INDEX * LOOK_FILM_INDEX);

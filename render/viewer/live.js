@@ -2,7 +2,7 @@
 class Live extends Controls {
 	static BEYOND = 1.3;
 
-	/* ---- what the shader is told */
+	/* ---- state for the shaders */
 	state() {
 		const v = this.values, ratio = (eu, pheo) => eu + pheo > 0 ? eu / (eu + pheo) : 0.5;
 		return { ...v, light: this.light, abl_melanin: Math.min(v.abl_eu + v.abl_pheo, 1), abl_ratio: ratio(v.abl_eu, v.abl_pheo),
@@ -155,7 +155,7 @@ class Live extends Controls {
 		setTimeout(ask, 0);
 	}
 
-	/* Too slow for a while, or far too slow once: a cheaper preset. */
+	/* Chooses a cheaper preset when pictures were too slow for a while, or far too slow once. */
 	took(ms) {
 		this.times.push(ms);
 		if (this.times.length > 24)
@@ -170,7 +170,7 @@ class Live extends Controls {
 		by_id("time").textContent = `${this.frame_ms.toFixed(1)} ms a frame, ${presets[this.preset].name} quality while moving`;
 	}
 
-	/* A driver that refuses a shader says so only when it is used. */
+	/* A driver may report a shader that it refuses only when it is used. */
 	run(t) {
 		try {
 			this.tick(t);

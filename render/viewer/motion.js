@@ -102,7 +102,7 @@ const motion = (() => {
 			this.winks[side] = blink(t, this.conf.blink_full_deg, { ...this.conf, blink_hold_ms: 200 });
 		}
 
-		/* Whether lids are on their way. */
+		/* True while a lid is moving. */
 		lids_move(t) {
 			return [this.lids, ...this.winks].some(l => l && l.end > t);
 		}
@@ -187,7 +187,7 @@ const motion = (() => {
 				this.time = t;
 				this.blinks(t);
 			} else {
-				// What the target did since the last picture it did steadily; a pause is none of its motion.
+				// The target is taken to have moved steadily since the last picture; a pause does not count as motion.
 				if (this.time === null || t - this.time > 0.25) {
 					this.time = this.time === null ? t : t - 0.25;
 					this.last = [...this.target];

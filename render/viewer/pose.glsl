@@ -49,7 +49,7 @@ float radius(vec3 d, int side)
 	return (1.0 - u.y) * ((1.0 - u.x) * a + u.x * b) + u.y * ((1.0 - u.x) * c + u.x * e);
 }
 
-// In C's order: less of what is rounded differs.
+// In the order of the C code, so that rounding differs less.
 float sum_of(vec4 v)
 {
 	return (v.x + v.y) + (v.z + v.w);
@@ -80,7 +80,7 @@ void main()
 #endif
 
 #ifdef NORMAL
-// Of the rig's own vertices: of the faces round each, by their areas.
+// Normals of the rig's own vertices: the mean of the faces round each, weighted by area.
 layout(location = 0) in vec2 ring;      // first of its pairs of neighbours, how many
 uniform sampler2D ring_map;
 out vec4 normal_now;
@@ -98,7 +98,7 @@ void main()
 #endif
 
 #ifdef BETWEEN
-// The middle of an edge, on the curved surface that the normals at its ends ask for.
+// The middle of an edge on the curved surface of its ends' normals (Phong tessellation).
 layout(location = 0) in vec2 ends;
 out vec4 at_now, normal_now, light_now;
 
@@ -114,7 +114,7 @@ void main()
 #endif
 
 #ifdef HAIR
-// In the frame that its root carries along: off the globe, along the lid, up over it.
+// A hair's vertex in the frame of its root: off the globe, along the lid, up over it.
 layout(location = 0) in vec4 root;      // three vertices, side
 layout(location = 1) in vec4 weight;
 layout(location = 2) in vec4 pinned;

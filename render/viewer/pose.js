@@ -44,7 +44,7 @@ class FacePose {
 			globe_center: rig.globe.centers.flat(), lit_rows: rows, outward: rig.head_from_rig.slice(0, 3) };
 	}
 
-	/* What stands beside each vertex, in groups of four (or two) floats. */
+	/* The attributes of each vertex, in groups of four (or two) floats. */
 	shape(list, ...sizes) {
 		const { gl } = this.g, stride = 4 * sizes.reduce((a, b) => a + b, 0), shape = gl.createVertexArray();
 		gl.bindVertexArray(shape);
@@ -86,7 +86,7 @@ class FacePose {
 		return turns.apply(this.rig.head_from_rig, x.map((v, k) => v - this.rig.middle[k]));
 	}
 
-	/* How far a vertex goes with the left eye's lids. */
+	/* Share with which a vertex follows the left eye's lids. */
 	share(i) {
 		return Math.min(1, Math.max(0, 0.5 + this.in_head(this.rest.subarray(3 * i, 3 * i + 3))[0] / FacePose.BRIDGE));
 	}
@@ -102,7 +102,7 @@ class FacePose {
 		return out;
 	}
 
-	/* What always stands still, once: the rig's own vertices, and all that is made of them. */
+	/* The vertices that never move, once: the rig's own, and all that is made of them. */
 	begin() {
 		const { gl } = this.g, { n, base, hairs } = this, still = Graphics.bytes(this.data.still), up = turns.apply(turns.transpose(this.rig.head_from_rig), [0, 0, 1]);
 		const at = new Float32Array(4 * n), light = new Float32Array(4 * n), normals = new Float32Array(4 * n);
@@ -227,7 +227,7 @@ class FacePose {
 		return true;
 	}
 
-	/* What stands in a buffer, four floats a vertex: for measuring. */
+	/* Reads a buffer back, four floats a vertex: for tests. */
 	read(room) {
 		const { gl } = this.g, out = new Float32Array(4 * this.n);
 		gl.bindBuffer(gl.COPY_READ_BUFFER, room.buffer);

@@ -1,4 +1,4 @@
-// The picture as it is seen: on a photographer's grey (render/picture.c), encoded as sRGB, without noise (bare) for measuring.
+// The picture as it is seen: on a photographer's grey (lib/draw/studio.c), encoded as sRGB, without noise (bare) for measuring.
 uniform sampler2D picture;
 uniform float gain, bare;
 uniform vec2 size;
@@ -12,7 +12,7 @@ void main()
 	vec3 c = p.rgb * gain + (1.0 - p.a) * grey;
 	c = clamp(c, 0.0, 1.0);
 	vec3 s = mix(c * 12.92, 1.055 * pow(max(c, 1e-5), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
-	// Half a step of noise: what is smooth shows no bands.
+	// Half a step of noise (dithering): smooth areas show no bands.
 	float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
 	shown = vec4(s + noise / 255.0 * (1.0 - bare), 1.0);
 }

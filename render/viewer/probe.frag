@@ -1,5 +1,5 @@
-// What of a globe shut lids leave to be seen: its disc on the screen, where neither skin nor a hair before it stands (skin.frag).
-// Each texel looks at its own part of the square round the disc, and says how much of that. Or (crease) fills what is left.
+// The visible part of a globe under shut lids: its disc on the screen where neither skin nor a hair covers it (skin.frag).
+// Each texel measures its own part of the square round the disc. Or (crease) fills what is left.
 uniform vec3 globe;               // middle and radius, px
 out vec4 shown;
 

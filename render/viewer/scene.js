@@ -147,7 +147,7 @@ class EyeScene {
 		this.count = 0;
 	}
 
-	/* Room for the ways of all beams, on side x side points. */
+	/* A target for the paths of all beams, on side x side points. */
 	ways(side) {
 		const { g } = this, size = [2 * side, (EyeScene.LIGHTS + 1) * side];
 		return { ...g.texture(...size, g.gl.RGBA16F), also: g.texture(...size, g.gl.R16F) };
@@ -194,7 +194,7 @@ class EyeScene {
 		g.counted("marched");
 	}
 
-	/* What the relief hides of the sky, for each change of the pupil. */
+	/* The horizon of the relief, once for each change of the pupil. */
 	horizon(ground, shadow_grow) {
 		const { g, horizons } = this, n = ground.map_size >> ground.level, key = [ground.pupil_now, ground.level, shadow_grow].join(), at = horizons.findIndex(h => h.key === key);
 		if (at >= 0) {
@@ -255,7 +255,7 @@ class EyeScene {
 		seen.key = jitter[0] || jitter[1] ? seen.key : key;
 	}
 
-	/* Ways of all rays, in full precision. */
+	/* A target for what all rays meet, in full precision. */
 	find(seen, key, all, size) {
 		const { g } = this, gl = g.gl;
 		if (!seen.map || seen.map.width !== size[0] || seen.map.height !== size[1]) {

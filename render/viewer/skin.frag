@@ -74,8 +74,8 @@ vec2 gloss(vec3 n, vec3 l, vec3 v, vec2 a2, vec2 k)
 	return a2 / (d * d * (nl - nl * k + k)) * (nl * (SKIN_MIRROR + (1.0 - SKIN_MIRROR) * s2 * s2 * s));
 }
 
-// What the head itself leaves of a light that has been moved behind it, as a ball would at a point that faces so from its middle.
-// Of the surroundings as they were made the light of the vertices knows it exactly.
+// Share of a light that the head itself does not block once the light was moved behind it: as of a ball, by the direction of the point
+// from its middle. Of the original surroundings the vertices' light has the exact shadows.
 float before_head(vec3 facing, vec3 l)
 {
 	return step_smooth(-0.35, -0.05, dot(facing, l));
@@ -84,7 +84,7 @@ float before_head(vec3 facing, vec3 l)
 void main()
 {
 	vec3 smooth_n = normalize(seen_normal), n = smooth_n, to = normalize(head_camera - seen_at), albedo = seen_skin.rgb * seen_skin.rgb;
-	// The light moved: what that changes for a surface that faces this way.
+	// Change of the light on a surface that faces this way, since the lights were moved.
 	vec3 moved = irradiance(env_from_head * n, quadric) / irradiance(still_from_head * n, still_quadric);
 	vec3 light = 3.0 * seen_light * seen_light * clamp(moved, 0.0, 6.0);
 #ifdef FOLDS
