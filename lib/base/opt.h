@@ -14,7 +14,7 @@
 
 enum opt_type { OPT_T_REAL, OPT_T_INT, OPT_T_BOOL, OPT_T_CHOICE, OPT_T_REALS, OPT_T_STR, OPT_T_EACH };
 
-enum { OPT_EACH_MAX = 4 };
+enum { OPT_EACH_MAX = 5 };
 
 /* One match of a pattern key such as `photo.*.hint_px`. */
 struct opt_each {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "limbus/hand.h"
 #include "limbus/judge.h"
 #include "limbus/propose/sides.h"
 #include "math/stats.h"
@@ -126,6 +127,15 @@ static void second_opinion(struct limbus_found *found, const struct photo *photo
 	free(other);
 }
 
+/* What else is measured of a limbus that was found: the band round it, the pupil. */
+static void finish(struct limbus_found *found, const struct photo *photo, const struct pyramid *pyramid, const struct limbus_conf *conf)
+{
+	if (!found->ok)
+		return;
+	band_sample(&found->band, pyramid, &found->limbus);
+	found->has_pupil = limbus_pupil(&found->pupil, photo, pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
+}
+
 void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
                  const struct limbus_conf *conf)
 {
@@ -142,9 +152,18 @@ void limbus_find(struct limbus_found *found, const struct photo *photo, const do
 		else if (!found->ok && !hint)
 			limbus_measure_flanks(found, around, photo, &pyramid, 0, conf);
 	}
-	if (found->ok) {
-		band_sample(&found->band, &pyramid, &found->limbus);
-		found->has_pupil = limbus_pupil(&found->pupil, photo, &pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
-	}
+	const struct ellipse meant = hint ? (struct ellipse){ hint[0], hint[1], hint[2], hint[2], 0 } : (struct ellipse){ 0 };
+	if (hint && !(found->ok && limbus_hand_near(&found->limbus.e, &meant)))
+		limbus_by_hand(found, photo, &pyramid, &meant, conf->hint_sigma, conf);
+	finish(found, photo, &pyramid, conf);
+	pyramid_free(&pyramid);
+}
+
+void limbus_find_drawn(struct limbus_found *found, const struct photo *photo, const struct ellipse *drawn, const struct limbus_conf *conf)
+{
+	memset(found, 0, sizeof *found);
+	struct pyramid pyramid = pyramid_make(photo);
+	limbus_by_hand(found, photo, &pyramid, drawn, conf->drawn_sigma, conf);
+	finish(found, photo, &pyramid, conf);
 	pyramid_free(&pyramid);
 }

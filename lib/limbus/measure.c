@@ -61,13 +61,16 @@ static bool lean(struct limbus_record *record, const struct limbus_found *found,
 	return true;
 }
 
-void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint,
+void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint, const struct ellipse *drawn,
                           const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf,
                           const struct pose_conf *pose_conf)
 {
 	struct err err = { 0 };
 	struct limbus_found *found = mem_new(1, sizeof *found);
-	limbus_find(found, photo, hint, conf);
+	if (drawn)
+		limbus_find_drawn(found, photo, drawn, conf);
+	else
+		limbus_find(found, photo, hint, conf);
 	limbus_record_fill(record, found, photo);
 	if (record->ok)
 		record->view.camera = camera_of(known, photo, &record->view.limbus, eye);

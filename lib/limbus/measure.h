@@ -17,8 +17,9 @@ struct limbus_camera {
 
 /* Measures one photograph.
  * record  overwritten; not ok, with the reason, when no limbus is found or no pose fits it
- * hint    x, y, radius px, or null */
-void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint,
+ * hint    x, y, radius px (limbus_find), or null
+ * drawn   the limbus as a person has drawn it (limbus_find_drawn), or null; goes before the hint */
+void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint, const struct ellipse *drawn,
                           const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf,
                           const struct pose_conf *pose_conf);
 

@@ -9,7 +9,7 @@ enum { FILE_LIMIT = 1 << 20 };
 
 void limbus_record_fill(struct limbus_record *record, const struct limbus_found *found, const struct photo *photo)
 {
-	*record = (struct limbus_record){ .ok = found->ok, .width = photo->width, .height = photo->height };
+	*record = (struct limbus_record){ .ok = found->ok, .by_hand = found->by_hand, .width = photo->width, .height = photo->height };
 	memcpy(record->reason, found->reason, sizeof record->reason);
 	if (!found->ok)
 		return;
@@ -75,6 +75,8 @@ bool limbus_record_save(const struct limbus_record *r, const char *path, const c
 		json_object_set_new(json, "measured", json_numbers(7, measured));
 		json_object_set_new(json, "edge_px", json_numbers(2 * ARCS, &r->point[0][0]));
 		json_object_set_new(json, "edge_state", json_numbers(ARCS, state));
+		if (r->by_hand)
+			json_object_set_new(json, "by_hand", json_true());
 	}
 	bool ok = json_write(path, json, made_by, err);
 	json_decref(json);
@@ -104,6 +106,7 @@ static bool record_read(struct limbus_record *r, const json_t *json, const char 
 	r->height = (int)size[1];
 	if (!r->ok)
 		return true;
+	r->by_hand = json_is_true(json_object_get(json, "by_hand"));
 	r->view.has_pupil = json_is_array(json_object_get(json, "pupil"));
 	if (!json_get_array(camera, 9, json, "camera", path, err) || !ellipse_read(&r->view.limbus, json, "limbus", path, err)
 	    || !json_get_array(&r->view.cov_q[0][0], ELLIPSE_N * ELLIPSE_N, json, "limbus_cov_q", path, err)

@@ -7,7 +7,7 @@
 #include "limbus/pose.h"
 
 struct limbus_record {
-	bool ok;
+	bool ok, by_hand;              // by_hand: where a person said it is (hand.h)
 	char reason[256];
 	int width, height;             // px
 	struct pose_view view;         // camera as used

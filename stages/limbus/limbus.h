@@ -11,7 +11,7 @@ struct limbus_options {
 	struct limbus_conf find;
 	struct pose_conf pose;
 	struct camera_keys camera;
-	struct opt_each_list photo_focal, photo_center, photo_hint, photo_eye;
+	struct opt_each_list photo_focal, photo_center, photo_hint, photo_limbus, photo_eye;
 	double limit_mpx;
 	int overlay_px;
 };

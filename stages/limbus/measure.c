@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "image/photo/photo.h"
+#include "limbus/hand.h"
 #include "limbus/measure.h"
 
 char *limbus_record_path(const struct capture_photo *photo)
@@ -15,6 +16,25 @@ char *limbus_record_path(const struct capture_photo *photo)
 }
 
 #define RIG "work/rig.json"
+
+/* The ellipse that capture.conf gives for this photograph, if any. False where it cannot be meant: the record says why. */
+static bool hand_of(struct ellipse *meant, struct limbus_record *record, const char *name, const struct photo *photo,
+                    const struct limbus_options *o)
+{
+	const struct opt_each *hint = capture_each(&o->photo_hint, name), *drawn = capture_each(&o->photo_limbus, name);
+	struct err err = { 0 };
+	if (!hint && !drawn)
+		return true;
+	const double *v = drawn ? drawn->value : hint->value;
+	*meant = (struct ellipse){ v[0], v[1], v[2], drawn ? v[3] : v[2], drawn ? v[4] * M_PI / 180 : 0 };
+	char *key = mem_printf("photo.%s.%s", name, drawn ? "limbus_px" : "hint_px");
+	bool ok = limbus_hand_check(meant, key, photo->width, photo->height, &err);
+	free(key);
+	record->width = photo->width;
+	record->height = photo->height;
+	snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
+	return ok;
+}
 
 static void measure_one(struct limbus_record *record, struct limbus_kept *kept, struct stage *stage, const struct capture_photo *p,
                         const struct limbus_options *o, const struct camera_rig *rig)
@@ -33,7 +53,10 @@ static void measure_one(struct limbus_record *record, struct limbus_kept *kept, 
 	const struct opt_each *center = capture_each(&o->photo_center, p->name);
 	struct limbus_camera known = { &o->camera, focal ? focal->value[0] : NAN, center ? center->value : 0,
 		                       camera_rig_find(rig, p->file) };
-	limbus_measure_photo(record, &photo, hint ? hint->value : 0, &known, &o->eye, &o->find, &o->pose);
+	struct ellipse meant;
+	if (hand_of(&meant, record, p->name, &photo, o))
+		limbus_measure_photo(record, &photo, hint ? hint->value : 0, capture_each(&o->photo_limbus, p->name) ? &meant : 0, &known, &o->eye,
+		                     &o->find, &o->pose);
 	*kept = (struct limbus_kept){ p, photo };
 }
 

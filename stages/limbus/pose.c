@@ -32,6 +32,7 @@ static char *extra_of(const struct limbus_record *r, const struct pose *pose)
 {
 	json_t *json = json_object();
 	json_object_set_new(json, "theta_weak_perspective_deg", json_number(pose->theta_weak / DEG));
+	json_object_set_new(json, "by_hand", json_boolean(r->by_hand));
 	json_object_set_new(json, "choice_margin", json_number(pose->margin));
 	json_t *other = json_object();
 	json_object_set_new(other, "theta_deg", json_number(pose->other_theta / DEG));
@@ -67,9 +68,10 @@ static bool write_overlay(const struct eye_work *w, int i, const struct fit *fit
 static void note(const struct eye_work *w, int i, const struct fit *fit, const struct pose *pose)
 {
 	const char *name = w->photo[i]->name;
-	stage_note(w->stage, "%s: theta %.1f +- %.1f deg, %.0f %% of the limbus seen, rms %.2f px%s", name, fit->theta / DEG,
+	stage_note(w->stage, "%s: theta %.1f +- %.1f deg, %.0f %% of the limbus seen, rms %.2f px%s%s", name, fit->theta / DEG,
 	           fit->theta_sigma / DEG, 100 * fit->coverage, fit->rms_px,
-	           fit->camera.source == CAMERA_NONE ? ", camera unknown: weak perspective" : "");
+	           fit->camera.source == CAMERA_NONE ? ", camera unknown: weak perspective" : "",
+	           w->record[i].by_hand ? ", where capture.conf says: by hand" : "");
 	char key[320];
 	snprintf(key, sizeof key, "%s rms", name);
 	stage_figure(w->stage, key, fit->rms_px, "px");

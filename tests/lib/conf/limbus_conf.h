@@ -9,7 +9,7 @@ static const struct limbus_conf limbus_defaults = {
 	.rim = { .search = 0.08, .max_rms = 0.15, .min_contrast = 0.15, .irregularity = 0.06 },
 	.pupil = { .min_contrast = 0.25, .min_coverage = 0.4 },
 	.min_coverage = 0.35, .min_contrast = 0.08, .max_blur = 0.08, .max_rms = 0.008, .max_sigma = 0.015,
-	.max_flank_rms = 0.019, .max_flank_sigma = 0.045, .min_flank_coverage = 0.3, .max_over = 0.6, .min_level = 0.04,
+	.hint_sigma = 0.08, .drawn_sigma = 0.01, .max_flank_rms = 0.019, .max_flank_sigma = 0.045, .min_flank_coverage = 0.3, .max_over = 0.6, .min_level = 0.04,
 };
 
 static const struct pose_conf pose_defaults = {
