@@ -15,6 +15,37 @@ double camera_keys_focal(const struct camera_keys *keys, int width, int height)
 	return keys->focal_mm / keys->sensor_mm * (width > height ? width : height);
 }
 
+/* Whether the radius in the picture grows with the undistorted one until it reaches `corner`. */
+static bool grows(const double k[5], double corner)
+{
+	enum { STEPS = 4096 };
+	// No lens that is told by this polynomial shows more than 85 degrees off its axis.
+	const double most = tan(85 * M_PI / 180);
+	double before = 0;
+	for (int i = 1; i <= STEPS && before < corner; i++) {
+		double r = most * i * i / (STEPS * (double)STEPS), r2 = r * r, f = r * (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4])));
+		if (!(f > before))
+			return false;
+		before = f;
+	}
+	return before >= corner;
+}
+
+bool camera_keys_check(const struct camera *camera, int width, int height, struct err *err)
+{
+	const double *c = camera->center_px, *k = camera->distortion;
+	if (!(c[0] >= -width && c[0] <= 2.0 * width && c[1] >= -height && c[1] <= 2.0 * height))
+		return err_set(err, "camera.center_px = %g %g: must lie within one picture's size of the picture, %d x %d px", c[0], c[1], width,
+		               height);
+	if (!isfinite(camera->focal_px))
+		return true;
+	double corner = hypot(fmax(fabs(c[0]), fabs(width - c[0])), fmax(fabs(c[1]), fabs(height - c[1]))) / camera->focal_px;
+	if (!grows(k, corner))
+		return err_set(err, "camera.distortion = %g %g %g %g %g with camera.focal_px = %g: folds the picture before its corners", k[0], k[1],
+		               k[2], k[3], k[4], camera->focal_px);
+	return true;
+}
+
 /* Keys FAMILY.NAME.* name a file of one of these folders. */
 struct family {
 	const char *prefix, *what;

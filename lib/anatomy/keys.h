@@ -5,6 +5,7 @@
 #ifndef ANATOMY_KEYS_H
 #define ANATOMY_KEYS_H
 #include "base/opt.h"
+#include "optics/camera.h"
 
 /* The lens and sensor as capture.conf states them; NAN where it does not. */
 struct camera_keys {
@@ -43,6 +44,12 @@ struct camera_keys {
 /* Focal length in px of a picture of width x height px: focal_px as it stands, else focal_mm over the longer side of the
  * sensor, which the longer side of the picture spans. NAN where the keys do not tell. */
 double camera_keys_focal(const struct camera_keys *keys, int width, int height);
+
+/* Checks that a camera's numbers can be those of a picture of width x height px: the principal point lies within one picture's size of
+ * the picture, and the distortion does not fold it (the radius in the picture grows with the angle to the axis out to the
+ * farthest corner; tangential terms are not looked at).
+ * False, err set (key, value, rule), where they cannot; err may blame two keys together. */
+bool camera_keys_check(const struct camera *camera, int width, int height, struct err *err);
 
 /* Checks that every key of capture.conf or the command line that names a photograph (`photo.NAME.*`), a view (`view.NAME.*`) or
  * a character (`target.NAME.*`) names a file of the capture folder: its name without the ending, of a frame of a video

@@ -74,7 +74,7 @@ void limbus_measure_photo(struct limbus_record *record, const struct photo *phot
 	limbus_record_fill(record, found, photo);
 	if (record->ok)
 		record->view.camera = camera_of(known, photo, &record->view.limbus, eye);
-	if (record->ok && !lean(record, found, eye, pose_conf, &err)) {
+	if (record->ok && (!camera_keys_check(&record->view.camera, photo->width, photo->height, &err) || !lean(record, found, eye, pose_conf, &err))) {
 		record->ok = false;
 		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
 	}

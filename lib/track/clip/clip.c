@@ -71,7 +71,7 @@ static bool set_camera(struct track_clip *clip, struct stage *stage, const struc
 	clip->focal_assumed = isnan(c->focal_px);
 	if (clip->focal_assumed)
 		*c = (struct camera){ .focal_px = 4.0 * clip->info.width, .center_px = { c->center_px[0], c->center_px[1] }, .source = CAMERA_NONE };
-	return true;
+	return camera_keys_check(c, clip->info.width, clip->info.height, err);
 }
 
 /* Landmarks marked in the picture of the reference frame. */

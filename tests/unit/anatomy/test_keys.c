@@ -67,6 +67,33 @@ static void test_clip_held_either_way(void **state)
 	assert_true(landscape == portrait);
 }
 
+static void test_camera(void **state)
+{
+	(void)state;
+	static const struct {
+		struct camera c;
+		const char *says;
+	} cases[] = {
+		{ { 2000, { 800, 600 }, { 0 }, CAMERA_CONF }, "" },
+		{ { 2000, { 800, 600 }, { -0.3, 0.1, 0.001, 0, 0 }, CAMERA_CONF }, "" },   // a wide lens as they are
+		{ { 11000, { -300, 1500 }, { 0.2, 0, 0, 0, 0 }, CAMERA_CONF }, "" },       // cut out beside the axis
+		{ { NAN, { 800, 600 }, { 100, 0, 0, 0, 0 }, CAMERA_NONE }, "" },           // parallel projection: no distortion
+		{ { 2000, { 1e6, -1e6 }, { 0 }, CAMERA_CONF }, "camera.center_px = 1e+06 -1e+06: must lie within one picture's size" },
+		{ { 2000, { NAN, 600 }, { 0 }, CAMERA_CONF }, "camera.center_px" },
+		// r (1 - r^2 / 3) turns round at r = 1, where it is 2/3: the corner, 0.707 from the middle, is beyond.
+		{ { 1414.2, { 800, 600 }, { -1.0 / 3, 0, 0, 0, 0 }, CAMERA_CONF }, "folds the picture" },
+		{ { 1600, { 800, 600 }, { -1.0 / 3, 0, 0, 0, 0 }, CAMERA_CONF }, "" },     // the corner at 0.625 is not
+		{ { 2000, { 800, 600 }, { -100, 0, 0, 0, 0 }, CAMERA_CONF }, "folds the picture" },
+		{ { 2000, { 800, 600 }, { NAN, 0, 0, 0, 0 }, CAMERA_CONF }, "folds the picture" },
+	};
+	for (int i = 0; i < COUNT(cases); i++) {
+		struct err err = { 0 };
+		bool ok = camera_keys_check(&cases[i].c, 1600, 1200, &err);
+		if (ok != !*cases[i].says || !strstr(err.msg, cases[i].says))
+			fail_msg("case %d: %s", i, err.msg);
+	}
+}
+
 /* What the check says of one line of capture.conf, or "" where it is content. */
 static const char *said(const char *line)
 {
@@ -126,6 +153,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_focal),
 		cmocka_unit_test(test_clip_held_either_way),
+		cmocka_unit_test(test_camera),
 		cmocka_unit_test(test_names),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
