@@ -66,6 +66,10 @@ static char *slice(struct stage *stage)
 	return text;
 }
 
+/* Of OpenBLAS, where the program is linked with it. Its sums depend on the number of its threads in the last digits, and its matrices here are
+ * small: the stages' own threads want the cores. */
+extern void openblas_set_num_threads(int n) __attribute__((weak));
+
 void stage_start(struct stage *stage, const char *name, const char *about, int argc, char **argv, int n_opts,
                  const struct opt opts[])
 {
@@ -86,6 +90,8 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 	int all = omp_get_num_procs();
 	stage->threads = call.threads > 0 && call.threads < 4 * all ? call.threads : all;
 	omp_set_num_threads(stage->threads);
+	if (openblas_set_num_threads)
+		openblas_set_num_threads(1);
 	struct file_list list;
 	if (!file_list(&list, stage->capture, &err) || !file_exists(stage->capture)) {
 		err_set(&err, "%s: no such folder", stage->capture);

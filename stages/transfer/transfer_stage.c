@@ -17,7 +17,9 @@
 #include "register/transfer_quality.h"
 #include "register/transfer_unit.h"
 
-enum { OUT = 4, IN = 2 };
+#define RIG "work/rig.json"
+
+enum { OUT = 4, IN_MOST = 3 };
 
 struct subject {
 	const char *file;  // relative to the capture
@@ -28,7 +30,8 @@ struct subject {
 };
 
 struct target {
-	char *name, *in[IN], *out[OUT];
+	char *name, *in[IN_MOST], *out[OUT];
+	int n_in;
 	struct mesh mesh;  // mm
 	double unit;
 	bool guessed;
@@ -61,7 +64,7 @@ static void say_mended(struct stage *stage, const char *file, const struct mesh_
 static bool load_eyes(struct subject *s, struct stage *stage, struct err *err)
 {
 	struct camera_rig rig = { 0 };
-	const char *path = stage_path(stage, "work/rig.json");
+	const char *path = stage_path(stage, RIG);
 	if (!file_exists(path))
 		return true;
 	if (!camera_rig_load(&rig, path, err))
@@ -137,7 +140,7 @@ static bool save_json(const struct target *t, const struct subject *s, const cha
 static bool save(struct target *t, const struct subject *s, struct stage *stage, struct err *err)
 {
 	const char *const *in = (const char *const *)t->in;
-	const char *made_by = stage_made_by(stage, IN, in);
+	const char *made_by = stage_made_by(stage, t->n_in, in);
 	struct mesh registered = t->mesh;
 	registered.vertices = t->result.registered;
 	bool ok = om_mesh_save(&registered, stage_path(stage, "%s", t->out[0]), made_by, err)
@@ -145,7 +148,7 @@ static bool save(struct target *t, const struct subject *s, struct stage *stage,
 	          && save_json(t, s, stage_path(stage, "%s", t->out[2]), made_by, err)
 	          && transfer_save_picture(&t->result, &t->mesh, &s->mesh, stage_path(stage, "%s", t->out[3]), err);
 	for (int i = 0; i < OUT && ok; i++)
-		ok = stage_made(stage, t->out[i], IN, in, err);
+		ok = stage_made(stage, t->out[i], t->n_in, in, err);
 	return ok;
 }
 
@@ -165,13 +168,16 @@ static void report(struct stage *stage, const struct target *t)
 	stage_figure(stage, "distance_95", transfer_distance(r, 0.95), "mm");
 }
 
-static void target_names(struct target *t, const char *file, const char *subject)
+static void target_names(struct target *t, const char *file, const struct subject *s)
 {
 	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "transfer.json", "registration.png" };
 	const char *dot = strrchr(file, '.');
 	t->name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file);
 	t->in[0] = mem_printf("targets/%s", file);
-	t->in[1] = mem_str(subject);
+	t->in[1] = mem_str(s->file);
+	t->n_in = 2;
+	if (s->has_eyes)
+		t->in[t->n_in++] = mem_str(RIG);
 	for (int i = 0; i < OUT; i++)
 		t->out[i] = mem_printf("work/targets/%s/%s", t->name, writes[i]);
 }
@@ -179,7 +185,7 @@ static void target_names(struct target *t, const char *file, const char *subject
 static void target_free(struct target *t)
 {
 	free(t->name);
-	for (int i = 0; i < IN; i++)
+	for (int i = 0; i < t->n_in; i++)
 		free(t->in[i]);
 	for (int i = 0; i < OUT; i++)
 		free(t->out[i]);
@@ -194,10 +200,10 @@ static bool one(struct stage *stage, const char *file, const struct subject *s, 
 	struct target t = { 0 };
 	struct nricp_landmarks landmarks = { 0 };
 	struct err why = { 0 };
-	target_names(&t, file, s->file);
+	target_names(&t, file, s);
 	bool done = true, fresh = true;
 	for (int i = 0; i < OUT; i++)
-		fresh = stage_fresh(stage, t.out[i], IN, (const char *const *)t.in) && fresh;
+		fresh = stage_fresh(stage, t.out[i], t.n_in, (const char *const *)t.in) && fresh;
 	if (!fresh) {
 		done = load_target(&t, stage, s, conf, &why)
 		       && landmarks_pair(&landmarks, t.name, &conf->target_landmarks, t.mesh.n_vertices, s->mesh.n_vertices,
