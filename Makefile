@@ -129,12 +129,15 @@ $B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a
 # ---- a capture ---------------------------------------------------------------------------------------------------
 # plan looks at the folder and writes what has to run; each stage then runs only if its inputs, configuration or
 # program differ, by their bytes, from what it last ran with. Where none does, plan alone says so.
+# Where no photograph could be used there is the page all the same: on it the limbus can be drawn by hand.
+page_alone = test -d "$$CAPTURE/work/limbus" && test ! -d "$$CAPTURE/work/iris" && $(BIN)/render --capture="$$CAPTURE" --quiet >/dev/null 2>&1 && \
+	echo "where the eye is can be drawn on $$CAPTURE/work/review/index.html" >&2
 .PHONY: run need-capture
 need-capture:
 	@test -n "$$CAPTURE" || { echo "make: say which folder: make CAPTURE=my-capture $(MAKECMDGOALS)" >&2; exit 2; }
 run: need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE" --todo; todo=$$?; test $$todo = 3 || exit $$todo; \
-		BIN=$(BIN) $(still) $(MAKE) --no-print-directory -f - all < "$$CAPTURE/work/plan.mk"
+		BIN=$(BIN) $(still) $(MAKE) --no-print-directory -f - all < "$$CAPTURE/work/plan.mk" || { bad=$$?; $(page_alone); exit $$bad; }
 $(filter-out plan,$(STAGES)): need-capture build
 	@$(BIN)/plan --capture="$$CAPTURE" --quiet
 	@BIN=$(BIN) $(still) $(MAKE) --no-print-directory -f - $@ < "$$CAPTURE/work/plan.mk"

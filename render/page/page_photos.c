@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
+#include "image/photo/photo.h"
 #include "render/page/page.h"
 
 static const double deg = M_PI / 180;
@@ -87,6 +89,36 @@ static void likeness(struct page *page, json_t *entry, const char *dir, const ch
 	json_decref(numbers);
 }
 
+/* Size of the upright photograph as its header says, px; false where it cannot be read. */
+static bool size_of(int *width, int *height, const char *path)
+{
+	char *data = 0;
+	size_t size = 0;
+	struct err err = { 0 };
+	struct photo head = { 0 };
+	bool ok = path && file_read(&data, &size, path, (size_t)1 << 30, &err) && photo_header(&head, data, size, 1e5, &err);
+	bool sideways = head.exif.orientation >= 5;
+	*width = sideways ? head.height : head.width;
+	*height = sideways ? head.width : head.height;
+	free(data);
+	return ok;
+}
+
+/* Where the ellipse that a hand may correct begins: on the fit, or in the middle. For page.js. */
+static void hand(json_t *entry, const char *name, const struct fit *f, const char *file)
+{
+	struct ellipse e = f->limbus;
+	int width = f->width, height = f->height;
+	if (!f->ok) {
+		if (!size_of(&width, &height, file))
+			return;
+		double r = 0.25 * fmin(width, height);
+		e = (struct ellipse){ 0.5 * width, 0.5 * height, r, r, 0 };
+	}
+	json_object_set_new(entry, "hand", json_pack("{s:i,s:i,s:o,s:o}", "px_width", width, "px_height", height, "at", ellipse(&e), "key",
+	                                             template_text(name)));
+}
+
 static json_t *photo(struct page *page, const struct capture_photo *p)
 {
 	struct err err = { 0 };
@@ -104,6 +136,7 @@ static json_t *photo(struct page *page, const struct capture_photo *p)
 	advise(page, p->name, &fit);
 	if (!fit.ok) {
 		json_object_set_new(entry, "reason", template_text(fit.reason));
+		hand(entry, p->name, &fit, file);
 		return entry;
 	}
 	json_object_set_new(entry, "ok", json_true());
@@ -111,6 +144,7 @@ static json_t *photo(struct page *page, const struct capture_photo *p)
 	json_object_set_new(entry, "px_height", json_integer(fit.height));
 	json_object_set_new(entry, "stroke", json_real(fit.width / 450.0));
 	json_object_set_new(entry, "limbus", ellipse(&fit.limbus));
+	hand(entry, p->name, &fit, file);
 	if (fit.has_pupil)
 		json_object_set_new(entry, "pupil", ellipse(&fit.pupil));
 	json_object_set_new(entry, "facts", facts(&fit));
