@@ -89,22 +89,53 @@ static void softmax(float *planes, long n)
 	}
 }
 
-/* Width and height of the network's input: multiples of STEP. */
+static void mirror_rows(float *planes, int n_planes, int width, int height)
+{
+	for (long row = 0; row < (long)n_planes * height; row++)
+		for (float *p = planes + row * width, *q = p + width - 1; p < q; p++, q--) {
+			const float t = *p;
+			*p = *q;
+			*q = t;
+		}
+}
+
+/* The classes' probabilities of one picture in [3][height][width], both sides multiples of STEP. both: the mean of what the
+ * picture and its mirror image say, so that mirrored photographs have mirrored evidence; `in` is changed. */
+static bool classify(float **planes, int size[3], struct evidence_net *net, float *in, int width, int height, bool both, struct err *err)
+{
+	if (!cv_net_run(planes, size, net->net, in, 3, height, width, err))
+		return false;
+	const long n = (long)size[1] * size[2];
+	softmax(*planes, n);
+	if (!both)
+		return true;
+	float *other;
+	mirror_rows(in, 3, width, height);
+	if (!cv_net_run(&other, size, net->net, in, 3, height, width, err))
+		return false;
+	softmax(other, n);
+	mirror_rows(other, EVIDENCE_CLASSES, size[2], size[1]);
+	for (long i = 0; i < EVIDENCE_CLASSES * n; i++)
+		(*planes)[i] = 0.5F * ((*planes)[i] + other[i]);
+	free(other);
+	return true;
+}
+
 static bool run(struct evidence *out, struct evidence_net *net, const struct photo *photo, double x0, double y0, double scale, int width,
-                int height, struct err *err)
+                int height, bool both, struct err *err)
 {
 	float *in = resample(photo, x0, y0, scale, width, height), *planes = 0;
 	int size[3];
-	const bool ok = cv_net_run(&planes, size, net->net, in, 3, height, width, err);
+	const bool ok = classify(&planes, size, net, in, width, height, both, err);
 	free(in);
 	*out = (struct evidence){ 0 };
-	if (!ok)
+	if (!ok) {
+		free(planes);
 		return false;
+	}
 	*out = (struct evidence){ .width = size[2], .height = size[1], .x0 = x0, .y0 = y0, .scale = scale * width / size[2] };
-	const long n = (long)out->width * out->height;
-	softmax(planes, n);
 	for (int c = 0; c < EVIDENCE_CLASSES; c++)
-		out->plane[c] = planes + c * n;
+		out->plane[c] = planes + c * (long)out->width * out->height;
 	return true;
 }
 
@@ -112,7 +143,7 @@ bool evidence_window(struct evidence *out, struct evidence_net *net, const struc
                      struct err *err)
 {
 	const double scale = radius / EVIDENCE_RADIUS;
-	return run(out, net, photo, cx - 0.5 * WINDOW_WIDE * scale, cy - 0.5 * WINDOW_HIGH * scale, scale, WINDOW_WIDE, WINDOW_HIGH, err);
+	return run(out, net, photo, cx - 0.5 * WINDOW_WIDE * scale, cy - 0.5 * WINDOW_HIGH * scale, scale, WINDOW_WIDE, WINDOW_HIGH, true, err);
 }
 
 bool evidence_whole(struct evidence *out, struct evidence_net *net, const struct photo *photo, int long_px, struct err *err)
@@ -120,7 +151,7 @@ bool evidence_whole(struct evidence *out, struct evidence_net *net, const struct
 	const double scale = fmax(photo->width, photo->height) / (double)long_px;
 	const int width = (int)ceil(photo->width / scale / STEP - 0.01) * STEP, height = (int)ceil(photo->height / scale / STEP - 0.01) * STEP;
 	// What is added to reach a multiple lies on both sides.
-	return run(out, net, photo, 0.5 * (photo->width - width * scale), 0.5 * (photo->height - height * scale), scale, width, height, err);
+	return run(out, net, photo, 0.5 * (photo->width - width * scale), 0.5 * (photo->height - height * scale), scale, width, height, false, err);
 }
 
 float evidence_at(const struct evidence *evidence, enum evidence_class class, double x, double y)
@@ -209,25 +240,26 @@ int evidence_regions(struct evidence_region out[EVIDENCE_REGIONS], const struct 
 	return n;
 }
 
-/* Candidates of one scale among those of others: of two at one place the better stays. */
+/* Candidates of one scale among those of others: of two at one place the better stays; where they agree on the radius, too, it
+ * gains what the other says. */
 static int merge(struct evidence_region out[EVIDENCE_REGIONS], int n, const struct evidence_region *more, int m)
 {
 	for (int i = 0; i < m; i++) {
-		bool better = true;
-		for (int k = 0; k < n && better; k++) {
-			const double apart = hypot(out[k].x - more[i].x, out[k].y - more[i].y);
-			if (apart > 0.8 * fmax(out[k].radius, more[i].radius))
+		struct evidence_region best = more[i];
+		for (int k = n - 1; k >= 0; k--) {
+			const struct evidence_region was = out[k];
+			const double apart = hypot(was.x - best.x, was.y - best.y), ratio = was.radius / best.radius;
+			if (apart > 0.8 * fmax(was.radius, best.radius))
 				continue;
-			better = more[i].score > out[k].score;
-			if (better) {
-				for (int j = k; j + 1 < n; j++)
-					out[j] = out[j + 1];
-				n--;
-				k--;
-			}
+			const double less = fmin(was.score, best.score);
+			best = was.score > best.score ? was : best;
+			if (ratio > 0.75 && ratio < 1.33)
+				best.score += 0.5 * less * (1 - best.score);
+			for (int j = k; j + 1 < n; j++)
+				out[j] = out[j + 1];
+			n--;
 		}
-		if (better)
-			n = insert(out, n, more[i]);
+		n = insert(out, n, best);
 	}
 	return n;
 }

@@ -31,8 +31,9 @@ bool evidence_open(struct evidence_net **net, const char *path, struct err *err)
 void evidence_close(struct evidence_net *net);
 
 /* Evidence round (cx, cy), at the scale that suits an iris of so many px radius: it becomes EVIDENCE_RADIUS px in the network's
- * input, so that the planes reach 3.2 radii to the sides, 2 up and down, with a pixel of 1/20 of the radius. What lies beyond the
- * photograph repeats its border. evidence_free. */
+ * input, so that the planes reach 3.2 radii to the sides, 2 up and down, with a pixel of 1/20 of the radius. The mean of what the
+ * window and its mirror image say: a mirrored photograph has mirrored evidence. What lies beyond the photograph repeats its border.
+ * evidence_free. */
 enum { EVIDENCE_RADIUS = 40 };
 bool evidence_window(struct evidence *out, struct evidence_net *net, const struct photo *photo, double cx, double cy, double radius,
                      struct err *err);

@@ -60,10 +60,13 @@ class Net(nn.Module):
 
 
 class Pictures:
-    """Batches from the generator, made beside the training."""
+    """Batches from the generator, made beside the training. again: the share of a batch that was seen before, of the last KEPT."""
 
-    def __init__(self, make, first, size, batch, test=False):
-        self.size, self.batch = size, batch
+    KEPT = 3000
+
+    def __init__(self, make, first, size, batch, test=False, again=0.0):
+        self.size, self.batch, self.old = size, batch - int(batch * again), int(batch * again)
+        self.kept, self.rng = [], np.random.default_rng(first)
         command = [make, str(first), "100000000", str(size[0]), str(size[1])] + (["test"] if test else [])
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, bufsize=1 << 22)
         self.queue = queue.Queue(4)
@@ -81,7 +84,14 @@ class Pictures:
             self.queue.put((torch.from_numpy(np.ascontiguousarray(rgb)), torch.from_numpy(a[:, 3 * w * h:].reshape(self.batch, h, w).copy())))
 
     def next(self):
-        return self.queue.get()
+        rgb, label = self.queue.get()
+        if not self.old:
+            return rgb, label
+        self.kept.extend(zip(rgb, label))
+        if len(self.kept) > self.KEPT:
+            del self.kept[:self.batch]
+        picked = [self.kept[i] for i in self.rng.integers(0, len(self.kept), self.old)]
+        return torch.cat([rgb, torch.stack([p[0] for p in picked])]), torch.cat([label, torch.stack([p[1] for p in picked])])
 
     def close(self):
         self.process.terminate()
@@ -212,7 +222,7 @@ def train(args, worker=0, meeting=None):
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
     begun, kept, number, losses = time.time(), time.time(), args.first + 100000000 * worker, []
     size = SMALL if args.small > 0 else LARGE
-    pictures = Pictures(args.make, number, size, args.batch)
+    pictures = Pictures(args.make, number, size, args.batch, again=args.again)
     while True:
         done = (time.time() - begun) / (60 * args.minutes) if not args.short else len(losses) / args.short_steps
         if done >= 1:
@@ -220,9 +230,9 @@ def train(args, worker=0, meeting=None):
         if size == SMALL and done > args.small:
             pictures.close()
             size, number = LARGE, number + 50000000
-            pictures = Pictures(args.make, number, size, args.batch)
+            pictures = Pictures(args.make, number, size, args.batch, again=args.again)
         for group in optimiser.param_groups:
-            warm = min(1, len(losses) / (20 if args.short else 200) + 0.02)
+            warm = min(1, len(losses) / (20 if args.short or args.start else 200) + 0.02)
             group["lr"] = args.rate * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
         losses.append(optimise(net, optimiser, pictures, rng))
         if meeting and len(losses) % 20 == 0:
@@ -255,6 +265,7 @@ def main():
     p.add_argument("--small", type=float, default=0.8, help="share of the time on small pictures")
     p.add_argument("--rate", type=float, default=2e-3)
     p.add_argument("--batch", type=int, default=8)
+    p.add_argument("--again", type=float, default=0.5, help="share of each batch that was seen before")
     p.add_argument("--first", type=int, default=0)
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--workers", type=int, default=1, help="processes that train side by side and average their weights")
