@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/mem.h"
 #include "image/video/impl.h"
@@ -34,6 +35,10 @@ static bool choose(struct video_source *s, const char *path, struct err *err)
 bool video_source_open(struct video_source *s, const char *path, struct err *err)
 {
 	*s = (struct video_source){ 0 };
+	struct stat st;
+	// A pipe would be waited for.
+	if (!stat(path, &st) && !S_ISREG(st.st_mode))
+		return err_set(err, "%s: is not a regular file", path);
 	if (!video_api_load(err))
 		return err_wrap(err, "%s", path);
 	av.av_log_set_level(AV_LOG_QUIET);

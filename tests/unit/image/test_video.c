@@ -1,5 +1,7 @@
 /* Videos: what is written is read again; hostile and damaged files. Truth: the pictures that went in; the file's own bytes,
  * changed in known places. */
+#include <sys/stat.h>
+
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/video/video.h"
@@ -236,6 +238,10 @@ static void broken_files(void **state)
 	err = (struct err){ 0 };
 	assert_null(video_open(&info, scratch_path("nothing.mp4"), &conf, &err));
 	ERR_HAS(err, "No such file");
+	err = (struct err){ 0 };
+	assert_int_equal(mkfifo(scratch_path("pipe.mp4"), 0600), 0);  // nobody writes to it
+	assert_null(video_open(&info, scratch_path("pipe.mp4"), &conf, &err));
+	ERR_HAS(err, "is not a regular file");
 }
 
 static void limits(void **state)
