@@ -6,16 +6,44 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
 #include "base/mem.h"
 
+/* nftw hands nothing on to what it calls. */
+static _Thread_local char *link_found;
+
+static int find_link(const char *path, const struct stat *st, int kind, struct FTW *ftw)
+{
+	(void)st;
+	(void)ftw;
+	struct stat to;
+	if (kind != FTW_SL || stat(path, &to) || !S_ISDIR(to.st_mode))
+		return 0;
+	link_found = mem_str(path);
+	return 1;
+}
+
+bool work_check(const char *capture, struct err *err)
+{
+	char *inside = mem_printf("%s/work", capture);
+	link_found = 0;
+	nftw(inside, find_link, 32, FTW_PHYS);
+	free(inside);
+	if (!link_found)
+		return true;
+	err_set(err, "%s: is a link to another folder: only work/ is written; remove it", link_found);
+	free(link_found);
+	return false;
+}
+
 int work_lock(const char *capture, bool *busy, struct err *err)
 {
 	char *dir = mem_printf("%s/work/.made", capture), *path = mem_printf("%s/lock", dir);
 	int fd = -1;
-	if (file_mkdirs(dir, err)) {
+	if (work_check(capture, err) && file_mkdirs(dir, err)) {
 		fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
 		if (fd < 0)
 			err_set(err, "%s: %s", path, strerror(errno));

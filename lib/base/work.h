@@ -3,7 +3,12 @@
 #define BASE_WORK_H
 #include "base/err.h"
 
+/* Checks that no folder of work/, nor work/ itself, is a link: files elsewhere would be overwritten. Links to files do no harm: a new
+ * file takes their place. False, err set (path, rule), where one is. */
+bool work_check(const char *capture, struct err *err);
+
 /* Tries to lock work/, which is made if need be. Returns a file descriptor, whose close() unlocks, or -1, err set.
+ * Checks it first (work_check).
  * *busy  out: another program holds the lock, and the descriptor is not locked yet: work_wait waits for it */
 int work_lock(const char *capture, bool *busy, struct err *err);
 void work_wait(int lock);

@@ -58,7 +58,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 {
 	struct plan plan;
 	char *slice = slice_of(opts, conf);
-	bool ok = plan_decide(&plan, call->capture, cost, conf, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
+	bool ok = work_check(call->capture, err) && plan_decide(&plan, call->capture, cost, conf, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
