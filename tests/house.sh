@@ -11,11 +11,13 @@ B=${B:-build}
 # Lines "def SOURCE SYMBOL" and "use SOURCE SYMBOL". Objects whose source is gone are passed over.
 symbols() {
 	find lib stages render \( -name '*.c' -o -name '*.cc' \) | sort | while IFS= read -r source; do
-		[ -e "$B/${source%.*}.o" ] || continue
-		nm "$B/${source%.*}.o" 2>/dev/null | awk -v f="$source" '
-			NF == 3 && $2 ~ /^[TDBRi]$/ && $3 !~ /\./ { print "def", f, $3 }
-			NF == 2 && $1 == "U" { print "use", f, $2 }'
-	done
+		[ -e "$B/${source%.*}.o" ] && printf '%s\n' "$source"
+	done >"$B/house.sources"
+	sed "s#^#$B/#; s#\.[^.]*\$#.o#" "$B/house.sources" | xargs nm -A 2>/dev/null | awk -v sources="$B/house.sources" -v skip="$((${#B} + 1))" '
+		BEGIN { while ((getline s < sources) > 0) { o = s; sub(/\.[^.]*$/, ".o", o); of[o] = s } }
+		{ colon = index($0, ":"); f = of[substr($1, skip + 1, index($1, ":") - skip - 1)]; n = split(substr($0, colon + 1), part, " ") }
+		n == 3 && part[2] ~ /^[TDBRi]$/ && part[3] !~ /\./ { print "def", f, part[3] }
+		n == 2 && part[1] == "U" { print "use", f, part[2] }'
 }
 
 circles() {

@@ -56,6 +56,9 @@ static double focal_of_clip(int width, int height)
 	track_clip_open(&clip, &stage, &subject, &track, &err);
 	double focal = clip.camera.focal_px;
 	track_clip_free(&clip);
+	for (int i = 0; i < stage.n_strings; i++)
+		free(stage.strings[i]);
+	free(stage.strings);
 	return focal;
 }
 
