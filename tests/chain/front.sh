@@ -52,7 +52,7 @@ time = 2 s"; do
 done
 # More keys than fit a line of the measured fronts.
 face=$root/face
-mkdir -p "$face/video" && cp samples/face/subject.ply samples/face/capture.conf "$face" && cp samples/face/video/face.mp4 "$face/video"
+mkdir -p "$face/video" && cp -r samples/face/{subject.ply,capture.conf,targets} "$face" && cp samples/face/video/face.mp4 "$face/video"
 of_track() { "$BIN/track" --capture="$face" --print-config | sed -n "s/^track.$1 = //p"; }
 asks_face() { { cat samples/face/capture.conf; echo "$1"; } >"$face/capture.conf" && "$BIN/plan" --capture="$face" >"$log" 2>&1; }
 check "an error of the video" asks_face "error = 2.9 px"
