@@ -156,7 +156,7 @@ static bool pictures(struct job *job, struct err *err)
 			shot_done(&job->shots[i]);
 		stage_progress(job->stage, ++done, total, "pictures");
 	}
-	if (!still(job, "front", 0, 0, err))
+	if (!asked_pictures(job, err) || !still(job, "front", 0, 0, err))
 		return false;
 	stage_progress(job->stage, ++done, total, "pictures");
 	if (!still(job, "three_quarter", job->conf->three_quarter_deg[0], job->conf->three_quarter_deg[1], err))

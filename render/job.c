@@ -3,8 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "anatomy/light.h"
+#include "base/file.h"
 #include "base/mem.h"
-#include "bridge/imf_read.h"
 #include "draw/photo/reference.h"
 #include "draw/studio.h"
 #include "render/render.h"
@@ -13,6 +14,19 @@ static const char *artifact(struct job *job, const char *name)
 {
 	// Inputs are named relative to the folder; the stage owns the string's longer form.
 	return stage_path(job->stage, "%s/%s", job->names->iris, name) + strlen(job->stage->capture) + 1;
+}
+
+/* A file that a key names, if it does. */
+static bool input_inside(struct job *job, const char *key, const char *rel, struct err *err)
+{
+	char *inside = 0;
+	if (!rel)
+		return true;
+	if (!file_inside(&inside, job->stage->capture, rel, err))
+		return err_wrap(err, "%s", key);
+	free(inside);
+	job->in[job->n_in++] = rel;
+	return true;
 }
 
 static bool inputs(struct job *job, struct err *err)
@@ -27,14 +41,7 @@ static bool inputs(struct job *job, struct err *err)
 	job->in[job->n_in++] = artifact(job, "refraction.exr");
 	job->in[job->n_in++] = reference->photo->fit;
 	job->in[job->n_in++] = reference->photo->file;
-	if (job->conf->environment) {
-		char *inside = 0;
-		if (!file_inside(&inside, job->stage->capture, job->conf->environment, err))
-			return err_wrap(err, "render.environment");
-		free(inside);
-		job->in[job->n_in++] = job->conf->environment;
-	}
-	return true;
+	return input_inside(job, "render.environment", job->conf->environment, err) && input_inside(job, "light.environment", job->conf->light, err);
 }
 
 static bool job_open(struct job *job, const struct capture *capture, int eye_index, struct err *err)
@@ -70,6 +77,9 @@ static void say_what_lacks(struct job *job)
 	for (int i = 2; i < 4; i++)
 		if (!file_exists(stage_path(job->stage, "%s", job->in[i])))
 			stage_skipped(job->stage, "%s of %s eye: %s is missing: %s", i == 2 ? "relief" : "pigment", job->names->side, job->in[i], instead[i]);
+	char reason[256];
+	if (tissue_without(reason, stage_path(job->stage, "%s", job->in[3])))
+		stage_skipped(job->stage, "pigment of %s eye: %s: %s", job->names->side, reason, instead[3]);
 	if (s->not_finite)
 		stage_skipped(job->stage, "%ld values of the maps of the %s eye: they are no numbers: drawn as 0", s->not_finite, job->names->side);
 	if (s->odd_pupil != 0)
@@ -83,9 +93,7 @@ bool job_studio(struct job *job, struct err *err)
 		job->studio = light_studio(env_height(job->conf));
 		return true;
 	}
-	struct image map;
-	const char *path = stage_path(job->stage, "%s", job->conf->environment);
-	if (!imf_read_rgb(&map, path, 1L << 26, err) || !envmap_take(&job->studio, &map, path, err))
+	if (!light_load(&job->studio, 0, job->stage, "render.environment", job->conf->environment, err))
 		return false;
 	envmap_normalise(&job->studio);
 	return true;

@@ -1,10 +1,12 @@
 /* render: pictures of the fitted eye and of driven characters, and the review page.
  * reads   IRIS/texture.exr, clean.exr, relief.exr, pigment.json, limbus/NAME.json, photos/
  *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/
- * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet; review/index.html, viewer.html;
+ * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet, shot_NAME; review/index.html, viewer.html;
  *         work/render/NAME_look.png, NAME_look_layers.exr, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
+ *         work/export/: eye.glb, textures, statements (render/export/export.h)
  */
 #include "base/mem.h"
+#include "render/export/export.h"
 #include "render/options.h"
 #include "render/face/skin.h"
 #include "render/viewer/viewer.h"
@@ -23,8 +25,9 @@ int main(int argc, char **argv)
 	struct eye eye = { 0 };
 	struct render_conf conf = { 0 };
 	struct skin_conf skin = { 0 };
+	struct export_conf leaves = { 0 };
 	struct opt_each_list eye_of = { 0 };
-	const struct opt opts[] = { EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of), RENDER_OPTS(&conf), SKIN_OPTS(&skin) };
+	const struct opt opts[] = { EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of), RENDER_OPTS(&conf), SKIN_OPTS(&skin), EXPORT_OPTS(&leaves) };
 	struct stage stage;
 	struct err err = { 0 };
 	stage_start(&stage, "render", "pictures of the fitted eye and the page that shows everything", argc, argv, COUNT(opts),
@@ -34,11 +37,13 @@ int main(int argc, char **argv)
 	struct jobs eyes = { 0 };
 	ok = ok && jobs_open(&eyes, &stage, &capture, &eye, &conf, &err);
 	for (int i = 0; ok && i < eyes.n; i++)
-		ok = render_eye(&eyes.job[i], &err);
+		ok = (stage.only || render_eye(&eyes.job[i], &err)) && export_eye(&eyes.job[i], &leaves, &err);
 	skin.portrait.eye_samples = conf.samples;
 	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .capture = &capture, .eye = &eye, .photographed = &eyes };
-	ok = ok && render_skin(&faces, &err);
-	show(&faces, ok, &err);
+	if (!stage.only) {
+		ok = ok && render_skin(&faces, &err);
+		show(&faces, ok, &err);
+	}
 	skin_close(&faces);
 	jobs_close(&eyes);
 	capture_free(&capture);

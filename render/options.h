@@ -2,6 +2,7 @@
 #ifndef RENDER_OPTIONS_H
 #define RENDER_OPTIONS_H
 #include "anatomy/keys.h"
+#include "anatomy/light.h"
 #include "render/render.h"
 
 static const char *const render_quadratures[] = { "gauss", "midpoint", "exponential", 0 };
@@ -42,7 +43,9 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_BOOL("film", &(c)->film, "the turntable as a film"), \
 	OPT_INT("sheet_px", &(c)->sheet_px, 300, 6000, "px", "width of the contact sheet"), \
 	OPT_INT("page_px", &(c)->page_px, 100, 2000, "px", "width of the review page's pictures"), \
+	OPT_STR("shots", &(c)->shots, "JSON in the capture folder: further pictures, each with pose and light"), \
 	LIGHT_POLARISED_OPT(&(c)->polarised), \
+	LIGHT_ENVIRONMENT_OPT(&(c)->light), \
 	LIMIT_PHOTO_OPT(&(c)->limit_mpx)
 
 #endif

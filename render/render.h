@@ -18,6 +18,8 @@ struct render_conf {
 	double field_mm;                 // what front and three-quarter show
 	double three_quarter_deg[2];     // yaw, pitch
 	const char *environment;         // latitude-longitude EXR in the capture folder, or null: a studio
+	const char *light;               // the same of the photographs; null: estimated
+	const char *shots;               // JSON in the capture folder: pictures asked for, or null
 	bool freckles, exr, film, polarised;
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
@@ -32,13 +34,14 @@ struct job {
 	const struct capture_eye *names;
 	struct shot *shots;
 	int n_shots, reference;          // the shot whose light and direction the colours are read in
-	const char *in[9];               // inputs that all pictures have in common, relative to the folder
+	const char *in[10];              // inputs that all pictures have in common, relative to the folder
 	int n_in;
 	bool usable;                     // a photograph has a fit, and there is a texture
 	bool ready;                      // what follows has been made (job_ready)
 	struct scene scene;
 	struct envmap studio;            // of the beauty views
 	double gain;                     // of the beauty views' exposure
+	double light_level;              // of the photographs' light in the scale of its file; 0: it was estimated
 	double worst;                    // largest mean difference from a photograph, CIEDE2000
 	struct scene_count count;
 	double error;                    // of the last converging picture
@@ -71,6 +74,9 @@ void shots_free(struct job *job);
 
 /* Rows of an environment's map: more than the pictures resolve. */
 int env_height(const struct render_conf *conf);
+
+/* asked.c: the pictures that render.shots asks for, RENDER/shot_NAME.exr. */
+bool asked_pictures(struct job *job, struct err *err);
 
 /* picture.c: writes at most PICTURES_MAX pictures from the same inputs, in parallel: 3 channels as PNG, 4 as EXR. */
 enum { PICTURES_MAX = 4 };

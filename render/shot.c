@@ -1,6 +1,7 @@
 /* The photographs of an eye: those that have a fit, the reference among them; their decoding. */
 #include <stdlib.h>
 
+#include "anatomy/light.h"
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 #include "draw/photo/reference.h"
@@ -51,11 +52,17 @@ static bool decode(struct job *job, struct shot *shot, struct err *err)
 		err_set(err, "%s: %d x %d px, but its fit is of %d x %d: run limbus again", shot->photo->file, photo.width,
 		        photo.height, shot->fit.width, shot->fit.height);
 	if (ok) {
-		struct image all = photo_linear(&photo, (int)w[0], (int)w[1], (int)(w[2] - w[0]), (int)(w[3] - w[1]));
+		enum { LARGE = 32000000 };  // pixels; in floating point 400 MB
+		const int x = (int)w[0], y = (int)w[1], width = (int)(w[2] - w[0]), height = (int)(w[3] - w[1]);
 		struct scene_view v = shot_view(shot);
-		shot->image = image_new(v.width, v.height, 3);
-		ok = cv_resize(shot->image.px, v.width, v.height, all.px, all.width, all.height, 3, err);
-		image_free(&all);
+		if ((long)width * height > LARGE && v.width < width && v.height < height) {
+			shot->image = photo_shrunk(&photo, x, y, width, height, v.width, v.height);
+		} else {
+			struct image all = photo_linear(&photo, x, y, width, height);
+			shot->image = image_new(v.width, v.height, 3);
+			ok = cv_resize(shot->image.px, v.width, v.height, all.px, all.width, all.height, 3, err);
+			image_free(&all);
+		}
 	}
 	photo_free(&photo);
 	return ok;
@@ -66,17 +73,29 @@ int env_height(const struct render_conf *conf)
 	return conf->scene.map_size > 1024 ? 512 : conf->scene.map_size > 512 ? 256 : 128;
 }
 
+/* The light of a decoded photograph: told, or estimated from it. */
+static bool light(struct job *job, struct shot *shot, struct err *err)
+{
+	if (job->conf->polarised)
+		shot->env = light_studio(env_height(job->conf));
+	else
+		shot->env = light_of_photo(shot, job->eye, env_height(job->conf), &shot->lamps, &shot->n_lamps);
+	if (!job->conf->light)
+		return true;
+	envmap_free(&shot->env);
+	if (!light_load(&shot->env, &job->light_level, job->stage, "light.environment", job->conf->light, err))
+		return false;
+	envmap_normalise(&shot->env);
+	return true;
+}
+
 bool shot_ready(struct job *job, struct shot *shot, struct err *err)
 {
 	if (shot->image.px)
 		return true;
 	if (!decode(job, shot, err))
 		return false;
-	if (job->conf->polarised)
-		shot->env = light_studio(env_height(job->conf));
-	else
-		shot->env = light_of_photo(shot, job->eye, env_height(job->conf), &shot->lamps, &shot->n_lamps);
-	return true;
+	return light(job, shot, err);
 }
 
 void shot_done(struct shot *shot)

@@ -13,7 +13,7 @@ SHARE ?= 1
 tests: $(TESTS) $(TOOLS)
 
 # Without these the interactive page is not driven and no cameras are found, and the summary says so.
-CHECK_PACKAGES := chromium nodejs colmap
+CHECK_PACKAGES := chromium nodejs colmap slurm-wlm
 
 CORES = $(shell nproc)
 check: setup

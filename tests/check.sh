@@ -32,7 +32,7 @@ part "unit tests" tests/units.sh $TESTS
 LABEL="sanitised " part "unit tests, address and undefined-behaviour sanitisers" tests/units.sh $SAN_TESTS
 # The longest first: they leave the others to fill up what is left.
 begun=
-for script in tests/chain/{views,track,viewer,head,kill,accuracy}.sh tests/chain/*.sh; do
+for script in tests/chain/{views,track,viewer,head,kill,slurm,accuracy}.sh tests/chain/*.sh; do
 	case "$begun " in *" $script "*) continue ;; esac
 	begun="$begun $script"
 	beside "$script" "$script"

@@ -11,6 +11,7 @@ enum { SIDES = 3 };
 static const char *const side_names[SIDES] = { "eye", "left", "right" };
 static const char *const iris_dirs[SIDES] = { "work/iris_eye", "work/iris_left", "work/iris_right" };
 static const char *const render_dirs[SIDES] = { "work/render_eye", "work/render_left", "work/render_right" };
+static const char *const export_dirs[SIDES] = { "work/export_eye", "work/export_left", "work/export_right" };
 
 const struct opt_each *capture_each(const struct opt_each_list *list, const char *name)
 {
@@ -87,7 +88,8 @@ static void number_eyes(struct capture *capture)
 			continue;
 		bool first = !capture->n_eyes;
 		capture->eyes[capture->n_eyes++] = (struct capture_eye){
-			side_names[s], first ? "work/iris" : iris_dirs[s], first ? "work/render" : render_dirs[s]
+			side_names[s], first ? "work/iris" : iris_dirs[s], first ? "work/render" : render_dirs[s],
+			first ? "work/export" : export_dirs[s]
 		};
 	}
 	for (int i = 0; i < capture->n_photos; i++)

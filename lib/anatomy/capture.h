@@ -17,6 +17,7 @@ struct capture_eye {
 	const char *side;  // "eye", "left", "right"
 	const char *iris;  // "work/iris" or "work/iris_right"; artifacts are IRIS/texture.exr ...
 	const char *render;  // "work/render" or "work/render_right"
+	const char *leaves;  // "work/export" or "work/export_right": what other programs read
 };
 
 struct capture {

@@ -15,6 +15,24 @@ double camera_keys_focal(const struct camera_keys *keys, int width, int height)
 	return keys->focal_mm / keys->sensor_mm * (width > height ? width : height);
 }
 
+bool camera_keys_agree(const struct camera_keys *keys, int width, int height, struct err *err)
+{
+	const double by_mm = keys->focal_mm / keys->sensor_mm * (width > height ? width : height);
+	if (!isfinite(keys->focal_px) || !isfinite(by_mm) || fabs(keys->focal_px / by_mm - 1) <= 0.05)
+		return true;
+	return err_set(err, "camera.focal_px = %g, and camera.focal_mm = %g with camera.sensor_mm = %g, which make it %.6g px here: give the one that is true",
+	               keys->focal_px, keys->focal_mm, keys->sensor_mm, by_mm);
+}
+
+bool camera_keys_place(double focal_px, double limbus_mm, double radius_px, struct err *err)
+{
+	const double mm = focal_px * limbus_mm / radius_px;
+	if (mm >= 10 && mm <= 1e5)
+		return true;
+	return err_set(err, "camera.focal_px = %g with eye.limbus_radius_mm = %g: an iris of %.0f px stands %.3g mm before such a camera, must be 10 mm to 100 m",
+	               focal_px, limbus_mm, radius_px, mm);
+}
+
 /* Whether the radius in the picture grows with the undistorted one until it reaches `corner`. */
 static bool grows(const double k[5], double corner)
 {

@@ -45,6 +45,14 @@ struct camera_keys {
  * sensor, which the longer side of the picture spans. NAN where the keys do not tell. */
 double camera_keys_focal(const struct camera_keys *keys, int width, int height);
 
+/* Checks that focal_px, where it is given beside focal_mm and sensor_mm, is what they make of it, to 5 %: it may have been meant for the
+ * picture before it was cut or made smaller. False, err set (both keys), where it is not. */
+bool camera_keys_agree(const struct camera_keys *keys, int width, int height, struct err *err);
+
+/* Checks that an eye whose limbus of limbus_mm is radius_px wide in the picture stands before the camera where one can be photographed:
+ * 10 mm to 100 m. False, err set (the keys that put it elsewhere). */
+bool camera_keys_place(double focal_px, double limbus_mm, double radius_px, struct err *err);
+
 /* Checks that a camera's numbers can be those of a picture of width x height px: the principal point lies within one picture's size of
  * the picture, and the distortion does not fold it (the radius in the picture grows with the angle to the axis out to the
  * farthest corner; tangential terms are not looked at).

@@ -12,7 +12,7 @@
 #include "base/say.h"
 #include "base/version.h"
 
-enum { KEY_CAPTURE = 1, KEY_CONFIG_DIR, KEY_PRINT, KEY_QUIET, KEY_FORCE, KEY_THREADS, KEY_HELP, KEY_VERSION, KEY_OPT = 1000 };
+enum { KEY_CAPTURE = 1, KEY_CONFIG_DIR, KEY_PRINT, KEY_QUIET, KEY_FORCE, KEY_THREADS, KEY_ONLY, KEY_HELP, KEY_VERSION, KEY_OPT = 1000 };
 
 struct parsing {
 	struct call *call;
@@ -41,6 +41,22 @@ char *call_config_dir(void)
 	return dir;
 }
 
+/* The version, and the commit that stands beside the programs: not in them, so that a commit alone runs no stage again. */
+static void print_version(const char *name)
+{
+	char *program = call_program_path(), *slash = strrchr(program, '/'), *text = 0;
+	char *path = mem_printf("%.*s/version", slash ? (int)(slash - program) : 0, program);
+	struct err none = { 0 };
+	size_t size;
+	if (file_read(&text, &size, path, 200, &none) && *text)
+		printf("%s (Eyewright) %s, %.*s\n", name, EYEWRIGHT_VERSION, (int)strcspn(text, "\n"), text);
+	else
+		printf("%s (Eyewright) %s\n", name, EYEWRIGHT_VERSION);
+	free(text);
+	free(path);
+	free(program);
+}
+
 static error_t take(int key, char *arg, struct argp_state *state)
 {
 	struct parsing *p = state->input;
@@ -57,6 +73,11 @@ static error_t take(int key, char *arg, struct argp_state *state)
 	case KEY_QUIET:
 		p->call->quiet = true;
 		return 0;
+	case KEY_ONLY:
+		if (strcmp(p->name, "render") || strcmp(arg, "export"))
+			argp_failure(state, 2, 0, "--only = %s: must be export, and the program render", arg);
+		p->call->only = arg;
+		return 0;
 	case KEY_FORCE:
 		p->call->force = true;
 		return 0;
@@ -64,7 +85,7 @@ static error_t take(int key, char *arg, struct argp_state *state)
 		p->help = true;
 		return 0;
 	case KEY_VERSION:
-		printf("%s (Eyewright) %s\n", p->name, EYEWRIGHT_VERSION);
+		print_version(p->name);
 		exit(0);
 	case KEY_THREADS: {
 		char *end;
@@ -94,6 +115,7 @@ static void print_help(const struct parsing *p)
 	       "  --capture=DIR      the capture folder; . when not given\n"
 	       "  --threads=N        at most so many threads; all when not given; results do not depend on it\n"
 	       "  --force            remake what is up to date\n"
+	       "  --only=PART        this part alone: render makes its export\n"
 	       "  --print-config     print this program's slice of the configuration and stop\n"
 	       "  --config-dir=DIR   folder of the default configuration\n"
 	       "  --quiet            errors and warnings only\n"
@@ -114,6 +136,7 @@ void call_parse(struct call *call, const char *name, const char *about, int argc
 		{ "capture", KEY_CAPTURE, "DIR", 0, 0, 0 }, { "config-dir", KEY_CONFIG_DIR, "DIR", 0, 0, 0 },
 		{ "print-config", KEY_PRINT, 0, 0, 0, 0 },  { "quiet", KEY_QUIET, 0, 0, 0, 0 },
 		{ "force", KEY_FORCE, 0, 0, 0, 0 },         { "threads", KEY_THREADS, "N", 0, 0, 0 },
+		{ "only", KEY_ONLY, "PART", 0, 0, 0 },
 		{ "help", KEY_HELP, 0, 0, 0, 0 },           { "version", KEY_VERSION, 0, 0, 0, 0 },
 	};
 	struct argp_option *table = mem_new((size_t)(COUNT(fixed) + 2 * n_opts + 1), sizeof *table);

@@ -5,6 +5,7 @@
 
 struct call {
 	const char *capture, *config_dir;  // folders, borrowed from argv; config_dir: null where not given
+	const char *only;                  // the one part to make; null: all; borrowed
 	int threads;                       // 0: all
 	bool quiet, force, print_config;
 };

@@ -192,12 +192,16 @@ void file_hash_bytes(char out[33], const void *data, size_t size)
 	hash_text(out, XXH3_128bits(data, size));
 }
 
-bool file_hash(char out[33], const char *path, struct err *err)
+bool file_hash(char out[33], const char *path, uint64_t limit, struct err *err)
 {
 	struct stat st;
 	int fd = open_regular(path, &st, err);
 	if (fd < 0)
 		return false;
+	if ((uint64_t)st.st_size > limit) {
+		close(fd);
+		return err_set(err, "%s: %lld bytes, must be <= %llu", path, (long long)st.st_size, (unsigned long long)limit);
+	}
 	enum { PIECE = 1 << 18 };
 	XXH3_state_t *state = XXH3_createState();
 	char *buf = mem_array(PIECE, 1);
@@ -244,8 +248,7 @@ void file_list_free(struct file_list *list)
 	*list = (struct file_list){ 0 };
 }
 
-/* True when `rel` stays inside the folder it is joined to: relative, without "..". Links are not followed here. */
-static bool is_relative(const char *rel)
+bool file_is_relative(const char *rel)
 {
 	if (!*rel || *rel == '/')
 		return false;
@@ -260,7 +263,7 @@ static bool is_relative(const char *rel)
 bool file_inside(char **out, const char *root, const char *rel, struct err *err)
 {
 	*out = 0;
-	if (!is_relative(rel))
+	if (!file_is_relative(rel))
 		return err_set(err, "%s: leads out of the capture folder", rel);
 	char *joined = mem_printf("%s/%s", root, rel);
 	char *real_root = realpath(root, 0), *real = realpath(joined, 0);

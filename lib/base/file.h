@@ -29,8 +29,9 @@ bool file_remove(const char *path, struct err *err);
 /* 128-bit XXH3 of the bytes, as 32 hexadecimal digits and a zero. */
 void file_hash_bytes(char out[33], const void *data, size_t size);
 
-/* The same of a file, which is read in pieces. Returns false, err set, when it cannot be read. */
-bool file_hash(char out[33], const char *path, struct err *err);
+/* The same of a file, which is read in pieces. Returns false, err set, when it is no regular file, cannot be read, or is longer than
+ * `limit` bytes, of which then none is read: a file of holes can claim any length. */
+bool file_hash(char out[33], const char *path, uint64_t limit, struct err *err);
 
 /* Lists the names in folder `dir` (without its path), sorted by bytes; names that begin with a dot are left out. A missing folder
  * counts as empty. Returns false, err set, when it cannot be read. file_list_free. */
@@ -40,6 +41,9 @@ struct file_list {
 };
 bool file_list(struct file_list *out, const char *dir, struct err *err);
 void file_list_free(struct file_list *list);
+
+/* True when `rel` is relative and without "..". Links are not followed here. */
+bool file_is_relative(const char *rel);
 
 /* Joins root and rel and resolves links: *out, free(). Returns false, err set and *out null, when rel is absolute or contains "..",
  * or when the result does not exist or lies outside `root`. */

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 
-json_t *json_read(const char *path, size_t limit, struct err *err)
+static json_t *read_any(const char *path, size_t limit, json_type type, struct err *err)
 {
 	char *text;
 	size_t size;
@@ -17,12 +17,22 @@ json_t *json_read(const char *path, size_t limit, struct err *err)
 	free(text);
 	if (!json)
 		err_set(err, "%s:%d: not JSON: %s", path, why.line, why.text);
-	else if (!json_is_object(json)) {
+	else if (json_typeof(json) != type) {
 		json_decref(json);
 		json = 0;
-		err_set(err, "%s: must be a JSON object", path);
+		err_set(err, "%s: must be a JSON %s", path, type == JSON_OBJECT ? "object" : "array");
 	}
 	return json;
+}
+
+json_t *json_read(const char *path, size_t limit, struct err *err)
+{
+	return read_any(path, limit, JSON_OBJECT, err);
+}
+
+json_t *json_read_array(const char *path, size_t limit, struct err *err)
+{
+	return read_any(path, limit, JSON_ARRAY, err);
 }
 
 bool json_write(const char *path, json_t *object, const char *made_by, struct err *err)

@@ -8,6 +8,9 @@
 /* Reads a file of at most `limit` bytes that holds one JSON object. json_decref. Returns null, err set, otherwise. */
 json_t *json_read(const char *path, size_t limit, struct err *err);
 
+/* The same of a file that holds one JSON array. */
+json_t *json_read_array(const char *path, size_t limit, struct err *err);
+
 /* Writes an object, indented, keys in the order they were set, numbers with 12 digits. Numbers must be finite (json_number).
  * made_by: JSON text put under "made_by", or null. Returns false, err set, when the file cannot be written. */
 bool json_write(const char *path, json_t *object, const char *made_by, struct err *err);

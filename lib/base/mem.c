@@ -5,12 +5,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void *or_die(void *p)
 {
 	if (!p) {
 		fputs("out of memory\n", stderr);
-		exit(1);
+		_exit(1);  // exit handlers of libraries wait for threads, which may wait for memory
 	}
 	return p;
 }

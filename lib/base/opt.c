@@ -175,6 +175,27 @@ static bool check_known(const char *stage, int n, const struct opt opts[], const
 	return true;
 }
 
+static double number_of(const struct opt *o)
+{
+	return o->type == OPT_T_INT ? *o->out.integer : *o->out.real;
+}
+
+/* Of min_X and max_X of one unit the first is not the greater. */
+static bool check_ordered(const char *stage, int n, const struct opt opts[], struct err *err)
+{
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			const struct opt *a = &opts[i], *b = &opts[j];
+			const bool numbers = a->count == 1 && b->count == 1 && a->type == b->type && (a->type == OPT_T_REAL || a->type == OPT_T_INT);
+			if (!numbers || strncmp(a->key, "min_", 4) || strncmp(b->key, "max_", 4) || strcmp(a->key + 4, b->key + 4)
+			    || strcmp(a->unit, b->unit) || !(number_of(a) > number_of(b)))
+				continue;
+			return err_set(err, "%s.%s = %g with %s.%s = %g: the first must not be the greater", stage, a->key, number_of(a), stage, b->key,
+			               number_of(b));
+		}
+	return true;
+}
+
 bool opt_resolve(const char *stage, int n, const struct opt opts[], const struct conf *conf, struct err *err)
 {
 	const char *quality = quality_of(conf);
@@ -195,7 +216,7 @@ bool opt_resolve(const char *stage, int n, const struct opt opts[], const struct
 		if (!ok)
 			return false;
 	}
-	return check_known(stage, n, opts, conf, err);
+	return check_ordered(stage, n, opts, err) && check_known(stage, n, opts, conf, err);
 }
 
 static int by_text(const void *a, const void *b)

@@ -113,6 +113,13 @@ static char *json_key(const char *rel)
 	return key;
 }
 
+/* The longest file that is read to its end, by the folder it stands in. */
+static uint64_t limit_of(const char *rel)
+{
+	const bool photo = !strncmp(rel, "photos/", 7) || !strncmp(rel, "views/", 6), video = !strncmp(rel, "video/", 6);
+	return (uint64_t)(photo ? 2 : video ? 256 : 16) << 30;
+}
+
 const char *record_hash(struct record *r, const char *rel)
 {
 	char *path = record_in_capture(r->capture, rel), *key = json_key(rel);
@@ -126,7 +133,7 @@ const char *record_hash(struct record *r, const char *rel)
 			char text[33];
 			struct err err = { 0 };
 			entry = 0;
-			if (file_hash(text, path, &err)) {
+			if (file_hash(text, path, limit_of(rel), &err)) {
 				// A file written this very moment may change again within the clock's grain: do not trust its date.
 				bool settled = ns(now) - ns(st.st_mtim) > 50000000;
 				entry = json_pack("{s:I,s:I,s:I,s:I,s:s}", "size", (json_int_t)st.st_size, "inode",
@@ -179,14 +186,18 @@ static json_t *input_hashes(struct record *r, int n, const char *const in[])
 	return inputs;
 }
 
+static bool same_maker(const struct record *r)
+{
+	return json_equal(json_object_get(r->old, "program"), json_object_get(r->now, "program"))
+	       && json_equal(json_object_get(r->old, "config"), json_object_get(r->now, "config"));
+}
+
 bool record_fresh(struct record *r, const char *out, int n, const char *const in[])
 {
 	char *key = json_key(out);
 	json_t *made = json_object_get(json_object_get(r->old, "outputs"), key);
 	const char *hash = made ? record_hash(r, out) : 0, *was = json_string_value(json_object_get(made, "hash"));
-	bool fresh = hash && was && !strcmp(hash, was)
-	             && json_equal(json_object_get(r->old, "program"), json_object_get(r->now, "program"))
-	             && json_equal(json_object_get(r->old, "config"), json_object_get(r->now, "config"));
+	bool fresh = hash && was && !strcmp(hash, was) && same_maker(r);
 	if (fresh) {
 		json_t *inputs = input_hashes(r, n, in);
 		fresh = json_equal(inputs, json_object_get(made, "inputs"));
@@ -207,6 +218,12 @@ void record_made(struct record *r, const char *out, int n, const char *const in[
 	json_object_set_new(made, "inputs", input_hashes(r, n, in));
 	json_object_set_new(json_object_get(r->now, "outputs"), key, made);
 	free(key);
+}
+
+void record_keep(struct record *r)
+{
+	if (same_maker(r))
+		json_object_update_missing(json_object_get(r->now, "outputs"), json_object_get(r->old, "outputs"));
 }
 
 bool record_save_json(const char *path, const json_t *json, struct err *err)

@@ -41,6 +41,9 @@ bool record_fresh(struct record *record, const char *out, int n, const char *con
 /* Records that `out` has been made from in[n]. */
 void record_made(struct record *record, const char *out, int n, const char *const in[]);
 
+/* Records what the last run had made with this program and configuration, and this run did not ask about. */
+void record_keep(struct record *record);
+
 /* Writes the record, and the cache of hashes if it changed. complete: the stage has done all its work. Returns false, err set, when
  * that fails. */
 bool record_save(struct record *record, bool complete, struct err *err);

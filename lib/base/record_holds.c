@@ -52,7 +52,8 @@ static const char *hash_once(struct record *r, json_t *seen, const char *rel)
 {
 	json_t *known = json_object_get(seen, rel);
 	if (!known) {
-		const char *hash = *rel == '%' ? 0 : record_hash(r, rel);
+		// A record may come with a stranger's capture: what it names outside of that is not read.
+		const char *hash = *rel == '%' || !file_is_relative(rel) ? 0 : record_hash(r, rel);
 		known = hash ? json_string(hash) : json_null();
 		json_object_set_new(seen, rel, known);
 	}

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "base/err.h"
 #include "base/file.h"
@@ -72,7 +73,11 @@ void say_log_write(const char *path, const char *stage, double seconds, const ch
 	json_object_foreach(log_artifacts, rel, is_made)
 		made += json_is_true(is_made);
 	json_t *artifacts = json_pack("{s:i,s:i}", "made", made, "kept", (int)json_object_size(log_artifacts) - made);
-	json_t *log = json_pack("{s:s,s:f,s:s,s:o,s:o,s:o}", "stage", stage, "seconds", seconds, "error", error,
+	struct rusage self, children;
+	getrusage(RUSAGE_SELF, &self);
+	getrusage(RUSAGE_CHILDREN, &children);
+	long peak_kib = self.ru_maxrss > children.ru_maxrss ? self.ru_maxrss : children.ru_maxrss;
+	json_t *log = json_pack("{s:s,s:f,s:i,s:s,s:o,s:o,s:o}", "stage", stage, "seconds", seconds, "peak_mib", (int)(peak_kib >> 10), "error", error,
 	                        "figures", log_figures, "skipped", log_skips, "artifacts", artifacts);
 	char *text = log ? json_dumps(log, JSON_INDENT(1) | JSON_SORT_KEYS) : 0;
 	struct err err = { 0 };

@@ -9,12 +9,18 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/blas.h"
 #include "base/call.h"
+#include "base/guard.h"
 #include "base/mem.h"
 #include "base/record.h"
+#include "base/run.h"
 #include "base/say.h"
 #include "base/version.h"
 #include "base/work.h"
+
+/* Null in a program that starts no other: it is not linked with run.c then. */
+#pragma weak run_programs
 
 /* Guards the record and the log, which threads of a stage share. Recursive, since some functions here call others. */
 static pthread_mutex_t busy = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
@@ -66,10 +72,6 @@ static char *slice(struct stage *stage)
 	return text;
 }
 
-/* Of OpenBLAS, where the program is linked with it. Its sums depend on the number of its threads in the last digits, and its matrices here are
- * small: the stages' own threads want the cores. */
-extern void openblas_set_num_threads(int n) __attribute__((weak));
-
 void stage_start(struct stage *stage, const char *name, const char *about, int argc, char **argv, int n_opts,
                  const struct opt opts[])
 {
@@ -80,6 +82,7 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 	stage->capture = call.capture;
 	stage->quiet = call.quiet;
 	stage->force = call.force;
+	stage->only = call.only;
 	if (!call_load(&call, name, &stage->conf, &err) || !opt_resolve(name, n_opts, opts, &stage->conf, &err))
 		die(stage, &err, err.usage ? 2 : 1);
 	if (call.print_config) {
@@ -90,8 +93,10 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 	int all = omp_get_num_procs();
 	stage->threads = call.threads > 0 && call.threads < 4 * all ? call.threads : all;
 	omp_set_num_threads(stage->threads);
-	if (openblas_set_num_threads)
-		openblas_set_num_threads(1);
+	if (!blas_prepare(stage->threads, &err)) {
+		say_error(name, err.msg);
+		_exit(1);
+	}
 	struct file_list list;
 	if (!file_list(&list, stage->capture, &err) || !file_exists(stage->capture)) {
 		err_set(&err, "%s: no such folder", stage->capture);
@@ -100,6 +105,9 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 	file_list_free(&list);
 	if (!lock_work(stage, &err))
 		die(stage, &err, 1);
+	char *work = mem_printf("%s/work", stage->capture);
+	guard_enter(work, run_programs);
+	free(work);
 	char *program = call_program_path(), *config = slice(stage);
 	stage->record = record_open(stage->capture, name, program, config);
 	for (int i = 0; i < n_opts; i++)
@@ -126,6 +134,25 @@ const char *stage_path(struct stage *stage, const char *fmt, ...)
 	return keep(stage, path);
 }
 
+/* Removes the names that leave no room for what is made of them. Of photographs limbus, which comes first, says so. */
+static void drop_long(struct stage *stage, struct file_list *list, const char *dir)
+{
+	enum { NAME_MOST = 200 };
+	int n = 0;
+	for (int i = 0; i < list->n; i++) {
+		char *name = list->names[i];
+		if (strlen(name) <= NAME_MOST) {
+			list->names[n++] = name;
+			continue;
+		}
+		const bool said = !strcmp(dir, "photos") && strcmp(stage->name, "limbus");
+		(said ? stage_skipped_as_said : stage_skipped)(stage, "%s/%.30s…: left out: its name has %zu bytes, must have at most %d", dir, name,
+		                                               strlen(name), NAME_MOST);
+		free(name);
+	}
+	list->n = n;
+}
+
 bool stage_list(struct stage *stage, struct file_list *out, const char *dir, struct err *err)
 {
 	char hash[33];
@@ -135,6 +162,7 @@ bool stage_list(struct stage *stage, struct file_list *out, const char *dir, str
 	pthread_mutex_lock(&busy);
 	record_list(stage->record, dir, hash);
 	pthread_mutex_unlock(&busy);
+	drop_long(stage, out, dir);
 	return true;
 }
 
@@ -284,10 +312,12 @@ int stage_end(struct stage *stage, struct err *err)
 	bool ok = !err_is(err);
 	end_line(stage);
 	struct err late = { 0 };
-	if (!record_save(stage->record, ok, &late) && ok)
+	if (stage->only)
+		record_keep(stage->record);
+	if (!record_save(stage->record, ok && !stage->only, &late) && ok)
 		*err = late;
-	const char *log = stage_path(stage, "work/log/%s.json", stage->name);
-	say_log_write(log, stage->name, seconds, err->msg);
+	if (!stage->only)
+		say_log_write(stage_path(stage, "work/log/%s.json", stage->name), stage->name, seconds, err->msg);
 	if (err_is(err))
 		say_error(stage->name, err->msg);
 	else

@@ -29,6 +29,7 @@ struct record;
 struct stage {
 	const char *name;
 	const char *capture;  // path of the capture folder; "." when not given
+	const char *only;     // the one part to make (--only); null: all
 	int threads;          // of --threads, or all; set in OpenMP already
 	bool quiet, force;
 	struct conf conf;
@@ -56,7 +57,8 @@ __attribute__((format(printf, 2, 3)))
 const char *stage_path(struct stage *stage, const char *fmt, ...);
 
 /* Lists the names in a folder of the capture, sorted, as file_list. The listing is recorded as an input, so that a file added or
- * removed makes the stage run again. file_list_free. */
+ * removed makes the stage run again. Names of more than 200 bytes are left out, and logged so: what is made of them has longer ones,
+ * and file systems end at 255. file_list_free. */
 bool stage_list(struct stage *stage, struct file_list *out, const char *dir, struct err *err);
 
 /* Whether `out` is up to date: made by this very program from in[n] with these bytes and this configuration. It need not be made

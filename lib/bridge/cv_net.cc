@@ -6,14 +6,17 @@
 #include <cstring>
 #include <omp.h>
 #include <opencv2/dnn.hpp>
+#include <vector>
 
 extern "C" {
 #include "base/file.h"
 #include "base/mem.h"
 }
 
+/* One of OpenCV's networks for each thread: it runs one picture at a time. */
 struct cv_net {
-	cv::dnn::Net net;
+	std::vector<char> data;
+	std::vector<cv::dnn::Net> each;
 };
 
 namespace {
@@ -54,6 +57,14 @@ struct quiet {
 	~quiet() { cv::redirectError(was, data); }
 };
 
+cv::dnn::Net read_net(const std::vector<char> &data)
+{
+	cv::dnn::Net net = cv::dnn::readNetFromONNX(data.data(), data.size());
+	net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+	net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+	return net;
+}
+
 bool load(cv_net **net, const char *path, const char *data, size_t size, err *err)
 {
 	if (!sealed(data, size))
@@ -62,15 +73,41 @@ bool load(cv_net **net, const char *path, const char *data, size_t size, err *er
 	cv_net *n = nullptr;
 	try {
 		n = new cv_net;
-		n->net = cv::dnn::readNetFromONNX(data, size);
-		n->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-		n->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+		n->data.assign(data, data + size);
+		n->each.push_back(read_net(n->data));
 	} catch (const std::exception &e) {
 		delete n;
 		return err_set(err, "%s: OpenCV cannot use this network: %s", path, e.what());
 	}
 	*net = n;
 	return true;
+}
+
+/* OpenCV's own threads rest while pictures run side by side. */
+struct alone {
+	int was = cv::getNumThreads();
+	alone() { cv::setNumThreads(1); }
+	~alone() { cv::setNumThreads(was); }
+};
+
+bool run_one(cv_net_picture *p, cv::dnn::Net *net, const std::vector<char> &data, int channels, err *err)
+{
+	try {
+		if (net->empty())
+			*net = read_net(data);
+		const int shape[4] = { 1, channels, p->height, p->width };
+		net->setInput(cv::Mat(4, shape, CV_32F, const_cast<float *>(p->in)));
+		const cv::Mat got = net->forward();
+		if (got.dims != 4 || got.size[0] != 1 || got.type() != CV_32F || !got.isContinuous())
+			return err_set(err, "network: gives no picture");
+		for (int i = 0; i < 3; i++)
+			p->size[i] = got.size[i + 1];
+		p->out = static_cast<float *>(mem_array(got.total(), sizeof(float)));
+		std::memcpy(p->out, got.ptr<float>(), got.total() * sizeof(float));
+		return true;
+	} catch (const std::exception &e) {
+		return err_set(err, "network: does not take %d x %d px of %d channels: %s", p->width, p->height, channels, e.what());
+	}
 }
 
 }  // namespace
@@ -92,24 +129,27 @@ void cv_net_close(struct cv_net *net)
 	delete net;
 }
 
-bool cv_net_run(float **out, int size[3], struct cv_net *net, const float *in, int channels, int height, int width, struct err *err)
+bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int channels, struct err *err)
 {
+	const int threads = n < omp_get_max_threads() ? n : omp_get_max_threads();
+	if (static_cast<int>(net->each.size()) < threads)
+		net->each.resize(static_cast<size_t>(threads));
+	for (int i = 0; i < n; i++)
+		picture[i].out = nullptr;
+	std::vector<struct err> errs(static_cast<size_t>(n));
+	int failed = n;
 	const quiet hush;
-	*out = nullptr;
-	try {
-		if (cv::getNumThreads() != omp_get_max_threads())
-			cv::setNumThreads(omp_get_max_threads());
-		const int shape[4] = { 1, channels, height, width };
-		net->net.setInput(cv::Mat(4, shape, CV_32F, const_cast<float *>(in)));
-		const cv::Mat got = net->net.forward();
-		if (got.dims != 4 || got.size[0] != 1 || got.type() != CV_32F || !got.isContinuous())
-			return err_set(err, "network: gives no picture");
-		for (int i = 0; i < 3; i++)
-			size[i] = got.size[i + 1];
-		*out = static_cast<float *>(mem_array(got.total(), sizeof(float)));
-		std::memcpy(*out, got.ptr<float>(), got.total() * sizeof(float));
+	const alone rest;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) reduction(min : failed)
+	for (int i = 0; i < n; i++)
+		if (!run_one(&picture[i], &net->each[static_cast<size_t>(omp_get_thread_num())], net->data, channels, &errs[static_cast<size_t>(i)]))
+			failed = i < failed ? i : failed;
+	if (failed == n)
 		return true;
-	} catch (const std::exception &e) {
-		return err_set(err, "network: does not take %d x %d px of %d channels: %s", width, height, channels, e.what());
+	*err = errs[static_cast<size_t>(failed)];
+	for (int i = 0; i < n; i++) {
+		std::free(picture[i].out);
+		picture[i].out = nullptr;
 	}
+	return false;
 }

@@ -16,12 +16,17 @@ struct cv_net;
 bool cv_net_open(struct cv_net **net, const char *path, struct err *err);
 void cv_net_close(struct cv_net *net);
 
-/* Runs the network on one picture.
- * in    [channels][height][width]; any size that the network takes; a new size costs a set-up
- * out   set to [size[0]][size[1]][size[2]] values (channels, height, width); free()
- * On as many threads as OpenMP would take, with the same numbers on any number of them. One call at a time for each net. False, err set, when the network does not take
- * this size. */
-bool cv_net_run(float **out, int size[3], struct cv_net *net, const float *in, int channels, int height, int width, struct err *err);
+struct cv_net_picture {
+	const float *in;      // [channels][height][width]; any size that the network takes
+	int height, width;
+	float *out;           // set: [size[0]][size[1]][size[2]] (channels, height, width); free(); null where it failed
+	int size[3];
+};
+
+/* Runs the network on n pictures, side by side on as many threads as OpenMP would take, each picture on one: the numbers are the
+ * same on any number of them. Large pictures first keep all busy. One call at a time for each net. A size that differs from the last
+ * one of a thread costs it a set-up of some ms. False, err set, nothing to free, when the network does not take a size. */
+bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int channels, struct err *err);
 
 #ifdef __cplusplus
 }

@@ -167,26 +167,23 @@ static bool open_part(exr_context_t *file, const char *path, struct err *err)
 	return true;
 }
 
-/* Points the decoder at the place of each channel. Channels that are not asked for go to `spare`, which holds one channel's
- * lines: OpenEXRCore (3.1) would skip them given a null pointer, but its fast paths for three and four half channels then
- * write through it. False for subsampled channels. */
-static bool aim(exr_decode_pipeline_t *pipe, const struct image *image, int line, int n, const char *const channels[],
-                float *spare)
+/* Points the decoder at a plane for each channel that is asked for; the others go to one more, whose content nobody reads: OpenEXRCore
+ * (3.1) would skip them given a null pointer, but its fast paths for three and four half channels then write through it. Decoded
+ * straight into interleaved pixels, R G B A come out of one of those paths as A B G R: hence planes. False for subsampled channels. */
+static bool aim(exr_decode_pipeline_t *pipe, int width, int lines, int n, const char *const channels[], float *planes)
 {
 	for (int i = 0; i < pipe->channel_count; i++) {
 		exr_coding_channel_info_t *from = &pipe->channels[i];
+		int plane = n;
 		if (from->x_samples != 1 || from->y_samples != 1)
 			return false;
-		from->decode_to_ptr = (uint8_t *)spare;
-		from->user_pixel_stride = sizeof(float);
 		for (int c = 0; c < n; c++)
-			if (!strcmp(channels[c], from->channel_name)) {
-				from->decode_to_ptr = (uint8_t *)(image_at(image, 0, line) + c);
-				from->user_pixel_stride = n * (int)sizeof(float);
-			}
+			plane = strcmp(channels[c], from->channel_name) ? plane : c;
+		from->decode_to_ptr = (uint8_t *)(planes + (size_t)plane * (size_t)width * (size_t)lines);
+		from->user_pixel_stride = sizeof(float);
 		from->user_data_type = EXR_PIXEL_FLOAT;
 		from->user_bytes_per_element = sizeof(float);
-		from->user_line_stride = image->width * from->user_pixel_stride;
+		from->user_line_stride = width * from->user_pixel_stride;
 	}
 	return true;
 }
@@ -201,10 +198,14 @@ static bool read_chunk(exr_context_t file, int part, int y, const struct image *
 	exr_get_data_window(file, part, &window);
 	if (exr_decoding_initialize(file, part, &chunk, pipe))
 		return false;
-	float *spare = mem_array((size_t)image->width * (size_t)chunk.height, sizeof *spare);
-	bool ok = aim(pipe, image, y - window.min.y, n, channels, spare)
+	size_t plane = (size_t)image->width * (size_t)chunk.height;
+	float *planes = mem_array((size_t)(n + 1) * plane, sizeof *planes), *out = image_at(image, 0, y - window.min.y);
+	bool ok = aim(pipe, image->width, chunk.height, n, channels, planes)
 	          && !exr_decoding_choose_default_routines(file, part, pipe) && !exr_decoding_run(file, part, pipe);
-	free(spare);
+	for (size_t i = 0; ok && i < plane; i++)
+		for (int c = 0; c < n; c++)
+			*out++ = planes[(size_t)c * plane + i];
+	free(planes);
 	return ok;
 }
 

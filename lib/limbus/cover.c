@@ -6,10 +6,11 @@
 #include "math/stats.h"
 
 enum { GAP_ARCS = 5 };
+static const double SCLERA = 0.6;       // chance of sclera beside a limbus that is seen
 static const double SEEN = 0.4;         // of the typical step
 static const double OUTSIDE = 0.09;     // of the semi-axis: where the colour outside is looked at
 
-void rim_tint(double white[ARCS], const struct ring *ring, const struct grey *tint)
+void rim_tint(double white[ARCS], const struct ring *ring, const struct grey *tint, bool absolute)
 {
 	double sorted[ARCS];
 	for (int i = 0; i < ARCS; i++) {
@@ -18,6 +19,8 @@ void rim_tint(double white[ARCS], const struct ring *ring, const struct grey *ti
 	}
 	memcpy(sorted, white, sizeof sorted);
 	double reference = stats_quantile(ARCS, sorted, 0.75);
+	if (absolute)
+		reference = fmax(reference, SCLERA);
 	for (int i = 0; i < ARCS; i++)
 		white[i] /= reference;
 }
@@ -32,14 +35,14 @@ static double typical_step(const struct rim *rim)
 	return stats_median(n, v);
 }
 
-void rim_cover(struct rim *rim, const struct grey *grey, const struct grey *tint, int width, int height)
+void rim_cover(struct rim *rim, const struct grey *grey, const struct grey *tint, bool absolute, int width, int height)
 {
 	const double gap = 1.5 * rim->width + grey->scale, depth = fmax(0.03 * rim->e.a, 2 * grey->scale);
 	struct ring r = ring_sample(grey, &rim->e, -gap - depth, gap + depth, fmax(grey->scale, depth / 6), 3, width, height);
 	bool on[ARCS];
 	double white[ARCS];
 	int n = 0;
-	rim_tint(white, &r, tint);
+	rim_tint(white, &r, tint, absolute);
 	const double typical = typical_step(rim);
 	for (int i = 0; i < ARCS; i++) {
 		const float *v = r.v + (long)i * r.m;

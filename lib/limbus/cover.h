@@ -9,11 +9,11 @@ static const double RIM_WHITE = 0.35;
 /* Whiteness of what lies outside each arc, relative to the whiter arcs of the ring.
  * white  out
  * tint   pyramid.tint; null: all are 1 */
-void rim_tint(double white[ARCS], const struct ring *ring, const struct grey *tint);
+void rim_tint(double white[ARCS], const struct ring *ring, const struct grey *tint, bool absolute);
 
 /* Sets rim->seen and rim->coverage, the share of the ring that shows iris against sclera. An arc is seen where it is used or is
  * brighter outside than inside by a good part of the typical step. Short gaps (a streak, a vein, a lash) are closed, isolated arcs
  * removed. width, height: of the photograph, px. */
-void rim_cover(struct rim *rim, const struct grey *grey, const struct grey *tint, int width, int height);
+void rim_cover(struct rim *rim, const struct grey *grey, const struct grey *tint, bool absolute, int width, int height);
 
 #endif

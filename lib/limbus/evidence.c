@@ -3,12 +3,15 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/call.h"
 #include "base/mem.h"
 #include "bridge/cv_net.h"
-#include "image/mask.h"
+#include "image/photo/part.h"
 #include "image/plane.h"
+#include "limbus/candidates.h"
+#include "limbus/disc.h"
 
-enum { STEP = 32, WINDOW_WIDE = 256, WINDOW_HIGH = 160, TAPS = 4, LONG_FIRST = 64, LONG_SURE = 256, LONG_LAST = 512 };
+enum { STEP = 32, WINDOW_WIDE = 256, WINDOW_HIGH = 160, LONG_FIRST = 64, LONG_SURE = 256, LONG_LAST = 512, VIEWS_MAX = 12, CLOSE_WIDE = 128, CLOSE_HIGH = 96 };
 
 struct evidence_net {
 	struct cv_net *net;
@@ -20,13 +23,14 @@ bool evidence_open(struct evidence_net **out, const char *path, struct err *err)
 	struct cv_net *net;
 	if (!cv_net_open(&net, path, err))
 		return false;
-	float *in = mem_new((size_t)3 * STEP * STEP, sizeof *in), *planes = 0;
-	int size[3] = { 0 };
-	bool ok = cv_net_run(&planes, size, net, in, 3, STEP, STEP, err);
+	float *in = mem_new((size_t)3 * STEP * STEP, sizeof *in);
+	struct cv_net_picture p = { .in = in, .height = STEP, .width = STEP };
+	bool ok = cv_net_run(&p, 1, net, 3, err);
+	const int *size = p.size;
 	if (ok && (size[0] != EVIDENCE_CLASSES || size[1] != STEP / 2 || size[2] != STEP / 2))
 		ok = err_set(err, "%d planes of %d x %d px, must be %d of %d x %d", size[0], size[2], size[1], EVIDENCE_CLASSES, STEP / 2, STEP / 2);
 	free(in);
-	free(planes);
+	free(p.out);
 	if (!ok) {
 		cv_net_close(net);
 		return err_wrap(err, "%s", path);
@@ -36,43 +40,20 @@ bool evidence_open(struct evidence_net **out, const char *path, struct err *err)
 	return true;
 }
 
+bool evidence_open_shipped(struct evidence_net **net, struct err *err)
+{
+	char *dir = call_config_dir(), *path = mem_printf("%s/evidence.onnx", dir);
+	const bool ok = evidence_open(net, path, err);
+	free(path);
+	free(dir);
+	return ok;
+}
+
 void evidence_close(struct evidence_net *net)
 {
 	if (net)
 		cv_net_close(net->net);
 	free(net);
-}
-
-static void photo_at(float rgb[3], const struct photo *photo, double x, double y)
-{
-	const double u = fmin(fmax(x - 0.5, 0), photo->width - 1), v = fmin(fmax(y - 0.5, 0), photo->height - 1);
-	const int i = (int)u, j = (int)v, k = i + 1 < photo->width ? 3 : 0;
-	const long down = j + 1 < photo->height ? 3L * photo->width : 0;
-	const float a = (float)(u - i), b = (float)(v - j);
-	const uint16_t *p = photo->rgb + 3 * ((long)j * photo->width + i), *q = p + down;
-	for (int c = 0; c < 3; c++) {
-		const float top = p[c] + a * (float)(p[c + k] - p[c]), bottom = q[c] + a * (float)(q[c + k] - q[c]);
-		rgb[c] += (top + b * (bottom - top)) / 65535;
-	}
-}
-
-/* The photograph's part at (x0, y0), `scale` of its px in one of the result: the mean of up to TAPS x TAPS places in each. */
-static float *resample(const struct photo *photo, double x0, double y0, double scale, int width, int height)
-{
-	const int taps = scale > TAPS - 1 ? TAPS : (int)ceil(fmax(scale, 1));
-	const long n = (long)width * height;
-	float *out = mem_array((size_t)(3 * n), sizeof *out);
-#pragma omp parallel for
-	for (int y = 0; y < height; y++)
-		for (int x = 0; x < width; x++) {
-			float sum[3] = { 0 };
-			for (int j = 0; j < taps; j++)
-				for (int i = 0; i < taps; i++)
-					photo_at(sum, photo, x0 + (x + (i + 0.5) / taps) * scale, y0 + (y + (j + 0.5) / taps) * scale);
-			for (int c = 0; c < 3; c++)
-				out[c * n + (long)y * width + x] = sum[c] / (float)(taps * taps);
-		}
-	return out;
 }
 
 static void softmax(float *planes, long n)
@@ -89,69 +70,95 @@ static void softmax(float *planes, long n)
 	}
 }
 
-static void mirror_rows(float *planes, int n_planes, int width, int height)
+/* The mirror image of n planes; free(). */
+static float *mirrored(const float *planes, int n, int width, int height)
 {
-	for (long row = 0; row < (long)n_planes * height; row++)
-		for (float *p = planes + row * width, *q = p + width - 1; p < q; p++, q--) {
-			const float t = *p;
-			*p = *q;
-			*q = t;
-		}
+	float *out = mem_array((size_t)n * (size_t)width * (size_t)height, sizeof *out);
+	for (long row = 0; row < (long)n * height; row++)
+		for (int x = 0; x < width; x++)
+			out[row * width + x] = planes[row * width + width - 1 - x];
+	return out;
 }
 
-/* The classes' probabilities of one picture in [3][height][width], both sides multiples of STEP. both: the mean of what the
- * picture and its mirror image say, so that mirrored photographs have mirrored evidence; `in` is changed. */
-static bool classify(float **planes, int size[3], struct evidence_net *net, float *in, int width, int height, bool both, struct err *err)
-{
-	if (!cv_net_run(planes, size, net->net, in, 3, height, width, err))
-		return false;
-	const long n = (long)size[1] * size[2];
-	softmax(*planes, n);
-	if (!both)
-		return true;
-	float *other;
-	mirror_rows(in, 3, width, height);
-	if (!cv_net_run(&other, size, net->net, in, 3, height, width, err))
-		return false;
-	softmax(other, n);
-	mirror_rows(other, EVIDENCE_CLASSES, size[2], size[1]);
-	for (long i = 0; i < EVIDENCE_CLASSES * n; i++)
-		(*planes)[i] = 0.5F * ((*planes)[i] + other[i]);
-	free(other);
-	return true;
-}
+/* A part of the photograph as the network is given it: both sides are multiples of STEP. */
+struct view { double x0, y0, scale; int width, height; };
 
-static bool run(struct evidence *out, struct evidence_net *net, const struct photo *photo, double x0, double y0, double scale, int width,
-                int height, bool both, struct err *err)
+/* The planes of a picture; those of its mirror image, turned back, are averaged with them. */
+static struct evidence planes_of(const struct view *view, const struct cv_net_picture *p, const struct cv_net_picture *mirror)
 {
-	float *in = resample(photo, x0, y0, scale, width, height), *planes = 0;
-	int size[3];
-	const bool ok = classify(&planes, size, net, in, width, height, both, err);
-	free(in);
-	*out = (struct evidence){ 0 };
-	if (!ok) {
-		free(planes);
-		return false;
+	const long n = (long)p->size[1] * p->size[2];
+	softmax(p->out, n);
+	if (mirror) {
+		softmax(mirror->out, n);
+		float *other = mirrored(mirror->out, EVIDENCE_CLASSES, p->size[2], p->size[1]);
+		for (long i = 0; i < EVIDENCE_CLASSES * n; i++)
+			p->out[i] = 0.5F * (p->out[i] + other[i]);
+		free(other);
 	}
-	*out = (struct evidence){ .width = size[2], .height = size[1], .x0 = x0, .y0 = y0, .scale = scale * width / size[2] };
+	struct evidence out = { .width = p->size[2], .height = p->size[1], .x0 = view->x0, .y0 = view->y0, .scale = view->scale * view->width / p->size[2] };
 	for (int c = 0; c < EVIDENCE_CLASSES; c++)
-		out->plane[c] = planes + c * (long)out->width * out->height;
-	return true;
+		out.plane[c] = p->out + c * n;
+	return out;
+}
+
+/* A photograph, and the same with `scale` of its px in one; without it, null. */
+struct source { const struct photo *photo, *small; double scale; };
+
+static float *part_of(const struct source *s, const struct view *v)
+{
+	if (s->small && v->scale >= s->scale)
+		return photo_part(s->small, v->x0 / s->scale, v->y0 / s->scale, v->scale / s->scale, v->width, v->height);
+	return photo_part(s->photo, v->x0, v->y0, v->scale, v->width, v->height);
+}
+
+/* The planes of n views. both: the mean of what a view and its mirror image say, so that mirrored photographs have mirrored evidence. */
+static bool classify(struct evidence *out, const struct view *view, int n, bool both, struct evidence_net *net, const struct source *source,
+                     struct err *err)
+{
+	struct cv_net_picture picture[2 * VIEWS_MAX] = { 0 };
+	float *in[2 * VIEWS_MAX] = { 0 };
+	const int runs = both ? 2 * n : n;
+	for (int i = 0; i < n; i++) {
+		const struct view *v = &view[i];
+		in[i] = part_of(source, v);
+		in[n + i] = both ? mirrored(in[i], 3, v->width, v->height) : 0;
+	}
+	for (int i = 0; i < runs; i++)
+		picture[i] = (struct cv_net_picture){ .in = in[i], .height = view[i % n].height, .width = view[i % n].width };
+	const bool ok = cv_net_run(picture, runs, net->net, 3, err);
+	for (int i = 0; i < n; i++)
+		out[i] = ok ? planes_of(&view[i], &picture[i], both ? &picture[n + i] : 0) : (struct evidence){ 0 };
+	for (int i = 0; i < 2 * n; i++) {
+		free(in[i]);
+		if (i >= n)
+			free(picture[i].out);
+	}
+	return ok;
 }
 
 bool evidence_window(struct evidence *out, struct evidence_net *net, const struct photo *photo, double cx, double cy, double radius,
                      struct err *err)
 {
 	const double scale = radius / EVIDENCE_RADIUS;
-	return run(out, net, photo, cx - 0.5 * WINDOW_WIDE * scale, cy - 0.5 * WINDOW_HIGH * scale, scale, WINDOW_WIDE, WINDOW_HIGH, true, err);
+	const struct view view = { cx - 0.5 * WINDOW_WIDE * scale, cy - 0.5 * WINDOW_HIGH * scale, scale, WINDOW_WIDE, WINDOW_HIGH };
+	return classify(out, &view, 1, true, net, &(struct source){ .photo = photo }, err);
+}
+
+/* What is added to reach a multiple of STEP lies on both sides. */
+static struct view whole(const struct photo *photo, int long_px)
+{
+	struct view v = { .scale = fmax(photo->width, photo->height) / (double)long_px };
+	v.width = (int)ceil(photo->width / v.scale / STEP - 0.01) * STEP;
+	v.height = (int)ceil(photo->height / v.scale / STEP - 0.01) * STEP;
+	v.x0 = 0.5 * (photo->width - v.width * v.scale);
+	v.y0 = 0.5 * (photo->height - v.height * v.scale);
+	return v;
 }
 
 bool evidence_whole(struct evidence *out, struct evidence_net *net, const struct photo *photo, int long_px, struct err *err)
 {
-	const double scale = fmax(photo->width, photo->height) / (double)long_px;
-	const int width = (int)ceil(photo->width / scale / STEP - 0.01) * STEP, height = (int)ceil(photo->height / scale / STEP - 0.01) * STEP;
-	// What is added to reach a multiple lies on both sides.
-	return run(out, net, photo, 0.5 * (photo->width - width * scale), 0.5 * (photo->height - height * scale), scale, width, height, false, err);
+	const struct view view = whole(photo, long_px);
+	return classify(out, &view, 1, false, net, &(struct source){ .photo = photo }, err);
 }
 
 float evidence_at(const struct evidence *evidence, enum evidence_class class, double x, double y)
@@ -166,120 +173,96 @@ void evidence_free(struct evidence *evidence)
 	*evidence = (struct evidence){ 0 };
 }
 
-struct blob {
-	double mass, x, y, xx, xy, yy;
-};
+struct list { struct evidence_region region[CANDIDATES_MAX]; int n; };
 
-/* Mean evidence of the eye's parts beside the iris, on a ring of 1.15 to 1.5 radii: sclera counts as what it is. */
-static double sclera_beside(const struct evidence *e, double x, double y, double radius)
+/* The candidates that `of` tells in n views, among the others of the list. */
+static bool look(struct list *list, const struct view *view, int n, bool both, int (*of)(struct evidence_region *, const struct evidence *),
+                 struct evidence_net *net, const struct source *source, struct err *err)
 {
-	enum { PLACES = 48 };
-	double sum = 0;
-	for (int i = 0; i < PLACES; i++)
-		for (int r = 0; r < 3; r++) {
-			const double turn = 2 * M_PI * i / PLACES, at = radius * (1.15 + 0.15 * r);
-			sum += plane_sample(e->plane[EVIDENCE_SCLERA], e->width, e->height, x + at * cos(turn), y + at * sin(turn));
+	struct evidence e[VIEWS_MAX];
+	if (!classify(e, view, n, both, net, source, err))
+		return false;
+	// Coarse to fine, though the largest was run first.
+	for (int i = n - 1; i >= 0; i--) {
+		struct evidence_region more[CANDIDATES_MAX];
+		const int m = of(more, &e[i]);
+		for (int k = 0; both && k < m; k++)
+			disc_fit(&more[k], &e[i]);
+		list->n = candidates_merge(list->region, list->n, more, m);
+		evidence_free(&e[i]);
+	}
+	return true;
+}
+
+/* Round a candidate, at the scale where it has so many px of radius, but no larger than the photograph, and inside it where it can be:
+ * a border that is repeated far is no eye's surroundings. */
+static struct view close_view(const struct evidence_region *r, double radius, const struct photo *photo)
+{
+	const double scale = fmin(r->radius / radius, fmax((double)photo->width / CLOSE_WIDE, (double)photo->height / CLOSE_HIGH));
+	const double most_x = photo->width - CLOSE_WIDE * scale, most_y = photo->height - CLOSE_HIGH * scale;
+	const double x0 = fmin(fmax(r->x - 0.5 * CLOSE_WIDE * scale, fmin(most_x, 0)), fmax(most_x, 0));
+	const double y0 = fmin(fmax(r->y - 0.5 * CLOSE_HIGH * scale, fmin(most_y, 0)), fmax(most_y, 0));
+	return (struct view){ x0, y0, scale, CLOSE_WIDE, CLOSE_HIGH };
+}
+
+/* Replaces the candidates by what is found where they are, at scales where each has the radii that suit the network: what is not seen
+ * again keeps a third of its score. coarse: their radii are guesses. */
+static bool look_closer(struct list *list, bool coarse, struct evidence_net *net, const struct source *source, struct err *err)
+{
+	static const int radius[] = { 10, 20, 20 };
+	for (int k = coarse ? 0 : 1; k < COUNT(radius); k++) {
+		struct view view[VIEWS_MAX];
+		const int n = list->n;
+		for (int i = 0; i < n; i++) {
+			const struct evidence_region *r = &list->region[i];
+			view[i] = close_view(r, radius[k], source->photo);
+			list->region[i].score /= 3;
 		}
-	return sum / (3 * PLACES);
-}
-
-static struct evidence_region region_of(const struct blob *b, const struct evidence *e, int pixels)
-{
-	const double x = b->x / b->mass, y = b->y / b->mass, xx = b->xx / b->mass - x * x, yy = b->yy / b->mass - y * y, xy = b->xy / b->mass - x * y;
-	const double middle = 0.5 * (xx + yy), longer = middle + hypot(0.5 * (xx - yy), xy), radius = 2 * sqrt(fmax(longer, 0.25));
-	const double beside = fmin(sclera_beside(e, x, y, radius) / 0.2, 1), filled = fmin(b->mass / (0.35 * M_PI * radius * radius), 1);
-	// Irises of less than 6 px or more than 48 px in the input, 3 and 24 here, are told at another scale.
-	const double fits = fmin(radius / 4, 1) * fmin(26 / radius, 1);
-	return (struct evidence_region){ e->x0 + x * e->scale, e->y0 + y * e->scale, radius * e->scale, b->mass / pixels * (0.25 + 0.75 * beside) * filled * fits };
-}
-
-static int insert(struct evidence_region out[EVIDENCE_REGIONS], int n, struct evidence_region r)
-{
-	int at = n < EVIDENCE_REGIONS ? n++ : EVIDENCE_REGIONS;
-	while (at > 0 && r.score > out[at - 1].score) {
-		if (at < EVIDENCE_REGIONS)
-			out[at] = out[at - 1];
-		at--;
+		if (!look(list, view, n, k + 1 == COUNT(radius), candidates_of, net, source, err))
+			return false;
 	}
-	if (at < EVIDENCE_REGIONS)
-		out[at] = r;
-	return n;
+	return true;
 }
 
-int evidence_regions(struct evidence_region out[EVIDENCE_REGIONS], const struct evidence *e)
+/* An iris for sure, and so large that the other eye need not be in the picture; or two. */
+static bool enough(const struct list *list, int longer)
 {
-	const double least_pixels = 12;
-	const long size = (long)e->width * e->height;
-	uint8_t *mask = mem_array((size_t)size, 1);
-	int *label = mem_array((size_t)size, sizeof *label);
-	for (long i = 0; i < size; i++)
-		mask[i] = e->plane[EVIDENCE_IRIS][i] + e->plane[EVIDENCE_PUPIL][i] + e->plane[EVIDENCE_REFLECTION][i] > 0.5F;
-	const int blobs = mask_label(label, mask, e->width, e->height);
-	struct blob *blob = mem_new((size_t)blobs + 1, sizeof *blob);
-	int *pixels = mem_new((size_t)blobs + 1, sizeof *pixels), n = 0;
-	for (long i = 0; i < size; i++) {
-		if (!label[i])
-			continue;
-		struct blob *b = &blob[label[i]];
-		const double p = e->plane[EVIDENCE_IRIS][i] + e->plane[EVIDENCE_PUPIL][i], x = (double)(i % e->width) + 0.5, y = (double)(i / e->width) + 0.5;
-		pixels[label[i]]++;
-		b->mass += p;
-		b->x += p * x;
-		b->y += p * y;
-		b->xx += p * x * x;
-		b->xy += p * x * y;
-		b->yy += p * y * y;
-	}
-	for (int k = 1; k <= blobs; k++)
-		if (blob[k].mass >= least_pixels)
-			n = insert(out, n, region_of(&blob[k], e, pixels[k]));
-	free(mask);
-	free(label);
-	free(blob);
-	free(pixels);
-	return n;
+	const double sure = 0.6, far = 0.05;
+	const struct evidence_region *r = list->region;
+	return list->n > 0 && r[0].score > sure && (r[0].radius > far * longer || (list->n > 1 && r[1].score > sure));
 }
 
-/* Candidates of one scale among those of others: of two at one place the better stays; where they agree on the radius, too, it
- * gains what the other says. */
-static int merge(struct evidence_region out[EVIDENCE_REGIONS], int n, const struct evidence_region *more, int m)
+static bool search(struct list *list, struct evidence_net *net, const struct source *source, struct err *err)
 {
-	for (int i = 0; i < m; i++) {
-		struct evidence_region best = more[i];
-		for (int k = n - 1; k >= 0; k--) {
-			const struct evidence_region was = out[k];
-			const double apart = hypot(was.x - best.x, was.y - best.y), ratio = was.radius / best.radius;
-			if (apart > 0.8 * fmax(was.radius, best.radius))
-				continue;
-			const double less = fmin(was.score, best.score);
-			best = was.score > best.score ? was : best;
-			if (ratio > 0.75 && ratio < 1.33)
-				best.score += 0.5 * less * (1 - best.score);
-			for (int j = k; j + 1 < n; j++)
-				out[j] = out[j + 1];
-			n--;
-		}
-		n = insert(out, n, best);
-	}
-	return n;
+	const struct photo *photo = source->photo;
+	const int longer = photo->width > photo->height ? photo->width : photo->height;
+	struct view view[VIEWS_MAX];
+	int n = 0;
+	// Enlarged pictures show nothing new; the first scale is looked at in any case.
+	for (int size = LONG_SURE; size >= LONG_FIRST; size /= 2)
+		if (size == LONG_FIRST || size < 2 * longer)
+			view[n++] = whole(photo, size);
+	if (!look(list, view, n, false, candidates_of, net, source, err) || !look_closer(list, false, net, source, err))
+		return false;
+	if (enough(list, longer))
+		return true;
+	struct list small = { 0 };
+	view[0] = whole(photo, longer < LONG_LAST ? longer : LONG_LAST);
+	if (!look(&small, view, 1, false, candidates_spots, net, source, err) || !look_closer(&small, true, net, source, err))
+		return false;
+	list->n = candidates_merge(list->region, list->n, small.region, small.n);
+	return true;
 }
 
 bool evidence_find(struct evidence_region out[EVIDENCE_REGIONS], int *n, struct evidence_net *net, const struct photo *photo, struct err *err)
 {
-	const double sure = 0.5;
-	const int longer = photo->width > photo->height ? photo->width : photo->height;
-	*n = 0;
-	for (int size = LONG_FIRST; size <= LONG_LAST; size *= 2) {
-		// Enlarged pictures show nothing new; the first scale is looked at in any case.
-		if (size > LONG_FIRST && (size >= 2 * longer || (size > LONG_SURE && *n > 0 && out[0].score > sure)))
-			break;
-		struct evidence e;
-		if (!evidence_whole(&e, net, photo, size, err))
-			return false;
-		struct evidence_region found[EVIDENCE_REGIONS];
-		const int m = evidence_regions(found, &e);
-		evidence_free(&e);
-		*n = merge(out, *n, found, m);
-	}
-	return true;
+	double scale;
+	struct photo small = photo_reduced(photo, 2 * LONG_LAST, &scale);
+	struct list list = { 0 };
+	const bool ok = search(&list, net, &(struct source){ photo, &small, scale }, err);
+	photo_free(&small);
+	*n = ok ? list.n < EVIDENCE_REGIONS ? list.n : EVIDENCE_REGIONS : 0;
+	for (int i = 0; i < *n; i++)
+		out[i] = list.region[i];
+	return ok;
 }

@@ -16,10 +16,10 @@ struct evidence {
 	float *plane[EVIDENCE_CLASSES];  // [height][width]; at each pixel they sum to 1; plane[0] owns them all
 };
 
-/* Where an iris may be. */
+/* Where an iris may be: the ellipse that iris and pupil fill and sclera does not (limbus/disc.h). */
 struct evidence_region {
-	double x, y, radius;  // centre of iris and pupil by their evidence; radius of a disc as wide along its longer side; photo px
-	double score;         // 0..1: mean evidence of iris and pupil in it, less where no sclera or lid lies beside it
+	double x, y, radius;  // middle and longer semi-axis, photo px
+	double score;         // 0..1: share of iris in what is told, less where no sclera or lid lies beside it, or little of it shows
 };
 
 enum { EVIDENCE_REGIONS = 4 };
@@ -29,6 +29,9 @@ struct evidence_net;
 /* Loads the network. False, err set: the file is missing, damaged or of another shape. evidence_close, which accepts null. */
 bool evidence_open(struct evidence_net **net, const char *path, struct err *err);
 void evidence_close(struct evidence_net *net);
+
+/* The same of the network that comes with the programs: config/evidence.onnx. */
+bool evidence_open_shipped(struct evidence_net **net, struct err *err);
 
 /* Evidence round (cx, cy), at the scale that suits an iris of so many px radius: it becomes EVIDENCE_RADIUS px in the network's
  * input, so that the planes reach 3.2 radii to the sides, 2 up and down, with a pixel of 1/20 of the radius. The mean of what the
@@ -42,12 +45,10 @@ bool evidence_window(struct evidence *out, struct evidence_net *net, const struc
  * 48 px radius there are told. The planes' scale is twice the reduction. evidence_free. */
 bool evidence_whole(struct evidence *out, struct evidence_net *net, const struct photo *photo, int long_px, struct err *err);
 
-/* Candidate irises of a photograph, best first, from the whole of it at 64, 128 and 256 px and, where those show none for sure, at
- * 512 px: irises of 1.2 % to 75 % of the longer side in radius. *n at most EVIDENCE_REGIONS, 0 where nothing looks like an iris. */
+/* Candidate irises of a photograph, best first: from the whole of it at 64, 128 and 256 px and, where those show no large iris or no two
+ * small ones for sure, dark spots of it at 512 px, each looked at again at scales where it suits the network. Irises of 0.5 % to 75 % of
+ * the longer side in radius; both eyes of a face. *n at most EVIDENCE_REGIONS, 0 where nothing looks like an iris. */
 bool evidence_find(struct evidence_region out[EVIDENCE_REGIONS], int *n, struct evidence_net *net, const struct photo *photo, struct err *err);
-
-/* The candidates in planes that are already there; returns how many. */
-int evidence_regions(struct evidence_region out[EVIDENCE_REGIONS], const struct evidence *evidence);
 
 /* Probability of a class at (x, y) px of the photograph, bilinear, clamped to the border. */
 float evidence_at(const struct evidence *evidence, enum evidence_class class, double x, double y);

@@ -5,20 +5,31 @@
 #define LIMBUS_FIND_H
 #include "limbus/propose/lean.h"
 #include "limbus/pupil.h"
+#include "limbus/odds.h"
 #include "limbus/propose/seek.h"
 
 struct limbus_conf {
 	struct seek_conf seek;
 	struct rim_conf rim;
 	struct pupil_conf pupil;
-	double min_coverage;   // share of the limbus that must be seen
-	double min_contrast;   // Weber contrast of sclera and iris, linear light
-	double max_blur;       // width of the step, share of the semi-axis
-	double max_rms;        // scatter of the edge, share of the semi-axis
-	double max_sigma;      // of centre and semi-axes, share of the semi-axis
-	double max_flank_rms, max_flank_sigma, min_flank_coverage;  // the same for eyes found by the sides of the limbus
+	struct evidence_net *net;    // borrowed
+	struct odds_weights odds;
+	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
+	double max_gross;      // chance of being more than 2 % off, beyond which a limbus is refused
+	double sure_gross;     // chance of being off below which the votes of edges are not asked
+	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis
 	double hint_sigma, drawn_sigma;  // of what a person says: share of the semi-axis
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
+};
+
+#define LIMBUS_RIGHT 0.02  // semi-axes: an answer that is farther off is a gross error
+
+/* How sure the choice is. */
+struct posterior {
+	int best, rival;        // trials, -1: none
+	double gross;           // chance that the answer is more than LIMBUS_RIGHT off
+	double rival_chance;
+	struct ellipse other;   // the rival's, where there is one
 };
 
 struct limbus_found {
@@ -28,7 +39,7 @@ struct limbus_found {
 	struct rim limbus, pupil;
 	bool has_pupil;
 	struct band band;
-	double score;      // of the search, 0..1
+	struct posterior posterior;
 };
 
 /* found  overwritten; owns no memory; found->ok false with found->reason when no limbus is accepted

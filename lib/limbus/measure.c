@@ -74,7 +74,11 @@ void limbus_measure_photo(struct limbus_record *record, const struct photo *phot
 	limbus_record_fill(record, found, photo);
 	if (record->ok)
 		record->view.camera = camera_of(known, photo, &record->view.limbus, eye);
-	if (record->ok && (!camera_keys_check(&record->view.camera, photo->width, photo->height, &err) || !lean(record, found, eye, pose_conf, &err))) {
+	const struct camera *camera = &record->view.camera;
+	bool ok = !record->ok || isfinite(known->focal_px) || camera_keys_agree(known->keys, photo->width, photo->height, &err);
+	ok = ok && (!record->ok || camera->source != CAMERA_CONF || camera_keys_place(camera->focal_px, eye->limbus_radius, record->view.limbus.a, &err));
+	ok = ok && (!record->ok || (camera_keys_check(camera, photo->width, photo->height, &err) && lean(record, found, eye, pose_conf, &err)));
+	if (!ok) {
 		record->ok = false;
 		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
 	}

@@ -96,6 +96,14 @@ static void draw_axis(struct canvas *c, const struct fit *fit, double depth, dou
 	}
 }
 
+/* An ellipse that is not believed. */
+static void draw_doubtful(struct canvas *c, const struct ellipse *e, const struct ink *colour)
+{
+	const double thin = fmax(0.7, 0.0018 * e->a * c->scale);
+	draw_ellipse(c, e, thin + 1, &SHADE);
+	draw_ellipse(c, e, thin, colour);
+}
+
 uint8_t *limbus_overlay(int *width, int *height, int most_px, const struct photo *photo, const struct limbus_record *record,
                         const struct fit *fit)
 {
@@ -122,6 +130,12 @@ uint8_t *limbus_overlay(int *width, int *height, int most_px, const struct photo
 		}
 		draw_points(&c, record);
 		draw_axis(&c, fit, 2.7, 8);
+	}
+	if (!record->ok) {
+		if (record->has_guess)
+			draw_doubtful(&c, &record->guess, &CURVE);
+		if (record->has_rival)
+			draw_doubtful(&c, &record->rival, &HIDDEN);
 	}
 	*width = c.width;
 	*height = c.height;

@@ -11,6 +11,11 @@ void limbus_record_fill(struct limbus_record *record, const struct limbus_found 
 {
 	*record = (struct limbus_record){ .ok = found->ok, .by_hand = found->by_hand, .width = photo->width, .height = photo->height };
 	memcpy(record->reason, found->reason, sizeof record->reason);
+	record->gross = found->by_hand ? 0 : found->posterior.gross;
+	record->has_guess = found->limbus.e.a > 0;
+	record->guess = found->limbus.e;
+	record->has_rival = found->posterior.rival >= 0 && !found->by_hand;
+	record->rival = found->posterior.other;
 	if (!found->ok)
 		return;
 	const struct rim *rim = &found->limbus;
@@ -33,7 +38,6 @@ void limbus_record_fill(struct limbus_record *record, const struct limbus_found 
 	record->rms = rim->rms;
 	record->blur = rim->width;
 	record->contrast = rim->contrast;
-	record->score = found->score;
 	for (int i = 0; i < ARCS; i++) {
 		record->state[i] = rim->used[i] ? ARC_USED : rim->seen[i] ? ARC_SEEN : ARC_HIDDEN;
 		/* where no step was measured, the point lies on the ellipse */
@@ -58,11 +62,16 @@ bool limbus_record_save(const struct limbus_record *r, const char *path, const c
 	json_object_set_new(json, "reason", json_string(r->reason));
 	double size[2] = { r->width, r->height };
 	json_object_set_new(json, "size_px", json_numbers(2, size));
+	json_object_set_new(json, "gross_probability", json_number(r->gross));
+	if (r->has_guess)
+		json_object_set_new(json, "guess", ellipse_json(&r->guess));
+	if (r->has_rival)
+		json_object_set_new(json, "rival", ellipse_json(&r->rival));
 	if (r->ok) {
 		const struct camera *c = &r->view.camera;
 		double camera[9] = { c->focal_px, c->center_px[0], c->center_px[1], c->distortion[0], c->distortion[1],
 			             c->distortion[2], c->distortion[3], c->distortion[4], c->source };
-		double measured[7] = { r->coverage, r->share_used, r->rms, r->blur, r->contrast, r->score, r->view.pupil_sigma };
+		double measured[6] = { r->coverage, r->share_used, r->rms, r->blur, r->contrast, r->view.pupil_sigma };
 		double state[ARCS];
 		for (int i = 0; i < ARCS; i++)
 			state[i] = r->state[i];
@@ -72,7 +81,7 @@ bool limbus_record_save(const struct limbus_record *r, const char *path, const c
 		json_object_set_new(json, "pupil", r->view.has_pupil ? ellipse_json(&r->view.pupil) : json_null());
 		json_object_set_new(json, "ramp_px", json_numbers(POSE_RAMP, r->view.ramp));
 		json_object_set_new(json, "lean", json_numbers(2, r->view.lean));
-		json_object_set_new(json, "measured", json_numbers(7, measured));
+		json_object_set_new(json, "measured", json_numbers(6, measured));
 		json_object_set_new(json, "edge_px", json_numbers(2 * ARCS, &r->point[0][0]));
 		json_object_set_new(json, "edge_state", json_numbers(ARCS, state));
 		if (r->by_hand)
@@ -94,9 +103,12 @@ static bool ellipse_read(struct ellipse *e, const json_t *json, const char *key,
 
 static bool record_read(struct limbus_record *r, const json_t *json, const char *path, struct err *err)
 {
-	double size[2], camera[9], measured[7], state[ARCS];
+	double size[2], camera[9], measured[6], state[ARCS];
 	const char *status = json_get_string(json, "status", path, err), *reason = json_get_string(json, "reason", path, err);
-	if (!status || !reason || !json_get_array(size, 2, json, "size_px", path, err))
+	r->has_guess = json_is_array(json_object_get(json, "guess"));
+	r->has_rival = json_is_array(json_object_get(json, "rival"));
+	if (!status || !reason || !json_get_array(size, 2, json, "size_px", path, err) || !json_get(&r->gross, json, "gross_probability", path, err)
+	    || (r->has_guess && !ellipse_read(&r->guess, json, "guess", path, err)) || (r->has_rival && !ellipse_read(&r->rival, json, "rival", path, err)))
 		return false;
 	r->ok = !strcmp(status, "ok");
 	strncpy(r->reason, reason, sizeof r->reason - 1);
@@ -113,7 +125,7 @@ static bool record_read(struct limbus_record *r, const json_t *json, const char 
 	    || (r->view.has_pupil && !ellipse_read(&r->view.pupil, json, "pupil", path, err))
 	    || !json_get_array(r->view.ramp, POSE_RAMP, json, "ramp_px", path, err)
 	    || !json_get_array(r->view.lean, 2, json, "lean", path, err)
-	    || !json_get_array(measured, 7, json, "measured", path, err)
+	    || !json_get_array(measured, 6, json, "measured", path, err)
 	    || !json_get_array(&r->point[0][0], 2 * ARCS, json, "edge_px", path, err)
 	    || !json_get_array(state, ARCS, json, "edge_state", path, err))
 		return false;
@@ -127,8 +139,7 @@ static bool record_read(struct limbus_record *r, const json_t *json, const char 
 	r->rms = measured[2];
 	r->blur = measured[3];
 	r->contrast = measured[4];
-	r->score = measured[5];
-	r->view.pupil_sigma = measured[6];
+	r->view.pupil_sigma = measured[5];
 	for (int i = 0; i < ARCS; i++)
 		r->state[i] = state[i] >= ARC_USED ? ARC_USED : state[i] >= ARC_SEEN ? ARC_SEEN : ARC_HIDDEN;
 	return true;

@@ -12,9 +12,9 @@
 #include "math/ellipse_fit.h"
 #include "math/stats.h"
 
-enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, SHARP_PASSES = 5 };
+enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6 };
+static const double LEAST_NOISE = 0.02;  // px: no step is placed better
 static const double SHARP_PX = 3;       // a step's sigma
-static const double MAX_AXIS_PX = 900;  // larger limbi are measured in a reduced picture: as many samples as pay
 
 static double median_of(const struct step step[ARCS], const bool use[ARCS], size_t field)
 {
@@ -34,13 +34,13 @@ static int choose_arcs(bool use[ARCS], const struct step step[ARCS], const struc
 	bool good[ARCS];
 	double jump[ARCS], white[ARCS];
 	int n = 0;
-	rim_tint(white, ring, tint);
+	rim_tint(white, ring, tint, conf->absolute);
 	for (int i = 0; i < ARCS; i++) {
 		good[i] = step[i].ok && !step[i].steep && ring->inside[i] && step[i].rms < conf->max_rms && white[i] > RIM_WHITE;
 		if (good[i])
 			jump[n++] = step[i].out - step[i].in;
 	}
-	if (n < MIN_ARCS)
+	if (n < (conf->known ? 1 : MIN_ARCS))
 		return 0;
 	double typical = stats_median(n, jump), rms = MEDIAN(step, good, rms);
 	for (int i = 0; i < ARCS; i++)
@@ -56,7 +56,7 @@ static int choose_arcs(bool use[ARCS], const struct step step[ARCS], const struc
 	return n;
 }
 
-static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS])
+static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS], const struct rim_conf *conf)
 {
 	double p[ARCS][2], weight[ARCS], tukey[ARCS];
 	int at[ARCS], n = 0;
@@ -76,7 +76,9 @@ static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS])
 	}
 	struct ellipse_fit fit;
 	struct ellipse e = ring->e;
-	if (n < MIN_ARCS || !ellipse_fit_robust(&e, &fit, n, p, weight, tukey, 0, true) || e.b < 0.5 * e.a)
+	bool ok = conf->known ? ellipse_fit_near(&e, &fit, n, p, weight, tukey, LEAST_NOISE, conf->known)
+	                      : n >= MIN_ARCS && ellipse_fit_robust(&e, &fit, n, p, weight, tukey, 0, true);
+	if (!ok || e.b < 0.5 * e.a)
 		return false;
 	for (int i = 0; i < n; i++)
 		use[at[i]] = tukey[i] > 0.2;
@@ -103,6 +105,9 @@ static void correlate(struct rim *rim, double irregularity)
 				sum[k] += d[i] * d[(i + k) % ARCS];
 				count[k]++;
 			}
+	rim->correlation = 1;
+	if (!n)
+		return;
 	rim->rms = sqrt(ss / n);
 	rim->share_used = (double)n / ARCS;
 	rim->correlation = 1;
@@ -148,9 +153,12 @@ static bool fine_pass(struct rim *rim, const struct grey *grey, const struct gre
 		rim->step[i].w = rim->step[i].ok ? rim->widths[i] : rim->width;
 		edge_fit(&rim->step[i], &r, i, window, free_width);
 	}
-	bool use[ARCS];
-	bool ok = choose_arcs(use, rim->step, &r, tint, conf) >= MIN_ARCS && refit(rim, &r, use);
-	if (ok && free_width) {
+	bool use[ARCS] = { 0 };
+	bool ok = choose_arcs(use, rim->step, &r, tint, conf) >= (conf->known ? 0 : MIN_ARCS) && refit(rim, &r, use, conf);
+	bool any = false;
+	for (int i = 0; i < ARCS; i++)
+		any |= use[i];
+	if (ok && free_width && any) {
 		rim->width = MEDIAN(rim->step, use, w);
 		smooth_widths(rim, use);
 	}
@@ -160,7 +168,7 @@ static bool fine_pass(struct rim *rim, const struct grey *grey, const struct gre
 }
 
 /* Width of the blurred step from the typical profile of the arcs near the ellipse. */
-static bool first_width(struct rim *rim, const struct grey *grey, int width, int height)
+static bool first_width(struct rim *rim, const struct grey *grey, const struct rim_conf *conf, int width, int height)
 {
 	const double reach = fmax(0.09 * rim->e.a, 8 * grey->scale);
 	struct ring r = ring_sample(grey, &rim->e, -reach, reach, fmax(grey->scale, reach / 40), 3, width, height);
@@ -180,6 +188,11 @@ static bool first_width(struct rim *rim, const struct grey *grey, int width, int
 		n += use[i];
 	}
 	bool ok = n >= MIN_ARCS;
+	rim->width = reach / 5;
+	if (!ok && conf->known) {
+		ring_free(&r);
+		return true;
+	}
 	if (ok) {
 		struct ring t = ring_typical(&r, use, shift);
 		struct step f = { .w = reach / 5 };
@@ -218,10 +231,13 @@ static bool locate(struct rim *rim, const struct grey *grey, const struct grey *
                    int height)
 {
 	double range = conf->search * rim->e.a;
-	for (int i = 0; i < 3 && !conf->settled; i++, range /= 2)
-		if (!rim_consensus(&rim->e, grey, tint, fmax(range, 6 * grey->scale), width, height))
+	for (int i = 0; i < 3; i++, range /= 2)
+		if (!rim_consensus(&rim->e, grey, tint, fmax(range, 6 * grey->scale), conf->known, width, height)) {
+			if (conf->known)
+				break;
 			return false;
-	return first_width(rim, grey, width, height);
+		}
+	return first_width(rim, grey, conf, width, height) || conf->known;
 }
 
 bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint, const struct ellipse *start,
@@ -232,20 +248,20 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	if (!conf->grey)
 		limbus_colour(weight, photo, start);
 	const int w = photo->width, h = photo->height;
-	struct grey grey = grey_linear(photo, start, 1.4, MAX_AXIS_PX, weight);
+	struct grey grey = grey_linear(photo, start, 1.4, conf->max_axis, weight);
 	bool ok = locate(rim, &grey, tint, conf, w, h);
 	for (int i = 0; i < ARCS; i++)
 		rim->widths[i] = rim->width;
-	for (int i = 0; i < (rim->width < SHARP_PX ? SHARP_PASSES : PASSES) && ok; i++) {
+	for (int i = 0; i < (rim->width < SHARP_PX || conf->passes < PASSES ? conf->passes - 1 : conf->passes) && ok; i++) {
 		if (!conf->grey && (i == 0 || (i == 3 && rim->width >= SHARP_PX))) {
 			/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone. Of soft ones the
 			 * colours are looked at again, now that it is known better where they are. */
 			for (int c = 0; c < 3; c++)
 				weight[c] = 1 / 3.0;
-			if (rim->width >= SHARP_PX || conf->settled)
+			if (rim->width >= SHARP_PX)
 				limbus_colour(weight, photo, &rim->e);
 			grey_free(&grey);
-			grey = grey_linear(photo, &rim->e, 1.3, MAX_AXIS_PX, weight);
+			grey = grey_linear(photo, &rim->e, 1.3, conf->max_axis, weight);
 		}
 		double window = fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a);
 		ok = fine_pass(rim, &grey, tint, window, i == 1 || i == 2, w, h, conf);
@@ -253,10 +269,12 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	if (ok) {
 		own_widths(rim, &grey, fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a), w, h);
 		correlate(rim, conf->irregularity);
-		rim_cover(rim, &grey, tint, w, h);
+		rim_cover(rim, &grey, tint, conf->absolute, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);
 		rim->in = MEDIAN(rim->step, rim->used, in);
+		if (!(rim->share_used > 0))  // the prior alone: no step to tell of
+			rim->contrast = rim->out = rim->in = 0;
 	}
 	grey_free(&grey);
 	return ok;

@@ -5,14 +5,18 @@
 #ifndef LIMBUS_RIM_H
 #define LIMBUS_RIM_H
 #include "limbus/edge.h"
+#include "math/ellipse_fit.h"
 
 struct rim_conf {
 	double search;        // first search range, share of the semi-axis
 	double max_rms;       // residual of a step, in units of its height, beyond which an arc is rejected
 	double min_contrast;  // of an arc's step, relative to the ring's median
 	double irregularity;  // sigma that is added for the limbus' own irregularity, share of the step's width
+	double max_axis;      // px: larger limbi are measured in a reduced picture
+	const struct ellipse_prior *known;  // what the evidence says of the ellipse before, or null; borrowed
+	bool absolute;        // tint is a chance of sclera, not a whiteness that is relative to the ring's
+	int passes;           // of the step fit: 6; fewer are rough
 	bool grey;            // measure in brightness, not in the discriminant of propose/colour.h
-	bool settled;         // the start is good to a few hundredths of the radius: only edges near it are searched
 };
 
 struct rim {

@@ -188,11 +188,19 @@ static double scale_of(int n, const double *d, const double *prior, double *work
 	return scale;
 }
 
-bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2],
-                        const double *prior, double *out, double sigma, bool have_start)
+/* The prior in units of the points' scale. */
+static void add_known(struct pass *pass, const double q[N], const struct ellipse_prior *known, double scale)
 {
-	if (n < N || (!have_start && !sample_start(e, n, p)))
-		return false;
+	for (int a = 0; a < N; a++) {
+		const double precision = known->alike * scale * scale / (known->sigma[a] * known->sigma[a]);
+		pass->h[a][a] += precision;
+		pass->g[a] += precision * (known->q[a] - q[a]);
+	}
+}
+
+static bool fit_from(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2], const double *prior, double *out, double sigma,
+                     bool have_start, const struct ellipse_prior *known)
+{
 	*fit = (struct ellipse_fit){ 0 };
 	double *d = mem_array(2 * (size_t)n, sizeof *d), q[N], step[N], t;
 	bool ok = true;
@@ -200,7 +208,7 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 		d[i] = ellipse_distance(&t, e, p[i]);
 	/* Around a start from a sample, inliers may be many sigma off: the scale begins large and falls to the known noise with
 	 * the fit. */
-	const bool falls = sigma <= 0 || !have_start;
+	const bool falls = sigma <= 0 || !have_start || known;
 	const double least = sigma > 0 ? sigma : 1e-9;
 	double scale = falls ? fmax(scale_of(n, d, prior, d + n), least) : sigma;
 	if (!isfinite(scale)) {  // five points fit exactly: their noise cannot be estimated
@@ -211,11 +219,13 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 	for (fit->iterations = 0; ok && fit->iterations < 60; fit->iterations++) {
 		build(&pass, e, n, p, prior, out, d, scale);
 		double inv[N][N];
-		if (pass.weight < N || !invert(inv, pass.h)) {
+		ellipse_to_q(q, e);
+		if (known)
+			add_known(&pass, q, known, scale);
+		if ((!known && pass.weight < N) || !invert(inv, pass.h)) {
 			ok = false;
 			break;
 		}
-		ellipse_to_q(q, e);
 		double size = 0;
 		for (int a = 0; a < N; a++) {
 			step[a] = 0;
@@ -233,7 +243,7 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), least);
 		if (size >= 1e-4 * scale)
 			continue;
-		if (sigma <= 0 || scale <= least)
+		if (sigma <= 0 || known || scale <= least)
 			break;
 		scale = fmax(scale / 2, least);
 	}
@@ -241,6 +251,9 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 		build(&pass, e, n, p, prior, out, d, scale);
 		fit->sigma = scale;
 		fit->inliers = pass.weight / n;
+		ellipse_to_q(q, e);
+		if (known)
+			add_known(&pass, q, known, scale);
 		ok = invert(fit->cov_q, pass.h);
 		for (int a = 0; a < N; a++)
 			for (int b = 0; b < N; b++)
@@ -248,4 +261,16 @@ bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const
 	}
 	free(d);
 	return ok;
+}
+
+bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2],
+                        const double *prior, double *out, double sigma, bool have_start)
+{
+	return n >= N && (have_start || sample_start(e, n, p)) && fit_from(e, fit, n, p, prior, out, sigma, have_start, 0);
+}
+
+bool ellipse_fit_near(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2], const double *weight, double *out,
+                      double sigma, const struct ellipse_prior *known)
+{
+	return fit_from(e, fit, n, p, weight, out, sigma, true, known);
 }

@@ -26,4 +26,15 @@ struct ellipse_fit {
 bool ellipse_fit_robust(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2],
                         const double *prior, double *out, double sigma, bool have_start);
 
+/* What is known of an ellipse before: Gaussian, its parameters independent. */
+struct ellipse_prior {
+	double q[ELLIPSE_N], sigma[ELLIPSE_N];  // px
+	double alike;                           // so many points count as one against it: their errors are correlated
+};
+
+/* The same from a start, with a prior: where points tell little, the ellipse and its covariance are the prior's. sigma: least noise of
+ * the points, px. */
+bool ellipse_fit_near(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2], const double *weight, double *out,
+                      double sigma, const struct ellipse_prior *known);
+
 #endif

@@ -1,6 +1,7 @@
 #include "plan/decide.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -77,14 +78,15 @@ static bool holdings(int *have, struct plan *plan, struct err *err)
 	return ok;
 }
 
-/* Megapixels of a photograph from the first part of its file, else estimated from the file's length. */
-static double megapixels(const char *path)
+/* Megapixels of a photograph from the first part of its file, else estimated from the file's length. grey: whether its head says so. */
+static double megapixels(bool *grey, const char *path)
 {
 	enum { HEAD = 1 << 18 };
 	struct stat st;
 	struct photo photo;
 	struct err err = { 0 };
 	int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	*grey = false;
 	if (fd < 0)
 		return 0;
 	char *head = mem_array(HEAD, 1);
@@ -92,24 +94,33 @@ static double megapixels(const char *path)
 	close(fd);
 	photo_header(&photo, head, n > 0 ? (size_t)n : 0, 1e6, &err);  // "truncated" is no fault here
 	free(head);
+	*grey = photo.grey;
 	if (photo.width > 0 && photo.height > 0)
 		return 1e-6 * photo.width * photo.height;
 	return n > 0 && photo.kind != PHOTO_NONE ? 1e-6 * (double)st.st_size / 3 : 0;
 }
 
-static void measure(struct plan *plan)
+/* Sums up the photographs' sizes. Returns whether all of them say that they are grey. */
+static bool measure(struct plan *plan)
 {
+	bool all_grey = true;
 	struct file_list list;
 	struct err err = { 0 };
 	char *dir = mem_printf("%s/photos", plan->capture);
 	file_list(&list, dir, &err);
 	for (int i = 0; i < list.n; i++) {
 		char *path = mem_printf("%s/%s", dir, list.names[i]);
-		plan->mpx += megapixels(path);
+		bool grey;
+		double mpx = megapixels(&grey, path);
+		plan->mpx += mpx;
+		plan->largest_mpx = fmax(plan->largest_mpx, mpx);
+		all_grey = all_grey && grey;
 		free(path);
 	}
+	all_grey = all_grey && list.n;
 	file_list_free(&list);
 	free(dir);
+	return all_grey;
 }
 
 static bool is_built(const char *stage)
@@ -159,9 +170,12 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		return err_set(err, "%s/work: is a link: results are written inside the capture folder alone", capture);
 	if (!holdings(&have, plan, err))
 		return false;
+	if (!(have & (HAS_PHOTOS | HAS_VIEWS | HAS_VIDEO)) && have & HAS_TARGETS)
+		return err_set(err, "%s: nothing to work on: what moves the characters of targets/ is learnt from a video: put one of the person into %s/video/",
+		               capture, capture);
 	if (!(have & (HAS_PHOTOS | HAS_VIEWS | HAS_VIDEO)))
 		return err_set(err, "%s: nothing to work on: put macro photographs of an eye into %s/photos/", capture, capture);
-	measure(plan);
+	bool grey = measure(plan);
 	for (int i = 0; i < PLAN_STAGES; i++)
 		plan->rows[i].name = plan_stages[i].name;
 	for (int i = 0; i < PLAN_STAGES; i++) {
@@ -182,7 +196,10 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 			row->run = true;
 		if (row->run && !strcmp(r->name, "transfer"))
 			row->reason = transfer_does(r->does, capture);
-		row->seconds = row->run ? cost[i].fixed_mpx[0] + cost[i].fixed_mpx[1] * plan->mpx : 0;
+		if (row->run && grey && !strcmp(r->name, "pigment"))
+			row->reason = "no pigments: the photographs are grey";
+		row->seconds = row->run ? cost[i].seconds[0] + cost[i].seconds[1] * plan->mpx : 0;
+		row->peak_mib = row->run ? cost[i].mib[0] + cost[i].mib[1] * plan->largest_mpx : 0;
 		plan->n_run += row->run && i;
 	}
 	return true;

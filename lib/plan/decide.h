@@ -6,9 +6,9 @@
 #include "base/conf.h"
 #include "plan/stages.h"
 
-/* Seconds of a stage on two processors: fixed, and for each megapixel of its input. */
+/* What a stage costs on two processors: fixed, and for each megapixel: seconds of all photographs, memory of the largest. */
 struct plan_cost {
-	double fixed_mpx[2];
+	double seconds[2], mib[2];
 };
 
 struct plan_row {
@@ -16,6 +16,7 @@ struct plan_row {
 	bool run;
 	const char *reason;  // fixed texts: they go into plan.mk
 	double seconds;      // estimate; 0 when it does not run
+	double peak_mib;     // of memory, estimate; 0 when it does not run
 	char *setting;       // chosen from the measured fronts; null: the preset. Owned by the plan
 };
 
@@ -25,6 +26,7 @@ struct plan {
 	int n_run;           // plan itself not counted
 	int n_photos;
 	double mpx;          // of all photographs, as far as their heads tell
+	double largest_mpx;  // of one
 	char asked[64];      // "error = 0.05 mm", or ""
 	char listing[33];    // hash of the names that decide
 };

@@ -60,7 +60,7 @@ bool eyes_of_target(double center[2][3], double *radius, const struct mesh *targ
 			vec_add(d, balls[i].center, -1, balls[j].center);
 			double apart = vec_norm(d);
 			// 63 mm between eyes of 12 mm: 5 radii; of cartoons less. The largest such pair: irises and lenses lie inside.
-			bool pair = d[0] > 0.9 * apart && apart > 2 * mean && apart < 10 * mean && fabs(balls[i].radius - balls[j].radius) < 0.1 * mean;
+			bool pair = (d[0] > 0 || (d[0] == 0 && i < j)) && apart > 2 * mean && apart < 10 * mean && fabs(balls[i].radius - balls[j].radius) < 0.1 * mean;
 			if (pair && mean > *radius) {
 				*radius = mean;
 				for (int k = 0; k < 3; k++) {
@@ -90,8 +90,8 @@ static int nearest(const struct mesh *mesh, const double p[3])
 	return best;
 }
 
-/* Whether the skin near an eyeball lies before it, so that the character looks along +z. */
-static bool looks_ahead(const struct mesh_part *part, const double center[3], double radius)
+/* The direction in which the skin near an eyeball lies: forward. False: it lies all round, or there is none. */
+static bool ahead_of(double ahead[3], const struct mesh_part *part, const double center[3], double radius)
 {
 	double sum[3] = { 0 };
 	int n = 0;
@@ -105,23 +105,50 @@ static bool looks_ahead(const struct mesh_part *part, const double center[3], do
 			n++;
 		}
 	}
-	return n && sum[2] > 0.7 * vec_norm(sum) && sum[2] > 0.2 * n;
+	if (!n || !(vec_norm(sum) > 0.2 * n))
+		return false;
+	vec_unit(ahead, sum);
+	return true;
+}
+
+/* The head's axes in the target's frame, as columns: x from the right to the left eye, y up, z ahead. */
+static bool axes_of(double axes[3][3], const struct mesh_part *part, const double left[3], const double right[3], double radius)
+{
+	double a[3], b[3], x[3], y[3], z[3];
+	if (!ahead_of(a, part, left, radius) || !ahead_of(b, part, right, radius) || !(vec_dot(a, b) > 0.5))
+		return false;
+	vec_add(x, left, -1, right);
+	vec_unit(x, x);
+	vec_add(z, a, 1, b);
+	vec_add(z, z, -vec_dot(z, x), x);
+	if (!(vec_norm(z) > 0.7))
+		return false;
+	vec_unit(z, z);
+	vec_cross(y, z, x);
+	for (int k = 0; k < 3; k++) {
+		axes[k][0] = x[k];
+		axes[k][1] = y[k];
+		axes[k][2] = z[k];
+	}
+	return true;
 }
 
 bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, const double target_eye[2][3], double target_radius,
-                    const struct mesh *subject, const double subject_eye[2][3])
+                    bool swapped, const struct mesh *subject, const double subject_eye[2][3])
 {
 	// The lids' middles and corners from the eyeball's centre, in its radii; a human eyeball has a radius of 12 mm.
 	static const double places[][3] = { { 0, 0.6, 1 }, { 0, -0.6, 1 }, { 1, 0, 0.7 }, { -1, 0, 0.7 } };
 	const double subject_radius = 12;
+	double axes[3][3];
 	*out = (struct nricp_landmarks){ 0 };
-	if (!looks_ahead(part, target_eye[0], target_radius) || !looks_ahead(part, target_eye[1], target_radius))
+	if (!axes_of(axes, part, target_eye[swapped], target_eye[!swapped], target_radius))
 		return false;
 	int *rows = mem_new(4 * COUNT(places), sizeof *rows), *fixed = rows + 2 * COUNT(places);
 	for (int e = 0; e < 2; e++)
 		for (int i = 0; i < COUNT(places); i++) {
 			double p[3], q[3];
-			vec_add(p, target_eye[e], target_radius, places[i]);
+			mat_vec(p, axes, places[i]);
+			vec_add(p, target_eye[e ^ swapped], target_radius, p);
 			vec_add(q, subject_eye[e], subject_radius, places[i]);
 			rows[out->n] = part->row[nearest(&part->mesh, p)];
 			fixed[out->n++] = nearest(subject, q);

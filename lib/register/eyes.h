@@ -5,8 +5,8 @@
 #include "mesh/mesh_part.h"
 #include "register/nricp/align.h"
 
-/* Finds the eyeballs among a target's connected pieces: the largest two round pieces of one size beside each other.
- * center  out: left (of larger x), right, in the mesh's unit
+/* Finds the eyeballs among a target's connected pieces: the largest two round pieces of one size beside each other, in any direction.
+ * center  out: of both, of larger x first, in the mesh's unit
  * radius  out: their mean radius, in the mesh's unit
  * Returns false when there is no such pair. */
 bool eyes_of_target(double center[2][3], double *radius, const struct mesh *target);
@@ -14,10 +14,11 @@ bool eyes_of_target(double center[2][3], double *radius, const struct mesh *targ
 /* Pairs vertices at the lids' middles and corners, round both eyes of a target and of the subject.
  * out          overwritten; out->moving is the caller's, free((void *)out->moving)
  * part         of the target, without its eyeballs
- * target_eye   centres, left and right, and target_radius: of eyes_of_target
+ * target_eye   centres and target_radius: of eyes_of_target
+ * swapped      whether the second of them is taken as the left one: of the two, one has the character upside down
  * subject      mm, in the head's axes; subject_eye: its eyeballs' centres, left and right
- * Returns false when the target's lids do not lie in front of its eyeballs: it does not look along +z. */
+ * Returns false when the skin round both eyeballs does not lie to one side of them, in front. */
 bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, const double target_eye[2][3], double target_radius,
-                    const struct mesh *subject, const double subject_eye[2][3]);
+                    bool swapped, const struct mesh *subject, const double subject_eye[2][3]);
 
 #endif

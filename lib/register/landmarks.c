@@ -47,8 +47,9 @@ bool landmarks_pair(struct nricp_landmarks *out, const char *name, const struct 
 	int *rows = mem_new(2 * MAX, sizeof *rows);
 	char *copy = mem_str(text), *save = 0;
 	bool ok = true;
-	for (char *one = strtok_r(copy, ",", &save); one && ok && out->n < MAX; one = strtok_r(0, ",", &save)) {
-		ok = take(&rows[out->n], &rows[MAX + out->n], one, name, target_vertices, subject_vertices, subject, err);
+	for (char *one = strtok_r(copy, ",", &save); one && ok; one = strtok_r(0, ",", &save)) {
+		ok = out->n < MAX || err_set(err, "capture.conf: target.%s.landmarks: has more than %d, the most that are read", name, MAX);
+		ok = ok && take(&rows[out->n], &rows[MAX + out->n], one, name, target_vertices, subject_vertices, subject, err);
 		out->n += ok && rows[MAX + out->n] >= 0;
 	}
 	free(copy);

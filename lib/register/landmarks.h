@@ -10,7 +10,7 @@
  * lists            of all targets; the one called `name` counts, none gives no pairs
  * target_vertices, subject_vertices  rows must be below these
  * subject          subject.landmark.*: one row each
- * Returns false, err set, when the list is no such list or a row is out of range; out->moving is set then, too. */
+ * Returns false, err set, when the list is no such list, is longer than 256, or a row is out of range; out->moving is set then, too. */
 bool landmarks_pair(struct nricp_landmarks *out, const char *name, const struct opt_each_list *lists, int target_vertices,
                     int subject_vertices, const struct opt_each_list *subject, struct err *err);
 

@@ -12,11 +12,23 @@
 #include "mesh/openness.h"
 #include "register/nricp/frame.h"
 
-void transfer_free(struct transfer *t)
+static void unroom(struct transfer *t)
 {
 	void *const all[] = { t->registered, t->column, t->weight, t->face, t->bary, t->distance, t->confidence };
 	for (int i = 0; i < COUNT(all); i++)
 		free(all[i]);
+	t->n = 0;
+	t->registered = 0;
+	t->column = 0;
+	t->weight = 0;
+	t->face = 0;
+	t->bary = 0;
+	t->distance = t->confidence = 0;
+}
+
+void transfer_free(struct transfer *t)
+{
+	unroom(t);
 	*t = (struct transfer){ 0 };
 }
 
@@ -61,8 +73,7 @@ static void set_row(struct transfer *out, int i, const struct mesh *subject, int
 }
 
 /* The same topology: vertex i is vertex i, and its row of B is one 1. */
-static void same(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct nricp_align_conf *conf,
-                 struct err *err)
+static void same(struct transfer *out, const struct mesh *target, const struct mesh *subject, const struct nricp_align_conf *conf)
 {
 	int *row = mem_array((size_t)target->n_vertices + 1, sizeof *row);
 	for (int i = 0; i < target->n_vertices; i++)
@@ -70,8 +81,9 @@ static void same(struct transfer *out, const struct mesh *target, const struct m
 	struct nricp_landmarks all = { target->n_vertices, row, row };
 	struct nricp_align_result pose;
 	struct nricp_align_conf any = *conf;
-	any.least = 0;
-	nricp_align(&pose, target, subject, &all, &any, err);
+	struct err none = { 0 };  // vertex goes to vertex, whatever the similarity
+	any.scale_max = 1e9;
+	nricp_align(&pose, target, subject, &all, &any, &none);
 	memcpy(out->subject_from_target, pose.fixed_from_moving, sizeof pose.fixed_from_moving);
 	out->scale = pose.scale;
 	out->matched = out->covered = 1;
@@ -99,6 +111,23 @@ static void place(double out[3], const double m[4][4], const float x[3])
 {
 	for (int r = 0; r < 3; r++)
 		out[r] = m[r][0] * (double)x[0] + m[r][1] * (double)x[1] + m[r][2] * (double)x[2] + m[r][3];
+}
+
+void transfer_show_aligned(struct transfer *t, const struct mesh *target)
+{
+	struct transfer kept = *t;
+	room(t, target->n_vertices);
+	memcpy(t->subject_from_target, kept.subject_from_target, sizeof t->subject_from_target);
+	t->scale = kept.scale;
+	t->matched = kept.matched;
+	t->fine = kept.fine;
+	t->rival = kept.rival;
+	for (int i = 0; i < t->n; i++) {
+		double at[3];
+		place(at, t->subject_from_target, target->vertices[i]);
+		for (int k = 0; k < 3; k++)
+			t->registered[i][k] = (float)at[k];
+	}
 }
 
 /* Places vertices that were not matched: the similarity, and the mean displacement of the nearest matched vertices, weighted by
@@ -210,6 +239,8 @@ static bool registered(struct transfer *out, const struct mesh *target, const st
 	memcpy(out->subject_from_target, pose.fixed_from_moving, sizeof pose.fixed_from_moving);
 	out->scale = pose.scale;
 	out->matched = pose.matched;
+	out->fine = pose.fine;
+	out->rival = pose.rival;
 	ok = ok && nricp_run(&result, &moving.mesh, &fixed.mesh, (const double(*)[4])pose.fixed_from_moving, &conf->nricp, err);
 	if (ok) {
 		out->rms = result.rms;
@@ -238,11 +269,11 @@ bool transfer_run(struct transfer *out, const struct mesh *target, const struct 
 	room(out, target->n_vertices);
 	int threads = linalg_serial();  // the factor's blocks are small: threads of BLAS would only wait for each other
 	if (transfer_same_topology(target, subject))
-		same(out, target, subject, &conf->align, err);
+		same(out, target, subject, &conf->align);
 	else
 		registered(out, target, subject, landmarks, conf, err);
 	linalg_threads(threads);
 	if (err_is(err))
-		transfer_free(out);
+		unroom(out);
 	return !err_is(err);
 }

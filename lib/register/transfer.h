@@ -28,6 +28,7 @@ struct transfer {
 	double subject_from_target[4][4];  // the similarity before the non-rigid registration
 	double scale;                  // of the similarity
 	double matched;                // share of the subject found by the similarity, 0..1
+	double fine, rival;            // the same more narrowly, and that of the best other pose (nricp_align)
 	double rms, covered;           // of the non-rigid registration: mm; share of the target that matched, 0..1
 	bool same_topology;            // vertex i is vertex i of the subject: nothing was registered
 };
@@ -35,12 +36,16 @@ struct transfer {
 /* Registers a target onto the subject: similarity (nricp_align), non-rigid registration (nricp_run), then snaps each vertex to the
  * nearest face of the subject that faces the same way. Pieces that are small or hidden are carried along by their neighbours.
  * out              overwritten; transfer_free
- * target, subject  mm
+ * target, subject  mm, faces counter-clockwise from outside; the target may be turned in any way
  * landmarks        pairs of vertices of the two meshes; null: none
- * Returns false, err set, when a mesh is invalid or no similarity brings them together; out is empty then. */
+ * Returns false, err set, when a mesh is invalid or no similarity brings them together; out is empty then, but for the similarity. */
 bool transfer_run(struct transfer *out, const struct mesh *target, const struct mesh *subject,
                   const struct nricp_landmarks *landmarks, const struct transfer_conf *conf, struct err *err);
 void transfer_free(struct transfer *transfer);
+
+/* After a transfer_run that failed: fills the arrays so that a picture can be drawn of the target as the best similarity lays it.
+ * registered is that, confidence 0 everywhere, and B is empty. */
+void transfer_show_aligned(struct transfer *transfer, const struct mesh *target);
 
 /* Whether two meshes have as many vertices and the same faces. */
 bool transfer_same_topology(const struct mesh *a, const struct mesh *b);

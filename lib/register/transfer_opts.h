@@ -31,7 +31,9 @@
 	OPT_REALS(p "align_welsch", (c)->align.welsch, 2, 1e-3, 10, "size", "scale of the robust weight, first and last round"), \
 	OPT_REAL(p "align_facing", &(c)->align.facing, -1, 1, "", "least cosine between matched normals"), \
 	OPT_REAL(p "align_scale_max", &(c)->align.scale_max, 1, 100, "", "largest factor between character and subject"), \
-	OPT_REAL(p "align_good", &(c)->align.good, 0, 1, "", "share of the subject found, with which no further start is tried"), \
+	OPT_REAL(p "align_fine", &(c)->align.fine, 1e-3, 10, "size", "scale of the robust weight by which poses are compared"), \
+	OPT_REAL(p "align_margin", &(c)->align.margin, 1, 100, "", "least ratio of what another pose leaves unmatched at that scale to what the best leaves"), \
+	OPT_REAL(p "align_good", &(c)->align.good, 0, 1, "", "share at that scale, below which places all over the character are tried"), \
 	OPT_REAL(p "align_least", &(c)->align.least, 0, 1, "", "share of the subject found, below which there is no likeness"), \
 	OPT_INT(p "align_starts", &(c)->align.starts, 0, 10000, "", "places of the character tried where turning does not help"), \
 	OPT_REAL(p "open", &(c)->open, 0, 0.5, "", "surface with less before it free is carried along: sockets, insides"), \

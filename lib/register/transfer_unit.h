@@ -7,9 +7,13 @@
  * nearly the size of a face; where none fits, a power of ten. */
 double transfer_subject_unit(const struct mesh *subject);
 
-/* Millimetres in one unit of a target's mesh: of the same units the one in which it aligns best with the subject.
- * subject  in mm
- * conf     its align and least_piece are used */
-double transfer_target_unit(const struct mesh *target, const struct mesh *subject, const struct transfer_conf *conf);
+/* Millimetres in one unit of a target's mesh, whatever it is: the one in which its eyeballs are as far apart as the subject's; without
+ * them, of the same units, and of the one that makes it as large as the subject, that in which it aligns best. One of the usual
+ * units where that comes near.
+ * target       its faces look outwards
+ * subject      in mm; subject_eye: centres of its eyeballs, mm, or null
+ * conf         its align and least_piece are used */
+double transfer_target_unit(const struct mesh *target, const struct mesh *subject, const double (*subject_eye)[3],
+                            const struct transfer_conf *conf);
 
 #endif

@@ -1,3 +1,4 @@
+#include <stdio.h>
 #include <string.h>
 
 #include "base/json.h"
@@ -57,4 +58,14 @@ bool tissue_load(struct tissue *t, const char *path, struct err *err)
 	          && illuminant(&t->illuminant, root, path, err) && scattering(&t->multiple, root, path, err);
 	json_decref(root);
 	return ok;
+}
+
+bool tissue_without(char reason[256], const char *path)
+{
+	struct err err = { 0 };
+	json_t *root = json_read(path, FILE_LIMIT, &err);
+	const char *why = json_string_value(json_object_get(root, "without"));
+	snprintf(reason, 256, "%.250s", why ? why : "");
+	json_decref(root);
+	return why;
 }

@@ -75,8 +75,7 @@ static void effective(double extinction[TISSUE_LAYERS], double source[TISSUE_LAY
 	double h = fmin(0.35, 2 / (sqrt(3 * absorb * extinction[TISSUE_STROMA]) + 1e-9));
 	double path = 1 / cos_view + 1 / cos_light, front = 4 * (cos_view + cos_light);
 	double r[3];
-	for (int i = 0; i < 3; i++)
-		r[i] = tissue_reflectance_all(extinction, source, abl, i * h, cos_view, cos_light);
+	tissue_reflectance_forward(r, extinction, source, abl, h, cos_view, cos_light);
 	double through = exp(-extinction[TISSUE_ABL] * abl * path);
 	double fade = fmin(fmax((r[2] - r[1]) / (r[1] - r[0]), 1e-6), 0.999);
 	double decay = -log(fade) / (h * path);

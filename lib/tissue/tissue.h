@@ -1,15 +1,16 @@
 /* tissue: optical model of the iris, shared by the fit and the renderer: an anterior border layer (ABL) over the stroma over a
  * pigment epithelium that absorbs everything (iris paper section 4, eqs. 10-14; single scattering, section 5.3).
  *
- * Scattering. Eq. 14 is a REDUCED coefficient in its source (tissue optics), so it goes with an ISOTROPIC phase function,
- * 1 / (4 pi): TISSUE_PHASE. Both layers scatter by it. It stands in the extinction too.
+ * Scattering. Eq. 14 is a REDUCED coefficient in its source (tissue optics). First order, the paper's, takes it with an ISOTROPIC phase
+ * function, 1 / (4 pi): TISSUE_PHASE; all orders take the forward scattering that it was reduced from, TISSUE_ANISOTROPY. Both layers
+ * scatter by it. It stands in the extinction too.
  * Indices. The aqueous and the tissue are matched: no Fresnel term at the iris (paper, section 5.3).
  * Thickness. Maps hold anatomical mm. The stroma is loose: `thickness_scale` says how much of each mm counts, and is
  * multiplied into the stroma's coefficients by tissue_optics_make, so that a march through the relief takes plain mm.
  *
  * Orders. With `multiple` set, extinction and source of tissue_optics_make are EFFECTIVE ones: the same first-order march
- * then returns, for thicknesses to 0.9 mm, the reflectance of all orders of scattering, as the integral equation of
- * radiative transfer gives it, to 0.5 % in the mean and 3 % at worst. Without it, the paper's first order.
+ * then returns, for thicknesses to 0.9 mm, the reflectance of all orders of scattering, as adding and doubling gives it
+ * (forward.c), to 2 % in the mean; in dark tissue, far from the middle of angles, to 10 %. Without it, the paper's first order.
  *
  * To march a ray (in each band k; t from the surface, straight lines as in the aqueous):
  *     L[k] = integral of optics.source[layer][k] TISSUE_PHASE E[k] exp(-tau_view - tau_light) dt
@@ -23,6 +24,11 @@
 #include "tissue/spectrum.h"
 
 #define TISSUE_PHASE 0.07957747154594767  // 1 / (4 pi)
+
+/* Mean cosine of scattering in soft tissue: 0.8 to 0.95, dermis and sclera 0.9 (Jacques, Phys. Med. Biol. 58, 2013, R37). From 0.8 to
+ * 0.95 the reflectance of irises at given reduced coefficients changes by a few per cent; isotropic scattering reflects up to three times
+ * as much where much is absorbed. */
+#define TISSUE_ANISOTROPY 0.9
 
 enum { TISSUE_BANDS_MAX = 8 };
 enum { TISSUE_ABL, TISSUE_STROMA, TISSUE_LAYERS };
@@ -75,12 +81,16 @@ void tissue_reflectance(double rgb[3], const struct tissue_optics *optics, doubl
 double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
                               double stroma, double cos_view, double cos_light);
 
-/* All orders, one wavelength: isotropic scattering in two layers over black, from the integral equation for the source
- * function on a grid (Galerkin, constant in each of 18 cells; the first order exact). Mean error 0.2 %, worst 3 % at optical depths of 20. */
-double tissue_reflectance_all(const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
-                              double stroma, double cos_view, double cos_light);
+/* All orders, one wavelength, with the phase function of Henyey and Greenstein of anisotropy TISSUE_ANISOTROPY, whose reduced
+ * coefficients source and extinction are: stroma of no thickness, of `stroma` mm and of twice that, in out. Against Monte Carlo to 2 %
+ * (tests/unit/tissue/test_tissue.c). */
+void tissue_reflectance_forward(double out[3], const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
+                                double stroma, double cos_view, double cos_light);
 
 /* Reads work/iris/pigment.json. Returns false, err set, when a number is missing or out of range. */
 bool tissue_load(struct tissue *tissue, const char *path, struct err *err);
+
+/* Whether the file says that there are no pigments, and why: "without" (pigment_save_none). */
+bool tissue_without(char reason[256], const char *path);
 
 #endif

@@ -7,6 +7,8 @@
 #include "base/mem.h"
 #include "render/face/skin.h"
 
+static const uint64_t MOST = (uint64_t)16 << 30;  // bytes of a file that is hashed
+
 /* Hash of program, configuration without gaze and aperture, and inputs. False where one of them cannot be read. */
 static bool key_of(char key[33], struct skin_job *job, int n, const char *const in[])
 {
@@ -15,7 +17,7 @@ static bool key_of(char key[33], struct skin_job *job, int n, const char *const 
 	size_t size = 0, slice_size = 0;
 	struct err none = { 0 };
 	FILE *out = open_memstream(&text, &size), *conf = open_memstream(&slice, &slice_size);
-	bool ok = file_hash(hash, program, &none);
+	bool ok = file_hash(hash, program, MOST, &none);
 	fputs(hash, out);
 	opt_print(conf, job->stage->name, job->stage->n_opts, job->stage->opts, &job->stage->conf);
 	fclose(conf);
@@ -29,7 +31,7 @@ static bool key_of(char key[33], struct skin_job *job, int n, const char *const 
 	for (int i = 0; i < n; i++) {
 		const char *path = stage_path(job->stage, "%s", in[i]);
 		bool there = file_exists(path);
-		ok = ok && (!there || file_hash(hash, path, &none));
+		ok = ok && (!there || file_hash(hash, path, MOST, &none));
 		fprintf(out, "\n%s %s", in[i], there ? hash : "-");
 	}
 	fclose(out);
@@ -53,7 +55,7 @@ static bool label_of(char label[67], struct skin_job *job, const char *rel, int 
 	char key[33], out[33];
 	struct err none = { 0 };
 	const char *path = stage_path(job->stage, "%s", rel);
-	if (!file_exists(path) || !key_of(key, job, n, in) || !file_hash(out, path, &none))
+	if (!file_exists(path) || !key_of(key, job, n, in) || !file_hash(out, path, MOST, &none))
 		return false;
 	snprintf(label, 67, "%s %s", key, out);
 	return true;

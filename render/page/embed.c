@@ -40,6 +40,8 @@ EMBED(viewer_address_js, "render/viewer/address.js");
 EMBED(viewer_controls_js, "render/viewer/controls.js");
 EMBED(viewer_live_js, "render/viewer/live.js");
 EMBED(viewer_page_js, "render/viewer/page.js");
+EMBED(export_blender_py, "render/export/blender_eye.py");
+EMBED(export_engines_md, "render/export/engines.md");
 EMBED(scene_look, "lib/draw/eye/look.h");
 EMBED(skin_look, "lib/draw/face/skin_look.h");
 EMBED(viewer_motion_conf, "config/animate.conf");

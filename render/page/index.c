@@ -46,6 +46,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 			add(&in, "%s/%s", capture->eyes[e].iris, iris[i]);
 		for (int i = 0; i < COUNT(pictures); i++)
 			add(&in, "%s/%s.png", capture->eyes[e].render, pictures[i]);
+		add(&in, "%s/eye.json", capture->eyes[e].leaves);
 	}
 	for (int i = 0; i < capture->n_photos; i++) {
 		const struct capture_photo *p = &capture->photos[i];
@@ -64,7 +65,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 		for (int i = 0; i < COUNT(driven); i++)
 			add(&in, "work/render/%.*s%s", n, name, driven[i]);
 		add(&in, "work/targets/%.*s/rig.npz", n, name);
-		add(&in, "work/targets/%.*s/transfer.json", n, name);
+		add(&in, "work/targets/%.*s/registration.json", n, name);
 		add(&in, "work/targets/%.*s/registration.png", n, name);
 	}
 	return in;

@@ -108,6 +108,18 @@ static json_t *renders(struct page *page, const char *dir, json_t *const picture
 	return list;
 }
 
+/* What other programs get of the eye, where it was exported. */
+static void leaves(json_t *eye, struct page *page, const char *dir)
+{
+	json_t *says = page_json(page, page_file(page, "%s/eye.json", dir)), *file = json_array_get(json_object_get(says, "files"), 0);
+	json_t *lost = json_array_get(json_object_get(says, "lost"), 1), *bytes = json_object_get(file, "bytes"), *triangles = json_object_get(file, "triangles");
+	if (json_is_integer(bytes) && json_is_integer(triangles) && json_is_object(lost)) {
+		json_object_set_new(eye, "leaves", page_text("%s/eye.glb, %.1f MB, %d triangles", dir, (double)json_integer_value(bytes) / 1e6, (int)json_integer_value(triangles)));
+		json_object_set_new(eye, "lost", page_text("%.2f", json_number_value(json_object_get(lost, "refraction_mm_mean"))));
+	}
+	json_decref(says);
+}
+
 /* Maps and pictures of one eye, each read and shrunk on its own. */
 static void show_eye(json_t *eye, struct page *page, const struct capture_eye *e)
 {
@@ -136,6 +148,7 @@ static void show_eye(json_t *eye, struct page *page, const struct capture_eye *e
 	json_decref(texture);
 	json_object_set_new(eye, "maps", list);
 	json_object_set_new(eye, "renders", renders(page, e->render, pictures));
+	leaves(eye, page, e->leaves);
 }
 
 /* A row of the table of pigments: value, sigma, and a bar of both on 0..full. */
@@ -167,6 +180,12 @@ static json_t *pigments(struct page *page, const char *dir)
 	json_t *root = page_json(page, page_file(page, "%s/pigment.json", dir));
 	if (!root) {
 		page_say(page->missing, "%s/pigment.json: no pigments were fitted.", dir);
+		return 0;
+	}
+	const char *without = json_string_value(json_object_get(root, "without"));
+	if (without) {
+		page_say(page->missing, "No pigments: %s.", without);
+		json_decref(root);
 		return 0;
 	}
 	json_t *rows = json_array(), *out = json_pack("{s:o}", "rows", rows);

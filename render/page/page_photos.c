@@ -35,6 +35,40 @@ static json_t *facts(const struct fit *f)
 	return list;
 }
 
+/* What texture.json says of a photograph; null where it says nothing. The root is the caller's: json_decref. */
+static json_t *unrefracted(json_t **root, struct page *page, const char *iris, const char *name)
+{
+	size_t i;
+	json_t *photo;
+	*root = page_json(page, page_file(page, "%s/texture.json", iris));
+	json_array_foreach(json_object_get(*root, "photos"), i, photo) {
+		const char *is = json_string_value(json_object_get(photo, "name"));
+		if (is && !strcmp(is, name) && json_is_true(json_object_get(photo, "used")))
+			return photo;
+	}
+	return 0;
+}
+
+/* The colour of the light, and what of the iris is covered. */
+static void more_facts(json_t *list, struct page *page, const char *iris, const char *name)
+{
+	json_t *root, *photo = unrefracted(&root, page, iris, name), *white = json_object_get(photo, "white");
+	json_t *kelvin = json_object_get(white, "kelvin"), *rgb = json_object_get(white, "rgb");
+	if (json_is_true(json_object_get(photo, "grey")))
+		fact(list, "Light", page_text("the photograph is grey"));
+	else if (json_is_number(kelvin) && json_array_size(rgb) == 3)
+		fact(list, "Light", page_text("%.0f K by the sclera; white is %.2f, %.2f, %.2f", json_number_value(kelvin),
+		                              json_number_value(json_array_get(rgb, 0)), json_number_value(json_array_get(rgb, 1)),
+		                              json_number_value(json_array_get(rgb, 2))));
+	else if (photo)
+		fact(list, "Light", page_text("its colour is not known: too little sclera is seen"));
+	if (photo)
+		fact(list, "Iris hidden", page_text("%.0f %% by lids and lashes, %.0f %% by reflections: filled in",
+		                                    100 * json_number_value(json_object_get(photo, "lid_share")),
+		                                    100 * json_number_value(json_object_get(photo, "glint_share"))));
+	json_decref(root);
+}
+
 static void advise(struct page *page, const char *name, const struct fit *f)
 {
 	if (!f->ok) {
@@ -147,7 +181,9 @@ static json_t *photo(struct page *page, const struct capture_photo *p)
 	hand(entry, p->name, &fit, file);
 	if (fit.has_pupil)
 		json_object_set_new(entry, "pupil", ellipse(&fit.pupil));
-	json_object_set_new(entry, "facts", facts(&fit));
+	json_t *list = facts(&fit);
+	more_facts(list, page, page->capture->eyes[p->eye].iris, p->name);
+	json_object_set_new(entry, "facts", list);
 	likeness(page, entry, page->capture->eyes[p->eye].render, p->name);
 	return entry;
 }

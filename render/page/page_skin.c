@@ -57,10 +57,10 @@ static void column(struct page *page, json_t *list, const char *stage, const cha
 		json_decref(all);
 }
 
-/* What transfer.json says of one character, as far as it is numbers. */
+/* What registration.json says of one character, as far as it is numbers. */
 static json_t *transfer_facts(struct page *page, const char *name)
 {
-	json_t *root = page_json(page, page_file(page, "work/targets/%s/transfer.json", name)), *list = json_array(), *value;
+	json_t *root = page_json(page, page_file(page, "work/targets/%s/registration.json", name)), *list = json_array(), *value;
 	const char *key;
 	json_object_foreach(root, key, value)
 		if (json_is_number(value)) {
@@ -70,9 +70,9 @@ static json_t *transfer_facts(struct page *page, const char *name)
 			json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value", page_text("%.4g", json_number_value(value))));
 			free(label);
 		}
-	json_t *better = json_object_get(root, "skipped"), *line;
+	json_t *doubts = json_object_get(root, "doubtful"), *line;
 	size_t i;
-	json_array_foreach(better, i, line)
+	json_array_foreach(doubts, i, line)
 		if (json_is_string(line))
 			page_say(page->film, "%s: %s", name, json_string_value(line));
 	json_decref(root);

@@ -1,26 +1,65 @@
 "use strict";
-/* The tissue of lib/tissue/tissue.c and tissue/all.c: coefficients for the shader from melanin. Spectra come from there; a test
+/* The tissue of lib/tissue/tissue.c and tissue/forward.c: coefficients for the shader from melanin. Spectra come from there; a test
  * holds the results against it. */
 const tissue = (() => {
-	const CELLS_ABL = 4, CELLS_STROMA = 14, CELLS = CELLS_ABL + CELLS_STROMA;
+	const VIEW = 5, LIGHT = 6, NODES = 7, ORDERS = 10, PLACES = [0, 1, 2, 3, 4, 5, 6];
+	const gauss_node = [0.046910077030668, 0.230765344947158, 0.5, 0.769234655052842, 0.953089922969332];
+	const gauss_weight = [0.118463442528095, 0.239314335249683, 0.284444444444444, 0.239314335249683, 0.118463442528095];
 
-	/* Third exponential integral (Abramowitz and Stegun 5.1.53, 5.1.56). */
-	function e3(x) {
-		if (x <= 0)
-			return 0.5;
-		if (x > 40)
-			return 0;
-		const e = Math.exp(-x);
-		let e1;
-		if (x < 1) {
-			e1 = -Math.log(x) - 0.57721566
-				+ x * (0.99999193 + x * (-0.24991055 + x * (0.05519968 + x * (-0.00976004 + x * 0.00107857))));
-		} else {
-			const p = 0.2677737343 + x * (8.6347608925 + x * (18.0590169730 + x * (8.5733287401 + x)));
-			const q = 3.9584969228 + x * (21.0996530827 + x * (25.6329561486 + x * (9.5733223454 + x)));
-			e1 = e * p / (q * x);
-		}
-		return (e * (1 - x) + x * x * e1) / 2;
+	const make = f => PLACES.map(i => PLACES.map(j => f(i, j)));
+	const multiply = (a, b) => make((i, j) => PLACES.reduce((sum, k) => sum + a[i][k] * b[k][j], 0));
+
+	/* (1 - a b)^-1 c, by elimination. */
+	function between(a, b, c) {
+		const m = multiply(a, b).map((row, i) => row.map((v, j) => (i === j ? 1 : 0) - v)), out = c.map(row => row.slice());
+		for (const k of PLACES)
+			for (const i of PLACES) {
+				const f = i === k ? 0 : m[i][k] / m[k][k];
+				for (let j = 0; j < NODES && i !== k; j++) {
+					m[i][j] -= f * m[k][j];
+					out[i][j] -= f * out[k][j];
+				}
+			}
+		return out.map((row, i) => row.map(v => v / m[i][i]));
+	}
+
+	/* What a layer over a ground that reflects `below` sends back; the light that reaches the ground. */
+	function add(r, t, below) {
+		const down = between(r, below, t), through = multiply(t, multiply(below, down));
+		return [make((i, j) => r[i][j] + through[i][j]), down];
+	}
+
+	function twice([r, t]) {
+		const [sum, down] = add(r, t, r);
+		return [sum, multiply(t, down)];
+	}
+
+	function nodes_of(g, cos_view, cos_light) {
+		const mu = [...gauss_node, cos_view, cos_light], weight = [...gauss_weight, 1e-8, 1e-8], peak = Math.pow(g, ORDERS);
+		const p = mu.map(m => {
+			const of = [1, m];
+			for (let l = 2; l < ORDERS; l++)
+				of.push(((2 * l - 1) * m * of[l - 1] - (l - 1) * of[l - 2]) / l);
+			return of;
+		});
+		const sum = sign => make((i, j) => p[i].reduce((all, v, l) => all + (l % 2 ? sign : 1) * (2 * l + 1) * (Math.pow(g, l) - peak) / (1 - peak) * v * p[j][l], 0));
+		return { g, mu, weight, ahead: sum(1), back: sum(-1) };
+	}
+
+	/* A layer of reduced optical depth source and absorption depth absorb, doubled from one so thin that it scatters once. */
+	function layer(n, source, absorb) {
+		const peak = Math.pow(n.g, ORDERS), thin = 5e-4, scatter = source / (1 - n.g) * (1 - peak);
+		const albedo = scatter + absorb > 0 ? scatter / (scatter + absorb) : 0;
+		let depth = Math.min(scatter + absorb, 60), doublings = 0;
+		for (; depth > thin; doublings++)
+			depth /= 2;
+		const into = j => 2 * n.mu[j] * n.weight[j] * albedo / 4, left = i => Math.exp(-depth / n.mu[i]);
+		const passed = (i, j) => Math.abs(n.mu[i] - n.mu[j]) < 1e-6 ? depth / (n.mu[i] * n.mu[i]) * left(i) : (left(i) - left(j)) / (n.mu[i] - n.mu[j]);
+		let both = [make((i, j) => into(j) * n.back[i][j] * (1 - Math.exp(-depth * (1 / n.mu[i] + 1 / n.mu[j]))) / (n.mu[i] + n.mu[j])),
+			make((i, j) => into(j) * n.ahead[i][j] * passed(i, j) + (i === j ? left(i) : 0))];
+		for (; doublings; doublings--)
+			both = twice(both);
+		return both;
 	}
 
 	function first_order(extinction, source, abl, stroma, cos_view, cos_light) {
@@ -29,76 +68,30 @@ const tissue = (() => {
 			+ source[1] / extinction[1] * through * (1 - Math.exp(-extinction[1] * stroma * path))) / (4 * (cos_view + cos_light));
 	}
 
-	function cells(extinction, abl, stroma) {
-		const edge = [0];
-		const cut = (depth, n) => {
-			const from = edge[edge.length - 1], power = 1 + 0.35 * Math.log1p(depth / 4);
-			for (let i = 1; i <= n; i++)
-				edge.push(from + depth * Math.pow(i / n, power));
-		};
-		cut(Math.min(Math.max(extinction[0] * abl, 1e-7), 30), CELLS_ABL);
-		cut(Math.min(Math.max(extinction[1] * stroma, 1e-7), 30), CELLS_STROMA);
-		return edge;
+	/* What the first order lacks, because the phase function was cut off. */
+	function first_lacks(n, extinction, source, abl, stroma) {
+		const TURNS = 16, g = n.g, peak = Math.pow(g, ORDERS), u = n.mu[VIEW], v = n.mu[LIGHT], across = Math.sqrt((1 - u * u) * (1 - v * v));
+		let phase = 0;
+		for (let i = 0; i < TURNS; i++)
+			phase += (1 - g * g) / Math.pow(1 + g * g - 2 * g * (across * Math.cos(Math.PI * (i + 0.5) / TURNS) - u * v), 1.5) / TURNS;
+		const scaled = source.map(s => s / (1 - g) * (1 - peak)), all = scaled.map((s, l) => s + extinction[l] - source[l]);
+		return (phase / (1 - peak) - n.back[VIEW][LIGHT]) * first_order(all, scaled, abl, stroma, u, v);
 	}
 
-	/* Mean over cell i of half the integral of E1 over cell j. */
-	function kernel(edge) {
-		const e = edge.map(a => edge.map(b => e3(Math.abs(b - a)))), out = [];
-		for (let i = 0; i < CELLS; i++) {
-			const depth = edge[i + 1] - edge[i];
-			out.push([]);
-			for (let j = 0; j < CELLS; j++) {
-				const sum = i === j ? depth - 0.5 + e[i][i + 1]
-					: (e[i < j ? i + 1 : i][i < j ? j : j + 1] - e[i][j] - e[i + 1][j + 1] + e[i < j ? i : i + 1][i < j ? j + 1 : j]) / 2;
-				out[i].push(sum / depth);
-			}
-		}
-		return out;
-	}
-
-	function solve(a, b) {
-		for (let k = 0; k < CELLS; k++)
-			for (let i = k + 1; i < CELLS; i++) {
-				const f = a[i][k] / a[k][k];
-				for (let j = k + 1; j < CELLS; j++)
-					a[i][j] -= f * a[k][j];
-				b[i] -= f * b[k];
-			}
-		for (let k = CELLS - 1; k >= 0; k--) {
-			for (let j = k + 1; j < CELLS; j++)
-				b[k] -= a[k][j] * b[j];
-			b[k] /= a[k][k];
-		}
-	}
-
-	/* All orders of scattering, one wavelength. */
-	function reflectance(extinction, source, abl, stroma, cos_view, cos_light) {
-		const edge = cells(extinction, abl, stroma), k = kernel(edge), first = [], rest = [], a = [];
-		const layer = i => i < CELLS_ABL ? 0 : 1;
-		for (let i = 0; i < CELLS; i++)
-			first.push((Math.exp(-edge[i] / cos_light) - Math.exp(-edge[i + 1] / cos_light)) / (4 * (edge[i + 1] - edge[i])));
-		for (let i = 0; i < CELLS; i++) {
-			const albedo = source[layer(i)] / extinction[layer(i)];
-			rest.push(0);
-			a.push([]);
-			for (let j = 0; j < CELLS; j++) {
-				rest[i] += albedo * k[i][j] * first[j] * source[layer(j)] / extinction[layer(j)];
-				a[i].push((i === j ? 1 : 0) - albedo * k[i][j]);
-			}
-		}
-		solve(a, rest);
-		let sum = first_order(extinction, source, abl, stroma, cos_view, cos_light);
-		for (let i = 0; i < CELLS; i++)
-			sum += rest[i] * (Math.exp(-edge[i] / cos_view) - Math.exp(-edge[i + 1] / cos_view));
-		return sum;
+	/* All orders of scattering, one wavelength: stroma of no thickness, of `stroma`, and of twice that. */
+	function reflectance(g, extinction, source, abl, stroma, cos_view, cos_light) {
+		const n = nodes_of(g, cos_view, cos_light), seen = r => r[VIEW][LIGHT] / (2 * n.mu[LIGHT] * n.weight[LIGHT]);
+		const [top_r, top_t] = layer(n, source[0] * abl, (extinction[0] - source[0]) * abl);
+		const once = layer(n, source[1] * stroma, (extinction[1] - source[1]) * stroma);
+		return [seen(top_r), seen(add(top_r, top_t, once[0])[0]), seen(add(top_r, top_t, twice(once)[0])[0])].map((r, i) => r + first_lacks(n, extinction, source, abl, i * stroma));
 	}
 
 	/* First-order coefficients that reflect what all orders do. */
-	function effective(extinction, source, abl) {
+	function effective(g, extinction, source, abl) {
 		const cos_view = 0.95, cos_light = 0.85, absorb = extinction[1] - source[1];
 		const h = Math.min(0.35, 2 / (Math.sqrt(3 * absorb * extinction[1]) + 1e-9));
 		const path = 1 / cos_view + 1 / cos_light, front = 4 * (cos_view + cos_light);
-		const r = [0, 1, 2].map(i => reflectance(extinction, source, abl, i * h, cos_view, cos_light));
+		const r = reflectance(g, extinction, source, abl, h, cos_view, cos_light);
 		const through = Math.exp(-extinction[0] * abl * path);
 		const fade = Math.min(Math.max((r[2] - r[1]) / (r[1] - r[0]), 1e-6), 0.999), decay = -Math.log(fade) / (h * path);
 		if (abl > 0)
@@ -116,7 +109,7 @@ const tissue = (() => {
 			const extinction = [scatter + absorb(value.abl_melanin, value.abl_ratio),
 				scale[1] * (scatter + absorb(value.stroma_melanin, value.stroma_ratio))];
 			if (data.multiple)
-				effective(extinction, source, data.abl);
+				effective(data.anisotropy, extinction, source, data.abl);
 			for (const l of [0, 1]) {
 				out.extinction[l].push(extinction[l]);
 				out.source[l].push(source[l]);

@@ -117,11 +117,22 @@ static bool check_template(struct stage *stage, const struct calibrate_options *
 	return ok;
 }
 
+/* Says at once that COLMAP is missing, before any picture is read. A video alone goes on without it. */
+static bool check_colmap(struct stage *stage, struct err *err)
+{
+	struct file_list list;
+	if (run_exists("colmap") || !stage_list(stage, &list, "views", err))
+		return !err_is(err);
+	const int n = list.n;
+	file_list_free(&list);
+	return n < 2 || err_set(err, "colmap is not installed: apt-get install colmap; it finds the cameras of the %d photographs in views/", n);
+}
+
 bool calibrate_run(struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	struct views views;
 	bool unfit;
-	if (!check_template(stage, o, err) || !kept_check(stage, err))
+	if (!check_template(stage, o, err) || !check_colmap(stage, err) || !kept_check(stage, err))
 		return false;
 	bool ok = views_gather(&views, stage, o, err), video = ok && file_exists(stage_path(stage, "video")) && views_are_video(&views);
 	if (ok && video && !run_exists("colmap"))

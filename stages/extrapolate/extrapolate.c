@@ -86,6 +86,9 @@ static bool read_character(struct character *c, struct stage *stage, const char 
 			c->mesh.vertices[i][k] *= (float)to_mm;
 	if (!ok)
 		return false;
+	// transfer winds the faces of a mesh that looks inwards the other way; those of registered.ply count.
+	if (c->mesh.n_faces == c->registered.n_faces)
+		memcpy(c->mesh.faces, c->registered.faces, (size_t)c->mesh.n_faces * sizeof *c->mesh.faces);
 	c->rig.mesh = &c->mesh;
 	c->rig.registered = (const float(*)[3])c->registered.vertices;
 	c->rig.b_start = c->start.data;
@@ -158,7 +161,7 @@ static bool rig_one(struct stage *stage, const char *name, const char *const out
 bool extrapolate_target(struct stage *stage, const char *file, const struct rig_motion *motion, const struct extrapolate_conf *conf,
                         struct err *err)
 {
-	static const char *const reads[] = { "registered.ply", "barycentric.npz", "transfer.json" };
+	static const char *const reads[] = { "registered.ply", "barycentric.npz", "registration.json" };
 	static const char *const writes[] = { "rig.npz", "skull.exr", "skull_normal.exr", "globe_left.exr", "globe_right.exr" };
 	enum { FROM_TRANSFER = 3, OUT = 5, IN_MAX = 32 };
 	const char *dot = strrchr(file, '.');

@@ -14,7 +14,23 @@ struct input {
 	struct image rgbw;
 	double extent;
 	struct circle pupil;
+	double white;  // ln R/G of white in it; 0 where it is not known
 };
+
+/* Of the photograph that gave the texture its colour. */
+static double white_of(const json_t *texture)
+{
+	size_t i;
+	json_t *photo;
+	json_array_foreach(json_object_get(texture, "photos"), i, photo) {
+		double correlation, rgb[3];
+		struct err none = { 0 };
+		if (json_get(&correlation, photo, "correlation", "", &none) && correlation == 1
+		    && json_get_array(rgb, 3, json_object_get(photo, "white"), "rgb", "", &none) && rgb[0] > 0 && rgb[1] > 0)
+			return log(rgb[0] / rgb[1]);
+	}
+	return 0;
+}
 
 static bool load(struct input *in, struct stage *stage, const char *const paths[IN], struct err *err)
 {
@@ -28,6 +44,7 @@ static bool load(struct input *in, struct stage *stage, const char *const paths[
 	bool ok = json_get(&in->pupil.cx, pupil, "cx", paths[1], err) && json_get(&in->pupil.cy, pupil, "cy", paths[1], err)
 	          && json_get(&in->pupil.r, pupil, "r", paths[1], err)
 	          && exr_read(&in->rgbw, stage_path(stage, "%s", paths[0]), COUNT(channels), channels, limit_px, &info, err);
+	in->white = white_of(json);
 	json_decref(json);
 	in->extent = info.extent_mm;
 	if (ok && !(in->rgbw.width == in->rgbw.height && in->extent > 0 && in->pupil.r > 0))
@@ -92,7 +109,9 @@ static bool make(struct stage *stage, const char *iris, const struct eye *eye, c
 	struct freckles found = { 0 };
 	bool ok = load(&in, stage, ins, err);
 	if (ok) {
-		found = freckles_find(&in.rgbw, in.extent, &in.pupil, eye->limbus_radius, conf);
+		struct freckle_conf lit = *conf;
+		lit.brown += in.white;  // in tungsten light every iris is red
+		found = freckles_find(&in.rgbw, in.extent, &in.pupil, eye->limbus_radius, &lit);
 		if (found.n) {
 			uint8_t *mask = freckle_mask(&found, in.extent, conf->blur);
 			freckle_fill(&in.rgbw, mask, in.extent, &in.pupil, eye->limbus_radius, conf);

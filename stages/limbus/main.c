@@ -28,19 +28,25 @@ int main(int argc, char **argv)
 		OPT_INT("overlay_px", &o.overlay_px, 64, 8192, "px", "longer side of the picture of what was found, at most"),
 		OPT_INT("candidates", &o.find.seek.candidates, 1, SEEK_MAX, "", "ellipses kept by the search"),
 		OPT_REAL("search", &o.find.rim.search, 0.01, 0.3, "", "first edge search, share of the semi-axis"),
+		OPT_REAL("measured_px", &o.find.rim.max_axis, 50, 10000, "px", "larger limbi are measured in a reduced picture"),
+		OPT_INT("passes", &o.find.rim.passes, 3, 20, "", "of the step fit along the ring"),
 		OPT_REAL("arc_rms", &o.find.rim.max_rms, 0.02, 1, "", "residual of a step, of its height, that is trusted"),
 		OPT_REAL("arc_contrast", &o.find.rim.min_contrast, 0, 1, "", "height of a step, of the typical one's"),
 		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
 		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
 		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
-		OPT_REAL("min_coverage", &o.find.min_coverage, 0.1, 1, "", "share of the limbus that must be seen"),
-		OPT_REAL("min_contrast", &o.find.min_contrast, 0.01, 1, "", "Weber contrast of sclera and iris"),
-		OPT_REAL("max_blur", &o.find.max_blur, 0.01, 0.5, "", "width of the step, share of the semi-axis"),
-		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of the edge, share of the semi-axis"),
-		OPT_REAL("max_sigma", &o.find.max_sigma, 0.001, 0.2, "", "sigma of the ellipse, share of the semi-axis"),
-		OPT_REAL("max_flank_rms", &o.find.max_flank_rms, 0.001, 0.2, "", "max_rms where the limbus was found by its sides"),
-		OPT_REAL("max_flank_sigma", &o.find.max_flank_sigma, 0.001, 0.2, "", "max_sigma where the limbus was found by its sides"),
-		OPT_REAL("min_flank_coverage", &o.find.min_flank_coverage, 0.1, 1, "", "min_coverage where the limbus was found by its sides"),
+		OPT_REALS("odds_1", o.find.odds.unit[0], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
+		OPT_REALS("odds_2", o.find.odds.unit[1], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
+		OPT_REALS("odds_3", o.find.odds.unit[2], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
+		OPT_REALS("odds_4", o.find.odds.unit[3], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
+		OPT_REALS("odds_5", o.find.odds.unit[4], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
+		OPT_REALS("odds_6", o.find.odds.unit[5], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
+		OPT_REALS("odds_sum", o.find.odds.sum, ODDS_UNITS + 1, -1e4, 1e4, "", "weights of the units; a constant"),
+		OPT_REAL("max_gross", &o.find.max_gross, 0.001, 1, "", "chance of being more than 2 % off, beyond which it is refused"),
+		OPT_REAL("sure_gross", &o.find.sure_gross, 0, 1, "", "chance below which votes of edges are not asked"),
+		OPT_REAL("region_sigma", &o.find.region_sigma, 0.001, 0.5, "", "of the evidence's ellipse: centre and size, share of the semi-axis"),
+		OPT_REAL("region_shape_sigma", &o.find.region_shape_sigma, 0.001, 0.5, "", "the same of its shape"),
+		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of an edge near a hand's mark that is believed, of the semi-axis"),
 		OPT_REAL("max_over", &o.find.max_over, 0, 1, "", "share of burnt pixels"),
 		OPT_REAL("min_level", &o.find.min_level, 0, 1, "", "encoded brightness of the 90 % quantile"),
 		OPT_REAL("pupil_offset_sigma", &o.pose.pupil_offset_sigma, 0.01, 2, "mm", "pupil centre off the axis"),
@@ -52,8 +58,9 @@ int main(int argc, char **argv)
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
 	struct limbus_kept kept = { 0 };
-	bool ok = eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err);
+	bool ok = evidence_open_shipped(&o.find.net, &err) && eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
+	evidence_close(o.find.net);
 	photo_free(&kept.photo);
 	capture_free(&capture);
 	return stage_end(&stage, &err);

@@ -27,10 +27,37 @@ struct eye_work {
 	struct limbus_kept *kept;
 };
 
+/* Four numbers of people's ellipses and an angle in degrees, as limbus/NAME.json has them. */
+static json_t *ellipse_of(const struct ellipse *e)
+{
+	return json_numbers(5, (double[]){ e->cx, e->cy, e->a, e->b, e->angle / DEG });
+}
+
+/* How sure the choice is, whether it was refused or not. */
+static json_t *doubt_of(const struct limbus_record *r)
+{
+	json_t *json = json_object();
+	json_object_set_new(json, "gross_probability", json_number(r->gross));
+	if (!r->ok && r->has_guess)
+		json_object_set_new(json, "likeliest_px", ellipse_of(&r->guess));
+	if (r->has_rival)
+		json_object_set_new(json, "rival_px", ellipse_of(&r->rival));
+	return json;
+}
+
+/* Keys of a refused photograph's; free(). */
+static char *refused_of(const struct limbus_record *r)
+{
+	json_t *json = doubt_of(r);
+	char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(12));
+	json_decref(json);
+	return text;
+}
+
 /* Keys of limbus/NAME.json beyond those of lib/README.md, as JSON text; free(). */
 static char *extra_of(const struct limbus_record *r, const struct pose *pose)
 {
-	json_t *json = json_object();
+	json_t *json = doubt_of(r);
 	json_object_set_new(json, "theta_weak_perspective_deg", json_number(pose->theta_weak / DEG));
 	json_object_set_new(json, "by_hand", json_boolean(r->by_hand));
 	json_object_set_new(json, "choice_margin", json_number(pose->margin));
@@ -41,7 +68,6 @@ static char *extra_of(const struct limbus_record *r, const struct pose *pose)
 	json_object_set_new(json, "pupil_offset_mm", json_numbers(2, pose->pupil_offset));
 	json_object_set_new(json, "contrast", json_number(r->contrast));
 	json_object_set_new(json, "share_used", json_number(r->share_used));
-	json_object_set_new(json, "search_score", json_number(r->score));
 	char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(12));
 	json_decref(json);
 	return text;
@@ -100,14 +126,14 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 		note(w, i, &fit, &pose);
 	else
 		stage_skipped_as_said(w->stage, "%s: %s", p->file, r->reason);
-	char *png = mem_printf("work/limbus/%s.png", p->name), *extra = r->ok ? extra_of(r, &pose) : 0;
+	char *png = mem_printf("work/limbus/%s.png", p->name), *extra = r->ok ? extra_of(r, &pose) : refused_of(r);
 	bool ok = true;
 	if (!stage_fresh(w->stage, p->fit, n_in, in))
 		ok = fit_save(&fit, stage_path(w->stage, "%s", p->fit), stage_made_by(w->stage, n_in, in), extra, err)
 		     && stage_made(w->stage, p->fit, n_in, in, err);
-	if (ok && r->ok && !stage_fresh(w->stage, png, n_in, in))
+	if (ok && (r->ok || r->has_guess) && !stage_fresh(w->stage, png, n_in, in))
 		ok = write_overlay(w, i, &fit, png, err) && stage_made(w->stage, png, n_in, in, err);
-	if (ok && !r->ok)
+	if (ok && !r->ok && !r->has_guess)
 		ok = file_remove(stage_path(w->stage, "%s", png), err);
 	free(png);
 	free(extra);

@@ -1,80 +1,132 @@
 #include "stages/pigment/find_white.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/json.h"
+#include "base/mem.h"
+#include "tissue/light/iris_light.h"
 
-/* What brought this photograph's colour to the texture's: texture.json's "gain"; false when it was not used there. */
-static bool texture_gain(double gain[3], const json_t *texture, const char *name)
+/* What brought this photograph's colour to the texture's: texture.json's "gain"; and the colour of its light ("white"), ln R/G, 0 where it
+ * is not known. False when the photograph was not used there. */
+static bool texture_gain(double gain[3], double *white, const json_t *texture, const char *name)
 {
 	size_t i;
 	json_t *photo;
+	double rgb[3];
 	gain[0] = gain[1] = gain[2] = 1;
+	*white = 0;
 	json_array_foreach(json_object_get(texture, "photos"), i, photo) {
 		const char *is = json_string_value(json_object_get(photo, "name"));
 		struct err unread = { 0 };
 		if (is && !strcmp(is, name)) {
 			json_get_array(gain, 3, photo, "gain", "", &unread);
+			if (json_get_array(rgb, 3, json_object_get(photo, "white"), "rgb", "", &unread) && rgb[0] > 0 && rgb[1] > 0)
+				*white = log(rgb[0] / rgb[1]);
 			return !json_is_false(json_object_get(photo, "used"));
 		}
 	}
 	return true;
 }
 
-/* The white of one photograph. False, with no error, when it has none. */
-static bool look(struct white *white, double *cos_view, struct stage *stage, const struct capture_photo *p, const struct eye *anatomy,
-                 const struct pigment_stage_conf *c, struct err *err)
+/* One photograph. */
+struct seen {
+	struct white white;
+	bool has_white;
+	double cos_view;
+	struct image light;
+	struct sclera_light shading;
+};
+
+enum { LIGHT_TEXELS = 96, ENV_ROWS = 128 };
+
+/* Light first, then white under it. */
+static bool measure(struct seen *out, const struct photo *photo, const struct fit *fit, const char *name, const struct eye *anatomy,
+                    const struct pale_conf *pale, const struct envmap *told, double extent, const struct pigment_stage_conf *c, struct err *err)
+{
+	struct pale *samples = mem_array(PALE_MAX, sizeof *samples);
+	const struct opt_each *card = capture_each(&c->card, name);
+	int n = pale_find(samples, photo, fit, anatomy, pale);
+	bool ok = true;
+	out->shading = sclera_light_fit(samples, n);
+	struct envmap own = told ? (struct envmap){ 0 } : sclera_light_environment(&out->shading, ENV_ROWS);
+	const struct envmap *env = told ? told : &own;
+	struct iris_view view = { .env = env, .eye = anatomy };
+	memcpy(view.cam_from_eye, fit->cam_from_eye, sizeof view.cam_from_eye);
+	iris_light_make(&out->light, LIGHT_TEXELS, extent, &view);
+	if (card && c->white_from != WHITE_FROM_CAMERA) {
+		ok = white_card(&out->white, photo, card->value, &c->white, err);
+		out->has_white = ok;
+	} else if (c->white_from == WHITE_FROM_SCLERA) {
+		out->has_white = white_sclera(&out->white, samples, n, env, &c->white);
+	}
+	envmap_free(&own);
+	free(samples);
+	return ok;
+}
+
+/* Returns false where the photograph has no fit, or, err set, cannot be used. */
+static bool look(struct seen *out, struct stage *stage, const struct capture_photo *p, const struct eye *anatomy,
+                 const struct pale_conf *pale, const struct envmap *told, double extent, const struct pigment_stage_conf *c, struct err *err)
 {
 	struct fit fit;
 	struct photo photo = { 0 };
-	const struct opt_each *card = capture_each(&c->card, p->name);
+	*out = (struct seen){ 0 };
 	if (!fit_load(&fit, stage_path(stage, "%s", p->fit), err))
 		return false;
 	double inside = sin(fit.theta) / anatomy->index;
-	*cos_view = sqrt(1 - inside * inside);
+	out->cos_view = sqrt(1 - inside * inside);
 	if (!fit.ok || !photo_load(&photo, stage_path(stage, "%s", p->file), c->limit_mpx, err))
 		return false;
-	bool ok = false;
-	if (card && c->white_from != WHITE_FROM_CAMERA)
-		ok = white_card(white, &photo, card->value, &c->white, err) || err_wrap(err, "%s", p->file);
-	else if (c->white_from == WHITE_FROM_SCLERA)
-		ok = white_sclera(white, &photo, &fit, &c->white);
+	bool ok = measure(out, &photo, &fit, p->name, anatomy, pale, told, extent, c, err) || err_wrap(err, "%s", p->file);
 	photo_free(&photo);
 	return ok;
 }
 
+/* Takes a photograph's light into the mean, and its white where that is the better one. */
+static void take(struct found_white *out, const struct seen *seen, const double gain[3], const char *name)
+{
+	for (long i = 0; i < 4L * out->light.width * out->light.height; i++)
+		out->light.px[i] += seen->light.px[i];
+	if (!seen->has_white || !white_better(&seen->white, &out->white))
+		return;
+	out->white = seen->white;
+	out->shading = seen->shading;
+	out->photo = name;
+	for (int k = 0; k < 3; k++)
+		out->white.rgb[k] *= gain[k];
+}
+
 bool find_white(struct found_white *out, struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
-                const struct pigment_stage_conf *c, struct err *err)
+                const struct envmap *env, double extent, const struct pigment_stage_conf *c, struct err *err)
 {
 	json_t *texture = json_read(stage_path(stage, "%s/texture.json", capture->eyes[eye].iris), 1 << 22, err);
 	if (!texture)
 		return false;
-	*out = (struct found_white){ .white = white_camera() };
+	*out = (struct found_white){ .white = white_camera(), .light = image_new(LIGHT_TEXELS, LIGHT_TEXELS, 4) };
 	double view = 0;
 	int views = 0;
 	for (int i = 0; i < capture->n_photos; i++) {
 		const struct capture_photo *p = &capture->photos[i];
-		double gain[3], cos_view = 1;
-		struct white white;
-		if (p->eye != eye || !texture_gain(gain, texture, p->name))  // what was left out of the texture is left out here
+		double gain[3];
+		struct seen seen;
+		struct pale_conf pale = c->white.pale;
+		if (p->eye != eye || !texture_gain(gain, &pale.white, texture, p->name))  // what was left out of the texture is left out here
 			continue;
 		struct err fault = { 0 };
-		bool ok = look(&white, &cos_view, stage, p, anatomy, c, &fault);
-		if (err_is(&fault)) {
+		if (look(&seen, stage, p, anatomy, &pale, env, extent, c, &fault)) {
+			view += seen.cos_view;
+			views++;
+			take(out, &seen, gain, p->name);
+		} else if (err_is(&fault)) {
 			stage_warn(stage, "white: %s", fault.msg);
-			continue;
 		}
-		view += cos_view;
-		views++;
-		if (!ok || !white_better(&white, &out->white))
-			continue;
-		out->white = white;
-		out->photo = p->name;
-		for (int k = 0; k < 3; k++)
-			out->white.rgb[k] *= gain[k];
+		image_free(&seen.light);
 	}
 	json_decref(texture);
 	out->cos_view = views ? view / views : 1;
-	return true;
+	for (long i = 0; i < 4L * LIGHT_TEXELS * LIGHT_TEXELS; i++)
+		out->light.px[i] /= (float)(views ? views : 1);
+	return views || err_set(err, "%s: none of its photographs can be read", capture->eyes[eye].side);
 }

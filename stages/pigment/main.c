@@ -3,6 +3,7 @@
  * writes  IRIS/pigment.json
  */
 #include "anatomy/keys.h"
+#include "anatomy/light.h"
 #include "base/mem.h"
 #include "tissue/relief/opts.h"
 #include "stages/pigment/pigment_opts.h"
@@ -13,11 +14,12 @@ int main(int argc, char **argv)
 	struct pigment_stage_conf c = { 0 };
 	struct opt_each_list eye_of = { 0 };
 	const struct opt opts[] = {
-		EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of), RELIEF_OPTS(&c.relief, c.range),
+		EYE_OPTS(&eye), CAPTURE_OPTS(&eye_of),
 		IRIS_OPTS(&c.root_beyond_limbus, &c.pupil_radius),
 		OPT_EACH("photo.*.card_px", &c.card, 3, 0, 1e6, "px", "a grey card: x y radius"),
 		OPT_CHOICE("light.illuminant", &c.illuminant, illuminant_names, "that the photograph was balanced for"),
 		LIGHT_POLARISED_OPT(&c.fit.polarised),
+		LIGHT_ENVIRONMENT_OPT(&c.light),
 		LIMIT_PHOTO_OPT(&c.limit_mpx),
 		PIGMENT_OPTS(&c),
 	};

@@ -8,9 +8,6 @@
 	OPT_CHOICE("scattering", &(c)->order, pigment_orders, "orders of scattering"), \
 	OPT_INT("bands", &(c)->fit.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
 	OPT_INT("starts", &(c)->fit.starts, 1, 64, "", "places the fit starts from"), \
-	OPT_INT("rounds", &(c)->rounds, 1, 10, "", "pigment and relief in turn, at most"), \
-	OPT_REAL("gain_min", &(c)->gain_min, 0, 1, "", "fall of the residual that pays for another round"), \
-	OPT_REAL("cos_light", &(c)->fit.cos_light, 0.1, 1, "", "mean cosine of light on the iris"), \
 	OPT_REAL("light_error", &(c)->fit.light_error, 0.001, 3, "", "error of a class' ln light"), \
 	OPT_REAL("model_error", &(c)->fit.model_error, 0.001, 1, "", "error of a class' ln colour"), \
 	OPT_REAL("floor", &(c)->fit.floor, 0, 0.1, "", "absolute error of reflectance"), \
@@ -19,8 +16,12 @@
 	OPT_REALS("prior_abl_ratio", (c)->prior_ratio[0], 2, 0, 1, "", "mean, sigma"), \
 	OPT_REALS("prior_stroma_melanin", (c)->prior_melanin[1], 2, 1e-5, 10, "", "median, sigma of ln"), \
 	OPT_REALS("prior_stroma_ratio", (c)->prior_ratio[1], 2, 0, 1, "", "mean, sigma"), \
+	OPT_REAL("profile_error", &(c)->fit.profile_error, 0.001, 2, "", "error of ln thickness of the whole profile"), \
+	OPT_REAL("ring_error", &(c)->fit.ring_error, 0.001, 2, "", "of each ring"), \
+	OPT_REALS("prior_spread", (c)->prior_spread, 2, 0.001, 3, "", "rms of ln thickness in a ring: median, sigma of ln"), \
 	OPT_REALS("prior_scale", (c)->prior_scale, 2, 0.01, 10, "", "median, sigma of ln"), \
 	OPT_REALS("prior_exposure", (c)->prior_exposure, 2, 0.01, 10, "", "median, sigma of ln"), \
+	OPT_REAL("light_unknown", &(c)->light_unknown, 0.001, 3, "", "sigma of ln exposure where no light.environment is given"), \
 	OPT_REALS("prior_exposure_single", (c)->prior_exposure_single, 2, 0.01, 10, "", "the same for single scattering"), \
 	OPT_REAL("prior_white", &(c)->prior_white, 0.001, 1, "", "sigma of ln red and blue of the white"), \
 	OPT_REAL("prior_veil", &(c)->prior_veil, 1e-4, 1, "", "sigma of the cornea's reflection"), \
@@ -28,14 +29,14 @@
 	OPT_REAL("white_unknown", &(c)->white_unknown, 0.01, 5, "", "sigma of ln exposure where no white was seen"), \
 	OPT_REAL("card_reflectance", &(c)->white.card, 0.01, 1, "", "of the grey card"), \
 	OPT_REALS("sclera", (c)->white.sclera, 3, 0.05, 1, "", "reflectance of the sclera: R G B"), \
-	OPT_REAL("sclera_inner", &(c)->white.inner, 1, 2, "", "ring searched for sclera, in limbus semi-axes"), \
-	OPT_REAL("sclera_outer", &(c)->white.outer, 1.05, 3, "", "the same, outer"), \
-	OPT_REAL("sclera_redness", &(c)->white.redness, 0.01, 2, "", "ln R/G above the palest that is skin"), \
-	OPT_REAL("sclera_reddest", &(c)->white.reddest, 0.05, 3, "", "ln R/G that is skin in any light"), \
-	OPT_REAL("sclera_dark", &(c)->white.dark, 0, 1, "", "share of the brightest that is shadow"), \
+	OPT_REAL("sclera_inner", &(c)->white.pale.inner, 1, 2, "", "ring searched for sclera, in limbus semi-axes"), \
+	OPT_REAL("sclera_outer", &(c)->white.pale.outer, 1.05, 3, "", "the same, outer"), \
+	OPT_REAL("sclera_redness", &(c)->white.pale.redness, 0.01, 2, "", "ln R/G above the palest that is skin"), \
+	OPT_REAL("sclera_reddest", &(c)->white.pale.reddest, 0.05, 3, "", "ln R/G that is skin in any light"), \
+	OPT_REAL("sclera_dark", &(c)->white.pale.dark, 0, 1, "", "share of the brightest that is shadow"), \
 	OPT_REAL("sclera_share_min", &(c)->white.share_min, 0.001, 1, "", "less of the ring than that is no white"), \
 	OPT_INT("rings", &(c)->classes.rings, 1, 8, "", "classes of radius"), \
-	OPT_INT("levels", &(c)->classes.levels, 1, 8, "", "classes of thickness in each"), \
+	OPT_INT("levels", &(c)->classes.levels, 1, 8, "", "classes of light in each"), \
 	OPT_REAL("inner", &(c)->classes.inner, 0, 1, "", "tissue is trusted from here: share of the way to the root"), \
 	OPT_REAL("outer", &(c)->classes.outer, 0, 1, "", "to here"), \
 	OPT_REAL("grain_mm", &(c)->classes.grain, 0.005, 1, "mm", "size of an independent patch")

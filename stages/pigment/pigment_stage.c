@@ -3,22 +3,23 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "anatomy/light.h"
 #include "base/json.h"
 #include "base/mem.h"
 #include "image/exr.h"
 #include "stages/pigment/find_white.h"
-#include "tissue/relief/opts.h"
-#include "tissue/rounds.h"
 
 enum { MAP_LIMIT_PX = 1 << 26 };
 
 /* An eye on its way. */
 struct work {
+	bool told;                 // the light
 	struct image clean, thickness;
 	struct pupil pupil;
 	struct found_white found;
-	struct tissue_rounds_conf conf;  // as used: the view's cosine, the exposure's prior
-	struct tissue_rounds rounds;
+	struct pigment_conf conf;  // as used: the cosines, the exposure's prior
+	struct pigment_classes classes;
+	struct pigment_fit fit;
 };
 
 const char *const pigment_orders[] = { "single", "multiple", 0 }, *const pigment_whites[] = { "sclera", "card", "camera", 0 };
@@ -27,11 +28,10 @@ bool pigment_stage_check(struct pigment_stage_conf *c, struct err *err)
 {
 	c->fit.illuminant = (enum illuminant)c->illuminant;
 	c->fit.multiple = c->order == 1;
-	c->relief.filter = true;
 	if (!(c->classes.outer > c->classes.inner))
 		return err_set(err, "pigment.outer = %g: must be above pigment.inner = %g", c->classes.outer, c->classes.inner);
-	if (!(c->white.outer > c->white.inner))
-		return err_set(err, "pigment.sclera_outer = %g: must be above pigment.sclera_inner = %g", c->white.outer, c->white.inner);
+	if (!(c->white.pale.outer > c->white.pale.inner))
+		return err_set(err, "pigment.sclera_outer = %g: must be above pigment.sclera_inner = %g", c->white.pale.outer, c->white.pale.inner);
 	double (*prior)[2] = c->fit.prior;
 	for (int l = 0; l < TISSUE_LAYERS; l++) {
 		int melanin = l ? PIGMENT_STROMA_MELANIN : PIGMENT_ABL_MELANIN, ratio = l ? PIGMENT_STROMA_RATIO : PIGMENT_ABL_RATIO;
@@ -47,7 +47,9 @@ bool pigment_stage_check(struct pigment_stage_conf *c, struct err *err)
 	prior[PIGMENT_EXPOSURE][1] = exposure[1];
 	prior[PIGMENT_RED][1] = prior[PIGMENT_BLUE][1] = c->prior_white;
 	prior[PIGMENT_VEIL][1] = c->fit.polarised ? 1e-4 : c->prior_veil;
-	return relief_conf_check(&c->relief, c->range, err);
+	c->fit.prior_spread[0] = log(c->prior_spread[0]);
+	c->fit.prior_spread[1] = c->prior_spread[1];
+	return true;
 }
 
 /* The files an eye's pigment follows from: three maps, then photograph and fit of each of its photographs. */
@@ -69,6 +71,18 @@ static int inputs(const char *in[], char *own[3], const struct capture *capture,
 	return n;
 }
 
+/* Where the light is from; of the sclera's shading, its slopes with their sigmas. */
+static json_t *light_json(const struct work *w)
+{
+	json_t *out = json_object();
+	json_object_set_new(out, "source", json_string(w->told ? "told" : "sclera"));
+	if (!w->told) {
+		json_object_set_new(out, "slope", json_numbers(2, w->found.shading.slope));
+		json_object_set_new(out, "slope_sigma", json_numbers(2, w->found.shading.sigma));
+	}
+	return out;
+}
+
 static char *extra_json(const struct work *w)
 {
 	json_t *out = json_object(), *white = json_object();
@@ -78,9 +92,7 @@ static char *extra_json(const struct work *w)
 	json_object_set_new(white, "share", json_number(w->found.white.share));
 	json_object_set_new(white, "spread", json_number(w->found.white.spread));
 	json_object_set_new(out, "white", white);
-	json_object_set_new(out, "rounds", json_integer(w->rounds.n));
-	json_object_set_new(out, "residual_by_round", json_numbers(w->rounds.n, w->rounds.residual));
-	json_object_set_new(out, "relief_by_round", json_numbers(w->rounds.n, w->rounds.relief));
+	json_object_set_new(out, "light", light_json(w));
 	json_object_set_new(out, "note", json_string("thickness_scale times thickness against melanin, and exposure against all of them, are what one "
 	                                               "photograph tells least apart: see held_by_priors and correlation"));
 	char *text = json_dumps(out, 0);
@@ -90,18 +102,17 @@ static char *extra_json(const struct work *w)
 
 static void report(struct stage *stage, const struct capture_eye *eye, const struct work *w)
 {
-	const struct pigment_fit *f = &w->rounds.fit;
+	const struct pigment_fit *f = &w->fit;
 	const double *x = f->x;
 	stage_note(stage, "%s: border layer melanin %.2f %% (eumelanin %.0f %%), stroma %.2f %% (%.0f %%), scale %.2f, exposure %.2f",
 	           eye->side, 100 * exp(x[PIGMENT_ABL_MELANIN]), 100 * x[PIGMENT_ABL_RATIO], 100 * exp(x[PIGMENT_STROMA_MELANIN]),
 	           100 * x[PIGMENT_STROMA_RATIO], exp(x[PIGMENT_SCALE]), exp(x[PIGMENT_EXPOSURE]));
-	stage_note(stage, "%s: white from the %s, %d round%s, %d of %d starts' minima differ, residual %.0f %%, of colour alone %.0f %%", eye->side,
-	           white_names[w->found.white.source], w->rounds.n, w->rounds.n > 1 ? "s" : "", f->minima - 1, f->starts, 100 * f->residual, 100 * f->residual_colour);
+	stage_note(stage, "%s: white from the %s, %d of %d starts' minima differ, residual %.0f %%, of colour alone %.0f %%", eye->side,
+	           white_names[w->found.white.source], f->minima - 1, f->starts, 100 * f->residual, 100 * f->residual_colour);
 	stage_figure(stage, "residual", 100 * f->residual, "%");
 	stage_figure(stage, "residual_colour", 100 * f->residual_colour, "%");
 	stage_figure(stage, "abl_melanin", 100 * exp(x[PIGMENT_ABL_MELANIN]), "%");
 	stage_figure(stage, "stroma_melanin", 100 * exp(x[PIGMENT_STROMA_MELANIN]), "%");
-	stage_figure(stage, "rounds", w->rounds.n, "");
 	stage_figure(stage, "minima", f->minima, "");
 	stage_figure(stage, "held_by_priors", f->directions, "of 9 directions");
 	if (w->found.white.source == WHITE_CAMERA)
@@ -109,54 +120,112 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 		              "the eye, or a grey card (photo.NAME.card_px)", eye->side);
 }
 
-/* White, then pigment and relief. */
+/* Mean cosine of the light on the iris, by its strength. */
+static double mean_cosine(const struct image *light)
+{
+	double sum = 0, all = 0;
+	for (long i = 0; i < (long)light->width * light->height; i++) {
+		const float *p = light->px + 4 * i;
+		double level = p[0] + p[1] + p[2];
+		sum += level * p[3];
+		all += level;
+	}
+	return all > 0 ? fmin(fmax(sum / all, 0.1), 1) : 0.84;  // 0.84: of even light
+}
+
+/* Light and white, then classes, then pigments. */
 static bool compute(struct work *w, char *const own[3], struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
-                    const struct pigment_stage_conf *c, struct err *err)
+                    const struct envmap *told, const struct pigment_stage_conf *c, struct err *err)
 {
 	static const char *const rgbw[] = { "R", "G", "B", "W" }, *const thickness[] = { "Y" };
 	struct exr_info info = { 0 };
 	if (!exr_read(&w->clean, stage_path(stage, "%s", own[0]), 4, rgbw, MAP_LIMIT_PX, &info, err)
 	    || !exr_read(&w->thickness, stage_path(stage, "%s", own[1]), 1, thickness, MAP_LIMIT_PX, 0, err)
 	    || !pupil_load(&w->pupil, stage_path(stage, "%s", own[2]), c->pupil_radius, err)
-	    || !find_white(&w->found, stage, capture, eye, anatomy, c, err))
+	    || !find_white(&w->found, stage, capture, eye, anatomy, told, info.extent_mm, c, err))
 		return false;
-	w->conf = (struct tissue_rounds_conf){ c->fit, c->classes, c->relief, c->rounds, c->gain_min };
-	w->conf.pigment.cos_view = w->found.cos_view;
-	double *exposure = w->conf.pigment.prior[PIGMENT_EXPOSURE];
+	if (w->clean.width != w->thickness.width || w->clean.height != w->thickness.height)
+		return err_set(err, "%s: not the grid of %s", own[1], own[0]);
+	w->told = told;
+	w->conf = c->fit;
+	w->conf.cos_view = w->found.cos_view;
+	w->conf.cos_light = mean_cosine(&w->found.light);
+	double *exposure = w->conf.prior[PIGMENT_EXPOSURE];
+	if (!told)
+		exposure[1] = hypot(exposure[1], c->light_unknown);
 	if (w->found.white.source == WHITE_CAMERA)
 		exposure[1] = hypot(exposure[1], c->white_unknown);
-	struct tissue_maps maps = { &w->clean, &w->thickness, info.extent_mm, &w->pupil, anatomy->limbus_radius + c->root_beyond_limbus,
-		                        { w->found.white.rgb[0], w->found.white.rgb[1], w->found.white.rgb[2] } };
-	bool ok = tissue_rounds(&w->rounds, &maps, &w->conf, stage, err);
-	stage_figure(stage, "rounds_left_out", c->rounds - w->rounds.n, "that would have changed nothing more");
+	return pigment_classify(&w->classes, &w->clean, &w->thickness, info.extent_mm, &w->pupil, anatomy->limbus_radius + c->root_beyond_limbus,
+	                        w->found.white.rgb, &w->found.light, &c->classes, err)
+	       && pigment_solve(&w->fit, &w->classes, &w->conf, 0, err);
+}
+
+/* Whether texture.json says that the texture has no colour. Older ones do not say. */
+static bool is_grey(const char *texture_json)
+{
+	struct err err = { 0 };
+	json_t *texture = json_read(texture_json, 1 << 22, &err);
+	bool grey = json_is_false(json_object_get(texture, "colour"));
+	json_decref(texture);
+	return grey;
+}
+
+static bool write_fit(struct work *w, const char *out, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye,
+                      struct err *err)
+{
+	char *extra = extra_json(w);
+	bool ok = pigment_save(&w->fit, &w->classes, &w->conf, stage_path(stage, "%s", out), stage_made_by(stage, n, in),
+	                       extra, err);
+	free(extra);
+	if (ok)
+		report(stage, eye, w);
 	return ok;
+}
+
+static bool write_none(const char *out, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye, struct err *err)
+{
+	static const char reason[] = "the photographs are grey: pigments are told by their colour";
+	stage_skipped(stage, "%s: no pigments: %s. Photograph the eye in colour", eye->side, reason);
+	return pigment_save_none(reason, stage_path(stage, "%s", out), stage_made_by(stage, n, in), err);
+}
+
+/* The light that capture.conf tells. */
+static bool light_told(struct envmap *env, struct stage *stage, const struct pigment_stage_conf *c, struct err *err)
+{
+	if (!c->light)
+		return true;
+	if (!light_load(env, 0, stage, "light.environment", c->light, err))
+		return false;
+	envmap_normalise(env);
+	return true;
 }
 
 bool pigment_stage(struct stage *stage, const struct capture *capture, int i, const struct eye *anatomy,
                    const struct pigment_stage_conf *conf, struct err *err)
 {
 	const struct capture_eye *eye = &capture->eyes[i];
-	char *own[3], *out = mem_printf("%s/pigment.json", eye->iris), *extra = 0;
-	const char **in = mem_new(3 + 2 * (size_t)capture->n_photos, sizeof *in);
+	char *own[3], *out = mem_printf("%s/pigment.json", eye->iris);
+	const char **in = mem_new(4 + 2 * (size_t)capture->n_photos, sizeof *in);
 	int n = inputs(in, own, capture, i);
 	struct work w = { 0 };
-	bool ok = stage_fresh(stage, out, n, in);
-	if (!ok) {
-		ok = compute(&w, own, stage, capture, i, anatomy, conf, err);
-		extra = ok ? extra_json(&w) : 0;
-		ok = ok
-		     && pigment_save(&w.rounds.fit, &w.rounds.classes, &w.conf.pigment, stage_path(stage, "%s", out), stage_made_by(stage, n, in), extra,
-		                     err)
-		     && stage_made(stage, out, n, in, err);
-		if (ok)
-			report(stage, eye, &w);
+	struct envmap told = { 0 };
+	if (conf->light)
+		in[n++] = conf->light;
+	bool ok = light_told(&told, stage, conf, err);
+	if (ok && !stage_fresh(stage, out, n, in)) {
+		if (is_grey(stage_path(stage, "%s", own[2])))
+			ok = write_none(out, n, in, stage, eye, err);
+		else
+			ok = compute(&w, own, stage, capture, i, anatomy, conf->light ? &told : 0, conf, err) && write_fit(&w, out, n, in, stage, eye, err);
+		ok = ok && stage_made(stage, out, n, in, err);
 	}
 	image_free(&w.clean);
 	image_free(&w.thickness);
+	image_free(&w.found.light);
+	envmap_free(&told);
 	for (int k = 0; k < 3; k++)
 		free(own[k]);
 	free(in);
 	free(out);
-	free(extra);
 	return ok;
 }

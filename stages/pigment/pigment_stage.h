@@ -3,7 +3,7 @@
 #include "anatomy/capture.h"
 #include "anatomy/eye.h"
 #include "tissue/pigment/white.h"
-#include "tissue/relief/relief.h"
+#include "tissue/pigment/pigment.h"
 
 extern const char *const pigment_orders[], *const pigment_whites[];  // "single", "multiple"; in the order of WHITE_FROM
 enum { WHITE_FROM_SCLERA, WHITE_FROM_CARD, WHITE_FROM_CAMERA };
@@ -12,19 +12,17 @@ struct pigment_stage_conf {
 	struct pigment_conf fit;
 	struct pigment_classes_conf classes;
 	struct white_conf white;
-	struct relief_conf relief;
 	double prior_exposure[2], prior_exposure_single[2];  // median, sigma of ln
 	double prior_white, prior_veil;                      // sigmas
-	double prior_melanin[2][2], prior_ratio[2][2], prior_scale[2];
-	double range[2];        // of thickness, mm
+	double prior_melanin[2][2], prior_ratio[2][2], prior_scale[2], prior_spread[2];
 	double pupil_radius;    // mm, where none was found
 	double root_beyond_limbus;
 	double limit_mpx;
 	double white_unknown;   // sigma of ln exposure where no white was seen
 	int white_from;         // WHITE_FROM_..., the best there is
 	int order, illuminant;  // of scattering: 0 first, 1 all
-	int rounds;             // of pigment and relief in turn, at most
-	double gain_min;        // the residual's relative fall that pays for another
+	double light_unknown;   // the same where the light was not told
+	const char *light;      // light.environment, or null
 	struct opt_each_list card;
 };
 

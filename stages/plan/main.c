@@ -11,6 +11,7 @@
 #define ABOUT "which stages a capture folder needs, and why the others are not needed\n\n" \
 	"  --show             print the plan as a table: what would run, why, how long\n" \
 	"  --todo             exit 0 when every stage's last run still holds, 3 when one has to run\n" \
+	"  --request          a line for each stage that has to run, STAGE SECONDS MIB, tabs between; exit 3 when there is one\n" \
 	"  --fresh=STAGE      exit 0 when that stage's last run still holds, 3 when it has to run\n" \
 	"  --clean            remove the folder's work/ and nothing else"
 
@@ -23,6 +24,8 @@ static struct plan_asked take_asked(int *argc, char **argv)
 			asked.show = true;
 		else if (!strcmp(argv[i], "--todo"))
 			asked.todo = true;
+		else if (!strcmp(argv[i], "--request"))
+			asked.request = true;
 		else if (!strcmp(argv[i], "--clean"))
 			asked.clean = true;
 		else if (!strncmp(argv[i], "--fresh=", 8))
@@ -33,12 +36,13 @@ static struct plan_asked take_asked(int *argc, char **argv)
 	return asked;
 }
 
-/* One row a stage: STAGE_seconds, fixed and for each megapixel. */
-static void fill_table(struct opt opts[PLAN_STAGES], struct plan_cost cost[PLAN_STAGES])
+/* Two rows a stage: STAGE_seconds and STAGE_mib, fixed and for each megapixel. */
+static void fill_table(struct opt opts[PLAN_OPTS], struct plan_cost cost[PLAN_STAGES])
 {
 	for (int i = 0; i < PLAN_STAGES; i++) {
-		char *key = mem_printf("%s_seconds", plan_stages[i].name);
-		opts[i] = (struct opt)OPT_REALS(key, cost[i].fixed_mpx, 2, 0, 1e6, "s; s/Mpx", "estimated time of the stage");
+		char *s = mem_printf("%s_seconds", plan_stages[i].name), *mib = mem_printf("%s_mib", plan_stages[i].name);
+		opts[2 * i] = (struct opt)OPT_REALS(s, cost[i].seconds, 2, 0, 1e6, "s; s/Mpx", "estimated time of the stage");
+		opts[2 * i + 1] = (struct opt)OPT_REALS(mib, cost[i].mib, 2, 0, 1e7, "MiB; MiB/Mpx", "estimated peak of its memory");
 	}
 }
 
@@ -48,13 +52,13 @@ int main(int argc, char **argv)
 	struct conf conf = { 0 };
 	struct err err = { 0 };
 	struct plan_cost cost[PLAN_STAGES];
-	struct opt opts[PLAN_STAGES];
+	struct opt opts[PLAN_OPTS];
 	struct plan_asked asked = take_asked(&argc, argv);
 	fill_table(opts, cost);
-	call_parse(&call, "plan", ABOUT, argc, argv, PLAN_STAGES, opts, &conf);
+	call_parse(&call, "plan", ABOUT, argc, argv, PLAN_OPTS, opts, &conf);
 	int status = plan_run(&call, &asked, opts, cost, &conf, &err);
 	conf_free(&conf);
-	for (int i = 0; i < PLAN_STAGES; i++)
+	for (int i = 0; i < PLAN_OPTS; i++)
 		free((char *)opts[i].key);
 	return status;
 }

@@ -4,10 +4,13 @@
 #include "base/call.h"
 #include "plan/decide.h"
 
-/* Options of the command line beside planning: --show, --clean, --todo, --fresh=STAGE. They are no part of the configuration, so they
+/* Rows of plan's configuration: seconds and memory of each stage. */
+enum { PLAN_OPTS = 2 * PLAN_STAGES };
+
+/* Options of the command line beside planning: --show, --clean, --todo, --request, --fresh=STAGE. They are no part of the configuration, so they
  * are not in the option table. */
 struct plan_asked {
-	bool show, clean, todo;
+	bool show, clean, todo, request;
 	const char *fresh;
 };
 
@@ -16,6 +19,10 @@ bool plan_write(const struct plan *plan, const char *slice, struct err *err);
 
 /* Prints the table for people to stdout. */
 void plan_show(const struct plan *plan, const struct call *call);
+
+/* Prints what each stage that has to run will need, for a scheduler: its name, seconds, MiB, tabs between. Returns true when there is
+ * none. */
+bool plan_request(const struct plan *plan, const struct call *call);
 
 /* True when the last run of every stage that the folder needs still holds (base/record_holds.h). */
 bool plan_all_fresh(const struct plan *plan, const struct call *call);
@@ -32,8 +39,8 @@ bool plan_check_conf(const struct plan *plan, const struct conf *conf, struct er
 bool plan_clean(const char *capture, struct err *err);
 
 /* Does what is asked and prints what is wrong. opts: cost's rows; conf: items of the command line. Returns the exit status: 0; 1, 2 with
- * an error in data, in the call; 3 where --todo or --fresh finds something to do. */
-int plan_run(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
+ * an error in data, in the call; 3 where --todo, --request or --fresh finds something to do. */
+int plan_run(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_OPTS],
              const struct plan_cost cost[PLAN_STAGES], struct conf *conf, struct err *err);
 
 #endif

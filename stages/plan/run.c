@@ -9,12 +9,12 @@
 #include "plan.h"
 #include "plan/setting.h"
 
-static char *slice_of(const struct opt opts[PLAN_STAGES], const struct conf *conf)
+static char *slice_of(const struct opt opts[PLAN_OPTS], const struct conf *conf)
 {
 	char *text = 0;
 	size_t size = 0;
 	FILE *f = open_memstream(&text, &size);
-	opt_print(f, "plan", PLAN_STAGES, opts, conf);
+	opt_print(f, "plan", PLAN_OPTS, opts, conf);
 	fclose(f);
 	return text;
 }
@@ -53,7 +53,7 @@ static bool settle(struct plan *plan, const struct call *call, const struct conf
 	return !err_is(err);
 }
 
-static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
+static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_OPTS],
                       const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, bool *fresh, struct err *err)
 {
 	struct plan plan;
@@ -68,6 +68,8 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 		plan_show(&plan, call);
 	if (ok && asked->todo)
 		*fresh = nothing_to_do(&plan, call);
+	if (ok && asked->request)
+		*fresh = plan_request(&plan, call);
 	for (int i = 0; i < PLAN_STAGES; i++)
 		free(plan.rows[i].setting);
 	if (ok && !plan.n_run)
@@ -75,7 +77,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 	return ok;
 }
 
-int plan_run(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_STAGES],
+int plan_run(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_OPTS],
              const struct plan_cost cost[PLAN_STAGES], struct conf *conf, struct err *err)
 {
 	bool fresh = true;
@@ -84,9 +86,9 @@ int plan_run(const struct call *call, const struct plan_asked *asked, const stru
 		plan_clean(call->capture, err);
 	else if (asked->fresh)
 		plan_fresh(&fresh, &why, call, asked->fresh, err);
-	else if (call_load(call, "plan", conf, err) && opt_resolve("plan", PLAN_STAGES, opts, conf, err)) {
+	else if (call_load(call, "plan", conf, err) && opt_resolve("plan", PLAN_OPTS, opts, conf, err)) {
 		if (call->print_config)
-			opt_print(stdout, "plan", PLAN_STAGES, opts, conf);
+			opt_print(stdout, "plan", PLAN_OPTS, opts, conf);
 		else
 			make_plan(call, asked, opts, cost, conf, &fresh, err);
 	}

@@ -1,4 +1,5 @@
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,19 +25,40 @@ bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *st
 	return ok;
 }
 
+/* Whether row i has to run: its last run does not hold, or cannot be looked into. */
+static bool has_to_run(const struct plan *plan, const struct call *call, int i)
+{
+	struct err err = { 0 };
+	bool fresh = true;
+	char *why = 0;
+	if (plan->rows[i].run && !plan_fresh(&fresh, &why, call, plan->rows[i].name, &err))
+		fresh = false;
+	free(why);
+	return !fresh;
+}
+
 bool plan_all_fresh(const struct plan *plan, const struct call *call)
 {
-	for (int i = 1; i < PLAN_STAGES; i++) {
-		struct err err = { 0 };
-		bool fresh = true;
-		char *why = 0;
-		if (plan->rows[i].run && !plan_fresh(&fresh, &why, call, plan->rows[i].name, &err))
-			fresh = false;
-		free(why);
-		if (!fresh)
+	for (int i = 1; i < PLAN_STAGES; i++)
+		if (has_to_run(plan, call, i))
 			return false;
-	}
 	return true;
+}
+
+bool plan_request(const struct plan *plan, const struct call *call)
+{
+	bool runs[PLAN_STAGES] = { 0 }, any = false;
+	for (int i = 1; i < PLAN_STAGES; i++) {
+		const struct plan_row *row = &plan->rows[i];
+		runs[i] = has_to_run(plan, call, i);
+		// Behind a stage that runs the inputs are not known yet. The last takes them from all.
+		for (int j = 1; j < i && row->run; j++)
+			runs[i] |= runs[j] && (i == PLAN_STAGES - 1 || plan_stage_needs(i, j));
+		if (runs[i])
+			printf("%s\t%.1f\t%.0f\n", row->name, row->seconds, row->peak_mib);
+		any |= runs[i];
+	}
+	return !any;
 }
 
 /* Seconds the stage took last time; negative when it left no log. */
@@ -52,8 +74,8 @@ static double seconds_taken(const char *capture, const char *stage)
 
 void plan_show(const struct plan *plan, const struct call *call)
 {
-	double sum = 0;
-	printf("%-12s %-11s %9s %9s  %s\n", "stage", "", "estimate", "last run", "why");
+	double sum = 0, peak = 0;
+	printf("%-12s %-11s %9s %9s %9s  %s\n", "stage", "", "estimate", "last run", "memory", "why");
 	for (int i = 1; i < PLAN_STAGES; i++) {
 		const struct plan_row *row = &plan->rows[i];
 		struct err err = { 0 };
@@ -66,14 +88,15 @@ void plan_show(const struct plan *plan, const struct call *call)
 			snprintf(last, sizeof last, "%.2f s", took);
 		printf("%-12s %-11s ", row->name, !row->run ? "skip" : fresh ? "up to date" : "run");
 		if (row->run)
-			printf("%7.2f s %9s  %s%s%s%s%s%s\n", row->seconds, last, row->reason, why ? " (" : "", why ? why : "", why ? ")" : "",
+			printf("%7.2f s %9s %5.0f MiB  %s%s%s%s%s%s\n", row->seconds, last, row->peak_mib, row->reason, why ? " (" : "", why ? why : "", why ? ")" : "",
 			       row->setting ? "; " : "", row->setting ? row->setting : "");
 		else
-			printf("%9s %9s  %s\n", "-", "-", row->reason);
+			printf("%9s %9s %9s  %s\n", "-", "-", "-", row->reason);
 		sum += fresh ? 0 : row->seconds;
+		peak = fmax(peak, fresh ? 0 : row->peak_mib);
 		free(why);
 	}
 	if (*plan->asked)
 		printf("%s: settings from the measured fronts, config/fronts.conf\n", plan->asked);
-	printf("photographs: %d, %.1f megapixels; about %.1f s to do\n", plan->n_photos, plan->mpx, sum);
+	printf("photographs: %d, %.1f megapixels; about %.1f s to do, in %.0f MiB of memory\n", plan->n_photos, plan->mpx, sum, peak);
 }

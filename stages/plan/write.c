@@ -42,8 +42,8 @@ static bool write_json(const struct plan *plan, const char *slice, struct err *e
 	json_t *stages = json_array();
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		const struct plan_row *row = &plan->rows[i];
-		json_array_append_new(stages, json_pack("{s:s,s:b,s:s,s:f,s:s*}", "name", row->name, "run", row->run, "reason",
-		                                        row->reason, "seconds", round(100 * row->seconds) / 100, "setting", row->setting));
+		json_array_append_new(stages, json_pack("{s:s,s:b,s:s,s:f,s:f,s:s*}", "name", row->name, "run", row->run, "reason",
+		                                        row->reason, "seconds", round(100 * row->seconds) / 100, "peak_mib", round(row->peak_mib), "setting", row->setting));
 	}
 	json_t *json = json_pack("{s:o,s:o,s:s*}", "made_by", made_by(plan, slice), "stages", stages, "asked",
 	                         *plan->asked ? plan->asked : 0);
@@ -74,6 +74,16 @@ static void write_rule(FILE *mk, const struct plan *plan, int i)
 	        row->name, row->name);
 }
 
+/* What other programs get of the eye, without the pictures: a part of the last stage. */
+static void write_export(FILE *mk, const struct plan *plan)
+{
+	const struct plan_row *relief = &plan->rows[plan_stage_find("relief")];
+	if (relief->run)
+		fprintf(mk, "export: relief refraction\n\t@\"$$BIN/render\" --capture=\"$$CAPTURE\" --only=export $${THREADS:+\"--threads=$$THREADS\"}\n");
+	else
+		fprintf(mk, "export:\n\t@echo \"export does not run: %s\" >&2\n", relief->reason);
+}
+
 static bool write_mk(const struct plan *plan, struct err *err)
 {
 	char *text = 0, *path = mem_printf("%s/work/plan.mk", plan->capture);
@@ -84,15 +94,16 @@ static bool write_mk(const struct plan *plan, struct err *err)
 	fputs("override CAPTURE := $(value CAPTURE)\nexport CAPTURE\n.PHONY: all", mk);
 	for (int i = 1; i < PLAN_STAGES; i++)
 		fprintf(mk, " %s", plan->rows[i].name);
-	fputs("\nall:", mk);
+	fputs(" export\nall:", mk);
 	for (int i = 1; i < PLAN_STAGES; i++)
 		if (plan->rows[i].run)
 			fprintf(mk, " %s", plan->rows[i].name);
 	fputs("\n", mk);
 	if (plan->rows[PLAN_STAGES - 1].run)
-		fputs("\t@printf '%s\\n' \"review page: $$CAPTURE/work/review/index.html\"\n", mk);
+		fputs("\t@printf '%s\\n' \"review page: $$CAPTURE/work/review/index.html\" 2>/dev/null || true\n", mk);
 	for (int i = 1; i < PLAN_STAGES; i++)
 		write_rule(mk, plan, i);
+	write_export(mk, plan);
 	fclose(mk);
 	bool ok = write_new(path, text, err);
 	free(text);

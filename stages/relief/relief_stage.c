@@ -1,5 +1,6 @@
 #include "stages/relief/relief_stage.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/json.h"
@@ -17,24 +18,39 @@ struct work {
 	double root;
 	struct relief_fit fit;
 	double height_rms;
+	bool without;      // there are no pigments
+	char reason[256];  // why
 };
+
+/* The thickness as it is: what sharpens it is told by the light of pigments that are known. */
+static bool leave_coarse(struct work *w, const struct relief_stage_conf *c, struct err *err)
+{
+	w->fit = (struct relief_fit){ .before = NAN, .after = NAN, .contrast = NAN, .slope = NAN, .kappa = NAN };
+	return relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err);
+}
+
+static bool sharpen(struct work *w, char *const in[], struct stage *stage, const struct relief_stage_conf *c, struct err *err)
+{
+	double x[PIGMENT_N], white[3];
+	struct pigment_conf pigment = { 0 };
+	return pigment_load(x, white, &pigment, stage_path(stage, "%s", in[3]), err)
+	       && relief_solve(&w->fit, &w->clean, &w->thickness, w->info.extent_mm, &w->pupil, w->root, white, x, &pigment, &c->relief, err)
+	       && relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err);
+}
 
 static bool compute(struct work *w, char *const in[], struct stage *stage, const struct eye *anatomy,
                     const struct relief_stage_conf *c, struct err *err)
 {
 	static const char *const rgbw[] = { "R", "G", "B", "W" }, *const thickness[] = { "Y" };
-	double x[PIGMENT_N], white[3];
-	struct pigment_conf pigment = { 0 };
+	w->without = tissue_without(w->reason, stage_path(stage, "%s", in[3]));
 	w->root = anatomy->limbus_radius + c->root_beyond_limbus;
 	if (!exr_read(&w->clean, stage_path(stage, "%s", in[0]), 4, rgbw, MAP_LIMIT_PX, &w->info, err)
 	    || !pupil_load(&w->pupil, stage_path(stage, "%s", in[1]), c->pupil_radius, err)
-	    || !exr_read(&w->thickness, stage_path(stage, "%s", in[2]), 1, thickness, MAP_LIMIT_PX, 0, err)
-	    || !pigment_load(x, white, &pigment, stage_path(stage, "%s", in[3]), err))
+	    || !exr_read(&w->thickness, stage_path(stage, "%s", in[2]), 1, thickness, MAP_LIMIT_PX, 0, err))
 		return false;
 	if (w->clean.width != w->thickness.width || w->clean.height != w->thickness.height || w->clean.width != w->clean.height)
 		return err_set(err, "%s: not the grid of %s", in[2], in[0]);
-	if (!relief_solve(&w->fit, &w->clean, &w->thickness, w->info.extent_mm, &w->pupil, w->root, white, x, &pigment, &c->relief, err)
-	    || !relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err))
+	if (!(w->without ? leave_coarse(w, c, err) : sharpen(w, in, stage, c, err)))
 		return false;
 	w->height_rms = relief_heights(&w->out, &w->sharp, w->info.extent_mm, &w->pupil, w->root);
 	return true;
@@ -61,6 +77,11 @@ static bool save_fit(const struct work *w, const struct relief_conf *c, const ch
 static void report(struct stage *stage, const struct capture_eye *eye, const struct work *w)
 {
 	const struct relief_fit *f = &w->fit;
+	if (w->without) {
+		stage_figure(stage, "height_rms", w->height_rms, "mm");
+		stage_skipped(stage, "%s: the relief is the coarse field, lighter for thicker, not sharpened: %s", eye->side, w->reason);
+		return;
+	}
 	stage_note(stage, "%s: gains %.2f %.2f %.2f, detail differs by %.1f %% (coarse %.1f %%, of %.1f %%), relief %.3f mm rms", eye->side,
 	           f->gain[0], f->gain[1], f->gain[2], 100 * f->after, 100 * f->before, 100 * f->contrast, w->height_rms);
 	stage_figure(stage, "detail_residual", 100 * f->after, "%");

@@ -3,9 +3,11 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "stages/track/refuse.h"
 #include "stages/track/save.h"
 #include "stages/track/sheet.h"
 #include "stages/track/wrinkles.h"
+#include "track/clip/agree.h"
 #include "track/clip/apertures.h"
 #include "track/clip/corners.h"
 #include "track/clip/expressions.h"
@@ -55,6 +57,10 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 		return false;
 	tell_video(stage, clip);
 	track_settle(clip, stage, subject, conf);
+	if (!track_settled(clip, subject, conf, err)) {
+		refuse_picture(stage, clip, subject, 0);
+		return false;
+	}
 	if (!track_points_choose(points, clip, subject, conf, err) || !track_follow(result, stage, clip, subject, points, conf, err))
 		return false;
 	if (result->n < 2)
@@ -62,6 +68,10 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (result->lost * 2 > result->n)
 		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again (a cut, or the head turned away): cut the video to one take", clip->file,
 		               result->cut, clip->reference);
+	if (!track_agrees(result, clip, conf, err)) {
+		refuse_picture(stage, clip, subject, result);
+		return false;
+	}
 	track_corners(result, clip, subject, points);
 	track_apertures(result, clip, subject);
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
@@ -70,7 +80,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	    || !wrinkles_finish(stage, result, clip, subject, points, conf, n, in, err))
 		return false;
 	tell(stage, result, clip);
-	return true;
+	return file_remove(stage_path(stage, REFUSED_PICTURE), err);
 }
 
 bool track_stage(struct stage *stage, const struct track_conf *conf, struct err *err)

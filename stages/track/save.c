@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/npy/npy.h"
+#include "track/head/pose.h"
 
 enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
 
@@ -16,11 +17,34 @@ const char *const track_files[TRACK_FILES] = {
 	"work/skin/track.png",
 };
 
+/* Columns after the confidences. */
+enum { SIGMAS = 6, POSE = 6 };
+static const char *const more[SIGMAS + POSE] = { "sigma_g1_deg", "sigma_g2_deg", "sigma_g3_deg", "sigma_g6_deg", "sigma_g7_deg", "sigma_g8_deg",
+	                                             "head_h_deg",   "head_v_deg",   "head_t_deg",   "head_x_mm",    "head_y_mm",    "head_z_mm" };
+
+/* Standard deviations of the gaze of a frame, degrees, and the head's pose; NAN where they are not known. */
+static void more_of(double out[SIGMAS + POSE], const struct track_result *r, long f)
+{
+	double fick[3];
+	for (int i = 0; i < SIGMAS + POSE; i++)
+		out[i] = NAN;
+	for (int i = 0; i < SIGMAS && r->has_eyes; i++)
+		if (isfinite(r->eyes.state[f][i / 3].gaze[i % 3]))
+			out[i] = r->eyes.state[f][i / 3].sigma[i % 3] * 180 / M_PI;
+	if (r->lost_at[f])
+		return;
+	head_fick(fick, (const double(*)[4])r->pose[f]);
+	for (int k = 0; k < 3; k++) {
+		out[SIGMAS + k] = fick[k] * 180 / M_PI;
+		out[SIGMAS + 3 + k] = r->pose[f][k][3];
+	}
+}
+
 static bool save_gaze(const struct track_result *r, const char *path, struct err *err)
 {
 	static const char *const inputs[EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
 		                                            "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
-	int width = EYE_INPUTS + r->n_au, columns = 2 + width + 2;
+	int width = EYE_INPUTS + r->n_au, after = 2 + width + SIDES, columns = after + SIGMAS + POSE;
 	char **name = mem_new((size_t)columns, sizeof *name);
 	name[0] = mem_str("frame");
 	name[1] = mem_str("time_s");
@@ -28,6 +52,8 @@ static bool save_gaze(const struct track_result *r, const char *path, struct err
 		name[2 + i] = i < EYE_INPUTS ? mem_str(inputs[i]) : mem_printf("au%d", i - EYE_INPUTS + 1);
 	name[2 + width] = mem_str("confidence_left");
 	name[3 + width] = mem_str("confidence_right");
+	for (int i = 0; i < SIGMAS + POSE; i++)
+		name[after + i] = mem_str(more[i]);
 	struct csv_table table = csv_table_new(columns, (const char *const *)name);
 	double *row = mem_new((size_t)columns, sizeof *row);
 	for (long f = 0; f < r->n; f++) {
@@ -37,6 +63,7 @@ static bool save_gaze(const struct track_result *r, const char *path, struct err
 			row[2 + i] = r->g ? r->g[f * width + i] : NAN;
 		for (int e = 0; e < SIDES; e++)
 			row[2 + width + e] = r->has_eyes ? r->eyes.state[f][e].confidence : 0;
+		more_of(row + after, r, f);
 		csv_add(&table, row);
 	}
 	bool ok = csv_save(path, &table, err);

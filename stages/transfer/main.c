@@ -1,7 +1,7 @@
 /* transfer: registers every character on the subject and writes its vertices' barycentric coordinates there.
  * reads   subject.ply or subject.obj (else work/subject.ply), targets/NAME.ply or .obj
  * writes  work/targets/NAME/registered.ply (mm, the subject's axes; the target's vertices and faces),
- *         barycentric.npz (B, eq. 3.4), transfer.json, registration.png
+ *         barycentric.npz (B, eq. 3.4), registration.json, registration.png; of a refused character the last two alone
  */
 #include "anatomy/keys.h"
 #include "base/mem.h"
@@ -17,6 +17,12 @@ int main(int argc, char **argv)
 		OPT_REAL("limit_vertices", &conf.limit_vertices, 100, 1e8, "", "larger meshes are refused"),
 		SUBJECT_UNIT_OPT(&conf.subject_unit),
 		SUBJECT_LANDMARK_OPT(&conf.subject_landmark),
+		SUBJECT_EYE_OPTS(&conf.eye_radius, &conf.eye_center),
+		OPT_REAL("check_covered", &conf.check.covered, 0, 1, "", "least share of the subject that a character lies on"),
+		OPT_REAL("check_flipped", &conf.check.flipped, 0, 1, "", "most flipped triangles, share of those that follow"),
+		OPT_REAL("check_stretch", &conf.check.stretch, 0, 10, "", "most stretch of edges (95 %), natural logarithm"),
+		OPT_REAL("check_eyes", &conf.check.eyes, 0, 10, "", "most distance of an eyeball from the subject's, of that between these"),
+		OPT_REAL("check_landmarks", &conf.check.landmarks, 0, 10, "size", "most mean distance of given landmarks from their places"),
 		OPT_EACH("target.*.unit_mm", &conf.target_unit, 1, 1e-6, 1e6, "mm", "one unit of that character's mesh"),
 		OPT_EACH("target.*.landmarks", &conf.target_landmarks, 0, 0, 0, "", "\"name row, name row\": the subject's landmarks on it"),
 	};

@@ -9,8 +9,10 @@
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
 #include "mesh/mesh_part.h"
+#include "mesh/outward.h"
 #include "optics/camera_rig.h"
 #include "register/landmarks.h"
+#include "register/transfer_check.h"
 #include "register/transfer_file.h"
 #include "register/transfer_lay.h"
 #include "register/transfer_picture.h"
@@ -19,7 +21,7 @@
 
 #define RIG "work/rig.json"
 
-enum { OUT = 4, IN_MOST = 3 };
+enum { OUT = 4, PROOF = 2, IN_MOST = 3 };  // of what is written the last two are there for a refused character, too
 
 struct subject {
 	const char *file;  // relative to the capture
@@ -34,9 +36,10 @@ struct target {
 	int n_in;
 	struct mesh mesh;  // mm
 	double unit;
-	bool guessed;
+	bool guessed, turned;  // turned: its faces looked inwards
 	struct mesh_part part;
 	struct transfer result;
+	struct transfer_check check;
 };
 
 static void scale(struct mesh *mesh, double unit)
@@ -75,6 +78,21 @@ static bool load_eyes(struct subject *s, struct stage *stage, struct err *err)
 	return true;
 }
 
+/* The centres of both eyeballs, where capture.conf gives them; in the mesh's unit. */
+static void take_eyes(struct subject *s, const struct transfer_stage_conf *conf)
+{
+	static const char *const sides[] = { "left", "right" };
+	int found = 0;
+	for (int i = 0; i < conf->eye_center.n; i++)
+		for (int e = 0; e < 2; e++)
+			if (!strcmp(conf->eye_center.items[i].name, sides[e])) {
+				found |= 1 << e;
+				for (int k = 0; k < 3; k++)
+					s->eye[e][k] = conf->eye_center.items[i].value[k] * s->unit;
+			}
+	s->has_eyes = found == 3;
+}
+
 static bool load_subject(struct subject *s, struct stage *stage, const struct transfer_stage_conf *conf, struct err *err)
 {
 	static const char *const files[] = { "subject.ply", "subject.obj", "work/subject.ply" };
@@ -89,7 +107,10 @@ static bool load_subject(struct subject *s, struct stage *stage, const struct tr
 	s->guessed = !own && !isfinite(conf->subject_unit);
 	s->unit = own ? 1 : s->guessed ? transfer_subject_unit(&s->mesh) : conf->subject_unit;
 	scale(&s->mesh, s->unit);
-	return !own || load_eyes(s, stage, err);
+	if (mesh_outward(&s->mesh) < -0.1)
+		return err_set(err, "%s: its faces look inwards: turn its normals round", s->file);
+	take_eyes(s, conf);
+	return !own || s->has_eyes || load_eyes(s, stage, err);
 }
 
 static bool load_target(struct target *t, struct stage *stage, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
@@ -98,17 +119,42 @@ static bool load_target(struct target *t, struct stage *stage, const struct subj
 		return false;
 	if (!t->mesh.n_faces)
 		return err_set(err, "%s: has no faces: a cloud of points cannot be registered", t->in[0]);
+	t->turned = !transfer_same_topology(&t->mesh, &s->mesh) && mesh_turn_outward(&t->mesh);
 	t->unit = NAN;
 	for (int i = 0; i < conf->target_unit.n; i++)
 		if (!strcmp(conf->target_unit.items[i].name, t->name))
 			t->unit = conf->target_unit.items[i].value[0];
 	t->guessed = !isfinite(t->unit);
 	if (t->guessed)
-		t->unit = transfer_same_topology(&t->mesh, &s->mesh) ? s->unit : transfer_target_unit(&t->mesh, &s->mesh, &conf->transfer);
+		t->unit = transfer_same_topology(&t->mesh, &s->mesh) ? s->unit : transfer_target_unit(&t->mesh, &s->mesh, s->has_eyes ? s->eye : 0, &conf->transfer);
 	scale(&t->mesh, t->unit);
+	if (t->turned)
+		stage_note(stage, "%s: its faces look inwards: taken the other way round (if it is mirrored, its left is the subject's right)", t->in[0]);
 	mesh_part_make(&t->part, &t->mesh, conf->transfer.least_piece, 0);
 	say_mended(stage, t->in[0], &t->part);
 	return true;
+}
+
+/* The rotation of the similarity, degrees. */
+static double turned_deg(const struct transfer *r)
+{
+	double trace = 0;
+	for (int k = 0; k < 3; k++)
+		trace += r->subject_from_target[k][k] / r->scale;
+	return acos(fmin(fmax((trace - 1) / 2, -1), 1)) * 180 / M_PI;
+}
+
+/* What is not refused and worth a look. */
+static json_t *doubts(const struct target *t)
+{
+	json_t *list = json_array();
+	if (t->turned)
+		json_array_append_new(list, json_string("its faces look inwards and were taken the other way round: if it is mirrored, its left is the subject's right"));
+	if (!t->result.same_topology && !isfinite(t->check.eyes) && !isfinite(t->check.landmarks))
+		json_array_append_new(list, json_string("neither eyeballs nor landmarks could be compared: its pose follows from the shape alone"));
+	if (t->check.flipped)
+		json_array_append_new(list, json_string("some triangles are turned over"));
+	return list;
 }
 
 static bool save_json(const struct target *t, const struct subject *s, const char *path, const char *made_by, struct err *err)
@@ -116,13 +162,27 @@ static bool save_json(const struct target *t, const struct subject *s, const cha
 	const struct transfer *r = &t->result;
 	const struct mesh_part *p = &t->part;
 	json_t *root = json_pack("{s:s, s:s, s:b}", "target", t->in[0], "subject", s->file, "same_topology", r->same_topology);
+	json_object_set_new(root, "status", json_string(*t->check.reason ? "refused" : "ok"));
+	if (*t->check.reason)
+		json_object_set_new(root, "reason", json_string(t->check.reason));
+	json_object_set_new(root, "doubtful", doubts(t));
 	json_object_set_new(root, "subject_from_target", json_numbers(16, &r->subject_from_target[0][0]));
 	json_object_set_new(root, "scale", json_number(r->scale));
 	json_object_set_new(root, "target_unit_mm", json_number(t->unit));
 	json_object_set_new(root, "target_unit_guessed", json_boolean(t->guessed));
 	json_object_set_new(root, "subject_unit_mm", json_number(s->unit));
 	json_object_set_new(root, "subject_unit_guessed", json_boolean(s->guessed));
+	json_object_set_new(root, "faces_looked_inwards", json_boolean(t->turned));
+	json_object_set_new(root, "turned_deg", json_number(turned_deg(r)));
 	json_object_set_new(root, "aligned_share", json_number(r->matched));
+	json_object_set_new(root, "aligned_closely", json_number(r->fine));
+	json_object_set_new(root, "aligned_closely_otherwise", json_number(r->rival));
+	json_object_set_new(root, "follow_share", json_number(t->check.follow));
+	json_object_set_new(root, "subject_covered", json_number(t->check.covered));
+	json_object_set_new(root, "flipped_triangles", json_integer(t->check.flipped));
+	json_object_set_new(root, "stretch_95", json_number(exp(t->check.stretch)));
+	json_object_set_new(root, "eyes_off", json_number(t->check.eyes));
+	json_object_set_new(root, "landmarks_off", json_number(t->check.landmarks));
 	json_object_set_new(root, "matched_share", json_number(r->covered));
 	json_object_set_new(root, "residual_rms_mm", json_number(r->rms));
 	json_object_set_new(root, "distance_median_mm", json_number(transfer_distance(r, 0.5)));
@@ -143,12 +203,14 @@ static bool save(struct target *t, const struct subject *s, struct stage *stage,
 	const char *made_by = stage_made_by(stage, t->n_in, in);
 	struct mesh registered = t->mesh;
 	registered.vertices = t->result.registered;
-	bool ok = om_mesh_save(&registered, stage_path(stage, "%s", t->out[0]), made_by, err)
-	          && transfer_save_matrix(&t->result, s->mesh.n_vertices, stage_path(stage, "%s", t->out[1]), made_by, err)
+	int first = *t->check.reason ? OUT - PROOF : 0;
+	bool ok = (first
+	           || (om_mesh_save(&registered, stage_path(stage, "%s", t->out[0]), made_by, err)
+	               && transfer_save_matrix(&t->result, s->mesh.n_vertices, stage_path(stage, "%s", t->out[1]), made_by, err)))
 	          && save_json(t, s, stage_path(stage, "%s", t->out[2]), made_by, err)
 	          && transfer_save_picture(&t->result, &t->mesh, &s->mesh, stage_path(stage, "%s", t->out[3]), err);
 	for (int i = 0; i < OUT && ok; i++)
-		ok = stage_made(stage, t->out[i], t->n_in, in, err);
+		ok = i < first ? file_remove(stage_path(stage, "%s", t->out[i]), err) : stage_made(stage, t->out[i], t->n_in, in, err);
 	return ok;
 }
 
@@ -170,7 +232,7 @@ static void report(struct stage *stage, const struct target *t)
 
 static void target_names(struct target *t, const char *file, const struct subject *s)
 {
-	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "transfer.json", "registration.png" };
+	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "registration.json", "registration.png" };
 	const char *dot = strrchr(file, '.');
 	t->name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file);
 	t->in[0] = mem_printf("targets/%s", file);
@@ -194,6 +256,19 @@ static void target_free(struct target *t)
 	transfer_free(&t->result);
 }
 
+/* Lays a target onto the subject, and checks it. Where no pose is found, check.reason says why, and result holds it as it would lie. */
+static bool lay(struct target *t, const struct subject *s, const struct nricp_landmarks *landmarks, const struct transfer_stage_conf *conf)
+{
+	const double (*eye)[3] = s->has_eyes ? s->eye : 0;
+	struct err why = { 0 };
+	if (transfer_lay(&t->result, &t->mesh, &t->part, &s->mesh, eye, landmarks, &conf->transfer, &why))
+		return transfer_check(&t->check, &t->result, &t->mesh, &s->mesh, eye, landmarks, &conf->transfer, &conf->check);
+	t->check = (struct transfer_check){ .eyes = NAN, .landmarks = NAN };
+	snprintf(t->check.reason, sizeof t->check.reason, "%s", why.msg);
+	transfer_show_aligned(&t->result, &t->mesh);
+	return false;
+}
+
 /* Registers one target. Returns true when it is registered or was already; a target at fault is reported, without err. */
 static bool one(struct stage *stage, const char *file, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
 {
@@ -207,17 +282,20 @@ static bool one(struct stage *stage, const char *file, const struct subject *s, 
 	if (!fresh) {
 		done = load_target(&t, stage, s, conf, &why)
 		       && landmarks_pair(&landmarks, t.name, &conf->target_landmarks, t.mesh.n_vertices, s->mesh.n_vertices,
-		                         &conf->subject_landmark, err)
-		       && (transfer_lay(&t.result, &t.mesh, &t.part, &s->mesh, s->has_eyes ? s->eye : 0, &landmarks, &conf->transfer, &why)
-		           || err_wrap(&why, "%s", t.in[0]))
-		       && save(&t, s, stage, err);
-		if (done)
-			report(stage, &t);
-		else if (err_is(&why)) {
+		                         &conf->subject_landmark, err);
+		if (done) {
+			done = lay(&t, s, &landmarks, conf);
+			if (!done)
+				stage_skipped(stage, "%s: refused: %s; see %s, and give target.%s.landmarks or unit_mm", t.in[0], t.check.reason,
+				              t.out[OUT - 1], t.name);
+			done = save(&t, s, stage, err) && done;
+		} else if (err_is(&why)) {
 			stage_skipped(stage, "%s", why.msg);
 			for (int i = 0; i < OUT; i++)
 				file_remove(stage_path(stage, "%s", t.out[i]), err);
 		}
+		if (done)
+			report(stage, &t);
 	}
 	free((void *)landmarks.moving);
 	target_free(&t);

@@ -2,12 +2,15 @@
 #ifndef STAGES_TRANSFER_STAGE_H
 #define STAGES_TRANSFER_STAGE_H
 #include "base/stage.h"
-#include "register/transfer.h"
+#include "register/transfer_check.h"
 
 struct transfer_stage_conf {
 	struct transfer_conf transfer;
+	struct transfer_check_conf check;
 	double limit_vertices;
 	double subject_unit;                                  // mm in one unit of the subject's mesh; NAN: guessed
+	double eye_radius;                                    // subject.eye_radius: read by others
+	struct opt_each_list eye_center;                      // subject.eye_center.SIDE
 	struct opt_each_list target_unit;                     // target.NAME.unit_mm
 	struct opt_each_list subject_landmark, target_landmarks;  // subject.landmark.NAME, target.NAME.landmarks
 };

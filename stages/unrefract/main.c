@@ -5,6 +5,7 @@
 #include "anatomy/keys.h"
 #include "base/mem.h"
 #include "iris/unrefract/opts.h"
+#include "iris/balance_opts.h"
 #include "unrefract.h"
 
 int main(int argc, char **argv)
@@ -14,17 +15,19 @@ int main(int argc, char **argv)
 	struct stage stage;
 	struct capture capture = { 0 };
 	struct opt_each_list eye_of = { 0 };
-	struct run run = { &stage, &capture, &eye, &c, 0, false };
+	struct balance_conf white = { 0 };
+	struct run run = { &stage, &capture, &eye, &c, &white, 0, false };
 	const struct opt opts[] = {
 		EYE_OPTS(&eye),
 		CAPTURE_OPTS(&eye_of),
 		UNREFRACT_OPTS(&c),
+		BALANCE_OPTS(&white),
 		LIMIT_PHOTO_OPT(&run.limit_mpx),
 		OPT_BOOL("write_map", &run.write_map, "write NAME.map.exr"),
 	};
 	stage_start(&stage, "unrefract", "unrefract the iris: see it without its cornea", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
-	if (eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
+	if (balance_conf_check(&white, &err) && eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
 		for (int i = 0; i < capture.n_eyes; i++)
 			unrefract_eye(&run, i, &err);
 	capture_free(&capture);

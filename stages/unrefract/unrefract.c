@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "bridge/cv_photo.h"
 #include "image/exr.h"
+#include "limbus/evidence.h"
 
 /* The photographs of one eye whose limbus was found. */
 struct work {
@@ -19,6 +20,7 @@ struct work {
 	struct unrefract_view *views;         // [n]
 	int n_inputs;
 	const char **inputs;                  // photographs and fits; also fits that are not ok: a change may make them usable
+	struct evidence_net *net;
 	struct photo kept;                    // a single photograph stays in memory between survey and merge
 };
 
@@ -55,6 +57,28 @@ static void gather(struct work *w, int index)
 	}
 }
 
+/* What the network tells of this eye; null where it cannot be run on it: the photograph tells less then. */
+static const struct evidence *evidence_of(struct evidence *out, const struct work *w, const struct photo *photo, const struct fit *fit)
+{
+	struct err err = { 0 };
+	if (evidence_window(out, w->net, photo, fit->limbus.cx, fit->limbus.cy, fit->limbus.a, &err))
+		return out;
+	stage_warn(w->run->stage, "%s", err.msg);
+	return 0;
+}
+
+/* White, lids, reflections of one photograph. */
+static bool look(struct unrefract_view *view, const struct work *w, const struct photo *photo, const struct fit *fit, struct err *err)
+{
+	struct evidence evidence = { 0 };
+	const struct evidence *told = evidence_of(&evidence, w, photo, fit);
+	if (!photo->grey)
+		view->white = balance_sclera(photo, fit, told, w->run->white);
+	bool ok = unrefract_survey(view, photo, fit, told, w->run->eye, w->run->conf, err);
+	evidence_free(&evidence);
+	return ok;
+}
+
 static void survey(struct work *w)
 {
 	for (int i = 0; i < w->n; i++) {
@@ -62,8 +86,7 @@ static void survey(struct work *w)
 		struct err err = { 0 };
 		struct unrefract_view *view = &w->views[i];
 		stage_progress(w->run->stage, i, 2 * w->n, "survey");
-		if (!load_photo(&photo, w, i, &err)
-		    || !unrefract_survey(view, &photo, &w->fits[i], w->run->eye, w->run->conf, &err)) {
+		if (!load_photo(&photo, w, i, &err) || !look(view, w, &photo, &w->fits[i], &err)) {
 			snprintf(view->note, sizeof view->note, "%.150s", err.msg);
 			stage_warn(w->run->stage, "%s: left out: %s", w->photos[i]->file, err.msg);
 		}
@@ -91,6 +114,7 @@ static bool merge(struct unrefract_texture *texture, struct work *w, int best, s
 			photo_free(&photo);
 	}
 	unrefract_finish(texture, run->eye);
+	unrefract_fill(texture, run->eye);
 	stage_progress(run->stage, 2 * w->n, 2 * w->n, "merge");
 	return true;
 }
@@ -135,7 +159,10 @@ static bool make(struct work *w, const char *exr, const char *json, struct err *
 	if (stage_fresh(stage, exr, w->n_inputs, w->inputs) && stage_fresh(stage, json, w->n_inputs, w->inputs)
 	    && !w->run->write_map)
 		return true;
+	if (!evidence_open_shipped(&w->net, err))
+		return false;
 	survey(w);
+	evidence_close(w->net);
 	int best = unrefract_align(w->n, w->views, w->run->conf);
 	if (!w->views[best].used)
 		return err_set(err, "%s: %s", w->photos[best]->file, w->views[best].note);

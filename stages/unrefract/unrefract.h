@@ -9,6 +9,7 @@ struct run {
 	const struct capture *capture;
 	const struct eye *eye;
 	const struct unrefract_conf *conf;
+	const struct balance_conf *white;
 	double limit_mpx;
 	bool write_map;
 };

@@ -14,7 +14,7 @@
 
 enum { EYES = 5, DEPTHS = 5, N = PIGMENT_N };
 static const double melanin[EYES] = { 0.003, 0.01, 0.03, 0.1, 0.3 };
-static const double scale = 0.3;
+static const double scale = 0.3, g = 0.8;  // scattering is not as forward as the fit has it
 
 struct search {
 	const struct pigment_classes *eyes;
@@ -46,8 +46,8 @@ static void photons(struct pigment_classes *out, double abl, long n)
 			float stroma = (float)c->thickness, r;
 			double s = tissue_scattering(bands.nm[k]);
 			const struct tissue_layer layer[] = { { abl, 0.7 }, { abl / 4, 0.7 } };
-			struct photon_slab slab = { 1, 1, &stroma, 0.04, { s, scale * s },
-				                        { tissue_absorption(&layer[0], bands.nm[k]), scale * tissue_absorption(&layer[1], bands.nm[k]) } };
+			struct photon_slab slab = { 1, 1, &stroma, 0.04, { s / (1 - g), scale * s / (1 - g) },
+				                        { tissue_absorption(&layer[0], bands.nm[k]), scale * tissue_absorption(&layer[1], bands.nm[k]) }, g };
 			photon_reflectance(&r, &slab, 0.84, n, 0, (uint64_t)(k + 1));
 			for (int j = 0; j < 3; j++)
 				c->rgb[j] += bands.rgb[k][j] * r;

@@ -32,7 +32,7 @@ read -r n off <"$root/off"
 same "every camera is there" "$n" 12
 check "each is where it is, in the head's own frame and mm: $off mm off at worst" test "${off:-999}" -le 57
 # The character is the head itself: laid on, it keeps its size to those 4.3 %, thrice, and leans no more than the frame does.
-tr -d ' \n' <"$head/work/targets/mpfb/transfer.json" | sed 's/.*"subject_from_target":\[\([^]]*\)\].*/\1/; s/,/ /g' | awk '{
+tr -d ' \n' <"$head/work/targets/mpfb/registration.json" | sed 's/.*"subject_from_target":\[\([^]]*\)\].*/\1/; s/,/ /g' | awk '{
 	s = sqrt($1 ^ 2 + $5 ^ 2 + $9 ^ 2); lean = 0
 	for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) { d = $(1 + 4 * k + j) / s - (j == k); lean = d * d > lean ? d * d : lean }
 	printf "%.3f %.3f", s, sqrt(lean) }' >"$root/laid"

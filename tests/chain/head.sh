@@ -33,7 +33,7 @@ conf
 run_make "$head"
 same "make on photographs and a character: exit status" "$?" 0
 same "what ran" "$(ran)" "calibrate transfer render"
-check "the character is laid onto the mesh from the photographs" grep -q '"subject": "work/subject.ply"' "$head/work/targets/mpfb/transfer.json"
+check "the character is laid onto the mesh from the photographs" grep -q '"subject": "work/subject.ply"' "$head/work/targets/mpfb/registration.json"
 elements() { head -c 4000 "$head/work/subject.ply" | grep -aE "$1"; }
 faces=$(elements '^element face' | sed 's/.* //')
 check "the mesh is reduced to what config says: ${faces:-0} faces" test "${faces:-0}" -gt 10000 -a "${faces:-0}" -le 30000
@@ -55,7 +55,7 @@ run_make "$head"
 same "a character laid on by its eyes: exit status" "$?" 0
 numbers() { tr -d ' \n' <"$1" | sed "s/.*\"$2\":\[\([^]]*\)\].*/\1/; s/,/ /g"; echo; } # FILE KEY
 numbers "$head/work/rig.json" eye_center >"$root/eyes"
-numbers "$head/work/targets/mpfb/transfer.json" subject_from_target >"$root/onto"
+numbers "$head/work/targets/mpfb/registration.json" subject_from_target >"$root/onto"
 # mpfb's eyeballs lie +-30.8, 728.4, 124.5 mm from its origin. Half a lid's width is 6 mm; the wrong place is 30 mm away.
 off=$(cat "$root/eyes" "$root/onto" | tr '\n' ' ' | awk '{ for (e = 0; e < 2; e++) { x = e ? -30.8 : 30.8; d = 0
 	for (k = 0; k < 3; k++) d += ($(7 + 4 * k) * x + $(8 + 4 * k) * 728.4 + $(9 + 4 * k) * 124.5 + $(10 + 4 * k) - $(1 + 3 * e + k)) ^ 2

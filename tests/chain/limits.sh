@@ -20,6 +20,8 @@ beyond() { # CAPTURE STAGE KEY VALUE SAYS
 	rm -rf "$root/case"
 }
 beyond photo limbus limit.photo_mpx 1 'photos/right_a.jpg: .*1600 x 1200 = 2 megapixels: must be <= 1 \(limit.photo_mpx\)'
+# What stands before COLMAP does not need it.
+mkdir "$root/bin" && ln -s /bin/false "$root/bin/colmap" && PATH=$PATH:$root/bin
 beyond views calibrate limit.photo_mpx 1 'views/a.jpg: .*2 megapixels: must be <= 1 \(limit.photo_mpx\)'
 beyond face track limit.video_mpx 0.1 'face.mp4: 1280 x 720 px, must be at most 0.1 Mpx \(limit.video_mpx\)'
 beyond face track limit.video_frames 5 'face.mp4: has more than 5 frames \(limit.video_frames\)'

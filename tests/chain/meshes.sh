@@ -79,7 +79,7 @@ says cloud.ply "has no faces: a cloud of points cannot be registered"
 says cut.obj "no"
 for name in own quads centimetres metres shut hole doubled tangled flat; do
 	check "$name is there" test -s "$capture/work/targets/$name/registered.ply"
-	share=$(sed -n 's/.*"matched_share": *\([0-9.]*\).*/\1/p' "$capture/work/targets/$name/transfer.json")
+	share=$(sed -n 's/.*"matched_share": *\([0-9.]*\).*/\1/p' "$capture/work/targets/$name/registration.json")
 	check "$name: 80 % of it and more lies on the subject" awk -v s="${share:-0}" 'BEGIN { exit !(s > 0.8) }'
 done
 for name in needle far cloud cut; do

@@ -46,7 +46,7 @@ says "a truncated weight file" extrapolate "barycentric.npz"
 echo "v 0 0 0" >>"$capture/targets/made.obj"
 says "a character with other vertices than were registered" extrapolate "run transfer again"
 "$MADE" "$capture"
-echo "{}" >"$capture/work/targets/made/transfer.json"
+echo "{}" >"$capture/work/targets/made/registration.json"
 says "a registration that says nothing" extrapolate "subject_from_target"
 "$MADE" "$capture"
 program extrapolate

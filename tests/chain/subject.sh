@@ -40,5 +40,5 @@ check "to within what calibrate's cameras are good for" grep -q '"pose_rms_px": 
 
 "$BIN/transfer" --capture="$capture" >"$log" 2>&1
 same "the character is laid onto calibrate's mesh" "$?" 0
-check "says so" grep -q '"subject": "work/subject.ply"' "$capture/work/targets/mpfb/transfer.json"
-check "which is in millimetres, not guessed" grep -q '"subject_unit_guessed": false' "$capture/work/targets/mpfb/transfer.json"
+check "says so" grep -q '"subject": "work/subject.ply"' "$capture/work/targets/mpfb/registration.json"
+check "which is in millimetres, not guessed" grep -q '"subject_unit_guessed": false' "$capture/work/targets/mpfb/registration.json"

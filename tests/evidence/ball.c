@@ -150,9 +150,10 @@ void ball_at(struct ball_point *out, const struct ball *b, const struct light *l
 		if (a > b->to_limbus) {
 			float r = 0, angle = 0, at[2];
 			const float from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - b->limbus;
-			if (through_cornea(&r, &angle, at, b, p, n) && r < b->limbus * 1.02F)
+			const float m = 1 / sqrtf(dot3(p, p)), flat[3] = { p[0] * m, p[1] * m, p[2] * m };
+			if (through_cornea(&r, &angle, at, b, p, n) && (b->even || r < b->limbus * 1.02F))
 				out->label = behind_cornea(out->body, b, light, r, angle, at);
-			white(out, b, light, x, y, n, from, out->label == EVIDENCE_SCLERA ? 1 : 1 / (1 + expf(-1.7F * from / b->blur)));
+			white(out, b, light, x, y, b->even ? flat : n, from, out->label == EVIDENCE_SCLERA ? 1 : 1 / (1 + expf(-1.7F * from / b->blur)));
 			mirror(out->mirror, light, n, 1, false);
 			return;
 		}
@@ -161,7 +162,11 @@ void ball_at(struct ball_point *out, const struct ball *b, const struct light *l
 	const float z = sqrtf(fmaxf(s, 4)), m = 1 / sqrtf(x * x + y * y + z * z), p[3] = { x, y, z };
 	float n[3] = { x * m, y * m, z * m };
 	const float a = dot3(p, b->gaze), from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - b->limbus;
-	if (b->gaze[2] > 0.5F && from < 4 * b->blur) {
+	if (b->even && a > 0 && from < 4 * b->blur) {
+		const float angle = atan2f(dot3(p, b->up), dot3(p, b->side)), at[2] = { b->limbus * cosf(angle), b->limbus * sinf(angle) };
+		behind_cornea(out->body, b, light, b->limbus, angle, at);
+		white(out, b, light, x, y, n, from, 1 / (1 + expf(-1.7F * from / b->blur)));
+	} else if (!b->even && b->gaze[2] > 0.5F && from < 4 * b->blur) {
 		const float dark = 0.35F + 0.65F / (1 + expf(-1.7F * (from - 0.3F * b->blur) / b->blur));
 		white(out, b, light, x, y, n, from, 1);
 		for (int c = 0; c < 3; c++)

@@ -16,6 +16,7 @@ struct ball {
 	float sclera[3], canthus[3], vessels, vessel_scale, at[2], red;
 	const struct field *veins, *stain;
 	float wet, shine;                     // the tear film on the sclera: unevenness, how much it mirrors
+	bool even;                            // the limbus is a ramp of equal halves about its circle, in linear light: truth to a fraction of a px
 	struct iris iris;
 };
 

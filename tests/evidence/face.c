@@ -11,6 +11,23 @@ static void skin_colour(struct face *f, struct rng *rng)
 	f->ring = range_of(rng, 0, 0.8);
 }
 
+static void body(struct face *f, struct rng *rng, bool test)
+{
+	f->neck = f->half[0] * range_of(rng, 0.55, 0.85);
+	f->shoulder = f->half_at - f->half[1] - range_of(rng, 15, 60);
+	f->slope = range_of(rng, 0.15, 0.7);
+	f->body_wide = range_of(rng, 150, 260);
+	f->hair_down = rng_below(rng, 3) ? -60 : -range_of(rng, 60, 300);
+	f->bare_body = !rng_below(rng, 4);
+	const float level = range_of(rng, 0.02, 0.8);
+	for (int c = 0; c < 3; c++)
+		f->cloth[c] = level * range_of(rng, 0.3, 1);
+	f->hair_out = rng_below(rng, 2) ? 1.45F : range_of(rng, 1.1, 2.8);
+	f->hair_curl = rng_below(rng, 2) ? 0 : range_of(rng, 0.3, 1);
+	f->curls = field_of(rng_below(rng, FIELD_KINDS), rng_below(rng, FIELD_SEEDS), test);
+	f->weave = field_of(rng_below(rng, FIELD_KINDS), rng_below(rng, FIELD_SEEDS), test);
+}
+
 struct face drawn_face_make(struct rng *rng, bool test)
 {
 	struct face f = { 0 };
@@ -43,11 +60,13 @@ struct face drawn_face_make(struct rng *rng, bool test)
 	f.blotch = field_of(FIELD_SMOOTH, rng_below(rng, FIELD_SEEDS), test);
 	f.strands = field_of(FIELD_LINES, rng_below(rng, FIELD_SEEDS), test);
 	f.back_scale = range_of(rng, 0.2, 3);
+	f.back_busy = rng_below(rng, 3) ? 1 : range_of(rng, 0, 0.2);
 	for (int i = 0; i < 2; i++) {
 		f.behind[i] = field_of(rng_below(rng, FIELD_KINDS), rng_below(rng, FIELD_SEEDS), test);
 		for (int c = 0; c < 3; c++)
 			f.back[i][c] = range_of(rng, 0.01, 0.9);
 	}
+	body(&f, rng, test);
 	return f;
 }
 
@@ -127,29 +146,19 @@ static void behind(struct skin_point *out, const struct face *f, float u, float 
 	const float a = field_at(f->behind[0], f->at[0] + f->back_scale * u, f->at[1] + f->back_scale * v);
 	const float b = field_at(f->behind[1], f->at[1] + 0.3F * f->back_scale * v, f->at[0] - 0.3F * f->back_scale * u);
 	const float mix = smooth_step(b, 0.42F, 0.58F);
+	// A plain wall or a sky: one colour that turns into the other.
+	const float slow = smooth_step(v, -250, 150), from = slow + f->back_busy * (mix - slow);
 	for (int c = 0; c < 3; c++)
-		out->albedo[c] = (f->back[0][c] + mix * (f->back[1][c] - f->back[0][c])) * (0.3F + 1.2F * a);
+		out->albedo[c] = (f->back[0][c] + from * (f->back[1][c] - f->back[0][c])) * (0.9F + f->back_busy * (1.2F * a - 0.6F));
 }
 
-bool drawn_face_at(struct skin_point *out, const struct face *f, float u, float v)
+/* Colour of skin and its fine relief. */
+static void skin(struct skin_point *out, const struct face *f, float u, float v)
 {
-	*out = (struct skin_point){ .open = 1 };
-	const float a = u / f->half[0], b = (v - f->half_at) / f->half[1], r = a * a + b * b;
-	const float strand = field_at(f->strands, 1.2F * v + 20 * a * a, 3.5F * u);
-	if (r > 1 || v > f->hairline + 12 * (strand - 0.5F)) {
-		if (r < 1.45F && v > -60) {
-			for (int c = 0; c < 3; c++)
-				out->albedo[c] = f->hair[c] * (0.3F + 1.6F * strand * strand);
-			return true;
-		}
-		behind(out, f, u, v);
-		return false;
-	}
 	const float blotch = field_at(f->blotch, f->at[0] + 1.5F * u, f->at[1] + 1.5F * v), fine = field_at(f->fine, f->at[0] + 6 * u, f->at[1] + 6 * v);
 	float melanin = f->melanin * (1 + 0.5F * (blotch - 0.5F));
 	const float spot = field_at(f->blotch, 5 * v, 5 * u);
 	melanin += f->spots * 1.5F * fmaxf(spot - 0.72F, 0);
-	out->height = 12 * (sqrtf(fmaxf(1.05F - r, 0.02F)) - 1) * 2 + 3 * f->depth * bump(0, v - 20, 1, 9);
 	out->height += f->rough * (fine - 0.5F);
 	if (f->wrinkle > 0.02F)
 		out->height -= f->wrinkle * field_at(f->lines, f->at[0] + 2 * u + 2 * f->turn * v, f->at[1] + 3 * v - 2 * f->turn * u);
@@ -158,6 +167,43 @@ bool drawn_face_at(struct skin_point *out, const struct face *f, float u, float 
 		melanin += f->ring * 0.3F * bump(u - f->frame[e].at[0] / f->narrow, v - f->frame[e].at[1] + 4, 17, 13);
 	for (int c = 0; c < 3; c++)
 		out->albedo[c] = expf(-sigma[c] * melanin - red[c] * f->blood * (0.7F + 0.6F * blotch) - base[c]);
+}
+
+/* Neck and shoulders, in clothes or bare. */
+static bool below_face(struct skin_point *out, const struct face *f, float u, float v)
+{
+	const float side = fabsf(u), line = f->shoulder - f->slope * fmaxf(side - f->neck, 0);
+	const bool on_body = v < line && side < f->body_wide, on_neck = !on_body && side < f->neck && v < f->half_at;
+	if (!on_body && !on_neck)
+		return false;
+	skin(out, f, u, v);
+	out->height -= on_neck ? 0.6F * u * u / f->neck : 0.25F * side;
+	out->open = on_neck ? 1 - 0.5F * smooth_step(v, f->shoulder, f->half_at - f->half[1]) : 1;
+	if (on_body && (!f->bare_body || v < line - 80))
+		for (int c = 0; c < 3; c++)
+			out->albedo[c] = f->cloth[c] * (0.6F + 0.8F * field_at(f->weave, 1.3F * u, 1.3F * v));
+	return true;
+}
+
+bool drawn_face_at(struct skin_point *out, const struct face *f, float u, float v)
+{
+	*out = (struct skin_point){ .open = 1 };
+	const float a = u / f->half[0], b = (v - f->half_at) / f->half[1], r = a * a + b * b;
+	const float straight = field_at(f->strands, 1.2F * v + 20 * a * a, 3.5F * u), curl = field_at(f->curls, 1.5F * u, 1.5F * v);
+	const float strand = straight + f->hair_curl * (curl - straight), out_to = f->hair_out * (1 + 0.8F * f->hair_curl * (field_at(f->curls, 0.3F * u, 0.3F * v) - 0.5F));
+	if (r > 1 || v > f->hairline + 12 * (strand - 0.5F)) {
+		if ((r < out_to && v > -60) || (v <= -60 && v > f->hair_down && fabsf(u) < 1.25F * f->half[0] && (fabsf(u) > 0.6F * f->half[0] || v > f->half_at - f->half[1]))) {
+			for (int c = 0; c < 3; c++)
+				out->albedo[c] = f->hair[c] * (0.3F + 1.6F * strand * strand);
+			return true;
+		}
+		if (below_face(out, f, u, v))
+			return true;
+		behind(out, f, u, v);
+		return false;
+	}
+	out->height = 12 * (sqrtf(fmaxf(1.05F - r, 0.02F)) - 1) * 2 + 3 * f->depth * bump(0, v - 20, 1, 9);
+	skin(out, f, u, v);
 	lower_face(out, f, u, v);
 	for (int e = 0; e < 2; e++) {
 		const float x = (u - f->frame[e].at[0] / f->narrow) * f->frame[e].side, y = v - f->frame[e].at[1];

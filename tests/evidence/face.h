@@ -11,7 +11,10 @@ struct face {
 	float narrow;                                   // cosine of the head's turn
 	float at[2], turn;                              // where textures lie
 	const struct field *fine, *lines, *blotch, *strands, *behind[2];
-	float back[2][3], back_scale;
+	float back[2][3], back_scale, back_busy;        // busy: contrast of its texture, 1 full
+	float neck, shoulder, slope, body_wide, cloth[3], hair_down, hair_out, hair_curl;  // half widths, heights, mm; how far hair stands out
+	bool bare_body;
+	const struct field *weave, *curls;
 	struct lids lids[2];
 	struct eye_frame frame[2];
 };

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { FIELD_SIDE = 256, FIELD_SEEDS = 4 };
+enum { FIELD_SIDE = 256, FIELD_SEEDS = 12 };
 enum field_kind { FIELD_SMOOTH, FIELD_FINE, FIELD_RIDGE, FIELD_CELL, FIELD_LINES, FIELD_KINDS };
 
 struct field {

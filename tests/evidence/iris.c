@@ -19,7 +19,7 @@ static void colours(struct iris *iris, struct rng *rng)
 {
 	const int which = rng_below(rng, 10);
 	float brown = which < 4 ? range(rng, 0, 0.25) : which < 6 ? range(rng, 0.2, 0.55) : which < 9 ? range(rng, 0.5, 0.85) : range(rng, 0.85, 1.1);
-	const float green = which < 6 ? range(rng, 0, 1.3) : 0.5F, bright = range(rng, 0.55, 1.7);
+	const float green = which < 6 ? range(rng, 0, 1.3) : 0.5F, bright = which < 2 ? range(rng, 0.8, 2.3) : range(rng, 0.55, 1.7);
 	stroma(iris->outer, brown, green, bright);
 	const float inner = brown + (rng_below(rng, 2) ? range(rng, 0, 0.5) : range(rng, -0.1, 0.1));
 	stroma(iris->inner, inner < 0 ? 0 : inner, green + range(rng, 0, 0.8), bright * range(rng, 0.8, 1.5));
@@ -28,10 +28,16 @@ static void colours(struct iris *iris, struct rng *rng)
 
 struct iris iris_make(struct rng *rng, bool test)
 {
-	struct iris s = { .family = test && rng_below(rng, 2) ? IRIS_BUNDLES : rng_below(rng, IRIS_BUNDLES) };
+	struct iris s = { .family = test && rng_below(rng, 2) ? IRIS_BUNDLES : rng_below(rng, 25) ? rng_below(rng, IRIS_PRINTED) : IRIS_PRINTED };
 	s.fine = field_of(s.family == IRIS_CRYPTS ? FIELD_CELL : rng_below(rng, 2) ? FIELD_SMOOTH : FIELD_RIDGE, rng_below(rng, FIELD_SEEDS), test);
 	s.coarse = field_of(FIELD_SMOOTH, rng_below(rng, FIELD_SEEDS), test);
 	colours(&s, rng);
+	if (s.family == IRIS_PRINTED)
+		for (int c = 0; c < 3; c++) {
+			s.outer[c] = range(rng, 0.02, 0.8);
+			s.inner[c] = range(rng, 0.02, 0.8);
+			s.gap[c] = range(rng, 0.01, 0.3);
+		}
 	s.contrast = s.family == IRIS_PLAIN ? range(rng, 0, 0.4) : range(rng, 0.4, 1.3);
 	s.fibres = (float)(1 + rng_below(rng, 4));
 	s.warp = range(rng, 0, 25);
@@ -65,6 +71,12 @@ static float pattern(const struct iris *s, float share, float angle, float turn)
 	case IRIS_BUNDLES: {
 		const float wave = 0.5F + 0.25F * cosf(angle * (24 + 9 * s->fibres) + 7 * share) + 0.25F * cosf(angle * (17 + 6 * s->fibres) - 9 * share + sway);
 		return 0.7F * wave + 0.3F * field_at(s->coarse, turn * 5, s->at[0] + 80 * share);
+	}
+	case IRIS_PRINTED: {
+		// Checks, along the axes or round the pupil: what lenses and test eyes bear.
+		const float r = 0.3F + 0.7F * share, n = 3 * s->fibres;
+		const float a = s->warp > 12 ? n * 2 * angle / 6.2831853F : n * r * cosf(angle), b = s->warp > 12 ? n * share : n * r * sinf(angle);
+		return ((int)floorf(a) + (int)floorf(b)) & 1 ? 1 : 0;
 	}
 	default:
 		return 0.65F * field_at(s->fine, turn * (2 + s->fibres) + sway, s->at[1] + 14 * share)

@@ -4,7 +4,8 @@
 #include "field.h"
 #include "math/rng.h"
 
-enum iris_family { IRIS_FIBRES, IRIS_CRYPTS, IRIS_FURROWS, IRIS_PLAIN, IRIS_BUNDLES, IRIS_FAMILIES };  // the last: test split alone
+/* The last is drawn in the test split alone. */
+enum iris_family { IRIS_FIBRES, IRIS_CRYPTS, IRIS_FURROWS, IRIS_PLAIN, IRIS_PRINTED, IRIS_BUNDLES, IRIS_FAMILIES };
 
 enum { FRECKLES_MAX = 10 };
 

@@ -74,10 +74,10 @@ struct develop {
 	int grey;  // 0 colour, 1 grey, 2 sepia
 };
 
-static struct develop develop_make(const float white[3], struct rng *rng)
+static struct develop develop_make(const float white[3], bool photo, struct rng *rng)
 {
 	struct develop d = { .mix = range_of(rng, 0.4, 1.5), .contrast = range_of(rng, -0.15, 0.6), .gamma = range_of(rng, 0.75, 1.3) };
-	float stops = (float)(0.75 * rng_normal(rng)), balanced = range_of(rng, 0.1, 1.1);
+	float stops = (float)((photo ? 0.5 : 0.75) * rng_normal(rng)), balanced = range_of(rng, photo ? 0.1 : -0.2, 1.1);
 	stops = stops < -2 ? -2 : stops > 2 ? 2 : stops;
 	for (int i = 0; i < 3; i++)
 		d.gain[i] = 0.75F * exp2f(stops) / white[1] * powf(white[1] / white[i], balanced) * (1 + 0.06F * (float)rng_normal(rng));
@@ -88,6 +88,10 @@ static struct develop develop_make(const float white[3], struct rng *rng)
 	d.noise[1] = 0.001F + 0.02F * noisy * noisy * noisy;
 	const int grey = rng_below(rng, 40);
 	d.grey = grey < 4 ? 1 : grey == 4 ? 2 : 0;
+	if (photo && rng_below(rng, 10) < 7) {
+		d.contrast = d.lift = 0;
+		d.gamma = 1;
+	}
 	return d;
 }
 
@@ -131,12 +135,12 @@ static void develop(uint8_t *rgb, const struct canvas *c, const struct develop *
 		}
 }
 
-static void jpeg(uint8_t *rgb, int width, int height, struct rng *rng)
+static void jpeg(uint8_t *rgb, int width, int height, int least, struct rng *rng)
 {
 	tjhandle in = tjInitCompress(), out = tjInitDecompress();
 	unsigned char *data = 0;
 	unsigned long size = 0;
-	const int quality = 25 + rng_below(rng, 70);
+	const int quality = least + rng_below(rng, 95 - least);
 	if (tjCompress2(in, rgb, width, 0, height, TJPF_RGB, &data, &size, rng_below(rng, 2) ? TJSAMP_420 : TJSAMP_444, quality, 0) == 0)
 		tjDecompress2(out, data, size, rgb, width, 0, height, TJPF_RGB, 0);
 	tjFree(data);
@@ -144,13 +148,61 @@ static void jpeg(uint8_t *rgb, int width, int height, struct rng *rng)
 	tjDestroy(out);
 }
 
-void lens_expose(uint8_t *rgb, struct canvas *c, const float white[3], struct rng *rng)
+static void take(uint8_t *rgb, struct canvas *c, const struct develop *d, int least_quality, struct rng *rng)
 {
-	const struct develop d = develop_make(white, rng);
+	optics(c, rng);
+	develop(rgb, c, d, rng);
+	if (rng_below(rng, 5) < 3)
+		jpeg(rgb, c->width, c->height, least_quality, rng);
+}
+
+/* The picture with `by` of its px in one, each the mean of what it covers. */
+static struct canvas reduced(const struct canvas *c, float by)
+{
+	struct canvas out = canvas_new((int)ceilf((float)c->width / by), (int)ceilf((float)c->height / by));
+	for (int y = 0; y < out.height; y++)
+		for (int x = 0; x < out.width; x++) {
+			const int x0 = (int)((float)x * by), y0 = (int)((float)y * by), x1 = (int)fminf((float)(x + 1) * by, (float)c->width), y1 = (int)fminf((float)(y + 1) * by, (float)c->height);
+			float *to = out.rgb + 3 * ((long)y * out.width + x);
+			for (int j = y0; j < y1; j++)
+				for (int i = x0; i < x1; i++)
+					for (int k = 0; k < 3; k++)
+						to[k] += c->rgb[3 * ((long)j * c->width + i) + k] / (float)((x1 - x0) * (y1 - y0));
+		}
+	return out;
+}
+
+/* Bilinear, borders repeated. */
+static void enlarge(uint8_t *rgb, int width, int height, const uint8_t *from, int w, int h, float by)
+{
+	for (int y = 0; y < height; y++)
+		for (int x = 0; x < width; x++) {
+			const float u = fminf(fmaxf(((float)x + 0.5F) / by - 0.5F, 0), (float)w - 1.001F), v = fminf(fmaxf(((float)y + 0.5F) / by - 0.5F, 0), (float)h - 1.001F);
+			const uint8_t *p = from + 3 * ((int)v * w + (int)u), *q = p + 3 * (long)w;
+			const float a = u - floorf(u), b = v - floorf(v);
+			for (int k = 0; k < 3; k++) {
+				const float top = p[k] + a * (float)(p[k + 3] - p[k]), bottom = q[k] + a * (float)(q[k + 3] - q[k]);
+				rgb[3 * ((long)y * width + x) + k] = (uint8_t)lroundf(top + b * (bottom - top));
+			}
+		}
+}
+
+void lens_expose(uint8_t *rgb, struct canvas *c, float white[3], float radius, bool photo, struct rng *rng)
+{
+	const struct develop d = develop_make(white, photo, rng);
 	for (long i = 0; i < (long)c->width * c->height * 3; i++)
 		c->rgb[i] = fminf(c->rgb[i], 4 / d.gain[1]);
-	optics(c, rng);
-	develop(rgb, c, &d, rng);
-	if (rng_below(rng, 5) < 3)
-		jpeg(rgb, c->width, c->height, rng);
+	for (int i = 0; i < 3; i++)
+		white[i] *= d.gain[i];
+	const float by = photo ? 1 : range_of(rng, 1.3, 6);
+	if (photo || rng_below(rng, 6) || by > radius / 5) {
+		take(rgb, c, &d, photo ? 50 : 25, rng);
+		return;
+	}
+	struct canvas small = reduced(c, by);
+	uint8_t *taken = malloc((size_t)small.width * (size_t)small.height * 3);
+	take(taken, &small, &d, 25, rng);
+	enlarge(rgb, c->width, c->height, taken, small.width, small.height, by);
+	free(taken);
+	canvas_free(&small);
 }

@@ -108,7 +108,7 @@ struct light light_make(struct rng *rng, bool test)
 {
 	struct light l = { .kind = test && rng_below(rng, 2) ? LIGHT_RING + rng_below(rng, 2) : rng_below(rng, LIGHT_RING) };
 	const bool outside = l.kind == LIGHT_SKY || l.kind == LIGHT_TREES;
-	const float kelvin = outside ? range(rng, 5000, 8000) : range(rng, 2500, 7500);
+	const float kelvin = outside ? range(rng, 5000, 8000) : range(rng, 2200, 8000);
 	sources(&l, rng, kelvin);
 	const float fill = l.n ? range(rng, 0.08, 0.7) : range(rng, 0.6, 1), room = outside ? range(rng, 1, 6) : range(rng, 0, 1.6);
 	float colour[3];

@@ -169,12 +169,14 @@ void other_draw(struct canvas *canvas, enum other_kind kind, struct rng *rng, bo
 	float two[2][3];
 	colour(two[0], rng);
 	colour(two[1], rng);
+	const float busy = rng_below(rng, 3) ? 1 : range_of(rng, 0, 0.2);
 	for (int j = 0; j < canvas->height; j++)
 		for (int i = 0; i < canvas->width; i++) {
 			const float x = co * (float)i + si * (float)j, y = co * (float)j - si * (float)i;
-			const float p = field_at(a, x, y), q = smooth_step(field_at(b, 0.4F * x, 0.4F * y), 0.4F, 0.6F);
+			const float p = field_at(a, x, y), slow = (float)j / (float)canvas->height;
+			const float q = slow + busy * (smooth_step(field_at(b, 0.4F * x, 0.4F * y), 0.4F, 0.6F) - slow);
 			for (int c = 0; c < 3; c++)
-				canvas->rgb[3 * ((long)j * canvas->width + i) + c] = (two[0][c] + q * (two[1][c] - two[0][c])) * (0.2F + 1.5F * p * p);
+				canvas->rgb[3 * ((long)j * canvas->width + i) + c] = (two[0][c] + q * (two[1][c] - two[0][c])) * (0.6F + busy * (1.5F * p * p - 0.4F));
 		}
 	if (kind == OTHER_CLUTTER || !rng_below(rng, 3))
 		other_clutter(canvas, 0, rng, test);

@@ -7,21 +7,15 @@
 #include "glasses.h"
 #include "lens.h"
 #include "other.h"
+#include "scene_impl.h"
 
-struct set {
-	struct face face;
-	struct ball ball[2];
-	struct light light;
-	float white[3];
-};
-
-/* Eyes that look the same way, lids that follow; one in twenty pairs is closed. */
+/* Eyes that look the same way, lids that follow; one in sixteen pairs is closed. */
 static void eyes_make(struct set *s, struct rng *rng, bool test)
 {
 	const bool wide = rng_below(rng, 3) == 0;
 	const float turn = range_of(rng, 0, 6.2831853), away = wide ? sinf(range_of(rng, 0, 0.79)) : sinf((float)fabs(0.14 * rng_normal(rng)));
 	const float gx = away * cosf(turn), gy = away * sinf(turn);
-	float open = rng_below(rng, 20) == 0 ? 0 : rng_below(rng, 4) ? range_of(rng, 0.5, 1.1) : range_of(rng, 0.12, 0.6);
+	const float open = rng_below(rng, 16) == 0 ? 0 : rng_below(rng, 3) ? range_of(rng, 0.5, 1.1) : range_of(rng, 0.1, 0.6);
 	struct rng again = { rng_bits(rng) };
 	s->ball[0] = ball_make(rng, test);
 	s->ball[1] = s->ball[0];
@@ -34,12 +28,22 @@ static void eyes_make(struct set *s, struct rng *rng, bool test)
 	}
 }
 
-/* Irises of 6 to 48 px radius in a picture of any size, seldom less: the network is run at the scale where they suit. The eye lies
- * somewhere in it, and round a small one the face. */
+/* Radius of the iris, px: 5 to 60 in a picture of any size, seldom less or more: the network is run at the scale where they suit. Many
+ * are as in the window that is laid round a candidate. */
+static float radius_of(struct rng *rng)
+{
+	const int which = rng_below(rng, 20);
+	return expf(which < 3    ? range_of(rng, logf(0.7F), logf(5))
+	            : which < 9  ? range_of(rng, logf(5), logf(14))
+	            : which < 12 ? range_of(rng, logf(14), logf(30))
+	            : which < 18 ? range_of(rng, logf(26), logf(60))
+	                         : range_of(rng, logf(60), logf(100)));
+}
+
+/* The eye lies somewhere in the picture, and round a small one the face. */
 static void look(struct canvas *c, const struct set *s, struct rng *rng, bool no_eye)
 {
-	const bool far = rng_below(rng, 14) == 0;
-	const float radius = expf(far ? range_of(rng, logf(1.5F), logf(6)) : range_of(rng, logf(6), logf(48)));
+	const float radius = radius_of(rng);
 	const float turn = rng_below(rng, 3) ? (float)(0.2 * rng_normal(rng)) : range_of(rng, 0, 6.2831853);
 	const int e = rng_below(rng, 2);
 	const float *at = s->face.frame[e].at, fine = radius / (float)c->width;
@@ -53,18 +57,11 @@ static void look(struct canvas *c, const struct set *s, struct rng *rng, bool no
 	canvas_view(c, u, v, x, y, 5.9F / (no_eye ? fminf(radius, 30) : radius), turn, rng_below(rng, 2));
 }
 
-static void face_uv(float uv[2], const struct canvas *c, int i, int j)
-{
-	const float x = (float)i + 0.5F, y = (float)j + 0.5F;
-	uv[0] = c->at[0] + c->m[0][0] * x + c->m[0][1] * y;
-	uv[1] = c->at[1] + c->m[1][0] * x + c->m[1][1] * y;
-}
-
 /* Clutter behind the face and, at times, over all but what is near the eyes: hats, hands, flowers, clothes. */
 static void hide_outside(struct canvas *c, bool *on, struct rng *rng, bool test)
 {
-	const int which = rng_below(rng, 6), side = rng_below(rng, 3);
-	if (which == 0)
+	const int which = rng_below(rng, 10), side = rng_below(rng, 3);
+	if (which >= 6)
 		return;
 	for (int j = 0; j < c->height; j++)
 		for (int i = 0; i < c->width; i++) {
@@ -119,64 +116,6 @@ static void draw_skin(struct canvas *c, const struct set *s, struct rng *rng, bo
 	free(on);
 }
 
-static float luma(const float rgb[3])
-{
-	return 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
-}
-
-/* One pixel of an open eye at (x, y) mm of its frame; d: distance inside of the lids, mm. */
-static void eye_pixel(struct canvas *c, long i, const struct set *s, int e, float x, float y, float d, const struct lid_heights *h, float shade)
-{
-	const struct lids *l = &s->face.lids[e];
-	struct ball_point p;
-	ball_at(&p, &s->ball[e], &s->light, s->face.frame[e].side * x * s->face.narrow, y);
-	const float caruncle = 1 - smooth_step(x, l->inner[0] + l->caruncle - 1, l->inner[0] + l->caruncle + 1);
-	if (caruncle > 0) {
-		const float lit = 0.8F * caruncle;
-		for (int k = 0; k < 3; k++)
-			p.body[k] += lit * (s->ball[e].canthus[k] * s->white[k] - p.body[k]);
-		if (caruncle > 0.5F)
-			p.label = EVIDENCE_SCLERA;
-	}
-	// Lids and lashes keep light away, the upper ones more.
-	const float above = fmaxf(h->upper - y, 0), below = fmaxf(y - h->lower, 0), corner = fminf(x - l->inner[0], l->outer[0] - x);
-	const float kept = shade * (1 - 0.6F * expf(-above / 1.3F)) * (1 - 0.3F * expf(-below / 0.8F)) * (1 - 0.35F * expf(-fmaxf(corner, 0) / 3));
-	const float hid = smooth_step(above, 0.1F, 1.2F);
-	float rgb[3], mirror[3];
-	for (int k = 0; k < 3; k++) {
-		mirror[k] = p.mirror[k] * (0.25F + 0.75F * hid);
-		rgb[k] = p.body[k] * kept + mirror[k] + (below < 0.35F ? 0.12F * s->white[k] * (1 - below / 0.35F) : 0);
-	}
-	const float cover = fminf(fmaxf(0.5F + d / c->mm, 0), 1);
-	for (int k = 0; k < 3; k++)
-		c->rgb[3 * i + k] += cover * (rgb[k] - c->rgb[3 * i + k]);
-	if (cover > 0.5F) {
-		const float m = luma(mirror);
-		c->label[i] = (uint8_t)(m > 0.12F * luma(s->white) && m > 0.8F * luma(p.body) * kept ? EVIDENCE_REFLECTION : p.label);
-	}
-}
-
-static void draw_eye(struct canvas *c, const struct set *s, int e)
-{
-	const struct lids *l = &s->face.lids[e];
-	const struct eye_frame *f = &s->face.frame[e];
-	if (l->open <= 0)
-		return;
-	for (int j = 0; j < c->height; j++)
-		for (int i = 0; i < c->width; i++) {
-			float uv[2];
-			face_uv(uv, c, i, j);
-			const float x = (uv[0] - f->at[0]) * f->side / f->narrow, y = uv[1] - f->at[1];
-			if (x < l->inner[0] - 1 || x > l->outer[0] + 1 || fabsf(y) > 14)
-				continue;
-			const struct lid_heights h = lids_at(l, x), next = lids_at(l, x + 0.3F);
-			const float su = fminf(fabsf(next.upper - h.upper) / 0.3F, 2), sl = fminf(fabsf(next.lower - h.lower) / 0.3F, 2);
-			const float d = fminf((h.upper - y) / sqrtf(1 + su * su), (y - h.lower) / sqrtf(1 + sl * sl));
-			if (d > -c->mm && h.upper - h.lower > 0.02F)
-				eye_pixel(c, (long)j * c->width + i, s, e, x, y, d, &h, light_shade(&s->light, uv[0], uv[1]));
-		}
-}
-
 /* An ellipse of the ball's frame in px of the picture. */
 static void to_picture(float out[5], const float in[5], const struct canvas *c, const struct eye_frame *f)
 {
@@ -211,7 +150,7 @@ static void note_eyes(struct drawn *d, const struct set *s, const struct canvas 
 		ball_pupil(pupil, &s->ball[e]);
 		to_picture(eye->limbus, limbus, c, &s->face.frame[e]);
 		to_picture(eye->pupil, pupil, c, &s->face.frame[e]);
-		eye->openness = s->face.lids[e].open / (2 * s->ball[e].limbus);
+		eye->openness = s->bare ? 2 : s->face.lids[e].open / (2 * s->ball[e].limbus);
 		const float *m = eye->limbus;
 		if (m[0] < -m[2] || m[1] < -m[2] || m[0] > (float)c->width + m[2] || m[1] > (float)c->height + m[2])
 			continue;
@@ -237,9 +176,13 @@ static void draw_strands(struct canvas *c, const struct set *s, struct rng *rng)
 
 static void draw_face(struct canvas *c, const struct set *s, struct rng *rng, bool test)
 {
+	if (s->bare) {
+		open_eye_bare(c, s, rng, test);
+		return;
+	}
 	draw_skin(c, s, rng, test);
 	for (int e = 0; e < 2; e++)
-		draw_eye(c, s, e);
+		open_eye_draw(c, s, e);
 	float dim[3];
 	for (int k = 0; k < 3; k++)
 		dim[k] = 0.8F * s->white[k];
@@ -256,30 +199,67 @@ static void draw_face(struct canvas *c, const struct set *s, struct rng *rng, bo
 		glasses_draw(c, &s->face, s->white, rng);
 }
 
+static struct drawn begin(struct set *s, struct rng *rng, bool test, int width, int height)
+{
+	rng_bits(rng);
+	struct drawn d = { .width = width, .height = height, .rgb = malloc((size_t)width * (size_t)height * 3), .label = malloc((size_t)width * (size_t)height) };
+	s->face = drawn_face_make(rng, test);
+	s->light = light_make(rng, test);
+	light_on(s->white, &s->light, (const float[3]){ 0, 0, 1 }, 0.3F);
+	eyes_make(s, rng, test);
+	d.light = (int)s->light.kind;
+	d.iris = (int)s->ball[0].iris.family;
+	return d;
+}
+
+/* Draws, exposes and labels what is in view; frees the canvas. */
+static void finish(struct drawn *d, struct canvas *c, const struct set *s, struct rng *rng, bool test, bool photo)
+{
+	const bool face = d->other == OTHER_NONE || d->other == OTHER_FACE;
+	for (int i = 0; i < 3; i++)
+		d->white[i] = face ? s->white[i] : 1;
+	if (face)
+		draw_face(c, s, rng, test);
+	else
+		other_draw(c, (enum other_kind)d->other, rng, test);
+	lens_expose(d->rgb, c, d->white, 5.9F / c->mm, photo, rng);
+	memcpy(d->label, c->label, (size_t)d->width * (size_t)d->height);
+	if (face)
+		note_eyes(d, s, c);
+	canvas_free(c);
+}
+
 struct drawn drawn_make(uint64_t number, bool test, int width, int height)
 {
 	struct rng rng = { (number * 2 + test) * 0xd1342543de82ef95 + 77 };
-	rng_bits(&rng);
-	struct drawn d = { .width = width, .height = height, .rgb = malloc((size_t)width * (size_t)height * 3), .label = malloc((size_t)width * (size_t)height) };
-	struct canvas c = canvas_new(width, height);
 	struct set s = { 0 };
-	s.face = drawn_face_make(&rng, test);
-	s.light = light_make(&rng, test);
-	light_on(s.white, &s.light, (const float[3]){ 0, 0, 1 }, 0.3F);
-	eyes_make(&s, &rng, test);
-	d.light = (int)s.light.kind;
-	d.iris = (int)s.ball[0].iris.family;
+	struct drawn d = begin(&s, &rng, test, width, height);
+	struct canvas c = canvas_new(width, height);
 	d.other = rng_below(&rng, 7) ? OTHER_NONE : 1 + rng_below(&rng, OTHER_KINDS - 1);
+	s.bare = d.other == OTHER_NONE && rng_below(&rng, 14) == 0;
 	look(&c, &s, &rng, d.other == OTHER_FACE);
-	if (d.other == OTHER_NONE || d.other == OTHER_FACE)
-		draw_face(&c, &s, &rng, test);
-	else
-		other_draw(&c, (enum other_kind)d.other, &rng, test);
-	lens_expose(d.rgb, &c, d.other && d.other != OTHER_FACE ? (const float[3]){ 1, 1, 1 } : s.white, &rng);
-	memcpy(d.label, c.label, (size_t)width * (size_t)height);
-	if (d.other == OTHER_NONE)
-		note_eyes(&d, &s, &c);
-	canvas_free(&c);
+	finish(&d, &c, &s, &rng, test, false);
+	return d;
+}
+
+struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, int width, int height)
+{
+	struct rng rng = { (number * 2 + 1) * 0xd1342543de82ef95 + 1077 };
+	struct set s = { 0 };
+	struct drawn d = begin(&s, &rng, !view->training, width, height);
+	struct canvas c = canvas_new(width, height);
+	const int e = rng_below(&rng, 2);
+	float limbus[5];
+	d.other = view->other;
+	s.bare = d.other == OTHER_NONE && rng_below(&rng, 20) == 0;
+	for (int k = 0; k < 2; k++) {
+		s.ball[k].even = true;
+		s.ball[k].blur *= 0.5F;
+	}
+	ball_limbus(limbus, &s.ball[e]);
+	canvas_view(&c, s.face.frame[e].at[0] + limbus[0], s.face.frame[e].at[1] + limbus[1] - (d.other == OTHER_FACE ? 55 : 0), view->x, view->y,
+	            s.ball[e].limbus / view->radius, view->turn, view->mirrored);
+	finish(&d, &c, &s, &rng, !view->training, true);
 	return d;
 }
 

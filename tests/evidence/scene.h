@@ -22,6 +22,7 @@ struct drawn {
 	uint8_t *rgb, *label;  // [height][width][3], [height][width]
 	int n_eyes;
 	struct drawn_eye eye[2];
+	float white[3];        // linear colour in which a white surface is shown
 	int light;             // enum light_kind
 	int iris;              // enum iris_family
 	int other;             // 0 an eye; else which kind of picture without one
@@ -29,6 +30,11 @@ struct drawn {
 
 /* Picture `number` of a split. drawn_free. Not for several threads at once. */
 struct drawn drawn_make(uint64_t number, bool test, int width, int height);
+
+/* A photograph for measuring by: of the test split unless training is set, the limbus a ramp of equal halves (ball.h), one eye's limbus where it is asked for.
+ * other: 0, or what to draw instead of an eye (other.h). Otherwise as drawn_make. */
+struct drawn_view { float radius, x, y, turn; bool mirrored; int other; bool training; };  // limbus's larger semi-axis and centre, px; radians
+struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, int width, int height);
 void drawn_free(struct drawn *drawn);
 
 #endif

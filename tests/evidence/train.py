@@ -3,7 +3,8 @@
 
     train.py --make build/tests/evidence/make_eyes --minutes 60 --out config/evidence.onnx
     train.py --make build/tests/evidence/make_eyes --short        a minute: the loss falls, asserted
-    train.py --make build/tests/evidence/make_eyes --judge FILE   IoU of a checkpoint on the test split; with --out it is written as ONNX
+    train.py --make build/tests/evidence/make_eyes --judge FILE   IoU and calibration of a checkpoint (.pt) or a network (.onnx) on the test
+                                                                  split; with --out it is calibrated and written as ONNX
 
 Pictures are made while training runs; none is stored. Needs python3-torch and python3-numpy.
 Input of the network: 1 x 3 x H x W, sRGB as encoded, 0..1, H and W multiples of 32. Output: 1 x 6 x H/2 x W/2, logits of
@@ -23,6 +24,9 @@ import numpy as np
 import torch
 from torch import nn
 from torch.nn import functional as F
+
+sys.dont_write_bytecode = True  # nothing is left beside the sources
+import weights
 
 CLASSES = ("skin", "lash", "sclera", "iris", "pupil", "reflection")
 WEIGHT = (0.8, 1.0, 1.2, 1.2, 1.5, 1.5)
@@ -47,6 +51,13 @@ class Net(nn.Module):
         self.thin = nn.ModuleList([nn.Conv2d(c[k], c[k - 1], 1) for k in range(n - 1, 0, -1)])
         self.up = nn.ModuleList([step(c[k - 1], c[k - 1]) for k in range(n - 1, 0, -1)])
         self.out = nn.Conv2d(c[0], len(CLASSES), 1)
+
+    def in_order(self):
+        """Each convolution with its normalisation, or None, in the order in which they run."""
+        blocks = [block for down in self.down for block in down]
+        for thin, up in zip(self.thin, self.up):
+            blocks += [(thin, None), up]
+        return [(block[0], block[1]) for block in blocks] + [(self.out, None)]
 
     def forward(self, x):
         x = x * 4 - 2
@@ -133,38 +144,46 @@ def loss_of(out, hot):
 
 
 def judge(net, make, first, batches, batch=16):
-    """IoU per class on the test split, at the labels' resolution halved."""
+    """IoU per class on the test split, at the labels' resolution halved, and the expected calibration error of the probabilities of
+    skin, sclera, iris and pupil: the mean distance of probability and share in ten bins of 0.02 and more, weighted by their pixels."""
     net.eval()
     pictures = Pictures(make, first, LARGE, batch, True)
-    both, either = np.zeros(6), np.zeros(6)
+    both, either, bins = np.zeros(6), np.zeros(6), np.zeros((3, 6, 10))
     with torch.no_grad():
         for _ in range(batches):
             rgb, label = pictures.next()
-            got, true = net(rgb.float() / 255).argmax(1), soft_label(label).argmax(1)
+            p, hot = net(rgb.float() / 255).softmax(1), soft_label(label)
+            got, true = p.argmax(1), hot.argmax(1)
             for c in range(6):
                 both[c] += int(((got == c) & (true == c)).sum())
                 either[c] += int(((got == c) | (true == c)).sum())
+                said = p[:, c].reshape(-1).numpy()
+                seen = said > 0.02
+                place = np.minimum((said[seen] * 10).astype(int), 9)
+                for k, weight in enumerate((np.ones(seen.sum()), said[seen], hot[:, c].reshape(-1).numpy()[seen])):
+                    bins[k, c] += np.bincount(place, weight, 10)
     pictures.close()
-    iou = both / np.maximum(either, 1)
-    print("  test split, %d pictures: " % (batch * batches) + " ".join("%s %.3f" % p for p in zip(CLASSES, iou)), flush=True)
+    iou, error = both / np.maximum(either, 1), np.abs(bins[1] - bins[2]).sum(1) / np.maximum(bins[0].sum(1), 1)
+    print("  test split, %d pictures, IoU: " % (batch * batches) + " ".join("%s %.3f" % p for p in zip(CLASSES, iou)), flush=True)
+    print("  calibration error: " + " ".join("%s %.4f" % p for p in zip(CLASSES, error)), flush=True)
     return iou
 
 
-def export(net, path):
-    net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
-    torch.onnx.export(net, torch.zeros(1, 3, LARGE[1], LARGE[0]), path, opset_version=11, input_names=["rgb"], output_names=["logits"])
-    seal(path)
-
-
-def seal(path):
-    """Appends an entry of ONNX's metadata with the FNV-1a hash of all before it, which lib/bridge/cv_net.cc asks for."""
-    with open(path, "rb") as file:
-        data = file.read()
-    value = 0xcbf29ce484222325
-    for byte in data:
-        value = ((value ^ byte) * 0x100000001b3) & 0xffffffffffffffff
-    with open(path, "ab") as file:
-        file.write(b"\x72\x1b\x0a\x07fnv1a64\x12\x10" + b"%016x" % value)
+def calibrated(net, args, pictures=800, batch=16, kept=200):
+    """The network with true probabilities on pictures for training that it has not seen; kept pixels of each."""
+    net, rng = copy.deepcopy(net).eval(), np.random.default_rng(0)
+    source, logits, share = Pictures(args.make, 900000000, LARGE, batch), [], []
+    with torch.no_grad():
+        for _ in range(pictures // batch):
+            rgb, label = source.next()
+            out, hot = net(rgb.float() / 255), soft_label(label)
+            at = torch.from_numpy(rng.integers(0, out.shape[2] * out.shape[3], (batch, 1, kept))).expand(-1, len(CLASSES), -1)
+            for values, into in ((out, logits), (hot, share)):
+                into.append(values.flatten(2).gather(2, at).transpose(1, 2).reshape(-1, len(CLASSES)))
+    source.close()
+    scale, bias = weights.calibrate(net, torch.cat(logits), torch.cat(share))
+    print("  calibrated: scale %.3f, bias " % scale + " ".join("%+.2f" % b for b in bias), flush=True)
+    return net
 
 
 def blend(into, net, keep):
@@ -208,8 +227,18 @@ def new_net(args):
     torch.manual_seed(args.seed)
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
-        net.load_state_dict(torch.load(args.start)["net"])
+        load(net, args.start, args)
     return net
+
+
+def load(net, path, args):
+    """A checkpoint, or a network that was written as ONNX."""
+    if not path.endswith(".onnx"):
+        net.load_state_dict(torch.load(path)["net"])
+        return
+    pictures = Pictures(args.make, 800000000, LARGE, 16)
+    weights.read(net, path, (pictures.next()[0].float() / 255 for _ in range(40)))
+    pictures.close()
 
 
 def train(args, worker=0, meeting=None):
@@ -247,9 +276,7 @@ def train(args, worker=0, meeting=None):
         if args.keep and time.time() - kept > 60 * args.every:
             kept = time.time()
             torch.save({"net": mean.state_dict(), "steps": len(losses)}, args.keep)
-            if args.out:
-                export(mean, args.out)
-            judge(mean, args.make, 0, 8)
+            judge(mean, args.make, 0, 16)
     pictures.close()
     return mean, losses
 
@@ -259,7 +286,7 @@ def main():
     p.add_argument("--make", required=True)
     p.add_argument("--out", help="ONNX file")
     p.add_argument("--keep", help="checkpoint file")
-    p.add_argument("--start", help="checkpoint to begin with")
+    p.add_argument("--start", help="checkpoint or ONNX file to begin with")
     p.add_argument("--every", type=float, default=4, help="minutes between checkpoints")
     p.add_argument("--minutes", type=float, default=60)
     p.add_argument("--small", type=float, default=0.8, help="share of the time on small pictures")
@@ -278,9 +305,10 @@ def main():
     torch.set_num_threads(args.threads)
     if args.judge:
         net = Net()
-        net.load_state_dict(torch.load(args.judge)["net"])
+        load(net, args.judge, args)
         if args.out:
-            export(net, args.out)
+            net = calibrated(net, args)
+            weights.export(net, args.out, *LARGE)
         judge(net, args.make, 0, args.pictures // 16)
         return
     if args.short:
@@ -299,10 +327,11 @@ def main():
         print("loss %.3f, at the end %.3f" % (first, last))
         assert last < 0.8 * first, "the loss does not fall"
         return
-    if args.out:
-        export(net, args.out)
     if args.keep:
         torch.save({"net": net.state_dict(), "steps": len(losses)}, args.keep)
+    if args.out:
+        net = calibrated(net, args)
+        weights.export(net, args.out, *LARGE)
     judge(net, args.make, 0, args.pictures // 16)
 
 

@@ -22,7 +22,7 @@ small_face() {
 	head -c 250000 samples/face/video/face.mp4 >"$1/video/face.mp4"
 	head -n 4 samples/face/script/look_around.csv | sed 1d | cut -d, -f1-7 >"$1/script/look.csv"
 	{ grep -v '^expression' samples/face/capture.conf
-		printf '%s\n' "quality = draft" "track.settle_frames = 0" "track.points = 60" "track.sweeps = 1" "train.sample = 64" \
+		printf '%s\n' "quality = draft" "track.settle_frames = 0" "track.points = 200" "track.sweeps = 1" "train.sample = 64" \
 			"transfer.rounds = 1 1 1" "transfer.nodes = 100 300 1000" "extrapolate.map_step_px = 8" \
 			"render.look_px = 200" "render.cell_px = 100" "render.blink_frames = 3" "render.sheet_px = 300" "render.clip_px = 160" \
 			"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.1"; } >"$1/capture.conf"

@@ -58,7 +58,7 @@ static bool write_transfer(const struct face *face, struct err *err)
 	json_object_set_new(json, "target_unit_mm", json_real(10));
 	json_object_set_new(json, "subject_unit_mm", json_real(1));
 	bool ok = npz_save(at("work/targets/made/barycentric.npz"), COUNT(items), items, 0, err)
-	          && json_write(at("work/targets/made/transfer.json"), json, 0, err)
+	          && json_write(at("work/targets/made/registration.json"), json, 0, err)
 	          && om_mesh_save(&face->character, at("work/targets/made/registered.ply"), "{}", err);
 	json_decref(json);
 	free(sure);

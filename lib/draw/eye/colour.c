@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+#include "draw/eye/march/march.h"
+#include "optics/lightpath/lightpath.h"
+
 SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float *const per_model[3])
 {
 	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // a texel brightens much only where the model had it in shadow
@@ -46,4 +49,27 @@ void scene_colour(float rgb[3], const struct scene *s, const struct scene_level 
 		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
 		rgb[c] = ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) : 0);
 	}
+}
+
+void scene_model_row(struct iris_batch *b, const struct scene *s, const struct scene_level *level, int x0, int n, int y,
+                     const double C[3], const struct scene_beams *beams)
+{
+	float k[3][BATCH], gx, gy;
+	b->n = n;
+	for (int i = 0; i < n; i++) {
+		b->px[i] = ((float)(x0 + i) + 0.5f) / level->per_mm - (float)s->extent;
+		b->py[i] = ((float)y + 0.5f) / level->per_mm - (float)s->extent;
+		b->pz[i] = (float)s->eye.iris_depth
+		           - relief_at(level->relief, level->n, level->per_mm, b->px[i], b->py[i], &gx, &gy);
+	}
+	lightpath_batch_point(n, b->px, b->py, b->pz, C, k[0], k[1], k[2], 0, &s->cornea, 4);
+	for (int i = 0; i < n; i++) {
+		float d[3] = { b->px[i] - k[0][i], b->py[i] - k[1][i], b->pz[i] - k[2][i] };
+		float len = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		bool good = len > 0.1f && d[2] > 0.2f * len;  // else straight down: nobody sees it
+		b->vx[i] = good ? d[0] / len : 0;
+		b->vy[i] = good ? d[1] / len : 0;
+		b->vz[i] = good ? d[2] / len : 1;
+	}
+	scene_scatter(b, s, level, beams);
 }

@@ -1,4 +1,5 @@
-/* Inpainting of what no photograph saw of the iris (under a lid, behind a reflection, at the far edge): continued round the axis
+/* Inpainting of what a texture lacks, beyond the limbus and at the pupil's margin, and of what no photograph saw in one that is not
+ * filled: continued round the axis
  * at the same radius, and outwards along the same fibre, cross-faded by distance. Both mirror the seen part at its edge, so that
  * nothing is smeared, and keep the mean brightness of the ring. */
 #include "draw/eye/fill.h"
@@ -161,10 +162,22 @@ static void rings_make(struct rings *r, const float *rgba, int n, double extent,
 	free(count);
 }
 
+/* Unseen, but filled already where the texture was made (iris/unrefract). */
+static bool is_filled(const float p[4])
+{
+	return p[3] < 0.6f && p[0] + p[1] + p[2] > 0;
+}
+
 void scene_fill(float *rgba, int n, double extent, const double pupil[3])
 {
 	struct rings r = { 0 };
-	rings_make(&r, rgba, n, extent, pupil);
+	long all = (long)n * n;
+	float *known = mem_array(4 * (size_t)all, sizeof *known);
+	memcpy(known, rgba, 4 * (size_t)all * sizeof *known);
+	for (long i = 0; i < all; i++)
+		if (is_filled(known + 4 * i))
+			known[4 * i + 3] = 1;
+	rings_make(&r, known, n, extent, pupil);
 	bool any = r.from[0] >= 0;
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int k = 0; k < r.n; k++)
@@ -174,12 +187,13 @@ void scene_fill(float *rgba, int n, double extent, const double pupil[3])
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
 			float *p = rgba + 4 * ((long)y * n + x);
-			if (any && p[3] < 0.6f)
+			if (any && p[3] < 0.6f && !is_filled(p))
 				texel_fill(p, &r, (x + 0.5) * 2 * extent / n - extent - pupil[0],
 				           (y + 0.5) * 2 * extent / n - extent - pupil[1]);
 			else if (!any)
 				p[0] = p[1] = p[2] = 0.2f;  // nothing seen at all: grey
 		}
+	free(known);
 	free(r.rgb);
 	free(r.filled);
 	free(r.mean);

@@ -13,31 +13,6 @@
 #include "draw/eye/march/march.h"
 #include "draw/eye/march/shade.h"
 #include "draw/eye/view.h"
-#include "optics/lightpath/lightpath.h"
-
-/* The model's colour at n texels of row y, seen through the cornea from the camera at C. */
-static void model_row(struct iris_batch *b, const struct scene *s, const struct scene_level *level, int x0, int n, int y,
-                      const double C[3], const struct scene_beams *beams)
-{
-	float k[3][BATCH], gx, gy;
-	b->n = n;
-	for (int i = 0; i < n; i++) {
-		b->px[i] = ((float)(x0 + i) + 0.5f) / level->per_mm - (float)s->extent;
-		b->py[i] = ((float)y + 0.5f) / level->per_mm - (float)s->extent;
-		b->pz[i] = (float)s->eye.iris_depth
-		           - relief_at(level->relief, level->n, level->per_mm, b->px[i], b->py[i], &gx, &gy);
-	}
-	lightpath_batch_point(n, b->px, b->py, b->pz, C, k[0], k[1], k[2], 0, &s->cornea, 4);
-	for (int i = 0; i < n; i++) {
-		float d[3] = { b->px[i] - k[0][i], b->py[i] - k[1][i], b->pz[i] - k[2][i] };
-		float len = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-		bool good = len > 0.1f && d[2] > 0.2f * len;  // else straight down: nobody sees it
-		b->vx[i] = good ? d[0] / len : 0;
-		b->vy[i] = good ? d[1] / len : 0;
-		b->vz[i] = good ? d[2] / len : 1;
-	}
-	scene_scatter(b, s, level, beams);
-}
 
 /* Transmittance of the cornea for light on its way out. The texture contains this loss, which grows towards the edge; the model
  * does not. Seen head-on it is 2 % everywhere: that part is applied here. */
@@ -132,7 +107,7 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 		for (int x = 0; x < level->n; x += BATCH) {
 			struct iris_batch b;
 			long at = 4 * ((long)y * level->n + x);
-			model_row(&b, s, level, x, level->n - x < BATCH ? level->n - x : BATCH, y, C, &beams);
+			scene_model_row(&b, s, level, x, level->n - x < BATCH ? level->n - x : BATCH, y, C, &beams);
 			put_row(level->colour + at, level->model + at, texture, &b, s, level);
 		}
 	free(texture);

@@ -109,7 +109,8 @@ static void load_pupil(struct scene *s, const char *path)
 static bool load_tissue(struct scene *s, const char *path, struct err *err)
 {
 	struct tissue tissue = scene_plain_tissue;
-	if (path && file_exists(path) && !tissue_load(&tissue, path, err))
+	char reason[256];
+	if (path && file_exists(path) && !tissue_without(reason, path) && !tissue_load(&tissue, path, err))
 		return false;
 	scene_set_tissue(s, &tissue);
 	return true;

@@ -76,7 +76,7 @@ struct scene {
 	float height_min, height_max, thickness_max;
 	int n_levels;
 	struct scene_level level[SCENE_LEVELS];
-	struct image veins;           // map of the sclera (sclera.h): albedo RGB
+	struct image veins;           // map of the sclera (sclera.h): albedo RGB; share of green that vessels take
 	struct scene_texels white;    // the same
 	struct image film;            // map of the sclera: slopes of the tear film's ripples
 	struct tissue tissue;

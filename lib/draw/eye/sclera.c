@@ -148,6 +148,7 @@ static void albedo_put(float p[3], const struct scene *s, const float left[2][3]
 	float tint[3] = { 1 - 0.01f * away, 1 - 0.06f * away, 1 - 0.11f * away };
 	for (int c = 0; c < 3; c++)
 		p[c] = (float)s->conf.sclera_rgb[c] * tint[c] * (1 - a * (1 - left[0][c])) * (1 - b * (1 - left[1][c]));
+	p[3] = 1 - (1 - a * (1 - left[0][1])) * (1 - b * (1 - left[1][1]));
 }
 
 void scene_veins_make(struct scene *s)

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "draw/eye/batch_impl.h"
 #include "math/vec.h"
 
 struct sight {
@@ -59,4 +60,10 @@ struct image scene_surface(const struct scene *s, const struct scene_view *view)
 		for (int x = 0; x < view->width; x++)
 			pixel(image_at(&out, x, y), &sight, x, y);
 	return out;
+}
+
+double scene_relief_height(const struct scene *s, double x, double y)
+{
+	float gx, gy;
+	return relief_at(s->level[0].relief, s->level[0].n, s->level[0].per_mm, (float)x, (float)y, &gx, &gy);
 }

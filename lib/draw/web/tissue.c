@@ -56,6 +56,7 @@ json_t *web_tissue(const struct web_source *source)
 	json_object_set_new(out, "abl", json_number(t.abl_thickness));
 	json_object_set_new(out, "exposure", json_number(t.exposure));
 	json_object_set_new(out, "multiple", json_boolean(t.multiple));
+	json_object_set_new(out, "anisotropy", json_number(TISSUE_ANISOTROPY));
 	json_object_set_new(out, "bands", spectra(BANDS, t.illuminant));
 	struct tissue_bands bands;
 	struct tissue_optics optics;

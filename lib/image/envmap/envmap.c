@@ -174,9 +174,8 @@ double envmap_level(const struct envmap *env)
 	return sum;
 }
 
-void envmap_normalise(struct envmap *env)
+void envmap_scale(struct envmap *env, double k)
 {
-	double level = envmap_level(env), k = level > 0 ? 1 / level : 1;
 	struct image *const all[] = { &env->map, &env->sharp, &env->rough, &env->bend };
 	for (int j = 0; j < 4; j++)
 		for (long i = 0; i < (long)all[j]->channels * all[j]->width * all[j]->height; i++)
@@ -186,4 +185,10 @@ void envmap_normalise(struct envmap *env)
 			env->sh[i][c] *= k;
 			env->quadric[i][c] *= (float)k;
 		}
+}
+
+void envmap_normalise(struct envmap *env)
+{
+	double level = envmap_level(env);
+	envmap_scale(env, level > 0 ? 1 / level : 1);
 }

@@ -52,6 +52,9 @@ void envmap_free(struct envmap *env);
 /* Radiance of a white diffuse plane that faces the camera (normal -z), mean of the channels. */
 double envmap_level(const struct envmap *env);
 
+/* Multiplies all radiances by k. */
+void envmap_scale(struct envmap *env, double k);
+
 /* Scales the map so that this level is 1. */
 void envmap_normalise(struct envmap *env);
 

@@ -29,7 +29,7 @@ static void cut(const struct image *map, struct region r, struct region out[2])
 {
 	double width = (r.x1 - r.x0) * sin(M_PI * 0.5 * (r.y0 + r.y1) / map->height);
 	bool across = (width >= r.y1 - r.y0 && r.x1 - r.x0 > 1) || r.y1 - r.y0 < 2;
-	int lo = across ? r.x0 : r.y0, hi = across ? r.x1 : r.y1, at = lo + 1;
+	int lo = across ? r.x0 : r.y0, hi = across ? r.x1 : r.y1, at = lo < hi ? lo + 1 : hi;  // of one pixel or none the second part is empty
 	double half = region_energy(map, r) / 2, sum = 0;
 	for (int i = lo; i < hi - 1; i++) {
 		struct region line = across ? (struct region){ i, r.y0, i + 1, r.y1 } : (struct region){ r.x0, i, r.x1, i + 1 };

@@ -18,6 +18,14 @@ static ExifEntry *entry_of(ExifData *data, ExifTag tag)
 	return 0;
 }
 
+/* Whether the pixels are Adobe RGB's: DCF 2.0 has them marked by the interoperability index R03 beside a colour space that is not sRGB. */
+static bool is_adobe_rgb(ExifData *data, double colour_space)
+{
+	enum { SRGB = 1 };
+	ExifEntry *e = exif_content_get_entry(data->ifd[EXIF_IFD_INTEROPERABILITY], EXIF_TAG_INTEROPERABILITY_INDEX);
+	return e && e->data && e->size >= 3 && !memcmp(e->data, "R03", 3) && colour_space != SRGB;
+}
+
 /* First number of an entry; NAN where absent or not a number. */
 static double number_of(ExifData *data, ExifTag tag)
 {
@@ -74,6 +82,7 @@ void photo_exif_block(struct photo *photo, struct bytes tiff)
 		.full_width = number_of(data, EXIF_TAG_PIXEL_X_DIMENSION),
 		.full_height = number_of(data, EXIF_TAG_PIXEL_Y_DIMENSION),
 	};
+	photo->exif.adobe_rgb = is_adobe_rgb(data, number_of(data, EXIF_TAG_COLOR_SPACE));
 	exif_data_unref(data);
 	photo_focal(&photo->exif, &lens, photo->width, photo->height);
 }

@@ -145,7 +145,9 @@ static bool parse_png(struct photo *photo, struct bytes file, struct err *err)
 	int depth = (int)bytes_be(file, 24, 1), type = (int)bytes_be(file, 25, 1);
 	photo->bits = depth == 16 ? 16 : 8;
 	photo->grey = type == 0 || type == 4;
-	for (int i = 0; i < PNG_CHUNKS_MAX && at < file.n && file.n - at >= 12; i++) {
+	for (int i = 0; at < file.n && file.n - at >= 12; i++) {
+		if (i == PNG_CHUNKS_MAX)
+			return err_set(err, "has more than %d PNG chunks: made to keep a decoder busy", PNG_CHUNKS_MAX);
 		size_t length = bytes_be(file, at, 4);
 		if (length > file.n - at - 12)
 			break;

@@ -60,7 +60,25 @@ static bool convert(struct photo *photo, const struct photo_space *space, struct
 	size_t n = (size_t)photo->width * (size_t)photo->height;
 	if (space->size)
 		return photo_profile_apply(photo->profile, photo->rgb, n, photo->grey, space->icc, space->size, err);
+	if (photo->exif.adobe_rgb && !space->cicp.primaries && photo->kind != PHOTO_RAW && !photo->grey)
+		return photo_adobe_apply(photo->profile, photo->rgb, n, err);
 	return photo_cicp_apply(photo->profile, photo->rgb, n, &space->cicp, err);
+}
+
+/* Whether a photograph of three channels is grey all the same: hardly a pixel's channels differ by more than rounding leaves. */
+static bool is_colourless(const struct photo *photo)
+{
+	const int rounding = 3 * 257;  // three 8-bit steps: a JPEG's chroma, a profile's white point
+	long n = (long)photo->width * photo->height, coloured = 0;
+#pragma omp parallel for schedule(static) reduction(+ : coloured)
+	for (long i = 0; i < n; i++) {
+		const uint16_t *p = photo->rgb + 3 * i;
+		int least = p[0] < p[1] ? p[0] : p[1], most = p[0] > p[1] ? p[0] : p[1];
+		least = p[2] < least ? p[2] : least;
+		most = p[2] > most ? p[2] : most;
+		coloured += most - least > rounding;
+	}
+	return coloured <= n / 1000;
 }
 
 /* EXIF 2.3, tag 274: orientations 5 to 8 exchange the axes; each but 1 and 5 reverses one or both. */
@@ -109,18 +127,69 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 		photo_free(photo);
 		return named ? err_set(err, "%s", why.msg) : err_set(err, "%s: %s", path, why.msg);
 	}
+	photo->grey = photo->grey || is_colourless(photo);
 	turn_upright(photo);
 	return true;
+}
+
+/* Linear value of each code value, an 8-bit one being its 16-bit one over 257, which is the upper byte: [65536 >> *shift]; free(). */
+static float *linear_table(int *shift, const struct photo *photo)
+{
+	*shift = photo->bits == 8 ? 8 : 0;
+	const int steps = 65535 >> *shift;
+	float *linear = mem_array((size_t)steps + 1, sizeof *linear);
+	for (int i = 0; i <= steps; i++)
+		linear[i] = linear_from_srgb((float)i / (float)steps);
+	return linear;
+}
+
+/* Adds a line's pixels, times weight, to the sums of the pixels that they fall into. */
+static void add_line(double *sum, int out_width, const uint16_t *line, int width, const float *linear, int shift, double weight)
+{
+	const double scale = (double)out_width / width;
+	for (int x = 0; x < width; x++) {
+		const double a = x * scale, b = (x + 1) * scale;
+		const int i = (int)a, j = i + 1 < out_width ? i + 1 : i;
+		const double inside = b <= i + 1 ? b - a : i + 1 - a;  // share of it in the first pixel; the rest falls into the second
+		for (int c = 0; c < 3; c++) {
+			const double v = weight * linear[line[3 * x + c] >> shift];
+			sum[3 * i + c] += v * inside;
+			sum[3 * j + c] += v * (b - a - inside);
+		}
+	}
+}
+
+struct image photo_shrunk(const struct photo *photo, int x0, int y0, int width, int height, int out_width, int out_height)
+{
+	struct image out = image_new(out_width, out_height, 3);
+	const double scale = (double)out_height / height;
+	int shift;
+	float *linear = linear_table(&shift, photo);
+#pragma omp parallel
+	{
+		double *sum = mem_array(3 * (size_t)out_width, sizeof *sum);
+#pragma omp for schedule(static)
+		for (int row = 0; row < out_height; row++) {
+			memset(sum, 0, 3 * (size_t)out_width * sizeof *sum);
+			for (int y = (int)(row / scale); y < height && y * scale < row + 1; y++) {
+				const double from = y * scale > row ? y * scale : row, to = (y + 1) * scale < row + 1 ? (y + 1) * scale : row + 1;
+				if (to > from)
+					add_line(sum, out_width, photo->rgb + 3 * ((long)(y0 + y) * photo->width + x0), width, linear, shift, to - from);
+			}
+			for (int i = 0; i < 3 * out_width; i++)
+				out.px[3 * (long)row * out_width + i] = (float)sum[i];
+		}
+		free(sum);
+	}
+	free(linear);
+	return out;
 }
 
 struct image photo_linear(const struct photo *photo, int x0, int y0, int width, int height)
 {
 	struct image out = { width, height, 3, mem_array((size_t)width * (size_t)height * 3, sizeof(float)) };
-	// An 8-bit value is its 16-bit one over 257, which is the upper byte.
-	int shift = photo->bits == 8 ? 8 : 0, steps = 65535 >> shift;
-	float *linear = mem_array((size_t)steps + 1, sizeof *linear);
-	for (int i = 0; i <= steps; i++)
-		linear[i] = linear_from_srgb((float)i / (float)steps);
+	int shift;
+	float *linear = linear_table(&shift, photo);
 #pragma omp parallel for schedule(static) if ((long)width * height > 1 << 16)
 	for (int y = 0; y < height; y++) {
 		const uint16_t *from = photo->rgb + 3 * ((long)(y0 + y) * photo->width + x0);

@@ -17,12 +17,13 @@ struct photo_exif {
 	                    // magnification m (close-ups) the image lies (1 + m) times as far behind the lens
 	double focal_mm, focal_35mm;  // NAN where not given
 	char model[64];     // printable; "" where not given
+	bool adobe_rgb;     // the pixels are Adobe RGB's, unless a profile says otherwise
 };
 
 struct photo {
 	int width, height;  // after the EXIF orientation has been applied
 	int bits;           // 8 or 16 of the file
-	bool grey;          // one channel in the file
+	bool grey;          // without colour: one channel in the file, or (photo_load) three that are alike
 	enum photo_kind kind;
 	struct photo_exif exif;
 	char profile[64];   // name of the colour space that the pixels were converted from; "": sRGB, or none was stated
@@ -44,6 +45,10 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 
 /* Part of the photograph as linear colour; x0, y0 px, clipped by the caller. Three channels. image_free. */
 struct image photo_linear(const struct photo *photo, int x0, int y0, int width, int height);
+
+/* The same made smaller: each pixel of out_width x out_height, both at most those of the part, is the mean linear colour of the area
+ * that it covers. What photo_linear would hold, 12 bytes a pixel, is never there. image_free. */
+struct image photo_shrunk(const struct photo *photo, int x0, int y0, int width, int height, int out_width, int out_height);
 
 void photo_free(struct photo *photo);
 

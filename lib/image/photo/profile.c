@@ -105,8 +105,25 @@ static const struct {
 	{ 12, { { 0.680, 0.320, 1 }, { 0.265, 0.690, 1 }, { 0.150, 0.060, 1 } } },
 };
 
+/* Colours of such primaries and such a curve (a parametric one of the ICC's). */
+static bool apply_primaries(char name[64], uint16_t *rgb, size_t n, const cmsCIExyYTRIPLE *of, int type, const double curve[], struct err *err)
+{
+	cmsContext context = cmsCreateContext(0, 0);
+	const cmsCIExyY white = { 0.3127, 0.3290, 1 };
+	cmsToneCurve *tone = cmsBuildParametricToneCurve(context, type, curve), *tones[3] = { tone, tone, tone };
+	cmsHPROFILE profile = cmsCreateRGBProfileTHR(context, &white, of, tones);
+	bool ok = profile && apply(name, rgb, n, false, profile, err);
+	if (profile)
+		cmsCloseProfile(profile);
+	cmsFreeToneCurve(tone);
+	cmsDeleteContext(context);
+	return ok;
+}
+
 bool photo_cicp_apply(char name[64], uint16_t *rgb, size_t n, const struct photo_cicp *cicp, struct err *err)
 {
+	// sRGB's curve: type 4.
+	static const double curve[] = { 2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045 };
 	*name = 0;
 	int k = -1;
 	for (int i = 0; i < COUNT(primaries); i++)
@@ -115,18 +132,19 @@ bool photo_cicp_apply(char name[64], uint16_t *rgb, size_t n, const struct photo
 		return true;
 	if (cicp->transfer == 16 || cicp->transfer == 18)
 		return err_set(err, "is a high dynamic range picture (PQ or HLG): save it as EXR, or as an ordinary photograph");
-	cmsContext context = cmsCreateContext(0, 0);
-	const cmsCIExyY white = { 0.3127, 0.3290, 1 };
-	// sRGB's curve: type 4 of the ICC's parametric curves.
-	const double curve[] = { 2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045 };
-	cmsToneCurve *tone = cmsBuildParametricToneCurve(context, 4, curve), *tones[3] = { tone, tone, tone };
-	cmsHPROFILE profile = cmsCreateRGBProfileTHR(context, &white, &primaries[k].rgb, tones);
-	bool ok = profile && apply(name, rgb, n, false, profile, err);
-	if (profile)
-		cmsCloseProfile(profile);
-	cmsFreeToneCurve(tone);
-	cmsDeleteContext(context);
+	bool ok = apply_primaries(name, rgb, n, &primaries[k].rgb, 4, curve, err);
 	if (ok)
 		snprintf(name, 64, "%s", primaries[k].code == 12 ? "Display P3" : "Rec. 2020");
+	return ok;
+}
+
+bool photo_adobe_apply(char name[64], uint16_t *rgb, size_t n, struct err *err)
+{
+	// Adobe RGB (1998) Color Image Encoding, version 2005-05: primaries, and the power 2 51/256
+	static const cmsCIExyYTRIPLE adobe = { { 0.64, 0.33, 1 }, { 0.21, 0.71, 1 }, { 0.15, 0.06, 1 } };
+	static const double curve[] = { 2.19921875 };
+	bool ok = apply_primaries(name, rgb, n, &adobe, 1, curve, err);
+	if (ok)
+		snprintf(name, 64, "Adobe RGB");
 	return ok;
 }

@@ -24,4 +24,7 @@ bool photo_profile_apply(char name[64], uint16_t *rgb, size_t n, bool grey, cons
 /* The same for a colour space that is named by its code points. Unknown ones are taken as sRGB. */
 bool photo_cicp_apply(char name[64], uint16_t *rgb, size_t n, const struct photo_cicp *cicp, struct err *err);
 
+/* The same for Adobe RGB (1998), which cameras mark in EXIF alone. */
+bool photo_adobe_apply(char name[64], uint16_t *rgb, size_t n, struct err *err);
+
 #endif

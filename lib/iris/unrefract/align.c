@@ -133,8 +133,22 @@ static double worth(const struct unrefract_view *view)
 	return view->used ? sum * fmin(iris_view_px_per_mm(&view->iris), 200) * cos(view->fit->theta) : -1;
 }
 
+/* A grey photograph would take the colour from what it shows best. */
+static void leave_out_grey(int n, struct unrefract_view views[])
+{
+	bool colour = false;
+	for (int i = 0; i < n; i++)
+		colour |= views[i].used && !views[i].grey;
+	for (int i = 0; i < n && colour; i++)
+		if (views[i].used && views[i].grey) {
+			views[i].used = false;
+			snprintf(views[i].note, sizeof views[i].note, "is grey, and others of this eye have colour");
+		}
+}
+
 int unrefract_align(int n, struct unrefract_view views[], const struct unrefract_conf *conf)
 {
+	leave_out_grey(n, views);
 	int fixed = 0;
 	for (int i = 1; i < n; i++)
 		fixed = worth(&views[i]) > worth(&views[fixed]) ? i : fixed;

@@ -6,10 +6,25 @@
 
 static const double deg = M_PI / 180;
 
+/* The photograph's white, before any gain; null where none was found. */
+static json_t *white_json(const struct balance *white)
+{
+	if (!white->found)
+		return json_null();
+	json_t *json = json_object();
+	json_object_set_new(json, "rgb", json_numbers(3, white->rgb));
+	json_object_set_new(json, "kelvin", json_number(balance_kelvin(white->rgb)));
+	json_object_set_new(json, "share", json_number(white->share));
+	json_object_set_new(json, "spread", json_number(white->spread));
+	return json;
+}
+
 static json_t *view_json(const struct unrefract_view *view)
 {
 	json_t *json = json_object();
 	json_object_set_new(json, "name", json_string(view->name));
+	json_object_set_new(json, "white", white_json(&view->white));
+	json_object_set_new(json, "grey", json_boolean(view->grey));
 	json_object_set_new(json, "used", json_boolean(view->used));
 	if (!view->used) {
 		json_object_set_new(json, "reason", json_string(view->note));
@@ -62,8 +77,12 @@ bool unrefract_save_json(const char *path, const struct unrefract_texture *textu
 	json_object_set_new(json, "pupil", json_pack("{s:f,s:f,s:f}", "cx", texture->pupil.cx, "cy", texture->pupil.cy,
 	                                             "r", texture->pupil.r));
 	json_object_set_new(json, "seen", json_number(texture->seen));
-	for (int i = 0; i < n; i++)
+	bool colour = false;
+	for (int i = 0; i < n; i++) {
 		json_array_append_new(photos, view_json(&views[i]));
+		colour |= views[i].used && !views[i].grey;
+	}
+	json_object_set_new(json, "colour", json_boolean(colour));
 	json_object_set_new(json, "photos", photos);
 	json_object_set_new(json, "photograph_better", advice(texture, n, views));
 	bool ok = json_write(path, json, made_by, err);

@@ -8,41 +8,57 @@
 
 enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };
 
+/* A plane [size][size] read at the middle of a cell. */
+static float cell_at(const float *plane, const struct sheet *sheet, int a, int r)
+{
+	double p[2], to = sheet->size / (2 * sheet->extent);
+	sheet_point(p, sheet, (r + 0.5) / RINGS, 2 * M_PI * (a + 0.5) / ANGLES);
+	return plane_sample(plane, sheet->size, sheet->size, (p[0] + sheet->extent) * to, (p[1] + sheet->extent) * to);
+}
+
 /* Evidence for each cell of the sheet: its standard score in its ring, the maximum over the planes so far; NAN where unseen. */
-static void add_evidence(float (*cell)[RINGS], const float *plane, const float *weight, const struct sheet *sheet)
+static void add_evidence(float (*cell)[RINGS], const float *plane, const float *seen, const float *iris, const struct sheet *sheet)
 {
 	const float least_spread = 0.2f;  // log: shading alone makes as much
-	double to = sheet->size / (2 * sheet->extent);
-	struct rings rings = rings_of(plane, weight, sheet, true, least_spread);
+	struct rings rings = rings_of(plane, iris, sheet, true, least_spread);
 	rings_even(&rings);
 	for (int a = 0; a < ANGLES; a++)
 		for (int r = 0; r < RINGS; r++) {
-			double p[2], t = (r + 0.5) / RINGS;
-			sheet_point(p, sheet, t, 2 * M_PI * (a + 0.5) / ANGLES);
-			double x = (p[0] + sheet->extent) * to, y = (p[1] + sheet->extent) * to;
-			float z = fabsf(rings_z(&rings, plane_sample(plane, sheet->size, sheet->size, x, y), t));
-			bool seen = plane_sample(weight, sheet->size, sheet->size, x, y) >= 0.5f;
-			cell[a][r] = seen ? fmaxf(cell[a][r], z) : NAN;
+			float z = fabsf(rings_z(&rings, cell_at(plane, sheet, a, r), (r + 0.5) / RINGS));
+			cell[a][r] = cell_at(seen, sheet, a, r) >= 0.5f ? fmaxf(cell[a][r], z) : NAN;
+		}
+}
+
+/* What is told of each cell is added: log odds, in units of the scores. */
+static void add_told(float (*cell)[RINGS], const float *cover, const struct sheet *sheet, const struct unrefract_conf *conf)
+{
+	const float surest = 3;  // log odds of 20: the network is seldom right to more than that on photographs
+	for (int a = 0; a < ANGLES; a++)
+		for (int r = 0; r < RINGS; r++) {
+			float p = fminf(fmaxf(cell_at(cover, sheet, a, r), 0.001f), 0.999f);
+			cell[a][r] += (float)conf->lid_told * fminf(fmaxf(logf(p / (1 - p)), -surest), surest);
 		}
 }
 
 /* Evidence for lid (positive) against iris (negative): unlike its ring in brightness, or in hue, which shading does not
- * change. */
-static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *weight,
-                         const struct sheet *sheet, double lid_z)
+ * change; and what is told. */
+static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *seen, const float *iris, const float *cover,
+                         const struct sheet *sheet, const struct unrefract_conf *conf)
 {
 	long n = (long)sheet->size * sheet->size;
-	float *hue = mem_array((size_t)n, sizeof *hue);
+	float *hue = mem_array((size_t)n, sizeof *hue), lid_z = (float)conf->lid_z;
 	for (int c = 0; c < 3; c++)
-		add_evidence(cell, logs[c], weight, sheet);
+		add_evidence(cell, logs[c], seen, iris, sheet);
 	for (int c = 0; c < 2; c++) {
 		for (long i = 0; i < n; i++)
 			hue[i] = logs[c][i] - logs[c + 1][i];
-		add_evidence(cell, hue, weight, sheet);
+		add_evidence(cell, hue, seen, iris, sheet);
 	}
 	for (int a = 0; a < ANGLES; a++)
 		for (int r = 0; r < RINGS; r++)
-			cell[a][r] = isfinite(cell[a][r]) ? fminf(cell[a][r], 2 * (float)lid_z) - (float)lid_z : 0;
+			cell[a][r] = isfinite(cell[a][r]) ? fminf(cell[a][r], 2 * lid_z) - lid_z : 0;
+	if (cover)
+		add_told(cell, cover, sheet, conf);
 	free(hue);
 }
 
@@ -93,12 +109,32 @@ static void drop_short(int path[ANGLES])
 	}
 }
 
-void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], const float *weight,
+/* A lid shades the iris beside it: inwards from its edge all that is darker than its ring by `shadow` (log) in every colour belongs to
+ * it. What is darker in some colours alone is pigment. */
+static void add_shadow(int path[ANGLES], const float *const logs[3], const float *iris, const struct sheet *sheet, double shadow)
+{
+	const int deepest = RINGS / 5;  // such shadows are less than a millimetre wide
+	struct rings rings[3];
+	for (int c = 0; c < 3; c++)
+		rings[c] = rings_of(logs[c], iris, sheet, true, 0.1f);
+	for (int a = 0; a < ANGLES; a++) {
+		int edge = path[a], r = edge;
+		bool dark = edge < RINGS;
+		while (dark && r > 0 && r > edge - deepest) {
+			for (int c = 0; c < 3; c++)
+				dark = dark && cell_at(logs[c], sheet, a, r - 1) < rings_median(&rings[c], (r - 0.5) / RINGS) - (float)shadow;
+			r -= dark;
+		}
+		path[a] = r;
+	}
+}
+
+void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], const float *seen, const float *iris, const float *cover,
                     const struct sheet *sheet, const struct unrefract_conf *conf)
 {
 	float(*cell)[RINGS] = mem_new(ANGLES, sizeof *cell);
 	float(*gain)[RINGS + 1] = mem_array(ANGLES, sizeof *gain);
-	lid_evidence(cell, logs, weight, sheet, conf->lid_z);
+	lid_evidence(cell, logs, seen, iris, cover, sheet, conf);
 	for (int a = 0; a < ANGLES; a++) {
 		gain[a][RINGS] = 0;
 		for (int r = RINGS - 1; r >= 0; r--)
@@ -107,6 +143,8 @@ void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], cons
 	int path[ANGLES];
 	lid_path(path, gain, conf->lid_smooth);
 	drop_short(path);
+	if (cover)
+		add_shadow(path, logs, iris, sheet, conf->lid_shadow);
 	const int reach = 2;  // the path is quantised to rings; the mean over a few angles is finer
 	for (int a = 0; a < ANGLES; a++) {
 		lid_t[a] = 0;

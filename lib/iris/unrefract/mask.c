@@ -17,6 +17,7 @@ struct work {
 	int size;
 	double texel;      // mm
 	float *log[3];     // of the colour, blurred a little
+	float white[3];    // logarithm of white
 	float *t;          // sheet coordinate
 	uint8_t *kind;
 };
@@ -26,7 +27,7 @@ static double plane_mm(int i, const struct unrefract_survey *survey)
 	return (i + 0.5) * 2 * survey->extent / survey->size - survey->extent;
 }
 
-/* Logarithm of each channel, blurred over `sigma` texels among what is seen. */
+/* Logarithm of each channel against white, blurred over `sigma` texels among what is seen. */
 static void take_logs(struct work *work, const struct unrefract_survey *survey, const float *seen, double sigma)
 {
 	long n = (long)work->size * work->size;
@@ -37,7 +38,7 @@ static void take_logs(struct work *work, const struct unrefract_survey *survey, 
 		plane_blur_weighted(work->log[c], seen, work->size, work->size, sigma, 0);
 #pragma omp parallel for schedule(static)
 		for (long i = 0; i < n; i++)
-			work->log[c][i] = logf(fmaxf(work->log[c][i], darkest));
+			work->log[c][i] = logf(fmaxf(work->log[c][i], darkest)) - work->white[c];
 	}
 }
 
@@ -50,12 +51,14 @@ static double lid_at(const double lid_t[SHEET_ANGLES], double phi)
 	return (1 - f) * lid_t[a % SHEET_ANGLES] + f * lid_t[(a + 1) % SHEET_ANGLES];
 }
 
-static void mark_lids(struct work *work, const struct unrefract_survey *survey, const float *seen,
+static void mark_lids(struct work *work, const struct unrefract_survey *survey, const float *seen, const struct told *told,
                       const struct sheet *sheet, const struct unrefract_conf *conf)
 {
 	double lid_t[SHEET_ANGLES];
 	take_logs(work, survey, seen, 0.06 / work->texel);
-	unrefract_lids(lid_t, (const float *const *)work->log, seen, sheet, conf);
+	float *iris = told_iris(told, seen, (size_t)work->size * (size_t)work->size);
+	unrefract_lids(lid_t, (const float *const *)work->log, seen, iris, told->cover, sheet, conf);
+	free(iris);
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < work->size; y++)
 		for (int x = 0; x < work->size; x++) {
@@ -68,7 +71,7 @@ static void mark_lids(struct work *work, const struct unrefract_survey *survey, 
 		}
 }
 
-/* The channel in which the iris is darkest: an added reflection changes it most. */
+/* The channel in which the iris is darkest, against white: an added reflection changes it most. */
 static int darkest_channel(const struct rings rings[3])
 {
 	int best = 0, middle = SHEET_RINGS / 2;
@@ -83,7 +86,7 @@ static void iris_weight(float *weight, const struct work *work, const float *see
 		weight[i] = work->kind[i] == IRIS ? seen[i] : 0;
 }
 
-/* A reflection adds white: the ratio of the iris' weakest colour to its strongest rises, the more the further apart they
+/* A reflection adds the colour of the light, which is white in these logarithms: the ratio of the iris' weakest colour to its strongest rises, the more the further apart they
  * are. A pale fibre scales all channels alike; a yellow fleck keeps its hue. */
 static bool turns_white(const float log_rgb[3], const struct rings rings[3], int weak, double t)
 {
@@ -117,13 +120,16 @@ static void drop_small(uint8_t *glint, const float *z, const struct work *work, 
 }
 
 /* Reflections: blobs too bright in the channel in which the iris is darkest, or saturated. */
-static void mark_glints(struct work *work, const struct unrefract_survey *survey, const float *seen,
+static void mark_glints(struct work *work, const struct unrefract_survey *survey, const float *seen, const struct told *told,
                         const struct sheet *sheet, const struct unrefract_conf *conf)
 {
 	long n = (long)work->size * work->size;
 	float *weight = mem_array((size_t)n, sizeof *weight), *z = mem_array((size_t)n, sizeof *z);
 	uint8_t *glint = mem_new((size_t)n, 1);
+	const float told_z = 0.7f;  // of the level: what the network takes for a reflection is only to be brighter than its ring
 	iris_weight(weight, work, seen);
+	for (long i = 0; i < n && told->mirror; i++)
+		weight[i] *= 1 - told->mirror[i];
 	take_logs(work, survey, seen, 0.05 / work->texel);
 	struct rings rings[3];
 	for (int k = 0; k < 3; k++)
@@ -133,13 +139,16 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 #pragma omp parallel for schedule(static)
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
-		bool here = seen[i] > 0 && work->t[i] > -0.05f && work->t[i] < 0.9f;  // beyond: the limbus' haze
+		float mirror = told->mirror ? told->mirror[i] : 0;
+		bool is_told = mirror > 0.5f;
+		bool here = seen[i] > 0 && work->t[i] > -0.05f && (work->t[i] < 0.9f || is_told);  // beyond: the limbus' haze
 		// a yellow fleck may saturate red; a light saturates nearly all
 		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated
 		            && fminf(rgb[0], fminf(rgb[1], rgb[2])) > 0.5f * (float)conf->saturated;
 		z[i] = full ? INFINITY : conf->polarised ? 0 : rings_z(&rings[c], work->log[c][i], work->t[i]);
 		float logs[3] = { work->log[0][i], work->log[1][i], work->log[2][i] };
-		glint[i] = here && z[i] > (float)conf->glint_z && (full || turns_white(logs, rings, c, work->t[i]));
+		glint[i] = here && z[i] > (float)conf->glint_z * (is_told ? told_z : 1)
+		           && (full || is_told || turns_white(logs, rings, c, work->t[i]));
 	}
 	drop_small(glint, z, work, conf);
 	mask_grow(glint, work->size, work->size, conf->glint_grow / work->texel);
@@ -207,14 +216,16 @@ static void weigh(struct unrefract_survey *survey, const struct work *work, cons
 	free(bad);
 }
 
-void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct sheet *sheet,
+void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct told *told, const double white[3], const struct sheet *sheet,
                     const struct unrefract_conf *conf)
 {
 	int size = survey->size;
 	size_t n = (size_t)size * (size_t)size;
 	struct work work = { .size = size, .texel = 2 * survey->extent / size };
-	for (int c = 0; c < 3; c++)
+	for (int c = 0; c < 3; c++) {
 		work.log[c] = mem_array(n, sizeof(float));
+		work.white[c] = logf((float)fmax(white[c] / white[1], darkest));
+	}
 	work.t = mem_array(n, sizeof(float));
 	work.kind = mem_array(n, 1);
 #pragma omp parallel for schedule(static)
@@ -224,9 +235,9 @@ void unrefract_mask(struct unrefract_survey *survey, const float *seen, const st
 			work.t[i] = (float)sheet_t(sheet, plane_mm(x, survey), plane_mm(y, survey));
 			work.kind[i] = seen[i] > 0 && work.t[i] > 0 && work.t[i] < 1 ? IRIS : OUTSIDE;
 		}
-	mark_lids(&work, survey, seen, sheet, conf);
+	mark_lids(&work, survey, seen, told, sheet, conf);
 	mark_lashes(&work, survey, seen, conf);
-	mark_glints(&work, survey, seen, sheet, conf);
+	mark_glints(&work, survey, seen, told, sheet, conf);
 	weigh(survey, &work, seen);
 	for (int c = 0; c < 3; c++)
 		free(work.log[c]);

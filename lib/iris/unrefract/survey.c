@@ -40,10 +40,10 @@ static struct circle pupil_in_plane(const struct unrefract_view *view)
 }
 
 /* The pupil where the fit has none: the radius at which the brightness of the rings rises most. */
-static struct circle pupil_from_rings(const float *lum, const float *seen, int size, double extent, double limbus)
+static struct circle pupil_from_rings(const float *lum, const float *iris, int size, double extent, double limbus)
 {
 	struct sheet disc = { size, extent, { 0, 0, 0 }, limbus, 0 };
-	struct rings rings = rings_of(lum, seen, &disc, true, 0.1f);
+	struct rings rings = rings_of(lum, iris, &disc, true, 0.1f);
 	int best = 0;
 	float rise = 0;
 	for (int i = SHEET_RINGS / 8; i + 3 < SHEET_RINGS * 3 / 4; i++)
@@ -78,10 +78,11 @@ static bool open_angles(double open[SHEET_ANGLES], const struct fit *fit, const 
 	return true;
 }
 
-static void look(struct unrefract_view *view, const struct iris_map *map, double limbus, const struct eye *eye,
+static void look(struct unrefract_view *view, const struct iris_map *map, const struct evidence *evidence, const struct eye *eye,
                  const struct unrefract_conf *conf)
 {
 	struct unrefract_survey *s = &view->survey;
+	double limbus = eye->limbus_radius;
 	size_t n = (size_t)s->size * (size_t)s->size;
 	float *seen = mem_array(n, sizeof *seen);
 	float *lum = mem_array(n, sizeof *lum);
@@ -90,21 +91,30 @@ static void look(struct unrefract_view *view, const struct iris_map *map, double
 		seen[i] = map->rim[i] < (float)limbus && rgb[0] + rgb[1] + rgb[2] > 0;
 		lum[i] = logf(rgb[0] + rgb[1] + rgb[2] + 1e-3f);
 	}
+	struct told told = told_new(evidence, map, seen, limbus);
+	float *iris = told_iris(&told, seen, n);
 	if (!(view->pupil.r > 0))
-		view->pupil = pupil_from_rings(lum, seen, s->size, s->extent, limbus);
+		view->pupil = told_pupil(&told, s->size, s->extent);
+	if (!(view->pupil.r > 0))
+		view->pupil = pupil_from_rings(lum, iris, s->size, s->extent, limbus);
 	double open[SHEET_ANGLES];
 	struct sheet sheet = { s->size, s->extent, view->pupil, limbus, 0 };
 	if (open_angles(open, view->fit, &sheet, eye))
 		sheet.open = open;
-	unrefract_mask(s, seen, &sheet, conf);
+	unrefract_mask(s, seen, &told, view->white.rgb, &sheet, conf);
+	told_free(&told);
 	free(lum);
+	free(iris);
 	free(seen);
 }
 
 bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit,
-                      const struct eye *eye, const struct unrefract_conf *conf, struct err *err)
+                      const struct evidence *evidence, const struct eye *eye, const struct unrefract_conf *conf, struct err *err)
 {
 	view->fit = fit;
+	view->grey = photo->grey;
+	if (!(view->white.rgb[1] > 0))
+		view->white = balance_none();
 	view->iris = iris_view_new(fit, eye);
 	view->pupil = pupil_in_plane(view);
 	view->gain[0] = view->gain[1] = view->gain[2] = 1;
@@ -119,7 +129,7 @@ bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, co
 	struct crop crop = crop_new(photo, &map);
 	long sampled = crop_sample(s->rgb, &crop, &map, 0);
 	if (sampled)
-		look(view, &map, eye->limbus_radius, eye, conf);
+		look(view, &map, evidence, eye, conf);
 	crop_free(&crop);
 	iris_map_free(&map);
 	view->used = sampled > 0;

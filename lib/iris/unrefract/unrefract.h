@@ -5,12 +5,13 @@
  * through the exact light path.
  *
  * Order of calls: unrefract_survey of each photograph, unrefract_align, unrefract_size, unrefract_begin, unrefract_add of each
- * view that is used, unrefract_finish. A photograph is read by survey and add alone: it need not stay in memory between them.
+ * view that is used, unrefract_finish, unrefract_fill. A photograph is read by survey and add alone: it need not stay in memory between them.
  * Maps are square, centred on the optical axis, half-width `extent` mm, row 0 at -y.
  */
 #ifndef IRIS_UNREFRACT_UNREFRACT_H
 #define IRIS_UNREFRACT_UNREFRACT_H
 #include "iris/iris_map.h"
+#include "iris/balance.h"
 #include "image/photo/photo.h"
 
 struct unrefract_conf {
@@ -22,6 +23,7 @@ struct unrefract_conf {
 	double pupil_margin;      // mm over which the weight rises at the pupil's margin
 	double limbus_ramp;       // mm over which the weight falls to 0 at the limbus
 	double lid_z, lid_smooth; // standard score of a lid; stiffness of the lid's edge
+	double lid_told, lid_shadow;  // scores for a unit of the evidence's log odds; log contrast of a lid's shadow
 	double glint_z, glint_grow, saturated;  // standard score of a reflection, its margin in mm, share of full scale
 	double lash_contrast, lash_width;       // log, mm
 	double foreshortening;    // exponent of a foreshortened texel's weight
@@ -48,12 +50,14 @@ struct unrefract_survey {
 struct unrefract_view {
 	const char *name;         // of the photograph; the caller's
 	const struct fit *fit;    // the caller's, must outlive the view
+	struct balance white;     // of the photograph: what a reflection's colour is near; the caller's (balance.h)
 	struct iris_view iris;
 	struct unrefract_survey survey;
 	struct circle pupil;      // this photograph's own frame; r = 0: not found
 	double rotation;          // of the map against this photograph's frame, radians
 	double correlation;       // with the photograph that the others are registered to; 1 for itself
 	float gain[3];            // factors that bring its colour to that photograph's
+	bool grey;                // the photograph has no colour
 	bool used;
 	char note[160];           // why not used
 };
@@ -68,15 +72,17 @@ struct unrefract_texture {
 };
 
 /* Surveys one photograph.
- * view  zeroed but for name; unrefract_view_free
+ * view      zeroed but for name and white; unrefract_view_free
+ * evidence  of this photograph, in a window round the limbus (limbus/evidence.h), or null: lids and reflections by brightness and hue
+ *           of the rings alone
  * False, err set, when the iris lies outside the photograph. */
 bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit,
-                      const struct eye *eye, const struct unrefract_conf *conf, struct err *err);
+                      const struct evidence *evidence, const struct eye *eye, const struct unrefract_conf *conf, struct err *err);
 void unrefract_view_free(struct unrefract_view *view);
 
 /* Registers the views to the best of them (most iris, seen largest): rotation, shift and stretch of each, its colour gain; and
  * lowers weights where a view is brighter than the others (a missed reflection) or less sharp. Views that do not match are no
- * longer `used`; their note says why. Returns the index of the best view. */
+ * longer `used`, nor are grey ones where others have colour; their note says why. Returns the index of the best view. */
 int unrefract_align(int n, struct unrefract_view views[], const struct unrefract_conf *conf);
 
 /* Resolution of the merged texture, texels a side: conf->scale times the finest view's, at most conf->max_size. */
@@ -94,7 +100,11 @@ void unrefract_add(struct unrefract_texture *texture, const struct unrefract_vie
 /* Divides by the weights and fills `seen`. */
 void unrefract_finish(struct unrefract_texture *texture, const struct eye *eye);
 
-/* Writes texture.json: pupil, share seen, each view's alignment, and advice on what to photograph better.
+/* Fills between pupil and limbus what was not seen, or hardly: colour alone, the weight stays what it is and marks it. Nothing is filled
+ * where nothing was seen at all. */
+void unrefract_fill(struct unrefract_texture *texture, const struct eye *eye);
+
+/* Writes texture.json: pupil, share seen, whether it has colour, each photograph's white, each view's alignment, and advice on what to photograph better.
  * made_by: stage_made_by(). False, err set, when it cannot be written. */
 bool unrefract_save_json(const char *path, const struct unrefract_texture *texture, int n,
                          const struct unrefract_view views[], const char *made_by, struct err *err);

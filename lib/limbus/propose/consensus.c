@@ -10,6 +10,8 @@
 
 enum { N = ELLIPSE_N, TRIES = 140, POLISH = 8, MIN_ARCS = 40, C = EDGE_CANDIDATES, STRIDE = 4 };
 
+static const double ARC_NATS = 0.15;  // log likelihood of one arc that agrees: neighbours err together
+
 struct arcs {
 	int n;
 	double row[ARCS][N], d[ARCS][C], weight[ARCS][C];
@@ -37,6 +39,31 @@ static void collect(struct arcs *arcs, const struct ring *r, const struct grey *
 			double white = tint ? grey_at(tint, x, r->p[at[i]][1] + s * r->normal[at[i]][1]) : 1;
 			arcs->weight[i][j] = fmin(strength[i][j] / typical, 1) * white * white;
 		}
+}
+
+/* What is known before, as a change of q from the start. */
+struct weak {
+	double q[N], precision[N];  // px, px^-2
+};
+
+static struct weak weak_of(const struct ellipse_prior *known, const struct ellipse *e)
+{
+	struct weak w;
+	ellipse_to_q(w.q, e);
+	for (int a = 0; a < N; a++) {
+		w.q[a] = known->q[a] - w.q[a];
+		w.precision[a] = 1 / (known->sigma[a] * known->sigma[a]);
+	}
+	return w;
+}
+
+/* Its log likelihood against dq, in units of arcs' support. */
+static double against(const struct weak *w, const double dq[N])
+{
+	double sum = 0;
+	for (int a = 0; a < N; a++)
+		sum += 0.5 * w->precision[a] * (dq[a] - w->q[a]) * (dq[a] - w->q[a]);
+	return sum / (STRIDE * ARC_NATS);
 }
 
 static double shift(const double row[N], const double dq[N])
@@ -72,7 +99,7 @@ static double support(const struct arcs *arcs, const double dq[N], double tol, i
 
 /* One arc from each fifth of the ring, one of its candidates, and the change of q that meets them, drawn a little
  * towards no change: five arcs on one side say little of the other. */
-static bool hypothesis(double dq[N], const struct arcs *arcs, struct rng *rng, double range)
+static bool hypothesis(double dq[N], const struct arcs *arcs, struct rng *rng, double range, const struct weak *weak)
 {
 	double h[N][N] = { 0 };
 	for (int a = 0; a < N; a++)
@@ -87,6 +114,11 @@ static bool hypothesis(double dq[N], const struct arcs *arcs, struct rng *rng, d
 	}
 	for (int a = 0; a < N; a++)
 		h[a][a] += 0.01;
+	for (int a = 0; a < N; a++) {
+		const double precision = range * range / 36 * weak->precision[a];
+		h[a][a] += precision;
+		dq[a] += precision * weak->q[a];
+	}
 	if (!chol_solve(N, N, &h[0][0], dq))
 		return false;
 	for (int a = 0; a < N; a++)
@@ -95,7 +127,7 @@ static bool hypothesis(double dq[N], const struct arcs *arcs, struct rng *rng, d
 	return true;
 }
 
-static void polish(double dq[N], const struct arcs *arcs, double tol)
+static void polish(double dq[N], const struct arcs *arcs, double tol, const struct weak *weak)
 {
 	for (int it = 0; it < POLISH; it++) {
 		double h[N][N] = { 0 }, g[N] = { 0 };
@@ -109,6 +141,11 @@ static void polish(double dq[N], const struct arcs *arcs, double tol)
 		}
 		for (int a = 0; a < N; a++)
 			h[a][a] += 1e-3;
+		for (int a = 0; a < N; a++) {
+			const double precision = tol * tol / 4 / ARC_NATS * weak->precision[a];
+			h[a][a] += precision;
+			g[a] += precision * (weak->q[a] - dq[a]);
+		}
 		if (!chol_solve(N, N, &h[0][0], g))
 			return;
 		for (int a = 0; a < N; a++)
@@ -116,30 +153,33 @@ static void polish(double dq[N], const struct arcs *arcs, double tol)
 	}
 }
 
-bool rim_consensus(struct ellipse *e, const struct grey *grey, const struct grey *tint, double range, int width,
-                   int height)
+bool rim_consensus(struct ellipse *e, const struct grey *grey, const struct grey *tint, double range,
+                   const struct ellipse_prior *known, int width, int height)
 {
 	struct ring r = ring_sample(grey, e, -1.3 * range, 1.3 * range, fmax(grey->scale, range / 30), 3, width, height);
 	struct arcs arcs;
 	collect(&arcs, &r, tint, range / 4);
 	ring_free(&r);
-	if (arcs.n < MIN_ARCS)
+	struct weak weak = { 0 };
+	if (known)
+		weak = weak_of(known, e);
+	if (arcs.n < (known ? N : MIN_ARCS))
 		return false;
 	struct rng rng = { 0x11b5 };
 	const double tol = fmax(range / 6, 2 * grey->scale);
-	double best[N] = { 0 }, score = support(&arcs, best, tol, STRIDE), q[N];
+	double best[N] = { 0 }, score = support(&arcs, best, tol, STRIDE) - against(&weak, best), q[N];
 	for (int s = 0; s < TRIES; s++) {
 		double dq[N];
-		if (!hypothesis(dq, &arcs, &rng, range))
+		if (!hypothesis(dq, &arcs, &rng, range, &weak))
 			continue;
-		double now = support(&arcs, dq, tol, STRIDE);
+		double now = support(&arcs, dq, tol, STRIDE) - against(&weak, dq);
 		if (now > score) {
 			score = now;
 			memcpy(best, dq, sizeof best);
 		}
 	}
-	polish(best, &arcs, tol);
-	polish(best, &arcs, 0.6 * tol);
+	polish(best, &arcs, tol, &weak);
+	polish(best, &arcs, 0.6 * tol, &weak);
 	ellipse_to_q(q, e);
 	for (int a = 0; a < N; a++)
 		q[a] += best[a];

@@ -211,7 +211,7 @@ static void settle(struct seek_found *f, const struct pyramid *pyramid, const st
 	const int w = (int)(pyramid->level[0].width * pyramid->level[0].scale), h = (int)(pyramid->level[0].height * pyramid->level[0].scale);
 	struct seek_found as_is = *f;
 	for (int i = 0; i < 2; i++)
-		if (!rim_consensus(&f->e, g, 0, (i ? 0.09 : 0.2) * f->e.a, w, h))
+		if (!rim_consensus(&f->e, g, 0, (i ? 0.09 : 0.2) * f->e.a, 0, w, h))
 			break;
 	f->score = f->e.b < 0.55 * f->e.a ? 0 : edge_score(pyramid, &f->e, conf);
 	as_is.score = edge_score(pyramid, &as_is.e, conf);

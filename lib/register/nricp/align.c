@@ -46,21 +46,31 @@ static void take_landmarks(struct search *s, const struct nricp_landmarks *l, co
 	s->n_held = l->n;
 }
 
-/* The similarity that fits the landmarks best (least squares), by Gauss-Newton steps from the identity. False: no landmarks, or no
- * solution. */
-static bool from_landmarks(struct pose *pose, const struct search *s)
+/* The similarity that fits the landmarks best (least squares), by Gauss-Newton steps from 24 rotations: from one alone they may end
+ * at a saddle. False: no landmarks, or no solution. */
+static bool from_landmarks(struct pose *best, const struct search *s)
 {
-	enum { ROUNDS = 50 };
-	*pose = pose_still;
-	for (int round = 0; round < ROUNDS && s->n_held; round++) {
-		struct sums sums = { 0 };
-		align_hold(&sums, s, pose, s->n_held);
-		for (int k = 0; k < 7; k++)
-			sums.a[k][k] += 1e-9;
-		if (!sums_move(pose, &sums, s->conf->scale_max))
-			return false;
+	enum { ROUNDS = 30 };
+	double cube[24][3][3], least = INFINITY;
+	align_cube(cube);
+	for (int c = 0; c < 24 && s->n_held; c++) {
+		struct pose pose = pose_still;
+		memcpy(pose.rotation, cube[c], sizeof pose.rotation);
+		bool ok = true;
+		for (int round = 0; round < ROUNDS && ok; round++) {
+			struct sums sums = { 0 };
+			align_hold(&sums, s, &pose, s->n_held);
+			for (int k = 0; k < 7; k++)
+				sums.a[k][k] += 1e-9;
+			ok = sums_move(&pose, &sums, s->conf->scale_max);
+		}
+		double off = ok ? align_held_off(s, &pose) : INFINITY;
+		if (off < 0.999 * least) {
+			least = off;
+			*best = pose;
+		}
 	}
-	return s->n_held;
+	return isfinite(least);
 }
 
 /* Inverts the pose and returns to the meshes' own unit. */
@@ -68,7 +78,8 @@ static void give(struct nricp_align_result *out, const struct best *best, const 
                  double size)
 {
 	double inverse = 1 / best->pose.scale, back[3];
-	*out = (struct nricp_align_result){ .scale = inverse, .matched = best->matched, .rms = best->rms * size, .start = best->start - 1 };
+	*out = (struct nricp_align_result){ .scale = inverse, .matched = best->matched, .rms = best->rms * size,
+	                                      .fine = best->fine, .rival = best->rival };
 	mat_tvec(back, best->pose.rotation, best->pose.shift);
 	for (int r = 0; r < 3; r++) {
 		double moved = 0;
@@ -79,6 +90,21 @@ static void give(struct nricp_align_result *out, const struct best *best, const 
 		out->fixed_from_moving[r][3] = fixed_center[r] - inverse * size * back[r] - moved;
 	}
 	out->fixed_from_moving[3][3] = 1;
+}
+
+/* Whether the pose stands out among all. */
+static bool known(const struct nricp_align_result *r, const struct nricp_align_conf *conf, struct err *err)
+{
+	if (r->matched < conf->least)
+		return err_set(err, "%.0f %% of the subject lies on it wherever it is put, must be at least %.0f %%", 100 * r->matched,
+		               100 * conf->least);
+	if (r->bound)
+		return err_set(err, "its scale ends at the bound (%.3g, must be within a factor of %g): its unit, or its shape, is another",
+		               r->scale, conf->scale_max);
+	if (r->rival > 0 && !nricp_stands_out(r->fine, r->rival, conf->margin))
+		return err_set(err, "two poses fit it nearly as well (%.0f and %.0f %% of the subject lie close to it): which way up it is, is not known",
+		               100 * r->fine, 100 * r->rival);
+	return true;
 }
 
 bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, const struct mesh *fixed,
@@ -101,12 +127,13 @@ bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, cons
 	struct best best = { .pose = pose_still };
 	if (from_landmarks(&best.pose, &s)) {
 		const double narrow[2] = { conf->welsch[1], conf->welsch[1] };
-		best.matched = align_refine(&best.pose, &best.rms, &s, conf->rounds, narrow);
+		align_finish(&best, &s, narrow);
 	} else {
 		s.n_held = 0;
 		best = align_find(&s, offset);
 	}
 	give(out, &best, moving_center, fixed_center, size);
+	out->bound = fabs(log(best.pose.scale)) > 0.999 * log(conf->scale_max);
 	free(s.moving.vertices);
 	free(s.normals);
 	topology_free(&s.topology);
@@ -114,7 +141,5 @@ bool nricp_align(struct nricp_align_result *out, const struct mesh *moving, cons
 	free(s.samples);
 	free(s.face);
 	free(s.held);
-	return best.matched >= conf->least
-	       || err_set(err, "%.0f %% of the subject lies on it wherever it is put, must be at least %.0f %%", 100 * best.matched,
-	                  100 * conf->least);
+	return known(out, conf, err);
 }

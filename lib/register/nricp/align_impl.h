@@ -40,22 +40,33 @@ struct sums {
 
 struct best {
 	struct pose pose;
-	double matched, rms;
-	int start;
+	double matched, rms, fine, rival;
 };
 
 /* Solves the normal equations and moves the pose; its scale stays within 1 / scale_max .. scale_max. Returns false when they are
  * singular. */
 bool sums_move(struct pose *pose, struct sums *sums, double scale_max);
 
-/* Refines the pose by rounds of matching and solving. welsch: first and last scale of the weight. *rms: of the matches' distances
- * across the surface. Returns the share of the samples matched at the end. */
-double align_refine(struct pose *pose, double *rms, struct search *search, int rounds, const double welsch[2]);
+/* Refines the pose by rounds of matching and solving. welsch: first and last scale of the weight. step: every so manyth sample is
+ * used. *rms: of the matches' distances across the surface. Returns the share of these samples matched at the end. */
+double align_refine(struct pose *pose, double *rms, struct search *search, int rounds, const double welsch[2], int step);
+
+/* Refines the pose by narrower weights, down to conf->fine. Returns the share matched by that. */
+double align_narrow(struct pose *pose, struct search *search, int step);
+
+/* Refines the pose in full: b->matched and rms by the last scale of conf->welsch, then b->fine, of a copy, by align_narrow. */
+void align_finish(struct best *b, struct search *search, const double welsch[2]);
 
 /* Adds the landmarks to the normal equations; `weight` is that of all together. */
 void align_hold(struct sums *sums, const struct search *search, const struct pose *pose, double weight);
 
-/* Refines all starts until one is good, and returns the best. offset: fixed centroid less moving centroid, in units of the search. */
+/* Sum of the squared distances of the landmarks from their places. */
+double align_held_off(const struct search *search, const struct pose *pose);
+
+/* Refines poses from all starts, and returns the best. offset: fixed centroid less moving centroid, in units of the search. */
 struct best align_find(struct search *search, const double offset[3]);
+
+/* The 24 rotations of a cube, the identity first. */
+void align_cube(double out[24][3][3]);
 
 #endif

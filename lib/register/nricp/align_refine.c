@@ -112,7 +112,19 @@ void align_hold(struct sums *sums, const struct search *s, const struct pose *po
 	}
 }
 
-double align_refine(struct pose *pose, double *rms, struct search *s, int rounds, const double welsch[2])
+double align_held_off(const struct search *s, const struct pose *pose)
+{
+	double sum = 0;
+	for (int i = 0; i < s->n_held; i++) {
+		double at[3];
+		pose_place(at, pose, s->held[i].at);
+		for (int k = 0; k < 3; k++)
+			sum += pow((double)s->moving.vertices[s->held[i].row][k] - at[k], 2);
+	}
+	return sum / (pose->scale * pose->scale);
+}
+
+double align_refine(struct pose *pose, double *rms, struct search *s, int rounds, const double welsch[2], int step)
 {
 	struct sums sums = { 0 };
 	for (int i = 0; i < s->n; i++)
@@ -120,7 +132,7 @@ double align_refine(struct pose *pose, double *rms, struct search *s, int rounds
 	for (int round = 0; round <= rounds; round++) {
 		double at = rounds ? (double)round / rounds : 1;
 		sums = (struct sums){ 0 };
-		for (int i = 0; i < s->n; i++)
+		for (int i = 0; i < s->n; i += step)
 			match_one(&sums, s, i, pose, welsch[0] * pow(welsch[1] / welsch[0], at));
 		if (round == rounds)
 			break;
@@ -131,5 +143,20 @@ double align_refine(struct pose *pose, double *rms, struct search *s, int rounds
 			break;
 	}
 	*rms = sums.weight > 0 ? sqrt(sums.square / sums.weight) : INFINITY;
-	return s->n ? sums.weight / s->n : 0;
+	return s->n ? sums.weight / ((s->n + step - 1) / step) : 0;
+}
+
+double align_narrow(struct pose *pose, struct search *s, int step)
+{
+	enum { ROUNDS = 4 };
+	const double fine[2] = { s->conf->welsch[1], s->conf->fine };
+	double rms;
+	return align_refine(pose, &rms, s, ROUNDS, fine, step);
+}
+
+void align_finish(struct best *b, struct search *s, const double welsch[2])
+{
+	b->matched = align_refine(&b->pose, &b->rms, s, s->conf->rounds, welsch, 1);
+	struct pose narrow = b->pose;
+	b->fine = align_narrow(&narrow, s, 1);
 }

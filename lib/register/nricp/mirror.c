@@ -34,6 +34,48 @@ static bool is_mirror(const struct nricp_plane *plane, const struct mesh *mesh, 
 	return n > 0.9 * all;
 }
 
+/* Moves a plane to the symmetry near it: sampled vertices are paired with the nearest to their mirror images; n is the principal axis of
+ * the pairs' differences (one power iteration a round), and the plane goes through the pairs' middles. */
+static void settle(struct nricp_plane *plane, const struct mesh *mesh, const struct kdtree *tree)
+{
+	enum { ROUNDS = 30, SAMPLES = 500 };
+	int step = mesh->n_vertices > SAMPLES ? mesh->n_vertices / SAMPLES : 1;
+	for (int round = 0; round < ROUNDS; round++) {
+		double sum[3] = { 0 }, mid[3] = { 0 };
+		int n = 0;
+		for (int i = 0; i < mesh->n_vertices; i += step, n++) {
+			const double x[3] = { mesh->vertices[i][0], mesh->vertices[i][1], mesh->vertices[i][2] };
+			double image[3], d[3];
+			int at;
+			float d2;
+			reflect(image, plane, x);
+			kdtree_find(tree, 1, (float[]){ (float)image[0], (float)image[1], (float)image[2] }, 1, &at, &d2);
+			for (int k = 0; k < 3; k++) {
+				d[k] = x[k] - (double)mesh->vertices[at][k];
+				mid[k] += 0.5 * (x[k] + (double)mesh->vertices[at][k]);
+			}
+			vec_add(sum, sum, vec_dot(d, plane->normal), d);
+		}
+		if (!(vec_norm(sum) > 0))
+			return;
+		vec_unit(plane->normal, sum);
+		plane->at = vec_dot(mid, plane->normal) / n;
+	}
+}
+
+/* The plane across the working frame's x axis, which the head's symmetry is about once it is aligned, moved to the symmetry near it. */
+static bool find_across(struct nricp_plane *out, const struct mesh *mesh, const struct kdtree *tree, double tolerance)
+{
+	double lo = INFINITY, hi = -INFINITY;
+	for (int i = 0; i < mesh->n_vertices; i++) {
+		lo = fmin(lo, (double)mesh->vertices[i][0]);
+		hi = fmax(hi, (double)mesh->vertices[i][0]);
+	}
+	*out = (struct nricp_plane){ .normal = { 1 }, .at = (lo + hi) / 2 };
+	settle(out, mesh, tree);
+	return is_mirror(out, mesh, tree, tolerance);
+}
+
 bool nricp_plane_find(struct nricp_plane *out, const struct mesh *mesh, const double from_own[4][4], double tolerance)
 {
 	struct kdtree *tree = kdtree_new(mesh->n_vertices, 3, mesh->vertices[0]);
@@ -55,6 +97,7 @@ bool nricp_plane_find(struct nricp_plane *out, const struct mesh *mesh, const do
 			found = is_mirror(out, mesh, tree, tolerance);
 		}
 	}
+	found = found || find_across(out, mesh, tree, tolerance);
 	kdtree_free(tree);
 	return found;
 }

@@ -10,7 +10,8 @@ struct nricp_plane {
 	double normal[3], at;
 };
 
-/* Finds a plane of symmetry perpendicular to one of the mesh's own axes, through their origin or through the middle of its extent.
+/* Finds a plane of symmetry: perpendicular to one of the mesh's own axes, through their origin or through the middle of its extent; or
+ * near the one across the x axis of the frame it stands in.
  * out        in the mesh's frame
  * from_own   the mesh's frame from that of its own axes
  * tolerance  distance within which a vertex must lie at the mirror image of another (for nine in ten of them), in the mesh's unit

@@ -1,6 +1,6 @@
 /* pigment: estimates the melanin of the iris from its texture: the automatic search that the iris paper leaves as future work.
  *
- * The texture is reduced to classes of similar thickness and radius. Their colours, relative to white, are fitted by the forward
+ * The texture is reduced to classes of similar light and radius. Their colours, relative to white on the iris, are fitted by the forward
  * model of tissue/tissue.h: non-linear least squares with Gaussian priors, from several starts. Combinations of unknowns that one
  * photograph does not determine are held by the priors; the covariance and `direction` show them.
  */
@@ -20,20 +20,23 @@ enum pigment_unknown {
 extern const char *const pigment_names[PIGMENT_N];
 
 struct pigment_class {
-	double thickness;         // mm, median
+	double thickness;         // mm, median; where classes are told apart by light: of its ring
+	int ring;                 // with pigment_classes.rings: which; and the standard score of its light there
+	double z;
 	double share;             // iris_share, mean
 	double rgb[3], spread[3]; // reflectance factor (white Lambertian = 1): robust mean, and the scatter of texels about it
 	double texels;            // effective number of independent texels
 };
 
-enum { PIGMENT_CLASSES_MAX = 64 };
+enum { PIGMENT_CLASSES_MAX = 64, PIGMENT_RINGS_MAX = 8 };
 struct pigment_classes {
 	int n;
+	int rings;                // of radius, whose levels are told apart by light; 0: thickness is that of the class
 	struct pigment_class of[PIGMENT_CLASSES_MAX];
 };
 
 struct pigment_classes_conf {
-	int rings, levels;             // rings of radius times levels of thickness
+	int rings, levels;             // rings of radius (at most PIGMENT_RINGS_MAX) times levels of light
 	double inner, outer;           // iris_share between which tissue is trusted
 	double grain;                  // mm: detail below it is not independent
 };
@@ -42,10 +45,11 @@ struct pigment_classes_conf {
  * clean      R, G, B, W (linear; weight), square, half-width extent mm, without freckles
  * thickness  first channel mm; same grid
  * root       radius of the iris' root, mm
- * white      rgb of a white Lambertian surface in the same light
+ * white      rgb of white that faces the camera in the same light
+ * light      what white on the iris shows against that: iris_light_make, of the same extent; channels R, G, B, cosine
  * Classes with too few texels are left out. Returns false, err set, when fewer than 3 remain. */
 bool pigment_classify(struct pigment_classes *out, const struct image *clean, const struct image *thickness,
-                      double extent, const struct pupil *pupil, double root, const double white[3],
+                      double extent, const struct pupil *pupil, double root, const double white[3], const struct image *light,
                       const struct pigment_classes_conf *conf, struct err *err);
 
 struct pigment_conf {
@@ -54,6 +58,8 @@ struct pigment_conf {
 	double cos_light, cos_view;
 	double light_error, model_error;  // of ln light and of ln colour of a class, 1 sigma
 	double floor;                // absolute, of reflectance
+	double profile_error, ring_error;  // of ln thickness of the profile: common to all rings, and of each
+	double prior_spread[2];      // rms of ln thickness inside a ring: mean and sigma of its logarithm
 	enum illuminant illuminant;
 	int bands, starts;
 	bool polarised;              // no veil
@@ -65,7 +71,9 @@ struct pigment_fit {
 	double x[PIGMENT_N], sigma[PIGMENT_N], correlation[PIGMENT_N][PIGMENT_N];
 	double residual_rgb[3];  // rms over the classes, reflectance
 	double residual;         // rms over classes and channels, relative to their own rms
-	double residual_colour;  // rms of ln red/green and ln blue/green
+	double residual_colour, residual_light;  // rms of ln red/green and ln blue/green; of ln green
+	double light_error, model_error;  // as used
+	double thickness[PIGMENT_CLASSES_MAX];  // mm, of each class
 	double cost;             // half the sum of squares, priors in it
 	int iterations;          // over all starts
 	int starts, minima;      // distinct minima found, within 2 of the lowest cost
@@ -81,7 +89,11 @@ struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_con
 void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
                    const struct pigment_conf *conf);
 
-/* Fits the unknowns to the classes.
+/* What a photograph shows of a reflectance: exposure, error of the white, veil. */
+void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N]);
+
+/* Fits the unknowns to the classes. Where the classes differ from the model by more than conf says they do (light_error, model_error), that
+ * difference is the error that sigmas are reckoned with.
  * from  [PIGMENT_N] the one start, or null: conf->starts starts, the first at the priors' means
  * Returns false, err set, when no start converges. */
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
@@ -90,6 +102,9 @@ bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classe
 /* Writes IRIS/pigment.json. extra: text of a JSON object with further keys, or null. */
 bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                   const char *path, const char *made_by, const char *extra, struct err *err);
+
+/* The same for an iris of which no pigments can be told: the file holds the reason ("without"). */
+bool pigment_save_none(const char *reason, const char *path, const char *made_by, struct err *err);
 
 /* Reads it back: the unknowns, the white they were found with, and those fields of conf that shape the forward model. Returns false,
  * err set, when the file is damaged. */

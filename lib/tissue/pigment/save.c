@@ -67,9 +67,9 @@ static json_t *classes_json(const struct pigment_fit *fit, const struct pigment_
 	for (int i = 0; i < classes->n; i++) {
 		const struct pigment_class *c = &classes->of[i];
 		double rgb[3];
-		pigment_model(rgb, fit->x, &optics, c->thickness, conf);
+		pigment_model(rgb, fit->x, &optics, fit->thickness[i], conf);
 		json_t *entry = json_object();
-		json_object_set_new(entry, "thickness_mm", json_number(c->thickness));
+		json_object_set_new(entry, "thickness_mm", json_number(fit->thickness[i]));
 		json_object_set_new(entry, "share", json_number(c->share));
 		json_object_set_new(entry, "seen", json_numbers(3, c->rgb));
 		json_object_set_new(entry, "model", json_numbers(3, rgb));
@@ -98,6 +98,8 @@ bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *c
 	json_object_set_new(out, "residual_rgb", json_numbers(3, fit->residual_rgb));
 	json_object_set_new(out, "residual", json_number(fit->residual));
 	json_object_set_new(out, "residual_colour", json_number(fit->residual_colour));
+	json_object_set_new(out, "light_error", json_number(fit->light_error));
+	json_object_set_new(out, "model_error", json_number(fit->model_error));
 	json_object_set_new(out, "exposure", estimate(fit, PIGMENT_EXPOSURE));
 	json_object_set_new(out, "white_red", estimate(fit, PIGMENT_RED));
 	json_object_set_new(out, "white_blue", estimate(fit, PIGMENT_BLUE));
@@ -119,6 +121,14 @@ bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *c
 		json_object_update_missing(out, more);
 		json_decref(more);
 	}
+	bool ok = json_write(path, out, made_by, err);
+	json_decref(out);
+	return ok;
+}
+
+bool pigment_save_none(const char *reason, const char *path, const char *made_by, struct err *err)
+{
+	json_t *out = json_pack("{s:s}", "without", reason);
 	bool ok = json_write(path, out, made_by, err);
 	json_decref(out);
 	return ok;

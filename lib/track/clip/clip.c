@@ -49,6 +49,8 @@ static bool set_camera(struct track_clip *clip, struct stage *stage, const struc
                        struct err *err)
 {
 	struct camera *c = &clip->camera;
+	if (!camera_keys_agree(&conf->camera, clip->info.width, clip->info.height, err))
+		return false;
 	*c = (struct camera){ .focal_px = camera_keys_focal(&conf->camera, clip->info.width, clip->info.height),
 	                      .center_px = { 0.5 * clip->info.width, 0.5 * clip->info.height }, .source = CAMERA_CONF };
 	memcpy(c->distortion, conf->camera.distortion, sizeof c->distortion);
@@ -175,6 +177,8 @@ static bool find_reference(struct track_clip *clip, struct video *video, bool kn
 		return found;
 	if (!any && clip->info.frames < 2)
 		return err_set(err, "%s: %ld frames: film longer, or copy the file again, whole", clip->file, clip->info.frames);
+	if (!any && conf->reference < 0)
+		return err_set(err, "%s: none of its first frames can be decoded: copy the file again, whole", clip->file);
 	if (!any)
 		return err_set(err, "%s: %ld frames: track.reference_frame = %d is none of them", clip->file, clip->info.frames, conf->reference);
 	return found || err_set(err, "%s: no face with open eyes in %s: film the face from in front, upright, eyes open at the start; or mark the corners of the eyes (track.landmark_left_inner_canthus = x y ...)",

@@ -23,6 +23,7 @@ struct track_clip {
 	bool eye_seen[SIDES];
 	uint8_t *luma, *rgb;             // of the reference [height][width], [height][3 width]; owned
 	double pose_px;        // rms residual of the pose
+	bool pose_refined;     // by eyeballs and lids of several frames (refine.h); else pose_px is that of the outlines in the reference alone
 	bool pose_given;       // from track.landmark_*, or known: not refined
 	struct track_known *known;       // from rig.json, of this video and calibrate's own mesh; owned
 	int n_known;

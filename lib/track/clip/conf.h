@@ -24,6 +24,10 @@ struct track_conf {
 	int search;            // frames searched for it; this and the spans below are frames at 60 a second: scaled for faster clips
 	int settle;            // frames from which the eyeballs' centres are estimated to refine the reference pose; 0: none
 	double settle_sigma, center_sigma;  // mm, standard deviations of the eyeballs' centres: the prior meanwhile; those of the mesh
+	double guess_sigma;    // mm, of centres that are guessed from the lids' marks
+	double pose_most;      // px at a width of 1280: larger residuals of the reference pose are refused
+	double agree_deg;      // vertical gaze of the two eyes further apart in the median is refused
+	double gaze_least;     // share of frames with gaze in the better eye, below which a clip is refused
 	int points;            // of skin
 	struct {
 		int frames, span;  // so many frames, spread over so many of the clip
@@ -43,6 +47,10 @@ struct track_conf {
 		OPT_INT("doubt_frames", &(c)->doubt.frames, 12, 1000, "", "that are followed where those raise a doubt, until one is good"),    \
 		OPT_INT("doubt_span", &(c)->doubt.span, 12, 100000, "", "frames of the clip that those are spread over"),                       \
 		OPT_REAL("settle_sigma_mm", &(c)->settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),                   \
-		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them")
+		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),                                \
+		OPT_REAL("guess_center_sigma_mm", &(c)->guess_sigma, 0.01, 20, "mm", "how well they are guessed from the lids' marks"),         \
+		OPT_REAL("pose_most_px", &(c)->pose_most, 0.1, 1000, "px", "larger residuals of the reference's pose are refused, at 1280 px"), \
+		OPT_REAL("agree_deg", &(c)->agree_deg, 0.1, 90, "degrees", "the eyes' vertical gaze further apart (median) is refused"),        \
+		OPT_REAL("gaze_least", &(c)->gaze_least, 0, 1, "", "share of frames with gaze in the better eye; with less it is refused")
 
 #endif

@@ -27,6 +27,8 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 		p->radius = subject->radius;
 		// centres from capture.conf are as certain here as when the reference pose is refined by them
 		p->center_sigma = subject->center_given[e] && !conf->limit ? fmin(conf->center_sigma, free_centers.center_sigma) : 0;
+		if (subject->center_sigma[e] > 0)
+			p->center_sigma = fmax(subject->center_sigma[e], free_centers.center_sigma);
 		for (int k = 0; k < 3; k++) {
 			p->limbus_px[k] = NAN;
 			p->center_in_head[k] = subject->center[e][k];

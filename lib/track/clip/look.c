@@ -56,6 +56,8 @@ bool track_look(struct track_clip *clip, enum track_way way, const struct track_
 	struct head_found up, over;
 	struct camera camera = clip->camera, upright;
 	struct cv_face face;
+	double was[4][4];
+	memcpy(was, clip->cam_from_head, sizeof was);
 	bool is_face = way != WAY_OVER && look_for_face(&face, clip) && look_so(&up, clip, WAY_UP, &face, s, conf), is_up = is_face;
 	if (!is_face && way != WAY_OVER) {
 		clip->camera = camera;
@@ -64,14 +66,17 @@ bool track_look(struct track_clip *clip, enum track_way way, const struct track_
 	upright = clip->camera;
 	clip->camera = camera;
 	bool is_over = !is_face && way != WAY_UP && look_so(&over, clip, WAY_OVER, 0, s, conf) && !(is_up && stands(&up, &over));
-	if (!is_up && !is_over)
+	if (!is_up && !is_over) {
+		memcpy(clip->cam_from_head, was, sizeof was);
 		return false;
+	}
 	if (!is_over)
 		clip->camera = upright;
 	const struct head_found *found = is_over ? &over : &up;
 	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
 	memcpy(clip->eye_seen, found->seen, sizeof clip->eye_seen);
 	clip->pose_px = found->edge_px;
+	clip->pose_refined = false;
 	return true;
 }
 

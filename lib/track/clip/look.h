@@ -7,8 +7,7 @@
 enum track_way { WAY_EITHER, WAY_UP, WAY_OVER };
 
 /* Finds the head in clip->luma and rgb: by a face detector, else by the openings of its eyes. Sets cam_from_head, eye_seen,
- * pose_px and, where focal_assumed, the focal length. Returns false when no eyes are found; cam_from_head and camera are then
- * not to be used, the rest is as it was. */
+ * pose_px and, where focal_assumed, the focal length. Returns false when no eyes are found; clip is as it was then. */
 bool track_look(struct track_clip *clip, enum track_way way, const struct track_subject *subject, const struct track_conf *conf);
 
 /* Takes the pose that calibrate has estimated for a frame, which must be the one in clip->rgb.

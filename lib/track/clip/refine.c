@@ -26,7 +26,7 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 			double off[3] = { g->center_in_head[0], g->center_in_head[1], g->center_in_head[2] }, there[2];
 			off[k] += 1;
 			head_project(there, &clip->camera, clip->cam_from_head, off);
-			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(conf->center_sigma, g->center_sigma[k]);
+			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(s->center_sigma[e] > 0 ? s->center_sigma[e] : conf->center_sigma, g->center_sigma[k]);
 			struct head_sight *to = &sights[n++];
 			*to = (struct head_sight){ .line = true, .sure = true, .weight = 1 / (sigma * sigma) };
 			memcpy(to->head, s->center[e], sizeof to->head);
@@ -156,4 +156,5 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 	}
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = px;
+	clip->pose_refined = true;
 }

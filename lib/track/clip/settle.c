@@ -108,10 +108,54 @@ static bool look_again(struct track_clip *clip, struct doubts *d, const struct t
 	return d->turned = look_anew(clip, clip->reference, d->way, stage, s, conf);
 }
 
-void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+/* Largest residual that is accepted, px. Outlines in one frame alone fit half as well as a pose refined by many. */
+static double most_px(const struct track_clip *clip, const struct track_conf *conf)
 {
-	if (s->assumed || clip->pose_given || !conf->settle)
-		return;
+	return conf->pose_most * clip->info.width / 1280 * (clip->pose_refined ? 1 : 2);
+}
+
+static bool is_off(const struct track_clip *clip, const struct track_conf *conf)
+{
+	return !(clip->pose_px <= most_px(clip, conf));
+}
+
+/* Frames spread over the clip, each as the reference: openings, eyeballs and mesh are fitted together, and the frame in which they agree
+ * best is kept. */
+static void try_others(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	enum { TRIES = 5 };
+	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->doubt.span);
+	const enum track_way way = clip->cam_from_head[1][1] > 0 ? WAY_OVER : WAY_UP;
+	long span = few.every * few.limit < clip->info.frames ? few.every * few.limit : clip->info.frames;
+	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
+	for (int i = 0; i < TRIES && is_off(clip, conf); i++) {
+		struct track_clip other = *clip;
+		struct track_result r = { 0 };
+		struct err none = { 0 };
+		other.luma = mem_array(area + 1, 1);
+		other.rgb = mem_array(3 * area + 1, 1);
+		bool better = track_clip_take(&other, span * (2 * i + 1) / (2 * TRIES), stage, conf, &none) && track_look(&other, way, s, conf)
+		              && follow_few(&r, &other, stage, s, &few);
+		if (better) {
+			reference_refine(&other, true, &r, s, &few);
+			better = other.pose_px * most_px(clip, conf) < clip->pose_px * most_px(&other, conf);
+		}
+		other.begins_shut = true;
+		clip->faces = other.faces;
+		if (better) {
+			struct track_clip t = *clip;
+			*clip = other;
+			other = t;
+		}
+		free(other.luma);
+		free(other.rgb);
+		track_result_free(&r);
+	}
+}
+
+/* Looks at few frames, and settles the reference and its pose. */
+static void settle_clip(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
 	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->look.span);
 	struct doubts d = { .way = WAY_EITHER };
 	bool again = true;
@@ -146,4 +190,21 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 		}
 		track_result_free(&r);
 	}
+}
+
+void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	if (s->assumed || clip->pose_given || !conf->settle)
+		return;
+	settle_clip(clip, stage, s, conf);
+	if (is_off(clip, conf) && conf->reference < 0)
+		try_others(clip, stage, s, conf);
+}
+
+bool track_settled(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	if (s->assumed || clip->pose_given || !conf->settle || !is_off(clip, conf))
+		return true;
+	return err_set(err, "%s: frame %ld: its lids and eyeballs do not come together with %s (residual %.1f px, must be at most %.1f: track.pose_most_px): give subject.eye_center.left and .right, subject.eye_radius, camera.focal_px, or a frame from in front (track.reference_frame)",
+	               clip->file, clip->reference, s->file, clip->pose_px, most_px(clip, conf));
 }

@@ -8,9 +8,11 @@
 #include "bridge/om_mesh.h"
 #include "math/vec.h"
 #include "optics/camera_rig.h"
+#include "track/clip/rim.h"
 
 static const long limit_vertices = 2000000;
 static const double usual_radius = 12;  // mm: an eyeball
+static const double rim_sigma = 0.3;    // mm, of a centre from the rim of the mesh's hole: 0.1 and 0.2 on two rendered heads
 
 static const char *const sides[SIDES] = { "left", "right" };
 static const char *const marks[MARKS] = { "inner_canthus", "outer_canthus", "upper_lid_mid", "lower_lid_mid" };
@@ -145,6 +147,14 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 	if (!eyes_of_rig(&rig, s, stage, err))
 		return false;
 	s->radius = isfinite(conf->eye_radius) ? conf->eye_radius * s->unit_mm : usual_radius;
+	// Where capture.conf does not tell, the rims of a modelled mesh's own holes do; those of a reconstruction are what was not seen.
+	bool on_rim[SIDES];
+	double rim[SIDES][3], radius[SIDES];
+	for (int e = 0; e < SIDES; e++)
+		on_rim[e] = !given(&conf->eye_center, sides[e]) && strncmp(s->file, "work/", 5)
+		            && rim_eyeball(rim[e], &radius[e], &s->mesh, e == SIDE_LEFT, at(s, e, MARK_INNER));
+	if ((on_rim[0] || on_rim[1]) && !isfinite(conf->eye_radius))
+		s->radius = ((on_rim[0] ? radius[0] : 0) + (on_rim[1] ? radius[1] : 0)) / (on_rim[0] + on_rim[1]);
 	struct ray_scene *rays = ray_scene_new(s->mesh.n_vertices, (const float(*)[3])s->mesh.vertices, s->mesh.n_faces,
 	                                       (const int32_t(*)[3])s->mesh.faces);
 	bool any = false, usual = false;
@@ -153,8 +163,11 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 		s->center_given[e] = center;
 		for (int k = 0; k < 3; k++)
 			s->center[e][k] = center ? center[k] * s->unit_mm : rig.has_eyes ? rig.eye_center[e][k] : NAN;
-		if (!center && !rig.has_eyes && !center_from_marks(s->center[e], s, e))
+		if (on_rim[e])
+			memcpy(s->center[e], rim[e], sizeof rim[e]);
+		else if (!center && !rig.has_eyes && !center_from_marks(s->center[e], s, e))
 			continue;
+		s->center_sigma[e] = on_rim[e] ? rim_sigma : !center && !rig.has_eyes ? conf->guess_sigma : 0;
 		const double from[3] = { s->center[e][0], s->center[e][1], s->center[e][2] + 1000 };
 		eye_opening_find(&s->opening[e], rays, from, s->center[e], s->radius);
 		eye_opening_find(&s->margin[e], rays, from, s->center[e], s->radius + conf->meniscus_mm);

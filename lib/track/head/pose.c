@@ -8,6 +8,14 @@
 
 enum { P = 6, STEPS = 30 };
 
+void head_fick(double fick[3], const double m[4][4])
+{
+	// Against a head that faces the camera: its x is the camera's, its y and z point the other way.
+	fick[0] = atan2(m[0][2], -m[2][2]);
+	fick[1] = asin(fmin(fmax(-m[1][2], -1), 1));
+	fick[2] = atan2(-m[1][0], -m[1][1]);
+}
+
 void head_from(double out[3], const double m[4][4], const double head[3])
 {
 	double t[3];

@@ -34,6 +34,10 @@ void head_from(double out[3], const double cam_from_head[4][4], const double hea
 /* The inverse of head_from. */
 void head_to(double out[3], const double cam_from_head[4][4], const double cam[3]);
 
+/* How a head is turned: Fick angles (h towards its own left, v up, torsion right-handed about the line out of its face; radians), all 0 when
+ * it is upright and faces along the camera's axis. */
+void head_fick(double fick[3], const double cam_from_head[4][4]);
+
 /* Pixel of a point of the head; false behind the camera. */
 bool head_project(double px[2], const struct camera *camera, const double cam_from_head[4][4], const double head[3]);
 

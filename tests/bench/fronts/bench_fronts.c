@@ -107,8 +107,8 @@ static const struct fronts_stage stages[] = {
 	  .more = { { "newton", "newton, 0.001" }, { "newton_fine", "newton, 0.0001" }, { "auto_coarse", "auto, 0.01" },
 		    { "auto_fine", "auto, 0.0001" }, { "table", "table_linear, 0.001" }, },
 	  .unit = "mm", .error_of = "K, worst", .error = k_off, .reps = 3 },
-	{ .stage = "pigment", .keys = "bands, starts, rounds", .finest = { "finest", "8, 12, 4" }, .after = "relief",
-	  .more = { { "one_start_turns", "4, 1, 3" }, { "few_bands", "3, 4, 3" }, { "fewest", "3, 1, 1" } },
+	{ .stage = "pigment", .keys = "bands, starts", .finest = { "finest", "8, 12" }, .after = "relief",
+	  .more = { { "few_bands", "3, 4" }, { "fewest", "3, 1" } },
 	  .unit = "mm", .error_of = "thickness of the relief, rms, against the finest", .error = thickness_off, .reps = 1 },
 };
 

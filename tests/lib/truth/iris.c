@@ -9,6 +9,8 @@
 #include "bridge/cv_photo.h"
 #include "iris/freckle/opts.h"
 #include "iris/unrefract/opts.h"
+#include "iris/balance_opts.h"
+#include "limbus/evidence.h"
 
 static const double painted_extent = 6.4;  // mm, half-width of the renderer's maps
 
@@ -32,13 +34,26 @@ static void resolve(const char *stage, const char *quality, int n, const struct 
 	free(prefix);
 }
 
-struct unrefract_conf iris_unrefract_conf(const char *quality)
+static struct unrefract_conf read_confs(struct balance_conf *white, const char *quality)
 {
 	struct unrefract_conf c = { 0 };
 	bool write_map;
-	const struct opt opts[] = { UNREFRACT_OPTS(&c), OPT_BOOL("write_map", &write_map, "") };
+	const struct opt opts[] = { UNREFRACT_OPTS(&c), BALANCE_OPTS(white), OPT_BOOL("write_map", &write_map, "") };
 	resolve("unrefract", quality, COUNT(opts), opts);
 	return c;
+}
+
+struct balance_conf iris_balance_conf(void)
+{
+	struct balance_conf white;
+	read_confs(&white, "review");
+	return white;
+}
+
+struct unrefract_conf iris_unrefract_conf(const char *quality)
+{
+	struct balance_conf white;
+	return read_confs(&white, quality);
 }
 
 struct freckle_conf iris_freckle_conf(const char *quality)
@@ -53,9 +68,20 @@ bool iris_texture(struct unrefract_texture *texture, struct unrefract_view *view
                   const struct truth *truth, const struct unrefract_conf *conf, struct err *err)
 {
 	struct photo photo = { 0 };
+	struct evidence_net *net;
 	*fit = truth_fit(truth);
 	*view = (struct unrefract_view){ .name = truth->name };
-	if (!photo_load(&photo, truth->photo, 100, err) || !unrefract_survey(view, &photo, fit, &truth->eye, conf, err))
+	if (!photo_load(&photo, truth->photo, 100, err) || !evidence_open(&net, "config/evidence.onnx", err))
+		return false;
+	struct evidence evidence = { 0 };
+	struct balance_conf white = iris_balance_conf();
+	bool ok = evidence_window(&evidence, net, &photo, fit->limbus.cx, fit->limbus.cy, fit->limbus.a, err);
+	if (ok)
+		view->white = balance_sclera(&photo, fit, &evidence, &white);
+	ok = ok && unrefract_survey(view, &photo, fit, &evidence, &truth->eye, conf, err);
+	evidence_free(&evidence);
+	evidence_close(net);
+	if (!ok)
 		return false;
 	unrefract_align(1, view, conf);
 	*texture = unrefract_begin(unrefract_size(1, view, &truth->eye, conf), &truth->eye, &view->pupil, conf);

@@ -9,6 +9,7 @@
 
 /* As config/unrefract.conf and config/freckles.conf have them. quality: "review". */
 struct unrefract_conf iris_unrefract_conf(const char *quality);
+struct balance_conf iris_balance_conf(void);
 struct freckle_conf iris_freckle_conf(const char *quality);
 
 /* The texture as the stage makes it. fit, view: filled, the caller's; unrefract_view_free; image_free(&texture.rgbw). */

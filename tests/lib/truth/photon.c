@@ -67,6 +67,27 @@ static void start(struct photon *p, const struct photon_slab *s, double top, dou
 	p->dir[2] = -cos_light;
 }
 
+/* Henyey and Greenstein, mean 1. */
+static double phase(double g, double cosine)
+{
+	return (1 - g * g) / pow(1 + g * g - 2 * g * cosine, 1.5);
+}
+
+/* Turns into a new direction, by that phase function. */
+static void scatter(struct photon *p, double g)
+{
+	double u = uniform(&p->random), a = 2 * M_PI * uniform(&p->random), ratio = (1 - g * g) / (1 - g + 2 * g * u);
+	double cosine = g > 1e-3 ? (1 + g * g - ratio * ratio) / (2 * g) : 2 * u - 1, sine = sqrt(fmax(1 - cosine * cosine, 0));
+	double *d = p->dir, flat = hypot(d[0], d[1]), side[3] = { 1, 0, 0 }, up[3] = { 0, 1, 0 };
+	if (flat > 1e-6) {
+		double s[3] = { -d[1] / flat, d[0] / flat, 0 }, t[3] = { -d[2] * s[1], d[2] * s[0], d[0] * s[1] - d[1] * s[0] };
+		memcpy(side, s, sizeof s);
+		memcpy(up, t, sizeof t);
+	}
+	for (int i = 0; i < 3; i++)
+		d[i] = cosine * d[i] + sine * (cos(a) * side[i] + sin(a) * up[i]);
+}
+
 void photon_reflectance(float *out, const struct photon_slab *s, double cos_light, long photons, int orders, uint64_t seed)
 {
 	double top = 0, majorant = fmax(s->scatter[0] + s->absorb[0], s->scatter[1] + s->absorb[1]);
@@ -82,11 +103,8 @@ void photon_reflectance(float *out, const struct photon_slab *s, double cos_ligh
 		for (int order = 1; (!orders || order <= orders) && fly(&p, s, top, majorant, &weight, &layer); order++) {
 			double d = depth(s, p.at), abl = fmin(d, s->abl), deep = d - abl;
 			double tau = abl * (s->scatter[0] + s->absorb[0]) + deep * (s->scatter[1] + s->absorb[1]);
-			out[cell_of(s, p.at)] += (float)(share * weight * exp(-tau));
-			double z = 2 * uniform(&p.random) - 1, a = 2 * M_PI * uniform(&p.random), sine = sqrt(1 - z * z);
-			p.dir[0] = sine * cos(a);
-			p.dir[1] = sine * sin(a);
-			p.dir[2] = z;
+			out[cell_of(s, p.at)] += (float)(share * weight * phase(s->g, p.dir[2]) * exp(-tau));
+			scatter(&p, s->g);
 		}
 	}
 }

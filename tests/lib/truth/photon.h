@@ -2,7 +2,7 @@
  * are held against. Shares no code and no formula of transport with lib/tissue.
  *
  * The slab stands on a black plane z = 0; the stroma reaches up to stroma[y][x] mm, the border layer `abl` mm beyond.
- * Periodic in x and y; indices matched; isotropic scattering.
+ * Periodic in x and y; indices matched; scattering by Henyey and Greenstein.
  */
 #ifndef TESTS_PHOTON_H
 #define TESTS_PHOTON_H
@@ -14,6 +14,7 @@ struct photon_slab {
 	const float *stroma;  // [n][n] mm
 	double abl;           // mm
 	double scatter[2], absorb[2];  // border layer, stroma; mm^-1
+	double g;             // mean cosine of scattering; 0: isotropic
 };
 
 /* out[n][n]: pi times radiance straight up over irradiance on the plane z = 0 (a white Lambertian plane gives 1), for

@@ -35,6 +35,26 @@ static void test_focal(void **state)
 	assert_true(isnan(camera_keys_focal(&k, 1920, 1280)));
 }
 
+/* 50 mm on 36 mm make 2667 px of 1920; an iris of 5.85 mm that is 400 px wide stands f * 5.85 / 400 before the camera. */
+static void test_pairs(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	struct camera_keys k = { .focal_px = 2700, .focal_mm = 50, .sensor_mm = 36 };
+	assert_true(camera_keys_agree(&k, 1920, 1280, &err));
+	k.focal_px = 11826;
+	assert_false(camera_keys_agree(&k, 1920, 1280, &err));
+	ERR_HAS(err, "camera.focal_px = 11826, and camera.focal_mm = 50 with camera.sensor_mm = 36, which make it 2666.67 px");
+	k.sensor_mm = NAN;
+	err = (struct err){ 0 };
+	assert_true(camera_keys_agree(&k, 1920, 1280, &err));
+	assert_true(camera_keys_place(684, 5.85, 400, &err));  // 10.004 mm
+	assert_true(camera_keys_place(6.83e6, 5.85, 400, &err));
+	assert_false(camera_keys_place(300, 5.85, 400, &err));
+	ERR_HAS(err, "camera.focal_px = 300 with eye.limbus_radius_mm = 5.85: an iris of 400 px stands 4.39 mm before");
+	assert_false(camera_keys_place(1e7, 5.85, 400, &err));
+}
+
 /* Focal length with which a grey clip of that size is opened; no face is in it, so that opening ends there. */
 static double focal_of_clip(int width, int height)
 {
@@ -155,6 +175,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_focal),
+		cmocka_unit_test(test_pairs),
 		cmocka_unit_test(test_clip_held_either_way),
 		cmocka_unit_test(test_camera),
 		cmocka_unit_test(test_names),

@@ -223,7 +223,7 @@ static void a_record_of_a_strangers_making_is_refused(void **state)
 	};
 	char hash[33];
 	struct err err = { 0 };
-	assert_true(file_hash(hash, scratch_path("program"), &err));
+	assert_true(file_hash(hash, scratch_path("program"), 1 << 30, &err));
 	for (int i = 0; i < COUNT(bad); i++) {
 		char *text = mem_printf(bad[i], hash), *why = 0;
 		struct conf conf = load_conf();

@@ -1,4 +1,5 @@
 /* render: energy that is conserved, vessels, pictures that converge, what no photograph saw, distances of colours. */
+#include "tests/peers/reflectance_all.h"
 #include "base/mem.h"
 #include "draw/eye/converge.h"
 #include "draw/eye/fill.h"

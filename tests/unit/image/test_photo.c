@@ -1,6 +1,7 @@
 /* Photographs: every format that is promised gives the pixels that went in; everything else is one clear line. */
 #include "tests/lib/unit.h"
 
+#include "bridge/cv_blur.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
@@ -207,6 +208,19 @@ static void refused_blob(const char *what, struct blob b, const char *says)
 	free(b.data);
 }
 
+/* The PNG with n empty chunks of text before its picture. */
+static struct blob with_texts(struct blob png, size_t n)
+{
+	enum { HEAD = 8 + 25, CHUNK = 12 };
+	struct blob out = { mem_new(png.size + n * CHUNK, 1), png.size + n * CHUNK };
+	memcpy(out.data, png.data, HEAD);
+	for (size_t i = 0; i < n; i++)
+		memcpy(out.data + HEAD + i * CHUNK, "\0\0\0\0tEXt\xbf\xa5\xd2\xc2", CHUNK);
+	memcpy(out.data + HEAD + n * CHUNK, png.data + HEAD, png.size - HEAD);
+	free(png.data);
+	return out;
+}
+
 static void faults_are_one_clear_line(void **state)
 {
 	(void)state;
@@ -230,6 +244,7 @@ static void faults_are_one_clear_line(void **state)
 	b = encode_png(&p, 8);
 	claim_size(b, 2000000000, 2000000000);
 	refused_blob("huge PNG", b, "megapixels");
+	refused_blob("PNG of texts", with_texts(encode_png(&p, 8), 100000), "more than 100000 PNG chunks");
 	b = encode_png(&p, 8);
 	b.data[b.size / 2] ^= 0x55;
 	refused_blob("PNG with a flipped bit", b, "is damaged");
@@ -240,6 +255,35 @@ static void faults_are_one_clear_line(void **state)
 	pixels_free(&p);
 	pixels_free(&q);
 	pixels_free(&tiny);
+}
+
+/* Shrunk by any ratio a photograph is the mean over areas: that of OpenCV's area filter, and a constant stays what it is. */
+static void shrunk_is_the_mean_of_areas(void **state)
+{
+	(void)state;
+	enum { X = 3, Y = 5, WIDE = 187, HIGH = 131 };
+	struct photo photo = { .width = 200, .height = 150, .bits = 16, .rgb = mem_new(200 * 150 * 3, sizeof *photo.rgb) };
+	for (int i = 0; i < 200 * 150 * 3; i++)
+		photo.rgb[i] = (uint16_t)(i * 2654435761u >> 16);
+	const int sizes[][2] = { { 187, 131 }, { 100, 130 }, { 62, 44 }, { 17, 13 }, { 1, 1 } };
+	struct image all = photo_linear(&photo, X, Y, WIDE, HIGH);
+	for (int k = 0; k < COUNT(sizes); k++) {
+		struct err err = { 0 };
+		struct image got = photo_shrunk(&photo, X, Y, WIDE, HIGH, sizes[k][0], sizes[k][1]), want = image_new(sizes[k][0], sizes[k][1], 3);
+		assert_true(cv_resize(want.px, want.width, want.height, all.px, all.width, all.height, 3, &err));
+		double sum = 0, mean = 0;
+		for (long i = 0; i < 3L * got.width * got.height; i++) {
+			NEAR(got.px[i], want.px[i], 2e-6);  // OpenCV sums in single precision
+			sum += got.px[i];
+		}
+		for (long i = 0; i < 3L * WIDE * HIGH; i++)
+			mean += all.px[i];
+		NEAR(sum / ((double)got.width * got.height), mean / (WIDE * HIGH), 1e-6);  // nothing is lost or counted twice
+		image_free(&got);
+		image_free(&want);
+	}
+	image_free(&all);
+	photo_free(&photo);
 }
 
 /* Cut anywhere, a file is refused, never decoded in part and never read past its end. */
@@ -338,6 +382,7 @@ int main(void)
 		SCRATCH_TEST(exr_is_linear),
 		SCRATCH_TEST(orientation_is_applied),
 		SCRATCH_TEST(focal_length_where_it_can_be_believed),
+		cmocka_unit_test(shrunk_is_the_mean_of_areas),
 		SCRATCH_TEST(faults_are_one_clear_line),
 		SCRATCH_TEST(truncation_is_noticed),
 		SCRATCH_TEST(no_file),

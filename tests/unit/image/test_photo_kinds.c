@@ -115,6 +115,60 @@ static void profiles_are_honoured(void **state)
 	}
 }
 
+/* The JPEG with an EXIF block (little-endian TIFF) that holds a colour space and an interoperability index alone. */
+static struct blob with_marks(struct blob jpeg, int colour_space, char index)
+{
+	const uint8_t space[2] = { (uint8_t)colour_space, (uint8_t)(colour_space >> 8) };
+	const uint8_t block[] = {
+		0xff, 0xe1, 0, 2 + 6 + 74, 'E', 'x', 'i', 'f', 0, 0, 'I', 'I', '*', 0, 8, 0, 0, 0,
+		1, 0, 0x69, 0x87, 4, 0, 1, 0, 0, 0, 26, 0, 0, 0, 0, 0, 0, 0,
+		2, 0, 0x01, 0xa0, 3, 0, 1, 0, 0, 0, space[0], space[1], 0, 0,
+		0x05, 0xa0, 4, 0, 1, 0, 0, 0, 56, 0, 0, 0, 0, 0, 0, 0,
+		1, 0, 0x01, 0x00, 2, 0, 4, 0, 0, 0, 'R', '0', (uint8_t)index, 0, 0, 0, 0, 0,
+	};
+	struct blob out = { mem_array(jpeg.size + sizeof block, 1), jpeg.size + sizeof block };
+	memcpy(out.data, jpeg.data, 2);
+	memcpy(out.data + 2, block, sizeof block);
+	memcpy(out.data + 2 + sizeof block, jpeg.data + 2, jpeg.size - 2);
+	free(jpeg.data);
+	return out;
+}
+
+/* Cameras that write Adobe RGB mark it in EXIF: R03, and a colour space that is not calibrated. A profile goes before the mark. */
+static void adobe_rgb_by_exif(void **state)
+{
+	(void)state;
+	struct pixels p = patches();
+	struct photo photo = load(with_marks(encode_jpeg(&p, 0), 0xffff, '3'));
+	assert_string_equal(photo.profile, "Adobe RGB");
+	compare(&photo, &space_adobe, true, 3);
+	photo = load(with_marks(encode_jpeg(&p, 0), 1, '3'));
+	compare(&photo, &space_srgb, true, 3);
+	photo = load(with_marks(encode_jpeg(&p, 0), 0xffff, '9'));
+	compare(&photo, &space_srgb, true, 3);
+	photo = load(with_marks(with_icc_jpeg(encode_jpeg(&p, 0), icc_of(&space_p3), 1), 0xffff, '3'));
+	compare(&photo, &space_p3, true, 3);
+	pixels_free(&p);
+}
+
+/* Three channels that are alike are a grey photograph. */
+static void grey_in_three_channels(void **state)
+{
+	(void)state;
+	struct pixels p = pattern(W, H, 3);
+	for (int i = 0; i < W * H; i++)
+		p.px[3 * i + 1] = p.px[3 * i + 2] = p.px[3 * i];
+	struct photo photo = load(encode_jpeg(&p, 0));
+	assert_true(photo.grey);
+	photo_free(&photo);
+	for (int i = 0; i < W * H; i++)
+		p.px[3 * i + 2] = (uint16_t)(p.px[3 * i] * 0.95);
+	photo = load(encode_png(&p, 8));
+	assert_false(photo.grey);
+	photo_free(&photo);
+	pixels_free(&p);
+}
+
 /* A profile of sRGB leaves every value as it is, to the bit. */
 static void srgb_is_untouched(void **state)
 {
@@ -235,7 +289,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(profiles_are_honoured), cmocka_unit_test(srgb_is_untouched), cmocka_unit_test(grey_profiles),
 		cmocka_unit_test(bad_profiles_are_refused), cmocka_unit_test(webp_is_exact), cmocka_unit_test(heif_and_avif),
-		cmocka_unit_test(raw_is_developed),
+		cmocka_unit_test(raw_is_developed), cmocka_unit_test(adobe_rgb_by_exif), cmocka_unit_test(grey_in_three_channels),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -77,26 +77,23 @@ static void test_synthetic(void **state)
 {
 	(void)state;
 	struct limbus_found *found = mem_new(1, sizeof *found);
-	int close = 0, near = 0, wrong = 0, n = 0;
+	int close = 0, right = 0, wrong = 0, n = 0;
 	for (int i = 0; i < SYNTH_GRID * 3 / SYNTH_LEVELS; i += 8, n++) {  // occlusion 0, 15 and 30 %
 		struct synth_eye eye = synth_eye_grid(i + i / 8 % 6);  // all colours
 		struct synth_truth truth;
 		struct photo photo = synth_eye_render(&eye, &truth);
 		limbus_find(found, &photo, 0, &limbus_defaults);
-		/* 5 % of the semi-axis is what detectors are measured by; ours is mostly within 1 % */
 		double error = ellipse_error(&found->limbus.e, &truth.limbus) / truth.limbus.a;
 		close += found->ok && error < 0.01;
-		near += found->ok && error < 0.05;
-		wrong += found->ok && error >= 0.05;
-		if (truth.occlusion < 0.2)
-			assert_true(found->ok && error < 0.05);
+		right += found->ok && error < LIMBUS_RIGHT;
+		wrong += found->ok && error >= LIMBUS_RIGHT;
 		photo_free(&photo);
 	}
-	print_message("%d synthetic eyes: %d within 1 %%, %d within 5 %%, %d wrong\n", n, close, near, wrong);
-	/* the whole grid, and what is missed on it, is bench_limbus' */
-	assert_true(near >= 0.85 * n);
-	assert_true(close >= 0.6 * n);
-	assert_true(wrong <= 1);
+	print_message("%d synthetic eyes: %d within 1 %%, %d within 2 %%, %d wrong\n", n, close, right, wrong);
+	/* The whole grid, and what is missed on it, is bench_limbus'. These irises have little pattern: some pass for painted ones. */
+	assert_true(right >= 0.6 * n);
+	assert_true(close >= 0.5 * n);
+	assert_int_equal(wrong, 0);
 	free(found);
 }
 

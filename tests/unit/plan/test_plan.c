@@ -60,17 +60,21 @@ static void every_stage_has_its_configuration_and_its_cost(void **state)
 	struct err err = { 0 };
 	assert_true(conf_load(&conf, "config/plan.conf", "", 0, &err));
 	for (int i = 0; i < PLAN_STAGES; i++) {
-		char *path = mem_printf("config/%s.conf", plan_stages[i].name), *key = mem_printf("%s_seconds", plan_stages[i].name);
+		char *path = mem_printf("config/%s.conf", plan_stages[i].name), *key = mem_printf("%s_seconds", plan_stages[i].name),
+		     *mib = mem_printf("%s_mib", plan_stages[i].name);
 		if (!file_exists(path))
 			fail_msg("%s is missing", path);
 		if (!conf_find(&conf, key, 0))
 			fail_msg("config/plan.conf: no row %s", key);
+		if (!conf_find(&conf, mib, 0))
+			fail_msg("config/plan.conf: no row %s", mib);
+		free(mib);
 		free(path);
 		free(key);
 	}
 	for (int i = 0; i < conf.n; i++) {
 		char name[100];
-		if (sscanf(conf.items[i].key, "%99[a-z]_seconds", name) == 1 && plan_stage_find(name) < 0)
+		if (sscanf(conf.items[i].key, "%99[a-z]_", name) == 1 && plan_stage_find(name) < 0)
 			fail_msg("config/plan.conf: %s: no such stage", conf.items[i].key);
 	}
 	conf_free(&conf);

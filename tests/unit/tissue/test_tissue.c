@@ -1,4 +1,5 @@
 /* The tissue in closed form, against Chandrasekhar's H function, and against Monte Carlo. */
+#include "tests/peers/reflectance_all.h"
 #include "tissue/tissue.h"
 #include "tests/peers/reflectance_full.h"
 #include "tests/lib/truth/photon.h"
@@ -105,12 +106,42 @@ static void test_against_monte_carlo(void **state)
 			double absorb[] = { tissue_absorption(&(struct tissue_layer) { y[0], y[1] }, nm), y[4] * tissue_absorption(&(struct tissue_layer) { y[2], y[3] }, nm) };
 			double source[] = { s, y[4] * s }, extinction[] = { s + absorb[0], source[1] + absorb[1] };
 			float stroma = 0.45f, photons, first;
-			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0], source[1] }, { absorb[0], absorb[1] } };
+			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0], source[1] }, { absorb[0], absorb[1] }, 0 };
 			photon_reflectance(&photons, &slab, 0.85, 400000, 0, 1);
 			photon_reflectance(&first, &slab, 0.85, 200000, 1, 2);
 			CHECK_NEAR(tissue_reflectance_all(extinction, source, 0.04, stroma, 1, 0.85), photons, 0.01 * photons);
 			CHECK_NEAR(tissue_reflectance_one(extinction, source, 0.04, stroma, 1, 0.85), first, 0.01 * first);
 		}
+}
+
+/* Forward scattering by photons: noise of 0.5 %; five cosines and a forward peak cut off leave 2 %. Tissue of another anisotropy (0.8) at
+ * the same reduced coefficients: 8 %; isotropic tissue, at worst, two and a half times as bright. */
+static void test_forward(void **state)
+{
+	static const double eyes[][5] = { { 0.0005, 0.7, 0.0005, 0.7, 0.3 }, { 0.01, 0.5, 0.003, 0.5, 0.3 }, { 0.03, 0.6, 0.02, 0.6, 0.5 }, { 0.3, 0.8, 0.1, 0.8, 0.6 } };
+	double off = 0, other = 0, isotropic = 0;
+	(void)state;
+	for (int e = 0; e < 4; e++)
+		for (int k = 0; k < 2; k++) {
+			const double *y = eyes[e], nm = k ? 620 : 450, s = tissue_scattering(nm), g = TISSUE_ANISOTROPY;
+			double absorb[] = { tissue_absorption(&(struct tissue_layer) { y[0], y[1] }, nm), y[4] * tissue_absorption(&(struct tissue_layer) { y[2], y[3] }, nm) };
+			double source[] = { s, y[4] * s }, extinction[] = { s + absorb[0], source[1] + absorb[1] }, got[3], light = 0.85;
+			float stroma = 0.225f, photons[4], twice = 2 * stroma;
+			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0] / (1 - g), source[1] / (1 - g) }, { absorb[0], absorb[1] }, g };
+			photon_reflectance(&photons[0], &slab, light, 400000, 0, 1);
+			slab.stroma = &twice;
+			photon_reflectance(&photons[1], &slab, light, 400000, 0, 2);
+			tissue_reflectance_forward(got, extinction, source, 0.04, stroma, 1, light);
+			slab = (struct photon_slab){ 1, 1, &twice, 0.04, { source[0] / 0.2, source[1] / 0.2 }, { absorb[0], absorb[1] }, 0.8 };
+			photon_reflectance(&photons[2], &slab, light, 400000, 0, 3);
+			print_message("%.0f nm: %.4f (photons %.4f), %.4f (%.4f; g = 0.8: %.4f)\n", nm, got[1], (double)photons[0], got[2], (double)photons[1], (double)photons[2]);
+			for (int i = 0; i < 2; i++)
+				off = fmax(off, fabs(got[1 + i] / (double)photons[i] - 1));
+			other = fmax(other, fabs(got[2] / (double)photons[2] - 1));
+			isotropic = fmax(isotropic, tissue_reflectance_all(extinction, source, 0.04, twice, 1, light) / (double)photons[1]);
+		}
+	print_message("forward: off by %.3f, from another anisotropy by %.3f; isotropic %.2f times\n", off, other, isotropic);
+	assert_true(off < 0.03 && other < 0.1 && isotropic > 1.5);
 }
 
 /* Few bands against all 81 wavelengths, single scattering: nothing but the quadrature differs. Error against the
@@ -168,14 +199,15 @@ static void test_effective(void **state)
 		}
 	}
 	print_message("effective coefficients: mean %.2f %%, worst %.2f %%\n", 100 * sum, 100 * worst);
-	assert_true(worst < 0.05 && sum < 0.01);
+	// First order turns otherwise with the angles than forward scattering does: 10 % at 15 degrees from where it was made, in dark tissue.
+	assert_true(worst < 0.12 && sum < 0.025);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_coefficients), cmocka_unit_test(test_one_layer), cmocka_unit_test(test_all_orders_semi_infinite),
-		cmocka_unit_test(test_energy), cmocka_unit_test(test_against_monte_carlo), cmocka_unit_test(test_bands),
+		cmocka_unit_test(test_energy), cmocka_unit_test(test_against_monte_carlo), cmocka_unit_test(test_forward), cmocka_unit_test(test_bands),
 		cmocka_unit_test(test_effective),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);

@@ -9,6 +9,7 @@
 #include "bridge/om_mesh.h"
 #include "image/video/video.h"
 #include "math/rng.h"
+#include "track/gaze/globe.h"
 #include "track/head/refine.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/unit.h"
@@ -220,9 +221,27 @@ static void poses_from_points(void **state)
 	}
 }
 
+/* Fick angles of heads made by gaze_rotation, which eyes are turned by. */
+static void test_fick(void **state)
+{
+	(void)state;
+	static const double turns[][3] = { { 0, 0, 0 }, { 0.5, 0.1, -0.3 }, { -1.2, -0.7, 2.5 }, { 0.2, 0.6, M_PI - 0.1 } };
+	for (int i = 0; i < COUNT(turns); i++) {
+		double r[3][3], m[4][4] = { [3] = { 0, 0, 0, 1 } }, got[3];
+		gaze_rotation(r, turns[i]);
+		for (int a = 0; a < 3; a++)
+			for (int b = 0; b < 3; b++)
+				m[a][b] = a ? -r[a][b] : r[a][b];
+		head_fick(got, (const double(*)[4])m);
+		for (int k = 0; k < 3; k++)
+			NEAR(got[k], turns[i][k], 1e-12);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_fick),
 		cmocka_unit_test(finds_two_eyes),
 		cmocka_unit_test(finds_one_eye),
 		cmocka_unit_test(finds_none_where_there_is_none),

@@ -1,0 +1,113 @@
+#include "base/guard.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/landlock.h>
+#include <omp.h>
+#include <seccomp.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+// Sanitizers look into their own process and take terabytes of addresses for their tables.
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+enum { SANITISED = 1 };
+#else
+enum { SANITISED = 0 };
+#endif
+
+static void limit(int what, rlim_t most)
+{
+	struct rlimit now;
+	if (!getrlimit(what, &now) && (now.rlim_cur == RLIM_INFINITY || now.rlim_cur > most)) {
+		now.rlim_cur = now.rlim_max != RLIM_INFINITY && now.rlim_max < most ? now.rlim_max : most;
+		setrlimit(what, &now);
+	}
+}
+
+static void limit_all(void)
+{
+	const rlim_t memory = (rlim_t)sysconf(_SC_PHYS_PAGES) * (rlim_t)sysconf(_SC_PAGESIZE);
+	if (!SANITISED)
+		limit(RLIMIT_AS, 2 * memory + ((rlim_t)16 << 30));
+	limit(RLIMIT_CPU, (rlim_t)86400 * (rlim_t)omp_get_num_procs());
+	limit(RLIMIT_NOFILE, 1024);
+}
+
+/* Lets the ruleset allow `rights` below a folder, or for a file. */
+static void allow(int ruleset, const char *path, uint64_t rights)
+{
+	struct landlock_path_beneath_attr below = { .allowed_access = rights, .parent_fd = open(path, O_PATH | O_CLOEXEC) };
+	if (below.parent_fd < 0)
+		return;
+	syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &below, 0);
+	close(below.parent_fd);
+}
+
+static void keep_below(const char *work, bool starts_programs)
+{
+	// Of the kernel's headers of Linux 5.13 only the first rights are known; the others by their numbers.
+	enum { REFER = 1 << 13, TRUNCATE = 1 << 14 };
+	uint64_t rights = LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | LANDLOCK_ACCESS_FS_REMOVE_FILE
+	                  | LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG
+	                  | LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_BLOCK
+	                  | LANDLOCK_ACCESS_FS_MAKE_SYM | REFER;
+	const long abi = syscall(SYS_landlock_create_ruleset, 0, 0, LANDLOCK_CREATE_RULESET_VERSION);
+	if (abi < 2)  // the first forbids each rename into another folder
+		return;
+	rights |= abi >= 3 ? TRUNCATE : 0;
+	const struct landlock_ruleset_attr attr = { .handled_access_fs = rights };
+	const int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attr, sizeof attr.handled_access_fs, 0);
+	if (ruleset < 0)
+		return;
+	const char *tmp = getenv("TMPDIR");
+	tmp = tmp && *tmp ? tmp : "/tmp";
+	allow(ruleset, work, rights);
+	allow(ruleset, "/dev/null", LANDLOCK_ACCESS_FS_WRITE_FILE | (rights & TRUNCATE));
+	if (starts_programs) {
+		allow(ruleset, tmp, rights);
+		setenv("SQLITE_TMPDIR", tmp, 0);  // SQLite prefers /var/tmp, COLMAP's as well as ours
+	}
+	if (!prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0))
+		syscall(SYS_landlock_restrict_self, ruleset, 0);
+	close(ruleset);
+}
+
+static void forbid_calls(bool starts_programs)
+{
+	static const int calls[] = {
+		SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(mount), SCMP_SYS(umount2), SCMP_SYS(pivot_root),
+		SCMP_SYS(chroot), SCMP_SYS(setns), SCMP_SYS(unshare), SCMP_SYS(bpf), SCMP_SYS(keyctl), SCMP_SYS(add_key), SCMP_SYS(request_key),
+		SCMP_SYS(init_module), SCMP_SYS(finit_module), SCMP_SYS(kexec_load), SCMP_SYS(swapon), SCMP_SYS(reboot), SCMP_SYS(acct),
+		SCMP_SYS(io_uring_setup), SCMP_SYS(userfaultfd), SCMP_SYS(perf_event_open),
+	};
+	scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+	if (!filter)
+		return;
+	seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC, 1);  // threads that libraries have begun, too
+	for (int i = 0; i < COUNT(calls); i++)
+		seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), calls[i], 0);
+	const struct scmp_arg_cmp elsewhere = { .arg = 0, .op = SCMP_CMP_NE, .datum_a = AF_UNIX };
+	seccomp_rule_add_array(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(socket), 1, &elsewhere);
+	if (!SANITISED)
+		seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(ptrace), 0);
+	if (!starts_programs) {
+		seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(execve), 0);
+		seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(execveat), 0);
+	}
+	seccomp_load(filter);
+	seccomp_release(filter);
+}
+
+void guard_enter(const char *work, bool starts_programs)
+{
+	limit_all();
+	keep_below(work, starts_programs);
+	forbid_calls(starts_programs);
+}

@@ -1,0 +1,18 @@
+/* guard: what the kernel keeps a stage from, whatever a stranger's file makes of a decoder: writing outside of work/, the network,
+ * other programs, memory and time without end.
+ */
+#ifndef BASE_GUARD_H
+#define BASE_GUARD_H
+#include <stdbool.h>
+
+/* From here on, for this process and all that it starts:
+ *   files      are written, made, renamed, removed below `work` alone (and in TMPDIR, where starts_programs); Landlock,
+ *              Linux 5.19. Where work/ holds links or an attacker changes it meanwhile: the kernel follows them, and refuses.
+ *   sockets    are of this machine alone; no other process is looked into, no file system mounted; libseccomp
+ *   programs   are started only where starts_programs
+ *   limits     address space twice the machine's memory and 16 GiB, a day of each core's time, 1024 open files
+ * What the kernel does not have is left out: the checks of base/work.h and base/file.h stand without it.
+ * work  path of the folder, which is there */
+void guard_enter(const char *work, bool starts_programs);
+
+#endif

@@ -1,0 +1,74 @@
+#include "iris/unrefract/told.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+
+struct told told_new(const struct evidence *evidence, const struct iris_map *map, const float *seen, double limbus)
+{
+	const double least = 0.3;  // mean probability of an iris in the ring: eyes are above 0.5, what is none below 0.1
+	struct told told = { 0 };
+	if (!evidence)
+		return told;
+	size_t n = (size_t)map->size * (size_t)map->size;
+	float **plane[] = { &told.cover, &told.mirror, &told.pupil };
+	for (int k = 0; k < COUNT(plane); k++)
+		*plane[k] = mem_new(n, sizeof(float));
+	double eye = 0;
+	long ring = 0;
+#pragma omp parallel for schedule(static)
+	for (size_t i = 0; i < n; i++) {
+		if (!(seen[i] > 0))
+			continue;
+		double x = map->u[i], y = map->v[i];
+		told.cover[i] = evidence_at(evidence, EVIDENCE_SKIN, x, y) + evidence_at(evidence, EVIDENCE_LASH, x, y)
+		                + evidence_at(evidence, EVIDENCE_SCLERA, x, y);
+		told.mirror[i] = evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
+		told.pupil[i] = evidence_at(evidence, EVIDENCE_PUPIL, x, y);
+	}
+	for (size_t i = 0; i < n; i++)
+		if (seen[i] > 0 && map->rim[i] > 0.4 * limbus && map->rim[i] < 0.9 * limbus) {
+			eye += 1 - told.cover[i];
+			ring++;
+		}
+	if (!(eye > least * (double)ring))
+		told_free(&told);
+	return told;
+}
+
+void told_free(struct told *told)
+{
+	free(told->cover);
+	free(told->mirror);
+	free(told->pupil);
+	*told = (struct told){ 0 };
+}
+
+float *told_iris(const struct told *told, const float *seen, size_t n)
+{
+	float *out = mem_array(n, sizeof *out);
+	for (size_t i = 0; i < n; i++)
+		out[i] = told->cover ? seen[i] * fmaxf(1 - told->cover[i] - told->mirror[i], 0) : seen[i];
+	return out;
+}
+
+struct circle told_pupil(const struct told *told, int size, double extent)
+{
+	const double least = 0.7, most = 4.2;  // mm: radii of pupils, constricted and dilated by drops
+	const double whole = 0.75;             // share of a disc's mass that lies in it
+	double mass = 0, x = 0, y = 0, inside = 0, texel = 2 * extent / size;
+	for (int row = 0; row < size && told->pupil; row++)
+		for (int col = 0; col < size; col++) {
+			float p = told->pupil[(long)row * size + col];
+			mass += p;
+			x += p * ((col + 0.5) * texel - extent);
+			y += p * ((row + 0.5) * texel - extent);
+		}
+	struct circle c = { x / fmax(mass, 1), y / fmax(mass, 1), sqrt(mass / M_PI) * texel };
+	for (int row = 0; row < size && told->pupil; row++)
+		for (int col = 0; col < size; col++)
+			if (hypot((col + 0.5) * texel - extent - c.cx, (row + 0.5) * texel - extent - c.cy) < c.r)
+				inside += told->pupil[(long)row * size + col];
+	return c.r >= least && c.r <= most && inside > whole * mass && hypot(c.cx, c.cy) < 1 ? c : (struct circle){ 0 };
+}

@@ -1,0 +1,119 @@
+#include "limbus/odds.h"
+
+#include <math.h>
+
+#include "math/stats.h"
+
+enum { RINGS = 6, STEP = 6, APART = 8 };
+static const double EVEN = 0.003;       // of a step: flat but for rounding
+static const double BESIDE = 0.09;      // semi-axes: how far from the edge the evidence is read
+static const double FLOOR = 1e-3;       // scatter and sigma count no lower
+static const double UNIT = 400;         // pixels in an iris of the evidence's usual size, about
+
+/* Mean chance of a class along the edge, s px outward; over the arcs in use, or all. 0 over none. */
+static double beside(const struct evidence *e, enum evidence_class class, const struct rim *rim, double s, const bool *use)
+{
+	double sum = 0;
+	int n = 0;
+	for (int i = 0; i < ARCS; i += use ? 1 : STEP)
+		if (!use || use[i]) {
+			double p[2], normal[2];
+			ellipse_point(p, normal, &rim->e, rim->t[i]);
+			sum += evidence_at(e, class, p[0] + s * normal[0], p[1] + s * normal[1]);
+			n++;
+		}
+	return n ? sum / n : 0;
+}
+
+/* Mean chance of a class between two copies of the ellipse, `from` and `to` times as large. */
+static double between(const struct evidence *e, enum evidence_class class, const struct ellipse *at, double from, double to)
+{
+	double sum = 0, weight = 0;
+	for (int j = 0; j < RINGS; j++) {
+		struct ellipse f = *at;
+		const double k = from + (to - from) * (j + 0.5) / RINGS;
+		f.a *= k;
+		f.b *= k;
+		for (int i = 0; i < ARCS; i += STEP) {
+			double p[2], normal[2];
+			ellipse_point(p, normal, &f, 2 * M_PI * i / ARCS);
+			sum += k * evidence_at(e, class, p[0], p[1]);
+			weight += k;
+		}
+	}
+	return sum / weight;
+}
+
+static double beyond(const struct ellipse *e, int width, int height)
+{
+	int n = 0;
+	for (int i = 0; i < ARCS; i++) {
+		double p[2], normal[2];
+		ellipse_point(p, normal, e, 2 * M_PI * i / ARCS);
+		n += p[0] < 0 || p[1] < 0 || p[0] > width || p[1] > height;
+	}
+	return (double)n / ARCS;
+}
+
+/* Logarithm of the spread of the brightness on one side of the step along the ring, neighbours against each other, in steps. */
+static double varies(const struct rim *rim, bool outside)
+{
+	double d[ARCS], jump[ARCS];
+	int n = 0;
+	for (int i = 0; i < ARCS; i++) {
+		const int k = (i + APART) % ARCS;
+		if (!rim->used[i] || !rim->used[k])
+			continue;
+		const struct step *p = &rim->step[i], *q = &rim->step[k];
+		d[n] = outside ? p->out - q->out : p->in - q->in;
+		jump[n++] = p->out - p->in;
+	}
+	return n ? log(stats_mad(n, d, 0) / stats_median(n, jump) + EVEN) : log(EVEN);
+}
+
+void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct evidence *evidence,
+                 const struct region_map *map, int width, int height)
+{
+	const struct ellipse *e = &rim->e;
+	const double s = BESIDE * e->a;
+	struct ellipse best = *e;
+	double sigma[ELLIPSE_N], worst = 0, worth = region_worth(map, e), top = region_fit(&best, map);
+	ellipse_sigma(sigma, e, rim->cov_q);
+	for (int i = 0; i < 4; i++)
+		worst = fmax(worst, sigma[i]);
+	x[ODDS_ONE] = 1;
+	x[ODDS_SCATTER] = rim->coverage > 0 ? log(rim->rms / e->a + FLOOR) : 0;
+	x[ODDS_COVERAGE] = rim->coverage;
+	x[ODDS_SIGMA] = log(worst / e->a + FLOOR);
+	x[ODDS_CONTRAST] = log(fmax(rim->contrast, 0.01));
+	x[ODDS_BLUR] = fmin(rim->width / e->a, 0.3);
+	x[ODDS_SCLERA_OUTSIDE] = beside(evidence, EVIDENCE_SCLERA, rim, s, rim->used);
+	x[ODDS_IRIS_INSIDE] = beside(evidence, EVIDENCE_IRIS, rim, -s, rim->used);
+	x[ODDS_IRIS_OUTSIDE] = beside(evidence, EVIDENCE_IRIS, rim, s, 0);
+	x[ODDS_SCLERA_INSIDE] = beside(evidence, EVIDENCE_SCLERA, rim, -s, 0);
+	x[ODDS_EYE] = between(evidence, EVIDENCE_IRIS, e, 0, 1) + between(evidence, EVIDENCE_PUPIL, e, 0, 1)
+	              + between(evidence, EVIDENCE_REFLECTION, e, 0, 1);
+	x[ODDS_SCLERA] = between(evidence, EVIDENCE_SCLERA, e, 0, 1);
+	x[ODDS_AROUND] = between(evidence, EVIDENCE_SCLERA, e, 1.05, 1.5);
+	x[ODDS_BEHIND] = fmin(fmax(top - worth, 0) / UNIT, 4);
+	x[ODDS_OFF] = fmin(fmax(hypot(best.cx - e->cx, best.cy - e->cy) / e->a, fmax(fabs(log(best.a / e->a)), fabs(log(best.b / e->b)))), 1);
+	x[ODDS_PUPIL] = pupil != 0;
+	x[ODDS_PUPIL_OFF] = pupil ? hypot(pupil->e.cx - e->cx, pupil->e.cy - e->cy) / e->a : 0;
+	x[ODDS_PUPIL_LARGE] = pupil ? fmax(pupil->e.a / e->a - 0.5, 0) : 0;
+	x[ODDS_CUT] = beyond(e, width, height);
+	x[ODDS_ROUND] = log(e->b / e->a);
+	x[ODDS_IRIS_EVEN] = varies(rim, false);
+	x[ODDS_SCLERA_EVEN] = varies(rim, true);
+}
+
+double odds_log(const double x[ODDS_TRAITS], const struct odds_weights *weights)
+{
+	double sum = weights->sum[ODDS_UNITS];
+	for (int k = 0; k < ODDS_UNITS; k++) {
+		double unit = 0;
+		for (int i = 0; i < ODDS_TRAITS; i++)
+			unit += weights->unit[k][i] * x[i];
+		sum += weights->sum[k] * tanh(unit);
+	}
+	return sum;
+}

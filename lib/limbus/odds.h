@@ -1,0 +1,50 @@
+/* odds: how likely a measured ellipse is the limbus to 2 % of its radius: one number from the evidence of the pixels in and round it, the
+ * steps along it and the pupil in it. A regression on drawn and synthetic eyes
+ * (tests/evidence/odds.py); its weights are keys of config/limbus.conf.
+ */
+#ifndef LIMBUS_ODDS_H
+#define LIMBUS_ODDS_H
+#include "limbus/region.h"
+#include "limbus/rim.h"
+
+/* What is looked at. Means over places where not said otherwise; chances are the evidence's. */
+enum odds_trait {
+	ODDS_ONE,             // 1: the prior
+	ODDS_SCATTER,         // log of the edge's scatter over the semi-axis
+	ODDS_COVERAGE,        // share of the ring that shows a step
+	ODDS_SIGMA,           // log of the largest sigma over the semi-axis
+	ODDS_CONTRAST,        // log of the step's Weber contrast
+	ODDS_BLUR,            // width of the step over the semi-axis
+	ODDS_SCLERA_OUTSIDE,  // chance of sclera outside of the arcs used
+	ODDS_IRIS_INSIDE,     // chance of iris inside of them
+	ODDS_IRIS_OUTSIDE,    // chance of iris outside, all arcs
+	ODDS_SCLERA_INSIDE,   // chance of sclera inside, all arcs
+	ODDS_EYE,             // chance of iris, pupil or reflection in the ellipse
+	ODDS_SCLERA,          // chance of sclera in it
+	ODDS_AROUND,          // chance of sclera round it
+	ODDS_BEHIND,          // how far its evidence is behind that of the best ellipse near it
+	ODDS_OFF,             // how far that ellipse is, in semi-axes
+	ODDS_PUPIL,           // 1 where a pupil was measured
+	ODDS_PUPIL_OFF,       // how far its centre is off the ellipse's, semi-axes
+	ODDS_PUPIL_LARGE,     // its size beyond half of the ellipse's
+	ODDS_CUT,             // share of the ring beyond the photograph
+	ODDS_ROUND,           // log b / a
+	ODDS_IRIS_EVEN,       // log of how the brightness inside varies along the ring, in steps: painted irises are even
+	ODDS_SCLERA_EVEN,     // the same outside
+	ODDS_TRAITS
+};
+
+/* pupil: null where none was measured. evidence: of the window round the ellipse; map: the same. */
+void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct evidence *evidence,
+                 const struct region_map *map, int width, int height);
+
+/* A layer of hyperbolic tangents of sums of traits, and a sum of these. */
+enum { ODDS_UNITS = 6 };
+struct odds_weights {
+	double unit[ODDS_UNITS][ODDS_TRAITS], sum[ODDS_UNITS + 1];  // the last of sum: constant
+};
+
+/* Natural logarithm of the odds. */
+double odds_log(const double x[ODDS_TRAITS], const struct odds_weights *weights);
+
+#endif

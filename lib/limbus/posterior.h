@@ -1,0 +1,18 @@
+/* posterior: of all trials of one photograph, the likeliest limbus, its best rival, and the chance that the answer is off.
+ */
+#ifndef LIMBUS_POSTERIOR_H
+#define LIMBUS_POSTERIOR_H
+#include "limbus/trial.h"
+
+/* Weighs the trials against each other and against "none of them": those within LIMBUS_RIGHT of a likelier one say the same, each other
+ * one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
+void posterior_of(struct posterior *posterior, const struct trials *trials);
+
+/* The largest difference of centre and semi-axes, in semi-axes of `from`. */
+double trial_apart(const struct ellipse *e, const struct ellipse *from);
+
+/* After the likeliest one was measured in full: adds to its covariance (of q, px) what the rivals say, each by its chance, and to gross
+ * where the full measurement is another ellipse than the trial was. */
+void posterior_settle(struct posterior *posterior, struct rim *rim, const struct trials *trials);
+
+#endif

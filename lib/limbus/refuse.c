@@ -1,0 +1,71 @@
+#include "limbus/refuse.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+bool limbus_refuse(struct limbus_found *found, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	vsnprintf(found->reason, sizeof found->reason, fmt, ap);
+	va_end(ap);
+	return found->ok = false;
+}
+
+static bool is_cut(const struct ellipse *e, const struct photo *photo)
+{
+	const double c = cos(e->angle), s = sin(e->angle), slack = 0.01 * e->a;
+	double hx = hypot(e->a * c, e->b * s), hy = hypot(e->a * s, e->b * c);
+	return e->cx - hx < -slack || e->cy - hy < -slack || e->cx + hx > photo->width + slack || e->cy + hy > photo->height + slack;
+}
+
+/* A trait that lowers the odds of a limbus, how a clear photograph of an open eye has it, and what to do about it. */
+struct fault {
+	enum odds_trait trait;
+	double usual;
+	const char *words;
+};
+
+static const struct fault faults[] = {
+	{ ODDS_EYE, 0.9, "nothing in it looks like an iris: photograph one open eye close up" },
+	{ ODDS_COVERAGE, 0.7, "too much of the limbus is covered by lids or lashes: open the eye wider" },
+	{ ODDS_SIGMA, -5.5, "too little of the limbus stands out: open the eye wider and light it evenly" },
+	{ ODDS_CONTRAST, -0.5, "no clear edge between iris and sclera: light the eye evenly and focus on the iris" },
+	{ ODDS_BLUR, 0.03, "too blurred: focus on the iris and hold the camera still" },
+	{ ODDS_SCATTER, -5.5, "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight" },
+	{ ODDS_SCLERA_OUTSIDE, 0.8, "no white of the eye beside the iris: open the eye wide and light it evenly" },
+	{ ODDS_IRIS_OUTSIDE, 0, "only the pupil or a part of the iris stands out: show the whole iris, evenly lit" },
+	{ ODDS_PUPIL_OFF, 0, "the pupil does not lie in the middle of the iris: photograph the eye straight, without strong reflections" },
+	{ ODDS_ROUND, -0.05, "the eye is turned too far aside: photograph it from nearer to the front" },
+	{ ODDS_IRIS_EVEN, -1.5, "the iris has no pattern, as painted eyes have none: focus on the iris" },
+};
+
+/* The fault without which the odds would be highest. */
+static const char *words_of(const struct trial *trial, const struct odds_weights *weights)
+{
+	const char *words = faults[0].words;
+	double most = 0;
+	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
+		const struct fault *f = &faults[i];
+		struct trial mended = *trial;
+		mended.x[f->trait] = f->usual;
+		const double cost = odds_log(mended.x, weights) - trial->log_odds;
+		if (cost > most) {
+			most = cost;
+			words = f->words;
+		}
+	}
+	return words;
+}
+
+void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf)
+{
+	const struct posterior *p = &found->posterior;
+	if (is_cut(&found->limbus.e, photo))
+		limbus_refuse(found, "the iris is cut by the frame: show all of it with some white around");
+	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
+		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
+	else if (p->gross > conf->max_gross)
+		limbus_refuse(found, "%s", words_of(trial, &conf->odds));
+}

@@ -1,0 +1,14 @@
+/* refuse: why a photograph's limbus is not believed, in words that say what to photograph better. Internal to limbus_find.
+ */
+#ifndef LIMBUS_REFUSE_H
+#define LIMBUS_REFUSE_H
+#include "limbus/trial.h"
+
+/* Sets the reason; returns found->ok, false. */
+__attribute__((format(printf, 2, 3)))
+bool limbus_refuse(struct limbus_found *found, const char *fmt, ...);
+
+/* Refuses an ellipse that the frame cuts, or whose chance of being off is above conf->max_gross. */
+void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf);
+
+#endif

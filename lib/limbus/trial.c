@@ -1,0 +1,181 @@
+#include "limbus/trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "limbus/find.h"
+
+enum { REGIONS_TRIED = 3, VOTES_TRIED = 4, ROUNDS_TRIED = 2, COARSE_PX = 110, COARSE_PUPIL_PX = 70, COARSE_PASSES = 4, ALIKE_ARCS = 12 };
+static const double SAME_PLACE = 0.5, SAME_SIZE = 0.3;  // of the radius, and of its logarithm: a window serves
+static const double ALIKE = 0.06;                       // of the radius: one ellipse, for a start
+static const double AGAIN = 0.2;                        // logarithm of the size: the window is made anew for the ellipse
+static const double OTHER_SCALE[] = { 1.6, 0.62 };      // a collarette for a limbus, a limbus for a face
+
+struct trials *trials_new(const struct photo *photo, const struct pyramid *pyramid, const struct limbus_conf *conf)
+{
+	struct trials *t = mem_new(1, sizeof *t);
+	t->photo = photo;
+	t->pyramid = pyramid;
+	t->conf = conf;
+	return t;
+}
+
+void trials_free(struct trials *t)
+{
+	for (int i = 0; t && i < t->n_windows; i++) {
+		evidence_free(&t->window[i].evidence);
+		region_map_free(&t->window[i].map);
+		grey_free(&t->window[i].sclera);
+	}
+	free(t);
+}
+
+/* The window round a place, an earlier one where it fits; null where there is no room for more. */
+static struct trial_window *window(struct trials *t, double x, double y, double radius, struct err *err)
+{
+	for (int i = 0; i < t->n_windows; i++) {
+		struct trial_window *w = &t->window[i];
+		if (hypot(w->x - x, w->y - y) < SAME_PLACE * w->radius && fabs(log(w->radius / radius)) < SAME_SIZE)
+			return w;
+	}
+	if (t->n_windows == TRIAL_WINDOWS)
+		return 0;
+	struct trial_window *w = &t->window[t->n_windows];
+	if (!evidence_window(&w->evidence, t->conf->net, t->photo, x, y, radius, err))
+		return 0;
+	t->n_windows++;
+	w->x = x;
+	w->y = y;
+	w->radius = radius;
+	w->map = region_map_make(&w->evidence);
+	w->sclera = region_sclera(&w->evidence);
+	return w;
+}
+
+bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const struct trial *trial, const struct trials *t, bool coarse)
+{
+	struct rim_conf conf = t->conf->rim;
+	struct ellipse_prior known = { .alike = ALIKE_ARCS };
+	if (trial->guide != GUIDE_WHITENESS_ALONE) {
+		ellipse_to_q(known.q, &trial->region);
+		for (int i = 0; i < ELLIPSE_N; i++)
+			known.sigma[i] = (i < 3 ? t->conf->region_sigma : t->conf->region_shape_sigma) * trial->region.a;
+		conf.known = &known;
+	}
+	conf.absolute = trial->guide == GUIDE_EVIDENCE;
+	if (coarse) {
+		conf.max_axis = COARSE_PX;
+		conf.passes = COARSE_PASSES;
+	}
+	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : &t->pyramid->tint;
+	if (!rim_fit(rim, t->photo, tint, &trial->e, &conf))
+		return false;
+	conf.known = 0;
+	conf.absolute = false;
+	conf.max_axis = coarse ? COARSE_PUPIL_PX : conf.max_axis;
+	*has_pupil = limbus_pupil(pupil, t->photo, t->pyramid, &rim->e, &conf, &t->conf->pupil);
+	return true;
+}
+
+/* Whether a vote's ellipse was measured already. */
+static bool known_already(const struct trials *t, const struct ellipse *e)
+{
+	for (int i = 0; i < t->n; i++) {
+		const struct ellipse *f = &t->trial[i].e;
+		if (hypot(f->cx - e->cx, f->cy - e->cy) < ALIKE * f->a && fabs(log(e->a / f->a)) < ALIKE && fabs(log(e->b / f->b)) < ALIKE)
+			return true;
+	}
+	return false;
+}
+
+/* Measures a trial and keeps it where there is something to measure. */
+static void try(struct trials *t, const struct trial *start)
+{
+	if (t->n == TRIALS)
+		return;
+	struct trial *trial = &t->trial[t->n];
+	struct rim *rim = mem_new(2, sizeof *rim);
+	bool has_pupil;
+	*trial = *start;
+	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
+		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &trial->window->evidence, &trial->window->map, t->photo->width, t->photo->height);
+		trial->log_odds = odds_log(trial->x, &t->conf->odds);
+		trial->e = rim->e;
+		t->n++;
+	}
+	free(rim);
+}
+
+/* The ellipse of the evidence near a circle, from a window of its own size; tried with either guide. */
+static bool of_region(struct trials *t, double x, double y, double radius, struct err *err)
+{
+	struct trial_window *w = window(t, x, y, radius, err);
+	struct ellipse e = { x, y, radius, radius, 0 };
+	if (!w)
+		return !*err->msg;
+	region_fit(&e, &w->map);
+	if (fabs(log(e.a / w->radius)) > AGAIN || hypot(e.cx - w->x, e.cy - w->y) > AGAIN * w->radius) {
+		w = window(t, e.cx, e.cy, e.a, err);
+		if (!w)
+			return !*err->msg;
+		region_fit(&e, &w->map);
+	}
+	for (int i = 0; i < t->n; i++)
+		if (t->trial[i].window == w && t->trial[i].guide == GUIDE_EVIDENCE)
+			return true;
+	try(t, &(struct trial){ .guide = GUIDE_EVIDENCE, .window = w, .region = e, .e = e });
+	try(t, &(struct trial){ .guide = GUIDE_WHITENESS, .window = w, .region = e, .e = e });
+	return true;
+}
+
+bool trials_of_evidence(struct trials *t, struct err *err)
+{
+	struct evidence_region region[EVIDENCE_REGIONS];
+	int n;
+	if (!evidence_find(region, &n, t->conf->net, t->photo, err))
+		return false;
+	for (int i = 0; i < n && i < REGIONS_TRIED; i++)
+		if (!of_region(t, region[i].x, region[i].y, region[i].radius, err))
+			return false;
+	for (int i = 0; i < 2 && n > 0; i++)
+		if (!of_region(t, region[0].x, region[0].y, OTHER_SCALE[i] * region[0].radius, err))
+			return false;
+	return true;
+}
+
+static bool of_vote(struct trials *t, const struct ellipse *e, struct err *err)
+{
+	if (known_already(t, e))
+		return true;
+	struct trial_window *w = window(t, e->cx, e->cy, e->a, err);
+	if (!w)
+		return !*err->msg;
+	try(t, &(struct trial){ .guide = GUIDE_WHITENESS_ALONE, .window = w, .e = *e });
+	return true;
+}
+
+bool trials_of_votes(struct trials *t, struct err *err)
+{
+	struct seek_found seen[SEEK_MAX], outer;
+	const int n = limbus_seek(seen, t->pyramid, 0, &t->conf->seek);
+	for (int i = 0; i < n && i < VOTES_TRIED; i++) {
+		if (!of_vote(t, &seen[i].e, err))
+			return false;
+		if (i < ROUNDS_TRIED && limbus_seek_outer(&outer, t->pyramid, &seen[i].e, &t->conf->seek) && !of_vote(t, &outer.e, err))
+			return false;
+	}
+	return true;
+}
+
+bool trials_of_hint(struct trials *t, const double *hint, struct err *err)
+{
+	struct seek_found seen[SEEK_MAX];
+	if (!of_region(t, hint[0], hint[1], hint[2], err))
+		return false;
+	const int n = limbus_seek(seen, t->pyramid, hint, &t->conf->seek);
+	for (int i = 0; i < n && i < VOTES_TRIED; i++)
+		if (!of_vote(t, &seen[i].e, err))
+			return false;
+	return true;
+}

@@ -1,0 +1,51 @@
+/* trial: ellipses that may be the limbus, each measured and weighed. Internal to limbus_find.
+ */
+#ifndef LIMBUS_TRIAL_H
+#define LIMBUS_TRIAL_H
+#include "limbus/odds.h"
+#include "limbus/propose/seek.h"
+#include "limbus/find.h"
+
+enum { TRIALS = 24, TRIAL_WINDOWS = 8 };
+
+/* What tells sclera from lid beside an arc, and whether the evidence's ellipse is a prior. */
+enum trial_guide { GUIDE_EVIDENCE, GUIDE_WHITENESS, GUIDE_WHITENESS_ALONE };
+
+struct trial_window {
+	struct evidence evidence;
+	struct region_map map;
+	struct grey sclera;        // chance of sclera, as a rim's tint
+	double x, y, radius;       // px of the photograph
+};
+
+struct trial {
+	enum trial_guide guide;
+	const struct trial_window *window;
+	struct ellipse region;     // the evidence's, where it is a prior
+	struct ellipse e;
+	double log_odds;
+	double x[ODDS_TRAITS];
+};
+
+struct trials {
+	const struct photo *photo;
+	const struct pyramid *pyramid;
+	const struct limbus_conf *conf;
+	int n, n_windows;
+	struct trial trial[TRIALS];
+	struct trial_window window[TRIAL_WINDOWS];
+};
+
+struct trials *trials_new(const struct photo *photo, const struct pyramid *pyramid, const struct limbus_conf *conf);
+void trials_free(struct trials *trials);
+
+/* Adds what the network finds, or what the votes of edges find; true: err is not set. */
+bool trials_of_evidence(struct trials *trials, struct err *err);
+bool trials_of_votes(struct trials *trials, struct err *err);
+/* Adds the ellipses near a hint: x, y, radius, px. */
+bool trials_of_hint(struct trials *trials, const double *hint, struct err *err);
+
+/* Measures a trial's limbus and its pupil. coarse: to tell trials apart. False when there is no edge. */
+bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const struct trial *trial, const struct trials *trials, bool coarse);
+
+#endif

@@ -1,0 +1,115 @@
+#include "tissue/pigment/problem.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double lowest[PIGMENT_N] = { -11.5, 0, -11.5, 0, -4.6, -3, -0.7, -0.7, 0 };
+static const double highest[PIGMENT_N] = { -0.5, 1, -0.5, 1, 1.6, 3, 0.7, 0.7, 0.2 };
+
+enum { COMMON = PIGMENT_N, OFFSETS };
+
+static void unknown(struct pigment_problem *p, int j, double mean, double sigma, double lower, double upper)
+{
+	p->mean[j] = mean;
+	p->sigma[j] = sigma;
+	p->lower[j] = lower;
+	p->upper[j] = upper;
+}
+
+void pigment_problem_make(struct pigment_problem *p, const struct pigment_classes *classes, const struct pigment_conf *c)
+{
+	*p = (struct pigment_problem){ .classes = classes, .conf = c, .n = PIGMENT_N };
+	tissue_bands_make(&p->bands, c->bands, c->illuminant);
+	for (int j = 0; j < PIGMENT_N; j++)
+		unknown(p, j, c->prior[j][0], c->prior[j][1], lowest[j], highest[j]);
+	if (classes->rings) {
+		unknown(p, COMMON, 0, c->profile_error, -1, 1);
+		for (int r = 0; r < classes->rings; r++) {
+			unknown(p, OFFSETS + r, 0, c->ring_error, -1, 1);
+			unknown(p, OFFSETS + classes->rings + r, c->prior_spread[0], c->prior_spread[1], -6, 0);
+		}
+		p->n += 1 + 2 * classes->rings;
+	}
+	p->m = 3 * classes->n + p->n;
+}
+
+double pigment_problem_thickness(const struct pigment_problem *p, const double x[], int i)
+{
+	const struct pigment_class *class = &p->classes->of[i];
+	if (!p->classes->rings)
+		return class->thickness;
+	const double *offset = x + OFFSETS, *spread = offset + p->classes->rings;
+	return class->thickness * exp(x[COMMON] + offset[class->ring] + exp(spread[class->ring]) * class->z);
+}
+
+/* Relative error of a channel from noise alone; the model's own errors are added where residuals are formed. */
+static double noise(const struct pigment_class *class, int k, const struct pigment_conf *c)
+{
+	double sampling = class->spread[k] / sqrt(class->texels);
+	return sqrt(sampling * sampling + c->floor * c->floor) / fmax(class->rgb[k], c->floor);
+}
+
+static void class_residuals(double r[3], const struct pigment_class *class, const double rgb[3], const struct pigment_conf *c)
+{
+	double floor = fmax(c->floor / 4, 1e-6), d[3], s[3];
+	for (int k = 0; k < 3; k++) {
+		d[k] = log(fmax(rgb[k], floor) / fmax(class->rgb[k], floor));
+		s[k] = noise(class, k, c);
+	}
+	r[0] = d[1] / hypot(c->light_error, s[1]);
+	r[1] = (d[0] - d[1]) / hypot(c->model_error, s[0]);
+	r[2] = (d[2] - d[1]) / hypot(c->model_error, s[2]);
+}
+
+/* Reflectance of the tissue alone in every class. optics: of these unknowns. */
+static void reflect(double rgb[][3], const struct pigment_problem *p, const struct tissue_optics *optics, const double *x)
+{
+	for (int i = 0; i < p->classes->n; i++)
+		tissue_reflectance(rgb[i], optics, pigment_problem_thickness(p, x, i), p->conf->cos_view, p->conf->cos_light);
+}
+
+/* The expensive part. */
+static void optics_at(struct tissue_optics *optics, const struct pigment_problem *p, const double *x)
+{
+	struct tissue tissue = pigment_tissue(x, p->conf);
+	tissue_optics_make(optics, &tissue, &p->bands);
+}
+
+/* Classes, then priors. */
+static void compare(double r[], const struct pigment_problem *p, const double *x, double rgb[][3])
+{
+	for (int i = 0; i < p->classes->n; i++, r += 3) {
+		double seen[3];
+		pigment_photograph(seen, rgb[i], x);
+		class_residuals(r, &p->classes->of[i], seen, p->conf);
+	}
+	for (int j = 0; j < p->n; j++)
+		*r++ = (x[j] - p->mean[j]) / p->sigma[j];
+}
+
+/* Central differences; the unknowns that are not the tissue's reuse its optics. */
+bool pigment_residuals(void *ctx, const double *x, double *r, double *J)
+{
+	const double h = 1e-5;  // unknowns are of order 1: truncation and rounding are both about 1e-10
+	const struct pigment_problem *p = ctx;
+	struct tissue_optics here, there;
+	double rgb[PIGMENT_CLASSES_MAX][3], side[2][PROBLEM_M_MAX], at[PROBLEM_N_MAX];
+	optics_at(&here, p, x);
+	reflect(rgb, p, &here, x);
+	compare(r, p, x, rgb);
+	memcpy(at, x, (size_t)p->n * sizeof *at);
+	for (int j = 0; J && j < p->n; j++) {
+		bool tissue = j <= PIGMENT_SCALE;
+		for (int s = 0; s < 2; s++) {
+			at[j] = x[j] + (s ? h : -h);
+			if (tissue)
+				optics_at(&there, p, at);
+			reflect(rgb, p, tissue ? &there : &here, at);
+			compare(side[s], p, at, rgb);
+		}
+		at[j] = x[j];
+		for (int i = 0; i < p->m; i++)
+			J[i * p->n + j] = (side[1][i] - side[0][i]) / (2 * h);
+	}
+	return true;
+}

@@ -1,0 +1,47 @@
+#include "track/clip/agree.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+
+/* Share of the frames that are not lost in which that eye's gaze is known; shut eyes count as known. */
+static double gaze_share(const struct track_result *r, int side)
+{
+	long all = 0, known = 0;
+	for (long f = 0; f < r->n; f++) {
+		const struct eye_state *s = &r->eyes.state[f][side];
+		all += !r->lost_at[f];
+		known += !r->lost_at[f] && (isfinite(s->gaze[0]) || s->blink != BLINK_OPEN);
+	}
+	return all ? (double)known / (double)all : 0;
+}
+
+/* Median of how much higher the left eye looks than the right one, degrees; NAN where the two are seldom seen together. */
+static double higher(const struct track_result *r)
+{
+	enum { LEAST = 12 };
+	double *d = mem_array((size_t)r->n + 1, sizeof *d);
+	int n = 0;
+	for (long f = 0; f < r->n; f++) {
+		double off = r->eyes.state[f][SIDE_LEFT].gaze[1] - r->eyes.state[f][SIDE_RIGHT].gaze[1];
+		if (!r->lost_at[f] && isfinite(off))
+			d[n++] = off * 180 / M_PI;
+	}
+	double at = n >= LEAST ? stats_median(n, d) : NAN;
+	free(d);
+	return at;
+}
+
+bool track_agrees(const struct track_result *r, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
+{
+	double share = fmax(gaze_share(r, SIDE_LEFT), gaze_share(r, SIDE_RIGHT)), off = higher(r);
+	if (share < conf->gaze_least)
+		return err_set(err, "%s: gaze in %.0f %% of the frames, must be in at least %.0f %% (track.gaze_least): film closer, sharper, or give subject.eye_center.* and camera.focal_px",
+		               clip->file, 100 * share, 100 * conf->gaze_least);
+	if (fabs(off) > conf->agree_deg)
+		return err_set(err, "%s: the left eye looks %.1f degrees higher than the right one (median), must be within %.1f (track.agree_deg): the head's pose in frame %ld is wrong; give subject.eye_center.*, or another track.reference_frame",
+		               clip->file, off, conf->agree_deg, clip->reference);
+	return true;
+}

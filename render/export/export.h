@@ -1,0 +1,54 @@
+/* export: the fitted eye for other programs: work/export/. Meshes and maps are made in lib/export; here they become files.
+ * eye.glb for close-ups, eye_lod1.glb and eye_lod2.glb for games; textures/ as PNG and EXR; eye.json: units, ranges of the maps, and what is
+ * lost; blender_eye.py, engines.md: how to assemble it by hand; reference_*.exr and studio.exr: the renderer's own pictures and their light. */
+#ifndef RENDER_EXPORT_EXPORT_H
+#define RENDER_EXPORT_EXPORT_H
+#include <jansson.h>
+
+#include "export/eye_glb.h"
+#include "export/eye_maps.h"
+#include "export/loss.h"
+#include "render/render.h"
+
+enum { EXPORT_LODS = 2, EXPORT_VIEWS = 3 };
+
+struct export_conf {
+	int texture_px;
+	struct export_mesh_conf mesh;
+	double lod_triangles[EXPORT_LODS];
+	bool make, exr;
+};
+
+#define EXPORT_OPTS(c) \
+	OPT_INT("export.texture_px", &(c)->texture_px, 256, 8192, "px", "width of an exported eye's textures, at most"), \
+	OPT_INT("export.iris_rings", &(c)->mesh.iris_rings, 16, 512, "", "rings of vertices from pupil to root; cornea and sclera have half as many"), \
+	OPT_INT("export.around", &(c)->mesh.around, 32, 1024, "", "vertices round the axis; the iris has twice as many"), \
+	OPT_REALS("export.lod_triangles", (c)->lod_triangles, EXPORT_LODS, 100, 1e6, "", "triangles of an eye in games, near and far"), \
+	OPT_BOOL("export.make", &(c)->make, "with the pictures; no: by make export alone"), \
+	OPT_BOOL("export.exr", &(c)->exr, "textures as 16-bit EXR, too")
+
+/* What one eye's files are made from. */
+struct export_work {
+	struct job *job;
+	const struct export_conf *conf;
+	struct export_part parts[EXPORT_PARTS];
+	struct image maps[EXPORT_MAPS];
+	struct export_png png[EXPORT_MAPS], pictures[EXPORT_PICTURES];
+	double low[EXPORT_MAPS], high[EXPORT_MAPS];   // what 0 and 255 stand for
+	struct image reference[EXPORT_VIEWS];
+	struct export_loss loss[EXPORT_VIEWS];
+	long bytes[1 + EXPORT_LODS];                  // of the three files, and what is in them
+	int triangles[1 + EXPORT_LODS], vertices[1 + EXPORT_LODS];
+	double error_mm[1 + EXPORT_LODS];             // of the simplified meshes, as meshoptimizer states it
+};
+
+/* Makes what is not fresh, from the job's scene. */
+bool export_eye(struct job *job, const struct export_conf *conf, struct err *err);
+
+/* encode.c: PNG of all maps and of the pictures that a .glb embeds, in parallel; in work->png and work->pictures. */
+bool export_encode(struct export_work *work, struct err *err);
+
+/* statement.c: eye.json. json_decref. */
+json_t *export_statement(const struct export_work *work);
+
+#endif

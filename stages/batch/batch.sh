@@ -1,0 +1,72 @@
+#!/bin/bash
+# Many captures: each folder of $CAPTURES but `batch`, which holds what is told of them. README.md says what stands there.
+#   batch.sh local               side by side on this machine, by make's job server: JOBS at a time, THREADS for each
+#   batch.sh submit SCHEDULER    as job arrays: slurm.sh
+#   batch.sh status              batch/status.csv, and the failures as a table
+#   batch.sh one LIST N [TARGETS] runs the capture that stands Nth in a list, and writes what became of it
+#   batch.sh look N NAME ...     a line for each capture that has something to do; lists.sh calls it
+# BIN: folder of the programs.
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$here/lists.sh"
+. "$here/tell.sh"
+
+begin() {
+	[ -n "${CAPTURES:-}" ] && [ -d "$CAPTURES" ] || die "say which folder holds the captures: make batch CAPTURES=DIR" 2
+	CAPTURES=$(cd "$CAPTURES" && pwd -P && echo .) && CAPTURES=${CAPTURES%$'\n'.}
+	export CAPTURES BIN
+	state=$CAPTURES/batch
+	[ ! -L "$state" ] || die "$state: is a link: results are written inside the folder alone"
+	[ ! -e "$state/photos" ] && [ ! -e "$state/capture.conf" ] || die "$state: is a capture: give it another name"
+	mkdir -p "$state/log" "$state/results" || exit 1
+}
+
+one() { # LIST N [TARGETS]
+	local name target=${3:-run} status start ms seconds reason
+	name=$(sed -zn "${2}{p;q}" "$1" | tr '\0' .) && name=${name%.}
+	export CAPTURE="$CAPTURES/$name"
+	# The job server is for captures: inside of one a stage at a time writes.
+	unset MAKEFLAGS MFLAGS MAKELEVEL
+	start=$(date +%s%N)
+	# shellcheck disable=SC2086
+	make --no-print-directory -rf "$here/../capture.mk" $target >"$state/log/$name" 2>&1 </dev/null
+	status=$?
+	ms=$((($(date +%s%N) - start) / 1000000))
+	seconds=$(printf %d.%02d $((ms / 1000)) $((ms % 1000 / 10)))
+	if [ $status != 0 ]; then
+		reason=$(why "$state/log/$name")
+		tell "$name" failed "$seconds" "$(peak "$name")" "$reason"
+	elif [ "$target" = run ]; then
+		tell "$name" done "$seconds" "$(peak "$name")" ""
+		printf '%s: done in %s s\n' "$(one_line "$name")" "$seconds" >&2
+	fi
+	return $status
+}
+
+side_by_side() {
+	local cores n
+	cores=$(nproc)
+	case ${JOBS:=$cores} in *[!0-9]* | 0*) die "JOBS = $(one_line "$JOBS"): must be a whole number from 1" 2 ;; esac
+	list_todo
+	cut -f 1 "$state/todo" | pick "$state/captures" >"$state/todo.names"
+	n=$(wc -l <"$state/todo")
+	if [ "$n" != 0 ]; then
+		[ "$JOBS" -lt "$n" ] || JOBS=$n
+		# Cores are not shared by more threads than there are of them.
+		export THREADS=${THREADS:-$((cores > JOBS ? cores / JOBS : 1))}
+		unset MAKEFLAGS MFLAGS MAKELEVEL
+		ONE=$here/batch.sh LIST=$state/todo.names make --no-print-directory -rsk -j"$JOBS" -f "$here/side_by_side.mk" COUNT="$n" 2> >(grep -v '^make: ' >&2)
+	fi
+	status
+}
+
+begin
+case ${1:-} in
+local) side_by_side ;;
+submit) [ "${2:-}" = slurm ] || die "SCHEDULER = $(one_line "${2:-}"): must be slurm, or nothing" 2
+	. "$here/slurm.sh" && submit ;;
+status) [ ! -e "$state/slurm/jobs" ] || . "$here/slurm.sh"
+	status || true ;;
+one) one "${@:2}" ;;
+look) look "${@:2}" ;;
+*) die "$(sed -n 's/^#   //p' "$0")" 2 ;;
+esac

@@ -1,0 +1,49 @@
+# Which captures there are, and which have something to do. Sourced by batch.sh; `state` is the folder batch/.
+
+die() { printf 'batch: %s\n' "$1" >&2; exit "${2:-1}"; }
+
+# Names of the captures, each with a zero byte behind it, sorted.
+names() {
+	local folder
+	for folder in "$CAPTURES"/*/; do
+		[ -d "$folder" ] || continue
+		folder=${folder%/} folder=${folder##*/}
+		[ "$folder" = batch ] || printf '%s\0' "$folder"
+	done
+}
+
+# A line for each that has to run: its number TAB what plan --request says of its stages, TABs between. One that cannot be planned
+# is told of at once.
+look() { # N NAME ...
+	local said
+	while [ $# -gt 0 ]; do
+		said=$("$BIN/plan" --capture="$CAPTURES/$2" --request 2>"$state/log/$2")
+		case $? in
+		0) grep -qs "${tab}done$tab" "$state/results/$2" || tell "$2" done 0 "$(peak "$2")" "" ;;
+		3) printf '%s\t%s\n' "$1" "${said//$'\n'/$tab}" ;;
+		*) tell "$2" failed 0 "" "$(why "$state/log/$2")" ;;
+		esac
+		shift 2
+	done
+}
+
+# $state/captures: all names; $state/todo: the lines of look, by number.
+list_todo() {
+	names >"$state/captures"
+	[ -s "$state/captures" ] || die "$CAPTURES: holds no folder"
+	rm -f "$state/todo"
+	local n=0 name
+	while IFS= read -r -d '' name; do
+		n=$((n + 1))
+		printf '%s\0%s\0' "$n" "$name"
+	done <"$state/captures" | xargs -0 -n 64 -P "$(nproc)" "$here/batch.sh" look >"$state/.todo.new" || die "some captures cannot be looked into"
+	sort -n "$state/.todo.new" >"$state/todo" && rm "$state/.todo.new"
+}
+
+# pick LIST: the names of LIST whose numbers stand on stdin, in that order.
+pick() {
+	local -a all
+	local n
+	mapfile -d '' -t all <"$1"
+	while read -r n; do printf '%s\0' "${all[n - 1]}"; done
+}

@@ -1,0 +1,67 @@
+#include "tests/lib/unseen/answer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "limbus/joint.h"
+#include "limbus/measure.h"
+#include "tests/lib/conf/limbus_conf.h"
+
+static double now(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void answer_ours(struct answer *out, const struct photo *photo, double aspect)
+{
+	const struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = aspect,
+		.iris_depth = 3.3, .post_radius = 6.5, .post_asphericity = 0.75, .thickness = 0.55, .cornea_index = 1.376 };
+	const struct camera_keys keys = { .focal_px = NAN, .focal_mm = NAN, .sensor_mm = NAN, .center_px = { NAN, NAN } };
+	const struct limbus_camera known = { .keys = &keys, .focal_px = NAN };
+	// The stage's own prior of the aspect (config/limbus.conf); the other defaults are what tests use.
+	struct pose_conf pose_conf = pose_defaults;
+	pose_conf.aspect_mean = 0.925;
+	pose_conf.aspect_sigma = 0.025;
+	struct limbus_record *record = mem_new(1, sizeof *record);
+	struct limbus_joint joint;
+	struct pose pose;
+	struct err err = { 0 };
+	*out = (struct answer){ .theta = NAN, .theta_sigma = NAN, .weak = NAN };
+	const double start = now();
+	limbus_measure_photo(record, photo, 0, 0, &known, &eye, &limbus_defaults, &pose_conf);
+	out->seconds = now() - start;
+	out->ok = record->ok;
+	snprintf(out->reason, sizeof out->reason, "%s", record->reason);
+	if (record->ok) {
+		out->e = record->view.limbus;
+		out->has_pupil = record->view.has_pupil;
+		out->pupil = record->view.pupil;
+		ellipse_sigma(out->sigma, &out->e, record->view.cov_q);
+		out->weak = acos(fmin(out->e.b / out->e.a, 1));
+		if (limbus_joint(&joint, 1, record, &eye, &pose_conf, &err) && limbus_joint_pose(&pose, &joint, record, &eye, &err)) {
+			out->theta = pose.theta;
+			out->theta_sigma = pose.theta_sigma;
+		}
+	}
+	free(record);
+}
+
+double answer_error(const struct ellipse *got, const struct ellipse *truth)
+{
+	return fmax(hypot(got->cx - truth->cx, got->cy - truth->cy), fmax(fabs(got->a - truth->a), fabs(got->b - truth->b)));
+}
+
+const struct unseen_eye *answer_meant(const struct ellipse *got, const struct unseen *u)
+{
+	int best = 0;
+	for (int i = 1; i < u->n; i++)
+		if (answer_error(got, &u->eye[i].limbus) / u->eye[i].limbus.a < answer_error(got, &u->eye[best].limbus) / u->eye[best].limbus.a)
+			best = i;
+	return &u->eye[best];
+}

@@ -1,0 +1,29 @@
+/* answer: what the program says of a photograph, as the stage `limbus` measures it with the defaults of config/, and what it is worth. */
+#ifndef TESTS_UNSEEN_ANSWER_H
+#define TESTS_UNSEEN_ANSWER_H
+#include "tests/lib/unseen/unseen.h"
+
+struct answer {
+	bool ok;
+	char reason[256];
+	struct ellipse e;
+	bool has_pupil;
+	struct ellipse pupil;
+	double sigma[ELLIPSE_N];     // of cx, cy, a, b, angle
+	double theta, theta_sigma;   // radians; NAN where there is no pose
+	double weak;                 // arccos(b / a): the paper's own way, eq. 9
+	double seconds;
+};
+
+/* aspect: told as eye.limbus_aspect; NAN: nothing told. */
+void answer_ours(struct answer *out, const struct photo *photo, double aspect);
+
+/* The largest of the distance of the centres and the differences of the semi-axes, px. */
+double answer_error(const struct ellipse *got, const struct ellipse *truth);
+
+/* The eye of the photograph that an ellipse is nearest to, by answer_error over a. */
+const struct unseen_eye *answer_meant(const struct ellipse *got, const struct unseen *u);
+
+static const double answer_right = 0.02;  // of a
+
+#endif
