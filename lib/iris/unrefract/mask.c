@@ -140,7 +140,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
 		float mirror = told->mirror ? told->mirror[i] : 0;
-		bool is_told = mirror > 0.5f;
+		bool is_told = mirror > 0.7f;
 		bool here = seen[i] > 0 && work->t[i] > -0.05f && (work->t[i] < 0.9f || is_told);  // beyond: the limbus' haze
 		// a yellow fleck may saturate red; a light saturates nearly all
 		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated
