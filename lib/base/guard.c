@@ -111,3 +111,55 @@ void guard_enter(const char *work, bool starts_programs)
 	keep_below(work, starts_programs);
 	forbid_calls(starts_programs);
 }
+
+/* Landlock: nothing is opened but for reading, below `reads`. */
+static void read_below(const char *reads)
+{
+	enum { REFER = 1 << 13 };
+	const long abi = syscall(SYS_landlock_create_ruleset, 0, 0, LANDLOCK_CREATE_RULESET_VERSION);
+	if (abi < 1)
+		return;
+	const struct landlock_ruleset_attr attr = { .handled_access_fs = LANDLOCK_ACCESS_FS_MAKE_SYM * 2 - 1 };
+	const int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attr, sizeof attr.handled_access_fs, 0);
+	if (ruleset < 0)
+		return;
+	if (reads)
+		allow(ruleset, reads, LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR);
+	if (!prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0))
+		syscall(SYS_landlock_restrict_self, ruleset, 0);
+	close(ruleset);
+}
+
+static void forbid_more(void)
+{
+	static const int calls[] = {
+		SCMP_SYS(socket), SCMP_SYS(connect), SCMP_SYS(execve), SCMP_SYS(execveat), SCMP_SYS(fork), SCMP_SYS(vfork), SCMP_SYS(clone),
+		SCMP_SYS(clone3), SCMP_SYS(kill), SCMP_SYS(unlink), SCMP_SYS(unlinkat), SCMP_SYS(rename), SCMP_SYS(renameat),
+		SCMP_SYS(renameat2), SCMP_SYS(mkdir), SCMP_SYS(mkdirat), SCMP_SYS(link), SCMP_SYS(linkat), SCMP_SYS(symlink), SCMP_SYS(symlinkat),
+		SCMP_SYS(chmod), SCMP_SYS(fchmodat), SCMP_SYS(truncate), SCMP_SYS(creat), SCMP_SYS(open_by_handle_at), SCMP_SYS(memfd_create),
+	};
+	scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+	if (!filter)
+		return;
+	for (int i = 0; i < COUNT(calls); i++)
+		// A sanitizer looks for its leaks from another thread.
+		if (!(SANITISED && (calls[i] == SCMP_SYS(clone) || calls[i] == SCMP_SYS(clone3))))
+			seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), calls[i], 0);
+	const struct scmp_arg_cmp writes = { .arg = 2, .op = SCMP_CMP_MASKED_EQ, .datum_a = O_WRONLY, .datum_b = O_WRONLY };
+	const struct scmp_arg_cmp both = { .arg = 2, .op = SCMP_CMP_MASKED_EQ, .datum_a = O_RDWR, .datum_b = O_RDWR };
+	seccomp_rule_add_array(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(openat), 1, &writes);
+	seccomp_rule_add_array(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(openat), 1, &both);
+	seccomp_load(filter);
+	seccomp_release(filter);
+}
+
+void guard_apart(const struct guard_apart *limits)
+{
+	if (!SANITISED)
+		limit(RLIMIT_AS, limits->addresses);
+	limit(RLIMIT_CPU, (rlim_t)limits->seconds);
+	limit(RLIMIT_FSIZE, limits->written);
+	limit(RLIMIT_CORE, 0);
+	read_below(limits->reads);
+	forbid_more();
+}

@@ -4,6 +4,7 @@
 #ifndef BASE_GUARD_H
 #define BASE_GUARD_H
 #include <stdbool.h>
+#include <stddef.h>
 
 /* From here on, for this process and all that it starts:
  *   files      are written, made, renamed, removed below `work` alone (and in TMPDIR, where starts_programs); Landlock,
@@ -14,5 +15,17 @@
  * What the kernel does not have is left out: the checks of base/work.h and base/file.h stand without it.
  * work  path of the folder, which is there */
 void guard_enter(const char *work, bool starts_programs);
+
+/* What a process of its own is kept to, that reads strangers' bytes (base/apart.h). */
+struct guard_apart {
+	const char *reads;     // the one folder in which files are opened, for reading; null: none
+	size_t addresses;      // bytes of address space
+	size_t written;        // bytes written to a file that is open already
+	long seconds;          // of processor time
+};
+
+/* From here on, for this process of one thread: no file is opened but below `reads` and for reading, none made, renamed, removed; no
+ * sockets, no programs, no further processes; no core is dumped. What the kernel does not have is left out. */
+void guard_apart(const struct guard_apart *limits);
 
 #endif

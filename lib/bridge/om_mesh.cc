@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <vector>
 
 // gcc 12 warns of an uninitialised allocator, which has no members, in OpenMesh's property vectors.
 #ifndef __clang__
@@ -39,21 +40,24 @@ void be_quiet()
 	omerr().disable();
 }
 
-/* Adds a triangle; one that would give an edge a third face gets vertices of its own, appended behind all others. */
-void add_triangle(Mesh &om, const Mesh::VertexHandle corner[3])
+/* Adds a triangle; one that would give an edge a third face gets vertices of its own, appended behind all others. Returns whether it
+ * was added; from: where not null, what each such vertex is a copy of is appended. */
+bool add_triangle(Mesh &om, const Mesh::VertexHandle corner[3], std::vector<int32_t> *from = nullptr)
 {
 	if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-		return;
+		return false;
 	if (om.add_face(corner[0], corner[1], corner[2]).is_valid())
-		return;
+		return true;
 	Mesh::VertexHandle own[3];
 	for (int k = 0; k < 3; k++) {
 		const Mesh::Point at = om.point(corner[k]);  // copies: what they are taken from moves as it grows
 		const Mesh::Color colour = om.color(corner[k]);
 		own[k] = om.add_vertex(at);
 		om.set_color(own[k], colour);
+		if (from)
+			from->push_back(corner[k].idx());
 	}
-	om.add_face(own[0], own[1], own[2]);
+	return om.add_face(own[0], own[1], own[2]).is_valid();
 }
 
 /* Converts from OpenMesh. Colours stay in sRGB. */
@@ -79,7 +83,11 @@ void take(struct mesh *mesh, const Mesh &om, bool colours)
 	}
 }
 
-bool give(Mesh &om, const struct mesh *mesh, struct err *err)
+struct Origin {
+	std::vector<int32_t> vertex, face;
+};
+
+bool give(Mesh &om, const struct mesh *mesh, struct err *err, Origin *origin = nullptr)
 {
 	if (!mesh_joins_check(mesh, err))
 		return false;
@@ -90,12 +98,15 @@ bool give(Mesh &om, const struct mesh *mesh, struct err *err)
 		for (int k = 0; mesh->colours && k < 3; k++)
 			colour[(size_t)k] = mesh->colours[i][k];
 		om.set_color(v, colour);
+		if (origin)
+			origin->vertex.push_back(i);
 	}
 	for (int i = 0; i < mesh->n_faces; i++) {
 		Mesh::VertexHandle corner[3];
 		for (int k = 0; k < 3; k++)
 			corner[k] = om.vertex_handle((unsigned)mesh->faces[i][k]);
-		add_triangle(om, corner);
+		if (add_triangle(om, corner, origin ? &origin->vertex : nullptr) && origin)
+			origin->face.push_back(i);
 	}
 	return true;
 }
@@ -205,5 +216,30 @@ bool om_mesh_decimate(struct mesh *mesh, int target_faces, struct err *err)
 		return true;
 	} catch (...) {
 		return err_set(err, "decimation: out of memory");
+	}
+}
+
+static int32_t *copied(const std::vector<int32_t> &from)
+{
+	auto *out = (int32_t *)mem_new(from.size() + 1, sizeof(int32_t));
+	memcpy(out, from.data(), from.size() * sizeof *out);
+	return out;
+}
+
+bool om_mesh_sound(struct mesh *mesh, int32_t **vertex_from, int32_t **face_from, struct err *err)
+{
+	*vertex_from = *face_from = nullptr;
+	try {
+		Mesh om;
+		Origin origin;
+		be_quiet();
+		if (!give(om, mesh, err, &origin))
+			return false;
+		replace(mesh, om);
+		*vertex_from = copied(origin.vertex);
+		*face_from = copied(origin.face);
+		return true;
+	} catch (...) {
+		return err_set(err, "out of memory");
 	}
 }

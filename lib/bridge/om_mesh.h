@@ -19,6 +19,12 @@ bool om_mesh_save(const struct mesh *mesh, const char *path, const char *made_by
  * fails. */
 bool om_mesh_decimate(struct mesh *mesh, int target_faces, struct err *err);
 
+/* Splits edges of three faces and fans that share one vertex, which makes new vertices behind the others, and leaves out faces with a
+ * corner twice.
+ * vertex_from, face_from   out: of each vertex and face of the result the row it had before; free()
+ * Returns false, err set, mesh unchanged, when too many faces meet in a vertex. */
+bool om_mesh_sound(struct mesh *mesh, int32_t **vertex_from, int32_t **face_from, struct err *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -54,7 +54,7 @@ static bool look(int *n, char **names, const char *capture, const char *dir, con
 
 static bool holdings(int *have, struct plan *plan, struct err *err)
 {
-	static const char *const meshes[] = { ".obj", ".ply", 0 };
+	static const char *const meshes[] = { ".obj", ".ply", ".glb", ".gltf", ".fbx", 0 };
 	static const struct {
 		const char *dir;
 		int bit, least;

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "character/import.h"
 #include "mesh/mesh_peek.h"
 
 /* Longer files are not read: every make starts plan. transfer finds the same out when it reads them. */
@@ -20,12 +21,6 @@ static char *subject_of(const char *capture)
 		free(path);
 	}
 	return 0;
-}
-
-static bool is_mesh(const char *name)
-{
-	size_t n = strlen(name);
-	return n > 4 && (!strcmp(name + n - 4, ".ply") || !strcmp(name + n - 4, ".obj"));
 }
 
 /* True when the mesh at `path` has exactly the subject's faces. subject: loaded at the first call that needs it. */
@@ -52,11 +47,12 @@ void plan_characters(int *all, int *same, const char *capture)
 	*all = *same = 0;
 	file_list(&list, dir, &none);
 	for (int i = 0; i < list.n; i++) {
-		if (!is_mesh(list.names[i]))
+		const enum character_kind kind = character_kind_of(list.names[i]);
+		if (kind == CHARACTER_NONE)
 			continue;
 		char *path = mem_printf("%s/%s", dir, list.names[i]);
 		++*all;
-		*same += is_same(&subject, subject_path, vertices, path);
+		*same += kind == CHARACTER_PLAIN && is_same(&subject, subject_path, vertices, path);
 		free(path);
 	}
 	mesh_free(&subject);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "character/import.h"
 
 static const char *first_video(struct stage *stage, struct err *err)
 {
@@ -37,6 +38,9 @@ static void inputs(struct skin_job *job, struct skin_target *t)
 			t->in[t->n_in++] = path + strlen(job->stage->capture) + 1;
 		}
 	}
+	const char *look = stage_path(job->stage, "work/targets/%s/look.npz", t->name);
+	if (file_exists(look))
+		t->in[t->n_in++] = t->look_path = look + strlen(job->stage->capture) + 1;
 	if (job->render->environment)
 		t->in[t->n_in++] = job->render->environment;
 }
@@ -56,6 +60,8 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 		stage_skipped(job->stage, "pictures of targets/%s: it has no rig", file);
 	}
 	portrait_free(t.portrait);
+	dress_free(t.dress);
+	look_free(&t.look);
 	rig_free(&t.rig);
 	free(name);
 	return ok;
@@ -68,7 +74,7 @@ bool render_skin(struct skin_job *job, struct err *err)
 	if (ok && targets.n && file_exists(stage_path(job->stage, "work/skin/model.json"))) {
 		job->video = first_video(job->stage, err);
 		for (int i = 0; i < targets.n && ok; i++)
-			ok = one(job, targets.names[i], err);
+			ok = character_kind_of(targets.names[i]) == CHARACTER_NONE || one(job, targets.names[i], err);
 	}
 	file_list_free(&targets);
 	return ok && !err_is(err);

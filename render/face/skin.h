@@ -16,6 +16,7 @@ struct skin_conf {
 	int clip_px, clip_samples;           // width of the driven face in the clip; 0: no clip
 	double clip_fps, clip_crf, clip_seconds;
 	struct glb_conf glb;
+	int texture_px;
 	struct video_conf video;
 };
 
@@ -42,6 +43,7 @@ struct skin_conf {
 	OPT_REALS("tear_absorb", (c)->portrait.tear_absorb, 3, 0, 10, "1/mm", "what tear fluid absorbs of red, green and blue"), \
 	OPT_REAL("caruncle_wet", &(c)->portrait.caruncle_wet, 0, 1, "", "how moist and red the inner corners of the eyes are"), \
 	OPT_REAL("lash_mm", &(c)->portrait.lash_mm, 0, 30, "mm", "length of the upper lashes on an eye of 12 mm; 0: none"), \
+	OPT_INT("skin_texture_px", &(c)->texture_px, 16, 16384, "px", "longest side at which a character's own textures are drawn"), \
 	OPT_REALS("iris_rgb", (c)->glb.iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
 	OPT_INT("glb_targets", &(c)->glb.targets, 1, 200, "", "morph targets of the animation, at most"), \
 	OPT_REAL("glb_tolerance_mm", &(c)->glb.tolerance, 0, 10, "mm", "no more targets than it takes to keep every vertex so close"), \
@@ -74,8 +76,11 @@ bool show(struct skin_job *faces, bool drawn, struct err *err);
 struct skin_target {
 	const char *name, *rig_path;      // rig_path relative to the folder
 	struct rig rig;
+	const char *look_path;            // of its own look; null: none
+	struct look look;
+	struct dress *dress;              // its textures, with the portrait; null: none
 	struct portrait *portrait;        // of the stills; null until needed
-	const char *in[28];               // inputs that all its pictures have in common
+	const char *in[29];               // inputs that all its pictures have in common
 	int n_in;
 };
 

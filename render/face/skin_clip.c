@@ -91,6 +91,7 @@ static bool clip_make(struct clip *c, const char *rel, int n_in, const char *con
 {
 	const struct skin_conf *conf = c->job->conf;
 	struct portrait_conf draw = conf->portrait;
+	draw.dress = c->t->dress;
 	draw.samples = conf->clip_samples;
 	draw.eye_samples = 1;
 	draw.lights = draw.lights > 8 ? 8 : draw.lights;  // shadows as sharp as its pixels show them
@@ -168,19 +169,20 @@ static bool scripted(struct skin_job *job, struct skin_target *t, struct err *er
 
 static bool gltf(struct skin_job *job, struct skin_target *t, const char *csv, struct err *err)
 {
-	const char *in[] = { t->rig_path, "work/skin/model.json", csv }, *rel = output(job, t->name, ".glb");
+	const char *in[4] = { t->rig_path, "work/skin/model.json", csv, t->look_path }, *rel = output(job, t->name, ".glb");
+	const int n = t->look_path ? 4 : 3;
 	struct drive drive;
 	struct glb_report report;
 	struct glb_conf conf = job->conf->glb;
-	if (skin_kept(job, rel, COUNT(in), in, err))
+	if (skin_kept(job, rel, n, in, err))
 		return true;
 	if (!skin_open(job, t, err) || !drive_load(&drive, &job->model, stage_path(job->stage, "%s", csv), err))
 		return false;
 	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
 	memcpy(conf.sclera_rgb, job->render->scene.sclera_rgb, sizeof conf.sclera_rgb);
-	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, t->name, &conf,
-	                    stage_made_by(job->stage, COUNT(in), in), err)
-	          && skin_made(job, rel, COUNT(in), in, err);
+	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, t->name, t->look_path ? &t->look : 0, &conf,
+	                    stage_made_by(job->stage, n, in), err)
+	          && skin_made(job, rel, n, in, err);
 	if (ok) {
 		stage_note(job->stage, "%s: %d morph targets, %d vertices move, %.2f mm off at worst, %.1f MB", rel, report.targets,
 		           report.moving, report.worst, (double)report.bytes / 1e6);

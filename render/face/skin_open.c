@@ -53,6 +53,33 @@ bool skin_ready(struct skin_job *job, struct err *err)
 	return job->ready;
 }
 
+/* Whether the look's faces are the rig's, and its blend shapes move vertices of it. */
+static bool fits(const struct look *look, const struct rig *rig)
+{
+	bool same = look->n_faces == rig->n_faces && look->n_points <= rig->n;
+	for (int f = 0; same && f < look->n_faces; f++)
+		for (int k = 0; k < 3; k++)
+			same = same && look->point[look->corner[f][k]] == rig->faces[f][k];
+	for (int i = 0; same && i < look->shape_start[look->n_shapes]; i++)
+		same = look->shape_point[i] < rig->n;
+	return same;
+}
+
+/* Reads the character's own look. */
+static bool dress(struct skin_job *job, struct skin_target *t, struct err *err)
+{
+	const char *path = stage_path(job->stage, "%s", t->look_path);
+	struct err why = { 0 };
+	if (!look_load(&t->look, path, err))
+		return false;
+	if (!fits(&t->look, &t->rig))
+		return err_set(err, "%s: its faces are not the rig's: run transfer again", path);
+	t->dress = dress_new(&t->look, job->conf->texture_px, &why);
+	if (err_is(&why))
+		stage_skipped(job->stage, "%s: a texture %s", t->name, why.msg);
+	return true;
+}
+
 bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	if (t->portrait)
@@ -62,7 +89,11 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 	if (t->rig.n_inputs != job->model.n_inputs)
 		return err_set(err, "%s: %d inputs, but work/skin/model.json has %d: run extrapolate again", t->rig_path, t->rig.n_inputs,
 		               job->model.n_inputs);
-	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &job->conf->portrait);
+	if (t->look_path && !dress(job, t, err))
+		return false;
+	struct portrait_conf conf = job->conf->portrait;
+	conf.dress = t->dress;
+	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &conf);
 	portrait_wear(t->portrait, &job->wrinkles, job->model.n_au, job->model.au_names);
 	return true;
 }

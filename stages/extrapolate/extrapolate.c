@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
+#include "character/import.h"
 #include "image/exr.h"
 #include "rig/deform/clearance.h"
 
@@ -164,10 +165,15 @@ bool extrapolate_target(struct stage *stage, const char *file, const struct rig_
 	static const char *const reads[] = { "registered.ply", "barycentric.npz", "registration.json" };
 	static const char *const writes[] = { "rig.npz", "skull.exr", "skull_normal.exr", "globe_left.exr", "globe_right.exr" };
 	enum { FROM_TRANSFER = 3, OUT = 5, IN_MAX = 32 };
+	if (character_kind_of(file) == CHARACTER_NONE)
+		return true;
 	const char *dot = strrchr(file, '.');
 	char *name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file), *in[IN_MAX], *out[OUT];
 	int n = 0;
-	in[n++] = mem_printf("targets/%s", file);
+	// The surface of a character with a look is what transfer has read of its file.
+	char *own = mem_printf("work/targets/%s/character.ply", name);
+	in[n++] = file_exists(stage_path(stage, "%s", own)) ? mem_str(own) : mem_printf("targets/%s", file);
+	free(own);
 	for (int i = 0; i < FROM_TRANSFER; i++)
 		in[n++] = mem_printf("work/targets/%s/%s", name, reads[i]);
 	for (int i = 0; skin_model_files[i] && n < IN_MAX; i++)

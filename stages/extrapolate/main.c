@@ -1,5 +1,6 @@
 /* extrapolate: makes the rig of every character that transfer has registered.
- * reads   work/skin/model.json and matrices, targets/NAME.*, work/targets/NAME/registered.ply, barycentric.npz, registration.json
+ * reads   work/skin/model.json and matrices, targets/NAME.* (of a character with materials work/targets/NAME/character.ply),
+ *         work/targets/NAME/registered.ply, barycentric.npz, registration.json
  *         (registration.json: subject_from_target [16] row-major similarity, mm to mm; target_unit_mm, subject_unit_mm. barycentric.npz:
  *         indptr, indices int32, data, confidence float32; rows are the vertices of targets/NAME and of registered.ply, which
  *         is in mm and the subject's axes)

@@ -1,7 +1,8 @@
 /* transfer: registers every character on the subject and writes its vertices' barycentric coordinates there.
- * reads   subject.ply or subject.obj (else work/subject.ply), targets/NAME.ply or .obj
+ * reads   subject.ply or subject.obj (else work/subject.ply), targets/NAME.glb, .gltf, .fbx, .obj or .ply and what these refer to
  * writes  work/targets/NAME/registered.ply (mm, the subject's axes; the target's vertices and faces),
- *         barycentric.npz (B, eq. 3.4), registration.json, registration.png; of a refused character the last two alone
+ *         barycentric.npz (B, eq. 3.4), registration.json, registration.png; of a refused character the last two alone;
+ *         of one with materials character.ply (its surface, in its own unit and axes) and look.npz (lib/character/look.h)
  */
 #include "anatomy/keys.h"
 #include "base/mem.h"
@@ -15,6 +16,8 @@ int main(int argc, char **argv)
 	const struct opt opts[] = {
 		TRANSFER_OPTS("", &conf.transfer, nodes, rounds),
 		OPT_REAL("limit_vertices", &conf.limit_vertices, 100, 1e8, "", "larger meshes are refused"),
+		OPT_REAL("import_seconds", &conf.import_seconds, 1, 3600, "s", "of processor time for reading a character's file"),
+		OPT_REAL("import_mib", &conf.import_mib, 64, 1e5, "MiB", "of memory for reading a character's file; half of it for what is in it"),
 		SUBJECT_UNIT_OPT(&conf.subject_unit),
 		SUBJECT_LANDMARK_OPT(&conf.subject_landmark),
 		SUBJECT_EYE_OPTS(&conf.eye_radius, &conf.eye_center),

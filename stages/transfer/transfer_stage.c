@@ -3,11 +3,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "anatomy/keys.h"
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
+#include "character/import.h"
 #include "mesh/mesh_part.h"
 #include "mesh/outward.h"
 #include "optics/camera_rig.h"
@@ -21,7 +23,7 @@
 
 #define RIG "work/rig.json"
 
-enum { OUT = 4, PROOF = 2, IN_MOST = 3 };  // of what is written the last two are there for a refused character, too
+enum { OUT = 4, LOOKS = 2, PROOF = 2, IN_MOST = 3 };  // of OUT the last two are there for a refused character, too
 
 struct subject {
 	const char *file;  // relative to the capture
@@ -32,9 +34,13 @@ struct subject {
 };
 
 struct target {
-	char *name, *in[IN_MOST], *out[OUT];
+	char *name, **in, *out[OUT], *look_out[LOOKS];  // look_out: of a character with a look, its surface as read and its look
 	int n_in;
+	const char *file;  // in targets/
 	struct mesh mesh;  // mm
+	bool has_look;
+	struct mesh read;  // with a look: the surface, in its own unit
+	struct look look;  // mm
 	double unit;
 	bool guessed, turned;  // turned: its faces looked inwards
 	struct mesh_part part;
@@ -113,9 +119,51 @@ static bool load_subject(struct subject *s, struct stage *stage, const struct tr
 	return !own || s->has_eyes || load_eyes(s, stage, err);
 }
 
+/* Reads a character and its look, in a process of its own. */
+static bool load_look(struct target *t, struct stage *stage, const struct transfer_stage_conf *conf, struct err *err)
+{
+	const struct character_limits limits = { (long)conf->limit_vertices, conf->import_seconds, conf->import_mib };
+	struct err why = { 0 };
+	if (!character_import(&t->mesh, &t->look, stage_path(stage, "targets"), t->file, &limits, &why))
+		return err_set(err, "%s: %s", t->in[0], err_less(&why, stage_path(stage, "%s", t->in[0])));
+	stage_note(stage, "%s: %d meshes, %d materials, %d textures, %d blend shapes%s", t->in[0], t->look.n_parts, t->look.n_materials,
+	           t->look.n_textures, t->look.n_shapes, t->look.has_uv ? "" : "; without texture coordinates");
+	for (int i = 0; i < t->look.n_left_out; i++)
+		stage_skipped(stage, "%s: %s", t->in[0], t->look.left_out[i]);
+	return true;
+}
+
+/* The look of faces that were turned round, and lengths in mm. */
+static void fit_look(struct target *t)
+{
+	struct look *l = &t->look;
+	for (int f = 0; t->turned && f < l->n_faces; f++) {
+		const int32_t one = l->corner[f][1];
+		l->corner[f][1] = l->corner[f][2];
+		l->corner[f][2] = one;
+	}
+	for (int i = 0; t->turned && i < l->n_wedges; i++)
+		for (int c = 0; c < 3; c++)
+			l->normal[i][c] *= -1;
+	for (int i = 0; i < l->shape_start[l->n_shapes]; i++)
+		for (int c = 0; c < 3; c++)
+			l->shape_by[i][c] *= (float)t->unit;
+}
+
+static struct mesh copy_of(const struct mesh *mesh)
+{
+	struct mesh out = { .n_vertices = mesh->n_vertices, .n_faces = mesh->n_faces };
+	out.vertices = mem_array((size_t)out.n_vertices + 1, sizeof *out.vertices);
+	out.faces = mem_array((size_t)out.n_faces + 1, sizeof *out.faces);
+	memcpy(out.vertices, mesh->vertices, (size_t)out.n_vertices * sizeof *out.vertices);
+	memcpy(out.faces, mesh->faces, (size_t)out.n_faces * sizeof *out.faces);
+	return out;
+}
+
 static bool load_target(struct target *t, struct stage *stage, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
 {
-	if (!om_mesh_load(&t->mesh, stage_path(stage, "%s", t->in[0]), (long)conf->limit_vertices, err))
+	t->has_look = character_has_look(stage_path(stage, "%s", t->in[0]));
+	if (t->has_look ? !load_look(t, stage, conf, err) : !om_mesh_load(&t->mesh, stage_path(stage, "%s", t->in[0]), (long)conf->limit_vertices, err))
 		return false;
 	if (!t->mesh.n_faces)
 		return err_set(err, "%s: has no faces: a cloud of points cannot be registered", t->in[0]);
@@ -127,6 +175,10 @@ static bool load_target(struct target *t, struct stage *stage, const struct subj
 	t->guessed = !isfinite(t->unit);
 	if (t->guessed)
 		t->unit = transfer_same_topology(&t->mesh, &s->mesh) ? s->unit : transfer_target_unit(&t->mesh, &s->mesh, s->has_eyes ? s->eye : 0, &conf->transfer);
+	if (t->has_look) {
+		t->read = copy_of(&t->mesh);
+		fit_look(t);
+	}
 	scale(&t->mesh, t->unit);
 	if (t->turned)
 		stage_note(stage, "%s: its faces look inwards: taken the other way round (if it is mirrored, its left is the subject's right)", t->in[0]);
@@ -211,6 +263,12 @@ static bool save(struct target *t, const struct subject *s, struct stage *stage,
 	          && transfer_save_picture(&t->result, &t->mesh, &s->mesh, stage_path(stage, "%s", t->out[3]), err);
 	for (int i = 0; i < OUT && ok; i++)
 		ok = i < first ? file_remove(stage_path(stage, "%s", t->out[i]), err) : stage_made(stage, t->out[i], t->n_in, in, err);
+	if (ok && !first && t->has_look)
+		return om_mesh_save(&t->read, stage_path(stage, "%s", t->look_out[0]), made_by, err)
+		       && look_save(&t->look, stage_path(stage, "%s", t->look_out[1]), made_by, err)
+		       && stage_made(stage, t->look_out[0], t->n_in, in, err) && stage_made(stage, t->look_out[1], t->n_in, in, err);
+	for (int i = 0; i < LOOKS && ok; i++)
+		ok = file_remove(stage_path(stage, "%s", t->look_out[i]), err);
 	return ok;
 }
 
@@ -230,18 +288,39 @@ static void report(struct stage *stage, const struct target *t)
 	stage_figure(stage, "distance_95", transfer_distance(r, 0.95), "mm");
 }
 
-static void target_names(struct target *t, const char *file, const struct subject *s)
+/* Textures and other files beside a mesh that may belong to it. */
+static void add_companions(struct target *t, struct stage *stage, const struct file_list *beside, const char *file)
+{
+	struct stat st;
+	const size_t n = strlen(file);
+	if (n > 4 && (!strcmp(file + n - 4, ".ply") || !strcmp(file + n - 4, ".glb")))
+		return;
+	for (int i = 0; i < beside->n; i++)
+		if (character_kind_of(beside->names[i]) == CHARACTER_NONE && !stat(stage_path(stage, "targets/%s", beside->names[i]), &st)
+		    && S_ISREG(st.st_mode)) {
+			t->in = mem_grow(t->in, (size_t)t->n_in + 1, sizeof *t->in);
+			t->in[t->n_in++] = mem_printf("targets/%s", beside->names[i]);
+		}
+}
+
+static void target_names(struct target *t, struct stage *stage, const char *file, const struct file_list *beside, const struct subject *s)
 {
 	static const char *const writes[OUT] = { "registered.ply", "barycentric.npz", "registration.json", "registration.png" };
+	static const char *const looks[LOOKS] = { "character.ply", "look.npz" };
 	const char *dot = strrchr(file, '.');
+	t->file = file;
 	t->name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file);
+	t->in = mem_new(IN_MOST, sizeof *t->in);
 	t->in[0] = mem_printf("targets/%s", file);
 	t->in[1] = mem_str(s->file);
 	t->n_in = 2;
 	if (s->has_eyes)
 		t->in[t->n_in++] = mem_str(RIG);
+	add_companions(t, stage, beside, file);
 	for (int i = 0; i < OUT; i++)
 		t->out[i] = mem_printf("work/targets/%s/%s", t->name, writes[i]);
+	for (int i = 0; i < LOOKS; i++)
+		t->look_out[i] = mem_printf("work/targets/%s/%s", t->name, looks[i]);
 }
 
 static void target_free(struct target *t)
@@ -251,7 +330,12 @@ static void target_free(struct target *t)
 		free(t->in[i]);
 	for (int i = 0; i < OUT; i++)
 		free(t->out[i]);
+	for (int i = 0; i < LOOKS; i++)
+		free(t->look_out[i]);
+	free(t->in);
 	mesh_free(&t->mesh);
+	mesh_free(&t->read);
+	look_free(&t->look);
 	mesh_part_free(&t->part);
 	transfer_free(&t->result);
 }
@@ -270,15 +354,19 @@ static bool lay(struct target *t, const struct subject *s, const struct nricp_la
 }
 
 /* Registers one target. Returns true when it is registered or was already; a target at fault is reported, without err. */
-static bool one(struct stage *stage, const char *file, const struct subject *s, const struct transfer_stage_conf *conf, struct err *err)
+static bool one(struct stage *stage, const char *file, const struct file_list *beside, const struct subject *s,
+                const struct transfer_stage_conf *conf, struct err *err)
 {
 	struct target t = { 0 };
 	struct nricp_landmarks landmarks = { 0 };
 	struct err why = { 0 };
-	target_names(&t, file, s);
+	target_names(&t, stage, file, beside, s);
 	bool done = true, fresh = true;
 	for (int i = 0; i < OUT; i++)
 		fresh = stage_fresh(stage, t.out[i], t.n_in, (const char *const *)t.in) && fresh;
+	for (int i = 0; i < LOOKS; i++)
+		if (file_exists(stage_path(stage, "%s", t.look_out[i])))
+			fresh = stage_fresh(stage, t.look_out[i], t.n_in, (const char *const *)t.in) && fresh;
 	if (!fresh) {
 		done = load_target(&t, stage, s, conf, &why)
 		       && landmarks_pair(&landmarks, t.name, &conf->target_landmarks, t.mesh.n_vertices, s->mesh.n_vertices,
@@ -293,6 +381,8 @@ static bool one(struct stage *stage, const char *file, const struct subject *s, 
 			stage_skipped(stage, "%s", why.msg);
 			for (int i = 0; i < OUT; i++)
 				file_remove(stage_path(stage, "%s", t.out[i]), err);
+			for (int i = 0; i < LOOKS; i++)
+				file_remove(stage_path(stage, "%s", t.look_out[i]), err);
 		}
 		if (done)
 			report(stage, &t);
@@ -302,12 +392,6 @@ static bool one(struct stage *stage, const char *file, const struct subject *s, 
 	return done;
 }
 
-static bool is_mesh(const char *file)
-{
-	size_t n = strlen(file);
-	return n > 4 && (!strcmp(file + n - 4, ".ply") || !strcmp(file + n - 4, ".obj"));
-}
-
 bool transfer_stage(struct stage *stage, const struct transfer_stage_conf *conf, struct err *err)
 {
 	struct file_list targets = { 0 };
@@ -315,9 +399,9 @@ bool transfer_stage(struct stage *stage, const struct transfer_stage_conf *conf,
 	int n = 0, done = 0;
 	if (keys_check_names(&stage->conf, stage->capture, err) && stage_list(stage, &targets, "targets", err) && load_subject(&s, stage, conf, err))
 		for (int i = 0; i < targets.n && !err_is(err); i++)
-			if (is_mesh(targets.names[i])) {
+			if (character_kind_of(targets.names[i])) {
 				stage_progress(stage, n++, targets.n, "character");
-				done += one(stage, targets.names[i], &s, conf, err);
+				done += one(stage, targets.names[i], &targets, &s, conf, err);
 			}
 	if (!err_is(err) && n && !done)
 		err_set(err, "none of the %d meshes in targets/ can be laid onto %s: the lines above say why", n, s.file);

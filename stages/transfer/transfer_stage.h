@@ -7,7 +7,7 @@
 struct transfer_stage_conf {
 	struct transfer_conf transfer;
 	struct transfer_check_conf check;
-	double limit_vertices;
+	double limit_vertices, import_seconds, import_mib;
 	double subject_unit;                                  // mm in one unit of the subject's mesh; NAN: guessed
 	double eye_radius;                                    // subject.eye_radius: read by others
 	struct opt_each_list eye_center;                      // subject.eye_center.SIDE

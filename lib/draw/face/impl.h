@@ -19,6 +19,7 @@ float portrait_noise(const float p[3], float per_mm);
 struct portrait_sky {
 	int n;
 	float detail;  // 0..1: how far pixels of the view resolve pores
+	float pixel_mm;  // width of a pixel of the view at the character's distance
 	float rig_from_cam[3][3];
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
@@ -26,6 +27,12 @@ struct portrait_sky {
  * interpolated from the vertices. */
 void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
                     const float origin[3], const float dir[3], const float *light);
+
+/* cut.c: texture coordinates of the point of a dressed face with those barycentric weights. */
+void portrait_uv_at(float uv[2], const struct portrait_mesh *mesh, int face, const float w[3]);
+
+/* Whether the character's textures leave nothing of such a point. */
+bool portrait_cut_away(const struct portrait *portrait, int face, const float w[3]);
 
 /* Unit normal of such a point, without folds and pores; of a hair the ribbon's. */
 void portrait_normal(float normal[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);

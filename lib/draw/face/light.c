@@ -13,6 +13,7 @@ struct portrait_sky portrait_sky_of(const struct portrait *p, const struct portr
 	struct portrait_rays rays = portrait_rays_of(view);
 	// Pores are half a millimetre apart.
 	double mm = vec_norm((double[]){ view->cam_from_target[0][3], view->cam_from_target[1][3], view->cam_from_target[2][3] }) / view->focal_px;
+	sky.pixel_mm = (float)mm;
 	sky.detail = (float)fmin(fmax((0.22 - mm) / 0.1, 0), 1);
 	for (int i = 0; i < 3; i++)
 		for (int k = 0; k < 3; k++)

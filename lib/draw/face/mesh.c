@@ -91,19 +91,79 @@ static int cut_face(int32_t out[4][3], const int32_t v[3], const int mid[3])
 	return n + 1;
 }
 
+/* Room for the texture coordinates of so many faces. */
+static void undress(struct portrait_mesh *m, int n)
+{
+	m->uv = n ? fresh((size_t)n, sizeof *m->uv) : 0;
+	m->material = n ? fresh((size_t)n, sizeof *m->material) : 0;
+	m->cuts = n ? fresh((size_t)n, sizeof *m->cuts) : 0;
+}
+
+/* Texture coordinates of a face that was cut from another. */
+static void follow(struct portrait_mesh *m, int face, const int32_t v[3], const struct portrait_mesh *was, int of, const int mid[3])
+{
+	for (int k = 0; k < 3; k++)
+		for (int j = 0; j < 3; j++) {
+			const float *a = was->uv[of][(j + 1) % 3], *b = was->uv[of][(j + 2) % 3];
+			if (v[k] == was->faces[of][j])
+				memcpy(m->uv[face][k], was->uv[of][j], sizeof m->uv[face][k]);
+			else if (v[k] == mid[j])
+				memcpy(m->uv[face][k], (float[2]){ 0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]) }, sizeof m->uv[face][k]);
+		}
+	m->material[face] = was->material[of];
+	m->cuts[face] = was->cuts[of];
+}
+
+/* How much of the texture a millimetre of each face shows. */
+static void measure(struct portrait_mesh *m)
+{
+	m->uv_per_mm = m->n_dressed ? fresh((size_t)m->n_dressed, sizeof *m->uv_per_mm) : 0;
+	for (int f = 0; f < m->n_dressed; f++) {
+		const int32_t *v = m->faces[f];
+		const float (*t)[2] = (const float(*)[2])m->uv[f];
+		double a[3], b[3], n[3];
+		for (int c = 0; c < 3; c++) {
+			a[c] = m->rest[v[1]][c] - m->rest[v[0]][c];
+			b[c] = m->rest[v[2]][c] - m->rest[v[0]][c];
+		}
+		vec_cross(n, a, b);
+		const double in_map = fabs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
+		m->uv_per_mm[f] = (float)sqrt(in_map / fmax(vec_norm(n), 1e-9));
+	}
+}
+
+/* The look's texture coordinates and material of one of the rig's faces. */
+static void dress_face(struct portrait_mesh *m, const struct dress *dress, int of)
+{
+	const struct look *l = dress_look(dress);
+	for (int k = 0; k < 3; k++)
+		memcpy(m->uv[m->n_faces][k], l->uv[l->corner[of][k]], sizeof m->uv[0][k]);
+	m->material[m->n_faces] = (int16_t)(l->face_material[of] < INT16_MAX ? l->face_material[of] : -1);
+	m->cuts[m->n_faces] = dress_cuts(dress, m->material[m->n_faces]);
+	m->n_dressed++;
+}
+
 static void subdivide(struct portrait_mesh *m, bool *marked)
 {
 	int (*mid)[3] = fresh((size_t)m->n_faces, sizeof *mid), n = 0;
 	int32_t (*faces)[3] = fresh(4 * (size_t)m->n_faces, sizeof *faces);
 	bool *next = fresh(4 * (size_t)m->n_faces, sizeof *next);
+	struct portrait_mesh was = *m;
+	undress(m, 4 * was.n_dressed);
 	cut_edges(m, marked, mid);
 	for (int f = 0; f < m->n_faces; f++) {
 		int32_t cut[4][3];
 		int k = cut_face(cut, m->faces[f], mid[f]);
 		memset(next + n, marked[f], (size_t)k);
 		memcpy(faces + n, cut, (size_t)k * sizeof *faces);
+		for (int i = 0; was.n_dressed && i < k; i++)
+			follow(m, n + i, cut[i], &was, f, mid[f]);
 		n += k;
 	}
+	m->n_dressed = was.n_dressed ? n : 0;
+	free(was.uv);
+	free(was.material);
+	free(was.cuts);
 	free(m->faces);
 	free(mid);
 	m->faces = faces;
@@ -146,14 +206,23 @@ void portrait_mesh_make(struct portrait *p)
 	*m = (struct portrait_mesh){ .n = rig->n, .n_base = rig->n };
 	m->faces = fresh((size_t)rig->n_faces, sizeof *m->faces);
 	bool *marked = fresh((size_t)rig->n_faces << 2 * p->conf.subdivide, sizeof *marked);
-	for (int f = 0; f < rig->n_faces; f++) {
-		const int32_t *v = rig->faces[f];
-		if (rig->part[v[0]] != RIG_SKIN)
-			continue;
-		marked[m->n_faces] = near_eye(rig, v[0]) && near_eye(rig, v[1]) && near_eye(rig, v[2]);
-		memcpy(m->faces[m->n_faces++], v, sizeof *m->faces);
+	const struct dress *dress = p->conf.dress;
+	int solid = 0;
+	undress(m, dress ? rig->n_faces : 0);
+	// What shows through somewhere casts no shadow: it comes last.
+	for (int pass = 0; pass < (dress ? 2 : 1); pass++) {
+		for (int f = 0; f < rig->n_faces; f++) {
+			const int32_t *v = rig->faces[f];
+			if (rig->part[v[0]] != RIG_SKIN || (dress && dress_cuts(dress, dress_look(dress)->face_material[f]) != (pass == 1)))
+				continue;
+			marked[m->n_faces] = near_eye(rig, v[0]) && near_eye(rig, v[1]) && near_eye(rig, v[2]);
+			if (dress)
+				dress_face(m, dress, f);
+			memcpy(m->faces[m->n_faces++], v, sizeof *m->faces);
+		}
+		solid = pass ? solid : m->n_faces;
 	}
-	p->shadow = ray_scene_new(rig->n, (const float(*)[3])rig->rest, m->n_faces, (const int32_t(*)[3])m->faces);
+	p->shadow = ray_scene_new(rig->n, (const float(*)[3])rig->rest, solid, (const int32_t(*)[3])m->faces);
 	for (int k = 0; k < p->conf.subdivide; k++)
 		subdivide(m, marked);
 	free(marked);
@@ -168,6 +237,7 @@ void portrait_mesh_make(struct portrait *p)
 	m->wet = fresh(n, sizeof *m->wet);
 	memcpy(m->rest, rig->rest, (size_t)rig->n * sizeof *m->rest);
 	between(m->rest, m);
+	measure(m);
 }
 
 void portrait_mesh_move(struct portrait *p)
@@ -198,6 +268,10 @@ void portrait_mesh_free(struct portrait_mesh *m)
 	free(m->open);
 	free(m->wet);
 	free(m->home);
+	free(m->uv);
+	free(m->material);
+	free(m->cuts);
+	free(m->uv_per_mm);
 	*m = (struct portrait_mesh){ 0 };
 }
 

@@ -1,6 +1,7 @@
 /* mesh: the triangles of a portrait. */
 #ifndef DRAW_FACE_MESH_H
 #define DRAW_FACE_MESH_H
+#include <stdbool.h>
 #include <stdint.h>
 
 struct portrait;
@@ -15,6 +16,12 @@ struct portrait_mesh {
 	float *open;                // share of the light that is not shadowed
 	float *wet;                 // moisture, 0..1
 	float (*home)[2];           // where the modelling camera sees it at rest, px; null without wrinkles
+	// Of a character with textures of its own; n_dressed 0 without. [n_dressed]: the faces, but for those of lashes
+	int n_dressed;
+	float (*uv)[3][2];
+	int16_t *material;          // -1: none
+	bool *cuts;                 // shows what is behind it somewhere
+	float *uv_per_mm;
 };
 
 /* make: topology and vertices at rest. move: normals and subdivided vertices from the rig's posed vertices. */

@@ -32,6 +32,18 @@ static void neighbours(struct portrait *p)
 			}
 }
 
+/* Albedo of a character's own textures at the vertices: of lashes' ground, and for the page. */
+static void dressed_colours(struct portrait *p)
+{
+	struct portrait_mesh *m = &p->mesh;
+	for (int f = 0; f < m->n_dressed; f++)
+		for (int k = 0; k < 3 && !m->cuts[f]; k++) {
+			struct dress_point at;
+			dress_at(&at, p->conf.dress, m->material[f], m->uv[f][k], 0.4f * m->uv_per_mm[f]);
+			memcpy(m->albedo[m->faces[f][k]], at.rgb, sizeof at.rgb);
+		}
+}
+
 /* Albedo: the skin's, in blotches; redder and darker where it is thin (lids, their margins, the canthi). */
 static void colours(struct portrait *p)
 {
@@ -45,6 +57,10 @@ static void colours(struct portrait *p)
 		double blotch = p->conf.texture * (0.6 * portrait_noise(m->rest[i], 0.13f) + 0.4 * portrait_noise(m->rest[i], 0.45f));
 		for (int c = 0; c < 3; c++)
 			m->albedo[i][c] = (float)(p->conf.skin_rgb[c] * (1 + redder[c] * blotch) * (1 + 0.7 * lid * (thin[c] - 1)) * (1 + 0.8 * rim * (margin[c] - 1)));
+	}
+	if (m->n_dressed) {
+		dressed_colours(p);
+		return;
 	}
 	for (int i = m->n_base; i < m->n; i++)
 		for (int c = 0; c < 3; c++)

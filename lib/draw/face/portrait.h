@@ -8,6 +8,7 @@
 #ifndef DRAW_FACE_PORTRAIT_H
 #define DRAW_FACE_PORTRAIT_H
 #include "draw/eye/scene.h"
+#include "draw/face/dress.h"
 #include "rig/deform/deform.h"
 #include "draw/face/wrinkle_map.h"
 
@@ -23,6 +24,7 @@ struct portrait_conf {
 	double tear_absorb[3]; // absorption of tear fluid, 1/mm
 	double caruncle_wet;   // 0..1: how moist and red the inner corners are
 	double lash_mm;        // length of the upper lashes; 0: none
+	const struct dress *dress;  // the character's own textures; null: skin of one colour. Outlives the portrait
 };
 
 /* Camera of one frame. */

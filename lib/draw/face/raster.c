@@ -6,6 +6,7 @@
 #include "draw/face/impl.h"
 
 struct screen {
+	const struct portrait *p;
 	float (*at)[3];  // x, y in samples, depth; depth <= 0: behind the camera
 	int points, width, height;
 	struct portrait_spot *spots;
@@ -36,7 +37,8 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 		return;
 	// Counter-clockwise from outside; the picture's y points down.
 	float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-	if (!(area < 0))
+	const bool cuts = face < s->p->mesh.n_dressed && s->p->mesh.cuts[face];  // hair cards are seen from both sides
+	if (!(area < 0) && !(cuts && area > 0))
 		return;
 	int y0 = (int)fmaxf(ceilf(fminf(fminf(a[1], b[1]), c[1]) - 0.5f), (float)low);
 	int y1 = (int)fminf(floorf(fmaxf(fmaxf(a[1], b[1]), c[1]) - 0.5f), (float)high - 1);
@@ -53,7 +55,7 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 				continue;
 			float depth = 1 / (wa * ia + wb * ib + wc * ic);
 			struct portrait_spot *spot = &s->spots[(long)y * s->width + x];
-			if (depth < spot->depth)
+			if (depth < spot->depth && !(cuts && portrait_cut_away(s->p, face, (float[3]){ wa * ia * depth, wb * ib * depth, wc * ic * depth })))
 				*spot = (struct portrait_spot){ face, depth };
 		}
 }
@@ -84,7 +86,7 @@ static void put_eye(struct screen *s, const struct portrait *p, const struct por
 struct portrait_spot *portrait_raster(const struct portrait *p, const struct portrait_view *v, int samples)
 {
 	enum { BAND = 64 };
-	struct screen s = { .points = p->mesh.n, .width = v->width * samples, .height = v->height * samples };
+	struct screen s = { .p = p, .points = p->mesh.n, .width = v->width * samples, .height = v->height * samples };
 	struct portrait_rays rays = portrait_rays_of(v);
 	long n = (long)s.width * s.height;
 	for (int f = p->first_lash; f < p->mesh.n_faces; f++)

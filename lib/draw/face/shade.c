@@ -73,6 +73,8 @@ static float gloss(const float n[3], const float l[3], const float v[3], float r
 }
 
 struct point {
+	float tilt[3], rough;  // of the character's own textures, with dressed
+	bool dressed, bumpy;
 	float x[3], rest[3], normal[3], light[3], albedo[3], open, wet, weight[3];
 };
 
@@ -149,25 +151,66 @@ void portrait_normal(float n[3], const struct portrait *p, int face, const float
 		n[c] = (float)flat[c];
 }
 
+/* The normal of a map in the frame of the texture as it lies on the posed face. */
+static void bump(float n[3], const struct portrait_mesh *m, int face, const float tilt[3])
+{
+	const int32_t *v = m->faces[face];
+	const float (*t)[2] = (const float(*)[2])m->uv[face];
+	const float a = t[1][0] - t[0][0], b = t[1][1] - t[0][1], c = t[2][0] - t[0][0], d = t[2][1] - t[0][1], side = a * d - b * c < 0 ? -1 : 1;
+	float along[3], up[3], la = 1e-12f, lu = 1e-12f;
+	for (int i = 0; i < 3; i++) {
+		const float e = m->x[v[1]][i] - m->x[v[0]][i], g = m->x[v[2]][i] - m->x[v[0]][i];
+		along[i] = side * (d * e - b * g);
+		up[i] = -side * (a * g - c * e);
+		la += along[i] * along[i];
+		lu += up[i] * up[i];
+	}
+	for (int i = 0; i < 3; i++)
+		n[i] = tilt[2] * n[i] + tilt[0] * along[i] / sqrtf(la) + tilt[1] * up[i] / sqrtf(lu);
+}
+
+/* The character's own textures at a point. wide: of what a pixel shows there, mm. Moist places stay as they are. */
+static void wear(struct point *q, const struct portrait *p, int face, float wide)
+{
+	struct dress_point at;
+	float uv[2];
+	portrait_uv_at(uv, &p->mesh, face, q->weight);
+	dress_at(&at, p->conf.dress, p->mesh.material[face], uv, wide * p->mesh.uv_per_mm[face]);
+	q->dressed = true;
+	q->bumpy = at.bumpy;
+	q->rough = fminf(fmaxf(at.rough, 0.15f), 1);
+	memcpy(q->tilt, at.tilt, sizeof q->tilt);
+	for (int c = 0; c < 3; c++)
+		q->albedo[c] += (1 - q->wet) * (at.rgb[c] - q->albedo[c]);
+}
+
 void portrait_shade(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, int face, const float origin[3],
                     const float dir[3], const float *light)
 {
 	struct point q = point_of(&p->mesh, face, origin, dir);
 	if (light)
 		memcpy(q.light, light, sizeof q.light);
+	if (face < p->mesh.n_dressed)
+		wear(&q, p, face, sky->pixel_mm);
 	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, n[3], grain = 0;
+	// Its own roughness against that of skin, whose two lobes these are.
+	const float rougher = q.dressed ? q.rough / 0.5f : 1;
 	if (p->folded)
 		portrait_fold(q.normal, q.light, p, sky, face, q.weight);
 	memcpy(n, q.normal, sizeof n);
-	if (strength > 0) {
+	if (q.bumpy)
+		bump(n, &p->mesh, face, q.tilt);
+	else if (q.dressed && strength > 0)  // its colour has blotches of its own
+		pores(n, q.rest, (float)SKIN_PORES * strength);
+	else if (strength > 0) {
 		pores(n, q.rest, (float)SKIN_PORES * strength);
 		grain = (float)SKIN_GRAIN * strength * portrait_noise(q.rest, (float)SKIN_GRAIN_CELLS);
 	}
 	unit(n);
 	float spec[3] = { 0 };
 	for (int k = 0; k < sky->n && !p->matte; k++) {
-		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_WIDE)
-		              + (float)SKIN_LOBE_NARROW * gloss(n, sky->light[k].dir, to, (float)SKIN_ROUGH_NARROW);
+		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, fminf((float)SKIN_ROUGH_WIDE * rougher, 1))
+		              + (float)SKIN_LOBE_NARROW * gloss(n, sky->light[k].dir, to, fminf((float)SKIN_ROUGH_NARROW * rougher, 1));
 		for (int c = 0; c < 3; c++)
 			spec[c] += shine * sky->light[k].rgb[c];
 	}

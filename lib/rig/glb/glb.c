@@ -1,5 +1,4 @@
-#include "rig/glb/bake.h"
-#include "rig/glb/buffer.h"
+#include "rig/glb/skin.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,89 +9,8 @@
 
 static const double metres = 1e-3;
 
-/* The row of each vertex in the skin's mesh; -1: a globe's. *n: how many there are. free(). */
-static int *skin_rows(int *n, const struct rig *rig)
-{
-	int *row = mem_new((size_t)rig->n + 1, sizeof *row);
-	*n = 0;
-	for (int i = 0; i < rig->n; i++)
-		row[i] = rig_is_globe(rig->part[i]) ? -1 : (*n)++;
-	return row;
-}
-
-static json_t *morph_targets(struct glb_buffer *g, const struct glb_bake *b, const int *row, int all)
-{
-	json_t *targets = json_array();
-	size_t width = 3 * (size_t)b->n;
-	uint32_t *index = mem_new((size_t)b->n + 1, sizeof *index);
-	float *scaled = mem_new(width + 1, sizeof *scaled);
-	for (int i = 0; i < b->n; i++)
-		index[i] = (uint32_t)row[b->vertex[i]];
-	int view = glb_add_view(g, index, (size_t)b->n * sizeof *index, 0), poses = b->pose ? GLB_POSES : 0;
-	for (int k = 0; k < b->n_targets + poses; k++) {
-		const float *x = k < b->n_targets ? b->target + (size_t)k * width : b->pose + (size_t)(k - b->n_targets) * width;
-		const float *n = k < b->n_targets ? b->lean + (size_t)k * width : b->pose_lean + (size_t)(k - b->n_targets) * width;
-		for (size_t i = 0; i < width; i++)
-			scaled[i] = (float)(metres * x[i]);
-		int position = glb_add_sparse(g, scaled, b->n, view, all, true), normal = glb_add_sparse(g, n, b->n, view, all, false);
-		json_array_append_new(targets, json_pack("{s:i,s:i}", "POSITION", position, "NORMAL", normal));
-	}
-	free(index);
-	free(scaled);
-	return targets;
-}
-
-static json_t *target_names(const struct glb_bake *b)
-{
-	json_t *names = json_array();
-	for (int k = 0; k < b->n_targets; k++)
-		json_array_append_new(names, json_sprintf("motion_%02d", k + 1));
-	for (int k = 0; b->pose && k < GLB_POSES; k++)
-		json_array_append_new(names, json_string(glb_pose_names[k]));
-	return names;
-}
-
-static json_t *skin_mesh(struct glb_buffer *g, const struct rig *rig, const struct glb_bake *b)
-{
-	int n, *row = skin_rows(&n, rig), faces = 0;
-	float *x = mem_new(3 * (size_t)n + 1, sizeof *x), *nrm = mem_new(3 * (size_t)n + 1, sizeof *nrm);
-	uint32_t *corner = mem_new(3 * (size_t)rig->n_faces + 1, sizeof *corner);
-	for (int i = 0; i < rig->n; i++)
-		for (int c = 0; c < 3 && row[i] >= 0; c++) {
-			x[3 * row[i] + c] = (float)(metres * rig->rest[i][c]);
-			nrm[3 * row[i] + c] = rig->normal[i][c];
-		}
-	for (int f = 0; f < rig->n_faces; f++) {
-		const int32_t *v = rig->faces[f];
-		if (row[v[0]] < 0 || row[v[1]] < 0 || row[v[2]] < 0)
-			continue;
-		for (int k = 0; k < 3; k++)
-			corner[3 * faces + k] = (uint32_t)row[v[k]];
-		faces++;
-	}
-	int position = glb_add_floats(g, x, (size_t)n, 3, true, GLB_ARRAY), normal = glb_add_floats(g, nrm, (size_t)n, 3, false, GLB_ARRAY);
-	int view = glb_add_view(g, corner, 3 * (size_t)faces * sizeof *corner, GLB_INDICES);
-	int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", 3 * faces, "type", "SCALAR"));
-	json_t *primitive = json_pack("{s:{s:i,s:i},s:i,s:i}", "attributes", "POSITION", position, "NORMAL", normal, "indices", index,
-	                              "material", 0);
-	json_t *mesh = json_pack("{s:s,s:[o]}", "name", "skin", "primitives", primitive);
-	if (b->n_targets + (b->pose ? GLB_POSES : 0) > 0) {
-		json_object_set_new(primitive, "targets", morph_targets(g, b, row, n));
-		json_t *weights = json_array();
-		for (int k = 0; k < b->n_targets + (b->pose ? GLB_POSES : 0); k++)
-			json_array_append_new(weights, json_real(0));
-		json_object_set_new(mesh, "weights", weights);
-		json_object_set_new(mesh, "extras", json_pack("{s:o}", "targetNames", target_names(b)));
-	}
-	free(row);
-	free(x);
-	free(nrm);
-	free(corner);
-	return mesh;
-}
-
 /* An eyeball from its globe map, in the globe's own frame (the head's axes), with vertex colours: sclera, iris, pupil. */
-static json_t *eye_mesh(struct glb_buffer *g, const struct rig *rig, int side, const struct glb_conf *conf)
+static json_t *eye_mesh(struct glb_buffer *g, const struct rig *rig, int side, const struct glb_conf *conf, int material)
 {
 	enum { AROUND = 64, RINGS = 80, N = AROUND * (RINGS + 1) };
 	float *x = mem_new(3 * N, sizeof *x), *nrm = mem_new(3 * N, sizeof *nrm), *rgb = mem_new(3 * N, sizeof *rgb);
@@ -127,7 +45,7 @@ static json_t *eye_mesh(struct glb_buffer *g, const struct rig *rig, int side, c
 	free(rgb);
 	free(corner);
 	return json_pack("{s:s,s:[{s:{s:i,s:i,s:i},s:i,s:i}]}", "name", side ? "eye_right" : "eye_left", "primitives", "attributes",
-	                 "POSITION", position, "NORMAL", normal, "COLOR_0", colour, "indices", index, "material", 1);
+	                 "POSITION", position, "NORMAL", normal, "COLOR_0", colour, "indices", index, "material", material);
 }
 
 static json_t *real3(const double x[3], double scale)
@@ -153,14 +71,19 @@ static json_t *root_rotation(const double m[3][3])
 	return json_pack("[f,f,f,f]", v[0] / len, v[1] / len, v[2] / len, v[3] / len);
 }
 
-static json_t *nodes(const struct rig *rig, const char *name)
+/* The root, the skin's meshes, the eyes. */
+static json_t *nodes(const struct rig *rig, const char *name, const struct glb_skin *skin)
 {
-	json_t *list = json_array();
-	json_array_append_new(list, json_pack("{s:s,s:[i,i,i],s:o}", "name", name, "children", 1, 2, 3, "rotation",
-	                                      root_rotation(rig->head_from_target)));
-	json_array_append_new(list, json_pack("{s:s,s:i}", "name", "skin", "mesh", 0));
+	json_t *list = json_array(), *children = json_array();
+	for (int i = 0; i < skin->n + 2; i++)
+		json_array_append_new(children, json_integer(1 + i));
+	json_array_append_new(list, json_pack("{s:s,s:o,s:o}", "name", name, "children", children, "rotation", root_rotation(rig->head_from_target)));
+	for (int i = 0; i < skin->n; i++) {
+		json_t *of = json_object_get(json_array_get(skin->meshes, (size_t)i), "name");
+		json_array_append_new(list, json_pack("{s:O,s:i}", "name", of, "mesh", i));
+	}
 	for (int s = 0; s < 2; s++)
-		json_array_append_new(list, json_pack("{s:s,s:i,s:o}", "name", s ? "eye_right" : "eye_left", "mesh", 1 + s, "translation",
+		json_array_append_new(list, json_pack("{s:s,s:i,s:o}", "name", s ? "eye_right" : "eye_left", "mesh", skin->n + s, "translation",
 		                                      real3(rig->globe[s].center, metres)));
 	return list;
 }
@@ -181,47 +104,47 @@ static void turn_of(float q[4], const float from_rest[4], const double head_from
 		q[k] = (float)(r[k] / len);
 }
 
-static json_t *animation(struct glb_buffer *g, const struct rig *rig, const struct glb_bake *b, const struct drive *drive)
+/* The weights of a skin's mesh over time: the animation's targets move, the others stay at 0. Returns the sampler. */
+static int weights(struct glb_buffer *g, json_t *samplers, const struct glb_bake *b, int input, size_t n, size_t all)
+{
+	float *weight = mem_new(n * all + 1, sizeof *weight);
+	for (size_t f = 0; f < n; f++)
+		memcpy(weight + f * all, b->weight + f * (size_t)b->n_targets, (size_t)b->n_targets * sizeof *weight);
+	const int output = glb_add_floats(g, weight, n * all, 1, false, 0);
+	json_array_append_new(samplers, json_pack("{s:i,s:i}", "input", input, "output", output));
+	free(weight);
+	return (int)json_array_size(samplers) - 1;
+}
+
+static json_t *animation(struct glb_buffer *g, const struct rig *rig, const struct glb_bake *b, const struct drive *drive,
+                         const struct glb_skin *skin)
 {
 	size_t n = (size_t)drive->n;
-	int all = b->n_targets + (b->pose ? GLB_POSES : 0);
-	float *time = mem_new(n + 1, sizeof *time), *weight = mem_new(n * (size_t)all + 1, sizeof *weight), *turn = mem_new(4 * n + 1, sizeof *turn);
-	for (size_t f = 0; f < n; f++) {
+	float *time = mem_new(n + 1, sizeof *time), *turn = mem_new(4 * n + 1, sizeof *turn);
+	for (size_t f = 0; f < n; f++)
 		time[f] = (float)(drive->time[f] - drive->time[0]);
-		if (b->n_targets)
-			memcpy(weight + f * (size_t)all, b->weight + f * (size_t)b->n_targets, (size_t)b->n_targets * sizeof *weight);
-	}
 	int input = glb_add_floats(g, time, n, 1, true, 0);
 	json_t *samplers = json_array(), *channels = json_array();
-	if (all) {
-		int output = glb_add_floats(g, weight, n * (size_t)all, 1, false, 0);
-		json_array_append_new(samplers, json_pack("{s:i,s:i}", "input", input, "output", output));
-		json_array_append_new(channels, json_pack("{s:i,s:{s:i,s:s}}", "sampler", 0, "target", "node", 1, "path", "weights"));
-	}
+	for (int i = 0; i < skin->n; i++)
+		if (skin->ours[i] && b->n_targets) {
+			const int sampler = weights(g, samplers, b, input, n, (size_t)skin->all[i]);
+			json_array_append_new(channels, json_pack("{s:i,s:{s:i,s:s}}", "sampler", sampler, "target", "node", 1 + i, "path", "weights"));
+		}
 	for (int s = 0; s < 2; s++) {
 		for (size_t f = 0; f < n; f++)
 			turn_of(turn + 4 * f, b->turn[s] + 4 * f, rig->head_from_target);
 		int output = glb_add_floats(g, turn, n, 4, false, 0);
 		json_array_append_new(samplers, json_pack("{s:i,s:i}", "input", input, "output", output));
 		json_array_append_new(channels, json_pack("{s:i,s:{s:i,s:s}}", "sampler", (int)json_array_size(samplers) - 1, "target", "node",
-		                                          2 + s, "path", "rotation"));
+		                                          1 + skin->n + s, "path", "rotation"));
 	}
 	free(time);
-	free(weight);
 	free(turn);
 	return json_pack("{s:s,s:o,s:o}", "name", "gaze", "samplers", samplers, "channels", channels);
 }
 
-static json_t *materials(const struct glb_conf *conf)
-{
-	json_t *skin = json_pack("{s:s,s:{s:[f,f,f,f],s:f,s:f}}", "name", "skin", "pbrMetallicRoughness", "baseColorFactor", conf->skin_rgb[0],
-	                         conf->skin_rgb[1], conf->skin_rgb[2], 1.0, "metallicFactor", 0.0, "roughnessFactor", 0.55);
-	json_t *eye = json_pack("{s:s,s:{s:f,s:f}}", "name", "eye", "pbrMetallicRoughness", "metallicFactor", 0.0, "roughnessFactor", 0.08);
-	return json_pack("[o,o]", skin, eye);
-}
-
 bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive, const char *name,
-               const struct glb_conf *conf, const char *made_by, struct err *err)
+               const struct look *look, const struct glb_conf *conf, const char *made_by, struct err *err)
 {
 	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
 	struct glb_bake bake;
@@ -232,13 +155,18 @@ bool glb_write(const char *path, struct glb_report *report, const struct rig *ri
 		json_t *made = made_by ? json_loads(made_by, 0, 0) : 0;
 		if (made)
 			json_object_set_new(asset, "extras", json_pack("{s:o}", "made_by", made));
-		json_t *meshes = json_array();
-		json_array_append_new(meshes, skin_mesh(&g, rig, &bake));
+		struct glb_skin skin;
+		glb_skin_make(&skin, &g, rig, &bake, conf, look);
 		for (int s = 0; s < 2; s++)
-			json_array_append_new(meshes, eye_mesh(&g, rig, s, conf));
+			json_array_append_new(skin.meshes, eye_mesh(&g, rig, s, conf, skin.eye_material));
 		json_t *root = json_pack("{s:o,s:i,s:[{s:[i]}],s:o,s:o,s:o,s:[o]}", "asset", asset, "scene", 0, "scenes", "nodes", 0, "nodes",
-		                         nodes(rig, name), "meshes", meshes, "materials", materials(conf), "animations",
-		                         animation(&g, rig, &bake, drive));
+		                         nodes(rig, name, &skin), "meshes", skin.meshes, "materials", skin.materials, "animations",
+		                         animation(&g, rig, &bake, drive, &skin));
+		if (skin.textures) {
+			json_object_set_new(root, "images", skin.images);
+			json_object_set_new(root, "textures", skin.textures);
+		}
+		glb_skin_free(&skin);
 		json_object_set_new(root, "accessors", g.accessors);
 		json_object_set_new(root, "bufferViews", g.views);
 		json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)g.size));

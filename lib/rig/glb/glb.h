@@ -8,6 +8,7 @@
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H
+#include "character/look.h"
 #include "rig/drive.h"
 
 struct glb_conf {
@@ -23,11 +24,15 @@ struct glb_report {
 	long bytes;            // of the file
 };
 
-/* Writes the file.
+/* Writes the file. A character with a look keeps its meshes, texture coordinates, materials, textures and blend shapes; its eyeballs
+ * are replaced. The mesh that moves most has all 52 of ARKit's names as targets, where conf->poses: those that neither gaze nor the
+ * character's file gives are zero, and listed in that mesh's extras (zeroTargets). A blend shape of the file that bears the name of
+ * one of ours is called NAME.own.
  * report   overwritten
+ * look     of a character whose file has one (its rows are the rig's vertices), or null
  * name     of the root node; made_by: JSON text for asset.extras, or null
  * Returns false, err set, when the decomposition fails or the file cannot be written. */
 bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive, const char *name,
-               const struct glb_conf *conf, const char *made_by, struct err *err);
+               const struct look *look, const struct glb_conf *conf, const char *made_by, struct err *err);
 
 #endif

@@ -116,9 +116,9 @@ static void container(void **state)
 	size_t size;
 	scratch_open();
 	const char *path = scratch_path("face.glb");
-	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", &conf, "{\"stage\": \"render\"}", &err));
+	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", 0, &conf, "{\"stage\": \"render\"}", &err));
 	assert_true(file_hash(first, path, 1 << 30, &err));
-	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", &conf, "{\"stage\": \"render\"}", &err));
+	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", 0, &conf, "{\"stage\": \"render\"}", &err));
 	assert_true(file_hash(second, path, 1 << 30, &err));
 	assert_string_equal(first, second);
 	assert_true(file_read(&data, &size, path, 1 << 28, &err));
@@ -146,7 +146,7 @@ static void khronos_validator_finds_nothing(void **state)
 	}
 	scratch_open();
 	const char *path = scratch_path("face.glb");
-	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", &conf, 0, &err));
+	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", 0, &conf, 0, &err));
 	assert_true(gltf_is_valid(path));
 	scratch_close();
 }

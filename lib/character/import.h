@@ -1,0 +1,29 @@
+/* import: a character from the file an artist has: glTF, FBX, OBJ with materials. */
+#ifndef CHARACTER_IMPORT_H
+#define CHARACTER_IMPORT_H
+#include "character/look.h"
+
+/* What a name in targets/ is, by its ending. CHARACTER_PLAIN: PLY and OBJ, a surface alone unless an OBJ names materials.
+ * CHARACTER_SCENE: glTF (.glb, .gltf) and FBX. */
+enum character_kind { CHARACTER_NONE, CHARACTER_PLAIN, CHARACTER_SCENE };
+enum character_kind character_kind_of(const char *name);
+
+/* Whether a file is to be read by character_import: a scene, or an OBJ that names materials. */
+bool character_has_look(const char *path);
+
+struct character_limits {
+	long vertices;    // most vertices and faces
+	double seconds;   // of processor time for reading
+	double mib;       // of memory for reading
+};
+
+/* Reads a character by Assimp, in a process of its own that can read its folder and nothing else (base/apart.h).
+ * mesh   its surface: the file's unit and axes, all its meshes together, vertices at one place joined within a mesh where its blend
+ *        shapes move them alike; of an OBJ the vertices are the file's, in its order. No colours. mesh_free
+ * look   all else; look_free
+ * folder, name   of the file
+ * Returns false, err set ("folder/name: rule broken"), both empty, when it cannot be used. */
+bool character_import(struct mesh *mesh, struct look *look, const char *folder, const char *name, const struct character_limits *limits,
+                      struct err *err);
+
+#endif

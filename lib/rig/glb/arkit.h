@@ -1,0 +1,12 @@
+/* arkit: the names of Apple's 52 blend shapes of a face. */
+#ifndef RIG_GLB_ARKIT_H
+#define RIG_GLB_ARKIT_H
+#include <stdbool.h>
+
+enum { ARKIT_SHAPES = 52 };
+extern const char *const arkit_names[ARKIT_SHAPES];
+
+/* Whether a name means one of them, written in whatever way: eyeBlinkLeft, eyeBlink_L, "blendShape1.eye_blink_left". */
+bool arkit_means(const char *name, const char *arkit);
+
+#endif

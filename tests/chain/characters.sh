@@ -1,0 +1,50 @@
+#!/bin/bash
+# Characters as artists have them, from the file to the picture and the .glb that leaves: glTF with textures, several meshes, hair cards
+# and blend shapes, in other units, with z up, skinned; hostile ones beside them stop nothing else.
+. "$(dirname "$0")/../lib/chain.sh"
+
+DRESSED=${B:-build}/tests/tools/dressed
+HEAD=samples/face/targets/mpfb.obj
+capture=$root/c
+small_face "$capture"
+rm "$capture"/targets/*
+sed -i '/^target.mpfb/d' "$capture/capture.conf"
+"$DRESSED" "$HEAD" "$capture/targets/metres.glb" unit=0.1 px=256
+"$DRESSED" "$HEAD" "$capture/targets/blender.glb" unit=10 z_up px=256
+"$DRESSED" "$HEAD" "$capture/targets/posed.glb" skinned unit=0.1 px=256
+"$DRESSED" "$HEAD" "$capture/targets/bare.glb" no_uv no_material
+head -c 30000 "$capture/targets/metres.glb" >"$capture/targets/cut.glb"
+printf 'Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0\xff\xff\xff\xff\xff\xff\xff\xff' >"$capture/targets/wild.fbx"
+printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}' >"$capture/targets/cycle.gltf"
+run_make "$capture"
+same "the capture is made" "$? $(grep -c 'Error' "$log")" "0 0"
+for name in metres blender posed bare; do
+	check "$name has left with its targets" test -s "$capture/work/render/$name.glb"
+done
+for name in cut.glb wild.fbx cycle.gltf; do
+	same "$name is refused in one line" "$(grep -c "^transfer: skipped: targets/$name: " "$log")" 1
+	check "and leaves nothing" test ! -e "$capture/work/targets/${name%.*}/rig.npz"
+done
+
+# field FILE EXPRESSION: of the glTF's JSON.
+field() { node -e 'const d = require("fs").readFileSync(process.argv[1]), j = JSON.parse(d.subarray(20, 20 + d.readUInt32LE(12)));
+	console.log(String(eval(process.argv[2])))' "$1" "$2"; }
+if command -v node >/dev/null; then
+	glb=$capture/work/render/metres.glb
+	same "its meshes, but for the old eyeballs" "$(field "$glb" 'j.meshes.map(m => m.name)')" "Head,Hair,eye_left,eye_right"
+	same "its textures, byte for byte as many" "$(field "$glb" 'j.images.map(i => j.bufferViews[i.bufferView].byteLength)')" \
+		"$(field "$capture/targets/metres.glb" 'j.images.map(i => j.bufferViews[i.bufferView].byteLength)')"
+	same "its own blend shapes beside ours" "$(field "$glb" '["jawOpen", "sneer", "eyeBlink_L", "eyeBlinkLeft"].every(n => j.meshes[0].extras.targetNames.includes(n))')" true
+	same "each name of ARKit once, ours, the file's or zero" "$(field "$glb" 'const z = j.meshes[0].extras.zeroTargets; z.length + "," + z.includes("jawOpen") + "," + z.includes("mouthPucker")')" \
+		"39,false,true"
+	same "the seam of the texture is still one" "$(field "$glb" 'j.accessors[j.meshes[0].primitives[0].attributes.TEXCOORD_0].count > 4202')" true
+	same "without materials: one colour" "$(field "$capture/work/render/bare.glb" 'j.meshes[0].primitives[0].attributes.TEXCOORD_0 === undefined')" true
+else
+	skip "what the glTF holds" "node is not installed"
+fi
+turned() { sed -n 's/.*"target_unit_mm": \([0-9.]*\).*/\1/p' "$capture/work/targets/$1/registration.json"; }
+same "units are found" "$(turned metres) $(turned blender) $(turned posed)" "1000.0 10.0 1000.0"
+
+before=$(times_of "$capture" | grep -v '^log/\|plan\|review/')
+run_make "$capture"
+same "again: nothing is made" "$? $(times_of "$capture" | grep -v '^log/\|plan\|review/')" "0 $before"

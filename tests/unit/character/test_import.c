@@ -1,0 +1,318 @@
+/* A character's file read in a process of its own: what is kept, and what hostile files do. */
+#include "base/apart.h"
+#include "base/file.h"
+#include "base/mem.h"
+#include "character/import.h"
+#include "character/texture.h"
+#include "tests/lib/scenes/dressed.h"
+#include "tests/lib/scratch.h"
+#include "tests/lib/unit.h"
+
+static const struct character_limits limits = { 100000, 20, 1024 };
+
+/* A grid bent round a cylinder, as a head, and a small box, as eyeballs. */
+enum { AROUND = 24, ROWS = 12 };
+
+static struct mesh head(void)
+{
+	struct mesh m = { .n_vertices = AROUND * ROWS + 4, .n_faces = 2 * AROUND * (ROWS - 1) + 4 };
+	m.vertices = calloc((size_t)m.n_vertices, sizeof *m.vertices);
+	m.faces = calloc((size_t)m.n_faces, sizeof *m.faces);
+	int n = 0;
+	for (int j = 0; j < ROWS; j++)
+		for (int i = 0; i < AROUND; i++) {
+			const double a = 2 * M_PI * (i + 0.25) / AROUND;
+			memcpy(m.vertices[n++], (float[3]){ (float)(70 * sin(a)), 20.0f * (float)j, (float)(80 * cos(a)) }, 12);
+		}
+	n = 0;
+	for (int j = 0; j + 1 < ROWS; j++)
+		for (int i = 0; i < AROUND; i++) {
+			const int a = AROUND * j + i, b = AROUND * j + (i + 1) % AROUND;
+			memcpy(m.faces[n++], (int32_t[3]){ a, b, b + AROUND }, 12);
+			memcpy(m.faces[n++], (int32_t[3]){ a, b + AROUND, a + AROUND }, 12);
+		}
+	for (int i = 0; i < 4; i++) {
+		memcpy(m.vertices[AROUND * ROWS + i], (float[3]){ 10.0f * (i == 1), 100 + 10.0f * (i == 2), 60 + 10.0f * (i == 3) }, 12);
+		for (int k = 0; k < 3; k++)
+			m.faces[n + i][k] = AROUND * ROWS + (i + k + 1 + (k == 1 && i % 2) - (k == 2 && i % 2)) % 4;
+	}
+	return m;
+}
+
+static const char *written(const char *name, const struct dressed *how)
+{
+	struct mesh m = head();
+	struct err err = { 0 };
+	const char *path = scratch_path("%s", name);
+	assert_true(dressed_write(path, &m, how, &err));
+	mesh_free(&m);
+	return path;
+}
+
+static bool take(struct mesh *mesh, struct look *look, const char *name, struct err *err)
+{
+	return character_import(mesh, look, scratch_path("."), name, &limits, err);
+}
+
+/* Every vertex of the mesh is a point of the character where the file's nodes put it, and no more points than vertices. */
+static void surface_is_where_the_nodes_put_it(void **state)
+{
+	(void)state;
+	static const struct dressed hows[] = { { .unit = 0.001, .texture_px = 64 }, { .unit = 100, .z_up = true, .texture_px = 64 },
+		                                   { .unit = 1, .skinned = true, .texture_px = 64 } };
+	for (int h = 0; h < 3; h++) {
+		struct mesh from = head(), got;
+		struct look look;
+		struct err err = { 0 };
+		written("head.glb", &hows[h]);
+		if (!take(&got, &look, "head.glb", &err))
+			fail_msg("%s", err.msg);
+		assert_int_equal(look.n_parts, 3);
+		assert_int_equal(got.n_vertices, from.n_vertices + 4 * 24);  // the seam is closed; 24 hair cards
+		for (int i = 0; i < from.n_vertices; i++) {
+			float want[3], least = INFINITY;
+			dressed_place(want, from.vertices[i], &hows[h]);
+			if (hows[h].skinned)  // the joint's quarter turn about x, the node's scale left out
+				memcpy(want, (float[3]){ want[0], -want[2], want[1] }, sizeof want);
+			for (int k = 0; k < got.n_vertices; k++)
+				least = fminf(least, hypotf(hypotf(got.vertices[k][0] - want[0], got.vertices[k][1] - want[1]), got.vertices[k][2] - want[2]));
+			assert_true(least <= 1e-5f * 250 * (float)hows[h].unit);
+		}
+		mesh_free(&from);
+		mesh_free(&got);
+		look_free(&look);
+	}
+}
+
+static void look_is_kept(void **state)
+{
+	(void)state;
+	struct mesh mesh;
+	struct look look, again;
+	struct err err = { 0 };
+	written("head.glb", &(struct dressed){ .unit = 0.001, .texture_px = 128 });
+	assert_true(take(&mesh, &look, "head.glb", &err));
+	assert_string_equal(look.part[0], "Head");
+	assert_string_equal(look.part[2], "Hair");
+	assert_int_equal(look.n_shapes, 3);
+	assert_string_equal(look.shape[1], "eyeBlink_L");
+	assert_true(look.shape_start[1] > 0 && look.shape_start[1] < mesh.n_vertices);
+	for (int k = 0; k < look.shape_start[1]; k++)  // jawOpen: down alone, by at most 4 % of the head's height
+		assert_true(look.shape_by[k][1] < 0 && look.shape_by[k][1] >= -0.04f * 0.22f - 1e-6f && look.shape_by[k][0] == 0);
+	assert_int_equal(look.n_textures, 4);
+	const struct look_material *skin = &look.material[look.face_material[0]];
+	assert_string_equal(skin->name, "Skin");
+	assert_true(skin->map[LOOK_COLOUR] >= 0 && skin->map[LOOK_NORMAL] >= 0 && skin->map[LOOK_ROUGH] >= 0);
+	assert_int_equal(look.texture[skin->map[LOOK_COLOUR]].width, 128);
+	const struct look_material *hair = &look.material[look.face_material[look.n_faces - 1]];
+	assert_int_equal(hair->alpha, LOOK_MASK);
+	assert_true(hair->two_sided && look.has_uv && look.n_wedges > mesh.n_vertices);
+	for (int i = 0; i < look.n_wedges; i++)  // v runs down the head
+		if (look.point[i] < AROUND * ROWS)
+			NEAR(look.uv[i][1], (0.22f - mesh.vertices[look.point[i]][1]) / 0.22f, 1e-5);
+	assert_true(look_save(&look, scratch_path("look.npz"), 0, &err) && look_load(&again, scratch_path("look.npz"), &err));
+	assert_int_equal(again.n_faces, look.n_faces);
+	assert_memory_equal(again.uv, look.uv, (size_t)look.n_wedges * sizeof *look.uv);
+	assert_memory_equal(again.bytes, look.bytes, (size_t)look.n_bytes);
+	look_free(&again);
+	look_free(&look);
+	mesh_free(&mesh);
+}
+
+static void without_uv_or_materials(void **state)
+{
+	(void)state;
+	static const struct dressed hows[] = { { .unit = 1, .no_uv = true, .texture_px = 16 }, { .unit = 1, .no_material = true, .texture_px = 16 },
+		                                   { .unit = 1, .many_materials = 200, .texture_px = 16 } };
+	for (int h = 0; h < 3; h++) {
+		struct mesh mesh;
+		struct look look;
+		struct err err = { 0 };
+		written("bare.glb", &hows[h]);
+		if (!take(&mesh, &look, "bare.glb", &err))
+			fail_msg("%s", err.msg);
+		assert_int_equal(look.has_uv, h != 0);
+		mesh_free(&mesh);
+		look_free(&look);
+	}
+}
+
+/* An OBJ keeps its own rows, whatever order Assimp gives them. */
+static void rows_of_an_obj_are_its_own(void **state)
+{
+	(void)state;
+	struct mesh mesh;
+	struct look look;
+	struct err err = { 0 };
+	scratch_text("quad.mtl", "newmtl red\nKd 1 0 0\nmap_Kd ..\\..\\elsewhere\\no.png\n");
+	scratch_text("quad.obj", "mtllib quad.mtl\nusemtl red\nv 9 9 9\nv 1 0 0.3\nv 0 0 0.1\nv 0 1 0\nv 1 1 0\n"
+	                         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 3/1 2/2 5/3 4/4\n");
+	assert_true(character_has_look(scratch_path("quad.obj")));
+	assert_true(take(&mesh, &look, "quad.obj", &err));
+	assert_int_equal(mesh.n_vertices, 5);
+	assert_int_equal(mesh.n_faces, 2);
+	NEAR(mesh.vertices[1][2], 0.3, 1e-7);
+	for (int f = 0; f < 2; f++)
+		for (int k = 0; k < 3; k++) {
+			const int32_t v = mesh.faces[f][k];
+			const float *uv = look.uv[look.corner[f][k]];
+			NEAR(uv[0], mesh.vertices[v][0], 1e-6);
+			NEAR(uv[1], 1 - mesh.vertices[v][1], 1e-6);
+		}
+	assert_int_equal(look.n_left_out, 1);
+	assert_non_null(strstr(look.left_out[0], "no.png"));
+	NEAR(look.material[look.face_material[0]].rgba[1], 0, 1e-6);
+	mesh_free(&mesh);
+	look_free(&look);
+}
+
+static void refuses(const char *name, const char *why)
+{
+	struct mesh mesh;
+	struct look look;
+	struct err err = { 0 };
+	if (take(&mesh, &look, name, &err))
+		fail_msg("%s was taken", name);
+	ERR_HAS(err, name);
+	ERR_HAS(err, why);
+	assert_null(strchr(err.msg, '\n'));
+	assert_null(mesh.vertices);
+}
+
+static void hostile_files_are_refused_in_one_line(void **state)
+{
+	(void)state;
+	char *data;
+	size_t size;
+	struct err err = { 0 };
+	const char *path = written("whole.glb", &(struct dressed){ .unit = 1, .texture_px = 64 });
+	assert_true(file_read(&data, &size, path, 1 << 26, &err));
+	for (int part = 0; part < 9; part++) {
+		scratch_write("cut.glb", data, size * (size_t)part / 9);
+		refuses("cut.glb", "");
+	}
+	free(data);
+	scratch_text("words.fbx", "not an FBX at all");
+	refuses("words.fbx", "");
+	scratch_text("cycle.gltf", "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"children\":[0]}]}");
+	refuses("cycle.gltf", "");
+	scratch_text("claims.gltf", "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+	                            "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
+	                            "\"count\":2000000000,\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":24000000000}],"
+	                            "\"buffers\":[{\"byteLength\":24000000000,\"uri\":\"data:application/octet-stream;base64,AAAA\"}]}");
+	refuses("claims.gltf", "");
+	scratch_text("out.gltf", "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+	                         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
+	                         "\"count\":3,\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+	                         "\"buffers\":[{\"byteLength\":36,\"uri\":\"../../../../../../etc/passwd\"}]}");
+	refuses("out.gltf", "");
+}
+
+/* A texture that claims 60000 px is left out by its head, and named; the character stays. */
+static void huge_textures_are_left_out(void **state)
+{
+	(void)state;
+	char *data;
+	size_t size;
+	struct err err = { 0 };
+	struct mesh mesh;
+	struct look look;
+	const char *path = written("huge.glb", &(struct dressed){ .unit = 1, .texture_px = 64 });
+	assert_true(file_read(&data, &size, path, 1 << 26, &err));
+	for (size_t i = 0; i + 24 < size; i++)
+		if (!memcmp(data + i, "IHDR\0\0\0\x40", 8))
+			memcpy(data + i, "IHDR\0\0\xea\x60\0\0\xea\x60", 12);
+	scratch_write("huge.glb", data, size);
+	free(data);
+	assert_true(take(&mesh, &look, "huge.glb", &err));
+	assert_int_equal(look.n_textures, 3);
+	assert_int_equal(look.n_left_out, 1);
+	assert_non_null(strstr(look.left_out[0], "60000 x 60000 px"));
+	assert_int_equal(look.material[look.face_material[0]].map[LOOK_COLOUR], -1);
+	mesh_free(&mesh);
+	look_free(&look);
+}
+
+enum deed { WRITES, OPENS, FORKS, EATS, SPINS, FALLS, FLOODS };
+
+static bool misbehave(void *ctx, struct apart_out *out, struct err *err)
+{
+	const enum deed *deed = ctx;
+	char piece[4096] = { 0 };
+	volatile long n = 0;
+	switch (*deed) {
+	case WRITES: return fopen("/tmp/eyewright-must-not-be", "w") || err_set(err, "no writing");
+	case OPENS: return fopen("/etc/passwd", "r") || err_set(err, "no reading");
+	case FORKS: return fork() >= 0 || err_set(err, "no processes");
+	case EATS:
+		for (;;)
+			memset(mem_new(1 << 24, 1), 1, 1 << 24);
+	case SPINS:
+		for (;;)
+			n++;
+	case FALLS: __builtin_trap();
+	case FLOODS:
+		while (apart_put(out, piece, sizeof piece))
+			;
+		return err_set(err, "no more room");
+	}
+	return true;
+}
+
+/* What a reader that was taken over tries comes to nothing, and this process goes on. */
+static void a_process_apart_dies_alone(void **state)
+{
+	(void)state;
+	static const char *const said[] = { "no writing", "no reading", "no processes", "memory", "longer than", "died of signal 4", "no more room" };
+	for (enum deed d = WRITES; d <= FLOODS; d++) {
+#ifdef __SANITIZE_ADDRESS__
+		if (d == EATS || d == FALLS || d == FORKS)  // a sanitizer takes addresses without end, and signals to itself
+			continue;
+#endif
+		char *data;
+		size_t size;
+		struct err err = { 0 };
+		enum deed deed = d;
+		const struct apart apart = { misbehave, &deed, scratch_path("."), (size_t)256 << 20, 1 << 20, 1 };
+		assert_false(apart_run(&data, &size, &apart, &err));
+		ERR_HAS(err, said[d]);
+		assert_null(data);
+	}
+	assert_false(file_exists("/tmp/eyewright-must-not-be"));
+}
+
+/* Whatever bytes a reader that was taken over hands out, none of them points outside. */
+static void results_are_not_trusted(void **state)
+{
+	(void)state;
+	struct mesh mesh;
+	struct look look;
+	struct err err = { 0 };
+	unsigned char *bytes = calloc(4096, 1);
+	uint32_t seed = 1;
+	for (int i = 0; i < 4000; i++) {
+		for (int k = 0; k < 200; k++)
+			bytes[k] = (seed = seed * 1664525 + 1013904223) >> 29 ? 0 : (unsigned char)(seed >> 20);
+		err = (struct err){ 0 };
+		if (look_take(&look, &mesh, (const char *)bytes, (size_t)(i % 4096), &err)) {
+			look_free(&look);
+			mesh_free(&mesh);
+		}
+	}
+	free(bytes);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		SCRATCH_TEST(surface_is_where_the_nodes_put_it),
+		SCRATCH_TEST(look_is_kept),
+		SCRATCH_TEST(without_uv_or_materials),
+		SCRATCH_TEST(rows_of_an_obj_are_its_own),
+		SCRATCH_TEST(hostile_files_are_refused_in_one_line),
+		SCRATCH_TEST(huge_textures_are_left_out),
+		SCRATCH_TEST(a_process_apart_dies_alone),
+		cmocka_unit_test(results_are_not_trusted),
+	};
+	return cmocka_run_group_tests(tests, 0, 0);
+}
