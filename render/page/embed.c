@@ -24,6 +24,7 @@ EMBED(viewer_lids, "render/viewer/lids.glsl");
 EMBED(viewer_tear, "render/viewer/tear.frag");
 EMBED(viewer_skin_frag, "render/viewer/skin.frag");
 EMBED(viewer_folds, "render/viewer/folds.glsl");
+EMBED(viewer_dress, "render/viewer/dress.glsl");
 EMBED(viewer_skin_vert, "render/viewer/skin.vert");
 EMBED(viewer_pose, "render/viewer/pose.glsl");
 EMBED(viewer_probe, "render/viewer/probe.frag");

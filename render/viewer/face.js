@@ -43,10 +43,11 @@ class FaceScene {
 	}
 
 	skin(preset) {
-		return this.g.variant(preset.pores, "skin", "skin_vert", this.data.folds ? ["skin_look", "folds"] : ["skin_look"], "pores");
+		return this.g.variant(preset.pores, "skin", "skin_vert", ["skin_look", ...(this.data.folds ? ["folds"] : []), ...(this.data.dress ? ["dress"] : [])], "pores");
 	}
 
 	async load() {
+		this.dress_map = this.data.dress ? await this.g.map(this.data.dress.map, "srgb") : null;
 		this.fold_map = this.data.folds ? await this.g.map(this.data.folds.map, 0) : null;
 	}
 
@@ -178,7 +179,7 @@ class FaceScene {
 		gl.enable(gl.CULL_FACE);
 		gl.clearColor(0, 0, 0, 0);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-		g.draw(this.skin(preset), { ...this.folds(), cam_from_head: c.R, head_from_rig: this.data.rig.head_from_rig, middle: this.data.rig.middle, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
+		g.draw(this.skin(preset), { ...this.folds(), ...(this.data.dress ? { dress_map: this.dress_map, dress_place: this.data.dress.place } : {}), cam_from_head: c.R, head_from_rig: this.data.rig.head_from_rig, middle: this.data.rig.middle, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
 			shift: [2 * (c.aim[0] - jitter[0]) / width, 2 * (jitter[1] - c.aim[1]) / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
 			sky_dir: EyeScene.padded(skies.flatMap(l => turns.apply(turns.transpose(env), l)), 3 * EyeScene.LIGHTS),
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),

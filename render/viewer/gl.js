@@ -219,7 +219,7 @@ class Graphics {
 
 	/* A map of the page's data as a texture; rows stay in order: row 0 is at 0. srgb: colours; else decoded to half floats. */
 	async map(m, kind) {
-		const gl = this.gl, bitmap = await this.bitmap(m.png, "image/png"), srgb = kind === "srgb";
+		const gl = this.gl, bitmap = await this.bitmap(m.jpeg || m.png, m.jpeg ? "image/jpeg" : "image/png"), srgb = kind === "srgb";
 		const levels = kind === "srgb" || kind === 0 ? 1 + Math.floor(Math.log2(m.width)) : 1;
 		const raw = this.texture(m.width, m.height, srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8, srgb ? levels : 1);
 		gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);

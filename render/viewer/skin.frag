@@ -98,12 +98,17 @@ void main()
 		return;
 	}
 	float grain = 0.0, relief = 1.0;
+#ifdef DRESS
+	albedo = mix(dressed(seen_rest), albedo, min(seen_skin.a * (255.0 / 127.0), 1.0));  // moist places stay as they are
+#endif
 #ifdef PORES
 	if (pores > 0.0) {
 		float at = pore(seen_rest);
 		const vec2 step_ = vec2(SKIN_PORES_STEP, 0.0);
 		n -= SKIN_PORES * pores * vec3(pore(seen_rest + step_.xyy) - at, pore(seen_rest + step_.yxy) - at, pore(seen_rest + step_.yyx) - at);
+#ifndef DRESS
 		grain = SKIN_GRAIN * pores * noise(SKIN_GRAIN_CELLS * seen_rest);
+#endif
 		n = normalize(n);
 		relief += SKIN_PORES_LIGHT * dot(n - smooth_n, sky_dir[0]);
 	}

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "character/import.h"
 #include "base/version.h"
 #include "draw/web/eye.h"
 #include "draw/web/face.h"
@@ -67,7 +68,7 @@ static void programs(json_t *data, bool face)
 	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths }, { "refine", viewer_refine }, { "ground", viewer_ground }, { "march", viewer_march }, { "horizon", viewer_horizon },
 		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "present", viewer_present } },
 	  of_face[] = { { "skin_look", skin_look }, { "lids", viewer_lids }, { "tear", viewer_tear }, { "skin", viewer_skin_frag },
-		            { "skin_vert", viewer_skin_vert }, { "folds", viewer_folds }, { "pose", viewer_pose }, { "probe", viewer_probe }, { "copy", viewer_copy } };
+		            { "skin_vert", viewer_skin_vert }, { "folds", viewer_folds }, { "dress", viewer_dress }, { "pose", viewer_pose }, { "probe", viewer_probe }, { "copy", viewer_copy } };
 	json_t *sub = json_object();
 	for (int i = 0; i < COUNT(part); i++)
 		json_object_set_new(data, part[i].key, json_string(part[i].text));
@@ -121,6 +122,7 @@ struct parts {
 	int n_in;
 	const char **in;
 	char *target;  // the character: its name; null: none
+	const char *look;  // of its own; null: none
 };
 
 static void find_eyes(struct parts *p)
@@ -140,6 +142,8 @@ static bool find_character(struct parts *p, struct stage *stage, struct err *err
 	if (!stage_list(stage, &list, "targets", err))
 		return false;
 	for (int i = 0; i < list.n && !p->target; i++) {
+		if (character_kind_of(list.names[i]) == CHARACTER_NONE)
+			continue;
 		const char *dot = strrchr(list.names[i], '.');
 		char *name = mem_printf("%.*s", dot ? (int)(dot - list.names[i]) : (int)strlen(list.names[i]), list.names[i]);
 		const char *rig = stage_path(stage, "work/targets/%s/rig.npz", name) + strlen(stage->capture) + 1;
@@ -151,6 +155,9 @@ static bool find_character(struct parts *p, struct stage *stage, struct err *err
 			p->in[p->n_in++] = "work/skin/animation.csv";
 			p->in[p->n_in++] = "work/skin/wrinkles.json";
 			p->in[p->n_in++] = "work/skin/wrinkles.exr";
+			const char *look = stage_path(stage, "work/targets/%s/look.npz", name) + strlen(stage->capture) + 1;
+			if (file_exists(stage_path(stage, "%s", look)))
+				p->in[p->n_in++] = p->look = look;
 		} else {
 			free(name);
 		}
@@ -202,9 +209,9 @@ static bool add_clips(json_t *face, struct skin_job *skin, struct err *err)
 }
 
 /* The character and, where there is no other, its plain eye. */
-static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const char *name, struct err *err)
+static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const char *name, const char *look, struct err *err)
 {
-	struct skin_target target = { .name = name, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
+	struct skin_target target = { .name = name, .look_path = look, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
 	bool ok = skin_open(skin, &target, err);
 	if (ok && !json_array_size(eyes)) {
 		const struct web_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, 0, skin->render->lights, skin->render->light_directions };
@@ -218,6 +225,8 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 		ok = *face && add_clips(*face, skin, err);
 	}
 	portrait_free(target.portrait);
+	dress_free(target.dress);
+	look_free(&target.look);
 	rig_free(&target.rig);
 	return ok;
 }
@@ -225,7 +234,7 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 {
 	json_t *eyes = json_array(), *face = 0;
-	bool ok = add_eyes(eyes, p, err) && (!p->target || add_face(&face, eyes, skin, p->target, err))
+	bool ok = add_eyes(eyes, p, err) && (!p->target || add_face(&face, eyes, skin, p->target, p->look, err))
 	          && write_page(skin->stage, skin->capture, skin->render, eyes, face, err)
 	          && stage_made(skin->stage, out, p->n_in, p->in, err);
 	json_decref(eyes);
@@ -236,7 +245,7 @@ static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 bool viewer_make(struct skin_job *skin, struct err *err)
 {
 	struct jobs *eyes = skin->photographed;
-	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 6, sizeof *p.in) };
+	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 7, sizeof *p.in) };
 	find_eyes(&p);
 	bool ok = find_character(&p, skin->stage, err);
 	if (ok && p.n_in && !stage_fresh(skin->stage, out, p.n_in, p.in))

@@ -42,6 +42,8 @@ if command -v node >/dev/null; then
 else
 	skip "what the glTF holds" "node is not installed"
 fi
+check "the page draws its textures" grep -q 'dress_map' "$capture/work/review/viewer.html"
+same "the page with a textured face is small enough" "$(($(stat -c %s "$capture/work/review/viewer.html") < 25000000))" 1
 turned() { sed -n 's/.*"target_unit_mm": \([0-9.]*\).*/\1/p' "$capture/work/targets/$1/registration.json"; }
 same "units are found" "$(turned metres) $(turned blender) $(turned posed)" "1000.0 10.0 1000.0"
 

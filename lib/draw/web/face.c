@@ -200,7 +200,7 @@ json_t *web_face(const char *name, struct portrait *portrait, const struct skin_
 	for (int k = 0; k < f.n_au; k++)
 		json_array_append_new(names, json_pack("{s:o}", "name", template_text(model->au_names[k])));
 	json_object_set_new(out, "expressions", names);
-	if (!web_put_folds(out, &f, err)) {
+	if (!web_put_folds(out, &f, err) || !web_put_dress(out, &f, err)) {
 		json_decref(out);
 		out = 0;
 	}

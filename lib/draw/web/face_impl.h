@@ -38,6 +38,9 @@ void web_order_free(struct web_face *face);
 /* rig.c: the numbers of algorithm 1 (rig/deform/deform.h), with which the page's shader poses the mesh. */
 void web_put_rig(json_t *out, const struct web_face *face);
 
+/* dress.c: the character's own colours as one map; nothing where it has none. False, err set, when it cannot be encoded. */
+bool web_put_dress(json_t *out, const struct web_face *face, struct err *err);
+
 /* folds.c: wrinkle maps that fold with an expression, one below the other, and which expression each follows; nothing where there
  * are none. Returns false, err set, when they cannot be encoded. */
 bool web_put_folds(json_t *out, const struct web_face *face, struct err *err);

@@ -146,7 +146,7 @@ void web_order(struct web_face *f, double reach)
 	int32_t (*seen)[3] = mem_array((size_t)m->n_faces + 1, sizeof *seen);
 	int n_seen = 0;
 	for (int i = 0; i < m->n_faces; i++)
-		if (shown(f, m->faces[i], reach)) {
+		if (!(i < m->n_dressed && m->cuts[i]) && shown(f, m->faces[i], reach)) {
 			for (int j = 0; j < 3; j++)
 				used[m->faces[i][j]] = true;
 			memcpy(seen[n_seen++], m->faces[i], sizeof *seen);

@@ -140,7 +140,7 @@ static int add_texture(struct glb_buffer *g, json_t *images, json_t *textures, i
 	for (int y = 0; y < px; y++)
 		for (int x = 0; x < px; x++) {
 			const double u = (x + 0.5) / px, v = (y + 0.5) / px, brow = fabs(fabs(u - 0.5) - 0.055) < 0.03 && fabs(v - 0.41) < 0.008;
-			const double lips = fabs(u - 0.5) < 0.035 && fabs(v - 0.71) < 0.012, hair = 0.5 + 0.5 * sin(60 * u);
+			const double lips = fabs(u - 0.5) < 0.035 && fabs(v - 0.77) < 0.012, hair = 0.5 + 0.5 * sin(60 * u);
 			const double colour[3] = { brow ? 0.2 : lips ? 0.7 : 0.86, brow ? 0.13 : lips ? 0.3 : 0.67, brow ? 0.1 : lips ? 0.3 : 0.56 };
 			const double normal[3] = { 0.5 + 0.06 * sin(400 * u), 0.5 + 0.06 * sin(400 * v), 1 };
 			uint8_t *p = rgba + 4 * ((size_t)y * (size_t)px + (size_t)x);
