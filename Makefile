@@ -8,7 +8,8 @@
 #$   make CAPTURE=my-capture limbus  one stage, after those it needs (any program of bin/)
 #$   make CAPTURE=my-capture export  the eye for other programs alone: work/export/
 #$   make CAPTURE=my-capture clean   remove my-capture/work/, all that was made
-#$   make batch CAPTURES=DIR         every capture folder in DIR, JOBS=N of them side by side; make batch-status: what became of them
+#$   make batch CAPTURES=DIR         every capture folder in DIR, JOBS=N of them side by side; make batch-status: what became of them;
+#$                                   DIR/batch/index.html, summary.csv: all that was found, worst first
 #$     SCHEDULER=slurm               the same as job arrays of Slurm
 #$   make install PREFIX=/usr/local  the command `eyewright CAPTURE [STAGE]`, man pages, completion; uninstall; deb: a Debian package
 #$   THREADS=2                       with any of these: at most so many threads; results do not depend on it
@@ -63,7 +64,8 @@ LIB_SRC := $(wildcard lib/*/*.c lib/*/*/*.c lib/*/*/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
 LIB_OBJ := $(LIB_SRC:%.c=$B/%.o) $(BRIDGE_SRC:%.cc=$B/%.o)
 STAGES := $(notdir $(patsubst %/,%,$(dir $(wildcard stages/*/main.c render/main.c))))
-PROGRAMS := $(STAGES:%=$(BIN)/%)
+# Beside the stages: what tells of many captures.
+PROGRAMS := $(STAGES:%=$(BIN)/%) $(BIN)/summary
 TESTS := $(patsubst %.c,$B/%,$(wildcard tests/unit/*/test_*.c))
 BENCHES := $(patsubst %.c,$B/%,$(wildcard tests/bench/bench_*.c tests/bench/*/bench_*.c))
 STRESSES := $(patsubst %.c,$B/%,$(wildcard tests/stress/stress_*.c))
@@ -113,6 +115,8 @@ $(BIN)/$(1): $(2) $B/libeyewright.a
 endef
 $(foreach s,$(filter-out render,$(STAGES)),$(eval $(call program,$s,$(patsubst %.c,$B/%.o,$(wildcard stages/$s/*.c)))))
 $B/render/page/embed.o: $(wildcard render/page/page.*) render/export/blender_eye.py render/export/engines.md config/animate.conf lib/draw/eye/look.h lib/draw/face/skin_look.h $(wildcard render/viewer/*)
+$B/stages/batch/summary/page.o: $(wildcard stages/batch/summary/page.*)
+$(eval $(call program,summary,$(patsubst %.c,$B/%.o,$(wildcard stages/batch/summary/*.c))))
 $(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c render/*/*.c))))
 
 $B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a

@@ -15,7 +15,10 @@ begin() {
 	CAPTURES=$(cd "$CAPTURES" && pwd -P && echo .) && CAPTURES=${CAPTURES%$'\n'.}
 	export CAPTURES BIN
 	state=$CAPTURES/batch
-	[ ! -L "$state" ] || die "$state: is a link: results are written inside the folder alone"
+	local folder
+	for folder in "$state" "$state"/{log,results,rows,thumbs,slurm}; do
+		[ ! -L "$folder" ] || die "$folder: is a link: results are written inside the folder alone"
+	done
 	[ ! -e "$state/photos" ] && [ ! -e "$state/capture.conf" ] || die "$state: is a capture: give it another name"
 	mkdir -p "$state/log" "$state/results" || exit 1
 }
@@ -39,6 +42,9 @@ one() { # LIST N [TARGETS]
 		tell "$name" done "$seconds" "$(peak "$name")" ""
 		printf '%s: done in %s s\n' "$(one_line "$name")" "$seconds" >&2
 	fi
+	if [ $status != 0 ] || [ "$target" = run ]; then
+		printf '%s\0' "$name" | "$BIN/summary" --capture="$CAPTURES" ${LIVE:---only-collect}
+	fi
 	return $status
 }
 
@@ -54,7 +60,7 @@ side_by_side() {
 		# Cores are not shared by more threads than there are of them.
 		export THREADS=${THREADS:-$((cores > JOBS ? cores / JOBS : 1))}
 		unset MAKEFLAGS MFLAGS MAKELEVEL
-		ONE=$here/batch.sh LIST=$state/todo.names make --no-print-directory -rsk -j"$JOBS" -f "$here/side_by_side.mk" COUNT="$n" 2> >(grep -v '^make: ' >&2)
+		LIVE="--collect --now-and-then" ONE=$here/batch.sh LIST=$state/todo.names make --no-print-directory -rsk -j"$JOBS" -f "$here/side_by_side.mk" COUNT="$n" 2> >(grep -v '^make: ' >&2)
 	fi
 	status
 }

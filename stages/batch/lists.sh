@@ -16,15 +16,19 @@ names() {
 # is told of at once.
 look() { # N NAME ...
 	local said
+	local -a known=()
 	while [ $# -gt 0 ]; do
 		said=$("$BIN/plan" --capture="$CAPTURES/$2" --request 2>"$state/log/$2")
 		case $? in
-		0) grep -qs "${tab}done$tab" "$state/results/$2" || tell "$2" done 0 "$(peak "$2")" "" ;;
+		0) grep -qs "${tab}done$tab" "$state/results/$2" || tell "$2" done 0 "$(peak "$2")" ""
+			known+=("$2") ;;
 		3) printf '%s\t%s\n' "$1" "${said//$'\n'/$tab}" ;;
-		*) tell "$2" failed 0 "" "$(why "$state/log/$2")" ;;
+		*) tell "$2" failed 0 "" "$(why "$state/log/$2")"
+			known+=("$2") ;;
 		esac
 		shift 2
 	done
+	[ ${#known[@]} = 0 ] || printf '%s\0' "${known[@]}" | "$BIN/summary" --capture="$CAPTURES" --only-collect
 }
 
 # $state/captures: all names; $state/todo: the lines of look, by number.

@@ -2,6 +2,7 @@
 #   batch/results/NAME   one line: name, state, seconds, peak MiB, reason, TABs between
 #   batch/log/NAME       all that make and the stages said
 #   batch/status.csv     all of them, the failures first
+#   batch/index.html, summary.csv, summary.json    what was found in each, worst first: summary/
 tab=$'\t'
 
 # One line without control characters, at most 300 bytes.
@@ -61,7 +62,9 @@ status() {
 		}' .names .queued .results)
 	local bad=$?
 	mv -f "$state/.status.new" "$state/status.csv"
+	"$BIN/summary" --capture="$CAPTURES" --queued="$state/.queued"
 	rm -f "$state"/.names "$state"/.results "$state"/.queued
+	printf 'page: %s\n' "$state/index.html"
 	printf 'table: %s\n' "$state/status.csv"
 	return $bad
 }

@@ -11,7 +11,7 @@ _eyewright() {
 		mapfile -t COMPREPLY < <(compgen -d -- "$word")
 		[ "$n" != 0 ] || mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'batch batch-status' -- "$word")
 	elif [[ $first != batch* ]]; then
-		mapfile -t COMPREPLY < <(compgen -W "$(ls -I version "$lib/bin" 2>/dev/null) clean" -- "$word")
+		mapfile -t COMPREPLY < <(compgen -W "$(ls -I version -I summary "$lib/bin" 2>/dev/null) clean" -- "$word")
 	fi
 }
 complete -F _eyewright eyewright

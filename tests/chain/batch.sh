@@ -47,6 +47,7 @@ same "nothing is written behind it" "$(ls -A "$root/elsewhere")" ""
 
 # Side by side means at the same time: programs that stand in for plan, each of which waits until the other has begun.
 mkdir -p "$root/bin" "$root/two/a/work" "$root/two/b/work"
+ln -s "$PWD/$BIN/summary" "$root/bin/summary"
 cat >"$root/bin/plan" <<'STAND_IN'
 #!/bin/bash
 case $* in
