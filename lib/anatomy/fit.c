@@ -17,6 +17,18 @@ static json_t *ellipse_json(const struct ellipse *e)
 	                 e->angle / deg);
 }
 
+// Of a picture: no side of a photograph has as many px.
+static const double px_most = 1e5;
+
+/* Whether numbers that anybody may have written can be reckoned with; NAN: not known. */
+static bool bounded(int n, const double *x, double most)
+{
+	for (int i = 0; i < n; i++)
+		if (fabs(x[i]) > most)
+			return false;
+	return true;
+}
+
 static bool ellipse_read(struct ellipse *e, const json_t *json, const char *path, struct err *err)
 {
 	if (!json_get(&e->cx, json, "cx", path, err) || !json_get(&e->cy, json, "cy", path, err)
@@ -24,8 +36,9 @@ static bool ellipse_read(struct ellipse *e, const json_t *json, const char *path
 	    || !json_get(&e->angle, json, "angle_deg", path, err))
 		return false;
 	e->angle *= deg;
-	if (!(e->a >= e->b && e->b > 0) || !isfinite(e->cx + e->cy + e->a + e->angle))
-		return err_set(err, "%s: ellipse: must be finite with a >= b > 0", path);
+	if (!(e->a >= e->b && e->b > 0) || !isfinite(e->cx + e->cy + e->a + e->angle) || !bounded(1, &e->cx, px_most) || !bounded(1, &e->cy, px_most) || e->a > px_most
+	    || fabs(e->angle) > 100)
+		return err_set(err, "%s: ellipse: must be within %g px, with a >= b > 0", path, px_most);
 	return true;
 }
 
@@ -92,8 +105,9 @@ static bool camera_read(struct fit *fit, const json_t *json, const char *path, s
 	for (int i = 0; i < COUNT(source_names); i++)
 		if (!strcmp(source, source_names[i]))
 			c->source = (enum camera_source)i;
-	if (!(width >= 1 && width <= 1e6 && height >= 1 && height <= 1e6 && c->focal_px > 0))
-		return err_set(err, "%s: camera: width, height, focal_px must be positive", path);
+	if (!(width >= 1 && width <= px_most && height >= 1 && height <= px_most && c->focal_px > 0 && c->focal_px <= 1e9)
+	    || !bounded(2, c->center_px, 10 * px_most) || !bounded(5, c->distortion, 1e6))
+		return err_set(err, "%s: camera: width, height in [1, %g] px, focal_px in (0, 1e9], center_px, distortion of a picture's size", path, px_most);
 	fit->width = (int)width;
 	fit->height = (int)height;
 	return true;
@@ -130,6 +144,12 @@ static bool fit_read(struct fit *fit, const json_t *json, const char *path, stru
 	          && json_get(&fit->limbus_aspect, json, "limbus_aspect", path, err)
 	          && json_get(&fit->limbus_aspect_sigma, json, "limbus_aspect_sigma", path, err)
 	          && camera_read(fit, json_object_get(json, "camera"), path, err);
+	const double few[] = { fit->theta, fit->phi, fit->coverage, fit->limbus_aspect, fit->limbus_aspect_sigma }, many[] = { fit->rms_px, fit->edge_sigma_px, fit->theta_sigma };
+	if (ok && (!bounded(COUNT(few), few, 1000) || !bounded(COUNT(many), many, 1e9) || !bounded(16, &fit->cam_from_eye[0][0], 1e9)))
+		ok = err_set(err, "%s: angles, cam_from_eye, coverage or residuals: no photograph of an eye has such", path);
+	if (ok && (fit->limbus.cx < -fit->width || fit->limbus.cx > 2.0 * fit->width || fit->limbus.cy < -fit->height || fit->limbus.cy > 2.0 * fit->height))
+		ok = err_set(err, "%s: ellipse: its centre, %g %g, must lie within one picture's size of the picture, %d x %d px", path, fit->limbus.cx, fit->limbus.cy, fit->width,
+		             fit->height);
 	if (ok && fit->has_pupil && fit->pupil.a >= fit->limbus.a)
 		ok = err_set(err, "%s: pupil: a = %g px, must be less than the limbus' %g", path, fit->pupil.a, fit->limbus.a);
 	fit->theta *= deg;

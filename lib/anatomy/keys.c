@@ -33,20 +33,21 @@ bool camera_keys_place(double focal_px, double limbus_mm, double radius_px, stru
 	               focal_px, limbus_mm, radius_px, mm);
 }
 
-/* Whether the radius in the picture grows with the undistorted one until it reaches `corner`. */
-static bool grows(const double k[5], double corner)
+/* The undistorted radius of what stands at `corner` in the picture; NAN where the radius in the picture does not grow with it until there. */
+static double undistorted(const double k[5], double corner)
 {
 	enum { STEPS = 4096 };
 	// No lens that is told by this polynomial shows more than 85 degrees off its axis.
 	const double most = tan(85 * M_PI / 180);
-	double before = 0;
+	double before = 0, at = 0;
 	for (int i = 1; i <= STEPS && before < corner; i++) {
 		double r = most * i * i / (STEPS * (double)STEPS), r2 = r * r, f = r * (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4])));
 		if (!(f > before))
-			return false;
+			return NAN;
 		before = f;
+		at = r;
 	}
-	return before >= corner;
+	return before >= corner ? at : NAN;
 }
 
 bool camera_keys_check(const struct camera *camera, int width, int height, struct err *err)
@@ -58,9 +59,14 @@ bool camera_keys_check(const struct camera *camera, int width, int height, struc
 	if (!isfinite(camera->focal_px))
 		return true;
 	double corner = hypot(fmax(fabs(c[0]), fabs(width - c[0])), fmax(fabs(c[1]), fabs(height - c[1]))) / camera->focal_px;
-	if (!grows(k, corner))
+	const double at = undistorted(k, corner), far = corner / at;
+	if (!isfinite(at))
 		return err_set(err, "camera.distortion = %g %g %g %g %g with camera.focal_px = %g: folds the picture before its corners", k[0], k[1],
 		               k[2], k[3], k[4], camera->focal_px);
+	// Fisheyes halve it; a pincushion of a quarter is no lens.
+	if (far < 0.1 || far > 1.25)
+		return err_set(err, "camera.distortion = %g %g %g %g %g with camera.focal_px = %g: the corners stand %.2g times as far from the centre as without it, must be 0.1 to 1.25",
+		               k[0], k[1], k[2], k[3], k[4], camera->focal_px, far);
 	return true;
 }
 

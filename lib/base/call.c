@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/say.h"
 #include "base/version.h"
+#include "base/work.h"
 
 enum { KEY_CAPTURE = 1, KEY_CONFIG_DIR, KEY_PRINT, KEY_QUIET, KEY_FORCE, KEY_THREADS, KEY_ONLY, KEY_HELP, KEY_VERSION, KEY_OPT = 1000 };
 
@@ -195,13 +196,24 @@ static bool check_shared(const struct conf *conf, const char *config_dir, struct
 	return true;
 }
 
+/* quality names the presets of config/STAGE.conf (key.draft ...): another word would choose none of them. */
+static bool check_quality(const struct conf *conf, struct err *err)
+{
+	static const char *const names[] = { "draft", "review", "final" };
+	const struct conf_item *item = conf_find(conf, "quality", 0);
+	for (int i = 0; i < COUNT(names); i++)
+		if (!item || !strcmp(item->value, names[i]))
+			return true;
+	return err_set(err, "%s:%d: quality = %.80s: must be draft, review or final", item->file, item->line, item->value);
+}
+
 bool call_load(const struct call *call, const char *name, struct conf *conf, struct err *err)
 {
 	char *dir = call->config_dir ? mem_str(call->config_dir) : call_config_dir();
 	char *shared = mem_printf("%s/capture.conf", dir), *own = mem_printf("%s/%s.conf", dir, name),
 	     *capture = mem_printf("%s/capture.conf", call->capture), *prefix = mem_printf("%s.", name);
-	bool ok = conf_load(conf, shared, "", 0, err) && conf_load(conf, own, prefix, 0, err)
-	          && conf_load(conf, capture, "", 1, err) && check_shared(conf, dir, err)
+	bool ok = work_check_inputs(call->capture, err) && conf_load(conf, shared, "", 0, err) && conf_load(conf, own, prefix, 0, err)
+	          && conf_load(conf, capture, "", 1, err) && check_shared(conf, dir, err) && check_quality(conf, err)
 	          && front_apply(conf, name, call->capture, dir, err);
 	free(dir);
 	free(shared);

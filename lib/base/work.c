@@ -12,29 +12,76 @@
 #include "base/file.h"
 #include "base/mem.h"
 
-/* nftw hands nothing on to what it calls. */
-static _Thread_local char *link_found;
+/* The folder that a search is about, and the first link found that leads out of it: nftw hands nothing on to what it calls. */
+static _Thread_local char *root, *link_found;
+
+/* Whether a path, its links resolved, lies outside of the folder; of what is not there: dangling. */
+static bool leads_out(const char *path, bool dangling)
+{
+	char *real = realpath(path, 0);
+	const size_t n = strlen(root);
+	bool out = real ? strncmp(real, root, n) || (real[n] && real[n] != '/' && strcmp(root, "/")) : dangling;
+	free(real);
+	return out;
+}
 
 static int find_link(const char *path, const struct stat *st, int kind, struct FTW *ftw)
 {
 	(void)st;
 	(void)ftw;
 	struct stat to;
-	if (kind != FTW_SL || stat(path, &to) || !S_ISDIR(to.st_mode))
+	if (kind != FTW_SL || ((!stat(path, &to) && !S_ISDIR(to.st_mode)) && !leads_out(path, true)))
 		return 0;
 	link_found = mem_str(path);
 	return 1;
+}
+
+/* A name of the capture, "photos/a.jpg" or "capture.conf". */
+static bool is_inside(const char *capture, const char *folder, const char *name, struct err *err)
+{
+	struct stat st;
+	char *path = mem_printf("%s/%s%s%s", capture, folder, *folder ? "/" : "", name);
+	bool ok = lstat(path, &st) || !S_ISLNK(st.st_mode) || !leads_out(path, false)
+	          || err_set(err, "%s: is a link that leads out of the capture: put the file itself there", path);
+	free(path);
+	return ok;
+}
+
+bool work_check_inputs(const char *capture, struct err *err)
+{
+	static const char *const names[] = { "capture.conf", "subject.ply", "subject.obj", "photos", "views", "video", "targets", "script" };
+	bool ok = true;
+	root = realpath(capture, 0);
+	for (int i = 0; root && ok && i < COUNT(names); i++) {
+		struct err none = { 0 };
+		struct file_list list = { 0 };
+		ok = is_inside(capture, "", names[i], err);
+		char *path = mem_printf("%s/%s", capture, names[i]);
+		if (ok && i >= 3)
+			file_list(&list, path, &none);
+		for (int k = 0; k < list.n && ok; k++)
+			ok = is_inside(capture, names[i], list.names[k], err);
+		file_list_free(&list);
+		free(path);
+	}
+	free(root);
+	return ok;
 }
 
 bool work_check(const char *capture, struct err *err)
 {
 	char *inside = mem_printf("%s/work", capture);
 	link_found = 0;
-	nftw(inside, find_link, 32, FTW_PHYS);
+	root = realpath(capture, 0);
+	if (root)
+		nftw(inside, find_link, 32, FTW_PHYS);
+	free(root);
 	free(inside);
 	if (!link_found)
 		return true;
-	err_set(err, "%s: is a link to another folder: only work/ is written; remove it", link_found);
+	struct stat to;
+	err_set(err, "%s: is a link %s: only work/ is written; remove it", link_found,
+	        !stat(link_found, &to) && S_ISDIR(to.st_mode) ? "to another folder" : "that leads out of the capture");
 	free(link_found);
 	return false;
 }

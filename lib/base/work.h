@@ -3,8 +3,13 @@
 #define BASE_WORK_H
 #include "base/err.h"
 
-/* Checks that no folder of work/, nor work/ itself, is a link: files elsewhere would be overwritten. Links to files do no harm: a new
- * file takes their place. False, err set (path, rule), where one is. */
+/* Checks that what is read of the capture lies in it: capture.conf, subject.ply, .obj and the files of photos/, views/, video/, targets/,
+ * script/ may be links to files of the capture, not to others. A link that leads nowhere is told of by who reads it. False, err set
+ * (path, rule), where one leads out. */
+bool work_check_inputs(const char *capture, struct err *err);
+
+/* Checks that no folder of work/, nor work/ itself, is a link, and that no link in it leads out of the capture: files elsewhere would
+ * be overwritten or read. False, err set (path, rule), where one does. */
 bool work_check(const char *capture, struct err *err);
 
 /* Tries to lock work/, which is made if need be. Returns a file descriptor, whose close() unlocks, or -1, err set.

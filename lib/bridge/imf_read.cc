@@ -1,5 +1,7 @@
 #include "bridge/imf_read.h"
 
+#include "base/file.h"
+
 #include <cstring>
 #include <exception>
 
@@ -33,6 +35,8 @@ static bool read(struct image *out, Imf::InputFile &file, const char *path, long
 bool imf_read_rgb(struct image *out, const char *path, long limit_px, struct err *err)
 {
 	std::memset(out, 0, sizeof *out);
+	if (!file_opens(path, err))
+		return false;
 	try {
 		Imf::InputFile file(path, 1);
 		return read(out, file, path, limit_px, err);

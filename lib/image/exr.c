@@ -157,6 +157,8 @@ static bool open_part(exr_context_t *file, const char *path, struct err *err)
 	init.error_handler_fn = quiet;
 	init.max_image_width = init.max_image_height = 1 << 16;
 	*file = 0;
+	if (!file_opens(path, err))
+		return false;
 	if (exr_start_read(file, path, &init))
 		return err_set(err, "%s: cannot be read as OpenEXR", path);
 	exr_storage_t storage;

@@ -56,7 +56,7 @@ static bool settle(struct plan *plan, const struct call *call, const struct conf
 static bool make_plan(const struct call *call, const struct plan_asked *asked, const struct opt opts[PLAN_OPTS],
                       const struct plan_cost cost[PLAN_STAGES], const struct conf *conf, bool *fresh, struct err *err)
 {
-	struct plan plan;
+	struct plan plan = { 0 };
 	char *slice = slice_of(opts, conf);
 	bool ok = work_check(call->capture, err) && plan_decide(&plan, call->capture, cost, conf, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)

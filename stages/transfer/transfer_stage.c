@@ -1,6 +1,7 @@
 #include "stages/transfer/transfer_stage.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -353,6 +354,21 @@ static bool lay(struct target *t, const struct subject *s, const struct nricp_la
 	return false;
 }
 
+/* A character that is left out: said with --quiet, too. */
+__attribute__((format(printf, 2, 3)))
+static void refuse(struct stage *stage, const char *fmt, ...)
+{
+	va_list ap;
+	char *why = 0;
+	va_start(ap, fmt);
+	if (vasprintf(&why, fmt, ap) < 0)
+		why = mem_str("refused");
+	va_end(ap);
+	stage_warn(stage, "%s", why);
+	stage_skipped_as_said(stage, "%s", why);
+	free(why);
+}
+
 /* Registers one target. Returns true when it is registered or was already; a target at fault is reported, without err. */
 static bool one(struct stage *stage, const char *file, const struct file_list *beside, const struct subject *s,
                 const struct transfer_stage_conf *conf, struct err *err)
@@ -374,11 +390,10 @@ static bool one(struct stage *stage, const char *file, const struct file_list *b
 		if (done) {
 			done = lay(&t, s, &landmarks, conf);
 			if (!done)
-				stage_skipped(stage, "%s: refused: %s; see %s, and give target.%s.landmarks or unit_mm", t.in[0], t.check.reason,
-				              t.out[OUT - 1], t.name);
+				refuse(stage, "%s: refused: %s; see %s, and give target.%s.landmarks or unit_mm", t.in[0], t.check.reason, t.out[OUT - 1], t.name);
 			done = save(&t, s, stage, err) && done;
 		} else if (err_is(&why)) {
-			stage_skipped(stage, "%s", why.msg);
+			refuse(stage, "%s", why.msg);
 			for (int i = 0; i < OUT; i++)
 				file_remove(stage_path(stage, "%s", t.out[i]), err);
 			for (int i = 0; i < LOOKS; i++)

@@ -108,6 +108,9 @@ static void test_camera(void **state)
 		{ { 1600, { 800, 600 }, { -1.0 / 3, 0, 0, 0, 0 }, CAMERA_CONF }, "" },     // the corner at 0.625 is not
 		{ { 2000, { 800, 600 }, { -100, 0, 0, 0, 0 }, CAMERA_CONF }, "folds the picture" },
 		{ { 2000, { 800, 600 }, { NAN, 0, 0, 0, 0 }, CAMERA_CONF }, "folds the picture" },
+		// r (1 + 20 r^2) is 0.12 at r = 0.1, 1.2 times as far; r (1 + 100 r^2) is 0.2 there, twice.
+		{ { 8333.3, { 800, 600 }, { 20, 0, 0, 0, 0 }, CAMERA_CONF }, "" },
+		{ { 5000, { 800, 600 }, { 100, 0, 0, 0, 0 }, CAMERA_CONF }, "the corners stand 2 times as far" },
 	};
 	for (int i = 0; i < COUNT(cases); i++) {
 		struct err err = { 0 };
