@@ -21,6 +21,12 @@ const struct opt_each *capture_each(const struct opt_each_list *list, const char
 	return 0;
 }
 
+const struct opt_each *capture_key(const struct opt_each_list *list, const struct capture_photo *photo)
+{
+	const struct opt_each *own = capture_each(list, photo->name);
+	return own ? own : capture_each(list, photo->whole);
+}
+
 static int side_of(const char *name, const struct opt_each_list *eye_of, struct err *err)
 {
 	const struct opt_each *given = capture_each(eye_of, name);
@@ -71,14 +77,15 @@ static void add_photo(struct capture *capture, struct stage *stage, char *name, 
 	}
 	capture->photos = mem_grow(capture->photos, (size_t)capture->n_photos + 1, sizeof *capture->photos);
 	capture->photos[capture->n_photos++] = (struct capture_photo){
-		.name = name, .file = path, .fit = mem_printf("work/limbus/%s.json", name), .eye = side
+		.name = name, .whole = mem_str(name), .file = path, .fit = mem_printf("work/limbus/%s.json", name), .eye = side
 	};
 }
 
-/* Sides present become eyes[], the first of them in work/iris. */
+/* Sides present become eyes[], the first of them in work/iris; in: the photographs' sides, out: their indices into eyes[]. */
 static void number_eyes(struct capture *capture)
 {
 	int index[SIDES];
+	capture->n_eyes = 0;
 	for (int s = 0; s < SIDES; s++) {
 		bool present = false;
 		for (int i = 0; i < capture->n_photos; i++)
@@ -96,7 +103,78 @@ static void number_eyes(struct capture *capture)
 		capture->photos[i].eye = index[capture->photos[i].eye];
 }
 
+bool capture_may_part(const struct capture *capture, int i)
+{
+	const struct capture_photo *p = &capture->photos[i];
+	if (p->part || strcmp(capture->eyes[p->eye].side, side_names[0]))
+		return false;
+	bool may = true;
+	for (int s = 1; s < SIDES; s++) {
+		char *name = mem_printf("%s.%s", p->name, side_names[s]);
+		for (int k = 0; k < capture->n_photos; k++)
+			may = may && strcmp(capture->photos[k].name, name);
+		free(name);
+	}
+	return may;
+}
+
+static struct capture_photo part_of(const struct capture_photo *whole, int side)
+{
+	char *name = mem_printf("%s.%s", whole->name, side_names[side]);
+	return (struct capture_photo){ .name = name, .whole = mem_str(whole->name), .file = mem_str(whole->file),
+		.fit = mem_printf("work/limbus/%s.json", name), .eye = side, .part = true };
+}
+
+static void photo_clear(struct capture_photo *p)
+{
+	free(p->name);
+	free(p->whole);
+	free(p->file);
+	free(p->fit);
+}
+
+static int side_index(const char *side)
+{
+	int s = SIDES - 1;
+	while (s > 0 && strcmp(side, side_names[s]))
+		s--;
+	return s;
+}
+
+void capture_part(struct capture *capture, int i)
+{
+	for (int k = 0; k < capture->n_photos; k++)
+		capture->photos[k].eye = side_index(capture->eyes[capture->photos[k].eye].side);
+	capture->photos = mem_grow(capture->photos, (size_t)capture->n_photos + 1, sizeof *capture->photos);
+	struct capture_photo *at = &capture->photos[i], whole = *at;
+	memmove(at + 2, at + 1, (size_t)(capture->n_photos - i - 1) * sizeof *at);
+	capture->n_photos++;
+	for (int s = 1; s < SIDES; s++)
+		at[s - 1] = part_of(&whole, s);
+	photo_clear(&whole);
+	number_eyes(capture);
+}
+
+/* Whether limbus has found both eyes in it. */
+static bool is_parted(struct stage *stage, const struct capture_photo *p)
+{
+	bool is = true;
+	for (int s = 1; s < SIDES && is; s++)
+		is = file_exists(stage_path(stage, "work/limbus/%s.%s.json", p->name, side_names[s]));
+	return is;
+}
+
 bool capture_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
+{
+	if (!capture_list(capture, stage, eye_of, err))
+		return false;
+	for (int i = 0; i < capture->n_photos; i++)
+		if (capture_may_part(capture, i) && is_parted(stage, &capture->photos[i]))
+			capture_part(capture, i++);
+	return true;
+}
+
+bool capture_list(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
 {
 	struct file_list files;
 	*capture = (struct capture){ 0 };
@@ -122,11 +200,8 @@ bool capture_load(struct capture *capture, struct stage *stage, const struct opt
 
 void capture_free(struct capture *capture)
 {
-	for (int i = 0; i < capture->n_photos; i++) {
-		free(capture->photos[i].name);
-		free(capture->photos[i].file);
-		free(capture->photos[i].fit);
-	}
+	for (int i = 0; i < capture->n_photos; i++)
+		photo_clear(&capture->photos[i]);
 	free(capture->photos);
 	*capture = (struct capture){ 0 };
 }

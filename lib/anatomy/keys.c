@@ -75,12 +75,13 @@ struct family {
 	const char *prefix, *what;
 	const char *folders[3];  // null-terminated
 	bool frames;             // of a video of video/, too: STEM_NUMBER
+	bool parts;              // one eye of a photograph that shows both, too: STEM.left, STEM.right
 };
 
 static const struct family families[] = {
-	{ "photo.", "photograph", { "photos" }, false },
-	{ "view.", "view", { "views", "photos" }, true },
-	{ "target.", "character", { "targets" }, false },
+	{ "photo.", "photograph", { "photos" }, false, true },
+	{ "view.", "view", { "views", "photos" }, true, false },
+	{ "target.", "character", { "targets" }, false, false },
 };
 
 /* Bytes of a file's name before its ending. */
@@ -104,6 +105,18 @@ static bool is_frame(const char *file, const char *name, size_t length)
 	return strspn(name + n + 1, "0123456789") >= length - n - 1;
 }
 
+/* Bytes of the name of a photograph without the part of it that is meant. */
+static size_t without_part(const char *name, size_t length)
+{
+	static const char *const parts[] = { ".left", ".right" };
+	for (int i = 0; i < COUNT(parts); i++) {
+		const size_t n = strlen(parts[i]);
+		if (length > n && !strncmp(name + length - n, parts[i], n))
+			return length - n;
+	}
+	return length;
+}
+
 /* Whether a file bears that name. *there gains the names that there are, each once; its owner frees it. */
 static bool look(bool *found, char **there, const struct family *family, const char *capture, const char *name, size_t length,
                  struct err *err)
@@ -123,7 +136,7 @@ static bool look(bool *found, char **there, const struct family *family, const c
 		for (int i = 0; i < list.n; i++) {
 			const char *file = list.names[i];
 			bool video = f == 2, twice = i && is_stem(list.names[i - 1], file, stem_length(file));
-			*found |= video ? is_frame(file, name, length) : is_stem(file, name, length);
+			*found |= video ? is_frame(file, name, length) : is_stem(file, name, length) || (family->parts && is_stem(file, name, without_part(name, length)));
 			if (twice || ++n > MOST)
 				continue;
 			char *more = mem_printf("%s%s%.*s%s", *there, **there ? ", " : "", (int)stem_length(file), file, video ? "_FRAME" : "");

@@ -68,8 +68,7 @@ static struct trial *told(struct trials *t, int best)
 	return likeliest;
 }
 
-/* Measures the likeliest trial in full. */
-static void settle(struct limbus_found *found, struct trials *trials)
+void limbus_settle(struct limbus_found *found, struct trials *trials)
 {
 	const struct posterior *p = &found->posterior;
 	if (p->best < 0) {
@@ -86,27 +85,42 @@ static void settle(struct limbus_found *found, struct trials *trials)
 	limbus_refuse_doubtful(found, &trials->trial[p->best], trials->photo, trials->conf);
 }
 
-void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint, const struct limbus_conf *conf)
+void limbus_find_in(struct limbus_found *found, struct trials *trials, const double *hint)
 {
 	struct err err = { 0 };
-	*found = (struct limbus_found){ .posterior = { .best = -1, .rival = -1, .gross = 1 } };
-	if (photo->width < MIN_SIDE || photo->height < MIN_SIDE) {
-		limbus_refuse(found, "%d x %d px is too small: the iris must be at least 80 px across", photo->width, photo->height);
-		return;
-	}
-	struct pyramid pyramid = pyramid_make(photo);
-	struct trials *trials = trials_new(photo, &pyramid, conf);
+	const struct photo *photo = trials->photo;
+	const struct pyramid *pyramid = trials->pyramid;
+	const struct limbus_conf *conf = trials->conf;
 	const struct ellipse meant = hint ? (struct ellipse){ hint[0], hint[1], hint[2], hint[2], 0 } : (struct ellipse){ 0 };
-	if (exposed(found, &pyramid, conf)) {
+	*found = (struct limbus_found){ .posterior = { .best = -1, .rival = -1, .gross = 1 } };
+	if (exposed(found, pyramid, conf)) {
 		if (hint ? hinted(found, trials, hint, &err) : search(found, trials, &err))
-			settle(found, trials);
+			limbus_settle(found, trials);
 		else
 			limbus_refuse(found, "%s", err.msg);
 	}
 	if (hint && !(found->ok && limbus_hand_near(&found->limbus.e, &meant)))
-		limbus_by_hand(found, photo, &pyramid, &meant, conf->hint_sigma, conf);
+		limbus_by_hand(found, photo, pyramid, &meant, conf->hint_sigma, conf);
 	if (found->ok)
-		band_sample(&found->band, &pyramid, &found->limbus);
+		band_sample(&found->band, pyramid, &found->limbus);
+}
+
+bool limbus_too_small(struct limbus_found *found, const struct photo *photo)
+{
+	*found = (struct limbus_found){ .posterior = { .best = -1, .rival = -1, .gross = 1 } };
+	const bool small = photo->width < MIN_SIDE || photo->height < MIN_SIDE;
+	if (small)
+		limbus_refuse(found, "%d x %d px is too small: the iris must be at least 80 px across", photo->width, photo->height);
+	return small;
+}
+
+void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint, const struct limbus_conf *conf)
+{
+	if (limbus_too_small(found, photo))
+		return;
+	struct pyramid pyramid = pyramid_make(photo);
+	struct trials *trials = trials_new(photo, &pyramid, conf);
+	limbus_find_in(found, trials, hint);
 	trials_free(trials);
 	pyramid_free(&pyramid);
 }

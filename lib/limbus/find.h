@@ -8,12 +8,22 @@
 #include "limbus/odds.h"
 #include "limbus/propose/seek.h"
 
+/* What both eyes of a face have in common (limbus/face/face.h). */
+struct face_conf {
+	double distance[2];   // between the limbi, of their semi-axis: least, most
+	double roll;          // radians: of the line through both against the picture's rows, at most
+	double size_sigma;    // of the logarithm of their sizes' ratio
+	double score, sure;   // of a region: where the other eye is looked for; where it is there, found or not
+	double pupil_sigma;   // of the logarithm of the pupils' ratio
+};
+
 struct limbus_conf {
 	struct seek_conf seek;
 	struct rim_conf rim;
 	struct pupil_conf pupil;
 	struct evidence_net *net;    // borrowed
 	struct odds_weights odds;
+	struct face_conf face;
 	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
 	double max_gross;      // chance of being more than 2 % off, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
@@ -46,6 +56,17 @@ struct limbus_found {
  * hint   x, y, radius px, or null; with one an ellipse near it is always accepted (hand.h), but in a photograph too small to hold an iris */
 void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
                  const struct limbus_conf *conf);
+
+/* Refuses a photograph too small to hold an iris; true where it is. */
+bool limbus_too_small(struct limbus_found *found, const struct photo *photo);
+
+struct trials;
+
+/* The same on trials that hold none yet (trial.h); they hold what was tried afterwards. */
+void limbus_find_in(struct limbus_found *found, struct trials *trials, const double *hint);
+
+/* Measures the likeliest of the trials, as found->posterior has it, in full; refuses what is doubtful. */
+void limbus_settle(struct limbus_found *found, struct trials *trials);
 
 /* The limbus as a person has drawn it, moved to the edge where there is one close by. */
 void limbus_find_drawn(struct limbus_found *found, const struct photo *photo, const struct ellipse *drawn, const struct limbus_conf *conf);

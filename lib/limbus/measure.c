@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "limbus/face/face.h"
 #include "optics/sensor.h"
 
 /* The camera from the first source that gives a focal length: struct limbus_camera. */
@@ -61,16 +62,10 @@ static bool lean(struct limbus_record *record, const struct limbus_found *found,
 	return true;
 }
 
-void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint, const struct ellipse *drawn,
-                          const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf,
-                          const struct pose_conf *pose_conf)
+static void record_of(struct limbus_record *record, const struct limbus_found *found, const struct photo *photo, const struct limbus_camera *known,
+                      const struct eye *eye, const struct pose_conf *pose_conf)
 {
 	struct err err = { 0 };
-	struct limbus_found *found = mem_new(1, sizeof *found);
-	if (drawn)
-		limbus_find_drawn(found, photo, drawn, conf);
-	else
-		limbus_find(found, photo, hint, conf);
 	limbus_record_fill(record, found, photo);
 	if (record->ok)
 		record->view.camera = camera_of(known, photo, &record->view.limbus, eye);
@@ -82,5 +77,58 @@ void limbus_measure_photo(struct limbus_record *record, const struct photo *phot
 		record->ok = false;
 		snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
 	}
+}
+
+void limbus_measure_photo(struct limbus_record *record, const struct photo *photo, const double *hint, const struct ellipse *drawn,
+                          const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf,
+                          const struct pose_conf *pose_conf)
+{
+	struct limbus_found *found = mem_new(1, sizeof *found);
+	if (drawn)
+		limbus_find_drawn(found, photo, drawn, conf);
+	else
+		limbus_find(found, photo, hint, conf);
+	record_of(record, found, photo, known, eye, pose_conf);
 	free(found);
+}
+
+/* An eye that a person marks, in place of what was found of it. */
+static void by_hand(struct limbus_found *found, const struct photo *photo, const struct limbus_mark *mark, const struct limbus_conf *conf)
+{
+	if (mark->drawn)
+		limbus_find_drawn(found, photo, mark->drawn, conf);
+	else
+		limbus_find(found, photo, mark->hint, conf);
+}
+
+/* Of a photograph in which one eye was found: that one is the unmarked eye, unless it is the marked one. */
+static void other_than(struct limbus_found found[2], int marked)
+{
+	const struct ellipse *e = &found[1 - marked].limbus.e, *f = &found[marked].limbus.e;
+	if (e->a > 0 && hypot(e->cx - f->cx, e->cy - f->cy) > f->a)
+		return;
+	found[1 - marked] = (struct limbus_found){ .posterior = { .best = -1, .rival = -1, .gross = 1 } };
+	snprintf(found[1 - marked].reason, sizeof found[1 - marked].reason, "the other eye was not found: open it wide, or say where it is with photo.NAME.%s.hint_px",
+	         marked == FACE_LEFT ? "right" : "left");
+}
+
+int limbus_measure_face(struct limbus_record record[2], const struct photo *photo, const struct limbus_mark mark[2], bool mirrored,
+                        const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf, const struct pose_conf *pose_conf)
+{
+	struct limbus_found *found = mem_new(2, sizeof *found);
+	const bool marked[2] = { mark[0].hint || mark[0].drawn, mark[1].hint || mark[1].drawn };
+	int n = marked[0] && marked[1] ? 2 : limbus_find_face(found, photo, mirrored, conf);
+	if (n == 1 && (marked[0] || marked[1]))
+		found[1] = found[0];
+	for (int s = 0; s < 2; s++)
+		if (marked[s])
+			by_hand(&found[s], photo, &mark[s], conf);
+	for (int s = 0; s < 2 && n == 1; s++)
+		if (marked[s])
+			other_than(found, s);
+	n = marked[0] || marked[1] ? 2 : n;
+	for (int s = 0; s < n; s++)
+		record_of(&record[s], &found[s], photo, known, eye, pose_conf);
+	free(found);
+	return n;
 }

@@ -23,4 +23,14 @@ void limbus_measure_photo(struct limbus_record *record, const struct photo *phot
                           const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf,
                           const struct pose_conf *pose_conf);
 
+/* What a person says of one eye: x, y, radius px, or the drawn limbus, which goes before; null: nothing. */
+struct limbus_mark { const double *hint; const struct ellipse *drawn; };
+
+/* Measures a photograph that may show both eyes (limbus_find_face).
+ * record  [FACE_LEFT, FACE_RIGHT] (limbus/face/face.h) where 2 is returned, which it is also where an eye is marked: the other eye's is not
+ *         ok then where it is not found. [0] where 1 is returned: the photograph shows one eye, as limbus_measure_photo measures it
+ * mark    of the left and the right eye */
+int limbus_measure_face(struct limbus_record record[2], const struct photo *photo, const struct limbus_mark mark[2], bool mirrored,
+                        const struct limbus_camera *known, const struct eye *eye, const struct limbus_conf *conf, const struct pose_conf *pose_conf);
+
 #endif

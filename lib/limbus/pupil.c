@@ -2,12 +2,20 @@
 
 #include <math.h>
 
+#include "base/mem.h"
 #include "limbus/propose/score.h"
 #include "limbus/propose/seek.h"
+#include "limbus/region.h"
 #include "math/stats.h"
 
-enum { RADII = 16, GRID = 2, SAMPLES = 24 };
-static const double CONTRAST = 0.12;
+enum { RADII = 16, GRID = 2, SAMPLES = 24, DISC_RINGS = 12, DISC_ANGLES = 48, ALIKE_ARCS = 12 };
+static const double LEAST_WINDOW = 2;               // px: steps of small pupils are blurred as much as those of large ones
+static const double TOLD_SIGMA[2] = { 0.025, 0.03 };  // of the evidence's ellipse, of the limbus's semi-axis (its planes are coarse) and of its own:
+                                                    // drawn and rendered faces of development
+static const double FAR = 2.2;                      // so many of that: not the same
+static const double SURE = 0.3;                     // mean chance of pupil in an ellipse of the evidence that is believed
+static const float HIDDEN = 0.85F, FLOOR = 0.02F;  // as of region.c
+static const double CONTRAST = 0.12, SMALLEST = 0.12, LARGEST = 0.78;  // of the limbus
 
 static double ring_median(const struct grey *g, const struct ellipse *e, double scale, double quantile)
 {
@@ -39,7 +47,7 @@ static double search(struct ellipse *best, const struct pyramid *pyramid, const 
 {
 	double top = 0;
 	for (int i = 0; i < RADII; i++) {
-		double k = 0.12 * pow(0.78 / 0.12, (double)i / (RADII - 1)), reach = 0.07 * limbus->b;
+		const double k = SMALLEST * pow(LARGEST / SMALLEST, (double)i / (RADII - 1)), reach = 0.07 * limbus->b;
 		const struct grey *g = &pyramid->bright[pyramid_index(pyramid, k * limbus->a, 40)];
 		for (int x = -GRID; x <= GRID; x++)
 			for (int y = -GRID; y <= GRID; y++) {
@@ -55,6 +63,12 @@ static double search(struct ellipse *best, const struct pyramid *pyramid, const 
 	return top;
 }
 
+static bool believed(const struct rim *pupil, const struct ellipse *limbus, const struct pupil_conf *conf)
+{
+	const double off = hypot(pupil->e.cx - limbus->cx, pupil->e.cy - limbus->cy);
+	return off + pupil->e.a < limbus->a && pupil->e.a < conf->largest * limbus->a && pupil->contrast > conf->min_contrast && pupil->coverage > conf->min_coverage;
+}
+
 bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid,
                   const struct ellipse *limbus, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
 {
@@ -65,8 +79,105 @@ bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyr
 	struct rim_conf grey = *rim_conf;
 	grey.grey = true;
 	grey.search = fmax(grey.search, 6 / e.a);
-	if (!rim_fit(pupil, photo, 0, &e, &grey))
-		return false;
-	double off = hypot(pupil->e.cx - limbus->cx, pupil->e.cy - limbus->cy);
-	return off + pupil->e.a < limbus->a && pupil->contrast > conf->min_contrast && pupil->coverage > conf->min_coverage;
+	return rim_fit(pupil, photo, 0, &e, &grey) && believed(pupil, limbus, conf);
+}
+
+/* Of every pixel, whether it is the pupil rather than what is round it; lids and what is mirrored may lie over either. */
+static struct region_map map_of(const struct evidence *e)
+{
+	struct region_map m = { e->width, e->height, e->x0, e->y0, e->scale, 0 };
+	m.sum = mem_array((size_t)(m.width + 1) * (size_t)m.height, sizeof *m.sum);
+	for (int y = 0; y < m.height; y++) {
+		float *row = m.sum + (long)y * (m.width + 1);
+		row[0] = 0;
+		for (int x = 0; x < m.width; x++) {
+			const long i = (long)y * m.width + x;
+			const float over = e->plane[EVIDENCE_REFLECTION][i] + e->plane[EVIDENCE_SKIN][i] + e->plane[EVIDENCE_LASH][i];
+			const float out = e->plane[EVIDENCE_IRIS][i] + e->plane[EVIDENCE_SCLERA][i] + over;
+			row[x + 1] = row[x] + logf((e->plane[EVIDENCE_PUPIL][i] + HIDDEN * over + FLOOR) / (out + FLOOR));
+		}
+	}
+	return m;
+}
+
+/* The pupil by the evidence of its pixels: its ellipse, and their mean in it. 0: there is none in the limbus. */
+static double told_by(struct ellipse *e, const struct evidence *evidence, const struct ellipse *limbus)
+{
+	double mass = 0, x = 0, y = 0, in = 0;
+	for (int k = 0; k < DISC_RINGS; k++)
+		for (int i = 0; i < DISC_ANGLES; i++) {
+			double p[2], n[2];
+			struct ellipse f = *limbus;
+			const double share = (k + 0.5) / DISC_RINGS;
+			f.a *= share;
+			f.b *= share;
+			ellipse_point(p, n, &f, 2 * M_PI * i / DISC_ANGLES);
+			const double w = share * evidence_at(evidence, EVIDENCE_PUPIL, p[0], p[1]);
+			mass += w;
+			x += w * p[0];
+			y += w * p[1];
+			in += share;
+		}
+	const double size = sqrt(mass / in);
+	if (!(size > SMALLEST))
+		return 0;
+	*e = (struct ellipse){ x / mass, y / mass, size * limbus->a, size * limbus->b, limbus->angle };
+	struct region_map map = map_of(evidence);
+	region_fit(e, &map);
+	region_map_free(&map);
+	double sum = 0;
+	for (int k = 0; k < DISC_RINGS; k++)
+		for (int i = 0; i < DISC_ANGLES; i++) {
+			double p[2], n[2];
+			struct ellipse f = *e;
+			const double share = (k + 0.5) / DISC_RINGS;
+			f.a *= share;
+			f.b *= share;
+			ellipse_point(p, n, &f, 2 * M_PI * i / DISC_ANGLES);
+			sum += share * evidence_at(evidence, EVIDENCE_PUPIL, p[0], p[1]);
+		}
+	return sum / in;
+}
+
+/* Measures the margin near an ellipse that is known before to `sigma` px. */
+static bool measure_near(struct rim *pupil, const struct photo *photo, const struct ellipse *e, double sigma, const struct rim_conf *rim_conf)
+{
+	struct rim_conf grey = *rim_conf;
+	struct ellipse_prior known = { .alike = ALIKE_ARCS };
+	ellipse_to_q(known.q, e);
+	for (int i = 0; i < ELLIPSE_N; i++)
+		known.sigma[i] = sigma;
+	grey.grey = true;
+	grey.known = &known;
+	grey.least_window = LEAST_WINDOW;
+	return rim_fit(pupil, photo, 0, e, &grey);
+}
+
+static bool agree(const struct ellipse *e, const struct ellipse *f, double within)
+{
+	return hypot(e->cx - f->cx, e->cy - f->cy) < within && fabs(e->a - f->a) < within;
+}
+
+bool limbus_pupil_like(struct rim *pupil, const struct photo *photo, const struct ellipse *limbus, double size, double sigma,
+                       const struct rim_conf *rim_conf, const struct pupil_conf *conf)
+{
+	struct ellipse e = *limbus;
+	struct pupil_conf less = *conf;
+	e.a *= size;
+	e.b *= size;
+	less.min_contrast *= 0.5;
+	less.min_coverage *= 0.5;
+	return measure_near(pupil, photo, &e, sigma * e.a, rim_conf) && believed(pupil, limbus, &less) && agree(&pupil->e, &e, FAR * sigma * e.a);
+}
+
+bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
+                       const struct evidence *evidence, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
+{
+	struct ellipse told = { 0 };
+	const bool found = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf);
+	const double sure = told_by(&told, evidence, limbus);
+	const double sigma = TOLD_SIGMA[0] * limbus->a + TOLD_SIGMA[1] * told.a;
+	if (found && (sure < SURE || agree(&pupil->e, &told, FAR * sigma)))
+		return found;
+	return sure >= SURE && measure_near(pupil, photo, &told, sigma, rim_conf) && believed(pupil, limbus, conf) && agree(&pupil->e, &told, FAR * sigma);
 }

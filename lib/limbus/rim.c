@@ -240,6 +240,11 @@ static bool locate(struct rim *rim, const struct grey *grey, const struct grey *
 	return first_width(rim, grey, conf, width, height) || conf->known;
 }
 
+static double window_of(const struct rim *rim, const struct grey *grey, const struct rim_conf *conf)
+{
+	return fmin(fmax(1.9 * rim->width, 4 * grey->scale), fmax(0.07 * rim->e.a, conf->least_window));
+}
+
 bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint, const struct ellipse *start,
              const struct rim_conf *conf)
 {
@@ -263,11 +268,11 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 			grey_free(&grey);
 			grey = grey_linear(photo, &rim->e, 1.3, conf->max_axis, weight);
 		}
-		double window = fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a);
+		double window = window_of(rim, &grey, conf);
 		ok = fine_pass(rim, &grey, tint, window, i == 1 || i == 2, w, h, conf);
 	}
 	if (ok) {
-		own_widths(rim, &grey, fmin(fmax(1.9 * rim->width, 4 * grey.scale), 0.07 * rim->e.a), w, h);
+		own_widths(rim, &grey, window_of(rim, &grey, conf), w, h);
 		correlate(rim, conf->irregularity);
 		rim_cover(rim, &grey, tint, conf->absolute, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);

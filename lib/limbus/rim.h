@@ -16,6 +16,7 @@ struct rim_conf {
 	const struct ellipse_prior *known;  // what the evidence says of the ellipse before, or null; borrowed
 	bool absolute;        // tint is a chance of sclera, not a whiteness that is relative to the ring's
 	int passes;           // of the step fit: 6; fewer are rough
+	double least_window;  // px: half-width of the steps looked at, at least, however small the ellipse
 	bool grey;            // measure in brightness, not in the discriminant of propose/colour.h
 };
 

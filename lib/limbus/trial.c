@@ -74,7 +74,8 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 	conf.known = 0;
 	conf.absolute = false;
 	conf.max_axis = coarse ? COARSE_PUPIL_PX : conf.max_axis;
-	*has_pupil = limbus_pupil(pupil, t->photo, t->pyramid, &rim->e, &conf, &t->conf->pupil);
+	*has_pupil = coarse ? limbus_pupil(pupil, t->photo, t->pyramid, &rim->e, &conf, &t->conf->pupil)
+	                    : limbus_pupil_told(pupil, t->photo, t->pyramid, &rim->e, &trial->window->evidence, &conf, &t->conf->pupil);
 	return true;
 }
 
@@ -107,8 +108,8 @@ static void try(struct trials *t, const struct trial *start)
 	free(rim);
 }
 
-/* The ellipse of the evidence near a circle, from a window of its own size; tried with either guide. */
-static bool of_region(struct trials *t, double x, double y, double radius, struct err *err)
+/* From a window of its own size. */
+bool trials_of_place(struct trials *t, double x, double y, double radius, struct err *err)
 {
 	struct trial_window *w = window(t, x, y, radius, err);
 	struct ellipse e = { x, y, radius, radius, 0 };
@@ -131,15 +132,15 @@ static bool of_region(struct trials *t, double x, double y, double radius, struc
 
 bool trials_of_evidence(struct trials *t, struct err *err)
 {
-	struct evidence_region region[EVIDENCE_REGIONS];
-	int n;
-	if (!evidence_find(region, &n, t->conf->net, t->photo, err))
+	const struct evidence_region *region = t->region;
+	if (!evidence_find(t->region, &t->n_regions, t->conf->net, t->photo, err))
 		return false;
+	const int n = t->n_regions;
 	for (int i = 0; i < n && i < REGIONS_TRIED; i++)
-		if (!of_region(t, region[i].x, region[i].y, region[i].radius, err))
+		if (!trials_of_place(t, region[i].x, region[i].y, region[i].radius, err))
 			return false;
 	for (int i = 0; i < 2 && n > 0; i++)
-		if (!of_region(t, region[0].x, region[0].y, OTHER_SCALE[i] * region[0].radius, err))
+		if (!trials_of_place(t, region[0].x, region[0].y, OTHER_SCALE[i] * region[0].radius, err))
 			return false;
 	return true;
 }
@@ -171,7 +172,7 @@ bool trials_of_votes(struct trials *t, struct err *err)
 bool trials_of_hint(struct trials *t, const double *hint, struct err *err)
 {
 	struct seek_found seen[SEEK_MAX];
-	if (!of_region(t, hint[0], hint[1], hint[2], err))
+	if (!trials_of_place(t, hint[0], hint[1], hint[2], err))
 		return false;
 	const int n = limbus_seek(seen, t->pyramid, hint, &t->conf->seek);
 	for (int i = 0; i < n && i < VOTES_TRIED; i++)

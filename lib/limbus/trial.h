@@ -31,7 +31,8 @@ struct trials {
 	const struct photo *photo;
 	const struct pyramid *pyramid;
 	const struct limbus_conf *conf;
-	int n, n_windows;
+	int n, n_windows, n_regions;
+	struct evidence_region region[EVIDENCE_REGIONS];  // of trials_of_evidence
 	struct trial trial[TRIALS];
 	struct trial_window window[TRIAL_WINDOWS];
 };
@@ -42,6 +43,8 @@ void trials_free(struct trials *trials);
 /* Adds what the network finds, or what the votes of edges find; true: err is not set. */
 bool trials_of_evidence(struct trials *trials, struct err *err);
 bool trials_of_votes(struct trials *trials, struct err *err);
+/* Adds the ellipse of the evidence near a circle, measured with either guide. */
+bool trials_of_place(struct trials *trials, double x, double y, double radius, struct err *err);
 /* Adds the ellipses near a hint: x, y, radius, px. */
 bool trials_of_hint(struct trials *trials, const double *hint, struct err *err);
 

@@ -11,20 +11,23 @@ struct limbus_options {
 	struct limbus_conf find;
 	struct pose_conf pose;
 	struct camera_keys camera;
-	struct opt_each_list photo_focal, photo_center, photo_hint, photo_limbus, photo_eye;
-	double limit_mpx;
+	struct opt_each_list photo_focal, photo_center, photo_hint, photo_limbus, photo_eye, photo_mirrored;
+	double limit_mpx, face_roll_deg;
 	int overlay_px;
 };
 
 /* The photograph that was read last, kept in memory because the next step often needs the same one. */
 struct limbus_kept {
-	const struct capture_photo *of;  // null: none
+	char *file;  // "photos/left_a.jpg"; null: none
 	struct photo photo;
 };
 
+void limbus_kept_free(struct limbus_kept *kept);
+
 /* Measures every photograph whose work/limbus/NAME.edge.json is not up to date, and writes it; a photograph that cannot be used
- * gets a record with the reason. kept: out; photo_free(&kept->photo). False, err set, when a file cannot be read or written. */
-bool limbus_measure(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+ * gets a record with the reason; one that shows both eyes becomes two of the capture, with NAME.left.edge.json and NAME.right.edge.json.
+ * capture: of capture_list. kept: out; limbus_kept_free. False, err set, when a file cannot be read or written. */
+bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct capture *capture, const struct limbus_options *o,
                     struct err *err);
 
 /* Fits the poses of all photographs of each eye together; writes work/limbus/NAME.json and NAME.png. False, err set, when no

@@ -1,7 +1,10 @@
 /* limbus: find the limbus and the pupil in every photograph, and how the eye stands to the camera.
  * reads   photos/
- * writes  work/limbus/NAME.json, NAME.png; NAME.edge.json (what was measured)
+ * writes  work/limbus/NAME.json, NAME.png; NAME.edge.json (what was measured); of a photograph of both eyes NAME.left.json ...,
+ *         NAME.right.json ...
  */
+#include <math.h>
+
 #include "base/mem.h"
 #include "limbus.h"
 
@@ -19,6 +22,7 @@ int main(int argc, char **argv)
 		OPT_EACH("photo.*.center_px", &o.photo_center, 2, -1e6, 1e6, "px", "principal point of one photograph"),
 		OPT_EACH("photo.*.hint_px", &o.photo_hint, 3, -1e6, 1e6, "px", "x y radius: where the limbus is"),
 		OPT_EACH("photo.*.limbus_px", &o.photo_limbus, 5, -1e6, 1e6, "", "cx cy a b angle_deg: the limbus, drawn by hand"),
+		OPT_EACH("photo.*.mirrored", &o.photo_mirrored, 0, 0, 0, "", "yes: of a photograph of both eyes, the left one is on the left"),
 		OPT_REAL("hint_sigma", &o.find.hint_sigma, 0.001, 0.5, "", "of photo.NAME.hint_px where no edge is near, of the radius"),
 		OPT_REAL("drawn_sigma", &o.find.drawn_sigma, 0.0001, 0.2, "", "of photo.NAME.limbus_px, of the semi-axis"),
 		LIMIT_PHOTO_OPT(&o.limit_mpx),
@@ -34,6 +38,7 @@ int main(int argc, char **argv)
 		OPT_REAL("arc_contrast", &o.find.rim.min_contrast, 0, 1, "", "height of a step, of the typical one's"),
 		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
 		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
+		OPT_REAL("pupil_largest", &o.find.pupil.largest, 0.3, 1, "", "a pupil is smaller, share of the limbus"),
 		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
 		OPT_REALS("odds_1", o.find.odds.unit[0], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
 		OPT_REALS("odds_2", o.find.odds.unit[1], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
@@ -47,6 +52,12 @@ int main(int argc, char **argv)
 		OPT_REAL("region_sigma", &o.find.region_sigma, 0.001, 0.5, "", "of the evidence's ellipse: centre and size, share of the semi-axis"),
 		OPT_REAL("region_shape_sigma", &o.find.region_shape_sigma, 0.001, 0.5, "", "the same of its shape"),
 		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of an edge near a hand's mark that is believed, of the semi-axis"),
+		OPT_REALS("face_distance", o.find.face.distance, 2, 2, 30, "", "between both limbi of a face, in radii: least, most"),
+		OPT_REAL("face_roll", &o.face_roll_deg, 0, 90, "deg", "of the line through both, at most"),
+		OPT_REAL("face_size_sigma", &o.find.face.size_sigma, 0.001, 0.5, "", "of the logarithm of their sizes' ratio"),
+		OPT_REAL("face_pupil_sigma", &o.find.face.pupil_sigma, 0.005, 0.5, "", "of the logarithm of their pupils' ratio"),
+		OPT_REAL("face_score", &o.find.face.score, 0, 1, "", "of a region of the evidence where the other eye is looked for"),
+		OPT_REAL("face_sure", &o.find.face.sure, 0, 1, "", "of one where it is, measured or not"),
 		OPT_REAL("max_over", &o.find.max_over, 0, 1, "", "share of burnt pixels"),
 		OPT_REAL("min_level", &o.find.min_level, 0, 1, "", "encoded brightness of the 90 % quantile"),
 		OPT_REAL("pupil_offset_sigma", &o.pose.pupil_offset_sigma, 0.01, 2, "mm", "pupil centre off the axis"),
@@ -58,10 +69,11 @@ int main(int argc, char **argv)
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
 	struct limbus_kept kept = { 0 };
-	bool ok = evidence_open_shipped(&o.find.net, &err) && eye_check(&o.eye, &err) && capture_load(&capture, &stage, &o.photo_eye, &err);
+	o.find.face.roll = o.face_roll_deg * M_PI / 180;
+	bool ok = evidence_open_shipped(&o.find.net, &err) && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
 	evidence_close(o.find.net);
-	photo_free(&kept.photo);
+	limbus_kept_free(&kept);
 	capture_free(&capture);
 	return stage_end(&stage, &err);
 }

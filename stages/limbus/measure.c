@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "image/photo/photo.h"
+#include "limbus/face/face.h"
 #include "limbus/hand.h"
 #include "limbus/measure.h"
 
@@ -17,71 +18,169 @@ char *limbus_record_path(const struct capture_photo *photo)
 
 #define RIG "work/rig.json"
 
-/* The ellipse that capture.conf gives for this photograph, if any. False where it cannot be meant: the record says why. */
-static bool hand_of(struct ellipse *meant, struct limbus_record *record, const char *name, const struct photo *photo,
-                    const struct limbus_options *o)
+static char *part_path(const char *name, const char *side, const char *tail)
 {
+	return mem_printf("work/limbus/%s%s%s%s", name, side ? "." : "", side ? side : "", tail);
+}
+
+void limbus_kept_free(struct limbus_kept *kept)
+{
+	photo_free(&kept->photo);
+	free(kept->file);
+	*kept = (struct limbus_kept){ 0 };
+}
+
+/* What capture.conf says of where an eye is: of the whole photograph (side null), or of one of its eyes. */
+struct hand {
+	struct limbus_mark mark;
+	struct ellipse meant;
+};
+
+/* False, err set, where it cannot be meant. */
+static bool hand_of(struct hand *hand, const char *photo_name, const char *side, const struct photo *photo, const struct limbus_options *o, struct err *err)
+{
+	char *name = mem_printf("%s%s%s", photo_name, side ? "." : "", side ? side : "");
 	const struct opt_each *hint = capture_each(&o->photo_hint, name), *drawn = capture_each(&o->photo_limbus, name);
-	struct err err = { 0 };
-	if (!hint && !drawn)
-		return true;
-	const double *v = drawn ? drawn->value : hint->value;
-	*meant = (struct ellipse){ v[0], v[1], v[2], drawn ? v[3] : v[2], drawn ? v[4] * M_PI / 180 : 0 };
-	char *key = mem_printf("photo.%s.%s", name, drawn ? "limbus_px" : "hint_px");
-	bool ok = limbus_hand_check(meant, key, photo->width, photo->height, &err);
-	free(key);
-	record->width = photo->width;
-	record->height = photo->height;
-	snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
+	const double *v = drawn ? drawn->value : hint ? hint->value : 0;
+	bool ok = true;
+	*hand = (struct hand){ 0 };
+	if (v) {
+		hand->meant = (struct ellipse){ v[0], v[1], v[2], drawn ? v[3] : v[2], drawn ? v[4] * M_PI / 180 : 0 };
+		hand->mark = (struct limbus_mark){ hint ? hint->value : 0, drawn ? &hand->meant : 0 };
+		char *key = mem_printf("photo.%s.%s", name, drawn ? "limbus_px" : "hint_px");
+		ok = limbus_hand_check(&hand->meant, key, photo->width, photo->height, err);
+		free(key);
+	}
+	free(name);
 	return ok;
 }
 
-static void measure_one(struct limbus_record *record, struct limbus_kept *kept, struct stage *stage, const struct capture_photo *p,
-                        const struct limbus_options *o, const struct camera_rig *rig)
+static const char *const sides[] = { [FACE_LEFT] = "left", [FACE_RIGHT] = "right" };
+
+static bool is_mirrored(bool *mirrored, const char *name, const struct limbus_options *o, struct err *err)
+{
+	const struct opt_each *said = capture_each(&o->photo_mirrored, name);
+	*mirrored = said && !strcmp(said->text, "yes");
+	return !said || *mirrored || !strcmp(said->text, "no") || err_set(err, "photo.%s.mirrored = %.40s: must be yes or no", name, said->text);
+}
+
+/* One record where the photograph shows one eye, or one is asked for; else two. Returns how many; 0, err set: a key cannot be meant. */
+static int measure_photo(struct limbus_record record[2], const struct photo *photo, const struct capture_photo *p, const char *side, bool may_part,
+                         const struct limbus_options *o, const struct camera_rig *rig, struct err *err)
+{
+	const struct opt_each *focal = capture_key(&o->photo_focal, p), *center = capture_key(&o->photo_center, p);
+	const struct limbus_camera known = { &o->camera, focal ? focal->value[0] : NAN, center ? center->value : 0, camera_rig_find(rig, p->file) };
+	struct hand whole, one[2];
+	struct limbus_mark mark[2];
+	bool mirrored;
+	if (!is_mirrored(&mirrored, p->name, o, err) || !hand_of(&whole, p->name, 0, photo, o, err))
+		return 0;
+	for (int s = 0; s < 2; s++) {
+		if (!hand_of(&one[s], p->name, sides[s], photo, o, err))
+			return 0;
+		mark[s] = may_part ? one[s].mark : (struct limbus_mark){ 0 };
+	}
+	if (whole.mark.hint || whole.mark.drawn) {
+		limbus_measure_photo(record, photo, whole.mark.hint, whole.mark.drawn, &known, &o->eye, &o->find, &o->pose);
+		return 1;
+	}
+	const int n = limbus_measure_face(record, photo, mark, mirrored, &known, &o->eye, &o->find, &o->pose);
+	if (n == 2 && !may_part) {
+		if (!strcmp(side, sides[FACE_RIGHT]))
+			record[0] = record[1];
+		return 1;
+	}
+	return n;
+}
+
+static int measure_one(struct limbus_record record[2], struct limbus_kept *kept, struct stage *stage, const struct capture_photo *p, const char *side,
+                       bool may_part, const struct limbus_options *o, const struct camera_rig *rig)
 {
 	struct photo photo = { 0 };
 	struct err err = { 0 };
-	photo_free(&kept->photo);
-	*kept = (struct limbus_kept){ 0 };
-	*record = (struct limbus_record){ 0 };
+	limbus_kept_free(kept);
+	memset(record, 0, 2 * sizeof *record);
+	record->width = record->height = 1;
 	if (!photo_load(&photo, stage_path(stage, "%s", p->file), o->limit_mpx, &err)) {
-		record->width = record->height = 1;
 		snprintf(record->reason, sizeof record->reason, "%.250s", err_less(&err, stage_path(stage, "%s", p->file)));
-		return;
+		return 1;
 	}
-	const struct opt_each *hint = capture_each(&o->photo_hint, p->name), *focal = capture_each(&o->photo_focal, p->name);
-	const struct opt_each *center = capture_each(&o->photo_center, p->name);
-	struct limbus_camera known = { &o->camera, focal ? focal->value[0] : NAN, center ? center->value : 0,
-		                       camera_rig_find(rig, p->file) };
-	struct ellipse meant;
-	if (hand_of(&meant, record, p->name, &photo, o))
-		limbus_measure_photo(record, &photo, hint ? hint->value : 0, capture_each(&o->photo_limbus, p->name) ? &meant : 0, &known, &o->eye,
-		                     &o->find, &o->pose);
-	*kept = (struct limbus_kept){ p, photo };
+	*kept = (struct limbus_kept){ mem_str(p->file), photo };
+	int n = measure_photo(record, &photo, p, side, may_part, o, rig, &err);
+	if (n)
+		return n;
+	record->width = photo.width;
+	record->height = photo.height;
+	snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
+	return 1;
 }
 
-bool limbus_measure(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
+/* What the photograph left when it was taken for one eye (parts false), or for two. */
+static bool clear(struct stage *stage, const char *name, bool parts, struct err *err)
+{
+	static const char *const tails[] = { ".edge.json", ".json", ".png" };
+	bool ok = true;
+	for (int s = 0; s < (parts ? 2 : 1); s++)
+		for (int t = 0; t < COUNT(tails) && ok; t++) {
+			char *path = part_path(name, parts ? sides[s] : 0, tails[t]);
+			ok = file_remove(stage_path(stage, "%s", path), err);
+			free(path);
+		}
+	return ok;
+}
+
+static bool save(struct stage *stage, const struct limbus_record *record, const char *name, const char *side, int n_in, const char *const in[], struct err *err)
+{
+	char *out = part_path(name, side, ".edge.json");
+	const bool ok = limbus_record_save(record, stage_path(stage, "%s", out), stage_made_by(stage, n_in, in), err) && stage_made(stage, out, n_in, in, err);
+	free(out);
+	return ok;
+}
+
+static bool is_fresh(struct stage *stage, const char *name, const char *side, int n_in, const char *const in[])
+{
+	char *out = part_path(name, side, ".edge.json");
+	const bool fresh = stage_fresh(stage, out, n_in, in);
+	free(out);
+	return fresh;
+}
+
+/* Measures photograph i where that is not up to date. *parts: 2 where it shows both eyes, else 1. */
+static bool measure(int *parts, struct limbus_kept *kept, struct stage *stage, const struct capture *capture, int i, const struct limbus_options *o,
+                    const struct camera_rig *rig, struct err *err)
+{
+	const struct capture_photo *p = &capture->photos[i];
+	// The rig is an input only of photographs that it has a camera for.
+	const int n_in = camera_rig_find(rig, p->file) ? 2 : 1;
+	const char *in[] = { p->file, RIG };
+	const bool may_part = capture_may_part(capture, i);
+	*parts = 1;
+	if (is_fresh(stage, p->name, 0, n_in, in))
+		return true;
+	*parts = 2;
+	if (may_part && is_fresh(stage, p->name, sides[0], n_in, in) && is_fresh(stage, p->name, sides[1], n_in, in))
+		return true;
+	struct limbus_record *record = mem_new(2, sizeof *record);
+	*parts = measure_one(record, kept, stage, p, capture->eyes[p->eye].side, may_part, o, rig);
+	bool ok = !may_part || clear(stage, p->name, *parts == 1, err);
+	for (int s = 0; s < *parts && ok; s++)
+		ok = save(stage, &record[s], p->name, *parts == 2 ? sides[s] : 0, n_in, in, err);
+	free(record);
+	return ok;
+}
+
+bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct capture *capture, const struct limbus_options *o,
                     struct err *err)
 {
 	struct camera_rig rig = { 0 };
 	const char *path = stage_path(stage, RIG);
 	const bool has_rig = file_exists(path);
 	bool ok = !has_rig || camera_rig_load(&rig, path, err);
-	for (int i = 0; i < capture->n_photos && ok; i++) {
-		const struct capture_photo *p = &capture->photos[i];
-		// The rig is an input only of photographs that it has a camera for.
-		const int n_in = camera_rig_find(&rig, p->file) ? 2 : 1;
-		const char *in[] = { p->file, RIG };
-		char *out = limbus_record_path(p);
+	for (int i = 0, parts; i < capture->n_photos && ok; i += parts) {
 		stage_progress(stage, i, capture->n_photos, "measure");
-		if (!stage_fresh(stage, out, n_in, in)) {
-			struct limbus_record *record = mem_new(1, sizeof *record);
-			measure_one(record, kept, stage, p, o, &rig);
-			ok = limbus_record_save(record, stage_path(stage, "%s", out), stage_made_by(stage, n_in, in), err)
-			     && stage_made(stage, out, n_in, in, err);
-			free(record);
-		}
-		free(out);
+		ok = measure(&parts, kept, stage, capture, i, o, &rig, err);
+		if (ok && parts == 2)
+			capture_part(capture, i);
 	}
 	camera_rig_free(&rig);
 	return ok;

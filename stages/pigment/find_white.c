@@ -42,11 +42,11 @@ struct seen {
 enum { LIGHT_TEXELS = 96, ENV_ROWS = 128 };
 
 /* Light first, then white under it. */
-static bool measure(struct seen *out, const struct photo *photo, const struct fit *fit, const char *name, const struct eye *anatomy,
+static bool measure(struct seen *out, const struct photo *photo, const struct fit *fit, const struct capture_photo *of, const struct eye *anatomy,
                     const struct pale_conf *pale, const struct envmap *told, double extent, const struct pigment_stage_conf *c, struct err *err)
 {
 	struct pale *samples = mem_array(PALE_MAX, sizeof *samples);
-	const struct opt_each *card = capture_each(&c->card, name);
+	const struct opt_each *card = capture_key(&c->card, of);
 	int n = pale_find(samples, photo, fit, anatomy, pale);
 	bool ok = true;
 	out->shading = sclera_light_fit(samples, n);
@@ -79,7 +79,7 @@ static bool look(struct seen *out, struct stage *stage, const struct capture_pho
 	out->cos_view = sqrt(1 - inside * inside);
 	if (!fit.ok || !photo_load(&photo, stage_path(stage, "%s", p->file), c->limit_mpx, err))
 		return false;
-	bool ok = measure(out, &photo, &fit, p->name, anatomy, pale, told, extent, c, err) || err_wrap(err, "%s", p->file);
+	bool ok = measure(out, &photo, &fit, p, anatomy, pale, told, extent, c, err) || err_wrap(err, "%s", p->file);
 	photo_free(&photo);
 	return ok;
 }
