@@ -13,6 +13,7 @@ static const double LEAST_WINDOW = 2;               // px: steps of small pupils
 static const double TOLD_SIGMA[2] = { 0.025, 0.03 };  // of the evidence's ellipse, of the limbus's semi-axis (its planes are coarse) and of its own:
                                                     // drawn and rendered faces of development
 static const double FAR = 2.2;                      // so many of that: not the same
+static const double ENOUGH = 0.5;                   // of what is asked of a margin, where the other eye shows its pupil
 static const double SURE = 0.3;                     // mean chance of pupil in an ellipse of the evidence that is believed
 static const float HIDDEN = 0.85F, FLOOR = 0.02F;  // as of region.c
 static const double CONTRAST = 0.12, SMALLEST = 0.12, LARGEST = 0.78;  // of the limbus
@@ -61,6 +62,11 @@ static double search(struct ellipse *best, const struct pyramid *pyramid, const 
 			}
 	}
 	return top;
+}
+
+static bool is_clear(const struct rim *pupil, double share, const struct pupil_conf *conf)
+{
+	return pupil->coverage > share * conf->clear_coverage && pupil->share_used > share * conf->clear_used;
 }
 
 static bool believed(const struct rim *pupil, const struct ellipse *limbus, const struct pupil_conf *conf)
@@ -165,9 +171,10 @@ bool limbus_pupil_like(struct rim *pupil, const struct photo *photo, const struc
 	struct pupil_conf less = *conf;
 	e.a *= size;
 	e.b *= size;
-	less.min_contrast *= 0.5;
-	less.min_coverage *= 0.5;
-	return measure_near(pupil, photo, &e, sigma * e.a, rim_conf) && believed(pupil, limbus, &less) && agree(&pupil->e, &e, FAR * sigma * e.a);
+	less.min_contrast *= ENOUGH;
+	less.min_coverage *= ENOUGH;
+	return measure_near(pupil, photo, &e, sigma * e.a, rim_conf) && believed(pupil, limbus, &less) && is_clear(pupil, ENOUGH, conf)
+	       && agree(&pupil->e, &e, FAR * sigma * e.a);
 }
 
 bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
@@ -177,7 +184,11 @@ bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struc
 	const bool found = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf);
 	const double sure = told_by(&told, evidence, limbus);
 	const double sigma = TOLD_SIGMA[0] * limbus->a + TOLD_SIGMA[1] * told.a;
-	if (found && (sure < SURE || agree(&pupil->e, &told, FAR * sigma)))
-		return found;
-	return sure >= SURE && measure_near(pupil, photo, &told, sigma, rim_conf) && believed(pupil, limbus, conf) && agree(&pupil->e, &told, FAR * sigma);
+	if (found && sure >= SURE && agree(&pupil->e, &told, FAR * sigma))
+		return true;
+	// Against the evidence, or without it, an edge counts that is there all round.
+	if (found && is_clear(pupil, 1, conf) && (sure < SURE || agree(&pupil->e, &told, 1.5 * FAR * sigma)))
+		return true;
+	return sure >= SURE && measure_near(pupil, photo, &told, sigma, rim_conf) && believed(pupil, limbus, conf) && is_clear(pupil, 1, conf)
+	       && agree(&pupil->e, &told, FAR * sigma);
 }

@@ -7,6 +7,7 @@
 struct pupil_conf {
 	double min_contrast;  // Weber contrast of pupil and iris, linear light
 	double min_coverage;  // share of the margin that must be seen
+	double clear_coverage, clear_used;  // of a margin that needs no second witness: share seen; share good enough to measure
 	double largest;       // of the limbus: a larger one is the limbus, or the collarette's shadow
 };
 

@@ -39,6 +39,8 @@ int main(int argc, char **argv)
 		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
 		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
 		OPT_REAL("pupil_largest", &o.find.pupil.largest, 0.3, 1, "", "a pupil is smaller, share of the limbus"),
+		OPT_REAL("pupil_clear_coverage", &o.find.pupil.clear_coverage, 0.1, 1, "", "share seen of a margin that the evidence does not bear out"),
+		OPT_REAL("pupil_clear_used", &o.find.pupil.clear_used, 0, 1, "", "share of it that is good enough to measure"),
 		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
 		OPT_REALS("odds_1", o.find.odds.unit[0], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
 		OPT_REALS("odds_2", o.find.odds.unit[1], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),

@@ -57,11 +57,12 @@ static bool hand_of(struct hand *hand, const char *photo_name, const char *side,
 
 static const char *const sides[] = { [FACE_LEFT] = "left", [FACE_RIGHT] = "right" };
 
-static bool is_mirrored(bool *mirrored, const char *name, const struct limbus_options *o, struct err *err)
+static bool check_mirrored(const struct opt_each_list *list, struct err *err)
 {
-	const struct opt_each *said = capture_each(&o->photo_mirrored, name);
-	*mirrored = said && !strcmp(said->text, "yes");
-	return !said || *mirrored || !strcmp(said->text, "no") || err_set(err, "photo.%s.mirrored = %.40s: must be yes or no", name, said->text);
+	for (int i = 0; i < list->n; i++)
+		if (strcmp(list->items[i].text, "yes") && strcmp(list->items[i].text, "no"))
+			return err_set(err, "capture.conf: photo.%s.mirrored = %.40s: must be yes or no", list->items[i].name, list->items[i].text);
+	return true;
 }
 
 /* One record where the photograph shows one eye, or one is asked for; else two. Returns how many; 0, err set: a key cannot be meant. */
@@ -72,8 +73,9 @@ static int measure_photo(struct limbus_record record[2], const struct photo *pho
 	const struct limbus_camera known = { &o->camera, focal ? focal->value[0] : NAN, center ? center->value : 0, camera_rig_find(rig, p->file) };
 	struct hand whole, one[2];
 	struct limbus_mark mark[2];
-	bool mirrored;
-	if (!is_mirrored(&mirrored, p->name, o, err) || !hand_of(&whole, p->name, 0, photo, o, err))
+	const struct opt_each *said = capture_each(&o->photo_mirrored, p->name);
+	const bool mirrored = said && !strcmp(said->text, "yes");
+	if (!hand_of(&whole, p->name, 0, photo, o, err))
 		return 0;
 	for (int s = 0; s < 2; s++) {
 		if (!hand_of(&one[s], p->name, sides[s], photo, o, err))
@@ -175,7 +177,7 @@ bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct captur
 	struct camera_rig rig = { 0 };
 	const char *path = stage_path(stage, RIG);
 	const bool has_rig = file_exists(path);
-	bool ok = !has_rig || camera_rig_load(&rig, path, err);
+	bool ok = check_mirrored(&o->photo_mirrored, err) && (!has_rig || camera_rig_load(&rig, path, err));
 	for (int i = 0, parts; i < capture->n_photos && ok; i += parts) {
 		stage_progress(stage, i, capture->n_photos, "measure");
 		ok = measure(&parts, kept, stage, capture, i, o, &rig, err);

@@ -10,7 +10,7 @@
 static struct limbus_conf limbus_defaults = {
 	.seek = { .min_radius = 0.015, .max_radius = 0.52, .contrast = 0.15, .candidates = 8 },
 	.rim = { .search = 0.08, .max_rms = 0.15, .min_contrast = 0.15, .irregularity = 0.06, .max_axis = 900, .passes = 6 },
-	.pupil = { .min_contrast = 0.25, .min_coverage = 0.4, .largest = 0.85 },
+	.pupil = { .min_contrast = 0.25, .min_coverage = 0.4, .clear_coverage = 0.7, .clear_used = 0.45, .largest = 0.85 },
 	.face = { .distance = { 7.5, 13.5 }, .roll = 60 * M_PI / 180, .size_sigma = 0.03, .score = 0.3, .sure = 0.6, .pupil_sigma = 0.06 },
 	.odds = { { { -4.814, -0.139, -0.1676, -0.721, -0.07795, -0.2209, -0.3032, 0.1659, -2.47, -2.002, 0.6268, -0.4199, 0.3481, -0.05056, -0.1813, 0.3092, 0.5945, -0.4681, -1.498, 2.526, -0.06685, -0.08711 },
 	            { -3.414, -0.2529, -0.9864, -0.3877, -0.04456, 1.153, 0.2295, 0.7004, -0.1118, 1.015, 0.582, -1.436, -0.5339, -0.04767, 0.3293, -0.3369, -6.465, -1.55, -2.19, -0.0863, 0.1478, -0.1465 },

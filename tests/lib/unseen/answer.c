@@ -18,16 +18,47 @@ static double now(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* The stage's own prior of the aspect (config/limbus.conf); the other defaults are what tests use. */
+static struct pose_conf pose_conf_of(void)
+{
+	struct pose_conf conf = pose_defaults;
+	conf.aspect_mean = 0.925;
+	conf.aspect_sigma = 0.025;
+	return conf;
+}
+
+static struct eye eye_of(double aspect)
+{
+	return (struct eye){ .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = aspect,
+		.iris_depth = 3.3, .post_radius = 6.5, .post_asphericity = 0.75, .thickness = 0.55, .cornea_index = 1.376 };
+}
+
+static void fill(struct answer *out, const struct limbus_record *record)
+{
+	out->ok = record->ok;
+	snprintf(out->reason, sizeof out->reason, "%s", record->reason);
+	if (!record->ok)
+		return;
+	out->e = record->view.limbus;
+	out->has_pupil = record->view.has_pupil;
+	out->pupil = record->view.pupil;
+	ellipse_sigma(out->sigma, &out->e, record->view.cov_q);
+	out->weak = acos(fmin(out->e.b / out->e.a, 1));
+}
+
+static void tilt(struct answer *out, const struct pose *pose)
+{
+	out->theta = pose->theta;
+	out->theta_sigma = pose->theta_sigma;
+}
+
+static const struct camera_keys no_keys = { .focal_px = NAN, .focal_mm = NAN, .sensor_mm = NAN, .center_px = { NAN, NAN } };
+
 void answer_ours(struct answer *out, const struct photo *photo, double aspect)
 {
-	const struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = aspect,
-		.iris_depth = 3.3, .post_radius = 6.5, .post_asphericity = 0.75, .thickness = 0.55, .cornea_index = 1.376 };
-	const struct camera_keys keys = { .focal_px = NAN, .focal_mm = NAN, .sensor_mm = NAN, .center_px = { NAN, NAN } };
-	const struct limbus_camera known = { .keys = &keys, .focal_px = NAN };
-	// The stage's own prior of the aspect (config/limbus.conf); the other defaults are what tests use.
-	struct pose_conf pose_conf = pose_defaults;
-	pose_conf.aspect_mean = 0.925;
-	pose_conf.aspect_sigma = 0.025;
+	const struct eye eye = eye_of(aspect);
+	const struct limbus_camera known = { .keys = &no_keys, .focal_px = NAN };
+	const struct pose_conf pose_conf = pose_conf_of();
 	struct limbus_record *record = mem_new(1, sizeof *record);
 	struct limbus_joint joint;
 	struct pose pose;
@@ -36,20 +67,34 @@ void answer_ours(struct answer *out, const struct photo *photo, double aspect)
 	const double start = now();
 	limbus_measure_photo(record, photo, 0, 0, &known, &eye, &limbus_defaults, &pose_conf);
 	out->seconds = now() - start;
-	out->ok = record->ok;
-	snprintf(out->reason, sizeof out->reason, "%s", record->reason);
-	if (record->ok) {
-		out->e = record->view.limbus;
-		out->has_pupil = record->view.has_pupil;
-		out->pupil = record->view.pupil;
-		ellipse_sigma(out->sigma, &out->e, record->view.cov_q);
-		out->weak = acos(fmin(out->e.b / out->e.a, 1));
-		if (limbus_joint(&joint, 1, record, &eye, &pose_conf, &err) && limbus_joint_pose(&pose, &joint, record, &eye, &err)) {
-			out->theta = pose.theta;
-			out->theta_sigma = pose.theta_sigma;
-		}
+	fill(out, record);
+	if (record->ok && limbus_joint(&joint, 1, record, &eye, &pose_conf, &err) && limbus_joint_pose(&pose, &joint, record, &eye, &err))
+		tilt(out, &pose);
+	free(record);
+}
+
+int answer_face(struct answer out[2], const struct photo *photo, double aspect, bool mirrored)
+{
+	const struct eye eye = eye_of(aspect);
+	const struct limbus_camera known = { .keys = &no_keys, .focal_px = NAN };
+	const struct limbus_mark unmarked[2] = { 0 };
+	const struct pose_conf pose_conf = pose_conf_of();
+	struct limbus_record *record = mem_new(2, sizeof *record);
+	struct limbus_joint joint;
+	struct pose pose;
+	struct err err = { 0 };
+	for (int s = 0; s < 2; s++)
+		out[s] = (struct answer){ .theta = NAN, .theta_sigma = NAN, .weak = NAN };
+	const double start = now();
+	const int n = limbus_measure_face(record, photo, unmarked, mirrored, &known, &eye, &limbus_defaults, &pose_conf);
+	out[0].seconds = out[1].seconds = now() - start;
+	for (int s = 0; s < n; s++) {
+		fill(&out[s], &record[s]);
+		if (record[s].ok && limbus_joint(&joint, 1, &record[s], &eye, &pose_conf, &err) && limbus_joint_pose(&pose, &joint, &record[s], &eye, &err))
+			tilt(&out[s], &pose);
 	}
 	free(record);
+	return n;
 }
 
 double answer_error(const struct ellipse *got, const struct ellipse *truth)

@@ -11,8 +11,8 @@ static int label_at(const struct drawn *d, const struct ellipse *e, double t, do
 	return x < 0 || y < 0 || x >= d->width || y >= d->height ? -1 : d->label[(long)y * d->width + (long)x];
 }
 
-/* Iris just inside and sclera just outside. */
-static double showing(const struct drawn *d, const struct ellipse *e)
+
+double unseen_showing(const struct drawn *d, const struct ellipse *e)
 {
 	int n = 0;
 	for (int i = 0; i < 360; i++) {
@@ -39,7 +39,7 @@ bool unseen_draw(struct unseen *u, uint64_t number, const struct unseen_frame *f
 		if (u->n && at == 0)
 			u->eye[1] = u->eye[0];
 		const float *p = d.eye[e].pupil;
-		u->eye[at] = (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, showing(&d, &limbus), acos(fmin(limbus.b / limbus.a, 1)) };
+		u->eye[at] = (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(&d, &limbus), acos(fmin(limbus.b / limbus.a, 1)) };
 		if (at == 0) {
 			nearest = away;
 			u->opening = d.eye[e].openness;

@@ -16,6 +16,10 @@ bool unseen_kept(struct unseen *u, uint64_t seed, int i, int width, int height);
 void unseen_keep(const struct unseen *u, uint64_t seed, int i, int width, int height);
 
 bool unseen_draw(struct unseen *u, uint64_t number, const struct unseen_frame *f);
+/* Share of a limbus (px of the picture) that shows: iris just inside and sclera just outside. */
+struct drawn;
+double unseen_showing(const struct drawn *d, const struct ellipse *e);
+
 bool unseen_cast(struct unseen *u, struct rng *rng, const struct unseen_frame *f);
 
 #endif
