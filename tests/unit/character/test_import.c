@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "character/import.h"
 #include "character/texture.h"
+#include "image/picture.h"
 #include "tests/lib/scenes/dressed.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
@@ -166,6 +167,58 @@ static void rows_of_an_obj_are_its_own(void **state)
 	look_free(&look);
 }
 
+/* A quad with a blend shape, and a texture where the artist had it. */
+static const char fbx[] =
+	"; FBX 7.4.0 project file\nFBXHeaderExtension:  {\nFBXHeaderVersion: 1003\nFBXVersion: 7400\n}\nGlobalSettings:  {\n"
+	"Version: 1000\nProperties70:  {\nP: \"UpAxis\", \"int\", \"Integer\", \"\",1\n"
+	"P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",1\n}\n}\nObjects:  {\n"
+	"Geometry: 100, \"Geometry::quad\", \"Mesh\" {\nVertices: *12 {\na: 0,0,0,10,0,0,10,10,3,0,10,0\n}\n"
+	"PolygonVertexIndex: *4 {\na: 0,1,2,-4\n}\nGeometryVersion: 124\nLayerElementUV: 0 {\nVersion: 101\nName: \"map1\"\n"
+	"MappingInformationType: \"ByPolygonVertex\"\nReferenceInformationType: \"IndexToDirect\"\nUV: *8 {\n"
+	"a: 0,0,1,0,1,1,0,1\n}\nUVIndex: *4 {\na: 0,1,2,3\n}\n}\nLayerElementMaterial: 0 {\nVersion: 101\nName: \"\"\n"
+	"MappingInformationType: \"AllSame\"\nReferenceInformationType: \"IndexToDirect\"\nMaterials: *1 {\na: 0\n}\n}\n"
+	"Layer: 0 {\nVersion: 100\nLayerElement:  {\nType: \"LayerElementUV\"\nTypedIndex: 0\n}\nLayerElement:  {\n"
+	"Type: \"LayerElementMaterial\"\nTypedIndex: 0\n}\n}\n}\nGeometry: 500, \"Geometry::smile\", \"Shape\" {\n"
+	"Version: 100\nIndexes: *1 {\na: 2\n}\nVertices: *3 {\na: 0,0,2\n}\nNormals: *3 {\na: 0,0,0\n}\n}\n"
+	"Model: 200, \"Model::Quad\", \"Mesh\" {\nVersion: 232\n}\nMaterial: 300, \"Material::red\", \"\" {\nVersion: 102\n"
+	"ShadingModel: \"lambert\"\nMultiLayer: 0\nProperties70:  {\nP: \"DiffuseColor\", \"Color\", \"\", \"A\",1,0,0\n}\n}\n"
+	"Texture: 400, \"Texture::t\", \"\" {\nType: \"TextureVideoClip\"\nVersion: 202\nTextureName: \"Texture::t\"\n"
+	"FileName: \"C:\\Users\\artist\\skin.png\"\nRelativeFilename: \"..\\textures\\skin.png\"\n}\n"
+	"Deformer: 600, \"Deformer::blend\", \"BlendShape\" {\nVersion: 100\n}\n"
+	"Deformer: 700, \"SubDeformer::smile\", \"BlendShapeChannel\" {\nVersion: 100\nDeformPercent: 0\nFullWeights: *1 {\n"
+	"a: 100\n}\n}\n}\nConnections:  {\nC: \"OO\",200,0\nC: \"OO\",100,200\nC: \"OO\",300,200\n"
+	"C: \"OP\",400,300, \"DiffuseColor\"\nC: \"OO\",600,100\nC: \"OO\",700,600\nC: \"OO\",500,700\n}\n";
+
+static void fbx_is_read(void **state)
+{
+	(void)state;
+	struct mesh mesh;
+	struct look look;
+	struct err err = { 0 };
+	uint8_t px[4 * 4 * 3] = { 0 };
+	scratch_text("quad.fbx", fbx);
+	assert_true(picture_png_write(scratch_path("skin.png"), px, 4, 4, 3, &err));
+	if (!take(&mesh, &look, "quad.fbx", &err))
+		fail_msg("%s", err.msg);
+	assert_int_equal(mesh.n_vertices, 4);
+	assert_int_equal(mesh.n_faces, 2);
+	assert_string_equal(look.part[0], "Quad");
+	const struct look_material *m = &look.material[look.face_material[0]];
+	assert_string_equal(m->name, "red");
+	assert_int_equal(m->map[LOOK_COLOUR], 0);
+	assert_int_equal(look.texture[0].width, 4);
+	assert_int_equal(look.n_shapes, 1);
+	assert_int_equal(look.shape_start[1], 1);
+	NEAR(look.shape_by[0][2], 2, 1e-5);
+	NEAR(mesh.vertices[look.shape_point[0]][2], 3, 1e-5);
+	for (int w = 0; w < look.n_wedges; w++) {
+		NEAR(look.uv[w][0], mesh.vertices[look.point[w]][0] / 10, 1e-5);
+		NEAR(look.uv[w][1], 1 - mesh.vertices[look.point[w]][1] / 10, 1e-5);
+	}
+	mesh_free(&mesh);
+	look_free(&look);
+}
+
 static void refuses(const char *name, const char *why)
 {
 	struct mesh mesh;
@@ -309,6 +362,7 @@ int main(void)
 		SCRATCH_TEST(look_is_kept),
 		SCRATCH_TEST(without_uv_or_materials),
 		SCRATCH_TEST(rows_of_an_obj_are_its_own),
+		SCRATCH_TEST(fbx_is_read),
 		SCRATCH_TEST(hostile_files_are_refused_in_one_line),
 		SCRATCH_TEST(huge_textures_are_left_out),
 		SCRATCH_TEST(a_process_apart_dies_alone),
