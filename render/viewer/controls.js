@@ -29,7 +29,7 @@ class Controls extends Address {
 					set.append(this.slider(c));
 			box.append(set);
 		}
-		box.append(this.keeping(), this.machine());
+		box.append(this.keeping(), this.machine(), this.tools());
 		this.show_controls();
 	}
 

@@ -1,5 +1,5 @@
 /* What is drawn when: only what has changed; then finer and finer. */
-class Live extends Controls {
+class Live extends Tools {
 	static BEYOND = 1.3;
 
 	/* ---- state for the shaders */
@@ -112,6 +112,8 @@ class Live extends Controls {
 		}
 		frame.style.width = `${w}px`;
 		frame.style.height = `${h}px`;
+		if (this.longest)  // a picture to keep
+			return [w, h].map(v => Math.max(16, Math.round(v * this.longest / Math.max(w, h))));
 		const dense = Math.min(devicePixelRatio || 1, 2) * scale, most = 2048 / Math.max(w * dense, h * dense, 1);
 		return [w, h].map(v => Math.max(16, Math.round(v * dense * Math.min(1, most))));
 	}
@@ -131,7 +133,7 @@ class Live extends Controls {
 		};
 		const jitter = n ? [halton(n, 2) - 0.5, halton(n, 3) - 0.5] : [0, 0];
 		this.scene.add(this.state(), { ...this.view(), closure: this.eyes.closure }, preset, jitter);
-		this.scene.show(w, h, this.beside ? 1 : this.mode === "face" ? data.face.gain : this.eye.eye.exposure, false);
+		this.scene.show(w, h, this.beside ? 1 : (this.mode === "face" ? data.face.gain : this.eye.eye.exposure) * 2 ** this.values.exposure, false, this.values.tone);
 	}
 
 	/* How long a picture takes, from asking for it until the driver says it is done. */

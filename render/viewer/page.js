@@ -117,7 +117,9 @@ class Page extends Live {
 		by_id("wipe").addEventListener("input", e => by_id("frame").style.setProperty("--at", `${e.target.value}%`));
 		new ResizeObserver(() => this.changed()).observe(by_id("stage"));
 		addEventListener("hashchange", () => { this.from_hash(); this.changed(); });
-		canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); give_up("the graphics driver was lost; load the page again"); });
+		canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); this.lost = setTimeout(() => give_up("the graphics driver was lost; load the page again"), 15000); });
+		// The address has all that was set: the page opens again as it was.
+		canvas.addEventListener("webglcontextrestored", () => { clearTimeout(this.lost); location.reload(); });
 	}
 
 	/* The bar between rendering and photograph follows the pointer. */
@@ -135,6 +137,11 @@ class Page extends Live {
 	}
 
 	key(e) {
+		if ((e.ctrlKey || e.metaKey) && /^[zy]$/i.test(e.key)) {
+			e.preventDefault();
+			this.step(e.key.toLowerCase() === "y" || e.shiftKey ? 1 : -1);
+			return;
+		}
 		const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
 		if (step && e.shiftKey)
 			this.orbit = [this.orbit[0] + 0.1 * step[0], Math.max(-1.2, Math.min(1.2, this.orbit[1] + 0.1 * step[1]))];

@@ -1,6 +1,6 @@
 // The picture as it is seen: on a photographer's grey (lib/draw/studio.c), encoded as sRGB, without noise (bare) for measuring.
 uniform sampler2D picture;
-uniform float gain, bare;
+uniform float gain, bare, tone;
 uniform vec2 size;
 out vec4 shown;
 
@@ -10,7 +10,9 @@ void main()
 	vec4 p = texture(picture, at);
 	float grey = mix(0.115, 0.030, min(dot(u, u) / 2.0, 1.0));
 	vec3 c = p.rgb * gain + (1.0 - p.a) * grey;
-	c = clamp(c, 0.0, 1.0);
+	// As film takes highlights: Narkowicz's fit of the ACES curve, with middle grey where it was.
+	vec3 f = 0.8 * c;
+	c = mix(clamp(c, 0.0, 1.0), clamp(f * (2.51 * f + 0.03) / (f * (2.43 * f + 0.59) + 0.14), 0.0, 1.0), tone);
 	vec3 s = mix(c * 12.92, 1.055 * pow(max(c, 1e-5), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 	// Half a step of noise (dithering): smooth areas show no bands.
 	float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;

@@ -291,8 +291,8 @@ class EyeScene {
 		this.count = 0;
 	}
 
-	show(width, height, gain, bare) {
+	show(width, height, gain, bare, tone) {
 		this.g.target(null, width, height);
-		this.g.draw(this.present, { picture: this.target, gain, bare: bare ? 1 : 0, size: [width, height] });
+		this.g.draw(this.present, { picture: this.target, gain, bare: bare ? 1 : 0, tone: tone || 0, size: [width, height] });
 	}
 }

@@ -8,6 +8,7 @@
 #include "math/vec.h"
 
 static const double reach_radii = 3.2;  // of an eyeball: what is subdivided
+static const double fine_mm = 0.3;      // edges as short as this are not: a mesh as dense as a scan has its curves itself
 
 static void *fresh(size_t n, size_t size)
 {
@@ -199,6 +200,22 @@ static void between(float (*of)[3], const struct portrait_mesh *m)
 			of[i][c] = 0.5f * (of[m->between[i - m->n_base][0]][c] + of[m->between[i - m->n_base][1]][c]);
 }
 
+/* Mean length of the rig's own edges of the marked faces, mm; infinite without any. */
+static double edge_of(const struct portrait_mesh *m, const struct rig *rig, const bool *marked)
+{
+	double sum = 0;
+	int n = 0;
+	for (int f = 0; f < m->n_faces; f++)
+		for (int k = 0; k < 3 && marked[f]; k++) {
+			double d[3];
+			for (int c = 0; c < 3; c++)
+				d[c] = rig->rest[m->faces[f][k]][c] - rig->rest[m->faces[f][(k + 1) % 3]][c];
+			sum += vec_norm(d);
+			n++;
+		}
+	return n ? sum / n : INFINITY;
+}
+
 void portrait_mesh_make(struct portrait *p)
 {
 	const struct rig *rig = p->rig;
@@ -223,7 +240,8 @@ void portrait_mesh_make(struct portrait *p)
 		solid = pass ? solid : m->n_faces;
 	}
 	p->shadow = ray_scene_new(rig->n, (const float(*)[3])rig->rest, solid, (const int32_t(*)[3])m->faces);
-	for (int k = 0; k < p->conf.subdivide; k++)
+	double edge = edge_of(m, rig, marked);
+	for (int k = 0; k < p->conf.subdivide && edge > fine_mm; k++, edge /= 2)
 		subdivide(m, marked);
 	free(marked);
 	size_t n = (size_t)m->n;
