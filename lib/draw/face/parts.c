@@ -71,7 +71,7 @@ struct portrait *portrait_new(const struct rig *rig, const struct scene *const e
                               const struct portrait_conf *conf)
 {
 	struct portrait *p = mem_new(1, sizeof *p);
-	*p = (struct portrait){ .rig = rig, .eye = { eyes[0], eyes[1] }, .env = env, .conf = *conf, .deform = deform_new(rig) };
+	*p = (struct portrait){ .rig = rig, .eye = { eyes[0], eyes[1] }, .env = env, .conf = *conf, .deform = deform_new(rig), .lids = deform_near_of(rig) };
 	portrait_mesh_make(p);
 	neighbours(p);
 	colours(p);
@@ -93,6 +93,7 @@ void portrait_free(struct portrait *p)
 	portrait_mesh_free(&p->mesh);
 	ray_scene_free(p->shadow);
 	deform_free(p->deform);
+	deform_near_free(&p->lids);
 	free(p->lash);
 	free(p->wrinkle_input);
 	free(p->wrinkle_strength);
@@ -112,5 +113,6 @@ void portrait_pose(struct portrait *p, const double *controls)
 	memcpy(p->target_from_globe, turn, sizeof turn);
 	portrait_fold_pose(p, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);
+	deform_clear(p->mesh.x, p->rig, &p->lids, (const double(*)[3][3])turn);
 	portrait_mesh_move(p);
 }

@@ -6,6 +6,7 @@
 #include "draw/face/mesh.h"
 #include "draw/face/portrait.h"
 #include "mesh/ray.h"
+#include "rig/deform/clear.h"
 
 struct portrait {
 	const struct rig *rig;
@@ -13,6 +14,7 @@ struct portrait {
 	const struct envmap *env;
 	struct portrait_conf conf;
 	struct deform *deform;
+	struct deform_near lids;
 	struct portrait_mesh mesh;
 	struct ray_scene *shadow;   // the skin's own triangles
 	float (*lit)[3];            // irradiance at the rig's vertices, before it is spread

@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/deform/clear.h"
 
 const char *const glb_pose_names[GLB_POSES] = { "eyeBlinkLeft", "eyeBlinkRight", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookDownLeft",
 	                                            "eyeLookDownRight", "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft",
@@ -20,6 +21,7 @@ struct poser {
 	const struct rig *rig;
 	struct deform *deform;
 	float (*x)[3], (*n)[3];
+	struct deform_near near;
 };
 
 static void pose(struct poser *p, const double *controls, double turn[2][3][3])
@@ -28,6 +30,7 @@ static void pose(struct poser *p, const double *controls, double turn[2][3][3])
 	rig_components(e, p->rig, controls);
 	rig_globes_turned(turn, p->rig, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->x, p->n);
+	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])turn);
 }
 
 /* Displacements from rest of the moving vertices, [n][3]. */
@@ -209,7 +212,8 @@ static void take_poses(struct glb_bake *b, struct poser *p)
 bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive *drive, const struct glb_conf *conf, struct err *err)
 {
 	*b = (struct glb_bake){ 0 };
-	struct poser p = { rig, deform_new(rig), mem_new((size_t)rig->n + 1, sizeof *p.x), mem_new((size_t)rig->n + 1, sizeof *p.n) };
+	struct poser p = { rig, deform_new(rig), mem_new((size_t)rig->n + 1, sizeof *p.x), mem_new((size_t)rig->n + 1, sizeof *p.n),
+		               deform_near_of(rig) };
 	struct learnt l;
 	deform_rest(p.deform, p.x, p.n);
 	find_moving(b, rig);
@@ -242,6 +246,7 @@ bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive
 	deform_free(p.deform);
 	free(p.x);
 	free(p.n);
+	deform_near_free(&p.near);
 	return ok;
 }
 

@@ -1,0 +1,23 @@
+/* deform_clear: keeps the faces of a posed character out of its eyeballs. Algorithm 1 keeps the vertices out; where skin unfolds as a
+ * lid shuts, an edge gets so long that its middle lies inside all the same. */
+#ifndef RIG_DEFORM_CLEAR_H
+#define RIG_DEFORM_CLEAR_H
+#include <stdbool.h>
+
+#include "rig/rig.h"
+
+/* Faces that can come near an eyeball, and which vertices deform_pose writes: others are not moved here either. deform_near_free. */
+struct deform_near {
+	int n, *face;
+	bool *moves;   // [rig.n]
+};
+struct deform_near deform_near_of(const struct rig *rig);
+void deform_near_free(struct deform_near *near);
+
+/* Moves vertices away from the eyeballs' centres until the middles of edges and faces that look outwards are DEFORM_CLEAR_MM off, most
+ * those that lie further from it at rest: the lid's margin stays on the eye.
+ * x  [rig.n], the target's frame, mm, in and out;  target_from_globe  of both globes in this pose */
+#define DEFORM_CLEAR_MM 0.03
+void deform_clear(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3]);
+
+#endif
