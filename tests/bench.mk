@@ -10,6 +10,11 @@ bench: build
 	@bad=0; $(MAKE) --no-print-directory -k $(filter-out bench-limbus_%,$(patsubst bench_%,bench-%,$(notdir $(BENCHES)))) || bad=1; \
 		$(MAKE) --no-print-directory bench-report || bad=1; exit $$bad
 
+# Many captures: beside the others, since it wants the machine for itself for half an hour.
+.PHONY: bench-batch
+bench-batch: build $B/tests/tools/variant
+	=$B BIN=$(BIN) N=$(or $(N),$(if $(QUICK),20,200)) SAME=$(or $(SAME),$(if $(QUICK),100,1000)) tests/bench/batch.sh
+
 .PHONY: bench-report bench-compare
 bench-compare: $B/tests/bench/report/compare
 	@test -n "$(BEFORE)" || { echo "make: say which: make bench-compare BEFORE=old/bench [AFTER=bench]" >&2; exit 2; }

@@ -1,12 +1,8 @@
 /* import: a character from the file an artist has: glTF, FBX, OBJ with materials. */
 #ifndef CHARACTER_IMPORT_H
 #define CHARACTER_IMPORT_H
+#include "character/kind.h"
 #include "character/look.h"
-
-/* What a name in targets/ is, by its ending. CHARACTER_PLAIN: PLY and OBJ, a surface alone unless an OBJ names materials.
- * CHARACTER_SCENE: glTF (.glb, .gltf) and FBX. */
-enum character_kind { CHARACTER_NONE, CHARACTER_PLAIN, CHARACTER_SCENE };
-enum character_kind character_kind_of(const char *name);
 
 /* Whether a file is to be read by character_import: a scene, or an OBJ that names materials. */
 bool character_has_look(const char *path);

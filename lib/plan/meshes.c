@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "character/import.h"
+#include "character/kind.h"
 #include "mesh/mesh_peek.h"
 
 /* Longer files are not read: every make starts plan. transfer finds the same out when it reads them. */

@@ -15,12 +15,14 @@ names() {
 # A line for each that has to run: its number TAB what plan --request says of its stages, TABs between. One that cannot be planned
 # is told of at once.
 look() { # N NAME ...
-	local said
+	local said was
 	local -a known=()
 	while [ $# -gt 0 ]; do
 		said=$("$BIN/plan" --capture="$CAPTURES/$2" --request 2>"$state/log/$2")
 		case $? in
-		0) grep -qs "${tab}done$tab" "$state/results/$2" || tell "$2" done 0 "$(peak "$2")" ""
+		0) was=
+			[ ! -f "$state/results/$2" ] || IFS=$tab read -r _ was _ <"$state/results/$2"
+			[ "$was" = done ] || tell "$2" done 0 "$(peak "$2")" ""
 			known+=("$2") ;;
 		3) printf '%s\t%s\n' "$1" "${said//$'\n'/$tab}" ;;
 		*) tell "$2" failed 0 "" "$(why "$state/log/$2")"

@@ -1,0 +1,9 @@
+/* kind: what a name in targets/ is, by its ending. Apart from what reads it: plan asks at every make, and does not load Assimp for it. */
+#ifndef CHARACTER_KIND_H
+#define CHARACTER_KIND_H
+
+/* CHARACTER_PLAIN: PLY and OBJ, a surface alone unless an OBJ names materials. CHARACTER_SCENE: glTF (.glb, .gltf) and FBX. */
+enum character_kind { CHARACTER_NONE, CHARACTER_PLAIN, CHARACTER_SCENE };
+enum character_kind character_kind_of(const char *name);
+
+#endif
