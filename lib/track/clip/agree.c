@@ -18,14 +18,15 @@ static double gaze_share(const struct track_result *r, int side)
 	return all ? (double)known / (double)all : 0;
 }
 
-/* Median of how much higher the left eye looks than the right one, degrees; NAN where the two are seldom seen together. */
-static double higher(const struct track_result *r)
+/* Median of how much higher (axis 1), or further to the person's left (axis 0), the left eye looks than the right one, degrees; NAN where the two are
+ * seldom seen together. */
+static double between(const struct track_result *r, int axis)
 {
 	enum { LEAST = 12 };
 	double *d = mem_array((size_t)r->n + 1, sizeof *d);
 	int n = 0;
 	for (long f = 0; f < r->n; f++) {
-		double off = r->eyes.state[f][SIDE_LEFT].gaze[1] - r->eyes.state[f][SIDE_RIGHT].gaze[1];
+		double off = r->eyes.state[f][SIDE_LEFT].gaze[axis] - r->eyes.state[f][SIDE_RIGHT].gaze[axis];
 		if (!r->lost_at[f] && isfinite(off))
 			d[n++] = off * 180 / M_PI;
 	}
@@ -36,12 +37,15 @@ static double higher(const struct track_result *r)
 
 bool track_agrees(const struct track_result *r, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
 {
-	double share = fmax(gaze_share(r, SIDE_LEFT), gaze_share(r, SIDE_RIGHT)), off = higher(r);
+	double share = fmax(gaze_share(r, SIDE_LEFT), gaze_share(r, SIDE_RIGHT)), off = between(r, 1), apart = between(r, 0);
 	if (share < conf->gaze_least)
 		return err_set(err, "%s: gaze in %.0f %% of the frames, must be in at least %.0f %% (track.gaze_least): film closer, sharper, or give subject.eye_center.* and camera.focal_px",
 		               clip->file, 100 * share, 100 * conf->gaze_least);
 	if (fabs(off) > conf->agree_deg)
 		return err_set(err, "%s: the left eye looks %.1f degrees higher than the right one (median), must be within %.1f (track.agree_deg): the head's pose in frame %ld is wrong; give subject.eye_center.*, or another track.reference_frame",
 		               clip->file, off, conf->agree_deg, clip->reference);
+	if (apart > conf->diverge_deg)
+		return err_set(err, "%s: the eyes look %.1f degrees apart (median), must not diverge by more than %.1f (track.diverge_deg): the head's pose in frame %ld is wrong; give subject.eye_center.*, or another track.reference_frame",
+		               clip->file, apart, conf->diverge_deg, clip->reference);
 	return true;
 }

@@ -8,6 +8,7 @@
 #include "bridge/cv_face.h"
 #include "optics/camera_rig.h"
 #include "track/clip/look.h"
+#include "track/clip/moves.h"
 
 static const char *const marks[] = { "left_inner_canthus",  "left_outer_canthus",  "left_upper_lid_mid",  "left_lower_lid_mid",
 	                                 "right_inner_canthus", "right_outer_canthus", "right_upper_lid_mid", "right_lower_lid_mid" };
@@ -226,6 +227,7 @@ void track_clip_free(struct track_clip *clip)
 	free(clip->luma);
 	free(clip->rgb);
 	free(clip->known);
+	track_moves_free(&clip->moves);
 	cv_face_close(clip->faces);
 }
 

@@ -4,12 +4,29 @@
  */
 #ifndef TRACK_CLIP_CLIP_H
 #define TRACK_CLIP_CLIP_H
+#include "image/patch/patch.h"
 #include "track/clip/subject.h"
 
 /* A frame whose head pose calibrate has estimated. */
 struct track_known {
 	long frame;
 	double cam_from_head[4][4], residual_px;
+};
+
+/* How the skin moves over the clip, seen quickly (moves.h). */
+struct track_moves {
+	int n;                 // points; 0: not known
+	long frames;           // in order; [0] is one of the clip's first
+	long reference;        // which of them is the reference
+	double (*at)[2];       // [n] px in the reference
+	double (*head)[3];     // [n] where the reference's pose said it is on the mesh, mm
+	float (*px)[2];        // [frames][n]
+	float *seen;           // [frames][n] confidence
+	struct patch_warp *first;  // [n] at the clip's first frame
+	double turned;         // radians: the head's largest turn between two frames; 0: not known
+	double apart;          // radians: between the poses that two halves of the skin tell
+	double off_mm;         // rms of the skin about the rigid head
+	bool torn;             // so far that the mesh does not move as the skin does
 };
 
 struct track_clip {
@@ -25,6 +42,7 @@ struct track_clip {
 	double pose_px;        // rms residual of the pose
 	bool pose_refined;     // by eyeballs and lids of several frames (refine.h); else pose_px is that of the outlines in the reference alone
 	bool pose_given;       // from track.landmark_*, or known: not refined
+	struct track_moves moves;        // owned
 	struct track_known *known;       // from rig.json, of this video and calibrate's own mesh; owned
 	int n_known;
 	struct cv_face_finder *faces;  // null: not opened yet, or not installed; owned

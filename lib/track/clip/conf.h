@@ -26,7 +26,9 @@ struct track_conf {
 	double settle_sigma, center_sigma;  // mm, standard deviations of the eyeballs' centres: the prior meanwhile; those of the mesh
 	double guess_sigma;    // mm, of centres that are guessed from the lids' marks
 	double pose_most;      // px at a width of 1280: larger residuals of the reference pose are refused
-	double agree_deg;      // vertical gaze of the two eyes further apart in the median is refused
+	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
+	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
+	double agree_deg, diverge_deg;  // vertical gaze of the two eyes further apart in the median is refused, and eyes that diverge by more
 	double gaze_least;     // share of frames with gaze in the better eye, below which a clip is refused
 	int points;            // of skin
 	struct {
@@ -50,6 +52,10 @@ struct track_conf {
 		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),                                \
 		OPT_REAL("guess_center_sigma_mm", &(c)->guess_sigma, 0.01, 20, "mm", "how well they are guessed from the lids' marks"),         \
 		OPT_REAL("pose_most_px", &(c)->pose_most, 0.1, 1000, "px", "larger residuals of the reference's pose are refused, at 1280 px"), \
+		OPT_REAL("turned_deg", &(c)->turned, 0.1, 90, "degrees", "a head that turns by more is laid on by how its skin moves"), \
+		OPT_REAL("torn_deg", &(c)->torn, 0.1, 90, "degrees", "halves of the skin that tell poses further apart are refused"), \
+		OPT_REAL("off_mm", &(c)->off_mm, 0.01, 10, "mm", "skin of a head that turns, off the rigid mesh (rms): with more it is refused"), \
+		OPT_REAL("diverge_deg", &(c)->diverge_deg, 0.1, 90, "degrees", "eyes that diverge by more (median) are refused"), \
 		OPT_REAL("agree_deg", &(c)->agree_deg, 0.1, 90, "degrees", "the eyes' vertical gaze further apart (median) is refused"),        \
 		OPT_REAL("gaze_least", &(c)->gaze_least, 0, 1, "", "share of frames with gaze in the better eye; with less it is refused")
 

@@ -22,6 +22,8 @@ static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids 
 /* Random walk of the head: standard deviations after a second, degrees, mm. */
 static const double turn_step = 1.55, shift_step = 4.65;
 
+static const double least_turned = 1;  // degrees: a head that turns by more is held by its skin alone
+
 static double expected_off(const double head[3], const struct track_subject *s)
 {
 	double nose = 0.5 * (s->center[SIDE_LEFT][0] + s->center[SIDE_RIGHT][0]);
@@ -50,8 +52,8 @@ static void rigid_free(struct rigid *r)
 	free(r->sights);
 }
 
-/* dt: seconds since the frame before. */
-static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust, double dt)
+/* dt: seconds since the frame before. moves: the head is known to turn. */
+static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_state *state, const struct camera *camera, double robust, double dt, bool moves)
 {
 	double next[4][4], turn = sqrt(dt) * turn_step * M_PI / 180, shift = sqrt(dt) * shift_step, new = fmin(1, forget * dt);
 	struct head_prior prior = { .sigma = { turn, turn, turn, shift, shift, shift } };
@@ -61,7 +63,10 @@ static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_
 		r->sights[i].weight = state[i].confidence / fmax(r->least[i], r->off2[i]);
 		memcpy(r->sights[i].px, state[i].at, sizeof r->sights[i].px);
 	}
-	if (isnan(head_pose_fit(next, r->n, r->sights, camera, robust, &prior)))
+	// what moves far between two frames lies outside of the narrow weights: wide ones first
+	for (int wide = 16; moves && wide > 1; wide /= 4)
+		head_pose_fit(next, r->n, r->sights, camera, wide * robust, 0);
+	if (isnan(head_pose_fit(next, r->n, r->sights, camera, robust, moves ? 0 : &prior)))
 		return;
 	memcpy(pose, next, sizeof next);
 	for (int i = 0; i < r->n; i++) {
@@ -92,7 +97,7 @@ static void store(struct track_result *r, const struct skin_point_state *state, 
 	for (int i = 0; i < r->n_points; i++) {
 		r->skin[at + i][0] = (float)state[i].at[0];
 		r->skin[at + i][1] = (float)state[i].at[1];
-		r->confidence[at + i] = lost ? 0 : (float)state[i].confidence;
+		r->confidence[at + i] = lost || !track_points_face(points, i, pose) ? 0 : (float)state[i].confidence;
 		track_to_model(r->skin_model[at + i], state[i].at, points->head[i], pose, clip);
 	}
 	memcpy(r->pose[r->n], pose, sizeof r->pose[r->n]);
@@ -133,6 +138,9 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	struct track_eyes *eyes = track_eyes_new(clip, subject, conf);
 	double pose[4][4];
 	long room = 0;
+	const bool moves = clip->moves.turned > least_turned * M_PI / 180;
+	if (skin && clip->moves.n)
+		skin_track_begin(skin, clip->moves.n, (const double(*)[2])clip->moves.at, clip->moves.first);
 	r->film = conf->limit ? 0 : film_new(clip, subject, points);
 	r->folds = conf->limit ? 0 : folds_new(clip, points, conf);
 	struct background *background = background_new(eyes, r->film, r->folds);
@@ -142,11 +150,13 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	while (ok && got && (!conf->limit || r->n < conf->limit)) {
 		struct video_frame f;
 		ok = video_next(&f, &got, video, err);
-		if (ok && got && f.index % every == clip->reference % every) {
+		if (ok && got && moves && f.index % every != clip->reference % every) {
+			skin_track_push(skin, f.luma, f.luma_stride, state);
+		} else if (ok && got && f.index % every == clip->reference % every) {
 			grow(r, &room);
 			bool lost = skin_frame(r, skin, state, &f, conf);
 			if (!lost && points->n)
-				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px, fmax(1e-4, r->n ? f.time - r->time[r->n - 1] : 1 / info.fps));
+				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px, fmax(1e-4, r->n ? f.time - r->time[r->n - 1] : 1 / info.fps), moves);
 			r->time[r->n] = f.time;
 			r->lost_at[r->n] = lost;
 			store(r, state, pose, lost, points, clip);

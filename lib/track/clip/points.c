@@ -116,12 +116,11 @@ static void join(struct track_points *p, int width)
 }
 
 /* Vertices that are visible and within reach (mm) of an eye that is seen. Returns how many. */
-static int candidates(int *row, double (*px)[2], const struct track_clip *clip, const struct track_subject *s, const uint8_t *mask,
+static int candidates(int *row, double (*px)[2], float (*normal)[3], const struct track_clip *clip, const struct track_subject *s, const uint8_t *mask,
                       double reach)
 {
 	const struct mesh *mesh = &s->mesh;
 	struct ray_scene *rays = ray_scene_new(mesh->n_vertices, (const float(*)[3])mesh->vertices, mesh->n_faces, (const int32_t(*)[3])mesh->faces);
-	float(*normal)[3] = mesh_normals(mesh);
 	double from[3], origin[3] = { 0 };
 	int n = 0;
 	head_to(from, clip->cam_from_head, origin);
@@ -133,9 +132,17 @@ static int candidates(int *row, double (*px)[2], const struct track_clip *clip, 
 		if (near && in_sight(px[n], clip, rays, v, normal[i], from) && mask[(long)px[n][1] * clip->info.width + (long)px[n][0]])
 			row[n++] = i;
 	}
-	free(normal);
 	ray_scene_free(rays);
 	return n;
+}
+
+bool track_points_face(const struct track_points *p, int i, const double m[4][4])
+{
+	double at[3], n[3];
+	head_from(at, m, p->head[i]);
+	for (int r = 0; r < 3; r++)
+		n[r] = vec_dot(m[r], p->normal[i]);
+	return -vec_dot(n, at) > facing * vec_norm(at);
 }
 
 bool track_points_choose(struct track_points *p, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf,
@@ -147,7 +154,8 @@ bool track_points_choose(struct track_points *p, const struct track_clip *clip, 
 	double(*px)[2] = mem_new(most, sizeof *px);
 	memset(p->mask, 255, area);
 	cut_openings(p->mask, clip, s);
-	int n = s->assumed ? 0 : candidates(row, px, clip, s, p->mask, conf->reach_mm);
+	float(*normal)[3] = mesh_normals(&s->mesh);
+	int n = s->assumed ? 0 : candidates(row, px, normal, clip, s, p->mask, conf->reach_mm);
 	double low = conf->gap_px, high = 64;
 	p->n = thin(taken, n, (const double(*)[2])px, low);
 	if (p->n > conf->points) {
@@ -159,13 +167,17 @@ bool track_points_choose(struct track_points *p, const struct track_clip *clip, 
 	}
 	p->vertex = mem_new((size_t)p->n + 1, sizeof *p->vertex);
 	p->head = mem_new((size_t)p->n + 1, sizeof *p->head);
+	p->normal = mem_new((size_t)p->n + 1, sizeof *p->normal);
 	p->points = (struct skin_points){ .n = p->n, .at = mem_new((size_t)p->n + 1, sizeof *p->points.at) };
 	for (int i = 0; i < p->n; i++) {
 		p->vertex[i] = row[taken[i]];
-		for (int k = 0; k < 3; k++)
+		for (int k = 0; k < 3; k++) {
 			p->head[i][k] = s->mesh.vertices[p->vertex[i]][k];
+			p->normal[i][k] = normal[p->vertex[i]][k];
+		}
 		memcpy(p->points.at[i], px[taken[i]], sizeof p->points.at[i]);
 	}
+	free(normal);
 	free(row);
 	free(taken);
 	free(px);
@@ -178,5 +190,6 @@ void track_points_free(struct track_points *p)
 	skin_points_free(&p->points);
 	free(p->vertex);
 	free(p->head);
+	free(p->normal);
 	free(p->mask);
 }

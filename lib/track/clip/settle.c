@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "track/clip/earn.h"
 #include "track/clip/follow.h"
 #include "track/clip/look.h"
 #include "track/clip/reference.h"
 #include "track/clip/refine.h"
+#include "track/head/refine.h"
 
 enum { FEW_POINTS = 120, LOOKS = 4, LATER = 15 };
 
@@ -72,6 +74,25 @@ static struct track_conf few_of(const struct track_conf *conf, const struct trac
 	return few;
 }
 
+/* Refines again while that still turns the head: eyes were measured, and lids laid, under the pose before. */
+static void settle_on(struct track_clip *clip, const double was[4][4], struct stage *stage, const struct track_subject *s, const struct track_conf *few)
+{
+	enum { MOST = 4 };
+	static const double still = M_PI / 180, none[3] = { 0 };
+	double last[4][4], d[6];
+	memcpy(last, was, sizeof last);
+	for (int i = 0; i < MOST; i++) {
+		struct track_result r = { 0 };
+		head_motion(d, clip->cam_from_head, last, none);
+		if (hypot(d[0], d[1]) < still)
+			return;
+		memcpy(last, clip->cam_from_head, sizeof last);
+		if (follow_few(&r, clip, stage, s, few))
+			reference_refine(clip, false, &r, s, few);
+		track_result_free(&r);
+	}
+}
+
 /* Refines the pose of a reference that was not doubted: by settle_frames from the clip's start (at 60 a second), where the
  * reference lies among them; else by the frames that it was judged by. */
 static void settle(struct track_clip *clip, const struct track_result *judged, struct stage *stage, const struct track_subject *s, const struct track_conf *few,
@@ -79,11 +100,14 @@ static void settle(struct track_clip *clip, const struct track_result *judged, s
 {
 	struct track_conf all = few_of(conf, clip, conf->settle, conf->settle);
 	struct track_result r = { 0 };
+	double was[4][4];
+	memcpy(was, clip->cam_from_head, sizeof was);
 	if (all.limit > few->limit && clip->reference < all.limit * all.every && follow_few(&r, clip, stage, s, &all))
 		reference_refine(clip, false, &r, s, &all);
 	else
 		reference_refine(clip, false, judged, s, few);
 	track_result_free(&r);
+	settle_on(clip, (const double(*)[4])was, stage, s, few);
 }
 
 /* What has been tried since the reference was doubted. */
@@ -108,15 +132,15 @@ static bool look_again(struct track_clip *clip, struct doubts *d, const struct t
 	return d->turned = look_anew(clip, clip->reference, d->way, stage, s, conf);
 }
 
-/* Largest residual that is accepted, px. Outlines in one frame alone fit half as well as a pose refined by many. */
-static double most_px(const struct track_clip *clip, const struct track_conf *conf)
+/* Largest residual that is accepted, px: in proportion to the eyes' size. Outlines in one frame alone fit half as well as a pose refined by many. */
+static double most_px(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	return conf->pose_most * clip->info.width / 1280 * (clip->pose_refined ? 1 : 2);
+	return conf->pose_most * head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening) * (clip->pose_refined ? 1 : 2);
 }
 
-static bool is_off(const struct track_clip *clip, const struct track_conf *conf)
+static bool is_off(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	return !(clip->pose_px <= most_px(clip, conf));
+	return !(clip->pose_px <= most_px(clip, s, conf));
 }
 
 /* Frames spread over the clip, each as the reference: openings, eyeballs and mesh are fitted together, and the frame in which they agree
@@ -128,7 +152,7 @@ static void try_others(struct track_clip *clip, struct stage *stage, const struc
 	const enum track_way way = clip->cam_from_head[1][1] > 0 ? WAY_OVER : WAY_UP;
 	long span = few.every * few.limit < clip->info.frames ? few.every * few.limit : clip->info.frames;
 	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
-	for (int i = 0; i < TRIES && is_off(clip, conf); i++) {
+	for (int i = 0; i < TRIES && is_off(clip, s, conf); i++) {
 		struct track_clip other = *clip;
 		struct track_result r = { 0 };
 		struct err none = { 0 };
@@ -138,7 +162,7 @@ static void try_others(struct track_clip *clip, struct stage *stage, const struc
 		              && follow_few(&r, &other, stage, s, &few);
 		if (better) {
 			reference_refine(&other, true, &r, s, &few);
-			better = other.pose_px * most_px(clip, conf) < clip->pose_px * most_px(&other, conf);
+			better = other.pose_px * most_px(clip, s, conf) < clip->pose_px * most_px(&other, s, conf);
 		}
 		other.begins_shut = true;
 		clip->faces = other.faces;
@@ -196,15 +220,22 @@ void track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 {
 	if (s->assumed || clip->pose_given || !conf->settle)
 		return;
+	if (track_earn(clip, stage, s, conf)) {
+		clip->begins_shut = true;
+		return;
+	}
 	settle_clip(clip, stage, s, conf);
-	if (is_off(clip, conf) && conf->reference < 0)
+	if (is_off(clip, s, conf) && conf->reference < 0)
 		try_others(clip, stage, s, conf);
 }
 
 bool track_settled(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
-	if (s->assumed || clip->pose_given || !conf->settle || !is_off(clip, conf))
+	if (clip->moves.torn)
+		return err_set(err, "%s: frame %ld: its skin does not move as %s does (off by %.2f mm, must be at most %.2f: track.off_mm; its halves tell poses %.1f degrees apart, must be at most %.1f: track.torn_deg): check camera.focal_px and subject.unit_mm, film in softer light, or give track.reference_frame",
+		               clip->file, clip->reference, s->file, clip->moves.off_mm, conf->off_mm, clip->moves.apart * 180 / M_PI, conf->torn);
+	if (s->assumed || clip->pose_given || !conf->settle || !is_off(clip, s, conf))
 		return true;
 	return err_set(err, "%s: frame %ld: its lids and eyeballs do not come together with %s (residual %.1f px, must be at most %.1f: track.pose_most_px): give subject.eye_center.left and .right, subject.eye_radius, camera.focal_px, or a frame from in front (track.reference_frame)",
-	               clip->file, clip->reference, s->file, clip->pose_px, most_px(clip, conf));
+	               clip->file, clip->reference, s->file, clip->pose_px, most_px(clip, s, conf));
 }

@@ -11,7 +11,7 @@
 struct head_find_conf {
 	double width[2];       // of an opening, as a share of the picture's: least, most
 	double roll;           // degrees: largest roll searched
-	double turn_sigma;     // degrees: standard deviation of the face's turn from the camera
+	double turn_sigma, yaw_sigma;  // degrees: standard deviations of the face's turn from the camera, up and down and aside
 	double min_score;      // below it no eyes are reported
 	double edge;           // px at a width of 1280: search range of the refinement
 };
@@ -19,7 +19,8 @@ struct head_find_conf {
 #define HEAD_FIND_OPTS(c) \
 	OPT_REALS("eye_width", (c)->width, 2, 0.01, 1, "", "least and most of an eye's opening, of the picture's width"), \
 	OPT_REAL("roll_deg", &(c)->roll, 0, 80, "degrees", "heads leaning more are not looked for"), \
-	OPT_REAL("turn_sigma_deg", &(c)->turn_sigma, 0.1, 45, "degrees", "how far the face is turned from the camera, 1 sigma"), \
+	OPT_REAL("turn_sigma_deg", &(c)->turn_sigma, 0.1, 45, "degrees", "how far the face is turned from the camera up or down, 1 sigma"), \
+	OPT_REAL("yaw_sigma_deg", &(c)->yaw_sigma, 0.1, 45, "degrees", "and aside"), \
 	OPT_REAL("min_score", &(c)->min_score, 0, 10, "", "contrast of eyes against skin below which there are none"), \
 	OPT_REAL("edge_px", &(c)->edge, 1, 200, "px", "how far off an outline may begin, at 1280 px")
 

@@ -133,7 +133,17 @@ void head_motion(double e[P], const double m[4][4], const double from[4][4], con
 {
 	double head[3];
 	turned(e, m, from);
-	// shifts are those of the pivot, which decouples them from rotation
+	head_to(head, from, pivot);
+	head_from(head, m, head);
+	for (int i = 0; i < 3; i++)
+		e[3 + i] = head[i] - pivot[i];
+}
+
+/* The same with the shift of the point that is at the pivot afterwards, which decouples it from a further rotation about the pivot. */
+static void off_prior(double e[P], const double m[4][4], const double from[4][4], const double pivot[3])
+{
+	double head[3];
+	turned(e, m, from);
 	head_to(head, m, pivot);
 	head_from(head, from, head);
 	for (int i = 0; i < 3; i++)
@@ -145,7 +155,7 @@ static double expect(double H[P][P], double g[P], const double m[4][4], const st
 	double e[P], cost = 0;
 	if (!prior)
 		return 0;
-	head_motion(e, m, prior->cam_from_head, pivot);
+	off_prior(e, m, prior->cam_from_head, pivot);
 	for (int i = 0; i < P; i++) {
 		double w = 1 / (prior->sigma[i] * prior->sigma[i]);
 		cost += w * e[i] * e[i];

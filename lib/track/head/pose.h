@@ -45,8 +45,7 @@ bool head_project(double px[2], const struct camera *camera, const double cam_fr
  * (mm). */
 void head_moved(double out[4][4], const double cam_from_head[4][4], const double d[6], const double pivot[3]);
 
-/* The motion d, as in head_moved, that takes the pose `from` to cam_from_head; the shift is that of the point at `pivot`
- * afterwards. */
+/* The inverse of head_moved: the motion d that takes the pose `from` to cam_from_head. */
 void head_motion(double d[6], const double cam_from_head[4][4], const double from[4][4], const double pivot[3]);
 
 #endif

@@ -165,12 +165,30 @@ static int look(struct head_sight *sights, const struct picture *p, const double
 	return n;
 }
 
+/* Sizes in px were chosen where an opening is so wide. */
+static const double usual_px = 253;
+
+double head_find_scale(int width, const struct camera *camera, const double cam_from_head[4][4], const struct eye_opening opening[2])
+{
+	double scale = fmax(0.5, width / 1280.0);
+	for (int e = 0; e < 2; e++) {
+		double p[3], across = 0;
+		if (!opening[e].open)
+			continue;
+		head_from(p, cam_from_head, opening[e].center);
+		for (int k = 0; k < 3; k++)
+			across += pow(opening[e].canthus[1][k] - opening[e].canthus[0][k], 2);
+		scale = fmin(scale, camera->focal_px / p[2] * sqrt(across) / usual_px);
+	}
+	return fmax(scale, 0.1);
+}
+
 bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
                       const struct eye_opening opening[2], const struct head_find_conf *conf)
 {
-	struct picture p = { .rgb = rgb, .width = width, .height = height, .scale = fmax(0.5, width / 1280.0) };
+	struct picture p = { .rgb = rgb, .width = width, .height = height, .scale = head_find_scale(width, camera, found->cam_from_head, opening) };
 	double turn = conf->turn_sigma * M_PI / 180;
-	struct head_prior prior = { .sigma = { turn, turn, INFINITY, INFINITY, INFINITY, INFINITY } };
+	struct head_prior prior = { .sigma = { turn, conf->yaw_sigma * M_PI / 180, INFINITY, INFINITY, INFINITY, INFINITY } };
 	memcpy(prior.cam_from_head, found->cam_from_head, sizeof prior.cam_from_head);
 	found->edge_px = NAN;
 	for (int round = 0; round < ROUNDS; round++) {
@@ -186,7 +204,7 @@ bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, i
 		// errors of neighbouring edges are correlated (shadows of lashes)
 		for (int i = 0; i < n; i++)
 			sights[i].weight *= edge_weight / (p.scale * p.scale);
-		double rms = head_pose_fit(found->cam_from_head, n, sights, camera, fmax(1.5, 0.3 * range), &prior);
+		double rms = head_pose_fit(found->cam_from_head, n, sights, camera, fmax(1.5 * fmin(1, p.scale), 0.3 * range), &prior);
 		if (isnan(rms))
 			return false;
 		found->edge_px = rms;

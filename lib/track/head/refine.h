@@ -10,4 +10,7 @@
 bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, int height, const struct camera *camera,
                       const struct eye_opening opening[2], const struct head_find_conf *conf);
 
+/* px for a px of a picture 1280 wide in which an opening is 253 px wide: of this picture, or where its eyes are smaller, as theirs are. */
+double head_find_scale(int width, const struct camera *camera, const double cam_from_head[4][4], const struct eye_opening opening[2]);
+
 #endif

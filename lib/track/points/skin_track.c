@@ -93,6 +93,29 @@ void skin_track_free(struct skin_track *t)
 	free(t);
 }
 
+void skin_track_warps(struct patch_warp *warp, const struct skin_track *t)
+{
+	for (int i = 0; i < t->points.n; i++)
+		warp[i] = t->point[i].warp;
+}
+
+void skin_track_begin(struct skin_track *t, int m, const double (*at)[2], const struct patch_warp *warp)
+{
+	for (int i = 0; i < t->points.n && m > 0; i++) {
+		const double *p = t->points.at[i];
+		int near = 0;
+		for (int k = 1; k < m; k++)
+			near = hypot(at[k][0] - p[0], at[k][1] - p[1]) < hypot(at[near][0] - p[0], at[near][1] - p[1]) ? k : near;
+		struct patch_warp *w = &t->point[i].warp;
+		*w = warp[near];
+		for (int r = 0; r < 2; r++)
+			for (int c = 0; c < 2; c++)
+				w->at[r] += w->A[r][c] * (p[c] - at[near][c]);
+		t->point[i].before = *w;
+	}
+	t->has_last = false;
+}
+
 bool skin_track_was_still(const struct skin_track *t)
 {
 	return t->was_still;

@@ -61,6 +61,13 @@ void skin_track_free(struct skin_track *track);
 /* Tracks the points in the next frame, of the reference's size. state[n] is overwritten. Returns the share of points seen. */
 double skin_track_push(struct skin_track *track, const uint8_t *luma, int stride, struct skin_point_state *state);
 
+/* Every point's warp after the last push: warp[n]. */
+void skin_track_warps(struct patch_warp *warp, const struct skin_track *track);
+
+/* Where points that were seen at at[m] in the reference are before the first push, in place of their places in the reference: each of the track's begins
+ * as the nearest one does. */
+void skin_track_begin(struct skin_track *track, int m, const double (*at)[2], const struct patch_warp *warp);
+
 /* True when the last push found the frame unchanged. */
 bool skin_track_was_still(const struct skin_track *track);
 

@@ -6,6 +6,10 @@
 /* dir: is made. how: of worsen.h, or null: the clip as it is. units: n action units whose frames are marked, in review. */
 bool track_capture_make(const char *dir, const char *clip, const char *quality, const char *how, int n, const char *const units[]);
 
+/* Of any folder of a clip with its truth (video.mp4, subject.ply, truth.json): nothing but the camera, the mesh, its unit and the landmarks
+ * of the lids; centers: the eyeballs' centres and radius, too. */
+bool track_capture_bare(const char *dir, const char *from, const char *quality, bool centers);
+
 /* Seconds bin/track took; NAN when it failed. */
 double track_capture_run(const char *dir);
 

@@ -175,15 +175,57 @@ static void score_head(struct track_score *s, const struct found *f)
 	free(R.x);
 }
 
+/* Poses themselves, against the truth's. */
+static void score_poses(struct track_score *s, const struct found *f)
+{
+	struct array R = truth(f, "head_R", 0), at = truth(f, "head_t", 0);
+	double *turn = mem_new((size_t)f->n + 1, sizeof *turn), *off = mem_new((size_t)f->n + 1, sizeof *off), mid[3] = { 0 }, eye[3];
+	const json_t *eyes = json_object_get(f->clip, "eye_centre_head_cm");
+	struct err none = { 0 };
+	long n = 0;
+	for (int e = 0; e < 2; e++)
+		for (int k = 0; k < 3 && json_get_array(eye, 3, eyes, e ? "right" : "left", "truth", &none); k++)
+			mid[k] += 10 * eye[k] / 2;
+	for (long t = 0; t < f->n && R.x && at.x; t++) {
+		const double *m = f->head.x + 16 * t, *r = R.x + 9 * t;
+		double trace = 0, square = 0;
+		for (int i = 0; i < 3; i++) {
+			double d = m[4 * i + 3] - 10 * at.x[3 * t + i];
+			for (int k = 0; k < 3; k++) {
+				trace += m[4 * i + k] * r[3 * i + k];
+				d += (m[4 * i + k] - r[3 * i + k]) * mid[k];
+			}
+			square += d * d;
+		}
+		s->yaw = fmax(s->yaw, fabs(atan2(r[2], -r[8])) * 180 / M_PI);
+		s->pitch = fmax(s->pitch, fabs(asin(fmin(1, fmax(-1, r[5])))) * 180 / M_PI);
+		if (!isfinite(csv_at(&f->gaze, t, csv_column(&f->gaze, "head_h_deg"))))
+			continue;
+		turn[n] = acos(fmin(1, fmax(-1, 0.5 * (trace - 1)))) * 180 / M_PI;
+		off[n++] = sqrt(square);
+	}
+	s->head_off = spread_of(n, turn);
+	s->head_at = spread_of(n, off);
+	free(turn);
+	free(off);
+	free(R.x);
+	free(at.x);
+}
+
 static void score_gaze(struct track_score *s, const struct found *f)
 {
 	static const char *const sides[] = { "left", "right" };
-	double *e[3];
-	long n = 0, open = 0;
+	double *e[3], *off[2], *about[2];
+	long n = 0, open = 0, have_about = 0;
+	for (int k = 0; k < 2; k++)
+		about[k] = mem_new(2 * (size_t)f->n + 1, sizeof *about[k]);
+	for (int k = 0; k < 2; k++)
+		off[k] = mem_new((size_t)f->n + 1, sizeof *off[k]);
 	for (int k = 0; k < 3; k++)
 		e[k] = mem_new(2 * (size_t)f->n + 1, sizeof *e[k]);
 	for (int side = 0; side < 2; side++) {
 		struct array gaze = truth(f, "gaze", side ? "right_deg" : "left_deg"), state = truth(f, "blink_state", 0), in = truth(f, "openness", sides[side]);
+		long from = 0;
 		// an eye that is out of the picture has a gaze, and no lids
 		for (long t = 0; t < f->n && gaze.x && in.x; t++) {
 			if (state.x[t] != 0)
@@ -196,9 +238,18 @@ static void score_gaze(struct track_score *s, const struct found *f)
 				double got = csv_at(&f->gaze, t, csv_column(&f->gaze, name));
 				have = have && (isfinite(got) || k == 2);
 				e[k][n] = fabs(got - gaze.x[3 * t + k]);
+				if (k < 2 && have)
+					off[k][from] = got - gaze.x[3 * t + k];
 			}
 			n += have;
+			from += have;
 		}
+		for (int k = 0; k < 2; k++) {
+			s->offset[side][k] = spread_of(from, off[k]).median;
+			for (long t = 0; t < from; t++)
+				about[k][have_about + t] = fabs(off[k][t] - s->offset[side][k]);
+		}
+		have_about += from;
 		free(gaze.x);
 		free(state.x);
 		free(in.x);
@@ -210,6 +261,11 @@ static void score_gaze(struct track_score *s, const struct found *f)
 				e[k][m++] = e[k][i];
 		s->gaze[k] = spread_of(m, e[k]);
 		free(e[k]);
+	}
+	for (int k = 0; k < 2; k++) {
+		s->about[k] = spread_of(have_about, about[k]);
+		free(about[k]);
+		free(off[k]);
 	}
 	s->gaze_share = open ? (double)n / (double)open : NAN;
 }
@@ -295,8 +351,10 @@ static void score_blinks(struct track_score *s, const struct found *f)
 	double fps = json_number_value(json_object_get(f->clip, "fps"));
 	bool hit[64] = { 0 };
 	double begun = (double)f->first / fps;
-	for (size_t k = 0; k < json_array_size(real); k++)
-		s->blinks += json_number_value(json_object_get(json_array_get(real, k), "start")) > begun;
+	for (size_t k = 0; k < json_array_size(real); k++) {
+		double start = json_number_value(json_object_get(json_array_get(real, k), "start"));
+		s->blinks += start > begun && start < (double)(f->first + f->n) / fps;
+	}
 	for (size_t i = 0; i < json_array_size(got); i++) {
 		double at = json_number_value(json_object_get(json_array_get(got, i), "peak")) / fps;
 		bool right = false;
@@ -325,6 +383,7 @@ bool track_score_from(struct track_score *s, const char *dir, const char *truth_
 		s->frames = f.n;
 		score_skin(s, &f);
 		score_head(s, &f);
+		score_poses(s, &f);
 		score_gaze(s, &f);
 		score_lids(s, &f);
 		score_aperture(s, &f);

@@ -25,6 +25,11 @@ struct track_score {
 	struct spread aperture;      // px: g4 + g5 against the truth's
 	int blinks, found, wrong;    // true ones, found, found where there is none
 	double head_deg;             // median of the head's turn since the reference, degrees
+	struct spread head_off;      // degrees, of the head's pose against the truth's; frames that are not lost
+	struct spread head_at;       // mm, of the point between the eyes
+	struct spread about[2];      // degrees: gaze about its offset, horizontal and vertical
+	double offset[2][2];         // degrees: median of gaze less the truth's, of the left and the right eye, horizontal and vertical
+	double yaw, pitch;           // degrees: the head's largest turn in the truth
 };
 
 /* dir: the capture; truth: folder of truth.npz and truth.json. False, err set, where a file is missing. */

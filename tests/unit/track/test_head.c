@@ -24,7 +24,7 @@ static double head_angle(const double a[4][4], const double b[4][4])
 	return 2 * asin(fmin(1, sqrt(square / 8)));
 }
 
-static const struct head_find_conf conf = { .width = { 0.05, 0.6 }, .roll = 20, .turn_sigma = 3, .min_score = 1, .edge = 40 };
+static const struct head_find_conf conf = { .width = { 0.05, 0.6 }, .roll = 20, .turn_sigma = 3, .yaw_sigma = 3, .min_score = 1, .edge = 40 };
 
 struct clip {
 	struct mesh mesh;

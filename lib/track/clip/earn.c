@@ -1,0 +1,137 @@
+#include "track/clip/earn.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "track/clip/moves.h"
+#include "track/head/find.h"
+#include "track/head/propose.h"
+
+enum { LOOKS = 6 };
+
+struct look {
+	long frame;
+	struct head_eyes eyes;
+	double worth;
+};
+
+/* Eyes in frames spread over the span; returns how many frames show two. */
+static int look(struct look out[LOOKS], long span, const struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_conf *conf)
+{
+	struct video_info info;
+	struct err none = { 0 };
+	struct video *video = video_open(&info, stage_path(stage, "%s", clip->file), &conf->video, &none);
+	uint8_t *rgb = mem_array(3 * (size_t)clip->info.width * (size_t)clip->info.height + 1, 1);
+	bool got = video;
+	int n = 0;
+	for (long i = 0, k = 0; got && k < LOOKS; i++) {
+		struct video_frame f;
+		got = video_next(&f, &got, video, &none) && got;
+		if (got && i == (2 * k + 1) * span / (2 * LOOKS)) {
+			k++;
+			video_frame_rgb(rgb, 3 * f.width, &f, 0, 0, f.width, f.height);
+			out[n].frame = i;
+			n += head_propose(&out[n].eyes, net, rgb, f.width, f.height, &none);
+		}
+		video_frame_free(&f);
+	}
+	video_close(video);
+	free(rgb);
+	return n;
+}
+
+/* The frame whose eyes are furthest apart for their size and most certain. */
+static const struct look *best_of(struct look *looks, int n)
+{
+	double radius = 0;
+	const struct look *best = looks;
+	for (int i = 0; i < n; i++)
+		radius += looks[i].eyes.radius / n;
+	for (int i = 0; i < n; i++) {
+		const double(*e)[2] = (const double(*)[2])looks[i].eyes.eye;
+		// an iris' size is told worse than the eyes' distance
+		looks[i].worth = hypot(e[0][0] - e[1][0], e[0][1] - e[1][1]) / sqrt(radius * looks[i].eyes.radius) * pow(looks[i].eyes.score, 2);
+		best = looks[i].worth > best->worth ? &looks[i] : best;
+	}
+	return best;
+}
+
+/* Takes the frame and lays a head that faces the camera on its eyes. */
+static bool lay(struct track_clip *clip, const struct look *look, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct head_found found;
+	struct err none = { 0 };
+	if (!head_find_from_eyes(&found, (const double(*)[2])look->eyes.eye, &clip->camera, s->opening)
+	    || (look->frame != clip->reference && !track_clip_take(clip, look->frame, stage, conf, &none)))
+		return false;
+	memcpy(clip->cam_from_head, found.cam_from_head, sizeof clip->cam_from_head);
+	clip->eye_seen[0] = clip->eye_seen[1] = true;
+	return true;
+}
+
+static long span_of(const struct track_clip *clip, const struct track_conf *conf)
+{
+	long span = track_frames_of(clip, conf->doubt.span);
+	return span < clip->info.frames ? span : clip->info.frames;
+}
+
+/* A head on a rest tells nothing by its skin; seen in a tenth of a second's steps, under the pose that was found first. */
+static bool rests(const struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct track_moves moves;
+	bool is = track_moves(&moves, track_frames_of(clip, 6), span_of(clip, conf), clip, stage, s, conf) && track_moves_rest(&moves, clip);
+	track_moves_free(&moves);
+	return is;
+}
+
+static bool earn(struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	enum { AGAIN = 2 };
+	struct look looks[LOOKS];
+	const long span = span_of(clip, conf);
+	int n = look(looks, span, clip, net, stage, conf);
+	if (!n || !lay(clip, best_of(looks, n), stage, s, conf))
+		return false;
+	bool told = true, moved = false;
+	for (int again = 0; told && again < AGAIN; again++) {
+		struct track_moves moves;
+		track_moves_free(&clip->moves);
+		told = track_moves(&moves, clip->info.fps > 40 ? track_frames_of(clip, 2) : 1, span, clip, stage, s, conf);
+		clip->moves = moves;
+		// once more where points were chosen under a pose that was far off
+		double was[4][4], d[6], none[3] = { 0 };
+		memcpy(was, clip->cam_from_head, sizeof was);
+		told = told && track_moves_pose(clip, &clip->moves, s, again > 0, conf);
+		head_motion(d, clip->cam_from_head, was, none);
+		moved = moved || told;
+		if (hypot(d[0], d[1]) < 0.1)
+			break;
+	}
+	return moved;
+}
+
+bool track_earn(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct evidence_net *net = 0;
+	struct err none = { 0 };
+	if (conf->reference >= 0 || !s->mesh.n_vertices || !s->opening[0].open || !s->opening[1].open || rests(clip, stage, s, conf) || !evidence_open_shipped(&net, &none))
+		return false;
+	struct track_clip was = *clip;
+	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
+	clip->luma = mem_array(area + 1, 1);
+	clip->rgb = mem_array(3 * area + 1, 1);
+	memcpy(clip->luma, was.luma, area);
+	memcpy(clip->rgb, was.rgb, 3 * area);
+	bool ok = earn(clip, net, stage, s, conf);
+	evidence_close(net);
+	struct track_clip *drop = ok ? &was : clip;
+	free(drop->luma);
+	free(drop->rgb);
+	if (!ok) {
+		track_moves_free(&clip->moves);
+		*clip = was;
+	}
+	return ok;
+}

@@ -1,0 +1,41 @@
+#include "track/head/propose.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+static const double sure = 0.4;                   // score of an iris
+static const double apart[2] = { 5, 16 };         // distance of the middles over the radius: 63 mm and 5.9 mm, turned by up to 55 degrees
+static const double unlike = 0.8;                 // log of the ratio of the radii: dark irises are told to half their size
+
+static bool is_pair(const struct evidence_region *a, const struct evidence_region *b)
+{
+	double r = 0.5 * (a->radius + b->radius), d = hypot(a->x - b->x, a->y - b->y) / r;
+	return a->score > sure && b->score > sure && d > apart[0] && d < apart[1] && fabs(log(a->radius / b->radius)) < unlike;
+}
+
+bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
+{
+	struct photo photo = { .width = width, .height = height, .bits = 8 };
+	struct evidence_region region[EVIDENCE_REGIONS];
+	size_t values = 3 * (size_t)width * (size_t)height;
+	double best = 0;
+	int n = 0;
+	photo.rgb = mem_array(values + 1, sizeof *photo.rgb);
+	for (size_t i = 0; i < values; i++)
+		photo.rgb[i] = (uint16_t)(257 * rgb[i]);
+	bool ok = evidence_find(region, &n, net, &photo, err);
+	free(photo.rgb);
+	for (int i = 0; ok && i < n; i++)
+		for (int k = i + 1; k < n; k++) {
+			const struct evidence_region *a = &region[i], *b = &region[k];
+			if (!is_pair(a, b) || fmin(a->score, b->score) <= best)
+				continue;
+			best = fmin(a->score, b->score);
+			const struct evidence_region *left = a->x > b->x ? a : b, *right = left == a ? b : a;
+			*eyes = (struct head_eyes){ { { left->x, left->y }, { right->x, right->y } }, 0.5 * (a->radius + b->radius), best };
+		}
+	return ok && best > 0;
+}

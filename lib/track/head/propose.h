@@ -1,0 +1,18 @@
+/* propose: pairs of eyes in a picture, from the evidence of its pixels (limbus/evidence.h): where a head may be, and how it leans.
+ * Image  px, centre of the first pixel (0.5, 0.5).
+ */
+#ifndef TRACK_HEAD_PROPOSE_H
+#define TRACK_HEAD_PROPOSE_H
+#include "limbus/evidence.h"
+
+struct head_eyes {
+	double eye[2][2];      // px, middles of the irises; [0] lies to the right in the picture: the left eye of an upright head
+	double radius;         // px, of an iris: mean of both
+	double score;          // 0..1, of the less certain one
+};
+
+/* The pair of irises that looks most like a person's: alike in size, apart as eyes are. rgb[height][3 width].
+ * Returns false, eyes unchanged, where there is none, or err is set. */
+bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err);
+
+#endif
