@@ -141,7 +141,8 @@ void track_steady(struct track_result *r, long reference, const struct track_poi
 	if (r->rests) {
 		for (long f = 0; f < r->n; f++)
 			memcpy(r->pose[f], clip->cam_from_head, sizeof r->pose[f]);
-	} else if (r->n > 2) {
+	} else if (r->n > 2 && !(clip->moves.turned > 0)) {
+		// a head that turns while the face stirs is told better by its skin frame by frame than by a path that waits
 		follow_path(r, points, clip);
 	}
 	model_again(r, points, clip);
