@@ -65,6 +65,9 @@ void photo_space_take(struct photo_space *space, struct bytes icc);
 /* The profile that a JPEG carries in its segments APP2; none where a part of it is missing or it has none. */
 void photo_space_jpeg(struct photo_space *space, struct bytes file);
 
+/* Turns rgb[h][w] by an EXIF orientation, 2 to 8, without a second copy of it: afterwards [w][h] from 5 on. */
+void photo_turn_in_place(uint16_t (*rgb)[3], int orientation, int w, int h);
+
 /* Decoders: encoded values of what photo_header has accepted, rgb[height][width][3] before orientation, and their colour space. */
 bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
 bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);

@@ -81,26 +81,56 @@ static bool is_colourless(const struct photo *photo)
 	return coloured <= n / 1000;
 }
 
-/* EXIF 2.3, tag 274: orientations 5 to 8 exchange the axes; each but 1 and 5 reverses one or both. */
+/* Where what has to stand at pixel i of the upright picture, `width` px wide, stands in the one that was decoded, w x h px. EXIF 2.3, tag 274:
+ * orientations 5 to 8 exchange the axes; each but 1 and 5 reverses one or both. */
+static size_t from_of(size_t i, int orientation, size_t w, size_t h, size_t width)
+{
+	const int o = orientation;
+	const size_t u = i % width, v = i / width, x = o >= 5 ? v : u, y = o >= 5 ? u : v;
+	const bool flip_x = o == 2 || o == 3 || o == 7 || o == 8, flip_y = o == 3 || o == 4 || o == 6 || o == 7;
+	return (flip_y ? h - 1 - y : y) * w + (flip_x ? w - 1 - x : x);
+}
+
+void photo_turn_in_place(uint16_t (*rgb)[3], int orientation, int w, int h)
+{
+	const size_t n = (size_t)w * (size_t)h, width = (size_t)(orientation >= 5 ? h : w);
+	uint8_t *done = mem_new(n / 8 + 1, 1);
+	// A pixel's place is taken by another's, whose place is taken by a third's, until that of the first is reached.
+	for (size_t first = 0; first < n; first++) {
+		uint16_t kept[3];
+		size_t at = first, from;
+		if (done[first / 8] >> first % 8 & 1)
+			continue;
+		memcpy(kept, rgb[first], sizeof kept);
+		for (; (from = from_of(at, orientation, (size_t)w, (size_t)h, width)) != first; at = from) {
+			done[at / 8] |= (uint8_t)(1 << at % 8);
+			memcpy(rgb[at], rgb[from], sizeof kept);
+		}
+		done[at / 8] |= (uint8_t)(1 << at % 8);
+		memcpy(rgb[at], kept, sizeof kept);
+	}
+	free(done);
+}
+
 static void turn_upright(struct photo *photo)
 {
-	int o = photo->exif.orientation, w = photo->width, h = photo->height;
+	// Larger pictures are turned where they stand, which takes thrice as long: a copy of them would be the most that a stage needs.
+	enum { COPIED_MOST = 40 * 1000 * 1000 };
+	const int o = photo->exif.orientation, w = photo->width, h = photo->height;
+	const size_t n = (size_t)w * (size_t)h, width = (size_t)(o >= 5 ? h : w);
 	if (o == 1)
 		return;
-	bool swap = o >= 5;
-	bool flip_x = o == 2 || o == 3 || o == 7 || o == 8, flip_y = o == 3 || o == 4 || o == 6 || o == 7;
-	int width = swap ? h : w, height = swap ? w : h;
-	uint16_t *out = mem_array((size_t)w * (size_t)h * 3, sizeof *out);
-	for (int v = 0; v < height; v++)
-		for (int u = 0; u < width; u++) {
-			int x = swap ? v : u, y = swap ? u : v;
-			const uint16_t *from = photo->rgb + 3 * ((long)(flip_y ? h - 1 - y : y) * w + (flip_x ? w - 1 - x : x));
-			memcpy(out + 3 * ((long)v * width + u), from, 3 * sizeof *out);
-		}
-	free(photo->rgb);
-	photo->rgb = out;
-	photo->width = width;
-	photo->height = height;
+	if (n > COPIED_MOST)
+		photo_turn_in_place((uint16_t (*)[3])photo->rgb, o, w, h);
+	else {
+		uint16_t *out = mem_array(n * 3, sizeof *out);
+		for (size_t i = 0; i < n; i++)
+			memcpy(out + 3 * i, photo->rgb + 3 * from_of(i, o, (size_t)w, (size_t)h, width), 3 * sizeof *out);
+		free(photo->rgb);
+		photo->rgb = out;
+	}
+	photo->width = o >= 5 ? h : w;
+	photo->height = o >= 5 ? w : h;
 }
 
 bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct err *err)

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "image/photo/impl.h"
 #include "image/photo/photo.h"
 #include "image/picture.h"
 #include "tests/lib/scratch.h"
@@ -120,6 +121,31 @@ static void upright(int o, int x, int y, int *u, int *v)
 		         { y, x },         { H - 1 - y, x }, { H - 1 - y, W - 1 - x }, { y, W - 1 - x } };
 	*u = at[o - 1][0];
 	*v = at[o - 1][1];
+}
+
+/* Each pixel of the upright picture is the one that EXIF's table names; sizes without a common factor, and with. */
+static void large_ones_are_turned_where_they_stand(void **state)
+{
+	(void)state;
+	static const int size[][2] = { { 7, 5 }, { 12, 8 }, { 1, 9 }, { 64, 64 }, { 101, 30 } };
+	for (int k = 0; k < COUNT(size); k++)
+		for (int o = 2; o <= 8; o++) {
+			const int w = size[k][0], h = size[k][1], width = o >= 5 ? h : w, height = o >= 5 ? w : h;
+			uint16_t (*rgb)[3] = mem_new((size_t)w * (size_t)h, sizeof *rgb);
+			for (int i = 0; i < w * h; i++)
+				for (int c = 0; c < 3; c++)
+					rgb[i][c] = (uint16_t)(3 * i + c);
+			photo_turn_in_place(rgb, o, w, h);
+			// Which corner of the file is the upright picture's upper left, and along which side its rows run.
+			static const int corner[9][2] = { [2] = { 1, 0 }, [3] = { 1, 1 }, [4] = { 0, 1 }, [5] = { 0, 0 }, [6] = { 0, 1 }, [7] = { 1, 1 }, [8] = { 1, 0 } };
+			for (int v = 0; v < height; v++)
+				for (int u = 0; u < width; u++) {
+					const int along_x = o >= 5 ? v : u, along_y = o >= 5 ? u : v;
+					const int x = corner[o][0] ? w - 1 - along_x : along_x, y = corner[o][1] ? h - 1 - along_y : along_y;
+					assert_int_equal(rgb[v * width + u][1], 3 * (y * w + x) + 1);
+				}
+			free(rgb);
+		}
 }
 
 static void orientation_is_applied(void **state)
@@ -381,6 +407,7 @@ int main(void)
 		SCRATCH_TEST(jpeg_is_close),
 		SCRATCH_TEST(exr_is_linear),
 		SCRATCH_TEST(orientation_is_applied),
+		cmocka_unit_test(large_ones_are_turned_where_they_stand),
 		SCRATCH_TEST(focal_length_where_it_can_be_believed),
 		cmocka_unit_test(shrunk_is_the_mean_of_areas),
 		SCRATCH_TEST(faults_are_one_clear_line),
