@@ -136,7 +136,9 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 	int points = LIDS * conf->eyes.lid_points;
 	double rest[SIDES][LIDS * LID_POINTS_MAX][2];
 	double turn = conf->head.turn_sigma * M_PI / 180, pose[4][4], px = NAN;
-	struct head_prior prior = { .sigma = { turn, conf->head.yaw_sigma * M_PI / 180, INFINITY, INFINITY, INFINITY, INFINITY } };
+	// one eye alone tells no turn aside
+	const double yaw = clip->eye_seen[0] && clip->eye_seen[1] ? conf->head.yaw_sigma * M_PI / 180 : turn;
+	struct head_prior prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, INFINITY } };
 	memcpy(pose, clip->cam_from_head, sizeof pose);
 	memcpy(prior.cam_from_head, pose, sizeof pose);
 	double calm = doubted ? reference_usual_misfit(r) : 0;

@@ -81,7 +81,8 @@ static void settle_on(struct track_clip *clip, const double was[4][4], struct st
 	static const double still = M_PI / 180, none[3] = { 0 };
 	double last[4][4], d[6];
 	memcpy(last, was, sizeof last);
-	for (int i = 0; i < MOST; i++) {
+	// one eye alone leads it astray
+	for (int i = 0; i < MOST && clip->eye_seen[0] && clip->eye_seen[1]; i++) {
 		struct track_result r = { 0 };
 		head_motion(d, clip->cam_from_head, last, none);
 		if (hypot(d[0], d[1]) < still)

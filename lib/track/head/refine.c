@@ -188,7 +188,7 @@ bool head_find_refine(struct head_found *found, const uint8_t *rgb, int width, i
 {
 	struct picture p = { .rgb = rgb, .width = width, .height = height, .scale = head_find_scale(width, camera, found->cam_from_head, opening) };
 	double turn = conf->turn_sigma * M_PI / 180;
-	struct head_prior prior = { .sigma = { turn, conf->yaw_sigma * M_PI / 180, INFINITY, INFINITY, INFINITY, INFINITY } };
+	struct head_prior prior = { .sigma = { turn, found->seen[0] && found->seen[1] ? conf->yaw_sigma * M_PI / 180 : turn, INFINITY, INFINITY, INFINITY, INFINITY } };
 	memcpy(prior.cam_from_head, found->cam_from_head, sizeof prior.cam_from_head);
 	found->edge_px = NAN;
 	for (int round = 0; round < ROUNDS; round++) {
