@@ -62,7 +62,7 @@ static struct trial *told(struct trials *t, int best)
 	struct trial *likeliest = &t->trial[best];
 	for (int i = 0; i < t->n; i++) {
 		struct trial *other = &t->trial[i];
-		if (other->guide == GUIDE_EVIDENCE && other->log_odds > likeliest->log_odds - AS_SURE && trial_apart(&other->e, &likeliest->e) < LIMBUS_RIGHT)
+		if (other->guide == GUIDE_EVIDENCE && other->log_odds > likeliest->log_odds - AS_SURE && trial_same(other, likeliest))
 			return other;
 	}
 	return likeliest;

@@ -3,11 +3,34 @@
 #include <math.h>
 
 static const double OTHER_EYE = 1;      // semi-axes between centres: no rival, but the other eye
+static const double NEAR = 0.06;        // semi-axes: what is farther apart is not the same, however little is seen
 static const double MOVED = 0.5;        // chance of being off where the full measurement left its trial
 
-double trial_apart(const struct ellipse *e, const struct ellipse *from)
+/* The largest difference of centre and semi-axes, px. */
+static double apart(const struct ellipse *e, const struct ellipse *f)
 {
-	return fmax(hypot(e->cx - from->cx, e->cy - from->cy), fmax(fabs(e->a - from->a), fabs(e->b - from->b))) / from->a;
+	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
+}
+
+static bool follows(const struct ellipse *e, const struct trial_line *line)
+{
+	for (int i = 0; i < line->n; i++) {
+		double t;
+		if (fabs(ellipse_distance(&t, e, line->p[i])) > LIMBUS_RIGHT * e->a)
+			return false;
+	}
+	return true;
+}
+
+static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other)
+{
+	const double away = apart(e, f) / e->a;
+	return away < LIMBUS_RIGHT || (away < NEAR && line->n + other->n > 0 && follows(e, other) && follows(f, line));
+}
+
+bool trial_same(const struct trial *a, const struct trial *b)
+{
+	return same(&a->e, &a->line, &b->e, &b->line);
 }
 
 static bool is_rival(const struct ellipse *e, const struct ellipse *best)
@@ -25,7 +48,7 @@ static void chances(double chance[TRIALS], const struct trials *t, int best)
 		for (int k = 0; k < t->n && counts; k++) {
 			const struct trial *b = &t->trial[k];
 			const bool likelier = b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i);
-			counts = k == i || !likelier || trial_apart(&a->e, &b->e) > LIMBUS_RIGHT;
+			counts = k == i || !likelier || !trial_same(a, b);
 		}
 		chance[i] = counts ? exp(a->log_odds) : 0;
 		sum += chance[i];
@@ -66,6 +89,7 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 			for (int b = 0; b < ELLIPSE_N; b++)
 				rim->cov_q[a][b] += chance[i] * (other[a] - q[a]) * (other[b] - q[b]);
 	}
-	if (trial_apart(&rim->e, &t->trial[p->best].e) > LIMBUS_RIGHT)
+	const struct trial_line line = trial_line_of(rim);
+	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line))
 		p->gross = fmax(p->gross, MOVED);
 }

@@ -8,8 +8,8 @@
  * one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
 void posterior_of(struct posterior *posterior, const struct trials *trials);
 
-/* The largest difference of centre and semi-axes, in semi-axes of `from`. */
-double trial_apart(const struct ellipse *e, const struct ellipse *from);
+/* Whether two trials are within LIMBUS_RIGHT of each other where either was seen: what lids hide may differ, and has its sigma. */
+bool trial_same(const struct trial *a, const struct trial *b);
 
 /* After the likeliest one was measured in full: adds to its covariance (of q, px) what the rivals say, each by its chance, and to gross
  * where the full measurement is another ellipse than the trial was. */

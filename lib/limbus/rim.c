@@ -15,6 +15,7 @@
 enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6 };
 static const double LEAST_NOISE = 0.02;  // px: no step is placed better
 static const double SHARP_PX = 3;       // a step's sigma
+static const double COLOUR_GAIN = 1.2;    // of colour over brightness, from which colour measures sharp steps, too
 
 static double median_of(const struct step step[ARCS], const bool use[ARCS], size_t field)
 {
@@ -250,8 +251,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 {
 	*rim = (struct rim){ .e = *start };
 	double weight[3] = { 1 / 3.0, 1 / 3.0, 1 / 3.0 };
-	if (!conf->grey)
-		limbus_colour(weight, photo, start);
+	double gain = conf->grey ? 0 : limbus_colour(weight, photo, start);
 	const int w = photo->width, h = photo->height;
 	struct grey grey = grey_linear(photo, start, 1.4, conf->max_axis, weight);
 	bool ok = locate(rim, &grey, tint, conf, w, h);
@@ -259,12 +259,12 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 		rim->widths[i] = rim->width;
 	for (int i = 0; i < (rim->width < SHARP_PX || conf->passes < PASSES ? conf->passes - 1 : conf->passes) && ok; i++) {
 		if (!conf->grey && (i == 0 || (i == 3 && rim->width >= SHARP_PX))) {
-			/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone. Of soft ones the
-			 * colours are looked at again, now that it is known better where they are. */
-			for (int c = 0; c < 3; c++)
+			/* JPEG keeps colour at half resolution: sharp steps are measured in brightness alone, where that shows them. Of soft
+			 * ones the colours are looked at again, now that it is known better where they are. */
+			if (rim->width >= SHARP_PX || gain > 1)
+				gain = limbus_colour(weight, photo, &rim->e);
+			for (int c = 0; c < 3 && rim->width < SHARP_PX && !(gain > COLOUR_GAIN); c++)
 				weight[c] = 1 / 3.0;
-			if (rim->width >= SHARP_PX)
-				limbus_colour(weight, photo, &rim->e);
 			grey_free(&grey);
 			grey = grey_linear(photo, &rim->e, 1.3, conf->max_axis, weight);
 		}

@@ -90,6 +90,17 @@ static bool known_already(const struct trials *t, const struct ellipse *e)
 	return false;
 }
 
+struct trial_line trial_line_of(const struct rim *rim)
+{
+	struct trial_line line = { 0 };
+	for (int i = 0; i < ARCS; i += ARCS / TRIAL_PLACES) {
+		double normal[2];
+		if (rim->used[i])
+			ellipse_point(line.p[line.n++], normal, &rim->e, rim->t[i]);
+	}
+	return line;
+}
+
 /* Measures a trial and keeps it where there is something to measure. */
 static void try(struct trials *t, const struct trial *start)
 {
@@ -103,6 +114,7 @@ static void try(struct trials *t, const struct trial *start)
 		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &trial->window->evidence, &trial->window->map, t->photo->width, t->photo->height);
 		trial->log_odds = odds_log(trial->x, &t->conf->odds);
 		trial->e = rim->e;
+		trial->line = trial_line_of(rim);
 		t->n++;
 	}
 	free(rim);

@@ -18,11 +18,16 @@ struct trial_window {
 	double x, y, radius;       // px of the photograph
 };
 
+/* Where an ellipse was seen: points on it beside some of the arcs that were used, px. */
+enum { TRIAL_PLACES = 60 };
+struct trial_line { int n; double p[TRIAL_PLACES][2]; };
+
 struct trial {
 	enum trial_guide guide;
 	const struct trial_window *window;
 	struct ellipse region;     // the evidence's, where it is a prior
 	struct ellipse e;
+	struct trial_line line;
 	double log_odds;
 	double x[ODDS_TRAITS];
 };
@@ -47,6 +52,8 @@ bool trials_of_votes(struct trials *trials, struct err *err);
 bool trials_of_place(struct trials *trials, double x, double y, double radius, struct err *err);
 /* Adds the ellipses near a hint: x, y, radius, px. */
 bool trials_of_hint(struct trials *trials, const double *hint, struct err *err);
+
+struct trial_line trial_line_of(const struct rim *rim);
 
 /* Measures a trial's limbus and its pupil. coarse: to tell trials apart. False when there is no edge. */
 bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const struct trial *trial, const struct trials *trials, bool coarse);

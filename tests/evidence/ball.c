@@ -28,6 +28,7 @@ struct ball ball_make(struct rng *rng, bool test)
 	b.pupil_wave[1] = range(rng, 0, 6.28);
 	b.haze = rng_below(rng, 3) ? range(rng, 0, 0.008) : range(rng, 0.005, 0.04);
 	b.blur = range(rng, 0.05, 0.5);
+	b.near_limbus = 3;
 	const float white = range(rng, 0.45, 0.85), yellow = range(rng, 0, 0.35);
 	b.sclera[0] = white;
 	b.sclera[1] = white * (1 - 0.25F * yellow - range(rng, 0, 0.08));
@@ -70,7 +71,7 @@ static void sclera_at(float albedo[3], const struct ball *b, float x, float y, f
 	const float side = fminf(fabsf(x) / 12, 1), stain = field_at(b->stain, b->at[0] + 6 * x, b->at[1] + 6 * y);
 	float vein = field_at(b->veins, b->at[0] + b->vessel_scale * x * 0.6F, b->at[1] + b->vessel_scale * y + 8 * stain);
 	vein = vein > 0.72F ? fminf((vein - 0.72F) * 6, 1) : 0;
-	vein *= b->vessels * (0.25F + side) * fminf(from_limbus / 3, 1);
+	vein *= b->vessels * (0.25F + side) * fminf(from_limbus / b->near_limbus, 1);
 	const float pink = b->red * (0.45F * side * side + 0.2F * (stain - 0.5F));
 	const float red[3] = { 0.06F, 0.5F, 0.45F };
 	for (int c = 0; c < 3; c++)
@@ -129,6 +130,18 @@ static void mirror(float out[3], const struct light *light, const float n[3], fl
 		out[c] *= strength * fresnel;
 }
 
+/* Share of the sclera at `from` mm beyond the limbus. */
+static float ramp(const struct ball *b, float x, float y, float from)
+{
+	float width = b->blur;
+	if (b->ragged > 0) {
+		const float coarse = field_at(b->stain, b->at[1] + 9 * x, b->at[0] + 9 * y), fine = field_at(b->stain, b->at[0] - 31 * y, b->at[1] + 31 * x);
+		from += b->ragged * (coarse + 0.7F * fine - 0.85F);
+		width *= 0.5F + field_at(b->stain, b->at[1] - 14 * y, b->at[0] + 14 * x);
+	}
+	return 1 / (1 + expf(-1.7F * from / width));
+}
+
 /* The white part, blended into `under` (the iris) towards the limbus. */
 static void white(struct ball_point *out, const struct ball *b, const struct light *light, float x, float y, const float n[3], float from,
                   float share)
@@ -153,7 +166,7 @@ void ball_at(struct ball_point *out, const struct ball *b, const struct light *l
 			const float m = 1 / sqrtf(dot3(p, p)), flat[3] = { p[0] * m, p[1] * m, p[2] * m };
 			if (through_cornea(&r, &angle, at, b, p, n) && (b->even || r < b->limbus * 1.02F))
 				out->label = behind_cornea(out->body, b, light, r, angle, at);
-			white(out, b, light, x, y, b->even ? flat : n, from, out->label == EVIDENCE_SCLERA ? 1 : 1 / (1 + expf(-1.7F * from / b->blur)));
+			white(out, b, light, x, y, b->even ? flat : n, from, out->label == EVIDENCE_SCLERA ? 1 : ramp(b, x, y, from));
 			mirror(out->mirror, light, n, 1, false);
 			return;
 		}
@@ -162,10 +175,10 @@ void ball_at(struct ball_point *out, const struct ball *b, const struct light *l
 	const float z = sqrtf(fmaxf(s, 4)), m = 1 / sqrtf(x * x + y * y + z * z), p[3] = { x, y, z };
 	float n[3] = { x * m, y * m, z * m };
 	const float a = dot3(p, b->gaze), from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - b->limbus;
-	if (b->even && a > 0 && from < 4 * b->blur) {
+	if (b->even && a > 0 && from < 4 * b->blur + b->ragged) {
 		const float angle = atan2f(dot3(p, b->up), dot3(p, b->side)), at[2] = { b->limbus * cosf(angle), b->limbus * sinf(angle) };
 		behind_cornea(out->body, b, light, b->limbus, angle, at);
-		white(out, b, light, x, y, n, from, 1 / (1 + expf(-1.7F * from / b->blur)));
+		white(out, b, light, x, y, n, from, ramp(b, x, y, from));
 	} else if (!b->even && b->gaze[2] > 0.5F && from < 4 * b->blur) {
 		const float dark = 0.35F + 0.65F / (1 + expf(-1.7F * (from - 0.3F * b->blur) / b->blur));
 		white(out, b, light, x, y, n, from, 1);

@@ -12,7 +12,8 @@ struct ball {
 	float gaze[3], side[3], up[3];        // unit
 	float to_limbus, to_cornea;           // along the gaze from the centre: limbus plane, cornea's centre
 	float pupil, pupil_at[2], pupil_wave[2], haze;
-	float blur;                           // of the limbus, mm
+	float blur, ragged;                   // of the limbus, mm: width of its ramp; how far that strays
+	float near_limbus;                    // mm from the limbus at which vessels have their full strength
 	float sclera[3], canthus[3], vessels, vessel_scale, at[2], red;
 	const struct field *veins, *stain;
 	float wet, shine;                     // the tear film on the sclera: unevenness, how much it mirrors

@@ -187,21 +187,23 @@ static void enlarge(uint8_t *rgb, int width, int height, const uint8_t *from, in
 		}
 }
 
-void lens_expose(uint8_t *rgb, struct canvas *c, float white[3], float radius, bool photo, struct rng *rng)
+void lens_expose(uint8_t *rgb, struct canvas *c, float white[3], float radius, bool photo, float poor, struct rng *rng)
 {
 	const struct develop d = develop_make(white, photo, rng);
 	for (long i = 0; i < (long)c->width * c->height * 3; i++)
 		c->rgb[i] = fminf(c->rgb[i], 4 / d.gain[1]);
 	for (int i = 0; i < 3; i++)
 		white[i] *= d.gain[i];
-	const float by = photo ? 1 : range_of(rng, 1.3, 6);
-	if (photo || rng_below(rng, 6) || by > radius / 5) {
-		take(rgb, c, &d, photo ? 50 : 25, rng);
+	const int quality = photo ? 50 - (int)(25 * poor) : 25;
+	const bool whole = photo ? !(poor > 0) || range_of(rng, 0, 1) > poor : false;
+	const float by = whole ? 1 : photo ? range_of(rng, 1.1, 3) : range_of(rng, 1.3, 6);
+	if (whole || (!photo && rng_below(rng, 6)) || by > radius / (photo ? 8 : 5)) {
+		take(rgb, c, &d, quality, rng);
 		return;
 	}
 	struct canvas small = reduced(c, by);
 	uint8_t *taken = malloc((size_t)small.width * (size_t)small.height * 3);
-	take(taken, &small, &d, 25, rng);
+	take(taken, &small, &d, quality, rng);
 	enlarge(rgb, c->width, c->height, taken, small.width, small.height, by);
 	free(taken);
 	canvas_free(&small);

@@ -11,15 +11,15 @@ import sys
 import numpy as np
 import torch
 
-UNITS, DECAY, STEPS, RIGHT, FOLDS = 6, 8.0, 900, 0.02, 5
+UNITS, DECAY, STEPS, RIGHT, NEAR, FOLDS = 6, 8.0, 900, 0.02, 0.06, 5
 
 
 def read(paths):
     x, y, key = [], [], []
     for path in paths:
         for row in csv.reader(open(path)):
-            x.append([float(v) for v in row[4:]])
-            y.append(float(row[3]) < RIGHT)
+            x.append([float(v) for v in row[5:]])
+            y.append(min(float(row[3]), float(row[4])) < RIGHT and float(row[3]) < NEAR)
             key.append((path, row[0], row[1]))
     x = np.array(x)
     x[~np.isfinite(x)] = 0

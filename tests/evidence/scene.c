@@ -213,7 +213,7 @@ static struct drawn begin(struct set *s, struct rng *rng, bool test, int width, 
 }
 
 /* Draws, exposes and labels what is in view; frees the canvas. */
-static void finish(struct drawn *d, struct canvas *c, const struct set *s, struct rng *rng, bool test, bool photo)
+static void finish(struct drawn *d, struct canvas *c, const struct set *s, struct rng *rng, bool test, bool photo, float rough)
 {
 	const bool face = d->other == OTHER_NONE || d->other == OTHER_FACE;
 	for (int i = 0; i < 3; i++)
@@ -222,7 +222,7 @@ static void finish(struct drawn *d, struct canvas *c, const struct set *s, struc
 		draw_face(c, s, rng, test);
 	else
 		other_draw(c, (enum other_kind)d->other, rng, test);
-	lens_expose(d->rgb, c, d->white, 5.9F / c->mm, photo, rng);
+	lens_expose(d->rgb, c, d->white, 5.9F / c->mm, photo, rough, rng);
 	memcpy(d->label, c->label, (size_t)d->width * (size_t)d->height);
 	if (face)
 		note_eyes(d, s, c);
@@ -238,8 +238,21 @@ struct drawn drawn_make(uint64_t number, bool test, int width, int height)
 	d.other = rng_below(&rng, 7) ? OTHER_NONE : 1 + rng_below(&rng, OTHER_KINDS - 1);
 	s.bare = d.other == OTHER_NONE && rng_below(&rng, 14) == 0;
 	look(&c, &s, &rng, d.other == OTHER_FACE);
-	finish(&d, &c, &s, &rng, test, false);
+	finish(&d, &c, &s, &rng, test, false, 0);
 	return d;
+}
+
+/* Limbi of photographed people: 10 to 90 % of the step over 0.2 to 1 mm, the line astray by up to a tenth of a millimetre. */
+static void roughen(struct ball ball[2], float rough, struct rng *rng)
+{
+	if (!(rough > 0))
+		return;
+	const float blur = range_of(rng, 0.05, 0.12 + 0.25 * rough), ragged = rough * range_of(rng, 0, 0.35), near_limbus = 3 - 2.7F * rough * range_of(rng, 0, 1);
+	for (int k = 0; k < 2; k++) {
+		ball[k].blur = blur;
+		ball[k].ragged = ragged;
+		ball[k].near_limbus = near_limbus;
+	}
 }
 
 struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, int width, int height)
@@ -256,10 +269,11 @@ struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, in
 		s.ball[k].even = true;
 		s.ball[k].blur *= 0.5F;
 	}
+	roughen(s.ball, view->rough, &rng);
 	ball_limbus(limbus, &s.ball[e]);
 	canvas_view(&c, s.face.frame[e].at[0] + limbus[0], s.face.frame[e].at[1] + limbus[1] - (d.other == OTHER_FACE ? 55 : 0), view->x, view->y,
 	            s.ball[e].limbus / view->radius, view->turn, view->mirrored);
-	finish(&d, &c, &s, &rng, !view->training, true);
+	finish(&d, &c, &s, &rng, !view->training, true, view->rough);
 	return d;
 }
 

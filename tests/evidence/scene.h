@@ -32,8 +32,9 @@ struct drawn {
 struct drawn drawn_make(uint64_t number, bool test, int width, int height);
 
 /* A photograph for measuring by: of the test split unless training is set, the limbus a ramp of equal halves (ball.h), one eye's limbus where it is asked for.
- * other: 0, or what to draw instead of an eye (other.h). Otherwise as drawn_make. */
-struct drawn_view { float radius, x, y, turn; bool mirrored; int other; bool training; };  // limbus's larger semi-axis and centre, px; radians
+ * rough: 0 a clean limbus; up to 1 softer, ragged, with vessels up to it, and a poorer camera. other: 0, or what to draw instead of an eye
+ * (other.h). Otherwise as drawn_make. */
+struct drawn_view { float radius, x, y, turn, rough; bool mirrored; int other; bool training; };  // limbus's larger semi-axis and centre, px; radians
 struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, int width, int height);
 void drawn_free(struct drawn *drawn);
 

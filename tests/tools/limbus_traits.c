@@ -5,7 +5,7 @@
  *     limbus_traits OUT.csv synthetic STEP        every STEP-th of the grid of tests/lib/scenes/synth_eye.h
  *     limbus_traits OUT.csv captures              the rendered captures with truth
  *
- * Columns: kind, number, guide, error over the semi-axis (9: there is no eye), traits.
+ * Columns: kind, number, guide, error over the semi-axis, the same where the limbus is seen alone (9: there is no eye), traits.
  */
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,33 @@ static double apart(const struct ellipse *e, const struct ellipse *truth)
 	return fmax(hypot(e->cx - truth->cx, e->cy - truth->cy), fmax(fabs(e->a - truth->a), fabs(e->b - truth->b))) / truth->a;
 }
 
-static void note(FILE *csv, const char *kind, long number, const struct photo *photo, int n, const struct ellipse truth[])
+/* Which of the places of a limbus a photograph shows. */
+enum { PLACES = 180 };
+struct seen { struct ellipse limbus; bool at[PLACES]; };
+
+/* Largest distance of the places that are seen from the ellipse e, over the semi-axis; NAN: none is. */
+static double astray(const struct ellipse *e, const struct seen *truth)
+{
+	double worst = NAN;
+	for (int i = 0; i < PLACES; i++) {
+		double p[2], normal[2], t;
+		if (!truth->at[i])
+			continue;
+		ellipse_point(p, normal, &truth->limbus, 2 * M_PI * i / PLACES);
+		worst = fmax(worst, fabs(ellipse_distance(&t, e, p)) / truth->limbus.a);
+	}
+	return worst;
+}
+
+static struct seen all_of(const struct ellipse *limbus)
+{
+	struct seen s = { .limbus = *limbus };
+	for (int i = 0; i < PLACES; i++)
+		s.at[i] = true;
+	return s;
+}
+
+static void note(FILE *csv, const char *kind, long number, const struct photo *photo, int n, const struct seen truth[])
 {
 	struct err err = { 0 };
 	struct pyramid pyramid = pyramid_make(photo);
@@ -38,10 +64,15 @@ static void note(FILE *csv, const char *kind, long number, const struct photo *p
 		exit(1);
 	}
 	for (int i = 0; i < t->n; i++) {
-		double error = NO_EYE;
-		for (int k = 0; k < n; k++)
-			error = fmin(error, apart(&t->trial[i].e, &truth[k]));
-		fprintf(csv, "%s,%ld,%d,%.5f", kind, number, (int)t->trial[i].guide, error);
+		double error = NO_EYE, line = NO_EYE;
+		for (int k = 0; k < n; k++) {
+			const double here = apart(&t->trial[i].e, &truth[k].limbus);
+			if (here < error) {
+				error = here;
+				line = fmin(astray(&t->trial[i].e, &truth[k]), NO_EYE);
+			}
+		}
+		fprintf(csv, "%s,%ld,%d,%.5f,%.5f", kind, number, (int)t->trial[i].guide, error, line);
 		for (int k = 0; k < ODDS_TRAITS; k++)
 			fprintf(csv, ",%.5f", t->trial[i].x[k]);
 		fputc('\n', csv);
@@ -50,27 +81,43 @@ static void note(FILE *csv, const char *kind, long number, const struct photo *p
 	pyramid_free(&pyramid);
 }
 
-/* 300 to 900 px long, the limbus 24 px to two fifths of the height. */
+static int label_at(const struct drawn *d, const struct ellipse *limbus, double t, double scale)
+{
+	struct ellipse e = *limbus;
+	double p[2], normal[2];
+	e.a *= scale;
+	e.b *= scale;
+	ellipse_point(p, normal, &e, t);
+	return p[0] < 0 || p[1] < 0 || p[0] >= d->width || p[1] >= d->height ? -1 : d->label[(long)p[1] * d->width + (long)p[0]];
+}
+
+static struct seen seen_of(const struct drawn *d, const float l[5])
+{
+	struct seen s = { .limbus = { l[0], l[1], l[2], l[3], l[4] } };
+	for (int i = 0; i < PLACES; i++)
+		s.at[i] = label_at(d, &s.limbus, 2 * M_PI * i / PLACES, 0.97) == EVIDENCE_IRIS && label_at(d, &s.limbus, 2 * M_PI * i / PLACES, 1.03) == EVIDENCE_SCLERA;
+	return s;
+}
+
+/* 260 to 620 px long, the limbus 24 px to two fifths of the height. */
 static void drawn(FILE *csv, long number)
 {
 	struct rng rng = { (uint64_t)number * 77 + 5 };
-	const int width = (int)(300 * pow(3, rng_uniform(&rng))), height = (int)(width * rng_range(&rng, 0.6, 0.85));
+	const int width = (int)(260 * pow(2.4, rng_uniform(&rng))), height = (int)(width * rng_range(&rng, 0.6, 0.85));
 	const double r = exp(rng_range(&rng, log(24), log(0.42 * height)));
 	const int other = rng_below(&rng, 5) == 0 ? OTHER_BALL + rng_below(&rng, OTHER_FACE - OTHER_BALL) : OTHER_NONE;
 	const struct drawn_view view = { .radius = (float)r, .x = (float)rng_range(&rng, 1.05 * r, width - 1.05 * r),
-		.y = (float)rng_range(&rng, 1.05 * r, height - 1.05 * r), .mirrored = rng_below(&rng, 2), .other = other, .training = true,
+		.y = (float)rng_range(&rng, 1.05 * r, height - 1.05 * r), .mirrored = rng_below(&rng, 2), .other = other, .training = true, .rough = (float)fmax(rng_range(&rng, -0.5, 1), 0),
 		.turn = (float)(rng_below(&rng, 3) ? 0.2 * rng_normal(&rng) : rng_range(&rng, 0, 2 * M_PI)) };
 	struct drawn d = drawn_photograph((uint64_t)number, &view, width, height);
 	struct photo photo = { .width = width, .height = height, .bits = 8, .rgb = mem_array((size_t)width * (size_t)height * 3, sizeof *photo.rgb) };
-	struct ellipse truth[2];
+	struct seen truth[2];
 	int n = 0;
 	for (long i = 0; i < 3L * width * height; i++)
 		photo.rgb[i] = (uint16_t)(d.rgb[i] * 257);
-	for (int e = 0; e < d.n_eyes; e++) {
-		const float *l = d.eye[e].limbus;
+	for (int e = 0; e < d.n_eyes; e++)
 		if (d.eye[e].shown > 0.02F)
-			truth[n++] = (struct ellipse){ l[0], l[1], l[2], l[3], l[4] };
-	}
+			truth[n++] = seen_of(&d, d.eye[e].limbus);
 	note(csv, other ? "other" : "drawn", number, &photo, n, truth);
 	free(photo.rgb);
 	drawn_free(&d);
@@ -81,7 +128,7 @@ static void synthetic(FILE *csv, int number)
 	struct synth_eye eye = synth_eye_grid(number);
 	struct synth_truth truth;
 	struct photo photo = synth_eye_render(&eye, &truth);
-	note(csv, "synthetic", number, &photo, 1, &truth.limbus);
+	note(csv, "synthetic", number, &photo, 1, (struct seen[]){ all_of(&truth.limbus) });
 	photo_free(&photo);
 }
 
@@ -94,7 +141,7 @@ static void capture(FILE *csv, int number, const char *dir)
 		fprintf(stderr, "%s\n", err.msg);
 		exit(1);
 	}
-	note(csv, "capture", number, &photo, 1, &truth.limbus);
+	note(csv, "capture", number, &photo, 1, (struct seen[]){ all_of(&truth.limbus) });
 	photo_free(&photo);
 }
 

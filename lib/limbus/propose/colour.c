@@ -55,10 +55,24 @@ static void look(struct angle *out, const struct photo *photo, const struct elli
 	add_scatter(out->scatter, OUTER, ex, me);
 }
 
-void limbus_colour(double weight[3], const struct photo *photo, const struct ellipse *e)
+/* The lower quartile, over the whiter half, of the step along `weight` over the scatter along it. */
+static double poorest(const double weight[3], const struct angle angle[ANGLES], const double bright[ANGLES], double median, const double scatter[3][3])
+{
+	double step[ANGLES], noise = 0;
+	int n = 0;
+	for (int i = 0; i < ANGLES; i++)
+		if (bright[i] >= median)
+			step[n++] = weight[0] * angle[i].diff[0] + weight[1] * angle[i].diff[1] + weight[2] * angle[i].diff[2];
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++)
+			noise += weight[a] * scatter[a][b] * weight[b];
+	return stats_quantile(n, step, 0.25) / sqrt(noise);
+}
+
+double limbus_colour(double weight[3], const struct photo *photo, const struct ellipse *e)
 {
 	struct angle angle[ANGLES];
-	double bright[ANGLES], sorted[ANGLES], diff[3] = { 0 }, s[3][3] = { 0 };
+	double bright[ANGLES], sorted[ANGLES], diff[3] = { 0 }, s[3][3] = { 0 }, scatter[3][3];
 	int n = 0;
 	for (int i = 0; i < ANGLES; i++) {
 		look(&angle[i], photo, e, 2 * M_PI * i / ANGLES);
@@ -82,10 +96,14 @@ void limbus_colour(double weight[3], const struct photo *photo, const struct ell
 		weight[a] = diff[a];
 		s[a][a] += RIDGE * trace + n * NOISE * NOISE;
 	}
+	memcpy(scatter, s, sizeof s);
 	double step = 0;
 	if (chol_solve(3, 3, &s[0][0], weight))
 		for (int a = 0; a < 3; a++)
 			step += weight[a] * diff[a];
 	for (int a = 0; a < 3; a++)
 		weight[a] = step > 0 ? weight[a] / step : 1.0 / 3;
+	const double grey[3] = { 1.0 / 3, 1.0 / 3, 1.0 / 3 };
+	const double mine = poorest(weight, angle, bright, median, scatter), plain = poorest(grey, angle, bright, median, scatter);
+	return plain > 0 ? mine / plain : INFINITY;
 }
