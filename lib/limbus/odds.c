@@ -71,20 +71,26 @@ static double varies(const struct rim *rim, bool outside)
 	return n ? log(stats_mad(n, d, 0) / stats_median(n, jump) + EVEN) : log(EVEN);
 }
 
+double odds_sigma(const struct rim *rim)
+{
+	double sigma[ELLIPSE_N], worst = 0;
+	ellipse_sigma(sigma, &rim->e, rim->cov_q);
+	for (int i = 0; i < 4; i++)
+		worst = fmax(worst, sigma[i]);
+	return worst / rim->e.a;
+}
+
 void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct evidence *evidence,
                  const struct region_map *map, int width, int height)
 {
 	const struct ellipse *e = &rim->e;
 	const double s = BESIDE * e->a;
 	struct ellipse best = *e;
-	double sigma[ELLIPSE_N], worst = 0, worth = region_worth(map, e), top = region_fit(&best, map);
-	ellipse_sigma(sigma, e, rim->cov_q);
-	for (int i = 0; i < 4; i++)
-		worst = fmax(worst, sigma[i]);
+	double worth = region_worth(map, e), top = region_fit(&best, map);
 	x[ODDS_ONE] = 1;
 	x[ODDS_SCATTER] = rim->coverage > 0 ? log(rim->rms / e->a + FLOOR) : 0;
 	x[ODDS_COVERAGE] = rim->coverage;
-	x[ODDS_SIGMA] = log(worst / e->a + FLOOR);
+	x[ODDS_SIGMA] = log(odds_sigma(rim) + FLOOR);
 	x[ODDS_CONTRAST] = log(fmax(rim->contrast, 0.01));
 	x[ODDS_BLUR] = fmin(rim->width / e->a, 0.3);
 	x[ODDS_SCLERA_OUTSIDE] = beside(evidence, EVIDENCE_SCLERA, rim, s, rim->used);

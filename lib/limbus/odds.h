@@ -38,6 +38,9 @@ enum odds_trait {
 void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct evidence *evidence,
                  const struct region_map *map, int width, int height);
 
+/* The largest sigma of centre and semi-axes, semi-axes. */
+double odds_sigma(const struct rim *rim);
+
 /* A layer of hyperbolic tangents of sums of traits, and a sum of these. */
 enum { ODDS_UNITS = 6 };
 struct odds_weights {

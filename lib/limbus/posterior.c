@@ -3,7 +3,7 @@
 #include <math.h>
 
 static const double OTHER_EYE = 1;      // semi-axes between centres: no rival, but the other eye
-static const double NEAR = 0.06;        // semi-axes: what is farther apart is not the same, however little is seen
+static const double NEAR = 0.08;        // semi-axes: what is farther apart is not the same, however little is seen
 static const double MOVED = 0.5;        // chance of being off where the full measurement left its trial
 
 /* The largest difference of centre and semi-axes, px. */
@@ -12,25 +12,26 @@ static double apart(const struct ellipse *e, const struct ellipse *f)
 	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
 }
 
-static bool follows(const struct ellipse *e, const struct trial_line *line)
+static bool follows(const struct ellipse *e, const struct trial_line *line, double within)
 {
 	for (int i = 0; i < line->n; i++) {
 		double t;
-		if (fabs(ellipse_distance(&t, e, line->p[i])) > LIMBUS_RIGHT * e->a)
+		if (fabs(ellipse_distance(&t, e, line->p[i])) > within * e->a)
 			return false;
 	}
 	return true;
 }
 
-static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other)
+static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other, double sigma)
 {
+	const double within = limbus_right(sigma);
 	const double away = apart(e, f) / e->a;
-	return away < LIMBUS_RIGHT || (away < NEAR && line->n + other->n > 0 && follows(e, other) && follows(f, line));
+	return away < within || (away < NEAR && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
 }
 
 bool trial_same(const struct trial *a, const struct trial *b)
 {
-	return same(&a->e, &a->line, &b->e, &b->line);
+	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma));
 }
 
 static bool is_rival(const struct ellipse *e, const struct ellipse *best)
@@ -90,6 +91,6 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 				rim->cov_q[a][b] += chance[i] * (other[a] - q[a]) * (other[b] - q[b]);
 	}
 	const struct trial_line line = trial_line_of(rim);
-	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line))
+	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line, t->trial[p->best].sigma))
 		p->gross = fmax(p->gross, MOVED);
 }

@@ -70,6 +70,20 @@ double region_fit(struct ellipse *e, const struct region_map *map)
 	return ellipse_climb(e, 0.16 * r, 0.005 * r, 0.5, worth, map);
 }
 
+double region_shown(const struct ellipse *e, const struct evidence *evidence)
+{
+	enum { PLACES = 72 };
+	static const double BESIDE = 1.09;
+	const struct ellipse wider = { e->cx, e->cy, BESIDE * e->a, BESIDE * e->b, e->angle };
+	double sum = 0;
+	for (int i = 0; i < PLACES; i++) {
+		double p[2], normal[2];
+		ellipse_point(p, normal, &wider, 2 * M_PI * i / PLACES);
+		sum += evidence_at(evidence, EVIDENCE_SCLERA, p[0], p[1]);
+	}
+	return sum / PLACES;
+}
+
 struct grey region_sclera(const struct evidence *e)
 {
 	const long n = (long)e->width * e->height;

@@ -22,6 +22,9 @@ double region_worth(const struct region_map *map, const struct ellipse *e);
 /* The chance of sclera, or of what it mirrors, as an absolute tint of a rim. grey_free. */
 struct grey region_sclera(const struct evidence *evidence);
 
+/* Mean chance of sclera just outside of the ellipse: how much of it the evidence rests on. */
+double region_shown(const struct ellipse *e, const struct evidence *evidence);
+
 /* Climbs to the likeliest ellipse near e. Returns its worth. */
 double region_fit(struct ellipse *e, const struct region_map *map);
 

@@ -12,7 +12,7 @@
 #include "math/ellipse_fit.h"
 #include "math/stats.h"
 
-enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6 };
+enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, SMOOTH_FROM = 4, SMOOTH_TO = 8 };
 static const double LEAST_NOISE = 0.02;  // px: no step is placed better
 static const double SHARP_PX = 3;       // a step's sigma
 static const double COLOUR_GAIN = 1.2;    // of colour over brightness, from which colour measures sharp steps, too
@@ -90,7 +90,7 @@ static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS], cons
 
 /* Arcs that err together: 1 + 2 sum of the residuals' autocorrelation along the ring, up to its first zero
  * (the variance of a mean grows by that factor). Scales cov_q. */
-static void correlate(struct rim *rim, double irregularity)
+static void correlate(struct rim *rim, double irregularity, double straying)
 {
 	double d[ARCS], sum[MAX_LAG] = { 0 }, ss = 0;
 	int count[MAX_LAG] = { 0 }, n = 0;
@@ -117,9 +117,13 @@ static void correlate(struct rim *rim, double irregularity)
 	for (int a = 0; a < ELLIPSE_N; a++)
 		for (int b = 0; b < ELLIPSE_N; b++)
 			rim->cov_q[a][b] *= rim->correlation * n / (n - ELLIPSE_N);
+	/* What strays smoothly along the ring strays more slowly, too, as no residual of an ellipse shows: about as far, were it 1 / f noise. */
+	double smooth = 0;
+	for (int k = SMOOTH_FROM; k <= SMOOTH_TO; k++)
+		smooth += count[k] ? fmax(sum[k] / count[k], 0) / (SMOOTH_TO - SMOOTH_FROM + 1) : 0;
 	/* what moves a whole side moves centre and size; the shape less */
 	for (int a = 0; a < ELLIPSE_N; a++)
-		rim->cov_q[a][a] += pow(irregularity * rim->width * (a < 3 ? 1 : 0.4), 2);
+		rim->cov_q[a][a] += (pow(irregularity * rim->width, 2) + straying * smooth) * (a < 3 ? 1 : 0.16);
 }
 
 /* The ramp is foreshortened with the limbus and blurred by focus: its width varies slowly along the ring. */
@@ -273,7 +277,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 	}
 	if (ok) {
 		own_widths(rim, &grey, window_of(rim, &grey, conf), w, h);
-		correlate(rim, conf->irregularity);
+		correlate(rim, conf->irregularity, conf->straying);
 		rim_cover(rim, &grey, tint, conf->absolute, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);

@@ -59,8 +59,9 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 	struct ellipse_prior known = { .alike = ALIKE_ARCS };
 	if (trial->guide != GUIDE_WHITENESS_ALONE) {
 		ellipse_to_q(known.q, &trial->region);
+		const double wider = (1 + t->conf->region_hidden * (1 - region_shown(&trial->region, &trial->window->evidence))) * trial->region.a;
 		for (int i = 0; i < ELLIPSE_N; i++)
-			known.sigma[i] = (i < 3 ? t->conf->region_sigma : t->conf->region_shape_sigma) * trial->region.a;
+			known.sigma[i] = (i < 3 ? t->conf->region_sigma : t->conf->region_shape_sigma) * wider;
 		conf.known = &known;
 	}
 	conf.absolute = trial->guide == GUIDE_EVIDENCE;
@@ -115,6 +116,7 @@ static void try(struct trials *t, const struct trial *start)
 		trial->log_odds = odds_log(trial->x, &t->conf->odds);
 		trial->e = rim->e;
 		trial->line = trial_line_of(rim);
+		trial->sigma = odds_sigma(rim);
 		t->n++;
 	}
 	free(rim);

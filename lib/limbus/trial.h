@@ -28,6 +28,7 @@ struct trial {
 	struct ellipse region;     // the evidence's, where it is a prior
 	struct ellipse e;
 	struct trial_line line;
+	double sigma;              // the largest of centre and semi-axes, semi-axes
 	double log_odds;
 	double x[ODDS_TRAITS];
 };

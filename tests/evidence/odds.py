@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import torch
 
-UNITS, DECAY, STEPS, RIGHT, NEAR, FOLDS = 6, 8.0, 900, 0.02, 0.06, 5
+UNITS, DECAY, STEPS, RIGHT, MOST, NEAR, SIGMA, FOLDS = 6, 8.0, 900, 0.02, 0.05, 0.08, 3, 5
 
 
 def read(paths):
@@ -19,7 +19,8 @@ def read(paths):
     for path in paths:
         for row in csv.reader(open(path)):
             x.append([float(v) for v in row[5:]])
-            y.append(min(float(row[3]), float(row[4])) < RIGHT and float(row[3]) < NEAR)
+            sigma = np.exp(x[-1][SIGMA]) - 0.001
+            y.append(min(float(row[3]), float(row[4])) < min(max(RIGHT, 3 * sigma), MOST) and float(row[3]) < NEAR)
             key.append((path, row[0], row[1]))
     x = np.array(x)
     x[~np.isfinite(x)] = 0

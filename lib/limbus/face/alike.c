@@ -32,7 +32,7 @@ static void weights_of(double weight[TRIALS], const struct trials *t)
 		bool counts = true;
 		for (int k = 0; k < t->n && counts; k++) {
 			const struct trial *b = &t->trial[k];
-			counts = k == i || !(b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i)) || trial_apart(&a->e, &b->e) > LIMBUS_RIGHT;
+			counts = k == i || !(b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i)) || !trial_same(a, b);
 		}
 		weight[i] = counts ? exp(a->log_odds) : 0;
 	}
