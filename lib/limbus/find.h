@@ -28,17 +28,17 @@ struct limbus_conf {
 	struct face_conf face;
 	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
 	double region_hidden;  // how many times more where no sclera is beside it
-	double max_gross;      // chance of being more than 2 % off the limbus that is seen, beyond which a limbus is refused
+	double max_gross;      // chance of being more than 2 % off, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
 	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis
 	double hint_sigma, drawn_sigma;  // of what a person says: share of the semi-axis
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
 };
 
-#define LIMBUS_RIGHT 0.02  // semi-axes: an exact answer that is farther off the limbus where that is seen is a gross error
+#define LIMBUS_RIGHT 0.02  // semi-axes: an answer that is farther off is a gross error
 
-/* How far an answer may be off, semi-axes, that says itself how far: three of its sigmas, at least LIMBUS_RIGHT and at most 0.05. */
-static inline double limbus_right(double sigma)
+/* How far two answers may be apart, semi-axes, that say the same: three of their sigmas, at least LIMBUS_RIGHT and at most 0.05. */
+static inline double limbus_alike(double sigma)
 {
 	return fmin(fmax(LIMBUS_RIGHT, 3 * sigma), 0.05);
 }

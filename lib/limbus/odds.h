@@ -1,4 +1,4 @@
-/* odds: how likely a measured ellipse follows the limbus, where that is seen, to 2 % of its radius: one number from the evidence of the pixels in and round it, the
+/* odds: how likely a measured ellipse is the limbus to 2 % of its radius: one number from the evidence of the pixels in and round it, the
  * steps along it and the pupil in it. A regression on drawn and synthetic eyes
  * (tests/evidence/odds.py); its weights are keys of config/limbus.conf.
  */

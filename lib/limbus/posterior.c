@@ -24,7 +24,7 @@ static bool follows(const struct ellipse *e, const struct trial_line *line, doub
 
 static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other, double sigma)
 {
-	const double within = limbus_right(sigma);
+	const double within = limbus_alike(sigma);
 	const double away = apart(e, f) / e->a;
 	return away < within || (away < NEAR && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
 }

@@ -4,11 +4,11 @@
 #define LIMBUS_POSTERIOR_H
 #include "limbus/trial.h"
 
-/* Weighs the trials against each other and against "none of them": those within LIMBUS_RIGHT of a likelier one say the same, each other
+/* Weighs the trials against each other and against "none of them": those that are a likelier one's trial_same say the same, each other
  * one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
 void posterior_of(struct posterior *posterior, const struct trials *trials);
 
-/* Whether two trials are within LIMBUS_RIGHT of each other where either was seen: what lids hide may differ, and has its sigma. */
+/* Whether two trials are within limbus_alike of each other where either was seen: what lids hide may differ, and has its sigma. */
 bool trial_same(const struct trial *a, const struct trial *b);
 
 /* After the likeliest one was measured in full: adds to its covariance (of q, px) what the rivals say, each by its chance, and to gross

@@ -12,7 +12,7 @@ struct limbus_record {
 	int width, height;             // px
 	struct pose_view view;         // camera as used
 	double coverage, share_used, rms, blur, contrast;
-	double gross;                  // chance of being more than LIMBUS_RIGHT off where it is seen; 1 where nothing was found
+	double gross;                  // chance of being more than LIMBUS_RIGHT off; 1 where nothing was found
 	bool has_guess, has_rival;     // the likeliest ellipse, refused or not, and its best rival
 	struct ellipse guess, rival;
 	double point[ARCS][2];         // edge points, px

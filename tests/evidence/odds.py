@@ -3,7 +3,7 @@
 
     odds.py TRAITS.csv [...]      prints the lines for config/limbus.conf, and how the odds do on pictures held out
 
-A layer of six hyperbolic tangents, cross entropy, weight decay, Adam; five folds by picture for the figures. Needs numpy and torch.
+A layer of six hyperbolic tangents, cross entropy (synthetic eyes and captures, which are few, count RARE times), weight decay, Adam; five folds by picture for the figures. Needs numpy and torch.
 """
 import csv
 import sys
@@ -11,33 +11,33 @@ import sys
 import numpy as np
 import torch
 
-UNITS, DECAY, STEPS, RIGHT, MOST, NEAR, SIGMA, FOLDS = 6, 8.0, 900, 0.02, 0.05, 0.08, 3, 5
+UNITS, RARE, DECAY, STEPS, RIGHT, FOLDS = 6, 15, 8.0, 2500, 0.02, 5
 
 
 def read(paths):
-    x, y, key = [], [], []
+    x, y, key, w = [], [], [], []
     for path in paths:
         for row in csv.reader(open(path)):
             x.append([float(v) for v in row[5:]])
-            sigma = np.exp(x[-1][SIGMA]) - 0.001
-            y.append(min(float(row[3]), float(row[4])) < min(max(RIGHT, 3 * sigma), MOST) and float(row[3]) < NEAR)
+            y.append(float(row[3]) < RIGHT)
             key.append((path, row[0], row[1]))
+            w.append(1 if row[0] in ('drawn', 'other') else RARE)
     x = np.array(x)
     x[~np.isfinite(x)] = 0
-    return x, np.array(y, float), key
+    return x, np.array(y, float), key, np.array(w, float)
 
 
-def train(z, y, seed):
+def train(z, y, w, seed):
     torch.manual_seed(seed)
     a = (torch.randn(UNITS, z.shape[1]) * 0.3).requires_grad_()
     v = (torch.randn(UNITS) * 0.3).requires_grad_()
     c = torch.zeros(1, requires_grad=True)
     adam = torch.optim.Adam([a, v, c], lr=0.02)
-    z, y = torch.tensor(z, dtype=torch.float32), torch.tensor(y, dtype=torch.float32)
+    z, y, w = (torch.tensor(v, dtype=torch.float32) for v in (z, y, w))
     for _ in range(STEPS):
         adam.zero_grad()
         p = torch.tanh(z @ a.T) @ v + c
-        loss = torch.nn.functional.binary_cross_entropy_with_logits(p, y) + DECAY * ((a ** 2).sum() + (v ** 2).sum()) / len(y)
+        loss = torch.nn.functional.binary_cross_entropy_with_logits(p, y, w) + DECAY * ((a ** 2).sum() + (v ** 2).sum()) / len(y)
         loss.backward()
         adam.step()
     return a.detach().numpy().astype(float), v.detach().numpy().astype(float), float(c)
@@ -48,7 +48,7 @@ def odds(z, weights):
     return np.tanh(z @ a.T) @ v + c
 
 
-x, y, key = read(sys.argv[1:])
+x, y, key, w = read(sys.argv[1:])
 mean, spread = x.mean(0), x.std(0)
 mean[0], spread[spread == 0] = 0, 1
 spread[0] = 1
@@ -58,7 +58,7 @@ fold = {k: i for k, i in zip(pictures, np.random.RandomState(0).randint(FOLDS, s
 at = np.array([fold[k] for k in key])
 held = np.zeros(len(y))
 for f in range(FOLDS):
-    held[at == f] = odds(z[at == f], train(z[at != f], y[at != f], f))
+    held[at == f] = odds(z[at == f], train(z[at != f], y[at != f], w[at != f], f))
 best = {}
 for i, k in enumerate(key):
     if k not in best or held[i] > held[best[k]]:
@@ -68,7 +68,7 @@ for least in (0, 1, 2.2, 3, 4):
     on = best[held[best] > least]
     print('; held out: of %d pictures %d with log odds above %.1f, %d wrong, %.1f expected'
           % (len(best), len(on), least, (1 - y[on]).sum(), (1 / (1 + np.exp(held[on]))).sum()))
-a, v, c = train(z, y, 0)
+a, v, c = train(z, y, w, 0)
 a /= spread
 a[:, 0] -= a[:, 1:] @ mean[1:]
 for i in range(UNITS):
