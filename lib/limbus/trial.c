@@ -8,6 +8,7 @@
 
 enum { REGIONS_TRIED = 3, VOTES_TRIED = 4, ROUNDS_TRIED = 2, COARSE_PX = 110, COARSE_PUPIL_PX = 70, COARSE_PASSES = 4, ALIKE_ARCS = 12 };
 static const double SAME_PLACE = 0.5, SAME_SIZE = 0.3;  // of the radius, and of its logarithm: a window serves
+static const double COARSE_STRAYING = 6;                // a rough measure strays more than its residuals say
 static const double ALIKE = 0.06;                       // of the radius: one ellipse, for a start
 static const double AGAIN = 0.2;                        // logarithm of the size: the window is made anew for the ellipse
 static const double OTHER_SCALE[] = { 1.6, 0.62 };      // a collarette for a limbus, a limbus for a face
@@ -68,6 +69,7 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 	if (coarse) {
 		conf.max_axis = COARSE_PX;
 		conf.passes = COARSE_PASSES;
+		conf.straying *= COARSE_STRAYING;
 	}
 	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : &t->pyramid->tint;
 	if (!rim_fit(rim, t->photo, tint, &trial->e, &conf))

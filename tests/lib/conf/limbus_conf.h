@@ -9,7 +9,7 @@
 
 static struct limbus_conf limbus_defaults = {
 	.seek = { .min_radius = 0.015, .max_radius = 0.52, .contrast = 0.15, .candidates = 8 },
-	.rim = { .search = 0.08, .max_rms = 0.15, .min_contrast = 0.15, .irregularity = 0.06, .straying = 6, .max_axis = 900, .passes = 6 },
+	.rim = { .search = 0.08, .max_rms = 0.15, .min_contrast = 0.15, .irregularity = 0.06, .straying = 1, .max_axis = 900, .passes = 6 },
 	.pupil = { .min_contrast = 0.25, .min_coverage = 0.4, .clear_coverage = 0.7, .clear_used = 0.45, .largest = 0.85 },
 	.face = { .distance = { 7.5, 13.5 }, .roll = 60 * M_PI / 180, .size_sigma = 0.03, .score = 0.3, .sure = 0.6, .pupil_sigma = 0.06 },
 	.odds = { { { 1.633, -0.01399, -0.9948, 0.1812, -0.1374, -2.549, -0.3532, 0.3551, 2.679, 2.444, 0.1207, -8.102, -0.2456, -0.3694, 0.0727, -0.459, 5.773, -2.275, -0.9205, 13.79, 0.06319, 0.004317 },
