@@ -21,8 +21,12 @@ int main(int argc, char **argv)
 	stage_start(&stage, "freckles", "find freckles and paint them over", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
 	if (eye_check(&eye, &err) && capture_load(&capture, &stage, &eye_of, &err))
-		for (int i = 0; i < capture.n_eyes; i++)
-			freckles_eye(&stage, &capture.eyes[i], &eye, &c, &err);
+		for (int i = 0; i < capture.n_eyes; i++) {
+			if (capture.n_eyes < 2 || file_exists(stage_path(&stage, "%s/texture.exr", capture.eyes[i].iris)))
+				freckles_eye(&stage, &capture.eyes[i], &eye, &c, &err);
+			else
+				stage_skipped(&stage, "%s: no texture of its iris: none of its photographs could be used", capture.eyes[i].side);
+		}
 	capture_free(&capture);
 	return stage_end(&stage, &err);
 }

@@ -176,15 +176,31 @@ static bool make(struct work *w, const char *exr, const char *json, struct err *
 	return ok;
 }
 
+/* Whether a photograph of another eye has a usable limbus: then this eye is left out, and that one made. One that has a texture already is
+ * not left out in silence with what its photographs no longer show. */
+static bool others_usable(const struct run *run, int index)
+{
+	for (int i = 0; i < run->capture->n_photos; i++) {
+		const struct capture_photo *photo = &run->capture->photos[i];
+		struct fit fit;
+		struct err err = { 0 };
+		if (photo->eye != index && fit_load(&fit, stage_path(run->stage, "%s", photo->fit), &err) && fit.ok)
+			return true;
+	}
+	return false;
+}
+
 bool unrefract_eye(const struct run *run, int index, struct err *err)
 {
 	struct work w = { .run = run, .eye = &run->capture->eyes[index] };
 	gather(&w, index);
 	char *exr = mem_printf("%s/texture.exr", w.eye->iris), *json = mem_printf("%s/texture.json", w.eye->iris);
-	bool ok = w.n ? make(&w, exr, json, err)
-	              : err_set(err, "no photograph of the %s%s has a usable limbus: see work/limbus, or say where the eye is "
-	                             "with photo.NAME.hint_px",
-	                        w.eye->side, strcmp(w.eye->side, "eye") ? " eye" : "");
+	bool ok = w.n ? make(&w, exr, json, err) : !file_exists(stage_path(run->stage, "%s", exr)) && others_usable(run, index);
+	if (!w.n && ok)
+		stage_skipped(run->stage, "%s: none of its photographs has a usable limbus: see work/limbus", w.eye->iris);
+	else if (!w.n)
+		err_set(err, "no photograph of the %s%s has a usable limbus: see work/limbus, or say where the eye is with photo.NAME.hint_px",
+		        w.eye->side, strcmp(w.eye->side, "eye") ? " eye" : "");
 	for (int i = 0; i < w.n; i++)
 		unrefract_view_free(&w.views[i]);
 	photo_free(&w.kept);

@@ -14,8 +14,8 @@ struct run {
 	bool write_map;
 };
 
-/* Makes texture.exr and texture.json of eye `index` of the capture, unless they are up to date. False, err set, when no photograph
- * of it can be used or a file cannot be written. */
+/* Makes texture.exr and texture.json of eye `index` of the capture, unless they are up to date. An eye without a usable photograph is left
+ * out where another has one. False, err set, when none has or a file cannot be written. */
 bool unrefract_eye(const struct run *run, int index, struct err *err);
 
 /* Writes IRIS/NAME.map.exr: the iris-plane point that each photo pixel sees (lib/README.md). */
