@@ -35,7 +35,7 @@ class Controls extends Address {
 
 	/* Only what changes the view that is shown. */
 	show_controls() {
-		const shown = { lids: this.mode === "face", gaze: !this.beside };
+		const shown = { lids: this.mode === "face", gaze: !this.beside, alone: !this.beside };
 		for (const e of document.querySelectorAll("#controls [data-of]"))
 			e.hidden = !shown[e.dataset.of];
 		for (const set of document.querySelectorAll("#controls fieldset"))
@@ -107,8 +107,8 @@ class Controls extends Address {
 		track.append(tick, input);
 		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: c.why ? `${origin}, ${c.why}` : origin });
 		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, fitted);
-		if (c.lids || c.key === "field")
-			row.dataset.of = c.lids ? "lids" : "gaze";
+		if (c.lids || c.alone || c.key === "field")
+			row.dataset.of = c.lids ? "lids" : c.alone ? "alone" : "gaze";
 		row.title = origin[0].toUpperCase() + origin.slice(1);
 		c.update = () => {
 			const v = this.values[c.key];

@@ -61,8 +61,8 @@ function sliders(eye) {
 			{ key: "light_pitch", label: "Turned up and down", lo: -80, hi: 80, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },
 			{ key: "light_gain", label: "Strength", lo: 0.1, hi: 3, power: 2, value: 1, show: share, from: eye.photo ? "fitted" : "chosen",
 				why: eye.photo ? "100 % is the photograph's own exposure; its error goes into the pigments'" : "" },
-			{ key: "exposure", label: "Exposure of the picture", lo: -4, hi: 4, value: 0, show: v => `${v > 0 ? "+" : ""}${v.toFixed(1)} stops`, from: "chosen", why: "0 is as the photograph is exposed" },
-			{ key: "tone", label: "Highlights as on film", lo: 0, hi: 1, value: 0, show: share, from: "chosen", why: "0 % cuts them off, as the measured comparison does" },
+			{ key: "exposure", alone: true, label: "Exposure of the picture", lo: -4, hi: 4, value: 0, show: v => `${v > 0 ? "+" : ""}${v.toFixed(1)} stops`, from: "chosen", why: "0 is as the photograph is exposed" },
+			{ key: "tone", alone: true, label: "Highlights as on film", lo: 0, hi: 1, value: 0, show: share, from: "chosen", why: "0 % cuts them off, as the measured comparison does" },
 		]],
 	];
 }
