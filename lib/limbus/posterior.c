@@ -34,6 +34,18 @@ bool trial_same(const struct trial *a, const struct trial *b)
 	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma));
 }
 
+bool trial_repeats(const struct trials *t, int i)
+{
+	const struct trial *a = &t->trial[i];
+	for (int k = 0; k < t->n; k++) {
+		const struct trial *b = &t->trial[k];
+		const bool likelier = b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i);
+		if (k != i && likelier && trial_same(a, b))
+			return true;
+	}
+	return false;
+}
+
 static bool is_rival(const struct ellipse *e, const struct ellipse *best)
 {
 	return hypot(e->cx - best->cx, e->cy - best->cy) < OTHER_EYE * fmax(e->a, best->a);
@@ -45,12 +57,7 @@ static void chances(double chance[TRIALS], const struct trials *t, int best)
 	double sum = 1;
 	for (int i = 0; i < t->n; i++) {
 		const struct trial *a = &t->trial[i];
-		bool counts = i == best || is_rival(&a->e, &t->trial[best].e);
-		for (int k = 0; k < t->n && counts; k++) {
-			const struct trial *b = &t->trial[k];
-			const bool likelier = b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i);
-			counts = k == i || !likelier || !trial_same(a, b);
-		}
+		const bool counts = (i == best || is_rival(&a->e, &t->trial[best].e)) && !trial_repeats(t, i);
 		chance[i] = counts ? exp(a->log_odds) : 0;
 		sum += chance[i];
 	}

@@ -10,6 +10,8 @@ void posterior_of(struct posterior *posterior, const struct trials *trials);
 
 /* Whether two trials are within limbus_alike of each other where either was seen: what lids hide may differ, and has its sigma. */
 bool trial_same(const struct trial *a, const struct trial *b);
+/* Whether trial i says the same as a likelier one. */
+bool trial_repeats(const struct trials *trials, int i);
 
 /* After the likeliest one was measured in full: adds to its covariance (of q, px) what the rivals say, each by its chance, and to gross
  * where the full measurement is another ellipse than the trial was. */

@@ -106,14 +106,14 @@ static struct region_map map_of(const struct evidence *e)
 	return m;
 }
 
-/* The pupil by the evidence of its pixels: its ellipse, and their mean in it. 0: there is none in the limbus. */
-static double told_by(struct ellipse *e, const struct evidence *evidence, const struct ellipse *limbus)
+/* Mean chance of pupil in an ellipse, and where its middle lies. */
+static double mean_in(double middle[2], const struct evidence *evidence, const struct ellipse *e)
 {
 	double mass = 0, x = 0, y = 0, in = 0;
 	for (int k = 0; k < DISC_RINGS; k++)
 		for (int i = 0; i < DISC_ANGLES; i++) {
 			double p[2], n[2];
-			struct ellipse f = *limbus;
+			struct ellipse f = *e;
 			const double share = (k + 0.5) / DISC_RINGS;
 			f.a *= share;
 			f.b *= share;
@@ -124,25 +124,23 @@ static double told_by(struct ellipse *e, const struct evidence *evidence, const 
 			y += w * p[1];
 			in += share;
 		}
-	const double size = sqrt(mass / in);
+	middle[0] = x / mass;
+	middle[1] = y / mass;
+	return mass / in;
+}
+
+/* The pupil by the evidence of its pixels: its ellipse, and their mean in it. 0: there is none in the limbus. */
+static double told_by(struct ellipse *e, const struct evidence *evidence, const struct ellipse *limbus)
+{
+	double middle[2];
+	const double size = sqrt(mean_in(middle, evidence, limbus));
 	if (!(size > SMALLEST))
 		return 0;
-	*e = (struct ellipse){ x / mass, y / mass, size * limbus->a, size * limbus->b, limbus->angle };
+	*e = (struct ellipse){ middle[0], middle[1], size * limbus->a, size * limbus->b, limbus->angle };
 	struct region_map map = map_of(evidence);
 	region_fit(e, &map);
 	region_map_free(&map);
-	double sum = 0;
-	for (int k = 0; k < DISC_RINGS; k++)
-		for (int i = 0; i < DISC_ANGLES; i++) {
-			double p[2], n[2];
-			struct ellipse f = *e;
-			const double share = (k + 0.5) / DISC_RINGS;
-			f.a *= share;
-			f.b *= share;
-			ellipse_point(p, n, &f, 2 * M_PI * i / DISC_ANGLES);
-			sum += share * evidence_at(evidence, EVIDENCE_PUPIL, p[0], p[1]);
-		}
-	return sum / in;
+	return mean_in(middle, evidence, e);
 }
 
 /* Measures the margin near an ellipse that is known before to `sigma` px. */

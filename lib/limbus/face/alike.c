@@ -27,15 +27,8 @@ static double ratio_of(double x, const struct face_conf *conf)
 /* Odds of each trial; 0 of those that say the same as a likelier one. */
 static void weights_of(double weight[TRIALS], const struct trials *t)
 {
-	for (int i = 0; i < t->n; i++) {
-		const struct trial *a = &t->trial[i];
-		bool counts = true;
-		for (int k = 0; k < t->n && counts; k++) {
-			const struct trial *b = &t->trial[k];
-			counts = k == i || !(b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i)) || !trial_same(a, b);
-		}
-		weight[i] = counts ? exp(a->log_odds) : 0;
-	}
+	for (int i = 0; i < t->n; i++)
+		weight[i] = trial_repeats(t, i) ? 0 : exp(t->trial[i].log_odds);
 }
 
 /* What the other eye's trials say of an ellipse. */
