@@ -94,7 +94,7 @@ static bool number_of(double *out, const char *field)
 	if (!*field)
 		return true;
 	*out = strtod(field, &end);
-	return !*end && !isinf(*out);
+	return !*end && isfinite(*out);
 }
 
 static bool read_row(struct csv_table *table, struct text *t, double *row, struct err *err)
@@ -107,7 +107,7 @@ static bool read_row(struct csv_table *table, struct text *t, double *row, struc
 		if (n == table->n_columns)
 			return err_set(err, "%s:%d: more fields than the head's %d", t->path, t->line, table->n_columns);
 		if (!number_of(&row[n], field))
-			return err_set(err, "%s:%d: %s = %.40s: must be a finite number", t->path, t->line, table->names[n], field);
+			return err_set(err, "%s:%d: %s = %.40s: must be a finite number, or nothing where it was not measured", t->path, t->line, table->names[n], field);
 	}
 	if (n < table->n_columns)
 		return err_set(err, "%s:%d: %d fields, must be %d as in the head", t->path, t->line, n, table->n_columns);
@@ -219,4 +219,14 @@ int csv_need(const struct csv_table *table, const char *name, const char *path, 
 	if (c < 0)
 		err_set(err, "%s: no column %s", path, name);
 	return c;
+}
+
+bool csv_in_range(const struct csv_table *table, int column, double low, double high, const char *path, struct err *err)
+{
+	for (long r = 0; r < table->n_rows && column >= 0; r++) {
+		const double x = csv_at(table, r, column);
+		if (x < low || x > high)
+			return err_set(err, "%s:%d: %s = %g: must be in [%g, %g]", path, table->line[r], table->names[column], x, low, high);
+	}
+	return true;
 }

@@ -1,7 +1,7 @@
 /* csv: tables of numbers with named columns. An empty field is NAN.
  * Written: one head line, numbers with %.10g, commas, no comment.
  * Read: fields separated by comma, semicolon or tab (whichever the head line has); CRLF, a byte-order mark, quotes round fields,
- * empty lines and comment lines (#) are accepted. A field that is no number, a row of another length than the head, and a column
+ * empty lines and comment lines (#) are accepted. A field that is no number ("nan" is none), a row of another length than the head, and a column
  * named twice are errors that name file and line.
  */
 #ifndef BASE_CSV_H
@@ -34,6 +34,9 @@ int csv_column(const struct csv_table *table, const char *name);
 
 /* As csv_column; where there is none, err names path and column. */
 int csv_need(const struct csv_table *table, const char *name, const char *path, struct err *err);
+
+/* Whether every number of that column, which may be -1, is in [low, high] or missing; if not, err: "path:line: name = number: must ...". */
+bool csv_in_range(const struct csv_table *table, int column, double low, double high, const char *path, struct err *err);
 
 /* The number in that row and column; NAN for column -1. */
 static inline double csv_at(const struct csv_table *table, long row, int column)

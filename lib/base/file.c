@@ -30,10 +30,13 @@ static int open_regular(const char *path, struct stat *st, struct err *err)
 	return fd;
 }
 
-bool file_opens(const char *path, struct err *err)
+bool file_opens(const char *path, uint64_t limit, struct err *err)
 {
 	struct stat st;
-	return stat(path, &st) || S_ISREG(st.st_mode) || err_set(err, "%s: %s", path, S_ISDIR(st.st_mode) ? "is a folder, must be a file" : "is not a regular file");
+	if (stat(path, &st))
+		return true;
+	return (S_ISREG(st.st_mode) || err_set(err, "%s: %s", path, S_ISDIR(st.st_mode) ? "is a folder, must be a file" : "is not a regular file"))
+	       && ((uint64_t)st.st_size <= limit || err_set(err, "%s: %lld bytes, must be <= %llu", path, (long long)st.st_size, (unsigned long long)limit));
 }
 
 bool file_read(char **data, size_t *size, const char *path, size_t limit, struct err *err)

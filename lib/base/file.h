@@ -23,8 +23,9 @@ bool file_mkdirs(const char *dir, struct err *err);
 
 bool file_exists(const char *path);
 
-/* Whether a library may open it by its path: a regular file, or nothing, which the library reports. A pipe would hold it for ever. False, err set, otherwise. */
-bool file_opens(const char *path, struct err *err);
+/* Whether a library may open it by its path: a regular file of at most `limit` bytes, or nothing, which the library reports. A pipe
+ * would hold it for ever. False, err set, otherwise. */
+bool file_opens(const char *path, uint64_t limit, struct err *err);
 
 /* Removes a file; a missing one is no error. */
 bool file_remove(const char *path, struct err *err);

@@ -11,6 +11,8 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 
+static const uint64_t FILE_MOST = (uint64_t)4 << 30;  // bytes
+
 static bool read(struct image *out, Imf::InputFile &file, const char *path, long limit_px, struct err *err)
 {
 	static const char *const names[] = { "R", "G", "B" };
@@ -35,7 +37,7 @@ static bool read(struct image *out, Imf::InputFile &file, const char *path, long
 bool imf_read_rgb(struct image *out, const char *path, long limit_px, struct err *err)
 {
 	std::memset(out, 0, sizeof *out);
-	if (!file_opens(path, err))
+	if (!file_opens(path, FILE_MOST, err))
 		return false;
 	try {
 		Imf::InputFile file(path, 1);

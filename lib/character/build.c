@@ -286,6 +286,12 @@ bool character_build(struct mesh *mesh, struct look *look, const struct ai_scene
 {
 	*mesh = (struct mesh){ 0 };
 	*look = (struct look){ 0 };
+	// First of all: a place that is no number is not even the same as itself, and would be joined for ever.
+	for (int i = 0; i < scene->n_parts; i++) {
+		const struct mesh places = { .n_vertices = scene->part[i].n, .vertices = scene->part[i].x };
+		if (!mesh_check(&places, err))
+			return err_wrap(err, "%s", scene->part[i].name);
+	}
 	struct given rows = given_of(given, n_given);
 	count(look, mesh, scene);
 	if (n_given) {

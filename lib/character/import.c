@@ -167,6 +167,11 @@ bool character_import(struct mesh *mesh, struct look *look, const char *folder, 
 		                         .result = (size_t)(limits->mib * 1048576 / 2), .seconds = limits->seconds };
 	*mesh = (struct mesh){ 0 };
 	*look = (struct look){ 0 };
+	char *path = mem_printf("%s/%s", folder, name);
+	const bool opens = file_opens(path, FILE_MOST, err);
+	free(path);
+	if (!opens)
+		return false;
 	bool ok = apart_run(&data, &size, &apart, &why) && look_take(look, mesh, data, size, &why);
 	free(data);
 	ok = ok && mesh_check(mesh, &why) && make_sound(mesh, look, &why);

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 
 enum { EXR_MAX_CHANNELS = 16 };
+static const uint64_t FILE_MOST = (uint64_t)4 << 30;
 
 /* The file is built in memory and written in one atomic step. */
 struct sink {
@@ -157,7 +158,7 @@ static bool open_part(exr_context_t *file, const char *path, struct err *err)
 	init.error_handler_fn = quiet;
 	init.max_image_width = init.max_image_height = 1 << 16;
 	*file = 0;
-	if (!file_opens(path, err))
+	if (!file_opens(path, FILE_MOST, err))
 		return false;
 	if (exr_start_read(file, path, &init))
 		return err_set(err, "%s: cannot be read as OpenEXR", path);

@@ -6,10 +6,12 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/npy/npy.h"
+#include "model/gaze_table.h"
 #include "model/model.h"
 
 /* The matrices: one .npy each; its shape follows from the model's counts. */
 enum { M_L0, M_K, M_L, M_U0, M_J, M_M, M_L0_S, M_L_S, M_U0_S, M_M_S, M_K_S, M_J_S, M_W_S, M_RMS, M_REACH_L, M_REACH_S, M_VERTICES, MATRICES };
+static const double NUMBER_MOST = 1e12;  // no coefficient of pixels, degrees and shares comes near
 enum { MODEL_NUMBERS = 1 << 26 };  // most numbers in a matrix; checked before any of it is read
 
 const char *const skin_model_files[] = { "model.json",         "model_l0.npy",         "model_K.npy",
@@ -49,12 +51,10 @@ static void matrices(struct matrix out[MATRICES], struct skin_model *m)
 
 static json_t *inputs_json(const struct skin_model *m)
 {
-	static const char *const eye[SKIN_EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
-		                                              "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
 	json_t *inputs = json_array();
 	for (int i = 0; i < m->n_inputs; i++) {
 		json_t *in = json_object();
-		json_object_set_new(in, "name", json_string(i < SKIN_EYE_INPUTS ? eye[i] : m->au_names[i - SKIN_EYE_INPUTS]));
+		json_object_set_new(in, "name", json_string(i < SKIN_EYE_INPUTS ? gaze_columns[i] : m->au_names[i - SKIN_EYE_INPUTS]));
 		json_object_set_new(in, "low", json_number(m->low[i]));
 		json_object_set_new(in, "high", json_number(m->high[i]));
 		json_object_set_new(in, "mean", json_number(m->mean[i]));
@@ -200,7 +200,8 @@ static bool load_matrix(struct skin_model *m, int i, const struct matrix *x, con
 {
 	struct npy array;
 	bool ok = npy_read(&array, path, NPY_LIMIT, err)
-	          && npy_expect(&array, path, x->columns ? 2 : 1, (long[]){ x->rows, x->columns }, err);
+	          && npy_expect(&array, path, x->columns ? 2 : 1, (long[]){ x->rows, x->columns }, err)
+	          && npy_in_range(&array, NUMBER_MOST, i != M_K && i != M_L && i != M_J && i != M_M, 0, path, err);
 	double *data = ok ? npy_doubles(&array) : 0;
 	for (long k = 0; ok && i == M_VERTICES && k < x->rows; k++) {
 		ok = data[k] >= 0 && data[k] <= INT32_MAX ? true : err_set(err, "%s: a row below 0", path);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "model/gaze_table.h"
 
 enum { MOST_FRAMES = 1 << 22 };
 
@@ -252,8 +253,6 @@ bool animate_run(struct animation *out, const struct skin_model *m, const struct
 
 bool animation_save(const char *path, const struct animation *a, struct err *err)
 {
-	static const char *const eyes[SKIN_EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
-		                                               "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
 	static const char *const tail[] = { "a4", "a5", "a9", "a10", "closure", "head_horizontal_deg", "head_vertical_deg" };
 	static const int apertures[4] = { 3, 4, 8, 9 };
 	int n_au = a->n_inputs - SKIN_EYE_INPUTS, n = 2 + a->n_inputs + COUNT(tail);
@@ -265,7 +264,7 @@ bool animation_save(const char *path, const struct animation *a, struct err *err
 	for (int i = 0; i < n_au; i++)
 		snprintf(au[i], sizeof au[i], "au%d", i + 1);
 	for (int i = 0; i < a->n_inputs; i++)
-		names[2 + i] = i < SKIN_EYE_INPUTS ? eyes[i] : au[i - SKIN_EYE_INPUTS];
+		names[2 + i] = i < SKIN_EYE_INPUTS ? gaze_columns[i] : au[i - SKIN_EYE_INPUTS];
 	for (int i = 0; i < COUNT(tail); i++)
 		names[2 + a->n_inputs + i] = tail[i];
 	struct csv_table table = csv_table_new(n, names);

@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "model/gaze_table.h"
 #include "motion/saccade.h"
+
+enum { SCREEN_PX = 1000000 };  // no screen is that large
 
 static const struct {
 	const char *name;
@@ -126,18 +129,18 @@ static bool read_keys(struct script *s, const struct csv_table *table, const str
 static bool read_recorded(struct script *s, const struct csv_table *table, const struct skin_model *m, const char *path,
                           struct err *err)
 {
-	static const char *const names[SKIN_EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
-		                                                "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
+	if (!gaze_table_check(table, path, err))
+		return false;
 	s->g = mem_new((size_t)s->n * (size_t)m->n_inputs + 1, sizeof *s->g);
 	for (int i = 0; i < m->n_inputs; i++) {
 		char au[24];
 		snprintf(au, sizeof au, "au%d", i - SKIN_EYE_INPUTS + 1);
-		int c = csv_column(table, i < SKIN_EYE_INPUTS ? names[i] : au);
+		int c = csv_column(table, i < SKIN_EYE_INPUTS ? gaze_columns[i] : au);
 		bool angle = i < SKIN_EYE_INPUTS && i % 5 < 3;
 		for (long r = 0; r < s->n; r++) {
 			double v = csv_at(table, r, c);
 			if (angle && fabs(v) > 90)
-				return err_set(err, "%s:%d: %s = %g: must be in [-90, 90] degrees", path, table->line[r], names[i], v);
+				return err_set(err, "%s:%d: %s = %g: must be in [-90, 90] degrees", path, table->line[r], gaze_columns[i], v);
 			s->g[r * m->n_inputs + i] = v;
 			s->has_apertures |= i < SKIN_EYE_INPUTS && i % 5 >= 3 && !isnan(v);
 		}
@@ -162,7 +165,8 @@ bool script_read(struct script *s, const char *path, const struct skin_model *m,
 			s->screen[2 * r + 1] = csv_at(&table, r, y);
 		}
 		ok = s->kind == SCRIPT_KEYS ? read_keys(s, &table, m, path, err)
-		     : s->kind == SCRIPT_RECORDED ? read_recorded(s, &table, m, path, err) : true;
+		     : s->kind == SCRIPT_RECORDED ? read_recorded(s, &table, m, path, err)
+		     : csv_in_range(&table, x, -SCREEN_PX, SCREEN_PX, path, err) && csv_in_range(&table, y, -SCREEN_PX, SCREEN_PX, path, err);
 	}
 	csv_table_free(&table);
 	return ok;

@@ -6,6 +6,7 @@
 
 #include "base/csv.h"
 #include "base/mem.h"
+#include "model/gaze_table.h"
 
 /* n frames of zeros. */
 static struct drive drive_new(int n, int n_inputs)
@@ -84,7 +85,7 @@ bool drive_load(struct drive *d, const struct skin_model *model, const char *pat
 {
 	struct csv_table t = { 0 };
 	*d = (struct drive){ 0 };
-	bool ok = csv_read(&t, path, err);
+	bool ok = csv_read(&t, path, err) && gaze_table_check(&t, path, err);
 	if (ok && (t.n_rows < 1 || t.n_rows > 1 << 24))
 		ok = err_set(err, "%s: %ld frames, must be 1 .. 16777216", path, t.n_rows);
 	if (ok) {

@@ -65,6 +65,7 @@ struct entry {
 };
 
 enum { ENTRIES_MAX = 32 };
+static const double NUMBER_MOST = 1e12;  // no length in mm, no coefficient comes near
 
 static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **small, float **mean)
 {
@@ -127,7 +128,7 @@ static bool read_entry(const char *path, const struct entry *e, long got[3], str
 		npy_free(&a);
 		return err_set(err, "%s: %s: another type of number than extrapolate writes: run it again", path, e->name);
 	}
-	if (!npy_expect(&a, path, e->ndim, e->shape, err)) {
+	if (!npy_expect(&a, path, e->ndim, e->shape, err) || !npy_in_range(&a, NUMBER_MOST, false, 0, path, err)) {
 		npy_free(&a);
 		return err_wrap(err, "%s", e->name);
 	}

@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/npy/npy.h"
+#include "model/gaze_table.h"
 #include "track/head/pose.h"
 
 enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
@@ -42,14 +43,12 @@ static void more_of(double out[SIGMAS + POSE], const struct track_result *r, lon
 
 static bool save_gaze(const struct track_result *r, const char *path, struct err *err)
 {
-	static const char *const inputs[EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
-		                                            "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
 	int width = EYE_INPUTS + r->n_au, after = 2 + width + SIDES, columns = after + SIGMAS + POSE;
 	char **name = mem_new((size_t)columns, sizeof *name);
 	name[0] = mem_str("frame");
 	name[1] = mem_str("time_s");
 	for (int i = 0; i < width; i++)
-		name[2 + i] = i < EYE_INPUTS ? mem_str(inputs[i]) : mem_printf("au%d", i - EYE_INPUTS + 1);
+		name[2 + i] = i < EYE_INPUTS ? mem_str(gaze_columns[i]) : mem_printf("au%d", i - EYE_INPUTS + 1);
 	name[2 + width] = mem_str("confidence_left");
 	name[3 + width] = mem_str("confidence_right");
 	for (int i = 0; i < SIGMAS + POSE; i++)

@@ -9,11 +9,13 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "base/npy/npy.h"
+#include "model/gaze_table.h"
 
 /* lids_model.npy, lids in the modelling camera, exists only where the head moved; else those of the video's frames are the same. */
 static const char *const files[] = { "work/skin/gaze.csv",       "work/skin/lids.npy",       "work/skin/lids_model.npy",
 	                                 "work/skin/skin_model.npy", "work/skin/confidence.npy", "work/skin/vertices.npy",
 	                                 "work/skin/track.json" };
+enum { PICTURE_PX = 1000000 };  // no point of a video is that far away
 enum { GAZE, LIDS, LIDS_MODEL, SKIN, CONFIDENCE, VERTICES, TRACK };
 
 static bool may_be_missing(int file)
@@ -31,16 +33,14 @@ void clip_inputs(const char *out[8], int *n, struct stage *stage)
 
 static bool read_gaze(struct clip *clip, struct stage *stage, struct err *err)
 {
-	static const char *const inputs[SKIN_EYE_INPUTS] = { "g1_deg", "g2_deg", "g3_deg", "g4_px", "g5_px",
-		                                                 "g6_deg", "g7_deg", "g8_deg", "g9_px", "g10_px" };
 	const char *path = stage_path(stage, "%s", files[GAZE]);
 	struct csv_table table;
-	bool ok = csv_read(&table, path, err);
+	bool ok = csv_read(&table, path, err) && gaze_table_check(&table, path, err);
 	int n_au = 0, column[SKIN_EYE_INPUTS], time = ok ? csv_need(&table, "time_s", path, err) : -1;
 	int trust[2] = { csv_column(&table, "confidence_left"), csv_column(&table, "confidence_right") };
 	ok = ok && time >= 0;
 	for (int i = 0; i < SKIN_EYE_INPUTS && ok; i++)
-		ok = (column[i] = csv_need(&table, inputs[i], path, err)) >= 0;
+		ok = (column[i] = csv_need(&table, gaze_columns[i], path, err)) >= 0;
 	char au[32] = "au1";
 	for (; ok && csv_column(&table, au) >= 0; n_au++)
 		snprintf(au, sizeof au, "au%d", n_au + 2);
@@ -54,7 +54,7 @@ static bool read_gaze(struct clip *clip, struct stage *stage, struct err *err)
 	for (long r = 0; r < t->n && ok; r++) {
 		clip->time[r] = csv_at(&table, r, time);
 		if (isnan(clip->time[r]) || (r && !(clip->time[r] >= clip->time[r - 1])))
-			ok = err_set(err, "%s:%d: time_s must not go back", path, table.line[r]);
+			ok = err_set(err, "%s:%d: time_s = %g: must be a number, not below that of the line before", path, table.line[r], clip->time[r]);
 		for (int i = 0; i < width; i++) {
 			snprintf(au, sizeof au, "au%d", i - SKIN_EYE_INPUTS + 1);
 			clip->g[r * width + i] = csv_at(&table, r, i < SKIN_EYE_INPUTS ? column[i] : csv_column(&table, au));
@@ -139,7 +139,15 @@ static bool open_all(struct clip *clip, struct stage *stage, struct err *err)
 	if (ok && !(points >= 2 && points <= 200))
 		ok = err_set(err, "%s: %ld control points a lid: must be in [2, 200]", stage_path(stage, "%s", files[lids]), points);
 	clip->train.n_points = (int)points;
+	clip->lids_file = lids;
 	return ok;
+}
+
+/* Numbers of n rows, from row `first` of that file. */
+static bool in_range(const double *x, long n, long each, struct clip *clip, int file, double most, long first, struct err *err)
+{
+	const struct npy rows = npy_of(NPY_F8, 1, (long[]){ n * each }, x);
+	return npy_in_range(&rows, most, true, first * each, stage_path(clip->stage, "%s", files[file]), err);
 }
 
 static bool clip_read(void *ctx, long first, long n, double *lid, double *skin, double *seen, struct err *err)
@@ -152,7 +160,10 @@ static bool clip_read(void *ctx, long first, long n, double *lid, double *skin, 
 		return false;
 	clip->at = first + n;
 	return npy_rows_next(clip->lids, n, lid, &a, err) && npy_rows_next(clip->skin, n, skin, &b, err)
-	       && npy_rows_next(clip->seen, n, seen, &c, err);
+	       && npy_rows_next(clip->seen, n, seen, &c, err)
+	       && in_range(lid, a, SKIN_LIDS * 2L * clip->train.n_points, clip, clip->lids_file, PICTURE_PX, first, err)
+	       && in_range(skin, b, 2L * clip->train.n_vertices, clip, SKIN, PICTURE_PX, first, err)
+	       && in_range(seen, c, clip->train.n_vertices, clip, CONFIDENCE, 1, first, err);
 }
 
 static void clip_progress(void *ctx, long done, long total)

@@ -12,6 +12,7 @@ struct clip {
 	int *vertices;
 	double *time, *g, *confidence;
 	struct npy_rows *lids, *skin, *seen;
+	int lids_file;               // which of the two that hold lids
 	long at;                     // row that the files are at
 	struct stage *stage;         // for progress
 	char *place;

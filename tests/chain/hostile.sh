@@ -1,7 +1,7 @@
 #!/bin/bash
 # Folders from strangers, a row of hostile.tsv each: one clear line, the right exit status, nothing hangs, nothing outside is touched.
 #   NAME  BASE  PROGRAM  EXIT  SAYS  DO     tabs between
-# BASE: photo (one good photograph), empty, fitted (photo, through all stages), face (video, mesh, character), made (a character with its rig)
+# BASE: photo (one good photograph), empty, fitted (photo, through all stages), face (video, mesh, character), tracked (face, through track), bare (face without a character), made (a character with its rig)
 # PROGRAM: of bin/; make: all of them. SAYS: what the one line has to match; -: nothing may be said. DO: what the stranger does, in the folder.
 #   ONLY=REGEX  these rows alone; SHOW=1: what was said
 . "$(dirname "$0")/../lib/chain.sh"
@@ -16,11 +16,17 @@ FILM=$PWD/samples/face/video/face.mp4
 V=$root/victim
 mkdir -p "$V/folder" && echo 'eye.index = 1.4' >"$V/conf" && echo "a stranger's secret" >"$V/secret" && cp "$PHOTO" "$V/eye.jpg" && cp samples/face/subject.ply "$V" && cp samples/face/script/look_around.csv "$V/folder"
 cp "$V/secret" "$V/folder/limbus.json"
+"${B:-build}/tests/tools/dressed" samples/face/targets/mpfb.obj "$V/head.glb" unit=0.1 px=64
 deep() { printf "%$1s" '' | tr ' ' "${2:-[}"; }
 noise() { openssl enc -aes-128-ctr -K 0 -iv 0 -nosalt -in /dev/zero 2>/dev/null | head -c "$1"; }
 key() { echo "$*" >>capture.conf; }
 png() { printf '\211PNG\r\n\032\n'; }
 put() { printf "$2" | dd of="$1" bs=1 seek="$3" conv=notrunc 2>/dev/null; } # FILE BYTES AT
+# FIELD's value in a line of a table; how many numbers an .npy holds; a PNG with so many texts behind its header, of a few gigabytes each unpacked where N < 0
+field() { awk -F, -v OFS=, -v c="$2" -v l="$3" -v v="${4:-}" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == c) k = i } NR == l { $k = v } 1' "$1" >"$1.new" && mv "$1.new" "$1"; }
+npy_numbers() { echo "$(($(head -c 128 "$1" | grep -aoE "\([0-9, ]*\)" | tr -d '() ' | sed 's/,$//; s/,/*/g')))"; }
+png_texts() { perl -MCompress::Zlib -e '($n, $in, $out) = @ARGV; local $/; open F, "<:raw", $in; $p = <F>; $d = $n > 0 ? "tEXtk\0v" : "zTXtk\0\0" . compress("\0" x 30000000);
+	$c = pack("N", length($d) - 4) . $d . pack("N", crc32($d)); open O, ">:raw", $out; print O substr($p, 0, 33), $c x abs $n, substr($p, 33)' -- "$@"; }
 edit() { sed -i "$1" "$2"; }
 film() { head -c "${1:-250000}" "$FILM"; }
 victim_state() { (cd "$V" && find . -printf '%p %y %T@ %C@ %s\n' | sort && find . -type f -print0 | sort -z | xargs -0 sha256sum); }
@@ -34,6 +40,10 @@ cp -r "$root/photo" "$root/fitted"
 run_make "$root/fitted"
 same "a capture to begin with" "$?" 0
 small_face "$root/face"
+cp -r "$root/face" "$root/tracked"
+cp -r "$root/face" "$root/bare" && rm "$root/bare/targets/"* && edit '/^target/d' "$root/bare/capture.conf"
+"$BIN/track" --capture="$root/tracked" --quiet >"$log" 2>&1
+same "a clip to begin with" "$?" 0
 "$MADE" "$root/made"
 "$BIN/extrapolate" --capture="$root/made" --quiet >"$log" 2>&1
 

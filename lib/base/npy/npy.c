@@ -1,5 +1,6 @@
 #include "base/npy/npy.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,6 +115,20 @@ bool npy_expect(const struct npy *array, const char *path, int ndim, const long 
 	print_shape(is, array->ndim, array->shape);
 	print_shape(must, ndim, shape);
 	return err_set(err, "%s: shape %s, must be %s", path, is, must);
+}
+
+bool npy_in_range(const struct npy *array, double most, bool gaps, long first, const char *path, struct err *err)
+{
+	const float *f = array->type == NPY_F4 ? array->data : 0;
+	const double *d = array->type == NPY_F8 ? array->data : 0;
+	const long n = f || d ? npy_count(array) : 0;
+	for (long i = 0; i < n; i++) {
+		const double x = f ? (double)f[i] : d[i];
+		if (!(fabs(x) <= most) && !(gaps && isnan(x)))
+			return err_set(err, "%s: number %ld = %g: must be in [%g, %g]%s", path, first + i, x, -most, most,
+			               gaps ? ", or NaN where it was not measured" : "");
+	}
+	return true;
 }
 
 double *npy_doubles(const struct npy *array)

@@ -43,6 +43,10 @@ bool npy_save(const char *path, const struct npy *array, struct err *err);
 /* Whether the array has the shape shape[ndim] (−1: any); if not, err is set: "path: shape (3, 4), must be (n, 2)". */
 bool npy_expect(const struct npy *array, const char *path, int ndim, const long *shape, struct err *err);
 
+/* Whether its floating-point numbers are within [-most, most] or, with gaps, NAN: not measured. If not, err is set: "path: number 12
+ * = inf: must be ...", counted from `first`, that of the array's first. Integers pass. */
+bool npy_in_range(const struct npy *array, double most, bool gaps, long first, const char *path, struct err *err);
+
 /* A copy of the numbers as double, row-major; free(). Integers beyond 2^53 are rounded. */
 double *npy_doubles(const struct npy *array);
 

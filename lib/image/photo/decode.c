@@ -83,6 +83,8 @@ static bool read_rows(png_structp png, png_infop info, struct png_source *s, con
 {
 	if (setjmp(s->failed))
 		return false;
+	// What is written into it is not read: a small file can hold gigabytes of compressed texts.
+	png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, (png_const_bytep) "tEXt\0zTXt\0iTXt", 3);
 	png_set_read_fn(png, s, png_feed);
 	png_set_user_limits(png, (png_uint_32)photo->width, (png_uint_32)photo->height);
 	png_read_info(png, info);

@@ -131,6 +131,25 @@ static void hostile(void **state)
 	ERR_HAS(err, "not an .npy file");
 }
 
+/* Numbers that no measurement gives are named by their place. */
+static void ranges(void **state)
+{
+	(void)state;
+	float f[4] = { 1, -2, NAN, 3 };
+	double d[2] = { 1e13, -INFINITY };
+	struct err err = { 0 };
+	struct npy floats = npy_of(NPY_F4, 1, (long[]){ 4 }, f), doubles = npy_of(NPY_F8, 1, (long[]){ 2 }, d);
+	assert_true(npy_in_range(&floats, 3, true, 0, "f.npy", &err));
+	assert_false(npy_in_range(&floats, 3, false, 10, "f.npy", &err));
+	ERR_HAS(err, "f.npy: number 12 = nan: must be in [-3, 3]");
+	err = (struct err){ 0 };
+	assert_false(npy_in_range(&floats, 2.5, true, 0, "f.npy", &err));
+	ERR_HAS(err, "number 3 = 3");
+	err = (struct err){ 0 };
+	assert_false(npy_in_range(&doubles, 1e15, true, 0, "d.npy", &err));
+	ERR_HAS(err, "number 1 = -inf");
+}
+
 /* What bytes a zip of zeros unpacks to is told by its directory before any of it is unpacked. */
 static void bomb(void **state)
 {
@@ -148,7 +167,7 @@ static void tables(void **state)
 	(void)state;
 	struct err err = { 0 };
 	struct csv_table t, u;
-	assert_true(csv_read(&t, scratch_text("a.csv", "\xef\xbb\xbf# who\r\n\"a\"; b;c\r\n1;;\" 3\"\r\n\r\n# no\r\n-1e-3;nan;2"), &err));
+	assert_true(csv_read(&t, scratch_text("a.csv", "\xef\xbb\xbf# who\r\n\"a\"; b;c\r\n1;;\" 3\"\r\n\r\n# no\r\n-1e-3;;2"), &err));
 	assert_int_equal(t.n_columns, 3);
 	assert_int_equal(t.n_rows, 2);
 	assert_true(csv_at(&t, 0, 0) == 1 && isnan(csv_at(&t, 0, 1)) && csv_at(&t, 0, 2) == 3);
@@ -180,7 +199,8 @@ static void bad_tables(void **state)
 	} cases[] = {
 		{ "", "is empty" },                     { "a,b\n1\n", ":2: 1 fields, must be 2" },
 		{ "a,b\n1,2,3\n", ":2: more fields" },  { "a\n\n1x\n", ":3: a = 1x: must be a finite number" },
-		{ "a\ninf\n", ":2: a = inf" },          { "a,a\n", "twice" },
+		{ "a\ninf\n", ":2: a = inf" },          { "a\nNaN\n", ":2: a = NaN: must be a finite number" },
+	         { "a,a\n", "twice" },
 		{ "a,,b\n", "name of column 2" },       { "a\n\"1\n2\n", ":2: a quote that does not end" },
 	};
 	for (int i = 0; i < COUNT(cases); i++) {
@@ -197,7 +217,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(round_trip), cmocka_unit_test(numpy_bytes), cmocka_unit_test(rows),
 		cmocka_unit_test(hostile),    cmocka_unit_test(bomb),        cmocka_unit_test(tables),
-		cmocka_unit_test(bad_tables),
+		cmocka_unit_test(bad_tables),    cmocka_unit_test(ranges),
 	};
 	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }
