@@ -179,6 +179,20 @@ static void driving_file(void **state)
 	path = scratch_text("bad.csv", "time_s,g1_deg\n0.2,1\n0.1,1\n");
 	assert_false(drive_load(&d, &m->face.model, path, &err));
 	ERR_HAS(err, "bad.csv:3: time_s = 0.1");
+	static const struct {
+		const char *field, *says;
+	} nonsense[] = {
+		{ "g1_deg\n0,nan", "bad.csv:2: g1_deg = nan: must be a finite number" }, { "g7_deg\n0,1e300", "bad.csv:2: g7_deg = 1e+300: must be in [-180, 180]" },
+		{ "g9_px\n0,-1e9", "bad.csv:2: g9_px = -1e+09" },                         { "a4\n0,1e6", "bad.csv:2: a4 = 1e+06" },
+		{ "au1\n0,1e6", "bad.csv:2: au1 = 1e+06" },                               { "confidence_left\n0,2", "bad.csv:2: confidence_left = 2" },
+	};
+	for (int i = 0; i < COUNT(nonsense); i++) {
+		char text[80];
+		snprintf(text, sizeof text, "time_s,%s\n", nonsense[i].field);
+		err = (struct err){ 0 };
+		assert_false(drive_load(&d, &m->face.model, scratch_text("bad.csv", text), &err));
+		ERR_HAS(err, nonsense[i].says);
+	}
 	scratch_close();
 }
 
