@@ -186,7 +186,7 @@ static void driving_file(void **state)
 		{ "g9_px\n0,-1e9", "bad.csv:2: g9_px = -1e+09" },                         { "a4\n0,1e6", "bad.csv:2: a4 = 1e+06" },
 		{ "au1\n0,1e6", "bad.csv:2: au1 = 1e+06" },                               { "confidence_left\n0,2", "bad.csv:2: confidence_left = 2" },
 	};
-	for (int i = 0; i < COUNT(nonsense); i++) {
+	for (int i = 0; i < (int)(sizeof nonsense / sizeof *nonsense); i++) {
 		char text[80];
 		snprintf(text, sizeof text, "time_s,%s\n", nonsense[i].field);
 		err = (struct err){ 0 };
