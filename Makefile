@@ -32,9 +32,17 @@ V ?=
 Q := $(if $(V),,@)
 tell = $(if $(V),,@echo "  $(1)")
 
+# SAN=1: address and undefined-behaviour sanitisers; TSAN=1: the thread sanitizer, by clang, whose OpenMP it understands.
 SAN ?=
-B := build$(if $(SAN),-san)
-BIN := $(if $(SAN),$(B)/bin,bin)
+TSAN ?=
+sanitised := $(SAN)$(TSAN)
+B := build$(if $(TSAN),-tsan,$(if $(SAN),-san))
+BIN := $(if $(sanitised),$(B)/bin,bin)
+CLANG ?= clang
+ifneq ($(TSAN),)
+CC := $(CLANG)
+CXX := $(CLANG)++
+endif
 
 PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
 	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
@@ -43,11 +51,12 @@ PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libop
 	libcmocka-dev gnuplot-nox
 
 # Sanitised programs are built to be built fast: they run no longer for it.
-CFLAGS ?= $(if $(SAN),-O1,-O3) -g
-CXXFLAGS ?= $(if $(SAN),-O1,-O2) -g
+CFLAGS ?= $(if $(sanitised),-O1,-O3) -g
+CXXFLAGS ?= $(if $(sanitised),-O1,-O2) -g
 WARN := -Wall -Wextra -Wpedantic -Werror
 comma := ,
-SANFLAGS := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+SANFLAGS := $(if $(TSAN),-fsanitize=thread,$(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined)) \
+	$(if $(sanitised),-fno-omit-frame-pointer) $(if $(TSAN),-Wno-pass-failed)
 # No errno from maths and no traps: lets loops with sqrt vectorise. NaN and infinity keep their meaning.
 MATHFLAGS := -fno-math-errno -fno-trapping-math -ffp-contract=off
 ALL_CFLAGS := -std=gnu2x -D_GNU_SOURCE $(WARN) $(CFLAGS) $(SANFLAGS) $(MATHFLAGS) -fopenmp -Ilib -I. -MMD -MP

@@ -3,13 +3,20 @@
 #   make stress           long runs against random and hostile cases; SHARE=10: ten times as many; SEED=2: others
 #   make check-compilers  every artifact of the bundled captures by gcc's and by clang's programs, number by number
 #   make check-same BASE=REV   every artifact of the bundled captures by this checkout and by another revision, byte by byte
+#   make kill N=1000      kill -9, full disks, no inodes, failing disks and jumping clocks at N random moments of every column; SEED=2: others;
+#                         ONLY=skin: of this column
+#   make tsan             every stage under clang's thread sanitizer
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30; KEEP=1: what it found is kept in tests/fuzz/
-TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c)) $B/tests/evidence/make_eyes
+TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c)) $B/tests/evidence/make_eyes $B/tests/preload/faults.so
+$B/tests/preload/%.so: tests/preload/%.c
+	@mkdir -p $(@D)
+	@$(CC) -std=gnu2x -D_GNU_SOURCE $(WARN) -O2 -g -fPIC -shared -o $@ $<
+
 SECONDS_EACH ?= 30
 SEED ?= 1
 SHARE ?= 1
 
-.PHONY: tests fuzz fuzzers check-compilers check-same
+.PHONY: tests fuzz fuzzers kill tsan check-compilers check-same
 tests: $(TESTS) $(TOOLS)
 
 # Without these the interactive page is not driven and no cameras are found, and the summary says so.
@@ -31,6 +38,14 @@ $(notdir $(1)): $(1)
 endef
 $(foreach t,$(TESTS),$(eval $(call test,$t)))
 
+kill: build $B/tests/tools/variant $B/tests/preload/faults.so
+	@B=$B BIN=$(BIN) KILLS=$(or $(N),1000) SEED=$(SEED) tests/chain/kill.sh
+
+# The programs anew by clang, then each stage: TSAN=1 is what the build is made with.
+tsan: $B/tests/tools/variant $B/tests/tools/made_face
+	@if ! command -v $(firstword $(lastword $(CLANG))) >/dev/null; then echo "  skipped thread sanitizer: clang is not installed"; \
+	else $(MAKE) --no-print-directory TSAN=1 build && B=build-tsan TOOLS=$B tests/tsan.sh; fi
+
 check-compilers: build $(TOOLS)
 	@B=$B BIN=$(BIN) tests/compilers.sh
 
@@ -51,10 +66,10 @@ FUZZ_OBJ := $(LIB_SRC:%.c=build-fuzz/%.o) build-fuzz/lib/bridge/om_mesh.o
 FUZZERS := $(patsubst tests/fuzz/fuzz_%.c,build-fuzz/fuzz_%,$(wildcard tests/fuzz/fuzz_*.c))
 build-fuzz/%.o: %.c
 	@mkdir -p $(@D)
-	@clang -std=c2x $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -MMD -MP -c $< -o $@
+	@$(CLANG) -std=c2x $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -MMD -MP -c $< -o $@
 build-fuzz/%.o: %.cc
 	@mkdir -p $(@D)
-	@clang++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -c $< -o $@
+	@$(CLANG)++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -c $< -o $@
 build-fuzz/libeyewright.a: $(FUZZ_OBJ)
 	@rm -f $@
 	@$(AR) qcsD $@ $(FUZZ_OBJ)

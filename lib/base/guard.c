@@ -16,7 +16,10 @@
 #include "base/mem.h"
 
 // Sanitizers look into their own process and take terabytes of addresses for their tables.
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+#ifndef __has_feature  // clang's word for it
+#define __has_feature(x) 0
+#endif
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__ || __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 enum { SANITISED = 1 };
 #else
 enum { SANITISED = 0 };

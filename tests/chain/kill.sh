@@ -1,11 +1,12 @@
 #!/bin/bash
-# What interrupts a make: kill -9 at random moments, a full disk, a folder that cannot be written, a second make beside it.
+# What interrupts a make: kill -9 at random moments, a full disk, one without inodes, one whose reads and writes fail (tests/preload/faults.c),
+# a clock that jumps, a folder that cannot be written, a second make beside it.
 # Afterwards a plain make gives the bytes of an undisturbed run, leaves nothing half made, and what was put in is as it was.
-#   KILLS=1000 SEED=2 tests/chain/kill.sh          a third of them on each column; MINUTES=30: each column stops there
+#   KILLS=1000 SEED=2 tests/chain/kill.sh          a third of them on each column, half of them kills; MINUTES=30: each half of a column stops there
 #   ONLY=skin                                      this column alone
 #   EACH=70 STAGES="transfer extrapolate"          beside them so many of each stage's program by itself, or of these
 . "$(dirname "$0")/../lib/chain.sh"
-KILLS=${KILLS:-9}
+KILLS=${KILLS:-12}
 MINUTES=${MINUTES:-1000}
 EACH=${EACH:-0}
 RANDOM=${SEED:-1}
@@ -81,6 +82,65 @@ strike() {
 	recovers "$column: $struck kills"
 }
 
+# under KIND AT MORE CLOCK COMMAND...: the command with a disk that does so from its call AT on, and a clock that stands so far off.
+FAULTS=$PWD/${B:-build}/tests/preload/faults.so
+calls() { od -An -tu8 "$root/calls" | tr -d ' '; }
+under() {
+	head -c 8 /dev/zero >"$root/calls"
+	LD_PRELOAD=$FAULTS FAULTS_BELOW=$root/hit FAULTS_COUNT=$root/calls FAULTS_KIND=$1 FAULTS_AT=$2 FAULTS_MORE=$3 FAULTS_CLOCK=$4 "${@:5}"
+}
+
+# jump SECONDS: a make whose clock stands so far off is killed at some moment, or the dates of all files are set off.
+jump() {
+	local pid ms=$((RANDOM * length / 32768))
+	if [ $((RANDOM % 3)) = 0 ]; then
+		find "$root/hit" -type f -exec touch -h -d "@$(($(date +%s) + $1))" {} +
+		return
+	fi
+	LD_PRELOAD=$FAULTS FAULTS_BELOW=$root/hit FAULTS_CLOCK=$1 setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
+	pid=$!
+	sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
+	kill -9 -- "-$pid" 2>/dev/null
+	wait "$pid" 2>/dev/null
+}
+
+# trouble COLUMN N: a disk that fails, or a clock that jumps; each time a plain make mends it, and gives the same bytes.
+trouble() {
+	local column=$1 wanted=$2 struck=0 tries=0 until=$((SECONDS + 60 * MINUTES)) total kind at status says
+	local kinds=(full inodes eio eio clock)
+	rm -rf "$root/hit/work"
+	under none 0 0 0 run_make "$root/hit"
+	total=$(calls)
+	check "$column: calls that may fail are counted" test "${total:-0}" -gt 100
+	rm -rf "$root/hit/work"
+	while [ "$struck" -lt "$wanted" ] && [ "$tries" -lt $((6 * wanted)) ] && [ "$SECONDS" -lt "$until" ]; do
+		tries=$((tries + 1))
+		kind=${kinds[RANDOM % ${#kinds[@]}]}
+		# A capture that is made but for a part makes fewer calls: early ones are as likely as late ones in each order of size.
+		at=$(awk -v u=$RANDOM -v total="$total" 'BEGIN { printf "%d", exp(log(20) + u / 32768 * log(total / 20)) }')
+		case $kind in
+		clock) jump "$((RANDOM * 20000 - 327680000))" ;;
+		*)
+			under "$kind" "$at" "$((RANDOM % 4 ? 0 : RANDOM % 20))" 0 run_make "$root/hit"
+			status=$?
+			if [ "$(calls)" -gt "$at" ]; then
+				! grep -qE 'Segmentation|Aborted|core dumped|terminate called|stack smashing' "$log" || fail "$column, $kind at call $at: it dies" "$(tail -n 3 "$log")"
+				says=$(grep -cE '^[a-z]+: ' "$log")
+				[ "$status" = 0 ] || [ "$says" -gt 0 ] || fail "$column, $kind at call $at: a line says so" "$(tail -n 3 "$log")"
+			else
+				kind= # the make was through before
+			fi ;;
+		esac
+		[ -n "$kind" ] && struck=$((struck + 1)) && stages[$kind]=$((${stages[$kind]:-0} + 1))
+		run_make "$root/hit" || fail "$column, ${kind:-nothing} at call $at: make afterwards" "$(tail -n 3 "$log")"
+		[ "$(made "$root/hit")" = "$want" ] || fail "$column, ${kind:-nothing} at call $at: the same bytes" "$(diff <(made "$root/hit") <(printf '%s\n' "$want") | head -n 4)"
+		if [ $((RANDOM % 6)) = 0 ]; then rm -rf "$root/hit/work"; else damage; fi
+	done
+	echo "  $column: $struck faults of a disk or a clock"
+	check "$column: faults struck" test "$struck" -gt 0
+	recovers "$column: $struck faults"
+}
+
 # strike_each COLUMN N: each stage's program by itself, begun anew each time and killed at a moment anywhere in its run.
 strike_each() {
 	local column=$1 wanted=$2 stage begin took ms pid struck
@@ -123,10 +183,11 @@ for column in ${ONLY:-$columns}; do
 	rm -rf "$root/calm"
 	"$column"
 	undisturbed "$column"
-	strike "$column" "$(((KILLS + 2) / 3))"
+	strike "$column" "$(((KILLS + 5) / 6))"
+	trouble "$column" "$(((KILLS + 5) / 6))"
 	[ "$EACH" = 0 ] || strike_each "$column" "$EACH"
 done
-for name in "${!stages[@]}"; do printf '  killed in %s: %s\n' "$name" "${stages[$name]}"; done | sort
+for name in "${!stages[@]}"; do printf '  struck: %s %s\n' "$name" "${stages[$name]}"; done | sort
 
 # The rest wants a folder whose make writes much.
 [ "$column" != views ] || exit 0
