@@ -7,6 +7,7 @@
 #include <seccomp.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -53,7 +54,50 @@ static void allow(int ruleset, const char *path, uint64_t rights)
 	close(below.parent_fd);
 }
 
-static void keep_below(const char *work, bool starts_programs)
+/* Lets files be read below each folder of a list like PATH; above: below the folder that it stands in, too, but for a user's own. */
+static void allow_list(int ruleset, const char *list, bool above, uint64_t rights)
+{
+	const char *home = getenv("HOME");
+	for (const char *at = list; at && *at; at += *at == ':') {
+		const size_t n = strcspn(at, ":");
+		char *dir = mem_printf("%.*s", (int)n, at), *over = mem_printf("%s/..", dir), *real = n && above ? realpath(over, 0) : 0;
+		allow(ruleset, dir, rights);
+		if (real && strcmp(real, "/") && (!home || strcmp(real, home)))
+			allow(ruleset, real, rights);
+		free(real);
+		free(over);
+		free(dir);
+		at += n;
+	}
+}
+
+/* What a stage reads: the capture, where WORK= has it elsewhere its source, the programs' folder and its configuration, and what libraries
+ * look up. Other programs stand where PATH says, their libraries beside them. */
+static void allow_reading(int ruleset, const char *capture, bool starts_programs)
+{
+	static const char *const system[] = { "/usr", "/lib", "/lib32", "/lib64", "/opt", "/nix", "/gnu", "/etc", "/proc", "/sys", "/dev" };
+	const uint64_t rights = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+	const char *source = getenv("EYEWRIGHT_SOURCE");
+	char *program = realpath("/proc/self/exe", 0), *slash = program ? strrchr(program, '/') : 0;
+	if (slash)
+		*slash = 0;
+	char *config = mem_printf("%s/../config", program ? program : ".");
+	for (int i = 0; i < COUNT(system); i++)
+		allow(ruleset, system[i], rights);
+	allow(ruleset, capture, rights);
+	allow(ruleset, config, rights);
+	if (program)
+		allow(ruleset, program, rights);
+	if (source && *source)
+		allow(ruleset, source, rights);
+	allow_list(ruleset, getenv("LD_LIBRARY_PATH"), false, rights);
+	if (starts_programs)
+		allow_list(ruleset, getenv("PATH"), true, rights);
+	free(config);
+	free(program);
+}
+
+static void keep_below(const char *work, const char *capture, bool starts_programs)
 {
 	// Of the kernel's headers of Linux 5.13 only the first rights are known; the others by their numbers.
 	enum { REFER = 1 << 13, TRUNCATE = 1 << 14 };
@@ -65,6 +109,7 @@ static void keep_below(const char *work, bool starts_programs)
 	if (abi < 2)  // the first forbids each rename into another folder
 		return;
 	rights |= abi >= 3 ? TRUNCATE : 0;
+	rights |= capture ? LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR : 0;
 	const struct landlock_ruleset_attr attr = { .handled_access_fs = rights };
 	const int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attr, sizeof attr.handled_access_fs, 0);
 	if (ruleset < 0)
@@ -72,6 +117,8 @@ static void keep_below(const char *work, bool starts_programs)
 	const char *tmp = getenv("TMPDIR");
 	tmp = tmp && *tmp ? tmp : "/tmp";
 	allow(ruleset, work, rights);
+	if (capture)
+		allow_reading(ruleset, capture, starts_programs);
 	allow(ruleset, "/dev/null", LANDLOCK_ACCESS_FS_WRITE_FILE | (rights & TRUNCATE));
 	if (starts_programs) {
 		allow(ruleset, tmp, rights);
@@ -108,10 +155,10 @@ static void forbid_calls(bool starts_programs)
 	seccomp_release(filter);
 }
 
-void guard_enter(const char *work, bool starts_programs)
+void guard_enter(const char *work, const char *capture, bool starts_programs)
 {
 	limit_all();
-	keep_below(work, starts_programs);
+	keep_below(work, capture, starts_programs);
 	forbid_calls(starts_programs);
 }
 

@@ -106,7 +106,7 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 	if (!lock_work(stage, &err))
 		die(stage, &err, 1);
 	char *work = mem_printf("%s/work", stage->capture);
-	guard_enter(work, run_programs);
+	guard_enter(work, stage->capture, run_programs);
 	free(work);
 	char *program = call_program_path(), *config = slice(stage);
 	stage->record = record_open(stage->capture, name, program, config);

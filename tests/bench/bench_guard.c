@@ -38,8 +38,8 @@ static double by_the_clock(void)
 }
 
 static void nothing(void) {}
-static void guard(void) { guard_enter(work, false); }
-static void guard_programs(void) { guard_enter(work, true); }
+static void guard(void) { guard_enter(work, ".", false); }
+static void guard_programs(void) { guard_enter(work, ".", true); }
 
 static void decode(void)
 {

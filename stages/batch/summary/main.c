@@ -93,7 +93,7 @@ static bool summary(const char *dir, const struct asked *asked, const struct sum
 	if (!ok)
 		err_set(err, "%s: is not there, or a link: make batch makes it", batch);
 	else
-		guard_enter(batch, false);
+		guard_enter(batch, 0, false);
 	free(batch);
 	return ok && (!asked->collect || collect(dir, conf, err))
 	       && (!asked->write || (asked->now_and_then && !is_due(dir)) || write_all(dir, asked->queued, conf, err));

@@ -23,7 +23,7 @@ static int behind(int (*attempt)(void))
 {
 	const pid_t child = fork();
 	if (!child) {
-		guard_enter(scratch_path("cap/work"), false);
+		guard_enter(scratch_path("cap/work"), scratch_path("cap"), false);
 		errno = 0;
 		_exit(attempt() < 0 ? errno : 0);
 	}
@@ -49,6 +49,11 @@ static int whole_file(void)
 	return file_write(scratch_path("cap/work/link/mine"), "x", 1, &err) ? 0 : (errno = EACCES, -1);
 }
 static int reads(void) { return open(scratch_path("victim/mine"), O_RDONLY); }
+static int reads_link(void) { return open(scratch_path("cap/work/link/mine"), O_RDONLY); }
+static int lists(void) { return open(scratch_path("victim"), O_RDONLY | O_DIRECTORY); }
+static int reads_own(void) { return open(scratch_path("cap/photo"), O_RDONLY); }
+static int reads_made(void) { return open(scratch_path("cap/work/old"), O_RDONLY); }
+static int reads_library(void) { return open("/etc/passwd", O_RDONLY) < 0 ? -1 : open("/proc/self/status", O_RDONLY); }
 static int nothing(void) { return open("/dev/null", O_WRONLY); }
 static int net(void) { return socket(AF_INET, SOCK_STREAM, 0); }
 static int net6(void) { return socket(AF_INET6, SOCK_DGRAM, 0); }
@@ -78,8 +83,24 @@ static void written_below_work_alone(void **state)
 	assert_int_equal(behind(away), EACCES);
 	assert_int_equal(behind(through_link), EACCES);
 	assert_int_equal(behind(whole_file), EACCES);
-	assert_int_equal(behind(reads), 0);
 	assert_int_equal(behind(nothing), 0);
+}
+
+static void read_in_the_capture_alone(void **state)
+{
+	(void)state;
+	scratch_text("victim/mine", "mine");
+	scratch_text("cap/photo", "");
+	scratch_text("cap/work/old", "");
+	assert_int_equal(symlink(scratch_path("victim"), scratch_path("cap/work/link")), 0);
+	if (syscall(SYS_landlock_create_ruleset, 0, 0, LANDLOCK_CREATE_RULESET_VERSION) < 2)
+		skip();
+	assert_int_equal(behind(reads_own), 0);
+	assert_int_equal(behind(reads_made), 0);
+	assert_int_equal(behind(reads_library), 0);
+	assert_int_equal(behind(reads), EACCES);
+	assert_int_equal(behind(reads_link), EACCES);
+	assert_int_equal(behind(lists), EACCES);
 }
 
 static void no_network_and_no_program(void **state)
@@ -106,6 +127,6 @@ static void limits(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { SCRATCH_TEST(written_below_work_alone), SCRATCH_TEST(no_network_and_no_program), SCRATCH_TEST(limits) };
+	const struct CMUnitTest tests[] = { SCRATCH_TEST(written_below_work_alone), SCRATCH_TEST(read_in_the_capture_alone), SCRATCH_TEST(no_network_and_no_program), SCRATCH_TEST(limits) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
