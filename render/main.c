@@ -3,12 +3,14 @@
  *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/
  * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet, shot_NAME; review/index.html, viewer.html;
  *         work/render/NAME_look.png, NAME_look_layers.exr, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
+ *         work/render/track.mp4, track.svg: what was followed in the video
  *         work/export/: eye.glb, textures, statements (render/export/export.h)
  */
 #include "base/mem.h"
 #include "render/export/export.h"
 #include "render/options.h"
 #include "render/face/skin.h"
+#include "render/film/film.h"
 #include "render/viewer/viewer.h"
 
 /* A folder without photographs has no fitted eye and needs none: its characters get plain ones. */
@@ -41,7 +43,7 @@ int main(int argc, char **argv)
 	skin.portrait.eye_samples = conf.samples;
 	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .capture = &capture, .eye = &eye, .photographed = &eyes };
 	if (!stage.only) {
-		ok = ok && render_skin(&faces, &err);
+		ok = ok && render_skin(&faces, &err) && film_make(&faces, &err);
 		show(&faces, ok, &err);
 	}
 	skin_close(&faces);

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/record.h"
 #include "image/photo/photo.h"
+#include "plan/film.h"
 #include "plan/meshes.h"
 
 /* True when capture.conf gives the lens: of a video alone there is then nothing to find. */
@@ -136,13 +137,49 @@ static bool runs(const struct plan *plan, const char *name)
 	return plan->rows[plan_stage_find(name)].run;
 }
 
-/* The stage that lets this one run in another way with such a folder; null when there is none. */
-static const char *other_way(const struct plan_stage *s, int have)
+static const char rests[] = "the camera rests in video/: nothing in it tells cameras; camera.focal_px tells the lens";
+static const char no_skin[] = "no mesh of the person (subject.ply), nor views/ to make it from: gaze and lids are followed, skin is not";
+
+/* Whether cameras are to be sought in the video alone: where its lens is not given, and unless the camera is seen to rest. */
+static bool film_tells(int have, const char *capture, const struct conf *conf)
 {
+	struct file_list list;
+	struct err none = { 0 };
+	if (!(have & HAS_VIDEO) || lens_given(conf))
+		return false;
+	char *dir = mem_printf("%s/video", capture), *file = 0;
+	if (file_list(&list, dir, &none) && list.n)
+		file = mem_printf("video/%s", list.names[0]);
+	file_list_free(&list);
+	bool tells = !file || plan_film_camera(capture, file) != FILM_RESTS;
+	free(dir);
+	free(file);
+	return tells;
+}
+
+static bool has_subject(const char *capture)
+{
+	static const char *const names[] = { "subject.ply", "subject.obj" };
+	bool has = false;
+	for (int i = 0; i < COUNT(names); i++) {
+		char *path = mem_printf("%s/%s", capture, names[i]);
+		has = has || file_exists(path);
+		free(path);
+	}
+	return has;
+}
+
+/* The stage that lets this one run in another way with such a folder: one that runs before one that does not; null when there is none. */
+static const char *other_way(const struct plan *plan, const struct plan_stage *s, int have)
+{
+	const char *first = 0;
 	for (int i = 0; i < COUNT(s->other) && s->other[i].needs; i++)
-		if ((have & s->other[i].all) == s->other[i].all)
-			return s->other[i].needs;
-	return 0;
+		if ((have & s->other[i].all) == s->other[i].all) {
+			if (runs(plan, s->other[i].needs))
+				return s->other[i].needs;
+			first = first ? first : s->other[i].needs;
+		}
+	return first;
 }
 
 /* The reason shown for transfer, by how many characters have the subject's topology. */
@@ -175,19 +212,21 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		               capture, capture);
 	if (!(have & (HAS_PHOTOS | HAS_VIEWS | HAS_VIDEO)))
 		return err_set(err, "%s: nothing to work on: put macro photographs of an eye into %s/photos/", capture, capture);
-	bool grey = measure(plan);
+	bool grey = measure(plan), film = !(have & HAS_VIEWS) && film_tells(have, capture, conf);
 	for (int i = 0; i < PLAN_STAGES; i++)
 		plan->rows[i].name = plan_stages[i].name;
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		const struct plan_stage *r = &plan_stages[i];
 		struct plan_row *row = &plan->rows[i];
 		bool calibrates = !strcmp(r->name, "calibrate");
-		bool has = (!calibrates || have & HAS_VIEWS || !lens_given(conf)) && (!r->any || have & r->any) && (have & r->all) == r->all;
-		const char *other = other_way(r, have);
+		bool has = (!calibrates || have & HAS_VIEWS || film) && (!r->any || have & r->any) && (have & r->all) == r->all;
+		const char *other = other_way(plan, r, have);
 		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));
 		row->reason = r->does;
 		if (!has && !other)
-			row->reason = r->without;
+			row->reason = calibrates && have & HAS_VIDEO && !lens_given(conf) ? rests : r->without;
+		else if (!strcmp(r->name, "train") && !runs(plan, "calibrate") && !has_subject(capture))
+			row->reason = no_skin;
 		else if (!is_built(r->name))
 			row->reason = "its program is not built";
 		else if (!fed)

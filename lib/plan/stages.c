@@ -58,8 +58,8 @@ const struct plan_stage plan_stages[] = {
 	  .needs = "relief",
 	  .any = HAS_PHOTOS,
 	  .does = "pictures and the review page",
-	  .without = "neither photos/ of an eye, nor views/, nor video/ and targets/ to show",
-	  .other = { { "extrapolate", HAS_VIDEO | HAS_TARGETS }, { "calibrate", HAS_VIEWS } } },
+	  .without = "neither photos/ of an eye, nor views/, nor video/ to show",
+	  .other = { { "extrapolate", HAS_VIDEO | HAS_TARGETS }, { "calibrate", HAS_VIEWS }, { "track", HAS_VIDEO } } },
 };
 _Static_assert(sizeof plan_stages / sizeof *plan_stages == PLAN_STAGES, "PLAN_STAGES counts the table's rows");
 

@@ -23,7 +23,7 @@ struct plan_stage {
 	struct {
 		const char *needs;
 		int all;
-	} other[2];                  // in the order in which they are tried; needs null: none
+	} other[3];                  // in the order in which they are tried; needs null: none
 };
 
 /* In the order in which they run; the first is plan itself. */

@@ -157,3 +157,21 @@ bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, c
 	out->fixed = fixed;
 	return true;
 }
+
+double eyes_below(const struct mesh_part *part, const double target_eye[2][3], double target_radius, bool swapped)
+{
+	const double *left = target_eye[swapped], *right = target_eye[!swapped];
+	double axes[3][3], all = 0, below = 0;
+	if (!axes_of(axes, part, left, right, target_radius))
+		return NAN;
+	double *area = mesh_vertex_areas(&part->mesh);
+	for (int i = 0; i < part->mesh.n_vertices; i++) {
+		double up = 0;
+		for (int k = 0; k < 3; k++)
+			up += axes[k][1] * ((double)part->mesh.vertices[i][k] - 0.5 * (left[k] + right[k]));
+		all += area[i];
+		below += up < 0 ? area[i] : 0;
+	}
+	free(area);
+	return all > 0 ? below / all : NAN;
+}

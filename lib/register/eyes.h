@@ -21,4 +21,8 @@ bool eyes_of_target(double center[2][3], double *radius, const struct mesh *targ
 bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, const double target_eye[2][3], double target_radius,
                     bool swapped, const struct mesh *subject, const double subject_eye[2][3]);
 
+/* Share of the part's area that lies below the eyes, where they are taken in that order: more than half of a head with its neck, of a bust or a
+ * body that stands upright. NAN where eyes_landmarks returns false. */
+double eyes_below(const struct mesh_part *part, const double target_eye[2][3], double target_radius, bool swapped);
+
 #endif

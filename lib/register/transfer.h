@@ -30,6 +30,7 @@ struct transfer {
 	double matched;                // share of the subject found by the similarity, 0..1
 	double fine, rival;            // the same more narrowly, and that of the best other pose (nricp_align)
 	double rms, covered;           // of the non-rigid registration: mm; share of the target that matched, 0..1
+	bool weighed;                  // the shapes left open which way up it is: more of it lies below its eyes than above (transfer_lay)
 	bool same_topology;            // vertex i is vertex i of the subject: nothing was registered
 };
 

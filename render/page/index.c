@@ -55,10 +55,12 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 		add(&in, "%s/%s_compare.png", capture->eyes[p->eye].render, p->name);
 		add(&in, "%s/%s_compare.json", capture->eyes[p->eye].render, p->name);
 	}
-	static const char *const skin[] = { "gaze.csv", "model.json", "track.png", "wrinkles.png", "curves.svg" };
+	static const char *const skin[] = { "gaze.csv", "track.json", "model.json", "track.png", "wrinkles.png", "curves.svg" };
 	static const char *const driven[] = { "_look.png", "_sheet.png", "_blink.png", "_expressions.png", "_clip.mp4", "_script.mp4", ".glb" };
-	for (int i = 0; i < COUNT(skin) && targets->n; i++)
+	for (int i = 0; i < COUNT(skin); i++)
 		add(&in, "work/skin/%s", skin[i]);
+	add(&in, "work/render/track.mp4");
+	add(&in, "work/render/track.svg");
 	for (int t = 0; t < targets->n; t++) {
 		const char *name = targets->names[t], *dot = strrchr(name, '.');
 		int n = dot ? (int)(dot - name) : (int)strlen(name);

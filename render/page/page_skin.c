@@ -148,6 +148,54 @@ static json_t *target(struct page *page, const char *name)
 	return entry;
 }
 
+/* Blinks of one eye: how many, and when. */
+static json_t *blinks_of(const json_t *track, const char *side)
+{
+	enum { SHOWN = 40 };
+	const double fps = json_number_value(json_object_get(track, "fps"));
+	const json_t *blink;
+	size_t i;
+	int n = 0;
+	char *when = mem_str("");
+	json_array_foreach(json_object_get(track, "blinks"), i, blink) {
+		const char *eye = json_string_value(json_object_get(blink, "eye"));
+		if (!eye || strcmp(eye, side) || !(fps > 0))
+			continue;
+		const double shut = 100 * json_number_value(json_object_get(blink, "amplitude"));
+		if (n++ < SHOWN) {
+			char *more = mem_printf("%s%s%.2f s (%.0f %%)", when, n > 1 ? ", " : ": at ", json_number_value(json_object_get(blink, "peak")) / fps, shut);
+			free(when);
+			when = more;
+		}
+	}
+	json_t *out = page_text("%d%s%s", n, when, n > SHOWN ? " ..." : "");
+	free(when);
+	return out;
+}
+
+/* What the video shows: the film with what was tracked on it, its course over time, blinks; null where there is no film. */
+static json_t *followed(struct page *page)
+{
+	static const char *const names[] = { "left", "right" };
+	json_t *film = clip(page, "track", ".mp4", "Gaze (orange), upper and lower lids (green, blue), skin (yellow)", "The video with what was tracked drawn on it");
+	json_t *course = data_uri(page_file(page, "work/render/track.svg"), "image/svg+xml", 16 << 20), *track = page_json(page, page_file(page, "work/skin/track.json"));
+	json_t *out = json_object(), *facts = json_array();
+	if (film)
+		json_object_set_new(out, "film", film);
+	if (course)
+		json_object_set_new(out, "course", course);
+	for (int e = 0; e < 2 && track; e++)
+		json_array_append_new(facts, json_pack("{s:o,s:o}", "label", page_text("Blinks, %s eye", names[e]), "value", blinks_of(track, names[e])));
+	if (track)
+		json_array_append_new(facts, json_pack("{s:s,s:o}", "label", "Frames", "value", page_text("%d, %d of them lost",
+			(int)json_integer_value(json_object_get(track, "frames")), (int)json_integer_value(json_object_get(track, "lost_frames")))));
+	if (json_is_true(json_object_get(json_object_get(track, "camera"), "focal_assumed")))
+		page_say(page->film, "track: the lens is not known: gaze is true to a few degrees, depth is not");
+	json_object_set_new(out, "facts", facts);
+	json_decref(track);
+	return out;
+}
+
 json_t *page_skin(struct page *page)
 {
 	if (!page_file(page, "work/skin/model.json") && !page_file(page, "work/skin/gaze.csv"))
@@ -159,6 +207,8 @@ json_t *page_skin(struct page *page)
 		if (plan_stages[i].title)
 			column(page, columns, plan_stages[i].name, plan_stages[i].title);
 	add(skin, "columns", columns);
+	add(skin, "followed", followed(page));
+	json_object_set_new(skin, "has_targets", json_boolean(page_file(page, "work/skin/model.json") != 0));
 	add(skin, "track", page_picture(page, page_file(page, "work/skin/track.png"), 2 * page->width));
 	add(skin, "wrinkles", page_picture(page, page_file(page, "work/skin/wrinkles.png"), 2 * page->width));
 	add(skin, "curves", data_uri(page_file(page, "work/skin/curves.svg"), "image/svg+xml", 4 << 20));

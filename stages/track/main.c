@@ -43,6 +43,8 @@ int main(int argc, char **argv)
 		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),
 		OPT_REAL("gap_px", &c.gap_px, 0, 50, "px", "least distance between two points"),
 		OPT_REAL("cut", &c.cut, 0, 1, "", "share of the points that must be seen, or the clip was cut"),
+		OPT_REAL("own_mm", &c.own_mm, 0.001, 10, "mm", "motion that a point of skin may have of its own"),
+		OPT_REAL("astray_mm", &c.astray_mm, 0.001, 10, "mm", "from its neighbours' motion a point counts little; twice as far off it is not seen"),
 		OPT_REAL("pose_robust_px", &c.still_pose_px, 0.05, 50, "px", "a point further off the head's motion counts little"),
 	};
 	struct stage stage;

@@ -56,7 +56,8 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_subject_load(subject, stage, conf, err) || !track_clip_open(clip, stage, subject, conf, err))
 		return false;
 	tell_video(stage, clip);
-	track_settle(clip, stage, subject, conf);
+	if (!track_settle(clip, stage, subject, conf, err))
+		return false;
 	if (!track_settled(clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, 0);
 		return false;

@@ -205,6 +205,8 @@ static json_t *doubts(const struct target *t)
 		json_array_append_new(list, json_string("its faces look inwards and were taken the other way round: if it is mirrored, its left is the subject's right"));
 	if (!t->result.same_topology && !isfinite(t->check.eyes) && !isfinite(t->check.landmarks))
 		json_array_append_new(list, json_string("neither eyeballs nor landmarks could be compared: its pose follows from the shape alone"));
+	if (t->result.weighed)
+		json_array_append_new(list, json_string("the shapes do not tell which way up it is: taken as more of it lies below its eyes than above; else give target.NAME.landmarks"));
 	if (t->check.flipped)
 		json_array_append_new(list, json_string("some triangles are turned over"));
 	return list;

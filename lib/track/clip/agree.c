@@ -35,9 +35,27 @@ static double between(const struct track_result *r, int axis)
 	return at;
 }
 
+/* Median over the frames of how far the skin lies off the rigid head, mm; 0 without skin. */
+static double misfit_mm(const struct track_result *r, const struct track_clip *clip)
+{
+	double *off = mem_array((size_t)r->n + 1, sizeof *off), middle = 0;
+	int n = 0;
+	for (long f = 0; f < r->n && r->misfit; f++)
+		if (!r->lost_at[f])
+			off[n++] = r->misfit[f];
+	if (n)
+		middle = stats_median(n, off) * clip->cam_from_head[2][3] / clip->camera.focal_px;
+	free(off);
+	return middle;
+}
+
 bool track_agrees(const struct track_result *r, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
 {
 	double share = fmax(gaze_share(r, SIDE_LEFT), gaze_share(r, SIDE_RIGHT)), off = between(r, 1), apart = between(r, 0);
+	const double misfit = misfit_mm(r, clip);
+	if (misfit > conf->misfit_mm)
+		return err_set(err, "%s: its skin lies %.2f mm off the head that is laid on frame %ld (median), must be within %.2f (track.misfit_mm): the head's motion is not followed; check camera.focal_px, or give another track.reference_frame",
+		               clip->file, misfit, clip->reference, conf->misfit_mm);
 	if (share < conf->gaze_least)
 		return err_set(err, "%s: gaze in %.0f %% of the frames, must be in at least %.0f %% (track.gaze_least): film closer, sharper, or give subject.eye_center.* and camera.focal_px",
 		               clip->file, 100 * share, 100 * conf->gaze_least);

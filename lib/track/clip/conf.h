@@ -27,6 +27,8 @@ struct track_conf {
 	double guess_sigma;    // mm, of centres that are guessed from the lids' marks
 	double pose_most;      // px at a width of 1280: larger residuals of the reference pose are refused
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
+	double earned_deg;     // standard deviation of a turn that the skin's motion tells
+	double misfit_mm;      // skin off the rigid head in the median of the clip, beyond which it is refused
 	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
 	double agree_deg, diverge_deg;  // vertical gaze of the two eyes further apart in the median is refused, and eyes that diverge by more
 	double gaze_least;     // share of frames with gaze in the better eye, below which a clip is refused
@@ -39,6 +41,7 @@ struct track_conf {
 	double reach_mm;       // points are followed within it of an eyeball's centre
 	double gap_px;         // least distance between points
 	double cut;            // share of the points that must be seen, or the clip was cut there
+	double own_mm, astray_mm;  // a point's own motion against its neighbours' where these scatter; so far off it counts little
 	double still_pose_px;  // px: scale of the robust weights of a point off the rigid head
 };
 
@@ -55,6 +58,8 @@ struct track_conf {
 		OPT_REAL("turned_deg", &(c)->turned, 0.1, 90, "degrees", "a head that turns by more is laid on by how its skin moves"), \
 		OPT_REAL("torn_deg", &(c)->torn, 0.1, 90, "degrees", "halves of the skin that tell poses further apart are refused"), \
 		OPT_REAL("off_mm", &(c)->off_mm, 0.01, 10, "mm", "skin of a head that turns, off the rigid mesh (rms): with more it is refused"), \
+		OPT_REAL("earned_deg", &(c)->earned_deg, 0.01, 45, "degrees", "standard deviation of the turn that the skin's motion tells"), \
+		OPT_REAL("misfit_mm", &(c)->misfit_mm, 0.01, 100, "mm", "skin off the rigid head (median); with more a clip is refused"), \
 		OPT_REAL("diverge_deg", &(c)->diverge_deg, 0.1, 90, "degrees", "eyes that diverge by more (median) are refused"), \
 		OPT_REAL("agree_deg", &(c)->agree_deg, 0.1, 90, "degrees", "the eyes' vertical gaze further apart (median) is refused"),        \
 		OPT_REAL("gaze_least", &(c)->gaze_least, 0, 1, "", "share of frames with gaze in the better eye; with less it is refused")

@@ -42,7 +42,7 @@ static int look(struct look out[LOOKS], long span, const struct track_clip *clip
 	return n;
 }
 
-/* The frame whose eyes are furthest apart for their size and most certain. */
+/* The frame whose eyes are furthest apart for their size, most open and most certain. */
 static const struct look *best_of(struct look *looks, int n)
 {
 	double radius = 0;
@@ -52,7 +52,7 @@ static const struct look *best_of(struct look *looks, int n)
 	for (int i = 0; i < n; i++) {
 		const double(*e)[2] = (const double(*)[2])looks[i].eyes.eye;
 		// an iris' size is told worse than the eyes' distance
-		looks[i].worth = hypot(e[0][0] - e[1][0], e[0][1] - e[1][1]) / sqrt(radius * looks[i].eyes.radius) * pow(looks[i].eyes.score, 2);
+		looks[i].worth = hypot(e[0][0] - e[1][0], e[0][1] - e[1][1]) / sqrt(radius * looks[i].eyes.radius) * pow(looks[i].eyes.score, 2) * looks[i].eyes.open;
 		best = looks[i].worth > best->worth ? &looks[i] : best;
 	}
 	return best;
@@ -112,11 +112,10 @@ static bool earn(struct track_clip *clip, struct evidence_net *net, struct stage
 	return moved;
 }
 
-bool track_earn(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+bool track_earn(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	struct evidence_net *net = 0;
-	struct err none = { 0 };
-	if (conf->reference >= 0 || !s->mesh.n_vertices || !s->opening[0].open || !s->opening[1].open || rests(clip, stage, s, conf) || !evidence_open_shipped(&net, &none))
+	if (conf->reference >= 0 || !s->mesh.n_vertices || !s->opening[0].open || !s->opening[1].open || rests(clip, stage, s, conf) || !evidence_open_shipped(&net, err))
 		return false;
 	struct track_clip was = *clip;
 	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
@@ -127,11 +126,24 @@ bool track_earn(struct track_clip *clip, struct stage *stage, const struct track
 	bool ok = earn(clip, net, stage, s, conf);
 	evidence_close(net);
 	struct track_clip *drop = ok ? &was : clip;
+	const double turned = clip->moves.turned;
 	free(drop->luma);
 	free(drop->rgb);
 	if (!ok) {
 		track_moves_free(&clip->moves);
 		*clip = was;
+		clip->moves.turned = turned;  // too little to tell its pose, but it is not at rest
 	}
 	return ok;
+}
+
+bool track_propose(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	struct evidence_net *net = 0;
+	struct look looks[LOOKS];
+	if (!s->opening[0].open || !s->opening[1].open || !evidence_open_shipped(&net, err))
+		return false;
+	int n = look(looks, span_of(clip, conf), clip, net, stage, conf);
+	evidence_close(net);
+	return n && lay(clip, best_of(looks, n), stage, s, conf);
 }

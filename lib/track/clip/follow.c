@@ -8,6 +8,7 @@
 #include "math/stats.h"
 #include "track/clip/background.h"
 #include "track/clip/steady.h"
+#include "track/clip/together.h"
 
 /* Points weigh in the head's pose by how rigidly they have moved with it: running mean of their squared residuals, px^2. */
 struct rigid {
@@ -170,8 +171,11 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	background_end(background);
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
-	if (ok && points->n)
+	if (ok && points->n) {
 		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip);
+		if (!conf->limit)
+			track_together(r, points, clip, conf);
+	}
 	ok = ok && (r->n < 2 || track_eyes_finish(r, eyes, err));
 	track_eyes_free(eyes);
 	rigid_free(&rigid);

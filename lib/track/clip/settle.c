@@ -144,6 +144,60 @@ static bool is_off(const struct track_clip *clip, const struct track_subject *s,
 	return !(clip->pose_px <= most_px(clip, s, conf));
 }
 
+/* Exchanges the clip's reference and another's where that comes together with the mesh better; frees the other's pictures. */
+static void take_better(struct track_clip *clip, struct track_clip *other, bool found, const struct track_subject *s, const struct track_conf *conf)
+{
+	clip->faces = other->faces;
+	if (found && other->pose_px * most_px(clip, s, conf) < clip->pose_px * most_px(other, s, conf)) {
+		struct track_clip t = *clip;
+		*clip = *other;
+		*other = t;
+	}
+	free(other->luma);
+	free(other->rgb);
+}
+
+/* The clip, with pictures of its own. */
+static struct track_clip another(const struct track_clip *clip)
+{
+	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
+	struct track_clip other = *clip;
+	other.luma = mem_array(area + 1, 1);
+	other.rgb = mem_array(3 * area + 1, 1);
+	memcpy(other.luma, clip->luma, area);
+	memcpy(other.rgb, clip->rgb, 3 * area);
+	other.begins_shut = true;
+	return other;
+}
+
+/* The pair of eyes that the evidence shows best as the start, where an outline alone was found in the wrong place. */
+static bool try_evidence(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	struct track_conf few = few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
+	struct track_clip other = another(clip);
+	struct head_found found = { .seen = { true, true } };
+	double was[4][4];
+	bool better = track_propose(&other, stage, s, conf, err);
+	memcpy(found.cam_from_head, other.cam_from_head, sizeof found.cam_from_head);
+	better = better && head_find_refine(&found, other.rgb, other.info.width, other.info.height, &other.camera, s->opening, &conf->head);
+	if (better) {
+		struct track_result r = { 0 };
+		memcpy(was, other.cam_from_head, sizeof was);
+		memcpy(other.cam_from_head, found.cam_from_head, sizeof other.cam_from_head);
+		memcpy(other.eye_seen, found.seen, sizeof other.eye_seen);
+		other.pose_refined = false;
+		other.pose_px = INFINITY;
+		better = follow_few(&r, &other, stage, s, &few);
+		if (better)
+			reference_refine(&other, true, &r, s, &few);
+		track_result_free(&r);
+		if (better)
+			settle_on(&other, (const double(*)[4])was, stage, s, &few);
+	}
+	take_better(clip, &other, better, s, conf);
+	return !err_is(err);
+}
+
 /* Frames spread over the clip, each as the reference: openings, eyeballs and mesh are fitted together, and the frame in which they agree
  * best is kept. */
 static void try_others(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
@@ -152,28 +206,15 @@ static void try_others(struct track_clip *clip, struct stage *stage, const struc
 	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->doubt.span);
 	const enum track_way way = clip->cam_from_head[1][1] > 0 ? WAY_OVER : WAY_UP;
 	long span = few.every * few.limit < clip->info.frames ? few.every * few.limit : clip->info.frames;
-	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
 	for (int i = 0; i < TRIES && is_off(clip, s, conf); i++) {
-		struct track_clip other = *clip;
+		struct track_clip other = another(clip);
 		struct track_result r = { 0 };
 		struct err none = { 0 };
-		other.luma = mem_array(area + 1, 1);
-		other.rgb = mem_array(3 * area + 1, 1);
 		bool better = track_clip_take(&other, span * (2 * i + 1) / (2 * TRIES), stage, conf, &none) && track_look(&other, way, s, conf)
 		              && follow_few(&r, &other, stage, s, &few);
-		if (better) {
+		if (better)
 			reference_refine(&other, true, &r, s, &few);
-			better = other.pose_px * most_px(clip, s, conf) < clip->pose_px * most_px(&other, s, conf);
-		}
-		other.begins_shut = true;
-		clip->faces = other.faces;
-		if (better) {
-			struct track_clip t = *clip;
-			*clip = other;
-			other = t;
-		}
-		free(other.luma);
-		free(other.rgb);
+		take_better(clip, &other, better, s, conf);
 		track_result_free(&r);
 	}
 }
@@ -217,17 +258,36 @@ static void settle_clip(struct track_clip *clip, struct stage *stage, const stru
 	}
 }
 
-void track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+/* A pose that was earned by how the skin moves knows the turn better than the place: openings and eyeballs tell that. */
+static void settle_earned(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->doubt.span);
+	struct track_result r = { 0 };
+	const double px = clip->pose_px;
+	few.head.turn_sigma = few.head.yaw_sigma = conf->earned_deg;
+	if (follow_few(&r, clip, stage, s, &few))
+		reference_refine(clip, true, &r, s, &few);
+	clip->pose_px = px;
+	track_result_free(&r);
+}
+
+bool track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	if (s->assumed || clip->pose_given || !conf->settle)
-		return;
-	if (track_earn(clip, stage, s, conf)) {
+		return true;
+	if (track_earn(clip, stage, s, conf, err)) {
 		clip->begins_shut = true;
-		return;
+		settle_earned(clip, stage, s, conf);
+		return true;
 	}
+	if (err_is(err))
+		return false;
 	settle_clip(clip, stage, s, conf);
+	if (is_off(clip, s, conf) && conf->reference < 0 && !try_evidence(clip, stage, s, conf, err))
+		return false;
 	if (is_off(clip, s, conf) && conf->reference < 0)
 		try_others(clip, stage, s, conf);
+	return true;
 }
 
 bool track_settled(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf, struct err *err)

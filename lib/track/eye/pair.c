@@ -36,3 +36,49 @@ void eye_pair_level(struct eye_side *left, struct eye_side *right)
 	lift(left, -apart * var[0] / sum);
 	lift(right, apart * var[1] / sum);
 }
+
+/* Median confidence of an eye's gaze where it is measured. */
+static double usual_confidence(const struct eye_side *eye, long n, double *room)
+{
+	int m = 0;
+	for (long i = 0; i < n; i++)
+		if (eye->state[i].confidence > 0)
+			room[m++] = eye->state[i].confidence;
+	return m ? stats_median(m, room) : 1;
+}
+
+static void forget_gaze(struct eye_state *s)
+{
+	for (int k = 0; k < 3; k++)
+		s->gaze[k] = s->sigma[k] = NAN;
+	for (int k = 0; k < 5; k++)
+		s->limbus[k] = NAN;
+	s->confidence = 0;
+}
+
+void eye_pair_doubt(struct eye_side *left, struct eye_side *right, const double most_deg[2])
+{
+	static const double poor = 0.6;  // of its usual confidence: an eye that is not followed
+	long n = left->frames < right->frames ? left->frames : right->frames;
+	double *room = mem_array((size_t)n + 1, sizeof *room), middle[2] = { 0 };
+	int m = 0;
+	for (int k = 0; k < 2; k++) {
+		m = 0;
+		for (long i = 0; i < n; i++)
+			if (isfinite(left->state[i].gaze[k]) && isfinite(right->state[i].gaze[k]))
+				room[m++] = left->state[i].gaze[k] - right->state[i].gaze[k];
+		middle[k] = m ? stats_median(m, room) : 0;
+	}
+	const double usual[2] = { usual_confidence(left, n, room), usual_confidence(right, n, room) };
+	free(room);
+	for (long i = 0; m >= LEAST && i < n; i++) {
+		struct eye_state *s[2] = { &left->state[i], &right->state[i] };
+		bool apart = false;
+		for (int k = 0; k < 2; k++)
+			apart = apart || fabs(s[0]->gaze[k] - s[1]->gaze[k] - middle[k]) > most_deg[k] * M_PI / 180;
+		const double trust[2] = { s[0]->confidence / usual[0], s[1]->confidence / usual[1] };
+		for (int e = 0; e < 2 && apart; e++)
+			if (trust[e] <= trust[!e] || trust[e] < poor)
+				forget_gaze(s[e]);
+	}
+}

@@ -16,26 +16,45 @@ static bool is_pair(const struct evidence_region *a, const struct evidence_regio
 	return a->score > sure && b->score > sure && d > apart[0] && d < apart[1] && fabs(log(a->radius / b->radius)) < unlike;
 }
 
+/* Area of what shows between the lids, in squares of the iris' radius: about 7 of an open eye. */
+static double open_of(struct evidence_net *net, const struct photo *photo, const struct evidence_region *r)
+{
+	struct evidence e;
+	struct err none = { 0 };
+	double sum = 0;
+	if (!evidence_window(&e, net, photo, r->x, r->y, r->radius, &none))
+		return 0;
+	for (int i = 0; i < e.width * e.height; i++)
+		sum += (double)(e.plane[EVIDENCE_SCLERA][i] + e.plane[EVIDENCE_IRIS][i] + e.plane[EVIDENCE_PUPIL][i] + e.plane[EVIDENCE_REFLECTION][i]);
+	sum *= pow(e.scale / r->radius, 2);
+	evidence_free(&e);
+	return sum;
+}
+
 bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
 {
 	struct photo photo = { .width = width, .height = height, .bits = 8 };
 	struct evidence_region region[EVIDENCE_REGIONS];
 	size_t values = 3 * (size_t)width * (size_t)height;
+	const struct evidence_region *left = 0, *right = 0;
 	double best = 0;
 	int n = 0;
 	photo.rgb = mem_array(values + 1, sizeof *photo.rgb);
 	for (size_t i = 0; i < values; i++)
 		photo.rgb[i] = (uint16_t)(257 * rgb[i]);
 	bool ok = evidence_find(region, &n, net, &photo, err);
-	free(photo.rgb);
 	for (int i = 0; ok && i < n; i++)
 		for (int k = i + 1; k < n; k++) {
 			const struct evidence_region *a = &region[i], *b = &region[k];
 			if (!is_pair(a, b) || fmin(a->score, b->score) <= best)
 				continue;
 			best = fmin(a->score, b->score);
-			const struct evidence_region *left = a->x > b->x ? a : b, *right = left == a ? b : a;
-			*eyes = (struct head_eyes){ { { left->x, left->y }, { right->x, right->y } }, 0.5 * (a->radius + b->radius), best };
+			left = a->x > b->x ? a : b;
+			right = left == a ? b : a;
 		}
+	if (left)
+		*eyes = (struct head_eyes){ { { left->x, left->y }, { right->x, right->y } }, 0.5 * (left->radius + right->radius), best,
+			                        fmin(open_of(net, &photo, left), open_of(net, &photo, right)) };
+	free(photo.rgb);
 	return ok && best > 0;
 }

@@ -9,6 +9,7 @@ struct head_eyes {
 	double eye[2][2];      // px, middles of the irises; [0] lies to the right in the picture: the left eye of an upright head
 	double radius;         // px, of an iris: mean of both
 	double score;          // 0..1, of the less certain one
+	double open;           // area that shows between the lids of the less open one, in squares of the radius: 7 of an open eye, 0 of a shut one
 };
 
 /* The pair of irises that looks most like a person's: alike in size, apart as eyes are. rgb[height][3 width].

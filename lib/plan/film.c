@@ -1,0 +1,137 @@
+#include "plan/film.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/video/video.h"
+
+/* The picture is reduced to WIDE px; cells of CELL px; RING cells deep is the border. Frames EVERY frames apart are compared with the first. */
+enum { WIDE = 320, CELL = 16, RING = 2, EVERY = 12, LOOKS = 5, LEAST_CELLS = 4 };
+
+static const double texture = 6;          // mean gradient, of 255, that noise and coding do not make in the reduced picture
+static const double moved = 0.4;          // change of a cell, of its gradient: a shift by half a px of the reduced picture
+static const double most_moved = 0.8;     // share of the textured border that moves with the camera
+static const struct video_conf limits = { .limit_mpx = 40, .limit_frames = 10000000, .threads = 2 };
+
+/* Brightness, reduced by averaging. */
+struct small {
+	int width, height;
+	float *px;
+};
+
+static void reduce(struct small *s, const struct video_frame *f)
+{
+	const int step = f->width > WIDE ? f->width / WIDE : 1;
+	s->width = f->width / step;
+	s->height = f->height / step;
+	s->px = s->px ? s->px : mem_array((size_t)s->width * (size_t)s->height + 1, sizeof *s->px);
+	for (int y = 0; y < s->height; y++)
+		for (int x = 0; x < s->width; x++) {
+			int sum = 0;
+			for (int v = 0; v < step; v++)
+				for (int u = 0; u < step; u++)
+					sum += f->luma[(long)(y * step + v) * f->luma_stride + x * step + u];
+			s->px[y * s->width + x] = (float)sum / (float)(step * step);
+		}
+}
+
+/* Cells of one side of the border. */
+struct side {
+	int textured, differ;
+};
+
+/* Whether that cell has texture; differs: whether it shows something else in b. */
+static bool has_texture(bool *differs, const struct small *a, const struct small *b, int cx, int cy)
+{
+	const double n = (CELL - 1) * (CELL - 1);
+	double gradient = 0, change = 0, mean = 0;
+	for (int y = cy * CELL; y < cy * CELL + CELL - 1; y++)
+		for (int x = cx * CELL; x < cx * CELL + CELL - 1; x++) {
+			const int i = y * a->width + x;
+			gradient += fabs((double)(a->px[i + 1] - a->px[i])) + fabs((double)(a->px[i + a->width] - a->px[i]));
+			mean += (double)(b->px[i] - a->px[i]) / n;
+		}
+	// the light may change: the mean does not count
+	for (int y = cy * CELL; y < cy * CELL + CELL - 1; y++)
+		for (int x = cx * CELL; x < cx * CELL + CELL - 1; x++)
+			change += fabs((double)(b->px[y * a->width + x] - a->px[y * a->width + x]) - mean);
+	*differs = change > moved * gradient;
+	return gradient > texture * n;
+}
+
+/* Whether all four sides of the border have texture, and it moves. */
+static bool border_moves(const struct small *a, const struct small *b)
+{
+	struct side side[4] = { 0 };
+	const int wide = a->width / CELL, high = a->height / CELL;
+	bool moves = true;
+	for (int cy = 0; cy < high; cy++)
+		for (int cx = 0; cx < wide; cx++) {
+			const bool in[4] = { cx < RING, cx >= wide - RING, cy < RING, cy >= high - RING };
+			bool differs, textured = (in[0] || in[1] || in[2] || in[3]) && has_texture(&differs, a, b, cx, cy);
+			for (int k = 0; k < 4; k++) {
+				side[k].textured += in[k] && textured;
+				side[k].differ += in[k] && textured && differs;
+			}
+		}
+	for (int k = 0; k < 4; k++)
+		moves = moves && side[k].textured >= LEAST_CELLS && side[k].differ > most_moved * side[k].textured;
+	return moves;
+}
+
+static enum film_camera look(const char *path)
+{
+	struct video_info info;
+	struct err none = { 0 };
+	struct small first = { 0 }, now = { 0 };
+	struct video *video = video_open(&info, path, &limits, &none);
+	bool got = video;
+	int looks = 0;
+	bool moves = false;
+	for (int i = 0; got && looks < LOOKS; i++) {
+		struct video_frame f;
+		got = video_next(&f, &got, video, &none) && got;
+		if (got && i % EVERY == 0) {
+			reduce(looks ? &now : &first, &f);
+			if (looks++)
+				moves = moves || border_moves(&first, &now);
+		}
+		video_frame_free(&f);
+	}
+	video_close(video);
+	free(first.px);
+	free(now.px);
+	return looks < 2 ? FILM_UNKNOWN : moves ? FILM_MOVES : FILM_RESTS;
+}
+
+enum film_camera plan_film_camera(const char *capture, const char *file)
+{
+	enum { LIMIT = 1024 };
+	struct stat st;
+	struct err none = { 0 };
+	char *path = mem_printf("%s/%s", capture, file), *kept = mem_printf("%s/work/.made/film", capture), *was = 0;
+	size_t size;
+	enum film_camera is = FILM_UNKNOWN;
+	if (!stat(path, &st) && S_ISREG(st.st_mode)) {
+		char *key = mem_printf("%s %lld %lld.%09ld ", file, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
+		if (file_exists(kept) && file_read(&was, &size, kept, LIMIT, &none) && !strncmp(was, key, strlen(key))) {
+			is = atoi(was + strlen(key)) == FILM_MOVES ? FILM_MOVES : FILM_RESTS;
+		} else if ((is = look(path)) != FILM_UNKNOWN) {
+			char *text = mem_printf("%s%d\n", key, (int)is), *dir = mem_printf("%s/work/.made", capture);
+			struct err not_kept = { 0 };  // it is looked at again
+			if (file_mkdirs(dir, &not_kept))
+				file_write(kept, text, strlen(text), &not_kept);
+			free(text);
+			free(dir);
+		}
+		free(key);
+	}
+	free(was);
+	free(path);
+	free(kept);
+	return is;
+}

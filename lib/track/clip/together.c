@@ -1,0 +1,108 @@
+#include "track/clip/together.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+#include "track/head/pose.h"
+
+/* A point about the rigid head in one frame. */
+struct about {
+	double rigid[2], off[2];  // px: where the head alone puts it; how far from there it was found
+	double weight;            // confidence squared; 0: not seen
+};
+
+/* What a point's neighbours, and it itself, tell of its motion about the head. */
+struct field {
+	double off[2], scatter;   // px
+};
+
+/* Component-wise median of the neighbours. */
+static void middle(double mid[2], int n, const int who[], const struct about *a)
+{
+	double x[SKIN_NEAR_MAX + 1];
+	for (int c = 0; c < 2; c++) {
+		for (int k = 0; k < n; k++)
+			x[k] = a[who[k]].off[c];
+		mid[c] = stats_median(n, x);
+	}
+}
+
+/* Tukey's weighted mean about the median: one step. Returns false where too few are seen. */
+static bool mean_motion(struct field *out, int i, const struct about *a, const struct skin_points *p, double least_px)
+{
+	enum { LEAST = 4 };
+	int who[SKIN_NEAR_MAX + 1], n = 0;
+	double r[SKIN_NEAR_MAX + 1], mid[2], reach = 0, sum = 0, square = 0;
+	for (int k = p->first[i]; k < p->first[i + 1] && n < SKIN_NEAR_MAX; k++) {
+		const double *at = p->at[p->near[k]];
+		reach = fmax(reach, hypot(at[0] - p->at[i][0], at[1] - p->at[i][1]));
+		if (a[p->near[k]].weight > 0)
+			who[n++] = p->near[k];
+	}
+	if (n < LEAST)
+		return false;
+	if (a[i].weight > 0)
+		who[n++] = i;
+	middle(mid, n, who, a);
+	for (int k = 0; k < n; k++)
+		r[k] = hypot(a[who[k]].off[0] - mid[0], a[who[k]].off[1] - mid[1]);
+	double scale = 4.5 * fmax(least_px, stats_median(n, r));
+	*out = (struct field){ 0 };
+	for (int k = 0; k < n; k++) {
+		const double *at = p->at[who[k]], *off = a[who[k]].off;
+		double d = hypot(at[0] - p->at[i][0], at[1] - p->at[i][1]) / (reach / 1.5), e = hypot(off[0] - mid[0], off[1] - mid[1]) / scale;
+		double w = e < 1 ? a[who[k]].weight * exp(-0.5 * d * d) * pow(1 - e * e, 2) : 0;
+		for (int c = 0; c < 2; c++)
+			out->off[c] += w * off[c];
+		square += w * (off[0] * off[0] + off[1] * off[1]);
+		sum += w;
+	}
+	if (!(sum > 0))
+		return false;
+	out->off[0] /= sum;
+	out->off[1] /= sum;
+	out->scatter = sqrt(fmax(0, square / sum - out->off[0] * out->off[0] - out->off[1] * out->off[1]));
+	return true;
+}
+
+static void frame(struct track_result *r, long f, struct about *a, const struct track_points *points, const struct track_clip *clip, double own, double astray)
+{
+	float (*skin)[2] = r->skin + f * r->n_points, *confidence = r->confidence + f * r->n_points;
+	for (int i = 0; i < r->n_points; i++) {
+		bool ahead = head_project(a[i].rigid, &clip->camera, r->pose[f], points->head[i]);
+		a[i].weight = ahead ? pow((double)confidence[i], 2) : 0;
+		for (int c = 0; c < 2; c++)
+			a[i].off[c] = (double)skin[i][c] - a[i].rigid[c];
+	}
+	for (int i = 0; i < r->n_points; i++) {
+		struct field field;
+		if (!mean_motion(&field, i, a, &points->points, own))
+			continue;
+		double d[2] = { a[i].off[0] - field.off[0], a[i].off[1] - field.off[1] }, off = hypot(d[0], d[1]) / astray;
+		double trust = a[i].weight > 0 && off < 2 ? exp(-0.5 * off * off) : 0, keep = trust * own * own / (own * own + field.scatter * field.scatter);
+		double px[2];
+		for (int c = 0; c < 2; c++) {
+			px[c] = a[i].rigid[c] + field.off[c] + keep * d[c];
+			skin[i][c] = (float)px[c];
+		}
+		confidence[i] = (float)((double)confidence[i] * trust);
+		track_to_model(r->skin_model[f * r->n_points + i], px, points->head[i], r->pose[f], clip);
+	}
+}
+
+void track_together(struct track_result *r, const struct track_points *points, const struct track_clip *clip, const struct track_conf *conf)
+{
+	const double px_per_mm = clip->camera.focal_px / clip->cam_from_head[2][3];
+#pragma omp parallel
+	{
+		struct about *a = mem_array((size_t)r->n_points + 1, sizeof *a);
+#pragma omp for schedule(dynamic, 4)
+		for (long f = 0; f < r->n; f++)
+			if (!r->lost_at[f])
+				frame(r, f, a, points, clip, conf->own_mm * px_per_mm, conf->astray_mm * px_per_mm);
+		free(a);
+	}
+}
