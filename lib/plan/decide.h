@@ -1,5 +1,6 @@
 /* decide: which stages a capture folder needs, why the others are not needed, and about how long each takes. It reads names and the
- * first bytes of photographs, and a character's mesh only where that has as many vertices as the subject's: every make calls it.
+ * first bytes of photographs, a character's mesh only where that has as many vertices as the subject's, and of a video alone whose lens is not
+ * given the first frames, once (film.h): every make calls it.
  */
 #ifndef PLAN_DECIDE_H
 #define PLAN_DECIDE_H

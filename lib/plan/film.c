@@ -9,12 +9,12 @@
 #include "base/mem.h"
 #include "image/video/video.h"
 
-/* The picture is reduced to WIDE px; cells of CELL px; RING cells deep is the border. Frames EVERY frames apart are compared with the first. */
-enum { WIDE = 320, CELL = 16, RING = 2, EVERY = 12, LOOKS = 5, LEAST_CELLS = 4 };
+/* The picture is reduced to WIDE px and cut into cells of CELL px. Frames EVERY frames apart are compared with the first. */
+enum { WIDE = 320, CELL = 16, EVERY = 12, LOOKS = 5, LEAST_CELLS = 12 };
 
 static const double texture = 6;          // mean gradient, of 255, that noise and coding do not make in the reduced picture
 static const double moved = 0.4;          // change of a cell, of its gradient: a shift by half a px of the reduced picture
-static const double most_moved = 0.8;     // share of the textured border that moves with the camera
+static const double most_moved = 0.75;    // share of what has texture that moves before a camera that rests
 static const struct video_conf limits = { .limit_mpx = 40, .limit_frames = 10000000, .threads = 2 };
 
 /* Brightness, reduced by averaging. */
@@ -39,11 +39,6 @@ static void reduce(struct small *s, const struct video_frame *f)
 		}
 }
 
-/* Cells of one side of the border. */
-struct side {
-	int textured, differ;
-};
-
 /* Whether that cell has texture; differs: whether it shows something else in b. */
 static bool has_texture(bool *differs, const struct small *a, const struct small *b, int cx, int cy)
 {
@@ -63,24 +58,20 @@ static bool has_texture(bool *differs, const struct small *a, const struct small
 	return gradient > texture * n;
 }
 
-/* Whether all four sides of the border have texture, and it moves. */
-static bool border_moves(const struct small *a, const struct small *b)
+/* Whether nearly all that has texture moves. */
+static bool all_moves(const struct small *a, const struct small *b)
 {
-	struct side side[4] = { 0 };
 	const int wide = a->width / CELL, high = a->height / CELL;
-	bool moves = true;
+	int textured = 0, differ = 0;
 	for (int cy = 0; cy < high; cy++)
 		for (int cx = 0; cx < wide; cx++) {
-			const bool in[4] = { cx < RING, cx >= wide - RING, cy < RING, cy >= high - RING };
-			bool differs, textured = (in[0] || in[1] || in[2] || in[3]) && has_texture(&differs, a, b, cx, cy);
-			for (int k = 0; k < 4; k++) {
-				side[k].textured += in[k] && textured;
-				side[k].differ += in[k] && textured && differs;
-			}
+			bool differs;
+			if (!has_texture(&differs, a, b, cx, cy))
+				continue;
+			textured++;
+			differ += differs;
 		}
-	for (int k = 0; k < 4; k++)
-		moves = moves && side[k].textured >= LEAST_CELLS && side[k].differ > most_moved * side[k].textured;
-	return moves;
+	return textured >= LEAST_CELLS && differ > most_moved * textured;
 }
 
 static enum film_camera look(const char *path)
@@ -98,7 +89,7 @@ static enum film_camera look(const char *path)
 		if (got && i % EVERY == 0) {
 			reduce(looks ? &now : &first, &f);
 			if (looks++)
-				moves = moves || border_moves(&first, &now);
+				moves = moves || all_moves(&first, &now);
 		}
 		video_frame_free(&f);
 	}

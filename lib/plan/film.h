@@ -5,8 +5,8 @@
 
 enum film_camera { FILM_UNKNOWN, FILM_RESTS, FILM_MOVES };
 
-/* Compares a few frames of the first second: a camera that moves moves all that has texture along the picture's border, beside the person, on all
- * four sides. Where a side shows nothing, or part of it stays, the camera is taken to rest.
+/* Compares a few frames of the first second: before a camera that moves all that has texture moves, before one that rests a part of it stays, of the
+ * room or of a head on a rest. A head that moves and fills the picture, or whose room has no texture, is taken for a camera that moves.
  * capture  its work/.made/film keeps the answer until the file changes
  * file     relative to it
  * FILM_UNKNOWN where the file cannot be decoded: the stages that read it say why. */

@@ -31,6 +31,17 @@ void clip_inputs(const char *out[8], int *n, struct stage *stage)
 			out[(*n)++] = files[i];
 }
 
+bool clip_has_skin(struct stage *stage)
+{
+	struct npy vertices;
+	struct err none = { 0 };
+	const bool read = npy_read(&vertices, stage_path(stage, "%s", files[VERTICES]), NPY_LIMIT, &none);
+	const bool has = !read || vertices.ndim != 1 || vertices.shape[0] > 0;
+	if (read)
+		npy_free(&vertices);
+	return has;
+}
+
 static bool read_gaze(struct clip *clip, struct stage *stage, struct err *err)
 {
 	const char *path = stage_path(stage, "%s", files[GAZE]);

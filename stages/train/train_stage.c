@@ -172,6 +172,10 @@ bool train_stage(struct stage *stage, const struct train_conf *conf, const struc
 	clip_inputs(in, &n, stage);
 	if (all_fresh(stage, n, in))
 		return true;
+	if (!clip_has_skin(stage)) {
+		stage_skipped(stage, "no skin was followed, for want of a mesh of the person (subject.ply): nothing is learnt");
+		return true;
+	}
 	struct clip clip = { 0 };
 	struct skin_model model = { 0 };
 	struct train_report report = { 0 };

@@ -71,6 +71,7 @@ static struct track_conf few_of(const struct track_conf *conf, const struct trac
 	few.every = span > frames ? (span + frames - 1) / frames : 1;
 	few.eyes.center_sigma = conf->settle_sigma;
 	few.eyes.torsion_rays = 0;
+	few.eyes.apart[0] = few.eyes.apart[1] = INFINITY;  // under a pose that is still wrong eyes look apart
 	return few;
 }
 
