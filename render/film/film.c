@@ -14,10 +14,10 @@ bool film_make(struct skin_job *job, struct err *err)
 	const char *in[] = { "work/skin/gaze.csv", "work/skin/track.json", "work/skin/lids.npy", "work/skin/skin.npy", "work/skin/confidence.npy", video };
 	file_list_free(&list);
 	bool ok = file_mkdirs(stage_path(job->stage, "work/render"), err);
-	if (ok && !stage_fresh(job->stage, course, 2, in))
-		ok = film_course(job, course, 2, in, err) && stage_made(job->stage, course, 2, in, err);
-	if (ok && video && job->conf->clip_px > 0 && !stage_fresh(job->stage, overlay, COUNT(in), in))
-		ok = film_overlay(job, overlay, COUNT(in), in, err) && stage_made(job->stage, overlay, COUNT(in), in, err);
+	if (ok && !skin_kept(job, course, 2, in, err))
+		ok = film_course(job, course, 2, in, err) && skin_made(job, course, 2, in, err);
+	if (ok && video && job->conf->clip_px > 0 && !skin_kept(job, overlay, COUNT(in), in, err))
+		ok = film_overlay(job, overlay, COUNT(in), in, err) && skin_made(job, overlay, COUNT(in), in, err);
 	free(video);
 	return ok;
 }
