@@ -79,7 +79,7 @@ TESTS := $(patsubst %.c,$B/%,$(wildcard tests/unit/*/test_*.c))
 BENCHES := $(patsubst %.c,$B/%,$(wildcard tests/bench/bench_*.c tests/bench/*/bench_*.c))
 STRESSES := $(patsubst %.c,$B/%,$(wildcard tests/stress/stress_*.c))
 TEST_LIB_OBJ := $(patsubst %.c,$B/%.o,$(wildcard tests/lib/*.c tests/lib/*/*.c tests/peers/*.c) \
-	$(filter-out tests/evidence/make_eyes.c,$(wildcard tests/evidence/*.c)))
+	$(filter-out tests/evidence/make_%.c,$(wildcard tests/evidence/*.c)))
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:

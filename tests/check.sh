@@ -38,7 +38,7 @@ for script in tests/chain/{views,track,viewer,head,kill,slurm,accuracy}.sh tests
 	beside "$script" "$script"
 done
 wait
-part "a short training of the evidence network" tests/evidence/short.sh
+part "short trainings of the networks" tests/evidence/short.sh
 [ -n "${FUZZ:-}" ] && part "fuzzing" tests/fuzz.sh
 
 passed=$(grep -c '^pass ' "$RESULTS") failed=$(grep -c '^fail ' "$RESULTS") skipped=$(grep -c '^skip ' "$RESULTS")

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <omp.h>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <vector>
 
@@ -49,12 +50,17 @@ int silent(int, const char *, const char *, const char *, int, void *)
 	return 0;
 }
 
-/* OpenCV prints what it throws; what it throws is turned into an err here. */
+/* OpenCV prints and logs what it throws; what it throws is turned into an err here. */
 struct quiet {
 	cv::ErrorCallback was;
 	void *data = nullptr;
+	cv::utils::logging::LogLevel level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
 	quiet() : was(cv::redirectError(silent, nullptr, &data)) {}
-	~quiet() { cv::redirectError(was, data); }
+	~quiet()
+	{
+		cv::redirectError(was, data);
+		cv::utils::logging::setLogLevel(level);
+	}
 };
 
 cv::dnn::Net read_net(const std::vector<char> &data)

@@ -33,7 +33,7 @@ static bool exposed(struct limbus_found *found, const struct pyramid *pyramid, c
 	return true;
 }
 
-/* Weighs what the network finds; where that leaves a doubt, what the votes of edges find as well. */
+/* Weighs what the network finds; where that leaves a doubt, what it finds at other scales and what the votes of edges find as well. */
 static bool search(struct limbus_found *found, struct trials *trials, struct err *err)
 {
 	const struct limbus_conf *conf = trials->conf;
@@ -41,7 +41,7 @@ static bool search(struct limbus_found *found, struct trials *trials, struct err
 		return false;
 	posterior_of(&found->posterior, trials);
 	if (found->posterior.gross > conf->sure_gross) {
-		if (!trials_of_votes(trials, err))
+		if (!trials_of_scales(trials, err) || !trials_of_votes(trials, err))
 			return false;
 		posterior_of(&found->posterior, trials);
 	}
@@ -56,15 +56,17 @@ static bool hinted(struct limbus_found *found, struct trials *trials, const doub
 	return true;
 }
 
-/* Of trials that say the same nearly as surely, the one whose arcs the evidence chose: it keeps lids out best. */
+/* Of trials that say the same nearly as surely, the one whose arcs the evidence chose, or else the strip: they keep lids out best. */
 static struct trial *told(struct trials *t, int best)
 {
+	static const enum trial_guide guide[] = { GUIDE_EVIDENCE, GUIDE_STRIP };
 	struct trial *likeliest = &t->trial[best];
-	for (int i = 0; i < t->n; i++) {
-		struct trial *other = &t->trial[i];
-		if (other->guide == GUIDE_EVIDENCE && other->log_odds > likeliest->log_odds - AS_SURE && trial_same(other, likeliest))
-			return other;
-	}
+	for (int k = 0; k < COUNT(guide); k++)
+		for (int i = 0; i < t->n; i++) {
+			struct trial *other = &t->trial[i];
+			if (other->guide == guide[k] && other->log_odds > likeliest->log_odds - AS_SURE && trial_same(other, likeliest))
+				return other;
+		}
 	return likeliest;
 }
 

@@ -9,6 +9,7 @@
 #include "limbus/pupil.h"
 #include "limbus/odds.h"
 #include "limbus/propose/seek.h"
+#include "limbus/strip.h"
 
 /* What both eyes of a face have in common (limbus/face/face.h). */
 struct face_conf {
@@ -24,9 +25,12 @@ struct limbus_conf {
 	struct rim_conf rim;
 	struct pupil_conf pupil;
 	struct evidence_net *net;    // borrowed
+	struct strip_net *strip;     // borrowed
+	struct strip_conf strip_conf;
 	struct odds_weights odds;
 	struct face_conf face;
 	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
+	double strip_sigma;    // of the strip's ellipse, beside what its rays say; share of the semi-axis
 	double region_hidden;  // how many times more where no sclera is beside it
 	double max_gross;      // chance of being more than 2 % off, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
@@ -35,7 +39,7 @@ struct limbus_conf {
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
 };
 
-#define LIMBUS_RIGHT 0.02  // semi-axes: an answer that is farther off is a gross error
+#define LIMBUS_RIGHT 0.02  // semi-axes: an answer that is farther off is a gross error; where the step is soft, 3/4 of its width (odds.h)
 
 /* How far two answers may be apart, semi-axes, that say the same: three of their sigmas, at least LIMBUS_RIGHT and at most 0.05. */
 static inline double limbus_alike(double sigma)

@@ -80,10 +80,34 @@ double odds_sigma(const struct rim *rim)
 	return worst / rim->e.a;
 }
 
-void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct evidence *evidence,
-                 const struct region_map *map, int width, int height)
+/* What the strip says of the ellipse. */
+static void of_strip(double x[ODDS_TRAITS], const struct ellipse *e, const struct odds_view *view)
+{
+	const struct strip_accord a = strip_accord_of(view->strip, e);
+	struct ellipse told = view->strip->e;
+	double q[ELLIPSE_N], off = 0, sigma = 0;
+	ellipse_from_q(&told, view->told->q);
+	ellipse_to_q(q, e);
+	for (int i = 0; i < ELLIPSE_N; i++) {
+		off = fmax(off, fabs(q[i] - view->told->q[i]));
+		sigma = fmax(sigma, view->told->sigma[i]);
+	}
+	const bool any = view->told->q[2] > 0;
+	x[ODDS_STRIP_SEEN] = a.seen;
+	x[ODDS_STRIP_ON] = a.on;
+	x[ODDS_STRIP_OFF] = a.off;
+	x[ODDS_STRIP_WORTH] = a.worth;
+	x[ODDS_STRIP_BEHIND] = any ? fmin(fmax(strip_worth(view->strip, &told) - a.worth, 0), 20) : 20;
+	x[ODDS_STRIP_SCATTER] = log(a.scatter + FLOOR);
+	x[ODDS_STRIP_APART] = any ? log(fmin(off / e->a, 0.5) + FLOOR) : log(0.5);
+	x[ODDS_STRIP_SIGMA] = any ? log(fmin(sigma / e->a, 0.5) + FLOOR) : log(0.5);
+}
+
+void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct odds_view *view)
 {
 	const struct ellipse *e = &rim->e;
+	const struct evidence *evidence = view->evidence;
+	const struct region_map *map = view->map;
 	const double s = BESIDE * e->a;
 	struct ellipse best = *e;
 	double worth = region_worth(map, e), top = region_fit(&best, map);
@@ -106,10 +130,11 @@ void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim 
 	x[ODDS_PUPIL] = pupil != 0;
 	x[ODDS_PUPIL_OFF] = pupil ? hypot(pupil->e.cx - e->cx, pupil->e.cy - e->cy) / e->a : 0;
 	x[ODDS_PUPIL_LARGE] = pupil ? fmax(pupil->e.a / e->a - 0.5, 0) : 0;
-	x[ODDS_CUT] = beyond(e, width, height);
+	x[ODDS_CUT] = beyond(e, view->width, view->height);
 	x[ODDS_ROUND] = log(e->b / e->a);
 	x[ODDS_IRIS_EVEN] = varies(rim, false);
 	x[ODDS_SCLERA_EVEN] = varies(rim, true);
+	of_strip(x, e, view);
 }
 
 double odds_log(const double x[ODDS_TRAITS], const struct odds_weights *weights)

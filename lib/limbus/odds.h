@@ -1,4 +1,5 @@
-/* odds: how likely a measured ellipse is the limbus to 2 % of its radius: one number from the evidence of the pixels in and round it, the
+/* odds: how likely a measured ellipse is the limbus to 2 % of its radius, or to three quarters of the width of its step
+ * where that is more, 4 % at most (a limbus can be told no better than its ramp): one number from the evidence of the pixels in and round it, the
  * steps along it and the pupil in it. A regression on drawn and synthetic eyes
  * (tests/evidence/odds.py); its weights are keys of config/limbus.conf.
  */
@@ -6,6 +7,7 @@
 #define LIMBUS_ODDS_H
 #include "limbus/region.h"
 #include "limbus/rim.h"
+#include "limbus/strip.h"
 
 /* What is looked at. Means over places where not said otherwise; chances are the evidence's. */
 enum odds_trait {
@@ -31,12 +33,22 @@ enum odds_trait {
 	ODDS_ROUND,           // log b / a
 	ODDS_IRIS_EVEN,       // log of how the brightness inside varies along the ring, in steps: painted irises are even
 	ODDS_SCLERA_EVEN,     // the same outside
+	ODDS_STRIP_SEEN,      // share of the rays of the strip where the limbus is seen
+	ODDS_STRIP_ON,        // of what is seen of it, the share on the ellipse
+	ODDS_STRIP_OFF,       // the share well off it
+	ODDS_STRIP_WORTH,     // log likelihood of the ellipse
+	ODDS_STRIP_BEHIND,    // how far that is behind the strip's own ellipse
+	ODDS_STRIP_SCATTER,   // log of the scatter of the rays' places over the semi-axis
+	ODDS_STRIP_APART,     // log of how far the strip's own ellipse is, semi-axes
+	ODDS_STRIP_SIGMA,     // log of the largest sigma of the strip's own ellipse, semi-axes
 	ODDS_TRAITS
 };
 
-/* pupil: null where none was measured. evidence: of the window round the ellipse; map: the same. */
-void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct evidence *evidence,
-                 const struct region_map *map, int width, int height);
+/* What an ellipse is looked at with: evidence of the window round it, the map of that, and the strip with its own likeliest ellipse. */
+struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; int width, height; };
+
+/* pupil: null where none was measured. */
+void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct odds_view *view);
 
 /* The largest sigma of centre and semi-axes, semi-axes. */
 double odds_sigma(const struct rim *rim);

@@ -30,6 +30,8 @@ struct fault {
 static const struct fault faults[] = {
 	{ ODDS_EYE, 0.9, "nothing in it looks like an iris: photograph one open eye close up" },
 	{ ODDS_COVERAGE, 0.7, "too much of the limbus is covered by lids or lashes: open the eye wider" },
+	{ ODDS_STRIP_SEEN, 0.7, "too much of the limbus is covered by lids or lashes: open the eye wider" },
+	{ ODDS_STRIP_ON, 0.85, "no clear edge between iris and sclera: light the eye evenly and focus on the iris" },
 	{ ODDS_SIGMA, -5.5, "too little of the limbus stands out: open the eye wider and light it evenly" },
 	{ ODDS_CONTRAST, -0.5, "no clear edge between iris and sclera: light the eye evenly and focus on the iris" },
 	{ ODDS_BLUR, 0.03, "too blurred: focus on the iris and hold the camera still" },

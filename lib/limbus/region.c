@@ -47,7 +47,7 @@ double region_worth(const struct region_map *m, const struct ellipse *e)
 	const double yy = a2 * s * s + b2 * c * c, xy = (a2 - b2) * c * s, ab = e->a * e->b;
 	const double cy = (e->cy - m->y0) / m->scale, cx = (e->cx - m->x0) / m->scale, high = sqrt(yy) / m->scale;
 	double sum = 0;
-	for (int y = (int)fmax(ceil(cy - high - 0.5), 0); y < m->height && y + 0.5 < cy + high; y++) {
+	for (int y = (int)fmin(fmax(ceil(cy - high - 0.5), 0), m->height); y < m->height && y + 0.5 < cy + high; y++) {
 		const double v = (y + 0.5 - cy) * m->scale, left = yy - v * v;
 		if (left <= 0)
 			continue;

@@ -15,7 +15,6 @@
 enum { MAX_LAG = ARCS / 8, MIN_ARCS = 40, WIDTH_ARCS = 24, ACROSS = 6, PASSES = 6, SMOOTH_FROM = 4, SMOOTH_TO = 8 };
 static const double LEAST_NOISE = 0.02;  // px: no step is placed better
 static const double SHARP_PX = 3;       // a step's sigma
-static const double COLOUR_GAIN = 5, ROUGH_GAIN = 1.2;  // of colour over brightness, from which it measures sharp steps, too; roughly
 
 static double median_of(const struct step step[ARCS], const bool use[ARCS], size_t field)
 {
@@ -267,7 +266,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 			 * ones the colours are looked at again, now that it is known better where they are. */
 			if (rim->width >= SHARP_PX || gain > 1)
 				gain = limbus_colour(weight, photo, &rim->e);
-			for (int c = 0; c < 3 && rim->width < SHARP_PX && !(gain > (conf->passes < PASSES ? ROUGH_GAIN : COLOUR_GAIN)); c++)
+			for (int c = 0; c < 3 && rim->width < SHARP_PX && !(gain > (conf->passes < PASSES ? conf->rough_gain : conf->colour_gain)); c++)
 				weight[c] = 1 / 3.0;
 			grey_free(&grey);
 			grey = grey_linear(photo, &rim->e, 1.3, conf->max_axis, weight);

@@ -12,6 +12,8 @@ struct rim_conf {
 	double max_rms;       // residual of a step, in units of its height, beyond which an arc is rejected
 	double min_contrast;  // of an arc's step, relative to the ring's median
 	double irregularity;  // sigma that is added for the limbus' own irregularity, share of the step's width
+	double colour_gain, rough_gain;  // of colour over brightness, from which it measures sharp steps, too; the same of a rough measure
+	double coarse_straying;  // how many times more a rough measure strays
 	double straying;      // the limbus is no ellipse: variance of centre and size for that of residuals that neighbours share
 	double max_axis;      // px: larger limbi are measured in a reduced picture
 	const struct ellipse_prior *known;  // what the evidence says of the ellipse before, or null; borrowed

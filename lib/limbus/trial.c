@@ -6,9 +6,9 @@
 #include "base/mem.h"
 #include "limbus/find.h"
 
-enum { REGIONS_TRIED = 3, VOTES_TRIED = 4, ROUNDS_TRIED = 2, COARSE_PX = 110, COARSE_PUPIL_PX = 70, COARSE_PASSES = 4, ALIKE_ARCS = 12 };
+enum { REGIONS_TRIED = 3, VOTES_TRIED = 4, ROUNDS_TRIED = 2, COARSE_PX = 110, COARSE_PUPIL_PX = 70, COARSE_PASSES = 4, ALIKE_ARCS = 12, STRIP_READS = 3 };
 static const double SAME_PLACE = 0.5, SAME_SIZE = 0.3;  // of the radius, and of its logarithm: a window serves
-static const double COARSE_STRAYING = 6;                // a rough measure strays more than its residuals say
+static const double LEAST_REGION = 0.3;                // of the radius looked for
 static const double ALIKE = 0.06;                       // of the radius: one ellipse, for a start
 static const double AGAIN = 0.2;                        // logarithm of the size: the window is made anew for the ellipse
 static const double OTHER_SCALE[] = { 1.6, 0.62 };      // a collarette for a limbus, a limbus for a face
@@ -28,6 +28,8 @@ void trials_free(struct trials *t)
 		evidence_free(&t->window[i].evidence);
 		region_map_free(&t->window[i].map);
 		grey_free(&t->window[i].sclera);
+		grey_free(&t->window[i].seen);
+		free(t->window[i].strip);
 	}
 	free(t);
 }
@@ -54,24 +56,77 @@ static struct trial_window *window(struct trials *t, double x, double y, double 
 	return w;
 }
 
+/* The evidence's ellipse as a prior: known less well where no sclera is seen beside it. */
+static void region_prior(struct ellipse_prior *known, const struct ellipse *region, const struct trial_window *w, const struct limbus_conf *conf)
+{
+	const double wider = (1 + conf->region_hidden * (1 - region_shown(region, &w->evidence))) * region->a;
+	ellipse_to_q(known->q, region);
+	known->alike = ALIKE_ARCS;
+	for (int i = 0; i < ELLIPSE_N; i++)
+		known->sigma[i] = (i < 3 ? conf->region_sigma : conf->region_shape_sigma) * wider;
+}
+
+/* A strip read round an ellipse, and the likeliest ellipse that follows. */
+struct reading { struct strip *strip; struct ellipse e; struct ellipse_fit fit; bool seen; double worth; };
+
+static bool read_round(struct reading *r, const struct ellipse *start, bool both, const struct trial_window *w, const struct trials *t, struct err *err)
+{
+	struct ellipse_prior region;
+	r->e = *start;
+	if (!strip_read(r->strip, t->conf->strip, t->photo, &w->evidence, start, both, &t->conf->strip_conf, err))
+		return false;
+	region_prior(&region, start, w, t->conf);
+	r->seen = strip_fit(&r->e, &r->fit, r->strip, &w->map, region.sigma);
+	r->worth = r->seen ? strip_worth(r->strip, &r->e) : -1;
+	return true;
+}
+
+/* Reads the strip round the likeliest of n starts, then round the ellipse that follows, and again. */
+static bool read_strip(struct trial_window *w, const struct trials *t, int n, const struct ellipse start[n], struct err *err)
+{
+	struct reading best = { .strip = mem_new(1, sizeof *best.strip) }, other = { .strip = mem_new(1, sizeof *other.strip) };
+	bool ok = read_round(&best, &start[0], n == 1, w, t, err);
+	for (int i = 1; i < n && ok; i++) {
+		ok = read_round(&other, &start[i], false, w, t, err);
+		if (ok && other.worth > best.worth) {
+			const struct reading was = best;
+			best = other;
+			other = was;
+		}
+	}
+	for (int k = 1; k < STRIP_READS && ok && best.seen; k++) {
+		const struct ellipse from = best.e;
+		ok = read_round(&best, &from, k + 1 == STRIP_READS, w, t, err);
+	}
+	free(other.strip);
+	w->strip = best.strip;
+	if (!ok || !best.seen)
+		return ok;
+	ellipse_to_q(w->told.q, &best.e);
+	w->told.alike = ALIKE_ARCS;
+	for (int i = 0; i < ELLIPSE_N; i++)
+		w->told.sigma[i] = hypot(sqrt(best.fit.cov_q[i][i]), (i < 3 ? 1 : 0.4) * t->conf->strip_sigma * best.e.a);
+	w->seen = strip_seen(best.strip);
+	return true;
+}
+
 bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const struct trial *trial, const struct trials *t, bool coarse)
 {
 	struct rim_conf conf = t->conf->rim;
-	struct ellipse_prior known = { .alike = ALIKE_ARCS };
-	if (trial->guide != GUIDE_WHITENESS_ALONE) {
-		ellipse_to_q(known.q, &trial->region);
-		const double wider = (1 + t->conf->region_hidden * (1 - region_shown(&trial->region, &trial->window->evidence))) * trial->region.a;
-		for (int i = 0; i < ELLIPSE_N; i++)
-			known.sigma[i] = (i < 3 ? t->conf->region_sigma : t->conf->region_shape_sigma) * wider;
+	struct ellipse_prior known;
+	if (trial->guide == GUIDE_STRIP)
+		conf.known = &trial->window->told;
+	else if (trial->guide != GUIDE_WHITENESS_ALONE) {
+		region_prior(&known, &trial->region, trial->window, t->conf);
 		conf.known = &known;
 	}
-	conf.absolute = trial->guide == GUIDE_EVIDENCE;
+	conf.absolute = trial->guide == GUIDE_EVIDENCE || trial->guide == GUIDE_STRIP;
 	if (coarse) {
 		conf.max_axis = COARSE_PX;
 		conf.passes = COARSE_PASSES;
-		conf.straying *= COARSE_STRAYING;
+		conf.straying *= conf.coarse_straying;
 	}
-	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : &t->pyramid->tint;
+	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : trial->guide == GUIDE_STRIP ? &trial->window->seen : &t->pyramid->tint;
 	if (!rim_fit(rim, t->photo, tint, &trial->e, &conf))
 		return false;
 	conf.known = 0;
@@ -114,7 +169,9 @@ static void try(struct trials *t, const struct trial *start)
 	bool has_pupil;
 	*trial = *start;
 	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
-		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &trial->window->evidence, &trial->window->map, t->photo->width, t->photo->height);
+		const struct trial_window *w = trial->window;
+		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, t->photo->width, t->photo->height };
+		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
 		trial->log_odds = odds_log(trial->x, &t->conf->odds);
 		trial->e = rim->e;
 		trial->line = trial_line_of(rim);
@@ -124,25 +181,39 @@ static void try(struct trials *t, const struct trial *start)
 	free(rim);
 }
 
+/* The evidence's ellipse near one that is told; that itself where nothing there looks like an iris. */
+static void of_region(struct ellipse *e, const struct ellipse *told, const struct trial_window *w)
+{
+	region_fit(e, &w->map);
+	if (!(e->a > LEAST_REGION * told->a))
+		*e = *told;
+}
+
 /* From a window of its own size. */
 bool trials_of_place(struct trials *t, double x, double y, double radius, struct err *err)
 {
 	struct trial_window *w = window(t, x, y, radius, err);
-	struct ellipse e = { x, y, radius, radius, 0 };
+	const struct ellipse told = { x, y, radius, radius, 0 };
+	struct ellipse e = told;
 	if (!w)
 		return !*err->msg;
-	region_fit(&e, &w->map);
+	of_region(&e, &told, w);
 	if (fabs(log(e.a / w->radius)) > AGAIN || hypot(e.cx - w->x, e.cy - w->y) > AGAIN * w->radius) {
 		w = window(t, e.cx, e.cy, e.a, err);
 		if (!w)
 			return !*err->msg;
-		region_fit(&e, &w->map);
+		of_region(&e, &told, w);
 	}
 	for (int i = 0; i < t->n; i++)
 		if (t->trial[i].window == w && t->trial[i].guide == GUIDE_EVIDENCE)
 			return true;
+	if (!w->strip && !read_strip(w, t, 2, (struct ellipse[]){ e, told }, err))
+		return false;
 	try(t, &(struct trial){ .guide = GUIDE_EVIDENCE, .window = w, .region = e, .e = e });
 	try(t, &(struct trial){ .guide = GUIDE_WHITENESS, .window = w, .region = e, .e = e });
+	struct ellipse likeliest;
+	if (w->seen.px && ellipse_from_q(&likeliest, w->told.q))
+		try(t, &(struct trial){ .guide = GUIDE_STRIP, .window = w, .region = e, .e = likeliest });
 	return true;
 }
 
@@ -155,8 +226,14 @@ bool trials_of_evidence(struct trials *t, struct err *err)
 	for (int i = 0; i < n && i < REGIONS_TRIED; i++)
 		if (!trials_of_place(t, region[i].x, region[i].y, region[i].radius, err))
 			return false;
-	for (int i = 0; i < 2 && n > 0; i++)
-		if (!trials_of_place(t, region[0].x, region[0].y, OTHER_SCALE[i] * region[0].radius, err))
+	return true;
+}
+
+bool trials_of_scales(struct trials *t, struct err *err)
+{
+	const struct evidence_region *r = t->region;
+	for (int i = 0; i < COUNT(OTHER_SCALE) && t->n_regions > 0; i++)
+		if (!trials_of_place(t, r->x, r->y, OTHER_SCALE[i] * r->radius, err))
 			return false;
 	return true;
 }
@@ -168,6 +245,8 @@ static bool of_vote(struct trials *t, const struct ellipse *e, struct err *err)
 	struct trial_window *w = window(t, e->cx, e->cy, e->a, err);
 	if (!w)
 		return !*err->msg;
+	if (!w->strip && !read_strip(w, t, 1, e, err))
+		return false;
 	try(t, &(struct trial){ .guide = GUIDE_WHITENESS_ALONE, .window = w, .e = *e });
 	return true;
 }

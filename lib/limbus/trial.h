@@ -5,16 +5,20 @@
 #include "limbus/odds.h"
 #include "limbus/propose/seek.h"
 #include "limbus/find.h"
+#include "limbus/strip_net.h"
 
 enum { TRIALS = 24, TRIAL_WINDOWS = 8 };
 
-/* What tells sclera from lid beside an arc, and whether the evidence's ellipse is a prior. */
-enum trial_guide { GUIDE_EVIDENCE, GUIDE_WHITENESS, GUIDE_WHITENESS_ALONE };
+/* What tells sclera from lid beside an arc, and which ellipse is a prior: the evidence's, none, the strip's. */
+enum trial_guide { GUIDE_EVIDENCE, GUIDE_WHITENESS, GUIDE_WHITENESS_ALONE, GUIDE_STRIP };
 
 struct trial_window {
 	struct evidence evidence;
 	struct region_map map;
 	struct grey sclera;        // chance of sclera, as a rim's tint
+	struct strip *strip;       // round its likeliest ellipse; owned; null: not read, or the limbus is not seen
+	struct grey seen;          // strip_seen
+	struct ellipse_prior told; // the likeliest ellipse of the strip
 	double x, y, radius;       // px of the photograph
 };
 
@@ -46,8 +50,10 @@ struct trials {
 struct trials *trials_new(const struct photo *photo, const struct pyramid *pyramid, const struct limbus_conf *conf);
 void trials_free(struct trials *trials);
 
-/* Adds what the network finds, or what the votes of edges find; true: err is not set. */
+/* Adds what the network finds; what is smaller or larger where it finds most, as a collarette may be taken for the limbus; what the votes of
+ * edges find. True: err is not set. */
 bool trials_of_evidence(struct trials *trials, struct err *err);
+bool trials_of_scales(struct trials *trials, struct err *err);
 bool trials_of_votes(struct trials *trials, struct err *err);
 /* Adds the ellipse of the evidence near a circle, measured with either guide. */
 bool trials_of_place(struct trials *trials, double x, double y, double radius, struct err *err);

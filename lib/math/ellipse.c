@@ -125,12 +125,14 @@ double ellipse_perimeter(const struct ellipse *e)
 	return M_PI * (e->a + e->b) * (1 + 3 * h / (10 + sqrt(4 - 3 * h)));
 }
 
+enum { CLIMB_ROUNDS = 1000 };  // a hill without a top has an end
+
 double ellipse_climb(struct ellipse *e, double step, double end, double least_aspect,
                      double (*worth)(const void *ctx, const struct ellipse *e), const void *ctx)
 {
 	double q[ELLIPSE_N], best = worth(ctx, e);
 	ellipse_to_q(q, e);
-	while (step > end) {
+	for (int round = 0; step > end && round < CLIMB_ROUNDS; round++) {
 		bool moved = false;
 		for (int i = 0; i < 2 * ELLIPSE_N; i++) {
 			double try[ELLIPSE_N];

@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "limbus.h"
+#include "limbus/strip_net.h"
 
 int main(int argc, char **argv)
 {
@@ -37,6 +38,9 @@ int main(int argc, char **argv)
 		OPT_REAL("arc_rms", &o.find.rim.max_rms, 0.02, 1, "", "residual of a step, of its height, that is trusted"),
 		OPT_REAL("arc_contrast", &o.find.rim.min_contrast, 0, 1, "", "height of a step, of the typical one's"),
 		OPT_REAL("straying", &o.find.rim.straying, 0, 100, "", "variance of centre and size for that of residuals that neighbours share"),
+		OPT_REAL("coarse_straying", &o.find.rim.coarse_straying, 1, 100, "", "how many times more a rough measure strays"),
+		OPT_REAL("colour_gain", &o.find.rim.colour_gain, 1, 1000, "", "of colour over brightness, from which it measures sharp steps, too"),
+		OPT_REAL("rough_gain", &o.find.rim.rough_gain, 1, 1000, "", "the same, of a rough measure"),
 		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
 		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
 		OPT_REAL("pupil_largest", &o.find.pupil.largest, 0.3, 1, "", "a pupil is smaller, share of the limbus"),
@@ -53,6 +57,10 @@ int main(int argc, char **argv)
 		OPT_REAL("max_gross", &o.find.max_gross, 0.001, 1, "", "chance of being more than 2 % off, beyond which it is refused"),
 		OPT_REAL("sure_gross", &o.find.sure_gross, 0, 1, "", "chance below which votes of edges are not asked"),
 		OPT_REAL("region_sigma", &o.find.region_sigma, 0.001, 0.5, "", "of the evidence's ellipse: centre and size, share of the semi-axis"),
+		OPT_REAL("strip_rays", &o.find.strip_conf.rays, 1, 128, "", "so many rays on which the limbus is seen count as one"),
+		OPT_REAL("strip_hidden", &o.find.strip_conf.hidden, 1, 1000, "", "so many rays on which it is hidden count as one"),
+		OPT_REAL("strip_pixels", &o.find.strip_conf.pixels, 1, 1e6, "", "so many pixels of the evidence count as one beside the strip"),
+		OPT_REAL("strip_sigma", &o.find.strip_sigma, 0, 0.2, "", "sigma of the strip's ellipse beside what its rays say, share of its semi-axis"),
 		OPT_REAL("region_hidden", &o.find.region_hidden, 0, 20, "", "how many times more both are where no sclera lies beside it"),
 		OPT_REAL("region_shape_sigma", &o.find.region_shape_sigma, 0.001, 0.5, "", "the same of its shape"),
 		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of an edge near a hand's mark that is believed, of the semi-axis"),
@@ -74,8 +82,9 @@ int main(int argc, char **argv)
 	struct err err = { 0 };
 	struct limbus_kept kept = { 0 };
 	o.find.face.roll = o.face_roll_deg * M_PI / 180;
-	bool ok = evidence_open_shipped(&o.find.net, &err) && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
+	bool ok = evidence_open_shipped(&o.find.net, &err) && strip_open_shipped(&o.find.strip, &err) && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
+	strip_close(o.find.strip);
 	evidence_close(o.find.net);
 	limbus_kept_free(&kept);
 	capture_free(&capture);

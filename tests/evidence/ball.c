@@ -1,5 +1,6 @@
 #include "ball.h"
 
+#include "math/ellipse_fit.h"
 #include "scene.h"
 
 static const float AQUEOUS = 1.336F;
@@ -130,13 +131,19 @@ static void mirror(float out[3], const struct light *light, const float n[3], fl
 		out[c] *= strength * fresnel;
 }
 
+/* mm by which a ragged limbus lies nearer to the gaze at (x, y). */
+static float strays(const struct ball *b, float x, float y)
+{
+	const float coarse = field_at(b->stain, b->at[1] + 9 * x, b->at[0] + 9 * y), fine = field_at(b->stain, b->at[0] - 31 * y, b->at[1] + 31 * x);
+	return b->ragged * (coarse + 0.7F * fine - 0.85F);
+}
+
 /* Share of the sclera at `from` mm beyond the limbus. */
 static float ramp(const struct ball *b, float x, float y, float from)
 {
 	float width = b->blur;
 	if (b->ragged > 0) {
-		const float coarse = field_at(b->stain, b->at[1] + 9 * x, b->at[0] + 9 * y), fine = field_at(b->stain, b->at[0] - 31 * y, b->at[1] + 31 * x);
-		from += b->ragged * (coarse + 0.7F * fine - 0.85F);
+		from += strays(b, x, y);
 		width *= 0.5F + field_at(b->stain, b->at[1] - 14 * y, b->at[0] + 14 * x);
 	}
 	return 1 / (1 + expf(-1.7F * from / width));
@@ -204,9 +211,38 @@ static void circle_seen(float e[5], const struct ball *b, float along, float rad
 	e[4] = atan2f(b->gaze[1], b->gaze[0]) + 1.57079633F;
 }
 
+/* Where the middle of a ragged ramp is seen, at an angle about the gaze. */
+static void ragged_at(double p[2], const struct ball *b, double angle)
+{
+	enum { ROUNDS = 12 };
+	float from = 0, x = 0, y = 0;
+	for (int i = 0; i < ROUNDS; i++) {
+		const float rho = b->limbus + from, round = from < 0 ? b->cornea : b->radius;
+		const float along = (from < 0 ? b->to_cornea : 0) + sqrtf(round * round - rho * rho);
+		const float c = rho * (float)cos(angle), s = rho * (float)sin(angle);
+		x = along * b->gaze[0] + c * b->side[0] + s * b->up[0];
+		y = along * b->gaze[1] + c * b->side[1] + s * b->up[1];
+		from += 0.5F * (-strays(b, x, y) - from);
+	}
+	p[0] = x;
+	p[1] = y;
+}
+
 void ball_limbus(float e[5], const struct ball *b)
 {
+	enum { PLACES = 120 };
+	double p[PLACES][2];
+	struct ellipse seen;
 	circle_seen(e, b, b->to_limbus, b->limbus, (const float[2]){ 0, 0 });
+	if (!(b->ragged > 0))
+		return;
+	for (int i = 0; i < PLACES; i++)
+		ragged_at(p[i], b, 2 * M_PI * i / PLACES);
+	if (ellipse_fit_direct(&seen, PLACES, p, 0)) {
+		const double q[5] = { seen.cx, seen.cy, seen.a, seen.b, seen.angle };
+		for (int i = 0; i < 5; i++)
+			e[i] = (float)q[i];
+	}
 }
 
 void ball_pupil(float e[5], const struct ball *b)

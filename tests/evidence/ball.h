@@ -32,7 +32,8 @@ struct ball_point {
 };
 void ball_at(struct ball_point *out, const struct ball *ball, const struct light *light, float x, float y);
 
-/* Ellipse of the limbus or the pupil in the ball's frame: x, y, semi-axes, angle (radians, counterclockwise, y up). The pupil's
+/* Ellipse of the limbus or the pupil in the ball's frame: x, y, semi-axes, angle (radians, counterclockwise, y up). A ragged limbus's is that
+ * which fits the middle of its ramp best. The pupil's
  * is that of a circle magnified and lifted by the cornea's refraction, good to some per cent. */
 void ball_limbus(float ellipse[5], const struct ball *ball);
 void ball_pupil(float ellipse[5], const struct ball *ball);

@@ -11,7 +11,13 @@ import sys
 import numpy as np
 import torch
 
-UNITS, RARE, DECAY, STEPS, RIGHT, FOLDS = 6, 15, 8.0, 2500, 0.02, 5
+UNITS, RARE, DECAY, STEPS, FOLDS = 6, 15, 25.0, 2500, 5
+BLUR = 5  # the trait that tells the width of the step
+
+
+def right(row):
+    """limbus_right of lib/limbus/find.h."""
+    return float(row[3]) < min(max(0.02, 0.75 * float(row[5 + BLUR])), 0.04)
 
 
 def read(paths):
@@ -19,7 +25,7 @@ def read(paths):
     for path in paths:
         for row in csv.reader(open(path)):
             x.append([float(v) for v in row[5:]])
-            y.append(float(row[3]) < RIGHT)
+            y.append(right(row))
             key.append((path, row[0], row[1]))
             w.append(1 if row[0] in ('drawn', 'other') else RARE)
     x = np.array(x)

@@ -277,6 +277,19 @@ struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, in
 	return d;
 }
 
+struct drawn drawn_lesson(uint64_t number, int least, struct drawn_view *view)
+{
+	struct rng rng = { number * 77 + 5 };
+	const int width = (int)(least * pow(2.4, rng_uniform(&rng))), height = (int)(width * rng_range(&rng, 0.6, 0.85));
+	const double r = exp(rng_range(&rng, log(24), log(0.42 * height)));
+	const int other = rng_below(&rng, 5) == 0 ? OTHER_BALL + rng_below(&rng, OTHER_FACE - OTHER_BALL) : OTHER_NONE;
+	*view = (struct drawn_view){ .radius = (float)r, .x = (float)rng_range(&rng, 1.05 * r, width - 1.05 * r),
+		.y = (float)rng_range(&rng, 1.05 * r, height - 1.05 * r), .mirrored = rng_below(&rng, 2), .other = other, .training = true,
+		.rough = (float)fmax(rng_range(&rng, -0.5, 1), 0),
+		.turn = (float)(rng_below(&rng, 3) ? 0.2 * rng_normal(&rng) : rng_range(&rng, 0, 2 * M_PI)) };
+	return drawn_photograph(number, view, width, height);
+}
+
 void drawn_free(struct drawn *d)
 {
 	free(d->rgb);

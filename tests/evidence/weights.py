@@ -10,9 +10,9 @@ import torch
 from torch import nn
 
 
-def export(net, path, width, height):
+def export(net, path, width, height, planes=3):
     net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
-    torch.onnx.export(net, torch.zeros(1, 3, height, width), path, opset_version=11, input_names=["rgb"], output_names=["logits"])
+    torch.onnx.export(net, torch.zeros(1, planes, height, width), path, opset_version=11, input_names=["in"], output_names=["logits"])
     seal(path)
 
 

@@ -59,7 +59,7 @@ static void note(FILE *csv, const char *kind, long number, const struct photo *p
 	struct err err = { 0 };
 	struct pyramid pyramid = pyramid_make(photo);
 	struct trials *t = trials_new(photo, &pyramid, &limbus_defaults);
-	if (!trials_of_evidence(t, &err) || !trials_of_votes(t, &err)) {
+	if (!trials_of_evidence(t, &err) || !trials_of_scales(t, &err) || !trials_of_votes(t, &err)) {
 		fprintf(stderr, "%s\n", err.msg);
 		exit(1);
 	}
@@ -99,26 +99,19 @@ static struct seen seen_of(const struct drawn *d, const float l[5])
 	return s;
 }
 
-/* 260 to 620 px long, the limbus 24 px to two fifths of the height. */
 static void drawn(FILE *csv, long number)
 {
-	struct rng rng = { (uint64_t)number * 77 + 5 };
-	const int width = (int)(260 * pow(2.4, rng_uniform(&rng))), height = (int)(width * rng_range(&rng, 0.6, 0.85));
-	const double r = exp(rng_range(&rng, log(24), log(0.42 * height)));
-	const int other = rng_below(&rng, 5) == 0 ? OTHER_BALL + rng_below(&rng, OTHER_FACE - OTHER_BALL) : OTHER_NONE;
-	const struct drawn_view view = { .radius = (float)r, .x = (float)rng_range(&rng, 1.05 * r, width - 1.05 * r),
-		.y = (float)rng_range(&rng, 1.05 * r, height - 1.05 * r), .mirrored = rng_below(&rng, 2), .other = other, .training = true, .rough = (float)fmax(rng_range(&rng, -0.5, 1), 0),
-		.turn = (float)(rng_below(&rng, 3) ? 0.2 * rng_normal(&rng) : rng_range(&rng, 0, 2 * M_PI)) };
-	struct drawn d = drawn_photograph((uint64_t)number, &view, width, height);
-	struct photo photo = { .width = width, .height = height, .bits = 8, .rgb = mem_array((size_t)width * (size_t)height * 3, sizeof *photo.rgb) };
+	struct drawn_view view;
+	struct drawn d = drawn_lesson((uint64_t)number, 260, &view);
+	struct photo photo = { .width = d.width, .height = d.height, .bits = 8, .rgb = mem_array((size_t)d.width * (size_t)d.height * 3, sizeof *photo.rgb) };
 	struct seen truth[2];
 	int n = 0;
-	for (long i = 0; i < 3L * width * height; i++)
+	for (long i = 0; i < 3L * d.width * d.height; i++)
 		photo.rgb[i] = (uint16_t)(d.rgb[i] * 257);
 	for (int e = 0; e < d.n_eyes; e++)
 		if (d.eye[e].shown > 0.02F)
 			truth[n++] = seen_of(&d, d.eye[e].limbus);
-	note(csv, other ? "other" : "drawn", number, &photo, n, truth);
+	note(csv, view.other ? "other" : "drawn", number, &photo, n, truth);
 	free(photo.rgb);
 	drawn_free(&d);
 }

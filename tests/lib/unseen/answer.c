@@ -11,6 +11,11 @@
 #include "limbus/measure.h"
 #include "tests/lib/conf/limbus_conf.h"
 
+struct limbus_conf *answer_conf(void)
+{
+	return &limbus_defaults;
+}
+
 static double now(void)
 {
 	struct timespec t;

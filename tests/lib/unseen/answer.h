@@ -1,6 +1,7 @@
 /* answer: what the program says of a photograph, as the stage `limbus` measures it with the defaults of config/, and what it is worth. */
 #ifndef TESTS_UNSEEN_ANSWER_H
 #define TESTS_UNSEEN_ANSWER_H
+#include "limbus/find.h"
 #include "tests/lib/unseen/unseen.h"
 
 struct answer {
@@ -14,6 +15,9 @@ struct answer {
 	double weak;                 // arccos(b / a): the paper's own way, eq. 9
 	double seconds;
 };
+
+/* What answer_ours measures with, to be changed for a measurement. */
+struct limbus_conf *answer_conf(void);
 
 /* aspect: told as eye.limbus_aspect; NAN: nothing told. */
 void answer_ours(struct answer *out, const struct photo *photo, double aspect);

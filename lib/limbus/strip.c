@@ -1,0 +1,207 @@
+#include "limbus/strip.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "image/photo/part.h"
+#include "image/plane.h"
+
+enum { PART = 224 };               // px, sides of the part of the photograph that rays cross
+enum { NEAR_ROWS = 4 };            // round the ellipse: where the likeliest place of a ray is looked for
+static const double REACH = 1.44;  // semi-axes: what the part shows to each side
+static const double LEAST = 0.02;  // chance that a ray tells nothing
+static const double SEEN = 0.3;    // chance of being seen near the ellipse from which a ray has a place
+static const double REACH_SIZE = 0.5, REACH_PLACE = 0.5;  // logarithm of the size, semi-axes: from the strip's ellipse, at most
+static const double FAR = 0.3, FAR_SHAPE = 0.1;  // semi-axes: sigma of the start; of its shape
+static const double RAY_NOISE = 0.3;  // rows
+
+void strip_place(double p[2], const struct ellipse *e, int ray, double s)
+{
+	double q[ELLIPSE_N];
+	ellipse_to_q(q, e);
+	const double phi = 2 * M_PI * ray / STRIP_RAYS, x = cos(phi), y = sin(phi);
+	p[0] = q[0] + s * ((q[2] + q[3]) * x + q[4] * y);
+	p[1] = q[1] + s * (q[4] * x + (q[2] - q[3]) * y);
+}
+
+double strip_crossing(const struct ellipse *e, int ray, const struct ellipse *other)
+{
+	double p[2], c = cos(other->angle), s = sin(other->angle);
+	strip_place(p, e, ray, 1);
+	const double dx = p[0] - e->cx, dy = p[1] - e->cy, ox = e->cx - other->cx, oy = e->cy - other->cy;
+	const double du = (c * dx + s * dy) / other->a, dv = (c * dy - s * dx) / other->b;
+	const double ou = (c * ox + s * oy) / other->a, ov = (c * oy - s * ox) / other->b;
+	const double a = du * du + dv * dv, b = du * ou + dv * ov, left = b * b - a * (ou * ou + ov * ov - 1);
+	return left < 0 ? NAN : (-b + sqrt(left)) / a;
+}
+
+static void ray_samples(float out[STRIP_PLANES][STRIP_ROWS][STRIP_RAYS], int ray, const float *part, double x0, double y0, double scale,
+                        const struct photo *photo, const struct evidence *evidence, const struct ellipse *e)
+{
+	double at[2];
+	strip_place(at, e, ray, 1);
+	const double dx = at[0] - e->cx, dy = at[1] - e->cy;
+	for (int row = 0; row < STRIP_ROWS; row++) {
+		const double s = STRIP_FROM + (row + 0.5) * STRIP_STEP, x = e->cx + s * dx, y = e->cy + s * dy;
+		for (int c = 0; c < 3; c++)
+			out[c][row][ray] = plane_sample(part + c * PART * PART, PART, PART, (x - x0) / scale, (y - y0) / scale);
+		out[3][row][ray] = evidence_at(evidence, EVIDENCE_IRIS, x, y) + evidence_at(evidence, EVIDENCE_PUPIL, x, y);
+		out[4][row][ray] = evidence_at(evidence, EVIDENCE_SCLERA, x, y);
+		out[5][row][ray] = evidence_at(evidence, EVIDENCE_LASH, x, y);
+		out[6][row][ray] = evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
+		out[7][row][ray] = x > 0 && y > 0 && x < photo->width && y < photo->height;
+	}
+}
+
+void strip_sample(float out[STRIP_PLANES][STRIP_ROWS][STRIP_RAYS], const struct photo *photo, const struct evidence *evidence,
+                  const struct ellipse *e)
+{
+	const double scale = 2 * REACH * e->a / PART, x0 = e->cx - REACH * e->a, y0 = e->cy - REACH * e->a;
+	float *part = photo_part(photo, x0, y0, scale, PART, PART);
+#pragma omp parallel for
+	for (int j = 0; j < STRIP_RAYS; j++)
+		ray_samples(out, j, part, x0, y0, scale, photo, evidence, e);
+	free(part);
+}
+
+static double row_of(double s)
+{
+	return (s - STRIP_FROM) / STRIP_STEP - 0.5;
+}
+
+/* Chance of a place of a ray, between rows; 0 beyond the strip. */
+static double chance_at(const struct strip *strip, int ray, double row)
+{
+	if (!(row > 0 && row < STRIP_ROWS - 1))
+		return 0;
+	const int i = (int)row;
+	return strip->row[i][ray] + (row - i) * (strip->row[i + 1][ray] - strip->row[i][ray]);
+}
+
+/* What a ray counts for beside the others. */
+static double count_of(const struct strip *strip, int ray)
+{
+	return strip->seen[ray] / strip->conf.rays + (1 - strip->seen[ray]) / strip->conf.hidden;
+}
+
+double strip_worth(const struct strip *strip, const struct ellipse *e)
+{
+	double sum = 0;
+	for (int j = 0; j < STRIP_RAYS; j++)
+		sum += count_of(strip, j) * log((1 - LEAST) * STRIP_ROWS * chance_at(strip, j, row_of(strip_crossing(&strip->e, j, e))) + LEAST);
+	return sum;
+}
+
+/* Mean and spread of a ray's place within so many rows of `row`; its chance. */
+static double place_near(double *mean, double *spread, const struct strip *strip, int ray, int rows, double row)
+{
+	double sum = 0, first = 0, second = 0;
+	for (int i = (int)fmax(ceil(row - rows), 0); i <= row + rows && i < STRIP_ROWS; i++) {
+		const double chance = strip->row[i][ray], d = i - row;
+		sum += chance;
+		first += chance * d;
+		second += chance * d * d;
+	}
+	*mean = sum > 0 ? first / sum : 0;
+	*spread = sum > 0 ? sqrt(fmax(second / sum - *mean * *mean, 0)) : 0;
+	return sum;
+}
+
+struct search { const struct strip *strip; const struct region_map *map; double start[ELLIPSE_N]; };
+
+static double worth(const void *ctx, const struct ellipse *e)
+{
+	const struct search *s = ctx;
+	const struct ellipse *round = &s->strip->e;
+	double q[ELLIPSE_N], off = 0;
+	// what lies mostly beyond the strip is not for it to tell
+	if (fabs(log(e->a / round->a)) > REACH_SIZE || hypot(e->cx - round->cx, e->cy - round->cy) > REACH_PLACE * round->a)
+		return -INFINITY;
+	ellipse_to_q(q, e);
+	for (int i = 0; i < ELLIPSE_N; i++)
+		off += 0.5 * pow((q[i] - s->start[i]) / ((i < 3 ? FAR : FAR_SHAPE) * s->start[2]), 2);
+	return strip_worth(s->strip, e) + region_worth(s->map, e) / s->strip->conf.pixels - off;
+}
+
+bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *strip, const struct region_map *map, const double sigma[ELLIPSE_N])
+{
+	const double row_px = STRIP_STEP * strip->e.a;
+	struct search search = { .strip = strip, .map = map };
+	struct ellipse_prior known = { .alike = strip->conf.rays };
+	double p[STRIP_RAYS][2], weight[STRIP_RAYS];
+	int n = 0, seen = 0;
+	ellipse_to_q(search.start, e);
+	ellipse_climb(e, 8 * row_px, 0.1 * row_px, 0.5, worth, &search);
+	ellipse_to_q(known.q, e);
+	memcpy(known.sigma, sigma, sizeof known.sigma);
+	for (int j = 0; j < STRIP_RAYS; j++) {
+		const double row = row_of(strip_crossing(&strip->e, j, e));
+		double mean, spread;
+		if (!isfinite(row))
+			continue;
+		const bool visible = strip->seen[j] * place_near(&mean, &spread, strip, j, NEAR_ROWS, row) > SEEN;
+		if (!visible && strip->seen[j] < SEEN)
+			place_near(&mean, &spread, strip, j, STRIP_ROWS, row);
+		else if (!visible)
+			continue;
+		strip_place(p[n], &strip->e, j, STRIP_FROM + (row + mean + 0.5) * STRIP_STEP);
+		weight[n++] = strip->conf.rays * count_of(strip, j) / (spread * spread + RAY_NOISE * RAY_NOISE);
+		seen += visible;
+	}
+	if (!seen || !ellipse_fit_near(e, fit, n, (const double (*)[2])p, weight, 0, RAY_NOISE * row_px, &known))
+		return false;
+	for (int a = 0; a < ELLIPSE_N; a++)
+		for (int b = 0; b < ELLIPSE_N; b++)
+			fit->cov_q[a][b] *= strip->conf.rays;
+	return true;
+}
+
+struct strip_accord strip_accord_of(const struct strip *strip, const struct ellipse *e)
+{
+	struct strip_accord a = { .worth = strip_worth(strip, e) };
+	double weight = 0, square = 0, within = 0, beyond = 0;
+	for (int j = 0; j < STRIP_RAYS; j++) {
+		const double row = row_of(strip_crossing(&strip->e, j, e)), seen = strip->seen[j];
+		double mean, spread;
+		a.seen += seen;
+		for (int i = 0; i < STRIP_ROWS; i++) {
+			const double d = isfinite(row) ? fabs(i - row) * STRIP_STEP : 1;
+			within += d < 0.025 ? seen * strip->row[i][j] : 0;
+			beyond += d > 0.05 ? seen * strip->row[i][j] : 0;
+		}
+		const double chance = isfinite(row) ? seen * place_near(&mean, &spread, strip, j, NEAR_ROWS, row) : 0;
+		if (chance > SEEN) {
+			weight += chance;
+			square += chance * mean * mean;
+		}
+	}
+	a.on = within / (a.seen + 1);
+	a.off = beyond / (a.seen + 1);
+	a.seen /= STRIP_RAYS;
+	a.scatter = weight > 0 ? sqrt(square / weight) * STRIP_STEP : 0;
+	return a;
+}
+
+struct grey strip_seen(const struct strip *strip)
+{
+	enum { SIDE = 160, UNIT = 40 };
+	const struct ellipse *e = &strip->e;
+	const double scale = e->a / UNIT;
+	struct grey g = { SIDE, SIDE, e->cx - 0.5 * SIDE * scale, e->cy - 0.5 * SIDE * scale, scale, mem_array(SIDE * SIDE, sizeof *g.px) };
+	double q[ELLIPSE_N];
+	ellipse_to_q(q, e);
+	for (int y = 0; y < SIDE; y++)
+		for (int x = 0; x < SIDE; x++) {
+			const double dx = g.x0 + (x + 0.5) * scale - e->cx, dy = g.y0 + (y + 0.5) * scale - e->cy;
+			// along S^-1 (dx, dy)
+			const double phi = atan2((q[2] + q[3]) * dy - q[4] * dx, (q[2] - q[3]) * dx - q[4] * dy);
+			const double at = (phi / (2 * M_PI) + 1) * STRIP_RAYS;
+			const int j = (int)at;
+			const double f = at - j;
+			const double seen = (1 - f) * strip->seen[j % STRIP_RAYS] + f * strip->seen[(j + 1) % STRIP_RAYS];
+			g.px[y * SIDE + x] = (float)(seen * seen) + 0.02F;
+		}
+	return g;
+}

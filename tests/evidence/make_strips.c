@@ -1,0 +1,127 @@
+/* make_strips: writes strips (limbus/strip.h) round ellipses near and far from the limbus of drawn eyes to stdout, for training.
+ *
+ *     make_strips FIRST COUNT | strip.py
+ *
+ * STARTS strips of each photograph. A strip is STRIP_PLANES x STRIP_ROWS x STRIP_RAYS bytes, 0 to 255 for 0 to 1, then a float for each
+ * column: where its ray crosses the limbus (s; 0: nowhere), then a byte for each: 1 where iris is seen against sclera there.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "limbus/region.h"
+#include "limbus/strip.h"
+#include "math/rng.h"
+#include "other.h"
+#include "scene.h"
+
+enum { STARTS = 8 };
+static const double BESIDE = 0.03;  // of the radius: where the classes on both sides are read
+
+static int label_at(const struct drawn *d, const double p[2])
+{
+	return p[0] < 0 || p[1] < 0 || p[0] >= d->width || p[1] >= d->height ? -1 : d->label[(long)p[1] * d->width + (long)p[0]];
+}
+
+static bool shows(const struct drawn *d, const struct ellipse *e, int column, double s)
+{
+	double in[2], out[2];
+	strip_place(in, e, column, s * (1 - BESIDE));
+	strip_place(out, e, column, s * (1 + BESIDE));
+	return label_at(d, in) == EVIDENCE_IRIS && label_at(d, out) == EVIDENCE_SCLERA;
+}
+
+/* Centre, size and shape moved by so many radii. */
+static struct ellipse moved(const struct ellipse *e, double by, double shape, struct rng *rng)
+{
+	double q[ELLIPSE_N];
+	ellipse_to_q(q, e);
+	for (int i = 0; i < ELLIPSE_N; i++)
+		q[i] += (i < 3 ? by : shape) * e->a * rng_normal(rng);
+	struct ellipse f;
+	return ellipse_from_q(&f, q) && f.b > 0.5 * f.a && f.a > 0.5 * e->a ? f : *e;
+}
+
+static void write_strip(const struct drawn *d, const struct photo *photo, const struct evidence *evidence, const struct ellipse *start,
+                        int n, const struct ellipse limbus[])
+{
+	static float strip[STRIP_PLANES][STRIP_ROWS][STRIP_RAYS];
+	static uint8_t bytes[STRIP_PLANES * STRIP_PIXELS];
+	float crossing[STRIP_RAYS] = { 0 };
+	uint8_t shown[STRIP_RAYS] = { 0 };
+	strip_sample(strip, photo, evidence, start);
+	const float *values = &strip[0][0][0];
+	for (int i = 0; i < STRIP_PLANES * STRIP_PIXELS; i++)
+		bytes[i] = (uint8_t)lrintf(255 * values[i]);
+	for (int j = 0; j < STRIP_RAYS; j++)
+		for (int k = 0; k < n; k++) {
+			const double s = strip_crossing(start, j, &limbus[k]);
+			if (s > 0 && (crossing[j] == 0 || fabs(s - 1) < fabs(crossing[j] - 1))) {
+				crossing[j] = (float)s;
+				shown[j] = shows(d, start, j, s);
+			}
+		}
+	fwrite(bytes, 1, sizeof bytes, stdout);
+	fwrite(crossing, sizeof *crossing, STRIP_RAYS, stdout);
+	fwrite(shown, 1, sizeof shown, stdout);
+}
+
+static void lesson(uint64_t number, struct evidence_net *net)
+{
+	struct rng rng = { number * 31 + 7 };
+	struct drawn_view view;
+	struct drawn d = drawn_lesson(number, 190, &view);
+	struct photo photo = { .width = d.width, .height = d.height, .bits = 8, .rgb = mem_array((size_t)d.width * (size_t)d.height * 3, sizeof *photo.rgb) };
+	struct ellipse limbus[2], about = { view.x, view.y, view.radius, view.radius, 0 }, e;
+	struct evidence evidence;
+	struct err err = { 0 };
+	int n = 0;
+	for (long i = 0; i < 3L * d.width * d.height; i++)
+		photo.rgb[i] = (uint16_t)(d.rgb[i] * 257);
+	for (int k = 0; k < d.n_eyes; k++)
+		if (d.eye[k].shown > 0.02F)
+			limbus[n++] = (struct ellipse){ d.eye[k].limbus[0], d.eye[k].limbus[1], d.eye[k].limbus[2], d.eye[k].limbus[3], d.eye[k].limbus[4] };
+	for (int k = 0; k < n; k++)
+		if (hypot(limbus[k].cx - view.x, limbus[k].cy - view.y) < 0.5 * view.radius)
+			about = limbus[k];
+	const struct ellipse seen = moved(&about, 0.1, 0, &rng);
+	if (!evidence_window(&evidence, net, &photo, seen.cx, seen.cy, seen.a, &err)) {
+		fprintf(stderr, "%s\n", err.msg);
+		exit(1);
+	}
+	struct region_map map = region_map_make(&evidence);
+	for (int k = 0; k < STARTS; k++) {
+		e = k < 2 ? (struct ellipse){ seen.cx, seen.cy, seen.a, seen.a, 0 } : moved(&about, k < 6 ? 0.03 : 0.1, k < 6 ? 0.02 : 0.05, &rng);
+		if (k == 1)
+			e = moved(&about, 0.15, 0.05, &rng);
+		if (k == 7)
+			e.a *= 0.62, e.b *= 0.62;
+		if (k < 2)
+			region_fit(&e, &map);
+		write_strip(&d, &photo, &evidence, &e, n, limbus);
+	}
+	region_map_free(&map);
+	evidence_free(&evidence);
+	free(photo.rgb);
+	drawn_free(&d);
+}
+
+int main(int argc, char **argv)
+{
+	struct evidence_net *net;
+	struct err err = { 0 };
+	if (argc < 3) {
+		fprintf(stderr, "usage: make_strips FIRST COUNT\n");
+		return 2;
+	}
+	if (!evidence_open(&net, "config/evidence.onnx", &err)) {
+		fprintf(stderr, "%s\n", err.msg);
+		return 1;
+	}
+	for (long i = 0; i < atol(argv[2]) && !ferror(stdout); i++)
+		lesson(strtoull(argv[1], 0, 10) + (uint64_t)i, net);
+	evidence_close(net);
+	return ferror(stdout) ? 1 : 0;
+}

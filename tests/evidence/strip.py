@@ -1,0 +1,248 @@
+#!/usr/bin/python3
+"""Trains the network that tells where the limbus crosses the rays of a strip (lib/limbus/strip.h), on strips that make_strips writes, and
+writes it as ONNX.
+
+    strip.py --make build/tests/evidence/make_strips --minutes 40 --out config/strip.onnx
+    strip.py --make build/tests/evidence/make_strips --short         a minute: the loss falls, asserted
+
+Input: 1 x 8 x 64 x 160: planes, rows, rays; the first and last 16 rays are repeated beyond each other. Red, green and blue without their
+means, over the standard deviation of their mean. Output: 1 x 1 x 65 x 160, logits of the row in which a ray crosses the limbus, be it seen or
+hidden, and last the logit of its being seen, iris against sclera, within the strip. Needs python3-torch and python3-numpy.
+"""
+import argparse
+import math
+import queue
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import torch
+from torch import nn
+from torch.nn import functional as F
+
+sys.dont_write_bytecode = True
+import weights
+
+PLANES, ROWS, RAYS, WRAP = 8, 64, 128, 16
+FROM, STEP = 0.6, 0.0125
+BYTES = PLANES * ROWS * RAYS + 5 * RAYS
+CHANNELS = (16, 24, 40, 56)
+SPREAD = 0.8   # rows: of the truth
+KEPT = 24000   # strips in memory
+
+
+def step(i, o, stride=1):
+    return nn.Sequential(nn.Conv2d(i, o, 3, stride, 1, bias=False), nn.BatchNorm2d(o), nn.ReLU(inplace=True))
+
+
+class Net(nn.Module):
+    def __init__(self, c=CHANNELS):
+        super().__init__()
+        self.first = step(PLANES, c[0])
+        self.down = nn.ModuleList([nn.Sequential(step(c[k], c[k + 1], 2), step(c[k + 1], c[k + 1])) for k in range(len(c) - 1)])
+        self.deep = step(c[-1], c[-1])
+        self.thin = nn.ModuleList([nn.Conv2d(c[k + 1], c[k], 1) for k in reversed(range(len(c) - 1))])
+        self.up = nn.ModuleList([step(c[k], c[k]) for k in reversed(range(len(c) - 1))])
+        self.row = nn.Conv2d(c[0], 1, 1)
+        self.seen = nn.Conv2d(c[0], 1, 1)
+
+    def forward(self, x):
+        x = self.first(x)
+        kept = [x]
+        for down in self.down:
+            x = down(x)
+            kept.append(x)
+        x = self.deep(x)
+        for k, (thin, up) in enumerate(zip(self.thin, self.up)):
+            x = up(F.interpolate(thin(x), scale_factor=2, mode="nearest") + kept[len(kept) - 2 - k])
+        return torch.cat([self.row(x), self.seen(F.avg_pool2d(x, (ROWS, 1)))], 2)
+
+
+class Strips:
+    """Batches from the generator; the last KEPT strips are kept and drawn from."""
+
+    def __init__(self, make, first, batch, fresh=0.6, kept=KEPT):
+        self.batch, self.fresh, self.rng = batch, max(1, int(batch * fresh)), np.random.default_rng(first)
+        self.process = subprocess.Popen([make, str(first), "100000000"], stdout=subprocess.PIPE, bufsize=1 << 22)
+        self.queue, self.kept, self.most, self.seen = queue.Queue(64), [], kept, 0
+        threading.Thread(target=self.read, daemon=True).start()
+
+    def read(self):
+        while True:
+            data = self.process.stdout.read(BYTES)
+            if len(data) < BYTES:
+                return
+            a = np.frombuffer(data, np.uint8)
+            n = PLANES * ROWS * RAYS
+            self.queue.put((a[:n].reshape(PLANES, ROWS, RAYS), a[n:n + 4 * RAYS].copy().view(np.float32), a[n + 4 * RAYS:]))
+
+    def next(self):
+        while len(self.kept) < min(512, self.most):
+            self.kept.append(self.queue.get())
+        fresh = 0
+        while fresh < self.fresh and not self.queue.empty():
+            strip, fresh, self.seen = self.queue.get(), fresh + 1, self.seen + 1
+            if len(self.kept) < self.most:
+                self.kept.append(strip)
+            else:
+                self.kept[self.rng.integers(self.most)] = strip
+        picked = [self.kept[i] for i in self.rng.integers(0, len(self.kept), self.batch)]
+        return [torch.from_numpy(np.stack([p[k] for p in picked])) for k in range(3)]
+
+    def fresh_only(self, n):
+        picked = [self.queue.get() for _ in range(n)]
+        return [torch.from_numpy(np.stack([p[k] for p in picked])) for k in range(3)]
+
+    def close(self):
+        self.process.terminate()
+        while not self.queue.empty():
+            self.queue.get()
+        self.process.wait()
+
+
+def target(crossing, seen):
+    """Rows [n, ROWS, RAYS], 0 where the limbus crosses none; whether it is seen [n, RAYS]."""
+    row = (crossing - FROM) / STEP - 0.5
+    at = torch.arange(ROWS)[None, :, None]
+    within = (row > -0.5) & (row < ROWS - 0.5)
+    hot = torch.exp(-0.5 * ((at - row[:, None]) / SPREAD) ** 2) * within[:, None]
+    return hot / hot.sum(1, keepdim=True).clamp(min=1e-6), ((seen > 0) & within).float()
+
+
+def jitter(x, rng):
+    rgb = x[:, :3]
+    n = len(rgb)
+    rgb = rgb.clamp(min=1e-3) ** torch.exp(0.25 * torch.randn(n, 1, 1, 1, generator=rng))
+    rgb = rgb * torch.exp(0.15 * torch.randn(n, 3, 1, 1, generator=rng))
+    grey = (torch.rand(n, 1, 1, 1, generator=rng) < 0.1).float()
+    rgb = rgb * (1 - grey) + grey * rgb.mean(1, keepdim=True)
+    rgb = rgb + 0.02 * torch.rand(n, 1, 1, 1, generator=rng) ** 2 * torch.randn(rgb.shape, generator=rng)
+    chance = x[:, 3:7] * (torch.rand(n, 1, 1, 1, generator=rng) > 0.1).float()
+    return torch.cat([rgb, chance, x[:, 7:]], 1)
+
+
+def even(x):
+    """Photograph without mean and contrast; wrapped."""
+    rgb = x[:, :3] - x[:, :3].mean((2, 3), keepdim=True)
+    rgb = rgb / (rgb.mean(1, keepdim=True).std((1, 2, 3), keepdim=True) + 0.02)
+    x = torch.cat([rgb, 2 * x[:, 3:] - 0.5], 1)
+    return torch.cat([x[..., -WRAP:], x, x[..., :WRAP]], 3)
+
+
+def loss_of(out, hot, seen):
+    """Cross entropy of rows, half of it where the limbus is hidden, and of being seen."""
+    out = out[:, 0, :, WRAP:-WRAP]
+    rows = -(F.log_softmax(out[:, :ROWS], 1) * hot).sum(1)
+    return (rows * (0.5 + 0.5 * seen)).mean() + F.binary_cross_entropy_with_logits(out[:, ROWS], seen)
+
+
+def judge(net, strips, batches, batch):
+    """How far the mean of the likeliest rows is off, where the limbus is seen and where it is hidden; of what is said to be seen, how much is."""
+    net.eval()
+    off, z, told, seen, loss = [[], []], [[], []], [], [], 0
+    with torch.no_grad():
+        for _ in range(batches):
+            x, crossing, shown = strips.fresh_only(batch)
+            out = net(even(x.float() / 255))
+            hot, s = target(crossing, shown)
+            loss += float(loss_of(out, hot, s)) / batches
+            out = out[:, 0, :, WRAP:-WRAP]
+            p, t = out[:, :ROWS].softmax(1), out[:, ROWS].sigmoid()
+            at = torch.arange(ROWS)[None, :, None]
+            for k, (near, where) in enumerate(((4, (t > 0.5) & (s > 0.5)), (ROWS, (s < 0.5) & (hot.sum(1) > 0.5)))):
+                some = p * ((at - p.argmax(1, keepdim=True)).abs() <= near)
+                mean = (some * at).sum(1) / some.sum(1)
+                var = (some * (at - mean[:, None]) ** 2).sum(1) / some.sum(1)
+                d = mean - ((crossing - FROM) / STEP - 0.5)
+                off[k].append(d[where])
+                z[k].append((d / (var + 0.01).sqrt())[where])
+            told.append(t.flatten())
+            seen.append(s.flatten())
+    net.train()
+    told, seen = torch.cat(told).numpy(), torch.cat(seen).numpy()
+    print("  loss %.3f; seen %.3f, told %.3f, of these seen %.3f, of seen told %.3f"
+          % (loss, seen.mean(), (told > 0.5).mean(), seen[told > 0.5].mean(), (told > 0.5)[seen > 0.5].mean()))
+    for name, o, v in zip(("seen", "hidden"), off, z):
+        o, v = torch.cat(o).abs().numpy() * STEP * 100, torch.cat(v).abs().numpy()
+        print("  %s: off %.2f %% of the axis, 90 %% %.2f; of sigma %.2f, %.2f" % (name, *np.quantile(o, (0.5, 0.9)), *np.quantile(v, (0.5, 0.9))), flush=True)
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("--make", required=True)
+    p.add_argument("--out")
+    p.add_argument("--keep")
+    p.add_argument("--start")
+    p.add_argument("--minutes", type=float, default=40)
+    p.add_argument("--rate", type=float, default=2e-3)
+    p.add_argument("--batch", type=int, default=24)
+    p.add_argument("--first", type=int, default=1000000)
+    p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--threads", type=int, default=1)
+    p.add_argument("--short", action="store_true")
+    args = p.parse_args()
+    torch.set_num_threads(args.threads)
+    torch.set_flush_denormal(True)
+    torch.manual_seed(args.seed)
+    rng = torch.Generator().manual_seed(args.seed)
+    net = Net().to(memory_format=torch.channels_last)
+    if args.start:
+        net.load_state_dict(torch.load(args.start), strict=False)
+    print("%d parameters" % sum(v.numel() for v in net.parameters()), flush=True)
+    mean = {k: v.clone() for k, v in net.state_dict().items()}
+    optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
+    if args.short:
+        args.batch = 8
+    strips = Strips(args.make, args.first, args.batch, kept=96 if args.short else KEPT)
+    begun, losses, last = time.time(), [], time.time()
+    while True:
+        done = (time.time() - begun) / max(60 * args.minutes, 1e-9) if not args.short else len(losses) / 60
+        if done >= 1:
+            break
+        for group in optimiser.param_groups:
+            group["lr"] = args.rate * min(1, len(losses) / (20 if args.short else 100) + 0.02) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+        x, crossing, shown = strips.next()
+        x, (hot, seen) = jitter(x.float() / 255, rng), target(crossing, shown)
+        if torch.rand(1, generator=rng) < 0.5:  # mirrored left to right: phi becomes pi - phi
+            order = (RAYS // 2 - torch.arange(RAYS)) % RAYS
+            x, hot, seen = x[..., order], hot[..., order], seen[..., order]
+        if torch.rand(1, generator=rng) < 0.25:
+            by = int(torch.randint(RAYS, (1,), generator=rng))
+            x, hot, seen = x.roll(by, 3), hot.roll(by, 2), seen.roll(by, 1)
+        loss = loss_of(net(even(x).to(memory_format=torch.channels_last)), hot, seen)
+        optimiser.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(net.parameters(), 2)
+        optimiser.step()
+        losses.append(float(loss.detach()))
+        keep = min(0.998, len(losses) / (len(losses) + 10))
+        with torch.no_grad():
+            for a, b in zip(mean.values(), net.state_dict().values()):
+                a.mul_(keep).add_(b, alpha=1 - keep) if a.dtype.is_floating_point else a.copy_(b)
+        if len(losses) % 100 == 0:
+            print("%5.1f min, step %d, of %d strips, loss %.4f" % ((time.time() - begun) / 60, len(losses), strips.seen, np.mean(losses[-100:])), flush=True)
+        if args.keep and time.time() - last > 180:
+            last = time.time()
+            torch.save(mean, args.keep)
+            other = Net()
+            other.load_state_dict(mean)
+            judge(other, strips, 8, 32)
+    if args.short:
+        first, end = np.mean(losses[:10]), np.mean(losses[-20:])
+        print("loss %.3f, at the end %.3f" % (first, end))
+        strips.close()
+        assert end < 0.9 * first, "the loss does not fall"
+        return
+    net.load_state_dict(mean)
+    judge(net, strips, 16, 32)
+    strips.close()
+    if args.keep:
+        torch.save(mean, args.keep)
+    if args.out:
+        weights.export(net, args.out, RAYS + 2 * WRAP, ROWS, PLANES)
+
+
+if __name__ == "__main__":
+    main()
