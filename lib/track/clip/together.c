@@ -1,5 +1,6 @@
 #include "track/clip/together.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,8 @@ static bool mean_motion(struct field *out, int i, const struct about *a, const s
 		return false;
 	if (a[i].weight > 0)
 		who[n++] = i;
+	n = n < SKIN_NEAR_MAX + 1 ? n : SKIN_NEAR_MAX + 1;
+	assert(n > 0);
 	middle(mid, n, who, a);
 	for (int k = 0; k < n; k++)
 		r[k] = hypot(a[who[k]].off[0] - mid[0], a[who[k]].off[1] - mid[1]);
