@@ -7,6 +7,7 @@
 #$   make CAPTURE=my-capture plan    what would run, what would not and why, and how long it takes
 #$   make CAPTURE=my-capture limbus  one stage, after those it needs (any program of bin/)
 #$   make CAPTURE=my-capture export  the eye for other programs alone: work/export/
+#$   make CAPTURE=my-capture WORK=D  the capture is only read: results stand in D/work/; with any of these
 #$   make CAPTURE=my-capture clean   remove my-capture/work/, all that was made
 #$   make batch CAPTURES=DIR         every capture folder in DIR, JOBS=N of them side by side; make batch-status: what became of them;
 #$                                   DIR/batch/index.html, summary.csv: all that was found, worst first

@@ -5,6 +5,14 @@
 
 # A folder's name may hold anything: it reaches the programs through the environment, never through a shell's text.
 override CAPTURE := $(value CAPTURE)
+# A capture that is only read: make WORK=DIR; that folder stands for it, with links to what is read (stages/plan/mirror.h). Of the
+# call alone: clusters have a variable of that name in their environment.
+ifeq ($(origin WORK),command line)
+export EYEWRIGHT_SOURCE := $(value CAPTURE)
+override CAPTURE := $(value WORK)
+# Makes below take the new name from the environment, not the old one from this call.
+MAKEOVERRIDES :=
+endif
 export CAPTURE BIN
 # Threads that wait sleep: other programs of this machine are not slowed down.
 export OMP_WAIT_POLICY ?= passive

@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "base/gate.h"
 #include "base/mem.h"
 
 /* Opens a regular file for reading. A pipe or device is refused: it could block or never end. */
@@ -72,28 +73,18 @@ bool file_read(char **data, size_t *size, const char *path, size_t limit, struct
 	return true;
 }
 
+/* Why something cannot be written: a link in a folder's place is told of as one. */
+static const char *why_not(int why)
+{
+	return why == ELOOP || why == EXDEV ? "a link stands in a folder's or a file's place: only work/ itself is written" : strerror(why);
+}
+
 bool file_mkdirs(const char *dir, struct err *err)
 {
-	char *path = mem_str(dir);
-	for (char *p = path + 1;; p++) {
-		char c = *p;
-		if (c != '/' && c)
-			continue;
-		*p = 0;
-		if (mkdir(path, 0777) && errno != EEXIST) {
-			err_set(err, "%s: %s", path, strerror(errno));
-			free(path);
-			return false;
-		}
-		if (!c)
-			break;
-		*p = '/';
-	}
-	free(path);
-	struct stat st;
-	if (stat(dir, &st) || !S_ISDIR(st.st_mode))
-		return err_set(err, "%s: is not a folder", dir);
-	return true;
+	const int fd = gate_folder(dir, true), why = errno;
+	if (fd >= 0)
+		close(fd);
+	return fd >= 0 || err_set(err, "%s: %s", dir, why == ENOTDIR || why == EEXIST ? "is not a folder" : why_not(why));
 }
 
 char *file_temporary(const char *path)
@@ -126,16 +117,16 @@ static bool write_all(int fd, const char *data, size_t size)
 
 /* Opens the temporary file, empty and locked. Another program that writes the same file waits for the lock, finds that the file
  * has been renamed meanwhile, and tries again. */
-static int open_alone(const char *tmp)
+static int open_alone(int folder, const char *tmp)
 {
 	for (;;) {
 		struct stat is, named;
-		int fd = open(tmp, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+		int fd = openat(folder, tmp, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
 		if (fd < 0)
 			return fd;
 		while (flock(fd, LOCK_EX) && errno == EINTR)
 			;
-		if (!fstat(fd, &is) && !lstat(tmp, &named) && is.st_ino == named.st_ino && is.st_dev == named.st_dev) {
+		if (!fstat(fd, &is) && !fstatat(folder, tmp, &named, AT_SYMLINK_NOFOLLOW) && is.st_ino == named.st_ino && is.st_dev == named.st_dev) {
 			if (!ftruncate(fd, 0))
 				return fd;
 			int why = errno;
@@ -156,25 +147,22 @@ static bool flushed(int fd)
 
 bool file_write(const char *path, const void *data, size_t size, struct err *err)
 {
-	char *slash = strrchr(path, '/');
-	if (slash && slash != path) {
-		char *dir = mem_printf("%.*s", (int)(slash - path), path);
-		bool ok = file_mkdirs(dir, err);
-		free(dir);
-		if (!ok)
-			return false;
-	}
-	char *tmp = file_temporary(path);
-	int fd = open_alone(tmp);
-	bool ok = fd >= 0 && write_all(fd, data, size) && flushed(fd) && !rename(tmp, path);
+	const char *name;
+	const int folder = gate_parent(&name, path, true);
+	if (folder < 0)
+		return err_set(err, "%s: cannot write: %s", path, why_not(errno));
+	char *beside = file_temporary(path), *slash = strrchr(beside, '/'), *tmp = slash ? slash + 1 : beside;
+	int fd = open_alone(folder, tmp);
+	bool ok = fd >= 0 && write_all(fd, data, size) && flushed(fd) && !renameat(folder, tmp, folder, name);
 	int why = errno;
 	if (!ok && fd >= 0)
-		unlink(tmp);
+		unlinkat(folder, tmp, 0);
 	if (fd >= 0)
 		close(fd);
+	close(folder);
 	if (!ok)
-		err_set(err, "%s: cannot write: %s", path, strerror(why));
-	free(tmp);
+		err_set(err, "%s: cannot write: %s", path, why_not(why));
+	free(beside);
 	return ok;
 }
 
@@ -186,9 +174,14 @@ bool file_exists(const char *path)
 
 bool file_remove(const char *path, struct err *err)
 {
-	if (unlink(path) && errno != ENOENT)
-		return err_set(err, "%s: cannot remove: %s", path, strerror(errno));
-	return true;
+	const char *name;
+	const int folder = gate_parent(&name, path, false);
+	const bool ok = folder >= 0 ? !unlinkat(folder, name, 0) || errno == ENOENT : errno == ENOENT;
+	if (!ok)
+		err_set(err, "%s: cannot remove: %s", path, why_not(errno));
+	if (folder >= 0)
+		close(folder);
+	return ok;
 }
 
 static void hash_text(char out[33], XXH128_hash_t h)
@@ -269,6 +262,26 @@ bool file_is_relative(const char *rel)
 	return true;
 }
 
+const char *file_source(void)
+{
+	const char *source = getenv("EYEWRIGHT_SOURCE");
+	return source && *source ? source : 0;
+}
+
+static bool is_below(const char *real, const char *folder)
+{
+	const size_t n = strlen(folder);
+	return !strncmp(real, folder, n) && (real[n] == '/' || !real[n] || n == 1);
+}
+
+bool file_leads_inside(const char *real, const char *root)
+{
+	char *source = file_source() ? realpath(file_source(), 0) : 0;
+	const bool inside = is_below(real, root) || (source && is_below(real, source));
+	free(source);
+	return inside;
+}
+
 bool file_inside(char **out, const char *root, const char *rel, struct err *err)
 {
 	*out = 0;
@@ -276,8 +289,7 @@ bool file_inside(char **out, const char *root, const char *rel, struct err *err)
 		return err_set(err, "%s: leads out of the capture folder", rel);
 	char *joined = mem_printf("%s/%s", root, rel);
 	char *real_root = realpath(root, 0), *real = realpath(joined, 0);
-	size_t n = real_root ? strlen(real_root) : 0;
-	bool inside = real && real_root && !strncmp(real, real_root, n) && (real[n] == '/' || !real[n] || n == 1);
+	bool inside = real && real_root && file_leads_inside(real, real_root);
 	if (!real)
 		err_set(err, "%s: %s", joined, strerror(errno));
 	else if (!inside)

@@ -49,8 +49,15 @@ void file_list_free(struct file_list *list);
 /* True when `rel` is relative and without "..". Links are not followed here. */
 bool file_is_relative(const char *rel);
 
+/* The folder that a capture's links may lead into, of the environment's EYEWRIGHT_SOURCE: the capture itself, where WORK= has another
+ * folder stand for it. Null where there is none. */
+const char *file_source(void);
+
+/* Whether `real`, a path without links, is the folder `root`, also without links, or below it or below file_source(). */
+bool file_leads_inside(const char *real, const char *root);
+
 /* Joins root and rel and resolves links: *out, free(). Returns false, err set and *out null, when rel is absolute or contains "..",
- * or when the result does not exist or lies outside `root`. */
+ * or when the result does not exist or lies outside `root` (file_leads_inside). */
 bool file_inside(char **out, const char *root, const char *rel, struct err *err);
 
 /* A temporary path in the folder of `path`, free(). The name is short whatever the length of `path`, and the same at every run,

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/gate.h"
 #include "base/mem.h"
 
 extern char **environ;
@@ -136,7 +137,7 @@ static bool start(struct child *c, const struct run *run, struct err *err)
 		return err_set(err, "%s: cannot be started: %s", run->argv[0], strerror(why));
 	}
 	c->out = ends[0];
-	c->log = open(run->log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
+	c->log = gate_create(run->log, O_WRONLY | O_APPEND);
 	return true;
 }
 

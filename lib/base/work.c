@@ -10,17 +10,18 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/gate.h"
 #include "base/mem.h"
 
 /* The folder that a search is about, and the first link found that leads out of it: nftw hands nothing on to what it calls. */
 static _Thread_local char *root, *link_found;
 
-/* Whether a path, its links resolved, lies outside of the folder; of what is not there: dangling. */
-static bool leads_out(const char *path, bool dangling)
+/* Whether what a link in work/ leads to lies outside of the folder, or is not there. */
+static bool leads_out(const char *path)
 {
 	char *real = realpath(path, 0);
 	const size_t n = strlen(root);
-	bool out = real ? strncmp(real, root, n) || (real[n] && real[n] != '/' && strcmp(root, "/")) : dangling;
+	bool out = !real || strncmp(real, root, n) || (real[n] && real[n] != '/' && strcmp(root, "/"));
 	free(real);
 	return out;
 }
@@ -30,10 +31,19 @@ static int find_link(const char *path, const struct stat *st, int kind, struct F
 	(void)st;
 	(void)ftw;
 	struct stat to;
-	if (kind != FTW_SL || ((!stat(path, &to) && !S_ISDIR(to.st_mode)) && !leads_out(path, true)))
+	if (kind != FTW_SL || ((!stat(path, &to) && !S_ISDIR(to.st_mode)) && !leads_out(path)))
 		return 0;
 	link_found = mem_str(path);
 	return 1;
+}
+
+/* Of what the capture is read from: a link may lead into file_source(), too. */
+static bool input_leads_out(const char *path)
+{
+	char *real = realpath(path, 0);
+	const bool out = real && !file_leads_inside(real, root);
+	free(real);
+	return out;
 }
 
 /* A name of the capture, "photos/a.jpg" or "capture.conf". */
@@ -41,7 +51,7 @@ static bool is_inside(const char *capture, const char *folder, const char *name,
 {
 	struct stat st;
 	char *path = mem_printf("%s/%s%s%s", capture, folder, *folder ? "/" : "", name);
-	bool ok = lstat(path, &st) || !S_ISLNK(st.st_mode) || !leads_out(path, false)
+	bool ok = lstat(path, &st) || !S_ISLNK(st.st_mode) || !input_leads_out(path)
 	          || err_set(err, "%s: is a link that leads out of the capture: put the file itself there", path);
 	free(path);
 	return ok;
@@ -86,12 +96,20 @@ bool work_check(const char *capture, struct err *err)
 	return false;
 }
 
+bool work_enter(const char *capture, struct err *err)
+{
+	char *work = mem_printf("%s/work", capture);
+	const bool ok = work_check(capture, err) && file_mkdirs(work, err) && gate_set(work, err);
+	free(work);
+	return ok;
+}
+
 int work_lock(const char *capture, bool *busy, struct err *err)
 {
 	char *dir = mem_printf("%s/work/.made", capture), *path = mem_printf("%s/lock", dir);
 	int fd = -1;
-	if (work_check(capture, err) && file_mkdirs(dir, err)) {
-		fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+	if (work_enter(capture, err) && file_mkdirs(dir, err)) {
+		fd = gate_create(path, O_RDWR);
 		if (fd < 0)
 			err_set(err, "%s: %s", path, strerror(errno));
 		*busy = fd >= 0 && flock(fd, LOCK_EX | LOCK_NB);

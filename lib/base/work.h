@@ -12,8 +12,11 @@ bool work_check_inputs(const char *capture, struct err *err);
  * be overwritten or read. False, err set (path, rule), where one does. */
 bool work_check(const char *capture, struct err *err);
 
-/* Tries to lock work/, which is made if need be. Returns a file descriptor, whose close() unlocks, or -1, err set.
- * Checks it first (work_check).
+/* Checks work/ (work_check), makes it if need be, and sets it as the gate (gate.h) of all that this process writes there. False, err set,
+ * where it must not be written. */
+bool work_enter(const char *capture, struct err *err);
+
+/* Tries to lock work/, which is entered first (work_enter). Returns a file descriptor, whose close() unlocks, or -1, err set.
  * *busy  out: another program holds the lock, and the descriptor is not locked yet: work_wait waits for it */
 int work_lock(const char *capture, bool *busy, struct err *err);
 void work_wait(int lock);

@@ -2,9 +2,13 @@
 #   make batch CAPTURES=DIR                    JOBS=N at a time (the machine's cores, when not given), THREADS for each
 #   make batch CAPTURES=DIR SCHEDULER=slurm    as job arrays: stages/batch/README.md
 #   make batch-status CAPTURES=DIR             what is done, waits, runs, failed, and why: CAPTURES/batch/status.csv
+#   make batch CAPTURES=DIR WORK=ELSEWHERE     DIR is only read: results in ELSEWHERE/NAME/work/ and ELSEWHERE/batch/
 CAPTURES ?=
 override CAPTURES := $(value CAPTURES)
 export CAPTURES
+ifeq ($(origin WORK),command line)
+export ELSEWHERE := $(value WORK)
+endif
 SCHEDULER ?=
 JOBS ?=
 .PHONY: batch batch-status

@@ -5,7 +5,9 @@
 #   batch.sh status              batch/status.csv, and the failures as a table
 #   batch.sh one LIST N [TARGETS] runs the capture that stands Nth in a list, and writes what became of it
 #   batch.sh look N NAME ...     a line for each capture that has something to do; lists.sh calls it
-# BIN: folder of the programs.
+# BIN: folder of the programs. ELSEWHERE: where results are to stand, where $CAPTURES is only read.
+# Numbers have points, names are bytes, whatever the locale.
+export LC_ALL=C
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$here/lists.sh"
 . "$here/tell.sh"
@@ -13,8 +15,14 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 begin() {
 	[ -n "${CAPTURES:-}" ] && [ -d "$CAPTURES" ] || die "say which folder holds the captures: make batch CAPTURES=DIR" 2
 	CAPTURES=$(cd "$CAPTURES" && pwd -P && echo .) && CAPTURES=${CAPTURES%$'\n'.}
-	export CAPTURES BIN
-	state=$CAPTURES/batch
+	if [ -n "${ELSEWHERE:-}" ]; then
+		mkdir -p "$ELSEWHERE" || exit 1
+		ELSEWHERE=$(cd "$ELSEWHERE" && pwd -P && echo .) && ELSEWHERE=${ELSEWHERE%$'\n'.}
+		case $ELSEWHERE/ in "$CAPTURES"/*) die "$(one_line "$ELSEWHERE"): WORK must not lie in the folder of the captures" 2 ;; esac
+	fi
+	export CAPTURES BIN ELSEWHERE
+	results=${ELSEWHERE:-$CAPTURES}
+	state=$results/batch
 	local folder
 	for folder in "$state" "$state"/{log,results,rows,thumbs,slurm}; do
 		[ ! -L "$folder" ] || die "$folder: is a link: results are written inside the folder alone"
@@ -31,7 +39,7 @@ one() { # LIST N [TARGETS]
 	unset MAKEFLAGS MFLAGS MAKELEVEL
 	start=$(date +%s%N)
 	# shellcheck disable=SC2086
-	make --no-print-directory -rf "$here/../capture.mk" $target >"$state/log/$name" 2>&1 </dev/null
+	make --no-print-directory -rf "$here/../capture.mk" ${ELSEWHERE:+"WORK=$ELSEWHERE/$name"} $target >"$state/log/$name" 2>&1 </dev/null
 	status=$?
 	ms=$((($(date +%s%N) - start) / 1000000))
 	seconds=$(printf %d.%02d $((ms / 1000)) $((ms % 1000 / 10)))
@@ -43,7 +51,7 @@ one() { # LIST N [TARGETS]
 		printf '%s: done in %s s\n' "$(one_line "$name")" "$seconds" >&2
 	fi
 	if [ $status != 0 ] || [ "$target" = run ]; then
-		printf '%s\0' "$name" | "$BIN/summary" --capture="$CAPTURES" ${LIVE:---only-collect}
+		printf '%s\0' "$name" | "$BIN/summary" --capture="$results" ${LIVE:---only-collect}
 	fi
 	return $status
 }

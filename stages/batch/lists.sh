@@ -18,7 +18,7 @@ look() { # N NAME ...
 	local said was
 	local -a known=()
 	while [ $# -gt 0 ]; do
-		said=$("$BIN/plan" --capture="$CAPTURES/$2" --request 2>"$state/log/$2")
+		said=$(EYEWRIGHT_SOURCE=${ELSEWHERE:+$CAPTURES/$2} "$BIN/plan" --capture="$results/$2" --request 2>"$state/log/$2")
 		case $? in
 		0) was=
 			[ ! -f "$state/results/$2" ] || IFS=$tab read -r _ was _ <"$state/results/$2"
@@ -30,7 +30,7 @@ look() { # N NAME ...
 		esac
 		shift 2
 	done
-	[ ${#known[@]} = 0 ] || printf '%s\0' "${known[@]}" | "$BIN/summary" --capture="$CAPTURES" --only-collect
+	[ ${#known[@]} = 0 ] || printf '%s\0' "${known[@]}" | "$BIN/summary" --capture="$results" --only-collect
 }
 
 # $state/captures: all names; $state/todo: the lines of look, by number.

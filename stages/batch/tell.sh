@@ -24,7 +24,7 @@ why() { # LOG
 }
 
 # The greatest memory that a stage of the capture has needed, MiB.
-peak() { sed -n 's/^ *"peak_mib": *\([0-9]*\).*/\1/p' "$CAPTURES/$1"/work/log/*.json 2>/dev/null | sort -n | tail -n 1; }
+peak() { sed -n 's/^ *"peak_mib": *\([0-9]*\).*/\1/p' "$results/$1"/work/log/*.json 2>/dev/null | sort -n | tail -n 1; }
 
 # Replaces what is known of a capture: written beside and renamed, so that any machine may do it without a lock.
 tell() { # NAME STATE SECONDS PEAK REASON
@@ -62,7 +62,7 @@ status() {
 		}' .names .queued .results)
 	local bad=$?
 	mv -f "$state/.status.new" "$state/status.csv"
-	"$BIN/summary" --capture="$CAPTURES" --queued="$state/.queued"
+	"$BIN/summary" --capture="$results" --queued="$state/.queued"
 	rm -f "$state"/.names "$state"/.results "$state"/.queued
 	printf 'page: %s\n' "$state/index.html"
 	printf 'table: %s\n' "$state/status.csv"

@@ -5,7 +5,7 @@ _eyewright() {
 	for ((i = 1; i < COMP_CWORD; i++)); do
 		case ${COMP_WORDS[i]} in -*) ;; *) n=$((n + 1)) && first=${first:-${COMP_WORDS[i]}} ;; esac
 	done
-	case $word in -*) mapfile -t COMPREPLY < <(compgen -W '--help --version --threads= --jobs= --scheduler=slurm' -- "$word"); return ;; esac
+	case $word in -*) mapfile -t COMPREPLY < <(compgen -W '--help --version --threads= --work= --jobs= --scheduler=slurm' -- "$word"); return ;; esac
 	if [ "$n" = 0 ] || { [ "$n" = 1 ] && [[ $first = batch* ]]; }; then
 		compopt -o filenames
 		mapfile -t COMPREPLY < <(compgen -d -- "$word")

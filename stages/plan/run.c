@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include "anatomy/keys.h"
+#include "base/file.h"
 #include "base/front_use.h"
 #include "base/say.h"
 #include "base/work.h"
 #include "plan.h"
 #include "plan/setting.h"
+#include "stages/plan/mirror.h"
 
 static char *slice_of(const struct opt opts[PLAN_OPTS], const struct conf *conf)
 {
@@ -58,7 +60,8 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 {
 	struct plan plan = { 0 };
 	char *slice = slice_of(opts, conf);
-	bool ok = work_check(call->capture, err) && plan_decide(&plan, call->capture, cost, conf, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
+	bool ok = work_check(call->capture, err) && plan_decide(&plan, call->capture, cost, conf, err)
+	          && work_enter(call->capture, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
@@ -82,7 +85,9 @@ int plan_run(const struct call *call, const struct plan_asked *asked, const stru
 {
 	bool fresh = true;
 	char *why = 0;
-	if (asked->clean)
+	if (!asked->clean && !asked->fresh && file_source() && !plan_mirror(call->capture, file_source(), err))
+		;
+	else if (asked->clean)
 		plan_clean(call->capture, err);
 	else if (asked->fresh)
 		plan_fresh(&fresh, &why, call, asked->fresh, err);

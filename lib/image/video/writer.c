@@ -1,9 +1,11 @@
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/gate.h"
 #include "base/mem.h"
 #include "image/video/video.h"
 #include "image/video/api.h"
@@ -13,6 +15,7 @@ enum { ENCODER_THREADS = 4 };  // x264's bytes depend on their number: always th
 
 struct video_writer {
 	char *path, *part;
+	int fd;                 // of the part, so that FFmpeg follows no path to it
 	int width, height;      // of the pictures given
 	AVFormatContext *file;
 	AVCodecContext *encoder;
@@ -29,6 +32,8 @@ static void writer_free(struct video_writer *w)
 	av.avformat_free_context(w->file);
 	av.avcodec_free_context(&w->encoder);
 	av.sws_freeContext(w->sws);
+	if (w->fd >= 0)
+		close(w->fd);
 	free(w->rgb);
 	free(w->path);
 	free(w->part);
@@ -73,8 +78,9 @@ static bool open_stream(struct video_writer *w, const struct video_writer_conf *
 
 static bool open_file(struct video_writer *w, const struct video_writer_conf *conf, struct err *err)
 {
-	char *url = mem_printf("file:%s", w->part);
-	bool ok = av.avformat_alloc_output_context2(&w->file, 0, "mp4", url) >= 0 && open_stream(w, conf);
+	w->fd = gate_create(w->part, O_WRONLY | O_TRUNC);
+	char *url = file_exists("/proc/self/fd") ? mem_printf("file:/proc/self/fd/%d", w->fd) : mem_printf("file:%s", w->part);
+	bool ok = w->fd >= 0 && av.avformat_alloc_output_context2(&w->file, 0, "mp4", url) >= 0 && open_stream(w, conf);
 	AVDictionary *opts = 0;
 	av.av_dict_set(&opts, "movflags", "+faststart", 0);  // plays while it loads
 	ok = ok && av.avio_open(&w->file->pb, url, AVIO_FLAG_WRITE) >= 0 && av.avformat_write_header(w->file, &opts) >= 0;
@@ -107,14 +113,11 @@ struct video_writer *video_writer_open(const char *path, const struct video_writ
 	w->height = conf->height;
 	w->even_w = (conf->width + 1) & ~1;
 	w->even_h = (conf->height + 1) & ~1;
-	w->last = -1;
-	char *slash = strrchr(path, '/'), *dir = mem_printf("%.*s", slash ? (int)(slash - path) : 0, path);
-	bool ok = (!slash || slash == path || file_mkdirs(dir, err)) && open_encoder(w, conf, err) && open_file(w, conf, err);
-	free(dir);
-	ok = ok && open_colours(w, err);
-	if (ok)
+	w->last = w->fd = -1;
+	if (open_encoder(w, conf, err) && open_file(w, conf, err) && open_colours(w, err))
 		return w;
-	unlink(w->part);
+	struct err none = { 0 };
+	file_remove(w->part, &none);
 	writer_free(w);
 	return 0;
 }
@@ -174,13 +177,14 @@ bool video_writer_close(struct video_writer *w, bool keep, struct err *err)
 {
 	if (!w)
 		return true;
+	struct err none = { 0 };
 	bool ok = !keep || (encode(w, 0, err) && (av.av_write_trailer(w->file) >= 0 || err_set(err, "%s: cannot be written", w->path)));
 	if (w->file && w->file->pb)
 		ok = (av.avio_closep(&w->file->pb) >= 0 || err_set(err, "%s: cannot be written", w->path)) && ok;
 	if (keep && ok)
-		ok = !rename(w->part, w->path) || err_set(err, "%s: cannot be put in its place", w->path);
+		ok = gate_rename(w->part, w->path) || err_set(err, "%s: cannot be put in its place", w->path);
 	if (!keep || !ok)
-		unlink(w->part);
+		file_remove(w->part, &none);
 	writer_free(w);
 	return ok;
 }

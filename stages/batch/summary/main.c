@@ -10,6 +10,7 @@
 
 #include "base/call.h"
 #include "base/file.h"
+#include "base/gate.h"
 #include "base/guard.h"
 #include "base/mem.h"
 #include "base/say.h"
@@ -92,7 +93,7 @@ static bool summary(const char *dir, const struct asked *asked, const struct sum
 	bool ok = !lstat(batch, &st) && S_ISDIR(st.st_mode);
 	if (!ok)
 		err_set(err, "%s: is not there, or a link: make batch makes it", batch);
-	else
+	else if ((ok = gate_set(batch, err)))
 		guard_enter(batch, 0, false);
 	free(batch);
 	return ok && (!asked->collect || collect(dir, conf, err))
