@@ -94,15 +94,30 @@ static bool turntable(struct job *job, struct err *err)
 	return ok;
 }
 
-static json_t *figures_of(const struct job *job, const struct shot *shot, const struct shot_difference *differs)
+/* The same view by the fitted model alone: what the photograph's own detail hides. */
+static struct shot_difference by_model(struct job *job, const struct shot *shot, struct scene_view *view, const struct scene_lighting *light)
+{
+	const double detail = job->scene.conf.detail;
+	scene_set_detail(&job->scene, 0);
+	struct image rgba = trace(job, view, light), seen = studio_on_grey(&rgba, 1);
+	const struct shot_difference out = compare_numbers(&job->scene, shot, &seen);
+	scene_set_detail(&job->scene, detail);
+	image_free(&rgba);
+	image_free(&seen);
+	return out;
+}
+
+static json_t *figures_of(const struct job *job, const struct shot *shot, const struct shot_difference *differs, const struct shot_difference *model)
 {
 	json_t *out = json_object();
 	if (differs->n) {
 		json_object_set_new(out, "difference_mean", json_real(differs->mean));
 		json_object_set_new(out, "difference_95", json_real(differs->high));
+		json_object_set_new(out, "model_difference_mean", json_real(model->mean));
+		json_object_set_new(out, "model_difference_95", json_real(model->high));
 		json_object_set_new(out, "difference", json_string("CIEDE2000"));
-		stage_note(job->stage, "%s: differs from the photograph by %.2f on average, %.2f at 95 %% (CIEDE2000)",
-		           shot->photo->name, differs->mean, differs->high);
+		stage_note(job->stage, "%s: differs from the photograph by %.2f on average, %.2f at 95 %% (CIEDE2000); the model alone by %.2f",
+		           shot->photo->name, differs->mean, differs->high, model->mean);
 	}
 	json_object_set_new(out, "compared_px", json_integer(differs->n));
 	json_object_set_new(out, "exposure", json_real(job->scene.gain));
@@ -133,7 +148,8 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	struct shot_difference differs;
 	struct image rgba = trace(job, &view, &light), seen = studio_on_grey(&rgba, 1);
 	struct image beside = compare_shot(&differs, &job->scene, shot, &seen);
-	json_t *figures = figures_of(job, shot, &differs);
+	const struct shot_difference model = by_model(job, shot, &view, &light);
+	json_t *figures = figures_of(job, shot, &differs, &model);
 	const struct picture_out out[] = { { png, &seen }, { compare, &beside }, { exr, &rgba } };
 	bool ok = pictures_save(job, job->conf->exr ? 3 : 2, out, n, in, err)
 	          && json_write(stage_path(job->stage, "%s", numbers), figures, stage_made_by(job->stage, n, in), err)

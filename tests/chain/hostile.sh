@@ -7,7 +7,7 @@
 . "$(dirname "$0")/../lib/chain.sh"
 MADE=${B:-build}/tests/tools/made_face
 VARIANT=$PWD/$VARIANT
-LIMIT=${LIMIT:-20}
+LIMIT=${LIMIT:-60}
 TABLE=$(dirname "$0")/hostile.tsv
 cases=$PWD/tests/chain
 FILM=$PWD/samples/face/video/face.mp4

@@ -63,6 +63,13 @@ void scene_levels_make(struct scene *s)
 	}
 }
 
+void scene_set_detail(struct scene *s, double detail)
+{
+	s->conf.detail = detail;
+	for (int k = 0; k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
+		scene_shown_make(&s->level[k], s);
+}
+
 const struct scene_level *scene_level_for(const struct scene *s, double mm)
 {
 	int k = 0;

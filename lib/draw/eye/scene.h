@@ -113,4 +113,7 @@ void scene_free(struct scene *scene);
  * scene_load or scene_plain. */
 void scene_fit_colour(struct scene *scene, const struct scene_view *view, const struct scene_lighting *light);
 
+/* Shows the same eye with another strength of the photograph's detail: conf.detail. After scene_fit_colour. */
+void scene_set_detail(struct scene *scene, double detail);
+
 #endif

@@ -97,14 +97,29 @@ static struct shot_difference measure(const struct shot *shot, const struct imag
 	return out;
 }
 
-struct image compare_shot(struct shot_difference *difference, const struct scene *scene, const struct shot *shot, const struct image *view)
+/* Of each pixel of the view; free(). */
+static float *weights_of(const struct scene *scene, const struct shot *shot, const struct image *view)
 {
-	struct frame f = frame_of(shot, view);
-	struct image out = image_new(3 * f.width + 2 * COMPARE_GAP, f.height, 3);
 	float *weight = mem_array((size_t)view->width * (size_t)view->height, sizeof *weight);
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int y = 0; y < view->height; y++)
 		weights_row(weight + (long)y * view->width, scene, shot, y);
+	return weight;
+}
+
+struct shot_difference compare_numbers(const struct scene *scene, const struct shot *shot, const struct image *view)
+{
+	float *weight = weights_of(scene, shot, view);
+	const struct shot_difference out = measure(shot, view, weight);
+	free(weight);
+	return out;
+}
+
+struct image compare_shot(struct shot_difference *difference, const struct scene *scene, const struct shot *shot, const struct image *view)
+{
+	struct frame f = frame_of(shot, view);
+	struct image out = image_new(3 * f.width + 2 * COMPARE_GAP, f.height, 3);
+	float *weight = weights_of(scene, shot, view);
 	put(&out, 0, &f, &shot->image);
 	put(&out, f.width + COMPARE_GAP, &f, view);
 	put_difference(&out, 2 * (f.width + COMPARE_GAP), &f, shot, view, weight);

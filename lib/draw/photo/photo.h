@@ -62,4 +62,7 @@ struct shot_difference {
 enum { COMPARE_GAP = 6 };
 struct image compare_shot(struct shot_difference *difference, const struct scene *scene, const struct shot *shot, const struct image *view);
 
+/* The difference alone. */
+struct shot_difference compare_numbers(const struct scene *scene, const struct shot *shot, const struct image *view);
+
 #endif

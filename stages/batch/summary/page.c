@@ -57,6 +57,7 @@ static json_t *numbers_of(const json_t *capture)
 		{ "pigment", "residual", "stroma.melanin.value" },
 		{ "pigment", "residual", "stroma.melanin.sigma" },
 		{ "train", "lids_left.held_out_px", "lids_left.held_out_px" },
+		{ "compare", "difference_mean", "model_difference_mean" },
 	};
 	json_t *out = json_array();
 	for (int i = 0; i < COUNT(cells); i++) {

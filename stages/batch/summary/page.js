@@ -5,7 +5,7 @@ const items = JSON.parse(document.getElementById("data").textContent);
 const STATES = [["failed", "failed"], ["doubt", "doubtful"], ["runs", "running"], ["waits", "waiting"], ["pass", "passed"]];
 const ORDERS = [["worst first", null], ["name", i => i[1]], ["chance to be wrong", i => i[8][0]], ["tilt's uncertainty", i => i[8][2]],
 	["difference from the photograph", i => i[8][3]], ["share by the model, least first", i => i[8][4] === null ? null : -i[8][4]],
-	["border melanin", i => i[8][5]], ["stroma melanin", i => i[8][7]], ["time", i => i[6]]];
+	["difference of the model alone", i => i[8][10]], ["border melanin", i => i[8][5]], ["stroma melanin", i => i[8][7]], ["time", i => i[6]]];
 const PAGE = 60;
 const list = document.getElementById("list"), end = document.getElementById("end"), find = document.getElementById("find"), order = document.getElementById("order");
 const shown = new Set(STATES.map(s => s[0]));
@@ -50,7 +50,7 @@ function row(item) {
 	for (const reason of reasons)
 		what.append(element("p", "why", reason));
 	tr.append(picture, what, number(percent(n[0])), number(n[1] === null ? null : n[1].toFixed(1) + "°", n[2] === null ? "" : n[2].toFixed(1) + "°"),
-		number(n[3] === null ? null : n[3].toFixed(1)), number(percent(n[4])), number(percent(n[5]), percent(n[6])), number(percent(n[7]), percent(n[8])),
+		number(n[3] === null ? null : n[3].toFixed(1)), number(n[10] === null ? null : n[10].toFixed(1)), number(percent(n[4])), number(percent(n[5]), percent(n[6])), number(percent(n[7]), percent(n[8])),
 		number(n[9] === null ? null : n[9].toFixed(1) + " px"), number(seconds === null ? null : seconds.toFixed(1) + " s"));
 	return tr;
 }
