@@ -69,7 +69,7 @@ build-fuzz/%.o: %.c
 	@$(CLANG) -std=c2x $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -MMD -MP -c $< -o $@
 build-fuzz/%.o: %.cc
 	@mkdir -p $(@D)
-	@$(CLANG)++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -c $< -o $@
+	@$(CLANG)++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -isystem /usr/include/opencv4 -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 build-fuzz/libeyewright.a: $(FUZZ_OBJ)
 	@rm -f $@
 	@$(AR) qcsD $@ $(FUZZ_OBJ)
@@ -79,4 +79,4 @@ build-fuzz/fuzz_%: build-fuzz/tests/fuzz/fuzz_%.o build-fuzz/libeyewright.a
 
 fuzzers: $(FUZZERS) $(TOOLS)
 fuzz: fuzzers
-	@FUZZ=$(SECONDS_EACH) B=$B KEEP=$(KEEP) VERBOSE=1 tests/fuzz.sh
+	@FUZZ=$(SECONDS_EACH) CAPTURES=1 B=$B BIN=$(BIN) KEEP=$(KEEP) VERBOSE=1 tests/fuzz.sh

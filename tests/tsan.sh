@@ -7,6 +7,7 @@ BIN=${B:?}/bin
 VARIANT=${TOOLS:-build}/tests/tools/variant
 MADE=${TOOLS:-build}/tests/tools/made_face
 said=${KEEP:-$root/said}
+ln -sfn ../config "$B/config" # programs look for it beside their folder
 mkdir -p "$said"
 # OpenMP tells the sanitizer of its barriers and tasks through archer; what libraries do that were built without it is not looked into.
 OMP_TOOL_LIBRARIES=$(find /usr/lib/llvm-*/lib /usr/lib/*/ -maxdepth 1 -name libarcher.so 2>/dev/null | head -n 1)

@@ -185,11 +185,18 @@ bool solve(nls_result *result, int n, double *x, const Bounds &bounds, int m, nl
 
 }  // namespace
 
+/* Errors are returned in struct err. Once: the flag is shared by all threads. */
+static void hush()
+{
+	static const int level = FLAGS_minloglevel = google::GLOG_FATAL;
+	static_cast<void>(level);
+}
+
 bool nls_solve(nls_result *result, int n, double *x, const double *lo, const double *hi, int m, nls_fn fn, void *ctx,
                const nls_conf *conf, double *cov, err *err)
 {
 	try {
-		FLAGS_minloglevel = google::GLOG_FATAL;  // errors are returned in struct err
+		hush();
 		return solve(result, n, x, Bounds{ lo, hi }, m, fn, ctx, conf, cov, err);
 	} catch (const std::exception &e) {
 		return err_set(err, "least squares: %s", e.what());
