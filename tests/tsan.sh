@@ -45,7 +45,7 @@ sanitised photograph "$root/eye" plan limbus unrefract freckles heightfield pigm
 "$MADE" "$root/made"
 mkdir "$root/made/script" && printf 'time_s,horizontal_deg,vertical_deg\n0,0,0\n0.1,10,5\n' >"$root/made/script/look.csv"
 printf '%s\n' "render.size_px = 64" "render.look_px = 96" "render.cell_px = 64" "render.blink_frames = 2" "render.sheet_px = 128" "render.clip_px = 64" \
-	"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.05" "train.sample = 32" >>"$root/made/capture.conf"
+	"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.05" "train.sample = 64" >>"$root/made/capture.conf"
 sanitised "made face" "$root/made" plan train extrapolate animate render
 
 small_face "$root/face"
