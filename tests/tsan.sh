@@ -44,18 +44,19 @@ sanitised photograph "$root/eye" plan limbus unrefract freckles heightfield pigm
 
 "$MADE" "$root/made"
 mkdir "$root/made/script" && printf 'time_s,horizontal_deg,vertical_deg\n0,0,0\n0.1,10,5\n' >"$root/made/script/look.csv"
-printf '%s\n' "render.size_px = 64" "render.look_px = 96" "render.cell_px = 64" "render.blink_frames = 2" "render.sheet_px = 128" "render.clip_px = 64" \
-	"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.05" "train.sample = 64" >>"$root/made/capture.conf"
-sanitised "made face" "$root/made" plan train extrapolate animate render
+printf '%s\n' "render.size_px = 64" "render.look_px = 96" "render.cell_px = 64" "render.blink_frames = 3" "render.sheet_px = 300" "render.clip_px = 64" \
+	"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.05" >>"$root/made/capture.conf"
+sanitised "made face" "$root/made" plan extrapolate animate render
 
 small_face "$root/face"
-printf '%s\n' "transfer.nodes = 50 100 200" >>"$root/face/capture.conf"
+sed -i 's/^transfer.nodes.*/transfer.nodes = 50 100 200/' "$root/face/capture.conf"
 sanitised face "$root/face" track train transfer
 
-if command -v colmap >/dev/null; then
+VIEWS=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
+if [ -d "$VIEWS" ] && command -v colmap >/dev/null; then
 	mkdir -p "$root/views/views"
-	for name in a b c; do cp "$root/half.jpg" "$root/views/views/$name.jpg"; done
-	printf '%s\n' "quality = draft" "calibrate.picture_px = 400" "calibrate.features = 256" >"$root/views/capture.conf"
+	cp "$VIEWS"/0000[1-4].jpg "$root/views/views"
+	printf '%s\n' "quality = draft" "calibrate.picture_px = 800" "calibrate.features = 1024" "calibrate.subject_px = 100" >"$root/views/capture.conf"
 	sanitised views "$root/views" calibrate
-fi
+else skip "views: no race" "COLMAP or views/buddha is not there"; fi
 exit 0

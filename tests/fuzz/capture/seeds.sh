@@ -37,7 +37,7 @@ pack "$root/small" limbus
 cp "$root/made/targets/made.obj" "$root/made/subject.obj"
 mkdir -p "$root/made/script"
 printf 'time_s,horizontal_deg,vertical_deg\n0,0,0\n0.1,10,5\n0.2,-10,0\n' >"$root/made/script/look.csv"
-printf '%s\n' "render.size_px = 64" "render.look_px = 48" "render.cell_px = 48" "render.blink_frames = 2" "render.sheet_px = 300" "render.clip_px = 48" \
+printf '%s\n' "render.size_px = 64" "render.look_px = 48" "render.cell_px = 48" "render.blink_frames = 3" "render.sheet_px = 300" "render.clip_px = 48" \
 	"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.05" "train.sample = 64" "transfer.rounds = 1 1 1" \
 	"transfer.nodes = 20 40 80" "extrapolate.map_step_px = 32" "track.points = 40" "track.sweeps = 1" "track.settle_frames = 0" >>"$root/made/capture.conf"
 pack "$root/made" plan track train transfer extrapolate animate render
