@@ -46,11 +46,11 @@ sanitised photograph "$root/eye" plan limbus unrefract freckles heightfield pigm
 mkdir "$root/made/script" && printf 'time_s,horizontal_deg,vertical_deg\n0,0,0\n0.1,10,5\n' >"$root/made/script/look.csv"
 printf '%s\n' "render.size_px = 64" "render.look_px = 96" "render.cell_px = 64" "render.blink_frames = 3" "render.sheet_px = 300" "render.clip_px = 64" \
 	"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.05" >>"$root/made/capture.conf"
-sanitised "made face" "$root/made" plan extrapolate animate render
+sanitised "made face" "$root/made" plan extrapolate animate
 
 small_face "$root/face"
 sed -i 's/^transfer.nodes.*/transfer.nodes = 50 100 200/' "$root/face/capture.conf"
-sanitised face "$root/face" track train transfer
+sanitised face "$root/face" track train transfer extrapolate animate render
 
 VIEWS=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
 if [ -d "$VIEWS" ] && command -v colmap >/dev/null; then
