@@ -14,6 +14,8 @@
 
 enum { IRISES = 3, CASES = 2 };
 static const char *const names[IRISES] = { "hazel", "blue", "dark" }, *const cases[CASES] = { "light told", "light not told" };
+/* Balls without lids whose iris has no fibres are taken for painted eyes unless a person points at them (`dark` is not). */
+static const char *const hints[IRISES] = { "photo.right_hazel.hint_px = 400 300 200", "photo.right_blue.hint_px = 400 300 200", 0 };
 static const char *const numbers[MC_NUMBERS] = { "border melanin", "border eumelanin", "stroma melanin", "stroma eumelanin", "thickness scale" };
 
 /* How many sigmas the truth is away. */
@@ -110,7 +112,7 @@ int main(int argc, char **argv)
 	for (int c = 0; ok && c < CASES; c++) {
 		for (int i = 0; ok && i < IRISES; i++) {
 			char *dir = mem_printf("%s", scratch_path("%s_%d", names[i], c));
-			ok = mc_iris_score(&score[i], &iris[i], dir, &(struct mc_case){ .told = !c }, &err);
+			ok = mc_iris_score(&score[i], &iris[i], dir, &(struct mc_case){ .told = !c, .more = hints[i] }, &err);
 			if (ok)
 				report(&score[i], &iris[i], cases[c], names[i]);
 			free(dir);
