@@ -54,11 +54,10 @@ static int open_at_once(const char *rel)
 static int step(int at, const char *name, bool make)
 {
 	const bool up = !strcmp(name, "..");
-	if (make && !up)
-		mkdirat(at, name, 0777);  // where it is not made, opening it says why
+	const int made = make && !up && mkdirat(at, name, 0777) ? errno : 0;
 	const int fd = up ? -1 : openat(at, name, FOLDER | O_NOFOLLOW), why = up ? ELOOP : errno;
 	close(at);
-	errno = why;
+	errno = fd < 0 && why == ENOENT && made ? made : why;
 	return fd;
 }
 
@@ -75,21 +74,23 @@ static int open_by_levels(const char *rel, bool make)
 	return fd;
 }
 
-/* mkdir -p */
-static void make_all(const char *dir)
+/* mkdir -p. Returns why the last of them could not be made, or 0. */
+static int make_all(const char *dir)
 {
 	char *path = mem_str(dir);
+	int why = 0;
 	for (char *p = path + 1; *path; p++) {
 		const char c = *p;
 		if (c != '/' && c)
 			continue;
 		*p = 0;
-		mkdir(path, 0777);  // where it is not made, opening it says why
+		why = mkdir(path, 0777) ? errno : 0;
 		if (!c)
 			break;
 		*p = '/';
 	}
 	free(path);
+	return why == EEXIST ? 0 : why;
 }
 
 int gate_folder(const char *dir, bool make)
@@ -98,8 +99,10 @@ int gate_folder(const char *dir, bool make)
 	if (!rel) {
 		int fd = open(dir, FOLDER);
 		if (fd < 0 && errno == ENOENT && make) {
-			make_all(dir);
+			const int why = make_all(dir);
 			fd = open(dir, FOLDER);
+			if (fd < 0 && why)
+				errno = why;
 		}
 		return fd;
 	}

@@ -32,7 +32,8 @@ rig "[31.01, 36.016, 78.602, -31.01, 36.016, 78.602]"
 "$BIN/track" --capture="$capture" >"$log" 2>&1
 same "the video is tracked with calibrate's lens, eyes and mesh" "$?" 0
 same "the lens is not guessed" "$(grep -c 'focal length not known' "$log")" 0
-check "most of the skin is seen" grep -qE '(9[0-9]|100) % of them seen' "$log"
+# what strays from its neighbours does not count as seen
+check "most of the skin is seen" grep -qE '([89][0-9]|100) % of them seen' "$log"
 check "the lens is the rig's" grep -q '"focal_px": 6380' "$capture/work/skin/track.json"
 
 check "the head is where calibrate saw it" grep -q '"reference_frame": 20,' "$capture/work/skin/track.json"
