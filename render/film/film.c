@@ -8,7 +8,7 @@
 static bool all_there(const struct skin_job *job, int n, const char *const in[n])
 {
 	for (int i = 0; i < n; i++)
-		if (!file_exists(stage_path(job->stage, in[i])))
+		if (!file_exists(stage_path(job->stage, "%s", in[i])))
 			return false;
 	return true;
 }
