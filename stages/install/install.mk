@@ -17,8 +17,9 @@ install uninstall: export PREFIX := $(value PREFIX)
 install uninstall: export DESTDIR := $(value DESTDIR)
 
 # Which commit the programs are of: for --version alone. It stands beside them, not in them: a commit does not run stages again.
+# Several makes may run at once (a batch, a cluster's jobs): each writes a file of its own.
 build: $(BIN)/version
 $(BIN)/version: FORCE
 	@mkdir -p $(@D)
-	@{ git describe --always --dirty --abbrev=12 2>/dev/null || echo "no commit"; } >$@.new
-	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+	@new=$@.$$$$; { git describe --always --dirty --abbrev=12 2>/dev/null || echo "no commit"; } >$$new; \
+	if cmp -s $$new $@; then rm $$new; else mv $$new $@; fi
