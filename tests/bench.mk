@@ -13,7 +13,7 @@ bench: build
 # Many captures: beside the others, since it wants the machine for itself for half an hour.
 .PHONY: bench-batch
 bench-batch: build $B/tests/tools/variant
-	=$B BIN=$(BIN) N=$(or $(N),$(if $(QUICK),20,200)) SAME=$(or $(SAME),$(if $(QUICK),100,1000)) tests/bench/batch.sh
+	@B=$B BIN=$(BIN) N=$(or $(N),$(if $(QUICK),20,200)) SAME=$(or $(SAME),$(if $(QUICK),100,1000)) tests/bench/batch.sh
 
 .PHONY: bench-report bench-compare
 bench-compare: $B/tests/bench/report/compare

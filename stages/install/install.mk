@@ -21,5 +21,5 @@ install uninstall: export DESTDIR := $(value DESTDIR)
 build: $(BIN)/version
 $(BIN)/version: FORCE
 	@mkdir -p $(@D)
-	@new=$@.$$$$; { git describe --always --dirty --abbrev=12 2>/dev/null || echo "no commit"; } >$$new; \
+	@new=$(@D)/.version.$$$$; { git describe --always --dirty --abbrev=12 2>/dev/null || echo "no commit"; } >$$new; \
 	if cmp -s $$new $@; then rm $$new; else mv $$new $@; fi
