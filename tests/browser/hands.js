@@ -120,7 +120,7 @@ async function character(b) {
 	await b.value("eyewright.set_follow('typed')");
 	await b.until(settled, 120);
 	await b.value("window.most = 0; const step = eyewright.eyes.step.bind(eyewright.eyes); eyewright.eyes.step = t => { const moved = step(t); window.most = Math.max(window.most, eyewright.eyes.closure); return moved; }; eyewright.eyes.conf.blink_hold_ms = 3000; eyewright.blink()");
-	await b.until("window.most > 0.9", 30).catch(() => 0);
+	await b.until("window.most > 0.9", 120).catch(() => 0);
 	say(await b.value("window.most > 0.9 && eyewright.eyes.still"), "who wants little motion still gets the blink he asks for", await b.value("window.most"));
 }
 
