@@ -1,12 +1,15 @@
 /* The photographs of an eye: those that have a fit, the reference among them; their decoding. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "anatomy/light.h"
+#include "base/json.h"
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 #include "draw/photo/reference.h"
 #include "image/photo/photo.h"
 #include "render/render.h"
+#include "tissue/light/sclera_light.h"
 
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err)
 {
@@ -73,19 +76,45 @@ int env_height(const struct render_conf *conf)
 	return conf->scene.map_size > 1024 ? 512 : conf->scene.map_size > 512 ? 256 : 128;
 }
 
-/* The light of a decoded photograph: told, or estimated from it. */
+/* The shading of a photograph's sclera, by which pigment was fitted. False where that says nothing. */
+static bool shading_of(struct sclera_light *light, const struct job *job, const struct shot *shot)
+{
+	struct err unread = { 0 };
+	const char *path = stage_path(job->stage, "%s/pigment.json", job->names->iris);
+	json_t *root = file_exists(path) ? json_read(path, 1 << 22, &unread) : 0, *photo;
+	size_t i;
+	bool found = false;
+	*light = (struct sclera_light){ 0 };
+	json_array_foreach(json_object_get(json_object_get(root, "light"), "photos"), i, photo) {
+		const char *name = json_string_value(json_object_get(photo, "name"));
+		if (name && !strcmp(name, shot->photo->name))
+			found = json_get_array(light->slope, 2, photo, "slope", path, &unread);
+	}
+	json_decref(root);
+	return found;
+}
+
+/* The light of a decoded photograph: told, or estimated from it. Where the cornea mirrors no lamp it is the light that pigment was fitted under,
+ * or else another model would be shown than the one that was fitted. */
 static bool light(struct job *job, struct shot *shot, struct err *err)
 {
+	const int rows = env_height(job->conf);
+	struct sclera_light shading;
 	if (job->conf->polarised)
-		shot->env = light_studio(env_height(job->conf));
+		shot->env = light_studio(rows);
 	else
-		shot->env = light_of_photo(shot, job->eye, env_height(job->conf), &shot->lamps, &shot->n_lamps);
-	if (!job->conf->light)
+		shot->env = light_of_photo(shot, job->eye, rows, &shot->lamps, &shot->n_lamps);
+	if (job->conf->light) {
+		envmap_free(&shot->env);
+		if (!light_load(&shot->env, &job->light_level, job->stage, "light.environment", job->conf->light, err))
+			return false;
+		envmap_normalise(&shot->env);
+		return true;
+	}
+	if (shot->n_lamps > 0 || !shading_of(&shading, job, shot))
 		return true;
 	envmap_free(&shot->env);
-	if (!light_load(&shot->env, &job->light_level, job->stage, "light.environment", job->conf->light, err))
-		return false;
-	envmap_normalise(&shot->env);
+	shot->env = sclera_light_environment(&shading, rows);
 	return true;
 }
 

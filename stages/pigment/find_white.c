@@ -89,10 +89,10 @@ static void take(struct found_white *out, const struct seen *seen, const double 
 {
 	for (long i = 0; i < 4L * out->light.width * out->light.height; i++)
 		out->light.px[i] += seen->light.px[i];
+	out->lights[out->n_lights++] = (struct found_light){ name, seen->shading };
 	if (!seen->has_white || !white_better(&seen->white, &out->white))
 		return;
 	out->white = seen->white;
-	out->shading = seen->shading;
 	out->photo = name;
 	for (int k = 0; k < 3; k++)
 		out->white.rgb[k] *= gain[k];
@@ -104,7 +104,8 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 	json_t *texture = json_read(stage_path(stage, "%s/texture.json", capture->eyes[eye].iris), 1 << 22, err);
 	if (!texture)
 		return false;
-	*out = (struct found_white){ .white = white_camera(), .light = image_new(LIGHT_TEXELS, LIGHT_TEXELS, 4) };
+	*out = (struct found_white){ .white = white_camera(), .light = image_new(LIGHT_TEXELS, LIGHT_TEXELS, 4),
+		.lights = mem_array((size_t)capture->n_photos, sizeof *out->lights) };
 	double view = 0;
 	int views = 0;
 	for (int i = 0; i < capture->n_photos; i++) {

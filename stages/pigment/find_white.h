@@ -9,7 +9,8 @@ struct found_white {
 	const char *photo;     // NAME of the photograph it is from; null: none
 	double cos_view;       // mean cosine, behind the cornea, of the directions that the photographs see the iris from
 	struct image light;    // mean of iris_light_make over the photographs, over the maps' square; image_free
-	struct sclera_light shading;  // of the photograph that white is from; unset where the light is told
+	struct found_light { const char *photo; struct sclera_light shading; } *lights;  // of every photograph looked at, where the light is not told; free
+	int n_lights;
 };
 
 /* Reads every photograph of the eye that the texture was made of. One that cannot be read is warned of and left out.

@@ -71,15 +71,21 @@ static int inputs(const char *in[], char *own[3], const struct capture *capture,
 	return n;
 }
 
-/* Where the light is from; of the sclera's shading, its slopes with their sigmas. */
+/* Where the light is from; of the sclera's shading in each photograph, its slopes with their sigmas: the renderer's light, too. */
 static json_t *light_json(const struct work *w)
 {
 	json_t *out = json_object();
 	json_object_set_new(out, "source", json_string(w->told ? "told" : "sclera"));
-	if (!w->told) {
-		json_object_set_new(out, "slope", json_numbers(2, w->found.shading.slope));
-		json_object_set_new(out, "slope_sigma", json_numbers(2, w->found.shading.sigma));
+	json_t *photos = json_array();
+	for (int i = 0; !w->told && i < w->found.n_lights; i++) {
+		const struct found_light *l = &w->found.lights[i];
+		json_t *photo = json_object();
+		json_object_set_new(photo, "name", json_string(l->photo));
+		json_object_set_new(photo, "slope", json_numbers(2, l->shading.slope));
+		json_object_set_new(photo, "slope_sigma", json_numbers(2, l->shading.sigma));
+		json_array_append_new(photos, photo);
 	}
+	json_object_set_new(out, "photos", photos);
 	return out;
 }
 
@@ -222,6 +228,7 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
 	image_free(&w.clean);
 	image_free(&w.thickness);
 	image_free(&w.found.light);
+	free(w.found.lights);
 	envmap_free(&told);
 	for (int k = 0; k < 3; k++)
 		free(own[k]);

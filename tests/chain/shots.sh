@@ -44,5 +44,12 @@ shots '[{"name": "own"}, {"name": "same", "environment": "light_A.exr"}, {"name"
 run_make "$cap" || fail "a capture with its light" "$(tail -n 3 "$log")"
 check "the photograph's light, as a file, gives its own picture" "$DIFFER" "$cap/work/render/shot_own.exr" "$cap/work/render/shot_same.exr" 0.002 0
 check "another light gives another" eval "! '$DIFFER' '$cap/work/render/shot_own.exr' '$cap/work/render/shot_other.exr' 0.02 0.01"
+# model_off: mean difference of the fitted model alone from the photograph, CIEDE2000.
+model_off() { sed -n 's/.*"model_difference_mean": *\([0-9.]*\).*/\1/p' "$cap/work/render/right_hazel_compare.json"; }
+told=$(model_off)
+sed -i.told '/^light.environment/d; /^render.shots/d' "$cap/capture.conf"
+run_make "$cap" || fail "the same, its light not told" "$(tail -n 3 "$log")"
+check "a light that is fitted shows the model nearly as well as the one that is told" awk -v a="$told" -v b="$(model_off)" 'BEGIN { exit !(a > 0 && b > 0 && b < 1.3 * a) }'
+mv "$cap/capture.conf.told" "$cap/capture.conf"
 sed -i 's/light_A.exr/nothing.exr/' "$cap/capture.conf"
 if run_make "$cap"; then fail "a light that is not there" "accepted"; else same "a light that is not there" "$(grep -c 'light.environment.*nothing.exr' "$log")" 1; fi
