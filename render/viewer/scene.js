@@ -94,8 +94,8 @@ class EyeScene {
 				lens: [...view.camera, scale], pixel: scale * (p[10] * e.iris_depth + t[2]) / view.camera[0] };
 		}
 		const head_from_eye = turns.turned(view.yaw, view.pitch), R = turns.multiply(turns.turned(view.orbit[0], view.orbit[1]), head_from_eye);
-		const distance = 500, aim = z - 0.1 * e.sclera[1], focal = distance * height / view.field, c = turns.apply(R, [0, 0, z]);
-		const t = [-c[0], -c[1], distance + aim - c[2]];
+		const distance = 500, focal = distance * height / view.field, c = turns.apply(R, [0, 0, z]);
+		const t = [-c[0], -c[1], distance + 0.1 * e.sclera[1] - c[2]];  // as scene_view_turned of the programs
 		const away = R[8] * e.iris_depth + t[2];
 		return { R, head_from_eye, origin: turns.apply(turns.transpose(R), t).map(v => -v), corner: [0, 0],
 			lens: [focal, view.width / 2, height / 2, 1], pixel: away / focal };

@@ -77,6 +77,27 @@ static void places(void **state)
 	seen_through_the_cornea(1.336, 0.5);
 }
 
+/* A turned eye stays in its place, and what the picture spans where the eye shows is the field that was asked for. */
+static void framing(void **state)
+{
+	(void)state;
+	struct scene s;
+	struct scene_conf conf = conf_of(6);
+	scene_of(&s, &plain_eye, &conf, even, 0, 0.5);
+	for (int k = 0; k < 3; k++) {
+		const double field = 27;
+		struct scene_view v = scene_view_turned(&s, 0.4 * k, -0.3 * k, field, 200);
+		double centre[3];
+		for (int i = 0; i < 3; i++)
+			centre[i] = v.cam_from_eye[i][2] * s.sclera_z + v.cam_from_eye[i][3];
+		const double shows = centre[2] - 0.1 * conf.sclera_radius;
+		assert_float_equal(shows, 500, 1e-4);
+		assert_float_equal(v.camera.focal_px * (centre[0] + field / 2) / shows + v.camera.center_px[0], 200, 1e-4);
+		assert_float_equal(v.camera.focal_px * (centre[1] - field / 2) / shows + v.camera.center_px[1], 0, 1e-4);
+	}
+	scene_free(&s);
+}
+
 /* In its own view the rendering shows the texture, whatever light, relief and pigments say, less what the cornea keeps. */
 static void photograph_comes_back(void **state)
 {
@@ -289,6 +310,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(places),
+		cmocka_unit_test(framing),
 		cmocka_unit_test(photograph_comes_back),
 		cmocka_unit_test(mirror_at_normal),
 		cmocka_unit_test(threads_and_numbers),
