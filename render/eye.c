@@ -119,6 +119,8 @@ static json_t *figures_of(const struct job *job, const struct shot *shot, const 
 		stage_note(job->stage, "%s: differs from the photograph by %.2f on average, %.2f at 95 %% (CIEDE2000); the model alone by %.2f",
 		           shot->photo->name, differs->mean, differs->high, model->mean);
 	}
+	// Under another light than the one that the colours were read in, how the model answers to light shows beside the photograph's own detail.
+	json_object_set_new(out, "colours_from", json_string(job->shots[job->reference].photo->name));
 	json_object_set_new(out, "compared_px", json_integer(differs->n));
 	json_object_set_new(out, "exposure", json_real(job->scene.gain));
 	json_object_set_new(out, "explained_by_model", json_real(job->scene.explained));
@@ -155,6 +157,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 	          && json_write(stage_path(job->stage, "%s", numbers), figures, stage_made_by(job->stage, n, in), err)
 	          && stage_made(job->stage, numbers, n, in, err);
 	job->worst = fmax(job->worst, json_number_value(json_object_get(figures, "difference_mean")));
+	job->worst_model = fmax(job->worst_model, json_number_value(json_object_get(figures, "model_difference_mean")));
 	json_decref(figures);
 	image_free(&rgba);
 	image_free(&seen);
@@ -185,8 +188,10 @@ static void figures(struct job *job)
 {
 	if (!job->seconds)
 		return;
-	if (job->worst > 0)
+	if (job->worst > 0) {
 		stage_figure(job->stage, "difference_from_photograph", job->worst, "CIEDE2000, mean inside the iris, the worst photograph");
+		stage_figure(job->stage, "difference_of_model", job->worst_model, "the same of the fitted model alone, which judges the fit");
+	}
 	stage_figure(job->stage, "rays", (double)job->count.rays / 1e6, "million");
 	stage_figure(job->stage, "rays_left_out", (double)(job->count.kept + job->count.hidden) / 1e6, "million: hidden, or known from the picture before");
 	if (job->conf->passes > 1)

@@ -42,7 +42,7 @@ struct job {
 	struct envmap studio;            // of the beauty views
 	double gain;                     // of the beauty views' exposure
 	double light_level;              // of the photographs' light in the scale of its file; 0: it was estimated
-	double worst;                    // largest mean difference from a photograph, CIEDE2000
+	double worst, worst_model;       // largest mean difference from a photograph, CIEDE2000: as shown, and of the fitted model alone
 	struct scene_count count;
 	double error;                    // of the last converging picture
 	double seconds;                  // spent tracing

@@ -175,6 +175,34 @@ static double value_of(const json_t *root, const char *layer, const char *key)
 	return json_number_value(json_is_object(entry) ? json_object_get(entry, "value") : entry);
 }
 
+/* Unknowns of the pigments' fit (pigment.json) in words. */
+static const struct { const char *key, *words; } unknowns[] = {
+	{ "abl.melanin", "melanin of the border layer" },
+	{ "abl.eumelanin_ratio", "share of eumelanin in the border layer" },
+	{ "stroma.melanin", "melanin of the stroma" },
+	{ "stroma.eumelanin_ratio", "share of eumelanin in the stroma" },
+	{ "stroma.thickness_scale", "optical thickness of the stroma" },
+	{ "exposure", "exposure" },
+	{ "white.red", "red of white" },
+	{ "white.blue", "blue of white" },
+	{ "veil", "stray light" },
+};
+
+/* The unknowns that lie for more than half of their square in directions that priors hold. */
+static json_t *held_words(const json_t *directions)
+{
+	json_t *list = json_array(), *entry;
+	size_t i;
+	for (int k = 0; k < COUNT(unknowns); k++) {
+		double held = 0;
+		json_array_foreach(directions, i, entry)
+			held += pow(json_number_value(json_object_get(json_object_get(entry, "of"), unknowns[k].key)), 2);
+		if (held > 0.5)
+			json_array_append_new(list, template_text(unknowns[k].words));
+	}
+	return list;
+}
+
 static json_t *pigments(struct page *page, const char *dir)
 {
 	json_t *root = page_json(page, page_file(page, "%s/pigment.json", dir));
@@ -205,17 +233,7 @@ static json_t *pigments(struct page *page, const char *dir)
 		json_object_set_new(out, "residual", page_text("%.3f, %.3f, %.3f", json_number_value(json_array_get(rgb, 0)),
 		                                               json_number_value(json_array_get(rgb, 1)),
 		                                               json_number_value(json_array_get(rgb, 2))));
-	json_t *held = json_object_get(root, "held_by_priors"), *entry, *weak = json_array();
-	size_t i;
-	json_array_foreach(held, i, entry) {
-		const char *key;
-		json_t *part;
-		char line[400] = "";
-		json_object_foreach(json_object_get(entry, "of"), key, part)
-			snprintf(line + strlen(line), sizeof line - strlen(line), "%s%+.2f %s", *line ? ", " : "", json_number_value(part), key);
-		if (*line)
-			json_array_append_new(weak, template_text(line));
-	}
+	json_t *weak = held_words(json_object_get(root, "held_by_priors"));
 	json_object_set_new(out, "any_held", json_boolean(json_array_size(weak)));
 	json_object_set_new(out, "held", weak);
 	json_decref(root);

@@ -110,11 +110,15 @@ static void likeness(struct page *page, json_t *entry, const char *dir, const ch
 		json_object_set_new(like, "name", template_text(name));
 		double mean = json_number_value(json_object_get(numbers, "difference_mean"));
 		double high = json_number_value(json_object_get(numbers, "difference_95"));
-		double explained = json_number_value(json_object_get(numbers, "explained_by_model"));
+		double model = json_number_value(json_object_get(numbers, "model_difference_mean"));
+		const char *colours = json_string_value(json_object_get(numbers, "colours_from"));
 		if (mean > 0) {
 			add(like, "mean", page_text("%.1f", mean));
 			add(like, "high", page_text("%.1f", high));
-			add(like, "explained", page_text("%.0f", 100 * explained));
+			if (model > 0)
+				add(like, "model", page_text("%.1f", model));
+			if (colours && strcmp(colours, name))
+				add(like, "colours", template_text(colours));
 		}
 		json_object_set_new(entry, "likeness", like);
 	} else {
