@@ -22,7 +22,12 @@ static char *record_path(const char *capture, const char *stage)
 /* Loads a JSON object; an empty one where it cannot be read: the stage then runs again. */
 static json_t *load_object(const char *path)
 {
-	json_t *json = json_load_file(path, 0, 0);
+	enum { LIMIT = 256 << 20 };
+	char *text;
+	size_t size;
+	struct err none = { 0 };
+	json_t *json = file_read(&text, &size, path, LIMIT, &none) ? json_loadb(text, size, 0, 0) : 0;
+	free(text);
 	if (!json_is_object(json)) {
 		json_decref(json);
 		json = json_object();

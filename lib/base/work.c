@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/gate.h"
+#include "base/gate_walk.h"
 #include "base/mem.h"
 
 /* The folder that a search is about, and the first link found that leads out of it: nftw hands nothing on to what it calls. */
@@ -125,22 +126,22 @@ void work_wait(int lock)
 		;
 }
 
-static int sweep_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
+static bool sweep_one(void *ctx, int folder, const char *name, bool is_folder)
 {
-	(void)st;
-	if (kind != FTW_F || !file_is_temporary(path + ftw->base))
-		return 0;
-	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+	(void)ctx;
+	if (is_folder || !file_is_temporary(name))
+		return true;
+	int fd = openat(folder, name, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
 	if (fd >= 0 && !flock(fd, LOCK_EX | LOCK_NB))
-		unlink(path);
+		unlinkat(folder, name, 0);
 	if (fd >= 0)
 		close(fd);
-	return 0;
+	return true;
 }
 
 void work_sweep(const char *capture)
 {
 	char *work = mem_printf("%s/work", capture);
-	nftw(work, sweep_one, 32, FTW_PHYS);
+	gate_walk(work, sweep_one, 0);
 	free(work);
 }

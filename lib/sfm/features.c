@@ -49,7 +49,7 @@ static bool extract(struct stage *stage, const struct calibrate_options *o, int 
 		"--SiftExtraction.use_gpu", "0", "--SiftExtraction.max_image_size", px,
 		"--SiftExtraction.first_octave", o->first_octave < 0 ? "-1" : "0",
 		"--SiftExtraction.max_num_features", features, "--SiftExtraction.num_threads", t, 0 };
-	bool ok = colmap_run(stage, "feature_extractor", args, n_new, "features", err);
+	bool ok = colmap_run(stage, "feature_extractor", args, n_new, "features", err) && db_featured(args[1], err);
 	free(px);
 	free(features);
 	free(t);

@@ -1,8 +1,8 @@
 #include "sfm/mapper.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
+#include "base/gate_walk.h"
 #include "base/mem.h"
 #include "sfm/colmap/run.h"
 
@@ -13,7 +13,7 @@ void mapper_remove(struct stage *stage, const char *dir)
 	struct err none = { 0 };
 	for (int i = 0; i < COUNT(files); i++)
 		file_remove(stage_path(stage, "%s/%s", dir, files[i]), &none);
-	rmdir(stage_path(stage, "%s", dir));
+	gate_rmdir(stage_path(stage, "%s", dir));
 }
 
 bool mapper_run(struct stage *stage, const struct views *views, const struct mapper_step *step, const struct calibrate_options *o,

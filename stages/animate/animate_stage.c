@@ -134,13 +134,21 @@ static void tell(struct stage *stage, const struct animation *a, const struct so
 		stage_skipped(stage, "%s: not watched: the gaze is recorded", s->video_rel);
 }
 
+/* A length that ends before a script begins would show nothing of it. */
+static bool within(const struct script *script, const char *rel, double duration, struct err *err)
+{
+	return !rel || isnan(duration) || script->first <= duration
+	       || err_set(err, "animate.duration_s = %g with %s, whose first line is at %g s: nothing of it would be shown", duration, rel, script->first);
+}
+
 static bool make(struct stage *stage, struct sources *s, const struct skin_model *model, const struct animate_conf *conf,
                  const struct scene_conf *scene, int n, const char *const in[], struct err *err)
 {
 	bool watch = s->video_rel && !s->keys_look && !s->has_gaze;
 	struct animation a = { 0 };
 	const char *made_by = stage_made_by(stage, n, in);
-	bool ok = (!watch || scene_places(&s->places, stage, s->video_rel, scene, err))
+	bool ok = within(&s->gaze, s->gaze_rel, conf->duration, err) && within(&s->keys, s->keys_rel, conf->duration, err)
+	          && (!watch || scene_places(&s->places, stage, s->video_rel, scene, err))
 	          && animate_run(&a, model, s->has_gaze && !s->keys_look ? &s->gaze : 0, s->has_keys ? &s->keys : 0,
 	                         watch ? &s->places : 0, conf, err)
 	          && animation_save(stage_path(stage, "%s", csv_rel), &a, err)

@@ -13,25 +13,27 @@ names() {
 }
 
 # A line for each that has to run: its number TAB what plan --request says of its stages, TABs between. One that cannot be planned
-# is told of at once.
+# is told of at once. One process looks into all of them.
 look() { # N NAME ...
-	local said was
+	local status said was
 	local -a known=()
-	while [ $# -gt 0 ]; do
-		said=$(EYEWRIGHT_SOURCE=${ELSEWHERE:+$CAPTURES/$2} "$BIN/plan" --capture="$results/$2" --request 2>"$state/log/$2")
-		case $? in
+	while IFS=$tab read -r status said; do
+		case $status in
 		0) was=
 			[ ! -f "$state/results/$2" ] || IFS=$tab read -r _ was _ <"$state/results/$2"
 			[ "$was" = done ] || tell "$2" done 0 "$(peak "$2")" ""
 			known+=("$2") ;;
-		3) printf '%s\t%s\n' "$1" "${said//$'\n'/$tab}" ;;
-		*) tell "$2" failed 0 "" "$(why "$state/log/$2")"
+		3) printf '%s\t%s\n' "$1" "$said" ;;
+		*) printf '%s\n' "$said" >"$state/log/$2"
+			tell "$2" failed 0 "" "$(one_line "$said")"
 			known+=("$2") ;;
 		esac
 		shift 2
-	done
+	done < <(every_other "$@" | EYEWRIGHT_SOURCE=${ELSEWHERE:+$CAPTURES} "$BIN/plan" --capture="$results" --requests)
+	[ $# = 0 ] || die "$(one_line "$2"): cannot be looked into"
 	[ ${#known[@]} = 0 ] || printf '%s\0' "${known[@]}" | "$BIN/summary" --capture="$results" --only-collect
 }
+every_other() { while [ $# -gt 0 ]; do printf '%s\0' "$2"; shift 2; done; }
 
 # $state/captures: all names; $state/todo: the lines of look, by number.
 list_todo() {

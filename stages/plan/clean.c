@@ -1,6 +1,5 @@
 #include <errno.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,24 +7,28 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/gate.h"
+#include "base/gate_walk.h"
 #include "base/mem.h"
 #include "plan.h"
 
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *ftw)
+static bool remove_one(void *ctx, int folder, const char *name, bool is_folder)
 {
-	(void)st;
-	(void)ftw;
-	return (kind == FTW_DP ? rmdir(path) : unlink(path)) && errno != ENOENT ? -1 : 0;
+	(void)ctx;
+	return !unlinkat(folder, name, is_folder ? AT_REMOVEDIR : 0) || errno == ENOENT;
 }
 
 /* True when a running stage holds the lock (base/stage.c). */
 static bool is_busy(const char *work)
 {
 	char *path = mem_printf("%s/.made/lock", work);
-	int fd = open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+	const char *name;
+	const int folder = gate_parent(&name, path, false), fd = folder < 0 ? -1 : openat(folder, name, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
 	bool busy = fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK;
 	if (fd >= 0)
 		close(fd);
+	if (folder >= 0)
+		close(folder);
 	free(path);
 	return busy;
 }
@@ -41,10 +44,12 @@ bool plan_clean(const char *capture, struct err *err)
 		ok = errno == ENOENT ? true : err_set(err, "%s: %s", work, strerror(errno));
 	else if (!S_ISDIR(st.st_mode))  // a link is taken away, what it leads to stays
 		ok = !unlink(work) || err_set(err, "%s: cannot remove: %s", work, strerror(errno));
+	else if (!gate_set(work, err))
+		ok = false;
 	else if (is_busy(work))
 		ok = err_set(err, "%s: a stage is running there: wait for it, or end it", work);
 	else
-		ok = !nftw(work, remove_one, 32, FTW_DEPTH | FTW_PHYS)
+		ok = (gate_walk(work, remove_one, 0) && gate_rmdir(work))
 		     || err_set(err, "%s: cannot remove: %s", work, strerror(errno));
 	free(work);
 	return ok;

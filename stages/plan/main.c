@@ -12,6 +12,7 @@
 	"  --show             print the plan as a table: what would run, why, how long\n" \
 	"  --todo             exit 0 when every stage's last run still holds, 3 when one has to run\n" \
 	"  --request          a line for each stage that has to run, STAGE SECONDS MIB, tabs between; exit 3 when there is one\n" \
+	"  --requests         the same of many: folders of DIR, named on standard input, a zero byte behind each; a line each, STATUS and its lines\n" \
 	"  --fresh=STAGE      exit 0 when that stage's last run still holds, 3 when it has to run\n" \
 	"  --clean            remove the folder's work/ and nothing else"
 
@@ -26,6 +27,8 @@ static struct plan_asked take_asked(int *argc, char **argv)
 			asked.todo = true;
 		else if (!strcmp(argv[i], "--request"))
 			asked.request = true;
+		else if (!strcmp(argv[i], "--requests"))
+			asked.requests = true;
 		else if (!strcmp(argv[i], "--clean"))
 			asked.clean = true;
 		else if (!strncmp(argv[i], "--fresh=", 8))
@@ -56,7 +59,7 @@ int main(int argc, char **argv)
 	struct plan_asked asked = take_asked(&argc, argv);
 	fill_table(opts, cost);
 	call_parse(&call, "plan", ABOUT, argc, argv, PLAN_OPTS, opts, &conf);
-	int status = plan_run(&call, &asked, opts, cost, &conf, &err);
+	int status = asked.requests ? plan_many(&call, opts, cost, &conf, &err) : plan_run(&call, &asked, opts, cost, &conf, &err);
 	conf_free(&conf);
 	for (int i = 0; i < PLAN_OPTS; i++)
 		free((char *)opts[i].key);

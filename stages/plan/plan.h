@@ -7,10 +7,10 @@
 /* Rows of plan's configuration: seconds and memory of each stage. */
 enum { PLAN_OPTS = 2 * PLAN_STAGES };
 
-/* Options of the command line beside planning: --show, --clean, --todo, --request, --fresh=STAGE. They are no part of the configuration, so they
- * are not in the option table. */
+/* Options of the command line beside planning: --show, --clean, --todo, --request, --requests, --fresh=STAGE. They are no part of the
+ * configuration, so they are not in the option table. */
 struct plan_asked {
-	bool show, clean, todo, request;
+	bool show, clean, todo, request, requests;
 	const char *fresh;
 };
 
@@ -37,6 +37,12 @@ bool plan_check_conf(const struct plan *plan, const struct conf *conf, struct er
 
 /* Removes work/. A link is removed itself, never what it points to. Returns false, err set, when a stage is running there. */
 bool plan_clean(const char *capture, struct err *err);
+
+/* Looks into many captures, folders of call->capture, whose names stand on stdin with a zero byte behind each. Prints a line for each: the
+ * exit status that --request has for it, a tab, and what that prints, tabs between; or, where it fails, what it says last. conf: items of
+ * the command line. Returns the exit status: 0, or 1 with an error where the system lets no process be started. */
+int plan_many(const struct call *call, const struct opt opts[PLAN_OPTS], const struct plan_cost cost[PLAN_STAGES], struct conf *conf,
+              struct err *err);
 
 /* Does what is asked and prints what is wrong. opts: cost's rows; conf: items of the command line. Returns the exit status: 0; 1, 2 with
  * an error in data, in the call; 3 where --todo, --request or --fresh finds something to do. */

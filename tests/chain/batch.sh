@@ -51,7 +51,7 @@ ln -s "$PWD/$BIN/summary" "$root/bin/summary"
 cat >"$root/bin/plan" <<'STAND_IN'
 #!/bin/bash
 case $* in
-*--request) echo "limbus	1	1"; exit 3 ;;
+*--requests) while IFS= read -r -d '' _; do echo "3	limbus	1	1"; done; exit 0 ;;
 esac
 touch "$CAPTURE/begun"
 for _ in $(seq 200); do [ -e "$CAPTURE/../a/begun" ] && [ -e "$CAPTURE/../b/begun" ] && exit 0; sleep 0.1; done

@@ -124,7 +124,7 @@ trouble() {
 			under "$kind" "$at" "$((RANDOM % 4 ? 0 : RANDOM % 20))" 0 run_make "$root/hit"
 			status=$?
 			if [ "$(calls)" -gt "$at" ]; then
-				! grep -qE 'Segmentation|Aborted|core dumped|terminate called|stack smashing' "$log" || fail "$column, $kind at call $at: it dies" "$(tail -n 3 "$log")"
+				! grep -vE '^calibrate: colmap ' "$log" | grep -qE 'Segmentation|Aborted|core dumped|terminate called|stack smashing' || fail "$column, $kind at call $at: it dies" "$(tail -n 3 "$log")"
 				says=$(grep -cE '^[a-z]+: ' "$log")
 				[ "$status" = 0 ] || [ "$says" -gt 0 ] || fail "$column, $kind at call $at: a line says so" "$(tail -n 3 "$log")"
 			else

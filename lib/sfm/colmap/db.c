@@ -38,6 +38,7 @@ bool db_open(struct db **out, const char *path, struct err *err)
 	struct db *db = mem_new(1, sizeof *db);
 	db->path = mem_str(path);
 	*out = db;
+	db_gate();
 	if (sqlite3_open_v2(path, &db->sql, SQLITE_OPEN_READWRITE, 0) != SQLITE_OK || !db_run(db, "PRAGMA foreign_keys=OFF", err)) {
 		sql_error(db, err);
 		db_close(db);
@@ -69,19 +70,6 @@ bool db_remove(const char *path, struct err *err)
 	return ok;
 }
 
-bool db_is_sound(const char *path)
-{
-	struct db *db = 0;
-	struct err none = { 0 };
-	bool ok = db_open(&db, path, &none);
-	sqlite3_stmt *s = ok ? db_prepare(db, "PRAGMA quick_check(1)", &none) : 0;
-	const char *says = s && sqlite3_step(s) == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : 0;
-	ok = says && !strcmp(says, "ok");
-	sqlite3_finalize(s);
-	db_close(db);
-	return ok;
-}
-
 /* Integer of the first row's first column; `none` where there is no row. */
 static bool number(int64_t *out, int64_t none, struct db *db, sqlite3_stmt *s, struct err *err)
 {
@@ -91,6 +79,42 @@ static bool number(int64_t *out, int64_t none, struct db *db, sqlite3_stmt *s, s
 	if (s && !ok)
 		sql_error(db, err);
 	sqlite3_finalize(s);
+	return ok;
+}
+
+bool db_is_sound(const char *path)
+{
+	struct db *db = 0;
+	struct err none = { 0 };
+	bool ok = db_open(&db, path, &none);
+	sqlite3_stmt *s = ok ? db_prepare(db, "PRAGMA quick_check(1)", &none) : 0;
+	const char *says = s && sqlite3_step(s) == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : 0;
+	ok = says && !strcmp(says, "ok");
+	sqlite3_finalize(s);
+	// Where COLMAP was interrupted as it made the file, the file is whole and tables are missing.
+	int64_t tables = 0;
+	ok = ok
+	     && number(&tables, 0, db, db_prepare(db, "SELECT count(*) FROM sqlite_master WHERE type='table' AND name IN ('cameras','images','keypoints',"
+	                                              "'descriptors','matches','two_view_geometries')", &none), &none)
+	     && tables == 6;
+	db_close(db);
+	return ok;
+}
+
+bool db_featured(const char *path, struct err *err)
+{
+	struct db *db = 0;
+	if (!db_open(&db, path, err))
+		return false;
+	sqlite3_stmt *s = db_prepare(db, "SELECT name FROM images WHERE image_id NOT IN (SELECT image_id FROM keypoints) ORDER BY image_id", err);
+	const int step = s ? sqlite3_step(s) : SQLITE_ERROR;
+	bool ok = step == SQLITE_DONE;
+	if (step == SQLITE_ROW)
+		err_set(err, "%s: has no features of %s: COLMAP could not read it; colmap.log says why", path, (const char *)sqlite3_column_text(s, 0));
+	else if (s && !ok)
+		sql_error(db, err);
+	sqlite3_finalize(s);
+	db_close(db);
 	return ok;
 }
 

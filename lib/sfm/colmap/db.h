@@ -15,8 +15,11 @@ void db_close(struct db *db);
 /* Removes the file, with what SQLite keeps beside it. */
 bool db_remove(const char *path, struct err *err);
 
-/* SQLite's quick check. False where the file is damaged, or no database. */
+/* SQLite's quick check. False where the file is damaged, no database, or without COLMAP's tables. */
 bool db_is_sound(const char *path);
+
+/* Whether each picture's features stand there: COLMAP goes on where it cannot read one. False, err set (the first), otherwise. */
+bool db_featured(const char *path, struct err *err);
 
 struct db_image {
 	const char *name;  // of the file below the folder of pictures

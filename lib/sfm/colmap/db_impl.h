@@ -13,6 +13,9 @@ struct db {
 	char *path;
 };
 
+/* From here on SQLite opens and removes its files through the gate (base/gate.h). */
+void db_gate(void);
+
 bool db_run(struct db *db, const char *text, struct err *err);
 
 /* Null, err set, when SQLite refuses the text. */

@@ -205,6 +205,32 @@ static void assume_eyes(struct track_subject *s)
 	ray_scene_free(nothing);
 }
 
+/* Where capture.conf says where both eyeballs are: beside each other, the left one on the person's left, each where the mesh is. */
+static bool eyes_agree(const struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	const double *left = given(&conf->eye_center, "left"), *right = given(&conf->eye_center, "right");
+	float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+	for (int i = 0; i < s->mesh.n_vertices; i++)
+		for (int k = 0; k < 3; k++) {
+			low[k] = fminf(low[k], s->mesh.vertices[i][k]);
+			high[k] = fmaxf(high[k], s->mesh.vertices[i][k]);
+		}
+	for (int e = 0; e < SIDES; e++) {
+		const double *at = e == SIDE_LEFT ? left : right;
+		for (int k = 0; k < 3 && at; k++)
+			if (at[k] * s->unit_mm < low[k] - s->radius || at[k] * s->unit_mm > high[k] + s->radius)
+				return err_set(err, "subject.eye_center.%s = %g %g %g with subject.unit_mm = %g: lies outside of %s", sides[e], at[0], at[1], at[2],
+				               s->unit_mm, s->file);
+	}
+	if (!left || !right)
+		return true;
+	const double apart = sqrt(pow(left[0] - right[0], 2) + pow(left[1] - right[1], 2) + pow(left[2] - right[2], 2)) * s->unit_mm;
+	if (left[0] > right[0] && apart > 2 * s->radius)
+		return true;
+	return err_set(err, "subject.eye_center.left = %g %g %g with subject.eye_center.right = %g %g %g: must lie more than two radii of an eyeball (%.3g mm) apart, the left one at the greater x",
+	               left[0], left[1], left[2], right[0], right[1], right[2], 2 * s->radius);
+}
+
 bool track_subject_load(struct track_subject *s, struct stage *stage, const struct track_conf *conf, struct err *err)
 {
 	static const char *const files[] = { "subject.ply", "subject.obj", "work/subject.ply" };
@@ -224,7 +250,7 @@ bool track_subject_load(struct track_subject *s, struct stage *stage, const stru
 	for (int i = 0; i < s->mesh.n_vertices; i++)
 		for (int k = 0; k < 3; k++)
 			s->mesh.vertices[i][k] *= (float)s->unit_mm;
-	return read_marks(s, conf, err) && eyes(s, stage, conf, err);
+	return read_marks(s, conf, err) && eyes(s, stage, conf, err) && eyes_agree(s, conf, err);
 }
 
 void track_subject_free(struct track_subject *s)

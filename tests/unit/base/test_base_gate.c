@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/gate.h"
+#include "base/gate_walk.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
@@ -97,8 +98,43 @@ static void no_link_is_followed(void **state)
 	scratch_close();
 }
 
+/* What gate_walk comes to, in a string: files before the folders that hold them. */
+static bool note(void *ctx, int folder, const char *name, bool is_folder)
+{
+	struct stat st;
+	strcat(strcat(ctx, name), is_folder ? "/" : S_ISLNK(fstatat(folder, name, &st, AT_SYMLINK_NOFOLLOW) ? 0 : st.st_mode) ? "@ " : " ");
+	return true;
+}
+
+static bool take_away(void *ctx, int folder, const char *name, bool is_folder)
+{
+	(void)ctx;
+	return !unlinkat(folder, name, is_folder ? AT_REMOVEDIR : 0);
+}
+
+static void walks_what_is_inside(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	char seen[200] = "";
+	begin();
+	assert_true(file_write(scratch_path("work/a/b/one"), "x", 1, &err));
+	assert_int_equal(symlink(victim, scratch_path("work/a/b/out")), 0);
+	assert_true(gate_walk(work, note, seen));
+	assert_true(!strcmp(seen, "one out@ b/a/") || !strcmp(seen, "out@ one b/a/"));
+	assert_true(gate_walk(work, take_away, 0) && gate_rmdir(work));
+	assert_false(file_exists(work));
+	holds(scratch_path("victim/a.json"), "mine");
+	// A folder that has become a link is not gone into.
+	assert_int_equal(mkdir(work, 0755), 0);
+	assert_int_equal(symlink(victim, scratch_path("work/limbus")), 0);
+	assert_false(gate_walk(scratch_path("work/limbus"), take_away, 0) || gate_rmdir(scratch_path("work/limbus")));
+	holds(scratch_path("victim/a.json"), "mine");
+	scratch_close();
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(writes_below), cmocka_unit_test(no_link_is_followed) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(writes_below), cmocka_unit_test(no_link_is_followed), cmocka_unit_test(walks_what_is_inside) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
