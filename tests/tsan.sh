@@ -49,7 +49,7 @@ printf '%s\n' "render.size_px = 64" "render.look_px = 96" "render.cell_px = 64" 
 sanitised "made face" "$root/made" plan extrapolate animate
 
 small_face "$root/face"
-sed -i 's/^transfer.nodes.*/transfer.nodes = 50 100 200/' "$root/face/capture.conf"
+sed -i 's/^transfer.nodes.*/transfer.nodes = 100 200 400/' "$root/face/capture.conf"
 sanitised face "$root/face" track train transfer extrapolate animate render
 
 VIEWS=${EYEWRIGHT_DATA:-../shared/data}/views/buddha/images
