@@ -12,9 +12,10 @@ double deform_clearance(const struct rig *rig)
 	struct deform *deform = deform_new(rig);
 	float (*x)[3] = mem_new((size_t)rig->n + 1, sizeof *x);
 	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c), least = INFINITY;
+	static const double vertical[] = { -25, 0, 15 };
 	deform_rest(deform, x, 0);
 	for (int pose = 0; pose < 27; pose++) {
-		double h = 20 * (pose % 3 - 1), v = 15 * (pose / 3 % 3 - 1), e[RIG_COMPONENTS], turn[2][3][3];
+		double h = 20 * (pose % 3 - 1), v = vertical[pose / 3 % 3], e[RIG_COMPONENTS], turn[2][3][3];
 		drive_look(c, rig, h, v, pose / 9 * 0.5);
 		rig_components(e, rig, c);
 		for (int s = 0; s < 2; s++)

@@ -50,3 +50,12 @@ void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, co
 	for (int k = 0; k < RIG_COMPONENTS; k++)
 		out[k] = usable ? out[k] / along : square > 0 ? closed[k] / square : 0;
 }
+
+void rig_closed_pose(double closed[RIG_COMPONENTS], const struct rig *rig)
+{
+	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c);
+	rig_components(closed, rig, c);
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		closed[k] -= rig->rest_e[k];
+	free(c);
+}

@@ -131,99 +131,8 @@ void rig_follow_lids(struct rig *rig, const struct rig_motion *m, double px_per_
 	}
 }
 
-/* The modelling camera's view of one eye in a pose: the pixels that skin covers, and the gap left open in each column. */
-struct fissure {
-	int x0, y0, width, height;
-	uint8_t *cover;
-	float (*at)[2];        // of every vertex, px
-	float *top, *bottom;   // of the open part of a column; equal where none is
-};
-
-/* Whether a vertex is skin in front of the globe; that behind it lines the socket and does not cover the eye. */
-static bool before_globe(const struct rig *rig, int i, int side)
-{
-	double z = 0;
-	for (int c = 0; c < 3; c++)
-		z += rig->head_from_target[2][c] * (rig->rest[i][c] - rig->globe[side].center[c]);
-	return rig->part[i] == RIG_SKIN && rig->side[i] == side && z > 0.2 * rig->globe[side].radius;
-}
-
-static void cover_triangle(struct fissure *f, const float a[2], const float b[2], const float c[2])
-{
-	float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-	if (area == 0)
-		return;
-	int x0 = (int)fmaxf(floorf(fminf(fminf(a[0], b[0]), c[0])) - (float)f->x0, 0);
-	int x1 = (int)fminf(ceilf(fmaxf(fmaxf(a[0], b[0]), c[0])) - (float)f->x0, (float)f->width - 1);
-	int y0 = (int)fmaxf(floorf(fminf(fminf(a[1], b[1]), c[1])) - (float)f->y0, 0);
-	int y1 = (int)fminf(ceilf(fmaxf(fmaxf(a[1], b[1]), c[1])) - (float)f->y0, (float)f->height - 1);
-	for (int y = y0; y <= y1; y++)
-		for (int x = x0; x <= x1; x++) {
-			float p[2] = { (float)(f->x0 + x) + 0.5f, (float)(f->y0 + y) + 0.5f };
-			float wa = ((c[0] - b[0]) * (p[1] - b[1]) - (c[1] - b[1]) * (p[0] - b[0])) / area;
-			float wb = ((a[0] - c[0]) * (p[1] - c[1]) - (a[1] - c[1]) * (p[0] - c[0])) / area;
-			if (wa >= -1e-4f && wb >= -1e-4f && wa + wb <= 1.0001f)
-				f->cover[(long)y * f->width + x] = 1;
-		}
-}
-
-/* Renders the pose de (components from rest): cover, top, bottom. */
-static void look(struct fissure *f, const struct rig *rig, int side, const double de[RIG_COMPONENTS])
-{
-	memset(f->cover, 0, (size_t)f->width * (size_t)f->height);
-	for (int i = 0; i < rig->n; i++)
-		for (int c = 0; c < 2; c++) {
-			double px = rig->home[i][c];
-			for (int k = 0; k < RIG_COMPONENTS; k++)
-				px += rig->basis[i][c * RIG_COMPONENTS + k] * de[k];
-			f->at[i][c] = (float)px;
-		}
-	for (int t = 0; t < rig->n_faces; t++) {
-		const int32_t *v = rig->faces[t];
-		if (before_globe(rig, v[0], side) && before_globe(rig, v[1], side) && before_globe(rig, v[2], side))
-			cover_triangle(f, f->at[v[0]], f->at[v[1]], f->at[v[2]]);
-	}
-	for (int x = 0; x < f->width; x++) {
-		// The longest gap between covered pixels: gaps at the window's border are not the fissure.
-		int best = 0, at = 0, from = -1;
-		for (int y = 0; y < f->height; y++) {
-			if (!f->cover[(long)y * f->width + x])
-				continue;
-			if (from >= 0 && y - from - 1 > best) {
-				best = y - from - 1;
-				at = y;
-			}
-			from = y;
-		}
-		f->bottom[x] = (float)(f->y0 + at);
-		f->top[x] = f->bottom[x] - (float)best;
-	}
-}
-
-/* The window around the lids at rest, in which the eye must close. False: the lids were not learnt. Its arrays: free(). */
-static bool window(struct fissure *f, const struct rig *rig, const struct rig_motion *m, int side, double px_per_mm)
-{
-	double box[4] = { INFINITY, INFINITY, -INFINITY, -INFINITY };
-	for (int i = 2 * side * m->n_points; i < 2 * (side + 1) * m->n_points; i++)
-		for (int c = 0; c < 2 && isfinite(m->lid[i][c]); c++) {
-			box[c] = fmin(box[c], m->lid[i][c]);
-			box[c + 2] = fmax(box[c + 2], m->lid[i][c]);
-		}
-	if (!(box[2] > box[0]) || box[2] - box[0] > 1e4 || box[3] - box[1] > 1e4)
-		return false;
-	// Registration may be off by 2 mm; the canthi themselves are never open.
-	double rim = 2 * px_per_mm;
-	*f = (struct fissure){ .x0 = (int)(box[0] + 0.5 * rim), .y0 = (int)(box[1] - rim), .width = (int)fmax(box[2] - box[0] - rim, 0) + 1,
-		                   .height = (int)(box[3] - box[1] + 2 * rim) + 1 };
-	f->cover = mem_new((size_t)f->width * (size_t)f->height + 1, 1);
-	f->at = mem_new((size_t)rig->n + 1, sizeof *f->at);
-	f->top = mem_new((size_t)f->width + 1, sizeof *f->top);
-	f->bottom = mem_new((size_t)f->width + 1, sizeof *f->bottom);
-	return true;
-}
-
 /* How far each column must still close, px, smoothed along the fissure so that the margin stays a curve. Returns the largest gap, px. */
-static double open_columns(float *open, const struct fissure *f, double seal_mm, double px_per_mm)
+static double open_columns(float *open, const struct rig_fissure *f, double seal_mm, double px_per_mm)
 {
 	int reach = (int)fmax(2 * px_per_mm, 1);
 	double worst = 0;
@@ -247,7 +156,7 @@ static double open_columns(float *open, const struct fissure *f, double seal_mm,
 }
 
 /* Lowers the upper lid by `open`, fully at its margin and less further up. */
-static void close_once(struct rig *rig, const struct fissure *f, const float *open, int side, const double closing[RIG_COMPONENTS],
+static void close_once(struct rig *rig, const struct rig_fissure *f, const float *open, int side, const double closing[RIG_COMPONENTS],
                        double px_per_mm)
 {
 	for (int i = 0; i < rig->n; i++) {
@@ -265,20 +174,17 @@ static void close_once(struct rig *rig, const struct fissure *f, const float *op
 void rig_seal_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm, double seal_mm, struct rig_report *report)
 {
 	enum { ROUNDS = 12 };
-	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c), de[RIG_COMPONENTS], closing[RIG_COMPONENTS];
-	rig_components(de, rig, c);  // straight ahead, both eyes closed
-	for (int k = 0; k < RIG_COMPONENTS; k++)
-		de[k] -= rig->rest_e[k];
-	free(c);
+	double de[RIG_COMPONENTS], closing[RIG_COMPONENTS];
+	rig_closed_pose(de, rig);
 	rig_closing_direction(closing, rig, de);
 	for (int side = 0; side < 2; side++) {
-		struct fissure f;
-		if (!window(&f, rig, m, side, px_per_mm))
+		struct rig_fissure f;
+		if (!rig_fissure_new(&f, rig, m, side, (double[]){ -px_per_mm, 2 * px_per_mm }))
 			continue;
 		float *open = mem_new((size_t)f.width + 1, sizeof *open);
 		double left = 0;
 		for (int round = 0; round <= ROUNDS; round++) {
-			look(&f, rig, side, de);
+			rig_fissure_look(&f, rig, side, de);
 			left = open_columns(open, &f, seal_mm, px_per_mm);
 			report->open_before[side] = round ? report->open_before[side] : left / px_per_mm;
 			if (left == 0 || round == ROUNDS)
@@ -287,9 +193,6 @@ void rig_seal_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm
 		}
 		report->open_after[side] = left / px_per_mm;
 		free(open);
-		free(f.cover);
-		free(f.at);
-		free(f.top);
-		free(f.bottom);
+		rig_fissure_free(&f);
 	}
 }

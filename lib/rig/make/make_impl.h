@@ -20,6 +20,24 @@ bool rig_take_skull(struct rig *rig, const struct rig_motion *motion, const stru
  * and radius: out, in the target's frame, mm. Centres are NAN where the subject's are unknown; its radius is then 12 mm. */
 void rig_expect_globes(double center[2][3], double *radius, const struct rig *rig, const struct rig_character *character);
 
+/* fissure.c: the modelling camera's view of one eye in a pose. */
+struct rig_fissure {
+	int x0, y0, width, height;  // of the window, px
+	uint8_t *cover;             // [height][width] 1: skin before the globe
+	float (*at)[2];             // of every vertex, px
+	float *top, *bottom;        // of the open part of a column, px; equal where none is
+};
+/* A window round the learnt lids at rest and rim px beyond them (x, y; below 0: within). False: the lids were not learnt. rig_fissure_free. */
+bool rig_fissure_new(struct rig_fissure *f, const struct rig *rig, const struct rig_motion *motion, int side, const double rim[2]);
+/* Renders the pose de (components from rest): cover, at, top, bottom. */
+void rig_fissure_look(struct rig_fissure *f, const struct rig *rig, int side, const double de[RIG_COMPONENTS]);
+void rig_fissure_free(struct rig_fissure *f);
+
+/* margins.c: makes the character's own lid margins move as smooth arcs between corners that both lids share: each component moves a
+ * margin by a share of the opening at rest, so that arcs stay arcs at every gaze. In closed poses they meet along their whole length and seal_mm more; below 0: as was learnt.
+ * Fades over reach_mm; 0: nothing is done. */
+void rig_arc_margins(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, double seal_mm);
+
 /* lids.c: makes skin at the lid margins move as the margins' splines do, fading over reach_mm. */
 void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);
 
@@ -27,6 +45,8 @@ void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px
  * rest, eyes closed straight ahead) and, in the least-squares sense, 1 with eyes closed and 0 with eyes open, for all gazes and
  * expressions. Sealing the lids in proportion to it leaves a gaze downwards, in which lids close halfway, as it was learnt. */
 void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, const double closed[RIG_COMPONENTS]);
+/* The pose itself, straight ahead with both eyes closed: components from rest. */
+void rig_closed_pose(double closed[RIG_COMPONENTS], const struct rig *rig);
 
 /* lids.c: lowers the upper lids in closed poses until no gap is left, and by seal_mm more. */
 void rig_seal_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double seal_mm, struct rig_report *report);

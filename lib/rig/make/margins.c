@@ -1,0 +1,216 @@
+/* Margins as arcs. What is learnt of a margin, point by point, waves by a millimetre, and the character's corners are not quite the
+ * subject's. Here the margins' motion is fitted by few functions of the place along the fissure. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/chol.h"
+#include "rig/make/make_impl.h"
+
+enum { UPPER, LOWER, LIDS, TERMS = 2 + LIDS };
+
+static const double lid_gap = 5;        // mm from the globe: skin further away is no lid
+static const double open_mm = 0.3;      // less than this is a corner
+static const double least_mm[] = { 10, 2 };  // length and height of what is an eye's opening
+
+/* The lids go on beyond what is seen of the eyeball, over caruncle and plica, and less so at the outer corner: from so far within its end
+ * their margins run straight to a corner so far beyond it. mm of an eyeball of 12 mm; inner, outer. */
+static const double within_mm[] = { 2.5, 1 }, beyond_mm[] = { 3.5, 2.5 };
+
+/* The character's opening at rest, in columns of the modelling camera. */
+struct opening {
+	int n;
+	double first, px_per_mm, most;  // most: the largest opening, px
+	double *y[LIDS], *height;  // of the margins, px; opening, of its largest
+};
+
+static void opening_free(struct opening *o)
+{
+	free(o->y[UPPER]);
+	free(o->y[LOWER]);
+	free(o->height);
+}
+
+/* Means over half a millimetre to each side: margins of coarse meshes have corners. */
+static double smoothed(const float *y, int at, int from, int to, int reach)
+{
+	double sum = 0;
+	int k = at - from < to - at ? at - from : to - at, n = k < reach ? k : reach;
+	for (int i = at - n; i <= at + n; i++)
+		sum += y[i];
+	return sum / (2 * n + 1);
+}
+
+/* Margins run straight from column `from` to a corner at `corner`, whose height is that of the eyeball's end at column `end`. */
+static void to_corner(struct opening *o, int corner, int end, int from)
+{
+	const double y = 0.5 * (o->y[UPPER][end] + o->y[LOWER][end]);
+	for (int lid = 0; lid < LIDS && from != corner; lid++) {
+		const double y0 = o->y[lid][from];
+		for (int i = from; i != corner; i += corner > from ? 1 : -1)
+			o->y[lid][i] = y0 + (y - y0) * (i - from) / (corner - from);
+		o->y[lid][corner] = y;
+	}
+}
+
+static void take_height(struct opening *o)
+{
+	o->most = 1e-6;
+	for (int i = 0; i < o->n; i++)
+		o->most = fmax(o->most, o->height[i] = o->y[LOWER][i] - o->y[UPPER][i]);
+	for (int i = 0; i < o->n; i++)
+		o->height[i] /= o->most;
+}
+
+/* False: there is none. */
+static bool opening_of(struct opening *o, const struct rig *rig, const struct rig_motion *m, int side, double px_per_mm)
+{
+	struct rig_fissure f;
+	const double still[RIG_COMPONENTS] = { 0 };
+	if (!rig_fissure_new(&f, rig, m, side, (double[]){ 6 * px_per_mm, 3 * px_per_mm }))
+		return false;
+	rig_fissure_look(&f, rig, side, still);
+	int best = 0, from, to;
+	for (int x = 0; x < f.width; x++)
+		if (f.bottom[x] - f.top[x] > f.bottom[best] - f.top[best])
+			best = x;
+	for (from = best; from > 0 && f.bottom[from - 1] - f.top[from - 1] > open_mm * px_per_mm; from--)
+		;
+	for (to = best; to + 1 < f.width && f.bottom[to + 1] - f.top[to + 1] > open_mm * px_per_mm; to++)
+		;
+	bool ok = to - from > least_mm[0] * px_per_mm && f.bottom[best] - f.top[best] > least_mm[1] * px_per_mm;
+	const double scale = px_per_mm * rig->globe[side].radius / 12;
+	const int inner = side, left = (int)(beyond_mm[inner] * scale), right = (int)(beyond_mm[!inner] * scale);
+	*o = (struct opening){ .n = ok ? left + to - from + 1 + right : 0, .first = f.x0 + from - left, .px_per_mm = px_per_mm };
+	for (int lid = 0; lid < LIDS; lid++)
+		o->y[lid] = mem_new((size_t)o->n + 1, sizeof *o->y[lid]);
+	o->height = mem_new((size_t)o->n + 1, sizeof *o->height);
+	for (int x = from; x <= to && ok; x++) {
+		o->y[UPPER][left + x - from] = smoothed(f.top, x, from, to, (int)(0.5 * px_per_mm));
+		o->y[LOWER][left + x - from] = smoothed(f.bottom, x, from, to, (int)(0.5 * px_per_mm));
+	}
+	if (ok) {
+		to_corner(o, 0, left, left + (int)(within_mm[inner] * scale));
+		to_corner(o, o->n - 1, o->n - 1 - right, o->n - 1 - right - (int)(within_mm[!inner] * scale));
+		take_height(o);
+	}
+	rig_fissure_free(&f);
+	if (!ok)
+		opening_free(o);
+	return ok;
+}
+
+/* The functions of the place: how much of each corner's motion, and of each lid's. x: px; beyond the corners theirs. */
+static void terms_at(double out[TERMS], const struct opening *o, int lid, double x)
+{
+	double t = fmin(fmax((x - o->first) / (o->n - 1), 0), 1);
+	int i = (int)(t * (o->n - 1));
+	out[0] = 1 - t;
+	out[1] = t;
+	out[2 + lid] = x < o->first || x > o->first + o->n - 1 ? 0 : o->height[i];
+	out[2 + !lid] = 0;
+}
+
+static double margin_weight(const struct opening *o, int lid, const float at[2])
+{
+	double x = fmin(fmax(at[0], o->first), o->first + o->n - 1), y = o->y[lid][(int)(x - o->first)];
+	double d = hypot(at[0] - x, at[1] - y) / o->px_per_mm;
+	return exp(-0.5 * d * d / (0.8 * 0.8));
+}
+
+/* Least squares over the skin near the margins: coefficient[TERMS][RIG_BASIS], out. */
+static bool fit(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const struct rig *rig, int side)
+{
+	double A[TERMS][TERMS] = { 0 };
+	bool ok = true;
+	memset(coefficient, 0, TERMS * sizeof *coefficient);
+	for (int i = 0; i < rig->n; i++) {
+		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || rig->gap[i] > lid_gap || rig->gap[i] < -2)
+			continue;
+		double w[LIDS] = { margin_weight(o, UPPER, rig->home[i]), margin_weight(o, LOWER, rig->home[i]) };
+		for (int lid = 0; lid < LIDS; lid++) {
+			double g[TERMS], own = w[lid] > w[!lid] ? w[lid] : 0;
+			terms_at(g, o, lid, rig->home[i][0]);
+			for (int j = 0; j < TERMS && own > 1e-4; j++) {
+				for (int k = 0; k < TERMS; k++)
+					A[j][k] += own * g[j] * g[k];
+				for (int k = 0; k < RIG_BASIS; k++)
+					coefficient[j][k] += own * g[j] * rig->basis[i][k];
+			}
+		}
+	}
+	for (int k = 0; k < RIG_BASIS && ok; k++) {
+		double M[TERMS][TERMS], x[TERMS];
+		memcpy(M, A, sizeof M);
+		for (int j = 0; j < TERMS; j++) {
+			M[j][j] += 1e-6;
+			x[j] = coefficient[j][k];
+		}
+		ok = chol_solve(TERMS, TERMS, &M[0][0], x);
+		for (int j = 0; j < TERMS; j++)
+			coefficient[j][k] = x[j];
+	}
+	return ok;
+}
+
+/* Makes the upper margin come down, in proportion to how far eyes are closed, by what the closed pose leaves open. */
+static void shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const struct rig *rig, double seal_mm)
+{
+	double closed[RIG_COMPONENTS], closing[RIG_COMPONENTS], lack = o->most + seal_mm * o->px_per_mm;
+	rig_closed_pose(closed, rig);
+	rig_closing_direction(closing, rig, closed);
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		lack -= (coefficient[2 + UPPER][RIG_COMPONENTS + k] - coefficient[2 + LOWER][RIG_COMPONENTS + k]) * closed[k];
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		coefficient[2 + UPPER][RIG_COMPONENTS + k] += lack * closing[k];
+}
+
+/* Distance of a point from a margin, mm. */
+static double off_margin(const struct opening *o, int lid, const float at[2])
+{
+	double least = INFINITY;
+	for (int i = 0; i < o->n; i++)
+		least = fmin(least, hypot(at[0] - o->first - i, at[1] - o->y[lid][i]));
+	return least / o->px_per_mm;
+}
+
+static double fading(double x, double from, double to)
+{
+	double t = fmin(fmax((x - from) / (to - from), 0), 1);
+	return 1 - t * t * (3 - 2 * t);
+}
+
+static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS], double reach_mm)
+{
+	double most = 0, total = 0, sum[RIG_BASIS] = { 0 };
+	for (int lid = 0; lid < LIDS; lid++) {
+		double g[TERMS], d = off_margin(o, lid, rig->home[i]), share = fading(d, 0.25 * reach_mm, reach_mm), w = share / (0.01 + d * d);
+		terms_at(g, o, lid, rig->home[i][0]);
+		most = fmax(most, share);
+		total += w;
+		for (int k = 0; k < RIG_BASIS; k++)
+			for (int j = 0; j < TERMS; j++)
+				sum[k] += w * g[j] * coefficient[j][k];
+	}
+	most *= fading(rig->gap[i], lid_gap - 2, lid_gap + 2);
+	for (int k = 0; k < RIG_BASIS && total > 0; k++)
+		rig->basis[i][k] += (float)(most * (sum[k] / total - rig->basis[i][k]));
+}
+
+void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_mm, double reach_mm, double seal_mm)
+{
+	for (int side = 0; side < 2 && reach_mm > 0; side++) {
+		struct opening o;
+		double coefficient[TERMS][RIG_BASIS];
+		if (!opening_of(&o, rig, m, side, px_per_mm))
+			continue;
+		bool ok = fit(coefficient, &o, rig, side);
+		if (ok && seal_mm >= 0)
+			shut(coefficient, &o, rig, seal_mm);
+		for (int i = 0; i < rig->n && ok; i++)
+			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side && rig->gap[i] < lid_gap + 2)
+				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, reach_mm);
+		opening_free(&o);
+	}
+}

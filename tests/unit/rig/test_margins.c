@@ -1,0 +1,117 @@
+/* Lid margins move as arcs: of a made face whose margins were learnt with waves in them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "rig/make/make_impl.h"
+#include "tests/lib/scenes/face.h"
+#include "tests/lib/unit.h"
+
+enum { POINTS = 12, ACROSS = 97, UP = 49 };  // of the made face
+
+/* The face's rig; wave: of the upper lids' motion, as a share of it. */
+static struct rig waved(double wave, double seal)
+{
+	struct face face;
+	struct rig rig;
+	struct rig_conf conf = face_conf();
+	struct err err = { 0 };
+	face_make(&face, false);
+	for (int lid = 0; lid < SKIN_LIDS; lid += 2)
+		for (int i = 0; i < POINTS; i++)
+			face.model.K[(2 * (lid * POINTS + i) + 1) * face.model.n_lid_pc + lid] += wave * sin(5 * M_PI * i / (POINTS - 1));
+	conf.map_step = 4;
+	conf.lid = 6;
+	conf.seal = seal;
+	assert_true(face_rig(&rig, 0, &face, &conf, &err));
+	face_free(&face);
+	return rig;
+}
+
+/* How far a chain leaves the nearer of its two hulls, as a share of its height over its ends. */
+static double bend(int n, const double *y)
+{
+	double off[2] = { 0 }, most = 0;
+	for (int i = 0; i < n; i++) {
+		most = fmax(most, fabs(y[i] - y[0] - (y[n - 1] - y[0]) * i / (n - 1)));
+		for (int a = 0; a < i; a++)
+			for (int b = i + 1; b < n; b++) {
+				double d = y[a] + (y[b] - y[a]) * (i - a) / (b - a) - y[i];
+				off[0] = fmax(off[0], d);
+				off[1] = fmax(off[1], -d);
+			}
+	}
+	return fmin(off[0], off[1]) / most;
+}
+
+/* Motion of the skin at the upper margin as the eyes half close: in each column of the sheet the lowest vertex above the fissure's
+ * ellipse; 8 of its 10 mm to each side. Returns how many. */
+static int half_closing(double *y, const struct rig *rig, int side, int most)
+{
+	double closed[RIG_COMPONENTS], before = -INFINITY;
+	const double *o = rig->globe[side].center;
+	int n = 0;
+	rig_closed_pose(closed, rig);
+	for (int column = 0; column < ACROSS && n < most; column++) {
+		int lowest = -1;
+		for (int i = column; i < ACROSS * UP && lowest < 0; i += ACROSS) {
+			double x = rig->rest[i][0] - o[0], up = rig->rest[i][1];
+			if (up > 0 && fabs(x) < 8 && hypot(x / 10, up / 4.5) > 1 && rig->rest[i][0] > before)
+				lowest = i;
+		}
+		if (lowest < 0)
+			continue;
+		before = rig->rest[lowest][0];
+		y[n] = 0;
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			y[n] += 0.5 * rig->basis[lowest][RIG_COMPONENTS + k] * closed[k];
+		n++;
+	}
+	return n;
+}
+
+static void margins_are_arcs(void **state)
+{
+	(void)state;
+	struct rig rig = waved(1, -1);
+	for (int side = 0; side < 2; side++) {
+		double y[64];
+		int n = half_closing(y, &rig, side, 64);
+		assert_true(n > 8);
+		// The fissure's own outline is a staircase of 1.2 mm, which bends by 0.21.
+		assert_true(bend(n, y) < 0.3);
+	}
+	rig_free(&rig);
+}
+
+static void closed_lids_meet(void **state)
+{
+	(void)state;
+	struct rig rig = waved(1, 0.15);
+	for (int side = 0; side < 2; side++) {
+		// Without the seal the made face's lids, whose skin moves by little, stay wide open.
+		double closed[RIG_COMPONENTS], at[2] = { -INFINITY, INFINITY };
+		rig_closed_pose(closed, &rig);
+		for (int i = 0; i < rig.n; i++) {
+			const double *o = rig.globe[side].center;
+			bool lower = rig.rest[i][1] < 0;
+			if (rig.part[i] != RIG_SKIN || rig.side[i] != side || fabs(rig.rest[i][0] - o[0]) > 0.7 || fabs(fabs(rig.rest[i][1]) - 4.667) > 0.1)
+				continue;
+			double y = rig.home[i][1];
+			for (int k = 0; k < RIG_COMPONENTS; k++)
+				y += rig.basis[i][RIG_COMPONENTS + k] * closed[k];
+			at[lower] = lower ? fmin(at[1], y) : fmax(at[0], y);
+		}
+		assert_true(isfinite(at[0]) && isfinite(at[1]));
+		// px of 0.12 mm; the grid's rows are 1.2 mm apart.
+		assert_true(at[0] > at[1] - 2);
+		assert_true(at[0] < at[1] + 15);
+	}
+	rig_free(&rig);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet) };
+	return cmocka_run_group_tests(tests, 0, 0);
+}
