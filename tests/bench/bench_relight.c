@@ -50,10 +50,11 @@ static double factor(double ratio)
 	return exp(fabs(log(ratio)));
 }
 
+/* What could not be measured comes last: it is the worst. */
 static int by_value(const void *a, const void *b)
 {
 	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
+	return isnan(x) || isnan(y) ? (isnan(x) != 0) - (isnan(y) != 0) : (x > y) - (x < y);
 }
 
 static void goal(const char *what, const char *how, double got[IRISES], double median, double worst, const char *unit)
@@ -67,6 +68,36 @@ static void goal(const char *what, const char *how, double got[IRISES], double m
 	}
 	snprintf(reach, sizeof reach, "within %.2f at worst", worst);
 	bench_goal(measure, reach, got[IRISES - 1], unit, got[IRISES - 1] <= worst);
+}
+
+/* Whether the sigmas are honest: the share of all numbers of all irises within one and within three of them, from both sides. */
+static void goals_of_sigmas(int c, const struct mc_score s[IRISES], const struct mc_iris m[IRISES])
+{
+	const double all = IRISES * MC_NUMBERS;
+	double one = 0, three = 0;
+	char measure[100];
+	for (int i = 0; i < IRISES; i++)
+		for (int k = 0; k < MC_NUMBERS; k++) {
+			double away = fabs(sigmas(&s[i], &m[i], k));
+			one += away <= 1;
+			three += away <= 3;
+		}
+	snprintf(measure, sizeof measure, "pigment's numbers within one sigma, %s", cases[c]);
+	bench_goal(measure, "0.68, 0.15 off at most", one / all, "share", fabs(one / all - 0.68) <= 0.15);
+	snprintf(measure, sizeof measure, "pigment's numbers within three sigma, %s", cases[c]);
+	bench_goal(measure, "at least 0.97", three / all, "share", three / all >= 0.97);
+}
+
+/* Of the one photograph under one light that the captures hold. */
+static void goals_of_thickness(int c, const struct mc_score s[IRISES])
+{
+	double off[IRISES], unlike[IRISES];
+	for (int i = 0; i < IRISES; i++) {
+		off[i] = fabs(s[i].amplitude - 1);
+		unlike[i] = 1 - s[i].correlation;
+	}
+	goal("amplitude of thickness, 0.12-0.6 mm, off by", cases[c], off, 0, 0.3, "");
+	goal("1 - correlation of thickness, 0.12-0.6 mm", cases[c], unlike, 0, 0.1, "");
 }
 
 static void goals(int c, const struct mc_score s[IRISES], const struct mc_iris m[IRISES])
@@ -85,6 +116,8 @@ static void goals(int c, const struct mc_score s[IRISES], const struct mc_iris m
 	goal("eye turned, as shipped", cases[c], turned, 0, c ? 1.6 : 1, "CIEDE2000");
 	if (!c)
 		goal("light moved or eye turned, model alone", cases[c], bare, 0, 1.5, "CIEDE2000");
+	goals_of_sigmas(c, s, m);
+	goals_of_thickness(c, s);
 }
 
 int main(int argc, char **argv)
