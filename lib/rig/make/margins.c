@@ -80,7 +80,8 @@ static bool opening_of(struct opening *o, const struct rig *rig, const struct ri
 	for (to = best; to + 1 < f.width && f.bottom[to + 1] - f.top[to + 1] > open_mm * px_per_mm; to++)
 		;
 	bool ok = to - from > least_mm[0] * px_per_mm && f.bottom[best] - f.top[best] > least_mm[1] * px_per_mm;
-	const double scale = px_per_mm * rig->globe[side].radius / 12;
+	// At most twice a person's: both ends then stay within the shortest opening, whatever size a character has.
+	const double scale = px_per_mm * fmin(rig->globe[side].radius / 12, 2);
 	const int inner = side, left = (int)(beyond_mm[inner] * scale), right = (int)(beyond_mm[!inner] * scale);
 	*o = (struct opening){ .n = ok ? left + to - from + 1 + right : 0, .first = f.x0 + from - left, .px_per_mm = px_per_mm };
 	for (int lid = 0; lid < LIDS; lid++)
