@@ -205,7 +205,8 @@ static void assume_eyes(struct track_subject *s)
 	ray_scene_free(nothing);
 }
 
-/* Where capture.conf says where both eyeballs are: beside each other, the left one on the person's left, each where the mesh is. */
+/* Where capture.conf says where both eyeballs are: beside each other, the left one on the person's left, each where the mesh is.
+   A mask that ends at the lids lies wholly in front of the eyes, a radius and a lid's thickness away; hence two radii. */
 static bool eyes_agree(const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	const double *left = given(&conf->eye_center, "left"), *right = given(&conf->eye_center, "right");
@@ -218,7 +219,7 @@ static bool eyes_agree(const struct track_subject *s, const struct track_conf *c
 	for (int e = 0; e < SIDES; e++) {
 		const double *at = e == SIDE_LEFT ? left : right;
 		for (int k = 0; k < 3 && at; k++)
-			if (at[k] * s->unit_mm < low[k] - s->radius || at[k] * s->unit_mm > high[k] + s->radius)
+			if (at[k] * s->unit_mm < low[k] - 2 * s->radius || at[k] * s->unit_mm > high[k] + 2 * s->radius)
 				return err_set(err, "subject.eye_center.%s = %g %g %g with subject.unit_mm = %g: lies outside of %s", sides[e], at[0], at[1], at[2],
 				               s->unit_mm, s->file);
 	}
