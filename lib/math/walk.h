@@ -10,4 +10,10 @@
  * room   [n] scratch */
 void walk_smooth(long n, double *x, const double *sigma, double step, double *room);
 
+/* The same of a path that keeps its speed but for random changes (integrated random walk: the cubic smoothing spline of the measurements), by
+ * elimination of the normal equations, of two diagonals on either side.
+ * bend   standard deviation of the change of step from one element to the next
+ * room   [2 n] scratch */
+void walk_glide(long n, double *x, const double *sigma, double bend, double *room);
+
 #endif

@@ -175,3 +175,11 @@ double eyes_below(const struct mesh_part *part, const double target_eye[2][3], d
 	free(area);
 	return all > 0 ? below / all : NAN;
 }
+
+int eyes_upright(const double below[2], const double fine[2], double least, double nearly)
+{
+	for (int k = 0; k < 2; k++)
+		if (fine[k] > nearly * fine[!k] && below[k] > least)
+			return k;
+	return -1;
+}

@@ -25,4 +25,8 @@ bool eyes_landmarks(struct nricp_landmarks *out, const struct mesh_part *part, c
  * body that stands upright. NAN where eyes_landmarks returns false. */
 double eyes_below(const struct mesh_part *part, const double target_eye[2][3], double target_radius, bool swapped);
 
+/* Of the two orders, the one that has more than the share `least` of the character below its eyes and whose shape fits at least `nearly` as well as the
+ * other's: 0, 1; -1: that does not tell. below: eyes_below of both; fine: shares of the face found close under both. */
+int eyes_upright(const double below[2], const double fine[2], double least, double nearly);
+
 #endif

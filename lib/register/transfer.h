@@ -11,6 +11,7 @@
 struct transfer_conf {
 	struct nricp_conf nricp;
 	struct nricp_align_conf align;
+	double below_eyes, nearly;  // where shape leaves the way up open: share of a character below its eyes that tells it, of the other way's fit that it must reach
 	double least_piece;      // share of the largest piece's area below which a piece is carried along, not matched
 	double open;             // surface with a smaller openness (mesh_hidden: sockets, insides) is carried along, too
 	double snap;             // distance from the subject at which a vertex's confidence has fallen to 1/e; share of its size

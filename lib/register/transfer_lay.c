@@ -46,17 +46,6 @@ static double try_order(struct nricp_landmarks *eyes, const struct mesh_part *pa
 	return n >= 3 && nricp_align(&pose, &part->mesh, &face->mesh, &own, &conf->align, &none) ? pose.fine : -1;
 }
 
-/* Of two orders that the shape leaves open, the one that has more of the character below its eyes: 0, 1; -1: that does not tell, or the shape fits
- * clearly worse. */
-static int by_weight(const struct mesh_part *part, const double eye[2][3], double radius, const double fine[2])
-{
-	static const double most = 0.6, nearly = 0.9;  // share of the area; of the other order's fine share
-	for (int k = 0; k < 2; k++)
-		if (fine[k] > nearly * fine[!k] && eyes_below(part, eye, radius, k) > most)
-			return k;
-	return -1;
-}
-
 /* Landmarks at both meshes' eyes, the right way up; n = 0: the eyes do not tell. weighed: out, the shapes alone did not tell the way up.
  * free((void *)out.moving). */
 static struct nricp_landmarks from_eyes(bool *weighed, const struct mesh *target, const struct mesh_part *part, const struct mesh *subject,
@@ -75,7 +64,8 @@ static struct nricp_landmarks from_eyes(bool *weighed, const struct mesh *target
 	if (!(fine[best] > 0)) {
 		best = -1;
 	} else if (!nricp_stands_out(fine[best], fine[!best], conf->align.margin)) {
-		best = by_weight(part, (const double(*)[3])eye, radius, fine);
+		const double below[2] = { eyes_below(part, (const double(*)[3])eye, radius, false), eyes_below(part, (const double(*)[3])eye, radius, true) };
+		best = eyes_upright(below, fine, conf->below_eyes, conf->nearly);
 		*weighed = best >= 0;
 	}
 	for (int k = 0; k < 2; k++)

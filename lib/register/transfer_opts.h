@@ -36,6 +36,8 @@
 	OPT_REAL(p "align_good", &(c)->align.good, 0, 1, "", "share at that scale, below which places all over the character are tried"), \
 	OPT_REAL(p "align_least", &(c)->align.least, 0, 1, "", "share of the subject found, below which there is no likeness"), \
 	OPT_INT(p "align_starts", &(c)->align.starts, 0, 10000, "", "places of the character tried where turning does not help"), \
+	OPT_REAL(p "below_eyes", &(c)->below_eyes, 0.5, 1, "", "share of a character below its eyes from which that tells its way up"), \
+	OPT_REAL(p "nearly", &(c)->nearly, 0, 1, "", "of the other way's close share, that the way told so must have"), \
 	OPT_REAL(p "open", &(c)->open, 0, 0.5, "", "surface with less before it free is carried along: sockets, insides"), \
 	OPT_REAL(p "least_piece", &(c)->least_piece, 0, 1, "", "pieces smaller than this share of the largest are carried along"), \
 	OPT_REAL(p "snap", &(c)->snap, 1e-3, 10, "size", "distance from the subject at which trust has fallen to 1/e")

@@ -39,6 +39,7 @@ int main(int argc, char **argv)
 		OPT_REAL("distance_mm", &c.distance_mm, 50, 10000, "mm", "of the face from a camera of unknown focal length"),
 		SETTLE_OPTS(&c),
 		OPT_REAL("meniscus_mm", &c.meniscus_mm, 0, 3, "mm", "that a lid's margin stands off the eye in its corners"),
+		OPT_REAL("lid_sigma_mm", &c.lid_sigma_mm, 0, 5, "mm", "a margin's place, off in the same way in all frames"),
 		OPT_INT("points", &c.points, 20, 20000, "", "of skin"),
 		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),
 		OPT_REAL("gap_px", &c.gap_px, 0, 50, "px", "least distance between two points"),

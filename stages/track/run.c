@@ -45,6 +45,8 @@ static void tell(struct stage *stage, const struct track_result *r, const struct
 	stage_figure(stage, "track_points", r->n_points, "");
 	stage_figure(stage, "track_seen", seen, "");
 	stage_figure(stage, "track_pose", clip->pose_px, "px");
+	if (r->unsure)
+		stage_skipped(stage, "%s: in %ld frames the skin stirs too much to tell how the head is turned: no gaze and no lids there", clip->file, r->unsure);
 	if (r->lost)
 		stage_skipped(stage, "%s: from frame %ld on, %ld frames show the face otherwise than frame %ld does (a cut, or the head turned away): nothing is measured there",
 		              clip->file, r->cut, r->lost, clip->reference);
@@ -74,7 +76,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 		return false;
 	}
 	track_corners(result, clip, subject, points);
-	track_apertures(result, clip, subject);
+	track_apertures(result, clip, subject, conf);
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
 	    || !track_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)
 	    || !track_save(stage, result, clip, points, n, in, err)

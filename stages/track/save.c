@@ -19,19 +19,22 @@ const char *const track_files[TRACK_FILES] = {
 };
 
 /* Columns after the confidences. */
-enum { SIGMAS = 6, POSE = 6 };
-static const char *const more[SIGMAS + POSE] = { "sigma_g1_deg", "sigma_g2_deg", "sigma_g3_deg", "sigma_g6_deg", "sigma_g7_deg", "sigma_g8_deg",
-	                                             "head_h_deg",   "head_v_deg",   "head_t_deg",   "head_x_mm",    "head_y_mm",    "head_z_mm" };
+enum { ANGLES = 3, SIGMAS = SIDES * ANGLES, POSE = 6, MORE = SIGMAS + POSE + SIDES * LIDS };
+static const char *const more[MORE] = { "sigma_g1_deg", "sigma_g2_deg", "sigma_g3_deg", "sigma_g6_deg", "sigma_g7_deg", "sigma_g8_deg",
+	                                    "head_h_deg",   "head_v_deg",   "head_t_deg",   "head_x_mm",    "head_y_mm",    "head_z_mm",
+	                                    "sigma_g4_px",  "sigma_g5_px",  "sigma_g9_px",  "sigma_g10_px" };
 
-/* Standard deviations of the gaze of a frame, degrees, and the head's pose; NAN where they are not known. */
-static void more_of(double out[SIGMAS + POSE], const struct track_result *r, long f)
+/* Standard deviations of the gaze (degrees) and the apertures (px) of a frame, and the head's pose; NAN where they are not known. */
+static void more_of(double out[MORE], const struct track_result *r, long f)
 {
 	double fick[3];
-	for (int i = 0; i < SIGMAS + POSE; i++)
+	for (int i = 0; i < MORE; i++)
 		out[i] = NAN;
 	for (int i = 0; i < SIGMAS && r->has_eyes; i++)
-		if (isfinite(r->eyes.state[f][i / 3].gaze[i % 3]))
-			out[i] = r->eyes.state[f][i / 3].sigma[i % 3] * 180 / M_PI;
+		if (isfinite(r->eyes.state[f][i / ANGLES].gaze[i % ANGLES]))
+			out[i] = r->eyes.state[f][i / ANGLES].sigma[i % ANGLES] * 180 / M_PI;
+	for (int i = 0; i < SIDES * LIDS && r->aperture_sigma; i++)
+		out[SIGMAS + POSE + i] = r->aperture_sigma[f][i / LIDS][i % LIDS];
 	if (r->lost_at[f])
 		return;
 	head_fick(fick, (const double(*)[4])r->pose[f]);
@@ -43,7 +46,7 @@ static void more_of(double out[SIGMAS + POSE], const struct track_result *r, lon
 
 static bool save_gaze(const struct track_result *r, const char *path, struct err *err)
 {
-	int width = EYE_INPUTS + r->n_au, after = 2 + width + SIDES, columns = after + SIGMAS + POSE;
+	int width = EYE_INPUTS + r->n_au, after = 2 + width + SIDES, columns = after + MORE;
 	char **name = mem_new((size_t)columns, sizeof *name);
 	name[0] = mem_str("frame");
 	name[1] = mem_str("time_s");
@@ -51,7 +54,7 @@ static bool save_gaze(const struct track_result *r, const char *path, struct err
 		name[2 + i] = i < EYE_INPUTS ? mem_str(gaze_columns[i]) : mem_printf("au%d", i - EYE_INPUTS + 1);
 	name[2 + width] = mem_str("confidence_left");
 	name[3 + width] = mem_str("confidence_right");
-	for (int i = 0; i < SIGMAS + POSE; i++)
+	for (int i = 0; i < MORE; i++)
 		name[after + i] = mem_str(more[i]);
 	struct csv_table table = csv_table_new(columns, (const char *const *)name);
 	double *row = mem_new((size_t)columns, sizeof *row);
@@ -127,6 +130,7 @@ static bool save_json(const struct track_result *r, const struct track_clip *cli
 	json_object_set_new(j, "pose_rms_px", json_number(clip->pose_px));
 	json_object_set_new(j, "head_rests", json_boolean(r->rests));
 	json_object_set_new(j, "lost_frames", json_integer(r->lost));
+	json_object_set_new(j, "unsure_frames", json_integer(r->unsure));
 	json_object_set_new(j, "still_frames", json_integer(r->still));
 	json_object_set_new(j, "first_lost_frame", r->cut >= 0 ? json_integer(r->cut) : json_null());
 	if (r->has_eyes) {

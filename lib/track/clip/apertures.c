@@ -74,7 +74,33 @@ static double meeting(const struct track_result *r, int side, const double *up, 
 	return y;
 }
 
-static void eye(struct track_result *r, int side)
+/* How much a margin scatters from frame to frame, px: median size of the second differences, those of frames that stand still left out. */
+static double scatter(long n, const double *y)
+{
+	double *bend = mem_new((size_t)n + 1, sizeof *bend);
+	const double normal = 1.4826, differences = sqrt(6);
+	for (long f = 0; f < n; f++) {
+		bend[f] = f > 0 && f + 1 < n ? fabs(y[f - 1] - 2 * y[f] + y[f + 1]) : NAN;
+		bend[f] = bend[f] > 0 ? bend[f] : NAN;
+	}
+	double mid = median_known(n, bend);
+	free(bend);
+	return isfinite(mid) ? normal * mid / differences : 0;
+}
+
+static void sigmas(struct track_result *r, int side, int lid, const double *y, double least_px)
+{
+	const double most = 10;  // of a margin hardly seen
+	double *clear = mem_new((size_t)r->n + 1, sizeof *clear), noise = scatter(r->n, y);
+	for (long f = 0; f < r->n; f++)
+		clear[f] = isfinite(y[f]) ? r->eyes.state[f][side].lid_confidence[lid] : NAN;
+	double usual = median_known(r->n, clear);
+	for (long f = 0; f < r->n; f++)
+		r->aperture_sigma[f][side][lid] = isfinite(y[f]) ? hypot(least_px, noise * fmin(most, fmax(1, usual / fmax(clear[f], 1e-9)))) : NAN;
+	free(clear);
+}
+
+static void eye(struct track_result *r, int side, double least_px)
 {
 	double *up = mem_new((size_t)r->n + 1, sizeof *up), *low = mem_new((size_t)r->n + 1, sizeof *low), usual;
 	double x = column(r, side);
@@ -88,6 +114,8 @@ static void eye(struct track_result *r, int side)
 		g[3] = y - up[f];
 		g[4] = low[f] - y;
 	}
+	sigmas(r, side, LID_UPPER, up, least_px);
+	sigmas(r, side, LID_LOWER, low, least_px);
 	free(up);
 	free(low);
 }
@@ -106,11 +134,14 @@ static void carry(struct track_result *r, const struct track_clip *clip, const s
 			}
 }
 
-void track_apertures(struct track_result *r, const struct track_clip *clip, const struct track_subject *s)
+void track_apertures(struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
 	int width = SIDES * EYE_INPUTS + r->n_au;
 	size_t lids = (size_t)r->n * SIDES * LIDS * (size_t)r->lid_points;
 	r->g = mem_new((size_t)r->n * (size_t)width + 1, sizeof *r->g);
+	r->aperture_sigma = mem_new((size_t)r->n + 1, sizeof *r->aperture_sigma);
+	for (long i = 0; i < r->n * SIDES * LIDS; i++)
+		r->aperture_sigma[i / (SIDES * LIDS)][i / LIDS % SIDES][i % LIDS] = NAN;
 	r->lids = mem_new(lids + 1, sizeof *r->lids);
 	r->lids_model = mem_new(lids + 1, sizeof *r->lids_model);
 	for (long i = 0; i < r->n * width; i++)
@@ -127,5 +158,5 @@ void track_apertures(struct track_result *r, const struct track_clip *clip, cons
 				r->g[f * width + e * EYE_INPUTS + k] = r->eyes.state[f][e].gaze[k] * 180 / M_PI;
 	for (int e = 0; e < SIDES; e++)
 		if (r->eyes.globe[e].seen)
-			eye(r, e);
+			eye(r, e, conf->lid_sigma_mm * clip->camera.focal_px / clip->cam_from_head[2][3]);
 }

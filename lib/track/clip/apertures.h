@@ -4,7 +4,7 @@
 #include "track/clip/clip.h"
 #include "track/clip/result.h"
 
-/* Allocates and fills result's lids, lids_model and g but for expressions (track_expressions); NAN where not measured. */
-void track_apertures(struct track_result *result, const struct track_clip *clip, const struct track_subject *subject);
+/* Allocates and fills result's lids, lids_model, g but for expressions (track_expressions), and aperture_sigma; NAN where not measured. */
+void track_apertures(struct track_result *result, const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
 
 #endif

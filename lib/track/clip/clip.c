@@ -119,6 +119,9 @@ static bool pose_from_marks(struct track_clip *clip, const struct track_subject 
 	prior.cam_from_head[3][3] = 1;
 	memcpy(clip->cam_from_head, prior.cam_from_head, sizeof clip->cam_from_head);
 	clip->pose_px = head_pose_fit(clip->cam_from_head, n, sights, &clip->camera, INFINITY, &prior);
+	double turned[3];
+	if (head_pose_sigma(turned, clip->cam_from_head, n, sights, &clip->camera, INFINITY, &prior))
+		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
 	clip->pose_given = true;
 	if (isnan(clip->pose_px) || clip->pose_px > 0.03 * clip->info.width)
 		return err_set(err, "capture.conf: track.landmark_*: no pose of %s brings them together (rms %.0f px): look for one that is misplaced",

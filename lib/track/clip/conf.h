@@ -29,6 +29,7 @@ struct track_conf {
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
 	double earned_deg;     // standard deviation of a turn that the skin's motion tells
 	double misfit_mm;      // skin off the rigid head in the median of the clip, beyond which it is refused
+	double stirs_mm;       // frames of a head that turns whose skin is further off the rigid head have no gaze and no lids
 	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
 	double agree_deg, diverge_deg;  // vertical gaze of the two eyes further apart in the median is refused, and eyes that diverge by more
 	double gaze_least;     // share of frames with gaze in the better eye, below which a clip is refused
@@ -38,6 +39,7 @@ struct track_conf {
 	} look, doubt;         // by which the reference is judged: at first; again where those raise a doubt
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
+	double lid_sigma_mm;   // standard deviation of a margin's place that a whole clip has in common
 	double reach_mm;       // points are followed within it of an eyeball's centre
 	double gap_px;         // least distance between points
 	double cut;            // share of the points that must be seen, or the clip was cut there
@@ -60,6 +62,7 @@ struct track_conf {
 		OPT_REAL("off_mm", &(c)->off_mm, 0.01, 10, "mm", "skin of a head that turns, off the rigid mesh (rms): with more it is refused"), \
 		OPT_REAL("earned_deg", &(c)->earned_deg, 0.01, 45, "degrees", "standard deviation of the turn that the skin's motion tells"), \
 		OPT_REAL("misfit_mm", &(c)->misfit_mm, 0.01, 100, "mm", "skin off the rigid head (median); with more a clip is refused"), \
+		OPT_REAL("stirs_mm", &(c)->stirs_mm, 0.01, 100, "mm", "skin of a head that turns, off the rigid head: a frame with more has no gaze, no lids"), \
 		OPT_REAL("diverge_deg", &(c)->diverge_deg, 0.1, 90, "degrees", "eyes that diverge by more (median) are refused"), \
 		OPT_REAL("agree_deg", &(c)->agree_deg, 0.1, 90, "degrees", "the eyes' vertical gaze further apart (median) is refused"),        \
 		OPT_REAL("gaze_least", &(c)->gaze_least, 0, 1, "", "share of frames with gaze in the better eye; with less it is refused")

@@ -16,7 +16,8 @@ struct track_eyes {
 struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf)
 {
 	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)(conf->every ? conf->every : 1),
-		                       .camera = clip->camera, .eye = conf->eye, .head_known = true };
+		                       .camera = clip->camera, .eye = conf->eye, .head_known = true,
+		                       .head_sigma = { clip->turn_sigma[1], clip->turn_sigma[0] } };
 	struct eye_track_conf free_centers = conf->eyes;
 	// eyes of an average face: a wider prior
 	if (subject->assumed)
@@ -100,7 +101,7 @@ bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct e
 	bool ok = eye_track_finish(&r->eyes, eyes->track, err);
 	r->has_eyes = ok && r->eyes.frames == r->n;
 	for (long f = 0; f < r->n && r->has_eyes; f++)
-		for (int e = 0; e < SIDES && r->lost_at[f]; e++) {
+		for (int e = 0; e < SIDES && (r->lost_at[f] || (r->unsure_at && r->unsure_at[f])); e++) {
 			struct eye_state *s = &r->eyes.state[f][e];
 			s->confidence = 0;
 			for (int k = 0; k < 3; k++)

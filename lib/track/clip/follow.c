@@ -172,7 +172,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n) {
-		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip);
+		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip, conf->stirs_mm);
 		if (!conf->limit)
 			track_together(r, points, clip, conf);
 	}

@@ -6,7 +6,7 @@
 #include "math/chol.h"
 #include "track/clip/reference.h"
 
-enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2 };
+enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2, LAST_ROBUST = 2 };
 
 static const double margin_weight = 0.05;  // px^-2: errors of margins are correlated (shadows of lashes)
 static const double open_enough = 0.8;     // of the usual opening
@@ -144,18 +144,22 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 	double calm = doubted ? reference_usual_misfit(r) : 0;
 	for (int i = 0; i < SIDES * points; i++)
 		rest_of(rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
+	int n = 0;
 	for (int round = 0; round < ROUNDS; round++) {
-		int n = centers(sights, r, clip, s, conf);
+		n = centers(sights, r, clip, s, conf);
 		if (!n)
 			return;
 		for (int e = 0; e < SIDES; e++)
 			n += margins(sights + n, points, rest[e], clip, s, e, pose);
 		if (n < LEAST_MARGIN)
 			return;
-		px = head_pose_fit(pose, n, sights, &clip->camera, fmax(2, 16 - 2 * round), &prior);
+		px = head_pose_fit(pose, n, sights, &clip->camera, fmax(LAST_ROBUST, 16 - 2 * round), &prior);
 		if (isnan(px))
 			return;
 	}
+	double turned[3];
+	if (head_pose_sigma(turned, pose, n, sights, &clip->camera, LAST_ROBUST, &prior))
+		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = px;
 	clip->pose_refined = true;

@@ -9,6 +9,7 @@ void track_result_free(struct track_result *r)
 {
 	free(r->time);
 	free(r->lost_at);
+	free(r->unsure_at);
 	free(r->pose);
 	free(r->skin);
 	free(r->skin_model);
@@ -16,6 +17,7 @@ void track_result_free(struct track_result *r)
 	free(r->lids);
 	free(r->lids_model);
 	free(r->g);
+	free(r->aperture_sigma);
 	free(r->misfit);
 	eye_clip_free(&r->eyes);
 	film_free(r->film);

@@ -8,6 +8,7 @@ struct track_result {
 	int n_points;
 	double *time;          // [n] s
 	bool *lost_at;         // [n] the face is not the reference's: nothing is measured
+	bool *unsure_at;       // [n] of a head that turns: its skin stirs too much to tell the pose, which goes on between the frames about it; null: none
 	double (*pose)[4][4];  // [n] cam_from_head
 	float (*skin)[2];      // [n][n_points] px
 	float (*skin_model)[2];  // [n][n_points] px of the modelling camera
@@ -21,8 +22,9 @@ struct track_result {
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points] px; px of the modelling camera
 	int lid_points;
 	double *g;             // [n][10 + n_au], gaze.csv's units
+	double (*aperture_sigma)[SIDES][LIDS];  // [n] px, standard deviations of g4, g5, g9, g10; NAN where those are; null without eyes
 	int n_au;
-	long still, lost, cut; // frames that stand still; frames lost; the first frame after a cut, or -1
+	long still, lost, unsure, cut;  // frames that stand still; frames lost; frames unsure; the first frame after a cut, or -1
 };
 
 void track_result_free(struct track_result *result);

@@ -17,6 +17,10 @@ static const double rest_px = 0.3, rest_share = 0.1;
 /* Least motion assumed from frame to frame: degrees, mm. */
 static const double least_turn = 0.01, least_shift = 0.01;
 
+/* Skin is followed so far about its middle: what moves there by so much turns the head by the quotient. Frames of an expression err alike: so many in a
+ * row count as one, here as its root. */
+static const double lever_mm = 40, alike = 5;
+
 /* Distance of a frame's skin from the reference frame's: 10 % quantile over the points, px. */
 static double away(const struct track_result *r, long reference, long frame, double *room)
 {
@@ -104,6 +108,59 @@ static void smooth(struct track_result *r, const double *misfit, double usual, c
 	free(room);
 }
 
+/* Noise of a smooth path's samples, and how its speed changes, by the median sizes of its third and second differences. */
+static void unrest(double *noise, double *bend, long n, const double *x, double *room)
+{
+	const double normal = 1.4826;
+	double at[2];
+	for (int order = 2; order < 4; order++) {
+		int m = 0;
+		for (long f = 0; f + order < n; f++)
+			room[m++] = fabs(order == 2 ? x[f] - 2 * x[f + 1] + x[f + 2] : x[f] - 3 * x[f + 1] + 3 * x[f + 2] - x[f + 3]);
+		at[order - 2] = m ? normal * stats_median(m, room) : 0;
+	}
+	*noise = at[1] / sqrt(20);
+	*bend = at[0];
+}
+
+/* What skin that moves by so much (px) about the head does to the pose: error of one of the six parameters of motion, radians, mm. */
+static double mislead(double px, int parameter, const double pivot[3], const struct track_clip *clip)
+{
+	const double mm = px * pivot[2] / clip->camera.focal_px;
+	return parameter < 3 ? mm / lever_mm : parameter < 5 ? mm : mm * pivot[2] / lever_mm;
+}
+
+/* A head that moves goes on as it did where its skin tells no pose: a squint moves all the skin round the eyes, and with it the pose. Frames whose skin
+ * misfits the rigid head by more than twice what is usual weigh the less. */
+static void glide(struct track_result *r, double usual, const double pivot[3], const struct track_clip *clip)
+{
+	size_t n = (size_t)r->n;
+	double *x = mem_array(MOTIONS * n, sizeof *x), *sigma = mem_array(n, sizeof *sigma), *room = mem_array(2 * n, sizeof *room);
+	for (long f = 0; f < r->n; f++) {
+		double d[MOTIONS];
+		head_motion(d, r->pose[f], clip->cam_from_head, pivot);
+		for (int k = 0; k < MOTIONS; k++)
+			x[(size_t)k * n + (size_t)f] = d[k];
+	}
+	for (int k = 0; k < MOTIONS; k++) {
+		const double least = k < 3 ? least_turn * M_PI / 180 : least_shift;
+		double *own = x + (size_t)k * n, noise, bend;
+		unrest(&noise, &bend, r->n, own, room);
+		for (size_t f = 0; f < n; f++)
+			sigma[f] = hypot(fmax(least, noise), alike * mislead(fmin(1e4, sqrt(fmax(0, pow(r->misfit[f], 2) - pow(2 * usual, 2)))), k, pivot, clip));
+		walk_glide(r->n, own, sigma, fmax(least, bend), room);
+	}
+	for (long f = 0; f < r->n; f++) {
+		double d[MOTIONS];
+		for (int k = 0; k < MOTIONS; k++)
+			d[k] = x[(size_t)k * n + (size_t)f];
+		head_moved(r->pose[f], clip->cam_from_head, d, pivot);
+	}
+	free(x);
+	free(sigma);
+	free(room);
+}
+
 /* Fills r->misfit. */
 static void misfits(struct track_result *r, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
 {
@@ -118,7 +175,24 @@ static void misfits(struct track_result *r, const struct track_points *points, c
 	free(room);
 }
 
-static void follow_path(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
+/* Frames whose skin misfits by more than that are unsure, and those beside them: lids are followed from frame to frame, and come back late. */
+static void doubt(struct track_result *r, double most_px)
+{
+	const double back_s = 0.08;
+	r->unsure_at = mem_new((size_t)r->n + 1, sizeof *r->unsure_at);
+	for (long f = 0; f < r->n; f++) {
+		if (r->lost_at[f] || !(r->misfit[f] > most_px))
+			continue;
+		for (long k = f; k >= 0 && r->time[f] - r->time[k] < back_s; k--)
+			r->unsure_at[k] = true;
+		for (long k = f; k < r->n && r->time[k] - r->time[f] < back_s; k++)
+			r->unsure_at[k] = true;
+	}
+	for (long f = 0; f < r->n; f++)
+		r->unsure += r->unsure_at[f];
+}
+
+static void follow_path(struct track_result *r, const struct track_points *points, const struct track_clip *clip, double stirs_mm)
 {
 	double *room = mem_array((size_t)r->n + 1, sizeof *room), pivot[3] = { 0 };
 	for (int i = 0; i < points->n; i++) {
@@ -129,21 +203,24 @@ static void follow_path(struct track_result *r, const struct track_points *point
 	}
 	memcpy(room, r->misfit, (size_t)r->n * sizeof *room);
 	double usual = stats_median((int)r->n, room);
-	if (isfinite(usual) && usual > 0)
+	if (isfinite(usual) && usual > 0 && clip->moves.turned > 0) {
+		glide(r, usual, pivot, clip);
+		doubt(r, stirs_mm * clip->camera.focal_px / pivot[2]);
+	}
+	if (isfinite(usual) && usual > 0 && !(clip->moves.turned > 0))
 		smooth(r, r->misfit, usual, pivot, clip);
 	free(room);
 }
 
-void track_steady(struct track_result *r, long reference, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip)
+void track_steady(struct track_result *r, long reference, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip, double stirs_mm)
 {
 	r->rests = rests(r, reference);
 	misfits(r, points, s, clip);
 	if (r->rests) {
 		for (long f = 0; f < r->n; f++)
 			memcpy(r->pose[f], clip->cam_from_head, sizeof r->pose[f]);
-	} else if (r->n > 2 && !(clip->moves.turned > 0)) {
-		// a head that turns while the face stirs is told better by its skin frame by frame than by a path that waits
-		follow_path(r, points, clip);
+	} else if (r->n > 3) {
+		follow_path(r, points, clip, stirs_mm);
 	}
 	model_again(r, points, clip);
 }

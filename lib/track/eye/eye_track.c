@@ -144,7 +144,7 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 	for (int side = 0; side < SIDES; side++)
 		eye_side_settle(&track->side[side]);
 	eye_pair_level(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT]);
-	eye_pair_doubt(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT], track->side[SIDE_LEFT].conf->apart);
+	eye_pair_doubt(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT], track->side[SIDE_LEFT].conf->apart, track->side[SIDE_LEFT].conf->poor);
 	for (int side = 0; side < SIDES; side++) {
 		struct eye_side *eye = &track->side[side];
 		eye_side_globe(&clip->globe[side], eye);

@@ -37,6 +37,7 @@ struct eye_scene {
 	struct eye eye;             // cornea, limbus and iris of an average eye; scaled to the limbus found
 	bool head_known;            // cam_from_head is a pose in mm from a mesh; else motion of the image alone
 	struct eye_prior prior[SIDES];
+	double head_sigma[2];       // radians: common error of the head's poses, yaw and pitch; gaze is against the head
 };
 
 struct eye_frame {

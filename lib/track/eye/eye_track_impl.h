@@ -91,8 +91,8 @@ void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye);
 void eye_pair_level(struct eye_side *left, struct eye_side *right);
 
 /* Forgets gaze where the two eyes look further apart than they mostly do by more than most_deg (horizontally: vergence; vertically: none but what
- * is measured): of the eye whose confidence is the lower for that eye, and of both where both are poor. pair.c */
-void eye_pair_doubt(struct eye_side *left, struct eye_side *right, const double most_deg[2]);
+ * is measured): of the eye whose confidence is the lower for that eye, and of either with less than the share `poor` of its usual one. pair.c */
+void eye_pair_doubt(struct eye_side *left, struct eye_side *right, const double most_deg[2], double poor);
 
 /* Sets openness and blink of one eye's states; appends its blinks and saccades to clip. */
 void eye_side_events(struct eye_clip *clip, struct eye_side *eye, int side);

@@ -16,6 +16,7 @@ struct eye_track_conf {
 	double saccade_speed;   // degrees/s above which the eye is in a saccade
 	double saccade_size;    // degrees: smaller ones cannot be distinguished from noise
 	double apart[2];        // degrees, horizontally and vertically: eyes further apart than mostly were not both followed
+	double poor;            // share of an eye's usual confidence below which its gaze is then forgotten, too
 	double blink_depth;     // share of the opening that must shut to count as a blink
 };
 
@@ -32,6 +33,7 @@ struct eye_track_conf {
 	OPT_REAL("saccade_speed", &(c)->saccade_speed, 5, 200, "degrees/s", "speed above which the eye is in a saccade"), \
 	OPT_REAL("saccade_size", &(c)->saccade_size, 0.1, 10, "degrees", "saccades smaller than this are not reported"), \
 	OPT_REALS("apart_deg", (c)->apart, 2, 0.1, 90, "degrees", "gaze of the two eyes further apart than mostly, h and v, is doubted"), \
+	OPT_REAL("apart_poor", &(c)->poor, 0, 1, "", "of its usual confidence: less, and that eye's gaze is then forgotten too"), \
 	OPT_REAL("blink_depth", &(c)->blink_depth, 0.05, 0.9, "", "share of the opening that shuts in a blink")
 
 #endif

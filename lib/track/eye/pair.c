@@ -56,9 +56,8 @@ static void forget_gaze(struct eye_state *s)
 	s->confidence = 0;
 }
 
-void eye_pair_doubt(struct eye_side *left, struct eye_side *right, const double most_deg[2])
+void eye_pair_doubt(struct eye_side *left, struct eye_side *right, const double most_deg[2], double poor)
 {
-	static const double poor = 0.6;  // of its usual confidence: an eye that is not followed
 	long n = left->frames < right->frames ? left->frames : right->frames;
 	double *room = mem_array((size_t)n + 1, sizeof *room), middle[2] = { 0 };
 	int m = 0;

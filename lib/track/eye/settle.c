@@ -26,17 +26,19 @@ static int frames_of(struct gaze_frame *out, int *index, const struct eye_side *
 	return n;
 }
 
-/* Adds the common error of all directions that comes from the eyeball's centre, radians. */
-static void add_common(struct eye_state *state, const struct eye_side *eye)
+/* Adds the errors that frames share, radians: those of the eyeball and of the head's pose. */
+static void add_common(struct eye_state *state, const struct eye_side *eye, const struct gaze_frame *frame, const struct gaze_bundle_fit *fit)
 {
-	double plane = fmax(1, gaze_plane(&eye->globe));
+	const double worst = 0.5;
+	double cov[2][2];
+	gaze_bundle_common(cov, frame, &eye->globe, fit);
 	for (int k = 0; k < 2; k++) {
-		double common = fmin(0.5, eye->center_sigma[k] / plane);
-		state->sigma[k] = hypot(state->sigma[k], common);
+		double common = isfinite(cov[k][k]) ? fmin(worst, sqrt(fmax(0, cov[k][k]))) : worst;
+		state->sigma[k] = hypot(hypot(state->sigma[k], common), eye->scene->head_sigma[k]);
 	}
 }
 
-static void refit(struct eye_state *state, const struct eye_side *eye, const struct gaze_frame *frame)
+static void refit(struct eye_state *state, const struct eye_side *eye, const struct gaze_frame *frame, const struct gaze_bundle_fit *common)
 {
 	struct gaze_fit fit = { .fick = { frame->fick[0], frame->fick[1] } };
 	if (!gaze_fit_edges(&fit, frame->n, frame->edge, &eye->globe, &frame->view, 0.05))
@@ -46,16 +48,18 @@ static void refit(struct eye_state *state, const struct eye_side *eye, const str
 		state->gaze[k] = fit.fick[k];
 		state->sigma[k] = sqrt(fit.cov[k][k]);
 	}
-	add_common(state, eye);
+	add_common(state, eye, frame, common);
 	if (gaze_ellipse(&e, &eye->globe, &frame->view, fit.fick)) {
 		double v[5] = { e.cx, e.cy, e.a, e.b, e.angle };
 		memcpy(state->limbus, v, sizeof v);
 	}
 }
 
-/* Shifts torsion so that its median difference from Listing's law is zero: the first frame's was assumed. */
+/* Shifts torsion so that its median difference from Listing's law is zero: the first frame's was assumed. Of fewer frames than tell a median it is
+ * forgotten. */
 static void level_torsion(struct eye_side *eye)
 {
+	enum { LEAST = 12 };
 	double *off = mem_array((size_t)eye->frames + 1, sizeof *off), degree = M_PI / 180;
 	int n = 0;
 	for (long i = 0; i < eye->frames; i++) {
@@ -65,7 +69,7 @@ static void level_torsion(struct eye_side *eye)
 	}
 	double middle = n ? stats_median(n, off) : 0;
 	for (long i = 0; i < eye->frames; i++)
-		eye->state[i].gaze[2] -= middle;
+		eye->state[i].gaze[2] = n < LEAST ? NAN : eye->state[i].gaze[2] - middle;
 	free(off);
 }
 
@@ -78,14 +82,17 @@ void eye_side_settle(struct eye_side *eye)
 	struct gaze_globe best = eye->first_globe;
 	if (gaze_bundle_fit(&best, &fit, n, frame, &conf)) {
 		eye->globe = best;
-		memcpy(eye->center_sigma, fit.sigma + GAZE_X, sizeof eye->center_sigma);
 		eye->rms = fit.rms;
 	} else {
-		for (int k = 0; k < 3; k++)
-			eye->center_sigma[k] = eye->center_guess;
+		const double prior[GAZE_GLOBE] = { conf.center_sigma, conf.center_sigma, conf.center_sigma, conf.radius_sigma, conf.limbus_sigma };
+		fit = (struct gaze_bundle_fit){ .rms = 0 };
+		for (int k = 0; k < GAZE_GLOBE; k++)
+			fit.cov[k][k] = prior[k] * prior[k];
 	}
+	for (int k = 0; k < 3; k++)
+		eye->center_sigma[k] = sqrt(fit.cov[k][k]);
 	for (int i = 0; i < n; i++)
-		refit(&eye->state[index[i]], eye, &frame[i]);
+		refit(&eye->state[index[i]], eye, &frame[i], &fit);
 	for (long i = 1; i < eye->frames; i++) {
 		double time = eye->state[i].time;
 		if (eye->record[i].still) {

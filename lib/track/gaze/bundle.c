@@ -8,7 +8,7 @@
 #include "math/chol.h"
 #include "math/stats.h"
 
-enum { SHARED = GAZE_N - 2, FRAMES = 400, EDGES = 48, ROUNDS = 12 };
+enum { SHARED = GAZE_GLOBE, FRAMES = 400, EDGES = 48, ROUNDS = 12 };
 
 struct sums {
 	double a[SHARED][SHARED], b[SHARED];  // reduced normal equations of the shared unknowns
@@ -85,7 +85,7 @@ static double *shared(struct gaze_globe *globe, int k)
 
 /* Gauss-Newton step of all unknowns, with the prior; noise: variance of an edge, px². */
 static bool solve(double step[SHARED], struct sums *sums, struct gaze_globe *globe, const struct gaze_globe *start,
-                  const double sigma[SHARED], double noise, double out_sigma[GAZE_N])
+                  const double sigma[SHARED], double noise, double cov[SHARED][SHARED])
 {
 	struct gaze_globe from = *start;
 	double a[SHARED][SHARED];
@@ -102,7 +102,8 @@ static bool solve(double step[SHARED], struct sums *sums, struct gaze_globe *glo
 		e[k] = 1;
 		memcpy(a, sums->a, sizeof a);
 		chol_solve(SHARED, SHARED, &a[0][0], e);
-		out_sigma[2 + k] = sqrt(noise * e[k]);
+		for (int l = 0; l < SHARED; l++)
+			cov[k][l] = noise * e[l];
 	}
 	return true;
 }
@@ -155,7 +156,7 @@ static bool iterate(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n
 		}
 		// Errors round one limbus are correlated (lobes, shading): a frame counts as about three edges.
 		double noise = sums.weight > 0 ? sums.square / sums.weight * same * EDGES / 3 : 1;
-		if (!solve(step, &sums, globe, &start, sigma, fmax(noise, 0.01), fit->sigma))
+		if (!solve(step, &sums, globe, &start, sigma, fmax(noise, 0.01), fit->cov))
 			return false;
 		fit->rms = sqrt(sums.square / fmax(1, sums.weight));
 		moved = 0;
@@ -197,4 +198,24 @@ bool gaze_bundle_fit(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int 
 	free(some);
 	free(own);
 	return good;
+}
+
+void gaze_bundle_common(double cov[2][2], const struct gaze_frame *frame, const struct gaze_globe *globe, const struct gaze_bundle_fit *fit)
+{
+	struct own own;
+	struct sums none = { 0 };
+	double slope[2][SHARED] = { { 0 } };
+	gather(&own, NULL, frame, globe, INFINITY);
+	reduce(&none, &own);
+	for (int i = 0; i < 2; i++)
+		for (int k = 0; k < SHARED; k++)
+			for (int l = 0; l < 2; l++)
+				slope[i][k] -= own.inverse[i][l] * own.cross[k][l];
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 2; j++) {
+			cov[i][j] = own.used ? 0 : NAN;
+			for (int k = 0; k < SHARED; k++)
+				for (int l = 0; l < SHARED; l++)
+					cov[i][j] += slope[i][k] * fit->cov[k][l] * slope[j][l];
+		}
 }

@@ -15,8 +15,10 @@ struct gaze_bundle_conf {
 	double center_sigma, radius_sigma, limbus_sigma;  // mm, standard deviations of the prior about the start
 };
 
+enum { GAZE_GLOBE = GAZE_N - GAZE_X };  // unknowns that all frames share: centre, radius, limbus
+
 struct gaze_bundle_fit {
-	double sigma[GAZE_N];     // mm; of centre, radius, limbus (GAZE_X ..)
+	double cov[GAZE_GLOBE][GAZE_GLOBE];  // mm², of those
 	double rms;               // px, of the inliers
 	int iterations;
 };
@@ -26,5 +28,9 @@ struct gaze_bundle_fit {
  * Returns false, globe unchanged, with fewer than two frames or a singular system. */
 bool gaze_bundle_fit(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n, struct gaze_frame frame[],
                    const struct gaze_bundle_conf *conf);
+
+/* Covariance of a frame's h and v (radians²) that comes from the globe alone: all frames share one, and err together. NAN where
+ * too few edges tell. */
+void gaze_bundle_common(double cov[2][2], const struct gaze_frame *frame, const struct gaze_globe *globe, const struct gaze_bundle_fit *fit);
 
 #endif

@@ -167,21 +167,48 @@ static double expect(double H[P][P], double g[P], const double m[4][4], const st
 	return cost;
 }
 
-double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
-                     const struct head_prior *prior)
+/* Where the points are, by weight: about it rotations and shifts hardly depend on each other. Returns false without any. */
+static bool middle(double pivot[3], const double m[4][4], int n, const struct head_sight *s)
 {
-	double m[4][4], pivot[3] = { 0 }, weight, total = 0, damp = 1e-9;
-	memcpy(m, cam_from_head, sizeof m);
+	double total = 0;
+	memset(pivot, 0, 3 * sizeof *pivot);
 	for (int i = 0; i < n; i++) {
 		double p[3];
 		head_from(p, m, s[i].head);
 		vec_add(pivot, pivot, s[i].weight, p);
 		total += s[i].weight;
 	}
-	if (!(total > 0))
-		return NAN;
 	for (int k = 0; k < 3; k++)
 		pivot[k] /= total;
+	return total > 0;
+}
+
+bool head_pose_sigma(double turn[3], const double m[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
+                     const struct head_prior *prior)
+{
+	double H[P][P] = { { 0 } }, g[P] = { 0 }, pivot[3], weight;
+	if (!middle(pivot, m, n, s))
+		return false;
+	sum(H, g, &weight, m, n, s, camera, robust, pivot);
+	expect(H, g, m, prior, pivot);
+	for (int k = 0; k < 3; k++) {
+		double a[P][P], e[P] = { 0 };
+		e[k] = 1;
+		memcpy(a, H, sizeof a);
+		if (!chol_solve(P, P, &a[0][0], e))
+			return false;
+		turn[k] = sqrt(e[k]);
+	}
+	return true;
+}
+
+double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
+                     const struct head_prior *prior)
+{
+	double m[4][4], pivot[3], weight, damp = 1e-9;
+	memcpy(m, cam_from_head, sizeof m);
+	if (!middle(pivot, m, n, s))
+		return NAN;
 	double cost = sum(0, 0, &weight, m, n, s, camera, robust, pivot) + expect(0, 0, m, prior, pivot);
 	for (int it = 0; it < STEPS; it++) {
 		double H[P][P] = { { 0 } }, g[P] = { 0 }, next[4][4];

@@ -10,7 +10,7 @@ static const struct transfer_conf transfer_defaults = {
 	           .rim_reach = 0.1, .mirror = 0.003, .polish_rounds = 2, .polish = 0.005, .polish_noise = 6.5 },
 	.align = { .samples = 400, .rounds = 12, .welsch = { 0.5, 0.1 }, .turn = 0.07, .facing = 0.3, .scale_max = 2, .fine = 0.05, .margin = 1.5, .good = 0.5,
 	           .least = 0.3, .starts = 60 },
-	.least_piece = 0.1, .open = 0.12, .snap = 0.05,
+	.below_eyes = 0.6, .nearly = 0.9, .least_piece = 0.1, .open = 0.12, .snap = 0.05,
 };
 
 static const struct transfer_check_conf transfer_check_defaults = {

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
 #include "mesh/outward.h"
+#include "register/eyes.h"
 #include "tests/lib/truth/pair.h"
 #include "tests/lib/variants/turned.h"
 
@@ -172,10 +173,23 @@ static void test_pair_turned(void **state)
 	pair_free(&pair);
 }
 
+/* Which way up, by what lies below the eyes, where both ways fit alike. */
+static void test_upright(void **state)
+{
+	(void)state;
+	const double alike[2] = { 0.5, 0.52 }, second[2] = { 0.3, 0.5 };
+	assert_int_equal(eyes_upright((double[2]){ 0.7, 0.3 }, alike, 0.6, 0.9), 0);
+	assert_int_equal(eyes_upright((double[2]){ 0.3, 0.7 }, alike, 0.6, 0.9), 1);
+	assert_int_equal(eyes_upright((double[2]){ 0.55, 0.45 }, alike, 0.6, 0.9), -1);  // a mask about its eyes
+	assert_int_equal(eyes_upright((double[2]){ 0.7, 0.3 }, second, 0.6, 0.9), -1);   // the shape says otherwise
+	assert_int_equal(eyes_upright((double[2]){ 0.7, 0.3 }, second, 0.6, 0.5), 0);
+	assert_int_equal(eyes_upright((double[2]){ NAN, 0.3 }, alike, 0.6, 0.9), -1);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_outward),  cmocka_unit_test(test_by_eyes),     cmocka_unit_test(test_by_shape),
+		cmocka_unit_test(test_upright), cmocka_unit_test(test_outward),  cmocka_unit_test(test_by_eyes),     cmocka_unit_test(test_by_shape),
 		cmocka_unit_test(test_refused),  cmocka_unit_test(test_pair_turned),
 	};
 	return cmocka_run_group_tests(tests, open_face, close_face);

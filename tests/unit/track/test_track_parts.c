@@ -48,6 +48,50 @@ static void walk_between(void **state)
 	NEAR(one, 3, 0);
 }
 
+/* A path that keeps its speed, against its normal equations solved densely. */
+static void glide_is_least_squares(void **state)
+{
+	(void)state;
+	static const double second[3] = { 1, -2, 1 };
+	struct rng rng = { 4 };
+	double x[N], sigma[N], room[2 * N], H[N][N] = { { 0 } }, b[N], bend = 0.1;
+	for (int i = 0; i < N; i++) {
+		x[i] = sin(0.3 * i) + 0.1 * rng_uniform(&rng);
+		sigma[i] = i % 7 == 3 ? 1e3 : 0.05 + 0.3 * rng_uniform(&rng);
+		H[i][i] += 1 / (sigma[i] * sigma[i]);
+		b[i] = x[i] / (sigma[i] * sigma[i]);
+		for (int k = 0; i + 2 < N && k < 9; k++)
+			H[i + k / 3][i + k % 3] += second[k / 3] * second[k % 3] / (bend * bend);
+	}
+	walk_glide(N, x, sigma, bend, room);
+	assert_true(chol_solve(N, N, &H[0][0], b));
+	for (int i = 0; i < N; i++)
+		NEAR(x[i], b[i], 1e-8);
+}
+
+/* A line with a gap of twelve elements that say nonsense: the line goes on through it. A turn in the gap: a cubic, not a chord. */
+static void glide_over_gap(void **state)
+{
+	(void)state;
+	double line[N], turn[N], sigma[N], room[2 * N];
+	for (int i = 0; i < N; i++) {
+		bool gap = i >= 12 && i < 24;
+		line[i] = gap ? 50 : 0.3 * i;
+		turn[i] = gap ? -50 : fabs(i - 17.5);
+		sigma[i] = gap ? 1e6 : 1e-3;
+	}
+	walk_glide(N, line, sigma, 0.1, room);
+	walk_glide(N, turn, sigma, 0.1, room);
+	for (int i = 0; i < N; i++)
+		NEAR(line[i], 0.3 * i, 1e-3);
+	// the steps into and out of it have slopes of -1 and 1, their middles are 14 apart and at height 7: the cubic is lower than the chord by 14 / 4
+	NEAR(turn[17], 7 - 14.0 / 4, 0.01);
+	double one[2] = { 3, 4 }, s[2] = { 1, 1 };
+	walk_glide(2, one, s, 1, room);
+	NEAR(one[0], 3, 0);
+	NEAR(one[1], 4, 0);
+}
+
 /* A parabola between (0, 0) and (10, 0). */
 static struct line bow(int n)
 {
@@ -102,6 +146,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(walk_is_least_squares),
 		cmocka_unit_test(walk_between),
+		cmocka_unit_test(glide_is_least_squares),
+		cmocka_unit_test(glide_over_gap),
 		cmocka_unit_test(line_places),
 		cmocka_unit_test(line_spreads_evenly),
 	};

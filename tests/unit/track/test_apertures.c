@@ -1,0 +1,98 @@
+/* Apertures of the lids and their standard deviations. Truth: margins drawn from closed forms with noise of a known size.
+ */
+#include "math/rng.h"
+#include "math/stats.h"
+#include "track/clip/apertures.h"
+#include "tests/lib/unit.h"
+#include "base/mem.h"
+
+enum { FRAMES = 600, POINTS = 20, UNSEEN = 40, DIM = 450 };
+static const double upper_noise = 0.4, lower_noise = 0.9, floor_mm = 0.05, px_per_mm = 8, open_px[LIDS] = { 60, 25 };
+
+/* An eye that opens and shuts slowly; margins are arcs between corners at y = 0. */
+static double height(int lid, long f)
+{
+	return (lid == LID_UPPER ? -1 : 1) * open_px[lid] * (0.6 + 0.4 * cos(2 * M_PI * (double)f / FRAMES));
+}
+
+static struct track_result noisy(struct rng *rng)
+{
+	struct track_result r = { .n = FRAMES, .lid_points = POINTS, .has_eyes = true };
+	r.eyes.frames = FRAMES;
+	r.eyes.state = mem_new(FRAMES, sizeof *r.eyes.state);
+	r.eyes.globe[SIDE_LEFT].seen = true;
+	for (long f = 0; f < FRAMES; f++)
+		for (int e = 0; e < SIDES; e++)
+			for (int lid = 0; lid < LIDS; lid++) {
+				struct eye_state *s = &r.eyes.state[f][e];
+				const bool dim = f >= DIM;
+				// half as clear, and twice as noisy
+				const double off = (dim ? 2 : 1) * (lid == LID_UPPER ? upper_noise : lower_noise) * rng_normal(rng);
+				s->lid_points = POINTS;
+				s->lid_confidence[lid] = dim ? 0.4 : 0.8;
+				for (int i = 0; i < POINTS; i++) {
+					double u = 2.0 * i / (POINTS - 1) - 1, bow = 1 - u * u;
+					s->lid[lid][i][0] = f == UNSEEN ? NAN : 500 + 100 * u;
+					s->lid[lid][i][1] = f == UNSEEN ? NAN : 300 + bow * height(lid, f) + (bow > 0 ? off : 0);
+				}
+			}
+	return r;
+}
+
+/* Truth within one and two of the standard deviations in the shares of a normal distribution; the floor is the common error of the margins. */
+static void coverage(void **state)
+{
+	(void)state;
+	struct rng rng = { 5 };
+	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { [2][3] = 600 } };
+	struct track_subject subject = { .assumed = true };
+	struct track_conf conf = { .lid_sigma_mm = 0 };
+	struct track_result r = noisy(&rng);
+	track_apertures(&r, &clip, &subject, &conf);
+	for (int lid = 0; lid < LIDS; lid++)
+		for (int part = 0; part < 2; part++) {
+			double z[FRAMES] = { 0 };
+			int n = 0, one = 0;
+			for (long f = part * DIM; f < (part ? FRAMES : DIM); f++)
+				if (f != UNSEEN) {
+					const double sigma = r.aperture_sigma[f][SIDE_LEFT][lid], want = (lid == LID_UPPER ? -1 : 1) * height(lid, f);
+					z[n] = (r.g[f * 10 + 3 + lid] - want) / sigma;
+					n++;
+				}
+			// the line where lids meet is known to some tenths of a pixel, and common to all frames
+			double copy[FRAMES], middle;
+			memcpy(copy, z, sizeof copy);
+			middle = stats_median(n, copy);
+			for (int i = 0; i < n; i++)
+				one += fabs(z[i] - middle) < 1;
+			print_message("lid %d, part %d: %.0f %% within one standard deviation of %.2f px\n", lid, part, 100.0 * one / n,
+			              r.aperture_sigma[part * DIM][SIDE_LEFT][lid]);
+			// frames of both kinds make one estimate of the noise, a little more than the clear ones' own
+			assert_true(one > 0.6 * n && one < 0.8 * n);
+		}
+	assert_true(isnan(r.aperture_sigma[UNSEEN][SIDE_LEFT][LID_UPPER]) && isnan(r.g[UNSEEN * 10 + 3]));
+	assert_true(isnan(r.aperture_sigma[0][SIDE_RIGHT][LID_UPPER]));
+	track_result_free(&r);
+}
+
+/* What all frames have in common adds in quadrature; without noise it is all. */
+static void common_error(void **state)
+{
+	(void)state;
+	struct rng rng = { 5 };
+	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { [2][3] = 600 } };
+	struct track_subject subject = { .assumed = true };
+	struct track_result a = noisy(&rng), b = noisy(&(struct rng){ 5 });
+	track_apertures(&a, &clip, &subject, &(struct track_conf){ .lid_sigma_mm = 0 });
+	track_apertures(&b, &clip, &subject, &(struct track_conf){ .lid_sigma_mm = floor_mm });
+	for (long f = 0; f < FRAMES; f += 7)
+		NEAR(b.aperture_sigma[f][SIDE_LEFT][LID_UPPER], hypot(a.aperture_sigma[f][SIDE_LEFT][LID_UPPER], floor_mm * px_per_mm), 1e-9);
+	track_result_free(&a);
+	track_result_free(&b);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = { cmocka_unit_test(coverage), cmocka_unit_test(common_error) };
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,64 @@
+/* Both eyes together: gaze that parts as eyes do not is forgotten in the eye that was not followed. Truth: states written by hand.
+ */
+#include "base/mem.h"
+#include "track/eye/eye_track_impl.h"
+#include "tests/lib/unit.h"
+
+enum { FRAMES = 60, OFF = 20, BOTH_OFF = 30, HIGH = 40, CLOSE = 50 };
+static const double DEGREE = M_PI / 180, most[2] = { 8, 3 }, poor = 0.6;
+
+/* Eyes that converge by 4 degrees and look about together, told with confidences of 0.9 and 0.5. */
+static struct eye_side looking(int side)
+{
+	struct eye_side eye = { .frames = FRAMES, .state = mem_new(FRAMES, sizeof(struct eye_state)) };
+	for (long f = 0; f < FRAMES; f++) {
+		struct eye_state *s = &eye.state[f];
+		s->gaze[0] = DEGREE * (15 * sin(0.3 * (double)f) + (side ? 2 : -2));
+		s->gaze[1] = DEGREE * 8 * cos(0.2 * (double)f);
+		s->confidence = side ? 0.5 : 0.9;
+	}
+	return eye;
+}
+
+static void parted(void **state)
+{
+	(void)state;
+	struct eye_side eye[2] = { looking(0), looking(1) };
+	// ten degrees aside, the left eye hardly seen; then neither; four degrees up, the right one less sure for itself than the left; seven degrees converging, near
+	eye[0].state[OFF].gaze[0] += 10 * DEGREE;
+	eye[0].state[OFF].confidence = 0.3;
+	eye[1].state[BOTH_OFF].gaze[0] += 12 * DEGREE;
+	eye[0].state[BOTH_OFF].confidence = 0.4;
+	eye[1].state[BOTH_OFF].confidence = 0.2;
+	eye[1].state[HIGH].gaze[1] += 4 * DEGREE;
+	eye[1].state[HIGH].confidence = 0.45;
+	eye[1].state[CLOSE].gaze[0] += 7 * DEGREE;
+	eye_pair_doubt(&eye[0], &eye[1], most, poor);
+	for (long f = 0; f < FRAMES; f++)
+		for (int e = 0; e < 2; e++) {
+			const bool gone = f == BOTH_OFF || (f == OFF && e == 0) || (f == HIGH && e == 1);
+			const struct eye_state *s = &eye[e].state[f];
+			assert_true(isnan(s->gaze[0]) == gone && isnan(s->gaze[1]) == gone && (s->confidence == 0) == gone);
+		}
+	free(eye[0].state);
+	free(eye[1].state);
+}
+
+/* Too few frames to know how the eyes mostly look: nothing is doubted. */
+static void too_few(void **state)
+{
+	(void)state;
+	struct eye_side eye[2] = { looking(0), looking(1) };
+	eye[0].frames = eye[1].frames = 6;
+	eye[0].state[3].gaze[0] += 30 * DEGREE;
+	eye_pair_doubt(&eye[0], &eye[1], most, poor);
+	assert_true(isfinite(eye[0].state[3].gaze[0]) && isfinite(eye[1].state[3].gaze[0]));
+	free(eye[0].state);
+	free(eye[1].state);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = { cmocka_unit_test(parted), cmocka_unit_test(too_few) };
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
