@@ -12,6 +12,7 @@
 #include "track/clip/corners.h"
 #include "track/clip/expressions.h"
 #include "track/clip/follow.h"
+#include "track/clip/kappa.h"
 #include "track/clip/settle.h"
 
 /* Warns of shortcomings of the video, one line each. */
@@ -71,10 +72,12 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (result->lost * 2 > result->n)
 		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again (a cut, or the head turned away): cut the video to one take", clip->file,
 		               result->cut, clip->reference);
-	if (!track_agrees(result, clip, conf, err)) {
+	if (!track_agrees(result, clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, result);
 		return false;
 	}
+	if (!track_kappa(result, conf, err))
+		return false;
 	track_corners(result, clip, subject, points);
 	track_apertures(result, clip, subject, conf);
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)

@@ -8,6 +8,8 @@
 #include "base/mem.h"
 #include "base/npy/npy.h"
 #include "model/gaze_table.h"
+#include "track/clip/kappa.h"
+#include "track/clip/trust.h"
 #include "track/head/pose.h"
 
 enum { EYE_INPUTS = 10, LIDS_ALL = 4 };
@@ -19,12 +21,13 @@ const char *const track_files[TRACK_FILES] = {
 };
 
 /* Columns after the confidences. */
-enum { ANGLES = 3, SIGMAS = SIDES * ANGLES, POSE = 6, MORE = SIGMAS + POSE + SIDES * LIDS };
+enum { ANGLES = 3, SIGMAS = SIDES * ANGLES, POSE = 6, APERTURES = SIDES * LIDS, SIGHT = SIDES * 2, MORE = SIGMAS + POSE + APERTURES + SIGHT };
 static const char *const more[MORE] = { "sigma_g1_deg", "sigma_g2_deg", "sigma_g3_deg", "sigma_g6_deg", "sigma_g7_deg", "sigma_g8_deg",
 	                                    "head_h_deg",   "head_v_deg",   "head_t_deg",   "head_x_mm",    "head_y_mm",    "head_z_mm",
-	                                    "sigma_g4_px",  "sigma_g5_px",  "sigma_g9_px",  "sigma_g10_px" };
+	                                    "sigma_g4_px",  "sigma_g5_px",  "sigma_g9_px",  "sigma_g10_px",
+	                                    "sight_left_h_deg", "sight_left_v_deg", "sight_right_h_deg", "sight_right_v_deg" };
 
-/* Standard deviations of the gaze (degrees) and the apertures (px) of a frame, and the head's pose; NAN where they are not known. */
+/* Standard deviations of the gaze (degrees) and the apertures (px) of a frame, the head's pose and the lines of sight; NAN where they are not known. */
 static void more_of(double out[MORE], const struct track_result *r, long f)
 {
 	double fick[3];
@@ -33,7 +36,13 @@ static void more_of(double out[MORE], const struct track_result *r, long f)
 	for (int i = 0; i < SIGMAS && r->has_eyes; i++)
 		if (isfinite(r->eyes.state[f][i / ANGLES].gaze[i % ANGLES]))
 			out[i] = r->eyes.state[f][i / ANGLES].sigma[i % ANGLES] * 180 / M_PI;
-	for (int i = 0; i < SIDES * LIDS && r->aperture_sigma; i++)
+	for (int e = 0; e < SIDES && r->has_eyes; e++) {
+		double sight[2];
+		kappa_sight(sight, r->eyes.state[f][e].gaze, r->kappa.angle[e], e);
+		for (int k = 0; k < 2; k++)
+			out[SIGMAS + POSE + APERTURES + 2 * e + k] = sight[k] * 180 / M_PI;
+	}
+	for (int i = 0; i < APERTURES && r->aperture_sigma; i++)
 		out[SIGMAS + POSE + i] = r->aperture_sigma[f][i / LIDS][i % LIDS];
 	if (r->lost_at[f])
 		return;
@@ -77,6 +86,17 @@ static bool save_gaze(const struct track_result *r, const char *path, struct err
 	return ok;
 }
 
+static json_t *kappa_json(const struct track_kappa *k, int side)
+{
+	json_t *j = json_object();
+	json_object_set_new(j, "nasal_deg", json_number(k->angle[side][0] * 180 / M_PI));
+	json_object_set_new(j, "nasal_sigma_deg", json_number(k->sigma[side][0] * 180 / M_PI));
+	json_object_set_new(j, "up_deg", json_number(k->angle[side][1] * 180 / M_PI));
+	json_object_set_new(j, "up_sigma_deg", json_number(k->sigma[side][1] * 180 / M_PI));
+	json_object_set_new(j, "frames", json_integer(k->frames[side]));
+	return j;
+}
+
 static json_t *globe_json(const struct eye_globe *g)
 {
 	json_t *j = json_object();
@@ -111,6 +131,20 @@ static json_t *events_json(const struct eye_clip *c, int kind)
 	return all;
 }
 
+static json_t *trust_json(const struct track_trust *t)
+{
+	json_t *j = json_object(), *all = json_object();
+	json_object_set_new(j, "wrong_probability", json_number(t->wrong));
+	for (int i = 0; i < TRUST_EVIDENCES; i++) {
+		json_t *one = json_object();
+		json_object_set_new(one, "value", json_number(t->value[i]));
+		json_object_set_new(one, "log_odds_right", json_number(t->log_odds[i]));
+		json_object_set_new(all, trust_names[i].key, one);
+	}
+	json_object_set_new(j, "evidence", all);
+	return j;
+}
+
 static bool save_json(const struct track_result *r, const struct track_clip *clip, const char *path, const char *made_by, struct err *err)
 {
 	json_t *j = json_object(), *camera = json_object();
@@ -128,6 +162,7 @@ static bool save_json(const struct track_result *r, const struct track_clip *cli
 	json_object_set_new(j, "variable_rate", json_boolean(clip->info.variable));
 	json_object_set_new(j, "reference_frame", json_integer(clip->reference));
 	json_object_set_new(j, "pose_rms_px", json_number(clip->pose_px));
+	json_object_set_new(j, "trust", trust_json(&r->trust));
 	json_object_set_new(j, "head_rests", json_boolean(r->rests));
 	json_object_set_new(j, "lost_frames", json_integer(r->lost));
 	json_object_set_new(j, "unsure_frames", json_integer(r->unsure));
@@ -136,6 +171,8 @@ static bool save_json(const struct track_result *r, const struct track_clip *cli
 	if (r->has_eyes) {
 		json_object_set_new(j, "left_eye", r->eyes.globe[0].seen ? globe_json(&r->eyes.globe[0]) : json_null());
 		json_object_set_new(j, "right_eye", r->eyes.globe[1].seen ? globe_json(&r->eyes.globe[1]) : json_null());
+		json_object_set_new(j, "left_kappa", kappa_json(&r->kappa, SIDE_LEFT));
+		json_object_set_new(j, "right_kappa", kappa_json(&r->kappa, SIDE_RIGHT));
 		json_object_set_new(j, "blinks", events_json(&r->eyes, EVENT_BLINK));
 		json_object_set_new(j, "saccades", events_json(&r->eyes, EVENT_SACCADE));
 	}

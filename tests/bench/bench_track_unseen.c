@@ -55,9 +55,9 @@ static void measure(struct tally *t, const char *dir, const char *from, const ch
 	figures(x, &s);
 	printf("accepted %5.1f ms a frame;", 1000 * seconds / (double)s.frames);
 	for (int k = 0; k < FIGURES; k++) {
-		printf(" %s %.2f%s", names[k], x[k], x[k] <= reach[k] * more ? "" : x[k] <= 2 * reach[k] * more ? "+" : "!");
+		printf(" %s %.2f%s", names[k], x[k], x[k] <= reach[k] * more ? "" : x[k] <= 2 * reach[k] * more ? "+" : isnan(x[k]) ? "?" : "!");
 		reached = reached && x[k] <= reach[k] * more;
-		off = off || !(x[k] <= 2 * reach[k] * more);
+		off = off || x[k] > 2 * reach[k] * more;  // what is not told misses the goal, but is not wrong
 	}
 	printf("; no gaze %.0f%%, skin %.0f%% seen, head %.2f deg %.1f mm (95%% %.1f, %.1f), turned %.0f, blinks %d of %d, %d wrong\n", 100 - 100 * s.gaze_share,
 	       100 * s.skin_seen, s.head_off.median, s.head_at.median, s.head_off.p95, s.head_at.p95, fmax(s.yaw, s.pitch), s.found, s.blinks, s.wrong);
@@ -122,7 +122,7 @@ int main(int argc, char **argv)
 		return bench_close();
 	}
 	const char *root = scratch_open();
-	printf("+ past what is to be reached, ! past twice that; of heads turned by more than %.0f degrees, twice and four times\n", far_turned);
+	printf("+ past what is to be reached, ! past twice that, ? not told; of heads turned by more than %.0f degrees, twice and four times\n", far_turned);
 	unseen(&all, root);
 	known(&all, root);
 	if (!getenv("EYEWRIGHT_FACES"))

@@ -1,10 +1,8 @@
 #include "track/clip/agree.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/mem.h"
-#include "math/stats.h"
+#include "track/clip/trust.h"
 
 /* Share of the frames that are not lost in which that eye's gaze is known; shut eyes count as known. */
 static double gaze_share(const struct track_result *r, int side)
@@ -18,52 +16,20 @@ static double gaze_share(const struct track_result *r, int side)
 	return all ? (double)known / (double)all : 0;
 }
 
-/* Median of how much higher (axis 1), or further to the person's left (axis 0), the left eye looks than the right one, degrees; NAN where the two are
- * seldom seen together. */
-static double between(const struct track_result *r, int axis)
+bool track_agrees(struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
-	enum { LEAST = 12 };
-	double *d = mem_array((size_t)r->n + 1, sizeof *d);
-	int n = 0;
-	for (long f = 0; f < r->n; f++) {
-		double off = r->eyes.state[f][SIDE_LEFT].gaze[axis] - r->eyes.state[f][SIDE_RIGHT].gaze[axis];
-		if (!r->lost_at[f] && isfinite(off))
-			d[n++] = off * 180 / M_PI;
-	}
-	double at = n >= LEAST ? stats_median(n, d) : NAN;
-	free(d);
-	return at;
-}
-
-/* Median over the frames of how far the skin lies off the rigid head, mm; 0 without skin. */
-static double misfit_mm(const struct track_result *r, const struct track_clip *clip)
-{
-	double *off = mem_array((size_t)r->n + 1, sizeof *off), middle = 0;
-	int n = 0;
-	for (long f = 0; f < r->n && r->misfit; f++)
-		if (!r->lost_at[f])
-			off[n++] = r->misfit[f];
-	if (n)
-		middle = stats_median(n, off) * clip->cam_from_head[2][3] / clip->camera.focal_px;
-	free(off);
-	return middle;
-}
-
-bool track_agrees(const struct track_result *r, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
-{
-	double share = fmax(gaze_share(r, SIDE_LEFT), gaze_share(r, SIDE_RIGHT)), off = between(r, 1), apart = between(r, 0);
-	const double misfit = misfit_mm(r, clip);
-	if (misfit > conf->misfit_mm)
-		return err_set(err, "%s: its skin lies %.2f mm off the head that is laid on frame %ld (median), must be within %.2f (track.misfit_mm): the head's motion is not followed; check camera.focal_px, or give another track.reference_frame",
-		               clip->file, misfit, clip->reference, conf->misfit_mm);
+	const double share = fmax(gaze_share(r, SIDE_LEFT), gaze_share(r, SIDE_RIGHT));
+	int worst = 0;
+	track_trust(&r->trust, r, clip, s, conf);
+	for (int i = 0; i < TRUST_EVIDENCES; i++)
+		worst = r->trust.log_odds[i] < r->trust.log_odds[worst] ? i : worst;
+	const struct trust_name *name = &trust_names[worst];
+	if (r->trust.wrong > conf->wrong_most)
+		return err_set(err, "%s: followed from frame %ld, but wrongly with a probability of %.2g, must be at most %g (track.wrong_most): %s by %.2f %s, in clips followed rightly %.2g (track.trust_%s): %s",
+		               clip->file, clip->reference, r->trust.wrong, conf->wrong_most, name->what, r->trust.value[worst], name->unit, conf->trust[worst][0], name->key,
+		               name->advice);
 	if (share < conf->gaze_least)
 		return err_set(err, "%s: gaze in %.0f %% of the frames, must be in at least %.0f %% (track.gaze_least): film closer, sharper, or give subject.eye_center.* and camera.focal_px",
 		               clip->file, 100 * share, 100 * conf->gaze_least);
-	if (fabs(off) > conf->agree_deg)
-		return err_set(err, "%s: the left eye looks %.1f degrees higher than the right one (median), must be within %.1f (track.agree_deg): the head's pose in frame %ld is wrong; give subject.eye_center.*, or another track.reference_frame",
-		               clip->file, off, conf->agree_deg, clip->reference);
-	if (apart > conf->diverge_deg)
-		return err_set(err, "%s: the eyes look %.1f degrees apart (median), must not diverge by more than %.1f (track.diverge_deg): the head's pose in frame %ld is wrong; give subject.eye_center.*, or another track.reference_frame",
-		               clip->file, apart, conf->diverge_deg, clip->reference);
 	return true;
 }

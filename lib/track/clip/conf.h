@@ -4,6 +4,7 @@
 #include "anatomy/keys.h"
 #include "image/video/video.h"
 #include "track/eye/eye_track.h"
+#include "track/clip/result.h"
 #include "track/head/find.h"
 #include "track/points/skin_track.h"
 #include "track/wrinkle/wrinkle.h"
@@ -25,13 +26,13 @@ struct track_conf {
 	int settle;            // frames from which the eyeballs' centres are estimated to refine the reference pose; 0: none
 	double settle_sigma, center_sigma;  // mm, standard deviations of the eyeballs' centres: the prior meanwhile; those of the mesh
 	double guess_sigma;    // mm, of centres that are guessed from the lids' marks
-	double pose_most;      // px at a width of 1280: larger residuals of the reference pose are refused
+	double pose_most, pose_refused;  // px at a width of 1280: where the reference pose's residual is larger, other frames are tried; the clip is refused
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
 	double earned_deg;     // standard deviation of a turn that the skin's motion tells
-	double misfit_mm;      // skin off the rigid head in the median of the clip, beyond which it is refused
+	double trust[TRUST_EVIDENCES][2];    // scales of each evidence in clips followed rightly and wrongly: trust.h
+	double wrong_prior, wrong_most, trust_odd;  // share of clips followed wrongly; probability of it beyond which a clip is refused; share of odd evidence
 	double stirs_mm;       // frames of a head that turns whose skin is further off the rigid head have no gaze and no lids
 	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
-	double agree_deg, diverge_deg;  // vertical gaze of the two eyes further apart in the median is refused, and eyes that diverge by more
 	double gaze_least;     // share of frames with gaze in the better eye, below which a clip is refused
 	int points;            // of skin
 	struct {
@@ -39,6 +40,8 @@ struct track_conf {
 	} look, doubt;         // by which the reference is judged: at first; again where those raise a doubt
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
+	double kappa[2], kappa_sigma[2];     // degrees: prior of the line of sight against the optical axis, towards the nose and up
+	double camera_frames[2];             // first and last of those in which the person looks into the camera; NAN: not told
 	double lid_sigma_mm;   // standard deviation of a margin's place that a whole clip has in common
 	double reach_mm;       // points are followed within it of an eyeball's centre
 	double gap_px;         // least distance between points
@@ -46,6 +49,8 @@ struct track_conf {
 	double own_mm, astray_mm;  // a point's own motion against its neighbours' where these scatter; so far off it counts little
 	double still_pose_px;  // px: scale of the robust weights of a point off the rigid head
 };
+
+#define TRUST_OPT(key, c, which, unit, help) OPT_REALS("trust_" key, (c)->trust[which], 2, 1e-6, 1e6, unit, "followed rightly, wrongly: " help)
 
 #define SETTLE_OPTS(c)                                                                                                              \
 	OPT_INT("settle_frames", &(c)->settle, 0, 10000, "", "from which the eyeballs' centres settle the head's pose; 0: not"),            \
@@ -56,15 +61,19 @@ struct track_conf {
 		OPT_REAL("settle_sigma_mm", &(c)->settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),                   \
 		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),                                \
 		OPT_REAL("guess_center_sigma_mm", &(c)->guess_sigma, 0.01, 20, "mm", "how well they are guessed from the lids' marks"),         \
-		OPT_REAL("pose_most_px", &(c)->pose_most, 0.1, 1000, "px", "larger residuals of the reference's pose are refused, at 1280 px"), \
+		OPT_REAL("pose_most_px", &(c)->pose_most, 0.1, 1000, "px", "with larger residuals of the reference's pose other frames are tried, at 1280 px"), \
+		OPT_REAL("pose_refused_px", &(c)->pose_refused, 0.1, 1000, "px", "with larger residuals the clip is refused"), \
 		OPT_REAL("turned_deg", &(c)->turned, 0.1, 90, "degrees", "a head that turns by more is laid on by how its skin moves"), \
 		OPT_REAL("torn_deg", &(c)->torn, 0.1, 90, "degrees", "halves of the skin that tell poses further apart are refused"), \
 		OPT_REAL("off_mm", &(c)->off_mm, 0.01, 10, "mm", "skin of a head that turns, off the rigid mesh (rms): with more it is refused"), \
 		OPT_REAL("earned_deg", &(c)->earned_deg, 0.01, 45, "degrees", "standard deviation of the turn that the skin's motion tells"), \
-		OPT_REAL("misfit_mm", &(c)->misfit_mm, 0.01, 100, "mm", "skin off the rigid head (median); with more a clip is refused"), \
+		TRUST_OPT("laid_px", c, TRUST_LAID, "px", "lids and eyeballs off the mesh, at 1280 px"), TRUST_OPT("skin_mm", c, TRUST_SKIN, "mm", "skin off the rigid head"), \
+		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
+		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
+		OPT_REAL("wrong_prior", &(c)->wrong_prior, 1e-6, 0.99, "", "share of clips that are followed wrongly"), \
+		OPT_REAL("wrong_most", &(c)->wrong_most, 0, 1, "", "probability of a wrong result; with more a clip is refused"), \
+		OPT_REAL("trust_odd", &(c)->trust_odd, 1e-12, 0.5, "", "share of clips followed rightly that are odd in one evidence"), \
 		OPT_REAL("stirs_mm", &(c)->stirs_mm, 0.01, 100, "mm", "skin of a head that turns, off the rigid head: a frame with more has no gaze, no lids"), \
-		OPT_REAL("diverge_deg", &(c)->diverge_deg, 0.1, 90, "degrees", "eyes that diverge by more (median) are refused"), \
-		OPT_REAL("agree_deg", &(c)->agree_deg, 0.1, 90, "degrees", "the eyes' vertical gaze further apart (median) is refused"),        \
 		OPT_REAL("gaze_least", &(c)->gaze_least, 0, 1, "", "share of frames with gaze in the better eye; with less it is refused")
 
 #endif

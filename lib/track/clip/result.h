@@ -3,6 +3,19 @@
 #define TRACK_CLIP_RESULT_H
 #include "track/eye/eye_track.h"
 
+/* Evidence for a clip that was followed rightly: see trust.h. */
+enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_STRAIGHT, TRUST_EVIDENCES };
+struct track_trust {
+	double value[TRUST_EVIDENCES], log_odds[TRUST_EVIDENCES];  // NAN, 0 where the clip does not tell it
+	double wrong;          // probability
+};
+
+/* Line of sight against the optical axis: see kappa.h. */
+struct track_kappa {
+	double angle[SIDES][2], sigma[SIDES][2];  // radians; towards the nose, up
+	int frames[SIDES];     // that measured it; 0: the prior
+};
+
 struct track_result {
 	long n;                // frames
 	int n_points;
@@ -22,6 +35,8 @@ struct track_result {
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points] px; px of the modelling camera
 	int lid_points;
 	double *g;             // [n][10 + n_au], gaze.csv's units
+	struct track_trust trust;
+	struct track_kappa kappa;
 	double (*aperture_sigma)[SIDES][LIDS];  // [n] px, standard deviations of g4, g5, g9, g10; NAN where those are; null without eyes
 	int n_au;
 	long still, lost, unsure, cut;  // frames that stand still; frames lost; frames unsure; the first frame after a cut, or -1

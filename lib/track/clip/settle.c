@@ -134,10 +134,15 @@ static bool look_again(struct track_clip *clip, struct doubts *d, const struct t
 	return d->turned = look_anew(clip, clip->reference, d->way, stage, s, conf);
 }
 
-/* Largest residual that is accepted, px: in proportion to the eyes' size. Outlines in one frame alone fit half as well as a pose refined by many. */
+double settle_scale(const struct track_clip *clip, const struct track_subject *s)
+{
+	return head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening) * (clip->pose_refined ? 1 : 2);
+}
+
+/* Residual beyond which other frames are tried, px. */
 static double most_px(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	return conf->pose_most * head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening) * (clip->pose_refined ? 1 : 2);
+	return conf->pose_most * settle_scale(clip, s);
 }
 
 static bool is_off(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
@@ -296,8 +301,9 @@ bool track_settled(const struct track_clip *clip, const struct track_subject *s,
 	if (clip->moves.torn)
 		return err_set(err, "%s: frame %ld: its skin does not move as %s does (off by %.2f mm, must be at most %.2f: track.off_mm; its halves tell poses %.1f degrees apart, must be at most %.1f: track.torn_deg): check camera.focal_px and subject.unit_mm, film in softer light, or give track.reference_frame",
 		               clip->file, clip->reference, s->file, clip->moves.off_mm, conf->off_mm, clip->moves.apart * 180 / M_PI, conf->torn);
-	if (s->assumed || clip->pose_given || !conf->settle || !is_off(clip, s, conf))
+	const double most = conf->pose_refused * settle_scale(clip, s);
+	if (s->assumed || clip->pose_given || !conf->settle || clip->pose_px <= most)
 		return true;
-	return err_set(err, "%s: frame %ld: its lids and eyeballs do not come together with %s (residual %.1f px, must be at most %.1f: track.pose_most_px): give subject.eye_center.left and .right, subject.eye_radius, camera.focal_px, or a frame from in front (track.reference_frame)",
-	               clip->file, clip->reference, s->file, clip->pose_px, most_px(clip, s, conf));
+	return err_set(err, "%s: frame %ld: its lids and eyeballs do not come together with %s (residual %.1f px, must be at most %.1f: track.pose_refused_px): give subject.eye_center.left and .right, subject.eye_radius, camera.focal_px, or a frame from in front (track.reference_frame)",
+	               clip->file, clip->reference, s->file, clip->pose_px, most);
 }

@@ -10,8 +10,12 @@
  * the evidence's network cannot be read. */
 bool track_settle(struct track_clip *clip, struct stage *stage, const struct track_subject *subject, const struct track_conf *conf, struct err *err);
 
+/* What a residual of the reference's pose is divided by to be in px of a picture 1280 wide, the eyes of usual size: in proportion to theirs. Outlines in
+ * one frame alone fit half as well as a pose refined by many. */
+double settle_scale(const struct track_clip *clip, const struct track_subject *subject);
+
 /* Whether the reference's pose may be built upon. Returns false, err set (frame, residual, rule), where its residual is beyond
- * conf->pose_most; true without a mesh, where pose_given, or where conf->settle is 0: there is none to judge by. */
+ * conf->pose_refused; true without a mesh, where pose_given, or where conf->settle is 0: there is none to judge by. */
 bool track_settled(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf, struct err *err);
 
 #endif

@@ -1,0 +1,104 @@
+#include "track/clip/trust.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "math/stats.h"
+#include "track/clip/settle.h"
+
+enum { LEAST = 12 };
+
+const struct trust_name trust_names[TRUST_EVIDENCES] = {
+	[TRUST_LAID] = { "laid_px", "lids and eyeballs of the reference off the mesh", "px", "give subject.eye_center.left and .right, or a frame from in front (track.reference_frame)" },
+	[TRUST_SKIN] = { "skin_mm", "skin off the head that was followed", "mm", "check camera.focal_px, or give another track.reference_frame" },
+	[TRUST_LEVEL] = { "level_deg", "one eye looking higher than the other", "degrees", "give subject.eye_center.left and .right, or another track.reference_frame" },
+	[TRUST_APART] = { "apart_deg", "eyes looking apart, or nearer than the camera,", "degrees", "give subject.eye_center.left and .right, or another track.reference_frame" },
+	[TRUST_IRIS] = { "iris_mm", "radius of the irises off people's", "mm", "check subject.unit_mm, or give another track.reference_frame" },
+	[TRUST_STRAIGHT] = { "straight_deg", "gaze off straight ahead", "degrees", "give another track.reference_frame" },
+};
+
+/* Median over the frames in which it is known, NAN where those are few. Clobbers x. */
+static double middle_of(int n, double *x)
+{
+	return n >= LEAST ? stats_median(n, x) : NAN;
+}
+
+/* Median of how much the left eye looks further along the axis than the right one (sum false), or of both eyes' mean, degrees. */
+static double gaze_of(const struct track_result *r, int axis, bool sum)
+{
+	double *d = mem_array((size_t)r->n + 1, sizeof *d);
+	int n = 0;
+	for (long f = 0; f < r->n && r->has_eyes; f++) {
+		const double left = r->eyes.state[f][SIDE_LEFT].gaze[axis], right = r->eyes.state[f][SIDE_RIGHT].gaze[axis];
+		if (!r->lost_at[f] && isfinite(left + right))
+			d[n++] = (sum ? 0.5 * (left + right) : left - right) * 180 / M_PI;
+	}
+	double middle = middle_of(n, d);
+	free(d);
+	return middle;
+}
+
+/* How much further the eyes diverge, or converge, than on what lies between the camera and the horizon, degrees. The left eye's x is the greater. */
+static double apart_of(const struct track_result *r, const struct track_clip *clip)
+{
+	const double apart = gaze_of(r, 0, false), between = r->eyes.globe[SIDE_LEFT].center_in_head[0] - r->eyes.globe[SIDE_RIGHT].center_in_head[0];
+	const double near = -atan2(fmax(0, between), clip->cam_from_head[2][3]) * 180 / M_PI;
+	return apart > 0 ? apart : apart < near ? near - apart : isnan(apart) ? NAN : 0;
+}
+
+/* Median over the frames of how far the skin lies off the rigid head, mm. */
+static double skin_of(const struct track_result *r, const struct track_clip *clip)
+{
+	double *off = mem_array((size_t)r->n + 1, sizeof *off);
+	int n = 0;
+	for (long f = 0; f < r->n && r->misfit; f++)
+		if (!r->lost_at[f])
+			off[n++] = r->misfit[f] * clip->cam_from_head[2][3] / clip->camera.focal_px;
+	double middle = middle_of(n, off);
+	free(off);
+	return middle;
+}
+
+/* Mean of the limbi's radii less people's, mm. */
+static double iris_of(const struct track_result *r, double usual)
+{
+	double off = 0;
+	int n = 0;
+	for (int e = 0; e < SIDES && r->has_eyes; e++)
+		if (r->eyes.globe[e].seen) {
+			off += r->eyes.globe[e].limbus_radius - usual;
+			n++;
+		}
+	return n ? off / n : NAN;
+}
+
+/* Density of a normal distribution about 0, less the constant. */
+static double normal(double x, double scale)
+{
+	return exp(-0.5 * (x / scale) * (x / scale)) / scale;
+}
+
+static double log_odds(double x, const double scale[2], double odd)
+{
+	if (isnan(x))
+		return 0;
+	// so far off that both densities vanish
+	const double far = 8 * scale[1], right = normal(fmin(fabs(x), far), scale[0]), wrong = normal(fmin(fabs(x), far), scale[1]);
+	return log(((1 - odd) * right + odd * wrong) / (0.5 * (right + wrong)));
+}
+
+void track_trust(struct track_trust *t, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	const bool laid = !s->assumed && !clip->pose_given && !clip->moves.turned;
+	t->value[TRUST_LAID] = laid ? clip->pose_px / settle_scale(clip, s) : NAN;
+	t->value[TRUST_SKIN] = skin_of(r, clip);
+	t->value[TRUST_LEVEL] = gaze_of(r, 1, false);
+	t->value[TRUST_APART] = apart_of(r, clip);
+	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);
+	t->value[TRUST_STRAIGHT] = s->assumed ? NAN : hypot(gaze_of(r, 0, true), gaze_of(r, 1, true));
+	double odds = log((1 - conf->wrong_prior) / conf->wrong_prior);
+	for (int i = 0; i < TRUST_EVIDENCES; i++)
+		odds += t->log_odds[i] = log_odds(t->value[i], conf->trust[i], conf->trust_odd);
+	t->wrong = 1 / (1 + exp(odds));
+}

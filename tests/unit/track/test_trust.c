@@ -1,0 +1,122 @@
+/* How likely a clip is wrong by all that would differ: Bayes' rule, by states written by hand. */
+#include "base/mem.h"
+#include "track/clip/trust.h"
+#include "tests/lib/unit.h"
+
+enum { FRAMES = 40 };
+static const double DEGREE = M_PI / 180;
+
+/* Keys with round numbers: right scales of 1, wrong ones of 10. */
+static struct track_conf keys(void)
+{
+	struct track_conf conf = { .wrong_prior = 0.2, .trust_odd = 1e-4, .eye = { .limbus_radius = 5.85 } };
+	for (int i = 0; i < TRUST_EVIDENCES; i++) {
+		conf.trust[i][0] = 1;
+		conf.trust[i][1] = 10;
+	}
+	return conf;
+}
+
+/* A clip whose eyes converge by 2 degrees and look straight on; skin a pixel off at 10 px/mm. */
+struct film {
+	struct track_clip clip;
+	struct track_subject subject;
+	struct track_result result;
+};
+
+static void shoot(struct film *film, double higher_deg, double apart_deg, double iris_mm)
+{
+	*film = (struct film){ .clip = { .camera = { .focal_px = 5000 }, .pose_given = true } };
+	struct track_result *r = &film->result;
+	film->clip.cam_from_head[2][3] = 500;
+	r->eyes.globe[SIDE_LEFT].center_in_head[0] = 31;
+	r->eyes.globe[SIDE_RIGHT].center_in_head[0] = -31;
+	r->n = FRAMES;
+	r->has_eyes = true;
+	r->lost_at = mem_new(FRAMES, sizeof *r->lost_at);
+	r->misfit = mem_array(FRAMES, sizeof *r->misfit);
+	r->eyes.state = mem_new(FRAMES, sizeof *r->eyes.state);
+	for (long f = 0; f < FRAMES; f++) {
+		r->misfit[f] = 1;
+		for (int e = 0; e < SIDES; e++) {
+			r->eyes.state[f][e].gaze[0] = DEGREE * (e == SIDE_LEFT ? 0.5 : -0.5) * apart_deg;
+			r->eyes.state[f][e].gaze[1] = DEGREE * (e == SIDE_LEFT ? 0.5 : -0.5) * higher_deg;
+		}
+	}
+	for (int e = 0; e < SIDES; e++) {
+		r->eyes.globe[e].seen = true;
+		r->eyes.globe[e].limbus_radius = 5.85 + iris_mm;
+	}
+}
+
+static struct track_trust trust_of(double higher_deg, double apart_deg, double iris_mm)
+{
+	struct film film;
+	struct track_trust t;
+	const struct track_conf conf = keys();
+	shoot(&film, higher_deg, apart_deg, iris_mm);
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	track_result_free(&film.result);
+	return t;
+}
+
+/* What a clip tells of itself, and Bayes' rule over it. */
+static void all_in_order(void **state)
+{
+	(void)state;
+	const struct track_trust t = trust_of(0, -2, 0);
+	assert_true(isnan(t.value[TRUST_LAID]) && t.log_odds[TRUST_LAID] == 0);
+	NEAR(t.value[TRUST_SKIN], 0.1, 1e-12);
+	NEAR(t.value[TRUST_APART], 0, 1e-12);
+	// at x = 0 the densities' quotient is 2 (10 (1 - odd) + odd) / (10 + 1)
+	NEAR(t.log_odds[TRUST_LEVEL], log(2 * (10 * (1 - 1e-4) + 1e-4) / 11), 1e-12);
+	double odds = 4;
+	for (int i = 0; i < TRUST_EVIDENCES; i++)
+		odds *= exp(t.log_odds[i]);
+	NEAR(t.wrong, 1 / (1 + odds), 1e-12);
+	assert_true(t.wrong < 0.03);
+}
+
+/* Eyes that converge on the camera are as they should be, on what is nearer they are not. */
+static void together(void **state)
+{
+	(void)state;
+	const double camera = atan2(62, 500) / DEGREE;
+	NEAR(trust_of(0, -0.9 * camera, 0).value[TRUST_APART], 0, 1e-12);
+	NEAR(trust_of(0, -camera - 3, 0).value[TRUST_APART], 3, 1e-9);
+	NEAR(trust_of(0, 2, 0).value[TRUST_APART], 2, 1e-9);
+}
+
+/* One far off is not outvoted; two a little off weigh together; one a little off does not decide. */
+static void weighed_together(void **state)
+{
+	(void)state;
+	assert_true(trust_of(0, 25, 0).wrong > 0.9);
+	assert_true(trust_of(3.4, 0, 0).wrong < 0.5 && trust_of(0, 3.4, 0).wrong < 0.5);
+	assert_true(trust_of(3.4, 3.4, 0).wrong > 0.5);
+	assert_true(trust_of(3.4, 3.4, 3.4).wrong > trust_of(3.4, 3.4, 0).wrong);
+	assert_true(trust_of(-3.4, 3.4, 0).wrong > 0.5);
+	assert_true(trust_of(1e9, 0, 0).wrong > 0.9 && isfinite(trust_of(1e9, 0, 0).log_odds[TRUST_LEVEL]));
+}
+
+/* Nothing known: the prior. */
+static void nothing_seen(void **state)
+{
+	(void)state;
+	struct film film = { .clip = { .pose_given = true } };
+	struct track_trust t;
+	const struct track_conf conf = keys();
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.wrong, 0.2, 1e-12);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(all_in_order),
+		cmocka_unit_test(together),
+		cmocka_unit_test(weighed_together),
+		cmocka_unit_test(nothing_seen),
+	};
+	return cmocka_run_group_tests(tests, 0, 0);
+}
