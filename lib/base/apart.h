@@ -22,7 +22,7 @@ struct apart {
 	const char *reads;   // the one folder whose files it may open for reading; null: none
 	size_t memory;       // bytes that it may take beyond what this process has
 	size_t result;       // most bytes of its result
-	double seconds;      // of processor time, and twice as many by the clock
+	double seconds;      // of processor time; it is ended, too, when it all but stands still for so long by the clock
 };
 
 /* Runs it to its end.

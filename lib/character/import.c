@@ -15,10 +15,23 @@
 enum { TEXTURE_MAX = 256 << 20 };
 static const size_t FILE_MOST = (size_t)1 << 30;
 
-static bool is_obj(const char *name)
+static bool ends(const char *name, const char *end)
 {
-	const size_t n = strlen(name);
-	return n > 4 && !strcmp(name + n - 4, ".obj");
+	const size_t n = strlen(name), k = strlen(end);
+	return n > k && !strcmp(name + n - k, end);
+}
+
+/* Whether a line that begins with `word` stands in data before one that begins with `stop`, null: anywhere. */
+static bool has_line(const char *data, size_t size, const char *word, const char *stop)
+{
+	for (const char *at = data; at; at = memchr(at, '\n', (size_t)(data + size - at))) {
+		at += *at == '\n';
+		if (!strncmp(at, word, strlen(word)))
+			return true;
+		if (stop && !strncmp(at, stop, strlen(stop)))
+			return false;
+	}
+	return false;
 }
 
 bool character_has_look(const char *path)
@@ -28,11 +41,12 @@ bool character_has_look(const char *path)
 	struct err none = { 0 };
 	if (character_kind_of(path) != CHARACTER_PLAIN)
 		return character_kind_of(path) == CHARACTER_SCENE;
-	if (!is_obj(path) || !file_read(&data, &size, path, FILE_MOST, &none))
+	if (!file_read(&data, &size, path, FILE_MOST, &none))
 		return false;
-	bool found = !strncmp(data, "mtllib ", 7);
-	for (const char *at = data; !found && (at = memchr(at, '\n', (size_t)(data + size - at))); at++)
-		found = !strncmp(at + 1, "mtllib ", 7);
+	// Assimp keeps one pair of coordinates a vertex: seams of a PLY that gives them to its faces' corners would be lost.
+	const bool found = ends(path, ".obj") ? has_line(data, size, "mtllib ", 0)
+	                                      : has_line(data, size, "comment TextureFile ", "end_header")
+	                                            && !has_line(data, size, "property list uchar float texcoord", "end_header");
 	free(data);
 	return found;
 }
@@ -43,13 +57,13 @@ struct task {
 	long limit;
 };
 
-/* The vertices of an OBJ in the file's order. */
+/* The vertices of an OBJ or PLY in the file's order. */
 static bool given_vertices(struct mesh *out, const struct task *task, struct err *err)
 {
 	char *path = mem_printf("%s/%s", task->folder, task->name), *data = 0;
 	size_t size;
 	*out = (struct mesh){ 0 };
-	const bool ok = !is_obj(task->name)
+	const bool ok = character_kind_of(task->name) != CHARACTER_PLAIN
 	                || (file_read(&data, &size, path, FILE_MOST, err) && mesh_clean(out, data, size, task->limit, err) && mesh_check(out, err));
 	free(path);
 	free(data);

@@ -2,7 +2,8 @@
 #ifndef CHARACTER_KIND_H
 #define CHARACTER_KIND_H
 
-/* CHARACTER_PLAIN: PLY and OBJ, a surface alone unless an OBJ names materials. CHARACTER_SCENE: glTF (.glb, .gltf) and FBX. */
+/* CHARACTER_PLAIN: PLY and OBJ, a surface alone unless an OBJ names materials or a PLY its texture.
+ * CHARACTER_SCENE: glTF (.glb, .gltf) and FBX. */
 enum character_kind { CHARACTER_NONE, CHARACTER_PLAIN, CHARACTER_SCENE };
 enum character_kind character_kind_of(const char *name);
 

@@ -296,7 +296,8 @@ static void add_companions(struct target *t, struct stage *stage, const struct f
 {
 	struct stat st;
 	const size_t n = strlen(file);
-	if (n > 4 && (!strcmp(file + n - 4, ".ply") || !strcmp(file + n - 4, ".glb")))
+	const bool ply = n > 4 && !strcmp(file + n - 4, ".ply"), glb = n > 4 && !strcmp(file + n - 4, ".glb");
+	if (glb || (ply && !character_has_look(stage_path(stage, "targets/%s", file))))
 		return;
 	for (int i = 0; i < beside->n; i++)
 		if (character_kind_of(beside->names[i]) == CHARACTER_NONE && !stat(stage_path(stage, "targets/%s", beside->names[i]), &st)

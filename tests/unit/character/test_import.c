@@ -1,4 +1,6 @@
 /* A character's file read in a process of its own: what is kept, and what hostile files do. */
+#include <time.h>
+
 #include "base/apart.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -167,6 +169,43 @@ static void rows_of_an_obj_are_its_own(void **state)
 	look_free(&look);
 }
 
+/* A PLY that names its texture keeps it, with the coordinates of its vertices; another is a surface alone. */
+static void texture_of_a_ply_is_kept(void **state)
+{
+	(void)state;
+	static const char rest[] = "element vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
+	                           "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+	                           "9 9 9 0 0\n1 0 0.3 1 0\n0 0 0.1 0 0\n0 1 0 0 1\n1 1 0 1 1\n3 2 1 4\n3 2 4 3\n";
+	struct mesh mesh;
+	struct look look;
+	struct err err = { 0 };
+	char text[1024];
+	snprintf(text, sizeof text, "ply\nformat ascii 1.0\n%s", rest);
+	scratch_text("plain.ply", text);
+	assert_false(character_has_look(scratch_path("plain.ply")));
+	scratch_text("corners.ply", "ply\nformat ascii 1.0\ncomment TextureFile no.png\nproperty list uchar float texcoord\nend_header\n");
+	assert_false(character_has_look(scratch_path("corners.ply")));
+	snprintf(text, sizeof text, "ply\nformat ascii 1.0\ncomment TextureFile no.png\n%s", rest);
+	scratch_text("quad.ply", text);
+	assert_true(character_has_look(scratch_path("quad.ply")));
+	if (!take(&mesh, &look, "quad.ply", &err))
+		fail_msg("%s", err.msg);
+	assert_int_equal(mesh.n_vertices, 5);
+	assert_int_equal(mesh.n_faces, 2);
+	NEAR(mesh.vertices[1][2], 0.3, 1e-7);
+	assert_true(look.has_uv);
+	for (int f = 0; f < 2; f++)
+		for (int k = 0; k < 3; k++) {
+			const float *uv = look.uv[look.corner[f][k]], *x = mesh.vertices[mesh.faces[f][k]];
+			NEAR(uv[0], x[0], 1e-6);
+			NEAR(uv[1], 1 - x[1], 1e-6);
+		}
+	assert_int_equal(look.n_left_out, 1);
+	assert_non_null(strstr(look.left_out[0], "no.png"));
+	mesh_free(&mesh);
+	look_free(&look);
+}
+
 /* A quad with a blend shape, and a texture where the artist had it. */
 static const char fbx[] =
 	"; FBX 7.4.0 project file\nFBXHeaderExtension:  {\nFBXHeaderVersion: 1003\nFBXVersion: 7400\n}\nGlobalSettings:  {\n"
@@ -286,7 +325,7 @@ static void huge_textures_are_left_out(void **state)
 	look_free(&look);
 }
 
-enum deed { WRITES, OPENS, FORKS, EATS, SPINS, FALLS, FLOODS };
+enum deed { WRITES, OPENS, FORKS, EATS, SPINS, WAITS, FALLS, FLOODS };
 
 static bool misbehave(void *ctx, struct apart_out *out, struct err *err)
 {
@@ -303,6 +342,9 @@ static bool misbehave(void *ctx, struct apart_out *out, struct err *err)
 	case SPINS:
 		for (;;)
 			n++;
+	case WAITS:
+		for (;;)
+			nanosleep(&(struct timespec){ .tv_sec = 1 }, 0);
 	case FALLS: __builtin_trap();
 	case FLOODS:
 		while (apart_put(out, piece, sizeof piece))
@@ -316,7 +358,7 @@ static bool misbehave(void *ctx, struct apart_out *out, struct err *err)
 static void a_process_apart_dies_alone(void **state)
 {
 	(void)state;
-	static const char *const said[] = { "no writing", "no reading", "no processes", "memory", "longer than", "died of signal 4", "no more room" };
+	static const char *const said[] = { "no writing", "no reading", "no processes", "memory", "longer than", "longer than", "died of signal 4", "no more room" };
 	for (enum deed d = WRITES; d <= FLOODS; d++) {
 #ifdef __SANITIZE_ADDRESS__
 		if (d == EATS || d == FALLS || d == FORKS)  // a sanitizer takes addresses without end, and signals to itself
@@ -332,6 +374,33 @@ static void a_process_apart_dies_alone(void **state)
 		assert_null(data);
 	}
 	assert_false(file_exists("/tmp/eyewright-must-not-be"));
+}
+
+/* Four seconds by the clock, a tenth of them of processor time: as on a machine that has others' work to do. */
+static bool goes_slowly(void *ctx, struct apart_out *out, struct err *err)
+{
+	(void)ctx;
+	(void)err;
+	volatile long n = 0;
+	for (int i = 0; i < 40; i++) {
+		for (clock_t from = clock(); clock() - from < CLOCKS_PER_SEC / 100;)
+			n++;
+		nanosleep(&(struct timespec){ .tv_nsec = 90000000 }, 0);
+	}
+	return apart_put(out, "sound", 5);
+}
+
+static void a_busy_machine_refuses_nothing(void **state)
+{
+	(void)state;
+	char *data;
+	size_t size;
+	struct err err = { 0 };
+	const struct apart apart = { goes_slowly, 0, 0, (size_t)256 << 20, 1 << 20, 1 };
+	if (!apart_run(&data, &size, &apart, &err))
+		fail_msg("%s", err.msg);
+	assert_string_equal(data, "sound");
+	free(data);
 }
 
 /* Whatever bytes a reader that was taken over hands out, none of them points outside. */
@@ -362,10 +431,12 @@ int main(void)
 		SCRATCH_TEST(look_is_kept),
 		SCRATCH_TEST(without_uv_or_materials),
 		SCRATCH_TEST(rows_of_an_obj_are_its_own),
+		SCRATCH_TEST(texture_of_a_ply_is_kept),
 		SCRATCH_TEST(fbx_is_read),
 		SCRATCH_TEST(hostile_files_are_refused_in_one_line),
 		SCRATCH_TEST(huge_textures_are_left_out),
 		SCRATCH_TEST(a_process_apart_dies_alone),
+		SCRATCH_TEST(a_busy_machine_refuses_nothing),
 		cmocka_unit_test(results_are_not_trusted),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
