@@ -205,7 +205,7 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 		extrapolate(rig);
 		double px_per_mm = rig_px_per_mm(rig, motion, ch);
 		rig_follow_lids(rig, motion, px_per_mm, conf->lid, report);
-		rig_arc_margins(rig, motion, px_per_mm, conf->lid, conf->seal);
+		rig_arc_margins(rig, motion, px_per_mm, conf);
 		if (conf->seal >= 0)
 			rig_seal_lids(rig, motion, px_per_mm, conf->seal, report);
 		take_thickness(rig, conf);

@@ -34,9 +34,9 @@ void rig_fissure_look(struct rig_fissure *f, const struct rig *rig, int side, co
 void rig_fissure_free(struct rig_fissure *f);
 
 /* margins.c: makes the character's own lid margins move as smooth arcs between corners that both lids share: each component moves a
- * margin by a share of the opening at rest, so that arcs stay arcs at every gaze. In closed poses they meet along their whole length and seal_mm more; below 0: as was learnt.
- * Fades over reach_mm; 0: nothing is done. */
-void rig_arc_margins(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, double seal_mm);
+ * margin by a share of the opening at rest, so that arcs stay arcs at every gaze. In closed poses they meet along their whole length
+ * and conf->seal more; below 0: as was learnt. Fades over conf->lid; 0: nothing is done. */
+void rig_arc_margins(struct rig *rig, const struct rig_motion *motion, double px_per_mm, const struct rig_conf *conf);
 
 /* lids.c: makes skin at the lid margins move as the margins' splines do, fading over reach_mm. */
 void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);

@@ -10,13 +10,9 @@
 
 enum { UPPER, LOWER, LIDS, TERMS = 2 + LIDS };
 
-static const double lid_gap = 5;        // mm from the globe: skin further away is no lid
+static const double gap_fade = 2;       // mm to either side of the gap up to which skin is a lid
 static const double open_mm = 0.3;      // less than this is a corner
 static const double least_mm[] = { 10, 2 };  // length and height of what is an eye's opening
-
-/* The lids go on beyond what is seen of the eyeball, over caruncle and plica, and less so at the outer corner: from so far within its end
- * their margins run straight to a corner so far beyond it. mm of an eyeball of 12 mm; inner, outer. */
-static const double within_mm[] = { 2.5, 1 }, beyond_mm[] = { 3.5, 2.5 };
 
 /* The character's opening at rest, in columns of the modelling camera. */
 struct opening {
@@ -64,7 +60,8 @@ static void take_height(struct opening *o)
 }
 
 /* False: there is none. */
-static bool opening_of(struct opening *o, const struct rig *rig, const struct rig_motion *m, int side, double px_per_mm)
+static bool opening_of(struct opening *o, const struct rig *rig, const struct rig_motion *m, int side, double px_per_mm,
+                       const struct rig_conf *conf)
 {
 	struct rig_fissure f;
 	const double still[RIG_COMPONENTS] = { 0 };
@@ -82,7 +79,8 @@ static bool opening_of(struct opening *o, const struct rig *rig, const struct ri
 	bool ok = to - from > least_mm[0] * px_per_mm && f.bottom[best] - f.top[best] > least_mm[1] * px_per_mm;
 	// At most twice a person's: both ends then stay within the shortest opening, whatever size a character has.
 	const double scale = px_per_mm * fmin(rig->globe[side].radius / 12, 2);
-	const int inner = side, left = (int)(beyond_mm[inner] * scale), right = (int)(beyond_mm[!inner] * scale);
+	const int left_end = side;  // the inner corner of the left eye, the outer one of the right
+	const int left = (int)(conf->beyond[left_end] * scale), right = (int)(conf->beyond[!left_end] * scale);
 	*o = (struct opening){ .n = ok ? left + to - from + 1 + right : 0, .first = f.x0 + from - left, .px_per_mm = px_per_mm };
 	for (int lid = 0; lid < LIDS; lid++)
 		o->y[lid] = mem_new((size_t)o->n + 1, sizeof *o->y[lid]);
@@ -92,8 +90,8 @@ static bool opening_of(struct opening *o, const struct rig *rig, const struct ri
 		o->y[LOWER][left + x - from] = smoothed(f.bottom, x, from, to, (int)(0.5 * px_per_mm));
 	}
 	if (ok) {
-		to_corner(o, 0, left, left + (int)(within_mm[inner] * scale));
-		to_corner(o, o->n - 1, o->n - 1 - right, o->n - 1 - right - (int)(within_mm[!inner] * scale));
+		to_corner(o, 0, left, left + (int)(conf->within[left_end] * scale));
+		to_corner(o, o->n - 1, o->n - 1 - right, o->n - 1 - right - (int)(conf->within[!left_end] * scale));
 		take_height(o);
 	}
 	rig_fissure_free(&f);
@@ -121,7 +119,7 @@ static double margin_weight(const struct opening *o, int lid, const float at[2])
 }
 
 /* Least squares over the skin near the margins: coefficient[TERMS][RIG_BASIS], out. */
-static bool fit(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const struct rig *rig, int side)
+static bool fit(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const struct rig *rig, int side, double lid_gap)
 {
 	double A[TERMS][TERMS] = { 0 };
 	bool ok = true;
@@ -182,11 +180,12 @@ static double fading(double x, double from, double to)
 	return 1 - t * t * (3 - 2 * t);
 }
 
-static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS], double reach_mm)
+static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS],
+                  const struct rig_conf *conf)
 {
 	double most = 0, total = 0, sum[RIG_BASIS] = { 0 };
 	for (int lid = 0; lid < LIDS; lid++) {
-		double g[TERMS], d = off_margin(o, lid, rig->home[i]), share = fading(d, 0.25 * reach_mm, reach_mm), w = share / (0.01 + d * d);
+		double g[TERMS], d = off_margin(o, lid, rig->home[i]), share = fading(d, 0.25 * conf->lid, conf->lid), w = share / (0.01 + d * d);
 		terms_at(g, o, lid, rig->home[i][0]);
 		most = fmax(most, share);
 		total += w;
@@ -194,24 +193,24 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 			for (int j = 0; j < TERMS; j++)
 				sum[k] += w * g[j] * coefficient[j][k];
 	}
-	most *= fading(rig->gap[i], lid_gap - 2, lid_gap + 2);
+	most *= fading(rig->gap[i], conf->lid_gap - gap_fade, conf->lid_gap + gap_fade);
 	for (int k = 0; k < RIG_BASIS && total > 0; k++)
 		rig->basis[i][k] += (float)(most * (sum[k] / total - rig->basis[i][k]));
 }
 
-void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_mm, double reach_mm, double seal_mm)
+void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_mm, const struct rig_conf *conf)
 {
-	for (int side = 0; side < 2 && reach_mm > 0; side++) {
+	for (int side = 0; side < 2 && conf->lid > 0; side++) {
 		struct opening o;
 		double coefficient[TERMS][RIG_BASIS];
-		if (!opening_of(&o, rig, m, side, px_per_mm))
+		if (!opening_of(&o, rig, m, side, px_per_mm, conf))
 			continue;
-		bool ok = fit(coefficient, &o, rig, side);
-		if (ok && seal_mm >= 0)
-			shut(coefficient, &o, rig, seal_mm);
+		bool ok = fit(coefficient, &o, rig, side, conf->lid_gap);
+		if (ok && conf->seal >= 0)
+			shut(coefficient, &o, rig, conf->seal);
 		for (int i = 0; i < rig->n && ok; i++)
-			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side && rig->gap[i] < lid_gap + 2)
-				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, reach_mm);
+			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side && rig->gap[i] < conf->lid_gap + gap_fade)
+				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, conf);
 		opening_free(&o);
 	}
 }
