@@ -141,6 +141,7 @@ static json_t *trust_json(const struct track_trust *t)
 		json_object_set_new(one, "log_odds_right", json_number(t->log_odds[i]));
 		json_object_set_new(all, trust_names[i].key, one);
 	}
+	json_object_set_new(j, "far_probability", json_number(t->far));
 	json_object_set_new(j, "evidence", all);
 	return j;
 }

@@ -208,7 +208,7 @@ bool track_clip_take(struct track_clip *clip, long frame, struct stage *stage, c
 bool track_clip_open(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf,
                      struct err *err)
 {
-	clip->pose_px = NAN;
+	clip->pose_px = clip->skin_mm = NAN;
 	struct video *video = video_open(&clip->info, stage_path(stage, "%s", clip->file), &conf->video, err);
 	bool ok = video && set_camera(clip, stage, s, conf, err);
 	size_t area = (size_t)clip->info.width * (size_t)clip->info.height;

@@ -41,6 +41,7 @@ struct track_clip {
 	uint8_t *luma, *rgb;             // of the reference [height][width], [height][3 width]; owned
 	double turn_sigma[2];  // radians: of the pose's pitch and yaw; 0: not known
 	double pose_px;        // rms residual of the pose
+	double skin_mm;        // skin off the rigid head in the frames that it was judged by (trust_skin_mm); NAN: not known
 	bool pose_refined;     // by eyeballs and lids of several frames (refine.h); else pose_px is that of the outlines in the reference alone
 	bool pose_given;       // from track.landmark_*, or known: not refined
 	struct track_moves moves;        // owned

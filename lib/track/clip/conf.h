@@ -30,6 +30,7 @@ struct track_conf {
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
 	double earned_deg;     // standard deviation of a turn that the skin's motion tells
 	double trust[TRUST_EVIDENCES][2];    // scales of each evidence in clips followed rightly and wrongly: trust.h
+	double wrong_deg;      // gaze that is off by more is wrong
 	double wrong_prior, wrong_most, trust_odd;  // share of clips followed wrongly; probability of it beyond which a clip is refused; share of odd evidence
 	double stirs_mm;       // frames of a head that turns whose skin is further off the rigid head have no gaze and no lids
 	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
@@ -71,6 +72,7 @@ struct track_conf {
 		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
 		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
 		OPT_REAL("wrong_prior", &(c)->wrong_prior, 1e-6, 0.99, "", "share of clips that are followed wrongly"), \
+		OPT_REAL("wrong_deg", &(c)->wrong_deg, 0.1, 180, "degrees", "gaze that is off by more is wrong"), \
 		OPT_REAL("wrong_most", &(c)->wrong_most, 0, 1, "", "probability of a wrong result; with more a clip is refused"), \
 		OPT_REAL("trust_odd", &(c)->trust_odd, 1e-12, 0.5, "", "share of clips followed rightly that are odd in one evidence"), \
 		OPT_REAL("stirs_mm", &(c)->stirs_mm, 0.01, 100, "mm", "skin of a head that turns, off the rigid head: a frame with more has no gaze, no lids"), \

@@ -5,6 +5,7 @@
 
 #include "math/chol.h"
 #include "track/clip/reference.h"
+#include "track/clip/trust.h"
 
 enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2, LAST_ROBUST = 2 };
 
@@ -162,5 +163,6 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = px;
+	clip->skin_mm = trust_skin_mm(r, clip);
 	clip->pose_refined = true;
 }

@@ -7,7 +7,8 @@
 enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_STRAIGHT, TRUST_EVIDENCES };
 struct track_trust {
 	double value[TRUST_EVIDENCES], log_odds[TRUST_EVIDENCES];  // NAN, 0 where the clip does not tell it
-	double wrong;          // probability
+	double far;            // probability that gaze is off by more than wrong_deg, by its own standard deviations
+	double wrong;          // probability that the result is wrong: followed wrongly, or off by so much
 };
 
 /* Line of sight against the optical axis: see kappa.h. */

@@ -10,6 +10,7 @@
 #include "track/clip/look.h"
 #include "track/clip/reference.h"
 #include "track/clip/refine.h"
+#include "track/clip/trust.h"
 #include "track/head/refine.h"
 
 enum { FEW_POINTS = 120, LOOKS = 4, LATER = 15 };
@@ -134,27 +135,17 @@ static bool look_again(struct track_clip *clip, struct doubts *d, const struct t
 	return d->turned = look_anew(clip, clip->reference, d->way, stage, s, conf);
 }
 
-double settle_scale(const struct track_clip *clip, const struct track_subject *s)
-{
-	return head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening) * (clip->pose_refined ? 1 : 2);
-}
-
-/* Residual beyond which other frames are tried, px. */
-static double most_px(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
-{
-	return conf->pose_most * settle_scale(clip, s);
-}
-
+/* Whether other frames are to be tried: for the residual of its pose, or as its skin is off that of most frames (an expression). */
 static bool is_off(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	return !(clip->pose_px <= most_px(clip, s, conf));
+	return !(clip->pose_px <= conf->pose_most * trust_scale(clip, s)) || trust_odds(TRUST_SKIN, clip->skin_mm, conf) < 0;
 }
 
-/* Exchanges the clip's reference and another's where that comes together with the mesh better; frees the other's pictures. */
+/* Exchanges the clip's reference and another's where that is likelier right by its residual and its skin; frees the other's pictures. */
 static void take_better(struct track_clip *clip, struct track_clip *other, bool found, const struct track_subject *s, const struct track_conf *conf)
 {
 	clip->faces = other->faces;
-	if (found && other->pose_px * most_px(clip, s, conf) < clip->pose_px * most_px(other, s, conf)) {
+	if (found && trust_reference(other, s, conf) > trust_reference(clip, s, conf)) {
 		struct track_clip t = *clip;
 		*clip = *other;
 		*other = t;
@@ -204,8 +195,8 @@ static bool try_evidence(struct track_clip *clip, struct stage *stage, const str
 	return !err_is(err);
 }
 
-/* Frames spread over the clip, each as the reference: openings, eyeballs and mesh are fitted together, and the frame in which they agree
- * best is kept. */
+/* Frames spread over the clip, each as the reference: openings, eyeballs and mesh are fitted together, and the likeliest is
+ * kept. */
 static void try_others(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
 	enum { TRIES = 5 };
@@ -301,7 +292,7 @@ bool track_settled(const struct track_clip *clip, const struct track_subject *s,
 	if (clip->moves.torn)
 		return err_set(err, "%s: frame %ld: its skin does not move as %s does (off by %.2f mm, must be at most %.2f: track.off_mm; its halves tell poses %.1f degrees apart, must be at most %.1f: track.torn_deg): check camera.focal_px and subject.unit_mm, film in softer light, or give track.reference_frame",
 		               clip->file, clip->reference, s->file, clip->moves.off_mm, conf->off_mm, clip->moves.apart * 180 / M_PI, conf->torn);
-	const double most = conf->pose_refused * settle_scale(clip, s);
+	const double most = conf->pose_refused * trust_scale(clip, s);
 	if (s->assumed || clip->pose_given || !conf->settle || clip->pose_px <= most)
 		return true;
 	return err_set(err, "%s: frame %ld: its lids and eyeballs do not come together with %s (residual %.1f px, must be at most %.1f: track.pose_refused_px): give subject.eye_center.left and .right, subject.eye_radius, camera.focal_px, or a frame from in front (track.reference_frame)",

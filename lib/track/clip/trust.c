@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/clip/settle.h"
+#include "track/head/refine.h"
 
 enum { LEAST = 12 };
 
@@ -47,8 +47,7 @@ static double apart_of(const struct track_result *r, const struct track_clip *cl
 	return apart > 0 ? apart : apart < near ? near - apart : isnan(apart) ? NAN : 0;
 }
 
-/* Median over the frames of how far the skin lies off the rigid head, mm. */
-static double skin_of(const struct track_result *r, const struct track_clip *clip)
+double trust_skin_mm(const struct track_result *r, const struct track_clip *clip)
 {
 	double *off = mem_array((size_t)r->n + 1, sizeof *off);
 	int n = 0;
@@ -73,14 +72,34 @@ static double iris_of(const struct track_result *r, double usual)
 	return n ? off / n : NAN;
 }
 
+/* Probability that gaze is off by more than `most` (degrees) in an axis of an eye, by its own standard deviation: its median over the frames, as most of it (the eyeball's,
+ * the pose's) is in all frames alike. */
+static double far_of(const struct track_result *r, double most)
+{
+	double *sigma = mem_array((size_t)r->n + 1, sizeof *sigma), far = 0;
+	for (int k = 0; k < 2 * SIDES && r->has_eyes; k++) {
+		int n = 0;
+		for (long f = 0; f < r->n; f++) {
+			const struct eye_state *s = &r->eyes.state[f][k / 2];
+			if (!r->lost_at[f] && isfinite(s->gaze[k % 2] + s->sigma[k % 2]))
+				sigma[n++] = s->sigma[k % 2] * 180 / M_PI;
+		}
+		const double usual = middle_of(n, sigma);
+		far = usual > 0 ? fmax(far, erfc(most / (sqrt(2) * usual))) : far;
+	}
+	free(sigma);
+	return far;
+}
+
 /* Density of a normal distribution about 0, less the constant. */
 static double normal(double x, double scale)
 {
 	return exp(-0.5 * (x / scale) * (x / scale)) / scale;
 }
 
-static double log_odds(double x, const double scale[2], double odd)
+double trust_odds(int evidence, double x, const struct track_conf *conf)
 {
+	const double *scale = conf->trust[evidence], odd = conf->trust_odd;
 	if (isnan(x))
 		return 0;
 	// so far off that both densities vanish
@@ -88,17 +107,28 @@ static double log_odds(double x, const double scale[2], double odd)
 	return log(((1 - odd) * right + odd * wrong) / (0.5 * (right + wrong)));
 }
 
+double trust_scale(const struct track_clip *clip, const struct track_subject *s)
+{
+	return head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening) * (clip->pose_refined ? 1 : 2);
+}
+
+double trust_reference(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	return isnan(clip->pose_px) ? -INFINITY : trust_odds(TRUST_LAID, clip->pose_px / trust_scale(clip, s), conf) + trust_odds(TRUST_SKIN, clip->skin_mm, conf);
+}
+
 void track_trust(struct track_trust *t, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
 	const bool laid = !s->assumed && !clip->pose_given && !clip->moves.turned;
-	t->value[TRUST_LAID] = laid ? clip->pose_px / settle_scale(clip, s) : NAN;
-	t->value[TRUST_SKIN] = skin_of(r, clip);
+	t->value[TRUST_LAID] = laid ? clip->pose_px / trust_scale(clip, s) : NAN;
+	t->value[TRUST_SKIN] = trust_skin_mm(r, clip);
 	t->value[TRUST_LEVEL] = gaze_of(r, 1, false);
 	t->value[TRUST_APART] = apart_of(r, clip);
 	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);
 	t->value[TRUST_STRAIGHT] = s->assumed ? NAN : hypot(gaze_of(r, 0, true), gaze_of(r, 1, true));
 	double odds = log((1 - conf->wrong_prior) / conf->wrong_prior);
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
-		odds += t->log_odds[i] = log_odds(t->value[i], conf->trust[i], conf->trust_odd);
-	t->wrong = 1 / (1 + exp(odds));
+		odds += t->log_odds[i] = trust_odds(i, t->value[i], conf);
+	t->far = far_of(r, conf->wrong_deg);
+	t->wrong = 1 - (1 - t->far) / (1 + exp(-odds));
 }

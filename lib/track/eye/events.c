@@ -152,6 +152,19 @@ static double angle(const double a[3], const double b[3])
 	return acos(fmin(1, c));
 }
 
+/* Speed of gaze in frame f of a run from `first` on, radians/s; NAN where it is not known. A frame in which nothing seemed to have moved holds the last gaze:
+ * within a run the speed goes over it. */
+static double speed_of(const struct eye_state *s, long n, long first, long f)
+{
+	long a = f - 1, b = f;
+	if (f > first && b + 1 < n && s[b].gaze[0] == s[a].gaze[0] && s[b].gaze[1] == s[a].gaze[1])
+		b++;
+	else if (f > first + 1 && s[a].gaze[0] == s[a - 1].gaze[0] && s[a].gaze[1] == s[a - 1].gaze[1])
+		a--;
+	const double dt = s[b].time - s[a].time;
+	return !isfinite(s[a].gaze[0] + s[f].gaze[0] + s[b].gaze[0]) ? NAN : dt > 0 ? angle(s[b].gaze, s[a].gaze) / dt : 0;
+}
+
 static void saccades(struct eye_clip *clip, struct eye_side *eye, int side)
 {
 	double fast = eye->conf->saccade_speed * M_PI / 180, least = eye->conf->saccade_size * M_PI / 180;
@@ -159,9 +172,8 @@ static void saccades(struct eye_clip *clip, struct eye_side *eye, int side)
 	for (long i = 1; i < eye->frames; i++) {
 		double peak = 0;
 		long last = i, at = i;
-		while (last < eye->frames && isfinite(s[last].gaze[0]) && isfinite(s[last - 1].gaze[0])) {
-			double dt = s[last].time - s[last - 1].time;
-			double speed = dt > 0 ? angle(s[last].gaze, s[last - 1].gaze) / dt : 0;
+		while (last < eye->frames) {
+			double speed = speed_of(s, eye->frames, i, last);
 			if (!(speed > fast))
 				break;
 			if (speed > peak) {

@@ -9,7 +9,7 @@ static const double DEGREE = M_PI / 180;
 /* Keys with round numbers: right scales of 1, wrong ones of 10. */
 static struct track_conf keys(void)
 {
-	struct track_conf conf = { .wrong_prior = 0.2, .trust_odd = 1e-4, .eye = { .limbus_radius = 5.85 } };
+	struct track_conf conf = { .wrong_prior = 0.2, .wrong_deg = 3, .trust_odd = 1e-4, .eye = { .limbus_radius = 5.85 } };
 	for (int i = 0; i < TRUST_EVIDENCES; i++) {
 		conf.trust[i][0] = 1;
 		conf.trust[i][1] = 10;
@@ -99,6 +99,26 @@ static void weighed_together(void **state)
 	assert_true(trust_of(1e9, 0, 0).wrong > 0.9 && isfinite(trust_of(1e9, 0, 0).log_odds[TRUST_LEVEL]));
 }
 
+/* Gaze that is followed rightly, but may be off by degrees: one standard deviation of 3 degrees of one eye's height means past them in 32 %. */
+static void off_by_degrees(void **state)
+{
+	(void)state;
+	struct film film;
+	struct track_trust t, none;
+	const struct track_conf conf = keys();
+	shoot(&film, 0, 0, 0);
+	track_trust(&none, &film.result, &film.clip, &film.subject, &conf);
+	assert_true(none.far == 0);
+	for (long f = 0; f < FRAMES; f++) {
+		film.result.eyes.state[f][0].sigma[0] = film.result.eyes.state[f][1].sigma[0] = film.result.eyes.state[f][0].sigma[1] = DEGREE;
+		film.result.eyes.state[f][1].sigma[1] = 3 * DEGREE;
+	}
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.far, 0.31731, 1e-5);
+	NEAR(t.wrong, 1 - (1 - none.wrong) * (1 - 0.31731), 1e-5);
+	track_result_free(&film.result);
+}
+
 /* Nothing known: the prior. */
 static void nothing_seen(void **state)
 {
@@ -116,6 +136,7 @@ int main(void)
 		cmocka_unit_test(all_in_order),
 		cmocka_unit_test(together),
 		cmocka_unit_test(weighed_together),
+		cmocka_unit_test(off_by_degrees),
 		cmocka_unit_test(nothing_seen),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
