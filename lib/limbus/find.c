@@ -64,7 +64,7 @@ static struct trial *told(struct trials *t, int best)
 	for (int k = 0; k < COUNT(guide); k++)
 		for (int i = 0; i < t->n; i++) {
 			struct trial *other = &t->trial[i];
-			if (other->guide == guide[k] && other->log_odds > likeliest->log_odds - AS_SURE && trial_same(other, likeliest))
+			if (other->guide == guide[k] && other->log_odds > likeliest->log_odds - AS_SURE && trial_same(other, likeliest, t->conf->tolerance))
 				return other;
 		}
 	return likeliest;

@@ -32,25 +32,25 @@ struct limbus_conf {
 	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
 	double strip_sigma;    // of the strip's ellipse, beside what its rays say; share of the semi-axis
 	double region_hidden;  // how many times more where no sclera is beside it
-	double max_gross;      // chance of being more than 2 % off, beyond which a limbus is refused
+	double tolerance;      // share of the semi-axis: an answer that is farther off is a gross error
+	double max_gross;      // chance of that, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
 	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis
 	double hint_sigma, drawn_sigma;  // of what a person says: share of the semi-axis
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
 };
 
-#define LIMBUS_RIGHT 0.02  // semi-axes: an answer that is farther off is a gross error; where the step is soft, 3/4 of its width (odds.h)
-
-/* How far two answers may be apart, semi-axes, that say the same: three of their sigmas, at least LIMBUS_RIGHT and at most 0.05. */
-static inline double limbus_alike(double sigma)
+/* How far two answers may be apart, semi-axes, that say the same: three of their sigmas, at least the tolerance and at most 0.05, or that. */
+static inline double limbus_alike(double sigma, double tolerance)
 {
-	return fmin(fmax(LIMBUS_RIGHT, 3 * sigma), 0.05);
+	return fmax(tolerance, fmin(3 * sigma, 0.05));
 }
 
 /* How sure the choice is. */
 struct posterior {
 	int best, rival;        // trials, -1: none
-	double gross;           // chance that the answer is more than LIMBUS_RIGHT off
+	double gross;           // chance that the answer is off by more than the tolerance
+	double beyond_right;    // the same of LIMBUS_RIGHT where the tolerance is wider; else 0
 	double rival_chance;
 	struct ellipse other;   // the rival's, where there is one
 };

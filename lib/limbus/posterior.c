@@ -6,8 +6,7 @@ static const double OTHER_EYE = 1;      // semi-axes between centres: no rival, 
 static const double NEAR = 0.08;        // semi-axes: what is farther apart is not the same, however little is seen
 static const double MOVED = 0.5;        // chance of being off where the full measurement left its trial
 
-/* The largest difference of centre and semi-axes, px. */
-static double apart(const struct ellipse *e, const struct ellipse *f)
+double trial_apart(const struct ellipse *e, const struct ellipse *f)
 {
 	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
 }
@@ -22,16 +21,16 @@ static bool follows(const struct ellipse *e, const struct trial_line *line, doub
 	return true;
 }
 
-static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other, double sigma)
+static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other, double sigma, double tolerance)
 {
-	const double within = limbus_alike(sigma);
-	const double away = apart(e, f) / e->a;
+	const double within = limbus_alike(sigma, tolerance);
+	const double away = trial_apart(e, f) / e->a;
 	return away < within || (away < NEAR && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
 }
 
-bool trial_same(const struct trial *a, const struct trial *b)
+bool trial_same(const struct trial *a, const struct trial *b, double tolerance)
 {
-	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma));
+	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma), tolerance);
 }
 
 bool trial_repeats(const struct trials *t, int i)
@@ -40,7 +39,7 @@ bool trial_repeats(const struct trials *t, int i)
 	for (int k = 0; k < t->n; k++) {
 		const struct trial *b = &t->trial[k];
 		const bool likelier = b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i);
-		if (k != i && likelier && trial_same(a, b))
+		if (k != i && likelier && trial_same(a, b, t->conf->tolerance))
 			return true;
 	}
 	return false;
@@ -79,6 +78,8 @@ void posterior_of(struct posterior *p, const struct trials *t)
 		if (i != p->best && chance[i] > 0 && (p->rival < 0 || chance[i] > chance[p->rival]))
 			p->rival = i;
 	p->gross = 1 - chance[p->best];
+	if (t->conf->tolerance > LIMBUS_RIGHT)
+		p->beyond_right = 1 / (1 + exp(odds_log_to(t->trial[p->best].x, LIMBUS_RIGHT, &t->conf->odds)));
 	p->rival_chance = p->rival < 0 ? 0 : chance[p->rival];
 	if (p->rival >= 0)
 		p->other = t->trial[p->rival].e;
@@ -98,6 +99,6 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 				rim->cov_q[a][b] += chance[i] * (other[a] - q[a]) * (other[b] - q[b]);
 	}
 	const struct trial_line line = trial_line_of(rim);
-	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line, t->trial[p->best].sigma))
+	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line, t->trial[p->best].sigma, t->conf->tolerance))
 		p->gross = fmax(p->gross, MOVED);
 }

@@ -8,8 +8,11 @@
  * one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
 void posterior_of(struct posterior *posterior, const struct trials *trials);
 
+/* The largest difference of centre and semi-axes, px. */
+double trial_apart(const struct ellipse *e, const struct ellipse *f);
+
 /* Whether two trials are within limbus_alike of each other where either was seen: what lids hide may differ, and has its sigma. */
-bool trial_same(const struct trial *a, const struct trial *b);
+bool trial_same(const struct trial *a, const struct trial *b, double tolerance);
 /* Whether trial i says the same as a likelier one. */
 bool trial_repeats(const struct trials *trials, int i);
 

@@ -11,7 +11,7 @@ void limbus_record_fill(struct limbus_record *record, const struct limbus_found 
 {
 	*record = (struct limbus_record){ .ok = found->ok, .by_hand = found->by_hand, .width = photo->width, .height = photo->height };
 	memcpy(record->reason, found->reason, sizeof record->reason);
-	record->gross = found->by_hand ? 0 : found->posterior.gross;
+	record->gross = found->by_hand ? 0 : fmax(found->posterior.gross, found->posterior.beyond_right);
 	record->has_guess = found->limbus.e.a > 0;
 	record->guess = found->limbus.e;
 	record->has_rival = found->posterior.rival >= 0 && !found->by_hand;

@@ -170,7 +170,7 @@ static void try(struct trials *t, const struct trial *start)
 	*trial = *start;
 	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
 		const struct trial_window *w = trial->window;
-		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, t->photo->width, t->photo->height };
+		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, t->conf->tolerance, t->photo->width, t->photo->height };
 		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
 		trial->log_odds = odds_log(trial->x, &t->conf->odds);
 		trial->e = rim->e;

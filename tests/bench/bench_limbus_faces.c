@@ -39,7 +39,7 @@ static struct seen seen_of(const struct answer *a, const struct unseen *u, int s
 		return s;
 	s.swapped = answer_meant(&a->e, u) != eye;
 	s.error = answer_error(&a->e, &eye->limbus);
-	s.right = s.error <= answer_right * eye->limbus.a;
+	s.right = s.error <= answer_right() * eye->limbus.a;
 	s.ratio = fabs(a->theta - eye->theta) / a->theta_sigma;
 	s.pupil = a->has_pupil;
 	const double off = fmax(hypot(a->pupil.cx - eye->pupil.cx, a->pupil.cy - eye->pupil.cy), fabs(a->pupil.a - eye->pupil.a));

@@ -45,6 +45,7 @@ static void list(struct eyes *s)
 	add(s, "region_sigma", &c->region_sigma);
 	add(s, "region_shape_sigma", &c->region_shape_sigma);
 	add(s, "region_hidden", &c->region_hidden);
+	add(s, "tolerance", &c->tolerance);
 	add(s, "max_gross", &c->max_gross);
 	add(s, "sure_gross", &c->sure_gross);
 }
@@ -82,9 +83,9 @@ int main(int argc, char **argv)
 			int right = 0, wrong = 0;
 			for (int i = 0; i < s.n; i++) {
 				const struct result *r = &s.result[(i * s.n_keys + k) * WAYS + way];
-				if (r->ok && r->error <= answer_right)
+				if (r->ok && r->error <= answer_right())
 					off[right++] = r->error;
-				wrong += r->ok && !(r->error <= answer_right);
+				wrong += r->ok && !(r->error <= answer_right());
 			}
 			char *setting = mem_printf("%s%s: %d right, %d wrong but ok, %d refused", s.key[k].name, !k ? "" : way ? " x 1.5" : " x 0.5", right, wrong, s.n - right - wrong);
 			bench_row("keys of the limbus", "ours", setting, (struct bench_time){ NAN, NAN, NAN }, "photograph", right ? 100 * stats_median(right, off) : NAN, "%",

@@ -1,6 +1,6 @@
 /* Finding the limbus of eyes that had no part in development (tests/lib/unseen): right, wrong but called ok, refused; by lids, light,
  * size and tilt. SEED=2 makes other eyes (1: those that judge; develop on 1000 and above); METHODS=1: the first method alone;
- * CASES=100: so many, not timed at one size; EYEWRIGHT_TRACED=DIR: path-traced captures, too. bench/limbus_unseen.cases.txt has every case, bench/limbus_unseen.png what failed.
+ * TOLERANCE=0.04: limbus.tolerance, by which right and wrong are told, too; CASES=100: so many, not timed at one size; EYEWRIGHT_TRACED=DIR: path-traced captures, too. bench/limbus_unseen.cases.txt has every case, bench/limbus_unseen.png what failed.
  */
 #include <math.h>
 #include <stdio.h>
@@ -179,6 +179,8 @@ int main(int argc, char **argv)
 	bench_open("limbus_unseen", argc, argv);
 	for (int m = 1; m < METHODS; m++)
 		names[m] = rival_name[m - 1];
+	if (getenv("TOLERANCE"))
+		answer_conf()->tolerance = fmin(fmax(atof(getenv("TOLERANCE")), 0.01), 0.06);
 	struct split s = { .seed = (uint64_t)setting("SEED", 1), .methods = setting("METHODS", METHODS) };
 	s.made = setting("CASES", bench_quick() ? UNSEEN_COUNT / 10 : UNSEEN_COUNT);
 	const int n = s.made + unseen_traced_count();

@@ -16,6 +16,11 @@ struct limbus_conf *answer_conf(void)
 	return &limbus_defaults;
 }
 
+double answer_right(void)
+{
+	return limbus_defaults.tolerance;
+}
+
 static double now(void)
 {
 	struct timespec t;

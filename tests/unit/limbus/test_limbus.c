@@ -77,7 +77,9 @@ static void test_synthetic(void **state)
 {
 	(void)state;
 	struct limbus_found *found = mem_new(1, sizeof *found);
-	int close = 0, right = 0, wrong = 0, n = 0;
+	struct limbus_conf rough = limbus_defaults;
+	rough.tolerance = 2 * LIMBUS_RIGHT;
+	int close = 0, right = 0, wrong = 0, rougher = 0, n = 0;
 	for (int i = 0; i < SYNTH_GRID * 3 / SYNTH_LEVELS; i += 8, n++) {  // occlusion 0, 15 and 30 %
 		struct synth_eye eye = synth_eye_grid(i + i / 8 % 6);  // all colours
 		struct synth_truth truth;
@@ -87,6 +89,12 @@ static void test_synthetic(void **state)
 		close += found->ok && error < 0.01;
 		right += found->ok && error < LIMBUS_RIGHT;
 		wrong += found->ok && error >= LIMBUS_RIGHT;
+		const double gross = found->posterior.gross;
+		limbus_find(found, &photo, 0, &rough);
+		error = ellipse_error(&found->limbus.e, &truth.limbus) / truth.limbus.a;
+		rougher += found->ok && error < rough.tolerance;
+		assert_true(found->posterior.gross < gross + 0.02);  // who allows more is surer
+		assert_true(!found->ok || error < rough.tolerance);
 		photo_free(&photo);
 	}
 	print_message("%d synthetic eyes: %d within 1 %%, %d within 2 %%, %d wrong\n", n, close, right, wrong);
@@ -94,6 +102,7 @@ static void test_synthetic(void **state)
 	assert_true(right >= 0.6 * n);
 	assert_true(close >= 0.5 * n);
 	assert_int_equal(wrong, 0);
+	assert_true(rougher >= right);
 	free(found);
 }
 
