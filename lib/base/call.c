@@ -42,6 +42,13 @@ char *call_config_dir(void)
 	return dir;
 }
 
+char *call_config_file(const char *name)
+{
+	char *dir = call_config_dir(), *path = mem_printf("%s/%s", dir, name);
+	free(dir);
+	return path;
+}
+
 /* The version, and the commit that stands beside the programs: not in them, so that a commit alone runs no stage again. */
 static void print_version(const char *name)
 {

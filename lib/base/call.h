@@ -24,6 +24,9 @@ bool call_load(const struct call *call, const char *name, struct conf *conf, str
 /* Path of the folder of default configuration: ../config beside the program. free(). */
 char *call_config_dir(void);
 
+/* Path of a file in it. free(). */
+char *call_config_file(const char *name);
+
 /* Path of this program's executable. free(). */
 char *call_program_path(void);
 

@@ -42,10 +42,9 @@ bool evidence_open(struct evidence_net **out, const char *path, struct err *err)
 
 bool evidence_open_shipped(struct evidence_net **net, struct err *err)
 {
-	char *dir = call_config_dir(), *path = mem_printf("%s/evidence.onnx", dir);
+	char *path = call_config_file("evidence.onnx");
 	const bool ok = evidence_open(net, path, err);
 	free(path);
-	free(dir);
 	return ok;
 }
 

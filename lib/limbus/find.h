@@ -7,7 +7,7 @@
 
 #include "limbus/propose/lean.h"
 #include "limbus/pupil.h"
-#include "limbus/odds.h"
+#include "limbus/odds_net.h"
 #include "limbus/propose/seek.h"
 #include "limbus/strip.h"
 
@@ -27,7 +27,7 @@ struct limbus_conf {
 	struct evidence_net *net;    // borrowed
 	struct strip_net *strip;     // borrowed
 	struct strip_conf strip_conf;
-	struct odds_weights odds;
+	struct odds_net *odds;       // borrowed
 	struct face_conf face;
 	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
 	double strip_sigma;    // of the strip's ellipse, beside what its rays say; share of the semi-axis

@@ -6,6 +6,8 @@
 
 #include "base/mem.h"
 #include "limbus/aspect.h"
+#include "limbus/rice.h"
+#include "math/vec.h"
 
 bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record records[n], const struct eye *eye,
                   const struct pose_conf *conf, struct err *err)
@@ -26,24 +28,59 @@ bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record 
 	return ok;
 }
 
+/* How far the tilts of two poses are apart as the picture tells them: vectors of its square and twice its direction. */
+static double shapes_apart(const struct pose *a, const struct pose *b)
+{
+	const double u = a->theta * a->theta, v = b->theta * b->theta;
+	return hypot(v * cos(2 * b->phi) - u * cos(2 * a->phi), v * sin(2 * b->phi) - u * sin(2 * a->phi));
+}
+
+/* Turns the eye about the centre of its limbus until it is tilted by theta, the same way. */
+static void turn_to(struct pose *pose, double theta, const struct eye *eye)
+{
+	double z[3], sight[3], aside[3], turn[3][3], R[3][3], was[3][3];
+	for (int i = 0; i < 3; i++) {
+		memcpy(was[i], pose->cam_from_eye[i], sizeof was[i]);
+		z[i] = was[i][2];
+		sight[i] = pose->cam_from_eye[i][3] + eye_limbus_depth(eye) * z[i];
+	}
+	const double center[3] = { sight[0], sight[1], sight[2] };
+	vec_unit(sight, sight);
+	vec_add(aside, z, -vec_dot(z, sight), sight);
+	if (!(vec_norm(aside) > 1e-9))
+		return;
+	vec_unit(aside, aside);
+	double to[3] = { 0 };
+	vec_add(to, to, cos(theta), sight);
+	vec_add(to, to, sin(theta), aside);
+	mat_smallest_rotation(turn, z, to);
+	mat_mul(R, turn, was);
+	for (int i = 0; i < 3; i++) {
+		memcpy(pose->cam_from_eye[i], R[i], sizeof R[i]);
+		pose->cam_from_eye[i][3] = center[i] - eye_limbus_depth(eye) * to[i];
+	}
+	pose->theta = theta;
+}
+
 bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record,
                        const struct eye *eye, struct err *err)
 {
 	if (!limbus_pose(pose, &record->view, eye, &joint->pose, err))
 		return false;
+	// of the square of the tilt, which is what a shape tells
+	double sigma = pow(pose->theta + pose->theta_sigma, 2) - pow(pose->theta, 2);
 	if (joint->aspect_sigma > 0) {
 		struct pose_conf moved = joint->pose;
 		struct pose other;
 		moved.aspect_mean += joint->aspect_sigma;
 		if (!limbus_pose(&other, &record->view, eye, &moved, err))
 			return false;
-		double dot = 0;
-		for (int i = 0; i < 3; i++)
-			dot += pose->cam_from_eye[i][2] * other.cam_from_eye[i][2];
-		double turn = fabs(dot) < 1 ? acos(dot) : 0;
-		pose->theta_sigma = hypot(pose->theta_sigma, turn > 1 ? fabs(other.theta - pose->theta) : turn);
+		sigma = hypot(sigma, shapes_apart(pose, &other));
 		pose->aspect_sigma = joint->aspect_sigma;
 	}
+	double theta;
+	rice_tilt(&theta, &pose->theta_sigma, pose->theta, sigma, joint->pose.tilt_sigma);
+	turn_to(pose, theta, eye);
 	return true;
 }
 

@@ -1,7 +1,6 @@
 #include "limbus/odds.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "math/stats.h"
 
@@ -135,26 +134,5 @@ void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim 
 	x[ODDS_ROUND] = log(e->b / e->a);
 	x[ODDS_IRIS_EVEN] = varies(rim, false);
 	x[ODDS_SCLERA_EVEN] = varies(rim, true);
-	x[ODDS_TOLERANCE] = log(view->tolerance / LIMBUS_RIGHT);
 	of_strip(x, e, view);
-}
-
-double odds_log_to(const double x[ODDS_TRAITS], double tolerance, const struct odds_weights *weights)
-{
-	double y[ODDS_TRAITS];
-	memcpy(y, x, sizeof y);
-	y[ODDS_TOLERANCE] = log(tolerance / LIMBUS_RIGHT);
-	return odds_log(y, weights);
-}
-
-double odds_log(const double x[ODDS_TRAITS], const struct odds_weights *weights)
-{
-	double sum = weights->sum[ODDS_UNITS];
-	for (int k = 0; k < ODDS_UNITS; k++) {
-		double unit = 0;
-		for (int i = 0; i < ODDS_TRAITS; i++)
-			unit += weights->unit[k][i] * x[i];
-		sum += weights->sum[k] * tanh(unit);
-	}
-	return sum;
 }

@@ -1,6 +1,6 @@
-/* odds: how likely a measured ellipse is the limbus to within a tolerance, 2 % of its radius if not said otherwise: one number from the evidence of
- * the pixels in and round it, the steps along it and the pupil in it. A regression on drawn and synthetic eyes (tests/evidence/odds.py); its
- * weights are keys of config/limbus.conf.
+/* odds: how likely a measured ellipse is the limbus, to within any tolerance: the distribution of its error, from the evidence of the pixels in and
+ * round it, the steps along it, the strip and the pupil in it. An ordinal regression by a small network on drawn and synthetic eyes
+ * (tests/evidence/odds.py writes config/odds.onnx).
  */
 #ifndef LIMBUS_ODDS_H
 #define LIMBUS_ODDS_H
@@ -40,12 +40,11 @@ enum odds_trait {
 	ODDS_STRIP_SCATTER,   // log of the scatter of the rays' places over the semi-axis
 	ODDS_STRIP_APART,     // log of how far the strip's own ellipse is, semi-axes
 	ODDS_STRIP_SIGMA,     // log of the largest sigma of the strip's own ellipse, semi-axes
-	ODDS_TOLERANCE,       // log of the tolerance over LIMBUS_RIGHT
 	ODDS_TRAITS
 };
 
 /* What an ellipse is looked at with: evidence of the window round it, the map of that, and the strip with its own likeliest ellipse. */
-struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; double tolerance; int width, height; };
+struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; int width, height; };
 
 #define LIMBUS_RIGHT 0.02  // semi-axes: centre or a semi-axis farther off is a gross error, if not said otherwise
 
@@ -54,15 +53,5 @@ void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim 
 
 /* The largest sigma of centre and semi-axes, semi-axes. */
 double odds_sigma(const struct rim *rim);
-
-/* A layer of hyperbolic tangents of sums of traits, and a sum of these. */
-enum { ODDS_UNITS = 8 };
-struct odds_weights {
-	double unit[ODDS_UNITS][ODDS_TRAITS], sum[ODDS_UNITS + 1];  // the last of sum: constant
-};
-
-/* Natural logarithm of the odds; of the same trial to another tolerance, semi-axes. */
-double odds_log(const double x[ODDS_TRAITS], const struct odds_weights *weights);
-double odds_log_to(const double x[ODDS_TRAITS], double tolerance, const struct odds_weights *weights);
 
 #endif

@@ -77,10 +77,11 @@ void posterior_of(struct posterior *p, const struct trials *t)
 	for (int i = 0; i < t->n; i++)
 		if (i != p->best && chance[i] > 0 && (p->rival < 0 || chance[i] > chance[p->rival]))
 			p->rival = i;
-	p->gross = 1 - chance[p->best];
 	if (t->conf->tolerance > LIMBUS_RIGHT)
-		p->beyond_right = 1 / (1 + exp(odds_log_to(t->trial[p->best].x, LIMBUS_RIGHT, &t->conf->odds)));
+		p->beyond_right = 1 / (1 + exp(odds_log(t->trial[p->best].curve, LIMBUS_RIGHT)));
 	p->rival_chance = p->rival < 0 ? 0 : chance[p->rival];
+	// a trial's odds are those among photographs that have rivals, too: none of them is right, or the rival is, whichever is likelier
+	p->gross = fmax(1 / (1 + exp(t->trial[p->best].log_odds)), p->rival_chance / (p->rival_chance + chance[p->best]));
 	if (p->rival >= 0)
 		p->other = t->trial[p->rival].e;
 }
@@ -90,6 +91,10 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 	double chance[TRIALS], q[ELLIPSE_N], other[ELLIPSE_N];
 	chances(chance, t, p->best);
 	ellipse_to_q(q, &rim->e);
+	const double wider = odds_wider(t->trial[p->best].x, t->trial[p->best].curve);
+	for (int a = 0; a < ELLIPSE_N; a++)
+		for (int b = 0; b < ELLIPSE_N; b++)
+			rim->cov_q[a][b] *= wider * wider;
 	for (int i = 0; i < t->n; i++) {
 		if (i == p->best || !(chance[i] > 0))
 			continue;

@@ -16,8 +16,8 @@ bool trial_same(const struct trial *a, const struct trial *b, double tolerance);
 /* Whether trial i says the same as a likelier one. */
 bool trial_repeats(const struct trials *trials, int i);
 
-/* After the likeliest one was measured in full: adds to its covariance (of q, px) what the rivals say, each by its chance, and to gross
- * where the full measurement is another ellipse than the trial was. */
+/* After the likeliest one was measured in full: widens its covariance (of q, px) as its odds say, adds to it what the rivals say,
+ * each by its chance, and to gross where the full measurement is another ellipse than the trial was. */
 void posterior_settle(struct posterior *posterior, struct rim *rim, const struct trials *trials);
 
 #endif

@@ -48,7 +48,7 @@ static const struct fault faults[] = {
 };
 
 /* The fault without which the odds would be highest. */
-static const char *words_of(const struct trial *trial, const struct odds_weights *weights)
+static const char *words_of(const struct trial *trial, const struct limbus_conf *conf)
 {
 	const char *words = faults[0].words;
 	double most = 0;
@@ -56,7 +56,9 @@ static const char *words_of(const struct trial *trial, const struct odds_weights
 		const struct fault *f = &faults[i];
 		struct trial mended = *trial;
 		mended.x[f->trait] = f->usual;
-		const double cost = odds_log(mended.x, weights) - trial->log_odds;
+		struct err unread = { 0 };
+		const bool read = odds_of(mended.curve, mended.x, conf->odds, &unread);
+		const double cost = read ? odds_log(mended.curve, conf->tolerance) - odds_log(trial->curve, conf->tolerance) : 0;
 		if (cost > most) {
 			most = cost;
 			words = f->words;
@@ -69,7 +71,7 @@ static const char *words_of(const struct trial *trial, const struct odds_weights
 static bool rough_enough(const struct posterior *p, const struct trial *trial, const struct limbus_conf *conf)
 {
 	const bool rivals = p->rival >= 0 && trial_apart(&trial->e, &p->other) > ROUGH * trial->e.a;
-	return conf->tolerance < ROUGH && !rivals && 1 / (1 + exp(odds_log_to(trial->x, ROUGH, &conf->odds))) < conf->max_gross;
+	return conf->tolerance < ROUGH && !rivals && 1 / (1 + exp(odds_log(trial->curve, ROUGH))) < conf->max_gross;
 }
 
 void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf)
@@ -79,9 +81,9 @@ void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *tria
 		limbus_refuse(found, "the iris is cut by the frame: show all of it with some white around");
 	else if (p->gross > conf->max_gross && rough_enough(p, trial, conf))
 		limbus_refuse(found, "its ellipse may be more than %.0f %% off (chance %.0f %%), hardly more than %.0f %%: limbus.tolerance = %.2g takes it; or %s", 100 * conf->tolerance,
-		              100 * p->gross, 100 * ROUGH, ROUGH, words_of(trial, &conf->odds));
+		              100 * p->gross, 100 * ROUGH, ROUGH, words_of(trial, conf));
 	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
 		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
 	else if (p->gross > conf->max_gross)
-		limbus_refuse(found, "%s", words_of(trial, &conf->odds));
+		limbus_refuse(found, "%s", words_of(trial, conf));
 }

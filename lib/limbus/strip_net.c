@@ -39,10 +39,9 @@ bool strip_open(struct strip_net **out, const char *path, struct err *err)
 
 bool strip_open_shipped(struct strip_net **net, struct err *err)
 {
-	char *dir = call_config_dir(), *path = mem_printf("%s/strip.onnx", dir);
+	char *path = call_config_file("strip.onnx");
 	const bool ok = strip_open(net, path, err);
 	free(path);
-	free(dir);
 	return ok;
 }
 

@@ -160,25 +160,27 @@ struct trial_line trial_line_of(const struct rim *rim)
 }
 
 /* Measures a trial and keeps it where there is something to measure. */
-static void try(struct trials *t, const struct trial *start)
+static bool try(struct trials *t, const struct trial *start, struct err *err)
 {
 	if (t->n == TRIALS)
-		return;
+		return true;
 	struct trial *trial = &t->trial[t->n];
 	struct rim *rim = mem_new(2, sizeof *rim);
-	bool has_pupil;
+	bool has_pupil, ok = true;
 	*trial = *start;
 	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
 		const struct trial_window *w = trial->window;
-		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, t->conf->tolerance, t->photo->width, t->photo->height };
+		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, t->photo->width, t->photo->height };
 		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
-		trial->log_odds = odds_log(trial->x, &t->conf->odds);
+		ok = odds_of(trial->curve, trial->x, t->conf->odds, err);
+		trial->log_odds = ok ? odds_log(trial->curve, t->conf->tolerance) : 0;
 		trial->e = rim->e;
 		trial->line = trial_line_of(rim);
 		trial->sigma = odds_sigma(rim);
 		t->n++;
 	}
 	free(rim);
+	return ok;
 }
 
 /* The evidence's ellipse near one that is told; that itself where nothing there looks like an iris. */
@@ -209,12 +211,12 @@ bool trials_of_place(struct trials *t, double x, double y, double radius, struct
 			return true;
 	if (!w->strip && !read_strip(w, t, 2, (struct ellipse[]){ e, told }, err))
 		return false;
-	try(t, &(struct trial){ .guide = GUIDE_EVIDENCE, .window = w, .region = e, .e = e });
-	try(t, &(struct trial){ .guide = GUIDE_WHITENESS, .window = w, .region = e, .e = e });
 	struct ellipse likeliest;
-	if (w->seen.px && ellipse_from_q(&likeliest, w->told.q))
-		try(t, &(struct trial){ .guide = GUIDE_STRIP, .window = w, .region = e, .e = likeliest });
-	return true;
+	const bool ok = try(t, &(struct trial){ .guide = GUIDE_EVIDENCE, .window = w, .region = e, .e = e }, err)
+	                && try(t, &(struct trial){ .guide = GUIDE_WHITENESS, .window = w, .region = e, .e = e }, err);
+	if (!ok || !w->seen.px || !ellipse_from_q(&likeliest, w->told.q))
+		return ok;
+	return try(t, &(struct trial){ .guide = GUIDE_STRIP, .window = w, .region = e, .e = likeliest }, err);
 }
 
 bool trials_of_evidence(struct trials *t, struct err *err)
@@ -247,8 +249,7 @@ static bool of_vote(struct trials *t, const struct ellipse *e, struct err *err)
 		return !*err->msg;
 	if (!w->strip && !read_strip(w, t, 1, e, err))
 		return false;
-	try(t, &(struct trial){ .guide = GUIDE_WHITENESS_ALONE, .window = w, .e = *e });
-	return true;
+	return try(t, &(struct trial){ .guide = GUIDE_WHITENESS_ALONE, .window = w, .e = *e }, err);
 }
 
 bool trials_of_votes(struct trials *t, struct err *err)

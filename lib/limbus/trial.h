@@ -2,7 +2,7 @@
  */
 #ifndef LIMBUS_TRIAL_H
 #define LIMBUS_TRIAL_H
-#include "limbus/odds.h"
+#include "limbus/odds_net.h"
 #include "limbus/propose/seek.h"
 #include "limbus/find.h"
 #include "limbus/strip_net.h"
@@ -33,8 +33,8 @@ struct trial {
 	struct ellipse e;
 	struct trial_line line;
 	double sigma;              // the largest of centre and semi-axes, semi-axes
-	double log_odds;
-	double x[ODDS_TRAITS];
+	double x[ODDS_TRAITS], curve[ODDS_CURVE];
+	double log_odds;           // to within limbus.tolerance
 };
 
 struct trials {

@@ -47,15 +47,6 @@ int main(int argc, char **argv)
 		OPT_REAL("pupil_clear_coverage", &o.find.pupil.clear_coverage, 0.1, 1, "", "share seen of a margin that the evidence does not bear out"),
 		OPT_REAL("pupil_clear_used", &o.find.pupil.clear_used, 0, 1, "", "share of it that is good enough to measure"),
 		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
-		OPT_REALS("odds_1", o.find.odds.unit[0], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_2", o.find.odds.unit[1], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_3", o.find.odds.unit[2], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_4", o.find.odds.unit[3], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_5", o.find.odds.unit[4], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_6", o.find.odds.unit[5], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_7", o.find.odds.unit[6], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_8", o.find.odds.unit[7], ODDS_TRAITS, -1e4, 1e4, "", "weights of a unit of the odds of a limbus"),
-		OPT_REALS("odds_sum", o.find.odds.sum, ODDS_UNITS + 1, -1e4, 1e4, "", "weights of the units; a constant"),
 		OPT_REAL("tolerance", &o.find.tolerance, 0.01, 0.06, "", "share of the semi-axis: what is farther off is a gross error"),
 		OPT_REAL("max_gross", &o.find.max_gross, 0.001, 1, "", "chance of a gross error, beyond which it is refused"),
 		OPT_REAL("sure_gross", &o.find.sure_gross, 0, 1, "", "chance below which votes of edges are not asked"),
@@ -80,13 +71,17 @@ int main(int argc, char **argv)
 		OPT_REAL("pupil_floor", &o.pose.pupil_floor, 0, 0.2, "", "sigma of an irregular pupil's centre, of its axis"),
 		OPT_REAL("aspect_mean", &o.pose.aspect_mean, 0.7, 1.2, "", "limbus: vertical / horizontal"),
 		OPT_REAL("aspect_sigma", &o.pose.aspect_sigma, 0.001, 0.2, "", "its spread among people"),
+		OPT_REAL("tilt_sigma", &o.tilt_sigma_deg, 1, 1000, "deg", "how far eyes look past the lens"),
 	};
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
 	struct limbus_kept kept = { 0 };
 	o.find.face.roll = o.face_roll_deg * M_PI / 180;
-	bool ok = evidence_open_shipped(&o.find.net, &err) && strip_open_shipped(&o.find.strip, &err) && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
+	o.pose.tilt_sigma = o.tilt_sigma_deg * M_PI / 180;
+	bool ok = evidence_open_shipped(&o.find.net, &err) && strip_open_shipped(&o.find.strip, &err) && odds_open_shipped(&o.find.odds, &err);
+	ok = ok && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
+	odds_close(o.find.odds);
 	strip_close(o.find.strip);
 	evidence_close(o.find.net);
 	limbus_kept_free(&kept);

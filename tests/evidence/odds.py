@@ -1,25 +1,37 @@
 #!/usr/bin/python3
-"""Fits the weights of config/limbus.conf (odds_1 to odds_8, odds_sum) to what tests/tools/limbus_traits wrote.
+"""Trains the odds of a limbus (lib/limbus/odds.h) on what tests/tools/limbus_traits wrote, and writes them as ONNX.
 
-    odds.py TRAITS.csv [...]      prints the lines for config/limbus.conf, and how the odds do on pictures held out
+    odds.py --out config/odds.onnx TRAITS.csv [...]
+    odds.py TRAITS.csv [...]                             how they do on pictures held out, alone
 
-A layer of hyperbolic tangents, cross entropy (synthetic eyes and captures, which are few, count RARE times), weight decay, Adam; five folds by picture for the figures. Needs numpy and torch.
+Input: 1 x 30 x 1 x 1, the traits. Output: 1 x 9 x 1 x 1: the logarithm of the odds that centre and semi-axes are all off by less than
+TOLERANCES[0] of the semi-axis, then the logarithms (softplus) of what each further tolerance adds to them. Cross entropy of all tolerances
+together (synthetic eyes and captures, which are few, count RARE times), weight decay, Adam; four folds by picture for the figures. Needs
+python3-torch and python3-numpy.
 """
+import argparse
 import csv
 import sys
 
 import numpy as np
 import torch
+from torch import nn
+from torch.nn import functional as F
 
-UNITS, RARE, DECAY, STEPS, FOLDS = 8, 6, 8.0, 2000, 5
-TOLERANCES, USUAL = (0.01, 0.015, 0.02, 0.03, 0.04, 0.06), 0.02
-TRAITS = 30  # and the tolerance
+sys.dont_write_bytecode = True
+import weights
+
+UNITS, NETS, RARE, DECAY, EPOCHS, BATCH, RATE, FOLDS = 24, 4, 6, 4.0, 14, 512, 0.01, 4
+TOLERANCES = (0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1)
+TRAITS, FAR = 30, 4.0   # spreads: farther off than that is as far
 
 
 def read(paths):
     x, error, key, w = [], [], [], []
     for path in paths:
         for row in csv.reader(open(path)):
+            if len(row) < 5 + TRAITS:
+                continue
             x.append([float(v) for v in row[5:5 + TRAITS]])
             error.append(float(row[3]))
             key.append((path, row[0], row[1]))
@@ -29,62 +41,94 @@ def read(paths):
     return x, np.array(error), key, np.array(w, float)
 
 
-def asked(z, tolerance):
-    """Traits with that of the tolerance."""
-    return np.c_[z, np.full(len(z), np.log(tolerance / USUAL))]
+class Net(nn.Module):
+    """NETS networks side by side, and the mean of what they say."""
+
+    def __init__(self, x):
+        super().__init__()
+        mean, spread = x.mean(0), x.std(0)
+        spread[spread == 0] = 1
+        # spreads below the mean, at most FAR: OpenCV reads no clamp of this kind, but two rectifiers
+        self.even = nn.Sequential(fixed(np.diag(1 / spread), FAR - mean / spread), nn.ReLU(), fixed(-np.eye(TRAITS), np.full(TRAITS, 2 * FAR)), nn.ReLU(),
+                                  fixed(np.eye(TRAITS), np.full(TRAITS, -FAR)))
+        self.first = nn.Conv2d(TRAITS, NETS * UNITS, 1)
+        self.second = nn.Conv2d(NETS * UNITS, NETS * UNITS, 1, groups=NETS)
+        self.last = nn.Conv2d(NETS * UNITS, NETS * len(TOLERANCES), 1, groups=NETS)
+        self.mean = fixed(np.tile(np.eye(len(TOLERANCES)) / NETS, NETS), np.zeros(len(TOLERANCES)))
+
+    def each(self, x):
+        return self.last(torch.tanh(self.second(torch.tanh(self.first(self.even(x))))))
+
+    def forward(self, x):
+        return self.mean(self.each(x))
 
 
-def train(z, error, w, seed):
-    """At all tolerances together: a trial counts as one."""
+def fixed(weight, bias):
+    conv = nn.Conv2d(weight.shape[1], weight.shape[0], 1).requires_grad_(False)
+    conv.weight.data = torch.tensor(weight, dtype=torch.float32)[:, :, None, None]
+    conv.bias.data = torch.tensor(bias, dtype=torch.float32)
+    return conv
+
+
+def curve(out):
+    """Log odds from outputs [..., tolerances]."""
+    return torch.cat([out[..., :1], out[..., :1] + torch.cumsum(F.softplus(out[..., 1:]), -1)], -1)
+
+
+def planes(x):
+    return torch.tensor(x, dtype=torch.float32)[:, :, None, None]
+
+
+def train(x, error, w, seed):
     torch.manual_seed(seed)
-    y = np.concatenate([error < t for t in TOLERANCES]).astype(float)
-    z, w = np.concatenate([asked(z, t) for t in TOLERANCES]), np.tile(w, len(TOLERANCES))
-    a = (torch.randn(UNITS, z.shape[1]) * 0.3).requires_grad_()
-    v = (torch.randn(UNITS) * 0.3).requires_grad_()
-    c = torch.zeros(1, requires_grad=True)
-    adam = torch.optim.Adam([a, v, c], lr=0.02)
-    z, y, w = (torch.tensor(v, dtype=torch.float32) for v in (z, y, w))
-    for _ in range(STEPS):
+    net, n = Net(x), len(x)
+    z, y, w = planes(x), torch.tensor(error[:, None] < np.array(TOLERANCES), dtype=torch.float32), torch.tensor(w, dtype=torch.float32)
+    steps = EPOCHS * n // BATCH + 1000
+    adam = torch.optim.Adam([p for p in net.parameters() if p.requires_grad], lr=RATE)
+    pace = torch.optim.lr_scheduler.OneCycleLR(adam, RATE, total_steps=steps)
+    for _ in range(steps):
+        some = torch.randint(n, (BATCH,))
         adam.zero_grad()
-        p = torch.tanh(z @ a.T) @ v + c
-        loss = torch.nn.functional.binary_cross_entropy_with_logits(p, y, w) + DECAY * len(TOLERANCES) * ((a ** 2).sum() + (v ** 2).sum()) / len(y)
+        odds = curve(net.each(z[some]).reshape(BATCH, NETS, -1))
+        loss = F.binary_cross_entropy_with_logits(odds, y[some][:, None].expand_as(odds), w[some][:, None, None].expand_as(odds)) * NETS
+        loss = loss + DECAY / n * sum((layer.weight ** 2).sum() for layer in (net.first, net.second, net.last))
         loss.backward()
         adam.step()
-    return a.detach().numpy().astype(float), v.detach().numpy().astype(float), float(c)
+        pace.step()
+    return net.eval()
 
 
-def odds(z, weights):
-    a, v, c = weights
-    return np.tanh(z @ a.T) @ v + c
+def held_out(x, error, key, w):
+    pictures = sorted(set(key))
+    fold = {k: i for k, i in zip(pictures, np.random.RandomState(0).randint(FOLDS, size=len(pictures)))}
+    at = np.array([fold[k] for k in key])
+    odds = np.zeros((len(x), len(TOLERANCES)))
+    for f in range(FOLDS):
+        net = train(x[at != f], error[at != f], w[at != f], f)
+        with torch.no_grad():
+            odds[at == f] = curve(net(planes(x[at == f]))[:, :, 0, 0]).numpy()
+    right = error[:, None] < np.array(TOLERANCES)
+    print('cross entropy of trials held out: %.4f' % np.log1p(np.exp(-np.where(right, odds, -odds))).mean())
+    for t, tolerance in enumerate(TOLERANCES):
+        if tolerance not in (0.02, 0.04):
+            continue
+        best = {}
+        for i, k in enumerate(key):
+            if k not in best or odds[i, t] > odds[best[k], t]:
+                best[k] = i
+        best = np.array(list(best.values()))
+        gross = 1 / (1 + np.exp(odds[best, t]))
+        for most in (0.1, 0.07, 0.05, 0.03):
+            on = best[gross < most]
+            print('of %d pictures %d with a chance below %.2f of being off by more than %.2f: %d are, %.1f expected; %d by more than 0.06'
+                  % (len(best), len(on), most, tolerance, (error[on] >= tolerance).sum(), gross[gross < most].sum(), (error[on] >= 0.06).sum()))
 
 
-x, error, key, w = read(sys.argv[1:])
-mean, spread = x.mean(0), x.std(0)
-mean[0], spread[spread == 0] = 0, 1
-spread[0] = 1
-z = np.clip((x - mean) / spread, -4, 4)
-pictures = sorted(set(key))
-fold = {k: i for k, i in zip(pictures, np.random.RandomState(0).randint(FOLDS, size=len(pictures)))}
-at = np.array([fold[k] for k in key])
-held = {t: np.zeros(len(error)) for t in (0.02, 0.04)}
-for f in range(FOLDS):
-    weights = train(z[at != f], error[at != f], w[at != f], f)
-    for t in held:
-        held[t][at == f] = odds(asked(z[at == f], t), weights)
-for t, h in held.items():
-    best = {}
-    for i, k in enumerate(key):
-        if k not in best or h[i] > h[best[k]]:
-            best[k] = i
-    best = np.array(list(best.values()))
-    gross = 1 / (1 + np.exp(h[best]))
-    for most in (0.1, 0.07, 0.05, 0.03):
-        on = best[gross < most]
-        print('; held out: of %d pictures %d with a chance below %.2f of being off by more than %.2f: %d are, %.1f expected; %d by more than 0.06'
-              % (len(best), len(on), most, t, (error[on] >= t).sum(), gross[gross < most].sum(), (error[on] >= 0.06).sum()))
-a, v, c = train(z, error, w, 0)
-a[:, :TRAITS] /= spread
-a[:, 0] -= a[:, 1:TRAITS] @ mean[1:]
-for i in range(UNITS):
-    print('odds_%d = %s' % (i + 1, ' '.join('%.4g' % w for w in a[i])))
-print('odds_sum = %s' % ' '.join('%.4g' % w for w in list(v) + [c]))
+parser = argparse.ArgumentParser()
+parser.add_argument('--out')
+parser.add_argument('traits', nargs='+')
+args = parser.parse_args()
+x, error, key, w = read(args.traits)
+held_out(x, error, key, w)
+if args.out:
+    weights.export(train(x, error, w, 0), args.out, 1, 1, planes=TRAITS)

@@ -1,0 +1,92 @@
+#include "limbus/odds_net.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/call.h"
+#include "base/mem.h"
+#include "bridge/cv_net.h"
+
+const double odds_tolerance[ODDS_CURVE] = { 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1 };
+
+struct odds_net {
+	struct cv_net *net;
+};
+
+static bool run(double curve[ODDS_CURVE], const double x[ODDS_TRAITS], struct cv_net *net, struct err *err)
+{
+	float in[ODDS_TRAITS];
+	for (int i = 0; i < ODDS_TRAITS; i++)
+		in[i] = isfinite(x[i]) ? (float)x[i] : 0;
+	struct cv_net_picture p = { .in = in, .height = 1, .width = 1 };
+	bool ok = cv_net_run(&p, 1, net, ODDS_TRAITS, err);
+	if (ok && (p.size[0] != ODDS_CURVE || p.size[1] != 1 || p.size[2] != 1))
+		ok = err_set(err, "%d planes of %d x %d, must be %d of 1 x 1", p.size[0], p.size[2], p.size[1], ODDS_CURVE);
+	// the first, and what each adds to the one before
+	for (int i = 0; i < ODDS_CURVE && ok; i++)
+		curve[i] = i ? curve[i - 1] + fmax(p.out[i], 0) + log1p(exp(-fabs(p.out[i]))) : p.out[i];
+	free(p.out);
+	return ok;
+}
+
+bool odds_open(struct odds_net **out, const char *path, struct err *err)
+{
+	const double nothing[ODDS_TRAITS] = { 0 };
+	double curve[ODDS_CURVE];
+	struct cv_net *net;
+	*out = 0;
+	if (!cv_net_open(&net, path, err))
+		return false;
+	if (!run(curve, nothing, net, err)) {
+		cv_net_close(net);
+		return err_wrap(err, "%s", path);
+	}
+	*out = mem_new(1, sizeof **out);
+	(*out)->net = net;
+	return true;
+}
+
+bool odds_open_shipped(struct odds_net **net, struct err *err)
+{
+	char *path = call_config_file("odds.onnx");
+	const bool ok = odds_open(net, path, err);
+	free(path);
+	return ok;
+}
+
+void odds_close(struct odds_net *net)
+{
+	if (net)
+		cv_net_close(net->net);
+	free(net);
+}
+
+bool odds_of(double curve[ODDS_CURVE], const double x[ODDS_TRAITS], struct odds_net *net, struct err *err)
+{
+	return run(curve, x, net->net, err);
+}
+
+double odds_log(const double curve[ODDS_CURVE], double tolerance)
+{
+	int i = 1;
+	while (i + 1 < ODDS_CURVE && tolerance > odds_tolerance[i])
+		i++;
+	const double part = log(tolerance / odds_tolerance[i - 1]) / log(odds_tolerance[i] / odds_tolerance[i - 1]);
+	return curve[i - 1] + fmin(fmax(part, 0), 1) * (curve[i] - curve[i - 1]);
+}
+
+/* The error, semi-axes, that is as likely exceeded as not; 0 below the least tolerance. */
+static double median(const double curve[ODDS_CURVE])
+{
+	if (curve[0] >= 0)
+		return 0;
+	for (int i = 1; i < ODDS_CURVE; i++)
+		if (curve[i] >= 0)
+			return odds_tolerance[i - 1] * pow(odds_tolerance[i] / odds_tolerance[i - 1], -curve[i - 1] / (curve[i] - curve[i - 1]));
+	return odds_tolerance[ODDS_CURVE - 1];
+}
+
+double odds_wider(const double x[ODDS_TRAITS], const double curve[ODDS_CURVE])
+{
+	return fmax(1, median(curve) / exp(x[ODDS_SIGMA]));
+}
