@@ -135,9 +135,14 @@ bool picture_jpeg_encode(uint8_t **data, size_t *size, const uint8_t *px, int wi
 
 bool picture_read(uint8_t **px, int *width, int *height, const char *path, double limit_mpx, struct err *err)
 {
+	return picture_read_small(px, width, height, path, 0, limit_mpx, err);
+}
+
+bool picture_read_small(uint8_t **px, int *width, int *height, const char *path, int side, double limit_mpx, struct err *err)
+{
 	struct photo photo;
 	*px = 0;
-	if (!photo_load(&photo, path, limit_mpx, err))
+	if (!photo_load_small(&photo, path, side, limit_mpx, err))
 		return false;
 	size_t n = (size_t)photo.width * (size_t)photo.height * 3;
 	*px = mem_array(n, 1);

@@ -24,7 +24,8 @@ bool picture_jpeg_encode(uint8_t **data, size_t *size, const uint8_t *px, int wi
                          int quality, struct err *err);
 
 /* Reads any photograph that photo_load reads, upright, as 8-bit RGB. px: [height][width][3], free().
- * False, err set, as photo_load. */
+ * False, err set, as photo_load. Small: what photo_load_small makes of it. */
 bool picture_read(uint8_t **px, int *width, int *height, const char *path, double limit_mpx, struct err *err);
+bool picture_read_small(uint8_t **px, int *width, int *height, const char *path, int side, double limit_mpx, struct err *err);
 
 #endif

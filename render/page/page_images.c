@@ -27,7 +27,7 @@ json_t *page_picture(struct page *page, const char *path, int width)
 	struct err err = { 0 };
 	uint8_t *px;
 	int w, h;
-	if (!path || !picture_read(&px, &w, &h, path, page->conf->limit_mpx, &err))
+	if (!path || !picture_read_small(&px, &w, &h, path, width, page->conf->limit_mpx, &err))
 		return 0;
 	json_t *picture = pixels_at_most(px, w, h, width);
 	free(px);

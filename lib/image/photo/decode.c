@@ -16,10 +16,42 @@ void photo_widen(uint16_t *out, const uint8_t *in, size_t n)
 		out[i] = (uint16_t)(in[i] * 257);
 }
 
+uint8_t *photo_narrow(uint16_t *rgb, size_t n)
+{
+	return (uint8_t *)rgb + n;
+}
+
+void photo_widen_in_place(uint16_t *rgb, size_t n)
+{
+	const uint8_t *in = photo_narrow(rgb, n);
+	size_t from = 0;
+	// half of what is left at a time ends before the bytes that are read begin
+	while (n - from > 1) {
+		const size_t to = from + (n - from) / 2;
+		photo_widen(rgb + from, in + from, to - from);
+		from = to;
+	}
+	if (n > from)
+		rgb[from] = (uint16_t)(in[from] * 257);
+}
+
 /* Cameras write these and mean no harm. */
 static bool is_harmless(const char *warning)
 {
 	return strstr(warning, "extraneous bytes before marker") || strstr(warning, "Unknown Adobe color transform");
+}
+
+void photo_reduce_jpeg(struct photo *photo, int side)
+{
+	static const tjscalingfactor factors[] = { { 1, 8 }, { 1, 4 }, { 1, 2 } };
+	for (int i = 0; i < COUNT(factors); i++) {
+		const int width = TJSCALED(photo->width, factors[i]), height = TJSCALED(photo->height, factors[i]);
+		if (width < side || height < side)
+			continue;
+		photo->width = width;
+		photo->height = height;
+		return;
+	}
 }
 
 bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err)
@@ -28,7 +60,7 @@ bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_sp
 	tjhandle tj = tjInitDecompress();
 	if (!tj)
 		return err_set(err, "cannot start the JPEG decoder");
-	uint8_t *px = mem_array(n, 1);
+	uint8_t *px = photo_narrow(rgb, n);
 	int flags[] = { TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING, TJFLAG_ACCURATEDCT };
 	bool ok = false;
 	char why[256] = "";
@@ -41,10 +73,9 @@ bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_sp
 	}
 	tjDestroy(tj);
 	if (ok) {
-		photo_widen(rgb, px, n);
+		photo_widen_in_place(rgb, n);
 		photo_space_jpeg(space, file);
 	}
-	free(px);
 	return ok ? true : err_set(err, "is damaged (%.200s): copy it from the camera again", why);
 }
 
@@ -116,15 +147,14 @@ bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct photo_spa
 	if (!info)
 		return err_set(err, "cannot start the PNG decoder");
 	size_t line = (size_t)photo->width * 3, n = line * (size_t)photo->height;
-	uint8_t *px = photo->bits == 8 ? mem_array(n, 1) : 0;
+	uint8_t *px = photo->bits == 8 ? photo_narrow(rgb, n) : 0;
 	png_bytep *rows = mem_new((size_t)photo->height, sizeof *rows);
 	for (size_t y = 0; y < (size_t)photo->height; y++)
 		rows[y] = px ? px + y * line : (png_bytep)(rgb + y * line);
 	bool ok = read_rows(png, info, &s, photo, space, rows);
 	if (ok && px)
-		photo_widen(rgb, px, n);
+		photo_widen_in_place(rgb, n);
 	png_destroy_read_struct(&png, &info, 0);
 	free(rows);
-	free(px);
 	return ok ? true : err_set(err, "is damaged (%s): copy it again", s.why);
 }

@@ -70,10 +70,16 @@ void photo_turn_in_place(uint16_t (*rgb)[3], int orientation, int w, int h);
 
 /* Decoders: encoded values of what photo_header has accepted, rgb[height][width][3] before orientation, and their colour space. */
 bool photo_decode_jpeg(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
+/* Sets width and height to the smallest of those the decoder reduces to that are no shorter than side, either of them. */
+void photo_reduce_jpeg(struct photo *photo, int side);
 bool photo_decode_png(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
 bool photo_decode_tiff(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err);
 
 /* out = 257 in: 8-bit values to 16 bits, n of them. */
 void photo_widen(uint16_t *out, const uint8_t *in, size_t n);
+
+/* Where 8-bit values are decoded to, in the last n bytes of n numbers of 16 bits; and the same that stand there widened, without a copy. */
+uint8_t *photo_narrow(uint16_t *rgb, size_t n);
+void photo_widen_in_place(uint16_t *rgb, size_t n);
 
 #endif

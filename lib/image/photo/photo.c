@@ -135,6 +135,11 @@ static void turn_upright(struct photo *photo)
 
 bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct err *err)
 {
+	return photo_load_small(photo, path, 0, limit_mpx, err);
+}
+
+bool photo_load_small(struct photo *photo, const char *path, int side, double limit_mpx, struct err *err)
+{
 	// An upper bound: pixels in 16 bits and four channels, and some metadata.
 	size_t limit = (size_t)(8e6 * limit_mpx) + ((size_t)64 << 20), size;
 	struct err why = { 0 };
@@ -145,6 +150,8 @@ bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct 
 		return false;
 	bool ok = photo_header(photo, data, size, limit_mpx, &why);
 	if (ok) {
+		if (side > 0 && photo->kind == PHOTO_JPEG)
+			photo_reduce_jpeg(photo, side);
 		photo->rgb = mem_array((size_t)photo->width * (size_t)photo->height * 3, sizeof *photo->rgb);
 		named = photo->kind == PHOTO_EXR;
 		struct photo_space space = { 0 };

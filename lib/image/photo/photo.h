@@ -43,6 +43,10 @@ bool photo_header(struct photo *photo, const void *data, size_t size, double lim
  * False, err set ("path: rule broken"), when it cannot be used. Nothing is printed. photo_free. */
 bool photo_load(struct photo *photo, const char *path, double limit_mpx, struct err *err);
 
+/* The same for what is only looked at: where the decoder can halve a JPEG once, twice or three times on its way, for a fraction of the memory
+ * and the time, as often as leaves neither side shorter than side px. 0: never. */
+bool photo_load_small(struct photo *photo, const char *path, int side, double limit_mpx, struct err *err);
+
 /* Part of the photograph as linear colour; x0, y0 px, clipped by the caller. Three channels. image_free. */
 struct image photo_linear(const struct photo *photo, int x0, int y0, int width, int height);
 

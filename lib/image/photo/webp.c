@@ -65,11 +65,9 @@ bool photo_parse_webp(struct photo *photo, struct bytes file, struct err *err)
 bool photo_decode_webp(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err)
 {
 	size_t n = (size_t)photo->width * (size_t)photo->height * 3;
-	uint8_t *px = mem_array(n, 1);
-	bool ok = api.decode(file.p, file.n, px, n, 3 * photo->width);
+	bool ok = api.decode(file.p, file.n, photo_narrow(rgb, n), n, 3 * photo->width);
 	if (ok)
-		photo_widen(rgb, px, n);
-	free(px);
+		photo_widen_in_place(rgb, n);
 	struct bytes icc;
 	if (ok && find_chunk(&icc, file, "ICCP"))
 		photo_space_take(space, icc);

@@ -123,6 +123,22 @@ static void upright(int o, int x, int y, int *u, int *v)
 	*v = at[o - 1][1];
 }
 
+static void numbers_are_widened_where_they_stand(void **state)
+{
+	(void)state;
+	for (size_t n = 0; n < 70; n++) {
+		uint16_t *rgb = mem_new(n + 1, sizeof *rgb);
+		rgb[n] = 4711;
+		for (size_t i = 0; i < n; i++)
+			photo_narrow(rgb, n)[i] = (uint8_t)(91 * i + 7);
+		photo_widen_in_place(rgb, n);
+		for (size_t i = 0; i < n; i++)
+			assert_int_equal(rgb[i], 257 * ((91 * i + 7) & 255));
+		assert_int_equal(rgb[n], 4711);
+		free(rgb);
+	}
+}
+
 /* Each pixel of the upright picture is the one that EXIF's table names; sizes without a common factor, and with. */
 static void large_ones_are_turned_where_they_stand(void **state)
 {
@@ -373,6 +389,34 @@ static void linear_crop(void **state)
 	}
 }
 
+/* A disc of red in the left half; a reduced one shows the same in the same places. */
+static void large_jpegs_come_smaller(void **state)
+{
+	(void)state;
+	enum { WIDE = 403, HIGH = 299 };
+	struct err err = { 0 };
+	uint8_t *px = mem_new((size_t)WIDE * HIGH * 3, 1), *jpeg;
+	size_t size;
+	for (int y = 0; y < HIGH; y++)
+		for (int x = 0; x < WIDE; x++)
+			px[3 * (y * WIDE + x)] = hypot(x - 100, y - 150) < 60 ? 200 : 20;
+	assert_true(picture_jpeg_encode(&jpeg, &size, px, WIDE, HIGH, 3, 95, &err));
+	const char *path = scratch_write("large.jpg", jpeg, size);
+	static const struct { int side, width, height; } of[] = { { 0, 403, 299 }, { 299, 403, 299 }, { 151, 403, 299 }, { 150, 202, 150 }, { 75, 101, 75 }, { 30, 51, 38 }, { 1, 51, 38 } };
+	for (int i = 0; i < COUNT(of); i++) {
+		struct photo photo;
+		assert_true(photo_load_small(&photo, path, of[i].side, 100, &err));
+		assert_int_equal(photo.width, of[i].width);
+		assert_int_equal(photo.height, of[i].height);
+		const double scale = (double)photo.width / WIDE;
+		assert_in_range(photo.rgb[3 * ((int)(150 * scale) * photo.width + (int)(100 * scale))], 190 * 257, 210 * 257);
+		assert_in_range(photo.rgb[3 * ((int)(150 * scale) * photo.width + (int)(300 * scale))], 10 * 257, 30 * 257);
+		photo_free(&photo);
+	}
+	free(jpeg);
+	free(px);
+}
+
 static void pictures_go_out_and_come_back(void **state)
 {
 	(void)state;
@@ -407,6 +451,7 @@ int main(void)
 		SCRATCH_TEST(jpeg_is_close),
 		SCRATCH_TEST(exr_is_linear),
 		SCRATCH_TEST(orientation_is_applied),
+		cmocka_unit_test(numbers_are_widened_where_they_stand),
 		cmocka_unit_test(large_ones_are_turned_where_they_stand),
 		SCRATCH_TEST(focal_length_where_it_can_be_believed),
 		cmocka_unit_test(shrunk_is_the_mean_of_areas),
@@ -414,6 +459,7 @@ int main(void)
 		SCRATCH_TEST(truncation_is_noticed),
 		SCRATCH_TEST(no_file),
 		SCRATCH_TEST(linear_crop),
+		SCRATCH_TEST(large_jpegs_come_smaller),
 		SCRATCH_TEST(pictures_go_out_and_come_back),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
