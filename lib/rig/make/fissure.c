@@ -62,6 +62,24 @@ static void cover_triangle(struct rig_fissure *f, const float a[2], const float 
 		}
 }
 
+/* A column that is shut lies where the nearest open one has its middle: what closes that one moves the skin beside it too. */
+static void place_shut_columns(struct rig_fissure *f)
+{
+	int *from = mem_new((size_t)f->width + 1, sizeof *from), last = -1;
+	for (int x = 0; x < f->width; x++)
+		from[x] = last = f->bottom[x] > f->top[x] ? x : last;
+	last = -1;
+	for (int x = f->width - 1; x >= 0; x--) {
+		last = from[x] == x ? x : last;
+		if (last >= 0 && (from[x] < 0 || last - x < x - from[x]))
+			from[x] = last;
+	}
+	for (int x = 0; x < f->width; x++)
+		if (from[x] >= 0 && from[x] != x)
+			f->top[x] = f->bottom[x] = 0.5f * (f->top[from[x]] + f->bottom[from[x]]);
+	free(from);
+}
+
 void rig_fissure_look(struct rig_fissure *f, const struct rig *rig, int side, const double de[RIG_COMPONENTS])
 {
 	memset(f->cover, 0, (size_t)f->width * (size_t)f->height);
@@ -92,4 +110,5 @@ void rig_fissure_look(struct rig_fissure *f, const struct rig *rig, int side, co
 		f->bottom[x] = (float)(f->y0 + at);
 		f->top[x] = f->bottom[x] - (float)best;
 	}
+	place_shut_columns(f);
 }

@@ -25,7 +25,7 @@ struct rig_fissure {
 	int x0, y0, width, height;  // of the window, px
 	uint8_t *cover;             // [height][width] 1: skin before the globe
 	float (*at)[2];             // of every vertex, px
-	float *top, *bottom;        // of the open part of a column, px; equal where none is
+	float *top, *bottom;        // of the open part of a column, px; where none is, both the middle of the nearest column's that has one
 };
 /* A window round the learnt lids at rest and rim px beyond them (x, y; below 0: within). False: the lids were not learnt. rig_fissure_free. */
 bool rig_fissure_new(struct rig_fissure *f, const struct rig *rig, const struct rig_motion *motion, int side, const double rim[2]);
