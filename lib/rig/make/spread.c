@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "mesh/kdtree.h"
 #include "rig/make/make_impl.h"
 
 /* Edges of the mesh, compressed rows: both directions of each. */
@@ -48,93 +49,86 @@ static void graph_free(struct graph *g)
 	free(g->length);
 }
 
-/* Dijkstra's priority queue (a binary heap; outdated entries are skipped), and the distances found in this search. */
+/* A tracked vertex, and how far it is along the skin. */
+struct label {
+	float d;
+	int source;
+};
+
+/* Dijkstra's priority queue, a binary heap: what would be the next label of a vertex. */
 struct front {
 	int n, room;
 	struct item {
-		float d;
+		struct label label;
 		int vertex;
 	} *heap;
-	float *best;  // by vertex; INFINITY: not reached
-	int n_touched, *touched;
 };
 
-static void push(struct front *q, int vertex, float d)
+static void push(struct front *q, int vertex, struct label label)
 {
-	if (!(d < q->best[vertex]))
-		return;
-	if (q->best[vertex] == INFINITY)
-		q->touched[q->n_touched++] = vertex;
-	q->best[vertex] = d;
 	if (q->n == q->room)
 		q->heap = mem_grow(q->heap, (size_t)(q->room = 2 * q->room + 64), sizeof *q->heap);
 	int at = q->n++;
-	for (; at && q->heap[(at - 1) / 2].d > d; at = (at - 1) / 2)
+	for (; at && q->heap[(at - 1) / 2].label.d > label.d; at = (at - 1) / 2)
 		q->heap[at] = q->heap[(at - 1) / 2];
-	q->heap[at] = (struct item){ d, vertex };
+	q->heap[at] = (struct item){ label, vertex };
 }
 
-static bool pop(struct front *q, struct item *out)
+static struct item pop(struct front *q)
 {
-	while (q->n) {
-		*out = q->heap[0];
-		struct item last = q->heap[--q->n];
-		int at = 0;
-		for (int child; (child = 2 * at + 1) < q->n; at = child) {
-			child += child + 1 < q->n && q->heap[child + 1].d < q->heap[child].d;
-			if (last.d <= q->heap[child].d)
-				break;
-			q->heap[at] = q->heap[child];
-		}
-		q->heap[at] = last;
-		if (out->d <= q->best[out->vertex])
-			return true;
+	const struct item top = q->heap[0], last = q->heap[--q->n];
+	int at = 0;
+	for (int child; (child = 2 * at + 1) < q->n; at = child) {
+		child += child + 1 < q->n && q->heap[child + 1].label.d < q->heap[child].label.d;
+		if (last.label.d <= q->heap[child].label.d)
+			break;
+		q->heap[at] = q->heap[child];
 	}
+	q->heap[at] = last;
+	return top;
+}
+
+/* The nearest tracked vertices of every vertex along the skin, up to a distance: at most `most` each, nearest first. */
+struct labels {
+	int most, *n;
+	struct label *of;  // [vertices][most]
+};
+
+static bool has(const struct labels *l, int vertex, int source)
+{
+	for (int i = 0; i < l->n[vertex]; i++)
+		if (l->of[(size_t)vertex * (size_t)l->most + (size_t)i].source == source)
+			return true;
 	return false;
 }
 
-static struct front front_new(int n)
+/* One search from all tracked vertices at once: a path to one of a vertex's nearest leads over vertices of whose nearest it is, too. */
+static struct labels labels_make(const struct rig *rig, const struct graph *g, int most, float reach)
 {
-	struct front q = { .best = mem_array((size_t)n + 1, sizeof *q.best), .touched = mem_array((size_t)n + 1, sizeof *q.touched) };
-	for (int i = 0; i < n; i++)
-		q.best[i] = INFINITY;
-	return q;
-}
-
-static void front_reset(struct front *q)
-{
-	while (q->n_touched)
-		q->best[q->touched[--q->n_touched]] = INFINITY;
-	q->n = 0;
-}
-
-static void front_free(struct front *q)
-{
-	free(q->heap);
-	free(q->best);
-	free(q->touched);
-}
-
-static void relax(struct front *q, const struct graph *g, struct item at, float reach)
-{
-	for (int k = g->start[at.vertex]; k < g->start[at.vertex + 1]; k++)
-		if (at.d + g->length[k] < reach)
-			push(q, g->to[k], at.d + g->length[k]);
-}
-
-/* Distance of every vertex from the nearest tracked one along the skin, up to reach. free(). */
-static float *from_tracked(const struct rig *rig, const struct graph *g, float reach)
-{
-	struct front q = front_new(rig->n);
-	struct item at;
+	struct labels l = { .most = most, .n = mem_new((size_t)rig->n + 1, sizeof *l.n), .of = mem_array((size_t)rig->n * (size_t)most + 1, sizeof *l.of) };
+	struct front q = { 0 };
 	for (int i = 0; i < rig->n; i++)
 		if (rig->part[i] == RIG_SKIN && rig->source[i] != RIG_EXTRAPOLATED)
-			push(&q, i, 0);
-	while (pop(&q, &at))
-		relax(&q, g, at, reach);
+			push(&q, i, (struct label){ 0, i });
+	while (q.n) {
+		const struct item at = pop(&q);
+		if (l.n[at.vertex] == most || has(&l, at.vertex, at.label.source))
+			continue;
+		l.of[(size_t)at.vertex * (size_t)most + (size_t)l.n[at.vertex]++] = at.label;
+		for (int k = g->start[at.vertex]; k < g->start[at.vertex + 1]; k++) {
+			const struct label next = { at.label.d + g->length[k], at.label.source };
+			if (next.d < reach && l.n[g->to[k]] < most && !has(&l, g->to[k], next.source))
+				push(&q, g->to[k], next);
+		}
+	}
 	free(q.heap);
-	free(q.touched);
-	return q.best;
+	return l;
+}
+
+static void labels_free(struct labels *l)
+{
+	free(l->n);
+	free(l->of);
 }
 
 /* The nearest tracked vertices of one: its neighbours, and one more, at whose distance the weights reach zero. */
@@ -143,37 +137,53 @@ struct nearest {
 	float d[65];
 };
 
-/* Finds them by geodesic distance, up to `reach`. */
-static void along_skin(struct nearest *near, const struct rig *rig, const struct graph *g, struct front *q, int i, int k, float reach)
+static void along_skin(struct nearest *near, const struct labels *l, int i)
 {
-	struct item at;
-	near->n = 0;
-	push(q, i, 0);
-	while (near->n <= k && pop(q, &at)) {
-		if (rig->source[at.vertex] != RIG_EXTRAPOLATED && rig->part[at.vertex] == RIG_SKIN) {
-			near->vertex[near->n] = at.vertex;
-			near->d[near->n++] = at.d;
-		}
-		relax(q, g, at, reach);
+	near->n = l->n[i];
+	for (int j = 0; j < near->n; j++) {
+		const struct label *label = &l->of[(size_t)i * (size_t)l->most + (size_t)j];
+		near->vertex[j] = label->source;
+		near->d[j] = label->d;
 	}
-	front_reset(q);
+}
+
+/* All tracked vertices by their place in space. */
+struct tracked {
+	int n, *vertex;
+	struct kdtree *tree;  // null: there are none
+};
+
+static struct tracked tracked_make(const struct rig *rig)
+{
+	struct tracked t = { .vertex = mem_new((size_t)rig->n + 1, sizeof *t.vertex) };
+	float *at = mem_array((size_t)rig->n + 1, 3 * sizeof *at);
+	for (int i = 0; i < rig->n; i++)
+		if (rig->part[i] == RIG_SKIN && rig->source[i] != RIG_EXTRAPOLATED) {
+			memcpy(at + 3 * (size_t)t.n, rig->rest[i], 3 * sizeof *at);
+			t.vertex[t.n++] = i;
+		}
+	if (t.n)
+		t.tree = kdtree_new(t.n, 3, at);
+	free(at);
+	return t;
+}
+
+static void tracked_free(struct tracked *t)
+{
+	free(t->vertex);
+	if (t->tree)
+		kdtree_free(t->tree);
 }
 
 /* Finds them by Euclidean distance, for pieces that no edge joins to tracked skin. */
-static void through_space(struct nearest *near, const struct rig *rig, int n, const int *tracked, int i, int k)
+static void through_space(struct nearest *near, const struct rig *rig, const struct tracked *t, int i, int k)
 {
-	near->n = 0;
-	for (int j = 0; j < n; j++) {
-		float d = apart(rig, i, tracked[j]);
-		if (near->n == k + 1 && d >= near->d[k])
-			continue;
-		int at = near->n <= k ? near->n++ : k;
-		for (; at && near->d[at - 1] > d; at--) {
-			near->d[at] = near->d[at - 1];
-			near->vertex[at] = near->vertex[at - 1];
-		}
-		near->d[at] = d;
-		near->vertex[at] = tracked[j];
+	float d2[COUNT(near->d)];
+	near->n = t->n < k + 1 ? t->n : k + 1;
+	kdtree_find(t->tree, 1, rig->rest[i], near->n, near->vertex, d2);
+	for (int j = 0; j < near->n; j++) {
+		near->vertex[j] = t->vertex[near->vertex[j]];
+		near->d[j] = sqrtf(d2[j]);
 	}
 }
 
@@ -209,42 +219,33 @@ struct row {
 	float weight[64];
 };
 
-static void rows_make(struct row *rows, struct rig *rig, const struct graph *g, const float *reached, const struct rig_conf *conf)
+static void rows_make(struct row *rows, struct rig *rig, const struct labels *labels, const struct rig_conf *conf)
 {
-	int n_tracked = 0, *tracked = mem_new((size_t)rig->n + 1, sizeof *tracked);
-	for (int i = 0; i < rig->n; i++)
-		if (rig->part[i] == RIG_SKIN && rig->source[i] != RIG_EXTRAPOLATED)
-			tracked[n_tracked++] = i;
-#pragma omp parallel
-	{
-		struct front q = front_new(rig->n);
-#pragma omp for schedule(dynamic, 64)
-		for (int i = 0; i < rig->n; i++) {
-			struct nearest near;
-			struct row *row = &rows[i];
-			rig->fade[i] = 1;
-			*row = (struct row){ 1, { i }, { 1 } };
-			if (rig->source[i] != RIG_EXTRAPOLATED || rig_is_globe(rig->part[i]) || !n_tracked)
-				continue;
-			if (reached[i] < INFINITY)
-				along_skin(&near, rig, g, &q, i, conf->neighbours, 2 * (float)conf->fade[1]);
-			else
-				through_space(&near, rig, n_tracked, tracked, i, conf->neighbours);
-			row->n = weigh(row->weight, &near, conf->neighbours);
-			memcpy(row->column, near.vertex, (size_t)row->n * sizeof *row->column);
-			rig->fade[i] = fade_at(near.d[0], conf->fade);
-		}
-		front_free(&q);
+	struct tracked tracked = tracked_make(rig);
+#pragma omp parallel for schedule(dynamic, 64)
+	for (int i = 0; i < rig->n; i++) {
+		struct nearest near;
+		struct row *row = &rows[i];
+		rig->fade[i] = 1;
+		*row = (struct row){ 1, { i }, { 1 } };
+		if (rig->source[i] != RIG_EXTRAPOLATED || rig_is_globe(rig->part[i]) || !tracked.n)
+			continue;
+		along_skin(&near, labels, i);
+		if (!near.n || !(near.d[0] < (float)conf->fade[1]))
+			through_space(&near, rig, &tracked, i, conf->neighbours);
+		row->n = weigh(row->weight, &near, conf->neighbours);
+		memcpy(row->column, near.vertex, (size_t)row->n * sizeof *row->column);
+		rig->fade[i] = fade_at(near.d[0], conf->fade);
 	}
-	free(tracked);
+	tracked_free(&tracked);
 }
 
 void rig_spread(struct rig *rig, const struct rig_conf *conf)
 {
 	struct graph g = graph_make(rig);
-	float *reached = from_tracked(rig, &g, (float)conf->fade[1]);
+	struct labels labels = labels_make(rig, &g, conf->neighbours + 1, 2 * (float)conf->fade[1]);
 	struct row *rows = mem_new((size_t)rig->n + 1, sizeof *rows);
-	rows_make(rows, rig, &g, reached, conf);
+	rows_make(rows, rig, &labels, conf);
 	int total = 0;
 	for (int i = 0; i < rig->n; i++)
 		total += rows[i].n;
@@ -258,6 +259,6 @@ void rig_spread(struct rig *rig, const struct rig_conf *conf)
 		rig->bplus.start[i + 1] = at + rows[i].n;
 	}
 	free(rows);
-	free(reached);
+	labels_free(&labels);
 	graph_free(&g);
 }
