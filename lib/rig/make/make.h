@@ -45,9 +45,11 @@ struct rig_conf {
 	double glue[2];                       // mm from the globe at rest: distance kept up to the first, free from the second
 	double thickness, least;              // mm: t, the least distance of skin from the globe; the same of skin that rests on it
 	double lid;                           // mm from the lid's margin over which skin follows its spline; 0: nowhere
-	double lid_gap;                       // mm from the globe up to which skin is a lid
+	double lid_gap;                       // mm from a globe of 12 mm up to which skin is a lid
 	double within[2], beyond[2];          // mm from the ends of what is seen of the eyeball, inner and outer: where margins leave their
 	                                      // arcs, within; where the corners lie, beyond
+	double breadth[2];                    // mm: of a lid's margin as the front sees it, and of half the hollow at a corner, at most; closed eyes
+	                                      // show none of it
 	double seal;                          // mm that closed lids overlap; < 0: lids are not sealed
 	double min_confidence;                // of the registration, below which a vertex counts as untracked
 	double map_step;                      // texel of the skull map, px of the modelling camera

@@ -12,13 +12,16 @@ enum { UPPER, LOWER, LIDS, TERMS = 2 + LIDS };
 
 static const double gap_fade = 2;       // mm to either side of the gap up to which skin is a lid
 static const double open_mm = 0.3;      // less than this is a corner
+static const double margin_mm = 1;      // as far from the line, skin goes with its own column
 static const double least_mm[] = { 10, 2 };  // length and height of what is an eye's opening
 
 /* The character's opening at rest, in columns of the modelling camera. */
 struct opening {
 	int n;
 	double first, px_per_mm, most;  // most: the largest opening, px
+	double scale, end[2];           // px for a mm of an eyeball of 12 mm; columns between which the eyeball is seen
 	double *y[LIDS], *height;  // of the margins, px; opening, of its largest
+	double *sum;               // [n + 1] of the heights of the columns before
 };
 
 static void opening_free(struct opening *o)
@@ -26,6 +29,7 @@ static void opening_free(struct opening *o)
 	free(o->y[UPPER]);
 	free(o->y[LOWER]);
 	free(o->height);
+	free(o->sum);
 }
 
 /* Means over half a millimetre to each side: margins of coarse meshes have corners. */
@@ -55,8 +59,10 @@ static void take_height(struct opening *o)
 	o->most = 1e-6;
 	for (int i = 0; i < o->n; i++)
 		o->most = fmax(o->most, o->height[i] = o->y[LOWER][i] - o->y[UPPER][i]);
-	for (int i = 0; i < o->n; i++)
+	for (int i = 0; i < o->n; i++) {
 		o->height[i] /= o->most;
+		o->sum[i + 1] = o->sum[i] + o->height[i];
+	}
 }
 
 /* False: there is none. */
@@ -81,9 +87,10 @@ static bool opening_of(struct opening *o, const struct rig *rig, const struct ri
 	const double scale = px_per_mm * fmin(rig->globe[side].radius / 12, 2);
 	const int left_end = side;  // the inner corner of the left eye, the outer one of the right
 	const int left = (int)(conf->beyond[left_end] * scale), right = (int)(conf->beyond[!left_end] * scale);
-	*o = (struct opening){ .n = ok ? left + to - from + 1 + right : 0, .first = f.x0 + from - left, .px_per_mm = px_per_mm };
+	*o = (struct opening){ .n = ok ? left + to - from + 1 + right : 0, .first = f.x0 + from - left, .px_per_mm = px_per_mm, .scale = scale, .end = { left, left + to - from } };
 	for (int lid = 0; lid < LIDS; lid++)
 		o->y[lid] = mem_new((size_t)o->n + 1, sizeof *o->y[lid]);
+	o->sum = mem_new((size_t)o->n + 1, sizeof *o->sum);
 	o->height = mem_new((size_t)o->n + 1, sizeof *o->height);
 	for (int x = from; x <= to && ok; x++) {
 		o->y[UPPER][left + x - from] = smoothed(f.top, x, from, to, (int)(0.5 * px_per_mm));
@@ -100,14 +107,22 @@ static bool opening_of(struct opening *o, const struct rig *rig, const struct ri
 	return ok;
 }
 
-/* The functions of the place: how much of each corner's motion, and of each lid's. x: px; beyond the corners theirs. */
-static void terms_at(double out[TERMS], const struct opening *o, int lid, double x)
+/* Mean height of the columns from `from` up to `to`, px; beyond the corners it is 0. */
+static double height_over(const struct opening *o, double from, double to)
+{
+	const double a = fmin(fmax(from - o->first, 0), o->n), b = fmin(fmax(to - o->first, 0), o->n);
+	const int i = (int)fmin(a, o->n - 1), j = (int)fmin(b, o->n - 1);
+	return (o->sum[j] + (b - j) * o->height[j] - o->sum[i] - (a - i) * o->height[i]) / (to - from);
+}
+
+/* The functions of the place: how much of each corner's motion, and of each lid's. x: px; beyond the corners theirs. spread: px to
+ * either side over which skin that far from the margin takes the mean, so that what shuts steeply at a corner tears no skin above it. */
+static void terms_at(double out[TERMS], const struct opening *o, int lid, double x, double spread)
 {
 	double t = fmin(fmax((x - o->first) / (o->n - 1), 0), 1);
-	int i = (int)(t * (o->n - 1));
 	out[0] = 1 - t;
 	out[1] = t;
-	out[2 + lid] = x < o->first || x > o->first + o->n - 1 ? 0 : o->height[i];
+	out[2 + lid] = height_over(o, x - spread, x + spread);
 	out[2 + !lid] = 0;
 }
 
@@ -125,12 +140,12 @@ static bool fit(double coefficient[TERMS][RIG_BASIS], const struct opening *o, c
 	bool ok = true;
 	memset(coefficient, 0, TERMS * sizeof *coefficient);
 	for (int i = 0; i < rig->n; i++) {
-		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || rig->gap[i] > lid_gap || rig->gap[i] < -2)
+		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || rig->gap[i] * o->px_per_mm / o->scale > lid_gap || rig->gap[i] < -2)
 			continue;
 		double w[LIDS] = { margin_weight(o, UPPER, rig->home[i]), margin_weight(o, LOWER, rig->home[i]) };
 		for (int lid = 0; lid < LIDS; lid++) {
 			double g[TERMS], own = w[lid] > w[!lid] ? w[lid] : 0;
-			terms_at(g, o, lid, rig->home[i][0]);
+			terms_at(g, o, lid, rig->home[i][0], 0.5);
 			for (int j = 0; j < TERMS && own > 1e-4; j++) {
 				for (int k = 0; k < TERMS; k++)
 					A[j][k] += own * g[j] * g[k];
@@ -154,11 +169,10 @@ static bool fit(double coefficient[TERMS][RIG_BASIS], const struct opening *o, c
 }
 
 /* Makes the upper margin come down, in proportion to how far eyes are closed, by what the closed pose leaves open. */
-static void shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const struct rig *rig, double seal_mm)
+static void shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const double closed[RIG_COMPONENTS],
+                 const double closing[RIG_COMPONENTS], double seal_mm)
 {
-	double closed[RIG_COMPONENTS], closing[RIG_COMPONENTS], lack = o->most + seal_mm * o->px_per_mm;
-	rig_closed_pose(closed, rig);
-	rig_closing_direction(closing, rig, closed);
+	double lack = o->most + seal_mm * o->px_per_mm;
 	for (int k = 0; k < RIG_COMPONENTS; k++)
 		lack -= (coefficient[2 + UPPER][RIG_COMPONENTS + k] - coefficient[2 + LOWER][RIG_COMPONENTS + k]) * closed[k];
 	for (int k = 0; k < RIG_COMPONENTS; k++)
@@ -180,20 +194,32 @@ static double fading(double x, double from, double to)
 	return 1 - t * t * (3 - 2 * t);
 }
 
+/* Lids have a breadth: seen from the front, the outer edge of a margin stands off the line at which the eyeball ends. How far a vertex
+ * must come towards that line for the outer edges to meet, px; down is positive. */
+static double breadth(const struct opening *o, int lid, const float at[2], const struct rig_conf *conf)
+{
+	const double x = fmin(fmax(at[0] - o->first, 0), o->n - 1), beyond = fmax(o->first - at[0], at[0] - o->first - o->n + 1);
+	const double hollow = fmin(fmax(fmax(o->end[0] - x, x - o->end[1]) / o->scale, 0), 1), off = o->y[lid][(int)x] - at[1];
+	const double most = o->scale * (conf->breadth[0] + hollow * (conf->breadth[1] - conf->breadth[0]));
+	return (lid == UPPER ? fmin(fmax(off, 0), most) : fmax(fmin(off, 0), -most)) * fading(beyond / o->scale, 0, 1);
+}
+
 static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS],
-                  const struct rig_conf *conf)
+                  const double closing[RIG_COMPONENTS], const struct rig_conf *conf)
 {
 	double most = 0, total = 0, sum[RIG_BASIS] = { 0 };
 	for (int lid = 0; lid < LIDS; lid++) {
 		double g[TERMS], d = off_margin(o, lid, rig->home[i]), share = fading(d, 0.25 * conf->lid, conf->lid), w = share / (0.01 + d * d);
-		terms_at(g, o, lid, rig->home[i][0]);
+		terms_at(g, o, lid, rig->home[i][0], fmax((d - margin_mm) * o->px_per_mm, 0.5));
 		most = fmax(most, share);
 		total += w;
 		for (int k = 0; k < RIG_BASIS; k++)
 			for (int j = 0; j < TERMS; j++)
 				sum[k] += w * g[j] * coefficient[j][k];
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			sum[RIG_COMPONENTS + k] += w * breadth(o, lid, rig->home[i], conf) * closing[k];
 	}
-	most *= fading(rig->gap[i], conf->lid_gap - gap_fade, conf->lid_gap + gap_fade);
+	most *= fading(rig->gap[i] * o->px_per_mm / o->scale, conf->lid_gap - gap_fade, conf->lid_gap + gap_fade);
 	for (int k = 0; k < RIG_BASIS && total > 0; k++)
 		rig->basis[i][k] += (float)(most * (sum[k] / total - rig->basis[i][k]));
 }
@@ -202,15 +228,18 @@ void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_
 {
 	for (int side = 0; side < 2 && conf->lid > 0; side++) {
 		struct opening o;
-		double coefficient[TERMS][RIG_BASIS];
+		double coefficient[TERMS][RIG_BASIS], closed[RIG_COMPONENTS], closing[RIG_COMPONENTS] = { 0 };
 		if (!opening_of(&o, rig, m, side, px_per_mm, conf))
 			continue;
 		bool ok = fit(coefficient, &o, rig, side, conf->lid_gap);
-		if (ok && conf->seal >= 0)
-			shut(coefficient, &o, rig, conf->seal);
+		if (ok && conf->seal >= 0) {
+			rig_closed_pose(closed, rig);
+			rig_closing_direction(closing, rig, closed);
+			shut(coefficient, &o, closed, closing, conf->seal);
+		}
 		for (int i = 0; i < rig->n && ok; i++)
-			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side && rig->gap[i] < conf->lid_gap + gap_fade)
-				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, conf);
+			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side)
+				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, closing, conf);
 		opening_free(&o);
 	}
 }

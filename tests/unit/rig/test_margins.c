@@ -10,7 +10,7 @@
 enum { POINTS = 12, ACROSS = 97, UP = 49 };  // of the made face
 
 /* The face's rig; wave: of the upper lids' motion, as a share of it. */
-static struct rig waved(double wave, double seal)
+static struct rig waved(double wave, double seal, double breadth)
 {
 	struct face face;
 	struct rig rig;
@@ -23,6 +23,7 @@ static struct rig waved(double wave, double seal)
 	conf.map_step = 4;
 	conf.lid = 6;
 	conf.seal = seal;
+	conf.breadth[0] = conf.breadth[1] = breadth;
 	assert_true(face_rig(&rig, 0, &face, &conf, &err));
 	face_free(&face);
 	return rig;
@@ -73,7 +74,7 @@ static int half_closing(double *y, const struct rig *rig, int side, int most)
 static void margins_are_arcs(void **state)
 {
 	(void)state;
-	struct rig rig = waved(1, -1);
+	struct rig rig = waved(1, -1, 0);
 	for (int side = 0; side < 2; side++) {
 		double y[64];
 		int n = half_closing(y, &rig, side, 64);
@@ -87,7 +88,7 @@ static void margins_are_arcs(void **state)
 static void closed_lids_meet(void **state)
 {
 	(void)state;
-	struct rig rig = waved(1, 0.15);
+	struct rig rig = waved(1, 0.15, 0);
 	for (int side = 0; side < 2; side++) {
 		// Without the seal the made face's lids, whose skin moves by little, stay wide open.
 		double closed[RIG_COMPONENTS], at[2] = { -INFINITY, INFINITY };
@@ -110,8 +111,41 @@ static void closed_lids_meet(void **state)
 	rig_free(&rig);
 }
 
+/* px between the row of vertices at the upper margin's middle and the next one, 1.2 mm above it at rest, with the eyes closed. */
+static double rows_apart(const struct rig *rig, int side)
+{
+	double closed[RIG_COMPONENTS], sum[2] = { 0 };
+	int n[2] = { 0 };
+	rig_closed_pose(closed, rig);
+	for (int i = 0; i < rig->n; i++) {
+		const double up = rig->rest[i][1], x = rig->rest[i][0] - rig->globe[side].center[0];
+		const int row = fabs(up - 4.667) < 0.1 ? 0 : fabs(up - 5.833) < 0.1 ? 1 : -1;
+		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || fabs(x) > 0.7 || row < 0)
+			continue;
+		sum[row] += rig->home[i][1];
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			sum[row] += rig->basis[i][RIG_COMPONENTS + k] * closed[k];
+		n[row]++;
+	}
+	assert_true(n[0] > 0 && n[0] == n[1]);
+	return (sum[0] - sum[1]) / n[0];
+}
+
+static void the_edges_of_broad_margins_meet(void **state)
+{
+	(void)state;
+	struct rig thin = waved(0, 0.15, 0), broad = waved(0, 0.15, 1.5);
+	for (int side = 0; side < 2; side++) {
+		// px of 0.12 mm.
+		assert_true(rows_apart(&thin, side) > 2);
+		assert_true(fabs(rows_apart(&broad, side)) < 0.5);
+	}
+	rig_free(&thin);
+	rig_free(&broad);
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet), cmocka_unit_test(the_edges_of_broad_margins_meet) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
