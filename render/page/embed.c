@@ -30,6 +30,7 @@ EMBED(viewer_pose, "render/viewer/pose.glsl");
 EMBED(viewer_probe, "render/viewer/probe.frag");
 EMBED(viewer_copy, "render/viewer/copy.frag");
 EMBED(viewer_tissue_js, "render/viewer/tissue.js");
+EMBED(viewer_panorama_js, "render/viewer/panorama.js");
 EMBED(viewer_motion_js, "render/viewer/motion.js");
 EMBED(viewer_beams_js, "render/viewer/beams.js");
 EMBED(viewer_gl_js, "render/viewer/gl.js");

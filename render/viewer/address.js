@@ -2,7 +2,7 @@
 class Address {
 	/* The light a view opens with: beside the photograph the photograph's own. */
 	own_light() {
-		return this.beside && this.eye.lights.length > 1 ? 1 : 0;
+		return this.beside ? Math.max(0, this.eye.lights.findIndex(l => l.photographed)) : 0;
 	}
 
 	to_hash() {
@@ -12,9 +12,11 @@ class Address {
 				parts.push(`${c.key}=${Number(this.values[c.key].toPrecision(6))}`);
 		if (this.orbit[0] || this.orbit[1])
 			parts.push(`orbit=${this.orbit.map(v => (v * 180 / Math.PI).toFixed(1)).join(",")}`);
+		if (this.pan[0] || this.pan[1])
+			parts.push(`pan=${this.pan.map(v => v.toFixed(3)).join(",")}`);
 		if (this.follow === "typed")
 			parts.push(`gaze=${this.eyes.target.map(v => v.toFixed(1)).join(",")}`);
-		if (this.light !== this.own_light())
+		if (this.light !== this.own_light() && !this.eye.lights[this.light].opened)  // a file is not in the address
 			parts.push(`light=${this.light}`);
 		if (this.mode !== (this.face ? "face" : "eye"))
 			parts.push(`view=${this.mode}`);
@@ -34,8 +36,9 @@ class Address {
 			const v = Number(q.get(c.key));
 			this.values[c.key] = q.has(c.key) && Number.isFinite(v) ? Math.min(Math.max(v, c.lo), c.hi) : c.value;
 		}
-		const orbit = pair("orbit") || [0, 0], gaze = pair("gaze"), light = Number(q.get("light"));
+		const orbit = pair("orbit") || [0, 0], pan = pair("pan") || [0, 0], gaze = pair("gaze"), light = Number(q.get("light"));
 		this.orbit = [Math.max(-Math.PI, Math.min(Math.PI, orbit[0] * Math.PI / 180)), Math.max(-1.2, Math.min(1.2, orbit[1] * Math.PI / 180))];
+		this.pan_to(pan);
 		if (gaze) {
 			this.set_follow("typed");
 			this.eyes.target = gaze.map(v => Math.min(45, Math.max(-45, v)));

@@ -83,8 +83,37 @@ class Controls extends Address {
 	}
 
 	light_choice() {
+		const file = element("input", { type: "file", accept: ".hdr,.exr", hidden: true, ariaLabel: "Surroundings from a file" });
+		file.addEventListener("change", () => { this.open_surroundings(file.files[0]); file.value = ""; });
 		this.light_buttons = this.eye.lights.map((l, i) => this.button(l.name, () => { this.set_light(i); this.to_hash(); }, i === this.light));
-		return element("div", { className: "buttons", role: "group", ariaLabel: "Surroundings" }, ...this.light_buttons);
+		const open = this.button("Open…", () => file.click());
+		open.title = "Surroundings from a file: latitude and longitude, Radiance HDR or OpenEXR; or drop it on the picture";
+		return element("div", { className: "buttons", role: "group", ariaLabel: "Surroundings" }, ...this.light_buttons, open, file);
+	}
+
+	/* The eye stands in the surroundings of a file. It stays on this machine. */
+	async open_surroundings(file) {
+		if (!file)
+			return;
+		by_id("busy").textContent = "Opening…";
+		try {
+			const light = panorama.made(await panorama.read(file), file.name.replace(/\.[^.]*$/, ""), this.eye.lights[0]);
+			light.sharp_map = this.graphics.light(light.sharp);
+			light.rough_map = this.graphics.light(light.rough);
+			const scenes = [this.scene, ...Object.values(this.others || {})];
+			for (const list of new Set([...data.eyes.map(e => e.lights), ...scenes.map(s => s.lights)])) {
+				const at = list.findIndex(l => l.opened);
+				list.splice(at < 0 ? list.length : at, 1, light);
+			}
+			for (const s of scenes)
+				s.solved = {};
+			this.build();
+			this.set_light(this.eye.lights.indexOf(light));
+			said(`Surroundings: ${light.name}`);
+			by_id("busy").textContent = "";
+		} catch (e) {
+			by_id("busy").textContent = `${file.name}: ${e.message}`;
+		}
 	}
 
 	slider(c) {
@@ -195,6 +224,7 @@ class Controls extends Address {
 		if (this.playing !== null)
 			this.play(null);
 		this.orbit = [0, 0];
+		this.pan = [0, 0];
 		this.eyes.target = [0, 0];
 		this.typed.forEach(input => { input.value = 0; });
 		this.set_light(this.own_light());

@@ -98,7 +98,7 @@ class FaceScene {
 	camera(view, height) {
 		const R = turns.multiply(turns.turned(view.orbit[0], view.orbit[1]), [1, 0, 0, 0, -1, 0, 0, 0, -1]), D = FaceScene.DISTANCE;
 		const focal = D * height / view.field(height), p = turns.apply(R, this.data.globes[view.closer]), k = view.close * focal / (p[2] + D);
-		return { R, focal, at: turns.apply(turns.transpose(R), [0, 0, -D]), aim: [-k * p[0], -k * p[1]] };
+		return { R, focal, at: turns.apply(turns.transpose(R), [0, 0, -D]), aim: [view.pan[0] * height - k * p[0], view.pan[1] * height - k * p[1]] };
 	}
 
 	/* The lights that the skin mirrors: neighbours in the order in which they were split are joined. */

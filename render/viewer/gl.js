@@ -177,6 +177,13 @@ class Graphics {
 		return t;
 	}
 
+	/* A texture of light: rgba, n x n. */
+	light({ n, out }) {
+		const gl = this.gl, t = this.texture(n, n, gl.RGBA16F);
+		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, n, n, gl.RGBA, gl.FLOAT, out);
+		return t;
+	}
+
 	/* Draws into a texture (and another of its size, also), or (null) onto the page. */
 	target(t, width, height, depth) {
 		const gl = this.gl;

@@ -16,9 +16,9 @@ class Live extends Tools {
 		if (this.mode === "face")
 			return { face: this.face, eyes: this.pair, gazes: this.gazes(h, v), closer: this.eye.side === "left" ? 0 : 1, close: Math.min(1, Math.max(0, (30 - this.values.field) / 12)), recorded: this.playing === null ? null : this.clip_controls,
 				expressions: this.playing === null ? data.face.expressions.map((e, k) => this.values[`au${k}`]) : this.clip_controls.slice(10),
-				open: this.lids(), orbit: this.orbit,
+				open: this.lids(), orbit: this.orbit, pan: this.pan,
 				field: height => this.face.field * height / this.scene.target.width * this.values.field / 30 };
-		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, field: this.values.field };
+		return { yaw: h * rad, pitch: v * rad, orbit: this.orbit, pan: this.pan, field: this.values.field };
 	}
 
 	/* How far eyes turn after what they follow, degrees: right, left, down, up. A face's lids are known as far as the video shows them,

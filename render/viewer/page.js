@@ -9,6 +9,7 @@ class Page extends Live {
 		this.automatic = true;
 		this.times = [];
 		this.orbit = [0, 0];
+		this.pan = [0, 0];  // of the picture, in its heights: right, down
 		this.follow = "pointer";
 		this.mode = "";
 		this.playing = null;
@@ -67,14 +68,17 @@ class Page extends Live {
 	/* ---- hands */
 	listen() {
 		const canvas = by_id("view"), fingers = new Map();  // where each pointer that is down stands
-		const apart = () => fingers.size > 1 ? Math.hypot(...[0, 1].map(k => [...fingers.values()][0][k] - [...fingers.values()][1][k])) : 0;
+		const two = () => [...fingers.values()], apart = () => fingers.size > 1 ? Math.hypot(...[0, 1].map(k => two()[0][k] - two()[1][k])) : 0;
+		const middle = () => [0, 1].map(k => (two()[0][k] + two()[1][k]) / 2);
 		let drag = null;
 		canvas.addEventListener("pointerdown", e => {
 			fingers.set(e.pointerId, [e.clientX, e.clientY]);
 			canvas.setPointerCapture(e.pointerId);
 			if (this.beside)
 				this.wipe_to(e, canvas.getBoundingClientRect());
-			drag = { x: e.clientX, y: e.clientY, orbit: [...this.orbit], moved: fingers.size > 1, apart: this.beside ? 0 : apart(), field: this.values.field };
+			drag = { x: e.clientX, y: e.clientY, orbit: [...this.orbit], pan: [...this.pan], pans: e.button > 0 || e.altKey, moved: fingers.size > 1, apart: this.beside ? 0 : apart(), field: this.values.field };
+			if (drag.apart > 0)
+				[drag.x, drag.y] = middle();
 		});
 		canvas.addEventListener("pointermove", e => {
 			const box = canvas.getBoundingClientRect();
@@ -83,14 +87,20 @@ class Page extends Live {
 			if (drag && this.beside)
 				this.wipe_to(e, box);
 			else if (drag && drag.apart > 0) {
-				if (apart() > 0)
+				if (apart() > 0) {
+					const [x, y] = middle();
+					this.pan_to([drag.pan[0] + (x - drag.x) / box.height, drag.pan[1] + (y - drag.y) / box.height]);
 					this.set("field", drag.field * drag.apart / apart(), true);
+				}
 			} else if (drag) {
 				const dx = e.clientX - drag.x, dy = e.clientY - drag.y;
 				drag.moved = drag.moved || Math.hypot(dx, dy) > 4;
 				if (!drag.moved)
 					return;
-				this.orbit = [drag.orbit[0] + 3 * dx / box.height, Math.max(-1.2, Math.min(1.2, drag.orbit[1] - 3 * dy / box.height))];
+				if (drag.pans)
+					this.pan_to([drag.pan[0] + dx / box.height, drag.pan[1] + dy / box.height]);
+				else
+					this.orbit = [drag.orbit[0] + 3 * dx / box.height, Math.max(-1.2, Math.min(1.2, drag.orbit[1] - 3 * dy / box.height))];
 				this.changed();
 			} else if (this.follow === "pointer" && !this.beside) {
 				this.look_at(e, box);
@@ -106,6 +116,7 @@ class Page extends Live {
 				this.to_hash();
 			drag = null;
 		};
+		canvas.addEventListener("contextmenu", e => e.preventDefault());
 		canvas.addEventListener("pointerup", end);
 		canvas.addEventListener("pointercancel", end);
 		canvas.addEventListener("wheel", e => {
@@ -113,6 +124,9 @@ class Page extends Live {
 			if (!this.beside)
 				this.set("field", this.values.field * Math.exp(e.deltaY / 900), true);
 		}, { passive: false });
+		const stage = by_id("stage");
+		stage.addEventListener("dragover", e => e.preventDefault());
+		stage.addEventListener("drop", e => { e.preventDefault(); this.open_surroundings(e.dataTransfer.files[0]); });
 		canvas.addEventListener("keydown", e => this.key(e));
 		by_id("wipe").addEventListener("input", e => by_id("frame").style.setProperty("--at", `${e.target.value}%`));
 		new ResizeObserver(() => this.changed()).observe(by_id("stage"));
@@ -120,6 +134,11 @@ class Page extends Live {
 		canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); this.lost = setTimeout(() => give_up("the graphics driver was lost; load the page again"), 15000); });
 		// The address has all that was set: the page opens again as it was.
 		canvas.addEventListener("webglcontextrestored", () => { clearTimeout(this.lost); location.reload(); });
+	}
+
+	/* Never so far that nothing is left in the picture. */
+	pan_to(pan) {
+		this.pan = pan.map(v => Math.max(-0.6, Math.min(0.6, v)));
 	}
 
 	/* The bar between rendering and photograph follows the pointer. */
@@ -143,7 +162,9 @@ class Page extends Live {
 			return;
 		}
 		const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
-		if (step && e.shiftKey)
+		if (step && e.ctrlKey)
+			this.pan_to([this.pan[0] + 0.05 * step[0], this.pan[1] - 0.05 * step[1]]);
+		else if (step && e.shiftKey)
 			this.orbit = [this.orbit[0] + 0.1 * step[0], Math.max(-1.2, Math.min(1.2, this.orbit[1] + 0.1 * step[1]))];
 		else if (step) {
 			this.set_follow("typed");

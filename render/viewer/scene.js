@@ -69,7 +69,7 @@ class EyeScene {
 		const [relief, colour, model, veins, film] = await Promise.all([g.map(m.relief, 0), g.map(m.colour, "srgb"),
 			g.map(m.model, "log"), g.map(m.veins, "log"), g.map(m.film, "plain")]);
 		this.maps = { relief_map: relief, colour_map: colour, model_map: model, vein_map: veins, film_map: film };
-		this.lights = await Promise.all(data.lights.map(async l => ({ ...l,
+		this.lights = await Promise.all(data.lights.map(async l => l.opened ? l : ({ ...l,
 			sharp_map: l.sharp ? await g.map(l.sharp, "log") : null, rough_map: l.rough ? await g.map(l.rough, "log") : null })));
 	}
 
@@ -98,7 +98,7 @@ class EyeScene {
 		const t = [-c[0], -c[1], distance + 0.1 * e.sclera[1] - c[2]];  // as scene_view_turned of the programs
 		const away = R[8] * e.iris_depth + t[2];
 		return { R, head_from_eye, origin: turns.apply(turns.transpose(R), t).map(v => -v), corner: [0, 0],
-			lens: [focal, view.width / 2, height / 2, 1], pixel: away / focal };
+			lens: [focal, view.width / 2 + view.pan[0] * height, height / 2 + view.pan[1] * height, 1], pixel: away / focal };
 	}
 
 	/* The level of the maps whose texels are about as large as a pixel. */

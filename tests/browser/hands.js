@@ -94,7 +94,44 @@ async function touch(b) {
 	await b.until("eyewright.values.field < 25", 20).catch(() => 0);
 	const field = await b.value("eyewright.values.field"), orbit = await b.value("eyewright.orbit.join()");
 	say(Math.abs(field - 15) < 0.1 && orbit === "0,0", "two fingers twice as far apart zoom to twice the size and turn nothing", `${field} ${orbit}`);
+	for (const [type, dx] of [["touchStart", 0], ["touchMove", 0.05], ["touchMove", 0.1], ["touchEnd", null]])
+		await b.send("Input.dispatchTouchEvent", { type, touchPoints: dx === null ? [] : [{ x: x - 40 + dx * box.height, y, id: 0 }, { x: x + 40 + dx * box.height, y, id: 1 }] });
+	await b.until("Math.abs(eyewright.pan[0] - 0.1) < 0.01", 20).catch(() => 0);
+	const pan = await b.value("[eyewright.pan.map(v => v.toFixed(2)), eyewright.orbit].join()");
+	say(pan === "0.10,0.00,0,0", "two fingers that move together move the picture and turn nothing", pan);
 	await b.size(1000, 640);
+}
+
+/* The picture is moved, not turned: its brightness, row by row, is the same so many columns aside. */
+async function moved(b, file, mode) {
+	await open(b, file, `#gaze=0,0&view=${mode}`);
+	const off = await b.value(`(() => {
+		const p = eyewright, gl = p.graphics.gl, px = new Uint8Array(4 * 2048 * 2048);
+		p.busy = true;
+		const look = () => { p.scene.restart(); p.draw(presets[presets.length - 1]); gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+			gl.readPixels(0, 0, gl.canvas.width, gl.canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, px);
+			return Float32Array.from({ length: gl.canvas.width * gl.canvas.height }, (_, i) => px[4 * i + 1]); };
+		const first = look(), w = gl.canvas.width, h = gl.canvas.height, by = Math.round(0.1 * h);
+		p.pan_to([by / h, 0]);
+		const second = look(), off = [[], []];
+		p.busy = false;
+		for (let y = Math.round(0.3 * h); y < 0.7 * h; y += 3)
+			for (let x = Math.round(w / 2 - 0.2 * h); x < w / 2 + 0.2 * h; x += 3) {
+				off[0].push(Math.abs(second[y * w + x + by] - first[y * w + x]));
+				off[1].push(Math.abs(second[y * w + x] - first[y * w + x]));
+			}
+		return off.map(list => (list.reduce((s, v) => s + v, 0) / list.length).toFixed(2)).join();
+	})()`, 120000), [moved_by, stayed] = off.split(",").map(Number);
+	say(moved_by < 2 && stayed > 5 * moved_by, `a picture of the ${mode} is moved as a whole`, off);
+	const box = await box_of(b, "view"), at = [box.x + box.width / 2, box.y + box.height / 2];
+	await b.value("eyewright.reset()");
+	const drag = (type, x) => b.send("Input.dispatchMouseEvent", { type, x, y: at[1], button: "right", buttons: 2, clickCount: 1 });
+	await drag("mousePressed", at[0]);
+	await drag("mouseMoved", at[0] + 0.1 * box.height);
+	await drag("mouseMoved", at[0] + 0.2 * box.height);
+	await drag("mouseReleased", at[0] + 0.2 * box.height);
+	const got = await b.value("[eyewright.pan.map(v => v.toFixed(2)), eyewright.orbit, /pan=/.test(location.hash)].join()");
+	say(got === "0.20,0.00,0,0,true", `the right button moves the ${mode}, and the address keeps it`, got);
 }
 
 async function character(b) {
@@ -135,6 +172,8 @@ async function character(b) {
 		await beside(b);
 		await address(b);
 		await touch(b);
+		await moved(b, page, "eye");
+		await moved(b, face, "face");
 		await character(b);
 		say(!b.problems.length, "hands: no error on the console", b.problems.join("; "));
 	} finally {

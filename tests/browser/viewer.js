@@ -40,7 +40,7 @@ async function compare(b, png, yaw, pitch) {
 		const want = flat.getImageData(0, 0, n, n).data, got = new Uint8Array(4 * n * n);
 		s.resize(n, n);
 		s.restart();
-		const view = { yaw: ${yaw} * Math.PI / 180, pitch: ${pitch} * Math.PI / 180, orbit: [0, 0], field: 27, closure: 0 };
+		const view = { yaw: ${yaw} * Math.PI / 180, pitch: ${pitch} * Math.PI / 180, orbit: [0, 0], pan: [0, 0], field: 27, closure: 0 };
 		for (let i = 0; i < 4; i++)
 			s.add({ ...p.state(), aperture: null }, view, presets[0], [(i % 2) / 2 - 0.25, (i >> 1) / 2 - 0.25]);
 		s.show(n, n, p.eye.eye.exposure, true);

@@ -61,6 +61,30 @@ struct envmap light_studio(int height)
 	return env;
 }
 
+struct envmap light_window(int height)
+{
+	static const double ceiling[3] = { 0.36, 0.33, 0.29 }, floor[3] = { 0.20, 0.17, 0.14 }, deg = M_PI / 180;
+	// Four panes in a wall to the left, and the glow of the wall opposite.
+	static const double at[5][2] = { { -52, 27 }, { -33, 27 }, { -52, 2 }, { -33, 2 }, { 70, 5 } };
+	struct envmap_box boxes[5];
+	for (int i = 0; i < 5; i++) {
+		const double x = sin(at[i][0] * deg) * cos(at[i][1] * deg), y = -sin(at[i][1] * deg), day = i < 4 ? 14 : 0.9;
+		boxes[i] = (struct envmap_box){ { x, y, -sqrt(1 - x * x - y * y) }, { (i < 4 ? 8 : 25) * deg, (i < 4 ? 11.5 : 30) * deg },
+		                                { day * (i < 4 ? 0.90 : 1.1), day, day * (i < 4 ? 1.16 : 0.86) } };
+	}
+	struct envmap env = envmap_room(height, ceiling, floor, 0.4, 5, boxes);
+	envmap_normalise(&env);
+	return env;
+}
+
+struct envmap light_sky(int height)
+{
+	static const double zenith[3] = { 2.5, 2.7, 3.0 }, ground[3] = { 0.20, 0.19, 0.16 };
+	struct envmap env = envmap_room(height, zenith, ground, 1, 0, 0);
+	envmap_normalise(&env);
+	return env;
+}
+
 struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n)
 {
 	static const double dark[3] = { 0 };

@@ -44,6 +44,9 @@ double ellipse_radius(const struct ellipse *e, double x, double y);
 struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n);
 /* A photographer's studio: key, fill and a strip from above. envmap_free. */
 struct envmap light_studio(int height);
+/* Other surroundings of the same level: a room with daylight from a window of four panes at the left; an overcast sky. */
+struct envmap light_window(int height);
+struct envmap light_sky(int height);
 
 /* The mean colour of the sclera beside the limbus in a decoded photograph, under its light. Returns false, rgb unset, when
  * lids leave too little of it. */

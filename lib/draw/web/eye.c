@@ -121,7 +121,16 @@ static json_t *photo(const struct shot *shot)
 }
 
 /* The parts that take long to encode, the longest first; they are encoded in parallel. */
-enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, FILM, PARTS };
+enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, WINDOW, SKY, FILM, PARTS };
+
+/* Surroundings to choose from, coarser than the studio of the stills. */
+static json_t *elsewhere(const char *name, struct envmap (*make)(int height), const struct web_source *source, struct err *err)
+{
+	struct envmap env = make(source->studio->map.height < 128 ? source->studio->map.height : 128);
+	json_t *out = web_light(name, &env, &env, source, err);
+	envmap_free(&env);
+	return out;
+}
 
 static json_t *part_make(enum part part, const struct web_source *source, struct err *err)
 {
@@ -136,6 +145,8 @@ static json_t *part_make(enum part part, const struct web_source *source, struct
 	case MODEL: return l->model ? web_map_model(s, err) : 0;
 	case PHOTOGRAPHED: return shot ? web_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source, err) : 0;
 	case STUDIO: return web_light("Studio", source->studio, source->studio, source, err);
+	case WINDOW: return elsewhere("Window", light_window, source, err);
+	case SKY: return elsewhere("Overcast sky", light_sky, source, err);
 	default: return web_map_plain(&s->film, err);
 	}
 }
@@ -148,8 +159,12 @@ static void put_parts(json_t *out, json_t *part[PARTS])
 		if (names[i] && part[i])
 			json_object_set_new(maps, names[i], part[i]);
 	json_array_append_new(lights, part[STUDIO]);
-	if (part[PHOTOGRAPHED])
+	if (part[PHOTOGRAPHED]) {
+		json_object_set_new(part[PHOTOGRAPHED], "photographed", json_true());
 		json_array_append_new(lights, part[PHOTOGRAPHED]);
+	}
+	json_array_append_new(lights, part[WINDOW]);
+	json_array_append_new(lights, part[SKY]);
 	if (part[PHOTO])
 		json_object_set_new(out, "photo", part[PHOTO]);
 	json_object_set_new(out, "lights", lights);
