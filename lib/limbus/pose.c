@@ -12,9 +12,10 @@
 #include "optics/lightpath/lightpath.h"
 
 /* Parameters: axis (rotation vector of +z onto the eye's z, about x and y), limbus centre in the image (offset from
- * the ellipse's, in units of its semi-axis), log of its distance, pupil offset (mm), iris depth (mm), aspect. */
-enum { AX, AY, CX, CY, LOGZ, DX, DY, DZ, ASPECT, N };
-enum { R_ELLIPSE = 0, R_PUPIL = 5, R_PRIOR = 7, M = 11, MARGIN_POINTS = 8 };
+ * the ellipse's, in units of its semi-axis), log of its distance, pupil offset (mm), iris depth (mm), aspect, roll: how far the limbus's longer axis
+ * is turned out of the eye's x. */
+enum { AX, AY, CX, CY, LOGZ, DX, DY, DZ, ASPECT, ROLL, N };
+enum { R_ELLIPSE = 0, R_PUPIL = 5, R_PRIOR = 7, M = 12, MARGIN_POINTS = 8 };
 static const double NOMINAL_MM = 1000;
 
 struct problem {
@@ -25,7 +26,7 @@ struct problem {
 	double limbus_depth, focal, center[2];  // focal and centre in units of the semi-axis, from the ellipse's centre
 	double q[ELLIPSE_N], chol[ELLIPSE_N][ELLIPSE_N];
 	double pupil[2], pupil_sigma, pupil_radius;
-	double aspect_sigma;
+	double aspect_sigma, roll_sigma;
 };
 
 static void frame(double R[3][3], double limbus[3], double apex[3], const struct problem *p, const double *x)
@@ -39,16 +40,16 @@ static void frame(double R[3][3], double limbus[3], double apex[3], const struct
 	vec_add(apex, limbus, -p->limbus_depth, z);
 }
 
-/* Conic of the limbus: M = K [r X, r aspect Y, C], conic M^-T diag(1, 1, -1) M^-1. */
+/* Conic of the limbus: M = K [r X, r aspect Y, C], X and Y turned by the roll, conic M^-T diag(1, 1, -1) M^-1. */
 static bool project_limbus(double q[ELLIPSE_N], const struct problem *p, const double R[3][3], const double C[3],
-                           double aspect)
+                           double aspect, double roll)
 {
 	double m[3][3], inv[3][3], k[6];
-	const double r = p->eye->limbus_radius;
+	const double r = p->eye->limbus_radius, co = cos(roll), si = sin(roll);
 	for (int j = 0; j < 3; j++) {
 		double v[3];
 		for (int i = 0; i < 3; i++)
-			v[i] = j == 0 ? r * R[i][0] : j == 1 ? r * aspect * R[i][1] : C[i];
+			v[i] = j == 0 ? r * (co * R[i][0] + si * R[i][1]) : j == 1 ? r * aspect * (co * R[i][1] - si * R[i][0]) : C[i];
 		m[0][j] = p->focal * v[0] + p->center[0] * v[2];
 		m[1][j] = p->focal * v[1] + p->center[1] * v[2];
 		m[2][j] = v[2];
@@ -104,7 +105,7 @@ static bool residuals(void *ctx, const double *x, double *r, double *J)
 	if (hypot(x[AX], x[AY]) > 1.4)
 		return false;
 	frame(R, limbus, apex, p, x);
-	if (!project_limbus(q, p, R, limbus, x[ASPECT]))
+	if (!project_limbus(q, p, R, limbus, x[ASPECT], x[ROLL]))
 		return false;
 	for (int i = 0; i < ELLIPSE_N; i++) {  // L^-1 (q - observed)
 		double sum = q[i] - p->q[i];
@@ -123,6 +124,7 @@ static bool residuals(void *ctx, const double *x, double *r, double *J)
 	r[R_PRIOR + 1] = x[DY] / p->conf->pupil_offset_sigma;
 	r[R_PRIOR + 2] = (x[DZ] - p->eye->iris_depth) / p->conf->depth_sigma;
 	r[R_PRIOR + 3] = (x[ASPECT] - p->conf->aspect_mean) / p->aspect_sigma;
+	r[R_PRIOR + 4] = x[ROLL] / p->roll_sigma;
 	return true;
 }
 
@@ -142,7 +144,7 @@ static bool set_up(struct problem *p, const struct pose_view *view, const struct
 	const double a = e.a;
 	*p = (struct problem){ .view = view, .eye = eye, .conf = conf, .cornea = eye_cornea(eye),
 	                       .limbus_depth = eye_limbus_depth(eye), .focal = view->camera.focal_px / a,
-	                       .aspect_sigma = fmax(conf->aspect_sigma, 1e-6) };
+	                       .aspect_sigma = fmax(conf->aspect_sigma, 1e-6), .roll_sigma = fmax(conf->roll_sigma, 1e-6) };
 	p->cornea.rim *= 1.05;  // sight past the middle of the ramp
 	for (int i = 0; i < 2; i++)
 		p->center[i] = (view->camera.center_px[i] - (i ? e.cy : e.cx)) / a;
@@ -180,6 +182,7 @@ static void start(double *x, const struct problem *p, double tilt, double phi)
 	x[DX] = x[DY] = 0;
 	x[DZ] = p->eye->iris_depth;
 	x[ASPECT] = p->conf->aspect_mean;
+	x[ROLL] = 0;
 }
 
 struct solution {

@@ -15,6 +15,7 @@ struct pose_conf {
 	double depth_sigma;         // mm: iris plane against eye.iris_depth_mm
 	double pupil_floor;         // an irregular margin: sigma of its centre, share of the pupil's semi-axis
 	double aspect_mean, aspect_sigma;  // prior of vertical / horizontal; sigma 0: declared
+	double roll_sigma;          // rad: of the limbus's axes against the picture's; 0: level
 	double tilt_sigma;          // rad: of eyes round the front; 0: any direction of sight is as likely
 };
 

@@ -71,12 +71,14 @@ int main(int argc, char **argv)
 		OPT_REAL("pupil_floor", &o.pose.pupil_floor, 0, 0.2, "", "sigma of an irregular pupil's centre, of its axis"),
 		OPT_REAL("aspect_mean", &o.pose.aspect_mean, 0.7, 1.2, "", "limbus: vertical / horizontal"),
 		OPT_REAL("aspect_sigma", &o.pose.aspect_sigma, 0.001, 0.2, "", "its spread among people"),
+		OPT_REAL("roll_sigma", &o.roll_sigma_deg, 0, 30, "deg", "of the limbus's axes against the picture's"),
 		OPT_REAL("tilt_sigma", &o.tilt_sigma_deg, 1, 1000, "deg", "how far eyes look past the lens"),
 	};
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
 	struct err err = { 0 };
 	struct limbus_kept kept = { 0 };
 	o.find.face.roll = o.face_roll_deg * M_PI / 180;
+	o.pose.roll_sigma = o.roll_sigma_deg * M_PI / 180;
 	o.pose.tilt_sigma = o.tilt_sigma_deg * M_PI / 180;
 	bool ok = evidence_open_shipped(&o.find.net, &err) && strip_open_shipped(&o.find.strip, &err) && odds_open_shipped(&o.find.odds, &err);
 	ok = ok && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);

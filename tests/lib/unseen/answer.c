@@ -34,6 +34,7 @@ static struct pose_conf pose_conf_of(void)
 	struct pose_conf conf = pose_defaults;
 	conf.aspect_mean = 0.925;
 	conf.aspect_sigma = 0.025;
+	conf.roll_sigma = 4 * M_PI / 180;
 	conf.tilt_sigma = 30 * M_PI / 180;
 	return conf;
 }

@@ -207,10 +207,30 @@ static void test_pose(void **state)
 			}
 }
 
+/* A head that is not held level: a limbus that is no circle seems tilted, unless its roll is as uncertain as people's. */
+static void test_roll(void **state)
+{
+	(void)state;
+	const struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = 0.925, .iris_depth = 3.3 };
+	const double roll = 5 * DEG, m[4][4] = { { cos(roll), -sin(roll), 0, 0 }, { sin(roll), cos(roll), 0, 0 }, { 0, 0, 1, 90 }, { 0, 0, 0, 1 } };
+	const struct pose_view view = ideal_view(&eye, m, 7000);
+	struct pose_conf conf = pose_defaults;
+	struct pose level, turned;
+	struct err err = { 0 };
+	conf.aspect_mean = eye.limbus_aspect;
+	assert_true(limbus_pose(&level, &view, &eye, &conf, &err));
+	conf.roll_sigma = 4 * DEG;
+	assert_true(limbus_pose(&turned, &view, &eye, &conf, &err));
+	// A shape tells the square of the tilt near the front (limbus/rice.h): 0 is far off with a level head, and not with a turned one.
+	const double off[2] = { pow(level.theta + level.theta_sigma, 2) - pow(level.theta, 2), pow(turned.theta + turned.theta_sigma, 2) - pow(turned.theta, 2) };
+	assert_true(level.theta > 5 * DEG && pow(level.theta, 2) > 10 * off[0]);
+	assert_true(pow(turned.theta, 2) < 1.5 * off[1]);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_pose), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic),
+		cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic),
 		cmocka_unit_test(test_captures),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
