@@ -203,6 +203,19 @@ static json_t *held_words(const json_t *directions)
 	return list;
 }
 
+/* How the border layer's melanin differs from the pupil to the root, in words; null where one melanin explains the colours. */
+static json_t *melanin_words(const json_t *map)
+{
+	const json_t *rings = json_object_get(map, "rings"), *first = json_array_get(rings, 0);
+	const json_t *last = json_array_size(rings) > 1 ? json_array_get(rings, json_array_size(rings) - 1) : 0;
+	if (!last)
+		return 0;
+	const double at[2] = { json_number_value(json_object_get(first, "ln")), json_number_value(json_object_get(last, "ln")) };
+	const double sigma = json_number_value(json_object_get(first, "sigma"));
+	return page_text("%.2f times its mean next to the pupil (%.2f to %.2f), %.2f times at the root", exp(at[0]), exp(at[0] - sigma), exp(at[0] + sigma),
+	                 exp(at[1]));
+}
+
 static json_t *pigments(struct page *page, const char *dir)
 {
 	json_t *root = page_json(page, page_file(page, "%s/pigment.json", dir));
@@ -233,6 +246,9 @@ static json_t *pigments(struct page *page, const char *dir)
 		json_object_set_new(out, "residual", page_text("%.3f, %.3f, %.3f", json_number_value(json_array_get(rgb, 0)),
 		                                               json_number_value(json_array_get(rgb, 1)),
 		                                               json_number_value(json_array_get(rgb, 2))));
+	json_t *map = melanin_words(json_object_get(root, "melanin_map"));
+	if (map)
+		json_object_set_new(out, "map", map);
 	json_t *weak = held_words(json_object_get(root, "held_by_priors"));
 	json_object_set_new(out, "any_held", json_boolean(json_array_size(weak)));
 	json_object_set_new(out, "held", weak);

@@ -11,7 +11,7 @@ uniform vec3 sclera;              // z of its centre, radius, width of the limbu
 uniform float pixel;              // mm on the iris
 uniform vec2 heights;
 uniform int search;               // steps of the search for the relief
-uniform sampler2D colour_map, light_map, vein_map, film_map, sharp_map, rough_map;
+uniform sampler2D colour_map, light_map, tint_map, vein_map, film_map, sharp_map, rough_map;
 uniform float detail;
 uniform vec3 quadric[9], even;    // irradiance of the environment
 uniform float mirror_on, tear;
@@ -96,6 +96,6 @@ vec3 iris(vec2 p)
 	vec2 at = map_place(stretch(p, along, across));
 	vec3 shown = textureLod(colour_map, at, float(level)).rgb;
 	if (detail < 1.0)
-		shown = pow(max(shown, 1e-5), vec3(detail));
+		shown = pow(max(shown, 1e-5), vec3(detail)) * pow(textureLod(tint_map, at, 0.0).rgb, vec3(1.0 - detail));
 	return shown * textureLod(light_map, at, 0.0).rgb * cover;
 }

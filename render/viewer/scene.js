@@ -66,9 +66,9 @@ class EyeScene {
 
 	async load() {
 		const { g, data } = this, m = data.maps;
-		const [relief, colour, model, veins, film] = await Promise.all([g.map(m.relief, 0), g.map(m.colour, "srgb"),
-			g.map(m.model, "log"), g.map(m.veins, "log"), g.map(m.film, "plain")]);
-		this.maps = { relief_map: relief, colour_map: colour, model_map: model, vein_map: veins, film_map: film };
+		const [relief, colour, model, veins, film, tint] = await Promise.all([g.map(m.relief, 0), g.map(m.colour, "srgb"),
+			g.map(m.model, "log"), g.map(m.veins, "log"), g.map(m.film, "plain"), g.map(m.tint, "log")]);
+		this.maps = { relief_map: relief, colour_map: colour, model_map: model, vein_map: veins, film_map: film, tint_map: tint };
 		this.lights = await Promise.all(data.lights.map(async l => l.opened ? l : ({ ...l,
 			sharp_map: l.sharp ? await g.map(l.sharp, "log") : null, rough_map: l.rough ? await g.map(l.rough, "log") : null })));
 	}

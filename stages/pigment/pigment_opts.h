@@ -18,6 +18,11 @@
 	OPT_REALS("prior_stroma_ratio", (c)->prior_ratio[1], 2, 0, 1, "", "mean, sigma"), \
 	OPT_REAL("profile_error", &(c)->fit.profile_error, 0.001, 2, "", "error of ln thickness of the whole profile"), \
 	OPT_REAL("ring_error", &(c)->fit.ring_error, 0.001, 2, "", "of each ring"), \
+	OPT_CHOICE("melanin", &(c)->melanin, pigment_melanins, "of the border layer: one number for the iris (the paper's), or a map"), \
+	OPT_REAL("melanin_ring", &(c)->melanin_ring, 0.01, 5, "", "map: rms of ln melanin between rings"), \
+	OPT_REAL("melanin_field", &(c)->map.field, 0.01, 5, "", "map: rms of ln melanin about the rings'"), \
+	OPT_REAL("melanin_reach_mm", &(c)->map.reach, 0.1, 10, "mm", "map: distance over which that is alike"), \
+	OPT_REAL("melanin_cell_mm", &(c)->map.cell, 0.3, 3, "mm", "map: pitch of its nodes"), \
 	OPT_REALS("prior_spread", (c)->prior_spread, 2, 0.001, 3, "", "rms of ln thickness in a ring: median, sigma of ln"), \
 	OPT_REALS("prior_scale", (c)->prior_scale, 2, 0.01, 10, "", "median, sigma of ln"), \
 	OPT_REALS("prior_exposure", (c)->prior_exposure, 2, 0.01, 10, "", "median, sigma of ln"), \

@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "stages/pigment/find_white.h"
+#include "tissue/pigment/melanin_file.h"
 
 enum { MAP_LIMIT_PX = 1 << 26 };
 
@@ -20,14 +21,17 @@ struct work {
 	struct pigment_conf conf;  // as used: the cosines, the exposure's prior
 	struct pigment_classes classes;
 	struct pigment_fit fit;
+	struct melanin_map map;    // empty: one melanin
 };
 
 const char *const pigment_orders[] = { "single", "multiple", 0 }, *const pigment_whites[] = { "sclera", "card", "camera", 0 };
+const char *const pigment_melanins[] = { "one", "map", 0 };
 
 bool pigment_stage_check(struct pigment_stage_conf *c, struct err *err)
 {
 	c->fit.illuminant = (enum illuminant)c->illuminant;
 	c->fit.multiple = c->order == 1;
+	c->fit.melanin_ring = c->melanin == MELANIN_MAP ? c->melanin_ring : 0;
 	if (!(c->classes.outer > c->classes.inner))
 		return err_set(err, "pigment.outer = %g: must be above pigment.inner = %g", c->classes.outer, c->classes.inner);
 	if (!(c->white.pale.outer > c->white.pale.inner))
@@ -99,6 +103,8 @@ static char *extra_json(const struct work *w)
 	json_object_set_new(white, "spread", json_number(w->found.white.spread));
 	json_object_set_new(out, "white", white);
 	json_object_set_new(out, "light", light_json(w));
+	if (w->map.n)
+		json_object_set_new(out, "melanin_map", melanin_json(&w->map, &w->fit));
 	json_object_set_new(out, "note", json_string("thickness_scale times thickness against melanin, and exposure against all of them, are what one "
 	                                               "photograph tells least apart: see held_by_priors and correlation"));
 	char *text = json_dumps(out, 0);
@@ -115,6 +121,9 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 	           100 * x[PIGMENT_STROMA_RATIO], exp(x[PIGMENT_SCALE]), exp(x[PIGMENT_EXPOSURE]));
 	stage_note(stage, "%s: white from the %s, %d of %d starts' minima differ, residual %.0f %%, of colour alone %.0f %%", eye->side,
 	           white_names[w->found.white.source], f->minima - 1, f->starts, 100 * f->residual, 100 * f->residual_colour);
+	if (w->map.n)
+		stage_note(stage, "%s: melanin differs: x %.2f at the pupil, x %.2f at the root", eye->side, exp(f->ring[0].melanin),
+		           exp(f->ring[f->rings - 1].melanin));
 	stage_figure(stage, "residual", 100 * f->residual, "%");
 	stage_figure(stage, "residual_colour", 100 * f->residual_colour, "%");
 	stage_figure(stage, "abl_melanin", 100 * exp(x[PIGMENT_ABL_MELANIN]), "%");
@@ -161,9 +170,11 @@ static bool compute(struct work *w, char *const own[3], struct stage *stage, con
 		exposure[1] = hypot(exposure[1], c->light_unknown);
 	if (w->found.white.source == WHITE_CAMERA)
 		exposure[1] = hypot(exposure[1], c->white_unknown);
-	return pigment_classify(&w->classes, &w->clean, &w->thickness, info.extent_mm, &w->pupil, anatomy->limbus_radius + c->root_beyond_limbus,
-	                        w->found.white.rgb, &w->found.light, &c->classes, err)
-	       && pigment_solve(&w->fit, &w->classes, &w->conf, 0, err);
+	const struct pigment_texture t = { &w->clean, &w->thickness, &w->found.light, info.extent_mm, &w->pupil,
+		                                anatomy->limbus_radius + c->root_beyond_limbus, w->found.white.rgb };
+	if (!pigment_classify(&w->classes, &t, &c->classes, err) || !pigment_solve(&w->fit, &w->classes, &w->conf, 0, err))
+		return false;
+	return c->melanin == MELANIN_ONE || melanin_fit(&w->map, &t, &w->fit, &w->conf, &c->classes, &c->map, err);
 }
 
 /* Whether texture.json says that the texture has no colour. Older ones do not say. */

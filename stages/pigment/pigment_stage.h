@@ -3,14 +3,20 @@
 #include "anatomy/capture.h"
 #include "anatomy/eye.h"
 #include "tissue/pigment/white.h"
+#include "tissue/pigment/melanin.h"
 #include "tissue/pigment/pigment.h"
 
 extern const char *const pigment_orders[], *const pigment_whites[];  // "single", "multiple"; in the order of WHITE_FROM
+extern const char *const pigment_melanins[];  // in the order of MELANIN
+enum { MELANIN_ONE, MELANIN_MAP };
 enum { WHITE_FROM_SCLERA, WHITE_FROM_CARD, WHITE_FROM_CAMERA };
 
 struct pigment_stage_conf {
 	struct pigment_conf fit;
 	struct pigment_classes_conf classes;
+	int melanin;            // MELANIN_...
+	double melanin_ring;    // fit.melanin_ring where it is a map
+	struct melanin_conf map;
 	struct white_conf white;
 	double prior_exposure[2], prior_exposure_single[2];  // median, sigma of ln
 	double prior_white, prior_veil;                      // sigmas

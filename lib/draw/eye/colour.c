@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "draw/eye/march/march.h"
+#include "draw/eye/tint.h"
 #include "optics/lightpath/lightpath.h"
 
 SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float *const per_model[3])
@@ -37,17 +38,19 @@ void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const
 
 void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
 {
-	float per[3], ratio[3][BATCH], d = (float)s->conf.detail;
+	float per[3], ratio[3][BATCH], tint[3] = { 1, 1, 1 }, d = (float)s->conf.detail;
 	if (!level->model)
 		return;
 	for (int c = 0; c < 3; c++) {
 		per[c] = 1 / channel_at(level->model, level->n, level->per_mm, x, y, 4, c);
 		ratio[c][0] = rgb[c];
 	}
+	if (d < 1)
+		scene_tint_at(tint, s, x, y);
 	scene_colour_ratio(1, ratio, s, (const float *const[3]){ &per[0], &per[1], &per[2] });
 	for (int c = 0; c < 3; c++) {
 		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
-		rgb[c] = ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) : 0);
+		rgb[c] = ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) * powf(tint[c], 1 - d) : 0);
 	}
 }
 

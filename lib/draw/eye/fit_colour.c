@@ -1,7 +1,8 @@
 /* The albedo step. The fitted model has a handful of parameters; the photograph shows every fibre. So each texel keeps the
  * photograph's colour, and beside it the colour of the model in the light and view of the photograph. In any other light
  * and view the iris shows the photograph's colour times the ratio by which the model's colour changes:
- *     colour = gain model (texture / (gain model_of_photograph))^detail
+ *     colour = gain tint model (texture / (gain tint model_of_photograph))^detail
+ * with tint what the map of melanin and the photograph's white make of the model's colour (tint.h).
  * Where the model is dark its channels change by very different factors; they are clamped to within LOOK_CHROMA of their mean,
  * so that noise of dark texels does not turn into colour. */
 #include <math.h>
@@ -12,6 +13,7 @@
 #include "draw/eye/levels.h"
 #include "draw/eye/march/march.h"
 #include "draw/eye/march/shade.h"
+#include "draw/eye/tint.h"
 #include "draw/eye/view.h"
 
 /* Transmittance of the cornea for light on its way out. The texture contains this loss, which grows towards the edge; the model
@@ -49,10 +51,12 @@ static struct fit_sums sums_row(const struct scene *s, int y)
 		double u = (x + 0.5) / level->per_mm - s->extent, v = (y + 0.5) / level->per_mm - s->extent;
 		if (tex[3] < 0.5f || hypot(u - s->pupil[0], v - s->pupil[1]) < s->pupil[2] + 0.15 || hypot(u, v) > 0.92 * s->limbus[0])
 			continue;
+		float tint[3];
+		scene_tint_at(tint, s, (float)u, (float)v);
 		for (int c = 0; c < 3; c++) {
 			if (!(mod[c] > SCENE_DARK))  // unlit: no information on the model's brightness
 				continue;
-			double t = log(tex[c]), m = log(mod[c]);
+			double t = log(tex[c]), m = log(mod[c] * tint[c]);
 			f.n++;
 			f.tex += t;
 			f.mod += m;

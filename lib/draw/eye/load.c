@@ -12,6 +12,7 @@
 #include "draw/eye/march/nodes.h"
 #include "draw/eye/march/paths.h"
 #include "draw/eye/sclera.h"
+#include "draw/eye/tint.h"
 #include "image/exr.h"
 #include "iris/refraction_file.h"
 
@@ -145,6 +146,10 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
 	}
 	scene_fill(s->level[0].colour, s->level[0].n, s->extent, s->pupil);
 	scene_levels_make(s);
+	if (!scene_tint_make(s, files->pigment, err)) {
+		scene_free(s);
+		return false;
+	}
 	scene_nodes_make(s);
 	scene_veins_make(s);
 	s->paths = scene_paths_make(s);
@@ -167,6 +172,7 @@ void scene_free(struct scene *s)
 	image_free(&s->veins);
 	free(s->white.px);
 	image_free(&s->film);
+	image_free(&s->tint);
 	free(s->paths);
 	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };

@@ -35,7 +35,7 @@ struct scene_conf {
 	int quadrature, path;         // enum scene_quadrature, enum scene_path
 	int shading, apart;           // enum scene_shading; the march is done at every so many texels (1, 2, 4 or 8; 0: 2)
 	int bands;                    // wavelengths, 3..TISSUE_BANDS_MAX
-	double detail;                // 0: the fitted model alone; 1: times all of what the photograph shows beyond it
+	double detail;                // 0: the fitted model alone, its map of melanin in it; 1: times all of what the photograph shows beyond it
 	double limbus_width;          // mm, over which sclera becomes cornea
 	double sclera_radius;         // mm
 	double sclera_rgb[3];         // albedo of a healthy sclera
@@ -78,6 +78,7 @@ struct scene {
 	struct scene_level level[SCENE_LEVELS];
 	struct image veins;           // map of the sclera (sclera.h): albedo RGB; share of green that vessels take
 	struct scene_texels white;    // the same
+	struct image tint;            // [n][n][3] over the maps' square: what melanin's map and the photograph's white change the model's colour by; empty: nothing
 	struct image film;            // map of the sclera: slopes of the tear film's ripples
 	struct tissue tissue;
 	struct tissue_optics optics;

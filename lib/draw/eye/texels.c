@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "draw/eye/pupil.h"
+#include "draw/eye/tint.h"
 
 void scene_texels_make(struct scene_texels *out, const float *rgba, int n)
 {
@@ -27,12 +28,15 @@ void scene_shown_make(struct scene_level *l, const struct scene *s)
 #pragma omp parallel for schedule(dynamic, 16)
 	for (int y = 0; y < l->n; y++)
 		for (int x = 0; x < l->n; x++) {
-			float cover[3];
+			float cover[3], tint[3] = { 1, 1, 1 };
 			long at = 4 * ((long)y * l->n + x);
-			scene_pupil(cover, s, ((float)x + 0.5f) * step - extent, ((float)y + 0.5f) * step - extent, 0.5f * step);
+			float u = ((float)x + 0.5f) * step - extent, v = ((float)y + 0.5f) * step - extent;
+			scene_pupil(cover, s, u, v, 0.5f * step);
+			if (detail < 1)
+				scene_tint_at(tint, s, u, v);
 			for (int c = 0; c < 3; c++) {
 				float colour = l->colour[at + c];
-				shown[at + c] = cover[c] * (!l->model ? 1 : detail == 1 ? colour : powf(colour, detail));
+				shown[at + c] = cover[c] * (!l->model ? 1 : detail == 1 ? colour : powf(colour, detail) * powf(tint[c], 1 - detail));
 				bare[at + c] = cover[c] * (l->model ? fminf(colour / l->model[at + c], 4) : 1);
 			}
 		}

@@ -120,8 +120,16 @@ static json_t *photo(const struct shot *shot)
 	return out;
 }
 
+/* The tint of the model's colour; of one texel, 1, where there is none. */
+static json_t *tint(const struct scene *s, struct err *err)
+{
+	static const float none[3] = { 1, 1, 1 };
+	const struct image *t = &s->tint;
+	return t->px ? web_map_log(t->px, t->width, t->height, 3, SCENE_DARK, err) : web_map_log(none, 1, 1, 3, SCENE_DARK, err);
+}
+
 /* The parts that take long to encode, the longest first; they are encoded in parallel. */
-enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, WINDOW, SKY, FILM, PARTS };
+enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, WINDOW, SKY, FILM, TINT, PARTS };
 
 /* Surroundings to choose from, coarser than the studio of the stills. */
 static json_t *elsewhere(const char *name, struct envmap (*make)(int height), const struct web_source *source, struct err *err)
@@ -147,6 +155,7 @@ static json_t *part_make(enum part part, const struct web_source *source, struct
 	case STUDIO: return web_light("Studio", source->studio, source->studio, source, err);
 	case WINDOW: return elsewhere("Window", light_window, source, err);
 	case SKY: return elsewhere("Overcast sky", light_sky, source, err);
+	case TINT: return tint(s, err);
 	default: return web_map_plain(&s->film, err);
 	}
 }
@@ -154,7 +163,7 @@ static json_t *part_make(enum part part, const struct web_source *source, struct
 static void put_parts(json_t *out, json_t *part[PARTS])
 {
 	json_t *lights = json_array(), *maps = json_object();
-	static const char *const names[PARTS] = { [VEINS] = "veins", [RELIEF] = "relief", [COLOUR] = "colour", [MODEL] = "model", [FILM] = "film" };
+	static const char *const names[PARTS] = { [VEINS] = "veins", [RELIEF] = "relief", [COLOUR] = "colour", [MODEL] = "model", [FILM] = "film", [TINT] = "tint" };
 	for (int i = 0; i < PARTS; i++)
 		if (names[i] && part[i])
 			json_object_set_new(maps, names[i], part[i]);

@@ -3,74 +3,16 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "tissue/pigment/pigment.h"
-
-struct texel {
-	float thickness, share, rgb[3], key;
-};
+#include "tissue/pigment/texture.h"
 
 static int by_key(const void *a, const void *b)
 {
-	const struct texel *s = a, *t = b;
+	const struct pigment_texel *s = a, *t = b;
 	return (s->key > t->key) - (s->key < t->key);
 }
 
-/* A map's channels at a point, bilinear. */
-static void map_at(float out[4], const struct image *map, double extent, double x, double y)
-{
-	int n = map->width;
-	double u = fmin(fmax((x / extent + 1) / 2 * n - 0.5, 0), n - 1.001), v = fmin(fmax((y / extent + 1) / 2 * n - 0.5, 0), n - 1.001);
-	int i = (int)u, j = (int)v;
-	for (int c = 0; c < 4; c++) {
-		double top = image_at(map, i, j)[c] + (u - i) * (image_at(map, i + 1, j)[c] - image_at(map, i, j)[c]);
-		double low = image_at(map, i, j + 1)[c] + (u - i) * (image_at(map, i + 1, j + 1)[c] - image_at(map, i, j + 1)[c]);
-		out[c] = (float)(top + (v - j) * (low - top));
-	}
-}
-
-/* Mean colour of a square of texels; false where not all were well seen. */
-static bool mean_of(float rgb[3], const struct image *clean, int x0, int y0, int side)
-{
-	rgb[0] = rgb[1] = rgb[2] = 0;
-	for (int i = 0; i < side * side; i++) {
-		const float *p = image_at(clean, x0 + i % side, y0 + i / side);
-		if (!(p[3] > 0.5f))
-			return false;
-		for (int c = 0; c < 3; c++)
-			rgb[c] += p[c] / (float)(side * side);
-	}
-	return true;
-}
-
-/* Squares of texels that were well seen, divided by what white would show there; *n of them. */
-static struct texel *gather(long *n, const struct image *clean, const struct image *thickness, double extent,
-                            const struct pupil *pupil, double root, const double white[3], const struct image *light,
-                            const struct pigment_classes_conf *c)
-{
-	int size = clean->width, side = size / 320 + 1;
-	struct texel *all = mem_array((size_t)(size / side + 1) * (size_t)(size / side + 1), sizeof *all);
-	*n = 0;
-	for (int y = 0; y + side <= size; y += side) {
-		for (int x = 0; x + side <= size; x += side) {
-			double u = (2 * (x + 0.5 * side) / size - 1) * extent, v = (2 * (y + 0.5 * side) / size - 1) * extent;
-			double share = iris_share(pupil, root, u, v);
-			float rgb[3], here[4];
-			if (share < c->inner || share > c->outer || !mean_of(rgb, clean, x, y, side))
-				continue;
-			map_at(here, light, extent, u, v);
-			struct texel t = { .thickness = image_at(thickness, x + side / 2, y + side / 2)[0], .share = (float)share };
-			for (int k = 0; k < 3; k++)
-				t.rgb[k] = (float)(rgb[k] / (white[k] * here[k]));
-			t.key = 0.2126f * t.rgb[0] + 0.7152f * t.rgb[1] + 0.0722f * t.rgb[2];
-			if (isfinite(t.key) && t.thickness > 0)
-				all[(*n)++] = t;
-		}
-	}
-	return all;
-}
-
 /* Mean and scatter of n texels. */
-static struct pigment_class class_of(const struct texel *t, long n, double texels_per_sample)
+static struct pigment_class class_of(const struct pigment_texel *t, long n, double texels_per_sample)
 {
 	struct pigment_class out = { 0 };
 	double square[3] = { 0 };
@@ -106,7 +48,7 @@ static double score_between(double p, double q)
 	return (exp(-a * a / 2) - exp(-b * b / 2)) / sqrt(2 * M_PI) / (q - p);
 }
 
-static double median_thickness(const struct texel *t, long n)
+static double median_thickness(const struct pigment_texel *t, long n)
 {
 	double *all = mem_array((size_t)n, sizeof *all);
 	for (long i = 0; i < n; i++)
@@ -117,7 +59,7 @@ static double median_thickness(const struct texel *t, long n)
 }
 
 /* The levels of a ring, whose darkest and lightest texels are left out: glints, shadows and spots. */
-static void classify_ring(struct pigment_classes *out, struct texel *ring, long m, int r, double independent, const struct pigment_classes_conf *c)
+static void classify_ring(struct pigment_classes *out, struct pigment_texel *ring, long m, int r, double independent, const struct pigment_classes_conf *c)
 {
 	const double tail = 0.02;
 	double thickness = median_thickness(ring, m);
@@ -133,14 +75,12 @@ static void classify_ring(struct pigment_classes *out, struct texel *ring, long 
 	}
 }
 
-bool pigment_classify(struct pigment_classes *out, const struct image *clean, const struct image *thickness,
-                      double extent, const struct pupil *pupil, double root, const double white[3], const struct image *light,
-                      const struct pigment_classes_conf *c, struct err *err)
+bool pigment_classify(struct pigment_classes *out, const struct pigment_texture *texture, const struct pigment_classes_conf *c, struct err *err)
 {
 	*out = (struct pigment_classes) { 0 };
 	long n;
-	struct texel *all = gather(&n, clean, thickness, extent, pupil, root, white, light, c), *ring = mem_array((size_t)n + 1, sizeof *ring);
-	double pitch = 2 * extent / (clean->width / (clean->width / 320 + 1));
+	double pitch;
+	struct pigment_texel *all = pigment_texels(&n, &pitch, texture, c->inner, c->outer), *ring = mem_array((size_t)n + 1, sizeof *ring);
 	double independent = pitch * pitch / (c->grain * c->grain);
 	for (int r = 0; r < c->rings; r++) {
 		double from = c->inner + (c->outer - c->inner) * r / c->rings, to = c->inner + (c->outer - c->inner) * (r + 1) / c->rings;

@@ -34,6 +34,29 @@ static void start_at(double x[], int start, const struct pigment_problem *p)
 	}
 }
 
+/* Melanin of the rings against their mean, by the covariance of the unknowns. */
+static void measure_rings(struct pigment_fit *fit, const struct pigment_problem *p, const struct outcome *best)
+{
+	const struct pigment_classes *classes = p->classes;
+	int at = pigment_problem_rings_at(p), n = p->n, of_ring[PIGMENT_RINGS_MAX] = { 0 };
+	fit->rings = classes->rings;
+	for (int i = 0; i < classes->n && classes->rings; i++) {
+		fit->ring[classes->of[i].ring].share += classes->of[i].share;
+		of_ring[classes->of[i].ring]++;
+	}
+	for (int r = 0; r < fit->rings; r++) {
+		struct pigment_ring *ring = &fit->ring[r];
+		double variance = 0;
+		for (int a = 0; at >= 0 && a < fit->rings; a++)
+			for (int b = 0; b < fit->rings; b++)
+				variance += ((a == r) - 1.0 / fit->rings) * ((b == r) - 1.0 / fit->rings) * best->cov[(at + a) * n + at + b];
+		ring->share /= of_ring[r] ? of_ring[r] : 1;
+		ring->beyond = pigment_problem_beyond(p, best->x, r);
+		ring->melanin = pigment_problem_melanin(p, best->x, r);
+		ring->sigma = sqrt(fmax(variance, 0));
+	}
+}
+
 static void measure(struct pigment_fit *fit, const struct pigment_problem *p, const struct outcome *best)
 {
 	const double *cov = best->cov;
@@ -45,14 +68,12 @@ static void measure(struct pigment_fit *fit, const struct pigment_problem *p, co
 	}
 	for (int i = 0; i < p->classes->n; i++)
 		fit->thickness[i] = pigment_problem_thickness(p, best->x, i);
-	struct tissue tissue = pigment_tissue(fit->x, p->conf);
-	struct tissue_optics optics;
-	tissue_optics_make(&optics, &tissue, &p->bands);
+	measure_rings(fit, p, best);
 	double square = 0, light = 0, colour = 0, green = 0;
 	for (int i = 0; i < p->classes->n; i++) {
 		const struct pigment_class *class = &p->classes->of[i];
 		double rgb[3], r[3];
-		pigment_model(rgb, fit->x, &optics, fit->thickness[i], p->conf);
+		pigment_class_model(rgb, fit, p->classes, i, p->conf, &p->bands);
 		for (int k = 0; k < 3; k++) {
 			double d = rgb[k] - class->rgb[k];
 			fit->residual_rgb[k] += d * d / p->classes->n;
@@ -172,20 +193,51 @@ static bool solve_once(struct pigment_fit *fit, const struct pigment_classes *cl
 	return ok;
 }
 
+/* From the priors' means alone, so that all starts are held to the same errors: those that this fit shows where conf's are smaller. */
+static bool solve_errors(struct pigment_fit *fit, struct pigment_conf *used, const struct pigment_classes *classes, struct err *err)
+{
+	enum { SWEEPS = 3 };
+	used->starts = 1;
+	for (int k = 0; k < SWEEPS; k++) {
+		if (!solve_once(fit, classes, used, 0, err))
+			return false;
+		if (fit->residual_light <= used->light_error && fit->residual_colour <= used->model_error)
+			break;
+		used->light_error = fmax(used->light_error, fit->residual_light);
+		used->model_error = fmax(used->model_error, fit->residual_colour);
+	}
+	return true;
+}
+
+/* How much of the freedom that conf gives to melanin this iris has: the share of colour's residual under one melanin that is not the
+ * model's own error. */
+static bool varies(double *out, const struct pigment_classes *classes, const struct pigment_conf *conf, struct err *err)
+{
+	struct pigment_conf one = *conf;
+	struct pigment_fit fit;
+	one.melanin_ring = 0;
+	one.starts = 1;
+	*out = 0;
+	if (!(conf->melanin_ring > 0) || !classes->rings)
+		return true;
+	if (!solve_once(&fit, classes, &one, 0, err))
+		return false;
+	*out = sqrt(fmax(1 - pow(conf->model_error / fmax(fit.residual_colour, 1e-9), 2), 0));
+	return true;
+}
+
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                    const double *from, struct err *err)
 {
-	enum { SWEEPS = 3 };
 	struct pigment_conf used = *conf;
-	used.starts = 1;
-	for (int k = 0; k < SWEEPS; k++) {
-		if (!solve_once(fit, classes, &used, 0, err))  // from the priors' means, so that all starts are held to the same errors
-			return false;
-		if (fit->residual_light <= used.light_error && fit->residual_colour <= used.model_error)
-			break;
-		used.light_error = fmax(used.light_error, fit->residual_light);
-		used.model_error = fmax(used.model_error, fit->residual_colour);
-	}
+	double free_share;
+	if (!varies(&free_share, classes, conf, err))
+		return false;
+	used.melanin_ring *= free_share;
+	if (!solve_errors(fit, &used, classes, err))
+		return false;
 	used.starts = conf->starts;
-	return solve_once(fit, classes, &used, from, err);
+	bool ok = solve_once(fit, classes, &used, from, err);
+	fit->varies = free_share;
+	return ok;
 }

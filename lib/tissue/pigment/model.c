@@ -19,6 +19,14 @@ struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_con
 	};
 }
 
+struct tissue pigment_tissue_beyond(const double x[PIGMENT_N], double beyond, const struct pigment_conf *c)
+{
+	const double most = log(0.9);
+	struct tissue out = pigment_tissue(x, c);
+	out.layer[TISSUE_ABL].melanin = exp(fmin(x[PIGMENT_ABL_MELANIN] + beyond, most));
+	return out;
+}
+
 void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N])
 {
 	double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) };
@@ -32,4 +40,14 @@ void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue
 	double bare[3];
 	tissue_reflectance(bare, optics, stroma, c->cos_view, c->cos_light);
 	pigment_photograph(rgb, bare, x);
+}
+
+void pigment_class_model(double rgb[3], const struct pigment_fit *fit, const struct pigment_classes *classes, int i,
+                         const struct pigment_conf *conf, const struct tissue_bands *bands)
+{
+	double beyond = fit->rings ? fit->ring[classes->of[i].ring].melanin : 0;
+	struct tissue tissue = pigment_tissue_beyond(fit->x, beyond, conf);
+	struct tissue_optics optics;
+	tissue_optics_make(&optics, &tissue, bands);
+	pigment_model(rgb, fit->x, &optics, fit->thickness[i], conf);
 }

@@ -41,16 +41,20 @@ struct pigment_classes_conf {
 	double grain;                  // mm: detail below it is not independent
 };
 
-/* Reduces a texture to classes.
- * clean      R, G, B, W (linear; weight), square, half-width extent mm, without freckles
- * thickness  first channel mm; same grid
- * root       radius of the iris' root, mm
- * white      rgb of white that faces the camera in the same light
- * light      what white on the iris shows against that: iris_light_make, of the same extent; channels R, G, B, cosine
- * Classes with too few texels are left out. Returns false, err set, when fewer than 3 remain. */
-bool pigment_classify(struct pigment_classes *out, const struct image *clean, const struct image *thickness,
-                      double extent, const struct pupil *pupil, double root, const double white[3], const struct image *light,
-                      const struct pigment_classes_conf *conf, struct err *err);
+/* What the photographs show of an iris; all borrowed. */
+struct pigment_texture {
+	const struct image *clean;      // R, G, B, W (linear; weight), square, half-width extent mm, without freckles
+	const struct image *thickness;  // first channel mm; same grid
+	const struct image *light;      // what white on the iris shows against `white`: iris_light_make, of the same extent; R, G, B, cosine
+	double extent;
+	const struct pupil *pupil;
+	double root;                    // radius of the iris' root, mm
+	const double *white;            // [3], of white that faces the camera in the same light
+};
+
+/* Reduces a texture to classes. Classes with too few texels are left out. Returns false, err set, when fewer than 3 remain. */
+bool pigment_classify(struct pigment_classes *out, const struct pigment_texture *texture, const struct pigment_classes_conf *conf,
+                      struct err *err);
 
 struct pigment_conf {
 	double prior[PIGMENT_N][2];  // mean and sigma, in the unknowns' own units; veil: mean 0
@@ -59,6 +63,7 @@ struct pigment_conf {
 	double light_error, model_error;  // of ln light and of ln colour of a class, 1 sigma
 	double floor;                // absolute, of reflectance
 	double profile_error, ring_error;  // of ln thickness of the profile: common to all rings, and of each
+	double melanin_ring;         // rms of ln melanin of the border layer between rings; 0: the same in all of them
 	double prior_spread[2];      // rms of ln thickness inside a ring: mean and sigma of its logarithm
 	enum illuminant illuminant;
 	int bands, starts;
@@ -74,6 +79,10 @@ struct pigment_fit {
 	double residual_colour, residual_light;  // rms of ln red/green and ln blue/green; of ln green
 	double light_error, model_error;  // as used
 	double thickness[PIGMENT_CLASSES_MAX];  // mm, of each class
+	double varies;           // 0..1: share of melanin_ring that the colours ask for; 0: one melanin explains them
+	int rings;
+	struct pigment_ring { double share, beyond, melanin, sigma; } ring[PIGMENT_RINGS_MAX];  // iris_share of its middle; ln thickness beyond
+	                                                                                       // the profile; ln melanin beyond the iris', sigma
 	double cost;             // half the sum of squares, priors in it
 	int iterations;          // over all starts
 	int starts, minima;      // distinct minima found, within 2 of the lowest cost
@@ -85,6 +94,9 @@ struct pigment_fit {
 /* The tissue of these unknowns. */
 struct tissue pigment_tissue(const double x[PIGMENT_N], const struct pigment_conf *conf);
 
+/* The same with `beyond` added to ln melanin of the border layer. */
+struct tissue pigment_tissue_beyond(const double x[PIGMENT_N], double beyond, const struct pigment_conf *conf);
+
 /* Forward model: reflectance that the photograph shows of stroma of that thickness (mm), with exposure, white error and veil. */
 void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue_optics *optics, double stroma,
                    const struct pigment_conf *conf);
@@ -92,8 +104,13 @@ void pigment_model(double rgb[3], const double x[PIGMENT_N], const struct tissue
 /* What a photograph shows of a reflectance: exposure, error of the white, veil. */
 void pigment_photograph(double seen[3], const double rgb[3], const double x[PIGMENT_N]);
 
+/* The same of class i of a fit, with its ring's melanin. */
+void pigment_class_model(double rgb[3], const struct pigment_fit *fit, const struct pigment_classes *classes, int i,
+                         const struct pigment_conf *conf, const struct tissue_bands *bands);
+
 /* Fits the unknowns to the classes. Where the classes differ from the model by more than conf says they do (light_error, model_error), that
  * difference is the error that sigmas are reckoned with.
+ * Melanin differs between rings as far as one melanin leaves colours beyond model_error; where it does not, there is one.
  * from  [PIGMENT_N] the one start, or null: conf->starts starts, the first at the priors' means
  * Returns false, err set, when no start converges. */
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,

@@ -29,8 +29,31 @@ void pigment_problem_make(struct pigment_problem *p, const struct pigment_classe
 			unknown(p, OFFSETS + classes->rings + r, c->prior_spread[0], c->prior_spread[1], -6, 0);
 		}
 		p->n += 1 + 2 * classes->rings;
+		for (int r = 0; r < classes->rings && c->melanin_ring > 0; r++)
+			unknown(p, p->n++, 0, c->melanin_ring, -6, 6);
 	}
 	p->m = 3 * classes->n + p->n;
+}
+
+int pigment_problem_rings_at(const struct pigment_problem *p)
+{
+	return p->classes->rings && p->conf->melanin_ring > 0 ? OFFSETS + 2 * p->classes->rings : -1;
+}
+
+double pigment_problem_beyond(const struct pigment_problem *p, const double x[], int r)
+{
+	return p->classes->rings ? x[COMMON] + x[OFFSETS + r] : 0;
+}
+
+double pigment_problem_melanin(const struct pigment_problem *p, const double x[], int r)
+{
+	int at = pigment_problem_rings_at(p), rings = p->classes->rings;
+	double mean = 0;
+	if (at < 0)
+		return 0;
+	for (int i = 0; i < rings; i++)
+		mean += x[at + i] / rings;
+	return x[at + r] - mean;
 }
 
 double pigment_problem_thickness(const struct pigment_problem *p, const double x[], int i)
@@ -38,8 +61,8 @@ double pigment_problem_thickness(const struct pigment_problem *p, const double x
 	const struct pigment_class *class = &p->classes->of[i];
 	if (!p->classes->rings)
 		return class->thickness;
-	const double *offset = x + OFFSETS, *spread = offset + p->classes->rings;
-	return class->thickness * exp(x[COMMON] + offset[class->ring] + exp(spread[class->ring]) * class->z);
+	double spread = exp(x[OFFSETS + p->classes->rings + class->ring]);
+	return class->thickness * exp(pigment_problem_beyond(p, x, class->ring) + spread * class->z);
 }
 
 /* Relative error of a channel from noise alone; the model's own errors are added where residuals are formed. */
@@ -49,7 +72,7 @@ static double noise(const struct pigment_class *class, int k, const struct pigme
 	return sqrt(sampling * sampling + c->floor * c->floor) / fmax(class->rgb[k], c->floor);
 }
 
-static void class_residuals(double r[3], const struct pigment_class *class, const double rgb[3], const struct pigment_conf *c)
+void pigment_class_residuals(double r[3], const struct pigment_class *class, const double rgb[3], const struct pigment_conf *c)
 {
 	double floor = fmax(c->floor / 4, 1e-6), d[3], s[3];
 	for (int k = 0; k < 3; k++) {
@@ -61,18 +84,28 @@ static void class_residuals(double r[3], const struct pigment_class *class, cons
 	r[2] = (d[2] - d[1]) / hypot(c->model_error, s[2]);
 }
 
+/* Optics of every ring that differs, or of the iris. */
+struct all_optics {
+	struct tissue_optics of[PIGMENT_RINGS_MAX];
+};
+
 /* Reflectance of the tissue alone in every class. optics: of these unknowns. */
-static void reflect(double rgb[][3], const struct pigment_problem *p, const struct tissue_optics *optics, const double *x)
+static void reflect(double rgb[][3], const struct pigment_problem *p, const struct all_optics *optics, const double *x)
 {
+	bool one = pigment_problem_rings_at(p) < 0;
 	for (int i = 0; i < p->classes->n; i++)
-		tissue_reflectance(rgb[i], optics, pigment_problem_thickness(p, x, i), p->conf->cos_view, p->conf->cos_light);
+		tissue_reflectance(rgb[i], &optics->of[one ? 0 : p->classes->of[i].ring], pigment_problem_thickness(p, x, i), p->conf->cos_view,
+		                   p->conf->cos_light);
 }
 
 /* The expensive part. */
-static void optics_at(struct tissue_optics *optics, const struct pigment_problem *p, const double *x)
+static void optics_at(struct all_optics *optics, const struct pigment_problem *p, const double *x)
 {
-	struct tissue tissue = pigment_tissue(x, p->conf);
-	tissue_optics_make(optics, &tissue, &p->bands);
+	int n = pigment_problem_rings_at(p) < 0 ? 1 : p->classes->rings;
+	for (int r = 0; r < n; r++) {
+		struct tissue tissue = pigment_tissue_beyond(x, pigment_problem_melanin(p, x, r), p->conf);
+		tissue_optics_make(&optics->of[r], &tissue, &p->bands);
+	}
 }
 
 /* Classes, then priors. */
@@ -81,10 +114,22 @@ static void compare(double r[], const struct pigment_problem *p, const double *x
 	for (int i = 0; i < p->classes->n; i++, r += 3) {
 		double seen[3];
 		pigment_photograph(seen, rgb[i], x);
-		class_residuals(r, &p->classes->of[i], seen, p->conf);
+		pigment_class_residuals(r, &p->classes->of[i], seen, p->conf);
 	}
 	for (int j = 0; j < p->n; j++)
 		*r++ = (x[j] - p->mean[j]) / p->sigma[j];
+}
+
+/* Columns of the rings' melanin: a class knows that of its own ring, whose column is that of the whole iris' melanin. */
+static void ring_columns(const struct pigment_problem *p, double *J)
+{
+	int first = pigment_problem_rings_at(p), rings = p->classes->rings, rows = 3 * p->classes->n;
+	for (int r = 0; r < rings; r++) {
+		for (int i = 0; i < p->m; i++) {
+			double own = i < rows ? (p->classes->of[i / 3].ring == r) - 1.0 / rings : 0;
+			J[i * p->n + first + r] = i < rows ? own * J[i * p->n + PIGMENT_ABL_MELANIN] : i == rows + first + r ? 1 / p->sigma[first + r] : 0;
+		}
+	}
 }
 
 /* Central differences; the unknowns that are not the tissue's reuse its optics. */
@@ -92,13 +137,14 @@ bool pigment_residuals(void *ctx, const double *x, double *r, double *J)
 {
 	const double h = 1e-5;  // unknowns are of order 1: truncation and rounding are both about 1e-10
 	const struct pigment_problem *p = ctx;
-	struct tissue_optics here, there;
+	struct all_optics here, there;
+	int rings = pigment_problem_rings_at(p), n = rings < 0 ? p->n : rings;
 	double rgb[PIGMENT_CLASSES_MAX][3], side[2][PROBLEM_M_MAX], at[PROBLEM_N_MAX];
 	optics_at(&here, p, x);
 	reflect(rgb, p, &here, x);
 	compare(r, p, x, rgb);
 	memcpy(at, x, (size_t)p->n * sizeof *at);
-	for (int j = 0; J && j < p->n; j++) {
+	for (int j = 0; J && j < n; j++) {
 		bool tissue = j <= PIGMENT_SCALE;
 		for (int s = 0; s < 2; s++) {
 			at[j] = x[j] + (s ? h : -h);
@@ -111,5 +157,7 @@ bool pigment_residuals(void *ctx, const double *x, double *r, double *J)
 		for (int i = 0; i < p->m; i++)
 			J[i * p->n + j] = (side[1][i] - side[0][i]) / (2 * h);
 	}
+	if (J && rings >= 0)
+		ring_columns(p, J);
 	return true;
 }

@@ -58,16 +58,13 @@ static json_t *undetermined(const struct pigment_fit *fit)
 
 static json_t *classes_json(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf)
 {
-	struct tissue tissue = pigment_tissue(fit->x, conf);
 	struct tissue_bands bands;
-	struct tissue_optics optics;
 	tissue_bands_make(&bands, conf->bands, conf->illuminant);
-	tissue_optics_make(&optics, &tissue, &bands);
 	json_t *out = json_array();
 	for (int i = 0; i < classes->n; i++) {
 		const struct pigment_class *c = &classes->of[i];
 		double rgb[3];
-		pigment_model(rgb, fit->x, &optics, fit->thickness[i], conf);
+		pigment_class_model(rgb, fit, classes, i, conf, &bands);
 		json_t *entry = json_object();
 		json_object_set_new(entry, "thickness_mm", json_number(fit->thickness[i]));
 		json_object_set_new(entry, "share", json_number(c->share));
