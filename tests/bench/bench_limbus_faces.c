@@ -40,7 +40,7 @@ static struct seen seen_of(const struct answer *a, const struct unseen *u, int s
 	s.swapped = answer_meant(&a->e, u) != eye;
 	s.error = answer_error(&a->e, &eye->limbus);
 	s.right = s.error <= answer_right() * eye->limbus.a;
-	s.ratio = fabs(a->theta - eye->theta) / a->theta_sigma;
+	s.ratio = u->leans ? NAN : fabs(a->theta - eye->theta) / a->theta_sigma;
 	s.pupil = a->has_pupil;
 	const double off = fmax(hypot(a->pupil.cx - eye->pupil.cx, a->pupil.cy - eye->pupil.cy), fabs(a->pupil.a - eye->pupil.a));
 	s.pupil_wrong = s.pupil && off > 0.1 * eye->limbus.a;

@@ -15,9 +15,18 @@ static float dot3(const float a[3], const float b[3])
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Two limbi in three are as people's (11.7 mm across, 10.6 to 11 high), the others nearly circles, as on models and in many renderings. */
+static float aspect_of(struct rng *rng)
+{
+	const float circle = (float)fabs(0.01 * rng_normal(rng)), people = (float)(0.93 + 0.028 * rng_normal(rng));
+	return rng_below(rng, 3) ? fminf(fmaxf(people, 0.85F), 1) : 1 - circle;
+}
+
 struct ball ball_make(struct rng *rng, bool test)
 {
+	struct rng own = { rng->state ^ 0x632be59bd9b4e019 };
 	struct ball b = { .radius = range(rng, 11.5, 12.6), .limbus = range(rng, 5.4, 6.4), .depth = range(rng, -0.3, 0.5) };
+	b.aspect = aspect_of(&own);
 	b.cornea = range(rng, 7.1, 8.4);
 	b.to_limbus = sqrtf(b.radius * b.radius - b.limbus * b.limbus);
 	b.to_cornea = b.to_limbus - sqrtf(b.cornea * b.cornea - b.limbus * b.limbus);
@@ -77,6 +86,13 @@ static void sclera_at(float albedo[3], const struct ball *b, float x, float y, f
 	const float red[3] = { 0.06F, 0.5F, 0.45F };
 	for (int c = 0; c < 3; c++)
 		albedo[c] = b->sclera[c] * (1 - red[c] * fmaxf(pink, 0)) * (1 - (c ? 0.75F : 0.25F) * vein);
+}
+
+/* Radius of the limbus about the gaze towards p, mm. */
+static float limbus_towards(const struct ball *b, const float p[3])
+{
+	const float u = dot3(p, b->side), v = dot3(p, b->up) / b->aspect, w = dot3(p, b->up), rho = sqrtf(u * u + w * w);
+	return rho > 1e-6F ? b->limbus * rho / sqrtf(u * u + v * v) : b->limbus;
 }
 
 /* Where the ray that enters the cornea at p (normal n) meets the iris plane: radius and angle about the gaze's axis, mm. */
@@ -169,19 +185,21 @@ void ball_at(struct ball_point *out, const struct ball *b, const struct light *l
 		const float a = dot3(p, b->gaze);
 		if (a > b->to_limbus) {
 			float r = 0, angle = 0, at[2];
-			const float from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - b->limbus;
+			const float from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - limbus_towards(b, p);
 			const float m = 1 / sqrtf(dot3(p, p)), flat[3] = { p[0] * m, p[1] * m, p[2] * m };
 			if (through_cornea(&r, &angle, at, b, p, n) && (b->even || r < b->limbus * 1.02F))
 				out->label = behind_cornea(out->body, b, light, r, angle, at);
 			white(out, b, light, x, y, b->even ? flat : n, from, out->label == EVIDENCE_SCLERA ? 1 : ramp(b, x, y, from));
 			mirror(out->mirror, light, n, 1, false);
+			if (from > 0)
+				out->label = EVIDENCE_SCLERA;
 			return;
 		}
 	}
 	const float s = b->radius * b->radius - x * x - y * y;
 	const float z = sqrtf(fmaxf(s, 4)), m = 1 / sqrtf(x * x + y * y + z * z), p[3] = { x, y, z };
 	float n[3] = { x * m, y * m, z * m };
-	const float a = dot3(p, b->gaze), from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - b->limbus;
+	const float a = dot3(p, b->gaze), from = sqrtf(fmaxf(dot3(p, p) - a * a, 0)) - limbus_towards(b, p);
 	if (b->even && a > 0 && from < 4 * b->blur + b->ragged) {
 		const float angle = atan2f(dot3(p, b->up), dot3(p, b->side)), at[2] = { b->limbus * cosf(angle), b->limbus * sinf(angle) };
 		behind_cornea(out->body, b, light, b->limbus, angle, at);
@@ -211,18 +229,19 @@ static void circle_seen(float e[5], const struct ball *b, float along, float rad
 	e[4] = atan2f(b->gaze[1], b->gaze[0]) + 1.57079633F;
 }
 
-/* Where the middle of a ragged ramp is seen, at an angle about the gaze. */
-static void ragged_at(double p[2], const struct ball *b, double angle)
+/* Where the middle of the limbus's ramp is seen, at an angle about the gaze. */
+static void outline_at(double p[2], const struct ball *b, double angle)
 {
 	enum { ROUNDS = 12 };
+	const float co = (float)cos(angle), si = (float)sin(angle), limbus = b->limbus / hypotf(co, si / b->aspect);
 	float from = 0, x = 0, y = 0;
 	for (int i = 0; i < ROUNDS; i++) {
-		const float rho = b->limbus + from, round = from < 0 ? b->cornea : b->radius;
-		const float along = (from < 0 ? b->to_cornea : 0) + sqrtf(round * round - rho * rho);
-		const float c = rho * (float)cos(angle), s = rho * (float)sin(angle);
+		const float rho = limbus + from, round = rho < b->limbus ? b->cornea : b->radius;
+		const float along = (rho < b->limbus ? b->to_cornea : 0) + sqrtf(round * round - rho * rho);
+		const float c = rho * co, s = rho * si;
 		x = along * b->gaze[0] + c * b->side[0] + s * b->up[0];
 		y = along * b->gaze[1] + c * b->side[1] + s * b->up[1];
-		from += 0.5F * (-strays(b, x, y) - from);
+		from += 0.5F * (-(b->ragged > 0 ? strays(b, x, y) : 0) - from);
 	}
 	p[0] = x;
 	p[1] = y;
@@ -234,10 +253,10 @@ void ball_limbus(float e[5], const struct ball *b)
 	double p[PLACES][2];
 	struct ellipse seen;
 	circle_seen(e, b, b->to_limbus, b->limbus, (const float[2]){ 0, 0 });
-	if (!(b->ragged > 0))
+	if (!(b->ragged > 0) && b->aspect == 1)
 		return;
 	for (int i = 0; i < PLACES; i++)
-		ragged_at(p[i], b, 2 * M_PI * i / PLACES);
+		outline_at(p[i], b, 2 * M_PI * i / PLACES);
 	if (ellipse_fit_direct(&seen, PLACES, p, 0)) {
 		const double q[5] = { seen.cx, seen.cy, seen.a, seen.b, seen.angle };
 		for (int i = 0; i < 5; i++)

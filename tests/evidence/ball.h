@@ -8,7 +8,8 @@
 #include "light.h"
 
 struct ball {
-	float radius, limbus, cornea, depth;  // of ball, limbus circle, cornea; the iris plane behind the limbus plane
+	float radius, limbus, cornea, depth;  // of ball, limbus across, cornea; the iris plane behind the limbus plane
+	float aspect;                         // the limbus's height over its width: the sclera reaches over the cornea above and below
 	float gaze[3], side[3], up[3];        // unit
 	float to_limbus, to_cornea;           // along the gaze from the centre: limbus plane, cornea's centre
 	float pupil, pupil_at[2], pupil_wave[2], haze;
@@ -17,7 +18,7 @@ struct ball {
 	float sclera[3], canthus[3], vessels, vessel_scale, at[2], red;
 	const struct field *veins, *stain;
 	float wet, shine;                     // the tear film on the sclera: unevenness, how much it mirrors
-	bool even;                            // the limbus is a ramp of equal halves about its circle, in linear light: truth to a fraction of a px
+	bool even;                            // the limbus is a ramp of equal halves about its outline, in linear light: truth to a fraction of a px
 	struct iris iris;
 };
 
@@ -32,9 +33,8 @@ struct ball_point {
 };
 void ball_at(struct ball_point *out, const struct ball *ball, const struct light *light, float x, float y);
 
-/* Ellipse of the limbus or the pupil in the ball's frame: x, y, semi-axes, angle (radians, counterclockwise, y up). A ragged limbus's is that
- * which fits the middle of its ramp best. The pupil's
- * is that of a circle magnified and lifted by the cornea's refraction, good to some per cent. */
+/* Ellipse of the limbus or the pupil in the ball's frame: x, y, semi-axes, angle (radians, counterclockwise, y up). That of a limbus
+ * that is ragged or no circle is the one which fits the middle of its ramp best. The pupil's is that of a circle magnified and lifted by the cornea's refraction, good to some per cent. */
 void ball_limbus(float ellipse[5], const struct ball *ball);
 void ball_pupil(float ellipse[5], const struct ball *ball);
 

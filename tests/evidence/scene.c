@@ -151,6 +151,8 @@ static void note_eyes(struct drawn *d, const struct set *s, const struct canvas 
 		to_picture(eye->limbus, limbus, c, &s->face.frame[e]);
 		to_picture(eye->pupil, pupil, c, &s->face.frame[e]);
 		eye->openness = s->bare ? 2 : s->face.lids[e].open / (2 * s->ball[e].limbus);
+		eye->theta = acosf(fminf(s->ball[e].gaze[2], 1));
+		d->aspect = s->ball[e].aspect;
 		const float *m = eye->limbus;
 		if (m[0] < -m[2] || m[1] < -m[2] || m[0] > (float)c->width + m[2] || m[1] > (float)c->height + m[2])
 			continue;

@@ -14,6 +14,7 @@
 struct drawn_eye {
 	float limbus[5], pupil[5];  // x, y, semi-axes, angle
 	float openness;             // height of the opening over the limbus's diameter; 0 closed
+	float theta;                // radians between the gaze and the direction to the camera
 	float shown;                // share of the limbus's disc that neither lid nor the picture's edge hides
 };
 
@@ -22,6 +23,7 @@ struct drawn {
 	uint8_t *rgb, *label;  // [height][width][3], [height][width]
 	int n_eyes;
 	struct drawn_eye eye[2];
+	float aspect;          // of their limbi, vertical over horizontal, of the eye
 	float white[3];        // linear colour in which a white surface is shown
 	int light;             // enum light_kind
 	int iris;              // enum iris_family

@@ -22,12 +22,18 @@ double unseen_showing(const struct drawn *d, const struct ellipse *e)
 	return n / 360.0;
 }
 
+bool unseen_leans(const struct drawn *d, double turn)
+{
+	return d->aspect < 0.99F && fabs(turn) > 0.1;
+}
+
 bool unseen_draw(struct unseen *u, uint64_t number, const struct unseen_frame *f)
 {
 	const struct drawn_view view = { .radius = (float)f->radius, .x = (float)f->x, .y = (float)f->y, .turn = (float)f->turn, .mirrored = f->mirrored };
 	struct drawn d = drawn_photograph(number, &view, f->width, f->height);
 	u->maker = UNSEEN_DRAWN;
-	u->aspect = 1;
+	u->aspect = d.aspect;
+	u->leans = unseen_leans(&d, f->turn);
 	u->warmth = d.white[0] / d.white[2];
 	u->photo = unseen_photo(d.rgb, d.width, d.height);
 	double nearest = INFINITY;
@@ -39,7 +45,7 @@ bool unseen_draw(struct unseen *u, uint64_t number, const struct unseen_frame *f
 		if (u->n && at == 0)
 			u->eye[1] = u->eye[0];
 		const float *p = d.eye[e].pupil;
-		u->eye[at] = (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(&d, &limbus), acos(fmin(limbus.b / limbus.a, 1)) };
+		u->eye[at] = (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(&d, &limbus), d.eye[e].theta };
 		if (at == 0) {
 			nearest = away;
 			u->opening = d.eye[e].openness;

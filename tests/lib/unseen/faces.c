@@ -41,7 +41,7 @@ static struct unseen_eye eye_of(const struct drawn *d, int k)
 {
 	const float *l = d->eye[k].limbus, *p = d->eye[k].pupil;
 	const struct ellipse limbus = { l[0], l[1], l[2], l[3], l[4] };
-	return (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(d, &limbus), acos(fmin(limbus.b / limbus.a, 1)) };
+	return (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(d, &limbus), d->eye[k].theta };
 }
 
 static bool draw(struct unseen *u, uint64_t number, const struct shot *s)
@@ -59,7 +59,7 @@ static bool draw(struct unseen *u, uint64_t number, const struct shot *s)
 		// The line through both lies within 45 degrees of the rows: the eye farther right is the person's left one, if not mirrored.
 		const int left = (d.eye[0].limbus[0] > d.eye[1].limbus[0]) != s->mirrored ? 0 : 1;
 		*u = (struct unseen){ .photo = unseen_photo(d.rgb, d.width, d.height), .n = 2, .maker = UNSEEN_DRAWN, .opening = d.eye[0].openness,
-			.warmth = d.white[0] / d.white[2], .aspect = 1 };
+			.warmth = d.white[0] / d.white[2], .aspect = d.aspect, .leans = unseen_leans(&d, s->turn) };
 		u->eye[FACES_LEFT] = eye_of(&d, left);
 		u->eye[FACES_RIGHT] = eye_of(&d, 1 - left);
 	}

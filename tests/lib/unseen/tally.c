@@ -65,6 +65,8 @@ struct verdict verdict_of(const struct answer *a, const struct unseen *u)
 	const double off[4] = { a->e.cx - t->cx, a->e.cy - t->cy, a->e.a - t->a, a->e.b - t->b };
 	for (int k = 0; k < 4; k++)
 		v.ratio[k] = a->sigma[k] > 0 ? fabs(off[k]) / a->sigma[k] : NAN;
+	if (u->leans)
+		return v;
 	v.tilt = fabs(a->theta - eye->theta) / DEG;
 	v.tilt_ratio = fabs(a->theta - eye->theta) / a->theta_sigma;
 	v.weak = fabs(a->weak - eye->theta) / DEG;
