@@ -137,7 +137,7 @@ static bool runs(const struct plan *plan, const char *name)
 	return plan->rows[plan_stage_find(name)].run;
 }
 
-static const char rests[] = "the camera rests in video/: nothing in it tells cameras; camera.focal_px tells the lens";
+static const char rests[] = "the camera rests in video/, or nothing beside the head shows that it moves: nothing tells cameras; camera.focal_px tells the lens";
 static const char no_skin[] = "no mesh of the person (subject.ply), nor views/ to make it from: gaze and lids are followed, skin is not";
 
 /* Whether cameras are to be sought in the video alone: where its lens is not given, and unless the camera is seen to rest. */

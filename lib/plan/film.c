@@ -9,12 +9,13 @@
 #include "base/mem.h"
 #include "image/video/video.h"
 
-/* The picture is reduced to WIDE px and cut into cells of CELL px. Frames EVERY frames apart are compared with the first. */
-enum { WIDE = 320, CELL = 16, EVERY = 12, LOOKS = 5, LEAST_CELLS = 12 };
+/* The picture is reduced to WIDE px and cut into cells of CELL px. Frames EVERY frames apart are compared with the first. The border: BORDER cells. */
+enum { WIDE = 320, CELL = 16, EVERY = 12, LOOKS = 5, LEAST_CELLS = 12, BORDER = 2 };
 
 static const double texture = 6;          // mean gradient, of 255, that noise and coding do not make in the reduced picture
 static const double moved = 0.4;          // change of a cell, of its gradient: a shift by half a px of the reduced picture
 static const double most_moved = 0.75;    // share of what has texture that moves before a camera that rests
+static const double furnished = 1.0 / 3;   // share of a border's cells with texture, from which on a room is seen there: an ear alone has less
 static const struct video_conf limits = { .limit_mpx = 40, .limit_frames = 10000000, .threads = 2 };
 
 /* Brightness, reduced by averaging. */
@@ -58,20 +59,35 @@ static bool has_texture(bool *differs, const struct small *a, const struct small
 	return gradient > texture * n;
 }
 
-/* Whether nearly all that has texture moves. */
+/* Cells with texture and those of them that show something else, in a part of the picture. */
+struct count {
+	int textured, differ;
+};
+
+static bool mostly(const struct count *c, int least)
+{
+	return c->textured >= least && c->differ > most_moved * c->textured;
+}
+
+/* Whether nearly all that has texture moves, at the left and the right border too. Where a border is plain, what moves is a person
+ * before a wall: only what lies behind tells a camera that moves from a head that does. */
 static bool all_moves(const struct small *a, const struct small *b)
 {
-	const int wide = a->width / CELL, high = a->height / CELL;
-	int textured = 0, differ = 0;
+	const int wide = a->width / CELL, high = a->height / CELL, least = (int)ceil(furnished * BORDER * high);
+	struct count all = { 0 }, side[2] = { 0 };
 	for (int cy = 0; cy < high; cy++)
 		for (int cx = 0; cx < wide; cx++) {
 			bool differs;
 			if (!has_texture(&differs, a, b, cx, cy))
 				continue;
-			textured++;
-			differ += differs;
+			all.textured++;
+			all.differ += differs;
+			if (cx < BORDER || cx >= wide - BORDER) {
+				side[cx >= BORDER].textured++;
+				side[cx >= BORDER].differ += differs;
+			}
 		}
-	return textured >= LEAST_CELLS && differ > most_moved * textured;
+	return mostly(&all, LEAST_CELLS) && mostly(&side[0], least) && mostly(&side[1], least);
 }
 
 static enum film_camera look(const char *path)
@@ -81,22 +97,21 @@ static enum film_camera look(const char *path)
 	struct small first = { 0 }, now = { 0 };
 	struct video *video = video_open(&info, path, &limits, &none);
 	bool got = video;
-	int looks = 0;
-	bool moves = false;
+	int looks = 0, moved_in = 0;
 	for (int i = 0; got && looks < LOOKS; i++) {
 		struct video_frame f;
 		got = video_next(&f, &got, video, &none) && got;
 		if (got && i % EVERY == 0) {
 			reduce(looks ? &now : &first, &f);
 			if (looks++)
-				moves = moves || all_moves(&first, &now);
+				moved_in += all_moves(&first, &now);
 		}
 		video_frame_free(&f);
 	}
 	video_close(video);
 	free(first.px);
 	free(now.px);
-	return looks < 2 ? FILM_UNKNOWN : moves ? FILM_MOVES : FILM_RESTS;
+	return looks < 2 ? FILM_UNKNOWN : 2 * moved_in >= looks - 1 ? FILM_MOVES : FILM_RESTS;
 }
 
 enum film_camera plan_film_camera(const char *capture, const char *file)

@@ -5,8 +5,9 @@
 
 enum film_camera { FILM_UNKNOWN, FILM_RESTS, FILM_MOVES };
 
-/* Compares a few frames of the first second: before a camera that moves all that has texture moves, before one that rests a part of it stays, of the
- * room or of a head on a rest. A head that moves and fills the picture, or whose room has no texture, is taken for a camera that moves.
+/* Compares a few frames of the first second: before a camera that moves all that has texture moves, and at the left and the right border there is
+ * a room that does; before one that rests a part stays, of the room or of a head on a rest. A head that moves before a plain wall is taken for what it is,
+ * a camera that moves before one for a head.
  * capture  its work/.made/film keeps the answer until the file changes
  * file     relative to it
  * FILM_UNKNOWN where the file cannot be decoded: the stages that read it say why. */

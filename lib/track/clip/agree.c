@@ -24,13 +24,18 @@ bool track_agrees(struct track_result *r, const struct track_clip *clip, const s
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
 		worst = r->trust.log_odds[i] < r->trust.log_odds[worst] ? i : worst;
 	const struct trust_name *name = &trust_names[worst];
+	const char *needed = s->assumed ? "the person's mesh (subject.ply) and the lens (camera.focal_px)" : "subject.eye_center.left and .right";
 	if (r->trust.wrong > conf->wrong_most && r->trust.far > 0.5 * r->trust.wrong)
-		return err_set(err, "%s: gaze is off by more than %g degrees (track.wrong_deg) with a probability of %.2g, must be at most %g (track.wrong_most): how the head is turned in frame %ld is not known well enough; give subject.eye_center.left and .right, or let the head turn",
-		               clip->file, conf->wrong_deg, r->trust.wrong, conf->wrong_most, clip->reference);
+		return err_set(err, "%s: gaze is off by more than %g degrees (track.wrong_deg) with a probability of %.2g, must be at most %g (track.wrong_most): how the head is turned in frame %ld is not known well enough; give %s, or let the head turn",
+		               clip->file, conf->wrong_deg, r->trust.wrong, conf->wrong_most, clip->reference, needed);
+	// What is known speaks for it, but too little is known.
+	if (r->trust.wrong > conf->wrong_most && !(r->trust.log_odds[worst] < 0))
+		return err_set(err, "%s: followed from frame %ld; too little shows that it is right: wrong with a probability of %.2g, must be at most %g (track.wrong_most): give %s, or film longer and from in front",
+		               clip->file, clip->reference, r->trust.wrong, conf->wrong_most, needed);
 	if (r->trust.wrong > conf->wrong_most)
 		return err_set(err, "%s: followed from frame %ld, but wrongly with a probability of %.2g, must be at most %g (track.wrong_most): %s by %.2f %s, in clips followed rightly %.2g (track.trust_%s): %s",
 		               clip->file, clip->reference, r->trust.wrong, conf->wrong_most, name->what, r->trust.value[worst], name->unit, conf->trust[worst][0], name->key,
-		               name->advice);
+		               s->assumed ? "film from in front, or give the person's mesh (subject.ply) and the lens (camera.focal_px)" : name->advice);
 	if (share < conf->gaze_least)
 		return err_set(err, "%s: gaze in %.0f %% of the frames, must be in at least %.0f %% (track.gaze_least): film closer, sharper, or give subject.eye_center.* and camera.focal_px",
 		               clip->file, 100 * share, 100 * conf->gaze_least);

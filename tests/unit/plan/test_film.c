@@ -65,7 +65,7 @@ static void test_camera(void **state)
 	assert_int_equal(camera_of("rests"), FILM_RESTS);
 	assert_int_equal(camera_of("face"), FILM_RESTS);
 	assert_int_equal(camera_of("moves"), FILM_MOVES);
-	assert_int_equal(camera_of("plain"), FILM_MOVES);  // nothing tells that it does not
+	assert_int_equal(camera_of("plain"), FILM_RESTS);  // a person who moves before a wall: nothing tells that it is the camera
 }
 
 /* What is no film, and a pipe that nobody writes to: not known, and it does not wait. */

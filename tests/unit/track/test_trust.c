@@ -1,5 +1,6 @@
 /* How likely a clip is wrong by all that would differ: Bayes' rule, by states written by hand. */
 #include "base/mem.h"
+#include "track/clip/agree.h"
 #include "track/clip/trust.h"
 #include "tests/lib/unit.h"
 
@@ -130,6 +131,28 @@ static void nothing_seen(void **state)
 	NEAR(t.wrong, 0.2, 1e-12);
 }
 
+/* Nothing known speaks against the clip, nor for it: the refusal blames no evidence, and asks for what a clip without a mesh lacks. */
+static void too_little_known(void **state)
+{
+	(void)state;
+	struct film film;
+	struct err err = { 0 };
+	struct track_conf conf = keys();
+	conf.wrong_most = 0.1;
+	shoot(&film, 0, 0, 0);
+	film.subject.assumed = true;
+	for (long f = 0; f < FRAMES; f++) {
+		film.result.misfit[f] = NAN;
+		for (int e = 0; e < SIDES; e++)
+			film.result.eyes.state[f][e].gaze[0] = film.result.eyes.state[f][e].gaze[1] = NAN;
+	}
+	assert_false(track_agrees(&film.result, &film.clip, &film.subject, &conf, &err));
+	assert_non_null(strstr(err.msg, "too little shows that it is right: wrong with a probability of 0.2"));
+	assert_non_null(strstr(err.msg, "subject.ply"));
+	assert_null(strstr(err.msg, "nan"));
+	track_result_free(&film.result);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -138,6 +161,7 @@ int main(void)
 		cmocka_unit_test(weighed_together),
 		cmocka_unit_test(off_by_degrees),
 		cmocka_unit_test(nothing_seen),
+		cmocka_unit_test(too_little_known),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
