@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/json.h"
 #include "base/mem.h"
 #include "base/work.h"
 #include "tests/lib/scratch.h"
@@ -30,6 +31,19 @@ static void written_is_read(void **state)
 	assert_false(file_read(&back, &size, path, sizeof data - 1, &err));
 	ERR_HAS(err, "must be <= 999");
 	assert_null(back);
+}
+
+/* What JSON's reader quotes of a damaged file stays one line. */
+static void damaged_json_is_refused_in_a_line(void **state)
+{
+	(void)state;
+	static const char text[] = "{\":n\\u\nl}";
+	struct err err = { 0 };
+	const char *path = scratch_path("damaged.json");
+	assert_true(file_write(path, text, sizeof text - 1, &err));
+	assert_null(json_read(path, 1000, &err));
+	ERR_HAS(err, "not JSON");
+	assert_null(strchr(err.msg, '\n'));
 }
 
 static int files_in(const char *dir)
@@ -291,6 +305,7 @@ int main(void)
 		SCRATCH_TEST(hashes_and_lists),
 		SCRATCH_TEST(written_by_many),
 		SCRATCH_TEST(swept),
+		cmocka_unit_test(damaged_json_is_refused_in_a_line),
 		cmocka_unit_test(errors_keep_the_first),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
