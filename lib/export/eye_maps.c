@@ -223,10 +223,11 @@ static int holds(int n, int most)
 	return px;
 }
 
-bool export_eye_maps(struct image maps[EXPORT_MAPS], const struct scene *s, const struct image *freckles, int most, struct err *err)
+bool export_eye_maps(struct image maps[EXPORT_MAPS], const struct scene *s, const struct image *freckles, const struct envmap *lit, int most,
+                     struct err *err)
 {
 	int px = holds(s->level[0].n, most), white = holds(s->veins.width, most);
-	struct image albedo = scene_albedo(s), veins = vessels(s), height, thickness, normal;
+	struct image albedo = scene_albedo(s, lit), veins = vessels(s), height, thickness, normal;
 	relief_maps(&height, &thickness, &normal, s);
 	for (int i = 0; i < EXPORT_MAPS; i++)
 		maps[i] = (struct image){ 0 };

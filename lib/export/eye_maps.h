@@ -29,7 +29,9 @@ extern const int export_map_channels[EXPORT_MAPS];
  *         sclera's that holds its map; the cornea's half of that, roughness and ripples a quarter.
  * most    the largest, px
  * freckles  opacity on the iris maps' extent, any size; null: none
+ * lit     light that the albedo's mean is between even light and (albedo.h)
  * Call after scene_fit_colour. Returns false, err set, where resampling fails. */
-bool export_eye_maps(struct image maps[EXPORT_MAPS], const struct scene *scene, const struct image *freckles, int most, struct err *err);
+bool export_eye_maps(struct image maps[EXPORT_MAPS], const struct scene *scene, const struct image *freckles, const struct envmap *lit, int most,
+                     struct err *err);
 
 #endif

@@ -219,7 +219,7 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct err *err
 	struct image freckles = { 0 };
 	const char *made_by = stage_made_by(job->stage, f.n_in, f.in);
 	bool ok = job_ready(job, err) && load_freckles(&freckles, job, err)
-	          && export_eye_maps(w.maps, &job->scene, freckles.px ? &freckles : 0, conf->texture_px, err) && export_encode(&w, err);
+	          && export_eye_maps(w.maps, &job->scene, freckles.px ? &freckles : 0, &job->studio, conf->texture_px, err) && export_encode(&w, err);
 	if (ok) {
 		export_eye_meshes(w.parts, &job->scene, &conf->mesh);
 		refer(&w);
