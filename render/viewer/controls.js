@@ -214,8 +214,18 @@ class Controls extends Address {
 				said("The address is in the address bar");
 			}
 		});
+		const clock = this.button("Time the graphics processor", () => {
+			this.times_gpu = !this.times_gpu;
+			this.gpu_times = [];
+			this.gpu_ms = undefined;
+			clock.setAttribute("aria-pressed", this.times_gpu);
+			this.show_time();
+			this.changed();
+		}, !!this.times_gpu);
+		clock.disabled = !this.graphics.timer;
+		clock.title = clock.disabled ? "This browser does not tell how long its graphics processor takes" : "Shown beside the time of a frame";
 		return element("fieldset", {}, element("legend", { textContent: "Page" }), element("div", { className: "row" }, element("label", { htmlFor: "quality", textContent: "Quality while moving" }), quality),
-			element("div", { className: "buttons" }, copy, this.button("Reset all", () => this.reset())));
+			element("div", { className: "buttons" }, copy, clock, this.button("Reset all", () => this.reset())));
 	}
 
 	reset() {

@@ -102,6 +102,22 @@ async function touch(b) {
 	await b.size(1000, 640);
 }
 
+/* Asked for, the readout has the graphics processor's own time beside the frame's; where the driver tells none, it is not offered. */
+async function timed(b) {
+	await open(b, page, "#gaze=0,0");
+	const press = () => b.value("[...document.querySelectorAll('button')].find(e => e.textContent === 'Time the graphics processor').click()");
+	const told = "document.getElementById('time').textContent", offered = await b.value("[...document.querySelectorAll('button')].some(e => e.textContent === 'Time the graphics processor' && !e.disabled)");
+	if (!offered) {
+		say(await b.value("eyewright.graphics.timer === null"), "no time of a graphics processor is offered that tells none", "");
+		return;
+	}
+	await press();
+	await b.until(`/ms of them on the graphics processor/.test(${told})`, 60).catch(() => 0);
+	const ms = await b.value("[eyewright.gpu_ms > 0, eyewright.gpu_ms <= 3 * eyewright.frame_ms + 50].join()"), text = await b.value(told);
+	await press();
+	say(ms === "true,true" && !/processor/.test(await b.value(told)), "the graphics processor's time is told when asked for, and no longer", `${ms} ${text}`);
+}
+
 /* The picture is moved, not turned: its brightness, row by row, is the same so many columns aside. */
 async function moved(b, file, mode) {
 	await open(b, file, `#gaze=0,0&view=${mode}`);
@@ -172,6 +188,7 @@ async function character(b) {
 		await beside(b);
 		await address(b);
 		await touch(b);
+		await timed(b);
 		await moved(b, page, "eye");
 		await moved(b, face, "face");
 		await character(b);
