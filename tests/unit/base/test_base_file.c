@@ -305,7 +305,7 @@ int main(void)
 		SCRATCH_TEST(hashes_and_lists),
 		SCRATCH_TEST(written_by_many),
 		SCRATCH_TEST(swept),
-		cmocka_unit_test(damaged_json_is_refused_in_a_line),
+		SCRATCH_TEST(damaged_json_is_refused_in_a_line),
 		cmocka_unit_test(errors_keep_the_first),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
