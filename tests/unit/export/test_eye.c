@@ -115,17 +115,53 @@ static void pupil_at_any_weight(void **state)
 	scene_free(&s);
 }
 
-static void maps_of(struct image maps[EXPORT_MAPS], const struct scene *s)
+/* lamp: radiance of a lamp that stands aside in an even room. */
+static void maps_under(struct image maps[EXPORT_MAPS], const struct scene *s, double room, double lamp)
 {
 	struct err err = { 0 };
-	if (!export_eye_maps(maps, s, 0, 256, &err))
+	const struct envmap_box box = { { -0.8, 0, -0.6 }, { 0.15, 0.15 }, { lamp, lamp, lamp } };
+	struct envmap env = envmap_room(32, (double[3]){ room, room, room }, (double[3]){ room, room, room }, 1, lamp > 0, &box);
+	if (!export_eye_maps(maps, s, 0, &env, 256, &err))
 		fail_msg("%s", err.msg);
+	envmap_free(&env);
+}
+
+static void maps_of(struct image maps[EXPORT_MAPS], const struct scene *s)
+{
+	maps_under(maps, s, 1, 0);
 }
 
 static void maps_free(struct image maps[EXPORT_MAPS])
 {
 	for (int i = 0; i < EXPORT_MAPS; i++)
 		image_free(&maps[i]);
+}
+
+/* The pattern of the albedo is that of even light; light from one side changes it by one factor a channel, and its strength by nothing. */
+static void albedo_of_other_light(void **state)
+{
+	(void)state;
+	struct scene s;
+	struct image even[EXPORT_MAPS], strong[EXPORT_MAPS], aside[EXPORT_MAPS];
+	double least = INFINITY, most = 0;
+	tilted(&s, &plain_eye);
+	maps_under(even, &s, 1, 0);
+	maps_under(strong, &s, 3, 0);
+	maps_under(aside, &s, 0.1, 30);
+	for (int y = 8; y < 248; y += 8)
+		for (int x = 8; x < 248; x += 8) {
+			const float *a = image_at(&even[EXPORT_IRIS_ALBEDO], x, y), *b = image_at(&strong[EXPORT_IRIS_ALBEDO], x, y), *c = image_at(&aside[EXPORT_IRIS_ALBEDO], x, y);
+			assert_true(fabs(a[1] - b[1]) < 1e-5 + 0.005 * a[1]);  // an even room is cut into regions in many ways
+			if (a[1] > 0.01f && a[1] < 0.9f && c[1] < 0.9f) {
+				least = fmin(least, c[1] / a[1]);
+				most = fmax(most, c[1] / a[1]);
+			}
+		}
+	assert_true(isfinite(least) && most - least < 0.01 * most);
+	maps_free(even);
+	maps_free(strong);
+	maps_free(aside);
+	scene_free(&s);
 }
 
 /* A slope's normal; on the axis the way to the iris is the chamber's depth, off it what Snell's law gives. */
@@ -236,7 +272,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(cornea_and_sclera),  cmocka_unit_test(faces_look_outwards),     cmocka_unit_test(pupil_at_any_weight),
-		cmocka_unit_test(maps_of_a_slope),    cmocka_unit_test(what_a_rasteriser_loses), cmocka_unit_test(fewer_triangles),
+		cmocka_unit_test(maps_of_a_slope), cmocka_unit_test(albedo_of_other_light),    cmocka_unit_test(what_a_rasteriser_loses), cmocka_unit_test(fewer_triangles),
 		SCRATCH_TEST(khronos_validator_finds_nothing),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
