@@ -41,7 +41,7 @@ int main(int argc, char **argv)
 	for (int i = 0; ok && i < eyes.n; i++)
 		ok = (stage.only || render_eye(&eyes.job[i], &err)) && export_eye(&eyes.job[i], &leaves, &err);
 	skin.portrait.eye_samples = conf.samples;
-	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .capture = &capture, .eye = &eye, .photographed = &eyes };
+	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .leaves = &leaves, .capture = &capture, .eye = &eye, .photographed = &eyes };
 	if (!stage.only) {
 		ok = ok && render_skin(&faces, &err) && film_make(&faces, &err);
 		show(&faces, ok, &err);

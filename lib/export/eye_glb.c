@@ -3,6 +3,7 @@
 #include <jansson.h>
 #include <stdlib.h>
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "base/version.h"
 #include "rig/glb/buffer.h"
@@ -119,7 +120,7 @@ static json_t *nodes(const char *name)
 	return list;
 }
 
-bool export_eye_glb(const char *path, const struct export_eye *eye, long *bytes, struct err *err)
+bool export_eye_pack(char **out, size_t *size, const struct export_eye *eye, struct err *err)
 {
 	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
 	json_t *asset = json_pack("{s:s,s:s}", "version", "2.0", "generator", "Eyewright " EYEWRIGHT_VERSION), *meshes = json_array();
@@ -135,8 +136,18 @@ bool export_eye_glb(const char *path, const struct export_eye *eye, long *bytes,
 	json_object_set_new(root, "accessors", g.accessors);
 	json_object_set_new(root, "bufferViews", g.views);
 	json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)g.size));
-	bool ok = glb_save(path, &g, root, bytes, err);
+	bool ok = glb_pack(out, size, &g, root, err);
 	json_decref(root);
 	free(g.bin);
+	return ok;
+}
+
+bool export_eye_glb(const char *path, const struct export_eye *eye, long *bytes, struct err *err)
+{
+	char *out;
+	size_t size;
+	bool ok = export_eye_pack(&out, &size, eye, err) ? file_write(path, out, size, err) : err_wrap(err, "%s", path);
+	*bytes = (long)size;
+	free(out);
 	return ok;
 }

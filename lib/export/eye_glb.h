@@ -29,7 +29,10 @@ struct export_eye {
 	const char *name, *made_by;         // of the root node; JSON text, or null
 };
 
-/* Writes the file. bytes: its length, out. Returns false, err set, when it cannot. */
+/* The file's bytes; out: free(). Returns false, err set, where they are too many for a glTF. */
+bool export_eye_pack(char **out, size_t *size, const struct export_eye *eye, struct err *err);
+
+/* Writes them. bytes: the file's length, out. Returns false, err set, when it cannot. */
 bool export_eye_glb(const char *path, const struct export_eye *eye, long *bytes, struct err *err);
 
 #endif

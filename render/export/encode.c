@@ -91,3 +91,18 @@ bool export_encode(struct export_work *w, struct err *err)
 	w->pictures[EXPORT_PIC_CORNEA] = w->png[EXPORT_CORNEA_COLOUR];
 	return packed(w, err);
 }
+
+void export_work_free(struct export_work *w)
+{
+	for (int i = EXPORT_PIC_SCLERA_ROUGH; i < EXPORT_PICTURES; i++)
+		if (i != EXPORT_PIC_CORNEA)  // the others are those of png
+			free(w->pictures[i].data);
+	for (int i = 0; i < EXPORT_MAPS; i++) {
+		image_free(&w->maps[i]);
+		free(w->png[i].data);
+	}
+	for (int i = 0; i < EXPORT_PARTS; i++)
+		export_part_free(&w->parts[i]);
+	for (int i = 0; i < EXPORT_VIEWS; i++)
+		image_free(&w->reference[i]);
+}

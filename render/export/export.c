@@ -84,19 +84,15 @@ static void refer(struct export_work *w)
 	}
 }
 
-/* The parts of a file for games: grids of fewer vertices, and of the iris, whose relief has detail here and none there, the triangles that
- * meshoptimizer leaves of a finer grid. */
-static void fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, const struct export_work *w, double triangles)
+void export_fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, const struct scene *scene, const struct export_mesh_conf *conf, long all,
+                  double triangles)
 {
-	long all = 0;
-	for (int i = 0; i < EXPORT_PARTS; i++)
-		all += w->parts[i].n_corners / 3;
-	double share = fmin(sqrt(triangles / (double)all), 1);
-	struct export_mesh_conf conf = { .iris_rings = 2 * (int)fmax(6, 0.5 * share * w->conf->mesh.iris_rings), .around = (int)fmax(24, share * w->conf->mesh.around) };
+	const double share = fmin(sqrt(triangles / (double)all), 1);
+	struct export_mesh_conf less = { .iris_rings = 2 * (int)fmax(6, 0.5 * share * conf->iris_rings), .around = (int)fmax(24, share * conf->around) };
 	struct export_part fine[EXPORT_PARTS];
-	export_eye_meshes(parts, &w->job->scene, &conf);
-	conf.iris_rings *= 4;
-	export_eye_meshes(fine, &w->job->scene, &conf);
+	export_eye_meshes(parts, scene, &less);
+	less.iris_rings *= 4;
+	export_eye_meshes(fine, scene, &less);
 	int iris = parts[EXPORT_IRIS].n_corners / 3;
 	export_part_free(&parts[EXPORT_IRIS]);
 	parts[EXPORT_IRIS] = export_lod(&fine[EXPORT_IRIS], iris, error_mm);
@@ -107,10 +103,13 @@ static void fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, cons
 static bool write_meshes(struct export_work *w, const char *made_by, struct err *err)
 {
 	bool ok = true;
+	long all = 0;
+	for (int i = 0; i < EXPORT_PARTS; i++)
+		all += w->parts[i].n_corners / 3;
 	for (int k = 0; ok && k < GLBS; k++) {
 		struct export_part less[EXPORT_PARTS] = { 0 };
 		if (k)
-			fewer(less, &w->error_mm[k], w, w->conf->lod_triangles[k - 1]);
+			export_fewer(less, &w->error_mm[k], &w->job->scene, &w->conf->mesh, all, w->conf->lod_triangles[k - 1]);
 		const struct export_part *parts = k ? less : w->parts;
 		for (int i = 0; i < EXPORT_PARTS; i++) {
 			w->triangles[k] += parts[i].n_corners / 3;
@@ -174,21 +173,6 @@ static bool write_texts(struct export_work *w, const char *made_by, struct err *
 	return ok;
 }
 
-static void work_free(struct export_work *w)
-{
-	for (int i = EXPORT_PIC_SCLERA_ROUGH; i < EXPORT_PICTURES; i++)
-		if (i != EXPORT_PIC_CORNEA)  // the others are those of png
-			free(w->pictures[i].data);
-	for (int i = 0; i < EXPORT_MAPS; i++) {
-		image_free(&w->maps[i]);
-		free(w->png[i].data);
-	}
-	for (int i = 0; i < EXPORT_PARTS; i++)
-		export_part_free(&w->parts[i]);
-	for (int i = 0; i < EXPORT_VIEWS; i++)
-		image_free(&w->reference[i]);
-}
-
 static void tell(const struct export_work *w)
 {
 	struct stage *stage = w->job->stage;
@@ -230,6 +214,6 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct err *err
 	if (ok)
 		tell(&w);
 	image_free(&freckles);
-	work_free(&w);
+	export_work_free(&w);
 	return ok;
 }

@@ -2,6 +2,7 @@
 #ifndef RENDER_FACE_SKIN_H
 #define RENDER_FACE_SKIN_H
 #include "image/video/video.h"
+#include "render/export/export.h"
 #include "render/render.h"
 #include "rig/drive.h"
 #include "rig/glb/glb.h"
@@ -16,6 +17,7 @@ struct skin_conf {
 	int clip_px, clip_samples;           // width of the driven face in the clip; 0: no clip
 	double clip_fps, clip_crf, clip_seconds;
 	struct glb_conf glb;
+	double iris_rgb[3];                  // of an invented eye, linear
 	int texture_px;
 	struct video_conf video;
 };
@@ -44,7 +46,7 @@ struct skin_conf {
 	OPT_REAL("caruncle_wet", &(c)->portrait.caruncle_wet, 0, 1, "", "how moist and red the inner corners of the eyes are"), \
 	OPT_REAL("lash_mm", &(c)->portrait.lash_mm, 0, 30, "mm", "length of the upper lashes on an eye of 12 mm; 0: none"), \
 	OPT_INT("skin_texture_px", &(c)->texture_px, 16, 16384, "px", "longest side at which a character's own textures are drawn"), \
-	OPT_REALS("iris_rgb", (c)->glb.iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
+	OPT_REALS("iris_rgb", (c)->iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
 	OPT_INT("glb_targets", &(c)->glb.targets, 1, 200, "", "morph targets of the animation, at most"), \
 	OPT_REAL("glb_tolerance_mm", &(c)->glb.tolerance, 0, 10, "mm", "no more targets than it takes to keep every vertex so close"), \
 	OPT_BOOL("glb_poses", &(c)->glb.poses, "named targets, too: eyeBlinkLeft, eyeLookUpRight ..."), \
@@ -55,6 +57,7 @@ struct skin_job {
 	struct stage *stage;
 	const struct render_conf *render;
 	const struct skin_conf *conf;
+	const struct export_conf *leaves; // of the eyes in NAME.glb
 	const struct capture *capture;
 	const struct eye *eye;
 	struct jobs *photographed;        // eyes that photographs were fitted to
@@ -67,6 +70,8 @@ struct skin_job {
 	struct skin_model model;
 	struct wrinkle_maps wrinkles;
 	double gain;
+	char *eye_glb[2];                 // made by skin_eyes; the same for both, where both eyes are
+	size_t eye_size[2];
 };
 
 /* render/show.c: makes the contact sheets and the two pages. drawn: all pictures are there; false: only the review page is made. */
@@ -102,8 +107,11 @@ bool skin_ready(struct skin_job *job, struct err *err);
 /* skin_pictures.c: NAME_look.png, NAME_sheet.png, NAME_blink.png, NAME_expressions.png. */
 bool skin_pictures(struct skin_job *job, struct skin_target *target, struct err *err);
 
-/* skin_clip.c: NAME_clip.mp4 (the input video and the character beside it), NAME_script.mp4 (animation.csv), NAME.glb. */
+/* skin_clip.c: NAME_clip.mp4 (the input video and the character beside it), NAME_script.mp4 (animation.csv). */
 bool skin_clips(struct skin_job *job, struct skin_target *target, struct err *err);
+
+/* skin_glb.c: NAME.glb, driven by csv, with the eyes that its pictures show. */
+bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv, struct err *err);
 
 /* skin_open.c: loads the rig and makes the portrait, once. */
 bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);

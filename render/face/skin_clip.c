@@ -1,4 +1,4 @@
-/* Moving pictures of a driven character, and its glTF. */
+/* Moving pictures of a driven character. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -167,32 +167,6 @@ static bool scripted(struct skin_job *job, struct skin_target *t, struct err *er
 	return ok;
 }
 
-static bool gltf(struct skin_job *job, struct skin_target *t, const char *csv, struct err *err)
-{
-	const char *in[4] = { t->rig_path, "work/skin/model.json", csv, t->look_path }, *rel = output(job, t->name, ".glb");
-	const int n = t->look_path ? 4 : 3;
-	struct drive drive;
-	struct glb_report report;
-	struct glb_conf conf = job->conf->glb;
-	if (skin_kept(job, rel, n, in, err))
-		return true;
-	if (!skin_open(job, t, err) || !drive_load(&drive, &job->model, stage_path(job->stage, "%s", csv), err))
-		return false;
-	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
-	memcpy(conf.sclera_rgb, job->render->scene.sclera_rgb, sizeof conf.sclera_rgb);
-	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, t->name, t->look_path ? &t->look : 0, &conf,
-	                    stage_made_by(job->stage, n, in), err)
-	          && skin_made(job, rel, n, in, err);
-	if (ok) {
-		stage_note(job->stage, "%s: %d morph targets, %d vertices move, %.2f mm off at worst, %.1f MB", rel, report.targets,
-		           report.moving, report.worst, (double)report.bytes / 1e6);
-		stage_figure(job->stage, "morph_targets", report.targets, "");
-		stage_figure(job->stage, "morph_worst", report.worst, "mm, worst vertex of all frames");
-	}
-	drive_free(&drive);
-	return ok;
-}
-
 bool skin_clips(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	bool gaze = file_exists(stage_path(job->stage, "%s", gaze_csv)), script = file_exists(stage_path(job->stage, "%s", script_csv));
@@ -202,6 +176,6 @@ bool skin_clips(struct skin_job *job, struct skin_target *t, struct err *err)
 	if (ok && clips && script)
 		ok = scripted(job, t, err);
 	if (ok && (gaze || script))
-		ok = gltf(job, t, script ? script_csv : gaze_csv, err);
+		ok = skin_glb(job, t, script ? script_csv : gaze_csv, err);
 	return ok;
 }

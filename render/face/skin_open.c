@@ -1,5 +1,6 @@
 /* What all pictures of a character are made from: eyes, light, the trained model, its rig. Made when the first picture needs it. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/face/skin.h"
@@ -37,7 +38,7 @@ static bool eyes_ready(struct skin_job *job, struct err *err)
 	struct scene_conf conf = job->render->scene;
 	eye.limbus_aspect = isfinite(eye.limbus_aspect) ? eye.limbus_aspect : 0.95;
 	conf.limbus_width = isfinite(conf.limbus_width) ? conf.limbus_width : 0.5;
-	scene_plain(&job->plain, &eye, &conf, job->conf->glb.iris_rgb, (uint64_t)conf.seed);
+	scene_plain(&job->plain, &eye, &conf, job->conf->iris_rgb, (uint64_t)conf.seed);
 	struct scene_view view = scene_view_turned(&job->plain, 0, 0, job->render->field_mm, 256);
 	struct scene_lighting light = scene_lighting(&job->studio, 0, job->render->lights);
 	scene_fit_colour(&job->plain, &view, &light);
@@ -102,6 +103,9 @@ void skin_close(struct skin_job *job)
 {
 	if (job->eyes[0] == &job->plain)
 		scene_free(&job->plain);
+	if (job->eye_glb[1] != job->eye_glb[0])
+		free(job->eye_glb[1]);
+	free(job->eye_glb[0]);
 	envmap_free(&job->studio);
 	skin_model_free(&job->model);
 	wrinkle_maps_free(&job->wrinkles);

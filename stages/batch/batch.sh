@@ -3,7 +3,7 @@
 #   batch.sh local               side by side on this machine, by make's job server: JOBS at a time, THREADS for each
 #   batch.sh submit SCHEDULER    as job arrays: slurm.sh
 #   batch.sh status              batch/status.csv, and the failures as a table
-#   batch.sh one LIST N [TARGETS] runs the capture that stands Nth in a list, and writes what became of it
+#   batch.sh one LIST N [TARGETS] runs the capture that stands Nth in a list, and writes what became of it; NEW=yes: unless it has a result
 #   batch.sh look N NAME ...     a line for each capture that has something to do; lists.sh calls it
 # BIN: folder of the programs. ELSEWHERE: where results are to stand, where $CAPTURES is only read.
 # Numbers have points, names are bytes, whatever the locale.
@@ -34,6 +34,7 @@ begin() {
 one() { # LIST N [TARGETS]
 	local name target=${3:-run} status start ms seconds reason
 	name=$(sed -zn "${2}{p;q}" "$1" | tr '\0' .) && name=${name%.}
+	[ -z "${NEW:-}" ] || [ ! -e "$state/results/$name" ] || return 0
 	export CAPTURE="$CAPTURES/$name"
 	# The job server is for captures: inside of one a stage at a time writes.
 	unset MAKEFLAGS MFLAGS MAKELEVEL

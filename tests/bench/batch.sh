@@ -39,11 +39,17 @@ timed() { # COMMAND...: nanoseconds into `took`
 	[ $bad = 0 ] || { echo "failed: $*: $(tail -n 2 "$log")"; missed=1; }
 }
 one_by_one() { local i; for ((i = 1; i <= N; i++)); do make --no-print-directory CAPTURE="$root/loop/c$i" THREADS="$1" || return 1; done; }
-alone() { # the programs themselves, one after the other, a thread each
+alone() { # FIRST STEP: the programs themselves, one after the other, a thread each
 	local i stage
-	for ((i = 1; i <= N; i++)); do
+	for ((i = $1; i <= N; i += $2)); do
 		for stage in $stages; do "$BIN/$stage" --capture="$root/alone/c$i" --threads=1 || return 1; done
 	done
+}
+loops() { # the same in as many loops as there are cores
+	local i pid bad=0 pids=()
+	for ((i = 1; i <= $(nproc); i++)); do alone "$i" "$(nproc)" & pids+=($!); done
+	for pid in "${pids[@]}"; do wait "$pid" || bad=1; done
+	return $bad
 }
 batch() { make --no-print-directory batch CAPTURES="$@"; }
 
@@ -64,8 +70,12 @@ for part in $PARTS; do
 	make)
 		stages="plan limbus unrefract freckles heightfield pigment relief refraction render"
 		for folder in alone one; do captures "$root/$folder" "$N"; done
-		timed alone; programs=$took
+		timed alone 1 1; programs=$took
 		figure "the programs of $N captures alone" "$(seconds "$programs")" "$busy"
+		rm -rf "$root/alone"; captures "$root/alone" "$N"
+		timed loops; beside=$took
+		figure "the same in $(nproc) loops beside each other" "$(seconds "$beside")" "$busy"
+		printf '%-62s %10s\n' "what the machine's cores give, times one of them" "$(of "$programs" "$beside")"
 		timed batch "$root/one" JOBS=1 THREADS=1; one=$took
 		figure "$N captures by make batch, one at a time" "$(seconds "$one")" "$busy"
 		goal "what make and the batch add" "$(of $((one - programs)) "$programs")" most 0.03 ;;
@@ -75,7 +85,7 @@ for part in $PARTS; do
 		timed batch "$root/side"; side=$took
 		figure "$N captures side by side on $(nproc) cores" "$(seconds "$side")" "$busy"
 		slurm_start || { echo "Slurm: no cluster: $(tail -n 2 "$cluster"/*.log)"; missed=1; continue; }
-		through() { batch "$root/cluster_of" SCHEDULER=slurm && while [ "$(squeue -h | wc -l)" != 0 ]; do sleep 0.1; done; }
+		through() { batch "$root/cluster_of" SCHEDULER=slurm && while [ "$(squeue -h | wc -l)" != 0 ]; do sleep 0.5; done; }
 		timed through; slurm=$took
 		slurm_stop
 		figure "the same through Slurm, two nodes of a core each" "$(seconds "$slurm")" "$busy"

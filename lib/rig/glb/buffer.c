@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 
-int glb_add_view(struct glb_buffer *g, const void *data, size_t size, int target)
+size_t glb_add_bytes(struct glb_buffer *g, const void *data, size_t size)
 {
 	size_t at = (g->size + 3) & ~(size_t)3;
 	if (at + size + 4 > g->room)
@@ -16,6 +16,12 @@ int glb_add_view(struct glb_buffer *g, const void *data, size_t size, int target
 	memset(g->bin + g->size, 0, at - g->size);
 	memcpy(g->bin + at, data, size);
 	g->size = at + size;
+	return at;
+}
+
+int glb_add_view(struct glb_buffer *g, const void *data, size_t size, int target)
+{
+	const size_t at = glb_add_bytes(g, data, size);
 	json_t *view = json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", (json_int_t)at, "byteLength", (json_int_t)size);
 	if (target)
 		json_object_set_new(view, "target", json_integer(target));
@@ -70,14 +76,20 @@ int glb_add_sparse(struct glb_buffer *g, const float *x, int few, int index_view
 	return glb_add_accessor(g, a);
 }
 
-bool glb_save(const char *path, struct glb_buffer *g, json_t *root, long *bytes, struct err *err)
+bool glb_pack(char **packed, size_t *size, const struct glb_buffer *g, const json_t *root, struct err *err)
 {
 	char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9));
 	size_t json_size = strlen(text), json_pad = (json_size + 3) & ~(size_t)3, bin_pad = (g->size + 3) & ~(size_t)3;
 	size_t total = 12 + 8 + json_pad + 8 + bin_pad;
-	char *out = mem_array(total, 1), *at = out;
-	uint32_t head[5] = { 0x46546c67, 2, (uint32_t)total, (uint32_t)json_pad, 0x4e4f534a }, bin[2] = { (uint32_t)bin_pad, 0x004e4942 };
-	memset(out, 0, total);
+	*packed = 0;
+	*size = total;
+	if (total >= UINT32_MAX) {
+		free(text);
+		return err_set(err, "larger than a binary glTF can be (4 GiB)");
+	}
+	char *at = *packed = mem_array(total, 1);
+	uint32_t head[5] = { GLB_MAGIC, 2, (uint32_t)total, (uint32_t)json_pad, 0x4e4f534a }, bin[2] = { (uint32_t)bin_pad, 0x004e4942 };
+	memset(at, 0, total);
 	memcpy(at, head, sizeof head);
 	at += sizeof head;
 	memcpy(at, text, json_size);
@@ -85,9 +97,16 @@ bool glb_save(const char *path, struct glb_buffer *g, json_t *root, long *bytes,
 	at += json_pad;
 	memcpy(at, bin, sizeof bin);
 	memcpy(at + sizeof bin, g->bin, g->size);
-	*bytes = (long)total;
-	bool ok = total < UINT32_MAX ? file_write(path, out, total, err) : err_set(err, "%s: larger than a binary glTF can be (4 GiB)", path);
 	free(text);
+	return true;
+}
+
+bool glb_save(const char *path, struct glb_buffer *g, json_t *root, long *bytes, struct err *err)
+{
+	char *out;
+	size_t size;
+	bool ok = glb_pack(&out, &size, g, root, err) ? file_write(path, out, size, err) : err_wrap(err, "%s", path);
+	*bytes = (long)size;
 	free(out);
 	return ok;
 }

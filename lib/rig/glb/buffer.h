@@ -6,7 +6,7 @@
 
 #include "base/err.h"
 
-enum { GLB_FLOAT = 5126, GLB_UINT = 5125, GLB_ARRAY = 34962, GLB_INDICES = 34963 };
+enum { GLB_MAGIC = 0x46546c67, GLB_FLOAT = 5126, GLB_UINT = 5125, GLB_ARRAY = 34962, GLB_INDICES = 34963 };
 
 /* The caller makes views and accessors (JSON arrays) and gives them to the root; bin: free(). */
 struct glb_buffer {
@@ -14,6 +14,9 @@ struct glb_buffer {
 	char *bin;
 	size_t size, room;
 };
+
+/* Appends `size` bytes, aligned to 4; returns where they begin. */
+size_t glb_add_bytes(struct glb_buffer *buffer, const void *data, size_t size);
 
 /* Appends a buffer view of `size` bytes (aligned to 4) or an accessor; returns its index. target: GLB_ARRAY, GLB_INDICES or 0. */
 int glb_add_view(struct glb_buffer *buffer, const void *data, size_t size, int target);
@@ -26,8 +29,11 @@ int glb_add_floats(struct glb_buffer *buffer, const float *x, size_t n, int widt
  * its index. */
 int glb_add_sparse(struct glb_buffer *buffer, const float *x, int few, int index_view, int all, bool range);
 
-/* Writes the file: header, JSON padded by spaces, bytes padded by zeros. *bytes: its length, out. Returns false, err set, when it
- * cannot be written or is larger than a binary glTF can be. */
+/* The file's bytes: header, JSON padded by spaces, buffer padded by zeros. out: free(). Returns false, err set, where that is larger than
+ * a binary glTF can be. */
+bool glb_pack(char **out, size_t *size, const struct glb_buffer *buffer, const json_t *root, struct err *err);
+
+/* Writes them. *bytes: the file's length, out. Returns false, err set, when it cannot be written. */
 bool glb_save(const char *path, struct glb_buffer *buffer, json_t *root, long *bytes, struct err *err);
 
 #endif

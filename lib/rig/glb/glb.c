@@ -1,4 +1,4 @@
-#include "rig/glb/skin.h"
+#include "rig/glb/glb.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,47 +6,11 @@
 
 #include "base/mem.h"
 #include "base/version.h"
+#include "rig/glb/graft.h"
+#include "rig/glb/skin.h"
 
 static const double metres = 1e-3;
-
-/* An eyeball from its globe map, in the globe's own frame (the head's axes), with vertex colours: sclera, iris, pupil. */
-static json_t *eye_mesh(struct glb_buffer *g, const struct rig *rig, int side, const struct glb_conf *conf, int material)
-{
-	enum { AROUND = 64, RINGS = 80, N = AROUND * (RINGS + 1) };
-	float *x = mem_new(3 * N, sizeof *x), *nrm = mem_new(3 * N, sizeof *nrm), *rgb = mem_new(3 * N, sizeof *rgb);
-	uint32_t *corner = mem_new(6 * AROUND * RINGS, sizeof *corner);
-	int n = 0;
-	for (int j = 0; j <= RINGS; j++)
-		for (int i = 0; i < AROUND; i++) {
-			// Rings crowd towards the front, where the iris is.
-			double t = (double)j / RINGS, fall = M_PI * t * (0.35 + 0.65 * t), turn = 2 * M_PI * i / AROUND;
-			float *p = x + 3 * (j * AROUND + i), d[3] = { (float)(sin(fall) * cos(turn)), (float)(sin(fall) * sin(turn)), (float)cos(fall) };
-			double limbus = 0.5 * (1 + tanh((fall - 0.507) / 0.03)), pupil = fall < 0.15 ? 0.03 : 1;  // 5.85 mm and 1.8 mm of 12
-			double streak = 0.85 + 0.3 * sin(23 * turn + 2 * sin(7 * turn)) * sin(17 * turn);
-			for (int c = 0; c < 3; c++) {
-				p[c] = (float)(metres * globe_map_at(&rig->globe[side].map, d)) * d[c];
-				nrm[3 * (j * AROUND + i) + c] = d[c];
-				rgb[3 * (j * AROUND + i) + c] = (float)(limbus * conf->sclera_rgb[c] + (1 - limbus) * conf->iris_rgb[c] * pupil * streak);
-			}
-		}
-	for (int j = 0; j < RINGS; j++)
-		for (int i = 0; i < AROUND; i++) {
-			uint32_t a = (uint32_t)(j * AROUND + i), b = (uint32_t)(j * AROUND + (i + 1) % AROUND), c = a + AROUND, d = b + AROUND;
-			uint32_t quad[6] = { a, c, d, a, d, b };
-			for (int k = 0; k < 6; k++)
-				if (!(j == 0 && k >= 3) && !(j == RINGS - 1 && k < 3))  // at the poles one of the two has no area
-					corner[n++] = quad[k];
-		}
-	int position = glb_add_floats(g, x, N, 3, true, GLB_ARRAY), normal = glb_add_floats(g, nrm, N, 3, false, GLB_ARRAY);
-	int colour = glb_add_floats(g, rgb, N, 3, false, GLB_ARRAY), view = glb_add_view(g, corner, (size_t)n * sizeof *corner, GLB_INDICES);
-	int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", n, "type", "SCALAR"));
-	free(x);
-	free(nrm);
-	free(rgb);
-	free(corner);
-	return json_pack("{s:s,s:[{s:{s:i,s:i,s:i},s:i,s:i}]}", "name", side ? "eye_right" : "eye_left", "primitives", "attributes",
-	                 "POSITION", position, "NORMAL", normal, "COLOR_0", colour, "indices", index, "material", material);
-}
+static const char *const eye_names[2] = { "eye_left", "eye_right" };
 
 static json_t *real3(const double x[3], double scale)
 {
@@ -71,8 +35,54 @@ static json_t *root_rotation(const double m[3][3])
 	return json_pack("[f,f,f,f]", v[0] / len, v[1] / len, v[2] / len, v[3] / len);
 }
 
-/* The root, the skin's meshes, the eyes. */
-static json_t *nodes(const struct rig *rig, const char *name, const struct glb_skin *skin)
+/* Rotation q of a globe's node, target_from_globe: its meshes are in the head's axes, its node in the rig's. from_rest: null: at rest. */
+static void turn_of(float q[4], const float *from_rest, const double head_from_target[3][3])
+{
+	static const float none[4] = { 0, 0, 0, 1 };
+	json_t *back = root_rotation(head_from_target);  // its conjugate takes the head's axes to the rig's
+	double b[4];
+	for (int k = 0; k < 4; k++)
+		b[k] = (k < 3 ? -1 : 1) * json_real_value(json_array_get(back, (size_t)k));
+	json_decref(back);
+	const float *a = from_rest ? from_rest : none;
+	double r[4] = { a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+		            a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3], a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2] };
+	double len = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+	for (int k = 0; k < 4; k++)
+		q[k] = (float)(r[k] / len);
+}
+
+/* Where an eye's meshes are in the file. */
+struct eye_meshes {
+	int first, n;
+};
+
+/* Nodes of the eyes in `list`, whose parts follow them; an eye turns about its own origin. */
+static void put_eyes(json_t *list, const struct rig *rig, const struct glb_eye eye[2], const struct eye_meshes in[2], json_t *meshes)
+{
+	int next = (int)json_array_size(list) + 2;
+	for (int s = 0; s < 2; s++) {
+		const struct rig_globe *globe = &rig->globe[s];
+		const double scale = globe->radius / eye[s].radius;
+		json_t *parts = json_array();
+		float q[4];
+		for (int i = 0; i < in[s].n; i++)
+			json_array_append_new(parts, json_integer(next++));
+		turn_of(q, 0, rig->head_from_target);
+		json_array_append_new(list, json_pack("{s:s,s:o,s:o,s:[f,f,f,f],s:[f,f,f]}", "name", eye_names[s], "children", parts, "translation",
+		                                      real3(globe->center, metres), "rotation", q[0], q[1], q[2], q[3], "scale", scale, scale, scale));
+	}
+	for (int s = 0; s < 2; s++)
+		for (int i = 0; i < in[s].n; i++) {
+			const char *part = json_string_value(json_object_get(json_array_get(meshes, (size_t)(in[s].first + i)), "name"));
+			char *name = mem_printf("%s_%s", eye_names[s], part ? part : "part");
+			json_array_append_new(list, json_pack("{s:s,s:i}", "name", name, "mesh", in[s].first + i));
+			free(name);
+		}
+}
+
+/* The root, the skin's meshes, the eyes, the eyes' parts. */
+static json_t *nodes(const struct rig *rig, const struct glb_eye eye[2], const struct eye_meshes in[2], const char *name, const struct glb_skin *skin)
 {
 	json_t *list = json_array(), *children = json_array();
 	for (int i = 0; i < skin->n + 2; i++)
@@ -82,26 +92,8 @@ static json_t *nodes(const struct rig *rig, const char *name, const struct glb_s
 		json_t *of = json_object_get(json_array_get(skin->meshes, (size_t)i), "name");
 		json_array_append_new(list, json_pack("{s:O,s:i}", "name", of, "mesh", i));
 	}
-	for (int s = 0; s < 2; s++)
-		json_array_append_new(list, json_pack("{s:s,s:i,s:o}", "name", s ? "eye_right" : "eye_left", "mesh", skin->n + s, "translation",
-		                                      real3(rig->globe[s].center, metres)));
+	put_eyes(list, rig, eye, in, skin->meshes);
 	return list;
-}
-
-/* Rotation q of a globe's node, target_from_globe: its mesh is in the head's axes, its node in the rig's. */
-static void turn_of(float q[4], const float from_rest[4], const double head_from_target[3][3])
-{
-	json_t *back = root_rotation(head_from_target);  // its conjugate takes the head's axes to the rig's
-	double b[4];
-	for (int k = 0; k < 4; k++)
-		b[k] = (k < 3 ? -1 : 1) * json_real_value(json_array_get(back, (size_t)k));
-	json_decref(back);
-	const float *a = from_rest;
-	double r[4] = { a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
-		            a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3], a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2] };
-	double len = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-	for (int k = 0; k < 4; k++)
-		q[k] = (float)(r[k] / len);
 }
 
 /* The weights of a skin's mesh over time: the animation's targets move, the others stay at 0. Returns the sampler. */
@@ -143,39 +135,67 @@ static json_t *animation(struct glb_buffer *g, const struct rig *rig, const stru
 	return json_pack("{s:s,s:o,s:o}", "name", "gaze", "samplers", samplers, "channels", channels);
 }
 
-bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive, const char *name,
-               const struct look *look, const struct glb_conf *conf, const char *made_by, struct err *err)
+/* A member of the root; glTF has no empty arrays. */
+static void put_some(json_t *root, const char *key, json_t *array)
+{
+	if (json_array_size(array))
+		json_object_set(root, key, array);
+}
+
+/* The eyes' meshes and all they need; the same bytes for both sides once. */
+static bool graft_eyes(struct eye_meshes in[2], struct glb_buffer *g, const struct glb_arrays *to, const struct glb_eye eye[2], struct err *err)
+{
+	for (int s = 0; s < 2; s++) {
+		if (s && eye[1].bytes == eye[0].bytes)
+			in[1] = in[0];
+		else
+			in[s].n = glb_graft(g, to, eye[s].bytes, eye[s].size, &in[s].first, err);
+		if (!in[s].n)
+			return err_wrap(err, "%s", eye_names[s]);
+	}
+	return true;
+}
+
+bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive,
+               const struct glb_eye eye[2], const char *name, const struct look *look, const struct glb_conf *conf, const char *made_by,
+               struct err *err)
 {
 	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
 	struct glb_bake bake;
+	struct glb_skin skin = { 0 };
+	struct eye_meshes in[2] = { 0 };
+	json_t *samplers = json_array(), *used = json_array(), *root = json_object();
 	bool ok = glb_bake_make(&bake, rig, drive, conf, err);
 	if (ok) {
 		*report = (struct glb_report){ bake.n_targets, bake.n, bake.worst, 0 };
+		glb_skin_make(&skin, &g, rig, &bake, conf, look);
+		const struct glb_arrays to = { skin.meshes, skin.materials, skin.images, skin.textures, samplers, used };
+		ok = graft_eyes(in, &g, &to, eye, err);
+	}
+	if (ok) {
 		json_t *asset = json_pack("{s:s,s:s}", "version", "2.0", "generator", "Eyewright " EYEWRIGHT_VERSION);
 		json_t *made = made_by ? json_loads(made_by, 0, 0) : 0;
 		if (made)
 			json_object_set_new(asset, "extras", json_pack("{s:o}", "made_by", made));
-		struct glb_skin skin;
-		glb_skin_make(&skin, &g, rig, &bake, conf, look);
-		for (int s = 0; s < 2; s++)
-			json_array_append_new(skin.meshes, eye_mesh(&g, rig, s, conf, skin.eye_material));
-		json_t *root = json_pack("{s:o,s:i,s:[{s:[i]}],s:o,s:o,s:o,s:[o]}", "asset", asset, "scene", 0, "scenes", "nodes", 0, "nodes",
-		                         nodes(rig, name, &skin), "meshes", skin.meshes, "materials", skin.materials, "animations",
-		                         animation(&g, rig, &bake, drive, &skin));
-		if (skin.textures) {
-			json_object_set_new(root, "images", skin.images);
-			json_object_set_new(root, "textures", skin.textures);
-		}
-		glb_skin_free(&skin);
-		json_object_set_new(root, "accessors", g.accessors);
-		json_object_set_new(root, "bufferViews", g.views);
+		json_object_set_new(root, "asset", asset);
+		put_some(root, "extensionsUsed", used);
+		json_object_update_new(root, json_pack("{s:i,s:[{s:[i]}],s:o,s:o,s:o,s:[o]}", "scene", 0, "scenes", "nodes", 0, "nodes",
+		                                       nodes(rig, eye, in, name, &skin), "meshes", json_incref(skin.meshes), "materials",
+		                                       json_incref(skin.materials), "animations", animation(&g, rig, &bake, drive, &skin)));
+		put_some(root, "images", skin.images);
+		put_some(root, "textures", skin.textures);
+		put_some(root, "samplers", samplers);
+		json_object_set(root, "accessors", g.accessors);
+		json_object_set(root, "bufferViews", g.views);
 		json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)g.size));
 		ok = glb_save(path, &g, root, &report->bytes, err);
-		json_decref(root);
-	} else {
-		json_decref(g.accessors);
-		json_decref(g.views);
 	}
+	json_decref(root);
+	json_decref(samplers);
+	json_decref(used);
+	json_decref(g.accessors);
+	json_decref(g.views);
+	glb_skin_free(&skin);
 	free(g.bin);
 	glb_bake_free(&bake);
 	return ok;

@@ -15,7 +15,15 @@ struct glb_conf {
 	int targets;           // at most, of the animation
 	double tolerance;      // mm, worst vertex of all frames
 	bool poses;            // include the named targets
-	double skin_rgb[3], iris_rgb[3], sclera_rgb[3];  // linear
+	double skin_rgb[3];    // linear
+};
+
+/* A whole eye as the bytes of a binary glTF: metres, its origin in the centre of the scleral sphere, z out through the pupil, y up.
+ * Both sides may have the same: it is in the file once. */
+struct glb_eye {
+	const void *bytes;
+	size_t size;
+	double radius;         // of the scleral sphere, mm: it is scaled to the globe's
 };
 
 struct glb_report {
@@ -25,14 +33,15 @@ struct glb_report {
 };
 
 /* Writes the file. A character with a look keeps its meshes, texture coordinates, materials, textures and blend shapes; its eyeballs
- * are replaced. The mesh that moves most has all 52 of ARKit's names as targets, where conf->poses: those that neither gaze nor the
+ * are replaced by the eyes. The mesh that moves most has all 52 of ARKit's names as targets, where conf->poses: those that neither gaze nor the
  * character's file gives are zero, and listed in that mesh's extras (zeroTargets). A blend shape of the file that bears the name of
  * one of ours is called NAME.own.
  * report   overwritten
+ * eye      left, right
  * look     of a character whose file has one (its rows are the rig's vertices), or null
  * name     of the root node; made_by: JSON text for asset.extras, or null
  * Returns false, err set, when the decomposition fails or the file cannot be written. */
-bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive, const char *name,
-               const struct look *look, const struct glb_conf *conf, const char *made_by, struct err *err);
+bool glb_write(const char *path, struct glb_report *report, const struct rig *rig, const struct drive *drive,
+               const struct glb_eye eye[2], const char *name, const struct look *look, const struct glb_conf *conf, const char *made_by, struct err *err);
 
 #endif

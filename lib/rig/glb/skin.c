@@ -373,13 +373,9 @@ static void put_materials(struct glb_skin *skin, struct glb_buffer *g, const str
 	for (int i = 0; l && i < l->n_materials; i++)
 		json_array_append_new(skin->materials, material_of(&l->material[i]));
 	json_array_append_new(skin->materials, plain_material("skin", conf->skin_rgb, 0.55));
-	json_array_append_new(skin->materials, plain_material("eye", (double[3]){ 1, 1, 1 }, 0.08));
-	skin->eye_material = (int)json_array_size(skin->materials) - 1;
-	if (!l || !l->n_textures)
-		return;
 	skin->images = json_array();
 	skin->textures = json_array();
-	for (int i = 0; i < l->n_textures; i++) {
+	for (int i = 0; l && i < l->n_textures; i++) {
 		const struct look_texture *t = &l->texture[i];
 		const int view = glb_add_view(g, t->bytes, (size_t)t->size, 0);
 		json_t *name = json_string(t->name);
@@ -433,6 +429,10 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
 
 void glb_skin_free(struct glb_skin *skin)
 {
+	json_decref(skin->meshes);
+	json_decref(skin->materials);
+	json_decref(skin->images);
+	json_decref(skin->textures);
 	free(skin->ours);
 	free(skin->all);
 }

@@ -5,15 +5,14 @@
 #include "rig/glb/bake.h"
 #include "rig/glb/buffer.h"
 
-/* Meshes, materials, textures of the skin; JSON arrays that pass on to the file's root. images, textures: null without any. */
+/* Meshes, materials, textures of the skin: JSON arrays; owned, glb_skin_free. */
 struct glb_skin {
 	json_t *meshes, *materials, *images, *textures;
 	int n;             // meshes
 	int *ours, *all;   // [n] whether the animation's targets are its first ones; how many targets it has
-	int eye_material;
 };
 
-/* look: null: one mesh of one colour. glb_skin_free leaves the JSON alone. */
+/* look: null: one mesh of one colour. */
 void glb_skin_make(struct glb_skin *skin, struct glb_buffer *buffer, const struct rig *rig, const struct glb_bake *bake,
                    const struct glb_conf *conf, const struct look *look);
 void glb_skin_free(struct glb_skin *skin);

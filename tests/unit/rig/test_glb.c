@@ -1,9 +1,12 @@
 /* The glTF of a driven face: what its morph targets reproduce, its container, and what Khronos's own validator says. */
 #include "base/file.h"
+#include "export/eye_glb.h"
+#include "image/picture.h"
 #include "math/rng.h"
 #include "rig/glb/bake.h"
 #include "tests/lib/gltf.h"
 #include "tests/lib/scenes/face.h"
+#include "tests/lib/scenes/plain_scene.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
@@ -15,7 +18,40 @@ struct made {
 	struct face face;
 	struct rig rig;
 	struct drive drive;
+	char *eye[2];  // two eyes as files: the second with a wider limbus
+	size_t size[2];
+	double apex[2];  // distance of the corneal apex from the centre, mm
 };
+
+static double flat(double x, double y)
+{
+	(void)x;
+	(void)y;
+	return 0;
+}
+
+static bool eye_make(struct made *m, int k, struct err *err)
+{
+	const struct scene_conf scene_conf = conf_of(4);
+	const struct export_mesh_conf mesh = { .iris_rings = 16, .around = 24 };
+	struct eye eye = plain_eye;
+	struct scene s;
+	struct export_part parts[EXPORT_PARTS];
+	struct export_png one, png[EXPORT_PICTURES];
+	eye.limbus_radius += 0.3 * k;
+	scene_of(&s, &eye, &scene_conf, even, flat, 1.5);
+	m->apex[k] = s.sclera_z;
+	export_eye_meshes(parts, &s, &mesh);
+	bool ok = picture_png_encode(&one.data, &one.size, (uint8_t[12]){ 0 }, 2, 2, 3, err);
+	for (int i = 0; i < EXPORT_PICTURES; i++)
+		png[i] = one;
+	ok = ok && export_eye_pack(&m->eye[k], &m->size[k], &(struct export_eye){ parts, png, 1.336, 4, "eye", 0 }, err);
+	free(one.data);
+	for (int i = 0; i < EXPORT_PARTS; i++)
+		export_part_free(&parts[i]);
+	scene_free(&s);
+	return ok;
+}
 
 /* A gaze that wanders, with a blink in the middle. */
 static int setup(void **state)
@@ -25,7 +61,7 @@ static int setup(void **state)
 	struct rig_conf conf = face_conf();
 	face_make(&m->face, false);
 	conf.map_step = 4;
-	bool ok = face_rig(&m->rig, 0, &m->face, &conf, &err);
+	bool ok = face_rig(&m->rig, 0, &m->face, &conf, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
 	m->drive = (struct drive){ FRAMES, 12, calloc(FRAMES, sizeof(double)), calloc(12 * FRAMES, sizeof(double)), 0 };
 	for (int f = 0; f < FRAMES; f++) {
 		m->drive.time[f] = f / 30.0;
@@ -41,12 +77,13 @@ static int teardown(void **state)
 	rig_free(&m->rig);
 	drive_free(&m->drive);
 	face_free(&m->face);
+	free(m->eye[0]);
+	free(m->eye[1]);
 	free(m);
 	return 0;
 }
 
-static const struct glb_conf conf = { .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 },
-	                                  .iris_rgb = { 0.1, 0.1, 0.2 }, .sclera_rgb = { 0.7, 0.6, 0.6 } };
+static const struct glb_conf conf = { .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 } };
 
 /* Rest plus weighted targets is the evaluated frame, within what is reported; the quaternions turn the eyeballs likewise. */
 static void targets_give_the_frames_back(void **state)
@@ -107,38 +144,118 @@ static void more_targets_are_closer(void **state)
 	}
 }
 
-static void container(void **state)
+/* Writes the face with these eyes. */
+static bool put(const struct made *m, const char *path, int left, int right, struct err *err)
 {
-	struct made *m = *state;
+	const struct glb_eye eye[2] = { { m->eye[left], m->size[left], 11.8 }, { m->eye[right], m->size[right], 11.8 } };
 	struct glb_report report;
-	struct err err = { 0 };
-	char *data, first[33], second[33];
+	return glb_write(path, &report, &m->rig, &m->drive, eye, "face", 0, &conf, "{\"stage\": \"render\"}", err);
+}
+
+static json_t *json_of(const char *path)
+{
+	char *data;
 	size_t size;
-	scratch_open();
-	const char *path = scratch_path("face.glb");
-	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", 0, &conf, "{\"stage\": \"render\"}", &err));
-	assert_true(file_hash(first, path, 1 << 30, &err));
-	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", 0, &conf, "{\"stage\": \"render\"}", &err));
-	assert_true(file_hash(second, path, 1 << 30, &err));
-	assert_string_equal(first, second);
-	assert_true(file_read(&data, &size, path, 1 << 28, &err));
+	struct err err = { 0 };
 	uint32_t head[5];
+	assert_true(file_read(&data, &size, path, 1 << 28, &err));
 	memcpy(head, data, sizeof head);
 	assert_int_equal(head[0], 0x46546c67);
 	assert_int_equal(head[2], size);
 	json_t *root = json_loadb(data + 20, head[3], 0, 0);
 	assert_non_null(root);
-	assert_int_equal(json_array_size(json_object_get(root, "nodes")), 4);
-	assert_int_equal(json_array_size(json_object_get(json_array_get(json_object_get(root, "animations"), 0), "channels")), 3);
-	json_decref(root);
 	free(data);
+	return root;
+}
+
+static size_t count(const json_t *root, const char *key)
+{
+	return json_array_size(json_object_get(root, key));
+}
+
+static void container(void **state)
+{
+	struct made *m = *state;
+	struct err err = { 0 };
+	char first[33], second[33];
+	scratch_open();
+	const char *path = scratch_path("face.glb");
+	assert_true(put(m, path, 0, 0, &err));
+	assert_true(file_hash(first, path, 1 << 30, &err));
+	assert_true(put(m, path, 0, 0, &err));
+	assert_true(file_hash(second, path, 1 << 30, &err));
+	assert_string_equal(first, second);
+	json_t *root = json_of(path);
+	assert_int_equal(count(root, "nodes"), 4 + 2 * EXPORT_PARTS);
+	assert_int_equal(count(root, "meshes"), 1 + EXPORT_PARTS);  // one eye for both sides is there once
+	assert_int_equal(count(root, "images"), EXPORT_PICTURES);
+	assert_int_equal(count(json_array_get(json_object_get(root, "animations"), 0), "channels"), 3);
+	json_decref(root);
+	assert_true(put(m, path, 0, 1, &err));
+	root = json_of(path);
+	assert_int_equal(count(root, "meshes"), 1 + 2 * EXPORT_PARTS);
+	assert_int_equal(count(root, "images"), 2 * EXPORT_PICTURES);
+	json_decref(root);
+	scratch_close();
+}
+
+/* The end of a node's name decides what it is. */
+static json_t *named(json_t *nodes, const char *name)
+{
+	size_t i;
+	json_t *node;
+	json_array_foreach(nodes, i, node)
+		if (!strcmp(json_string_value(json_object_get(node, "name")), name))
+			return node;
+	fail_msg("no node %s", name);
+	return 0;
+}
+
+/* Each eye turns about the centre of its globe and is as large; its cornea is its own: the apex is where the eye that went in has it. */
+static void eyes_in_their_sockets(void **state)
+{
+	struct made *m = *state;
+	struct err err = { 0 };
+	scratch_open();
+	const char *path = scratch_path("face.glb");
+	assert_true(put(m, path, 0, 1, &err));
+	json_t *root = json_of(path), *all = json_object_get(root, "nodes");
+	for (int s = 0; s < 2; s++) {
+		json_t *node = named(all, s ? "eye_right" : "eye_left"), *cornea = named(all, s ? "eye_right_cornea" : "eye_left_cornea");
+		const double scale = json_real_value(json_array_get(json_object_get(node, "scale"), 0));
+		NEAR(scale, m->rig.globe[s].radius / 11.8, 1e-6);
+		for (int c = 0; c < 3; c++)
+			NEAR(json_real_value(json_array_get(json_object_get(node, "translation"), (size_t)c)), 1e-3 * m->rig.globe[s].center[c], 1e-8);
+		json_t *mesh = json_array_get(json_object_get(root, "meshes"), (size_t)json_integer_value(json_object_get(cornea, "mesh")));
+		json_t *primitive = json_array_get(json_object_get(mesh, "primitives"), 0);
+		const json_int_t position = json_integer_value(json_object_get(json_object_get(primitive, "attributes"), "POSITION"));
+		json_t *most = json_object_get(json_array_get(json_object_get(root, "accessors"), (size_t)position), "max");
+		NEAR(json_real_value(json_array_get(most, 2)), 1e-3 * m->apex[s], 1e-7);
+		json_t *material = json_array_get(json_object_get(root, "materials"), (size_t)json_integer_value(json_object_get(primitive, "material")));
+		assert_string_equal(json_string_value(json_object_get(material, "name")), "cornea");
+	}
+	json_decref(root);
+	assert_true(fabs(m->apex[0] - m->apex[1]) > 0.05);
+	scratch_close();
+}
+
+static void no_eye_no_file(void **state)
+{
+	struct made *m = *state;
+	struct err err = { 0 };
+	struct glb_report report;
+	const struct glb_eye cut[2] = { { m->eye[0], m->size[0], 11.8 }, { m->eye[1], m->size[1] / 2, 11.8 } };
+	scratch_open();
+	const char *path = scratch_path("face.glb");
+	assert_false(glb_write(path, &report, &m->rig, &m->drive, cut, "face", 0, &conf, 0, &err));
+	ERR_HAS(err, "eye_right: no binary glTF");
+	assert_false(file_exists(path));
 	scratch_close();
 }
 
 static void khronos_validator_finds_nothing(void **state)
 {
 	struct made *m = *state;
-	struct glb_report report;
 	struct err err = { 0 };
 	if (!gltf_validator_there()) {
 		print_message("skipped: no node, or npm could not install gltf-validator\n");
@@ -146,7 +263,7 @@ static void khronos_validator_finds_nothing(void **state)
 	}
 	scratch_open();
 	const char *path = scratch_path("face.glb");
-	assert_true(glb_write(path, &report, &m->rig, &m->drive, "face", 0, &conf, 0, &err));
+	assert_true(put(m, path, 0, 1, &err));
 	assert_true(gltf_is_valid(path));
 	scratch_close();
 }
@@ -200,7 +317,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(more_targets_are_closer),
-		cmocka_unit_test(container),                    cmocka_unit_test(khronos_validator_finds_nothing),
+		cmocka_unit_test(container),                        cmocka_unit_test(khronos_validator_finds_nothing),
+		cmocka_unit_test(eyes_in_their_sockets),            cmocka_unit_test(no_eye_no_file),
 		cmocka_unit_test(driving_file),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);

@@ -1,0 +1,47 @@
+"use strict";
+/* Opens a driven face's .glb in three.js in a headless Chromium: FILE NPM OUT. One line a pose and view: what it shows of eye and skin, in
+ * pixels round one eye; OUT/face_NAME.png: pictures. */
+const fs = require("fs");
+const os = require("os");
+const path = require("path");
+const { Browser } = require("./browser.js");
+const [, , file, npm, out] = process.argv;
+
+const poses = {
+	open: [{}, [0, 0]],
+	shut: [{ eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]],
+	left: [{ eyeLookOutLeft: 1, eyeLookInRight: 1 }, [1, 0]],
+	right: [{ eyeLookInLeft: 1, eyeLookOutRight: 1 }, [-1, 0]],
+};
+
+(async () => {
+	const dir = fs.mkdtempSync(path.join(os.tmpdir(), "eyewright-three-"));
+	fs.writeFileSync(path.join(dir, "page.html"), fs.readFileSync(path.join(__dirname, "face_glb.html"), "utf8").replaceAll("NPM", `file://${path.resolve(npm)}/node_modules`));
+	fs.copyFileSync(path.join(__dirname, "face_glb_page.js"), path.join(dir, "face_glb_page.js"));
+	const b = await Browser.start(["--allow-file-access-from-files"]);
+	try {
+		await b.size(512, 512);
+		await b.open(`file://${dir}/page.html`);
+		await b.until("window.ready", 30);
+		const says = await b.value(`open_face(${JSON.stringify(`file://${path.resolve(file)}`)})`, 120000);
+		console.log(`meshes ${says.meshes.join(" ")}`);
+		for (const [name, [weights, turn]] of Object.entries(poses))
+			for (const side of ["left", "right"])
+				for (const aside of [-30, 0, 30]) {
+					const n = await b.value(`seen(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
+					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing}`);
+					if (aside === 0) {
+						await b.value(`show(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", 0)`, 120000);
+						await b.screenshot(path.join(out, `face_${name}_${side}.png`));
+					}
+				}
+		for (const problem of b.problems)
+			if (!/GPU stall|ReadPixels/.test(problem))
+				console.log(`fail three.js says: ${problem}`);
+	} catch (e) {
+		console.log(`fail three.js: ${e.message} ${b.problems.join("; ")}`);
+	} finally {
+		await b.end();
+		fs.rmSync(dir, { recursive: true, force: true });
+	}
+})();
