@@ -62,7 +62,7 @@ submit() {
 	[ -s "$state/todo" ] || { echo "nothing to do: nothing is submitted" >&2; status; return; }
 	cut -f 1 "$state/todo" | pick "$state/captures" | (cd "$state/results" && xargs -0 rm -f --)
 	most=$(scontrol show config | sed -n 's/^MaxArraySize *= *\([0-9]*\).*/\1/p')
-	cores=$(sinfo -h -o %C 2>/dev/null | awk -F / '{ n += $4 } END { print n > 0 ? n : 1 }')
+	cores=$(sinfo -h -o %C 2>/dev/null | awk -F / '{ n += $4 } END { print (n > 0 ? n : 1) }')
 	unset MAKEFLAGS MFLAGS MAKELEVEL
 	while IFS=$'\t' read -r numbers per rest; do
 		# shellcheck disable=SC2086
