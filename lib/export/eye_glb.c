@@ -3,7 +3,6 @@
 #include <jansson.h>
 #include <stdlib.h>
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "base/version.h"
 #include "rig/glb/buffer.h"
@@ -120,22 +119,30 @@ static json_t *nodes(const char *name)
 	return list;
 }
 
-bool export_eye_pack(char **out, size_t *size, const struct export_eye *eye, struct err *err)
+/* The file's JSON, its buffer in g; g's arrays pass on to it. */
+static json_t *root_of(struct glb_buffer *g, const struct export_eye *eye)
 {
-	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
+	*g = (struct glb_buffer){ .views = json_array(), .accessors = json_array() };
 	json_t *asset = json_pack("{s:s,s:s}", "version", "2.0", "generator", "Eyewright " EYEWRIGHT_VERSION), *meshes = json_array();
 	json_t *made = eye->made_by ? json_loads(eye->made_by, 0, 0) : 0;
 	if (made)
 		json_object_set_new(asset, "extras", json_pack("{s:o}", "made_by", made));
 	for (int i = 0; i < EXPORT_PARTS; i++)
-		json_array_append_new(meshes, mesh(&g, &eye->parts[i], i));
+		json_array_append_new(meshes, mesh(g, &eye->parts[i], i));
 	json_t *root = json_pack("{s:o,s:[s,s,s,s],s:i,s:[{s:[i]}],s:o,s:o,s:o}", "asset", asset, "extensionsUsed", "KHR_materials_ior",
 	                         "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume", "scene", 0, "scenes", "nodes", 0,
 	                         "nodes", nodes(eye->name), "meshes", meshes, "materials", materials(eye));
-	put_pictures(root, &g, eye->pictures);
-	json_object_set_new(root, "accessors", g.accessors);
-	json_object_set_new(root, "bufferViews", g.views);
-	json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)g.size));
+	put_pictures(root, g, eye->pictures);
+	json_object_set_new(root, "accessors", g->accessors);
+	json_object_set_new(root, "bufferViews", g->views);
+	json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)g->size));
+	return root;
+}
+
+bool export_eye_pack(char **out, size_t *size, const struct export_eye *eye, struct err *err)
+{
+	struct glb_buffer g;
+	json_t *root = root_of(&g, eye);
 	bool ok = glb_pack(out, size, &g, root, err);
 	json_decref(root);
 	free(g.bin);
@@ -144,10 +151,10 @@ bool export_eye_pack(char **out, size_t *size, const struct export_eye *eye, str
 
 bool export_eye_glb(const char *path, const struct export_eye *eye, long *bytes, struct err *err)
 {
-	char *out;
-	size_t size;
-	bool ok = export_eye_pack(&out, &size, eye, err) ? file_write(path, out, size, err) : err_wrap(err, "%s", path);
-	*bytes = (long)size;
-	free(out);
+	struct glb_buffer g;
+	json_t *root = root_of(&g, eye);
+	bool ok = glb_save(path, &g, root, bytes, err);
+	json_decref(root);
+	free(g.bin);
 	return ok;
 }

@@ -101,7 +101,7 @@ bool glb_pack(char **packed, size_t *size, const struct glb_buffer *g, const jso
 	return true;
 }
 
-bool glb_save(const char *path, struct glb_buffer *g, json_t *root, long *bytes, struct err *err)
+bool glb_save(const char *path, const struct glb_buffer *g, const json_t *root, long *bytes, struct err *err)
 {
 	char *out;
 	size_t size;

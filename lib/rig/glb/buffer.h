@@ -34,6 +34,6 @@ int glb_add_sparse(struct glb_buffer *buffer, const float *x, int few, int index
 bool glb_pack(char **out, size_t *size, const struct glb_buffer *buffer, const json_t *root, struct err *err);
 
 /* Writes them. *bytes: the file's length, out. Returns false, err set, when it cannot be written. */
-bool glb_save(const char *path, struct glb_buffer *buffer, json_t *root, long *bytes, struct err *err);
+bool glb_save(const char *path, const struct glb_buffer *buffer, const json_t *root, long *bytes, struct err *err);
 
 #endif
