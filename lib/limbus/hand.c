@@ -34,6 +34,16 @@ bool limbus_hand_near(const struct ellipse *e, const struct ellipse *meant)
 	       && e->b < meant->b * (1 + NEAR);
 }
 
+bool limbus_hand_agree(const struct ellipse *a, const char *key_a, const struct ellipse *b, const char *key_b, bool same_eye, struct err *err)
+{
+	const double apart = hypot(a->cx - b->cx, a->cy - b->cy);
+	if (same_eye)
+		return limbus_hand_near(b, a) || err_set(err, "%s with %s: their centres are %.0f px apart, their radii %.0f and %.0f px: both must mean one limbus",
+		                                         key_a, key_b, apart, a->a, b->a);
+	return apart > fmax(a->a, b->a) || err_set(err, "%s with %s: their centres are %.0f px apart: two eyes stand further apart than an iris's radius",
+	                                           key_a, key_b, apart);
+}
+
 /* The ellipse as it was meant: no edge was measured. */
 static void take_meant(struct rim *rim, const struct ellipse *meant, double sigma)
 {

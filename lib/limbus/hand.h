@@ -9,6 +9,10 @@
  * most the photograph's longer side, a >= b. key: "photo.NAME.hint_px". False, err set (key, value, rule), where it cannot be meant. */
 bool limbus_hand_check(const struct ellipse *e, const char *key, int width, int height, struct err *err);
 
+/* Checks two such places against each other: of one eye they are near each other (limbus_hand_near), of a face's two eyes the centres
+ * are further apart than the larger semi-axis. False, err set (both keys, rule), where they cannot both be meant. */
+bool limbus_hand_agree(const struct ellipse *a, const char *key_a, const struct ellipse *b, const char *key_b, bool same_eye, struct err *err);
+
 /* Whether an ellipse is the one that is meant: its centre within a third of the radius, its size within a third. */
 bool limbus_hand_near(const struct ellipse *e, const struct ellipse *meant);
 

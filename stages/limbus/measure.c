@@ -34,6 +34,7 @@ void limbus_kept_free(struct limbus_kept *kept)
 struct hand {
 	struct limbus_mark mark;
 	struct ellipse meant;
+	char key[128];  // that says so; empty: nothing does
 };
 
 /* False, err set, where it cannot be meant. */
@@ -47,9 +48,12 @@ static bool hand_of(struct hand *hand, const char *photo_name, const char *side,
 	if (v) {
 		hand->meant = (struct ellipse){ v[0], v[1], v[2], drawn ? v[3] : v[2], drawn ? v[4] * M_PI / 180 : 0 };
 		hand->mark = (struct limbus_mark){ hint ? hint->value : 0, drawn ? &hand->meant : 0 };
-		char *key = mem_printf("photo.%s.%s", name, drawn ? "limbus_px" : "hint_px");
-		ok = limbus_hand_check(&hand->meant, key, photo->width, photo->height, err);
-		free(key);
+		snprintf(hand->key, sizeof hand->key, "photo.%.100s.%s", name, drawn ? "limbus_px" : "hint_px");
+		ok = limbus_hand_check(&hand->meant, hand->key, photo->width, photo->height, err);
+	}
+	if (ok && drawn && hint) {
+		const struct ellipse hinted = { hint->value[0], hint->value[1], hint->value[2], hint->value[2], 0 };
+		ok = limbus_hand_agree(&hinted, "hint_px", &hand->meant, hand->key, true, err);
 	}
 	free(name);
 	return ok;
@@ -65,6 +69,41 @@ static bool check_mirrored(const struct opt_each_list *list, struct err *err)
 	return true;
 }
 
+/* What is said of a photograph, or of each of the eyes it may show; these do not lie in each other. False, err set (both keys), where it
+ * does not fit together. */
+static bool hands_of(struct hand *whole, struct hand one[2], const struct photo *photo, const char *name, bool may_part,
+                     const struct limbus_options *o, struct err *err)
+{
+	memset(one, 0, 2 * sizeof *one);
+	if (!hand_of(whole, name, 0, photo, o, err))
+		return false;
+	for (int s = 0; s < 2 && may_part; s++) {
+		if (!hand_of(&one[s], name, sides[s], photo, o, err))
+			return false;
+		if (*one[s].key && *whole->key)
+			return err_set(err, "%s with %s: the one is for a photograph of one eye, the other for one of two", whole->key, one[s].key);
+	}
+	return !*one[0].key || !*one[1].key
+	       || limbus_hand_agree(&one[0].meant, one[0].key, &one[1].meant, one[1].key, false, err);
+}
+
+/* A key of one of two eyes in a photograph of which it is known that it shows one would be passed over. */
+static bool check_sides(const struct opt_each_list *list, const char *key, const struct capture *capture, struct err *err)
+{
+	for (int i = 0; i < list->n; i++)
+		for (int k = 0; k < capture->n_photos; k++) {
+			const struct capture_photo *p = &capture->photos[k];
+			const char *side = capture->eyes[p->eye].side;
+			const size_t n = strlen(p->name);
+			const char *end = list->items[i].name + n;
+			const bool of_part = !strncmp(list->items[i].name, p->name, n) && (!strcmp(end, ".left") || !strcmp(end, ".right"));
+			if (of_part && !p->part && (!strcmp(side, sides[FACE_LEFT]) || !strcmp(side, sides[FACE_RIGHT])))
+				return err_set(err, "capture.conf: photo.%s.%s: the photograph is one of the %s eye alone: say photo.%s.%s", list->items[i].name, key, side,
+				               p->name, key);
+		}
+	return true;
+}
+
 /* One record where the photograph shows one eye, or one is asked for; else two. Returns how many; 0, err set: a key cannot be meant. */
 static int measure_photo(struct limbus_record record[2], const struct photo *photo, const struct capture_photo *p, const char *side, bool may_part,
                          const struct limbus_options *o, const struct camera_rig *rig, struct err *err)
@@ -72,16 +111,11 @@ static int measure_photo(struct limbus_record record[2], const struct photo *pho
 	const struct opt_each *focal = capture_key(&o->photo_focal, p), *center = capture_key(&o->photo_center, p);
 	const struct limbus_camera known = { &o->camera, focal ? focal->value[0] : NAN, center ? center->value : 0, camera_rig_find(rig, p->file) };
 	struct hand whole, one[2];
-	struct limbus_mark mark[2];
 	const struct opt_each *said = capture_each(&o->photo_mirrored, p->name);
 	const bool mirrored = said && !strcmp(said->text, "yes");
-	if (!hand_of(&whole, p->name, 0, photo, o, err))
+	if (!hands_of(&whole, one, photo, p->name, may_part, o, err))
 		return 0;
-	for (int s = 0; s < 2; s++) {
-		if (!hand_of(&one[s], p->name, sides[s], photo, o, err))
-			return 0;
-		mark[s] = may_part ? one[s].mark : (struct limbus_mark){ 0 };
-	}
+	const struct limbus_mark mark[2] = { one[0].mark, one[1].mark };
 	if (whole.mark.hint || whole.mark.drawn) {
 		limbus_measure_photo(record, photo, whole.mark.hint, whole.mark.drawn, &known, &o->eye, &o->find, &o->pose);
 		return 1;
@@ -177,7 +211,8 @@ bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct captur
 	struct camera_rig rig = { 0 };
 	const char *path = stage_path(stage, RIG);
 	const bool has_rig = file_exists(path);
-	bool ok = check_mirrored(&o->photo_mirrored, err) && (!has_rig || camera_rig_load(&rig, path, err));
+	bool ok = check_mirrored(&o->photo_mirrored, err) && check_sides(&o->photo_hint, "hint_px", capture, err)
+	          && check_sides(&o->photo_limbus, "limbus_px", capture, err) && (!has_rig || camera_rig_load(&rig, path, err));
 	for (int i = 0, parts; i < capture->n_photos && ok; i += parts) {
 		stage_progress(stage, i, capture->n_photos, "measure");
 		ok = measure(&parts, kept, stage, capture, i, o, &rig, err);

@@ -146,11 +146,32 @@ static void nonsense_is_refused(void **state)
 	}
 }
 
+/* Said twice of one eye it is one place; two eyes are two. */
+static void places_agree(void **state)
+{
+	(void)state;
+	const struct ellipse hint = { 400, 300, 100, 100, 0 }, near = { 410, 295, 105, 90, 0.3 }, far = { 500, 300, 100, 95, 0 }, small = { 400, 300, 40, 40, 0 };
+	struct err err = { 0 };
+	assert_true(limbus_hand_agree(&hint, "h", &near, "d", true, &err));
+	assert_false(limbus_hand_agree(&hint, "h", &far, "d", true, &err));
+	ERR_HAS(err, "h with d: their centres are 100 px apart, their radii 100 and 100 px: both must mean one limbus");
+	err = (struct err){ 0 };
+	assert_false(limbus_hand_agree(&hint, "h", &small, "d", true, &err));
+	err = (struct err){ 0 };
+	const struct ellipse other = { 900, 320, 80, 80, 0 };
+	assert_true(limbus_hand_agree(&hint, "l", &other, "r", false, &err));
+	assert_true(limbus_hand_agree(&other, "l", &hint, "r", false, &err));
+	assert_false(limbus_hand_agree(&hint, "l", &near, "r", false, &err));
+	ERR_HAS(err, "l with r: their centres are 11 px apart: two eyes stand further apart");
+	err = (struct err){ 0 };
+	assert_false(limbus_hand_agree(&small, "l", &hint, "r", false, &err));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(hints_are_orders),      cmocka_unit_test(drawn_ones_end_on_the_edge), cmocka_unit_test(without_an_edge_it_stays),
-		cmocka_unit_test(extreme_ones_are_survived), cmocka_unit_test(nonsense_is_refused),
+		cmocka_unit_test(extreme_ones_are_survived), cmocka_unit_test(nonsense_is_refused), cmocka_unit_test(places_agree),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
