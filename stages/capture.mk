@@ -33,7 +33,9 @@ run_plan = case "$$CAPTURE" in /*) mk=$$CAPTURE ;; *) mk=./$$CAPTURE ;; esac; $(
 # Where no photograph could be used there is the page all the same: on it the limbus can be drawn by hand.
 page_alone = test -d "$$CAPTURE/work/limbus" && test ! -d "$$CAPTURE/work/iris" && "$$BIN/render" --capture="$$CAPTURE" --quiet >/dev/null 2>&1 && \
 	echo "where the eye is can be drawn on $$CAPTURE/work/review/index.html" >&2
-STAGES ?= $(shell ls -I version -I summary "$$BIN")
+ifeq ($(origin STAGES),undefined)
+STAGES := $(shell ls -I version -I summary "$$BIN")
+endif
 .PHONY: run need-capture plan $(STAGES) export
 need-capture:
 	@test -n "$$CAPTURE" || { echo "make: say which folder: make CAPTURE=my-capture $(MAKECMDGOALS)" >&2; exit 2; }

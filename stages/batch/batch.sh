@@ -8,7 +8,9 @@
 # BIN: folder of the programs. ELSEWHERE: where results are to stand, where $CAPTURES is only read.
 # Numbers have points, names are bytes, whatever the locale.
 export LC_ALL=C
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+here=./${BASH_SOURCE[0]}
+here=${here%/*} here=${here#./}
+[[ $here == /* ]] || here=$PWD/$here
 . "$here/lists.sh"
 . "$here/tell.sh"
 
@@ -28,22 +30,23 @@ begin() {
 		[ ! -L "$folder" ] || die "$folder: is a link: results are written inside the folder alone"
 	done
 	[ ! -e "$state/photos" ] && [ ! -e "$state/capture.conf" ] || die "$state: is a capture: give it another name"
-	mkdir -p "$state/log" "$state/results" || exit 1
+	[ -d "$state/log" ] && [ -d "$state/results" ] || mkdir -p "$state/log" "$state/results" || exit 1
 }
 
 one() { # LIST N [TARGETS]
 	local name target=${3:-run} status start ms seconds reason
-	name=$(sed -zn "${2}{p;q}" "$1" | tr '\0' .) && name=${name%.}
+	local -a line
+	mapfile -d '' -t -s $(($2 - 1)) -n 1 line <"$1" && name=${line[0]}
 	[ -z "${NEW:-}" ] || [ ! -e "$state/results/$name" ] || return 0
 	export CAPTURE="$CAPTURES/$name"
 	# The job server is for captures: inside of one a stage at a time writes.
 	unset MAKEFLAGS MFLAGS MAKELEVEL
-	start=$(date +%s%N)
+	start=${EPOCHREALTIME/./}
 	# shellcheck disable=SC2086
 	make --no-print-directory -rf "$here/../capture.mk" ${ELSEWHERE:+"WORK=$ELSEWHERE/$name"} $target >"$state/log/$name" 2>&1 </dev/null
 	status=$?
-	ms=$((($(date +%s%N) - start) / 1000000))
-	seconds=$(printf %d.%02d $((ms / 1000)) $((ms % 1000 / 10)))
+	ms=$(((${EPOCHREALTIME/./} - start) / 1000))
+	printf -v seconds %d.%02d $((ms / 1000)) $((ms % 1000 / 10))
 	if [ $status != 0 ]; then
 		reason=$(why "$state/log/$name")
 		tell "$name" failed "$seconds" "$(peak "$name")" "$reason"

@@ -6,7 +6,11 @@
 tab=$'\t'
 
 # One line without control characters, at most 300 bytes.
-one_line() { LC_ALL=C tr -c '[:print:]\200-\377' ' ' <<<"$1" | head -c 300 | sed 's/ *$//'; }
+one_line() {
+	local LC_ALL=C line
+	line=${1//[$'\001'-$'\037'$'\177']/ } line=${line:0:300}
+	printf '%s\n' "${line%"${line##*[! ]}"}"
+}
 
 # Why make failed, from what it and the stage that failed have said.
 why() { # LOG
@@ -24,14 +28,13 @@ why() { # LOG
 }
 
 # The greatest memory that a stage of the capture has needed, MiB.
-peak() { sed -n 's/^ *"peak_mib": *\([0-9]*\).*/\1/p' "$results/$1"/work/log/*.json 2>/dev/null | sort -n | tail -n 1; }
+peak() { awk '/^ *"peak_mib": *[0-9]/ { sub(/^[^:]*: */, ""); if ($0 + 0 > most) most = $0 + 0 } END { if (most) print most }' "$results/$1"/work/log/*.json 2>/dev/null; }
 
 # Replaces what is known of a capture: written beside and renamed, so that any machine may do it without a lock.
 tell() { # NAME STATE SECONDS PEAK REASON
-	local new
-	new=$(mktemp "$state/.result.XXXXXX") || return 1
-	printf '%s\t%s\t%s\t%s\t%s\n' "$(one_line "$1")" "$2" "$3" "$4" "$5" >"$new"
-	chmod a+r "$new" && mv -fT -- "$new" "$state/results/$1"
+	local new=$state/.result.$HOSTNAME.$BASHPID
+	[ ! -e "$new" ] && [ ! -L "$new" ] || rm -f -- "$new" || return 1
+	printf '%s\t%s\t%s\t%s\t%s\n' "$(one_line "$1")" "$2" "$3" "$4" "$5" >"$new" && mv -fT -- "$new" "$state/results/$1"
 	[ "$2" != failed ] || printf '%s: failed: %s\n' "$(one_line "$1")" "$5" >&2
 }
 

@@ -69,9 +69,10 @@ static void write_rule(FILE *mk, const struct plan *plan, int i)
 	for (int j = 1; j < i; j++)
 		if (plan->rows[j].run && (i == PLAN_STAGES - 1 || plan_stage_needs(i, j)))
 			fprintf(mk, " %s", plan->rows[j].name);
-	fprintf(mk, "\n\t@\"$$BIN/plan\" --capture=\"$$CAPTURE\" --fresh=%s || \\\n"
+	// A stage without a record has never run: nobody needs to look.
+	fprintf(mk, "\n\t@{ test -e \"$$CAPTURE/work/.made/%s.json\" && \"$$BIN/plan\" --capture=\"$$CAPTURE\" --fresh=%s; } || \\\n"
 	            "\t\"$$BIN/%s\" --capture=\"$$CAPTURE\" $${THREADS:+\"--threads=$$THREADS\"}\n",
-	        row->name, row->name);
+	        row->name, row->name, row->name);
 }
 
 /* What other programs get of the eye, without the pictures: a part of the last stage. */
