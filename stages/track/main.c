@@ -37,6 +37,7 @@ int main(int argc, char **argv)
 		OPT_INT("reference_frame", &c.reference, -1, 10000000, "", "frame the mesh is laid on; -1: found"),
 		OPT_INT("search_frames", &c.search, 1, 100000, "", "searched for a face at most"),
 		OPT_REAL("distance_mm", &c.distance_mm, 50, 10000, "mm", "of the face from a camera of unknown focal length"),
+		OPT_REAL("distance_sigma", &c.distance_sigma, 0, 1, "", "one standard deviation of that, as a share of it"),
 		SETTLE_OPTS(&c),
 		OPT_REAL("meniscus_mm", &c.meniscus_mm, 0, 3, "mm", "that a lid's margin stands off the eye in its corners"),
 		OPT_REAL("lid_sigma_mm", &c.lid_sigma_mm, 0, 5, "mm", "a margin's place, off in the same way in all frames"),

@@ -26,8 +26,9 @@ bool track_agrees(struct track_result *r, const struct track_clip *clip, const s
 	const struct trust_name *name = &trust_names[worst];
 	const char *needed = s->assumed ? "the person's mesh (subject.ply) and the lens (camera.focal_px)" : "subject.eye_center.left and .right";
 	if (r->trust.wrong > conf->wrong_most && r->trust.far > 0.5 * r->trust.wrong)
-		return err_set(err, "%s: gaze is off by more than %g degrees (track.wrong_deg) with a probability of %.2g, must be at most %g (track.wrong_most): how the head is turned in frame %ld is not known well enough; give %s, or let the head turn",
-		               clip->file, conf->wrong_deg, r->trust.wrong, conf->wrong_most, clip->reference, needed);
+		return err_set(err, "%s: gaze is off by more than %g degrees (track.wrong_deg) with a probability of %.2g, must be at most %g (track.wrong_most): %s in frame %ld is not known well enough; give %s%s",
+		               clip->file, conf->wrong_deg, r->trust.wrong, conf->wrong_most, s->assumed ? "how large the eyeballs are and where they lie" : "how the head is turned",
+		               clip->reference, needed, s->assumed ? "" : ", or let the head turn");
 	// What is known speaks for it, but too little is known.
 	if (r->trust.wrong > conf->wrong_most && !(r->trust.log_odds[worst] < 0))
 		return err_set(err, "%s: followed from frame %ld; too little shows that it is right: wrong with a probability of %.2g, must be at most %g (track.wrong_most): give %s, or film longer and from in front",

@@ -20,7 +20,7 @@ struct track_conf {
 	double unit_mm, eye_radius;                  // subject.*: NAN where not given
 	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
 	struct opt_each_list landmark_px, expression;
-	double distance_mm;    // of the face from a camera of unknown focal length
+	double distance_mm, distance_sigma;  // of the face from a camera of unknown focal length; its standard deviation as a share of it
 	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
 	int search;            // frames searched for it; this and the spans below are frames at 60 a second: scaled for faster clips
 	int settle;            // frames from which the eyeballs' centres are estimated to refine the reference pose; 0: none
@@ -70,7 +70,8 @@ struct track_conf {
 		OPT_REAL("earned_deg", &(c)->earned_deg, 0.01, 45, "degrees", "standard deviation of the turn that the skin's motion tells"), \
 		TRUST_OPT("laid_px", c, TRUST_LAID, "px", "lids and eyeballs off the mesh, at 1280 px"), TRUST_OPT("skin_mm", c, TRUST_SKIN, "mm", "skin off the rigid head"), \
 		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
-		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
+		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("scale_mm", c, TRUST_SCALE, "mm", "the same without a mesh"), \
+		TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
 		OPT_REAL("wrong_prior", &(c)->wrong_prior, 1e-6, 0.99, "", "share of clips that are followed wrongly"), \
 		OPT_REAL("wrong_deg", &(c)->wrong_deg, 0.1, 180, "degrees", "gaze that is off by more is wrong"), \
 		OPT_REAL("wrong_most", &(c)->wrong_most, 0, 1, "", "probability of a wrong result; with more a clip is refused"), \

@@ -13,6 +13,15 @@ struct track_eyes {
 	uint8_t *rgb;          // [height][3 width]; only what lies round the eyes is filled
 };
 
+/* Where the distance was assumed, the line of sight to an eye aside of the camera's axis is off in proportion to its angle. */
+static void view_sigma(double sigma[2], const struct track_clip *clip, const struct track_subject *subject, int side, const struct track_conf *conf)
+{
+	double p[3];
+	head_from(p, clip->cam_from_head, subject->center[side]);
+	for (int k = 0; k < 2; k++)
+		sigma[k] = subject->assumed && clip->focal_assumed ? conf->distance_sigma * fabs(p[k] / p[2]) : 0;
+}
+
 struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf)
 {
 	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)(conf->every ? conf->every : 1),
@@ -25,7 +34,9 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 	for (int e = 0; e < SIDES; e++) {
 		struct eye_prior *p = &scene.prior[e];
 		p->absent = !clip->eye_seen[e];
-		p->radius = subject->radius;
+		p->radius = subject->assumed ? conf->eyes.free_radius[0] : subject->radius;
+		p->average = subject->assumed;
+		view_sigma(p->view_sigma, clip, subject, e, conf);
 		// centres from capture.conf are as certain here as when the reference pose is refined by them
 		p->center_sigma = subject->center_given[e] && !conf->limit ? fmin(conf->center_sigma, free_centers.center_sigma) : 0;
 		if (subject->center_sigma[e] > 0)

@@ -4,7 +4,7 @@
 #include "track/eye/eye_track.h"
 
 /* Evidence for a clip that was followed rightly: see trust.h. */
-enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_STRAIGHT, TRUST_EVIDENCES };
+enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_SCALE, TRUST_STRAIGHT, TRUST_EVIDENCES };
 struct track_trust {
 	double value[TRUST_EVIDENCES], log_odds[TRUST_EVIDENCES];  // NAN, 0 where the clip does not tell it
 	double far;            // probability that gaze is off by more than wrong_deg, by its own standard deviations

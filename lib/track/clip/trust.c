@@ -15,6 +15,7 @@ const struct trust_name trust_names[TRUST_EVIDENCES] = {
 	[TRUST_LEVEL] = { "level_deg", "one eye looking higher than the other", "degrees", "give subject.eye_center.left and .right, or another track.reference_frame" },
 	[TRUST_APART] = { "apart_deg", "eyes looking apart, or nearer than the camera,", "degrees", "give subject.eye_center.left and .right, or another track.reference_frame" },
 	[TRUST_IRIS] = { "iris_mm", "radius of the irises off people's", "mm", "check subject.unit_mm, or give another track.reference_frame" },
+	[TRUST_SCALE] = { "scale_mm", "radius of the irises, by the eyes' distance or width, off people's", "mm", "give another track.reference_frame" },
 	[TRUST_STRAIGHT] = { "straight_deg", "gaze off straight ahead", "degrees", "give another track.reference_frame" },
 };
 
@@ -24,13 +25,15 @@ static double middle_of(int n, double *x)
 	return n >= LEAST ? stats_median(n, x) : NAN;
 }
 
-/* Median of how much the left eye looks further along the axis than the right one (sum false), or of both eyes' mean, degrees. */
+/* Median of how much the left eye looks further along the axis than the right one (sum false), or of the mean of the eyes seen, degrees. */
 static double gaze_of(const struct track_result *r, int axis, bool sum)
 {
 	double *d = mem_array((size_t)r->n + 1, sizeof *d);
 	int n = 0;
 	for (long f = 0; f < r->n && r->has_eyes; f++) {
-		const double left = r->eyes.state[f][SIDE_LEFT].gaze[axis], right = r->eyes.state[f][SIDE_RIGHT].gaze[axis];
+		double left = r->eyes.state[f][SIDE_LEFT].gaze[axis], right = r->eyes.state[f][SIDE_RIGHT].gaze[axis];
+		left = sum && !r->eyes.globe[SIDE_LEFT].seen ? right : left;
+		right = sum && !r->eyes.globe[SIDE_RIGHT].seen ? left : right;
 		if (!r->lost_at[f] && isfinite(left + right))
 			d[n++] = (sum ? 0.5 * (left + right) : left - right) * 180 / M_PI;
 	}
@@ -72,8 +75,8 @@ static double iris_of(const struct track_result *r, double usual)
 	return n ? off / n : NAN;
 }
 
-/* Probability that gaze is off by more than `most` (degrees) in an axis of an eye, by its own standard deviation: its median over the frames, as most of it (the eyeball's,
- * the pose's) is in all frames alike. */
+/* Probability that gaze is off by more than `most` (degrees) in an axis of an eye, by its own standard deviation, as far as a clip's 95 % error tells: most of it (the
+ * eyeball's, the pose's) is in all frames alike, and what the eyeball's radius makes of it grows with the gaze. */
 static double far_of(const struct track_result *r, double most)
 {
 	double *sigma = mem_array((size_t)r->n + 1, sizeof *sigma), far = 0;
@@ -84,8 +87,8 @@ static double far_of(const struct track_result *r, double most)
 			if (!r->lost_at[f] && isfinite(s->gaze[k % 2] + s->sigma[k % 2]))
 				sigma[n++] = s->sigma[k % 2] * 180 / M_PI;
 		}
-		const double usual = middle_of(n, sigma);
-		far = usual > 0 ? fmax(far, erfc(most / (sqrt(2) * usual))) : far;
+		const double large = n >= LEAST ? stats_quantile(n, sigma, 0.95) : NAN;
+		far = large > 0 ? fmax(far, erfc(most / (sqrt(2) * large))) : far;
 	}
 	free(sigma);
 	return far;
@@ -125,7 +128,8 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 	t->value[TRUST_LEVEL] = gaze_of(r, 1, false);
 	t->value[TRUST_APART] = apart_of(r, clip);
 	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);
-	t->value[TRUST_STRAIGHT] = s->assumed ? NAN : hypot(gaze_of(r, 0, true), gaze_of(r, 1, true));
+	t->value[TRUST_SCALE] = s->assumed ? iris_of(r, conf->eye.limbus_radius) : NAN;
+	t->value[TRUST_STRAIGHT] = hypot(gaze_of(r, 0, true), gaze_of(r, 1, true));
 	double odds = log((1 - conf->wrong_prior) / conf->wrong_prior);
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
 		odds += t->log_odds[i] = trust_odds(i, t->value[i], conf);

@@ -54,6 +54,9 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 	eye->globe.radius = isfinite(prior->radius) && prior->radius > 3 ? prior->radius : RADIUS;
 	eye->globe.limbus = fmin(track->scene.eye.limbus_radius, 0.95 * eye->globe.radius);
 	eye->center_guess = prior->center_sigma > 0 ? prior->center_sigma : track->conf.center_sigma;
+	eye->average = prior->average;
+	eye->radius_sigma = prior->average ? track->conf.free_radius[1] : track->conf.radius_sigma;
+	memcpy(eye->view_sigma, prior->view_sigma, sizeof eye->view_sigma);
 	eye->contrast = CONTRAST;
 	if (given)
 		memcpy(eye->globe.center, prior->center_in_head, sizeof eye->globe.center);
@@ -141,6 +144,7 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 			clip->frames = (int)track->side[side].frames;
 	clip->state = mem_new((size_t)clip->frames, sizeof *clip->state);
 	bool seen = false;
+	eye_pair_alike(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT], track->conf.alike_radius);
 	for (int side = 0; side < SIDES; side++)
 		eye_side_settle(&track->side[side]);
 	eye_pair_level(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT]);

@@ -28,6 +28,9 @@ struct eye_side {
 	struct gaze_globe globe, first_globe;
 	double center_sigma[3], rms;
 	double center_guess;       // mm: standard deviation of the centre given
+	bool average;              // its radius is an average eye's
+	double radius_sigma;       // mm: of first_globe's radius
+	double view_sigma[2];      // radians: of the line of sight from the camera to the eye
 	double canthus[2][3];      // head frame
 	bool corners_guessed;      // until lids are found
 	double fick[2];            // last gaze
@@ -76,6 +79,13 @@ void eye_side_learn(struct eye_side *eye, const struct eye_frame *frame);
 
 /* Copies the lids found in a frame into its state. */
 void eye_fill_lids(struct eye_state *state, const struct lid_found *found, int points);
+
+/* What the clip alone tells of the eyeball's radius, without its prior: value and standard deviation, mm. Returns false where it tells nothing. */
+bool eye_side_radius(double *radius, double *sigma, const struct eye_side *eye);
+
+/* Before average eyes settle: what the clip tells of the other eyeball's radius joins the prior of each, as a person's two differ by alike (mm, one
+ * standard deviation). */
+void eye_pair_alike(struct eye_side *left, struct eye_side *right, double alike);
 
 /* Estimates eyeball, gaze, torsion and lids of all frames again from the whole clip. */
 void eye_side_settle(struct eye_side *eye);

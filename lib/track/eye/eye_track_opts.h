@@ -13,6 +13,9 @@ struct eye_track_conf {
 	double center_sigma;    // mm: eyeball centre off its prior, each way
 	double radius_sigma;    // mm: eyeball radius off its prior
 	double limbus_sigma;    // mm: limbus radius off eye.limbus_radius_mm
+	double free_radius[2];  // mm: radius of people's eyeballs and its standard deviation, where there is no mesh
+	double alike_radius;    // mm: radii of a person's two eyeballs differ by, where there is no mesh
+	double edge_sigma;      // share of the limbus' radius by which its edges err with the gaze, where there is no mesh
 	double saccade_speed;   // degrees/s above which the eye is in a saccade
 	double saccade_size;    // degrees: smaller ones cannot be distinguished from noise
 	double apart[2];        // degrees, horizontally and vertically: eyes further apart than mostly were not both followed
@@ -30,6 +33,9 @@ struct eye_track_conf {
 	OPT_REAL("eye_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "eyeball centre off its prior, each way"), \
 	OPT_REAL("eye_radius_sigma_mm", &(c)->radius_sigma, 0.01, 5, "mm", "eyeball radius off its prior"), \
 	OPT_REAL("limbus_sigma_mm", &(c)->limbus_sigma, 0.01, 2, "mm", "limbus radius off eye.limbus_radius_mm"), \
+	OPT_REALS("free_radius_mm", (c)->free_radius, 2, 0.01, 20, "mm", "eyeball radius and its standard deviation among people, without a mesh"), \
+	OPT_REAL("alike_radius_sigma_mm", &(c)->alike_radius, 0.01, 5, "mm", "radii of a person's two eyeballs off each other, without a mesh"), \
+	OPT_REAL("limbus_edge_sigma", &(c)->edge_sigma, 0, 0.2, "", "of the limbus' radius: its edges err so far with the gaze, without a mesh"), \
 	OPT_REAL("saccade_speed", &(c)->saccade_speed, 5, 200, "degrees/s", "speed above which the eye is in a saccade"), \
 	OPT_REAL("saccade_size", &(c)->saccade_size, 0.1, 10, "degrees", "saccades smaller than this are not reported"), \
 	OPT_REALS("apart_deg", (c)->apart, 2, 0.1, 90, "degrees", "gaze of the two eyes further apart than mostly, h and v, is doubted"), \

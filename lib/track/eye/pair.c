@@ -37,6 +37,26 @@ void eye_pair_level(struct eye_side *left, struct eye_side *right)
 	lift(right, apart * var[1] / sum);
 }
 
+/* The prior N(radius, sigma) of an eyeball's radius, and a measurement of it. */
+static void join(struct eye_side *eye, double measured, double sigma)
+{
+	const double prior = 1 / (eye->radius_sigma * eye->radius_sigma), more = 1 / (sigma * sigma);
+	eye->first_globe.radius = fmax(1.1 * eye->first_globe.limbus, (prior * eye->first_globe.radius + more * measured) / (prior + more));
+	eye->radius_sigma = 1 / sqrt(prior + more);
+}
+
+void eye_pair_alike(struct eye_side *left, struct eye_side *right, double alike)
+{
+	double radius[2], sigma[2];
+	if (!left->average || !right->average)
+		return;
+	const bool told[2] = { eye_side_radius(&radius[0], &sigma[0], left), eye_side_radius(&radius[1], &sigma[1], right) };
+	if (told[1])
+		join(left, radius[1], hypot(sigma[1], alike));
+	if (told[0])
+		join(right, radius[0], hypot(sigma[0], alike));
+}
+
 /* Median confidence of an eye's gaze where it is measured. */
 static double usual_confidence(const struct eye_side *eye, long n, double *room)
 {

@@ -26,7 +26,7 @@ static int frames_of(struct gaze_frame *out, int *index, const struct eye_side *
 	return n;
 }
 
-/* Adds the errors that frames share, radians: those of the eyeball and of the head's pose. */
+/* Adds the errors that frames share, radians: those of the eyeball, of the head's pose and of the line of sight to the eye. */
 static void add_common(struct eye_state *state, const struct eye_side *eye, const struct gaze_frame *frame, const struct gaze_bundle_fit *fit)
 {
 	const double worst = 0.5;
@@ -34,7 +34,7 @@ static void add_common(struct eye_state *state, const struct eye_side *eye, cons
 	gaze_bundle_common(cov, frame, &eye->globe, fit);
 	for (int k = 0; k < 2; k++) {
 		double common = isfinite(cov[k][k]) ? fmin(worst, sqrt(fmax(0, cov[k][k]))) : worst;
-		state->sigma[k] = hypot(hypot(state->sigma[k], common), eye->scene->head_sigma[k]);
+		state->sigma[k] = hypot(hypot(state->sigma[k], common), hypot(eye->scene->head_sigma[k], eye->view_sigma[k]));
 	}
 }
 
@@ -73,11 +73,34 @@ static void level_torsion(struct eye_side *eye)
 	free(off);
 }
 
+static struct gaze_bundle_conf bundle_of(const struct eye_side *eye)
+{
+	return (struct gaze_bundle_conf){ eye->center_guess, eye->radius_sigma, eye->conf->limbus_sigma, eye->average ? eye->conf->edge_sigma : 0 };
+}
+
+bool eye_side_radius(double *radius, double *sigma, const struct eye_side *eye)
+{
+	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
+	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
+	const struct gaze_bundle_conf conf = bundle_of(eye);
+	struct gaze_bundle_fit fit;
+	struct gaze_globe best = eye->first_globe;
+	bool ok = gaze_bundle_fit(&best, &fit, n, frame, &conf);
+	const double information = ok ? 1 / fit.cov[3][3] - 1 / (conf.radius_sigma * conf.radius_sigma) : 0;
+	free(frame);
+	free(index);
+	if (!(information > 0))
+		return false;
+	*radius = (best.radius / fit.cov[3][3] - eye->first_globe.radius / (conf.radius_sigma * conf.radius_sigma)) / information;
+	*sigma = 1 / sqrt(information);
+	return true;
+}
+
 void eye_side_settle(struct eye_side *eye)
 {
 	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
 	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
-	struct gaze_bundle_conf conf = { eye->center_guess, eye->conf->radius_sigma, eye->conf->limbus_sigma };
+	const struct gaze_bundle_conf conf = bundle_of(eye);
 	struct gaze_bundle_fit fit;
 	struct gaze_globe best = eye->first_globe;
 	if (gaze_bundle_fit(&best, &fit, n, frame, &conf)) {

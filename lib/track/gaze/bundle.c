@@ -8,7 +8,7 @@
 #include "math/chol.h"
 #include "math/stats.h"
 
-enum { SHARED = GAZE_GLOBE, FRAMES = 400, EDGES = 48, ROUNDS = 12 };
+enum { SHARED = GAZE_GLOBE, FRAMES = 400, EDGES = 48, ROUNDS = 60 };
 
 struct sums {
 	double a[SHARED][SHARED], b[SHARED];  // reduced normal equations of the shared unknowns
@@ -122,6 +122,16 @@ static double scale_of(int n, struct gaze_frame *const frame[], const struct gaz
 	return fmax(0.2, scale);
 }
 
+/* Radius of the limbus in the first frame, px. */
+static double limbus_px(const struct gaze_frame *frame, const struct gaze_globe *globe)
+{
+	const double(*m)[4] = frame->view.cam_from_head;
+	double z = m[2][3];
+	for (int k = 0; k < 3; k++)
+		z += m[2][k] * globe->center[k];
+	return z > 0 ? frame->view.camera.focal_px / z * globe->limbus : 0;
+}
+
 /* Number of independent frames: those of one gaze share shading and lids. */
 static double distinct(int n, struct gaze_frame *const frame[])
 {
@@ -155,7 +165,8 @@ static bool iterate(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n
 			reduce(&sums, &own[i]);
 		}
 		// Errors round one limbus are correlated (lobes, shading): a frame counts as about three edges.
-		double noise = sums.weight > 0 ? sums.square / sums.weight * same * EDGES / 3 : 1;
+		double common = conf->edge_sigma * limbus_px(frame[0], globe);
+		double noise = sums.weight > 0 ? (sums.square / sums.weight + common * common) * same * EDGES / 3 : 1;
 		if (!solve(step, &sums, globe, &start, sigma, fmax(noise, 0.01), fit->cov))
 			return false;
 		fit->rms = sqrt(sums.square / fmax(1, sums.weight));

@@ -114,7 +114,7 @@ static void globe_from_clip(void **state)
 				(float)(arc.p[1] + off * arc.normal[1]), 50 };
 		}
 	}
-	assert_true(gaze_bundle_fit(&found, &fit, FRAMES, frame, &(struct gaze_bundle_conf){ 1, 1, 0.3 }));
+	assert_true(gaze_bundle_fit(&found, &fit, FRAMES, frame, &(struct gaze_bundle_conf){ 1, 1, 0.3, 0 }));
 	// One edge in eight is a lid; the others' noise of 0.05 px leaves 0.02 mm.
 	NEAR(found.center[0], truth.center[0], 0.06);
 	NEAR(found.center[1], truth.center[1], 0.06);
@@ -124,6 +124,39 @@ static void globe_from_clip(void **state)
 		NEAR(frame[i].fick[0], 0.35 * sin(i), 0.3 * DEGREE);
 		NEAR(frame[i].fick[1], 0.25 * cos(2.3 * i), 0.3 * DEGREE);
 	}
+}
+
+/* Edges that err together at each gaze leave the globe as much less certain as their error exceeds the scatter; and what a clip tells of a radius is no worse for
+ * a wide prior than for a narrow one. */
+static void globe_uncertain(void **state)
+{
+	(void)state;
+	enum { FRAMES = 40, ARCS = 40 };
+	const struct gaze_globe truth = { { 30, 36, 78 }, 14, 5.85 };
+	static struct gaze_edge edge[FRAMES][ARCS];
+	struct gaze_bundle_fit fit[2];
+	struct gaze_globe found[2];
+	struct rng rng = { 11 };
+	for (int pass = 0; pass < 2; pass++) {
+		struct gaze_frame frame[FRAMES];
+		for (int i = 0; i < FRAMES; i++) {
+			double fick[2] = { 0.35 * sin(i), 0.25 * cos(2.3 * i) };
+			frame[i] = (struct gaze_frame){ tilted_view(), { fick[0] + 0.03, fick[1] - 0.03 }, edge[i], ARCS };
+			for (int k = 0; k < ARCS && !pass; k++) {
+				struct gaze_arc arc;
+				double angle = 2 * M_PI * k / ARCS, off = 0.1 * rng_normal(&rng);
+				assert_true(gaze_arc(&arc, &truth, &frame[i].view, fick, angle, false));
+				edge[i][k] = (struct gaze_edge){ (float)angle, (float)(arc.p[0] + off * arc.normal[0]), (float)(arc.p[1] + off * arc.normal[1]), 50 };
+			}
+		}
+		found[pass] = truth;
+		found[pass].radius = 12;
+		assert_true(gaze_bundle_fit(&found[pass], &fit[pass], FRAMES, frame, &(struct gaze_bundle_conf){ 4, 2, 0.4, pass ? 0.02 : 0 }));
+	}
+	// the prior alone: 2 mm
+	assert_true(sqrt(fit[1].cov[3][3]) > 2 * sqrt(fit[0].cov[3][3]) && sqrt(fit[1].cov[3][3]) <= 2);
+	for (int pass = 0; pass < 2; pass++)
+		assert_true(fabs(found[pass].radius - truth.radius) < 2.5 * sqrt(fit[pass].cov[3][3]));
 }
 
 /* A straight line stays, whatever the weights; without bending all is as it was. */
@@ -489,7 +522,7 @@ static void rendered_clip(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(arc_slopes), cmocka_unit_test(pixel_round_trip), cmocka_unit_test(globe_from_clip),
+		cmocka_unit_test(arc_slopes), cmocka_unit_test(pixel_round_trip), cmocka_unit_test(globe_from_clip), cmocka_unit_test(globe_uncertain),
 		cmocka_unit_test(smooth_line), cmocka_unit_test(painted_film), cmocka_unit_test(sigma_of_strangers), cmocka_unit_test(without_mesh), cmocka_unit_test(no_eye),
 		cmocka_unit_test(absurd_priors), cmocka_unit_test(rendered_clip),
 	};

@@ -120,6 +120,30 @@ static void off_by_degrees(void **state)
 	track_result_free(&film.result);
 }
 
+/* Errors that grow with the gaze are judged where it is large: a tenth of the frames at 3 degrees. And without a mesh the irises' size counts by the scale it has there. */
+static void off_at_large_gazes(void **state)
+{
+	(void)state;
+	struct film film;
+	struct track_trust t;
+	struct track_conf conf = keys();
+	conf.trust[TRUST_SCALE][0] = 2;
+	conf.trust[TRUST_SCALE][1] = 6;
+	shoot(&film, 0, 0, 1);
+	film.subject.assumed = true;
+	for (long f = 0; f < FRAMES; f++)
+		for (int e = 0; e < SIDES; e++)
+			film.result.eyes.state[f][e].sigma[0] = film.result.eyes.state[f][e].sigma[1] = (f < FRAMES / 10 ? 3 : 0.5) * DEGREE;
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.far, 0.31731, 1e-5);
+	assert_true(isnan(t.value[TRUST_IRIS]) && t.log_odds[TRUST_IRIS] == 0);
+	NEAR(t.value[TRUST_SCALE], 1, 1e-12);
+	// N(1; 2) = exp(-1/8) / 2 against (N(1; 2) + N(1; 6)) / 2
+	const double right = exp(-0.125) / 2, wrong = exp(-1 / 72.0) / 6;
+	NEAR(t.log_odds[TRUST_SCALE], log(2 * right / (right + wrong)), 1e-3);
+	track_result_free(&film.result);
+}
+
 /* Nothing known: the prior. */
 static void nothing_seen(void **state)
 {
@@ -146,6 +170,7 @@ static void too_little_known(void **state)
 		for (int e = 0; e < SIDES; e++)
 			film.result.eyes.state[f][e].gaze[0] = film.result.eyes.state[f][e].gaze[1] = NAN;
 	}
+	film.result.eyes.globe[0].seen = film.result.eyes.globe[1].seen = false;
 	assert_false(track_agrees(&film.result, &film.clip, &film.subject, &conf, &err));
 	assert_non_null(strstr(err.msg, "too little shows that it is right: wrong with a probability of 0.2"));
 	assert_non_null(strstr(err.msg, "subject.ply"));
@@ -159,7 +184,7 @@ int main(void)
 		cmocka_unit_test(all_in_order),
 		cmocka_unit_test(together),
 		cmocka_unit_test(weighed_together),
-		cmocka_unit_test(off_by_degrees),
+		cmocka_unit_test(off_by_degrees), cmocka_unit_test(off_at_large_gazes),
 		cmocka_unit_test(nothing_seen),
 		cmocka_unit_test(too_little_known),
 	};
