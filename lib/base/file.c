@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "base/asked.h"
 #include "base/gate.h"
 #include "base/mem.h"
 
@@ -20,6 +21,7 @@ static int open_regular(const char *path, struct stat *st, struct err *err)
 {
 	int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0) {
+		asked_in_vain(path, errno);
 		err_set(err, "%s: %s", path, strerror(errno));
 		return -1;
 	}
@@ -58,6 +60,8 @@ bool file_read(char **data, size_t *size, const char *path, size_t limit, struct
 		ssize_t got = read(fd, buf + have, want - have);
 		if (got < 0 && errno == EINTR)
 			continue;
+		if (got < 0)
+			asked_in_vain(path, errno);
 		if (got <= 0)
 			break;
 		have += (size_t)got;
@@ -169,7 +173,10 @@ bool file_write(const char *path, const void *data, size_t size, struct err *err
 bool file_exists(const char *path)
 {
 	struct stat st;
-	return stat(path, &st) == 0;
+	const bool there = !stat(path, &st);
+	if (!there)
+		asked_in_vain(path, errno);
+	return there;
 }
 
 bool file_remove(const char *path, struct err *err)
@@ -211,11 +218,14 @@ bool file_hash(char out[33], const char *path, uint64_t limit, struct err *err)
 	ssize_t got;
 	while ((got = read(fd, buf, PIECE)) > 0)
 		XXH3_128bits_update(state, buf, (size_t)got);
+	const int why = errno;
 	hash_text(out, XXH3_128bits_digest(state));
 	XXH3_freeState(state);
 	free(buf);
 	close(fd);
-	return got == 0 ? true : err_set(err, "%s: cannot read: %s", path, strerror(errno));
+	if (got < 0)
+		asked_in_vain(path, why);
+	return got == 0 ? true : err_set(err, "%s: cannot read: %s", path, strerror(why));
 }
 
 static int by_bytes(const void *a, const void *b)
@@ -227,8 +237,11 @@ bool file_list(struct file_list *out, const char *dir, struct err *err)
 {
 	*out = (struct file_list){ 0 };
 	DIR *d = opendir(dir);
-	if (!d)
-		return errno == ENOENT ? true : err_set(err, "%s: %s", dir, strerror(errno));
+	if (!d) {
+		const int why = errno;
+		asked_in_vain(dir, why);
+		return why == ENOENT ? true : err_set(err, "%s: %s", dir, strerror(why));
+	}
 	struct dirent *e;
 	while ((e = readdir(d))) {
 		if (e->d_name[0] == '.')

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "base/asked.h"
 #include "base/file.h"
 #include "base/mem.h"
 
@@ -239,8 +240,26 @@ bool record_save_json(const char *path, const json_t *json, struct err *err)
 	return ok;
 }
 
+static void add_absent(void *list, const char *rel)
+{
+	static const char memory[] = "work/.made/";  // of earlier runs: no result depends on it
+	if (!strncmp(rel, memory, sizeof memory - 1))
+		return;
+	char *key = json_key(rel);
+	json_array_append_new(list, json_string(key));
+	free(key);
+}
+
 bool record_save(struct record *r, bool complete, struct err *err)
 {
+	json_t *absent = json_array();
+	asked_absent(add_absent, absent);
+	json_object_set_new(r->now, "absent", absent);
+	// A disk that failed to give a file: what was made without it is made again.
+	if (asked_trouble()) {
+		complete = false;
+		json_object_set_new(r->now, "outputs", json_object());
+	}
 	char *path = record_path(r->capture, r->stage), *hashes = record_in_capture(r->capture, RECORD_HASHES);
 	json_object_set_new(r->now, "complete", json_boolean(complete));
 	bool ok = record_save_json(path, r->now, err);

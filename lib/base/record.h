@@ -12,7 +12,7 @@
 struct record {
 	char *capture;       // path of the capture folder
 	const char *stage;
-	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, complete}
+	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, absent [path], complete}
 	json_t *hashes;      // path -> {size, inode, mtime, ctime, hash}
 	bool hashes_changed;
 };
@@ -44,7 +44,8 @@ void record_made(struct record *record, const char *out, int n, const char *cons
 /* Records what the last run had made with this program and configuration, and this run did not ask about. */
 void record_keep(struct record *record);
 
-/* Writes the record, and the cache of hashes if it changed. complete: the stage has done all its work. Returns false, err set, when
+/* Writes the record, with what was looked for in vain (asked.h), and the cache of hashes if it changed. complete: the stage has done all its
+ * work. Where a disk has failed to give a file nothing counts as made. Returns false, err set, when
  * that fails. */
 bool record_save(struct record *record, bool complete, struct err *err);
 

@@ -97,6 +97,24 @@ static bool lists_hold(struct record *r, char **why)
 	return true;
 }
 
+/* What the stage has looked for in vain is still not there. */
+static bool absence_holds(const struct record *r, char **why)
+{
+	size_t i;
+	json_t *value;
+	json_array_foreach(json_object_get(r->old, "absent"), i, value) {
+		const char *rel = json_string_value(value);
+		char *path = rel && *rel != '%' && file_is_relative(rel) ? record_in_capture(r->capture, rel) : 0;
+		const bool there = path && file_exists(path);
+		free(path);
+		if (there) {
+			*why = mem_printf("input %s is new", rel);
+			return false;
+		}
+	}
+	return true;
+}
+
 bool record_holds(const char *capture, const char *stage, const char *program_path, const struct conf *conf,
                   char **why)
 {
@@ -112,7 +130,7 @@ bool record_holds(const char *capture, const char *stage, const char *program_pa
 		reason = mem_str("the program has changed");
 	else
 		holds = config_holds(r->old, stage, conf, &reason)
-		        && lists_hold(r, &reason)
+		        && lists_hold(r, &reason) && absence_holds(r, &reason)
 		        && files_hold(r, seen, json_object_get(r->old, "outputs"), "output", &reason);
 	if (r->hashes_changed) {
 		char *hashes = record_in_capture(capture, RECORD_HASHES);

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/asked.h"
 #include "base/blas.h"
 #include "base/call.h"
 #include "base/guard.h"
@@ -97,6 +98,7 @@ void stage_start(struct stage *stage, const char *name, const char *about, int a
 		say_error(name, err.msg);
 		_exit(1);
 	}
+	asked_watch(stage->capture);
 	struct file_list list;
 	if (!file_list(&list, stage->capture, &err) || !file_exists(stage->capture)) {
 		err_set(&err, "%s: no such folder", stage->capture);

@@ -192,6 +192,11 @@ static const char *transfer_does(const char *usual, const char *capture)
 	return same ? "fits the characters to the subject; no ICP for those of its own topology" : usual;
 }
 
+double plan_cost_seconds(const struct plan_cost *cost, const struct plan *plan)
+{
+	return cost->seconds[0] + cost->seconds[1] * plan->mpx + cost->seconds[2] * plan->mtexel;
+}
+
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
                  struct err *err)
 {
@@ -237,7 +242,7 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 			row->reason = transfer_does(r->does, capture);
 		if (row->run && grey && !strcmp(r->name, "pigment"))
 			row->reason = "no pigments: the photographs are grey";
-		row->seconds = row->run ? cost[i].seconds[0] + cost[i].seconds[1] * plan->mpx : 0;
+		row->seconds = row->run ? plan_cost_seconds(&cost[i], plan) : 0;
 		row->peak_mib = row->run ? cost[i].mib[0] + cost[i].mib[1] * plan->largest_mpx : 0;
 		plan->n_run += row->run && i;
 	}

@@ -7,9 +7,10 @@
 #include "base/conf.h"
 #include "plan/stages.h"
 
-/* What a stage costs on two processors: fixed, and for each megapixel: seconds of all photographs, memory of the largest. */
+/* What a stage costs on two processors: fixed, and for each megapixel: seconds of all photographs, memory of the largest; seconds for
+ * each million texels of the iris map, too. */
 struct plan_cost {
-	double seconds[2], mib[2];
+	double seconds[3], mib[2];
 };
 
 struct plan_row {
@@ -28,9 +29,13 @@ struct plan {
 	int n_photos;
 	double mpx;          // of all photographs, as far as their heads tell
 	double largest_mpx;  // of one
+	double mtexel;       // million texels of an iris map, as large as they will be (setting.h)
 	char asked[64];      // "error = 0.05 mm", or ""
 	char listing[33];    // hash of the names that decide
 };
+
+/* Seconds of a stage, by the plan's photographs and its iris maps. */
+double plan_cost_seconds(const struct plan_cost *cost, const struct plan *plan);
 
 /* Decides from what the folder holds, from capture.conf (conf: whether it gives the lens) and from which programs are built.
  * plan     out; its texts are constants, but for rows[].setting (setting.h)

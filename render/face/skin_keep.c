@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/asked.h"
 #include "base/call.h"
 #include "base/mem.h"
 #include "render/face/skin.h"
@@ -80,5 +81,5 @@ bool skin_made(struct skin_job *job, const char *rel, int n, const char *const i
 	char label[67];
 	if (!stage_made(job->stage, rel, n, in, err))
 		return false;
-	return !label_of(label, job, rel, n, in) || file_write(key_path(job, rel), label, strlen(label), err);
+	return asked_trouble() || !label_of(label, job, rel, n, in) || file_write(key_path(job, rel), label, strlen(label), err);
 }

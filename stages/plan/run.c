@@ -44,10 +44,10 @@ static bool nothing_to_do(const struct plan *plan, const struct call *call)
 }
 
 /* Chooses the settings that capture.conf asks for, writes them for the stages, and logs a choice that is new. */
-static bool settle(struct plan *plan, const struct call *call, const struct conf *conf, struct err *err)
+static bool settle(struct plan *plan, const struct plan_cost cost[PLAN_STAGES], const struct call *call, const struct conf *conf, struct err *err)
 {
 	struct plan_choice choice;
-	bool changed, ok = plan_setting(&choice, plan, call->config_dir, conf, err);
+	bool changed, ok = plan_setting(&choice, plan, cost, call->config_dir, conf, err);
 	if (ok && choice.line && front_save(&choice.front, &choice.ask, PLAN_STAGES, choice.chosen, plan->capture, &changed, err)
 	    && changed && !call->quiet)
 		say_error("plan", choice.line);
@@ -61,7 +61,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 	struct plan plan = { 0 };
 	char *slice = slice_of(opts, conf);
 	bool ok = work_check(call->capture, err) && plan_decide(&plan, call->capture, cost, conf, err)
-	          && work_enter(call->capture, err) && settle(&plan, call, conf, err) && keys_check_names(conf, call->capture, err)
+	          && work_enter(call->capture, err) && settle(&plan, cost, call, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);

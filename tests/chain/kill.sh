@@ -141,6 +141,20 @@ trouble() {
 	recovers "$column: $struck faults"
 }
 
+# without COLUMN: each artifact is gone while the stages behind the one that made it run by themselves: they fail, or do with what is left. Once it
+# is there again what they made without it does not count.
+without() {
+	local column=$1 file stage past
+	for file in $(cd "$root/calm/work" && find . -type f -path "${2:-./*}" ! -path './.made/*' ! -path './log/*' ! -path './review/*' ! -path './render/*' | sort); do
+		rm -rf "$root/hit/work" && cp -a "$root/calm/work" "$root/hit/work" && rm "$root/hit/work/$file" && past=
+		for stage in $all; do
+			[ -z "$past" ] || "$BIN/$stage" --capture="$root/hit" --force --quiet >"$log" 2>&1
+			! grep -q "\"work/${file#./}\": *{" "$root/hit/work/.made/$stage.json" || past=yes
+		done
+		recovers "$column: without ${file#./}"
+	done
+}
+
 # strike_each COLUMN N: each stage's program by itself, begun anew each time and killed at a moment anywhere in its run.
 strike_each() {
 	local column=$1 wanted=$2 stage begin took ms pid struck
@@ -185,6 +199,7 @@ for column in ${ONLY:-$columns}; do
 	undisturbed "$column"
 	strike "$column" "$(((KILLS + 5) / 6))"
 	trouble "$column" "$(((KILLS + 5) / 6))"
+	[ "$column" != skin ] || without skin "$([ "$KILLS" -lt 100 ] && echo ./skin/lids_model.npy || echo './skin/*')"
 	[ "$EACH" = 0 ] || strike_each "$column" "$EACH"
 done
 for name in "${!stages[@]}"; do printf '  struck: %s %s\n' "$name" "${stages[$name]}"; done | sort

@@ -1,5 +1,7 @@
 /* Fronts of the photograph column: its stages' knobs on the bundled photograph, time and error of the same run. Errors are
- * lengths: how far the iris texture is shifted or its thickness off against the finest setting, how far K is off.
+ * lengths: how far the limbus and the margins of freckles are off the truth; how far a point of the iris texture may be off, by its shift
+ * against the finest setting and by half a texel; how far K is off; how far the thickness of a Monte Carlo iris is off the truth, where the
+ * shared data are there; that of the bundled photograph, whose truth nobody knows, off the finest setting's.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +16,8 @@
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/bench/fronts.h"
 #include "tests/lib/scratch.h"
+#include "tests/lib/score/mc_iris.h"
+#include "tests/lib/truth/iris.h"
 
 enum { LIMIT_PX = 1 << 26 };
 static const char *const rgb[] = { "R", "G", "B" }, *const y[] = { "Y" };
@@ -38,11 +42,88 @@ static double at(const struct image *map, double extent, const struct image *as,
 	return (double)image_sample(map, 0.5 * (x / extent + 1) * map->width, 0.5 * (z / extent + 1) * map->height, c);
 }
 
-/* The shift that would explain the difference from the finest texture: rms difference over rms gradient, mm. */
-static double shift_of_texture(const char *capture, const char *reference)
+static struct mc_iris iris;  // where the shared data are there
+
+/* How far the limbus is off the truth, mean over its points, mm. */
+static double limbus_off(const char *capture, const char *reference)
+{
+	(void)reference;
+	struct truth truth;
+	struct err err = { 0 };
+	char *path = mem_printf("%s/work/limbus/right_softbox.json", capture);
+	json_t *fit = json_read(path, 1 << 20, &err), *of = json_object_get(fit, "ellipse");
+	struct ellipse e = { 0 };
+	double sum = NAN;
+	if (fit && truth_load(&truth, "samples/demo/truth", &err) && json_get(&e.cx, of, "cx", path, &err) && json_get(&e.cy, of, "cy", path, &err)
+	    && json_get(&e.a, of, "a", path, &err) && json_get(&e.b, of, "b", path, &err) && json_get(&e.angle, of, "angle_deg", path, &err)) {
+		enum { POINTS = 180 };
+		e.angle *= M_PI / 180;
+		sum = 0;
+		for (int i = 0; i < POINTS; i++) {
+			double p[2], normal[2], t;
+			ellipse_point(p, normal, &e, 2 * M_PI * i / POINTS);
+			sum += fabs(ellipse_distance(&t, &truth.limbus, p)) / POINTS;
+		}
+		sum *= truth.eye.limbus_radius / truth.limbus.a;
+	} else {
+		fprintf(stderr, "%s: %s\n", path, err.msg);
+	}
+	json_decref(fit);
+	free(path);
+	return sum;
+}
+
+/* How far margins of freckles are off the painted ones: the area on which they differ over the painted ones' circumference, mm. */
+static double freckles_off(const char *capture, const char *reference)
+{
+	static const char *const opacity[] = { "Y" };
+	(void)reference;
+	struct image found = { 0 };
+	struct truth truth;
+	struct err err = { 0 };
+	double extent, off = NAN, differ = 0, around = 0;
+	char *work = mem_printf("%s/work", capture);
+	if (read_map(&found, &extent, work, "freckles.exr", 1, opacity) && truth_load(&truth, "samples/demo/truth", &err)) {
+		const int n = found.width;
+		uint8_t *painted = iris_freckle_mask(&truth, "samples/demo/truth", n, extent, true);
+		for (long i = 0; painted && i < (long)n * (n - 1) - 1; i++) {
+			differ += (found.px[i] >= 0.5f) != painted[i];
+			around += (painted[i] != painted[i + 1]) + (painted[i] != painted[i + n]);
+		}
+		off = M_PI_4 * around > 0 ? 2 * extent / n * differ / (M_PI_4 * around) : NAN;
+		free(painted);
+	}
+	image_free(&found);
+	free(work);
+	return off;
+}
+
+static double mc_off(const char *capture, const char *file, const char *channel)
+{
+	char *path = mem_printf("%s/work/iris/%s", capture, file);
+	const double off = mc_iris_thickness_off(&iris, path, channel);
+	free(path);
+	return off;
+}
+
+static double thickness_of_truth(const char *capture, const char *reference)
+{
+	(void)reference;
+	return mc_off(capture, "thickness.exr", "Y");
+}
+
+static double relief_of_truth(const char *capture, const char *reference)
+{
+	(void)reference;
+	return mc_off(capture, "relief.exr", "T");
+}
+
+/* How far a point of the texture may be off, mm: the shift that would explain its difference from the finest one (rms difference over rms
+ * gradient), and half a texel, between which nothing is known. */
+static double point_of_texture(const char *capture, const char *reference)
 {
 	struct image a = { 0 }, b = { 0 };
-	double ea, eb, difference = 0, gradient = 0;
+	double ea = NAN, eb, difference = 0, gradient = 0;
 	char *work = mem_printf("%s/work", capture);
 	if (read_map(&a, &ea, work, "texture.exr", 3, rgb) && read_map(&b, &eb, reference, "texture.exr", 3, rgb)) {
 		double step = 2 * eb / b.width;
@@ -56,10 +137,11 @@ static double shift_of_texture(const char *capture, const char *reference)
 				}
 			}
 	}
+	const double half_texel = ea / a.width;
 	image_free(&a);
 	image_free(&b);
 	free(work);
-	return sqrt(difference / gradient);
+	return hypot(sqrt(difference / gradient), half_texel);
 }
 
 /* rms difference from the finest setting's thickness, mm. */
@@ -98,11 +180,25 @@ static double k_off(const char *capture, const char *reference)
 	return off;
 }
 
+/* Of a Monte Carlo iris. */
+static const struct fronts_stage mc_stages[] = {
+	{ .stage = "heightfield", .keys = "reach_mm", .more = { { "near", "0.01" } },
+	  .unit = "mm", .error_of = "thickness off the truth, rms", .error = thickness_of_truth, .reps = 3 },
+	{ .stage = "relief", .keys = "filter", .more = { { "none", "no" } },
+	  .unit = "mm", .error_of = "thickness off the truth, rms", .error = relief_of_truth, .reps = 3 },
+};
+
 static const struct fronts_stage stages[] = {
+	{ .stage = "limbus", .keys = "candidates, passes, measured_px",
+	  .more = { { "one", "1, 3, 300" }, { "few", "3, 4, 450" }, { "three_passes", "8, 3, 900" }, { "small", "8, 6, 300" }, { "large", "12, 12, 2500" } },
+	  .unit = "mm", .error_of = "limbus off the truth, mean", .error = limbus_off, .reps = 3 },
 	{ .stage = "unrefract", .keys = "scale, max_size, survey_size", .finest = { "finest", "2, 4096, 1024" },
 	  .more = { { "quarter", "0.25, 512, 320" }, { "third", "0.35, 512, 320" }, { "two_thirds", "0.7, 1536, 512" },
 		    { "quick_survey", "1, 1536, 320" }, { "finer", "1.4, 2048, 512" } },
-	  .unit = "mm", .error_of = "shift against the finest texture", .error = shift_of_texture, .reps = 3 },
+	  .unit = "mm", .error_of = "a point of the texture, by its shift and half a texel", .error = point_of_texture, .reps = 3 },
+	{ .stage = "freckles", .keys = "max_size, candidates",
+	  .more = { { "smallest", "232, 8" }, { "small", "400, 12" }, { "half", "600, 24" }, { "few_places", "1600, 8" } },
+	  .unit = "mm", .error_of = "margins of freckles off the painted ones", .error = freckles_off, .reps = 3 },
 	{ .stage = "refraction", .keys = "method, error_mm",
 	  .more = { { "newton", "newton, 0.001" }, { "newton_fine", "newton, 0.0001" }, { "auto_coarse", "auto, 0.01" },
 		    { "auto_fine", "auto, 0.0001" }, { "table", "table_linear, 0.001" }, },
@@ -159,6 +255,20 @@ int main(int argc, char **argv)
 	char *big = make_capture("big", false), *small = make_capture("small", true);
 	for (int i = 0; big && small && i < COUNT(stages); i++)
 		fronts_measure(&stages[i], big, small, mpx);
+	const char *data = bench_data("iris_mc/hazel");
+	if (!data) {
+		printf("iris_mc/hazel is not there: heightfield and relief are left out\n");
+	} else {
+		char *dir = mem_str(scratch_path("mc"));
+		if (mc_iris_load(&iris, data, &err) && mc_iris_capture(&iris, dir, &(struct mc_case){ .told = true, .more = "photo.right_hazel.hint_px = 400 300 200" }, &err) && fronts_make(dir, "relief"))
+			for (int i = 0; i < COUNT(mc_stages); i++)
+				fronts_measure(&mc_stages[i], dir, 0, (const double[2]){ 0.48, 0 });
+		if (err_is(&err))
+			fprintf(stderr, "%s\n", err.msg);
+		err = (struct err){ 0 };
+		mc_iris_free(&iris);
+		free(dir);
+	}
 	if (!fronts_write(bench_out(), "fronts", &err))
 		fprintf(stderr, "%s\n", err.msg);
 	scratch_close();

@@ -341,6 +341,35 @@ static bool relief_score(struct mc_score *s, const struct mc_iris *m, const char
 	return true;
 }
 
+bool mc_iris_capture(const struct mc_iris *m, const char *dir, const struct mc_case *how, struct err *err)
+{
+	return capture_make(m, dir, how, err) && conf_write(m, dir, how, 1, err);
+}
+
+double mc_iris_thickness_off(const struct mc_iris *m, const char *path, const char *channel)
+{
+	struct exr_info info = { 0 };
+	struct image got = { 0 };
+	struct err err = { 0 };
+	double sum = 0;
+	long count = 0;
+	if (!exr_read(&got, path, 1, &channel, LIMIT_PX, &info, &err))
+		fprintf(stderr, "%s\n", err.msg);
+	const int n = m->thickness.width;
+	const double mm = 2 * m->half_width / n;
+	for (long i = 0; got.px && i < (long)n * n; i++) {
+		const double x = ((double)(i % n) + 0.5) * mm - m->half_width, y = ((double)(i / n) + 0.5) * mm - m->half_width, r = hypot(x, y);
+		const double off = (double)image_sample(&got, (x / info.extent_mm + 1) / 2 * got.width, (y / info.extent_mm + 1) / 2 * got.height, 0)
+		                   - (double)m->thickness.px[i];
+		if (r > inner && r < outer && isfinite(off)) {
+			sum += off * off;
+			count++;
+		}
+	}
+	image_free(&got);
+	return count ? sqrt(sum / (double)count) : NAN;
+}
+
 static double now_s(void)
 {
 	struct timespec t;
@@ -351,7 +380,7 @@ static double now_s(void)
 bool mc_iris_score(struct mc_score *s, const struct mc_iris *m, const char *dir, const struct mc_case *how, struct err *err)
 {
 	*s = (struct mc_score){ 0 };
-	if (!capture_make(m, dir, how, err) || !conf_write(m, dir, how, 1, err))
+	if (!mc_iris_capture(m, dir, how, err))
 		return false;
 	double start = now_s();
 	if (!make(dir, 0, err))

@@ -1,9 +1,11 @@
 /* Records: a stage has to run again when, and only when, bytes it depends on have changed. */
 #include "tests/lib/unit.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include "base/asked.h"
 #include "base/conf.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -257,6 +259,43 @@ static void nothing_outside_the_folder_is_dropped(void **state)
 	record_free(r);
 }
 
+/* What was looked for in vain is an input as well: it holds while that is not there. */
+static void what_was_not_there_comes(void **state)
+{
+	(void)state;
+	asked_watch(scratch_path("."));
+	assert_false(file_exists(scratch_path("./optional")));
+	char *data;
+	size_t size;
+	assert_false(file_read(&data, &size, scratch_path("./work/none.json"), 100, &(struct err){ 0 }));
+	run_stage(CONFIG);
+	assert_true(holds(0));
+	scratch_text("work/none.json", "{}");
+	assert_false(holds("input work/none.json is new"));
+	run_stage(CONFIG);  // which is there now, and no longer asked for in vain
+	assert_true(holds(0));
+	scratch_text("optional", "x");
+	assert_false(holds("input optional is new"));
+}
+
+/* What a stage makes while its disk fails does not count, whether it noticed or not. */
+static void a_failing_disk_makes_nothing(void **state)
+{
+	(void)state;
+	run_stage(CONFIG);
+	assert_true(holds(0));
+	asked_watch(scratch_path("."));
+	asked_in_vain("/elsewhere/photos/a.jpg", EIO);
+	assert_false(asked_trouble());
+	asked_in_vain(scratch_path("./photos/a.jpg"), EIO);
+	assert_true(asked_trouble());
+	run_stage(CONFIG);
+	assert_false(holds("its last run did not finish"));
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	assert_false(record_fresh(r, out, 1, inputs));
+	record_free(r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -270,6 +309,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_damaged_record_is_none, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(a_record_of_a_strangers_making_is_refused, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(nothing_outside_the_folder_is_dropped, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(what_was_not_there_comes, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_failing_disk_makes_nothing, setup, scratch_teardown),  // the last: a disk stays broken
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

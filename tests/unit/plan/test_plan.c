@@ -165,28 +165,119 @@ static void characters_of_the_subjects_topology_are_counted(void **state)
 	assert_int_equal(same, 1);
 }
 
+#define FRONTS \
+	"limbus.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: a = 4\n" \
+	"limbus.fine = 0.1 mm, 0.2 s + 0.2 s/Mpx: a = 2\n" \
+	"unrefract.coarse = 0.05 mm, 0.1 s + 0 s/Mpx: scale = 0.25, max_size = 512\n" \
+	"unrefract.middle = 0.02 mm, 0.2 s + 0 s/Mpx: scale = 0.5, max_size = 512\n" \
+	"unrefract.fine = 0.01 mm, 0.3 s + 0 s/Mpx: scale = 1, max_size = 4096\n"
+
+/* A plan of that many megapixels in which these stages run, and what its capture.conf asks for. */
+static void ask(struct plan *plan, struct plan_choice *choice, const struct plan_cost cost[PLAN_STAGES], int n, const char *const stages[], const char *text)
+{
+	struct conf conf = { 0 };
+	struct err err = { 0 };
+	*plan = (struct plan){ .capture = scratch_path("."), .mpx = 2, .largest_mpx = 1.92 };
+	for (int i = 0; i < PLAN_STAGES; i++)
+		plan->rows[i].name = plan_stages[i].name;
+	for (int i = 0; i < n; i++)
+		plan->rows[plan_stage_find(stages[i])].run = true;
+	scratch_text("config/fronts.conf", FRONTS);
+	scratch_text("config/unrefract.conf", "scale = 1\nscale.draft = 0.5\nmax_size = 1536\nmax_size.draft = 400\n");
+	assert_true(conf_load(&conf, scratch_text("capture.conf", text), "", 1, &err));
+	if (!plan_setting(choice, plan, cost, scratch_path("config"), &conf, &err))
+		fail_msg("%s", err.msg);
+	conf_free(&conf);
+}
+
+static void forget(struct plan *plan, struct plan_choice *choice)
+{
+	for (int i = 0; i < PLAN_STAGES; i++)
+		free(plan->rows[i].setting);
+	plan_choice_free(choice);
+}
+
+static double seconds_of(const struct plan *plan)
+{
+	double sum = 0;
+	for (int i = 1; i < PLAN_STAGES; i++)
+		sum += plan->rows[i].run ? plan->rows[i].seconds : 0;
+	return sum;
+}
+
 static void a_setting_is_chosen_for_stages_that_run(void **state)
 {
 	(void)state;
-	struct plan plan = { .capture = scratch_path("."), .mpx = 2 };
+	static const struct plan_cost cost[PLAN_STAGES] = { 0 };
+	struct plan plan;
 	struct plan_choice choice;
-	struct conf conf = { 0 };
-	struct err err = { 0 };
-	int limbus = plan_stage_find("limbus");
-	for (int i = 0; i < PLAN_STAGES; i++)
-		plan.rows[i].name = plan_stages[i].name;
-	plan.rows[limbus].run = true;
-	scratch_text("config/fronts.conf", "limbus.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: a = 4\nlimbus.fine = 0.1 mm, 0.2 s + 0.2 s/Mpx: a = 2\n");
-	assert_true(conf_load(&conf, scratch_text("capture.conf", "error = 0.2 mm\n"), "", 1, &err));
-	if (!plan_setting(&choice, &plan, scratch_path("config"), &conf, &err))
-		fail_msg("%s", err.msg);
-	assert_int_equal(choice.chosen[limbus], 1);
+	const int limbus = plan_stage_find("limbus");
+	ask(&plan, &choice, cost, 1, (const char *const[]){ "limbus" }, "error = 0.2 mm\n");
+	assert_string_equal(choice.front.points[choice.chosen[limbus]].name, "fine");
 	assert_non_null(strstr(choice.line, "limbus fine"));
 	assert_non_null(strstr(plan.rows[limbus].setting, "a = 2"));
 	NEAR(plan.rows[limbus].seconds, 0.2 + 2 * 0.2, 1e-12);
-	free(plan.rows[limbus].setting);
-	plan_choice_free(&choice);
-	conf_free(&conf);
+	forget(&plan, &choice);
+}
+
+/* The iris map's texels are those of the preset, of capture.conf, of the point that is chosen: 0.58 of 1600 px at scale 1. */
+static void a_finer_map_costs_more(void **state)
+{
+	(void)state;
+	static const char *const stages[] = { "limbus", "unrefract", "relief" };
+	struct plan_cost cost[PLAN_STAGES] = { 0 };
+	cost[plan_stage_find("relief")] = (struct plan_cost){ .seconds = { 0.1, 0, 2 } };
+	static const struct { const char *conf; double side; } cases[] = {
+		{ "", 928 }, { "quality = draft\n", 400 }, { "unrefract.scale = 0.25\n", 232 }, { "error = 0.02 mm\n", 464 }, { "error = 0.001 mm\n", 928 },
+		{ "error = 0.02 mm\nunrefract.max_size = 100\n", 100 },
+	};
+	for (int i = 0; i < COUNT(cases); i++) {
+		struct plan plan;
+		struct plan_choice choice;
+		ask(&plan, &choice, cost, COUNT(stages), stages, cases[i].conf);
+		const double mtexel = cases[i].side * cases[i].side * 1e-6;
+		NEAR(plan.mtexel, mtexel, 2e-4 * mtexel);
+		NEAR(plan.rows[plan_stage_find("relief")].seconds, 0.1 + 2 * plan.mtexel, 1e-12);
+		forget(&plan, &choice);
+	}
+}
+
+/* For every time: the choice keeps to it wherever one of all the combinations does, and then none is more exact; else none is quicker. */
+static void a_time_is_kept_where_it_can_be(void **state)
+{
+	(void)state;
+	static const char *const stages[] = { "limbus", "unrefract", "relief" };
+	struct plan_cost cost[PLAN_STAGES] = { 0 };
+	cost[plan_stage_find("relief")] = (struct plan_cost){ .seconds = { 0.1, 0, 2 } };
+	static const double limbus_s[] = { 0.3, 0.6 }, limbus_error[] = { 0.4, 0.1 };
+	static const double side[] = { 232, 464, 928 }, unrefract_s[] = { 0.1, 0.2, 0.3 }, unrefract_error[] = { 0.05, 0.02, 0.01 };
+	for (int ms = 100; ms < 3500; ms += 50) {
+		char text[40];
+		struct plan plan;
+		struct plan_choice choice;
+		snprintf(text, sizeof text, "time = %d ms\n", ms);
+		ask(&plan, &choice, cost, COUNT(stages), stages, text);
+		double least = INFINITY, best = INFINITY;
+		for (int l = 0; l < 2; l++)
+			for (int u = 0; u < 3; u++) {
+				const double s = limbus_s[l] + unrefract_s[u] + 0.1 + 2e-6 * side[u] * side[u], worth = log(limbus_error[l] * unrefract_error[u]);
+				least = fmin(least, s);
+				if (s <= ms / 1000.0)
+					best = fmin(best, worth);
+			}
+		const double s = seconds_of(&plan);
+		double got = 0;
+		for (int i = 0; i < PLAN_STAGES; i++)
+			got += choice.chosen[i] < 0 ? 0 : log(choice.front.points[choice.chosen[i]].error);
+		if (isfinite(best)) {
+			assert_true(s <= ms / 1000.0 + 1e-3);
+			NEAR(got, best, 1e-9);
+		} else {
+			NEAR(s, least, 1e-3);
+		}
+		assert_int_equal(!isfinite(best), !!strstr(choice.line, "the least there is"));
+		forget(&plan, &choice);
+	}
 }
 
 int main(void)
@@ -199,6 +290,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(an_empty_folder_is_refused, setup, teardown),
 		cmocka_unit_test_setup_teardown(characters_of_the_subjects_topology_are_counted, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_setting_is_chosen_for_stages_that_run, setup, teardown),
+		cmocka_unit_test_setup_teardown(a_finer_map_costs_more, setup, teardown),
+		cmocka_unit_test_setup_teardown(a_time_is_kept_where_it_can_be, setup, teardown),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
