@@ -8,6 +8,7 @@
 #include "stages/track/sheet.h"
 #include "stages/track/wrinkles.h"
 #include "track/clip/agree.h"
+#include "track/clip/alone.h"
 #include "track/clip/apertures.h"
 #include "track/clip/corners.h"
 #include "track/clip/expressions.h"
@@ -59,7 +60,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_subject_load(subject, stage, conf, err) || !track_clip_open(clip, stage, subject, conf, err))
 		return false;
 	tell_video(stage, clip);
-	if (!track_settle(clip, stage, subject, conf, err))
+	if (!(subject->assumed ? track_alone(clip, stage, subject, conf, err) : track_settle(clip, stage, subject, conf, err)))
 		return false;
 	if (!track_settled(clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, 0);
@@ -80,6 +81,8 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 		return false;
 	track_corners(result, clip, subject, points);
 	track_apertures(result, clip, subject, conf);
+	if (subject->assumed)
+		result->n_points = points->n = 0;  // rows of no mesh of the person
 	if (!track_expressions(result, stage, conf, err) || !file_mkdirs(stage_path(stage, "work/skin"), err)
 	    || !track_sheet(result->film, stage_path(stage, "work/skin/track.png"), result, clip, conf, err)
 	    || !track_save(stage, result, clip, points, n, in, err)

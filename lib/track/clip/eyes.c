@@ -107,7 +107,7 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 
 bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct err *err)
 {
-	for (long f = 0; f < r->n && !eyes->subject->assumed; f++)
+	for (long f = 0; f < r->n && r->n_points; f++)
 		eye_track_head_was(eyes->track, f, r->pose[f]);
 	bool ok = eye_track_finish(&r->eyes, eyes->track, err);
 	r->has_eyes = ok && r->eyes.frames == r->n;

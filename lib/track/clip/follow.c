@@ -143,7 +143,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	if (skin && clip->moves.n)
 		skin_track_begin(skin, clip->moves.n, (const double(*)[2])clip->moves.at, clip->moves.first);
 	r->film = conf->limit ? 0 : film_new(clip, subject, points);
-	r->folds = conf->limit ? 0 : folds_new(clip, points, conf);
+	r->folds = conf->limit || subject->assumed ? 0 : folds_new(clip, points, conf);
 	struct background *background = background_new(eyes, r->film, r->folds);
 	bool ok = true, got = true;
 	memcpy(pose, clip->cam_from_head, sizeof pose);

@@ -5,8 +5,7 @@
 #include "bridge/cv_face.h"
 #include "track/head/refine.h"
 
-/* Unknown focal length: scales it so that the eyes are distance_mm away. */
-static void assume_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+void track_look_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
 	double eye[3] = { 0 }, p[3], n = s->opening[0].open + s->opening[1].open;
 	for (int e = 0; e < SIDES; e++)
@@ -37,7 +36,7 @@ static bool look_so(struct head_found *found, struct track_clip *clip, enum trac
 		return false;
 	memcpy(clip->cam_from_head, found->cam_from_head, sizeof clip->cam_from_head);
 	if (clip->focal_assumed) {
-		assume_distance(clip, s, conf);
+		track_look_distance(clip, s, conf);
 		memcpy(found->cam_from_head, clip->cam_from_head, sizeof clip->cam_from_head);
 	}
 	return head_find_refine(found, clip->rgb, w, h, &clip->camera, s->opening, &conf->head);

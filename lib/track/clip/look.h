@@ -10,6 +10,9 @@ enum track_way { WAY_EITHER, WAY_UP, WAY_OVER };
  * pose_px and, where focal_assumed, the focal length. Returns false when no eyes are found; clip is as it was then. */
 bool track_look(struct track_clip *clip, enum track_way way, const struct track_subject *subject, const struct track_conf *conf);
 
+/* Unknown focal length: scales it so that the eyes are conf->distance_mm away. */
+void track_look_distance(struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
+
 /* Takes the pose that calibrate has estimated for a frame, which must be the one in clip->rgb.
  * Returns false when there is none, or no open eyes are seen there. */
 bool track_look_known(struct track_clip *clip, long frame, const struct track_subject *subject, const struct track_conf *conf);

@@ -155,7 +155,7 @@ bool track_points_choose(struct track_points *p, const struct track_clip *clip, 
 	memset(p->mask, 255, area);
 	cut_openings(p->mask, clip, s);
 	float(*normal)[3] = mesh_normals(&s->mesh);
-	int n = s->assumed ? 0 : candidates(row, px, normal, clip, s, p->mask, conf->reach_mm);
+	int n = candidates(row, px, normal, clip, s, p->mask, conf->reach_mm);
 	double low = conf->gap_px, high = 64;
 	p->n = thin(taken, n, (const double(*)[2])px, low);
 	if (p->n > conf->points) {

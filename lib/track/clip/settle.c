@@ -6,26 +6,14 @@
 
 #include "base/mem.h"
 #include "track/clip/earn.h"
-#include "track/clip/follow.h"
+#include "track/clip/few.h"
 #include "track/clip/look.h"
 #include "track/clip/reference.h"
 #include "track/clip/refine.h"
 #include "track/clip/trust.h"
 #include "track/head/refine.h"
 
-enum { FEW_POINTS = 120, LOOKS = 4, LATER = 15 };
-
-/* Frames spread over the clip, followed from the reference and back, with the eyeballs' centres free. */
-static bool follow_few(struct track_result *r, const struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *few)
-{
-	struct track_points points = { 0 };
-	struct err none = { 0 };
-	// errors are reported when the whole clip is followed
-	bool ok = track_points_choose(&points, clip, s, few, &none) && track_follow(r, stage, clip, s, &points, few, &none)
-	          && clip->reference / few->every < r->n;
-	track_points_free(&points);
-	return ok;
-}
+enum { LOOKS = 4, LATER = 15 };
 
 static void tell_worse(struct stage *stage, const struct track_clip *clip, const struct reference_view *view)
 {
@@ -61,21 +49,6 @@ static bool look_anew(struct track_clip *clip, long frame, enum track_way way, s
 	return ok;
 }
 
-/* Settings for looking at so many frames, spread over the time of so many at 60 a second. */
-static struct track_conf few_of(const struct track_conf *conf, const struct track_clip *clip, int frames, long span)
-{
-	struct track_conf few = *conf;
-	span = track_frames_of(clip, span);
-	span = clip->info.frames < span ? clip->info.frames : span;
-	few.points = FEW_POINTS;
-	few.limit = frames;
-	few.every = span > frames ? (span + frames - 1) / frames : 1;
-	few.eyes.center_sigma = conf->settle_sigma;
-	few.eyes.torsion_rays = 0;
-	few.eyes.apart[0] = few.eyes.apart[1] = INFINITY;  // under a pose that is still wrong eyes look apart
-	return few;
-}
-
 /* Refines again while that still turns the head: eyes were measured, and lids laid, under the pose before. */
 static void settle_on(struct track_clip *clip, const double was[4][4], struct stage *stage, const struct track_subject *s, const struct track_conf *few)
 {
@@ -90,7 +63,7 @@ static void settle_on(struct track_clip *clip, const double was[4][4], struct st
 		if (hypot(d[0], d[1]) < still)
 			return;
 		memcpy(last, clip->cam_from_head, sizeof last);
-		if (follow_few(&r, clip, stage, s, few))
+		if (track_follow_few(&r, clip, stage, s, few))
 			reference_refine(clip, false, &r, s, few);
 		track_result_free(&r);
 	}
@@ -101,11 +74,11 @@ static void settle_on(struct track_clip *clip, const double was[4][4], struct st
 static void settle(struct track_clip *clip, const struct track_result *judged, struct stage *stage, const struct track_subject *s, const struct track_conf *few,
                    const struct track_conf *conf)
 {
-	struct track_conf all = few_of(conf, clip, conf->settle, conf->settle);
+	struct track_conf all = track_few_of(conf, clip, conf->settle, conf->settle);
 	struct track_result r = { 0 };
 	double was[4][4];
 	memcpy(was, clip->cam_from_head, sizeof was);
-	if (all.limit > few->limit && clip->reference < all.limit * all.every && follow_few(&r, clip, stage, s, &all))
+	if (all.limit > few->limit && clip->reference < all.limit * all.every && track_follow_few(&r, clip, stage, s, &all))
 		reference_refine(clip, false, &r, s, &all);
 	else
 		reference_refine(clip, false, judged, s, few);
@@ -170,7 +143,7 @@ static struct track_clip another(const struct track_clip *clip)
 /* The pair of eyes that the evidence shows best as the start, where an outline alone was found in the wrong place. */
 static bool try_evidence(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
-	struct track_conf few = few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
+	struct track_conf few = track_few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
 	struct track_clip other = another(clip);
 	struct head_found found = { .seen = { true, true } };
 	double was[4][4];
@@ -184,7 +157,7 @@ static bool try_evidence(struct track_clip *clip, struct stage *stage, const str
 		memcpy(other.eye_seen, found.seen, sizeof other.eye_seen);
 		other.pose_refined = false;
 		other.pose_px = INFINITY;
-		better = follow_few(&r, &other, stage, s, &few);
+		better = track_follow_few(&r, &other, stage, s, &few);
 		if (better)
 			reference_refine(&other, true, &r, s, &few);
 		track_result_free(&r);
@@ -200,7 +173,7 @@ static bool try_evidence(struct track_clip *clip, struct stage *stage, const str
 static void try_others(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
 	enum { TRIES = 5 };
-	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->doubt.span);
+	struct track_conf few = track_few_of(conf, clip, conf->look.frames, conf->doubt.span);
 	const enum track_way way = clip->cam_from_head[1][1] > 0 ? WAY_OVER : WAY_UP;
 	long span = few.every * few.limit < clip->info.frames ? few.every * few.limit : clip->info.frames;
 	for (int i = 0; i < TRIES && is_off(clip, s, conf); i++) {
@@ -208,7 +181,7 @@ static void try_others(struct track_clip *clip, struct stage *stage, const struc
 		struct track_result r = { 0 };
 		struct err none = { 0 };
 		bool better = track_clip_take(&other, span * (2 * i + 1) / (2 * TRIES), stage, conf, &none) && track_look(&other, way, s, conf)
-		              && follow_few(&r, &other, stage, s, &few);
+		              && track_follow_few(&r, &other, stage, s, &few);
 		if (better)
 			reference_refine(&other, true, &r, s, &few);
 		take_better(clip, &other, better, s, conf);
@@ -219,13 +192,13 @@ static void try_others(struct track_clip *clip, struct stage *stage, const struc
 /* Looks at few frames, and settles the reference and its pose. */
 static void settle_clip(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
-	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->look.span);
+	struct track_conf few = track_few_of(conf, clip, conf->look.frames, conf->look.span);
 	struct doubts d = { .way = WAY_EITHER };
 	bool again = true;
 	clip->begins_shut = clip->reference > 0;
 	for (int round = 0; again && round < LOOKS; round++) {
 		struct track_result r = { 0 };
-		bool followed = follow_few(&r, clip, stage, s, &few);
+		bool followed = track_follow_few(&r, clip, stage, s, &few);
 		struct reference_view view = { .better = -1 };
 		again = false;
 		d.last = round + 1 == LOOKS;
@@ -234,7 +207,7 @@ static void settle_clip(struct track_clip *clip, struct stage *stage, const stru
 		if (!d.any && (!followed || view.better >= 0 || reference_is_overturned(&r, clip, s))) {
 			// few frames raised a doubt: judge by more
 			d.any = again = true;
-			few = few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
+			few = track_few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
 			round = -1;
 		} else if (!followed) {
 			// no eye was found: the face was a false detection
@@ -246,7 +219,7 @@ static void settle_clip(struct track_clip *clip, struct stage *stage, const stru
 			reference_refine(clip, true, &r, s, &few);
 			// eyes were measured under the old pose: measure and refine once more
 			track_result_free(&r);
-			if (follow_few(&r, clip, stage, s, &few))
+			if (track_follow_few(&r, clip, stage, s, &few))
 				reference_refine(clip, true, &r, s, &few);
 			if (conf->reference >= 0 && view.better >= 0)
 				tell_worse(stage, clip, &view);
@@ -258,11 +231,11 @@ static void settle_clip(struct track_clip *clip, struct stage *stage, const stru
 /* A pose that was earned by how the skin moves knows the turn better than the place: openings and eyeballs tell that. */
 static void settle_earned(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
-	struct track_conf few = few_of(conf, clip, conf->look.frames, conf->doubt.span);
+	struct track_conf few = track_few_of(conf, clip, conf->look.frames, conf->doubt.span);
 	struct track_result r = { 0 };
 	const double px = clip->pose_px;
 	few.head.turn_sigma = few.head.yaw_sigma = conf->earned_deg;
-	if (follow_few(&r, clip, stage, s, &few))
+	if (track_follow_few(&r, clip, stage, s, &few))
 		reference_refine(clip, true, &r, s, &few);
 	clip->pose_px = px;
 	track_result_free(&r);

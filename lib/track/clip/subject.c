@@ -8,10 +8,12 @@
 #include "bridge/om_mesh.h"
 #include "math/vec.h"
 #include "optics/camera_rig.h"
+#include "track/clip/average.h"
 #include "track/clip/rim.h"
 
 static const long limit_vertices = 2000000;
 static const double usual_radius = 12;  // mm: an eyeball
+static const double half_apart = 31.5;  // mm, of a person's eyes
 static const double rim_sigma = 0.3;    // mm, of a centre from the rim of the mesh's hole: 0.1 and 0.2 on two rendered heads
 
 static const char *const sides[SIDES] = { "left", "right" };
@@ -198,11 +200,12 @@ static void assume_eyes(struct track_subject *s)
 	s->assumed = true;
 	s->radius = usual_radius;
 	for (int e = 0; e < SIDES; e++) {
-		s->center[e][0] = e == SIDE_LEFT ? 31.5 : -31.5;
+		s->center[e][0] = e == SIDE_LEFT ? half_apart : -half_apart;
 		s->center[e][1] = s->center[e][2] = 0;
 		opening_usual(&s->opening[e], nothing, s->center[e], s->radius);
 	}
 	ray_scene_free(nothing);
+	average_skin(&s->mesh, half_apart);
 }
 
 /* Where capture.conf says where both eyeballs are: beside each other, the left one on the person's left, each where the mesh is.

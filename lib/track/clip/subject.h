@@ -10,7 +10,7 @@
 enum { MARK_INNER, MARK_OUTER, MARK_UPPER, MARK_LOWER, MARKS };
 
 struct track_subject {
-	struct mesh mesh;      // mm; n_vertices 0: there is none
+	struct mesh mesh;      // mm
 	const char *file;      // relative to the capture; static text; null without a mesh
 	double unit_mm;        // of the file
 	int mark[SIDES][MARKS];          // rows of the mesh; -1: not known
@@ -19,7 +19,7 @@ struct track_subject {
 	double center_sigma[SIDES];      // mm, of centres from the mesh's rims or the lids' marks; 0: the settings'
 	struct eye_opening opening[SIDES];
 	struct eye_opening margin[SIDES];  // inner edge of the lids' margins: outline at the eyeball's radius plus meniscus_mm
-	bool assumed;          // no mesh: eyes and openings of an average face
+	bool assumed;          // no mesh: eyes, openings and skin of an average face; file is null
 };
 
 /* Loads subject.ply, subject.obj or work/subject.ply, whichever is first, and finds its eyes: their centres from capture.conf,

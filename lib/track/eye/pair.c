@@ -17,6 +17,19 @@ static void lift(struct eye_side *eye, double up)
 	eye->globe.center[1] -= up * gaze_plane(&eye->globe);
 }
 
+/* Two eyes held level have one height, the mean of both by the other's variance. Light and lids shift both alike: their errors are taken for the same, so that
+ * standard deviations are averaged and the less certain eye alone gains. */
+static void share_height(struct eye_side *left, struct eye_side *right, const double var[2])
+{
+	struct eye_side *eye[2] = { left, right };
+	const double joint = pow((var[1] * sqrt(var[0]) + var[0] * sqrt(var[1])) / fmax(var[0] + var[1], 1e-12), 2);
+	for (int e = 0; e < 2; e++)
+		for (long i = 0; i < eye[e]->frames; i++) {
+			double *sigma = &eye[e]->state[i].sigma[1];
+			*sigma = sqrt(fmax(*sigma * *sigma + joint - var[e], fmin(*sigma * *sigma, joint)));
+		}
+}
+
 void eye_pair_level(struct eye_side *left, struct eye_side *right)
 {
 	long n = left->frames < right->frames ? left->frames : right->frames;
@@ -35,6 +48,8 @@ void eye_pair_level(struct eye_side *left, struct eye_side *right)
 		return;
 	lift(left, -apart * var[0] / sum);
 	lift(right, apart * var[1] / sum);
+	if (left->average && right->average)
+		share_height(left, right, var);
 }
 
 /* The prior N(radius, sigma) of an eyeball's radius, and a measurement of it. */

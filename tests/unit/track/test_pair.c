@@ -57,8 +57,38 @@ static void too_few(void **state)
 	free(eye[1].state);
 }
 
+/* Average eyes held level: the less certain one takes the other's height, and is as certain as the mean by variance whose parts err alike. */
+static void level(void **state)
+{
+	(void)state;
+	struct eye_side eye[2] = { looking(0), looking(1) };
+	const double sigma_mm[2] = { 0.6, 0.2 }, own = 0.5 * DEGREE, plane = sqrt(12 * 12 - 6 * 6);
+	double rad[2];
+	for (int e = 0; e < 2; e++) {
+		eye[e].average = true;
+		eye[e].globe = (struct gaze_globe){ .radius = 12, .limbus = 6 };
+		eye[e].center_sigma[1] = sigma_mm[e];
+		rad[e] = sigma_mm[e] / plane;
+		for (long f = 0; f < FRAMES; f++) {
+			eye[e].state[f].gaze[1] += e ? 0 : 1.5 * DEGREE;
+			eye[e].state[f].sigma[1] = hypot(own, rad[e]);
+		}
+	}
+	eye_pair_level(&eye[0], &eye[1]);
+	const double joint = (rad[1] * rad[1] * rad[0] + rad[0] * rad[0] * rad[1]) / (rad[0] * rad[0] + rad[1] * rad[1]);
+	for (long f = 0; f < FRAMES; f++) {
+		// the remaining quarter of a degree of fused eyes
+		assert_true(fabs(eye[0].state[f].gaze[1] - eye[1].state[f].gaze[1]) < 0.05 * DEGREE);
+		for (int e = 0; e < 2; e++)
+			NEAR(eye[e].state[f].sigma[1], hypot(own, joint), 1e-9);
+	}
+	assert_true(joint > rad[1] && joint < rad[0]);
+	free(eye[0].state);
+	free(eye[1].state);
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(parted), cmocka_unit_test(too_few) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(parted), cmocka_unit_test(too_few), cmocka_unit_test(level) };
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
