@@ -36,8 +36,9 @@ bench-report: $B/tests/bench/report/report
 .PHONY: fronts
 fronts: bench-fronts bench-fronts_skin bench-fronts_track bench-fronts_render bench-fronts_calibrate
 	@{ printf '; Settings of each stage that no other beats in both time and error: error against the finest setting or the truth, and\n'; \
-	printf '; time on two processors, fixed and for each megapixel of photographs. Made by make fronts on samples/, of track on a close-up, too, of calibrate on\n'; \
-	printf '; eight photographs of a head with known cameras.\n'; \
+	printf '; time on two processors, fixed, for each megapixel of photographs and for each million texels of the iris map. Made by make fronts on samples/, of\n'; \
+	printf '; track on a close-up, too, of calibrate on eight photographs of a head with known cameras, of heightfield and relief on a Monte Carlo iris of known\n'; \
+	printf '; thickness.\n'; \
 	cat bench/fronts.front bench/fronts_skin.front bench/fronts_track.front bench/fronts_render.front; \
 	cat bench/fronts_calibrate.front 2>/dev/null || grep '^calibrate' config/fronts.conf; } > config/fronts.new && mv config/fronts.new config/fronts.conf
 	@for s in unrefract track; do cp bench/fronts*-front-of-$$s-*.png samples/front_$$s.png; done

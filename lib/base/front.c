@@ -13,9 +13,11 @@ static bool read_point(struct front_point *p, const struct conf_item *item, stru
 	int end = 0;
 	const char *dot = strchr(item->key, '.');
 	*p = (struct front_point){ .line = item->line };
-	if (!dot || sscanf(item->value, "%lf %7[^ ,:], %lf s + %lf s/Mpx: %n", &p->error, p->unit, &p->fixed_s, &p->mpx_s, &end) != 4
-	    || !end || !(p->error >= 0) || !(p->fixed_s >= 0) || !(p->mpx_s >= 0))
-		return err_set(err, "%s:%d: %.60s = %.80s: must be \"STAGE.NAME = ERROR UNIT, S s + S s/Mpx: key = value, ...\"", item->file,
+	const int n = sscanf(item->value, "%lf %7[^ ,:], %lf s + %lf s/Mpx: %n", &p->error, p->unit, &p->fixed_s, &p->mpx_s, &end);
+	if (n == 4 && !end)
+		sscanf(item->value, "%*f %*7[^ ,:], %*f s + %*f s/Mpx + %lf s/Mtexel: %n", &p->mtexel_s, &end);
+	if (!dot || n != 4 || !end || !(p->error >= 0) || !(p->fixed_s >= 0) || !(p->mpx_s >= 0) || !(p->mtexel_s >= 0))
+		return err_set(err, "%s:%d: %.60s = %.80s: must be \"STAGE.NAME = ERROR UNIT, S s + S s/Mpx + S s/Mtexel: key = value, ...\"", item->file,
 		               item->line, item->key, item->value);
 	p->stage = mem_printf("%.*s", (int)(dot - item->key), item->key);
 	p->name = mem_str(dot + 1);
@@ -121,13 +123,13 @@ bool front_ask(struct front_ask *ask, const struct conf *conf, struct err *err)
 	return error ? read_error(ask, item, err) : read_time(ask, item, err);
 }
 
-double front_seconds(const struct front_point *p, double mpx)
+double front_seconds(const struct front_point *p, double mpx, double mtexel)
 {
-	return p->fixed_s + p->mpx_s * mpx;
+	return p->fixed_s + p->mpx_s * mpx + p->mtexel_s * mtexel;
 }
 
 /* The fastest point within the error, else the most exact one; -1: the stage's errors have another unit. */
-static int within_error(const struct front *front, const struct front_ask *ask, const char *stage, double mpx)
+static int within_error(const struct front *front, const struct front_ask *ask, const char *stage, double mpx, double mtexel)
 {
 	int best = -1;
 	for (int i = 0; i < front->n; i++) {
@@ -135,29 +137,29 @@ static int within_error(const struct front *front, const struct front_ask *ask, 
 		if (strcmp(p->stage, stage) || strcmp(p->unit, ask->unit))
 			continue;
 		bool good = p->error <= ask->value, best_good = b && b->error <= ask->value;
-		bool faster = b && front_seconds(p, mpx) < front_seconds(b, mpx);
+		bool faster = b && front_seconds(p, mpx, mtexel) < front_seconds(b, mpx, mtexel);
 		if (!b || (good ? !best_good || faster : !best_good && p->error < b->error))
 			best = i;
 	}
 	return best;
 }
 
-static int fastest(const struct front *front, const char *stage, double mpx)
+static int fastest(const struct front *front, const char *stage, double mpx, double mtexel)
 {
 	int best = -1;
 	for (int i = 0; i < front->n; i++)
 		if (!strcmp(front->points[i].stage, stage)
-		    && (best < 0 || front_seconds(&front->points[i], mpx) < front_seconds(&front->points[best], mpx)))
+		    && (best < 0 || front_seconds(&front->points[i], mpx, mtexel) < front_seconds(&front->points[best], mpx, mtexel)))
 			best = i;
 	return best;
 }
 
 /* Gain of going from point `now` to point `more`: decrease of the error's natural logarithm for each further second; 0 when
  * `more` is not more exact or takes more than the seconds left. */
-static double worth(const struct front_point *now, const struct front_point *more, double mpx, double left_s)
+static double worth(const struct front_point *now, const struct front_point *more, double mpx, double mtexel, double left_s)
 {
 	enum { ALL_EXACT = 20 };  // an error of exactly zero: nothing is left to save
-	double cost = front_seconds(more, mpx) - front_seconds(now, mpx);
+	double cost = front_seconds(more, mpx, mtexel) - front_seconds(now, mpx, mtexel);
 	if (!(more->error < now->error) || cost > left_s)
 		return 0;
 	double gain = more->error > 0 ? log(now->error / more->error) : ALL_EXACT;
@@ -165,12 +167,12 @@ static double worth(const struct front_point *now, const struct front_point *mor
 }
 
 static void within_time(const struct front *front, const struct front_ask *ask, int n, const char *const stages[],
-                        const bool runs[], double mpx, double others_s, int chosen[])
+                        const bool runs[], double mpx, double mtexel, double others_s, int chosen[])
 {
 	double left = ask->value - others_s;
 	for (int s = 0; s < n; s++) {
-		chosen[s] = runs[s] ? fastest(front, stages[s], mpx) : -1;
-		left -= chosen[s] < 0 ? 0 : front_seconds(&front->points[chosen[s]], mpx);
+		chosen[s] = runs[s] ? fastest(front, stages[s], mpx, mtexel) : -1;
+		left -= chosen[s] < 0 ? 0 : front_seconds(&front->points[chosen[s]], mpx, mtexel);
 	}
 	for (;;) {
 		double best = 0;
@@ -179,7 +181,7 @@ static void within_time(const struct front *front, const struct front_ask *ask, 
 			for (int i = 0; chosen[s] >= 0 && i < front->n; i++) {
 				if (strcmp(front->points[i].stage, stages[s]))
 					continue;
-				double w = worth(&front->points[chosen[s]], &front->points[i], mpx, left);
+				double w = worth(&front->points[chosen[s]], &front->points[i], mpx, mtexel, left);
 				if (w > best) {
 					best = w;
 					stage = s;
@@ -188,16 +190,16 @@ static void within_time(const struct front *front, const struct front_ask *ask, 
 			}
 		if (stage < 0)
 			return;
-		left -= front_seconds(&front->points[point], mpx) - front_seconds(&front->points[chosen[stage]], mpx);
+		left -= front_seconds(&front->points[point], mpx, mtexel) - front_seconds(&front->points[chosen[stage]], mpx, mtexel);
 		chosen[stage] = point;
 	}
 }
 
 void front_choose(const struct front *front, const struct front_ask *ask, int n, const char *const stages[],
-                  const bool runs[], double mpx, double others_s, int chosen[])
+                  const bool runs[], double mpx, double mtexel, double others_s, int chosen[])
 {
 	for (int s = 0; s < n; s++)
-		chosen[s] = ask->error && runs[s] ? within_error(front, ask, stages[s], mpx) : -1;
+		chosen[s] = ask->error && runs[s] ? within_error(front, ask, stages[s], mpx, mtexel) : -1;
 	if (ask->time)
-		within_time(front, ask, n, stages, runs, mpx, others_s, chosen);
+		within_time(front, ask, n, stages, runs, mpx, mtexel, others_s, chosen);
 }

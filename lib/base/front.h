@@ -6,7 +6,7 @@
  *     unrefract.small = 0.012 mm, 0.05 s + 0.04 s/Mpx: scale = 0.5, max_size = 512
  *
  * The error is measured against the finest setting or the truth; the time is a fixed part and a part for each megapixel of the
- * photographs. A line may be continued: unrefract.small.more = key = value, ...; unrefract.small.more2 = ...
+ * photographs, and, of a stage that works on the iris map, one for each million of its texels ("+ 0.2 s/Mtexel"). A line may be continued: unrefract.small.more = key = value, ...; unrefract.small.more2 = ...
  * plan chooses one point for each stage that runs and writes the choice to work/.made/front, where the stages read it
  * (front_use.h). A key that capture.conf sets has precedence over the point's, as over a preset's.
  */
@@ -16,7 +16,7 @@
 
 struct front_point {
 	char *stage, *name;
-	double error, fixed_s, mpx_s;  // error in `unit`; s; s for each megapixel
+	double error, fixed_s, mpx_s, mtexel_s;  // error in `unit`; s; s for each megapixel, for each million texels
 	char unit[8];          // of the error
 	char *settings;        // "key = value, key = value"
 	int line;
@@ -48,15 +48,16 @@ bool front_ask(struct front_ask *ask, const struct conf *conf, struct err *err);
 /* Chooses a point for each of n stages.
  * runs[n]    which of them run
  * mpx        size of all photographs, megapixels
+ * mtexel     size of the iris map, million texels
  * others_s   seconds that stages without a front take
  * chosen[n]  out: indices into front->points; -1 where a stage has no front or, for an error, none in that unit: its preset
  *            `review` then holds
  * For an error: the fastest point within it; where there is none, the most exact one. For a time: greedy from the fastest points;
  * each step goes to the stage that gains the largest factor in error for a second, as long as the sum stays below. */
 void front_choose(const struct front *front, const struct front_ask *ask, int n, const char *const stages[],
-                  const bool runs[], double mpx, double others_s, int chosen[]);
+                  const bool runs[], double mpx, double mtexel, double others_s, int chosen[]);
 
-/* Seconds that a point takes with photographs of so many megapixels. */
-double front_seconds(const struct front_point *point, double mpx);
+/* Seconds that a point takes with photographs of so many megapixels and an iris map of so many million texels. */
+double front_seconds(const struct front_point *point, double mpx, double mtexel);
 
 #endif

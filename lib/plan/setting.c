@@ -82,7 +82,7 @@ static void price(struct plan *plan, const struct plan_cost cost[PLAN_STAGES], c
 {
 	for (int i = 0; i < PLAN_STAGES; i++)
 		if (plan->rows[i].run)
-			plan->rows[i].seconds = chosen[i] >= 0 ? front_seconds(&front->points[chosen[i]], plan->mpx) : plan_cost_seconds(&cost[i], plan);
+			plan->rows[i].seconds = chosen[i] >= 0 ? front_seconds(&front->points[chosen[i]], plan->mpx, plan->mtexel) : plan_cost_seconds(&cost[i], plan);
 }
 
 static double all_seconds(const struct plan *plan)
@@ -146,11 +146,11 @@ static void choose_with(int point, struct plan *plan, const struct folder *f, co
 		names[i] = plan_stages[i].name;
 		runs[i] = plan->rows[i].run && !pinned;
 		if (pinned)
-			others_s += front_seconds(&front->points[point], plan->mpx);
+			others_s += front_seconds(&front->points[point], plan->mpx, plan->mtexel);
 		else if (runs[i] && !has_front(front, names[i]))
 			others_s += plan_cost_seconds(&f->cost[i], plan);
 	}
-	front_choose(front, ask, PLAN_STAGES, names, runs, plan->mpx, others_s, chosen);
+	front_choose(front, ask, PLAN_STAGES, names, runs, plan->mpx, plan->mtexel, others_s, chosen);
 	if (point >= 0)
 		chosen[plan_stage_find("unrefract")] = point;
 	price(plan, f->cost, front, chosen);

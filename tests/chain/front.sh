@@ -9,11 +9,11 @@ asks() { { sed 's/^camera.focal_px.*/camera.focal_px = 5913.045/' samples/demo/c
 setting() { sed -n 's/.*"setting": "\(.*\)".*/\1/p' "$capture/work/plan.json" | tr '\n' ';'; }
 scale() { "$BIN/unrefract" --capture="$capture" --print-config | sed -n 's/^unrefract.scale = //p'; }
 
-asks "error = 0.008 mm"
+asks "error = 0.02 mm"
 "$BIN/plan" --capture="$capture" >"$log" 2>&1
 same "plan: exit" "$?" 0
-same "plan says which in one line" "$(grep -c '^plan: error = 0.008 mm: .*unrefract [a-z_]* (0.00[0-9]* mm)' "$log")/$(wc -l <"$log")" "1/1"
-check "plan.json has the question" grep -q '"asked": "error = 0.008 mm"' "$capture/work/plan.json"
+same "plan says which in one line" "$(grep -c '^plan: error = 0.02 mm: .*unrefract [a-z_]* (0.01[0-9]* mm)' "$log")/$(wc -l <"$log")" "1/1"
+check "plan.json has the question" grep -q '"asked": "error = 0.02 mm"' "$capture/work/plan.json"
 check "and the settings" grep -q 'scale = .*mm)' <<<"$(setting)"
 "$BIN/plan" --capture="$capture" >"$log" 2>&1
 same "asked again, plan says nothing" "$(cat "$log")" ""
@@ -21,7 +21,7 @@ run_make "$capture" unrefract
 same "make with an error" "$? $(ran)" "0 limbus unrefract"
 coarse=$(scale) texture=$(sha256sum <"$capture/work/iris/texture.exr")
 
-asks "error = 0.0079 mm"
+asks "error = 0.0199 mm"
 run_make "$capture" unrefract
 same "another error, the same settings: nothing runs" "$? $(ran)" "0 "
 asks "error = 0.0001 mm"

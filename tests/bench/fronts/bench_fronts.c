@@ -1,6 +1,6 @@
 /* Fronts of the photograph column: its stages' knobs on the bundled photograph, time and error of the same run. Errors are
  * lengths: how far the limbus and the margins of freckles are off the truth; how far a point of the iris texture may be off, by its shift
- * against the finest setting and by half a texel; how far K is off; how far the thickness of a Monte Carlo iris is off the truth, where the
+ * against the finest setting and by half a texel; how far K is off; how far the detail of a Monte Carlo iris's thickness is off the truth, where the
  * shared data are there; that of the bundled photograph, whose truth nobody knows, off the finest setting's.
  */
 #include <math.h>
@@ -73,7 +73,8 @@ static double limbus_off(const char *capture, const char *reference)
 	return sum;
 }
 
-/* How far margins of freckles are off the painted ones: the area on which they differ over the painted ones' circumference, mm. */
+/* How far margins of freckles are off the painted ones, mm: the area on which they differ over the painted ones' circumference, and half a
+ * texel. */
 static double freckles_off(const char *capture, const char *reference)
 {
 	static const char *const opacity[] = { "Y" };
@@ -90,7 +91,7 @@ static double freckles_off(const char *capture, const char *reference)
 			differ += (found.px[i] >= 0.5f) != painted[i];
 			around += (painted[i] != painted[i + 1]) + (painted[i] != painted[i + n]);
 		}
-		off = M_PI_4 * around > 0 ? 2 * extent / n * differ / (M_PI_4 * around) : NAN;
+		off = around > 0 ? hypot(2 * extent / n * differ / (M_PI_4 * around), extent / n) : NAN;
 		free(painted);
 	}
 	image_free(&found);
@@ -101,7 +102,7 @@ static double freckles_off(const char *capture, const char *reference)
 static double mc_off(const char *capture, const char *file, const char *channel)
 {
 	char *path = mem_printf("%s/work/iris/%s", capture, file);
-	const double off = mc_iris_thickness_off(&iris, path, channel);
+	const double off = mc_iris_detail_off(&iris, path, channel);
 	free(path);
 	return off;
 }
@@ -180,25 +181,26 @@ static double k_off(const char *capture, const char *reference)
 	return off;
 }
 
-/* Of a Monte Carlo iris. */
+/* Of a Monte Carlo iris: 800 px wide, its iris 400. */
+#define MC_MTEXEL (464 * 464 * 1e-6)
 static const struct fronts_stage mc_stages[] = {
 	{ .stage = "heightfield", .keys = "reach_mm", .more = { { "near", "0.01" } },
-	  .unit = "mm", .error_of = "thickness off the truth, rms", .error = thickness_of_truth, .reps = 3 },
+	  .mtexel = MC_MTEXEL, .unit = "mm", .error_of = "thickness off the truth, 0.12 to 0.6 mm, rms", .error = thickness_of_truth, .reps = 3 },
 	{ .stage = "relief", .keys = "filter", .more = { { "none", "no" } },
-	  .unit = "mm", .error_of = "thickness off the truth, rms", .error = relief_of_truth, .reps = 3 },
+	  .mtexel = MC_MTEXEL, .unit = "mm", .error_of = "thickness off the truth, 0.12 to 0.6 mm, rms", .error = relief_of_truth, .reps = 3 },
 };
 
 static const struct fronts_stage stages[] = {
 	{ .stage = "limbus", .keys = "candidates, passes, measured_px",
-	  .more = { { "one", "1, 3, 300" }, { "few", "3, 4, 450" }, { "three_passes", "8, 3, 900" }, { "small", "8, 6, 300" }, { "large", "12, 12, 2500" } },
+	  .more = { { "three_passes", "8, 3, 900" }, { "large", "12, 12, 2500" } },  // fewer candidates save little, and find fewer eyes
 	  .unit = "mm", .error_of = "limbus off the truth, mean", .error = limbus_off, .reps = 3 },
 	{ .stage = "unrefract", .keys = "scale, max_size, survey_size", .finest = { "finest", "2, 4096, 1024" },
 	  .more = { { "quarter", "0.25, 512, 320" }, { "third", "0.35, 512, 320" }, { "two_thirds", "0.7, 1536, 512" },
 		    { "quick_survey", "1, 1536, 320" }, { "finer", "1.4, 2048, 512" } },
 	  .unit = "mm", .error_of = "a point of the texture, by its shift and half a texel", .error = point_of_texture, .reps = 3 },
 	{ .stage = "freckles", .keys = "max_size, candidates",
-	  .more = { { "smallest", "232, 8" }, { "small", "400, 12" }, { "half", "600, 24" }, { "few_places", "1600, 8" } },
-	  .unit = "mm", .error_of = "margins of freckles off the painted ones", .error = freckles_off, .reps = 3 },
+	  .more = { { "half", "600, 24" }, { "few_places", "1600, 8" } },  // texels no larger than the smallest freckle
+	  .mtexel = 0.861, .unit = "mm", .error_of = "margins of freckles off the painted ones", .error = freckles_off, .reps = 3 },
 	{ .stage = "refraction", .keys = "method, error_mm",
 	  .more = { { "newton", "newton, 0.001" }, { "newton_fine", "newton, 0.0001" }, { "auto_coarse", "auto, 0.01" },
 		    { "auto_fine", "auto, 0.0001" }, { "table", "table_linear, 0.001" }, },

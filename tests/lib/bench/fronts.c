@@ -182,12 +182,15 @@ static bool beats(const struct point *a, const struct point *b)
 static void add_line(const struct fronts_stage *s, const struct point *p, const double mpx[2], bool two)
 {
 	enum { LINE = 190 };  // of the 198 bytes that a configuration's line may have
+	enum { LOAD_MS = 10 };  // of the time that goes with texels: the program itself
+	const double texels = s->mtexel > 0 ? fmax(p->time.median - 1e-3 * LOAD_MS, 0) / s->mtexel : 0;
 	double slope = two ? fmax((p->time.median - p->small.median) / (mpx[0] - mpx[1]), 0) : 0, fixed = fmax(p->time.median - slope * mpx[0], 0);
 	const char *keys = s->keys, *values = p->values;
 	char *text = 0, *key;
 	size_t size = 0;
 	FILE *f = open_memstream(&text, &size);
-	int at = fprintf(f, "%s.%s = %.3g %s, %.3g s + %.3g s/Mpx: ", s->stage, p->name, p->error, s->unit, fixed, slope);
+	int at = s->mtexel > 0 ? fprintf(f, "%s.%s = %.3g %s, %.3g s + 0 s/Mpx + %.3g s/Mtexel: ", s->stage, p->name, p->error, s->unit, 1e-3 * LOAD_MS, texels)
+	                       : fprintf(f, "%s.%s = %.3g %s, %.3g s + %.3g s/Mpx: ", s->stage, p->name, p->error, s->unit, fixed, slope);
 	for (int i = 0, more = 0; (key = next_of(&keys)); i++) {
 		char *value = next_of(&values);
 		if (at + (int)strlen(key) + (int)strlen(value ? value : "") + 5 > LINE) {
@@ -241,6 +244,9 @@ bool fronts_left_out(void)
 void fronts_measure(const struct fronts_stage *s, const char *capture, const char *small, const double mpx[2])
 {
 	struct point points[3 + FRONTS_SETTINGS];
+	const char *alone = getenv("STAGES");
+	if (alone && !strstr(alone, s->stage))
+		return;
 	char *reference = mem_printf("%s.reference", capture);
 	int n = points_of(points, s);
 	if (s->finest.values) {

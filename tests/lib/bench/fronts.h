@@ -27,6 +27,7 @@ struct fronts_stage {
 	int reps;                               // timed runs beside the one whose error is taken; 0: that one alone
 	const char *also;                       // another capture: the error is the mean over both, the time that of the first; or null
 	bool draft_to_review;                   // `final` would take too long here
+	double mtexel;                          // 0, or million texels of the iris map that its time goes with
 	bool anew;                              // the stage keeps what it can from its last run: work/ goes before each
 };
 
@@ -34,7 +35,8 @@ struct fronts_stage {
 bool fronts_left_out(void);
 
 /* Measures the stage in `capture`, which has been made; `small`: the same of fewer megapixels, for the time's slope, or null
- * (all the time is fixed then). mpx: of the two. Rows, goals and the front's lines: bench/NAME.front. */
+ * (all the time is fixed then). mpx: of the two. Rows, goals and the front's lines: bench/NAME.front. Where the environment
+ * has STAGES ("limbus freckles"), of these alone. */
 void fronts_measure(const struct fronts_stage *stage, const char *capture, const char *small, const double mpx[2]);
 
 /* Copies work/ away as the reference of the errors. */

@@ -295,21 +295,20 @@ static void without_rings(float *map, const float *counts, int n)
 		}
 }
 
-static bool relief_score(struct mc_score *s, const struct mc_iris *m, const char *dir, struct err *err)
+/* A map of thickness (its channel of that name) and the truth on the truth's grid, each beside its weight; counts[n*n]: 1 where they are
+ * compared. image_free(&pair[0]), image_free(&pair[1]); free(*counts). */
+static bool pair_load(struct image pair[2], float **counts, const struct mc_iris *m, const char *path, const char *channel, struct err *err)
 {
-	static const char *const channel[] = { "T" };
-	char *path = mem_printf("%s/work/iris/relief.exr", dir);
 	struct exr_info info = { 0 };
 	struct image got = { 0 };
-	bool ok = exr_read(&got, path, 1, channel, LIMIT_PX, &info, err);
-	free(path);
-	if (!ok)
+	if (!exr_read(&got, path, 1, &channel, LIMIT_PX, &info, err))
 		return false;
-	int n = m->thickness.width;
-	double mm = 2 * m->half_width / n;
-	long all = (long)n * n;
-	struct image pair[2] = { image_new(n, n, 2), image_new(n, n, 2) };
-	float *of[2] = { mem_array((size_t)all, sizeof(float)), mem_array((size_t)all, sizeof(float)) }, *counts = mem_array((size_t)all, sizeof(float));
+	const int n = m->thickness.width;
+	const double mm = 2 * m->half_width / n;
+	const long all = (long)n * n;
+	*counts = mem_array((size_t)all, sizeof **counts);
+	for (int k = 0; k < 2; k++)
+		pair[k] = image_new(n, n, 2);
 	for (long i = 0; i < all; i++) {
 		double x = ((double)(i % n) + 0.5) * mm - m->half_width, y = ((double)(i / n) + 0.5) * mm - m->half_width, r = hypot(x, y);
 		double u = (x / info.extent_mm + 1) / 2 * got.width - 0.5, v = (y / info.extent_mm + 1) / 2 * got.height - 0.5;
@@ -317,27 +316,51 @@ static bool relief_score(struct mc_score *s, const struct mc_iris *m, const char
 		double p = u - a, q = v - b;
 		const float *g = got.px + (long)b * got.width + a;
 		float w = r > inner - 0.25 && r < outer + 0.25;
-		counts[i] = r > inner && r < outer;
+		(*counts)[i] = r > inner && r < outer;
 		pair[0].px[2 * i] = w * (float)((1 - q) * ((1 - p) * g[0] + p * g[1]) + q * ((1 - p) * g[got.width] + p * g[got.width + 1]));
 		pair[1].px[2 * i] = w * m->thickness.px[i];
 		pair[0].px[2 * i + 1] = pair[1].px[2 * i + 1] = w;
 	}
-	for (int k = 0; k < 2; k++)
+	image_free(&got);
+	return true;
+}
+
+/* Both between Gaussians of 0.12 and 0.6 mm; free(of[0]), free(of[1]). */
+static void bands_of(float *of[2], const struct mc_iris *m, const struct image pair[2])
+{
+	const int n = m->thickness.width;
+	const double mm = 2 * m->half_width / n;
+	for (int k = 0; k < 2; k++) {
+		of[k] = mem_array((size_t)n * (size_t)n, sizeof(float));
 		band(of[k], &pair[k], 0.12 / mm, 0.6 / mm);
+	}
+}
+
+static bool relief_score(struct mc_score *s, const struct mc_iris *m, const char *dir, struct err *err)
+{
+	char *path = mem_printf("%s/work/iris/relief.exr", dir);
+	struct image pair[2];
+	float *of[2], *counts;
+	bool ok = pair_load(pair, &counts, m, path, "T", err);
+	free(path);
+	if (!ok)
+		return false;
+	const int n = m->thickness.width;
+	const long all = (long)n * n;
+	double unused;
+	bands_of(of, m, pair);
 	relate(&s->amplitude, &s->correlation, of[0], of[1], counts, all);
 	for (int k = 0; k < 2; k++) {
 		for (long i = 0; i < all; i++)
 			of[k][i] = pair[k].px[2 * i];
 		without_rings(of[k], counts, n);
 	}
-	double unused;
 	relate(&unused, &s->whole_correlation, of[0], of[1], counts, all);
 	for (int k = 0; k < 2; k++) {
 		image_free(&pair[k]);
 		free(of[k]);
 	}
 	free(counts);
-	image_free(&got);
 	return true;
 }
 
@@ -346,28 +369,28 @@ bool mc_iris_capture(const struct mc_iris *m, const char *dir, const struct mc_c
 	return capture_make(m, dir, how, err) && conf_write(m, dir, how, 1, err);
 }
 
-double mc_iris_thickness_off(const struct mc_iris *m, const char *path, const char *channel)
+double mc_iris_detail_off(const struct mc_iris *m, const char *path, const char *channel)
 {
-	struct exr_info info = { 0 };
-	struct image got = { 0 };
 	struct err err = { 0 };
-	double sum = 0;
-	long count = 0;
-	if (!exr_read(&got, path, 1, &channel, LIMIT_PX, &info, &err))
+	struct image pair[2];
+	float *of[2], *counts;
+	double sum = 0, count = 0;
+	if (!pair_load(pair, &counts, m, path, channel, &err)) {
 		fprintf(stderr, "%s\n", err.msg);
-	const int n = m->thickness.width;
-	const double mm = 2 * m->half_width / n;
-	for (long i = 0; got.px && i < (long)n * n; i++) {
-		const double x = ((double)(i % n) + 0.5) * mm - m->half_width, y = ((double)(i / n) + 0.5) * mm - m->half_width, r = hypot(x, y);
-		const double off = (double)image_sample(&got, (x / info.extent_mm + 1) / 2 * got.width, (y / info.extent_mm + 1) / 2 * got.height, 0)
-		                   - (double)m->thickness.px[i];
-		if (r > inner && r < outer && isfinite(off)) {
-			sum += off * off;
+		return NAN;
+	}
+	bands_of(of, m, pair);
+	for (long i = 0; i < (long)m->thickness.width * m->thickness.height; i++)
+		if (counts[i] > 0) {
+			sum += pow((double)of[0][i] - (double)of[1][i], 2);
 			count++;
 		}
+	for (int k = 0; k < 2; k++) {
+		image_free(&pair[k]);
+		free(of[k]);
 	}
-	image_free(&got);
-	return count ? sqrt(sum / (double)count) : NAN;
+	free(counts);
+	return sqrt(sum / count);
 }
 
 static double now_s(void)

@@ -40,8 +40,9 @@ struct mc_score {
 /* Makes a capture of the iris at `dir` (must not exist). */
 bool mc_iris_capture(const struct mc_iris *iris, const char *dir, const struct mc_case *how, struct err *err);
 
-/* rms difference of a map of thickness (its channel of that name) from the truth, mm, in 2.3 mm < r < 5.3 mm; NAN, said, where it cannot be read. */
-double mc_iris_thickness_off(const struct mc_iris *iris, const char *path, const char *channel);
+/* rms difference of a map of thickness (its channel of that name) from the truth between Gaussians of 0.12 and 0.6 mm, mm, in 2.3 mm < r < 5.3 mm;
+ * NAN, said, where it cannot be read. */
+double mc_iris_detail_off(const struct mc_iris *iris, const char *path, const char *channel);
 
 /* Makes a capture of the iris at `dir` (must not exist), runs make on it, and scores what came out. make's output goes to dir.log. */
 bool mc_iris_score(struct mc_score *score, const struct mc_iris *iris, const char *dir, const struct mc_case *how, struct err *err);

@@ -39,7 +39,7 @@ static const char *choose(const char *capture, const bool runs[4], double mpx, d
 	assert_true(conf_load(&conf, scratch_path("config/capture.conf"), "", 0, &err));
 	assert_true(conf_load(&conf, scratch_text("capture.conf", capture), "", 1, &err));
 	assert_true(front_load(&front, scratch_path("config/fronts.conf"), &err) && front_ask(&ask, &conf, &err));
-	front_choose(&front, &ask, 4, stages, runs, mpx, others_s, chosen);
+	front_choose(&front, &ask, 4, stages, runs, mpx, 0, others_s, chosen);
 	snprintf(said, sizeof said, "%s %s", chosen[1] < 0 ? "-" : front.points[chosen[1]].name,
 	         chosen[2] < 0 ? "-" : front.points[chosen[2]].name);
 	assert_true(chosen[0] < 0 && chosen[3] < 0);
@@ -182,7 +182,7 @@ static void the_recorded_fronts_are_fronts(void **state)
 				continue;
 			assert_string_equal(a->unit, b->unit);
 			// Two megapixels: what it is measured on. A tenth: the spread of its times.
-			if (a->error < 0.98 * b->error && front_seconds(a, 2) < 0.9 * front_seconds(b, 2))
+			if (a->error < 0.98 * b->error && front_seconds(a, 2, 0.86) < 0.9 * front_seconds(b, 2, 0.86))
 				fail_msg("%s.%s is beaten by %s", b->stage, b->name, a->name);
 		}
 	front_free(&front);
