@@ -19,6 +19,7 @@ static void start_calm(char **argv)
 int main(int argc, char **argv)
 {
 	start_calm(argv);
+	static const char *const shown[] = { "both", "left", "right", 0 };  // enum track_shown
 	struct track_conf c = { 0 };
 	const struct opt opts[] = {
 		EYE_OPTS(&c.eye),
@@ -35,6 +36,7 @@ int main(int argc, char **argv)
 		EXPRESSION_OPT(&c.expression),
 		OPT_EACH("landmark_*", &c.landmark_px, 2, -1e5, 1e5, "px", "where a landmark is seen in the reference frame"),
 		OPT_INT("reference_frame", &c.reference, -1, 10000000, "", "frame the mesh is laid on; -1: found"),
+		OPT_CHOICE("shown", &c.alone, shown, "eyes that a video without a mesh shows"),
 		OPT_INT("search_frames", &c.search, 1, 100000, "", "searched for a face at most"),
 		OPT_REAL("distance_mm", &c.distance_mm, 50, 10000, "mm", "of the face from a camera of unknown focal length"),
 		OPT_REAL("distance_sigma", &c.distance_sigma, 0, 1, "", "one standard deviation of that, as a share of it"),

@@ -27,11 +27,15 @@ static void tell_video(struct stage *stage, const struct track_clip *clip)
 		stage_skipped(stage, "%s: cut off: %ld of %ld frames are there; copy the file again", clip->file, v->frames, v->promised);
 	if (v->fps < 25)
 		stage_skipped(stage, "%s: %.0f frames/s: blinks are over in a few frames; film at 60 or more", clip->file, v->fps);
-	if (clip->cam_from_head[1][1] > 0)
-		stage_skipped(stage, "%s: the face is upside down in it: it is followed as it is; film upright, or set the file's rotation", clip->file);
 	if (clip->focal_assumed)
 		stage_skipped(stage, "%s: focal length not known: as if from %.0f mm away; set camera.focal_px, or camera.focal_mm and camera.sensor_mm", clip->file,
 		              clip->cam_from_head[2][3]);
+}
+
+static void tell_way(struct stage *stage, const struct track_clip *clip)
+{
+	if (clip->cam_from_head[1][1] > 0)
+		stage_skipped(stage, "%s: the face is upside down in it: it is followed as it is; film upright, or set the file's rotation", clip->file);
 }
 
 static void tell(struct stage *stage, const struct track_result *r, const struct track_clip *clip)
@@ -62,6 +66,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	tell_video(stage, clip);
 	if (!(subject->assumed ? track_alone(clip, stage, subject, conf, err) : track_settle(clip, stage, subject, conf, err)))
 		return false;
+	tell_way(stage, clip);
 	if (!track_settled(clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, 0);
 		return false;

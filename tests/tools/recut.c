@@ -1,6 +1,6 @@
 /* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), roll (turned
  * further from frame to frame, by 180 degrees in all), uneven (every second frame half an interval late), sway (moved aside by 30 px and back once a
- * second, as by a head that does not rest). */
+ * second, as by a head that does not rest), aside (half the picture to the right). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,7 +75,7 @@ static void shift(uint8_t *out, const uint8_t *in, int w, int h, int x, int y)
 static bool put(struct video_writer *writer, long *n, const struct part *p, uint8_t *const *rgb, const struct video_info *info, struct err *err)
 {
 	uint8_t *turned = mem_array((size_t)info->width * (size_t)info->height, 3);
-	bool over = !strcmp(p->how, "over"), roll = !strcmp(p->how, "roll"), uneven = !strcmp(p->how, "uneven"), sway = !strcmp(p->how, "sway"), ok = true;
+	bool over = !strcmp(p->how, "over"), roll = !strcmp(p->how, "roll"), uneven = !strcmp(p->how, "uneven"), sway = !strcmp(p->how, "sway"), aside = !strcmp(p->how, "aside"), ok = true;
 	for (long t = 0; t < p->times && ok; t++)
 		for (long f = p->first; f <= p->last && ok; f++) {
 			double share = (double)(f - p->first) / fmax(1, (double)(p->last - p->first));
@@ -88,9 +88,9 @@ static bool put(struct video_writer *writer, long *n, const struct part *p, uint
 				turn(turned, px, info->width, info->height, M_PI * (roll ? share : 1));
 				px = turned;
 			}
-			if (sway) {
+			if (sway || aside) {
 				double t_s = (double)*n / info->fps;
-				shift(turned, px, info->width, info->height, (int)lround(30 * sin(2 * M_PI * t_s)), (int)lround(10 * sin(M_PI * t_s)));
+				shift(turned, px, info->width, info->height, aside ? info->width / 2 : (int)lround(30 * sin(2 * M_PI * t_s)), aside ? 0 : (int)lround(10 * sin(M_PI * t_s)));
 				px = turned;
 			}
 			ok = video_writer_put(writer, px, ((double)*n + (uneven && *n % 2 ? 0.5 : 0)) / info->fps, err);

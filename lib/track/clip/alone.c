@@ -8,6 +8,7 @@
 #include "track/clip/earn.h"
 #include "track/clip/few.h"
 #include "track/clip/look.h"
+#include "track/clip/reference.h"
 #include "track/head/refine.h"
 
 enum { ROUNDS = 3, LEAST_FRAMES = 8 };
@@ -92,7 +93,39 @@ static void face_camera(struct track_clip *clip, struct track_subject *s)
 	}
 }
 
-/* Where the eyeballs lie, from few frames: under centres that are off by millimetres irises that look aside are not found. */
+/* The same eyes the other way up: turned by half a turn about what is seen of them. */
+static void turn_over(struct track_clip *clip, const struct track_subject *s)
+{
+	double middle[3] = { 0 }, was[3], now[3];
+	const int n = clip->eye_seen[0] + clip->eye_seen[1];
+	for (int e = 0; e < SIDES; e++)
+		for (int k = 0; k < 3 && clip->eye_seen[e]; k++)
+			middle[k] += s->center[e][k] / n;
+	head_from(was, clip->cam_from_head, middle);
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 2; k++)
+			clip->cam_from_head[i][k] *= -1;
+	head_from(now, clip->cam_from_head, middle);
+	for (int i = 0; i < 3; i++)
+		clip->cam_from_head[i][3] += was[i] - now[i];
+}
+
+/* Lids tell which way up a face is: of an open eye that blinks and looks up and down the upper one moves by far more. Films are upright where they do not tell. */
+static void stand_up(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	const struct track_conf few = track_few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
+	struct track_result up = { 0 }, over = { 0 };
+	if (track_follow_few(&up, clip, stage, s, &few) && reference_is_overturned(&up, clip, s)) {
+		turn_over(clip, s);
+		if (!track_follow_few(&over, clip, stage, s, &few) || reference_is_overturned(&over, clip, s))
+			turn_over(clip, s);
+	}
+	track_result_free(&up);
+	track_result_free(&over);
+}
+
+/* Where the eyeballs lie, and how large the irises are by the average face's scale, from few frames: under centres that are off by millimetres irises that look aside
+ * are not found, nor those that are larger by a tenth. */
 static void center(struct track_clip *clip, struct stage *stage, struct track_subject *s, const struct track_conf *conf)
 {
 	const struct track_conf few = track_few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
@@ -104,6 +137,8 @@ static void center(struct track_clip *clip, struct stage *stage, struct track_su
 			const struct eye_globe *g = &r.eyes.globe[e];
 			if (!g->seen || g->frames < LEAST_FRAMES)
 				continue;
+			moved = fmax(moved, fabs(g->limbus_radius - (s->limbus[e] > 0 ? s->limbus[e] : conf->eye.limbus_radius)));
+			s->limbus[e] = g->limbus_radius;
 			for (int k = 0; k < 2; k++) {
 				moved = fmax(moved, fabs(g->center_in_head[k] - s->center[e][k]));
 				s->center[e][k] = g->center_in_head[k];
@@ -119,6 +154,11 @@ bool track_alone(struct track_clip *clip, struct stage *stage, struct track_subj
 {
 	if (!start(clip, stage, s, conf, err))
 		return false;
+	if (conf->alone == SHOWN_BOTH && !(clip->eye_seen[0] && clip->eye_seen[1]))
+		return err_set(err, "%s: frame %ld: one eye alone is found, and a picture of it does not tell which: film both eyes, or set track.shown = left or right (the person's) in capture.conf", clip->file,
+		               clip->reference);
+	if (conf->settle)
+		stand_up(clip, stage, s, conf);
 	face_camera(clip, s);
 	if (conf->settle)
 		center(clip, stage, s, conf);

@@ -150,7 +150,7 @@ static bool try_frame(struct track_clip *clip, bool known, const struct track_su
 {
 	if (known)
 		return track_look_known(clip, clip->reference, s, conf);
-	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : track_look(clip, WAY_EITHER, s, conf);
+	return conf->landmark_px.n > 0 ? pose_from_marks(clip, s, conf, err) : track_look(clip, s->assumed ? WAY_UP : WAY_EITHER, s, conf);
 }
 
 /* Decodes up to the reference frame: the one configured, or the first in which eyes are found. known: only frames of known pose

@@ -9,6 +9,9 @@
 #include "track/points/skin_track.h"
 #include "track/wrinkle/wrinkle.h"
 
+/* Eyes that a video without a mesh shows; the names are the key's. */
+enum track_shown { SHOWN_BOTH, SHOWN_LEFT, SHOWN_RIGHT };
+
 struct track_conf {
 	struct video_conf video;
 	struct eye eye;
@@ -21,6 +24,7 @@ struct track_conf {
 	struct opt_each_list landmark, eye_center;   // subject.landmark.*, subject.eye_center.*
 	struct opt_each_list landmark_px, expression;
 	double distance_mm, distance_sigma;  // of the face from a camera of unknown focal length; its standard deviation as a share of it
+	int alone;             // which eyes the video shows, without a mesh: enum track_shown
 	int reference;         // frame that the mesh is laid on; -1: the first in which eyes are found
 	int search;            // frames searched for it; this and the spans below are frames at 60 a second: scaled for faster clips
 	int settle;            // frames from which the eyeballs' centres are estimated to refine the reference pose; 0: none

@@ -35,6 +35,7 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 		struct eye_prior *p = &scene.prior[e];
 		p->absent = !clip->eye_seen[e];
 		p->radius = subject->assumed ? conf->eyes.free_radius[0] : subject->radius;
+		p->limbus = subject->limbus[e];
 		p->average = subject->assumed;
 		view_sigma(p->view_sigma, clip, subject, e, conf);
 		// centres from capture.conf are as certain here as when the reference pose is refined by them

@@ -193,8 +193,8 @@ static bool eyes(struct track_subject *s, struct stage *stage, const struct trac
 	return true;
 }
 
-/* Without a mesh: eyes as people have them, 63 mm apart (Dodgson 2004), to be looked for in the picture. */
-static void assume_eyes(struct track_subject *s)
+/* Without a mesh: eyes as people have them, 63 mm apart (Dodgson 2004), to be looked for in the picture; of one that is not shown there is no opening. */
+static void assume_eyes(struct track_subject *s, enum track_shown shown)
 {
 	struct ray_scene *nothing = ray_scene_new(0, 0, 0, 0);
 	s->assumed = true;
@@ -202,7 +202,8 @@ static void assume_eyes(struct track_subject *s)
 	for (int e = 0; e < SIDES; e++) {
 		s->center[e][0] = e == SIDE_LEFT ? half_apart : -half_apart;
 		s->center[e][1] = s->center[e][2] = 0;
-		opening_usual(&s->opening[e], nothing, s->center[e], s->radius);
+		if (shown == SHOWN_BOTH || (shown == SHOWN_LEFT) == (e == SIDE_LEFT))
+			opening_usual(&s->opening[e], nothing, s->center[e], s->radius);
 	}
 	ray_scene_free(nothing);
 	average_skin(&s->mesh, half_apart);
@@ -244,7 +245,7 @@ bool track_subject_load(struct track_subject *s, struct stage *stage, const stru
 			s->file = files[i];
 	if (!s->file) {
 		stage_skipped(stage, "no mesh of the person (subject.ply): gaze and lids are followed, skin is not; put one in, or photographs into views/");
-		assume_eyes(s);
+		assume_eyes(s, conf->alone);
 		return true;
 	}
 	if (!om_mesh_load(&s->mesh, stage_path(stage, "%s", s->file), limit_vertices, err))

@@ -16,6 +16,7 @@ struct track_subject {
 	int mark[SIDES][MARKS];          // rows of the mesh; -1: not known
 	double center[SIDES][3], radius; // eyeballs; NAN where not known
 	bool center_given[SIDES];        // by capture.conf: not estimated
+	double limbus[SIDES];            // mm, seen in the clip where there is no mesh; 0: not known
 	double center_sigma[SIDES];      // mm, of centres from the mesh's rims or the lids' marks; 0: the settings'
 	struct eye_opening opening[SIDES];
 	struct eye_opening margin[SIDES];  // inner edge of the lids' margins: outline at the eyeball's radius plus meniscus_mm

@@ -52,7 +52,7 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 	eye->conf = &track->conf;
 	eye->absent = prior->absent || !(given || seen);
 	eye->globe.radius = isfinite(prior->radius) && prior->radius > 3 ? prior->radius : RADIUS;
-	eye->globe.limbus = fmin(track->scene.eye.limbus_radius, 0.95 * eye->globe.radius);
+	eye->globe.limbus = fmin(prior->limbus > 0 ? prior->limbus : track->scene.eye.limbus_radius, 0.95 * eye->globe.radius);
 	eye->center_guess = prior->center_sigma > 0 ? prior->center_sigma : track->conf.center_sigma;
 	eye->average = prior->average;
 	eye->radius_sigma = prior->average ? track->conf.free_radius[1] : track->conf.radius_sigma;

@@ -26,6 +26,7 @@ struct eye_prior {
 	double center_in_head[3];   // eyeball
 	double center_sigma;        // mm, standard deviation each way; 0: conf's
 	double radius;              // of the sphere that the limbus lies on, mm
+	double limbus;              // its radius, mm; 0: scene's eye's
 	bool average;               // an average eye's, not the person's: conf's free_radius and edge_sigma
 	double view_sigma[2];       // radians: error of the line of sight from the camera to the eye, h and v; as an unknown focal length makes
 	double canthus_in_head[2][3];  // inner, outer corner of the opening
