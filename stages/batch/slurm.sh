@@ -1,17 +1,21 @@
 # Captures as job arrays of Slurm. Sourced by batch.sh.
-#   batch/slurm/jobs    the last submission's arrays: job TAB list of captures TAB captures a task
-#   batch/slurm/*.list  names of an array's captures, by task, a zero byte behind each
+#   batch/slurm/jobs     the last submission's arrays: job TAB list of captures
+#   batch/slurm/*.list   names of an array's captures, by task, a zero byte behind each
+#   batch/slurm/*.tasks  first and last place in the list of each task's captures
 
 TASK_SECONDS=${TASK_SECONDS:-20}
+TASK_MOST=${TASK_MOST:-120}
 
 # What Slurm says of our tasks: job, task, state.
 tasks() { squeue -h -r --me -n eyewright -o '%F %K %T' 2>/dev/null | grep -F -f <(cut -f 1 "$state/slurm/jobs" 2>/dev/null) | grep -v ' N/A '; }
 
-# Captures with the same waves and the same requests, a line: NUMBERS, captures a task, then for each wave TARGETS|MIB|MINUTES, TABs
-# between. Waves: cameras, fits, pictures; those that need at most 2 GiB, which a core of a cluster has anyway, are one. Slurm takes up to
-# some seconds to start a task: one of a single wave holds captures of about $TASK_SECONDS, as long as each core still gets four tasks.
+# Captures with the same waves and the same requests, a line: NUMBERS, how many of them each task holds, then for each wave
+# TARGETS|MIB|MINUTES, TABs between. Waves: cameras, fits, pictures; those that need at most 2 GiB, which a core of a cluster has anyway,
+# are one. Slurm takes up to some seconds to start a task: one of a single wave holds several captures, by guided self-scheduling
+# (Polychronopoulos and Kuck 1987): a 2 * CORES-th of the seconds that are left, at most $TASK_MOST and at least $TASK_SECONDS of them, so
+# that the first tasks are few and the last ones end together; but each core gets four tasks, as far as there are captures.
 waves() { # CORES
-	awk -F '\t' -v cores="$1" -v task="$TASK_SECONDS" '
+	awk -F '\t' -v cores="$1" -v least="$TASK_SECONDS" -v most="$TASK_MOST" '
 		function up(x, from) { while (from < x) from *= 2; return from }
 		{
 			split("", s); split("", m); split("", t)
@@ -31,22 +35,28 @@ waves() { # CORES
 		}
 		END {
 			for (k in of) {
-				per = 1
-				if (split(k, wave, "\t") == 2) { # one wave
-					per = int(task * n[k] / (seconds[k] + 1e-9)); share = int(n[k] / (4 * cores))
-					per = per < share ? per : share; per = per > 1 ? per : 1
+				waves = split(k, wave, "\t") - 1
+				left = n[k]; mean = seconds[k] / n[k] + 1e-9; share = int(n[k] / (4 * cores)); longest = 1; sizes = ""
+				while (left > 0) {
+					s_of = left * mean / (2 * cores)
+					per = int((s_of > most ? most : s_of < least ? least : s_of) / mean)
+					per = per < share ? per : share; per = waves == 1 && per > 1 ? per : 1; per = per < left ? per : left
+					if (per > longest) longest = per
+					sizes = sizes (sizes == "" ? "" : " ") per
+					left -= per
 				}
-				print of[k] "\t" per k
+				if (waves == 1) { split(wave[2], of_wave, "|"); k_of = "\t" of_wave[1] "|" of_wave[2] "|" up(longest * mean / 6, of_wave[3] + 0) } else k_of = k
+				print of[k] "\t" sizes k_of
 			}
 		}' "$state/todo" | sort -n
 }
 
 # One array: the captures of a list. Prints its job.
-array() { # LIST TASKS WAVE AFTER PER
-	local targets=${3%%|*} minutes=${3##*|} mib=${3#*|}
-	sbatch --parsable --job-name=eyewright --array="1-$2${JOBS:+%$JOBS}" --mem="${mib%|*}M" --time="$minutes" \
+array() { # LIST WAVE AFTER
+	local targets=${2%%|*} minutes=${2##*|} mib=${2#*|}
+	sbatch --parsable --job-name=eyewright --array="1-$(wc -l <"${1%.list}.tasks")${JOBS:+%$JOBS}" --mem="${mib%|*}M" --time="$minutes" \
 		--cpus-per-task="$THREADS" --requeue --open-mode=append --output="${state//%/%%}/slurm/%A.out" \
-		${4:+--dependency="aftercorr:$4" --kill-on-invalid-dep=yes} "$here/task.sh" "$here/batch.sh" one "$1" "$targets" "$5" </dev/null
+		${3:+--dependency="aftercorr:$3" --kill-on-invalid-dep=yes} "$here/task.sh" "$here/batch.sh" one "$1" "$targets" </dev/null
 }
 
 submit() {
@@ -54,27 +64,32 @@ submit() {
 	case ${JOBS:-1} in *[!0-9]* | 0*) die "JOBS = $(one_line "$JOBS"): must be a whole number from 1" 2 ;; esac
 	export THREADS=${THREADS:-1}
 	mkdir -p "$state/slurm" || exit 1
-	local left most cores n=0 numbers per rest wave list after all='' job
+	local left most cores n=0 from t numbers sizes rest wave list after all='' job
+	local -a number size
 	left=$(tasks | wc -l)
 	[ "$left" = 0 ] || die "$left tasks of the last submission wait or run: make batch-status tells of them, scancel --name=eyewright ends them"
 	list_todo
-	rm -f "$state"/slurm/*.list "$state/slurm/jobs"
+	rm -f "$state"/slurm/*.{list,tasks} "$state/slurm/jobs"
 	[ -s "$state/todo" ] || { echo "nothing to do: nothing is submitted" >&2; status; return; }
 	cut -f 1 "$state/todo" | pick "$state/captures" | (cd "$state/results" && xargs -0 rm -f --)
 	most=$(scontrol show config | sed -n 's/^MaxArraySize *= *\([0-9]*\).*/\1/p')
 	cores=$(sinfo -h -o %C 2>/dev/null | awk -F / '{ n += $4 } END { print (n > 0 ? n : 1) }')
 	unset MAKEFLAGS MFLAGS MAKELEVEL
-	while IFS=$'\t' read -r numbers per rest; do
-		# shellcheck disable=SC2086
-		while read -r numbers; do
+	while IFS=$'\t' read -r numbers sizes rest; do
+		read -ra number <<<"$numbers"
+		read -ra size <<<"$sizes"
+		for ((from = t = 0; t < ${#size[@]}; t += ${most:-1001} - 1)); do
 			n=$((n + 1)) after='' list=$state/slurm/$n.list
-			tr ' ' '\n' <<<"$numbers" | pick "$state/captures" >"$list"
+			printf '%s\n' "${size[@]:t:${most:-1001}-1}" | awk '{ print last + 1, last += $1 }' >"${list%.list}.tasks"
+			numbers=$(tail -n 1 "${list%.list}.tasks")
+			printf '%s\n' "${number[@]:from:${numbers#* }}" | pick "$state/captures" >"$list"
+			from=$((from + ${numbers#* }))
 			while IFS= read -r wave; do
-				job=$(array "$list" "$((($(wc -w <<<"$numbers") + per - 1) / per))" "$wave" "$after" "$per") || die "sbatch refused it"
+				job=$(array "$list" "$wave" "$after") || die "sbatch refused it"
 				job=${job%%;*} after=$job all=$all:$job
-				printf '%s\t%s\t%s\n' "$job" "$list" "$per" >>"$state/slurm/jobs"
+				printf '%s\t%s\n' "$job" "$list" >>"$state/slurm/jobs"
 			done < <(tr '\t' '\n' <<<"$rest")
-		done < <(xargs -n "$(((${most:-1001} - 1) * per))" <<<"$numbers")
+		done
 	done < <(waves "$cores")
 	sbatch --parsable --job-name=eyewright-summary --dependency="afterany$all" --mem=256M --time=60 --output="${state//%/%%}/slurm/summary.out" \
 		"$here/task.sh" "$here/batch.sh" status </dev/null >"$state/slurm/summary" || die "sbatch refused the summary"
@@ -85,10 +100,12 @@ submit() {
 # result, its record tells why, where the cluster keeps records.
 queued() {
 	[ -s "$state/slurm/jobs" ] || return 0
-	local job list per
+	local job list
 	{
-		while IFS=$'\t' read -r job list per; do
-			tr '\n\0' ' \n' <"$list" | LC_ALL=C tr -c '[:print:]\200-\377\n' ' ' | awk -v job="$job" -v per="${per:-1}" '{ print "name\t" job "\t" int((NR - 1) / per) + 1 "\t" $0 }'
+		while IFS=$'\t' read -r job list; do
+			tr '\n\0' ' \n' <"$list" | LC_ALL=C tr -c '[:print:]\200-\377\n' ' ' | awk -v job="$job" '
+				NR == FNR { last[NR] = $2; next }
+				{ while (last[t + 1] < FNR) t++; print "name\t" job "\t" t + 1 "\t" $0 }' "${list%.list}.tasks" -
 		done <"$state/slurm/jobs"
 		tasks | awk '{ print "task\t" $1 "\t" $2 "\t" $3 }'
 		sacct -n -P -X -o JobID,State -j "$(cut -f 1 "$state/slurm/jobs" | paste -sd,)" 2>/dev/null | awk -F '[_|]' '{ print "record\t" $1 "\t" $2 "\t" $3 }'
