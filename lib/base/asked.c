@@ -13,7 +13,7 @@ static char *folder;
 static size_t folder_n;
 static char **paths;  // as they were asked for
 static int n, room;
-static bool trouble;
+static char *trouble;  // the first file that a disk has failed to give
 
 void asked_watch(const char *dir)
 {
@@ -37,7 +37,8 @@ void asked_in_vain(const char *path, int why)
 	pthread_mutex_lock(&busy);
 	if (folder && !strncmp(path, folder, folder_n) && path[folder_n] == '/') {
 		if (why != ENOENT && why != ENOTDIR) {
-			trouble = trouble || why == EIO || why == ENOMEM || why == EMFILE || why == ENFILE || why == ESTALE;
+			if (!trouble && (why == EIO || why == ENOMEM || why == EMFILE || why == ENFILE || why == ESTALE))
+				trouble = mem_str(path);
 		} else if (!is_known(path)) {
 			if (n == room)
 				paths = mem_grow(paths, (size_t)(room = room ? 2 * room : 16), sizeof *paths);
@@ -63,10 +64,10 @@ void asked_absent(void (*f)(void *ctx, const char *rel), void *ctx)
 	pthread_mutex_unlock(&busy);
 }
 
-bool asked_trouble(void)
+const char *asked_trouble(void)
 {
 	pthread_mutex_lock(&busy);
-	const bool is = trouble;
+	const char *file = trouble;
 	pthread_mutex_unlock(&busy);
-	return is;
+	return file;
 }

@@ -15,7 +15,7 @@ void asked_in_vain(const char *path, int why);
 /* Calls f with the path inside the folder of each file that was not there when it was asked for, and is not now; sorted, each once. */
 void asked_absent(void (*f)(void *ctx, const char *rel), void *ctx);
 
-/* Whether the disk has failed to give a file. */
-bool asked_trouble(void);
+/* The first file that the disk has failed to give, for as long as the program runs; null: none. */
+const char *asked_trouble(void);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/asked.h"
 #include "base/mem.h"
 #include "base/record.h"
 #include "image/photo/photo.h"
@@ -168,6 +169,14 @@ static int frames_wanted(const struct views *views, const struct calibrate_optio
 	return n >= 2 ? o->video_frames_beside : o->video_frames;
 }
 
+/* Cameras that were found without a photograph are kept and built upon: one that a failing disk did not give is no photograph that
+ * cannot be used. */
+static bool disk_gave_all(struct err *err)
+{
+	const char *file = asked_trouble();
+	return !file || err_set(err, "%s: the disk does not give it: cameras are not sought without it", file);
+}
+
 bool views_gather(struct views *views, struct stage *stage, const struct calibrate_options *o, struct err *err)
 {
 	*views = (struct views){ 0 };
@@ -181,7 +190,7 @@ bool views_gather(struct views *views, struct stage *stage, const struct calibra
 	struct pictures known;
 	pictures_load(&known, stage_path(stage, CALIBRATE_DIR "/pictures.json"));
 	pictures_recall(views, &known);
-	bool ok = prepare_all(views, stage, o, err) && frames_add(views, frames_wanted(views, o), &known, stage, o, err);
+	bool ok = prepare_all(views, stage, o, err) && disk_gave_all(err) && frames_add(views, frames_wanted(views, o), &known, stage, o, err);
 	if (ok) {
 		thin(views, stage, o);
 		say_left_out(views, stage);
