@@ -76,6 +76,16 @@ static json_t *camera_json(const struct skin_camera *c)
 	return camera;
 }
 
+static json_t *known_json(const struct known *k)
+{
+	json_t *j = json_object();
+	json_object_set_new(j, "left_deg", json_numbers(2 * KNOWN_CORNERS, &k->corner[0][0][0]));
+	json_object_set_new(j, "right_deg", json_numbers(2 * KNOWN_CORNERS, &k->corner[1][0][0]));
+	json_object_set_new(j, "torsion_deg", json_numbers(4, &k->torsion[0][0]));
+	json_object_set_new(j, "beyond", json_number(k->beyond));
+	return j;
+}
+
 static json_t *model_json(const struct skin_model *m)
 {
 	json_t *j = json_object();
@@ -86,6 +96,7 @@ static json_t *model_json(const struct skin_model *m)
 	json_object_set_new(j, "reference_frame", json_integer(m->reference_frame));
 	json_object_set_new(j, "inputs", inputs_json(m));
 	json_object_set_new(j, "camera", camera_json(&m->camera));
+	json_object_set_new(j, "known_gazes", known_json(&m->known));
 	json_object_set_new(j, "closed_px", json_numbers(SKIN_EYE_INPUTS, m->closed));
 	json_object_set_new(j, "open_px", json_numbers(SKIN_EYE_INPUTS, m->open));
 	json_object_set_new(j, "aperture_sigma_px", json_number(m->aperture_sigma));
@@ -167,6 +178,14 @@ static bool load_camera(struct skin_camera *c, const json_t *camera, const char 
 	       && json_get_array(&c->cam_from_head[0][0], 16, camera, "cam_from_head", path, err);
 }
 
+static bool load_known(struct known *k, const json_t *j, const char *path, struct err *err)
+{
+	return json_get_array(&k->corner[0][0][0], 2 * KNOWN_CORNERS, j, "left_deg", path, err)
+	       && json_get_array(&k->corner[1][0][0], 2 * KNOWN_CORNERS, j, "right_deg", path, err)
+	       && json_get_array(&k->torsion[0][0], 4, j, "torsion_deg", path, err) && json_get(&k->beyond, j, "beyond", path, err)
+	       && known_check(k, path, err);
+}
+
 static bool load_json(struct skin_model *m, const json_t *j, const char *path, struct err *err)
 {
 	const json_t *inputs = json_object_get(j, "inputs");
@@ -184,6 +203,7 @@ static bool load_json(struct skin_model *m, const json_t *j, const char *path, s
 		return err_set(err, "%s: vertices, skin_components: more than %d numbers", path, MODEL_NUMBERS);
 	skin_model_alloc(m);
 	return load_inputs(m, inputs, path, err) && load_camera(&m->camera, json_object_get(j, "camera"), path, err)
+	       && load_known(&m->known, json_object_get(j, "known_gazes"), path, err)
 	       && json_get_array(m->closed, SKIN_EYE_INPUTS, j, "closed_px", path, err)
 	       && json_get_array(m->open, SKIN_EYE_INPUTS, j, "open_px", path, err)
 	       && json_get(&m->aperture_sigma, j, "aperture_sigma_px", path, err)

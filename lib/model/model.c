@@ -46,6 +46,7 @@ void skin_model_alloc(struct skin_model *m)
 	m->mean = numbers(m->n_inputs, 1);
 	m->rest_controls = numbers(m->n_inputs, 1);
 	m->rest_e = numbers(m->n_skin_pc, 1);
+	known_all(&m->known);
 }
 
 void skin_model_free(struct skin_model *m)
@@ -179,8 +180,10 @@ void skin_model_leverage(double h[3], const struct skin_model *m, const double *
 
 void skin_model_baseline(double control[2], const struct skin_model *m, int eye, double c, double g1, double g2)
 {
+	double gaze[3] = { g1, g2, 0 };
+	known_hold(gaze, &m->known, eye);
 	for (int lid = 0; lid < 2; lid++) {
 		const double *a = m->baseline[eye][lid];
-		control[lid] = c * (a[0] * g1 + a[1] * g2 + a[2]);
+		control[lid] = c * (a[0] * gaze[0] + a[1] * gaze[1] + a[2]);
 	}
 }

@@ -22,6 +22,7 @@
 #ifndef MODEL_MODEL_H
 #define MODEL_MODEL_H
 #include "base/err.h"
+#include "model/known.h"
 
 enum { SKIN_EYE_INPUTS = 10, SKIN_LIDS = 4 };
 
@@ -62,6 +63,7 @@ struct skin_model {
 	double *skin_reach;           // [n_inputs][n_inputs + 1]
 
 	double *low, *high, *mean;    // [n_inputs] range and mean of the clip's inputs; NAN: input never measured
+	struct known known;           // gazes at which the clip shows lids; skin_model_alloc: all
 	double closed[SKIN_EYE_INPUTS], open[SKIN_EYE_INPUTS];  // px, g_closed and g_open of the apertures; 0 for other inputs
 	double aperture_sigma;        // px, of closed and open
 	double baseline[2][2][3], baseline_sigma[2][2][3];  // A, eq. 3.11: [left, right][upper, lower][g1, g2, 1] degrees
@@ -111,7 +113,7 @@ void skin_model_fold(double *W, const struct skin_model *model);
 void skin_model_leverage(double h[3], const struct skin_model *model, const double *g);
 
 /* The usual aperture at a gaze, equation 3.11: controls of the upper and the lower lid of one eye (0 left, 1 right) that looks at
- * g1 (horizontal), g2 (vertical), degrees; multiplied by c >= 0. */
+ * g1 (horizontal), g2 (vertical), degrees; multiplied by c >= 0. Beyond the known gazes: as at the nearest (known_hold). */
 void skin_model_baseline(double control[2], const struct skin_model *model, int eye, double c, double g1, double g2);
 
 #endif

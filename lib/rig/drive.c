@@ -102,11 +102,13 @@ void drive_look(double *c, const struct rig *rig, double horizontal, double vert
 {
 	for (int i = 0; i < rig->n_inputs; i++)
 		c[i] = 0;
-	for (int k = 0; k < 4; k++) {
-		const double *b = rig->baseline[k];
-		c[k < 2 ? 3 + k : 6 + k] = aperture * (b[0] * horizontal + b[1] * vertical + b[2]);
-	}
 	for (int eye = 0; eye < 2; eye++) {
+		double gaze[3] = { horizontal, vertical, 0 };
+		known_hold(gaze, &rig->known, eye);
+		for (int k = 0; k < 2; k++) {
+			const double *b = rig->baseline[2 * eye + k];
+			c[5 * eye + 3 + k] = aperture * (b[0] * gaze[0] + b[1] * gaze[1] + b[2]);
+		}
 		c[5 * eye] = horizontal;
 		c[5 * eye + 1] = vertical;
 	}

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "math/vec.h"
 
@@ -31,11 +32,16 @@ void rig_free(struct rig *rig)
 
 void rig_components(double e[RIG_COMPONENTS], const struct rig *rig, const double *inputs)
 {
+	double gaze[2][3];
+	for (int eye = 0; eye < 2; eye++) {
+		memcpy(gaze[eye], inputs + 5 * eye, sizeof gaze[eye]);
+		known_hold(gaze[eye], &rig->known, eye);
+	}
 	for (int k = 0; k < RIG_COMPONENTS; k++) {
 		const double *row = rig->W + k * (rig->n_inputs + 1);
 		e[k] = row[rig->n_inputs];
 		for (int i = 0; i < rig->n_inputs; i++)
-			e[k] += row[i] * inputs[i];
+			e[k] += row[i] * (i < 10 && i % 5 < 3 ? gaze[i / 5][i % 5] : inputs[i]);
 	}
 }
 

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "base/err.h"
+#include "model/known.h"
 #include "rig/globe_map.h"
 #include "rig/skull_map.h"
 
@@ -59,6 +60,7 @@ struct rig {
 	double head_from_target[3][3];   // rotation: x to the person's left, y up, z out of the face
 	double rest_aperture[4];         // g~ of g4, g5, g9, g10 at rest
 	double baseline[4][3];           // A: g~[4,5,9,10] = A [horizontal, vertical, 1] (deg), eq. 3.11
+	struct known known;              // gazes at which lids are known
 	float (*rest)[3], (*normal)[3];  // the character's mesh, mm; unit normals
 	float (*home)[2];                // where the modelling camera sees the vertices at rest, px
 	float (*basis)[RIG_BASIS];       // U~, px: x, then y
@@ -75,7 +77,7 @@ struct rig {
 
 void rig_free(struct rig *rig);
 
-/* e = W [g~; 1], out. inputs[n_inputs]: g~. */
+/* e = W [g~; 1], out. inputs[n_inputs]: g~; beyond the known gazes lids are as at the nearest (known_hold). */
 void rig_components(double e[RIG_COMPONENTS], const struct rig *rig, const double *inputs);
 
 /* Rotation of a globe, from its own axes (the head's at rest) to the target's, for a gaze in Fick's order: horizontal, vertical,

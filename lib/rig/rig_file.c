@@ -13,12 +13,13 @@ static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" }
 struct small {
 	double e[RIG_COMPONENTS], aperture[4], baseline[4][3], rotation[3][3], center[2][3], radius[2], own[2];
 	double grid[3], from_target[3][4], focal[2], middle[2], size[2];
+	struct known known;
 };
 
 static struct small small_of(const struct rig *r)
 {
 	struct small s = { .grid = { r->skull.x0, r->skull.y0, r->skull.step },
-		               .size = { r->camera.width, r->camera.height } };
+		               .size = { r->camera.width, r->camera.height }, .known = r->known };
 	memcpy(s.e, r->rest_e, sizeof s.e);
 	memcpy(s.aperture, r->rest_aperture, sizeof s.aperture);
 	memcpy(s.baseline, r->baseline, sizeof s.baseline);
@@ -46,6 +47,7 @@ static void small_to(struct rig *r, const struct small *s)
 	memcpy(r->camera.from_target, s->from_target, sizeof s->from_target);
 	memcpy(r->camera.focal_px, s->focal, sizeof s->focal);
 	memcpy(r->camera.center_px, s->middle, sizeof s->middle);
+	r->known = s->known;
 	r->camera.width = (int)s->size[0];
 	r->camera.height = (int)s->size[1];
 	for (int i = 0; i < 2; i++) {
@@ -156,6 +158,10 @@ static bool check(const struct rig *r, const char *path, struct err *err)
 	for (int i = 0; i < r->bplus.start[r->n]; i++)
 		if (r->bplus.column[i] < 0 || r->bplus.column[i] >= r->n)
 			return err_set(err, "%s: bplus_indices: %d is no vertex", path, r->bplus.column[i]);
+	if (r->n_inputs < 10)
+		return err_set(err, "%s: W: must have the inputs of two eyes", path);
+	if (!known_check(&r->known, path, err))
+		return false;
 	if (r->skull.width < 2 || r->skull.height < 2 || !(r->skull.step > 0))
 		return err_set(err, "%s: skull: must have at least 2 x 2 texels", path);
 	return true;

@@ -35,6 +35,7 @@ EMBED(viewer_motion_js, "render/viewer/motion.js");
 EMBED(viewer_beams_js, "render/viewer/beams.js");
 EMBED(viewer_gl_js, "render/viewer/gl.js");
 EMBED(viewer_scene_js, "render/viewer/scene.js");
+EMBED(viewer_known_js, "render/viewer/known.js");
 EMBED(viewer_pose_js, "render/viewer/pose.js");
 EMBED(viewer_face_js, "render/viewer/face.js");
 EMBED(viewer_sliders_js, "render/viewer/sliders.js");

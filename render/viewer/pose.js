@@ -156,8 +156,8 @@ class FacePose {
 
 	/* Normalised aperture of a lid as people have it at a gaze, degrees (eq. 3.11). */
 	usual(lid, gaze) {
-		const [h, v, one] = this.rig.baseline[lid];
-		return h * gaze[0] + v * gaze[1] + one;
+		const [h, v, one] = this.rig.baseline[lid], known = known_gaze(this.rig.known, lid >> 1, [gaze[0], gaze[1], 0]);
+		return h * known[0] + v * known[1] + one;
 	}
 
 	/* g~ (lib/model/model.h) for eyes that look so and are opened by so much of what is usual there; strengths: of expressions.
@@ -174,8 +174,10 @@ class FacePose {
 	}
 
 	/* e = W [g~; 1]. */
-	components(c) {
-		const n = c.length + 1, W = this.rig.W;
+	components(controls) {
+		const n = controls.length + 1, W = this.rig.W, c = controls.slice();
+		for (const side of [0, 1])
+			c.set(known_gaze(this.rig.known, side, [...c.subarray(5 * side, 5 * side + 3)]), 5 * side);
 		return Array.from({ length: W.length / n }, (_, k) => c.reduce((sum, v, i) => sum + W[n * k + i] * v, W[n * k + n - 1]));
 	}
 

@@ -76,7 +76,7 @@ static void programs(json_t *data, bool face)
 		json_object_set_new(sub, of_face[i].key, json_string(of_face[i].text));
 	json_object_set_new(data, "face", face ? json_pack("[o]", json_incref(sub)) : json_array());
 	json_decref(sub);
-	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_pose_js : "", face ? viewer_face_js : "",
+	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_known_js : "", face ? viewer_pose_js : "", face ? viewer_face_js : "",
 	                      viewer_sliders_js, viewer_panorama_js, viewer_address_js, viewer_controls_js, viewer_tools_js, viewer_live_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);

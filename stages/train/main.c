@@ -26,6 +26,7 @@ int main(int argc, char **argv)
 		OPT_REAL("min_seen", &conf.min_seen, 0, 1, "", "share of the frames a coordinate must be measured in"),
 		OPT_REAL("gap_s", &conf.gap_s, 0, 10, "s", "gaze is carried over gaps no longer than this"),
 		OPT_REAL("aperture_share", &conf.aperture_share, 0, 0.2, "", "share of the frames that define closed and open"),
+		OPT_REAL("beyond", &conf.beyond, 0, 10, "", "lids follow the gaze so far beyond the clip's, in its half widths"),
 		OPT_BOOL("rbf", &rbf, "radial basis functions, to compare with"),
 		OPT_INT("memory_mb", &conf.memory_mb, 16, 65536, "MiB", "limit of the scatter matrix and the sample"),
 	};

@@ -137,6 +137,13 @@ static json_t *between(const struct web_face *f)
 	return floats(ends, 2L * n);
 }
 
+/* The gazes at which lids are known (model/known.h). */
+static json_t *known(const struct known *k)
+{
+	return json_pack("{s:[o,o],s:o,s:f}", "corner", json_numbers(2 * KNOWN_CORNERS, &k->corner[0][0][0]), json_numbers(2 * KNOWN_CORNERS, &k->corner[1][0][0]),
+	                 "torsion", json_numbers(4, &k->torsion[0][0]), "beyond", k->beyond);
+}
+
 void web_put_rig(json_t *out, const struct web_face *f)
 {
 	const struct rig *rig = f->rig;
@@ -152,7 +159,7 @@ void web_put_rig(json_t *out, const struct web_face *f)
 		json_array_append_new(levels, json_pack("[i,i,i]", f->level[k].first, f->level[k].posed, f->level[k].end));
 	for (int k = 0; k < 4; k++)
 		json_array_append_new(baseline, json_numbers(3, rig->baseline[k]));
-	json_object_set_new(out, "rig", json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "inputs", rig->n_inputs,
+	json_object_set_new(out, "rig", json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "inputs", rig->n_inputs, "known", known(&rig->known),
 	    "W", json_numbers(RIG_COMPONENTS * (rig->n_inputs + 1), rig->W), "baseline", baseline, "head_from_rig", json_numbers(9, &rig->head_from_target[0][0]),
 	    "middle", json_numbers(3, f->middle), "levels", levels, "rows", base64_json(f->order, (size_t)n * sizeof *f->order), "rest", floats(rest, 3L * n),
 	    "terms", floats(of, (long)posed * TERMS), "ring", base64_json(f->ring, (size_t)f->n_ring * sizeof *f->ring), "between", between(f),

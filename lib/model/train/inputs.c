@@ -84,6 +84,7 @@ bool train_inputs(struct train *t, struct err *err)
 	memcpy(t->g, clip->g, (size_t)clip->n * (size_t)n * sizeof *t->g);
 	for (int i = 0; i < n; i++)
 		range_of(t, i);
+	known_of(&t->model->known, clip->n, clip->g, n, t->conf->beyond);
 	for (int i = 0; i < SKIN_EYE_INPUTS; i++) {
 		long have = measured(t, i);
 		bool enough = have > 0 && (double)have >= t->conf->min_seen * (double)clip->n;

@@ -38,6 +38,7 @@ struct train_conf {
 	double min_seen;              // share of frames in which a coordinate must be measured
 	double gap_s;                 // gaps in the gaze up to this long (blinks) are interpolated
 	double aperture_share;        // share of the frames that define closed and open
+	double beyond;                // lids follow the gaze so far beyond the clip's, shares of its half width (known.h)
 	int rbf_functions;            // largest network tried
 	int memory_mb;                // limit of the scatter matrix and the sample, MiB
 	bool brief;                   // no radial basis functions: the linear curves alone

@@ -12,6 +12,7 @@ struct rig_motion {
 	int n_inputs;
 	double *W;                            // [RIG_COMPONENTS][n_inputs + 1]
 	double rest_e[RIG_COMPONENTS], rest_aperture[4], baseline[4][3];
+	struct known known;
 	int n;                                // tracked rows of the subject mesh
 	int *vertex;
 	double (*basis)[RIG_BASIS];

@@ -9,7 +9,7 @@
 
 const struct train_conf train_defaults = {
 	.lid_components = 13, .skin_components = 4, .curve_components = 20, .sample = 2048, .block_s = 1, .guard_s = 0.1,
-	.folds = 5, .huber = 5, .trim = 40, .min_seen = 0.2, .gap_s = 0.5, .aperture_share = 0.005, .memory_mb = 1024,
+	.folds = 5, .huber = 5, .trim = 40, .min_seen = 0.2, .gap_s = 0.5, .aperture_share = 0.005, .beyond = 0.3, .memory_mb = 1024,
 };
 
 static double *numbers(size_t n)

@@ -27,6 +27,7 @@ static struct skin_model random_model(uint64_t seed)
 	fill(m.skin_reach, m.n_inputs * (m.n_inputs + 1), &rng);
 	fill(m.rest_e, m.n_skin_pc, &rng);
 	fill(&m.baseline[0][0][0], 12, &rng);
+	known_of(&m.known, 3, m.skin_reach, m.n_inputs, 0.25);
 	for (int i = 0; i < m.n_vertices; i++)
 		m.vertices[i] = 3 * i;
 	for (int i = 3; i < SKIN_EYE_INPUTS; i += i == 4 ? 4 : 1) {
@@ -94,11 +95,17 @@ static void baseline(void **state)
 {
 	(void)state;
 	struct skin_model m = random_model(3);
-	double a[2], b[2];
-	skin_model_baseline(a, &m, 1, 1, 10, -5);
-	skin_model_baseline(b, &m, 1, 0.5, 10, -5);
-	NEAR(a[0], 10 * m.baseline[1][0][0] - 5 * m.baseline[1][0][1] + m.baseline[1][0][2], 1e-14);
+	double a[2], b[2], far[2], gaze[3] = { 50, -40, 0 };
+	known_of(&m.known, 3, (double[33]){ [5] = -20, [6] = -10, [16] = 20, [17] = -10, [27] = 0, [28] = 10 }, 11, 0.25);
+	skin_model_baseline(a, &m, 1, 1, 3, -5);
+	skin_model_baseline(b, &m, 1, 0.5, 3, -5);
+	NEAR(a[0], 3 * m.baseline[1][0][0] - 5 * m.baseline[1][0][1] + m.baseline[1][0][2], 1e-14);
 	NEAR(b[1], a[1] / 2, 1e-14);
+	skin_model_baseline(far, &m, 1, 1, gaze[0], gaze[1]);
+	known_hold(gaze, &m.known, 1);
+	skin_model_baseline(b, &m, 1, 1, 20, -10);
+	NEAR(far[0], gaze[0] * m.baseline[1][0][0] + gaze[1] * m.baseline[1][0][1] + m.baseline[1][0][2], 1e-14);
+	assert_true(hypot(gaze[0] - 20, gaze[1] + 10) < 0.25 * 20 && fabs(far[0] - b[0]) > 1e-3);
 	skin_model_free(&m);
 }
 
@@ -118,6 +125,8 @@ static void files(void **state)
 	assert_int_equal(r.vertices[6], 18);
 	NEAR(r.baseline[1][1][2], m.baseline[1][1][2], 1e-11);  // JSON keeps 12 digits
 	NEAR(r.rest_e[3], m.rest_e[3], 1e-11);
+	NEAR(r.known.corner[1][5][1], m.known.corner[1][5][1], 1e-11);
+	assert_true(r.known.beyond == 0.25);
 	assert_true(r.camera.width == 1280 && r.camera.focal_px == 6000 && r.camera.cam_from_head[3][3] == 1);
 	skin_model_free(&r);
 	// A matrix of another model beside it.

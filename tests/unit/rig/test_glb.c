@@ -127,6 +127,36 @@ static void targets_give_the_frames_back(void **state)
 	glb_bake_free(&b);
 }
 
+/* A clip that hardly looks anywhere: the named gazes turn lids no further than it did, however steep its slopes; what was made of the same
+ * slopes without end closes the eye. */
+static void lids_go_no_further_than_they_are_known(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b[3];
+	struct err err = { 0 };
+	const double g[2][10] = { { -4, -3, 0, 0, 0, -4, -3 }, { 4, 3, 0, 0, 0, 4, 3 } };
+	const struct known was = m->rig.known;
+	double most[3] = { 0 }, *slope = m->rig.W;
+	for (int eye = 0; eye < 2; eye++)
+		slope[5 * eye] += 5;  // px a degree
+	for (int k = 0; k < 3; k++) {
+		if (k)
+			known_of(&m->rig.known, 2, g[0], 10, k == 1 ? 0 : 0.3);
+		assert_true(glb_bake_make(&b[k], &m->rig, &m->drive, &conf, &err));
+		for (int pose = 2; pose < 10; pose++)
+			for (int i = 0; i < b[k].n; i++) {
+				const float *d = b[k].pose + (long)(pose * b[k].n + i) * 3;
+				most[k] = fmax(most[k], sqrt((double)d[0] * d[0] + (double)d[1] * d[1] + (double)d[2] * d[2]));
+			}
+		glb_bake_free(&b[k]);
+	}
+	print_message("furthest of the named gazes: %.2f mm, held %.2f, and a little further %.2f\n", most[0], most[1], most[2]);
+	assert_true(most[1] < 0.35 * most[0] && most[2] > most[1] && most[2] < 1.5 * most[1]);
+	m->rig.known = was;
+	for (int eye = 0; eye < 2; eye++)
+		slope[5 * eye] -= 5;
+}
+
 static void more_targets_are_closer(void **state)
 {
 	struct made *m = *state;
@@ -316,7 +346,8 @@ static void driving_file(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(more_targets_are_closer),
+		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(lids_go_no_further_than_they_are_known),
+		cmocka_unit_test(more_targets_are_closer),
 		cmocka_unit_test(container),                        cmocka_unit_test(khronos_validator_finds_nothing),
 		cmocka_unit_test(eyes_in_their_sockets),            cmocka_unit_test(no_eye_no_file),
 		cmocka_unit_test(driving_file),
