@@ -44,7 +44,12 @@ struct skin_conf {
 	OPT_REAL("tear_mm", &(c)->portrait.tear_mm, 0, 3, "mm", "height of the tear line along the lids; 0: none"), \
 	OPT_REALS("tear_absorb", (c)->portrait.tear_absorb, 3, 0, 10, "1/mm", "what tear fluid absorbs of red, green and blue"), \
 	OPT_REAL("caruncle_wet", &(c)->portrait.caruncle_wet, 0, 1, "", "how moist and red the inner corners of the eyes are"), \
-	OPT_REAL("lash_mm", &(c)->portrait.lash_mm, 0, 30, "mm", "length of the upper lashes on an eye of 12 mm; 0: none"), \
+	OPT_REAL("lash_mm", &(c)->portrait.hair.lash_mm, 0, 30, "mm", "length of the longest lashes on an eye of 12 mm; 0: none"), \
+	OPT_INT("lashes", &(c)->portrait.hair.lashes, 0, 1000, "", "on an upper lid; the lower has three fifths"), \
+	OPT_REAL("lid_margin_mm", &(c)->portrait.hair.margin_mm, 0, 5, "mm", "breadth of a lid's margin, on whose outer edge lashes grow"), \
+	OPT_REAL("brow_mm", &(c)->portrait.hair.brow_mm, 0, 30, "mm", "length of the longest hairs of brows on an eye of 12 mm; 0: none"), \
+	OPT_INT("brow_hairs", &(c)->portrait.hair.brow_hairs, 0, 5000, "", "of one brow"), \
+	OPT_REALS("hair_rgb", (c)->portrait.hair_rgb, 3, 0, 1, "", "colour of lashes and brows"), \
 	OPT_INT("skin_texture_px", &(c)->texture_px, 16, 16384, "px", "longest side at which a character's own textures are drawn"), \
 	OPT_REALS("iris_rgb", (c)->iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
 	OPT_INT("glb_targets", &(c)->glb.targets, 1, 200, "", "morph targets of the animation, at most"), \

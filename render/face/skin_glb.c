@@ -54,6 +54,8 @@ bool skin_glb(struct skin_job *job, struct skin_target *t, const char *csv, stru
 	if (!skin_open(job, t, err) || !eyes_glb(job, err) || !drive_load(&drive, &job->model, stage_path(job->stage, "%s", csv), err))
 		return false;
 	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
+	memcpy(conf.hair_rgb, job->conf->portrait.hair_rgb, sizeof conf.hair_rgb);
+	conf.hairs = portrait_hairs(t->portrait);
 	struct glb_eye eye[2];
 	double over = -INFINITY;
 	for (int s = 0; s < 2; s++) {

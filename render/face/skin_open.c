@@ -81,6 +81,15 @@ static bool dress(struct skin_job *job, struct skin_target *t, struct err *err)
 	return true;
 }
 
+/* Whether a texture of its own colours the character: brows are painted there. */
+static bool coloured(const struct skin_target *t)
+{
+	for (int i = 0; t->look_path && i < t->look.n_materials; i++)
+		if (t->look.material[i].map[LOOK_COLOUR] >= 0)
+			return true;
+	return false;
+}
+
 bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	if (t->portrait)
@@ -94,6 +103,8 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 		return false;
 	struct portrait_conf conf = job->conf->portrait;
 	conf.dress = t->dress;
+	if (coloured(t))
+		conf.hair.brow_mm = 0;
 	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &conf);
 	portrait_wear(t->portrait, &job->wrinkles, job->model.n_au, job->model.au_names);
 	return true;

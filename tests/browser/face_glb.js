@@ -29,12 +29,13 @@ const poses = {
 			for (const side of ["left", "right"])
 				for (const aside of [-30, 0, 30]) {
 					const n = await b.value(`seen(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
-					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing}`);
-					if (aside === 0) {
-						await b.value(`show(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", 0)`, 120000);
-						await b.screenshot(path.join(out, `face_${name}_${side}.png`));
-					}
+					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair}`);
 				}
+		for (const [name, [weights, turn]] of Object.entries(poses))
+			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]]) {
+				await b.value(`show(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
+				await b.screenshot(path.join(out, `face_${name}_${side}${aside || ""}.png`));
+			}
 		for (const problem of b.problems)
 			if (!/GPU stall|ReadPixels/.test(problem))
 				console.log(`fail three.js says: ${problem}`);

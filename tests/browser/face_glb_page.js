@@ -17,11 +17,15 @@ function bytes(url) {
 }
 
 let renderer, scene, face, mixer, clip;
-const eyes = {}, own = new Map(), flat = new Map();
+const hair = /^(lashes|brows)$/, eyes = {}, own = new Map(), flat = new Map();
 
-/* A surface of one colour, lit by nothing: what is seen there. Red skin, blue where it is seen from behind, green eye. */
+/* A surface of one colour, lit by nothing: what is seen there. Red skin, blue where it is seen from behind, green eye, yellow hair. */
 function mark(mesh, eye) {
 	own.set(mesh, mesh.material);
+	if (hair.test(mesh.name)) {
+		flat.set(mesh, new THREE.MeshBasicMaterial({ color: new THREE.Color(1, 1, 0), side: THREE.DoubleSide, toneMapped: false }));
+		return;
+	}
 	const paint = (rgb, side) => new THREE.MeshBasicMaterial({ color: new THREE.Color(...rgb), side, toneMapped: false });
 	flat.set(mesh, paint(eye ? [0, 1, 0] : [1, 0, 0], eye ? THREE.DoubleSide : THREE.FrontSide));
 	if (eye)
@@ -35,7 +39,7 @@ function mark(mesh, eye) {
 }
 
 window.open_face = async file => {
-	renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
+	renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 	renderer.setSize(SIZE, SIZE);
 	document.body.append(renderer.domElement);
 	scene = new THREE.Scene();
@@ -80,19 +84,25 @@ function before(side, aside) {
 	return camera;
 }
 
-function dress(marked) {
+function dress(marked, haired = true) {
 	face.traverse(o => {
 		if (o.userData.behind)
 			o.visible = marked;
-		else if (o.isMesh)
+		else if (o.isMesh) {
 			o.material = (marked ? flat : own).get(o);
+			o.visible = haired || !hair.test(o.name);
+		}
 	});
 }
 
-/* How many pixels of the eye's picture show the eye, skin, skin from behind, and nothing at all. */
+/* How many pixels of the eye's picture show the eye, skin, skin from behind, and nothing at all: without hairs; and how many show hairs. */
 function counted(side, aside) {
+	return { ...pixels(side, aside, false), hair: pixels(side, aside, true).hair };
+}
+
+function pixels(side, aside, haired) {
 	const target = new THREE.WebGLRenderTarget(SIZE, SIZE, { depthBuffer: true }), px = new Uint8Array(4 * SIZE * SIZE);
-	dress(true);
+	dress(true, haired);
 	const environment = scene.environment;
 	scene.environment = null;
 	renderer.setRenderTarget(target);
@@ -104,9 +114,9 @@ function counted(side, aside) {
 	target.dispose();
 	scene.environment = environment;
 	dress(false);
-	const n = { eye: 0, skin: 0, behind: 0, nothing: 0 };
+	const n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0 };
 	for (let i = 0; i < px.length; i += 4)
-		n[px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing"]++;
+		n[px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing"]++;
 	return n;
 }
 
@@ -126,8 +136,9 @@ window.seen_at = (time, side, aside) => {
 	return n;
 };
 
-window.show = (weights, turn, side, aside) => {
+window.show = (weights, turn, side, aside, marked = false) => {
 	pose(weights, turn);
+	dress(marked, !marked);
 	renderer.setClearColor(0x606060, 1);
 	renderer.render(scene, before(side, aside));
 };

@@ -1,11 +1,12 @@
-/* lash: a portrait's lashes: hairs that are rooted on the lids' margins and move with them. */
+/* lash: a portrait's lashes and brows (rig/hair/hair.h), as ribbons. */
 #ifndef DRAW_FACE_LASH_H
 #define DRAW_FACE_LASH_H
 #include "draw/face/portrait.h"
 
-/* make: plants the hairs at rest, appends their triangles to the mesh. move: places their vertices for the pose, as ribbons that face the
+/* make: grows the hairs at rest, appends their triangles to the mesh. move: places their vertices for the pose, as ribbons that face the
  * view's camera. colour: of one of their faces. */
 void portrait_lashes_make(struct portrait *portrait);
+void portrait_lashes_free(struct portrait *portrait);
 void portrait_lashes_move(struct portrait *portrait, const struct portrait_view *view);
 void portrait_lash_colour(float rgb[3], const struct portrait *portrait, int face);
 

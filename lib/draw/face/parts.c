@@ -86,6 +86,11 @@ struct portrait *portrait_new(const struct rig *rig, const struct scene *const e
 	return p;
 }
 
+const struct hairs *portrait_hairs(const struct portrait *p)
+{
+	return &p->hairs;
+}
+
 void portrait_free(struct portrait *p)
 {
 	if (!p)
@@ -94,7 +99,7 @@ void portrait_free(struct portrait *p)
 	ray_scene_free(p->shadow);
 	deform_free(p->deform);
 	deform_near_free(&p->lids);
-	free(p->lash);
+	portrait_lashes_free(p);
 	free(p->wrinkle_input);
 	free(p->wrinkle_strength);
 	free(p->lit);

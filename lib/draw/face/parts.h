@@ -22,8 +22,10 @@ struct portrait {
 	int *near_start, *near;     // neighbours of the rig's vertices
 	float *spread;              // diffusion weight of each neighbour, for red
 	double target_from_globe[2][3][3];
-	struct portrait_lash *lash; // their triangles are the mesh's last, from first_lash; their vertices from lash_vertex
-	int n_lashes, first_lash, lash_vertex;
+	struct hairs hairs;         // their triangles are the mesh's last, from first_lash; their vertices, two a point, from lash_vertex
+	int first_lash, lash_vertex;
+	int *hair_of, *hair_piece;  // [hairs.n_points] the hair of a point; the first point of each four triangles
+	float *hair_cover;          // [hairs.n_points] of a hair as thick as it is, by one as thick as it is drawn
 	const struct wrinkle_maps *wrinkles;
 	int *wrinkle_input;         // [wrinkles.n] control that each map follows; -1: none
 	float *wrinkle_strength;    // in this pose

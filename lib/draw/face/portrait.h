@@ -9,6 +9,7 @@
 #define DRAW_FACE_PORTRAIT_H
 #include "draw/eye/scene.h"
 #include "draw/face/dress.h"
+#include "rig/hair/hair.h"
 #include "rig/deform/deform.h"
 #include "draw/face/wrinkle_map.h"
 
@@ -23,7 +24,8 @@ struct portrait_conf {
 	double tear_mm;        // height of the tear line along the lids; 0: none, and no dark under their edges
 	double tear_absorb[3]; // absorption of tear fluid, 1/mm
 	double caruncle_wet;   // 0..1: how moist and red the inner corners are
-	double lash_mm;        // length of the upper lashes; 0: none
+	struct hair_conf hair; // lashes and brows
+	double hair_rgb[3];    // their albedo
 	const struct dress *dress;  // the character's own textures; null: skin of one colour. Outlives the portrait
 };
 
@@ -41,6 +43,9 @@ struct portrait;
 struct portrait *portrait_new(const struct rig *rig, const struct scene *const eyes[2], const struct envmap *env,
                               const struct portrait_conf *conf);
 void portrait_free(struct portrait *portrait);
+
+/* Its lashes and brows. */
+const struct hairs *portrait_hairs(const struct portrait *portrait);
 
 /* Gives it the wrinkles of expressions. Each map follows the action unit of its name (au_names [n_au]) in strength; maps of other
  * names do nothing. maps must outlive the portrait. */

@@ -92,13 +92,12 @@ static void pose_all(struct web_face *f)
 static void put_colours(json_t *out, const struct web_face *f)
 {
 	const struct portrait_mesh *m = &f->portrait->mesh;
-	static const float hair[3] = { 0.022f, 0.014f, 0.010f };
 	int n = f->n_shown, base = f->level[0].end, posed = f->level[0].posed, poses = POSES + f->n_au;
 	uint8_t *skin = mem_array((size_t)n * 4 + 1, 1), *still = mem_array((size_t)base * 3 + 1, 1), *light = mem_array((size_t)posed * 3 * (size_t)poses + 1, 1);
 	for (int i = 0; i < n; i++) {
 		int at = f->order[i];
 		for (int c = 0; c < 3; c++)
-			skin[4 * i + c] = byte(255 * sqrt(fmax(at < m->n ? m->albedo[at][c] : hair[c], 0)));
+			skin[4 * i + c] = byte(255 * sqrt(fmax(at < m->n ? (double)m->albedo[at][c] : f->portrait->conf.hair_rgb[c], 0)));
 		skin[4 * i + 3] = at < m->n ? byte(127 * m->wet[at]) : 255;
 	}
 	for (int i = 0; i < base; i++) {

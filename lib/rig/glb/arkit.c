@@ -13,6 +13,10 @@ const char *const arkit_names[ARKIT_SHAPES] = {
 	"cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight", "tongueOut",
 };
 
+const char *const glb_pose_names[GLB_POSES] = { "eyeBlinkLeft", "eyeBlinkRight", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookDownLeft",
+	                                            "eyeLookDownRight", "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft",
+	                                            "eyeLookOutRight", "eyeWideLeft", "eyeWideRight" };
+
 /* Letters and digits alone, small; what stands before the last dot is left out, a side of one letter written in full. */
 static void plain(char out[64], const char *name)
 {

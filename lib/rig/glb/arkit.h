@@ -6,6 +6,10 @@
 enum { ARKIT_SHAPES = 52 };
 extern const char *const arkit_names[ARKIT_SHAPES];
 
+/* Those of them that gaze and lids give, in the order of a bake's poses. */
+enum { GLB_POSES = 12 };
+extern const char *const glb_pose_names[GLB_POSES];
+
 /* Whether a name means one of them, written in whatever way: eyeBlinkLeft, eyeBlink_L, "blendShape1.eye_blink_left". */
 bool arkit_means(const char *name, const char *arkit);
 

@@ -8,40 +8,10 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "rig/deform/clear.h"
-
-const char *const glb_pose_names[GLB_POSES] = { "eyeBlinkLeft", "eyeBlinkRight", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookDownLeft",
-	                                            "eyeLookDownRight", "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft",
-	                                            "eyeLookOutRight", "eyeWideLeft", "eyeWideRight" };
+#include "rig/glb/poser.h"
 
 /* Most frames that the decomposition is computed from; the others are projected onto it. */
 enum { LEARN = 320 };
-
-struct poser {
-	const struct rig *rig;
-	struct deform *deform;
-	float (*x)[3], (*n)[3];
-	struct deform_near near;
-};
-
-static void pose(struct poser *p, const double *controls, double turn[2][3][3])
-{
-	double e[RIG_COMPONENTS];
-	rig_components(e, p->rig, controls);
-	rig_globes_turned(turn, p->rig, controls);
-	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->x, p->n);
-	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])turn);
-}
-
-/* Displacements from rest of the moving vertices, [n][3]. */
-static void displacement(float *x, float *n, const struct poser *p, const struct glb_bake *b)
-{
-	for (int i = 0; i < b->n; i++)
-		for (int c = 0; c < 3; c++) {
-			x[3 * i + c] = p->x[b->vertex[i]][c] - p->rig->rest[b->vertex[i]][c];
-			n[3 * i + c] = p->n[b->vertex[i]][c] - p->rig->normal[b->vertex[i]][c];
-		}
-}
 
 /* From rest to now, in the rig's axes: target_from_globe head_from_target. */
 static void quaternion(float q[4], const double target_from_globe[3][3], const double head_from_target[3][3])
@@ -70,7 +40,7 @@ static void find_moving(struct glb_bake *b, const struct rig *rig)
 /* Displacements of the frames that the decomposition is computed from. */
 struct learnt {
 	int n, *frame;
-	float *x, *nrm;   // [n][3 moving]
+	float *x, *nrm, *hair;   // [n][3 moving], [n][3 n_hair]
 };
 
 static void evaluate(struct learnt *l, struct poser *p, struct glb_bake *b, const struct drive *drive)
@@ -80,15 +50,17 @@ static void evaluate(struct learnt *l, struct poser *p, struct glb_bake *b, cons
 	l->frame = mem_new((size_t)l->n + 1, sizeof *l->frame);
 	l->x = mem_array((size_t)l->n * row + 1, sizeof *l->x);
 	l->nrm = mem_array((size_t)l->n * row + 1, sizeof *l->nrm);
+	l->hair = mem_array(3 * (size_t)l->n * (size_t)p->n_hair + 1, sizeof *l->hair);
 	for (int i = 0; i < 2; i++)
 		b->turn[i] = mem_new(4 * (size_t)drive->n + 1, sizeof(float));
 	for (int f = 0, k = 0; f < drive->n; f++) {
 		double turn[2][3][3];
-		pose(p, drive_at(drive, f), turn);
+		poser_pose(p, drive_at(drive, f), turn);
 		for (int s = 0; s < 2; s++)
 			quaternion(b->turn[s] + 4 * f, (const double(*)[3])turn[s], p->rig->head_from_target);
 		if (k < l->n && f == (int)((long)k * drive->n / l->n)) {
-			displacement(l->x + (size_t)k * row, l->nrm + (size_t)k * row, p, b);
+			poser_skin(l->x + (size_t)k * row, l->nrm + (size_t)k * row, p, b->n, b->vertex);
+			poser_hair(l->hair + 3 * (size_t)k * (size_t)p->n_hair, p);
 			l->frame[k++] = f;
 		}
 	}
@@ -160,8 +132,8 @@ static void weigh(struct glb_bake *b, struct poser *p, const struct drive *drive
 	b->weight = mem_new((size_t)drive->n * (size_t)b->n_targets + 1, sizeof *b->weight);
 	for (int f = 0; f < drive->n; f++) {
 		double turn[2][3][3];
-		pose(p, drive_at(drive, f), turn);
-		displacement(x, n, p, b);
+		poser_pose(p, drive_at(drive, f), turn);
+		poser_skin(x, n, p, b->n, b->vertex);
 		for (int k = 0; k < b->n_targets; k++) {
 			double w = 0;
 			for (size_t i = 0; i < row; i++)
@@ -183,6 +155,8 @@ static void weigh(struct glb_bake *b, struct poser *p, const struct drive *drive
 			b->target[(size_t)k * row + i] *= most;
 			b->lean[(size_t)k * row + i] *= most;
 		}
+		for (size_t i = 0; i < 3 * (size_t)b->n_hair; i++)
+			b->hair_target[3 * (size_t)k * (size_t)b->n_hair + i] *= most;
 	}
 	free(x);
 	free(n);
@@ -196,14 +170,16 @@ static void take_poses(struct glb_bake *b, struct poser *p)
 	double *rest = mem_new((size_t)p->rig->n_inputs + 1, sizeof *rest), *c = mem_new((size_t)p->rig->n_inputs + 1, sizeof *c);
 	b->pose = mem_new(GLB_POSES * row + 1, sizeof *b->pose);
 	b->pose_lean = mem_new(GLB_POSES * row + 1, sizeof *b->pose_lean);
+	b->hair_pose = mem_new(3 * GLB_POSES * (size_t)b->n_hair + 1, sizeof *b->hair_pose);
 	for (int k = 0; k < GLB_POSES; k++) {
 		int eye = k % 2;
 		double turn[2][3][3];
 		drive_look(rest, p->rig, 0, 0, 1);
 		drive_look(c, p->rig, look[k][0], look[k][1], k < 2 ? 0 : k >= 10 ? 1.3 : 1);
 		memcpy(rest + 5 * eye, c + 5 * eye, 5 * sizeof *c);
-		pose(p, rest, turn);
-		displacement(b->pose + (size_t)k * row, b->pose_lean + (size_t)k * row, p, b);
+		poser_pose(p, rest, turn);
+		poser_skin(b->pose + (size_t)k * row, b->pose_lean + (size_t)k * row, p, b->n, b->vertex);
+		poser_hair(b->hair_pose + 3 * (size_t)k * (size_t)b->n_hair, p);
 	}
 	free(rest);
 	free(c);
@@ -211,17 +187,16 @@ static void take_poses(struct glb_bake *b, struct poser *p)
 
 bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive *drive, const struct glb_conf *conf, struct err *err)
 {
-	*b = (struct glb_bake){ 0 };
-	struct poser p = { rig, deform_new(rig), mem_new((size_t)rig->n + 1, sizeof *p.x), mem_new((size_t)rig->n + 1, sizeof *p.n),
-		               deform_near_of(rig) };
+	struct poser p = poser_new(rig, conf->hairs);
 	struct learnt l;
-	deform_rest(p.deform, p.x, p.n);
+	*b = (struct glb_bake){ .n_hair = p.n_hair };
 	find_moving(b, rig);
 	evaluate(&l, &p, b, drive);
-	size_t row = 3 * (size_t)b->n, most = (size_t)conf->targets;
+	size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair, most = (size_t)conf->targets;
 	double *gram = mem_new((size_t)l.n * (size_t)l.n + 1, sizeof *gram), *value = mem_new((size_t)l.n + 1, sizeof *value);
 	b->target = mem_new(most * row + 1, sizeof *b->target);
 	b->lean = mem_new(most * row + 1, sizeof *b->lean);
+	b->hair_target = mem_new(most * hair + 1, sizeof *b->hair_target);
 	bool ok = decompose(gram, value, &l, row, err);
 	float *left = mem_array((size_t)l.n * row + 1, sizeof *left);
 	memcpy(left, l.x, (size_t)l.n * row * sizeof *left);
@@ -231,6 +206,7 @@ bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive
 		int k = b->n_targets++;
 		component(b->target + (size_t)k * row, l.x, gram, value[l.n - 1 - k], &l, row, k);
 		component(b->lean + (size_t)k * row, l.nrm, gram, value[l.n - 1 - k], &l, row, k);
+		component(b->hair_target + (size_t)k * hair, l.hair, gram, value[l.n - 1 - k], &l, hair, k);
 		worst = worst_of(left, &l, b);
 	}
 	free(left);
@@ -239,14 +215,12 @@ bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive
 	free(l.frame);
 	free(l.x);
 	free(l.nrm);
+	free(l.hair);
 	if (ok)
 		weigh(b, &p, drive);
 	if (ok && conf->poses)
 		take_poses(b, &p);
-	deform_free(p.deform);
-	free(p.x);
-	free(p.n);
-	deform_near_free(&p.near);
+	poser_free(&p);
 	return ok;
 }
 
@@ -258,6 +232,8 @@ void glb_bake_free(struct glb_bake *b)
 	free(b->weight);
 	free(b->pose);
 	free(b->pose_lean);
+	free(b->hair_target);
+	free(b->hair_pose);
 	free(b->turn[0]);
 	free(b->turn[1]);
 	*b = (struct glb_bake){ 0 };

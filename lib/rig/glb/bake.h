@@ -2,16 +2,16 @@
 #ifndef RIG_GLB_BAKE_H
 #define RIG_GLB_BAKE_H
 #include "rig/deform/deform.h"
+#include "rig/glb/arkit.h"
 #include "rig/glb/glb.h"
-
-enum { GLB_POSES = 12 };
-extern const char *const glb_pose_names[GLB_POSES];
 
 /* Owned; glb_bake_free. */
 struct glb_bake {
 	int n, *vertex;            // vertices that move, rows of the rig; skin alone
 	int n_frames, n_targets;
 	float *target, *lean;      // [n_targets][n][3] displacements of positions (mm) and of normals at weight 1
+	int n_hair;                // vertices of conf->hairs (strands.h); 0 without
+	float *hair_target, *hair_pose;  // [n_targets][n_hair][3], [GLB_POSES][n_hair][3] their displacements, mm
 	float *weight;             // [n_frames][n_targets], within -1 .. 1
 	float *pose, *pose_lean;   // [GLB_POSES][n][3] the same of the named poses, or null
 	float *turn[2];            // [n_frames][4] quaternions x y z w of the eyeballs: from rest, in the rig's axes

@@ -8,6 +8,7 @@
 #include "base/version.h"
 #include "rig/glb/graft.h"
 #include "rig/glb/skin.h"
+#include "rig/glb/strands.h"
 
 static const double metres = 1e-3;
 static const char *const eye_names[2] = { "eye_left", "eye_right" };
@@ -169,6 +170,7 @@ bool glb_write(const char *path, struct glb_report *report, const struct rig *ri
 	if (ok) {
 		*report = (struct glb_report){ bake.n_targets, bake.n, bake.worst, 0 };
 		glb_skin_make(&skin, &g, rig, &bake, conf, look);
+		strands_put(&skin, &g, rig, &bake, conf->hairs, conf->hair_rgb);
 		const struct glb_arrays to = { skin.meshes, skin.materials, skin.images, skin.textures, samplers, used };
 		ok = graft_eyes(in, &g, &to, eye, err);
 	}

@@ -10,12 +10,15 @@
 #define RIG_GLB_GLB_H
 #include "character/look.h"
 #include "rig/drive.h"
+#include "rig/hair/hair.h"
 
 struct glb_conf {
 	int targets;           // at most, of the animation
 	double tolerance;      // mm, worst vertex of all frames
 	bool poses;            // include the named targets
 	double skin_rgb[3];    // linear
+	const struct hairs *hairs;  // lashes and brows, meshes of their own that follow the same targets; null: none
+	double hair_rgb[3];
 };
 
 /* A whole eye as the bytes of a binary glTF: metres, its origin in the centre of the scleral sphere, z out through the pupil, y up.
@@ -28,7 +31,7 @@ struct glb_eye {
 
 struct glb_report {
 	int targets, moving;   // of the animation; vertices that move
-	double worst;          // largest error of the decomposition, mm
+	double worst;          // largest error of the decomposition, mm; of skin
 	long bytes;            // of the file
 };
 

@@ -392,7 +392,7 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
 	struct maker m = { g, rig, bake, look, mem_array((size_t)rig->n + 1, sizeof *m.moving), mesh_normals(&mesh) };
 	const int most = look ? look->n_parts : 1;
 	struct part *parts = mem_new((size_t)most + 1, sizeof *parts);
-	*skin = (struct glb_skin){ .meshes = json_array(), .ours = mem_new((size_t)most + 1, sizeof(int)), .all = mem_new((size_t)most + 1, sizeof(int)) };
+	*skin = (struct glb_skin){ .meshes = json_array(), .ours = mem_new((size_t)most + 3, sizeof(int)), .all = mem_new((size_t)most + 3, sizeof(int)) };
 	for (int i = 0; i < rig->n; i++)
 		m.moving[i] = -1;
 	for (int i = 0; i < bake->n; i++)

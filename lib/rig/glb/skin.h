@@ -12,7 +12,7 @@ struct glb_skin {
 	int *ours, *all;   // [n] whether the animation's targets are its first ones; how many targets it has
 };
 
-/* look: null: one mesh of one colour. */
+/* look: null: one mesh of one colour. There is room for two more meshes. */
 void glb_skin_make(struct glb_skin *skin, struct glb_buffer *buffer, const struct rig *rig, const struct glb_bake *bake,
                    const struct glb_conf *conf, const struct look *look);
 void glb_skin_free(struct glb_skin *skin);

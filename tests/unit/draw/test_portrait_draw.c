@@ -24,7 +24,7 @@ static int teardown(void **state)
 static struct image draw(struct portrayed *m, double lash_mm, int samples, int finer, unsigned char *kind)
 {
 	const struct scene *eyes[2] = { &m->eye, &m->eye };
-	struct portrait_conf conf = { .lights = 64, .subdivide = 1, .samples = samples, .eye_samples = 1, .skin_rgb = { 0.5, 0.4, 0.3 }, .scatter_mm = 0.2, .lash_mm = lash_mm };
+	struct portrait_conf conf = { .lights = 64, .subdivide = 1, .samples = samples, .eye_samples = 1, .skin_rgb = { 0.5, 0.4, 0.3 }, .scatter_mm = 0.2, .hair = { .lash_mm = lash_mm, .lashes = 95, .margin_mm = 1.1 }, .hair_rgb = { 0.022, 0.014, 0.010 } };
 	struct portrait *p = portrait_new(&m->rig, eyes, &m->env, &conf);
 	double c[12];
 	drive_look(c, &m->rig, 0, 0, 1);

@@ -3,7 +3,9 @@
 #include "export/eye_glb.h"
 #include "image/picture.h"
 #include "math/rng.h"
+#include "math/vec.h"
 #include "rig/glb/bake.h"
+#include "rig/glb/strands.h"
 #include "tests/lib/gltf.h"
 #include "tests/lib/scenes/face.h"
 #include "tests/lib/scenes/plain_scene.h"
@@ -18,6 +20,7 @@ struct made {
 	struct face face;
 	struct rig rig;
 	struct drive drive;
+	struct hairs hairs;
 	char *eye[2];  // two eyes as files: the second with a wider limbus
 	size_t size[2];
 	double apex[2];  // distance of the corneal apex from the centre, mm
@@ -54,19 +57,23 @@ static bool eye_make(struct made *m, int k, struct err *err)
 }
 
 /* A gaze that wanders, with a blink in the middle. */
+static struct glb_conf conf = { .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 } };
+
 static int setup(void **state)
 {
 	struct made *m = calloc(1, sizeof *m);
 	struct err err = { 0 };
-	struct rig_conf conf = face_conf();
+	struct rig_conf rig = face_conf();
 	face_make(&m->face, false);
-	conf.map_step = 4;
-	bool ok = face_rig(&m->rig, 0, &m->face, &conf, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
+	rig.map_step = 4;
+	bool ok = face_rig(&m->rig, 0, &m->face, &rig, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
 	m->drive = (struct drive){ FRAMES, 12, calloc(FRAMES, sizeof(double)), calloc(12 * FRAMES, sizeof(double)), 0 };
 	for (int f = 0; f < FRAMES; f++) {
 		m->drive.time[f] = f / 30.0;
 		drive_look(drive_at(&m->drive, f), &m->rig, 15 * sin(f / 7.0), 10 * cos(f / 11.0), f > 25 && f < 32 ? 0 : 1);
 	}
+	hairs_grow(&m->hairs, &m->rig, 0, &(struct hair_conf){ 9, 8, 40, 60, 1.1 });
+	conf.hairs = &m->hairs;
 	*state = m;
 	return ok ? 0 : 1;
 }
@@ -74,6 +81,7 @@ static int setup(void **state)
 static int teardown(void **state)
 {
 	struct made *m = *state;
+	hairs_free(&m->hairs);
 	rig_free(&m->rig);
 	drive_free(&m->drive);
 	face_free(&m->face);
@@ -82,8 +90,6 @@ static int teardown(void **state)
 	free(m);
 	return 0;
 }
-
-static const struct glb_conf conf = { .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 } };
 
 /* Rest plus weighted targets is the evaluated frame, within what is reported; the quaternions turn the eyeballs likewise. */
 static void targets_give_the_frames_back(void **state)
@@ -123,6 +129,48 @@ static void targets_give_the_frames_back(void **state)
 	NEAR(worst, b.worst, 1e-3);
 	assert_true(b.worst <= conf.tolerance + 1e-3 || b.n_targets == conf.targets);
 	free(x);
+	deform_free(deform);
+	glb_bake_free(&b);
+}
+
+/* Lashes and brows go where their roots go: with the animation's weights, and with a named pose. */
+static void hairs_follow(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b;
+	struct err err = { 0 };
+	assert_true(glb_bake_make(&b, &m->rig, &m->drive, &conf, &err));
+	const int n = strands_count(&m->hairs);
+	assert_int_equal(b.n_hair, n);
+	struct deform *deform = deform_new(&m->rig);
+	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x), (*rest)[3] = calloc((size_t)n, sizeof *rest), (*now)[3] = calloc((size_t)n, sizeof *now);
+	strands_place(rest, 0, &m->hairs, &m->rig, (const float(*)[3])m->rig.rest);
+	deform_rest(deform, x, 0);
+	double worst = 0, most = 0, blink = 0;
+	for (int f = 0; f < FRAMES; f++) {
+		double e[RIG_COMPONENTS], turn[2][3][3], *c = drive_at(&m->drive, f);
+		rig_components(e, &m->rig, c);
+		rig_globes_turned(turn, &m->rig, c);
+		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
+		strands_place(now, 0, &m->hairs, &m->rig, (const float(*)[3])x);
+		for (int i = 0; i < n; i++) {
+			double d[3], far[3];
+			for (int k = 0; k < 3; k++) {
+				d[k] = far[k] = rest[i][k] - now[i][k];
+				for (int t = 0; t < b.n_targets; t++)
+					d[k] += b.weight[f * b.n_targets + t] * b.hair_target[(t * n + i) * 3 + k];
+			}
+			worst = fmax(worst, vec_norm(d));
+			most = fmax(most, vec_norm(far));
+		}
+	}
+	for (int i = 0; i < 3 * n; i++)
+		blink = fmax(blink, fabs((double)b.hair_pose[i]));
+	print_message("hairs move by %.2f mm, %.2f off at worst; by %.2f in a blink\n", most, worst, blink);
+	assert_true(most > 0.5 && worst < 0.05 * most && blink > 0.1);
+	free(x);
+	free(rest);
+	free(now);
 	deform_free(deform);
 	glb_bake_free(&b);
 }
@@ -216,14 +264,14 @@ static void container(void **state)
 	assert_true(file_hash(second, path, 1 << 30, &err));
 	assert_string_equal(first, second);
 	json_t *root = json_of(path);
-	assert_int_equal(count(root, "nodes"), 4 + 2 * EXPORT_PARTS);
-	assert_int_equal(count(root, "meshes"), 1 + EXPORT_PARTS);  // one eye for both sides is there once
+	assert_int_equal(count(root, "nodes"), 6 + 2 * EXPORT_PARTS);
+	assert_int_equal(count(root, "meshes"), 3 + EXPORT_PARTS);  // one eye for both sides is there once
 	assert_int_equal(count(root, "images"), EXPORT_PICTURES);
-	assert_int_equal(count(json_array_get(json_object_get(root, "animations"), 0), "channels"), 3);
+	assert_int_equal(count(json_array_get(json_object_get(root, "animations"), 0), "channels"), 5);
 	json_decref(root);
 	assert_true(put(m, path, 0, 1, &err));
 	root = json_of(path);
-	assert_int_equal(count(root, "meshes"), 1 + 2 * EXPORT_PARTS);
+	assert_int_equal(count(root, "meshes"), 3 + 2 * EXPORT_PARTS);
 	assert_int_equal(count(root, "images"), 2 * EXPORT_PICTURES);
 	json_decref(root);
 	scratch_close();
@@ -346,7 +394,7 @@ static void driving_file(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(lids_go_no_further_than_they_are_known),
+		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(hairs_follow), cmocka_unit_test(lids_go_no_further_than_they_are_known),
 		cmocka_unit_test(more_targets_are_closer),
 		cmocka_unit_test(container),                        cmocka_unit_test(khronos_validator_finds_nothing),
 		cmocka_unit_test(eyes_in_their_sockets),            cmocka_unit_test(no_eye_no_file),

@@ -1,0 +1,29 @@
+/* poser: a rig and its hairs in one pose after the other, as displacements from rest, mm. For the files of this folder. */
+#ifndef RIG_GLB_POSER_H
+#define RIG_GLB_POSER_H
+#include "rig/deform/clear.h"
+#include "rig/deform/deform.h"
+#include "rig/hair/hair.h"
+
+struct poser {
+	const struct rig *rig;
+	struct deform *deform;
+	float (*x)[3], (*n)[3];   // [rig.n] now: places, normals
+	struct deform_near near;
+	const struct hairs *hairs;
+	int n_hair;               // their vertices (strands.h)
+	float (*hair)[3], (*hair_rest)[3];
+};
+
+/* At rest. hairs: null: none. poser_free. */
+struct poser poser_new(const struct rig *rig, const struct hairs *hairs);
+void poser_free(struct poser *poser);
+
+/* controls: g~ [rig.n_inputs]; turn: out, the globes' rotations. */
+void poser_pose(struct poser *poser, const double *controls, double turn[2][3][3]);
+
+/* Displacements of n vertices of the rig and of their normals, x[n][3], lean[n][3], out; of the hairs' vertices, out[n_hair][3]. */
+void poser_skin(float *x, float *lean, const struct poser *poser, int n, const int *vertex);
+void poser_hair(float *out, const struct poser *poser);
+
+#endif

@@ -1,0 +1,27 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "rig/hair/impl.h"
+
+void hairs_grow(struct hairs *hairs, const struct rig *rig, const bool *shown, const struct hair_conf *conf)
+{
+	int n = 0, *face = mem_new((size_t)rig->n_faces + 1, sizeof *face);
+	int32_t (*faces)[3] = mem_new((size_t)rig->n_faces + 1, sizeof *faces);
+	struct rng rng = { 77 };
+	*hairs = (struct hairs){ 0 };
+	for (int i = 0; i < rig->n_faces; i++)
+		if (rig->part[rig->faces[i][0]] == RIG_SKIN && (!shown || shown[i])) {
+			memcpy(faces[n], rig->faces[i], sizeof *faces);
+			face[n++] = i;
+		}
+	struct ray_scene *skin = ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
+	for (int pass = 0; pass < 2; pass++)
+		for (int side = 0; side < 2; side++) {
+			const struct front front = { rig, skin, face, side, rig->globe[side].radius / 12 };
+			(pass ? hairs_grow_brow : hairs_grow_lashes)(hairs, &front, conf, &rng);
+		}
+	ray_scene_free(skin);
+	free(face);
+	free(faces);
+}

@@ -1,0 +1,41 @@
+/* hair_impl: a character at rest as its front sees it, and the hairs that are set there. */
+#ifndef RIG_HAIR_IMPL_H
+#define RIG_HAIR_IMPL_H
+#include "math/rng.h"
+#include "mesh/ray.h"
+#include "rig/hair/hair.h"
+
+/* One eye's surroundings: x outward (to the temple), y up, z out of the face, about the eyeball's centre; unit: mm of an eyeball of 12 mm. */
+struct front {
+	const struct rig *rig;
+	const struct ray_scene *skin;
+	const int *face;   // of the scene: the rig's
+	int side;
+	double scale;      // mm of the rig's in a unit
+};
+
+/* What is seen of the skin at (x, y). */
+struct front_hit {
+	double z, normal[3];
+	int face;          // the rig's
+	float weight[3];
+};
+bool front_skin(struct front_hit *hit, const struct front *front, double x, double y);
+
+/* Height of the eyeball there; NAN beyond its outline. */
+double front_globe(const struct front *front, double x, double y);
+
+/* Adds a hair rooted at a hit, with n points given about the eyeball's centre: point[n][3], units. half: mm of an eyeball of 12 mm. */
+void front_add(struct hairs *hairs, const struct front *front, const struct front_hit *root, int kind, int n, const double (*point)[3], double half);
+
+/* The same with points in the frame of the root. */
+void front_add_local(struct hairs *hairs, const struct front *front, const struct front_hit *root, int kind, int n, const double (*local)[3], double half);
+
+/* Bends the last hair off the eyeball until none of it goes through the skin at rest, as far as that helps. */
+void front_clear(struct hairs *hairs, const struct front *front);
+
+/* lash.c, brow.c */
+void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
+void hairs_grow_brow(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
+
+#endif
