@@ -4,7 +4,7 @@
  * Algorithm 1 is not linear in e, because skin slides over a round skull and a turning cornea. So the animation is evaluated and its
  * displacements are decomposed (principal components): the fewest morph targets that keep every vertex of every frame within a
  * tolerance (at most `targets`), with their weights over time. Further targets of single poses (eyeBlinkLeft, eyeLookUpRight ..., the
- * names of Apple's ARKit) are included with weight 0.
+ * names of Apple's ARKit) are included with weight 0; they may be added to each other, but not to the animation's.
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H

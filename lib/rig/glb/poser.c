@@ -35,6 +35,15 @@ void poser_pose(struct poser *p, const double *controls, double turn[2][3][3])
 	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])turn);
 }
 
+void poser_still(struct poser *p)
+{
+	double turn[2][3][3];
+	for (int s = 0; s < 2; s++)
+		rig_globe_rotation(turn[s], p->rig, (double[]){ 0, 0, 0 });
+	deform_pose(p->deform, p->rig->rest_e, (const double(*)[3][3])turn, p->x, p->n);
+	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])turn);
+}
+
 void poser_skin(float *x, float *lean, const struct poser *p, int n, const int *vertex)
 {
 	for (int i = 0; i < n; i++)

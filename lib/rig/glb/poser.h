@@ -22,6 +22,9 @@ void poser_free(struct poser *poser);
 /* controls: g~ [rig.n_inputs]; turn: out, the globes' rotations. */
 void poser_pose(struct poser *poser, const double *controls, double turn[2][3][3]);
 
+/* The rig at rest (rig.rest_e), eyes straight ahead: what lies in an eyeball is put before it, as in every pose. */
+void poser_still(struct poser *poser);
+
 /* Displacements of n vertices of the rig and of their normals, x[n][3], lean[n][3], out; of the hairs' vertices, out[n_hair][3]. */
 void poser_skin(float *x, float *lean, const struct poser *poser, int n, const int *vertex);
 void poser_hair(float *out, const struct poser *poser);

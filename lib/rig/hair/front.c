@@ -107,9 +107,13 @@ void front_clear(struct hairs *h, const struct front *f)
 {
 	enum { TRIES = 10 };
 	const struct hair *hair = &h->hair[h->n - 1];
-	const float *last = h->local[hair->first + hair->n - 1];
-	const float step = 0.1f * sqrtf(last[0] * last[0] + last[1] * last[1] + last[2] * last[2]);
-	for (int i = 0; i < TRIES && goes_through(h, f, hair); i++)
+	const float *last = h->local[hair->first + hair->n - 1], length = sqrtf(last[0] * last[0] + last[1] * last[1] + last[2] * last[2]), step = 0.1f * length;
+	for (int i = 0; i < TRIES && goes_through(h, f, hair); i++) {
 		for (int k = 1; k < hair->n; k++)
 			h->local[hair->first + k][0] += step * (float)k / (float)(hair->n - 1);
+		const float shorter = length / sqrtf(last[0] * last[0] + last[1] * last[1] + last[2] * last[2]);
+		for (int k = 1; k < hair->n; k++)  // as long as it was
+			for (int c = 0; c < 3; c++)
+				h->local[hair->first + k][c] *= shorter;
+	}
 }

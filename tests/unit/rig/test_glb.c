@@ -4,6 +4,7 @@
 #include "image/picture.h"
 #include "math/rng.h"
 #include "math/vec.h"
+#include "rig/deform/clear.h"
 #include "rig/glb/bake.h"
 #include "rig/glb/strands.h"
 #include "tests/lib/gltf.h"
@@ -172,6 +173,54 @@ static void hairs_follow(void **state)
 	free(rest);
 	free(now);
 	deform_free(deform);
+	glb_bake_free(&b);
+}
+
+/* Both eyes' targets together are the pose of both eyes, wherever mesh and globe disagree at rest: here all of the left lids' linings lie in it. */
+static void named_poses_add_up(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b;
+	struct err err = { 0 };
+	static const int pairs[][2] = { { 0, 1 }, { 2, 3 }, { 8, 7 } };
+	static const double look[][3] = { { 0, 0, 0 }, { 0, 20, 1 }, { 25, 0, 1 } };
+	float (*was)[3] = calloc((size_t)m->rig.n, sizeof *was), (*x)[3] = calloc((size_t)m->rig.n, sizeof *x);
+	memcpy(was, m->rig.rest, (size_t)m->rig.n * sizeof *was);
+	for (int i = 0; i < m->rig.n; i++)
+		for (int c = 0; c < 3 && m->rig.part[i] == RIG_SKIN && m->rig.gap[i] < 2; c++)  // 3 mm deeper, towards the globe's centre
+			m->rig.rest[i][c] -= 3.0f / 14 * (m->rig.rest[i][c] - (float)m->rig.globe[m->rig.side[i]].center[c]);
+	assert_true(glb_bake_make(&b, &m->rig, &m->drive, &conf, &err));
+	struct deform *deform = deform_new(&m->rig);
+	struct deform_near near = deform_near_of(&m->rig);
+	for (int k = 0; k < 3; k++) {
+		double e[RIG_COMPONENTS], turn[2][3][3], c[12], worst = 0, most = 0;
+		float (*from)[3] = calloc((size_t)m->rig.n, sizeof *from);
+		for (int pass = 0; pass < 2; pass++) {  // what it is told against: rest for a blink, else a look straight ahead
+			drive_look(c, &m->rig, pass ? look[k][0] : 0, pass ? look[k][1] : 0, pass ? look[k][2] : 1);
+			rig_components(e, &m->rig, c);
+			rig_globes_turned(turn, &m->rig, c);
+			deform_rest(deform, x, 0);
+			deform_pose(deform, !pass && k == 0 ? m->rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
+			deform_clear(x, &m->rig, &near, (const double(*)[3][3])turn);
+			if (!pass)
+				memcpy(from, x, (size_t)m->rig.n * sizeof *from);
+		}
+		for (int i = 0; i < b.n; i++)
+			for (int d = 0; d < 3; d++) {
+				const double sum = (double)b.pose[(pairs[k][0] * b.n + i) * 3 + d] + (double)b.pose[(pairs[k][1] * b.n + i) * 3 + d];
+				const double want = (double)x[b.vertex[i]][d] - (double)from[b.vertex[i]][d];
+				worst = fmax(worst, fabs(sum - want));
+				most = fmax(most, fabs(want));
+			}
+		print_message("two targets: %.2f mm off where the pose moves by %.2f\n", worst, most);
+		assert_true(worst < 0.3);
+		free(from);
+	}
+	memcpy(m->rig.rest, was, (size_t)m->rig.n * sizeof *was);
+	free(was);
+	free(x);
+	deform_free(deform);
+	deform_near_free(&near);
 	glb_bake_free(&b);
 }
 
@@ -394,7 +443,7 @@ static void driving_file(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(hairs_follow), cmocka_unit_test(lids_go_no_further_than_they_are_known),
+		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(hairs_follow), cmocka_unit_test(named_poses_add_up), cmocka_unit_test(lids_go_no_further_than_they_are_known),
 		cmocka_unit_test(more_targets_are_closer),
 		cmocka_unit_test(container),                        cmocka_unit_test(khronos_validator_finds_nothing),
 		cmocka_unit_test(eyes_in_their_sockets),            cmocka_unit_test(no_eye_no_file),
