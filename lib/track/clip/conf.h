@@ -34,8 +34,9 @@ struct track_conf {
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
 	double earned_deg;     // standard deviation of a turn that the skin's motion tells
 	double trust[TRUST_EVIDENCES][2];    // scales of each evidence in clips followed rightly and wrongly: trust.h
+	double nearest_mm;     // what people look at in the median of a clip is no nearer than this or the camera
 	double wrong_deg;      // gaze that is off by more is wrong
-	double wrong_prior, wrong_most, trust_odd;  // share of clips followed wrongly; probability of it beyond which a clip is refused; share of odd evidence
+	double wrong_prior, wrong_prior_one, wrong_most, trust_odd;  // share of clips followed wrongly; of those that one eye alone lays the mesh on; probability of it beyond which a clip is refused; share of odd evidence
 	double stirs_mm;       // frames of a head that turns whose skin is further off the rigid head have no gaze and no lids
 	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
 	double gaze_least;     // share of frames with gaze in the better eye, below which a clip is refused
@@ -76,7 +77,9 @@ struct track_conf {
 		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
 		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("scale_mm", c, TRUST_SCALE, "mm", "the same without a mesh"), \
 		TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
+		OPT_REAL("nearest_mm", &(c)->nearest_mm, 0, 10000, "mm", "people look at nothing nearer, in the median, or at the camera"), \
 		OPT_REAL("wrong_prior", &(c)->wrong_prior, 1e-6, 0.99, "", "share of clips that are followed wrongly"), \
+		OPT_REAL("wrong_prior_one", &(c)->wrong_prior_one, 1e-6, 0.99, "", "of those in which one eye, its centre not told, lays the mesh on"), \
 		OPT_REAL("wrong_deg", &(c)->wrong_deg, 0.1, 180, "degrees", "gaze that is off by more is wrong"), \
 		OPT_REAL("wrong_most", &(c)->wrong_most, 0, 1, "", "probability of a wrong result; with more a clip is refused"), \
 		OPT_REAL("trust_odd", &(c)->trust_odd, 1e-12, 0.5, "", "share of clips followed rightly that are odd in one evidence"), \

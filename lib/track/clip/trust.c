@@ -13,7 +13,7 @@ const struct trust_name trust_names[TRUST_EVIDENCES] = {
 	[TRUST_LAID] = { "laid_px", "lids and eyeballs of the reference off the mesh", "px", "give subject.eye_center.left and .right, or a frame from in front (track.reference_frame)" },
 	[TRUST_SKIN] = { "skin_mm", "skin off the head that was followed", "mm", "check camera.focal_px, or give another track.reference_frame" },
 	[TRUST_LEVEL] = { "level_deg", "one eye looking higher than the other", "degrees", "give subject.eye_center.left and .right, or another track.reference_frame" },
-	[TRUST_APART] = { "apart_deg", "eyes looking apart, or nearer than the camera,", "degrees", "give subject.eye_center.left and .right, or another track.reference_frame" },
+	[TRUST_APART] = { "apart_deg", "eyes looking apart, or on what is nearer than people look,", "degrees", "check camera.focal_px, give subject.eye_center.left and .right, or another track.reference_frame" },
 	[TRUST_IRIS] = { "iris_mm", "radius of the irises off people's", "mm", "check subject.unit_mm, or give another track.reference_frame" },
 	[TRUST_SCALE] = { "scale_mm", "radius of the irises, by the eyes' distance or width, off people's", "mm", "give another track.reference_frame" },
 	[TRUST_STRAIGHT] = { "straight_deg", "gaze off straight ahead", "degrees", "give another track.reference_frame" },
@@ -42,11 +42,15 @@ static double gaze_of(const struct track_result *r, int axis, bool sum)
 	return middle;
 }
 
-/* How much further the eyes diverge, or converge, than on what lies between the camera and the horizon, degrees. The left eye's x is the greater. */
-static double apart_of(const struct track_result *r, const struct track_clip *clip)
+/* How much further the eyes diverge, or converge, than on what lies between the horizon and the camera, or what people read where the camera is nearer, degrees.
+ * The left eye's x is the greater. */
+static double apart_of(const struct track_result *r, const struct track_clip *clip, double nearest_mm)
 {
-	const double apart = gaze_of(r, 0, false), between = r->eyes.globe[SIDE_LEFT].center_in_head[0] - r->eyes.globe[SIDE_RIGHT].center_in_head[0];
-	const double near = -atan2(fmax(0, between), clip->cam_from_head[2][3]) * 180 / M_PI;
+	const double *left = r->eyes.globe[SIDE_LEFT].center_in_head, *right = r->eyes.globe[SIDE_RIGHT].center_in_head, *to_camera = clip->cam_from_head[2];
+	double apart = gaze_of(r, 0, false), away = to_camera[3];
+	for (int k = 0; k < 3; k++)
+		away += 0.5 * to_camera[k] * (left[k] + right[k]);
+	const double near = -atan2(fmax(0, left[0] - right[0]), fmax(nearest_mm, away)) * 180 / M_PI;
 	return apart > 0 ? apart : apart < near ? near - apart : isnan(apart) ? NAN : 0;
 }
 
@@ -120,17 +124,25 @@ double trust_reference(const struct track_clip *clip, const struct track_subject
 	return isnan(clip->pose_px) ? -INFINITY : trust_odds(TRUST_LAID, clip->pose_px / trust_scale(clip, s), conf) + trust_odds(TRUST_SKIN, clip->skin_mm, conf);
 }
 
+/* Whether the mesh was laid on by the opening of one eye whose centre was not told. */
+static bool laid_by_one(const struct track_result *r, const struct track_subject *s)
+{
+	const bool left = r->eyes.globe[SIDE_LEFT].seen;
+	return r->has_eyes && left != r->eyes.globe[SIDE_RIGHT].seen && !s->center_given[left ? SIDE_LEFT : SIDE_RIGHT];
+}
+
 void track_trust(struct track_trust *t, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
 	const bool laid = !s->assumed && !clip->pose_given && !clip->moves.turned;
 	t->value[TRUST_LAID] = laid ? clip->pose_px / trust_scale(clip, s) : NAN;
 	t->value[TRUST_SKIN] = trust_skin_mm(r, clip);
 	t->value[TRUST_LEVEL] = gaze_of(r, 1, false);
-	t->value[TRUST_APART] = apart_of(r, clip);
+	t->value[TRUST_APART] = apart_of(r, clip, conf->nearest_mm);
 	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);
 	t->value[TRUST_SCALE] = s->assumed ? iris_of(r, conf->eye.limbus_radius) : NAN;
 	t->value[TRUST_STRAIGHT] = hypot(gaze_of(r, 0, true), gaze_of(r, 1, true));
-	double odds = log((1 - conf->wrong_prior) / conf->wrong_prior);
+	const double prior = laid && laid_by_one(r, s) ? conf->wrong_prior_one : conf->wrong_prior;
+	double odds = log((1 - prior) / prior);
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
 		odds += t->log_odds[i] = trust_odds(i, t->value[i], conf);
 	t->far = far_of(r, conf->wrong_deg);

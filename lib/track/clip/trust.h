@@ -4,6 +4,7 @@
  *     p(x | right) = (1 - odd) N(right) + odd N(wrong),    p(x | wrong) = (N(right) + N(wrong)) / 2,
  * and the logarithms of the quotients add up with the prior's (Bayes' rule for independent evidence). No evidence decides alone what others contradict,
  * and one that is far off is not outvoted.
+ * Of clips that one eye alone lays the mesh on, its centre not told, more are wrong before anything is known (wrong_prior_one).
  * A clip that is followed rightly may still be off by more than wrong_deg, as its gaze's own standard deviations say.
  */
 #ifndef TRACK_CLIP_TRUST_H

@@ -10,7 +10,7 @@ static const double DEGREE = M_PI / 180;
 /* Keys with round numbers: right scales of 1, wrong ones of 10. */
 static struct track_conf keys(void)
 {
-	struct track_conf conf = { .wrong_prior = 0.2, .wrong_deg = 3, .trust_odd = 1e-4, .eye = { .limbus_radius = 5.85 } };
+	struct track_conf conf = { .wrong_prior = 0.2, .wrong_deg = 3, .trust_odd = 1e-4, .nearest_mm = 362, .eye = { .limbus_radius = 5.85 } };
 	for (int i = 0; i < TRUST_EVIDENCES; i++) {
 		conf.trust[i][0] = 1;
 		conf.trust[i][1] = 10;
@@ -86,6 +86,55 @@ static void together(void **state)
 	NEAR(trust_of(0, -0.9 * camera, 0).value[TRUST_APART], 0, 1e-12);
 	NEAR(trust_of(0, -camera - 3, 0).value[TRUST_APART], 3, 1e-9);
 	NEAR(trust_of(0, 2, 0).value[TRUST_APART], 2, 1e-9);
+}
+
+/* Seen from so near as a lens told too short makes it, eyes that converge on the camera squint: what people look at for long is further away. */
+static void too_near(void **state)
+{
+	(void)state;
+	struct film film;
+	struct track_trust t;
+	const struct track_conf conf = keys();
+	const double camera = atan2(62, 200) / DEGREE, read = atan2(62, 362) / DEGREE;
+	shoot(&film, 0, -camera, 0);
+	film.clip.cam_from_head[2][3] = 200;
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.value[TRUST_APART], camera - read, 1e-9);
+	assert_true(t.wrong > trust_of(0, 0, 0).wrong);
+	// it is the eyes' distance that counts, not that of the mesh's origin behind them
+	for (int e = 0; e < SIDES; e++)
+		film.result.eyes.globe[e].center_in_head[2] = 100;
+	film.clip.cam_from_head[2][2] = -1;
+	film.clip.cam_from_head[2][3] = 600;
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.value[TRUST_APART], camera - atan2(62, 500) / DEGREE, 1e-9);
+	track_result_free(&film.result);
+}
+
+/* One eye alone that laid the mesh on is less sure of it than two, or than one whose centre was told. */
+static void by_one_eye(void **state)
+{
+	(void)state;
+	struct film film;
+	struct track_trust one, told, given;
+	struct track_conf conf = keys();
+	conf.wrong_prior_one = 0.5;
+	shoot(&film, 0, 0, 0);
+	film.clip.pose_given = false;
+	film.clip.pose_px = 0;
+	film.result.eyes.globe[SIDE_RIGHT].seen = false;
+	for (long f = 0; f < FRAMES; f++)
+		film.result.eyes.state[f][SIDE_RIGHT].gaze[0] = film.result.eyes.state[f][SIDE_RIGHT].gaze[1] = NAN;
+	track_trust(&one, &film.result, &film.clip, &film.subject, &conf);
+	film.subject.center_given[SIDE_LEFT] = true;
+	track_trust(&told, &film.result, &film.clip, &film.subject, &conf);
+	film.subject.center_given[SIDE_LEFT] = false;
+	film.clip.pose_given = true;
+	track_trust(&given, &film.result, &film.clip, &film.subject, &conf);
+	// odds of 1 instead of 4
+	NEAR((1 - told.wrong) / told.wrong, 4 * (1 - one.wrong) / one.wrong, 1e-6);
+	assert_true(given.wrong < one.wrong);
+	track_result_free(&film.result);
 }
 
 /* One far off is not outvoted; two a little off weigh together; one a little off does not decide. */
@@ -183,6 +232,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(all_in_order),
 		cmocka_unit_test(together),
+		cmocka_unit_test(too_near),
+		cmocka_unit_test(by_one_eye),
 		cmocka_unit_test(weighed_together),
 		cmocka_unit_test(off_by_degrees), cmocka_unit_test(off_at_large_gazes),
 		cmocka_unit_test(nothing_seen),
