@@ -90,6 +90,13 @@ if [ -x "$RECUT" ]; then
 	refuses cuts "from frame 10 on the face of frame 0 is not seen again .a cut, or the head turned away.: cut the video" --points=60 --settle-frames=0
 	take roll roll:0-29
 	refuses roll "from frame [0-9]+ on the face of frame 0 is not seen again .a cut, or the head turned away.: cut the video" --points=60 --settle-frames=0
+	# a look down that the clip's end cuts off is no blink; a blink that its start cuts off is one
+	take down 0-119
+	check "track a take that ends on a look down" "$BIN/track" --quiet --capture="$root/down" --points=60
+	check "it is no blink" grep -q '"blinks": \[\]' "$root/down/work/skin/track.json"
+	take half_shut 174-233
+	check "track a take that begins in a blink" "$BIN/track" --quiet --capture="$root/half_shut" --points=60
+	check "it is a blink" grep -q '"blinks": \[$' "$root/half_shut/work/skin/track.json"
 	take shut 176-176x30
 	refuses shut "no face with open eyes in its first frames"
 else

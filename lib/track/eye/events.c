@@ -133,7 +133,9 @@ static void blinks(struct eye_clip *clip, struct eye_side *eye, int side, const 
 			end++;
 		// In a blink the upper lid moves; a squint raises the lower one.
 		bool falls = lower[low] - lower[first] < 0.5 * depth * usual_gap;
-		if (last - i <= longest && falls) {
+		// what an end of the clip cuts off may be a look down, unless the eye shuts
+		bool whole = (i > 0 && last + 1 < n) || open[low] < CLOSED * base;
+		if (last - i <= longest && falls && whole) {
 			struct eye_event *event = new_event(clip, EVENT_BLINK, side);
 			event->first = (int)first;
 			event->last = (int)end;
