@@ -19,6 +19,8 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_INT("shading_apart", &(c)->scene.apart, 1, 8, "", "texels from one that is marched from to the next"), \
 	OPT_CHOICE("light_path", &(c)->scene.path, render_paths, "light through the cornea: a table a light, or solved for each ray"), \
 	OPT_INT("bands", &(c)->scene.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
+	OPT_REAL("albedo_mm", &(c)->scene.albedo_mm, 0.05, 3, "mm", "what photograph over model changes by over more than this, in luminance, is the photograph's light"), \
+	OPT_REAL("albedo_most", &(c)->scene.albedo_most, 1, 20, "", "what is finer is the iris' albedo, within this factor"), \
 	OPT_REAL("detail", &(c)->scene.detail, 0, 1, "", "how much of what the photograph shows beyond the model is shown"), \
 	OPT_REAL_UNSET("limbus_width_mm", &(c)->scene.limbus_width, 0.05, 2, "mm", "over which sclera turns into cornea; unset: as photographed"), \
 	OPT_REAL("sclera_radius_mm", &(c)->scene.sclera_radius, 9, 16, "mm", "radius of the eyeball"), \

@@ -61,5 +61,12 @@ const beams = (() => {
 		}
 		return out;
 	}
-	return { turned, made };
+	/* How much a light is the photograph's own, by its mean direction: scene_own_light_share of lib/draw/eye/own_light.c. */
+	function likeness(list, own_mean, width) {
+		const all = list.reduce((sum, l) => sum + l.share, 0) || 1;
+		const off = [0, 1, 2].map(c => list.reduce((sum, l) => sum + l.share * l.dir[c], 0) / all - own_mean[c]);
+		return Math.exp(-0.5 * (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]) / (width * width));
+	}
+
+	return { turned, made, likeness };
 })();

@@ -8,7 +8,8 @@ uniform int beams;
 uniform vec3 beam_rgb[LIGHTS];
 uniform vec4 source[2], extinction[2];  // by layer, four wavelengths
 uniform mat4 band_rgb;            // columns: wavelengths; rows: R, G, B
-uniform float abl, exposure, tissue_gain, detail;
+uniform float abl, exposure, tissue_gain, detail, own;  // own: share of own_map that this light shows (lib/draw/eye/own_light.h)
+uniform sampler2D own_map;        // what the photograph's light did beyond the model
 uniform int nodes[2];
 uniform vec2 node[2 * NODES];     // place and weight, of the anterior border layer, then of the stroma
 #ifdef SHADOWS
@@ -23,16 +24,17 @@ vec2 path_place(int beam, int plane, vec2 p)
 	return (cell + 0.5 + vec2(float(plane), float(beam)) * grid) / (grid * vec2(2.0, float(TILES)));
 }
 
-// Direction towards a beam's light (not of unit length), and irradiance of a plane that faces it; the sclera stops,
-// gradually, what would enter outside the limbus.
-vec4 path_to(int beam, vec3 p)
+// Direction towards a beam's light (not of unit length), and irradiance of a plane that faces it. open: what the sclera lets
+// in, which begins gradually at the limbus; all of a ray has that of its near end.
+vec4 path_to(int beam, vec3 p, out float open)
 {
 	float q = (p.z - beam_z.x) / (beam_z.y - beam_z.x);
 	vec2 above = path_place(beam, 0, p.xy), below = path_place(beam, 1, p.xy);
 	vec4 w = mix(textureLod(path_map, above, 0.0), textureLod(path_map, below, 0.0), q);
 	float down = mix(textureLod(down_map, above, 0.0).r, textureLod(down_map, below, 0.0).r, q);
 	float t = clamp((w.w - 1.0) / sclera.z + 0.5, 0.0, 1.0);
-	return vec4(w.xy, down, down < 0.0 ? max(w.z, 0.0) * (1.0 - t * t * (3.0 - 2.0 * t)) : 0.0);
+	open = 1.0 - t * t * (3.0 - 2.0 * t);
+	return vec4(w.xy, down, down < 0.0 ? max(w.z, 0.0) : 0.0);
 }
 
 #ifdef SHADOWS
@@ -82,10 +84,10 @@ vec3 scatter(ivec2 texel, vec3 p, vec3 v)
 	for (int b = 0; b < LIGHTS; b++) {
 		if (b >= beams)
 			break;
-		vec4 near_light = path_to(b, p), far_light = path_to(b, p + span * v), lit = vec4(0.0);
-		float open = 1.0;
+		float open, unused;
+		vec4 near_light = path_to(b, p, open), far_light = path_to(b, p + span * v, unused), lit = vec4(0.0);
 #ifdef SHADOWS
-		open = shadow(texel, near_light.xyz);
+		open *= shadow(texel, near_light.xyz);
 #endif
 		for (int j = 0; j < NODES; j++) {
 			if (j >= total)
@@ -117,7 +119,10 @@ void main()
 	light = vec4(0.0, 0.0, 0.0, 1.0);
 	if (!marched(q, texel))
 		return;
-	vec3 p = vec3(xy, iris_depth - relief_at(xy).x), sight = -normalize(path_to(beams, vec3(xy, iris_depth)).xyz);
+	vec3 p = vec3(xy, iris_depth - relief_at(xy).x), sight;
+	float unused;
+	sight = -normalize(path_to(beams, vec3(xy, iris_depth), unused).xyz);
 	sight.z = max(sight.z, 0.2);  // flatter, nobody sees it
 	light.rgb = ratio(scatter(at, p, sight), texelFetch(model_map, at + ivec2(0, model_top), 0).rgb);
+	light.rgb *= pow(textureLod(own_map, q / (2.0 * extent) + 0.5, 0.0).r, own * detail);
 }

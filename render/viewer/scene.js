@@ -66,9 +66,9 @@ class EyeScene {
 
 	async load() {
 		const { g, data } = this, m = data.maps;
-		const [relief, colour, model, veins, film, tint] = await Promise.all([g.map(m.relief, 0), g.map(m.colour, "srgb"),
-			g.map(m.model, "log"), g.map(m.veins, "log"), g.map(m.film, "plain"), g.map(m.tint, "log")]);
-		this.maps = { relief_map: relief, colour_map: colour, model_map: model, vein_map: veins, film_map: film, tint_map: tint };
+		const [relief, colour, model, veins, film, tint, own] = await Promise.all([g.map(m.relief, 0), g.map(m.colour, "srgb"),
+			g.map(m.model, "log"), g.map(m.veins, "log"), g.map(m.film, "plain"), g.map(m.tint, "log"), g.map(m.own, "log")]);
+		this.maps = { relief_map: relief, colour_map: colour, model_map: model, vein_map: veins, film_map: film, tint_map: tint, own_map: own };
 		this.lights = await Promise.all(data.lights.map(async l => l.opened ? l : ({ ...l,
 			sharp_map: l.sharp ? await g.map(l.sharp, "log") : null, rough_map: l.rough ? await g.map(l.rough, "log") : null })));
 	}
@@ -165,14 +165,15 @@ class EyeScene {
 		const key = [s.R, s.p, s.n, ...cam.origin, ...made.first, ...made.dir].join(), old = this.path_maps[name], map = old ? old.map : this.ways(c.grid);
 		const values = { cornea_R: s.R, cornea_p: s.p, cornea_n: s.n, extent: e.extent, rim: e.limbus[0], limbus: e.limbus, path_bend: c.path_bend,
 			light_dir: EyeScene.padded(made.dir, 4 * EyeScene.DIRECTIONS), first: EyeScene.padded(made.first, EyeScene.LIGHTS + 2), origin: cam.origin,
-			beam_z: [e.iris_depth - e.heights[1], e.iris_depth - e.heights[0] + data.tissue.abl + e.thickness_max] };
+			beam_z: [e.iris_depth - e.tissue_range[1], e.iris_depth - e.tissue_range[0] + data.tissue.abl] };
 		if (!old || old.key !== key) {
 			this.solve_all(map, values, made);
 			g.counted("solved");
 		}
 		this.path_maps[name] = { key, map };
 		const beam_rgb = EyeScene.padded(made.rgb.map(v => v * s.light_gain), 3 * EyeScene.LIGHTS);
-		this.solved = { ...this.solved, [name]: { ...values, key, path_map: map, down_map: map.also, env_from_eye, beams: made.n, beam_rgb, light } };
+		const own = beams.likeness(in_eye, e.own_mean, c.own_width);
+		this.solved = { ...this.solved, [name]: { ...values, key, path_map: map, down_map: map.also, env_from_eye, beams: made.n, beam_rgb, own, light } };
 		this.march(s, cam, preset, name);
 	}
 
@@ -181,7 +182,7 @@ class EyeScene {
 		const { g, data } = this, gl = g.gl, e = data.eye, solved = this.solved[name], level = this.marched(cam.pixel, preset), n = e.map_px >> level, m = data.maps.model;
 		const own = { ...this.tissue(s), ...this.nodes(preset.steps, this.optics.extinction), pupil_now: s.pupil, detail: s.detail, shadow_grow: preset.shadow, level };
 		const ground = { ...this.maps, extent: e.extent, rim: e.limbus[0], pupil: e.pupil, pupil_now: s.pupil, iris_depth: e.iris_depth, heights: e.heights, map_size: e.map_px, level };
-		const key = solved.key + solved.beam_rgb.join() + JSON.stringify(own), old = this.shades[name];
+		const key = solved.key + solved.beam_rgb.join() + solved.own + JSON.stringify(own), old = this.shades[name];
 		if (old && old.key === key)
 			return;
 		if (old && old.map.width !== n)

@@ -17,7 +17,7 @@ static void row_of(struct iris_batch *b, const struct scene *s, int x, int y, co
 	scene_model_row(b, s, level, x, level->n - x < BATCH ? level->n - x : BATCH, y, far_off, beams);
 	for (int i = 0; i < b->n; i++) {
 		float rgb[3] = { b->rgb[0][i], b->rgb[1][i], b->rgb[2][i] };
-		scene_colour(rgb, s, level, b->px[i], b->py[i]);
+		scene_colour(rgb, s, level, b->px[i], b->py[i], beams->own);
 		for (int c = 0; c < 3; c++)
 			b->rgb[c][i] = rgb[c];
 	}

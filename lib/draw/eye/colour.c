@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "draw/eye/march/march.h"
+#include "draw/eye/own_light.h"
 #include "draw/eye/tint.h"
 #include "optics/lightpath/lightpath.h"
 
@@ -36,7 +37,7 @@ void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const
 			rgb[c][i] = alone[c][i] > 0 && rgb[c][i] > 0 ? powf(rgb[c][i], d) * powf(alone[c][i], 1 - d) : 0;
 }
 
-void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y)
+void scene_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float x, float y, float own)
 {
 	float per[3], ratio[3][BATCH], tint[3] = { 1, 1, 1 }, d = (float)s->conf.detail;
 	if (!level->model)
@@ -47,10 +48,11 @@ void scene_colour(float rgb[3], const struct scene *s, const struct scene_level 
 	}
 	if (d < 1)
 		scene_tint_at(tint, s, x, y);
+	own = scene_own_light_at(s, own, x, y);
 	scene_colour_ratio(1, ratio, s, (const float *const[3]){ &per[0], &per[1], &per[2] });
 	for (int c = 0; c < 3; c++) {
 		float shown = channel_at(level->colour, level->n, level->per_mm, x, y, 4, c);
-		rgb[c] = ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) * powf(tint[c], 1 - d) : 0);
+		rgb[c] = own * ratio[c][0] * (d == 1 ? shown : shown > 0 ? powf(shown, d) * powf(tint[c], 1 - d) : 0);
 	}
 }
 

@@ -7,8 +7,8 @@
 
 #define SCENE_DARK 1e-4f  // lower bound of colours that are divided by each other
 
-/* Turns the model's colour at the point (x, y) of the iris plane (mm) into the photograph's; rgb is both in and out. */
-void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y);
+/* Turns the model's colour at the point (x, y) of the iris plane (mm) into the photograph's; rgb is both in and out. own: of the beams. */
+void scene_colour(float rgb[3], const struct scene *scene, const struct scene_level *level, float x, float y, float own);
 
 /* The same without the factor of the photograph's own colour, at n points: rgb in is the model's colour, rgb out the ratio to
  * what the model showed in the photograph. per_model: 1 over that, by channel. */

@@ -13,6 +13,7 @@
 #include "draw/eye/levels.h"
 #include "draw/eye/march/march.h"
 #include "draw/eye/march/shade.h"
+#include "draw/eye/own_light.h"
 #include "draw/eye/tint.h"
 #include "draw/eye/view.h"
 
@@ -116,6 +117,7 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 		}
 	free(texture);
 	compare(s);
+	scene_own_light_make(s, &beams);
 	scene_levels_make(s);
 	for (int k = scene_marched(s); k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
 		scene_shade_model(&s->level[k], s, C, &beams, through);

@@ -29,16 +29,29 @@ static float *halve(const float *map, int n, int channels)
 	return out;
 }
 
+/* Light is tabulated on two planes and interpolated between them: they lie as close as the tissue allows, or the light of the far side,
+ * which falls steeply with depth, comes out too bright. */
+static void ranges_find(struct scene *s)
+{
+	const struct scene_level *l = s->level;
+	s->height_min = s->height_max = 0;
+	s->tissue_range[0] = s->tissue_range[1] = 0;
+	for (long i = 0; i < (long)l->n * l->n; i++) {
+		float top = l->relief[2 * i], bottom = top - l->relief[2 * i + 1];
+		double x = ((double)(i % l->n) + 0.5) / l->per_mm - s->extent, y = ((double)(i / l->n) + 0.5) / l->per_mm - s->extent;
+		s->height_min = fminf(s->height_min, top);
+		s->height_max = fmaxf(s->height_max, top);
+		if (hypot(x - s->pupil[0], y - s->pupil[1]) < s->pupil[2] || hypot(x, y) > s->limbus[0])
+			continue;
+		s->tissue_range[0] = fminf(s->tissue_range[0], bottom);
+		s->tissue_range[1] = fmaxf(s->tissue_range[1], top);
+	}
+}
+
 void scene_levels_make(struct scene *s)
 {
 	struct scene_level *l = s->level;
-	s->height_min = s->height_max = 0;
-	s->thickness_max = 0;
-	for (long i = 0; i < (long)l->n * l->n; i++) {
-		s->thickness_max = fmaxf(s->thickness_max, l->relief[2 * i + 1]);
-		s->height_min = fminf(s->height_min, l->relief[2 * i]);
-		s->height_max = fmaxf(s->height_max, l->relief[2 * i]);
-	}
+	ranges_find(s);
 	s->n_levels = 1;
 	for (int k = 1; k < SCENE_LEVELS && l[k - 1].n >= 64; k++, s->n_levels++) {
 		free(l[k].relief);

@@ -173,6 +173,7 @@ void scene_free(struct scene *s)
 	free(s->white.px);
 	image_free(&s->film);
 	image_free(&s->tint);
+	image_free(&s->own_light);
 	free(s->paths);
 	refraction_free(&s->refraction);
 	*s = (struct scene){ 0 };

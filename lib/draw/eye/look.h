@@ -39,6 +39,8 @@
 // The albedo step: most that a texel brightens, and that its channels differ from their mean.
 #define LOOK_MOST 2.5
 #define LOOK_CHROMA 1.5
+// What the photograph's light did beyond the model fades as a light's mean direction moves away from its own: sigma.
+#define LOOK_OWN 0.2
 // Light off the lids on the eye below them.
 #define LOOK_BOUNCE 0.34, 0.25, 0.20
 

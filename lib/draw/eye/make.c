@@ -22,8 +22,8 @@ void scene_geometry(struct scene *s)
 
 void scene_planes(double z[2], const struct scene *s)
 {
-	z[0] = s->eye.iris_depth - s->height_max;
-	z[1] = s->eye.iris_depth - s->height_min + s->optics.abl_thickness + s->thickness_max;
+	z[0] = s->eye.iris_depth - s->tissue_range[1];
+	z[1] = s->eye.iris_depth - s->tissue_range[0] + s->optics.abl_thickness;
 }
 
 void scene_set_tissue(struct scene *s, const struct tissue *tissue)

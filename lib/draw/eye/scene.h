@@ -36,6 +36,7 @@ struct scene_conf {
 	int shading, apart;           // enum scene_shading; the march is done at every so many texels (1, 2, 4 or 8; 0: 2)
 	int bands;                    // wavelengths, 3..TISSUE_BANDS_MAX
 	double detail;                // 0: the fitted model alone, its map of melanin in it; 1: times all of what the photograph shows beyond it
+	double albedo_mm, albedo_most;  // what of photograph over model is finer than that is the iris' albedo, within that factor (own_light.h); 0: all is
 	double limbus_width;          // mm, over which sclera becomes cornea
 	double sclera_radius;         // mm
 	double sclera_rgb[3];         // albedo of a healthy sclera
@@ -73,12 +74,15 @@ struct scene {
 	double limbus[2], limbus_depth, sclera_z;  // half-widths across and upwards; depth of its plane; centre of the sphere
 	double pupil[3];              // x, y, radius in the iris plane
 	double extent;                // half-width of the maps
-	float height_min, height_max, thickness_max;
+	float height_min, height_max;
+	float tissue_range[2];        // between pupil and limbus: the epithelium's lowest and the surface's highest place, mm from the iris plane towards the cornea
 	int n_levels;
 	struct scene_level level[SCENE_LEVELS];
 	struct image veins;           // map of the sclera (sclera.h): albedo RGB; share of green that vessels take
 	struct scene_texels white;    // the same
 	struct image tint;            // [n][n][3] over the maps' square: what melanin's map and the photograph's white change the model's colour by; empty: nothing
+	struct image own_light;       // [n][n] over the maps' square: ln of what the photograph's own light did beyond the model (own_light.h); empty: nothing
+	float own_mean[3];            // mean direction of that light, eye's frame
 	struct image film;            // map of the sclera: slopes of the tear film's ripples
 	struct tissue tissue;
 	struct tissue_optics optics;

@@ -73,7 +73,7 @@ static json_t *geometry(const struct scene *s, double gain, double sigma_of_pupi
 	json_t *out = json_object();
 	double limbus[] = { s->limbus[0], s->limbus[1] }, sclera[] = { s->sclera_z, s->conf.sclera_radius, s->conf.limbus_width };
 	double heights[] = { s->height_min, s->height_max }, model = s->gain;
-	double thickness = s->thickness_max;
+	double tissue[] = { s->tissue_range[0], s->tissue_range[1] };
 	put(out, "R", 1, &c->R);
 	put(out, "p", 1, &c->p);
 	put(out, "n", 1, &c->n);
@@ -81,9 +81,11 @@ static json_t *geometry(const struct scene *s, double gain, double sigma_of_pupi
 	put(out, "sclera", 3, sclera);
 	put(out, "pupil", 3, s->pupil);
 	put(out, "pupil_sigma", 1, &sigma_of_pupil);
+	double own[] = { s->own_mean[0], s->own_mean[1], s->own_mean[2] };
+	put(out, "own_mean", 3, own);
 	put(out, "extent", 1, &s->extent);
 	put(out, "heights", 2, heights);
-	put(out, "thickness_max", 1, &thickness);
+	put(out, "tissue_range", 2, tissue);
 	put(out, "iris_depth", 1, &s->eye.iris_depth);
 	put(out, "gain", 1, &model);
 	put(out, "exposure", 1, &gain);
@@ -128,8 +130,21 @@ static json_t *tint(const struct scene *s, struct err *err)
 	return t->px ? web_map_log(t->px, t->width, t->height, 3, SCENE_DARK, err) : web_map_log(none, 1, 1, 3, SCENE_DARK, err);
 }
 
+/* What the photograph's light did beyond the model, as a factor; of one texel, 1, where there is nothing. */
+static json_t *own_light(const struct scene *s, struct err *err)
+{
+	const struct image *own = &s->own_light;
+	int n = own->px ? own->width : 1;
+	float *rgb = mem_array((size_t)n * (size_t)n, 3 * sizeof *rgb);
+	for (int i = 0; i < n * n; i++)
+		rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = own->px ? expf(own->px[i]) : 1;
+	json_t *out = web_map_log(rgb, n, n, 3, SCENE_DARK, err);
+	free(rgb);
+	return out;
+}
+
 /* The parts that take long to encode, the longest first; they are encoded in parallel. */
-enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, WINDOW, SKY, FILM, TINT, PARTS };
+enum part { VEINS, PHOTO, RELIEF, COLOUR, MODEL, PHOTOGRAPHED, STUDIO, WINDOW, SKY, FILM, TINT, OWN, PARTS };
 
 /* Surroundings to choose from, coarser than the studio of the stills. */
 static json_t *elsewhere(const char *name, struct envmap (*make)(int height), const struct web_source *source, struct err *err)
@@ -156,6 +171,7 @@ static json_t *part_make(enum part part, const struct web_source *source, struct
 	case WINDOW: return elsewhere("Window", light_window, source, err);
 	case SKY: return elsewhere("Overcast sky", light_sky, source, err);
 	case TINT: return tint(s, err);
+	case OWN: return own_light(s, err);
 	default: return web_map_plain(&s->film, err);
 	}
 }
@@ -163,7 +179,7 @@ static json_t *part_make(enum part part, const struct web_source *source, struct
 static void put_parts(json_t *out, json_t *part[PARTS])
 {
 	json_t *lights = json_array(), *maps = json_object();
-	static const char *const names[PARTS] = { [VEINS] = "veins", [RELIEF] = "relief", [COLOUR] = "colour", [MODEL] = "model", [FILM] = "film", [TINT] = "tint" };
+	static const char *const names[PARTS] = { [VEINS] = "veins", [RELIEF] = "relief", [COLOUR] = "colour", [MODEL] = "model", [FILM] = "film", [TINT] = "tint", [OWN] = "own" };
 	for (int i = 0; i < PARTS; i++)
 		if (names[i] && part[i])
 			json_object_set_new(maps, names[i], part[i]);
@@ -186,7 +202,7 @@ json_t *web_eye(const struct web_source *source, struct err *err)
 	json_t *out = json_object(), *part[PARTS];
 	struct err errs[PARTS] = { 0 };
 	json_object_set_new(out, "side", template_text(source->side));
-	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:i,s:i}", "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:f,s:i,s:i}", "own_width", (double)LOOK_OWN, "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
 	json_object_set_new(out, "eye", geometry(s, source->gain, pupil_sigma(source)));
 	json_object_set_new(out, "tissue", web_tissue(source));
 #pragma omp parallel for schedule(dynamic, 1)

@@ -108,12 +108,12 @@ static void sclera_colour(float rgb[3], struct spot *p, const struct scene *s, c
 }
 
 static void iris_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float soft,
-                        const struct iris_batch *b, int i)
+                        const struct iris_batch *b, int i, float own)
 {
 	float cover[3];
 	for (int c = 0; c < 3; c++)
 		rgb[c] = b->rgb[c][i];
-	scene_colour(rgb, s, level, b->px[i], b->py[i]);
+	scene_colour(rgb, s, level, b->px[i], b->py[i], own);
 	scene_pupil(cover, s, b->px[i], b->py[i], soft);
 	for (int c = 0; c < 3; c++)
 		rgb[c] *= cover[c];
@@ -175,7 +175,7 @@ void scene_trace(float rgba[][4], int n, const float *dx, const float *dy, const
 	for (int k = 0; k < b.n; k++) {
 		int i = from[k];
 		float seen[3], through = (1 - lid[i]) * (1 - mirror(spot[i].cos_i));
-		iris_colour(seen, s, look->level, look->soft, &b, k);
+		iris_colour(seen, s, look->level, look->soft, &b, k, look->beams->own);
 		for (int c = 0; c < 3; c++)
 			rgba[i][c] += through * seen[c];
 	}

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "draw/eye/make.h"
 #include "draw/eye/march/paths.h"
+#include "draw/eye/own_light.h"
 #include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
 
@@ -191,13 +192,28 @@ static void beam_begin(struct scene_beam *beam, struct beam_lights *in, const st
 		beam->dir[c] /= all;
 }
 
+static void mean_of(float mean[3], const struct beam_lights *in)
+{
+	float all = 0;
+	mean[0] = mean[1] = mean[2] = 0;
+	for (int i = 0; i < in->n; i++) {
+		all += in->share[i];
+		for (int c = 0; c < 3; c++)
+			mean[c] += in->share[i] * in->dir[i][c];
+	}
+	for (int c = 0; c < 3; c++)
+		mean[c] /= all > 0 ? all : 1;
+}
+
 struct scene_beams scene_beams(const struct scene *s, const struct scene_lighting *light,
                                const double eye_from_cam[3][3])
 {
 	int each = light->each > 1 && s->conf.path == SCENE_PATH_GRID ? light->each : 1, most = (light->n + each - 1) / each;
-	struct scene_beams beams = { 0, mem_array((size_t)most, sizeof(struct scene_beam)) };
+	struct scene_beams beams = { .beam = mem_array((size_t)most, sizeof(struct scene_beam)) };
 	struct beam_lights *in = mem_array((size_t)most, sizeof *in);
 	scene_lights_turn(in, light, eye_from_cam);
+	mean_of(beams.mean, in);
+	beams.own = scene_own_light_share(s, beams.mean);
 	beams.n = scene_lights_split(in, most);
 	for (int i = 0; i < beams.n; i++)
 		beam_begin(&beams.beam[i], &in[i], s);

@@ -20,6 +20,7 @@ struct scene_beam {
 
 struct scene_beams {
 	int n;
+	float mean[3], own;         // mean direction of all lights, by luminance; how much it is the photograph's own (own_light.h)
 	struct scene_beam *beam;    // owned
 };
 

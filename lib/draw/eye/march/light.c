@@ -27,21 +27,21 @@ void scene_table_at(float out[SCENE_WAY], const struct scene_beam *beam, const f
 
 /* The sclera begins at the limbus, gradually: light that would enter further out is stopped. */
 SIMD_CLONES
-static void rim_stop(int n, float *restrict power, const float *restrict rho, float width)
+static void rim_open(int n, float *restrict open, const float *restrict rho, float width)
 {
 	float lo = 1 - width / 2, inv = 1 / width;
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
 		float t = (rho[i] - lo) * inv;
 		t = t > 0 ? t < 1 ? t : 1 : 0;
-		power[i] = power[i] > 0 ? power[i] * (1 - t * t * (3 - 2 * t)) : 0;
+		open[i] = 1 - t * t * (3 - 2 * t);
 	}
 }
 
 static void table_paths(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
                         const struct scene_beam *beam, float extent, float width)
 {
-	float rho[PART];
+	float rho[PART] = { 0 };
 	for (int i = 0; i < n; i++) {
 		float way[SCENE_WAY];
 		scene_table_at(way, beam, (float[3]){ x[i], y[i], z[i] }, extent);
@@ -52,7 +52,10 @@ static void table_paths(struct march_light *light, int end, int n, const float *
 		light->fall[end][i] = way[5];
 		rho[i] = way[4];
 	}
-	rim_stop(n, light->power[end], rho, width);
+	if (end == 0)
+		rim_open(n, light->open, rho, width);
+	for (int i = 0; i < n; i++)
+		light->power[end][i] = light->power[end][i] > 0 ? light->power[end][i] * light->open[i] : 0;
 }
 
 static void exact_paths(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,

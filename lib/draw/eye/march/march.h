@@ -55,12 +55,13 @@ void scene_node_of_tile(struct march_node *node, const struct iris_batch *r, con
 
 /* One light on every ray: direction towards it (beam.h) at q = 0 and the difference to q = 1; irradiance of a plane that faces it
  * at u = 0 and the difference to u = 1. scene_light_at fills in the values at both ends of the ray instead, and in fall the cosine
- * of incidence on the iris plane. */
+ * of incidence on the iris plane. open: what the limbus' shadow leaves at the near ends, of all of the ray: deep tissue is lit from the sides
+ * by many scatterings, and the shadow's edge lies where it falls on the surface. */
 struct march_light {
-	float x[2][PART], y[2][PART], z[2][PART], power[2][PART], fall[2][PART];
+	float x[2][PART], y[2][PART], z[2][PART], power[2][PART], fall[2][PART], open[PART];
 };
 
-/* Looks up the light at n points, the ends `end` (0, 1) of the rays. */
+/* Looks up the light at n points, the ends `end` (0, then 1) of the rays. */
 void scene_light_at(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
                     const struct scene *scene, const struct scene_beam *beam);
 

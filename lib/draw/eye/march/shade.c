@@ -13,6 +13,7 @@
 #include "draw/eye/levels.h"
 #include "draw/eye/march/march.h"
 #include "draw/eye/march/paths_flat.h"
+#include "draw/eye/own_light.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-pre", "fp-contract=fast")  // see meet.c, simd.h
@@ -93,6 +94,11 @@ static void tile_put(struct iris_batch *b, const struct painter *p, int tx, int 
 			b->rgb[c][i] = fmaxf(p->through * b->rgb[c][i], SCENE_DARK);
 	if (per)
 		scene_colour_ratio(PART, b->rgb, p->scene, (const float *const[3]){ per, per + PART, per + 2 * PART });
+	for (int i = 0; i < PART && per && p->beams->own > 0; i++) {
+		float own = scene_own_light_at(p->scene, p->beams->own, b->px[i], b->py[i]);
+		for (int c = 0; c < 3; c++)
+			b->rgb[c][i] *= own;
+	}
 	if (whole) {
 		rows_put(p->light + 4 * texel(p->level->n, p->stride, tx, ty, 0), p->stride, (const float(*)[BATCH])b->rgb);
 		return;

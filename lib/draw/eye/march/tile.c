@@ -88,7 +88,7 @@ SIMD_INLINE void channel_lay(float *restrict out, float *restrict change, const 
 	}
 }
 
-/* Irradiance at both ends of the rays, reduced at the limbus, where the sclera begins gradually. */
+/* Irradiance at both ends of the rays, reduced by the limbus, where the sclera begins gradually: as at the near end (struct march_light). */
 SIMD_CLONES static void power_lay(struct march_light *restrict w, float corner[SCENE_WAY][8], const struct march_body *restrict b, float rim_width)
 {
 	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width, most = 0, *restrict p0 = w->power[0], *restrict p1 = w->power[1];
@@ -104,13 +104,13 @@ SIMD_CLONES static void power_lay(struct march_light *restrict w, float corner[S
 	if (!(most > lo))
 		return;
 	channel_lay(rho[0], rho[1], corner[4]);
-	for (int end = 0; end < 2; end++) {
-		SIMD_LOOP
-		for (int i = 0; i < PART; i++) {
-			float t = (rho[0][i] + b->q[end][i] * rho[1][i] - lo) * inv;
-			t = t > 0 ? t < 1 ? t : 1 : 0;
-			w->power[end][i] *= 1 - t * t * (3 - 2 * t);
-		}
+	SIMD_LOOP
+	for (int i = 0; i < PART; i++) {
+		float t = (rho[0][i] + b->q[0][i] * rho[1][i] - lo) * inv;
+		t = t > 0 ? t < 1 ? t : 1 : 0;
+		t = 1 - t * t * (3 - 2 * t);
+		p0[i] *= t;
+		p1[i] *= t;
 	}
 }
 
