@@ -59,6 +59,14 @@ class Net(nn.Module):
             x = up(F.interpolate(thin(x), scale_factor=2, mode="nearest") + kept[len(kept) - 2 - k])
         return torch.cat([self.row(x), self.seen(F.avg_pool2d(x, (ROWS, 1)))], 2)
 
+    def in_order(self):
+        """Convolutions and their normalisations (None: without one) as forward runs them, for weights.read."""
+        steps = [self.first] + [s for down in self.down for s in down] + [self.deep]
+        pairs = [(s[0], s[1]) for s in steps]
+        for thin, up in zip(self.thin, self.up):
+            pairs += [(thin, None), (up[0], up[1])]
+        return pairs + [(self.row, None), (self.seen, None)]
+
 
 class Strips:
     """Batches from the generator; the last KEPT strips are kept and drawn from."""
@@ -169,12 +177,22 @@ def judge(net, strips, batches, batch):
         print("  %s: off %.2f %% of the axis, 90 %% %.2f; of sigma %.2f, %.2f" % (name, *np.quantile(o, (0.5, 0.9)), *np.quantile(v, (0.5, 0.9))), flush=True)
 
 
+def load(net, args):
+    """A checkpoint, or a network that was written as ONNX."""
+    if not args.start.endswith(".onnx"):
+        net.load_state_dict(torch.load(args.start), strict=False)
+        return
+    strips = Strips(args.make, 800000000, 24)
+    weights.read(net, args.start, [even(strips.fresh_only(24)[0].float() / 255) for _ in range(20)])
+    strips.close()
+
+
 def main():
     p = argparse.ArgumentParser()
     p.add_argument("--make", required=True)
     p.add_argument("--out")
     p.add_argument("--keep")
-    p.add_argument("--start")
+    p.add_argument("--start", help="checkpoint or ONNX file to begin with")
     p.add_argument("--minutes", type=float, default=40)
     p.add_argument("--rate", type=float, default=2e-3)
     p.add_argument("--batch", type=int, default=24)
@@ -190,7 +208,7 @@ def main():
     rng = torch.Generator().manual_seed(args.seed)
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
-        net.load_state_dict(torch.load(args.start), strict=False)
+        load(net, args)
     print("%d parameters" % sum(v.numel() for v in net.parameters()), flush=True)
     mean = {k: v.clone() for k, v in net.state_dict().items()}
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
