@@ -15,7 +15,7 @@
 
 /* X[n][p] = mean + U diag(value) V^T with orthonormal U, V; U orthogonal to the ones, so that values are the singular
  * values of X centred. */
-struct known {
+struct truth {
 	int n, p, k;
 	double *x, *mean, *U, *V, *value;
 };
@@ -45,11 +45,11 @@ static double *orthonormal(struct rng *rng, int n, int k, bool centred)
 	return Q;
 }
 
-static struct known known_new(struct stress *s, int n, int p, double condition, double scale, double offset)
+static struct truth known_new(struct stress *s, int n, int p, double condition, double scale, double offset)
 {
 	struct rng *rng = &s->rng;
 	int most = n - 1 < p ? n - 1 : p;
-	struct known m = { .n = n, .p = p, .k = 1 + rng_below(rng, most) };
+	struct truth m = { .n = n, .p = p, .k = 1 + rng_below(rng, most) };
 	m.U = orthonormal(rng, n, m.k, true);
 	m.V = orthonormal(rng, p, m.k, false);
 	m.value = mem_new((size_t)m.k, sizeof *m.value);
@@ -71,7 +71,7 @@ static struct known known_new(struct stress *s, int n, int p, double condition, 
 	return m;
 }
 
-static void known_free(struct known *m)
+static void known_free(struct truth *m)
 {
 	free(m->x);
 	free(m->mean);
@@ -81,7 +81,7 @@ static void known_free(struct known *m)
 }
 
 /* Singular values against the known ones, components orthonormal and inside the known space, none claimed beyond it. */
-static void judge_components(struct stress *s, const struct known *m, const struct scatter *sum, double digits)
+static void judge_components(struct stress *s, const struct truth *m, const struct scatter *sum, double digits)
 {
 	int k = m->n < m->p ? m->n : m->p, p = m->p;
 	double *v = mem_new((size_t)p * (size_t)k, sizeof *v), *d = mem_new((size_t)k, sizeof *d);
@@ -131,7 +131,7 @@ static void judge_components(struct stress *s, const struct known *m, const stru
 }
 
 /* In blocks drawn at random. */
-static void add_in_blocks(struct scatter *sum, const struct known *m, struct rng *rng, const double *w)
+static void add_in_blocks(struct scatter *sum, const struct truth *m, struct rng *rng, const double *w)
 {
 	for (int at = 0; at < m->n;) {
 		int n = 1 + rng_below(rng, m->n - at);
@@ -147,7 +147,7 @@ static double draw_condition(struct rng *rng)
 
 static void components(struct stress *s, bool rows_kept, double scale, double offset)
 {
-	struct known m = known_new(s, 2 + rng_below(&s->rng, 60), 1 + rng_below(&s->rng, 60), draw_condition(&s->rng), scale, offset);
+	struct truth m = known_new(s, 2 + rng_below(&s->rng, 60), 1 + rng_below(&s->rng, 60), draw_condition(&s->rng), scale, offset);
 	struct scatter sum;
 	scatter_new(&sum, m.p, rows_kept ? m.n : 0);
 	add_in_blocks(&sum, &m, &s->rng, 0);
@@ -161,7 +161,7 @@ static void components(struct stress *s, bool rows_kept, double scale, double of
 static void degenerate(struct stress *s)
 {
 	double offset = pow(10, rng_range(&s->rng, -2, 6));
-	struct known m = known_new(s, 8 + 2 * rng_below(&s->rng, 30), 4 + rng_below(&s->rng, 40), pow(10, rng_range(&s->rng, 0, 4)),
+	struct truth m = known_new(s, 8 + 2 * rng_below(&s->rng, 30), 4 + rng_below(&s->rng, 40), pow(10, rng_range(&s->rng, 0, 4)),
 	                           pow(10, rng_range(&s->rng, -30, 30)), offset);
 	struct scatter sum, whole;
 	double *w = mem_new((size_t)m.n, sizeof *w), worst = 0, top = 0;
@@ -203,7 +203,7 @@ static void degenerate(struct stress *s)
 static void streamed(struct stress *s)
 {
 	double offset = pow(10, rng_range(&s->rng, -2, 8));
-	struct known m = known_new(s, 1000 + rng_below(&s->rng, 2500), 1 + rng_below(&s->rng, 12), pow(10, rng_range(&s->rng, 0, 6)), 1, offset);
+	struct truth m = known_new(s, 1000 + rng_below(&s->rng, 2500), 1 + rng_below(&s->rng, 12), pow(10, rng_range(&s->rng, 0, 6)), 1, offset);
 	struct scatter sum, whole;
 	int p = m.p;
 	double *w = mem_new((size_t)m.n, sizeof *w), worst = 0, top = 0;
@@ -238,7 +238,7 @@ static void regression(struct stress *s, bool hostile)
 {
 	struct rng *rng = &s->rng;
 	enum { R = 3 };
-	struct known m = known_new(s, 3 + rng_below(rng, 80), 1 + rng_below(rng, 20), draw_condition(rng), 1, 0);
+	struct truth m = known_new(s, 3 + rng_below(rng, 80), 1 + rng_below(rng, 20), draw_condition(rng), 1, 0);
 	int n = m.n, q = m.p;
 	double *x = m.x, *y = mem_new((size_t)(n * R), sizeof *y), *w = mem_new((size_t)n, sizeof *w), top = 0, worst = 0;
 	double *unit = mem_new((size_t)q, sizeof *unit), *Gxx = mem_new((size_t)(q * q), sizeof *Gxx);
