@@ -1,4 +1,4 @@
-/* vec: vectors of 3 and matrices of 3 x 3 numbers, row-major, double. `out` may be an argument too. */
+/* vec: vectors of 3 and matrices of 3 x 3 numbers, row-major, double; vecf_: float. `out` may be an argument too. */
 #ifndef MATH_VEC_H
 #define MATH_VEC_H
 #include <math.h>
@@ -34,6 +34,22 @@ static inline void vec_unit(double out[3], const double a[3])
 	double n = vec_norm(a);
 	for (int i = 0; i < 3; i++)
 		out[i] = a[i] / n;
+}
+
+/* The same in float, in place; a vector of no length stays one. */
+static inline void vecf_unit(float v[3])
+{
+	const float len = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + 1e-12f;
+	for (int c = 0; c < 3; c++)
+		v[c] /= len;
+}
+
+/* out may not be an argument. */
+static inline void vecf_cross(float out[3], const float a[3], const float b[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 static inline void mat_vec(double out[3], const double m[3][3], const double a[3])

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "draw/face/impl.h"
+#include "math/vec.h"
 
 enum { TRIANGLES = 4 };  // of a ribbon's piece between two points, both ways round: a hair has no inside
 
@@ -54,20 +55,6 @@ void portrait_lashes_free(struct portrait *p)
 	free(p->hair_piece);
 }
 
-static void unit(float v[3])
-{
-	float len = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + 1e-12f;
-	for (int c = 0; c < 3; c++)
-		v[c] /= len;
-}
-
-static void cross(float out[3], const float a[3], const float b[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void ribbon(struct portrait *p, const struct hair *h, const float origin[3], double focal_px)
 {
 	float point[HAIR_LASH_POINTS][3], apart = 0;
@@ -83,8 +70,8 @@ static void ribbon(struct portrait *p, const struct hair *h, const float origin[
 			way[c] = point[k + 1 < h->n ? k + 1 : k][c] - point[k + 1 < h->n ? k : k - 1][c];
 			to[c] = origin[c] - point[k][c];
 		}
-		cross(wide, way, to);
-		unit(wide);
+		vecf_cross(wide, way, to);
+		vecf_unit(wide);
 		float *a = p->mesh.x[p->lash_vertex + 2 * (h->first + k)], *b = a + 3;
 		for (int c = 0; c < 3; c++) {
 			a[c] = point[k][c] - half * wide[c];

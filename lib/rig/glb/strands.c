@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 
 static const float metres = 1e-3f;
 enum { TUBE = 3, RIBBON = 2 };
@@ -28,29 +29,15 @@ int strands_count(const struct hairs *hairs)
 	return n;
 }
 
-static void cross(float out[3], const float a[3], const float b[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void unit(float v[3])
-{
-	const float len = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + 1e-12f;
-	for (int c = 0; c < 3; c++)
-		v[c] /= len;
-}
-
 /* Two axes across the hair at a point, a x b = way. A ribbon lies across the way off the skin. */
 static void across(float a[3], float b[3], const float way[3], const struct hair_frame *f, bool ribbon)
 {
 	if (ribbon)
-		cross(a, f->off, way);
+		vecf_cross(a, f->off, way);
 	else
-		cross(a, way, f->along);
-	unit(a);
-	cross(b, way, a);
+		vecf_cross(a, way, f->along);
+	vecf_unit(a);
+	vecf_cross(b, way, a);
 }
 
 static void one(float (*out)[3], float (*normal)[3], const struct hairs *hairs, const struct hair *h, const struct rig *rig, const float (*x)[3])
@@ -63,7 +50,7 @@ static void one(float (*out)[3], float (*normal)[3], const struct hairs *hairs, 
 		const bool tip = k + 1 == h->n, ribbon = sides == RIBBON;
 		for (int c = 0; c < 3; c++)
 			way[c] = point[tip ? k : k + 1][c] - point[k ? k - 1 : 0][c];
-		unit(way);
+		vecf_unit(way);
 		across(a, b, way, &f, ribbon);
 		for (int i = 0; i < (tip ? 1 : sides); i++, row++)
 			for (int c = 0; c < 3; c++) {

@@ -1,21 +1,8 @@
 #include "rig/hair/hair.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-static void unit(float v[3])
-{
-	const float len = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + 1e-12f;
-	for (int c = 0; c < 3; c++)
-		v[c] /= len;
-}
-
-static void cross(float out[3], const float a[3], const float b[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
+#include "math/vec.h"
 
 struct hair_frame hair_frame_of(const struct hair *h, const struct rig *rig, const float (*x)[3])
 {
@@ -28,12 +15,12 @@ struct hair_frame hair_frame_of(const struct hair *h, const struct rig *rig, con
 		f.off[c] = f.root[c] - (float)rig->globe[h->side].center[c];
 		across[c] = turn * (float)rig->head_from_target[0][c];
 	}
-	unit(f.off);
-	cross(f.up, f.off, across);
+	vecf_unit(f.off);
+	vecf_cross(f.up, f.off, across);
 	for (int c = 0; c < 3; c++)
 		f.up[c] *= turn;
-	unit(f.up);
-	cross(f.along, f.up, f.off);
+	vecf_unit(f.up);
+	vecf_cross(f.along, f.up, f.off);
 	for (int c = 0; c < 3; c++)
 		f.along[c] *= turn;
 	return f;
