@@ -44,10 +44,10 @@ recovers() {
 damage() {
 	local files file
 	mapfile -t files < <(cd "$root/hit/work" 2>/dev/null && find . -type f ! -path './.made/*' ! -path './log/*' ! -name '*.log' | sort)
-	# Of a database that COLMAP was killed in only SQLite can tell whether it is whole: it has no sum of its bytes.
-	grep -qs calibrate/database.db "$root/hit/work/.made/calibrate.json" || mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v database.db)
 	[ ${#files[@]} -gt 0 ] || return
 	file=$root/hit/work/${files[RANDOM % ${#files[@]}]}
+	# Of a database that COLMAP was killed in only SQLite can tell whether it is whole: it has no sum of its bytes.
+	[[ $file != */database.db ]] || grep -qs calibrate/database.db "$root/hit/work/.made/calibrate.json" || return
 	case $((RANDOM % 3)) in
 	0) rm "$file" ;;
 	1) truncate -s "$(($(stat -c %s "$file") / 2))" "$file" ;;
