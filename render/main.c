@@ -38,10 +38,10 @@ int main(int argc, char **argv)
 	bool ok = eye_check(&eye, &err) && photos_load(&capture, &stage, &eye_of, &err);
 	struct jobs eyes = { 0 };
 	ok = ok && jobs_open(&eyes, &stage, &capture, &eye, &conf, &err);
-	for (int i = 0; ok && i < eyes.n; i++)
-		ok = (stage.only || render_eye(&eyes.job[i], &err)) && export_eye(&eyes.job[i], &leaves, &err);
 	skin.portrait.eye_samples = conf.samples;
 	struct skin_job faces = { .stage = &stage, .render = &conf, .conf = &skin, .leaves = &leaves, .capture = &capture, .eye = &eye, .photographed = &eyes };
+	for (int i = 0; ok && i < eyes.n; i++)
+		ok = (stage.only || render_eye(&eyes.job[i], &err)) && export_eye(&eyes.job[i], &leaves, &faces, &err);
 	if (!stage.only) {
 		ok = ok && render_skin(&faces, &err) && film_make(&faces, &err);
 		show(&faces, ok, &err);

@@ -15,6 +15,11 @@ bench: build
 bench-batch: build $B/tests/tools/variant
 	@B=$B BIN=$(BIN) N=$(or $(N),$(if $(QUICK),20,200)) SAME=$(or $(SAME),$(if $(QUICK),100,1000)) tests/bench/batch.sh
 
+# The exported eye in other programs: beside the others, since it needs Blender, and minutes.
+.PHONY: bench-look
+bench-look: build $B/tests/tools/eye_compare
+	@B=$B BIN=$(BIN) SAMPLES=$(or $(SAMPLES),$(if $(QUICK),16,64)) tests/bench/look.sh
+
 .PHONY: bench-report bench-compare
 bench-compare: $B/tests/bench/report/compare
 	@test -n "$(BEFORE)" || { echo "make: say which: make bench-compare BEFORE=old/bench [AFTER=bench]" >&2; exit 2; }

@@ -5,7 +5,10 @@
 
 #include "base/mem.h"
 #include "base/version.h"
+#include "draw/eye/look.h"
 #include "rig/glb/buffer.h"
+#include "rig/glb/strands.h"
+#include "rig/glb/tears.h"
 
 static const double metres = 1e-3;
 
@@ -19,19 +22,22 @@ static int put_metres(struct glb_buffer *g, const float (*x)[3], int n, int targ
 	return at;
 }
 
-static json_t *mesh(struct glb_buffer *g, const struct export_part *p, int name)
+/* Positions, normals, triangles: a mesh of one primitive. */
+static json_t *plain_mesh(struct glb_buffer *g, const struct export_part *p, const char *name, int material)
 {
-	json_t *attributes = json_object();
-	json_object_set_new(attributes, "POSITION", json_integer(put_metres(g, (const float(*)[3])p->x, p->n, GLB_ARRAY)));
-	json_object_set_new(attributes, "NORMAL", json_integer(glb_add_floats(g, p->normal[0], (size_t)p->n, 3, false, GLB_ARRAY)));
+	const int position = put_metres(g, (const float(*)[3])p->x, p->n, GLB_ARRAY), normal = glb_add_floats(g, p->normal[0], (size_t)p->n, 3, false, GLB_ARRAY);
+	const int index = glb_add_corners(g, p->corner, (size_t)p->n_corners, p->n);
+	return json_pack("{s:s,s:[{s:{s:i,s:i},s:i,s:i}]}", "name", name, "primitives", "attributes", "POSITION", position, "NORMAL", normal, "indices", index, "material", material);
+}
+
+static json_t *mesh(struct glb_buffer *g, const struct export_part *p, int name, double pupil_mm)
+{
+	json_t *out = plain_mesh(g, p, export_part_names[name], name), *primitive = json_array_get(json_object_get(out, "primitives"), 0);
+	json_t *attributes = json_object_get(primitive, "attributes");
 	if (name != EXPORT_BACK)
 		json_object_set_new(attributes, "TEXCOORD_0", json_integer(glb_add_floats(g, p->uv[0], (size_t)p->n, 2, false, GLB_ARRAY)));
 	if (name == EXPORT_IRIS)
 		json_object_set_new(attributes, "TANGENT", json_integer(glb_add_floats(g, p->tangent[0], (size_t)p->n, 4, false, GLB_ARRAY)));
-	int view = glb_add_view(g, p->corner, (size_t)p->n_corners * sizeof *p->corner, GLB_INDICES);
-	int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", p->n_corners, "type", "SCALAR"));
-	json_t *primitive = json_pack("{s:o,s:i,s:i}", "attributes", attributes, "indices", index, "material", name);
-	json_t *out = json_pack("{s:s,s:[O]}", "name", export_part_names[name], "primitives", primitive);
 	if (p->target[0]) {
 		json_t *targets = json_array(), *names = json_array(), *weights = json_array();
 		for (int k = 0; k < EXPORT_TARGETS; k++) {
@@ -41,9 +47,8 @@ static json_t *mesh(struct glb_buffer *g, const struct export_part *p, int name)
 		}
 		json_object_set_new(primitive, "targets", targets);
 		json_object_set_new(out, "weights", weights);
-		json_object_set_new(out, "extras", json_pack("{s:o}", "targetNames", names));
+		json_object_set_new(out, "extras", json_pack("{s:o,s:f}", "targetNames", names, "pupil_mm", pupil_mm));
 	}
-	json_decref(primitive);
 	return out;
 }
 
@@ -91,6 +96,8 @@ static json_t *materials(const struct export_eye *eye)
 	                    json_pack("{s:f,s:o}", "transmissionFactor", 1.0, "transmissionTexture", texture(EXPORT_PIC_CORNEA_VOLUME)));
 	json_object_set_new(e, "KHR_materials_volume",
 	                    json_pack("{s:f,s:o}", "thicknessFactor", metres * eye->depth_mm, "thicknessTexture", texture(EXPORT_PIC_CORNEA_VOLUME)));
+	json_object_set_new(sclera, "extras", json_pack("{s:{s:f}}", "tear_film", "index", LOOK_FILM_INDEX));
+	json_object_set_new(cornea, "extras", json_pack("{s:{s:f}}", "tear_film", "index", LOOK_FILM_INDEX));
 	return json_pack("[o,o,o,o]", iris, back, sclera, cornea);
 }
 
@@ -108,30 +115,44 @@ static void put_pictures(json_t *root, struct glb_buffer *g, const struct export
 	json_object_set_new(root, "samplers", json_pack("[{s:i,s:i,s:i,s:i}]", "magFilter", LINEAR, "minFilter", MIPMAPS, "wrapS", CLAMP, "wrapT", CLAMP));
 }
 
-static json_t *nodes(const char *name)
+/* One node a mesh, below the root. */
+static json_t *nodes(const char *name, const json_t *meshes)
 {
-	json_t *list = json_array(), *children = json_array();
-	for (int i = 0; i < EXPORT_PARTS; i++)
-		json_array_append_new(children, json_integer(1 + i));
+	json_t *list = json_array(), *children = json_array(), *it;
+	size_t i;
 	json_array_append_new(list, json_pack("{s:s,s:o}", "name", name, "children", children));
-	for (int i = 0; i < EXPORT_PARTS; i++)
-		json_array_append_new(list, json_pack("{s:s,s:i}", "name", export_part_names[i], "mesh", i));
+	json_array_foreach(meshes, i, it) {
+		json_array_append_new(children, json_integer(1 + (json_int_t)i));
+		json_array_append_new(list, json_pack("{s:O,s:i}", "name", json_object_get(it, "name"), "mesh", (int)i));
+	}
 	return list;
+}
+
+/* Lashes and the meniscus, where there are any, with their materials. */
+static void put_margin(struct glb_buffer *g, json_t *meshes, json_t *materials, const struct export_eye *eye)
+{
+	for (int k = 0; eye->margin && k < EXPORT_MARGIN_PARTS; k++) {
+		if (!eye->margin[k].n_corners)
+			continue;
+		json_array_append_new(meshes, plain_mesh(g, &eye->margin[k], export_margin_names[k], (int)json_array_size(materials)));
+		json_array_append_new(materials, k == EXPORT_TEARS ? tears_material() : strands_material(eye->hair_rgb));
+	}
 }
 
 /* The file's JSON, its buffer in g; g's arrays pass on to it. */
 static json_t *root_of(struct glb_buffer *g, const struct export_eye *eye)
 {
 	*g = (struct glb_buffer){ .views = json_array(), .accessors = json_array() };
-	json_t *asset = json_pack("{s:s,s:s}", "version", "2.0", "generator", "Eyewright " EYEWRIGHT_VERSION), *meshes = json_array();
+	json_t *asset = json_pack("{s:s,s:s}", "version", "2.0", "generator", "Eyewright " EYEWRIGHT_VERSION), *meshes = json_array(), *looks = materials(eye);
 	json_t *made = eye->made_by ? json_loads(eye->made_by, 0, 0) : 0;
 	if (made)
 		json_object_set_new(asset, "extras", json_pack("{s:o}", "made_by", made));
 	for (int i = 0; i < EXPORT_PARTS; i++)
-		json_array_append_new(meshes, mesh(g, &eye->parts[i], i));
+		json_array_append_new(meshes, mesh(g, &eye->parts[i], i, eye->pupil_mm));
+	put_margin(g, meshes, looks, eye);
 	json_t *root = json_pack("{s:o,s:[s,s,s,s],s:i,s:[{s:[i]}],s:o,s:o,s:o}", "asset", asset, "extensionsUsed", "KHR_materials_ior",
 	                         "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume", "scene", 0, "scenes", "nodes", 0,
-	                         "nodes", nodes(eye->name), "meshes", meshes, "materials", materials(eye));
+	                         "nodes", nodes(eye->name, meshes), "meshes", meshes, "materials", looks);
 	put_pictures(root, g, eye->pictures);
 	json_object_set_new(root, "accessors", g->accessors);
 	json_object_set_new(root, "bufferViews", g->views);

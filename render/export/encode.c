@@ -103,6 +103,8 @@ void export_work_free(struct export_work *w)
 	}
 	for (int i = 0; i < EXPORT_PARTS; i++)
 		export_part_free(&w->parts[i]);
+	for (int i = 0; i < EXPORT_MARGIN_PARTS; i++)
+		export_part_free(&w->margin[i]);
 	for (int i = 0; i < EXPORT_VIEWS; i++)
 		image_free(&w->reference[i]);
 }

@@ -13,6 +13,7 @@
 #include "export/lod.h"
 #include "image/exr.h"
 #include "image/picture.h"
+#include "render/face/skin.h"
 #include "render/page/embed.h"
 
 enum { GLBS = 1 + EXPORT_LODS, MAX_FILES = 8 + GLBS + EXPORT_VIEWS + 2 * EXPORT_MAPS };
@@ -24,7 +25,7 @@ static const char *const glb_names[GLBS] = { "eye.glb", "eye_lod1.glb", "eye_lod
 struct files {
 	const char *rel[MAX_FILES];
 	int n;
-	const char *in[COUNT(((struct job *)0)->in) + 1];
+	const char *in[COUNT(((struct job *)0)->in) + 4];
 	int n_in;
 };
 
@@ -42,11 +43,13 @@ static const char *add(struct files *f, struct job *job, const char *fmt, ...)
 	return f->rel[f->n++] = rel;
 }
 
-static struct files files_of(struct job *job, const struct export_conf *conf)
+static struct files files_of(struct job *job, const struct export_conf *conf, const struct skin_target *face)
 {
 	struct files f = { .n_in = job->n_in };
 	memcpy(f.in, job->in, sizeof job->in);
 	f.in[f.n_in++] = stage_path(job->stage, "%s/freckles.exr", job->names->iris) + strlen(job->stage->capture) + 1;
+	for (int i = 0; i < face->n_in; i++)
+		f.in[f.n_in++] = face->in[i];
 	for (int i = 0; i < GLBS; i++)
 		add(&f, job, "%s", glb_names[i]);
 	add(&f, job, "eye.json");
@@ -100,6 +103,21 @@ void export_fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, cons
 		export_part_free(&fine[i]);
 }
 
+/* What stands on the lids of a character round this eye, where the capture has one. */
+static bool take_margin(struct export_work *w, struct skin_job *faces, struct skin_target *face, struct err *err)
+{
+	const int side = !strcmp(w->job->names->side, "right");
+	if (!face->name)
+		return true;
+	if (!skin_open(faces, face, err))
+		return false;
+	const double over = fmax(skin_over_globe(&w->job->scene, &face->rig.globe[side]), 0);
+	export_margin(w->margin, &w->job->scene, &face->rig, portrait_hairs(face->portrait), side, faces->conf->portrait.tear_mm, over);
+	w->has_margin = true;
+	memcpy(w->hair_rgb, faces->conf->portrait.hair_rgb, sizeof w->hair_rgb);
+	return true;
+}
+
 static bool write_meshes(struct export_work *w, const char *made_by, struct err *err)
 {
 	bool ok = true;
@@ -115,7 +133,9 @@ static bool write_meshes(struct export_work *w, const char *made_by, struct err 
 			w->triangles[k] += parts[i].n_corners / 3;
 			w->vertices[k] += parts[i].n;
 		}
-		struct export_eye eye = { parts, w->pictures, w->job->scene.cornea.n, w->high[EXPORT_CORNEA_DEPTH], "eye", made_by };
+		struct export_eye eye = { parts, w->pictures, w->job->scene.cornea.n, w->high[EXPORT_CORNEA_DEPTH], "eye", made_by, 2 * w->job->scene.pupil[2],
+			                      w->has_margin ? w->margin : 0, { 0 } };
+		memcpy(eye.hair_rgb, w->hair_rgb, sizeof eye.hair_rgb);
 		ok = export_eye_glb(stage_path(w->job->stage, "%s/%s", w->job->names->leaves, glb_names[k]), &eye, &w->bytes[k], err);
 		for (int i = 0; i < EXPORT_PARTS; i++)
 			export_part_free(&less[i]);
@@ -183,7 +203,7 @@ static void tell(const struct export_work *w)
 	stage_figure(stage, "export_difference_30", w->loss[1].de_mean, "CIEDE2000 on the iris, in a rasteriser at 30 degrees");
 }
 
-bool export_eye(struct job *job, const struct export_conf *conf, struct err *err)
+bool export_eye(struct job *job, const struct export_conf *conf, struct skin_job *faces, struct err *err)
 {
 	if (!job->usable) {
 		stage_skipped_as_said(job->stage, "export of the %s eye: there is no iris to export", job->names->side);
@@ -193,7 +213,10 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct err *err
 		stage_skipped_as_said(job->stage, "%s/eye.glb: export.make = no: make export makes it", job->names->leaves);
 		return true;
 	}
-	struct files f = files_of(job, conf);
+	struct skin_target face;
+	if (!skin_first(&face, job->stage, err))
+		return false;
+	struct files f = files_of(job, conf, &face);
 	bool fresh = true;
 	for (int i = 0; i < f.n; i++)
 		fresh &= stage_fresh(job->stage, f.rel[i], f.n_in, f.in);
@@ -207,12 +230,13 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct err *err
 	if (ok) {
 		export_eye_meshes(w.parts, &job->scene, &conf->mesh);
 		refer(&w);
-		ok = write_meshes(&w, made_by, err) && write_pictures(&w, made_by, err) && write_texts(&w, made_by, err);
+		ok = take_margin(&w, faces, &face, err) && write_meshes(&w, made_by, err) && write_pictures(&w, made_by, err) && write_texts(&w, made_by, err);
 	}
 	for (int i = 0; ok && i < f.n; i++)
 		ok = stage_made(job->stage, f.rel[i], f.n_in, f.in, err);
 	if (ok)
 		tell(&w);
+	skin_free(&face);
 	image_free(&freckles);
 	export_work_free(&w);
 	return ok;

@@ -33,6 +33,9 @@ struct export_work {
 	struct job *job;
 	const struct export_conf *conf;
 	struct export_part parts[EXPORT_PARTS];
+	struct export_part margin[EXPORT_MARGIN_PARTS];  // of the capture's first character, round the eye; where it has one
+	bool has_margin;
+	double hair_rgb[3];
 	struct image maps[EXPORT_MAPS];
 	struct export_png png[EXPORT_MAPS], pictures[EXPORT_PICTURES];
 	double low[EXPORT_MAPS], high[EXPORT_MAPS];   // what 0 and 255 stand for
@@ -54,8 +57,9 @@ void export_fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, cons
  * where resampling or compression fails. */
 bool export_in_face(char **out, size_t *size, const struct scene *scene, const struct envmap *lit, const struct export_conf *conf, struct err *err);
 
-/* Makes what is not fresh, from the job's scene. */
-bool export_eye(struct job *job, const struct export_conf *conf, struct err *err);
+/* Makes what is not fresh, from the job's scene; lashes and tears from the first character of `faces`. */
+struct skin_job;
+bool export_eye(struct job *job, const struct export_conf *conf, struct skin_job *faces, struct err *err);
 
 /* encode.c: PNG of all maps and of the pictures that a .glb embeds, in parallel; in work->png and work->pictures. */
 bool export_encode(struct export_work *work, struct err *err);

@@ -16,7 +16,7 @@ bool export_in_face(char **out, size_t *size, const struct scene *scene, const s
 		for (int i = 0; i < EXPORT_PARTS; i++)
 			all += w.parts[i].n_corners / 3;
 		export_fewer(less, &error_mm, scene, &conf->mesh, all, conf->lod_triangles[0]);
-		ok = export_eye_pack(out, size, &(struct export_eye){ less, w.pictures, scene->cornea.n, w.high[EXPORT_CORNEA_DEPTH], "eye", 0 }, err);
+		ok = export_eye_pack(out, size, &(struct export_eye){ less, w.pictures, scene->cornea.n, w.high[EXPORT_CORNEA_DEPTH], "eye", 0, 2 * scene->pupil[2], 0, { 0 } }, err);
 		for (int i = 0; i < EXPORT_PARTS; i++)
 			export_part_free(&less[i]);
 	}

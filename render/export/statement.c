@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "base/json.h"
+#include "draw/eye/look.h"
 #include "draw/eye/sclera.h"
 #include "render/export/export.h"
 
@@ -77,6 +78,8 @@ json_t *export_statement(const struct export_work *w)
 	json_object_set_new(out, "frame", json_string("glTF: metres, y up, the eye looks along +z, origin at the centre of the scleral sphere; x is the camera's"));
 	json_object_set_new(out, "cornea", json_pack("{s:f,s:f,s:f,s:f}", "radius_mm", s->cornea.R, "asphericity", s->cornea.p, "index", s->cornea.n,
 	                                             "apex_from_origin_mm", s->sclera_z));
+	json_object_set_new(out, "tear_film", json_pack("{s:f,s:s,s:b}", "index", LOOK_FILM_INDEX, "roughness", "textures/cornea_roughness, textures/sclera_roughness", "meniscus",
+	                                                w->has_margin && w->margin[EXPORT_TEARS].n_corners));
 	json_object_set_new(out, "limbus_mm", json_pack("[f,f]", s->limbus[0], s->limbus[1]));
 	json_object_set_new(out, "sclera_radius_mm", json_real(s->conf.sclera_radius));
 	json_object_set_new(out, "iris", json_pack("{s:f,s:f,s:f,s:f}", "normal_scale", export_normal_scale, "depth_behind_apex_mm", s->eye.iris_depth, "pupil_diameter_mm", 2 * s->pupil[2],

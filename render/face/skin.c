@@ -59,10 +59,7 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 	} else {
 		stage_skipped(job->stage, "pictures of targets/%s: it has no rig", file);
 	}
-	portrait_free(t.portrait);
-	dress_free(t.dress);
-	look_free(&t.look);
-	rig_free(&t.rig);
+	skin_free(&t);
 	free(name);
 	return ok;
 }

@@ -118,7 +118,16 @@ bool skin_clips(struct skin_job *job, struct skin_target *target, struct err *er
 /* skin_glb.c: NAME.glb, driven by csv, with the eyes that its pictures show. */
 bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv, struct err *err);
 
-/* skin_open.c: loads the rig and makes the portrait, once. */
+/* skin_open.c: loads the rig and makes the portrait, once; skin_free. */
 bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);
+void skin_free(struct skin_target *target);
+
+/* skin_first.c: the first character that has a rig: name, rig_path, look_path, and those in its inputs, with what the model is made of. Name
+ * null: there is none. Returns false, err set, where targets/ cannot be read. */
+bool skin_first(struct skin_target *target, struct stage *stage, struct err *err);
+
+/* skin_open.c: how far an eye, scaled to the globe that the lids were made to clear, stands out of it where lids go, mm: the largest over
+ * directions up to 60 degrees from its axis. */
+double skin_over_globe(const struct scene *eye, const struct rig_globe *globe);
 
 #endif

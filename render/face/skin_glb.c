@@ -3,8 +3,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "export/outside.h"
-#include "math/vec.h"
 #include "render/face/skin.h"
 
 /* The eyes as files in memory, once: what the pictures show on that side. */
@@ -23,23 +21,6 @@ static bool eyes_glb(struct skin_job *job, struct err *err)
 	return true;
 }
 
-/* How far an eye, scaled to the globe that the lids were made to clear, stands out of it where lids go, mm: the largest over directions up
- * to 60 degrees from its axis. */
-static double over_globe(const struct scene *eye, const struct rig_globe *globe)
-{
-	enum { RINGS = 48, AROUND = 32 };
-	const double scale = globe->radius / eye->conf.sclera_radius;
-	double worst = -INFINITY;
-	for (int j = 0; j < RINGS; j++)
-		for (int i = 0; i < AROUND; i++) {
-			double r = eye->conf.sclera_radius * sin(M_PI / 3) * j / RINGS, turn = 2 * M_PI * i / AROUND, at[3];
-			export_front(at, eye, r * cos(turn), r * sin(turn));
-			const double d[3] = { at[0], -at[1], eye->sclera_z - at[2] };
-			worst = fmax(worst, scale * vec_norm(d) - (double)globe_map_at(&globe->map, (float[3]){ (float)d[0], (float)d[1], (float)d[2] }));
-		}
-	return worst;
-}
-
 bool skin_glb(struct skin_job *job, struct skin_target *t, const char *csv, struct err *err)
 {
 	const char *in[COUNT(t->in) + 1], *rel = stage_path(job->stage, "work/render/%s.glb", t->name) + strlen(job->stage->capture) + 1;
@@ -56,12 +37,16 @@ bool skin_glb(struct skin_job *job, struct skin_target *t, const char *csv, stru
 	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
 	memcpy(conf.hair_rgb, job->conf->portrait.hair_rgb, sizeof conf.hair_rgb);
 	conf.hairs = portrait_hairs(t->portrait);
+	conf.tear_mm = job->conf->portrait.tear_mm;
+	conf.expression = (const char *const *)job->model.au_names;
+	conf.n_expressions = job->model.n_au;
 	struct glb_eye eye[2];
 	double over = -INFINITY;
 	for (int s = 0; s < 2; s++) {
 		eye[s] = (struct glb_eye){ job->eye_glb[s], job->eye_size[s], job->eyes[s]->conf.sclera_radius };
-		over = fmax(over, over_globe(job->eyes[s], &t->rig.globe[s]));
+		over = fmax(over, skin_over_globe(job->eyes[s], &t->rig.globe[s]));
 	}
+	conf.over_mm = fmax(over, 0);
 	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, eye, t->name, t->look_path ? &t->look : 0, &conf,
 	                    stage_made_by(job->stage, n, in), err)
 	          && skin_made(job, rel, n, in, err);

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "export/outside.h"
+#include "math/vec.h"
 #include "render/face/skin.h"
 
 /* Gain of the beauty views' light for skin: a face comes out as in a portrait. */
@@ -108,6 +110,29 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &conf);
 	portrait_wear(t->portrait, &job->wrinkles, job->model.n_au, job->model.au_names);
 	return true;
+}
+
+void skin_free(struct skin_target *t)
+{
+	portrait_free(t->portrait);
+	dress_free(t->dress);
+	look_free(&t->look);
+	rig_free(&t->rig);
+}
+
+double skin_over_globe(const struct scene *eye, const struct rig_globe *globe)
+{
+	enum { RINGS = 48, AROUND = 32 };
+	const double scale = globe->radius / eye->conf.sclera_radius;
+	double worst = -INFINITY;
+	for (int j = 0; j < RINGS; j++)
+		for (int i = 0; i < AROUND; i++) {
+			double r = eye->conf.sclera_radius * sin(M_PI / 3) * j / RINGS, turn = 2 * M_PI * i / AROUND, at[3];
+			export_front(at, eye, r * cos(turn), r * sin(turn));
+			const double d[3] = { at[0], -at[1], eye->sclera_z - at[2] };
+			worst = fmax(worst, scale * vec_norm(d) - (double)globe_map_at(&globe->map, (float[3]){ (float)d[0], (float)d[1], (float)d[2] }));
+		}
+	return worst;
 }
 
 void skin_close(struct skin_job *job)

@@ -42,6 +42,7 @@ EMBED(viewer_sliders_js, "render/viewer/sliders.js");
 EMBED(viewer_address_js, "render/viewer/address.js");
 EMBED(viewer_controls_js, "render/viewer/controls.js");
 EMBED(viewer_tools_js, "render/viewer/tools.js");
+EMBED(viewer_leaves_js, "render/viewer/leaves.js");
 EMBED(viewer_live_js, "render/viewer/live.js");
 EMBED(viewer_page_js, "render/viewer/page.js");
 EMBED(export_blender_py, "render/export/blender_eye.py");

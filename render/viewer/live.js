@@ -1,5 +1,5 @@
 /* What is drawn when: only what has changed; then finer and finer. */
-class Live extends Tools {
+class Live extends Leaving {
 	static BEYOND = 1.3;
 
 	/* ---- state for the shaders */

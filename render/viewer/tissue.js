@@ -117,5 +117,10 @@ const tissue = (() => {
 		}
 		return out;
 	}
-	return { optics };
+	/* What a stroma of middling thickness under its border layer sends back, for each wavelength. */
+	function colour(data, value) {
+		const o = optics(data, value), MIDDLING = 0.3;
+		return data.bands.map((_, k) => first_order([0, 1].map(l => o.extinction[l][k]), [0, 1].map(l => o.source[l][k]), data.abl, MIDDLING, 0.95, 0.85));
+	}
+	return { optics, colour };
 })();

@@ -19,7 +19,7 @@ class Tools extends Controls {
 			group("Undo and redo", ...this.undoing, ...this.slot_buttons),
 			group("Presets", ...Tools.PRESETS.map(([name, values]) => this.button(name, () => this.preset_to(name, values)))),
 			group("Keep", this.button("Save picture", () => this.save_picture(0)), this.button("Save picture, 4k", () => this.save_picture(Tools.LONGEST)),
-				this.button("Save turntable", () => this.save_turntable()), this.button("Full screen", () => this.full_screen())));
+				this.button("Save turntable", () => this.save_turntable()), ...(this.carried() ? [this.button("Save .glb as set", () => this.save_glb())] : []), this.button("Full screen", () => this.full_screen())));
 		this.show_steps();
 		return set;
 	}

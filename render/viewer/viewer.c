@@ -4,14 +4,15 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "character/import.h"
 #include "base/version.h"
+#include "draw/web/base64.h"
 #include "draw/web/eye.h"
 #include "draw/web/face.h"
 #include "render/page/embed.h"
 #include "render/page/page.h"
 
 static const char *const out = "work/review/viewer.html";
+enum { MOST_GLB = 8 << 20 };  // larger ones stay where they are: the page is to be small
 
 /* JSON as the text of a script element; every "<" is escaped, so that nothing can end the element. free(). */
 static char *script_text(const json_t *json)
@@ -76,14 +77,14 @@ static void programs(json_t *data, bool face)
 		json_object_set_new(sub, of_face[i].key, json_string(of_face[i].text));
 	json_object_set_new(data, "face", face ? json_pack("[o]", json_incref(sub)) : json_array());
 	json_decref(sub);
-	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_known_js : "", face ? viewer_pose_js : "", face ? viewer_face_js : "",
-	                      viewer_sliders_js, viewer_panorama_js, viewer_address_js, viewer_controls_js, viewer_tools_js, viewer_live_js, viewer_page_js);
+	char *js = mem_printf("%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s", viewer_tissue_js, viewer_motion_js, viewer_gl_js, viewer_scene_js, viewer_beams_js, face ? viewer_known_js : "", face ? viewer_pose_js : "", face ? viewer_face_js : "",
+	                      viewer_sliders_js, viewer_panorama_js, viewer_address_js, viewer_controls_js, viewer_tools_js, viewer_leaves_js, viewer_live_js, viewer_page_js);
 	json_object_set_new(data, "js", json_string(js));
 	free(js);
 }
 
 static bool write_page(struct stage *stage, const struct capture *capture, const struct render_conf *conf, json_t *eyes,
-                       json_t *face, struct err *err)
+                       json_t *face, json_t *glbs, struct err *err)
 {
 	struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array(), json_array() };
 	char *full = realpath(stage->capture, 0), *html, *text;
@@ -100,6 +101,7 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 	json_object_set_new(data, "version", json_string(EYEWRIGHT_VERSION));
 	json_object_set_new(data, "stills", stills(&page));
 	json_object_set_new(data, "data", json_string(text));
+	json_object_set(data, "glbs", glbs);
 	programs(data, face);
 	size_t size;
 	bool ok = template_fill(&html, &size, viewer_html, data, err) && file_write(stage_path(stage, "%s", out), html, size, err);
@@ -121,8 +123,8 @@ struct parts {
 	struct jobs *eyes;
 	int n_in;
 	const char **in;
-	char *target;  // the character: its name; null: none
-	const char *look;  // of its own; null: none
+	struct skin_target target;  // the character; without a name: none
+	const char *glb;   // as it has left; null: it has not
 };
 
 static void find_eyes(struct parts *p)
@@ -136,33 +138,16 @@ static void find_eyes(struct parts *p)
 
 static bool find_character(struct parts *p, struct stage *stage, struct err *err)
 {
-	struct file_list list;
-	if (!file_exists(stage_path(stage, "work/skin/model.json")))
-		return true;
-	if (!stage_list(stage, &list, "targets", err))
+	static const char *const driven[] = { "work/skin/gaze.csv", "work/skin/animation.csv", "work/skin/wrinkles.json", "work/skin/wrinkles.exr" };
+	if (!skin_first(&p->target, stage, err))
 		return false;
-	for (int i = 0; i < list.n && !p->target; i++) {
-		if (character_kind_of(list.names[i]) == CHARACTER_NONE)
-			continue;
-		const char *dot = strrchr(list.names[i], '.');
-		char *name = mem_printf("%.*s", dot ? (int)(dot - list.names[i]) : (int)strlen(list.names[i]), list.names[i]);
-		const char *rig = stage_path(stage, "work/targets/%s/rig.npz", name) + strlen(stage->capture) + 1;
-		if (file_exists(stage_path(stage, "%s", rig))) {
-			p->target = name;
-			p->in[p->n_in++] = rig;
-			p->in[p->n_in++] = "work/skin/model.json";
-			p->in[p->n_in++] = "work/skin/gaze.csv";
-			p->in[p->n_in++] = "work/skin/animation.csv";
-			p->in[p->n_in++] = "work/skin/wrinkles.json";
-			p->in[p->n_in++] = "work/skin/wrinkles.exr";
-			const char *look = stage_path(stage, "work/targets/%s/look.npz", name) + strlen(stage->capture) + 1;
-			if (file_exists(stage_path(stage, "%s", look)))
-				p->in[p->n_in++] = p->look = look;
-		} else {
-			free(name);
-		}
-	}
-	file_list_free(&list);
+	for (int i = 0; i < p->target.n_in; i++)
+		p->in[p->n_in++] = p->target.in[i];
+	for (int i = 0; i < COUNT(driven) && p->target.name; i++)
+		p->in[p->n_in++] = driven[i];
+	const char *glb = p->target.name ? stage_path(stage, "work/render/%s.glb", p->target.name) : 0;
+	if (glb && file_exists(glb))
+		p->in[p->n_in++] = p->glb = glb + strlen(stage->capture) + 1;
 	return true;
 }
 
@@ -209,10 +194,9 @@ static bool add_clips(json_t *face, struct skin_job *skin, struct err *err)
 }
 
 /* The character and, where there is no other, its plain eye. */
-static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const char *name, const char *look, struct err *err)
+static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, struct skin_target *target, struct err *err)
 {
-	struct skin_target target = { .name = name, .look_path = look, .rig_path = stage_path(skin->stage, "work/targets/%s/rig.npz", name) + strlen(skin->stage->capture) + 1 };
-	bool ok = skin_open(skin, &target, err);
+	bool ok = skin_open(skin, target, err);
 	if (ok && !json_array_size(eyes)) {
 		const struct web_source plain = { skin->eyes[0], "eye", 0, &skin->studio, skin->gain, 0, 0, skin->render->lights, skin->render->light_directions };
 		json_t *one = web_eye(&plain, err);
@@ -221,36 +205,57 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, const c
 			json_array_append_new(eyes, one);
 	}
 	if (ok) {
-		*face = web_face(name, target.portrait, &skin->model, skin->gain, skin->eyes, err);
+		*face = web_face(target->name, target->portrait, &skin->model, skin->gain, skin->eyes, err);
 		ok = *face && add_clips(*face, skin, err);
 	}
-	portrait_free(target.portrait);
-	dress_free(target.dress);
-	look_free(&target.look);
-	rig_free(&target.rig);
+	skin_free(target);
 	return ok;
+}
+
+/* What can leave the page: the character as it has left, unless that is large; else each eye by itself. */
+static bool add_glbs(json_t *glbs, struct parts *p, struct skin_job *skin, struct err *err)
+{
+	char *bytes = 0;
+	size_t size;
+	struct err large = { 0 };
+	if (p->target.name) {
+		if (p->glb && file_read(&bytes, &size, stage_path(skin->stage, "%s", p->glb), MOST_GLB, &large))
+			json_array_append_new(glbs, json_pack("{s:s,s:o}", "of", "face", "base64", base64_json(bytes, size)));
+		free(bytes);
+		return true;
+	}
+	for (int i = 0, n = 0; i < p->eyes->n; i++) {
+		const struct job *job = &p->eyes->job[i];
+		if (!job->usable)
+			continue;
+		if (!export_in_face(&bytes, &size, &job->scene, &job->studio, skin->leaves, err))
+			return false;
+		json_array_append_new(glbs, json_pack("{s:i,s:o}", "of", n++, "base64", base64_json(bytes, size)));
+		free(bytes);
+	}
+	return true;
 }
 
 static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 {
-	json_t *eyes = json_array(), *face = 0;
-	bool ok = add_eyes(eyes, p, err) && (!p->target || add_face(&face, eyes, skin, p->target, p->look, err))
-	          && write_page(skin->stage, skin->capture, skin->render, eyes, face, err)
+	json_t *eyes = json_array(), *face = 0, *glbs = json_array();
+	bool ok = add_eyes(eyes, p, err) && (!p->target.name || add_face(&face, eyes, skin, &p->target, err)) && add_glbs(glbs, p, skin, err)
+	          && write_page(skin->stage, skin->capture, skin->render, eyes, face, glbs, err)
 	          && stage_made(skin->stage, out, p->n_in, p->in, err);
 	json_decref(eyes);
 	json_decref(face);
+	json_decref(glbs);
 	return ok;
 }
 
 bool viewer_make(struct skin_job *skin, struct err *err)
 {
 	struct jobs *eyes = skin->photographed;
-	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 7, sizeof *p.in) };
+	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 8, sizeof *p.in) };
 	find_eyes(&p);
 	bool ok = find_character(&p, skin->stage, err);
 	if (ok && p.n_in && !stage_fresh(skin->stage, out, p.n_in, p.in))
 		ok = make(&p, skin, err);
 	free(p.in);
-	free(p.target);
 	return ok;
 }

@@ -29,7 +29,7 @@ const poses = {
 			for (const side of ["left", "right"])
 				for (const aside of [-30, 0, 30]) {
 					const n = await b.value(`seen(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
-					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair}`);
+					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair} tears ${n.tears}`);
 				}
 		for (const [name, [weights, turn]] of Object.entries(poses))
 			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]]) {

@@ -17,13 +17,18 @@ function bytes(url) {
 }
 
 let renderer, scene, face, mixer, clip;
-const hair = /^(lashes|brows)$/, eyes = {}, own = new Map(), flat = new Map();
+const hair = /^(lashes|brows)$/, wet = /^tears$/, eyes = {}, own = new Map(), flat = new Map();
 
-/* A surface of one colour, lit by nothing: what is seen there. Red skin, blue where it is seen from behind, green eye, yellow hair. */
+/* A surface of one colour, lit by nothing: what is seen there. Red skin, blue where it is seen from behind, green eye, yellow hair, tears
+ * of both red and blue. */
 function mark(mesh, eye) {
 	own.set(mesh, mesh.material);
 	if (hair.test(mesh.name)) {
 		flat.set(mesh, new THREE.MeshBasicMaterial({ color: new THREE.Color(1, 1, 0), side: THREE.DoubleSide, toneMapped: false }));
+		return;
+	}
+	if (wet.test(mesh.name)) {
+		flat.set(mesh, new THREE.MeshBasicMaterial({ color: new THREE.Color(1, 0, 1), side: THREE.FrontSide, toneMapped: false }));
 		return;
 	}
 	const paint = (rgb, side) => new THREE.MeshBasicMaterial({ color: new THREE.Color(...rgb), side, toneMapped: false });
@@ -90,14 +95,16 @@ function dress(marked, haired = true) {
 			o.visible = marked;
 		else if (o.isMesh) {
 			o.material = (marked ? flat : own).get(o);
-			o.visible = haired || !hair.test(o.name);
+			o.visible = haired || !hair.test(o.name) && !(marked && wet.test(o.name));
 		}
 	});
 }
 
-/* How many pixels of the eye's picture show the eye, skin, skin from behind, and nothing at all: without hairs; and how many show hairs. */
+/* How many pixels of the eye's picture show the eye, skin, skin from behind, and nothing at all: without hairs and tears; and how many show
+ * those. */
 function counted(side, aside) {
-	return { ...pixels(side, aside, false), hair: pixels(side, aside, true).hair };
+	const all = pixels(side, aside, true);
+	return { ...pixels(side, aside, false), hair: all.hair, tears: all.tears };
 }
 
 function pixels(side, aside, haired) {
@@ -114,9 +121,9 @@ function pixels(side, aside, haired) {
 	target.dispose();
 	scene.environment = environment;
 	dress(false);
-	const n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0 };
+	const n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0, tears: 0 };
 	for (let i = 0; i < px.length; i += 4)
-		n[px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing"]++;
+		n[px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i] > 127 && px[i + 2] > 127 ? "tears" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing"]++;
 	return n;
 }
 

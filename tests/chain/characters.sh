@@ -31,14 +31,14 @@ field() { node -e 'const d = require("fs").readFileSync(process.argv[1]), j = JS
 	console.log(String(eval(process.argv[2])))' "$1" "$2"; }
 if command -v node >/dev/null; then
 	glb=$capture/work/render/metres.glb
-	same "its meshes, but for the old eyeballs" "$(field "$glb" 'j.meshes.map(m => m.name)')" "Head,Hair,lashes,iris,pupil_back,sclera,cornea"
+	same "its meshes, but for the old eyeballs" "$(field "$glb" 'j.meshes.map(m => m.name)')" "Head,Hair,lashes,tears,iris,pupil_back,sclera,cornea"
 	same "its textures, byte for byte as many, and those of one eye" "$(field "$glb" 'j.images.slice(0, -7).map(i => j.bufferViews[i.bufferView].byteLength)')" \
 		"$(field "$capture/targets/metres.glb" 'j.images.map(i => j.bufferViews[i.bufferView].byteLength)')"
 	same "its own blend shapes beside ours" "$(field "$glb" '["jawOpen", "sneer", "eyeBlink_L", "eyeBlinkLeft"].every(n => j.meshes[0].extras.targetNames.includes(n))')" true
 	same "each name of ARKit once, ours, the file's or zero" "$(field "$glb" 'const z = j.meshes[0].extras.zeroTargets; z.length + "," + z.includes("jawOpen") + "," + z.includes("mouthPucker")')" \
 		"39,false,true"
 	same "the seam of the texture is still one" "$(field "$glb" 'j.accessors[j.meshes[0].primitives[0].attributes.TEXCOORD_0].count > 4202')" true
-	same "without materials brows, too" "$(field "$capture/work/render/bare.glb" 'j.meshes.map(m => m.name).slice(0, 5)')" "Head,Hair,lashes,brows,iris"
+	same "without materials brows, too" "$(field "$capture/work/render/bare.glb" 'j.meshes.map(m => m.name).slice(0, 5)')" "Head,Hair,lashes,brows,tears"
 	same "without materials: one colour" "$(field "$capture/work/render/bare.glb" 'j.meshes[0].primitives[0].attributes.TEXCOORD_0 === undefined')" true
 else
 	skip "what the glTF holds" "node is not installed"
@@ -58,6 +58,8 @@ if there three && command -v chromium >/dev/null; then
 	# Targets are added to each other: what they had in common, linings put before the eyeballs, turned lids inside out, 4500 to 14000 px of them. The goal is none; this clip, without a blink, leaves up to 231 px at a corner.
 	same "no lid is turned inside out" "$(awk '$6 == "skin" && $9 > 500' "$root/seen")" ""
 	same "lashes are seen in every pose, from all sides" "$(awk '$4 == "eye" && $13 > 1000' "$root/seen" | wc -l)" 24
+	same "tears line the lower lid of an open eye" "$(awk '$1 == "open" && $15 > 100' "$root/seen" | wc -l)" 6
+	same "and none is on shut ones" "$(awk '$1 == "shut" && $15 > 60' "$root/seen")" ""
 	same "looking aside, lids leave at least half of what an open eye shows" \
 		"$(awk '$1 == "open" { open[$2 $3] = $5 } ($1 == "left" || $1 == "right") && $5 > open[$2 $3] / 2' "$root/seen" | wc -l)" 12
 else

@@ -45,6 +45,7 @@ timeout 300 node tests/browser/hostile.js "$capture hostile" "$root/spoilt" >"$r
 timeout 600 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" \
 	"$character/work/review/viewer.html" "$character/work/targets/made/rig.npz" "${B:-build}/tests/tools" >>"$root/said" 2>&1
 timeout 300 node tests/browser/hands.js "$page" "$character/work/review/viewer.html" >>"$root/said" 2>&1
+timeout 300 node tests/browser/leave.js "$page" "$character/work/review/viewer.html" "${B:-build}/npm" >>"$root/said" 2>&1
 timeout 300 node tests/browser/surroundings.js "$page" >>"$root/said" 2>&1
 while IFS= read -r line; do
 	case $line in
@@ -56,6 +57,7 @@ done <"$root/said"
 check "the browser's runs came to their ends" grep -q 'without WebGL 2' "$root/said"
 check "those of hands, too" grep -q 'hands: no error' "$root/said"
 check "those in surroundings of files, too" grep -q 'surroundings: no error' "$root/said"
+check "those of what leaves, too" grep -q 'leaving: no error' "$root/said"
 check "those on hostile text, too" grep -q 'hostile text: no error' "$root/said"
 if [ -s "$SHOTS/lines.conf" ]; then
 	cat "$SHOTS/lines.conf" >>"$capture/capture.conf"

@@ -1,5 +1,6 @@
 /* A picture of an exported eye by another program, against render's own: EYE.json DEG REFERENCE.exr OTHER.npy|.exr [SIDE_BY_SIDE.png]
- * Prints: difference of the iris and of the eye (CIEDE2000, mean), px between the glints' middles, px of the iris' registration. */
+ * Prints: difference of the iris and of the eye (CIEDE2000, mean), px between the glints' middles, px of the iris' registration, structural
+ * similarity, px between the outlines. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@
 #include "image/exr.h"
 #include "image/mask.h"
 #include "image/picture.h"
+#include "tests/lib/score/likeness.h"
 
 static bool load(struct image *out, const char *path, struct err *err)
 {
@@ -227,8 +229,8 @@ int main(int argc, char **argv)
 	registration(glints, &ncc, &a, &b, &(struct part){ &r, p, true });
 	registration(off, &ncc, &a, &b, &(struct part){ &r, p, false });
 	ratio_of(ratio, &a, &b, &r);
-	printf("%g deg: iris %.2f eye %.2f CIEDE2000, light %.3f %.3f %.3f of ours; glint %.2f px; iris detail %.2f %.2f px off, correlation %.2f\n", deg, iris, eye, ratio[0],
-	       ratio[1], ratio[2], hypot(glints[0], glints[1]), off[0], off[1], ncc);
+	printf("%g deg: iris %.2f eye %.2f CIEDE2000, light %.3f %.3f %.3f of ours; glint %.2f px; iris detail %.2f %.2f px off, correlation %.2f; structure %.4f; outlines %.3f px\n", deg, iris, eye, ratio[0],
+	       ratio[1], ratio[2], hypot(glints[0], glints[1]), off[0], off[1], ncc, likeness_structure(&a, &b, gain), likeness_outline(&a, &b));
 	if (argc > 5 && !beside(argv[5], &a, &b, gain, &err))
 		fprintf(stderr, "eye_compare: %s\n", err.msg);
 	json_decref(says);

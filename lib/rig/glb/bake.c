@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "math/vec.h"
 #include "rig/glb/poser.h"
+#include "rig/glb/poses.h"
 
 /* Most frames that the decomposition is computed from; the others are projected onto it. */
 enum { LEARN = 320 };
@@ -162,91 +163,9 @@ static void weigh(struct glb_bake *b, struct poser *p, const struct drive *drive
 	free(n);
 }
 
-/* Displacements of one pose: of skin, of its normals, of hairs. */
-struct posed {
-	float *x, *lean, *hair;
-};
-
-static struct posed posed_new(const struct glb_bake *b)
-{
-	return (struct posed){ mem_array(3 * (size_t)b->n + 1, sizeof(float)), mem_array(3 * (size_t)b->n + 1, sizeof(float)), mem_array(3 * (size_t)b->n_hair + 1, sizeof(float)) };
-}
-
-static void posed_take(struct posed *to, const struct poser *p, const struct glb_bake *b)
-{
-	poser_skin(to->x, to->lean, p, b->n, b->vertex);
-	poser_hair(to->hair, p);
-}
-
-static void posed_free(struct posed *p)
-{
-	free(p->x);
-	free(p->lean);
-	free(p->hair);
-}
-
-/* Share of an eye in what moves at x: 1 on its side of the face, 0 on the other. */
-static float own_side(const struct rig *rig, int eye, const float x[3])
-{
-	static const double blend_mm = 10;  // to either side of the nose's bridge
-	double from_middle = 0;
-	for (int c = 0; c < 3; c++)
-		from_middle += rig->head_from_target[0][c] * (x[c] - 0.5 * (rig->globe[0].center[c] + rig->globe[1].center[c]));
-	const double t = fmin(fmax(0.5 + (eye ? -0.5 : 0.5) * from_middle / blend_mm, 0), 1);
-	return (float)(t * t * (3 - 2 * t));
-}
-
-/* A named pose as a target that others may be added to: what it differs by from a look straight ahead, `ahead`; and where the eye shuts, on
- * its side, what that look differs by from rest, too. So what all poses have in common with each other against the mesh (its lids' linings lie in
- * its eyeballs) is in none of them, or it would be there as often as there are targets. */
-static void pose_target(float *out, const float *now, const float *ahead, const float *still, int n, const struct rig *rig, const int *vertex, const float (*at)[3],
-                        int shuts)
-{
-	for (int i = 0; i < n; i++) {
-		const float share = shuts < 0 ? 0 : own_side(rig, shuts, vertex ? rig->rest[vertex[i]] : at[i]);
-		for (int c = 3 * i; c < 3 * i + 3; c++)
-			out[c] = now[c] - ahead[c] + share * (ahead[c] - still[c]);
-	}
-}
-
-static void take_poses(struct glb_bake *b, struct poser *p)
-{
-	static const double look[GLB_POSES][2] = { { 0, 0 }, { 0, 0 }, { 0, 20 }, { 0, 20 }, { 0, -20 }, { 0, -20 },
-		                                       { -25, 0 }, { 25, 0 }, { 25, 0 }, { -25, 0 }, { 0, 0 }, { 0, 0 } };
-	const size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair;
-	double *straight = mem_new((size_t)p->rig->n_inputs + 1, sizeof *straight), *c = mem_new((size_t)p->rig->n_inputs + 1, sizeof *c);
-	double *one = mem_new((size_t)p->rig->n_inputs + 1, sizeof *one), turn[2][3][3];
-	struct posed still = posed_new(b), ahead = posed_new(b), now = posed_new(b);
-	b->pose = mem_new(GLB_POSES * row + 1, sizeof *b->pose);
-	b->pose_lean = mem_new(GLB_POSES * row + 1, sizeof *b->pose_lean);
-	b->hair_pose = mem_new(GLB_POSES * hair + 1, sizeof *b->hair_pose);
-	drive_look(straight, p->rig, 0, 0, 1);
-	poser_still(p);
-	posed_take(&still, p, b);
-	poser_pose(p, straight, turn);
-	posed_take(&ahead, p, b);
-	for (int k = 0; k < GLB_POSES; k++) {
-		const int eye = k % 2, shuts = k < 2 ? eye : -1;
-		drive_look(one, p->rig, look[k][0], look[k][1], k < 2 ? 0 : k >= 10 ? 1.3 : 1);
-		memcpy(c, straight, (size_t)p->rig->n_inputs * sizeof *c);
-		memcpy(c + 5 * eye, one + 5 * eye, 5 * sizeof *c);
-		poser_pose(p, c, turn);
-		posed_take(&now, p, b);
-		pose_target(b->pose + (size_t)k * row, now.x, ahead.x, still.x, b->n, p->rig, b->vertex, 0, shuts);
-		pose_target(b->pose_lean + (size_t)k * row, now.lean, ahead.lean, still.lean, b->n, p->rig, b->vertex, 0, shuts);
-		pose_target(b->hair_pose + (size_t)k * hair, now.hair, ahead.hair, still.hair, b->n_hair, p->rig, 0, (const float(*)[3])p->hair_rest, shuts);
-	}
-	posed_free(&still);
-	posed_free(&ahead);
-	posed_free(&now);
-	free(straight);
-	free(one);
-	free(c);
-}
-
 bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive *drive, const struct glb_conf *conf, struct err *err)
 {
-	struct poser p = poser_new(rig, conf->hairs);
+	struct poser p = poser_new(rig, conf);
 	struct learnt l;
 	*b = (struct glb_bake){ .n_hair = p.n_hair };
 	find_moving(b, rig);
@@ -278,7 +197,7 @@ bool glb_bake_make(struct glb_bake *b, const struct rig *rig, const struct drive
 	if (ok)
 		weigh(b, &p, drive);
 	if (ok && conf->poses)
-		take_poses(b, &p);
+		glb_take_poses(b, &p, conf);
 	poser_free(&p);
 	return ok;
 }
@@ -293,6 +212,7 @@ void glb_bake_free(struct glb_bake *b)
 	free(b->pose_lean);
 	free(b->hair_target);
 	free(b->hair_pose);
+	free(b->pose_name);
 	free(b->turn[0]);
 	free(b->turn[1]);
 	*b = (struct glb_bake){ 0 };

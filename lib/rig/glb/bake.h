@@ -10,10 +10,12 @@ struct glb_bake {
 	int n, *vertex;            // vertices that move, rows of the rig; skin alone
 	int n_frames, n_targets;
 	float *target, *lean;      // [n_targets][n][3] displacements of positions (mm) and of normals at weight 1
-	int n_hair;                // vertices of conf->hairs (strands.h); 0 without
-	float *hair_target, *hair_pose;  // [n_targets][n_hair][3], [GLB_POSES][n_hair][3] their displacements, mm
+	int n_hair;                // vertices of conf->hairs (strands.h), then of the tears (tears.h); 0 without
+	float *hair_target, *hair_pose;  // [n_targets][n_hair][3], [n_poses][n_hair][3] their displacements, mm
 	float *weight;             // [n_frames][n_targets], within -1 .. 1
-	float *pose, *pose_lean;   // [GLB_POSES][n][3] the same of the named poses, or null
+	int n_poses;               // GLB_POSES, then conf->expression; 0 without
+	const char **pose_name;
+	float *pose, *pose_lean;   // [n_poses][n][3] displacements of the named poses
 	float *turn[2];            // [n_frames][4] quaternions x y z w of the eyeballs: from rest, in the rig's axes
 	double worst;              // largest error of a vertex in a frame, mm
 };

@@ -52,6 +52,16 @@ static void put_range(json_t *accessor, const float *x, size_t n, int width)
 	json_object_set_new(accessor, "max", high);
 }
 
+int glb_add_shares(struct glb_buffer *g, const float *x, size_t n)
+{
+	int16_t *step = mem_new(n + 1, sizeof *step);
+	for (size_t i = 0; i < n; i++)
+		step[i] = (int16_t)lrintf(INT16_MAX * fminf(fmaxf(x[i], -1), 1));
+	const int view = glb_add_view(g, step, n * sizeof *step, 0);
+	free(step);
+	return glb_add_accessor(g, json_pack("{s:i,s:i,s:b,s:I,s:s}", "bufferView", view, "componentType", GLB_SHORT, "normalized", 1, "count", (json_int_t)n, "type", "SCALAR"));
+}
+
 int glb_add_floats(struct glb_buffer *g, const float *x, size_t n, int width, bool range, int target)
 {
 	static const char *const types[] = { "", "SCALAR", "VEC2", "VEC3", "VEC4" };
@@ -62,17 +72,104 @@ int glb_add_floats(struct glb_buffer *g, const float *x, size_t n, int width, bo
 	return glb_add_accessor(g, a);
 }
 
-int glb_add_sparse(struct glb_buffer *g, const float *x, int few, int index_view, int all, bool range)
+/* Numbers of vertices take two bytes where there are few. */
+static int row_type(int all)
 {
-	int view = glb_add_view(g, x, 3 * (size_t)few * sizeof *x, 0);
-	json_t *a = json_pack("{s:i,s:i,s:s,s:{s:i,s:{s:i,s:i},s:{s:i}}}", "componentType", GLB_FLOAT, "count", all, "type", "VEC3", "sparse",
-	                      "count", few, "indices", "bufferView", index_view, "componentType", GLB_UINT, "values", "bufferView", view);
-	if (range) {
-		float *with_zero = mem_new(3 * ((size_t)few + 1), sizeof *with_zero);
-		memcpy(with_zero, x, 3 * (size_t)few * sizeof *x);
-		put_range(a, with_zero, few < all ? (size_t)few + 1 : (size_t)few, 3);
-		free(with_zero);
+	return all <= UINT16_MAX ? GLB_USHORT : GLB_UINT;
+}
+
+/* free(); size: out, bytes. */
+static void *rows_packed(size_t *size, const uint32_t *row, size_t n, int all)
+{
+	const size_t each = row_type(all) == GLB_USHORT ? sizeof(uint16_t) : sizeof *row;
+	char *bytes = mem_new(n * each + 1, 1);
+	for (size_t i = 0; i < n; i++) {
+		const uint16_t half = (uint16_t)row[i];
+		memcpy(bytes + i * each, each == sizeof half ? (const void *)&half : (const void *)&row[i], each);
 	}
+	*size = n * each;
+	return bytes;
+}
+
+int glb_add_corners(struct glb_buffer *g, const uint32_t *corner, size_t n, int all)
+{
+	size_t size;
+	void *bytes = rows_packed(&size, corner, n, all);
+	const int view = glb_add_view(g, bytes, size, GLB_INDICES);
+	free(bytes);
+	return glb_add_accessor(g, json_pack("{s:i,s:i,s:I,s:s}", "bufferView", view, "componentType", row_type(all), "count", (json_int_t)n, "type", "SCALAR"));
+}
+
+int glb_add_rows(struct glb_buffer *g, const uint32_t *row, int few, int all)
+{
+	size_t size;
+	void *bytes = rows_packed(&size, row, (size_t)few, all);
+	const json_t *view = json_array_get(g->views, (size_t)g->rows_view);
+	if (!size || g->rows_size != size || memcmp(g->bin + json_integer_value(json_object_get(view, "byteOffset")), bytes, size) != 0) {
+		g->rows_view = glb_add_view(g, bytes, size, 0);
+		g->rows_size = size;
+	}
+	free(bytes);
+	return g->rows_view;
+}
+
+int glb_add_normals(struct glb_buffer *g, const float (*normal)[3], size_t n)
+{
+	enum { STRIDE = 4 };  // attributes of vertices begin at multiples of four
+	int8_t *bytes = mem_new(STRIDE * n + 1, 1);
+	for (size_t i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++)
+			bytes[STRIDE * i + (size_t)c] = (int8_t)lrintf(127 * fminf(fmaxf(normal[i][c], -1), 1));
+	const int view = glb_add_view(g, bytes, STRIDE * n, GLB_ARRAY);
+	json_object_set_new(json_array_get(g->views, (size_t)view), "byteStride", json_integer(STRIDE));
+	free(bytes);
+	return glb_add_accessor(g, json_pack("{s:i,s:i,s:b,s:I,s:s}", "bufferView", view, "componentType", GLB_BYTE, "normalized", 1, "count", (json_int_t)n, "type", "VEC3"));
+}
+
+static json_t *sparse(int type, int few, int rows_view, int view, int all)
+{
+	return json_pack("{s:i,s:i,s:s,s:{s:i,s:{s:i,s:i},s:{s:i}}}", "componentType", type, "count", all, "type", "VEC3", "sparse", "count", few, "indices",
+	                 "bufferView", rows_view, "componentType", row_type(all), "values", "bufferView", view);
+}
+
+int glb_add_sparse(struct glb_buffer *g, const float *x, int few, int rows_view, int all)
+{
+	json_t *a = sparse(GLB_FLOAT, few, rows_view, glb_add_view(g, x, 3 * (size_t)few * sizeof *x, 0), all);
+	float *with_zero = mem_new(3 * ((size_t)few + 1), sizeof *with_zero);
+	memcpy(with_zero, x, 3 * (size_t)few * sizeof *x);
+	put_range(a, with_zero, few < all ? (size_t)few + 1 : (size_t)few, 3);
+	free(with_zero);
+	return glb_add_accessor(g, a);
+}
+
+/* Of whole numbers: as they are in the buffer, whatever they stand for. */
+static void put_step_range(json_t *accessor, const int16_t *step, int few, bool zero)
+{
+	json_t *low = json_array(), *high = json_array();
+	for (int c = 0; c < 3; c++) {
+		int a = zero ? 0 : step[c], b = a;
+		for (int i = 0; i < few; i++) {
+			a = step[3 * i + c] < a ? step[3 * i + c] : a;
+			b = step[3 * i + c] > b ? step[3 * i + c] : b;
+		}
+		json_array_append_new(low, json_integer(a));
+		json_array_append_new(high, json_integer(b));
+	}
+	json_object_set_new(accessor, "min", low);
+	json_object_set_new(accessor, "max", high);
+}
+
+int glb_add_sparse_steps(struct glb_buffer *g, const int16_t *step, int few, int rows_view, int all, int bits, bool range)
+{
+	int8_t *bytes = mem_new(3 * (size_t)few + 1, 1);
+	for (int i = 0; i < 3 * few; i++)
+		bytes[i] = (int8_t)step[i];
+	const int view = bits == 8 ? glb_add_view(g, bytes, 3 * (size_t)few, 0) : glb_add_view(g, step, 3 * (size_t)few * sizeof *step, 0);
+	json_t *a = sparse(bits == 8 ? GLB_BYTE : GLB_SHORT, few, rows_view, view, all);
+	json_object_set_new(a, "normalized", json_true());
+	if (range)
+		put_step_range(a, step, few, few < all);
+	free(bytes);
 	return glb_add_accessor(g, a);
 }
 

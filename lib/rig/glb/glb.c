@@ -9,8 +9,10 @@
 #include "rig/glb/graft.h"
 #include "rig/glb/skin.h"
 #include "rig/glb/strands.h"
+#include "rig/glb/tears.h"
 
 static const double metres = 1e-3;
+static const char quantised[] = "KHR_mesh_quantization";
 static const char *const eye_names[2] = { "eye_left", "eye_right" };
 
 static json_t *real3(const double x[3], double scale)
@@ -91,19 +93,25 @@ static json_t *nodes(const struct rig *rig, const struct glb_eye eye[2], const s
 	json_array_append_new(list, json_pack("{s:s,s:o,s:o}", "name", name, "children", children, "rotation", root_rotation(rig->head_from_target)));
 	for (int i = 0; i < skin->n; i++) {
 		json_t *of = json_object_get(json_array_get(skin->meshes, (size_t)i), "name");
-		json_array_append_new(list, json_pack("{s:O,s:i}", "name", of, "mesh", i));
+		const double scale = metres * skin->unit;
+		json_array_append_new(list, json_pack("{s:O,s:i,s:[f,f,f]}", "name", of, "mesh", i, "scale", scale, scale, scale));
 	}
 	put_eyes(list, rig, eye, in, skin->meshes);
 	return list;
 }
 
 /* The weights of a skin's mesh over time: the animation's targets move, the others stay at 0. Returns the sampler. */
-static int weights(struct glb_buffer *g, json_t *samplers, const struct glb_bake *b, int input, size_t n, size_t all)
+static int weights(struct glb_buffer *g, json_t *samplers, const struct glb_bake *b, int input, size_t n, size_t all,
+                   const double *gain)
 {
 	float *weight = mem_new(n * all + 1, sizeof *weight);
 	for (size_t f = 0; f < n; f++)
 		memcpy(weight + f * all, b->weight + f * (size_t)b->n_targets, (size_t)b->n_targets * sizeof *weight);
-	const int output = glb_add_floats(g, weight, n * all, 1, false, 0);
+	for (size_t i = 0; gain && i < n * (size_t)b->n_targets; i++) {
+		const size_t k = i % (size_t)b->n_targets;
+		weight[i / (size_t)b->n_targets * all + k] /= (float)fmax(gain[k], 1);
+	}
+	const int output = glb_add_shares(g, weight, n * all);
 	json_array_append_new(samplers, json_pack("{s:i,s:i}", "input", input, "output", output));
 	free(weight);
 	return (int)json_array_size(samplers) - 1;
@@ -120,7 +128,7 @@ static json_t *animation(struct glb_buffer *g, const struct rig *rig, const stru
 	json_t *samplers = json_array(), *channels = json_array();
 	for (int i = 0; i < skin->n; i++)
 		if (skin->ours[i] && b->n_targets) {
-			const int sampler = weights(g, samplers, b, input, n, (size_t)skin->all[i]);
+			const int sampler = weights(g, samplers, b, input, n, (size_t)skin->all[i], skin->gain[i]);
 			json_array_append_new(channels, json_pack("{s:i,s:{s:i,s:s}}", "sampler", sampler, "target", "node", 1 + i, "path", "weights"));
 		}
 	for (int s = 0; s < 2; s++) {
@@ -171,6 +179,7 @@ bool glb_write(const char *path, struct glb_report *report, const struct rig *ri
 		*report = (struct glb_report){ bake.n_targets, bake.n, bake.worst, 0 };
 		glb_skin_make(&skin, &g, rig, &bake, conf, look);
 		strands_put(&skin, &g, rig, &bake, conf->hairs, conf->hair_rgb);
+		tears_put(&skin, &g, rig, &bake, conf, used);
 		const struct glb_arrays to = { skin.meshes, skin.materials, skin.images, skin.textures, samplers, used };
 		ok = graft_eyes(in, &g, &to, eye, err);
 	}
@@ -180,6 +189,9 @@ bool glb_write(const char *path, struct glb_report *report, const struct rig *ri
 		if (made)
 			json_object_set_new(asset, "extras", json_pack("{s:o}", "made_by", made));
 		json_object_set_new(root, "asset", asset);
+		// A program that cannot read whole steps cannot read the file.
+		json_array_append_new(used, json_string(quantised));
+		json_object_set_new(root, "extensionsRequired", json_pack("[s]", quantised));
 		put_some(root, "extensionsUsed", used);
 		json_object_update_new(root, json_pack("{s:i,s:[{s:[i]}],s:o,s:o,s:o,s:[o]}", "scene", 0, "scenes", "nodes", 0, "nodes",
 		                                       nodes(rig, eye, in, name, &skin), "meshes", json_incref(skin.meshes), "materials",

@@ -4,7 +4,7 @@
  * Algorithm 1 is not linear in e, because skin slides over a round skull and a turning cornea. So the animation is evaluated and its
  * displacements are decomposed (principal components): the fewest morph targets that keep every vertex of every frame within a
  * tolerance (at most `targets`), with their weights over time. Further targets of single poses (eyeBlinkLeft, eyeLookUpRight ..., the
- * names of Apple's ARKit) are included with weight 0; they may be added to each other, but not to the animation's.
+ * names of Apple's ARKit; expressions, by the model's) are included with weight 0; they may be added to each other, but not to the animation's.
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H
@@ -16,9 +16,13 @@ struct glb_conf {
 	int targets;           // at most, of the animation
 	double tolerance;      // mm, worst vertex of all frames
 	bool poses;            // include the named targets
+	int n_expressions;     // with them: of the inputs after the eyes' (model/model.h)
+	const char *const *expression;  // their names
 	double skin_rgb[3];    // linear
 	const struct hairs *hairs;  // lashes and brows, meshes of their own that follow the same targets; null: none
 	double hair_rgb[3];
+	double tear_mm;        // height of the meniscus of tears along the lower lids, where hairs has their rims; 0: none
+	double over_mm;        // that the eyes stand over the rig's globes
 };
 
 /* A whole eye as the bytes of a binary glTF: metres, its origin in the centre of the scleral sphere, z out through the pupil, y up.

@@ -3,20 +3,22 @@
 #define RIG_GLB_POSER_H
 #include "rig/deform/clear.h"
 #include "rig/deform/deform.h"
-#include "rig/hair/hair.h"
+#include "rig/glb/glb.h"
 
 struct poser {
 	const struct rig *rig;
 	struct deform *deform;
-	float (*x)[3], (*n)[3];   // [rig.n] now: places, normals
+	float (*x)[3], (*n)[3];   // [rig.n] now: places; normals of the surface there, for algorithm 1's know no unfolding skin
+	int n_faces, *face;       // of the rig, that move
 	struct deform_near near;
-	const struct hairs *hairs;
-	int n_hair;               // their vertices (strands.h)
+	const struct glb_conf *conf;
+	int n_strands, n_hair;    // vertices of hairs (strands.h); with those of the tears (tears.h) behind them
 	float (*hair)[3], (*hair_rest)[3];
+	double turn[2][3][3];     // of the globes now
 };
 
-/* At rest. hairs: null: none. poser_free. */
-struct poser poser_new(const struct rig *rig, const struct hairs *hairs);
+/* At rest. poser_free. */
+struct poser poser_new(const struct rig *rig, const struct glb_conf *conf);
 void poser_free(struct poser *poser);
 
 /* controls: g~ [rig.n_inputs]; turn: out, the globes' rotations. */

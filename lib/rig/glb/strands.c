@@ -6,8 +6,8 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/glb/targets.h"
 
-static const float metres = 1e-3f;
 enum { TUBE = 3, RIBBON = 2 };
 
 static int sides_of(const struct hair *h)
@@ -86,86 +86,91 @@ static int triangles(uint32_t (*face)[3], const struct hair *h, uint32_t first)
 	return n;
 }
 
-/* Rows [first, first + n) of x as an accessor, in metres where they are places. */
-static int rows(struct glb_buffer *g, const float *x, int first, int n, float unit_of, bool range, int target)
+/* n rows of x over `unit` as an accessor. */
+static int places(struct glb_buffer *g, const float *x, int n, double unit)
 {
 	float *out = mem_array(3 * (size_t)n, sizeof *out);
 	for (int i = 0; i < 3 * n; i++)
-		out[i] = unit_of * x[3 * first + i];
-	const int accessor = glb_add_floats(g, out, (size_t)n, 3, range, target);
+		out[i] = (float)(x[i] / unit);
+	const int accessor = glb_add_floats(g, out, (size_t)n, 3, true, GLB_ARRAY);
 	free(out);
 	return accessor;
 }
 
-/* All of the bake's targets for rows [first, first + n), with their names. */
-static json_t *targets_of(json_t *names, struct glb_buffer *g, const struct glb_bake *b, int first, int n)
+/* All of the bake's targets for rows [first, first + n). gain: [b->n_targets] out. */
+static struct glb_targets targets_of(double *gain, struct glb_buffer *g, const struct glb_bake *b, int first, int n, double unit)
 {
-	json_t *targets = json_array();
-	const int poses = b->pose ? GLB_POSES : 0;
-	for (int k = 0; k < b->n_targets + poses; k++) {
-		const bool ours = k < b->n_targets;
-		const float *x = (ours ? b->hair_target : b->hair_pose) + 3 * (size_t)b->n_hair * (size_t)(ours ? k : k - b->n_targets);
+	struct glb_targets targets = glb_targets_new();
+	double *most = mem_new((size_t)b->n_targets + 1, sizeof *most);
+	for (int k = 0; k < b->n_targets; k++)
+		for (int i = 0; i < 3 * n; i++)
+			most[k] = fmax(most[k], fabs((double)b->hair_target[3 * ((size_t)b->n_hair * (size_t)k + (size_t)first) + (size_t)i]));
+	glb_targets_small(gain, most, b->n_targets, unit);
+	free(most);
+	for (int k = 0; k < b->n_targets + b->n_poses; k++) {
+		const int pose = k - b->n_targets;
+		const float *x = pose < 0 ? b->hair_target + 3 * (size_t)b->n_hair * (size_t)k : b->hair_pose + 3 * (size_t)b->n_hair * (size_t)pose;
 		char name[32];
 		snprintf(name, sizeof name, "motion_%02d", k + 1);
-		json_array_append_new(targets, json_pack("{s:i}", "POSITION", rows(g, x, first, n, metres, true, GLB_ARRAY)));
-		json_array_append_new(names, json_string(ours ? name : glb_pose_names[k - b->n_targets]));
+		glb_targets_add(&targets, g, pose < 0 ? name : b->pose_name[pose], x + 3 * first, 0, n, unit, pose < 0 ? gain[k] : 0);
 	}
 	return targets;
 }
 
-struct rest {
-	float (*x)[3], (*normal)[3];
-};
+void strands_put_mesh(struct glb_skin *skin, struct glb_buffer *g, const struct glb_bake *b, const char *name, int first, int n, const float (*x)[3],
+                      const float (*normal)[3], const uint32_t (*face)[3], int n_faces)
+{
+	const int position = places(g, x[0], n, skin->unit), off = glb_add_normals(g, normal, (size_t)n);
+	const int index = glb_add_corners(g, face[0], 3 * (size_t)n_faces, n), material = (int)json_array_size(skin->materials) - 1;
+	json_t *mesh = json_pack("{s:s,s:[{s:{s:i,s:i},s:i,s:i}]}", "name", name, "primitives", "attributes", "POSITION", position, "NORMAL", off,
+	                         "indices", index, "material", material);
+	double *gain = skin->gain[skin->n] = mem_new((size_t)b->n_targets + 1, sizeof *gain);
+	struct glb_targets targets = targets_of(gain, g, b, first, n, skin->unit);
+	skin->ours[skin->n] = b->n_targets > 0;
+	skin->all[skin->n++] = glb_targets_put(&targets, mesh);
+	json_array_append_new(skin->meshes, mesh);
+	glb_targets_free(&targets);
+}
 
-/* The hairs [from, to), whose vertices begin at `first`, as one mesh. Returns how many vertices they have. */
-static int put_mesh(struct glb_skin *skin, struct glb_buffer *g, const struct glb_bake *b, const struct hairs *hairs, const struct rest *rest, const char *name,
-                    int from, int to, int first)
+int strands_faces(uint32_t (*face)[3], const struct hairs *hairs, int from, int to)
 {
 	int n = 0, n_faces = 0;
-	uint32_t (*face)[3] = mem_new((size_t)(2 * TUBE * hairs->n_points) + 1, sizeof *face);
 	for (int i = from; i < to; i++) {
 		n_faces += triangles(face + n_faces, &hairs->hair[i], (uint32_t)n);
 		n += vertices_of(&hairs->hair[i]);
 	}
-	if (n) {
-		const int position = rows(g, &rest->x[0][0], first, n, metres, true, GLB_ARRAY), normal = rows(g, &rest->normal[0][0], first, n, 1, false, GLB_ARRAY);
-		const int view = glb_add_view(g, face, (size_t)n_faces * sizeof *face, GLB_INDICES), material = (int)json_array_size(skin->materials) - 1;
-		const int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", 3 * n_faces, "type", "SCALAR"));
-		json_t *names = json_array(), *weights = json_array(), *targets = targets_of(names, g, b, first, n);
-		json_t *mesh = json_pack("{s:s,s:[{s:{s:i,s:i},s:i,s:i}]}", "name", name, "primitives", "attributes", "POSITION", position, "NORMAL", normal,
-		                         "indices", index, "material", material);
-		skin->ours[skin->n] = b->n_targets > 0;
-		skin->all[skin->n++] = (int)json_array_size(targets);
-		for (size_t i = 0; i < json_array_size(targets); i++)
-			json_array_append_new(weights, json_real(0));
-		if (json_array_size(targets)) {
-			json_object_set(json_array_get(json_object_get(mesh, "primitives"), 0), "targets", targets);
-			json_object_set(mesh, "weights", weights);
-			json_object_set_new(mesh, "extras", json_pack("{s:O}", "targetNames", names));
-		}
-		json_array_append_new(skin->meshes, mesh);
-		json_decref(targets);
-		json_decref(weights);
-		json_decref(names);
-	}
-	free(face);
-	return n;
+	return n_faces;
+}
+
+json_t *strands_material(const double rgb[3])
+{
+	return json_pack("{s:s,s:b,s:{s:[f,f,f,f],s:f,s:f}}", "name", "hair", "doubleSided", 1, "pbrMetallicRoughness", "baseColorFactor", rgb[0], rgb[1], rgb[2], 1.0,
+	                 "metallicFactor", 0.0, "roughnessFactor", 0.6);
+}
+
+int strands_most_faces(const struct hairs *hairs)
+{
+	return 2 * TUBE * hairs->n_points;
 }
 
 void strands_put(struct glb_skin *skin, struct glb_buffer *g, const struct rig *rig, const struct glb_bake *b, const struct hairs *hairs, const double rgb[3])
 {
 	const int n = strands_count(hairs);
-	int brows = 0;
+	int brows = 0, first = 0;
 	if (!n)
 		return;
-	while (brows < hairs->n && hairs->hair[brows].kind != HAIR_BROW)
-		brows++;
-	const struct rest rest = { mem_array((size_t)n, sizeof *rest.x), mem_array((size_t)n, sizeof *rest.normal) };
-	strands_place(rest.x, rest.normal, hairs, rig, (const float(*)[3])rig->rest);
-	json_array_append_new(skin->materials, json_pack("{s:s,s:b,s:{s:[f,f,f,f],s:f,s:f}}", "name", "hair", "doubleSided", 1, "pbrMetallicRoughness",
-	                                                 "baseColorFactor", rgb[0], rgb[1], rgb[2], 1.0, "metallicFactor", 0.0, "roughnessFactor", 0.6));
-	const int first = put_mesh(skin, g, b, hairs, &rest, "lashes", 0, brows, 0);
-	put_mesh(skin, g, b, hairs, &rest, "brows", brows, hairs->n, first);
-	free(rest.x);
-	free(rest.normal);
+	for (; brows < hairs->n && hairs->hair[brows].kind != HAIR_BROW; brows++)
+		first += vertices_of(&hairs->hair[brows]);
+	float (*x)[3] = mem_array((size_t)n, sizeof *x), (*normal)[3] = mem_array((size_t)n, sizeof *normal);
+	uint32_t (*face)[3] = mem_new((size_t)strands_most_faces(hairs) + 1, sizeof *face);
+	strands_place(x, normal, hairs, rig, (const float(*)[3])rig->rest);
+	json_array_append_new(skin->materials, strands_material(rgb));
+	for (int k = 0; k < 2; k++) {
+		const int from = k ? first : 0, to = k ? n : first, n_faces = strands_faces(face, hairs, k ? brows : 0, k ? hairs->n : brows);
+		if (to > from)
+			strands_put_mesh(skin, g, b, k ? "brows" : "lashes", from, to - from, (const float(*)[3])x + from, (const float(*)[3])normal + from, (const uint32_t(*)[3])face, n_faces);
+	}
+	free(x);
+	free(normal);
+	free(face);
 }

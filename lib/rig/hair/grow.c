@@ -16,11 +16,16 @@ void hairs_grow(struct hairs *hairs, const struct rig *rig, const bool *shown, c
 			face[n++] = i;
 		}
 	struct ray_scene *skin = ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
-	for (int pass = 0; pass < 2; pass++)
-		for (int side = 0; side < 2; side++) {
-			const struct front front = { rig, skin, face, side, rig->globe[side].radius / 12 };
-			(pass ? hairs_grow_brow : hairs_grow_lashes)(hairs, &front, conf, &rng);
-		}
+	for (int side = 0; side < 2; side++) {
+		const struct front front = { rig, skin, face, side, rig->globe[side].radius / 12 };
+		struct front_opening opening;
+		if (!front_open(&opening, &front))
+			continue;
+		hairs_grow_lashes(hairs, &front, &opening, conf, &rng);
+		hairs_find_rims(hairs, &front, &opening);
+	}
+	for (int side = 0; side < 2; side++)
+		hairs_grow_brow(hairs, &(struct front){ rig, skin, face, side, rig->globe[side].radius / 12 }, conf, &rng);
 	ray_scene_free(skin);
 	free(face);
 	free(faces);

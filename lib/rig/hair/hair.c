@@ -40,5 +40,6 @@ void hairs_free(struct hairs *h)
 {
 	free(h->hair);
 	free(h->local);
+	free(h->rim);
 	*h = (struct hairs){ 0 };
 }

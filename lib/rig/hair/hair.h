@@ -18,11 +18,19 @@ struct hair {
 	float half;            // mm: half its breadth at the root, which tapers
 };
 
+/* A column of an eye's opening at rest: where its lids touch the eyeball, the lower [0] and the upper one [1]. There tears stand. */
+enum { HAIR_RIMS = 64 };
+struct hair_rim {
+	int vertex[2][3], side;
+	float weight[2][3], along;  // as of roots; 0 one corner of the eye, 1 the other
+};
+
 /* Owned; hairs_free. */
 struct hairs {
-	int n, n_points;
+	int n, n_points, n_rims;
 	struct hair *hair;     // all lashes before all brows
 	float (*local)[3];     // [n_points] mm
+	struct hair_rim *rim;  // [n_rims] from corner to corner, at most HAIR_RIMS of the left eye, then of the right
 };
 
 struct hair_conf {

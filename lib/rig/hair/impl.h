@@ -25,6 +25,21 @@ bool front_skin(struct front_hit *hit, const struct front *front, double x, doub
 /* Height of the eyeball there; NAN beyond its outline. */
 double front_globe(const struct front *front, double x, double y);
 
+/* Of each column of the front where the eyeball shows: the ends of it; x by the column, units. */
+enum { FRONT_COLUMNS = 441 };
+#define FRONT_COLUMN 0.1
+struct front_opening {
+	int first, last;             // columns that are open, in a row
+	double low[FRONT_COLUMNS], high[FRONT_COLUMNS];
+};
+static inline double front_column(int i) { return FRONT_COLUMN * (i - FRONT_COLUMNS / 2); }
+
+/* opening.c. Returns false where the lids are shut. */
+bool front_open(struct front_opening *opening, const struct front *front);
+
+/* Adds the places of the lids' rims, where they touch the eyeball. */
+void hairs_find_rims(struct hairs *hairs, const struct front *front, const struct front_opening *opening);
+
 /* Adds a hair rooted at a hit, with n points given about the eyeball's centre: point[n][3], units. half: mm of an eyeball of 12 mm. */
 void front_add(struct hairs *hairs, const struct front *front, const struct front_hit *root, int kind, int n, const double (*point)[3], double half);
 
@@ -35,7 +50,7 @@ void front_add_local(struct hairs *hairs, const struct front *front, const struc
 void front_clear(struct hairs *hairs, const struct front *front);
 
 /* lash.c, brow.c */
-void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
+void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct front_opening *opening, const struct hair_conf *conf, struct rng *rng);
 void hairs_grow_brow(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
 
 #endif

@@ -259,7 +259,7 @@ static void khronos_validator_finds_nothing(void **state)
 	assert_true(picture_png_encode(&one.data, &one.size, (uint8_t[12]){ 0 }, 2, 2, 3, &err));
 	for (int i = 0; i < EXPORT_PICTURES; i++)
 		png[i] = one;
-	struct export_eye eye = { parts, png, 1.336, 4, "eye", "{\"stage\": \"render\"}" };
+	struct export_eye eye = { parts, png, 1.336, 4, "eye", "{\"stage\": \"render\"}", 3, 0, { 0 } };
 	const char *path = scratch_path("eye.glb");
 	assert_true(export_eye_glb(path, &eye, &bytes, &err));
 	assert_true(gltf_is_valid(path));

@@ -7,8 +7,9 @@
 #include "rig/deform/clear.h"
 #include "rig/glb/bake.h"
 #include "rig/glb/strands.h"
+#include "rig/glb/tears.h"
 #include "tests/lib/gltf.h"
-#include "tests/lib/scenes/face.h"
+#include "tests/lib/scenes/driven.h"
 #include "tests/lib/scenes/plain_scene.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
@@ -18,10 +19,8 @@
 enum { FRAMES = 60 };
 
 struct made {
-	struct face face;
-	struct rig rig;
+	struct driven on;
 	struct drive drive;
-	struct hairs hairs;
 	char *eye[2];  // two eyes as files: the second with a wider limbus
 	size_t size[2];
 	double apex[2];  // distance of the corneal apex from the centre, mm
@@ -49,7 +48,7 @@ static bool eye_make(struct made *m, int k, struct err *err)
 	bool ok = picture_png_encode(&one.data, &one.size, (uint8_t[12]){ 0 }, 2, 2, 3, err);
 	for (int i = 0; i < EXPORT_PICTURES; i++)
 		png[i] = one;
-	ok = ok && export_eye_pack(&m->eye[k], &m->size[k], &(struct export_eye){ parts, png, 1.336, 4, "eye", 0 }, err);
+	ok = ok && export_eye_pack(&m->eye[k], &m->size[k], &(struct export_eye){ parts, png, 1.336, 4, "eye", 0, 3, 0, { 0 } }, err);
 	free(one.data);
 	for (int i = 0; i < EXPORT_PARTS; i++)
 		export_part_free(&parts[i]);
@@ -58,23 +57,20 @@ static bool eye_make(struct made *m, int k, struct err *err)
 }
 
 /* A gaze that wanders, with a blink in the middle. */
-static struct glb_conf conf = { .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 } };
+static const char *const expressions[] = { "brows_up", "squint" };
+static struct glb_conf conf = { .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 }, .tear_mm = 0.3, .n_expressions = 2, .expression = expressions };
 
 static int setup(void **state)
 {
 	struct made *m = calloc(1, sizeof *m);
 	struct err err = { 0 };
-	struct rig_conf rig = face_conf();
-	face_make(&m->face, false);
-	rig.map_step = 4;
-	bool ok = face_rig(&m->rig, 0, &m->face, &rig, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
+	bool ok = driven_make(&m->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
 	m->drive = (struct drive){ FRAMES, 12, calloc(FRAMES, sizeof(double)), calloc(12 * FRAMES, sizeof(double)), 0 };
 	for (int f = 0; f < FRAMES; f++) {
 		m->drive.time[f] = f / 30.0;
-		drive_look(drive_at(&m->drive, f), &m->rig, 15 * sin(f / 7.0), 10 * cos(f / 11.0), f > 25 && f < 32 ? 0 : 1);
+		drive_look(drive_at(&m->drive, f), &m->on.rig, 15 * sin(f / 7.0), 10 * cos(f / 11.0), f > 25 && f < 32 ? 0 : 1);
 	}
-	hairs_grow(&m->hairs, &m->rig, 0, &(struct hair_conf){ 9, 8, 40, 60, 1.1 });
-	conf.hairs = &m->hairs;
+	conf.hairs = &m->on.hairs;
 	*state = m;
 	return ok ? 0 : 1;
 }
@@ -82,10 +78,8 @@ static int setup(void **state)
 static int teardown(void **state)
 {
 	struct made *m = *state;
-	hairs_free(&m->hairs);
-	rig_free(&m->rig);
 	drive_free(&m->drive);
-	face_free(&m->face);
+	driven_free(&m->on);
 	free(m->eye[0]);
 	free(m->eye[1]);
 	free(m);
@@ -98,22 +92,22 @@ static void targets_give_the_frames_back(void **state)
 	struct made *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
-	assert_true(glb_bake_make(&b, &m->rig, &m->drive, &conf, &err));
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
 	assert_true(b.n_targets >= 3 && b.n_targets <= conf.targets);
-	struct deform *deform = deform_new(&m->rig);
-	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x);
+	struct deform *deform = deform_new(&m->on.rig);
+	float (*x)[3] = calloc((size_t)m->on.rig.n, sizeof *x);
 	double worst = 0;
 	deform_rest(deform, x, 0);
 	for (int f = 0; f < FRAMES; f++) {
 		double e[RIG_COMPONENTS], turn[2][3][3], *c = drive_at(&m->drive, f);
-		rig_components(e, &m->rig, c);
+		rig_components(e, &m->on.rig, c);
 		for (int s = 0; s < 2; s++)
-			rig_globe_rotation(turn[s], &m->rig, (double[]){ c[5 * s] * M_PI / 180, c[5 * s + 1] * M_PI / 180, 0 });
+			rig_globe_rotation(turn[s], &m->on.rig, (double[]){ c[5 * s] * M_PI / 180, c[5 * s + 1] * M_PI / 180, 0 });
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
 		for (int i = 0; i < b.n; i++) {
 			double d[3];
 			for (int k = 0; k < 3; k++) {
-				d[k] = m->rig.rest[b.vertex[i]][k] - x[b.vertex[i]][k];
+				d[k] = m->on.rig.rest[b.vertex[i]][k] - x[b.vertex[i]][k];
 				for (int t = 0; t < b.n_targets; t++)
 					d[k] += b.weight[f * b.n_targets + t] * b.target[(t * b.n + i) * 3 + k];
 			}
@@ -134,26 +128,30 @@ static void targets_give_the_frames_back(void **state)
 	glb_bake_free(&b);
 }
 
-/* Lashes and brows go where their roots go: with the animation's weights, and with a named pose. */
+/* Lashes, brows and tears go where their roots go: with the animation's weights, and with a named pose. */
 static void hairs_follow(void **state)
 {
 	struct made *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
-	assert_true(glb_bake_make(&b, &m->rig, &m->drive, &conf, &err));
-	const int n = strands_count(&m->hairs);
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	const int strands = strands_count(&m->on.hairs), n = strands + tears_count(&m->on.hairs);
 	assert_int_equal(b.n_hair, n);
-	struct deform *deform = deform_new(&m->rig);
-	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x), (*rest)[3] = calloc((size_t)n, sizeof *rest), (*now)[3] = calloc((size_t)n, sizeof *now);
-	strands_place(rest, 0, &m->hairs, &m->rig, (const float(*)[3])m->rig.rest);
+	struct deform *deform = deform_new(&m->on.rig);
+	float (*x)[3] = calloc((size_t)m->on.rig.n, sizeof *x), (*rest)[3] = calloc((size_t)n, sizeof *rest), (*now)[3] = calloc((size_t)n, sizeof *now);
+	double turn[2][3][3], worst[2] = { 0 }, most[2] = { 0 }, blink[2] = { 0 };
+	for (int s = 0; s < 2; s++)
+		rig_globe_rotation(turn[s], &m->on.rig, (double[3]){ 0 });
+	strands_place(rest, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])m->on.rig.rest);
+	tears_place(rest + strands, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])m->on.rig.rest, (const double(*)[3][3])turn, conf.tear_mm, 0);
 	deform_rest(deform, x, 0);
-	double worst = 0, most = 0, blink = 0;
 	for (int f = 0; f < FRAMES; f++) {
-		double e[RIG_COMPONENTS], turn[2][3][3], *c = drive_at(&m->drive, f);
-		rig_components(e, &m->rig, c);
-		rig_globes_turned(turn, &m->rig, c);
+		double e[RIG_COMPONENTS], *c = drive_at(&m->drive, f);
+		rig_components(e, &m->on.rig, c);
+		rig_globes_turned(turn, &m->on.rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-		strands_place(now, 0, &m->hairs, &m->rig, (const float(*)[3])x);
+		strands_place(now, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])x);
+		tears_place(now + strands, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])x, (const double(*)[3][3])turn, conf.tear_mm, 0);
 		for (int i = 0; i < n; i++) {
 			double d[3], far[3];
 			for (int k = 0; k < 3; k++) {
@@ -161,18 +159,58 @@ static void hairs_follow(void **state)
 				for (int t = 0; t < b.n_targets; t++)
 					d[k] += b.weight[f * b.n_targets + t] * b.hair_target[(t * n + i) * 3 + k];
 			}
-			worst = fmax(worst, vec_norm(d));
-			most = fmax(most, vec_norm(far));
+			worst[i >= strands] = fmax(worst[i >= strands], vec_norm(d));
+			most[i >= strands] = fmax(most[i >= strands], vec_norm(far));
 		}
 	}
 	for (int i = 0; i < 3 * n; i++)
-		blink = fmax(blink, fabs((double)b.hair_pose[i]));
-	print_message("hairs move by %.2f mm, %.2f off at worst; by %.2f in a blink\n", most, worst, blink);
-	assert_true(most > 0.5 && worst < 0.05 * most && blink > 0.1);
+		blink[i >= 3 * strands] = fmax(blink[i >= 3 * strands], fabs((double)b.hair_pose[i]));
+	print_message("hairs move by %.2f mm, %.2f off at worst, by %.2f in a blink; tears by %.2f, %.2f off, %.2f\n", most[0], worst[0], blink[0], most[1], worst[1], blink[1]);
+	assert_true(most[0] > 0.5 && worst[0] < 0.05 * most[0] && blink[0] > 0.1);
+	assert_true(most[1] > 0.1 && worst[1] < 0.1);
 	free(x);
 	free(rest);
 	free(now);
 	deform_free(deform);
+	glb_bake_free(&b);
+}
+
+/* An expression's target is what it moves beside a look straight ahead. */
+static void expressions_have_targets(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b;
+	struct err err = { 0 };
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	assert_int_equal(b.n_poses, GLB_POSES + 2);
+	float (*x[2])[3] = { calloc((size_t)m->on.rig.n, sizeof **x), calloc((size_t)m->on.rig.n, sizeof **x) };
+	struct deform *deform = deform_new(&m->on.rig);
+	struct deform_near near = deform_near_of(&m->on.rig);
+	for (int k = 0; k < 2; k++) {
+		double worst = 0, most = 0;
+		for (int on = 0; on < 2; on++) {
+			double c[12], e[RIG_COMPONENTS], turn[2][3][3];
+			drive_look(c, &m->on.rig, 0, 0, 1);
+			c[SKIN_EYE_INPUTS + k] = on;
+			rig_components(e, &m->on.rig, c);
+			rig_globes_turned(turn, &m->on.rig, c);
+			deform_rest(deform, x[on], 0);
+			deform_pose(deform, e, (const double(*)[3][3])turn, x[on], 0);
+			deform_clear(x[on], &m->on.rig, &near, (const double(*)[3][3])turn);
+		}
+		assert_string_equal(b.pose_name[GLB_POSES + k], expressions[k]);
+		for (int i = 0; i < b.n; i++)
+			for (int c = 0; c < 3; c++) {
+				const double want = (double)x[1][b.vertex[i]][c] - (double)x[0][b.vertex[i]][c];
+				worst = fmax(worst, fabs(want - (double)b.pose[((GLB_POSES + k) * b.n + i) * 3 + c]));
+				most = fmax(most, fabs(want));
+			}
+		assert_true(most > 0.1 && worst < 1e-4);
+	}
+	free(x[0]);
+	free(x[1]);
+	deform_free(deform);
+	deform_near_free(&near);
 	glb_bake_free(&b);
 }
 
@@ -184,26 +222,26 @@ static void named_poses_add_up(void **state)
 	struct err err = { 0 };
 	static const int pairs[][2] = { { 0, 1 }, { 2, 3 }, { 8, 7 } };
 	static const double look[][3] = { { 0, 0, 0 }, { 0, 20, 1 }, { 25, 0, 1 } };
-	float (*was)[3] = calloc((size_t)m->rig.n, sizeof *was), (*x)[3] = calloc((size_t)m->rig.n, sizeof *x);
-	memcpy(was, m->rig.rest, (size_t)m->rig.n * sizeof *was);
-	for (int i = 0; i < m->rig.n; i++)
-		for (int c = 0; c < 3 && m->rig.part[i] == RIG_SKIN && m->rig.gap[i] < 2; c++)  // 3 mm deeper, towards the globe's centre
-			m->rig.rest[i][c] -= 3.0f / 14 * (m->rig.rest[i][c] - (float)m->rig.globe[m->rig.side[i]].center[c]);
-	assert_true(glb_bake_make(&b, &m->rig, &m->drive, &conf, &err));
-	struct deform *deform = deform_new(&m->rig);
-	struct deform_near near = deform_near_of(&m->rig);
+	float (*was)[3] = calloc((size_t)m->on.rig.n, sizeof *was), (*x)[3] = calloc((size_t)m->on.rig.n, sizeof *x);
+	memcpy(was, m->on.rig.rest, (size_t)m->on.rig.n * sizeof *was);
+	for (int i = 0; i < m->on.rig.n; i++)
+		for (int c = 0; c < 3 && m->on.rig.part[i] == RIG_SKIN && m->on.rig.gap[i] < 2; c++)  // 3 mm deeper, towards the globe's centre
+			m->on.rig.rest[i][c] -= 3.0f / 14 * (m->on.rig.rest[i][c] - (float)m->on.rig.globe[m->on.rig.side[i]].center[c]);
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	struct deform *deform = deform_new(&m->on.rig);
+	struct deform_near near = deform_near_of(&m->on.rig);
 	for (int k = 0; k < 3; k++) {
 		double e[RIG_COMPONENTS], turn[2][3][3], c[12], worst = 0, most = 0;
-		float (*from)[3] = calloc((size_t)m->rig.n, sizeof *from);
+		float (*from)[3] = calloc((size_t)m->on.rig.n, sizeof *from);
 		for (int pass = 0; pass < 2; pass++) {  // what it is told against: rest for a blink, else a look straight ahead
-			drive_look(c, &m->rig, pass ? look[k][0] : 0, pass ? look[k][1] : 0, pass ? look[k][2] : 1);
-			rig_components(e, &m->rig, c);
-			rig_globes_turned(turn, &m->rig, c);
+			drive_look(c, &m->on.rig, pass ? look[k][0] : 0, pass ? look[k][1] : 0, pass ? look[k][2] : 1);
+			rig_components(e, &m->on.rig, c);
+			rig_globes_turned(turn, &m->on.rig, c);
 			deform_rest(deform, x, 0);
-			deform_pose(deform, !pass && k == 0 ? m->rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
-			deform_clear(x, &m->rig, &near, (const double(*)[3][3])turn);
+			deform_pose(deform, !pass && k == 0 ? m->on.rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
+			deform_clear(x, &m->on.rig, &near, (const double(*)[3][3])turn);
 			if (!pass)
-				memcpy(from, x, (size_t)m->rig.n * sizeof *from);
+				memcpy(from, x, (size_t)m->on.rig.n * sizeof *from);
 		}
 		for (int i = 0; i < b.n; i++)
 			for (int d = 0; d < 3; d++) {
@@ -216,7 +254,7 @@ static void named_poses_add_up(void **state)
 		assert_true(worst < 0.3);
 		free(from);
 	}
-	memcpy(m->rig.rest, was, (size_t)m->rig.n * sizeof *was);
+	memcpy(m->on.rig.rest, was, (size_t)m->on.rig.n * sizeof *was);
 	free(was);
 	free(x);
 	deform_free(deform);
@@ -232,14 +270,14 @@ static void lids_go_no_further_than_they_are_known(void **state)
 	struct glb_bake b[3];
 	struct err err = { 0 };
 	const double g[2][10] = { { -4, -3, 0, 0, 0, -4, -3 }, { 4, 3, 0, 0, 0, 4, 3 } };
-	const struct known was = m->rig.known;
-	double most[3] = { 0 }, *slope = m->rig.W;
+	const struct known was = m->on.rig.known;
+	double most[3] = { 0 }, *slope = m->on.rig.W;
 	for (int eye = 0; eye < 2; eye++)
 		slope[5 * eye] += 5;  // px a degree
 	for (int k = 0; k < 3; k++) {
 		if (k)
-			known_of(&m->rig.known, 2, g[0], 10, k == 1 ? 0 : 0.3);
-		assert_true(glb_bake_make(&b[k], &m->rig, &m->drive, &conf, &err));
+			known_of(&m->on.rig.known, 2, g[0], 10, k == 1 ? 0 : 0.3);
+		assert_true(glb_bake_make(&b[k], &m->on.rig, &m->drive, &conf, &err));
 		for (int pose = 2; pose < 10; pose++)
 			for (int i = 0; i < b[k].n; i++) {
 				const float *d = b[k].pose + (long)(pose * b[k].n + i) * 3;
@@ -249,7 +287,7 @@ static void lids_go_no_further_than_they_are_known(void **state)
 	}
 	print_message("furthest of the named gazes: %.2f mm, held %.2f, and a little further %.2f\n", most[0], most[1], most[2]);
 	assert_true(most[1] < 0.35 * most[0] && most[2] > most[1] && most[2] < 1.5 * most[1]);
-	m->rig.known = was;
+	m->on.rig.known = was;
 	for (int eye = 0; eye < 2; eye++)
 		slope[5 * eye] -= 5;
 }
@@ -264,7 +302,7 @@ static void more_targets_are_closer(void **state)
 		struct glb_conf few = conf;
 		few.targets = n;
 		few.tolerance = 0;
-		assert_true(glb_bake_make(&b, &m->rig, &m->drive, &few, &err));
+		assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &few, &err));
 		assert_true(b.worst < before);
 		before = b.worst;
 		glb_bake_free(&b);
@@ -276,7 +314,7 @@ static bool put(const struct made *m, const char *path, int left, int right, str
 {
 	const struct glb_eye eye[2] = { { m->eye[left], m->size[left], 11.8 }, { m->eye[right], m->size[right], 11.8 } };
 	struct glb_report report;
-	return glb_write(path, &report, &m->rig, &m->drive, eye, "face", 0, &conf, "{\"stage\": \"render\"}", err);
+	return glb_write(path, &report, &m->on.rig, &m->drive, eye, "face", 0, &conf, "{\"stage\": \"render\"}", err);
 }
 
 static json_t *json_of(const char *path)
@@ -313,14 +351,14 @@ static void container(void **state)
 	assert_true(file_hash(second, path, 1 << 30, &err));
 	assert_string_equal(first, second);
 	json_t *root = json_of(path);
-	assert_int_equal(count(root, "nodes"), 6 + 2 * EXPORT_PARTS);
-	assert_int_equal(count(root, "meshes"), 3 + EXPORT_PARTS);  // one eye for both sides is there once
+	assert_int_equal(count(root, "nodes"), 7 + 2 * EXPORT_PARTS);
+	assert_int_equal(count(root, "meshes"), 4 + EXPORT_PARTS);  // one eye for both sides is there once
 	assert_int_equal(count(root, "images"), EXPORT_PICTURES);
-	assert_int_equal(count(json_array_get(json_object_get(root, "animations"), 0), "channels"), 5);
+	assert_int_equal(count(json_array_get(json_object_get(root, "animations"), 0), "channels"), 6);
 	json_decref(root);
 	assert_true(put(m, path, 0, 1, &err));
 	root = json_of(path);
-	assert_int_equal(count(root, "meshes"), 3 + 2 * EXPORT_PARTS);
+	assert_int_equal(count(root, "meshes"), 4 + 2 * EXPORT_PARTS);
 	assert_int_equal(count(root, "images"), 2 * EXPORT_PICTURES);
 	json_decref(root);
 	scratch_close();
@@ -350,9 +388,9 @@ static void eyes_in_their_sockets(void **state)
 	for (int s = 0; s < 2; s++) {
 		json_t *node = named(all, s ? "eye_right" : "eye_left"), *cornea = named(all, s ? "eye_right_cornea" : "eye_left_cornea");
 		const double scale = json_real_value(json_array_get(json_object_get(node, "scale"), 0));
-		NEAR(scale, m->rig.globe[s].radius / 11.8, 1e-6);
+		NEAR(scale, m->on.rig.globe[s].radius / 11.8, 1e-6);
 		for (int c = 0; c < 3; c++)
-			NEAR(json_real_value(json_array_get(json_object_get(node, "translation"), (size_t)c)), 1e-3 * m->rig.globe[s].center[c], 1e-8);
+			NEAR(json_real_value(json_array_get(json_object_get(node, "translation"), (size_t)c)), 1e-3 * m->on.rig.globe[s].center[c], 1e-8);
 		json_t *mesh = json_array_get(json_object_get(root, "meshes"), (size_t)json_integer_value(json_object_get(cornea, "mesh")));
 		json_t *primitive = json_array_get(json_object_get(mesh, "primitives"), 0);
 		const json_int_t position = json_integer_value(json_object_get(json_object_get(primitive, "attributes"), "POSITION"));
@@ -374,7 +412,7 @@ static void no_eye_no_file(void **state)
 	const struct glb_eye cut[2] = { { m->eye[0], m->size[0], 11.8 }, { m->eye[1], m->size[1] / 2, 11.8 } };
 	scratch_open();
 	const char *path = scratch_path("face.glb");
-	assert_false(glb_write(path, &report, &m->rig, &m->drive, cut, "face", 0, &conf, 0, &err));
+	assert_false(glb_write(path, &report, &m->on.rig, &m->drive, cut, "face", 0, &conf, 0, &err));
 	ERR_HAS(err, "eye_right: no binary glTF");
 	assert_false(file_exists(path));
 	scratch_close();
@@ -405,7 +443,7 @@ static void driving_file(void **state)
 	                                            "0,0.1,10,-5,1,10,2,8,-5,0,-60,0,0.5\n"
 	                                            "1,0.2,,,,-25,1,,,,,,\n"
 	                                            "2,0.3,20,5,3,-60,0,18,5,0,10,2,1\n");
-	if (!drive_load(&d, &m->face.model, path, &err))
+	if (!drive_load(&d, &m->on.face.model, path, &err))
 		fail_msg("%s", err.msg);
 	assert_int_equal(d.n, 3);
 	NEAR(drive_at(&d, 0)[3], 1, 1e-12);   // 10 px is as open as it gets
@@ -416,12 +454,12 @@ static void driving_file(void **state)
 	NEAR(drive_at(&d, 2)[11], 0, 1e-12);  // an action unit the file lacks: at rest
 	drive_free(&d);
 	path = scratch_text("animation.csv", "time_s,g1_deg,g2_deg,g3_deg,a4,a5,g6_deg,g7_deg,g8_deg,a9,a10,brow\n0,1,2,3,0.25,1,4,5,6,0.5,1,0.5\n");
-	assert_true(drive_load(&d, &m->face.model, path, &err));
+	assert_true(drive_load(&d, &m->on.face.model, path, &err));
 	NEAR(drive_at(&d, 0)[3], 0.25, 1e-12);
 	NEAR(drive_at(&d, 0)[10], 0.5, 1e-12);
 	drive_free(&d);
 	path = scratch_text("bad.csv", "time_s,g1_deg\n0.2,1\n0.1,1\n");
-	assert_false(drive_load(&d, &m->face.model, path, &err));
+	assert_false(drive_load(&d, &m->on.face.model, path, &err));
 	ERR_HAS(err, "bad.csv:3: time_s = 0.1");
 	static const struct {
 		const char *field, *says;
@@ -434,7 +472,7 @@ static void driving_file(void **state)
 		char text[80];
 		snprintf(text, sizeof text, "time_s,%s\n", nonsense[i].field);
 		err = (struct err){ 0 };
-		assert_false(drive_load(&d, &m->face.model, scratch_text("bad.csv", text), &err));
+		assert_false(drive_load(&d, &m->on.face.model, scratch_text("bad.csv", text), &err));
 		ERR_HAS(err, nonsense[i].says);
 	}
 	scratch_close();
@@ -443,7 +481,7 @@ static void driving_file(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(hairs_follow), cmocka_unit_test(named_poses_add_up), cmocka_unit_test(lids_go_no_further_than_they_are_known),
+		cmocka_unit_test(targets_give_the_frames_back), cmocka_unit_test(hairs_follow), cmocka_unit_test(expressions_have_targets), cmocka_unit_test(named_poses_add_up), cmocka_unit_test(lids_go_no_further_than_they_are_known),
 		cmocka_unit_test(more_targets_are_closer),
 		cmocka_unit_test(container),                        cmocka_unit_test(khronos_validator_finds_nothing),
 		cmocka_unit_test(eyes_in_their_sockets),            cmocka_unit_test(no_eye_no_file),

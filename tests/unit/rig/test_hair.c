@@ -1,48 +1,33 @@
 /* Lashes and brows of a made face: where they are rooted, that none goes through the skin, that they move with it, and their triangles. */
 #include "math/vec.h"
 #include "mesh/ray.h"
-#include "rig/drive.h"
-#include "rig/deform/deform.h"
 #include "rig/glb/strands.h"
+#include "rig/glb/tears.h"
 #include "rig/hair/hair.h"
-#include "tests/lib/scenes/face.h"
+#include "tests/lib/scenes/driven.h"
 #include "tests/lib/unit.h"
-
-struct made {
-	struct face face;
-	struct rig rig;
-	struct hairs hairs;
-};
 
 static const struct hair_conf conf = { .lash_mm = 9, .brow_mm = 8, .lashes = 100, .brow_hairs = 200, .margin_mm = 1.1 };
 
 static int setup(void **state)
 {
-	struct made *m = calloc(1, sizeof *m);
+	struct driven *m = calloc(1, sizeof *m);
 	struct err err = { 0 };
-	struct rig_conf rig = face_conf();
-	face_make(&m->face, false);
-	rig.map_step = 4;
-	const bool ok = face_rig(&m->rig, 0, &m->face, &rig, &err);
-	hairs_grow(&m->hairs, &m->rig, 0, &conf);
 	*state = m;
-	return ok ? 0 : 1;
+	return driven_make(m, &conf, &err) ? 0 : 1;
 }
 
 static int teardown(void **state)
 {
-	struct made *m = *state;
-	hairs_free(&m->hairs);
-	rig_free(&m->rig);
-	face_free(&m->face);
-	free(m);
+	driven_free(*state);
+	free(*state);
 	return 0;
 }
 
 /* The made fissure is an ellipse of 10 by 4.5 mm, cut from a coarse sheet: a face is left out where its corner lies within. */
 static void rooted_beyond_the_opening(void **state)
 {
-	const struct made *m = *state;
+	const struct driven *m = *state;
 	int count[2][3] = { { 0 } };
 	for (int i = 0; i < m->hairs.n; i++) {
 		const struct hair *h = &m->hairs.hair[i];
@@ -67,7 +52,7 @@ static void rooted_beyond_the_opening(void **state)
 }
 
 /* Share of lashes that skin hides a part of from the side on which they stand, in a pose. */
-static double through(const struct made *m, const float (*x)[3])
+static double through(const struct driven *m, const float (*x)[3])
 {
 	struct ray_scene *skin = ray_scene_new(m->rig.n, x, m->face.skin.n_faces, (const int32_t(*)[3])m->rig.faces);
 	int n = 0, bad = 0;
@@ -92,29 +77,23 @@ static double through(const struct made *m, const float (*x)[3])
 
 static void none_through_the_skin(void **state)
 {
-	const struct made *m = *state;
-	struct deform *deform = deform_new(&m->rig);
+	const struct driven *m = *state;
 	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x);
 	const double pose[][3] = { { 0, 0, 1 }, { 0, 0, 0 }, { 15, 10, 1 }, { -15, -15, 1 } };
 	for (int i = 0; i < (int)(sizeof pose / sizeof *pose); i++) {
-		double c[12] = { 0 }, e[RIG_COMPONENTS], turn[2][3][3];
-		drive_look(c, &m->rig, pose[i][0], pose[i][1], pose[i][2]);
-		rig_components(e, &m->rig, c);
-		rig_globes_turned(turn, &m->rig, c);
-		deform_rest(deform, x, 0);
-		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
+		double turn[2][3][3];
+		driven_pose(x, turn, m, pose[i][0], pose[i][1], pose[i][2]);
 		const double share = through(m, (const float(*)[3])x);
 		print_message("through the skin: %.1f %% of the lashes\n", 100 * share);
 		assert_true(share < (i ? 0.02 : 1e-9));  // at rest none
 	}
 	free(x);
-	deform_free(deform);
 }
 
 /* A root that turns about the globe takes its hair with it, stiff. */
 static void hairs_turn_with_their_roots(void **state)
 {
-	const struct made *m = *state;
+	const struct driven *m = *state;
 	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x), was[HAIR_LASH_POINTS][3], now[HAIR_LASH_POINTS][3];
 	const double a = -0.4;
 	for (int i = 0; i < m->hairs.n; i++) {
@@ -141,7 +120,7 @@ static void hairs_turn_with_their_roots(void **state)
 
 static void strands_are_as_thick_as_hairs(void **state)
 {
-	const struct made *m = *state;
+	const struct driven *m = *state;
 	const int n = strands_count(&m->hairs);
 	float (*x)[3] = calloc((size_t)n, sizeof *x), (*normal)[3] = calloc((size_t)n, sizeof *normal), point[HAIR_LASH_POINTS][3];
 	strands_place(x, normal, &m->hairs, &m->rig, (const float(*)[3])m->rig.rest);
@@ -167,7 +146,7 @@ static void strands_are_as_thick_as_hairs(void **state)
 
 static void none_where_none_are_wanted(void **state)
 {
-	const struct made *m = *state;
+	const struct driven *m = *state;
 	struct hairs h;
 	struct hair_conf bare = conf;
 	bool *shown = calloc((size_t)m->rig.n_faces, 1);
@@ -181,11 +160,79 @@ static void none_where_none_are_wanted(void **state)
 	free(shown);
 }
 
+/* The meniscus stands on the globe's surface, is as high as wanted in the middle, runs out at the corners, and goes where lids meet. */
+static void tears_stand_on_the_eyeball(void **state)
+{
+	const struct driven *m = *state;
+	static const double height = 0.3, over = 0.05;
+	const int n = tears_count(&m->hairs);
+	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x), (*at)[3] = calloc((size_t)n, sizeof *at), (*normal)[3] = calloc((size_t)n, sizeof *normal);
+	assert_true(m->hairs.n_rims > 2 * HAIR_RIMS - 20 && m->hairs.n_rims <= 2 * HAIR_RIMS);
+	for (int shut = 0; shut < 2; shut++) {
+		double turn[2][3][3], highest = 0, widest = 0;
+		driven_pose(x, turn, m, 10, 5, 1);
+		for (int i = 0; i < m->hairs.n_rims && shut; i++)  // this face's lids do not meet by themselves
+			for (int k = 0; k < 3; k++)
+				memcpy(x[m->hairs.rim[i].vertex[1][k]], x[m->hairs.rim[i].vertex[0][0]], sizeof *x);
+		tears_place(at, normal, &m->hairs, &m->rig, (const float(*)[3])x, (const double(*)[3][3])turn, height, over);
+		for (int i = 0; i < n; i++) {
+			const struct hair_rim *rim = &m->hairs.rim[i / TEARS_SECTION];
+			const double off = rig_globe_distance(&m->rig, rim->side, (const double(*)[3])turn[rim->side], at[i]), end = fmin(rim->along, 1 - rim->along);
+			assert_true(off > over && off < over + height + 0.03);
+			highest = fmax(highest, off);
+			double apart[3], up[3];
+			for (int c = 0; c < 3; c++) {
+				apart[c] = (double)at[i][c] - (double)at[i - i % TEARS_SECTION][c];
+				up[c] = (double)normal[i][c];
+			}
+			NEAR(vec_norm(up), 1, 1e-5);
+			widest = fmax(widest, vec_norm(apart));
+			if (end == 0)
+				NEAR(vec_norm(apart), 0, 1e-5);
+		}
+		print_message("tears %.3f mm high, %.3f across\n", highest - over, widest);
+		assert_true(shut ? highest - over < 0.1 : fabs(highest - over - height) < 0.03 && fabs(widest - sqrt(2) * height) < 0.03);
+	}
+	free(x);
+	free(at);
+	free(normal);
+}
+
+/* Each triangle's own normal leans to the side of its vertices'. */
+static void tears_look_outwards(void **state)
+{
+	const struct driven *m = *state;
+	const int n = tears_count(&m->hairs);
+	float (*at)[3] = calloc((size_t)n, sizeof *at), (*normal)[3] = calloc((size_t)n, sizeof *normal);
+	uint32_t (*face)[3] = calloc(2 * (size_t)n, sizeof *face);
+	double turn[2][3][3] = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
+	tears_place(at, normal, &m->hairs, &m->rig, (const float(*)[3])m->rig.rest, (const double(*)[3][3])turn, 0.3, 0);
+	const int faces = tears_faces(face, &m->hairs, 0);
+	assert_int_equal(faces, 2 * (m->hairs.n_rims - 2) * (TEARS_SECTION - 1));
+	for (int f = 0; f < faces; f++) {
+		double a[3], b[3], own[3], sum = 0, flat = 0;
+		for (int c = 0; c < 3; c++) {
+			a[c] = (double)at[face[f][1]][c] - (double)at[face[f][0]][c];
+			b[c] = (double)at[face[f][2]][c] - (double)at[face[f][0]][c];
+		}
+		vec_cross(own, a, b);
+		for (int c = 0; c < 3; c++) {
+			sum += own[c] * (double)normal[face[f][0]][c];
+			flat = fmax(flat, fabs(own[c]));
+		}
+		assert_true(sum > 0 || flat < 1e-6);  // without area where the meniscus ends
+	}
+	free(at);
+	free(normal);
+	free(face);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rooted_beyond_the_opening),   cmocka_unit_test(none_through_the_skin),    cmocka_unit_test(hairs_turn_with_their_roots),
 		cmocka_unit_test(strands_are_as_thick_as_hairs), cmocka_unit_test(none_where_none_are_wanted),
+		cmocka_unit_test(tears_stand_on_the_eyeball),  cmocka_unit_test(tears_look_outwards),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
 }

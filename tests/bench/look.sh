@@ -1,0 +1,53 @@
+#!/bin/bash
+# The look in numbers: the exported eye path-traced by Blender's Cycles and drawn by three.js, against render's own still of the same view and
+# light. One line a figure; exit status 1 where a goal is missed. Without Blender (apt-get install blender) it is skipped, by name.
+#   SAMPLES=128 DEGREES="0 30" tests/bench/look.sh      side by side: bench/look_WHO_DEG.png
+. "$(dirname "$0")/../lib/chain.sh"
+trap 'rm -rf "$root"' EXIT
+SAMPLES=${SAMPLES:-64} DEGREES=${DEGREES:-0 30} missed=0 B=${B:-build} npm=${B:-build}/npm
+if ! command -v blender >/dev/null; then
+	echo "skipped: bench-look: no blender: apt-get install blender"
+	exit 0
+fi
+mkdir -p bench
+capture=$root/eye
+new_capture "$capture"
+cp "$PHOTO" "$capture/photos"
+sed -i 's/^quality.*/quality = review/' "$capture/capture.conf"
+run_make "$capture" export || { tail -n 3 "$log"; exit 1; }
+export=$capture/work/export
+
+goal() { # WHAT VALUE BOUND
+	local ok
+	ok=$(awk -v x="$2" -v b="$3" 'BEGIN { print (x != "" && x <= b) }')
+	[ "$ok" = 1 ] || missed=1
+	printf '%-52s %8s  at most %s: %s\n' "$1" "$2" "$3" "$([ "$ok" = 1 ] && echo reached || echo MISSED)"
+}
+figure() { printf '%-52s %8s\n' "$1" "$2"; }
+said() { sed -n "s/.*$1 \([-0-9.]*\).*/\1/p" "$root/says"; }
+# against WHO DEG PICTURE DIFFERENCE
+against() {
+	"$B/tests/tools/eye_compare" "$export/eye.json" "$2" "$export/reference_$(printf %02d "$2").exr" "$3" "bench/look_$1_$(printf %02d "$2").png" >"$root/says" 2>&1 ||
+		{ cat "$root/says"; missed=1; return; }
+	goal "$1 at $2 degrees: difference of the eye, CIEDE2000" "$(said ' eye')" "$4"
+	figure "$1 at $2 degrees: of the iris, CIEDE2000" "$(said ': iris')"
+	goal "$1 at $2 degrees: between the glints, px" "$(said 'glint')" 2
+	goal "$1 at $2 degrees: iris detail off, px" "$(sed -n 's/.*detail \([-0-9.]*\) \([-0-9.]*\) px.*/\1 \2/p' "$root/says" | awk '{ printf "%.2f", sqrt($1 * $1 + $2 * $2) }')" 1
+	figure "$1 at $2 degrees: structural similarity" "$(said 'structure')"
+	figure "$1 at $2 degrees: between the outlines, px" "$(said 'outlines')"
+}
+
+# shellcheck disable=SC2086
+timeout 3000 blender -b --python tests/tools/eye_cycles.py -- "$export" "$root" "$SAMPLES" $DEGREES >"$log" 2>&1 || { tail -n 5 "$log"; exit 1; }
+for deg in $DEGREES; do
+	against Cycles "$deg" "$root/cycles_$(printf %02d "$deg").exr" 2
+done
+if command -v chromium >/dev/null && node -e "require('$PWD/$npm/node_modules/three/package.json')" >/dev/null 2>&1; then
+	timeout 400 node tests/browser/eye_glb.js "$export" "$npm" "$root" eye.glb >"$log" 2>&1
+	for deg in $DEGREES; do
+		against three.js "$deg" "$root/eye_$(printf %02d "$deg").npy" 3
+	done
+else
+	echo "skipped: bench-look in three.js: no chromium, or npm could not install three"
+fi
+exit $missed

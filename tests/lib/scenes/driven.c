@@ -1,0 +1,38 @@
+#include "tests/lib/scenes/driven.h"
+
+#include <stdlib.h>
+
+#include "rig/deform/deform.h"
+#include "rig/drive.h"
+
+bool driven_make(struct driven *d, const struct hair_conf *hair, struct err *err)
+{
+	struct rig_conf conf = face_conf();
+	*d = (struct driven){ 0 };
+	face_make(&d->face, false);
+	conf.map_step = 4;
+	if (!face_rig(&d->rig, 0, &d->face, &conf, err))
+		return false;
+	hairs_grow(&d->hairs, &d->rig, 0, hair);
+	return true;
+}
+
+void driven_free(struct driven *d)
+{
+	hairs_free(&d->hairs);
+	rig_free(&d->rig);
+	face_free(&d->face);
+}
+
+void driven_pose(float (*x)[3], double turn[2][3][3], const struct driven *d, double horizontal, double vertical, double open)
+{
+	double e[RIG_COMPONENTS], *c = calloc((size_t)d->rig.n_inputs, sizeof *c);
+	struct deform *deform = deform_new(&d->rig);
+	drive_look(c, &d->rig, horizontal, vertical, open);
+	rig_components(e, &d->rig, c);
+	rig_globes_turned(turn, &d->rig, c);
+	deform_rest(deform, x, 0);
+	deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
+	deform_free(deform);
+	free(c);
+}

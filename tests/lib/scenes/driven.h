@@ -1,0 +1,21 @@
+/* driven: the made face with its rig and hairs, as the tests of both drive it. */
+#ifndef TESTS_DRIVEN_H
+#define TESTS_DRIVEN_H
+#include "rig/hair/hair.h"
+#include "tests/lib/scenes/face.h"
+
+struct driven {
+	struct face face;
+	struct rig rig;
+	struct hairs hairs;
+};
+
+/* Returns false, err set, where the rig cannot be made; driven_free in any case. */
+bool driven_make(struct driven *driven, const struct hair_conf *hair, struct err *err);
+void driven_free(struct driven *driven);
+
+/* Vertices x[rig.n] in the pose in which both eyes look at horizontal, vertical (degrees), open by that share of what is usual; turn: of the
+ * globes, out. */
+void driven_pose(float (*x)[3], double turn[2][3][3], const struct driven *driven, double horizontal, double vertical, double open);
+
+#endif
