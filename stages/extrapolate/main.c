@@ -25,6 +25,7 @@ int main(int argc, char **argv)
 		OPT_REALS("corner_within_mm", r->within, 2, 0, 10, "mm", "from the ends of the eyeball seen: margins leave their arcs; inner, outer"),
 		OPT_REALS("corner_beyond_mm", r->beyond, 2, 0, 10, "mm", "from the ends of the eyeball seen: corners of the lids; inner, outer"),
 		OPT_REALS("breadth_mm", r->breadth, 2, 0, 5, "mm", "of a lid's margin, of half the hollow at a corner, at most; closed eyes show none of it"),
+		OPT_REALS("tarsus_mm", r->tarsus, 2, 0, 40, "mm", "above the upper margin: skin that shuts with it, up to the first wholly, from the second not"),
 		OPT_REAL("seal_mm", &r->seal, -1, 5, "mm", "closed lids overlap so much; below 0: they close as far as they were learnt to"),
 		OPT_REAL("min_confidence", &r->min_confidence, 0, 1, "", "of transfer, below which a vertex counts as untracked"),
 		OPT_REAL("map_step_px", &r->map_step, 0.25, 32, "px", "texel of the skull map, in the video's pixels"),

@@ -51,6 +51,8 @@ struct rig_conf {
 	                                      // arcs, within; where the corners lie, beyond
 	double breadth[2];                    // mm: of a lid's margin as the front sees it, and of half the hollow at a corner, at most; closed eyes
 	                                      // show none of it
+	double tarsus[2];                     // mm above the upper margin of an eye of 12 mm: what was not learnt of closing moves skin up to
+	                                      // the first as far as the margin, from the second not at all
 	double seal;                          // mm that closed lids overlap; < 0: lids are not sealed
 	double min_confidence;                // of the registration, below which a vertex counts as untracked
 	double map_step;                      // texel of the skull map, px of the modelling camera

@@ -168,8 +168,8 @@ static bool fit(double coefficient[TERMS][RIG_BASIS], const struct opening *o, c
 	return ok;
 }
 
-/* Makes the upper margin come down, in proportion to how far eyes are closed, by what the closed pose leaves open. */
-static void shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const double closed[RIG_COMPONENTS],
+/* Makes the upper margin come down, in proportion to how far eyes are closed, by what the closed pose leaves open; returns that, px. */
+static double shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o, const double closed[RIG_COMPONENTS],
                  const double closing[RIG_COMPONENTS], double seal_mm)
 {
 	double lack = o->most + seal_mm * o->px_per_mm;
@@ -177,6 +177,7 @@ static void shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o, 
 		lack -= (coefficient[2 + UPPER][RIG_COMPONENTS + k] - coefficient[2 + LOWER][RIG_COMPONENTS + k]) * closed[k];
 	for (int k = 0; k < RIG_COMPONENTS; k++)
 		coefficient[2 + UPPER][RIG_COMPONENTS + k] += lack * closing[k];
+	return lack;
 }
 
 /* Distance of a point from a margin, mm. */
@@ -204,12 +205,23 @@ static double breadth(const struct opening *o, int lid, const float at[2], const
 	return (lid == UPPER ? fmin(fmax(off, 0), most) : fmax(fmin(off, 0), -most)) * fading(beyond / o->scale, 0, 1);
 }
 
-static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS],
-                  const double closing[RIG_COMPONENTS], const struct rig_conf *conf)
+/* Share with which skin above the upper margin goes with it as one: that on the tarsus. d: from both margins, mm. */
+static double on_tarsus(const struct rig *rig, int i, const struct opening *o, const double d[LIDS], const struct rig_conf *conf)
 {
-	double most = 0, total = 0, sum[RIG_BASIS] = { 0 };
+	const double unit = o->px_per_mm / o->scale;
+	if (d[UPPER] > d[LOWER])
+		return 0;
+	return fading(d[UPPER] * unit, conf->tarsus[0], conf->tarsus[1]) * fading(rig->gap[i] * unit, conf->lid_gap, 2 * conf->lid_gap);
+}
+
+/* lack: what shut() added to the upper margin, px. */
+static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS],
+                  const double closing[RIG_COMPONENTS], double lack, const struct rig_conf *conf)
+{
+	double most = 0, total = 0, sum[RIG_BASIS] = { 0 }, away[LIDS], open[TERMS];
 	for (int lid = 0; lid < LIDS; lid++) {
 		double g[TERMS], d = off_margin(o, lid, rig->home[i]), share = fading(d, 0.25 * conf->lid, conf->lid), w = share / (0.01 + d * d);
+		away[lid] = d;
 		terms_at(g, o, lid, rig->home[i][0], fmax((d - margin_mm) * o->px_per_mm, 0.5));
 		most = fmax(most, share);
 		total += w;
@@ -222,24 +234,28 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 	most *= fading(rig->gap[i] * o->px_per_mm / o->scale, conf->lid_gap - gap_fade, conf->lid_gap + gap_fade);
 	for (int k = 0; k < RIG_BASIS && total > 0; k++)
 		rig->basis[i][k] += (float)(most * (sum[k] / total - rig->basis[i][k]));
+	const double more = fmax(on_tarsus(rig, i, o, away, conf) - most, 0);
+	terms_at(open, o, UPPER, rig->home[i][0], fmax((away[UPPER] - margin_mm) * o->px_per_mm, 0.5));
+	for (int k = 0; k < RIG_COMPONENTS && more > 0; k++)
+		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * open[2 + UPPER] * lack * closing[k]);
 }
 
 void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_mm, const struct rig_conf *conf)
 {
 	for (int side = 0; side < 2 && conf->lid > 0; side++) {
 		struct opening o;
-		double coefficient[TERMS][RIG_BASIS], closed[RIG_COMPONENTS], closing[RIG_COMPONENTS] = { 0 };
+		double coefficient[TERMS][RIG_BASIS], closed[RIG_COMPONENTS], closing[RIG_COMPONENTS] = { 0 }, lack = 0;
 		if (!opening_of(&o, rig, m, side, px_per_mm, conf))
 			continue;
 		bool ok = fit(coefficient, &o, rig, side, conf->lid_gap);
 		if (ok && conf->seal >= 0) {
 			rig_closed_pose(closed, rig);
 			rig_closing_direction(closing, rig, closed);
-			shut(coefficient, &o, closed, closing, conf->seal);
+			lack = shut(coefficient, &o, closed, closing, conf->seal);
 		}
 		for (int i = 0; i < rig->n && ok; i++)
 			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side)
-				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, closing, conf);
+				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, closing, fmax(lack, 0), conf);
 		opening_free(&o);
 	}
 }

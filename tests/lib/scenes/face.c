@@ -179,7 +179,7 @@ void face_free(struct face *f)
 struct rig_conf face_conf(void)
 {
 	return (struct rig_conf){ .neighbours = 8, .fade = { 2, 22 }, .glue = { 2.5, 6 }, .thickness = 1.6, .least = 0.05, .lid = 0, .lid_gap = 5,
-		                      .within = { 2.5, 1 }, .beyond = { 3.5, 2.5 }, .seal = -1, .min_confidence = 0.2, .map_step = 2,
+		                      .within = { 2.5, 1 }, .beyond = { 3.5, 2.5 }, .tarsus = { 4, 12 }, .seal = -1, .min_confidence = 0.2, .map_step = 2,
 		                      .globe_cells = 192, .cornea_bulge = 1.03 };
 }
 

@@ -144,8 +144,46 @@ static void the_edges_of_broad_margins_meet(void **state)
 	rig_free(&broad);
 }
 
+/* Motion, px, of the skin nearest to `up` mm above the middle of an eye, with the eyes closed. */
+static double closing_at(const struct rig *rig, int side, double up)
+{
+	double closed[RIG_COMPONENTS], sum = 0, least = INFINITY;
+	rig_closed_pose(closed, rig);
+	for (int i = 0; i < rig->n; i++) {
+		const double off = hypot(rig->rest[i][0] - rig->globe[side].center[0], rig->rest[i][1] - up);
+		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || off >= least)
+			continue;
+		least = off;
+		sum = 0;
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			sum += rig->basis[i][RIG_COMPONENTS + k] * closed[k];
+	}
+	assert_true(least < 1);
+	return sum;
+}
+
+/* Where shutting was not learnt (this face's lids move by a millimetre), skin on the tarsus, which bears the lashes, comes down with the
+ * margin, by what that does on average so far to either side; skin higher up comes less far the higher it is, so that none folds over. */
+static void the_tarsus_shuts_as_one(void **state)
+{
+	(void)state;
+	struct rig rig = waved(0, 0.15, 0);
+	for (int side = 0; side < 2; side++) {
+		const double margin = closing_at(&rig, side, 4.667);
+		double before = margin;
+		for (double up = 5.833; up < 20; up += 1.167) {
+			const double here = closing_at(&rig, side, up);
+			assert_true(here < before + 0.1 * margin);
+			before = here;
+		}
+		print_message("shut: margin %.1f px, 3.5 mm above it %.1f, 14 mm %.1f\n", margin, closing_at(&rig, side, 8.167), closing_at(&rig, side, 18.667));
+		assert_true(margin > 50 && closing_at(&rig, side, 8.167) > 0.75 * margin && closing_at(&rig, side, 18.667) < 0.25 * margin);
+	}
+	rig_free(&rig);
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet), cmocka_unit_test(the_edges_of_broad_margins_meet) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet), cmocka_unit_test(the_edges_of_broad_margins_meet), cmocka_unit_test(the_tarsus_shuts_as_one) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
