@@ -9,7 +9,6 @@
 #include "math/stats.h"
 
 enum { MIN_SIDE = 96 };
-static const double AS_SURE = 1;  // log odds
 
 /* Encoded brightness that a tenth of the photograph exceeds. */
 static double bright_level(const struct grey *g)
@@ -64,7 +63,7 @@ static struct trial *told(struct trials *t, int best)
 	for (int k = 0; k < COUNT(guide); k++)
 		for (int i = 0; i < t->n; i++) {
 			struct trial *other = &t->trial[i];
-			if (other->guide == guide[k] && other->log_odds > likeliest->log_odds - AS_SURE && trial_same(other, likeliest, t->conf->tolerance))
+			if (other->guide == guide[k] && other->log_odds > likeliest->log_odds - t->conf->same.as_sure && trial_same(other, likeliest, t->conf))
 				return other;
 		}
 	return likeliest;

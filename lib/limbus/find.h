@@ -3,8 +3,6 @@
  */
 #ifndef LIMBUS_FIND_H
 #define LIMBUS_FIND_H
-#include <math.h>
-
 #include "limbus/propose/lean.h"
 #include "limbus/pupil.h"
 #include "limbus/odds_net.h"
@@ -18,6 +16,41 @@ struct face_conf {
 	double size_sigma;    // of the logarithm of their sizes' ratio
 	double score, sure;   // of a region: where the other eye is looked for; where it is there, found or not
 	double pupil_sigma;   // of the logarithm of the pupils' ratio
+	double region_alike;  // logarithm of the sizes' ratio of two regions that may be one face's eyes, at most
+	double off_alike;     // chance that two ellipses, of which one at least is off, are off for one reason, lids or a collarette, and about as large
+	double off_sigma;     // how many times size_sigma those differ
+	double broad;         // of the logarithm of the others' ratio
+	double unlike;        // chance that two right ones are as unlike as any
+	double far;           // sigmas, beyond which sizes, or pupils, contradict each other
+};
+
+/* Which ellipses are tried, and how roughly (trial.h). */
+struct trial_conf {
+	int regions, votes, rounds;    // of the evidence; of the edges' votes; of these, round which a larger one is looked for
+	int reads;                     // of a strip, each round the ellipse of the one before
+	int passes;                    // of a rough measure
+	double limbus_px, pupil_px;    // larger semi-axes are reduced to that for it
+	double window_place, window_size;  // of the radius, and of the logarithm of its ratio: a window serves an ellipse that near
+	double window_again;           // of either, from which the evidence's ellipse is looked for anew in a window of its own
+	double least_region;           // size of the evidence's ellipse, of the radius looked for, below which it is none
+	double start_alike;            // of the radius and the logarithms of the sizes' ratios: a start that is that near one that was tried is left out
+	double other_scale[2];         // of the first region's radius: other sizes that are looked for
+	double prior_arcs;             // so many arcs of a rim count as one against what is known of its ellipse
+};
+
+/* When two ellipses say the same (posterior.h), and of which a choice is made. */
+struct same_conf {
+	double sigmas, most;  // so many sigmas apart, at most so many semi-axes
+	double unseen;        // semi-axes: and no farther, however little of either is seen
+	double other_eye;     // semi-axes between centres: no rival, but another eye
+	double as_sure;       // log odds below the likeliest: a trial that says the same and keeps lids out better is taken
+	double moved;         // chance of being off where the full measurement left its trial
+};
+
+/* What is believed beside a hand's mark (hand.h). */
+struct hand_conf {
+	double close;  // of the radius, and of the logarithms of the sizes' ratios: how far an edge may be
+	double seen;   // share of the ring that it shows
 };
 
 struct limbus_conf {
@@ -29,22 +62,20 @@ struct limbus_conf {
 	struct strip_conf strip_conf;
 	struct odds_net *odds;       // borrowed
 	struct face_conf face;
+	struct trial_conf trial;
+	struct same_conf same;
+	struct hand_conf hand;
 	double region_sigma, region_shape_sigma;  // of the evidence's ellipse: centre and size, shape; share of the semi-axis
 	double strip_sigma;    // of the strip's ellipse, beside what its rays say; share of the semi-axis
 	double region_hidden;  // how many times more where no sclera is beside it
 	double tolerance;      // share of the semi-axis: an answer that is farther off is a gross error
+	double rough_tolerance; // that does for much, and that soft limbi allow: a refusal points at it
 	double max_gross;      // chance of that, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
 	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis
 	double hint_sigma, drawn_sigma;  // of what a person says: share of the semi-axis
 	double max_over, min_level;  // share of burnt pixels; encoded brightness of the 90 % quantile
 };
-
-/* How far two answers may be apart, semi-axes, that say the same: three of their sigmas, at least the tolerance and at most 0.05, or that. */
-static inline double limbus_alike(double sigma, double tolerance)
-{
-	return fmax(tolerance, fmin(3 * sigma, 0.05));
-}
 
 /* How sure the choice is. */
 struct posterior {

@@ -8,8 +8,6 @@
 
 enum { LEAST_PX = 8 };
 static const double NEAR = 0.35;       // of the radius, and of the logarithm of the size's ratio
-static const double CLOSE = 0.12;      // the same of an edge fit that is believed
-static const double SEEN = 0.2;        // share of the ring that such a fit shows
 
 bool limbus_hand_check(const struct ellipse *e, const char *key, int width, int height, struct err *err)
 {
@@ -62,9 +60,9 @@ void limbus_by_hand(struct limbus_found *found, const struct photo *photo, const
 {
 	struct rim *rim = mem_new(1, sizeof *rim);
 	struct rim_conf close = conf->rim;
-	close.search = fmin(close.search, CLOSE);
-	bool fits = rim_fit(rim, photo, &pyramid->tint, meant, &close) && within(&rim->e, meant, CLOSE)
-	            && rim->coverage > SEEN && rim->rms < conf->max_rms * rim->e.a + 1;
+	close.search = fmin(close.search, conf->hand.close);
+	bool fits = rim_fit(rim, photo, &pyramid->tint, meant, &close) && within(&rim->e, meant, conf->hand.close)
+	            && rim->coverage > conf->hand.seen && rim->rms < conf->max_rms * rim->e.a + 1;
 	if (fits) {
 		double off = fmax(hypot(rim->e.cx - meant->cx, rim->e.cy - meant->cy), fabs(rim->e.a - meant->a)) / 2;
 		off = fmin(off, sigma * meant->a);

@@ -2,10 +2,6 @@
 
 #include <math.h>
 
-static const double OTHER_EYE = 1;      // semi-axes between centres: no rival, but the other eye
-static const double NEAR = 0.08;        // semi-axes: what is farther apart is not the same, however little is seen
-static const double MOVED = 0.5;        // chance of being off where the full measurement left its trial
-
 double trial_apart(const struct ellipse *e, const struct ellipse *f)
 {
 	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
@@ -21,16 +17,18 @@ static bool follows(const struct ellipse *e, const struct trial_line *line, doub
 	return true;
 }
 
-static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other, double sigma, double tolerance)
+/* Answers so many sigmas apart say the same, at least those within the tolerance. */
+static bool same(const struct ellipse *e, const struct trial_line *line, const struct ellipse *f, const struct trial_line *other, double sigma,
+                 const struct limbus_conf *conf)
 {
-	const double within = limbus_alike(sigma, tolerance);
+	const double within = fmax(conf->tolerance, fmin(conf->same.sigmas * sigma, conf->same.most));
 	const double away = trial_apart(e, f) / e->a;
-	return away < within || (away < NEAR && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
+	return away < within || (away < conf->same.unseen && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
 }
 
-bool trial_same(const struct trial *a, const struct trial *b, double tolerance)
+bool trial_same(const struct trial *a, const struct trial *b, const struct limbus_conf *conf)
 {
-	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma), tolerance);
+	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma), conf);
 }
 
 bool trial_repeats(const struct trials *t, int i)
@@ -39,15 +37,15 @@ bool trial_repeats(const struct trials *t, int i)
 	for (int k = 0; k < t->n; k++) {
 		const struct trial *b = &t->trial[k];
 		const bool likelier = b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i);
-		if (k != i && likelier && trial_same(a, b, t->conf->tolerance))
+		if (k != i && likelier && trial_same(a, b, t->conf))
 			return true;
 	}
 	return false;
 }
 
-static bool is_rival(const struct ellipse *e, const struct ellipse *best)
+static bool is_rival(const struct ellipse *e, const struct ellipse *best, const struct limbus_conf *conf)
 {
-	return hypot(e->cx - best->cx, e->cy - best->cy) < OTHER_EYE * fmax(e->a, best->a);
+	return hypot(e->cx - best->cx, e->cy - best->cy) < conf->same.other_eye * fmax(e->a, best->a);
 }
 
 /* Chances of the trials given that one of the rivals or none is right: those that say the same as a likelier one get 0. */
@@ -56,7 +54,7 @@ static void chances(double chance[TRIALS], const struct trials *t, int best)
 	double sum = 1;
 	for (int i = 0; i < t->n; i++) {
 		const struct trial *a = &t->trial[i];
-		const bool counts = (i == best || is_rival(&a->e, &t->trial[best].e)) && !trial_repeats(t, i);
+		const bool counts = (i == best || is_rival(&a->e, &t->trial[best].e, t->conf)) && !trial_repeats(t, i);
 		chance[i] = counts ? exp(a->log_odds) : 0;
 		sum += chance[i];
 	}
@@ -104,6 +102,6 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 				rim->cov_q[a][b] += chance[i] * (other[a] - q[a]) * (other[b] - q[b]);
 	}
 	const struct trial_line line = trial_line_of(rim);
-	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line, t->trial[p->best].sigma, t->conf->tolerance))
-		p->gross = fmax(p->gross, MOVED);
+	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line, t->trial[p->best].sigma, t->conf))
+		p->gross = fmax(p->gross, t->conf->same.moved);
 }

@@ -11,8 +11,8 @@ void posterior_of(struct posterior *posterior, const struct trials *trials);
 /* The largest difference of centre and semi-axes, px. */
 double trial_apart(const struct ellipse *e, const struct ellipse *f);
 
-/* Whether two trials are within limbus_alike of each other where either was seen: what lids hide may differ, and has its sigma. */
-bool trial_same(const struct trial *a, const struct trial *b, double tolerance);
+/* Whether two trials are so many sigmas apart at most (struct same_conf) where either was seen: what lids hide may differ, and has its sigma. */
+bool trial_same(const struct trial *a, const struct trial *b, const struct limbus_conf *conf);
 /* Whether trial i says the same as a likelier one. */
 bool trial_repeats(const struct trials *trials, int i);
 

@@ -9,14 +9,7 @@
 #include "math/stats.h"
 
 enum { RADII = 16, GRID = 2, SAMPLES = 24, DISC_RINGS = 12, DISC_ANGLES = 48, ALIKE_ARCS = 12 };
-static const double LEAST_WINDOW = 2;               // px: steps of small pupils are blurred as much as those of large ones
-static const double TOLD_SIGMA[2] = { 0.025, 0.03 };  // of the evidence's ellipse, of the limbus's semi-axis (its planes are coarse) and of its own:
-                                                    // drawn and rendered faces of development
-static const double FAR = 2.2;                      // so many of that: not the same
-static const double ENOUGH = 0.5;                   // of what is asked of a margin, where the other eye shows its pupil
-static const double SURE = 0.3;                     // mean chance of pupil in an ellipse of the evidence that is believed
 static const float HIDDEN = 0.85F, FLOOR = 0.02F;  // as of region.c
-static const double CONTRAST = 0.12, SMALLEST = 0.12, LARGEST = 0.78;  // of the limbus
 
 static double ring_median(const struct grey *g, const struct ellipse *e, double scale, double quantile)
 {
@@ -33,9 +26,9 @@ static double ring_median(const struct grey *g, const struct ellipse *e, double 
 }
 
 /* Edge score, less where the inside is not one dark level from the middle to the margin (collarette, dark ring). */
-static double pupil_score(const struct grey *g, const struct ellipse *e)
+static double pupil_score(const struct grey *g, const struct ellipse *e, double contrast)
 {
-	double edge = score_ellipse(g, e, CONTRAST, SCORE_WIDE);
+	double edge = score_ellipse(g, e, contrast, SCORE_WIDE);
 	double core = ring_median(g, e, 0.4, 0.5), rim = ring_median(g, e, 0.85, 0.6), out = ring_median(g, e, 1.15, 0.5);
 	if (!(out > core))
 		return 0;
@@ -44,17 +37,18 @@ static double pupil_score(const struct grey *g, const struct ellipse *e)
 }
 
 /* The best circle, or copy of the limbus' shape, on a grid of centres and radii. */
-static double search(struct ellipse *best, const struct pyramid *pyramid, const struct ellipse *limbus)
+static double search(struct ellipse *best, const struct pyramid *pyramid, const struct ellipse *limbus, const struct pupil_conf *conf)
 {
+	const double least = conf->first[0], most = conf->first[1];
 	double top = 0;
 	for (int i = 0; i < RADII; i++) {
-		const double k = SMALLEST * pow(LARGEST / SMALLEST, (double)i / (RADII - 1)), reach = 0.07 * limbus->b;
+		const double k = least * pow(most / least, (double)i / (RADII - 1)), reach = 0.07 * limbus->b;
 		const struct grey *g = &pyramid->bright[pyramid_index(pyramid, k * limbus->a, 40)];
 		for (int x = -GRID; x <= GRID; x++)
 			for (int y = -GRID; y <= GRID; y++) {
 				struct ellipse e = { limbus->cx + x * reach, limbus->cy + y * reach, k * limbus->a, k * limbus->b,
 				                     limbus->angle };
-				double score = pupil_score(g, &e);
+				double score = pupil_score(g, &e, conf->first_contrast);
 				if (score > top) {
 					top = score;
 					*best = e;
@@ -79,9 +73,9 @@ bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyr
                   const struct ellipse *limbus, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
 {
 	struct ellipse e;
-	if (search(&e, pyramid, limbus) < 0.2)
+	if (search(&e, pyramid, limbus, conf) < conf->first_score)
 		return false;
-	score_climb(&pyramid->bright[pyramid_index(pyramid, e.a, 60)], &e, 0.08 * e.a, 0.01 * e.a, CONTRAST, SCORE_WIDE);
+	score_climb(&pyramid->bright[pyramid_index(pyramid, e.a, 60)], &e, 0.08 * e.a, 0.01 * e.a, conf->first_contrast, SCORE_WIDE);
 	struct rim_conf grey = *rim_conf;
 	grey.grey = true;
 	grey.search = fmax(grey.search, 6 / e.a);
@@ -130,11 +124,11 @@ static double mean_in(double middle[2], const struct evidence *evidence, const s
 }
 
 /* The pupil by the evidence of its pixels: its ellipse, and their mean in it. 0: there is none in the limbus. */
-static double told_by(struct ellipse *e, const struct evidence *evidence, const struct ellipse *limbus)
+static double told_by(struct ellipse *e, const struct evidence *evidence, const struct ellipse *limbus, const struct pupil_conf *conf)
 {
 	double middle[2];
 	const double size = sqrt(mean_in(middle, evidence, limbus));
-	if (!(size > SMALLEST))
+	if (!(size > conf->first[0]))
 		return 0;
 	*e = (struct ellipse){ middle[0], middle[1], size * limbus->a, size * limbus->b, limbus->angle };
 	struct region_map map = map_of(evidence);
@@ -144,7 +138,7 @@ static double told_by(struct ellipse *e, const struct evidence *evidence, const 
 }
 
 /* Measures the margin near an ellipse that is known before to `sigma` px. */
-static bool measure_near(struct rim *pupil, const struct photo *photo, const struct ellipse *e, double sigma, const struct rim_conf *rim_conf)
+static bool measure_near(struct rim *pupil, const struct photo *photo, const struct ellipse *e, double sigma, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
 {
 	struct rim_conf grey = *rim_conf;
 	struct ellipse_prior known = { .alike = ALIKE_ARCS };
@@ -153,7 +147,7 @@ static bool measure_near(struct rim *pupil, const struct photo *photo, const str
 		known.sigma[i] = sigma;
 	grey.grey = true;
 	grey.known = &known;
-	grey.least_window = LEAST_WINDOW;
+	grey.least_window = conf->least_window;
 	return rim_fit(pupil, photo, 0, e, &grey);
 }
 
@@ -169,10 +163,10 @@ bool limbus_pupil_like(struct rim *pupil, const struct photo *photo, const struc
 	struct pupil_conf less = *conf;
 	e.a *= size;
 	e.b *= size;
-	less.min_contrast *= ENOUGH;
-	less.min_coverage *= ENOUGH;
-	return measure_near(pupil, photo, &e, sigma * e.a, rim_conf) && believed(pupil, limbus, &less) && is_clear(pupil, ENOUGH, conf)
-	       && agree(&pupil->e, &e, FAR * sigma * e.a);
+	less.min_contrast *= conf->other_eye;
+	less.min_coverage *= conf->other_eye;
+	return measure_near(pupil, photo, &e, sigma * e.a, rim_conf, conf) && believed(pupil, limbus, &less) && is_clear(pupil, conf->other_eye, conf)
+	       && agree(&pupil->e, &e, conf->told_far * sigma * e.a);
 }
 
 bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
@@ -180,13 +174,13 @@ bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struc
 {
 	struct ellipse told = { 0 };
 	const bool found = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf);
-	const double sure = told_by(&told, evidence, limbus);
-	const double sigma = TOLD_SIGMA[0] * limbus->a + TOLD_SIGMA[1] * told.a;
-	if (found && sure >= SURE && agree(&pupil->e, &told, FAR * sigma))
+	const double sure = told_by(&told, evidence, limbus, conf);
+	const double sigma = conf->told_sigma[0] * limbus->a + conf->told_sigma[1] * told.a;
+	if (found && sure >= conf->told_sure && agree(&pupil->e, &told, conf->told_far * sigma))
 		return true;
 	// Against the evidence, or without it, an edge counts that is there all round.
-	if (found && is_clear(pupil, 1, conf) && (sure < SURE || agree(&pupil->e, &told, 1.5 * FAR * sigma)))
+	if (found && is_clear(pupil, 1, conf) && (sure < conf->told_sure || agree(&pupil->e, &told, 1.5 * conf->told_far * sigma)))
 		return true;
-	return sure >= SURE && measure_near(pupil, photo, &told, sigma, rim_conf) && believed(pupil, limbus, conf) && is_clear(pupil, 1, conf)
-	       && agree(&pupil->e, &told, FAR * sigma);
+	return sure >= conf->told_sure && measure_near(pupil, photo, &told, sigma, rim_conf, conf) && believed(pupil, limbus, conf) && is_clear(pupil, 1, conf)
+	       && agree(&pupil->e, &told, conf->told_far * sigma);
 }

@@ -9,6 +9,13 @@ struct pupil_conf {
 	double min_coverage;  // share of the margin that must be seen
 	double clear_coverage, clear_used;  // of a margin that needs no second witness: share seen; share good enough to measure
 	double largest;       // of the limbus: a larger one is the limbus, or the collarette's shadow
+	double first[2];      // sizes that are tried first, of the limbus: least, most
+	double first_contrast, first_score;  // contrast of a fully supported edge; score (propose/score.h) from which one is measured
+	double least_window;  // px: steps of small pupils are blurred as much as those of large ones
+	double told_sigma[2]; // of the evidence's ellipse: of the limbus's semi-axis, as its planes are coarse, and of its own
+	double told_far;      // so many of these: not the same
+	double told_sure;     // mean chance of pupil in an ellipse of the evidence that is believed
+	double other_eye;     // of what is asked of a margin, where the other eye shows its pupil
 };
 
 /* Searches the limbus for an ellipse that is evenly dark inside and brighter outside, then measures it like the limbus (rim_fit).

@@ -22,8 +22,6 @@ static bool is_cut(const struct ellipse *e, const struct photo *photo)
 	return e->cx - hx < -slack || e->cy - hy < -slack || e->cx + hx > photo->width + slack || e->cy + hy > photo->height + slack;
 }
 
-static const double ROUGH = 0.04;  // of the semi-axis: a tolerance that does for much, and that soft limbi allow
-
 /* A trait that lowers the odds of a limbus, how a clear photograph of an open eye has it, and what to do about it. */
 struct fault {
 	enum odds_trait trait;
@@ -67,11 +65,11 @@ static const char *words_of(const struct trial *trial, const struct limbus_conf 
 	return words;
 }
 
-/* Whether the same ellipse would be taken where ROUGH is asked for. */
+/* Whether the same ellipse would be taken where limbus.rough_tolerance is asked for. */
 static bool rough_enough(const struct posterior *p, const struct trial *trial, const struct limbus_conf *conf)
 {
-	const bool rivals = p->rival >= 0 && trial_apart(&trial->e, &p->other) > ROUGH * trial->e.a;
-	return conf->tolerance < ROUGH && !rivals && 1 / (1 + exp(odds_log(trial->curve, ROUGH))) < conf->max_gross;
+	const bool rivals = p->rival >= 0 && trial_apart(&trial->e, &p->other) > conf->rough_tolerance * trial->e.a;
+	return conf->tolerance < conf->rough_tolerance && !rivals && 1 / (1 + exp(odds_log(trial->curve, conf->rough_tolerance))) < conf->max_gross;
 }
 
 void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf)
@@ -81,7 +79,7 @@ void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *tria
 		limbus_refuse(found, "the iris is cut by the frame: show all of it with some white around");
 	else if (p->gross > conf->max_gross && rough_enough(p, trial, conf))
 		limbus_refuse(found, "its ellipse may be more than %.0f %% off (chance %.0f %%), hardly more than %.0f %%: limbus.tolerance = %.2g takes it; or %s", 100 * conf->tolerance,
-		              100 * p->gross, 100 * ROUGH, ROUGH, words_of(trial, conf));
+		              100 * p->gross, 100 * conf->rough_tolerance, conf->rough_tolerance, words_of(trial, conf));
 	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
 		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
 	else if (p->gross > conf->max_gross)

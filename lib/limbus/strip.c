@@ -9,13 +9,7 @@
 #include "image/plane.h"
 
 enum { PART = 224 };               // px, sides of the part of the photograph that rays cross
-enum { NEAR_ROWS = 4 };            // round the ellipse: where the likeliest place of a ray is looked for
 static const double REACH = 1.44;  // semi-axes: what the part shows to each side
-static const double LEAST = 0.02;  // chance that a ray tells nothing
-static const double SEEN = 0.3;    // chance of being seen near the ellipse from which a ray has a place
-static const double REACH_SIZE = 0.5, REACH_PLACE = 0.5;  // logarithm of the size, semi-axes: from the strip's ellipse, at most
-static const double FAR = 0.3, FAR_SHAPE = 0.1;  // semi-axes: sigma of the start; of its shape
-static const double RAY_NOISE = 0.3;  // rows
 
 void strip_place(double p[2], const struct ellipse *e, int ray, double s)
 {
@@ -88,14 +82,15 @@ static double count_of(const struct strip *strip, int ray)
 
 double strip_worth(const struct strip *strip, const struct ellipse *e)
 {
+	const double least = strip->conf.least;
 	double sum = 0;
 	for (int j = 0; j < STRIP_RAYS; j++)
-		sum += count_of(strip, j) * log((1 - LEAST) * STRIP_ROWS * chance_at(strip, j, row_of(strip_crossing(&strip->e, j, e))) + LEAST);
+		sum += count_of(strip, j) * log((1 - least) * STRIP_ROWS * chance_at(strip, j, row_of(strip_crossing(&strip->e, j, e))) + least);
 	return sum;
 }
 
 /* Mean and spread of a ray's place within so many rows of `row`; its chance. */
-static double place_near(double *mean, double *spread, const struct strip *strip, int ray, int rows, double row)
+static double place_near(double *mean, double *spread, const struct strip *strip, int ray, double rows, double row)
 {
 	double sum = 0, first = 0, second = 0;
 	for (int i = (int)fmax(ceil(row - rows), 0); i <= row + rows && i < STRIP_ROWS; i++) {
@@ -114,22 +109,24 @@ struct search { const struct strip *strip; const struct region_map *map; double 
 static double worth(const void *ctx, const struct ellipse *e)
 {
 	const struct search *s = ctx;
+	const struct strip_conf *conf = &s->strip->conf;
 	const struct ellipse *round = &s->strip->e;
 	double q[ELLIPSE_N], off = 0;
 	// what lies mostly beyond the strip is not for it to tell
-	if (fabs(log(e->a / round->a)) > REACH_SIZE || hypot(e->cx - round->cx, e->cy - round->cy) > REACH_PLACE * round->a)
+	if (fabs(log(e->a / round->a)) > conf->reach[0] || hypot(e->cx - round->cx, e->cy - round->cy) > conf->reach[1] * round->a)
 		return -INFINITY;
 	ellipse_to_q(q, e);
 	for (int i = 0; i < ELLIPSE_N; i++)
-		off += 0.5 * pow((q[i] - s->start[i]) / ((i < 3 ? FAR : FAR_SHAPE) * s->start[2]), 2);
-	return strip_worth(s->strip, e) + region_worth(s->map, e) / s->strip->conf.pixels - off;
+		off += 0.5 * pow((q[i] - s->start[i]) / (conf->start_sigma[i >= 3] * s->start[2]), 2);
+	return strip_worth(s->strip, e) + region_worth(s->map, e) / conf->pixels - off;
 }
 
 bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *strip, const struct region_map *map, const double sigma[ELLIPSE_N])
 {
+	const struct strip_conf *conf = &strip->conf;
 	const double row_px = STRIP_STEP * strip->e.a;
 	struct search search = { .strip = strip, .map = map };
-	struct ellipse_prior known = { .alike = strip->conf.rays };
+	struct ellipse_prior known = { .alike = conf->rays };
 	double p[STRIP_RAYS][2], weight[STRIP_RAYS];
 	int n = 0, seen = 0;
 	ellipse_to_q(search.start, e);
@@ -141,20 +138,20 @@ bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *s
 		double mean, spread;
 		if (!isfinite(row))
 			continue;
-		const bool visible = strip->seen[j] * place_near(&mean, &spread, strip, j, NEAR_ROWS, row) > SEEN;
-		if (!visible && strip->seen[j] < SEEN)
+		const bool visible = strip->seen[j] * place_near(&mean, &spread, strip, j, conf->near, row) > conf->seen;
+		if (!visible && strip->seen[j] < conf->seen)
 			place_near(&mean, &spread, strip, j, STRIP_ROWS, row);
 		else if (!visible)
 			continue;
 		strip_place(p[n], &strip->e, j, STRIP_FROM + (row + mean + 0.5) * STRIP_STEP);
-		weight[n++] = strip->conf.rays * count_of(strip, j) / (spread * spread + RAY_NOISE * RAY_NOISE);
+		weight[n++] = conf->rays * count_of(strip, j) / (spread * spread + conf->noise * conf->noise);
 		seen += visible;
 	}
-	if (!seen || !ellipse_fit_near(e, fit, n, (const double (*)[2])p, weight, 0, RAY_NOISE * row_px, &known))
+	if (!seen || !ellipse_fit_near(e, fit, n, (const double (*)[2])p, weight, 0, conf->noise * row_px, &known))
 		return false;
 	for (int a = 0; a < ELLIPSE_N; a++)
 		for (int b = 0; b < ELLIPSE_N; b++)
-			fit->cov_q[a][b] *= strip->conf.rays;
+			fit->cov_q[a][b] *= conf->rays;
 	return true;
 }
 
@@ -171,8 +168,8 @@ struct strip_accord strip_accord_of(const struct strip *strip, const struct elli
 			within += d < 0.025 ? seen * strip->row[i][j] : 0;
 			beyond += d > 0.05 ? seen * strip->row[i][j] : 0;
 		}
-		const double chance = isfinite(row) ? seen * place_near(&mean, &spread, strip, j, NEAR_ROWS, row) : 0;
-		if (chance > SEEN) {
+		const double chance = isfinite(row) ? seen * place_near(&mean, &spread, strip, j, strip->conf.near, row) : 0;
+		if (chance > strip->conf.seen) {
 			weight += chance;
 			square += chance * mean * mean;
 		}

@@ -23,8 +23,15 @@ void strip_place(double p[2], const struct ellipse *e, int ray, double s);
 /* Where the ray leaves another ellipse; NAN where it misses it. */
 double strip_crossing(const struct ellipse *e, int ray, const struct ellipse *other);
 
-/* How far neighbours err together: so many rays on which the limbus is seen, or hidden, and so many pixels of the evidence, count as one. */
-struct strip_conf { double rays, hidden, pixels; };
+struct strip_conf {
+	double rays, hidden, pixels;  // how far neighbours err together: so many rays on which the limbus is seen, or hidden, and pixels of the evidence count as one
+	double least;                 // chance that a ray tells nothing
+	double seen;                  // chance of being seen near the ellipse from which a ray has a place
+	double noise;                 // of that place, rows
+	double near;                  // rows round the ellipse in which it is looked for
+	double reach[2];              // how far an ellipse may lie from the strip's own: logarithm of the size, centre in semi-axes
+	double start_sigma[2];        // of the start, semi-axes: centre and size, shape
+};
 
 /* What the network says round an ellipse: of each ray the chances of the rows in which the limbus crosses it, seen or hidden by a lid, and the
  * chance that it is seen there, iris against sclera. */

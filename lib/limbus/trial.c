@@ -6,13 +6,6 @@
 #include "base/mem.h"
 #include "limbus/find.h"
 
-enum { REGIONS_TRIED = 3, VOTES_TRIED = 4, ROUNDS_TRIED = 2, COARSE_PX = 110, COARSE_PUPIL_PX = 70, COARSE_PASSES = 4, ALIKE_ARCS = 12, STRIP_READS = 3 };
-static const double SAME_PLACE = 0.5, SAME_SIZE = 0.3;  // of the radius, and of its logarithm: a window serves
-static const double LEAST_REGION = 0.3;                // of the radius looked for
-static const double ALIKE = 0.06;                       // of the radius: one ellipse, for a start
-static const double AGAIN = 0.2;                        // logarithm of the size: the window is made anew for the ellipse
-static const double OTHER_SCALE[] = { 1.6, 0.62 };      // a collarette for a limbus, a limbus for a face
-
 struct trials *trials_new(const struct photo *photo, const struct pyramid *pyramid, const struct limbus_conf *conf)
 {
 	struct trials *t = mem_new(1, sizeof *t);
@@ -37,9 +30,10 @@ void trials_free(struct trials *t)
 /* The window round a place, an earlier one where it fits; null where there is no room for more. */
 static struct trial_window *window(struct trials *t, double x, double y, double radius, struct err *err)
 {
+	const struct trial_conf *conf = &t->conf->trial;
 	for (int i = 0; i < t->n_windows; i++) {
 		struct trial_window *w = &t->window[i];
-		if (hypot(w->x - x, w->y - y) < SAME_PLACE * w->radius && fabs(log(w->radius / radius)) < SAME_SIZE)
+		if (hypot(w->x - x, w->y - y) < conf->window_place * w->radius && fabs(log(w->radius / radius)) < conf->window_size)
 			return w;
 	}
 	if (t->n_windows == TRIAL_WINDOWS)
@@ -61,7 +55,7 @@ static void region_prior(struct ellipse_prior *known, const struct ellipse *regi
 {
 	const double wider = (1 + conf->region_hidden * (1 - region_shown(region, &w->evidence))) * region->a;
 	ellipse_to_q(known->q, region);
-	known->alike = ALIKE_ARCS;
+	known->alike = conf->trial.prior_arcs;
 	for (int i = 0; i < ELLIPSE_N; i++)
 		known->sigma[i] = (i < 3 ? conf->region_sigma : conf->region_shape_sigma) * wider;
 }
@@ -94,16 +88,17 @@ static bool read_strip(struct trial_window *w, const struct trials *t, int n, co
 			other = was;
 		}
 	}
-	for (int k = 1; k < STRIP_READS && ok && best.seen; k++) {
+	const int reads = t->conf->trial.reads;
+	for (int k = 1; k < reads && ok && best.seen; k++) {
 		const struct ellipse from = best.e;
-		ok = read_round(&best, &from, k + 1 == STRIP_READS, w, t, err);
+		ok = read_round(&best, &from, k + 1 == reads, w, t, err);
 	}
 	free(other.strip);
 	w->strip = best.strip;
 	if (!ok || !best.seen)
 		return ok;
 	ellipse_to_q(w->told.q, &best.e);
-	w->told.alike = ALIKE_ARCS;
+	w->told.alike = t->conf->trial.prior_arcs;
 	for (int i = 0; i < ELLIPSE_N; i++)
 		w->told.sigma[i] = hypot(sqrt(best.fit.cov_q[i][i]), (i < 3 ? 1 : 0.4) * t->conf->strip_sigma * best.e.a);
 	w->seen = strip_seen(best.strip);
@@ -122,8 +117,8 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 	}
 	conf.absolute = trial->guide == GUIDE_EVIDENCE || trial->guide == GUIDE_STRIP;
 	if (coarse) {
-		conf.max_axis = COARSE_PX;
-		conf.passes = COARSE_PASSES;
+		conf.max_axis = t->conf->trial.limbus_px;
+		conf.passes = t->conf->trial.passes;
 		conf.straying *= conf.coarse_straying;
 	}
 	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : trial->guide == GUIDE_STRIP ? &trial->window->seen : &t->pyramid->tint;
@@ -131,7 +126,7 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 		return false;
 	conf.known = 0;
 	conf.absolute = false;
-	conf.max_axis = coarse ? COARSE_PUPIL_PX : conf.max_axis;
+	conf.max_axis = coarse ? t->conf->trial.pupil_px : conf.max_axis;
 	*has_pupil = coarse ? limbus_pupil(pupil, t->photo, t->pyramid, &rim->e, &conf, &t->conf->pupil)
 	                    : limbus_pupil_told(pupil, t->photo, t->pyramid, &rim->e, &trial->window->evidence, &conf, &t->conf->pupil);
 	return true;
@@ -140,9 +135,10 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 /* Whether a vote's ellipse was measured already. */
 static bool known_already(const struct trials *t, const struct ellipse *e)
 {
+	const double alike = t->conf->trial.start_alike;
 	for (int i = 0; i < t->n; i++) {
 		const struct ellipse *f = &t->trial[i].e;
-		if (hypot(f->cx - e->cx, f->cy - e->cy) < ALIKE * f->a && fabs(log(e->a / f->a)) < ALIKE && fabs(log(e->b / f->b)) < ALIKE)
+		if (hypot(f->cx - e->cx, f->cy - e->cy) < alike * f->a && fabs(log(e->a / f->a)) < alike && fabs(log(e->b / f->b)) < alike)
 			return true;
 	}
 	return false;
@@ -184,27 +180,28 @@ static bool try(struct trials *t, const struct trial *start, struct err *err)
 }
 
 /* The evidence's ellipse near one that is told; that itself where nothing there looks like an iris. */
-static void of_region(struct ellipse *e, const struct ellipse *told, const struct trial_window *w)
+static void of_region(struct ellipse *e, const struct ellipse *told, const struct trial_window *w, const struct trial_conf *conf)
 {
 	region_fit(e, &w->map);
-	if (!(e->a > LEAST_REGION * told->a))
+	if (!(e->a > conf->least_region * told->a))
 		*e = *told;
 }
 
 /* From a window of its own size. */
 bool trials_of_place(struct trials *t, double x, double y, double radius, struct err *err)
 {
+	const struct trial_conf *conf = &t->conf->trial;
 	struct trial_window *w = window(t, x, y, radius, err);
 	const struct ellipse told = { x, y, radius, radius, 0 };
 	struct ellipse e = told;
 	if (!w)
 		return !*err->msg;
-	of_region(&e, &told, w);
-	if (fabs(log(e.a / w->radius)) > AGAIN || hypot(e.cx - w->x, e.cy - w->y) > AGAIN * w->radius) {
+	of_region(&e, &told, w, conf);
+	if (fabs(log(e.a / w->radius)) > conf->window_again || hypot(e.cx - w->x, e.cy - w->y) > conf->window_again * w->radius) {
 		w = window(t, e.cx, e.cy, e.a, err);
 		if (!w)
 			return !*err->msg;
-		of_region(&e, &told, w);
+		of_region(&e, &told, w, conf);
 	}
 	for (int i = 0; i < t->n; i++)
 		if (t->trial[i].window == w && t->trial[i].guide == GUIDE_EVIDENCE)
@@ -225,7 +222,7 @@ bool trials_of_evidence(struct trials *t, struct err *err)
 	if (!evidence_find(t->region, &t->n_regions, t->conf->net, t->photo, err))
 		return false;
 	const int n = t->n_regions;
-	for (int i = 0; i < n && i < REGIONS_TRIED; i++)
+	for (int i = 0; i < n && i < t->conf->trial.regions; i++)
 		if (!trials_of_place(t, region[i].x, region[i].y, region[i].radius, err))
 			return false;
 	return true;
@@ -234,8 +231,8 @@ bool trials_of_evidence(struct trials *t, struct err *err)
 bool trials_of_scales(struct trials *t, struct err *err)
 {
 	const struct evidence_region *r = t->region;
-	for (int i = 0; i < COUNT(OTHER_SCALE) && t->n_regions > 0; i++)
-		if (!trials_of_place(t, r->x, r->y, OTHER_SCALE[i] * r->radius, err))
+	for (int i = 0; i < COUNT(t->conf->trial.other_scale) && t->n_regions > 0; i++)
+		if (!trials_of_place(t, r->x, r->y, t->conf->trial.other_scale[i] * r->radius, err))
 			return false;
 	return true;
 }
@@ -256,10 +253,10 @@ bool trials_of_votes(struct trials *t, struct err *err)
 {
 	struct seek_found seen[SEEK_MAX], outer;
 	const int n = limbus_seek(seen, t->pyramid, 0, &t->conf->seek);
-	for (int i = 0; i < n && i < VOTES_TRIED; i++) {
+	for (int i = 0; i < n && i < t->conf->trial.votes; i++) {
 		if (!of_vote(t, &seen[i].e, err))
 			return false;
-		if (i < ROUNDS_TRIED && limbus_seek_outer(&outer, t->pyramid, &seen[i].e, &t->conf->seek) && !of_vote(t, &outer.e, err))
+		if (i < t->conf->trial.rounds && limbus_seek_outer(&outer, t->pyramid, &seen[i].e, &t->conf->seek) && !of_vote(t, &outer.e, err))
 			return false;
 	}
 	return true;
@@ -271,7 +268,7 @@ bool trials_of_hint(struct trials *t, const double *hint, struct err *err)
 	if (!trials_of_place(t, hint[0], hint[1], hint[2], err))
 		return false;
 	const int n = limbus_seek(seen, t->pyramid, hint, &t->conf->seek);
-	for (int i = 0; i < n && i < VOTES_TRIED; i++)
+	for (int i = 0; i < n && i < t->conf->trial.votes; i++)
 		if (!of_vote(t, &seen[i].e, err))
 			return false;
 	return true;

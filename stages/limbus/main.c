@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "limbus.h"
 #include "limbus/strip_net.h"
+#include "opts.h"
 
 int main(int argc, char **argv)
 {
@@ -42,28 +43,22 @@ int main(int argc, char **argv)
 		OPT_REAL("colour_gain", &o.find.rim.colour_gain, 1, 1000, "", "of colour over brightness, from which it measures sharp steps, too"),
 		OPT_REAL("rough_gain", &o.find.rim.rough_gain, 1, 1000, "", "the same, of a rough measure"),
 		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
-		OPT_REAL("pupil_contrast", &o.find.pupil.min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"),
-		OPT_REAL("pupil_largest", &o.find.pupil.largest, 0.3, 1, "", "a pupil is smaller, share of the limbus"),
-		OPT_REAL("pupil_clear_coverage", &o.find.pupil.clear_coverage, 0.1, 1, "", "share seen of a margin that the evidence does not bear out"),
-		OPT_REAL("pupil_clear_used", &o.find.pupil.clear_used, 0, 1, "", "share of it that is good enough to measure"),
-		OPT_REAL("pupil_coverage", &o.find.pupil.min_coverage, 0.1, 1, "", "share of the pupil's margin seen"),
+		PUPIL_OPTS(&o.find.pupil),
 		OPT_REAL("tolerance", &o.find.tolerance, 0.01, 0.06, "", "share of the semi-axis: what is farther off is a gross error"),
+		OPT_REAL("rough_tolerance", &o.find.rough_tolerance, 0.01, 0.06, "", "one that does for much: a refusal points at it"),
 		OPT_REAL("max_gross", &o.find.max_gross, 0.001, 1, "", "chance of a gross error, beyond which it is refused"),
 		OPT_REAL("sure_gross", &o.find.sure_gross, 0, 1, "", "chance below which votes of edges are not asked"),
 		OPT_REAL("region_sigma", &o.find.region_sigma, 0.001, 0.5, "", "of the evidence's ellipse: centre and size, share of the semi-axis"),
-		OPT_REAL("strip_rays", &o.find.strip_conf.rays, 1, 128, "", "so many rays on which the limbus is seen count as one"),
-		OPT_REAL("strip_hidden", &o.find.strip_conf.hidden, 1, 1000, "", "so many rays on which it is hidden count as one"),
-		OPT_REAL("strip_pixels", &o.find.strip_conf.pixels, 1, 1e6, "", "so many pixels of the evidence count as one beside the strip"),
+		STRIP_OPTS(&o.find.strip_conf),
+		TRIAL_OPTS(&o.find.trial),
+		SAME_OPTS(&o.find.same),
 		OPT_REAL("strip_sigma", &o.find.strip_sigma, 0, 0.2, "", "sigma of the strip's ellipse beside what its rays say, share of its semi-axis"),
 		OPT_REAL("region_hidden", &o.find.region_hidden, 0, 20, "", "how many times more both are where no sclera lies beside it"),
 		OPT_REAL("region_shape_sigma", &o.find.region_shape_sigma, 0.001, 0.5, "", "the same of its shape"),
 		OPT_REAL("max_rms", &o.find.max_rms, 0.001, 0.2, "", "scatter of an edge near a hand's mark that is believed, of the semi-axis"),
-		OPT_REALS("face_distance", o.find.face.distance, 2, 2, 30, "", "between both limbi of a face, in radii: least, most"),
+		HAND_OPTS(&o.find.hand),
+		FACE_OPTS(&o.find.face),
 		OPT_REAL("face_roll", &o.face_roll_deg, 0, 90, "deg", "of the line through both, at most"),
-		OPT_REAL("face_size_sigma", &o.find.face.size_sigma, 0.001, 0.5, "", "of the logarithm of their sizes' ratio"),
-		OPT_REAL("face_pupil_sigma", &o.find.face.pupil_sigma, 0.005, 0.5, "", "of the logarithm of their pupils' ratio"),
-		OPT_REAL("face_score", &o.find.face.score, 0, 1, "", "of a region of the evidence where the other eye is looked for"),
-		OPT_REAL("face_sure", &o.find.face.sure, 0, 1, "", "of one where it is, measured or not"),
 		OPT_REAL("max_over", &o.find.max_over, 0, 1, "", "share of burnt pixels"),
 		OPT_REAL("min_level", &o.find.min_level, 0, 1, "", "encoded brightness of the 90 % quantile"),
 		OPT_REAL("pupil_offset_sigma", &o.pose.pupil_offset_sigma, 0.01, 2, "mm", "pupil centre off the axis"),

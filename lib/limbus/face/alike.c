@@ -6,12 +6,6 @@
 #include "limbus/posterior.h"
 #include "limbus/refuse.h"
 
-/* Sizes of two ellipses of which one at least is off: half of the time both are off for one reason, lids or a collarette, and about as
- * large. So broad is the rest. */
-static const double OFF_ALIKE = 0.5, OFF_SIGMA = 2, BROAD = 0.3;
-static const double UNLIKE = 0.01;  // chance that two right ones are as unlike as any
-static const double FAR = 4;        // sigma
-
 static double normal(double x, double sigma)
 {
 	return exp(-0.5 * x * x / (sigma * sigma)) / sigma;
@@ -20,8 +14,8 @@ static double normal(double x, double sigma)
 /* Likelihood ratio of the logarithm of two sizes' ratio: both right, against one or both off. */
 static double ratio_of(double x, const struct face_conf *conf)
 {
-	const double right = (1 - UNLIKE) * normal(x, conf->size_sigma) + UNLIKE * normal(x, BROAD);
-	return right / (OFF_ALIKE * normal(x, OFF_SIGMA * conf->size_sigma) + (1 - OFF_ALIKE) * normal(x, BROAD));
+	const double right = (1 - conf->unlike) * normal(x, conf->size_sigma) + conf->unlike * normal(x, conf->broad);
+	return right / (conf->off_alike * normal(x, conf->off_sigma * conf->size_sigma) + (1 - conf->off_alike) * normal(x, conf->broad));
 }
 
 /* Odds of each trial; 0 of those that say the same as a likelier one. */
@@ -67,7 +61,7 @@ void face_alike_sizes(struct limbus_found found[2], const struct face_conf *conf
 	ellipse_sigma(sigma[1], f, found[1].limbus.cov_q);
 	const double x = log(f->a / e->a), spread = hypot(conf->size_sigma, hypot(sigma[0][2] / e->a, sigma[1][2] / f->a));
 	const int worse = found[0].posterior.gross > found[1].posterior.gross ? 0 : 1;
-	if (fabs(x) > FAR * spread)
+	if (fabs(x) > conf->far * spread)
 		limbus_refuse(&found[worse], "its limbus is %.0f %% %s than the other eye's: light both eyes evenly and open them wide",
 		              100 * fabs(exp(worse ? x : -x) - 1), (worse ? x : -x) > 0 ? "larger" : "smaller");
 }
@@ -79,7 +73,7 @@ static double size_of(const struct limbus_found *f)
 
 void face_alike_pupils(struct limbus_found found[2], const struct photo *photo, const struct limbus_conf *conf)
 {
-	const double most = FAR * conf->face.pupil_sigma;
+	const double most = conf->face.far * conf->face.pupil_sigma;
 	if (!found[0].ok || !found[1].ok || !(found[0].has_pupil || found[1].has_pupil))
 		return;
 	if (found[0].has_pupil && found[1].has_pupil && fabs(log(size_of(&found[1]) / size_of(&found[0]))) < most)

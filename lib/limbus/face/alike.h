@@ -4,7 +4,6 @@
 #define LIMBUS_FACE_ALIKE_H
 #include "limbus/trial.h"
 
-static const double FACE_ALIKE = 0.5;  // logarithm of the sizes' ratio: of rough regions of one face
 
 /* Adds to the log odds of each eye's trials what the other's, each by its own odds, say of its size. */
 void face_alike_odds(struct trials *one, struct trials *other, const struct face_conf *conf);

@@ -13,7 +13,7 @@
 static bool plausible(const double a[3], const double b[3], const struct face_conf *conf)
 {
 	const double dx = b[0] - a[0], dy = b[1] - a[1], apart = hypot(dx, dy) / a[2];
-	return apart > conf->distance[0] && apart < conf->distance[1] && atan2(fabs(dy), fabs(dx)) < conf->roll && fabs(log(b[2] / a[2])) < FACE_ALIKE;
+	return apart > conf->distance[0] && apart < conf->distance[1] && atan2(fabs(dy), fabs(dx)) < conf->roll && fabs(log(b[2] / a[2])) < conf->region_alike;
 }
 
 /* The region of the other eye, -1: there is none. */

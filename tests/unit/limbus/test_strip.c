@@ -7,7 +7,7 @@
 #include "tests/lib/unit.h"
 
 static const char *const net_path = "config/strip.onnx";
-static const struct strip_conf conf = { 6, 30, 100 };
+static const struct strip_conf conf = { 6, 30, 100, 0.02, 0.3, 0.3, 4, { 0.5, 0.5 }, { 0.3, 0.1 } };
 
 static void test_crossing(void **state)
 {
