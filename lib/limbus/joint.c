@@ -28,11 +28,49 @@ bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record 
 	return ok;
 }
 
-/* How far the tilts of two poses are apart as the picture tells them: vectors of its square and twice its direction. */
-static double shapes_apart(const struct pose *a, const struct pose *b)
+/* What a picture tells of a tilt: a vector as long as its square, at twice its direction. */
+static void shape_of(double v[2], const struct pose *pose)
 {
-	const double u = a->theta * a->theta, v = b->theta * b->theta;
-	return hypot(v * cos(2 * b->phi) - u * cos(2 * a->phi), v * sin(2 * b->phi) - u * sin(2 * a->phi));
+	const double u = pose->theta * pose->theta;
+	v[0] = u * cos(2 * pose->phi);
+	v[1] = u * sin(2 * pose->phi);
+}
+
+static void add_outer(double cov[2][2], const double v[2])
+{
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 2; j++)
+			cov[i][j] += v[i] * v[j];
+}
+
+/* Covariance of that vector by the ellipse's, and by how far the limbus's axes may be turned. With m = (q3, q4) / q2 a circle's m is tan^2(theta / 2)
+ * long; near the front the vector is 4 m. */
+static void shape_cov(double cov[2][2], const struct pose *pose, const struct pose_view *view, const struct pose_conf *conf)
+{
+	double q[ELLIPSE_N], jac[2][ELLIPSE_N] = { 0 }, m[2][2] = { 0 };
+	ellipse_to_q(q, &view->limbus);
+	for (int i = 0; i < 2; i++) {
+		jac[i][2] = -q[3 + i] / (q[2] * q[2]);
+		jac[i][3 + i] = 1 / q[2];
+	}
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 2; j++)
+			for (int a = 2; a < ELLIPSE_N; a++)
+				for (int b = 2; b < ELLIPSE_N; b++)
+					m[i][j] += jac[i][a] * jac[j][b] * view->cov_q[a][b];
+	const double oval = (1 - conf->aspect_mean) / (1 + conf->aspect_mean);
+	add_outer(m, (double[2]){ 0, 2 * oval * conf->roll_sigma });
+	// along the vector and across it
+	const double root = fmax(tan(pose->theta / 2), 1e-3), theta = fmax(pose->theta, 2e-3);
+	const double along = 2 * theta / (root * (1 + root * root)), across = pow(theta / root, 2), c = cos(2 * pose->phi), s = sin(2 * pose->phi);
+	const double f[2][2] = { { along * c * c + across * s * s, (along - across) * c * s }, { (along - across) * c * s, along * s * s + across * c * c } };
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 2; j++) {
+			cov[i][j] = 0;
+			for (int a = 0; a < 2; a++)
+				for (int b = 0; b < 2; b++)
+					cov[i][j] += f[i][a] * m[a][b] * f[b][j];
+		}
 }
 
 /* Turns the eye about the centre of its limbus until it is tilted by theta, the same way. */
@@ -67,19 +105,25 @@ bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, cons
 {
 	if (!limbus_pose(pose, &record->view, eye, &joint->pose, err))
 		return false;
-	// of the square of the tilt, which is what a shape tells
-	double sigma = pow(pose->theta + pose->theta_sigma, 2) - pow(pose->theta, 2);
+	// of the square of the tilt, which is what a shape tells: by all that the pose rests on, and by the ellipse's covariance
+	double sigma = pow(pose->theta + pose->theta_sigma, 2) - pow(pose->theta, 2), cov[2][2], theta;
+	shape_cov(cov, pose, &record->view, &joint->pose);
 	if (joint->aspect_sigma > 0) {
 		struct pose_conf moved = joint->pose;
 		struct pose other;
+		double v[2], w[2];
 		moved.aspect_mean += joint->aspect_sigma;
 		if (!limbus_pose(&other, &record->view, eye, &moved, err))
 			return false;
-		sigma = hypot(sigma, shapes_apart(pose, &other));
+		shape_of(v, pose);
+		shape_of(w, &other);
+		add_outer(cov, (double[2]){ w[0] - v[0], w[1] - v[1] });
+		sigma = hypot(sigma, hypot(w[0] - v[0], w[1] - v[1]));
 		pose->aspect_sigma = joint->aspect_sigma;
 	}
-	double theta;
-	rice_tilt(&theta, &pose->theta_sigma, pose->theta, sigma, joint->pose.tilt_sigma);
+	const double towards = pose->phi, seen = pose->theta;
+	rice_tilt(&theta, &pose->theta_sigma, seen, sigma, joint->pose.tilt_sigma);
+	pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, cov, joint->pose.tilt_sigma));
 	turn_to(pose, theta, eye);
 	return true;
 }

@@ -75,18 +75,20 @@ double odds_log(const double curve[ODDS_CURVE], double tolerance)
 	return curve[i - 1] + fmin(fmax(part, 0), 1) * (curve[i] - curve[i - 1]);
 }
 
-/* The error, semi-axes, that is as likely exceeded as not; 0 below the least tolerance. */
-static double median(const double curve[ODDS_CURVE])
+static const double ONE_SIGMA = 0.7662;  // log odds of 68.27 %
+
+/* The error, semi-axes, that 68 % do not exceed; 0 below the least tolerance. */
+static double one_sigma(const double curve[ODDS_CURVE])
 {
-	if (curve[0] >= 0)
+	if (curve[0] >= ONE_SIGMA)
 		return 0;
 	for (int i = 1; i < ODDS_CURVE; i++)
-		if (curve[i] >= 0)
-			return odds_tolerance[i - 1] * pow(odds_tolerance[i] / odds_tolerance[i - 1], -curve[i - 1] / (curve[i] - curve[i - 1]));
+		if (curve[i] >= ONE_SIGMA)
+			return odds_tolerance[i - 1] * pow(odds_tolerance[i] / odds_tolerance[i - 1], (ONE_SIGMA - curve[i - 1]) / (curve[i] - curve[i - 1]));
 	return odds_tolerance[ODDS_CURVE - 1];
 }
 
 double odds_wider(const double x[ODDS_TRAITS], const double curve[ODDS_CURVE])
 {
-	return fmax(1, median(curve) / exp(x[ODDS_SIGMA]));
+	return fmax(1, one_sigma(curve) / exp(x[ODDS_SIGMA]));
 }

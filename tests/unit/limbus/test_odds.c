@@ -15,7 +15,7 @@ static void between_tolerances_the_logarithm_is_straight(void **state)
 	NEAR(odds_log(curve, 0.5), curve[ODDS_CURVE - 1], 0);
 }
 
-/* Even odds where the tolerance is exp(-3/2) / 10. */
+/* Odds of one sigma, erf(1 / sqrt 2), where the tolerance is exp((log odds - 3) / 2) / 10. */
 static void an_error_wider_than_its_sigma(void **state)
 {
 	(void)state;
@@ -23,12 +23,13 @@ static void an_error_wider_than_its_sigma(void **state)
 	for (int i = 0; i < ODDS_CURVE; i++)
 		curve[i] = 3 + 2 * log(10 * odds_tolerance[i]);
 	x[ODDS_SIGMA] = log(0.01);
-	NEAR(odds_wider(x, curve), exp(-1.5) * 10, 1e-9);
+	const double chance = erf(1 / sqrt(2)), log_odds = log(chance / (1 - chance));
+	NEAR(odds_wider(x, curve), exp((log_odds - 3) / 2) * 10, 1e-3);
 	x[ODDS_SIGMA] = log(0.1);
 	NEAR(odds_wider(x, curve), 1, 0);
 	// off by less than can be told
 	for (int i = 0; i < ODDS_CURVE; i++)
-		curve[i] = i;
+		curve[i] = i + 1;
 	x[ODDS_SIGMA] = log(1e-6);
 	NEAR(odds_wider(x, curve), 1, 0);
 }
