@@ -237,7 +237,7 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 	const double more = fmax(on_tarsus(rig, i, o, away, conf) - most, 0);
 	terms_at(open, o, UPPER, rig->home[i][0], fmax((away[UPPER] - margin_mm) * o->px_per_mm, 0.5));
 	for (int k = 0; k < RIG_COMPONENTS && more > 0; k++)
-		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * open[2 + UPPER] * lack * closing[k]);
+		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * (open[2 + UPPER] * lack + (lack > 0) * breadth(o, UPPER, rig->home[i], conf)) * closing[k]);
 }
 
 void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_mm, const struct rig_conf *conf)
