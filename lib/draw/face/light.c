@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "draw/eye/look.h"
 #include "draw/face/impl.h"
 
 struct portrait_sky portrait_sky_of(const struct portrait *p, const struct portrait_view *view)
@@ -28,6 +29,8 @@ struct portrait_sky portrait_sky_of(const struct portrait *p, const struct portr
 	return sky;
 }
 
+static const float crease_mm = 8, bounce[3] = { LOOK_BOUNCE };
+
 static void light_vertex(struct portrait *p, const struct portrait_sky *sky, int i)
 {
 	const float *x = p->mesh.x[i], *n = p->mesh.normal[i];
@@ -40,8 +43,13 @@ static void light_vertex(struct portrait *p, const struct portrait_sky *sky, int
 		if (!(facing > 0))
 			continue;
 		all += weight;
-		if (ray_blocked(p->shadow, from, d, 0.25f, 120))
+		if (ray_blocked(p->shadow, from, d, 0.25f, 120)) {
+			// Skin close by is lit by much the same light and reflects some of it: without that, what lies in the crease between two lids has
+			// nothing but the red that spreads through them.
+			for (int c = 0; c < 3 && ray_blocked(p->shadow, from, d, 0.25f, crease_mm); c++)
+				sum[c] += bounce[c] * facing * rgb[c];
 			continue;
+		}
 		open += weight;
 		for (int c = 0; c < 3; c++)
 			sum[c] += facing * rgb[c];
