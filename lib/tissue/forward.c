@@ -8,6 +8,7 @@
 #include "tissue/tissue.h"
 
 enum { GAUSS = 5, VIEW = GAUSS, LIGHT, NODES, ORDERS = 2 * GAUSS };
+_Static_assert((int)NODES == (int)TISSUE_NODES, "what a memo holds");
 
 static const double gauss_node[GAUSS] = { 0.046910077030668, 0.230765344947158, 0.5, 0.769234655052842, 0.953089922969332 };
 static const double gauss_weight[GAUSS] = { 0.118463442528095, 0.239314335249683, 0.284444444444444, 0.239314335249683, 0.118463442528095 };
@@ -121,6 +122,27 @@ static void layer(matrix r, matrix t, const struct nodes *n, double source, doub
 		twice(r, t);
 }
 
+/* The same, from the memo (or null) where it has been made before; else kept there while there is room. The nodes are always the same ones. */
+static void layer_of(matrix r, matrix t, struct tissue_memo *memo, const struct nodes *n, double source, double absorb)
+{
+	for (int i = 0; memo && i < memo->n; i++) {
+		const struct tissue_doubled *of = &memo->of[i];
+		if (of->source == source && of->absorb == absorb) {
+			memcpy(r, of->r, sizeof(matrix));
+			memcpy(t, of->t, sizeof(matrix));
+			return;
+		}
+	}
+	layer(r, t, n, source, absorb);
+	if (!memo || memo->n == TISSUE_MEMO_MAX)
+		return;
+	struct tissue_doubled *of = &memo->of[memo->n++];
+	of->source = source;
+	of->absorb = absorb;
+	memcpy(of->r, r, sizeof(matrix));
+	memcpy(of->t, t, sizeof(matrix));
+}
+
 static double seen(const matrix r, const struct nodes *n)
 {
 	return r[VIEW][LIGHT] / (2 * n->mu[LIGHT] * n->weight[LIGHT]);
@@ -143,13 +165,13 @@ static double first_lacks(const struct nodes *n, const double extinction[TISSUE_
 }
 
 void tissue_reflectance_forward(double out[3], const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
-                                double stroma, double cos_view, double cos_light)
+                                double stroma, double cos_view, double cos_light, struct tissue_memo *memo)
 {
 	struct nodes n;
 	matrix top_r, top_t, r, t, all, down;
 	nodes_make(&n, cos_view, cos_light);
-	layer(top_r, top_t, &n, source[TISSUE_ABL] * abl, (extinction[TISSUE_ABL] - source[TISSUE_ABL]) * abl);
-	layer(r, t, &n, source[TISSUE_STROMA] * stroma, (extinction[TISSUE_STROMA] - source[TISSUE_STROMA]) * stroma);
+	layer_of(top_r, top_t, memo, &n, source[TISSUE_ABL] * abl, (extinction[TISSUE_ABL] - source[TISSUE_ABL]) * abl);
+	layer_of(r, t, memo, &n, source[TISSUE_STROMA] * stroma, (extinction[TISSUE_STROMA] - source[TISSUE_STROMA]) * stroma);
 	out[0] = seen(top_r, &n) + first_lacks(&n, extinction, source, abl, 0);
 	for (int i = 1; i < 3; i++) {
 		add(all, down, top_r, top_t, r);

@@ -67,7 +67,7 @@ static void coefficients(double extinction[TISSUE_LAYERS], double source[TISSUE_
 
 /* Reflectance of all orders grows with the stroma's thickness nearly like the first order's a + b (1 - exp(-c T)): three
  * thicknesses 0, h, 2h give c and b, the border layer alone gives a. */
-static void effective(double extinction[TISSUE_LAYERS], double source[TISSUE_LAYERS], double abl)
+static void effective(double extinction[TISSUE_LAYERS], double source[TISSUE_LAYERS], double abl, struct tissue_memo *memo)
 {
 	const double cos_view = 0.95, cos_light = 0.85;  // the middle of ways through a cornea
 	// h: half of what irises reach, mm, but no deeper than light diffuses (diffusion coefficient of attenuation).
@@ -75,7 +75,7 @@ static void effective(double extinction[TISSUE_LAYERS], double source[TISSUE_LAY
 	double h = fmin(0.35, 2 / (sqrt(3 * absorb * extinction[TISSUE_STROMA]) + 1e-9));
 	double path = 1 / cos_view + 1 / cos_light, front = 4 * (cos_view + cos_light);
 	double r[3];
-	tissue_reflectance_forward(r, extinction, source, abl, h, cos_view, cos_light);
+	tissue_reflectance_forward(r, extinction, source, abl, h, cos_view, cos_light, memo);
 	double through = exp(-extinction[TISSUE_ABL] * abl * path);
 	double fade = fmin(fmax((r[2] - r[1]) / (r[1] - r[0]), 1e-6), 0.999);
 	double decay = -log(fade) / (h * path);
@@ -85,7 +85,7 @@ static void effective(double extinction[TISSUE_LAYERS], double source[TISSUE_LAY
 	extinction[TISSUE_STROMA] = decay;
 }
 
-void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands)
+void tissue_optics_make_again(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands, struct tissue_memo *memo)
 {
 	*optics = (struct tissue_optics) {
 		.n = bands->n, .abl_thickness = tissue->abl_thickness, .exposure = tissue->exposure
@@ -94,7 +94,7 @@ void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissu
 		double extinction[TISSUE_LAYERS], source[TISSUE_LAYERS];
 		coefficients(extinction, source, tissue, bands->nm[k]);
 		if (tissue->multiple)
-			effective(extinction, source, tissue->abl_thickness);
+			effective(extinction, source, tissue->abl_thickness, memo);
 		for (int l = 0; l < TISSUE_LAYERS; l++) {
 			optics->extinction[l][k] = extinction[l];
 			optics->source[l][k] = source[l];
@@ -102,4 +102,9 @@ void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissu
 		for (int c = 0; c < 3; c++)
 			optics->rgb[k][c] = bands->rgb[k][c];
 	}
+}
+
+void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands)
+{
+	tissue_optics_make_again(optics, tissue, bands, 0);
 }

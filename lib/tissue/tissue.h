@@ -71,6 +71,17 @@ struct tissue_optics {
 };
 void tissue_optics_make(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands);
 
+/* Layers whose scattering of all orders has been reckoned, most of the work of tissue_optics_make: for fits, which change one layer at a time.
+ * Begins with n = 0; a smaller n forgets the last ones. One memo for one pair of cosines. */
+enum { TISSUE_NODES = 7, TISSUE_MEMO_MAX = 2 * TISSUE_BANDS_MAX * 9 };
+struct tissue_memo {
+	int n;
+	struct tissue_doubled { double source, absorb, r[TISSUE_NODES][TISSUE_NODES], t[TISSUE_NODES][TISSUE_NODES]; } of[TISSUE_MEMO_MAX];
+};
+
+/* The same bits, with a memo. */
+void tissue_optics_make_again(struct tissue_optics *optics, const struct tissue *tissue, const struct tissue_bands *bands, struct tissue_memo *memo);
+
 /* pi times radiance towards the camera over irradiance on the iris plane, first-order scattering, linear
  * Rec. 709 under white light; exposure not multiplied in. A white Lambertian surface would be 1; isotropic single
  * scattering without absorption is at most 1 / (4 (cos_view + cos_light)). stroma: anatomical mm; cosines in (0, 1]. */
@@ -83,9 +94,9 @@ double tissue_reflectance_one(const double extinction[TISSUE_LAYERS], const doub
 
 /* All orders, one wavelength, with the phase function of Henyey and Greenstein of anisotropy TISSUE_ANISOTROPY, whose reduced
  * coefficients source and extinction are: stroma of no thickness, of `stroma` mm and of twice that, in out. Against Monte Carlo to 2 %
- * (tests/unit/tissue/test_tissue.c). */
+ * (tests/unit/tissue/test_tissue.c). memo: or null. */
 void tissue_reflectance_forward(double out[3], const double extinction[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl,
-                                double stroma, double cos_view, double cos_light);
+                                double stroma, double cos_view, double cos_light, struct tissue_memo *memo);
 
 /* Reads work/iris/pigment.json. Returns false, err set, when a number is missing or out of range. */
 bool tissue_load(struct tissue *tissue, const char *path, struct err *err);

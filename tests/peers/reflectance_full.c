@@ -13,7 +13,7 @@ void tissue_reflectance_full(double rgb[3], const struct tissue *t, const struct
 		}
 		double all[3], r;
 		if (t->multiple)
-			tissue_reflectance_forward(all, extinction, source, t->abl_thickness, stroma, cos_view, cos_light);
+			tissue_reflectance_forward(all, extinction, source, t->abl_thickness, stroma, cos_view, cos_light, 0);
 		r = t->multiple ? all[1] : tissue_reflectance_one(extinction, source, t->abl_thickness, stroma, cos_view, cos_light);
 		for (int c = 0; c < 3; c++)
 			rgb[c] += observer->weight[c][i] * r;

@@ -132,13 +132,19 @@ static double covariance(const struct node *a, const struct node *b, const struc
 	return c->field * c->field * exp(-hypot(a->x - b->x, a->y - b->y) / c->reach);
 }
 
-/* Cholesky factor of the covariance of the observations; between: of every node with them, each row forward substituted in the end. */
-static bool factorise(double *A, double *between, const struct field *f, const double variance[], const struct melanin_conf *c, struct err *err)
+/* Of every node with those that were seen. */
+static void covariances(double *between, const struct field *f, const struct melanin_conf *c)
 {
 	int m = f->seen;
+#pragma omp parallel for schedule(static)
 	for (int i = 0; i < f->n; i++)
 		for (int j = 0; j < m; j++)
 			between[(long)i * m + j] = covariance(&f->node[i], &f->node[j], c);
+}
+
+/* Cholesky factor of the covariance of the observations. */
+static bool factorise(double *A, const double *between, int m, const double variance[], struct err *err)
+{
 	memcpy(A, between, (size_t)m * (size_t)m * sizeof *A);
 	for (int i = 0; i < m; i++)
 		A[(long)i * m + i] += variance[i];
@@ -152,10 +158,11 @@ static bool solve(struct melanin_map *map, const struct field *f, const struct m
 	double *A = mem_array((size_t)m * (size_t)m + 1, sizeof *A), *between = mem_array((size_t)f->n * (size_t)m + 1, sizeof *between);
 	double *u = mem_new((size_t)f->n + 1, sizeof *u), *z = mem_array((size_t)m + 1, sizeof *z), *variance = mem_array((size_t)m + 1, sizeof *variance);
 	bool ok = true;
+	covariances(between, f, c);
 	for (int k = 0; ok && m && k < STEPS; k++) {
 		for (int i = 0; i < m; i++)
 			z[i] = u[i] + observe(&variance[i], f, &f->node[i], f->fit->x[PIGMENT_ABL_MELANIN] + f->node[i].profile + u[i]);
-		ok = factorise(A, between, f, variance, c, err) && !LAPACKE_dpotrs(LAPACK_ROW_MAJOR, 'L', m, 1, A, m, z, 1);
+		ok = factorise(A, between, m, variance, err) && !LAPACKE_dpotrs(LAPACK_ROW_MAJOR, 'L', m, 1, A, m, z, 1);
 		for (int i = 0; ok && i < f->n; i++) {
 			u[i] = 0;
 			for (int j = 0; j < m; j++)

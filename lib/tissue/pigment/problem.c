@@ -98,13 +98,13 @@ static void reflect(double rgb[][3], const struct pigment_problem *p, const stru
 		                   p->conf->cos_light);
 }
 
-/* The expensive part. */
-static void optics_at(struct all_optics *optics, const struct pigment_problem *p, const double *x)
+/* The expensive part, but for layers that the memo knows. */
+static void optics_at(struct all_optics *optics, const struct pigment_problem *p, const double *x, struct tissue_memo *memo)
 {
 	int n = pigment_problem_rings_at(p) < 0 ? 1 : p->classes->rings;
 	for (int r = 0; r < n; r++) {
 		struct tissue tissue = pigment_tissue_beyond(x, pigment_problem_melanin(p, x, r), p->conf);
-		tissue_optics_make(&optics->of[r], &tissue, &p->bands);
+		tissue_optics_make_again(&optics->of[r], &tissue, &p->bands, memo);
 	}
 }
 
@@ -138,9 +138,12 @@ bool pigment_residuals(void *ctx, const double *x, double *r, double *J)
 	const double h = 1e-5;  // unknowns are of order 1: truncation and rounding are both about 1e-10
 	const struct pigment_problem *p = ctx;
 	struct all_optics here, there;
+	struct tissue_memo memo;
 	int rings = pigment_problem_rings_at(p), n = rings < 0 ? p->n : rings;
 	double rgb[PIGMENT_CLASSES_MAX][3], side[2][PROBLEM_M_MAX], at[PROBLEM_N_MAX];
-	optics_at(&here, p, x);
+	memo.n = 0;
+	optics_at(&here, p, x, &memo);
+	const int known = memo.n;
 	reflect(rgb, p, &here, x);
 	compare(r, p, x, rgb);
 	memcpy(at, x, (size_t)p->n * sizeof *at);
@@ -148,8 +151,9 @@ bool pigment_residuals(void *ctx, const double *x, double *r, double *J)
 		bool tissue = j <= PIGMENT_SCALE;
 		for (int s = 0; s < 2; s++) {
 			at[j] = x[j] + (s ? h : -h);
+			memo.n = known;
 			if (tissue)
-				optics_at(&there, p, at);
+				optics_at(&there, p, at, &memo);
 			reflect(rgb, p, tissue ? &there : &here, at);
 			compare(side[s], p, at, rgb);
 		}

@@ -108,3 +108,27 @@ void photon_reflectance(float *out, const struct photon_slab *s, double cos_ligh
 		}
 	}
 }
+
+double photon_spread(const struct photon_slab *s, double cos_light, long photons, uint64_t seed)
+{
+	double top = s->stroma[0] + s->abl, majorant = fmax(s->scatter[0] + s->absorb[0], s->scatter[1] + s->absorb[1]);
+	double all = 0, mean[2] = { 0 }, square = 0, sine = sqrt(1 - cos_light * cos_light);
+	struct photon p = { .random = seed * 0x9E3779B97F4A7C15ULL + 1 };
+	for (long i = 0; i < photons; i++) {
+		double weight = 1;
+		int layer = 0;
+		const double at[3] = { 0, 0, top }, dir[3] = { sine, 0, -cos_light };
+		memcpy(p.at, at, sizeof at);
+		memcpy(p.dir, dir, sizeof dir);
+		while (fly(&p, s, top, majorant, &weight, &layer)) {
+			double d = depth(s, p.at), abl = fmin(d, s->abl), deep = d - abl;
+			double tau = abl * (s->scatter[0] + s->absorb[0]) + deep * (s->scatter[1] + s->absorb[1]), w = weight * phase(s->g, p.dir[2]) * exp(-tau);
+			all += w;
+			mean[0] += w * p.at[0];
+			mean[1] += w * p.at[1];
+			square += w * (p.at[0] * p.at[0] + p.at[1] * p.at[1]);
+			scatter(&p, s->g);
+		}
+	}
+	return sqrt((square / all - (mean[0] * mean[0] + mean[1] * mean[1]) / (all * all)) / 2);
+}

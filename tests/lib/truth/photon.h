@@ -22,4 +22,8 @@ struct photon_slab {
 void photon_reflectance(float *out, const struct photon_slab *slab, double cos_light, long photons, int orders,
                         uint64_t seed);
 
+/* The standard deviation along an axis, mm, between where light of that cosine enters the plane and where it comes out straight up. The slab of
+ * one cell. */
+double photon_spread(const struct photon_slab *slab, double cos_light, long photons, uint64_t seed);
+
 #endif

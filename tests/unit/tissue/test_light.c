@@ -1,7 +1,9 @@
 /* light: on the iris through the cornea, against rays traced from the iris outwards; the photograph's light from its sclera. */
 #include "math/rng.h"
+#include "optics/lightpath/lightpath.h"
 #include "tests/lib/unit.h"
 #include "tissue/light/iris_light.h"
+#include "tissue/light/rim_shadow.h"
 #include "tissue/light/sclera_light.h"
 
 static const struct eye eye = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 };
@@ -59,6 +61,57 @@ static void through_cornea(void **state)
 	}
 	image_free(&light);
 	envmap_free(&env);
+}
+
+/* Where the light of direction w to (x, y) of the iris plane enters, 1 at the limbus; l: the unit direction towards that place. False: nowhere. */
+static bool enters(double *rho, double l[3], double x, double y, const double w[3])
+{
+	struct cornea cornea = eye_cornea(&eye);
+	const double P[3] = { x, y, eye.iris_depth };
+	double K[3];
+	cornea.rim *= 1.5;
+	if (lightpath_solve_directional(K, &cornea, P, w) == LIGHTPATH_NONE)
+		return false;
+	for (int i = 0; i < 3; i++)
+		l[i] = K[i] - P[i];
+	double len = sqrt(l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
+	for (int i = 0; i < 3; i++)
+		l[i] /= len;
+	*rho = hypot(K[0], K[1]) / eye.limbus_radius;
+	return true;
+}
+
+/* The sharp shadow of the limbus under slanted light, through the exact paths and blurred in the plane, against what rim_shadow.h makes of it. The
+ * kernel is K0: normal distributions whose variances are distributed exponentially. */
+static void limbus_shadow(void **state)
+{
+	enum { POINTS = 2000 };
+	static const double spreads[] = { 0.05, 0.14, 0.3 };
+	struct rng rng = { 3 };
+	double worst = 0, sum = 0;
+	int n = 0;
+	(void)state;
+	for (int s = 0; s < (int)(sizeof spreads / sizeof *spreads); s++) {
+		const struct rim_shadow rim = rim_shadow_of(&eye, 1e-3, spreads[s]);
+		for (int tilt = 10; tilt <= 60; tilt += 25)
+			for (int turn = 0; turn <= 90; turn += 45)
+				for (double r = 3.5; r < 5.7; r += 0.2) {
+					const double t = tilt * M_PI / 180, w[3] = { sin(t), 0, -cos(t) }, x = r * cos(turn * M_PI / 180), y = r * sin(turn * M_PI / 180);
+					double rho, l[3], at, unused[3], lit = 0;
+					assert_true(enters(&rho, l, x, y, w));
+					for (int i = 0; i < POINTS; i++) {
+						double far = spreads[s] * sqrt(2 * log(rng_uniform(&rng)) * log(rng_uniform(&rng))), at_turn = 2 * M_PI * rng_uniform(&rng);
+						lit += enters(&at, unused, x + far * cos(at_turn), y + far * sin(at_turn), w) && at < 1;
+					}
+					double got = (double)rim_shadow_open(&rim, rim_shadow_at(&rim, (float)rho, (float)x, (float)y, (float)eye.iris_depth, (float)l[0], (float)l[1], (float)l[2]));
+					worst = fmax(worst, fabs(got - lit / POINTS));
+					sum += fabs(got - lit / POINTS);
+					n++;
+				}
+	}
+	print_message("limbus' shadow: off by %.3f in the mean, %.3f at worst\n", sum / n, worst);
+	// A straight edge stands for a curved one; 2000 points leave 0.01.
+	assert_true(sum / n < 0.01 && worst < 0.06);
 }
 
 /* A sclera lit by an even half and a lamp to one side: the lamp comes back on that side, and lights the sclera alike. */
@@ -119,6 +172,6 @@ static void small_lamp(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(through_cornea), cmocka_unit_test(from_sclera), cmocka_unit_test(small_lamp) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(through_cornea), cmocka_unit_test(limbus_shadow), cmocka_unit_test(from_sclera), cmocka_unit_test(small_lamp) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -1,5 +1,6 @@
 /* The tissue in closed form, against Chandrasekhar's H function, and against Monte Carlo. */
 #include "tests/peers/reflectance_all.h"
+#include "tissue/spread.h"
 #include "tissue/tissue.h"
 #include "tests/peers/reflectance_full.h"
 #include "tests/lib/truth/photon.h"
@@ -131,7 +132,7 @@ static void test_forward(void **state)
 			photon_reflectance(&photons[0], &slab, light, 400000, 0, 1);
 			slab.stroma = &twice;
 			photon_reflectance(&photons[1], &slab, light, 400000, 0, 2);
-			tissue_reflectance_forward(got, extinction, source, 0.04, stroma, 1, light);
+			tissue_reflectance_forward(got, extinction, source, 0.04, stroma, 1, light, 0);
 			slab = (struct photon_slab){ 1, 1, &twice, 0.04, { source[0] / 0.2, source[1] / 0.2 }, { absorb[0], absorb[1] }, 0.8 };
 			photon_reflectance(&photons[2], &slab, light, 400000, 0, 3);
 			print_message("%.0f nm: %.4f (photons %.4f), %.4f (%.4f; g = 0.8: %.4f)\n", nm, got[1], (double)photons[0], got[2], (double)photons[1], (double)photons[2]);
@@ -142,6 +143,32 @@ static void test_forward(void **state)
 		}
 	print_message("forward: off by %.3f, from another anisotropy by %.3f; isotropic %.2f times\n", off, other, isotropic);
 	assert_true(off < 0.03 && other < 0.1 && isotropic > 1.5);
+}
+
+/* Sideways, by photons in tissues from blue to brown, thin and thick: of both anisotropies, for tissue knows its reduced coefficient. First order
+ * stays where it is. */
+static void test_spread(void **state)
+{
+	static const double eyes[][6] = { { 0.0005, 0.7, 0.0005, 0.7, 0.3, 0.3 }, { 0.004, 0.8, 0.002, 0.75, 0.25, 0.9 }, { 0.01, 0.5, 0.003, 0.5, 0.3, 0.45 },
+		                              { 0.05, 0.6, 0.015, 0.6, 0.35, 0.5 }, { 0.3, 0.85, 0.1, 0.8, 0.5, 0.5 } };
+	double low = 1, high = 1;
+	(void)state;
+	for (int e = 0; e < (int)(sizeof eyes / sizeof *eyes); e++)
+		for (int k = 0; k < 4; k++) {
+			const double *y = eyes[e], nm = k % 2 ? 620 : 480, g = k / 2 ? 0.8 : 0.9, s = tissue_scattering(nm), light = 0.85;
+			struct tissue tissue = { .layer = { { y[0], y[1] }, { y[2], y[3] } }, .abl_thickness = 0.04, .thickness_scale = y[4], .multiple = true };
+			float stroma = (float)y[5];
+			struct photon_slab slab = { 1, 1, &stroma, 0.04, { s / (1 - g), y[4] * s / (1 - g) },
+				                        { tissue_absorption(&tissue.layer[0], nm), y[4] * tissue_absorption(&tissue.layer[1], nm) }, g };
+			double want = photon_spread(&slab, light, 60000, 1), got = tissue_spread(&tissue, nm, y[5]);
+			print_message("%.0f nm, g = %.1f: %.3f mm (photons %.3f)\n", nm, g, got, want);
+			low = fmin(low, got / want);
+			high = fmax(high, got / want);
+			tissue.multiple = false;
+			assert_true(tissue_spread(&tissue, nm, y[5]) == 0);
+		}
+	print_message("%.2f to %.2f of the photons'\n", low, high);
+	assert_true(low > 0.8 && high < 1.1);
 }
 
 /* Few bands against all 81 wavelengths, single scattering: nothing but the quadrature differs. Error against the
@@ -208,7 +235,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_coefficients), cmocka_unit_test(test_one_layer), cmocka_unit_test(test_all_orders_semi_infinite),
 		cmocka_unit_test(test_energy), cmocka_unit_test(test_against_monte_carlo), cmocka_unit_test(test_forward), cmocka_unit_test(test_bands),
-		cmocka_unit_test(test_effective),
+		cmocka_unit_test(test_effective), cmocka_unit_test(test_spread),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
