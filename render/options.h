@@ -21,6 +21,9 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_INT("bands", &(c)->scene.bands, 3, TISSUE_BANDS_MAX, "", "wavelengths"), \
 	OPT_REAL("albedo_mm", &(c)->scene.albedo_mm, 0.05, 3, "mm", "what photograph over model changes by over more than this, in luminance, is the photograph's light"), \
 	OPT_REAL("albedo_most", &(c)->scene.albedo_most, 1, 20, "", "what is finer is the iris' albedo, within this factor"), \
+	OPT_REAL("own_width", &(c)->scene.own_width, 0.01, 2, "", "sigma of a light's mean direction from the photograph's, over which the photograph's own light fades"), \
+	OPT_REAL("ratio_most", &(c)->scene.ratio_most, 1, 20, "", "most that another light brightens a texel over the photograph"), \
+	OPT_REAL("ratio_chroma", &(c)->scene.ratio_chroma, 1, 10, "", "most that a channel of that differs from the channels' mean"), \
 	OPT_REAL("detail", &(c)->scene.detail, 0, 1, "", "how much of what the photograph shows beyond the model is shown"), \
 	OPT_REAL_UNSET("limbus_width_mm", &(c)->scene.limbus_width, 0.05, 2, "mm", "over which sclera turns into cornea; unset: as photographed"), \
 	OPT_REAL("sclera_radius_mm", &(c)->scene.sclera_radius, 9, 16, "mm", "radius of the eyeball"), \

@@ -84,6 +84,12 @@ class EyeScene {
 		return [depth + Math.sqrt(Math.max(e.sclera[1] * e.sclera[1] - r2, 0)), e.sclera[1], e.sclera[2] / e.limbus[0]];
 	}
 
+	/* How light ends at the limbus: rim_shadow_of of lib/tissue/light/rim_shadow.h; the spread is that of the tissue as fitted. */
+	rim(s) {
+		const e = this.data.eye, r = e.limbus[0], root = Math.sqrt(Math.max(s.R * s.R - s.p * r * r, 0)), depth = r * r / (s.R + root);
+		return [e.rim[0], r / Math.max(root, 1e-3), depth, e.rim[1]];
+	}
+
 	/* The camera: {rotation cam_from_eye, origin in the eye, lens, corner, mm a pixel on the iris}. view.pose: a photograph's. */
 	camera(s, view, height) {
 		const e = this.data.eye, z = this.sclera(s)[0];
@@ -190,7 +196,7 @@ class EyeScene {
 		const map = old && old.map.width === n ? old.map : g.texture(n, n, gl.RGBA16F);
 		const horizon_map = preset.shadow > 0 ? this.horizon(ground, preset.shadow) : null;
 		g.target(map);
-		g.draw(this.marcher(preset), { ...solved, ...own, ...ground, sclera: this.sclera(s), horizon_map, abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, model_top: m.tops[level - m.from] });
+		g.draw(this.marcher(preset), { ...solved, ...own, ...ground, sclera: this.sclera(s), rim_light: this.rim(s), horizon_map, abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, ratio_most: data.constants.ratio_most, ratio_chroma: data.constants.ratio_chroma, model_top: m.tops[level - m.from] });
 		this.shades[name] = { key, map };
 		g.counted("marched");
 	}

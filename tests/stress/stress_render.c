@@ -46,7 +46,7 @@ static struct scene_conf any_conf(struct rng *rng)
 {
 	struct scene_conf c = { .map_size = 16 << rng_below(rng, 4), .search = 2 + rng_below(rng, 16), .shadow = rng_below(rng, 12), .steps = 2 + rng_below(rng, 10),
 		.quadrature = rng_below(rng, 3), .path = rng_below(rng, 2), .shading = rng_below(rng, 2), .bands = 3 + rng_below(rng, 4),
-		.detail = over(rng, 0, 1), .limbus_width = over(rng, 0.05, 2), .sclera_radius = over(rng, 9, 16),
+		.detail = over(rng, 0, 1), .own_width = 0.2, .ratio_most = 2.5, .ratio_chroma = 1.5, .limbus_width = over(rng, 0.05, 2), .sclera_radius = over(rng, 9, 16),
 		.vein_density = over(rng, 0, 0.2), .veins_px = VEINS, .seed = rng_below(rng, 1000) };
 	for (int i = 0; i < 3; i++)
 		c.sclera_rgb[i] = over(rng, 0, 1);
@@ -156,14 +156,14 @@ static struct scene_view any_view(const struct scene *s, struct rng *rng)
 
 /* Energy. Reflectances of 1 at most send on what an even room sends. Light gains n^2 in radiance where it enters the eye and
  * loses it where it leaves; the renderer leaves both to the exposure (tissue.h: light inside is given as irradiance), so the model
- * alone is no brighter than n^2 times the room, up to what 256 beams leave of evenness. With all of the photograph's detail, a texel (1 at most) is multiplied by up to LOOK_MOST in the
- * mean of its channels and a channel by LOOK_CHROMA beside that mean, which raises the mean of three by 11/9 at most (two at
+ * alone is no brighter than n^2 times the room, up to what 256 beams leave of evenness. With all of the photograph's detail, a texel (1 at most) is multiplied by up to ratio_most in the
+ * mean of its channels and a channel by ratio_chroma (1.5) beside that mean, which raises the mean of three by 11/9 at most (two at
  * their upper limit, one at its lower); a mirror is no brighter than the lamp. A tenth: the sclera's light is summed over the
  * map's coarse pixels. */
 static void judge(struct stress *run, const struct scene *s, const struct bright *most, double lamp, enum lighting in)
 {
 	double squared = s->eye.index * s->eye.index;
-	double channel = LOOK_MOST * LOOK_CHROMA + 1.1 * lamp, mean = LOOK_MOST * 11 / 9 + 1.1 * lamp;
+	double channel = s->conf.ratio_most * s->conf.ratio_chroma + 1.1 * lamp, mean = s->conf.ratio_most * 11 / 9 + 1.1 * lamp;
 	if (in == MODEL_ALONE && most->luminance > 1.1 * squared * lamp)
 		stress_wrong(run, "the model alone is of luminance %.3g in a room of %.3g times n^2 = %.3g", most->luminance, lamp, squared);
 	if (in != MODEL_ALONE && most->channel > channel)

@@ -7,9 +7,9 @@
 #include "draw/eye/tint.h"
 #include "optics/lightpath/lightpath.h"
 
-SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float *const per_model[3])
+/* A texel brightens much only where the model had it in shadow: at most so much, and its channels so far from their mean. */
+SIMD_CLONES static void ratio_whole(int n, float *restrict r, float *restrict g, float *restrict b, const float *const per_model[3], float most, float chroma)
 {
-	const float most = LOOK_MOST, chroma = LOOK_CHROMA;  // a texel brightens much only where the model had it in shadow
 	const float *restrict per_r = per_model[0], *restrict per_g = per_model[1], *restrict per_b = per_model[2];
 	SIMD_LOOP
 	for (int i = 0; i < n; i++) {
@@ -31,7 +31,7 @@ void scene_colour_ratio(int n, float rgb[3][BATCH], const struct scene *s, const
 	for (int c = 0; c < 3 && d < 1; c++)
 		for (int i = 0; i < n; i++)
 			alone[c][i] = s->gain * rgb[c][i];
-	ratio_whole(n, rgb[0], rgb[1], rgb[2], per_model);
+	ratio_whole(n, rgb[0], rgb[1], rgb[2], per_model, (float)s->conf.ratio_most, (float)s->conf.ratio_chroma);
 	for (int c = 0; c < 3 && d < 1; c++)
 		for (int i = 0; i < n; i++)
 			rgb[c][i] = alone[c][i] > 0 && rgb[c][i] > 0 ? powf(rgb[c][i], d) * powf(alone[c][i], 1 - d) : 0;

@@ -3,7 +3,7 @@
  * and view the iris shows the photograph's colour times the ratio by which the model's colour changes:
  *     colour = gain tint model (texture / (gain tint model_of_photograph))^detail
  * with tint what the map of melanin and the photograph's white make of the model's colour (tint.h).
- * Where the model is dark its channels change by very different factors; they are clamped to within LOOK_CHROMA of their mean,
+ * Where the model is dark its channels change by very different factors; they are clamped to within conf.ratio_chroma of their mean,
  * so that noise of dark texels does not turn into colour. */
 #include <math.h>
 #include <stdlib.h>

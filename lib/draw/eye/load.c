@@ -151,6 +151,7 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
 		return false;
 	}
 	scene_nodes_make(s);
+	scene_rim_make(s);
 	scene_veins_make(s);
 	s->paths = scene_paths_make(s);
 	return true;

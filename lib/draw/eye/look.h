@@ -36,11 +36,6 @@
 #define LOOK_LEANS 0.3
 // The march's quadrature: ways of light to and fro through a cornea, over the depth (about 1.05 and 1.3 times it).
 #define LOOK_WAYS 2.35
-// The albedo step: most that a texel brightens, and that its channels differ from their mean.
-#define LOOK_MOST 2.5
-#define LOOK_CHROMA 1.5
-// What the photograph's light did beyond the model fades as a light's mean direction moves away from its own: sigma.
-#define LOOK_OWN 0.2
 // Light off the lids on the eye below them.
 #define LOOK_BOUNCE 0.34, 0.25, 0.20
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "tissue/spread.h"
+
 /* The mean of the three places of the iris paper, section 4, weighted by their share of the area; tissue with hardly any melanin, as
  * in a blue eye. */
 const double scene_plain_stroma = 0.48;
@@ -36,4 +38,24 @@ void scene_set_tissue(struct scene *s, const struct tissue *tissue)
 	tissue_reflectance(flat, &s->optics, scene_plain_stroma, 1, 1);
 	for (int c = 0; c < 3; c++)
 		s->flat[c] = (float)(flat[c] * s->optics.exposure);
+}
+
+/* Mean thickness of the stroma next to the limbus, where shadows of it fall, mm. */
+static double rim_thickness(const struct scene *s)
+{
+	const struct scene_level *l = &s->level[s->n_levels - 1];
+	double sum = 0, all = 0;
+	for (int i = 0; i < l->n * l->n; i++) {
+		double r = hypot((i % l->n + 0.5) / l->per_mm - s->extent, (i / l->n + 0.5) / l->per_mm - s->extent) / s->limbus[0];
+		if (r > 0.75 && r < 0.95) {
+			sum += l->relief[2 * i + 1];
+			all++;
+		}
+	}
+	return all > 0 ? sum / all : scene_plain_stroma;
+}
+
+void scene_rim_make(struct scene *s)
+{
+	s->rim = rim_shadow_of(&s->eye, s->conf.limbus_width, tissue_spread(&s->tissue, TISSUE_SPREAD_NM, rim_thickness(s)));
 }

@@ -13,6 +13,9 @@ extern const struct tissue scene_plain_tissue;
 /* Sets the tissue, its optics in conf.bands wavelengths, and its mean colour. */
 void scene_set_tissue(struct scene *scene, const struct tissue *tissue);
 
+/* Sets scene->rim for its limbus, its tissue and its thickness there. */
+void scene_rim_make(struct scene *scene);
+
 /* Depths of the two planes between which all of the iris lies, mm: above the highest relief, below the deepest epithelium. */
 void scene_planes(double z[2], const struct scene *scene);
 

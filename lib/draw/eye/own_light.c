@@ -7,7 +7,6 @@
 #include "bridge/cv_blur.h"
 #include "draw/eye/batch_impl.h"
 #include "draw/eye/colour.h"
-#include "draw/eye/look.h"
 #include "draw/eye/tint.h"
 
 enum { NODES = 128 };  // across the map
@@ -54,6 +53,29 @@ static void gather(float *node, const struct scene *s, int nodes)
 		}
 }
 
+/* Takes the mean of each radius about the pupil out of own_light, linear between rings. node: its texels, as gathered and blurred. */
+static void keep_rings(struct scene *s, const float *node)
+{
+	enum { RINGS = 64 };
+	double sum[RINGS + 1] = { 0 }, all[RINGS + 1] = { 0 };
+	int n = s->own_light.width;
+	for (int turn = 0; turn < 2; turn++)
+		for (int i = 0; i < n * n; i++) {
+			double x = (2 * (i % n + 0.5) / n - 1) * s->extent - s->pupil[0], y = (2 * (i / n + 0.5) / n - 1) * s->extent - s->pupil[1];
+			double at = hypot(x, y) / s->extent * RINGS / 1.5, weight = node[2 * i + 1];
+			int k = at < RINGS - 1 ? (int)at : RINGS - 1;
+			double t = fmin(at - k, 1);
+			if (!turn) {
+				sum[k] += (1 - t) * weight * (double)s->own_light.px[i];
+				sum[k + 1] += t * weight * (double)s->own_light.px[i];
+				all[k] += (1 - t) * weight;
+				all[k + 1] += t * weight;
+			} else if (weight > 1e-3) {
+				s->own_light.px[i] -= (float)((1 - t) * (all[k] > 0 ? sum[k] / all[k] : 0) + t * (all[k + 1] > 0 ? sum[k + 1] / all[k + 1] : 0));
+			}
+		}
+}
+
 static float own_at(const struct scene *s, float x, float y)
 {
 	return channel_at(s->own_light.px, s->own_light.width, (float)(s->own_light.width / (2 * s->extent)), x, y, 1, 0);
@@ -91,6 +113,7 @@ void scene_own_light_make(struct scene *s, const struct scene_beams *beams)
 		s->own_light = image_new(nodes, nodes, 1);
 		for (int i = 0; i < nodes * nodes; i++)
 			s->own_light.px[i] = node[2 * i + 1] > 1e-3f ? (float)fmin(fmax(node[2 * i] / node[2 * i + 1], -most_ln), most_ln) : 0;
+		keep_rings(s, node);
 		for (int c = 0; c < 3; c++)
 			s->own_mean[c] = beams->mean[c];
 		take(s);
@@ -100,7 +123,7 @@ void scene_own_light_make(struct scene *s, const struct scene_beams *beams)
 
 float scene_own_light_share(const struct scene *s, const float mean[3])
 {
-	float off = 0, width = (float)LOOK_OWN;
+	float off = 0, width = (float)s->conf.own_width;
 	if (!s->own_light.px)
 		return 0;
 	for (int c = 0; c < 3; c++)

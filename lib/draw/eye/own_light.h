@@ -5,7 +5,8 @@
 #include "draw/eye/march/beam.h"
 
 /* Splits the ratio of photograph to model at level 0: what changes over more than conf.albedo_mm goes, in its luminance, to scene->own_light
- * and is taken out of level[0].colour; its hue, which is the pigments', and all that is finer stay there as the iris' albedo, which is
+ * and is taken out of level[0].colour. Its mean over each circle round the pupil is the iris' own, of which thickness and pigment have a profile,
+ * while a light comes from somewhere; that, its hue, which is the pigments', and all that is finer stay there as the iris' albedo, which is
  * bounded to conf.albedo_most either way. Level 0 has colour and model, and scene->gain is set; the levels below are made afterwards.
  * beams: of the photograph's light. */
 void scene_own_light_make(struct scene *scene, const struct scene_beams *beams);

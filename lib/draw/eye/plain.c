@@ -65,6 +65,7 @@ void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf
 	scene_set_tissue(s, &scene_plain_tissue);
 	scene_levels_make(s);
 	scene_nodes_make(s);
+	scene_rim_make(s);
 	scene_veins_make(s);
 	s->paths = scene_paths_make(s);
 }

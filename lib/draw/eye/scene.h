@@ -17,6 +17,7 @@
 #include "image/envmap/envmap.h"
 #include "image/image.h"
 #include "optics/refraction/refraction.h"
+#include "tissue/light/rim_shadow.h"
 #include "tissue/tissue.h"
 
 enum { SCENE_LEVELS = 6, SCENE_GRID = 48, SCENE_NODES_MAX = 256 };
@@ -37,6 +38,8 @@ struct scene_conf {
 	int bands;                    // wavelengths, 3..TISSUE_BANDS_MAX
 	double detail;                // 0: the fitted model alone, its map of melanin in it; 1: times all of what the photograph shows beyond it
 	double albedo_mm, albedo_most;  // what of photograph over model is finer than that is the iris' albedo, within that factor (own_light.h); 0: all is
+	double own_width;             // sigma of the mean direction of a light over which own_light fades (own_light.h)
+	double ratio_most, ratio_chroma;  // most that a texel brightens over the photograph, and that its channels differ from their mean (colour.h)
 	double limbus_width;          // mm, over which sclera becomes cornea
 	double sclera_radius;         // mm
 	double sclera_rgb[3];         // albedo of a healthy sclera
@@ -86,6 +89,7 @@ struct scene {
 	struct image film;            // map of the sclera: slopes of the tear film's ripples
 	struct tissue tissue;
 	struct tissue_optics optics;
+	struct rim_shadow rim;               // how light ends at the limbus
 	struct scene_paths *paths;    // paths of light into the eye, for beams of several lights (march/paths.h); owned; null: solved for each
 	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march's quadrature, in each layer

@@ -11,7 +11,7 @@ static const double grey[3] = { 1, 1, 1 };
 static inline struct scene_conf conf_of(int steps)
 {
 	return (struct scene_conf){ .map_size = 1024, .search = 8, .shadow = 4, .steps = steps, .quadrature = SCENE_GAUSS,
-		                        .path = SCENE_PATH_GRID, .bands = 6, .detail = 1, .limbus_width = 0.4,
+		                        .path = SCENE_PATH_GRID, .bands = 6, .detail = 1, .own_width = 0.2, .ratio_most = 2.5, .ratio_chroma = 1.5, .limbus_width = 0.4,
 		                        .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.65, 0.6 }, .vein_density = 0.2,
 		                        .veins_px = 128, .seed = 1 };
 }

@@ -10,7 +10,7 @@ static const struct eye eye = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75
 struct scene_conf ridged_conf(int steps, int quadrature, int path)
 {
 	return (struct scene_conf){ .map_size = 1024, .search = 8, .shadow = 8, .steps = steps, .quadrature = quadrature,
-		                        .path = path, .bands = 4, .detail = 1, .limbus_width = 0.4, .sclera_radius = 11.8,
+		                        .path = path, .bands = 4, .detail = 1, .own_width = 0.2, .ratio_most = 2.5, .ratio_chroma = 1.5, .limbus_width = 0.4, .sclera_radius = 11.8,
 		                        .sclera_rgb = { 0.7, 0.65, 0.6 }, .vein_density = 1, .veins_px = 512, .seed = 1 };
 }
 

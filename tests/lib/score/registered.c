@@ -35,7 +35,7 @@ static struct scene_view view_of(const struct truth *t, int width, int height, i
  * image_free. */
 static struct image picture_of(const struct truth *t, int shading, int n, const float *rgb, int width, int height, int every)
 {
-	struct scene_conf conf = { .map_size = 512, .search = 8, .steps = 2, .shading = shading, .bands = 3, .detail = 1, .limbus_width = 0.05,
+	struct scene_conf conf = { .map_size = 512, .search = 8, .steps = 2, .shading = shading, .bands = 3, .detail = 1, .own_width = 0.2, .ratio_most = 2.5, .ratio_chroma = 1.5, .limbus_width = 0.05,
 		                       .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .veins_px = 128, .seed = 1 };
 	struct scene s;
 	scene_plain(&s, &t->eye, &conf, (double[]){ 0.2, 0.2, 0.2 }, 1);

@@ -23,8 +23,11 @@ static float *texel(const struct scene *s, int x, int y) { return s->level[0].co
 
 static const float own_mean[3] = { 0.3f, -0.5f, -0.6f };
 
-/* The scene with these colours; spot: so many times brighter within 0.05 mm of (4, 0). */
-static void lit(struct scene *s, double spot)
+/* What changes with the distance from the pupil alone. */
+static double ring_ln(double r) { return cos(2 * (r - 3)); }
+
+/* The scene with these colours; spot: so many times brighter within 0.05 mm of (4, 0); rings: so much of ring_ln besides. */
+static void lit(struct scene *s, double spot, double rings)
 {
 	struct scene_conf conf = conf_of(4);
 	conf.albedo_mm = 0.4;
@@ -37,7 +40,7 @@ static void lit(struct scene *s, double spot)
 	s->gain = 1;
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
-			double u = place(s, x), v = place(s, y), ln = slope_ln(u) + fibre_ln(u);
+			double u = place(s, x), v = place(s, y), ln = slope_ln(u) + fibre_ln(u) + rings * ring_ln(hypot(u, v));
 			for (int c = 0; c < 3; c++) {
 				l->model[4 * ((long)y * n + x) + c] = dim;
 				texel(s, x, y)[c] = dim * (float)exp(ln + (c - 1) * hue_ln(v)) * (hypot(u - 4, v) < 0.05 ? (float)spot : 1);
@@ -52,7 +55,7 @@ static void parts_are_told_apart(void **state)
 {
 	(void)state;
 	struct scene s;
-	lit(&s, 1);
+	lit(&s, 1, 0);
 	double cross = 0, square = 0, worst_slope = 0;
 	for (int y = 0; y < s.level[0].n; y++)
 		for (int x = 0; x < s.level[0].n; x++) {
@@ -75,12 +78,36 @@ static void parts_are_told_apart(void **state)
 	scene_free(&s);
 }
 
+/* What is alike all round the pupil stays with the iris, beside a light that is not. */
+static void rings_are_the_iris(void **state)
+{
+	(void)state;
+	struct scene s;
+	lit(&s, 1, 0.3);
+	double cross = 0, square = 0, light = 0, other = 0;
+	for (int y = 0; y < s.level[0].n; y++)
+		for (int x = 0; x < s.level[0].n; x++) {
+			double u = place(&s, x), v = place(&s, y), ring = 0.3 * ring_ln(hypot(u, v));
+			if (!inner(u, v))
+				continue;
+			double own = log((double)scene_own_light_at(&s, 1, (float)u, (float)v)), rest = log((double)texel(&s, x, y)[1] / (double)dim);
+			cross += rest * ring;
+			square += ring * ring;
+			light += own * slope_ln(u);
+			other += slope_ln(u) * slope_ln(u);
+		}
+	assert_true(square > 1);
+	assert_float_equal(cross / square, 1, 0.05);
+	assert_float_equal(light / other, 1, 0.05);
+	scene_free(&s);
+}
+
 /* It shows in its own light, fades as another one's direction leaves it, and not at all where the light is elsewhere. */
 static void only_its_own_light_shows_it(void **state)
 {
 	(void)state;
 	struct scene s;
-	lit(&s, 1);
+	lit(&s, 1, 0);
 	assert_float_equal(scene_own_light_share(&s, own_mean), 1, 0);
 	float last = 1;
 	for (int i = 1; i <= 20; i++) {
@@ -103,7 +130,7 @@ static void albedo_is_bounded(void **state)
 {
 	(void)state;
 	struct scene s;
-	lit(&s, 100);
+	lit(&s, 100, 0);
 	double most = 0;
 	for (int y = 0; y < s.level[0].n; y++)
 		for (int x = 0; x < s.level[0].n; x++)
@@ -118,7 +145,7 @@ static void not_asked_for(void **state)
 {
 	(void)state;
 	struct scene s;
-	lit(&s, 1);
+	lit(&s, 1, 0);
 	image_free(&s.own_light);
 	s.conf.albedo_mm = 0;
 	const float was = texel(&s, 400, 256)[0];
@@ -132,6 +159,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(parts_are_told_apart),
+		cmocka_unit_test(rings_are_the_iris),
 		cmocka_unit_test(only_its_own_light_shows_it),
 		cmocka_unit_test(albedo_is_bounded),
 		cmocka_unit_test(not_asked_for),

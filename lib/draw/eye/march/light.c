@@ -27,19 +27,17 @@ void scene_table_at(float out[SCENE_WAY], const struct scene_beam *beam, const f
 
 /* The sclera begins at the limbus, gradually: light that would enter further out is stopped. */
 SIMD_CLONES
-static void rim_open(int n, float *restrict open, const float *restrict rho, float width)
+static void light_open(struct march_light *restrict light, int n, const float *restrict rho, const float *restrict x, const float *restrict y,
+                       const float *restrict z, const struct rim_shadow *restrict rim)
 {
-	float lo = 1 - width / 2, inv = 1 / width;
+	const float *restrict lx = light->x[0], *restrict ly = light->y[0], *restrict lz = light->z[0];
 	SIMD_LOOP
-	for (int i = 0; i < n; i++) {
-		float t = (rho[i] - lo) * inv;
-		t = t > 0 ? t < 1 ? t : 1 : 0;
-		open[i] = 1 - t * t * (3 - 2 * t);
-	}
+	for (int i = 0; i < n; i++)
+		light->open[i] = rim_shadow_open(rim, rim_shadow_at(rim, rho[i], x[i], y[i], z[i], lx[i], ly[i], lz[i]));
 }
 
 static void table_paths(struct march_light *light, int end, int n, const float *x, const float *y, const float *z,
-                        const struct scene_beam *beam, float extent, float width)
+                        const struct scene_beam *beam, float extent, const struct rim_shadow *rim)
 {
 	float rho[PART] = { 0 };
 	for (int i = 0; i < n; i++) {
@@ -53,7 +51,7 @@ static void table_paths(struct march_light *light, int end, int n, const float *
 		rho[i] = way[4];
 	}
 	if (end == 0)
-		rim_open(n, light->open, rho, width);
+		light_open(light, n, rho, x, y, z, rim);
 	for (int i = 0; i < n; i++)
 		light->power[end][i] = light->power[end][i] > 0 ? light->power[end][i] * light->open[i] : 0;
 }
@@ -84,7 +82,7 @@ void scene_light_at(struct march_light *light, int end, int n, const float *x, c
                     const struct scene *s, const struct scene_beam *beam)
 {
 	// The power is the table's either way: it is smooth enough.
-	table_paths(light, end, n, x, y, z, beam, (float)s->extent, (float)(s->conf.limbus_width / s->limbus[0]));
+	table_paths(light, end, n, x, y, z, beam, (float)s->extent, &s->rim);
 	if (s->conf.path == SCENE_PATH_ENDS)
 		exact_paths(light, end, n, x, y, z, s, beam);
 }

@@ -21,18 +21,23 @@ struct flat_light {
 /* One ring's irradiance by all lights. */
 SIMD_CLONES static void ring_sum(float (*restrict out)[4], int ring, int n, const struct flat_light *light, const struct scene *s)
 {
-	float sum[3][TURNS] = { 0 }, way[PLAIN_CHANNELS][TURNS], width = (float)(s->conf.limbus_width / s->limbus[0]), lo = 1 - width / 2, inv = 1 / width;
-	float per_x = (float)(1 / s->limbus[0]), per_y = (float)(1 / s->limbus[1]);
+	float sum[3][TURNS] = { 0 }, way[PLAIN_CHANNELS][TURNS], px[TURNS], py[TURNS], r = (float)(s->paths->most * ring / (PLAIN_RINGS - 1));
+	float per_x = (float)(1 / s->limbus[0]), per_y = (float)(1 / s->limbus[1]), plane = (float)s->eye.iris_depth, up = plane - s->rim.depth;
+	const struct rim_shadow rim = s->rim;
+	for (int i = 0; i < TURNS; i++) {
+		px[i] = r * cosf((float)(2 * M_PI) * (float)i / TURNS);
+		py[i] = r * sinf((float)(2 * M_PI) * (float)i / TURNS);
+	}
 	for (int l = 0; l < n; l++) {
 		float cosine = light[l].at.cosine, sine = light[l].at.sine;
 		for (int c = 0; c < PLAIN_CHANNELS; c++)
 			scene_paths_row(way[c], TURNS, s->paths->plain[light[l].at.angle][c] + ring * ROW, PLAIN_CHANNELS * PLAIN_FIELD, &light[l].at);
 		SIMD_LOOP
 		for (int i = 0; i < TURNS; i++) {
-			float x = per_x * (cosine * way[PLAIN_X][i] - sine * way[PLAIN_Y][i]), y = per_y * (sine * way[PLAIN_X][i] + cosine * way[PLAIN_Y][i]);
-			float t = (sqrtf(x * x + y * y) - lo) * inv, e = way[PLAIN_FALL][i] > 0 ? way[PLAIN_FALL][i] : 0;
-			t = t > 0 ? t < 1 ? t : 1 : 0;
-			e *= 1 - t * t * (3 - 2 * t);  // the sclera begins at the limbus, gradually
+			float x = cosine * way[PLAIN_X][i] - sine * way[PLAIN_Y][i], y = sine * way[PLAIN_X][i] + cosine * way[PLAIN_Y][i];
+			float e = way[PLAIN_FALL][i] > 0 ? way[PLAIN_FALL][i] : 0, u = per_x * x, v = per_y * y;
+			float dx = x - px[i], dy = y - py[i], inv = 1 / sqrtf(dx * dx + dy * dy + up * up);  // the cornea is as deep there as the limbus, or the sclera is far
+			e *= rim_shadow_open(&rim, rim_shadow_at(&rim, sqrtf(u * u + v * v), px[i], py[i], plane, inv * dx, inv * dy, -inv * up));
 			sum[0][i] += light[l].rgb[0] * e;
 			sum[1][i] += light[l].rgb[1] * e;
 			sum[2][i] += light[l].rgb[2] * e;

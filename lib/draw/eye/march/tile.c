@@ -88,10 +88,21 @@ SIMD_INLINE void channel_lay(float *restrict out, float *restrict change, const 
 	}
 }
 
-/* Irradiance at both ends of the rays, reduced by the limbus, where the sclera begins gradually: as at the near end (struct march_light). */
-SIMD_CLONES static void power_lay(struct march_light *restrict w, float corner[SCENE_WAY][8], const struct march_body *restrict b, float rim_width)
+/* Channel 4, where the light enters the cornea, becomes its place on the limbus' ramp. */
+SIMD_CLONES static void rim_lay(float (*restrict corner)[8], const struct march_body *restrict b, const struct rim_shadow *restrict rim)
 {
-	float rho[2][PART], lo = 1 - rim_width / 2, inv = 1 / rim_width, most = 0, *restrict p0 = w->power[0], *restrict p1 = w->power[1];
+	float side = TILE_SIDE * b->tile->step;
+	SIMD_LOOP
+	for (int k = 0; k < 8; k++) {
+		float far = k < 4 ? 0 : 1, x = b->tile->x + (k & 1 ? side : 0) + far * b->over[0], y = b->tile->y + (k & 2 ? side : 0) + far * b->over[1];
+		corner[4][k] = rim_shadow_at(rim, corner[4][k], x, y, b->z + far * b->over[2], corner[0][k], corner[1][k], corner[2][k]);
+	}
+}
+
+/* Irradiance at both ends of the rays, reduced by the limbus, where the sclera begins gradually: as at the near end (struct march_light). */
+SIMD_CLONES static void power_lay(struct march_light *restrict w, float corner[SCENE_WAY][8], const struct march_body *restrict b, const struct rim_shadow *restrict rim)
+{
+	float at[2][PART], most = -1e3f, *restrict p0 = w->power[0], *restrict p1 = w->power[1];
 	channel_lay(p0, p1, corner[3]);
 	SIMD_LOOP
 	for (int i = 0; i < PART; i++) {
@@ -101,16 +112,14 @@ SIMD_CLONES static void power_lay(struct march_light *restrict w, float corner[S
 	}
 	for (int k = 0; k < 8; k++)
 		most = corner[4][k] > most ? corner[4][k] : most;
-	if (!(most > lo))
+	if (!(most > -RIM_SHADOW_MOST))
 		return;
-	channel_lay(rho[0], rho[1], corner[4]);
+	channel_lay(at[0], at[1], corner[4]);
 	SIMD_LOOP
 	for (int i = 0; i < PART; i++) {
-		float t = (rho[0][i] + b->q[0][i] * rho[1][i] - lo) * inv;
-		t = t > 0 ? t < 1 ? t : 1 : 0;
-		t = 1 - t * t * (3 - 2 * t);
-		p0[i] *= t;
-		p1[i] *= t;
+		float open = rim_shadow_open(rim, at[0][i] + b->q[0][i] * at[1][i]);
+		p0[i] *= open;
+		p1[i] *= open;
 	}
 }
 
@@ -141,7 +150,7 @@ SIMD_CLONES static void power_change(struct march_light *w)
 }
 
 /* Slope of the lowest of a light's directions over the tile, and whether there is any light. */
-SIMD_CLONES static bool lowest(float *slope, float (*restrict corner)[8], float width)
+SIMD_CLONES static bool lowest(float *slope, float (*restrict corner)[8])
 {
 	int any = 0;
 	float least = 1e3f;
@@ -149,7 +158,7 @@ SIMD_CLONES static bool lowest(float *slope, float (*restrict corner)[8], float 
 	for (int k = 0; k < 8; k++) {
 		float s = -corner[2][k] / sqrtf(corner[0][k] * corner[0][k] + corner[1][k] * corner[1][k] + 1e-12f);
 		least = s < least ? s : least;
-		any |= (corner[3][k] > 0) & (corner[4][k] < 1 + width / 2);
+		any |= (corner[3][k] > 0) & (corner[4][k] < RIM_SHADOW_MOST);
 	}
 	*slope = least;
 	return any;
@@ -167,13 +176,14 @@ SIMD_INLINE float turn_of(float x, float y, float n)
 
 bool scene_light_tile(struct march_light *light, const struct march_body *body, const struct scene *s, const struct scene_beam *beam)
 {
-	float corner[SCENE_WAY][8], width = (float)(s->conf.limbus_width / s->limbus[0]), low;
+	float corner[SCENE_WAY][8], low;
 	const struct march_horizon *h = body->tile->horizon;
 	corners_read(corner, body, beam);
-	if (!lowest(&low, corner, width))
+	rim_lay(corner, body, &s->rim);
+	if (!lowest(&low, corner))
 		return false;
 	lay(light, corner);
-	power_lay(light, corner, body, width);
+	power_lay(light, corner, body, &s->rim);
 	if (h) {
 		float turn = turn_of(corner[0][0] + corner[0][3], corner[1][0] + corner[1][3], HORIZONS);
 		int whole = (int)turn, a = whole % HORIZONS, b = (a + 1) % HORIZONS;
