@@ -212,7 +212,8 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, struct 
 	return ok;
 }
 
-/* What can leave the page: the character as it has left, unless that is large; else each eye by itself. */
+/* What can leave the page: the character as it has left, unless that is large; else each eye by itself, where exports are made with the
+ * pictures: it takes a fifth of the time of a draft. */
 static bool add_glbs(json_t *glbs, struct parts *p, struct skin_job *skin, struct err *err)
 {
 	char *bytes = 0;
@@ -224,7 +225,7 @@ static bool add_glbs(json_t *glbs, struct parts *p, struct skin_job *skin, struc
 		free(bytes);
 		return true;
 	}
-	for (int i = 0, n = 0; i < p->eyes->n; i++) {
+	for (int i = 0, n = 0; i < p->eyes->n && skin->leaves->make; i++) {
 		const struct job *job = &p->eyes->job[i];
 		if (!job->usable)
 			continue;

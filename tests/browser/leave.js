@@ -31,8 +31,9 @@ async function valid(bytes, name) {
 async function saved(b, url, set) {
 	await b.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-reduced-motion", value: "reduce" }] });
 	await b.open("about:blank");
+	await b.until("location.href === 'about:blank'", 20);
 	await b.open(url);
-	await b.until("document.documentElement.dataset.open", 180);
+	await b.until("document.documentElement && document.documentElement.dataset.open", 180);
 	const text = await b.value(`(async () => {
 		const kept = new Promise(done => { Tools.download = (blob, name) => done([blob, name]); });
 		await (${set})(eyewright);

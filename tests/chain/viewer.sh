@@ -13,7 +13,7 @@ cp "$PHOTO" "$capture/photos/right_<img src=x onerror=alert(1)>.jpg"
 for key in map_size search shadow steps shading_apart bands vein_map_px lights samples size_px; do
 	sed -n "s/^$key = /render.$key = /p" config/render.conf
 done >>"$capture/capture.conf"
-printf 'render.frames = 1\nrender.exr = no\n' >>"$capture/capture.conf"
+printf 'render.frames = 1\nrender.exr = no\nexport.make = yes\nexport.texture_px = 512\n' >>"$capture/capture.conf"
 run_make "$capture"
 same "the page is made" "$?" 0
 page=$capture/work/review/viewer.html
