@@ -149,7 +149,20 @@ static bool flushed(int fd)
 	return same >= 0 && !close(same);
 }
 
+static bool write_parts(int fd, int n, const struct file_part part[])
+{
+	bool ok = true;
+	for (int i = 0; i < n && ok; i++)
+		ok = write_all(fd, part[i].data, part[i].size);
+	return ok;
+}
+
 bool file_write(const char *path, const void *data, size_t size, struct err *err)
+{
+	return file_write_parts(path, 1, &(const struct file_part){ data, size }, err);
+}
+
+bool file_write_parts(const char *path, int n, const struct file_part part[], struct err *err)
 {
 	const char *name;
 	const int folder = gate_parent(&name, path, true);
@@ -157,7 +170,7 @@ bool file_write(const char *path, const void *data, size_t size, struct err *err
 		return err_set(err, "%s: cannot write: %s", path, why_not(errno));
 	char *beside = file_temporary(path), *slash = strrchr(beside, '/'), *tmp = slash ? slash + 1 : beside;
 	int fd = open_alone(folder, tmp);
-	bool ok = fd >= 0 && write_all(fd, data, size) && flushed(fd) && !renameat(folder, tmp, folder, name);
+	bool ok = fd >= 0 && write_parts(fd, n, part) && flushed(fd) && !renameat(folder, tmp, folder, name);
 	int why = errno;
 	if (!ok && fd >= 0)
 		unlinkat(folder, tmp, 0);

@@ -18,6 +18,13 @@ bool file_read(char **data, size_t *size, const char *path, size_t limit, struct
  * Missing folders are made. Returns false, err set, on failure; the old file then stays. */
 bool file_write(const char *path, const void *data, size_t size, struct err *err);
 
+/* The same of several parts, one after the other: what is long need not be copied behind its head. */
+struct file_part {
+	const void *data;
+	size_t size;
+};
+bool file_write_parts(const char *path, int n, const struct file_part part[], struct err *err);
+
 /* Makes a folder and those above it (mkdir -p). Returns false, err set, when that fails. */
 bool file_mkdirs(const char *dir, struct err *err);
 

@@ -121,3 +121,21 @@ void scales_free(struct scales *pyramid)
 	free(pyramid->store);
 	*pyramid = (struct scales){ 0 };
 }
+
+void scales_pack(struct pack *pack, struct scales *p)
+{
+	const struct scale_level *a = &p->level[0];
+	int head[5] = { p->x0, p->y0, p->levels, a->width, a->height };
+	PACK(pack, head);
+	if (pack->reading) {
+		pack->bad = pack->bad || head[2] < 0 || head[2] > SCALES_LEVELS || head[3] < 0 || head[4] < 0 || (size_t)head[3] * (size_t)head[4] > pack->n;
+		if (pack->bad || !head[2])
+			return;
+		p->x0 = head[0];
+		p->y0 = head[1];
+		layout(p, head[3], head[4], head[2]);
+	}
+	for (int l = 0; l < p->levels; l++)
+		for (int y = 0; y < p->level[l].height; y++)
+			pack_bytes(pack, p->level[l].px + (long)y * p->level[l].stride, (size_t)p->level[l].width * sizeof(float));
+}

@@ -6,6 +6,8 @@
 #define IMAGE_SCALES_H
 #include <stdint.h>
 
+#include "base/pack.h"
+
 enum { SCALES_LEVELS = 5 };
 
 struct scale_level {
@@ -29,5 +31,8 @@ struct scales {
 void scales_fill(struct scales *pyramid, const uint8_t *luma, int stride, int width, int height, int x0, int y0, int x1,
                   int y1, int levels);
 void scales_free(struct scales *pyramid);
+
+/* base/pack.h. pyramid: zeroed, or filled before. */
+void scales_pack(struct pack *pack, struct scales *pyramid);
 
 #endif

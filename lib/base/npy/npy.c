@@ -86,13 +86,9 @@ bool npy_read(struct npy *out, const char *path, size_t limit, struct err *err)
 bool npy_save(const char *path, const struct npy *array, struct err *err)
 {
 	size_t bytes = (size_t)npy_count(array) * npy_type_size(array->type);
-	unsigned char *file = mem_array(NPY_HEAD_WRITTEN + bytes, 1);
-	size_t begins = npy_head_write(file, array);
-	if (bytes)
-		memcpy(file + begins, array->data, bytes);
-	bool ok = file_write(path, file, begins + bytes, err);
-	free(file);
-	return ok;
+	unsigned char head[NPY_HEAD_WRITTEN];
+	const struct file_part parts[] = { { head, npy_head_write(head, array) }, { array->data, bytes } };
+	return file_write_parts(path, COUNT(parts), parts, err);
 }
 
 static void print_shape(char out[160], int ndim, const long *shape)
