@@ -46,6 +46,7 @@ int main(int argc, char **argv)
 		OPT_REALS("kappa_deg", c.kappa, 2, -20, 20, "degrees", "line of sight against the optical axis: towards the nose, up"),
 		OPT_REALS("kappa_sigma_deg", c.kappa_sigma, 2, 1e-3, 20, "degrees", "standard deviations of those"),
 		OPT_REALS_UNSET("camera_frames", c.camera_frames, 2, 0, 1e9, "", "first and last frame in which the person looks into the camera"),
+		OPT_INT("chunk_frames", &c.chunk, 0, 10000000, "", "followed frames that a killed run loses at most; 0: all"),
 		OPT_INT("points", &c.points, 20, 20000, "", "of skin"),
 		OPT_REAL("reach_mm", &c.reach_mm, 15, 200, "mm", "skin that is followed, round an eyeball's centre"),
 		OPT_REAL("gap_px", &c.gap_px, 0, 50, "px", "least distance between two points"),

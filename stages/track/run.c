@@ -10,10 +10,13 @@
 #include "track/clip/agree.h"
 #include "track/clip/alone.h"
 #include "track/clip/apertures.h"
+#include "track/clip/chunks.h"
 #include "track/clip/corners.h"
 #include "track/clip/expressions.h"
 #include "track/clip/follow.h"
 #include "track/clip/kappa.h"
+#include "track/clip/others.h"
+#include "track/clip/refine.h"
 #include "track/clip/settle.h"
 
 /* Warns of shortcomings of the video, one line each. */
@@ -67,7 +70,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!(subject->assumed ? track_alone(clip, stage, subject, conf, err) : track_settle(clip, stage, subject, conf, err)))
 		return false;
 	tell_way(stage, clip);
-	if (!track_settled(clip, subject, conf, err)) {
+	if (!track_settled(clip, subject, conf, err) || !track_alone_in_it(clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, 0);
 		return false;
 	}
@@ -78,6 +81,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (result->lost * 2 > result->n)
 		return err_set(err, "%s: from frame %ld on the face of frame %ld is not seen again (a cut, or the head turned away): cut the video to one take", clip->file,
 		               result->cut, clip->reference);
+	reference_lens(clip, result, subject, conf);
 	if (!track_agrees(result, clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, result);
 		return false;
@@ -116,14 +120,18 @@ bool track_stage(struct stage *stage, const struct track_conf *conf, struct err 
 		fresh = stage_fresh(stage, track_files[i], n, in) && fresh;
 	for (int i = 0; i < WRINKLE_FILES && wrinkles_wanted(conf, has_mesh); i++)
 		fresh = stage_fresh(stage, wrinkle_files[i], n, in) && fresh;
-	if (fresh)
+	if (fresh) {
+		chunks_remove(stage);
 		return true;
+	}
 	if (more)
 		stage_skipped(stage, "video/: %s is followed, the other %d files are not", clip.file, more);
 	struct track_subject subject = { 0 };
 	struct track_points points = { 0 };
 	struct track_result result = { 0 };
+	clip.made_by = stage_made_by(stage, n, in);
 	bool ok = work(stage, &clip, &subject, &points, &result, conf, n, in, err);
+	chunks_remove(stage);
 	track_result_free(&result);
 	track_points_free(&points);
 	track_subject_free(&subject);

@@ -142,7 +142,16 @@ static json_t *trust_json(const struct track_trust *t)
 		json_object_set_new(all, trust_names[i].key, one);
 	}
 	json_object_set_new(j, "far_probability", json_number(t->far));
+	json_object_set_new(j, "lens_probability", json_number(t->lens));
 	json_object_set_new(j, "evidence", all);
+	return j;
+}
+
+static json_t *perspective_json(const struct head_lens *lens)
+{
+	json_t *j = json_object();
+	json_object_set_new(j, "share", json_number(lens->share));
+	json_object_set_new(j, "sigma", json_number(lens->sigma));
 	return j;
 }
 
@@ -164,6 +173,7 @@ static bool save_json(const struct track_result *r, const struct track_clip *cli
 	json_object_set_new(j, "reference_frame", json_integer(clip->reference));
 	json_object_set_new(j, "pose_rms_px", json_number(clip->pose_px));
 	json_object_set_new(j, "trust", trust_json(&r->trust));
+	json_object_set_new(j, "perspective", clip->lens.sigma > 0 ? perspective_json(&clip->lens) : json_null());
 	json_object_set_new(j, "head_rests", json_boolean(r->rests));
 	json_object_set_new(j, "lost_frames", json_integer(r->lost));
 	json_object_set_new(j, "unsure_frames", json_integer(r->unsure));

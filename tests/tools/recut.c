@@ -1,6 +1,7 @@
 /* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), roll (turned
  * further from frame to frame, by 180 degrees in all), uneven (every second frame half an interval late), sway (moved aside by 30 px and back once a
- * second, as by a head that does not rest), aside (half the picture to the right). */
+ * second, as by a head that does not rest), aside (half the picture to the right), pair
+ * (the picture twice beside itself, half as large), mirror (the same, the right one mirrored), toon (few colours and black outlines). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,10 +73,38 @@ static void shift(uint8_t *out, const uint8_t *in, int w, int h, int x, int y)
 		}
 }
 
+/* Half as large, twice, beside itself; above and below black. */
+static void twice(uint8_t *out, const uint8_t *in, int w, int h, bool mirrored)
+{
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++)
+			for (int k = 0; k < 3; k++) {
+				const int u = mirrored && x >= w / 2 ? 2 * (w - 1 - x) : 2 * (x % (w / 2)), v = 2 * (y - h / 4);
+				const bool is = v >= 0 && v + 1 < h && u + 1 < w;
+				const uint8_t *a = in + 3 * ((long)(is ? v : 0) * w + (is ? u : 0)) + k, *b = a + 3 * (long)w;
+				out[3 * ((long)y * w + x) + k] = (uint8_t)(is ? (a[0] + a[3] + b[0] + b[3] + 2) / 4 : 0);
+			}
+}
+
+/* Four steps of each colour; black where brightness changes by much. */
+static void toon(uint8_t *out, const uint8_t *in, int w, int h)
+{
+	enum { STEP = 64, EDGE = 60 };
+	memcpy(out, in, 3 * (size_t)w * (size_t)h);
+	for (int y = 1; y + 1 < h; y++)
+		for (int x = 1; x + 1 < w; x++) {
+			const uint8_t *p = in + 3 * ((long)y * w + x) + 1;
+			const bool edge = abs(p[3] - p[-3]) + abs(p[3 * (long)w] - p[-3 * (long)w]) > EDGE;
+			for (int k = 0; k < 3; k++)
+				out[3 * ((long)y * w + x) + k] = (uint8_t)(edge ? 0 : p[k - 1] / STEP * STEP + STEP / 2);
+		}
+}
+
 static bool put(struct video_writer *writer, long *n, const struct part *p, uint8_t *const *rgb, const struct video_info *info, struct err *err)
 {
 	uint8_t *turned = mem_array((size_t)info->width * (size_t)info->height, 3);
 	bool over = !strcmp(p->how, "over"), roll = !strcmp(p->how, "roll"), uneven = !strcmp(p->how, "uneven"), sway = !strcmp(p->how, "sway"), aside = !strcmp(p->how, "aside"), ok = true;
+	const bool mirror = !strcmp(p->how, "mirror"), pair = !strcmp(p->how, "pair");
 	for (long t = 0; t < p->times && ok; t++)
 		for (long f = p->first; f <= p->last && ok; f++) {
 			double share = (double)(f - p->first) / fmax(1, (double)(p->last - p->first));
@@ -86,6 +115,13 @@ static bool put(struct video_writer *writer, long *n, const struct part *p, uint
 			}
 			if (over || roll) {
 				turn(turned, px, info->width, info->height, M_PI * (roll ? share : 1));
+				px = turned;
+			}
+			if (mirror || pair || !strcmp(p->how, "toon")) {
+				if (mirror || pair)
+					twice(turned, px, info->width, info->height, mirror);
+				else
+					toon(turned, px, info->width, info->height);
 				px = turned;
 			}
 			if (sway || aside) {

@@ -142,8 +142,8 @@ void track_apertures(struct track_result *r, const struct track_clip *clip, cons
 	r->aperture_sigma = mem_new((size_t)r->n + 1, sizeof *r->aperture_sigma);
 	for (long i = 0; i < r->n * SIDES * LIDS; i++)
 		r->aperture_sigma[i / (SIDES * LIDS)][i / LIDS % SIDES][i % LIDS] = NAN;
-	r->lids = mem_new(lids + 1, sizeof *r->lids);
-	r->lids_model = mem_new(lids + 1, sizeof *r->lids_model);
+	r->lids = bulk_new(r->bulk, lids + 1, sizeof *r->lids);
+	r->lids_model = bulk_new(r->bulk, lids + 1, sizeof *r->lids_model);
 	for (long i = 0; i < r->n * width; i++)
 		r->g[i] = NAN;
 	for (size_t i = 0; i < lids; i++)

@@ -82,6 +82,14 @@ void background_push(struct background *b, struct video_frame *frame, const doub
 	pthread_mutex_unlock(&b->lock);
 }
 
+void background_wait(struct background *b)
+{
+	pthread_mutex_lock(&b->lock);
+	while (b->in != b->out)
+		pthread_cond_wait(&b->changed, &b->lock);
+	pthread_mutex_unlock(&b->lock);
+}
+
 void background_end(struct background *b)
 {
 	if (b->threaded) {

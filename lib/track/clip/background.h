@@ -15,6 +15,9 @@ struct background *background_new(struct track_eyes *eyes, struct film *film, st
 /* Takes over a frame, which is emptied; waits while four are under way. Frames in order. */
 void background_push(struct background *background, struct video_frame *frame, const double cam_from_head[4][4]);
 
+/* Waits for the last frame that was pushed: until the next one eyes, film and folds may be used by the caller. */
+void background_wait(struct background *background);
+
 /* Waits for the last frame; frees background. */
 void background_end(struct background *background);
 

@@ -131,7 +131,7 @@ struct beside beside_new(int n, const double (*head)[3], const struct track_resu
                          const struct track_points *points)
 {
 	size_t all = (size_t)n * (size_t)r->n + 1;
-	struct beside b = { n, r->n, mem_new(all, sizeof *b.moved), mem_new(all, sizeof *b.weight) };
+	struct beside b = { n, r->n, bulk_new(r->bulk, all, sizeof *b.moved), bulk_new(r->bulk, all, sizeof *b.weight), r->bulk };
 	double *room = mem_array((size_t)r->n + 1, sizeof *room), wide = 0;
 	for (int k = 0; k < 3; k++)
 		wide += pow(head[n - 1][k] - head[0][k], 2);
@@ -147,6 +147,6 @@ struct beside beside_new(int n, const double (*head)[3], const struct track_resu
 
 void beside_free(struct beside *b)
 {
-	free(b->moved);
-	free(b->weight);
+	bulk_free(b->bulk, b->moved);
+	bulk_free(b->bulk, b->weight);
 }

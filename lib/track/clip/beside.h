@@ -10,6 +10,7 @@ struct beside {
 	long frames;
 	double (*moved)[2];    // [n][frames] px: off where the rigid head would take them; 0 for the mesh's face at rest
 	double *weight;        // [n][frames] how much skin was seen there, 0..1; 0: interpolated
+	struct bulk *bulk;     // result's, where both lie
 };
 
 /* head: n places in the head frame, mm, in a row from one corner of an eye to the other; their distance scales how far away skin

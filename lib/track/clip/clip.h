@@ -6,6 +6,7 @@
 #define TRACK_CLIP_CLIP_H
 #include "image/patch/patch.h"
 #include "track/clip/subject.h"
+#include "track/head/lens.h"
 
 /* A frame whose head pose calibrate has estimated. */
 struct track_known {
@@ -33,6 +34,7 @@ struct track_clip {
 	char file[320];        // relative to the capture
 	struct video_info info;
 	struct camera camera;
+	const char *made_by;   // what the result will be made from and with (stage_made_by): what was followed of it before stands only under the same
 	bool focal_assumed;    // focal length from distance_mm
 	long reference;        // frame that all others are compared with
 	bool begins_shut;      // no open eyes where the clip begins: their looks are learnt from the reference frame
@@ -40,6 +42,7 @@ struct track_clip {
 	bool eye_seen[SIDES];
 	uint8_t *luma, *rgb;             // of the reference [height][width], [height][3 width]; owned
 	double turn_sigma[2];  // radians: of the pose's pitch and yaw; 0: not known
+	struct head_lens lens; // what the eyeballs and lids of several frames tell of it; sigma 0: nothing
 	double pose_px;        // rms residual of the pose
 	double skin_mm;        // skin off the rigid head in the frames that it was judged by (trust_skin_mm); NAN: not known
 	bool pose_refined;     // by eyeballs and lids of several frames (refine.h); else pose_px is that of the outlines in the reference alone

@@ -34,6 +34,7 @@ struct track_conf {
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
 	double earned_deg;     // standard deviation of a turn that the skin's motion tells
 	double trust[TRUST_EVIDENCES][2];    // scales of each evidence in clips followed rightly and wrongly: trust.h
+	double wrong_lens_prior, lens_share[2];  // share of clips whose lens is told wrongly; scales of the perspective seen, less 1, where it is told rightly, wrongly
 	double nearest_mm;     // what people look at in the median of a clip is no nearer than this or the camera
 	double wrong_deg;      // gaze that is off by more is wrong
 	double wrong_prior, wrong_prior_one, wrong_most, trust_odd;  // share of clips followed wrongly; of those that one eye alone lays the mesh on; probability of it beyond which a clip is refused; share of odd evidence
@@ -44,6 +45,7 @@ struct track_conf {
 	struct {
 		int frames, span;  // so many frames, spread over so many of the clip
 	} look, doubt;         // by which the reference is judged: at first; again where those raise a doubt
+	int chunk;             // frames after which what has been followed is kept on disk; 0: never
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
 	double kappa[2], kappa_sigma[2];     // degrees: prior of the line of sight against the optical axis, towards the nose and up
@@ -77,6 +79,8 @@ struct track_conf {
 		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
 		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("scale_mm", c, TRUST_SCALE, "mm", "the same without a mesh"), \
 		TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
+		OPT_REALS("lens_share", (c)->lens_share, 2, 1e-3, 100, "", "perspective seen, less 1, of a lens told rightly, wrongly"), \
+		OPT_REAL("wrong_lens_prior", &(c)->wrong_lens_prior, 0, 0.99, "", "share of clips whose lens is told wrongly"), \
 		OPT_REAL("nearest_mm", &(c)->nearest_mm, 0, 10000, "mm", "people look at nothing nearer, in the median, or at the camera"), \
 		OPT_REAL("wrong_prior", &(c)->wrong_prior, 1e-6, 0.99, "", "share of clips that are followed wrongly"), \
 		OPT_REAL("wrong_prior_one", &(c)->wrong_prior_one, 1e-6, 0.99, "", "of those in which one eye, its centre not told, lays the mesh on"), \

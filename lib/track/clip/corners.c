@@ -173,8 +173,8 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 	for (int k = 0; k < LIDS; k++)
 		skin[k] = beside_new(rim.n[k], rim.head[k], r, side, clip, points);
 	int below = rim.n[LID_LOWER];
-	double(*carried)[2] = mem_array((size_t)below * (size_t)r->n + 1, sizeof *carried);
-	double(*corner)[ENDS][2] = mem_array((size_t)r->n + 1, sizeof *corner), near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
+	double(*carried)[2] = bulk_grow(r->bulk, 0, (size_t)below * (size_t)r->n + 1, sizeof *carried);
+	double(*corner)[ENDS][2] = bulk_grow(r->bulk, 0, (size_t)r->n + 1, sizeof *corner), near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
 	for (long f = 0; f < r->n; f++) {
 		struct eye_state *state = &r->eyes.state[f][side];
 		struct line mesh[LIDS];
@@ -197,8 +197,8 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 	}
 	blink_lower_carry(r, side, below, (const double(*)[2])carried);
 	blink_upper_carry(r, side, corner, below, (const double(*)[2])carried, near_px);
-	free(corner);
-	free(carried);
+	bulk_free(r->bulk, corner);
+	bulk_free(r->bulk, carried);
 	for (int k = 0; k < LIDS; k++)
 		beside_free(&skin[k]);
 }

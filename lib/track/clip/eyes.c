@@ -22,11 +22,11 @@ static void view_sigma(double sigma[2], const struct track_clip *clip, const str
 		sigma[k] = subject->assumed && clip->focal_assumed ? conf->distance_sigma * fabs(p[k] / p[2]) : 0;
 }
 
-struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf)
+struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, struct bulk *bulk, const struct track_conf *conf)
 {
 	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)(conf->every ? conf->every : 1),
 		                       .camera = clip->camera, .eye = conf->eye, .head_known = true,
-		                       .head_sigma = { clip->turn_sigma[1], clip->turn_sigma[0] } };
+		                       .head_sigma = { clip->turn_sigma[1], clip->turn_sigma[0] }, .bulk = bulk };
 	struct eye_track_conf free_centers = conf->eyes;
 	// eyes of an average face: a wider prior
 	if (subject->assumed)
@@ -122,6 +122,13 @@ bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct e
 				(&s->lid[0][0][0])[k] = NAN;
 		}
 	return ok;
+}
+
+void track_eyes_pack(struct pack *pack, struct track_eyes *eyes, long first)
+{
+	// beyond this frame's part of it an earlier frame's is left, and may be looked at
+	pack_bytes(pack, eyes->rgb, 3 * (size_t)eyes->clip->info.width * (size_t)eyes->clip->info.height);
+	eye_track_pack(pack, eyes->track, first);
 }
 
 void track_eyes_free(struct track_eyes *eyes)

@@ -6,8 +6,8 @@
 
 struct track_eyes;
 
-/* clip and subject are borrowed until track_eyes_free. */
-struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
+/* clip, subject and bulk (eye_scene's) are borrowed until track_eyes_free. */
+struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, struct bulk *bulk, const struct track_conf *conf);
 
 /* The next frame, and the head's pose in it. */
 void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, const double cam_from_head[4][4]);
@@ -15,6 +15,9 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, c
 /* Clip-wide fit with result's final poses; fills result's eyes and has_eyes, NAN in frames that are lost.
  * Returns false, err set, when no eye was found in any frame. */
 bool track_eyes_finish(struct track_result *result, struct track_eyes *eyes, struct err *err);
+
+/* eye_track_pack() of them. */
+void track_eyes_pack(struct pack *pack, struct track_eyes *eyes, long first);
 void track_eyes_free(struct track_eyes *eyes);
 
 #endif

@@ -82,6 +82,34 @@ void film_add(struct film *film, const struct video_frame *f)
 	free(down);
 }
 
+void film_pack(struct pack *pack, struct film *film, long first)
+{
+	const size_t area = (size_t)film->width * (size_t)film->height;
+	struct film was = *film;
+	int known = 0;
+	PACK(pack, film->every);
+	PACK(pack, film->n);
+	PACK(pack, film->frame);
+	pack->bad = pack->bad || film->n < 0 || film->n > FILM_MOST;
+	film->n = pack->bad ? 0 : film->n;
+	for (int i = 0; i < film->n; i++) {
+		// one that is no longer kept was thinned out
+		for (; pack->reading && known < was.n && was.frame[known] < film->frame[i]; known++)
+			free(was.px[known]);
+		if (film->frame[i] < first && pack->reading) {
+			pack->bad = pack->bad || known == was.n || was.frame[known] != film->frame[i];
+			film->px[i] = pack->bad ? mem_new(area, 1) : was.px[known++];
+			continue;
+		}
+		if (pack->reading)
+			film->px[i] = mem_new(area, 1);
+		if (film->frame[i] >= first)
+			pack_bytes(pack, film->px[i], area);
+	}
+	for (; pack->reading && known < was.n; known++)
+		free(was.px[known]);
+}
+
 void film_free(struct film *film)
 {
 	if (!film)

@@ -87,6 +87,19 @@ void folds_add(struct folds *f, const struct video_frame *frame)
 	free(rgb);
 }
 
+void folds_pack(struct pack *pack, struct folds *f, long first)
+{
+	const size_t area = f ? (size_t)f->width * (size_t)f->height : 0;
+	for (int i = 0; f && i < f->n; i++) {
+		bool here = f->grey[i] && f->frame[i] >= first;
+		PACK(pack, here);
+		if (pack->reading && here && !f->grey[i])
+			f->grey[i] = mem_array(area, 1);
+		if (here)
+			pack_bytes(pack, f->grey[i], area);
+	}
+}
+
 void folds_free(struct folds *f)
 {
 	if (!f)

@@ -12,6 +12,9 @@ struct folds *folds_new(const struct track_clip *clip, const struct track_points
 
 /* Keeps the green channel of a frame between an expression's neutral and peak frame; folds may be null. */
 void folds_add(struct folds *folds, const struct video_frame *frame);
+
+/* The pictures of frames from `first` on (base/pack.h); folds may be null. Read into folds of the same clip and settings. */
+void folds_pack(struct pack *pack, struct folds *folds, long first);
 void folds_free(struct folds *folds);
 
 /* The lines found, and what they were found in. */

@@ -6,16 +6,10 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/clip/background.h"
+#include "track/clip/chunks.h"
+#include "track/clip/follow_impl.h"
 #include "track/clip/steady.h"
 #include "track/clip/together.h"
-
-/* Points weigh in the head's pose by how rigidly they have moved with it: running mean of their squared residuals, px^2. */
-struct rigid {
-	int n;
-	double *off2, *least;
-	struct head_sight *sights;
-};
 
 static const double forget = 1.2;  // rate of that running mean, 1/s
 /* Expected motion of skin relative to the head, mm: bridge of the nose, cheeks, brows, lids. */
@@ -77,20 +71,6 @@ static void pose_of(double pose[4][4], struct rigid *r, const struct skin_point_
 	}
 }
 
-static void grow(struct track_result *r, long *room)
-{
-	if (r->n < *room)
-		return;
-	*room = *room ? 2 * *room : 256;
-	size_t n = (size_t)*room, m = n * (size_t)r->n_points;
-	r->time = mem_grow(r->time, n, sizeof *r->time);
-	r->lost_at = mem_grow(r->lost_at, n, sizeof *r->lost_at);
-	r->pose = mem_grow(r->pose, n, sizeof *r->pose);
-	r->skin = mem_grow(r->skin, m + 1, sizeof *r->skin);
-	r->skin_model = mem_grow(r->skin_model, m + 1, sizeof *r->skin_model);
-	r->confidence = mem_grow(r->confidence, m + 1, sizeof *r->confidence);
-}
-
 static void store(struct track_result *r, const struct skin_point_state *state, const double pose[4][4], bool lost,
                   const struct track_points *points, const struct track_clip *clip)
 {
@@ -125,62 +105,100 @@ static bool skin_frame(struct track_result *r, struct skin_track *skin, struct s
 	return true;
 }
 
+/* Follows the frames that are not followed yet. */
+static bool frames(struct follow *f, struct chunks *chunks, struct video *video, const struct video_info *info, struct stage *stage, const struct track_clip *clip,
+                   const struct track_points *points, const struct track_conf *conf, struct err *err)
+{
+	struct track_result *r = f->r;
+	struct skin_point_state *state = mem_new((size_t)points->n + 1, sizeof *state);
+	const bool moves = clip->moves.turned > least_turned * M_PI / 180;
+	const long every = conf->every ? conf->every : 1, known = r->n;
+	bool ok = true, got = true;
+	while (ok && got && (!conf->limit || r->n < conf->limit)) {
+		struct video_frame frame;
+		ok = video_next(&frame, &got, video, err);
+		const bool mine = ok && got && frame.index % every == clip->reference % every;
+		if (ok && got && !conf->limit && frame.index < known) {
+			// followed by a run before this one
+		} else if (ok && got && moves && !mine) {
+			skin_track_push(f->skin, frame.luma, frame.luma_stride, state);
+		} else if (mine) {
+			track_result_room(r, &f->room, r->n + 1);
+			bool lost = skin_frame(r, f->skin, state, &frame, conf);
+			if (!lost && points->n)
+				pose_of(f->pose, &f->rigid, state, &clip->camera, conf->still_pose_px, fmax(1e-4, r->n ? frame.time - r->time[r->n - 1] : 1 / info->fps), moves);
+			r->time[r->n] = frame.time;
+			r->lost_at[r->n] = lost;
+			store(r, state, f->pose, lost, points, clip);
+			r->n++;
+			background_push(f->background, &frame, (const double(*)[4])f->pose);
+			chunks_keep(chunks, f);
+			if (!conf->limit)
+				stage_progress(stage, (int)r->n, (int)info->frames, "frames");
+		}
+		video_frame_free(&frame);
+	}
+	free(state);
+	return ok;
+}
+
+static void begin(struct follow *f, struct stage *stage, const struct track_clip *clip, const struct track_subject *subject, const struct track_points *points,
+                  const struct track_conf *conf)
+{
+	enum { RESIDENT = 32 << 20 };
+	struct track_result *r = f->r;
+	*r = (struct track_result){ .n_points = points->n, .cut = -1, .lid_points = conf->eyes.lid_points, .n_au = conf->expression.n };
+	const bool is_long = !conf->limit && conf->chunk && clip->info.frames > conf->chunk;
+	r->bulk = !is_long ? 0 : bulk_open(stage_path(stage, "work/skin"), RESIDENT);
+	f->room = 0;
+	f->skin = !points->n ? 0 : skin_track_new(&points->points, clip->luma, clip->info.width, clip->info.width, clip->info.height, points->mask, &conf->skin);
+	f->rigid = rigid_new(points, subject, clip->camera.focal_px / clip->cam_from_head[2][3]);
+	f->eyes = track_eyes_new(clip, subject, r->bulk, conf);
+	if (f->skin && clip->moves.n)
+		skin_track_begin(f->skin, clip->moves.n, (const double(*)[2])clip->moves.at, clip->moves.first);
+	r->film = conf->limit ? 0 : film_new(clip, subject, points);
+	r->folds = conf->limit || subject->assumed ? 0 : folds_new(clip, points, conf);
+	memcpy(f->pose, clip->cam_from_head, sizeof f->pose);
+}
+
+static void end(struct follow *f)
+{
+	track_eyes_free(f->eyes);
+	rigid_free(&f->rigid);
+	skin_track_free(f->skin);
+}
+
 bool track_follow(struct track_result *r, struct stage *stage, const struct track_clip *clip, const struct track_subject *subject,
                   const struct track_points *points, const struct track_conf *conf, struct err *err)
 {
 	struct video_info info;
+	struct follow f = { .r = r };
 	struct video *video = video_open(&info, stage_path(stage, "%s", clip->file), &conf->video, err);
-	*r = (struct track_result){ .n_points = points->n, .cut = -1, .lid_points = conf->eyes.lid_points, .n_au = conf->expression.n };
+	*r = (struct track_result){ .cut = -1 };
 	if (!video)
 		return false;
-	struct skin_track *skin = !points->n ? 0 : skin_track_new(&points->points, clip->luma, info.width, info.width, info.height, points->mask, &conf->skin);
-	struct skin_point_state *state = mem_new((size_t)points->n + 1, sizeof *state);
-	struct rigid rigid = rigid_new(points, subject, clip->camera.focal_px / clip->cam_from_head[2][3]);
-	struct track_eyes *eyes = track_eyes_new(clip, subject, conf);
-	double pose[4][4];
-	long room = 0;
-	const bool moves = clip->moves.turned > least_turned * M_PI / 180;
-	if (skin && clip->moves.n)
-		skin_track_begin(skin, clip->moves.n, (const double(*)[2])clip->moves.at, clip->moves.first);
-	r->film = conf->limit ? 0 : film_new(clip, subject, points);
-	r->folds = conf->limit || subject->assumed ? 0 : folds_new(clip, points, conf);
-	struct background *background = background_new(eyes, r->film, r->folds);
-	bool ok = true, got = true;
-	memcpy(pose, clip->cam_from_head, sizeof pose);
-	const long every = conf->every ? conf->every : 1;
-	while (ok && got && (!conf->limit || r->n < conf->limit)) {
-		struct video_frame f;
-		ok = video_next(&f, &got, video, err);
-		if (ok && got && moves && f.index % every != clip->reference % every) {
-			skin_track_push(skin, f.luma, f.luma_stride, state);
-		} else if (ok && got && f.index % every == clip->reference % every) {
-			grow(r, &room);
-			bool lost = skin_frame(r, skin, state, &f, conf);
-			if (!lost && points->n)
-				pose_of(pose, &rigid, state, &clip->camera, conf->still_pose_px, fmax(1e-4, r->n ? f.time - r->time[r->n - 1] : 1 / info.fps), moves);
-			r->time[r->n] = f.time;
-			r->lost_at[r->n] = lost;
-			store(r, state, pose, lost, points, clip);
-			r->n++;
-			background_push(background, &f, (const double(*)[4])pose);
-			if (!conf->limit)
-				stage_progress(stage, (int)r->n, (int)info.frames, "frames");
-		}
-		video_frame_free(&f);
+	struct chunks chunks = chunks_of(stage, clip, points, conf);
+	begin(&f, stage, clip, subject, points, conf);
+	if (!chunks_read(&chunks, &f)) {
+		end(&f);
+		track_result_free(r);
+		begin(&f, stage, clip, subject, points, conf);
 	}
-	background_end(background);
+	if (r->n)
+		stage_note(stage, "%s: goes on from frame %ld, where a run before this one was ended", clip->file, r->n);
+	f.background = background_new(f.eyes, r->film, r->folds);
+	bool ok = frames(&f, &chunks, video, &info, stage, clip, points, conf, err);
+	background_end(f.background);
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n) {
+		const long every = conf->every ? conf->every : 1;
 		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip, conf->stirs_mm);
 		if (!conf->limit)
 			track_together(r, points, clip, conf);
 	}
-	ok = ok && (r->n < 2 || track_eyes_finish(r, eyes, err));
-	track_eyes_free(eyes);
-	rigid_free(&rigid);
-	free(state);
-	skin_track_free(skin);
+	ok = ok && (r->n < 2 || track_eyes_finish(r, f.eyes, err));
+	end(&f);
 	video_close(video);
 	return ok;
 }

@@ -47,7 +47,7 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
                     const struct track_conf *conf)
 {
-	const struct eye_state *here = &r->eyes.state[clip->reference / conf->every][side];
+	const struct eye_state *here = &r->eyes.state[clip->reference / (conf->every ? conf->every : 1)][side];
 	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1];
 	const int points = conf->eyes.lid_points;  // of a frame without lids NAN
 	memcpy(rest, here->lid[point / points][point % points], 2 * sizeof *rest);
@@ -165,4 +165,59 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 	clip->pose_px = px;
 	clip->skin_mm = trust_skin_mm(r, clip);
 	clip->pose_refined = true;
+}
+
+/* What the clip alone tells of a centre: the estimate is drawn to the mesh's, which is told once more by the sights. */
+static void without_prior(struct eye_globe *g, const double told[3])
+{
+	for (int k = 0; k < 3; k++) {
+		const double kept = 1 - pow(g->center_sigma[k] / g->told_sigma, 2);
+		if (!(kept > 0.01))
+			continue;
+		g->center_in_head[k] = told[k] + (g->center_in_head[k] - told[k]) / kept;
+		g->center_sigma[k] /= sqrt(kept);
+	}
+}
+
+/* Weighs margins by how far they are off, at least least_px: where an eye's lids lie sideways is told by their slopes, in which errors that a whole lid has in common (lashes'
+ * shadows) cancel; those alike over a quarter of a lid are left. */
+static void weigh_alike(int n, struct head_sight *s, const struct track_clip *clip)
+{
+	enum { ALIKE = 4 };
+	const double least_px = 0.5;
+	double sum = 0;
+	for (int i = 0; i < n; i++) {
+		double px[2];
+		if (head_project(px, &clip->camera, clip->cam_from_head, s[i].head))
+			sum += pow(s[i].normal[0] * (px[0] - s[i].px[0]) + s[i].normal[1] * (px[1] - s[i].px[1]), 2) / n;
+	}
+	for (int i = 0; i < n; i++)
+		s[i].weight = 1 / (ALIKE * fmax(least_px * least_px, sum));
+}
+
+void reference_lens(struct track_clip *clip, const struct track_result *whole, const struct track_subject *s, const struct track_conf *conf)
+{
+	struct track_result r = *whole;
+	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
+	const int points = LIDS * conf->eyes.lid_points;
+	double rest[LIDS * LID_POINTS_MAX][2];
+	const bool earned = clip->moves.turned > 0;
+	const double turn = (earned ? conf->earned_deg : conf->head.turn_sigma) * M_PI / 180, yaw = (earned ? conf->earned_deg : conf->head.yaw_sigma) * M_PI / 180;
+	struct head_prior prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, INFINITY } };
+	clip->lens = (struct head_lens){ 0 };
+	if (s->assumed || !r.has_eyes || !r.misfit || clip->reference >= r.n || !r.eyes.globe[0].seen || !r.eyes.globe[1].seen)
+		return;
+	for (int e = 0; e < SIDES; e++)
+		without_prior(&r.eyes.globe[e], s->center[e]);
+	memcpy(prior.cam_from_head, clip->cam_from_head, sizeof prior.cam_from_head);
+	int n = centers(sights, &r, clip, s, conf);
+	const int first = n;
+	for (int e = 0; e < SIDES && n; e++) {
+		for (int i = 0; i < points; i++)
+			rest_of(rest[i], reference_usual_misfit(&r), &r, clip, s, e, i, conf);
+		n += margins(sights + n, points, rest, clip, s, e, (const double(*)[4])clip->cam_from_head);
+	}
+	weigh_alike(n - first, sights + first, clip);
+	if (n >= LEAST_MARGIN)
+		head_lens_fit(&clip->lens, (const double(*)[4])clip->cam_from_head, n, sights, &clip->camera, LAST_ROBUST, &prior);
 }

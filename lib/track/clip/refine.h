@@ -12,4 +12,8 @@
  * gaze from frames whose skin fits the rigid head. */
 void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *few, const struct track_subject *subject, const struct track_conf *conf);
 
+/* Sets clip->lens from the whole clip, followed under the lens told: from the centres that the eyes turned about, without what was told of them, and the lids at rest.
+ * Nothing is known of it without a mesh and both eyes. */
+void reference_lens(struct track_clip *clip, const struct track_result *result, const struct track_subject *subject, const struct track_conf *conf);
+
 #endif

@@ -114,6 +114,17 @@ double trust_odds(int evidence, double x, const struct track_conf *conf)
 	return log(((1 - odd) * right + odd * wrong) / (0.5 * (right + wrong)));
 }
 
+/* Probability that the focal length told is wrong (Bayes' rule): the share of perspective seen is normal about 1, and about as much as people mistake lenses for. No
+ * other evidence speaks for a lens: it is weighed by itself. One that nothing tells of is believed. */
+static double lens_of(const struct track_clip *clip, const struct track_conf *conf)
+{
+	if (clip->focal_assumed || !(clip->lens.sigma > 0))
+		return 0;
+	const double off = clip->lens.share - 1, prior = conf->wrong_lens_prior, own = hypot(clip->lens.sigma, conf->lens_share[0]), far = 30 * own;
+	const double as_told = (1 - prior) * normal(fmin(fabs(off), far), own), mistaken = prior * normal(fmin(fabs(off), far), hypot(own, conf->lens_share[1]));
+	return mistaken / (as_told + mistaken);
+}
+
 double trust_scale(const struct track_clip *clip, const struct track_subject *s)
 {
 	return head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening) * (clip->pose_refined ? 1 : 2);
@@ -146,5 +157,6 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
 		odds += t->log_odds[i] = trust_odds(i, t->value[i], conf);
 	t->far = far_of(r, conf->wrong_deg);
-	t->wrong = 1 - (1 - t->far) / (1 + exp(-odds));
+	t->lens = lens_of(clip, conf);
+	t->wrong = 1 - (1 - t->far) * (1 - t->lens) / (1 + exp(-odds));
 }

@@ -5,6 +5,7 @@
  * and the logarithms of the quotients add up with the prior's (Bayes' rule for independent evidence). No evidence decides alone what others contradict,
  * and one that is far off is not outvoted.
  * Of clips that one eye alone lays the mesh on, its centre not told, more are wrong before anything is known (wrong_prior_one).
+ * A lens that was told wrongly is followed as well as another, and no evidence but the perspective seen (head/lens.h) speaks of it: its probability joins at the end.
  * A clip that is followed rightly may still be off by more than wrong_deg, as its gaze's own standard deviations say.
  */
 #ifndef TRACK_CLIP_TRUST_H

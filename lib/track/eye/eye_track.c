@@ -116,16 +116,22 @@ void eye_track_head_was(struct eye_track *track, long frame, const double cam_fr
 			memcpy(track->side[side].record[frame].cam_from_head, cam_from_head, sizeof track->side[side].record[frame].cam_from_head);
 }
 
+void eye_track_pack(struct pack *pack, struct eye_track *track, long first)
+{
+	for (int side = 0; side < SIDES; side++)
+		eye_side_pack(pack, &track->side[side], first);
+}
+
 void eye_track_free(struct eye_track *track)
 {
 	if (!track)
 		return;
 	for (int side = 0; side < SIDES; side++) {
-		free(track->side[side].state);
-		free(track->side[side].record);
-		free(track->side[side].kept);
-		free(track->side[side].fine);
-		free(track->side[side].edge);
+		bulk_free(track->scene.bulk, track->side[side].state);
+		bulk_free(track->scene.bulk, track->side[side].record);
+		bulk_free(track->scene.bulk, track->side[side].kept);
+		bulk_free(track->scene.bulk, track->side[side].fine);
+		bulk_free(track->scene.bulk, track->side[side].edge);
 	}
 	free(track);
 }
@@ -138,11 +144,11 @@ static int earlier(const void *a, const void *b)
 
 bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err *err)
 {
-	*clip = (struct eye_clip){ .frames = (int)track->side[0].frames };
+	*clip = (struct eye_clip){ .frames = (int)track->side[0].frames, .bulk = track->scene.bulk };
 	for (int side = 0; side < SIDES; side++)
 		if (track->side[side].frames < clip->frames)
 			clip->frames = (int)track->side[side].frames;
-	clip->state = mem_new((size_t)clip->frames, sizeof *clip->state);
+	clip->state = bulk_new(clip->bulk, (size_t)clip->frames, sizeof *clip->state);
 	bool seen = false;
 	eye_pair_alike(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT], track->conf.alike_radius);
 	for (int side = 0; side < SIDES; side++)
@@ -169,7 +175,7 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 
 void eye_clip_free(struct eye_clip *clip)
 {
-	free(clip->state);
+	bulk_free(clip->bulk, clip->state);
 	free(clip->event);
 	*clip = (struct eye_clip){ 0 };
 }

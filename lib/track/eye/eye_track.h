@@ -14,6 +14,8 @@
 #include <stdint.h>
 
 #include "anatomy/eye.h"
+#include "base/bulk.h"
+#include "base/pack.h"
 #include "track/eye/eye_track_opts.h"
 
 enum { SIDE_LEFT, SIDE_RIGHT, SIDES };  // the person's
@@ -41,6 +43,7 @@ struct eye_scene {
 	bool head_known;            // cam_from_head is a pose in mm from a mesh; else motion of the image alone
 	struct eye_prior prior[SIDES];
 	double head_sigma[2];       // radians: common error of the head's poses, yaw and pitch; gaze is against the head
+	struct bulk *bulk;          // where what is kept of every frame lies; null: in memory. It outlives the track and its eye_clip
 };
 
 struct eye_frame {
@@ -75,6 +78,7 @@ struct eye_event {              // a blink or a saccade of one eye
 struct eye_globe {              // one eyeball, from the whole clip
 	bool seen;
 	double center_in_head[3], center_sigma[3], radius, limbus_radius;  // mm
+	double told_sigma;          // mm: of the centre told before, which that is drawn to
 	double rms_px;              // residual of the limbus edges
 	int frames;                 // with gaze
 };
@@ -84,6 +88,7 @@ struct eye_clip {
 	struct eye_state (*state)[SIDES];  // [frames]; owned
 	struct eye_event *event;    // in order of their first frame; owned
 	struct eye_globe globe[SIDES];
+	struct bulk *bulk;          // of the scene: state lies there
 };
 
 struct eye_track;
@@ -98,6 +103,10 @@ const struct eye_state *eye_track_push(struct eye_track *track, int side, const 
 /* Learns the appearance of the opening, its corners and the iris from a frame in which the eye is open, instead of from the
  * first frames of the clip. Before the first push of that eye. The frame is not part of the result. */
 void eye_track_learn(struct eye_track *track, int side, const struct eye_frame *frame);
+
+/* Its state after a push (base/pack.h), and what it keeps of the frames from `first` on. Read into a track made of the same scene, settings and learnt frame, which has
+ * the frames before. */
+void eye_track_pack(struct pack *pack, struct eye_track *track, long first);
 
 /* Replaces the head's pose in a frame already pushed, for the fit of eye_track_finish. */
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);

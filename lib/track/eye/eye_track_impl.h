@@ -46,7 +46,7 @@ struct eye_side {
 	struct eye_record *record; // [frames]
 	struct lid_kept *kept;     // [frames]
 	struct lid_fine *fine;     // [frames] the upper margin
-	long edges, edge_space;
+	long edges, edge_space, edges_packed;
 	struct gaze_edge *edge;
 };
 
@@ -73,6 +73,12 @@ void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_
 
 /* Measures one frame of one eye and appends the result. */
 void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);
+
+/* Makes room for so many frames, so many edges in all. */
+void eye_side_room(struct eye_side *eye, long frames, long edges);
+
+/* eye_track_pack() of one eye. Edges of the frames before first are there already, those since are new. pack.c */
+void eye_side_pack(struct pack *pack, struct eye_side *eye, long first);
 
 /* Learns the appearance of the eye from a frame without appending it. */
 void eye_side_learn(struct eye_side *eye, const struct eye_frame *frame);

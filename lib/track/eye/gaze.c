@@ -108,10 +108,7 @@ static void fill_torsion(struct eye_state *state, struct eye_side *eye, const st
 
 static void keep_edges(struct eye_side *eye, struct eye_record *record, int n, const struct gaze_edge edge[])
 {
-	if (eye->edges + n > eye->edge_space) {
-		eye->edge_space = 2 * (eye->edges + n) + 1000;
-		eye->edge = mem_grow(eye->edge, (size_t)eye->edge_space, sizeof *eye->edge);
-	}
+	eye_side_room(eye, 0, eye->edges + n);
 	record->first_edge = eye->edges;
 	record->edges = n;
 	memcpy(eye->edge + eye->edges, edge, (size_t)n * sizeof *edge);

@@ -51,7 +51,7 @@ static void from_fine(struct eye_state *state, const struct lid_fine_frame *f, d
  * strips locate their edge well enough.) */
 static void refine(struct eye_side *eye)
 {
-	struct lid_fine_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
+	struct lid_fine_frame *frame = bulk_grow(eye->scene->bulk, 0, (size_t)eye->frames + 1, sizeof *frame);
 	long *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = 0;
 	const double *iris = 0;
 	for (long i = 0; i < eye->frames; i++) {
@@ -66,7 +66,7 @@ static void refine(struct eye_side *eye)
 	lid_fine_settle(n, frame);
 	for (long i = 0; i < n; i++)
 		from_fine(&eye->state[index[i]], &frame[i], eye->conf->lid_wet);
-	free(frame);
+	bulk_free(eye->scene->bulk, frame);
 	free(index);
 }
 

@@ -80,14 +80,14 @@ static struct gaze_bundle_conf bundle_of(const struct eye_side *eye)
 
 bool eye_side_radius(double *radius, double *sigma, const struct eye_side *eye)
 {
-	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
+	struct gaze_frame *frame = bulk_grow(eye->scene->bulk, 0, (size_t)eye->frames + 1, sizeof *frame);
 	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
 	const struct gaze_bundle_conf conf = bundle_of(eye);
 	struct gaze_bundle_fit fit;
 	struct gaze_globe best = eye->first_globe;
 	bool ok = gaze_bundle_fit(&best, &fit, n, frame, &conf);
 	const double information = ok ? 1 / fit.cov[3][3] - 1 / (conf.radius_sigma * conf.radius_sigma) : 0;
-	free(frame);
+	bulk_free(eye->scene->bulk, frame);
 	free(index);
 	if (!(information > 0))
 		return false;
@@ -98,7 +98,7 @@ bool eye_side_radius(double *radius, double *sigma, const struct eye_side *eye)
 
 void eye_side_settle(struct eye_side *eye)
 {
-	struct gaze_frame *frame = mem_array((size_t)eye->frames + 1, sizeof *frame);
+	struct gaze_frame *frame = bulk_grow(eye->scene->bulk, 0, (size_t)eye->frames + 1, sizeof *frame);
 	int *index = mem_array((size_t)eye->frames + 1, sizeof *index), n = frames_of(frame, index, eye);
 	const struct gaze_bundle_conf conf = bundle_of(eye);
 	struct gaze_bundle_fit fit;
@@ -125,13 +125,13 @@ void eye_side_settle(struct eye_side *eye)
 	}
 	level_torsion(eye);
 	eye_settle_lids(eye);
-	free(frame);
+	bulk_free(eye->scene->bulk, frame);
 	free(index);
 }
 
 void eye_side_globe(struct eye_globe *globe, const struct eye_side *eye)
 {
-	*globe = (struct eye_globe){ .radius = eye->globe.radius, .limbus_radius = eye->globe.limbus, .rms_px = eye->rms };
+	*globe = (struct eye_globe){ .radius = eye->globe.radius, .limbus_radius = eye->globe.limbus, .rms_px = eye->rms, .told_sigma = eye->center_guess };
 	memcpy(globe->center_in_head, eye->globe.center, sizeof globe->center_in_head);
 	memcpy(globe->center_sigma, eye->center_sigma, sizeof globe->center_sigma);
 	for (long i = 0; i < eye->frames; i++)

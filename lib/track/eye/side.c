@@ -121,13 +121,7 @@ static void look(struct eye_state *state, struct eye_record *record, struct lid_
 
 static void append(struct eye_side *eye, const struct eye_state *state, const struct eye_record *record, const struct lid_fine *fine)
 {
-	if (eye->frames == eye->space) {
-		eye->space = 2 * eye->space + 256;
-		eye->state = mem_grow(eye->state, (size_t)eye->space, sizeof *eye->state);
-		eye->record = mem_grow(eye->record, (size_t)eye->space, sizeof *eye->record);
-		eye->kept = mem_grow(eye->kept, (size_t)eye->space, sizeof *eye->kept);
-		eye->fine = mem_grow(eye->fine, (size_t)eye->space, sizeof *eye->fine);
-	}
+	eye_side_room(eye, eye->frames + 1, 0);
 	eye->state[eye->frames] = *state;
 	lid_track_keep(&eye->kept[eye->frames], &eye->lids);
 	eye->fine[eye->frames] = *fine;

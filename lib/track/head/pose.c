@@ -202,6 +202,12 @@ bool head_pose_sigma(double turn[3], const double m[4][4], int n, const struct h
 	return true;
 }
 
+double head_pose_cost(const double m[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust, const struct head_prior *prior)
+{
+	double pivot[3], weight;
+	return middle(pivot, m, n, s) ? sum(0, 0, &weight, m, n, s, camera, robust, pivot) + expect(0, 0, m, prior, pivot) : 0;
+}
+
 double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
                      const struct head_prior *prior)
 {

@@ -28,6 +28,10 @@ struct head_sight {
 double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *sights, const struct camera *camera,
                      double robust, const struct head_prior *prior);
 
+/* What head_pose_fit() minimises: twice the negative logarithm of the pose's likelihood and prior, up to a constant. */
+double head_pose_cost(const double cam_from_head[4][4], int n, const struct head_sight *sights, const struct camera *camera, double robust,
+                      const struct head_prior *prior);
+
 /* Standard deviations of rotations about the camera's x, y, z (radians) of the pose that head_pose_fit() found with these arguments, as far as the
  * weights are true. Returns false, turn undefined, when the points do not determine a pose. */
 bool head_pose_sigma(double turn[3], const double cam_from_head[4][4], int n, const struct head_sight *sights, const struct camera *camera,

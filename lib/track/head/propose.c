@@ -8,6 +8,7 @@
 
 static const double sure = 0.4;                   // score of an iris
 static const double apart[2] = { 5, 16 };         // distance of the middles over the radius: 63 mm and 5.9 mm, turned by up to 55 degrees
+static const double beside_radii = 3;              // within so many radii an iris is the known one, whose corners and brows are told for irises, too
 static const double unlike = 0.8;                 // log of the ratio of the radii: dark irises are told to half their size
 
 static bool is_pair(const struct evidence_region *a, const struct evidence_region *b)
@@ -31,17 +32,48 @@ static double open_of(struct evidence_net *net, const struct photo *photo, const
 	return sum;
 }
 
-bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
+static struct photo photo_of(const uint8_t *rgb, int width, int height)
 {
 	struct photo photo = { .width = width, .height = height, .bits = 8 };
-	struct evidence_region region[EVIDENCE_REGIONS];
 	size_t values = 3 * (size_t)width * (size_t)height;
-	const struct evidence_region *left = 0, *right = 0;
-	double best = 0;
-	int n = 0;
 	photo.rgb = mem_array(values + 1, sizeof *photo.rgb);
 	for (size_t i = 0; i < values; i++)
 		photo.rgb[i] = (uint16_t)(257 * rgb[i]);
+	return photo;
+}
+
+bool head_propose_other(double other[2][2], const double known[2][2], double radius, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
+{
+	struct photo photo = photo_of(rgb, width, height);
+	struct evidence_region region[EVIDENCE_REGIONS];
+	int n = 0, beside[EVIDENCE_REGIONS], m = 0;
+	bool ok = evidence_find(region, &n, net, &photo, err), found = false;
+	free(photo.rgb);
+	for (int i = 0; ok && i < n; i++) {
+		const struct evidence_region *r = &region[i];
+		bool is_known = false;
+		for (int k = 0; k < 2; k++)
+			is_known = is_known || hypot(r->x - known[k][0], r->y - known[k][1]) < beside_radii * radius;
+		if (!is_known && r->score > sure && fabs(log(r->radius / radius)) < log(2))
+			beside[m++] = i;
+	}
+	for (int i = 0; i < m && !found; i++)
+		for (int k = i + 1; k < m && !found; k++) {
+			const struct evidence_region *a = &region[beside[i]], *b = &region[beside[k]];
+			found = fabs(log(a->radius / b->radius)) < unlike;
+			if (found)
+				memcpy(other, (double[2][2]){ { a->x, a->y }, { b->x, b->y } }, 4 * sizeof(double));
+		}
+	return found;
+}
+
+bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
+{
+	struct photo photo = photo_of(rgb, width, height);
+	struct evidence_region region[EVIDENCE_REGIONS];
+	const struct evidence_region *left = 0, *right = 0;
+	double best = 0;
+	int n = 0;
 	bool ok = evidence_find(region, &n, net, &photo, err);
 	for (int i = 0; ok && i < n; i++)
 		for (int k = i + 1; k < n; k++) {

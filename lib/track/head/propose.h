@@ -16,4 +16,8 @@ struct head_eyes {
  * Returns false, eyes unchanged, where there is none, or err is set. */
 bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err);
 
+/* Two irises beside one or two that are known (px; NAN: not known), sure, alike in size, and of half to twice the known ones' radius: another face, or a mirror
+ * image of this one. other: their middles, px. Returns false, other unchanged, where there are none, or err is set. */
+bool head_propose_other(double other[2][2], const double known[2][2], double radius, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err);
+
 #endif

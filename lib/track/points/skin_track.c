@@ -116,6 +116,17 @@ void skin_track_begin(struct skin_track *t, int m, const double (*at)[2], const 
 	t->has_last = false;
 }
 
+void skin_track_pack(struct pack *pack, struct skin_track *t)
+{
+	PACK(pack, t->has_last);
+	PACK(pack, t->was_still);
+	PACK(pack, t->gain);
+	pack_bytes(pack, t->point, (size_t)t->points.n * sizeof *t->point);
+	pack_bytes(pack, t->field, (size_t)t->points.n * sizeof *t->field);
+	scales_pack(pack, &t->frame);
+	scales_pack(pack, &t->last);
+}
+
 bool skin_track_was_still(const struct skin_track *t)
 {
 	return t->was_still;

@@ -6,6 +6,7 @@
 #ifndef TRACK_POINTS_SKIN_TRACK_H
 #define TRACK_POINTS_SKIN_TRACK_H
 #include "base/opt.h"
+#include "base/pack.h"
 #include "image/patch/patch.h"
 #include "track/points/points.h"
 
@@ -70,6 +71,9 @@ void skin_track_begin(struct skin_track *track, int m, const double (*at)[2], co
 
 /* True when the last push found the frame unchanged. */
 bool skin_track_was_still(const struct skin_track *track);
+
+/* Its state after a push (base/pack.h). Read into a track made with the same reference, points and settings. */
+void skin_track_pack(struct pack *pack, struct skin_track *track);
 
 /* Puts all points back to their places in the reference: after a cut, or to start from the reference in another direction. */
 void skin_track_restart(struct skin_track *track);

@@ -152,7 +152,7 @@ static void track(double gaze[2], double *lid, const struct camera *lens, bool t
 	static uint8_t rgb[PAINTED_H * PAINTED_W * 3], bent[PAINTED_H * PAINTED_W * 3], luma[PAINTED_H * PAINTED_W];
 	static double e[2][FILM], l[FILM * LIDS * LID_POINTS_MAX];
 	struct eye_scene scene = { PAINTED_W, PAINTED_H, 60, *lens, { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336,
-		.limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 }, true, { { .absent = false }, { .absent = true } }, { 0 } };
+		.limbus_radius = 5.85, .limbus_aspect = 1, .iris_depth = 3.3 }, true, { { .absent = false }, { .absent = true } }, { 0 }, 0 };
 	struct eye_prior *prior = &scene.prior[SIDE_LEFT];
 	struct painted_eye first = film(0);
 	double far = (PAINTED_FAR - 8) / PAINTED_FOCAL;

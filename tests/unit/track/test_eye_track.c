@@ -202,7 +202,7 @@ static struct painted_eye film(int i)
 static struct eye_scene painted_scene(double off)
 {
 	struct eye_scene scene = { PAINTED_W, PAINTED_H, 60, { .focal_px = PAINTED_FOCAL,
-		.center_px = { PAINTED_W / 2.0, PAINTED_H / 2.0 } }, usual_eye, true, { { .absent = false }, { .absent = true } }, { 0 } };
+		.center_px = { PAINTED_W / 2.0, PAINTED_H / 2.0 } }, usual_eye, true, { { .absent = false }, { .absent = true } }, { 0 }, 0 };
 	struct painted_eye eye = film(0);
 	struct eye_prior *prior = &scene.prior[SIDE_LEFT];
 	for (int k = 0; k < 3; k++) {

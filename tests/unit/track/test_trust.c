@@ -193,6 +193,38 @@ static void off_at_large_gazes(void **state)
 	track_result_free(&film.result);
 }
 
+/* A lens whose perspective is half of what it would be, to a tenth: weighed by itself, whatever else speaks for the clip; and the refusal names its key. */
+static void another_lens(void **state)
+{
+	(void)state;
+	struct film film;
+	struct err err = { 0 };
+	struct track_trust as_told, mistaken;
+	struct track_conf conf = keys();
+	conf.lens_share[0] = 1e-9;
+	conf.lens_share[1] = sqrt(0.99);
+	conf.wrong_lens_prior = 0.05;
+	conf.wrong_most = 0.2;
+	shoot(&film, 0, 0, 0);
+	track_trust(&as_told, &film.result, &film.clip, &film.subject, &conf);
+	assert_true(as_told.lens == 0);
+	film.clip.lens = (struct head_lens){ 1, 0.1 };
+	track_trust(&as_told, &film.result, &film.clip, &film.subject, &conf);
+	// N(0; 0.1) = 10 against N(0; 1) = 1
+	NEAR(as_told.lens, 0.05 / (0.05 + 9.5), 1e-9);
+	film.clip.lens.share = 0.5;
+	track_trust(&mistaken, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(mistaken.lens, 0.05 * exp(-0.125) / (0.05 * exp(-0.125) + 9.5 * exp(-12.5)), 1e-9);
+	NEAR(1 - mistaken.wrong, (1 - as_told.wrong) * (1 - mistaken.lens) / (1 - as_told.lens), 1e-9);
+	assert_false(track_agrees(&film.result, &film.clip, &film.subject, &conf, &err));
+	ERR_HAS(err, "camera.focal_px = 5000 is wrong with a probability of");
+	ERR_HAS(err, "as a lens of some 10000 px would");
+	film.clip.focal_assumed = true;
+	track_trust(&mistaken, &film.result, &film.clip, &film.subject, &conf);
+	assert_true(mistaken.lens == 0);
+	track_result_free(&film.result);
+}
+
 /* Nothing known: the prior. */
 static void nothing_seen(void **state)
 {
@@ -236,6 +268,7 @@ int main(void)
 		cmocka_unit_test(by_one_eye),
 		cmocka_unit_test(weighed_together),
 		cmocka_unit_test(off_by_degrees), cmocka_unit_test(off_at_large_gazes),
+		cmocka_unit_test(another_lens),
 		cmocka_unit_test(nothing_seen),
 		cmocka_unit_test(too_little_known),
 	};
