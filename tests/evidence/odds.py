@@ -3,6 +3,7 @@
 
     odds.py --out config/odds.onnx TRAITS.csv [...]
     odds.py TRAITS.csv [...]                             how they do on pictures held out, alone
+    odds.py --start config/odds.onnx --out ... TRAITS.csv [...]    goes on from a network: first its own figures on them, which it has not seen
 
 Input: 1 x 30 x 1 x 1, the traits. Output: 1 x 9 x 1 x 1: the logarithm of the odds that centre and semi-axes are all off by less than
 TOLERANCES[0] of the semi-axis, then the logarithms (softplus) of what each further tolerance adds to them. Cross entropy of all tolerances
@@ -21,7 +22,7 @@ from torch.nn import functional as F
 sys.dont_write_bytecode = True
 import weights
 
-UNITS, NETS, RARE, DECAY, EPOCHS, BATCH, RATE, FOLDS = 24, 4, 6, 4.0, 14, 512, 0.01, 4
+UNITS, NETS, RARE, DECAY, EPOCHS, BATCH, RATE, AGAIN, FOLDS = 24, 4, 6, 4.0, 14, 512, 0.01, 0.002, 4
 TOLERANCES = (0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1)
 TRAITS, FAR = 30, 4.0   # spreads: farther off than that is as far
 
@@ -79,13 +80,24 @@ def planes(x):
     return torch.tensor(x, dtype=torch.float32)[:, :, None, None]
 
 
-def train(x, error, w, seed):
+def read_back(net, path):
+    """Sets a network to a file's weights: all of its convolutions, in the order of the graph."""
+    layers = [m for m in net.modules() if isinstance(m, nn.Conv2d)]
+    for layer, (weight, bias) in zip(layers, weights.convolutions(path), strict=True):
+        layer.weight.data.copy_(weight)
+        layer.bias.data.copy_(bias)
+
+
+def train(x, error, w, seed, start=None):
     torch.manual_seed(seed)
     net, n = Net(x), len(x)
+    if start:
+        read_back(net, start)
     z, y, w = planes(x), torch.tensor(error[:, None] < np.array(TOLERANCES), dtype=torch.float32), torch.tensor(w, dtype=torch.float32)
-    steps = EPOCHS * n // BATCH + 1000
-    adam = torch.optim.Adam([p for p in net.parameters() if p.requires_grad], lr=RATE)
-    pace = torch.optim.lr_scheduler.OneCycleLR(adam, RATE, total_steps=steps)
+    steps = EPOCHS * n // BATCH + (0 if start else 1000)
+    rate = AGAIN if start else RATE
+    adam = torch.optim.Adam([p for p in net.parameters() if p.requires_grad], lr=rate)
+    pace = torch.optim.lr_scheduler.OneCycleLR(adam, rate, total_steps=steps)
     for _ in range(steps):
         some = torch.randint(n, (BATCH,))
         adam.zero_grad()
@@ -98,15 +110,22 @@ def train(x, error, w, seed):
     return net.eval()
 
 
-def held_out(x, error, key, w):
+def odds_by(net, x):
+    with torch.no_grad():
+        return curve(net(planes(x))[:, :, 0, 0]).numpy()
+
+
+def held_out(x, error, key, w, start):
     pictures = sorted(set(key))
     fold = {k: i for k, i in zip(pictures, np.random.RandomState(0).randint(FOLDS, size=len(pictures)))}
     at = np.array([fold[k] for k in key])
     odds = np.zeros((len(x), len(TOLERANCES)))
     for f in range(FOLDS):
-        net = train(x[at != f], error[at != f], w[at != f], f)
-        with torch.no_grad():
-            odds[at == f] = curve(net(planes(x[at == f]))[:, :, 0, 0]).numpy()
+        odds[at == f] = odds_by(train(x[at != f], error[at != f], w[at != f], f, start), x[at == f])
+    figures(odds, error, key)
+
+
+def figures(odds, error, key):
     right = error[:, None] < np.array(TOLERANCES)
     print('cross entropy of trials held out: %.4f' % np.log1p(np.exp(-np.where(right, odds, -odds))).mean())
     for t, tolerance in enumerate(TOLERANCES):
@@ -125,10 +144,15 @@ def held_out(x, error, key, w):
 
 
 parser = argparse.ArgumentParser()
+parser.add_argument('--start')
 parser.add_argument('--out')
 parser.add_argument('traits', nargs='+')
 args = parser.parse_args()
 x, error, key, w = read(args.traits)
-held_out(x, error, key, w)
+if args.start:
+    net = Net(x).eval()
+    read_back(net, args.start)
+    figures(odds_by(net, x), error, key)
+held_out(x, error, key, w, args.start)
 if args.out:
-    weights.export(train(x, error, w, 0), args.out, 1, 1, planes=TRAITS)
+    weights.export(train(x, error, w, 0, args.start), args.out, 1, 1, planes=TRAITS)

@@ -4,6 +4,7 @@ writes it as ONNX.
 
     strip.py --make build/tests/evidence/make_strips --minutes 40 --out config/strip.onnx
     strip.py --make build/tests/evidence/make_strips --short         a minute: the loss falls, asserted
+    strip.py --make build/tests/evidence/make_strips --start config/strip.onnx --minutes 0      figures alone
 
 Input: 1 x 8 x 64 x 160: planes, rows, rays; the first and last 16 rays are repeated beyond each other. Red, green and blue without their
 means, over the standard deviation of their mean. Output: 1 x 1 x 65 x 160, logits of the row in which a ray crosses the limbus, be it seen or
@@ -23,6 +24,7 @@ from torch import nn
 from torch.nn import functional as F
 
 sys.dont_write_bytecode = True
+import strip_ellipse
 import weights
 
 PLANES, ROWS, RAYS, WRAP = 8, 64, 128, 16
@@ -31,6 +33,7 @@ BYTES = PLANES * ROWS * RAYS + 5 * RAYS
 CHANNELS = (16, 24, 40, 56)
 SPREAD = 0.8   # rows: of the truth
 KEPT = 24000   # strips in memory
+HELD, STARTS, NEAR = 900000000, 8, slice(2, 6)   # photographs that are never learnt from; strips of each, those near a limbus
 
 
 def step(i, o, stride=1):
@@ -139,42 +142,51 @@ def even(x):
     return torch.cat([x[..., -WRAP:], x, x[..., :WRAP]], 3)
 
 
-def loss_of(out, hot, seen):
-    """Cross entropy of rows, half of it where the limbus is hidden, and of being seen."""
+def losses_of(out, crossing, hot, seen):
+    """Of a batch: cross entropy of rows, half of it where the limbus is hidden, and of being seen; that of the ellipse that follows."""
     out = out[:, 0, :, WRAP:-WRAP]
     rows = -(F.log_softmax(out[:, :ROWS], 1) * hot).sum(1)
-    return (rows * (0.5 + 0.5 * seen)).mean() + F.binary_cross_entropy_with_logits(out[:, ROWS], seen)
+    rays = (rows * (0.5 + 0.5 * seen)).mean() + F.binary_cross_entropy_with_logits(out[:, ROWS], seen)
+    truth = (crossing - FROM) / STEP - 0.5
+    return rays, strip_ellipse.loss(out[:, :ROWS].softmax(1), out[:, ROWS].sigmoid().detach(), truth, seen)
 
 
-def judge(net, strips, batches, batch):
-    """How far the mean of the likeliest rows is off, where the limbus is seen and where it is hidden; of what is said to be seen, how much is."""
+def judge(net, held, batch=32):
+    """How far the mean of the likeliest rows is off, where the limbus is seen and where it is hidden; of what is said to be seen, how much is;
+    how far off the ellipse is."""
     net.eval()
-    off, z, told, seen, loss = [[], []], [[], []], [], [], 0
+    off, z, told, seen, loss, ellipse = [[], []], [[], []], [], [], [0, 0], []
+    count = len(held[0]) // batch
     with torch.no_grad():
-        for _ in range(batches):
-            x, crossing, shown = strips.fresh_only(batch)
+        for k in range(count):
+            x, crossing, shown = (v[k * batch:(k + 1) * batch] for v in held)
             out = net(even(x.float() / 255))
             hot, s = target(crossing, shown)
-            loss += float(loss_of(out, hot, s)) / batches
+            for i, v in enumerate(losses_of(out, crossing, hot, s)):
+                loss[i] += float(v) / count
             out = out[:, 0, :, WRAP:-WRAP]
             p, t = out[:, :ROWS].softmax(1), out[:, ROWS].sigmoid()
+            truth = (crossing - FROM) / STEP - 0.5
+            ellipse.append(np.where(s.mean(1) > 0.25, strip_ellipse.errors(p, t, truth, STEP), math.nan))
             at = torch.arange(ROWS)[None, :, None]
-            for k, (near, where) in enumerate(((4, (t > 0.5) & (s > 0.5)), (ROWS, (s < 0.5) & (hot.sum(1) > 0.5)))):
+            for i, (near, where) in enumerate(((4, (t > 0.5) & (s > 0.5)), (ROWS, (s < 0.5) & (hot.sum(1) > 0.5)))):
                 some = p * ((at - p.argmax(1, keepdim=True)).abs() <= near)
                 mean = (some * at).sum(1) / some.sum(1)
                 var = (some * (at - mean[:, None]) ** 2).sum(1) / some.sum(1)
-                d = mean - ((crossing - FROM) / STEP - 0.5)
-                off[k].append(d[where])
-                z[k].append((d / (var + 0.01).sqrt())[where])
+                d = mean - truth
+                off[i].append(d[where])
+                z[i].append((d / (var + 0.01).sqrt())[where])
             told.append(t.flatten())
             seen.append(s.flatten())
     net.train()
     told, seen = torch.cat(told).numpy(), torch.cat(seen).numpy()
-    print("  loss %.3f; seen %.3f, told %.3f, of these seen %.3f, of seen told %.3f"
-          % (loss, seen.mean(), (told > 0.5).mean(), seen[told > 0.5].mean(), (told > 0.5)[seen > 0.5].mean()))
+    print("  loss %.3f, ellipse %.3f; seen %.3f, told %.3f, of these seen %.3f, of seen told %.3f"
+          % (*loss, seen.mean(), (told > 0.5).mean(), seen[told > 0.5].mean(), (told > 0.5)[seen > 0.5].mean()))
     for name, o, v in zip(("seen", "hidden"), off, z):
         o, v = torch.cat(o).abs().numpy() * STEP * 100, torch.cat(v).abs().numpy()
-        print("  %s: off %.2f %% of the axis, 90 %% %.2f; of sigma %.2f, %.2f" % (name, *np.quantile(o, (0.5, 0.9)), *np.quantile(v, (0.5, 0.9))), flush=True)
+        print("  %s: off %.2f %% of the axis, 90 %% %.2f; of sigma %.2f, %.2f" % (name, *np.quantile(o, (0.5, 0.9)), *np.quantile(v, (0.5, 0.9))))
+    ellipse = np.concatenate(ellipse).reshape(-1, STARTS)
+    strip_ellipse.tell("read near a limbus", ellipse[:, NEAR])
 
 
 def load(net, args):
@@ -185,6 +197,13 @@ def load(net, args):
     strips = Strips(args.make, 800000000, 24)
     weights.read(net, args.start, [even(strips.fresh_only(24)[0].float() / 255) for _ in range(20)])
     strips.close()
+
+
+def held_out(args):
+    strips = Strips(args.make, HELD, STARTS)
+    held = strips.fresh_only(STARTS * args.held)
+    strips.close()
+    return held
 
 
 def main():
@@ -199,6 +218,8 @@ def main():
     p.add_argument("--first", type=int, default=1000000)
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--threads", type=int, default=1)
+    p.add_argument("--ellipse", type=float, default=0, help="weight of the ellipse's loss beside that of the rays: 0.15 counts about as much")
+    p.add_argument("--held", type=int, default=96, help="photographs to judge on")
     p.add_argument("--half", action="store_true", help="multiply in bfloat16: half as long again where the processor has it")
     p.add_argument("--short", action="store_true")
     args = p.parse_args()
@@ -214,8 +235,11 @@ def main():
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
     if args.short:
         args.batch = 8
+    held = None if args.short else held_out(args)
+    if held:
+        judge(net, held)
     strips = Strips(args.make, args.first, args.batch, kept=96 if args.short else KEPT)
-    begun, losses, last = time.time(), [], time.time()
+    begun, losses, ellipse, last = time.time(), [], [], time.time()
     while True:
         done = (time.time() - begun) / max(60 * args.minutes, 1e-9) if not args.short else len(losses) / 60
         if done >= 1:
@@ -226,39 +250,42 @@ def main():
         x, (hot, seen) = jitter(x.float() / 255, rng), target(crossing, shown)
         if torch.rand(1, generator=rng) < 0.5:  # mirrored left to right: phi becomes pi - phi
             order = (RAYS // 2 - torch.arange(RAYS)) % RAYS
-            x, hot, seen = x[..., order], hot[..., order], seen[..., order]
+            x, crossing, hot, seen = x[..., order], crossing[..., order], hot[..., order], seen[..., order]
         if torch.rand(1, generator=rng) < 0.25:
             by = int(torch.randint(RAYS, (1,), generator=rng))
-            x, hot, seen = x.roll(by, 3), hot.roll(by, 2), seen.roll(by, 1)
+            x, crossing, hot, seen = x.roll(by, 3), crossing.roll(by, 1), hot.roll(by, 2), seen.roll(by, 1)
         with torch.cpu.amp.autocast(dtype=torch.bfloat16, enabled=args.half):
             out = net(even(x).to(memory_format=torch.channels_last))
-        loss = loss_of(out.float(), hot, seen)
+        loss, follows = losses_of(out.float(), crossing, hot, seen)
         optimiser.zero_grad()
-        loss.backward()
+        (loss + args.ellipse * follows if args.ellipse else loss).backward()
         nn.utils.clip_grad_norm_(net.parameters(), 2)
         optimiser.step()
         losses.append(float(loss.detach()))
+        ellipse.append(float(follows.detach()))
         keep = min(0.998, len(losses) / (len(losses) + 10))
         with torch.no_grad():
             for a, b in zip(mean.values(), net.state_dict().values()):
                 a.mul_(keep).add_(b, alpha=1 - keep) if a.dtype.is_floating_point else a.copy_(b)
         if len(losses) % 100 == 0:
-            print("%5.1f min, step %d, of %d strips, loss %.4f" % ((time.time() - begun) / 60, len(losses), strips.seen, np.mean(losses[-100:])), flush=True)
+            print("%5.1f min, step %d, of %d strips, loss %.4f, ellipse %.3f"
+                  % ((time.time() - begun) / 60, len(losses), strips.seen, np.mean(losses[-100:]), np.mean(ellipse[-100:])), flush=True)
         if args.keep and time.time() - last > 180:
             last = time.time()
             torch.save(mean, args.keep)
             other = Net()
             other.load_state_dict(mean)
-            judge(other, strips, 8, 32)
+            judge(other, held)
     if args.short:
         first, end = np.mean(losses[:10]), np.mean(losses[-20:])
         print("loss %.3f, at the end %.3f" % (first, end))
         strips.close()
         assert end < 0.9 * first, "the loss does not fall"
         return
-    net.load_state_dict(mean)
-    judge(net, strips, 16, 32)
     strips.close()
+    net.load_state_dict(mean)
+    if losses:
+        judge(net, held)
     if args.keep:
         torch.save(mean, args.keep)
     if args.out:

@@ -4,6 +4,8 @@
  *     limbus_traits OUT.csv drawn FIRST COUNT     drawn eyes of the training split; one in five is none
  *     limbus_traits OUT.csv synthetic STEP        every STEP-th of the grid of tests/lib/scenes/synth_eye.h
  *     limbus_traits OUT.csv captures              the rendered captures with truth
+ *     limbus_traits OUT.csv strip FIRST COUNT     of drawn eyes of which a quarter of the limbus shows, the strip's ellipse alone: number, share that
+ *                                                 shows, semi-axis px, roughness, errors of the strip's ellipse and of its trial, of the strip's b
  *
  * Columns: kind, number, guide, error over the semi-axis, the same where the limbus is seen alone (9: there is no eye), traits.
  */
@@ -99,18 +101,80 @@ static struct seen seen_of(const struct drawn *d, const float l[5])
 	return s;
 }
 
+static struct photo photo_of(const struct drawn *d)
+{
+	struct photo photo = { .width = d->width, .height = d->height, .bits = 8, .rgb = mem_array((size_t)d->width * (size_t)d->height * 3, sizeof *photo.rgb) };
+	for (long i = 0; i < 3L * d->width * d->height; i++)
+		photo.rgb[i] = (uint16_t)(d->rgb[i] * 257);
+	return photo;
+}
+
+/* The eyes of which something shows; returns how many. */
+static int eyes_of(struct seen truth[2], const struct drawn *d)
+{
+	int n = 0;
+	for (int e = 0; e < d->n_eyes; e++)
+		if (d->eye[e].shown > 0.02F)
+			truth[n++] = seen_of(d, d->eye[e].limbus);
+	return n;
+}
+
+static double share_of(const struct seen *s)
+{
+	int n = 0;
+	for (int i = 0; i < PLACES; i++)
+		n += s->at[i];
+	return (double)n / PLACES;
+}
+
+/* Read from a start some hundredths of the semi-axis off. */
+static void read_one(FILE *csv, long number, const struct photo *photo, const struct seen *truth, double rough)
+{
+	const struct ellipse *limbus = &truth->limbus;
+	struct err err = { 0 };
+	struct pyramid pyramid = pyramid_make(photo);
+	struct trials *t = trials_new(photo, &pyramid, &limbus_defaults);
+	double told = NO_EYE, trial = NO_EYE, b = NO_EYE;
+	if (!trials_of_place(t, limbus->cx + 0.04 * limbus->a, limbus->cy - 0.03 * limbus->a, 1.05 * limbus->a, &err)) {
+		fprintf(stderr, "%s\n", err.msg);
+		exit(1);
+	}
+	for (int k = 0; k < t->n_windows; k++) {
+		struct ellipse e;
+		if (t->window[k].seen.px && ellipse_from_q(&e, t->window[k].told.q) && apart(&e, limbus) < told) {
+			told = apart(&e, limbus);
+			b = (e.b - limbus->b) / limbus->a;
+		}
+	}
+	for (int k = 0; k < t->n; k++)
+		if (t->trial[k].guide == GUIDE_STRIP)
+			trial = fmin(trial, apart(&t->trial[k].e, limbus));
+	fprintf(csv, "%ld,%.3f,%.0f,%.2f,%.5f,%.5f,%.5f\n", number, share_of(truth), limbus->a, rough, told, trial, b);
+	trials_free(t);
+	pyramid_free(&pyramid);
+}
+
+static void strip(FILE *csv, long number)
+{
+	struct drawn_view view;
+	struct drawn d = drawn_lesson((uint64_t)number, 260, &view);
+	struct photo photo = photo_of(&d);
+	struct seen truth[2];
+	const int n = view.other ? 0 : eyes_of(truth, &d);
+	for (int k = 0; k < n; k++)
+		if (share_of(&truth[k]) > 0.25 && hypot(truth[k].limbus.cx - view.x, truth[k].limbus.cy - view.y) < view.radius)
+			read_one(csv, number, &photo, &truth[k], view.rough);
+	free(photo.rgb);
+	drawn_free(&d);
+}
+
 static void drawn(FILE *csv, long number)
 {
 	struct drawn_view view;
 	struct drawn d = drawn_lesson((uint64_t)number, 260, &view);
-	struct photo photo = { .width = d.width, .height = d.height, .bits = 8, .rgb = mem_array((size_t)d.width * (size_t)d.height * 3, sizeof *photo.rgb) };
+	struct photo photo = photo_of(&d);
 	struct seen truth[2];
-	int n = 0;
-	for (long i = 0; i < 3L * d.width * d.height; i++)
-		photo.rgb[i] = (uint16_t)(d.rgb[i] * 257);
-	for (int e = 0; e < d.n_eyes; e++)
-		if (d.eye[e].shown > 0.02F)
-			truth[n++] = seen_of(&d, d.eye[e].limbus);
+	const int n = eyes_of(truth, &d);
 	note(csv, view.other ? "other" : "drawn", number, &photo, n, truth);
 	free(photo.rgb);
 	drawn_free(&d);
@@ -142,12 +206,12 @@ int main(int argc, char **argv)
 {
 	FILE *csv = argc > 2 ? fopen(argv[1], "w") : 0;
 	if (!csv) {
-		fprintf(stderr, "limbus_traits OUT.csv drawn FIRST COUNT | synthetic STEP | captures\n");
+		fprintf(stderr, "limbus_traits OUT.csv drawn FIRST COUNT | synthetic STEP | captures | strip FIRST COUNT\n");
 		return 2;
 	}
-	if (!strcmp(argv[2], "drawn") && argc > 4) {
+	if ((!strcmp(argv[2], "drawn") || !strcmp(argv[2], "strip")) && argc > 4) {
 		for (long i = 0; i < atol(argv[4]); i++)
-			drawn(csv, atol(argv[3]) + i);
+			(*argv[2] == 'd' ? drawn : strip)(csv, atol(argv[3]) + i);
 	} else if (!strcmp(argv[2], "synthetic") && argc > 3) {
 		for (int i = 0; i < SYNTH_GRID; i += atoi(argv[3]))
 			synthetic(csv, i);
