@@ -230,12 +230,34 @@ static void test_effective(void **state)
 	assert_true(worst < 0.12 && sum < 0.025);
 }
 
+/* Layers that a memo holds give the same bits as those made anew: layers changed one at a time, a memo that is full, one cut back. */
+static void test_memo(void **state)
+{
+	static struct tissue_memo memo;
+	struct tissue_bands bands;
+	struct tissue tissue = random_tissue(true);
+	(void)state;
+	memo.n = 0;
+	tissue_bands_make(&bands, 4, ILLUMINANT_D65);
+	for (int t = 0; t < 60; t++) {
+		struct tissue_optics anew = { 0 }, again = { 0 };
+		struct tissue other = random_tissue(true);
+		tissue.layer[t % TISSUE_LAYERS] = other.layer[t % TISSUE_LAYERS];
+		memo.n = t == 45 ? 8 : memo.n;
+		int before = memo.n;
+		tissue_optics_make(&anew, &tissue, &bands);
+		tissue_optics_make_again(&again, &tissue, &bands, &memo);
+		assert_memory_equal(&anew, &again, sizeof anew);
+		assert_true(memo.n == (t ? before + 4 : 8) || memo.n == TISSUE_MEMO_MAX || t == 45);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_coefficients), cmocka_unit_test(test_one_layer), cmocka_unit_test(test_all_orders_semi_infinite),
 		cmocka_unit_test(test_energy), cmocka_unit_test(test_against_monte_carlo), cmocka_unit_test(test_forward), cmocka_unit_test(test_bands),
-		cmocka_unit_test(test_effective), cmocka_unit_test(test_spread),
+		cmocka_unit_test(test_effective), cmocka_unit_test(test_spread), cmocka_unit_test(test_memo),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
