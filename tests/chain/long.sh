@@ -39,6 +39,9 @@ goes_on() {
 	[ "$2" -gt 0 ] || same "$1: from the start" "${from:-0}" 0
 	same "$1: the same bytes" "$(bytes_of "$root/$1")" "$want"
 	same "$1: no chunk is left" "$(parts "$1")" 0
+	from=$(stat -c %y "$root/$1/work/skin/gaze.csv")
+	"$BIN/track" --quiet --capture="$root/$1"
+	same "$1: and then nothing is made again" "$(stat -c %y "$root/$1/work/skin/gaze.csv")" "$from"
 }
 
 capture calm
