@@ -41,6 +41,20 @@ run_make "$draft"
 check "a draft exports where it is asked to" test ! -e "$draft/work/export"
 run_make "$draft" export
 check "and then does" test -s "$draft/work/export/eye.glb"
+face="$root/face"
+"${B:-build}/tests/tools/made_face" "$face"
+"$BIN/extrapolate" --capture="$face" --quiet >"$log" 2>&1
+mkdir "$face/photos"
+cp "$PHOTO" "$face/photos"
+grep -v '^quality' samples/demo/capture.conf >>"$face/capture.conf"
+run_make "$face" export
+if command -v node >/dev/null; then
+	same "with a character, its lashes and tears stand round the eye" "$(node -e 'const d = require("fs").readFileSync(process.argv[1]), j = JSON.parse(d.subarray(20, 20 + d.readUInt32LE(12)));
+		console.log(String(j.meshes.map(m => m.name)))' "$face/work/export/eye.glb")" "iris,pupil_back,sclera,cornea,lashes,tears"
+else
+	skip "lashes and tears round an eye" "node is not installed"
+fi
+check "and eye.json says so" grep -q '"meniscus": true' "$face/work/export/eye.json"
 run_make "$root/none" export
 check "no capture, no export" test ! -e "$root/none/work/export"
 
