@@ -88,7 +88,7 @@ static double one_sigma(const double curve[ODDS_CURVE])
 	return odds_tolerance[ODDS_CURVE - 1];
 }
 
-double odds_wider(const double x[ODDS_TRAITS], const double curve[ODDS_CURVE])
+double odds_wider(double sigma, const double curve[ODDS_CURVE])
 {
-	return fmax(1, one_sigma(curve) / exp(x[ODDS_SIGMA]));
+	return fmax(1, one_sigma(curve) / sigma);
 }

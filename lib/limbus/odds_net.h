@@ -12,9 +12,9 @@ extern const double odds_tolerance[ODDS_CURVE];
 /* The same for any tolerance, semi-axes; beyond the first and the last as there. */
 double odds_log(const double curve[ODDS_CURVE], double tolerance);
 
-/* How many times as wide as its own sigma says an ellipse's error is, at least 1: the largest part of the error, which as a rule is one alone, the
+/* How many times as wide as its own sigma (odds_sigma, above 0) says an ellipse's error is, at least 1: the largest part of the error, which as a rule is one alone, the
  * height that lids hide, is below its sigma in 68 % of all cases. */
-double odds_wider(const double x[ODDS_TRAITS], const double curve[ODDS_CURVE]);
+double odds_wider(double sigma, const double curve[ODDS_CURVE]);
 
 struct odds_net;
 

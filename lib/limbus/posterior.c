@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+static const double LEAST_SIGMA = 1e-6;  // semi-axes
+
 double trial_apart(const struct ellipse *e, const struct ellipse *f)
 {
 	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
@@ -89,7 +91,8 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 	double chance[TRIALS], q[ELLIPSE_N], other[ELLIPSE_N];
 	chances(chance, t, p->best);
 	ellipse_to_q(q, &rim->e);
-	const double wider = odds_wider(t->trial[p->best].x, t->trial[p->best].curve);
+	// The odds are of the rough measure. The full one's own sigma is less, but it knows no more of what lids hide or where the limbus is ragged.
+	const double wider = odds_wider(fmax(odds_sigma(rim), LEAST_SIGMA), t->trial[p->best].curve);
 	for (int a = 0; a < ELLIPSE_N; a++)
 		for (int b = 0; b < ELLIPSE_N; b++)
 			rim->cov_q[a][b] *= wider * wider;
