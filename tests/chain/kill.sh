@@ -125,7 +125,7 @@ trouble() {
 			status=$?
 			if [ "$(calls)" -gt "$at" ]; then
 				! grep -vE '^calibrate: colmap ' "$log" | grep -qE 'Segmentation|Aborted|core dumped|terminate called|stack smashing' || fail "$column, $kind at call $at: it dies" "$(tail -n 3 "$log")"
-				says=$(grep -cE '^[a-z]+: ' "$log")
+				says=$(grep -cE '^[a-z]+(\[[0-9]+\])?: ' "$log")
 				[ "$status" = 0 ] || [ "$says" -gt 0 ] || fail "$column, $kind at call $at: a line says so" "$(tail -n 3 "$log")"
 			else
 				kind= # the make was through before
