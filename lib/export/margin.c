@@ -40,7 +40,6 @@ void export_margin(struct export_part margin[EXPORT_MARGIN_PARTS], const struct 
                    double tear_mm, double over_mm)
 {
 	struct hairs own = { .local = hairs->local, .n_points = hairs->n_points };
-	double turn[2][3][3];
 	own.hair = mem_new((size_t)hairs->n + 1, sizeof *own.hair);
 	own.rim = mem_new((size_t)hairs->n_rims + 1, sizeof *own.rim);
 	for (int i = 0; i < hairs->n; i++)
@@ -49,14 +48,12 @@ void export_margin(struct export_part margin[EXPORT_MARGIN_PARTS], const struct 
 	for (int i = 0; i < hairs->n_rims && tear_mm > 0; i++)
 		if (hairs->rim[i].side == side)
 			own.rim[own.n_rims++] = hairs->rim[i];
-	for (int s = 0; s < 2; s++)
-		rig_globe_rotation(turn[s], rig, (double[3]){ 0 });
 	struct export_part *lashes = &margin[EXPORT_LASHES], *tears = &margin[EXPORT_TEARS];
 	*lashes = room(strands_count(&own), 3 * (size_t)strands_most_faces(&own));
 	*tears = room(tears_count(&own), 6 * (size_t)tears_count(&own));
 	strands_place(lashes->x, lashes->normal, &own, rig, (const float(*)[3])rig->rest);
 	lashes->n_corners = 3 * strands_faces((uint32_t(*)[3])lashes->corner, &own, 0, own.n);
-	tears_place(tears->x, tears->normal, &own, rig, (const float(*)[3])rig->rest, (const double(*)[3][3])turn, tear_mm, over_mm);
+	tears_rest(tears->x, tears->normal, &own, rig, tear_mm, over_mm);
 	tears->n_corners = 3 * tears_faces((uint32_t(*)[3])tears->corner, &own, 0);
 	for (int k = 0; k < EXPORT_MARGIN_PARTS; k++)
 		to_part(&margin[k], eye, rig, side);

@@ -79,6 +79,14 @@ void tears_place(float (*out)[3], float (*normal)[3], const struct hairs *hairs,
 	}
 }
 
+void tears_rest(float (*out)[3], float (*normal)[3], const struct hairs *hairs, const struct rig *rig, double height, double over)
+{
+	double turn[2][3][3];
+	for (int s = 0; s < 2; s++)
+		rig_globe_rotation(turn[s], rig, (double[3]){ 0 });
+	tears_place(out, normal, hairs, rig, (const float(*)[3])rig->rest, (const double(*)[3][3])turn, height, over);
+}
+
 int tears_faces(uint32_t (*face)[3], const struct hairs *hairs, uint32_t first)
 {
 	int n = 0;
@@ -116,10 +124,7 @@ void tears_put(struct glb_skin *skin, struct glb_buffer *g, const struct rig *ri
 		return;
 	float (*x)[3] = mem_array((size_t)n, sizeof *x), (*normal)[3] = mem_array((size_t)n, sizeof *normal);
 	uint32_t (*face)[3] = mem_new(2 * (size_t)n + 1, sizeof *face);
-	double turn[2][3][3];
-	for (int s = 0; s < 2; s++)
-		rig_globe_rotation(turn[s], rig, (double[3]){ 0 });
-	tears_place(x, normal, conf->hairs, rig, (const float(*)[3])rig->rest, (const double(*)[3][3])turn, conf->tear_mm, conf->over_mm);
+	tears_rest(x, normal, conf->hairs, rig, conf->tear_mm, conf->over_mm);
 	json_array_append_new(skin->materials, tears_material());
 	name_once(used, "KHR_materials_ior");
 	name_once(used, "KHR_materials_transmission");

@@ -14,6 +14,8 @@ int tears_count(const struct hairs *hairs);
  * over    mm that the eyeball drawn stands over the rig's globe */
 void tears_place(float (*out)[3], float (*normal)[3], const struct hairs *hairs, const struct rig *rig, const float (*x)[3],
                  const double target_from_globe[2][3][3], double height, double over);
+/* The same at rest, both globes looking ahead. */
+void tears_rest(float (*out)[3], float (*normal)[3], const struct hairs *hairs, const struct rig *rig, double height, double over);
 
 /* Its triangles, face[2 tears_count()][3], looking outwards; returns how many. first: the number of its first vertex. */
 int tears_faces(uint32_t (*face)[3], const struct hairs *hairs, uint32_t first);

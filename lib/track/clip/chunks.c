@@ -27,6 +27,11 @@ static bool anchor_of(long long out[4], struct stage *stage)
 	return ok;
 }
 
+bool chunks_wanted(const struct track_clip *clip, const struct track_conf *conf)
+{
+	return !conf->limit && conf->chunk && clip->info.frames > conf->chunk;
+}
+
 struct chunks chunks_of(struct stage *stage, const struct track_clip *clip, const struct track_points *points, const struct track_conf *conf)
 {
 	struct chunks c = { .stage = stage };
@@ -34,8 +39,7 @@ struct chunks chunks_of(struct stage *stage, const struct track_clip *clip, cons
 	struct err none = { 0 };
 	char program[33];
 	long long made[4];
-	if (conf->limit || !conf->chunk || !clip->made_by || clip->info.frames <= conf->chunk || !file_hash(program, "/proc/self/exe", UINT64_MAX, &none)
-	    || !anchor_of(made, stage))
+	if (!chunks_wanted(clip, conf) || !clip->made_by || !file_hash(program, "/proc/self/exe", UINT64_MAX, &none) || !anchor_of(made, stage))
 		return c;
 	c.every = conf->chunk;
 	char *made_by = mem_str(clip->made_by);

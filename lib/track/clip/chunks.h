@@ -15,7 +15,10 @@ struct chunks {
 	long every, first;     // frames of one; the next one's first. every 0: none are kept
 };
 
-/* Of a clip that is to be followed whole; other clips, and those shorter than a chunk, keep none. */
+/* Whether a clip is to be followed whole and is longer than a chunk: what grows with it lies on the disk then. */
+bool chunks_wanted(const struct track_clip *clip, const struct track_conf *conf);
+
+/* Of other clips none are kept. */
 struct chunks chunks_of(struct stage *stage, const struct track_clip *clip, const struct track_points *points, const struct track_conf *conf);
 
 /* Reads what is there. Returns false where a chunk is not what it should be: follow is not to be used then, and the chunks are gone. */

@@ -58,6 +58,12 @@ struct track_conf {
 	double still_pose_px;  // px: scale of the robust weights of a point off the rigid head
 };
 
+/* Frames from one that is followed to the next. */
+static inline long track_every(const struct track_conf *conf)
+{
+	return conf->every ? conf->every : 1;
+}
+
 #define TRUST_OPT(key, c, which, unit, help) OPT_REALS("trust_" key, (c)->trust[which], 2, 1e-6, 1e6, unit, "followed rightly, wrongly: " help)
 
 #define SETTLE_OPTS(c)                                                                                                              \

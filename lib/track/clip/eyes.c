@@ -24,7 +24,7 @@ static void view_sigma(double sigma[2], const struct track_clip *clip, const str
 
 struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct track_subject *subject, struct bulk *bulk, const struct track_conf *conf)
 {
-	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)(conf->every ? conf->every : 1),
+	struct eye_scene scene = { .width = clip->info.width, .height = clip->info.height, .fps = clip->info.fps / (double)track_every(conf),
 		                       .camera = clip->camera, .eye = conf->eye, .head_known = true,
 		                       .head_sigma = { clip->turn_sigma[1], clip->turn_sigma[0] }, .bulk = bulk };
 	struct eye_track_conf free_centers = conf->eyes;

@@ -112,7 +112,7 @@ static bool frames(struct follow *f, struct chunks *chunks, struct video *video,
 	struct track_result *r = f->r;
 	struct skin_point_state *state = mem_new((size_t)points->n + 1, sizeof *state);
 	const bool moves = clip->moves.turned > least_turned * M_PI / 180;
-	const long every = conf->every ? conf->every : 1, known = r->n;
+	const long every = track_every(conf), known = r->n;
 	bool ok = true, got = true;
 	while (ok && got && (!conf->limit || r->n < conf->limit)) {
 		struct video_frame frame;
@@ -148,8 +148,7 @@ static void begin(struct follow *f, struct stage *stage, const struct track_clip
 	enum { RESIDENT = 32 << 20 };
 	struct track_result *r = f->r;
 	*r = (struct track_result){ .n_points = points->n, .cut = -1, .lid_points = conf->eyes.lid_points, .n_au = conf->expression.n };
-	const bool is_long = !conf->limit && conf->chunk && clip->info.frames > conf->chunk;
-	r->bulk = !is_long ? 0 : bulk_open(stage_path(stage, "work/skin"), RESIDENT);
+	r->bulk = !chunks_wanted(clip, conf) ? 0 : bulk_open(stage_path(stage, "work/skin"), RESIDENT);
 	f->room = 0;
 	f->skin = !points->n ? 0 : skin_track_new(&points->points, clip->luma, clip->info.width, clip->info.width, clip->info.height, points->mask, &conf->skin);
 	f->rigid = rigid_new(points, subject, clip->camera.focal_px / clip->cam_from_head[2][3]);
@@ -192,7 +191,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n) {
-		const long every = conf->every ? conf->every : 1;
+		const long every = track_every(conf);
 		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip, conf->stirs_mm);
 		if (!conf->limit)
 			track_together(r, points, clip, conf);

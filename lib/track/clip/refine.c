@@ -47,7 +47,7 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
                     const struct track_conf *conf)
 {
-	const struct eye_state *here = &r->eyes.state[clip->reference / (conf->every ? conf->every : 1)][side];
+	const struct eye_state *here = &r->eyes.state[clip->reference / track_every(conf)][side];
 	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1];
 	const int points = conf->eyes.lid_points;  // of a frame without lids NAN
 	memcpy(rest, here->lid[point / points][point % points], 2 * sizeof *rest);
