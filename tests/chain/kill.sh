@@ -11,6 +11,8 @@ MINUTES=${MINUTES:-1000}
 EACH=${EACH:-0}
 RANDOM=${SEED:-1}
 declare -A stages
+# far COLUMN DONE OF WHAT: how far a long run is, for who waits for it.
+far() { [ $(($2 % 20)) != 0 ] || [ "$3" -lt 40 ] || echo "  $1: $2 of $3 $4 ($((SECONDS / 60)) min)" >&2; }
 # COLMAP's database is no artifact: its pages lie where the last interruption left them.
 made() { bytes_of "$1" | grep -v ' ./calibrate/database.db$'; }
 given() { (cd "$1" && find . -path ./work -prune -o -type f -print0 | sort -z | xargs -0 sha256sum); }
@@ -65,7 +67,7 @@ strike() {
 		ms=$((RANDOM * length / 32768))
 		sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
 		name=$(ps -o comm= -g "$pid" 2>/dev/null | grep -vxE 'make|sh|ps|setsid' | tail -n 1)
-		kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1)) && stages[${name:-make}]=$((${stages[${name:-make}]:-0} + 1))
+		kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1)) && stages[${name:-make}]=$((${stages[${name:-make}]:-0} + 1)) && far "$column" "$struck" "$wanted" kills
 		wait "$pid" 2>/dev/null
 		# It goes on from where it was hit, loses something, begins anew, or is mended at once.
 		case $((RANDOM % 8)) in
@@ -131,7 +133,7 @@ trouble() {
 				kind= # the make was through before
 			fi ;;
 		esac
-		[ -n "$kind" ] && struck=$((struck + 1)) && stages[$kind]=$((${stages[$kind]:-0} + 1))
+		[ -n "$kind" ] && struck=$((struck + 1)) && stages[$kind]=$((${stages[$kind]:-0} + 1)) && far "$column" "$struck" "$wanted" faults
 		run_make "$root/hit" || fail "$column, ${kind:-nothing} at call $at: make afterwards" "$(tail -n 3 "$log")"
 		[ "$(made "$root/hit")" = "$want" ] || fail "$column, ${kind:-nothing} at call $at: the same bytes" "$(diff <(made "$root/hit") <(printf '%s\n' "$want") | head -n 4)"
 		if [ $((RANDOM % 6)) = 0 ]; then rm -rf "$root/hit/work"; else damage; fi

@@ -114,20 +114,13 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 	return p;
 }
 
-static void unit(float n[3])
-{
-	float len = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-	for (int c = 0; c < 3; c++)
-		n[c] /= len;
-}
-
 /* Mucous membrane: the grain of skin's pores, but higher, below a film of tears. */
 static void moist(float rgb[3], const struct portrait *p, const struct portrait_sky *sky, const struct point *q, const float n[3], const float dir[3])
 {
 	float film[3];
 	for (int c = 0; c < 3; c++)
 		film[c] = q->normal[c] + (float)CARUNCLE_LOBES * (n[c] - q->normal[c]);
-	unit(film);
+	vecf_unit(film);
 	portrait_wet_shade(rgb, p, sky->rig_from_cam, film, dir, q->wet, q->open);
 }
 
@@ -206,7 +199,7 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 		pores(n, q.rest, (float)SKIN_PORES * strength);
 		grain = (float)SKIN_GRAIN * strength * portrait_noise(q.rest, (float)SKIN_GRAIN_CELLS);
 	}
-	unit(n);
+	vecf_unit(n);
 	float spec[3] = { 0 };
 	for (int k = 0; k < sky->n && !p->matte; k++) {
 		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, fminf((float)SKIN_ROUGH_WIDE * rougher, 1))

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 
 static void level_room(struct nricp_level *l)
 {
@@ -72,13 +73,6 @@ static void turned(float out[3], const double a[3][3], const float v[3])
 		out[r] = (float)(a[r][0] * (double)v[0] + a[r][1] * (double)v[1] + a[r][2] * (double)v[2]);
 }
 
-static void unit(float v[3])
-{
-	float len = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-	for (int k = 0; k < 3; k++)
-		v[k] = len > 0 ? v[k] / len : 0;
-}
-
 /* Normals are the cross products of two tangents carried by the affine map. */
 void nricp_level_stand(struct nricp_level *l)
 {
@@ -102,8 +96,8 @@ void nricp_level_stand(struct nricp_level *l)
 		for (int k = 0; k < 3; k++)
 			p->normal[k] = au[(k + 1) % 3] * av[(k + 2) % 3] - au[(k + 2) % 3] * av[(k + 1) % 3];
 		turned(p->out, (const double(*)[3])a, l->out[i]);
-		unit(p->normal);
-		unit(p->out);
+		vecf_unit(p->normal);
+		vecf_unit(p->out);
 		p->boundary = l->boundary[i];
 	}
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 #include "register/nricp/noise.h"
 
 enum { RIM_PARTS = 4, SMOOTH = 3 };
@@ -21,13 +22,6 @@ static void off_edge(float out[3], const float a[3], const float b[3], const flo
 	out[0] = d[1] * n[2] - d[2] * n[1];
 	out[1] = d[2] * n[0] - d[0] * n[2];
 	out[2] = d[0] * n[1] - d[1] * n[0];
-}
-
-static void unit(float v[3])
-{
-	float len = sqrtf(dot(v, v));
-	for (int k = 0; k < 3; k++)
-		v[k] = len > 0 ? v[k] / len : 0;
 }
 
 void nricp_outward(float (*out)[3], const struct mesh *mesh, const struct topology *t, const float (*normal)[3])
@@ -52,7 +46,7 @@ void nricp_outward(float (*out)[3], const struct mesh *mesh, const struct topolo
 	}
 	for (int i = 0; i < mesh->n_vertices; i++) {
 		memcpy(out[i], once[i], sizeof out[i]);
-		unit(out[i]);
+		vecf_unit(out[i]);
 	}
 	free(once);
 }
@@ -75,8 +69,8 @@ static void take_rim(struct nricp_fixed *f)
 			f->rim_out[i][k] = (1 - w) * out[a][k] + w * out[b][k];
 			f->rim_along[i][k] = f->mesh->vertices[b][k] - f->mesh->vertices[a][k];
 		}
-		unit(f->rim_out[i]);
-		unit(f->rim_along[i]);
+		vecf_unit(f->rim_out[i]);
+		vecf_unit(f->rim_along[i]);
 	}
 	if (f->n_rim)
 		f->rim_tree = kdtree_new(f->n_rim, 3, f->rim[0]);
