@@ -3,7 +3,7 @@
 # a clock that jumps, a folder that cannot be written, a second make beside it.
 # Afterwards a plain make gives the bytes of an undisturbed run, leaves nothing half made, and what was put in is as it was.
 #   KILLS=1000 SEED=2 tests/chain/kill.sh          a third of them on each column, half of them kills; MINUTES=30: each half of a column stops there
-#   ONLY=skin                                      this column alone
+#   ONLY=skin                                      this column alone; KINDS="full eio": of the faults these alone
 #   EACH=70 STAGES="transfer extrapolate"          beside them so many of each stage's program by itself, or of these
 . "$(dirname "$0")/../lib/chain.sh"
 KILLS=${KILLS:-12}
@@ -109,7 +109,7 @@ jump() {
 # trouble COLUMN N: a disk that fails, or a clock that jumps; each time a plain make mends it, and gives the same bytes.
 trouble() {
 	local column=$1 wanted=$2 struck=0 tries=0 until=$((SECONDS + 60 * MINUTES)) total kind at status says
-	local kinds=(full inodes eio eio clock)
+	local kinds=(${KINDS:-full inodes eio eio clock}) least most
 	rm -rf "$root/hit/work"
 	under none 0 0 0 run_make "$root/hit"
 	total=$(calls)
@@ -118,8 +118,11 @@ trouble() {
 	while [ "$struck" -lt "$wanted" ] && [ "$tries" -lt $((6 * wanted)) ] && [ "$SECONDS" -lt "$until" ]; do
 		tries=$((tries + 1))
 		kind=${kinds[RANDOM % ${#kinds[@]}]}
-		# A capture that is made but for a part makes fewer calls: early ones are as likely as late ones in each order of size.
-		at=$(awk -v u=$RANDOM -v total="$total" 'BEGIN { printf "%d", exp(log(20) + u / 32768 * log(total / 20)) }')
+		# Counted are the calls that this kind may strike. A capture that is made but for a part makes fewer: early ones are as likely as late ones
+		# in each order of size.
+		least=20 most=$total
+		[ "$kind" != inodes ] || least=1 most=$(names_of "$root/calm" | wc -l)
+		at=$(awk -v u=$RANDOM -v a="$least" -v b="$most" 'BEGIN { printf "%d", a * exp(u / 32768 * log(b / a)) }')
 		case $kind in
 		clock) jump "$((RANDOM * 20000 - 327680000))" ;;
 		*)
