@@ -41,8 +41,8 @@ B := build$(if $(TSAN),-tsan,$(if $(SAN),-san))
 BIN := $(if $(sanitised),$(B)/bin,bin)
 CLANG ?= clang
 ifneq ($(TSAN),)
-CC := $(CLANG)
-CXX := $(CLANG)++
+override CC := $(CLANG)
+override CXX := $(CLANG)++
 endif
 
 PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \

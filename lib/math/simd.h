@@ -11,7 +11,8 @@
 
 _Static_assert(sizeof(float) == 4, "lanes are of 32 bits");
 
-#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && (!defined(__clang__) || __clang_major__ >= 17)
+#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) \
+	&& (!defined(__clang__) || __clang_major__ >= 17)
 #define SIMD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 // Elsewhere there is one version, the compiler's baseline (on arm64 it has vectors anyway). Sanitisers cannot run before the choice is
