@@ -57,6 +57,9 @@ damage() {
 	esac
 }
 
+# moment MS PID: so many milliseconds, or until that process is through.
+moment() { timeout "$(($1 / 1000)).$(printf %03d $(($1 % 1000)))" tail --pid="$2" -s 0.05 -f /dev/null; }
+
 # strike COLUMN N: the whole group of processes dies at once, make and its stages, at a moment anywhere in an undisturbed run.
 strike() {
 	local column=$1 wanted=$2 struck=0 tries=0 until=$((SECONDS + 60 * MINUTES)) pid ms name
@@ -65,7 +68,7 @@ strike() {
 		setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
 		pid=$!
 		ms=$((RANDOM * length / 32768))
-		sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
+		moment "$ms" "$pid"
 		name=$(ps -o comm= -g "$pid" 2>/dev/null | grep -vxE 'make|sh|ps|setsid' | tail -n 1)
 		kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1)) && stages[${name:-make}]=$((${stages[${name:-make}]:-0} + 1)) && far "$column" "$struck" "$wanted" kills
 		wait "$pid" 2>/dev/null
@@ -101,7 +104,7 @@ jump() {
 	fi
 	LD_PRELOAD=$FAULTS FAULTS_BELOW=$root/hit FAULTS_CLOCK=$1 setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
 	pid=$!
-	sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
+	moment "$ms" "$pid"
 	kill -9 -- "-$pid" 2>/dev/null
 	wait "$pid" 2>/dev/null
 }
@@ -172,7 +175,7 @@ strike_each() {
 			setsid "$BIN/$stage" --capture="$root/hit" --force --quiet >"$log" 2>&1 </dev/null &
 			pid=$!
 			ms=$((RANDOM * took / 32768))
-			sleep "$((ms / 1000)).$(printf %03d $((ms % 1000)))"
+			moment "$ms" "$pid"
 			kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1))
 			wait "$pid" 2>/dev/null
 			[ $((i % 16)) != 15 ] || damage
