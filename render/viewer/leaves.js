@@ -36,6 +36,8 @@ const leaves = (() => {
 		});
 		for (const name of Object.keys(out))
 			out[name] = Math.min(1, Math.max(0, out[name]));
+		for (const side of ["Left", "Right"])  // lib/rig/glb/halves.h
+			out[`eyeBlink${side}_half`] = 4 * out[`eyeBlink${side}`] * (1 - out[`eyeBlink${side}`]);
 		return Object.assign(out, expressions);
 	}
 

@@ -1,6 +1,7 @@
 "use strict";
 /* Opens a driven face's .glb in three.js in a headless Chromium: FILE NPM OUT. One line a pose and view: what it shows of eye and skin, in
- * pixels round one eye; OUT/face_NAME.png: pictures. */
+ * pixels round one eye; and how deep lids go through the eye between open and shut, mm, by a blink's target alone and with what goes with it. OUT/face_NAME.png:
+ * pictures. */
 const fs = require("fs");
 const os = require("os");
 const path = require("path");
@@ -9,6 +10,7 @@ const [, , file, npm, out] = process.argv;
 
 const poses = {
 	open: [{}, [0, 0]],
+	half: [{ eyeBlinkLeft: 0.5, eyeBlinkRight: 0.5, eyeBlinkLeft_half: 1, eyeBlinkRight_half: 1 }, [0, 0]],
 	shut: [{ eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]],
 	left: [{ eyeLookOutLeft: 1, eyeLookInRight: 1 }, [1, 0]],
 	right: [{ eyeLookInLeft: 1, eyeLookOutRight: 1 }, [-1, 0]],
@@ -31,6 +33,10 @@ const poses = {
 					const n = await b.value(`seen(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
 					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair} tears ${n.tears}`);
 				}
+		for (const side of ["left", "right"]) {
+			const d = await b.value(`depths("${side}")`, 120000);
+			console.log(`depth ${side} alone ${d.alone.map(x => x.toFixed(3)).join(" ")} both ${d.both.map(x => x.toFixed(3)).join(" ")} of ${d.n}`);
+		}
 		for (const [name, [weights, turn]] of Object.entries(poses))
 			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]]) {
 				await b.value(`show(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);

@@ -132,7 +132,93 @@ window.seen = (weights, turn, side, aside) => {
 	return counted(side, aside);
 };
 
-/* The same at a moment of the animation. */
+/* How far out an eye's surface is from its centre, by direction: a grid over the plane before it (gnomonic), the outermost of sclera and cornea. Of the
+ * node's own unit of length. */
+const GRID = 251, REACH = 2.5;
+function surface_of(node) {
+	const far = new Float32Array(GRID * GRID), at = [0, 1, 2].map(() => new THREE.Vector3()), e1 = new THREE.Vector3(), e2 = new THREE.Vector3(), d = new THREE.Vector3();
+	const column = v => (v / REACH + 1) / 2 * (GRID - 1);
+	node.traverse(mesh => {
+		if (!mesh.isMesh || !/(sclera|cornea)$/.test(mesh.name))
+			return;
+		const position = mesh.geometry.attributes.position, index = mesh.geometry.index;
+		const to = new THREE.Matrix4().copy(node.matrixWorld).invert().multiply(mesh.matrixWorld);
+		for (let f = 0; f < index.count; f += 3) {
+			at.forEach((v, k) => v.fromBufferAttribute(position, index.getX(f + k)).applyMatrix4(to));
+			if (at.some(v => v.z <= 0))
+				continue;
+			const x = at.map(v => column(v.x / v.z)), y = at.map(v => column(v.y / v.z));
+			const normal = e1.subVectors(at[1], at[0]).clone().cross(e2.subVectors(at[2], at[0])), off = normal.dot(at[0]);
+			const area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+			for (let j = Math.max(0, Math.ceil(Math.min(...y))); j <= Math.min(GRID - 1, Math.max(...y)); j++)
+				for (let i = Math.max(0, Math.ceil(Math.min(...x))); i <= Math.min(GRID - 1, Math.max(...x)); i++) {
+					const b = ((i - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (j - y[0])) / area, c = ((x[1] - x[0]) * (j - y[0]) - (i - x[0]) * (y[1] - y[0])) / area;
+					if (!(b >= -1e-6 && c >= -1e-6 && b + c <= 1 + 1e-6))
+						continue;
+					d.set((2 * i / (GRID - 1) - 1) * REACH, (2 * j / (GRID - 1) - 1) * REACH, 1);
+					far[j * GRID + i] = Math.max(far[j * GRID + i], d.length() * off / normal.dot(d));
+				}
+		}
+	});
+	return p => {
+		if (p.z <= 0)
+			return NaN;
+		const x = column(p.x / p.z), y = column(p.y / p.z), i = Math.floor(x), j = Math.floor(y), u = x - i, v = y - j;
+		if (!(i >= 0 && j >= 0 && i + 1 < GRID && j + 1 < GRID))
+			return NaN;
+		const of = [[0, 0, (1 - u) * (1 - v)], [1, 0, u * (1 - v)], [0, 1, (1 - u) * v], [1, 1, u * v]];
+		return of.some(([a, b]) => !far[(j + b) * GRID + i + a]) ? NaN : of.reduce((sum, [a, b, w]) => sum + w * far[(j + b) * GRID + i + a], 0);
+	};
+}
+
+/* Where skin is in a pose: vertices, then the middles of edges and faces, of those faces near an eye; in the eye's frame. */
+function samples_of(mesh, node, near) {
+	const { position } = mesh.geometry.attributes, { index } = mesh.geometry, targets = mesh.geometry.morphAttributes.position, weights = mesh.morphTargetInfluences;
+	const to = new THREE.Matrix4().copy(node.matrixWorld).invert().multiply(mesh.matrixWorld), d = new THREE.Vector3();
+	const place = i => {
+		const v = new THREE.Vector3().fromBufferAttribute(position, i);
+		weights.forEach((w, k) => w && v.addScaledVector(d.fromBufferAttribute(targets[k], i), w));
+		return v.applyMatrix4(to);
+	};
+	near.faces ??= [...Array(index.count / 3).keys()].map(f => [0, 1, 2].map(k => index.getX(3 * f + k))).filter(f => f.every(i => {
+		const v = place(i);
+		return v.z > 0 && v.length() < 1.5 * near.radius;
+	}));
+	const at = new Map();
+	for (const i of near.faces.flat())
+		at.has(i) || at.set(i, place(i));
+	const out = [...at.values()];
+	for (const [a, b, c] of near.faces.map(f => f.map(i => at.get(i))))
+		out.push(a.clone().add(b).divideScalar(2), b.clone().add(c).divideScalar(2), c.clone().add(a).divideScalar(2), a.clone().add(b).add(c).divideScalar(3));
+	return out;
+}
+
+/* How deep in an eye skin lies on the way of a blink, mm, that is outside at both of its ends: at weights 0.25, 0.5, 0.75 of the blink's target, by
+ * itself and with the one that goes with it. */
+window.depths = side => {
+	const eye = eyes[`eye_${side}`], name = `eyeBlink${side === "left" ? "Left" : "Right"}`, out = { alone: [0, 0, 0], both: [0, 0, 0], n: 0 };
+	pose({}, [0, 0]);
+	face.updateMatrixWorld(true);
+	const surface = surface_of(eye.node), mm = 1000 * eye.node.getWorldScale(new THREE.Vector3()).x;
+	face.traverse(mesh => {
+		if (!mesh.morphTargetDictionary || !(name in mesh.morphTargetDictionary) || hair.test(mesh.name) || wet.test(mesh.name) || mesh.userData.behind)
+			return;
+		const near = { radius: surface({ x: 0, y: 0, z: 1 }) }, off = w => {
+			pose(w, [0, 0]);
+			return samples_of(mesh, eye.node, near).map(p => mm * (p.length() - surface(p)));
+		};
+		const ends = [off({}), off({ [name]: 1 })], outside = ends[0].map((d, i) => Math.min(d, ends[1][i]) > -0.03 && Math.min(d, ends[1][i]) < 5);
+		out.n += outside.filter(o => o).length;
+		[0.25, 0.5, 0.75].forEach((w, k) => {
+			for (const [way, weights] of [["alone", { [name]: w }], ["both", { [name]: w, [`${name}_half`]: 4 * w * (1 - w) }]])
+				off(weights).forEach((d, i) => { out[way][k] = outside[i] && -d > out[way][k] ? -d : out[way][k]; });
+		});
+	});
+	pose({}, [0, 0]);
+	return out;
+};
+
+/* What is seen at a moment of the animation. */
 window.seen_at = (time, side, aside) => {
 	const action = mixer.clipAction(clip);
 	pose({}, [0, 0]);

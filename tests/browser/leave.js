@@ -73,6 +73,7 @@ async function face(b) {
 	const { name, bytes } = await saved(b, pathToFileURL(character).href, `p => { p.eyes.eye = [10, -5]; p.set("wink_left", 1); p.set("aperture", 0.8); p.set("au0", 0.5); p.set("pupil", 1); }`), j = opened(bytes);
 	const skin = j.meshes.find(m => m.extras && m.extras.targetNames.includes("eyeBlinkLeft")), of = n => weight(skin, n);
 	say(name.endsWith(".glb") && of("eyeBlinkLeft") === 1 && near(of("eyeBlinkRight"), 0.2, 1e-6), "a face leaves with its lids", JSON.stringify(skin.weights));
+	say(of("eyeBlinkLeft_half") === 0 && near(of("eyeBlinkRight_half"), 0.64, 1e-6), "with what they are between open and shut", JSON.stringify(skin.weights));
 	say(near(of("eyeLookOutLeft"), 0.4, 1e-6) && near(of("eyeLookInRight"), 0.4, 1e-6) && of("eyeLookInLeft") === 0 && near(of("eyeLookDownLeft"), 0.25, 1e-6), "with its gaze", JSON.stringify(skin.weights));
 	say(await b.value("data.face.expressions[0].name").then(n => near(of(n), 0.5, 1e-6)), "with its expression", JSON.stringify(skin.extras.targetNames));
 	const lashes = j.meshes.find(m => m.name === "lashes");

@@ -1,16 +1,19 @@
-/* dressed IN.obj OUT.glb [unit=0.1] [px=1024] [z_up] [skinned] [no_uv] [no_material]: a head and its eyeballs as an artist's glTF, with
- * textures, hair cards and blend shapes (tests/lib/scenes/dressed.h). */
+/* dressed IN.obj OUT.glb [unit=0.1] [px=1024] [z_up] [skinned] [no_uv] [no_material] [faces=18000] [stretch=1,1,1]
+ * [ball=X,Y,Z,RADIUS]: a head and its eyeballs as an artist's glTF, with textures, hair cards and blend shapes (tests/lib/scenes/dressed.h); with one
+ * of the last three in another topology, each eyeball a mesh of its own (tests/lib/scenes/remeshed.h). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bridge/om_mesh.h"
 #include "tests/lib/scenes/dressed.h"
+#include "tests/lib/scenes/remeshed.h"
 
 int main(int argc, char **argv)
 {
 	struct dressed how = { .unit = 0.1, .texture_px = 1024 };
-	struct mesh mesh = { 0 };
+	struct remeshed other = { 0 };
+	struct mesh mesh = { 0 }, made = { 0 };
 	struct err err = { 0 };
 	if (argc < 3)
 		return 2;
@@ -23,10 +26,16 @@ int main(int argc, char **argv)
 			how.unit = atof(argv[i] + 5);
 		if (!strncmp(argv[i], "px=", 3))
 			how.texture_px = atoi(argv[i] + 3);
+		if (!strncmp(argv[i], "faces=", 6))
+			other.faces = atoi(argv[i] + 6);
+		how.eyes_apart |= !strncmp(argv[i], "faces=", 6) || sscanf(argv[i], "stretch=%lf,%lf,%lf", &other.stretch[0], &other.stretch[1], &other.stretch[2]) == 3
+		                  || sscanf(argv[i], "ball=%lf,%lf,%lf,%lf", &other.ball[0], &other.ball[1], &other.ball[2], &other.ball[3]) == 4;
 	}
-	const bool ok = om_mesh_load(&mesh, argv[1], 1000000, &err) && dressed_write(argv[2], &mesh, &how, &err);
+	const bool ok = om_mesh_load(&mesh, argv[1], 1000000, &err) && (!how.eyes_apart || remeshed_make(&made, &mesh, &other, &err))
+	                && dressed_write(argv[2], how.eyes_apart ? &made : &mesh, &how, &err);
 	if (!ok)
 		fprintf(stderr, "dressed: %s\n", err.msg);
 	mesh_free(&mesh);
+	mesh_free(&made);
 	return !ok;
 }

@@ -17,6 +17,8 @@ const char *const glb_pose_names[GLB_POSES] = { "eyeBlinkLeft", "eyeBlinkRight",
 	                                            "eyeLookDownRight", "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft",
 	                                            "eyeLookOutRight", "eyeWideLeft", "eyeWideRight" };
 
+const char *const glb_half_names[GLB_HALVES] = { "eyeBlinkLeft_half", "eyeBlinkRight_half" };
+
 /* Letters and digits alone, small; what stands before the last dot is left out, a side of one letter written in full. */
 static void plain(char out[64], const char *name)
 {

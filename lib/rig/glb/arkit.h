@@ -10,6 +10,10 @@ extern const char *const arkit_names[ARKIT_SHAPES];
 enum { GLB_POSES = 12 };
 extern const char *const glb_pose_names[GLB_POSES];
 
+/* Targets that are no one's but ours: what the straight way of a blink's target lacks half way down, left and right. */
+enum { GLB_HALVES = 2 };
+extern const char *const glb_half_names[GLB_HALVES];
+
 /* Whether a name means one of them, written in whatever way: eyeBlinkLeft, eyeBlink_L, "blendShape1.eye_blink_left". */
 bool arkit_means(const char *name, const char *arkit);
 

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "base/version.h"
+#include "rig/glb/blink.h"
 #include "rig/glb/graft.h"
 #include "rig/glb/skin.h"
 #include "rig/glb/strands.h"
@@ -193,9 +194,12 @@ bool glb_write(const char *path, struct glb_report *report, const struct rig *ri
 		json_array_append_new(used, json_string(quantised));
 		json_object_set_new(root, "extensionsRequired", json_pack("[s]", quantised));
 		put_some(root, "extensionsUsed", used);
-		json_object_update_new(root, json_pack("{s:i,s:[{s:[i]}],s:o,s:o,s:o,s:[o]}", "scene", 0, "scenes", "nodes", 0, "nodes",
+		json_t *animations = json_pack("[o]", animation(&g, rig, &bake, drive, &skin)), *blink = glb_blink(&g, &bake, &skin);
+		if (blink)
+			json_array_append_new(animations, blink);
+		json_object_update_new(root, json_pack("{s:i,s:[{s:[i]}],s:o,s:o,s:o,s:o}", "scene", 0, "scenes", "nodes", 0, "nodes",
 		                                       nodes(rig, eye, in, name, &skin), "meshes", json_incref(skin.meshes), "materials",
-		                                       json_incref(skin.materials), "animations", animation(&g, rig, &bake, drive, &skin)));
+		                                       json_incref(skin.materials), "animations", animations));
 		put_some(root, "images", skin.images);
 		put_some(root, "textures", skin.textures);
 		put_some(root, "samplers", samplers);

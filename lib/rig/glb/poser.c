@@ -1,5 +1,6 @@
 #include "rig/glb/poser.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,26 +78,39 @@ void poser_free(struct poser *p)
 	deform_near_free(&p->near);
 }
 
+/* The pose of components e, the globes turned as p->turn says. */
+static void pose(struct poser *p, const double e[RIG_COMPONENTS])
+{
+	deform_pose(p->deform, e, (const double(*)[3][3])p->turn, p->x, 0);
+	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])p->turn);
+	take_normals(p);
+}
+
 void poser_pose(struct poser *p, const double *controls, double turn[2][3][3])
 {
 	double e[RIG_COMPONENTS];
 	rig_components(e, p->rig, controls);
 	rig_globes_turned(turn, p->rig, controls);
 	memcpy(p->turn, turn, sizeof p->turn);
-	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->x, 0);
-	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])turn);
-	take_normals(p);
+	pose(p, e);
+}
+
+void poser_from_still(struct poser *p, const double *controls, double share)
+{
+	double e[RIG_COMPONENTS];
+	rig_components(e, p->rig, controls);
+	for (int k = 0; k < RIG_COMPONENTS; k++)
+		e[k] = p->rig->rest_e[k] + share * (e[k] - p->rig->rest_e[k]);
+	for (int s = 0; s < 2; s++)
+		rig_globe_rotation(p->turn[s], p->rig, (double[]){ 0, 0, 0 });
+	pose(p, e);
 }
 
 void poser_still(struct poser *p)
 {
-	double turn[2][3][3];
 	for (int s = 0; s < 2; s++)
-		rig_globe_rotation(turn[s], p->rig, (double[]){ 0, 0, 0 });
-	memcpy(p->turn, turn, sizeof p->turn);
-	deform_pose(p->deform, p->rig->rest_e, (const double(*)[3][3])turn, p->x, 0);
-	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])turn);
-	take_normals(p);
+		rig_globe_rotation(p->turn[s], p->rig, (double[]){ 0, 0, 0 });
+	pose(p, p->rig->rest_e);
 }
 
 void poser_skin(float *x, float *lean, const struct poser *p, int n, const int *vertex)
@@ -113,4 +127,15 @@ void poser_hair(float *out, const struct poser *p)
 	place(p->hair, p, (const float(*)[3])p->x);
 	for (int i = 0; i < 3 * p->n_hair; i++)
 		out[i] = p->hair[i / 3][i % 3] - p->hair_rest[i / 3][i % 3];
+}
+
+float poser_own_side(const struct poser *p, int eye, const float x[3])
+{
+	static const double blend_mm = 10;  // to either side of the nose's bridge
+	const struct rig *rig = p->rig;
+	double from_middle = 0;
+	for (int c = 0; c < 3; c++)
+		from_middle += rig->head_from_target[0][c] * (x[c] - 0.5 * (rig->globe[0].center[c] + rig->globe[1].center[c]));
+	const double t = fmin(fmax(0.5 + (eye ? -0.5 : 0.5) * from_middle / blend_mm, 0), 1);
+	return (float)(t * t * (3 - 2 * t));
 }

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "rig/drive.h"
+#include "rig/glb/halves.h"
 
 /* Displacements of one pose: of skin, of its normals, of hairs. */
 struct posed {
@@ -30,25 +31,14 @@ static void posed_free(struct posed *p)
 	free(p->hair);
 }
 
-/* Share of an eye in what moves at x: 1 on its side of the face, 0 on the other. */
-static float own_side(const struct rig *rig, int eye, const float x[3])
-{
-	static const double blend_mm = 10;  // to either side of the nose's bridge
-	double from_middle = 0;
-	for (int c = 0; c < 3; c++)
-		from_middle += rig->head_from_target[0][c] * (x[c] - 0.5 * (rig->globe[0].center[c] + rig->globe[1].center[c]));
-	const double t = fmin(fmax(0.5 + (eye ? -0.5 : 0.5) * from_middle / blend_mm, 0), 1);
-	return (float)(t * t * (3 - 2 * t));
-}
-
 /* A named pose as a target that others may be added to: what it differs by from a look straight ahead, `ahead`; and where the eye shuts, on
  * its side, what that look differs by from rest, too. So what all poses have in common with each other against the mesh (its lids' linings lie in
  * its eyeballs) is in none of them, or it would be there as often as there are targets. */
-static void pose_target(float *out, const float *now, const float *ahead, const float *still, int n, const struct rig *rig, const int *vertex, const float (*at)[3],
+static void pose_target(float *out, const float *now, const float *ahead, const float *still, int n, const struct poser *p, const int *vertex, const float (*at)[3],
                         int shuts)
 {
 	for (int i = 0; i < n; i++) {
-		const float share = shuts < 0 ? 0 : own_side(rig, shuts, vertex ? rig->rest[vertex[i]] : at[i]);
+		const float share = shuts < 0 ? 0 : poser_own_side(p, shuts, vertex ? p->rig->rest[vertex[i]] : at[i]);
 		for (int c = 3 * i; c < 3 * i + 3; c++)
 			out[c] = now[c] - ahead[c] + share * (ahead[c] - still[c]);
 	}
@@ -58,7 +48,7 @@ void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *
 {
 	static const double look[GLB_POSES][2] = { { 0, 0 }, { 0, 0 }, { 0, 20 }, { 0, 20 }, { 0, -20 }, { 0, -20 },
 		                                       { -25, 0 }, { 25, 0 }, { 25, 0 }, { -25, 0 }, { 0, 0 }, { 0, 0 } };
-	const size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair, all = (size_t)(GLB_POSES + conf->n_expressions);
+	const size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair, all = (size_t)(GLB_POSES + conf->n_expressions + GLB_HALVES);
 	double *straight = mem_new((size_t)p->rig->n_inputs + 1, sizeof *straight), *c = mem_new((size_t)p->rig->n_inputs + 1, sizeof *c);
 	double *one = mem_new((size_t)p->rig->n_inputs + 1, sizeof *one), turn[2][3][3];
 	struct posed still = posed_new(b), ahead = posed_new(b), now = posed_new(b);
@@ -72,7 +62,7 @@ void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *
 	posed_take(&still, p, b);
 	poser_pose(p, straight, turn);
 	posed_take(&ahead, p, b);
-	for (int k = 0; k < b->n_poses; k++) {
+	for (int k = 0; k < b->n_poses - GLB_HALVES; k++) {
 		const int eye = k % 2, shuts = k < 2 ? eye : -1;
 		memcpy(c, straight, (size_t)p->rig->n_inputs * sizeof *c);
 		if (k < GLB_POSES) {
@@ -84,10 +74,11 @@ void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *
 		b->pose_name[k] = k < GLB_POSES ? glb_pose_names[k] : conf->expression[k - GLB_POSES];
 		poser_pose(p, c, turn);
 		posed_take(&now, p, b);
-		pose_target(b->pose + (size_t)k * row, now.x, ahead.x, still.x, b->n, p->rig, b->vertex, 0, shuts);
-		pose_target(b->pose_lean + (size_t)k * row, now.lean, ahead.lean, still.lean, b->n, p->rig, b->vertex, 0, shuts);
-		pose_target(b->hair_pose + (size_t)k * hair, now.hair, ahead.hair, still.hair, b->n_hair, p->rig, 0, (const float(*)[3])p->hair_rest, shuts);
+		pose_target(b->pose + (size_t)k * row, now.x, ahead.x, still.x, b->n, p, b->vertex, 0, shuts);
+		pose_target(b->pose_lean + (size_t)k * row, now.lean, ahead.lean, still.lean, b->n, p, b->vertex, 0, shuts);
+		pose_target(b->hair_pose + (size_t)k * hair, now.hair, ahead.hair, still.hair, b->n_hair, p, 0, (const float(*)[3])p->hair_rest, shuts);
 	}
+	glb_take_halves(b, p);
 	posed_free(&still);
 	posed_free(&ahead);
 	posed_free(&now);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 
@@ -136,6 +137,21 @@ void glb_targets_add_zero(struct glb_targets *t, struct glb_buffer *g, const cha
 		append(t, names[i], zero, normals ? zero : -1);
 }
 
+/* Which of the targets are driven by others, and how: for those who rig the file by hand. Null where none is. */
+static json_t *driven_of(const json_t *names)
+{
+	json_t *list = json_array(), *name;
+	size_t i;
+	for (int k = 0; k < GLB_HALVES; k++)
+		json_array_foreach(names, i, name)
+			if (!strcmp(json_string_value(name), glb_half_names[k]))
+				json_array_append_new(list, json_pack("{s:s,s:s,s:s}", "target", glb_half_names[k], "by", glb_pose_names[k], "weight", "4 w (1 - w)"));
+	if (json_array_size(list))
+		return list;
+	json_decref(list);
+	return 0;
+}
+
 int glb_targets_put(const struct glb_targets *t, json_t *mesh)
 {
 	const size_t n = json_array_size(t->list);
@@ -147,7 +163,7 @@ int glb_targets_put(const struct glb_targets *t, json_t *mesh)
 		json_array_foreach(json_object_get(mesh, "primitives"), i, primitive)
 			json_object_set(primitive, "targets", t->list);
 		json_object_set(mesh, "weights", weights);
-		json_object_set_new(mesh, "extras", json_pack("{s:O}", "targetNames", t->names));
+		json_object_set_new(mesh, "extras", json_pack("{s:O,s:o*}", "targetNames", t->names, "drivenTargets", driven_of(t->names)));
 	}
 	json_decref(weights);
 	return (int)n;

@@ -8,7 +8,8 @@
 #include "image/picture.h"
 #include "rig/glb/buffer.h"
 
-enum { HEAD, EYES, HAIR, PARTS, CARDS = 24 };
+enum { HEAD, EYES, RIGHT_EYE, HAIR, PARTS, CARDS = 24 };
+static const int material_of[PARTS] = { 0, 1, 1, 2 };
 
 struct box { float lo[3], hi[3]; };
 
@@ -36,8 +37,8 @@ void dressed_place(float out[3], const float in[3], const struct dressed *how)
 		out[c] *= (float)how->unit;
 }
 
-/* 0: of the largest piece, 1: of another. */
-static uint8_t *pieces(const struct mesh *m)
+/* The mesh of the file that a vertex is of: the largest piece is the head. */
+static uint8_t *pieces(const struct mesh *m, bool apart)
 {
 	int *up = mem_new((size_t)m->n_vertices + 1, sizeof *up), *size = mem_new((size_t)m->n_vertices + 1, sizeof *size), best = 0;
 	uint8_t *part = mem_new((size_t)m->n_vertices + 1, 1);
@@ -55,7 +56,7 @@ static uint8_t *pieces(const struct mesh *m)
 	for (int i = 0; i < m->n_vertices; i++)
 		best = ++size[up[i]] > size[best] ? up[i] : best;
 	for (int i = 0; i < m->n_vertices; i++)
-		part[i] = up[i] != best;
+		part[i] = up[i] == best ? HEAD : apart && m->vertices[i][0] < 0 ? RIGHT_EYE : EYES;
 	free(up);
 	free(size);
 	return part;
@@ -200,7 +201,7 @@ static json_t *mesh_json(struct glb_buffer *g, const struct part *p, const struc
 	                                                "type", "SCALAR"));
 	json_t *primitive = json_pack("{s:o,s:i}", "attributes", attributes, "indices", index), *mesh = json_pack("{s:[O]}", "primitives", primitive);
 	if (!how->no_material)
-		json_object_set_new(primitive, "material", json_integer(which));
+		json_object_set_new(primitive, "material", json_integer(material_of[which]));
 	if (which == HEAD) {
 		json_t *targets = json_array(), *names = json_array();
 		for (int s = 0; s < COUNT(shape_names); s++) {
@@ -240,14 +241,15 @@ static json_t *materials(struct glb_buffer *g, json_t *root, const struct dresse
 
 bool dressed_write(const char *path, const struct mesh *mesh, const struct dressed *how, struct err *err)
 {
-	static const char *const names[PARTS] = { "Head", "Eyes", "Hair" };
+	static const char *const names[2][PARTS] = { { "Head", "Eyes", "", "Hair" }, { "Head", "EyeLeft", "EyeRight", "Hair" } };
 	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
 	const struct box b = box_of(mesh);
-	uint8_t *piece = pieces(mesh);
+	uint8_t *piece = pieces(mesh, how->eyes_apart);
 	float (*normal)[3] = mesh_normals(mesh);
 	struct part part[PARTS];
-	put_surface(&part[HEAD], mesh, &b, piece, 0, (const float(*)[3])normal);
-	put_surface(&part[EYES], mesh, &b, piece, 1, (const float(*)[3])normal);
+	put_surface(&part[HEAD], mesh, &b, piece, HEAD, (const float(*)[3])normal);
+	put_surface(&part[EYES], mesh, &b, piece, EYES, (const float(*)[3])normal);
+	put_surface(&part[RIGHT_EYE], mesh, &b, piece, RIGHT_EYE, (const float(*)[3])normal);
 	put_cards(&part[HAIR], &b);
 	json_t *root = json_pack("{s:{s:s},s:i,s:[{s:[i]}]}", "asset", "version", "2.0", "scene", 0, "scenes", "nodes", 0), *meshes = json_array();
 	json_t *nodes = json_array(), *children = json_array();
@@ -256,7 +258,7 @@ bool dressed_write(const char *path, const struct mesh *mesh, const struct dress
 		if (!part[i].n_faces)
 			continue;
 		json_array_append_new(meshes, mesh_json(&g, &part[i], &b, i, how));
-		json_t *node = json_pack("{s:s,s:i}", "name", names[i], "mesh", (int)json_array_size(meshes) - 1);
+		json_t *node = json_pack("{s:s,s:i}", "name", names[how->eyes_apart][i], "mesh", (int)json_array_size(meshes) - 1);
 		if (how->skinned)
 			json_object_set_new(node, "skin", json_integer(0));
 		json_array_append_new(children, json_integer((json_int_t)json_array_size(nodes)));

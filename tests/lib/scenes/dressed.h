@@ -11,6 +11,7 @@ struct dressed {
 	bool skinned;       // carried by a joint that turns it, as a posed character
 	int texture_px;
 	bool no_uv, no_material;
+	bool eyes_apart;    // each eyeball is a mesh of its own
 	int many_materials; // more, none of which is used
 };
 

@@ -1,5 +1,6 @@
 #include "tests/lib/scenes/driven.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "rig/deform/deform.h"
@@ -35,4 +36,21 @@ void driven_pose(float (*x)[3], double turn[2][3][3], const struct driven *d, do
 	deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
 	deform_free(deform);
 	free(c);
+}
+
+struct drive driven_wanders(const struct driven *d, int frames)
+{
+	const int inputs = d->rig.n_inputs;
+	struct drive drive = { frames, inputs, calloc((size_t)frames, sizeof(double)), calloc((size_t)(inputs * frames), sizeof(double)), 0 };
+	for (int f = 0; f < frames; f++) {
+		drive.time[f] = f / 30.0;
+		drive_look(drive_at(&drive, f), &d->rig, 15 * sin(f / 7.0), 10 * cos(f / 11.0), f > 25 && f < 32 ? 0 : 1);
+	}
+	return drive;
+}
+
+struct glb_conf driven_glb(const struct driven *d)
+{
+	static const char *const expressions[] = { "brows_up", "squint" };
+	return (struct glb_conf){ .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 }, .tear_mm = 0.3, .n_expressions = 2, .expression = expressions, .hairs = &d->hairs };
 }

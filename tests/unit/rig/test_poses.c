@@ -1,0 +1,228 @@
+/* Targets of single poses: what each is, that they add up, and that a blink goes round the eye. */
+#include "math/vec.h"
+#include "rig/deform/clear.h"
+#include "rig/glb/bake.h"
+#include "rig/glb/halves.h"
+#include "tests/lib/scenes/driven.h"
+#include "tests/lib/unit.h"
+
+enum { FRAMES = 60 };
+
+struct made {
+	struct driven on;
+	struct drive drive;
+};
+
+static struct glb_conf conf;
+
+static int setup(void **state)
+{
+	struct made *m = calloc(1, sizeof *m);
+	struct err err = { 0 };
+	bool ok = driven_make(&m->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err);
+	m->drive = driven_wanders(&m->on, FRAMES);
+	conf = driven_glb(&m->on);
+	*state = m;
+	return ok ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+	struct made *m = *state;
+	drive_free(&m->drive);
+	driven_free(&m->on);
+	free(m);
+	return 0;
+}
+
+/* An expression's target is what it moves beside a look straight ahead. */
+static void expressions_have_targets(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b;
+	struct err err = { 0 };
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	assert_int_equal(b.n_poses, GLB_POSES + 2 + GLB_HALVES);
+	float (*x[2])[3] = { calloc((size_t)m->on.rig.n, sizeof **x), calloc((size_t)m->on.rig.n, sizeof **x) };
+	struct deform *deform = deform_new(&m->on.rig);
+	struct deform_near near = deform_near_of(&m->on.rig);
+	for (int k = 0; k < 2; k++) {
+		double worst = 0, most = 0;
+		for (int on = 0; on < 2; on++) {
+			double c[12], e[RIG_COMPONENTS], turn[2][3][3];
+			drive_look(c, &m->on.rig, 0, 0, 1);
+			c[SKIN_EYE_INPUTS + k] = on;
+			rig_components(e, &m->on.rig, c);
+			rig_globes_turned(turn, &m->on.rig, c);
+			deform_rest(deform, x[on], 0);
+			deform_pose(deform, e, (const double(*)[3][3])turn, x[on], 0);
+			deform_clear(x[on], &m->on.rig, &near, (const double(*)[3][3])turn);
+		}
+		assert_string_equal(b.pose_name[GLB_POSES + k], conf.expression[k]);
+		for (int i = 0; i < b.n; i++)
+			for (int c = 0; c < 3; c++) {
+				const double want = (double)x[1][b.vertex[i]][c] - (double)x[0][b.vertex[i]][c];
+				worst = fmax(worst, fabs(want - (double)b.pose[((GLB_POSES + k) * b.n + i) * 3 + c]));
+				most = fmax(most, fabs(want));
+			}
+		assert_true(most > 0.1 && worst < 1e-4);
+	}
+	free(x[0]);
+	free(x[1]);
+	deform_free(deform);
+	deform_near_free(&near);
+	glb_bake_free(&b);
+}
+
+/* Both eyes' targets together are the pose of both eyes, wherever mesh and globe disagree at rest: here all of the left lids' linings lie in it. */
+static void named_poses_add_up(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b;
+	struct err err = { 0 };
+	static const int pairs[][2] = { { 0, 1 }, { 2, 3 }, { 8, 7 } };
+	static const double look[][3] = { { 0, 0, 0 }, { 0, 20, 1 }, { 25, 0, 1 } };
+	float (*was)[3] = calloc((size_t)m->on.rig.n, sizeof *was), (*x)[3] = calloc((size_t)m->on.rig.n, sizeof *x);
+	memcpy(was, m->on.rig.rest, (size_t)m->on.rig.n * sizeof *was);
+	for (int i = 0; i < m->on.rig.n; i++)
+		for (int c = 0; c < 3 && m->on.rig.part[i] == RIG_SKIN && m->on.rig.gap[i] < 2; c++)  // 3 mm deeper, towards the globe's centre
+			m->on.rig.rest[i][c] -= 3.0f / 14 * (m->on.rig.rest[i][c] - (float)m->on.rig.globe[m->on.rig.side[i]].center[c]);
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	struct deform *deform = deform_new(&m->on.rig);
+	struct deform_near near = deform_near_of(&m->on.rig);
+	for (int k = 0; k < 3; k++) {
+		double e[RIG_COMPONENTS], turn[2][3][3], c[12], worst = 0, most = 0;
+		float (*from)[3] = calloc((size_t)m->on.rig.n, sizeof *from);
+		for (int pass = 0; pass < 2; pass++) {  // what it is told against: rest for a blink, else a look straight ahead
+			drive_look(c, &m->on.rig, pass ? look[k][0] : 0, pass ? look[k][1] : 0, pass ? look[k][2] : 1);
+			rig_components(e, &m->on.rig, c);
+			rig_globes_turned(turn, &m->on.rig, c);
+			deform_rest(deform, x, 0);
+			deform_pose(deform, !pass && k == 0 ? m->on.rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
+			deform_clear(x, &m->on.rig, &near, (const double(*)[3][3])turn);
+			if (!pass)
+				memcpy(from, x, (size_t)m->on.rig.n * sizeof *from);
+		}
+		for (int i = 0; i < b.n; i++)
+			for (int d = 0; d < 3; d++) {
+				const double sum = (double)b.pose[(pairs[k][0] * b.n + i) * 3 + d] + (double)b.pose[(pairs[k][1] * b.n + i) * 3 + d];
+				const double want = (double)x[b.vertex[i]][d] - (double)from[b.vertex[i]][d];
+				worst = fmax(worst, fabs(sum - want));
+				most = fmax(most, fabs(want));
+			}
+		print_message("two targets: %.2f mm off where the pose moves by %.2f\n", worst, most);
+		assert_true(worst < 0.3);
+		free(from);
+	}
+	memcpy(m->on.rig.rest, was, (size_t)m->on.rig.n * sizeof *was);
+	free(was);
+	free(x);
+	deform_free(deform);
+	deform_near_free(&near);
+	glb_bake_free(&b);
+}
+
+/* A clip that hardly looks anywhere: the named gazes turn lids no further than it did, however steep its slopes; what was made of the same
+ * slopes without end closes the eye. */
+static void lids_go_no_further_than_they_are_known(void **state)
+{
+	struct made *m = *state;
+	struct glb_bake b[3];
+	struct err err = { 0 };
+	const double g[2][10] = { { -4, -3, 0, 0, 0, -4, -3 }, { 4, 3, 0, 0, 0, 4, 3 } };
+	const struct known was = m->on.rig.known;
+	double most[3] = { 0 }, *slope = m->on.rig.W;
+	for (int eye = 0; eye < 2; eye++)
+		slope[5 * eye] += 5;  // px a degree
+	for (int k = 0; k < 3; k++) {
+		if (k)
+			known_of(&m->on.rig.known, 2, g[0], 10, k == 1 ? 0 : 0.3);
+		assert_true(glb_bake_make(&b[k], &m->on.rig, &m->drive, &conf, &err));
+		for (int pose = 2; pose < 10; pose++)
+			for (int i = 0; i < b[k].n; i++) {
+				const float *d = b[k].pose + (long)(pose * b[k].n + i) * 3;
+				most[k] = fmax(most[k], sqrt((double)d[0] * d[0] + (double)d[1] * d[1] + (double)d[2] * d[2]));
+			}
+		glb_bake_free(&b[k]);
+	}
+	print_message("furthest of the named gazes: %.2f mm, held %.2f, and a little further %.2f\n", most[0], most[1], most[2]);
+	assert_true(most[1] < 0.35 * most[0] && most[2] > most[1] && most[2] < 1.5 * most[1]);
+	m->on.rig.known = was;
+	for (int eye = 0; eye < 2; eye++)
+		slope[5 * eye] -= 5;
+}
+
+/* A vertex of the bake with an eye's lids at the target's weight w, that of its half at q: its place; how far it is outside that eye. */
+static double on_the_way(float x[3], const struct rig *rig, const struct glb_bake *b, int eye, int i, double w, double q)
+{
+	const float *blink = b->pose + 3 * ((long)eye * b->n + i), *half = b->pose + 3 * ((long)(b->n_poses - GLB_HALVES + eye) * b->n + i);
+	double turn[3][3];
+	rig_globe_rotation(turn, rig, (double[3]){ 0 });
+	for (int c = 0; c < 3; c++)
+		x[c] = (float)(rig->rest[b->vertex[i]][c] + w * blink[c] + q * half[c]);
+	return rig_globe_distance(rig, rig->side[b->vertex[i]], (const double(*)[3])turn, x);
+}
+
+/* Between open and shut, lids come no nearer to the eye than they are at either end, and go where the pose itself has them; the blink's target alone
+ * leads straight on (here lids are 2 mm before the eye). */
+static void blinks_go_round_the_eye(void **state)
+{
+	struct made *m = *state;
+	struct rig shuts, *rig = &shuts;
+	struct rig_conf shutting = face_conf();
+	struct glb_bake b;
+	struct err err = { 0 };
+	double deep[2] = { 0 }, off[2] = { 0 };
+	shutting.map_step = 4;
+	shutting.lid = 6;
+	shutting.seal = 0.15;  // else this face's lids stay wide open
+	assert_true(face_rig(rig, 0, &m->on.face, &shutting, &err));
+	float (*pose)[3] = calloc((size_t)rig->n, sizeof *pose), x[3];
+	struct deform *deform = deform_new(rig);
+	struct deform_near near = deform_near_of(rig);
+	assert_true(glb_bake_make(&b, rig, &m->drive, &conf, &err));
+	for (int step = 1; step < 20; step++)
+		for (int eye = 0; eye < 2; eye++) {
+			const double w = step / 20.0;
+			double e[RIG_COMPONENTS], c[12], turn[2][3][3];
+			drive_look(c, rig, 0, 0, 1);
+			c[5 * eye + 3] = c[5 * eye + 4] = 0;
+			rig_components(e, rig, c);
+			rig_globes_turned(turn, rig, c);
+			for (int k = 0; k < RIG_COMPONENTS; k++)
+				e[k] = (1 - w) * rig->rest_e[k] + w * e[k];
+			deform_rest(deform, pose, 0);
+			deform_pose(deform, e, (const double(*)[3][3])turn, pose, 0);
+			deform_clear(pose, rig, &near, (const double(*)[3][3])turn);
+			for (int i = 0; i < b.n; i++) {
+				if (rig->side[b.vertex[i]] != eye)
+					continue;
+				const double ends = fmin(on_the_way(x, rig, &b, eye, i, 0, 0), on_the_way(x, rig, &b, eye, i, 1, 0));
+				for (int with = 0; with < 2; with++) {
+					deep[with] = fmax(deep[with], ends - on_the_way(x, rig, &b, eye, i, w, with ? glb_half_weight(w) : 0));
+					double d[3];
+					for (int k = 0; k < 3; k++)
+						d[k] = (double)x[k] - (double)pose[b.vertex[i]][k];
+					off[with] = fmax(off[with], vec_norm(d));
+				}
+			}
+		}
+	print_message("lids on their way: %.3f mm nearer to the eye and %.3f off with the blink's target alone, %.3f and %.3f with both\n", deep[0], off[0], deep[1], off[1]);
+	assert_true(deep[0] > 1 && deep[1] < 0.15 && off[1] < 0.2);  // a parabola for an arc
+	free(pose);
+	deform_free(deform);
+	deform_near_free(&near);
+	glb_bake_free(&b);
+	rig_free(rig);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(expressions_have_targets),
+		cmocka_unit_test(named_poses_add_up),
+		cmocka_unit_test(lids_go_no_further_than_they_are_known),
+		cmocka_unit_test(blinks_go_round_the_eye),
+	};
+	return cmocka_run_group_tests(tests, setup, teardown);
+}
