@@ -23,11 +23,10 @@ static void take(float *to, const struct poser *p, const struct glb_bake *b, con
 }
 
 /* What the way lacks on average, weighted as the target will be: out[s->all]. */
-static void fit(float *out, struct poser *p, const struct glb_bake *b, struct stack *s, int eye)
+static void fit(float *out, struct poser *p, const struct glb_bake *b, struct stack *s)
 {
 	double square = 0, *controls = mem_new((size_t)p->rig->n_inputs + 1, sizeof *controls);
-	drive_look(controls, p->rig, 0, 0, 1);
-	controls[5 * eye + 3] = controls[5 * eye + 4] = 0;
+	drive_look(controls, p->rig, 0, 0, 0);
 	poser_still(p);
 	take(s->still, p, b, s);
 	poser_from_still(p, controls, 1);
@@ -116,7 +115,7 @@ void glb_take_halves(struct glb_bake *b, struct poser *p)
 		const size_t at = (size_t)(b->n_poses - GLB_HALVES + eye);
 		const float *blink = b->pose + (size_t)eye * row;
 		float *half = mem_new(s.all + 1, sizeof *half), *skin = b->pose + at * row, *lean = b->pose_lean + at * row, *hairs = b->hair_pose + at * hair;
-		fit(half, p, b, &s, eye);
+		fit(half, p, b, &s);
 		b->pose_name[at] = glb_half_names[eye];
 		for (size_t i = 0; i < row; i++) {
 			const float share = poser_own_side(p, eye, p->rig->rest[b->vertex[i / 3]]);
