@@ -4,9 +4,9 @@
  * Algorithm 1 is not linear in e, because skin slides over a round skull and a turning cornea. So the animation is evaluated and its
  * displacements are decomposed (principal components): the fewest morph targets that keep every vertex of every frame within a
  * tolerance (at most `targets`), with their weights over time. Further targets of single poses (eyeBlinkLeft, eyeLookUpRight ..., the
- * names of Apple's ARKit; expressions, by the model's) are included with weight 0; they may be added to each other, but not to the animation's.
- * A target is a straight line and a lid goes round the eye: where eyeBlinkLeft has the weight w, eyeBlinkLeft_half has 4 w (1 - w) (halves.h). A second
- * animation, `blink`, does so.
+ * names of Apple's ARKit, an eye's being its own side of a pose of both; expressions, by the model's) are included with weight 0; they may be
+ * added to each other, but not to the animation's. A target is a straight line and a lid goes round the eye: where eyeBlinkLeft has the weight
+ * w, eyeBlinkLeft_half has 4 w (1 - w) (halves.h). A second animation, `blink`, does so.
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H
