@@ -20,7 +20,7 @@
 #include "track/clip/settle.h"
 
 /* Warns of shortcomings of the video, one line each. */
-static void tell_video(struct stage *stage, const struct track_clip *clip)
+static void tell_video(struct stage *stage, const struct track_clip *clip, const struct track_subject *subject)
 {
 	const struct video_info *v = &clip->info;
 	if (v->variable)
@@ -32,7 +32,7 @@ static void tell_video(struct stage *stage, const struct track_clip *clip)
 		stage_skipped(stage, "%s: %.0f frames/s: blinks are over in a few frames; film at 60 or more", clip->file, v->fps);
 	if (clip->focal_assumed)
 		stage_skipped(stage, "%s: focal length not known: as if from %.0f mm away; set camera.focal_px, or camera.focal_mm and camera.sensor_mm", clip->file,
-		              clip->cam_from_head[2][3]);
+		              track_eyes_depth(clip->cam_from_head, subject));
 }
 
 static void tell_way(struct stage *stage, const struct track_clip *clip)
@@ -66,7 +66,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 {
 	if (!track_subject_load(subject, stage, conf, err) || !track_clip_open(clip, stage, subject, conf, err))
 		return false;
-	tell_video(stage, clip);
+	tell_video(stage, clip, subject);
 	if (!(subject->assumed ? track_alone(clip, stage, subject, conf, err) : track_settle(clip, stage, subject, conf, err)))
 		return false;
 	tell_way(stage, clip);

@@ -158,5 +158,5 @@ void track_apertures(struct track_result *r, const struct track_clip *clip, cons
 				r->g[f * width + e * EYE_INPUTS + k] = r->eyes.state[f][e].gaze[k] * 180 / M_PI;
 	for (int e = 0; e < SIDES; e++)
 		if (r->eyes.globe[e].seen)
-			eye(r, e, conf->lid_sigma_mm * clip->camera.focal_px / clip->cam_from_head[2][3]);
+			eye(r, e, conf->lid_sigma_mm * track_px_per_mm(clip, clip->cam_from_head, s));
 }

@@ -16,7 +16,7 @@ enum { ENDS = 2 };
 static const double shaped[ENDS] = { 0.09, 0.14 };
 /* Weight of the skin's motion, upper and lower lid, and the distance (mm) between it and the margin seen at which it has lost
  * half: skin of the lower lid runs into its margin; that of the upper lid hangs over it. */
-static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.35;
+static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.3;
 
 /* The margin of the mesh, both lids from the inner corner to the outer, head frame. */
 struct rim {
@@ -174,7 +174,7 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 		skin[k] = beside_new(rim.n[k], rim.head[k], r, side, clip, points);
 	int below = rim.n[LID_LOWER];
 	double(*carried)[2] = bulk_grow(r->bulk, 0, (size_t)below * (size_t)r->n + 1, sizeof *carried);
-	double(*corner)[ENDS][2] = bulk_grow(r->bulk, 0, (size_t)r->n + 1, sizeof *corner), near_px = near_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
+	double(*corner)[ENDS][2] = bulk_grow(r->bulk, 0, (size_t)r->n + 1, sizeof *corner), near_px = near_mm * track_px_per_mm(clip, clip->cam_from_head, s);
 	for (long f = 0; f < r->n; f++) {
 		struct eye_state *state = &r->eyes.state[f][side];
 		struct line mesh[LIDS];

@@ -81,7 +81,7 @@ static long span_of(const struct track_clip *clip, const struct track_conf *conf
 static bool rests(const struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
 	struct track_moves moves;
-	bool is = track_moves(&moves, track_frames_of(clip, 6), span_of(clip, conf), clip, stage, s, conf) && track_moves_rest(&moves, clip);
+	bool is = track_moves(&moves, track_frames_of(clip, 6), span_of(clip, conf), clip, stage, s, conf) && track_moves_rest(&moves, clip, s);
 	track_moves_free(&moves);
 	return is;
 }

@@ -156,7 +156,7 @@ bool folds_find(struct folds_found *found, const struct folds *f, struct stage *
                 const struct track_subject *s, const struct track_points *points, const struct track_conf *conf, struct err *err)
 {
 	const struct opt_each_list *list = &conf->expression;
-	double px_per_mm = clip->camera.focal_px / clip->cam_from_head[2][3];
+	double px_per_mm = track_px_per_mm(clip, clip->cam_from_head, s);
 	*found = (struct folds_found){ .mask = skin_of(f, clip, points, conf->wrinkle.lash_mm * px_per_mm), .normals = mesh_normals(&s->mesh) };
 	found->rays = ray_scene_new(s->mesh.n_vertices, (const float(*)[3])s->mesh.vertices, s->mesh.n_faces, (const int32_t(*)[3])s->mesh.faces);
 	found->ground = (struct wrinkle_ground){ f->x0, f->y0, f->width, f->height, px_per_mm, points->n, (const double(*)[2])points->points.at, found->mask,

@@ -151,7 +151,7 @@ static void begin(struct follow *f, struct stage *stage, const struct track_clip
 	r->bulk = !chunks_wanted(clip, conf) ? 0 : bulk_open(stage_path(stage, "work/skin"), RESIDENT);
 	f->room = 0;
 	f->skin = !points->n ? 0 : skin_track_new(&points->points, clip->luma, clip->info.width, clip->info.width, clip->info.height, points->mask, &conf->skin);
-	f->rigid = rigid_new(points, subject, clip->camera.focal_px / clip->cam_from_head[2][3]);
+	f->rigid = rigid_new(points, subject, track_px_per_mm(clip, clip->cam_from_head, subject));
 	f->eyes = track_eyes_new(clip, subject, r->bulk, conf);
 	if (f->skin && clip->moves.n)
 		skin_track_begin(f->skin, clip->moves.n, (const double(*)[2])clip->moves.at, clip->moves.first);
@@ -194,7 +194,7 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 		const long every = track_every(conf);
 		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip, conf->stirs_mm);
 		if (!conf->limit)
-			track_together(r, points, clip, conf);
+			track_together(r, points, clip, subject, conf);
 	}
 	ok = ok && (r->n < 2 || track_eyes_finish(r, f.eyes, err));
 	end(&f);

@@ -7,14 +7,9 @@
 
 void track_look_distance(struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	double eye[3] = { 0 }, p[3], n = s->opening[0].open + s->opening[1].open;
-	for (int e = 0; e < SIDES; e++)
-		for (int k = 0; k < 3 && s->opening[e].open; k++)
-			eye[k] += s->opening[e].center[k] / n;
-	head_from(p, clip->cam_from_head, eye);
-	double k = conf->distance_mm / p[2];
-	clip->camera.focal_px *= k;
-	clip->cam_from_head[2][3] += conf->distance_mm - p[2];
+	const double depth = track_eyes_depth(clip->cam_from_head, s);
+	clip->camera.focal_px *= conf->distance_mm / depth;
+	clip->cam_from_head[2][3] += conf->distance_mm - depth;
 }
 
 /* Detects a whole, upright face in the reference frame; close-ups show none. */

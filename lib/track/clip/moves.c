@@ -17,7 +17,7 @@ static const double reach_mm = 75;                          // of the eyeballs' 
 static const double off_lid = 1.2, off_brow = 0.6, off_skin = 0.15;  // mm: skin's own motion, about
 static const double anchor_mm = 5;                          // of an opening's middle from where it was found
 static const double reach_yaw = 36, reach_pitch = 20;       // degrees
-static const double robust_mm = 0.35;                       // scale of the weights
+static const double robust_mm = 0.3;                       // scale of the weights
 static const double most_turned = 85, most_sigma = 0.5;     // degrees: of a face that is seen all the while; of a pose that is known
 
 /* Frames kept: brightness of half the size. */
@@ -154,7 +154,7 @@ void track_moves_free(struct track_moves *m)
 	*m = (struct track_moves){ 0 };
 }
 
-bool track_moves_rest(const struct track_moves *m, const struct track_clip *clip)
+bool track_moves_rest(const struct track_moves *m, const struct track_clip *clip, const struct track_subject *s)
 {
 	double *off = mem_array((size_t)m->n + 1, sizeof *off), most = 0;
 	for (long f = 0; f < m->frames; f++) {
@@ -165,7 +165,7 @@ bool track_moves_rest(const struct track_moves *m, const struct track_clip *clip
 		most = fmax(most, n > m->n / 3 ? stats_median(n, off) : INFINITY);
 	}
 	free(off);
-	return m->n > 0 && most < rest_mm * clip->camera.focal_px / clip->cam_from_head[2][3];
+	return m->n > 0 && most < rest_mm * track_px_per_mm(clip, clip->cam_from_head, s);
 }
 
 /* How far skin moves on its own, mm. */
@@ -177,7 +177,7 @@ static double own_motion(const double head[3], const struct track_subject *s)
 
 bool track_moves_pose(struct track_clip *clip, struct track_moves *m, const struct track_subject *s, bool near, const struct track_conf *conf)
 {
-	double *weight = mem_array((size_t)m->n + 1, sizeof *weight), pose[4][4], px_per_mm = clip->camera.focal_px / clip->cam_from_head[2][3];
+	double *weight = mem_array((size_t)m->n + 1, sizeof *weight), pose[4][4], px_per_mm = track_px_per_mm(clip, clip->cam_from_head, s);
 	struct rigid_film film = { m->n, (int)m->frames, (const double(*)[2])m->at, weight, (const float(*)[2])m->px, m->seen };
 	struct rigid_anchor anchor[SIDES];
 	struct rigid_fit fit = { 0 };

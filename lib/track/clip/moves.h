@@ -12,7 +12,7 @@ bool track_moves(struct track_moves *moves, long every, long span, const struct 
 void track_moves_free(struct track_moves *moves);
 
 /* Whether that skin stays where it is, but for lids and brows. */
-bool track_moves_rest(const struct track_moves *moves, const struct track_clip *clip);
+bool track_moves_rest(const struct track_moves *moves, const struct track_clip *clip, const struct track_subject *subject);
 
 /* Lays the mesh on the reference so that it moves as they do: sets the clip's pose. near: the pose is about right already. moves: turned, apart and torn
  * are set. Returns false, the clip unchanged, where the head turns too little to tell. */

@@ -163,7 +163,7 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = px;
-	clip->skin_mm = trust_skin_mm(r, clip);
+	clip->skin_mm = trust_skin_mm(r, clip, s);
 	clip->pose_refined = true;
 }
 

@@ -263,6 +263,22 @@ void track_subject_free(struct track_subject *s)
 	mesh_free(&s->mesh);
 }
 
+double track_eyes_depth(const double cam_from_head[4][4], const struct track_subject *s)
+{
+	double depth = 0;
+	int n = 0;
+	for (int e = 0; e < SIDES; e++) {
+		const double *at = s->opening[e].open ? s->opening[e].center : s->center[e];
+		double p[3];
+		if (isnan(at[0] + at[1] + at[2]))
+			continue;
+		head_from(p, cam_from_head, at);
+		depth += p[2];
+		n++;
+	}
+	return n ? depth / n : cam_from_head[2][3];
+}
+
 bool track_on_lid(const double head[3], const struct track_subject *s)
 {
 	for (int e = 0; e < SIDES; e++) {

@@ -30,6 +30,10 @@ struct track_subject {
 bool track_subject_load(struct track_subject *subject, struct stage *stage, const struct track_conf *conf, struct err *err);
 void track_subject_free(struct track_subject *subject);
 
+/* How far the eyes are in front of the camera, mm: mean of the lids' openings, or of the eyeballs' centres where the mesh has none. A millimetre of skin or lid is focal_px
+ * over it in the picture; the depth of the mesh's origin, which may lie anywhere, tells nothing of that. */
+double track_eyes_depth(const double cam_from_head[4][4], const struct track_subject *subject);
+
 /* True where skin moves with the eyelids: within 1.4 eyeball radii of a centre, in x and y. head: mm. */
 bool track_on_lid(const double head[3], const struct track_subject *subject);
 

@@ -96,16 +96,17 @@ static void frame(struct track_result *r, long f, struct about *a, const struct 
 	}
 }
 
-void track_together(struct track_result *r, const struct track_points *points, const struct track_clip *clip, const struct track_conf *conf)
+void track_together(struct track_result *r, const struct track_points *points, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	const double px_per_mm = clip->camera.focal_px / clip->cam_from_head[2][3];
 #pragma omp parallel
 	{
 		struct about *a = mem_array((size_t)r->n_points + 1, sizeof *a);
 #pragma omp for schedule(dynamic, 4)
 		for (long f = 0; f < r->n; f++)
-			if (!r->lost_at[f])
+			if (!r->lost_at[f]) {
+				const double px_per_mm = track_px_per_mm(clip, (const double(*)[4])r->pose[f], s);
 				frame(r, f, a, points, clip, conf->own_mm * px_per_mm, conf->astray_mm * px_per_mm);
+			}
 		free(a);
 	}
 }

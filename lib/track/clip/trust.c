@@ -54,13 +54,13 @@ static double apart_of(const struct track_result *r, const struct track_clip *cl
 	return apart > 0 ? apart : apart < near ? near - apart : isnan(apart) ? NAN : 0;
 }
 
-double trust_skin_mm(const struct track_result *r, const struct track_clip *clip)
+double trust_skin_mm(const struct track_result *r, const struct track_clip *clip, const struct track_subject *s)
 {
 	double *off = mem_array((size_t)r->n + 1, sizeof *off);
 	int n = 0;
 	for (long f = 0; f < r->n && r->misfit; f++)
 		if (!r->lost_at[f])
-			off[n++] = r->misfit[f] * clip->cam_from_head[2][3] / clip->camera.focal_px;
+			off[n++] = r->misfit[f] / track_px_per_mm(clip, (const double(*)[4])r->pose[f], s);
 	double middle = middle_of(n, off);
 	free(off);
 	return middle;
@@ -146,7 +146,7 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 {
 	const bool laid = !s->assumed && !clip->pose_given && !clip->moves.turned;
 	t->value[TRUST_LAID] = laid ? clip->pose_px / trust_scale(clip, s) : NAN;
-	t->value[TRUST_SKIN] = trust_skin_mm(r, clip);
+	t->value[TRUST_SKIN] = trust_skin_mm(r, clip, s);
 	t->value[TRUST_LEVEL] = gaze_of(r, 1, false);
 	t->value[TRUST_APART] = apart_of(r, clip, conf->nearest_mm);
 	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);

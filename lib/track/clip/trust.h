@@ -34,6 +34,6 @@ double trust_odds(int evidence, double value, const struct track_conf *conf);
 double trust_reference(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
 
 /* Median over the frames of how far the skin lies off the rigid head, mm; NAN with few frames or no skin. */
-double trust_skin_mm(const struct track_result *result, const struct track_clip *clip);
+double trust_skin_mm(const struct track_result *result, const struct track_clip *clip, const struct track_subject *subject);
 
 #endif

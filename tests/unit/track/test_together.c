@@ -11,6 +11,7 @@ static const double focal = 4000, away = 500, step_mm = 2;  // 8 px a mm
 
 struct film {
 	struct track_clip clip;
+	struct track_subject subject;
 	struct track_points points;
 	struct track_result result;
 	struct track_conf conf;
@@ -80,7 +81,7 @@ static void test_linear_stays(void **state)
 	(void)state;
 	struct film f;
 	open_film(&f, 0, 0);
-	track_together(&f.result, &f.points, &f.clip, &f.conf);
+	track_together(&f.result, &f.points, &f.clip, &f.subject, &f.conf);
 	NEAR(rms_off(&f), 0, 0.02);
 	for (int i = 0; i < POINTS; i++)
 		assert_true(at_rim(i) || f.result.confidence[i] > 0.95f);
@@ -94,7 +95,7 @@ static void test_noise_falls(void **state)
 	struct film f;
 	open_film(&f, 1, 0);
 	const double before = rms_off(&f);
-	track_together(&f.result, &f.points, &f.clip, &f.conf);
+	track_together(&f.result, &f.points, &f.clip, &f.subject, &f.conf);
 	assert_true(rms_off(&f) < 0.55 * before);
 	close_film(&f);
 }
@@ -105,7 +106,7 @@ static void test_strays_go(void **state)
 	(void)state;
 	struct film f;
 	open_film(&f, 0.05, 6);
-	track_together(&f.result, &f.points, &f.clip, &f.conf);
+	track_together(&f.result, &f.points, &f.clip, &f.subject, &f.conf);
 	for (int i = 0; i < POINTS; i++) {
 		if (at_rim(i))
 			continue;

@@ -30,6 +30,7 @@ static void shoot(struct film *film, double higher_deg, double apart_deg, double
 	*film = (struct film){ .clip = { .camera = { .focal_px = 5000 }, .pose_given = true } };
 	struct track_result *r = &film->result;
 	film->clip.cam_from_head[2][3] = 500;
+	r->pose = mem_new(FRAMES, sizeof *r->pose);
 	r->eyes.globe[SIDE_LEFT].center_in_head[0] = 31;
 	r->eyes.globe[SIDE_RIGHT].center_in_head[0] = -31;
 	r->n = FRAMES;
@@ -39,6 +40,7 @@ static void shoot(struct film *film, double higher_deg, double apart_deg, double
 	r->eyes.state = mem_new(FRAMES, sizeof *r->eyes.state);
 	for (long f = 0; f < FRAMES; f++) {
 		r->misfit[f] = 1;
+		r->pose[f][2][3] = 500;
 		for (int e = 0; e < SIDES; e++) {
 			r->eyes.state[f][e].gaze[0] = DEGREE * (e == SIDE_LEFT ? 0.5 : -0.5) * apart_deg;
 			r->eyes.state[f][e].gaze[1] = DEGREE * (e == SIDE_LEFT ? 0.5 : -0.5) * higher_deg;
@@ -109,6 +111,41 @@ static void too_near(void **state)
 	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
 	NEAR(t.value[TRUST_APART], camera - atan2(62, 500) / DEGREE, 1e-9);
 	track_result_free(&film.result);
+}
+
+/* A millimetre of skin is as large in the picture as the eyes are near, wherever the mesh has its origin: at the eyes, 100 mm behind them, or on the ground. */
+static void at_the_eyes_depth(void **state)
+{
+	(void)state;
+	static const double behind[] = { 0, 100, 1600 };
+	struct film film;
+	struct track_trust t;
+	const struct track_conf conf = keys();
+	for (int i = 0; i < COUNT(behind); i++) {
+		shoot(&film, 0, 0, 0);
+		for (int e = 0; e < SIDES; e++)
+			film.subject.center[e][2] = behind[i];
+		film.subject.opening[SIDE_LEFT] = (struct eye_opening){ .open = true, .center = { 31, 0, behind[i] + 12 } };
+		film.subject.opening[SIDE_RIGHT] = (struct eye_opening){ .open = true, .center = { -31, 0, behind[i] + 12 } };
+		for (long f = 0; f < FRAMES; f++) {
+			film.result.pose[f][2][2] = -1;
+			film.result.pose[f][2][3] = 512 + behind[i];
+		}
+		track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+		NEAR(t.value[TRUST_SKIN], 0.1, 1e-12);
+		// a head that comes nearer: a pixel is less of a millimetre there
+		for (long f = 0; f < FRAMES; f++)
+			film.result.pose[f][2][3] -= 250;
+		track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+		NEAR(t.value[TRUST_SKIN], 0.05, 1e-12);
+		// where no opening is known, the eyeballs tell it; of one eye alone, that one
+		film.subject.opening[SIDE_LEFT].open = film.subject.opening[SIDE_RIGHT].open = false;
+		NEAR(track_eyes_depth((const double(*)[4])film.result.pose[0], &film.subject), 262, 1e-12);
+		film.subject.center[SIDE_LEFT][2] = NAN;
+		film.subject.center[SIDE_RIGHT][2] += 50;
+		NEAR(track_eyes_depth((const double(*)[4])film.result.pose[0], &film.subject), 212, 1e-12);
+		track_result_free(&film.result);
+	}
 }
 
 /* One eye alone that laid the mesh on is less sure of it than two, or than one whose centre was told. */
@@ -265,6 +302,7 @@ int main(void)
 		cmocka_unit_test(all_in_order),
 		cmocka_unit_test(together),
 		cmocka_unit_test(too_near),
+		cmocka_unit_test(at_the_eyes_depth),
 		cmocka_unit_test(by_one_eye),
 		cmocka_unit_test(weighed_together),
 		cmocka_unit_test(off_by_degrees), cmocka_unit_test(off_at_large_gazes),
