@@ -112,15 +112,12 @@ bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct e
 		eye_track_head_was(eyes->track, f, r->pose[f]);
 	bool ok = eye_track_finish(&r->eyes, eyes->track, err);
 	r->has_eyes = ok && r->eyes.frames == r->n;
-	for (long f = 0; f < r->n && r->has_eyes; f++)
-		for (int e = 0; e < SIDES && (r->lost_at[f] || (r->unsure_at && r->unsure_at[f])); e++) {
-			struct eye_state *s = &r->eyes.state[f][e];
-			s->confidence = 0;
-			for (int k = 0; k < 3; k++)
-				s->gaze[k] = s->sigma[k] = NAN;
-			for (int k = 0; k < LIDS * LID_POINTS_MAX * 2; k++)
-				(&s->lid[0][0][0])[k] = NAN;
-		}
+	bool *forgotten = mem_new((size_t)r->n + 1, sizeof *forgotten);
+	for (long f = 0; f < r->n; f++)
+		forgotten[f] = r->lost_at[f] || (r->unsure_at && r->unsure_at[f]);
+	if (r->has_eyes)
+		eye_clip_forget(&r->eyes, forgotten);
+	free(forgotten);
 	return ok;
 }
 

@@ -222,17 +222,24 @@ static void unmark(struct eye_side *eye, const struct eye_event *event)
 		eye->state[i].blink = BLINK_OPEN;
 }
 
+/* Whether the other eye blinks at the same time. */
+static bool in_both(const struct eye_clip *clip, const struct eye_event *e)
+{
+	for (int k = 0; k < clip->events; k++) {
+		const struct eye_event *o = &clip->event[k];
+		if (o->kind == EVENT_BLINK && o->side != e->side && o->first <= e->last && o->last >= e->first)
+			return true;
+	}
+	return false;
+}
+
 void eye_pair_blinks(struct eye_clip *clip, struct eye_side side[SIDES])
 {
 	int n = 0;
 	bool *lone = mem_new((size_t)clip->events + 1, sizeof *lone);
 	for (int i = 0; i < clip->events; i++) {
 		const struct eye_event *e = &clip->event[i];
-		lone[i] = e->kind == EVENT_BLINK && e->amplitude < WINK && clip->globe[!e->side].seen && side[!e->side].state[e->peak].openness > WINK;
-		for (int k = 0; k < clip->events && lone[i]; k++) {
-			const struct eye_event *o = &clip->event[k];
-			lone[i] = !(o->kind == EVENT_BLINK && o->side != e->side && o->first <= e->last && o->last >= e->first);
-		}
+		lone[i] = e->kind == EVENT_BLINK && e->amplitude < WINK && clip->globe[!e->side].seen && side[!e->side].state[e->peak].openness > WINK && !in_both(clip, e);
 	}
 	for (int i = 0; i < clip->events; i++) {
 		if (lone[i])
@@ -242,4 +249,39 @@ void eye_pair_blinks(struct eye_clip *clip, struct eye_side side[SIDES])
 	}
 	clip->events = n;
 	free(lone);
+}
+
+/* Whether an event may stand though frames are forgotten. */
+static bool stands(const struct eye_clip *clip, const struct eye_event *e, const bool *forgotten)
+{
+	for (int f = e->first; f <= e->last && e->kind == EVENT_SACCADE; f++)
+		if (forgotten[f])
+			return false;
+	return e->kind == EVENT_SACCADE || !forgotten[e->peak] || in_both(clip, e);
+}
+
+void eye_clip_forget(struct eye_clip *clip, const bool *forgotten)
+{
+	int n = 0;
+	bool *keep = mem_new((size_t)clip->events + 1, sizeof *keep);
+	for (int i = 0; i < clip->events; i++)
+		keep[i] = stands(clip, &clip->event[i], forgotten);
+	for (int i = 0; i < clip->events; i++) {
+		const struct eye_event *e = &clip->event[i];
+		for (int f = e->first; f <= e->last && !keep[i] && e->kind == EVENT_BLINK; f++)
+			clip->state[f][e->side].blink = BLINK_OPEN;
+		if (keep[i])
+			clip->event[n++] = *e;
+	}
+	clip->events = n;
+	free(keep);
+	for (long f = 0; f < clip->frames; f++)
+		for (int e = 0; e < SIDES && forgotten[f]; e++) {
+			struct eye_state *s = &clip->state[f][e];
+			s->confidence = 0;
+			for (int k = 0; k < 3; k++)
+				s->gaze[k] = s->sigma[k] = NAN;
+			for (int k = 0; k < LIDS * LID_POINTS_MAX * 2; k++)
+				(&s->lid[0][0][0])[k] = NAN;
+		}
 }

@@ -87,8 +87,41 @@ static void level(void **state)
 	free(eye[1].state);
 }
 
+/* Frames 20 to 39 are forgotten: there a blink of both eyes stands, one of the left alone goes, and so does a saccade that reaches into them; before them all stand. */
+static void forgotten_frames(void **state)
+{
+	(void)state;
+	const struct eye_event events[] = {
+		{ EVENT_BLINK, 0, 5, 9, 7, 1, 0 }, { EVENT_SACCADE, 0, 10, 13, 11, 0.1, 2 }, { EVENT_SACCADE, 1, 18, 20, 19, 0.1, 2 },
+		{ EVENT_BLINK, 0, 22, 26, 24, 1, 0 }, { EVENT_BLINK, 1, 23, 27, 25, 1, 0 }, { EVENT_BLINK, 0, 33, 36, 34, 1, 0 }, { EVENT_BLINK, 1, 38, 44, 41, 1, 0 },
+	};
+	static const bool stands[COUNT(events)] = { true, true, false, true, true, false, true };
+	struct eye_clip clip = { .frames = FRAMES, .events = COUNT(events), .state = mem_new(FRAMES, sizeof *clip.state), .event = mem_new(COUNT(events), sizeof *clip.event) };
+	bool forgotten[FRAMES];
+	memcpy(clip.event, events, sizeof events);
+	for (int f = 0; f < FRAMES; f++) {
+		forgotten[f] = f >= 20 && f < 40;
+		for (int e = 0; e < 2; e++)
+			clip.state[f][e].confidence = 1;
+	}
+	clip.state[34][0].blink = clip.state[24][0].blink = BLINK_CLOSED;
+	eye_clip_forget(&clip, forgotten);
+	int n = 0;
+	for (int i = 0; i < COUNT(events); i++)
+		if (stands[i])
+			assert_memory_equal(&clip.event[n++], &events[i], sizeof events[i]);
+	assert_int_equal(clip.events, n);
+	assert_true(clip.state[34][0].blink == BLINK_OPEN && clip.state[24][0].blink == BLINK_CLOSED);
+	for (int f = 0; f < FRAMES; f++)
+		for (int e = 0; e < 2; e++) {
+			const struct eye_state *s = &clip.state[f][e];
+			assert_true(forgotten[f] ? s->confidence == 0 && isnan(s->gaze[1]) && isnan(s->lid[1][0][1]) : s->confidence == 1 && s->gaze[1] == 0);
+		}
+	eye_clip_free(&clip);
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(parted), cmocka_unit_test(too_few), cmocka_unit_test(level) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(parted), cmocka_unit_test(too_few), cmocka_unit_test(level), cmocka_unit_test(forgotten_frames) };
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
