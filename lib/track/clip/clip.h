@@ -8,7 +8,7 @@
 #include "track/clip/subject.h"
 #include "track/head/lens.h"
 
-/* A frame whose head pose calibrate has estimated. */
+/* A frame whose head pose is known: calibrate has estimated it, or the skin's motion tells it. */
 struct track_known {
 	long frame;
 	double cam_from_head[4][4], residual_px;
@@ -19,13 +19,16 @@ struct track_moves {
 	int n;                 // points; 0: not known
 	long frames;           // in order; [0] is one of the clip's first
 	long reference;        // which of them is the reference
+	long every, first_frame;   // of the clip: frames from one to the next, that of [0]
 	double (*at)[2];       // [n] px in the reference
 	double (*head)[3];     // [n] where the reference's pose said it is on the mesh, mm
 	float (*px)[2];        // [frames][n]
 	float *seen;           // [frames][n] confidence
 	struct patch_warp *first;  // [n] at the clip's first frame
-	double turned;         // radians: the head's largest turn between two frames; 0: not known
-	double apart;          // radians: between the poses that two halves of the skin tell
+	int n_known;           // frames whose pose it tells
+	struct track_known *known;
+	double turned;         // radians: the head's largest turn between two of those; 0: not known
+	double apart, sigma;   // radians: between the poses that two halves of the skin tell; standard deviation of the turn
 	double off_mm;         // rms of the skin about the rigid head
 	bool torn;             // so far that the mesh does not move as the skin does
 };

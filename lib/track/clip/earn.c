@@ -5,11 +5,17 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 #include "track/clip/moves.h"
 #include "track/head/find.h"
 #include "track/head/propose.h"
+#include "track/head/rigid.h"
 
 enum { LOOKS = 6 };
+
+/* A reference turned so much further from the camera than another frame is exchanged for it: the skin of its far side is soon out of sight. Among frames so much
+ * alike the most open eyes decide. degrees, assumptions. */
+static const double turned_off = 10, alike = 6;
 
 struct look {
 	long frame;
@@ -17,8 +23,9 @@ struct look {
 	double worth;
 };
 
-/* Eyes in frames spread over the span; returns how many frames show two. */
-static int look(struct look out[LOOKS], long span, const struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_conf *conf)
+/* Eyes in those frames, in rising order; returns how many frames show two. */
+static int look_at(struct look out[LOOKS], int frames, const long frame[LOOKS], const struct track_clip *clip, struct evidence_net *net, struct stage *stage,
+                   const struct track_conf *conf)
 {
 	struct video_info info;
 	struct err none = { 0 };
@@ -26,11 +33,12 @@ static int look(struct look out[LOOKS], long span, const struct track_clip *clip
 	uint8_t *rgb = mem_array(3 * (size_t)clip->info.width * (size_t)clip->info.height + 1, 1);
 	bool got = video;
 	int n = 0;
-	for (long i = 0, k = 0; got && k < LOOKS; i++) {
+	for (long i = 0, k = 0; got && k < frames; i++) {
 		struct video_frame f;
 		got = video_next(&f, &got, video, &none) && got;
-		if (got && i == (2 * k + 1) * span / (2 * LOOKS)) {
-			k++;
+		if (got && i == frame[k]) {
+			while (k < frames && frame[k] == i)
+				k++;
 			video_frame_rgb(rgb, 3 * f.width, &f, 0, 0, f.width, f.height);
 			out[n].frame = i;
 			n += head_propose(&out[n].eyes, net, rgb, f.width, f.height, &none);
@@ -40,6 +48,15 @@ static int look(struct look out[LOOKS], long span, const struct track_clip *clip
 	video_close(video);
 	free(rgb);
 	return n;
+}
+
+/* Eyes in frames spread over the span. */
+static int look(struct look out[LOOKS], long span, const struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_conf *conf)
+{
+	long frame[LOOKS];
+	for (int k = 0; k < LOOKS; k++)
+		frame[k] = (2 * k + 1) * span / (2 * LOOKS);
+	return look_at(out, LOOKS, frame, clip, net, stage, conf);
 }
 
 /* The frame whose eyes are furthest apart for their size, most open and most certain. */
@@ -86,26 +103,73 @@ static bool rests(const struct track_clip *clip, struct stage *stage, const stru
 	return is;
 }
 
+/* How far the face looks away from the camera, degrees. */
+static double aside(const double cam_from_head[4][4], const struct track_subject *s)
+{
+	double eyes[3], at[3], out[3];
+	for (int k = 0; k < 3; k++) {
+		eyes[k] = 0.5 * (s->opening[0].center[k] + s->opening[1].center[k]);
+		out[k] = -cam_from_head[k][2];
+	}
+	head_from(at, cam_from_head, eyes);
+	return acos(fmin(1, vec_dot(at, out) / vec_norm(at))) * 180 / M_PI;
+}
+
+/* Takes the frame that faces the camera most of those whose pose the skin told, its eyes open, and that pose. Returns false, nothing changed, where the
+ * reference is turned hardly more. */
+static bool face_camera(struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+{
+	const struct track_moves *m = &clip->moves;
+	struct look looks[LOOKS];
+	struct err none = { 0 };
+	double least = INFINITY;
+	long frame[LOOKS], front[RIGID_KNOWN];
+	int n = 0;
+	for (int i = 0; i < m->n_known; i++)
+		least = fmin(least, aside((const double(*)[4])m->known[i].cam_from_head, s));
+	if (!(least < aside((const double(*)[4])clip->cam_from_head, s) - turned_off))
+		return false;
+	for (int i = 0; i < m->n_known; i++)
+		if (aside((const double(*)[4])m->known[i].cam_from_head, s) < least + alike)
+			front[n++] = i;
+	const int looked = n < LOOKS ? n : LOOKS;
+	for (int k = 0; k < looked; k++)
+		frame[k] = m->known[front[k * n / looked]].frame;
+	const int seen = look_at(looks, looked, frame, clip, net, stage, conf);
+	const long best = seen ? best_of(looks, seen)->frame : -1;
+	for (int i = 0; i < m->n_known; i++)
+		if (m->known[i].frame == best && track_clip_take(clip, best, stage, conf, &none)) {
+			memcpy(clip->cam_from_head, m->known[i].cam_from_head, sizeof clip->cam_from_head);
+			return true;
+		}
+	return false;
+}
+
 static bool earn(struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
-	enum { AGAIN = 2 };
+	enum { AGAIN = 2, TURNS = 3 };
 	struct look looks[LOOKS];
 	const long span = span_of(clip, conf);
 	int n = look(looks, span, clip, net, stage, conf);
 	if (!n || !lay(clip, best_of(looks, n), stage, s, conf))
 		return false;
 	bool told = true, moved = false;
-	for (int again = 0; told && again < AGAIN; again++) {
+	for (int again = 0, turns = 0; told && again < AGAIN;) {
 		struct track_moves moves;
 		track_moves_free(&clip->moves);
 		told = track_moves(&moves, clip->info.fps > 40 ? track_frames_of(clip, 2) : 1, span, clip, stage, s, conf);
 		clip->moves = moves;
-		// once more where points were chosen under a pose that was far off
+		// once more where points were chosen under a pose that was far off, or in a frame that is turned aside
 		double was[4][4], d[6], none[3] = { 0 };
 		memcpy(was, clip->cam_from_head, sizeof was);
-		told = told && track_moves_pose(clip, &clip->moves, s, again > 0, conf);
+		told = told && track_moves_pose(clip, &clip->moves, s, moved, conf);
 		head_motion(d, clip->cam_from_head, was, none);
 		moved = moved || told;
+		if (told && turns < TURNS && face_camera(clip, net, stage, s, conf)) {
+			turns++;
+			continue;
+		}
+		again++;
 		if (hypot(d[0], d[1]) < 0.1)
 			break;
 	}

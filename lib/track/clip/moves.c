@@ -18,7 +18,7 @@ static const double off_lid = 1.2, off_brow = 0.6, off_skin = 0.15;  // mm: skin
 static const double anchor_mm = 5;                          // of an opening's middle from where it was found
 static const double reach_yaw = 36, reach_pitch = 20;       // degrees
 static const double robust_mm = 0.3;                       // scale of the weights
-static const double most_turned = 85, most_sigma = 0.5;     // degrees: of a face that is seen all the while; of a pose that is known
+static const double most_turned = 85;                       // degrees: of a face that is seen all the while
 
 /* Frames kept: brightness of half the size. */
 struct strip {
@@ -120,6 +120,8 @@ bool track_moves(struct track_moves *m, long every, long span, const struct trac
 		m->n = points.n;
 		m->frames = strip.n;
 		m->reference = strip.reference;
+		m->every = every;
+		m->first_frame = clip->reference % every;
 		m->at = points.points.at;
 		m->head = points.head;
 		points.points.at = 0;
@@ -151,6 +153,7 @@ void track_moves_free(struct track_moves *m)
 	free(m->px);
 	free(m->seen);
 	free(m->first);
+	free(m->known);
 	*m = (struct track_moves){ 0 };
 }
 
@@ -173,6 +176,16 @@ static double own_motion(const double head[3], const struct track_subject *s)
 {
 	double up = head[1] - 0.5 * (s->center[SIDE_LEFT][1] + s->center[SIDE_RIGHT][1]);
 	return track_on_lid(head, s) ? off_lid : up > 0.5 * s->radius ? off_brow : off_skin;
+}
+
+static void keep_known(struct track_moves *m, const struct rigid_fit *fit)
+{
+	m->n_known = fit->n_known;
+	m->known = mem_new((size_t)fit->n_known + 1, sizeof *m->known);
+	for (int i = 0; i < fit->n_known; i++) {
+		m->known[i].frame = m->first_frame + m->every * fit->known[i].frame;
+		memcpy(m->known[i].cam_from_head, fit->known[i].cam_from_head, sizeof m->known[i].cam_from_head);
+	}
 }
 
 bool track_moves_pose(struct track_clip *clip, struct track_moves *m, const struct track_subject *s, bool near, const struct track_conf *conf)
@@ -198,8 +211,10 @@ bool track_moves_pose(struct track_clip *clip, struct track_moves *m, const stru
 	m->apart = ok ? fit.apart : INFINITY;
 	if (!ok || fit.turned < conf->turned * M_PI / 180)
 		return false;
+	keep_known(m, &fit);
 	m->off_mm = fit.off_px / px_per_mm;
-	m->torn = m->off_mm > conf->off_mm || fit.turned > most_turned * M_PI / 180 || fit.apart > conf->torn * M_PI / 180 || !(hypot(fit.sigma[0], fit.sigma[1]) < most_sigma * M_PI / 180);
+	m->sigma = hypot(fit.sigma[0], fit.sigma[1]);
+	m->torn = m->off_mm > conf->off_mm || fit.turned > most_turned * M_PI / 180 || fit.apart > conf->torn * M_PI / 180 || !(m->sigma < MOVES_SIGMA_MOST * M_PI / 180);
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = fit.off_px;
 	clip->pose_refined = true;

@@ -5,6 +5,8 @@
 #define TRACK_CLIP_MOVES_H
 #include "track/clip/clip.h"
 
+#define MOVES_SIGMA_MOST 0.5  // degrees: standard deviation of a turn that is known
+
 /* Follows points round the eyes through one in `every` of the clip's first `span` frames. moves: overwritten; track_moves_free in any case.
  * Returns false where there are too few points or frames. */
 bool track_moves(struct track_moves *moves, long every, long span, const struct track_clip *clip, struct stage *stage, const struct track_subject *subject,
@@ -14,7 +16,7 @@ void track_moves_free(struct track_moves *moves);
 /* Whether that skin stays where it is, but for lids and brows. */
 bool track_moves_rest(const struct track_moves *moves, const struct track_clip *clip, const struct track_subject *subject);
 
-/* Lays the mesh on the reference so that it moves as they do: sets the clip's pose. near: the pose is about right already. moves: turned, apart and torn
+/* Lays the mesh on the reference so that it moves as they do: sets the clip's pose. near: the pose is about right already. moves: known, turned, apart and torn
  * are set. Returns false, the clip unchanged, where the head turns too little to tell. */
 bool track_moves_pose(struct track_clip *clip, struct track_moves *moves, const struct track_subject *subject, bool near, const struct track_conf *conf);
 

@@ -8,6 +8,7 @@
 #include "track/clip/earn.h"
 #include "track/clip/few.h"
 #include "track/clip/look.h"
+#include "track/clip/moves.h"
 #include "track/clip/reference.h"
 #include "track/clip/refine.h"
 #include "track/clip/trust.h"
@@ -263,8 +264,8 @@ bool track_settle(struct track_clip *clip, struct stage *stage, const struct tra
 bool track_settled(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	if (clip->moves.torn)
-		return err_set(err, "%s: frame %ld: its skin does not move as %s does (off by %.2f mm, must be at most %.2f: track.off_mm; its halves tell poses %.1f degrees apart, must be at most %.1f: track.torn_deg): check camera.focal_px and subject.unit_mm, film in softer light, or give track.reference_frame",
-		               clip->file, clip->reference, s->file, clip->moves.off_mm, conf->off_mm, clip->moves.apart * 180 / M_PI, conf->torn);
+		return err_set(err, "%s: frame %ld: its skin does not move as %s does (off by %.2f mm, must be at most %.2f: track.off_mm; its halves tell poses %.1f degrees apart, must be at most %.1f: track.torn_deg; its turn is known to %.2f degrees, must be to %.1f): check camera.focal_px and subject.unit_mm, film in softer light, or give track.reference_frame",
+		               clip->file, clip->reference, s->file, clip->moves.off_mm, conf->off_mm, clip->moves.apart * 180 / M_PI, conf->torn, clip->moves.sigma * 180 / M_PI, MOVES_SIGMA_MOST);
 	const double most = conf->pose_refused * trust_scale(clip, s);
 	if (s->assumed || clip->pose_given || !conf->settle || clip->pose_px <= most)
 		return true;

@@ -15,6 +15,7 @@ static const double least_px = 0.3;       // of a measurement: of skin that is f
 static const double step_turn = 2e-3, step_shift = 0.1;  // radians, mm: of numeric derivatives
 static const double grazing = 0.35, clear_mm = 1.5;      // cosine of the steepest skin that counts; of it from what hides it
 static const double lost_px = 20;         // residual of a point that lies off the mesh
+static const double least_share = 0.2;    // of the points that are seen where they tell a pose
 
 struct task {
 	const struct rigid_film *film;
@@ -259,14 +260,32 @@ static void at_rest(struct task *t, const double m[4][4])
 		memcpy(t->pose[f], m, 16 * sizeof(double));
 }
 
-/* The largest angle between two frames' poses, about the axes across the line of sight: rolls tell no depth. */
-static double turned(const struct task *t)
+/* The frames whose pose is told: where most points are out of sight, what is left of them is strays. */
+static void known_frames(struct rigid_fit *fit, const struct task *t)
+{
+	const double least = fmax(LEAST_POINTS, least_share * t->points);
+	fit->n_known = 0;
+	for (int f = 0; f < t->frames && fit->n_known < RIGID_KNOWN; f++) {
+		const int frame = f * t->every_frame;
+		double seen = 0;
+		for (int i = 0; i < t->points; i++)
+			seen += (double)t->seen[(long)frame * t->film->points + i * t->every_point];
+		if (seen < least)
+			continue;
+		struct rigid_known *to = &fit->known[fit->n_known++];
+		to->frame = frame;
+		memcpy(to->cam_from_head, t->pose[f], sizeof to->cam_from_head);
+	}
+}
+
+/* The largest angle between two of their poses, about the axes across the line of sight: rolls tell no depth. */
+static double turned(const struct rigid_fit *fit)
 {
 	double most = 0, none[3] = { 0 };
-	for (int a = 0; a < t->frames; a++)
+	for (int a = 0; a < fit->n_known; a++)
 		for (int b = 0; b < a; b++) {
 			double d[P];
-			head_motion(d, t->pose[a], t->pose[b], none);
+			head_motion(d, fit->known[a].cam_from_head, fit->known[b].cam_from_head, none);
 			most = fmax(most, hypot(d[0], d[1]));
 		}
 	return most;
@@ -349,7 +368,8 @@ bool rigid_fit(double cam_from_head[4][4], struct rigid_fit *fit, const struct r
 		hide(&fine, cam_from_head);
 		climb(cam_from_head, fit->sigma, &fit->off_px, &fine, STEPS);
 	}
-	fit->turned = turned(&fine);
+	known_frames(fit, &fine);
+	fit->turned = turned(fit);
 	fit->apart = apart(&fine, cam_from_head);
 	fit->used = fine.points * fine.frames;
 	free(fine.pose);

@@ -22,10 +22,19 @@ struct rigid_anchor {
 	double head[3], px[2], sigma_px;
 };
 
+/* A frame of the film whose pose enough points tell. */
+struct rigid_known {
+	int frame;
+	double cam_from_head[4][4];
+};
+enum { RIGID_KNOWN = 64 };   // of a film's frames, spread over it
+
 struct rigid_fit {
 	double off_px;           // rms of the points, weighted
 	double sigma[6];         // standard deviations of the pose, as head_prior's: rotations (radians), shifts (mm)
-	double turned;           // radians: the largest turn between two frames
+	int n_known;             // frames whose pose is told; in the others too few of the points are in sight
+	struct rigid_known known[RIGID_KNOWN];
+	double turned;           // radians: the largest turn between two of those
 	int used;                // measurements
 	double apart;            // radians: between the poses that the left and the right half of the points tell
 };
