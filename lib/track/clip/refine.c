@@ -39,17 +39,22 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 	return n;
 }
 
-/* Place of one control point of a margin (px of the modelling camera) when the eye looks straight on, as the mesh's lids are assumed to be. Lids follow
- * the eye, by a quarter of a millimetre a degree up and down, and a little sideways: regresses over all frames of open eyes, with robust weights,
- *     place = rest + h turn[0] + (v - v0) turn[1],
- * v0 the reference's vertical gaze (calm 0) or the median one (calm > 0; frames then also weigh by the skin's misfit over calm px). With too few
- * frames rest is the reference frame's. */
-static void rest_of(double rest[2], double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
+/* One control point of a margin (px of the modelling camera) while the eye looks `up` (radians), not aside, and how it moves as that gaze rises. */
+struct rest {
+	double at[2], slope[2], up;
+};
+
+/* Lids follow the eye, by a quarter of a millimetre a degree up and down, and a little sideways: regresses over all frames of open eyes, with robust weights,
+ *     place = at + h aside + (v - up) slope,
+ * up the reference's vertical gaze (calm 0) or the median one (calm > 0; frames then also weigh by the skin's misfit over calm px). With too few
+ * frames `at` is the reference frame's, slope 0. */
+static void rest_of(struct rest *out, double calm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, int side, int point,
                     const struct track_conf *conf)
 {
 	const struct eye_state *here = &r->eyes.state[clip->reference / track_every(conf)][side];
-	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1];
+	double scale = INFINITY, turn[2][2] = { { 0 } }, up = calm > 0 ? reference_usual_height(r, side) : here->gaze[1], *rest = out->at;
 	const int points = conf->eyes.lid_points;  // of a frame without lids NAN
+	*out = (struct rest){ .up = up };
 	memcpy(rest, here->lid[point / points][point % points], 2 * sizeof *rest);
 	for (int round = 0; round < REST_ROUNDS && isfinite(up); round++) {
 		double a[3][3] = { { 0 } }, b[2][3] = { { 0 } }, square = 0, weight = 0;
@@ -87,7 +92,7 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 				return;
 			rest[c] = b[c][0];
 			turn[c][0] = b[c][1];
-			turn[c][1] = b[c][2];
+			out->slope[c] = turn[c][1] = b[c][2];
 		}
 		scale = round ? fmax(1, 2 * sqrt(square / weight)) : 8;
 	}
@@ -95,7 +100,7 @@ static void rest_of(double rest[2], double calm, const struct track_result *r, c
 
 /* Measurements of margins at rest: each control point lies on the nearest segment of the mesh's opening under the pose (ICP).
  * The ends are left out: margins were corrected there by the very pose that is to be refined. */
-static int margins(struct head_sight *sights, int points, double (*rest)[2], const struct track_clip *clip, const struct track_subject *s, int side,
+static int margins(struct head_sight *sights, int points, const struct rest *rest, double straight, const struct track_clip *clip, const struct track_subject *s, int side,
                    const double pose[4][4])
 {
 	const struct eye_opening *o = &s->opening[side];
@@ -105,7 +110,7 @@ static int margins(struct head_sight *sights, int points, double (*rest)[2], con
 		if (!o->open || !head_project(px[i], &clip->camera, pose, o->edge[i]))
 			return 0;
 	for (int k = 0; k < points; k++) {
-		const double *p = rest[k];
+		const double rises = isnan(straight) ? 0 : straight - rest[k].up, p[2] = { rest[k].at[0] + rises * rest[k].slope[0], rest[k].at[1] + rises * rest[k].slope[1] };
 		int along = k % (points / LIDS);
 		if (along < ENDS || along >= points / LIDS - ENDS)
 			continue;
@@ -131,35 +136,109 @@ static int margins(struct head_sight *sights, int points, double (*rest)[2], con
 	return n;
 }
 
-void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+/* What the reference's pose is refined by. */
+struct lids {
+	struct rest rest[SIDES][LIDS * LID_POINTS_MAX];
+	struct head_prior prior;
+	double usual;          // radians: the median height of gaze under the prior's pose
+};
+
+/* Lays the mesh on, its lids where they are while the eyes look so high (radians, under the prior's pose; NAN: as they are in lids). pose: start and result. Returns what is
+ * minimised (head_pose_cost), INFINITY, pose undefined, where too little is known. px, turned: the residual's rms, sigmas (head_pose_sigma); NAN where not known. */
+static double lay(double pose[4][4], double *px, double turned[3], double straight, const struct lids *lids, const struct track_result *r, const struct track_clip *clip,
+                  const struct track_subject *s, const struct track_conf *conf)
 {
 	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
-	int points = LIDS * conf->eyes.lid_points;
-	double rest[SIDES][LIDS * LID_POINTS_MAX][2];
-	double turn = conf->head.turn_sigma * M_PI / 180, pose[4][4], px = NAN;
-	// one eye alone tells no turn aside
-	const double yaw = clip->eye_seen[0] && clip->eye_seen[1] ? conf->head.yaw_sigma * M_PI / 180 : turn;
-	struct head_prior prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, INFINITY } };
-	memcpy(pose, clip->cam_from_head, sizeof pose);
-	memcpy(prior.cam_from_head, pose, sizeof pose);
-	double calm = doubted ? reference_usual_misfit(r) : 0;
-	for (int i = 0; i < SIDES * points; i++)
-		rest_of(rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
 	int n = 0;
+	memcpy(pose, lids->prior.cam_from_head, sizeof lids->prior.cam_from_head);
 	for (int round = 0; round < ROUNDS; round++) {
 		n = centers(sights, r, clip, s, conf);
 		if (!n)
-			return;
+			return INFINITY;
 		for (int e = 0; e < SIDES; e++)
-			n += margins(sights + n, points, rest[e], clip, s, e, pose);
+			n += margins(sights + n, LIDS * conf->eyes.lid_points, lids->rest[e], straight, clip, s, e, (const double(*)[4])pose);
 		if (n < LEAST_MARGIN)
-			return;
-		px = head_pose_fit(pose, n, sights, &clip->camera, fmax(LAST_ROBUST, 16 - 2 * round), &prior);
-		if (isnan(px))
-			return;
+			return INFINITY;
+		*px = head_pose_fit(pose, n, sights, &clip->camera, fmax(LAST_ROBUST, 16 - 2 * round), &lids->prior);
+		if (isnan(*px))
+			return INFINITY;
 	}
-	double turned[3];
-	if (head_pose_sigma(turned, pose, n, sights, &clip->camera, LAST_ROBUST, &prior))
+	if (!head_pose_sigma(turned, (const double(*)[4])pose, n, sights, &clip->camera, LAST_ROBUST, &lids->prior))
+		turned[0] = turned[1] = turned[2] = NAN;
+	return head_pose_cost((const double(*)[4])pose, n, sights, &clip->camera, LAST_ROBUST, &lids->prior);
+}
+
+/* The same and how unlikely so high a straight look is: people look straight on in the median, to trust_straight_deg, and did when the mesh was made, to mesh_straight_deg.
+ * That straight on is as high as the pose is turned up. */
+static double lay_straight(double pose[4][4], double *px, double turned[3], double straight, const struct lids *lids, const struct track_result *r, const struct track_clip *clip,
+                           const struct track_subject *s, const struct track_conf *conf)
+{
+	double was[3], now[3];
+	const double cost = lay(pose, px, turned, straight, lids, r, clip, s, conf), usual = conf->trust[TRUST_STRAIGHT][0] * M_PI / 180, mesh = conf->mesh_straight * M_PI / 180;
+	if (!isfinite(cost))
+		return INFINITY;
+	head_fick(was, lids->prior.cam_from_head);
+	head_fick(now, (const double(*)[4])pose);
+	return cost + pow((straight - lids->usual) / usual, 2) + pow((straight - (now[1] - was[1])) / mesh, 2);
+}
+
+/* How high straight on is: lids that stand open further than the mesh's look up. The likeliest of a range of heights; sigma from the cost's curvature there. NAN: not told. */
+static double straight_of(double *sigma, const struct lids *lids, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	enum { STEPS = 8 };
+	static const double reach = 16 * M_PI / 180;
+	double pose[4][4], px, turned[3], cost[2 * STEPS + 1];
+	int best = 0;
+	for (int i = 0; i <= 2 * STEPS; i++) {
+		cost[i] = lay_straight(pose, &px, turned, lids->usual + reach * (i - STEPS) / STEPS, lids, r, clip, s, conf);
+		best = cost[i] < cost[best] ? i : best;
+	}
+	*sigma = 0;
+	if (best == 0 || best == 2 * STEPS || !isfinite(cost[best - 1] + cost[best + 1]))
+		return NAN;
+	const double bend = cost[best - 1] - 2 * cost[best] + cost[best + 1], off = bend > 0 ? 0.5 * (cost[best - 1] - cost[best + 1]) / bend : 0;
+	*sigma = bend > 0 ? sqrt(2 / bend) * reach / STEPS : 0;
+	return lids->usual + reach * (best + off - STEPS) / STEPS;
+}
+
+static struct lids lids_of(bool doubted, const struct track_clip *clip, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+{
+	const int points = LIDS * conf->eyes.lid_points;
+	const double turn = conf->head.turn_sigma * M_PI / 180, calm = doubted ? reference_usual_misfit(r) : 0;
+	// one eye alone tells no turn aside
+	const double yaw = clip->eye_seen[0] && clip->eye_seen[1] ? conf->head.yaw_sigma * M_PI / 180 : turn;
+	struct lids lids = { .prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, INFINITY } } };
+	int eyes = 0;
+	memcpy(lids.prior.cam_from_head, clip->cam_from_head, sizeof lids.prior.cam_from_head);
+	for (int i = 0; i < SIDES * points; i++)
+		rest_of(&lids.rest[i / points][i % points], calm, r, clip, s, i / points, i % points, conf);
+	for (int e = 0; e < SIDES; e++) {
+		const double usual = reference_usual_height(r, e);
+		lids.usual += isnan(usual) ? 0 : usual;
+		eyes += !isnan(usual);
+	}
+	lids.usual = eyes ? lids.usual / eyes : NAN;
+	return lids;
+}
+
+void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+{
+	const struct lids lids = lids_of(doubted, clip, r, s, conf);
+	double pose[4][4], px, turned[3], sigma = 0;
+	const double straight = conf->mesh_straight > 0 && isfinite(lids.usual) ? straight_of(&sigma, &lids, r, clip, s, conf) : NAN;
+	if (!isfinite(lay(pose, &px, turned, straight, &lids, r, clip, s, conf)))
+		return;
+	if (sigma > 0) {
+		// what straight on leaves open turns the head, too
+		double other[4][4], d[6], none[3] = { 0 }, room[3];
+		if (isfinite(lay(other, &px, room, straight + sigma, &lids, r, clip, s, conf))) {
+			head_motion(d, (const double(*)[4])other, (const double(*)[4])pose, none);
+			for (int k = 0; k < 2; k++)
+				turned[k] = hypot(turned[k], d[k]);
+		}
+		lay(pose, &px, room, straight, &lids, r, clip, s, conf);
+	}
+	if (isfinite(turned[0]))
 		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = px;
@@ -200,7 +279,7 @@ void reference_lens(struct track_clip *clip, const struct track_result *whole, c
 	struct track_result r = *whole;
 	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
 	const int points = LIDS * conf->eyes.lid_points;
-	double rest[LIDS * LID_POINTS_MAX][2];
+	struct rest rest[LIDS * LID_POINTS_MAX];
 	const bool earned = clip->moves.turned > 0;
 	const double turn = (earned ? conf->earned_deg : conf->head.turn_sigma) * M_PI / 180, yaw = (earned ? conf->earned_deg : conf->head.yaw_sigma) * M_PI / 180;
 	struct head_prior prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, INFINITY } };
@@ -214,8 +293,8 @@ void reference_lens(struct track_clip *clip, const struct track_result *whole, c
 	const int first = n;
 	for (int e = 0; e < SIDES && n; e++) {
 		for (int i = 0; i < points; i++)
-			rest_of(rest[i], reference_usual_misfit(&r), &r, clip, s, e, i, conf);
-		n += margins(sights + n, points, rest, clip, s, e, (const double(*)[4])clip->cam_from_head);
+			rest_of(&rest[i], reference_usual_misfit(&r), &r, clip, s, e, i, conf);
+		n += margins(sights + n, points, rest, NAN, clip, s, e, (const double(*)[4])clip->cam_from_head);
 	}
 	weigh_alike(n - first, sights + first, clip);
 	if (n >= LEAST_MARGIN)
