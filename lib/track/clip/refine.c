@@ -229,7 +229,8 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 {
 	const struct lids lids = lids_of(doubted, clip, r, s, conf);
 	double pose[4][4], px, turned[3], sigma = 0;
-	const double straight = conf->mesh_straight > 0 && isfinite(lids.usual) ? straight_of(&sigma, &lids, r, clip, s, conf) : NAN;
+	// one eye alone leaves it open: its outline tells where the head is and how it is turned
+	const double straight = conf->mesh_straight > 0 && isfinite(lids.usual) && clip->eye_seen[0] && clip->eye_seen[1] ? straight_of(&sigma, &lids, r, clip, s, conf) : NAN;
 	if (!isfinite(lay(pose, &px, turned, straight, &lids, r, clip, s, conf)))
 		return;
 	if (sigma > 0) {
