@@ -1,5 +1,6 @@
 #include "track/clip/earn.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,9 +14,9 @@
 
 enum { LOOKS = 6 };
 
-/* A reference turned so much further from the camera than another frame is exchanged for it: the skin of its far side is soon out of sight. Among frames so much
- * alike the most open eyes decide. degrees, assumptions. */
-static const double turned_off = 10, alike = 6;
+/* A reference turned so much further from the camera than another frame is exchanged for it: the skin of its far side is soon out of sight. So is one that shows an
+ * expression: all others would be off it; a millimetre counts as so many degrees. Among frames so much alike the most open eyes decide. degrees, assumptions. */
+static const double turned_off = 10, stirred_deg = 15, alike = 6;
 
 struct look {
 	long frame;
@@ -115,23 +116,40 @@ static double aside(const double cam_from_head[4][4], const struct track_subject
 	return acos(fmin(1, vec_dot(at, out) / vec_norm(at))) * 180 / M_PI;
 }
 
-/* Takes the frame that faces the camera most of those whose pose the skin told, its eyes open, and that pose. Returns false, nothing changed, where the
- * reference is turned hardly more. */
-static bool face_camera(struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
+/* How little each known frame suits as the reference, degrees: how far it is turned, and how far its skin is from where it mostly lies. Returns the least. */
+static double unsuited(double *cost, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	const struct track_moves *m = &clip->moves;
+	double least = INFINITY;
+	track_moves_stirred(cost, m, clip, s, conf);
+	for (int i = 0; i < m->n_known; i++) {
+		cost[i] = aside((const double(*)[4])m->known[i].cam_from_head, s) + (isnan(cost[i]) ? turned_off : stirred_deg * cost[i]);
+		least = fmin(least, cost[i]);
+	}
+	return least;
+}
+
+/* Takes the frame that suits best of those whose pose the skin told, its eyes open, and that pose. Returns false, nothing changed, where the reference is
+ * hardly worse. */
+static bool take_suited(struct track_clip *clip, struct evidence_net *net, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
 	const struct track_moves *m = &clip->moves;
 	struct look looks[LOOKS];
 	struct err none = { 0 };
-	double least = INFINITY;
-	long frame[LOOKS], front[RIGID_KNOWN];
+	double cost[RIGID_KNOWN], least = unsuited(cost, clip, s, conf), here = INFINITY;
+	long frame[LOOKS], front[RIGID_KNOWN], away = LONG_MAX;
 	int n = 0;
-	for (int i = 0; i < m->n_known; i++)
-		least = fmin(least, aside((const double(*)[4])m->known[i].cam_from_head, s));
-	if (!(least < aside((const double(*)[4])clip->cam_from_head, s) - turned_off))
-		return false;
-	for (int i = 0; i < m->n_known; i++)
-		if (aside((const double(*)[4])m->known[i].cam_from_head, s) < least + alike)
+	for (int i = 0; i < m->n_known; i++) {
+		// of few frames the pose is told; the one next to the reference stands for it
+		if (labs(m->known[i].frame - clip->reference) < away) {
+			away = labs(m->known[i].frame - clip->reference);
+			here = cost[i];
+		}
+		if (cost[i] < least + alike)
 			front[n++] = i;
+	}
+	if (!n || here < least + turned_off)
+		return false;
 	const int looked = n < LOOKS ? n : LOOKS;
 	for (int k = 0; k < looked; k++)
 		frame[k] = m->known[front[k * n / looked]].frame;
@@ -159,13 +177,13 @@ static bool earn(struct track_clip *clip, struct evidence_net *net, struct stage
 		track_moves_free(&clip->moves);
 		told = track_moves(&moves, clip->info.fps > 40 ? track_frames_of(clip, 2) : 1, span, clip, stage, s, conf);
 		clip->moves = moves;
-		// once more where points were chosen under a pose that was far off, or in a frame that is turned aside
+		// once more where points were chosen under a pose that was far off, or in a frame that is turned aside or shows an expression
 		double was[4][4], d[6], none[3] = { 0 };
 		memcpy(was, clip->cam_from_head, sizeof was);
 		told = told && track_moves_pose(clip, &clip->moves, s, moved, conf);
 		head_motion(d, clip->cam_from_head, was, none);
 		moved = moved || told;
-		if (told && turns < TURNS && face_camera(clip, net, stage, s, conf)) {
+		if (told && turns < TURNS && take_suited(clip, net, stage, s, conf)) {
 			turns++;
 			continue;
 		}

@@ -220,3 +220,51 @@ bool track_moves_pose(struct track_clip *clip, struct track_moves *m, const stru
 	clip->pose_refined = true;
 	return true;
 }
+
+/* Point i about the rigid head in a known frame, mm along the picture's axes; false where it is not seen. */
+static bool about(double out[2], int i, int known, const struct track_moves *m, const struct track_clip *clip, const struct track_subject *s)
+{
+	const struct track_known *k = &m->known[known];
+	const double(*pose)[4] = (const double(*)[4])k->cam_from_head, seen = 0.3;
+	const long at = (k->frame - m->first_frame) / m->every * m->n + i;
+	double px[2];
+	if (!((double)m->seen[at] > seen) || !head_project(px, &clip->camera, pose, m->head[i]))
+		return false;
+	for (int c = 0; c < 2; c++)
+		out[c] = ((double)m->px[at][c] - px[c]) / track_px_per_mm(clip, pose, s);
+	return true;
+}
+
+static bool round_eyes(const double head[3], const struct track_subject *s, double reach)
+{
+	bool near = false;
+	for (int e = 0; e < SIDES; e++)
+		near = near || hypot(hypot(head[0] - s->center[e][0], head[1] - s->center[e][1]), head[2] - s->center[e][2]) < reach;
+	return near && !track_on_lid(head, s);
+}
+
+void track_moves_stirred(double *off, const struct track_moves *m, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	enum { LEAST = 12 };
+	double *room = mem_array((size_t)m->n_known + 1, sizeof *room), *all = mem_array((size_t)m->n * (size_t)m->n_known + 1, sizeof *all);
+	int *count = mem_new((size_t)m->n_known + 1, sizeof *count);
+	for (int i = 0; i < m->n; i++) {
+		double at[2], usual[2];
+		int n = 0;
+		for (int c = 0; c < 2; c++) {
+			n = 0;
+			for (int k = 0; k < m->n_known; k++)
+				if (about(at, i, k, m, clip, s))
+					room[n++] = at[c];
+			usual[c] = n ? stats_median(n, room) : NAN;
+		}
+		for (int k = 0; k < m->n_known && n > 2 && round_eyes(m->head[i], s, conf->reach_mm); k++)
+			if (about(at, i, k, m, clip, s))
+				all[(long)k * m->n + count[k]++] = hypot(at[0] - usual[0], at[1] - usual[1]);
+	}
+	for (int k = 0; k < m->n_known; k++)
+		off[k] = count[k] >= LEAST ? stats_quantile(count[k], all + (long)k * m->n, 0.75) : NAN;
+	free(room);
+	free(all);
+	free(count);
+}
