@@ -10,6 +10,7 @@
 #include "track/clip/agree.h"
 #include "track/clip/alone.h"
 #include "track/clip/apertures.h"
+#include "track/clip/aside.h"
 #include "track/clip/chunks.h"
 #include "track/clip/corners.h"
 #include "track/clip/expressions.h"
@@ -64,15 +65,17 @@ static void tell(struct stage *stage, const struct track_result *r, const struct
 static bool work(struct stage *stage, struct track_clip *clip, struct track_subject *subject, struct track_points *points,
                  struct track_result *result, const struct track_conf *conf, int n, const char *const in[], struct err *err)
 {
-	if (!track_subject_load(subject, stage, conf, err) || !track_clip_open(clip, stage, subject, conf, err))
+	if (!track_subject_load(subject, stage, conf, err))
 		return false;
+	if (!track_clip_open(clip, stage, subject, conf, err))
+		return track_lies_aside(clip, err);
 	tell_video(stage, clip, subject);
 	if (!(subject->assumed ? track_alone(clip, stage, subject, conf, err) : track_settle(clip, stage, subject, conf, err)))
 		return false;
 	tell_way(stage, clip);
 	if (!track_settled(clip, subject, conf, err) || !track_alone_in_it(clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, 0);
-		return false;
+		return track_lies_aside(clip, err);
 	}
 	if (!track_points_choose(points, clip, subject, conf, err) || !track_follow(result, stage, clip, subject, points, conf, err))
 		return false;
@@ -84,7 +87,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	reference_lens(clip, result, subject, conf);
 	if (!track_agrees(result, clip, subject, conf, err)) {
 		refuse_picture(stage, clip, subject, result);
-		return false;
+		return track_lies_aside(clip, err);
 	}
 	if (!track_kappa(result, conf, err))
 		return false;

@@ -90,6 +90,11 @@ if [ -x "$RECUT" ]; then
 	refuses cuts "from frame 10 on the face of frame 0 is not seen again .a cut, or the head turned away.: cut the video" --points=60 --settle-frames=0
 	take roll roll:0-29
 	refuses roll "from frame [0-9]+ on the face of frame 0 is not seen again .a cut, or the head turned away.: cut the video" --points=60 --settle-frames=0
+	# a telephone's film that lies on its side, without the mark that says so
+	take side side:0-29
+	refuses side "frame [0-9]+ lies on its side, its eyes one above the other: set the file's rotation"
+	rm "$root/side/subject.ply"
+	refuses side "frame [0-9]+ lies on its side, its eyes one above the other: set the file's rotation"
 	# a look down that the clip's end cuts off is no blink; a blink that its start cuts off is one
 	take down 0-119
 	check "track a take that ends on a look down" "$BIN/track" --quiet --capture="$root/down" --points=60

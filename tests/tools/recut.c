@@ -1,4 +1,4 @@
-/* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), roll (turned
+/* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), side (a quarter turn), roll (turned
  * further from frame to frame, by 180 degrees in all), uneven (every second frame half an interval late), sway (moved aside by 30 px and back once a
  * second, as by a head that does not rest), aside (half the picture to the right), pair
  * (the picture twice beside itself, half as large), mirror (the same, the right one mirrored), toon (few colours and black outlines). */
@@ -104,7 +104,7 @@ static bool put(struct video_writer *writer, long *n, const struct part *p, uint
 {
 	uint8_t *turned = mem_array((size_t)info->width * (size_t)info->height, 3);
 	bool over = !strcmp(p->how, "over"), roll = !strcmp(p->how, "roll"), uneven = !strcmp(p->how, "uneven"), sway = !strcmp(p->how, "sway"), aside = !strcmp(p->how, "aside"), ok = true;
-	const bool mirror = !strcmp(p->how, "mirror"), pair = !strcmp(p->how, "pair");
+	const bool side = !strcmp(p->how, "side"), mirror = !strcmp(p->how, "mirror"), pair = !strcmp(p->how, "pair");
 	for (long t = 0; t < p->times && ok; t++)
 		for (long f = p->first; f <= p->last && ok; f++) {
 			double share = (double)(f - p->first) / fmax(1, (double)(p->last - p->first));
@@ -113,8 +113,8 @@ static bool put(struct video_writer *writer, long *n, const struct part *p, uint
 				ok = err_set(err, "no frame %ld", f);
 				break;
 			}
-			if (over || roll) {
-				turn(turned, px, info->width, info->height, M_PI * (roll ? share : 1));
+			if (over || roll || side) {
+				turn(turned, px, info->width, info->height, M_PI * (roll ? share : side ? 0.5 : 1));
 				px = turned;
 			}
 			if (mirror || pair || !strcmp(p->how, "toon")) {
