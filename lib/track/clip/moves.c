@@ -240,31 +240,37 @@ static bool round_eyes(const double head[3], const struct track_subject *s, doub
 	bool near = false;
 	for (int e = 0; e < SIDES; e++)
 		near = near || hypot(hypot(head[0] - s->center[e][0], head[1] - s->center[e][1]), head[2] - s->center[e][2]) < reach;
-	return near && !track_on_lid(head, s);
+	return near;
+}
+
+/* The same of a part of the points: the lids' (lids true), or all others. room: [n]. */
+static double stirs(int k, bool lids, const double (*usual)[2], const struct track_moves *m, const struct track_clip *clip, const struct track_subject *s, double reach, double *room)
+{
+	enum { LEAST = 12 };
+	double at[2];
+	int n = 0;
+	for (int i = 0; i < m->n; i++)
+		if (track_on_lid(m->head[i], s) == lids && round_eyes(m->head[i], s, reach) && isfinite(usual[i][0]) && about(at, i, k, m, clip, s))
+			room[n++] = hypot(at[0] - usual[i][0], at[1] - usual[i][1]);
+	return n >= LEAST ? stats_quantile(n, room, 0.75) : NAN;
 }
 
 void track_moves_stirred(double *off, const struct track_moves *m, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	enum { LEAST = 12 };
-	double *room = mem_array((size_t)m->n_known + 1, sizeof *room), *all = mem_array((size_t)m->n * (size_t)m->n_known + 1, sizeof *all);
-	int *count = mem_new((size_t)m->n_known + 1, sizeof *count);
-	for (int i = 0; i < m->n; i++) {
-		double at[2], usual[2];
-		int n = 0;
+	const double of_lids = 1.0 / 3;
+	double(*usual)[2] = mem_array((size_t)m->n + 1, sizeof *usual), *room = mem_array((size_t)(m->n_known > m->n ? m->n_known : m->n) + 1, sizeof *room), at[2];
+	for (int i = 0; i < m->n; i++)
 		for (int c = 0; c < 2; c++) {
-			n = 0;
+			int n = 0;
 			for (int k = 0; k < m->n_known; k++)
 				if (about(at, i, k, m, clip, s))
 					room[n++] = at[c];
-			usual[c] = n ? stats_median(n, room) : NAN;
+			usual[i][c] = n > 2 ? stats_median(n, room) : NAN;
 		}
-		for (int k = 0; k < m->n_known && n > 2 && round_eyes(m->head[i], s, conf->reach_mm); k++)
-			if (about(at, i, k, m, clip, s))
-				all[(long)k * m->n + count[k]++] = hypot(at[0] - usual[0], at[1] - usual[1]);
+	for (int k = 0; k < m->n_known; k++) {
+		const double lids = stirs(k, true, (const double(*)[2])usual, m, clip, s, conf->reach_mm, room);
+		off[k] = stirs(k, false, (const double(*)[2])usual, m, clip, s, conf->reach_mm, room) + (isnan(lids) ? 0 : of_lids * lids);
 	}
-	for (int k = 0; k < m->n_known; k++)
-		off[k] = count[k] >= LEAST ? stats_quantile(count[k], all + (long)k * m->n, 0.75) : NAN;
+	free(usual);
 	free(room);
-	free(all);
-	free(count);
 }

@@ -20,8 +20,8 @@ bool track_moves_rest(const struct track_moves *moves, const struct track_clip *
  * are set. Returns false, the clip unchanged, where the head turns too little to tell. */
 bool track_moves_pose(struct track_clip *clip, struct track_moves *moves, const struct track_subject *subject, bool near, const struct track_conf *conf);
 
-/* Of each frame whose pose is told, how far its skin round the eyes, lids excepted, lies from where it lies in most of them about the rigid head: an expression. mm; of
- * what stirs most, all of it but a quarter. off[moves->n_known] out; NAN where too little is seen. */
+/* Of each frame whose pose is told, how far its skin round the eyes lies from where it lies in most of them about the rigid head: an expression; and a third of that of
+ * its lids: a blink, a glance down. mm; three quarters of it lie nearer. off[moves->n_known] out; NAN where too little is seen. */
 void track_moves_stirred(double *off, const struct track_moves *moves, const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
 
 #endif
