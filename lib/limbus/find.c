@@ -55,20 +55,6 @@ static bool hinted(struct limbus_found *found, struct trials *trials, const doub
 	return true;
 }
 
-/* Of trials that say the same nearly as surely, the one whose arcs the evidence chose, or else the strip: they keep lids out best. */
-static struct trial *told(struct trials *t, int best)
-{
-	static const enum trial_guide guide[] = { GUIDE_EVIDENCE, GUIDE_STRIP };
-	struct trial *likeliest = &t->trial[best];
-	for (int k = 0; k < COUNT(guide); k++)
-		for (int i = 0; i < t->n; i++) {
-			struct trial *other = &t->trial[i];
-			if (other->guide == guide[k] && other->log_odds > likeliest->log_odds - t->conf->same.as_sure && trial_same(other, likeliest, t->conf))
-				return other;
-		}
-	return likeliest;
-}
-
 void limbus_settle(struct limbus_found *found, struct trials *trials)
 {
 	const struct posterior *p = &found->posterior;
@@ -76,14 +62,14 @@ void limbus_settle(struct limbus_found *found, struct trials *trials)
 		limbus_refuse(found, "no eye found: photograph one open eye close up, or say where it is with photo.NAME.hint_px");
 		return;
 	}
-	struct trial *trial = told(trials, p->best);
+	const struct trial *trial = &trials->trial[p->best];
 	found->ok = trial_measure(&found->limbus, &found->pupil, &found->has_pupil, trial, trials, false);
 	if (!found->ok) {
 		limbus_refuse(found, "no clear edge between iris and sclera: light the eye evenly and focus on the iris");
 		return;
 	}
 	posterior_settle(&found->posterior, &found->limbus, trials);
-	limbus_refuse_doubtful(found, &trials->trial[p->best], trials->photo, trials->conf);
+	limbus_refuse_doubtful(found, trial, trials->photo, trials->conf);
 }
 
 void limbus_find_in(struct limbus_found *found, struct trials *trials, const double *hint)

@@ -38,12 +38,11 @@ struct trial_conf {
 	double prior_arcs;             // so many arcs of a rim count as one against what is known of its ellipse
 };
 
-/* When two ellipses say the same (posterior.h), and of which a choice is made. */
+/* When two ellipses say the same (posterior.h). */
 struct same_conf {
 	double sigmas, most;  // so many sigmas apart, at most so many semi-axes
 	double unseen;        // semi-axes: and no farther, however little of either is seen
 	double other_eye;     // semi-axes between centres: no rival, but another eye
-	double as_sure;       // log odds below the likeliest: a trial that says the same and keeps lids out better is taken
 	double moved;         // chance of being off where the full measurement left its trial
 };
 

@@ -28,18 +28,13 @@ static bool same(const struct ellipse *e, const struct trial_line *line, const s
 	return away < within || (away < conf->same.unseen && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
 }
 
-bool trial_same(const struct trial *a, const struct trial *b, const struct limbus_conf *conf)
-{
-	return same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma), conf);
-}
-
 bool trial_repeats(const struct trials *t, int i)
 {
 	const struct trial *a = &t->trial[i];
 	for (int k = 0; k < t->n; k++) {
 		const struct trial *b = &t->trial[k];
 		const bool likelier = b->log_odds > a->log_odds || (b->log_odds == a->log_odds && k < i);
-		if (k != i && likelier && trial_same(a, b, t->conf))
+		if (k != i && likelier && same(&a->e, &a->line, &b->e, &b->line, fmax(a->sigma, b->sigma), t->conf))
 			return true;
 	}
 	return false;

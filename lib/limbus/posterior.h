@@ -4,16 +4,15 @@
 #define LIMBUS_POSTERIOR_H
 #include "limbus/trial.h"
 
-/* Weighs the trials against each other and against "none of them": those that are a likelier one's trial_same say the same, each other
- * one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
+/* Weighs the trials against each other and against "none of them": those that say the same as a likelier one add nothing, each
+ * other one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
 void posterior_of(struct posterior *posterior, const struct trials *trials);
 
 /* The largest difference of centre and semi-axes, px. */
 double trial_apart(const struct ellipse *e, const struct ellipse *f);
 
-/* Whether two trials are so many sigmas apart at most (struct same_conf) where either was seen: what lids hide may differ, and has its sigma. */
-bool trial_same(const struct trial *a, const struct trial *b, const struct limbus_conf *conf);
-/* Whether trial i says the same as a likelier one. */
+/* Whether trial i says the same as a likelier one: so many sigmas apart at most (struct same_conf) where either was seen. What lids hide may
+ * differ, and has its sigma. */
 bool trial_repeats(const struct trials *trials, int i);
 
 /* After the likeliest one was measured in full: widens its covariance (of q, px) as its odds say, adds to it what the rivals say,

@@ -25,7 +25,6 @@
 	OPT_REAL("same_most", &(c)->most, 0.01, 0.3, "", "semi-axes: no farther apart than that"), \
 	OPT_REAL("same_unseen", &(c)->unseen, 0.01, 0.5, "", "semi-axes: nor than that where lids hide the rest"), \
 	OPT_REAL("other_eye", &(c)->other_eye, 0.2, 5, "", "semi-axes between centres: another eye, no rival"), \
-	OPT_REAL("as_sure", &(c)->as_sure, 0, 10, "", "log odds by which the arcs that keep lids out may be behind"), \
 	OPT_REAL("moved_gross", &(c)->moved, 0, 1, "", "chance of a gross error where the full measure left the rough one")
 
 #define STRIP_OPTS(c) \

@@ -57,7 +57,6 @@ static void list(struct eyes *s)
 	add(s, "same_most", &c->same.most);
 	add(s, "same_unseen", &c->same.unseen);
 	add(s, "other_eye", &c->same.other_eye);
-	add(s, "as_sure", &c->same.as_sure);
 	add(s, "moved_gross", &c->same.moved);
 	add(s, "strip_rays", &c->strip_conf.rays);
 	add(s, "strip_hidden", &c->strip_conf.hidden);

@@ -1,6 +1,7 @@
 /* limbus: rendered captures with truth, synthetic eyes, and pictures that must be refused. */
 #include "base/mem.h"
 #include "limbus/record.h"
+#include "limbus/trial.h"
 #include "math/ellipse_fit.h"
 #include "math/rng.h"
 #include "math/vec.h"
@@ -152,6 +153,35 @@ static void test_refused(void **state)
 	refused(synth_eye_render(&cut, &truth), "");
 }
 
+/* What is told is the likeliest trial, measured in full: its odds are told with it, and none that says the same is put in its place. */
+static void test_likeliest(void **state)
+{
+	(void)state;
+	static const int cases[] = { 16, 61, 112 };
+	struct limbus_found *found = mem_new(1, sizeof *found);
+	struct rim *rim = mem_new(2, sizeof *rim);
+	int other = 0;
+	for (int k = 0; k < COUNT(cases); k++) {
+		struct synth_eye eye = synth_eye_grid(cases[k]);
+		struct synth_truth truth;
+		struct photo photo = synth_eye_render(&eye, &truth);
+		struct pyramid pyramid = pyramid_make(&photo);
+		struct trials *trials = trials_new(&photo, &pyramid, &limbus_defaults);
+		bool has_pupil;
+		limbus_find_in(found, trials, 0);
+		const struct trial *best = &trials->trial[found->posterior.best];
+		assert_true(trial_measure(rim, rim + 1, &has_pupil, best, trials, false));
+		NEAR(ellipse_error(&rim->e, &found->limbus.e), 0, 0);
+		other += best->guide != GUIDE_EVIDENCE;
+		trials_free(trials);
+		pyramid_free(&pyramid);
+		photo_free(&photo);
+	}
+	assert_true(other > 0);
+	free(rim);
+	free(found);
+}
+
 /* A view of a known pose: the limbus projected point by point, nothing measured. */
 static struct pose_view ideal_view(const struct eye *eye, const double cam_from_eye[4][4], double focal_px)
 {
@@ -231,7 +261,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic),
-		cmocka_unit_test(test_captures),
+		cmocka_unit_test(test_captures), cmocka_unit_test(test_likeliest),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
