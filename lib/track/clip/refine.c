@@ -6,11 +6,10 @@
 #include "math/chol.h"
 #include "track/clip/reference.h"
 #include "track/clip/trust.h"
-#include "track/head/refine.h"
 
 enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2, LAST_ROBUST = 2 };
 
-static const double margin_weight = 0.05;  // px^-2: errors of margins are correlated (shadows of lashes); px of an eye of usual size (head_find_scale)
+static const double margin_weight = 0.05;  // px^-2: errors of margins are correlated (shadows of lashes)
 static const double open_enough = 0.8;     // of the usual opening
 static const double still_gaze = 0.01, like_v = 0.05;  // radians
 
@@ -101,7 +100,7 @@ static void rest_of(struct rest *out, double calm, const struct track_result *r,
 
 /* Measurements of margins at rest: each control point lies on the nearest segment of the mesh's opening under the pose (ICP).
  * The ends are left out: margins were corrected there by the very pose that is to be refined. */
-static int margins(struct head_sight *sights, int points, const struct rest *rest, double straight, double scale, const struct track_clip *clip, const struct track_subject *s, int side,
+static int margins(struct head_sight *sights, int points, const struct rest *rest, double straight, const struct track_clip *clip, const struct track_subject *s, int side,
                    const double pose[4][4])
 {
 	const struct eye_opening *o = &s->opening[side];
@@ -116,7 +115,7 @@ static int margins(struct head_sight *sights, int points, const struct rest *res
 		if (along < ENDS || along >= points / LIDS - ENDS)
 			continue;
 		double best = INFINITY;
-		struct head_sight to = { .line = true, .weight = margin_weight / (scale * scale) };
+		struct head_sight to = { .line = true, .weight = margin_weight };
 		for (int i = 0; i < OPENING_POINTS && isfinite(p[0]); i++) {
 			const double *a = px[i], *b = px[(i + 1) % OPENING_POINTS], d[2] = { b[0] - a[0], b[1] - a[1] };
 			double length = fmax(hypot(d[0], d[1]), 1e-9), t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (length * length);
@@ -142,7 +141,6 @@ struct lids {
 	struct rest rest[SIDES][LIDS * LID_POINTS_MAX];
 	struct head_prior prior;
 	double usual;          // radians: the median height of gaze under the prior's pose
-	double scale;          // px for a px of an eye of usual size
 };
 
 /* Lays the mesh on, its lids where they are while the eyes look so high (radians, under the prior's pose; NAN: as they are in lids). pose: start and result. Returns what is
@@ -158,17 +156,16 @@ static double lay(double pose[4][4], double *px, double turned[3], double straig
 		if (!n)
 			return INFINITY;
 		for (int e = 0; e < SIDES; e++)
-			n += margins(sights + n, LIDS * conf->eyes.lid_points, lids->rest[e], straight, lids->scale, clip, s, e, (const double(*)[4])pose);
+			n += margins(sights + n, LIDS * conf->eyes.lid_points, lids->rest[e], straight, clip, s, e, (const double(*)[4])pose);
 		if (n < LEAST_MARGIN)
 			return INFINITY;
-		*px = head_pose_fit(pose, n, sights, &clip->camera, lids->scale * fmax(LAST_ROBUST, 16 - 2 * round), &lids->prior);
+		*px = head_pose_fit(pose, n, sights, &clip->camera, fmax(LAST_ROBUST, 16 - 2 * round), &lids->prior);
 		if (isnan(*px))
 			return INFINITY;
 	}
-	const double robust = LAST_ROBUST * lids->scale;
-	if (!head_pose_sigma(turned, (const double(*)[4])pose, n, sights, &clip->camera, robust, &lids->prior))
+	if (!head_pose_sigma(turned, (const double(*)[4])pose, n, sights, &clip->camera, LAST_ROBUST, &lids->prior))
 		turned[0] = turned[1] = turned[2] = NAN;
-	return head_pose_cost((const double(*)[4])pose, n, sights, &clip->camera, robust, &lids->prior);
+	return head_pose_cost((const double(*)[4])pose, n, sights, &clip->camera, LAST_ROBUST, &lids->prior);
 }
 
 /* The same and how unlikely so high a straight look is: people look straight on in the median, to trust_straight_deg, and did when the mesh was made, to mesh_straight_deg.
@@ -221,7 +218,6 @@ static struct lids lids_of(bool doubted, const struct track_clip *clip, const st
 		eyes += !isnan(usual);
 	}
 	lids.usual = eyes ? lids.usual / eyes : NAN;
-	lids.scale = head_find_scale(clip->info.width, &clip->camera, clip->cam_from_head, s->opening);
 	return lids;
 }
 
@@ -299,7 +295,7 @@ void reference_lens(struct track_clip *clip, const struct track_result *whole, c
 	for (int e = 0; e < SIDES && n; e++) {
 		for (int i = 0; i < points; i++)
 			rest_of(&rest[i], reference_usual_misfit(&r), &r, clip, s, e, i, conf);
-		n += margins(sights + n, points, rest, NAN, 1, clip, s, e, (const double(*)[4])clip->cam_from_head);
+		n += margins(sights + n, points, rest, NAN, clip, s, e, (const double(*)[4])clip->cam_from_head);
 	}
 	weigh_alike(n - first, sights + first, clip);
 	if (n >= LEAST_MARGIN)
