@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
+#include "track/clip/scale.h"
 
 enum { EYE_INPUTS = 5 };
 

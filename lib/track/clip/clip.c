@@ -32,11 +32,6 @@ long track_frames_of(const struct track_clip *clip, long n)
 	return clip->info.fps > 60 ? lround((double)n * clip->info.fps / 60) : n;
 }
 
-double track_px_per_mm(const struct track_clip *clip, const double cam_from_head[4][4], const struct track_subject *s)
-{
-	return clip->camera.focal_px / track_eyes_depth(cam_from_head, s);
-}
-
 /* Poses of the head estimated by calibrate, in its own mesh's frame. */
 static void take_poses(struct track_clip *clip, const struct camera_rig *rig)
 {

@@ -59,9 +59,6 @@ struct track_clip {
 /* n frames at 60 frames/s or less; of a faster clip as many as take the same time. */
 long track_frames_of(const struct track_clip *clip, long n);
 
-/* Pixels that a millimetre of skin has about the eyes, under a pose of the head (track_eyes_depth). */
-double track_px_per_mm(const struct track_clip *clip, const double cam_from_head[4][4], const struct track_subject *subject);
-
 /* Takes the first file of video/ by name. file: its path relative to the capture; others: how many more there are.
  * Returns false, err set, when there is none. */
 bool track_video(char file[320], int *others, struct stage *stage, struct err *err);

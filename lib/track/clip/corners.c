@@ -9,6 +9,7 @@
 #include "track/clip/beside.h"
 #include "track/clip/blink_lower.h"
 #include "track/clip/blink_upper.h"
+#include "track/clip/scale.h"
 
 enum { ENDS = 2 };
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "track/eye/events.h"
 
 struct track_eyes {
 	struct eye_track *track;

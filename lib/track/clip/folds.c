@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "image/mask.h"
+#include "track/clip/scale.h"
 
 static const double margin_px = 24;
 static const size_t room_bytes = 200 << 20;  // for the frames that are kept

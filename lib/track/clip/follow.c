@@ -8,6 +8,7 @@
 #include "math/stats.h"
 #include "track/clip/chunks.h"
 #include "track/clip/follow_impl.h"
+#include "track/clip/scale.h"
 #include "track/clip/steady.h"
 #include "track/clip/together.h"
 

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "track/clip/points.h"
+#include "track/clip/scale.h"
 #include "track/head/rigid.h"
 #include "track/points/skin_track.h"
 

@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "track/head/pose.h"
+#include "track/clip/scale.h"
 
 /* A point about the rigid head in one frame. */
 struct about {

@@ -1,3 +1,5 @@
+#include "track/eye/events.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

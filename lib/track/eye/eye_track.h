@@ -116,9 +116,6 @@ void eye_track_head_was(struct eye_track *track, long frame, const double cam_fr
  * clip: overwritten; eye_clip_free in any case. Returns false, err set, when no eye was found in any frame. */
 bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err *err);
 
-/* Forgets what was measured in frames in which the head's pose is not known: gaze, lids, saccades there, and blinks that one eye alone shows: an eye looked for in the
- * wrong place seems to shut, both at once hardly. forgotten: [frames]. */
-void eye_clip_forget(struct eye_clip *clip, const bool *forgotten);
 void eye_clip_free(struct eye_clip *clip);
 void eye_track_free(struct eye_track *track);
 

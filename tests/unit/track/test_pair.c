@@ -1,6 +1,7 @@
 /* Both eyes together: gaze that parts as eyes do not is forgotten in the eye that was not followed. Truth: states written by hand.
  */
 #include "base/mem.h"
+#include "track/eye/events.h"
 #include "track/eye/eye_track_impl.h"
 #include "tests/lib/unit.h"
 
