@@ -138,15 +138,23 @@ static void report(struct stage *stage, const char *name, const struct rig *rig,
 		stage_note(stage, "%s: its eyeballs are mere balls: they get a cornea", name);
 }
 
-static bool rig_one(struct stage *stage, const char *name, const char *const out[5], int n, const char *const in[],
+enum { OUT = 5 };
+
+/* why: set where this character cannot be rigged; what was made of it before is gone then. */
+static bool rig_one(struct err *why, struct stage *stage, const char *name, const char *const out[OUT], int n, const char *const in[],
                     const struct rig_motion *motion, const struct extrapolate_conf *conf, struct err *err)
 {
 	struct character c = { 0 };
 	struct rig rig = { 0 };
 	struct rig_report found;
-	bool ok = read_character(&c, stage, in, conf, err);
-	if (ok && !rig_make(&rig, &found, motion, &c.rig, &conf->rig, err))
-		ok = err_wrap(err, "targets/%s", name);
+	bool ok = read_character(&c, stage, in, conf, err), made = ok && rig_make(&rig, &found, motion, &c.rig, &conf->rig, why);
+	if (ok && !made) {
+		err_wrap(why, "targets/%s", name);
+		for (int i = 0; i < OUT && ok; i++)
+			ok = file_remove(stage_path(stage, "%s", out[i]), err);
+		character_free(&c);
+		return ok;
+	}
 	ok = ok && rig_save(&rig, stage_path(stage, "%s", out[0]), stage_made_by(stage, n, in), err)
 	     && stage_made(stage, out[0], n, in, err) && save_map(stage, out[1], skull_map_positions(&rig.skull), n, in, err)
 	     && save_map(stage, out[2], skull_map_normals(&rig.skull), n, in, err);
@@ -159,14 +167,13 @@ static bool rig_one(struct stage *stage, const char *name, const char *const out
 	return ok;
 }
 
-bool extrapolate_target(struct stage *stage, const char *file, const struct rig_motion *motion, const struct extrapolate_conf *conf,
-                        struct err *err)
+/* The rig of targets/FILE, unless it is up to date. Returns whether there is one; why: set where the character cannot be rigged. */
+static bool target(struct err *why, struct stage *stage, const char *file, const struct rig_motion *motion,
+                   const struct extrapolate_conf *conf, struct err *err)
 {
 	static const char *const reads[] = { "registered.ply", "barycentric.npz", "registration.json" };
 	static const char *const writes[] = { "rig.npz", "skull.exr", "skull_normal.exr", "globe_left.exr", "globe_right.exr" };
-	enum { FROM_TRANSFER = 3, OUT = 5, IN_MAX = 32 };
-	if (character_kind_of(file) == CHARACTER_NONE)
-		return true;
+	enum { FROM_TRANSFER = 3, IN_MAX = 32 };
 	const char *dot = strrchr(file, '.');
 	char *name = mem_printf("%.*s", dot ? (int)(dot - file) : (int)strlen(file), file), *in[IN_MAX], *out[OUT];
 	int n = 0;
@@ -180,17 +187,41 @@ bool extrapolate_target(struct stage *stage, const char *file, const struct rig_
 		in[n++] = mem_printf("work/skin/%s", skin_model_files[i]);
 	for (int i = 0; i < OUT; i++)
 		out[i] = mem_printf("work/targets/%s/%s", name, writes[i]);
-	bool ok = true, fresh = true;
+	bool fresh = true;
 	for (int i = 0; i < OUT; i++)
 		fresh = stage_fresh(stage, out[i], n, (const char *const *)in) && fresh;
+	bool ok = fresh;
 	if (!fresh && !file_exists(stage_path(stage, "%s", in[1])))
 		stage_skipped(stage, "%s: transfer has not registered it", in[0]);
 	else if (!fresh)
-		ok = rig_one(stage, name, (const char *const *)out, n, (const char *const *)in, motion, conf, err);
+		ok = rig_one(why, stage, name, (const char *const *)out, n, (const char *const *)in, motion, conf, err) && !err_is(why);
 	for (int i = 0; i < n; i++)
 		free(in[i]);
 	for (int i = 0; i < OUT; i++)
 		free(out[i]);
 	free(name);
 	return ok;
+}
+
+bool extrapolate_targets(struct stage *stage, const struct file_list *targets, const struct rig_motion *motion,
+                         const struct extrapolate_conf *conf, struct err *err)
+{
+	struct err *why = mem_new((size_t)targets->n + 1, sizeof *why);
+	int rigged = 0, last = -1;
+	for (int i = 0; i < targets->n && !err_is(err); i++) {
+		if (character_kind_of(targets->names[i]) == CHARACTER_NONE)
+			continue;
+		rigged += target(&why[i], stage, targets->names[i], motion, conf, err);
+		last = err_is(&why[i]) ? i : last;
+	}
+	// Where there is no other the last one is the stage's error.
+	for (int i = 0; i < targets->n && !err_is(err); i++)
+		if (err_is(&why[i]) && (rigged || i != last)) {
+			stage_warn(stage, "%s", why[i].msg);
+			stage_skipped_as_said(stage, "%s", why[i].msg);
+		}
+	if (!err_is(err) && !rigged && last >= 0)
+		*err = why[last];
+	free(why);
+	return !err_is(err);
 }

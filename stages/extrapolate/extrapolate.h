@@ -12,10 +12,11 @@ struct extrapolate_conf {
 	double limit_vertices;
 };
 
-/* Makes the rig of targets/FILE unless it is up to date; skips, with the reason, one that transfer has not registered.
+/* Makes the rig of each character in targets/ unless it is up to date; leaves out, with the reason, one that transfer has not registered
+ * and one that cannot be rigged.
  * motion  of the person's skin model
- * Returns false, err set, when a file cannot be read or written or the character cannot be rigged. */
-bool extrapolate_target(struct stage *stage, const char *file, const struct rig_motion *motion,
-                        const struct extrapolate_conf *conf, struct err *err);
+ * Returns false, err set, when a file cannot be read or written, or characters were registered and none can be rigged. */
+bool extrapolate_targets(struct stage *stage, const struct file_list *targets, const struct rig_motion *motion,
+                         const struct extrapolate_conf *conf, struct err *err);
 
 #endif

@@ -45,8 +45,7 @@ int main(int argc, char **argv)
 	            COUNT(opts), opts);
 	if (stage_list(&stage, &targets, "targets", &err) && skin_model_load(&model, stage_path(&stage, "work/skin"), &err)) {
 		rig_motion_of_model(&motion, &model);
-		for (int i = 0; i < targets.n && !err_is(&err); i++)
-			extrapolate_target(&stage, targets.names[i], &motion, &conf, &err);
+		extrapolate_targets(&stage, &targets, &motion, &conf, &err);
 	}
 	rig_motion_free(&motion);
 	skin_model_free(&model);
