@@ -86,7 +86,12 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 		               result->cut, clip->reference);
 	reference_lens(clip, result, subject, conf);
 	if (!track_agrees(result, clip, subject, conf, err)) {
+		struct err others = { 0 };
 		refuse_picture(stage, clip, subject, result);
+		if (!track_alone_through(result, stage, clip, subject, conf, &others)) {
+			*err = others;
+			return false;
+		}
 		return track_lies_aside(clip, err);
 	}
 	if (!track_kappa(result, conf, err))

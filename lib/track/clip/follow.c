@@ -14,7 +14,7 @@
 
 static const double forget = 1.2;  // rate of that running mean, 1/s
 /* Expected motion of skin relative to the head, mm: bridge of the nose, cheeks, brows, lids. */
-static const double off_nose = 0.03, off_cheek = 0.15, off_brow = 0.4, off_lids = 0.6;
+static const double off_nose = 0.026, off_cheek = 0.13, off_brow = 0.346, off_lids = 0.52;
 /* Random walk of the head: standard deviations after a second, degrees, mm. */
 static const double turn_step = 1.55, shift_step = 4.65;
 
