@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/mem.h"
 #include "rig/deform/deform.h"
 #include "rig/drive.h"
 
@@ -53,4 +54,24 @@ struct glb_conf driven_glb(const struct driven *d)
 {
 	static const char *const expressions[] = { "brows_up", "squint" };
 	return (struct glb_conf){ .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 }, .tear_mm = 0.3, .n_expressions = 2, .expression = expressions, .hairs = &d->hairs };
+}
+
+int wandering_setup(void **state)
+{
+	struct wandering *w = mem_new(1, sizeof *w);
+	struct err err = { 0 };
+	bool ok = driven_make(&w->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err);
+	w->drive = driven_wanders(&w->on, WANDERING_FRAMES);
+	w->conf = driven_glb(&w->on);
+	*state = w;
+	return ok ? 0 : 1;
+}
+
+int wandering_teardown(void **state)
+{
+	struct wandering *w = *state;
+	drive_free(&w->drive);
+	driven_free(&w->on);
+	free(w);
+	return 0;
 }

@@ -26,4 +26,14 @@ struct drive driven_wanders(const struct driven *driven, int frames);
 /* Sensible settings of the glTF, with all there is: named poses, two expressions, hairs and tears. */
 struct glb_conf driven_glb(const struct driven *driven);
 
+/* All of that, as the state of a group of tests. */
+enum { WANDERING_FRAMES = 60 };
+struct wandering {
+	struct driven on;
+	struct drive drive;
+	struct glb_conf conf;
+};
+int wandering_setup(void **state);
+int wandering_teardown(void **state);
+
 #endif

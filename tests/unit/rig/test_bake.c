@@ -6,48 +6,19 @@
 #include "tests/lib/scenes/driven.h"
 #include "tests/lib/unit.h"
 
-enum { FRAMES = 60 };
-
-struct made {
-	struct driven on;
-	struct drive drive;
-};
-
-static struct glb_conf conf;
-
-static int setup(void **state)
-{
-	struct made *m = calloc(1, sizeof *m);
-	struct err err = { 0 };
-	bool ok = driven_make(&m->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err);
-	m->drive = driven_wanders(&m->on, FRAMES);
-	conf = driven_glb(&m->on);
-	*state = m;
-	return ok ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-	struct made *m = *state;
-	drive_free(&m->drive);
-	driven_free(&m->on);
-	free(m);
-	return 0;
-}
-
 /* Rest plus weighted targets is the evaluated frame, within what is reported; the quaternions turn the eyeballs likewise. */
 static void targets_give_the_frames_back(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
-	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
-	assert_true(b.n_targets >= 3 && b.n_targets <= conf.targets);
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
+	assert_true(b.n_targets >= 3 && b.n_targets <= m->conf.targets);
 	struct deform *deform = deform_new(&m->on.rig);
 	float (*x)[3] = calloc((size_t)m->on.rig.n, sizeof *x);
 	double worst = 0;
 	deform_rest(deform, x, 0);
-	for (int f = 0; f < FRAMES; f++) {
+	for (int f = 0; f < WANDERING_FRAMES; f++) {
 		double e[RIG_COMPONENTS], turn[2][3][3], *c = drive_at(&m->drive, f);
 		rig_components(e, &m->on.rig, c);
 		for (int s = 0; s < 2; s++)
@@ -71,7 +42,7 @@ static void targets_give_the_frames_back(void **state)
 		NEAR(2 * (q[1] * q[2] - q[0] * q[3]), sin(v), 1e-5);
 	}
 	NEAR(worst, b.worst, 1e-3);
-	assert_true(b.worst <= conf.tolerance + 1e-3 || b.n_targets == conf.targets);
+	assert_true(b.worst <= m->conf.tolerance + 1e-3 || b.n_targets == m->conf.targets);
 	free(x);
 	deform_free(deform);
 	glb_bake_free(&b);
@@ -80,10 +51,10 @@ static void targets_give_the_frames_back(void **state)
 /* Lashes, brows and tears go where their roots go: with the animation's weights, and with a named pose. */
 static void hairs_follow(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
-	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
 	const int strands = strands_count(&m->on.hairs), n = strands + tears_count(&m->on.hairs);
 	assert_int_equal(b.n_hair, n);
 	struct deform *deform = deform_new(&m->on.rig);
@@ -92,15 +63,15 @@ static void hairs_follow(void **state)
 	for (int s = 0; s < 2; s++)
 		rig_globe_rotation(turn[s], &m->on.rig, (double[3]){ 0 });
 	strands_place(rest, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])m->on.rig.rest);
-	tears_place(rest + strands, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])m->on.rig.rest, (const double(*)[3][3])turn, conf.tear_mm, 0);
+	tears_place(rest + strands, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])m->on.rig.rest, (const double(*)[3][3])turn, m->conf.tear_mm, 0);
 	deform_rest(deform, x, 0);
-	for (int f = 0; f < FRAMES; f++) {
+	for (int f = 0; f < WANDERING_FRAMES; f++) {
 		double e[RIG_COMPONENTS], *c = drive_at(&m->drive, f);
 		rig_components(e, &m->on.rig, c);
 		rig_globes_turned(turn, &m->on.rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
 		strands_place(now, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])x);
-		tears_place(now + strands, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])x, (const double(*)[3][3])turn, conf.tear_mm, 0);
+		tears_place(now + strands, 0, &m->on.hairs, &m->on.rig, (const float(*)[3])x, (const double(*)[3][3])turn, m->conf.tear_mm, 0);
 		for (int i = 0; i < n; i++) {
 			double d[3], far[3];
 			for (int k = 0; k < 3; k++) {
@@ -126,12 +97,12 @@ static void hairs_follow(void **state)
 
 static void more_targets_are_closer(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
 	double before = INFINITY;
 	for (int n = 1; n <= 9; n += 4) {
-		struct glb_conf few = conf;
+		struct glb_conf few = m->conf;
 		few.targets = n;
 		few.tolerance = 0;
 		assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &few, &err));
@@ -148,5 +119,5 @@ int main(void)
 		cmocka_unit_test(hairs_follow),
 		cmocka_unit_test(more_targets_are_closer),
 	};
-	return cmocka_run_group_tests(tests, setup, teardown);
+	return cmocka_run_group_tests(tests, wandering_setup, wandering_teardown);
 }

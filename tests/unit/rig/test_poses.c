@@ -6,42 +6,13 @@
 #include "tests/lib/scenes/driven.h"
 #include "tests/lib/unit.h"
 
-enum { FRAMES = 60 };
-
-struct made {
-	struct driven on;
-	struct drive drive;
-};
-
-static struct glb_conf conf;
-
-static int setup(void **state)
-{
-	struct made *m = calloc(1, sizeof *m);
-	struct err err = { 0 };
-	bool ok = driven_make(&m->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err);
-	m->drive = driven_wanders(&m->on, FRAMES);
-	conf = driven_glb(&m->on);
-	*state = m;
-	return ok ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-	struct made *m = *state;
-	drive_free(&m->drive);
-	driven_free(&m->on);
-	free(m);
-	return 0;
-}
-
 /* An expression's target is what it moves beside a look straight ahead. */
 static void expressions_have_targets(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
-	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
 	assert_int_equal(b.n_poses, GLB_POSES + 2 + GLB_HALVES);
 	float (*x[2])[3] = { calloc((size_t)m->on.rig.n, sizeof **x), calloc((size_t)m->on.rig.n, sizeof **x) };
 	struct deform *deform = deform_new(&m->on.rig);
@@ -58,7 +29,7 @@ static void expressions_have_targets(void **state)
 			deform_pose(deform, e, (const double(*)[3][3])turn, x[on], 0);
 			deform_clear(x[on], &m->on.rig, &near, (const double(*)[3][3])turn);
 		}
-		assert_string_equal(b.pose_name[GLB_POSES + k], conf.expression[k]);
+		assert_string_equal(b.pose_name[GLB_POSES + k], m->conf.expression[k]);
 		for (int i = 0; i < b.n; i++)
 			for (int c = 0; c < 3; c++) {
 				const double want = (double)x[1][b.vertex[i]][c] - (double)x[0][b.vertex[i]][c];
@@ -77,7 +48,7 @@ static void expressions_have_targets(void **state)
 /* Both eyes' targets together are the pose of both eyes, wherever mesh and globe disagree at rest: here all of the left lids' linings lie in it. */
 static void named_poses_add_up(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
 	static const int pairs[][2] = { { 0, 1 }, { 2, 3 }, { 8, 7 } };
@@ -87,7 +58,7 @@ static void named_poses_add_up(void **state)
 	for (int i = 0; i < m->on.rig.n; i++)
 		for (int c = 0; c < 3 && m->on.rig.part[i] == RIG_SKIN && m->on.rig.gap[i] < 2; c++)  // 3 mm deeper, towards the globe's centre
 			m->on.rig.rest[i][c] -= 3.0f / 14 * (m->on.rig.rest[i][c] - (float)m->on.rig.globe[m->on.rig.side[i]].center[c]);
-	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
 	struct deform *deform = deform_new(&m->on.rig);
 	struct deform_near near = deform_near_of(&m->on.rig);
 	for (int k = 0; k < 3; k++) {
@@ -125,7 +96,7 @@ static void named_poses_add_up(void **state)
 /* An eye's targets move its own side of the face alone, however a clip ties both eyes to each other. */
 static void each_eye_by_itself(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
 	const size_t size = (size_t)(RIG_COMPONENTS * (m->on.rig.n_inputs + 1)) * sizeof(double);
@@ -136,7 +107,7 @@ static void each_eye_by_itself(void **state)
 			slope[k * (m->on.rig.n_inputs + 1) + i] += slope[k * (m->on.rig.n_inputs + 1) + i + 5];
 			slope[k * (m->on.rig.n_inputs + 1) + i + 5] = 0;
 		}
-	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
 	for (int pose = 0; pose < GLB_POSES; pose++)
 		for (int i = 0; i < b.n; i++) {
 			const float *d = b.pose + 3 * ((long)pose * b.n + i), x = m->on.rig.rest[b.vertex[i]][0];  // the left eye at x > 0
@@ -155,7 +126,7 @@ static void each_eye_by_itself(void **state)
  * slopes without end closes the eye. */
 static void lids_go_no_further_than_they_are_known(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct glb_bake b[3];
 	struct err err = { 0 };
 	const double g[2][10] = { { -4, -3, 0, 0, 0, -4, -3 }, { 4, 3, 0, 0, 0, 4, 3 } };
@@ -166,7 +137,7 @@ static void lids_go_no_further_than_they_are_known(void **state)
 	for (int k = 0; k < 3; k++) {
 		if (k)
 			known_of(&m->on.rig.known, 2, g[0], 10, k == 1 ? 0 : 0.3);
-		assert_true(glb_bake_make(&b[k], &m->on.rig, &m->drive, &conf, &err));
+		assert_true(glb_bake_make(&b[k], &m->on.rig, &m->drive, &m->conf, &err));
 		for (int pose = 2; pose < 10; pose++)
 			for (int i = 0; i < b[k].n; i++) {
 				const float *d = b[k].pose + (long)(pose * b[k].n + i) * 3;
@@ -196,7 +167,7 @@ static double on_the_way(float x[3], const struct rig *rig, const struct glb_bak
  * leads straight on (here lids are 2 mm before the eye). */
 static void blinks_go_round_the_eye(void **state)
 {
-	struct made *m = *state;
+	struct wandering *m = *state;
 	struct rig shuts, *rig = &shuts;
 	struct rig_conf shutting = face_conf();
 	struct glb_bake b;
@@ -209,7 +180,7 @@ static void blinks_go_round_the_eye(void **state)
 	float (*pose)[3] = calloc((size_t)rig->n, sizeof *pose), x[3];
 	struct deform *deform = deform_new(rig);
 	struct deform_near near = deform_near_of(rig);
-	assert_true(glb_bake_make(&b, rig, &m->drive, &conf, &err));
+	assert_true(glb_bake_make(&b, rig, &m->drive, &m->conf, &err));
 	for (int step = 1; step < 20; step++)
 		for (int eye = 0; eye < 2; eye++) {
 			const double w = step / 20.0;
@@ -253,5 +224,5 @@ int main(void)
 		cmocka_unit_test(blinks_go_round_the_eye),
 		cmocka_unit_test(each_eye_by_itself),
 	};
-	return cmocka_run_group_tests(tests, setup, teardown);
+	return cmocka_run_group_tests(tests, wandering_setup, wandering_teardown);
 }
