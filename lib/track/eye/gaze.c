@@ -62,7 +62,7 @@ static bool measure(struct gaze_fit *fit, struct gaze_edge edge[GAZE_ARCS_MAX], 
 		if (!gaze_fit_edges(fit, *n, edge, &eye->globe, view, 0.05))
 			return false;
 	}
-	return fit->inliers > 0.12 * eye->conf->limbus_arcs && fit->rms < fmax(1.2, 0.04 * limbus_px);
+	return fit->inliers > 0.11 * eye->conf->limbus_arcs && fit->rms < fmax(1.2, 0.04 * limbus_px);
 }
 
 static double clear_height(const struct lid_chart *chart, const struct lid_curves *curves, const double px[2],
