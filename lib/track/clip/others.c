@@ -37,15 +37,16 @@ bool track_alone_in_it(const struct track_clip *clip, const struct track_subject
 bool track_alone_through(const struct track_result *r, struct stage *stage, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf,
                          struct err *err)
 {
-	enum { FRAMES = 4 };
+	enum { FRAMES = 4, SPAN = 600 };  // a film of an hour is not decoded anew for it
 	const size_t area = (size_t)clip->info.width * (size_t)clip->info.height;
 	struct track_clip at = *clip;
 	struct err none = { 0 };
 	bool alone = true;
+	const long n = r->n < SPAN ? r->n : SPAN;
 	at.luma = mem_array(area + 1, 1);
 	at.rgb = mem_array(3 * area + 1, 1);
 	for (int i = 0; alone && i < FRAMES; i++) {
-		const long f = (2 * i + 1) * r->n / (2 * FRAMES);
+		const long f = (2 * i + 1) * n / (2 * FRAMES);
 		at.reference = f * track_every(conf);
 		memcpy(at.cam_from_head, r->pose[f], sizeof at.cam_from_head);
 		if (!r->lost_at[f] && track_clip_take(&at, at.reference, stage, conf, &none))
