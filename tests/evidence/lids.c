@@ -86,6 +86,7 @@ struct lids lids_make(struct rng *rng, bool test, float openness, float gaze_y)
 	l.bag = range_of(rng, 0, 1.5);
 	l.rim = range_of(rng, 0.4, 1.8);
 	l.caruncle = range_of(rng, 1.5, 5);
+	l.shade = (struct lid_shade){ 0.6F, 1.3F, 0.3F, 0.8F, { 0.35F, 0.35F }, { 3, 3 }, 0, 1, 1 };
 	make_up(&l, rng);
 	hairs(&l, rng, test);
 	return l;

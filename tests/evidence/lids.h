@@ -8,6 +8,10 @@
 enum { LID_SAMPLES = 96 };
 enum lash_style { LASH_FAN, LASH_STRAIGHT, LASH_SPARSE, LASH_NONE, LASH_CLUMPED, LASH_STYLES };  // the last: test split alone
 
+/* How much darker what lies between the lids is at their edge, and how many mm away that has fallen to a third: under the upper lid, over the lower one, in the
+ * inner and the outer corner; and the sharper shadow that the upper lid casts, cast_mm wide. */
+struct lid_shade { float upper, upper_mm, lower, lower_mm, corner[2], corner_mm[2], cast, cast_mm, cast_soft; };
+
 struct lids {
 	float inner[2], outer[2];                             // corners
 	float upper[LID_SAMPLES], lower[LID_SAMPLES], crease[LID_SAMPLES];  // y over x from inner to outer
@@ -17,6 +21,7 @@ struct lids {
 	enum lash_style style;
 	int lashes[2];                                        // upper, lower
 	float lash_length[2], lash_wide, lash_curl, lash_rgb[3];
+	struct lid_shade shade;
 	int brow_hairs;
 	float brow_at, brow_arch, brow_thick, brow_tilt, brow_wide, brow_tone, brow_rgb[3];
 };

@@ -50,6 +50,15 @@ static void behind_bare(struct canvas *c, const struct set *s, struct rng *rng, 
 			c->rgb[3 * i + k] = level * s->white[k] * (which == 2 ? s->face.back[0][k] : 1);
 }
 
+/* Share of the light that lids and lashes let through; the upper ones keep more away. In the nearer corner alone. */
+static float let_through(const struct lid_shade *s, float above, float below, float inner, float outer)
+{
+	const int k = outer < inner;
+	const float corner = fmaxf(k ? outer : inner, 0);
+	return (1 - s->upper * expf(-above / s->upper_mm)) * (1 - s->lower * expf(-below / s->lower_mm)) * (1 - s->corner[k] * expf(-corner / s->corner_mm[k]))
+	       * (1 - s->cast * smooth_step(s->cast_mm - above, -s->cast_soft, s->cast_soft));
+}
+
 /* One pixel of an open eye at (x, y) mm of its frame; d: distance inside of the lids, mm. */
 static void eye_pixel(struct canvas *c, long i, const struct set *s, int e, float x, float y, float d, const struct lid_heights *h, float shade)
 {
@@ -64,9 +73,8 @@ static void eye_pixel(struct canvas *c, long i, const struct set *s, int e, floa
 		if (caruncle > 0.5F)
 			p.label = EVIDENCE_SCLERA;
 	}
-	// Lids and lashes keep light away, the upper ones more.
-	const float above = fmaxf(h->upper - y, 0), below = fmaxf(y - h->lower, 0), corner = fminf(x - l->inner[0], l->outer[0] - x);
-	const float kept = shade * (1 - 0.6F * expf(-above / 1.3F)) * (1 - 0.3F * expf(-below / 0.8F)) * (1 - 0.35F * expf(-fmaxf(corner, 0) / 3));
+	const float above = fmaxf(h->upper - y, 0), below = fmaxf(y - h->lower, 0);
+	const float kept = shade * let_through(&l->shade, above, below, x - l->inner[0], l->outer[0] - x);
 	const float hid = smooth_step(above, 0.1F, 1.2F);
 	float rgb[3];
 	for (int k = 0; k < 3; k++) {

@@ -7,12 +7,13 @@
 #include "glasses.h"
 #include "lens.h"
 #include "other.h"
+#include "portrait.h"
 #include "scene_impl.h"
 
-/* Eyes that look the same way, lids that follow; one in sixteen pairs is closed. */
-static void eyes_make(struct set *s, struct rng *rng, bool test)
+/* Eyes that look the same way, lids that follow; one in sixteen pairs is closed, of `aside` one looks far aside. */
+static void eyes_make(struct set *s, struct rng *rng, bool test, int aside)
 {
-	const bool wide = rng_below(rng, 3) == 0;
+	const bool wide = rng_below(rng, aside) == 0;
 	const float turn = range_of(rng, 0, 6.2831853), away = wide ? sinf(range_of(rng, 0, 0.79)) : sinf((float)fabs(0.14 * rng_normal(rng)));
 	const float gx = away * cosf(turn), gy = away * sinf(turn);
 	const float open = rng_below(rng, 16) == 0 ? 0 : rng_below(rng, 3) ? range_of(rng, 0.5, 1.1) : range_of(rng, 0.1, 0.6);
@@ -208,7 +209,7 @@ static struct drawn begin(struct set *s, struct rng *rng, bool test, int width, 
 	s->face = drawn_face_make(rng, test);
 	s->light = light_make(rng, test);
 	light_on(s->white, &s->light, (const float[3]){ 0, 0, 1 }, 0.3F);
-	eyes_make(s, rng, test);
+	eyes_make(s, rng, test, 3);
 	d.light = (int)s->light.kind;
 	d.iris = (int)s->ball[0].iris.family;
 	return d;
@@ -267,6 +268,11 @@ struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, in
 	float limbus[5];
 	d.other = view->other;
 	s.bare = d.other == OTHER_NONE && rng_below(&rng, 20) == 0;
+	if (view->portrait) {
+		struct rng own = { (number * 2 + 1) * 0x9e3779b97f4a7c15 + 5 };
+		eyes_make(&s, &own, !view->training, 2);
+		portrait_make(&s, &own);
+	}
 	for (int k = 0; k < 2; k++) {
 		s.ball[k].even = true;
 		s.ball[k].blur *= 0.5F;
@@ -284,11 +290,12 @@ struct drawn drawn_lesson(uint64_t number, int least, struct drawn_view *view)
 	struct rng rng = { number * 77 + 5 };
 	const int width = (int)(least * pow(2.4, rng_uniform(&rng))), height = (int)(width * rng_range(&rng, 0.6, 0.85));
 	const double r = exp(rng_range(&rng, log(24), log(0.42 * height)));
-	const int other = rng_below(&rng, 5) == 0 ? OTHER_BALL + rng_below(&rng, OTHER_FACE - OTHER_BALL) : OTHER_NONE;
+	const int other = rng_below(&rng, 5) == 0 ? OTHER_BALL + rng_below(&rng, OTHER_KINDS - OTHER_BALL) : OTHER_NONE;
 	*view = (struct drawn_view){ .radius = (float)r, .x = (float)rng_range(&rng, 1.05 * r, width - 1.05 * r),
 		.y = (float)rng_range(&rng, 1.05 * r, height - 1.05 * r), .mirrored = rng_below(&rng, 2), .other = other, .training = true,
 		.rough = (float)fmax(rng_range(&rng, -0.5, 1), 0),
 		.turn = (float)(rng_below(&rng, 3) ? 0.2 * rng_normal(&rng) : rng_range(&rng, 0, 2 * M_PI)) };
+	view->portrait = rng_below(&rng, 2);
 	return drawn_photograph(number, view, width, height);
 }
 
