@@ -57,7 +57,7 @@ def errors(rows, chance, truth, step):
     would find it. NAN: the limbus does not cross two in three rays of the strip."""
     n, count, rays = rows.shape
     basis, valid = waves(rays), (truth > -0.5) & (truth < count - 0.5)
-    known = solve(torch.where(valid, truth, torch.zeros(())) - 0.5 * (count - 1), torch.zeros(n, rays), torch.ones(n, rays), valid.float(), 1e6)[0]
+    known = solve(torch.where(valid, truth, torch.zeros(())) - 0.5 * (count - 1), torch.zeros(n, rays), torch.ones(n, rays), valid.float(), 1e3)[0]
     found = torch.zeros(n, 5)
     for reach in CLIMB:
         about = 0.5 * (count - 1) + found @ basis.T
