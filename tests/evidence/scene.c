@@ -232,6 +232,14 @@ static void finish(struct drawn *d, struct canvas *c, const struct set *s, struc
 	canvas_free(c);
 }
 
+/* Other eyes in the same face, as in photographs of people. */
+static void as_portrait(struct set *s, uint64_t number, bool test)
+{
+	struct rng own = { (number * 2 + 1) * 0x9e3779b97f4a7c15 + 5 };
+	eyes_make(s, &own, test, 2);
+	portrait_make(s, &own);
+}
+
 struct drawn drawn_make(uint64_t number, bool test, int width, int height)
 {
 	struct rng rng = { (number * 2 + test) * 0xd1342543de82ef95 + 77 };
@@ -240,6 +248,8 @@ struct drawn drawn_make(uint64_t number, bool test, int width, int height)
 	struct canvas c = canvas_new(width, height);
 	d.other = rng_below(&rng, 7) ? OTHER_NONE : 1 + rng_below(&rng, OTHER_KINDS - 1);
 	s.bare = d.other == OTHER_NONE && rng_below(&rng, 14) == 0;
+	if (!test && number % 2)
+		as_portrait(&s, number, test);
 	look(&c, &s, &rng, d.other == OTHER_FACE);
 	finish(&d, &c, &s, &rng, test, false, 0);
 	return d;
@@ -268,11 +278,8 @@ struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, in
 	float limbus[5];
 	d.other = view->other;
 	s.bare = d.other == OTHER_NONE && rng_below(&rng, 20) == 0;
-	if (view->portrait) {
-		struct rng own = { (number * 2 + 1) * 0x9e3779b97f4a7c15 + 5 };
-		eyes_make(&s, &own, !view->training, 2);
-		portrait_make(&s, &own);
-	}
+	if (view->portrait)
+		as_portrait(&s, number, !view->training);
 	for (int k = 0; k < 2; k++) {
 		s.ball[k].even = true;
 		s.ball[k].blur *= 0.5F;

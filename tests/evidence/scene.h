@@ -30,7 +30,7 @@ struct drawn {
 	int other;             // 0 an eye; else which kind of picture without one
 };
 
-/* Picture `number` of a split. drawn_free. Not for several threads at once. */
+/* Picture `number` of a split; every second one of the training split as photographs of people are (portrait.h). drawn_free. Not for several threads at once. */
 struct drawn drawn_make(uint64_t number, bool test, int width, int height);
 
 /* A photograph for measuring by: of the test split unless training is set, the limbus a ramp of equal halves (ball.h), one eye's limbus where it is asked for.

@@ -208,14 +208,16 @@ class Meeting:
             blend(net.state_dict(), self.state, 0)
 
 
-def optimise(net, optimiser, pictures, rng):
+def optimise(net, optimiser, pictures, rng, half):
     rgb, label = pictures.next()
     x = jitter(rgb, rng)
     if torch.rand(1, generator=rng) < 0.5:
         x, label = x.flip(3), label.flip(2)
     if torch.rand(1, generator=rng) < 0.3:
         x, label = x.flip(2), label.flip(1)
-    loss = loss_of(net(x.to(memory_format=torch.channels_last)), soft_label(label))
+    with torch.cpu.amp.autocast(dtype=torch.bfloat16, enabled=half):
+        out = net(x.to(memory_format=torch.channels_last))
+    loss = loss_of(out.float(), soft_label(label))
     optimiser.zero_grad()
     loss.backward()
     nn.utils.clip_grad_norm_(net.parameters(), 2)
@@ -263,7 +265,7 @@ def train(args, worker=0, meeting=None):
         for group in optimiser.param_groups:
             warm = min(1, len(losses) / (20 if args.short or args.start else 200) + 0.02)
             group["lr"] = args.rate * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
-        losses.append(optimise(net, optimiser, pictures, rng))
+        losses.append(optimise(net, optimiser, pictures, rng, args.half))
         if meeting and len(losses) % 20 == 0:
             meeting.visit(net)
         if worker:
@@ -297,6 +299,7 @@ def main():
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--workers", type=int, default=1, help="processes that train side by side and average their weights")
     p.add_argument("--threads", type=int, default=1, help="of each")
+    p.add_argument("--half", action="store_true", help="multiply in bfloat16: half as long again where the processor has it")
     p.add_argument("--short", action="store_true")
     p.add_argument("--short-steps", type=int, default=80)
     p.add_argument("--judge", metavar="FILE")
