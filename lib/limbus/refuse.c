@@ -95,6 +95,7 @@ static bool rough_enough(const struct posterior *p, const struct trial *trial, c
 void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf)
 {
 	const struct posterior *p = &found->posterior;
+	const double known = known_to(trial);
 	if (is_cut(&found->limbus.e, photo))
 		limbus_refuse(found, "the iris is cut by the frame: show all of it with some white around");
 	else if (p->gross > conf->max_gross && rough_enough(p, trial, conf))
@@ -102,8 +103,8 @@ void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *tria
 		              100 * p->gross, 100 * conf->rough_tolerance, conf->rough_tolerance, words_of(trial, true, conf));
 	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
 		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
-	else if (p->gross > conf->max_gross && known_to(trial) > conf->tolerance)
-		limbus_refuse(found, "its ellipse is known to %.0f %% only, %.2g %% is asked for: %s", 100 * known_to(trial), 100 * conf->tolerance, words_of(trial, true, conf));
+	else if (p->gross > conf->max_gross && known > conf->tolerance)
+		limbus_refuse(found, "its ellipse is known to %.0f %% only, %.2g %% is asked for: %s", 100 * known, 100 * conf->tolerance, words_of(trial, true, conf));
 	else if (p->gross > conf->max_gross)
-		limbus_refuse(found, "%s", words_of(trial, known_to(trial) > 0, conf));
+		limbus_refuse(found, "%s", words_of(trial, known > 0, conf));
 }
