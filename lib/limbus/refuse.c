@@ -31,7 +31,6 @@ struct fault {
 	const char *words;
 };
 
-static const char no_white[] = "no white of the eye beside the iris: open the eye wide and light it evenly";
 static const char covered[] = "too much of the limbus is covered by lids or lashes: open the eye wider";
 static const char no_edge[] = "no clear edge between iris and sclera: light the eye evenly and focus on the iris";
 static const char soft[] = "the limbus is soft or in shadow: open the eye wider, light it evenly and focus on the iris";
@@ -46,7 +45,7 @@ static const struct fault faults[] = {
 	{ ODDS_BLUR, 0.03, 1, false, "too blurred: focus on the iris and hold the camera still" },
 	{ ODDS_SCATTER, -5.5, 1, true, "no clear ellipse: the eye is closed, hidden, or not there; open the eye wide and photograph it straight" },
 	{ ODDS_SCATTER, -5.5, 1, false, soft },
-	{ ODDS_SCLERA_OUTSIDE, 0.8, -1, false, no_white },
+	{ ODDS_SCLERA_OUTSIDE, 0.8, -1, false, "no white of the eye beside the iris: open the eye wide and light it evenly" },
 	{ ODDS_IRIS_OUTSIDE, 0, 1, false, "only the pupil or a part of the iris stands out: show the whole iris, evenly lit" },
 	{ ODDS_PUPIL_OFF, 0, 1, false, "the pupil does not lie in the middle of the iris: photograph the eye straight, without strong reflections" },
 	{ ODDS_ROUND, -0.05, -1, false, "the eye is turned too far aside: photograph it from nearer to the front" },
@@ -104,7 +103,7 @@ void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *tria
 	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
 		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
 	else if (p->gross > conf->max_gross && known > conf->tolerance)
-		limbus_refuse(found, "its ellipse is known to %.0f %% only, %.2g %% is asked for: %s", 100 * known, 100 * conf->tolerance, words_of(trial, true, conf));
+		limbus_refuse(found, "its ellipse is known to %.2g %% only, %.2g %% is asked for: %s", 100 * known, 100 * conf->tolerance, words_of(trial, true, conf));
 	else if (p->gross > conf->max_gross)
 		limbus_refuse(found, "%s", words_of(trial, known > 0, conf));
 }

@@ -211,7 +211,6 @@ static struct drawn begin(struct set *s, struct rng *rng, bool test, int width, 
 	light_on(s->white, &s->light, (const float[3]){ 0, 0, 1 }, 0.3F);
 	eyes_make(s, rng, test, 3);
 	d.light = (int)s->light.kind;
-	d.iris = (int)s->ball[0].iris.family;
 	return d;
 }
 
@@ -219,6 +218,7 @@ static struct drawn begin(struct set *s, struct rng *rng, bool test, int width, 
 static void finish(struct drawn *d, struct canvas *c, const struct set *s, struct rng *rng, bool test, bool photo, float rough)
 {
 	const bool face = d->other == OTHER_NONE || d->other == OTHER_FACE;
+	d->iris = (int)s->ball[0].iris.family;
 	for (int i = 0; i < 3; i++)
 		d->white[i] = face ? s->white[i] : 1;
 	if (face)
