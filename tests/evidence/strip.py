@@ -24,15 +24,17 @@ from torch import nn
 from torch.nn import functional as F
 
 sys.dont_write_bytecode = True
+import ring
 import strip_ellipse
 import weights
 
 PLANES, ROWS, RAYS, WRAP = 8, 64, 128, 16
 FROM, STEP = 0.6, 0.0125
 BYTES = PLANES * ROWS * RAYS + 5 * RAYS
-CHANNELS = (16, 24, 40, 56)
+CHANNELS = (16, 24, 40, 56, 64)   # the last levels see the whole round of rays
 SPREAD = 0.8   # rows: of the truth
 KEPT = 24000   # strips in memory
+APART, TOGETHER = 1000000, 64   # numbers of the photographs of two generators; strips that go to a device together
 HELD, STARTS, NEAR = 900000000, 8, slice(2, 6)   # photographs that are never learnt from; strips of each, those near a limbus
 
 
@@ -74,15 +76,16 @@ class Net(nn.Module):
 class Strips:
     """Batches from the generator; the last KEPT strips are kept and drawn from."""
 
-    def __init__(self, make, first, batch, fresh=0.6, kept=KEPT):
-        self.batch, self.fresh, self.rng = batch, max(1, int(batch * fresh)), np.random.default_rng(first)
-        self.process = subprocess.Popen([make, str(first), "100000000"], stdout=subprocess.PIPE, bufsize=1 << 22)
-        self.queue, self.kept, self.most, self.seen = queue.Queue(64), [], kept, 0
-        threading.Thread(target=self.read, daemon=True).start()
+    def __init__(self, make, first, batch, fresh=0.6, kept=KEPT, makers=1):
+        self.batch, self.fresh, self.rng, self.process = batch, max(1, int(batch * fresh)), np.random.default_rng(first), []
+        self.queue, self.kept, self.most, self.seen = queue.Queue(64 * makers), [], kept, 0
+        for k in range(makers):
+            self.process.append(subprocess.Popen([make, str(first + k * APART), "100000000"], stdout=subprocess.PIPE, bufsize=1 << 22))
+            threading.Thread(target=self.read, args=(self.process[-1],), daemon=True).start()
 
-    def read(self):
+    def read(self, process):
         while True:
-            data = self.process.stdout.read(BYTES)
+            data = process.stdout.read(BYTES)
             if len(data) < BYTES:
                 return
             a = np.frombuffer(data, np.uint8)
@@ -107,16 +110,40 @@ class Strips:
         return [torch.from_numpy(np.stack([p[k] for p in picked])) for k in range(3)]
 
     def close(self):
-        self.process.terminate()
+        for process in self.process:
+            process.terminate()
         while not self.queue.empty():
             self.queue.get()
-        self.process.wait()
+        for process in self.process:
+            process.wait()
+
+
+class Stored(Strips):
+    """The same for a device, which keeps all of them."""
+
+    MOST, LEAST = 500000, 6000
+
+    def __init__(self, make, first, batch, device, makers):
+        super().__init__(make, first, batch, makers=makers)
+        self.ring = ring.Ring(self.MOST, device, (((PLANES, ROWS, RAYS), torch.uint8), ((RAYS,), torch.float32), ((RAYS,), torch.uint8)))
+
+    def next(self):
+        while self.seen < self.LEAST or self.queue.qsize() >= TOGETHER:
+            self.ring.add(*self.fresh_only(TOGETHER))
+            self.seen = self.ring.made
+        return self.ring.draw(self.batch)
+
+
+def strips_of(args):
+    if args.device == "cpu":
+        return Strips(args.make, args.first, args.batch, kept=96 if args.short else KEPT, makers=args.makers)
+    return Stored(args.make, args.first, args.batch, args.device, args.makers)
 
 
 def target(crossing, seen):
     """Rows [n, ROWS, RAYS], 0 where the limbus crosses none; whether it is seen [n, RAYS]."""
     row = (crossing - FROM) / STEP - 0.5
-    at = torch.arange(ROWS)[None, :, None]
+    at = torch.arange(ROWS, device=row.device)[None, :, None]
     within = (row > -0.5) & (row < ROWS - 0.5)
     hot = torch.exp(-0.5 * ((at - row[:, None]) / SPREAD) ** 2) * within[:, None]
     return hot / hot.sum(1, keepdim=True).clamp(min=1e-6), ((seen > 0) & within).float()
@@ -125,12 +152,16 @@ def target(crossing, seen):
 def jitter(x, rng):
     rgb = x[:, :3]
     n = len(rgb)
-    rgb = rgb.clamp(min=1e-3) ** torch.exp(0.25 * torch.randn(n, 1, 1, 1, generator=rng))
-    rgb = rgb * torch.exp(0.15 * torch.randn(n, 3, 1, 1, generator=rng))
-    grey = (torch.rand(n, 1, 1, 1, generator=rng) < 0.1).float()
+
+    def draw(*shape, of=torch.rand):
+        return of(*shape, generator=rng, device=x.device)
+
+    rgb = rgb.clamp(min=1e-3) ** torch.exp(0.25 * draw(n, 1, 1, 1, of=torch.randn))
+    rgb = rgb * torch.exp(0.15 * draw(n, 3, 1, 1, of=torch.randn))
+    grey = (draw(n, 1, 1, 1) < 0.1).float()
     rgb = rgb * (1 - grey) + grey * rgb.mean(1, keepdim=True)
-    rgb = rgb + 0.02 * torch.rand(n, 1, 1, 1, generator=rng) ** 2 * torch.randn(rgb.shape, generator=rng)
-    chance = x[:, 3:7] * (torch.rand(n, 1, 1, 1, generator=rng) > 0.1).float()
+    rgb = rgb + 0.02 * draw(n, 1, 1, 1) ** 2 * draw(*rgb.shape, of=torch.randn)
+    chance = x[:, 3:7] * (draw(n, 1, 1, 1) > 0.1).float()
     return torch.cat([rgb, chance, x[:, 7:]], 1)
 
 
@@ -218,7 +249,9 @@ def main():
     p.add_argument("--first", type=int, default=1000000)
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--threads", type=int, default=1)
-    p.add_argument("--ellipse", type=float, default=0, help="weight of the ellipse's loss beside that of the rays: 0.15 counts about as much")
+    p.add_argument("--ellipse", type=float, default=0, help="weight of the ellipse's loss beside that of the rays, reached half way: 0.15 counts about as much")
+    p.add_argument("--device", default="cpu", help="where it trains: cpu, or cuda, whose memory keeps all strips")
+    p.add_argument("--makers", type=int, default=1, help="generators side by side")
     p.add_argument("--held", type=int, default=96, help="photographs to judge on")
     p.add_argument("--half", action="store_true", help="multiply in bfloat16: half as long again where the processor has it")
     p.add_argument("--short", action="store_true")
@@ -226,19 +259,20 @@ def main():
     torch.set_num_threads(args.threads)
     torch.set_flush_denormal(True)
     torch.manual_seed(args.seed)
-    rng = torch.Generator().manual_seed(args.seed)
+    rng = torch.Generator(args.device).manual_seed(args.seed)
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
         load(net, args)
     print("%d parameters" % sum(v.numel() for v in net.parameters()), flush=True)
+    held = None if args.short else held_out(args)
+    if held and args.start:
+        judge(net, held)
+    net = net.to(args.device)
     mean = {k: v.clone() for k, v in net.state_dict().items()}
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
     if args.short:
         args.batch = 8
-    held = None if args.short else held_out(args)
-    if held:
-        judge(net, held)
-    strips = Strips(args.make, args.first, args.batch, kept=96 if args.short else KEPT)
+    strips = strips_of(args)
     begun, losses, ellipse, last = time.time(), [], [], time.time()
     while True:
         done = (time.time() - begun) / max(60 * args.minutes, 1e-9) if not args.short else len(losses) / 60
@@ -248,34 +282,35 @@ def main():
             group["lr"] = args.rate * min(1, len(losses) / (20 if args.short else 100) + 0.02) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
         x, crossing, shown = strips.next()
         x, (hot, seen) = jitter(x.float() / 255, rng), target(crossing, shown)
-        if torch.rand(1, generator=rng) < 0.5:  # mirrored left to right: phi becomes pi - phi
+        if torch.rand(1, generator=rng, device=args.device) < 0.5:  # mirrored left to right: phi becomes pi - phi
             order = (RAYS // 2 - torch.arange(RAYS)) % RAYS
             x, crossing, hot, seen = x[..., order], crossing[..., order], hot[..., order], seen[..., order]
-        if torch.rand(1, generator=rng) < 0.25:
-            by = int(torch.randint(RAYS, (1,), generator=rng))
+        if torch.rand(1, generator=rng, device=args.device) < 0.25:
+            by = int(torch.randint(RAYS, (1,), generator=rng, device=args.device))
             x, crossing, hot, seen = x.roll(by, 3), crossing.roll(by, 1), hot.roll(by, 2), seen.roll(by, 1)
-        with torch.cpu.amp.autocast(dtype=torch.bfloat16, enabled=args.half):
+        with torch.autocast(x.device.type, dtype=torch.bfloat16, enabled=args.half):
             out = net(even(x).to(memory_format=torch.channels_last))
         loss, follows = losses_of(out.float(), crossing, hot, seen)
         optimiser.zero_grad()
-        (loss + args.ellipse * follows if args.ellipse else loss).backward()
+        (loss + args.ellipse * min(1, 2 * done) * follows if args.ellipse else loss).backward()
         nn.utils.clip_grad_norm_(net.parameters(), 2)
         optimiser.step()
-        losses.append(float(loss.detach()))
-        ellipse.append(float(follows.detach()))
+        losses.append(loss.detach())
+        ellipse.append(follows.detach())
         keep = min(0.998, len(losses) / (len(losses) + 10))
         with torch.no_grad():
             for a, b in zip(mean.values(), net.state_dict().values()):
                 a.mul_(keep).add_(b, alpha=1 - keep) if a.dtype.is_floating_point else a.copy_(b)
-        if len(losses) % 100 == 0:
+        if len(losses) % (100 if args.device == "cpu" else 1000) == 0:
             print("%5.1f min, step %d, of %d strips, loss %.4f, ellipse %.3f"
-                  % ((time.time() - begun) / 60, len(losses), strips.seen, np.mean(losses[-100:]), np.mean(ellipse[-100:])), flush=True)
+                  % ((time.time() - begun) / 60, len(losses), strips.seen, float(sum(losses[-100:]) / 100), float(sum(ellipse[-100:]) / 100)), flush=True)
         if args.keep and time.time() - last > 180:
             last = time.time()
             torch.save(mean, args.keep)
             other = Net()
             other.load_state_dict(mean)
             judge(other, held)
+    losses, mean = [float(loss) for loss in losses], {name: value.cpu() for name, value in mean.items()}
     if args.short:
         first, end = np.mean(losses[:10]), np.mean(losses[-20:])
         print("loss %.3f, at the end %.3f" % (first, end))
@@ -283,6 +318,7 @@ def main():
         assert end < 0.9 * first, "the loss does not fall"
         return
     strips.close()
+    net = net.cpu()
     net.load_state_dict(mean)
     if losses:
         judge(net, held)

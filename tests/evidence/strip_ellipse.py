@@ -16,15 +16,15 @@ REACH = 6, 20             # rows about the truth in which a ray has its place: s
 SEEN, CLIMB = 0.3, (16, 12, 8, 6, 4, 4, 4)   # as strip_fit: chance from which a ray is seen; rows of each step
 
 
-def waves(rays):
+def waves(rays, device="cpu"):
     """[rays, 5]: centre, radius, and the two of an ellipse's shape."""
-    phi = 2 * math.pi * torch.arange(rays) / rays
+    phi = 2 * math.pi * torch.arange(rays, device=device) / rays
     return torch.stack([phi.cos(), phi.sin(), torch.ones(rays), (2 * phi).cos(), (2 * phi).sin()], 1)
 
 
 def places(rows, about, reach):
     """Mean of each ray's rows within reach of `about`, from there, and their variance. rows: chances [n, rows, rays]."""
-    off = torch.arange(rows.shape[1])[None, :, None] - about[:, None]
+    off = torch.arange(rows.shape[1], device=rows.device)[None, :, None] - about[:, None]
     some = rows * (off.abs() <= reach[:, None])
     total = some.sum(1) + 1e-9
     mean = (some * off).sum(1) / total
@@ -33,9 +33,9 @@ def places(rows, about, reach):
 
 def solve(mean, variance, seen, use, known=KNOWN):
     """The waves that fit best, and the matrix of their normal equations. Rays with use 0 are left out."""
-    basis = waves(mean.shape[1])
+    basis = waves(mean.shape[1], mean.device)
     weight = use * (seen / COUNTS[0] + (1 - seen) / COUNTS[1]) / (variance + NOISE ** 2)
-    normal = torch.einsum("ja,nj,jb->nab", basis, weight, basis) + torch.eye(5) / known ** 2
+    normal = torch.einsum("ja,nj,jb->nab", basis, weight, basis) + torch.eye(5, device=mean.device) / known ** 2
     return torch.linalg.solve(normal, torch.einsum("ja,nj->na", basis, weight * mean)), normal
 
 

@@ -26,6 +26,7 @@ from torch import nn
 from torch.nn import functional as F
 
 sys.dont_write_bytecode = True  # nothing is left beside the sources
+import ring
 import weights
 
 CLASSES = ("skin", "lash", "sclera", "iris", "pupil", "reflection")
@@ -71,23 +72,25 @@ class Net(nn.Module):
 
 
 class Pictures:
-    """Batches from the generator, made beside the training. again: the share of a batch that was seen before, of the last KEPT."""
+    """Batches from the generator, made beside the training. again: the share of a batch that was seen before, of the last KEPT.
+    makers: generators side by side, their pictures' numbers APART from each other."""
 
-    KEPT = 3000
+    KEPT, APART = 3000, 1000000
 
-    def __init__(self, make, first, size, batch, test=False, again=0.0):
+    def __init__(self, make, first, size, batch, test=False, again=0.0, makers=1):
         self.size, self.batch, self.old = size, batch - int(batch * again), int(batch * again)
-        self.kept, self.rng = [], np.random.default_rng(first)
-        command = [make, str(first), "100000000", str(size[0]), str(size[1])] + (["test"] if test else [])
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, bufsize=1 << 22)
-        self.queue = queue.Queue(4)
-        threading.Thread(target=self.read, daemon=True).start()
+        self.kept, self.rng, self.process = [], np.random.default_rng(first), []
+        self.queue = queue.Queue(4 * makers)
+        for k in range(makers):
+            command = [make, str(first + k * self.APART), "100000000", str(size[0]), str(size[1])] + (["test"] if test else [])
+            self.process.append(subprocess.Popen(command, stdout=subprocess.PIPE, bufsize=1 << 22))
+            threading.Thread(target=self.read, args=(self.process[-1],), daemon=True).start()
 
-    def read(self):
+    def read(self, process):
         w, h = self.size
         one = w * h * 4
         while True:
-            data = self.process.stdout.read(one * self.batch)
+            data = process.stdout.read(one * self.batch)
             if len(data) < one * self.batch:
                 return
             a = np.frombuffer(data, np.uint8).reshape(self.batch, one)
@@ -105,38 +108,72 @@ class Pictures:
         return torch.cat([rgb, torch.stack([p[0] for p in picked])]), torch.cat([label, torch.stack([p[1] for p in picked])])
 
     def close(self):
-        self.process.terminate()
+        for process in self.process:
+            process.terminate()
         while not self.queue.empty():
             self.queue.get()
-        self.process.wait()
+        for process in self.process:
+            process.wait()
+
+
+class Stored(Pictures):
+    """The same for a device, which keeps all of them."""
+
+    KEPT, LEAST, TOGETHER = 400000, 4000, 32
+
+    def __init__(self, make, first, size, batch, device, makers):
+        super().__init__(make, first, size, self.TOGETHER, makers=makers)
+        self.drawn = batch
+        self.ring = ring.Ring(self.KEPT, device, (((3, size[1], size[0]), torch.uint8), ((size[1], size[0]), torch.uint8)))
+
+    def next(self):
+        while self.ring.made < self.LEAST or not self.queue.empty():
+            self.ring.add(*self.queue.get())
+        return self.ring.draw(self.drawn)
+
+
+def pictures_of(args, first, size):
+    if args.device == "cpu":
+        return Pictures(args.make, first, size, args.batch, again=args.again, makers=args.makers)
+    return Stored(args.make, first, size, args.batch, args.device, args.makers)
 
 
 def soft_label(label):
     """Shares of the classes in each 2 x 2 pixels."""
-    hot = torch.zeros(label.shape[0], len(CLASSES), *label.shape[1:])
+    hot = torch.zeros(label.shape[0], len(CLASSES), *label.shape[1:], device=label.device)
     hot.scatter_(1, label[:, None].long(), 1)
     return F.avg_pool2d(hot, 2)
 
 
 def jitter(rgb, rng):
-    """Mirror, colour, gamma, patches of noise: what is cheap here."""
-    x = rgb.float() / 255
-    n = x.shape[0]
-    if torch.rand(1, generator=rng) < 0.3:
-        x = x.clamp(min=1e-4) ** torch.exp(0.25 * torch.randn(n, 1, 1, 1, generator=rng))
-    gain = torch.exp(0.12 * torch.randn(n, 3, 1, 1, generator=rng) + 0.15 * torch.randn(n, 1, 1, 1, generator=rng))
+    """Colour, gamma, patches of one colour: what is cheap here."""
+    x, device = rgb.float() / 255, rgb.device
+    n, _, h, w = x.shape
+
+    def draw(*shape, of=torch.rand):
+        return of(*shape, generator=rng, device=device)
+
+    gamma = torch.where(draw(n, 1, 1, 1) < 0.3, torch.exp(0.25 * draw(n, 1, 1, 1, of=torch.randn)), torch.ones(1, device=device))
+    x = x.clamp(min=1e-4) ** gamma
+    gain = torch.exp(0.12 * draw(n, 3, 1, 1, of=torch.randn) + 0.15 * draw(n, 1, 1, 1, of=torch.randn))
     x = (x * gain).clamp(0, 1)
-    for i in range(n):
-        if torch.rand(1, generator=rng) < 0.12:
-            h, w = x.shape[2:]
-            a, b = int(torch.randint(4, h // 3, (1,), generator=rng)), int(torch.randint(4, w // 3, (1,), generator=rng))
-            y, z = int(torch.randint(0, h - a, (1,), generator=rng)), int(torch.randint(0, w - b, (1,), generator=rng))
-            x[i, :, y:y + a, z:z + b] = torch.rand(3, 1, 1, generator=rng)
-    return x
+    # A patch from 4 px to a third of the picture in one of eight.
+    tall, wide = 4 + draw(n, 1, 1) * (h / 3 - 4), 4 + draw(n, 1, 1) * (w / 3 - 4)
+    row, column = torch.arange(h, device=device)[None, :, None] - draw(n, 1, 1) * (h - tall), torch.arange(w, device=device) - draw(n, 1, 1) * (w - wide)
+    inside = (row >= 0) & (row < tall) & (column >= 0) & (column < wide) & (draw(n, 1, 1) < 0.12)
+    return torch.where(inside[:, None], draw(n, 3, 1, 1), x)
+
+
+def turned(x, label, rng):
+    """Mirrored, upside down: each picture by itself."""
+    for axis, chance in ((2, 0.5), (1, 0.3)):
+        here = torch.rand(len(x), 1, 1, generator=rng, device=x.device) < chance
+        x, label = torch.where(here[:, None], x.flip(axis + 1), x), torch.where(here, label.flip(axis), label)
+    return x, label
 
 
 def loss_of(out, hot):
-    weight = torch.tensor(WEIGHT)
+    weight = out.new_tensor(WEIGHT)
     cross = -(F.log_softmax(out, 1) * hot * weight[None, :, None, None]).sum(1).mean()
     p = out.softmax(1)
     dice = 1 - (2 * (p * hot).sum((0, 2, 3)) + 50) / ((p + hot).sum((0, 2, 3)) + 50)
@@ -210,19 +247,15 @@ class Meeting:
 
 def optimise(net, optimiser, pictures, rng, half):
     rgb, label = pictures.next()
-    x = jitter(rgb, rng)
-    if torch.rand(1, generator=rng) < 0.5:
-        x, label = x.flip(3), label.flip(2)
-    if torch.rand(1, generator=rng) < 0.3:
-        x, label = x.flip(2), label.flip(1)
-    with torch.cpu.amp.autocast(dtype=torch.bfloat16, enabled=half):
+    x, label = turned(jitter(rgb, rng), label, rng)
+    with torch.autocast(x.device.type, dtype=torch.bfloat16, enabled=half):
         out = net(x.to(memory_format=torch.channels_last))
     loss = loss_of(out.float(), soft_label(label))
     optimiser.zero_grad()
     loss.backward()
     nn.utils.clip_grad_norm_(net.parameters(), 2)
     optimiser.step()
-    return float(loss.detach())
+    return loss.detach()
 
 
 def new_net(args):
@@ -247,13 +280,13 @@ def train(args, worker=0, meeting=None):
     """One worker of args.workers; the first keeps the weights' running mean, which is better than their last value."""
     torch.set_num_threads(args.threads)
     torch.set_flush_denormal(True)
-    rng = torch.Generator().manual_seed(args.seed + worker)
-    net = new_net(args)
+    rng = torch.Generator(args.device).manual_seed(args.seed + worker)
+    net = new_net(args).to(args.device)
     mean, visits = copy.deepcopy(net), 0
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
     begun, kept, number, losses = time.time(), time.time(), args.first + 100000000 * worker, []
     size = SMALL if args.small > 0 else LARGE
-    pictures = Pictures(args.make, number, size, args.batch, again=args.again)
+    pictures = pictures_of(args, number, size)
     while True:
         done = (time.time() - begun) / (60 * args.minutes) if not args.short else len(losses) / args.short_steps
         if done >= 1:
@@ -261,7 +294,7 @@ def train(args, worker=0, meeting=None):
         if size == SMALL and done > args.small:
             pictures.close()
             size, number = LARGE, number + 50000000
-            pictures = Pictures(args.make, number, size, args.batch, again=args.again)
+            pictures = pictures_of(args, number, size)
         for group in optimiser.param_groups:
             warm = min(1, len(losses) / (20 if args.short or args.start else 200) + 0.02)
             group["lr"] = args.rate * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
@@ -273,14 +306,14 @@ def train(args, worker=0, meeting=None):
         if len(losses) % 4 == 0:
             visits += 1
             blend(mean.state_dict(), net.state_dict(), min(0.995, visits / (visits + 10)))
-        if len(losses) % 50 == 0:
-            print("%5.1f min, step %d, loss %.4f" % ((time.time() - begun) / 60, len(losses), np.mean(losses[-50:])), flush=True)
+        if len(losses) % (50 if args.device == "cpu" else 1000) == 0:
+            print("%5.1f min, step %d, loss %.4f" % ((time.time() - begun) / 60, len(losses), float(sum(losses[-50:]) / 50)), flush=True)
         if args.keep and time.time() - kept > 60 * args.every:
             kept = time.time()
             torch.save({"net": mean.state_dict(), "steps": len(losses)}, args.keep)
-            judge(mean, args.make, 0, 16)
+            judge(copy.deepcopy(mean).cpu(), args.make, 0, 16)
     pictures.close()
-    return mean, losses
+    return mean.cpu(), [float(loss) for loss in losses]
 
 
 def main():
@@ -299,6 +332,8 @@ def main():
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--workers", type=int, default=1, help="processes that train side by side and average their weights")
     p.add_argument("--threads", type=int, default=1, help="of each")
+    p.add_argument("--device", default="cpu", help="where it trains: cpu, or cuda, whose memory keeps all pictures")
+    p.add_argument("--makers", type=int, default=1, help="generators side by side")
     p.add_argument("--half", action="store_true", help="multiply in bfloat16: half as long again where the processor has it")
     p.add_argument("--short", action="store_true")
     p.add_argument("--short-steps", type=int, default=80)

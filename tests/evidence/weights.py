@@ -4,6 +4,7 @@ A written network has its batch normalisation folded into the convolutions. Read
 variance that its input has on pictures, so that the network is the same function and trains on as before.
 """
 import copy
+import inspect
 import struct
 
 import torch
@@ -12,7 +13,8 @@ from torch import nn
 
 def export(net, path, width, height, planes=3):
     net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
-    torch.onnx.export(net, torch.zeros(1, planes, height, width), path, opset_version=11, input_names=["in"], output_names=["logits"])
+    plain = {"dynamo": False} if "dynamo" in inspect.signature(torch.onnx.export).parameters else {}  # newer ones write graphs OpenCV 4.6 cannot read
+    torch.onnx.export(net, torch.zeros(1, planes, height, width), path, opset_version=11, input_names=["in"], output_names=["logits"], **plain)
     seal(path)
 
 
