@@ -6,6 +6,9 @@
 #include "rig/drive.h"
 #include "rig/make/make_impl.h"
 
+// Inputs of an eye (model/model.h), and the first of them that is an aperture.
+enum { EYE_INPUTS = SKIN_EYE_INPUTS / 2, APERTURES = 3 };
+
 /* Adds a pose to the normal equations of direction . (e - rest_e) = want. */
 static void add_pose(double m[RIG_COMPONENTS][RIG_COMPONENTS], double right[RIG_COMPONENTS], const struct rig *rig, const double *controls, double want)
 {
@@ -20,17 +23,27 @@ static void add_pose(double m[RIG_COMPONENTS][RIG_COMPONENTS], double right[RIG_
 	}
 }
 
-void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, const double closed[RIG_COMPONENTS])
+/* Both eyes looking at h, v; shut: eyes whose lids are, a bit each. */
+static void look(double *c, double *all, const struct rig *rig, double h, double v, int shut)
+{
+	drive_look(c, rig, h, v, 1);
+	drive_look(all, rig, h, v, 0);
+	for (int eye = 0; eye < 2; eye++)
+		for (int k = APERTURES; k < EYE_INPUTS && shut >> eye & 1; k++)
+			c[EYE_INPUTS * eye + k] = all[EYE_INPUTS * eye + k];
+}
+
+void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, int side, const double closed[RIG_COMPONENTS])
 {
 	static const double gazes[] = { -20, -10, 0, 10, 20 }, ridge = 0.05;
 	double m[RIG_COMPONENTS][RIG_COMPONENTS] = { 0 }, square = 0, along = 0;
-	double *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c);
+	double *c = mem_new(2 * (size_t)rig->n_inputs + 1, sizeof *c);
 	memset(out, 0, RIG_COMPONENTS * sizeof *out);
 	for (int v = 0; v < COUNT(gazes); v++)
 		for (int h = 0; h < COUNT(gazes); h += 2)
-			for (int open = 0; open < 2; open++) {
-				drive_look(c, rig, gazes[h], gazes[v], open);
-				add_pose(m, out, rig, c, !open);
+			for (int shut = 0; shut < 4; shut++) {
+				look(c, c + rig->n_inputs, rig, gazes[h], gazes[v], shut);
+				add_pose(m, out, rig, c, shut >> side & 1);
 			}
 	for (int i = SKIN_EYE_INPUTS; i < rig->n_inputs; i++) {
 		drive_look(c, rig, 0, 0, 1);

@@ -176,13 +176,13 @@ void rig_seal_lids(struct rig *rig, const struct rig_motion *m, double px_per_mm
 	enum { ROUNDS = 12 };
 	double de[RIG_COMPONENTS], closing[RIG_COMPONENTS];
 	rig_closed_pose(de, rig);
-	rig_closing_direction(closing, rig, de);
 	for (int side = 0; side < 2; side++) {
 		struct rig_fissure f;
 		if (!rig_fissure_new(&f, rig, m, side, (double[]){ -px_per_mm, 2 * px_per_mm }))
 			continue;
 		float *open = mem_new((size_t)f.width + 1, sizeof *open);
 		double left = 0;
+		rig_closing_direction(closing, rig, side, de);
 		for (int round = 0; round <= ROUNDS; round++) {
 			rig_fissure_look(&f, rig, side, de);
 			left = open_columns(open, &f, seal_mm, px_per_mm);

@@ -42,10 +42,11 @@ void rig_arc_margins(struct rig *rig, const struct rig_motion *motion, double px
 /* lids.c: makes skin at the lid margins move as the margins' splines do, fading over reach_mm. */
 void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);
 
-/* closing.c: a linear form that measures how far eyes are closed: out . (e - rest_e). It is 1 in the pose `closed` (components from
- * rest, eyes closed straight ahead) and, in the least-squares sense, 1 with eyes closed and 0 with eyes open, for all gazes and
- * expressions. Sealing the lids in proportion to it leaves a gaze downwards, in which lids close halfway, as it was learnt. */
-void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, const double closed[RIG_COMPONENTS]);
+/* closing.c: a linear form that measures how far an eye is closed: out . (e - rest_e). side: 0 left, 1 right. It is 1 in the pose `closed`
+ * (components from rest, both eyes closed straight ahead) and, in the least-squares sense, 1 with that eye closed and 0 with it open,
+ * whatever the other does, for all gazes and expressions. Sealing the lids in proportion to it leaves a gaze downwards, in which lids
+ * close halfway, as it was learnt, and a wink to the eye that winks. */
+void rig_closing_direction(double out[RIG_COMPONENTS], const struct rig *rig, int side, const double closed[RIG_COMPONENTS]);
 /* The pose itself, straight ahead with both eyes closed: components from rest. */
 void rig_closed_pose(double closed[RIG_COMPONENTS], const struct rig *rig);
 

@@ -250,7 +250,7 @@ void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_
 		bool ok = fit(coefficient, &o, rig, side, conf->lid_gap);
 		if (ok && conf->seal >= 0) {
 			rig_closed_pose(closed, rig);
-			rig_closing_direction(closing, rig, closed);
+			rig_closing_direction(closing, rig, side, closed);
 			lack = shut(coefficient, &o, closed, closing, conf->seal);
 		}
 		for (int i = 0; i < rig->n && ok; i++)

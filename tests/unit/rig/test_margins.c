@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
+#include "rig/drive.h"
 #include "rig/make/make_impl.h"
 #include "tests/lib/scenes/face.h"
 #include "tests/lib/unit.h"
@@ -182,8 +184,47 @@ static void the_tarsus_shuts_as_one(void **state)
 	rig_free(&rig);
 }
 
+/* Motion, px, of the skin at the middle of an eye's upper margin, from both eyes open to eye `shut` alone shut (2: both). */
+static double margin_moves(const struct rig *rig, int side, int shut)
+{
+	double *c = mem_new(2 * (size_t)rig->n_inputs + 1, sizeof *c), *all = c + rig->n_inputs, e[2][RIG_COMPONENTS], moved = NAN, least = INFINITY;
+	drive_look(c, rig, 0, 0, 1);
+	rig_components(e[0], rig, c);
+	drive_look(all, rig, 0, 0, 0);
+	for (int eye = 0; eye < 2; eye++)
+		for (int k = 3; k < 5 && (shut == 2 || shut == eye); k++)
+			c[5 * eye + k] = all[5 * eye + k];
+	rig_components(e[1], rig, c);
+	for (int i = 0; i < rig->n; i++) {
+		const double off = hypot(rig->rest[i][0] - rig->globe[side].center[0], rig->rest[i][1] - 4.667);
+		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || off >= least)
+			continue;
+		least = off;
+		moved = 0;
+		for (int k = 0; k < RIG_COMPONENTS; k++)
+			moved += rig->basis[i][RIG_COMPONENTS + k] * (e[1][k] - e[0][k]);
+	}
+	free(c);
+	return moved;
+}
+
+static void a_wink_shuts_one_eye(void **state)
+{
+	(void)state;
+	struct rig rig = waved(0, 0.15, 0);
+	for (int side = 0; side < 2; side++) {
+		const double both = margin_moves(&rig, side, 2), own = margin_moves(&rig, side, side), other = margin_moves(&rig, side, !side);
+		print_message("upper margin: both shut %.1f px, this one alone %.1f, the other alone %.1f\n", both, own, other);
+		assert_true(both > 50);
+		assert_true(fabs(own - both) < 0.05 * both);
+		assert_true(fabs(other) < 0.05 * both);
+	}
+	rig_free(&rig);
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet), cmocka_unit_test(the_edges_of_broad_margins_meet), cmocka_unit_test(the_tarsus_shuts_as_one) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(margins_are_arcs), cmocka_unit_test(closed_lids_meet), cmocka_unit_test(the_edges_of_broad_margins_meet), cmocka_unit_test(the_tarsus_shuts_as_one),
+		                                cmocka_unit_test(a_wink_shuts_one_eye) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
