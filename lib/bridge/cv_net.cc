@@ -8,6 +8,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <vector>
+#include <zlib.h>
 
 extern "C" {
 #include "base/file.h"
@@ -71,6 +72,29 @@ cv::dnn::Net read_net(const std::vector<char> &data)
 	return net;
 }
 
+/* What a gzip file holds; empty: it is none, damaged, with something behind it, or longer than most_bytes. */
+std::vector<char> expanded(const char *data, size_t size)
+{
+	enum { GZIP = 16 };  // zlib: with gzip's header and trailer
+	z_stream z = {};
+	if (size < 18 || std::memcmp(data, "\x1f\x8b", 2) != 0 || inflateInit2(&z, MAX_WBITS + GZIP) != Z_OK)
+		return {};
+	std::vector<char> out;
+	int state = Z_OK;
+	z.next_in = reinterpret_cast<Bytef *>(const_cast<char *>(data));
+	z.avail_in = static_cast<uInt>(size);
+	while (state == Z_OK && out.size() < most_bytes) {
+		const size_t piece = 1 << 16, before = out.size();
+		out.resize(before + piece);
+		z.next_out = reinterpret_cast<Bytef *>(out.data() + before);
+		z.avail_out = static_cast<uInt>(piece);
+		state = inflate(&z, Z_NO_FLUSH);
+		out.resize(before + piece - z.avail_out);
+	}
+	inflateEnd(&z);
+	return state == Z_STREAM_END && z.avail_in == 0 ? out : std::vector<char>();
+}
+
 bool load(cv_net **net, const char *path, const char *data, size_t size, err *err)
 {
 	if (!sealed(data, size))
@@ -125,7 +149,8 @@ bool cv_net_open(struct cv_net **net, const char *path, struct err *err)
 	size_t size = 0;
 	if (!file_read(&data, &size, path, most_bytes, err))
 		return false;
-	const bool ok = load(net, path, data, size, err);
+	const std::vector<char> plain = expanded(data, size);
+	const bool ok = plain.empty() ? load(net, path, data, size, err) : load(net, path, plain.data(), plain.size(), err);
 	std::free(data);
 	return ok;
 }

@@ -1,6 +1,6 @@
 /* cv_net: a small neural network from an ONNX file, run by OpenCV's dnn on the processor.
  * The file ends in a seal: an entry of ONNX's own metadata, "fnv1a64", whose value is the FNV-1a hash of all bytes before the
- * entry. A cut or changed file fails it before any parser sees it; tests/evidence/train.py writes it.
+ * entry. A cut or changed file fails it before any parser sees it; tests/evidence/train.py writes it. The whole may be compressed (gzip).
  */
 #ifndef BRIDGE_CV_NET_H
 #define BRIDGE_CV_NET_H

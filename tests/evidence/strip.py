@@ -220,14 +220,27 @@ def judge(net, held, batch=32):
     strip_ellipse.tell("read near a limbus", ellipse[:, NEAR])
 
 
-def load(net, args):
+def load(net, path, args):
     """A checkpoint, or a network that was written as ONNX."""
-    if not args.start.endswith(".onnx"):
-        net.load_state_dict(torch.load(args.start), strict=False)
+    if not path.endswith(".onnx"):
+        net.load_state_dict(torch.load(path), strict=False)
         return
     strips = Strips(args.make, 800000000, 24)
-    weights.read(net, args.start, [even(strips.fresh_only(24)[0].float() / 255) for _ in range(20)])
+    weights.read(net, path, [even(strips.fresh_only(24)[0].float() / 255) for _ in range(20)])
     strips.close()
+
+
+def deepen(net, path, args):
+    """A network of one level less, of the same function: what comes up from the last level begins at zero."""
+    less, state = Net(CHANNELS[:-1]), net.state_dict()
+    load(less, path, args)
+    for name, value in less.state_dict().items():
+        part, *rest = name.split(".")
+        if part in ("thin", "up"):
+            rest[0] = str(int(rest[0]) + 1)
+        state[".".join(["up", "0", *rest] if part == "deep" else [part, *rest])].copy_(value)
+    nn.init.zeros_(net.thin[0].weight)
+    nn.init.zeros_(net.thin[0].bias)
 
 
 def held_out(args):
@@ -243,6 +256,7 @@ def main():
     p.add_argument("--out")
     p.add_argument("--keep")
     p.add_argument("--start", help="checkpoint or ONNX file to begin with")
+    p.add_argument("--deepen", action="store_true", help="the network to begin with has one level less")
     p.add_argument("--minutes", type=float, default=40)
     p.add_argument("--rate", type=float, default=2e-3)
     p.add_argument("--batch", type=int, default=24)
@@ -262,7 +276,7 @@ def main():
     rng = torch.Generator(args.device).manual_seed(args.seed)
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
-        load(net, args)
+        (deepen if args.deepen else load)(net, args.start, args)
     print("%d parameters" % sum(v.numel() for v in net.parameters()), flush=True)
     held = None if args.short else held_out(args)
     if held and args.start:
@@ -325,7 +339,7 @@ def main():
     if args.keep:
         torch.save(mean, args.keep)
     if args.out:
-        weights.export(net, args.out, RAYS + 2 * WRAP, ROWS, PLANES)
+        weights.export(net, args.out, RAYS + 2 * WRAP, ROWS, PLANES, small=True)
 
 
 if __name__ == "__main__":

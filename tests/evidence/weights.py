@@ -4,6 +4,7 @@ A written network has its batch normalisation folded into the convolutions. Read
 variance that its input has on pictures, so that the network is the same function and trains on as before.
 """
 import copy
+import gzip
 import inspect
 import struct
 
@@ -11,11 +12,36 @@ import torch
 from torch import nn
 
 
-def export(net, path, width, height, planes=3):
+def export(net, path, width, height, planes=3, small=False):
+    """small: of the weights, normalisation folded in, half precision is kept, and the file is compressed (gzip) to half its size."""
     net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
+    if small:
+        fold(net)
     plain = {"dynamo": False} if "dynamo" in inspect.signature(torch.onnx.export).parameters else {}  # newer ones write graphs OpenCV 4.6 cannot read
     torch.onnx.export(net, torch.zeros(1, planes, height, width), path, opset_version=11, input_names=["in"], output_names=["logits"], **plain)
     seal(path)
+    if small:
+        with open(path, "rb") as file:
+            data = file.read()
+        with open(path, "wb") as file:
+            file.write(gzip.compress(data, 9, mtime=0))
+
+
+def fold(net):
+    """Folds each normalisation into its convolution and rounds the weights to half precision; ReLU's input has no normalisation then."""
+    for module in list(net.modules()):
+        if isinstance(module, nn.Sequential) and len(module) > 1 and isinstance(module[1], nn.BatchNorm2d):
+            module[0] = nn.utils.fuse_conv_bn_eval(module[0], module[1])
+            module[1] = nn.Identity()
+    for module in net.modules():
+        if isinstance(module, nn.Conv2d):
+            module.weight.data = module.weight.data.half().float()
+
+
+def contents(path):
+    with open(path, "rb") as file:
+        data = file.read()
+    return gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data
 
 
 def seal(path):
@@ -74,8 +100,7 @@ def tensor(data):
 
 def convolutions(path):
     """Weight and bias of each Conv of a file, in the order of the graph (ModelProto 7; GraphProto node 1, initializer 5)."""
-    with open(path, "rb") as file:
-        graph = next(value for number, value in fields(file.read()) if number == 7)
+    graph = next(value for number, value in fields(contents(path)) if number == 7)
     named, wanted = {}, []
     for number, value in fields(graph):
         if number == 5:

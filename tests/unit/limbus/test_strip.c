@@ -4,6 +4,7 @@
 #include "limbus/strip_net.h"
 #include "math/rng.h"
 #include "tests/lib/scenes/synth_eye.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
 static const char *const net_path = "config/strip.onnx";
@@ -114,6 +115,31 @@ static void test_files(void **state)
 	strip_close(0);
 }
 
+/* Cut short, a bit changed behind gzip's header, and with something behind it. */
+static void test_damaged(void **state)
+{
+	(void)state;
+	enum { HEADER = 10 };
+	struct strip_net *net;
+	struct err err = { 0 };
+	char *data;
+	size_t size;
+	assert_true(file_read(&data, &size, net_path, 1 << 22, &err));
+	struct rng rng = { 11 };
+	for (int i = 0; i < 40; i++) {
+		const size_t cut = i < 8 ? (size_t)i * size / 8 : i == 8 ? size + 1 : size, at = HEADER + (size_t)rng_below(&rng, (int)size - HEADER);
+		const char bit = (char)(1 << rng_below(&rng, 8));
+		data[at] ^= bit;
+		const char *path = scratch_write("damaged.onnx", data, cut);
+		data[at] ^= bit;
+		err = (struct err){ 0 };
+		assert_false(strip_open(&net, path, &err));
+		ERR_HAS(err, "damaged");
+		assert_null(strchr(err.msg, '\n'));
+	}
+	free(data);
+}
+
 struct world { struct evidence_net *evidence; struct strip_net *net; };
 
 static struct world open_nets(void)
@@ -185,6 +211,6 @@ static void test_other_renderer(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = { cmocka_unit_test(test_crossing), cmocka_unit_test(test_fit), cmocka_unit_test(test_nothing_seen),
-		                            cmocka_unit_test(test_files), cmocka_unit_test(test_other_renderer) };
+		                            cmocka_unit_test(test_files), SCRATCH_TEST(test_damaged), cmocka_unit_test(test_other_renderer) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
