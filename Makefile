@@ -46,7 +46,7 @@ override CXX := $(CLANG)++
 endif
 
 PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
-	libinih-dev libxxhash-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
+	libinih-dev libxxhash-dev zlib1g-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
 	libopenblas-dev libsuitesparse-dev libflann-dev libembree-dev libsqlite3-dev libzip-dev libavformat-dev libavcodec-dev \
 	libswscale-dev libavutil-dev libqhull-dev libmeshoptimizer-dev libassimp-dev liblcms2-dev libheif-dev libwebp-dev libraw-dev libseccomp-dev \
 	libcmocka-dev gnuplot-nox
@@ -68,7 +68,7 @@ EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/de
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
 LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_dnn -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
 	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lmeshoptimizer -lassimp -lsqlite3 -lzip \
-	-llapacke -lopenblas -ljansson -linih -lxxhash -llcms2 -lseccomp -lm
+	-llapacke -lopenblas -ljansson -linih -lxxhash -lz -llcms2 -lseccomp -lm
 
 LIB_SRC := $(wildcard lib/*/*.c lib/*/*/*.c lib/*/*/*/*.c)
 BRIDGE_SRC := $(wildcard lib/bridge/*.cc)
@@ -131,7 +131,7 @@ $(eval $(call program,render,$(patsubst %.c,$B/%.o,$(wildcard render/*.c render/
 
 $B/tests/%: $B/tests/%.o $(TEST_LIB_OBJ) $B/libeyewright.a
 	@mkdir -p $(@D)
-	@$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $@ $< $(TEST_LIB_OBJ) $B/libeyewright.a -lcmocka -lheif -lwebp -lz $(LIBS)
+	@$(CXX) $(SANFLAGS) -fopenmp -Wl,--as-needed -o $@ $< $(TEST_LIB_OBJ) $B/libeyewright.a -lcmocka -lheif -lwebp $(LIBS)
 
 # ---- the bundled capture, from the photograph to the page -------------------------------------------------------------
 demo: setup
