@@ -79,7 +79,7 @@ bool skin_kept(struct skin_job *job, const char *rel, int n, const char *const i
 bool skin_made(struct skin_job *job, const char *rel, int n, const char *const in[], struct err *err)
 {
 	char label[67];
-	if (!stage_made(job->stage, rel, n, in, err))
-		return false;
-	return asked_trouble() || !label_of(label, job, rel, n, in) || file_write(key_path(job, rel), label, strlen(label), err);
+	// The key first: what is recorded as made is not looked at again, and would stay without one if this ends in between.
+	const bool kept = asked_trouble() || !label_of(label, job, rel, n, in) || file_write(key_path(job, rel), label, strlen(label), err);
+	return kept && stage_made(job->stage, rel, n, in, err);
 }
