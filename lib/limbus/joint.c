@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "limbus/aspect.h"
 #include "limbus/rice.h"
 #include "math/vec.h"
 
@@ -23,7 +22,9 @@ bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record 
 	for (int i = 0; i < n; i++)
 		if (records[i].ok)
 			views[usable++] = records[i].view;
-	bool ok = !usable || limbus_aspect(&joint->pose.aspect_mean, &joint->aspect_sigma, usable, views, eye, conf, err);
+	bool ok = !usable || limbus_aspect(&joint->aspect, usable, views, eye, conf, err);
+	if (usable)
+		joint->pose.aspect_mean = joint->aspect.likeliest;
 	free(views);
 	return ok;
 }
@@ -100,6 +101,34 @@ static void turn_to(struct pose *pose, double theta, const struct eye *eye)
 	pose->theta = theta;
 }
 
+/* The pose were the aspect another. */
+static bool moved_pose(struct pose *pose, double aspect, const struct limbus_joint *joint, const struct limbus_record *record, const struct eye *eye,
+                       struct err *err)
+{
+	struct pose_conf conf = joint->pose;
+	conf.aspect_mean = aspect;
+	return limbus_pose(pose, &record->view, eye, &conf, err);
+}
+
+/* Adds what the aspect's other hills say, where the eye is tilted to another side: mean square of the angle to their axes. */
+static bool add_rivals(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record, const struct eye *eye,
+                       struct err *err)
+{
+	double square = 0;
+	for (int i = 0; i < ASPECT_RIVALS && joint->aspect.elsewhere > 0; i++) {
+		struct pose other;
+		double between = 0;
+		if (!moved_pose(&other, joint->aspect.rival[i], joint, record, eye, err))
+			return false;
+		for (int k = 0; k < 3; k++)
+			between += pose->cam_from_eye[k][2] * other.cam_from_eye[k][2];
+		square += pow(acos(fmin(between, 1)), 2) / ASPECT_RIVALS;
+	}
+	const double elsewhere = joint->aspect.elsewhere;
+	pose->theta_sigma = sqrt((1 - elsewhere) * pow(pose->theta_sigma, 2) + elsewhere * square);
+	return true;
+}
+
 bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record,
                        const struct eye *eye, struct err *err)
 {
@@ -108,24 +137,22 @@ bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, cons
 	// of the square of the tilt, which is what a shape tells: by all that the pose rests on, and by the ellipse's covariance
 	double sigma = pow(pose->theta + pose->theta_sigma, 2) - pow(pose->theta, 2), cov[2][2], theta;
 	shape_cov(cov, pose, &record->view, &joint->pose);
-	if (joint->aspect_sigma > 0) {
-		struct pose_conf moved = joint->pose;
+	if (joint->aspect.sigma > 0) {
 		struct pose other;
 		double v[2], w[2];
-		moved.aspect_mean += joint->aspect_sigma;
-		if (!limbus_pose(&other, &record->view, eye, &moved, err))
+		if (!moved_pose(&other, joint->aspect.likeliest + joint->aspect.sigma, joint, record, eye, err))
 			return false;
 		shape_of(v, pose);
 		shape_of(w, &other);
 		add_outer(cov, (double[2]){ w[0] - v[0], w[1] - v[1] });
 		sigma = hypot(sigma, hypot(w[0] - v[0], w[1] - v[1]));
-		pose->aspect_sigma = joint->aspect_sigma;
+		pose->aspect_sigma = aspect_spread(&joint->aspect);
 	}
 	const double towards = pose->phi, seen = pose->theta;
 	rice_tilt(&theta, &pose->theta_sigma, seen, sigma, joint->pose.tilt_sigma);
 	pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, cov, joint->pose.tilt_sigma));
 	turn_to(pose, theta, eye);
-	return true;
+	return add_rivals(pose, joint, record, eye, err);
 }
 
 /* Share of each sector's edge points that are in sight (used or seen). */

@@ -4,12 +4,13 @@
 #ifndef LIMBUS_JOINT_H
 #define LIMBUS_JOINT_H
 #include "anatomy/fit.h"
+#include "limbus/aspect.h"
 #include "limbus/record.h"
 
 /* What the photographs share. */
 struct limbus_joint {
 	struct pose_conf pose;  // its aspect_mean as declared or fitted, its aspect_sigma 0
-	double aspect_sigma;    // of the fitted aspect; 0: declared
+	struct aspect aspect;   // as fitted; sigma 0: declared
 };
 
 /* Fits what n photographs of one eye share; records that are not ok are left out.
@@ -18,7 +19,7 @@ bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record 
                   const struct pose_conf *conf, struct err *err);
 
 /* The pose of one record that is ok, under the shared aspect. theta_sigma includes the aspect's uncertainty: the pose is fitted
- * again at one sigma more. False, err set, when no pose fits. */
+ * again at one sigma more, and at its rivals. False, err set, when no pose fits. */
 bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record,
                        const struct eye *eye, struct err *err);
 

@@ -270,7 +270,7 @@ bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct e
 	double tilt, across;
 	struct ellipse e;
 	ellipse_from_q(&e, p.q);
-	limbus_tilt(&tilt, &across, &e, p.center, p.focal);
+	limbus_tilt(&tilt, &across, &e, p.center, p.focal, conf->aspect_mean);
 	tilt = fmax(tilt, 0.02);
 	struct solution s[2];
 	bool ok[2];

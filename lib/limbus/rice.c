@@ -1,6 +1,7 @@
 #include "limbus/rice.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 enum { STEPS = 400, TURNS = 320 };
 static const double REACH = 8;    // sigmas
@@ -19,17 +20,29 @@ static double bessel_scaled(double x)
 	       / sqrt(x);
 }
 
+/* Of the square u of a tilt, given a measured one: both relative to any other. All directions of sight as likely: u is, too. */
+static double chance_of(double u, double seen, double sigma, double prior)
+{
+	const double off = (u - seen) / sigma;
+	return bessel_scaled(u * seen / (sigma * sigma)) * exp(-0.5 * off * off - (prior > 0 ? 0.5 * u / (prior * prior) : 0));
+}
+
+static bool range_of(double *low, double *high, double seen, double sigma)
+{
+	*low = fmax(seen - REACH * sigma, 0);
+	*high = fmin(seen + REACH * sigma, M_PI * M_PI / 4);
+	return sigma > 0 && *high > *low;
+}
+
 void rice_tilt(double *mean, double *deviation, double theta, double sigma, double prior)
 {
-	const double seen = theta * theta, low = fmax(seen - REACH * sigma, 0), high = fmin(seen + REACH * sigma, M_PI * M_PI / 4);
-	double sum = 0, one = 0, two = 0;
+	double sum = 0, one = 0, two = 0, low, high;
 	*mean = theta;
 	*deviation = 0;
-	if (!(sigma > 0) || !(high > low))
+	if (!range_of(&low, &high, theta * theta, sigma))
 		return;
 	for (int i = 0; i < STEPS; i++) {
-		const double u = low + (i + 0.5) / STEPS * (high - low), off = (u - seen) / sigma, t = sqrt(u);
-		const double chance = bessel_scaled(u * seen / (sigma * sigma)) * exp(-0.5 * off * off - (prior > 0 ? 0.5 * u / (prior * prior) : 0));
+		const double u = low + (i + 0.5) / STEPS * (high - low), t = sqrt(u), chance = chance_of(u, theta * theta, sigma, prior);
 		sum += chance;
 		one += chance * (t - theta);
 		two += chance * (t - theta) * (t - theta);
@@ -38,6 +51,16 @@ void rice_tilt(double *mean, double *deviation, double theta, double sigma, doub
 		return;
 	*mean = theta + one / sum;
 	*deviation = sqrt(fmax(two / sum - one / sum * one / sum, 0));
+}
+
+double rice_log_evidence(double theta, double sigma, double prior)
+{
+	double sum = 0, low, high;
+	if (!range_of(&low, &high, theta * theta, sigma))
+		return -INFINITY;
+	for (int i = 0; i < STEPS; i++)
+		sum += chance_of(low + (i + 0.5) / STEPS * (high - low), theta * theta, sigma, prior);
+	return log(sum * (high - low) / (STEPS * sigma * sigma));
 }
 
 /* Inverse of the covariance along and across the measured vector, and its largest sigma. */
@@ -60,9 +83,9 @@ static double precision(double inv[3], double phi, const double cov[2][2])
 double rice_astray(double about, double theta, double phi, const double cov[2][2], double prior)
 {
 	double inv[3], sum = 0, two = 0;
+	double low, high;
 	const double sigma = precision(inv, phi, cov), seen = theta * theta;
-	const double low = fmax(seen - REACH * sigma, 0), high = fmin(seen + REACH * sigma, M_PI * M_PI / 4);
-	if (!(sigma > 0) || !(high > low))
+	if (!range_of(&low, &high, seen, sigma))
 		return fabs(theta - about);
 	const double wide = fmin(REACH * sigma / fmax(low, 1e-12), M_PI);
 	for (int i = 0; i < TURNS; i++) {

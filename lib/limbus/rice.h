@@ -9,6 +9,9 @@
  * likely, but for a Gaussian of standard deviation prior round the front (0: none). Sharp measurements stay as they are. */
 void rice_tilt(double *mean, double *deviation, double theta, double sigma, double prior);
 
+/* Log of the probability of that measurement, up to a constant: large tilts are rarely seen just so. sigma > 0. */
+double rice_log_evidence(double theta, double sigma, double prior);
+
 /* How far the tilt is from `about`, root mean square, where theta was measured towards phi and the noise of the vector of its square and twice its
  * direction has covariance cov, rad^4: lids hide what would tell an eye's height, and its aspect is not known, so that it differs with direction. */
 double rice_astray(double about, double theta, double phi, const double cov[2][2], double prior);

