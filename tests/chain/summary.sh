@@ -6,6 +6,8 @@ N=${N:-10000}
 
 many=$root/many
 small_captures "$many" 3
+# Told, so that nothing is doubtful: one photograph cannot tell a round limbus from people's.
+for i in 1 2 3; do echo "eye.limbus_aspect = 1" >>"$many/c$i/capture.conf"; done
 broken_captures "$many"
 doubted='</script><script>window.ran=1</script> <b>alert(1)'
 mkdir -p "$many/${doubted//\//∕}"
