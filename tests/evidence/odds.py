@@ -22,7 +22,7 @@ from torch.nn import functional as F
 sys.dont_write_bytecode = True
 import weights
 
-UNITS, NETS, RARE, DECAY, EPOCHS, BATCH, RATE, AGAIN, FOLDS = 24, 4, 6, 4.0, 14, 512, 0.01, 0.002, 4
+UNITS, NETS, RARE, DECAY, EPOCHS, BATCH, RATE, AGAIN, FOLDS = 24, 4, 6, 8.0, 30, 512, 0.01, 0.002, 4
 TOLERANCES = (0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1)
 TRAITS, FAR = 30, 4.0   # spreads: farther off than that is as far
 

@@ -14,6 +14,7 @@
 #include "bridge/cv_blur.h"
 #include "bridge/imf_read.h"
 #include "image/colour.h"
+#include "image/envmap/envmap.h"
 #include "image/exr.h"
 #include "image/photo/photo.h"
 
@@ -171,14 +172,33 @@ static bool copy(const char *to_dir, const char *to, const char *from_dir, const
 	return ok;
 }
 
+/* A light of the data at the level that it has by truth.json, where both are 1 on a plane that faces the camera: the map's pixels miss 2.7 % of
+ * light B's disc of 9 degrees (its radiance times that disc is the level), and the picture was made with all of it. */
+static bool light_put(const char *dir, const char *name, const char *from, struct err *err)
+{
+	static const char *const rgb[] = { "R", "G", "B" };
+	char *in = mem_printf("%s/%s", from, name), *out = mem_printf("%s/%s", dir, name);
+	struct image map = { 0 };
+	struct envmap env = { 0 };
+	bool ok = imf_read_rgb(&map, in, LIMIT_PX, err) && envmap_take(&env, &map, in, err);
+	if (ok) {
+		envmap_normalise(&env);
+		ok = exr_write(out, &env.map, rgb, EXR_FLOAT, 0, err);
+	}
+	envmap_free(&env);
+	free(in);
+	free(out);
+	return ok;
+}
+
 static bool capture_make(const struct mc_iris *m, const char *dir, const struct mc_case *how, struct err *err)
 {
 	char *photo = mem_printf("photos/right_%s.png", name_of(m)), *photos = mem_printf("%s/photos", dir), *shots = mem_printf("%s/shots.json", dir);
 	const double *p = m->pose[MC_TURNED][0];
 	mkdir(dir, 0777);
 	mkdir(photos, 0777);
-	bool ok = copy(dir, photo, m->from, photo, err) && copy(dir, "light_A.exr", m->from, "light_A.exr", err)
-	          && copy(dir, "light_B.exr", m->from, "light_B.exr", err);
+	bool ok = copy(dir, photo, m->from, photo, err) && light_put(dir, "light_A.exr", m->from, err)
+	          && light_put(dir, "light_B.exr", m->from, err);
 	FILE *f = ok ? fopen(shots, "w") : 0;
 	if (f) {
 		fprintf(f, "[{\"name\": \"own\"}, {\"name\": \"relit\", \"environment\": \"light_B.exr\"}, {\"name\": \"turned\", \"cam_from_eye\": [");
