@@ -4,6 +4,13 @@
 #include <stdio.h>
 #include <string.h>
 
+/* One line, whatever a file that is quoted in it holds. */
+static void plain(struct err *err)
+{
+	for (char *c = err->msg; *c; c++)
+		*c = (unsigned char)*c < ' ' || *c == 127 ? ' ' : *c;
+}
+
 bool err_set(struct err *err, const char *fmt, ...)
 {
 	if (err_is(err))
@@ -12,6 +19,7 @@ bool err_set(struct err *err, const char *fmt, ...)
 	va_start(ap, fmt);
 	vsnprintf(err->msg, sizeof err->msg, fmt, ap);
 	va_end(ap);
+	plain(err);
 	return false;
 }
 
@@ -23,6 +31,7 @@ bool err_usage(struct err *err, const char *fmt, ...)
 	va_start(ap, fmt);
 	vsnprintf(err->msg, sizeof err->msg, fmt, ap);
 	va_end(ap);
+	plain(err);
 	err->usage = true;
 	return false;
 }
@@ -37,6 +46,7 @@ bool err_wrap(struct err *err, const char *fmt, ...)
 	memcpy(old, err->msg, sizeof old);
 	if (snprintf(err->msg, sizeof err->msg, "%.400s: %s", context, old) < 0)
 		err->msg[0] = '?';
+	plain(err);
 	return false;
 }
 

@@ -1,6 +1,5 @@
 #include "base/json.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +15,6 @@ static json_t *read_any(const char *path, size_t limit, json_type type, struct e
 	json_error_t why;
 	json_t *json = json_loadb(text, size, JSON_REJECT_DUPLICATES, &why);
 	free(text);
-	for (char *c = json ? why.text + strlen(why.text) : why.text; *c; c++)  // it quotes the file, newlines and all
-		*c = (char)(iscntrl((unsigned char)*c) ? ' ' : *c);
 	if (!json)
 		err_set(err, "%s:%d: not JSON: %s", path, why.line, why.text);
 	else if (json_typeof(json) != type) {

@@ -217,7 +217,9 @@ static void errors_keep_the_first(void **state)
 	char large[3000];
 	memset(large, 'x', sizeof large - 1);
 	large[sizeof large - 1] = 0;
-	struct err cut = { 0 };
+	struct err cut = { 0 }, quoted = { 0 };
+	err_set(&quoted, "%s: x = %s", "a.json", "si\nngle\x1b[1m");
+	assert_string_equal(quoted.msg, "a.json: x = si ngle [1m");
 	err_set(&cut, "%s", large);
 	err_wrap(&cut, "%s", large);
 	assert_true(strlen(cut.msg) < sizeof cut.msg);
