@@ -82,6 +82,17 @@ bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyr
 	return rim_fit(pupil, photo, 0, &e, &grey) && believed(pupil, limbus, conf);
 }
 
+/* Whether a mirrored lamp lies round it, brighter than the iris is anywhere farther out. */
+static bool mirrors(const struct rim *pupil, const struct pyramid *pyramid, const struct ellipse *limbus, const struct pupil_conf *conf)
+{
+	static const double shares[] = { 0.65, 0.75, 0.85 };
+	const struct grey *g = &pyramid->bright[pyramid_index(pyramid, pupil->e.a, 60)];
+	double iris = 0;
+	for (int i = 0; i < COUNT(shares); i++)
+		iris = fmax(iris, ring_median(g, limbus, shares[i], 0.5));
+	return ring_median(g, &pupil->e, 1.15, 0.5) > conf->brightest * iris;
+}
+
 /* Of every pixel, whether it is the pupil rather than what is round it; lids and what is mirrored may lie over either. */
 static struct region_map map_of(const struct evidence *e)
 {
@@ -169,18 +180,25 @@ bool limbus_pupil_like(struct rim *pupil, const struct photo *photo, const struc
 	       && agree(&pupil->e, &e, conf->told_far * sigma * e.a);
 }
 
+/* By edge and evidence. */
+static bool told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
+                 const struct evidence *evidence, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
+{
+	struct ellipse region = { 0 };
+	const bool found = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf);
+	const double sure = told_by(&region, evidence, limbus, conf);
+	const double sigma = conf->told_sigma[0] * limbus->a + conf->told_sigma[1] * region.a;
+	if (found && sure >= conf->told_sure && agree(&pupil->e, &region, conf->told_far * sigma))
+		return true;
+	// Against the evidence, or without it, an edge counts that is there all round.
+	if (found && is_clear(pupil, 1, conf) && (sure < conf->told_sure || agree(&pupil->e, &region, 1.5 * conf->told_far * sigma)))
+		return true;
+	return sure >= conf->told_sure && measure_near(pupil, photo, &region, sigma, rim_conf, conf) && believed(pupil, limbus, conf) && is_clear(pupil, 1, conf)
+	       && agree(&pupil->e, &region, conf->told_far * sigma);
+}
+
 bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
                        const struct evidence *evidence, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
 {
-	struct ellipse told = { 0 };
-	const bool found = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf);
-	const double sure = told_by(&told, evidence, limbus, conf);
-	const double sigma = conf->told_sigma[0] * limbus->a + conf->told_sigma[1] * told.a;
-	if (found && sure >= conf->told_sure && agree(&pupil->e, &told, conf->told_far * sigma))
-		return true;
-	// Against the evidence, or without it, an edge counts that is there all round.
-	if (found && is_clear(pupil, 1, conf) && (sure < conf->told_sure || agree(&pupil->e, &told, 1.5 * conf->told_far * sigma)))
-		return true;
-	return sure >= conf->told_sure && measure_near(pupil, photo, &told, sigma, rim_conf, conf) && believed(pupil, limbus, conf) && is_clear(pupil, 1, conf)
-	       && agree(&pupil->e, &told, conf->told_far * sigma);
+	return told(pupil, photo, pyramid, limbus, evidence, rim_conf, conf) && !mirrors(pupil, pyramid, limbus, conf);
 }

@@ -15,6 +15,7 @@ struct pupil_conf {
 	double told_sigma[2]; // of the evidence's ellipse: of the limbus's semi-axis, as its planes are coarse, and of its own
 	double told_far;      // so many of these: not the same
 	double told_sure;     // mean chance of pupil in an ellipse of the evidence that is believed
+	double brightest;     // encoded brightness round a pupil over that of the iris farther out: beyond it a lamp is mirrored there
 	double other_eye;     // of what is asked of a margin, where the other eye shows its pupil
 };
 
@@ -25,7 +26,7 @@ bool limbus_pupil(struct rim *pupil, const struct photo *photo, const struct pyr
                   const struct ellipse *limbus, const struct rim_conf *rim_conf, const struct pupil_conf *conf);
 
 /* The same where the evidence of the pixels (evidence_window) tells no other: where it does, or where no pupil was found, the margin is
- * measured near the evidence's ellipse. */
+ * measured near the evidence's ellipse. None that a mirrored lamp encloses: the hole of a ring light is as dark and as round as a pupil. */
 bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
                        const struct evidence *evidence, const struct rim_conf *rim_conf, const struct pupil_conf *conf);
 

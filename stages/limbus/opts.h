@@ -51,6 +51,7 @@
 	OPT_REALS("pupil_told_sigma", (c)->told_sigma, 2, 0.001, 0.3, "", "of the evidence's ellipse: of the limbus's semi-axis, of its own"), \
 	OPT_REAL("pupil_told_far", &(c)->told_far, 0.5, 10, "", "so many of these apart: not the same"), \
 	OPT_REAL("pupil_told_sure", &(c)->told_sure, 0.01, 1, "", "mean chance of pupil in an ellipse that is believed"), \
+	OPT_REAL("pupil_brightest", &(c)->brightest, 1, 10, "", "brightness round a pupil over the iris's, beyond which a lamp is mirrored there"), \
 	OPT_REAL("pupil_other_eye", &(c)->other_eye, 0.1, 1, "", "of what is asked of a margin, where the other eye shows its pupil")
 
 #define FACE_OPTS(c) \

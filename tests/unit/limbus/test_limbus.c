@@ -107,6 +107,47 @@ static void test_synthetic(void **state)
 	free(found);
 }
 
+/* A ring light mirrored within the pupil, as bright as paper. */
+static void mirror_ring(struct photo *photo, const struct ellipse *pupil)
+{
+	for (int y = 0; y < photo->height; y++)
+		for (int x = 0; x < photo->width; x++) {
+			const double r = hypot(x + 0.5 - pupil->cx, y + 0.5 - pupil->cy) / pupil->a;
+			for (int c = 0; c < 3 && r > 0.55 && r < 0.85; c++)
+				photo->rgb[3 * ((long)y * photo->width + x) + c] = 62000;
+		}
+}
+
+/* The hole of a mirrored ring light is dark, round and sharp, and no pupil. */
+static void test_ring_light(void **state)
+{
+	(void)state;
+	struct limbus_found *found = mem_new(1, sizeof *found);
+	struct limbus_conf anything = limbus_defaults;
+	anything.pupil.brightest = 10;
+	int seen = 0, holes = 0;
+	for (int i = 0; i < SYNTH_GRID / SYNTH_LEVELS && seen < 4; i++) {
+		struct synth_eye eye = synth_eye_grid(i);
+		struct synth_truth truth;
+		eye.glints = 0;
+		struct photo photo = synth_eye_render(&eye, &truth);
+		limbus_find(found, &photo, 0, &limbus_defaults);
+		if (found->ok && found->has_pupil) {
+			const struct ellipse pupil = found->pupil.e;
+			mirror_ring(&photo, &pupil);
+			limbus_find(found, &photo, 0, &limbus_defaults);
+			assert_true(!found->ok || !found->has_pupil || ellipse_error(&found->pupil.e, &pupil) < 0.2 * pupil.a);
+			limbus_find(found, &photo, 0, &anything);
+			holes += found->ok && found->has_pupil && found->pupil.e.a < 0.7 * pupil.a;
+			seen++;
+		}
+		photo_free(&photo);
+	}
+	assert_int_equal(seen, 4);
+	assert_true(holes > 0);
+	free(found);
+}
+
 static struct photo plain(int width, int height, uint16_t r, uint16_t g, uint16_t b)
 {
 	struct photo photo = { .width = width, .height = height, .bits = 8 };
@@ -260,7 +301,7 @@ static void test_roll(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic),
+		cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic), cmocka_unit_test(test_ring_light),
 		cmocka_unit_test(test_captures), cmocka_unit_test(test_likeliest),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
