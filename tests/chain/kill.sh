@@ -62,15 +62,24 @@ moment() { timeout "$(($1 / 1000)).$(printf %03d $(($1 % 1000)))" tail --pid="$2
 
 # strike COLUMN N: the whole group of processes dies at once, make and its stages, at a moment anywhere in an undisturbed run.
 strike() {
-	local column=$1 wanted=$2 struck=0 tries=0 until=$((SECONDS + 60 * MINUTES)) pid ms name
+	local column=$1 wanted=$2 struck=0 tries=0 missed=0 until=$((SECONDS + 60 * MINUTES)) pid ms name
 	while [ "$struck" -lt "$wanted" ] && [ "$tries" -lt $((4 * wanted)) ] && [ "$SECONDS" -lt "$until" ]; do
 		tries=$((tries + 1))
 		setsid make --no-print-directory CAPTURE="$root/hit" >"$log" 2>&1 </dev/null &
 		pid=$!
-		ms=$((RANDOM * length / 32768))
+		ms=$((RANDOM * length / 32768 / (1 + missed)))
 		moment "$ms" "$pid"
 		name=$(ps -o comm= -g "$pid" 2>/dev/null | grep -vxE 'make|sh|ps|setsid' | tail -n 1)
-		kill -9 -- "-$pid" 2>/dev/null && struck=$((struck + 1)) && stages[${name:-make}]=$((${stages[${name:-make}]:-0} + 1)) && far "$column" "$struck" "$wanted" kills
+		if ! kill -9 -- "-$pid" 2>/dev/null; then
+			# It was through: little was left to make, or the first run was slow. All of it, then, and sooner.
+			missed=$((missed + 1))
+			wait "$pid" 2>/dev/null
+			rm -rf "$root/hit/work"
+			continue
+		fi
+		struck=$((struck + 1))
+		stages[${name:-make}]=$((${stages[${name:-make}]:-0} + 1))
+		far "$column" "$struck" "$wanted" kills
 		wait "$pid" 2>/dev/null
 		# It goes on from where it was hit, loses something, begins anew, or is mended at once.
 		case $((RANDOM % 8)) in
