@@ -137,13 +137,6 @@ static bool died(int status, bool late, const struct apart *apart, struct err *e
 	return err_set(err, "cannot be read: its reader died of signal %d (%s)", signal, strsignal(signal));
 }
 
-/* Control characters of a message that a stranger's bytes may stand in. */
-static void plain(char *text)
-{
-	for (char *c = text; *c; c++)
-		*c = (unsigned char)*c < ' ' || *c == 127 ? ' ' : *c;
-}
-
 bool apart_run(char **data, size_t *size, const struct apart *apart, struct err *err)
 {
 	*data = 0;
@@ -159,10 +152,8 @@ bool apart_run(char **data, size_t *size, const struct apart *apart, struct err 
 		const int status = wait_for(pid, apart->seconds, &late);
 		const bool said = WIFEXITED(status) && (!WEXITSTATUS(status) || WEXITSTATUS(status) == SAID_NO);
 		ok = late || !said ? died(status, late, apart, err) : take(data, size, fd, apart->result, err);
-		if (ok && WEXITSTATUS(status)) {
-			plain(*data);
+		if (ok && WEXITSTATUS(status))
 			ok = err_set(err, "%.900s", *data);
-		}
 	}
 	close(fd);
 	if (!ok) {

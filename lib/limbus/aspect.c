@@ -33,7 +33,7 @@ static bool cost_at(double *cost, double aspect, int n, const struct pose_view v
 		struct pose pose;
 		if (!limbus_pose(&pose, &views[i], eye, &fixed, err))
 			return false;
-		const double sigma = pow(pose.theta + pose.theta_sigma, 2) - pow(pose.theta, 2);
+		const double sigma = rice_square_sigma(pose.theta, pose.theta_sigma);
 		*cost += pose.cost - log1p(exp(-pose.margin)) - rice_log_evidence(pose.theta, sigma, conf->tilt_sigma);
 	}
 	return true;

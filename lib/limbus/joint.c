@@ -135,7 +135,7 @@ bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, cons
 	if (!limbus_pose(pose, &record->view, eye, &joint->pose, err))
 		return false;
 	// of the square of the tilt, which is what a shape tells: by all that the pose rests on, and by the ellipse's covariance
-	double sigma = pow(pose->theta + pose->theta_sigma, 2) - pow(pose->theta, 2), cov[2][2], theta;
+	double sigma = rice_square_sigma(pose->theta, pose->theta_sigma), cov[2][2], theta;
 	shape_cov(cov, pose, &record->view, &joint->pose);
 	if (joint->aspect.sigma > 0) {
 		struct pose other;

@@ -7,6 +7,11 @@ enum { STEPS = 400, TURNS = 320 };
 static const double REACH = 8;    // sigmas
 static const double LEAST = 0.06; // sigma across the larger one: what the steps resolve
 
+double rice_square_sigma(double theta, double sigma)
+{
+	return pow(theta + sigma, 2) - pow(theta, 2);
+}
+
 /* exp(-x) I0(x), x >= 0: Abramowitz and Stegun 9.8.1, 9.8.2. */
 static double bessel_scaled(double x)
 {

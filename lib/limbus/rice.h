@@ -5,6 +5,9 @@
 #ifndef LIMBUS_RICE_H
 #define LIMBUS_RICE_H
 
+/* Sigma of a tilt's square, of the tilt and its sigma. */
+double rice_square_sigma(double theta, double sigma);
+
 /* Mean and standard deviation of a tilt, rad, that was measured as theta, with sigma of its square, the same each way. All directions of sight are as
  * likely, but for a Gaussian of standard deviation prior round the front (0: none). Sharp measurements stay as they are. */
 void rice_tilt(double *mean, double *deviation, double theta, double sigma, double prior);
