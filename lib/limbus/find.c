@@ -69,7 +69,7 @@ void limbus_settle(struct limbus_found *found, struct trials *trials)
 		return;
 	}
 	posterior_settle(&found->posterior, &found->limbus, trials);
-	limbus_refuse_doubtful(found, trial, trials->photo, trials->conf);
+	limbus_refuse_doubtful(found, trials);
 }
 
 void limbus_find_in(struct limbus_found *found, struct trials *trials, const double *hint)

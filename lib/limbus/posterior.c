@@ -1,6 +1,9 @@
 #include "limbus/posterior.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
 
 static const double LEAST_SIGMA = 1e-6;  // semi-axes
 
@@ -81,6 +84,13 @@ void posterior_of(struct posterior *p, const struct trials *t)
 		p->other = t->trial[p->rival].e;
 }
 
+/* Whether the full measurement is another ellipse than its trial. */
+static bool moved(const struct rim *rim, const struct trial *trial, const struct limbus_conf *conf)
+{
+	const struct trial_line line = trial_line_of(rim);
+	return !same(&rim->e, &line, &trial->e, &trial->line, trial->sigma, conf);
+}
+
 void posterior_settle(struct posterior *p, struct rim *rim, const struct trials *t)
 {
 	double chance[TRIALS], q[ELLIPSE_N], other[ELLIPSE_N];
@@ -99,7 +109,36 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 			for (int b = 0; b < ELLIPSE_N; b++)
 				rim->cov_q[a][b] += chance[i] * (other[a] - q[a]) * (other[b] - q[b]);
 	}
-	const struct trial_line line = trial_line_of(rim);
-	if (!same(&rim->e, &line, &t->trial[p->best].e, &t->trial[p->best].line, t->trial[p->best].sigma, t->conf))
+	if (moved(rim, &t->trial[p->best], t->conf))
 		p->gross = fmax(p->gross, t->conf->same.moved);
+}
+
+/* The chance that the answer is off by more than another tolerance: 1 where another of the trials would be the likeliest. */
+static double gross_at(const struct posterior *p, const struct rim *rim, const struct trials *t, double tolerance)
+{
+	struct trials *at = mem_new(1, sizeof *at);
+	struct limbus_conf conf = *t->conf;
+	struct posterior posterior;
+	*at = *t;
+	at->conf = &conf;
+	conf.tolerance = tolerance;
+	for (int i = 0; i < at->n; i++) {
+		// what the other eye of the face has added to a trial's odds stays
+		struct trial *trial = &at->trial[i];
+		trial->log_odds += odds_log(trial->curve, tolerance) - odds_log(trial->curve, t->conf->tolerance);
+	}
+	posterior_of(&posterior, at);
+	const bool other = posterior.best != p->best || moved(rim, &at->trial[p->best], &conf);
+	free(at);
+	return other ? 1 : posterior.gross;
+}
+
+double posterior_taken_at(const struct posterior *p, const struct rim *rim, const struct trials *t)
+{
+	for (int i = 0; i < ODDS_CURVE; i++) {
+		const double tolerance = odds_tolerance[i];
+		if (tolerance > t->conf->tolerance && tolerance <= t->conf->rough_tolerance && gross_at(p, rim, t, tolerance) <= t->conf->max_gross)
+			return tolerance;
+	}
+	return 0;
 }

@@ -84,22 +84,18 @@ static double known_to(const struct trial *trial)
 	return 0;
 }
 
-/* Whether the same ellipse would be taken where limbus.rough_tolerance is asked for. */
-static bool rough_enough(const struct posterior *p, const struct trial *trial, const struct limbus_conf *conf)
+void limbus_refuse_doubtful(struct limbus_found *found, const struct trials *trials)
 {
-	const bool rivals = p->rival >= 0 && trial_apart(&trial->e, &p->other) > conf->rough_tolerance * trial->e.a;
-	return conf->tolerance < conf->rough_tolerance && !rivals && 1 / (1 + exp(odds_log(trial->curve, conf->rough_tolerance))) < conf->max_gross;
-}
-
-void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf)
-{
+	const struct limbus_conf *conf = trials->conf;
 	const struct posterior *p = &found->posterior;
+	const struct trial *trial = &trials->trial[p->best];
 	const double known = known_to(trial);
-	if (is_cut(&found->limbus.e, photo))
+	const double taken_at = p->gross > conf->max_gross ? posterior_taken_at(p, &found->limbus, trials) : 0;
+	if (is_cut(&found->limbus.e, trials->photo))
 		limbus_refuse(found, "the iris is cut by the frame: show all of it with some white around");
-	else if (p->gross > conf->max_gross && rough_enough(p, trial, conf))
-		limbus_refuse(found, "its ellipse may be more than %.0f %% off (chance %.0f %%), hardly more than %.0f %%: limbus.tolerance = %.2g takes it; or %s", 100 * conf->tolerance,
-		              100 * p->gross, 100 * conf->rough_tolerance, conf->rough_tolerance, words_of(trial, true, conf));
+	else if (taken_at > 0)
+		limbus_refuse(found, "its ellipse may be more than %.2g %% off (chance %.0f %%), hardly more than %.2g %%: limbus.tolerance = %.2g takes it; or %s", 100 * conf->tolerance,
+		              100 * p->gross, 100 * taken_at, taken_at, words_of(trial, true, conf));
 	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
 		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
 	else if (p->gross > conf->max_gross && known > conf->tolerance)

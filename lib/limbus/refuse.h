@@ -8,7 +8,7 @@
 __attribute__((format(printf, 2, 3)))
 bool limbus_refuse(struct limbus_found *found, const char *fmt, ...);
 
-/* Refuses an ellipse that the frame cuts, or whose chance of being off is above conf->max_gross. */
-void limbus_refuse_doubtful(struct limbus_found *found, const struct trial *trial, const struct photo *photo, const struct limbus_conf *conf);
+/* Refuses an ellipse, the likeliest of the trials (found->posterior), that the frame cuts, or whose chance of being off is above conf->max_gross. */
+void limbus_refuse_doubtful(struct limbus_found *found, const struct trials *trials);
 
 #endif

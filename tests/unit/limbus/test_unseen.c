@@ -1,5 +1,5 @@
 /* The eyes that judge the search: their truth against the picture itself, by the half-height crossing of profiles; the same number gives
- * the same picture; where an ellipse lies in an altered photograph, against the picture again. */
+ * the same picture; where an ellipse lies in an altered photograph, against the picture again. What a refusal promises of them. */
 #include "math/stats.h"
 #include "tests/lib/unit.h"
 #include "tests/lib/unseen/altered.h"
@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { ANGLES = 360, SAMPLES = 49, CLEAN = 3 };
+enum { ANGLES = 360, SAMPLES = 49, CLEAN = 3, NAMED = 4 };
 static const double spacing = 0.005, middle = 24;
 
 static double luma(const struct photo *p, double x, double y)
@@ -113,6 +113,31 @@ static void altered_ellipses_follow(void **state)
 	photo_free(&photo);
 }
 
+/* A refusal that names a tolerance keeps its word: at that tolerance the same eye is taken, within it. */
+static void a_tolerance_that_is_named_is_taken(void **state)
+{
+	(void)state;
+	const double kept = answer_conf()->tolerance;
+	int named = 0;
+	for (int i = 0; i < 60 && named < NAMED; i++) {
+		struct unseen u = unseen_sized(11, i, 640, 480);
+		struct answer a;
+		answer_ours(&a, &u.photo, u.aspect);
+		const char *at = a.ok ? 0 : strstr(a.reason, "limbus.tolerance = ");
+		if (at) {
+			named++;
+			answer_conf()->tolerance = strtod(strchr(at, '=') + 1, 0);
+			assert_true(answer_conf()->tolerance > kept);
+			answer_ours(&a, &u.photo, u.aspect);
+			assert_true(a.ok);
+			assert_true(answer_error(&a.e, &answer_meant(&a.e, &u)->limbus) < answer_conf()->tolerance * a.e.a);
+			answer_conf()->tolerance = kept;
+		}
+		unseen_free(&u);
+	}
+	assert_int_equal(named, NAMED);
+}
+
 static void a_verdict_knows_right_from_wrong(void **state)
 {
 	(void)state;
@@ -131,6 +156,7 @@ int main(void)
 		cmocka_unit_test(ellipses_lie_on_the_limbus),
 		cmocka_unit_test(a_number_is_a_picture),
 		cmocka_unit_test(altered_ellipses_follow),
+		cmocka_unit_test(a_tolerance_that_is_named_is_taken),
 		cmocka_unit_test(a_verdict_knows_right_from_wrong),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
