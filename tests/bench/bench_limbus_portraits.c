@@ -1,6 +1,7 @@
 /* Portraits of people that are not in the repository: EYEWRIGHT_PORTRAITS=DIR holds NAME.jpg and NAME_mask.jpg, of the same size, irises
  * white on black. Three crops of each eye: the iris alone, loose, the whole region of the eye. Masks are drawn by hand, some 3 % inside the
- * limbus, with lids cut off: right is where both sides of the ellipse are within 4 % of the radius of the mask's, so widened. LOOKING=NAME,...
+ * limbus, with lids cut off: right is where both sides of the ellipse are within 4 % of the radius of the mask's, so widened. Where a lid cuts a
+ * side off, the limbus lies beyond it: a second count judges by the other one, and by this only that it is not inside. LOOKING=NAME,...
  * names those who look into the lens: their tilt ought to be none. Measures only; writes nothing of the pictures.
  */
 #include <dirent.h>
@@ -17,10 +18,11 @@
 
 enum { EYES_MAX = 256, CROPS = 3 };
 static const double reach[CROPS] = { 1.3, 2, 3.5 }, widened = 1.03, allowed = 0.04;  // of the radius
+static const double arc_reach = 0.35, arc_sagitta = 0.13;           // of half the width: a circle's sagitta is 0.063
 static const char *const crop_name[CROPS] = { "tight", "loose", "the eye's region" };
 
-struct iris { char name[64]; double x, y, side[2], radius; bool looks; };  // side: x of its left and right
-struct result { bool ok, right; double theta, sigma, seconds; };
+struct iris { char name[64]; double x, y, side[2], radius; bool looks, limbus[2]; };  // side: x of its left and right; whether they are limbus
+struct result { bool ok, right, shown; double theta, sigma, seconds; };  // shown: right where the sides are limbus, refused or not
 struct portraits { const char *dir; int n; struct iris iris[EYES_MAX]; struct result (*result)[CROPS]; };
 
 static bool load(struct photo *photo, const char *dir, const char *name, const char *tail)
@@ -32,8 +34,11 @@ static bool load(struct photo *photo, const char *dir, const char *name, const c
 	return ok;
 }
 
-/* One connected white region from px (x, y): its pixels are made black. */
-static void region(struct photo *mask, int x, int y, int box[4], long *count)
+/* Columns of the first and last px of a region in each row of the mask. */
+struct rows { int *first, *last; };
+
+/* One connected white region from px (x, y): its pixels are made black. rows: of its rows, overwritten. */
+static void region(struct photo *mask, int x, int y, int box[4], long *count, struct rows *rows)
 {
 	long n = 0, room = 1 << 12, *stack = mem_array((size_t)room, sizeof *stack);
 	stack[n++] = (long)y * mask->width + x;
@@ -43,7 +48,9 @@ static void region(struct photo *mask, int x, int y, int box[4], long *count)
 		if (mask->rgb[3 * at + 1] < 32768)
 			continue;
 		mask->rgb[3 * at + 1] = 0;
-		++*count;
+		const bool new_row = ++*count == 1 || v < box[1] || v > box[3];
+		rows->first[v] = new_row || u < rows->first[v] ? u : rows->first[v];
+		rows->last[v] = new_row || u > rows->last[v] ? u : rows->last[v];
 		box[0] = u < box[0] ? u : box[0];
 		box[1] = v < box[1] ? v : box[1];
 		box[2] = u > box[2] ? u : box[2];
@@ -71,6 +78,22 @@ static bool named(const char *list, const char *name)
 	return false;
 }
 
+/* Whether the outline at[] of a region, in the rows of box, is an arc of a circle of some `half` px where it reaches `end`: where a lid or the corner of
+ * the eye cuts the iris, the outline turns sharply there. */
+static bool is_arc(const int *at, int end, const int box[4], double half)
+{
+	int from = -1, to = -1;
+	for (int v = box[1]; v <= box[3]; v++)
+		if (at[v] == end) {
+			from = from < 0 ? v : from;
+			to = v;
+		}
+	const double up = 0.5 * (from + to) - arc_reach * half, down = 0.5 * (from + to) + arc_reach * half;
+	if (up < box[1] || down > box[3])
+		return false;
+	return fmax(abs(at[(int)up] - end), abs(at[(int)down] - end)) < arc_sagitta * half;
+}
+
 /* Irises of one mask: the two largest regions. */
 static void irises(struct portraits *p, const char *name)
 {
@@ -83,13 +106,14 @@ static void irises(struct portraits *p, const char *name)
 		return;
 	}
 	photo_free(&photo);
+	struct rows rows = { mem_array((size_t)mask.height, sizeof *rows.first), mem_array((size_t)mask.height, sizeof *rows.last) };
 	for (int y = 0; y < mask.height; y++)
 		for (int x = 0; x < mask.width; x++) {
 			int box[4] = { x, y, x, y };
 			long count = 0;
 			if (mask.rgb[3 * ((long)y * mask.width + x) + 1] < 32768)
 				continue;
-			region(&mask, x, y, box, &count);
+			region(&mask, x, y, box, &count, &rows);
 			const double wide = box[2] + 1 - box[0], high = box[3] + 1 - box[1];
 			if (wide < 20 || high < 0.3 * wide || high > 1.3 * wide || (double)count < 0.5 * wide * high || p->n == EYES_MAX)
 				continue;
@@ -100,8 +124,12 @@ static void irises(struct portraits *p, const char *name)
 			i->radius = 0.5 * wide * widened;
 			i->side[0] = i->x - i->radius;
 			i->side[1] = i->x + i->radius;
+			i->limbus[0] = is_arc(rows.first, box[0], box, 0.5 * wide);
+			i->limbus[1] = is_arc(rows.last, box[2], box, 0.5 * wide);
 			i->looks = named(getenv("LOOKING"), name);
 		}
+	free(rows.first);
+	free(rows.last);
 	photo_free(&mask);
 }
 
@@ -152,8 +180,12 @@ static void one(void *ctx, int eye)
 		}
 		const double x = a.e.cx + at[0], y = a.e.cy + at[1], w = half_width(&a.e), most = allowed * i->radius;
 		// The mask's height is the lids': of y it tells only that the centre is within the iris.
-		const bool right = a.ok && fabs(x - w - i->side[0]) < most && fabs(x + w - i->side[1]) < most && fabs(y - i->y) < 0.6 * i->radius;
-		p->result[eye][c] = (struct result){ a.ok, right, a.theta, a.theta_sigma, a.seconds };
+		const double off[2] = { i->side[0] - (x - w), x + w - i->side[1] };  // outwards
+		const bool within = a.e.a > 0 && fabs(y - i->y) < 0.6 * i->radius, right = a.ok && within && fabs(off[0]) < most && fabs(off[1]) < most;
+		bool shown = within && (i->limbus[0] || i->limbus[1]);
+		for (int k = 0; k < 2; k++)
+			shown = shown && off[k] > -most && (!i->limbus[k] || off[k] < most);
+		p->result[eye][c] = (struct result){ a.ok, right, shown, a.theta, a.theta_sigma, a.seconds };
 		photo_free(&crop);
 	}
 	photo_free(&photo);
@@ -164,12 +196,13 @@ static void report(const struct portraits *p, const char *method, bool goals)
 {
 	int right = 0, wrong = 0, n = 0, off = 0, looking = 0;
 	double *tilt = mem_array((size_t)(CROPS * p->n), sizeof *tilt);
-	printf("%s\n%-20s %6s %6s %6s %8s\n", method, "", "n", "right", "WRONG", "refused");
+	printf("%s\n%-20s %6s %6s %6s %8s   %s\n", method, "", "n", "right", "WRONG", "refused", "right by the sides that are limbus: taken, refused");
 	for (int c = 0; c < CROPS; c++) {
-		int count[3] = { 0 };
+		int count[3] = { 0 }, shown[2] = { 0 };
 		for (int e = 0; e < p->n; e++) {
 			const struct result *r = &p->result[e][c];
 			count[r->right ? 0 : r->ok ? 1 : 2]++;
+			shown[r->ok] += r->shown;
 			if (p->iris[e].radius >= 45) {
 				n++;
 				right += r->right;
@@ -180,7 +213,7 @@ static void report(const struct portraits *p, const char *method, bool goals)
 				off += r->theta > 2 * r->sigma;
 			}
 		}
-		printf("%-20s %6d %6d %6d %8d\n", crop_name[c], p->n, count[0], count[1], count[2]);
+		printf("%-20s %6d %6d %6d %8d   %4d, %d\n", crop_name[c], p->n, count[0], count[1], count[2], shown[1], shown[0]);
 		bench_row("portraits, wrong but called ok", method, crop_name[c], (struct bench_time){ NAN, NAN, NAN }, "photograph", 100.0 * count[1] / p->n, "%", "of all");
 	}
 	if (!goals) {
@@ -215,7 +248,11 @@ int main(int argc, char **argv)
 		irises(p, names[i]);
 		free(names[i]);
 	}
+	int cut_off = 0;
+	for (int i = 0; i < p->n; i++)
+		cut_off += !p->iris[i].limbus[0] + !p->iris[i].limbus[1];
 	if (p->n) {
+		printf("%d irises; of their sides %d are lid, not limbus\n", p->n, cut_off);
 		p->result = crew_array((size_t)p->n, sizeof *p->result);
 		crew_run(p->n, one, p);
 		report(p, "ours", false);

@@ -49,9 +49,9 @@ static void fill(struct answer *out, const struct limbus_record *record)
 {
 	out->ok = record->ok;
 	snprintf(out->reason, sizeof out->reason, "%s", record->reason);
+	out->e = record->ok ? record->view.limbus : record->guess;
 	if (!record->ok)
 		return;
-	out->e = record->view.limbus;
 	out->has_pupil = record->view.has_pupil;
 	out->pupil = record->view.pupil;
 	ellipse_sigma(out->sigma, &out->e, record->view.cov_q);

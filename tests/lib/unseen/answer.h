@@ -7,7 +7,7 @@
 struct answer {
 	bool ok;
 	char reason[256];
-	struct ellipse e;
+	struct ellipse e;            // where it is refused, the likeliest one; a 0: none
 	bool has_pupil;
 	struct ellipse pupil;
 	double sigma[ELLIPSE_N];     // of cx, cy, a, b, angle
