@@ -68,7 +68,7 @@ struct limbus_conf {
 	double strip_sigma;    // of the strip's ellipse, beside what its rays say; share of the semi-axis
 	double region_hidden;  // how many times more where no sclera is beside it
 	double tolerance;      // share of the semi-axis: an answer that is farther off is a gross error
-	double rough_tolerance; // that does for much, and that soft limbi allow: a refusal names it, or less, where that takes the ellipse
+	double rough_tolerance; // the widest that a refusal names where that takes the ellipse
 	double max_gross;      // chance of that, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
 	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis

@@ -45,7 +45,7 @@ int main(int argc, char **argv)
 		OPT_REAL("irregularity", &o.find.rim.irregularity, 0, 1, "", "sigma that noise does not show, of the step's width"),
 		PUPIL_OPTS(&o.find.pupil),
 		OPT_REAL("tolerance", &o.find.tolerance, 0.01, 0.06, "", "share of the semi-axis: what is farther off is a gross error"),
-		OPT_REAL("rough_tolerance", &o.find.rough_tolerance, 0.01, 0.06, "", "one that does for much: a refusal points at it"),
+		OPT_REAL("rough_tolerance", &o.find.rough_tolerance, 0.01, 0.06, "", "the widest that a refusal names where it takes the ellipse"),
 		OPT_REAL("max_gross", &o.find.max_gross, 0.001, 1, "", "chance of a gross error, beyond which it is refused"),
 		OPT_REAL("sure_gross", &o.find.sure_gross, 0, 1, "", "chance below which votes of edges are not asked"),
 		OPT_REAL("region_sigma", &o.find.region_sigma, 0.001, 0.5, "", "of the evidence's ellipse: centre and size, share of the semi-axis"),

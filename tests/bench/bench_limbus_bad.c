@@ -13,7 +13,7 @@
 #include "tests/lib/unseen/no_eye.h"
 #include "tests/lib/unseen/tiles.h"
 
-struct bad { uint64_t seed; int of_each; bool *taken; struct ellipse *e; };
+struct bad { uint64_t seed; int of_each; bool *taken, *named; struct ellipse *e; };  // named: the refusal names a tolerance that would take it
 
 static void one(void *ctx, int i)
 {
@@ -22,6 +22,7 @@ static void one(void *ctx, int i)
 	struct answer a;
 	answer_ours(&a, &photo, NAN);
 	b->taken[i] = a.ok;
+	b->named[i] = !a.ok && strstr(a.reason, "limbus.tolerance = ");
 	b->e[i] = a.e;
 	photo_free(&photo);
 }
@@ -34,14 +35,16 @@ int main(int argc, char **argv)
 	const int n = NO_EYE_KINDS * b.of_each;
 	int all = 0;
 	b.taken = crew_array((size_t)n, sizeof *b.taken);
+	b.named = crew_array((size_t)n, sizeof *b.named);
 	b.e = crew_array((size_t)n, sizeof *b.e);
 	crew_run(n, one, &b);
 	struct tiles *tiles = tiles_new();
 	for (int kind = 0; kind < NO_EYE_KINDS; kind++) {
-		int taken = 0;
+		int taken = 0, named = 0;
 		for (int i = 0; i < b.of_each; i++) {
 			const int at = kind * b.of_each + i;
 			taken += b.taken[at];
+			named += b.named[at];
 			if (!b.taken[at])
 				continue;
 			struct photo photo = no_eye_make(b.seed, kind, i);
@@ -49,7 +52,7 @@ int main(int argc, char **argv)
 			photo_free(&photo);
 		}
 		all += taken;
-		printf("%-24s %d of %d taken for an eye\n", no_eye_kind[kind], taken, b.of_each);
+		printf("%-24s %d of %d taken for an eye, %d would be at the tolerance that their refusal names\n", no_eye_kind[kind], taken, b.of_each, named);
 		bench_row("no eye, but called ok", "ours", no_eye_kind[kind], (struct bench_time){ NAN, NAN, NAN }, "photograph", 100.0 * taken / b.of_each, "%", "of all");
 	}
 	bench_goal("pictures without a limbus to measure: refused", "all", n - all, mem_printf("of %d", n), all == 0);
