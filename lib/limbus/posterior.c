@@ -7,7 +7,8 @@
 
 static const double LEAST_SIGMA = 1e-6;  // semi-axes
 
-double trial_apart(const struct ellipse *e, const struct ellipse *f)
+/* The largest difference of centre and semi-axes, px. */
+static double trial_apart(const struct ellipse *e, const struct ellipse *f)
 {
 	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
 }

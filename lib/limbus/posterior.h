@@ -8,9 +8,6 @@
  * other one that overlaps it is a rival. Fills best and rival (indices, -1: none) and gross, which is 1 where there is none. */
 void posterior_of(struct posterior *posterior, const struct trials *trials);
 
-/* The largest difference of centre and semi-axes, px. */
-double trial_apart(const struct ellipse *e, const struct ellipse *f);
-
 /* Whether trial i says the same as a likelier one: so many sigmas apart at most (struct same_conf) where either was seen. What lids hide may
  * differ, and has its sigma. */
 bool trial_repeats(const struct trials *trials, int i);
