@@ -22,7 +22,7 @@ static void one(void *ctx, int i)
 	struct answer a;
 	answer_ours(&a, &photo, NAN);
 	b->taken[i] = a.ok;
-	b->named[i] = !a.ok && strstr(a.reason, "limbus.tolerance = ");
+	b->named[i] = answer_named(&a) > 0;
 	b->e[i] = a.e;
 	photo_free(&photo);
 }

@@ -169,10 +169,10 @@ static void one(void *ctx, int eye)
 		struct photo crop = cut(&photo, i, reach[c], at);
 		struct answer a;
 		answer_ours(&a, &crop, NAN);
-		const char *named_at = followed && !a.ok ? strstr(a.reason, "limbus.tolerance = ") : 0;
-		if (named_at) {
+		const double named_at = followed ? answer_named(&a) : 0;
+		if (named_at > 0) {
 			const double kept = answer_conf()->tolerance;
-			answer_conf()->tolerance = strtod(strchr(named_at, '=') + 1, 0);
+			answer_conf()->tolerance = named_at;
 			answer_ours(&a, &crop, NAN);
 			answer_conf()->tolerance = kept;
 			if (!a.ok)

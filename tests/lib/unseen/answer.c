@@ -16,6 +16,12 @@ struct limbus_conf *answer_conf(void)
 	return &limbus_defaults;
 }
 
+double answer_named(const struct answer *a)
+{
+	const char *key = "limbus.tolerance = ", *at = a->ok ? 0 : strstr(a->reason, key);
+	return at ? strtod(at + strlen(key), 0) : 0;
+}
+
 double answer_right(void)
 {
 	return limbus_defaults.tolerance;
@@ -49,7 +55,7 @@ static void fill(struct answer *out, const struct limbus_record *record)
 {
 	out->ok = record->ok;
 	snprintf(out->reason, sizeof out->reason, "%s", record->reason);
-	out->e = record->ok ? record->view.limbus : record->guess;
+	out->e = record->guess;
 	if (!record->ok)
 		return;
 	out->has_pupil = record->view.has_pupil;

@@ -25,6 +25,9 @@ void answer_ours(struct answer *out, const struct photo *photo, double aspect);
 /* The same of a photograph that may show both eyes: returns how many; of two, out[0] is the person's left one. */
 int answer_face(struct answer out[2], const struct photo *photo, double aspect, bool mirrored);
 
+/* The limbus.tolerance that a refusal says would take the eye; 0: it names none, or the eye is taken. */
+double answer_named(const struct answer *a);
+
 /* The largest of the distance of the centres and the differences of the semi-axes, px. */
 double answer_error(const struct ellipse *got, const struct ellipse *truth);
 
