@@ -82,7 +82,7 @@ struct balance balance_sclera(const struct photo *photo, const struct fit *fit, 
 			for (int c = 0; c < 3; c++)
 				sum[c] += lit[i].rgb[c] / k;
 		for (int c = 0; c < 3; c++)
-			out.rgb[c] = sum[c] / conf->sclera[c];
+			out.rgb[c] = (out.sclera[c] = sum[c]) / conf->sclera[c];
 		out.spread = log(lit[high - 1].light / lit[low].light) / 2;
 	}
 	free(s);

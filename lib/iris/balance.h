@@ -15,6 +15,7 @@ struct balance_conf {
 struct balance {
 	bool found;
 	double rgb[3];   // linear colour of white, as bright as the brighter half of the sclera says; 1, 1, 1 where none was found
+	double sclera[3];  // linear colour of what it was measured from; 0, 0, 0 where none was found
 	double share;    // of the ring about the limbus that is sclera
 	double spread;   // of what it was measured from, relative, 1 sigma
 };

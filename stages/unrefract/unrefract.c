@@ -17,6 +17,7 @@ struct work {
 	int n;
 	const struct capture_photo **photos;  // [n]
 	struct fit *fits;                     // [n]
+	const struct capture_photo **fellows; // [n]: the other eye in the same photograph, where this one's pupil was not measured; else null
 	struct unrefract_view *views;         // [n]
 	int n_inputs;
 	const char **inputs;                  // photographs and fits; also fits that are not ok: a change may make them usable
@@ -29,6 +30,15 @@ static bool load_photo(struct photo *photo, const struct work *w, int i, struct 
 	return photo_load(photo, stage_path(w->run->stage, "%s", w->photos[i]->file), w->run->limit_mpx, err);
 }
 
+/* The other eye of a photograph of a face; null: there is none. */
+static const struct capture_photo *other_eye(const struct capture *capture, const struct capture_photo *photo)
+{
+	for (int i = 0; i < capture->n_photos; i++)
+		if (capture->photos[i].eye != photo->eye && strcmp(capture->photos[i].file, photo->file) == 0)
+			return &capture->photos[i];
+	return 0;
+}
+
 /* Fits that are there and ok. */
 static void gather(struct work *w, int index)
 {
@@ -37,7 +47,8 @@ static void gather(struct work *w, int index)
 	w->photos = mem_new(n, sizeof *w->photos);
 	w->fits = mem_new(n, sizeof *w->fits);
 	w->views = mem_new(n, sizeof *w->views);
-	w->inputs = mem_new(2 * n, sizeof *w->inputs);
+	w->fellows = mem_new(n, sizeof *w->fellows);
+	w->inputs = mem_new(3 * n, sizeof *w->inputs);
 	for (int i = 0; i < capture->n_photos; i++) {
 		const struct capture_photo *photo = &capture->photos[i];
 		struct err err = { 0 };
@@ -51,6 +62,9 @@ static void gather(struct work *w, int index)
 			stage_skipped_as_said(w->run->stage, "%s: %s", photo->file, fit->reason);
 		} else {
 			w->inputs[w->n_inputs++] = photo->file;
+			w->fellows[w->n] = fit->has_pupil ? 0 : other_eye(capture, photo);
+			if (w->fellows[w->n])
+				w->inputs[w->n_inputs++] = w->fellows[w->n]->fit;
 			w->views[w->n].name = photo->name;
 			w->photos[w->n++] = photo;
 		}
@@ -67,14 +81,33 @@ static const struct evidence *evidence_of(struct evidence *out, const struct wor
 	return 0;
 }
 
-/* White, lids, reflections of one photograph. */
-static bool look(struct unrefract_view *view, const struct work *w, const struct photo *photo, const struct fit *fit, struct err *err)
+/* What the other eye tells of this one's pupil; nothing where it has no usable limbus. */
+static struct pupil_curve fellow_of(const struct work *w, const struct photo *photo, const struct capture_photo *other)
 {
+	struct pupil_curve curve = { 0 };
+	struct evidence evidence = { 0 };
+	struct fit fit;
+	struct err err = { 0 };
+	if (!other || !fit_load(&fit, stage_path(w->run->stage, "%s", other->fit), &err) || !fit.ok)
+		return curve;
+	const struct evidence *told = fit.has_pupil ? 0 : evidence_of(&evidence, w, photo, &fit);
+	if (!unrefract_pupil(&curve, photo, &fit, told, w->run->eye, w->run->conf, &err))
+		stage_warn(w->run->stage, "%s: tells nothing of the other eye's pupil: %s", other->name, err.msg);
+	evidence_free(&evidence);
+	return curve;
+}
+
+/* White, lids, reflections of photograph i. */
+static bool look(struct work *w, int i, const struct photo *photo, struct err *err)
+{
+	struct unrefract_view *view = &w->views[i];
+	const struct fit *fit = &w->fits[i];
 	struct evidence evidence = { 0 };
 	const struct evidence *told = evidence_of(&evidence, w, photo, fit);
+	const struct pupil_curve fellow = fellow_of(w, photo, w->fellows[i]);
 	if (!photo->grey)
 		view->white = balance_sclera(photo, fit, told, w->run->white);
-	bool ok = unrefract_survey(view, photo, fit, told, w->run->eye, w->run->conf, err);
+	bool ok = unrefract_survey(view, photo, fit, told, &fellow, w->run->eye, w->run->conf, err);
 	evidence_free(&evidence);
 	return ok;
 }
@@ -86,7 +119,7 @@ static void survey(struct work *w)
 		struct err err = { 0 };
 		struct unrefract_view *view = &w->views[i];
 		stage_progress(w->run->stage, i, 2 * w->n, "survey");
-		if (!load_photo(&photo, w, i, &err) || !look(view, w, &photo, &w->fits[i], &err)) {
+		if (!load_photo(&photo, w, i, &err) || !look(w, i, &photo, &err)) {
 			snprintf(view->note, sizeof view->note, "%.150s", err.msg);
 			stage_warn(w->run->stage, "%s: left out: %s", w->photos[i]->file, err.msg);
 		}
@@ -101,7 +134,7 @@ static bool merge(struct unrefract_texture *texture, struct work *w, int best, s
 {
 	const struct run *run = w->run;
 	int size = unrefract_size(w->n, w->views, run->eye, run->conf);
-	*texture = unrefract_begin(size, run->eye, &w->views[best].pupil, run->conf);
+	*texture = unrefract_begin(size, run->eye, &w->views[best], run->conf);
 	for (int i = 0; i < w->n; i++) {
 		stage_progress(run->stage, w->n + i, 2 * w->n, "merge");
 		struct photo photo = w->kept;
@@ -148,9 +181,12 @@ static void tell(const struct unrefract_texture *texture, const struct work *w)
 	stage_figure(stage, "texels per mm", texture->rgbw.width / (2 * texture->extent), "/mm");
 	stage_figure(stage, "iris seen", 100 * texture->seen, "%");
 	stage_figure(stage, "photographs merged", used, "");
-	stage_note(stage, "%s: %d x %d texels of %d photograph%s, %.1f %% of the iris seen, pupil %.2f mm", w->eye->iris,
+	char spread[32] = "";
+	if (texture->pupil_sigma > 0)
+		snprintf(spread, sizeof spread, " +- %.2f", 2 * texture->pupil.r * texture->pupil_sigma);
+	stage_note(stage, "%s: %d x %d texels of %d photograph%s, %.1f %% of the iris seen, pupil %.2f%s mm", w->eye->iris,
 	           texture->rgbw.width, texture->rgbw.width, used, used == 1 ? "" : "s", 100 * texture->seen,
-	           2 * texture->pupil.r);
+	           2 * texture->pupil.r, spread);
 }
 
 static bool make(struct work *w, const char *exr, const char *json, struct err *err)
@@ -208,6 +244,7 @@ bool unrefract_eye(const struct run *run, int index, struct err *err)
 	free(json);
 	free(w.photos);
 	free(w.fits);
+	free(w.fellows);
 	free(w.views);
 	free(w.inputs);
 	return ok;

@@ -14,6 +14,7 @@
 #include "image/plane.h"
 #include "limbus/evidence.h"
 #include "math/rng.h"
+#include "math/stats.h"
 #include "tests/evidence/light.h"
 #include "tests/evidence/scene.h"
 #include "tests/lib/bench/bench.h"
@@ -62,6 +63,8 @@ struct covers {
 	int n;
 	double wrong[EYES_MOST], mirrored[EYES_MOST], missed[EYES_MOST];  // %
 	int n_mirrored;
+	int n_pupils;
+	double pupil[EYES_MOST], usual[EYES_MOST], sigmas[EYES_MOST];  // mm; error over sigma
 };
 
 /* What the survey keeps, against the classes; the margins of pupil and limbus are left out, where classes and blur are undecided. */
@@ -111,6 +114,23 @@ static double mean(int n, const double *v)
 	return sum;
 }
 
+/* The size of the pupil as if its margin had not been measured, against the true ellipse's. */
+static void count_pupil(struct covers *c, const struct photo *photo, const struct fit *fit, const struct evidence *told, const struct unrefract_view *view,
+                        const struct unrefract_conf *conf)
+{
+	struct fit unmeasured = *fit;
+	struct unrefract_view guess = { .name = "drawn" };
+	struct err err = { 0 };
+	unmeasured.has_pupil = false;
+	if (fit->has_pupil && unrefract_survey(&guess, photo, &unmeasured, told, 0, &anatomy, conf, &err)) {
+		const double truth = view->pupil.r;
+		c->pupil[c->n_pupils] = fabs(guess.pupil.r - truth);
+		c->usual[c->n_pupils] = fabs(conf->pupil_usual[0] - truth);
+		c->sigmas[c->n_pupils++] = fabs(log(guess.pupil.r / truth)) / guess.pupil_sigma;
+	}
+	unrefract_view_free(&guess);
+}
+
 static void measure(struct covers covers[2], struct evidence_net *net, const struct drawn *d)
 {
 	struct unrefract_conf conf = iris_unrefract_conf("draft");
@@ -125,8 +145,10 @@ static void measure(struct covers covers[2], struct evidence_net *net, const str
 		for (int k = 0; k < 2; k++) {
 			const struct evidence *told = k == BY_EVIDENCE ? &evidence : 0;
 			struct unrefract_view view = { .name = "drawn", .white = balance_sclera(&photo, &fit, told, &conf_white) };
-			if (unrefract_survey(&view, &photo, &fit, told, &anatomy, &conf, &err))
+			if (unrefract_survey(&view, &photo, &fit, told, 0, &anatomy, &conf, &err))
 				count(&covers[k], &view, &fit, d->label);
+			if (k == BY_EVIDENCE && view.used)
+				count_pupil(&covers[k], &photo, &fit, told, &view, &conf);
 			unrefract_view_free(&view);
 		}
 		evidence_free(&evidence);
@@ -154,6 +176,13 @@ static void drawn_eyes(struct evidence_net *net)
 		          "of reflections is kept");
 		bench_row("covers left in the texture", methods[k], "drawn eyes, mean", untimed, "eye", mean(covers[k].n, covers[k].missed), "%",
 		          "of the visible iris is lost");
+	}
+	struct covers *c = &covers[BY_EVIDENCE];
+	bench_row("pupils taken as unmeasured", "evidence, step, usual size", "drawn eyes, mean", untimed, "eye", mean(c->n_pupils, c->pupil), "mm", "of the radius");
+	bench_row("pupils taken as unmeasured", "the usual size alone", "drawn eyes, mean", untimed, "eye", mean(c->n_pupils, c->usual), "mm", "of the radius");
+	if (c->n_pupils) {
+		const double within = stats_quantile(c->n_pupils, c->sigmas, 0.9);
+		bench_goal("pupils taken as unmeasured: error over sigma, 90 %", "<= 2", within, "", within <= 2);
 	}
 	double before = mean(covers[0].n, covers[0].wrong), after = mean(covers[1].n, covers[1].wrong);
 	bench_goal("lid, lash or sclera in what is kept, against without evidence", "<= 1/4", after / before, "", after <= before / 4);

@@ -11,11 +11,13 @@
 #include "iris/unrefract/polar.h"
 
 enum { STRIP_DEG = 12, OVERLAP_DEG = 3 };
+static const double again = 0.5;  // what each time that a piece was taken before costs, of the pattern's variance: repeated pieces show as spokes
 
 /* What is laid over the polar sheet: sum of weighted patterns, and the sum of squared weights, [rows][columns][4]. */
 struct laid {
 	const struct polar *sheet;
 	float *sum;
+	int *taken;  // [columns]: how often a column was taken, in earlier passes, too
 };
 
 /* Columns from .. from + count, to be filled; the strip reaches `overlap` farther to either side. */
@@ -35,9 +37,19 @@ static int source_column(const struct strip *s, const struct source *source, int
 	return source->turn + (source->mirror ? 2 * s->from + s->count - 1 - column : column);
 }
 
-/* Mismatch with what is seen in and beside the strip. A source that does not show all of it is taken only where none does. */
-static double judge(const struct polar *p, const struct strip *s, const struct source *source, int stride, double variance)
+/* How often a source's columns were taken before, in the mean. */
+static double times_taken(const struct laid *laid, const struct strip *s, const struct source *source)
 {
+	long sum = 0;
+	for (int j = s->from; j < s->from + s->count; j++)
+		sum += laid->taken[source_column(s, source, j) & (laid->sheet->columns - 1)];
+	return (double)sum / s->count;
+}
+
+/* Mismatch with what is seen in and beside the strip. A source that does not show all of it is taken only where none does. */
+static double judge(const struct laid *laid, const struct strip *s, const struct source *source, int stride, double variance)
+{
+	const struct polar *p = laid->sheet;
 	double sum = 0;
 	long same = 0, wanted = 0, lacking = 0;
 	for (int k = stride / 2; k < p->rows; k += stride) {
@@ -58,11 +70,12 @@ static double judge(const struct polar *p, const struct strip *s, const struct s
 		}
 	}
 	double mean = same ? sum / (double)same : 2 * variance;
-	return mean + (wanted ? 40 * variance * (double)lacking / (double)wanted : 0);
+	return mean + variance * (again * times_taken(laid, s, source) + (wanted ? 40 * (double)lacking / (double)wanted : 0));
 }
 
-static struct source best_source(const struct polar *p, const struct strip *s, double variance)
+static struct source best_source(const struct laid *laid, const struct strip *s, double variance)
 {
+	const struct polar *p = laid->sheet;
 	enum { TURNS = 180 };
 	struct source all[2 * TURNS], best = { 0 };
 	int step = p->columns / TURNS > 1 ? p->columns / TURNS : 1, least = s->count + s->overlap;
@@ -74,7 +87,7 @@ static struct source best_source(const struct polar *p, const struct strip *s, d
 		bool near = turn < least || turn > p->columns - least;
 		all[i] = (struct source){ turn, i % 2, INFINITY };
 		if (turn < p->columns && !near)
-			all[i].cost = judge(p, s, &all[i], stride, variance);
+			all[i].cost = judge(laid, s, &all[i], stride, variance);
 	}
 	for (int i = 0; i < 2 * TURNS; i++)
 		if (all[i].cost < best.cost)
@@ -83,7 +96,7 @@ static struct source best_source(const struct polar *p, const struct strip *s, d
 		for (int side = -1; side <= 1; side += 2) {
 			struct source try = best;
 			try.turn += side * d;
-			try.cost = judge(p, s, &try, stride, variance);
+			try.cost = judge(laid, s, &try, stride, variance);
 			if (try.cost < best.cost)
 				best = try;
 		}
@@ -257,14 +270,17 @@ static void fill_run(struct laid *laid, int from, int count, double variance)
 	for (int i = 0; i < n; i++) {
 		int begin = count * i / n, end = count * (i + 1) / n;
 		struct strip s = { from + begin, end - begin, overlap > 1 ? overlap : 1 };
-		struct source source = best_source(p, &s, variance);
-		if (isfinite(source.cost))
-			lay(laid, &s, &source);
+		struct source source = best_source(laid, &s, variance);
+		if (!isfinite(source.cost))
+			continue;
+		lay(laid, &s, &source);
+		for (int j = s.from; j < s.from + s.count; j++)
+			laid->taken[source_column(&s, &source, j) & (p->columns - 1)]++;
 	}
 }
 
 /* One pass over all runs of columns with hidden places. Returns whether it has filled any, which count as seen from then on. */
-static bool fill_pass(struct polar *p, double variance)
+static bool fill_pass(struct polar *p, int *taken, double variance)
 {
 	bool any = false;
 	int start = 0;
@@ -273,7 +289,7 @@ static bool fill_pass(struct polar *p, double variance)
 	if (!any)
 		return false;
 	any = false;
-	struct laid laid = { p, mem_new(4 * (size_t)p->rows * (size_t)p->columns, sizeof(float)) };
+	struct laid laid = { p, mem_new(4 * (size_t)p->rows * (size_t)p->columns, sizeof(float)), taken };
 	while (start < p->columns && column_hides(p, start))
 		start++;
 	for (int j = 0; j < p->columns; j++) {
@@ -299,8 +315,10 @@ static void fill_sheet(struct polar *p)
 {
 	enum { PASSES = 4 };  // what a strip's source lacked is filled from what is filled by then
 	double variance = variance_of(p);
-	for (int i = 0; i < PASSES && fill_pass(p, variance); i++)
+	int *taken = mem_new((size_t)p->columns, sizeof *taken);
+	for (int i = 0; i < PASSES && fill_pass(p, taken, variance); i++)
 		;
+	free(taken);
 	mirror_rims(p);
 }
 

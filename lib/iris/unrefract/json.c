@@ -62,6 +62,9 @@ static json_t *advice(const struct unrefract_texture *texture, int n, const stru
 	if (fine < 40)
 		json_array_append_new(list, json_string("The iris is small in the photograph: move closer or use a longer "
 		                                        "lens, so that it spans 800 pixels or more."));
+	if (texture->pupil_sigma > 0)
+		json_array_append_new(list, json_string("The pupil's margin does not show, and its size is a guess: light the iris from the side, "
+		                                        "with no reflection over the pupil."));
 	if (tilt > 30 * deg)
 		json_array_append_new(list, json_string("The eye is seen from the side only: add a photograph from the front."));
 	return list;
@@ -74,8 +77,8 @@ bool unrefract_save_json(const char *path, const struct unrefract_texture *textu
 	json_object_set_new(json, "size", json_integer(texture->rgbw.width));
 	json_object_set_new(json, "extent_mm", json_number(texture->extent));
 	json_object_set_new(json, "texels_per_mm", json_number(texture->rgbw.width / (2 * texture->extent)));
-	json_object_set_new(json, "pupil", json_pack("{s:f,s:f,s:f}", "cx", texture->pupil.cx, "cy", texture->pupil.cy,
-	                                             "r", texture->pupil.r));
+	json_object_set_new(json, "pupil", json_pack("{s:f,s:f,s:f,s:b,s:f}", "cx", texture->pupil.cx, "cy", texture->pupil.cy, "r", texture->pupil.r,
+	                                             "measured", !(texture->pupil_sigma > 0), "r_sigma", texture->pupil.r * texture->pupil_sigma));
 	json_object_set_new(json, "seen", json_number(texture->seen));
 	bool colour = false;
 	for (int i = 0; i < n; i++) {

@@ -17,12 +17,13 @@ int unrefract_size(int n, const struct unrefract_view views[], const struct eye 
 	return 8 * (int)fmax(8, fmin(conf->max_size, size) / 8);
 }
 
-struct unrefract_texture unrefract_begin(int size, const struct eye *eye, const struct circle *pupil,
+struct unrefract_texture unrefract_begin(int size, const struct eye *eye, const struct unrefract_view *best,
                                          const struct unrefract_conf *conf)
 {
 	return (struct unrefract_texture){ .rgbw = image_new(size, size, 4),
 		                               .extent = conf->extent * eye->limbus_radius,
-		                               .pupil = *pupil };
+		                               .pupil = best->pupil,
+		                               .pupil_sigma = best->pupil_sigma };
 }
 
 /* Marks with 1 the texels that need no sampling: deep in the pupil, beyond the limbus, or hidden in this photograph. */
@@ -59,7 +60,7 @@ static float smooth_step(double x)
 /* Weight of a texel: the survey's mask, times a power of the share of a photo pixel that it spans in its most foreshortened
  * direction, times ramps at the pupil's margin and at the limbus, whose blur reaches inwards. */
 static float texel_weight(const struct unrefract_texture *texture, const struct iris_map *map,
-                          const struct unrefract_view *view, const struct eye *eye, int col, int row, double ramp,
+                          const struct unrefract_view *view, const struct eye *eye, int col, int row, const double ramp[2],
                           const struct unrefract_conf *conf)
 {
 	double mm = 2 * map->extent / map->size;
@@ -71,7 +72,7 @@ static float texel_weight(const struct unrefract_texture *texture, const struct 
 	float w = plane_sample(s->weight, s->size, s->size, (sx + s->extent) * to, (sy + s->extent) * to);
 	double detail = map_resolution(map, col, row) * conf->scale;
 	w *= (float)pow(fmin(1, detail), conf->foreshortening);
-	w *= smooth_step((eye->limbus_radius - map->rim[(long)row * map->size + col]) / ramp);
+	w *= smooth_step((eye->limbus_radius - map->rim[(long)row * map->size + col] - ramp[0]) / ramp[1]);
 	double from_pupil = hypot(x - texture->pupil.cx, y - texture->pupil.cy) - texture->pupil.r;
 	return w * smooth_step(from_pupil / fmax(mm, conf->pupil_margin) + 0.5);
 }
@@ -88,7 +89,8 @@ void unrefract_add(struct unrefract_texture *texture, const struct unrefract_vie
 	float *rgb = mem_array((size_t)size * (size_t)size * 3, sizeof *rgb);
 	struct crop crop = crop_new(photo, &map);
 	texture->texels += crop_sample(rgb, &crop, &map, skip);
-	double ramp = conf->limbus_ramp + 2 * view->fit->edge_sigma_px / iris_view_px_per_mm(&view->iris);
+	// from the limbus inwards, mm: where it begins, and its length
+	double length = conf->limbus_ramp + 2 * view->fit->edge_sigma_px / iris_view_px_per_mm(&view->iris), ramp[2] = { fmax(view->haze - length / 2, 0), length };
 #pragma omp parallel for schedule(dynamic, 8)
 	for (int row = 0; row < size; row++)
 		for (int col = 0; col < size; col++) {

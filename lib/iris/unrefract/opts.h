@@ -22,6 +22,12 @@ static const char *const unrefract_methods[] = { "lattice", "newton", "algorithm
 	OPT_INT("max_size", &(c)->max_size, 64, 8192, "texels", "a side, at most"), \
 	OPT_REAL("extent", &(c)->extent, 1, 1.5, "", "half-width of the maps over the limbus radius"), \
 	OPT_INT("survey_size", &(c)->survey_size, 64, 2048, "texels", "a side of the survey"), \
+	OPT_REAL("limbus_haze", &(c)->haze, 0.001, 0.5, "", "share of the iris' own light that the sclera's may add beside the limbus"), \
+	OPT_REAL("pupil_told", &(c)->pupil_told, 0, 1000, "", "what log odds of being pupil all over an iris are worth"), \
+	OPT_REAL("pupil_missed", &(c)->pupil_missed, -5, 5, "", "log odds of being pupil that the network leaves out"), \
+	OPT_REAL("pupil_step", &(c)->pupil_step, 0, 100, "", "what a step of log brightness at a pupil's margin is worth"), \
+	OPT_REALS("pupil_usual", (c)->pupil_usual, 2, 0.01, 5, "", "radius of pupils in mm and sigma of its logarithm"), \
+	OPT_REAL("pupil_fellow", &(c)->pupil_fellow, 0.005, 1, "", "sigma of the logarithm of both eyes' ratio"), \
 	OPT_REAL("pupil_margin", &(c)->pupil_margin, 0, 0.5, "mm", "over which the pupil's margin fades"), \
 	OPT_REAL("limbus_ramp", &(c)->limbus_ramp, 0, 2, "mm", "over which the weight falls at the limbus"), \
 	OPT_REAL("lid_z", &(c)->lid_z, 0.5, 10, "sigma", "outlier level of lids"), \

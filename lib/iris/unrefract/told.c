@@ -52,23 +52,3 @@ float *told_iris(const struct told *told, const float *seen, size_t n)
 		out[i] = told->cover ? seen[i] * fmaxf(1 - told->cover[i] - told->mirror[i], 0) : seen[i];
 	return out;
 }
-
-struct circle told_pupil(const struct told *told, int size, double extent)
-{
-	const double least = 0.7, most = 4.2;  // mm: radii of pupils, constricted and dilated by drops
-	const double whole = 0.75;             // share of a disc's mass that lies in it
-	double mass = 0, x = 0, y = 0, inside = 0, texel = 2 * extent / size;
-	for (int row = 0; row < size && told->pupil; row++)
-		for (int col = 0; col < size; col++) {
-			float p = told->pupil[(long)row * size + col];
-			mass += p;
-			x += p * ((col + 0.5) * texel - extent);
-			y += p * ((row + 0.5) * texel - extent);
-		}
-	struct circle c = { x / fmax(mass, 1), y / fmax(mass, 1), sqrt(mass / M_PI) * texel };
-	for (int row = 0; row < size && told->pupil; row++)
-		for (int col = 0; col < size; col++)
-			if (hypot((col + 0.5) * texel - extent - c.cx, (row + 0.5) * texel - extent - c.cy) < c.r)
-				inside += told->pupil[(long)row * size + col];
-	return c.r >= least && c.r <= most && inside > whole * mass && hypot(c.cx, c.cy) < 1 ? c : (struct circle){ 0 };
-}

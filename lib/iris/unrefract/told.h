@@ -20,8 +20,4 @@ void told_free(struct told *told);
 /* What is seen, times how likely it is iris or pupil and no reflection. [n]; free(). */
 float *told_iris(const struct told *told, const float *seen, size_t n);
 
-/* The pupil as a disc of the area that the evidence gives it, about its centre. r = 0 where it is no disc, or not
- * of a size that pupils have. */
-struct circle told_pupil(const struct told *told, int size, double extent);
-
 #endif

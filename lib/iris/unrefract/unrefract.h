@@ -20,8 +20,11 @@ struct unrefract_conf {
 	int max_size;             // texels a side, at most
 	double extent;            // half-width of the maps over the limbus radius
 	int survey_size;          // texels a side of the survey
+	double pupil_told, pupil_missed, pupil_step;  // of pupils that were not measured: pupil.c
+	double pupil_usual[2], pupil_fellow;  // radius in mm, sigma of its logarithm; of that of both eyes' ratio
 	double pupil_margin;      // mm over which the weight rises at the pupil's margin
 	double limbus_ramp;       // mm over which the weight falls to 0 at the limbus
+	double haze;              // share of the iris' own light that the sclera's may add there
 	double lid_z, lid_smooth; // standard score of a lid; stiffness of the lid's edge
 	double lid_told, lid_shadow;  // scores for a unit of the evidence's log odds; log contrast of a lid's shadow
 	double glint_z, glint_grow, saturated;  // standard score of a reflection, its margin in mm, share of full scale
@@ -35,6 +38,10 @@ struct unrefract_conf {
 struct circle {
 	double cx, cy, r;  // iris plane, mm
 };
+
+/* How likely each size of a pupil is whose margin was not measured: radii that grow by the same ratio, log likelihoods, about a centre. */
+enum { PUPIL_SIZES = 40 };
+struct pupil_curve { bool known; double cx, cy, log_p[PUPIL_SIZES]; };
 
 /* The survey of one photograph. Planes are [size][size] of its own eye frame, half-width `extent`; owned by the view. */
 struct unrefract_survey {
@@ -53,9 +60,11 @@ struct unrefract_view {
 	struct balance white;     // of the photograph: what a reflection's colour is near; the caller's (balance.h)
 	struct iris_view iris;
 	struct unrefract_survey survey;
-	struct circle pupil;      // this photograph's own frame; r = 0: not found
+	struct circle pupil;      // this photograph's own frame
+	double pupil_sigma;       // of the logarithm of its radius where it is the likeliest; 0: its margin was measured
 	double rotation;          // of the map against this photograph's frame, radians
 	double correlation;       // with the photograph that the others are registered to; 1 for itself
+	double haze;              // mm inwards of the limbus over which the sclera's light spoils the iris' colour
 	float gain[3];            // factors that bring its colour to that photograph's
 	bool grey;                // the photograph has no colour
 	bool used;
@@ -67,6 +76,7 @@ struct unrefract_texture {
 	struct image rgbw;        // R, G, B (linear), W (weight 0..1); image_free
 	double extent;            // half-width, mm
 	struct circle pupil;
+	double pupil_sigma;       // as unrefract_view's
 	double seen;              // share of the iris' texels with weight
 	long texels;              // sampled, of all photographs
 };
@@ -75,9 +85,13 @@ struct unrefract_texture {
  * view      zeroed but for name and white; unrefract_view_free
  * evidence  of this photograph, in a window round the limbus (limbus/evidence.h), or null: lids and reflections by brightness and hue
  *           of the rings alone
+ * fellow    what the other eye in the photograph tells of a pupil that was not measured here; null: nothing
  * False, err set, when the iris lies outside the photograph. */
-bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit,
-                      const struct evidence *evidence, const struct eye *eye, const struct unrefract_conf *conf, struct err *err);
+bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit, const struct evidence *evidence,
+                      const struct pupil_curve *fellow, const struct eye *eye, const struct unrefract_conf *conf, struct err *err);
+/* What one eye of a photograph tells of the other's pupil. False, err set, as above; out tells nothing then. */
+bool unrefract_pupil(struct pupil_curve *out, const struct photo *photo, const struct fit *fit, const struct evidence *evidence, const struct eye *eye,
+                     const struct unrefract_conf *conf, struct err *err);
 void unrefract_view_free(struct unrefract_view *view);
 
 /* Registers the views to the best of them (most iris, seen largest): rotation, shift and stretch of each, its colour gain; and
@@ -89,8 +103,8 @@ int unrefract_align(int n, struct unrefract_view views[], const struct unrefract
 int unrefract_size(int n, const struct unrefract_view views[], const struct eye *eye,
                    const struct unrefract_conf *conf);
 
-/* An empty weighted sum of size x size texels; image_free its rgbw. */
-struct unrefract_texture unrefract_begin(int size, const struct eye *eye, const struct circle *pupil,
+/* An empty weighted sum of size x size texels with the pupil of the best view; image_free its rgbw. */
+struct unrefract_texture unrefract_begin(int size, const struct eye *eye, const struct unrefract_view *best,
                                          const struct unrefract_conf *conf);
 
 /* Adds one used view, sampled from its photograph. */

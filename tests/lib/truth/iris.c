@@ -78,13 +78,13 @@ bool iris_texture(struct unrefract_texture *texture, struct unrefract_view *view
 	bool ok = evidence_window(&evidence, net, &photo, fit->limbus.cx, fit->limbus.cy, fit->limbus.a, err);
 	if (ok)
 		view->white = balance_sclera(&photo, fit, &evidence, &white);
-	ok = ok && unrefract_survey(view, &photo, fit, &evidence, &truth->eye, conf, err);
+	ok = ok && unrefract_survey(view, &photo, fit, &evidence, 0, &truth->eye, conf, err);
 	evidence_free(&evidence);
 	evidence_close(net);
 	if (!ok)
 		return false;
 	unrefract_align(1, view, conf);
-	*texture = unrefract_begin(unrefract_size(1, view, &truth->eye, conf), &truth->eye, &view->pupil, conf);
+	*texture = unrefract_begin(unrefract_size(1, view, &truth->eye, conf), &truth->eye, view, conf);
 	unrefract_add(texture, view, &photo, &truth->eye, conf);
 	unrefract_finish(texture, &truth->eye);
 	photo_free(&photo);

@@ -94,6 +94,56 @@ static void the_pattern_goes_on(void **state)
 		}
 }
 
+/* Fibres that nowhere repeat: a sum of waves round the iris whose numbers have no common part. */
+static double fibres(double phi)
+{
+	double sum = 0;
+	for (int k = 0; k < 24; k++)
+		sum += 0.1 * sin((13 + 2 * k) * phi + 2.4 * k * k);
+	return sum;
+}
+
+/* Correlation of what is filled at a radius, from one angle to the next of the same lag. */
+static double alike(const struct unrefract_texture *texture, double r, double from, double to, double lag)
+{
+	double ab = 0, aa = 0, bb = 0;
+	for (double phi = from; phi + lag < to; phi += 0.005) {
+		double v[2];
+		for (int k = 0; k < 2; k++) {
+			const double at = phi + k * lag, mm = 2 * extent / SIZE;
+			v[k] = log(image_at(&texture->rgbw, (int)((r * cos(at) + extent) / mm), (int)((r * sin(at) + extent) / mm))[1] / 0.2);
+		}
+		ab += v[0] * v[1];
+		aa += v[0] * v[0];
+		bb += v[1] * v[1];
+	}
+	return ab / sqrt(aa * bb);
+}
+
+/* Two thirds are hidden: pieces must be taken more than once, but not one and the same side by side, which shows as spokes. */
+static void no_spokes(void **state)
+{
+	(void)state;
+	const double from = -M_PI, to = M_PI / 3;
+	struct unrefract_texture texture = { .rgbw = image_new(SIZE, SIZE, 4), .extent = extent, .pupil = { 0, 0, pupil } };
+	for (int row = 0; row < SIZE; row++)
+		for (int col = 0; col < SIZE; col++) {
+			const double x = (col + 0.5) * 2 * extent / SIZE - extent, y = (row + 0.5) * 2 * extent / SIZE - extent, phi = atan2(y, x);
+			float *px = image_at(&texture.rgbw, col, row);
+			if (hypot(x, y) < pupil || hypot(x, y) > limbus || (phi > from && phi < to))
+				continue;
+			px[0] = px[1] = px[2] = (float)(0.2 * exp(fibres(phi)));
+			px[3] = 1;
+		}
+	unrefract_fill(&texture, &anatomy);
+	double worst = 0;
+	for (double lag = 0.17; lag < 0.8; lag += 0.005)
+		worst = fmax(worst, alike(&texture, 3.5, from, to, lag));
+	print_message("correlation of neighbouring pieces at most %.2f\n", worst);
+	assert_true(worst < 0.65);
+	image_free(&texture.rgbw);
+}
+
 static void nothing_seen_nothing_filled(void **state)
 {
 	(void)state;
@@ -138,7 +188,7 @@ static void threads_do_not_matter(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(the_pattern_goes_on), cmocka_unit_test(nothing_seen_nothing_filled),
+	const struct CMUnitTest tests[] = { cmocka_unit_test(the_pattern_goes_on), cmocka_unit_test(no_spokes), cmocka_unit_test(nothing_seen_nothing_filled),
 		                            cmocka_unit_test(little_seen), cmocka_unit_test(threads_do_not_matter) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -260,7 +260,7 @@ static void photographs_meet(void **state)
 		fit[i] = truth_fit(&truth[i]);
 		view[i].name = names[i];
 		assert_true(photo_load(&photo, truth[i].photo, 100, &err));
-		assert_true(unrefract_survey(&view[i], &photo, &fit[i], 0, &truth[i].eye, &plain, &err));
+		assert_true(unrefract_survey(&view[i], &photo, &fit[i], 0, 0, &truth[i].eye, &plain, &err));
 		photo_free(&photo);
 		free(dir);
 	}

@@ -71,10 +71,10 @@ static struct seen see(const struct photo *photo, const struct camera *camera, c
 	s.fit.pupil = record->view.pupil;
 	s.fit.camera = *camera;
 	memcpy(s.fit.cam_from_eye, pose.cam_from_eye, sizeof pose.cam_from_eye);
-	if (!unrefract_survey(&view, photo, &s.fit, 0, &truth->eye, &conf, &err))
+	if (!unrefract_survey(&view, photo, &s.fit, 0, 0, &truth->eye, &conf, &err))
 		fail_msg("%s", err.msg);
 	unrefract_align(1, &view, &conf);
-	s.texture = unrefract_begin(384, &truth->eye, &view.pupil, &conf);
+	s.texture = unrefract_begin(384, &truth->eye, &view, &conf);
 	unrefract_add(&s.texture, &view, photo, &truth->eye, &conf);
 	unrefract_finish(&s.texture, &truth->eye);
 	unrefract_view_free(&view);
