@@ -85,8 +85,9 @@ static bool picture(struct job *job, const struct asked *a, const char *rel, int
 	struct envmap env = { 0 };
 	if (a->environment && !light_of(&env, job, a, err))
 		return false;
-	const struct envmap *mirror = job->conf->polarised ? 0 : a->environment ? &env : own->n_lamps ? &own->lamps : 0;
-	struct scene_lighting light = scene_lighting_of(a->environment ? &env : &own->env, mirror, job->conf->lights, job->conf->light_directions);
+	const struct envmap *lamps = job->conf->polarised ? 0 : a->environment ? &env : own->n_lamps ? &own->lamps : 0;
+	struct envmap mirror = lamps ? shot_mirrored(lamps, &job->scene) : (struct envmap){ 0 };
+	struct scene_lighting light = scene_lighting_of(a->environment ? &env : &own->env, lamps ? &mirror : 0, job->conf->lights, job->conf->light_directions);
 	memcpy(whole.window, (double[4]){ 0, 0, own->fit.width, own->fit.height }, sizeof whole.window);
 	whole.scale = 1;
 	struct scene_view view = shot_view(&whole);
@@ -96,8 +97,10 @@ static bool picture(struct job *job, const struct asked *a, const char *rel, int
 		memset(view.slip, 0, sizeof view.slip);
 	}
 	struct image rgba = scene_render(&job->scene, &view, &light, &job->count);
+	shot_colour(&rgba, &job->scene);
 	bool ok = pictures_save(job, 1, &(struct picture_out){ rel, &rgba }, n, in, err);
 	image_free(&rgba);
+	envmap_free(&mirror);
 	envmap_free(&env);
 	return ok;
 }

@@ -94,12 +94,26 @@ static bool turntable(struct job *job, struct err *err)
 	return ok;
 }
 
+/* As the photograph's light, whose lamps the cornea mirrors, colours it. */
+static struct image traced_in_photo(struct job *job, const struct shot *shot, struct scene_view *view)
+{
+	struct envmap lamps = { 0 };
+	if (shot->n_lamps)
+		lamps = shot_mirrored(&shot->lamps, &job->scene);
+	// The even reflection of the room is part of the texture; only the lamps, which the texture leaves out, are mirrored.
+	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &lamps : 0, job->conf->lights, job->conf->light_directions);
+	struct image rgba = trace(job, view, &light);
+	shot_colour(&rgba, &job->scene);
+	envmap_free(&lamps);
+	return rgba;
+}
+
 /* The same view by the fitted model alone: what the photograph's own detail hides. */
-static struct shot_difference by_model(struct job *job, const struct shot *shot, struct scene_view *view, const struct scene_lighting *light)
+static struct shot_difference by_model(struct job *job, const struct shot *shot, struct scene_view *view)
 {
 	const double detail = job->scene.conf.detail;
 	scene_set_detail(&job->scene, 0);
-	struct image rgba = trace(job, view, light), seen = studio_on_grey(&rgba, 1);
+	struct image rgba = traced_in_photo(job, shot, view), seen = studio_on_grey(&rgba, 1);
 	const struct shot_difference out = compare_numbers(&job->scene, shot, &seen);
 	scene_set_detail(&job->scene, detail);
 	image_free(&rgba);
@@ -144,13 +158,11 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 		return true;
 	if (!job_ready(job, err) || !shot_ready(job, shot, err))
 		return false;
-	// The even reflection of the room is part of the texture; only the lamps, which the texture leaves out, are mirrored.
-	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &shot->lamps : 0, job->conf->lights, job->conf->light_directions);
 	struct scene_view view = shot_view(shot);
 	struct shot_difference differs;
-	struct image rgba = trace(job, &view, &light), seen = studio_on_grey(&rgba, 1);
+	struct image rgba = traced_in_photo(job, shot, &view), seen = studio_on_grey(&rgba, 1);
 	struct image beside = compare_shot(&differs, &job->scene, shot, &seen);
-	const struct shot_difference model = by_model(job, shot, &view, &light);
+	const struct shot_difference model = by_model(job, shot, &view);
 	json_t *figures = figures_of(job, shot, &differs, &model);
 	const struct picture_out out[] = { { png, &seen }, { compare, &beside }, { exr, &rgba } };
 	bool ok = pictures_save(job, job->conf->exr ? 3 : 2, out, n, in, err)

@@ -6,6 +6,7 @@
 #include "anatomy/light.h"
 #include "base/file.h"
 #include "base/mem.h"
+#include "draw/eye/tint.h"
 #include "draw/photo/reference.h"
 #include "draw/studio.h"
 #include "render/render.h"
@@ -107,7 +108,10 @@ bool job_ready(struct job *job, struct err *err)
 		return true;
 	if (!shot_ready(job, reference, err) || !job_studio(job, err))
 		return false;
-	if (sclera_of_photo(conf.sclera_rgb, reference))
+	double white[3];
+	if (!scene_white(white, stage_path(job->stage, "%s", job->in[3]), err))
+		return false;
+	if (sclera_of_photo(conf.sclera_rgb, reference, white))
 		shot_unlight(conf.sclera_rgb, reference, job->eye, conf.sclera_radius);
 	else
 		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);

@@ -72,6 +72,10 @@ bool shot_ready(struct job *job, struct shot *shot, struct err *err);
 void shot_done(struct shot *shot);
 void shots_free(struct job *job);
 
+/* Pictures in the photograph's own colours: drawn with what the cornea mirrors over its white, and multiplied by that at last. envmap_free. */
+struct envmap shot_mirrored(const struct envmap *mirror, const struct scene *scene);
+void shot_colour(struct image *rgba, const struct scene *scene);
+
 /* Rows of an environment's map: more than the pictures resolve. */
 int env_height(const struct render_conf *conf);
 

@@ -10,6 +10,7 @@
 #include "image/photo/photo.h"
 #include "render/render.h"
 #include "tissue/light/sclera_light.h"
+#include "tissue/pigment/white.h"
 
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err)
 {
@@ -94,6 +95,18 @@ static bool shading_of(struct sclera_light *light, const struct job *job, const 
 	return found;
 }
 
+/* Whether the sclera or a card tells the photographs' white. */
+static bool white_told(const struct job *job)
+{
+	struct err unread = { 0 };
+	const char *path = stage_path(job->stage, "%s/pigment.json", job->names->iris);
+	json_t *root = file_exists(path) ? json_read(path, 1 << 22, &unread) : 0;
+	const char *source = json_string_value(json_object_get(json_object_get(root, "white"), "source"));
+	const bool told = source && (!strcmp(source, white_names[WHITE_SCLERA]) || !strcmp(source, white_names[WHITE_CARD]));
+	json_decref(root);
+	return told;
+}
+
 /* The light of a decoded photograph: told, or estimated from it. Where the cornea mirrors no lamp it is the light that pigment was fitted under,
  * or else another model would be shown than the one that was fitted. */
 static bool light(struct job *job, struct shot *shot, struct err *err)
@@ -103,7 +116,7 @@ static bool light(struct job *job, struct shot *shot, struct err *err)
 	if (job->conf->polarised)
 		shot->env = light_studio(rows);
 	else
-		shot->env = light_of_photo(shot, job->eye, rows, &shot->lamps, &shot->n_lamps);
+		shot->env = light_of_photo(shot, job->eye, rows, white_told(job), &shot->lamps, &shot->n_lamps);
 	if (job->conf->light) {
 		envmap_free(&shot->env);
 		if (!light_load(&shot->env, &job->light_level, job->stage, "light.environment", job->conf->light, err))
@@ -142,4 +155,17 @@ void shots_free(struct job *job)
 	for (int i = 0; i < job->n_shots; i++)
 		shot_done(&job->shots[i]);
 	free(job->shots);
+}
+
+struct envmap shot_mirrored(const struct envmap *mirror, const struct scene *scene)
+{
+	const double *w = scene->photo_white;
+	return envmap_tinted(mirror, (double[3]){ 1 / w[0], 1 / w[1], 1 / w[2] });
+}
+
+void shot_colour(struct image *rgba, const struct scene *scene)
+{
+	for (long i = 0; i < (long)rgba->width * rgba->height; i++)
+		for (int c = 0; c < 3; c++)
+			rgba->px[i * rgba->channels + c] *= (float)scene->photo_white[c];
 }

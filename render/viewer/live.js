@@ -133,7 +133,9 @@ class Live extends Leaving {
 		};
 		const jitter = n ? [halton(n, 2) - 0.5, halton(n, 3) - 0.5] : [0, 0];
 		this.scene.add(this.state(), { ...this.view(), closure: this.eyes.closure }, preset, jitter);
-		this.scene.show(w, h, this.beside ? 1 : (this.mode === "face" ? data.face.gain : this.eye.eye.exposure) * 2 ** this.values.exposure, false, this.values.tone);
+		const exposure = this.beside ? 1 : (this.mode === "face" ? data.face.gain : this.eye.eye.exposure) * 2 ** this.values.exposure;
+		const white = this.mode !== "face" && (this.eye.lights[this.light] || {}).white || [1, 1, 1];  // of the photograph, in its own light
+		this.scene.show(w, h, white.map(v => exposure * v), false, this.values.tone);
 	}
 
 	/* How long a picture takes, from asking for it until the driver says it is done. */

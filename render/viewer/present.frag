@@ -1,6 +1,7 @@
 // The picture as it is seen: on a photographer's grey (lib/draw/studio.c), encoded as sRGB, without noise (bare) for measuring.
 uniform sampler2D picture;
-uniform float gain, bare, tone;
+uniform vec3 gain;
+uniform float bare, tone;
 uniform vec2 size;
 out vec4 shown;
 

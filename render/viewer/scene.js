@@ -300,6 +300,6 @@ class EyeScene {
 
 	show(width, height, gain, bare, tone) {
 		this.g.target(null, width, height);
-		this.g.draw(this.present, { picture: this.target, gain, bare: bare ? 1 : 0, tone: tone || 0, size: [width, height] });
+		this.g.draw(this.present, { picture: this.target, gain: [0, 1, 2].map(c => Array.isArray(gain) ? gain[c] : gain), bare: bare ? 1 : 0, tone: tone || 0, size: [width, height] });
 	}
 }

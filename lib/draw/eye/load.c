@@ -61,6 +61,18 @@ static bool load_colour(struct scene *s, const char *path, int most, struct err 
 	return ok;
 }
 
+/* Takes the colour of the photographs' light off theirs. */
+static bool balance(struct scene *s, const char *pigment, struct err *err)
+{
+	struct scene_level *l = &s->level[0];
+	if (!scene_white(s->photo_white, pigment, err))
+		return false;
+	for (long i = 0; i < (long)l->n * l->n; i++)
+		for (int c = 0; c < 3; c++)
+			l->colour[4 * i + c] /= (float)s->photo_white[c];
+	return true;
+}
+
 static bool load_relief(struct scene *s, const char *path, struct err *err)
 {
 	struct scene_level *l = &s->level[0];
@@ -136,10 +148,10 @@ static bool load_refraction(struct scene *s, const char *path, struct err *err)
 bool scene_load(struct scene *s, const struct scene_files *files, const struct eye *eye, const struct scene_conf *conf,
                 struct err *err)
 {
-	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1 };
+	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1, .photo_white = { 1, 1, 1 } };
 	scene_geometry(s);
 	load_pupil(s, files->texture_json);
-	if (!load_colour(s, files->texture, conf->map_size, err) || !load_relief(s, files->relief, err)
+	if (!load_colour(s, files->texture, conf->map_size, err) || !balance(s, files->pigment, err) || !load_relief(s, files->relief, err)
 	    || !load_tissue(s, files->pigment, err) || !load_refraction(s, files->refraction, err)) {
 		scene_free(s);
 		return false;

@@ -52,40 +52,35 @@ static void factor(float out[3], const struct table *t, double ln, double stroma
 	}
 }
 
-static void paint(struct scene *s, const struct melanin_map *map, const double white[3])
+static void paint(struct scene *s, const struct melanin_map *map)
 {
-	enum { EVEN = 2 };  // nodes of a tint that is the same everywhere
-	int n = map->n ? map->n : EVEN;
+	int n = map->n;
 	const struct scene_level *l = &s->level[s->n_levels - 1];
 	double ln = log(fmax(s->tissue.layer[TISSUE_ABL].melanin, 1e-6));
 	struct table *t = mem_new(1, sizeof *t);
-	if (map->n)
-		table_make(t, s, map);
+	table_make(t, s, map);
 	s->tint = image_new(n, n, 3);
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
 			double u = (2 * (x + 0.5) / n - 1) * s->extent, v = (2 * (y + 0.5) / n - 1) * s->extent;
 			float *rgb = image_at(&s->tint, x, y), stroma = channel_at(l->relief, l->n, l->per_mm, (float)u, (float)v, 2, 1);
-			rgb[0] = rgb[1] = rgb[2] = 1;
-			if (map->n)
-				factor(rgb, t, ln + melanin_at(map, u, v), stroma);
-			for (int c = 0; c < 3; c++)
-				rgb[c] *= (float)white[c];
+			factor(rgb, t, ln + melanin_at(map, u, v), stroma);
 		}
 	free(t);
 }
 
-/* The photograph's white over its green: that of the sclera or card, times its error as fitted; 1 where the file does not tell it. False, err
- * set, when the file is damaged. */
-static bool white_of(double out[3], const char *path, struct err *err)
+bool scene_white(double out[3], const char *path, struct err *err)
 {
+	const double most = 20;
+	char reason[256];
+	out[0] = out[1] = out[2] = 1;
+	if (!path || !file_exists(path) || tissue_without(reason, path))
+		return true;
 	json_t *root = json_read(path, 1 << 22, err);
 	bool read = root, told = json_object_get(root, "white");
 	json_decref(root);
-	out[0] = out[1] = out[2] = 1;
 	if (!read || !told)
 		return read;
-	const double most = 20;
 	double x[PIGMENT_N];
 	struct pigment_conf conf = { 0 };
 	if (!pigment_load(x, out, &conf, path, err))
@@ -101,14 +96,13 @@ static bool white_of(double out[3], const char *path, struct err *err)
 
 bool scene_tint_make(struct scene *s, const char *path, struct err *err)
 {
-	double white[3];
 	char reason[256];
 	if (!path || !file_exists(path) || tissue_without(reason, path))
 		return true;
 	struct melanin_map *map = mem_new(1, sizeof *map);
-	bool ok = white_of(white, path, err) && melanin_load(map, path, err);
-	if (ok)
-		paint(s, map, white);
+	bool ok = melanin_load(map, path, err);
+	if (ok && map->n)
+		paint(s, map);
 	free(map);
 	return ok;
 }

@@ -85,7 +85,20 @@ struct envmap light_sky(int height)
 	return env;
 }
 
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n)
+/* Takes off the lamps what colour they have together; their differences stay. */
+static void even_hue(int n, struct envmap_box boxes[])
+{
+	double sum[3] = { 0 };
+	for (int i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++)
+			sum[c] += boxes[i].rgb[c] * boxes[i].half[0] * boxes[i].half[1];
+	const double mean = 0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2];
+	for (int i = 0; i < n; i++)
+		for (int c = 0; c < 3; c++)
+			boxes[i].rgb[c] *= sum[c] > 0 ? mean / sum[c] : 1;
+}
+
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, bool balanced, struct envmap *lamps, int *n)
 {
 	static const double dark[3] = { 0 };
 	struct glint glints[GLINTS_MAX];
@@ -98,6 +111,8 @@ struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int
 	*lamps = envmap_room(height, dark, dark, 1, *n, boxes);
 	if (!*n)
 		return light_studio(height);
+	if (balanced)
+		even_hue(*n, boxes);
 	// The room gives the rest of the light, at least a fifth.
 	double level = envmap_level(lamps), room = fmax(1 - level, 0.2 * fmax(level, 1));
 	struct envmap env = envmap_room(height, (double[3]){ 1.3 * room, 1.3 * room, 1.3 * room },

@@ -39,18 +39,19 @@ double ellipse_radius(const struct ellipse *e, double x, double y);
  * the light. Where the cornea mirrors no lamp, the studio.
  * shot    decoded; eye: its cornea
  * height  rows of the maps
- * lamps   out: the lamps alone, black elsewhere; n: how many
+ * balanced  the photograph's white is told: the light is over it. Else its lamps' colours, as far as they are not clipped, stand for it
+ * lamps   out, in the photograph's colours: the lamps alone, black elsewhere; n: how many
  * Returns the whole light, of the level of envmap_normalise. envmap_free both. */
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, struct envmap *lamps, int *n);
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, bool balanced, struct envmap *lamps, int *n);
 /* A photographer's studio: key, fill and a strip from above. envmap_free. */
 struct envmap light_studio(int height);
 /* Other surroundings of the same level: a room with daylight from a window of four panes at the left; an overcast sky. */
 struct envmap light_window(int height);
 struct envmap light_sky(int height);
 
-/* The mean colour of the sclera beside the limbus in a decoded photograph, under its light. Returns false, rgb unset, when
+/* The mean colour of the sclera beside the limbus in a decoded photograph, under its light, over its white. Returns false, rgb unset, when
  * lids leave too little of it. */
-bool sclera_of_photo(double rgb[3], const struct shot *shot);
+bool sclera_of_photo(double rgb[3], const struct shot *shot, const double white[3]);
 
 /* How a rendering differs from its photograph where the iris texture has weight: off pupil, lids and reflections. */
 struct shot_difference {

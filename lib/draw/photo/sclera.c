@@ -26,7 +26,7 @@ static bool is_white(const float p[3], float lum)
 }
 
 /* Candidates beside the limbus, by how little red stands above blue; returns how many. */
-static long candidates(struct white *list, const struct shot *shot, long *ring)
+static long candidates(struct white *list, const struct shot *shot, const double white[3], long *ring)
 {
 	const struct image *m = &shot->image;
 	long n = 0;
@@ -35,7 +35,7 @@ static long candidates(struct white *list, const struct shot *shot, long *ring)
 		for (int x = 0; x < m->width; x++) {
 			double r = ellipse_radius(&shot->fit.limbus, shot->window[0] + (x + 0.5) * shot->scale,
 			                          shot->window[1] + (y + 0.5) * shot->scale);
-			const float *p = image_at(m, x, y);
+			const float *own = image_at(m, x, y), p[3] = { own[0] / (float)white[0], own[1] / (float)white[1], own[2] / (float)white[2] };
 			if (r < 1.15 || r > 1.6)
 				continue;
 			++*ring;
@@ -45,11 +45,11 @@ static long candidates(struct white *list, const struct shot *shot, long *ring)
 	return n;
 }
 
-bool sclera_of_photo(double rgb[3], const struct shot *shot)
+bool sclera_of_photo(double rgb[3], const struct shot *shot, const double white[3])
 {
 	long ring, n;
 	struct white *list = mem_array((size_t)shot->image.width * (size_t)shot->image.height, sizeof *list);
-	n = candidates(list, shot, &ring);
+	n = candidates(list, shot, white, &ring);
 	bool enough = n > 200 && n > ring / 20;
 	if (enough) {
 		// The less red half excludes skin and vessels; of it, the brighter half without the brightest tenth excludes the lids'

@@ -157,6 +157,19 @@ static json_t *elsewhere(const char *name, struct envmap (*make)(int height), co
 	return out;
 }
 
+/* The photograph's light, and the factor that its colour puts on pictures in it. */
+static json_t *photographed(const struct shot *shot, const struct web_source *source, struct err *err)
+{
+	const double *w = source->scene->photo_white;
+	struct envmap lamps = { 0 };
+	if (shot->n_lamps)
+		lamps = envmap_tinted(&shot->lamps, (double[3]){ 1 / w[0], 1 / w[1], 1 / w[2] });
+	json_t *out = web_light("As photographed", &shot->env, shot->n_lamps ? &lamps : 0, source, err);
+	json_object_set_new(out, "white", json_numbers(3, w));
+	envmap_free(&lamps);
+	return out;
+}
+
 static json_t *part_make(enum part part, const struct web_source *source, struct err *err)
 {
 	const struct scene *s = source->scene;
@@ -168,7 +181,7 @@ static json_t *part_make(enum part part, const struct web_source *source, struct
 	case RELIEF: return web_map_relief(l, err);
 	case COLOUR: return web_map_colour(l, err);
 	case MODEL: return l->model ? web_map_model(s, err) : 0;
-	case PHOTOGRAPHED: return shot ? web_light("As photographed", &shot->env, shot->n_lamps ? &shot->lamps : 0, source, err) : 0;
+	case PHOTOGRAPHED: return shot ? photographed(shot, source, err) : 0;
 	case STUDIO: return web_light("Studio", source->studio, source->studio, source, err);
 	case WINDOW: return elsewhere("Window", light_window, source, err);
 	case SKY: return elsewhere("Overcast sky", light_sky, source, err);

@@ -187,6 +187,28 @@ void envmap_scale(struct envmap *env, double k)
 		}
 }
 
+static struct image tinted(const struct image *from, const double k[3])
+{
+	struct image out = image_new(from->width, from->height, from->channels);
+	for (long i = 0; i < (long)from->width * from->height; i++)
+		for (int c = 0; c < from->channels; c++)
+			out.px[i * from->channels + c] = from->px[i * from->channels + c] * (float)(c < 3 ? k[c] : 1);
+	return out;
+}
+
+struct envmap envmap_tinted(const struct envmap *env, const double k[3])
+{
+	// a bend is a sum over the channels: no greater than the largest factor makes it
+	const double most = fmax(k[0], fmax(k[1], k[2])), bend[3] = { most, most, most };
+	struct envmap out = { tinted(&env->map, k), tinted(&env->sharp, k), tinted(&env->rough, k), tinted(&env->bend, bend), { { 0 } }, { { 0 } } };
+	for (int i = 0; i < 9; i++)
+		for (int c = 0; c < 3; c++) {
+			out.sh[i][c] = env->sh[i][c] * k[c];
+			out.quadric[i][c] = env->quadric[i][c] * (float)k[c];
+		}
+	return out;
+}
+
 void envmap_normalise(struct envmap *env)
 {
 	double level = envmap_level(env);

@@ -55,6 +55,9 @@ double envmap_level(const struct envmap *env);
 /* Multiplies all radiances by k. */
 void envmap_scale(struct envmap *env, double k);
 
+/* A copy of which each channel is multiplied by its own factor. envmap_free. */
+struct envmap envmap_tinted(const struct envmap *env, const double k[3]);
+
 /* Scales the map so that this level is 1. */
 void envmap_normalise(struct envmap *env);
 
