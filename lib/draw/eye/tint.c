@@ -71,7 +71,7 @@ static void paint(struct scene *s, const struct melanin_map *map)
 
 bool scene_white(double out[3], const char *path, struct err *err)
 {
-	const double most = 20;
+	const double most = 20, brightest = 100;
 	char reason[256];
 	out[0] = out[1] = out[2] = 1;
 	if (!path || !file_exists(path) || tissue_without(reason, path))
@@ -87,11 +87,11 @@ bool scene_white(double out[3], const char *path, struct err *err)
 		return false;
 	const double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) }, green = out[1];
 	for (int c = 0; c < 3; c++) {
-		out[c] *= gain[c] / green;
-		if (!(out[c] >= 1 / most && out[c] <= most))
-			return err_set(err, "%s: white: %g of its green: must be in [%g, %g]", path, out[c], 1 / most, most);
+		out[c] *= gain[c];
+		if (!(out[c] / green >= 1 / most && out[c] / green <= most))
+			return err_set(err, "%s: white: %g of its green: must be in [%g, %g]", path, out[c] / green, 1 / most, most);
 	}
-	return true;
+	return (green >= 1 / brightest && green <= brightest) || err_set(err, "%s: white: a green of %g: must be in [%g, %g]", path, green, 1 / brightest, brightest);
 }
 
 bool scene_tint_make(struct scene *s, const char *path, struct err *err)

@@ -9,7 +9,7 @@
  * where there are no pigments. Returns false, err set, when the file is damaged. */
 bool scene_tint_make(struct scene *scene, const char *pigment, struct err *err);
 
-/* The colour of white in the photographs over its green: that of the sclera or card, times its error as fitted; 1 where pigment.json does not
+/* The colour in the photographs of white that faces the camera: by the sclera or a card, times its error as fitted; 1 where pigment.json does not
  * tell it, or is not there. False, err set, when the file is damaged. */
 bool scene_white(double out[3], const char *pigment, struct err *err);
 
