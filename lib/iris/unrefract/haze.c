@@ -8,18 +8,21 @@
 static const double usual = 4;     // the sclera's light over the iris'
 static const double beside = 0.7;  // of the way from pupil to limbus: iris that no limbus of a usable photograph reaches
 static const double most = 0.25;   // of the limbus' radius: more is no blur but another edge
+static const double strays = 6;    // sigmas of the step: light strays no farther
+static const double rises = 3;     // limbus_haze that many times over: a rise towards the limbus that counts
 
-/* The iris' typical light in a channel; NAN where none was seen. */
-static double light_of(const struct unrefract_view *view, const struct sheet *sheet, int channel)
+/* The iris' typical light over its radius, by channel; NAN where none was seen. */
+static void profile(struct rings out[3], const struct unrefract_view *view, const struct sheet *sheet)
 {
 	const struct unrefract_survey *s = &view->survey;
 	size_t n = (size_t)s->size * (size_t)s->size;
 	float *plane = mem_array(n, sizeof *plane);
-	for (size_t i = 0; i < n; i++)
-		plane[i] = s->rgb[3 * i + (size_t)channel];
-	const struct rings rings = rings_of(plane, s->weight, sheet, false, 0);
+	for (size_t c = 0; c < 3; c++) {
+		for (size_t i = 0; i < n; i++)
+			plane[i] = s->rgb[3 * i + c];
+		out[c] = rings_of(plane, s->weight, sheet, false, 0);
+	}
 	free(plane);
-	return rings_median(&rings, beside);
 }
 
 /* z with Phi(-z) = p. */
@@ -33,14 +36,62 @@ static double upper_quantile(double p)
 	return high;
 }
 
-double unrefract_haze(const struct unrefract_view *view, const struct sheet *sheet, const struct unrefract_conf *conf)
+/* Sigma of the step and its place, mm. */
+static double sigma_of(const struct unrefract_view *view)
 {
-	const struct fit *fit = view->fit;
+	return hypot(view->fit->edge_sigma_px, fmax(view->fit->ellipse_sigma[2], 0)) / iris_view_px_per_mm(&view->iris);
+}
+
+/* How far the blurred step reaches. */
+static double by_step(const struct rings rings[3], const struct unrefract_view *view, const struct unrefract_conf *conf)
+{
 	double ratio = view->white.found ? 0 : usual;
 	for (int c = 0; c < 3 && view->white.found; c++) {
-		const double own = light_of(view, sheet, c);
+		const double own = rings_median(&rings[c], beside);
 		ratio = own > 0 ? fmax(ratio, view->white.sclera[c] / own) : ratio;
 	}
-	const double place = fmax(fit->ellipse_sigma[2], 0), sigma = hypot(fit->edge_sigma_px, place) / iris_view_px_per_mm(&view->iris);
-	return fmin(sigma * upper_quantile(fmin(conf->haze / fmax(ratio, 1e-6), 0.5)), most * sheet->limbus);
+	return sigma_of(view) * upper_quantile(fmin(conf->haze / fmax(ratio, 1e-6), 0.5));
+}
+
+static double from_limbus(int ring, const struct sheet *sheet)
+{
+	return (1 - (ring + 0.5) / SHEET_RINGS) * (sheet->limbus - sheet->pupil.r);
+}
+
+/* Whether every channel is brighter than `share` over its darkest ring. */
+static bool brighter(const struct rings rings[3], const double darkest[3], int ring, double share)
+{
+	for (int c = 0; c < 3; c++)
+		if (!(rings[c].median[ring] > (1 + share) * darkest[c]))
+			return false;
+	return true;
+}
+
+/* Light that strays farther than a normal distribution's, in the limbus' tissue and the lens: irises grow darker towards their root, so that what
+ * grows brighter in every colour, up to where the step's reach begins, is the sclera's. 0: none does. */
+static double by_rise(const struct rings rings[3], const struct sheet *sheet, double step, double farthest, const struct unrefract_conf *conf)
+{
+	double darkest[3] = { INFINITY, INFINITY, INFINITY };
+	int outer = SHEET_RINGS - 1, inner = outer;
+	while (outer > 0 && from_limbus(outer, sheet) < step)
+		outer--;
+	for (int i = outer; i >= 0 && from_limbus(i, sheet) < farthest; i--) {
+		inner = i;
+		for (int c = 0; c < 3; c++)
+			darkest[c] = fmin(darkest[c], rings[c].median[i]);
+	}
+	if (!brighter(rings, darkest, outer, rises * conf->haze))
+		return 0;
+	int i = outer;
+	while (i > inner && brighter(rings, darkest, i, conf->haze))
+		i--;
+	return from_limbus(i, sheet);
+}
+
+double unrefract_haze(const struct unrefract_view *view, const struct sheet *sheet, const struct unrefract_conf *conf)
+{
+	struct rings rings[3];
+	profile(rings, view, sheet);
+	const double step = by_step(rings, view, conf), farthest = fmin(most * sheet->limbus, strays * sigma_of(view));
+	return fmin(fmax(step, by_rise(rings, sheet, step, farthest, conf)), most * sheet->limbus);
 }

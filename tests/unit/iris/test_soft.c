@@ -1,5 +1,6 @@
 /* What people's photographs have and rendered ones have not: a limbus that is soft, an iris a tenth as bright as its sclera, a pupil that does
- * not show. Pictures in closed form: an iris of one colour, I + (S - I) Phi(d / sigma) across its limbus.
+ * not show. Pictures in closed form: an iris of one colour, I + (S - I) Phi(d / sigma) across its limbus, a share of it with 2.5 times the sigma, as
+ * light strays in the tissue.
  */
 #include "base/mem.h"
 #include "image/photo/photo.h"
@@ -24,12 +25,13 @@ static struct fit front(double sigma, double pupil)
 	return fit;
 }
 
-static struct photo painted(const double iris[3], double sigma, double pupil, double dark)
+static struct photo painted(const double iris[3], double sigma, double stray, double pupil, double dark)
 {
 	struct photo photo = { .width = WIDE, .height = HIGH, .bits = 16, .rgb = mem_array(3 * WIDE * HIGH, sizeof(uint16_t)) };
 	for (int y = 0; y < HIGH; y++)
 		for (int x = 0; x < WIDE; x++) {
-			const double r = hypot(x + 0.5 - WIDE / 2., y + 0.5 - HIGH / 2.), white = erfc((radius - r) / (M_SQRT2 * sigma)) / 2;
+			const double r = hypot(x + 0.5 - WIDE / 2., y + 0.5 - HIGH / 2.), off = (radius - r) / (M_SQRT2 * sigma);
+			const double white = (1 - stray) * erfc(off) / 2 + stray * erfc(off / 2.5) / 2;
 			for (int c = 0; c < 3; c++) {
 				const double value = (r < pupil ? dark : 1) * iris[c] * (1 - white) + sclera[c] * white;
 				photo.rgb[3 * (y * WIDE + x) + c] = (uint16_t)(65535 * srgb_from_linear((float)value) + 0.5);
@@ -39,10 +41,10 @@ static struct photo painted(const double iris[3], double sigma, double pupil, do
 }
 
 /* How much too bright the texture is at worst where it is said to be seen, and anywhere beside the limbus once filled; share that is seen. */
-static double brightest(double *filled, double *seen, const double iris[3], double sigma, const struct unrefract_conf *conf)
+static double brightest(double *filled, double *seen, const double iris[3], double sigma, double stray, const struct unrefract_conf *conf)
 {
 	const struct fit fit = front(sigma, 40);
-	struct photo photo = painted(iris, sigma, 40, 0.1);
+	struct photo photo = painted(iris, sigma, stray, 40, 0.1);
 	struct unrefract_view view = { .name = "soft", .white = { .found = true, .rgb = { 0.83, 0.91, 0.94 }, .sclera = { sclera[0], sclera[1], sclera[2] } } };
 	struct err err = { 0 };
 	double worst = *filled = 0;
@@ -73,22 +75,22 @@ static double brightest(double *filled, double *seen, const double iris[3], doub
 static void no_sclera_in_the_iris(void **state)
 {
 	(void)state;
-	static const double colour[][3] = { { 0.05, 0.035, 0.025 }, { 0.2, 0.19, 0.16 } }, sigmas[] = { 0.01, 0.045 };
+	static const double colour[][3] = { { 0.05, 0.035, 0.025 }, { 0.2, 0.19, 0.16 } }, sigmas[] = { 0.01, 0.045, 0.04 };
 	const struct unrefract_conf conf = iris_unrefract_conf("review");
 	struct unrefract_conf without = conf;
 	without.haze = 0.5;
 	for (int k = 0; k < 2; k++)
-		for (int s = 0; s < 2; s++) {
+		for (int s = 0; s < 3; s++) {
 			double filled, seen, was, all;
-			const double kept = brightest(&filled, &seen, colour[k], sigmas[s] * radius, &conf);
-			brightest(&was, &all, colour[k], sigmas[s] * radius, &without);
+			const double stray = s == 2 ? 0.15 : 0, kept = brightest(&filled, &seen, colour[k], sigmas[s] * radius, stray, &conf);
+			brightest(&was, &all, colour[k], sigmas[s] * radius, stray, &without);
 			print_message("iris %d, sigma %.3f: %.1f %% too bright where seen, %.1f %% anywhere, %.1f %% without; seen %.0f %% for %.0f\n", k, sigmas[s], 100 * kept,
 			              100 * filled, 100 * was, 100 * seen, 100 * all);
 			// twice what is allowed, as weights fall over some width
 			assert_true(kept < 2 * conf.haze);
 			assert_true(filled < 3 * conf.haze);
-			assert_true(seen > 0.7 * all);
-			if (s == 1)
+			assert_true(seen > 0.65 * all);
+			if (s > 0)
 				assert_true(was > 2 * filled);
 		}
 }
@@ -117,7 +119,7 @@ static struct circle pupil_of(double *sigma, double shows, double dark, double m
 	static const double iris[3] = { 0.05, 0.035, 0.025 };
 	const struct unrefract_conf conf = iris_unrefract_conf("draft");
 	const struct fit fit = front(5, measured);
-	struct photo photo = painted(iris, 5, shows, dark);
+	struct photo photo = painted(iris, 5, 0, shows, dark);
 	struct unrefract_view view = { .name = "pupil" };
 	struct err err = { 0 };
 	assert_true(unrefract_survey(&view, &photo, &fit, evidence, fellow, &eye, &conf, &err));
@@ -159,7 +161,7 @@ static void fellow_pupil(void **state)
 	double none, sigma;
 	const struct circle truth = pupil_of(&none, 66, 0.1, 66, 0, 0);
 	const struct fit shown = front(5, 66), hidden = front(5, 0);
-	struct photo photo = painted(iris, 5, 66, 0.1);
+	struct photo photo = painted(iris, 5, 0, 66, 0.1);
 	struct pupil_curve curve;
 	struct err err = { 0 };
 	assert_true(unrefract_pupil(&curve, &photo, &shown, 0, &eye, &conf, &err) && curve.known);
@@ -171,7 +173,7 @@ static void fellow_pupil(void **state)
 	photo_free(&photo);
 	// beyond the photograph
 	struct fit out = hidden;
-	struct photo other = painted(iris, 5, 66, 0.1);
+	struct photo other = painted(iris, 5, 0, 66, 0.1);
 	out.cam_from_eye[0][3] = 500;
 	assert_false(unrefract_pupil(&curve, &other, &out, 0, &eye, &conf, &err));
 	assert_false(curve.known);
