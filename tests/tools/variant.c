@@ -2,7 +2,7 @@
  *
  *     variant KIND IN OUT
  * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half, turned,
- * warm (lamps' light, not balanced away), cool (the sky's), dim (less light, without colour),
+ * warm (lamps' light, not balanced away), cool (the sky's), dim (as bright as these, without colour),
  * middle (its inner quarter: the same lens nearer up), blurred, bent, exif (a Canon EOS 600D with 100 mm, and no more)
  */
 #include <math.h>

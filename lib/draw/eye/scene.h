@@ -83,7 +83,7 @@ struct scene {
 	struct scene_level level[SCENE_LEVELS];
 	struct image veins;           // map of the sclera (sclera.h): albedo RGB; share of green that vessels take
 	struct scene_texels white;    // the same
-	struct image tint;            // [n][n][3] over the maps' square: what melanin's map changes the model's colour by; empty: nothing
+	struct image tint;            // [n][n][3] over the maps' square: what melanin's map and white's error change the model's colour by; empty: nothing
 	struct image own_light;       // [n][n] over the maps' square: ln of what the photograph's own light did beyond the model (own_light.h); empty: nothing
 	float own_mean[3];            // mean direction of that light, eye's frame
 	struct image film;            // map of the sclera: slopes of the tear film's ripples
@@ -95,7 +95,7 @@ struct scene {
 	int n_nodes[2];               // of the march's quadrature, in each layer
 	double node[2][SCENE_NODES_MAX], weight[2][SCENE_NODES_MAX];  // on 0..1
 	float flat[3];                // the model's mean reflectance, for pictures without a march
-	double photo_white[3];        // white in the photographs: colours here are over it, reflectances in light without colour; pictures in the photograph's own
+	double photo_white[3];        // white in the photographs over its green: colours here are over it, as in light without colour; pictures in the photograph's own
 	                              // light are multiplied by it
 	float gain;                   // geometric mean of photograph over model: what the exposure leaves
 	double explained;             // share of the variance of ln colour that the model explains by itself

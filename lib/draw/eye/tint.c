@@ -52,28 +52,37 @@ static void factor(float out[3], const struct table *t, double ln, double stroma
 	}
 }
 
-static void paint(struct scene *s, const struct melanin_map *map)
+static void paint(struct scene *s, const struct melanin_map *map, const double error[3])
 {
-	int n = map->n;
+	enum { EVEN = 2 };  // nodes of a tint that is the same everywhere
+	int n = map->n ? map->n : EVEN;
 	const struct scene_level *l = &s->level[s->n_levels - 1];
 	double ln = log(fmax(s->tissue.layer[TISSUE_ABL].melanin, 1e-6));
 	struct table *t = mem_new(1, sizeof *t);
-	table_make(t, s, map);
+	if (map->n)
+		table_make(t, s, map);
 	s->tint = image_new(n, n, 3);
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
 			double u = (2 * (x + 0.5) / n - 1) * s->extent, v = (2 * (y + 0.5) / n - 1) * s->extent;
 			float *rgb = image_at(&s->tint, x, y), stroma = channel_at(l->relief, l->n, l->per_mm, (float)u, (float)v, 2, 1);
-			factor(rgb, t, ln + melanin_at(map, u, v), stroma);
+			rgb[0] = rgb[1] = rgb[2] = 1;
+			if (map->n)
+				factor(rgb, t, ln + melanin_at(map, u, v), stroma);
+			for (int c = 0; c < 3; c++)
+				rgb[c] *= (float)error[c];
 		}
 	free(t);
 }
 
-bool scene_white(double out[3], const char *path, struct err *err)
+/* White as measured, over its green, and its error as fitted, a factor that leaves green; 1 where pigment.json does not tell it, or is not there. False, err set, when
+ * the file is damaged. */
+static bool white_of(double white[3], double error[3], const char *path, struct err *err)
 {
-	const double most = 20, brightest = 100;
+	const double most = 20;
 	char reason[256];
-	out[0] = out[1] = out[2] = 1;
+	for (int c = 0; c < 3; c++)
+		white[c] = error[c] = 1;
 	if (!path || !file_exists(path) || tissue_without(reason, path))
 		return true;
 	json_t *root = json_read(path, 1 << 22, err);
@@ -83,26 +92,36 @@ bool scene_white(double out[3], const char *path, struct err *err)
 		return read;
 	double x[PIGMENT_N];
 	struct pigment_conf conf = { 0 };
-	if (!pigment_load(x, out, &conf, path, err))
+	if (!pigment_load(x, white, &conf, path, err))
 		return false;
-	const double gain[3] = { exp(x[PIGMENT_RED]), 1, exp(x[PIGMENT_BLUE]) }, green = out[1];
+	error[0] = exp(x[PIGMENT_RED]);
+	error[2] = exp(x[PIGMENT_BLUE]);
+	const double green = white[1];
 	for (int c = 0; c < 3; c++) {
-		out[c] *= gain[c];
-		if (!(out[c] / green >= 1 / most && out[c] / green <= most))
-			return err_set(err, "%s: white: %g of its green: must be in [%g, %g]", path, out[c] / green, 1 / most, most);
+		white[c] /= green;
+		const double ratio = error[c] * white[c];
+		if (!(ratio >= 1 / most && ratio <= most))
+			return err_set(err, "%s: white: %g of its green: must be in [%g, %g]", path, ratio, 1 / most, most);
 	}
-	return (green >= 1 / brightest && green <= brightest) || err_set(err, "%s: white: a green of %g: must be in [%g, %g]", path, green, 1 / brightest, brightest);
+	return true;
+}
+
+bool scene_white(double out[3], const char *pigment, struct err *err)
+{
+	double error[3];
+	return white_of(out, error, pigment, err);
 }
 
 bool scene_tint_make(struct scene *s, const char *path, struct err *err)
 {
+	double white[3], error[3];
 	char reason[256];
 	if (!path || !file_exists(path) || tissue_without(reason, path))
 		return true;
 	struct melanin_map *map = mem_new(1, sizeof *map);
-	bool ok = melanin_load(map, path, err);
-	if (ok && map->n)
-		paint(s, map);
+	bool ok = white_of(white, error, path, err) && melanin_load(map, path, err);
+	if (ok)
+		paint(s, map, error);
 	free(map);
 	return ok;
 }

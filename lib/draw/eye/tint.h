@@ -1,15 +1,15 @@
-/* tint: what the map of melanin changes the model's colour by, and the photograph's white. */
+/* tint: what the map of melanin and the error of the photograph's white change the model's colour by; and that white. */
 #ifndef DRAW_EYE_TINT_H
 #define DRAW_EYE_TINT_H
 #include "draw/eye/scene.h"
 
 /* Fills scene->tint from pigment.json: the tissue's reflectance with the melanin of each node over that with the iris' own, of stroma as
- * thick as it is there, at the middle of ways through a cornea. The march takes the iris' own melanin; this
+ * thick as it is there, at the middle of ways through a cornea, times the error of white as fitted. The march takes the iris' own melanin; this
  * factor, which other ways through the thin border layer change little, is put on its colour. The relief and tissue must be loaded. Empty
  * where there are no pigments. Returns false, err set, when the file is damaged. */
 bool scene_tint_make(struct scene *scene, const char *pigment, struct err *err);
 
-/* The colour in the photographs of white that faces the camera: by the sclera or a card, times its error as fitted; 1 where pigment.json does not
+/* The colour of white in the photographs over its green, by the sclera or a card, as measured; 1 where pigment.json does not
  * tell it, or is not there. False, err set, when the file is damaged. */
 bool scene_white(double out[3], const char *pigment, struct err *err);
 
