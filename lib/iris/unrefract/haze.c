@@ -9,6 +9,7 @@ static const double usual = 4;     // the sclera's light over the iris'
 static const double beside = 0.7;  // of the way from pupil to limbus: iris that no limbus of a usable photograph reaches
 static const double most = 0.25;   // of the limbus' radius: more is no blur but another edge
 static const double strays = 6;    // sigmas of the step: light strays no farther
+static const double soft = 0.1;    // mm, sigma of the step: people's are 0.1 to 0.3; beside sharper ones what grows brighter is the iris
 static const double rises = 3;     // limbus_haze that many times over: a rise towards the limbus that counts
 
 /* The iris' typical light over its radius, by channel; NAN where none was seen. */
@@ -93,5 +94,6 @@ double unrefract_haze(const struct unrefract_view *view, const struct sheet *she
 	struct rings rings[3];
 	profile(rings, view, sheet);
 	const double step = by_step(rings, view, conf), farthest = fmin(most * sheet->limbus, strays * sigma_of(view));
-	return fmin(fmax(step, by_rise(rings, sheet, step, farthest, conf)), most * sheet->limbus);
+	const bool is_soft = view->fit->edge_sigma_px / iris_view_px_per_mm(&view->iris) > soft;
+	return fmin(fmax(step, is_soft ? by_rise(rings, sheet, step, farthest, conf) : 0), most * sheet->limbus);
 }
