@@ -58,3 +58,13 @@ double stats_mad(int n, double x[n], double center)
 		x[i] = fabs(x[i] - center);
 	return 1.4826 * stats_median(n, x);
 }
+
+double stats_normal_score(double p)
+{
+	double low = -6, high = 6;
+	for (int i = 0; i < 50; i++) {
+		double at = (low + high) / 2;
+		*(erfc(-at / M_SQRT2) / 2 < p ? &low : &high) = at;
+	}
+	return (low + high) / 2;
+}

@@ -11,4 +11,7 @@ double stats_median(int n, double x[n]);
 /* 1.4826 times the median absolute deviation from `center`, which estimates sigma of a normal distribution. x is overwritten. */
 double stats_mad(int n, double x[n], double center);
 
+/* Standard score below which a share p of a normal distribution lies, 0 <= p <= 1; within -6 .. 6. */
+double stats_normal_score(double p);
+
 #endif

@@ -3,9 +3,6 @@
 # in a studio's light, and its sclera none of the photograph's; from the photograph's place and in its light it looks as photographed.
 . "$(dirname "$0")/../lib/chain.sh"
 
-# least NAME VALUE BOUND
-least() { if awk -v a="$2" -v b="$3" 'BEGIN { exit !(a != "" && a <= b) }'; then pass "$1: $2 (at most $3)"; else fail "$1" "$2, must be at most $3"; fi; }
-
 for light in dim warm cool; do
 	new_capture "$root/$light"
 	"$VARIANT" $light "$PHOTO" "$root/$light/photos/$(basename "$PHOTO")"

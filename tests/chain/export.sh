@@ -76,9 +76,6 @@ else
 	skip "Khronos's validator on eye.glb" "no node, or npm could not install gltf-validator"
 fi
 
-# least NAME VALUE BOUND
-least() { if awk -v a="$2" -v b="$3" 'BEGIN { exit !(a != "" && a <= b) }'; then pass "$1: $2 (at most $3)"; else fail "$1" "$2, must be at most $3"; fi; }
-
 # against WHO DEG PICTURE EYE_DE GLINT_PX DETAIL_PX
 against() {
 	"${B:-build}/tests/tools/eye_compare" "$export/eye.json" "$2" "$export/reference_$(printf %02d "$2").exr" "$3" >"$root/says" 2>&1

@@ -44,6 +44,9 @@ bytes_of() { (cd "$1/work" && find . -type f ! -path './.made/*' ! -path './log/
 	sort -z | xargs -0 sha256sum); }
 times_of() { (cd "$1/work" && find . -type f ! -path './.made/*' -printf '%P %T@\n' | sort); }
 
+# least NAME VALUE BOUND: VALUE is a number, at most BOUND.
+least() { if awk -v a="$2" -v b="$3" 'BEGIN { exit !(a != "" && a <= b) }'; then pass "$1: $2 (at most $3)"; else fail "$1" "$2, must be at most $3"; fi; }
+
 # same NAME GOT WANT: equal; of longer texts the first lines that differ are shown.
 same() {
 	if [ "$2" = "$3" ]; then pass "$1"; return; fi

@@ -2,7 +2,8 @@
  * photograph's colour, and beside it the colour of the model in the light and view of the photograph. In any other light
  * and view the iris shows the photograph's colour times the ratio by which the model's colour changes:
  *     colour = gain tint model (texture / (gain tint model_of_photograph))^detail
- * with tint what the map of melanin makes of the model's colour (tint.h), and the texture's colours over the photograph's white.
+ * with tint what the map of melanin and the error of the photograph's white make of the model's colour (tint.h), and the texture's colours over
+ * that white.
  * Where the model is dark its channels change by very different factors; they are clamped to within conf.ratio_chroma of their mean,
  * so that noise of dark texels does not turn into colour. */
 #include <math.h>

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "math/stats.h"
 
 static const double usual = 4;     // the sclera's light over the iris'
 static const double beside = 0.7;  // of the way from pupil to limbus: iris that no limbus of a usable photograph reaches
@@ -26,17 +27,6 @@ static void profile(struct rings out[3], const struct unrefract_view *view, cons
 	free(plane);
 }
 
-/* z with Phi(-z) = p. */
-static double upper_quantile(double p)
-{
-	double low = 0, high = 8;
-	for (int i = 0; i < 40; i++) {
-		const double at = (low + high) / 2;
-		*(erfc(at / M_SQRT2) / 2 < p ? &high : &low) = at;
-	}
-	return high;
-}
-
 /* Sigma of the step and its place, mm. */
 static double sigma_of(const struct unrefract_view *view)
 {
@@ -51,7 +41,7 @@ static double by_step(const struct rings rings[3], const struct unrefract_view *
 		const double own = rings_median(&rings[c], beside);
 		ratio = own > 0 ? fmax(ratio, view->white.sclera[c] / own) : ratio;
 	}
-	return sigma_of(view) * upper_quantile(fmin(conf->haze / fmax(ratio, 1e-6), 0.5));
+	return -sigma_of(view) * stats_normal_score(fmin(conf->haze / fmax(ratio, 1e-6), 0.5));
 }
 
 static double from_limbus(int ring, const struct sheet *sheet)

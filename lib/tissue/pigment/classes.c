@@ -30,21 +30,10 @@ static struct pigment_class class_of(const struct pigment_texel *t, long n, doub
 	return out;
 }
 
-/* Standard score below which a share p of a normal distribution lies. */
-static double score(double p)
-{
-	double low = -6, high = 6;
-	for (int i = 0; i < 50; i++) {
-		double at = (low + high) / 2;
-		*(erfc(-at / M_SQRT2) / 2 < p ? &low : &high) = at;
-	}
-	return (low + high) / 2;
-}
-
-/* Its mean between the shares p and q. */
+/* A normal distribution's mean between the shares p and q. */
 static double score_between(double p, double q)
 {
-	double a = score(p), b = score(q);
+	double a = stats_normal_score(p), b = stats_normal_score(q);
 	return (exp(-a * a / 2) - exp(-b * b / 2)) / sqrt(2 * M_PI) / (q - p);
 }
 
