@@ -53,7 +53,7 @@ damage() {
 	case $((RANDOM % 3)) in
 	0) rm "$file" ;;
 	1) truncate -s "$(($(stat -c %s "$file") / 2))" "$file" ;;
-	2) printf 'X' | dd of="$file" bs=1 seek="$(($(stat -c %s "$file") / 2))" conv=notrunc 2>/dev/null ;;
+	2) scratch "$file" "$(($(stat -c %s "$file") / 2))" ;;
 	esac
 }
 

@@ -56,7 +56,7 @@ goes_on hit 120
 # A chunk that is damaged counts no more than one that is not there; the one before it does.
 capture hurt
 killed hurt
-printf 'X' | dd of="$root/hurt/work/skin/followed-0001.part" bs=1 seek=100000 conv=notrunc 2>/dev/null
+scratch "$root/hurt/work/skin/followed-0001.part" 100000
 goes_on hurt 40
 
 # Those of other settings, and those that came with a folder from elsewhere, are none of this run's.

@@ -25,7 +25,7 @@ spoil() { # KIND FILE
 	case $1 in
 	deleted) rm "$2" ;;
 	cut) truncate -s "$(($(stat -c %s "$2") / 2))" "$2" ;;
-	edited) printf 'X' | dd of="$2" bs=1 seek="$(($(stat -c %s "$2") / 2))" conv=notrunc 2>/dev/null ;;
+	edited) scratch "$2" "$(($(stat -c %s "$2") / 2))" ;;
 	esac
 }
 

@@ -155,7 +155,7 @@ mended=$(results "$root/again")
 rm "$kept/database.db"
 check "a deleted database: calibrate is to run" is_due "database.db is missing"
 picture=$(ls "$kept"/pictures/*.jpg | head -n 1)
-printf 'X' | dd of="$picture" bs=1 seek=5000 conv=notrunc 2>/dev/null
+scratch "$picture" 5000
 truncate -s 5000 "$kept/cloud.grid"
 run_calibrate "$root/again"
 same "database, a picture and the grid damaged: exit status" "$?" 0

@@ -47,6 +47,13 @@ times_of() { (cd "$1/work" && find . -type f ! -path './.made/*' -printf '%P %T@
 # least NAME VALUE BOUND: VALUE is a number, at most BOUND.
 least() { if awk -v a="$2" -v b="$3" 'BEGIN { exit !(a != "" && a <= b) }'; then pass "$1: $2 (at most $3)"; else fail "$1" "$2, must be at most $3"; fi; }
 
+# scratch FILE AT: another byte at that place than the one that is there, whichever that is.
+scratch() {
+	local byte=X
+	[ "$(tail -c +$(($2 + 1)) "$1" | head -c 1 | tr '\0' 0)" != X ] || byte=Y
+	printf %s "$byte" | dd of="$1" bs=1 seek="$2" conv=notrunc 2>/dev/null
+}
+
 # same NAME GOT WANT: equal; of longer texts the first lines that differ are shown.
 same() {
 	if [ "$2" = "$3" ]; then pass "$1"; return; fi
