@@ -21,6 +21,14 @@ const struct opt_each *capture_each(const struct opt_each_list *list, const char
 	return 0;
 }
 
+const struct capture_photo *capture_fellow(const struct capture *capture, const struct capture_photo *photo)
+{
+	for (int i = 0; i < capture->n_photos; i++)
+		if (capture->photos[i].eye != photo->eye && strcmp(capture->photos[i].file, photo->file) == 0)
+			return &capture->photos[i];
+	return 0;
+}
+
 const struct opt_each *capture_key(const struct opt_each_list *list, const struct capture_photo *photo)
 {
 	const struct opt_each *own = capture_each(list, photo->name);

@@ -48,6 +48,9 @@ bool capture_may_part(const struct capture *capture, int i);
 /* Photograph i becomes two, the left eye's and behind it the right one's. eyes[] and the photographs' numbers of eyes are made anew. */
 void capture_part(struct capture *capture, int i);
 
+/* The other eye of a photograph of a face, in capture->photos; null: there is none. */
+const struct capture_photo *capture_fellow(const struct capture *capture, const struct capture_photo *photo);
+
 /* The value given for a photograph in a list of matches, of a part else the whole's, or null; owned by the list. */
 const struct opt_each *capture_key(const struct opt_each_list *list, const struct capture_photo *photo);
 

@@ -6,6 +6,8 @@
 
 #include "base/json.h"
 #include "base/mem.h"
+#include "image/exr.h"
+#include "math/stats.h"
 #include "tissue/light/iris_light.h"
 
 /* What brought this photograph's colour to the texture's: texture.json's "gain"; and the colour of its light ("white"), ln R/G, 0 where it
@@ -33,7 +35,7 @@ static bool texture_gain(double gain[3], double *white, const json_t *texture, c
 /* One photograph. */
 struct seen {
 	struct white white;
-	bool has_white;
+	bool has_white, joined;
 	double cos_view;
 	struct image light;
 	struct sclera_light shading;
@@ -41,20 +43,31 @@ struct seen {
 
 enum { LIGHT_TEXELS = 96, ENV_ROWS = 128 };
 
+/* What all photographs of an eye share. */
+struct search {
+	struct stage *stage;
+	const struct capture *capture;
+	const struct eye *anatomy;
+	const struct envmap *told;
+	double extent;
+	const struct pigment_stage_conf *conf;
+};
+
 /* Light first, then white under it. */
-static bool measure(struct seen *out, const struct photo *photo, const struct fit *fit, const struct capture_photo *of, const struct eye *anatomy,
-                    const struct pale_conf *pale, const struct envmap *told, double extent, const struct pigment_stage_conf *c, struct err *err)
+static bool measure(struct seen *out, const struct photo *photo, const struct fit *fit, const struct capture_photo *of, const struct pale_conf *pale,
+                    const struct search *s, struct err *err)
 {
+	const struct pigment_stage_conf *c = s->conf;
 	struct pale *samples = mem_array(PALE_MAX, sizeof *samples);
 	const struct opt_each *card = capture_key(&c->card, of);
-	int n = pale_find(samples, photo, fit, anatomy, pale);
+	int n = pale_find(samples, photo, fit, s->anatomy, pale);
 	bool ok = true;
 	out->shading = sclera_light_fit(samples, n);
-	struct envmap own = told ? (struct envmap){ 0 } : sclera_light_environment(&out->shading, ENV_ROWS);
-	const struct envmap *env = told ? told : &own;
-	struct iris_view view = { .env = env, .eye = anatomy };
+	struct envmap own = s->told ? (struct envmap){ 0 } : sclera_light_environment(&out->shading, ENV_ROWS);
+	const struct envmap *env = s->told ? s->told : &own;
+	struct iris_view view = { .env = env, .eye = s->anatomy };
 	memcpy(view.cam_from_eye, fit->cam_from_eye, sizeof view.cam_from_eye);
-	iris_light_make(&out->light, LIGHT_TEXELS, extent, &view);
+	iris_light_make(&out->light, LIGHT_TEXELS, s->extent, &view);
 	if (card && c->white_from != WHITE_FROM_CAMERA) {
 		ok = white_card(&out->white, photo, card->value, &c->white, err);
 		out->has_white = ok;
@@ -66,20 +79,95 @@ static bool measure(struct seen *out, const struct photo *photo, const struct fi
 	return ok;
 }
 
+/* The iris' colour in the photographs that its texture was made of. */
+static bool iris_chroma(double out[CHROMA], const struct search *s, int eye)
+{
+	static const char *const rgbw[] = { "R", "G", "B", "W" };
+	struct image clean = { 0 };
+	struct exr_info info = { 0 };
+	struct err err = { 0 };
+	if (!exr_read(&clean, stage_path(s->stage, "%s/clean.exr", s->capture->eyes[eye].iris), 4, rgbw, PIGMENT_MAP_LIMIT_PX, &info, &err))
+		return false;
+	long n = 0, all = (long)clean.width * clean.height;
+	double *x[CHROMA];
+	for (int k = 0; k < CHROMA; k++)
+		x[k] = mem_array((size_t)all, sizeof **x);
+	for (long i = 0; i < all; i++) {
+		const float *p = clean.px + 4 * i;
+		double u = (double)(i % clean.width) / clean.width - 0.5, v = (double)(i / clean.width) / clean.height - 0.5, rgb[3] = { p[0], p[1], p[2] };
+		double r = 2 * hypot(u, v) * info.extent_mm / s->anatomy->limbus_radius, c[CHROMA];
+		if (p[3] > 0.5f && r > s->conf->fellow.ring[0] && r < s->conf->fellow.ring[1] && rgb[0] > 0 && rgb[1] > 0 && rgb[2] > 0) {
+			chroma_of(c, rgb);
+			for (int k = 0; k < CHROMA; k++)
+				x[k][n] = c[k];
+			n++;
+		}
+	}
+	for (int k = 0; k < CHROMA; k++) {
+		out[k] = n ? stats_median((int)n, x[k]) : 0;
+		free(x[k]);
+	}
+	image_free(&clean);
+	return n > 0;
+}
+
+/* An eye's iris as this photograph shows it: texture.json's gain undone. */
+static bool iris_shown(double out[CHROMA], const struct search *s, const struct capture_photo *p, const double gain[3])
+{
+	double g[CHROMA];
+	if (!iris_chroma(out, s, p->eye))
+		return false;
+	chroma_of(g, gain);
+	for (int k = 0; k < CHROMA; k++)
+		out[k] -= g[k];
+	return true;
+}
+
+/* The colour of a face's white beside one eye, by that beside the other eye, too. */
+static void join(struct seen *out, const struct search *s, const struct capture_photo *p, const struct photo *photo, const double gain[3])
+{
+	const struct capture_photo *other = p->part ? capture_fellow(s->capture, p) : 0;
+	struct seen fellow = { 0 };
+	struct fit fit;
+	struct err err = { 0 };
+	struct pale_conf pale = s->conf->white.pale;
+	double theirs[3], own_chroma[CHROMA], chroma[CHROMA], iris[CHROMA], their_iris[CHROMA];
+	if (!other || !out->has_white || out->white.source != WHITE_SCLERA || !fit_load(&fit, stage_path(s->stage, "%s", other->fit), &err) || !fit.ok)
+		return;
+	json_t *texture = json_read(stage_path(s->stage, "%s/texture.json", s->capture->eyes[other->eye].iris), 1 << 22, &err);
+	bool used = texture && texture_gain(theirs, &pale.white, texture, other->name);
+	json_decref(texture);
+	if (!used || !measure(&fellow, photo, &fit, other, &pale, s, &err) || !fellow.has_white) {
+		image_free(&fellow.light);
+		return;
+	}
+	bool irises = iris_shown(iris, s, p, gain) && iris_shown(their_iris, s, other, theirs);
+	for (int k = 0; k < CHROMA && irises; k++)
+		iris[k] -= their_iris[k];
+	chroma_of(own_chroma, out->white.rgb);
+	chroma_of(chroma, fellow.white.rgb);
+	white_pair(chroma, own_chroma, chroma, irises ? iris : 0, &s->conf->fellow);
+	out->white.rgb[0] = out->white.rgb[1] * exp(chroma[0]);
+	out->white.rgb[2] = out->white.rgb[1] * exp(chroma[1]);
+	out->joined = true;
+	image_free(&fellow.light);
+}
+
 /* Returns false where the photograph has no fit, or, err set, cannot be used. */
-static bool look(struct seen *out, struct stage *stage, const struct capture_photo *p, const struct eye *anatomy,
-                 const struct pale_conf *pale, const struct envmap *told, double extent, const struct pigment_stage_conf *c, struct err *err)
+static bool look(struct seen *out, const struct search *s, const struct capture_photo *p, const struct pale_conf *pale, const double gain[3], struct err *err)
 {
 	struct fit fit;
 	struct photo photo = { 0 };
 	*out = (struct seen){ 0 };
-	if (!fit_load(&fit, stage_path(stage, "%s", p->fit), err))
+	if (!fit_load(&fit, stage_path(s->stage, "%s", p->fit), err))
 		return false;
-	double inside = sin(fit.theta) / anatomy->index;
+	double inside = sin(fit.theta) / s->anatomy->index;
 	out->cos_view = sqrt(1 - inside * inside);
-	if (!fit.ok || !photo_load(&photo, stage_path(stage, "%s", p->file), c->limit_mpx, err))
+	if (!fit.ok || !photo_load(&photo, stage_path(s->stage, "%s", p->file), s->conf->limit_mpx, err))
 		return false;
-	bool ok = measure(out, &photo, &fit, p, anatomy, pale, told, extent, c, err) || err_wrap(err, "%s", p->file);
+	bool ok = measure(out, &photo, &fit, p, pale, s, err) || err_wrap(err, "%s", p->file);
+	if (ok)
+		join(out, s, p, &photo, gain);
 	photo_free(&photo);
 	return ok;
 }
@@ -93,6 +181,7 @@ static void take(struct found_white *out, const struct seen *seen, const double 
 	if (!seen->has_white || !white_better(&seen->white, &out->white))
 		return;
 	out->white = seen->white;
+	out->joined = seen->joined;
 	out->photo = name;
 	for (int k = 0; k < 3; k++)
 		out->white.rgb[k] *= gain[k];
@@ -106,6 +195,7 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 		return false;
 	*out = (struct found_white){ .white = white_camera(), .light = image_new(LIGHT_TEXELS, LIGHT_TEXELS, 4),
 		.lights = mem_array((size_t)capture->n_photos, sizeof *out->lights) };
+	const struct search search = { stage, capture, anatomy, env, extent, c };
 	double view = 0;
 	int views = 0;
 	for (int i = 0; i < capture->n_photos; i++) {
@@ -116,7 +206,7 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 		if (p->eye != eye || !texture_gain(gain, &pale.white, texture, p->name))  // what was left out of the texture is left out here
 			continue;
 		struct err fault = { 0 };
-		if (look(&seen, stage, p, anatomy, &pale, env, extent, c, &fault)) {
+		if (look(&seen, &search, p, &pale, gain, &fault)) {
 			view += seen.cos_view;
 			views++;
 			take(out, &seen, gain, p->name);

@@ -6,6 +6,7 @@
 
 struct found_white {
 	struct white white;    // in the texture's colours
+	bool joined;           // its colour is that beside the other eye, too
 	const char *photo;     // NAME of the photograph it is from; null: none
 	double cos_view;       // mean cosine, behind the cornea, of the directions that the photographs see the iris from
 	struct image light;    // mean of iris_light_make over the photographs, over the maps' square; image_free
@@ -14,6 +15,7 @@ struct found_white {
 };
 
 /* Reads every photograph of the eye that the texture was made of. One that cannot be read is warned of and left out.
+ * A face's white is that of both eyes (white_pair).
  * env     the photographs' own light, of level 1; null: each photograph's, by the shading of its sclera
  * extent  half-width of the maps, mm
  * Returns false, err set, when the texture's record cannot be read. */

@@ -40,6 +40,11 @@
 	OPT_REAL("sclera_reddest", &(c)->white.pale.reddest, 0.05, 3, "", "ln R/G that is skin in any light"), \
 	OPT_REAL("sclera_dark", &(c)->white.pale.dark, 0, 1, "", "share of the brightest that is shadow"), \
 	OPT_REAL("sclera_share_min", &(c)->white.share_min, 0.001, 1, "", "less of the ring than that is no white"), \
+	OPT_REAL("white_sigma", &(c)->fellow.sigma, 0.001, 1, "", "of ln R/G, ln B/G of a white, beside the other eye's"), \
+	OPT_REALS("white_skin", (c)->fellow.skin, 2, 0.001, 0.99, "", "chance that skin is in a white, ln R/G that it adds"), \
+	OPT_REAL("white_light", &(c)->fellow.light, 0.001, 1, "", "scale by which light differs at both eyes"), \
+	OPT_REAL("white_iris", &(c)->fellow.iris, 0.001, 1, "", "scale by which both irises differ"), \
+	OPT_REALS("white_iris_ring", (c)->fellow.ring, 2, 0, 1, "", "part of the irises that is compared"), \
 	OPT_INT("rings", &(c)->classes.rings, 1, 8, "", "classes of radius"), \
 	OPT_INT("levels", &(c)->classes.levels, 1, 8, "", "classes of light in each"), \
 	OPT_REAL("inner", &(c)->classes.inner, 0, 1, "", "tissue is trusted from here: share of the way to the root"), \

@@ -10,7 +10,7 @@
 #include "stages/pigment/find_white.h"
 #include "tissue/pigment/melanin_file.h"
 
-enum { MAP_LIMIT_PX = 1 << 26 };
+enum { FELLOW_MAPS = 6 };  // two of each eye that a capture may have
 
 /* An eye on its way. */
 struct work {
@@ -56,6 +56,23 @@ bool pigment_stage_check(struct pigment_stage_conf *c, struct err *err)
 	return true;
 }
 
+/* The other eye's files where its white may count, too: two maps of each eye that is beside this one in a photograph, and the fits. */
+static int fellow_inputs(const char *in[], char *maps[], const struct capture *capture, int eye)
+{
+	int n = 0;
+	for (int i = 0; i < capture->n_photos; i++) {
+		const struct capture_photo *fellow = capture->photos[i].eye == eye ? capture_fellow(capture, &capture->photos[i]) : 0;
+		if (!fellow)
+			continue;
+		in[n++] = fellow->fit;
+		if (!maps[2 * fellow->eye]) {
+			in[n++] = maps[2 * fellow->eye] = mem_printf("%s/clean.exr", capture->eyes[fellow->eye].iris);
+			in[n++] = maps[2 * fellow->eye + 1] = mem_printf("%s/texture.json", capture->eyes[fellow->eye].iris);
+		}
+	}
+	return n;
+}
+
 /* The files an eye's pigment follows from: three maps, then photograph and fit of each of its photographs. */
 static int inputs(const char *in[], char *own[3], const struct capture *capture, int eye)
 {
@@ -98,6 +115,7 @@ static char *extra_json(const struct work *w)
 	json_t *out = json_object(), *white = json_object();
 	json_object_set_new(white, "source", json_string(white_names[w->found.white.source]));
 	json_object_set_new(white, "photo", json_string(w->found.photo ? w->found.photo : ""));
+	json_object_set_new(white, "both_eyes", json_boolean(w->found.joined));
 	json_object_set_new(white, "rgb", json_numbers(3, w->found.white.rgb));
 	json_object_set_new(white, "share", json_number(w->found.white.share));
 	json_object_set_new(white, "spread", json_number(w->found.white.spread));
@@ -119,8 +137,8 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 	stage_note(stage, "%s: border layer melanin %.2f %% (eumelanin %.0f %%), stroma %.2f %% (%.0f %%), scale %.2f, exposure %.2f",
 	           eye->side, 100 * exp(x[PIGMENT_ABL_MELANIN]), 100 * x[PIGMENT_ABL_RATIO], 100 * exp(x[PIGMENT_STROMA_MELANIN]),
 	           100 * x[PIGMENT_STROMA_RATIO], exp(x[PIGMENT_SCALE]), exp(x[PIGMENT_EXPOSURE]));
-	stage_note(stage, "%s: white from the %s, %d of %d starts' minima differ, residual %.0f %%, of colour alone %.0f %%", eye->side,
-	           white_names[w->found.white.source], f->minima - 1, f->starts, 100 * f->residual, 100 * f->residual_colour);
+	stage_note(stage, "%s: white from the %s%s, %d of %d starts' minima differ, residual %.0f %%, of colour alone %.0f %%", eye->side,
+	           white_names[w->found.white.source], w->found.joined ? " beside both eyes" : "", f->minima - 1, f->starts, 100 * f->residual, 100 * f->residual_colour);
 	if (w->map.n)
 		stage_note(stage, "%s: melanin differs: x %.2f at the pupil, x %.2f at the root", eye->side, exp(f->ring[0].melanin),
 		           exp(f->ring[f->rings - 1].melanin));
@@ -154,8 +172,8 @@ static bool compute(struct work *w, char *const own[3], struct stage *stage, con
 {
 	static const char *const rgbw[] = { "R", "G", "B", "W" }, *const thickness[] = { "Y" };
 	struct exr_info info = { 0 };
-	if (!exr_read(&w->clean, stage_path(stage, "%s", own[0]), 4, rgbw, MAP_LIMIT_PX, &info, err)
-	    || !exr_read(&w->thickness, stage_path(stage, "%s", own[1]), 1, thickness, MAP_LIMIT_PX, 0, err)
+	if (!exr_read(&w->clean, stage_path(stage, "%s", own[0]), 4, rgbw, PIGMENT_MAP_LIMIT_PX, &info, err)
+	    || !exr_read(&w->thickness, stage_path(stage, "%s", own[1]), 1, thickness, PIGMENT_MAP_LIMIT_PX, 0, err)
 	    || !pupil_load(&w->pupil, stage_path(stage, "%s", own[2]), c->pupil_radius, err)
 	    || !find_white(&w->found, stage, capture, eye, anatomy, told, info.extent_mm, c, err))
 		return false;
@@ -221,9 +239,10 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
                    const struct pigment_stage_conf *conf, struct err *err)
 {
 	const struct capture_eye *eye = &capture->eyes[i];
-	char *own[3], *out = mem_printf("%s/pigment.json", eye->iris);
-	const char **in = mem_new(4 + 2 * (size_t)capture->n_photos, sizeof *in);
+	char *own[3], *theirs[FELLOW_MAPS] = { 0 }, *out = mem_printf("%s/pigment.json", eye->iris);
+	const char **in = mem_new(4 + FELLOW_MAPS + 3 * (size_t)capture->n_photos, sizeof *in);
 	int n = inputs(in, own, capture, i);
+	n += fellow_inputs(in + n, theirs, capture, i);
 	struct work w = { 0 };
 	struct envmap told = { 0 };
 	if (conf->light)
@@ -243,6 +262,8 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
 	envmap_free(&told);
 	for (int k = 0; k < 3; k++)
 		free(own[k]);
+	for (int k = 0; k < FELLOW_MAPS; k++)
+		free(theirs[k]);
 	free(in);
 	free(out);
 	return ok;

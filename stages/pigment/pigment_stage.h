@@ -3,12 +3,14 @@
 #include "anatomy/capture.h"
 #include "anatomy/eye.h"
 #include "tissue/pigment/white.h"
+#include "tissue/pigment/white_pair.h"
 #include "tissue/pigment/melanin.h"
 #include "tissue/pigment/pigment.h"
 
 extern const char *const pigment_orders[], *const pigment_whites[];  // "single", "multiple"; in the order of WHITE_FROM
 extern const char *const pigment_melanins[];  // in the order of MELANIN
 enum { MELANIN_ONE, MELANIN_MAP };
+enum { PIGMENT_MAP_LIMIT_PX = 1 << 26 };
 enum { WHITE_FROM_SCLERA, WHITE_FROM_CARD, WHITE_FROM_CAMERA };
 
 struct pigment_stage_conf {
@@ -18,6 +20,7 @@ struct pigment_stage_conf {
 	double melanin_ring;    // fit.melanin_ring where it is a map
 	struct melanin_conf map;
 	struct white_conf white;
+	struct white_pair_conf fellow;
 	double prior_exposure[2], prior_exposure_single[2];  // median, sigma of ln
 	double prior_white, prior_veil;                      // sigmas
 	double prior_melanin[2][2], prior_ratio[2][2], prior_scale[2], prior_spread[2];

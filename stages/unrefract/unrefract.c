@@ -30,15 +30,6 @@ static bool load_photo(struct photo *photo, const struct work *w, int i, struct 
 	return photo_load(photo, stage_path(w->run->stage, "%s", w->photos[i]->file), w->run->limit_mpx, err);
 }
 
-/* The other eye of a photograph of a face; null: there is none. */
-static const struct capture_photo *other_eye(const struct capture *capture, const struct capture_photo *photo)
-{
-	for (int i = 0; i < capture->n_photos; i++)
-		if (capture->photos[i].eye != photo->eye && strcmp(capture->photos[i].file, photo->file) == 0)
-			return &capture->photos[i];
-	return 0;
-}
-
 /* Fits that are there and ok. */
 static void gather(struct work *w, int index)
 {
@@ -62,7 +53,7 @@ static void gather(struct work *w, int index)
 			stage_skipped_as_said(w->run->stage, "%s: %s", photo->file, fit->reason);
 		} else {
 			w->inputs[w->n_inputs++] = photo->file;
-			w->fellows[w->n] = fit->has_pupil ? 0 : other_eye(capture, photo);
+			w->fellows[w->n] = fit->has_pupil ? 0 : capture_fellow(capture, photo);
 			if (w->fellows[w->n])
 				w->inputs[w->n_inputs++] = w->fellows[w->n]->fit;
 			w->views[w->n].name = photo->name;

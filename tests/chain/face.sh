@@ -5,7 +5,7 @@
 face=$root/face
 mkdir -p "$face/photos"
 echo "quality = draft" >"$face/capture.conf"
-"${B:-build}/tests/tools/drawn_face" "$face/photos/portrait.png" 2001 5 >"$root/truth"
+"${B:-build}/tests/tools/drawn_face" "$face/photos/portrait.png" 2001 7 >"$root/truth"
 
 # near EYE JSON: whether the limbus of that file lies on that eye.
 near() {
@@ -24,6 +24,9 @@ check "each has its picture" test -s "$face/work/limbus/portrait.left.png" -a -s
 check "each has its iris" test -s "$face/work/iris/texture.exr" -a -s "$face/work/iris_right/texture.exr"
 check "and its rendering" test -s "$face/work/render/portrait.left_view.png" -a -s "$face/work/render_right/portrait.right_view.png"
 check "the page has both, to be corrected by hand" sh -c "grep -q 'portrait\.left' '$face/work/review/index.html' && grep -q 'portrait\.right' '$face/work/review/index.html'"
+for iris in iris iris_right; do
+	check "$iris: its white is that beside both eyes" grep -q '"both_eyes": true' "$face/work/$iris/pigment.json"
+done
 run_make "$face"
 same "a second make runs nothing" "$(ran)" ""
 

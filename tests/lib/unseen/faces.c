@@ -59,7 +59,7 @@ static bool draw(struct unseen *u, uint64_t number, const struct shot *s)
 		// The line through both lies within 45 degrees of the rows: the eye farther right is the person's left one, if not mirrored.
 		const int left = (d.eye[0].limbus[0] > d.eye[1].limbus[0]) != s->mirrored ? 0 : 1;
 		*u = (struct unseen){ .photo = unseen_photo(d.rgb, d.width, d.height), .n = 2, .maker = UNSEEN_DRAWN, .opening = d.eye[0].openness,
-			.warmth = d.white[0] / d.white[2], .aspect = d.aspect, .leans = unseen_leans(&d, s->turn) };
+			.warmth = d.white[0] / d.white[2], .white = { d.white[0], d.white[1], d.white[2] }, .aspect = d.aspect, .leans = unseen_leans(&d, s->turn) };
 		u->eye[FACES_LEFT] = eye_of(&d, left);
 		u->eye[FACES_RIGHT] = eye_of(&d, 1 - left);
 	}

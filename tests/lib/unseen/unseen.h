@@ -23,6 +23,7 @@ struct unseen {
 	enum unseen_maker maker;
 	double opening;         // of the lids, over the limbus's diameter
 	double warmth;          // red over blue of what is white, in linear light: 1 balanced, tungsten light left as it is near 3
+	double white[3];        // of a drawn face: linear colour in which a white surface is shown
 	double aspect;          // vertical over horizontal diameter as told to the program; NAN: not told
 	bool leans;             // what is told as vertical is not, by more than 6 degrees, and the limbus no circle: its outline does not tell the tilt
 };

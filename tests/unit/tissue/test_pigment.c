@@ -6,6 +6,7 @@
 #include "math/rng.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/truth/photon.h"
+#include "tests/lib/conf/white_conf.h"
 #include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
@@ -215,10 +216,6 @@ static void test_none(void **state)
 
 /* ---- white -------------------------------------------------------------------------------------------------------- */
 enum { WIDE = 600, HIGH = 400 };
-static const struct white_conf white_conf = {
-	.sclera = { 0.66, 0.55, 0.48 }, .share_min = 0.03, .card = 0.18,
-	.pale = { .inner = 1.1, .outer = 1.5, .redness = 0.2, .reddest = 0.45, .dark = 0.3 },
-};
 
 /* An eye of semi-axis 100 px in its middle: sclera between lids that are `open` px apart, skin beyond, a clipped glint. */
 static struct photo picture(double open, const double sclera[3])
@@ -242,8 +239,8 @@ static bool sclera_white(struct white *white, const struct photo *photo, const s
 	static const struct eye eye = { .limbus_radius = 5.85, .cornea_radius = 7.8, .cornea_asphericity = 0.75, .iris_depth = 3.3 };
 	static struct pale samples[PALE_MAX];
 	struct envmap env = envmap_room(64, grey, grey, 1, 0, 0);
-	int n = pale_find(samples, photo, fit, &eye, &white_conf.pale);
-	bool found = white_sclera(white, samples, n, &env, &white_conf);
+	int n = pale_find(samples, photo, fit, &eye, &white_defaults.pale);
+	bool found = white_sclera(white, samples, n, &env, &white_defaults);
 	envmap_free(&env);
 	return found;
 }
@@ -266,19 +263,48 @@ static void test_white(void **state)
 	bool found = sclera_white(&white, &shut, &fit);
 	for (int c = 0; c < 3 && found; c++)  // a slit: either none, or the right one
 		CHECK_NEAR(white.rgb[c], want[c], 0.02);
-	assert_true(white_card(&white, &open, card, &white_conf, &err));
+	assert_true(white_card(&white, &open, card, &white_defaults, &err));
 	CHECK_NEAR(white.rgb[1], 0.26 / 0.18, 1e-3);
-	assert_false(white_card(&white, &open, glint, &white_conf, &err));
+	assert_false(white_card(&white, &open, glint, &white_defaults, &err));
 	assert_non_null(strstr(err.msg, "over-exposed"));
 	photo_free(&open);
 	photo_free(&shut);
+}
+
+/* A face's whites: alike, they stay; skin at one eye gives way to the other's; light that differs, as the irises show, stays apart; what is asked
+ * of one eye is asked of the other alike. */
+static void test_white_pair(void **state)
+{
+	static const struct { double own[2], fellow[2], iris[2], want[2], within; } cases[] = {
+		{ { 0.1, -0.1 }, { 0.1, -0.1 }, { 0, 0 }, { 0.1, -0.1 }, 0.03 },
+		{ { 0.4, -0.3 }, { 0.1, -0.1 }, { 0, 0 }, { 0.1, -0.1 }, 0.08 },
+		{ { 0.1, -0.1 }, { 0.4, -0.3 }, { 0, 0 }, { 0.1, -0.1 }, 0.03 },
+		{ { 0.4, -0.3 }, { 0.1, -0.1 }, { 0.3, -0.2 }, { 0.4, -0.3 }, 0.06 },
+		{ { -0.2, 0.3 }, { 0.1, -0.1 }, { -0.3, 0.4 }, { -0.2, 0.3 }, 0.05 },
+		{ { 3, -3 }, { -3, 3 }, { 6, -6 }, { 3, -3 }, 0.06 },  // far beyond what any light is
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		double got[CHROMA];
+		white_pair(got, cases[i].own, cases[i].fellow, cases[i].iris, &white_pair_defaults);
+		for (int k = 0; k < CHROMA; k++)
+			CHECK_NEAR(got[k], cases[i].want[k], cases[i].within);
+	}
+	double own[CHROMA], iris[CHROMA], moved[CHROMA];  // all colours multiplied: so is what follows
+	const double a[] = { 0.3, -0.2 }, b[] = { 0.15, -0.05 }, differ[] = { 0.02, 0.01 }, by[] = { 0.7, -0.9 };
+	white_pair(own, a, b, differ, &white_pair_defaults);
+	white_pair(moved, (const double[]){ a[0] + by[0], a[1] + by[1] }, (const double[]){ b[0] + by[0], b[1] + by[1] }, differ, &white_pair_defaults);
+	for (int k = 0; k < CHROMA; k++)
+		CHECK_NEAR(moved[k], own[k] + by[k], 1e-9);
+	white_pair(iris, a, b, 0, &white_pair_defaults);  // nothing known of the irises
+	assert_true(iris[0] > b[0] - 0.05 && iris[0] < a[0]);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_coverage), cmocka_unit_test(test_recovery), cmocka_unit_test(test_starts),
-		cmocka_unit_test(test_monte_carlo), SCRATCH_TEST(test_files), SCRATCH_TEST(test_none), cmocka_unit_test(test_white),
+		cmocka_unit_test(test_monte_carlo), SCRATCH_TEST(test_files), SCRATCH_TEST(test_none), cmocka_unit_test(test_white), cmocka_unit_test(test_white_pair),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
