@@ -27,6 +27,7 @@ int main(int argc, char **argv)
 		EYE_TRACK_OPTS(&c.eyes),
 		SKIN_TRACK_OPTS(&c.skin),
 		HEAD_FIND_OPTS(&c.head),
+		HEAD_SHADE_OPTS(&c.shade),
 		WRINKLE_OPTS(&c.wrinkle),
 		CAMERA_FOCAL_OPTS(&c.camera),
 		CAMERA_LENS_OPTS(&c.camera),

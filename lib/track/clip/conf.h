@@ -6,6 +6,7 @@
 #include "track/eye/eye_track.h"
 #include "track/clip/result.h"
 #include "track/head/find.h"
+#include "track/head/shade.h"
 #include "track/points/skin_track.h"
 #include "track/wrinkle/wrinkle.h"
 
@@ -18,6 +19,7 @@ struct track_conf {
 	struct eye_track_conf eyes;
 	struct skin_track_conf skin;
 	struct head_find_conf head;
+	struct head_shade_conf shade;
 	struct wrinkle_conf wrinkle;
 	struct camera_keys camera;
 	double unit_mm, eye_radius;                  // subject.*: NAN where not given

@@ -1,6 +1,7 @@
 #include "track/clip/refine.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "math/chol.h"
@@ -221,24 +222,78 @@ static struct lids lids_of(bool doubted, const struct track_clip *clip, const st
 	return lids;
 }
 
-void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+/* The pose by eyeballs, lids and, where form is known, shading; straight: how high straight on is (straight_of). Returns false, pose undefined, where too little is
+ * known. */
+static bool refine_once(double pose[4][4], double *px, double turned[3], double *straight, const struct lids *lids, const struct track_result *r, const struct track_clip *clip,
+                        const struct track_subject *s, const struct track_conf *conf)
 {
-	const struct lids lids = lids_of(doubted, clip, r, s, conf);
-	double pose[4][4], px, turned[3], sigma = 0;
+	double sigma = 0;
 	// one eye alone leaves it open: its outline tells where the head is and how it is turned
-	const double straight = conf->mesh_straight > 0 && isfinite(lids.usual) && clip->eye_seen[0] && clip->eye_seen[1] ? straight_of(&sigma, &lids, r, clip, s, conf) : NAN;
-	if (!isfinite(lay(pose, &px, turned, straight, &lids, r, clip, s, conf)))
-		return;
+	*straight = conf->mesh_straight > 0 && isfinite(lids->usual) && clip->eye_seen[0] && clip->eye_seen[1] ? straight_of(&sigma, lids, r, clip, s, conf) : NAN;
+	if (!isfinite(lay(pose, px, turned, *straight, lids, r, clip, s, conf)))
+		return false;
 	if (sigma > 0) {
 		// what straight on leaves open turns the head, too
 		double other[4][4], d[6], none[3] = { 0 }, room[3];
-		if (isfinite(lay(other, &px, room, straight + sigma, &lids, r, clip, s, conf))) {
+		if (isfinite(lay(other, px, room, *straight + sigma, lids, r, clip, s, conf))) {
 			head_motion(d, (const double(*)[4])other, (const double(*)[4])pose, none);
 			for (int k = 0; k < 2; k++)
 				turned[k] = hypot(turned[k], d[k]);
 		}
-		lay(pose, &px, room, straight, &lids, r, clip, s, conf);
+		lay(pose, px, room, *straight, lids, r, clip, s, conf);
 	}
+	return true;
+}
+
+/* Shading looked at from pose to pose, with eyeballs and lids, until it turns the head no more. pose: start and result; form: of the result. Returns false where
+ * shading tells nothing. */
+static bool shade_on(double pose[4][4], struct head_form *form, double straight, struct lids *lids, const struct head_picture *picture, const struct track_result *r,
+                     const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	enum { MOST = 40 };
+	static const double rest = 0.02 * M_PI / 180, none[3] = { 0 };
+	for (int i = 0; i < MOST; i++) {
+		double d[6], was[4][4], px, turned[3];
+		memcpy(was, pose, sizeof was);
+		if (!head_shade(form, s->shape, picture, &clip->camera, (const double(*)[4])was, &conf->shade))
+			return false;
+		lids->prior.form = form;
+		if (!isfinite(lay(pose, &px, turned, straight, lids, r, clip, s, conf)))
+			return false;
+		head_motion(d, (const double(*)[4])pose, (const double(*)[4])was, none);
+		if (hypot(d[0], d[1]) < rest)
+			break;
+	}
+	return true;
+}
+
+/* The reference's picture, as shading is looked at. Returns false where it is not. */
+static bool shaded(struct head_picture *picture, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	const double depth = track_eyes_depth(clip->cam_from_head, s);
+	return s->shape && clip->rgb && depth > 0
+	       && head_picture_make(picture, clip->rgb, clip->info.width, clip->info.height, conf->shade.blur * clip->camera.focal_px / depth);
+}
+
+void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
+{
+	enum { SHADINGS = 2 };
+	struct lids lids = lids_of(doubted, clip, r, s, conf);
+	struct head_picture picture = { 0 };
+	struct head_form form;
+	double pose[4][4], px, turned[3], straight;
+	bool done = refine_once(pose, &px, turned, &straight, &lids, r, clip, s, conf);
+	if (done && shaded(&picture, clip, s, conf)) {
+		// how high straight on is follows from the turn, and the turn from that
+		for (int i = 0; i < SHADINGS && done; i++) {
+			if (!shade_on(pose, &form, straight, &lids, &picture, r, clip, s, conf))
+				lids.prior.form = 0;
+			done = refine_once(pose, &px, turned, &straight, &lids, r, clip, s, conf);
+		}
+		free(picture.ln);
+	}
+	if (!done)
+		return;
 	if (isfinite(turned[0]))
 		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
 	memcpy(clip->cam_from_head, pose, sizeof pose);

@@ -255,12 +255,16 @@ bool track_subject_load(struct track_subject *s, struct stage *stage, const stru
 	for (int i = 0; i < s->mesh.n_vertices; i++)
 		for (int k = 0; k < 3; k++)
 			s->mesh.vertices[i][k] *= (float)s->unit_mm;
-	return read_marks(s, conf, err) && eyes(s, stage, conf, err) && eyes_agree(s, conf, err);
+	if (!read_marks(s, conf, err) || !eyes(s, stage, conf, err) || !eyes_agree(s, conf, err))
+		return false;
+	s->shape = conf->shade.patch > 0 ? head_shape_new(&s->mesh, (const double(*)[3])s->center, &conf->shade) : 0;
+	return true;
 }
 
 void track_subject_free(struct track_subject *s)
 {
 	mesh_free(&s->mesh);
+	head_shape_free(s->shape);
 }
 
 double track_eyes_depth(const double cam_from_head[4][4], const struct track_subject *s)

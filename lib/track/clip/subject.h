@@ -6,6 +6,7 @@
 #include "base/stage.h"
 #include "mesh/mesh.h"
 #include "track/clip/conf.h"
+#include "track/head/shade.h"
 
 enum { MARK_INNER, MARK_OUTER, MARK_UPPER, MARK_LOWER, MARKS };
 
@@ -20,6 +21,7 @@ struct track_subject {
 	double center_sigma[SIDES];      // mm, of centres from the mesh's rims or the lids' marks; 0: the settings'
 	struct eye_opening opening[SIDES];
 	struct eye_opening margin[SIDES];  // inner edge of the lids' margins: outline at the eyeball's radius plus meniscus_mm
+	struct head_shape *shape;          // the mesh as it is shaded; null: not looked at; owned
 	bool assumed;          // no mesh: eyes, openings and skin of an average face; file is null
 };
 

@@ -150,6 +150,37 @@ static void off_prior(double e[P], const double m[4][4], const double from[4][4]
 		e[3 + i] = pivot[i] - head[i];
 }
 
+/* The cost of a pose by a form. Its motion from there follows that about `pivot`: a turn w about that shifts the form's pivot by w x (pivot - that), too. */
+static double formed(double H[P][P], double g[P], const double m[4][4], const struct head_form *f, const double pivot[3])
+{
+	double d[P], x[P], J[P][P] = { { 0 } }, arm[3], cost = 0;
+	head_motion(d, m, f->cam_from_head, f->pivot);
+	for (int k = 0; k < 3; k++)
+		arm[k] = f->pivot[k] + d[3 + k] - pivot[k];
+	const double cross[3][3] = { { 0, arm[2], -arm[1] }, { -arm[2], 0, arm[0] }, { arm[1], -arm[0], 0 } };  // w x arm
+	for (int k = 0; k < P; k++) {
+		J[k][k] = 1;
+		x[k] = d[k] - f->best[k];
+	}
+	for (int k = 0; k < 3; k++)
+		memcpy(J[3 + k], cross[k], sizeof cross[k]);
+	for (int k = 0; k < P; k++) {
+		double row[P] = { 0 }, off = 0;  // info J, info x
+		for (int l = 0; l < P; l++) {
+			off += f->info[k][l] * x[l];
+			for (int c = 0; c < P; c++)
+				row[c] += f->info[k][l] * J[l][c];
+		}
+		cost += x[k] * off;
+		for (int a = 0; H && a < P; a++) {
+			g[a] -= J[k][a] * off;
+			for (int c = 0; c < P; c++)
+				H[a][c] += J[k][a] * row[c];
+		}
+	}
+	return cost;
+}
+
 static double expect(double H[P][P], double g[P], const double m[4][4], const struct head_prior *prior, const double pivot[3])
 {
 	double e[P], cost = 0;
@@ -164,7 +195,7 @@ static double expect(double H[P][P], double g[P], const double m[4][4], const st
 			g[i] -= w * e[i];
 		}
 	}
-	return cost;
+	return cost + (prior->form ? formed(H, g, m, prior->form, pivot) : 0);
 }
 
 /* Where the points are, by weight: about it rotations and shifts hardly depend on each other. Returns false without any. */

@@ -12,6 +12,14 @@
 struct head_prior {
 	double cam_from_head[4][4];
 	double sigma[6];
+	const struct head_form *form;    // what the face's form tells besides; null: nothing
+};
+
+/* What is known of motions d from a pose about a pivot (head_moved): twice the negative log likelihood is (d - best)^T info (d - best). */
+struct head_form {
+	double cam_from_head[4][4], pivot[3], best[6], info[6][6];
+	double off;            // what it was told from fits by so much
+	int n;                 // places that it was told from
 };
 
 /* One measurement: a point of the head is seen at px (line false), or on the line through px with this unit normal (line true). */
