@@ -35,7 +35,8 @@ struct track_conf {
 	double pose_most, pose_refused;  // px at a width of 1280: where the reference pose's residual is larger, other frames are tried; the clip is refused
 	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
 	double mesh_straight;  // degrees: how far the eyes looked from straight on, up or down, when the mesh was made, one standard deviation; 0: lids are the mesh's at the usual gaze
-	double earned_deg;     // standard deviation of a turn that the skin's motion tells
+	double earned_deg, earned_away;  // standard deviation of a turn that the skin's motion tells, and of the distance, a share of it
+	double center_floor;   // mm, that the bundle's own sigma of an eyeball's centre leaves out
 	double trust[TRUST_EVIDENCES][2];    // scales of each evidence in clips followed rightly and wrongly: trust.h
 	double wrong_lens_prior, lens_share[2];  // share of clips whose lens is told wrongly; scales of the perspective seen, less 1, where it is told rightly, wrongly
 	double nearest_mm;     // what people look at in the median of a clip is no nearer than this or the camera
@@ -85,6 +86,8 @@ static inline long track_every(const struct track_conf *conf)
 		OPT_REAL("off_mm", &(c)->off_mm, 0.01, 10, "mm", "skin of a head that turns, off the rigid mesh (rms): with more it is refused"), \
 		OPT_REAL("mesh_straight_deg", &(c)->mesh_straight, 0, 45, "degrees", "the mesh's eyes look up or down by so much, 1 sigma; 0: lids at the usual gaze are the mesh's"), \
 		OPT_REAL("earned_deg", &(c)->earned_deg, 0.01, 45, "degrees", "standard deviation of the turn that the skin's motion tells"), \
+		OPT_REAL("earned_away", &(c)->earned_away, 1e-4, 1, "", "and of the distance that it tells, a share of that"), \
+		OPT_REAL("center_floor_mm", &(c)->center_floor, 0, 10, "mm", "error of the eyeballs' centres found, beside what they scatter by"), \
 		TRUST_OPT("laid_px", c, TRUST_LAID, "px", "lids and eyeballs off the mesh, at 1280 px"), TRUST_OPT("skin_mm", c, TRUST_SKIN, "mm", "skin off the rigid head"), \
 		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
 		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("scale_mm", c, TRUST_SCALE, "mm", "the same without a mesh"), \

@@ -28,7 +28,7 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 			double off[3] = { g->center_in_head[0], g->center_in_head[1], g->center_in_head[2] }, there[2];
 			off[k] += 1;
 			head_project(there, &clip->camera, clip->cam_from_head, off);
-			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(s->center_sigma[e] > 0 ? s->center_sigma[e] : conf->center_sigma, g->center_sigma[k]);
+			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(hypot(s->center_sigma[e] > 0 ? s->center_sigma[e] : conf->center_sigma, g->center_sigma[k]), conf->center_floor);
 			struct head_sight *to = &sights[n++];
 			*to = (struct head_sight){ .line = true, .sure = true, .weight = 1 / (sigma * sigma) };
 			memcpy(to->head, s->center[e], sizeof to->head);
@@ -208,7 +208,8 @@ static struct lids lids_of(bool doubted, const struct track_clip *clip, const st
 	const double turn = conf->head.turn_sigma * M_PI / 180, calm = doubted ? reference_usual_misfit(r) : 0;
 	// one eye alone tells no turn aside
 	const double yaw = clip->eye_seen[0] && clip->eye_seen[1] ? conf->head.yaw_sigma * M_PI / 180 : turn;
-	struct lids lids = { .prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, INFINITY } } };
+	const double away = clip->moves.turned > 0 ? conf->earned_away * track_eyes_depth(clip->cam_from_head, s) : INFINITY;
+	struct lids lids = { .prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, away } } };
 	int eyes = 0;
 	memcpy(lids.prior.cam_from_head, clip->cam_from_head, sizeof lids.prior.cam_from_head);
 	for (int i = 0; i < SIDES * points; i++)
