@@ -31,6 +31,7 @@ struct track_moves {
 	double apart, sigma;   // radians: between the poses that two halves of the skin tell; standard deviation of the turn
 	double off_mm;         // rms of the skin about the rigid head
 	bool torn;             // so far that the mesh does not move as the skin does
+	bool halves;           // nothing but those two poses says so
 };
 
 struct track_clip {

@@ -33,7 +33,7 @@ struct track_conf {
 	double settle_sigma, center_sigma;  // mm, standard deviations of the eyeballs' centres: the prior meanwhile; those of the mesh
 	double guess_sigma;    // mm, of centres that are guessed from the lids' marks
 	double pose_most, pose_refused;  // px at a width of 1280: where the reference pose's residual is larger, other frames are tried; the clip is refused
-	double turned, torn;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused
+	double turned, torn, confirmed;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused; up to twice as far apart not where lids, eyeballs and shading turn it as far to this
 	double mesh_straight;  // degrees: how far the eyes looked from straight on, up or down, when the mesh was made, one standard deviation; 0: lids are the mesh's at the usual gaze
 	double earned_deg, earned_away;  // standard deviation of a turn that the skin's motion tells, and of the distance, a share of it
 	double center_floor;   // mm, that the bundle's own sigma of an eyeball's centre leaves out
@@ -83,6 +83,7 @@ static inline long track_every(const struct track_conf *conf)
 		OPT_REAL("pose_refused_px", &(c)->pose_refused, 0.1, 1000, "px", "with larger residuals the clip is refused"), \
 		OPT_REAL("turned_deg", &(c)->turned, 0.1, 90, "degrees", "a head that turns by more is laid on by how its skin moves"), \
 		OPT_REAL("torn_deg", &(c)->torn, 0.1, 90, "degrees", "halves of the skin that tell poses further apart are refused"), \
+		OPT_REAL("confirmed_deg", &(c)->confirmed, 0, 90, "degrees", "up to twice as far apart are not, where lids and shading turn the head alike to this"), \
 		OPT_REAL("off_mm", &(c)->off_mm, 0.01, 10, "mm", "skin of a head that turns, off the rigid mesh (rms): with more it is refused"), \
 		OPT_REAL("mesh_straight_deg", &(c)->mesh_straight, 0, 45, "degrees", "the mesh's eyes look up or down by so much, 1 sigma; 0: lids at the usual gaze are the mesh's"), \
 		OPT_REAL("earned_deg", &(c)->earned_deg, 0.01, 45, "degrees", "standard deviation of the turn that the skin's motion tells"), \

@@ -215,7 +215,8 @@ bool track_moves_pose(struct track_clip *clip, struct track_moves *m, const stru
 	keep_known(m, &fit);
 	m->off_mm = fit.off_px / px_per_mm;
 	m->sigma = hypot(fit.sigma[0], fit.sigma[1]);
-	m->torn = m->off_mm > conf->off_mm || fit.turned > most_turned * M_PI / 180 || fit.apart > conf->torn * M_PI / 180 || !(m->sigma < MOVES_SIGMA_MOST * M_PI / 180);
+	m->halves = !(m->off_mm > conf->off_mm) && !(fit.turned > most_turned * M_PI / 180) && m->sigma < MOVES_SIGMA_MOST * M_PI / 180;
+	m->torn = !m->halves || fit.apart > conf->torn * M_PI / 180;
 	memcpy(clip->cam_from_head, pose, sizeof pose);
 	clip->pose_px = fit.off_px;
 	clip->pose_refined = true;

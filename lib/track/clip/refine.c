@@ -208,7 +208,7 @@ static struct lids lids_of(bool doubted, const struct track_clip *clip, const st
 	const double turn = conf->head.turn_sigma * M_PI / 180, calm = doubted ? reference_usual_misfit(r) : 0;
 	// one eye alone tells no turn aside
 	const double yaw = clip->eye_seen[0] && clip->eye_seen[1] ? conf->head.yaw_sigma * M_PI / 180 : turn;
-	const double away = clip->moves.turned > 0 ? conf->earned_away * track_eyes_depth(clip->cam_from_head, s) : INFINITY;
+	const double away = clip->moves.n_known ? conf->earned_away * track_eyes_depth(clip->cam_from_head, s) : INFINITY;
 	struct lids lids = { .prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, away } } };
 	int eyes = 0;
 	memcpy(lids.prior.cam_from_head, clip->cam_from_head, sizeof lids.prior.cam_from_head);

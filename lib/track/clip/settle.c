@@ -229,6 +229,23 @@ static void settle_clip(struct track_clip *clip, struct stage *stage, const stru
 	}
 }
 
+/* Where halves of the skin tell poses that are far apart, both may still be about right: whether lids, eyeballs and shading alone, which know nothing of the skin's
+ * motion, turn the head as all of it does. */
+static bool is_confirmed(const struct track_clip *clip, const struct track_result *r, const struct track_subject *s, const struct track_conf *few)
+{
+	static const double free_deg = 20, none[3] = { 0 };
+	struct track_clip alone = *clip;
+	struct track_conf free = *few;
+	double d[6];
+	free.head.turn_sigma = free.head.yaw_sigma = free_deg;
+	alone.moves.n_known = 0;
+	alone.turn_sigma[0] = alone.turn_sigma[1] = 0;
+	alone.pose_refined = false;
+	reference_refine(&alone, true, r, s, &free);
+	head_motion(d, (const double(*)[4])alone.cam_from_head, clip->cam_from_head, none);
+	return s->shape && alone.pose_refined && alone.turn_sigma[0] > 0 && hypot(d[0], d[1]) < few->confirmed * M_PI / 180;
+}
+
 /* A pose that was earned by how the skin moves knows the turn better than the place: openings and eyeballs tell that. */
 static void settle_earned(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
@@ -236,8 +253,11 @@ static void settle_earned(struct track_clip *clip, struct stage *stage, const st
 	struct track_result r = { 0 };
 	const double px = clip->pose_px;
 	few.head.turn_sigma = few.head.yaw_sigma = conf->earned_deg;
-	if (track_follow_few(&r, clip, stage, s, &few))
+	if (track_follow_few(&r, clip, stage, s, &few)) {
+		if (clip->moves.torn && clip->moves.halves && clip->moves.apart < 2 * conf->torn * M_PI / 180)
+			clip->moves.torn = !is_confirmed(clip, &r, s, &few);
 		reference_refine(clip, true, &r, s, &few);
+	}
 	clip->pose_px = px;
 	track_result_free(&r);
 }
