@@ -14,8 +14,8 @@ static const double margin_weight = 0.05;  // px^-2: errors of margins are corre
 static const double open_enough = 0.8;     // of the usual opening
 static const double still_gaze = 0.01, like_v = 0.05;  // radians
 
-/* Each centre found gives two measurements: one along either axis of the head, of its own variance. */
-static int centers(struct head_sight sights[SIDES * 2], const struct track_result *r, const struct track_clip *clip, const struct track_subject *s,
+/* Each centre found gives two measurements: one along either axis of the head, of its own variance and floor_mm's. */
+static int centers(struct head_sight sights[SIDES * 2], double floor_mm, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s,
                    const struct track_conf *conf)
 {
 	int n = 0;
@@ -28,7 +28,7 @@ static int centers(struct head_sight sights[SIDES * 2], const struct track_resul
 			double off[3] = { g->center_in_head[0], g->center_in_head[1], g->center_in_head[2] }, there[2];
 			off[k] += 1;
 			head_project(there, &clip->camera, clip->cam_from_head, off);
-			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(hypot(s->center_sigma[e] > 0 ? s->center_sigma[e] : conf->center_sigma, g->center_sigma[k]), conf->center_floor);
+			double px_per_mm = hypot(there[0] - px[0], there[1] - px[1]), sigma = px_per_mm * hypot(hypot(s->center_sigma[e] > 0 ? s->center_sigma[e] : conf->center_sigma, g->center_sigma[k]), floor_mm);
 			struct head_sight *to = &sights[n++];
 			*to = (struct head_sight){ .line = true, .sure = true, .weight = 1 / (sigma * sigma) };
 			memcpy(to->head, s->center[e], sizeof to->head);
@@ -153,7 +153,7 @@ static double lay(double pose[4][4], double *px, double turned[3], double straig
 	int n = 0;
 	memcpy(pose, lids->prior.cam_from_head, sizeof lids->prior.cam_from_head);
 	for (int round = 0; round < ROUNDS; round++) {
-		n = centers(sights, r, clip, s, conf);
+		n = centers(sights, conf->center_floor, r, clip, s, conf);
 		if (!n)
 			return INFINITY;
 		for (int e = 0; e < SIDES; e++)
@@ -346,7 +346,7 @@ void reference_lens(struct track_clip *clip, const struct track_result *whole, c
 	for (int e = 0; e < SIDES; e++)
 		without_prior(&r.eyes.globe[e], s->center[e]);
 	memcpy(prior.cam_from_head, clip->cam_from_head, sizeof prior.cam_from_head);
-	int n = centers(sights, &r, clip, s, conf);
+	int n = centers(sights, 0, &r, clip, s, conf);
 	const int first = n;
 	for (int e = 0; e < SIDES && n; e++) {
 		for (int i = 0; i < points; i++)
