@@ -7,6 +7,7 @@
 #include "math/chol.h"
 #include "track/clip/reference.h"
 #include "track/clip/trust.h"
+#include "track/head/shade_lens.h"
 
 enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2, LAST_ROBUST = 2 };
 
@@ -354,6 +355,14 @@ void reference_lens(struct track_clip *clip, const struct track_result *whole, c
 		n += margins(sights + n, points, rest, NAN, clip, s, e, (const double(*)[4])clip->cam_from_head);
 	}
 	weigh_alike(n - first, sights + first, clip);
-	if (n >= LEAST_MARGIN)
-		head_lens_fit(&clip->lens, (const double(*)[4])clip->cam_from_head, n, sights, &clip->camera, LAST_ROBUST, &prior);
+	if (n < LEAST_MARGIN)
+		return;
+	struct head_picture picture;
+	struct head_lens shade;
+	const bool told = head_lens_fit(&clip->lens, (const double(*)[4])clip->cam_from_head, n, sights, &clip->camera, LAST_ROBUST, &prior);
+	if (told && shaded(&picture, clip, s, conf)) {
+		if (head_shade_lens(&shade, s->shape, &picture, &clip->camera, (const double(*)[4])clip->cam_from_head, n, sights, LAST_ROBUST, &prior, &conf->shade))
+			head_lens_join(&clip->lens, &shade);
+		free(picture.ln);
+	}
 }

@@ -55,3 +55,9 @@ bool head_lens_fit(struct head_lens *lens, const double cam_from_head[4][4], int
 	*lens = (struct head_lens){ x, sqrt(2 / bend) };
 	return true;
 }
+
+void head_lens_join(struct head_lens *lens, const struct head_lens *other)
+{
+	const double a = pow(lens->sigma, -2), b = pow(other->sigma, -2);
+	*lens = (struct head_lens){ (a * lens->share + b * other->share) / (a + b), 1 / sqrt(a + b) };
+}

@@ -17,4 +17,7 @@ struct head_lens {
 bool head_lens_fit(struct head_lens *lens, const double cam_from_head[4][4], int n, const struct head_sight *sights, const struct camera *camera, double robust,
                    const struct head_prior *prior);
 
+/* Both of two independent estimates. */
+void head_lens_join(struct head_lens *lens, const struct head_lens *other);
+
 #endif

@@ -363,3 +363,8 @@ bool head_shade(struct head_form *out, const struct head_shape *s, const struct 
 	free(seen);
 	return ok;
 }
+
+double head_shade_patches(const struct head_form *form, const struct head_shape *s, const struct head_shade_conf *conf)
+{
+	return s->area * form->n / (s->n * conf->patch * conf->patch);
+}

@@ -45,4 +45,7 @@ bool head_picture_make(struct head_picture *out, const uint8_t *rgb, int width, 
 bool head_shade(struct head_form *out, const struct head_shape *shape, const struct head_picture *picture, const struct camera *camera,
                 const double cam_from_head[4][4], const struct head_shade_conf *conf);
 
+/* How many patches of skin, each with an error of its own, a form was told from. */
+double head_shade_patches(const struct head_form *form, const struct head_shape *shape, const struct head_shade_conf *conf);
+
 #endif

@@ -4,7 +4,7 @@
 #include "math/rng.h"
 #include "math/vec.h"
 #include "mesh/ray.h"
-#include "track/head/shade.h"
+#include "track/head/shade_lens.h"
 #include "tests/lib/unit.h"
 #include "image/image.h"
 
@@ -189,6 +189,38 @@ static void tells_the_turn(void **state)
 	mesh_free(&mesh);
 }
 
+/* A lens told as half or right: the share of its perspective that is seen is half, or all. One told as twice as long makes so little of it that there is little to miss. */
+static void tells_the_lens(void **state)
+{
+	static const double told[] = { 0.5, 1, 2 };
+	struct mesh mesh = face();
+	struct head_shape *shape = head_shape_new(&mesh, eye, &shade);
+	struct head_picture picture;
+	struct head_sight s[2];
+	struct rng rng = { 5 };
+	uint8_t *rgb = shoot(&mesh, facing, 900);
+	const int n = marks(s, facing, &rng);
+	(void)state;
+	assert_true(head_picture_make(&picture, rgb, WIDE, HIGH, shade.blur * camera.focal_px / 560));
+	for (size_t i = 0; i < COUNT(told); i++) {
+		struct camera other = camera;
+		struct head_prior prior = { .sigma = { 0.1, 0.15, INFINITY, INFINITY, INFINITY, INFINITY } };
+		struct head_lens lens = { 0 };
+		memcpy(prior.cam_from_head, facing, sizeof facing);
+		other.focal_px *= told[i];
+		prior.cam_from_head[2][3] *= told[i];
+		const bool tells = head_shade_lens(&lens, shape, &picture, &other, (const double(*)[4])prior.cam_from_head, n, s, INFINITY, &prior, &shade);
+		print_message("told as %g: share %.2f +- %.2f\n", told[i], lens.share, lens.sigma);
+		assert_true(tells || told[i] == 2);
+		assert_true(!tells || fabs(lens.share - told[i]) < 2.5 * lens.sigma);
+		assert_true(told[i] != 0.5 || lens.share < 0.9);
+	}
+	free(picture.ln);
+	free(rgb);
+	head_shape_free(shape);
+	mesh_free(&mesh);
+}
+
 /* A picture without shading tells nothing, or says how little it tells; a face that is out of sight is none. */
 static void tells_nothing(void **state)
 {
@@ -216,6 +248,6 @@ static void tells_nothing(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(tells_the_turn), cmocka_unit_test(tells_nothing) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(tells_the_turn), cmocka_unit_test(tells_the_lens), cmocka_unit_test(tells_nothing) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
