@@ -36,8 +36,8 @@ bool track_agrees(struct track_result *r, const struct track_clip *clip, const s
 		               clip->file, conf->wrong_deg, told(r->trust.wrong), conf->wrong_most, s->assumed ? "how large the eyeballs are and where they lie" : "how the head is turned",
 		               clip->reference, needed, s->assumed ? "" : ", or let the head turn");
 	if (r->trust.wrong > conf->wrong_most && r->trust.lens > 0.5 * r->trust.wrong)
-		return err_set(err, "%s: camera.focal_px = %g is wrong with a probability of %.2g, must be at most %g (track.wrong_most): frame %ld shows %.2f +- %.2f of the perspective that it makes of eyeballs behind lids, as a lens of some %.0f px would: measure the lens, or check subject.eye_center.* and subject.unit_mm",
-		               clip->file, clip->camera.focal_px, told(r->trust.lens), conf->wrong_most, clip->reference, clip->lens.share, clip->lens.sigma,
+		return err_set(err, "%s: followed wrongly with a probability of %.2g, must be at most %g (track.wrong_most), above all for camera.focal_px = %g: frame %ld shows %.2f +- %.2f of the perspective that it makes of eyeballs and face, as a lens of some %.0f px would: measure the lens, or check subject.eye_center.* and subject.unit_mm",
+		               clip->file, told(r->trust.wrong), conf->wrong_most, clip->camera.focal_px, clip->reference, clip->lens.share, clip->lens.sigma,
 		               clip->camera.focal_px / clip->lens.share);
 	// What is known speaks for it, but too little is known.
 	if (r->trust.wrong > conf->wrong_most && !(r->trust.log_odds[worst] < 0))
