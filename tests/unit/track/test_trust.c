@@ -254,7 +254,7 @@ static void another_lens(void **state)
 	NEAR(mistaken.lens, 0.05 * exp(-0.125) / (0.05 * exp(-0.125) + 9.5 * exp(-12.5)), 1e-9);
 	NEAR(1 - mistaken.wrong, (1 - as_told.wrong) * (1 - mistaken.lens) / (1 - as_told.lens), 1e-9);
 	assert_false(track_agrees(&film.result, &film.clip, &film.subject, &conf, &err));
-	ERR_HAS(err, "camera.focal_px = 5000 is wrong with a probability of");
+	ERR_HAS(err, "above all for camera.focal_px = 5000");
 	ERR_HAS(err, "as a lens of some 10000 px would");
 	film.clip.focal_assumed = true;
 	track_trust(&mistaken, &film.result, &film.clip, &film.subject, &conf);
