@@ -48,6 +48,7 @@ struct track_clip {
 	double turn_sigma[2];  // radians: of the pose's pitch and yaw; 0: not known
 	struct head_lens lens; // what the eyeballs and lids of several frames tell of it; sigma 0: nothing
 	double pose_px;        // rms residual of the pose
+	double shade_off, shade_patches; // ln: the face's brightness off that of the mesh there (head_form's); of so many patches of skin, 0: not known
 	double skin_mm;        // skin off the rigid head in the frames that it was judged by (trust_skin_mm); NAN: not known
 	bool pose_refined;     // by eyeballs and lids of several frames (refine.h); else pose_px is that of the outlines in the reference alone
 	bool pose_given;       // from track.landmark_*, or known: not refined

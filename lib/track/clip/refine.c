@@ -277,6 +277,16 @@ static bool shaded(struct head_picture *picture, const struct track_clip *clip, 
 	       && head_picture_make(picture, clip->rgb, clip->info.width, clip->info.height, conf->shade.blur * clip->camera.focal_px / depth);
 }
 
+static void take_pose(struct track_clip *clip, const double pose[4][4], double px, const double turned[3], double skin_mm)
+{
+	if (isfinite(turned[0]))
+		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
+	memcpy(clip->cam_from_head, pose, sizeof clip->cam_from_head);
+	clip->pose_px = px;
+	clip->skin_mm = skin_mm;
+	clip->pose_refined = true;
+}
+
 void reference_refine(struct track_clip *clip, bool doubted, const struct track_result *r, const struct track_subject *s, const struct track_conf *conf)
 {
 	enum { SHADINGS = 2 };
@@ -285,23 +295,22 @@ void reference_refine(struct track_clip *clip, bool doubted, const struct track_
 	struct head_form form;
 	double pose[4][4], px, turned[3], straight;
 	bool done = refine_once(pose, &px, turned, &straight, &lids, r, clip, s, conf);
-	if (done && shaded(&picture, clip, s, conf)) {
+	if (shaded(&picture, clip, s, conf)) {
 		// how high straight on is follows from the turn, and the turn from that
 		for (int i = 0; i < SHADINGS && done; i++) {
 			if (!shade_on(pose, &form, straight, &lids, &picture, r, clip, s, conf))
 				lids.prior.form = 0;
 			done = refine_once(pose, &px, turned, &straight, &lids, r, clip, s, conf);
 		}
-		free(picture.ln);
 	}
-	if (!done)
-		return;
-	if (isfinite(turned[0]))
-		memcpy(clip->turn_sigma, turned, sizeof clip->turn_sigma);
-	memcpy(clip->cam_from_head, pose, sizeof pose);
-	clip->pose_px = px;
-	clip->skin_mm = trust_skin_mm(r, clip, s);
-	clip->pose_refined = true;
+	if (done)
+		take_pose(clip, (const double(*)[4])pose, px, turned, trust_skin_mm(r, clip, s));
+	clip->shade_patches = 0;
+	if (picture.ln && head_shade(&form, s->shape, &picture, &clip->camera, (const double(*)[4])clip->cam_from_head, &conf->shade)) {
+		clip->shade_off = form.off;
+		clip->shade_patches = head_shade_patches(&form, s->shape, &conf->shade);
+	}
+	free(picture.ln);
 }
 
 /* What the clip alone tells of a centre: the estimate is drawn to the mesh's, which is told once more by the sights. */

@@ -115,11 +115,18 @@ static bool is_off(const struct track_clip *clip, const struct track_subject *s,
 	return !(clip->pose_px <= conf->pose_most * trust_scale(clip, s)) || trust_odds(TRUST_SKIN, clip->skin_mm, conf) < 0;
 }
 
-/* Exchanges the clip's reference and another's where that is likelier right by its residual and its skin; frees the other's pictures. */
+/* Log odds of another reference against the clip's by their shading: of the same skin in the same light, under the right pose it fits better. */
+static double shade_odds(const struct track_clip *other, const struct track_clip *clip)
+{
+	const double patches = fmin(other->shade_patches, clip->shade_patches);
+	return patches > 0 ? patches * log(clip->shade_off / other->shade_off) : 0;
+}
+
+/* Exchanges the clip's reference and another's where that is likelier right by its residual, its skin and its shading; frees the other's pictures. */
 static void take_better(struct track_clip *clip, struct track_clip *other, bool found, const struct track_subject *s, const struct track_conf *conf)
 {
 	clip->faces = other->faces;
-	if (found && trust_reference(other, s, conf) > trust_reference(clip, s, conf)) {
+	if (found && trust_reference(other, s, conf) + shade_odds(other, clip) > trust_reference(clip, s, conf)) {
 		struct track_clip t = *clip;
 		*clip = *other;
 		*other = t;
