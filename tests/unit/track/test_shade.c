@@ -8,11 +8,11 @@
 #include "tests/lib/unit.h"
 #include "image/image.h"
 
-enum { WIDE = 480, HIGH = 360, GRID = 90, LAMPS = 3, RAYS = 24 };
+enum { WIDE = 320, HIGH = 240, GRID = 90, LAMPS = 3, RAYS = 16 };
 static const double DEGREE = M_PI / 180;
 static const struct head_shade_conf shade = { .reach = 90, .away = 18, .blur = 0.8, .patch = 22 };  // as config/track.conf
 static const double eye[2][3] = { { 31, 0, -10 }, { -31, 0, -10 } };
-static const struct camera camera = { .focal_px = 1500, .center_px = { WIDE / 2.0, HIGH / 2.0 } };
+static const struct camera camera = { .focal_px = 1000, .center_px = { WIDE / 2.0, HIGH / 2.0 } };
 
 static double bump(double x, double y, double cx, double cy, double wide, double high) { return exp(-pow((x - cx) / wide, 2) - pow((y - cy) / high, 2)); }
 
