@@ -88,11 +88,12 @@ static bool iris_chroma(double out[CHROMA], const struct search *s, int eye)
 	struct err err = { 0 };
 	if (!exr_read(&clean, stage_path(s->stage, "%s/clean.exr", s->capture->eyes[eye].iris), 4, rgbw, PIGMENT_MAP_LIMIT_PX, &info, &err))
 		return false;
-	long n = 0, all = (long)clean.width * clean.height;
+	enum { MOST = 1 << 20 };
+	long n = 0, all = (long)clean.width * clean.height, step = 1 + all / MOST;
 	double *x[CHROMA];
 	for (int k = 0; k < CHROMA; k++)
-		x[k] = mem_array((size_t)all, sizeof **x);
-	for (long i = 0; i < all; i++) {
+		x[k] = mem_array(MOST, sizeof **x);
+	for (long i = 0; i < all; i += step) {
 		const float *p = clean.px + 4 * i;
 		double u = (double)(i % clean.width) / clean.width - 0.5, v = (double)(i / clean.width) / clean.height - 0.5, rgb[3] = { p[0], p[1], p[2] };
 		double r = 2 * hypot(u, v) * info.extent_mm / s->anatomy->limbus_radius, c[CHROMA];
