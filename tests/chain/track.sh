@@ -142,7 +142,7 @@ if [ -x "$RECUT" ]; then
 	near "stills: gaze of frame 20" "$(cell slides 50 g1_deg)" -20.815 1
 	check "stills: no blink" grep -q '"blinks": \[\]' "$root/slides/work/skin/track.json"
 	take show 20-20x20 over:20-20x20 aside:20-20x20
-	refuses show "is not seen again .a cut, or the head turned away.: cut the video|besides those followed|does not move as|followed from"
+	refuses show "is not seen again .a cut, or the head turned away.: cut the video|besides those followed|does not move as|do not come together|followed from"
 else
 	skip "takes that nobody wants" "tests/tools/recut is not built"
 fi
