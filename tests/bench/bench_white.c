@@ -24,7 +24,7 @@ static const char *const methods[METHODS] = { "the sclera beside the eye", "mean
 static const struct bench_time untimed = { NAN, NAN, NAN };
 static const struct eye anatomy = { .limbus_radius = 5.85, .cornea_radius = 7.8, .cornea_asphericity = 0.75, .iris_depth = 3.3, .index = 1.376 };
 
-struct side { bool found; double chroma[CHROMA], iris[CHROMA], spread; };
+struct side { bool found; double chroma[CHROMA], iris[CHROMA]; };
 
 /* Median colour of what the evidence takes for iris, half to four fifths of the way out. */
 static bool iris_of(double out[CHROMA], const struct photo *photo, const struct fit *fit, const struct evidence *evidence)

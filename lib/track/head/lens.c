@@ -18,8 +18,7 @@ static double cost_of(double share, const double told[4][4], double away, int n,
 	return isnan(head_pose_fit(m, n, s, &other, robust, prior)) ? NAN : head_pose_cost((const double(*)[4])m, n, s, &other, robust, prior);
 }
 
-/* Mean distance of what is seen from the camera, mm. */
-static double away_of(const double m[4][4], int n, const struct head_sight *s)
+double head_lens_away(const double m[4][4], int n, const struct head_sight *s)
 {
 	double sum = 0, weight = 0;
 	for (int i = 0; i < n; i++) {
@@ -34,7 +33,7 @@ static double away_of(const double m[4][4], int n, const struct head_sight *s)
 bool head_lens_fit(struct head_lens *lens, const double cam_from_head[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
                    const struct head_prior *prior)
 {
-	const double away = away_of(cam_from_head, n, s);
+	const double away = head_lens_away(cam_from_head, n, s);
 	double x = 1, step = 1, bend = 0;
 	*lens = (struct head_lens){ 0 };
 	for (int i = 0; i < ROUNDS && fabs(step) > enough * x; i++) {

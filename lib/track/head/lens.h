@@ -17,6 +17,9 @@ struct head_lens {
 bool head_lens_fit(struct head_lens *lens, const double cam_from_head[4][4], int n, const struct head_sight *sights, const struct camera *camera, double robust,
                    const struct head_prior *prior);
 
+/* Mean distance of what is seen from the camera, mm, by weight; NAN without any: with another lens the head seems that much nearer or further. */
+double head_lens_away(const double cam_from_head[4][4], int n, const struct head_sight *sights);
+
 /* Both of two independent estimates. */
 void head_lens_join(struct head_lens *lens, const struct head_lens *other);
 

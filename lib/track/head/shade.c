@@ -21,6 +21,7 @@ static const float lift = 0.3F;        // mm: rays begin off the skin
 struct head_shape {
 	int n;
 	double area;           // mm^2, of the skin that they are spread over
+	double middle[3];      // of the points
 	double (*at)[3], (*normal)[3], (*light)[LIGHT];  // light: brightness under each harmonic
 	struct ray_scene *rays;
 };
@@ -145,6 +146,8 @@ struct head_shape *head_shape_new(const struct mesh *mesh, const double eye[2][3
 #pragma omp parallel for schedule(dynamic, 64)
 	for (int i = 0; i < s->n; i++)
 		see(s->light[i], s->rays, s->at[i], s->normal[i]);
+	for (int i = 0; i < s->n; i++)
+		vec_add(s->middle, s->middle, 1.0 / s->n, s->at[i]);
 	return s;
 }
 
@@ -230,15 +233,22 @@ static bool look(struct seen *out, const struct head_shape *s, int i, const stru
 	return true;
 }
 
+/* Brightness of a point under a light, at least a thousandth of what is seen: its logarithm is taken. */
+static double lit(const struct seen *s, const double c[LIGHT])
+{
+	double is = 0;
+	for (int k = 0; k < LIGHT; k++)
+		is += c[k] * s->light[k];
+	return fmax(is, 1e-3 * exp(s->ln));
+}
+
 /* Normal equations of the light's numbers. ln: brightness is exp(ln); else as it is. Returns false where they do not tell them. */
 static bool light_step(double c[LIGHT], int n, const struct seen *s, bool ln)
 {
 	double a[LIGHT][LIGHT] = { { 0 } }, b[LIGHT] = { 0 };
 	for (int i = 0; i < n; i++) {
-		double is = 0, row[LIGHT], off;
-		for (int k = 0; k < LIGHT; k++)
-			is += c[k] * s[i].light[k];
-		is = fmax(is, 1e-3 * exp(s[i].ln));
+		const double is = lit(&s[i], c);
+		double row[LIGHT], off;
 		for (int k = 0; k < LIGHT; k++)
 			row[k] = s[i].light[k] / (ln ? is : 1);
 		off = ln ? s[i].ln - log(is) : exp(s[i].ln);
@@ -264,10 +274,7 @@ static bool light_step(double c[LIGHT], int n, const struct seen *s, bool ln)
 static double weigh(int n, struct seen *s, const double c[LIGHT], double *work)
 {
 	for (int i = 0; i < n; i++) {
-		double is = 0;
-		for (int k = 0; k < LIGHT; k++)
-			is += c[k] * s[i].light[k];
-		s[i].off = s[i].ln - log(fmax(is, 1e-3 * exp(s[i].ln)));
+		s[i].off = s[i].ln - log(lit(&s[i], c));
 		work[i] = s[i].off;
 	}
 	const double spread = fmax(stats_mad(n, work, 0), 0.01);
@@ -285,10 +292,8 @@ static bool pose_step(double H[POSE][POSE], double g[POSE], double *sum, double 
 	double a[ALL][ALL] = { { 0 } }, b[ALL] = { 0 };
 	*sum = *square = 0;
 	for (int i = 0; i < n; i++) {
-		double is = 0, row[ALL];
-		for (int k = 0; k < LIGHT; k++)
-			is += c[k] * s[i].light[k];
-		is = fmax(is, 1e-3 * exp(s[i].ln));
+		const double is = lit(&s[i], c);
+		double row[ALL];
 		for (int k = 0; k < LIGHT; k++)
 			row[k] = -s[i].light[k] / is;
 		memcpy(row + LIGHT, s[i].pose, sizeof s[i].pose);
@@ -325,11 +330,9 @@ bool head_shade(struct head_form *out, const struct head_shape *s, const struct 
 {
 	struct head_form form = { .n = 0 };
 	struct seen *seen = mem_array(POINTS, sizeof *seen);
-	double *work = mem_array(POINTS, sizeof *work), light[LIGHT] = { 0 }, middle[3] = { 0 }, sum, square;
+	double *work = mem_array(POINTS, sizeof *work), light[LIGHT] = { 0 }, sum, square;
 	memcpy(form.cam_from_head, cam_from_head, sizeof form.cam_from_head);
-	for (int i = 0; i < s->n; i++)
-		vec_add(middle, middle, 1.0 / s->n, s->at[i]);
-	head_from(form.pivot, cam_from_head, middle);
+	head_from(form.pivot, cam_from_head, s->middle);
 	for (int i = 0; i < s->n; i++)
 		if (look(&seen[form.n], s, i, picture, camera, cam_from_head, form.pivot)) {
 			seen[form.n].weight = seen[form.n].area;

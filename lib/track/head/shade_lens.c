@@ -27,14 +27,8 @@ bool head_shade_lens(struct head_lens *lens, const struct head_shape *shape, con
                      const double cam_from_head[4][4], int n, const struct head_sight *sights, double robust, const struct head_prior *prior,
                      const struct head_shade_conf *conf)
 {
-	double a[TERMS][TERMS] = { { 0 } }, b[TERMS] = { 0 }, away = 0, weight = 0, patches = 0;
-	for (int i = 0; i < n; i++) {
-		double p[3];
-		head_from(p, cam_from_head, sights[i].head);
-		away += sights[i].weight * p[2];
-		weight += sights[i].weight;
-	}
-	away /= weight;
+	double a[TERMS][TERMS] = { { 0 } }, b[TERMS] = { 0 }, patches = 0;
+	const double away = head_lens_away(cam_from_head, n, sights);
 	for (int k = 0; k < LENSES; k++) {
 		const double x = pitch * (k - LENSES / 2), row[TERMS] = { 1, x, x * x };
 		struct camera other = *camera;
