@@ -53,9 +53,9 @@ struct search {
 	const struct pigment_stage_conf *conf;
 };
 
-/* Light first, then white under it. */
+/* Light first, then white under it. on_iris: what white shows on the iris, too. */
 static bool measure(struct seen *out, const struct photo *photo, const struct fit *fit, const struct capture_photo *of, const struct pale_conf *pale,
-                    const struct search *s, struct err *err)
+                    bool on_iris, const struct search *s, struct err *err)
 {
 	const struct pigment_stage_conf *c = s->conf;
 	struct pale *samples = mem_array(PALE_MAX, sizeof *samples);
@@ -67,7 +67,8 @@ static bool measure(struct seen *out, const struct photo *photo, const struct fi
 	const struct envmap *env = s->told ? s->told : &own;
 	struct iris_view view = { .env = env, .eye = s->anatomy };
 	memcpy(view.cam_from_eye, fit->cam_from_eye, sizeof view.cam_from_eye);
-	iris_light_make(&out->light, LIGHT_TEXELS, s->extent, &view);
+	if (on_iris)
+		iris_light_make(&out->light, LIGHT_TEXELS, s->extent, &view);
 	if (card && c->white_from != WHITE_FROM_CAMERA) {
 		ok = white_card(&out->white, photo, card->value, &c->white, err);
 		out->has_white = ok;
@@ -138,10 +139,8 @@ static void join(struct seen *out, const struct search *s, const struct capture_
 	json_t *texture = json_read(stage_path(s->stage, "%s/texture.json", s->capture->eyes[other->eye].iris), 1 << 22, &err);
 	bool used = texture && texture_gain(theirs, &pale.white, texture, other->name);
 	json_decref(texture);
-	if (!used || !measure(&fellow, photo, &fit, other, &pale, s, &err) || !fellow.has_white) {
-		image_free(&fellow.light);
+	if (!used || !measure(&fellow, photo, &fit, other, &pale, false, s, &err) || !fellow.has_white)
 		return;
-	}
 	bool irises = iris_shown(iris, s, p, gain) && iris_shown(their_iris, s, other, theirs);
 	for (int k = 0; k < CHROMA && irises; k++)
 		iris[k] -= their_iris[k];
@@ -151,7 +150,6 @@ static void join(struct seen *out, const struct search *s, const struct capture_
 	out->white.rgb[0] = out->white.rgb[1] * exp(chroma[0]);
 	out->white.rgb[2] = out->white.rgb[1] * exp(chroma[1]);
 	out->joined = true;
-	image_free(&fellow.light);
 }
 
 /* Returns false where the photograph has no fit, or, err set, cannot be used. */
@@ -166,7 +164,7 @@ static bool look(struct seen *out, const struct search *s, const struct capture_
 	out->cos_view = sqrt(1 - inside * inside);
 	if (!fit.ok || !photo_load(&photo, stage_path(s->stage, "%s", p->file), s->conf->limit_mpx, err))
 		return false;
-	bool ok = measure(out, &photo, &fit, p, pale, s, err) || err_wrap(err, "%s", p->file);
+	bool ok = measure(out, &photo, &fit, p, pale, true, s, err) || err_wrap(err, "%s", p->file);
 	if (ok)
 		join(out, s, p, &photo, gain);
 	photo_free(&photo);
