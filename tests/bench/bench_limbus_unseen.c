@@ -1,6 +1,7 @@
 /* Finding the limbus of eyes that had no part in development (tests/lib/unseen): right, wrong but called ok, refused; by lids, light,
  * size and tilt. SEED=2 makes other eyes (1: those that judge; develop on 1000 and above); METHODS=1: the first method alone;
- * TOLERANCE=0.04: limbus.tolerance, by which right and wrong are told, too; CASES=100: so many, not timed at one size; EYEWRIGHT_TRACED=DIR: path-traced captures, too. bench/limbus_unseen.cases.txt has every case, bench/limbus_unseen.png what failed.
+ * TOLERANCE=0.04: limbus.tolerance, by which right and wrong are told, too; CASES=100: so many, not timed at one size; EYEWRIGHT_TRACED=DIR: path-traced captures, too;
+ * EYEWRIGHT_HEADS=FILE: photographs of heads, too. bench/limbus_unseen.cases.txt has every case, bench/limbus_unseen.png what failed.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,11 +17,13 @@
 enum { OURS, METHODS = 1 + RIVALS };
 static const char *names[METHODS] = { "ours" };
 
-struct split { uint64_t seed; int methods, made; struct outcome *outcome; };  // made: photographs before the path-traced ones
+struct split { uint64_t seed; int methods, made, traced; struct outcome *outcome; };  // made: photographs before the path-traced ones; traced: how many of those before heads
 
 static bool photograph(struct unseen *u, const struct split *s, int i)
 {
 	*u = (struct unseen){ 0 };
+	if (i >= s->made + s->traced)
+		return unseen_heads(u, i - s->made - s->traced);
 	if (i >= s->made)
 		return unseen_traced(u, i - s->made);
 	*u = unseen_make(s->seed, i);
@@ -183,7 +186,8 @@ int main(int argc, char **argv)
 		answer_conf()->tolerance = fmin(fmax(atof(getenv("TOLERANCE")), 0.01), 0.06);
 	struct split s = { .seed = (uint64_t)setting("SEED", 1), .methods = setting("METHODS", METHODS) };
 	s.made = setting("CASES", bench_quick() ? UNSEEN_COUNT / 10 : UNSEEN_COUNT);
-	const int n = s.made + unseen_traced_count();
+	s.traced = unseen_traced_count();
+	const int n = s.made + s.traced + unseen_heads_count();
 	s.outcome = crew_array((size_t)n, sizeof *s.outcome);
 	crew_run(n, one, &s);
 	table(n, &s);

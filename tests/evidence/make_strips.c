@@ -1,8 +1,8 @@
 /* make_strips: writes strips (limbus/strip.h) round ellipses near and far from the limbus of drawn eyes to stdout, for training.
  *
- *     make_strips FIRST COUNT | strip.py
+ *     make_strips FIRST COUNT [PHOTOGRAPHS] | strip.py
  *
- * STARTS strips of each photograph. A strip is STRIP_PLANES x STRIP_ROWS x STRIP_RAYS bytes, 0 to 255 for 0 to 1, then a float for each
+ * Every second photograph is one of PHOTOGRAPHS (kept.h), if that is told, from the place in it that FIRST says, over and over. STARTS strips of each photograph. A strip is STRIP_PLANES x STRIP_ROWS x STRIP_RAYS bytes, 0 to 255 for 0 to 1, then a float for each
  * column: where its ray crosses the limbus (s; 0: nowhere), then a byte for each: 1 where iris is seen against sclera there.
  */
 #include <math.h>
@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "limbus/region.h"
 #include "limbus/strip.h"
+#include "kept.h"
 #include "math/rng.h"
 #include "other.h"
 #include "scene.h"
@@ -68,23 +69,23 @@ static void write_strip(const struct drawn *d, const struct photo *photo, const 
 	fwrite(shown, 1, sizeof shown, stdout);
 }
 
-static void lesson(uint64_t number, struct evidence_net *net)
+/* The strips of one; about: a circle about the eye that is looked for. */
+static void strips_of(const struct drawn *d, struct ellipse about, uint64_t number, struct evidence_net *net)
 {
 	struct rng rng = { number * 31 + 7 };
-	struct drawn_view view;
-	struct drawn d = drawn_lesson(number, 190, &view);
-	struct photo photo = { .width = d.width, .height = d.height, .bits = 8, .rgb = mem_array((size_t)d.width * (size_t)d.height * 3, sizeof *photo.rgb) };
-	struct ellipse limbus[2], about = { view.x, view.y, view.radius, view.radius, 0 }, e;
+	struct photo photo = { .width = d->width, .height = d->height, .bits = 8, .rgb = mem_array((size_t)d->width * (size_t)d->height * 3, sizeof *photo.rgb) };
+	const double x = about.cx, y = about.cy, radius = about.a;
+	struct ellipse limbus[2], e;
 	struct evidence evidence;
 	struct err err = { 0 };
 	int n = 0;
-	for (long i = 0; i < 3L * d.width * d.height; i++)
-		photo.rgb[i] = (uint16_t)(d.rgb[i] * 257);
-	for (int k = 0; k < d.n_eyes; k++)
-		if (d.eye[k].shown > 0.02F)
-			limbus[n++] = (struct ellipse){ d.eye[k].limbus[0], d.eye[k].limbus[1], d.eye[k].limbus[2], d.eye[k].limbus[3], d.eye[k].limbus[4] };
+	for (long i = 0; i < 3L * d->width * d->height; i++)
+		photo.rgb[i] = (uint16_t)(d->rgb[i] * 257);
+	for (int k = 0; k < d->n_eyes; k++)
+		if (d->eye[k].shown > 0.02F)
+			limbus[n++] = (struct ellipse){ d->eye[k].limbus[0], d->eye[k].limbus[1], d->eye[k].limbus[2], d->eye[k].limbus[3], d->eye[k].limbus[4] };
 	for (int k = 0; k < n; k++)
-		if (hypot(limbus[k].cx - view.x, limbus[k].cy - view.y) < 0.5 * view.radius)
+		if (hypot(limbus[k].cx - x, limbus[k].cy - y) < 0.5 * radius)
 			about = limbus[k];
 	const struct ellipse seen = moved(&about, 0.1, 0, &rng);
 	if (!evidence_window(&evidence, net, &photo, seen.cx, seen.cy, seen.a, &err)) {
@@ -100,28 +101,64 @@ static void lesson(uint64_t number, struct evidence_net *net)
 			e.a *= 0.62, e.b *= 0.62;
 		if (k < 2)
 			region_fit(&e, &map);
-		write_strip(&d, &photo, &evidence, &e, n, limbus);
+		write_strip(d, &photo, &evidence, &e, n, limbus);
 	}
 	region_map_free(&map);
 	evidence_free(&evidence);
 	free(photo.rgb);
+}
+
+static void lesson(uint64_t number, struct evidence_net *net)
+{
+	struct drawn_view view;
+	struct drawn d = drawn_lesson(number, 190, &view);
+	strips_of(&d, (struct ellipse){ view.x, view.y, view.radius, view.radius, 0 }, number, net);
 	drawn_free(&d);
+}
+
+/* The next of a file's photographs that shows an eye, from the beginning again at its end. */
+static void lesson_kept(uint64_t number, struct evidence_net *net, FILE *file)
+{
+	struct drawn d;
+	for (int again = 0; again < 2;) {
+		if (!kept_next(&d, file)) {
+			rewind(file);
+			again++;
+			continue;
+		}
+		const struct drawn_eye *e = &d.eye[d.n_eyes > 1 && d.eye[1].shown > d.eye[0].shown];
+		if (d.n_eyes && e->shown > 0.02F && e->limbus[0] > 0 && e->limbus[0] < d.width && e->limbus[1] > 0 && e->limbus[1] < d.height) {
+			strips_of(&d, (struct ellipse){ e->limbus[0], e->limbus[1], e->limbus[2], e->limbus[2], 0 }, number, net);
+			again = 2;
+		}
+		drawn_free(&d);
+	}
 }
 
 int main(int argc, char **argv)
 {
 	struct evidence_net *net;
 	struct err err = { 0 };
-	if (argc < 3) {
-		fprintf(stderr, "usage: make_strips FIRST COUNT\n");
+	FILE *kept = argc > 3 ? fopen(argv[3], "rb") : 0;
+	if (argc < 3 || (argc > 3 && !kept)) {
+		fprintf(stderr, "usage: make_strips FIRST COUNT [PHOTOGRAPHS]\n");
 		return 2;
 	}
 	if (!evidence_open(&net, "config/evidence.onnx", &err)) {
 		fprintf(stderr, "%s\n", err.msg);
 		return 1;
 	}
+	const uint64_t first = strtoull(argv[1], 0, 10);
+	struct drawn d;
+	for (uint64_t i = 0; kept && i < first % 997 && kept_next(&d, kept); i++)
+		drawn_free(&d);
 	for (long i = 0; i < atol(argv[2]) && !ferror(stdout); i++)
-		lesson(strtoull(argv[1], 0, 10) + (uint64_t)i, net);
+		if (kept && i % 2)
+			lesson_kept(first + (uint64_t)i, net, kept);
+		else
+			lesson(first + (uint64_t)i, net);
+	if (kept)
+		fclose(kept);
 	evidence_close(net);
 	return ferror(stdout) ? 1 : 0;
 }

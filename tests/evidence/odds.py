@@ -7,7 +7,7 @@
 
 Input: 1 x 30 x 1 x 1, the traits. Output: 1 x 9 x 1 x 1: the logarithm of the odds that centre and semi-axes are all off by less than
 TOLERANCES[0] of the semi-axis, then the logarithms (softplus) of what each further tolerance adds to them. Cross entropy of all tolerances
-together (synthetic eyes and captures, which are few, count RARE times), weight decay, Adam; four folds by picture for the figures. Needs
+together (synthetic eyes and captures, which are few, count RARE times, heads HEADS times), weight decay, Adam; four folds by picture for the figures. Needs
 python3-torch and python3-numpy.
 """
 import argparse
@@ -22,7 +22,7 @@ from torch.nn import functional as F
 sys.dont_write_bytecode = True
 import weights
 
-UNITS, NETS, RARE, DECAY, EPOCHS, BATCH, RATE, AGAIN, FOLDS = 24, 4, 6, 8.0, 30, 512, 0.01, 0.002, 4
+UNITS, NETS, RARE, HEADS, DECAY, EPOCHS, BATCH, RATE, AGAIN, FOLDS = 24, 4, 6, 4, 8.0, 30, 512, 0.01, 0.002, 4
 TOLERANCES = (0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1)
 TRAITS, FAR = 30, 4.0   # spreads: farther off than that is as far
 
@@ -36,7 +36,7 @@ def read(paths):
             x.append([float(v) for v in row[5:5 + TRAITS]])
             error.append(float(row[3]))
             key.append((path, row[0], row[1]))
-            w.append(1 if row[0] in ('drawn', 'other') else RARE)
+            w.append(1 if row[0] in ('drawn', 'other') else HEADS if row[0] == 'heads' else RARE)
     x = np.array(x)
     x[~np.isfinite(x)] = 0
     return x, np.array(error), key, np.array(w, float)
@@ -122,7 +122,16 @@ def held_out(x, error, key, w, start):
     odds = np.zeros((len(x), len(TOLERANCES)))
     for f in range(FOLDS):
         odds[at == f] = odds_by(train(x[at != f], error[at != f], w[at != f], f, start), x[at == f])
+    told(odds, error, key)
+
+
+def told(odds, error, key):
+    """Figures of all, and of heads alone."""
     figures(odds, error, key)
+    heads = np.array([k[1] == 'heads' for k in key])
+    if heads.any() and not heads.all():
+        print('of heads:')
+        figures(odds[heads], error[heads], [k for k in key if k[1] == 'heads'])
 
 
 def figures(odds, error, key):
@@ -152,7 +161,7 @@ x, error, key, w = read(args.traits)
 if args.start:
     net = Net(x).eval()
     read_back(net, args.start)
-    figures(odds_by(net, x), error, key)
+    told(odds_by(net, x), error, key)
 held_out(x, error, key, w, args.start)
 if args.out:
     weights.export(train(x, error, w, 0, args.start), args.out, 1, 1, planes=TRAITS)

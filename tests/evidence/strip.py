@@ -76,11 +76,11 @@ class Net(nn.Module):
 class Strips:
     """Batches from the generator; the last KEPT strips are kept and drawn from."""
 
-    def __init__(self, make, first, batch, fresh=0.6, kept=KEPT, makers=1):
+    def __init__(self, make, first, batch, fresh=0.6, kept=KEPT, makers=1, photographs=()):
         self.batch, self.fresh, self.rng, self.process = batch, max(1, int(batch * fresh)), np.random.default_rng(first), []
         self.queue, self.kept, self.most, self.seen = queue.Queue(64 * makers), [], kept, 0
         for k in range(makers):
-            self.process.append(subprocess.Popen([make, str(first + k * APART), "100000000"], stdout=subprocess.PIPE, bufsize=1 << 22))
+            self.process.append(subprocess.Popen([make, str(first + k * APART), "100000000", *photographs], stdout=subprocess.PIPE, bufsize=1 << 22))
             threading.Thread(target=self.read, args=(self.process[-1],), daemon=True).start()
 
     def read(self, process):
@@ -123,8 +123,8 @@ class Stored(Strips):
 
     MOST, LEAST = 500000, 6000
 
-    def __init__(self, make, first, batch, device, makers):
-        super().__init__(make, first, batch, makers=makers)
+    def __init__(self, make, first, batch, device, makers, photographs):
+        super().__init__(make, first, batch, makers=makers, photographs=photographs)
         self.ring = ring.Ring(self.MOST, device, (((PLANES, ROWS, RAYS), torch.uint8), ((RAYS,), torch.float32), ((RAYS,), torch.uint8)))
 
     def next(self):
@@ -136,8 +136,8 @@ class Stored(Strips):
 
 def strips_of(args):
     if args.device == "cpu":
-        return Strips(args.make, args.first, args.batch, kept=96 if args.short else KEPT, makers=args.makers)
-    return Stored(args.make, args.first, args.batch, args.device, args.makers)
+        return Strips(args.make, args.first, args.batch, kept=96 if args.short else KEPT, makers=args.makers, photographs=args.photographs)
+    return Stored(args.make, args.first, args.batch, args.device, args.makers, args.photographs)
 
 
 def target(crossing, seen):
@@ -244,7 +244,7 @@ def deepen(net, path, args):
 
 
 def held_out(args):
-    strips = Strips(args.make, HELD, STARTS)
+    strips = Strips(args.make, HELD, STARTS, photographs=args.held_photographs)
     held = strips.fresh_only(STARTS * args.held)
     strips.close()
     return held
@@ -257,6 +257,8 @@ def main():
     p.add_argument("--keep")
     p.add_argument("--start", help="checkpoint or ONNX file to begin with")
     p.add_argument("--deepen", action="store_true", help="the network to begin with has one level less")
+    p.add_argument("--photographs", nargs=1, default=[], help="what heads.py --photographs has written: every second lesson is of them")
+    p.add_argument("--held-photographs", nargs=1, default=[], help="the same, of other people, to judge on")
     p.add_argument("--minutes", type=float, default=40)
     p.add_argument("--rate", type=float, default=2e-3)
     p.add_argument("--batch", type=int, default=24)

@@ -13,6 +13,7 @@ skin, lash, sclera, iris, pupil, reflection; its pixel (i, j) covers the input's
 import argparse
 import copy
 import math
+import os
 import queue
 import signal
 import subprocess
@@ -132,10 +133,50 @@ class Stored(Pictures):
         return self.ring.draw(self.drawn)
 
 
+class Lessons:
+    """Pictures of LARGE that heads.py has written, or still writes, drawn at random; size: what is cut out of each, anywhere."""
+
+    AGAIN = 200  # draws until the file is looked at again
+
+    def __init__(self, path, seed, size=LARGE):
+        self.path, self.kept, self.draws = path, None, 0
+        self.rng, self.size = np.random.default_rng(seed), size
+
+    def draw(self, count):
+        w, h = LARGE
+        if self.draws % self.AGAIN == 0:
+            whole = os.path.getsize(self.path) // (w * h * 4)
+            self.kept = np.memmap(self.path, np.uint8, "r", shape=(whole, w * h * 4))
+        self.draws += 1
+        lessons = self.kept[np.sort(self.rng.integers(0, len(self.kept), count))]
+        x, y = self.rng.integers(0, w - self.size[0] + 1), self.rng.integers(0, h - self.size[1] + 1)
+        rgb = lessons[:, : 3 * w * h].reshape(count, h, w, 3).transpose(0, 3, 1, 2)[:, :, y : y + self.size[1], x : x + self.size[0]]
+        label = lessons[:, 3 * w * h :].reshape(count, h, w)[:, y : y + self.size[1], x : x + self.size[0]]
+        return torch.from_numpy(rgb.copy()), torch.from_numpy(label.copy())
+
+
+class Mixed:
+    """Batches of which a number are lessons."""
+
+    def __init__(self, pictures, lessons, count):
+        self.pictures, self.lessons, self.count = pictures, lessons, count
+
+    def next(self):
+        pairs = [self.pictures.next(), self.lessons.draw(self.count)]
+        return tuple(torch.cat([a, b.to(a.device)]) for a, b in zip(*pairs))
+
+    def close(self):
+        self.pictures.close()
+
+
 def pictures_of(args, first, size):
+    lessons = int(args.batch * args.share) if args.lessons else 0
+    batch = args.batch - lessons
     if args.device == "cpu":
-        return Pictures(args.make, first, size, args.batch, again=args.again, makers=args.makers)
-    return Stored(args.make, first, size, args.batch, args.device, args.makers)
+        pictures = Pictures(args.make, first, size, batch, again=args.again, makers=args.makers)
+    else:
+        pictures = Stored(args.make, first, size, batch, args.device, args.makers)
+    return Mixed(pictures, Lessons(args.lessons, first, size), lessons) if lessons else pictures
 
 
 def soft_label(label):
@@ -180,15 +221,16 @@ def loss_of(out, hot):
     return cross + 0.3 * dice[1:].mean()
 
 
-def judge(net, make, first, batches, batch=16):
-    """IoU per class on the test split, at the labels' resolution halved, and the expected calibration error of the probabilities of
+def judge(net, name, pictures, batches):
+    """IoU per class on batches that pictures() makes, at the labels' resolution halved, and the expected calibration error of the probabilities of
     skin, sclera, iris and pupil: the mean distance of probability and share in ten bins of 0.02 and more, weighted by their pixels."""
     net.eval()
-    pictures = Pictures(make, first, LARGE, batch, True)
+    judged = 0
     both, either, bins = np.zeros(6), np.zeros(6), np.zeros((3, 6, 10))
     with torch.no_grad():
         for _ in range(batches):
-            rgb, label = pictures.next()
+            rgb, label = pictures()
+            judged += len(rgb)
             p, hot = net(rgb.float() / 255).softmax(1), soft_label(label)
             got, true = p.argmax(1), hot.argmax(1)
             for c in range(6):
@@ -199,22 +241,33 @@ def judge(net, make, first, batches, batch=16):
                 place = np.minimum((said[seen] * 10).astype(int), 9)
                 for k, weight in enumerate((np.ones(seen.sum()), said[seen], hot[:, c].reshape(-1).numpy()[seen])):
                     bins[k, c] += np.bincount(place, weight, 10)
-    pictures.close()
     iou, error = both / np.maximum(either, 1), np.abs(bins[1] - bins[2]).sum(1) / np.maximum(bins[0].sum(1), 1)
-    print("  test split, %d pictures, IoU: " % (batch * batches) + " ".join("%s %.3f" % p for p in zip(CLASSES, iou)), flush=True)
+    print("  %s, %d pictures, IoU: " % (name, judged) + " ".join("%s %.3f" % p for p in zip(CLASSES, iou)), flush=True)
     print("  calibration error: " + " ".join("%s %.4f" % p for p in zip(CLASSES, error)), flush=True)
     return iou
+
+
+def judge_all(net, args, batches, batch=16):
+    """On the generator's test split, and on lessons held out, where they are told."""
+    pictures = Pictures(args.make, 0, LARGE, batch, True)
+    judge(net, "test split", pictures.next, batches)
+    pictures.close()
+    if args.held:
+        lessons = Lessons(args.held, 0)
+        judge(net, "lessons held out", lambda: lessons.draw(batch), batches)
 
 
 def calibrated(net, args, pictures=800, batch=16, kept=200):
     """The network with true probabilities on pictures for training that it has not seen; kept pixels of each."""
     net, rng = copy.deepcopy(net).eval(), np.random.default_rng(0)
     source, logits, share = Pictures(args.make, 900000000, LARGE, batch), [], []
+    if args.lessons:
+        source = Mixed(source, Lessons(args.lessons, 1), int(batch * args.share))
     with torch.no_grad():
         for _ in range(pictures // batch):
             rgb, label = source.next()
             out, hot = net(rgb.float() / 255), soft_label(label)
-            at = torch.from_numpy(rng.integers(0, out.shape[2] * out.shape[3], (batch, 1, kept))).expand(-1, len(CLASSES), -1)
+            at = torch.from_numpy(rng.integers(0, out.shape[2] * out.shape[3], (len(out), 1, kept))).expand(-1, len(CLASSES), -1)
             for values, into in ((out, logits), (hot, share)):
                 into.append(values.flatten(2).gather(2, at).transpose(1, 2).reshape(-1, len(CLASSES)))
     source.close()
@@ -311,7 +364,7 @@ def train(args, worker=0, meeting=None):
         if args.keep and time.time() - kept > 60 * args.every:
             kept = time.time()
             torch.save({"net": mean.state_dict(), "steps": len(losses)}, args.keep)
-            judge(copy.deepcopy(mean).cpu(), args.make, 0, 16)
+            judge_all(copy.deepcopy(mean).cpu(), args, 16)
     pictures.close()
     return mean.cpu(), [float(loss) for loss in losses]
 
@@ -337,6 +390,9 @@ def main():
     p.add_argument("--half", action="store_true", help="multiply in bfloat16: half as long again where the processor has it")
     p.add_argument("--short", action="store_true")
     p.add_argument("--short-steps", type=int, default=80)
+    p.add_argument("--lessons", help="what heads.py has written, to mix in")
+    p.add_argument("--share", type=float, default=0.35, help="of each batch, that is lessons")
+    p.add_argument("--held", help="lessons to judge by, of other people")
     p.add_argument("--judge", metavar="FILE")
     p.add_argument("--pictures", type=int, default=512, help="of the test split, for --judge")
     args = p.parse_args()
@@ -347,7 +403,7 @@ def main():
         if args.out:
             net = calibrated(net, args)
             weights.export(net, args.out, *LARGE)
-        judge(net, args.make, 0, args.pictures // 16)
+        judge_all(net, args, args.pictures // 16)
         return
     if args.short:
         args.batch, args.small, args.keep, args.workers = 8, 1, None, 1
@@ -370,7 +426,7 @@ def main():
     if args.out:
         net = calibrated(net, args)
         weights.export(net, args.out, *LARGE)
-    judge(net, args.make, 0, args.pictures // 16)
+    judge_all(net, args, args.pictures // 16)
 
 
 if __name__ == "__main__":

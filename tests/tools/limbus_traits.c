@@ -2,6 +2,7 @@
  * config/limbus.conf by (tests/evidence/odds.py).
  *
  *     limbus_traits OUT.csv drawn FIRST COUNT     drawn eyes of the training split; one in five is none
+ *     limbus_traits OUT.csv heads FIRST COUNT FILE     photographs of a file that heads.py has written (tests/evidence/kept.h)
  *     limbus_traits OUT.csv synthetic STEP        every STEP-th of the grid of tests/lib/scenes/synth_eye.h
  *     limbus_traits OUT.csv captures              the rendered captures with truth
  *     limbus_traits OUT.csv strip FIRST COUNT     of drawn eyes of which a quarter of the limbus shows, the strip's ellipse alone: number, share that
@@ -17,6 +18,7 @@
 #include "base/mem.h"
 #include "limbus/trial.h"
 #include "math/rng.h"
+#include "tests/evidence/kept.h"
 #include "tests/evidence/other.h"
 #include "tests/evidence/scene.h"
 #include "tests/lib/conf/limbus_conf.h"
@@ -180,6 +182,23 @@ static void drawn(FILE *csv, long number)
 	drawn_free(&d);
 }
 
+static bool heads(FILE *csv, long first, long count, const char *path)
+{
+	FILE *file = fopen(path, "rb");
+	struct drawn d;
+	for (long i = 0; file && i < first + count && kept_next(&d, file); i++) {
+		struct seen truth[2];
+		if (i >= first) {
+			struct photo photo = photo_of(&d);
+			const int n = eyes_of(truth, &d);
+			note(csv, "heads", i, &photo, n, truth);
+			free(photo.rgb);
+		}
+		drawn_free(&d);
+	}
+	return file && !fclose(file);
+}
+
 static void synthetic(FILE *csv, int number)
 {
 	struct synth_eye eye = synth_eye_grid(number);
@@ -206,12 +225,17 @@ int main(int argc, char **argv)
 {
 	FILE *csv = argc > 2 ? fopen(argv[1], "w") : 0;
 	if (!csv) {
-		fprintf(stderr, "limbus_traits OUT.csv drawn FIRST COUNT | synthetic STEP | captures | strip FIRST COUNT\n");
+		fprintf(stderr, "limbus_traits OUT.csv drawn FIRST COUNT | heads FIRST COUNT FILE | synthetic STEP | captures | strip FIRST COUNT\n");
 		return 2;
 	}
 	if ((!strcmp(argv[2], "drawn") || !strcmp(argv[2], "strip")) && argc > 4) {
 		for (long i = 0; i < atol(argv[4]); i++)
 			(*argv[2] == 'd' ? drawn : strip)(csv, atol(argv[3]) + i);
+	} else if (!strcmp(argv[2], "heads") && argc > 5) {
+		if (!heads(csv, atol(argv[3]), atol(argv[4]), argv[5])) {
+			fprintf(stderr, "cannot read %s\n", argv[5]);
+			return 1;
+		}
 	} else if (!strcmp(argv[2], "synthetic") && argc > 3) {
 		for (int i = 0; i < SYNTH_GRID; i += atoi(argv[3]))
 			synthetic(csv, i);

@@ -10,7 +10,7 @@
 
 static const double DEG = M_PI / 180;
 const char *const tally_bin[TALLY_BINS] = { "all", "drawn (tests/evidence, test split)", "cast (tests/lib/cast)",
-	"path-traced (EYEWRIGHT_TRACED)", "opening below 0.4 of the iris",
+	"path-traced (EYEWRIGHT_TRACED)", "heads (EYEWRIGHT_HEADS)", "opening below 0.4 of the iris",
 	"opening 0.4 to 0.8", "opening above 0.8", "tungsten light", "balanced light", "bluish light", "radius 30 to 60 px", "radius 60 to 120 px",
 	"radius 120 to 500 px", "tilt below 15 deg", "tilt 15 to 30 deg", "tilt above 30 deg" };
 
@@ -22,17 +22,18 @@ bool tally_in(int bin, const struct outcome *o)
 	case 1: return o->maker == UNSEEN_DRAWN;
 	case 2: return o->maker == UNSEEN_CAST;
 	case 3: return o->maker == UNSEEN_TRACED;
-	case 4: return o->opening < 0.4;
-	case 5: return o->opening >= 0.4 && o->opening <= 0.8;
-	case 6: return o->opening > 0.8;
-	case 7: return o->warmth > 1.6;
-	case 8: return o->warmth >= 0.8 && o->warmth <= 1.6;
-	case 9: return o->warmth < 0.8;
-	case 10: return a < 60;
-	case 11: return a >= 60 && a < 120;
-	case 12: return a >= 120;
-	case 13: return tilt < 15;
-	case 14: return tilt >= 15 && tilt <= 30;
+	case 4: return o->maker == UNSEEN_HEADS;
+	case 5: return o->opening < 0.4;
+	case 6: return o->opening >= 0.4 && o->opening <= 0.8;
+	case 7: return o->opening > 0.8;
+	case 8: return o->warmth > 1.6;
+	case 9: return o->warmth >= 0.8 && o->warmth <= 1.6;
+	case 10: return o->warmth < 0.8;
+	case 11: return a < 60;
+	case 12: return a >= 60 && a < 120;
+	case 13: return a >= 120;
+	case 14: return tilt < 15;
+	case 15: return tilt >= 15 && tilt <= 30;
 	default: return tilt > 30;
 	}
 }

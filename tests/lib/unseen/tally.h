@@ -36,7 +36,7 @@ struct tally {
 	double seconds;                                   // median
 };
 
-enum { TALLY_BINS = 16 };
+enum { TALLY_BINS = 17 };
 extern const char *const tally_bin[TALLY_BINS];
 bool tally_in(int bin, const struct outcome *o);
 struct tally tally_make(int n, const struct outcome *o, int method, int bin);

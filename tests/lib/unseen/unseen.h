@@ -7,7 +7,7 @@
 #include "image/photo/photo.h"
 #include "math/ellipse.h"
 
-enum unseen_maker { UNSEEN_DRAWN, UNSEEN_CAST, UNSEEN_TRACED };
+enum unseen_maker { UNSEEN_DRAWN, UNSEEN_CAST, UNSEEN_TRACED, UNSEEN_HEADS };
 
 struct unseen_eye {
 	struct ellipse limbus;  // px: the middle of its ramp, in linear light
@@ -39,6 +39,12 @@ void unseen_free(struct unseen *u);
 int unseen_traced_count(void);
 /* Photograph k of them. False: its truth or picture cannot be read. */
 bool unseen_traced(struct unseen *u, int k);
+
+/* How many photographs $EYEWRIGHT_HEADS holds, a file that tests/evidence/heads.py has written of people whom training has not seen. 0 where it is
+ * not set. */
+int unseen_heads_count(void);
+/* Photograph k of them; no pupil is known. False: it shows hardly any eye. */
+bool unseen_heads(struct unseen *u, int k);
 
 /* The split's size. */
 enum { UNSEEN_COUNT = 1000 };
