@@ -13,6 +13,7 @@ lamps in the cornea, light from all sides, exposure, white balance, blur, grain,
 """
 import argparse
 import ctypes
+import functools
 import os
 import subprocess
 import sys
@@ -94,14 +95,16 @@ def boxes(rng, key):
     """Lamps and windows that the cornea mirrors: direction, sides, half widths, strength."""
     out = []
 
-    def add(d, half_w, half_h, strength, roll=0.):
+    def axes(d, roll):
         d = d / np.linalg.norm(d)
         u = np.cross([0, 1, 0], d)
         u /= np.linalg.norm(u) + 1e-9
         v = np.cross(d, u)
-        u, v = np.cos(roll) * u + np.sin(roll) * v, np.cos(roll) * v - np.sin(roll) * u
+        return d, np.cos(roll) * u + np.sin(roll) * v, np.cos(roll) * v - np.sin(roll) * u
+
+    def add(d, half_w, half_h, strength, roll):
+        d, u, v = axes(d, roll)
         out.append([*d, *u, *v, half_w, half_h, strength])
-        return d, u, v
 
     for k in range(rng.integers(0, 4)):
         d = key if k == 0 else np.array([rng.uniform(-1, 1), rng.uniform(-.9, .4), -rng.uniform(.4, 1)])
@@ -109,8 +112,7 @@ def boxes(rng, key):
         half_w, half_h, roll = rng.uniform(.03, .35), rng.uniform(.03, .4), rng.normal(0, .1)
         if rng.random() < .35:  # the panes of a window
             n, m = rng.integers(1, 4), rng.integers(1, 4)
-            d, u, v = add(d, half_w / n * .9, half_h / m * .9, 0, roll)
-            out.pop()
+            d, u, v = axes(d, roll)
             for i in range(n):
                 for j in range(m):
                     add(d + u * half_w * (2 * i + 1 - n) / n + v * half_h * (2 * j + 1 - m) / m, half_w / n * .88, half_h / m * .88, strength, roll)
@@ -400,8 +402,7 @@ def main():
     cv2.setNumThreads(1)
     sys.path.insert(0, args.faces)
     import mesh
-    loaded, load = {}, mesh.load
-    mesh.load = lambda: loaded.setdefault(mesh.D, None) or loaded.__setitem__(mesh.D, load()) or loaded[mesh.D]
+    mesh.load = functools.cache(mesh.load)  # the same for all people
     with tempfile.TemporaryDirectory() as work:
         subprocess.run(["gcc", "-O3", "-march=native", "-ffast-math", "-shared", "-fPIC", args.faces + "/rast.c", "-o", work + "/rast.so", "-lm"], check=True)
         for number in range(args.first, args.first + args.count):

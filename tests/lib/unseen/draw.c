@@ -22,6 +22,13 @@ double unseen_showing(const struct drawn *d, const struct ellipse *e)
 	return n / 360.0;
 }
 
+struct unseen_eye unseen_eye_of(const struct drawn *d, int k)
+{
+	const float *l = d->eye[k].limbus, *p = d->eye[k].pupil;
+	const struct ellipse limbus = { l[0], l[1], l[2], l[3], l[4] };
+	return (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(d, &limbus), d->eye[k].theta };
+}
+
 bool unseen_leans(const struct drawn *d, double turn)
 {
 	return d->aspect < 0.99F && fabs(turn) > 0.1;
@@ -39,13 +46,11 @@ bool unseen_draw(struct unseen *u, uint64_t number, const struct unseen_frame *f
 	double nearest = INFINITY;
 	for (int e = 0; e < d.n_eyes; e++) {
 		const float *l = d.eye[e].limbus;
-		const struct ellipse limbus = { l[0], l[1], l[2], l[3], l[4] };
 		const double away = hypot(l[0] - f->x, l[1] - f->y);
 		const int at = away < nearest ? 0 : u->n;
 		if (u->n && at == 0)
 			u->eye[1] = u->eye[0];
-		const float *p = d.eye[e].pupil;
-		u->eye[at] = (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(&d, &limbus), d.eye[e].theta };
+		u->eye[at] = unseen_eye_of(&d, e);
 		if (at == 0) {
 			nearest = away;
 			u->opening = d.eye[e].openness;

@@ -37,13 +37,6 @@ static bool between(double to[2], uint64_t number, const struct shot *s)
 	return two;
 }
 
-static struct unseen_eye eye_of(const struct drawn *d, int k)
-{
-	const float *l = d->eye[k].limbus, *p = d->eye[k].pupil;
-	const struct ellipse limbus = { l[0], l[1], l[2], l[3], l[4] };
-	return (struct unseen_eye){ limbus, { p[0], p[1], p[2], p[3], p[4] }, unseen_showing(d, &limbus), d->eye[k].theta };
-}
-
 static bool draw(struct unseen *u, uint64_t number, const struct shot *s)
 {
 	double to[2];
@@ -60,8 +53,8 @@ static bool draw(struct unseen *u, uint64_t number, const struct shot *s)
 		const int left = (d.eye[0].limbus[0] > d.eye[1].limbus[0]) != s->mirrored ? 0 : 1;
 		*u = (struct unseen){ .photo = unseen_photo(d.rgb, d.width, d.height), .n = 2, .maker = UNSEEN_DRAWN, .opening = d.eye[0].openness,
 			.warmth = d.white[0] / d.white[2], .white = { d.white[0], d.white[1], d.white[2] }, .aspect = d.aspect, .leans = unseen_leans(&d, s->turn) };
-		u->eye[FACES_LEFT] = eye_of(&d, left);
-		u->eye[FACES_RIGHT] = eye_of(&d, 1 - left);
+		u->eye[FACES_LEFT] = unseen_eye_of(&d, left);
+		u->eye[FACES_RIGHT] = unseen_eye_of(&d, 1 - left);
 	}
 	drawn_free(&d);
 	return whole;

@@ -29,13 +29,6 @@ static int asked_for(const struct drawn *d)
 	return best;
 }
 
-static struct unseen_eye eye_of(const struct drawn *d, int k)
-{
-	const float *l = d->eye[k].limbus;
-	const struct ellipse limbus = { l[0], l[1], l[2], l[3], l[4] };
-	return (struct unseen_eye){ limbus, { 0, 0, 0, 0, 0 }, unseen_showing(d, &limbus), d->eye[k].theta };
-}
-
 bool unseen_heads(struct unseen *u, int k)
 {
 	FILE *file = fopen(getenv("EYEWRIGHT_HEADS"), "rb");
@@ -50,9 +43,9 @@ bool unseen_heads(struct unseen *u, int k)
 	const int asked = ok ? asked_for(&d) : -1;
 	if (asked >= 0) {
 		*u = (struct unseen){ .photo = unseen_photo(d.rgb, d.width, d.height), .maker = UNSEEN_HEADS, .aspect = 1, .warmth = 1, .opening = d.eye[asked].shown, .n = 1 };
-		u->eye[0] = eye_of(&d, asked);
+		u->eye[0] = unseen_eye_of(&d, asked);
 		if (d.n_eyes > 1 && d.eye[1 - asked].shown > 0.02F)
-			u->eye[u->n++] = eye_of(&d, 1 - asked);
+			u->eye[u->n++] = unseen_eye_of(&d, 1 - asked);
 	}
 	drawn_free(&d);
 	return asked >= 0;

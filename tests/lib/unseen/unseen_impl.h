@@ -19,6 +19,8 @@ bool unseen_draw(struct unseen *u, uint64_t number, const struct unseen_frame *f
 /* Share of a limbus (px of the picture) that shows: iris just inside and sclera just outside. */
 struct drawn;
 double unseen_showing(const struct drawn *d, const struct ellipse *e);
+/* Eye k of a drawn picture. */
+struct unseen_eye unseen_eye_of(const struct drawn *d, int k);
 /* Whether a drawn picture turned by `turn`, radians, leans. */
 bool unseen_leans(const struct drawn *d, double turn);
 
