@@ -143,6 +143,16 @@ bool evidence_window(struct evidence *out, struct evidence_net *net, const struc
 	return classify(out, &view, 1, true, net, &(struct source){ .photo = photo }, err);
 }
 
+bool evidence_glance(struct evidence out[], int n, const double place[][3], struct evidence_net *net, const struct photo *photo, struct err *err)
+{
+	struct view view[EVIDENCE_GLANCES];
+	for (int i = 0; i < n; i++) {
+		const double scale = place[i][2] / EVIDENCE_GLANCE;
+		view[i] = (struct view){ place[i][0] - 0.5 * EVIDENCE_GLANCE_WIDE * scale, place[i][1] - 0.5 * EVIDENCE_GLANCE_HIGH * scale, scale, EVIDENCE_GLANCE_WIDE, EVIDENCE_GLANCE_HIGH };
+	}
+	return classify(out, view, n, false, net, &(struct source){ .photo = photo }, err);
+}
+
 /* What is added to reach a multiple of STEP lies on both sides. */
 static struct view whole(const struct photo *photo, int long_px)
 {

@@ -41,6 +41,11 @@ enum { EVIDENCE_RADIUS = 40 };
 bool evidence_window(struct evidence *out, struct evidence_net *net, const struct photo *photo, double cx, double cy, double radius,
                      struct err *err);
 
+/* The same round n places at once (x, y, radius of an iris), at a glance, for films: EVIDENCE_GLANCE px radius in EVIDENCE_GLANCE_WIDE x
+ * EVIDENCE_GLANCE_HIGH, a pixel of the planes 1/10 of it, the mirror image not asked. n at most EVIDENCE_GLANCES. Each out is to be freed by evidence_free. */
+enum { EVIDENCE_GLANCE = 20, EVIDENCE_GLANCE_WIDE = 128, EVIDENCE_GLANCE_HIGH = 96, EVIDENCE_GLANCES = 4 };
+bool evidence_glance(struct evidence out[], int n, const double place[][3], struct evidence_net *net, const struct photo *photo, struct err *err);
+
 /* Evidence over the whole photograph, reduced (or enlarged) to long_px px on its longer side in the network's input; irises of 6 to
  * 48 px radius there are told. The planes' scale is twice the reduction. evidence_free. */
 bool evidence_whole(struct evidence *out, struct evidence_net *net, const struct photo *photo, int long_px, struct err *err);

@@ -1,5 +1,9 @@
 #include "math/walk.h"
 
+#include <math.h>
+
+#include "math/stats.h"
+
 void walk_smooth(long n, double *x, const double *sigma, double step, double *room)
 {
 	double tie = 1 / (step * step), *up = room;
@@ -40,4 +44,21 @@ void walk_glide(long n, double *x, const double *sigma, double bend, double *roo
 	}
 	for (long i = n - 2; i >= 0; i--)
 		x[i] -= near[i] * x[i + 1] + (i + 2 < n ? far[i] * x[i + 2] : 0);
+}
+
+void walk_unrest(double *noise, double *bend, long n, const double *x, double *room)
+{
+	const double normal = 1.4826;
+	double at[2];
+	for (int order = 2; order < 4; order++) {
+		int m = 0;
+		for (long f = 0; f + order < n; f++) {
+			const double d = order == 2 ? x[f] - 2 * x[f + 1] + x[f + 2] : x[f] - 3 * x[f + 1] + 3 * x[f + 2] - x[f + 3];
+			if (!isnan(d))
+				room[m++] = fabs(d);
+		}
+		at[order - 2] = m ? normal * stats_median(m, room) : 0;
+	}
+	*noise = at[1] / sqrt(20);
+	*bend = at[0];
 }

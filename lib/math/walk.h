@@ -16,4 +16,8 @@ void walk_smooth(long n, double *x, const double *sigma, double step, double *ro
  * room   [2 n] scratch */
 void walk_glide(long n, double *x, const double *sigma, double bend, double *room);
 
+/* Noise of such a path's samples x (NAN: not known), and how its step changes, by the median sizes of its third and second differences.
+ * room   [n] scratch */
+void walk_unrest(double *noise, double *bend, long n, const double *x, double *room);
+
 #endif

@@ -1,7 +1,7 @@
 /* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), side (a quarter turn), roll (turned
  * further from frame to frame, by 180 degrees in all), uneven (every second frame half an interval late), sway (moved aside by 30 px and back once a
  * second, as by a head that does not rest), aside (half the picture to the right), pair
- * (the picture twice beside itself, half as large), mirror (the same, the right one mirrored), toon (few colours and black outlines). */
+ * (the picture twice beside itself, half as large), mirror (the same, the right one mirrored), toon (few colours and black outlines), fifth (a fifth of the pixels either way; of all parts or of none). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "image/video/video.h"
+#include "tests/lib/variants/worsen.h"
 
 enum { FRAMES = 4000, PARTS = 16 };
 
@@ -124,6 +125,11 @@ static bool put(struct video_writer *writer, long *n, const struct part *p, uint
 					toon(turned, px, info->width, info->height);
 				px = turned;
 			}
+			if (!strcmp(p->how, "fifth")) {
+				memcpy(turned, px, 3 * (size_t)info->width * (size_t)info->height);
+				worsen_reduce(turned, info->width, info->height, 5);
+				px = turned;
+			}
 			if (sway || aside) {
 				double t_s = (double)*n / info->fps;
 				shift(turned, px, info->width, info->height, aside ? info->width / 2 : (int)lround(30 * sin(2 * M_PI * t_s)), aside ? 0 : (int)lround(10 * sin(M_PI * t_s)));
@@ -150,8 +156,9 @@ int main(int argc, char **argv)
 	if (!ok)
 		return 2;
 	struct video_writer *writer = 0;
+	const int times = !strcmp(part[0].how, "fifth") ? 5 : 1;
 	if (load(rgb, &info, argv[2], n, part, &err))
-		writer = video_writer_open(argv[1], &(struct video_writer_conf){ .width = info.width, .height = info.height, .fps = info.fps, .crf = 16, .preset = "veryfast" }, &err);
+		writer = video_writer_open(argv[1], &(struct video_writer_conf){ .width = info.width / times, .height = info.height / times, .fps = info.fps, .crf = 16, .preset = "veryfast" }, &err);
 	for (int i = 0; i < n && writer && !err_is(&err); i++)
 		put(writer, &frames, &part[i], rgb, &info, &err);
 	video_writer_close(writer, !err_is(&err), &err);

@@ -139,7 +139,7 @@ static void center(struct track_clip *clip, struct stage *stage, struct track_su
 				continue;
 			moved = fmax(moved, fabs(g->limbus_radius - (s->limbus[e] > 0 ? s->limbus[e] : conf->eye.limbus_radius)));
 			s->limbus[e] = g->limbus_radius;
-			for (int k = 0; k < 2; k++) {
+			for (int k = 0; k < 2 && !(r.place_mm > 0); k++) {
 				moved = fmax(moved, fabs(g->center_in_head[k] - s->center[e][k]));
 				s->center[e][k] = g->center_in_head[k];
 			}

@@ -12,6 +12,9 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 /* The next frame, and the head's pose in it. */
 void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, const double cam_from_head[4][4]);
 
+/* Whether the eyes hold the head (hold.h): then skin alone does not tell its path. */
+bool track_eyes_hold(const struct track_eyes *eyes);
+
 /* Clip-wide fit with result's final poses; fills result's eyes and has_eyes, NAN in frames that are lost.
  * Returns false, err set, when no eye was found in any frame. */
 bool track_eyes_finish(struct track_result *result, struct track_eyes *eyes, struct err *err);

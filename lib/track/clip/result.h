@@ -34,6 +34,7 @@ struct track_result {
 	struct folds *folds;   // likewise, and null where there are no expressions or no points
 	bool has_eyes;
 	double *misfit;        // [n] px, median residual of the skin, lids excepted, against the rigid head; null without points
+	double place_mm;       // standard deviation of the head's place where the eyes hold it (hold.h); 0: they do not
 	bool rests;            // the head is on a rest: every pose is the reference's
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points] px; px of the modelling camera; bulk
 	int lid_points;

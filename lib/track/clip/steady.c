@@ -33,9 +33,7 @@ static double away(const struct track_result *r, long reference, long frame, dou
 	return n > r->n_points / 4 ? stats_quantile(n, room, 0.1) : INFINITY;
 }
 
-/* True for a head on a rest: it returns to the same place in every third of the clip. Skin alone cannot distinguish raised
- * cheeks from a head that comes nearer. */
-static bool rests(const struct track_result *r, long reference)
+bool track_rests(const struct track_result *r, long reference)
 {
 	enum { PARTS = 3 };
 	double *room = mem_array((size_t)r->n_points + 1, sizeof *room);
@@ -108,21 +106,6 @@ static void smooth(struct track_result *r, const double *misfit, double usual, c
 	free(room);
 }
 
-/* Noise of a smooth path's samples, and how its speed changes, by the median sizes of its third and second differences. */
-static void unrest(double *noise, double *bend, long n, const double *x, double *room)
-{
-	const double normal = 1.4826;
-	double at[2];
-	for (int order = 2; order < 4; order++) {
-		int m = 0;
-		for (long f = 0; f + order < n; f++)
-			room[m++] = fabs(order == 2 ? x[f] - 2 * x[f + 1] + x[f + 2] : x[f] - 3 * x[f + 1] + 3 * x[f + 2] - x[f + 3]);
-		at[order - 2] = m ? normal * stats_median(m, room) : 0;
-	}
-	*noise = at[1] / sqrt(20);
-	*bend = at[0];
-}
-
 /* What skin that moves by so much (px) about the head does to the pose: error of one of the six parameters of motion, radians, mm. */
 static double mislead(double px, int parameter, const double pivot[3], const struct track_clip *clip)
 {
@@ -145,7 +128,7 @@ static void glide(struct track_result *r, double usual, const double pivot[3], c
 	for (int k = 0; k < MOTIONS; k++) {
 		const double least = k < 3 ? least_turn * M_PI / 180 : least_shift;
 		double *own = x + (size_t)k * n, noise, bend;
-		unrest(&noise, &bend, r->n, own, room);
+		walk_unrest(&noise, &bend, r->n, own, room);
 		for (size_t f = 0; f < n; f++)
 			sigma[f] = hypot(fmax(least, noise), alike * mislead(fmin(1e4, sqrt(fmax(0, pow(r->misfit[f], 2) - pow(2 * usual, 2)))), k, pivot, clip));
 		walk_glide(r->n, own, sigma, fmax(least, bend), room);
@@ -214,7 +197,7 @@ static void follow_path(struct track_result *r, const struct track_points *point
 
 void track_steady(struct track_result *r, long reference, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip, double stirs_mm)
 {
-	r->rests = rests(r, reference);
+	r->rests = track_rests(r, reference);
 	misfits(r, points, s, clip);
 	if (r->rests) {
 		for (long f = 0; f < r->n; f++)

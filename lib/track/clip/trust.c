@@ -105,14 +105,44 @@ static double normal(double x, double scale)
 	return exp(-0.5 * (x / scale) * (x / scale)) / scale;
 }
 
-double trust_odds(int evidence, double x, const struct track_conf *conf)
+/* own: standard deviation of the value itself. */
+static double odds_of(int evidence, double x, double own, const struct track_conf *conf)
 {
-	const double *scale = conf->trust[evidence], odd = conf->trust_odd;
+	const double scale[2] = { hypot(conf->trust[evidence][0], own), hypot(conf->trust[evidence][1], own) }, odd = conf->trust_odd;
 	if (isnan(x))
 		return 0;
 	// so far off that both densities vanish
 	const double far = 8 * scale[1], right = normal(fmin(fabs(x), far), scale[0]), wrong = normal(fmin(fabs(x), far), scale[1]);
 	return log(((1 - odd) * right + odd * wrong) / (0.5 * (right + wrong)));
+}
+
+double trust_odds(int evidence, double x, const struct track_conf *conf)
+{
+	return odds_of(evidence, x, 0, conf);
+}
+
+/* Standard deviation of one eye's gaze against the other's, or of their mean, as they say, degrees: where corners hold the head and average eyeballs lie between them. */
+static double own_of(const struct track_result *r, int evidence)
+{
+	const int axis = evidence == TRUST_LEVEL;
+	double sum = 0;
+	if (!(r->place_mm > 0) || !(evidence == TRUST_APART || evidence == TRUST_LEVEL || evidence == TRUST_STRAIGHT))
+		return 0;
+	double *sigma = mem_array((size_t)r->n + 1, sizeof *sigma);
+	for (int e = 0; e < SIDES; e++) {
+		int n = 0;
+		for (long f = 0; f < r->n; f++)
+			if (isfinite(r->eyes.state[f][e].sigma[axis]))
+				sigma[n++] = r->eyes.state[f][e].sigma[axis] * 180 / M_PI;
+		sum += n ? pow(stats_median(n, sigma), 2) : 0;
+	}
+	free(sigma);
+	return evidence == TRUST_STRAIGHT ? 0.5 * sqrt(sum) : sqrt(sum);
+}
+
+double trust_wrong_deg(const struct track_result *r, const struct track_conf *conf)
+{
+	return r->place_mm > 0 ? conf->wrong_held_deg : conf->wrong_deg;
 }
 
 /* Probability that the focal length told is wrong (Bayes' rule): the share of perspective seen is normal about 1, and about as much as people mistake lenses for. No
@@ -156,8 +186,8 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 	const double prior = laid && laid_by_one(r, s) ? conf->wrong_prior_one : conf->wrong_prior;
 	double odds = log((1 - prior) / prior);
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
-		odds += t->log_odds[i] = trust_odds(i, t->value[i], conf);
-	t->far = far_of(r, conf->wrong_deg);
+		odds += t->log_odds[i] = odds_of(i, t->value[i], own_of(r, i), conf);
+	t->far = far_of(r, trust_wrong_deg(r, conf));
 	t->lens = lens_of(clip, conf);
 	t->wrong = 1 - (1 - t->far) * (1 - t->lens) / (1 + exp(-odds));
 }

@@ -48,6 +48,7 @@ static void start(struct eye_side *eye, const struct eye_track *track, int side)
 {
 	const struct eye_prior *prior = &track->scene.prior[side];
 	bool seen = known(3, prior->limbus_px) && prior->limbus_px[2] > 2, given = known(3, prior->center_in_head);
+	eye->side = side;
 	eye->scene = &track->scene;
 	eye->conf = &track->conf;
 	eye->absent = prior->absent || !(given || seen);
@@ -114,6 +115,14 @@ void eye_track_head_was(struct eye_track *track, long frame, const double cam_fr
 	for (int side = 0; side < SIDES; side++)
 		if (frame < track->side[side].frames)
 			memcpy(track->side[side].record[frame].cam_from_head, cam_from_head, sizeof track->side[side].record[frame].cam_from_head);
+}
+
+void eye_track_place_was(struct eye_track *track, double place_mm, double turn)
+{
+	for (int side = 0; side < SIDES; side++) {
+		track->side[side].place_sigma = place_mm;
+		track->side[side].turn_sigma = turn;
+	}
 }
 
 void eye_track_pack(struct pack *pack, struct eye_track *track, long first)

@@ -52,6 +52,7 @@ struct eye_frame {
 	int luma_stride, rgb_stride;
 	double time;                // seconds, of the middle of the exposure
 	double cam_from_head[4][4];
+	const struct evidence *evidence[SIDES];  // of the pixels round each eye (limbus/evidence.h); null: none
 };
 
 enum blink_state { BLINK_OPEN, BLINK_CLOSING, BLINK_CLOSED, BLINK_OPENING };
@@ -110,6 +111,9 @@ void eye_track_pack(struct pack *pack, struct eye_track *track, long first);
 
 /* Replaces the head's pose in a frame already pushed, for the fit of eye_track_finish. */
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);
+
+/* The head's place in the picture is known in each frame to so many mm, and how it is turned aside to so many radians (one standard deviation), for the same. */
+void eye_track_place_was(struct eye_track *track, double place_mm, double turn);
 
 /* Fits the eyeballs to the whole clip (gaze/bundle.h), then estimates gaze, lids and openness again and finds blinks and
  * saccades.

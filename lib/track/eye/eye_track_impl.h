@@ -22,6 +22,7 @@ struct eye_record {
 };
 
 struct eye_side {
+	int side;
 	bool absent, started;
 	const struct eye_scene *scene;
 	const struct eye_track_conf *conf;
@@ -31,6 +32,7 @@ struct eye_side {
 	bool average;              // its radius is an average eye's
 	double radius_sigma;       // mm: of first_globe's radius
 	double view_sigma[2];      // radians: of the line of sight from the camera to the eye
+	double place_sigma, turn_sigma;  // mm, radians: error of the head's place in each frame, and of its turn aside
 	double canthus[2][3];      // head frame
 	bool corners_guessed;      // until lids are found
 	double fick[2];            // last gaze
@@ -64,12 +66,12 @@ double eye_scale(const struct gaze_globe *globe, const struct gaze_view *view);
 
 /* Rough gaze into eye->fick by gaze_seek(): near the last gaze, else (or where `anywhere`) in a range of 36 degrees. Returns
  * its score; from EYE_FOUND on an eye is there. */
-double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere);
+double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, const struct evidence *evidence, bool anywhere);
 static const double EYE_FOUND = 0.35;
 
 /* Gaze and torsion from what is visible between the lids of this frame; state is left as it was where they cannot be measured. */
 void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_side *eye, const struct luma *luma,
-                 const struct gaze_view *view);
+                 const struct gaze_view *view, const struct evidence *evidence);
 
 /* Measures one frame of one eye and appends the result. */
 void eye_side_push(struct eye_side *eye, const struct eye_frame *frame);

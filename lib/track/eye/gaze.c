@@ -24,11 +24,11 @@ static bool is_seen(const void *ctx, const double px[2])
 	return lid_track_inside(seen->lids, px, seen->inside);
 }
 
-double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, bool anywhere)
+double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, const struct evidence *evidence, bool anywhere)
 {
 	double degree = M_PI / 180, fick[2] = { eye->fick[0], eye->fick[1] }, score = NAN;
 	struct seen seen = { &eye->lids, 0 };
-	struct gaze_sight sight = { luma, &eye->globe, view, eye->contrast, eye->lids.known ? is_seen : NULL, &seen };
+	struct gaze_sight sight = { luma, &eye->globe, view, eye->contrast, eye->lids.known ? is_seen : NULL, &seen, evidence };
 	if (eye->have && !anywhere)
 		score = gaze_seek(fick, &sight, 9 * degree, 1.5 * degree, 0.5 * degree);
 	if (!(score > EYE_FOUND)) {
@@ -126,7 +126,7 @@ static bool pupil_seen(const struct eye_side *eye, const struct gaze_view *view,
 }
 
 void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_side *eye, const struct luma *luma,
-                 const struct gaze_view *view)
+                 const struct gaze_view *view, const struct evidence *evidence)
 {
 	struct gaze_edge edge[GAZE_ARCS_MAX];
 	struct gaze_fit fit;
@@ -134,7 +134,7 @@ void eye_measure(struct eye_state *state, struct eye_record *record, struct eye_
 	int n = 0;
 	// A second search, anywhere, with the lids of this frame.
 	if (!measure(&fit, edge, &n, eye, luma, view, limbus_px)
-	    && (!(eye_seek(eye, luma, view, true) > EYE_FOUND) || !measure(&fit, edge, &n, eye, luma, view, limbus_px)))
+	    && (!(eye_seek(eye, luma, view, evidence, true) > EYE_FOUND) || !measure(&fit, edge, &n, eye, luma, view, limbus_px)))
 		return;
 	if (!pupil_seen(eye, view, fit.fick, limbus_px))
 		return;

@@ -108,8 +108,11 @@ void eye_pair_doubt(struct eye_side *left, struct eye_side *right, const double 
 	for (long i = 0; m >= LEAST && i < n; i++) {
 		struct eye_state *s[2] = { &left->state[i], &right->state[i] };
 		bool apart = false;
-		for (int k = 0; k < 2; k++)
-			apart = apart || fabs(s[0]->gaze[k] - s[1]->gaze[k] - middle[k]) > most_deg[k] * M_PI / 180;
+		for (int k = 0; k < 2; k++) {
+			// average eyeballs that are off look apart when they look aside
+			const double common = left->average && right->average ? 2 * hypot(s[0]->sigma[k], s[1]->sigma[k]) : 0;
+			apart = apart || fabs(s[0]->gaze[k] - s[1]->gaze[k] - middle[k]) > fmax(most_deg[k] * M_PI / 180, common);
+		}
 		const double trust[2] = { s[0]->confidence / usual[0], s[1]->confidence / usual[1] };
 		for (int e = 0; e < 2 && apart; e++)
 			if (trust[e] <= trust[!e] || trust[e] < poor)

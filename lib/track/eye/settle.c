@@ -34,7 +34,8 @@ static void add_common(struct eye_state *state, const struct eye_side *eye, cons
 	gaze_bundle_common(cov, frame, &eye->globe, fit);
 	for (int k = 0; k < 2; k++) {
 		double common = isfinite(cov[k][k]) ? fmin(worst, sqrt(fmax(0, cov[k][k]))) : worst;
-		state->sigma[k] = hypot(hypot(state->sigma[k], common), hypot(eye->scene->head_sigma[k], eye->view_sigma[k]));
+		const double placed = hypot(eye->place_sigma / gaze_plane(&eye->globe), k ? 0 : eye->turn_sigma);
+		state->sigma[k] = hypot(hypot(hypot(state->sigma[k], common), placed), hypot(eye->scene->head_sigma[k], eye->view_sigma[k]));
 	}
 }
 
@@ -75,7 +76,7 @@ static void level_torsion(struct eye_side *eye)
 
 static struct gaze_bundle_conf bundle_of(const struct eye_side *eye)
 {
-	return (struct gaze_bundle_conf){ eye->center_guess, eye->radius_sigma, eye->conf->limbus_sigma, eye->average ? eye->conf->edge_sigma : 0 };
+	return (struct gaze_bundle_conf){ eye->center_guess, eye->radius_sigma, eye->conf->limbus_sigma, eye->average ? eye->conf->edge_sigma : 0, eye->average ? eye->conf->edge_px : 0 };
 }
 
 bool eye_side_radius(double *radius, double *sigma, const struct eye_side *eye)

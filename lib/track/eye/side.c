@@ -95,8 +95,9 @@ static void look(struct eye_state *state, struct eye_record *record, struct lid_
 	const struct eye_scene *scene = eye->scene;
 	struct luma luma = { frame->luma, scene->width, scene->height, frame->luma_stride };
 	struct lid_picture picture = { frame->rgb, frame->rgb_stride, scene->width, scene->height };
-	struct lid_look look = { .mm = eye_scale(&eye->globe, view) };
-	double limbus_px = look.mm * eye->globe.limbus, score = eye_seek(eye, &luma, view, false), plane = gaze_plane(&eye->globe);
+	const struct evidence *evidence = frame->evidence[eye->side];
+	struct lid_look look = { .mm = eye_scale(&eye->globe, view), .evidence = evidence };
+	double limbus_px = look.mm * eye->globe.limbus, score = eye_seek(eye, &luma, view, evidence, false), plane = gaze_plane(&eye->globe);
 	double head_down[3] = { eye->globe.center[0], eye->globe.center[1] - 1, eye->globe.center[2] }, top[2], low[2];
 	if (!to_pixel(look.inner, view, eye->canthus[0]) || !to_pixel(look.outer, view, eye->canthus[1])
 	    || !to_pixel(top, view, eye->globe.center) || !to_pixel(low, view, head_down)
@@ -116,7 +117,7 @@ static void look(struct eye_state *state, struct eye_record *record, struct lid_
 		return;
 	eye_fill_lids(state, &record->found, eye->lids.points);
 	lid_fine_look(fine, LID_UPPER, eye->lids.points, record->found.p[LID_UPPER], look.mm, &picture);
-	eye_measure(state, record, eye, &luma, view);
+	eye_measure(state, record, eye, &luma, view, evidence);
 }
 
 static void append(struct eye_side *eye, const struct eye_state *state, const struct eye_record *record, const struct lid_fine *fine)

@@ -165,7 +165,7 @@ static bool iterate(struct gaze_globe *globe, struct gaze_bundle_fit *fit, int n
 			reduce(&sums, &own[i]);
 		}
 		// Errors round one limbus are correlated (lobes, shading): a frame counts as about three edges.
-		double common = conf->edge_sigma * limbus_px(frame[0], globe);
+		double common = hypot(conf->edge_sigma * limbus_px(frame[0], globe), conf->edge_px);
 		double noise = sums.weight > 0 ? (sums.square / sums.weight + common * common) * same * EDGES / 3 : 1;
 		if (!solve(step, &sums, globe, &start, sigma, fmax(noise, 0.01), fit->cov))
 			return false;

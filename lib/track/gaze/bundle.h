@@ -14,6 +14,7 @@ struct gaze_frame {
 struct gaze_bundle_conf {
 	double center_sigma, radius_sigma, limbus_sigma;  // mm, standard deviations of the prior about the start
 	double edge_sigma;        // share of the limbus' radius by which the edges of one gaze err together, beyond their scatter
+	double edge_px;           // px by which they do, however small it is
 };
 
 enum { GAZE_GLOBE = GAZE_N - GAZE_X };  // unknowns that all frames share: centre, radius, limbus

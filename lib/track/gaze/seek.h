@@ -1,8 +1,9 @@
 /* seek: rough direction of gaze by grid search: the direction whose projected limbus has the greatest contrast between dark
- * inside and bright outside. No edges are measured.
+ * inside and bright outside; or, where the evidence of the pixels is given, whose limbus parts iris from sclera. No edges are measured.
  */
 #ifndef TRACK_GAZE_SEEK_H
 #define TRACK_GAZE_SEEK_H
+#include "limbus/evidence.h"
 #include "track/gaze/edge.h"
 
 struct gaze_sight {
@@ -12,6 +13,7 @@ struct gaze_sight {
 	double contrast;           // grey levels of a full step
 	gaze_seen_fn seen;         // where the limbus may be seen; null: everywhere
 	const void *ctx;
+	const struct evidence *evidence;  // of the pixels round the eye; null: brightness alone tells
 };
 
 /* fick: h, v, radians; in: middle of the grid; out: the best direction within `reach` of it on a grid of `step`, refined by

@@ -179,6 +179,20 @@ static void ask_strips(struct lid_track *lids, const struct lid_curves *expect)
 	}
 }
 
+/* Log odds of eye against lid for every cell of the chart, by the evidence. */
+static void ask_evidence(float odds[LID_ROWS][LID_COLS_MAX], const struct evidence *e, const struct lid_chart *chart)
+{
+	const float least = 0.02F;
+	for (int j = 0; j < LID_ROWS; j++)
+		for (int i = 0; i < chart->cols; i++) {
+			double p[2];
+			lid_chart_px(p, chart, i, j);
+			const float eye = evidence_at(e, EVIDENCE_SCLERA, p[0], p[1]) + evidence_at(e, EVIDENCE_IRIS, p[0], p[1]) + evidence_at(e, EVIDENCE_PUPIL, p[0], p[1])
+			                  + evidence_at(e, EVIDENCE_REFLECTION, p[0], p[1]);
+			odds[j][i] = fmaxf(-LID_SURE, fminf(LID_SURE, logf((eye + least) / (1 - eye + least))));
+		}
+}
+
 static void find(struct lid_found *found, struct lid_track *lids, const struct lid_look *look, bool fresh)
 {
 	float odds[LID_ROWS][LID_COLS_MAX];
@@ -190,9 +204,12 @@ static void find(struct lid_found *found, struct lid_track *lids, const struct l
 	if (!fresh)
 		ask_strips(lids, &expect);
 	for (int k = 0; k < (fresh ? 4 : 1); k++) {
-		if (fresh || lids->frames % (4 * lids->every) == 0)
+		if (!look->evidence && (fresh || lids->frames % (4 * lids->every) == 0))
 			lid_colour_settle(&lids->colour);
-		lid_colour_ask(odds, &lids->colour, &lids->chart, &iris);
+		if (look->evidence)
+			ask_evidence(odds, look->evidence, &lids->chart);
+		else
+			lid_colour_ask(odds, &lids->colour, &lids->chart, &iris);
 		found->sense = lid_path(&lids->curves, &lids->chart, odds, &lids->match, &expect, &conf);
 		if (fresh)
 			lid_colour_learn(&lids->colour, &lids->chart, lids->curves.row[0], lids->curves.row[1], &iris,

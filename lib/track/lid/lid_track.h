@@ -4,6 +4,7 @@
  */
 #ifndef TRACK_LID_LID_TRACK_H
 #define TRACK_LID_LID_TRACK_H
+#include "limbus/evidence.h"
 #include "track/lid/colour.h"
 #include "track/lid/margin.h"
 #include "track/lid/strip.h"
@@ -31,6 +32,7 @@ struct lid_look {
 	double inner[2], outer[2], down[2];  // corners of the eye by the head's pose, px; direction to the chin
 	double mm;                 // px in a millimetre
 	double iris[2], iris_px;   // limbus: centre and radius, px; NAN where not known
+	const struct evidence *evidence;  // of the pixels round the eye: tells eye from lid; null: the clip's own colours do
 };
 
 struct lid_found {

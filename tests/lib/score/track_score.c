@@ -270,6 +270,58 @@ static void score_gaze(struct track_score *s, const struct found *f)
 	s->gaze_share = open ? (double)n / (double)open : NAN;
 }
 
+/* Gaze as the camera sees it: Fick angles about its axes (x right, y up, towards it). */
+static void against_camera(double fick[2], const double head[16], double h, double v)
+{
+	const double in_head[3] = { sin(h) * cos(v), sin(v), cos(h) * cos(v) };
+	double seen[3] = { 0 };
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 3; k++)
+			seen[i] += head[4 * i + k] * in_head[k];
+	fick[0] = atan2(seen[0], -seen[2]) * 180 / M_PI;
+	fick[1] = asin(fmin(1, fmax(-1, -seen[1]))) * 180 / M_PI;
+}
+
+static void score_seen(struct track_score *s, const struct found *f)
+{
+	double *off[2], *ratio[2], degree = M_PI / 180;
+	long n = 0;
+	for (int k = 0; k < 2; k++) {
+		off[k] = mem_new(2 * (size_t)f->n + 1, sizeof *off[k]);
+		ratio[k] = mem_new(2 * (size_t)f->n + 1, sizeof *ratio[k]);
+	}
+	for (int side = 0; side < 2; side++) {
+		struct array gaze = truth(f, "gaze_cam", side ? "right_deg" : "left_deg"), state = truth(f, "blink_state", 0);
+		const int g = side ? 6 : 1;
+		for (long t = 0; t < f->n && gaze.x && state.x; t++) {
+			double got[2], sigma[2], fick[2];
+			for (int k = 0; k < 2; k++) {
+				char name[24];
+				snprintf(name, sizeof name, "g%d_deg", g + k);
+				got[k] = csv_at(&f->gaze, t, csv_column(&f->gaze, name));
+				snprintf(name, sizeof name, "sigma_g%d_deg", g + k);
+				sigma[k] = csv_at(&f->gaze, t, csv_column(&f->gaze, name));
+			}
+			if (state.x[t] != 0 || !isfinite(got[0] + got[1] + sigma[0] + sigma[1]))
+				continue;
+			against_camera(fick, f->head.x + 16 * t, got[0] * degree, got[1] * degree);
+			for (int k = 0; k < 2; k++) {
+				off[k][n] = fabs(fick[k] - gaze.x[2 * t + k]);
+				ratio[k][n] = off[k][n] / sigma[k];
+			}
+			n++;
+		}
+		free(gaze.x);
+		free(state.x);
+	}
+	for (int k = 0; k < 2; k++) {
+		s->seen[k] = spread_of(n, off[k]);
+		s->ratio[k] = spread_of(n, ratio[k]);
+		free(off[k]);
+		free(ratio[k]);
+	}
+}
+
 /* Distance of a point from a margin: its control points are joined by a Catmull-Rom spline. NAN where it has none. */
 static double off_margin(const double *lid, long m, const double p[2])
 {
@@ -385,6 +437,7 @@ bool track_score_from(struct track_score *s, const char *dir, const char *truth_
 		score_head(s, &f);
 		score_poses(s, &f);
 		score_gaze(s, &f);
+		score_seen(s, &f);
 		score_lids(s, &f);
 		score_aperture(s, &f);
 		score_blinks(s, &f);

@@ -116,7 +116,7 @@ void clip_truth_push(struct eye_track *track, const struct clip_truth *t, const 
 		if (!video_next(&frame, &got, video, &err) || !got)
 			break;
 		video_frame_rgb(rgb, 3 * info.width, &frame, 0, 0, info.width, info.height);
-		struct eye_frame eye = { frame.luma, rgb, frame.luma_stride, 3 * info.width, frame.time, { { 0 } } };
+		struct eye_frame eye = { frame.luma, rgb, frame.luma_stride, 3 * info.width, frame.time, { { 0 } }, { 0 } };
 		for (int r = 0; r < 3; r++) {
 			for (int k = 0; k < 3; k++)
 				eye.cam_from_head[r][k] = t->head_R[9 * i + 3 * r + k];

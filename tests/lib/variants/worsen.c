@@ -56,13 +56,16 @@ static void blur(uint8_t *rgb, int w, int h)
 	free(room);
 }
 
-static void halve(uint8_t *rgb, int w, int h)
+void worsen_reduce(uint8_t *rgb, int w, int h, int times)
 {
-	for (int y = 0; y < h / 2; y++)
-		for (int x = 0; x < w / 2; x++)
+	for (int y = 0; y < h / times; y++)
+		for (int x = 0; x < w / times; x++)
 			for (int c = 0; c < 3; c++) {
-				const uint8_t *p = rgb + 3 * (2L * y * w + 2 * x) + c;
-				rgb[3 * ((long)y * (w / 2) + x) + c] = (uint8_t)((p[0] + p[3] + p[3L * w] + p[3L * w + 3] + 2) / 4);
+				int sum = times * times / 2;
+				for (int v = 0; v < times; v++)
+					for (int u = 0; u < times; u++)
+						sum += rgb[3 * ((long)(times * y + v) * w + times * x + u) + c];
+				rgb[3 * ((long)y * (w / times) + x) + c] = (uint8_t)(sum / (times * times));
 			}
 }
 
@@ -72,8 +75,8 @@ bool worsen_video(const char *out, const char *in, const char *how, struct err *
 	struct video *video = video_open(&info, in, &(struct video_conf){ 40, 100000, 2, 0 }, err);
 	if (!video)
 		return false;
-	int w = info.width, h = info.height, half = !strcmp(how, "half") ? 2 : 1;
-	struct video_writer *writer = video_writer_open(out, &(struct video_writer_conf){ .width = w / half, .height = h / half, .fps = info.fps, .crf = 12, .preset = "veryfast" }, err);
+	int w = info.width, h = info.height, times = !strcmp(how, "half") ? 2 : !strcmp(how, "fifth") ? 5 : 1;
+	struct video_writer *writer = video_writer_open(out, &(struct video_writer_conf){ .width = w / times / 2 * 2, .height = h / times / 2 * 2, .fps = info.fps, .crf = 12, .preset = "veryfast" }, err);
 	uint8_t *rgb = mem_array((size_t)w * (size_t)h, 3);
 	struct rng rng = { 11 };
 	bool got = writer;
@@ -88,8 +91,8 @@ bool worsen_video(const char *out, const char *in, const char *how, struct err *
 		}
 		video_frame_rgb(rgb, 3 * w, &f, 0, 0, w, h);
 		video_frame_free(&f);
-		if (half == 2)
-			halve(rgb, w, h);
+		if (times > 1)
+			worsen_reduce(rgb, w, h, times);
 		else if (!strcmp(how, "noise"))
 			add_noise(rgb, 3L * w * h, &rng);
 		else if (!strcmp(how, "blur"))

@@ -173,7 +173,7 @@ static void track(double gaze[2], double *lid, const struct camera *lens, bool t
 	struct err err = { 0 };
 	for (int i = 0; i < FILM; i++) {
 		struct painted_eye eye = film(i);
-		struct eye_frame frame = { luma, bent, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } } };
+		struct eye_frame frame = { luma, bent, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } }, { 0 } };
 		painted_eye_draw(rgb, luma, &eye);
 		bent_rgb8(bent, rgb, PAINTED_W, PAINTED_H, lens);
 		for (int k = 0; k < PAINTED_W * PAINTED_H; k++)

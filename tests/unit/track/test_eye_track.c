@@ -114,7 +114,7 @@ static void globe_from_clip(void **state)
 				(float)(arc.p[1] + off * arc.normal[1]), 50 };
 		}
 	}
-	assert_true(gaze_bundle_fit(&found, &fit, FRAMES, frame, &(struct gaze_bundle_conf){ 1, 1, 0.3, 0 }));
+	assert_true(gaze_bundle_fit(&found, &fit, FRAMES, frame, &(struct gaze_bundle_conf){ 1, 1, 0.3, 0, 0 }));
 	// One edge in eight is a lid; the others' noise of 0.05 px leaves 0.02 mm.
 	NEAR(found.center[0], truth.center[0], 0.06);
 	NEAR(found.center[1], truth.center[1], 0.06);
@@ -151,7 +151,7 @@ static void globe_uncertain(void **state)
 		}
 		found[pass] = truth;
 		found[pass].radius = 12;
-		assert_true(gaze_bundle_fit(&found[pass], &fit[pass], FRAMES, frame, &(struct gaze_bundle_conf){ 4, 2, 0.4, pass ? 0.02 : 0 }));
+		assert_true(gaze_bundle_fit(&found[pass], &fit[pass], FRAMES, frame, &(struct gaze_bundle_conf){ 4, 2, 0.4, pass ? 0.02 : 0, 0 }));
 	}
 	// the prior alone: 2 mm
 	assert_true(sqrt(fit[1].cov[3][3]) > 2 * sqrt(fit[0].cov[3][3]) && sqrt(fit[1].cov[3][3]) <= 2);
@@ -224,7 +224,7 @@ static void push_film_at(struct eye_track *track, int i, double far)
 {
 	static uint8_t rgb[PAINTED_H * PAINTED_W * 3], luma[PAINTED_H * PAINTED_W];
 	struct painted_eye eye = film(i);
-	struct eye_frame frame = { luma, rgb, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } } };
+	struct eye_frame frame = { luma, rgb, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } }, { 0 } };
 	painted_eye_draw(rgb, luma, &eye);
 	painted_eye_camera(frame.cam_from_head);
 	frame.cam_from_head[2][3] = far;
@@ -437,7 +437,7 @@ static void no_eye(void **state)
 				rgb[k] = (uint8_t)(kind == 1 ? rng_below(&rng, 256) : kind == 2 ? 255 : 0);
 			for (int k = 0; k < PAINTED_H * PAINTED_W; k++)
 				luma[k] = rgb[3 * k];
-			struct eye_frame frame = { luma, rgb, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } } };
+			struct eye_frame frame = { luma, rgb, PAINTED_W, 3 * PAINTED_W, i / 60.0, { { 0 } }, { 0 } };
 			painted_eye_camera(frame.cam_from_head);
 			for (int side = 0; side < SIDES; side++) {
 				const struct eye_state *s = eye_track_push(track, side, &frame);

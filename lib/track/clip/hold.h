@@ -1,0 +1,39 @@
+/* hold: the head held by its eyes, in a clip without a mesh whose irises are small. The average face that skin is followed on is not the person's, one who talks moves all
+ * of it, and few pixels show it; but the corners of the eyes, which the evidence of the pixels tells in each frame (eye/told.h), lie where the eyeballs are. They tell the
+ * head's place in the picture, its lean and how near it is, all against the reference's pose; how it is turned they do not tell.
+ */
+#ifndef TRACK_CLIP_HOLD_H
+#define TRACK_CLIP_HOLD_H
+#include "base/pack.h"
+#include "track/clip/clip.h"
+#include "track/eye/told.h"
+
+struct hold;
+
+/* clip and subject are borrowed until hold_free, which accepts null. */
+struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject);
+void hold_free(struct hold *hold);
+
+/* The pose that is expected in the next frame: that of the last one. */
+void hold_guess(double pose[4][4], const struct hold *hold);
+
+/* Whether eyes have not been told for longer than most blinks last, or ever but in the reference; where they were found then: middles of the irises, px; null: nowhere. */
+bool hold_lost(const struct hold *hold);
+void hold_found(struct hold *hold, const double eye[SIDES][2]);
+
+/* Keeps what was told of a frame's eyes (null: nothing of that one). radius: of the irises, px. dt: seconds since the frame before. keep: false of the reference, which
+ * is looked at first. */
+void hold_push(struct hold *hold, const struct eye_told *const told[SIDES], double radius, double dt, bool keep);
+
+/* Standard deviations of what is not known of the head in a frame. */
+struct hold_known {
+	double place_mm;
+	double turn;           // radians, aside
+};
+
+/* After the last frame: sets poses[n], those of the frames kept; of a head on a rest, all to one. */
+void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const struct hold *hold, bool rests);
+
+void hold_pack(struct pack *pack, struct hold *hold, long first);
+
+#endif
