@@ -33,7 +33,7 @@ bool track_agrees(struct track_result *r, const struct track_clip *clip, const s
 	const char *needed = s->assumed ? "the person's mesh (subject.ply) and the lens (camera.focal_px)" : "subject.eye_center.left and .right";
 	if (r->trust.wrong > conf->wrong_most && r->trust.far > 0.5 * r->trust.wrong)
 		return err_set(err, "%s: gaze is off by more than %g degrees (track.%s) with a probability of %.2g, must be at most %g (track.wrong_most): %s in frame %ld is not known well enough; give %s%s",
-		               clip->file, trust_wrong_deg(r, conf), r->place_mm > 0 ? "wrong_held_deg" : "wrong_deg", told(r->trust.wrong), conf->wrong_most, s->assumed ? "how large the eyeballs are and where they lie" : "how the head is turned",
+		               clip->file, trust_wrong_deg(s, conf), s->assumed ? "wrong_alone_deg" : "wrong_deg", told(r->trust.wrong), conf->wrong_most, s->assumed ? "how large the eyeballs are and where they lie" : "how the head is turned",
 		               clip->reference, needed, s->assumed ? "" : ", or let the head turn");
 	if (r->trust.wrong > conf->wrong_most && r->trust.lens > 0.5 * r->trust.wrong)
 		return err_set(err, "%s: followed wrongly with a probability of %.2g, must be at most %g (track.wrong_most), above all for camera.focal_px = %g: frame %ld shows %.2f +- %.2f of the perspective that it makes of eyeballs and face, as a lens of some %.0f px would: measure the lens, or check subject.eye_center.* and subject.unit_mm",

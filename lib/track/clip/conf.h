@@ -36,12 +36,13 @@ struct track_conf {
 	double turned, torn, confirmed;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused; up to twice as far apart not where lids, eyeballs and shading turn it as far to this
 	double mesh_straight;  // degrees: how far the eyes looked from straight on, up or down, when the mesh was made, one standard deviation; 0: lids are the mesh's at the usual gaze
 	double earned_deg, earned_away;  // standard deviation of a turn that the skin's motion tells, and of the distance, a share of it
+	double held_skin;      // mm, without a mesh: skin that lies further off the head it tells (trust_skin_mm) does not tell it: the eyes hold it
 	double held_sigma;     // mm, of an average face's eyeballs between the corners of the eyes, which hold the head
 	double center_floor;   // mm, that the bundle's own sigma of an eyeball's centre leaves out
 	double trust[TRUST_EVIDENCES][2];    // scales of each evidence in clips followed rightly and wrongly: trust.h
 	double wrong_lens_prior, lens_share[2];  // share of clips whose lens is told wrongly; scales of the perspective seen, less 1, where it is told rightly, wrongly
 	double nearest_mm;     // what people look at in the median of a clip is no nearer than this or the camera
-	double wrong_deg, wrong_held_deg;    // gaze that is off by more is wrong; where the eyes' corners hold the head (hold.h)
+	double wrong_deg, wrong_alone_deg;    // gaze that is off by more is wrong; without a mesh
 	double wrong_prior, wrong_prior_one, wrong_most, trust_odd;  // share of clips followed wrongly; of those that one eye alone lays the mesh on; probability of it beyond which a clip is refused; share of odd evidence
 	double stirs_mm;       // frames of a head that turns whose skin is further off the rigid head have no gaze and no lids
 	double off_mm;         // rms of that skin about the rigid head beyond which it is refused
@@ -79,6 +80,7 @@ static inline long track_every(const struct track_conf *conf)
 		OPT_INT("doubt_span", &(c)->doubt.span, 12, 100000, "", "frames of the clip that those are spread over"),                       \
 		OPT_REAL("settle_sigma_mm", &(c)->settle_sigma, 0.1, 20, "mm", "eyeballs' centres off the mesh's meanwhile"),                   \
 		OPT_REAL("mesh_center_sigma_mm", &(c)->center_sigma, 0.01, 20, "mm", "how well the mesh knows them"),                                \
+		OPT_REAL("held_skin_mm", &(c)->held_skin, 0, 100, "mm", "without a mesh: skin further off the average head does not tell its path, the eyes' corners do"), \
 		OPT_REAL("held_center_sigma_mm", &(c)->held_sigma, 0.1, 20, "mm", "eyeballs off the middle between the eyes' corners, where these hold the head"), \
 		OPT_REAL("guess_center_sigma_mm", &(c)->guess_sigma, 0.01, 20, "mm", "how well they are guessed from the lids' marks"),         \
 		OPT_REAL("pose_most_px", &(c)->pose_most, 0.1, 1000, "px", "with larger residuals of the reference's pose other frames are tried, at 1280 px"), \
@@ -101,7 +103,7 @@ static inline long track_every(const struct track_conf *conf)
 		OPT_REAL("wrong_prior", &(c)->wrong_prior, 1e-6, 0.99, "", "share of clips that are followed wrongly"), \
 		OPT_REAL("wrong_prior_one", &(c)->wrong_prior_one, 1e-6, 0.99, "", "of those in which one eye, its centre not told, lays the mesh on"), \
 		OPT_REAL("wrong_deg", &(c)->wrong_deg, 0.1, 180, "degrees", "gaze that is off by more is wrong"), \
-		OPT_REAL("wrong_held_deg", &(c)->wrong_held_deg, 0.1, 180, "degrees", "the same without a mesh, where irises are small"), \
+		OPT_REAL("wrong_alone_deg", &(c)->wrong_alone_deg, 0.1, 180, "degrees", "the same without a mesh"), \
 		OPT_REAL("wrong_most", &(c)->wrong_most, 0, 1, "", "probability of a wrong result; with more a clip is refused"), \
 		OPT_REAL("trust_odd", &(c)->trust_odd, 1e-12, 0.5, "", "share of clips followed rightly that are odd in one evidence"), \
 		OPT_REAL("stirs_mm", &(c)->stirs_mm, 0.01, 100, "mm", "skin of a head that turns, off the rigid head: a frame with more has no gaze, no lids"), \

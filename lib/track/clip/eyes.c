@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "limbus/evidence.h"
 #include "track/clip/hold.h"
+#include "track/clip/trust.h"
 #include "track/eye/events.h"
 #include "track/head/propose.h"
 
@@ -75,7 +76,7 @@ static void tell(struct telling *t, const struct eye_frame *frame, const struct 
 	}
 }
 
-/* Fills the frame's evidence of the eyes that are in it, whose irises are small. */
+/* Fills the frame's evidence of the eyes that are in it, whose irises are small, or which may hold the head. */
 static void look_at(struct eye_frame *frame, struct track_eyes *eyes, const bool in[SIDES])
 {
 	double place[SIDES][3];
@@ -84,7 +85,7 @@ static void look_at(struct eye_frame *frame, struct track_eyes *eyes, const bool
 	struct err none = { 0 };
 	for (int e = 0; e < SIDES; e++) {
 		evidence_free(&eyes->seen[e]);
-		if (!eyes->net || !in[e] || !iris_of(place[n], eyes, e, frame->cam_from_head) || !(place[n][2] < eyes->evidence_px))
+		if (!eyes->net || !in[e] || !iris_of(place[n], eyes, e, frame->cam_from_head) || !(eyes->hold || place[n][2] < eyes->evidence_px))
 			continue;
 		fill_photo(&eyes->photo, frame->rgb, place[n]);
 		side[n++] = e;
@@ -98,20 +99,20 @@ static void look_at(struct eye_frame *frame, struct track_eyes *eyes, const bool
 	}
 }
 
-/* Opens the network where the reference shows an iris that is small. */
+/* Opens the network where the reference shows an iris that is small, or there is no mesh. */
 static void begin_to_look(struct track_eyes *eyes)
 {
 	const struct video_info *info = &eyes->clip->info;
 	struct err none = { 0 };
-	bool small = false;
+	bool wanted = eyes->subject->assumed && eyes->evidence_px > 0;
 	for (int e = 0; e < SIDES; e++) {
 		double place[3];
-		small = small || (eyes->clip->eye_seen[e] && iris_of(place, eyes, e, eyes->clip->cam_from_head) && place[2] < eyes->evidence_px);
+		wanted = wanted || (eyes->clip->eye_seen[e] && iris_of(place, eyes, e, eyes->clip->cam_from_head) && place[2] < eyes->evidence_px);
 	}
-	if (!small || !evidence_open_shipped(&eyes->net, &none))
+	if (!wanted || !evidence_open_shipped(&eyes->net, &none))
 		return;
 	if (eyes->subject->assumed)
-		eyes->hold = hold_new(eyes->clip, eyes->subject);
+		eyes->hold = hold_new(eyes->clip, eyes->subject, eyes->evidence_px);
 	eyes->photo = (struct photo){ .width = info->width, .height = info->height, .bits = 8, .rgb = mem_new(3 * (size_t)info->width * (size_t)info->height, sizeof *eyes->photo.rgb) };
 }
 
@@ -126,18 +127,18 @@ static void look_for(struct track_eyes *eyes, const struct video_frame *f)
 }
 
 /* The eyes that the evidence tells hold the head in the frame. f: null for the reference, which is no part of the clip. */
-static void held(struct eye_frame *frame, struct track_eyes *eyes, const bool in[SIDES], const struct video_frame *f)
+static void held(struct eye_frame *frame, struct track_eyes *eyes, const bool in[SIDES], const double skin_pose[4][4], const struct video_frame *f)
 {
 	struct telling t;
-	const bool lost = f && hold_lost(eyes->hold);
+	const bool lost = f && eyes->clip->eye_seen[0] && eyes->clip->eye_seen[1] && hold_lost(eyes->hold);
 	if (lost) {
 		look_for(eyes, f);
-		hold_guess(frame->cam_from_head, eyes->hold);
+		hold_guess(frame->cam_from_head, eyes->hold, skin_pose);
 	}
 	look_at(frame, eyes, lost ? eyes->clip->eye_seen : in);
 	tell(&t, frame, eyes);
 	hold_push(eyes->hold, t.known, t.radius, f ? fmax(0, frame->time - eyes->time) : 0, f);
-	hold_guess(frame->cam_from_head, eyes->hold);
+	hold_guess(frame->cam_from_head, eyes->hold, skin_pose);
 	eyes->time = frame->time;
 }
 
@@ -150,9 +151,9 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 	struct track_eyes *eyes = mem_new(1, sizeof *eyes);
 	*eyes = (struct track_eyes){ .clip = clip, .subject = subject, .limbus = conf->eye.limbus_radius, .evidence_px = conf->eyes.evidence_px };
 	begin_to_look(eyes);
-	// eyes of an average face: a wider prior; where their corners hold the head, they lie between these as people's do
+	// eyes of an average face: a wider prior
 	if (subject->assumed)
-		free_centers.center_sigma = eyes->hold ? conf->held_sigma : fmax(free_centers.center_sigma, conf->settle_sigma);
+		free_centers.center_sigma = fmax(free_centers.center_sigma, conf->settle_sigma);
 	for (int e = 0; e < SIDES; e++) {
 		struct eye_prior *p = &scene.prior[e];
 		p->absent = !clip->eye_seen[e];
@@ -177,7 +178,7 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 	struct eye_frame frame = { .luma = clip->luma, .rgb = clip->rgb, .luma_stride = clip->info.width, .rgb_stride = 3 * clip->info.width };
 	memcpy(frame.cam_from_head, clip->cam_from_head, sizeof frame.cam_from_head);
 	if (eyes->hold)
-		held(&frame, eyes, clip->eye_seen, 0);
+		held(&frame, eyes, clip->eye_seen, clip->cam_from_head, 0);
 	else
 		look_at(&frame, eyes, clip->eye_seen);
 	for (int e = 0; e < SIDES && clip->begins_shut; e++)
@@ -214,7 +215,7 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 	double pose[4][4];
 	memcpy(pose, skin_pose, sizeof pose);
 	if (eyes->hold)
-		hold_guess(pose, eyes->hold);
+		hold_guess(pose, eyes->hold, skin_pose);
 	struct eye_frame frame = { .luma = f->luma, .rgb = eyes->rgb, .luma_stride = f->luma_stride, .rgb_stride = 3 * f->width, .time = f->time };
 	int box[SIDES][4];
 	bool in[SIDES];
@@ -227,7 +228,7 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 			video_frame_rgb(eyes->rgb, 3 * f->width, f, box[e][0], box[e][1], box[e][2], box[e][3]);
 	memcpy(frame.cam_from_head, pose, sizeof frame.cam_from_head);
 	if (eyes->hold)
-		held(&frame, eyes, in, f);
+		held(&frame, eyes, in, skin_pose, f);
 	else
 		look_at(&frame, eyes, in);
 #pragma omp parallel for schedule(static, 1) num_threads(SIDES)
@@ -238,20 +239,20 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 	}
 }
 
-bool track_eyes_hold(const struct track_eyes *eyes)
+void track_eyes_hold(struct track_result *r, struct track_eyes *eyes, const struct track_conf *conf)
 {
-	return eyes->hold;
+	struct hold_known known;
+	// the clip tells the eyeballs of large irises, if skin tells the path; those of small ones lie between the corners
+	if (!eyes->hold || (hold_large(eyes->hold) && trust_skin_mm(r, eyes->clip, eyes->subject) < conf->held_skin))
+		return;
+	hold_settle(&known, r->pose, r->n, eyes->hold, r->rests);
+	r->place_mm = known.place_mm;
+	eye_track_held(eyes->track, conf->held_sigma, known.place_mm, known.turn);
 }
 
 bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct err *err)
 {
-	if (eyes->hold) {
-		struct hold_known known;
-		hold_settle(&known, r->pose, r->n, eyes->hold, r->rests);
-		r->place_mm = known.place_mm;
-		eye_track_place_was(eyes->track, known.place_mm, known.turn);
-	}
-	for (long f = 0; f < r->n && (r->n_points || eyes->hold); f++)
+	for (long f = 0; f < r->n && (r->n_points || r->place_mm > 0); f++)
 		eye_track_head_was(eyes->track, f, r->pose[f]);
 	bool ok = eye_track_finish(&r->eyes, eyes->track, err);
 	r->has_eyes = ok && r->eyes.frames == r->n;

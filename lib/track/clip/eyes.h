@@ -12,8 +12,10 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 /* The next frame, and the head's pose in it. */
 void track_eyes_push(struct track_eyes *eyes, const struct video_frame *frame, const double cam_from_head[4][4]);
 
-/* Whether the eyes hold the head (hold.h): then skin alone does not tell its path. */
-bool track_eyes_hold(const struct track_eyes *eyes);
+/* After the last frame, when the skin has told the head's path: where there is no mesh, and irises are small (evidence_px) or the skin does not lie on the head so
+ * followed (held_skin_mm), the eyes hold it (hold.h):
+ * sets result's poses and place_mm. */
+void track_eyes_hold(struct track_result *result, struct track_eyes *eyes, const struct track_conf *conf);
 
 /* Clip-wide fit with result's final poses; fills result's eyes and has_eyes, NAN in frames that are lost.
  * Returns false, err set, when no eye was found in any frame. */

@@ -192,14 +192,13 @@ bool track_follow(struct track_result *r, struct stage *stage, const struct trac
 	if (video_damaged(video))
 		stage_skipped(stage, "%s: %ld damaged pictures were left out: copy the file again", clip->file, video_damaged(video));
 	if (ok && points->n) {
-		const long every = track_every(conf), reference = clip->reference / every < r->n ? clip->reference / every : 0;
-		if (track_eyes_hold(f.eyes))
-			r->rests = track_rests(r, reference);
-		else
-			track_steady(r, reference, points, subject, clip, conf->stirs_mm);
-		if (!track_eyes_hold(f.eyes) && !conf->limit)
+		const long every = track_every(conf);
+		track_steady(r, clip->reference / every < r->n ? clip->reference / every : 0, points, subject, clip, conf->stirs_mm);
+		if (!conf->limit)
 			track_together(r, points, clip, subject, conf);
 	}
+	if (ok)
+		track_eyes_hold(r, f.eyes, conf);
 	ok = ok && (r->n < 2 || track_eyes_finish(r, f.eyes, err));
 	end(&f);
 	video_close(video);

@@ -13,6 +13,7 @@
 static const double LOWER = 0.9;
 static const double ASIDE = 0.8;       // mm: and the middle between them further to the temple, of those heads by 1.6, of that opening by none
 static const double OPEN = 2;          // squares of the iris' radius: eyes that show less tell no corners
+static const double AGREE = 0.8;       // radii: skin that tells the eyes so near to where they are is believed on the way
 static const double LOST_S = 0.25;     // longer than most blinks
 enum { ROUNDS = 6, LEAST_FRAMES = 12 };
 
@@ -27,6 +28,7 @@ struct seen { float corner[SIDES][2][2]; bool known[SIDES]; };
 struct hold {
 	const struct track_clip *clip;
 	const struct track_subject *subject;
+	double large_px;
 	double now[MOTIONS];
 	double radius;                 // px, of the irises, last
 	double lost_s;                 // since eyes were told
@@ -34,11 +36,12 @@ struct hold {
 	struct seen *seen;             // [n]
 };
 
-struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject)
+struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject, double large_px)
 {
 	struct hold *h = mem_new(1, sizeof *h);
 	h->clip = clip;
 	h->subject = subject;
+	h->large_px = large_px;
 	h->lost_s = INFINITY;
 	return h;
 }
@@ -50,20 +53,27 @@ void hold_free(struct hold *h)
 	free(h);
 }
 
-/* The reference's pose so moved. */
-static void moved(double pose[4][4], const struct hold *h, const double by[MOTIONS])
+/* The middle between the eyes in a pose, mm. */
+static void middle_in(double at[3], const struct hold *h, const double pose[4][4])
 {
-	const struct camera *camera = &h->clip->camera;
-	const double c = cos(by[LEAN]), s = sin(by[LEAN]);
-	double middle[3] = { 0 }, at[3], rest[3], px[2];
+	double middle[3] = { 0 };
 	int n = 0;
-	memcpy(pose, h->clip->cam_from_head, sizeof(double[4][4]));
 	for (int e = 0; e < SIDES; e++)
 		for (int k = 0; k < 3 && h->subject->opening[e].open; k++, n++)
 			middle[k] += h->subject->opening[e].center[k];
 	for (int k = 0; k < 3; k++)
 		middle[k] /= fmax(1, n / 3.0);
-	head_from(at, h->clip->cam_from_head, middle);
+	head_from(at, pose, middle);
+}
+
+/* The reference's pose so moved. */
+static void moved(double pose[4][4], const struct hold *h, const double by[MOTIONS])
+{
+	const struct camera *camera = &h->clip->camera;
+	const double c = cos(by[LEAN]), s = sin(by[LEAN]);
+	double at[3], rest[3], px[2];
+	memcpy(pose, h->clip->cam_from_head, sizeof(double[4][4]));
+	middle_in(at, h, h->clip->cam_from_head);
 	if (!camera_project(px, camera, at))
 		return;
 	for (int k = 0; k < 3; k++) {
@@ -72,7 +82,7 @@ static void moved(double pose[4][4], const struct hold *h, const double by[MOTIO
 		pose[1][k] = s * x + c * y;
 		pose[0][3] = pose[1][3] = pose[2][3] = 0;
 	}
-	head_from(rest, (const double(*)[4])pose, middle);
+	middle_in(rest, h, (const double(*)[4])pose);
 	double ray[3];
 	camera_ray(ray, camera, (double[2]){ px[0] + by[ACROSS], px[1] + by[DOWN] });
 	const double z = at[2] * exp(-by[SIZE]);
@@ -125,9 +135,15 @@ static bool motion_of(double by[MOTIONS], const struct hold *h, const struct see
 	return true;
 }
 
-void hold_guess(double pose[4][4], const struct hold *h)
+void hold_guess(double pose[4][4], const struct hold *h, const double skin_pose[4][4])
 {
+	double held[3], skin[3], px[2][2];
 	moved(pose, h, h->now);
+	middle_in(held, h, (const double(*)[4])pose);
+	middle_in(skin, h, skin_pose);
+	if (h->radius >= h->large_px && camera_project(px[0], &h->clip->camera, held) && camera_project(px[1], &h->clip->camera, skin)
+	    && hypot(px[0][0] - px[1][0], px[0][1] - px[1][1]) < AGREE * h->radius)
+		memcpy(pose, skin_pose, sizeof(double[4][4]));
 }
 
 static struct seen seen_of(const struct eye_told *const told[SIDES])
@@ -273,6 +289,11 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 	free(by);
 	known->place_mm = n ? fmax(least[ACROSS] * h->radius, rests ? 0 : place_of(h, n)) * poses[0][2][3] / h->clip->camera.focal_px : 0;
 	known->turn = turns_of(h, n);
+}
+
+bool hold_large(const struct hold *h)
+{
+	return h->radius >= h->large_px;
 }
 
 void hold_pack(struct pack *p, struct hold *h, long first)

@@ -1,6 +1,6 @@
-/* hold: the head held by its eyes, in a clip without a mesh whose irises are small. The average face that skin is followed on is not the person's, one who talks moves all
- * of it, and few pixels show it; but the corners of the eyes, which the evidence of the pixels tells in each frame (eye/told.h), lie where the eyeballs are. They tell the
- * head's place in the picture, its lean and how near it is, all against the reference's pose; how it is turned they do not tell.
+/* hold: the head held by its eyes, in a clip without a mesh. The average face that skin is followed on is not the person's, one who talks moves all of it, and in a small picture few
+ * pixels show it; but the corners of the eyes, which the evidence of the pixels tells in each frame (eye/told.h), lie where the eyeballs are. They tell the head's place in the
+ * picture, its lean and how near it is, all against the reference's pose; how it is turned they do not tell.
  */
 #ifndef TRACK_CLIP_HOLD_H
 #define TRACK_CLIP_HOLD_H
@@ -10,12 +10,12 @@
 
 struct hold;
 
-/* clip and subject are borrowed until hold_free, which accepts null. */
-struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject);
+/* clip and subject are borrowed until hold_free, which accepts null. large_px: radius of irises from which they are large: the clip tells the eyeballs of those, and skin is believed. */
+struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject, double large_px);
 void hold_free(struct hold *hold);
 
-/* The pose that is expected in the next frame: that of the last one. */
-void hold_guess(double pose[4][4], const struct hold *hold);
+/* On the way: skin's pose of a frame where irises are large and it has the eyes about where they were told last, or else the pose that they tell. */
+void hold_guess(double pose[4][4], const struct hold *hold, const double skin_pose[4][4]);
 
 /* Whether eyes have not been told for longer than most blinks last, or ever but in the reference; where they were found then: middles of the irises, px; null: nowhere. */
 bool hold_lost(const struct hold *hold);
@@ -33,6 +33,9 @@ struct hold_known {
 
 /* After the last frame: sets poses[n], those of the frames kept; of a head on a rest, all to one. */
 void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const struct hold *hold, bool rests);
+
+/* Whether irises are large in the last frame. */
+bool hold_large(const struct hold *hold);
 
 void hold_pack(struct pack *pack, struct hold *hold, long first);
 

@@ -33,7 +33,9 @@ static double away(const struct track_result *r, long reference, long frame, dou
 	return n > r->n_points / 4 ? stats_quantile(n, room, 0.1) : INFINITY;
 }
 
-bool track_rests(const struct track_result *r, long reference)
+/* True for a head on a rest: it returns to the same place in every third of the clip. Skin alone cannot distinguish raised
+ * cheeks from a head that comes nearer. */
+static bool rests(const struct track_result *r, long reference)
 {
 	enum { PARTS = 3 };
 	double *room = mem_array((size_t)r->n_points + 1, sizeof *room);
@@ -197,7 +199,7 @@ static void follow_path(struct track_result *r, const struct track_points *point
 
 void track_steady(struct track_result *r, long reference, const struct track_points *points, const struct track_subject *s, const struct track_clip *clip, double stirs_mm)
 {
-	r->rests = track_rests(r, reference);
+	r->rests = rests(r, reference);
 	misfits(r, points, s, clip);
 	if (r->rests) {
 		for (long f = 0; f < r->n; f++)

@@ -4,10 +4,6 @@
 #include "track/clip/points.h"
 #include "track/clip/result.h"
 
-/* True for a head on a rest: by its skin it returns to the same place in every third of the clip. Skin alone cannot distinguish raised cheeks from a head
- * that comes nearer. reference: as below. */
-bool track_rests(const struct track_result *result, long reference);
-
 /* After the last frame: decides whether the head is on a rest (then every pose is the reference's), else smooths its path. Of
  * one that turns (moves.h) frames whose skin is more than stirs_mm off the rigid head are unsure_at. Sets misfit, rests, unsure, unsure_at, pose and
  * skin_model. reference: index of the reference among the frames followed. */

@@ -140,9 +140,9 @@ static double own_of(const struct track_result *r, int evidence)
 	return evidence == TRUST_STRAIGHT ? 0.5 * sqrt(sum) : sqrt(sum);
 }
 
-double trust_wrong_deg(const struct track_result *r, const struct track_conf *conf)
+double trust_wrong_deg(const struct track_subject *s, const struct track_conf *conf)
 {
-	return r->place_mm > 0 ? conf->wrong_held_deg : conf->wrong_deg;
+	return s->assumed ? conf->wrong_alone_deg : conf->wrong_deg;
 }
 
 /* Probability that the focal length told is wrong (Bayes' rule): the share of perspective seen is normal about 1, and about as much as people mistake lenses for. No
@@ -177,7 +177,7 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 {
 	const bool laid = !s->assumed && !clip->pose_given && !clip->moves.turned;
 	t->value[TRUST_LAID] = laid ? clip->pose_px / trust_scale(clip, s) : NAN;
-	t->value[TRUST_SKIN] = trust_skin_mm(r, clip, s);
+	t->value[TRUST_SKIN] = r->place_mm > 0 ? NAN : trust_skin_mm(r, clip, s);
 	t->value[TRUST_LEVEL] = gaze_of(r, 1, false);
 	t->value[TRUST_APART] = apart_of(r, clip, conf->nearest_mm);
 	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);
@@ -187,7 +187,7 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 	double odds = log((1 - prior) / prior);
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
 		odds += t->log_odds[i] = odds_of(i, t->value[i], own_of(r, i), conf);
-	t->far = far_of(r, trust_wrong_deg(r, conf));
+	t->far = far_of(r, trust_wrong_deg(s, conf));
 	t->lens = lens_of(clip, conf);
 	t->wrong = 1 - (1 - t->far) * (1 - t->lens) / (1 + exp(-odds));
 }

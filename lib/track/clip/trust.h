@@ -33,8 +33,8 @@ double trust_odds(int evidence, double value, const struct track_conf *conf);
 /* Those of a reference before the clip is followed: its pose's residual, and its skin against that of the frames it was judged by. -INFINITY where no pose was found. */
 double trust_reference(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
 
-/* Gaze that is off by more is wrong, degrees: conf's wrong_deg, or wrong_held_deg. */
-double trust_wrong_deg(const struct track_result *result, const struct track_conf *conf);
+/* Gaze that is off by more is wrong, degrees: conf's wrong_deg, or wrong_alone_deg without a mesh. */
+double trust_wrong_deg(const struct track_subject *subject, const struct track_conf *conf);
 
 /* Median over the frames of how far the skin lies off the rigid head, mm; NAN with few frames or no skin. */
 double trust_skin_mm(const struct track_result *result, const struct track_clip *clip, const struct track_subject *subject);

@@ -112,8 +112,9 @@ void eye_track_pack(struct pack *pack, struct eye_track *track, long first);
 /* Replaces the head's pose in a frame already pushed, for the fit of eye_track_finish. */
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);
 
-/* The head's place in the picture is known in each frame to so many mm, and how it is turned aside to so many radians (one standard deviation), for the same. */
-void eye_track_place_was(struct eye_track *track, double place_mm, double turn);
+/* Eyes that hold the head (clip/hold.h), for the same: their centres lie between their corners to center_mm, the head's place in the picture is known in each frame to place_mm, and
+ * how it is turned aside to `turn` radians, one standard deviation each. */
+void eye_track_held(struct eye_track *track, double center_mm, double place_mm, double turn);
 
 /* Fits the eyeballs to the whole clip (gaze/bundle.h), then estimates gaze, lids and openness again and finds blinks and
  * saccades.
