@@ -175,6 +175,7 @@ static bool save_json(const struct track_result *r, const struct track_clip *cli
 	json_object_set_new(j, "trust", trust_json(&r->trust));
 	json_object_set_new(j, "perspective", clip->lens.sigma > 0 ? perspective_json(&clip->lens) : json_null());
 	json_object_set_new(j, "head_rests", json_boolean(r->rests));
+	json_object_set_new(j, "held_by_eyes", json_boolean(r->place_mm > 0));
 	json_object_set_new(j, "lost_frames", json_integer(r->lost));
 	json_object_set_new(j, "unsure_frames", json_integer(r->unsure));
 	json_object_set_new(j, "still_frames", json_integer(r->still));

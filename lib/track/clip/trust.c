@@ -140,6 +140,21 @@ static double own_of(const struct track_result *r, int evidence)
 	return evidence == TRUST_STRAIGHT ? 0.5 * sqrt(sum) : sqrt(sum);
 }
 
+double trust_sigma_deg(const struct track_result *r)
+{
+	double *sigma = mem_array(4 * (size_t)r->n + 1, sizeof *sigma);
+	int n = 0;
+	for (long f = 0; f < r->n && r->has_eyes; f++)
+		for (int k = 0; k < 2 * SIDES; k++) {
+			const double s = r->eyes.state[f][k / 2].sigma[k % 2] * 180 / M_PI;
+			if (isfinite(s))
+				sigma[n++] = s;
+		}
+	const double middle = middle_of(n, sigma);
+	free(sigma);
+	return middle;
+}
+
 double trust_wrong_deg(const struct track_subject *s, const struct track_conf *conf)
 {
 	return s->assumed ? conf->wrong_alone_deg : conf->wrong_deg;
