@@ -2,7 +2,6 @@
  * nothing, neither lens nor mesh. Accepted or refused; lids, blinks, gaze against the camera's axes and against its own standard deviation. The clip of the shared data with both
  * eyes, and EYEWRIGHT_FACES=DIR: folders of others (bench_track_unseen). FACES=84047: only those whose name has that; EVIDENCE=0: by edges and colours alone, as before the
  * network's evidence was asked, accepted whatever they are. Run from the top of the checkout. */
-#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,15 +68,6 @@ static void measure(struct tally *t, const char *dir, const char *from, const ch
 	bench_row("track: a video alone, small irises", "gaze", name, (struct bench_time){ each, each, each }, "frame", fmax(s.seen[0].median, s.seen[1].median), "deg", "worse axis, median");
 }
 
-static int is_clip(const struct dirent *d)
-{
-	char *path = mem_printf("%s/%s/video.mp4", getenv("EYEWRIGHT_FACES"), d->d_name);
-	const char *part = getenv("FACES");
-	bool is = d->d_name[0] != '.' && file_exists(path) && (!part || strstr(d->d_name, part));
-	free(path);
-	return is;
-}
-
 int main(int argc, char **argv)
 {
 	bench_open("track_small", argc, argv);
@@ -92,16 +82,15 @@ int main(int argc, char **argv)
 		measure(&all, dir, bench_data("video/clip_a"), "clip_a");
 		free(dir);
 	}
-	struct dirent **list = 0;
-	const int n = at ? scandir(at, &list, is_clip, alphasort) : 0;
+	char *name[TRACK_FACES];
+	const int n = track_capture_faces(name);
 	for (int i = 0; i < n; i++) {
-		char *dir = mem_printf("%s/%s", root, list[i]->d_name), *from = mem_printf("%s/%s", at, list[i]->d_name);
-		measure(&all, dir, from, list[i]->d_name);
+		char *dir = mem_printf("%s/%s", root, name[i]), *from = mem_printf("%s/%s", at, name[i]);
+		measure(&all, dir, from, name[i]);
 		free(dir);
 		free(from);
-		free(list[i]);
+		free(name[i]);
 	}
-	free(list);
 	if (!at)
 		printf("bench_track_small: EYEWRIGHT_FACES names no folder of clips: the shared data's alone was measured\n");
 	if (all.clips) {

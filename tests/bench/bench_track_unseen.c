@@ -2,7 +2,6 @@
  * or refused, and how far off what was accepted is. EYEWRIGHT_FACES=DIR: folders of a clip with its truth each (video.mp4, subject.ply, truth.json,
  * truth.npz, as those of the shared data video/); besides them the two clips of the shared data, with and without their eyeballs' centres.
  * FACES=still: only folders whose name has that. Run from the top of the checkout. */
-#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,28 +75,18 @@ static void measure(struct tally *t, const char *dir, const char *from, const ch
 	bench_row("track: unseen clips", "head pose", name, none, "frame", s.head_off.median, "deg", "median");
 }
 
-static int is_clip(const struct dirent *d)
-{
-	char *path = mem_printf("%s/%s/video.mp4", getenv("EYEWRIGHT_FACES"), d->d_name);
-	const char *part = getenv("FACES");
-	bool is = d->d_name[0] != '.' && file_exists(path) && (!part || strstr(d->d_name, part));
-	free(path);
-	return is;
-}
-
 static void unseen(struct tally *t, const char *root)
 {
 	const char *at = getenv("EYEWRIGHT_FACES");
-	struct dirent **list = 0;
-	int n = at ? scandir(at, &list, is_clip, alphasort) : 0;
+	char *name[TRACK_FACES];
+	const int n = track_capture_faces(name);
 	for (int i = 0; i < n; i++) {
-		char *dir = mem_printf("%s/%s", root, list[i]->d_name), *from = mem_printf("%s/%s", at, list[i]->d_name);
-		measure(t, dir, from, list[i]->d_name, false);
+		char *dir = mem_printf("%s/%s", root, name[i]), *from = mem_printf("%s/%s", at, name[i]);
+		measure(t, dir, from, name[i], false);
 		free(dir);
 		free(from);
-		free(list[i]);
+		free(name[i]);
 	}
-	free(list);
 }
 
 static void known(struct tally *t, const char *root)

@@ -121,38 +121,36 @@ double trust_odds(int evidence, double x, const struct track_conf *conf)
 	return odds_of(evidence, x, 0, conf);
 }
 
-/* Standard deviation of one eye's gaze against the other's, or of their mean, as they say, degrees: where corners hold the head and average eyeballs lie between them. */
+/* Median standard deviation of an eye's gaze, degrees; NAN with few frames. */
+static double sigma_of(const struct track_result *r, int side, int axis)
+{
+	double *sigma = mem_array((size_t)r->n + 1, sizeof *sigma);
+	int n = 0;
+	for (long f = 0; f < r->n && r->has_eyes; f++)
+		if (isfinite(r->eyes.state[f][side].sigma[axis]))
+			sigma[n++] = r->eyes.state[f][side].sigma[axis] * 180 / M_PI;
+	const double middle = middle_of(n, sigma);
+	free(sigma);
+	return middle;
+}
+
+/* Of one eye's gaze against the other's, or of their mean, as they say: where corners hold the head and average eyeballs lie between them. */
 static double own_of(const struct track_result *r, int evidence)
 {
-	const int axis = evidence == TRUST_LEVEL;
-	double sum = 0;
-	if (!(r->place_mm > 0) || !(evidence == TRUST_APART || evidence == TRUST_LEVEL || evidence == TRUST_STRAIGHT))
+	const bool of_gaze = evidence == TRUST_APART || evidence == TRUST_LEVEL || evidence == TRUST_STRAIGHT;
+	if (!(r->place_mm > 0) || !of_gaze)
 		return 0;
-	double *sigma = mem_array((size_t)r->n + 1, sizeof *sigma);
-	for (int e = 0; e < SIDES; e++) {
-		int n = 0;
-		for (long f = 0; f < r->n; f++)
-			if (isfinite(r->eyes.state[f][e].sigma[axis]))
-				sigma[n++] = r->eyes.state[f][e].sigma[axis] * 180 / M_PI;
-		sum += n ? pow(stats_median(n, sigma), 2) : 0;
-	}
-	free(sigma);
-	return evidence == TRUST_STRAIGHT ? 0.5 * sqrt(sum) : sqrt(sum);
+	const double left = sigma_of(r, SIDE_LEFT, evidence == TRUST_LEVEL), right = sigma_of(r, SIDE_RIGHT, evidence == TRUST_LEVEL);
+	const double both = hypot(isnan(left) ? 0 : left, isnan(right) ? 0 : right);
+	return evidence == TRUST_STRAIGHT ? 0.5 * both : both;
 }
 
 double trust_sigma_deg(const struct track_result *r)
 {
-	double *sigma = mem_array(4 * (size_t)r->n + 1, sizeof *sigma);
-	int n = 0;
-	for (long f = 0; f < r->n && r->has_eyes; f++)
-		for (int k = 0; k < 2 * SIDES; k++) {
-			const double s = r->eyes.state[f][k / 2].sigma[k % 2] * 180 / M_PI;
-			if (isfinite(s))
-				sigma[n++] = s;
-		}
-	const double middle = middle_of(n, sigma);
-	free(sigma);
-	return middle;
+	double worst = NAN;
+	for (int k = 0; k < 2 * SIDES; k++)
+		worst = fmax(worst, sigma_of(r, k / 2, k % 2));
+	return worst;
 }
 
 double trust_wrong_deg(const struct track_subject *s, const struct track_conf *conf)

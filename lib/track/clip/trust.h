@@ -33,7 +33,7 @@ double trust_odds(int evidence, double value, const struct track_conf *conf);
 /* Those of a reference before the clip is followed: its pose's residual, and its skin against that of the frames it was judged by. -INFINITY where no pose was found. */
 double trust_reference(const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf);
 
-/* Median of gaze's standard deviations, degrees; NAN with few frames. */
+/* Median of gaze's standard deviations in the axis and eye that is known least, degrees; NAN with few frames. */
 double trust_sigma_deg(const struct track_result *result);
 
 /* Gaze that is off by more is wrong, degrees: conf's wrong_deg, or wrong_alone_deg without a mesh. */

@@ -1,5 +1,6 @@
 #include "tests/lib/capture/track_capture.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
 #include "tests/lib/bench/bench.h"
@@ -76,4 +78,26 @@ double track_capture_run(const char *dir)
 	waitpid(pid, &status, 0);
 	free(capture);
 	return WIFEXITED(status) && !WEXITSTATUS(status) ? now() - start : NAN;
+}
+
+static int is_clip(const struct dirent *d)
+{
+	char *path = mem_printf("%s/%s/video.mp4", getenv("EYEWRIGHT_FACES"), d->d_name);
+	const char *part = getenv("FACES");
+	bool is = d->d_name[0] != '.' && file_exists(path) && (!part || strstr(d->d_name, part));
+	free(path);
+	return is;
+}
+
+int track_capture_faces(char *name[TRACK_FACES])
+{
+	struct dirent **list = 0;
+	const int n = getenv("EYEWRIGHT_FACES") ? scandir(getenv("EYEWRIGHT_FACES"), &list, is_clip, alphasort) : 0;
+	for (int i = 0; i < n; i++) {
+		if (i < TRACK_FACES)
+			name[i] = mem_str(list[i]->d_name);
+		free(list[i]);
+	}
+	free(list);
+	return n < 0 ? 0 : n < TRACK_FACES ? n : TRACK_FACES;
 }

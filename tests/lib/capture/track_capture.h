@@ -13,4 +13,9 @@ bool track_capture_bare(const char *dir, const char *from, const char *quality, 
 /* Seconds bin/track took; NAN when it failed. */
 double track_capture_run(const char *dir);
 
+/* Names of the folders of $EYEWRIGHT_FACES that hold a clip (video.mp4), in order, of those whose name has $FACES in it where that is set; free() each. Returns how many, at most
+ * TRACK_FACES. */
+enum { TRACK_FACES = 256 };
+int track_capture_faces(char *name[TRACK_FACES]);
+
 #endif

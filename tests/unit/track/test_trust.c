@@ -215,6 +215,7 @@ static void off_at_large_gazes(void **state)
 	struct track_conf conf = keys();
 	conf.trust[TRUST_SCALE][0] = 2;
 	conf.trust[TRUST_SCALE][1] = 6;
+	conf.wrong_alone_deg = 3;
 	shoot(&film, 0, 0, 1);
 	film.subject.assumed = true;
 	for (long f = 0; f < FRAMES; f++)
@@ -227,6 +228,41 @@ static void off_at_large_gazes(void **state)
 	// N(1; 2) = exp(-1/8) / 2 against (N(1; 2) + N(1; 6)) / 2
 	const double right = exp(-0.125) / 2, wrong = exp(-1 / 72.0) / 6;
 	NEAR(t.log_odds[TRUST_SCALE], log(2 * right / (right + wrong)), 1e-3);
+	// less is asked for without a mesh: two sigma; with one it is what it was
+	conf.wrong_alone_deg = 6;
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.far, 0.0455, 1e-5);
+	NEAR(trust_sigma_deg(&film.result), 0.5, 1e-12);
+	film.subject.assumed = false;
+	track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(t.far, 0.31731, 1e-5);
+	track_result_free(&film.result);
+}
+
+/* Average eyeballs between the corners that hold the head: eyes that look apart by as much as their own standard deviations say are not odd; skin has no say. */
+static void held_by_the_eyes(void **state)
+{
+	(void)state;
+	struct film film;
+	struct track_trust by_skin, held;
+	struct track_conf conf = keys();
+	conf.wrong_alone_deg = 60;
+	conf.trust[TRUST_APART][0] = 1.5;
+	conf.trust[TRUST_APART][1] = 8;
+	shoot(&film, 0, 6, 0);
+	film.subject.assumed = true;
+	for (long f = 0; f < FRAMES; f++)
+		for (int e = 0; e < SIDES; e++)
+			film.result.eyes.state[f][e].sigma[0] = film.result.eyes.state[f][e].sigma[1] = 6 * DEGREE;
+	track_trust(&by_skin, &film.result, &film.clip, &film.subject, &conf);
+	film.result.place_mm = 0.3;
+	track_trust(&held, &film.result, &film.clip, &film.subject, &conf);
+	NEAR(held.value[TRUST_APART], by_skin.value[TRUST_APART], 1e-12);
+	// N(x; sqrt(1.5^2 + 2 6^2)) against that and N(x; sqrt(8^2 + 2 6^2))
+	const double x = held.value[TRUST_APART], a = sqrt(1.5 * 1.5 + 72), b = sqrt(64 + 72.0), right = exp(-0.5 * x * x / (a * a)) / a, wrong = exp(-0.5 * x * x / (b * b)) / b;
+	NEAR(held.log_odds[TRUST_APART], log(2 * right / (right + wrong)), 1e-3);
+	assert_true(by_skin.log_odds[TRUST_APART] < 0 && held.log_odds[TRUST_APART] > 0);
+	assert_true(isfinite(by_skin.value[TRUST_SKIN]) && isnan(held.value[TRUST_SKIN]));
 	track_result_free(&film.result);
 }
 
