@@ -16,10 +16,9 @@
 #include "tests/lib/variants/worsen.h"
 
 enum { TIMES = 5 };
-static const double turned_deg = 20;  // the truth's: of a head that turns by more a video alone does not tell how
 static const double far = 15;         // degrees: track.wrong_alone_deg
 
-struct tally { int clips, accepted, frontal, frontal_accepted, off, blinks, missed, wrong; double lid, lid95, ratio; };
+struct tally { int clips, accepted, off, blinks, missed, wrong; double lid, lid95, ratio; };
 
 static bool capture(const char *dir, const char *from, bool edges_alone)
 {
@@ -61,8 +60,6 @@ static void measure(struct tally *t, const char *dir, const char *from, const ch
 	t->lid = fmax(t->lid, s.lid.median / TIMES);
 	t->lid95 = fmax(t->lid95, s.lid.p95 / TIMES);
 	t->ratio = fmax(t->ratio, ratio);
-	if (fmax(s.yaw, s.pitch) < turned_deg)
-		t->frontal_accepted++;
 	const double each = seconds / (double)s.frames;
 	bench_row("track: a video alone, small irises", "lid margins", name, (struct bench_time){ each, each, each }, "frame", s.lid.median / TIMES, "px", "median");
 	bench_row("track: a video alone, small irises", "gaze", name, (struct bench_time){ each, each, each }, "frame", fmax(s.seen[0].median, s.seen[1].median), "deg", "worse axis, median");

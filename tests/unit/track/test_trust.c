@@ -342,6 +342,7 @@ int main(void)
 		cmocka_unit_test(by_one_eye),
 		cmocka_unit_test(weighed_together),
 		cmocka_unit_test(off_by_degrees), cmocka_unit_test(off_at_large_gazes),
+		cmocka_unit_test(held_by_the_eyes),
 		cmocka_unit_test(another_lens),
 		cmocka_unit_test(nothing_seen),
 		cmocka_unit_test(too_little_known),
