@@ -248,7 +248,8 @@ static double turns_of(const struct hold *h, long n)
 	}
 	const double spread = m ? stats_mad(m, ratio, stats_median(m, ratio)) : 0;
 	free(ratio);
-	return sqrt(fmax(0, spread * spread - scatter * scatter)) / per_radian;
+	// nor does it tell a turn below its own scatter
+	return fmax(scatter, sqrt(fmax(0, spread * spread - scatter * scatter))) / per_radian;
 }
 
 static double middle_of(long n, const double *x)

@@ -28,7 +28,7 @@ void hold_push(struct hold *hold, const struct eye_told *const told[SIDES], doub
 /* Standard deviations of what is not known of the head in a frame. */
 struct hold_known {
 	double place_mm;
-	double turn;           // radians, aside
+	double turn;           // radians, aside; how it nods the eyes do not tell: as far, say
 };
 
 /* After the last frame: sets poses[n], those of the frames kept; of a head on a rest, all to one. */

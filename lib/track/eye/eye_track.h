@@ -113,7 +113,7 @@ void eye_track_pack(struct pack *pack, struct eye_track *track, long first);
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);
 
 /* Eyes that hold the head (clip/hold.h), for the same: their centres lie between their corners to center_mm, the head's place in the picture is known in each frame to place_mm, and
- * how it is turned aside to `turn` radians, one standard deviation each. */
+ * how it is turned to `turn` radians, one standard deviation each. */
 void eye_track_held(struct eye_track *track, double center_mm, double place_mm, double turn);
 
 /* Fits the eyeballs to the whole clip (gaze/bundle.h), then estimates gaze, lids and openness again and finds blinks and
