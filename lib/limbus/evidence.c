@@ -176,6 +176,16 @@ float evidence_at(const struct evidence *evidence, enum evidence_class class, do
 	                    (y - evidence->y0) / evidence->scale);
 }
 
+float evidence_eye(const struct evidence *e, long i)
+{
+	return e->plane[EVIDENCE_SCLERA][i] + e->plane[EVIDENCE_IRIS][i] + e->plane[EVIDENCE_PUPIL][i] + e->plane[EVIDENCE_REFLECTION][i];
+}
+
+float evidence_eye_at(const struct evidence *e, double x, double y)
+{
+	return evidence_at(e, EVIDENCE_SCLERA, x, y) + evidence_at(e, EVIDENCE_IRIS, x, y) + evidence_at(e, EVIDENCE_PUPIL, x, y) + evidence_at(e, EVIDENCE_REFLECTION, x, y);
+}
+
 void evidence_free(struct evidence *evidence)
 {
 	free(evidence->plane[0]);

@@ -58,6 +58,10 @@ bool evidence_find(struct evidence_region out[EVIDENCE_REGIONS], int *n, struct 
 /* Probability of a class at (x, y) px of the photograph, bilinear, clamped to the border. */
 float evidence_at(const struct evidence *evidence, enum evidence_class class, double x, double y);
 
+/* Chance of what shows between open lids (sclera, iris, pupil, what they mirror): of pixel i of the planes; at (x, y) px of the photograph. */
+float evidence_eye(const struct evidence *evidence, long i);
+float evidence_eye_at(const struct evidence *evidence, double x, double y);
+
 void evidence_free(struct evidence *evidence);
 
 #endif

@@ -135,13 +135,18 @@ static bool motion_of(double by[MOTIONS], const struct hold *h, const struct see
 	return true;
 }
 
+bool hold_large(const struct hold *h)
+{
+	return h->radius >= h->large_px;
+}
+
 void hold_guess(double pose[4][4], const struct hold *h, const double skin_pose[4][4])
 {
 	double held[3], skin[3], px[2][2];
 	moved(pose, h, h->now);
 	middle_in(held, h, (const double(*)[4])pose);
 	middle_in(skin, h, skin_pose);
-	if (h->radius >= h->large_px && camera_project(px[0], &h->clip->camera, held) && camera_project(px[1], &h->clip->camera, skin)
+	if (hold_large(h) && camera_project(px[0], &h->clip->camera, held) && camera_project(px[1], &h->clip->camera, skin)
 	    && hypot(px[0][0] - px[1][0], px[0][1] - px[1][1]) < AGREE * h->radius)
 		memcpy(pose, skin_pose, sizeof(double[4][4]));
 }
@@ -204,13 +209,17 @@ static void path(double *x, long n, const double *y, double noise_least, double 
 		for (long i = 0; i < n; i++) {
 			const double off = round ? (y[i] - x[i]) / (3 * noise) : 0;
 			sigma[i] = isnan(y[i]) ? 1e4 * noise : noise * sqrt(1 + off * off);
-		}
-		for (long i = 0; i < n; i++)
 			x[i] = isnan(y[i]) ? 0 : y[i];
+		}
 		walk_glide(n, x, sigma, fmax(bend, bend_least), room);
 	}
 	free(sigma);
 	free(room);
+}
+
+static double gap(const float a[2], const float b[2])
+{
+	return hypot((double)(a[0] - b[0]), (double)(a[1] - b[1]));
 }
 
 /* How well the middle between the inner corners is known in a frame, px: these lie as far apart in all frames, but for the head's distance. */
@@ -220,7 +229,7 @@ static double place_of(const struct hold *h, long n)
 	int m = 0;
 	for (long i = 0; i < n; i++) {
 		const struct seen *s = &h->seen[i];
-		apart[i] = s->known[0] && s->known[1] ? hypot((double)(s->corner[0][0][0] - s->corner[1][0][0]), (double)(s->corner[0][0][1] - s->corner[1][0][1])) : NAN;
+		apart[i] = s->known[0] && s->known[1] ? gap(s->corner[SIDE_LEFT][0], s->corner[SIDE_RIGHT][0]) : NAN;
 	}
 	path(middle, n, apart, 0.3 * h->radius, least_bend[SIZE] * h->radius);
 	for (long i = 0; i < n; i++)
@@ -237,28 +246,17 @@ static double place_of(const struct hold *h, long n)
 static double turns_of(const struct hold *h, long n)
 {
 	const double per_radian = 0.65, scatter = 0.03;  // lids slant by 18 degrees against the face; of the logarithm of the widths' ratio in a frame
-	double *ratio = mem_array((size_t)n + 1, sizeof *ratio), wide[SIDES];
+	double *ratio = mem_array((size_t)n + 1, sizeof *ratio);
 	int m = 0;
 	for (long i = 0; i < n; i++) {
 		const struct seen *s = &h->seen[i];
-		for (int e = 0; e < SIDES; e++)
-			wide[e] = hypot((double)(s->corner[e][0][0] - s->corner[e][1][0]), (double)(s->corner[e][0][1] - s->corner[e][1][1]));
 		if (s->known[0] && s->known[1])
-			ratio[m++] = log(wide[SIDE_LEFT] / wide[SIDE_RIGHT]);
+			ratio[m++] = log(gap(s->corner[SIDE_LEFT][0], s->corner[SIDE_LEFT][1]) / gap(s->corner[SIDE_RIGHT][0], s->corner[SIDE_RIGHT][1]));
 	}
 	const double spread = m ? stats_mad(m, ratio, stats_median(m, ratio)) : 0;
 	free(ratio);
 	// nor does it tell a turn below its own scatter
 	return fmax(scatter, sqrt(fmax(0, spread * spread - scatter * scatter))) / per_radian;
-}
-
-static double middle_of(long n, const double *x)
-{
-	double *copy = mem_array((size_t)n + 1, sizeof *copy);
-	memcpy(copy, x, (size_t)n * sizeof *copy);
-	const double middle = stats_median((int)n, copy);
-	free(copy);
-	return middle;
 }
 
 void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const struct hold *h, bool rests)
@@ -277,11 +275,10 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 		if (seen < LEAST_FRAMES)
 			continue;
 		path(x, n, y, least[k] * unit, least_bend[k] * unit);
-		const double middle = rests ? middle_of(n, x) : 0;
-		for (long i = 0; i < n && rests; i++)
-			x[i] = middle;
+		memcpy(y, x, (size_t)n * sizeof *y);
+		const double middle = rests ? stats_median((int)n, y) : 0;
 		for (long i = 0; i < n; i++)
-			by[i][k] = x[i];
+			by[i][k] = rests ? middle : x[i];
 	}
 	for (long i = 0; i < n; i++)
 		moved(poses[i], h, by[i]);
@@ -290,11 +287,6 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 	free(by);
 	known->place_mm = n ? fmax(least[ACROSS] * h->radius, rests ? 0 : place_of(h, n)) * poses[0][2][3] / h->clip->camera.focal_px : 0;
 	known->turn = turns_of(h, n);
-}
-
-bool hold_large(const struct hold *h)
-{
-	return h->radius >= h->large_px;
 }
 
 void hold_pack(struct pack *p, struct hold *h, long first)

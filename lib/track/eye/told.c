@@ -22,7 +22,7 @@ static struct patch patch_of(const struct evidence *e)
 	const int n = e->width * e->height;
 	struct patch p = { e->width, e->height, mem_array((size_t)n, sizeof *p.eye), mem_new((size_t)n, sizeof *p.label) };
 	for (int i = 0; i < n; i++)
-		p.eye[i] = e->plane[EVIDENCE_SCLERA][i] + e->plane[EVIDENCE_IRIS][i] + e->plane[EVIDENCE_PUPIL][i] + e->plane[EVIDENCE_REFLECTION][i];
+		p.eye[i] = evidence_eye(e, i);
 	return p;
 }
 

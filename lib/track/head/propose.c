@@ -26,7 +26,7 @@ static double open_of(struct evidence_net *net, const struct photo *photo, const
 	if (!evidence_window(&e, net, photo, r->x, r->y, r->radius, &none))
 		return 0;
 	for (int i = 0; i < e.width * e.height; i++)
-		sum += (double)(e.plane[EVIDENCE_SCLERA][i] + e.plane[EVIDENCE_IRIS][i] + e.plane[EVIDENCE_PUPIL][i] + e.plane[EVIDENCE_REFLECTION][i]);
+		sum += (double)evidence_eye(&e, i);
 	sum *= pow(e.scale / r->radius, 2);
 	evidence_free(&e);
 	return sum;

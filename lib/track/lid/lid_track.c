@@ -187,8 +187,7 @@ static void ask_evidence(float odds[LID_ROWS][LID_COLS_MAX], const struct eviden
 		for (int i = 0; i < chart->cols; i++) {
 			double p[2];
 			lid_chart_px(p, chart, i, j);
-			const float eye = evidence_at(e, EVIDENCE_SCLERA, p[0], p[1]) + evidence_at(e, EVIDENCE_IRIS, p[0], p[1]) + evidence_at(e, EVIDENCE_PUPIL, p[0], p[1])
-			                  + evidence_at(e, EVIDENCE_REFLECTION, p[0], p[1]);
+			const float eye = evidence_eye_at(e, p[0], p[1]);
 			odds[j][i] = fmaxf(-LID_SURE, fminf(LID_SURE, logf((eye + least) / (1 - eye + least))));
 		}
 }

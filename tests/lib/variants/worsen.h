@@ -6,7 +6,7 @@
 #include "base/err.h"
 
 /* how: "noise" (Gaussian, 8 of 255 in every channel: a small sensor indoors), "blur" (Gaussian, 2 px: out of focus), "half" (half as many pixels either
- * way), "fifth" (a fifth of them), "150" (from its frame 150 on). */
+ * way), "fifth" (a fifth of them), "as it is", "150" (from its frame 150 on). */
 bool worsen_video(const char *out, const char *in, const char *how, struct err *err);
 
 /* A picture's means over `times` pixels either way, in place: its first [height / times][width / times]. */
