@@ -20,6 +20,11 @@ bench-batch: build $B/tests/tools/variant
 bench-look: build $B/tests/tools/eye_compare
 	@B=$B BIN=$(BIN) SAMPLES=$(or $(SAMPLES),$(if $(QUICK),16,64)) tests/bench/look.sh
 
+# Films of people, of which the repository has none: FILMS=FOLDER.
+.PHONY: bench-track_real
+bench-track_real: build
+	@B=$B BIN=$(BIN) FILMS="$(FILMS)" tests/bench/real.sh
+
 .PHONY: bench-report bench-compare
 bench-compare: $B/tests/bench/report/compare
 	@test -n "$(BEFORE)" || { echo "make: say which: make bench-compare BEFORE=old/bench [AFTER=bench]" >&2; exit 2; }

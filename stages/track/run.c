@@ -57,7 +57,7 @@ static void tell(struct stage *stage, const struct track_result *r, const struct
 	stage_figure(stage, "track_seen", seen, "");
 	stage_figure(stage, "track_pose", clip->pose_px, "px");
 	if (r->place_mm > 0)
-		stage_skipped(stage, "%s: the corners of the eyes tell where the head is, not how it turns: gaze is against the camera, known to some %.0f degrees (one standard deviation; gaze.csv has each)",
+		stage_skipped(stage, "%s: the corners of the eyes tell where the head is, the face how it turns, as far as people are alike: gaze is known to some %.0f degrees (one standard deviation; gaze.csv has each)",
 		              clip->file, trust_sigma_deg(r));
 	if (r->unsure)
 		stage_skipped(stage, "%s: in %ld frames the skin stirs too much to tell how the head is turned: no gaze and no lids there", clip->file, r->unsure);

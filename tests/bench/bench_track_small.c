@@ -1,5 +1,5 @@
 /* bench_track_small: the stage `track` on a video alone whose irises are small (6 to 13 px radius), as in most films of a face: clips with truth at a fifth of their size, told
- * nothing, neither lens nor mesh. Accepted or refused; lids, blinks, gaze against the camera's axes and against its own standard deviation. The clip of the shared data with both
+ * nothing, neither lens nor mesh. Accepted or refused; lids, blinks, how the head is turned, gaze against the head and its own standard deviation, and against the camera's axes. The clip of the shared data with both
  * eyes, and EYEWRIGHT_FACES=DIR: folders of others (bench_track_unseen). Beside it the same by edges and the clip's own colours alone, the head by its skin, accepted whatever it is.
  * FACES=84047: only those whose name has that; TIMES=1, 2: not reduced, or to a half. Run from the top of the checkout. */
 #include <math.h>
@@ -54,10 +54,11 @@ static void measure(struct tally *t, const char *dir, const char *from, const ch
 		printf("refused%s%s\n", err.msg[0] ? ": " : "", err.msg);
 		return;
 	}
-	const double gaze95 = fmax(s.seen[0].p95, s.seen[1].p95), ratio = fmax(s.ratio[0].p90, s.ratio[1].p90);
-	printf("accepted %5.1f ms a frame; lids %.2f, 95%% %.2f px; gaze h %.1f, 95%% %.1f, v %.1f, 95%% %.1f deg, 90%% of errors below %.1f sigma, in %.0f%% of frames; blinks %d of %d, %d wrong; head turned by %.0f\n",
-	       1000 * seconds / (double)s.frames, s.lid.median / times(), s.lid.p95 / times(), s.seen[0].median, s.seen[0].p95, s.seen[1].median, s.seen[1].p95, ratio, 100 * s.gaze_share,
-	       s.found, s.blinks, s.wrong, fmax(s.yaw, s.pitch));
+	const double gaze95 = fmax(s.gaze[0].p95, s.gaze[1].p95), ratio = fmax(s.ratio[0].p90, s.ratio[1].p90);
+	printf("accepted %5.1f ms a frame; lids %.2f, 95%% %.2f px; gaze h %.1f, 95%% %.1f, v %.1f, 95%% %.1f deg, 90%% of errors below %.1f sigma, in %.0f%% of frames; against the camera h %.1f, 95%% %.1f, v %.1f, 95%% %.1f; blinks %d of %d, %d wrong; "
+	       "head turned by %.0f, told to %.1f, 95%% %.1f deg\n",
+	       1000 * seconds / (double)s.frames, s.lid.median / times(), s.lid.p95 / times(), s.gaze[0].median, s.gaze[0].p95, s.gaze[1].median, s.gaze[1].p95, ratio, 100 * s.gaze_share,
+	       s.seen[0].median, s.seen[0].p95, s.seen[1].median, s.seen[1].p95, s.found, s.blinks, s.wrong, fmax(s.yaw, s.pitch), s.head_off.median, s.head_off.p95);
 	t->accepted++;
 	t->off += gaze95 > 2 * far;
 	t->blinks += s.blinks;
@@ -68,7 +69,7 @@ static void measure(struct tally *t, const char *dir, const char *from, const ch
 	t->ratio = fmax(t->ratio, ratio);
 	const double each = seconds / (double)s.frames;
 	bench_row("track: a video alone, lid margins", method, name, (struct bench_time){ each, each, each }, "frame", s.lid.median / times(), "px", "median");
-	bench_row("track: a video alone, gaze", method, name, (struct bench_time){ each, each, each }, "frame", fmax(s.seen[0].median, s.seen[1].median), "deg", "worse axis, median");
+	bench_row("track: a video alone, gaze", method, name, (struct bench_time){ each, each, each }, "frame", fmax(s.gaze[0].median, s.gaze[1].median), "deg", "against the head, worse axis, median");
 }
 
 static void both(struct tally *t, const char *dir, const char *from, const char *name)

@@ -140,6 +140,7 @@ if [ -x "$RECUT" ]; then
 	check "stills of one face are followed" "$BIN/track" --quiet --capture="$root/slides" --points=300
 	# samples/face/truth: gaze_left_deg of frame 20
 	near "stills: gaze of frame 20" "$(cell slides 50 g1_deg)" -20.815 1
+	check "stills: the mesh is turned as the face looks" awk '/"turned_deg"/ { getline; gsub(/[^0-9.]/, ""); ok = $0 != "" && $0 < 10 } END { exit !ok }' "$root/slides/work/skin/track.json"
 	check "stills: no blink" grep -q '"blinks": \[\]' "$root/slides/work/skin/track.json"
 	take show 20-20x20 over:20-20x20 aside:20-20x20
 	refuses show "is not seen again .a cut, or the head turned away.: cut the video|besides those followed|does not move as|do not come together|followed from"

@@ -7,9 +7,11 @@
 #include "base/mem.h"
 #include "track/clip/earn.h"
 #include "track/clip/few.h"
+#include "track/clip/hold.h"
 #include "track/clip/look.h"
 #include "track/clip/reference.h"
 #include "track/head/refine.h"
+#include "track/head/turn.h"
 
 enum { ROUNDS = 3, LEAST_FRAMES = 8 };
 static const double STILL_MM = 0.3;  // a centre that moves less has been found
@@ -50,7 +52,51 @@ static bool start(struct track_clip *clip, struct stage *stage, const struct tra
 	return !err_is(err);
 }
 
-static void turn(double v[3], const double by[3][3])
+/* Middles between the corners of both eyes as the pose has them, px. */
+static bool middles(double px[SIDES][2], const struct track_clip *clip, const struct track_subject *s)
+{
+	bool ok = true;
+	for (int e = 0; e < SIDES; e++) {
+		double corner[2][2];
+		for (int c = 0; c < 2; c++)
+			ok = ok && head_project(corner[c], &clip->camera, clip->cam_from_head, s->opening[e].canthus[c]);
+		for (int k = 0; k < 2 && ok; k++)
+			px[e][k] = 0.5 * (corner[0][k] + corner[1][k]);
+	}
+	return ok;
+}
+
+static double apart(const double px[SIDES][2])
+{
+	return hypot(px[0][0] - px[1][0], px[0][1] - px[1][1]);
+}
+
+/* Outlines of average lids do not tell how a head is turned: the face does. The average eyes, so turned, are laid where theirs are seen. */
+static void face_told(struct track_clip *clip, const struct track_subject *s, const struct head_turn *turn, const double seen[SIDES][2])
+{
+	const double lean = atan2(seen[SIDE_LEFT][1] - seen[SIDE_RIGHT][1], seen[SIDE_LEFT][0] - seen[SIDE_RIGHT][0]);
+	double between[3], at[3], ray[3], m[3][3];
+	for (int k = 0; k < 3; k++)
+		between[k] = 0.25 * (s->opening[0].canthus[0][k] + s->opening[0].canthus[1][k] + s->opening[1].canthus[0][k] + s->opening[1].canthus[1][k]);
+	head_from(at, clip->cam_from_head, between);
+	camera_ray(ray, &clip->camera, (double[2]){ 0.5 * (seen[0][0] + seen[1][0]), 0.5 * (seen[0][1] + seen[1][1]) });
+	turn_rotation(m, turn->angle, lean, ray);
+	double z = at[2];
+	for (int round = 0; round < ROUNDS; round++) {
+		double now[SIDES][2];
+		for (int i = 0; i < 3; i++) {
+			memcpy(clip->cam_from_head[i], m[i], sizeof m[i]);
+			clip->cam_from_head[i][3] = ray[i] / ray[2] * z - (m[i][0] * between[0] + m[i][1] * between[1] + m[i][2] * between[2]);
+		}
+		if (!middles(now, clip, s))
+			return;
+		z *= apart((const double(*)[2])now) / apart(seen);
+	}
+	clip->turn_sigma[0] = hold_turn_share(s) * turn->sigma[TURN_NOD];
+	clip->turn_sigma[1] = hold_turn_share(s) * turn->sigma[TURN_ASIDE];
+}
+
+static void turn_point(double v[3], const double by[3][3])
 {
 	const double x[3] = { v[0], v[1], v[2] };
 	for (int i = 0; i < 3; i++)
@@ -60,13 +106,13 @@ static void turn(double v[3], const double by[3][3])
 static void turn_opening(struct eye_opening *o, const double by[3][3])
 {
 	for (int i = 0; i < OPENING_POINTS; i++)
-		turn(o->edge[i], by);
+		turn_point(o->edge[i], by);
 	for (int c = 0; c < 2; c++)
-		turn(o->canthus[c], by);
-	turn(o->center, by);
+		turn_point(o->canthus[c], by);
+	turn_point(o->center, by);
 }
 
-/* Takes the camera's axes, rolled as the eyes lie, for the head's; what is known of the eyes stays where it is seen. */
+/* One eye: takes the camera's axes, rolled as the eyes lie, for the head's; what is known of the eye stays where it is seen. */
 static void face_camera(struct track_clip *clip, struct track_subject *s)
 {
 	const double roll = atan2(clip->cam_from_head[1][0], clip->cam_from_head[0][0]), c = cos(roll), d = sin(roll);
@@ -82,12 +128,12 @@ static void face_camera(struct track_clip *clip, struct track_subject *s)
 		memcpy(clip->cam_from_head[i], faces[i], sizeof faces[i]);
 	for (int i = 0; i < s->mesh.n_vertices; i++) {
 		double v[3] = { s->mesh.vertices[i][0], s->mesh.vertices[i][1], s->mesh.vertices[i][2] };
-		turn(v, by);
+		turn_point(v, by);
 		for (int k = 0; k < 3; k++)
 			s->mesh.vertices[i][k] = (float)v[k];
 	}
 	for (int e = 0; e < SIDES; e++) {
-		turn(s->center[e], by);
+		turn_point(s->center[e], by);
 		turn_opening(&s->opening[e], by);
 		turn_opening(&s->margin[e], by);
 	}
@@ -150,6 +196,27 @@ static void center(struct track_clip *clip, struct stage *stage, struct track_su
 	}
 }
 
+static bool face(struct track_clip *clip, struct track_subject *s, const struct track_conf *conf, struct err *err)
+{
+	double seen[SIDES][2];
+	if (!clip->eye_seen[0] || !clip->eye_seen[1] || !clip->rgb || !middles(seen, clip, s)) {
+		face_camera(clip, s);
+		return true;
+	}
+	struct turn_net *net;
+	struct head_turn turn;
+	if (!turn_open_shipped(&net, err))
+		return false;
+	const bool ok = turn_see(&turn, net, clip->rgb, clip->info.width, clip->info.height, (const double(*)[2])seen, err);
+	turn_close(net);
+	if (ok) {
+		face_told(clip, s, &turn, (const double(*)[2])seen);
+		if (clip->focal_assumed)
+			track_look_distance(clip, s, conf);
+	}
+	return ok;
+}
+
 bool track_alone(struct track_clip *clip, struct stage *stage, struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	if (!start(clip, stage, s, conf, err))
@@ -159,7 +226,8 @@ bool track_alone(struct track_clip *clip, struct stage *stage, struct track_subj
 		               clip->reference);
 	if (conf->settle)
 		stand_up(clip, stage, s, conf);
-	face_camera(clip, s);
+	if (!face(clip, s, conf, err))
+		return false;
 	if (conf->settle)
 		center(clip, stage, s, conf);
 	return true;

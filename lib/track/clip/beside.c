@@ -12,6 +12,8 @@ enum { TERMS = 3, ROUNDS = 6, LEAST_FRAMES = 20 };
 
 /* Reach of the Gaussian weight of skin about a place, as a share of the opening's width; sum of weights that counts as full. */
 static const double reach_share = 0.055, full = 0.15;
+/* Share of the opening's width that a corner moves by, about how it moves with gaze, at most: 2 mm. */
+static const double corner_moves = 0.07;
 /* Openness of an open eye. */
 static const double open_enough = 0.8;
 /* Radians: ridge where gaze hardly moves. px: noise floor of skin measurements. */
@@ -110,19 +112,40 @@ static int round_of(double c[2][TERMS], double *off, double scale, const struct 
 	return n;
 }
 
-/* The mesh's face looks straight on; in the reference frame the eye may look to the side and has pulled the skin along. Adds
- * that motion, by regression of the skin's motion on gaze over the clip; horizontally alone: the mesh's lids are assumed as
- * high as at the reference. */
-static void from_straight(double (*moved)[2], const double *weight, const struct track_result *r, int side, const struct track_clip *clip, double *room)
+/* How the skin moves with gaze, by regression over the clip: moved = c . terms. False where too little of it is seen. */
+static bool with_gaze(double c[2][TERMS], const double (*moved)[2], const double *weight, const struct track_result *r, int side, double *room)
 {
-	double c[2][TERMS] = { { 0 } }, h = r->eyes.state[clip->reference][side].gaze[0], scale = 1e9;
+	double scale = 1e9;
+	memset(c, 0, sizeof(double[2][TERMS]));
 	for (int round = 0; round < ROUNDS; round++) {
-		int n = round_of(c, room, scale, r, side, (const double(*)[2])moved, weight);
-		if (n < LEAST_FRAMES || !isfinite(h))
-			return;
+		int n = round_of(c, room, scale, r, side, moved, weight);
+		if (n < LEAST_FRAMES)
+			return false;
 		scale = round ? 2 * fmax(least_scale, stats_median(n, room)) : 1e9;
 	}
-	for (long f = 0; f < r->n; f++)
+	return true;
+}
+
+/* A corner moves by a millimetre or two: skin that says otherwise was lost there. */
+static void drop_far(double *weight, const double (*moved)[2], double c[2][TERMS], double most, const struct track_result *r, int side)
+{
+	for (long f = 0; f < r->n; f++) {
+		double t[TERMS], e[2] = { moved[f][0], moved[f][1] };
+		const int known = terms(t, &r->eyes.state[f][side]) ? TERMS : 1;
+		for (int k = 0; k < 2; k++)
+			for (int a = 0; a < known; a++)
+				e[k] -= c[k][a] * t[a];
+		if (hypot(e[0], e[1]) > most)
+			weight[f] = 0;
+	}
+}
+
+/* The mesh's face looks straight on; in the reference frame the eye may look to the side and has pulled the skin along. Adds
+ * that motion; horizontally alone: the mesh's lids are assumed as high as at the reference. */
+static void from_straight(double (*moved)[2], double c[2][TERMS], const struct track_result *r, int side, const struct track_clip *clip)
+{
+	const double h = r->eyes.state[clip->reference][side].gaze[0];
+	for (long f = 0; f < r->n && isfinite(h); f++)
 		for (int k = 0; k < 2; k++)
 			moved[f][k] += c[k][1] * h;
 }
@@ -132,14 +155,19 @@ struct beside beside_new(int n, const double (*head)[3], const struct track_resu
 {
 	size_t all = (size_t)n * (size_t)r->n + 1;
 	struct beside b = { n, r->n, bulk_new(r->bulk, all, sizeof *b.moved), bulk_new(r->bulk, all, sizeof *b.weight), r->bulk };
-	double *room = mem_array((size_t)r->n + 1, sizeof *room), wide = 0;
+	double *room = mem_array((size_t)r->n + 1, sizeof *room), wide = 0, ends[2][2], c[2][TERMS];
+	const bool seen = head_project(ends[0], &clip->camera, clip->cam_from_head, head[0]) && head_project(ends[1], &clip->camera, clip->cam_from_head, head[n - 1]);
 	for (int k = 0; k < 3; k++)
 		wide += pow(head[n - 1][k] - head[0][k], 2);
 	for (int i = 0; i < n; i++) {
 		double(*moved)[2] = b.moved + i * r->n, *weight = b.weight + i * r->n;
 		gather(moved, weight, head[i], reach_share * sqrt(wide), r, clip, points);
+		const bool told = with_gaze(c, (const double(*)[2])moved, weight, r, side, room);
+		if (told && seen && (i == 0 || i == n - 1))
+			drop_far(weight, (const double(*)[2])moved, c, corner_moves * hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1]), r, side);
 		fill(r->n, moved, weight);
-		from_straight(moved, weight, r, side, clip, room);
+		if (told)
+			from_straight(moved, c, r, side, clip);
 	}
 	free(room);
 	return b;

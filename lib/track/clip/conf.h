@@ -32,6 +32,7 @@ struct track_conf {
 	int settle;            // frames from which the eyeballs' centres are estimated to refine the reference pose; 0: none
 	double settle_sigma, center_sigma;  // mm, standard deviations of the eyeballs' centres: the prior meanwhile; those of the mesh
 	double guess_sigma;    // mm, of centres that are guessed from the lids' marks
+	double outline;        // px, what outlines of lids and irises are off by besides what grows with the picture
 	double pose_most, pose_refused;  // px at a width of 1280: where the reference pose's residual is larger, other frames are tried; the clip is refused
 	double turned, torn, confirmed;   // degrees: a head that turns by more is laid on by how its skin moves; halves of the skin that tell poses further apart are refused; up to twice as far apart not where lids, eyeballs and shading turn it as far to this
 	double mesh_straight;  // degrees: how far the eyes looked from straight on, up or down, when the mesh was made, one standard deviation; 0: lids are the mesh's at the usual gaze
@@ -97,6 +98,9 @@ static inline long track_every(const struct track_conf *conf)
 		TRUST_OPT("level_deg", c, TRUST_LEVEL, "degrees", "one eye higher than the other"), TRUST_OPT("apart_deg", c, TRUST_APART, "degrees", "eyes apart"), \
 		TRUST_OPT("iris_mm", c, TRUST_IRIS, "mm", "radius of the irises off people's"), TRUST_OPT("scale_mm", c, TRUST_SCALE, "mm", "the same without a mesh"), \
 		TRUST_OPT("straight_deg", c, TRUST_STRAIGHT, "degrees", "gaze off straight ahead"), \
+		TRUST_OPT("turned_deg", c, TRUST_TURNED, "degrees", "the mesh turned otherwise than the face"), \
+		TRUST_OPT("unlike_deg", c, TRUST_UNLIKE, "degrees", "without a mesh: how well the face tells its turn"), \
+		OPT_REAL("outline_px", &(c)->outline, 0, 100, "px", "what outlines are off by in any picture, large or small"), \
 		OPT_REALS("lens_share", (c)->lens_share, 2, 1e-3, 100, "", "perspective seen, less 1, of a lens told rightly, wrongly"), \
 		OPT_REAL("wrong_lens_prior", &(c)->wrong_lens_prior, 0, 0.99, "", "share of clips whose lens is told wrongly"), \
 		OPT_REAL("nearest_mm", &(c)->nearest_mm, 0, 10000, "mm", "people look at nothing nearer, in the median, or at the camera"), \

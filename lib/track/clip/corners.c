@@ -15,6 +15,8 @@ enum { ENDS = 2 };
 
 /* Shares of the distance between the corners in which the mesh gives the shape, at the inner and the outer end. */
 static const double shaped[ENDS] = { 0.09, 0.14 };
+/* Where a margin that is found ends nearer to the middle, as far as that and so much more; at most. */
+static const double beyond = 0.02, shaped_most = 0.3;
 /* Weight of the skin's motion, upper and lower lid, and the distance (mm) between it and the margin seen at which it has lost
  * half: skin of the lower lid runs into its margin; that of the upper lid hangs over it. */
 static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.3;
@@ -97,12 +99,12 @@ static bool affine(double m[2][3], const double from[3][2], const double to[3][2
 	return true;
 }
 
-/* Appends the mesh's margin at one end, mapped by m, in the order from inner to outer. */
-static void add_end(struct line *out, const struct line *mesh, const double corners[ENDS][2], int end, double m[2][3])
+/* Appends the mesh's margin at one end, as far as `from`, mapped by m, in the order from inner to outer. */
+static void add_end(struct line *out, const struct line *mesh, const double corners[ENDS][2], int end, double from, double m[2][3])
 {
 	for (int i = 0; i < mesh->n; i++) {
 		double u = line_along(mesh->p[i], corners[0], corners[1]), p[2];
-		if (end ? u < 1 - shaped[1] : u > shaped[0])
+		if (end ? u < from : u > from)
 			continue;
 		for (int k = 0; k < 2; k++)
 			p[k] = m[k][0] * mesh->p[i][0] + m[k][1] * mesh->p[i][1] + m[k][2];
@@ -114,16 +116,19 @@ static void add_end(struct line *out, const struct line *mesh, const double corn
  * clear. */
 static void reshape(struct eye_state *state, const struct line mesh[LIDS], const double corner[ENDS][2])
 {
-	double from[ENDS][2], map[ENDS][2][3];
+	double from[ENDS][2], map[ENDS][2][3], at[ENDS] = { shaped[0], 1 - shaped[1] };
 	struct line found[LIDS], out[LIDS] = { 0 };
 	for (int c = 0; c < ENDS; c++)
 		memcpy(from[c], mesh[0].p[c ? mesh[0].n - 1 : 0], sizeof from[c]);
 	for (int k = 0; k < LIDS; k++) {
 		found[k].n = state->lid_points;
 		memcpy(found[k].p, state->lid[k], (size_t)state->lid_points * sizeof *found[k].p);
+		// margins that end before the mesh's corners: its shape as far as they come
+		at[0] = fmin(fmax(at[0], line_along(found[k].p[0], corner[0], corner[1]) + beyond), shaped_most);
+		at[1] = fmax(fmin(at[1], line_along(found[k].p[found[k].n - 1], corner[0], corner[1]) - beyond), 1 - shaped_most);
 	}
 	for (int c = 0; c < ENDS; c++) {
-		double a[3][2], b[3][2], u = c ? 1 - shaped[1] : shaped[0];
+		double a[3][2], b[3][2], u = at[c];
 		memcpy(a[0], from[c], sizeof a[0]);
 		memcpy(b[0], corner[c], sizeof b[0]);
 		for (int k = 0; k < LIDS; k++)
@@ -133,13 +138,13 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 			return;
 	}
 	for (int k = 0; k < LIDS; k++) {
-		add_end(&out[k], &mesh[k], from, 0, map[0]);
+		add_end(&out[k], &mesh[k], from, 0, at[0], map[0]);
 		for (int i = 0; i < found[k].n; i++) {
 			double u = line_along(found[k].p[i], corner[0], corner[1]);
-			if (u > shaped[0] && u < 1 - shaped[1])
+			if (u > at[0] && u < at[1])
 				line_add(&out[k], found[k].p[i]);
 		}
-		add_end(&out[k], &mesh[k], from, 1, map[1]);
+		add_end(&out[k], &mesh[k], from, 1, at[1], map[1]);
 		if (out[k].n < LIDS)
 			return;
 	}

@@ -17,8 +17,11 @@ struct track_eyes {
 	uint8_t *rgb;          // [height][3 width]; only what lies round the eyes is filled
 	struct glance *glance; // null: edges and colours alone tell the eyes
 	struct hold *hold;     // null: skin alone tells the head's pose
-	double time;           // of the last frame
+	struct turn_net *turn; // with hold; null: cannot be opened, which the search for the reference reports
+	double time, turned;   // of the last frame, and of the last one whose head's turn was looked at
 };
+
+static const double turn_s = 0.06;     // heads turn slowly: looked at no more often
 
 /* Where the distance was assumed, the line of sight to an eye aside of the camera's axis is off in proportion to its angle. */
 static void view_sigma(double sigma[2], const struct track_clip *clip, const struct track_subject *subject, int side, const struct track_conf *conf)
@@ -29,10 +32,30 @@ static void view_sigma(double sigma[2], const struct track_clip *clip, const str
 		sigma[k] = subject->assumed && clip->focal_assumed ? conf->distance_sigma * fabs(p[k] / p[2]) : 0;
 }
 
+/* How the head is turned, from the face round both eyes that the evidence tells. f: as of held. */
+static bool turned(struct head_turn *turn, struct track_eyes *eyes, const struct eye_frame *frame, const struct glance_told *t, const struct video_frame *f)
+{
+	const int width = eyes->clip->info.width, height = eyes->clip->info.height;
+	struct err none = { 0 };
+	double middle[SIDES][2];
+	int box[4];
+	for (int e = 0; e < SIDES; e++)
+		for (int k = 0; k < 2; k++)
+			middle[e][k] = !t->known[e] ? NAN : 0.5 * (t->told[e].corner[0][k] + t->told[e].corner[1][k]);
+	if (!eyes->turn || (f && fabs(frame->time - eyes->turned) < turn_s) || !t->known[0] || !t->known[1] || !turn_reach(box, (const double(*)[2])middle, width, height))
+		return false;
+	if (f) {
+		video_frame_rgb(eyes->rgb, 3 * width, f, box[0], box[1], box[2], box[3]);
+		eyes->turned = frame->time;
+	}
+	return turn_see(turn, eyes->turn, frame->rgb, width, height, (const double(*)[2])middle, &none);
+}
+
 /* The eyes that the evidence tells hold the head in the frame. f: null for the reference, which is no part of the clip. */
 static void held(struct eye_frame *frame, struct track_eyes *eyes, const bool in[SIDES], const double skin_pose[4][4], const struct video_frame *f)
 {
 	struct glance_told t;
+	struct head_turn turn;
 	const bool lost = f && eyes->clip->eye_seen[0] && eyes->clip->eye_seen[1] && hold_lost(eyes->hold);
 	if (lost) {
 		double eye[SIDES][2];
@@ -43,7 +66,7 @@ static void held(struct eye_frame *frame, struct track_eyes *eyes, const bool in
 	}
 	glance_at(frame, eyes->glance, lost ? eyes->clip->eye_seen : in);
 	glance_tell(&t, frame, eyes->glance);
-	hold_push(eyes->hold, t.known, t.radius, f ? fmax(0, frame->time - eyes->time) : 0, f);
+	hold_push(eyes->hold, t.known, turned(&turn, eyes, frame, &t, f) ? &turn : 0, t.radius, f ? fmax(0, frame->time - eyes->time) : 0, f);
 	hold_guess(frame->cam_from_head, eyes->hold, skin_pose);
 	eyes->time = frame->time;
 }
@@ -55,9 +78,12 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 		                       .head_sigma = { clip->turn_sigma[1], clip->turn_sigma[0] }, .bulk = bulk };
 	struct eye_track_conf free_centers = conf->eyes;
 	struct track_eyes *eyes = mem_new(1, sizeof *eyes);
-	*eyes = (struct track_eyes){ .clip = clip, .subject = subject, .glance = glance_new(clip, subject, conf) };
-	if (eyes->glance && subject->assumed)
+	*eyes = (struct track_eyes){ .clip = clip, .subject = subject, .glance = glance_new(clip, subject, conf), .turned = -INFINITY };
+	struct err none = { 0 };
+	if (eyes->glance && subject->assumed) {
 		eyes->hold = hold_new(clip, subject, conf->eyes.evidence_px);
+		turn_open_shipped(&eyes->turn, &none);
+	}
 	// eyes of an average face: a wider prior
 	if (subject->assumed)
 		free_centers.center_sigma = fmax(free_centers.center_sigma, conf->settle_sigma);
@@ -150,11 +176,20 @@ void track_eyes_hold(struct track_result *r, struct track_eyes *eyes, const stru
 {
 	struct hold_known known;
 	// the clip tells the eyeballs of large irises, if skin tells the path; those of small ones lie between the corners
-	if (!eyes->hold || (hold_large(eyes->hold) && trust_skin_mm(r, eyes->clip, eyes->subject) < conf->held_skin))
+	r->unlike = eyes->hold ? hold_unlike(eyes->hold) : NAN;
+	if (!eyes->hold)
 		return;
+	if (hold_large(eyes->hold) && trust_skin_mm(r, eyes->clip, eyes->subject) < conf->held_skin) {
+		hold_turn(r->pose, r->n, eyes->hold);
+		return;
+	}
 	hold_settle(&known, r->pose, r->n, eyes->hold, r->rests);
 	r->place_mm = known.place_mm;
-	eye_track_held(eyes->track, conf->held_sigma, known.place_mm, known.turn);
+	// what the reference's own turn is known to is in all gaze
+	double turn[TURNS], share = hold_turn_share(eyes->subject);
+	for (int k = 0; k < TURNS; k++)
+		turn[k] = sqrt(fmax(0, pow(share * known.turn[k], 2) - pow(eyes->clip->turn_sigma[k == TURN_ASIDE], 2)));
+	eye_track_held(eyes->track, conf->held_sigma, known.place_mm, turn);
 }
 
 bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct err *err)
@@ -180,6 +215,7 @@ void track_eyes_pack(struct pack *pack, struct track_eyes *eyes, long first)
 	if (eyes->hold)
 		hold_pack(pack, eyes->hold, first);
 	PACK(pack, eyes->time);
+	PACK(pack, eyes->turned);
 }
 
 void track_eyes_free(struct track_eyes *eyes)
@@ -189,6 +225,7 @@ void track_eyes_free(struct track_eyes *eyes)
 	eye_track_free(eyes->track);
 	glance_free(eyes->glance);
 	hold_free(eyes->hold);
+	turn_close(eyes->turn);
 	free(eyes->rgb);
 	free(eyes);
 }

@@ -11,47 +11,37 @@
 /* mm: the line through the corners of the eye lies lower on people than on the mean opening (subject.c): of heads of a model made from scans 2.2 +- 0.2 below the eyeballs'
  * centres, of that opening 0.5; between both. */
 static const double LOWER = 0.9;
-static const double ASIDE = 0.8;       // mm: and the middle between them further to the temple, of those heads by 1.6, of that opening by none
+static const double OUTWARD = 0.8;     // mm: and the middle between them further to the temple, of those heads by 1.6, of that opening by none
 static const double OPEN = 2;          // squares of the iris' radius: eyes that show less tell no corners
 static const double AGREE = 0.8;       // radii: skin that tells the eyes so near to where they are is believed on the way
 static const double LOST_S = 0.25;     // longer than most blinks
 enum { ROUNDS = 6, LEAST_FRAMES = 12 };
 
-/* A similarity of the picture about the middle between the eyes: shift, px; lean, radians; logarithm of the size. */
-enum { ACROSS, DOWN, LEAN, SIZE, MOTIONS };
-static const double follow_s[MOTIONS] = { 0.02, 0.02, 0.05, 0.2 };    // seconds over which each is followed on the way
-static const double least[MOTIONS] = { 0.03, 0.03, 0.005, 0.005 };    // radii of the iris, radians: scatter of a frame's, at least
-static const double least_bend[MOTIONS] = { 0.003, 0.003, 0.0005, 0.0003 };
+static const double UNTOLD = 0.35;     // radians: how faces of a clip are turned, one standard deviation, where nothing tells
 
-struct seen { float corner[SIDES][2][2]; bool known[SIDES]; };
+/* A similarity of the picture about the middle between the eyes: shift, px; lean, radians; logarithm of the size. And how the head is turned (head/turn.h), radians: first ASIDE. */
+enum { ACROSS, DOWN, LEAN, SIZE, ASIDE, NOD, MOTIONS };
+static const double follow_s[MOTIONS] = { 0.02, 0.02, 0.05, 0.2, 0.2, 0.2 };    // seconds over which each is followed on the way
+static const double least[ASIDE] = { 0.03, 0.03, 0.005, 0.005 };      // radii of the iris, radians: scatter of a frame's, at least
+static const double least_bend[ASIDE] = { 0.003, 0.003, 0.0005, 0.0003 };
+/* How a head changes the speed of its turn, radians/s^1.5: a nod by 10 degrees and back in a second is one of 7 radians/s^2 for a quarter of one. The network errs alike in frames that are
+ * alike, so that a clip does not show it. */
+static const double turn_bend = 3;
+
+struct seen { float corner[SIDES][2][2], turn[TURNS], sigma[TURNS], unlike; bool known[SIDES], turned; };
 
 struct hold {
 	const struct track_clip *clip;
 	const struct track_subject *subject;
 	double large_px;
-	double now[MOTIONS];
+	double lean;                   // of the reference, radians
+	double begun[MOTIONS], now[MOTIONS];  // of the reference, and last
 	double radius;                 // px, of the irises, last
 	double lost_s;                 // since eyes were told
+	double seconds;                // of the frames kept
 	long n, room;
 	struct seen *seen;             // [n]
 };
-
-struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject, double large_px)
-{
-	struct hold *h = mem_new(1, sizeof *h);
-	h->clip = clip;
-	h->subject = subject;
-	h->large_px = large_px;
-	h->lost_s = INFINITY;
-	return h;
-}
-
-void hold_free(struct hold *h)
-{
-	if (h)
-		free(h->seen);
-	free(h);
-}
 
 /* The middle between the eyes in a pose, mm. */
 static void middle_in(double at[3], const struct hold *h, const double pose[4][4])
@@ -66,28 +56,57 @@ static void middle_in(double at[3], const struct hold *h, const double pose[4][4
 	head_from(at, pose, middle);
 }
 
+struct hold *hold_new(const struct track_clip *clip, const struct track_subject *subject, double large_px)
+{
+	struct hold *h = mem_new(1, sizeof *h);
+	h->clip = clip;
+	h->subject = subject;
+	h->large_px = large_px;
+	h->lost_s = INFINITY;
+	double at[3];
+	middle_in(at, h, clip->cam_from_head);
+	turn_of(h->begun + ASIDE, &h->lean, clip->cam_from_head, at);
+	memcpy(h->now, h->begun, sizeof h->now);
+	return h;
+}
+
+void hold_free(struct hold *h)
+{
+	if (h)
+		free(h->seen);
+	free(h);
+}
+
 /* The reference's pose so moved. */
 static void moved(double pose[4][4], const struct hold *h, const double by[MOTIONS])
 {
 	const struct camera *camera = &h->clip->camera;
-	const double c = cos(by[LEAN]), s = sin(by[LEAN]);
-	double at[3], rest[3], px[2];
+	double at[3], rest[3], px[2], ray[3], turned[3][3];
 	memcpy(pose, h->clip->cam_from_head, sizeof(double[4][4]));
 	middle_in(at, h, h->clip->cam_from_head);
 	if (!camera_project(px, camera, at))
 		return;
+	camera_ray(ray, camera, (double[2]){ px[0] + by[ACROSS], px[1] + by[DOWN] });
+	turn_rotation(turned, by + ASIDE, h->lean + by[LEAN], ray);
 	for (int k = 0; k < 3; k++) {
-		const double x = pose[0][k], y = pose[1][k];
-		pose[0][k] = c * x - s * y;
-		pose[1][k] = s * x + c * y;
-		pose[0][3] = pose[1][3] = pose[2][3] = 0;
+		memcpy(pose[k], turned[k], sizeof turned[k]);
+		pose[k][3] = 0;
 	}
 	middle_in(rest, h, (const double(*)[4])pose);
-	double ray[3];
-	camera_ray(ray, camera, (double[2]){ px[0] + by[ACROSS], px[1] + by[DOWN] });
 	const double z = at[2] * exp(-by[SIZE]);
 	for (int k = 0; k < 3; k++)
 		pose[k][3] = ray[k] / ray[2] * z - rest[k];
+}
+
+double hold_turn_share(const struct track_subject *s)
+{
+	const double limbus_plane = 0.875;  // radii of the eyeball from its centre, of 12 and 5.85 mm
+	double before = 0;
+	int n = 0;
+	for (int e = 0; e < SIDES; e++)
+		for (int c = 0; c < 2 && s->opening[e].open; c++, n++)
+			before += s->opening[e].canthus[c][2] - s->center[e][2];
+	return fabs(1 - before / (fmax(1, n) * limbus_plane * s->radius));
 }
 
 /* Where a pose has the corners, px. */
@@ -96,18 +115,21 @@ static bool expected(double px[SIDES][2][2], const struct hold *h, const double 
 	for (int e = 0; e < SIDES; e++)
 		for (int c = 0; c < 2; c++) {
 			const double *at = h->subject->opening[e].canthus[c];
-			if (!head_project(px[e][c], &h->clip->camera, pose, (double[3]){ at[0] + (e == SIDE_LEFT ? ASIDE : -ASIDE), at[1] - LOWER, at[2] }))
+			if (!head_project(px[e][c], &h->clip->camera, pose, (double[3]){ at[0] + (e == SIDE_LEFT ? OUTWARD : -OUTWARD), at[1] - LOWER, at[2] }))
 				return false;
 		}
 	return true;
 }
 
-/* How the corners lie against the reference's. Lids that close move the inner corners apart, alike in both eyes: their middle stays. One eye alone tells no lean and no size (NAN);
+/* How the corners lie against those of the reference, turned as `about` is. Lids that close move the inner corners apart, alike in both eyes: their middle stays. One eye alone tells no lean and no size (NAN);
  * those of `about` are taken for it. Returns false where too little shows. */
 static bool motion_of(double by[MOTIONS], const struct hold *h, const struct seen *s, const double about[MOTIONS])
 {
-	double px[SIDES][2][2], off[SIDES][2][2], told[SIDES][2], was[SIDES][2];
-	if (!(s->known[0] || s->known[1]) || !expected(px, h, h->clip->cam_from_head))
+	double px[SIDES][2][2], off[SIDES][2][2], told[SIDES][2], was[SIDES][2], pose[4][4];
+	for (int k = 0; k < TURNS; k++)
+		by[ASIDE + k] = s->turned ? (double)s->turn[k] : NAN;
+	moved(pose, h, (const double[MOTIONS]){ [ASIDE] = about[ASIDE], [NOD] = about[NOD] });
+	if (!(s->known[0] || s->known[1]) || !expected(px, h, (const double(*)[4])pose))
 		return false;
 	for (int e = 0; e < SIDES; e++)
 		for (int k = 0; k < 2; k++) {
@@ -126,7 +148,6 @@ static bool motion_of(double by[MOTIONS], const struct hold *h, const struct see
 		return isfinite(by[SIZE]);
 	}
 	const int e = s->known[0] ? 0 : 1;
-	double pose[4][4];
 	moved(pose, h, about);
 	if (!expected(px, h, (const double(*)[4])pose))
 		return false;
@@ -151,9 +172,13 @@ void hold_guess(double pose[4][4], const struct hold *h, const double skin_pose[
 		memcpy(pose, skin_pose, sizeof(double[4][4]));
 }
 
-static struct seen seen_of(const struct eye_told *const told[SIDES])
+static struct seen seen_of(const struct eye_told *const told[SIDES], const struct head_turn *turn)
 {
-	struct seen s = { 0 };
+	struct seen s = { .turned = turn, .unlike = turn ? (float)turn->unlike : 0 };
+	for (int k = 0; k < TURNS && turn; k++) {
+		s.turn[k] = (float)turn->angle[k];
+		s.sigma[k] = (float)turn->sigma[k];
+	}
 	for (int e = 0; e < SIDES; e++) {
 		s.known[e] = told[e] && told[e]->area > OPEN;
 		for (int k = 0; k < 4 && s.known[e]; k++)
@@ -181,9 +206,9 @@ void hold_found(struct hold *h, const double eye[SIDES][2])
 		memcpy(h->now, middle, sizeof middle);
 }
 
-void hold_push(struct hold *h, const struct eye_told *const told[SIDES], double radius, double dt, bool keep)
+void hold_push(struct hold *h, const struct eye_told *const told[SIDES], const struct head_turn *turn, double radius, double dt, bool keep)
 {
-	const struct seen seen = seen_of(told);
+	const struct seen seen = seen_of(told, turn);
 	double by[MOTIONS];
 	const bool any = motion_of(by, h, &seen, h->now);
 	h->lost_s = !keep ? INFINITY : seen.known[0] && seen.known[1] ? 0 : h->lost_s + dt;
@@ -194,27 +219,35 @@ void hold_push(struct hold *h, const struct eye_told *const told[SIDES], double 
 		h->radius = radius;
 	if (!keep)
 		return;
+	h->seconds += dt;
 	if (h->n == h->room)
 		h->seen = mem_grow(h->seen, (size_t)(h->room = 2 * h->room + 256), sizeof *h->seen);
 	h->seen[h->n++] = seen;
 }
 
-/* The path of y (NAN: not known) that goes on as it did but for what the clip itself shows of changes; what is far off counts little. x: overwritten. */
-static void path(double *x, long n, const double *y, double noise_least, double bend_least)
+/* The path of y (NAN: not known) that goes on as it did but for changes of so much; what is far off by the noise counts little. x: overwritten. */
+static void glide(double *x, long n, const double *y, double noise, double bend)
 {
-	double *sigma = mem_array((size_t)n + 1, sizeof *sigma), *room = mem_array(2 * (size_t)n + 1, sizeof *room), noise, bend;
-	walk_unrest(&noise, &bend, n, y, room);
-	noise = fmax(noise, noise_least);
+	double *sigma = mem_array((size_t)n + 1, sizeof *sigma), *room = mem_array(2 * (size_t)n + 1, sizeof *room);
 	for (int round = 0; round < ROUNDS; round++) {
 		for (long i = 0; i < n; i++) {
 			const double off = round ? (y[i] - x[i]) / (3 * noise) : 0;
 			sigma[i] = isnan(y[i]) ? 1e4 * noise : noise * sqrt(1 + off * off);
 			x[i] = isnan(y[i]) ? 0 : y[i];
 		}
-		walk_glide(n, x, sigma, fmax(bend, bend_least), room);
+		walk_glide(n, x, sigma, bend, room);
 	}
 	free(sigma);
 	free(room);
+}
+
+/* The same where the clip itself shows how it is measured and how it changes. */
+static void path(double *x, long n, const double *y, double noise_least, double bend_least)
+{
+	double *room = mem_array((size_t)n + 1, sizeof *room), noise, bend;
+	walk_unrest(&noise, &bend, n, y, room);
+	free(room);
+	glide(x, n, y, fmax(noise, noise_least), fmax(bend, bend_least));
 }
 
 static double gap(const float a[2], const float b[2])
@@ -242,28 +275,40 @@ static double place_of(const struct hold *h, long n)
 	return sigma;
 }
 
-/* How far the head turns aside in the clip, radians, one standard deviation: the eye on the far side looks narrower. */
-static double turns_of(const struct hold *h, long n)
+double hold_unlike(const struct hold *h)
 {
-	const double per_radian = 0.65, scatter = 0.03;  // lids slant by 18 degrees against the face; of the logarithm of the widths' ratio in a frame
-	double *ratio = mem_array((size_t)n + 1, sizeof *ratio);
+	double *told = mem_array((size_t)h->n + 1, sizeof *told);
 	int m = 0;
-	for (long i = 0; i < n; i++) {
-		const struct seen *s = &h->seen[i];
-		if (s->known[0] && s->known[1])
-			ratio[m++] = log(gap(s->corner[SIDE_LEFT][0], s->corner[SIDE_LEFT][1]) / gap(s->corner[SIDE_RIGHT][0], s->corner[SIDE_RIGHT][1]));
+	for (long i = 0; i < h->n; i++)
+		if (h->seen[i].turned)
+			told[m++] = (double)h->seen[i].unlike;
+	const double middle = m < LEAST_FRAMES ? NAN : stats_median(m, told);
+	free(told);
+	return middle;
+}
+
+/* How well the network knows how the head is turned, as a rule. */
+static void turned_to(double sigma[TURNS], const struct hold *h, long n)
+{
+	double *told = mem_array((size_t)n + 1, sizeof *told);
+	for (int k = 0; k < TURNS; k++) {
+		int m = 0;
+		for (long i = 0; i < n; i++)
+			if (h->seen[i].turned)
+				told[m++] = (double)h->seen[i].sigma[k];
+		sigma[k] = m < LEAST_FRAMES ? UNTOLD : stats_median(m, told);
 	}
-	const double spread = m ? stats_mad(m, ratio, stats_median(m, ratio)) : 0;
-	free(ratio);
-	// nor does it tell a turn below its own scatter
-	return fmax(scatter, sqrt(fmax(0, spread * spread - scatter * scatter))) / per_radian;
+	free(told);
 }
 
 void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const struct hold *h, bool rests)
 {
 	n = n < h->n ? n : h->n;
 	double *y = mem_array((size_t)n + 1, sizeof *y), *x = mem_array((size_t)n + 1, sizeof *x), (*by)[MOTIONS] = mem_new((size_t)n + 1, sizeof *by);
-	// lean and size first
+	turned_to(known->turn, h, n);
+	for (long i = 0; i < n; i++)
+		memcpy(by[i], h->begun, sizeof by[i]);
+	// the turn first, then lean and size
 	for (int k = MOTIONS - 1; k >= 0; k--) {
 		const double unit = k < LEAN ? h->radius : 1;
 		int seen = 0;
@@ -274,7 +319,10 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 		}
 		if (seen < LEAST_FRAMES)
 			continue;
-		path(x, n, y, least[k] * unit, least_bend[k] * unit);
+		if (k < ASIDE)
+			path(x, n, y, least[k] * unit, least_bend[k] * unit);
+		else
+			glide(x, n, y, known->turn[k - ASIDE], turn_bend * pow(h->seconds / (double)h->n, 1.5));
 		memcpy(y, x, (size_t)n * sizeof *y);
 		const double middle = rests ? stats_median((int)n, y) : 0;
 		for (long i = 0; i < n; i++)
@@ -286,7 +334,40 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 	free(x);
 	free(by);
 	known->place_mm = n ? fmax(least[ACROSS] * h->radius, rests ? 0 : place_of(h, n)) * poses[0][2][3] / h->clip->camera.focal_px : 0;
-	known->turn = turns_of(h, n);
+}
+
+void hold_turn(double (*poses)[4][4], long n, const struct hold *h)
+{
+	n = n < h->n ? n : h->n;
+	double *off[TURNS], by[TURNS] = { 0 }, at[3], rest[3], angle[TURNS], lean, m[3][3];
+	int told = 0;
+	for (int k = 0; k < TURNS; k++)
+		off[k] = mem_array((size_t)n + 1, sizeof *off[k]);
+	for (long i = 0; i < n; i++) {
+		if (!h->seen[i].turned)
+			continue;
+		middle_in(at, h, (const double(*)[4])poses[i]);
+		turn_of(angle, &lean, (const double(*)[4])poses[i], at);
+		for (int k = 0; k < TURNS; k++)
+			off[k][told] = (double)h->seen[i].turn[k] - angle[k];
+		told++;
+	}
+	for (int k = 0; k < TURNS && told >= LEAST_FRAMES; k++)
+		by[k] = stats_median(told, off[k]);
+	for (long i = 0; i < n && told >= LEAST_FRAMES; i++) {
+		middle_in(at, h, (const double(*)[4])poses[i]);
+		turn_of(angle, &lean, (const double(*)[4])poses[i], at);
+		turn_rotation(m, (const double[TURNS]){ angle[0] + by[0], angle[1] + by[1] }, lean, at);
+		for (int k = 0; k < 3; k++) {
+			memcpy(poses[i][k], m[k], sizeof m[k]);
+			poses[i][k][3] = 0;
+		}
+		middle_in(rest, h, (const double(*)[4])poses[i]);
+		for (int k = 0; k < 3; k++)
+			poses[i][k][3] = at[k] - rest[k];
+	}
+	for (int k = 0; k < TURNS; k++)
+		free(off[k]);
 }
 
 void hold_pack(struct pack *p, struct hold *h, long first)
@@ -306,4 +387,5 @@ void hold_pack(struct pack *p, struct hold *h, long first)
 	PACK(p, h->now);
 	PACK(p, h->radius);
 	PACK(p, h->lost_s);
+	PACK(p, h->seconds);
 }

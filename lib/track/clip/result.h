@@ -4,7 +4,7 @@
 #include "track/eye/eye_track.h"
 
 /* Evidence for a clip that was followed rightly: see trust.h. */
-enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_SCALE, TRUST_STRAIGHT, TRUST_EVIDENCES };
+enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_SCALE, TRUST_STRAIGHT, TRUST_TURNED, TRUST_UNLIKE, TRUST_EVIDENCES };
 struct track_trust {
 	double value[TRUST_EVIDENCES], log_odds[TRUST_EVIDENCES];  // NAN, 0 where the clip does not tell it
 	double far;            // probability that gaze is off by more than wrong_deg, by its own standard deviations
@@ -35,6 +35,7 @@ struct track_result {
 	bool has_eyes;
 	double *misfit;        // [n] px, median residual of the skin, lids excepted, against the rigid head; null without points
 	double place_mm;       // standard deviation of the head's place where the eyes hold it (hold.h); 0: they do not
+	double unlike;         // radians, how unlike a face it is that holds the eyes (hold_unlike); NAN, 0: not looked at
 	bool rests;            // the head is on a rest: every pose is the reference's
 	float (*lids)[2], (*lids_model)[2];  // [n][4][lid_points] px; px of the modelling camera; bulk
 	int lid_points;

@@ -293,7 +293,7 @@ bool track_settled(const struct track_clip *clip, const struct track_subject *s,
 	if (clip->moves.torn)
 		return err_set(err, "%s: frame %ld: its skin does not move as %s does (off by %.2f mm, must be at most %.2f: track.off_mm; its halves tell poses %.1f degrees apart, must be at most %.1f: track.torn_deg; its turn is known to %.2f degrees, must be to %.1f): check camera.focal_px and subject.unit_mm, film in softer light, or give track.reference_frame",
 		               clip->file, clip->reference, s->file, clip->moves.off_mm, conf->off_mm, clip->moves.apart * 180 / M_PI, conf->torn, clip->moves.sigma * 180 / M_PI, MOVES_SIGMA_MOST);
-	const double most = conf->pose_refused * trust_scale(clip, s);
+	const double most = hypot(conf->pose_refused * trust_scale(clip, s), 3 * conf->outline);
 	if (s->assumed || clip->pose_given || !conf->settle || clip->pose_px <= most)
 		return true;
 	return err_set(err, "%s: frame %ld: its lids and eyeballs do not come together with %s (residual %.1f px, must be at most %.1f: track.pose_refused_px): give subject.eye_center.left and .right, subject.eye_radius, camera.focal_px, or a frame from in front (track.reference_frame)",

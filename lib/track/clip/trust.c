@@ -5,8 +5,9 @@
 
 #include "base/mem.h"
 #include "math/stats.h"
-#include "track/head/refine.h"
 #include "track/clip/scale.h"
+#include "track/head/refine.h"
+#include "track/head/turn.h"
 
 enum { LEAST = 12 };
 
@@ -17,6 +18,8 @@ const struct trust_name trust_names[TRUST_EVIDENCES] = {
 	[TRUST_APART] = { "apart_deg", "eyes looking apart, or on what is nearer than people look,", "degrees", "check camera.focal_px, give subject.eye_center.left and .right, or another track.reference_frame" },
 	[TRUST_IRIS] = { "iris_mm", "radius of the irises off people's", "mm", "check subject.unit_mm, or give another track.reference_frame" },
 	[TRUST_SCALE] = { "scale_mm", "radius of the irises, by the eyes' distance or width, off people's", "mm", "give another track.reference_frame" },
+	[TRUST_UNLIKE] = { "unlike_deg", "how the face is turned not to be told, but", "degrees", "film from in front, in even light" },
+	[TRUST_TURNED] = { "turned_deg", "mesh turned otherwise than the face looks,", "degrees", "give another track.reference_frame" },
 	[TRUST_STRAIGHT] = { "straight_deg", "gaze off straight ahead", "degrees", "give another track.reference_frame" },
 };
 
@@ -134,6 +137,12 @@ static double sigma_of(const struct track_result *r, int side, int axis)
 	return middle;
 }
 
+/* What outlines are off by in any picture, as laid_px counts. */
+static double outline_of(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
+{
+	return conf->outline / trust_scale(clip, s);
+}
+
 /* Of one eye's gaze against the other's, or of their mean, as they say: where corners hold the head and average eyeballs lie between them. */
 static double own_of(const struct track_result *r, int evidence)
 {
@@ -176,7 +185,7 @@ double trust_scale(const struct track_clip *clip, const struct track_subject *s)
 
 double trust_reference(const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
-	return isnan(clip->pose_px) ? -INFINITY : trust_odds(TRUST_LAID, clip->pose_px / trust_scale(clip, s), conf) + trust_odds(TRUST_SKIN, clip->skin_mm, conf);
+	return isnan(clip->pose_px) ? -INFINITY : odds_of(TRUST_LAID, clip->pose_px / trust_scale(clip, s), outline_of(clip, s, conf), conf) + trust_odds(TRUST_SKIN, clip->skin_mm, conf);
 }
 
 /* Whether the mesh was laid on by the opening of one eye whose centre was not told. */
@@ -184,6 +193,41 @@ static bool laid_by_one(const struct track_result *r, const struct track_subject
 {
 	const bool left = r->eyes.globe[SIDE_LEFT].seen;
 	return r->has_eyes && left != r->eyes.globe[SIDE_RIGHT].seen && !s->center_given[left ? SIDE_LEFT : SIDE_RIGHT];
+}
+
+/* How far the reference's pose is turned from what its face looks like, degrees, and what that is known to; NAN where it does not show both eyes. */
+static double turned_of(double *sigma, const struct track_clip *clip, const struct track_subject *s)
+{
+	const double degree = M_PI / 180;
+	struct turn_net *net;
+	struct err none = { 0 };
+	struct head_turn seen;
+	double middle[SIDES][2], between[3] = { 0 }, at[3], angle[TURNS], lean;
+	*sigma = 0;
+	for (int e = 0; e < SIDES; e++) {
+		double corner[2][2];
+		if (!clip->rgb || !clip->eye_seen[e] || !s->opening[e].open)
+			return NAN;
+		for (int c = 0; c < 2; c++) {
+			if (!head_project(corner[c], &clip->camera, clip->cam_from_head, s->opening[e].canthus[c]))
+				return NAN;
+			for (int k = 0; k < 3; k++)
+				between[k] += 0.25 * s->opening[e].canthus[c][k];
+		}
+		for (int k = 0; k < 2; k++)
+			middle[e][k] = 0.5 * (corner[0][k] + corner[1][k]);
+	}
+	// a network that does not run says so where a video alone is begun
+	if (!turn_open_shipped(&net, &none))
+		return NAN;
+	const bool ok = turn_see(&seen, net, clip->rgb, clip->info.width, clip->info.height, (const double(*)[2])middle, &none);
+	turn_close(net);
+	if (!ok)
+		return NAN;
+	head_from(at, clip->cam_from_head, between);
+	turn_of(angle, &lean, clip->cam_from_head, at);
+	*sigma = sqrt(0.5) * hypot(seen.sigma[0], seen.sigma[1]) / degree;
+	return hypot(angle[TURN_ASIDE] - seen.angle[TURN_ASIDE], angle[TURN_NOD] - seen.angle[TURN_NOD]) / degree;
 }
 
 void track_trust(struct track_trust *t, const struct track_result *r, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
@@ -196,10 +240,16 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 	t->value[TRUST_IRIS] = s->assumed ? NAN : iris_of(r, conf->eye.limbus_radius);
 	t->value[TRUST_SCALE] = s->assumed ? iris_of(r, conf->eye.limbus_radius) : NAN;
 	t->value[TRUST_STRAIGHT] = hypot(gaze_of(r, 0, true), gaze_of(r, 1, true));
+	double own[TRUST_EVIDENCES];
+	for (int i = 0; i < TRUST_EVIDENCES; i++)
+		own[i] = own_of(r, i);
+	own[TRUST_LAID] = laid ? outline_of(clip, s, conf) : 0;
+	t->value[TRUST_UNLIKE] = s->assumed && r->unlike > 0 ? r->unlike * 180 / M_PI : NAN;
+	t->value[TRUST_TURNED] = s->assumed ? NAN : turned_of(&own[TRUST_TURNED], clip, s);
 	const double prior = laid && laid_by_one(r, s) ? conf->wrong_prior_one : conf->wrong_prior;
 	double odds = log((1 - prior) / prior);
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
-		odds += t->log_odds[i] = odds_of(i, t->value[i], own_of(r, i), conf);
+		odds += t->log_odds[i] = odds_of(i, t->value[i], own[i], conf);
 	t->far = far_of(r, trust_wrong_deg(s, conf));
 	t->lens = lens_of(clip, conf);
 	t->wrong = 1 - (1 - t->far) * (1 - t->lens) / (1 + exp(-odds));

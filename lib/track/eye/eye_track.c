@@ -117,12 +117,12 @@ void eye_track_head_was(struct eye_track *track, long frame, const double cam_fr
 			memcpy(track->side[side].record[frame].cam_from_head, cam_from_head, sizeof track->side[side].record[frame].cam_from_head);
 }
 
-void eye_track_held(struct eye_track *track, double center_mm, double place_mm, double turn)
+void eye_track_held(struct eye_track *track, double center_mm, double place_mm, const double turn[2])
 {
 	for (int side = 0; side < SIDES; side++) {
 		track->side[side].center_guess = center_mm;
 		track->side[side].place_sigma = place_mm;
-		track->side[side].turn_sigma = turn;
+		memcpy(track->side[side].turn_sigma, turn, sizeof track->side[side].turn_sigma);
 	}
 }
 

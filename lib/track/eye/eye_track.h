@@ -113,8 +113,8 @@ void eye_track_pack(struct pack *pack, struct eye_track *track, long first);
 void eye_track_head_was(struct eye_track *track, long frame, const double cam_from_head[4][4]);
 
 /* Eyes that hold the head (clip/hold.h), for the same: their centres lie between their corners to center_mm, the head's place in the picture is known in each frame to place_mm, and
- * how it is turned to `turn` radians, one standard deviation each. */
-void eye_track_held(struct eye_track *track, double center_mm, double place_mm, double turn);
+ * how it is turned, aside and up and down, to `turn` radians, one standard deviation each. */
+void eye_track_held(struct eye_track *track, double center_mm, double place_mm, const double turn[2]);
 
 /* Fits the eyeballs to the whole clip (gaze/bundle.h), then estimates gaze, lids and openness again and finds blinks and
  * saccades.

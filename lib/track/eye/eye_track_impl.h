@@ -32,7 +32,7 @@ struct eye_side {
 	bool average;              // its radius is an average eye's
 	double radius_sigma;       // mm: of first_globe's radius
 	double view_sigma[2];      // radians: of the line of sight from the camera to the eye
-	double place_sigma, turn_sigma;  // mm, radians: error of the head's place in each frame, and of its turn
+	double place_sigma, turn_sigma[2];  // mm, radians: error of the head's place in each frame, and of its turn aside and up and down
 	double canthus[2][3];      // head frame
 	bool corners_guessed;      // until lids are found
 	double fick[2];            // last gaze

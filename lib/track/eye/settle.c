@@ -34,7 +34,7 @@ static void add_common(struct eye_state *state, const struct eye_side *eye, cons
 	gaze_bundle_common(cov, frame, &eye->globe, fit);
 	for (int k = 0; k < 2; k++) {
 		double common = isfinite(cov[k][k]) ? fmin(worst, sqrt(fmax(0, cov[k][k]))) : worst;
-		const double placed = hypot(eye->place_sigma / gaze_plane(&eye->globe), eye->turn_sigma);
+		const double placed = hypot(eye->place_sigma / gaze_plane(&eye->globe), eye->turn_sigma[k]);
 		state->sigma[k] = hypot(hypot(hypot(state->sigma[k], common), placed), hypot(eye->scene->head_sigma[k], eye->view_sigma[k]));
 	}
 }

@@ -291,9 +291,9 @@ static void score_seen(struct track_score *s, const struct found *f)
 		ratio[k] = mem_new(2 * (size_t)f->n + 1, sizeof *ratio[k]);
 	}
 	for (int side = 0; side < 2; side++) {
-		struct array gaze = truth(f, "gaze_cam", side ? "right_deg" : "left_deg"), state = truth(f, "blink_state", 0);
+		struct array gaze = truth(f, "gaze_cam", side ? "right_deg" : "left_deg"), turned = truth(f, "gaze", side ? "right_deg" : "left_deg"), state = truth(f, "blink_state", 0);
 		const int g = side ? 6 : 1;
-		for (long t = 0; t < f->n && gaze.x && state.x; t++) {
+		for (long t = 0; t < f->n && gaze.x && turned.x && state.x; t++) {
 			double got[2], sigma[2], fick[2];
 			for (int k = 0; k < 2; k++) {
 				char name[24];
@@ -307,11 +307,12 @@ static void score_seen(struct track_score *s, const struct found *f)
 			against_camera(fick, f->head.x + 16 * t, got[0] * degree, got[1] * degree);
 			for (int k = 0; k < 2; k++) {
 				off[k][n] = fabs(fick[k] - gaze.x[2 * t + k]);
-				ratio[k][n] = off[k][n] / sigma[k];
+				ratio[k][n] = fabs(got[k] - turned.x[3 * t + k]) / sigma[k];
 			}
 			n++;
 		}
 		free(gaze.x);
+		free(turned.x);
 		free(state.x);
 	}
 	for (int k = 0; k < 2; k++) {

@@ -29,8 +29,8 @@ struct track_score {
 	struct spread head_at;       // mm, of the point between the eyes
 	struct spread about[2];      // degrees: gaze about its offset, horizontal and vertical
 	double offset[2][2];         // degrees: median of gaze less the truth's, of the left and the right eye, horizontal and vertical
-	struct spread seen[2];       // degrees: gaze against the camera's axes, horizontal and vertical; without a mesh it is known against no others
-	struct spread ratio[2];      // of those errors over their own standard deviations
+	struct spread seen[2];       // degrees: gaze against the camera's axes, horizontal and vertical
+	struct spread ratio[2];      // errors of gaze against the head, horizontal and vertical, over their own standard deviations
 	double yaw, pitch;           // degrees: the head's largest turn in the truth
 };
 

@@ -143,7 +143,7 @@ static void the_path_of_a_head(void **state)
 			}
 			known[e] = f % 17 == 3 && e == 1 ? 0 : &told[e];
 		}
-		hold_push(hold, known, FOCAL * 5.85 / m.z, f < 0 ? 0 : 1 / FPS, f >= 0);
+		hold_push(hold, known, 0, FOCAL * 5.85 / m.z, f < 0 ? 0 : 1 / FPS, f >= 0);
 		// skin that was lost: far from where the eyes are
 		hold_guess(guess, hold, (const double[4][4]){ { 1, 0, 0, 300 }, { 0, -1, 0, 0 }, { 0, 0, -1, FAR }, { 0, 0, 0, 1 } });
 		middle_of(now, (const double(*)[4])guess);
@@ -172,38 +172,58 @@ static void the_path_of_a_head(void **state)
 	NEAR(sqrt(square[3]), 0, 0.012);
 	// half a px, less for two corners
 	NEAR(told.place_mm, 0.35 * FAR / FOCAL, 0.2);
-	NEAR(told.turn, 0.03 / 0.65, 0.03);
+	// nothing told how it is turned
+	for (int k = 0; k < TURNS; k++)
+		assert_true(told.turn[k] > 0.2);
 	hold_free(hold);
 	free(poses);
 }
 
-/* A head that turns from side to side: its far eye is narrower. */
+/* A head that turns from side to side and nods, as its face tells, to 2 degrees and with more in some frames; its corners are those of an average opening, turned here. */
 static void a_head_that_turns(void **state)
 {
 	(void)state;
 	struct track_subject subject = average();
 	struct track_clip clip = { .camera = { .focal_px = FOCAL, .center_px = { 256, 200 } }, .cam_from_head = { { 1, 0, 0, 0 }, { 0, -1, 0, 0 }, { 0, 0, -1, FAR }, { 0, 0, 0, 1 } } };
 	struct hold *hold = hold_new(&clip, &subject, 5);
-	double (*poses)[4][4] = mem_new(FRAMES, sizeof *poses);
+	struct rng rng = { 9 };
+	double (*poses)[4][4] = mem_new(FRAMES, sizeof *poses), square[TURNS] = { 0 }, place = 0;
 	struct hold_known known;
+	const double sigma[TURNS] = { 0.07, 0.06 };
 	for (int f = 0; f < FRAMES; f++) {
 		struct eye_told told[SIDES];
-		const double turn = 0.35 * sin(2 * M_PI * f / FRAMES);
+		const double aside = 0.4 * sin(2 * M_PI * f / FRAMES), nod = 0.2 * sin(4 * M_PI * f / FRAMES);
 		for (int e = 0; e < SIDES; e++) {
-			const double side = e == SIDE_LEFT ? 1 : -1;
 			told[e].area = 6;
 			for (int c = 0; c < 2; c++) {
-				// the outer corner lies 9 mm behind the inner one, as lids slant by 18 degrees
-				const double x = side * (c ? 45 : 17), z = c ? -9 : 0;
-				told[e].corner[c][0] = 256 + FOCAL * (x * cos(turn) + z * sin(turn)) / FAR;
-				told[e].corner[c][1] = 200;
+				const double *at = subject.opening[e].canthus[c], y = at[1] * cos(nod), z = at[1] * sin(nod);
+				const double u = at[0] * cos(aside) + z * sin(aside), away = FAR + at[0] * sin(aside) - z * cos(aside);
+				told[e].corner[c][0] = 256 + FOCAL * (u + 20) / away;
+				told[e].corner[c][1] = 200 - FOCAL * (y - 10) / away;
 			}
 		}
-		hold_push(hold, (const struct eye_told *[SIDES]){ &told[0], &told[1] }, FOCAL * 5.85 / FAR, 1 / FPS, true);
+		// against the line of sight to 20 and 10 mm off the axis
+		struct head_turn turn = { { aside + 20 / FAR + 0.035 * rng_normal(&rng), nod + 10 / FAR + 0.035 * rng_normal(&rng) }, { sigma[0], sigma[1] } };
+		if (f % 20 == 7)
+			turn.angle[TURN_ASIDE] += 1;
+		hold_push(hold, (const struct eye_told *[SIDES]){ &told[0], &told[1] }, &turn, FOCAL * 5.85 / FAR, f ? 1 / FPS : 0, true);
 	}
 	hold_settle(&known, poses, FRAMES, hold, false);
-	// 1.4826 times the median of a sine's size
-	NEAR(known.turn, 1.4826 * 0.7071 * 0.35, 0.06);
+	for (int f = 0; f < FRAMES; f++) {
+		const double aside = 0.4 * sin(2 * M_PI * f / FRAMES), nod = 0.2 * sin(4 * M_PI * f / FRAMES);
+		double fick[3];
+		head_fick(fick, (const double(*)[4])poses[f]);
+		// out of the face: (sin a cos n, -sin n, cos a cos n)
+		square[0] += pow(fick[0] - atan2(sin(aside) * cos(nod), cos(aside) * cos(nod)), 2) / FRAMES;
+		square[1] += pow(fick[1] - asin(-sin(nod)), 2) / FRAMES;
+		place += (pow(poses[f][0][3] - 20, 2) + pow(poses[f][2][3] - FAR, 2) / 400) / FRAMES;
+	}
+	NEAR(sqrt(square[0]), 0, 0.025);
+	NEAR(sqrt(square[1]), 0, 0.025);
+	// its own assumption of where corners lie apart
+	NEAR(sqrt(place), 0, 1.5);
+	for (int k = 0; k < TURNS; k++)
+		NEAR(known.turn[k], sigma[k], 1e-6);
 	hold_free(hold);
 	free(poses);
 }

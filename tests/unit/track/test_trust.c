@@ -113,6 +113,32 @@ static void too_near(void **state)
 	track_result_free(&film.result);
 }
 
+/* Outlines are off by a share of a pixel in a small picture, too: of eyes a fifth as large 0.6 px are no more than that. */
+static void a_small_picture(void **state)
+{
+	(void)state;
+	struct film film;
+	struct track_conf conf = keys();
+	shoot(&film, 0, 0, 0);
+	film.clip.info.width = 1280;
+	film.clip.pose_refined = true;
+	film.clip.pose_px = 0.6;
+	film.clip.skin_mm = NAN;
+	for (int e = 0; e < SIDES; e++)
+		film.subject.opening[e] = (struct eye_opening){ .open = true, .canthus = { { -15, 0, 0 }, { 15, 0, 0 } } };
+	// openings of 30 mm at 500 mm: a fifth of 253 px
+	film.clip.camera.focal_px = 0.2 * 253 * 500 / 30;
+	NEAR(trust_scale(&film.clip, &film.subject), 0.2, 1e-12);
+	const double x = 3, odd = 1e-4;
+	for (int k = 0; k < 2; k++) {
+		conf.outline = k;
+		const double right = hypot(1, 5 * k), wrong = hypot(10, 5 * k), n = exp(-0.5 * x * x / (right * right)) / right, m = exp(-0.5 * x * x / (wrong * wrong)) / wrong;
+		NEAR(trust_reference(&film.clip, &film.subject, &conf), log(((1 - odd) * n + odd * m) / (0.5 * (n + m))), 1e-9);
+		assert_true((trust_reference(&film.clip, &film.subject, &conf) > 0) == k);
+	}
+	track_result_free(&film.result);
+}
+
 /* A millimetre of skin is as large in the picture as the eyes are near, wherever the mesh has its origin: at the eyes, 100 mm behind them, or on the ground. */
 static void at_the_eyes_depth(void **state)
 {
@@ -338,6 +364,7 @@ int main(void)
 		cmocka_unit_test(all_in_order),
 		cmocka_unit_test(together),
 		cmocka_unit_test(too_near),
+		cmocka_unit_test(a_small_picture),
 		cmocka_unit_test(at_the_eyes_depth),
 		cmocka_unit_test(by_one_eye),
 		cmocka_unit_test(weighed_together),
