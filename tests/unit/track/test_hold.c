@@ -203,7 +203,7 @@ static void a_head_that_turns(void **state)
 			}
 		}
 		// against the line of sight to 20 and 10 mm off the axis
-		struct head_turn turn = { { aside + 20 / FAR + 0.035 * rng_normal(&rng), nod + 10 / FAR + 0.035 * rng_normal(&rng) }, { sigma[0], sigma[1] } };
+		struct head_turn turn = { { aside + 20 / FAR + 0.035 * rng_normal(&rng), nod + 10 / FAR + 0.035 * rng_normal(&rng) }, { sigma[0], sigma[1] }, 0.05 };
 		if (f % 20 == 7)
 			turn.angle[TURN_ASIDE] += 1;
 		hold_push(hold, (const struct eye_told *[SIDES]){ &told[0], &told[1] }, &turn, FOCAL * 5.85 / FAR, f ? 1 / FPS : 0, true);
