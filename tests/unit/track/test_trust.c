@@ -289,6 +289,15 @@ static void held_by_the_eyes(void **state)
 	NEAR(held.log_odds[TRUST_APART], log(2 * right / (right + wrong)), 1e-3);
 	assert_true(by_skin.log_odds[TRUST_APART] < 0 && held.log_odds[TRUST_APART] > 0);
 	assert_true(isfinite(by_skin.value[TRUST_SKIN]) && isnan(held.value[TRUST_SKIN]));
+	// and a face that is like faces speaks for it, one that is not against it; where it was not looked at nothing does
+	assert_true(isnan(held.value[TRUST_UNLIKE]) && held.log_odds[TRUST_UNLIKE] == 0);
+	for (int k = 0; k < 2; k++) {
+		struct track_trust t;
+		film.result.unlike = (k ? 4 : 0.5) * DEGREE;
+		track_trust(&t, &film.result, &film.clip, &film.subject, &conf);
+		NEAR(t.value[TRUST_UNLIKE], k ? 4 : 0.5, 1e-12);
+		assert_true(k ? t.wrong > held.wrong : t.wrong < held.wrong);
+	}
 	track_result_free(&film.result);
 }
 
