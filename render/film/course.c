@@ -1,4 +1,4 @@
-/* Gaze, openings and blinks over time, as one SVG. */
+/* Gaze, how the head is turned, openings and blinks over time, as one SVG. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,9 +8,10 @@
 #include "image/chart.h"
 #include "render/film/film.h"
 
-enum { PANELS = 3, SIDES = 2, WIDTH = 1120, HEIGHT = 200, JSON_LIMIT = 1 << 26 };
+enum { PANELS = 4, SIDES = 2, WIDTH = 1120, HEIGHT = 200, JSON_LIMIT = 1 << 26 };
 
 static const char *const sides[SIDES] = { "left", "right" }, *const colours[SIDES] = { "#1f77b4", "#d62728" };
+static const char *const turns[2] = { "aside", "up" }, *const turn_names[2] = { "head_h_deg", "head_v_deg" }, *const turn_colours[2] = { "#444444", "#2ca02c" };
 
 static double *column(const struct csv_table *t, const char *name)
 {
@@ -59,7 +60,7 @@ bool film_course(struct skin_job *job, const char *rel, int n, const char *const
 		csv_table_free(&table);
 		return !err_is(err);
 	}
-	double *time = column(&table, "time_s"), *gaze[2][SIDES], *open[SIDES], *at[SIDES][2];
+	double *time = column(&table, "time_s"), *gaze[2][SIDES], *head[2], *open[SIDES], *at[SIDES][2];
 	struct chart_series series[PANELS][2 * SIDES];
 	const int rows = (int)table.n_rows;
 	for (int e = 0; e < SIDES; e++) {
@@ -73,9 +74,14 @@ bool film_course(struct skin_job *job, const char *rel, int n, const char *const
 		const int m = peaks(at[e][0], at[e][1], MOST, json_object_get(track, "blinks"), e, time, open[e], rows);
 		series[2][SIDES + e] = (struct chart_series){ e ? "right blinks" : "left blinks", colours[e], 0, m, at[e][0], at[e][1], 0, true, true };
 	}
+	for (int k = 0; k < 2; k++) {
+		head[k] = column(&table, turn_names[k]);
+		series[3][k] = (struct chart_series){ turns[k], turn_colours[k], 0, rows, time, head[k], 0, false, false };
+	}
 	const struct chart_panel panels[PANELS] = {
 		{ "Gaze, horizontal (+: the person's left)", "s", "degrees", SIDES, series[0], NAN, NAN },
 		{ "Gaze, vertical (+: up)", "s", "degrees", SIDES, series[1], NAN, NAN },
+		{ "Head, turned aside (+: to the person's left) and up", "s", "degrees", 2, series[3], NAN, NAN },
 		{ "Opening between the lids", "s", "px", 2 * SIDES, series[2], NAN, NAN },
 	};
 	bool ok = chart_save(stage_path(job->stage, "%s", rel), 1, WIDTH, HEIGHT, PANELS, panels, stage_made_by(job->stage, n, in), err);
@@ -85,6 +91,7 @@ bool film_course(struct skin_job *job, const char *rel, int n, const char *const
 			free(at[e][k]);
 		}
 		free(open[e]);
+		free(head[e]);
 	}
 	free(time);
 	json_decref(track);

@@ -1,4 +1,4 @@
-/* The person's video with what was tracked drawn on it: margins of the lids, points of skin, the gaze of each eye as a needle. */
+/* The person's video with what was tracked drawn on it: margins of the lids, points of skin, the gaze of each eye as a needle, and where the face points. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +13,12 @@
 enum { SIDES = 2, LIDS = 4, MOST_POINTS = 300, LEGEND = 28 };
 
 static const uint8_t upper[3] = { 90, 230, 90 }, lower[3] = { 90, 170, 255 }, needle[3] = { 255, 150, 30 }, skin_colour[3] = { 250, 230, 120 }, paper[3] = { 235, 235, 235 };
+static const double face_reach = 0.25;  // of a needle's length
 
 struct overlay {
 	struct csv_table gaze;
 	struct npy lids, skin, confidence;
-	int g[SIDES][2], sure[SIDES], time;  // columns
+	int g[SIDES][2], sure[SIDES], time, head[3];  // columns
 	double scale;                        // px of the picture in one of the video
 	struct cv_picture pic;
 };
@@ -41,6 +42,9 @@ static bool load(struct overlay *o, struct skin_job *job, const char *const in[]
 		o->sure[e] = csv_column(&o->gaze, names[e][2]);
 	}
 	o->time = csv_column(&o->gaze, "time_s");
+	static const char *const head[3] = { "head_h_deg", "head_v_deg", "head_t_deg" };
+	for (int k = 0; k < 3; k++)
+		o->head[k] = csv_column(&o->gaze, head[k]);
 	return true;
 }
 
@@ -64,14 +68,22 @@ static void draw_lid(struct overlay *o, long f, int lid, double middle[2], int *
 		cv_draw_line(&o->pic, n, (const float(*)[2])xy, false, 1, lid % 2 ? lower : upper);
 }
 
-/* The line of gaze from between the lids, as it goes aside and up: half the picture's height long at a right angle. */
-static void draw_gaze(struct overlay *o, long f, int side, const double from[2])
+/* Angle of a column, radians; 0 where it is not known. */
+static double angle(const struct overlay *o, long f, int column)
 {
-	const double h = csv_at(&o->gaze, f, o->g[side][0]) * M_PI / 180, v = csv_at(&o->gaze, f, o->g[side][1]) * M_PI / 180, reach = 0.5 * o->pic.height;
-	if (!isfinite(h + v))
-		return;
-	float xy[2][2] = { { (float)from[0], (float)from[1] }, { (float)(from[0] + reach * sin(h) * cos(v)), (float)(from[1] - reach * sin(v)) } };
-	cv_draw_line(&o->pic, 2, (const float(*)[2])xy, false, 2, needle);
+	const double x = csv_at(&o->gaze, f, column) * M_PI / 180;
+	return isfinite(x) ? x : 0;
+}
+
+/* A needle that leaves the face at h, v (Fick angles against the head, radians) as the picture has it: half the picture's height long at a right angle. */
+static void draw_needle(struct overlay *o, long f, const double from[2], double h, double v, double share, int thick, const uint8_t colour[3])
+{
+	const double hh = angle(o, f, o->head[0]), hv = angle(o, f, o->head[1]), ht = angle(o, f, o->head[2]), reach = share * 0.5 * o->pic.height;
+	// Ry(hh) Rx(-hv) Rz(ht), x aside, y up, z to the camera
+	const double d[3] = { sin(h) * cos(v), sin(v), cos(h) * cos(v) }, x = cos(ht) * d[0] - sin(ht) * d[1], a = sin(ht) * d[0] + cos(ht) * d[1];
+	const double y = cos(hv) * a + sin(hv) * d[2], z = cos(hv) * d[2] - sin(hv) * a;
+	const float xy[2][2] = { { (float)from[0], (float)from[1] }, { (float)(from[0] + reach * (cos(hh) * x + sin(hh) * z)), (float)(from[1] - reach * y) } };
+	cv_draw_line(&o->pic, 2, xy, false, thick, colour);
 }
 
 static void draw_skin(struct overlay *o, long f)
@@ -89,7 +101,8 @@ static void draw_skin(struct overlay *o, long f)
 static void draw(struct overlay *o, long f)
 {
 	char text[120];
-	int at = 8;
+	double between[2] = { 0 };
+	int at = 8, both = 0;
 	draw_skin(o, f);
 	at += cv_draw_text(&o->pic, at, o->pic.height - 9, 11, (snprintf(text, sizeof text, "%6.2f s", csv_at(&o->gaze, f, o->time)), text), paper) + 24;
 	for (int e = SIDES - 1; e >= 0; e--) {
@@ -97,15 +110,20 @@ static void draw(struct overlay *o, long f)
 		int known = 0;
 		for (int lid = 0; lid < 2; lid++)
 			draw_lid(o, f, 2 * e + lid, middle, &known);
-		if (known)
-			draw_gaze(o, f, e, (const double[2]){ middle[0] / known, middle[1] / known });
 		const double h = csv_at(&o->gaze, f, o->g[e][0]), v = csv_at(&o->gaze, f, o->g[e][1]);
+		for (int k = 0; k < 2 && known; k++)
+			between[k] += 0.5 * middle[k] / known;
+		both += known > 0;
+		if (known && isfinite(h + v))
+			draw_needle(o, f, (const double[2]){ middle[0] / known, middle[1] / known }, h * M_PI / 180, v * M_PI / 180, 1, 2, needle);
 		if (isfinite(h + v))
 			snprintf(text, sizeof text, "%s %+5.1f %+5.1f (%.0f %%)", e ? "right" : "left", h, v, 100 * csv_at(&o->gaze, f, o->sure[e]));
 		else
 			snprintf(text, sizeof text, "%s: not known", e ? "right" : "left");
 		at += cv_draw_text(&o->pic, at, o->pic.height - 9, 11, text, paper) + 24;
 	}
+	if (both == SIDES)
+		draw_needle(o, f, between, 0, 0, face_reach, 1, paper);
 }
 
 static bool frames(struct overlay *o, struct skin_job *job, struct video *video, const struct video_info *info, struct video_writer *writer, struct err *err)

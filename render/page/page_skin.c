@@ -177,7 +177,7 @@ static json_t *blinks_of(const json_t *track, const char *side)
 static json_t *followed(struct page *page)
 {
 	static const char *const names[] = { "left", "right" };
-	json_t *film = clip(page, "track", ".mp4", "Gaze (orange), upper and lower lids (green, blue), skin (yellow)", "The video with what was tracked drawn on it");
+	json_t *film = clip(page, "track", ".mp4", "Gaze (orange), where the face points (white), upper and lower lids (green, blue), skin (yellow)", "The video with what was tracked drawn on it");
 	json_t *course = data_uri(page_file(page, "work/render/track.svg"), "image/svg+xml", 16 << 20), *track = page_json(page, page_file(page, "work/skin/track.json"));
 	json_t *out = json_object(), *facts = json_array();
 	if (film)

@@ -216,6 +216,14 @@ if [ -x "$RECUT" ]; then
 			check "a video alone, $how: refused (it says: $said)" grep -qE "track: video/a.mp4: (gaze is off|followed from)" <<<"$said"
 		fi
 	done
+	# How far lids stand from where they meet is told in the head, not in the picture. samples/face/truth: the lower lid's middle moves by 8.6 px, one standard deviation; the head by 28.
+	capture alone_bob
+	rm "$root/alone_bob/subject.ply"
+	echo "quality = draft" >"$root/alone_bob/capture.conf"
+	"$RECUT" "$root/alone_bob/video/a.mp4" samples/face/video/face.mp4 bob:0-299
+	check "a video alone, bob: track" "$BIN/track" --quiet --capture="$root/alone_bob"
+	moves=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "g5_px") c = i } NR > 1 && $c != "" { n++; s += $c; q += $c * $c } END { printf "%.2f", sqrt(q / n - (s / n) ^ 2) }' "$root/alone_bob/work/skin/gaze.csv")
+	check "a video alone, bob: the lower lid moves by $moves px" awk -v x="$moves" 'BEGIN { exit !(x > 4 && x < 14) }'
 	# Small irises, as in most films of a face: the network's evidence tells lids and blinks, and gaze as well as its own standard deviation says.
 	capture alone_small
 	rm "$root/alone_small/subject.ply" "$root/alone_small/capture.conf"

@@ -15,7 +15,7 @@ function correlation(p) {
 	const [xx, xy, yy] = [[0, 0], [0, 1], [1, 1]].map(([a, b]) => p.reduce((s, v) => s + (v[a] - mean[a]) * (v[b] - mean[b]), 0));
 	return n > 20 ? xy / Math.sqrt(xx * yy) : NaN;
 }
-const median = (x) => [...x].sort((a, b) => a - b)[Math.floor(x.length / 2)];
+const median = (x) => x.length ? [...x].sort((a, b) => a - b)[Math.floor(x.length / 2)] : NaN;
 const spread = (p, k) => Math.sqrt(p.reduce((s, v) => s + v[k] ** 2, 0) / p.length - (p.reduce((s, v) => s + v[k], 0) / p.length) ** 2);
 // Shut: below 0.45 of what it is as a rule, for two frames; open again above 0.65.
 function shut(open) {
@@ -35,4 +35,4 @@ const blinks = JSON.parse(fs.readFileSync(folder + '/track.json')).blinks.filter
 console.log([name.padEnd(22), String(lines.length).padStart(6), correlation(gaze).toFixed(2).padStart(8), (100 * spread(gaze, 1)).toFixed(0).padStart(7),
 	median(column('sigma_g1_deg').filter(Number.isFinite)).toFixed(1).padStart(8), off(aside).toFixed(1).padStart(9), correlation(aside).toFixed(2).padStart(6),
 	off(up).toFixed(1).padStart(7), correlation(up).toFixed(2).padStart(6), String(blinks).padStart(7), String(shut(get('open'))).padStart(5)].join(' '));
-process.exit(correlation(gaze) >= 0.8 || spread(gaze, 1) < 0.05 ? 0 : 1);
+process.exit(correlation(gaze) >= 0.8 || !(spread(gaze, 1) >= 0.05) ? 0 : 1);

@@ -52,20 +52,6 @@ static bool start(struct track_clip *clip, struct stage *stage, const struct tra
 	return !err_is(err);
 }
 
-/* Middles between the corners of both eyes as the pose has them, px. */
-static bool middles(double px[SIDES][2], const struct track_clip *clip, const struct track_subject *s)
-{
-	bool ok = true;
-	for (int e = 0; e < SIDES; e++) {
-		double corner[2][2];
-		for (int c = 0; c < 2; c++)
-			ok = ok && head_project(corner[c], &clip->camera, clip->cam_from_head, s->opening[e].canthus[c]);
-		for (int k = 0; k < 2 && ok; k++)
-			px[e][k] = 0.5 * (corner[0][k] + corner[1][k]);
-	}
-	return ok;
-}
-
 static double apart(const double px[SIDES][2])
 {
 	return hypot(px[0][0] - px[1][0], px[0][1] - px[1][1]);
@@ -88,7 +74,7 @@ static void face_told(struct track_clip *clip, const struct track_subject *s, co
 			memcpy(clip->cam_from_head[i], m[i], sizeof m[i]);
 			clip->cam_from_head[i][3] = ray[i] / ray[2] * z - (m[i][0] * between[0] + m[i][1] * between[1] + m[i][2] * between[2]);
 		}
-		if (!middles(now, clip, s))
+		if (!track_eyes_middle(now, &clip->camera, (const double(*)[4])clip->cam_from_head, s))
 			return;
 		z *= apart((const double(*)[2])now) / apart(seen);
 	}
@@ -199,7 +185,7 @@ static void center(struct track_clip *clip, struct stage *stage, struct track_su
 static bool face(struct track_clip *clip, struct track_subject *s, const struct track_conf *conf, struct err *err)
 {
 	double seen[SIDES][2];
-	if (!clip->eye_seen[0] || !clip->eye_seen[1] || !clip->rgb || !middles(seen, clip, s)) {
+	if (!clip->eye_seen[0] || !clip->eye_seen[1] || !clip->rgb || !track_eyes_middle(seen, &clip->camera, (const double(*)[4])clip->cam_from_head, s)) {
 		face_camera(clip, s);
 		return true;
 	}

@@ -130,7 +130,7 @@ static void carry(struct track_result *r, const struct track_clip *clip, const s
 				const double *px = r->eyes.state[f][k / LIDS].lid[k % LIDS][i];
 				for (int c = 0; c < 2; c++)
 					r->lids[at][c] = r->lids_model[at][c] = (float)px[c];
-				if (!s->assumed && isfinite(px[0]))
+				if (isfinite(px[0]))
 					track_to_model(r->lids_model[at], px, s->opening[k / LIDS].center, r->pose[f], clip);
 			}
 }

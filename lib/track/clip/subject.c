@@ -284,6 +284,19 @@ double track_eyes_depth(const double cam_from_head[4][4], const struct track_sub
 	return n ? depth / n : cam_from_head[2][3];
 }
 
+bool track_eyes_middle(double px[SIDES][2], const struct camera *camera, const double cam_from_head[4][4], const struct track_subject *s)
+{
+	for (int e = 0; e < SIDES; e++) {
+		double corner[2][2];
+		for (int c = 0; c < 2; c++)
+			if (!s->opening[e].open || !head_project(corner[c], camera, cam_from_head, s->opening[e].canthus[c]))
+				return false;
+		for (int k = 0; k < 2; k++)
+			px[e][k] = 0.5 * (corner[0][k] + corner[1][k]);
+	}
+	return true;
+}
+
 bool track_on_lid(const double head[3], const struct track_subject *s)
 {
 	for (int e = 0; e < SIDES; e++) {

@@ -204,19 +204,11 @@ static double turned_of(double *sigma, const struct track_clip *clip, const stru
 	struct head_turn seen;
 	double middle[SIDES][2], between[3] = { 0 }, at[3], angle[TURNS], lean;
 	*sigma = 0;
-	for (int e = 0; e < SIDES; e++) {
-		double corner[2][2];
-		if (!clip->rgb || !clip->eye_seen[e] || !s->opening[e].open)
-			return NAN;
-		for (int c = 0; c < 2; c++) {
-			if (!head_project(corner[c], &clip->camera, clip->cam_from_head, s->opening[e].canthus[c]))
-				return NAN;
-			for (int k = 0; k < 3; k++)
-				between[k] += 0.25 * s->opening[e].canthus[c][k];
-		}
-		for (int k = 0; k < 2; k++)
-			middle[e][k] = 0.5 * (corner[0][k] + corner[1][k]);
-	}
+	if (!clip->rgb || !clip->eye_seen[0] || !clip->eye_seen[1] || !track_eyes_middle(middle, &clip->camera, clip->cam_from_head, s))
+		return NAN;
+	for (int i = 0; i < 2 * SIDES; i++)
+		for (int k = 0; k < 3; k++)
+			between[k] += 0.25 * s->opening[i / 2].canthus[i % 2][k];
 	// a network that does not run says so where a video alone is begun
 	if (!turn_open_shipped(&net, &none))
 		return NAN;
