@@ -236,6 +236,7 @@ void track_trust(struct track_trust *t, const struct track_result *r, const stru
 	for (int i = 0; i < TRUST_EVIDENCES; i++)
 		own[i] = own_of(r, i);
 	own[TRUST_LAID] = laid ? outline_of(clip, s, conf) : 0;
+	own[TRUST_SCALE] = s->assumed && r->n ? conf->eyes.edge_px / track_px_per_mm(clip, (const double(*)[4])r->pose[0], s) : 0;
 	t->value[TRUST_UNLIKE] = s->assumed && r->unlike > 0 ? r->unlike * 180 / M_PI : NAN;
 	t->value[TRUST_TURNED] = s->assumed ? NAN : turned_of(&own[TRUST_TURNED], clip, s);
 	const double prior = laid && laid_by_one(r, s) ? conf->wrong_prior_one : conf->wrong_prior;

@@ -9,7 +9,14 @@
 enum { FRAMES = 600, POINTS = 20, UNSEEN = 40, DIM = 450 };
 static const double upper_noise = 0.4, lower_noise = 0.9, floor_mm = 0.05, px_per_mm = 8, open_px[LIDS] = { 60, 25 };
 
-/* An eye that opens and shuts slowly; margins are arcs between corners at y = 0. */
+/* Where the head is in a frame, mm aside and down of where it was in the reference, 600 mm away. */
+static void head_at(double at[2], long f)
+{
+	at[0] = 9 * sin(0.11 * (double)f);
+	at[1] = 14 * cos(0.07 * (double)f);
+}
+
+/* An eye that opens and shuts slowly; margins are arcs between corners at y = 0 of the reference's picture, and go with the head. */
 static double height(int lid, long f)
 {
 	return (lid == LID_UPPER ? -1 : 1) * open_px[lid] * (0.6 + 0.4 * cos(2 * M_PI * (double)f / FRAMES));
@@ -21,7 +28,15 @@ static struct track_result noisy(struct rng *rng)
 	r.eyes.frames = FRAMES;
 	r.eyes.state = mem_new(FRAMES, sizeof *r.eyes.state);
 	r.eyes.globe[SIDE_LEFT].seen = true;
-	for (long f = 0; f < FRAMES; f++)
+	r.pose = mem_new(FRAMES, sizeof *r.pose);
+	for (long f = 0; f < FRAMES; f++) {
+		double at[2];
+		head_at(at, f);
+		for (int k = 0; k < 4; k++)
+			r.pose[f][k][k] = 1;
+		r.pose[f][0][3] = at[0];
+		r.pose[f][1][3] = at[1];
+		r.pose[f][2][3] = 600;
 		for (int e = 0; e < SIDES; e++)
 			for (int lid = 0; lid < LIDS; lid++) {
 				struct eye_state *s = &r.eyes.state[f][e];
@@ -32,10 +47,11 @@ static struct track_result noisy(struct rng *rng)
 				s->lid_confidence[lid] = dim ? 0.4 : 0.8;
 				for (int i = 0; i < POINTS; i++) {
 					double u = 2.0 * i / (POINTS - 1) - 1, bow = 1 - u * u;
-					s->lid[lid][i][0] = f == UNSEEN ? NAN : 500 + 100 * u;
-					s->lid[lid][i][1] = f == UNSEEN ? NAN : 300 + bow * height(lid, f) + (bow > 0 ? off : 0);
+					s->lid[lid][i][0] = f == UNSEEN ? NAN : 500 + 100 * u + px_per_mm * at[0];
+					s->lid[lid][i][1] = f == UNSEEN ? NAN : 300 + bow * height(lid, f) + (bow > 0 ? off : 0) + px_per_mm * at[1];
 				}
 			}
+	}
 	return r;
 }
 
@@ -44,7 +60,7 @@ static void coverage(void **state)
 {
 	(void)state;
 	struct rng rng = { 5 };
-	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { [2][3] = 600 } };
+	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { { 1 }, { 0, 1 }, { 0, 0, 1, 600 }, { 0, 0, 0, 1 } } };
 	struct track_subject subject = { .assumed = true };
 	struct track_conf conf = { .lid_sigma_mm = 0 };
 	struct track_result r = noisy(&rng);
@@ -80,7 +96,7 @@ static void common_error(void **state)
 {
 	(void)state;
 	struct rng rng = { 5 };
-	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { [2][3] = 600 } };
+	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { { 1 }, { 0, 1 }, { 0, 0, 1, 600 }, { 0, 0, 0, 1 } } };
 	struct track_subject subject = { .assumed = true };
 	struct track_result a = noisy(&rng), b = noisy(&(struct rng){ 5 });
 	track_apertures(&a, &clip, &subject, &(struct track_conf){ .lid_sigma_mm = 0 });
