@@ -12,6 +12,7 @@ lamps in the cornea, light from all sides, exposure, white balance, blur, grain,
 (kept.h tells the format). A person follows from its number. Needs python3-numpy, -scipy, -opencv and gcc.
 """
 import argparse
+import contextlib
 import ctypes
 import functools
 import os
@@ -30,6 +31,7 @@ IRISES = [(.014, .008, .005), (.032, .017, .010), (.065, .032, .016), (.11, .055
           (.15, .19, .19), (.17, .22, .28), (.24, .30, .34)]
 POSES, WINDOWS = 10, 10
 F32 = np.float32
+NO_LAMPS = np.zeros((1, 12), F32)
 TEXTURE_LIMBUS = (.97, 1.03)  # radius in the texture, over that of its limbus: iris inside, sclera outside
 
 
@@ -224,38 +226,49 @@ class Person:
         self.boxes = boxes(rng, key)
         self.ground = rng.uniform(.02, .6, 3)
 
+    def parameters(self):
+        """Of the shader's eyes: angle of the limbus, iris plane and radius, its radius in the texture, the pupil's."""
+        import rig
+        return self.scene.C([rig.THL, 1.30, .552, .1385, self.pupil])
+
+    def lamps(self):
+        return self.boxes if len(self.boxes) else NO_LAMPS
+
+    def seen(self, size, camera, triangles, vertices):
+        """Depth, triangle and place in it, in each pixel of a picture of size (width, height). camera: focal length and principal point, px."""
+        (w, h), (f, cx, cy), p, cf = size, camera, self.scene.p, ctypes.c_float
+        z, t, b = np.full((h, w), 1e9, F32), np.full((h, w), -1, np.int32), np.zeros((h, w, 2), F32)
+        self.scene.lib.visib(w, h, cf(f), cf(cx), cf(cy), len(triangles), p(triangles), p(vertices), p(z), p(t), p(b))
+        return z, t, b
+
+    def shaded(self, camera, found, lamps, into, share, vertices, normals, direct, eyes):
+        """Adds a share of the light of what seen() has found to a linear picture."""
+        (z, t, b), (f, cx, cy), g, p, C, cf = found, camera, self.g, self.scene.p, self.scene.C, ctypes.c_float
+        self.scene.lib.shade(into.shape[1], into.shape[0], cf(f), cf(cx), cf(cy), p(g["T"]), p(g["mat"]), p(vertices), p(normals), p(self.uv), p(self.E), p(direct),
+                             p(self.vc), p(z), p(t), p(b), p(into), cf(share), self.size, self.size, p(self.albedo), p(self.bumps), cf(0), cf(1), cf(self.size),
+                             cf(self.size), cf(self.slope), cf(.9), self.eye.shape[1], self.eye.shape[0], p(self.eye), p(eyes), p(self.parameters()), p(lamps),
+                             len(lamps), p(C([0, 0, 0])), p(C(self.lash)))
+
     def window(self, w, h, f, cx, cy):
         """Linear picture and labels of a window of a camera of focal length f (px), its principal point at cx, cy of the window."""
         import rig
-        scene, g, cf = self.scene, self.g, ctypes.c_float
-        p, C, lib = scene.p, scene.C, scene.lib
-        parameters = C([rig.THL, 1.30, .552, .1385, self.pupil])
+        scene, g = self.scene, self.g
+        parameters, lamps = self.parameters(), self.lamps()
         picture, cover = np.zeros((h, w, 3), F32), np.zeros((h, w), F32)
         bare, lashes = np.zeros((h, w, 3), F32), np.zeros((h, w), F32)
 
-        def seen(triangles, dx, dy):
-            z, t, b = np.full((h, w), 1e9, F32), np.full((h, w), -1, np.int32), np.zeros((h, w, 2), F32)
-            lib.visib(w, h, cf(f), cf(cx + dx), cf(cy + dy), len(triangles), p(triangles), p(g["V"]), p(z), p(t), p(b))
-            return z, t, b
-
-        def shaded(z, t, b, dx, dy, lamps, into, share):
-            lib.shade(w, h, cf(f), cf(cx + dx), cf(cy + dy), p(g["T"]), p(g["mat"]), p(g["V"]), p(g["N"]), p(self.uv), p(self.E), p(self.D), p(self.vc),
-                      p(z), p(t), p(b), p(into), cf(share), self.size, self.size, p(self.albedo), p(self.bumps), cf(0), cf(1), cf(self.size), cf(self.size),
-                      cf(self.slope), cf(.9), self.eye.shape[1], self.eye.shape[0], p(self.eye), p(self.eyes), p(parameters), p(lamps), len(lamps),
-                      p(C([0, 0, 0])), p(C(self.lash)))
-
-        none = np.zeros((1, 12), F32)
         for dx, dy in ((.125, .375), (-.375, .125), (.375, -.125), (-.125, -.375)):
-            z, t, b = seen(g["T"], dx, dy)
+            camera = f, cx + dx, cy + dy
+            z, t, b = self.seen((w, h), camera, g["T"], g["V"])
             cover += .25 * (t < 0)
             lashes += .25 * ((t >= 0) & (g["mat"][t] == 4))
-            shaded(z, t, b, dx, dy, self.boxes if len(self.boxes) else none, picture, .25)
-            shaded(z, t, b, dx, dy, none, bare, .25)
+            for boxes_seen, into in ((lamps, picture), (NO_LAMPS, bare)):
+                self.shaded(camera, (z, t, b), boxes_seen, into, .25, g["V"], g["N"], self.D, self.eyes)
         ground = np.clip(1 + .3 * cv2.GaussianBlur(cv2.resize(self.rng.standard_normal((6, 7)).astype(F32), (w, h), interpolation=cv2.INTER_CUBIC), (0, 0), 3), .1, 3)
         picture += (cover * ground)[..., None] * self.ground.astype(F32)
         hard = scene.C(g["T"][g["mat"] != 4], np.int32)
         material = g["mat"][g["mat"] != 4]
-        z, t, b = seen(hard, 0, 0)
+        z, t, b = self.seen((w, h), (f, cx, cy), hard, g["V"])
         label = np.full((h, w), SKIN, np.uint8)
         yy, xx = np.nonzero((t >= 0))
         tri, bary = hard[t[yy, xx]], b[yy, xx]
@@ -388,6 +401,18 @@ def sheet(path, pictures, labels, across=8):
     cv2.imwrite(path, np.vstack(rows)[..., ::-1])
 
 
+@contextlib.contextmanager
+def workshop(args):
+    """The generator in reach of imports, its rasteriser built; gives a folder for what it writes."""
+    cv2.setNumThreads(1)
+    sys.path.insert(0, args.faces)
+    import mesh
+    mesh.load = functools.cache(mesh.load)  # the same for all people
+    with tempfile.TemporaryDirectory() as work:
+        subprocess.run(["gcc", "-O3", "-march=native", "-ffast-math", "-shared", "-fPIC", args.faces + "/rast.c", "-o", work + "/rast.so", "-lm"], check=True)
+        yield work
+
+
 def main():
     p = argparse.ArgumentParser()
     p.add_argument("--faces", required=True, help="folder of the generator of face clips")
@@ -399,12 +424,7 @@ def main():
     p.add_argument("--photographs", action="store_true", help="larger pictures, with ellipses")
     p.add_argument("--sheet", metavar="PNG", help="a contact sheet of the last ones")
     args = p.parse_args()
-    cv2.setNumThreads(1)
-    sys.path.insert(0, args.faces)
-    import mesh
-    mesh.load = functools.cache(mesh.load)  # the same for all people
-    with tempfile.TemporaryDirectory() as work:
-        subprocess.run(["gcc", "-O3", "-march=native", "-ffast-math", "-shared", "-fPIC", args.faces + "/rast.c", "-o", work + "/rast.so", "-lm"], check=True)
+    with workshop(args) as work:
         for number in range(args.first, args.first + args.count):
             person, made = Person(number, args, work), []
             for _ in range(args.poses):

@@ -22,6 +22,7 @@ from torch import nn
 from torch.nn import functional as F
 
 sys.dont_write_bytecode = True
+import train as evidence
 import weights
 
 SIDE, MIDDLE, MARKS = 144, (72, 58), 68   # turned.py's
@@ -129,7 +130,7 @@ def cut(rgb, labels, rng, wander=True):
     return normal(x), y
 
 
-def loss_of(out, y, rng):
+def loss_of(out, y):
     out = out[:, :, 0, 0].float()
     off = (out[:, :2] - y[:, :2]).abs()
     spread = out[:, 2:4].clamp(-6, 1)
@@ -175,7 +176,7 @@ def train(args):
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
         net.load_state_dict(torch.load(args.start)["net"])
-    mean, visits = copy.deepcopy(net), 0
+    mean = copy.deepcopy(net)
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-2)
     lessons, held = Lessons(args.lessons), Lessons([args.held]) if args.held else None
     begun, said, losses = time.time(), time.time(), []
@@ -191,17 +192,14 @@ def train(args):
         net.train()
         with torch.autocast("cpu", dtype=torch.bfloat16, enabled=args.half):
             out = net(x.to(memory_format=torch.channels_last))
-        loss, off = loss_of(out, y, rng)
+        loss, off = loss_of(out, y)
         optimiser.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(net.parameters(), 2)
         optimiser.step()
         losses.append((float(loss), float(off[:, 0].mean()), float(off[:, 1].mean())))
-        visits += 1
-        keep = min(.999, visits / (visits + 10))
         with torch.no_grad():
-            for a, b in zip(mean.state_dict().values(), net.state_dict().values()):
-                a.copy_(a * keep + b * (1 - keep) if a.dtype.is_floating_point else b)
+            evidence.blend(mean.state_dict(), net.state_dict(), min(.999, len(losses) / (len(losses) + 10)))
         if len(losses) % 200 == 0:
             l = np.mean(losses[-200:], 0)
             print("%5.1f min, step %d, %d lessons, loss %.4f, off %.2f %.2f deg" % ((time.time() - begun) / 60, len(losses), sum(lessons.count), l[0], *np.degrees(l[1:])), flush=True)

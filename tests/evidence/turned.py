@@ -11,12 +11,9 @@ axes, x to its left, y up, z forward, to the camera's, seen along the line to th
 follows from its number. Needs python3-numpy, -scipy, -opencv and gcc.
 """
 import argparse
-import ctypes
 import functools
 import json
-import subprocess
 import sys
-import tempfile
 
 import cv2
 import numpy as np
@@ -55,7 +52,7 @@ class Head(heads.Person):
             super().__init__(number, args, work)
         finally:
             skin.build = whole
-        S, rng, rig = self.S, self.rng, self.S.rig
+        S, rig = self.S, self.S.rig
         S.mo["H"][:] = 0
         self.middle = np.mean([rig.c[s] for s in "LR"], 0)
         S.look = self.middle
@@ -111,8 +108,7 @@ class Head(heads.Person):
 
     def view(self):
         """A picture from another side, and its labels."""
-        rng, S, g, scene, cf = self.rng, self.S, self.g, self.scene, ctypes.c_float
-        p, C, lib = scene.p, scene.C, scene.lib
+        rng, S, g, C = self.rng, self.S, self.g, self.scene.C
         wide = rng.random() < .5
         yaw = np.radians(np.clip(rng.uniform(-45, 45) if wide else rng.normal(0, 14), -50, 50))
         nod = np.radians(np.clip(rng.uniform(-32, 32) if rng.random() < .4 else rng.normal(0, 10), -38, 38))
@@ -138,25 +134,17 @@ class Head(heads.Person):
         big = 2 * SIDE
         f = 2 * APART / apart
         centre = 2 * np.array(MIDDLE) - f * (flat["L"] + flat["R"]) / 2
-        z, t, b = np.full((big, big), 1e9, F32), np.full((big, big), -1, np.int32), np.zeros((big, big, 2), F32)
-        lib.visib(big, big, cf(f), cf(centre[0]), cf(centre[1]), len(g["T"]), p(g["T"]), p(V), p(z), p(t), p(b))
-        x = np.zeros((big, big, 3), F32)
-        lamps = self.boxes if len(self.boxes) else np.zeros((1, 12), F32)
-        lib.shade(big, big, cf(f), cf(centre[0]), cf(centre[1]), p(g["T"]), p(g["mat"]), p(V), p(N), p(self.uv), p(self.E), p(D), p(self.vc), p(z), p(t), p(b), p(x),
-                  cf(1), self.size, self.size, p(self.albedo), p(self.bumps), cf(0), cf(1), cf(self.size), cf(self.size), cf(self.slope), cf(.9), self.eye.shape[1],
-                  self.eye.shape[0], p(self.eye), p(eyes), p(self.parameters()), p(lamps), len(lamps), p(C([0, 0, 0])), p(C(self.lash)))
-        x = self.dressed(x, t, b, V, f, centre, turn, away)
+        camera, x = (f, *centre), np.zeros((big, big, 3), F32)
+        z, t, b = self.seen((big, big), camera, g["T"], V)
+        self.shaded(camera, (z, t, b), self.lamps(), x, 1, V, N, D, eyes)
+        x = self.dressed(x, t, b, f, centre, turn, away)
         x = cv2.resize(x, (SIDE, SIDE), interpolation=cv2.INTER_AREA)
         # skin's vertices come first, coarse ones before finer ones
         marks = V[self.marks]
         px = (f * marks[:, :2] / marks[:, 2:] + centre) / 2
         return self.photographed(x), np.r_[yaw, nod, px.ravel()].astype(F32)
 
-    def parameters(self):
-        import rig
-        return self.scene.C([rig.THL, 1.30, .552, .1385, self.pupil])
-
-    def dressed(self, x, t, b, V, f, centre, turn, away):
+    def dressed(self, x, t, b, f, centre, turn, away):
         """Hair, beard, what is behind, shoulders, glasses."""
         rng, g = self.rng, self.g
         big = x.shape[:2]
@@ -177,16 +165,15 @@ class Head(heads.Person):
             on = (np.clip(on * self.beard * (.8 + .4 * noise(rng, big, 90)), 0, 1))[..., None]
             x = x * (1 - on) + level * self.hair_colour * on
         behind = np.clip(1 + rng.uniform(.1, .7) * noise(rng, big, rng.integers(2, 12)), .05, 4)[..., None] * rng.uniform(.01, .7, 3) * np.exp(.3 * noise(rng, big, 3))[..., None]
+        behind = np.ascontiguousarray(behind, F32)
         for _ in range(rng.integers(0, 6)):
             q = (rng.uniform(-.2, 1.2, (rng.integers(3, 6), 2)) * big[0]).astype(np.int32)
-            behind = np.ascontiguousarray(behind, F32)
             cv2.fillPoly(behind, [q], [float(v) for v in rng.uniform(.01, .8, 3)])
 
         def at(points):  # cm from the middle between the eyes, head's axes
             q = np.atleast_2d(points) @ (turn @ g["Rc"]).T + away
             return f * q[:, :2] / q[:, 2:] + centre
 
-        behind = np.ascontiguousarray(behind, F32)
         if self.falls:
             a = np.linspace(0, np.pi, 12)
             wide = rng.uniform(8, 12)
@@ -209,7 +196,7 @@ class Head(heads.Person):
             x = x * (1 - low) + low * cloth
         open_ = (t < 0)[..., None]
         x = np.where(open_, behind, x).astype(F32)
-        if self.rng.random() < .25:
+        if rng.random() < .25:
             x = self.glasses(x, at)
         return x
 
@@ -246,12 +233,7 @@ def main():
     p.add_argument("--count", type=int, default=60, help="people")
     p.add_argument("--sheet", metavar="PNG", help="a contact sheet of the last ones")
     args = p.parse_args()
-    cv2.setNumThreads(1)
-    sys.path.insert(0, args.faces)
-    import mesh
-    mesh.load = functools.cache(mesh.load)
-    with tempfile.TemporaryDirectory() as work:
-        subprocess.run(["gcc", "-O3", "-march=native", "-ffast-math", "-shared", "-fPIC", args.faces + "/rast.c", "-o", work + "/rast.so", "-lm"], check=True)
+    with heads.workshop(args) as work:
         for number in range(args.first, args.first + args.count):
             head, made = Head(number, args, work), []
             for _ in range(LIGHTS):

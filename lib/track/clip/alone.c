@@ -62,8 +62,7 @@ static void face_told(struct track_clip *clip, const struct track_subject *s, co
 {
 	const double lean = atan2(seen[SIDE_LEFT][1] - seen[SIDE_RIGHT][1], seen[SIDE_LEFT][0] - seen[SIDE_RIGHT][0]);
 	double between[3], at[3], ray[3], m[3][3];
-	for (int k = 0; k < 3; k++)
-		between[k] = 0.25 * (s->opening[0].canthus[0][k] + s->opening[0].canthus[1][k] + s->opening[1].canthus[0][k] + s->opening[1].canthus[1][k]);
+	track_eyes_between(between, s);
 	head_from(at, clip->cam_from_head, between);
 	camera_ray(ray, &clip->camera, (double[2]){ 0.5 * (seen[0][0] + seen[1][0]), 0.5 * (seen[0][1] + seen[1][1]) });
 	turn_rotation(m, turn->angle, lean, ray);

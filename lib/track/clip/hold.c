@@ -77,25 +77,34 @@ void hold_free(struct hold *h)
 	free(h);
 }
 
+/* The pose of a head that is turned so, the middle between its eyes there, mm. */
+static void stand(double pose[4][4], const struct hold *h, const double turned[3][3], const double middle[3])
+{
+	double rest[3];
+	for (int k = 0; k < 3; k++) {
+		memcpy(pose[k], turned[k], sizeof turned[k]);
+		pose[k][3] = 0;
+	}
+	middle_in(rest, h, (const double(*)[4])pose);
+	for (int k = 0; k < 3; k++)
+		pose[k][3] = middle[k] - rest[k];
+}
+
 /* The reference's pose so moved. */
 static void moved(double pose[4][4], const struct hold *h, const double by[MOTIONS])
 {
 	const struct camera *camera = &h->clip->camera;
-	double at[3], rest[3], px[2], ray[3], turned[3][3];
+	double at[3], px[2], ray[3], turned[3][3];
 	memcpy(pose, h->clip->cam_from_head, sizeof(double[4][4]));
 	middle_in(at, h, h->clip->cam_from_head);
 	if (!camera_project(px, camera, at))
 		return;
 	camera_ray(ray, camera, (double[2]){ px[0] + by[ACROSS], px[1] + by[DOWN] });
 	turn_rotation(turned, by + ASIDE, h->lean + by[LEAN], ray);
-	for (int k = 0; k < 3; k++) {
-		memcpy(pose[k], turned[k], sizeof turned[k]);
-		pose[k][3] = 0;
-	}
-	middle_in(rest, h, (const double(*)[4])pose);
 	const double z = at[2] * exp(-by[SIZE]);
 	for (int k = 0; k < 3; k++)
-		pose[k][3] = ray[k] / ray[2] * z - rest[k];
+		at[k] = ray[k] / ray[2] * z;
+	stand(pose, h, (const double(*)[3])turned, at);
 }
 
 double hold_turn_share(const struct track_subject *s)
@@ -275,37 +284,32 @@ static double place_of(const struct hold *h, long n)
 	return sigma;
 }
 
-double hold_unlike(const struct hold *h)
+/* What the network says as a rule of how well it knows a turn; TURNS: how unlike a face it is. NAN where it looked at few frames. */
+static double usual(const struct hold *h, int which)
 {
 	double *told = mem_array((size_t)h->n + 1, sizeof *told);
 	int m = 0;
 	for (long i = 0; i < h->n; i++)
 		if (h->seen[i].turned)
-			told[m++] = (double)h->seen[i].unlike;
+			told[m++] = (double)(which < TURNS ? h->seen[i].sigma[which] : h->seen[i].unlike);
 	const double middle = m < LEAST_FRAMES ? NAN : stats_median(m, told);
 	free(told);
 	return middle;
 }
 
-/* How well the network knows how the head is turned, as a rule. */
-static void turned_to(double sigma[TURNS], const struct hold *h, long n)
+double hold_unlike(const struct hold *h)
 {
-	double *told = mem_array((size_t)n + 1, sizeof *told);
-	for (int k = 0; k < TURNS; k++) {
-		int m = 0;
-		for (long i = 0; i < n; i++)
-			if (h->seen[i].turned)
-				told[m++] = (double)h->seen[i].sigma[k];
-		sigma[k] = m < LEAST_FRAMES ? UNTOLD : stats_median(m, told);
-	}
-	free(told);
+	return usual(h, TURNS);
 }
 
 void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const struct hold *h, bool rests)
 {
 	n = n < h->n ? n : h->n;
 	double *y = mem_array((size_t)n + 1, sizeof *y), *x = mem_array((size_t)n + 1, sizeof *x), (*by)[MOTIONS] = mem_new((size_t)n + 1, sizeof *by);
-	turned_to(known->turn, h, n);
+	for (int k = 0; k < TURNS; k++) {
+		known->turn[k] = usual(h, k);
+		known->turn[k] = isnan(known->turn[k]) ? UNTOLD : known->turn[k];
+	}
 	for (long i = 0; i < n; i++)
 		memcpy(by[i], h->begun, sizeof by[i]);
 	// the turn first, then lean and size
@@ -339,7 +343,7 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 void hold_turn(double (*poses)[4][4], long n, const struct hold *h)
 {
 	n = n < h->n ? n : h->n;
-	double *off[TURNS], by[TURNS] = { 0 }, at[3], rest[3], angle[TURNS], lean, m[3][3];
+	double *off[TURNS], by[TURNS], at[3], angle[TURNS], lean, m[3][3];
 	int told = 0;
 	for (int k = 0; k < TURNS; k++)
 		off[k] = mem_array((size_t)n + 1, sizeof *off[k]);
@@ -352,22 +356,17 @@ void hold_turn(double (*poses)[4][4], long n, const struct hold *h)
 			off[k][told] = (double)h->seen[i].turn[k] - angle[k];
 		told++;
 	}
-	for (int k = 0; k < TURNS && told >= LEAST_FRAMES; k++)
-		by[k] = stats_median(told, off[k]);
-	for (long i = 0; i < n && told >= LEAST_FRAMES; i++) {
+	const bool enough = told >= LEAST_FRAMES;
+	for (int k = 0; k < TURNS; k++) {
+		by[k] = enough ? stats_median(told, off[k]) : 0;
+		free(off[k]);
+	}
+	for (long i = 0; i < n && enough; i++) {
 		middle_in(at, h, (const double(*)[4])poses[i]);
 		turn_of(angle, &lean, (const double(*)[4])poses[i], at);
 		turn_rotation(m, (const double[TURNS]){ angle[0] + by[0], angle[1] + by[1] }, lean, at);
-		for (int k = 0; k < 3; k++) {
-			memcpy(poses[i][k], m[k], sizeof m[k]);
-			poses[i][k][3] = 0;
-		}
-		middle_in(rest, h, (const double(*)[4])poses[i]);
-		for (int k = 0; k < 3; k++)
-			poses[i][k][3] = at[k] - rest[k];
+		stand(poses[i], h, (const double(*)[3])m, at);
 	}
-	for (int k = 0; k < TURNS; k++)
-		free(off[k]);
 }
 
 void hold_pack(struct pack *p, struct hold *h, long first)

@@ -284,6 +284,12 @@ double track_eyes_depth(const double cam_from_head[4][4], const struct track_sub
 	return n ? depth / n : cam_from_head[2][3];
 }
 
+void track_eyes_between(double at[3], const struct track_subject *s)
+{
+	for (int k = 0; k < 3; k++)
+		at[k] = 0.25 * (s->opening[0].canthus[0][k] + s->opening[0].canthus[1][k] + s->opening[1].canthus[0][k] + s->opening[1].canthus[1][k]);
+}
+
 bool track_eyes_middle(double px[SIDES][2], const struct camera *camera, const double cam_from_head[4][4], const struct track_subject *s)
 {
 	for (int e = 0; e < SIDES; e++) {

@@ -36,6 +36,9 @@ void track_subject_free(struct track_subject *subject);
  * over it in the picture; the depth of the mesh's origin, which may lie anywhere, tells nothing of that. */
 double track_eyes_depth(const double cam_from_head[4][4], const struct track_subject *subject);
 
+/* The middle between the corners of both eyes, head frame, mm; both openings must be known. */
+void track_eyes_between(double at[3], const struct track_subject *subject);
+
 /* Middles between the corners of both eyes in the picture, px. False where an opening is not known, or lies behind the camera. */
 bool track_eyes_middle(double px[SIDES][2], const struct camera *camera, const double cam_from_head[4][4], const struct track_subject *subject);
 

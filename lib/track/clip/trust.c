@@ -202,13 +202,11 @@ static double turned_of(double *sigma, const struct track_clip *clip, const stru
 	struct turn_net *net;
 	struct err none = { 0 };
 	struct head_turn seen;
-	double middle[SIDES][2], between[3] = { 0 }, at[3], angle[TURNS], lean;
+	double middle[SIDES][2], between[3], at[3], angle[TURNS], lean;
 	*sigma = 0;
 	if (!clip->rgb || !clip->eye_seen[0] || !clip->eye_seen[1] || !track_eyes_middle(middle, &clip->camera, clip->cam_from_head, s))
 		return NAN;
-	for (int i = 0; i < 2 * SIDES; i++)
-		for (int k = 0; k < 3; k++)
-			between[k] += 0.25 * s->opening[i / 2].canthus[i % 2][k];
+	track_eyes_between(between, s);
 	// a network that does not run says so where a video alone is begun
 	if (!turn_open_shipped(&net, &none))
 		return NAN;
