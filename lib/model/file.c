@@ -194,9 +194,9 @@ static bool load_json(struct skin_model *m, const json_t *j, const char *path, s
 		return err_set(err, "%s: inputs: must be a list of %d or more", path, SKIN_EYE_INPUTS);
 	m->n_au = n - SKIN_EYE_INPUTS;
 	if (!count_of(&m->n_points, j, "points_per_lid", 1, 1000, path, err)
-	    || !count_of(&m->n_vertices, j, "vertices", 1, 1 << 20, path, err)
+	    || !count_of(&m->n_vertices, j, "vertices", 0, 1 << 20, path, err)
 	    || !count_of(&m->n_lid_pc, j, "lid_components", 0, 1000, path, err)
-	    || !count_of(&m->n_skin_pc, j, "skin_components", 1, 256, path, err)
+	    || !count_of(&m->n_skin_pc, j, "skin_components", 0, 256, path, err)
 	    || !count_of(&m->reference_frame, j, "reference_frame", 0, 1 << 30, path, err))
 		return false;
 	if ((long)m->n_vertices * m->n_skin_pc > MODEL_NUMBERS)

@@ -37,8 +37,8 @@ struct skin_camera {
 struct skin_model {
 	int n_au, n_inputs;           // n_inputs = SKIN_EYE_INPUTS + n_au
 	int n_points, n_lid;          // control points a lid; n_lid = SKIN_LIDS * n_points * 2
-	int n_vertices;
-	int n_lid_pc, n_skin_pc;      // principal components kept
+	int n_vertices;               // 0: no skin was followed, the lids alone are modelled
+	int n_lid_pc, n_skin_pc;      // principal components kept; of no skin 0
 	char **au_names;              // [n_au]
 	int *vertices;                // [n_vertices] rows of the subject mesh
 	int reference_frame;

@@ -138,7 +138,8 @@ static bool runs(const struct plan *plan, const char *name)
 }
 
 static const char rests[] = "the camera rests in video/, or nothing beside the head shows that it moves: nothing tells cameras; camera.focal_px tells the lens";
-static const char no_skin[] = "no mesh of the person (subject.ply), nor views/ to make it from: gaze and lids are followed, skin is not";
+static const char no_skin[] = "no mesh of the person (subject.ply), nor views/ to make it from: skin is not followed, and nothing tells how a character's moves";
+static const char lids_alone[] = "learns how the lids move with the eye; no mesh of the person (subject.ply): no skin";
 
 /* Whether cameras are to be sought in the video alone: where its lens is not given, and unless the camera is seen to rest. */
 static bool film_tells(int have, const char *capture, const struct conf *conf)
@@ -223,21 +224,23 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		const struct plan_stage *r = &plan_stages[i];
 		struct plan_row *row = &plan->rows[i];
-		bool calibrates = !strcmp(r->name, "calibrate");
+		bool calibrates = !strcmp(r->name, "calibrate"), skin = runs(plan, "calibrate") || has_subject(capture);
 		bool has = (!calibrates || have & HAS_VIEWS || film) && (!r->any || have & r->any) && (have & r->all) == r->all;
 		const char *other = other_way(plan, r, have);
 		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));
 		row->reason = r->does;
 		if (!has && !other)
 			row->reason = calibrates && have & HAS_VIDEO && !lens_given(conf) ? rests : r->without;
-		else if (!strcmp(r->name, "train") && !runs(plan, "calibrate") && !has_subject(capture))
-			row->reason = no_skin;
 		else if (!is_built(r->name))
 			row->reason = "its program is not built";
+		else if (!strcmp(r->name, "transfer") && !skin)
+			row->reason = no_skin;
 		else if (!fed)
 			row->reason = "a stage it needs does not run";
 		else
 			row->run = true;
+		if (row->run && !strcmp(r->name, "train") && !skin)
+			row->reason = lids_alone;
 		if (row->run && !strcmp(r->name, "transfer"))
 			row->reason = transfer_does(r->does, capture);
 		if (row->run && grey && !strcmp(r->name, "pigment"))

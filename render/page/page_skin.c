@@ -208,7 +208,9 @@ json_t *page_skin(struct page *page)
 			column(page, columns, plan_stages[i].name, plan_stages[i].title);
 	add(skin, "columns", columns);
 	add(skin, "followed", followed(page));
-	json_object_set_new(skin, "has_targets", json_boolean(page_file(page, "work/skin/model.json") != 0));
+	json_t *model = page_json(page, page_file(page, "work/skin/model.json"));
+	json_object_set_new(skin, "has_targets", json_boolean(json_integer_value(json_object_get(model, "vertices")) > 0));
+	json_decref(model);
 	add(skin, "track", page_picture(page, page_file(page, "work/skin/track.png"), 2 * page->width));
 	add(skin, "wrinkles", page_picture(page, page_file(page, "work/skin/wrinkles.png"), 2 * page->width));
 	add(skin, "curves", data_uri(page_file(page, "work/skin/curves.svg"), "image/svg+xml", 4 << 20));

@@ -31,17 +31,6 @@ void clip_inputs(const char *out[8], int *n, struct stage *stage)
 			out[(*n)++] = files[i];
 }
 
-bool clip_has_skin(struct stage *stage)
-{
-	struct npy vertices;
-	struct err none = { 0 };
-	const bool read = npy_read(&vertices, stage_path(stage, "%s", files[VERTICES]), NPY_LIMIT, &none);
-	const bool has = !read || vertices.ndim != 1 || vertices.shape[0] > 0;
-	if (read)
-		npy_free(&vertices);
-	return has;
-}
-
 static bool read_gaze(struct clip *clip, struct stage *stage, struct err *err)
 {
 	const char *path = stage_path(stage, "%s", files[GAZE]);
@@ -121,8 +110,6 @@ static bool read_vertices(struct clip *clip, struct stage *stage, struct err *er
 		ok = x[i] >= 0 && x[i] < 1 << 30 ? true : err_set(err, "%s: vertex %d = %g: must be a row of the mesh", path, i, x[i]);
 		clip->vertices[i] = ok ? (int)x[i] : 0;
 	}
-	if (ok && !clip->train.n_vertices)
-		ok = err_set(err, "%s: no skin point", path);
 	free(x);
 	npy_free(&rows);
 	return ok;
@@ -142,11 +129,12 @@ static bool open_rows(struct npy_rows **out, long *length, struct stage *stage, 
 
 static bool open_all(struct clip *clip, struct stage *stage, struct err *err)
 {
-	long n = clip->train.n, m = clip->train.n_vertices, points = 0, same;
+	const long n = clip->train.n, m = clip->train.n_vertices;
+	long points = 0, same;
 	int lids = file_exists(stage_path(stage, "%s", files[LIDS_MODEL])) ? LIDS_MODEL : LIDS;
 	bool ok = open_rows(&clip->lids, &points, stage, lids, 4, (long[]){ n, SKIN_LIDS, -1, 2 }, err)
-	          && open_rows(&clip->skin, &same, stage, SKIN, 3, (long[]){ n, m, 2 }, err)
-	          && open_rows(&clip->seen, &same, stage, CONFIDENCE, 2, (long[]){ n, m }, err);
+	          && (!m || (open_rows(&clip->skin, &same, stage, SKIN, 3, (long[]){ n, m, 2 }, err)
+	                     && open_rows(&clip->seen, &same, stage, CONFIDENCE, 2, (long[]){ n, m }, err)));
 	if (ok && !(points >= 2 && points <= 200))
 		ok = err_set(err, "%s: %ld control points a lid: must be in [2, 200]", stage_path(stage, "%s", files[lids]), points);
 	clip->train.n_points = (int)points;
@@ -161,20 +149,23 @@ static bool in_range(const double *x, long n, long each, struct clip *clip, int 
 	return npy_in_range(&rows, most, true, first * each, stage_path(clip->stage, "%s", files[file]), err);
 }
 
+/* The next n rows of one file, which is at the row that clip->at says. */
+static bool next_rows(struct clip *clip, struct npy_rows *rows, long first, long n, double *out, long each, int file, double most, struct err *err)
+{
+	long got;
+	return (first == clip->at || npy_rows_seek(rows, first, err)) && npy_rows_next(rows, n, out, &got, err)
+	       && in_range(out, got, each, clip, file, most, first, err);
+}
+
 static bool clip_read(void *ctx, long first, long n, double *lid, double *skin, double *seen, struct err *err)
 {
 	struct clip *clip = ctx;
-	long a, b, c;
-	if (first != clip->at
-	    && !(npy_rows_seek(clip->lids, first, err) && npy_rows_seek(clip->skin, first, err)
-	         && npy_rows_seek(clip->seen, first, err)))
-		return false;
+	const long m = clip->train.n_vertices;
+	const bool ok = next_rows(clip, clip->lids, first, n, lid, SKIN_LIDS * 2L * clip->train.n_points, clip->lids_file, PICTURE_PX, err)
+	                && (!m || (next_rows(clip, clip->skin, first, n, skin, 2 * m, SKIN, PICTURE_PX, err)
+	                           && next_rows(clip, clip->seen, first, n, seen, m, CONFIDENCE, 1, err)));
 	clip->at = first + n;
-	return npy_rows_next(clip->lids, n, lid, &a, err) && npy_rows_next(clip->skin, n, skin, &b, err)
-	       && npy_rows_next(clip->seen, n, seen, &c, err)
-	       && in_range(lid, a, SKIN_LIDS * 2L * clip->train.n_points, clip, clip->lids_file, PICTURE_PX, first, err)
-	       && in_range(skin, b, 2L * clip->train.n_vertices, clip, SKIN, PICTURE_PX, first, err)
-	       && in_range(seen, c, clip->train.n_vertices, clip, CONFIDENCE, 1, first, err);
+	return ok;
 }
 
 static void clip_progress(void *ctx, long done, long total)

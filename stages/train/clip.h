@@ -27,7 +27,4 @@ void clip_inputs(const char *out[8], int *n, struct stage *stage);
 bool clip_load(struct clip *clip, struct stage *stage, const struct opt_each_list *expressions, struct err *err);
 void clip_free(struct clip *clip);
 
-/* False where track followed no skin, for want of a mesh: there is nothing to learn. A file that cannot be read is clip_load's to tell. */
-bool clip_has_skin(struct stage *stage);
-
 #endif

@@ -121,6 +121,8 @@ static void tell(struct stage *stage, const struct train_report *r, const struct
 		snprintf(key, sizeof key, "train_%s_error_rbf", keys[p]);
 		stage_figure(stage, key, c->rbf[k], "");
 	}
+	if (!model->n_vertices)
+		stage_skipped(stage, "skin: not modelled: none was followed, for want of a mesh of the person (subject.ply)");
 	for (int i = 0; i < r->n_warnings; i++)
 		stage_skipped(stage, "%s", r->warnings[i]);
 	if (r->unseen_vertices)
@@ -172,10 +174,6 @@ bool train_stage(struct stage *stage, const struct train_conf *conf, const struc
 	clip_inputs(in, &n, stage);
 	if (all_fresh(stage, n, in))
 		return true;
-	if (!clip_has_skin(stage)) {
-		stage_skipped(stage, "no skin was followed, for want of a mesh of the person (subject.ply): nothing is learnt");
-		return true;
-	}
 	struct clip clip = { 0 };
 	struct skin_model model = { 0 };
 	struct train_report report = { 0 };

@@ -246,6 +246,11 @@ same "without a mesh: exit" "$?" 0
 check "says why wrinkles are not looked for" grep -q "wrinkles: no mesh of the person" <<<"$said"
 check "says that skin is not followed" grep -q "no mesh of the person" <<<"$said"
 check "gaze is there all the same" test "$(sed -n 30p "$root/still/work/skin/gaze.csv" | cut -d, -f3)" != ""
+said=$("$BIN/train" --capture="$root/still" 2>&1)
+same "lids are learnt without a mesh: exit" "$?" 0
+check "says that the skin is not modelled (it says: $said)" grep -q "skin: not modelled: none was followed" <<<"$said"
+check "of both eyes' lids" grep -q '"lids_left"' "$root/still/work/skin/train.json"
+check "and of no skin" bash -c '! grep -q "\"skin\"" "$1"' - "$root/still/work/skin/train.json"
 
 capture threads
 cp samples/face/video/face.mp4 "$root/threads/video"

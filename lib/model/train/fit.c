@@ -154,6 +154,8 @@ static void fit_skin(struct train *t)
 {
 	struct skin_model *m = t->model;
 	struct part *part = &t->part[TRAIN_SKIN];
+	if (!part->used)
+		return;
 	train_choose_skin(t);
 	int n = part->n, ne = m->n_skin_pc, q = m->n_lid_pc + m->n_au;
 	if (part->sum.n <= q)

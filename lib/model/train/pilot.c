@@ -53,6 +53,8 @@ static void begin_pilot(struct part *p, long m, double *x, double *c, const stru
 static void components(struct part *p, double *lambda, long m, const double *x, const double *w)
 {
 	int n = p->n, rows = (int)m, k = p->k, found = 0;
+	if (!k)
+		return;
 	double *y = mem_array((size_t)m * (size_t)n + 1, sizeof *y), *A = mem_array((size_t)(m * m) + 1, sizeof *A);
 	double *d = mem_new((size_t)m + 1, sizeof *d), *z = mem_new((size_t)(m * k) + 1, sizeof *z);
 	lapack_int *support = mem_new(2 * (size_t)k + 2, sizeof *support);
@@ -60,7 +62,7 @@ static void components(struct part *p, double *lambda, long m, const double *x, 
 		for (int i = 0; i < n; i++)
 			y[r * n + i] = sqrt(w[r]) * (x[r * n + i] - p->mean[i]);
 	cblas_dsyrk(CblasRowMajor, CblasLower, CblasNoTrans, rows, n, 1, y, n, 0, A, rows);
-	bool ok = k && !LAPACKE_dsyevr(LAPACK_ROW_MAJOR, 'V', 'I', 'L', rows, A, rows, 0, 0, rows - k + 1, rows, 0, &found, d, z,
+	bool ok = !LAPACKE_dsyevr(LAPACK_ROW_MAJOR, 'V', 'I', 'L', rows, A, rows, 0, 0, rows - k + 1, rows, 0, &found, d, z,
 	                               k, support);
 	memset(p->V, 0, (size_t)(n * k) * sizeof *p->V);
 	if (ok)

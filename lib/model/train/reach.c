@@ -56,7 +56,10 @@ void train_reach(struct train *t)
 		if (t->part[eye].used)
 			set_reach(m->lid_reach + eye * all, &t->part[eye].sum, EYE_INPUTS * eye, EYE_INPUTS);
 	}
-	set_reach(m->skin_reach, &t->inputs, 0, m->n_inputs);
+	for (int i = 0; i < m->n_inputs * (m->n_inputs + 1); i++)
+		m->skin_reach[i] = NAN;
+	if (t->part[TRAIN_SKIN].used)
+		set_reach(m->skin_reach, &t->inputs, 0, m->n_inputs);
 	for (int p = 0; p < TRAIN_PARTS; p++)
 		outside[p] = mem_new((size_t)n + 1, sizeof **outside);
 	for (long i = 0; i < n; i++) {

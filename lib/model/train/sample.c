@@ -122,7 +122,7 @@ bool train_sample(struct train *t, struct err *err)
 	if (!t->eye[0] && !t->eye[1])
 		return err_set(err, "%s: the lids of neither eye are measured in enough frames (train.min_seen = %g): film an open eye, close and sharp",
 		               t->clip->place, t->conf->min_seen);
-	if (!t->part[TRAIN_SKIN].used)
+	if (!t->part[TRAIN_SKIN].used && t->clip->n_vertices)
 		return err_set(err, "%s: no skin point is seen in enough frames (train.min_seen = %g): film closer, in even light",
 		               t->clip->place, t->conf->min_seen);
 	struct frames f = frames_new(t, t->n_sample);

@@ -140,7 +140,7 @@ bool train_stream(struct train *t, struct err *err)
 		struct part *part = &t->part[p];
 		part->from = p == TRAIN_SKIN ? t->n_lid + t->clip->n_au : EYE_INPUTS;
 		scatter_new(&part->sum, part->from + part->n, t->clip->n <= PILOT_FRAMES ? (int)t->clip->n : 0);
-		if (p == TRAIN_SKIN && t->clip->n >= LONG_CLIP)
+		if (p == TRAIN_SKIN && part->used && t->clip->n >= LONG_CLIP)
 			scatter_split(&part->sum, part->from, part->k, part->V);
 		scatter_rows(&part->sum);
 	}

@@ -12,7 +12,7 @@ static bool check(const struct train_clip *clip, const struct train_conf *conf, 
 {
 	double p = SKIN_LIDS * clip->n_points * 2 + clip->n_au + 2.0 * clip->n_vertices, sample = fmin(conf->sample, (double)clip->n);
 	double mib = (p * p * (clip->n > PILOT_FRAMES ? 2 : 1) + p * (sample + 4 * PILOT_FRAMES + 6 * SCATTER_BLOCK)) * 8 / 1048576;
-	int most = conf->lid_components > conf->skin_components ? conf->lid_components : conf->skin_components;
+	int most = conf->lid_components > conf->skin_components || !clip->n_vertices ? conf->lid_components : conf->skin_components;
 	if (clip->n <= most)
 		return err_set(err, "%s: %ld frames, must be more than the %d components of the model: film longer", clip->place,
 		               clip->n, most);

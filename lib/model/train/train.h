@@ -14,7 +14,7 @@
 /* A tracked clip. Coordinates and inputs that were not measured are NAN. All arrays are the caller's. */
 struct train_clip {
 	long n;                       // frames
-	int n_au, n_points, n_vertices;
+	int n_au, n_points, n_vertices;  // no vertices: the lids alone are modelled
 	const double *time;           // [n] s
 	const double *g;              // [n][SKIN_EYE_INPUTS + n_au], gaze.csv's units
 	const double *confidence;     // [n][2] left, right, 0..1

@@ -7,6 +7,7 @@
 #include "math/rng.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/linear_clip.h"
+#include "tests/lib/scratch.h"
 #include "tests/lib/truth/tracked.h"
 #include "tests/lib/unit.h"
 
@@ -94,6 +95,36 @@ static void known_maps(void **state)
 				NEAR(t.model.baseline[e][lid][k], t.clip->A[e][lid][k], k == 2 ? 0.02 : 0.002);
 		}
 	trained_free(&t);
+}
+
+/* No skin was followed: lids are learnt as exactly, kept in files and read back; no leverage is told of a skin. Also of a long clip. */
+static void lids_alone(void **state)
+{
+	(void)state;
+	for (int n = 900; n < 10000; n *= 10) {
+		struct linear_clip_conf f = usual;
+		struct skin_model read;
+		struct err err = { 0 };
+		double rms, h[3], g[SKIN_EYE_INPUTS + 2] = { 0 };
+		f.n = n;
+		f.n_vertices = 0;
+		struct trained t = train(&f, &train_defaults);
+		if (!t.ok)
+			fail_msg("%s", t.err.msg);
+		NEAR(held_out(&t, &rms), 0, 1e-6);
+		assert_int_equal(t.model.n_skin_pc, 0);
+		assert_int_equal(t.report.n_warnings, 0);
+		assert_true(t.report.curve[TRAIN_LEFT].n > 0 && t.report.curve[TRAIN_SKIN].n == 0);
+		for (int i = 0; i < f.n_au; i++)
+			t.model.au_names[i] = mem_str(i ? "b" : "a");
+		if (!skin_model_save(&t.model, scratch_path("."), 0, &err) || !skin_model_load(&read, scratch_path("."), &err))
+			fail_msg("%s", err.msg);
+		assert_memory_equal(read.L, t.model.L, (size_t)(read.n_lid_pc * (SKIN_EYE_INPUTS + 1)) * sizeof *read.L);
+		skin_model_leverage(h, &read, g);
+		assert_true(h[0] > 0 && h[1] > 0 && isnan(h[2]));
+		skin_model_free(&read);
+		trained_free(&t);
+	}
 }
 
 /* All numbers stay what they are in other units, and whether rows are kept or squared. */
@@ -378,10 +409,10 @@ static void rendered(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(known_maps), cmocka_unit_test(same_in_all_ways), cmocka_unit_test(robust),
+		cmocka_unit_test(known_maps), cmocka_unit_test(lids_alone), cmocka_unit_test(same_in_all_ways), cmocka_unit_test(robust),
 		cmocka_unit_test(calibrated), cmocka_unit_test(half_a_face),      cmocka_unit_test(not_enough),
 		cmocka_unit_test(never_shown), cmocka_unit_test(outside),         cmocka_unit_test(threads),
 		cmocka_unit_test(rendered),
 	};
-	return cmocka_run_group_tests(tests, 0, 0);
+	return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }
