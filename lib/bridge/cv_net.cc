@@ -160,6 +160,26 @@ void cv_net_close(struct cv_net *net)
 	delete net;
 }
 
+bool cv_net_open_as(struct cv_net **net, const char *path, const int takes[3], const int gives[3], struct err *err)
+{
+	if (!cv_net_open(net, path, err))
+		return false;
+	const std::vector<float> zeros(static_cast<size_t>(takes[0]) * static_cast<size_t>(takes[1]) * static_cast<size_t>(takes[2]));
+	struct cv_net_picture p = {};
+	p.in = zeros.data();
+	p.height = takes[1];
+	p.width = takes[2];
+	bool ok = cv_net_run(&p, 1, *net, takes[0], err);
+	if (ok && std::memcmp(p.size, gives, sizeof p.size) != 0)
+		ok = err_set(err, "%d planes of %d x %d, must be %d of %d x %d", p.size[0], p.size[2], p.size[1], gives[0], gives[2], gives[1]);
+	std::free(p.out);
+	if (ok)
+		return true;
+	cv_net_close(*net);
+	*net = nullptr;
+	return err_wrap(err, "%s", path);
+}
+
 bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int channels, struct err *err)
 {
 	const int threads = n < omp_get_max_threads() ? n : omp_get_max_threads();

@@ -16,6 +16,9 @@ struct cv_net;
 bool cv_net_open(struct cv_net **net, const char *path, struct err *err);
 void cv_net_close(struct cv_net *net);
 
+/* The same of a network that must make, of takes[3] (channels, height, width), gives[3] (planes, height, width): it is tried on zeros. */
+bool cv_net_open_as(struct cv_net **net, const char *path, const int takes[3], const int gives[3], struct err *err);
+
 struct cv_net_picture {
 	const float *in;      // [channels][height][width]; any size that the network takes
 	int height, width;

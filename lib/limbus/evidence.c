@@ -19,22 +19,10 @@ struct evidence_net {
 
 bool evidence_open(struct evidence_net **out, const char *path, struct err *err)
 {
-	*out = 0;
 	struct cv_net *net;
-	if (!cv_net_open(&net, path, err))
+	*out = 0;
+	if (!cv_net_open_as(&net, path, (const int[3]){ 3, STEP, STEP }, (const int[3]){ EVIDENCE_CLASSES, STEP / 2, STEP / 2 }, err))
 		return false;
-	float *in = mem_new((size_t)3 * STEP * STEP, sizeof *in);
-	struct cv_net_picture p = { .in = in, .height = STEP, .width = STEP };
-	bool ok = cv_net_run(&p, 1, net, 3, err);
-	const int *size = p.size;
-	if (ok && (size[0] != EVIDENCE_CLASSES || size[1] != STEP / 2 || size[2] != STEP / 2))
-		ok = err_set(err, "%d planes of %d x %d px, must be %d of %d x %d", size[0], size[2], size[1], EVIDENCE_CLASSES, STEP / 2, STEP / 2);
-	free(in);
-	free(p.out);
-	if (!ok) {
-		cv_net_close(net);
-		return err_wrap(err, "%s", path);
-	}
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
 	return true;

@@ -101,6 +101,9 @@ static void of_strip(double x[ODDS_TRAITS], const struct ellipse *e, const struc
 	x[ODDS_STRIP_SCATTER] = log(a.scatter + FLOOR);
 	x[ODDS_STRIP_APART] = any ? log(fmin(off / e->a, 0.5) + FLOOR) : log(0.5);
 	x[ODDS_STRIP_SIGMA] = any ? log(fmin(sigma / e->a, 0.5) + FLOOR) : log(0.5);
+	x[ODDS_STRIP_MOVED] = any ? log(fmin(view->moved / e->a, 0.5) + FLOOR) : log(0.5);
+	x[ODDS_STRIP_BLIND] = any ? log(fmin(view->blind / e->a, 0.5) + FLOOR) : log(0.5);
+	x[ODDS_STRIP_END] = a.end;
 }
 
 void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim *pupil, const struct odds_view *view)
@@ -134,5 +137,8 @@ void odds_traits(double x[ODDS_TRAITS], const struct rim *rim, const struct rim 
 	x[ODDS_ROUND] = log(e->b / e->a);
 	x[ODDS_IRIS_EVEN] = varies(rim, false);
 	x[ODDS_SCLERA_EVEN] = varies(rim, true);
+	x[ODDS_SIZE] = log(e->a);
+	x[ODDS_BY_STRIP] = view->by_strip;
+	x[ODDS_BY_VOTES] = view->by_votes;
 	of_strip(x, e, view);
 }

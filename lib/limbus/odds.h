@@ -40,11 +40,18 @@ enum odds_trait {
 	ODDS_STRIP_SCATTER,   // log of the scatter of the rays' places over the semi-axis
 	ODDS_STRIP_APART,     // log of how far the strip's own ellipse is, semi-axes
 	ODDS_STRIP_SIGMA,     // log of the largest sigma of the strip's own ellipse, semi-axes
+	ODDS_STRIP_MOVED,     // log of how far the last reading of the strip, with its mirror image, moved it, semi-axes
+	ODDS_STRIP_BLIND,     // the same where the evidence of the pixels was kept from it: by the picture alone
+	ODDS_STRIP_END,       // chance that the limbus is seen at the end of the diameter where it is seen least, the better of both ends
+	ODDS_SIZE,            // log of the semi-axis, px
+	ODDS_BY_STRIP,        // 1 where the strip's ellipse was the edge's prior, so that they do not agree by themselves
+	ODDS_BY_VOTES,        // 1 where it came of edges' votes
 	ODDS_TRAITS
 };
 
-/* What an ellipse is looked at with: evidence of the window round it, the map of that, and the strip with its own likeliest ellipse. */
-struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; int width, height; };
+/* What an ellipse is looked at with: evidence of the window round it, the map of that, and the strip with its own likeliest ellipse and
+ * how far its last reading moved that, and where a reading without the evidence has it, px. */
+struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; double moved, blind; bool by_strip, by_votes; int width, height; };
 
 #define LIMBUS_RIGHT 0.02  // semi-axes: centre or a semi-axis farther off is a gross error, if not said otherwise
 

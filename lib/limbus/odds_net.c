@@ -13,34 +13,12 @@ struct odds_net {
 	struct cv_net *net;
 };
 
-static bool run(double curve[ODDS_CURVE], const double x[ODDS_TRAITS], struct cv_net *net, struct err *err)
-{
-	float in[ODDS_TRAITS];
-	for (int i = 0; i < ODDS_TRAITS; i++)
-		in[i] = isfinite(x[i]) ? (float)x[i] : 0;
-	struct cv_net_picture p = { .in = in, .height = 1, .width = 1 };
-	bool ok = cv_net_run(&p, 1, net, ODDS_TRAITS, err);
-	if (ok && (p.size[0] != ODDS_CURVE || p.size[1] != 1 || p.size[2] != 1))
-		ok = err_set(err, "%d planes of %d x %d, must be %d of 1 x 1", p.size[0], p.size[2], p.size[1], ODDS_CURVE);
-	// the first, and what each adds to the one before
-	for (int i = 0; i < ODDS_CURVE && ok; i++)
-		curve[i] = i ? curve[i - 1] + fmax(p.out[i], 0) + log1p(exp(-fabs(p.out[i]))) : p.out[i];
-	free(p.out);
-	return ok;
-}
-
 bool odds_open(struct odds_net **out, const char *path, struct err *err)
 {
-	const double nothing[ODDS_TRAITS] = { 0 };
-	double curve[ODDS_CURVE];
 	struct cv_net *net;
 	*out = 0;
-	if (!cv_net_open(&net, path, err))
+	if (!cv_net_open_as(&net, path, (const int[3]){ ODDS_TRAITS, 1, 1 }, (const int[3]){ ODDS_CURVE, 1, 1 }, err))
 		return false;
-	if (!run(curve, nothing, net, err)) {
-		cv_net_close(net);
-		return err_wrap(err, "%s", path);
-	}
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
 	return true;
@@ -63,7 +41,16 @@ void odds_close(struct odds_net *net)
 
 bool odds_of(double curve[ODDS_CURVE], const double x[ODDS_TRAITS], struct odds_net *net, struct err *err)
 {
-	return run(curve, x, net->net, err);
+	float in[ODDS_TRAITS];
+	for (int i = 0; i < ODDS_TRAITS; i++)
+		in[i] = isfinite(x[i]) ? (float)x[i] : 0;
+	struct cv_net_picture p = { .in = in, .height = 1, .width = 1 };
+	const bool ok = cv_net_run(&p, 1, net->net, ODDS_TRAITS, err);
+	// the first, and what each adds to the one before
+	for (int i = 0; i < ODDS_CURVE && ok; i++)
+		curve[i] = i ? curve[i - 1] + fmax(p.out[i], 0) + log1p(exp(-fabs(p.out[i]))) : p.out[i];
+	free(p.out);
+	return ok;
 }
 
 double odds_log(const double curve[ODDS_CURVE], double tolerance)

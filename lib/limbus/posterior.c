@@ -7,12 +7,6 @@
 
 static const double LEAST_SIGMA = 1e-6;  // semi-axes
 
-/* The largest difference of centre and semi-axes, px. */
-static double trial_apart(const struct ellipse *e, const struct ellipse *f)
-{
-	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
-}
-
 static bool follows(const struct ellipse *e, const struct trial_line *line, double within)
 {
 	for (int i = 0; i < line->n; i++) {
@@ -28,7 +22,7 @@ static bool same(const struct ellipse *e, const struct trial_line *line, const s
                  const struct limbus_conf *conf)
 {
 	const double within = fmax(conf->tolerance, fmin(conf->same.sigmas * sigma, conf->same.most));
-	const double away = trial_apart(e, f) / e->a;
+	const double away = ellipse_apart(e, f) / e->a;
 	return away < within || (away < conf->same.unseen && line->n + other->n > 0 && follows(e, other, within) && follows(f, line, within));
 }
 

@@ -155,9 +155,27 @@ bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *s
 	return true;
 }
 
+/* Mean chance of being seen of the rays round one. */
+static double seen_about(const struct strip *strip, int ray)
+{
+	enum { BESIDE = 6 };  // 17 degrees to each side
+	double sum = 0;
+	for (int k = -BESIDE; k <= BESIDE; k++)
+		sum += strip->seen[(ray + k + STRIP_RAYS) % STRIP_RAYS] / (2 * BESIDE + 1);
+	return sum;
+}
+
+static double least_end(const struct strip *strip)
+{
+	double least = 1;
+	for (int j = 0; j < STRIP_RAYS / 2; j++)
+		least = fmin(least, fmax(seen_about(strip, j), seen_about(strip, j + STRIP_RAYS / 2)));
+	return least;
+}
+
 struct strip_accord strip_accord_of(const struct strip *strip, const struct ellipse *e)
 {
-	struct strip_accord a = { .worth = strip_worth(strip, e) };
+	struct strip_accord a = { .worth = strip_worth(strip, e), .end = least_end(strip) };
 	double weight = 0, square = 0, within = 0, beyond = 0;
 	for (int j = 0; j < STRIP_RAYS; j++) {
 		const double row = row_of(strip_crossing(&strip->e, j, e)), seen = strip->seen[j];

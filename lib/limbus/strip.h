@@ -58,6 +58,7 @@ struct strip_accord {
 	double off;      // the share farther than 5 % off
 	double worth;    // strip_worth
 	double scatter;  // of the likeliest places near the ellipse, semi-axes, weighted by their chances
+	double end;      // chance that the limbus is seen, of the better end of the diameter where that is least
 };
 struct strip_accord strip_accord_of(const struct strip *strip, const struct ellipse *e);
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/call.h"
 #include "base/mem.h"
@@ -16,22 +17,10 @@ struct strip_net {
 
 bool strip_open(struct strip_net **out, const char *path, struct err *err)
 {
-	*out = 0;
 	struct cv_net *net;
-	if (!cv_net_open(&net, path, err))
+	*out = 0;
+	if (!cv_net_open_as(&net, path, (const int[3]){ STRIP_PLANES, STRIP_ROWS, WIDE }, (const int[3]){ 1, STRIP_ROWS + 1, WIDE }, err))
 		return false;
-	float *in = mem_new((size_t)STRIP_PLANES * STRIP_ROWS * WIDE, sizeof *in);
-	struct cv_net_picture p = { .in = in, .height = STRIP_ROWS, .width = WIDE };
-	bool ok = cv_net_run(&p, 1, net, STRIP_PLANES, err);
-	const int *size = p.size;
-	if (ok && (size[0] != 1 || size[1] != STRIP_ROWS + 1 || size[2] != WIDE))
-		ok = err_set(err, "%d planes of %d x %d, must be 1 of %d x %d", size[0], size[2], size[1], WIDE, STRIP_ROWS + 1);
-	free(in);
-	free(p.out);
-	if (!ok) {
-		cv_net_close(net);
-		return err_wrap(err, "%s", path);
-	}
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
 	return true;
@@ -108,13 +97,16 @@ static void add(struct strip *strip, const float *logit, bool mirrored, float sh
 }
 
 bool strip_read(struct strip *out, struct strip_net *net, const struct photo *photo, const struct evidence *evidence, const struct ellipse *e,
-                bool both, const struct strip_conf *conf, struct err *err)
+                enum strip_way way, const struct strip_conf *conf, struct err *err)
 {
-	const int n = both ? 2 : 1;
+	enum { FIRST = 3, LAST = 6 };  // planes of the evidence
+	const int n = way == STRIP_ONCE ? 1 : 2;
 	float (*strip)[STRIP_ROWS][STRIP_RAYS] = mem_array(STRIP_PLANES, sizeof *strip);
 	struct cv_net_picture run[2] = { 0 };
 	*out = (struct strip){ .e = *e, .conf = *conf };
 	strip_sample(strip, photo, evidence, e);
+	if (way == STRIP_BLIND)
+		memset(strip[FIRST], 0, (LAST - FIRST + 1) * sizeof *strip);
 	even(strip);
 	for (int i = 0; i < n; i++)
 		run[i] = (struct cv_net_picture){ .in = input_of(strip, i), .height = STRIP_ROWS, .width = WIDE };

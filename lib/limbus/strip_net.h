@@ -11,9 +11,12 @@ bool strip_open(struct strip_net **net, const char *path, struct err *err);
 bool strip_open_shipped(struct strip_net **net, struct err *err);
 void strip_close(struct strip_net *net);
 
-/* Reads the strip round an ellipse. both: the mean of what the strip and its mirror image say, so that a mirrored photograph has a mirrored
- * strip. False, err set, where the network does not run. */
+/* How a strip is read: once; the mean of what the strip and its mirror image say, so that a mirrored photograph has a mirrored strip; the same without
+ * what the evidence says of its pixels. */
+enum strip_way { STRIP_ONCE, STRIP_MIRRORED, STRIP_BLIND };
+
+/* Reads the strip round an ellipse. False, err set, where the network does not run. */
 bool strip_read(struct strip *out, struct strip_net *net, const struct photo *photo, const struct evidence *evidence, const struct ellipse *e,
-                bool both, const struct strip_conf *conf, struct err *err);
+                enum strip_way way, const struct strip_conf *conf, struct err *err);
 
 #endif

@@ -63,11 +63,11 @@ static void region_prior(struct ellipse_prior *known, const struct ellipse *regi
 /* A strip read round an ellipse, and the likeliest ellipse that follows. */
 struct reading { struct strip *strip; struct ellipse e; struct ellipse_fit fit; bool seen; double worth; };
 
-static bool read_round(struct reading *r, const struct ellipse *start, bool both, const struct trial_window *w, const struct trials *t, struct err *err)
+static bool read_round(struct reading *r, const struct ellipse *start, enum strip_way way, const struct trial_window *w, const struct trials *t, struct err *err)
 {
 	struct ellipse_prior region;
 	r->e = *start;
-	if (!strip_read(r->strip, t->conf->strip, t->photo, &w->evidence, start, both, &t->conf->strip_conf, err))
+	if (!strip_read(r->strip, t->conf->strip, t->photo, &w->evidence, start, way, &t->conf->strip_conf, err))
 		return false;
 	region_prior(&region, start, w, t->conf);
 	r->seen = strip_fit(&r->e, &r->fit, r->strip, &w->map, region.sigma);
@@ -79,9 +79,9 @@ static bool read_round(struct reading *r, const struct ellipse *start, bool both
 static bool read_strip(struct trial_window *w, const struct trials *t, int n, const struct ellipse start[n], struct err *err)
 {
 	struct reading best = { .strip = mem_new(1, sizeof *best.strip) }, other = { .strip = mem_new(1, sizeof *other.strip) };
-	bool ok = read_round(&best, &start[0], n == 1, w, t, err);
+	bool ok = read_round(&best, &start[0], n == 1 ? STRIP_MIRRORED : STRIP_ONCE, w, t, err);
 	for (int i = 1; i < n && ok; i++) {
-		ok = read_round(&other, &start[i], false, w, t, err);
+		ok = read_round(&other, &start[i], STRIP_ONCE, w, t, err);
 		if (ok && other.worth > best.worth) {
 			const struct reading was = best;
 			best = other;
@@ -91,7 +91,12 @@ static bool read_strip(struct trial_window *w, const struct trials *t, int n, co
 	const int reads = t->conf->trial.reads;
 	for (int k = 1; k < reads && ok && best.seen; k++) {
 		const struct ellipse from = best.e;
-		ok = read_round(&best, &from, k + 1 == reads, w, t, err);
+		ok = read_round(&best, &from, k + 1 == reads ? STRIP_MIRRORED : STRIP_ONCE, w, t, err);
+		w->moved = ellipse_apart(&best.e, &from);
+	}
+	if (ok && best.seen) {
+		ok = read_round(&other, &best.e, STRIP_BLIND, w, t, err);
+		w->blind = other.seen ? ellipse_apart(&other.e, &best.e) : best.e.a;
 	}
 	free(other.strip);
 	w->strip = best.strip;
@@ -166,7 +171,8 @@ static bool try(struct trials *t, const struct trial *start, struct err *err)
 	*trial = *start;
 	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
 		const struct trial_window *w = trial->window;
-		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, t->photo->width, t->photo->height };
+		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, w->moved, w->blind, trial->guide == GUIDE_STRIP, trial->guide == GUIDE_WHITENESS_ALONE,
+			                        t->photo->width, t->photo->height };
 		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
 		ok = odds_of(trial->curve, trial->x, t->conf->odds, err);
 		trial->log_odds = ok ? odds_log(trial->curve, t->conf->tolerance) : 0;

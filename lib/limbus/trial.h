@@ -19,6 +19,7 @@ struct trial_window {
 	struct strip *strip;       // round its likeliest ellipse; owned; null: not read, or the limbus is not seen
 	struct grey seen;          // strip_seen
 	struct ellipse_prior told; // the likeliest ellipse of the strip
+	double moved, blind;       // how far the last reading moved it, and one without the evidence would, px
 	double x, y, radius;       // px of the photograph
 };
 

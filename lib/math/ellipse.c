@@ -154,3 +154,8 @@ double ellipse_climb(struct ellipse *e, double step, double end, double least_as
 	}
 	return best;
 }
+
+double ellipse_apart(const struct ellipse *e, const struct ellipse *f)
+{
+	return fmax(hypot(e->cx - f->cx, e->cy - f->cy), fmax(fabs(e->a - f->a), fabs(e->b - f->b)));
+}

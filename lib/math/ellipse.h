@@ -35,6 +35,9 @@ void ellipse_point(double p[2], double normal[2], const struct ellipse *e, doubl
 /* Signed distance of p, positive outside; *t: eccentric angle of the nearest point. Newton's method, to 1e-12. */
 double ellipse_distance(double *t, const struct ellipse *e, const double p[2]);
 
+/* The largest of the distance of the centres and the differences of the semi-axes. */
+double ellipse_apart(const struct ellipse *e, const struct ellipse *f);
+
 /* row = dp·n / dq: the derivative of the curve's position along its outward normal n at eccentric angle t by q. */
 void ellipse_normal_shift(double row[ELLIPSE_N], const struct ellipse *e, double t);
 

@@ -134,12 +134,10 @@ static void count_pupil(struct covers *c, const struct photo *photo, const struc
 static void measure(struct covers covers[2], struct evidence_net *net, const struct drawn *d)
 {
 	struct unrefract_conf conf = iris_unrefract_conf("draft");
-	struct photo photo = { .width = WIDE, .height = HIGH, .bits = 8, .rgb = mem_array((size_t)WIDE * HIGH * 3, sizeof *photo.rgb) };
+	struct photo photo = photo_of_bytes(d->rgb, WIDE, HIGH);
 	struct fit fit = fit_of(&d->eye[0]);
 	struct evidence evidence;
 	struct err err = { 0 };
-	for (long i = 0; i < 3L * WIDE * HIGH; i++)
-		photo.rgb[i] = (uint16_t)(257 * d->rgb[i]);
 	if (evidence_window(&evidence, net, &photo, fit.limbus.cx, fit.limbus.cy, fit.limbus.a, &err)) {
 		const struct balance_conf conf_white = iris_balance_conf();
 		for (int k = 0; k < 2; k++) {

@@ -61,14 +61,6 @@ static void classes_of(uint8_t *out, const struct evidence *e, int classes)
 	}
 }
 
-static struct photo photo_of(const struct drawn *d)
-{
-	struct photo photo = { .width = d->width, .height = d->height, .bits = 8, .rgb = mem_array((size_t)d->width * (size_t)d->height * 3, sizeof(uint16_t)) };
-	for (long i = 0; i < 3L * d->width * d->height; i++)
-		photo.rgb[i] = (uint16_t)(257 * d->rgb[i]);
-	return photo;
-}
-
 /* The class most common in each 2 x 2 px, and the mean colour. */
 static void halve(uint8_t *label, float *rgb, const struct drawn *d)
 {
@@ -149,7 +141,7 @@ static void one(struct sums *s, struct evidence_net *net, uint64_t number)
 	static uint8_t truth[N], got[METHODS][N];
 	static float rgb[3 * N];
 	struct drawn d = drawn_make(number, true, WIDTH, HEIGHT);
-	struct photo photo = photo_of(&d);
+	struct photo photo = photo_of_bytes(d.rgb, d.width, d.height);
 	struct evidence e;
 	struct err err = { 0 };
 	halve(truth, rgb, &d);

@@ -73,14 +73,12 @@ static void write_strip(const struct drawn *d, const struct photo *photo, const 
 static void strips_of(const struct drawn *d, struct ellipse about, uint64_t number, struct evidence_net *net)
 {
 	struct rng rng = { number * 31 + 7 };
-	struct photo photo = { .width = d->width, .height = d->height, .bits = 8, .rgb = mem_array((size_t)d->width * (size_t)d->height * 3, sizeof *photo.rgb) };
+	struct photo photo = photo_of_bytes(d->rgb, d->width, d->height);
 	const double x = about.cx, y = about.cy, radius = about.a;
 	struct ellipse limbus[2], e;
 	struct evidence evidence;
 	struct err err = { 0 };
 	int n = 0;
-	for (long i = 0; i < 3L * d->width * d->height; i++)
-		photo.rgb[i] = (uint16_t)(d->rgb[i] * 257);
 	for (int k = 0; k < d->n_eyes; k++)
 		if (d->eye[k].shown > 0.02F)
 			limbus[n++] = (struct ellipse){ d->eye[k].limbus[0], d->eye[k].limbus[1], d->eye[k].limbus[2], d->eye[k].limbus[3], d->eye[k].limbus[4] };
@@ -105,7 +103,7 @@ static void strips_of(const struct drawn *d, struct ellipse about, uint64_t numb
 	}
 	region_map_free(&map);
 	evidence_free(&evidence);
-	free(photo.rgb);
+	photo_free(&photo);
 }
 
 static void lesson(uint64_t number, struct evidence_net *net)

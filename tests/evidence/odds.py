@@ -5,7 +5,7 @@
     odds.py TRAITS.csv [...]                             how they do on pictures held out, alone
     odds.py --start config/odds.onnx --out ... TRAITS.csv [...]    goes on from a network: first its own figures on them, which it has not seen
 
-Input: 1 x 30 x 1 x 1, the traits. Output: 1 x 9 x 1 x 1: the logarithm of the odds that centre and semi-axes are all off by less than
+Input: 1 x 36 x 1 x 1, the traits. Output: 1 x 9 x 1 x 1: the logarithm of the odds that centre and semi-axes are all off by less than
 TOLERANCES[0] of the semi-axis, then the logarithms (softplus) of what each further tolerance adds to them. Cross entropy of all tolerances
 together (synthetic eyes and captures, which are few, count RARE times, heads HEADS times), weight decay, Adam; four folds by picture for the figures. Needs
 python3-torch and python3-numpy.
@@ -24,7 +24,7 @@ import weights
 
 UNITS, NETS, RARE, HEADS, DECAY, EPOCHS, BATCH, RATE, AGAIN, FOLDS = 24, 4, 6, 4, 8.0, 30, 512, 0.01, 0.002, 4
 TOLERANCES = (0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1)
-TRAITS, FAR = 30, 4.0   # spreads: farther off than that is as far
+TRAITS, FAR = 36, 4.0   # spreads: farther off than that is as far
 
 
 def read(paths):

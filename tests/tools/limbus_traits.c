@@ -29,7 +29,7 @@ static const double NO_EYE = 9;
 
 static double apart(const struct ellipse *e, const struct ellipse *truth)
 {
-	return fmax(hypot(e->cx - truth->cx, e->cy - truth->cy), fmax(fabs(e->a - truth->a), fabs(e->b - truth->b))) / truth->a;
+	return ellipse_apart(e, truth) / truth->a;
 }
 
 /* Which of the places of a limbus a photograph shows. */
@@ -103,14 +103,6 @@ static struct seen seen_of(const struct drawn *d, const float l[5])
 	return s;
 }
 
-static struct photo photo_of(const struct drawn *d)
-{
-	struct photo photo = { .width = d->width, .height = d->height, .bits = 8, .rgb = mem_array((size_t)d->width * (size_t)d->height * 3, sizeof *photo.rgb) };
-	for (long i = 0; i < 3L * d->width * d->height; i++)
-		photo.rgb[i] = (uint16_t)(d->rgb[i] * 257);
-	return photo;
-}
-
 /* The eyes of which something shows; returns how many. */
 static int eyes_of(struct seen truth[2], const struct drawn *d)
 {
@@ -160,13 +152,13 @@ static void strip(FILE *csv, long number)
 {
 	struct drawn_view view;
 	struct drawn d = drawn_lesson((uint64_t)number, 260, &view);
-	struct photo photo = photo_of(&d);
+	struct photo photo = photo_of_bytes(d.rgb, d.width, d.height);
 	struct seen truth[2];
 	const int n = view.other ? 0 : eyes_of(truth, &d);
 	for (int k = 0; k < n; k++)
 		if (share_of(&truth[k]) > 0.25 && hypot(truth[k].limbus.cx - view.x, truth[k].limbus.cy - view.y) < view.radius)
 			read_one(csv, number, &photo, &truth[k], view.rough);
-	free(photo.rgb);
+	photo_free(&photo);
 	drawn_free(&d);
 }
 
@@ -174,11 +166,11 @@ static void drawn(FILE *csv, long number)
 {
 	struct drawn_view view;
 	struct drawn d = drawn_lesson((uint64_t)number, 260, &view);
-	struct photo photo = photo_of(&d);
+	struct photo photo = photo_of_bytes(d.rgb, d.width, d.height);
 	struct seen truth[2];
 	const int n = eyes_of(truth, &d);
 	note(csv, view.other ? "other" : "drawn", number, &photo, n, truth);
-	free(photo.rgb);
+	photo_free(&photo);
 	drawn_free(&d);
 }
 
@@ -189,10 +181,10 @@ static bool heads(FILE *csv, long first, long count, const char *path)
 	for (long i = 0; file && i < first + count && kept_next(&d, file); i++) {
 		struct seen truth[2];
 		if (i >= first) {
-			struct photo photo = photo_of(&d);
+			struct photo photo = photo_of_bytes(d.rgb, d.width, d.height);
 			const int n = eyes_of(truth, &d);
 			note(csv, "heads", i, &photo, n, truth);
-			free(photo.rgb);
+			photo_free(&photo);
 		}
 		drawn_free(&d);
 	}

@@ -238,6 +238,15 @@ struct image photo_linear(const struct photo *photo, int x0, int y0, int width, 
 	return out;
 }
 
+struct photo photo_of_bytes(const uint8_t *rgb, int width, int height)
+{
+	const size_t values = 3 * (size_t)width * (size_t)height;
+	struct photo photo = { .width = width, .height = height, .bits = 8, .rgb = mem_array(values + 1, sizeof *photo.rgb) };
+	for (size_t i = 0; i < values; i++)
+		photo.rgb[i] = (uint16_t)(257 * rgb[i]);
+	return photo;
+}
+
 void photo_free(struct photo *photo)
 {
 	free(photo->rgb);

@@ -54,6 +54,9 @@ struct image photo_linear(const struct photo *photo, int x0, int y0, int width, 
  * that it covers. What photo_linear would hold, 12 bytes a pixel, is never there. image_free. */
 struct image photo_shrunk(const struct photo *photo, int x0, int y0, int width, int height, int out_width, int out_height);
 
+/* A picture of bytes [height][3 width] as a photograph in sRGB. photo_free. */
+struct photo photo_of_bytes(const uint8_t *rgb, int width, int height);
+
 void photo_free(struct photo *photo);
 
 #endif

@@ -32,19 +32,9 @@ static double open_of(struct evidence_net *net, const struct photo *photo, const
 	return sum;
 }
 
-static struct photo photo_of(const uint8_t *rgb, int width, int height)
-{
-	struct photo photo = { .width = width, .height = height, .bits = 8 };
-	size_t values = 3 * (size_t)width * (size_t)height;
-	photo.rgb = mem_array(values + 1, sizeof *photo.rgb);
-	for (size_t i = 0; i < values; i++)
-		photo.rgb[i] = (uint16_t)(257 * rgb[i]);
-	return photo;
-}
-
 bool head_propose_other(double other[2][2], const double known[2][2], double radius, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
 {
-	struct photo photo = photo_of(rgb, width, height);
+	struct photo photo = photo_of_bytes(rgb, width, height);
 	struct evidence_region region[EVIDENCE_REGIONS];
 	int n = 0, beside[EVIDENCE_REGIONS], m = 0;
 	bool ok = evidence_find(region, &n, net, &photo, err), found = false;
@@ -69,7 +59,7 @@ bool head_propose_other(double other[2][2], const double known[2][2], double rad
 
 bool head_propose(struct head_eyes *eyes, struct evidence_net *net, const uint8_t *rgb, int width, int height, struct err *err)
 {
-	struct photo photo = photo_of(rgb, width, height);
+	struct photo photo = photo_of_bytes(rgb, width, height);
 	struct evidence_region region[EVIDENCE_REGIONS];
 	const struct evidence_region *left = 0, *right = 0;
 	double best = 0;

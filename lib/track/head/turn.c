@@ -26,14 +26,10 @@ static bool run(double out[2][2 * TURNS], const float *in, struct cv_net *net, s
 	for (int i = 0; i < 3 * SIZE * SIZE; i++)
 		mirrored[i] = in[i / SIZE * SIZE + SIZE - 1 - i % SIZE];
 	struct cv_net_picture p[2] = { { .in = in, .height = SIZE, .width = SIZE }, { .in = mirrored, .height = SIZE, .width = SIZE } };
-	bool ok = cv_net_run(p, 2, net, 3, err);
-	for (int m = 0; m < 2 && ok; m++) {
-		const int *size = p[m].size;
-		if (size[0] != 2 * TURNS || size[1] != 1 || size[2] != 1)
-			ok = err_set(err, "%d planes of %d x %d, must be %d of 1 x 1", size[0], size[2], size[1], 2 * TURNS);
-		for (int k = 0; k < 2 * TURNS && ok; k++)
+	const bool ok = cv_net_run(p, 2, net, 3, err);
+	for (int m = 0; m < 2 && ok; m++)
+		for (int k = 0; k < 2 * TURNS; k++)
 			out[m][k] = (m && k == TURN_ASIDE ? -1 : 1) * (double)p[m].out[k];
-	}
 	free(p[0].out);
 	free(p[1].out);
 	free(mirrored);
@@ -42,17 +38,9 @@ static bool run(double out[2][2 * TURNS], const float *in, struct cv_net *net, s
 
 bool turn_open(struct turn_net **out, const char *path, struct err *err)
 {
-	double told[2][2 * TURNS];
-	float *in = mem_new((size_t)3 * SIZE * SIZE, sizeof *in);
 	struct cv_net *net;
 	*out = 0;
-	bool ok = cv_net_open(&net, path, err);
-	if (ok && !run(told, in, net, err)) {
-		cv_net_close(net);
-		ok = err_wrap(err, "%s", path);
-	}
-	free(in);
-	if (!ok)
+	if (!cv_net_open_as(&net, path, (const int[3]){ 3, SIZE, SIZE }, (const int[3]){ 2 * TURNS, 1, 1 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;

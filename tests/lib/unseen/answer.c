@@ -117,7 +117,7 @@ int answer_face(struct answer out[2], const struct photo *photo, double aspect, 
 
 double answer_error(const struct ellipse *got, const struct ellipse *truth)
 {
-	return fmax(hypot(got->cx - truth->cx, got->cy - truth->cy), fmax(fabs(got->a - truth->a), fabs(got->b - truth->b)));
+	return ellipse_apart(got, truth);
 }
 
 const struct unseen_eye *answer_meant(const struct ellipse *got, const struct unseen *u)

@@ -7,11 +7,9 @@
 
 struct photo unseen_photo(const uint8_t *rgb, int width, int height)
 {
-	struct photo photo = { .width = width, .height = height, .bits = 8, .kind = PHOTO_JPEG,
-		.exif = { .orientation = 1, .focal_px = NAN, .focal_mm = NAN, .focal_35mm = NAN },
-		.rgb = mem_array((size_t)width * (size_t)height * 3, sizeof(uint16_t)) };
-	for (long i = 0; i < 3L * width * height; i++)
-		photo.rgb[i] = (uint16_t)(257 * rgb[i]);
+	struct photo photo = photo_of_bytes(rgb, width, height);
+	photo.kind = PHOTO_JPEG;
+	photo.exif = (struct photo_exif){ .orientation = 1, .focal_px = NAN, .focal_mm = NAN, .focal_35mm = NAN };
 	return photo;
 }
 

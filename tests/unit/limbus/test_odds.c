@@ -41,7 +41,8 @@ static void the_network_that_is_shipped(void **state)
 		[ODDS_SCLERA_OUTSIDE] = 0.95, [ODDS_IRIS_INSIDE] = 0.95, [ODDS_SCLERA_INSIDE] = 0.02, [ODDS_IRIS_OUTSIDE] = 0.02, [ODDS_EYE] = 0.95, [ODDS_AROUND] = 0.7,
 		[ODDS_BEHIND] = 0.1, [ODDS_OFF] = 0.01, [ODDS_PUPIL] = 1, [ODDS_ROUND] = -0.02, [ODDS_IRIS_EVEN] = -3, [ODDS_SCLERA_EVEN] = -2.6,
 		[ODDS_STRIP_SEEN] = 0.8, [ODDS_STRIP_ON] = 0.98, [ODDS_STRIP_WORTH] = 50, [ODDS_STRIP_BEHIND] = 0.1, [ODDS_STRIP_SCATTER] = -5.5,
-		[ODDS_STRIP_APART] = -5.5, [ODDS_STRIP_SIGMA] = -5.1 };
+		[ODDS_STRIP_APART] = -5.5, [ODDS_STRIP_SIGMA] = -5.1, [ODDS_STRIP_MOVED] = -5.5, [ODDS_STRIP_BLIND] = -5, [ODDS_STRIP_END] = 0.8,
+		[ODDS_SIZE] = 4.6, [ODDS_BY_STRIP] = 1 };
 	double curve[ODDS_CURVE], worse[ODDS_CURVE], doubtful[ODDS_TRAITS];
 	assert_true(odds_open(&net, "config/odds.onnx", &err));
 	assert_true(odds_of(curve, clear, net, &err));
