@@ -140,9 +140,8 @@ bool run_one(cv_net_picture *p, cv::dnn::Net *net, const std::vector<char> &data
 	}
 }
 
-}  // namespace
-
-bool cv_net_open(struct cv_net **net, const char *path, struct err *err)
+/* Reads a file, gzip or not, and loads the network in it. */
+bool open_file(cv_net **net, const char *path, err *err)
 {
 	*net = nullptr;
 	char *data = nullptr;
@@ -155,14 +154,16 @@ bool cv_net_open(struct cv_net **net, const char *path, struct err *err)
 	return ok;
 }
 
+}  // namespace
+
 void cv_net_close(struct cv_net *net)
 {
 	delete net;
 }
 
-bool cv_net_open_as(struct cv_net **net, const char *path, const int takes[3], const int gives[3], struct err *err)
+bool cv_net_open(struct cv_net **net, const char *path, const int takes[3], const int gives[3], struct err *err)
 {
-	if (!cv_net_open(net, path, err))
+	if (!open_file(net, path, err))
 		return false;
 	const std::vector<float> zeros(static_cast<size_t>(takes[0]) * static_cast<size_t>(takes[1]) * static_cast<size_t>(takes[2]));
 	struct cv_net_picture p = {};

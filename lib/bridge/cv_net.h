@@ -11,13 +11,10 @@ extern "C" {
 
 struct cv_net;
 
-/* Loads the network. False, err set (one line with the path), when the file is missing, damaged, without a seal or of
- * operations that OpenCV cannot run. cv_net_close, which accepts null. */
-bool cv_net_open(struct cv_net **net, const char *path, struct err *err);
+/* Loads a network that must make, of takes[3] (channels, height, width), gives[3] (planes, height, width): it is tried on zeros. False, err set (one line with the
+ * path), when the file is missing, damaged, without a seal, of operations that OpenCV cannot run, or of another shape. cv_net_close, which accepts null. */
+bool cv_net_open(struct cv_net **net, const char *path, const int takes[3], const int gives[3], struct err *err);
 void cv_net_close(struct cv_net *net);
-
-/* The same of a network that must make, of takes[3] (channels, height, width), gives[3] (planes, height, width): it is tried on zeros. */
-bool cv_net_open_as(struct cv_net **net, const char *path, const int takes[3], const int gives[3], struct err *err);
 
 struct cv_net_picture {
 	const float *in;      // [channels][height][width]; any size that the network takes

@@ -21,7 +21,7 @@ bool evidence_open(struct evidence_net **out, const char *path, struct err *err)
 {
 	struct cv_net *net;
 	*out = 0;
-	if (!cv_net_open_as(&net, path, (const int[3]){ 3, STEP, STEP }, (const int[3]){ EVIDENCE_CLASSES, STEP / 2, STEP / 2 }, err))
+	if (!cv_net_open(&net, path, (const int[3]){ 3, STEP, STEP }, (const int[3]){ EVIDENCE_CLASSES, STEP / 2, STEP / 2 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;

@@ -17,7 +17,7 @@ bool odds_open(struct odds_net **out, const char *path, struct err *err)
 {
 	struct cv_net *net;
 	*out = 0;
-	if (!cv_net_open_as(&net, path, (const int[3]){ ODDS_TRAITS, 1, 1 }, (const int[3]){ ODDS_CURVE, 1, 1 }, err))
+	if (!cv_net_open(&net, path, (const int[3]){ ODDS_TRAITS, 1, 1 }, (const int[3]){ ODDS_CURVE, 1, 1 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;

@@ -19,7 +19,7 @@ bool strip_open(struct strip_net **out, const char *path, struct err *err)
 {
 	struct cv_net *net;
 	*out = 0;
-	if (!cv_net_open_as(&net, path, (const int[3]){ STRIP_PLANES, STRIP_ROWS, WIDE }, (const int[3]){ 1, STRIP_ROWS + 1, WIDE }, err))
+	if (!cv_net_open(&net, path, (const int[3]){ STRIP_PLANES, STRIP_ROWS, WIDE }, (const int[3]){ 1, STRIP_ROWS + 1, WIDE }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;

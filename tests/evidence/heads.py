@@ -6,7 +6,7 @@
 
 FOLDER: the generator of face clips (ICT-FaceKit's head, a rasteriser, gaze and lids that follow it) and the meshes that it reads; neither is
 part of this repository. Each number is a person: identity, skin, iris, lashes. Of each some poses, and of each pose windows round both eyes and
-elsewhere on the face. What the generator lacks is added: irises of any colour, lids made up, the shadow of lids on the globe, windows and
+elsewhere on the face. What the generator lacks is added: irises of any colour, soft limbi, lids made up, the shadow of lids on the globe, windows and
 lamps in the cornea, light from all sides, exposure, white balance, blur, grain, JPEG. LESSONS is what train.py --lessons reads: pictures of
 192 x 160, RGB and then labels, one after the other. PHOTOGRAPHS, with the limbi's ellipses, are for what learns of the limbus
 (kept.h tells the format). A person follows from its number. Needs python3-numpy, -scipy, -opencv and gcc.
@@ -46,6 +46,16 @@ def limbus_angle():
 
 
 LIMBUS = limbus_angle()
+SOFT, SOFTEST = 7700000, (.01, .07)  # of a person's limbus: what its random numbers start from; standard deviation of its blur, radii of the limbus
+
+
+def soften(picture, ball, away, sigma):
+    """The picture with its limbus as people have it, less sharp than the shader's: blurred near it by sigma px, lids and lashes left out. What is blurred alike to both
+    sides has its middle where it was. away: from the limbus, radii of it."""
+    mask = ball.astype(F32)
+    mean = cv2.GaussianBlur(picture * mask[..., None], (0, 0), sigma) / np.maximum(cv2.GaussianBlur(mask, (0, 0), sigma), 1e-3)[..., None]
+    share = mask * np.clip((.3 - away) / .1, 0, 1)
+    return picture + share[..., None] * (mean - picture)
 
 
 def brows_of(skin, build, *args):
@@ -175,6 +185,8 @@ class Person:
         texture = cv2.imread(args.data + "/eyeballs/%s.png" % ("eyeball_green", "eyeball_brown")[rng.integers(2)])[..., :3][..., ::-1]
         self.eye = iris_texture(texture, rng)
         self.lash = np.array([.018, .013, .010]) * np.exp(rng.normal(.2, .6))
+        other = np.random.default_rng(number + SOFT)
+        self.soft = other.uniform(*SOFTEST) if other.random() < .6 else 0
 
     def pose(self):
         """Another head pose, gaze, opening and light."""
@@ -269,7 +281,7 @@ class Person:
         hard = scene.C(g["T"][g["mat"] != 4], np.int32)
         material = g["mat"][g["mat"] != 4]
         z, t, b = self.seen((w, h), (f, cx, cy), hard, g["V"])
-        label = np.full((h, w), SKIN, np.uint8)
+        label, away = np.full((h, w), SKIN, np.uint8), np.full((h, w), np.inf, F32)
         yy, xx = np.nonzero((t >= 0))
         tri, bary = hard[t[yy, xx]], b[yy, xx]
         weight = np.c_[1 - bary.sum(1), bary]
@@ -298,9 +310,13 @@ class Person:
             reach = (parameters[1] - q[:, 2]) / np.minimum(ray[:, 2], -.05)
             inner = np.hypot(q[:, 0] + reach * ray[:, 0], q[:, 1] + reach * ray[:, 1]) / parameters[2] < self.pupil
             label[yy[on], xx[on]] = np.where(theta / rig.THL > LIMBUS, SCLERA, np.where(inner, PUPIL, IRIS))
+            away[yy[on], xx[on]] = np.abs(theta / rig.THL - LIMBUS)
         ball = np.isin(label, (SCLERA, IRIS, PUPIL))
         mirrored = (picture - bare).max(-1)
         label[ball & (mirrored > .06) & (mirrored > .35 * bare.max(-1))] = REFLECTION
+        if self.soft > 0 and ball.any():
+            radius = f * float(rig.rho_eye(np.array([rig.THL]))[0]) * self.S.rig.es * np.sin(rig.THL) / self.eyes.reshape(2, 12)[:, 2].mean()
+            picture += soften(bare, ball & (lashes < .05), away, self.soft * radius) - bare
         label[lashes >= .5] = LASH
         return picture, label
 

@@ -40,7 +40,7 @@ bool turn_open(struct turn_net **out, const char *path, struct err *err)
 {
 	struct cv_net *net;
 	*out = 0;
-	if (!cv_net_open_as(&net, path, (const int[3]){ 3, SIZE, SIZE }, (const int[3]){ 2 * TURNS, 1, 1 }, err))
+	if (!cv_net_open(&net, path, (const int[3]){ 3, SIZE, SIZE }, (const int[3]){ 2 * TURNS, 1, 1 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
