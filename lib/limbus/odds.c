@@ -80,6 +80,12 @@ double odds_sigma(const struct rim *rim)
 	return worst / rim->e.a;
 }
 
+/* Logarithm of a distance in semi-axes, at most half of one. */
+static double log_share(double distance)
+{
+	return log(fmin(distance, 0.5) + FLOOR);
+}
+
 /* What the strip says of the ellipse. */
 static void of_strip(double x[ODDS_TRAITS], const struct ellipse *e, const struct odds_view *view)
 {
@@ -99,10 +105,10 @@ static void of_strip(double x[ODDS_TRAITS], const struct ellipse *e, const struc
 	x[ODDS_STRIP_WORTH] = a.worth;
 	x[ODDS_STRIP_BEHIND] = any ? fmin(fmax(strip_worth(view->strip, &told) - a.worth, 0), 20) : 20;
 	x[ODDS_STRIP_SCATTER] = log(a.scatter + FLOOR);
-	x[ODDS_STRIP_APART] = any ? log(fmin(off / e->a, 0.5) + FLOOR) : log(0.5);
-	x[ODDS_STRIP_SIGMA] = any ? log(fmin(sigma / e->a, 0.5) + FLOOR) : log(0.5);
-	x[ODDS_STRIP_MOVED] = any ? log(fmin(view->moved / e->a, 0.5) + FLOOR) : log(0.5);
-	x[ODDS_STRIP_BLIND] = any ? log(fmin(view->blind / e->a, 0.5) + FLOOR) : log(0.5);
+	x[ODDS_STRIP_APART] = any ? log_share(off / e->a) : log(0.5);
+	x[ODDS_STRIP_SIGMA] = any ? log_share(sigma / e->a) : log(0.5);
+	x[ODDS_STRIP_MOVED] = any ? log_share(view->moved / e->a) : log(0.5);
+	x[ODDS_STRIP_BLIND] = any ? log_share(view->blind / e->a) : log(0.5);
 	x[ODDS_STRIP_END] = a.end;
 }
 

@@ -45,7 +45,7 @@ static bool is_right(const struct answer *a, const struct unseen *u, const struc
 {
 	for (int k = 0; k < u->n; k++) {
 		const struct ellipse meant = altered_ellipse(&u->eye[k].limbus, &u->photo, how, &u->eye[0].limbus);
-		if (answer_error(&a->e, &meant) <= answer_right() * meant.a)
+		if (ellipse_apart(&a->e, &meant) <= answer_right() * meant.a)
 			return true;
 	}
 	return false;
@@ -68,7 +68,7 @@ static void one(void *ctx, int eye)
 		p->wrong = again.ok && !p->right;
 		if (first.ok && again.ok) {
 			const struct ellipse meant = altered_ellipse(&first.e, &u.photo, &how, &u.eye[0].limbus);
-			p->verdict = answer_error(&again.e, &meant) <= same * meant.a ? SAME_ELLIPSE : OTHER_ELLIPSE;
+			p->verdict = ellipse_apart(&again.e, &meant) <= same * meant.a ? SAME_ELLIPSE : OTHER_ELLIPSE;
 		}
 		photo_free(&photo);
 	}

@@ -38,7 +38,7 @@ static struct seen seen_of(const struct answer *a, const struct unseen *u, int s
 	if (!a->ok)
 		return s;
 	s.swapped = answer_meant(&a->e, u) != eye;
-	s.error = answer_error(&a->e, &eye->limbus);
+	s.error = ellipse_apart(&a->e, &eye->limbus);
 	s.right = s.error <= answer_right() * eye->limbus.a;
 	s.ratio = u->leans ? NAN : fabs(a->theta - eye->theta) / a->theta_sigma;
 	s.pupil = a->has_pupil;

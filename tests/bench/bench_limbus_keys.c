@@ -92,7 +92,7 @@ static void one(void *ctx, int i)
 	answer_ours(&got, &u.photo, u.aspect);
 	*key->at = key->was;
 	const struct unseen_eye *meant = got.ok ? answer_meant(&got.e, &u) : 0;
-	s->result[i] = (struct result){ got.ok, got.ok ? answer_error(&got.e, &meant->limbus) / meant->limbus.a : NAN };
+	s->result[i] = (struct result){ got.ok, got.ok ? ellipse_apart(&got.e, &meant->limbus) / meant->limbus.a : NAN };
 	unseen_free(&u);
 }
 

@@ -115,16 +115,11 @@ int answer_face(struct answer out[2], const struct photo *photo, double aspect, 
 	return n;
 }
 
-double answer_error(const struct ellipse *got, const struct ellipse *truth)
-{
-	return ellipse_apart(got, truth);
-}
-
 const struct unseen_eye *answer_meant(const struct ellipse *got, const struct unseen *u)
 {
 	int best = 0;
 	for (int i = 1; i < u->n; i++)
-		if (answer_error(got, &u->eye[i].limbus) / u->eye[i].limbus.a < answer_error(got, &u->eye[best].limbus) / u->eye[best].limbus.a)
+		if (ellipse_apart(got, &u->eye[i].limbus) / u->eye[i].limbus.a < ellipse_apart(got, &u->eye[best].limbus) / u->eye[best].limbus.a)
 			best = i;
 	return &u->eye[best];
 }

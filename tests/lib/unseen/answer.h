@@ -28,10 +28,7 @@ int answer_face(struct answer out[2], const struct photo *photo, double aspect, 
 /* The limbus.tolerance that a refusal says would take the eye; 0: it names none, or the eye is taken. */
 double answer_named(const struct answer *a);
 
-/* The largest of the distance of the centres and the differences of the semi-axes, px. */
-double answer_error(const struct ellipse *got, const struct ellipse *truth);
-
-/* The eye of the photograph that an ellipse is nearest to, by answer_error over a. */
+/* The eye of the photograph that an ellipse is nearest to, by ellipse_apart over a. */
 const struct unseen_eye *answer_meant(const struct ellipse *got, const struct unseen *u);
 
 /* How far a right answer may be off, of a: as far as the program allows. */

@@ -58,11 +58,11 @@ struct verdict verdict_of(const struct answer *a, const struct unseen *u)
 		return v;
 	const struct unseen_eye *eye = answer_meant(&a->e, u);
 	const struct ellipse *t = &eye->limbus;
-	v.error = answer_error(&a->e, t);
+	v.error = ellipse_apart(&a->e, t);
 	v.share = v.error / t->a;
 	v.right = v.share <= answer_right();
 	v.has_pupil = a->has_pupil && eye->pupil.a > 0;  // of heads none is known
-	v.pupil_wrong = v.has_pupil && answer_error(&a->pupil, &eye->pupil) > 0.1 * t->a;
+	v.pupil_wrong = v.has_pupil && ellipse_apart(&a->pupil, &eye->pupil) > 0.1 * t->a;
 	const double off[4] = { a->e.cx - t->cx, a->e.cy - t->cy, a->e.a - t->a, a->e.b - t->b };
 	for (int k = 0; k < 4; k++)
 		v.ratio[k] = a->sigma[k] > 0 ? fabs(off[k]) / a->sigma[k] : NAN;

@@ -6,7 +6,7 @@
 struct verdict {
 	bool ran, ok, right;
 	bool has_pupil, pupil_wrong;  // wrong: off by more than a tenth of the limbus's a
-	double error, share;   // answer_error px, and over the true a
+	double error, share;   // ellipse_apart px, and over the true a
 	double ratio[4];       // error over sigma of cx, cy, a, b; NAN: the method states no sigma
 	double tilt, tilt_ratio, weak;  // degrees off the true theta; over its sigma; the same of arccos(b / a)
 	double seconds;

@@ -130,7 +130,7 @@ static void a_tolerance_that_is_named_is_taken(void **state)
 			assert_true(answer_conf()->tolerance > kept);
 			answer_ours(&a, &u.photo, u.aspect);
 			assert_true(a.ok);
-			assert_true(answer_error(&a.e, &answer_meant(&a.e, &u)->limbus) < answer_conf()->tolerance * a.e.a);
+			assert_true(ellipse_apart(&a.e, &answer_meant(&a.e, &u)->limbus) < answer_conf()->tolerance * a.e.a);
 			answer_conf()->tolerance = kept;
 		}
 		unseen_free(&u);
@@ -146,8 +146,8 @@ static void a_verdict_knows_right_from_wrong(void **state)
 	u.eye[1].limbus = (struct ellipse){ 300, 100, 50, 48, 0 };
 	const struct ellipse got = { 300.5, 100, 50.2, 48, 1 };
 	assert_ptr_equal(answer_meant(&got, &u), &u.eye[1]);
-	NEAR(answer_error(&got, &u.eye[1].limbus), 0.5, 1e-12);
-	NEAR(answer_error(&got, &(struct ellipse){ 300.5, 100, 49, 48, 0 }), 1.2, 1e-12);
+	NEAR(ellipse_apart(&got, &u.eye[1].limbus), 0.5, 1e-12);
+	NEAR(ellipse_apart(&got, &(struct ellipse){ 300.5, 100, 49, 48, 0 }), 1.2, 1e-12);
 }
 
 int main(void)
