@@ -35,7 +35,7 @@ struct trial_conf {
 	double least_region;           // size of the evidence's ellipse, of the radius looked for, below which it is none
 	double start_alike;            // of the radius and the logarithms of the sizes' ratios: a start that is that near one that was tried is left out
 	double other_scale[2];         // of the first region's radius: other sizes that are looked for
-	double prior_arcs;             // so many arcs of a rim count as one against what is known of its ellipse
+	double prior_arcs, strip_arcs; // so many arcs of a rim count as one against what the evidence, or a strip, tells of its ellipse
 };
 
 /* When two ellipses say the same (posterior.h). */

@@ -44,14 +44,14 @@ enum odds_trait {
 	ODDS_STRIP_BLIND,     // the same where the evidence of the pixels was kept from it: by the picture alone
 	ODDS_STRIP_END,       // chance that the limbus is seen at the end of the diameter where it is seen least, the better of both ends
 	ODDS_SIZE,            // log of the semi-axis, px
-	ODDS_BY_STRIP,        // 1 where the strip's ellipse was the edge's prior, so that they do not agree by themselves
+	ODDS_BY_STRIP,        // 1 where the strip's ellipse was the edge's prior, 2 one that soft edges hardly move: they do not agree by themselves
 	ODDS_BY_VOTES,        // 1 where it came of edges' votes
 	ODDS_TRAITS
 };
 
 /* What an ellipse is looked at with: evidence of the window round it, the map of that, and the strip with its own likeliest ellipse and
  * how far its last reading moved that, and where a reading without the evidence has it, px. */
-struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; double moved, blind; bool by_strip, by_votes; int width, height; };
+struct odds_view { const struct evidence *evidence; const struct region_map *map; const struct strip *strip; const struct ellipse_prior *told; double moved, blind; int by_strip; bool by_votes; int width, height; };
 
 #define LIMBUS_RIGHT 0.02  // semi-axes: centre or a semi-axis farther off is a gross error, if not said otherwise
 

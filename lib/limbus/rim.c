@@ -56,7 +56,7 @@ static int choose_arcs(bool use[ARCS], const struct step step[ARCS], const struc
 	return n;
 }
 
-static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS], const struct rim_conf *conf)
+static bool refit(struct rim *rim, struct ellipse_fit *fit, const struct ring *ring, bool use[ARCS], const struct rim_conf *conf)
 {
 	double p[ARCS][2], weight[ARCS], tukey[ARCS];
 	int at[ARCS], n = 0;
@@ -74,22 +74,20 @@ static bool refit(struct rim *rim, const struct ring *ring, bool use[ARCS], cons
 		weight[n] = 4 / (trust * trust);
 		at[n++] = i;
 	}
-	struct ellipse_fit fit;
 	struct ellipse e = ring->e;
-	bool ok = conf->known ? ellipse_fit_near(&e, &fit, n, p, weight, tukey, LEAST_NOISE, conf->known)
-	                      : n >= MIN_ARCS && ellipse_fit_robust(&e, &fit, n, p, weight, tukey, 0, true);
+	bool ok = conf->known ? ellipse_fit_near(&e, fit, n, p, weight, tukey, LEAST_NOISE, conf->known)
+	                      : n >= MIN_ARCS && ellipse_fit_robust(&e, fit, n, p, weight, tukey, 0, true);
 	if (!ok || e.b < 0.5 * e.a)
 		return false;
 	for (int i = 0; i < n; i++)
 		use[at[i]] = tukey[i] > 0.2;
 	rim->e = e;
-	memcpy(rim->cov_q, fit.cov_q, sizeof rim->cov_q);
 	return true;
 }
 
 /* Arcs that err together: 1 + 2 sum of the residuals' autocorrelation along the ring, up to its first zero
- * (the variance of a mean grows by that factor). Scales cov_q. */
-static void correlate(struct rim *rim, double irregularity, double straying)
+ * (the variance of a mean grows by that factor). The covariance follows. */
+static void correlate(struct rim *rim, const struct ellipse_fit *fit, double irregularity, double straying)
 {
 	double d[ARCS], sum[MAX_LAG] = { 0 }, ss = 0;
 	int count[MAX_LAG] = { 0 }, n = 0;
@@ -106,16 +104,16 @@ static void correlate(struct rim *rim, double irregularity, double straying)
 				count[k]++;
 			}
 	rim->correlation = 1;
+	memcpy(rim->cov_q, fit->known_q, sizeof rim->cov_q);
 	if (!n)
 		return;
 	rim->rms = sqrt(ss / n);
 	rim->share_used = (double)n / ARCS;
-	rim->correlation = 1;
 	for (int k = 1; k < MAX_LAG && count[k] > 0 && sum[k] > 0; k++)
 		rim->correlation += 2 * (sum[k] / count[k]) / (sum[0] / count[0]);
 	for (int a = 0; a < ELLIPSE_N; a++)
 		for (int b = 0; b < ELLIPSE_N; b++)
-			rim->cov_q[a][b] *= rim->correlation * n / (n - ELLIPSE_N);
+			rim->cov_q[a][b] += rim->correlation * n / fmax(n - ELLIPSE_N, 1) * fit->cov_q[a][b];
 	/* What strays smoothly along the ring strays more slowly, too, as no residual of an ellipse shows: about as far, were it 1 / f noise. */
 	double smooth = 0;
 	for (int k = SMOOTH_FROM; k <= SMOOTH_TO; k++)
@@ -143,8 +141,8 @@ static void smooth_widths(struct rim *rim, const bool use[ARCS])
 }
 
 /* One pass of the blurred step. free_width: each arc's own, for its median. */
-static bool fine_pass(struct rim *rim, const struct grey *grey, const struct grey *tint, double window, bool free_width,
-                      int width, int height, const struct rim_conf *conf)
+static bool fine_pass(struct rim *rim, struct ellipse_fit *fit, const struct grey *grey, const struct grey *tint, double window,
+                      bool free_width, int width, int height, const struct rim_conf *conf)
 {
 	const double lo = -2.4 * window, hi = 2.4 * window;
 	struct ring r = ring_sample(grey, &rim->e, lo, hi, fmax(0.7 * grey->scale, window / 12), ACROSS,
@@ -158,7 +156,7 @@ static bool fine_pass(struct rim *rim, const struct grey *grey, const struct gre
 		edge_fit(&rim->step[i], &r, i, window, free_width);
 	}
 	bool use[ARCS] = { 0 };
-	bool ok = choose_arcs(use, rim->step, &r, tint, conf) >= (conf->known ? 0 : MIN_ARCS) && refit(rim, &r, use, conf);
+	bool ok = choose_arcs(use, rim->step, &r, tint, conf) >= (conf->known ? 0 : MIN_ARCS) && refit(rim, fit, &r, use, conf);
 	bool any = false;
 	for (int i = 0; i < ARCS; i++)
 		any |= use[i];
@@ -253,6 +251,7 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
              const struct rim_conf *conf)
 {
 	*rim = (struct rim){ .e = *start };
+	struct ellipse_fit fit = { 0 };
 	double weight[3] = { 1 / 3.0, 1 / 3.0, 1 / 3.0 };
 	double gain = conf->grey ? 0 : limbus_colour(weight, photo, start);
 	const int w = photo->width, h = photo->height;
@@ -272,11 +271,11 @@ bool rim_fit(struct rim *rim, const struct photo *photo, const struct grey *tint
 			grey = grey_linear(photo, &rim->e, 1.3, conf->max_axis, weight);
 		}
 		double window = window_of(rim, &grey, conf);
-		ok = fine_pass(rim, &grey, tint, window, i == 1 || i == 2, w, h, conf);
+		ok = fine_pass(rim, &fit, &grey, tint, window, i == 1 || i == 2, w, h, conf);
 	}
 	if (ok) {
 		own_widths(rim, &grey, window_of(rim, &grey, conf), w, h);
-		correlate(rim, conf->irregularity, conf->straying);
+		correlate(rim, &fit, conf->irregularity, conf->straying);
 		rim_cover(rim, &grey, tint, conf->absolute, w, h);
 		rim->contrast = MEDIAN(rim->step, rim->used, contrast);
 		rim->out = MEDIAN(rim->step, rim->used, out);

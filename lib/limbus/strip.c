@@ -151,7 +151,7 @@ bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *s
 		return false;
 	for (int a = 0; a < ELLIPSE_N; a++)
 		for (int b = 0; b < ELLIPSE_N; b++)
-			fit->cov_q[a][b] *= conf->rays;
+			fit->cov_q[a][b] = conf->rays * fit->cov_q[a][b] + fit->known_q[a][b];
 	return true;
 }
 

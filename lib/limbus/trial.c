@@ -103,7 +103,6 @@ static bool read_strip(struct trial_window *w, const struct trials *t, int n, co
 	if (!ok || !best.seen)
 		return ok;
 	ellipse_to_q(w->told.q, &best.e);
-	w->told.alike = t->conf->trial.prior_arcs;
 	for (int i = 0; i < ELLIPSE_N; i++)
 		w->told.sigma[i] = hypot(sqrt(best.fit.cov_q[i][i]), (i < 3 ? 1 : 0.4) * t->conf->strip_sigma * best.e.a);
 	w->seen = strip_seen(best.strip);
@@ -114,19 +113,21 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 {
 	struct rim_conf conf = t->conf->rim;
 	struct ellipse_prior known;
-	if (trial->guide == GUIDE_STRIP)
-		conf.known = &trial->window->told;
-	else if (trial->guide != GUIDE_WHITENESS_ALONE) {
+	const bool by_strip = trial->guide == GUIDE_STRIP || trial->guide == GUIDE_STRIP_FIRST;
+	if (by_strip) {
+		known = trial->window->told;
+		known.alike = trial->guide == GUIDE_STRIP ? t->conf->trial.prior_arcs : t->conf->trial.strip_arcs;
+	} else if (trial->guide != GUIDE_WHITENESS_ALONE) {
 		region_prior(&known, &trial->region, trial->window, t->conf);
-		conf.known = &known;
 	}
-	conf.absolute = trial->guide == GUIDE_EVIDENCE || trial->guide == GUIDE_STRIP;
+	conf.known = trial->guide == GUIDE_WHITENESS_ALONE ? 0 : &known;
+	conf.absolute = trial->guide == GUIDE_EVIDENCE || by_strip;
 	if (coarse) {
 		conf.max_axis = t->conf->trial.limbus_px;
 		conf.passes = t->conf->trial.passes;
 		conf.straying *= conf.coarse_straying;
 	}
-	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : trial->guide == GUIDE_STRIP ? &trial->window->seen : &t->pyramid->tint;
+	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : by_strip ? &trial->window->seen : &t->pyramid->tint;
 	if (!rim_fit(rim, t->photo, tint, &trial->e, &conf))
 		return false;
 	conf.known = 0;
@@ -171,7 +172,8 @@ static bool try(struct trials *t, const struct trial *start, struct err *err)
 	*trial = *start;
 	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
 		const struct trial_window *w = trial->window;
-		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, w->moved, w->blind, trial->guide == GUIDE_STRIP, trial->guide == GUIDE_WHITENESS_ALONE,
+		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, w->moved, w->blind,
+			                        trial->guide == GUIDE_STRIP ? 1 : trial->guide == GUIDE_STRIP_FIRST ? 2 : 0, trial->guide == GUIDE_WHITENESS_ALONE,
 			                        t->photo->width, t->photo->height };
 		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
 		ok = odds_of(trial->curve, trial->x, t->conf->odds, err);
@@ -219,7 +221,8 @@ bool trials_of_place(struct trials *t, double x, double y, double radius, struct
 	                && try(t, &(struct trial){ .guide = GUIDE_WHITENESS, .window = w, .region = e, .e = e }, err);
 	if (!ok || !w->seen.px || !ellipse_from_q(&likeliest, w->told.q))
 		return ok;
-	return try(t, &(struct trial){ .guide = GUIDE_STRIP, .window = w, .region = e, .e = likeliest }, err);
+	return try(t, &(struct trial){ .guide = GUIDE_STRIP, .window = w, .region = e, .e = likeliest }, err)
+	       && try(t, &(struct trial){ .guide = GUIDE_STRIP_FIRST, .window = w, .region = e, .e = likeliest }, err);
 }
 
 bool trials_of_evidence(struct trials *t, struct err *err)

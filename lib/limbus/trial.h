@@ -7,10 +7,11 @@
 #include "limbus/find.h"
 #include "limbus/strip_net.h"
 
-enum { TRIALS = 24, TRIAL_WINDOWS = 8 };
+enum { TRIALS = 32, TRIAL_WINDOWS = 8 };
 
-/* What tells sclera from lid beside an arc, and which ellipse is a prior: the evidence's, none, the strip's. */
-enum trial_guide { GUIDE_EVIDENCE, GUIDE_WHITENESS, GUIDE_WHITENESS_ALONE, GUIDE_STRIP };
+/* What tells sclera from lid beside an arc, and which ellipse is a prior: the evidence's, none, the strip's, against which edges count, or hardly
+ * do where they are soft. */
+enum trial_guide { GUIDE_EVIDENCE, GUIDE_WHITENESS, GUIDE_WHITENESS_ALONE, GUIDE_STRIP, GUIDE_STRIP_FIRST };
 
 struct trial_window {
 	struct evidence evidence;

@@ -198,6 +198,19 @@ static void add_known(struct pass *pass, const double q[N], const struct ellipse
 	}
 }
 
+/* From the inverse M of the points' information H and that of the prior, A P, in units of their variance s²: s² M H M = s² (M - M A P M), and A² s² M P M. */
+static void covariance(struct ellipse_fit *fit, const struct ellipse_prior *known, double scale)
+{
+	double (*m)[N] = fit->cov_q;
+	for (int a = 0; a < N; a++)
+		for (int b = 0; b < N; b++)
+			for (int k = 0; k < N && known; k++)
+				fit->known_q[a][b] += m[a][k] * m[k][b] * pow(known->alike * scale * scale / known->sigma[k], 2);
+	for (int a = 0; a < N; a++)
+		for (int b = 0; b < N; b++)
+			m[a][b] = m[a][b] * scale * scale - (known ? fit->known_q[a][b] / known->alike : 0);
+}
+
 static bool fit_from(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2], const double *prior, double *out, double sigma,
                      bool have_start, const struct ellipse_prior *known)
 {
@@ -255,9 +268,7 @@ static bool fit_from(struct ellipse *e, struct ellipse_fit *fit, int n, const do
 		if (known)
 			add_known(&pass, q, known, scale);
 		ok = invert(fit->cov_q, pass.h);
-		for (int a = 0; a < N; a++)
-			for (int b = 0; b < N; b++)
-				fit->cov_q[a][b] *= scale * scale;
+		covariance(fit, known, scale);
 	}
 	free(d);
 	return ok;

@@ -10,7 +10,8 @@ bool ellipse_fit_direct(struct ellipse *e, int n, const double p[n][2], const do
 
 struct ellipse_fit {
 	double sigma;       // robust scale of the distances, px
-	double cov_q[ELLIPSE_N][ELLIPSE_N];  // covariance of q (ellipse.h)
+	double cov_q[ELLIPSE_N][ELLIPSE_N];    // covariance of q (ellipse.h) for the errors of the points, as though independent
+	double known_q[ELLIPSE_N][ELLIPSE_N];  // besides, for that of what was known; 0 where nothing was
 	int iterations;
 	double inliers;     // sum of the Tukey weights over n
 };
@@ -32,8 +33,8 @@ struct ellipse_prior {
 	double alike;                           // so many points count as one against it: their errors are correlated
 };
 
-/* The same from a start, with a prior: where points tell little, the ellipse and its covariance are the prior's. sigma: least noise of
- * the points, px. */
+/* The same from a start, with a prior: where points tell little, the ellipse and its covariance are the prior's. Where c points err together
+ * the ellipse's covariance is c cov_q + known_q, whatever known->alike weighs them by. sigma: least noise of the points, px. */
 bool ellipse_fit_near(struct ellipse *e, struct ellipse_fit *fit, int n, const double p[n][2], const double *weight, double *out,
                       double sigma, const struct ellipse_prior *known);
 

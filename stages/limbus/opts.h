@@ -18,7 +18,8 @@
 	OPT_REAL("least_region", &(c)->least_region, 0.05, 1, "", "size of the evidence's ellipse, of the radius looked for"), \
 	OPT_REAL("start_alike", &(c)->start_alike, 0.001, 0.5, "", "of the radius: a start that near one that was tried is left out"), \
 	OPT_REALS("other_scales", (c)->other_scale, 2, 0.2, 5, "", "of the first region's radius: tried in doubt"), \
-	OPT_REAL("prior_arcs", &(c)->prior_arcs, 1, 360, "", "so many arcs count as one against what is known of an ellipse")
+	OPT_REAL("prior_arcs", &(c)->prior_arcs, 1, 360, "", "so many arcs of an edge count as one against the evidence's ellipse"), \
+	OPT_REAL("strip_arcs", &(c)->strip_arcs, 1, 10000, "", "the same against a strip's ellipse")
 
 #define SAME_OPTS(c) \
 	OPT_REAL("same_sigmas", &(c)->sigmas, 0.5, 10, "", "so many sigmas apart two ellipses say the same"), \

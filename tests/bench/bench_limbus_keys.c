@@ -53,6 +53,7 @@ static void list(struct eyes *s)
 	add(s, "least_region", &c->trial.least_region);
 	add(s, "start_alike", &c->trial.start_alike);
 	add(s, "prior_arcs", &c->trial.prior_arcs);
+	add(s, "strip_arcs", &c->trial.strip_arcs);
 	add(s, "same_sigmas", &c->same.sigmas);
 	add(s, "same_most", &c->same.most);
 	add(s, "same_unseen", &c->same.unseen);

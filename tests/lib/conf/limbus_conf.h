@@ -16,11 +16,11 @@ static struct limbus_conf limbus_defaults = {
 	.face = { .distance = { 7.5, 13.5 }, .roll = 60 * M_PI / 180, .size_sigma = 0.03, .score = 0.3, .sure = 0.6, .pupil_sigma = 0.06,
 		.region_alike = 0.5, .off_alike = 0.5, .off_sigma = 2, .broad = 0.3, .unlike = 0.01, .far = 4 },
 	.trial = { .regions = 3, .votes = 4, .rounds = 2, .reads = 3, .passes = 4, .limbus_px = 110, .pupil_px = 70, .window_place = 0.5, .window_size = 0.3,
-		.window_again = 0.2, .least_region = 0.3, .start_alike = 0.06, .other_scale = { 1.6, 0.62 }, .prior_arcs = 12 },
+		.window_again = 0.2, .least_region = 0.3, .start_alike = 0.06, .other_scale = { 1.6, 0.62 }, .prior_arcs = 12, .strip_arcs = 150 },
 	.same = { .sigmas = 3, .most = 0.05, .unseen = 0.08, .other_eye = 1, .moved = 0.5 },
 	.hand = { .close = 0.12, .seen = 0.2 },
 	.region_sigma = 0.03, .region_shape_sigma = 0.02, .region_hidden = 1.2, .strip_sigma = 0.005, .strip_conf = { 6, 30, 100, 0.02, 0.3, 0.3, 4, { 0.5, 0.5 }, { 0.3, 0.1 } },
-	.tolerance = 0.02, .rough_tolerance = 0.06, .max_gross = 0.035, .sure_gross = 0.02, .max_rms = 0.008,
+	.tolerance = 0.02, .rough_tolerance = 0.06, .max_gross = 0.04, .sure_gross = 0.02, .max_rms = 0.008,
 	.hint_sigma = 0.08, .drawn_sigma = 0.01, .max_over = 0.6, .min_level = 0.04,
 };
 

@@ -223,6 +223,50 @@ static void test_likeliest(void **state)
 	free(found);
 }
 
+/* Of an eye whose strip is made to tell a limbus that is too wide: how far what is measured by either of its trials lies from that, and from the truth; px. */
+static void by_wide_strip(double told[2], double measured[2], const struct synth_eye *eye, double wider)
+{
+	static const enum trial_guide guide[2] = { GUIDE_STRIP, GUIDE_STRIP_FIRST };
+	struct rim *rim = mem_new(2, sizeof *rim);
+	struct err err = { 0 };
+	struct synth_truth truth;
+	struct photo photo = synth_eye_render(eye, &truth);
+	struct pyramid pyramid = pyramid_make(&photo);
+	struct trials *t = trials_new(&photo, &pyramid, &limbus_defaults);
+	assert_true(trials_of_place(t, truth.limbus.cx, truth.limbus.cy, truth.limbus.a, &err));
+	for (int i = 0; i < t->n_windows; i++)
+		t->window[i].told.q[2] *= wider;
+	for (int k = 0; k < 2; k++) {
+		const struct trial *trial = 0;
+		struct ellipse e;
+		bool has_pupil;
+		for (int i = 0; i < t->n; i++)
+			if (t->trial[i].guide == guide[k])
+				trial = &t->trial[i];
+		assert_true(trial && ellipse_from_q(&e, trial->window->told.q));
+		assert_true(trial_measure(rim, rim + 1, &has_pupil, trial, t, false));
+		told[k] = ellipse_apart(&rim->e, &e);
+		measured[k] = ellipse_apart(&rim->e, &truth.limbus);
+	}
+	trials_free(t);
+	pyramid_free(&pyramid);
+	photo_free(&photo);
+	free(rim);
+}
+
+/* A sharp edge outweighs the strip, however that is weighed; a soft one moves the strip's ellipse less where that comes first. */
+static void test_strip_first(void **state)
+{
+	(void)state;
+	double told[2], measured[2];
+	struct synth_eye eye = synth_eye_grid(50);
+	by_wide_strip(told, measured, &eye, 1.01);
+	assert_true(measured[0] < 0.1 && measured[1] < 0.1 && told[1] > 0.9);
+	eye.ramp *= 8;
+	by_wide_strip(told, measured, &eye, 1.01);
+	assert_true(told[1] < 0.3 * told[0]);
+}
+
 /* A view of a known pose: the limbus projected point by point, nothing measured. */
 static struct pose_view ideal_view(const struct eye *eye, const double cam_from_eye[4][4], double focal_px)
 {
@@ -302,7 +346,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic), cmocka_unit_test(test_ring_light),
-		cmocka_unit_test(test_captures), cmocka_unit_test(test_likeliest),
+		cmocka_unit_test(test_captures), cmocka_unit_test(test_likeliest), cmocka_unit_test(test_strip_first),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
