@@ -38,7 +38,7 @@ enum odds_trait {
 	ODDS_STRIP_WORTH,     // log likelihood of the ellipse
 	ODDS_STRIP_BEHIND,    // how far that is behind the strip's own ellipse
 	ODDS_STRIP_SCATTER,   // log of the scatter of the rays' places over the semi-axis
-	ODDS_STRIP_APART,     // log of how far the strip's own ellipse is, semi-axes
+	ODDS_STRIP_APART,     // log of how far the strip's own ellipse is, semi-axes; of one that soft edges hardly move, from where they would move it
 	ODDS_STRIP_SIGMA,     // log of the largest sigma of the strip's own ellipse, semi-axes
 	ODDS_STRIP_MOVED,     // log of how far the last reading of the strip, with its mirror image, moved it, semi-axes
 	ODDS_STRIP_BLIND,     // the same where the evidence of the pixels was kept from it: by the picture alone

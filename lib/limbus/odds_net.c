@@ -64,8 +64,7 @@ double odds_log(const double curve[ODDS_CURVE], double tolerance)
 
 static const double ONE_SIGMA = 0.7662;  // log odds of 68.27 %
 
-/* The error, semi-axes, that 68 % do not exceed; 0 below the least tolerance. */
-static double one_sigma(const double curve[ODDS_CURVE])
+double odds_one_sigma(const double curve[ODDS_CURVE])
 {
 	if (curve[0] >= ONE_SIGMA)
 		return 0;
@@ -77,5 +76,5 @@ static double one_sigma(const double curve[ODDS_CURVE])
 
 double odds_wider(double sigma, const double curve[ODDS_CURVE])
 {
-	return fmax(1, one_sigma(curve) / sigma);
+	return fmax(1, odds_one_sigma(curve) / sigma);
 }

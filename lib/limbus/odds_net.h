@@ -12,6 +12,9 @@ extern const double odds_tolerance[ODDS_CURVE];
 /* The same for any tolerance, semi-axes; beyond the first and the last as there. */
 double odds_log(const double curve[ODDS_CURVE], double tolerance);
 
+/* The error, semi-axes, that 68 % do not exceed; 0 below the least tolerance. */
+double odds_one_sigma(const double curve[ODDS_CURVE]);
+
 /* How many times as wide as its own sigma (odds_sigma, above 0) says an ellipse's error is, at least 1: the largest part of the error, which as a rule is one alone, the
  * height that lids hide, is below its sigma in 68 % of all cases. */
 double odds_wider(double sigma, const double curve[ODDS_CURVE]);

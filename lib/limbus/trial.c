@@ -116,6 +116,8 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 	const bool by_strip = trial->guide == GUIDE_STRIP || trial->guide == GUIDE_STRIP_FIRST;
 	if (by_strip) {
 		known = trial->window->told;
+		if (!coarse)  // refined from what the odds are of, not begun anew
+			ellipse_to_q(known.q, &trial->e);
 		known.alike = trial->guide == GUIDE_STRIP ? t->conf->trial.prior_arcs : t->conf->trial.strip_arcs;
 	} else if (trial->guide != GUIDE_WHITENESS_ALONE) {
 		region_prior(&known, &trial->region, trial->window, t->conf);
@@ -176,6 +178,8 @@ static bool try(struct trials *t, const struct trial *start, struct err *err)
 			                        trial->guide == GUIDE_STRIP ? 1 : trial->guide == GUIDE_STRIP_FIRST ? 2 : 0, trial->guide == GUIDE_WHITENESS_ALONE,
 			                        t->photo->width, t->photo->height };
 		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
+		if (trial->guide == GUIDE_STRIP_FIRST && t->n && t->trial[t->n - 1].guide == GUIDE_STRIP)
+			trial->x[ODDS_STRIP_APART] = t->trial[t->n - 1].x[ODDS_STRIP_APART];
 		ok = odds_of(trial->curve, trial->x, t->conf->odds, err);
 		trial->log_odds = ok ? odds_log(trial->curve, t->conf->tolerance) : 0;
 		trial->e = rim->e;

@@ -194,6 +194,29 @@ static void test_refused(void **state)
 	refused(synth_eye_render(&cut, &truth), "");
 }
 
+/* Whether an ellipse lies between that of a strip's trial, measured in full, and that of the strip's other one. */
+static bool on_the_way(const struct ellipse *e, const struct ellipse *from, const struct trial *trial, const struct trials *t)
+{
+	struct rim *rim = mem_new(2, sizeof *rim);
+	double q[ELLIPSE_N], p[ELLIPSE_N], r[ELLIPSE_N], along = 0, length = 0, off = 0;
+	bool has_pupil, measured = false;
+	for (int i = 0; i < t->n && !measured; i++)
+		if (t->trial[i].guide >= GUIDE_STRIP && t->trial[i].window == trial->window && &t->trial[i] != trial)
+			measured = trial_measure(rim, rim + 1, &has_pupil, &t->trial[i], t, false);
+	ellipse_to_q(q, from);
+	ellipse_to_q(r, e);
+	ellipse_to_q(p, measured ? &rim->e : from);
+	free(rim);
+	for (int i = 0; i < ELLIPSE_N; i++) {
+		along += (r[i] - q[i]) * (p[i] - q[i]);
+		length += (p[i] - q[i]) * (p[i] - q[i]);
+	}
+	const double share = length > 0 ? along / length : 0;
+	for (int i = 0; i < ELLIPSE_N; i++)
+		off = fmax(off, fabs(r[i] - q[i] - share * (p[i] - q[i])));
+	return share >= 0 && share <= 1 && off < 1e-9;
+}
+
 /* What is told is the likeliest trial, measured in full: its odds are told with it, and none that says the same is put in its place. */
 static void test_likeliest(void **state)
 {
@@ -212,7 +235,10 @@ static void test_likeliest(void **state)
 		limbus_find_in(found, trials, 0);
 		const struct trial *best = &trials->trial[found->posterior.best];
 		assert_true(trial_measure(rim, rim + 1, &has_pupil, best, trials, false));
-		NEAR(ellipse_error(&rim->e, &found->limbus.e), 0, 0);
+		if (best->guide < GUIDE_STRIP)
+			NEAR(ellipse_error(&rim->e, &found->limbus.e), 0, 0);
+		else
+			assert_true(on_the_way(&found->limbus.e, &rim->e, best, trials));
 		other += best->guide != GUIDE_EVIDENCE;
 		trials_free(trials);
 		pyramid_free(&pyramid);
@@ -244,7 +270,7 @@ static void by_wide_strip(double told[2], double measured[2], const struct synth
 			if (t->trial[i].guide == guide[k])
 				trial = &t->trial[i];
 		assert_true(trial && ellipse_from_q(&e, trial->window->told.q));
-		assert_true(trial_measure(rim, rim + 1, &has_pupil, trial, t, false));
+		assert_true(trial_measure(rim, rim + 1, &has_pupil, trial, t, true));
 		told[k] = ellipse_apart(&rim->e, &e);
 		measured[k] = ellipse_apart(&rim->e, &truth.limbus);
 	}
@@ -261,7 +287,7 @@ static void test_strip_first(void **state)
 	double told[2], measured[2];
 	struct synth_eye eye = synth_eye_grid(50);
 	by_wide_strip(told, measured, &eye, 1.01);
-	assert_true(measured[0] < 0.1 && measured[1] < 0.1 && told[1] > 0.9);
+	assert_true(measured[0] < 0.2 && measured[1] < 0.2 && told[1] > 0.8);
 	eye.ramp *= 8;
 	by_wide_strip(told, measured, &eye, 1.01);
 	assert_true(told[1] < 0.3 * told[0]);

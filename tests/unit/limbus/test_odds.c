@@ -53,7 +53,10 @@ static void the_network_that_is_shipped(void **state)
 	doubtful[ODDS_STRIP_APART] = log(0.2);
 	doubtful[ODDS_STRIP_ON] = 0.3;
 	doubtful[ODDS_STRIP_OFF] = 0.5;
+	doubtful[ODDS_STRIP_WORTH] = -5;
+	doubtful[ODDS_STRIP_BEHIND] = 20;
 	doubtful[ODDS_SCATTER] = -3;
+	doubtful[ODDS_BY_STRIP] = 0;
 	assert_true(odds_of(worse, doubtful, net, &err));
 	assert_true(odds_log(worse, 0.02) < 0);
 	odds_close(net);
