@@ -56,39 +56,37 @@ static bool hinted(struct limbus_found *found, struct trials *trials, const doub
 	return true;
 }
 
-/* The other trial of the strip of a window, where that is as good as the same: or null. */
-static const struct trial *twin_of(const struct trial *trial, const struct trials *trials)
+/* What an answer counts beside others that say the same: by the error that its odds expect, so steeply that a poor one hardly does. */
+static double count_of(const struct trial *trial)
 {
-	for (int i = 0; i < trials->n; i++) {
-		const struct trial *t = &trials->trial[i];
-		if (t != trial && t->window == trial->window && trial->guide >= GUIDE_STRIP && t->guide >= GUIDE_STRIP)
-			return ellipse_apart(&t->e, &trial->e) < trials->conf->same.most * trial->e.a ? t : 0;
-	}
-	return 0;
+	static const double LEAST = 2.5e-4;  // semi-axes: no error is told to be less
+	return pow(fmax(odds_one_sigma(trial->curve), LEAST), -4);
 }
 
-/* Edges err where the limbus is soft, the strip on eyes unlike those it has learnt from. The answer lies between the two trials, the nearer to either the
- * less its odds say that it errs; how far they are apart adds to its covariance. */
-static void between(struct rim *rim, const struct trial *trial, const struct trials *trials)
+/* Edges err where the limbus is soft or shaded, the strip on eyes unlike those it has learnt from, and which of a window's trials is the likeliest may
+ * turn with a few pixels: the answer lies between all that say the same. How far they are apart adds to its covariance. */
+static void between(struct rim *rim, const struct trial *best, const struct trials *trials)
 {
 	enum { N = ELLIPSE_N };
-	static const double LEAST = 2.5e-4;  // semi-axes: no error is told to be less
-	const struct trial *twin = twin_of(trial, trials);
 	struct rim *other = mem_new(2, sizeof *other);
-	double q[N], p[N];
+	double q[N], p[N], sum = count_of(best);
 	bool has_pupil;
-	if (twin && trial_measure(other, other + 1, &has_pupil, twin, trials, false)) {
-		const double own = pow(fmax(odds_one_sigma(trial->curve), LEAST), -2), its = pow(fmax(odds_one_sigma(twin->curve), LEAST), -2);
-		const double share = its / (own + its);
-		ellipse_to_q(q, &rim->e);
+	ellipse_to_q(q, &rim->e);
+	for (int i = 0; i < trials->n; i++) {
+		const struct trial *t = &trials->trial[i];
+		const bool same = t != best && t->window == best->window && ellipse_apart(&t->e, &best->e) < trials->conf->same.most * best->e.a;
+		if (!same || !trial_measure(other, other + 1, &has_pupil, t, trials, false))
+			continue;
+		sum += count_of(t);
+		const double share = count_of(t) / sum;
 		ellipse_to_q(p, &other->e);
 		for (int a = 0; a < N; a++)
 			for (int b = 0; b < N; b++)
 				rim->cov_q[a][b] += share * (other->cov_q[a][b] - rim->cov_q[a][b]) + share * (1 - share) * (p[a] - q[a]) * (p[b] - q[b]);
 		for (int a = 0; a < N; a++)
 			q[a] += share * (p[a] - q[a]);
-		ellipse_from_q(&rim->e, q);
 	}
+	ellipse_from_q(&rim->e, q);
 	free(other);
 }
 
