@@ -4,7 +4,7 @@
  *     limbus_traits OUT.csv drawn FIRST COUNT     drawn eyes of the training split; one in five is none
  *     limbus_traits OUT.csv heads FIRST COUNT FILE     photographs of a file that heads.py has written (tests/evidence/kept.h)
  *     limbus_traits OUT.csv synthetic STEP        every STEP-th of the grid of tests/lib/scenes/synth_eye.h
- *     limbus_traits OUT.csv captures              the rendered captures with truth
+ *     limbus_traits OUT.csv captures              the rendered captures with truth, also half as large
  *     limbus_traits OUT.csv strip FIRST COUNT     of drawn eyes of which a quarter of the limbus shows, the strip's ellipse alone: number, share that
  *                                                 shows, semi-axis px, roughness, errors of the strip's ellipse and of its trial, of the strip's b
  *
@@ -200,6 +200,20 @@ static void synthetic(FILE *csv, int number)
 	photo_free(&photo);
 }
 
+/* Half as large, means of four pixels. */
+static void halve(struct photo *p)
+{
+	const long w = p->width / 2, h = p->height / 2;
+	for (long y = 0; y < h; y++)
+		for (long x = 0; x < w; x++)
+			for (int c = 0; c < 3; c++) {
+				const uint16_t *a = p->rgb + (2 * y * p->width + 2 * x) * 3 + c, *b = a + 3L * p->width;
+				p->rgb[(y * w + x) * 3 + c] = (uint16_t)((a[0] + a[3] + b[0] + b[3]) / 4);
+			}
+	p->width = (int)w;
+	p->height = (int)h;
+}
+
 static void capture(FILE *csv, int number, const char *dir)
 {
 	struct truth truth;
@@ -210,6 +224,12 @@ static void capture(FILE *csv, int number, const char *dir)
 		exit(1);
 	}
 	note(csv, "capture", number, &photo, 1, (struct seen[]){ all_of(&truth.limbus) });
+	halve(&photo);
+	for (int i = 0; i < 2; i++) {
+		(&truth.limbus.cx)[i] /= 2;
+		(&truth.limbus.a)[i] /= 2;
+	}
+	note(csv, "capture", number + 1000, &photo, 1, (struct seen[]){ all_of(&truth.limbus) });
 	photo_free(&photo);
 }
 
