@@ -77,8 +77,8 @@ static void between(struct rim *rim, const struct trial *best, const struct tria
 		const bool same = t != best && t->window == best->window && ellipse_apart(&t->e, &best->e) < trials->conf->same.most * best->e.a;
 		if (!same || !trial_measure(other, other + 1, &has_pupil, t, trials, false))
 			continue;
-		sum += count_of(t);
-		const double share = count_of(t) / sum;
+		const double count = count_of(t), share = count / (sum + count);
+		sum += count;
 		ellipse_to_q(p, &other->e);
 		for (int a = 0; a < N; a++)
 			for (int b = 0; b < N; b++)
