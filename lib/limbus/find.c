@@ -68,14 +68,13 @@ static double count_of(const struct trial *trial)
 static void between(struct rim *rim, const struct trial *best, const struct trials *trials)
 {
 	enum { N = ELLIPSE_N };
-	struct rim *other = mem_new(2, sizeof *other);
+	struct rim *other = mem_new(1, sizeof *other);
 	double q[N], p[N], sum = count_of(best);
-	bool has_pupil;
 	ellipse_to_q(q, &rim->e);
 	for (int i = 0; i < trials->n; i++) {
 		const struct trial *t = &trials->trial[i];
 		const bool same = t != best && t->window == best->window && ellipse_apart(&t->e, &best->e) < trials->conf->same.most * best->e.a;
-		if (!same || !trial_measure(other, other + 1, &has_pupil, t, trials, false))
+		if (!same || !trial_measure(other, 0, 0, t, trials, false))
 			continue;
 		const double count = count_of(t), share = count / (sum + count);
 		sum += count;

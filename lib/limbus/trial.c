@@ -132,6 +132,8 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 	const struct grey *tint = trial->guide == GUIDE_EVIDENCE ? &trial->window->sclera : by_strip ? &trial->window->seen : &t->pyramid->tint;
 	if (!rim_fit(rim, t->photo, tint, &trial->e, &conf))
 		return false;
+	if (!pupil)
+		return true;
 	conf.known = 0;
 	conf.absolute = false;
 	conf.max_axis = coarse ? t->conf->trial.pupil_px : conf.max_axis;

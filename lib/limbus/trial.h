@@ -64,7 +64,8 @@ bool trials_of_hint(struct trials *trials, const double *hint, struct err *err);
 
 struct trial_line trial_line_of(const struct rim *rim);
 
-/* Measures a trial's limbus and its pupil. coarse: to tell trials apart. False when there is no edge. */
+/* Measures a trial's limbus and, where they are asked for, its pupil and whether it has one. coarse: to tell trials apart. False when there is no
+ * edge. */
 bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const struct trial *trial, const struct trials *trials, bool coarse);
 
 #endif

@@ -335,7 +335,7 @@ class Person:
         reach = 1.2 if radius < 25 else .7
         px, py = w / 2 + rng.uniform(-.5, .5) * reach * (w * .6), h / 2 + rng.uniform(-.5, .5) * reach * (h * .6)
         picture, label = self.window(w, h, f, px - f * eye[0] / eye[2], py - f * eye[1] / eye[2])
-        return self.photographed(picture), label
+        return photographed(picture, self.rng), label
 
     def ellipses(self, f, cx, cy, label):
         """Of both eyes in a window: limbus (x, y, semi-axes, angle), share of it that shows, angle to the camera."""
@@ -372,30 +372,31 @@ class Person:
         cx = rng.uniform(1.05 * radius, w - 1.05 * radius) - f * eye[0] / eye[2]
         cy = rng.uniform(1.05 * radius, h - 1.05 * radius) - f * eye[1] / eye[2]
         picture, label = self.window(w, h, f, cx, cy)
-        return self.photographed(picture), label, self.ellipses(f, cx, cy, label)
+        return photographed(picture, self.rng), label, self.ellipses(f, cx, cy, label)
 
-    def photographed(self, x):
-        rng = self.rng
-        h, w = x.shape[:2]
-        if rng.random() < .3:  # the veil of stray light
-            x = x + x.mean() * rng.uniform(0, .25)
-        x = x + (x.mean(-1, keepdims=True) * np.array([1.04, 1, .94]) - x) * rng.uniform(0, .5)
-        x = x * np.exp(rng.normal(0, .12) * np.array([1, 0, -1.3])) * np.exp(rng.normal(0, .03, 3))
-        x = x * (rng.uniform(.18, .62) / max(np.percentile(x.mean(-1), 75), 1e-4))
-        blur = rng.uniform(.35, .8) if rng.random() < .7 else rng.uniform(.8, 1.8)
-        x = cv2.GaussianBlur(x.astype(F32), (0, 0), blur)
-        x = np.where(x > .7, .7 + .3 * (1 - np.exp(-(x - .7) / .3)), x) if rng.random() < .6 else x
-        x = encoded(x)
-        if rng.random() < .5:  # a camera's curve
-            x = x + rng.uniform(-.12, .16) * np.sin(2 * np.pi * np.clip(x, 0, 1)) / np.pi * -1
-        grain = rng.standard_normal((h, w, 3))
-        if rng.random() < .5:
-            grain = .8 * cv2.GaussianBlur(grain, (0, 0), rng.uniform(.5, 1.1)) / .45
-        x = x + np.exp(rng.uniform(np.log(.002), np.log(.03))) * grain * np.sqrt(np.clip(x, .05, 1))
-        x = np.clip(x * 255 + .5, 0, 255).astype(np.uint8)
-        if rng.random() < .6:
-            x = cv2.imdecode(cv2.imencode(".jpg", x[..., ::-1], [1, int(rng.uniform(35, 96))])[1], 1)[..., ::-1]
-        return np.ascontiguousarray(x)
+
+def photographed(x, rng):
+    """Linear light as a camera shows it: veil, exposure, white balance, blur, curve, grain, JPEG; RGB bytes."""
+    h, w = x.shape[:2]
+    if rng.random() < .3:  # the veil of stray light
+        x = x + x.mean() * rng.uniform(0, .25)
+    x = x + (x.mean(-1, keepdims=True) * np.array([1.04, 1, .94]) - x) * rng.uniform(0, .5)
+    x = x * np.exp(rng.normal(0, .12) * np.array([1, 0, -1.3])) * np.exp(rng.normal(0, .03, 3))
+    x = x * (rng.uniform(.18, .62) / max(np.percentile(x.mean(-1), 75), 1e-4))
+    blur = rng.uniform(.35, .8) if rng.random() < .7 else rng.uniform(.8, 1.8)
+    x = cv2.GaussianBlur(x.astype(F32), (0, 0), blur)
+    x = np.where(x > .7, .7 + .3 * (1 - np.exp(-(x - .7) / .3)), x) if rng.random() < .6 else x
+    x = encoded(x)
+    if rng.random() < .5:  # a camera's curve
+        x = x + rng.uniform(-.12, .16) * np.sin(2 * np.pi * np.clip(x, 0, 1)) / np.pi * -1
+    grain = rng.standard_normal((h, w, 3))
+    if rng.random() < .5:
+        grain = .8 * cv2.GaussianBlur(grain, (0, 0), rng.uniform(.5, 1.1)) / .45
+    x = x + np.exp(rng.uniform(np.log(.002), np.log(.03))) * grain * np.sqrt(np.clip(x, .05, 1))
+    x = np.clip(x * 255 + .5, 0, 255).astype(np.uint8)
+    if rng.random() < .6:
+        x = cv2.imdecode(cv2.imencode(".jpg", x[..., ::-1], [1, int(rng.uniform(35, 96))])[1], 1)[..., ::-1]
+    return np.ascontiguousarray(x)
 
 
 def conic(p):
@@ -407,6 +408,11 @@ def conic(p):
     at = np.linalg.solve(q, [-d / 2, -e / 2])
     value, axes = np.linalg.eigh(q / (at @ q @ at - k))
     return [*(at * scale + middle), scale / np.sqrt(value[0]), scale / np.sqrt(value[1]), np.arctan2(axes[1, 0], axes[0, 0])]
+
+
+def kept(picture, label, eyes):
+    """What kept.h reads."""
+    return np.array([picture.shape[1], picture.shape[0], len(eyes)], np.int32).tobytes() + eyes.tobytes() + picture.tobytes() + label.tobytes()
 
 
 def sheet(path, pictures, labels, across=8):
@@ -448,9 +454,7 @@ def main():
                 made += [person.photograph() for _ in range(WINDOWS // 3)] if args.photographs else [person.lesson() for _ in range(WINDOWS)]
             with open(args.out, "ab") as file:
                 for picture, label, *eyes in made:
-                    if eyes:
-                        file.write(np.array([picture.shape[1], picture.shape[0], len(eyes[0])], np.int32).tobytes() + eyes[0].tobytes())
-                    file.write(picture.tobytes() + label.tobytes())
+                    file.write(kept(picture, label, *eyes) if eyes else picture.tobytes() + label.tobytes())
             print("%d: %d lessons" % (number, len(made)), flush=True)
             if args.sheet and not args.photographs:
                 sheet(args.sheet, [m[0] for m in made], [m[1] for m in made])

@@ -1,9 +1,10 @@
 /* make_strips: writes strips (limbus/strip.h) round ellipses near and far from the limbus of drawn eyes to stdout, for training.
  *
- *     make_strips FIRST COUNT [PHOTOGRAPHS] | strip.py
+ *     make_strips FIRST COUNT [PHOTOGRAPHS ...] | strip.py
  *
- * Every second photograph is one of PHOTOGRAPHS (kept.h), if that is told, from the place in it that FIRST says, over and over. STARTS strips of each photograph. A strip is STRIP_PLANES x STRIP_ROWS x STRIP_RAYS bytes, 0 to 255 for 0 to 1, then a float for each
- * column: where its ray crosses the limbus (s; 0: nowhere), then a byte for each: 1 where iris is seen against sclera there.
+ * Every second photograph is one of PHOTOGRAPHS (kept.h), if any are told: of each of these files in turn, from the place in it that FIRST says, over
+ * and over. STARTS strips of each photograph. A strip is STRIP_PLANES x STRIP_ROWS x STRIP_RAYS bytes, 0 to 255 for 0 to 1, then a float for
+ * each column: where its ray crosses the limbus (s; 0: nowhere), then a byte for each: 1 where iris is seen against sclera there.
  */
 #include <math.h>
 #include <stdio.h>
@@ -18,7 +19,7 @@
 #include "other.h"
 #include "scene.h"
 
-enum { STARTS = 8 };
+enum { STARTS = 8, MOST_FILES = 8 };
 static const double BESIDE = 0.03;  // of the radius: where the classes on both sides are read
 
 static int label_at(const struct drawn *d, const double p[2])
@@ -133,13 +134,27 @@ static void lesson_kept(uint64_t number, struct evidence_net *net, FILE *file)
 	}
 }
 
+static FILE *opened(const char *path, uint64_t first)
+{
+	FILE *file = fopen(path, "rb");
+	struct drawn d;
+	if (!file) {
+		fprintf(stderr, "cannot read %s\n", path);
+		exit(2);
+	}
+	for (uint64_t i = 0; i < first % 997 && kept_next(&d, file); i++)
+		drawn_free(&d);
+	return file;
+}
+
 int main(int argc, char **argv)
 {
 	struct evidence_net *net;
 	struct err err = { 0 };
-	FILE *kept = argc > 3 ? fopen(argv[3], "rb") : 0;
-	if (argc < 3 || (argc > 3 && !kept)) {
-		fprintf(stderr, "usage: make_strips FIRST COUNT [PHOTOGRAPHS]\n");
+	FILE *kept[MOST_FILES];
+	const int n = argc - 3;
+	if (n < 0 || n > MOST_FILES) {
+		fprintf(stderr, "usage: make_strips FIRST COUNT [PHOTOGRAPHS ...]\n");
 		return 2;
 	}
 	if (!evidence_open(&net, "config/evidence.onnx", &err)) {
@@ -147,16 +162,15 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	const uint64_t first = strtoull(argv[1], 0, 10);
-	struct drawn d;
-	for (uint64_t i = 0; kept && i < first % 997 && kept_next(&d, kept); i++)
-		drawn_free(&d);
+	for (int k = 0; k < n; k++)
+		kept[k] = opened(argv[3 + k], first);
 	for (long i = 0; i < atol(argv[2]) && !ferror(stdout); i++)
-		if (kept && i % 2)
-			lesson_kept(first + (uint64_t)i, net, kept);
+		if (n && i % 2)
+			lesson_kept(first + (uint64_t)i, net, kept[i / 2 % n]);
 		else
 			lesson(first + (uint64_t)i, net);
-	if (kept)
-		fclose(kept);
+	for (int k = 0; k < n; k++)
+		fclose(kept[k]);
 	evidence_close(net);
 	return ferror(stdout) ? 1 : 0;
 }

@@ -142,7 +142,7 @@ class Head(heads.Person):
         # skin's vertices come first, coarse ones before finer ones
         marks = V[self.marks]
         px = (f * marks[:, :2] / marks[:, 2:] + centre) / 2
-        return self.photographed(x), np.r_[yaw, nod, px.ravel()].astype(F32)
+        return heads.photographed(x, self.rng), np.r_[yaw, nod, px.ravel()].astype(F32)
 
     def dressed(self, x, t, b, f, centre, turn, away):
         """Hair, beard, what is behind, shoulders, glasses."""

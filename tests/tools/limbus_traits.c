@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "image/photo/part.h"
 #include "limbus/trial.h"
 #include "math/rng.h"
 #include "tests/evidence/kept.h"
@@ -200,20 +201,6 @@ static void synthetic(FILE *csv, int number)
 	photo_free(&photo);
 }
 
-/* Half as large, means of four pixels. */
-static void halve(struct photo *p)
-{
-	const long w = p->width / 2, h = p->height / 2;
-	for (long y = 0; y < h; y++)
-		for (long x = 0; x < w; x++)
-			for (int c = 0; c < 3; c++) {
-				const uint16_t *a = p->rgb + (2 * y * p->width + 2 * x) * 3 + c, *b = a + 3L * p->width;
-				p->rgb[(y * w + x) * 3 + c] = (uint16_t)((a[0] + a[3] + b[0] + b[3]) / 4);
-			}
-	p->width = (int)w;
-	p->height = (int)h;
-}
-
 static void capture(FILE *csv, int number, const char *dir)
 {
 	struct truth truth;
@@ -224,12 +211,11 @@ static void capture(FILE *csv, int number, const char *dir)
 		exit(1);
 	}
 	note(csv, "capture", number, &photo, 1, (struct seen[]){ all_of(&truth.limbus) });
-	halve(&photo);
-	for (int i = 0; i < 2; i++) {
-		(&truth.limbus.cx)[i] /= 2;
-		(&truth.limbus.a)[i] /= 2;
-	}
-	note(csv, "capture", number + 1000, &photo, 1, (struct seen[]){ all_of(&truth.limbus) });
+	double scale;
+	struct photo half = photo_reduced(&photo, (photo.width > photo.height ? photo.width : photo.height) / 2, &scale);
+	const struct ellipse *e = &truth.limbus;
+	note(csv, "capture", number + 1000, &half, 1, (struct seen[]){ all_of(&(struct ellipse){ e->cx / scale, e->cy / scale, e->a / scale, e->b / scale, e->angle }) });
+	photo_free(&half);
 	photo_free(&photo);
 }
 
