@@ -1,4 +1,4 @@
-/* kept: photographs with labels and ellipses that heads.py has written, as the generator's own are.
+/* kept: photographs with labels and ellipses that heads.py or traced.py has written, as the generator's own are.
  *
  * A file of them holds, one after the other: width, height, number of eyes (three int32); of each eye limbus x, y, semi-axes, angle, share of it
  * that shows, radians to the camera (seven float32); RGB; labels. Bytes as the machine orders them.

@@ -8,6 +8,7 @@ middle of its ramp. Numbers below 59000 are for training, 59000 to 59499 for dev
 alone, since their textures take longest. Needs blender, python3-numpy, -scipy, -opencv.
 """
 import argparse
+import functools
 import os
 import sys
 import tempfile
@@ -131,8 +132,8 @@ def main():
     cv2.setNumThreads(1)
     sys.path.insert(0, args.eyes)
     import textures
-    drawn, made = {}, textures.sclera
-    textures.sclera = lambda seed: drawn.setdefault(seed % SCLERAS, None) or drawn.update({seed % SCLERAS: made(seed % SCLERAS)}) or drawn[seed % SCLERAS]
+    sclera = functools.cache(textures.sclera)  # one takes as long as the rest of an eye
+    textures.sclera = lambda seed: sclera(seed % SCLERAS)
     tiles = []
     with tempfile.TemporaryDirectory() as work:
         for number in range(args.first, args.first + args.count):

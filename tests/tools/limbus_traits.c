@@ -2,7 +2,7 @@
  * config/limbus.conf by (tests/evidence/odds.py).
  *
  *     limbus_traits OUT.csv drawn FIRST COUNT     drawn eyes of the training split; one in five is none
- *     limbus_traits OUT.csv heads FIRST COUNT FILE     photographs of a file that heads.py has written (tests/evidence/kept.h)
+ *     limbus_traits OUT.csv heads FIRST COUNT FILE     photographs of a file that heads.py or traced.py has written (tests/evidence/kept.h)
  *     limbus_traits OUT.csv synthetic STEP        every STEP-th of the grid of tests/lib/scenes/synth_eye.h
  *     limbus_traits OUT.csv captures              the rendered captures with truth, also half as large
  *     limbus_traits OUT.csv strip FIRST COUNT     of drawn eyes of which a quarter of the limbus shows, the strip's ellipse alone: number, share that
