@@ -22,7 +22,7 @@ import heads
 
 DEVELOPMENT, JUDGE = 59000, 59500
 IRISES, OTHERS, SCLERAS, SHOTS = 16, 6, 6, 4  # irises for training; for development and for judging each
-SIZE = (576, 432)
+SIZE, WHOLE = (576, 432), 144  # px; both sides are whole at every scale of so many
 CLASS = np.array([heads.SKIN, heads.SKIN, heads.LASH, heads.SCLERA, heads.IRIS, heads.PUPIL, heads.IRIS, heads.SCLERA], np.uint8)
 SKIN_TONES = ("fair", "light", "tan", "brown", "deep")
 PRESETS = ("blue", "brown", "hazel", "green", "grey", "dark")
@@ -105,19 +105,18 @@ class Eye:
     def photograph(self):
         """Some part of it, smaller or not, as a camera shows it: picture, labels, what kept.h reads."""
         rng, e = self.rng, self.limbus
-        h, w = self.label.shape
         scale = min(1, max(np.exp(rng.uniform(np.log(.3), np.log(1.1))), 26 / e["a"]))
-        light = cv2.resize(self.light, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) if scale < 1 else self.light
-        label = cv2.resize(self.label, light.shape[1::-1], interpolation=cv2.INTER_NEAREST)
-        k = np.array(light.shape[1::-1]) / (w, h)
-        side = np.array(light.shape[1::-1])
-        least = np.minimum(side, np.maximum(2.2 * e["a"] * k, 100))
+        scale = np.ceil(scale * WHOLE) / WHOLE
+        side = np.round(scale * np.array(SIZE)).astype(int)
+        light = cv2.resize(self.light, side, interpolation=cv2.INTER_AREA) if scale < 1 else self.light
+        label = cv2.resize(self.label, side, interpolation=cv2.INTER_NEAREST)
+        least = np.minimum(side, max(2.2 * e["a"] * scale, 100))
         size = (least + rng.random(2) * (side - least)).astype(int)
         at = (rng.random(2) * (side - size)).astype(int)
         cut = (slice(at[1], at[1] + size[1]), slice(at[0], at[0] + size[0]))
-        p = self.line * k - at
+        p = self.line * scale - at
         shown = self.shown & (p >= 0).all(1) & (p < size).all(1)
-        limbus = [e["cx"] * k[0] - at[0], e["cy"] * k[1] - at[1], e["a"] * scale, e["b"] * scale, np.radians(e["angle_deg"]), shown.mean(), self.theta]
+        limbus = [e["cx"] * scale - at[0], e["cy"] * scale - at[1], e["a"] * scale, e["b"] * scale, np.radians(e["angle_deg"]), shown.mean(), self.theta]
         return heads.photographed(light[cut], rng), np.ascontiguousarray(label[cut]), np.array([limbus], F32)
 
 
