@@ -5,6 +5,7 @@ writes it as ONNX.
     strip.py --make build/tests/evidence/make_strips --minutes 40 --out config/strip.onnx
     strip.py --make build/tests/evidence/make_strips --short         a minute: the loss falls, asserted
     strip.py --make build/tests/evidence/make_strips --start config/strip.onnx --minutes 0      figures alone
+    strip.py --make build/tests/evidence/make_strips --mean FIRST.onnx SECOND.onnx 0.7 --out config/strip.onnx      seven tenths of the second's weights
 
 Input: 1 x 8 x 64 x 160: planes, rows, rays; the first and last 16 rays are repeated beyond each other. Red, green and blue without their
 means, over the standard deviation of their mean. Output: 1 x 1 x 65 x 160, logits of the row in which a ray crosses the limbus, be it seen or
@@ -256,6 +257,7 @@ def main():
     p.add_argument("--out")
     p.add_argument("--keep")
     p.add_argument("--start", help="checkpoint or ONNX file to begin with")
+    p.add_argument("--mean", nargs=3, metavar=("FIRST", "SECOND", "PART"), help="the mean of two networks' weights, part of the second, and its figures")
     p.add_argument("--deepen", action="store_true", help="the network to begin with has one level less")
     p.add_argument("--photographs", nargs="+", default=[], help="what heads.py --photographs and traced.py have written: every second lesson is of these files in turn")
     p.add_argument("--held-photographs", nargs="+", default=[], help="the same, of other people and eyes, to judge on")
@@ -279,9 +281,12 @@ def main():
     net = Net().to(memory_format=torch.channels_last)
     if args.start:
         (deepen if args.deepen else load)(net, args.start, args)
+    if args.mean:
+        weights.mean(net, args.mean[0], args.mean[1], float(args.mean[2]))
+        args.minutes = 0
     print("%d parameters" % sum(v.numel() for v in net.parameters()), flush=True)
     held = None if args.short else held_out(args)
-    if held and args.start:
+    if held and (args.start or args.mean):
         judge(net, held)
     net = net.to(args.device)
     mean = {k: v.clone() for k, v in net.state_dict().items()}

@@ -148,6 +148,15 @@ def read(net, path, pictures):
     net.train()
 
 
+def mean(net, first, second, part):
+    """Sets net, whose normalisation is folded in hereby, to the mean of two files' weights, part of the second: a network trained on from
+    another keeps what the other knew where its lessons were few (Wortsman et al., Robust fine-tuning, CVPR 2022)."""
+    fold(net.eval())
+    for (conv, _), (weight, bias), (other, offset) in zip(net.in_order(), convolutions(first), convolutions(second), strict=True):
+        conv.weight.data.copy_((1 - part) * weight + part * other)
+        conv.bias.data.copy_((1 - part) * bias + part * offset)
+
+
 def calibrate(net, logits, share):
     """Folds a temperature and a bias for each class into the last layer, those that make the probabilities of logits [n, classes] most
     likely under the true shares. Cross entropy without weights; Newton's method by L-BFGS."""
