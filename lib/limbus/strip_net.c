@@ -96,31 +96,27 @@ static void add(struct strip *strip, const float *logit, bool mirrored, float sh
 	}
 }
 
-bool strip_read(int n, struct strip *const out[n], struct strip_net *net, const struct photo *photo, const struct evidence *evidence,
-                const struct ellipse e[n], enum strip_way way, const struct strip_conf *conf, struct err *err)
+bool strip_read(struct strip *out, struct strip_net *net, const struct photo *photo, const struct evidence *evidence, const struct ellipse *e,
+                enum strip_way way, const struct strip_conf *conf, struct err *err)
 {
 	enum { FIRST = 3, LAST = 6 };  // planes of the evidence
-	const int each = way == STRIP_ONCE ? 1 : 2;
+	const int n = way == STRIP_ONCE ? 1 : 2;
 	float (*strip)[STRIP_ROWS][STRIP_RAYS] = mem_array(STRIP_PLANES, sizeof *strip);
-	struct cv_net_picture *run = mem_new((size_t)(n * each), sizeof *run);
-	for (int k = 0; k < n * each; k++) {
-		if (k % each == 0) {
-			*out[k / each] = (struct strip){ .e = e[k / each], .conf = *conf };
-			strip_sample(strip, photo, evidence, &e[k / each]);
-			if (way == STRIP_BLIND)
-				memset(strip[FIRST], 0, (LAST - FIRST + 1) * sizeof *strip);
-			even(strip);
-		}
-		run[k] = (struct cv_net_picture){ .in = input_of(strip, k % each), .height = STRIP_ROWS, .width = WIDE };
-	}
-	const bool ok = cv_net_run(run, n * each, net->net, STRIP_PLANES, err);
-	for (int k = 0; k < n * each; k++) {
+	struct cv_net_picture run[2] = { 0 };
+	*out = (struct strip){ .e = *e, .conf = *conf };
+	strip_sample(strip, photo, evidence, e);
+	if (way == STRIP_BLIND)
+		memset(strip[FIRST], 0, (LAST - FIRST + 1) * sizeof *strip);
+	even(strip);
+	for (int i = 0; i < n; i++)
+		run[i] = (struct cv_net_picture){ .in = input_of(strip, i), .height = STRIP_ROWS, .width = WIDE };
+	const bool ok = cv_net_run(run, n, net->net, STRIP_PLANES, err);
+	for (int i = 0; i < n; i++) {
 		if (ok)
-			add(out[k / each], run[k].out, k % each, 1.0F / each);
-		free(run[k].out);
-		free((float *)run[k].in);
+			add(out, run[i].out, i, 1.0F / n);
+		free(run[i].out);
+		free((float *)run[i].in);
 	}
-	free(run);
 	free(strip);
 	return ok;
 }

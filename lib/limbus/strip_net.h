@@ -15,8 +15,8 @@ void strip_close(struct strip_net *net);
  * what the evidence says of its pixels. */
 enum strip_way { STRIP_ONCE, STRIP_MIRRORED, STRIP_BLIND };
 
-/* Reads the strips round n ellipses of a window, side by side. False, err set, where the network does not run. */
-bool strip_read(int n, struct strip *const out[n], struct strip_net *net, const struct photo *photo, const struct evidence *evidence,
-                const struct ellipse e[n], enum strip_way way, const struct strip_conf *conf, struct err *err);
+/* Reads the strip round an ellipse. False, err set, where the network does not run. */
+bool strip_read(struct strip *out, struct strip_net *net, const struct photo *photo, const struct evidence *evidence, const struct ellipse *e,
+                enum strip_way way, const struct strip_conf *conf, struct err *err);
 
 #endif

@@ -61,46 +61,41 @@ static void region_prior(struct ellipse_prior *known, const struct ellipse *regi
 }
 
 /* A strip read round an ellipse, and the likeliest ellipse that follows. */
-enum { STARTS = 2 };
 struct reading { struct strip *strip; struct ellipse e; struct ellipse_fit fit; bool seen; double worth; };
 
-static bool read_round(int n, struct reading *const r[n], const struct ellipse start[n], enum strip_way way, const struct trial_window *w, const struct trials *t,
-                       struct err *err)
+static bool read_round(struct reading *r, const struct ellipse *start, enum strip_way way, const struct trial_window *w, const struct trials *t, struct err *err)
 {
-	struct strip *strip[STARTS];
-	for (int i = 0; i < n; i++)
-		strip[i] = r[i]->strip;
-	if (!strip_read(n, strip, t->conf->strip, t->photo, &w->evidence, start, way, &t->conf->strip_conf, err))
+	struct ellipse_prior region;
+	r->e = *start;
+	if (!strip_read(r->strip, t->conf->strip, t->photo, &w->evidence, start, way, &t->conf->strip_conf, err))
 		return false;
-	for (int i = 0; i < n; i++) {
-		struct ellipse_prior region;
-		region_prior(&region, &start[i], w, t->conf);
-		r[i]->e = start[i];
-		r[i]->seen = strip_fit(&r[i]->e, &r[i]->fit, r[i]->strip, &w->map, region.sigma);
-		r[i]->worth = r[i]->seen ? strip_worth(r[i]->strip, &r[i]->e) : -1;
-	}
+	region_prior(&region, start, w, t->conf);
+	r->seen = strip_fit(&r->e, &r->fit, r->strip, &w->map, region.sigma);
+	r->worth = r->seen ? strip_worth(r->strip, &r->e) : -1;
 	return true;
 }
 
-/* Reads the strip round the likelier of at most two starts, then round the ellipse that follows, and again. */
+/* Reads the strip round the likeliest of n starts, then round the ellipse that follows, and again. */
 static bool read_strip(struct trial_window *w, const struct trials *t, int n, const struct ellipse start[n], struct err *err)
 {
 	struct reading best = { .strip = mem_new(1, sizeof *best.strip) }, other = { .strip = mem_new(1, sizeof *other.strip) };
-	bool ok = read_round(n, (struct reading *const[STARTS]){ &best, &other }, start, n == 1 ? STRIP_MIRRORED : STRIP_ONCE, w, t, err);
-	if (ok && n > 1 && other.worth > best.worth) {
-		const struct reading was = best;
-		best = other;
-		other = was;
+	bool ok = read_round(&best, &start[0], n == 1 ? STRIP_MIRRORED : STRIP_ONCE, w, t, err);
+	for (int i = 1; i < n && ok; i++) {
+		ok = read_round(&other, &start[i], STRIP_ONCE, w, t, err);
+		if (ok && other.worth > best.worth) {
+			const struct reading was = best;
+			best = other;
+			other = was;
+		}
 	}
 	const int reads = t->conf->trial.reads;
 	for (int k = 1; k < reads && ok && best.seen; k++) {
 		const struct ellipse from = best.e;
-		ok = read_round(1, (struct reading *const[1]){ &best }, &from, k + 1 == reads ? STRIP_MIRRORED : STRIP_ONCE, w, t, err);
+		ok = read_round(&best, &from, k + 1 == reads ? STRIP_MIRRORED : STRIP_ONCE, w, t, err);
 		w->moved = ellipse_apart(&best.e, &from);
 	}
 	if (ok && best.seen) {
-		const struct ellipse from = best.e;
-		ok = read_round(1, (struct reading *const[1]){ &other }, &from, STRIP_BLIND, w, t, err);
+		ok = read_round(&other, &best.e, STRIP_BLIND, w, t, err);
 		w->blind = other.seen ? ellipse_apart(&other.e, &best.e) : best.e.a;
 	}
 	free(other.strip);

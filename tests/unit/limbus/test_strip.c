@@ -164,7 +164,7 @@ static struct ellipse answer(const struct world *w, const struct photo *photo, c
 	struct region_map map = region_map_make(&evidence);
 	const double sigma[ELLIPSE_N] = { 0.1 * e.a, 0.1 * e.a, 0.1 * e.a, 0.05 * e.a, 0.05 * e.a };
 	for (int k = 0; k < 3; k++) {
-		assert_true(strip_read(1, &s, w->net, photo, &evidence, &e, STRIP_MIRRORED, &conf, &err));
+		assert_true(strip_read(s, w->net, photo, &evidence, &e, STRIP_MIRRORED, &conf, &err));
 		assert_true(strip_fit(&e, &fit, s, &map, sigma));
 	}
 	free(s);
