@@ -27,10 +27,6 @@ TOLERANCES = (0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1)
 TRAITS, FAR = 36, 4.0   # spreads: farther off than that is as far
 
 
-def counts(kind):
-    return 1 if kind in ('drawn', 'other') else HEADS if kind == 'heads' else RARE
-
-
 def read(paths):
     x, error, key, w = [], [], [], []
     for path in paths:
@@ -40,7 +36,7 @@ def read(paths):
             x.append([float(v) for v in row[5:5 + TRAITS]])
             error.append(float(row[3]))
             key.append((path, row[0], row[1]))
-            w.append(counts(row[0]))
+            w.append(1 if row[0] in ('drawn', 'other') else HEADS if row[0] == 'heads' else RARE)
     x = np.array(x)
     x[~np.isfinite(x)] = 0
     return x, np.array(error), key, np.array(w, float)
@@ -53,7 +49,9 @@ class Net(nn.Module):
         super().__init__()
         mean, spread = x.mean(0), x.std(0)
         spread[spread == 0] = 1
-        self.even = within(mean, spread)
+        # spreads below the mean, at most FAR: OpenCV reads no clamp of this kind, but two rectifiers
+        self.even = nn.Sequential(fixed(np.diag(1 / spread), FAR - mean / spread), nn.ReLU(), fixed(-np.eye(TRAITS), np.full(TRAITS, 2 * FAR)), nn.ReLU(),
+                                  fixed(np.eye(TRAITS), np.full(TRAITS, -FAR)))
         self.first = nn.Conv2d(TRAITS, NETS * UNITS, 1)
         self.second = nn.Conv2d(NETS * UNITS, NETS * UNITS, 1, groups=NETS)
         self.last = nn.Conv2d(NETS * UNITS, NETS * len(TOLERANCES), 1, groups=NETS)
@@ -64,12 +62,6 @@ class Net(nn.Module):
 
     def forward(self, x):
         return self.mean(self.each(x))
-
-
-def within(mean, spread):
-    """Spreads below the mean, at most FAR: OpenCV reads no clamp of this kind, but two rectifiers."""
-    return nn.Sequential(fixed(np.diag(1 / spread), FAR - mean / spread), nn.ReLU(), fixed(-np.eye(TRAITS), np.full(TRAITS, 2 * FAR)), nn.ReLU(),
-                         fixed(np.eye(TRAITS), np.full(TRAITS, -FAR)))
 
 
 def fixed(weight, bias):
@@ -168,21 +160,16 @@ def figures(odds, error, key):
                   % (len(best), len(on), most, tolerance, (error[on] >= tolerance).sum(), gross[gross < most].sum(), (error[on] >= 0.06).sum()))
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument('--start')
-    parser.add_argument('--out')
-    parser.add_argument('traits', nargs='+')
-    args = parser.parse_args()
-    x, error, key, w = read(args.traits)
-    if args.start:
-        net = Net(x).eval()
-        read_back(net, args.start)
-        told(odds_by(net, x), error, key)
-    held_out(x, error, key, w, args.start)
-    if args.out:
-        weights.export(train(x, error, w, 0, args.start), args.out, 1, 1, planes=TRAITS)
-
-
-if __name__ == '__main__':
-    main()
+parser = argparse.ArgumentParser()
+parser.add_argument('--start')
+parser.add_argument('--out')
+parser.add_argument('traits', nargs='+')
+args = parser.parse_args()
+x, error, key, w = read(args.traits)
+if args.start:
+    net = Net(x).eval()
+    read_back(net, args.start)
+    told(odds_by(net, x), error, key)
+held_out(x, error, key, w, args.start)
+if args.out:
+    weights.export(train(x, error, w, 0, args.start), args.out, 1, 1, planes=TRAITS)
