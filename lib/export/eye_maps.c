@@ -80,19 +80,16 @@ static float film_roughness(double rho)
 	return (float)sqrt(alpha);
 }
 
-/* What the sclera looks like at a point of its surface: albedo with the dark rim; normal: that of the rippled film. The renderer lets light
- * bleed below the surface, by channel, towards its mean over all directions; a program without that gets it as a tint, as it is in light
- * that comes evenly from the half of space that the eye looks into: (1 + cos) / 2 of it falls on a normal, half of it on their mean. */
+/* What the sclera looks like at a point of its surface: albedo with the dark rim; normal: that of the rippled film. */
 static void white_at(float rgb[3], double normal[3], const struct scene *s, const double at[3])
 {
-	static const float rim[3] = { LOOK_RIM_DARK }, bleed[3] = { LOOK_BLEED };
+	static const float rim[3] = { LOOK_RIM_DARK };
 	double rho = at[2] < s->sclera_z ? export_rho(s, at[0], at[1]) : 2, n[3];
 	export_normal(n, s, at);
 	float bent[3] = { (float)n[0], (float)n[1], (float)n[2] }, edge = 1 - smooth((float)LOOK_RIM_FROM, (float)LOOK_RIM_TO, (float)rho);
-	float even = fminf(1 / fmaxf(1 - (float)n[2], 0.5f), 1);
 	scene_sclera(rgb, bent, s, (float[3]){ (float)at[0], (float)at[1], (float)at[2] });
 	for (int c = 0; c < 3; c++) {
-		rgb[c] *= (1 - rim[c] * edge * edge) * (1 + bleed[c] * (even - 1));
+		rgb[c] *= 1 - rim[c] * edge * edge;
 		normal[c] = bent[c];
 	}
 }

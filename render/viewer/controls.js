@@ -97,7 +97,7 @@ class Controls extends Address {
 			return;
 		by_id("busy").textContent = "Opening…";
 		try {
-			const light = panorama.made(await panorama.read(file), file.name.replace(/\.[^.]*$/, ""), this.eye.lights[0]);
+			const light = panorama.made(await panorama.read(file), file.name.replace(/\.[^.]*$/, ""), this.eye.lights[0], this.eye.constants.wet_lobe);
 			light.sharp_map = this.graphics.light(light.sharp);
 			light.rough_map = this.graphics.light(light.rough);
 			const scenes = [this.scene, ...Object.values(this.others || {})];

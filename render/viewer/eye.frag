@@ -6,24 +6,25 @@ vec3 environment(vec3 r, float rough)
 	return mix(textureLod(sharp_map, u, 0.0).rgb, textureLod(rough_map, u, 0.0).rgb, rough);
 }
 
-vec3 irradiance(vec3 normal)
+// As envmap_wet_at.
+vec3 below_film(vec3 normal)
 {
 	vec3 d = env_from_eye * normal;
-	return max(quadric[0] + quadric[1] * d.x + quadric[2] * d.y + quadric[3] * d.z + quadric[4] * (d.x * d.y)
-	           + quadric[5] * (d.y * d.z) + quadric[6] * (d.z * d.z) + quadric[7] * (d.x * d.z)
-	           + quadric[8] * (d.x * d.x - d.y * d.y), 0.0);
+	float x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z, yz = y * z;
+	vec3 quartic = xx * (xx * wet_light[3] + x * (y * wet_light[4] + z * wet_light[5]) + yy * wet_light[6] + yz * wet_light[7] + zz * wet_light[8]) + x * (yy * (y * wet_light[9] + z * wet_light[10]) + zz * (y * wet_light[11] + z * wet_light[12]))
+	               + yy * (yy * wet_light[13] + yz * wet_light[14] + zz * wet_light[15]) + zz * (yz * wet_light[16] + zz * wet_light[17]);
+	return max(x * wet_light[0] + y * wet_light[1] + z * wet_light[2] + quartic, 0.0);
 }
 
-// The white of the eye: diffuse, softened by what scatters below the surface; its film's ripples turn the normal.
+// The white of the eye: diffuse below its film, whose ripples turn the normal.
 vec3 white(inout vec3 normal, vec3 at, float rho)
 {
-	vec3 direct = irradiance(normal), d = at - vec3(0.0, 0.0, sclera.x);
+	vec3 light = below_film(normal), d = at - vec3(0.0, 0.0, sclera.x);
 	float flat_ = length(d.xy), r = atan(flat_, -d.z) / sclera_reach;
 	vec2 u = 0.5 + 0.5 * r * d.xy / max(flat_, 1e-6);
 	vec3 albedo = textureLod(vein_map, u, 0.0).rgb;
 	normal = normalize(normal + vec3(textureLod(film_map, u, 0.0).rg, 0.0));
 	float edge = 1.0 - step_smooth(LOOK_RIM_FROM, LOOK_RIM_TO, rho);
-	vec3 light = direct + vec3(LOOK_BLEED) * (even - direct);
 	return albedo * light * (1.0 - vec3(LOOK_RIM_DARK) * edge * edge);
 }
 

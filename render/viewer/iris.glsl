@@ -13,7 +13,7 @@ uniform vec2 heights;
 uniform int search;               // steps of the search for the relief
 uniform sampler2D colour_map, light_map, tint_map, vein_map, film_map, sharp_map, rough_map;
 uniform float detail;
-uniform vec3 quadric[9], even;    // irradiance of the environment
+uniform vec3 wet_light[18];          // irradiance below a film: lib/image/envmap/envmap.h
 uniform float mirror_on, tear;
 out vec4 seen;
 

@@ -262,7 +262,30 @@ const panorama = (() => {
 			}
 		const factor = [0.282094791773878, 0.48860251190292, 0.48860251190292, 0.48860251190292, 1.092548430592079, 1.092548430592079, 0.94617469575756, 1.092548430592079, 0.54627421529604];
 		const terms = [0, 3, 1, 2, 4, 5, 6, 7, 8].map((from, k) => sh[from].map((v, c) => factor[k] * v - (k ? 0 : 0.31539156525252 * sh[6][c])));
-		return { terms, even: sh[0].map(v => 0.282094791773878 * v) };
+		return terms;
+	}
+
+	/* Light below a film of water, lib/image/envmap/envmap.c: the lobe round the normal as a polynomial of degree 4. */
+	function wet(map, lobe) {
+		const powers = [], key = k => k.join(), sum = {}, line = [0, 1, 2].map(() => [0, 0, 0]);
+		for (let a = 4; a >= 0; a--)
+			for (let b = 4 - a; b >= 0; b--)
+				powers.push([a, b, 4 - a - b]);
+		powers.forEach(k => { sum[key(k)] = [0, 0, 0]; });
+		for (let y = 0; y < map.height; y++)
+			for (let x = 0; x < map.width; x++) {
+				const d = direction((x + 0.5) / map.width, (y + 0.5) / map.height), w = solid(map, y) / Math.PI, i = 3 * (y * map.width + x);
+				for (let c = 0; c < 3; c++) {
+					d.forEach((v, k) => { line[k][c] += v * w * map.rgb[i + c]; });
+					powers.forEach(k => { sum[key(k)][c] += d[0] ** k[0] * d[1] ** k[1] * d[2] ** k[2] * w * map.rgb[i + c]; });
+				}
+			}
+		const axes = [[2, 0, 0], [0, 2, 0], [0, 0, 2]], with_ = (k, s, e) => k.map((v, i) => v + s * e[i]), some = k => k.every(v => v >= 0);
+		const moment = (k, c) => !some(k) ? 0 : k[0] + k[1] + k[2] < 4 ? axes.reduce((s, e) => s + moment(with_(k, 1, e), c), 0) : sum[key(k)][c];
+		const factorial = [1, 1, 2, 6, 24], ways = k => some(k) ? factorial[k[0] + k[1] + k[2]] / k.reduce((p, v) => p * factorial[v], 1) : 0;
+		return [...line.map(v => v.map(u => lobe[1] * u)), ...powers.map(k => [0, 1, 2].map(c => lobe[3] * ways(k) * sum[key(k)][c]
+			+ axes.reduce((s, e) => s + lobe[2] * ways(with_(k, -1, e)) * moment(with_(k, -1, e), c), 0)
+			+ (k.every(v => v % 2 === 0) ? lobe[0] * ways(k.map(v => v / 2)) * moment([0, 0, 0], c) : 0)))];
 	}
 
 	function level(map) {
@@ -310,15 +333,14 @@ const panorama = (() => {
 		return sum.map(v => total > 0 ? v / total : 0);
 	}
 
-	/* like: a light of the page, whose numbers of beams and directions are taken. */
-	function made(picture, name, like) {
+	/* like: a light of the page, whose numbers of beams and directions are taken; lobe_of_wet: the page's constants.wet_lobe. */
+	function made(picture, name, like, lobe_of_wet) {
 		const map = coarse(picture, ROWS), few = coarse(map, COARSE), gain = 1 / level(few);
 		need(Number.isFinite(gain), "no light comes from in front of the eye");
 		for (const m of new Set([map, few]))
 			m.rgb.forEach((v, i) => { m.rgb[i] = v * gain; });
 		const low = coarse(few, LOW), dirs = Array.from({ length: low.width * low.height }, (_, i) => direction((i % low.width + 0.5) / low.width, (Math.floor(i / low.width) + 0.5) / low.height));
-		const { terms, even } = quadric(few);
-		return { name, opened: true, beams: like.beams, lights: lights(few, like.lights.length, false), skies: lights(few, 8, true), quadric: terms, even,
+		return { name, opened: true, beams: like.beams, lights: lights(few, like.lights.length, false), skies: lights(few, 8, true), quadric: quadric(few), wet: wet(few, lobe_of_wet),
 			sharp: unfolded(2 * map.height, d => looked_up(map, d)), rough: unfolded(ROUGH, d => lobe(low, dirs, d)) };
 	}
 	return { read, made };

@@ -251,7 +251,7 @@ class EyeScene {
 		const all = { ...solved, ...ways, ...this.maps, sclera_reach: data.constants.sclera_reach,
 			sharp_map: light.sharp_map || this.lights[0].sharp_map, rough_map: light.rough_map || this.lights[0].rough_map,
 			light_map: this.shades[name].map, detail: s.detail,
-			quadric: light.quadric.flat().map(v => v * s.light_gain), even: light.even.map(v => v * s.light_gain),
+			wet_light: light.wet.flat().map(v => v * s.light_gain),
 			mirror_on: light.sharp_map ? s.light_gain : 0, tear: s.tear, ...extra };
 		const same = g.exact && !jitter[0] && !jitter[1] && (seen.key === key || seen.found === key);
 		if (same && seen.found !== key)

@@ -74,10 +74,19 @@ function exr(compression, method) {
 	return Buffer.concat([head, table, ...blocks]);
 }
 
+/* Light below a film in three directions and between two of them, less what it is in closed form: the mean, and of the slope the mean over all
+ * directions of 3 cos lobe(cos) over that of the lobe, cos (1 - F) (3 - cos') on the lit side. */
+function below_film(wet, c, gain) {
+	const F = u => { const t = Math.sqrt(1 - (1 - u * u) / 1.336 ** 2), s = (u - 1.336 * t) / (u + 1.336 * t), p = (1.336 * u - t) / (1.336 * u + t); return (s * s + p * p) / 2; };
+	const mean = power => Array.from({ length: 4000 }, (_, i) => (i + 0.5) / 4000).reduce((s, u) => s + u ** power * (1 - F(u)) * (3 - Math.sqrt(1 - (1 - u * u) / 1.336 ** 2)) / 4000, 0);
+	const slope = mean(2) / mean(1), w = wet.map(v => v[c]), right = n => gain * (MEAN[c] + slope * n.reduce((s, v, k) => s + v * SLOPE[c][k], 0)), r = Math.SQRT1_2;
+	return [w[0] + w[3] - right([1, 0, 0]), w[1] + w[13] - right([0, 1, 0]), w[2] + w[17] - right([0, 0, 1]), r * (w[0] + w[1]) + (w[3] + w[4] + w[6] + w[9] + w[13]) / 4 - right([r, r, 0])];
+}
+
 async function give(b, name, bytes) {
 	await b.value(`eyewright.open_surroundings(new File([Uint8Array.from(atob(${JSON.stringify(bytes.toString("base64"))}), c => c.charCodeAt(0))], ${JSON.stringify(name)}))`, 60000);
 	return JSON.parse(await b.value(`JSON.stringify({ said: document.getElementById("busy").textContent, light: eyewright.light, lights: eyewright.eye.lights.map(l => l.name),
-		own: (l => l && { quadric: l.quadric, even: l.even, sum: l.lights.reduce((s, v) => [0, 1, 2].map(c => s[c] + v[3 + c]), [0, 0, 0]), n: l.lights.length })(eyewright.eye.lights.find(l => l.opened)) })`));
+		own: (l => l && { quadric: l.quadric, wet: l.wet, sum: l.lights.reduce((s, v) => [0, 1, 2].map(c => s[c] + v[3 + c]), [0, 0, 0]), n: l.lights.length })(eyewright.eye.lights.find(l => l.opened)) })`));
 }
 
 (async () => {
@@ -91,7 +100,7 @@ async function give(b, name, bytes) {
 		say(["Studio", "Window", "Overcast sky"].every(n => bundled.includes(n)), "three surroundings are bundled", bundled.join());
 		const gain = 1 / ((MEAN.reduce((s, v) => s + v) - 2 / 3 * SLOPE.reduce((s, v) => s + v[2], 0)) / 3);
 		for (const [name, bytes] of [["a.hdr", hdr()], ["b.exr", exr(3)], ["c.exr", exr(0)]]) {
-			const got = await give(b, name, bytes), off = got.own ? [0, 1, 2].flatMap(c => [got.own.even[c] - gain * MEAN[c], got.own.quadric[0][c] - gain * MEAN[c], got.own.sum[c] - 4 * gain * MEAN[c],
+			const got = await give(b, name, bytes), off = got.own ? [0, 1, 2].flatMap(c => [...below_film(got.own.wet, c, gain), got.own.quadric[0][c] - gain * MEAN[c], got.own.sum[c] - 4 * gain * MEAN[c],
 				...[0, 1, 2].map(k => got.own.quadric[1 + k][c] - 2 / 3 * gain * SLOPE[c][k]), ...got.own.quadric.slice(4).map(q => q[c])]) : [Infinity];
 			say(got.said === "" && Math.max(...off.map(Math.abs)) < 0.01, `${name}: the light of a linear sky is known`, JSON.stringify(got));
 			say(got.lights[got.light] === name[0] && got.lights.length === bundled.length + 1, `${name}: it is what the eye stands in, in place of the last file`, got.lights.join());

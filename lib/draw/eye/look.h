@@ -12,8 +12,6 @@
 #define LOOK_FILM_ROUGH 0.75
 #define LOOK_FILM_FROM 1.0
 #define LOOK_FILM_TO 1.35
-// Light that scatters below the white's surface, most in the red.
-#define LOOK_BLEED 0.38, 0.26, 0.20
 // Next to the limbus the sclera thins out over the dark of the chamber's angle: how much darker, and from where to where.
 #define LOOK_RIM_DARK 0.36, 0.31, 0.25
 #define LOOK_RIM_FROM 0.97

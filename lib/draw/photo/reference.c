@@ -30,7 +30,7 @@ void shot_unlight(double rgb[3], const struct shot *shot, const struct eye *eye,
 		for (int i = 0; i < 3; i++)
 			cam[i] = (float)(shot->fit.cam_from_eye[i][0] * n[0] + shot->fit.cam_from_eye[i][1] * n[1]
 			                 + shot->fit.cam_from_eye[i][2] * n[2]);
-		envmap_irradiance(light, &shot->env, cam);
+		envmap_wet(light, &shot->env, cam);
 		for (int c = 0; c < 3; c++)
 			mean[c] += light[c] / TURNS;
 	}

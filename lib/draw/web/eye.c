@@ -217,7 +217,7 @@ json_t *web_eye(const struct web_source *source, struct err *err)
 	json_t *out = json_object(), *part[PARTS];
 	struct err errs[PARTS] = { 0 };
 	json_object_set_new(out, "side", template_text(source->side));
-	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:f,s:f,s:f,s:i,s:i}", "own_width", s->conf.own_width, "ratio_most", s->conf.ratio_most, "ratio_chroma", s->conf.ratio_chroma, "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:f,s:f,s:f,s:i,s:i,s:o}", "own_width", s->conf.own_width, "ratio_most", s->conf.ratio_most, "ratio_chroma", s->conf.ratio_chroma, "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE, "wet_lobe", json_numbers(4, envmap_wet_lobe)));
 	json_object_set_new(out, "eye", geometry(s, source->gain, pupil_sigma(source)));
 	json_object_set_new(out, "tissue", web_tissue(source));
 #pragma omp parallel for schedule(dynamic, 1)

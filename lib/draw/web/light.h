@@ -5,8 +5,8 @@
 
 #include "draw/web/source.h"
 
-/* {name, beams, lights, skies, quadric, even} and, where the cornea mirrors it, {sharp, rough}: its beams and directions, those
- * that the skin mirrors, its irradiance as a quadric of the normal, its mean, its two maps for reflections.
+/* {name, beams, lights, skies, quadric, wet} and, where the cornea mirrors it, {sharp, rough}: its beams and directions, those
+ * that the skin mirrors, its irradiance as a quadric of the normal, that below a film (envmap_wet), its two maps for reflections.
  * mirror  what the cornea mirrors; null: nothing
  * source  beams, and directions in each
  * json_decref. */

@@ -20,11 +20,77 @@ static void harmonics(double y[9], const double d[3])
 	y[8] = 0.546274215296040 * (d[0] * d[0] - d[1] * d[1]);
 }
 
+/* The Legendre series, to degree 4, of c (1 - F(c)) (3 - c') for c > 0 and 0 below, c' the cosine of the bent ray, over its mean and times that of c:
+ * 0.25, 0.507135, 0.325901, -0.0049, -0.126919. Degree 3 is left out. */
+const double envmap_wet_lobe[4] = { 0.25 - 0.325901 / 2 - 3 * 0.126919 / 8, 0.507135, 3 * 0.325901 / 2 + 30 * 0.126919 / 8, -35 * 0.126919 / 8 };
+
+enum { QUARTIC = ENVMAP_WET - 3 };
+static const int power[QUARTIC][3] = { { 4, 0, 0 }, { 3, 1, 0 }, { 3, 0, 1 }, { 2, 2, 0 }, { 2, 1, 1 }, { 2, 0, 2 }, { 1, 3, 0 }, { 1, 2, 1 },
+	                                   { 1, 1, 2 }, { 1, 0, 3 }, { 0, 4, 0 }, { 0, 3, 1 }, { 0, 2, 2 }, { 0, 1, 3 }, { 0, 0, 4 } };
+
+/* Adds up a direction's coordinates and their quartic products. */
+static void moments_add(double sum[ENVMAP_WET][3], const double d[3], double angle, const float rgb[3])
+{
+	double of[3][5];
+	for (int i = 0; i < 3; i++) {
+		of[i][0] = 1;
+		for (int j = 0; j < 4; j++)
+			of[i][j + 1] = of[i][j] * d[i];
+	}
+	for (int k = 0; k < ENVMAP_WET; k++) {
+		const int *p = power[k < 3 ? 0 : k - 3];
+		double share = angle / M_PI * (k < 3 ? d[k] : of[0][p[0]] * of[1][p[1]] * of[2][p[2]]);
+		for (int c = 0; c < 3; c++)
+			sum[k][c] += share * (double)rgb[c];
+	}
+}
+
+/* Of the moments: that of the product with those powers, of degree 4, 2 or 0. Directions are unit: a missing pair of powers is any axis'. */
+static double moment(const double sum[ENVMAP_WET][3], int c, int x, int y, int z)
+{
+	if (x < 0 || y < 0 || z < 0)
+		return 0;
+	if (x + y + z < 4)
+		return moment(sum, c, x + 2, y, z) + moment(sum, c, x, y + 2, z) + moment(sum, c, x, y, z + 2);
+	for (int k = 0; k < QUARTIC; k++)
+		if (power[k][0] == x && power[k][1] == y)
+			return sum[3 + k][c];
+	return 0;
+}
+
+static double multinomial(int x, int y, int z)
+{
+	static const double factorial[] = { 1, 1, 2, 6, 24 };
+	return x < 0 || y < 0 || z < 0 ? 0 : factorial[x + y + z] / (factorial[x] * factorial[y] * factorial[z]);
+}
+
+/* env->wet: the lobe summed over all directions. n . n = 1 makes up for the powers that its lower terms lack. */
+static void wet_make(struct envmap *env, const double sum[ENVMAP_WET][3])
+{
+	for (int c = 0; c < 3; c++) {
+		const double all = moment(sum, c, 0, 0, 0);
+		for (int k = 0; k < 3; k++)
+			env->wet[k][c] = (float)(envmap_wet_lobe[1] * sum[k][c]);
+		for (int k = 0; k < QUARTIC; k++) {
+			const int x = power[k][0], y = power[k][1], z = power[k][2];
+			double v = envmap_wet_lobe[3] * multinomial(x, y, z) * sum[3 + k][c];
+			for (int i = 0; i < 3; i++) {
+				const int a = x - 2 * (i == 0), b = y - 2 * (i == 1), d = z - 2 * (i == 2);
+				v += envmap_wet_lobe[2] * multinomial(a, b, d) * moment(sum, c, a, b, d);
+			}
+			if (x % 2 == 0 && y % 2 == 0 && z % 2 == 0)
+				v += envmap_wet_lobe[0] * multinomial(x / 2, y / 2, z / 2) * all;
+			env->wet[3 + k][c] = (float)v;
+		}
+	}
+}
+
 /* Ramamoorthi and Hanrahan 2001: the cosine lobe in degrees 0, 1, 2 is 1, 2/3, 1/4 (times pi). */
 static void project(struct envmap *env)
 {
 	static const double lobe[9] = { 1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25 };
 	struct image map = envmap_coarse(&env->map, ENVMAP_ROWS);
+	double moments[ENVMAP_WET][3] = { 0 };
 	memset(env->sh, 0, sizeof env->sh);
 	for (int y = 0; y < map.height; y++) {
 		double w = envmap_solid_angle(&map, y);
@@ -35,9 +101,11 @@ static void project(struct envmap *env)
 			for (int k = 0; k < 9; k++)
 				for (int c = 0; c < 3; c++)
 					env->sh[k][c] += lobe[k] * h[k] * w * image_at(&map, x, y)[c];
+			moments_add(moments, d, w, image_at(&map, x, y));
 		}
 	}
 	image_free(&map);
+	wet_make(env, moments);
 	// harmonics() again, sorted by powers.
 	static const double factor[9] = { 0.282094791773878, 0.488602511902920, 0.488602511902920, 0.488602511902920,
 		                              1.092548430592079, 1.092548430592079, 0.946174695757560, 1.092548430592079,
@@ -158,6 +226,12 @@ void envmap_irradiance(float rgb[3], const struct envmap *env, const float n[3])
 	}
 }
 
+void envmap_wet(float rgb[3], const struct envmap *env, const float n[3])
+{
+	for (int c = 0; c < 3; c++)
+		rgb[c] = envmap_wet_at(&env->wet[0][c], 3, n[0], n[1], n[2]);
+}
+
 double envmap_level(const struct envmap *env)
 {
 	// Degrees 0 to 2 approximate the irradiance of a narrow light badly; here the cosine is summed exactly.
@@ -185,6 +259,9 @@ void envmap_scale(struct envmap *env, double k)
 			env->sh[i][c] *= k;
 			env->quadric[i][c] *= (float)k;
 		}
+	for (int i = 0; i < ENVMAP_WET; i++)
+		for (int c = 0; c < 3; c++)
+			env->wet[i][c] *= (float)k;
 }
 
 static struct image tinted(const struct image *from, const double k[3])
@@ -200,12 +277,15 @@ struct envmap envmap_tinted(const struct envmap *env, const double k[3])
 {
 	// a bend is a sum over the channels: no greater than the largest factor makes it
 	const double most = fmax(k[0], fmax(k[1], k[2])), bend[3] = { most, most, most };
-	struct envmap out = { tinted(&env->map, k), tinted(&env->sharp, k), tinted(&env->rough, k), tinted(&env->bend, bend), { { 0 } }, { { 0 } } };
+	struct envmap out = { tinted(&env->map, k), tinted(&env->sharp, k), tinted(&env->rough, k), tinted(&env->bend, bend), { { 0 } }, { { 0 } }, { { 0 } } };
 	for (int i = 0; i < 9; i++)
 		for (int c = 0; c < 3; c++) {
 			out.sh[i][c] = env->sh[i][c] * k[c];
 			out.quadric[i][c] = env->quadric[i][c] * (float)k[c];
 		}
+	for (int i = 0; i < ENVMAP_WET; i++)
+		for (int c = 0; c < 3; c++)
+			out.wet[i][c] = env->wet[i][c] * (float)k[c];
 	return out;
 }
 

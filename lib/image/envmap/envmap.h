@@ -8,7 +8,7 @@
 #define IMAGE_ENVMAP_ENVMAP_H
 #include "image/image.h"
 
-enum { ENVMAP_BLOCK = 8 };
+enum { ENVMAP_BLOCK = 8, ENVMAP_WET = 18 };
 
 struct envmap {
 	struct image map;    // [height][2 height][3]; owned
@@ -17,6 +17,7 @@ struct envmap {
 	struct image bend;   // greatest second difference in sharp, summed over channels, by blocks of ENVMAP_BLOCK px
 	double sh[9][3];     // irradiance over pi, spherical harmonics to degree 2 (cosine lobe folded in)
 	float quadric[9][3]; // the same as a polynomial in x, y, z: 1 x y z xy yz zz xz xx-yy
+	float wet[ENVMAP_WET][3];  // irradiance over pi below a film of water: envmap_wet
 };
 
 /* A rectangular source: direction of its middle (unit), half-widths across and upwards, radiance. */
@@ -66,6 +67,28 @@ void envmap_at(float rgb[3], const struct envmap *env, const float dir[3], float
 
 /* Irradiance over pi of a plane with that unit normal, from the spherical harmonics (Ramamoorthi and Hanrahan 2001). */
 void envmap_irradiance(float rgb[3], const struct envmap *env, const float normal[3]);
+
+/* Light that comes back out of a white of the eye with that unit normal, over what comes back where light is the same from everywhere, by the normal of where it
+ * went in. Of light with the cosine c the tear film (index 1.336) lets c (1 - F(c)) in, and of what is bent to c' more comes back the more it slants:
+ * as 3 - c' (photons in a shell of 0.6 mm before the dark of the choroid: tests/peers/sclera_photons.h). It spreads by half a millimetre, of the 12 that the eye is in
+ * radius: that is left out. Expanded to degree 4: off by at most 0.06 of what a lamp gives where it stands overhead. */
+void envmap_wet(float rgb[3], const struct envmap *env, const float normal[3]);
+
+/* Its lobe: light whose direction has the cosine c with the normal counts lobe[0] + lobe[1] c + lobe[2] c^2 + lobe[3] c^4. */
+extern const double envmap_wet_lobe[4];
+
+/* The polynomial env->wet at a normal, by one channel's coefficients, `stride` apart: x y z xxxx xxxy xxxz xxyy xxyz xxzz xyyy xyyz xyzz xzzz yyyy yyyz yyzz
+ * yzzz zzzz. */
+static inline float envmap_wet_at(const float *p, int stride, float x, float y, float z)
+{
+#define P(k) p[(k) * stride]
+	float xx = x * x, yy = y * y, zz = z * z, yz = y * z;
+	float quartic = xx * (xx * P(3) + x * (y * P(4) + z * P(5)) + yy * P(6) + yz * P(7) + zz * P(8)) + x * (yy * (y * P(9) + z * P(10)) + zz * (y * P(11) + z * P(12)))
+	                + yy * (yy * P(13) + yz * P(14) + zz * P(15)) + zz * (yz * P(16) + zz * P(17));
+	float light = x * P(0) + y * P(1) + z * P(2) + quartic;
+#undef P
+	return light > 0 ? light : 0;
+}
 
 /* Directional lights by median cut (Debevec 2005): n = 2^k regions of equal energy, each as one light; together they carry all of
  * the map's energy. lights: [n], n <= ENVMAP_LIGHTS_MAX. Returns how many: black regions are left out. */

@@ -1,12 +1,15 @@
 /* render: lights, their ways into the eye and the march against closed forms. */
+#include "base/mem.h"
 #include "bridge/imf_read.h"
 #include "draw/eye/march/paths_flat.h"
 #include "math/rng.h"
+#include "math/vec.h"
 #include "optics/lightpath/lightpath.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/scenes/plain_scene.h"
 #include "tests/lib/unit.h"
 #include "tests/peers/lightpath_gain.h"
+#include "tests/peers/sclera_photons.h"
 
 /* An even surrounding of radiance 1 gives every plane irradiance pi, whichever way that is reckoned. */
 static void even_light(void **state)
@@ -29,6 +32,8 @@ static void even_light(void **state)
 			d[c] /= len;
 		envmap_irradiance(rgb, &env, d);
 		assert_float_equal(rgb[0], 1, 1e-3);  // light is summed over pixels of 2.8 degrees
+		envmap_wet(rgb, &env, d);
+		assert_float_equal(rgb[0], 1, 1e-3);
 		envmap_at(rgb, &env, d, 0.5f);
 		assert_float_equal(rgb[2], 1, 1e-4);
 	}
@@ -45,6 +50,41 @@ static void even_light(void **state)
 		assert_float_equal(rgb[0], 1, 2e-3);  // the level itself is summed over pixels of 2.8 degrees
 	}
 	envmap_free(&env);
+}
+
+/* The white of the eye under one lamp, lit side, terminator and dark side, is what photons make of it: blue, green and red light, thin and thick shells. */
+static void white_by_photons(void **state)
+{
+	(void)state;
+	enum { ZONES = 36 };
+	static const struct sclera_shell shell[] = { { 11.8, 0.6, 4.4, 0.06, 0.9, 1.336 }, { 11.8, 0.6, 3.0, 0.04, 0.9, 1.336 }, { 11.8, 0.9, 2.6, 0.02, 0.9, 1.336 }, { 11.8, 0.45, 2.6, 0.02, 0.8, 1.336 } };
+	const double lamp[3] = { 0.6, -0.48, -0.64 }, dark[3] = { 0 };
+	struct envmap_box box = { { lamp[0], lamp[1], lamp[2] }, { 0.03, 0.03 }, { 1000, 1000, 1000 } };
+	struct envmap env = envmap_room(256, dark, dark, 1, 1, &box), twice = envmap_tinted(&env, (double[3]){ 1, 2, 0.5 });
+	for (int k = 0; k < COUNT(shell); k++) {
+		double truth[ZONES], mean = 0, worst = 0;
+		assert_true(sclera_photons(truth, ZONES, &shell[k], 150000, 7 + (uint64_t)k) > 0.2);
+		float seen[ZONES][3];
+		for (int i = 0; i < ZONES; i++) {
+			double t = M_PI * (i + 0.5) / ZONES, side[3], n[3], area = 0.5 * (cos(M_PI * i / ZONES) - cos(M_PI * (i + 1) / ZONES));
+			vec_cross(side, lamp, (double[3]){ 0, 0, 1 });
+			vec_unit(side, side);
+			for (int c = 0; c < 3; c++)
+				n[c] = cos(t) * lamp[c] + sin(t) * side[c];
+			float normal[3] = { (float)n[0], (float)n[1], (float)n[2] }, other[3];
+			envmap_wet(seen[i], &env, normal);
+			envmap_wet(other, &twice, normal);
+			assert_float_equal(other[1], 2 * seen[i][1], 1e-5 * seen[i][1]);
+			mean += area * (double)seen[i][1];
+		}
+		for (int i = 0; i < ZONES; i++) {
+			worst = fmax(worst, fabs(seen[i][1] / mean - truth[i]) / truth[1]);  // of what the lamp gives overhead: the first zone has few photons
+		}
+		print_message("white, %.2f mm, %.1f/mm: off by %.3f of the light overhead at most\n", shell[k].thickness, shell[k].scatter, worst);
+		assert_true(worst < 0.1);
+	}
+	envmap_free(&env);
+	envmap_free(&twice);
 }
 
 /* A lamp is found again where it stands, and as the brightest light. */
@@ -268,6 +308,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(even_light),
+		cmocka_unit_test(white_by_photons),
 		cmocka_unit_test(one_lamp),
 		cmocka_unit_test(strange_maps),
 		cmocka_unit_test(march_closed_form),

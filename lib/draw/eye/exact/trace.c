@@ -90,21 +90,17 @@ static void add_mirror(float rgb[3], const struct spot *p, const struct scene_lo
 		rgb[c] += f * seen[c];
 }
 
-/* The white of the eye: diffuse, softened by subsurface scattering, most in the red. */
+/* The white of the eye: diffuse below its film. Light spreads by half a millimetre in it, of 12 that the eye is in radius: no shade changes with that. */
 static void sclera_colour(float rgb[3], struct spot *p, const struct scene *s, const struct scene_look *look)
 {
-	static const float bleed[3] = { LOOK_BLEED };
-	float albedo[3], cam[3], direct[3];
+	float albedo[3], cam[3], light[3];
 	to_cam(cam, look, p->normal);
-	envmap_irradiance(direct, look->light->env, cam);
+	envmap_wet(light, look->light->env, cam);
 	scene_sclera(albedo, p->normal, s, p->at);
 	// Next to the limbus the sclera thins out over the dark of the chamber's angle: cooler and darker.
 	float edge = 1 - smooth(LOOK_RIM_FROM, LOOK_RIM_TO, p->rho), rim[3] = { LOOK_RIM_DARK };
-	for (int c = 0; c < 3; c++) {
-		float even = (float)(look->light->env->sh[0][c] * 0.282094791773878);
-		float light = direct[c] + bleed[c] * (even - direct[c]);
-		rgb[c] = albedo[c] * light * (1 - rim[c] * edge * edge);
-	}
+	for (int c = 0; c < 3; c++)
+		rgb[c] = albedo[c] * light[c] * (1 - rim[c] * edge * edge);
 }
 
 static void iris_colour(float rgb[3], const struct scene *s, const struct scene_level *level, float soft,

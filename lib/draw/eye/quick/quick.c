@@ -107,21 +107,21 @@ void quick_outside(struct quick_spots *s, const struct quick_rays *r, const stru
 	(k->two ? outside_two : outside_one)(s, r, k);
 }
 
-/* Light on the white: diffuse, softened by what scatters below the surface, most in the red; next to the limbus it thins
- * out over the dark of the chamber's angle. Then the ripples of its film bend the normal. */
+/* Light in the white: diffuse below its film; next to the limbus it thins out over the dark of the chamber's angle. Then the ripples of
+ * its film bend the normal. */
 SIMD_CLONES void quick_sclera(float out[3][BATCH], int n, const float *restrict nx, const float *restrict ny, const float *restrict nz,
                               const float *restrict rho, const struct quick_look *k)
 {
-	static const float bleed[3] = { LOOK_BLEED }, rim[3] = { LOOK_RIM_DARK };
+	static const float rim[3] = { LOOK_RIM_DARK };
+	const float (*m)[3] = k->cam_from_eye;
 	for (int c = 0; c < 3; c++) {
-		const float *q = k->sky[c];
+		const float *wet = &k->light->env->wet[0][c];
 		float *restrict sky = out[c];
 		SIMD_LOOP
 		for (int i = 0; i < n; i++) {
 			float x = nx[i], y = ny[i], z = nz[i], edge = 1 - quick_ramp(LOOK_RIM_FROM, (float)(1 / (LOOK_RIM_TO - LOOK_RIM_FROM)), rho[i]);
-			float light = q[0] + x * (q[1] + y * q[4] + z * q[7] + x * q[8]) + y * (q[2] + z * q[5] - y * q[8]) + z * (q[3] + z * q[6]);
-			light = light > 0 ? light : 0;
-			sky[i] = (light + bleed[c] * (k->even[c] - light)) * (1 - rim[c] * edge * edge);
+			float light = envmap_wet_at(wet, 3, m[0][0] * x + m[0][1] * y + m[0][2] * z, m[1][0] * x + m[1][1] * y + m[1][2] * z, m[2][0] * x + m[2][1] * y + m[2][2] * z);
+			sky[i] = light * (1 - rim[c] * edge * edge);
 		}
 	}
 }
@@ -239,24 +239,6 @@ SIMD_CLONES void quick_unfold(int n, float *restrict x, float *restrict y, const
 	}
 }
 
-/* The environment's polynomial of a normal in the camera's frame, as one of the same normal in the eye's. */
-static void sky_turn(float out[9], const float (*in)[3], int c, const double (*turn)[4])
-{
-	double q[3][3] = { { in[8][c], in[4][c] / 2, in[7][c] / 2 }, { in[4][c] / 2, -in[8][c], in[5][c] / 2 }, { in[7][c] / 2, in[5][c] / 2, in[6][c] } };
-	double m[3][3] = { 0 }, line[3] = { 0 };
-	for (int i = 0; i < 3; i++)
-		for (int j = 0; j < 3; j++) {
-			line[i] += in[1 + j][c] * turn[j][i];
-			for (int a = 0; a < 3; a++)
-				for (int b = 0; b < 3; b++)
-					m[i][j] += turn[a][i] * q[a][b] * turn[b][j];
-		}
-	double even = (m[0][0] + m[1][1]) / 2;  // of xx + yy, which is 1 - zz
-	const double all[9] = { in[0][c] + even, line[0], line[1], line[2], 2 * m[0][1], 2 * m[1][2], m[2][2] - even, 2 * m[0][2], (m[0][0] - m[1][1]) / 2 };
-	for (int k = 0; k < 9; k++)
-		out[k] = (float)all[k];
-}
-
 struct quick_look quick_look(const struct scene *s, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level)
 {
 	const struct cornea *c = &s->cornea;
@@ -279,9 +261,5 @@ struct quick_look quick_look(const struct scene *s, const struct scene_view *vie
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++)
 			k.cam_from_eye[i][j] = (float)view->cam_from_eye[i][j];
-	for (int c = 0; c < 3; c++) {
-		sky_turn(k.sky[c], light->env->quadric, c, view->cam_from_eye);
-		k.even[c] = (float)(light->env->sh[0][c] * 0.282094791773878);
-	}
 	return k;
 }

@@ -40,8 +40,6 @@ struct quick_look {
 	float rim2, index;
 	float sphere_z, sphere_r, limbus[2], lid_width;
 	float cam_from_eye[3][3], slip[2][3];
-	float sky[3][9];                  // irradiance as a polynomial of the eye's normal: 1 x y z xy yz zz xz xx-yy
-	float even[3];                    // its mean
 };
 struct quick_look quick_look(const struct scene *scene, const struct scene_view *view, const struct scene_lighting *light, const struct scene_shade *shade, const struct scene_level *level);
 
