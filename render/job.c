@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "draw/eye/tint.h"
 #include "draw/photo/reference.h"
+#include "draw/photo/vessels.h"
 #include "draw/studio.h"
 #include "render/render.h"
 
@@ -115,6 +116,9 @@ bool job_ready(struct job *job, struct err *err)
 		shot_unlight(conf.sclera_rgb, reference, job->eye, conf.sclera_radius);
 	else
 		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
+	struct image vessels;
+	const bool seen = vessels_of_photo(&vessels, reference, job->eye, conf.sclera_radius, white, conf.veins_px);
+	conf.vessels = seen ? &vessels : 0;
 	job->gain = studio_exposure(&job->studio, conf.sclera_rgb);
 	struct eye eye = *job->eye;
 	if (!isfinite(eye.limbus_aspect))
@@ -125,7 +129,11 @@ bool job_ready(struct job *job, struct err *err)
 	for (int i = 0; i < 5; i++)
 		path[i] = stage_path(job->stage, "%s", job->in[i]);
 	struct scene_files files = { path[0], path[1], path[2], path[3], path[4] };
-	if (!scene_load(&job->scene, &files, &eye, &conf, err))
+	const bool loaded = scene_load(&job->scene, &files, &eye, &conf, err);
+	job->scene.conf.vessels = 0;
+	if (seen)
+		image_free(&vessels);
+	if (!loaded)
 		return false;
 	say_what_lacks(job);
 	job->ready = true;

@@ -43,7 +43,8 @@ struct scene_conf {
 	double limbus_width;          // mm, over which sclera becomes cornea
 	double sclera_radius;         // mm
 	double sclera_rgb[3];         // albedo of a healthy sclera
-	double vein_density;          // 1: about forty vessels
+	double vein_density;          // 1: as many vessels as a healthy eye has
+	const struct image *vessels;  // of a photograph, vessels_of_photo, read while the scene is made; null: none
 	int veins_px, seed;
 };
 

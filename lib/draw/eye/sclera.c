@@ -5,92 +5,12 @@
 
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
-#include "bridge/cv_draw.h"
 #include "draw/eye/batch_impl.h"
 #include "draw/eye/texels.h"
+#include "draw/eye/vessels.h"
 #include "math/rng.h"
 
 static const double reach = SCENE_SCLERA_REACH;
-
-enum { STEPS_MAX = 160 };
-
-struct grower {
-	struct cv_picture picture;
-	struct rng rng;
-	double limbus;  // angle of the limbus
-};
-
-struct vessel {
-	double polar, turn;   // where it is: angle from the axis, and round it
-	double heading;       // 0: straight towards the limbus; radians
-	double width;         // mm
-	double sway, phase;   // tortuosity
-	int depth;            // of branching
-};
-
-static void put(const struct grower *g, float xy[2], double polar, double turn)
-{
-	double r = polar / reach * g->picture.width / 2;
-	xy[0] = (float)(g->picture.width / 2.0 + r * cos(turn));
-	xy[1] = (float)(g->picture.width / 2.0 + r * sin(turn));
-}
-
-static void vessel_draw(const struct grower *g, int n, const float (*xy)[2], double width, double mm_per_px)
-{
-	// A vessel thinner than a pixel is drawn a pixel wide and paler. Both ends fade: one rises from the depth, the other runs out.
-	enum { PIECE = 5 };
-	for (int a = 0; a + 1 < n; a += PIECE) {
-		int b = a + PIECE + 1 < n ? a + PIECE + 1 : n;
-		double t = (double)a / n, ends = fmin(fmin(t / 0.25, (1 - t) / 0.6), 1), px = width / mm_per_px * (0.35 + 0.65 * ends);
-		uint8_t ink = (uint8_t)fmin(235, 235 * fmin(px, 1) * (0.25 + 0.75 * ends));
-		cv_draw_line(&g->picture, b - a, xy + a, false, px > 1.5 ? (int)lrint(px) : 1, (const uint8_t[3]){ ink });
-	}
-}
-
-/* Vessels run towards the limbus, sway, fork, and fade before they reach it (iris paper, section 2.2). */
-static void grow(struct grower *g, struct vessel v, double mm_per_px, double radius)
-{
-	float xy[STEPS_MAX][2];
-	int n = 0, steps = (int)rng_range(&g->rng, 50, STEPS_MAX) >> v.depth;
-	double step = 0.16 / radius, drift = 0, bend = rng_range(&g->rng, 0.12, 0.3), end = 0.02 + 0.18 * rng_uniform(&g->rng);
-	for (; n < steps && v.polar > g->limbus + end; n++) {
-		put(g, xy[n], v.polar, v.turn);
-		drift = 0.9 * drift + 0.07 * rng_normal(&g->rng);
-		double way = v.heading + drift + v.sway * sin(v.phase + bend * n);
-		v.polar -= step * cos(way);
-		v.turn += step * sin(way) / sin(v.polar);
-		v.heading *= 0.985;
-		if (v.depth < 2 && n > 6 && rng_uniform(&g->rng) < 0.022) {
-			double side = rng_uniform(&g->rng) < 0.5 ? -1 : 1;
-			struct vessel w = v;
-			w.heading += side * rng_range(&g->rng, 0.35, 0.8);
-			w.width *= rng_range(&g->rng, 0.45, 0.7);
-			w.phase = rng_range(&g->rng, 0, 6.28);
-			w.depth++;
-			grow(g, w, mm_per_px, radius);
-			v.heading -= side * 0.15;
-			v.width *= 0.92;
-		}
-	}
-	vessel_draw(g, n, (const float(*)[2])xy, v.width, mm_per_px);
-}
-
-/* A layer of vessels: [size][size], 0..255. free(). */
-static uint8_t *layer(const struct scene *s, int size, int seed, int count, double width_lo, double width_hi)
-{
-	double radius = s->conf.sclera_radius;
-	struct grower g = { { mem_new((size_t)size * (size_t)size, 1), size, size, 1 }, { (uint64_t)seed },
-	                    asin(s->limbus[0] / radius) };
-	for (int i = 0; i < count; i++) {
-		// Most come from the canthi, left and right; fewer from above and below. A few are wide, most hair-thin.
-		double side = rng_uniform(&g.rng) < 0.5 ? 0 : M_PI, spread = rng_normal(&g.rng) * 0.6, u = rng_uniform(&g.rng);
-		struct vessel v = { .polar = g.limbus + rng_range(&g.rng, 0.35, 1.3), .turn = side + spread,
-		                    .heading = 0.45 * rng_normal(&g.rng), .width = width_lo + (width_hi - width_lo) * u * u * u,
-		                    .sway = rng_range(&g.rng, 0.05, 0.5), .phase = rng_range(&g.rng, 0, 6.28) };
-		grow(&g, v, 2 * reach * radius / size, radius);
-	}
-	return g.picture.px;
-}
 
 /* Ripples break up reflections beyond the cornea: slopes from a height map of noise. */
 static void film_make(struct scene *s, const struct image *height)
@@ -129,7 +49,7 @@ static const double arterial[3] = { 0.81, 23.0, 23.8 }, without_oxygen[3] = { 5.
 struct layer_of {
 	double depth, width, oxygen;
 };
-static const struct layer_of conjunctiva = { 0.05, 0.04, 0.95 }, episclera = { 0.35, 0.12, 0.6 };
+static const struct layer_of conjunctiva = { SCENE_CONJUNCTIVA_MM, SCENE_VESSEL_MM, SCENE_OXYGEN }, episclera = { 0.35, 0.12, 0.6 };
 
 void scene_vessel(float left[3], double depth, double width, double oxygen)
 {
@@ -151,17 +71,34 @@ static void albedo_put(float p[3], const struct scene *s, const float left[2][3]
 	p[3] = 1 - (1 - a * (1 - left[0][1])) * (1 - b * (1 - left[1][1]));
 }
 
+/* A layer's cover, 0..1: [n][n]. seen: the photograph's vessels, which it goes on from, or null. */
+static struct image layer(const struct scene *s, struct vessel_habit habit, const struct image *seen, int seed)
+{
+	struct image cover = image_new(s->conf.veins_px, s->conf.veins_px, 1);
+	habit.points = (int)lrint(habit.points * s->conf.vein_density);
+	habit.radius = s->conf.sclera_radius;
+	habit.limbus = asin(s->limbus[0] / habit.radius);
+	habit.seen = seen;
+	habit.seen_reach = reach;
+	struct vessels vessels = vessels_grow(&habit, (uint64_t)seed);
+	vessels_draw(&cover, &vessels, reach, habit.radius);
+	vessels_free(&vessels);
+	return cover;
+}
+
+/* The conjunctiva's are many, fine and winding; the episclera's, from the arteries of the muscles, few, wide and straighter (iris paper, section 2.2). */
+static const struct vessel_habit fine_habit = { .points = 1400, .roots = 20, .step = 0.25, .reach = 4, .near = 0.55, .width = 0.017, .sway = 0.5, .wave = 2.4 };
+static const struct vessel_habit deep_habit = { .points = 160, .roots = 8, .step = 0.3, .reach = 9, .near = 1.2, .width = 0.06, .sway = 0.6, .wave = 6 };
+
 void scene_veins_make(struct scene *s)
 {
-	int n = s->conf.veins_px, count = (int)lrint(80 * s->conf.vein_density);
+	const int n = s->conf.veins_px;
 	s->veins = image_new(n, n, 4);
-	uint8_t *fine = layer(s, n, s->conf.seed, count, 0.012, 0.07);
-	uint8_t *deep = layer(s, n, s->conf.seed + 1, count / 2, 0.08, 0.22);
-	float *blurred = mem_array((size_t)n * (size_t)n, sizeof *blurred), mm_per_px = (float)(2 * reach * s->conf.sclera_radius / n);
-	for (long i = 0; i < (long)n * n; i++)
-		blurred[i] = (float)deep[i] / 255;
+	const struct image *seen = s->conf.vessels;
+	struct image fine = layer(s, fine_habit, seen, s->conf.seed), deep = layer(s, deep_habit, 0, s->conf.seed + 1);
+	const double mm_per_px = 2 * reach * s->conf.sclera_radius / n;
 	struct err err = { 0 };
-	cv_blur(blurred, blurred, n, n, 1, 0.4 * episclera.depth / mm_per_px, &err);  // light that comes up through the tissue spreads
+	cv_blur(deep.px, deep.px, n, n, 1, 0.4 * episclera.depth / mm_per_px, &err);  // light that comes up through the tissue spreads
 	float left[2][3];
 	scene_vessel(left[0], conjunctiva.depth, conjunctiva.width, conjunctiva.oxygen);
 	scene_vessel(left[1], episclera.depth, episclera.width, episclera.oxygen);
@@ -169,15 +106,15 @@ void scene_veins_make(struct scene *s)
 		for (int x = 0; x < n; x++) {
 			long i = (long)y * n + x;
 			float r = hypotf((float)x + 0.5f - 0.5f * (float)n, (float)y + 0.5f - 0.5f * (float)n) * 2 / (float)n;
-			albedo_put(s->veins.px + 4 * i, s, (const float(*)[3])left, r, 0.66f * (float)fine[i] / 255, 0.5f * blurred[i]);
+			const float own = seen ? seen->px[2 * i + 1] : 0, a = own * (seen ? seen->px[2 * i] : 0) + (1 - own) * 0.8f * fine.px[i];
+			albedo_put(s->veins.px + 4 * i, s, (const float(*)[3])left, r, a, (1 - own) * 0.5f * deep.px[i]);
 		}
 	scene_texels_make(&s->white, s->veins.px, n);
 	struct image height = ripples(s->conf.seed + 2);
 	film_make(s, &height);
 	image_free(&height);
-	free(fine);
-	free(deep);
-	free(blurred);
+	image_free(&fine);
+	image_free(&deep);
 }
 
 void scene_sclera(float albedo[3], float normal[3], const struct scene *s, const float point[3])

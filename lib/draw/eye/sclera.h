@@ -9,6 +9,11 @@
 /* Angle at the edge of the maps, rad. */
 #define SCENE_SCLERA_REACH (110 * M_PI / 180)
 
+/* A vessel of the conjunctiva: how deep it lies and how wide it is, mm; the share of its blood's oxygen. */
+#define SCENE_CONJUNCTIVA_MM 0.05
+#define SCENE_VESSEL_MM 0.04
+#define SCENE_OXYGEN 0.95
+
 /* Fills veins, white and film of the scene, from conf.seed. */
 void scene_veins_make(struct scene *scene);
 

@@ -53,6 +53,9 @@ struct envmap light_sky(int height);
  * lids leave too little of it. */
 bool sclera_of_photo(double rgb[3], const struct shot *shot, const double white[3]);
 
+/* Neither skin nor large vessel nor reflection, by colour alone: over the photograph's white, and as photographed. */
+bool sclera_is_white(const float over_white[3], const float own[3]);
+
 /* How a rendering differs from its photograph where the iris texture has weight: off pupil, lids and reflections. */
 struct shot_difference {
 	long n;                          // pixels compared; 0: mean and high are not set

@@ -19,8 +19,7 @@ static float lum(const float *p)
 	return 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
 }
 
-/* Neither skin nor vessel nor reflection, by colour alone: over white, and as photographed. */
-static bool is_white(const float p[3], const float own[3])
+bool sclera_is_white(const float p[3], const float own[3])
 {
 	return lum(p) > 0.08f && lum(own) < 0.95f && p[0] < 1.42f * p[1] && p[1] < 1.5f * p[2] && p[2] < 1.15f * p[1];
 }
@@ -39,7 +38,7 @@ static long candidates(struct white *list, const struct shot *shot, const double
 			if (r < 1.15 || r > 1.6)
 				continue;
 			++*ring;
-			if (is_white(p, own))
+			if (sclera_is_white(p, own))
 				list[n++] = (struct white){ p[0] / p[2], { p[0], p[1], p[2] } };
 		}
 	return n;
