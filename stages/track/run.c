@@ -11,6 +11,7 @@
 #include "track/clip/alone.h"
 #include "track/clip/apertures.h"
 #include "track/clip/aside.h"
+#include "track/clip/canthi.h"
 #include "track/clip/chunks.h"
 #include "track/clip/corners.h"
 #include "track/clip/expressions.h"
@@ -81,7 +82,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 		refuse_picture(stage, clip, subject, 0);
 		return track_lies_aside(clip, err);
 	}
-	if (!track_points_choose(points, clip, subject, conf, err) || !track_follow(result, stage, clip, subject, points, conf, err))
+	if (!track_canthi(subject, clip, conf, err) || !track_points_choose(points, clip, subject, conf, err) || !track_follow(result, stage, clip, subject, points, conf, err))
 		return false;
 	if (result->n < 2)
 		return err_set(err, "%s: %ld frames: film longer", clip->file, result->n);

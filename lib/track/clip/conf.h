@@ -13,6 +13,15 @@
 /* Eyes that a video without a mesh shows; the names are the key's. */
 enum track_shown { SHOWN_BOTH, SHOWN_LEFT, SHOWN_RIGHT };
 
+/* Corners of the eyes (canthi.h), shares of the iris' radius. Of pairs the first is outwards, the second downwards; the inner corner before the outer. */
+struct track_canthi_conf {
+	double beyond[4];      // what shows of the eye ends so far within the corner
+	double told_sigma[4];  // standard deviations of the corner that the evidence tells
+	double mesh_sigma;     // of that of the mesh, of which an expression knows nothing; 0: the evidence is not asked
+	double most;           // apart by more, they are not of one corner
+	double least_area;     // squares of the radius: of less that shows nothing is told
+};
+
 struct track_conf {
 	struct video_conf video;
 	struct eye eye;
@@ -54,6 +63,7 @@ struct track_conf {
 	} look, doubt;         // by which the reference is judged: at first; again where those raise a doubt
 	int chunk;             // frames after which what has been followed is kept on disk; 0: never
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
+	struct track_canthi_conf canthi;
 	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
 	double kappa[2], kappa_sigma[2];     // degrees: prior of the line of sight against the optical axis, towards the nose and up
 	double camera_frames[2];             // first and last of those in which the person looks into the camera; NAN: not told

@@ -1,0 +1,107 @@
+#include "track/clip/canthi.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "limbus/evidence.h"
+#include "math/vec.h"
+#include "track/eye/told.h"
+
+/* What the network sees of a frame. */
+static struct photo photo_of(const struct track_clip *clip)
+{
+	const size_t n = 3 * (size_t)clip->info.width * (size_t)clip->info.height;
+	struct photo photo = { .width = clip->info.width, .height = clip->info.height, .bits = 8, .rgb = mem_array(n + 1, sizeof *photo.rgb) };
+	for (size_t i = 0; i < n; i++)
+		photo.rgb[i] = (uint16_t)(257 * clip->rgb[i]);
+	return photo;
+}
+
+/* How far a corner of the mesh is to be moved, px, of one that the evidence has at `told`: the mean of both by their standard deviations, along the line between the corners and across
+ * it; what is too far off is something else. radius: of the iris. */
+static void move_of(double move[2], const double corner[2], const double told[2], int which, const double across[2], double radius, const struct track_canthi_conf *conf)
+{
+	const double out = which ? 1 : -1, way[2][2] = { { out * across[0], out * across[1] }, { across[0] > 0 ? -across[1] : across[1], fabs(across[0]) } };
+	const double d[2] = { told[0] - corner[0], told[1] - corner[1] };
+	double off[2];
+	for (int k = 0; k < 2; k++)
+		off[k] = (d[0] * way[k][0] + d[1] * way[k][1]) / radius + conf->beyond[2 * which + k];
+	const double most = hypot(off[0], off[1]) / conf->most, believed = 1 / (1 + pow(most, 4));
+	move[0] = move[1] = 0;
+	for (int k = 0; k < 2; k++) {
+		const double mesh = pow(conf->mesh_sigma, 2), share = believed * mesh / (mesh + pow(conf->told_sigma[2 * which + k], 2));
+		for (int i = 0; i < 2; i++)
+			move[i] += share * off[k] * radius * way[k][i];
+	}
+}
+
+/* The same in the head, mm: at the corner's depth, parallel to the picture. */
+static void in_head(double out[3], const double move[2], const double point[3], const struct track_clip *clip)
+{
+	double p[3];
+	head_from(p, clip->cam_from_head, point);
+	for (int k = 0; k < 3; k++)
+		out[k] = p[2] / clip->camera.focal_px * (move[0] * clip->cam_from_head[0][k] + move[1] * clip->cam_from_head[1][k]);
+}
+
+/* Moves a corner, and the outline the less the further it is from it. */
+static void carry(struct eye_opening *o, int which, const double move[3])
+{
+	static const double reach = 0.4;  // of the distance between the corners
+	double from[3], apart = 0;
+	memcpy(from, o->canthus[which], sizeof from);
+	for (int k = 0; k < 3; k++)
+		apart += pow(o->canthus[1][k] - o->canthus[0][k], 2);
+	for (int i = 0; i < OPENING_POINTS; i++) {
+		double d[3] = { o->edge[i][0] - from[0], o->edge[i][1] - from[1], o->edge[i][2] - from[2] };
+		const double left = fmax(1 - vec_norm(d) / (reach * sqrt(apart)), 0);
+		vec_add(o->edge[i], o->edge[i], left * left, move);
+	}
+	vec_add(o->canthus[which], o->canthus[which], 1, move);
+}
+
+static bool eye(struct track_subject *s, int side, struct evidence_net *net, const struct photo *photo, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
+{
+	struct evidence seen;
+	struct eye_told told;
+	struct eye_opening *margin = &s->margin[side], *opening = &s->opening[side];
+	double place[3], p[3], corner[2][2];
+	if (!opening->open || !margin->open || !clip->eye_seen[side] || !head_project(place, &clip->camera, clip->cam_from_head, opening->center))
+		return true;
+	for (int c = 0; c < 2; c++)
+		if (!head_project(corner[c], &clip->camera, clip->cam_from_head, margin->canthus[c]))
+			return true;
+	head_from(p, clip->cam_from_head, opening->center);
+	place[2] = clip->camera.focal_px * conf->eye.limbus_radius / p[2];
+	if (!evidence_window(&seen, net, photo, place[0], place[1], place[2], err))
+		return false;
+	const double wide = fmax(1e-9, hypot(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1])), across[2] = { (corner[1][0] - corner[0][0]) / wide, (corner[1][1] - corner[0][1]) / wide };
+	const bool known = eye_told_of(&told, &seen, place, across) && told.area > conf->canthi.least_area;
+	evidence_free(&seen);
+	for (int c = 0; c < 2 && known; c++) {
+		double move[2], by[3];
+		move_of(move, corner[c], told.corner[c], c, across, place[2], &conf->canthi);
+		in_head(by, move, margin->canthus[c], clip);
+		carry(margin, c, by);
+		vec_add(opening->canthus[c], opening->canthus[c], 1, by);
+	}
+	return true;
+}
+
+bool track_canthi(struct track_subject *s, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
+{
+	struct evidence_net *net = 0;
+	if (s->assumed || !(conf->canthi.mesh_sigma > 0))
+		return true;
+	if (!evidence_open_shipped(&net, err))
+		return false;
+	struct photo photo = photo_of(clip);
+	bool ok = true;
+	for (int e = 0; e < SIDES && ok; e++)
+		ok = eye(s, e, net, &photo, clip, conf, err);
+	free(photo.rgb);
+	evidence_close(net);
+	return ok;
+}
