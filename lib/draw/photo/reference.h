@@ -11,7 +11,7 @@ void shot_window(struct shot *shot, int most_px);
 /* How well a photograph serves as reference: size of the limbus, px, times the share of it that shows, times cos² of the tilt. */
 double shot_merit(const struct fit *fit);
 
-/* Divides the colour of the sclera as photographed by the mean irradiance beside the limbus: its albedo.
+/* Divides the colour of the sclera as photographed by the mean light beside the limbus, where that is seen: its albedo.
  * rgb            in: linear, of sclera_of_photo; out: at most 0.95
  * shot           with its light
  * sclera_radius  of the eyeball, mm */

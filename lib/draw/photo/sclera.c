@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "draw/photo/photo.h"
@@ -51,9 +52,10 @@ bool sclera_of_photo(double rgb[3], const struct shot *shot, const double white[
 	n = candidates(list, shot, white, &ring);
 	bool enough = n > 200 && n > ring / 20;
 	if (enough) {
-		// The less red half excludes skin and vessels; of it, the brighter half without the brightest tenth excludes the lids'
-		// shadow and wet highlights.
+		// Neither the reddest, skin and vessels, nor the bluest, the soft limbus; of the others the brighter half without the brightest
+		// tenth: neither the lids' shadow nor wet highlights.
 		qsort(list, (size_t)n, sizeof *list, before);
+		memmove(list, list + n / 10, (size_t)(n / 2) * sizeof *list);
 		n /= 2;
 		for (long i = 0; i < n; i++)
 			list[i].key = lum(list[i].rgb);
