@@ -45,6 +45,8 @@ int main(int argc, char **argv)
 		OPT_REALS("canthus_beyond", c.canthi.beyond, 4, -0.5, 0.5, "", "of the iris' radius: the eye's evidence ends so far within its corners (inner: outwards, downwards; outer)"),
 		OPT_REALS("canthus_told_sigma", c.canthi.told_sigma, 4, 0.001, 1, "", "standard deviations of corners that the evidence tells, of the iris' radius"),
 		OPT_REAL("canthus_mesh_sigma", &c.canthi.mesh_sigma, 0, 1, "", "that of the mesh's; 0: the evidence is not asked"),
+		OPT_REAL("lids_beyond", &c.canthi.outline_beyond, -0.5, 0.5, "", "of the iris' radius: the eye's evidence ends so far within the lids' margins"),
+		OPT_REAL("lids_told_sigma", &c.canthi.outline_sigma, 0.001, 1, "", "standard deviation of margins that the evidence tells, of the iris' radius"),
 		OPT_REAL("canthus_most", &c.canthi.most, 0.01, 2, "", "apart by more, of the iris' radius, they are not one corner"),
 		OPT_REAL("canthus_area", &c.canthi.least_area, 0, 20, "", "squares of the iris' radius that must show"),
 		OPT_REAL("meniscus_mm", &c.meniscus_mm, 0, 3, "mm", "that a lid's margin stands off the eye in its corners"),

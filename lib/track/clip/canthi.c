@@ -62,6 +62,50 @@ static void carry(struct eye_opening *o, int which, const double move[3])
 	vec_add(o->canthus[which], o->canthus[which], 1, move);
 }
 
+/* Where the chance of eye falls below a half on the way from `place` past q; false: not within twice that way, or it is no eye half of the way to q. */
+static bool outline_towards(double out[2], const struct evidence *e, const double place[3], const double q[2])
+{
+	const double d[2] = { q[0] - place[0], q[1] - place[1] }, step = 0.25 * e->scale / fmax(hypot(d[0], d[1]), 1e-9);
+	double before = 0;
+	for (double t = 0.5; t < 2; t += step) {
+		const double p = (double)evidence_eye_at(e, place[0] + t * d[0], place[1] + t * d[1]);
+		if (p < 0.5) {
+			const double back = before > p ? step * (0.5 - p) / (before - p) : 0;
+			for (int k = 0; k < 2; k++)
+				out[k] = place[k] + (t - back) * d[k];
+			return before > 0;
+		}
+		before = p;
+	}
+	return false;
+}
+
+/* Moves the points of a margin to the evidence's outline, along the ways from `place`; each as its neighbours in the mean. Where the evidence has none, or too far off, they
+ * stay. */
+static void to_outline(struct eye_opening *margin, const struct evidence *e, const double place[3], const struct track_clip *clip, const struct track_canthi_conf *conf)
+{
+	enum { BESIDE = 2 };
+	double by[OPENING_POINTS][3] = { { 0 } };
+	const double mesh = pow(conf->mesh_sigma, 2), share = mesh / (mesh + pow(conf->outline_sigma, 2));
+	for (int i = 0; i < OPENING_POINTS; i++) {
+		double q[2], told[2], move[2];
+		if (!head_project(q, &clip->camera, clip->cam_from_head, margin->edge[i]) || !outline_towards(told, e, place, q))
+			continue;
+		const double way = fmax(hypot(q[0] - place[0], q[1] - place[1]), 1e-9);
+		double off = 0;
+		for (int k = 0; k < 2; k++)
+			off += (told[k] - q[k]) * (q[k] - place[k]) / way;
+		off = off / place[2] + conf->outline_beyond;
+		const double believed = share / (1 + pow(off / conf->most, 4));
+		for (int k = 0; k < 2; k++)
+			move[k] = believed * off * place[2] * (q[k] - place[k]) / way;
+		in_head(by[i], move, margin->edge[i], clip);
+	}
+	for (int i = 0; i < OPENING_POINTS; i++)
+		for (int j = -BESIDE; j <= BESIDE; j++)
+			vec_add(margin->edge[i], margin->edge[i], 1.0 / (2 * BESIDE + 1), by[(i + j + OPENING_POINTS) % OPENING_POINTS]);
+}
+
 static bool eye(struct track_subject *s, int side, struct evidence_net *net, const struct photo *photo, const struct track_clip *clip, const struct track_conf *conf, struct err *err)
 {
 	struct evidence seen;
@@ -79,7 +123,6 @@ static bool eye(struct track_subject *s, int side, struct evidence_net *net, con
 		return false;
 	const double wide = fmax(1e-9, hypot(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1])), across[2] = { (corner[1][0] - corner[0][0]) / wide, (corner[1][1] - corner[0][1]) / wide };
 	const bool known = eye_told_of(&told, &seen, place, across) && told.area > conf->canthi.least_area;
-	evidence_free(&seen);
 	for (int c = 0; c < 2 && known; c++) {
 		double move[2], by[3];
 		move_of(move, corner[c], told.corner[c], c, across, place[2], &conf->canthi);
@@ -87,6 +130,10 @@ static bool eye(struct track_subject *s, int side, struct evidence_net *net, con
 		carry(margin, c, by);
 		vec_add(opening->canthus[c], opening->canthus[c], 1, by);
 	}
+	s->margin_seen[side] = known;
+	if (known)
+		to_outline(margin, &seen, place, clip, &conf->canthi);
+	evidence_free(&seen);
 	return true;
 }
 

@@ -18,6 +18,7 @@ struct track_canthi_conf {
 	double beyond[4];      // what shows of the eye ends so far within the corner
 	double told_sigma[4];  // standard deviations of the corner that the evidence tells
 	double mesh_sigma;     // of that of the mesh, of which an expression knows nothing; 0: the evidence is not asked
+	double outline_beyond, outline_sigma;  // the same of the outline between them
 	double most;           // apart by more, they are not of one corner
 	double least_area;     // squares of the radius: of less that shows nothing is told
 };

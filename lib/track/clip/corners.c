@@ -17,9 +17,10 @@ enum { ENDS = 2 };
 static const double shaped[ENDS] = { 0.09, 0.14 };
 /* Where a margin that is found ends nearer to the middle, as far as that and so much more; at most. */
 static const double beyond = 0.02, shaped_most = 0.3;
-/* Weight of the skin's motion, upper and lower lid, and the distance (mm) between it and the margin seen at which it has lost
- * half: skin of the lower lid runs into its margin; that of the upper lid hangs over it. */
-static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.3;
+/* Weight of the skin's motion, and the distance (mm) between it and the margin seen at which it has lost half. */
+static const double believed = 0.4, near_mm = 0.3;
+/* mm: no lower lid's margin is further off where its skin takes that of the reference frame (canthi.h): skin runs into it. That of the upper lid hangs over it. */
+static const double far_mm = 1;
 
 /* The margin of the mesh, both lids from the inner corner to the outer, head frame. */
 struct rim {
@@ -152,8 +153,9 @@ static void reshape(struct eye_state *state, const struct line mesh[LIDS], const
 		line_spread(state->lid[k], state->lid_points, &out[k]);
 }
 
-/* Averages a margin with the mesh's, carried by the skin beside it; the weight falls where the two disagree. */
-static void draw_to_skin(struct eye_state *state, int lid, const struct line *mesh, const struct beside *skin, long frame, double near_px)
+/* Averages a margin with the mesh's, carried by the skin beside it. The weight falls where the two disagree, and grows again where they do by so much that what was found
+ * is no margin: reddened sclera against white, say. */
+static void draw_to_skin(struct eye_state *state, int lid, const struct line *mesh, const struct beside *skin, long frame, double near_px, double far_px)
 {
 	struct line found = { .n = state->lid_points }, out = { .n = mesh->n };
 	memcpy(found.p, state->lid[lid], (size_t)found.n * sizeof *found.p);
@@ -164,7 +166,8 @@ static void draw_to_skin(struct eye_state *state, int lid, const struct line *me
 		memcpy(q, end ? found.p[i ? found.n - 1 : 0] : p, sizeof q);
 		if (!end)
 			line_nearest(q, &found, p);
-		double off = hypot(p[0] - q[0], p[1] - q[1]) / near_px, share = end ? 0 : believed[lid] * beside_weight(skin, i, frame) / (1 + pow(off, 4));
+		const double off = hypot(p[0] - q[0], p[1] - q[1]), agree = 1 / (1 + pow(off / near_px, 4)), stray = off > 0 ? 1 / (1 + pow(far_px / off, 4)) : 0;
+		const double share = end ? 0 : beside_weight(skin, i, frame) * fmax(believed * agree, stray);
 		for (int k = 0; k < 2; k++)
 			out.p[i][k] = q[k] + share * (p[k] - q[k]);
 	}
@@ -180,7 +183,7 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 		skin[k] = beside_new(rim.n[k], rim.head[k], r, side, clip, points);
 	int below = rim.n[LID_LOWER];
 	double(*carried)[2] = bulk_grow(r->bulk, 0, (size_t)below * (size_t)r->n + 1, sizeof *carried);
-	double(*corner)[ENDS][2] = bulk_grow(r->bulk, 0, (size_t)r->n + 1, sizeof *corner), near_px = near_mm * track_px_per_mm(clip, clip->cam_from_head, s);
+	double(*corner)[ENDS][2] = bulk_grow(r->bulk, 0, (size_t)r->n + 1, sizeof *corner), mm_px = track_px_per_mm(clip, clip->cam_from_head, s);
 	for (long f = 0; f < r->n; f++) {
 		struct eye_state *state = &r->eyes.state[f][side];
 		struct line mesh[LIDS];
@@ -199,10 +202,10 @@ static void eye(struct track_result *r, int side, const struct track_clip *clip,
 		}
 		reshape(state, mesh, (const double(*)[2])corner[f]);
 		for (int k = 0; k < LIDS; k++)
-			draw_to_skin(state, k, &mesh[k], &skin[k], f, near_px);
+			draw_to_skin(state, k, &mesh[k], &skin[k], f, near_mm * mm_px, k == LID_LOWER && s->margin_seen[side] ? far_mm * mm_px : INFINITY);
 	}
 	blink_lower_carry(r, side, below, (const double(*)[2])carried);
-	blink_upper_carry(r, side, corner, below, (const double(*)[2])carried, near_px);
+	blink_upper_carry(r, side, corner, below, (const double(*)[2])carried, near_mm * mm_px);
 	bulk_free(r->bulk, corner);
 	bulk_free(r->bulk, carried);
 	for (int k = 0; k < LIDS; k++)

@@ -20,6 +20,7 @@ struct track_subject {
 	double limbus[SIDES];            // mm, seen in the clip where there is no mesh; 0: not known
 	double center_sigma[SIDES];      // mm, of centres from the mesh's rims or the lids' marks; 0: the settings'
 	struct eye_opening opening[SIDES];
+	bool margin_seen[SIDES];           // it lies where the reference frame shows it (canthi.h); else it is a neutral face's
 	struct eye_opening margin[SIDES];  // inner edge of the lids' margins: outline at the eyeball's radius plus meniscus_mm
 	struct head_shape *shape;          // the mesh as it is shaded; null: not looked at; owned
 	bool assumed;          // no mesh: eyes, openings and skin of an average face; file is null
