@@ -126,6 +126,19 @@ static bool with_gaze(double c[2][TERMS], const double (*moved)[2], const double
 	return true;
 }
 
+/* Where too few frames tell how it moves with gaze: the median of those. */
+static void without_gaze(double c[2][TERMS], const double (*moved)[2], const double *weight, long frames, double *room)
+{
+	for (int k = 0; k < 2; k++) {
+		int n = 0;
+		for (long f = 0; f < frames; f++)
+			if (weight[f] > 0)
+				room[n++] = moved[f][k];
+		c[k][0] = n ? stats_median(n, room) : 0;
+		c[k][1] = c[k][2] = 0;
+	}
+}
+
 /* A corner moves by a millimetre or two: skin that says otherwise was lost there. */
 static void drop_far(double *weight, const double (*moved)[2], double c[2][TERMS], double most, const struct track_result *r, int side)
 {
@@ -163,7 +176,9 @@ struct beside beside_new(int n, const double (*head)[3], const struct track_resu
 		double(*moved)[2] = b.moved + i * r->n, *weight = b.weight + i * r->n;
 		gather(moved, weight, head[i], reach_share * sqrt(wide), r, clip, points);
 		const bool told = with_gaze(c, (const double(*)[2])moved, weight, r, side, room);
-		if (told && seen && (i == 0 || i == n - 1))
+		if (!told)
+			without_gaze(c, (const double(*)[2])moved, weight, r->n, room);
+		if (seen && (i == 0 || i == n - 1))
 			drop_far(weight, (const double(*)[2])moved, c, corner_moves * hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1]), r, side);
 		fill(r->n, moved, weight);
 		if (told)

@@ -180,6 +180,27 @@ static void unseen_skin_goes_evenly(void **state)
 	scene_free(&s);
 }
 
+/* Skin that is seen in a few frames alone, in the first of them as another patch: that one is not carried into all frames before. */
+static void few_frames_of_skin(void **state)
+{
+	(void)state;
+	struct scene s;
+	scene_make(&s, 5);
+	move_skin(&s, (const double[]){ 0, 0 }, 0);
+	for (int f = 0; f < FRAMES; f++)
+		for (int i = 0; i < SKIN; i++) {
+			s.r.skin[f * SKIN + i][1] += f == 25 ? 40 : 0;
+			s.r.confidence[f * SKIN + i] = f >= 25 && f < 35;
+		}
+	s.clip.reference = 30;
+	struct beside b = beside_new(2, (const double[][3]){ { -14, -5, 0 }, { 14, -5, 0 } }, &s.r, 0, &s.clip, &s.points);
+	for (int f = 0; f < FRAMES; f++)
+		for (int e = 0; e < 2; e++)
+			NEAR(beside_moved(&b, e, f)[1], 0, 0.1);
+	beside_free(&b);
+	scene_free(&s);
+}
+
 /* An opening 30 mm wide on a plane, counter-clockwise. */
 static struct eye_opening lens(void)
 {
@@ -321,6 +342,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_eye_ends), cmocka_unit_test(skin_beside_a_place), cmocka_unit_test(unseen_skin_goes_evenly),
+		cmocka_unit_test(few_frames_of_skin),
 		cmocka_unit_test(corners_are_the_meshs), cmocka_unit_test(blinks_hold_lower_lids), cmocka_unit_test(blinks_fall_evenly),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
