@@ -81,24 +81,35 @@ static bool outline_towards(double out[2], const struct evidence *e, const doubl
 }
 
 /* Moves the points of a margin to the evidence's outline, along the ways from `place`; each as its neighbours in the mean. Where the evidence has none, or too far off, they
- * stay. */
+ * stay. What the two differ by besides the evidence's own error is the mesh's: where it is nothing the mesh is as good (Efron and Morris 1973). */
 static void to_outline(struct eye_opening *margin, const struct evidence *e, const double place[3], const struct track_clip *clip, const struct track_canthi_conf *conf)
 {
 	enum { BESIDE = 2 };
-	double by[OPENING_POINTS][3] = { { 0 } };
-	const double mesh = pow(conf->mesh_sigma, 2), share = mesh / (mesh + pow(conf->outline_sigma, 2));
+	double off[OPENING_POINTS], way[OPENING_POINTS][2], by[OPENING_POINTS][3] = { { 0 } }, sum = 0;
+	const double told = pow(conf->outline_sigma, 2);
+	int n = 0;
 	for (int i = 0; i < OPENING_POINTS; i++) {
-		double q[2], told[2], move[2];
-		if (!head_project(q, &clip->camera, clip->cam_from_head, margin->edge[i]) || !outline_towards(told, e, place, q))
+		double q[2], at[2];
+		off[i] = NAN;
+		if (!head_project(q, &clip->camera, clip->cam_from_head, margin->edge[i]) || !outline_towards(at, e, place, q))
 			continue;
-		const double way = fmax(hypot(q[0] - place[0], q[1] - place[1]), 1e-9);
-		double off = 0;
+		const double far = fmax(hypot(q[0] - place[0], q[1] - place[1]), 1e-9);
+		off[i] = 0;
+		for (int k = 0; k < 2; k++) {
+			way[i][k] = (q[k] - place[k]) / far;
+			off[i] += (at[k] - q[k]) * way[i][k];
+		}
+		off[i] = off[i] / place[2] + conf->outline_beyond;
+		sum += pow(fmin(fabs(off[i]), conf->most), 2);
+		n++;
+	}
+	const double mesh = fmax(n ? sum / n - told : 0, 0), share = mesh / (mesh + told);
+	for (int i = 0; i < OPENING_POINTS; i++) {
+		if (isnan(off[i]))
+			continue;
+		double move[2];
 		for (int k = 0; k < 2; k++)
-			off += (told[k] - q[k]) * (q[k] - place[k]) / way;
-		off = off / place[2] + conf->outline_beyond;
-		const double believed = share / (1 + pow(off / conf->most, 4));
-		for (int k = 0; k < 2; k++)
-			move[k] = believed * off * place[2] * (q[k] - place[k]) / way;
+			move[k] = share / (1 + pow(off[i] / conf->most, 4)) * off[i] * place[2] * way[i][k];
 		in_head(by[i], move, margin->edge[i], clip);
 	}
 	for (int i = 0; i < OPENING_POINTS; i++)
