@@ -12,6 +12,7 @@
 
 int main(int argc, char **argv)
 {
+	stage_calm(argv);
 	struct limbus_options o = { 0 };
 	struct stage stage;
 	struct capture capture = { 0 };

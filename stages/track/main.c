@@ -2,23 +2,13 @@
  * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
  * writes  work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkles.c)
  */
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "base/mem.h"
 #include "base/stage.h"
 #include "stages/track/run.h"
 
-/* Threads that spin while they wait would take time from the decoder; OpenMP reads its policy when the program starts. */
-static void start_calm(char **argv)
-{
-	if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
-		execv("/proc/self/exe", argv);
-}
-
 int main(int argc, char **argv)
 {
-	start_calm(argv);
+	stage_calm(argv);
 	static const char *const shown[] = { "both", "left", "right", 0 };  // enum track_shown
 	struct track_conf c = { 0 };
 	const struct opt opts[] = {
