@@ -20,8 +20,8 @@ static struct photo photo_of(const struct track_clip *clip)
 }
 
 /* How far a corner of the mesh is to be moved, px, of one that the evidence has at `told`: the mean of both by their standard deviations, along the line between the corners and across
- * it; what is too far off is something else. radius: of the iris. */
-static void move_of(double move[2], const double corner[2], const double told[2], int which, const double across[2], double radius, const struct track_canthi_conf *conf)
+ * it; what is too far off is something else. radius: of the iris; mesh: variance of the mesh's, of it. */
+static void move_of(double move[2], const double corner[2], const double told[2], int which, const double across[2], double radius, double mesh, const struct track_canthi_conf *conf)
 {
 	const double out = which ? 1 : -1, way[2][2] = { { out * across[0], out * across[1] }, { across[0] > 0 ? -across[1] : across[1], fabs(across[0]) } };
 	const double d[2] = { told[0] - corner[0], told[1] - corner[1] };
@@ -31,7 +31,7 @@ static void move_of(double move[2], const double corner[2], const double told[2]
 	const double most = hypot(off[0], off[1]) / conf->most, believed = 1 / (1 + pow(most, 4));
 	move[0] = move[1] = 0;
 	for (int k = 0; k < 2; k++) {
-		const double mesh = pow(conf->mesh_sigma, 2), share = believed * mesh / (mesh + pow(conf->told_sigma[2 * which + k], 2));
+		const double share = believed * mesh / (mesh + pow(conf->told_sigma[2 * which + k], 2));
 		for (int i = 0; i < 2; i++)
 			move[i] += share * off[k] * radius * way[k][i];
 	}
@@ -80,36 +80,46 @@ static bool outline_towards(double out[2], const struct evidence *e, const doubl
 	return false;
 }
 
-/* Moves the points of a margin to the evidence's outline, along the ways from `place`; each as its neighbours in the mean. Where the evidence has none, or too far off, they
- * stay. What the two differ by besides the evidence's own error is the mesh's: where it is nothing the mesh is as good (Efron and Morris 1973). */
-static void to_outline(struct eye_opening *margin, const struct evidence *e, const double place[3], const struct track_clip *clip, const struct track_canthi_conf *conf)
+/* How far the evidence's outline lies beyond each point of a margin on the way from `place`, of the iris' radius (NAN: it has none there), and those ways, px. Returns the
+ * variance of the mesh's margin: what the two differ by besides the evidence's own error. Where that is nothing the mesh is as good (Efron and Morris 1973). */
+struct apart { double off[OPENING_POINTS], way[OPENING_POINTS][2]; };
+
+static double outline_apart(struct apart *a, const struct eye_opening *margin, const struct evidence *e, const double place[3], const struct track_clip *clip, const struct track_canthi_conf *conf)
 {
-	enum { BESIDE = 2 };
-	double off[OPENING_POINTS], way[OPENING_POINTS][2], by[OPENING_POINTS][3] = { { 0 } }, sum = 0;
-	const double told = pow(conf->outline_sigma, 2);
+	double sum = 0;
 	int n = 0;
 	for (int i = 0; i < OPENING_POINTS; i++) {
 		double q[2], at[2];
-		off[i] = NAN;
+		a->off[i] = NAN;
 		if (!head_project(q, &clip->camera, clip->cam_from_head, margin->edge[i]) || !outline_towards(at, e, place, q))
 			continue;
 		const double far = fmax(hypot(q[0] - place[0], q[1] - place[1]), 1e-9);
-		off[i] = 0;
+		a->off[i] = 0;
 		for (int k = 0; k < 2; k++) {
-			way[i][k] = (q[k] - place[k]) / far;
-			off[i] += (at[k] - q[k]) * way[i][k];
+			a->way[i][k] = (q[k] - place[k]) / far;
+			a->off[i] += (at[k] - q[k]) * a->way[i][k];
 		}
-		off[i] = off[i] / place[2] + conf->outline_beyond;
-		sum += pow(fmin(fabs(off[i]), conf->most), 2);
+		a->off[i] = a->off[i] / place[2] + conf->outline_beyond;
+		sum += pow(fmin(fabs(a->off[i]), conf->most), 2);
 		n++;
 	}
-	const double mesh = fmax(n ? sum / n - told : 0, 0), share = mesh / (mesh + told);
+	return n ? fmax(sum / n - pow(conf->outline_sigma, 2), 0) : pow(conf->mesh_sigma, 2);
+}
+
+/* Moves the points of a margin to the evidence's outline; each as its neighbours in the mean. What is too far off stays. */
+static void to_outline(struct eye_opening *margin, const struct evidence *e, const double place[3], double mesh, const struct track_clip *clip, const struct track_canthi_conf *conf)
+{
+	enum { BESIDE = 2 };
+	struct apart a;
+	double by[OPENING_POINTS][3] = { { 0 } };
+	const double share = mesh / (mesh + pow(conf->outline_sigma, 2));
+	outline_apart(&a, margin, e, place, clip, conf);
 	for (int i = 0; i < OPENING_POINTS; i++) {
-		if (isnan(off[i]))
-			continue;
 		double move[2];
+		if (isnan(a.off[i]))
+			continue;
 		for (int k = 0; k < 2; k++)
-			move[k] = share / (1 + pow(off[i] / conf->most, 4)) * off[i] * place[2] * way[i][k];
+			move[k] = share / (1 + pow(a.off[i] / conf->most, 4)) * a.off[i] * place[2] * a.way[i][k];
 		in_head(by[i], move, margin->edge[i], clip);
 	}
 	for (int i = 0; i < OPENING_POINTS; i++)
@@ -134,16 +144,18 @@ static bool eye(struct track_subject *s, int side, struct evidence_net *net, con
 		return false;
 	const double wide = fmax(1e-9, hypot(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1])), across[2] = { (corner[1][0] - corner[0][0]) / wide, (corner[1][1] - corner[0][1]) / wide };
 	const bool known = eye_told_of(&told, &seen, place, across) && told.area > conf->canthi.least_area;
+	struct apart unused;
+	const double mesh = known ? outline_apart(&unused, margin, &seen, place, clip, &conf->canthi) : 0;
 	for (int c = 0; c < 2 && known; c++) {
 		double move[2], by[3];
-		move_of(move, corner[c], told.corner[c], c, across, place[2], &conf->canthi);
+		move_of(move, corner[c], told.corner[c], c, across, place[2], mesh, &conf->canthi);
 		in_head(by, move, margin->canthus[c], clip);
 		carry(margin, c, by);
 		vec_add(opening->canthus[c], opening->canthus[c], 1, by);
 	}
 	s->margin_seen[side] = known;
 	if (known)
-		to_outline(margin, &seen, place, clip, &conf->canthi);
+		to_outline(margin, &seen, place, mesh, clip, &conf->canthi);
 	evidence_free(&seen);
 	return true;
 }

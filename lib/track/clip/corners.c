@@ -17,8 +17,8 @@ enum { ENDS = 2 };
 static const double shaped[ENDS] = { 0.09, 0.14 };
 /* Where a margin that is found ends nearer to the middle, as far as that and so much more; at most. */
 static const double beyond = 0.02, shaped_most = 0.3;
-/* Weight of the skin's motion, and the distance (mm) between it and the margin seen at which it has lost half. */
-static const double believed = 0.4, near_mm = 0.3;
+/* Weight of the skin's motion, upper and lower lid, and the distance (mm) between it and the margin seen at which it has lost half. */
+static const double believed[LIDS] = { 0.4, 1 }, near_mm = 0.3;
 /* mm: no lower lid's margin is further off where its skin takes that of the reference frame (canthi.h): skin runs into it. That of the upper lid hangs over it. */
 static const double far_mm = 1;
 
@@ -167,7 +167,7 @@ static void draw_to_skin(struct eye_state *state, int lid, const struct line *me
 		if (!end)
 			line_nearest(q, &found, p);
 		const double off = hypot(p[0] - q[0], p[1] - q[1]), agree = 1 / (1 + pow(off / near_px, 4)), stray = off > 0 ? 1 / (1 + pow(far_px / off, 4)) : 0;
-		const double share = end ? 0 : beside_weight(skin, i, frame) * fmax(believed * agree, stray);
+		const double share = end ? 0 : beside_weight(skin, i, frame) * fmax(believed[lid] * agree, stray);
 		for (int k = 0; k < 2; k++)
 			out.p[i][k] = q[k] + share * (p[k] - q[k]);
 	}

@@ -27,11 +27,15 @@ static void even_light_exposes_the_sclera_to_62_per_cent(void **state)
 	for (int i = 0; i < 3; i++)
 		shot.fit.cam_from_eye[i][i] = 1;
 	struct eye eye = { .limbus_radius = 5.85 };
-	double rgb[3] = { 0.5, 0.4, 2 };
+	double rgb[3] = { 0.5, 0.4, 0.3 }, bright[3] = { 2, 1, 0.5 };
 	shot_unlight(rgb, &shot, &eye, 11.5);
 	NEAR(rgb[0], 0.5, 0.01);
 	NEAR(rgb[1], 0.4, 0.01);
-	NEAR(rgb[2], 0.95, 1e-12);
+	NEAR(rgb[2], 0.3, 0.01);
+	shot_unlight(bright, &shot, &eye, 11.5);  // none returns more than 0.95, and its hue stays
+	NEAR(bright[0], 0.95, 1e-12);
+	NEAR(bright[1], 0.475, 1e-12);
+	NEAR(bright[2], 0.2375, 1e-12);
 	envmap_free(&env);
 }
 
