@@ -54,22 +54,22 @@ static int add(struct grower *g, const double at[3], int parent)
 	return t->n++;
 }
 
-/* Row and column of a direction in the photograph's map. */
-static void in_map(int xy[2], const struct vessel_habit *h, const double at[3])
+/* Place of a direction in a map `size` texels wide, azimuthal equidistant about the axis, whose edge is `reach` from it. */
+static void in_map(double xy[2], const double at[3], int size, double reach)
 {
-	const int n = h->seen->width;
-	double flat = hypot(at[0], at[1]), r = 0.5 * n / h->seen_reach * atan2(flat, -at[2]), per = flat > 0 ? r / flat : 0;
+	double flat = hypot(at[0], at[1]), r = 0.5 * size / reach * atan2(flat, -at[2]), per = flat > 0 ? r / flat : 0;
 	for (int i = 0; i < 2; i++)
-		xy[i] = (int)fmin(fmax(0.5 * n + per * at[i], 0), n - 1);
+		xy[i] = 0.5 * size + per * at[i];
 }
 
 static bool is_seen(const struct vessel_habit *h, const double at[3])
 {
-	int xy[2];
+	double xy[2];
 	if (!h->seen)
 		return false;
-	in_map(xy, h, at);
-	return image_at(h->seen, xy[0], xy[1])[1] > 0.5f;
+	const int n = h->seen->width;
+	in_map(xy, at, n, h->seen_reach);
+	return image_at(h->seen, (int)fmin(fmax(xy[0], 0), n - 1), (int)fmin(fmax(xy[1], 0), n - 1))[1] > 0.5f;
 }
 
 /* Where the photograph's vessels leave what it shows: the strongest first come, at least a step apart. */
@@ -300,8 +300,9 @@ static void piece(struct image *cover, const struct stroke *a, const struct stro
 
 static struct stroke stroke_of(const struct vessel_node *v, int size, double reach, double radius)
 {
-	double flat = hypot(v->at[0], v->at[1]), r = 0.5 * size / reach * atan2(flat, -v->at[2]), per = flat > 0 ? r / flat : 0;
-	return (struct stroke){ { 0.5 * size + per * v->at[0], 0.5 * size + per * v->at[1] }, v->width * 0.5 * size / (reach * radius), v->shown };
+	struct stroke s = { .width = v->width * 0.5 * size / (reach * radius), .ink = v->shown };
+	in_map(s.at, v->at, size, reach);
+	return s;
 }
 
 void vessels_draw(struct image *cover, const struct vessels *vessels, double reach, double radius)

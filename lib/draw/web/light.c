@@ -19,25 +19,26 @@ static json_t *directions(int n, const struct envmap_light *light)
 	return list;
 }
 
+/* A polynomial's coefficients, three channels each. */
+static json_t *coefficients(int n, const float of[][3])
+{
+	json_t *list = json_array();
+	for (int k = 0; k < n; k++)
+		json_array_append_new(list, json_numbers(3, (double[]){ of[k][0], of[k][1], of[k][2] }));
+	return list;
+}
+
 json_t *web_light(const char *name, const struct envmap *env, const struct envmap *mirror, const struct web_source *source, struct err *err)
 {
 	enum { SKIES = 8 };  // what the skin mirrors
 	struct scene_lighting light = scene_lighting_of(env, mirror, source->lights, source->directions);
 	struct envmap_light sky[ENVMAP_LIGHTS_MAX];
 	int n = envmap_lights(sky, SKIES, env);
-	json_t *out = json_pack("{s:s,s:i}", "name", name, "beams", (light.n + light.each - 1) / light.each), *quadric = json_array(), *wet = json_array();
+	json_t *out = json_pack("{s:s,s:i}", "name", name, "beams", (light.n + light.each - 1) / light.each);
 	json_object_set_new(out, "lights", directions(light.n, light.light));
 	json_object_set_new(out, "skies", directions(n, sky));
-	for (int k = 0; k < 9; k++) {
-		double v[3] = { env->quadric[k][0], env->quadric[k][1], env->quadric[k][2] };
-		json_array_append_new(quadric, json_numbers(3, v));
-	}
-	for (int k = 0; k < ENVMAP_WET; k++) {
-		double v[3] = { env->wet[k][0], env->wet[k][1], env->wet[k][2] };
-		json_array_append_new(wet, json_numbers(3, v));
-	}
-	json_object_set_new(out, "quadric", quadric);
-	json_object_set_new(out, "wet", wet);
+	json_object_set_new(out, "quadric", coefficients(9, env->quadric));
+	json_object_set_new(out, "wet", coefficients(ENVMAP_WET, env->wet));
 	if (mirror) {
 		const struct image *s = &mirror->sharp, *r = &mirror->rough;
 		json_object_set_new(out, "sharp", web_map_log(s->px, s->width, s->height, s->channels, SCENE_DARK, err));

@@ -4,20 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "limbus/evidence.h"
 #include "math/vec.h"
 #include "track/eye/told.h"
-
-/* What the network sees of a frame. */
-static struct photo photo_of(const struct track_clip *clip)
-{
-	const size_t n = 3 * (size_t)clip->info.width * (size_t)clip->info.height;
-	struct photo photo = { .width = clip->info.width, .height = clip->info.height, .bits = 8, .rgb = mem_array(n + 1, sizeof *photo.rgb) };
-	for (size_t i = 0; i < n; i++)
-		photo.rgb[i] = (uint16_t)(257 * clip->rgb[i]);
-	return photo;
-}
 
 /* How far a corner of the mesh is to be moved, px, of one that the evidence has at `told`: the mean of both by their standard deviations, along the line between the corners and across
  * it; what is too far off is something else. radius: of the iris; mesh: variance of the mesh's, of it. */
@@ -167,7 +156,7 @@ bool track_canthi(struct track_subject *s, const struct track_clip *clip, const 
 		return true;
 	if (!evidence_open_shipped(&net, err))
 		return false;
-	struct photo photo = photo_of(clip);
+	struct photo photo = photo_of_bytes(clip->rgb, clip->info.width, clip->info.height);
 	bool ok = true;
 	for (int e = 0; e < SIDES && ok; e++)
 		ok = eye(s, e, net, &photo, clip, conf, err);
