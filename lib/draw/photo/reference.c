@@ -26,6 +26,8 @@ static double seen_towards(const struct fit *fit, const double point[3])
 	if (!fit_project(px, fit, point))
 		return 0;
 	double turn = atan2(px[1] - fit->limbus.cy, px[0] - fit->limbus.cx) / (2 * M_PI);
+	if (!isfinite(turn))
+		return 0;
 	return fit->seen[(int)floor((turn - floor(turn)) * FIT_SECTORS) % FIT_SECTORS];
 }
 

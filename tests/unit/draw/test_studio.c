@@ -28,7 +28,7 @@ static void even_light_exposes_the_sclera_to_62_per_cent(void **state)
 		shot.fit.cam_from_eye[i][i] = 1;
 	struct eye eye = { .limbus_radius = 5.85 };
 	double rgb[3] = { 0.5, 0.4, 0.3 }, bright[3] = { 2, 1, 0.5 };
-	shot_unlight(rgb, &shot, &eye, 11.5);
+	shot_unlight(rgb, &shot, &eye, 11.5);  // through a camera that projects nothing: every direction counts alike
 	NEAR(rgb[0], 0.5, 0.01);
 	NEAR(rgb[1], 0.4, 0.01);
 	NEAR(rgb[2], 0.3, 0.01);
