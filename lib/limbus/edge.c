@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/chol.h"
+#include "math/exp2.h"
 #include "math/stats.h"
 
 enum { MAX_ITER = 12, SMOOTH_ARCS = 9, PARAMS = 4 };
@@ -204,39 +205,87 @@ struct normal {
 };
 
 /* Upper tail of the normal distribution beyond -z, given e = exp(-z²/2): Abramowitz and Stegun 7.1.26, to 1.5e-7. */
-static double normal_cdf(double z, double e)
+SIMD_INLINE double normal_cdf(double z, double e)
 {
-	double t = 1 / (1 + 0.3275911 * M_SQRT1_2 * fabs(z));
-	double tail = 0.5 * e * t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
-	return z < 0 ? tail : 1 - tail;
+	const double t = 1 / (1 + 0.3275911 * M_SQRT1_2 * fabs(z));
+	const double tail = 0.5 * e * t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
+	return 0.5 + copysign(0.5 - tail, z);
 }
 
-/* Model and derivatives summed over the profile; parameters: in, out, d, w. */
-static void accumulate(struct normal *n, const struct step *f, const struct ring *r, int arc, double center,
-                       double window)
+/* Beyond that a power of e is nothing, or none of an iris. */
+SIMD_INLINE double within(double x)
 {
-	*n = (struct normal){ 0 };
-	const float *v = r->v + (long)arc * r->m;
-	const double ramp = RAMP_END * f->w, growth = exp(f->k * r->step);
-	const int from = (int)fmax(ceil((center - 2 * window - r->lo) / r->step), 0);
-	const int to = (int)fmin(floor((center + 2 * window - r->lo) / r->step), r->m - 1);
-	double iris = exp(f->k * (r->lo + from * r->step));
-	for (int j = from; j <= to; j++, iris *= growth) {
-		double s = r->lo + j * r->step, x = (s - center) / window, z = (s - f->d) / f->w;
+	const double most = 60, up = x > -most ? x : -most;
+	return up < most ? up : most;
+}
+
+/* Sums over a profile, one for each sample of a block: their order, and so the last digit, is the same in every instruction set. Parameters: in, out, d, w. */
+enum { LANES = 8 };
+struct lanes { double ss[LANES], weight[LANES], g[PARAMS][LANES], h[PARAMS][PARAMS][LANES]; };
+
+/* Places of a profile's samples, the window, and the step. */
+struct model { double lo, step, center, per_window, per_w, ramp, dense, d, k, m, in, out; };
+
+/* Adds a block of samples y that begins with sample `first`; there: 1, or 0 beyond the last. */
+SIMD_CLONES static void add_block(struct lanes *restrict sums, const double *restrict y, const double *restrict there, int first, const struct model *restrict at)
+{
+	const struct model f = *at;
+	SIMD_LOOP for (int l = 0; l < LANES; l++) {
+		const double s = f.lo + (first + l) * f.step, x = (s - f.center) * f.per_window, z = (s - f.d) * f.per_w;
 		/* a window with compact support, near to a Gaussian of sigma `window` */
-		double weight = 1 - x * x / 4, e = exp(-0.5 * z * z);
-		weight *= weight;
-		double A = normal_cdf(z, e), density = e / (sqrt(2 * M_PI) * f->w), beyond = s - center - ramp;
-		double sclera = 1 + f->m * (beyond > 0 ? beyond : SULCUS * beyond), jump = f->out * sclera - f->in * iris;
-		double J[PARAMS] = { (1 - A) * iris, A * sclera, -jump * density, -jump * density * z };
-		double res = v[j] - (J[0] * f->in + J[1] * f->out);
-		n->ss += weight * res * res;
-		n->weight += weight;
-		for (int a = 0; a < PARAMS; a++) {
-			n->g[a] += weight * J[a] * res;
-			for (int b = 0; b <= a; b++)
-				n->h[a][b] += weight * J[a] * J[b];
+		const double near = 1 - 0.25 * x * x, weight = there[l] * near * near;
+		const double e = exp_quick(within(-0.5 * z * z)), iris = exp_quick(within(f.k * s));
+		const double A = normal_cdf(z, e), beyond = s - f.center - f.ramp, sclera = 1 + f.m * (beyond > 0 ? beyond : SULCUS * beyond);
+		const double j0 = (1 - A) * iris, j1 = A * sclera, j2 = (f.in * iris - f.out * sclera) * e * f.dense, j3 = j2 * z;
+		const double res = y[l] - (j0 * f.in + j1 * f.out), w0 = weight * j0, w1 = weight * j1, w2 = weight * j2, w3 = weight * j3;
+		sums->ss[l] += weight * res * res;
+		sums->weight[l] += weight;
+		sums->g[0][l] += w0 * res;
+		sums->g[1][l] += w1 * res;
+		sums->g[2][l] += w2 * res;
+		sums->g[3][l] += w3 * res;
+		sums->h[0][0][l] += w0 * j0;
+		sums->h[1][0][l] += w1 * j0;
+		sums->h[1][1][l] += w1 * j1;
+		sums->h[2][0][l] += w2 * j0;
+		sums->h[2][1][l] += w2 * j1;
+		sums->h[2][2][l] += w2 * j2;
+		sums->h[3][0][l] += w3 * j0;
+		sums->h[3][1][l] += w3 * j1;
+		sums->h[3][2][l] += w3 * j2;
+		sums->h[3][3][l] += w3 * j3;
+	}
+}
+
+static double sum_of(const double lane[LANES])
+{
+	double sum = 0;
+	for (int l = 0; l < LANES; l++)
+		sum += lane[l];
+	return sum;
+}
+
+/* Model and derivatives summed over the profile. */
+static void accumulate(struct normal *n, const struct step *f, const struct ring *r, int arc, double center, double window)
+{
+	const float *v = r->v + (long)arc * r->m;
+	const int from = (int)fmax(ceil((center - 2 * window - r->lo) / r->step), 0), to = (int)fmin(floor((center + 2 * window - r->lo) / r->step), r->m - 1);
+	const struct model model = { r->lo, r->step, center, 1 / window, 1 / f->w, RAMP_END * f->w, 1 / (sqrt(2 * M_PI) * f->w), f->d, f->k, f->m, f->in, f->out };
+	struct lanes sums = { 0 };
+	for (int j = from; j <= to; j += LANES) {
+		double y[LANES], there[LANES];
+		for (int l = 0; l < LANES; l++) {
+			there[l] = j + l <= to;
+			y[l] = (double)v[j + l < to ? j + l : to];
 		}
+		add_block(&sums, y, there, j, &model);
+	}
+	n->ss = sum_of(sums.ss);
+	n->weight = sum_of(sums.weight);
+	for (int a = 0; a < PARAMS; a++) {
+		n->g[a] = sum_of(sums.g[a]);
+		for (int b = 0; b <= a; b++)
+			n->h[a][b] = sum_of(sums.h[a][b]);
 	}
 }
 
