@@ -48,15 +48,8 @@ json_t *page_facts(const json_t *log)
 {
 	json_t *list = json_array(), *value;
 	const char *key;
-	json_object_foreach(json_object_get(log, "figures"), key, value) {
-		const char *unit = json_string_value(json_object_get(value, "unit"));
-		char *label = mem_str(key);
-		for (char *p = label; *p; p++)
-			*p = *p == '_' ? ' ' : *p;
-		json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value",
-		                                      page_text("%.4g %s", json_number_value(json_object_get(value, "value")), unit ? unit : "")));
-		free(label);
-	}
+	json_object_foreach(json_object_get(log, "figures"), key, value)
+		json_array_append_new(list, page_figure(key, json_number_value(json_object_get(value, "value")), json_string_value(json_object_get(value, "unit"))));
 	return list;
 }
 
@@ -66,7 +59,7 @@ void page_say(json_t *list, const char *fmt, ...)
 	va_start(ap, fmt);
 	char *text = format(fmt, ap);
 	va_end(ap);
-	json_t *line = template_text(text), *old;
+	json_t *line = page_sentence(text), *old;
 	size_t i;
 	free(text);
 	json_array_foreach(list, i, old)

@@ -33,7 +33,14 @@ void page_say(json_t *list, const char *fmt, ...);
 __attribute__((format(printf, 1, 2)))
 json_t *page_text(const char *fmt, ...);
 
-/* [{label, value}] of the numbers in a stage's log; an empty array where there are none. */
+/* page_words.c: plain words. page_number: a number as text of four digits that count (two below 0.001), without an exponent, thousands
+ * apart. page_sentence: another program's text, numbers with exponents written so. page_figure: {label, value, unit} of a figure of a
+ * stage's log or of a character's record by its key; unit may be null. */
+json_t *page_number(double value);
+json_t *page_sentence(const char *text);
+json_t *page_figure(const char *key, double value, const char *unit);
+
+/* page_figure of all numbers in a stage's log; an empty array where there are none. */
 json_t *page_facts(const json_t *log);
 
 /* The photographs with their fits, each beside its rendering. */
@@ -47,9 +54,10 @@ json_t *page_eyes(struct page *page);
 /* Each stage's time, figures and what it left out; seconds: out, of all. */
 json_t *page_stages(struct page *page, double *seconds);
 
-/* {uri, width, height} of a picture file as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. */
+/* {uri, width, height, whole} of a picture file as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. whole: the
+ * file as the review page links it, where browsers show files of its kind. */
 json_t *page_picture(struct page *page, const char *path, int width);
-/* The same of the thirds of a comparison (draw/photo): photograph, rendering, difference. False when it cannot be read. */
+/* The same of the thirds of a comparison (draw/photo): photograph, rendering, difference; third: 0, 1, 2. False when it cannot be read. */
 bool page_panels(json_t *out[3], struct page *page, const char *path);
 
 /* Reads n channels of an iris map, reduced to the width of the page's pictures; false when there is none. image_free. */

@@ -151,9 +151,15 @@ static void show_eye(json_t *eye, struct page *page, const struct capture_eye *e
 	leaves(eye, page, e->leaves);
 }
 
-/* A row of the table of pigments: value, sigma, and a bar of both on 0..full. */
+/* Decimals that tell two digits of a standard deviation. */
+static int decimals_of(double sigma)
+{
+	return sigma > 0 ? (int)fmin(fmax(1 - floor(log10(sigma)), 0), 6) : 2;
+}
+
+/* A row of the table of pigments: value, sigma, and a bar of both on 0..full. decimals: below 0: as the standard deviation allows. */
 static void pigment_row(json_t *rows, const json_t *root, const char *layer, const char *key, const char *label, double full,
-                        double unit, const char *format)
+                        double unit, int decimals)
 {
 	json_t *entry = json_object_get(layer ? json_object_get(root, layer) : root, key);
 	json_t *v = json_object_get(entry, "value"), *s = json_object_get(entry, "sigma");
@@ -161,11 +167,9 @@ static void pigment_row(json_t *rows, const json_t *root, const char *layer, con
 		return;
 	double value = json_number_value(v), sigma = json_is_number(s) ? json_number_value(s) : 0;
 	double lo = fmin(fmax((value - sigma) / full, 0), 1), hi = fmin(fmax((value + sigma) / full, 0), 1);
-	char text[64], plus[64];
-	snprintf(text, sizeof text, format, value * unit);
-	snprintf(plus, sizeof plus, format, sigma * unit);
-	json_array_append_new(rows, json_pack("{s:s,s:s,s:s,s:f,s:f,s:f}", "label", label, "value", text, "sigma", plus, "at",
-	                                      100 * fmin(fmax(value / full, 0), 1), "from", 100 * lo, "wide",
+	decimals = decimals < 0 ? decimals_of(sigma * unit) : decimals;
+	json_array_append_new(rows, json_pack("{s:s,s:o,s:o,s:f,s:f,s:f}", "label", label, "value", page_text("%.*f", decimals, value * unit), "sigma",
+	                                      page_text("%.*f", decimals, sigma * unit), "at", 100 * fmin(fmax(value / full, 0), 1), "from", 100 * lo, "wide",
 	                                      fmax(100 * (hi - lo), 0.6)));
 }
 
@@ -232,15 +236,15 @@ static json_t *pigments(struct page *page, const char *dir)
 	json_t *rows = json_array(), *out = json_pack("{s:o}", "rows", rows);
 	double most = fmax(fmax(value_of(root, "abl", "melanin"), value_of(root, "stroma", "melanin")) * 1.6, 1e-4);
 	double scale = fmax(2 * value_of(root, "stroma", "thickness_scale"), 1), exposure = fmax(2 * value_of(root, 0, "exposure"), 1);
-	pigment_row(rows, root, "abl", "melanin", "Anterior border layer: melanin, % of volume", most, 100, "%.3g");
-	pigment_row(rows, root, "abl", "eumelanin_ratio", "Anterior border layer: eumelanin, % of melanin", 1, 100, "%.0f");
-	pigment_row(rows, root, "stroma", "melanin", "Stroma: melanin, % of volume", most, 100, "%.3g");
-	pigment_row(rows, root, "stroma", "eumelanin_ratio", "Stroma: eumelanin, % of melanin", 1, 100, "%.0f");
-	pigment_row(rows, root, "stroma", "thickness_scale", "Stroma: optical over anatomical thickness", scale, 1, "%.2f");
-	pigment_row(rows, root, 0, "exposure", "Exposure: photograph over model", exposure, 1, "%.2f");
+	pigment_row(rows, root, "abl", "melanin", "Anterior border layer: melanin, % of volume", most, 100, -1);
+	pigment_row(rows, root, "abl", "eumelanin_ratio", "Anterior border layer: eumelanin, % of melanin", 1, 100, 0);
+	pigment_row(rows, root, "stroma", "melanin", "Stroma: melanin, % of volume", most, 100, -1);
+	pigment_row(rows, root, "stroma", "eumelanin_ratio", "Stroma: eumelanin, % of melanin", 1, 100, 0);
+	pigment_row(rows, root, "stroma", "thickness_scale", "Stroma: optical over anatomical thickness", scale, 1, 2);
+	pigment_row(rows, root, 0, "exposure", "Exposure: photograph over model", exposure, 1, 2);
 	const char *note = json_string_value(json_object_get(root, "note"));
 	if (note && *note)
-		json_object_set_new(out, "note", template_text(note));
+		json_object_set_new(out, "note", page_sentence(note));
 	json_t *rgb = json_object_get(root, "residual_rgb");
 	if (json_array_size(rgb) == 3)
 		json_object_set_new(out, "residual", page_text("%.3f, %.3f, %.3f", json_number_value(json_array_get(rgb, 0)),

@@ -1,6 +1,9 @@
+#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
@@ -22,6 +25,36 @@ static json_t *pixels_at_most(const uint8_t *px, int w, int h, int width)
 	return picture;
 }
 
+/* A file of the folder as the review page, in work/review/, links it: escaped as an address, byte by byte. Null for kinds that browsers do not
+ * show. */
+static json_t *link_of(struct page *page, const char *path)
+{
+	static const char *const shown[] = { ".png", ".jpg", ".jpeg", ".webp", ".avif", ".svg" }, work[] = "work/";
+	const char *rel = path + strlen(page->stage->capture) + 1, *dot = strrchr(rel, '.');
+	int kind = 0;
+	while (kind < COUNT(shown) && !(dot && !strcasecmp(dot, shown[kind])))
+		kind++;
+	if (kind == COUNT(shown))
+		return 0;
+	const bool made = !strncmp(rel, work, strlen(work));
+	char *out = mem_new(3 * strlen(rel) + 8, 1), *to = stpcpy(out, made ? "../" : "../../");
+	for (const char *p = made ? rel + strlen(work) : rel; *p; p++)
+		if (isalnum((unsigned char)*p) || strchr("-._~/", *p))
+			*to++ = *p;
+		else
+			to += sprintf(to, "%%%02X", (unsigned char)*p);
+	json_t *json = json_string(out);
+	free(out);
+	return json;
+}
+
+static void put_link(json_t *picture, struct page *page, const char *path)
+{
+	json_t *whole = picture ? link_of(page, path) : 0;
+	if (whole)
+		json_object_set_new(picture, "whole", whole);
+}
+
 json_t *page_picture(struct page *page, const char *path, int width)
 {
 	struct err err = { 0 };
@@ -31,6 +64,7 @@ json_t *page_picture(struct page *page, const char *path, int width)
 		return 0;
 	json_t *picture = pixels_at_most(px, w, h, width);
 	free(px);
+	put_link(picture, page, path);
 	return picture;
 }
 
@@ -51,6 +85,10 @@ bool page_panels(json_t *out[3], struct page *page, const char *path)
 		free(part);
 	}
 	free(px);
+	for (int k = 0; k < 3; k++) {
+		put_link(out[k], page, path);
+		json_object_set_new(out[k], "third", page_text("%d", k));
+	}
 	return true;
 }
 

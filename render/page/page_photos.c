@@ -167,13 +167,13 @@ static json_t *photo(struct page *page, const struct capture_photo *p)
 	json_object_set_new(entry, "file", template_text(p->file));
 	add(entry, "picture", page_picture(page, file, 2 * page->width));
 	if (!path || !fit_load(&fit, path, &err)) {
-		json_object_set_new(entry, "reason", template_text(path ? err.msg : "the stage limbus has not looked at it"));
+		json_object_set_new(entry, "reason", page_sentence(path ? err.msg : "the stage limbus has not looked at it"));
 		page_say(page->missing, "%s: %s", p->name, path ? err.msg : "no fit; the stage limbus has not looked at it");
 		return entry;
 	}
 	advise(page, p->name, &fit);
 	if (!fit.ok) {
-		json_object_set_new(entry, "reason", template_text(fit.reason));
+		json_object_set_new(entry, "reason", page_sentence(fit.reason));
 		hand(entry, p->name, &fit, file);
 		return entry;
 	}

@@ -35,7 +35,7 @@ json_t *page_rig(struct page *page)
 	size_t i;
 	json_array_foreach(json_object_get(log, "skipped"), i, line)
 		if (json_is_string(line))
-			json_array_append(skipped, line);
+			json_array_append_new(skipped, page_sentence(json_string_value(line)));
 	json_t *rig = picture ? json_pack("{s:o,s:o,s:o,s:o}", "picture", picture, "facts", page_facts(log), "skipped", json_incref(skipped), "laid",
 	                                    laid_on(page)) : 0;
 	json_decref(skipped);

@@ -63,13 +63,8 @@ static json_t *transfer_facts(struct page *page, const char *name)
 	json_t *root = page_json(page, page_file(page, "work/targets/%s/registration.json", name)), *list = json_array(), *value;
 	const char *key;
 	json_object_foreach(root, key, value)
-		if (json_is_number(value)) {
-			char *label = mem_str(key);
-			for (char *p = label; *p; p++)
-				*p = *p == '_' ? ' ' : *p;
-			json_array_append_new(list, json_pack("{s:o,s:o}", "label", template_text(label), "value", page_text("%.4g", json_number_value(value))));
-			free(label);
-		}
+		if (json_is_number(value))
+			json_array_append_new(list, page_figure(key, json_number_value(value), 0));
 	json_t *doubts = json_object_get(root, "doubtful"), *line;
 	size_t i;
 	json_array_foreach(doubts, i, line)

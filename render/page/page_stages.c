@@ -6,23 +6,6 @@
 #include "plan/stages.h"
 #include "render/page/page.h"
 
-static json_t *figures(const json_t *log)
-{
-	json_t *list = json_array(), *value;
-	const char *key;
-	json_object_foreach(json_object_get(log, "figures"), key, value) {
-		const char *unit = json_string_value(json_object_get(value, "unit"));
-		char label[160];
-		snprintf(label, sizeof label, "%s", key);
-		for (char *p = label; *p; p++)
-			*p = *p == '_' ? ' ' : *p;
-		json_array_append_new(list, json_pack("{s:o,s:o,s:o}", "label", template_text(label), "value",
-		                                      page_text("%.4g", json_number_value(json_object_get(value, "value"))), "unit",
-		                                      template_text(unit ? unit : "")));
-	}
-	return list;
-}
-
 /* setting: of a measured front, where capture.conf asks for an error or a time; or null. */
 static json_t *plan_reason(const json_t *plan, const char *name, bool *run, json_t **setting)
 {
@@ -40,6 +23,16 @@ static json_t *plan_reason(const json_t *plan, const char *name, bool *run, json
 	return 0;
 }
 
+static json_t *sentences(const json_t *lines)
+{
+	json_t *list = json_array(), *line;
+	size_t i;
+	json_array_foreach(lines, i, line)
+		if (json_is_string(line))
+			json_array_append_new(list, page_sentence(json_string_value(line)));
+	return list;
+}
+
 static double now_s(void)
 {
 	struct timespec t;
@@ -52,14 +45,14 @@ static json_t *row(struct page *page, const char *name, const json_t *plan, json
 	bool run, self = !strcmp(name, "render");
 	json_t *setting = 0, *reason = plan_reason(plan, name, &run, &setting), *entry = json_pack("{s:s}", "name", name);
 	const char *error = json_string_value(json_object_get(log, "error"));
-	if (reason)
-		json_object_set(entry, "reason", reason);
-	if (setting && run)
-		json_object_set(entry, "setting", setting);
+	if (json_is_string(reason))
+		json_object_set_new(entry, "reason", page_sentence(json_string_value(reason)));
+	if (json_is_string(setting) && run)
+		json_object_set_new(entry, "setting", page_sentence(json_string_value(setting)));
 	if (!log && !self) {
 		bool planned = plan && reason && !strcmp(name, plan_stages[0].name);  // plan keeps no log: what it wrote is there
 		if (planned)
-			json_object_set(entry, "note", reason);
+			json_object_set(entry, "note", json_object_get(entry, "reason"));
 		else
 			json_object_set_new(entry, "idle", json_true());
 		return entry;
@@ -69,10 +62,10 @@ static json_t *row(struct page *page, const char *name, const json_t *plan, json
 	*seconds += s;
 	json_object_set_new(entry, "time", json_real(s));
 	json_object_set_new(entry, "seconds", page_text("%.2f", s));
-	json_object_set_new(entry, "figures", figures(log));
-	json_object_set(entry, "skips", json_object_get(log, "skipped"));
+	json_object_set_new(entry, "figures", page_facts(log));
+	json_object_set_new(entry, "skips", sentences(json_object_get(log, "skipped")));
 	if (error && *error)
-		json_object_set_new(entry, "error", template_text(error));
+		json_object_set_new(entry, "error", page_sentence(error));
 	return entry;
 }
 

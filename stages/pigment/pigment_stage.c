@@ -123,8 +123,8 @@ static char *extra_json(const struct work *w)
 	json_object_set_new(out, "light", light_json(w));
 	if (w->map.n)
 		json_object_set_new(out, "melanin_map", melanin_json(&w->map, &w->fit));
-	json_object_set_new(out, "note", json_string("thickness_scale times thickness against melanin, and exposure against all of them, are what one "
-	                                               "photograph tells least apart: see held_by_priors and correlation"));
+	json_object_set_new(out, "note", json_string("How thick the stroma is for light against its melanin, and exposure against all of them, are what one "
+	                                               "photograph tells least apart."));
 	char *text = json_dumps(out, 0);
 	json_decref(out);
 	return text;

@@ -98,7 +98,7 @@ class Browser {
 
 	async key(key, code) {
 		for (const type of ["keyDown", "keyUp"])
-			await this.send("Input.dispatchKeyEvent", { type, key, code: code || key, windowsVirtualKeyCode: { ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40 }[key] || 0 });
+			await this.send("Input.dispatchKeyEvent", { type, key, code: code || key, windowsVirtualKeyCode: { ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13 }[key] || 0, ...(key === "Enter" && type === "keyDown" ? { text: "\r" } : {}) });
 	}
 
 	async end() {

@@ -41,7 +41,22 @@ for spoilt in "$capture hostile" "$root/spoilt"; do
 	"$BIN/render" --capture="$spoilt" --quiet >"$log" 2>&1
 	same "pages of hostile records are made" "$? $(cat "$log")" "0 "
 done
-timeout 300 node tests/browser/hostile.js "$capture hostile" "$root/spoilt" >"$root/said" 2>&1
+# A review of records that hold what stages write at worst: figures near nothing and beyond all measure, exponents in sentences.
+cp -r "$character" "$root/told"
+mkdir -p "$root/told/work/log"
+cat >"$root/told/work/log/pigment.json" <<'RECORD'
+{"stage": "pigment", "seconds": 1.5, "error": "followed wrongly with a probability of 1.2e-05, must be at most 1e-3",
+ "skipped": ["photo_1e5 stays; a picture of 1.23e+07 px"],
+ "figures": {"held_by_priors": {"value": 456812.0, "unit": "of 9 directions"}, "refraction_error_mean": {"value": 4.9e-13, "unit": "mm"},
+  "scale_sigma": {"value": -2.5e-4, "unit": "%"}}}
+RECORD
+rm "$root/told/work/review/index.html"
+"$BIN/render" --capture="$root/told" --quiet >"$log" 2>&1
+same "a review of them is made" "$? $(cat "$log")" "0 "
+mkdir "$root/alone"
+timeout 300 node tests/browser/review.js "$SHOTS" "$root/alone" "$root/told/work/review/index.html" "$capture/work/review/index.html" \
+	"$character/work/review/index.html" >"$root/said" 2>&1
+timeout 300 node tests/browser/hostile.js "$capture hostile" "$root/spoilt" >>"$root/said" 2>&1
 timeout 600 node tests/browser/viewer.js "$page" "$capture/work/render/front.png" "$capture/work/render/three_quarter.png" "$SHOTS" \
 	"$character/work/review/viewer.html" "$character/work/targets/made/rig.npz" "${B:-build}/tests/tools" >>"$root/said" 2>&1
 timeout 300 node tests/browser/hands.js "$page" "$character/work/review/viewer.html" >>"$root/said" 2>&1
@@ -55,6 +70,7 @@ while IFS= read -r line; do
 	esac
 done <"$root/said"
 check "the browser's runs came to their ends" grep -q 'without WebGL 2' "$root/said"
+check "those of the review, too" grep -q 'without the files beside it' "$root/said"
 check "those of hands, too" grep -q 'hands: no error' "$root/said"
 check "those in surroundings of files, too" grep -q 'surroundings: no error' "$root/said"
 check "those of what leaves, too" grep -q 'leaving: no error' "$root/said"
