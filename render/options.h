@@ -48,6 +48,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_BOOL("film", &(c)->film, "the turntable as a film"), \
 	OPT_INT("sheet_px", &(c)->sheet_px, 300, 6000, "px", "width of the contact sheet"), \
 	OPT_INT("page_px", &(c)->page_px, 100, 2000, "px", "width of the review page's pictures"), \
+	OPT_REAL("page_glb_mib", &(c)->page_glb_mib, 0, 64, "MiB", "largest .glb of a character that the interactive page carries, to be saved as set"), \
 	OPT_STR("shots", &(c)->shots, "JSON in the capture folder: further pictures, each with pose and light"), \
 	LIGHT_POLARISED_OPT(&(c)->polarised), \
 	LIGHT_ENVIRONMENT_OPT(&(c)->light), \

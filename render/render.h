@@ -23,6 +23,7 @@ struct render_conf {
 	bool freckles, exr, film, polarised;
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
+	double page_glb_mib;             // largest character's .glb that the interactive page carries
 	double limit_mpx;                // larger photographs are refused
 };
 

@@ -9,7 +9,7 @@ class Address {
 		const parts = [];
 		for (const c of this.controls)
 			if (Math.abs(this.values[c.key] - c.value) > 1e-9)
-				parts.push(`${c.key}=${Number(this.values[c.key].toPrecision(6))}`);
+				parts.push(`${c.key}=${plain(this.values[c.key], 6)}`);
 		if (this.orbit[0] || this.orbit[1])
 			parts.push(`orbit=${this.orbit.map(v => (v * 180 / Math.PI).toFixed(1)).join(",")}`);
 		if (this.pan[0] || this.pan[1])

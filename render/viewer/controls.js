@@ -59,6 +59,7 @@ class Controls extends Address {
 				if (Number.isFinite(v)) {
 					this.set_follow("typed");
 					this.eyes.target[k] = Math.min(45, Math.max(-45, v));
+					this.lines();
 					this.to_hash();
 					this.wake();
 				}
@@ -98,6 +99,7 @@ class Controls extends Address {
 		by_id("busy").textContent = "Opening…";
 		try {
 			const light = panorama.made(await panorama.read(file), file.name.replace(/\.[^.]*$/, ""), this.eye.lights[0], this.eye.constants.wet_lobe);
+			light.file = file.name;
 			light.sharp_map = this.graphics.light(light.sharp);
 			light.rough_map = this.graphics.light(light.rough);
 			const scenes = [this.scene, ...Object.values(this.others || {})];
@@ -134,7 +136,7 @@ class Controls extends Address {
 		const tick = element("span", { className: "fit" });
 		tick.style.left = at(t_of(c.value));
 		track.append(tick, input);
-		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: c.why ? `${origin}, ${c.why}` : origin });
+		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: [c.why ? `${origin}, ${c.why}` : origin, ...(c.keep || c.pigment ? [] : ["only looked at here, no key keeps it"])].join("; ") });
 		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, fitted);
 		if (c.lids || c.alone || c.key === "field")
 			row.dataset.of = c.lids ? "lids" : c.alone ? "alone" : "gaze";
@@ -176,25 +178,69 @@ class Controls extends Address {
 			}
 			said("Copied");
 		});
-		this.keep_box = element("fieldset", { hidden: true }, element("legend", { textContent: "Keep" }), element("p", { className: "note" }, element("label", { htmlFor: "lines", textContent: "Keep these values: put the lines into capture.conf and run make again." })), this.kept, element("div", { className: "buttons" }, copy));
+		this.keep_lines = element("div", {}, element("p", { className: "note" }, element("label", { htmlFor: "lines", textContent: "Keep these values: put the lines into capture.conf and run make again." })), this.kept, element("div", { className: "buttons" }, copy));
+		this.keep_note = element("p", { className: "note", id: "not-kept" });
+		this.keep_box = element("fieldset", { hidden: true }, element("legend", { textContent: "Keep" }), this.keep_lines, this.keep_note);
 		return this.keep_box;
 	}
 
-	/* capture.conf lines for what was moved: a narrow prior holds a pigment where it was put. */
+	moved(c) {
+		return Math.abs(this.values[c.key] - c.value) > 1e-9;
+	}
+
+	/* capture.conf lines for what was moved: a narrow prior holds a pigment where it was put. What no key keeps is named. */
 	lines() {
-		const v = this.state(), out = [], moved = key => Math.abs(this.values[key] - this.controls.find(c => c.key === key).value) > 1e-9;
+		const v = this.state(), out = [], only = [], notes = [], moved = key => this.moved(this.controls.find(c => c.key === key));
 		for (const layer of ["abl", "stroma"])
 			if (moved(layer + "_eu") || moved(layer + "_pheo")) {
-				out.push(`pigment.prior_${layer}_melanin = ${Math.max(v[layer + "_melanin"], 1e-4).toPrecision(4)} 0.01`);
+				out.push(`pigment.prior_${layer}_melanin = ${plain(Math.max(v[layer + "_melanin"], 1e-4), 4)} 0.01`);
 				out.push(`pigment.prior_${layer}_ratio = ${v[layer + "_ratio"].toFixed(4)} 0.005`);
 			}
 		if (moved("thickness_scale"))
 			out.push(`pigment.prior_scale = ${v.thickness_scale.toFixed(4)} 0.01`);
-		for (const c of this.controls)
-			if (c.conf && moved(c.key))
-				out.push(`${c.conf} = ${this.values[c.key].toFixed(4)}`);
+		for (const c of this.controls.filter(o => !o.pigment && this.moved(o))) {
+			const line = c.keep ? c.keep(this.values[c.key], this) : null, value = line && Math.min(Math.max(line.value, line.lo), line.hi);
+			if (!line) {
+				only.push(c.label);
+				continue;
+			}
+			out.push(`${line.key} = ${plain(value, 6)}`);
+			if (value !== line.value)
+				notes.push(`${line.key} goes from ${line.lo} to ${line.hi}: its line has the nearest.`);
+		}
+		this.keep_gaze(out);
+		this.keep_light(out, only, notes);
+		if (only.length)
+			notes.unshift(`Only looked at here, no key of capture.conf keeps it: ${only.join(", ")}.`);
 		this.kept.value = out.join("\n");
-		this.keep_box.hidden = !out.length;
+		this.keep_note.textContent = notes.join(" ");
+		this.keep_lines.hidden = !out.length;
+		this.keep_note.hidden = !notes.length;
+		this.keep_box.hidden = !out.length && !notes.length;
+	}
+
+	/* Where a typed gaze looks: of a face in its still, of an eye alone in its three-quarter view. */
+	keep_gaze(out) {
+		const target = this.eyes.target;
+		if (this.follow === "typed" && !this.beside && target.some(a => a))
+			out.push(`${this.mode === "face" ? "render.gaze" : "render.three_quarter_deg"} = ${target.map(a => plain(a, 4)).join(" ")}`);
+	}
+
+	/* Surroundings of the stills are a file of the capture. */
+	keep_light(out, only, notes) {
+		const light = this.eye.lights[this.light] || {}, name = light.file;
+		if (this.light === this.own_light())
+			return;
+		if (!name)
+			only.push(`Surroundings: ${light.name}`);
+		else if (!/\.exr$/i.test(name))
+			notes.push(`Surroundings of ${name}: render.environment takes OpenEXR only.`);
+		else if (!/^[\w.-]+$/.test(name) || name.startsWith("."))
+			notes.push(`Surroundings of ${name}: to be kept the file needs a name of letters, digits, - and _ alone.`);
+		else {
+			out.push(`render.environment = ${name}`);
+			notes.push(`Copy ${name} into the capture's folder, too.`);
+		}
 	}
 
 	machine() {
@@ -250,6 +296,7 @@ class Controls extends Address {
 		if (this.playing !== null)
 			this.play(null);
 		this.follow = mode;
+		this.lines();
 		["pointer", "typed", "wander"].forEach((m, i) => this.following[i].setAttribute("aria-pressed", m === mode));
 		this.wake();
 	}
@@ -257,6 +304,7 @@ class Controls extends Address {
 	set_light(i) {
 		this.light = i;
 		this.light_buttons.forEach((b, k) => b.setAttribute("aria-pressed", k === i));
+		this.lines();
 		this.changed();
 	}
 
@@ -275,6 +323,7 @@ class Controls extends Address {
 		if (on !== was)
 			this.set_light(this.own_light());
 		this.show_controls();
+		this.lines();
 		this.to_hash();
 		this.changed();
 	}

@@ -2,6 +2,7 @@
 class FaceScene {
 	static DISTANCE = 900;
 	static PROBE = 16;
+	static WIDE = 2.3;  // distances between the eyes that are shown across
 
 	constructor(g, data) {
 		const gl = g.gl, bytes = Graphics.bytes;
@@ -38,7 +39,7 @@ class FaceScene {
 		gl.bindVertexArray(null);
 		gl.bindBuffer(gl.ARRAY_BUFFER, null);  // what a pass writes to is bound to nothing else
 		// Both eyes and some of what is beside them, mm across.
-		this.field = 2.3 * Math.hypot(...[0, 1, 2].map(k => data.globes[0][k] - data.globes[1][k]));
+		this.field = FaceScene.WIDE * Math.hypot(...[0, 1, 2].map(k => data.globes[0][k] - data.globes[1][k]));
 		this.sky_map = g.texture(2 * data.sky_px, data.sky_px, gl.R8);
 	}
 

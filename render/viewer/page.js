@@ -170,6 +170,7 @@ class Page extends Live {
 			this.set_follow("typed");
 			this.eyes.target = this.eyes.target.map((v, k) => Math.min(45, Math.max(-45, Math.round(v + 2 * step[k]))));
 			this.typed.forEach((input, k) => { input.value = this.eyes.target[k]; });
+			this.lines();
 			said(`Looks ${this.eyes.target[0]} degrees to the person's left, ${this.eyes.target[1]} up`);
 		} else if (e.key === "+" || e.key === "=" || e.key === "-")
 			this.set("field", this.values.field * (e.key === "-" ? 1.1 : 1 / 1.1));

@@ -22,23 +22,34 @@ function pigments(t) {
 	return out;
 }
 
+/* A number in plain digits: so many that count, never an exponent. */
+function plain(v, n) {
+	if (!(Math.abs(v) > 1e-12))
+		return "0";
+	const text = v.toFixed(Math.min(12, Math.max(0, n - 1 - Math.floor(Math.log10(Math.abs(v))))));
+	return text.includes(".") ? text.replace(/\.?0+$/, "") : text;
+}
+
 /* Everything a hand can move. value: as fitted or assumed; from: how it came about, in a word; why: more of that. sigma: of the
- * fit, or between people (show_sigma: finer than the value is shown); band: the same where it is not even. power: how the slider is bent. conf: what capture.conf calls it. */
+ * fit, or between people (show_sigma: finer than the value is shown); band: the same where it is not even. power: how the slider is bent. keep: what capture.conf calls it {key, value, lo, hi: what that takes}; not there: no line keeps
+ * it, and it is looked at only. pigment: its lines are made of several. */
 function sliders(eye) {
-	const e = eye.eye, t = eye.tissue, p = pigments(t), scale = t.interval.thickness_scale, share = v => `${(100 * v).toFixed(0)} %`, per_cent = v => `${(100 * v).toPrecision(3)} %`;
+	const e = eye.eye, t = eye.tissue, p = pigments(t), scale = t.interval.thickness_scale, share = v => `${(100 * v).toFixed(0)} %`, per_cent = v => `${plain(100 * v, 3)} %`;
 	const degrees = v => `${v.toFixed(0)}°`, mm = n => v => `${v.toFixed(n)} mm`, fitted = !!t.interval.abl_melanin, film = data.face ? data.face.tear_mm : 0;
-	const melanin = key => ({ key, lo: 0, hi: 0.6, power: 3, show: per_cent, from: fitted ? "fitted" : "chosen", ...p[key] });
+	const as = (key, lo, hi, of) => v => ({ key, value: of ? of(v) : v, lo, hi });
+	const melanin = key => ({ key, pigment: true, lo: 0, hi: 0.6, power: 3, show: per_cent, from: fitted ? "fitted" : "chosen", ...p[key] });
 	return [
 		["Eye", [
-			{ key: "aperture", label: "Lids: how far open", lo: 0, hi: 1.6, value: 1, show: share, lids: true, from: "learnt from the video", why: "as these lids follow the gaze; the spread between people is not known" },
+			{ key: "aperture", label: "Lids: how far open", lo: 0, hi: 1.6, value: 1, keep: as("render.aperture", 0, 2), show: share, lids: true, from: "learnt from the video", why: "as these lids follow the gaze; the spread between people is not known" },
 			...["left", "right"].map(side => ({ key: `wink_${side}`, label: `Wink: ${side} lids shut`, lo: 0, hi: 1, value: 0, show: share, lids: true, from: "at rest" })),
 			{ key: "near", label: "Both eyes on something near", lo: 0, hi: 10, value: 0, lids: true, from: "chosen",
 				show: v => v > 0.05 ? `${(100 / v).toFixed(0)} cm away` : "far away" },
 			{ key: "pupil", label: "Pupil, radius", lo: 0.7, hi: 4.2, value: e.pupil[2], sigma: e.pupil_sigma, show: mm(2), show_sigma: mm(3), from: eye.photo ? "fitted" : "chosen",
 				why: eye.photo ? `in an iris taken as ${(2 * e.limbus[0]).toFixed(1)} mm across` : "no photograph tells it" },
-			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, show: share, from: "from the literature", band: film ? [0.2 / film, 0.35 / film] : null,
+			{ key: "tear", label: "Tears", lo: 0, hi: 2, value: 1, keep: film ? as("render.tear_mm", 0, 3, v => v * film) : null, show: share, from: "from the literature", band: film ? [0.2 / film, 0.35 / film] : null,
 				why: film ? `${film.toFixed(2)} mm high; healthy eyes have 0.2 to 0.35 mm` : "a healthy eye's film" },
-			{ key: "field", label: "Zoom", lo: 8, hi: 60, value: 30, power: 2, show: v => `${(3000 / v).toFixed(0)} %`, from: "chosen", why: "which shows 30 mm of an eye, or a face from brow to mouth" },
+			{ key: "field", label: "Zoom", lo: 8, hi: 60, value: 30, power: 2, keep: (v, page) => page.mode === "face" ? { key: "render.face_field", value: FaceScene.WIDE * v / 30, lo: 1, hi: 6 } : { key: "render.field_mm", value: v, lo: 10, hi: 60 },
+				 show: v => `${(3000 / v).toFixed(0)} %`, from: "chosen", why: "which shows 30 mm of an eye, or a face from brow to mouth" },
 		]],
 		...(data.face && data.face.expressions.length ? [["Expressions", data.face.expressions.map((x, k) => (
 			{ key: `au${k}`, label: x.name.replace(/_/g, " "), lo: 0, hi: 1, value: 0, lids: true, show: share, from: "at rest", why: "100 % is the video's own peak" }))]] : []),
@@ -47,14 +58,14 @@ function sliders(eye) {
 			{ ...melanin("abl_pheo"), label: "Anterior border layer: pheomelanin" },
 			{ ...melanin("stroma_eu"), label: "Stroma: eumelanin" },
 			{ ...melanin("stroma_pheo"), label: "Stroma: pheomelanin" },
-			{ key: "thickness_scale", label: "Stroma: optical over anatomical thickness", lo: 0.02, hi: 2.5, power: 2, value: t.fitted.thickness_scale,
+			{ key: "thickness_scale", pigment: true, label: "Stroma: optical over anatomical thickness", lo: 0.02, hi: 2.5, power: 2, value: t.fitted.thickness_scale,
 				sigma: scale ? (scale[1] - scale[0]) / 2 : 0, show: v => v.toFixed(3), from: fitted ? "fitted" : "chosen" },
-			{ key: "detail", label: "Detail of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, show: share, from: "configured", why: "0 % is the model alone" },
+			{ key: "detail", label: "Detail of the photograph beyond the model", lo: 0, hi: 1, value: e.detail, keep: as("render.detail", 0, 1), show: share, from: "configured", why: "0 % is the model alone" },
 		]],
 		["Cornea", [
-			{ key: "R", label: "Apical radius R", lo: 6.5, hi: 9.5, value: e.R, sigma: 0.27, show: mm(2), conf: "eye.cornea_radius_mm", from: "configured", why: "people's spread" },
-			{ key: "p", label: "Asphericity p", lo: 0.3, hi: 1.2, value: e.p, sigma: 0.12, show: v => v.toFixed(3), conf: "eye.cornea_asphericity", from: "configured", why: "people's spread" },
-			{ key: "n", label: "Index of refraction", lo: 1, hi: 1.5, value: e.n, show: v => v.toFixed(4), conf: "eye.index", from: "configured", why: "the literature's for the aqueous humour; photographs do not tell it" },
+			{ key: "R", label: "Apical radius R", lo: 6.5, hi: 9.5, value: e.R, sigma: 0.27, show: mm(2), keep: as("eye.cornea_radius_mm", 5, 12), from: "configured", why: "people's spread" },
+			{ key: "p", label: "Asphericity p", lo: 0.3, hi: 1.2, value: e.p, sigma: 0.12, show: v => v.toFixed(3), keep: as("eye.cornea_asphericity", 0, 2), from: "configured", why: "people's spread" },
+			{ key: "n", label: "Index of refraction", lo: 1, hi: 1.5, value: e.n, show: v => v.toFixed(4), keep: as("eye.index", 1, 2), from: "configured", why: "the literature's for the aqueous humour; photographs do not tell it" },
 		]],
 		["Light", [
 			{ key: "light_yaw", label: "Turned sideways", lo: -180, hi: 180, value: 0, show: degrees, from: "chosen", why: "0° is where the lamps of these surroundings stand" },

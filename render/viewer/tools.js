@@ -19,9 +19,17 @@ class Tools extends Controls {
 			group("Undo and redo", ...this.undoing, ...this.slot_buttons),
 			group("Presets", ...Tools.PRESETS.map(([name, values]) => this.button(name, () => this.preset_to(name, values)))),
 			group("Keep", this.button("Save picture", () => this.save_picture(0)), this.button("Save picture, 4k", () => this.save_picture(Tools.LONGEST)),
-				this.button("Save turntable", () => this.save_turntable()), ...(this.carried() ? [this.button("Save .glb as set", () => this.save_glb())] : []), this.button("Full screen", () => this.full_screen())));
+				this.button("Save turntable", () => this.save_turntable()), ...(this.carried() ? [this.button("Save .glb as set", () => this.save_glb())] : []), this.button("Full screen", () => this.full_screen())), ...(this.carried() ? [] : [element("p", { className: "note", id: "no-glb", textContent: this.why_not_carried() })]));
 		this.show_steps();
 		return set;
+	}
+
+	/* Why there is no .glb to be saved as set. */
+	why_not_carried() {
+		const { file, mib, most } = data.left;
+		if (file)
+			return `No "Save .glb as set" here: ${file} has ${mib.toFixed(1)} MiB, and this page carries files of ${plain(most, 3)} MiB at most (render.page_glb_mib). The file itself stands in the capture's folder, its face at rest.`;
+		return data.face ? "No \"Save .glb as set\" here: this character's .glb has not been made." : "No \"Save .glb as set\" here: the eye has not been exported (export.make = yes in capture.conf, or quality = review, does).";
 	}
 
 	/* ---- back and forth */

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/mem.h"
 #include "base/version.h"
@@ -12,7 +13,6 @@
 #include "render/page/page.h"
 
 static const char *const out = "work/review/viewer.html";
-enum { MOST_GLB = 8 << 20 };  // larger ones stay where they are: the page is to be small
 
 /* JSON as the text of a script element; every "<" is escaped, so that nothing can end the element. free(). */
 static char *script_text(const json_t *json)
@@ -84,7 +84,7 @@ static void programs(json_t *data, bool face)
 }
 
 static bool write_page(struct stage *stage, const struct capture *capture, const struct render_conf *conf, json_t *eyes,
-                       json_t *face, json_t *glbs, struct err *err)
+                       json_t *face, json_t *glbs, json_t *left, struct err *err)
 {
 	struct page page = { stage, capture, conf, conf->page_px, json_array(), json_array(), json_array() };
 	char *full = realpath(stage->capture, 0), *html, *text;
@@ -94,6 +94,7 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 	json_object_set(state, "eyes", eyes);
 	if (face)
 		json_object_set(state, "face", face);
+	json_object_set(state, "left", left);
 	json_object_set_new(state, "motion", motion(stage));
 	json_object_set_new(state, "version", json_string(EYEWRIGHT_VERSION));
 	text = script_text(state);
@@ -212,17 +213,33 @@ static bool add_face(json_t **face, json_t *eyes, struct skin_job *skin, struct 
 	return ok;
 }
 
-/* What can leave the page: the character as it has left, unless that is large; else each eye by itself, where exports are made with the
- * pictures: it takes a fifth of the time of a draft. */
-static bool add_glbs(json_t *glbs, struct parts *p, struct skin_job *skin, struct err *err)
+/* The character as it has left, unless that is large: left then says which file, and both sizes in MiB. */
+static void add_face_glb(json_t *glbs, json_t *left, struct parts *p, struct skin_job *skin)
 {
+	const double mib = 1 << 20, most = skin->render->page_glb_mib;
 	char *bytes = 0;
 	size_t size;
 	struct err large = { 0 };
+	struct stat st;
+	const char *path = p->glb ? stage_path(skin->stage, "%s", p->glb) : 0;
+	if (path && file_read(&bytes, &size, path, (size_t)(most * mib), &large)) {
+		json_array_append_new(glbs, json_pack("{s:s,s:o}", "of", "face", "base64", base64_json(bytes, size)));
+	} else if (path && !stat(path, &st)) {
+		json_object_set_new(left, "file", template_text(p->glb));
+		json_object_set_new(left, "mib", json_real((double)st.st_size / mib));
+		json_object_set_new(left, "most", json_real(most));
+	}
+	free(bytes);
+}
+
+/* What can leave the page: the character; else each eye by itself, where exports are made with the pictures: it takes a fifth of the time of a
+ * draft. */
+static bool add_glbs(json_t *glbs, json_t *left, struct parts *p, struct skin_job *skin, struct err *err)
+{
+	char *bytes;
+	size_t size;
 	if (p->target.name) {
-		if (p->glb && file_read(&bytes, &size, stage_path(skin->stage, "%s", p->glb), MOST_GLB, &large))
-			json_array_append_new(glbs, json_pack("{s:s,s:o}", "of", "face", "base64", base64_json(bytes, size)));
-		free(bytes);
+		add_face_glb(glbs, left, p, skin);
 		return true;
 	}
 	for (int i = 0, n = 0; i < p->eyes->n && skin->leaves->make; i++) {
@@ -239,13 +256,14 @@ static bool add_glbs(json_t *glbs, struct parts *p, struct skin_job *skin, struc
 
 static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 {
-	json_t *eyes = json_array(), *face = 0, *glbs = json_array();
-	bool ok = add_eyes(eyes, p, err) && (!p->target.name || add_face(&face, eyes, skin, &p->target, err)) && add_glbs(glbs, p, skin, err)
-	          && write_page(skin->stage, skin->capture, skin->render, eyes, face, glbs, err)
+	json_t *eyes = json_array(), *face = 0, *glbs = json_array(), *left = json_object();
+	bool ok = add_eyes(eyes, p, err) && (!p->target.name || add_face(&face, eyes, skin, &p->target, err)) && add_glbs(glbs, left, p, skin, err)
+	          && write_page(skin->stage, skin->capture, skin->render, eyes, face, glbs, left, err)
 	          && stage_made(skin->stage, out, p->n_in, p->in, err);
 	json_decref(eyes);
 	json_decref(face);
 	json_decref(glbs);
+	json_decref(left);
 	return ok;
 }
 

@@ -114,7 +114,7 @@ async function hands(b) {
 	await b.screenshot(path.join(shots, "slider.png"));
 	say(await b.value(sum) !== first, "a pigment slider moved by keys changes the iris", "the picture has not changed");
 	const lines = await b.value("document.getElementById('lines').value");
-	say(/^pigment\.prior_stroma_melanin = [0-9.e-]+ 0\.01\npigment\.prior_stroma_ratio = [0-9.]+ 0\.005$/.test(lines), "the value is offered as lines for capture.conf", lines);
+	say(/^pigment\.prior_stroma_melanin = [0-9.]+ 0\.01\npigment\.prior_stroma_ratio = [0-9.]+ 0\.005$/.test(lines), "the value is offered as lines for capture.conf", lines);
 	fs.writeFileSync(path.join(shots, "lines.conf"), lines + "\n");
 	const hash = await b.value("location.hash"), value = await b.value("eyewright.values.stroma_eu");
 	await open(b, hash);

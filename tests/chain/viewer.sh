@@ -61,6 +61,13 @@ timeout 600 node tests/browser/viewer.js "$page" "$capture/work/render/front.png
 	"$character/work/review/viewer.html" "$character/work/targets/made/rig.npz" "${B:-build}/tests/tools" >>"$root/said" 2>&1
 timeout 300 node tests/browser/hands.js "$page" "$character/work/review/viewer.html" >>"$root/said" 2>&1
 timeout 300 node tests/browser/leave.js "$page" "$character/work/review/viewer.html" "${B:-build}/npm" >>"$root/said" 2>&1
+# A page that may not carry the character's .glb; and what hands do with the page as a tool.
+cp -r "$character" "$root/without"
+echo 'render.page_glb_mib = 0.5' >>"$root/without/capture.conf"
+"$BIN/render" --capture="$root/without" --quiet >"$log" 2>&1
+same "a page without its .glb is made" "$? $(cat "$log")" "0 "
+mkdir "$root/kept"
+timeout 900 node tests/browser/tool.js "$page" "$character/work/review/viewer.html" "$root/without/work/review/viewer.html" "$root/kept" >>"$root/said" 2>&1
 timeout 300 node tests/browser/surroundings.js "$page" >>"$root/said" 2>&1
 while IFS= read -r line; do
 	case $line in
@@ -72,6 +79,7 @@ done <"$root/said"
 check "the browser's runs came to their ends" grep -q 'without WebGL 2' "$root/said"
 check "those of the review, too" grep -q 'without the files beside it' "$root/said"
 check "those of hands, too" grep -q 'hands: no error' "$root/said"
+check "those of the tool, too" grep -q 'the tool: no error' "$root/said"
 check "those in surroundings of files, too" grep -q 'surroundings: no error' "$root/said"
 check "those of what leaves, too" grep -q 'leaving: no error' "$root/said"
 check "those on hostile text, too" grep -q 'hostile text: no error' "$root/said"
@@ -81,3 +89,24 @@ if [ -s "$SHOTS/lines.conf" ]; then
 	same "make takes the lines the page offered" "$?" 0
 	check "and the pigment is where it was put" grep -q "$(sed -n 's/.*melanin = \([0-9.]*\) .*/\1/p' "$SHOTS/lines.conf" | cut -c1-6)" "$capture/work/iris/pigment.json"
 fi
+# Every line that Keep offers is a key that some stage has, its value within that key's range.
+for lines in "$root/kept/"keep_*.conf; do
+	name=${lines##*/keep_}
+	rm -rf "$root/keep"
+	new_capture "$root/keep"
+	cp "$PHOTO" "$root/keep/photos"
+	cp "$root/kept/sky-2.exr" "$root/keep"
+	# Of a key that the capture has already, the line offered takes the place.
+	grep -vF -f <(sed 's/ = .*/ = /' "$lines") "$root/keep/capture.conf" >"$root/keep/others"
+	cat "$root/keep/others" "$lines" >"$root/keep/capture.conf"
+	rm "$root/keep/others"
+	"$BIN/plan" --capture="$root/keep" --quiet >"$log" 2>&1
+	same "the stages take the lines of ${name%.conf}" "$? $(cat "$log")" "0 "
+done
+check "there are such lines" test "$(cat "$root/kept/"keep_*.conf | grep -c ' = ')" -gt 60
+echo 'render.aperture = 2.5' >>"$root/keep/capture.conf"
+"$BIN/plan" --capture="$root/keep" --quiet >"$log" 2>&1
+same "and would not take a value out of its range" "$? $(grep -c 'aperture = 2.5' "$log")" "1 1"
+sed -i '/^render.aperture/d' "$root/keep/capture.conf"
+run_make "$root/keep"
+same "make draws in surroundings that were kept" "$?" 0
