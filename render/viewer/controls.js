@@ -136,7 +136,7 @@ class Controls extends Address {
 		const tick = element("span", { className: "fit" });
 		tick.style.left = at(t_of(c.value));
 		track.append(tick, input);
-		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: [c.why ? `${origin}, ${c.why}` : origin, ...(c.keep || c.pigment ? [] : ["only looked at here, no key keeps it"])].join("; ") });
+		const origin = `${c.from}: ${c.show(c.value)}${c.sigma ? ` ± ${(c.show_sigma || c.show)(c.sigma)}` : ""}`, fitted = element("span", { className: "fitted", textContent: [c.why ? `${origin}, ${c.why}` : origin, ...(c.keep || c.pigment ? [] : ["looked at only, no key keeps it"])].join("; ") });
 		const row = element("div", { className: "row" }, element("label", { htmlFor: id, textContent: c.label }), output, reset, track, fitted);
 		if (c.lids || c.alone || c.key === "field")
 			row.dataset.of = c.lids ? "lids" : c.alone ? "alone" : "gaze";
@@ -211,7 +211,7 @@ class Controls extends Address {
 		this.keep_gaze(out);
 		this.keep_light(out, only, notes);
 		if (only.length)
-			notes.unshift(`Only looked at here, no key of capture.conf keeps it: ${only.join(", ")}.`);
+			notes.unshift(`Looked at only, no key of capture.conf keeps it: ${only.join(", ")}.`);
 		this.kept.value = out.join("\n");
 		this.keep_note.textContent = notes.join(" ");
 		this.keep_lines.hidden = !out.length;

@@ -38,7 +38,7 @@ async function keep(b, file, mode, name) {
 			const moved = shown.filter(c => p.moved(c)), kept = document.getElementById("lines").value, note = document.getElementById("not-kept").textContent;
 			p.busy = false;
 			return JSON.stringify({ kept, note, n: moved.length, lost: moved.filter(c => !c.pigment && !note.includes(c.label) && !(c.keep && kept.includes(c.keep(p.values[c.key], p).key + " = "))).map(c => c.key),
-				rows: shown.filter(c => !c.keep && !c.pigment && !/only looked at here/.test(document.getElementById("s-" + c.key).closest(".row").textContent)).map(c => c.key),
+				rows: shown.filter(c => !c.keep && !c.pigment && !/looked at only/.test(document.getElementById("s-" + c.key).closest(".row").textContent)).map(c => c.key),
 				text: document.body.innerText + [...document.querySelectorAll("[aria-valuetext], [title], [aria-label]")].map(e => ["aria-valuetext", "title", "aria-label"].map(a => e.getAttribute(a)).join(" ")).join(" ") + kept + document.getElementById("said").textContent + location.hash });
 		})()`, 60000));
 		const bad = got.text.match(/.{0,30}([0-9]e[+-]?[0-9]|held_by).{0,30}/g);
