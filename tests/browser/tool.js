@@ -28,7 +28,7 @@ const look = b => b.value(`(() => { const p = eyewright; p.busy = true; p.scene.
 
 /* A slider that was moved has its line, or is named as one that has none; nothing is told with an exponent. */
 async function keep(b, file, mode, name) {
-	for (const [end, to] of [["low", "c.lo"], ["high", "c.hi"], ["little", "c.value > c.lo ? c.lo + 1.3e-7 * (c.hi - c.lo) : c.lo + 0.011 * (c.hi - c.lo)"]]) {
+	for (const [end, to] of [["low", "c.lo"], ["high", "c.hi"], ["little", "c.value > c.lo ? c.lo + 1.3e-9 * (c.hi - c.lo) : c.lo + 0.011 * (c.hi - c.lo)"]]) {
 		await open(b, file, `#gaze=12,-7&view=${mode}`);
 		const got = JSON.parse(await b.value(`(() => {
 			const p = eyewright, shown = p.controls.filter(c => (document.getElementById("s-" + c.key) || { checkVisibility: () => false }).checkVisibility());
