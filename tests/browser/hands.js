@@ -102,6 +102,20 @@ async function touch(b) {
 	await b.size(1000, 640);
 }
 
+/* What is tapped is 44 px or more each way, and nothing runs over. */
+async function fingers(b) {
+	await b.size(390, 844, true);
+	await b.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+	for (const [file, name] of [[page, "an eye"], [face, "a face"]]) {
+		await open(b, file, "#gaze=0,0&pupil=3");
+		const got = JSON.parse(await b.value(`JSON.stringify({ small: [...document.querySelectorAll("a, button, input, select, textarea")].filter(e => e.checkVisibility() && !e.matches(".skip")).map(e => [e.textContent || e.id, e.getBoundingClientRect()])
+			.filter(([, r]) => r.width < 44 || r.height < 44).map(([t, r]) => [t, r.width, r.height]), wide: [document.documentElement.scrollWidth, document.getElementById("panel").scrollWidth] })`));
+		say(!got.small.length && got.wide.every(w => w <= 390), `on a phone the controls of ${name} fit, each large enough for a finger`, JSON.stringify(got));
+	}
+	await b.send("Emulation.setTouchEmulationEnabled", { enabled: false });
+	await b.size(1000, 640);
+}
+
 /* Asked for, the readout has the graphics processor's own time beside the frame's; where the driver tells none, it is not offered. */
 async function timed(b) {
 	await open(b, page, "#gaze=0,0");
@@ -188,6 +202,7 @@ async function character(b) {
 		await beside(b);
 		await address(b);
 		await touch(b);
+		await fingers(b);
 		await timed(b);
 		await moved(b, page, "eye");
 		await moved(b, face, "face");
