@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "render/page/page.h"
 
-enum { DIGITS = 4, MOST = 400 };  // digits that count; bytes of the longest number
-static const double least = 1e-6;  // nearer to nought nobody reads the digits
+enum { DIGITS = 4, MOST = 64 };  // digits that count; bytes of the longest number
+static const double least = 1e-6, most = 1e15;  // nearer to nought, or farther from it, nobody reads the digits
 
 /* Thin spaces between groups of three digits, from five on; text: digits with a sign before and a fraction behind. free(). */
 static char *grouped(const char *text)
@@ -35,11 +35,13 @@ static char *plain(double v)
 {
 	char text[MOST];
 	const double a = fabs(v);
-	if (!isfinite(v))
+	if (isnan(v))
 		return mem_str("not known");
-	if (a > 0 && a < least)
-		return mem_str(v > 0 ? "below 0.000001" : "above -0.000001");
-	const int digits = a < 0.001 ? 2 : DIGITS, decimals = a > 0 ? digits - 1 - (int)floor(log10(a)) : 0;
+	if (a < least)
+		return mem_str(a == 0 ? "0" : v > 0 ? "below 0.000001" : "above -0.000001");
+	if (a > most)
+		return mem_str(v > 0 ? "above a million billions" : "below minus a million billions");
+	const int digits = a < 0.001 ? 2 : DIGITS, decimals = digits - 1 - (int)floor(log10(a));
 	snprintf(text, sizeof text, "%.*f", decimals > 0 ? decimals : 0, v);
 	if (strchr(text, '.')) {
 		char *end = text + strlen(text);
