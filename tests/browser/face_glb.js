@@ -31,7 +31,7 @@ const poses = {
 			for (const side of ["left", "right"])
 				for (const aside of [-30, 0, 30]) {
 					const n = await b.value(`seen(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
-					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair} tears ${n.tears}`);
+					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair} tears ${n.tears} islands ${n.islands} through ${n.through}`);
 				}
 		for (const side of ["left", "right"]) {
 			const d = await b.value(`depths("${side}")`, 120000);

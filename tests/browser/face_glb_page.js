@@ -100,11 +100,50 @@ function dress(marked, haired = true) {
 	});
 }
 
-/* How many pixels of the eye's picture show the eye, skin, skin from behind, and nothing at all: without hairs and tears; and how many show
- * those. */
+/* How many pixels of the eye's picture show the eye, skin, skin from behind, and nothing at all within the head's outline: without hairs and
+ * tears; how many show those; islands: skin and what else lies in the midst of the eye, joined to nothing beside it; through: eye that is joined
+ * to no more of it than a speck, beside the largest patch. */
 function counted(side, aside) {
 	const all = pixels(side, aside, true);
 	return { ...pixels(side, aside, false), hair: all.hair, tears: all.tears };
+}
+
+/* Marks the pixels of one picture that may be walked to from `from`, over those for which `over` holds; returns how many. */
+function walk(marks, from, over) {
+	const todo = from.filter(i => over(i) && !marks[i]);
+	todo.forEach(i => { marks[i] = 1; });
+	let n = todo.length;
+	while (todo.length) {
+		const i = todo.pop(), x = i % SIZE;
+		for (const j of [x > 0 ? i - 1 : -1, x < SIZE - 1 ? i + 1 : -1, i - SIZE, i + SIZE])
+			if (j >= 0 && j < SIZE * SIZE && !marks[j] && over(j)) {
+				marks[j] = 1;
+				todo.push(j);
+				n++;
+			}
+	}
+	return n;
+}
+
+const edge = [...Array(SIZE).keys()].flatMap(k => [k, SIZE * (SIZE - 1) + k, SIZE * k, SIZE * k + SIZE - 1]);
+
+/* Of a picture of marks: background that the head encloses, islands in the eye, and patches of eye beside its largest. */
+function patches(kind) {
+	const outside = new Uint8Array(SIZE * SIZE), beside = new Uint8Array(SIZE * SIZE), eye = new Uint8Array(SIZE * SIZE), out = { nothing: 0, islands: 0, through: 0 };
+	walk(outside, edge, i => kind[i] === "nothing");
+	walk(beside, edge, i => kind[i] !== "eye");
+	let largest = 0, all = 0;
+	for (let i = 0; i < SIZE * SIZE; i++) {
+		out.nothing += kind[i] === "nothing" && !outside[i];
+		out.islands += kind[i] !== "eye" && !beside[i];
+		if (kind[i] === "eye" && !eye[i]) {
+			const n = walk(eye, [i], j => kind[j] === "eye");
+			all += n;
+			largest = Math.max(largest, n);
+		}
+	}
+	out.through = all - largest;
+	return out;
 }
 
 function pixels(side, aside, haired) {
@@ -121,10 +160,13 @@ function pixels(side, aside, haired) {
 	target.dispose();
 	scene.environment = environment;
 	dress(false);
-	const n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0, tears: 0 };
-	for (let i = 0; i < px.length; i += 4)
-		n[px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i] > 127 && px[i + 2] > 127 ? "tears" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing"]++;
-	return n;
+	const n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0, tears: 0 }, kind = [];
+	for (let i = 0; i < px.length; i += 4) {
+		const k = px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i] > 127 && px[i + 2] > 127 ? "tears" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing";
+		kind.push(k);
+		n[k]++;
+	}
+	return haired ? n : { ...n, ...patches(kind) };
 }
 
 window.seen = (weights, turn, side, aside) => {

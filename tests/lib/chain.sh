@@ -59,3 +59,22 @@ same() {
 	if [ "$2" = "$3" ]; then pass "$1"; return; fi
 	fail "$1" "$(diff <(printf '%s\n' "$2") <(printf '%s\n' "$3") | head -n 8); log: $(tail -n 4 "$log")"
 }
+
+# Packages of Node's that tests use, beside the build: npm_has NAME... : installed once; whether all are there.
+npm=${B:-build}/npm
+there() { node -e "require('$PWD/$npm/node_modules/$1/package.json')" >/dev/null 2>&1; }
+npm_has() {
+	local package ok=0
+	command -v npm >/dev/null || return 1
+	mkdir -p "$npm"
+	for package; do
+		there "$package" || (cd "$npm" && timeout 60 npm install --no-audit --no-fund --silent "$package" >/dev/null 2>&1)
+		there "$package" || ok=1
+	done
+	return $ok
+}
+# khronos FILE.glb: how many errors and warnings Khronos's validator finds, and the first.
+khronos() {
+	node -e "require('$PWD/$npm/node_modules/gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync(process.argv[1])), { maxIssues: 0 })
+		.then(r => console.log(r.issues.numErrors, r.issues.numWarnings, ...r.issues.messages.filter(m => m.severity < 2).slice(0, 1).map(m => m.pointer + ': ' + m.message)))" "$1" 2>&1
+}
