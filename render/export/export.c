@@ -87,20 +87,37 @@ static void refer(struct export_work *w)
 	}
 }
 
-void export_fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, const struct scene *scene, const struct export_mesh_conf *conf, long all,
-                  double triangles)
+/* An eye of so many rings and vertices round, its iris simplified from one of four times as many rings. Returns its triangles. */
+static int coarse_eye(struct export_part parts[EXPORT_PARTS], double *error_mm, const struct scene *scene, const struct export_mesh_conf *conf)
 {
-	const double share = fmin(sqrt(triangles / (double)all), 1);
-	struct export_mesh_conf less = { .iris_rings = 2 * (int)fmax(6, 0.5 * share * conf->iris_rings), .around = (int)fmax(24, share * conf->around) };
+	struct export_mesh_conf more = { .iris_rings = 4 * conf->iris_rings, .around = conf->around };
 	struct export_part fine[EXPORT_PARTS];
-	export_eye_meshes(parts, scene, &less);
-	less.iris_rings *= 4;
-	export_eye_meshes(fine, scene, &less);
+	int n = 0;
+	export_eye_meshes(parts, scene, conf);
+	export_eye_meshes(fine, scene, &more);
 	int iris = parts[EXPORT_IRIS].n_corners / 3;
 	export_part_free(&parts[EXPORT_IRIS]);
 	parts[EXPORT_IRIS] = export_lod(&fine[EXPORT_IRIS], iris, error_mm);
-	for (int i = 0; i < EXPORT_PARTS; i++)
+	for (int i = 0; i < EXPORT_PARTS; i++) {
 		export_part_free(&fine[i]);
+		n += parts[i].n_corners / 3;
+	}
+	return n;
+}
+
+void export_fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, const struct scene *scene, const struct export_mesh_conf *conf, long all,
+                  double triangles)
+{
+	// The border of a simplified iris stays, and a lip and a disc do not shrink with the rest: a share is a start.
+	enum { LEAST_RINGS = 6, LEAST_AROUND = 24 };
+	for (double share = fmin(sqrt(triangles / (double)all), 1);; share *= 0.98) {
+		const int rings = (int)fmax(LEAST_RINGS, 0.5 * share * conf->iris_rings), around = (int)fmax(LEAST_AROUND, share * conf->around);
+		const struct export_mesh_conf less = { .iris_rings = 2 * rings, .around = around };
+		if (coarse_eye(parts, error_mm, scene, &less) <= triangles || (rings == LEAST_RINGS && around == LEAST_AROUND))
+			return;
+		for (int i = 0; i < EXPORT_PARTS; i++)
+			export_part_free(&parts[i]);
+	}
 }
 
 /* What stands on the lids of a character round this eye, where the capture has one. */

@@ -47,8 +47,8 @@ struct export_work {
 };
 
 /* export.c: the parts of a file for games: grids of fewer vertices, and of the iris, whose relief has detail here and none there, the
- * triangles that meshoptimizer leaves of a finer grid. parts: overwritten; all: triangles of the close-up mesh of conf; error_mm: of the
- * simplified iris, as meshoptimizer states it. */
+ * triangles that meshoptimizer leaves of a finer grid; at most `triangles` in all, unless that is below some hundreds. parts: overwritten; all: triangles of
+ * the close-up mesh of conf; error_mm: of the simplified iris, as meshoptimizer states it. */
 void export_fewer(struct export_part parts[EXPORT_PARTS], double *error_mm, const struct scene *scene, const struct export_mesh_conf *conf, long all,
                   double triangles);
 

@@ -1,4 +1,6 @@
 /* An exported eye: its meshes and maps against closed forms, its files against Khronos's validator. */
+#include "draw/eye/look.h"
+#include "draw/eye/sclera.h"
 #include "export/eye_glb.h"
 #include "export/lod.h"
 #include "export/loss.h"
@@ -189,6 +191,91 @@ static void maps_of_a_slope(void **state)
 	scene_free(&s);
 }
 
+/* Each texel of a map of n px against its own formula of the texel's place, -1 .. 1. */
+static void each(const struct image *map, double (*want)(const struct scene *s, double u, double v), const struct scene *s, double within)
+{
+	for (int y = 3; y < map->height; y += 7)
+		for (int x = 3; x < map->width; x += 7) {
+			double u = (x + 0.5) / map->width * 2 - 1, v = (y + 0.5) / map->height * 2 - 1, is = want(s, u, v);
+			if (isfinite(is))
+				NEAR(*image_at(map, x, y), is, within);
+		}
+}
+
+/* Stroma that grows thicker downwards; vessels that take more to the right; a freckle that fades outwards. */
+static double thick(const struct scene *s, double u, double v)
+{
+	(void)u;
+	(void)s;
+	return fabs(v) < 0.95 ? 0.6 + 0.3 * v : NAN;   // the map is larger than the scene's: its last half texel has no neighbour
+}
+
+static double taken(const struct scene *s, double u, double v)
+{
+	(void)s;
+	(void)v;
+	return fabs(u) < 0.95 ? 0.4 + 0.35 * u : NAN;
+}
+
+static double faded(const struct scene *s, double u, double v)
+{
+	(void)s;
+	return hypot(u, v) < 0.9 ? 0.9 - 0.8 * (u * u + v * v) : NAN;
+}
+
+/* The film is as rough as half-vectors spread by 3 degrees, from the limbus on, over the step 1 to 1.35 of its radius; smooth before it. */
+static double rough_at(double rho)
+{
+	const double t = fmin(fmax((rho - LOOK_FILM_FROM) / (LOOK_FILM_TO - LOOK_FILM_FROM), 0), 1);
+	return sqrt(sqrt(2) * tan(3 * M_PI / 180) * LOOK_FILM_ROUGH * t * t * (3 - 2 * t));
+}
+
+static double rough_cornea(const struct scene *s, double u, double v)
+{
+	return rough_at(export_cornea_extent(s) * hypot(u / s->limbus[0], v / s->limbus[1]));
+}
+
+static double rough_sclera(const struct scene *s, double u, double v)
+{
+	const double angle = hypot(u, v) * SCENE_SCLERA_REACH;
+	if (angle < 0.6)  // the cornea's own surface stands before the sphere there
+		return NAN;
+	return rough_at(angle < M_PI / 2 ? s->conf.sclera_radius * sin(angle) * hypot(u / s->limbus[0], v / s->limbus[1]) / hypot(u, v) : 2);
+}
+
+static void maps_of_what_is_known(void **state)
+{
+	(void)state;
+	struct scene s;
+	struct image maps[EXPORT_MAPS], freckles = image_new(300, 300, 1);
+	struct envmap env = envmap_room(32, grey, grey, 1, 0, 0);
+	struct err err = { 0 };
+	tilted(&s, &plain_eye);
+	struct scene_level *l = &s.level[0];
+	for (int i = 0; i < l->n * l->n; i++)
+		l->relief[2 * i + 1] = (float)(0.6 + 0.3 * ((i / l->n + 0.5) / l->n * 2 - 1));
+	for (int i = 0; i < s.veins.width * s.veins.height; i++)
+		s.veins.px[4 * i + 3] = (float)(0.4 + 0.35 * ((i % s.veins.width + 0.5) / s.veins.width * 2 - 1));
+	for (int i = 0; i < 300 * 300; i++) {
+		const double u = (i % 300 + 0.5) / 150 - 1, v = (i / 300 + 0.5) / 150 - 1;
+		freckles.px[i] = (float)fmax(0.9 - 0.8 * (u * u + v * v), 0);
+	}
+	assert_true(export_eye_maps(maps, &s, &freckles, &env, 256, &err));
+	each(&maps[EXPORT_IRIS_THICKNESS], thick, &s, 2e-3);   // resampled from 192 texels
+	each(&maps[EXPORT_SCLERA_VESSELS], taken, &s, 2e-3);
+	each(&maps[EXPORT_IRIS_FRECKLES], faded, &s, 2e-3);
+	each(&maps[EXPORT_CORNEA_ROUGHNESS], rough_cornea, &s, 1e-5);
+	each(&maps[EXPORT_SCLERA_ROUGHNESS], rough_sclera, &s, 1e-5);
+	maps_free(maps);
+	assert_true(export_eye_maps(maps, &s, 0, &env, 256, &err));
+	for (int i = 0; i < maps[EXPORT_IRIS_FRECKLES].width * maps[EXPORT_IRIS_FRECKLES].height; i++)
+		assert_true(maps[EXPORT_IRIS_FRECKLES].px[i] == 0);   // an iris without freckles has none
+	maps_free(maps);
+	image_free(&freckles);
+	envmap_free(&env);
+	scene_free(&s);
+}
+
 static struct export_loss loss_at(double deg, double index)
 {
 	struct eye eye = plain_eye;
@@ -272,7 +359,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(cornea_and_sclera),  cmocka_unit_test(faces_look_outwards),     cmocka_unit_test(pupil_at_any_weight),
-		cmocka_unit_test(maps_of_a_slope), cmocka_unit_test(albedo_of_other_light),    cmocka_unit_test(what_a_rasteriser_loses), cmocka_unit_test(fewer_triangles),
+		cmocka_unit_test(maps_of_a_slope), cmocka_unit_test(maps_of_what_is_known), cmocka_unit_test(albedo_of_other_light),    cmocka_unit_test(what_a_rasteriser_loses), cmocka_unit_test(fewer_triangles),
 		SCRATCH_TEST(khronos_validator_finds_nothing),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
