@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "base/json.h"
+#include "base/mem.h"
 #include "draw/eye/look.h"
 #include "draw/eye/sclera.h"
 #include "render/export/export.h"
@@ -60,14 +61,35 @@ static json_t *reference(const struct export_work *w)
 	                 "studio.exr: the middle is +z, right is +x, top is +y", "exposure", w->job->gain);
 }
 
-/* Numbers as the engines' eye shaders want them: shares of the eyeball's diameter, of the limbus' radius, of a planar map of the front. */
-static json_t *engine(const struct scene *s)
+/* Numbers as the engines' eye shaders want them: shares of the eyeball's diameter, of the limbus' radius, of a planar map of the front.
+ * engines.md says what each is for. */
+static json_t *engine(const struct export_work *w)
 {
-	double limbus = s->limbus[0], ball = 2 * s->conf.sclera_radius, behind = s->eye.iris_depth - s->limbus_depth;
-	return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:f}", "limbus_in_unit", limbus / ball, "limbus_aspect", s->limbus[1] / limbus, "iris_in_unit",
-	                 behind / ball, "pupil_in_iris", s->pupil[2] / limbus, "pupil_least", 0.5 * export_pupils[0] / limbus, "pupil_most",
-	                 0.5 * export_pupils[1] / limbus, "limbal_ring", 0.5 * s->conf.limbus_width / limbus, "iris_uv_radius",
-	                 limbus / (2 * s->conf.sclera_radius), "depth_over_limbus", behind / limbus);
+	const struct scene *s = &w->job->scene;
+	const struct image *rough = &w->maps[EXPORT_SCLERA_ROUGHNESS];
+	const double limbus = s->limbus[0], ball = 2 * s->conf.sclera_radius, behind = s->eye.iris_depth - s->limbus_depth;
+	const double roughness = *image_at(rough, rough->width - 1, rough->height / 2);  // furthest from the limbus
+	const struct { const char *name; double value; } numbers[] = {
+		{ "limbus_in_unit", limbus / ball },
+		{ "limbus_aspect", s->limbus[1] / limbus },
+		{ "center_in_unit", (s->sclera_z - s->limbus_depth) / ball },
+		{ "iris_in_unit", behind / ball },
+		{ "iris_crop", limbus / export_iris_extent(s) },
+		{ "pupil_in_iris", s->pupil[2] / limbus },
+		{ "pupil_least", 0.5 * export_pupils[0] / limbus },
+		{ "pupil_most", 0.5 * export_pupils[1] / limbus },
+		{ "limbal_ring", 0.5 * s->conf.limbus_width / limbus },
+		{ "iris_uv_radius", limbus / ball },
+		{ "depth_over_limbus", behind / limbus },
+		{ "depth_mm", behind },
+		{ "sclera_reach", SCENE_SCLERA_REACH },
+		{ "sclera_rough", roughness },
+		{ "sclera_smoothness", 1 - roughness },
+	};
+	json_t *out = json_object();
+	for (int i = 0; i < COUNT(numbers); i++)
+		json_object_set_new(out, numbers[i].name, json_real(numbers[i].value));
+	return out;
 }
 
 json_t *export_statement(const struct export_work *w)
@@ -81,6 +103,7 @@ json_t *export_statement(const struct export_work *w)
 	json_object_set_new(out, "tear_film", json_pack("{s:f,s:s,s:b}", "index", LOOK_FILM_INDEX, "roughness", "textures/cornea_roughness, textures/sclera_roughness", "meniscus",
 	                                                w->has_margin && w->margin[EXPORT_TEARS].n_corners));
 	json_object_set_new(out, "limbus_mm", json_pack("[f,f]", s->limbus[0], s->limbus[1]));
+	json_object_set_new(out, "limbus_width_mm", json_real(s->conf.limbus_width));
 	json_object_set_new(out, "sclera_radius_mm", json_real(s->conf.sclera_radius));
 	json_object_set_new(out, "iris", json_pack("{s:f,s:f,s:f,s:f}", "normal_scale", export_normal_scale, "depth_behind_apex_mm", s->eye.iris_depth, "pupil_diameter_mm", 2 * s->pupil[2],
 	                                           "root_radius_mm", export_iris_root(s)));
@@ -88,7 +111,7 @@ json_t *export_statement(const struct export_work *w)
 	json_object_set_new(out, "files", files(w));
 	json_object_set_new(out, "textures", textures(w));
 	json_object_set_new(out, "iris_map", json_pack("{s:f}", "half_width_mm", export_iris_extent(s)));
-	json_object_set_new(out, "engine", engine(s));
+	json_object_set_new(out, "engine", engine(w));
 	json_object_set_new(out, "lost", losses(w));
 	json_object_set_new(out, "lost_means", json_string("a rasteriser as three.js is against render's own picture in its studio, the eye turned by deg: distance on the "
 	                                                   "iris plane between what a pixel shows and ought to show; CIEDE2000 over the iris and over the eye"));
