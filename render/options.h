@@ -28,6 +28,7 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_REAL_UNSET("limbus_width_mm", &(c)->scene.limbus_width, 0.05, 2, "mm", "over which sclera turns into cornea; unset: as photographed"), \
 	OPT_REAL("sclera_radius_mm", &(c)->scene.sclera_radius, 9, 16, "mm", "radius of the eyeball"), \
 	OPT_REALS("sclera_rgb", (c)->scene.sclera_rgb, 3, 0, 1, "", "colour of the sclera where no photograph shows it"), \
+	OPT_REAL("socket_share", &(c)->socket_share, 0, 10, "", "a fitted eye is scaled to a character's eyeballs; said so where it is by more than this share"), \
 	OPT_REAL("vein_density", &(c)->scene.vein_density, 0, 5, "", "vessels of the sclera"), \
 	OPT_INT("vein_map_px", &(c)->scene.veins_px, 128, 8192, "px", "texels across the map of the sclera"), \
 	OPT_INT("seed", &(c)->scene.seed, 0, 1000000, "", "of the vessels"), \

@@ -96,4 +96,7 @@ double rig_globe_distance(const struct rig *rig, int side, const double target_f
 bool rig_save(const struct rig *rig, const char *path, const char *made_by, struct err *err);
 bool rig_load(struct rig *rig, const char *path, struct err *err);
 
+/* Radii of the left and the right globe alone, mm, without reading the rest. Returns false, err set, as rig_load. */
+bool rig_sockets(double radius[2], const char *path, struct err *err);
+
 #endif

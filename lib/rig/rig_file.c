@@ -201,3 +201,15 @@ bool rig_load(struct rig *rig, const char *path, struct err *err)
 		rig_free(rig);
 	return ok;
 }
+
+bool rig_sockets(double radius[2], const char *path, struct err *err)
+{
+	struct small *small = 0;
+	long got[3];
+	const struct entry parameters = { "parameters", NPY_F8, 1, { sizeof *small / sizeof(double) }, (void **)&small };
+	if (!read_entry(path, &parameters, got, err))
+		return false;
+	memcpy(radius, small->radius, sizeof small->radius);
+	free(small);
+	return true;
+}

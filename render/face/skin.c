@@ -45,6 +45,24 @@ static void inputs(struct skin_job *job, struct skin_target *t)
 		t->in[t->n_in++] = job->render->environment;
 }
 
+/* Says where a fitted eye is scaled by much: once a run, whichever pictures are fresh. */
+static bool check_sockets(struct skin_job *job, const struct skin_target *t, struct err *err)
+{
+	double radius[2];
+	bool fitted = false;
+	for (int i = 0; i < job->photographed->n; i++)
+		fitted = fitted || job->photographed->job[i].usable;
+	if (!fitted)
+		return true;
+	if (!rig_sockets(radius, stage_path(job->stage, "%s", t->rig_path), err))
+		return false;
+	char *says = skin_socket_says(t->name, radius, job->render);
+	if (says)
+		stage_warn(job->stage, "%s", says);
+	free(says);
+	return true;
+}
+
 static bool one(struct skin_job *job, const char *file, struct err *err)
 {
 	const char *dot = strrchr(file, '.');
@@ -54,7 +72,7 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 	bool ok = true;
 	if (file_exists(stage_path(job->stage, "%s", t.rig_path))) {
 		inputs(job, &t);
-		ok = skin_pictures(job, &t, err) && skin_clips(job, &t, err);
+		ok = check_sockets(job, &t, err) && skin_pictures(job, &t, err) && skin_clips(job, &t, err);
 		ok = ok || err_wrap(err, "targets/%s", file);
 	} else {
 		stage_skipped(job->stage, "pictures of targets/%s: it has no rig", file);

@@ -122,6 +122,10 @@ bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv,
 bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);
 void skin_free(struct skin_target *target);
 
+/* skin_socket.c: a sentence where a fitted eye differs from the character's eyeballs, of these radii in mm (left, right), by more than conf's
+ * socket_share; null where it does not. free() */
+char *skin_socket_says(const char *name, const double socket[2], const struct render_conf *conf);
+
 /* skin_first.c: the first character that has a rig: name, rig_path, look_path, and those in its inputs, with what the model is made of. Name
  * null: there is none. Returns false, err set, where targets/ cannot be read. */
 bool skin_first(struct skin_target *target, struct stage *stage, struct err *err);

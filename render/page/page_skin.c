@@ -8,6 +8,7 @@
 #include "draw/web/base64.h"
 #include "model/model.h"
 #include "plan/stages.h"
+#include "render/face/skin.h"
 #include "render/page/page.h"
 
 /* Clips larger than this are linked, not put into the page. */
@@ -55,6 +56,21 @@ static void column(struct page *page, json_t *list, const char *stage, const cha
 		json_array_append_new(list, json_pack("{s:s,s:o}", "title", title, "facts", all));
 	else
 		json_decref(all);
+}
+
+/* Says where the fitted eye is not of the size of the character's eyeballs. */
+static void check_sockets(struct page *page, const char *name)
+{
+	double radius[2];
+	struct err none = { 0 };
+	bool fitted = false;
+	for (int i = 0; i < page->capture->n_eyes; i++)
+		fitted = fitted || page_file(page, "%s/texture.exr", page->capture->eyes[i].iris);
+	const char *rig = page_file(page, "work/targets/%s/rig.npz", name);
+	char *says = fitted && rig && rig_sockets(radius, rig, &none) ? skin_socket_says(name, radius, page->conf) : 0;
+	if (says)
+		page_say(page->film, "%s", says);
+	free(says);
 }
 
 /* What registration.json says of one character, as far as it is numbers. */
@@ -137,6 +153,7 @@ static json_t *target(struct page *page, const char *name)
 	add(entry, "name", template_text(name));
 	add(entry, "pictures", pictures);
 	add(entry, "clips", clips);
+	check_sockets(page, name);
 	json_t *registered = transfer_facts(page, name);
 	json_object_set_new(entry, "any_registered", json_boolean(json_array_size(registered)));
 	add(entry, "registered", registered);
