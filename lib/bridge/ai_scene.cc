@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,20 +39,33 @@ std::string inside(const std::string &name)
 	return drive || !file_is_relative(s.c_str()) ? s.substr(s.find_last_of('/') + 1) : s;
 }
 
-bool load(std::vector<unsigned char> &out, const std::string &folder, const std::string &name, size_t most, struct err *err)
+/* A file's bytes; freed with the last that holds them. */
+struct Bytes {
+	std::shared_ptr<char> data;
+	size_t size = 0;
+};
+
+bool load(Bytes &out, const std::string &folder, const std::string &name, size_t most, struct err *err)
 {
 	char *path = nullptr, *data = nullptr;
-	size_t size = 0;
 	const std::string rel = inside(name);
-	bool ok = file_inside(&path, folder.c_str(), rel.c_str(), err) && file_read(&data, &size, path, most, err);
-	if (ok)
-		out.assign(data, data + size);
+	const bool ok = file_inside(&path, folder.c_str(), rel.c_str(), err) && file_read(&data, &out.size, path, most, err);
+	out.data = std::shared_ptr<char>(data, free);
 	free(path);
-	free(data);
 	return ok;
 }
 
-/* The files that Assimp may open: those of one folder, in memory, for reading. */
+/* A file that is open. */
+class Opened : public Assimp::MemoryIOStream {
+public:
+	explicit Opened(const Bytes &bytes) : MemoryIOStream((const uint8_t *)bytes.data.get(), bytes.size, false), bytes_(bytes) {}
+
+private:
+	Bytes bytes_;
+};
+
+/* The files that Assimp may open: those of one folder, in memory, for reading. It opens one again and again to find out what it is: the
+ * last is kept. */
 class Folder : public Assimp::IOSystem {
 public:
 	explicit Folder(std::string folder) : folder_(std::move(folder)) {}
@@ -67,17 +81,23 @@ public:
 	Assimp::IOStream *Open(const char *name, const char *mode) override
 	{
 		struct err none = {};
-		std::vector<unsigned char> bytes;
-		if (strpbrk(mode, "wa+") || !load(bytes, folder_, name, FILE_MAX, &none))
+		if (strpbrk(mode, "wa+"))
 			return nullptr;
-		auto *own = new uint8_t[bytes.size() + 1];
-		memcpy(own, bytes.data(), bytes.size());
-		return new Assimp::MemoryIOStream(own, bytes.size(), true);
+		if (!last_.data || last_name_ != name) {
+			last_ = {};
+			Bytes bytes;
+			if (!load(bytes, folder_, name, FILE_MAX, &none))
+				return nullptr;
+			last_ = bytes;
+			last_name_ = name;
+		}
+		return new Opened(last_);
 	}
 	void Close(Assimp::IOStream *stream) override { delete stream; }
 
 private:
-	std::string folder_;
+	std::string folder_, last_name_;
+	Bytes last_;
 };
 
 struct Reader {
@@ -89,7 +109,7 @@ struct Reader {
 	std::map<std::string, int> texture_of;
 	std::map<std::string, aiMatrix4x4> place;  // of nodes by name
 	long vertices = 0, faces = 0, limit = 0;
-	int depth = 0;
+	int depth = 0, node = 0;
 };
 
 void collect_nodes(Reader &r, const aiNode *node, const aiMatrix4x4 &above)
@@ -135,7 +155,8 @@ void put(float out[3], const aiVector3D &v)
 	out[2] = v.z;
 }
 
-void put_shapes(struct ai_part &p, const aiMesh *mesh, const std::vector<aiMatrix4x4> &at)
+/* rows: of the mesh, those that p has. */
+void put_shapes(struct ai_part &p, const aiMesh *mesh, const std::vector<aiMatrix4x4> &at, const std::vector<unsigned> &rows)
 {
 	p.shape = array<struct ai_shape>(mesh->mNumAnimMeshes);
 	for (unsigned s = 0; s < mesh->mNumAnimMeshes; s++) {
@@ -144,57 +165,77 @@ void put_shapes(struct ai_part &p, const aiMesh *mesh, const std::vector<aiMatri
 			continue;
 		struct ai_shape &to = p.shape[p.n_shapes++];
 		to.name = mem_str(shape->mName.length ? shape->mName.C_Str() : ("shape_" + std::to_string(s + 1)).c_str());
-		to.by = (float(*)[3])array<float>(3 * (size_t)mesh->mNumVertices);
-		for (unsigned i = 0; i < mesh->mNumVertices; i++)
-			put(to.by[i], aiMatrix3x3(at[i]) * (shape->mVertices[i] - mesh->mVertices[i]));
+		to.by = (float(*)[3])array<float>(3 * rows.size());
+		for (size_t i = 0; i < rows.size(); i++)
+			put(to.by[i], aiMatrix3x3(at[rows[i]]) * (shape->mVertices[rows[i]] - mesh->mVertices[rows[i]]));
 	}
 }
 
-bool put_part(Reader &r, const aiMesh *mesh, const aiNode *node, const aiMatrix4x4 &here, struct err *err)
+/* The triangles; rows: out, the vertices that they have, in their order: primitives of one mesh may share all of them. */
+bool put_faces(struct ai_part &p, std::vector<unsigned> &rows, const aiMesh *mesh, bool mirrored, struct err *err)
 {
-	r.vertices += mesh->mNumVertices;
-	r.faces += mesh->mNumFaces;
-	if (r.vertices > 3 * r.limit || r.faces > 2 * r.limit)
-		return err_set(err, "more than %ld vertices or faces", r.limit);
-	struct ai_part p = {};
-	const size_t n = mesh->mNumVertices;
-	const std::vector<aiMatrix4x4> at = places(r, mesh, here);
-	p.name = mem_str(node->mName.length ? node->mName.C_Str() : mesh->mName.C_Str());
-	p.n = (int)n;
-	p.material = (int)mesh->mMaterialIndex;
-	p.x = (float(*)[3])array<float>(3 * n);
-	p.normal = mesh->HasNormals() ? (float(*)[3])array<float>(3 * n) : nullptr;
-	p.uv = mesh->HasTextureCoords(0) ? (float(*)[2])array<float>(2 * n) : nullptr;
-	p.rgba = mesh->HasVertexColors(0) ? (float(*)[4])array<float>(4 * n) : nullptr;
-	for (size_t i = 0; i < n; i++) {
-		put(p.x[i], at[i] * mesh->mVertices[i]);
-		if (p.normal) {
-			aiMatrix3x3 turn(at[i]);
-			turn.Inverse().Transpose();
-			put(p.normal[i], (turn * mesh->mNormals[i]).NormalizeSafe());
-		}
-		if (p.uv) {
-			p.uv[i][0] = mesh->mTextureCoords[0][i].x;
-			p.uv[i][1] = 1 - mesh->mTextureCoords[0][i].y;  // Assimp's v counts upwards
-		}
-		for (int c = 0; p.rgba && c < 4; c++)
-			p.rgba[i][c] = mesh->mColors[0][i][(unsigned)c];
-	}
+	std::vector<int32_t> to(mesh->mNumVertices, -1);
 	p.face = (int32_t(*)[3])array<int32_t>(3 * (size_t)mesh->mNumFaces);
-	const bool mirrored = here.Determinant() < 0;
 	for (unsigned f = 0; f < mesh->mNumFaces; f++) {
 		const aiFace &face = mesh->mFaces[f];
 		if (face.mNumIndices != 3)
 			continue;
 		for (unsigned k = 0; k < 3; k++) {
 			const unsigned v = face.mIndices[mirrored ? 2 - k : k];
-			if (v >= n)
-				return err_set(err, "a face has vertex %u, of %zu", v, n);
+			if (v >= mesh->mNumVertices)
+				return err_set(err, "a face has vertex %u, of %u", v, mesh->mNumVertices);
+			to[v] = 0;
 			p.face[p.n_faces][k] = (int32_t)v;
 		}
 		p.n_faces++;
 	}
-	put_shapes(p, mesh, at);
+	for (unsigned v = 0; v < mesh->mNumVertices; v++)
+		if (to[v] == 0) {
+			to[v] = (int32_t)rows.size();
+			rows.push_back(v);
+		}
+	for (int f = 0; f < p.n_faces; f++)
+		for (int k = 0; k < 3; k++)
+			p.face[f][k] = to[(size_t)p.face[f][k]];
+	return true;
+}
+
+bool put_part(Reader &r, const aiMesh *mesh, const aiNode *node, const aiMatrix4x4 &here, struct err *err)
+{
+	struct ai_part p = {};
+	std::vector<unsigned> rows;
+	if (!put_faces(p, rows, mesh, here.Determinant() < 0, err))
+		return false;
+	const size_t n = rows.size();
+	r.vertices += (long)n;
+	r.faces += mesh->mNumFaces;
+	if (r.vertices > 3 * r.limit || r.faces > 2 * r.limit)
+		return err_set(err, "more than %ld vertices or faces", r.limit);
+	const std::vector<aiMatrix4x4> at = places(r, mesh, here);
+	p.name = mem_str(node->mName.length ? node->mName.C_Str() : mesh->mName.C_Str());
+	p.n = (int)n;
+	p.node = r.node;
+	p.material = (int)mesh->mMaterialIndex;
+	p.x = (float(*)[3])array<float>(3 * n);
+	p.normal = mesh->HasNormals() ? (float(*)[3])array<float>(3 * n) : nullptr;
+	p.uv = mesh->HasTextureCoords(0) ? (float(*)[2])array<float>(2 * n) : nullptr;
+	p.rgba = mesh->HasVertexColors(0) ? (float(*)[4])array<float>(4 * n) : nullptr;
+	for (size_t i = 0; i < n; i++) {
+		const unsigned v = rows[i];
+		put(p.x[i], at[v] * mesh->mVertices[v]);
+		if (p.normal) {
+			aiMatrix3x3 turn(at[v]);
+			turn.Inverse().Transpose();
+			put(p.normal[i], (turn * mesh->mNormals[v]).NormalizeSafe());
+		}
+		if (p.uv) {
+			p.uv[i][0] = mesh->mTextureCoords[0][v].x;
+			p.uv[i][1] = 1 - mesh->mTextureCoords[0][v].y;  // Assimp's v counts upwards
+		}
+		for (int c = 0; p.rgba && c < 4; c++)
+			p.rgba[i][c] = mesh->mColors[0][v][(unsigned)c];
+	}
+	put_shapes(p, mesh, at, rows);
 	if (p.n_faces)
 		r.parts.push_back(p);
 	return true;
@@ -203,6 +244,7 @@ bool put_part(Reader &r, const aiMesh *mesh, const aiNode *node, const aiMatrix4
 bool put_parts(Reader &r, const aiNode *node, const aiMatrix4x4 &above, struct err *err)
 {
 	const aiMatrix4x4 here = above * node->mTransformation;
+	r.node++;
 	for (unsigned i = 0; i < node->mNumMeshes; i++)
 		if (node->mMeshes[i] >= r.from->mNumMeshes || !put_part(r, r.from->mMeshes[node->mMeshes[i]], node, here, err))
 			return err_set(err, "a node has a mesh that is not there");
@@ -223,22 +265,25 @@ int texture(Reader &r, const aiMaterial *m, aiTextureType type)
 	struct ai_texture t = {};
 	const aiTexture *inner = r.from->GetEmbeddedTexture(path.C_Str());
 	t.name = mem_str(inner && inner->mFilename.length ? inner->mFilename.C_Str() : path.C_Str());
-	std::vector<unsigned char> bytes;
+	Bytes file;
+	const void *bytes = nullptr;
 	struct err why = {};
 	if (inner && inner->mHeight)
 		err_set(&why, "raw pixels");
 	else if (inner && inner->mWidth > r.texture_bytes)
 		err_set(&why, "more than %zu MiB", r.texture_bytes >> 20);
-	else if (inner)
-		bytes.assign((const unsigned char *)inner->pcData, (const unsigned char *)inner->pcData + inner->mWidth);
-	else
-		load(bytes, r.folder, path.C_Str(), r.texture_bytes, &why);
+	else if (inner) {
+		bytes = inner->pcData;
+		t.size = inner->mWidth;
+	} else if (load(file, r.folder, path.C_Str(), r.texture_bytes, &why)) {
+		bytes = file.data.get();
+		t.size = file.size;
+	}
 	if (err_is(&why))
 		t.why = mem_str(why.msg);
 	else {
-		t.size = bytes.size();
 		t.bytes = array<unsigned char>(t.size);
-		memcpy(t.bytes, bytes.data(), t.size);
+		memcpy(t.bytes, bytes, t.size);
 	}
 	r.textures.push_back(t);
 	return r.texture_of[path.C_Str()] = (int)r.textures.size() - 1;

@@ -20,10 +20,11 @@ struct ai_shape {
 	float (*by)[3];         // [n] displacements
 };
 
-/* One mesh at one place of the scene; owned. */
+/* One mesh at one place of the scene, those vertices of it that its faces have; owned. */
 struct ai_part {
 	char *name;
 	int n, n_faces, material, n_shapes;
+	int node;               // parts of one node follow each other: one mesh of several materials
 	float (*x)[3], (*normal)[3], (*uv)[2], (*rgba)[4];  // [n]; normal, uv, rgba may be null; v counts downwards, as glTF's
 	int32_t (*face)[3];
 	struct ai_shape *shape;

@@ -27,36 +27,75 @@ static bool same_place(const struct placed *a, const struct placed *b)
 	return a->x[0] == b->x[0] && a->x[1] == b->x[1] && a->x[2] == b->x[2];
 }
 
-static bool move_alike(const struct ai_part *p, int a, int b)
+/* Whether any blend shape moves a vertex. */
+static bool moves(const struct ai_part *p, int a)
 {
+	bool any = false;
 	for (int s = 0; s < p->n_shapes; s++)
 		for (int c = 0; c < 3; c++)
-			if (fabsf(p->shape[s].by[a][c] - p->shape[s].by[b][c]) > 1e-6f)
+			any = any || fabsf(p->shape[s].by[a][c]) > 1e-6f;
+	return any;
+}
+
+/* Vertex a of one part and b of another, or of the same. */
+static bool move_alike(const struct ai_part *p, int a, const struct ai_part *q, int b)
+{
+	if (p->n_shapes != q->n_shapes)
+		return !moves(p, a) && !moves(q, b);
+	for (int s = 0; s < p->n_shapes; s++)
+		for (int c = 0; c < 3; c++)
+			if (strcmp(p->shape[s].name, q->shape[s].name) || fabsf(p->shape[s].by[a][c] - q->shape[s].by[b][c]) > 1e-6f)
 				return false;
 	return true;
 }
 
-/* The first vertex of the part that each vertex is one point with: [n]. */
-static void weld(int32_t *first, const struct ai_part *p)
+/* Parts of one node: primitives of one mesh. */
+struct group {
+	const struct ai_part *part;
+	int n_parts, n;          // n: vertices of all
+};
+
+static struct group group_of(const struct ai_scene *s, int from)
 {
-	struct placed *at = mem_array((size_t)p->n + 1, sizeof *at);
-	for (int i = 0; i < p->n; i++) {
-		at[i].row = i;
-		for (int c = 0; c < 3; c++)
-			at[i].x[c] = p->x[i][c] + 0.0f;  // no negative zero
+	struct group g = { &s->part[from], 0, 0 };
+	for (int i = from; i < s->n_parts && s->part[i].node == s->part[from].node; i++) {
+		g.n_parts++;
+		g.n += s->part[i].n;
 	}
-	qsort(at, (size_t)p->n, sizeof *at, by_place);
-	for (int i = 0, j; i < p->n; i = j)
-		for (j = i; j < p->n && same_place(&at[i], &at[j]); j++) {
+	return g;
+}
+
+/* The first vertex of the group that each vertex is one point with: [n]; rows run through the parts. A mesh of several materials is
+ * one surface: its primitives join where they meet. */
+static void weld(int32_t *first, const struct group *g)
+{
+	struct placed *at = mem_array((size_t)g->n + 1, sizeof *at);
+	int *part = mem_array((size_t)g->n + 1, sizeof *part), *own = mem_array((size_t)g->n + 1, sizeof *own), n = 0;
+	for (int k = 0; k < g->n_parts; k++)
+		for (int i = 0; i < g->part[k].n; i++, n++) {
+			at[n].row = n;
+			part[n] = k;
+			own[n] = i;
+			for (int c = 0; c < 3; c++)
+				at[n].x[c] = g->part[k].x[i][c] + 0.0f;  // no negative zero
+		}
+	qsort(at, (size_t)n, sizeof *at, by_place);
+	for (int i = 0, j; i < n; i = j)
+		for (j = i; j < n && same_place(&at[i], &at[j]); j++) {
 			enum { TRIED = 16 };  // a file of a million vertices at one place costs no more than another
-			first[at[j].row] = at[j].row;
-			for (int k = i; k < j && k < i + TRIED; k++)
-				if (first[at[k].row] == at[k].row && move_alike(p, at[k].row, at[j].row)) {
-					first[at[j].row] = at[k].row;
+			const int row = at[j].row;
+			first[row] = row;
+			for (int k = i; k < j && k < i + TRIED; k++) {
+				const int to = at[k].row;
+				if (first[to] == to && move_alike(&g->part[part[to]], own[to], &g->part[part[row]], own[row])) {
+					first[row] = to;
 					break;
 				}
+			}
 		}
 	free(at);
+	free(part);
+	free(own);
 }
 
 /* Rows of the file's own vertices, by place. */
@@ -152,28 +191,38 @@ static void put_faces(struct look *l, struct mesh *mesh, const struct ai_part *p
 	}
 }
 
+/* One part of a group, whose vertices are those from `base` of the look's wedges; the group's are those from `group_base`. */
+static void put_points(struct look *l, struct mesh *mesh, const struct ai_part *p, int base, int group_base, const int32_t *first, const struct given *given)
+{
+	for (int k = 0; k < p->n; k++) {
+		const int row = given->n ? given_row(given, p->x[k]) : -1, w = base + k;
+		if (row >= 0)
+			l->point[w] = row;
+		else if (first[w - group_base] != w - group_base)
+			l->point[w] = l->point[group_base + first[w - group_base]];
+		else {
+			memcpy(mesh->vertices[mesh->n_vertices], p->x[k], sizeof *mesh->vertices);
+			l->point[w] = mesh->n_vertices++;
+		}
+		put_wedge(l, w, p, k);
+	}
+}
+
+/* Parts of one node leave as one mesh of several materials. */
 static void put_parts(struct look *l, struct mesh *mesh, const struct ai_scene *s, const struct given *given)
 {
-	for (int i = 0, base = 0; i < s->n_parts; base += s->part[i++].n) {
-		const struct ai_part *p = &s->part[i];
-		int32_t *first = mem_array((size_t)p->n + 1, sizeof *first);
-		weld(first, p);
-		for (int k = 0; k < p->n; k++) {
-			const int row = given->n ? given_row(given, p->x[k]) : -1;
-			if (row >= 0)
-				l->point[base + k] = row;
-			else if (first[k] != k)
-				l->point[base + k] = l->point[base + first[k]];
-			else {
-				memcpy(mesh->vertices[mesh->n_vertices], p->x[k], sizeof *mesh->vertices);
-				l->point[base + k] = mesh->n_vertices++;
-			}
-			put_wedge(l, base + k, p, k);
+	for (int i = 0, base = 0; i < s->n_parts;) {
+		const struct group g = group_of(s, i);
+		int32_t *first = mem_array((size_t)g.n + 1, sizeof *first);
+		const int group_base = base;
+		weld(first, &g);
+		for (int k = 0; k < g.n_parts; base += g.part[k++].n) {
+			put_points(l, mesh, &g.part[k], base, group_base, first, given);
+			put_faces(l, mesh, &g.part[k], l->n_parts, base, s->n_materials);
 		}
-		l->part[i] = mem_str(p->name);
-		l->n_parts++;
-		put_faces(l, mesh, p, i, base, s->n_materials);
+		l->part[l->n_parts++] = mem_str(g.part->name);
 		free(first);
+		i += g.n_parts;
 	}
 }
 

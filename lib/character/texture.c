@@ -43,23 +43,49 @@ bool look_texture_check(struct look_texture *t, struct err *err)
 	return true;
 }
 
+/* The chunks of a PNG that its picture is made of, and how opaque it is. Texts and profiles would be unpacked, gigabytes of them where a stranger
+ * likes; a texture's colours are sRGB whatever they say (glTF 2.0, 3.8.2). Returns their bytes, free(). */
+static uint8_t *picture_chunks(size_t *size, const struct look_texture *t)
+{
+	enum { SIGNATURE = 8, AROUND = 12, NAME = 4 };  // of a chunk: length and name before its data, a sum behind
+	uint8_t *out = mem_array((size_t)t->size + 1, 1);
+	memcpy(out, t->bytes, SIGNATURE);
+	*size = SIGNATURE;
+	for (long at = SIGNATURE; at + AROUND <= t->size;) {
+		const long length = be32(t->bytes + at);
+		if (length < 0 || length > t->size - at - AROUND)
+			break;
+		const uint8_t *name = t->bytes + at + NAME;
+		if (!(name[0] & 0x20) || !memcmp(name, "tRNS", NAME)) {
+			memcpy(out + *size, t->bytes + at, (size_t)(length + AROUND));
+			*size += (size_t)(length + AROUND);
+		}
+		at += length + AROUND;
+	}
+	return out;
+}
+
 static uint8_t *decode_png(const struct look_texture *t, struct err *err)
 {
 	png_image image = { .version = PNG_IMAGE_VERSION };
-	uint8_t *px = 0;
-	if (!png_image_begin_read_from_memory(&image, t->bytes, (size_t)t->size)) {
+	size_t size;
+	uint8_t *px = 0, *chunks = picture_chunks(&size, t);
+	if (!png_image_begin_read_from_memory(&image, chunks, size)) {
 		err_set(err, "is a damaged PNG: %s", image.message);
+		free(chunks);
 		return 0;
 	}
 	image.format = PNG_FORMAT_RGBA;
+	image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
 	if ((int)image.width == t->width && (int)image.height == t->height)
 		px = mem_array(4 * (size_t)t->width * (size_t)t->height, 1);
 	if (!px || !png_image_finish_read(&image, 0, px, 0, 0)) {
 		err_set(err, "is a damaged PNG: %s", image.message);
 		png_image_free(&image);
 		free(px);
-		return 0;
+		px = 0;
 	}
+	free(chunks);
 	return px;
 }
 

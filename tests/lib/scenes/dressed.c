@@ -8,8 +8,8 @@
 #include "image/picture.h"
 #include "rig/glb/buffer.h"
 
-enum { HEAD, EYES, RIGHT_EYE, HAIR, PARTS, CARDS = 24 };
-static const int material_of[PARTS] = { 0, 1, 1, 2 };
+enum { HEAD, EYES, RIGHT_EYE, HAIR, LID_HAIR, PARTS, CARDS = 24, LID_CARDS = 16 };
+static const int material_of[PARTS] = { 0, 1, 1, 2, 2 };
 
 struct box { float lo[3], hi[3]; };
 
@@ -132,9 +132,44 @@ static void put_cards(struct part *p, const struct box *b)
 	}
 }
 
-/* Colour with brows and lips; normals of a fine weave; roughness and metalness. kind: 0 colour, 1 normal, 2 roughness, 3 hair. */
-static int add_texture(struct glb_buffer *g, json_t *images, json_t *textures, int kind, int px)
+/* Cards that stand on skin before and above the left eyeball, from the lid's edge to the brow: a vertex of the head each, their own beside it. */
+static void put_lid_cards(struct part *p, const struct mesh *m, const uint8_t *piece, const float (*normal)[3])
 {
+	float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, mid[3];
+	int *near = mem_new((size_t)m->n_vertices + 1, sizeof *near), n = 0;
+	*p = part_new(4 * LID_CARDS, 2 * LID_CARDS);
+	for (int i = 0; i < m->n_vertices; i++)
+		for (int c = 0; c < 3 && piece[i] != HEAD && m->vertices[i][0] > 0; c++) {
+			lo[c] = fminf(lo[c], m->vertices[i][c]);
+			hi[c] = fmaxf(hi[c], m->vertices[i][c]);
+		}
+	const float R = 0.5f * (hi[1] - lo[1]);
+	for (int c = 0; c < 3; c++)
+		mid[c] = 0.5f * (lo[c] + hi[c]);
+	for (int i = 0; i < m->n_vertices; i++) {
+		const float *x = m->vertices[i], d[3] = { x[0] - mid[0], x[1] - mid[1], x[2] - mid[2] }, r = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		const float out = (d[0] * normal[i][0] + d[1] * normal[i][1] + d[2] * normal[i][2]) / r;
+		if (piece[i] == HEAD && r < 1.6f * R && d[2] > 0.4f * R && d[1] > 0.15f * R && fabsf(d[0]) < 0.7f * R && out > 0.5f)
+			near[n++] = i;
+	}
+	for (int k = 0; k < LID_CARDS && k < n; k++) {
+		const int i = near[k * n / (n < LID_CARDS ? n : LID_CARDS)];
+		const float *x = m->vertices[i], *a = normal[i];
+		for (int v = 0; v < 4; v++) {
+			const float side = (v == 1 || v == 2 ? 0.02f : -0.02f) * R, up = (v > 1 ? 0.25f : 0.01f) * R;
+			add_row(p, (float[3]){ x[0] + side + up * a[0], x[1] + up * a[1], x[2] + up * a[2] }, (float[3]){ 0, 0, 1 }, side > 0, v < 2, -1);
+		}
+		const uint32_t v = (uint32_t)(4 * k);
+		memcpy(p->face[p->n_faces++], (uint32_t[3]){ v, v + 1, v + 2 }, 12);
+		memcpy(p->face[p->n_faces++], (uint32_t[3]){ v, v + 2, v + 3 }, 12);
+	}
+	free(near);
+}
+
+/* Colour with brows and lips; normals of a fine weave; roughness and metalness. kind: 0 colour, 1 normal, 2 roughness, 3 hair. */
+static int add_texture(struct glb_buffer *g, json_t *images, json_t *textures, int kind, int px, const struct dressed *how)
+{
+	uint32_t seed = (uint32_t)kind + 1;
 	uint8_t *rgba = mem_new(4 * (size_t)px * (size_t)px, 1), *data;
 	size_t size;
 	struct err none = { 0 };
@@ -143,10 +178,15 @@ static int add_texture(struct glb_buffer *g, json_t *images, json_t *textures, i
 			const double u = (x + 0.5) / px, v = (y + 0.5) / px, brow = fabs(fabs(u - 0.5) - 0.055) < 0.03 && fabs(v - 0.41) < 0.008;
 			const double lips = fabs(u - 0.5) < 0.035 && fabs(v - 0.77) < 0.012, hair = 0.5 + 0.5 * sin(60 * u);
 			const double colour[3] = { brow ? 0.2 : lips ? 0.7 : 0.86, brow ? 0.13 : lips ? 0.3 : 0.67, brow ? 0.1 : lips ? 0.3 : 0.56 };
+			const double own[3] = { how->halves ? 0.8 * (u > 0.5) : colour[0], how->halves ? 0.05 : colour[1], how->halves ? 0.8 * (u < 0.5) : colour[2] };
 			const double normal[3] = { 0.5 + 0.06 * sin(400 * u), 0.5 + 0.06 * sin(400 * v), 1 };
 			uint8_t *p = rgba + 4 * ((size_t)y * (size_t)px + (size_t)x);
 			for (int c = 0; c < 3; c++)
-				p[c] = (uint8_t)(255 * (kind == 0 ? colour[c] : kind == 1 ? normal[c] : kind == 2 ? (double[]){ 1, 0.6, 0 }[c] : 0.15));
+				p[c] = (uint8_t)(255 * (kind == 0 ? own[c] : kind == 1 ? normal[c] : kind == 2 ? (double[]){ 1, 0.6, 0 }[c] : 0.15));
+			for (int c = 0; c < 3 && how->grain && kind != 3; c++) {
+				const int noise = p[c] + (int)((seed = seed * 1664525 + 1013904223) >> 28) - 8;
+				p[c] = (uint8_t)(noise < 0 ? 0 : noise > 255 ? 255 : noise);
+			}
 			p[3] = kind == 3 && hair < 0.5 ? 0 : 255;
 		}
 	picture_png_encode(&data, &size, rgba, px, px, 4, &none);
@@ -196,14 +236,23 @@ static json_t *mesh_json(struct glb_buffer *g, const struct part *p, const struc
 		free(one);
 		free(joint);
 	}
-	const int view = glb_add_view(g, p->face, 12 * (size_t)p->n_faces, GLB_INDICES);
-	const int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", 3 * p->n_faces,
-	                                                "type", "SCALAR"));
-	json_t *primitive = json_pack("{s:o,s:i}", "attributes", attributes, "indices", index), *mesh = json_pack("{s:[O]}", "primitives", primitive);
-	if (!how->no_material)
-		json_object_set_new(primitive, "material", json_integer(material_of[which]));
-	if (which == HEAD) {
-		json_t *targets = json_array(), *names = json_array();
+	const int pieces = which == HEAD && how->used_materials ? how->used_materials : 1, first = 3 + how->many_materials;
+	json_t *targets = which == HEAD ? json_array() : 0, *mesh = json_pack("{s:[]}", "primitives");
+	for (int k = 0; k < pieces; k++) {
+		const int from = (int)((long)p->n_faces * k / pieces), to = (int)((long)p->n_faces * (k + 1) / pieces);
+		const int view = glb_add_view(g, p->face + from, 12 * (size_t)(to - from), GLB_INDICES);
+		const int index = glb_add_accessor(g, json_pack("{s:i,s:i,s:i,s:s}", "bufferView", view, "componentType", GLB_UINT, "count", 3 * (to - from),
+		                                                "type", "SCALAR"));
+		json_t *primitive = json_pack("{s:O,s:i}", "attributes", attributes, "indices", index);
+		if (!how->no_material)
+			json_object_set_new(primitive, "material", json_integer(pieces > 1 ? first + k : material_of[which]));
+		if (targets)
+			json_object_set(primitive, "targets", targets);
+		json_array_append_new(json_object_get(mesh, "primitives"), primitive);
+	}
+	json_decref(attributes);
+	if (targets) {
+		json_t *names = json_array();
 		for (int s = 0; s < COUNT(shape_names); s++) {
 			shape(x, p, b, s);
 			for (int i = 0; i < p->n; i++)
@@ -211,11 +260,10 @@ static json_t *mesh_json(struct glb_buffer *g, const struct part *p, const struc
 			json_array_append_new(targets, json_pack("{s:i}", "POSITION", glb_add_floats(g, &n[0][0], (size_t)p->n, 3, true, GLB_ARRAY)));
 			json_array_append_new(names, json_string(shape_names[s]));
 		}
-		json_object_set_new(primitive, "targets", targets);
 		json_object_set_new(mesh, "extras", json_pack("{s:o}", "targetNames", names));
 		json_object_set_new(mesh, "weights", json_pack("[i,i,i]", 0, 0, 0));
 	}
-	json_decref(primitive);
+	json_decref(targets);
 	free(x);
 	free(n);
 	return mesh;
@@ -226,7 +274,7 @@ static json_t *materials(struct glb_buffer *g, json_t *root, const struct dresse
 	json_t *images = json_array(), *textures = json_array(), *list = json_array();
 	int map[4];
 	for (int k = 0; k < 4; k++)
-		map[k] = add_texture(g, images, textures, k, k == 0 ? how->texture_px : how->texture_px / 4);
+		map[k] = add_texture(g, images, textures, k, k == 0 || (how->grain && k < 3) ? how->texture_px : how->texture_px / 4, how);
 	json_array_append_new(list, json_pack("{s:s,s:{s:{s:i},s:{s:i},s:f},s:{s:i}}", "name", "Skin", "pbrMetallicRoughness", "baseColorTexture", "index",
 	                                      map[0], "metallicRoughnessTexture", "index", map[2], "metallicFactor", 0.0, "normalTexture", "index", map[1]));
 	json_array_append_new(list, json_pack("{s:s,s:{s:[f,f,f,f]}}", "name", "Eyeballs", "pbrMetallicRoughness", "baseColorFactor", 0.1, 0.9, 0.1, 1.0));
@@ -234,6 +282,9 @@ static json_t *materials(struct glb_buffer *g, json_t *root, const struct dresse
 	                                      "baseColorTexture", "index", map[3]));
 	for (int i = 0; i < how->many_materials; i++)
 		json_array_append_new(list, json_pack("{s:s}", "name", "more"));
+	for (int i = 0; i < how->used_materials; i++)
+		json_array_append_new(list, json_pack("{s:o,s:{s:{s:i},s:f}}", "name", json_sprintf("Skin%d", i), "pbrMetallicRoughness", "baseColorTexture", "index",
+		                                      map[0], "metallicFactor", 0.0));
 	json_object_set_new(root, "images", images);
 	json_object_set_new(root, "textures", textures);
 	return list;
@@ -241,7 +292,7 @@ static json_t *materials(struct glb_buffer *g, json_t *root, const struct dresse
 
 bool dressed_write(const char *path, const struct mesh *mesh, const struct dressed *how, struct err *err)
 {
-	static const char *const names[2][PARTS] = { { "Head", "Eyes", "", "Hair" }, { "Head", "EyeLeft", "EyeRight", "Hair" } };
+	static const char *const names[2][PARTS] = { { "Head", "Eyes", "", "Hair", "LidHair" }, { "Head", "EyeLeft", "EyeRight", "Hair", "LidHair" } };
 	struct glb_buffer g = { .views = json_array(), .accessors = json_array() };
 	const struct box b = box_of(mesh);
 	uint8_t *piece = pieces(mesh, how->eyes_apart);
@@ -251,6 +302,9 @@ bool dressed_write(const char *path, const struct mesh *mesh, const struct dress
 	put_surface(&part[EYES], mesh, &b, piece, EYES, (const float(*)[3])normal);
 	put_surface(&part[RIGHT_EYE], mesh, &b, piece, RIGHT_EYE, (const float(*)[3])normal);
 	put_cards(&part[HAIR], &b);
+	part[LID_HAIR] = (struct part){ 0 };
+	if (how->lid_hair)
+		put_lid_cards(&part[LID_HAIR], mesh, piece, (const float(*)[3])normal);
 	json_t *root = json_pack("{s:{s:s},s:i,s:[{s:[i]}]}", "asset", "version", "2.0", "scene", 0, "scenes", "nodes", 0), *meshes = json_array();
 	json_t *nodes = json_array(), *children = json_array();
 	json_array_append_new(nodes, json_pack("{s:s,s:[f,f,f],s:O}", "name", "Character", "scale", how->unit, how->unit, how->unit, "children", children));

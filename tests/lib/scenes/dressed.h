@@ -13,6 +13,10 @@ struct dressed {
 	bool no_uv, no_material;
 	bool eyes_apart;    // each eyeball is a mesh of its own
 	int many_materials; // more, none of which is used
+	int used_materials; // the head in so many primitives of a material each, which share its vertices; 0: in one
+	bool halves;        // its colour: red on the person's left, blue on the right
+	bool grain;         // its textures have the noise of a photographed skin, all three of texture_px
+	bool lid_hair;      // hair cards that stand on the skin round the left eye, four vertices each, the last of the file
 };
 
 /* Writes the .glb. mesh: y up, the face towards +z. Returns false, err set, when it cannot. */

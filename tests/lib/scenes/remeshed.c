@@ -144,7 +144,7 @@ bool remeshed_make(struct mesh *out, const struct mesh *in, const struct remeshe
 	*out = piece_of(in, t.piece, b[3] > 0 ? -1 : 0);
 	if (ok && how->faces) {
 		divide(out);
-		if (out->n_faces < how->faces)
+		while (out->n_faces < how->faces)
 			divide(out);
 		ok = om_mesh_decimate(out, how->faces, err);
 	}

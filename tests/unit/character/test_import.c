@@ -1,5 +1,6 @@
 /* A character's file read in a process of its own: what is kept, and what hostile files do. */
 #include <time.h>
+#include <zlib.h>
 
 #include "base/apart.h"
 #include "base/file.h"
@@ -137,6 +138,39 @@ static void without_uv_or_materials(void **state)
 		assert_int_equal(look.has_uv, h != 0);
 		mesh_free(&mesh);
 		look_free(&look);
+	}
+}
+
+/* A mesh of 200 materials whose primitives share their vertices: one surface, as of one material, and each material on its faces. */
+static void materials_of_one_mesh_keep_it_whole(void **state)
+{
+	(void)state;
+	struct mesh mesh[2];
+	struct look look[2];
+	struct err err = { 0 };
+	for (int k = 0; k < 2; k++) {
+		written("many.glb", &(struct dressed){ .unit = 1, .used_materials = 200 * k, .texture_px = 16 });
+		if (!take(&mesh[k], &look[k], "many.glb", &err))
+			fail_msg("%s", err.msg);
+	}
+	assert_int_equal(mesh[1].n_vertices, mesh[0].n_vertices);
+	assert_int_equal(mesh[1].n_faces, mesh[0].n_faces);
+	assert_int_equal(look[1].n_parts, 3);
+	int distinct = 0;
+	bool *used = calloc((size_t)look[1].n_materials + 1, sizeof *used);
+	for (int f = 0; f < look[1].n_faces; f++)
+		if (!look[1].face_part[f]) {
+			distinct += !used[look[1].face_material[f]];
+			used[look[1].face_material[f]] = true;
+			assert_int_equal(strncmp(look[1].material[look[1].face_material[f]].name, "Skin", 4), 0);
+		}
+	assert_int_equal(distinct, 200);
+	for (int s = 0; s < 3; s++)  // blend shapes move as many points
+		assert_int_equal(look[1].shape_start[s + 1], look[0].shape_start[s + 1]);
+	free(used);
+	for (int k = 0; k < 2; k++) {
+		mesh_free(&mesh[k]);
+		look_free(&look[k]);
 	}
 }
 
@@ -325,6 +359,261 @@ static void huge_textures_are_left_out(void **state)
 	look_free(&look);
 }
 
+/* Bytes that grow. */
+struct bytes {
+	uint8_t *data;
+	size_t size;
+};
+
+static void put_bytes(struct bytes *b, const void *data, size_t size)
+{
+	b->data = realloc(b->data, b->size + size + 1);
+	memcpy(b->data + b->size, data, size);
+	b->size += size;
+}
+
+static void put_u32(struct bytes *b, uint32_t x, bool big)
+{
+	const uint8_t le[4] = { (uint8_t)x, (uint8_t)(x >> 8), (uint8_t)(x >> 16), (uint8_t)(x >> 24) }, be[4] = { le[3], le[2], le[1], le[0] };
+	put_bytes(b, big ? be : le, 4);
+}
+
+/* So many zeros, deflated: a thousandth of them. */
+static struct bytes zeros(size_t n)
+{
+	struct bytes out = { 0 };
+	uint8_t piece[65536], none[65536] = { 0 };
+	z_stream z = { 0 };
+	assert_int_equal(deflateInit(&z, 9), Z_OK);
+	for (int end = Z_OK; end != Z_STREAM_END;) {
+		z.avail_out = sizeof piece;
+		z.next_out = piece;
+		if (!z.avail_in && n) {
+			z.next_in = none;
+			z.avail_in = (uInt)(n < sizeof none ? n : sizeof none);
+			n -= z.avail_in;
+		}
+		end = deflate(&z, n || z.avail_in ? Z_NO_FLUSH : Z_FINISH);
+		put_bytes(&out, piece, sizeof piece - z.avail_out);
+	}
+	deflateEnd(&z);
+	return out;
+}
+
+static void put_chunk(struct bytes *png, const char *kind, const struct bytes *what)
+{
+	put_u32(png, (uint32_t)what->size, true);
+	const size_t from = png->size;
+	put_bytes(png, kind, 4);
+	put_bytes(png, what->data, what->size);
+	put_u32(png, (uint32_t)crc32(0, png->data + from, (uInt)(png->size - from)), true);
+}
+
+/* A PNG of px x px, whose picture unpacks to `inside` bytes, with so many texts that unpack to seven megabytes each. */
+static struct bytes bomb(uint32_t px, size_t inside, int texts)
+{
+	struct bytes png = { 0 }, head = { 0 }, text = { 0 }, idat = zeros(inside), seven = zeros(7000000), end = { 0 };
+	put_bytes(&png, "\x89PNG\r\n\x1a\n", 8);
+	put_u32(&head, px, true);
+	put_u32(&head, px, true);
+	put_bytes(&head, "\x08\x06\0\0\0", 5);
+	put_chunk(&png, "IHDR", &head);
+	put_bytes(&text, "k\0\0", 3);
+	put_bytes(&text, seven.data, seven.size);
+	for (int i = 0; i < texts; i++)
+		put_chunk(&png, "zTXt", &text);
+	put_chunk(&png, "IDAT", &idat);
+	put_chunk(&png, "IEND", &end);
+	free(head.data);
+	free(text.data);
+	free(idat.data);
+	free(seven.data);
+	return png;
+}
+
+static bool decode(void *ctx, struct apart_out *out, struct err *err)
+{
+	const struct bytes *png = ctx;
+	struct look_texture t = { .bytes = png->data, .size = (long)png->size };
+	int width, height;
+	struct err why = { 0 };
+	uint8_t *px = look_texture_check(&t, &why) ? look_texture_pixels(&width, &height, &t, 256, &why) : 0;
+	(void)err;
+	assert_true((px != 0) != err_is(&why));
+	free(px);
+	return apart_put(out, "done", 4);
+}
+
+/* Whatever a texture unpacks to, reading it takes no more memory than its pixels and some: it is taken, or refused. */
+static void packed_textures_stay_small(void **state)
+{
+	(void)state;
+#ifdef __SANITIZE_ADDRESS__
+	skip();  // a sanitizer takes addresses without end
+#endif
+	static const struct { uint32_t px; size_t inside; int texts; } bombs[] = { { 64, (size_t)1 << 30, 0 }, { 64, 64 * 257, 1000 }, { 8192, (size_t)1 << 20, 0 } };
+	for (int i = 0; i < 3; i++) {
+		struct bytes png = bomb(bombs[i].px, bombs[i].inside, bombs[i].texts);
+		char *data;
+		size_t size;
+		struct err err = { 0 };
+		const size_t pixels = 4 * (size_t)bombs[i].px * bombs[i].px;
+		const struct apart apart = { decode, &png, 0, pixels + ((size_t)64 << 20), 1 << 10, 20 };
+		if (!apart_run(&data, &size, &apart, &err))
+			fail_msg("bomb %d: %s", i, err.msg);
+		free(data);
+		free(png.data);
+	}
+}
+
+/* A record of a binary FBX (version 7400): 4 numbers, name, properties, records in it, 13 zeros. Returns where its end is to be written. */
+static size_t fbx_open(struct bytes *b, const char *name, int n, const struct bytes *properties)
+{
+	const size_t at = b->size;
+	const uint8_t length = (uint8_t)strlen(name);
+	put_u32(b, 0, false);
+	put_u32(b, (uint32_t)n, false);
+	put_u32(b, (uint32_t)properties->size, false);
+	put_bytes(b, &length, 1);
+	put_bytes(b, name, length);
+	put_bytes(b, properties->data, properties->size);
+	return at;
+}
+
+static void fbx_close(struct bytes *b, size_t at, bool holds)
+{
+	static const uint8_t none[13];
+	if (holds)
+		put_bytes(b, none, sizeof none);
+	const uint32_t end = (uint32_t)b->size;
+	memcpy(b->data + at, &end, 4);
+}
+
+static void fbx_text(struct bytes *p, const char *text, size_t size)
+{
+	put_bytes(p, "S", 1);
+	put_u32(p, (uint32_t)size, false);
+	put_bytes(p, text, size);
+}
+
+static void fbx_id(struct bytes *p, int64_t id)
+{
+	put_bytes(p, "L", 1);
+	put_bytes(p, &id, 8);
+}
+
+/* A mesh whose vertices are `claims` doubles, deflated from `inside` bytes of zeros. */
+static struct bytes packed_fbx(uint32_t claims, size_t inside)
+{
+	struct bytes b = { 0 }, none = { 0 }, p = { 0 }, packed = zeros(inside);
+	put_bytes(&b, "Kaydara FBX Binary  \0\x1a\0", 23);
+	put_u32(&b, 7400, false);
+	const size_t header = fbx_open(&b, "FBXHeaderExtension", 0, &none);
+	put_bytes(&p, "I", 1);
+	put_u32(&p, 7400, false);
+	fbx_close(&b, fbx_open(&b, "FBXVersion", 1, &p), false);
+	fbx_close(&b, header, true);
+	p.size = 0;
+	const size_t objects = fbx_open(&b, "Objects", 0, &none);
+	fbx_id(&p, 100);
+	fbx_text(&p, "quad\0\1Geometry", 14);
+	fbx_text(&p, "Mesh", 4);
+	const size_t geometry = fbx_open(&b, "Geometry", 3, &p);
+	struct bytes array = { 0 };
+	put_bytes(&array, "d", 1);
+	put_u32(&array, claims, false);
+	put_u32(&array, 1, false);
+	put_u32(&array, (uint32_t)packed.size, false);
+	put_bytes(&array, packed.data, packed.size);
+	fbx_close(&b, fbx_open(&b, "Vertices", 1, &array), false);
+	struct bytes index = { 0 };
+	put_bytes(&index, "i", 1);
+	put_u32(&index, 3, false);
+	put_u32(&index, 0, false);
+	put_u32(&index, 12, false);
+	put_bytes(&index, (int32_t[3]){ 0, 1, -3 }, 12);
+	fbx_close(&b, fbx_open(&b, "PolygonVertexIndex", 1, &index), false);
+	fbx_close(&b, geometry, true);
+	p.size = 0;
+	fbx_id(&p, 200);
+	fbx_text(&p, "Quad\0\1Model", 11);
+	fbx_text(&p, "Mesh", 4);
+	fbx_close(&b, fbx_open(&b, "Model", 3, &p), true);
+	fbx_close(&b, objects, true);
+	const size_t connections = fbx_open(&b, "Connections", 0, &none);
+	static const int64_t joins[][2] = { { 200, 0 }, { 100, 200 } };
+	for (int i = 0; i < 2; i++) {
+		p.size = 0;
+		fbx_text(&p, "OO", 2);
+		fbx_id(&p, joins[i][0]);
+		fbx_id(&p, joins[i][1]);
+		fbx_close(&b, fbx_open(&b, "C", 3, &p), false);
+	}
+	fbx_close(&b, connections, true);
+	put_bytes(&b, (uint8_t[13]){ 0 }, 13);
+	free(p.data);
+	free(array.data);
+	free(index.data);
+	free(packed.data);
+	return b;
+}
+
+/* Small files that unpack, repeat or claim themselves to be large. */
+static void inflating_files_are_refused(void **state)
+{
+	(void)state;
+#ifdef __SANITIZE_ADDRESS__
+	skip();
+#endif
+	static const char asset[] = "\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}]";
+	struct bytes whole = packed_fbx(9, 72), large = packed_fbx(200000000, 1600000000), claims = packed_fbx(4000000000u, 72);
+	char *text;
+	struct mesh mesh;
+	struct look look;
+	struct err err = { 0 };
+	scratch_write("whole.fbx", whole.data, whole.size);
+	// Three vertices at one place: the reader comes as far as its face, which has no area. So what follows is not refused for its form.
+	assert_false(take(&mesh, &look, "whole.fbx", &err));
+	ERR_HAS(err, "has no faces");
+	assert_true(large.size < 2000000);
+	scratch_write("large.fbx", large.data, large.size);
+	refuses("large.fbx", "");
+	scratch_write("claims.fbx", claims.data, claims.size);
+	refuses("claims.fbx", "");
+	text = mem_printf("{%s,\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{\"componentType\":5126,"
+	                  "\"count\":1000000000,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":1}}}],"
+	                  "\"bufferViews\":[{\"buffer\":0,\"byteLength\":4},{\"buffer\":0,\"byteOffset\":4,\"byteLength\":12}],"
+	                  "\"buffers\":[{\"byteLength\":16,\"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAA==\"}]}", asset);
+	scratch_text("sparse.gltf", text);
+	free(text);
+	refuses("sparse.gltf", "");
+	text = mem_printf("{%s,\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\":[{\"mesh\":0}],"
+	                  "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{\"POSITION\":0}}}}]}],"
+	                  "\"accessors\":[{\"componentType\":5126,\"count\":1000000000,\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":16}],"
+	                  "\"buffers\":[{\"byteLength\":16,\"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAA==\"}]}", asset);
+	scratch_text("draco.gltf", text);
+	free(text);
+	refuses("draco.gltf", "");
+	// Each node holds the next one twice: two to the power of forty.
+	struct bytes twice = { 0 };
+	text = mem_printf("{%s,\"nodes\":[", asset);
+	put_bytes(&twice, text, strlen(text));
+	free(text);
+	for (int i = 0; i < 40; i++) {
+		text = mem_printf("{\"children\":[%d,%d]},", i + 1, i + 1);
+		put_bytes(&twice, text, strlen(text));
+		free(text);
+	}
+	static const char last[] = "{\"mesh\":0}],\"meshes\":[{\"primitives\":[]}]}";
+	put_bytes(&twice, last, sizeof last - 1);
+	scratch_write("twice.gltf", twice.data, twice.size);
+	refuses("twice.gltf", "");
+	free(whole.data);
+	free(large.data);
+	free(claims.data);
+	free(twice.data);
+}
+
 enum deed { WRITES, OPENS, FORKS, EATS, SPINS, WAITS, FALLS, FLOODS };
 
 static bool misbehave(void *ctx, struct apart_out *out, struct err *err)
@@ -368,7 +657,8 @@ static void a_process_apart_dies_alone(void **state)
 		size_t size;
 		struct err err = { 0 };
 		enum deed deed = d;
-		const struct apart apart = { misbehave, &deed, scratch_path("."), (size_t)256 << 20, 1 << 20, 1 };
+		// A second of processor time, but for memory: a busy machine takes its time to hand it out.
+		const struct apart apart = { misbehave, &deed, scratch_path("."), (size_t)256 << 20, 1 << 20, d == EATS ? 20 : 1 };
 		assert_false(apart_run(&data, &size, &apart, &err));
 		ERR_HAS(err, said[d]);
 		assert_null(data);
@@ -435,6 +725,9 @@ int main(void)
 		SCRATCH_TEST(fbx_is_read),
 		SCRATCH_TEST(hostile_files_are_refused_in_one_line),
 		SCRATCH_TEST(huge_textures_are_left_out),
+		SCRATCH_TEST(packed_textures_stay_small),
+		SCRATCH_TEST(inflating_files_are_refused),
+		SCRATCH_TEST(materials_of_one_mesh_keep_it_whole),
 		SCRATCH_TEST(a_process_apart_dies_alone),
 		SCRATCH_TEST(a_busy_machine_refuses_nothing),
 		cmocka_unit_test(results_are_not_trusted),
