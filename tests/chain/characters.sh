@@ -5,6 +5,8 @@
 
 DRESSED=${B:-build}/tests/tools/dressed
 LASHES=${B:-build}/tests/tools/lashes
+POSED=${B:-build}/tests/tools/posed
+HALVES=${B:-build}/tests/tools/halves
 HEAD=samples/face/targets/mpfb.obj
 capture=$root/c
 small_face "$capture"
@@ -12,9 +14,12 @@ rm "$capture"/targets/*
 # Laid onto the subject as wholly as others are, and by more points than a tenth of those: lids that lie a millimetre off it, their lashes do, too.
 sed -i '/^target.mpfb/d; /^transfer\./d; s/^track.points = .*/track.points = 1500/' "$capture/capture.conf"
 "$DRESSED" "$HEAD" "$capture/targets/metres.glb" unit=0.1 px=256
-"$DRESSED" "$HEAD" "$capture/targets/blender.glb" unit=10 z_up px=256
+"$DRESSED" "$HEAD" "$capture/targets/blender.glb" unit=10 z_up px=256 lid_hair
 "$DRESSED" "$HEAD" "$capture/targets/posed.glb" skinned unit=0.1 px=256
 "$DRESSED" "$HEAD" "$capture/targets/bare.glb" no_uv no_material
+# In centimetres, y up: one mesh of 200 materials, red on its left and blue on its right; and as FBX, its texture where the artist had it.
+"$DRESSED" "$HEAD" "$capture/targets/many.glb" unit=10 px=256 materials=200 halves
+"$DRESSED" "$HEAD" "$capture/targets/artist.fbx" unit=10 px=256
 # Other topologies: that head in triangles of its own, four times as many, each eyeball a mesh of its own; the subject's mesh, stretched into somebody else.
 "$DRESSED" "$HEAD" "$capture/targets/fine.glb" unit=0.1 px=256 faces=32000
 "$DRESSED" samples/face/subject.ply "$capture/targets/other.glb" unit=0.01 px=256 faces=12000 ball=3.1010,3.6016,7.8602,1.5175 stretch=1.06,0.95,1
@@ -23,7 +28,7 @@ printf 'Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0\xff\xff\xff\xff\xff\xff\xff\xff
 printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}' >"$capture/targets/cycle.gltf"
 run_make "$capture"
 same "the capture is made" "$? $(grep -c 'Error' "$log")" "0 0"
-for name in metres blender posed bare fine other; do
+for name in metres blender posed bare many artist fine other; do
 	check "$name has left with its targets" test -s "$capture/work/render/$name.glb"
 done
 for name in cut.glb wild.fbx cycle.gltf; do
@@ -45,11 +50,31 @@ if command -v node >/dev/null; then
 	same "the seam of the texture is still one" "$(field "$glb" 'j.accessors[j.meshes[0].primitives[0].attributes.TEXCOORD_0].count > 4202')" true
 	same "without materials brows, too" "$(field "$capture/work/render/bare.glb" 'j.meshes.map(m => m.name).slice(0, 5)')" "Head,Hair,lashes,brows,tears"
 	same "without materials: one colour" "$(field "$capture/work/render/bare.glb" 'j.meshes[0].primitives[0].attributes.TEXCOORD_0 === undefined')" true
+	same "of 200 materials one mesh, and each of them" "$(field "$capture/work/render/many.glb" 'const p = j.meshes[0].primitives; j.meshes[0].name + p.length + "," + new Set(p.map(q => q.material)).size')" "Head200,200"
+	same "an FBX' mesh, texture and blend shape" "$(field "$capture/work/render/artist.glb" 'const m = j.meshes[0], t = j.materials[m.primitives[0].material].pbrMetallicRoughness.baseColorTexture; m.name + "," +
+		j.bufferViews[j.images[j.textures[t.index].source].bufferView].byteLength + "," + m.extras.targetNames.includes("jawOpen")')" "Head,$(stat -c %s "$capture/targets/skin.png"),true"
+	# Cards on the skin from the left lid's edge to its brow, the last rows of the file: in a blink each root goes with the skin below it, to a third of a millimetre.
+	# The goal is a card that turns as a whole: its tip goes with the skin below the tip, and of 3.3 mm 1.0 to 4.5 are left when the lid is shut.
+	printf '0 0 0 0 1 1\n0 0 0 0 0 0\n' | "$POSED" "$capture/work/targets/blender/rig.npz" >"$root/posed"
+	same "hair cards on a lid go with it" "$(node -e 'const b = require("fs").readFileSync(process.argv[1]), f = new Float32Array(b.buffer, b.byteOffset, b.length / 4), cards = 16, n = f.length / 12, wrong = [];
+		const at = (pose, i) => [0, 1, 2].map(c => f[(2 * pose * n + i) * 3 + c]), between = (a, b) => Math.hypot(...a.map((x, c) => x - b[c])), mean = (a, b) => a.map((x, c) => (x + b[c]) / 2);
+		for (let i = n - 4 * cards; i < n; i += 4) {
+			const root = mean(at(0, i), at(0, i + 1)), then = mean(at(1, i), at(1, i + 1));
+			let below = 0;
+			for (let v = 0; v < n - 4 * cards; v++)
+				below = between(root, at(0, v)) < between(root, at(0, below)) ? v : below;
+			const skin = at(1, below).map((x, c) => x - at(0, below)[c]), off = between(skin, then.map((x, c) => x - root[c]));
+			if (!(Math.hypot(...skin) > 3 && off < 0.33))
+				wrong.push([i, Math.hypot(...skin).toFixed(2), off.toFixed(2)].join(" "));
+		}
+		console.log(wrong.join("; "));' "$root/posed" 2>&1)" ""
 else
 	skip "what the glTF holds" "node is not installed"
 fi
+# Its left is the picture's right.
+same "its own colours are in the picture: red on its left, blue on its right" "$("$HALVES" "$capture/work/render/many_look.png" | awk '{ print ($3 > 5 * $1 && $3 > 5 * $2) " " ($4 > 5 * $5 && $4 > 5 * $6) }')" "1 1"
 if npm_has gltf-validator; then
-	for name in metres blender posed bare fine other; do
+	for name in metres blender posed bare many artist fine other; do
 		same "Khronos's validator on $name.glb: errors, warnings" "$(khronos "$capture/work/render/$name.glb")" "0 0"
 	done
 else
@@ -98,7 +123,7 @@ done
 check "the page draws its textures" grep -q 'dress_map' "$capture/work/review/viewer.html"
 same "the page with a textured face is small enough" "$(($(stat -c %s "$capture/work/review/viewer.html") < 25000000))" 1
 turned() { sed -n 's/.*"target_unit_mm": \([0-9.]*\).*/\1/p' "$capture/work/targets/$1/registration.json"; }
-same "units are found" "$(turned metres) $(turned blender) $(turned posed)" "1000.0 10.0 1000.0"
+same "units are found" "$(turned metres) $(turned blender) $(turned posed) $(turned many) $(turned artist)" "1000.0 10.0 1000.0 10.0 10.0"
 
 before=$(times_of "$capture" | grep -v '^log/\|plan\|review/')
 run_make "$capture"
