@@ -1,6 +1,7 @@
 "use strict";
 /* Opens a driven face's .glb in three.js in a headless Chromium: FILE NPM OUT. One line a pose and view: what it shows of eye and skin, in
- * pixels round one eye; and how deep lids go through the eye between open and shut, mm, by a blink's target alone and with what goes with it. OUT/face_NAME.png:
+ * pixels round one eye; how deep lids go through the eye between open and shut, mm, by a blink's target alone and with what goes with it; and the same of eyes
+ * that look down and up, with that look's target. OUT/face_NAME.png:
  * pictures. */
 const fs = require("fs");
 const os = require("os");
@@ -12,6 +13,9 @@ const poses = {
 	open: [{}, [0, 0]],
 	half: [{ eyeBlinkLeft: 0.5, eyeBlinkRight: 0.5, eyeBlinkLeft_half: 1, eyeBlinkRight_half: 1 }, [0, 0]],
 	shut: [{ eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]],
+	down: [{ eyeLookDownLeft: 1, eyeLookDownRight: 1 }, [0, -0.8]],
+	up: [{ eyeLookUpLeft: 1, eyeLookUpRight: 1 }, [0, 0.8]],
+	half_down: [{ eyeLookDownLeft: 1, eyeLookDownRight: 1, eyeBlinkLeft: 0.5, eyeBlinkRight: 0.5, eyeBlinkLeft_half: 1, eyeBlinkRight_half: 1 }, [0, -0.8]],
 	left: [{ eyeLookOutLeft: 1, eyeLookInRight: 1 }, [1, 0]],
 	right: [{ eyeLookInLeft: 1, eyeLookOutRight: 1 }, [-1, 0]],
 };
@@ -36,6 +40,10 @@ const poses = {
 		for (const side of ["left", "right"]) {
 			const d = await b.value(`depths("${side}")`, 120000);
 			console.log(`depth ${side} alone ${d.alone.map(x => x.toFixed(3)).join(" ")} both ${d.both.map(x => x.toFixed(3)).join(" ")} of ${d.n}`);
+			for (const [name, look, v] of [["down", "eyeLookDown", -20], ["up", "eyeLookUp", 20]]) {
+				const t = await b.value(`depths("${side}", "${look}", ${v})`, 120000);
+				console.log(`turned ${side} ${name} blink ${t.both.map(x => x.toFixed(3)).join(" ")} open ${t.open.toFixed(3)} of ${t.n}`);
+			}
 		}
 		for (const [name, [weights, turn]] of Object.entries(poses))
 			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]]) {

@@ -236,24 +236,29 @@ function samples_of(mesh, node, near) {
 }
 
 /* How deep in an eye skin lies on the way of a blink, mm, that is outside at both of its ends: at weights 0.25, 0.5, 0.75 of the blink's target, by
- * itself and with the one that goes with it. */
-window.depths = side => {
-	const eye = eyes[`eye_${side}`], name = `eyeBlink${side === "left" ? "Left" : "Right"}`, out = { alone: [0, 0, 0], both: [0, 0, 0], n: 0 };
+ * itself and with the one that goes with it. look: a target that goes with all of it, of an eye turned up by v degrees; then what counts is skin outside the eye that
+ * looks ahead, open and shut, and open: how deep it is without the blink. */
+window.depths = (side, look = null, v = 0) => {
+	const eye = eyes[`eye_${side}`], which = side === "left" ? "Left" : "Right", name = `eyeBlink${which}`, out = { alone: [0, 0, 0], both: [0, 0, 0], open: 0, n: 0 };
+	const along = look ? { [look + which]: 1 } : {};
 	pose({}, [0, 0]);
 	face.updateMatrixWorld(true);
 	const surface = surface_of(eye.node), mm = 1000 * eye.node.getWorldScale(new THREE.Vector3()).x;
 	face.traverse(mesh => {
 		if (!mesh.morphTargetDictionary || !(name in mesh.morphTargetDictionary) || hair.test(mesh.name) || wet.test(mesh.name) || mesh.userData.behind)
 			return;
-		const near = { radius: surface({ x: 0, y: 0, z: 1 }) }, off = w => {
-			pose(w, [0, 0]);
+		const near = { radius: surface({ x: 0, y: 0, z: 1 }) }, off = (w, turn) => {
+			pose(w, [0, turn]);
+			face.updateMatrixWorld(true);
 			return samples_of(mesh, eye.node, near).map(p => mm * (p.length() - surface(p)));
 		};
-		const ends = [off({}), off({ [name]: 1 })], outside = ends[0].map((d, i) => Math.min(d, ends[1][i]) > -0.03 && Math.min(d, ends[1][i]) < 5);
+		const ends = [off({}, 0), off({ [name]: 1 }, 0)], outside = ends[0].map((d, i) => Math.min(d, ends[1][i]) > -0.03 && Math.min(d, ends[1][i]) < 5);
 		out.n += outside.filter(o => o).length;
+		const deepest = (weights, was) => off({ ...along, ...weights }, v).reduce((most, d, i) => outside[i] && -d > most ? -d : most, was);
+		out.open = deepest({}, out.open);
 		[0.25, 0.5, 0.75].forEach((w, k) => {
-			for (const [way, weights] of [["alone", { [name]: w }], ["both", { [name]: w, [`${name}_half`]: 4 * w * (1 - w) }]])
-				off(weights).forEach((d, i) => { out[way][k] = outside[i] && -d > out[way][k] ? -d : out[way][k]; });
+			out.alone[k] = deepest({ [name]: w }, out.alone[k]);
+			out.both[k] = deepest({ [name]: w, [`${name}_half`]: 4 * w * (1 - w) }, out.both[k]);
 		});
 	});
 	pose({}, [0, 0]);

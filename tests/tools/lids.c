@@ -1,8 +1,12 @@
 /* lids: measures a driven character's lids on its mesh, seen orthographically from the front.
  *   lids RIG.npz [FOLDER]   one line of numbers a pose and side on stdout; FOLDER: a picture of each pose, PGM, the eyeball white
- * open_mm2  area of the eyeball that is seen
- * bend_mm   how far the upper margin leaves the nearer of its convex and its concave hull: 0 where its curvature has one sign
- * inside_mm least distance of the skin from the turned eyeball; below 0: inside */
+ * open_mm2   area of the eyeball that is seen
+ * bend_mm    how far the upper margin, found by rays in columns 0.1 mm apart, leaves the nearer of its convex and its concave hull: 0 where its curvature has one
+ *            sign. It ends where it is behind skin: at steps of more than 0.5 mm within an eighth of its length from an end
+ * inside_mm  least distance of the skin's vertices from the turned eyeball; below 0: inside
+ * faces_mm   the same of points on edges and faces that look outwards before it
+ * crossing   of a hundred lashes of an upper lid and sixty of a lower one, those that skin crosses
+ * iris_low, pupil_low   share of iris and pupil (5.7 and 2 mm on an eyeball of 12 mm) that lies under the lower lid */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,9 +14,11 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "rig/deform/clear.h"
+#include "mesh/ray.h"
+#include "rig/deform/arc.h"
 #include "rig/deform/deform.h"
 #include "rig/drive.h"
+#include "rig/hair/hair.h"
 
 enum { W = 480, H = 320 };
 static const double step = 0.1;  // mm a pixel
@@ -86,17 +92,162 @@ static double below_hull(int n, const double *y)
 	return worst;
 }
 
-static double bend_of(const struct seen *s, const struct rig *rig)
+/* A pose: its vertices, its faces for rays. */
+struct pose {
+	const struct rig *rig;
+	const float (*x)[3];
+	const struct ray_scene *all;
+	const double (*turn)[3][3];
+};
+
+static bool open_at(const struct pose *p, int side, double x, double y)
+{
+	const double far = 4 * p->rig->globe[side].radius;
+	double from[3], along[3];
+	float origin[3], dir[3];
+	mat_tvec(from, p->rig->head_from_target, (double[]){ x, y, far });
+	mat_tvec(along, p->rig->head_from_target, (double[]){ 0, 0, -1 });
+	for (int c = 0; c < 3; c++) {
+		origin[c] = (float)(p->rig->globe[side].center[c] + from[c]);
+		dir[c] = (float)along[c];
+	}
+	const struct ray_hit hit = ray_first(p->all, origin, dir, 0, (float)far);
+	return hit.face >= 0 && rig_is_globe(p->rig->part[p->rig->faces[hit.face][0]]);
+}
+
+static double edge_at(const struct pose *p, int side, double x, double open, double shut)
+{
+	while (fabs(open - shut) > 0.002) {
+		const double middle = 0.5 * (open + shut);
+		if (open_at(p, side, x, middle))
+			open = middle;
+		else
+			shut = middle;
+	}
+	return open;
+}
+
+/* The lids' margins in columns, mm; NAN where there is no opening. */
+struct margins {
+	double top[W], bottom[W];
+};
+
+static void find_margins(struct margins *m, const struct pose *p, int side)
+{
+	static const double row = 0.2, high = 13;
+	for (int i = 0; i < W; i++) {
+		const double x = step * (i - W / 2);
+		int best = 0, at = 0, run = 0;
+		for (int k = 0; high - row * k > -high; k++) {
+			const bool open = open_at(p, side, x, high - row * k);
+			run = open ? run + 1 : 0;
+			at = run > best ? k : at;
+			best = run > best ? run : best;
+		}
+		const double top = high - row * (at - best + 1), bottom = high - row * at;
+		m->top[i] = best ? edge_at(p, side, x, top, top + row) : NAN;
+		m->bottom[i] = best ? edge_at(p, side, x, bottom, bottom - row) : NAN;
+	}
+}
+
+/* What lies beyond a step near an end is a corner behind the margin. */
+static void end_at_steps(double *y, int n)
+{
+	int first = 0, last = n - 1;
+	while (first < n && isnan(y[first]))
+		first++;
+	while (last > first && isnan(y[last]))
+		last--;
+	const int eighth = (last - first) / 8;
+	for (int i = first; i < first + eighth; i++)
+		if (fabs(y[i + 1] - y[i]) > 0.5)
+			for (int k = first; k <= i; k++)
+				y[k] = NAN;
+	for (int i = last; i > last - eighth; i--)
+		if (fabs(y[i - 1] - y[i]) > 0.5)
+			for (int k = i; k <= last; k++)
+				y[k] = NAN;
+}
+
+static double bend_of(const struct margins *m)
 {
 	double y[W], down[W];
-	for (int x = 0; x < W; x++) {
-		y[x] = down[x] = NAN;
-		for (int k = 0; k < H && isnan(y[x]); k++)
-			if (s->face[k * W + x] >= 0 && rig_is_globe(rig->part[rig->faces[s->face[k * W + x]][0]]))
-				y[x] = -step * k;
-		down[x] = -y[x];
-	}
+	memcpy(y, m->top, sizeof y);
+	end_at_steps(y, W);
+	for (int i = 0; i < W; i++)
+		down[i] = -y[i];
 	return fmin(below_hull(W, y), below_hull(W, down));
+}
+
+/* Share of a disc across the eye's axis, of that radius, mm of an eyeball of 12 mm, that lies under the lower lid. */
+static double under_lower(const struct margins *m, const struct pose *p, int side, double radius)
+{
+	const double unit = p->rig->globe[side].radius / 12;
+	double under = 0, all = 0;
+	for (int ring = 1; ring <= 12; ring++)
+		for (int k = 0; k < 60; k++) {
+			const double r = radius * ring / 12, a = 2 * M_PI * k / 60;
+			double target[3], head[3];
+			mat_vec(target, p->turn[side], (double[]){ unit * r * cos(a), unit * r * sin(a), unit * sqrt(144 - radius * radius) });
+			mat_vec(head, p->rig->head_from_target, target);
+			const int i = (int)fmin(fmax(lrint(head[0] / step) + W / 2, 0), W - 1);
+			under += head[1] < m->bottom[i] ? r : 0;
+			all += r;
+		}
+	return under / all;
+}
+
+/* Least distance from the turned eyeball of skin that looks outwards before it, on edges and faces. */
+static double faces_off(const struct pose *p, int side)
+{
+	enum { PARTS = 4 };
+	const struct rig *rig = p->rig;
+	double least = INFINITY;
+	for (int f = 0; f < rig->n_faces; f++) {
+		const int32_t *v = rig->faces[f];
+		double h[3][3], a[3], b[3], n[3], middle[3];
+		bool near = true;
+		for (int k = 0; k < 3; k++) {
+			into_head(h[k], rig, side, p->x[v[k]]);
+			near = near && rig->part[v[k]] == RIG_SKIN && rig->side[v[k]] == side && h[k][2] > 0.2 * rig->globe[side].radius && vec_norm(h[k]) < 1.4 * rig->globe[side].radius;
+		}
+		for (int c = 0; c < 3; c++) {
+			a[c] = h[1][c] - h[0][c];
+			b[c] = h[2][c] - h[0][c];
+			middle[c] = h[0][c] + h[1][c] + h[2][c];
+		}
+		vec_cross(n, a, b);
+		if (!near || !(vec_dot(n, middle) > 0.3 * vec_norm(n) * vec_norm(middle)))
+			continue;
+		for (int i = 0; i <= PARTS; i++)
+			for (int j = 0; i + j <= PARTS; j++) {
+				float at[3];
+				for (int c = 0; c < 3; c++)
+					at[c] = (p->x[v[0]][c] * (float)i + p->x[v[1]][c] * (float)j + p->x[v[2]][c] * (float)(PARTS - i - j)) / PARTS;
+				least = fmin(least, rig_globe_distance(rig, side, p->turn[side], at));
+			}
+	}
+	return least;
+}
+
+/* Lashes of an eye that skin crosses beyond their roots' first piece. */
+static int crossing(const struct hairs *h, const struct pose *p, const struct ray_scene *skin, int side)
+{
+	int n = 0;
+	for (int i = 0; i < h->n; i++) {
+		const struct hair *hair = &h->hair[i];
+		float at[HAIR_LASH_POINTS][3];
+		bool crossed = false;
+		if (hair->kind == HAIR_BROW || hair->side != side)
+			continue;
+		hair_place(at, h, hair, p->rig, p->x);
+		for (int k = 1; k + 1 < hair->n; k++) {
+			float dir[3] = { at[k + 1][0] - at[k][0], at[k + 1][1] - at[k][1], at[k + 1][2] - at[k][2] };
+			crossed = crossed || ray_blocked(skin, at[k], dir, 0, 1);
+		}
+		n += crossed;
+	}
+	return n;
 }
 
 static void picture(const char *folder, const char *name, const struct seen *s, const struct rig *rig)
@@ -116,52 +267,86 @@ static void picture(const char *folder, const char *name, const struct seen *s, 
 	fclose(f);
 }
 
+/* The skin alone, for rays. */
+static struct ray_scene *skin_of(const struct rig *rig)
+{
+	int n = 0;
+	int32_t (*faces)[3] = mem_new((size_t)rig->n_faces + 1, sizeof *faces);
+	for (int f = 0; f < rig->n_faces; f++)
+		if (rig->part[rig->faces[f][0]] == RIG_SKIN)
+			memcpy(faces[n++], rig->faces[f], sizeof *faces);
+	struct ray_scene *scene = ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
+	free(faces);
+	return scene;
+}
+
+static double vertices_off(const struct pose *p, int side)
+{
+	double least = INFINITY;
+	for (int i = 0; i < p->rig->n; i++)
+		if (!rig_is_globe(p->rig->part[i]) && p->rig->side[i] == side)
+			least = fmin(least, rig_globe_distance(p->rig, side, p->turn[side], p->x[i]));
+	return least;
+}
+
+static void measure(const struct pose *p, const struct ray_scene *skin, const struct hairs *hairs, int side, const char *at, const char *folder)
+{
+	struct seen *s = mem_new(1, sizeof *s);
+	struct margins m;
+	int n = 0;
+	look(s, p->rig, side, p->x);
+	for (int i = 0; i < W * H; i++)
+		n += s->face[i] >= 0 && rig_is_globe(p->rig->part[p->rig->faces[s->face[i]][0]]);
+	find_margins(&m, p, side);
+	printf("%s,%d,%.2f,%.3f,%.3f,%.3f,%d,%.3f,%.3f\n", at, side, n * step * step, bend_of(&m), vertices_off(p, side), faces_off(p, side), crossing(hairs, p, skin, side),
+	       under_lower(&m, p, side, 5.7), under_lower(&m, p, side, 2));
+	char name[80];
+	snprintf(name, sizeof name, "%s_%d", at, side);
+	if (folder)
+		picture(folder, name, s, p->rig);
+	free(s);
+}
+
 int main(int argc, char **argv)
 {
 	struct rig rig = { 0 };
+	struct hairs hairs;
 	struct err err = { 0 };
 	if (argc < 2 || !rig_load(&rig, argv[1], &err)) {
 		fprintf(stderr, "lids: %s\n", argc < 2 ? "lids RIG.npz [FOLDER]" : err.msg);
 		return 1;
 	}
+	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ 9, 0, 100, 0, 1.1 });
 	struct deform *deform = deform_new(&rig);
 	struct deform_near near = deform_near_of(&rig);
-	struct seen *s = mem_new(1, sizeof *s);
+	struct ray_scene *skin = skin_of(&rig), *all = ray_scene_new(rig.n, (const float(*)[3])rig.rest, rig.n_faces, (const int32_t(*)[3])rig.faces);
 	float (*x)[3] = mem_new((size_t)rig.n + 1, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs + 1, sizeof *c);
-	static const double across[] = { -20, 0, 20 }, up[] = { 15, 0, -15, -25 }, open[] = { 1, 0.5, 0 };
-	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm");
-	for (int o = 0; o < COUNT(open); o++)
-		for (int v = 0; v < COUNT(up); v++)
-			for (int h = 0; h < COUNT(across); h++) {
-				double e[RIG_COMPONENTS], turn[2][3][3];
-				drive_look(c, &rig, across[h], up[v], open[o]);
-				rig_components(e, &rig, c);
-				rig_globes_turned(turn, &rig, c);
-				deform_rest(deform, x, 0);
-				deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-				deform_clear(x, &rig, &near, (const double(*)[3][3])turn);
-				for (int side = 0; side < 2; side++) {
-					double least = INFINITY;
-					int n = 0;
-					for (int i = 0; i < rig.n; i++)
-						if (!rig_is_globe(rig.part[i]) && rig.side[i] == side)
-							least = fmin(least, rig_globe_distance(&rig, side, (const double(*)[3])turn[side], x[i]));
-					look(s, &rig, side, (const float(*)[3])x);
-					for (int i = 0; i < W * H; i++)
-						n += s->face[i] >= 0 && rig_is_globe(rig.part[rig.faces[s->face[i]][0]]);
-					printf("%g,%g,%g,%d,%.2f,%.2f,%.3f\n", across[h], up[v], open[o], side, n * step * step, bend_of(s, &rig), least);
-					char name[64];
-					snprintf(name, sizeof name, "%g_%g_%g_%d", across[h], up[v], open[o], side);
-					if (argc > 2)
-						picture(argv[2], name, s, &rig);
-				}
-			}
+	static const double across[] = { -20, -10, 0, 10, 20 }, up[] = { 15, 5, 0, -5, -15, -25 }, open[] = { 1, 0.5, 0 };
+	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low");
+	deform_rest(deform, x, 0);
+	for (int k = 0; k < COUNT(open) * COUNT(up) * COUNT(across); k++) {
+		const double h = across[k % COUNT(across)], v = up[k / COUNT(across) % COUNT(up)], o = open[k / (COUNT(across) * COUNT(up))];
+		double e[RIG_COMPONENTS], turn[2][3][3];
+		char at[64];
+		drive_look(c, &rig, h, v, o);
+		rig_components(e, &rig, c);
+		rig_globes_turned(turn, &rig, c);
+		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
+		deform_settle(x, &rig, &near, (const double(*)[3][3])turn);
+		ray_scene_move(skin, (const float(*)[3])x);
+		ray_scene_move(all, (const float(*)[3])x);
+		snprintf(at, sizeof at, "%g,%g,%g", h, v, o);
+		for (int side = 0; side < 2; side++)
+			measure(&(struct pose){ &rig, (const float(*)[3])x, all, (const double(*)[3][3])turn }, skin, &hairs, side, at, argc > 2 ? argv[2] : 0);
+	}
 	free(c);
 	free(x);
-	free(s);
+	ray_scene_free(skin);
+	ray_scene_free(all);
 	deform_near_free(&near);
 	deform_free(deform);
+	hairs_free(&hairs);
 	rig_free(&rig);
 	return fflush(stdout) != 0;
 }

@@ -118,6 +118,6 @@ void portrait_pose(struct portrait *p, const double *controls)
 	memcpy(p->target_from_globe, turn, sizeof turn);
 	portrait_fold_pose(p, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);
-	deform_clear(p->mesh.x, p->rig, &p->lids, (const double(*)[3][3])turn);
+	deform_settle(p->mesh.x, p->rig, &p->lids, (const double(*)[3][3])turn);
 	portrait_mesh_move(p);
 }

@@ -6,7 +6,7 @@
 #include "draw/face/mesh.h"
 #include "draw/face/portrait.h"
 #include "mesh/ray.h"
-#include "rig/deform/clear.h"
+#include "rig/deform/arc.h"
 
 struct portrait {
 	const struct rig *rig;

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/deform/arc.h"
 #include "rig/deform/terms.h"
 
 enum { ROUNDS = 4, SAMPLES = 4 };
@@ -28,6 +29,7 @@ struct deform_near deform_near_of(const struct rig *rig)
 		if (near && (out.moves[v[0]] || out.moves[v[1]] || out.moves[v[2]]))
 			out.face[out.n++] = f;
 	}
+	deform_arcs_prepare(&out, rig);
 	return out;
 }
 
@@ -35,6 +37,10 @@ void deform_near_free(struct deform_near *near)
 {
 	free(near->face);
 	free(near->moves);
+	free(near->upper);
+	free(near->lower);
+	free(near->rest);
+	free(near->own);
 	*near = (struct deform_near){ 0 };
 }
 

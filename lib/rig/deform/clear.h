@@ -7,9 +7,16 @@
 #include "rig/rig.h"
 
 /* Faces that can come near an eyeball, and which vertices deform_pose writes: others are not moved here either. deform_near_free. */
+struct deform_opening;
 struct deform_near {
 	int n, *face;
 	bool *moves;   // [rig.n]
+	float *upper;  // [rig.n] share in the upper lid, by the opening at rest: 0 below its middle, and where lids are shut at rest
+	float *lower;  // [rig.n] the same in the lower lid
+	float *own;    // [rig.n] mm: how far up from an arc the margin at rest has a vertex
+	double arch[2];       // of each eye: mean height of the upper margin at rest over the line between its corners, mm
+	struct deform_opening *rest;  // [2] each eye's opening at rest
+	double within[2][2];  // of each eye: heights over the eyeball's centre between which its opening is looked for, mm
 };
 struct deform_near deform_near_of(const struct rig *rig);
 void deform_near_free(struct deform_near *near);

@@ -82,7 +82,7 @@ void poser_free(struct poser *p)
 static void pose(struct poser *p, const double e[RIG_COMPONENTS])
 {
 	deform_pose(p->deform, e, (const double(*)[3][3])p->turn, p->x, 0);
-	deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])p->turn);
+	deform_settle(p->x, p->rig, &p->near, (const double(*)[3][3])p->turn);
 	take_normals(p);
 }
 

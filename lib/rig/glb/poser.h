@@ -1,7 +1,7 @@
 /* poser: a rig and its hairs in one pose after the other, as displacements from rest, mm. For the files of this folder. */
 #ifndef RIG_GLB_POSER_H
 #define RIG_GLB_POSER_H
-#include "rig/deform/clear.h"
+#include "rig/deform/arc.h"
 #include "rig/deform/deform.h"
 #include "rig/glb/glb.h"
 

@@ -1,6 +1,6 @@
 /* Targets of single poses: what each is, that they add up, and that a blink goes round the eye. */
 #include "math/vec.h"
-#include "rig/deform/clear.h"
+#include "rig/deform/arc.h"
 #include "rig/glb/bake.h"
 #include "rig/glb/halves.h"
 #include "tests/lib/scenes/driven.h"
@@ -27,7 +27,7 @@ static void expressions_have_targets(void **state)
 			rig_globes_turned(turn, &m->on.rig, c);
 			deform_rest(deform, x[on], 0);
 			deform_pose(deform, e, (const double(*)[3][3])turn, x[on], 0);
-			deform_clear(x[on], &m->on.rig, &near, (const double(*)[3][3])turn);
+			deform_settle(x[on], &m->on.rig, &near, (const double(*)[3][3])turn);
 		}
 		assert_string_equal(b.pose_name[GLB_POSES + k], m->conf.expression[k]);
 		for (int i = 0; i < b.n; i++)
@@ -70,7 +70,7 @@ static void named_poses_add_up(void **state)
 			rig_globes_turned(turn, &m->on.rig, c);
 			deform_rest(deform, x, 0);
 			deform_pose(deform, !pass && k == 0 ? m->on.rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
-			deform_clear(x, &m->on.rig, &near, (const double(*)[3][3])turn);
+			deform_settle(x, &m->on.rig, &near, (const double(*)[3][3])turn);
 			if (!pass)
 				memcpy(from, x, (size_t)m->on.rig.n * sizeof *from);
 		}
@@ -192,7 +192,7 @@ static void blinks_go_round_the_eye(void **state)
 				e[k] = (1 - w) * rig->rest_e[k] + w * e[k];
 			deform_rest(deform, pose, 0);
 			deform_pose(deform, e, (const double(*)[3][3])turn, pose, 0);
-			deform_clear(pose, rig, &near, (const double(*)[3][3])turn);
+			deform_settle(pose, rig, &near, (const double(*)[3][3])turn);
 			for (int i = 0; i < b.n; i++) {
 				if (rig->side[b.vertex[i]] != eye)
 					continue;

@@ -1,0 +1,379 @@
+#include "rig/deform/arc.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/vec.h"
+#include "rig/deform/deform.h"
+
+enum { COLUMNS = DEFORM_COLUMNS, ROUNDS = 4, LOWERED = 3, LEAST = 20 };  // of arcs, of lower lids; columns of what is an opening
+static const double before = 0.2;               // of a globe's radius: skin further back lines the socket
+static const double reach = 1.2;                // of it: columns to either side
+static const double lid_radii = 0.5;            // of it: skin further from the eyeball at rest is no lid
+static const double drawn_mm = 0.4;             // of an eyeball of 12 mm: a margin that leaves an arc by more at rest was drawn so, or is as coarse
+static const double iris_mm = 10.6;             // the same: from the centre to the middle of the limbus
+static const double lowered_mm = 3;             // the same: a lower lid goes down by no more than that beyond what was learnt
+static const double open_mm[] = { 1, 4 };       // the same: lids less apart than the first are shutting, from the second they are not
+static const double rest_mm = 6;                // of an eyeball of 12 mm: heights between which the opening at rest has its middle
+static const double shut_mm[] = { 0.2, 1 };     // of an eyeball of 12 mm: the opening up to which lids are left; from which they are not
+static const double goes_along_mm[] = { 1.5, 8 }; // the same: skin above the margin goes with it up to the first, not at all from the second
+static const double step_mm = 0.4;              // the same: from one column to the next, a tenth of a millimetre, a margin goes up or down by less
+static const double lid_share[] = { 0.1, 0.6 };  // of the way from the opening's middle to its end: where at rest a lid begins
+
+static double rising(double x, double from, double to)
+{
+	const double t = fmin(fmax((x - from) / (to - from), 0), 1);
+	return t * t * (3 - 2 * t);
+}
+
+/* About the eyeball's centre, along the head's axes. */
+static void in_head(double out[3], const struct rig *rig, int side, const float x[3])
+{
+	double d[3];
+	for (int c = 0; c < 3; c++)
+		d[c] = x[c] - rig->globe[side].center[c];
+	mat_vec(out, rig->head_from_target, d);
+}
+
+/* What a face covers of a column. */
+struct cover {
+	int column;
+	double low, high;
+};
+
+struct covers {
+	int n, room;
+	struct cover *at;
+};
+
+static void add_face(struct covers *to, const double p[3][3], double step)
+{
+	const double least = fmin(fmin(p[0][0], p[1][0]), p[2][0]) / step, most = fmax(fmax(p[0][0], p[1][0]), p[2][0]) / step;
+	const int from = (int)fmax(ceil(least) + COLUMNS / 2, 0), to_column = (int)fmin(floor(most) + COLUMNS / 2, COLUMNS - 1);
+	for (int i = from; i <= to_column; i++) {
+		const double x = step * (i - COLUMNS / 2);
+		struct cover c = { i, INFINITY, -INFINITY };
+		for (int k = 0; k < 3; k++) {
+			const double *a = p[k], *b = p[(k + 1) % 3];
+			if ((a[0] <= x) == (b[0] <= x))
+				continue;
+			const double y = a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+			c.low = fmin(c.low, y);
+			c.high = fmax(c.high, y);
+		}
+		if (!(c.high >= c.low))
+			continue;
+		if (to->n == to->room)
+			to->at = mem_grow(to->at, (size_t)(to->room = 2 * to->room + 1024), sizeof *to->at);
+		to->at[to->n++] = c;
+	}
+}
+
+static int by_place(const void *a, const void *b)
+{
+	const struct cover *p = a, *q = b;
+	return p->column != q->column ? p->column - q->column : (p->low > q->low) - (p->low < q->low);
+}
+
+/* The longest gap between covers of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
+static void take_gaps(struct deform_opening *o, const struct covers *c, double radius, const double within[2])
+{
+	for (int i = 0; i < COLUMNS; i++)
+		o->top[i] = o->bottom[i] = 0;
+	for (int k = 0; k < c->n;) {
+		const int column = c->at[k].column;
+		const double x = o->step * (column - COLUMNS / 2);
+		double high = c->at[k].high;
+		for (; k < c->n && c->at[k].column == column; k++) {
+			const double middle = 0.5 * (high + c->at[k].low);
+			if (c->at[k].low - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
+				o->bottom[column] = high;
+				o->top[column] = c->at[k].low;
+			}
+			high = fmax(high, c->at[k].high);
+		}
+	}
+}
+
+/* The outer eighths end where the upper margin steps: what is beyond lies behind it, in a corner. */
+static void trim(struct deform_opening *o, int middle, double unit)
+{
+	const int eighth = (o->last - o->first) / 8, first = o->first, last = o->last;
+	for (int i = first; i < first + eighth && i < middle; i++)
+		if (fabs(o->top[i + 1] - o->top[i]) > step_mm * unit)
+			o->first = i + 1;
+	for (int i = last; i > last - eighth && i > middle; i--)
+		if (fabs(o->top[i - 1] - o->top[i]) > step_mm * unit)
+			o->last = i - 1;
+}
+
+void deform_open(struct deform_opening *o, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2])
+{
+	const double radius = rig->globe[side].radius, least = 1e-3 * radius;
+	struct covers c = { 0 };
+	int widest = 0;
+	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
+	for (int k = 0; k < near->n; k++) {
+		const int32_t *v = rig->faces[near->face[k]];
+		double p[3][3];
+		bool in_front = rig->side[v[0]] == side;
+		for (int i = 0; i < 3 && in_front; i++) {
+			in_head(p[i], rig, side, x[v[i]]);
+			in_front = p[i][2] > before * radius;
+		}
+		if (in_front)
+			add_face(&c, (const double(*)[3])p, o->step);
+	}
+	qsort(c.at, (size_t)c.n, sizeof *c.at, by_place);
+	take_gaps(o, &c, radius, within);
+	free(c.at);
+	for (int i = 0; i < COLUMNS; i++)
+		widest = o->top[i] - o->bottom[i] > o->top[widest] - o->bottom[widest] ? i : widest;
+	o->first = widest;
+	o->last = o->top[widest] - o->bottom[widest] > least ? widest : widest - 1;
+	const int middle = widest;
+	while (o->last >= o->first && o->first > 0 && o->top[o->first - 1] - o->bottom[o->first - 1] > least)
+		o->first--;
+	while (o->last >= o->first && o->last + 1 < COLUMNS && o->top[o->last + 1] - o->bottom[o->last + 1] > least)
+		o->last++;
+	trim(o, middle, radius / 12);
+}
+
+double deform_hull(double *hull, int n, const double *y)
+{
+	double worst = 0;
+	for (int a = 0, b; a < n; a = b) {
+		hull[a] = y[a];
+		b = a + 1;
+		for (int i = a + 2; i < n; i++)  // the steepest way on
+			b = (y[i] - y[a]) * (b - a) >= (y[b] - y[a]) * (i - a) ? i : b;
+		for (int i = a + 1; i < b && b < n; i++) {
+			hull[i] = y[a] + (y[b] - y[a]) * (i - a) / (b - a);
+			worst = fmax(worst, hull[i] - y[i]);
+		}
+	}
+	return worst;
+}
+
+/* How far up each open column's margin has to go: by[column], and [COLUMNS + 1] the sums of those before. */
+struct lift {
+	double by[COLUMNS], sum[COLUMNS + 1];
+};
+
+/* Returns the margin's mean height over the line between its ends, mm. */
+static double take_lift(struct lift *l, const struct deform_opening *o, double share)
+{
+	const int n = o->last - o->first + 1;
+	double y[COLUMNS], hull[COLUMNS], mean = 0, full = 0;
+	*l = (struct lift){ 0 };
+	for (int i = 0; i < n; i++) {
+		y[i] = o->top[o->first + i] - o->top[o->first] - (o->top[o->last] - o->top[o->first]) * i / (n - 1);
+		mean += y[i];
+	}
+	const double sign = mean < 0 ? -1 : 1;
+	for (int i = 0; i < n; i++)
+		y[i] *= sign;
+	deform_hull(hull, n, y);
+	for (int i = 0; i < n; i++)
+		full += hull[i];
+	for (int i = 0; i < n && full > 0; i++)
+		l->by[o->first + i] = share * sign * (hull[i] * sign * mean / full - y[i]);
+	for (int i = 0; i < COLUMNS; i++)
+		l->sum[i + 1] = l->sum[i] + l->by[i];
+	return mean / n;
+}
+
+static double lift_over(const struct lift *l, double from, double to)
+{
+	const double a = fmin(fmax(from, 0), COLUMNS - 1), b = fmin(fmax(to, 0), COLUMNS - 1);
+	const int i = (int)a, j = (int)b;
+	return b > a ? (l->sum[j] + (b - j) * l->by[j] - l->sum[i] - (a - i) * l->by[i]) / (b - a) : 0;
+}
+
+/* Along the head's y, as far from the eyeball's surface as before. */
+static void move(float x[3], const struct rig *rig, int side, const double target_from_globe[3][3], double up)
+{
+	const double was = rig_globe_distance(rig, side, target_from_globe, x);
+	double d[3], far;
+	for (int c = 0; c < 3; c++) {
+		x[c] += (float)(up * rig->head_from_target[1][c]);
+		d[c] = x[c] - rig->globe[side].center[c];
+	}
+	const double lack = was - rig_globe_distance(rig, side, target_from_globe, x);
+	far = fmax(vec_norm(d), 1e-6);
+	for (int c = 0; c < 3; c++)
+		x[c] += (float)(lack * d[c] / far);
+}
+
+/* The lids of an eye, and where its opening is looked for. */
+static void find_lids(struct deform_near *near, const struct rig *rig, int side)
+{
+	const double unit = rig->globe[side].radius / 12;
+	double *within = near->within[side];
+	deform_open(&near->rest[side], rig, near, side, (const float(*)[3])rig->rest, (double[]){ -rest_mm * unit, rest_mm * unit });
+	const struct deform_opening o = near->rest[side];
+	within[0] = within[1] = 0;
+	for (int i = o.first; i <= o.last; i++) {
+		within[0] = fmin(within[0], o.bottom[i] - unit);
+		within[1] = fmax(within[1], o.top[i] + unit);
+	}
+	for (int v = 0; v < rig->n && o.last - o.first >= LEAST; v++) {
+		double p[3];
+		if (!near->moves[v] || rig_is_globe(rig->part[v]) || rig->side[v] != side || rig->gap[v] > lid_radii * rig->globe[side].radius)
+			continue;
+		in_head(p, rig, side, rig->rest[v]);
+		const int i = (int)fmin(fmax(p[0] / o.step + COLUMNS / 2, o.first), o.last);
+		const double middle = 0.5 * (o.top[i] + o.bottom[i]), over = (p[1] - middle) / fmax(o.top[i] - middle, o.step);
+		const double lid = 1 - rising(rig->gap[v] / rig->globe[side].radius, 0.6 * lid_radii, lid_radii);
+		near->upper[v] = (float)(lid * rising(over, lid_share[0], lid_share[1]));
+		near->lower[v] = (float)(lid * rising(-over, lid_share[0], lid_share[1]));
+	}
+}
+
+/* One round: how far margins are from arcs, and that much further. arch: out, the margin's mean height before. False: there is no opening, arch 0. */
+static bool nearer(double *arch, float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
+{
+	struct deform_opening now;
+	struct lift lift;
+	const double unit = rig->globe[side].radius / 12;
+	double most = 0;
+	*arch = 0;
+	deform_open(&now, rig, near, side, (const float(*)[3])x, near->within[side]);
+	for (int i = now.first; i <= now.last; i++)
+		most = fmax(most, now.top[i] - now.bottom[i]);
+	const double share = rising(most / unit, shut_mm[0], shut_mm[1]);
+	if (now.last - now.first < LEAST || !(share > 0))
+		return false;
+	*arch = share * take_lift(&lift, &now, share);
+	for (int i = 0; i < rig->n; i++) {
+		double p[3];
+		if (!(near->upper[i] > 0) || rig->side[i] != side)
+			continue;
+		in_head(p, rig, side, x[i]);
+		const double column = p[0] / now.step + COLUMNS / 2;
+		if (!(p[2] > 0) || column < now.first || column > now.last)
+			continue;
+		const double above = (p[1] - now.top[(int)lrint(column)]) / unit, spread = fmax((above - 1) * unit / now.step, 0.5);
+		const double with = (double)near->upper[i] * (1 - rising(above, goes_along_mm[0], goes_along_mm[1]));
+		if (with > 0)
+			move(x[i], rig, side, target_from_globe, with * lift_over(&lift, column - spread, column + spread));
+	}
+	return true;
+}
+
+void deform_arcs(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+{
+	for (int side = 0; side < 2; side++) {
+		double arch = 0, later;
+		bool open = nearer(&arch, x, rig, near, side, target_from_globe[side]);
+		for (int round = 1; round < ROUNDS && open; round++)
+			open = nearer(&later, x, rig, near, side, target_from_globe[side]);
+		const double kept = near->arch[side] > 0 ? fmin(fmax(arch / near->arch[side], -1), 1) : 0;
+		for (int i = 0; i < rig->n && near->own; i++)
+			if (near->upper[i] > 0 && rig->side[i] == side)
+				move(x[i], rig, side, target_from_globe[side], kept * (double)near->own[i]);
+	}
+}
+
+static double widest(const struct deform_near *near, const struct rig *rig, int side)
+{
+	double most = 0;
+	for (int i = 0; i < rig->n; i++)
+		if (rig->side[i] == side && near->upper[i] > 0)
+			most = fmax(most, fabs((double)near->own[i]));
+	return most;
+}
+
+/* At rest, what lies in an eyeball being put before it as in every pose. */
+static void take_own(struct deform_near *near, const struct rig *rig)
+{
+	float (*x)[3] = mem_new((size_t)rig->n + 1, sizeof *x), *own = mem_new((size_t)rig->n + 1, sizeof *own);
+	struct deform *deform = deform_new(rig);
+	double turn[2][3][3], later;
+	for (int side = 0; side < 2; side++)
+		rig_globe_rotation(turn[side], rig, (double[]){ 0, 0, 0 });
+	deform_rest(deform, x, 0);
+	deform_pose(deform, rig->rest_e, (const double(*)[3][3])turn, x, 0);
+	for (int i = 0; i < 3 * rig->n; i++)
+		own[i / 3] += (float)(rig->head_from_target[1][i % 3] * x[i / 3][i % 3]);
+	for (int side = 0; side < 2; side++) {
+		bool open = nearer(&near->arch[side], x, rig, near, side, (const double(*)[3])turn[side]);
+		for (int round = 1; round < ROUNDS && open; round++)
+			open = nearer(&later, x, rig, near, side, (const double(*)[3])turn[side]);
+	}
+	for (int i = 0; i < 3 * rig->n; i++)
+		own[i / 3] -= (float)(rig->head_from_target[1][i % 3] * x[i / 3][i % 3]);
+	near->own = own;
+	for (int side = 0; side < 2; side++)
+		if (widest(near, rig, side) > drawn_mm * rig->globe[side].radius / 12)
+			for (int i = 0; i < rig->n; i++)
+				if (rig->side[i] == side)
+					near->upper[i] = near->lower[i] = 0;
+	deform_free(deform);
+	free(x);
+}
+
+void deform_arcs_prepare(struct deform_near *near, const struct rig *rig)
+{
+	near->upper = mem_new((size_t)rig->n + 1, sizeof *near->upper);
+	near->lower = mem_new((size_t)rig->n + 1, sizeof *near->lower);
+	near->rest = mem_new(2, sizeof *near->rest);
+	for (int side = 0; side < 2; side++)
+		find_lids(near, rig, side);
+	take_own(near, rig);
+}
+
+/* Most along the middle of a lid, 0 at its ends. */
+static double along_lid(double t)
+{
+	const double off = (2 * t - 1) * (2 * t - 1);
+	return 1 - off * off;
+}
+
+/* Lowers the lower lid of an eye that looks down, to height *to before the iris; NAN: out. */
+static void retract(double *to, float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
+{
+	const struct deform_opening *rest = &near->rest[side];
+	const double unit = rig->globe[side].radius / 12;
+	double axis[3], eye[3];
+	struct deform_opening now;
+	mat_vec(axis, target_from_globe, (double[]){ 0, 0, iris_mm * unit });
+	mat_vec(eye, rig->head_from_target, axis);
+	if (!(eye[1] < 0) || rest->last - rest->first < LEAST)
+		return;
+	deform_open(&now, rig, near, side, (const float(*)[3])x, near->within[side]);
+	const int at = (int)fmin(fmax(lrint(eye[0] / rest->step) + COLUMNS / 2, rest->first), rest->last);
+	if (now.last - now.first < LEAST || at <= now.first || at >= now.last)
+		return;
+	const double span = now.last - now.first, peak = fmax(along_lid((at - now.first) / span), 0.3), most = lowered_mm * unit;
+	if (isnan(*to))
+		*to = now.bottom[at] - most * tanh(fmax(now.bottom[at] - eye[1] - rest->bottom[at], 0) / most) * rising((now.top[at] - now.bottom[at]) / unit, open_mm[0], open_mm[1]);
+	const double lack = now.bottom[at] - *to;
+	for (int i = 0; i < rig->n && lack > 0; i++) {
+		double p[3];
+		if (!(near->lower[i] > 0) || rig->side[i] != side)
+			continue;
+		in_head(p, rig, side, x[i]);
+		const double t = fmin(fmax((p[0] / now.step + COLUMNS / 2 - now.first) / span, 0), 1);
+		const int column = now.first + (int)lrint(t * span);
+		const double below = (now.bottom[column] - p[1]) / unit, with = (double)near->lower[i] * (1 - rising(below, goes_along_mm[0], goes_along_mm[1] + lack / unit));
+		if (p[2] > 0)
+			move(x[i], rig, side, target_from_globe, -with * lack * along_lid(t) / peak);
+	}
+}
+
+void deform_lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+{
+	double to[2] = { NAN, NAN };
+	for (int k = 0; k < 2 * LOWERED; k++)
+		retract(&to[k % 2], x, rig, near, k % 2, target_from_globe[k % 2]);
+}
+
+void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+{
+	deform_lower(x, rig, near, target_from_globe);
+	deform_arcs(x, rig, near, target_from_globe);
+	deform_clear(x, rig, near, target_from_globe);
+}
