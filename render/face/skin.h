@@ -8,6 +8,10 @@
 #include "rig/glb/glb.h"
 #include "draw/face/portrait.h"
 
+/* Where the skin of a character without textures comes from. */
+enum skin_source { SKIN_AUTO, SKIN_VIDEO, SKIN_PLAIN };
+extern const char *const skin_sources[];
+
 struct skin_conf {
 	struct portrait_conf portrait;
 	double gaze[2], aperture;            // typed by the user: degrees; times what the eye is open at that gaze
@@ -19,6 +23,7 @@ struct skin_conf {
 	struct glb_conf glb;
 	double iris_rgb[3];                  // of an invented eye, linear
 	int texture_px;
+	int source, film_px;                 // enum skin_source; px of the textures made of the film
 	struct video_conf video;
 };
 
@@ -38,6 +43,8 @@ struct skin_conf {
 	OPT_INT("skin_lights", &(c)->portrait.lights, 1, 64, "", "directions that stand for the environment on skin; a power of 2"), \
 	OPT_INT("skin_subdivide", &(c)->portrait.subdivide, 0, 4, "", "times the triangles round the eyes are cut in four"), \
 	OPT_INT("skin_samples", &(c)->portrait.samples, 1, 8, "", "rays across a pixel of skin where it shows more than one thing"), \
+	OPT_CHOICE("skin", &(c)->source, skin_sources, "of a character without textures: the person's in the video where that shows it, or of one colour"), \
+	OPT_INT("skin_px", &(c)->film_px, 128, 8192, "px", "width of the textures that are made of the video"), \
 	OPT_REALS("skin_rgb", (c)->portrait.skin_rgb, 3, 0, 1, "", "colour of the skin"), \
 	OPT_REAL("skin_texture", &(c)->portrait.texture, 0, 3, "", "strength of pores and blotches"), \
 	OPT_REAL("skin_scatter_mm", &(c)->portrait.scatter_mm, 0, 20, "mm", "how far red light travels in skin"), \
@@ -90,7 +97,8 @@ struct skin_target {
 	struct look look;
 	struct dress *dress;              // its textures, with the portrait; null: none
 	struct portrait *portrait;        // of the stills; null until needed
-	const char *in[29];               // inputs that all its pictures have in common
+	const char *film, *subject;       // the video and the mesh that its skin is made of; null: of neither
+	const char *in[40];               // inputs that all its pictures have in common
 	int n_in;
 };
 
@@ -117,6 +125,12 @@ bool skin_clips(struct skin_job *job, struct skin_target *target, struct err *er
 
 /* skin_glb.c: NAME.glb, driven by csv, with the eyes that its pictures show. */
 bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv, struct err *err);
+
+/* skin_film.c. skin_film: finds what a character without a look can be given the skin of the person from, and puts it into its inputs.
+ * skin_of_film: makes look and dress of it; where it cannot be, says so and leaves them empty. Returns false, err set, where render.skin asks
+ * for it all the same. */
+void skin_film(struct skin_target *target, struct stage *stage, const struct skin_conf *conf);
+bool skin_of_film(struct skin_job *job, struct skin_target *target, struct err *err);
 
 /* skin_open.c: loads the rig and makes the portrait, once; skin_free. */
 bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);

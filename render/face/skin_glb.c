@@ -47,7 +47,7 @@ bool skin_glb(struct skin_job *job, struct skin_target *t, const char *csv, stru
 		over = fmax(over, skin_over_globe(job->eyes[s], &t->rig.globe[s]));
 	}
 	conf.over_mm = fmax(over, 0);
-	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, eye, t->name, t->look_path ? &t->look : 0, &conf,
+	bool ok = glb_write(stage_path(job->stage, "%s", rel), &report, &t->rig, &drive, eye, t->name, t->dress ? &t->look : 0, &conf,
 	                    stage_made_by(job->stage, n, in), err)
 	          && skin_made(job, rel, n, in, err);
 	if (ok) {

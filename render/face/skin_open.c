@@ -101,7 +101,7 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 	if (t->rig.n_inputs != job->model.n_inputs)
 		return err_set(err, "%s: %d inputs, but work/skin/model.json has %d: run extrapolate again", t->rig_path, t->rig.n_inputs,
 		               job->model.n_inputs);
-	if (t->look_path && !dress(job, t, err))
+	if (t->look_path ? !dress(job, t, err) : t->film && !skin_of_film(job, t, err))
 		return false;
 	struct portrait_conf conf = job->conf->portrait;
 	conf.dress = t->dress;

@@ -137,11 +137,12 @@ static void find_eyes(struct parts *p)
 	}
 }
 
-static bool find_character(struct parts *p, struct stage *stage, struct err *err)
+static bool find_character(struct parts *p, struct stage *stage, const struct skin_conf *conf, struct err *err)
 {
 	static const char *const driven[] = { "work/skin/gaze.csv", "work/skin/animation.csv", "work/skin/wrinkles.json", "work/skin/wrinkles.exr" };
 	if (!skin_first(&p->target, stage, err))
 		return false;
+	skin_film(&p->target, stage, conf);
 	for (int i = 0; i < p->target.n_in; i++)
 		p->in[p->n_in++] = p->target.in[i];
 	for (int i = 0; i < COUNT(driven) && p->target.name; i++)
@@ -270,9 +271,9 @@ static bool make(struct parts *p, struct skin_job *skin, struct err *err)
 bool viewer_make(struct skin_job *skin, struct err *err)
 {
 	struct jobs *eyes = skin->photographed;
-	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + 8, sizeof *p.in) };
+	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + COUNT(((struct skin_target *)0)->in) + 8, sizeof *p.in) };
 	find_eyes(&p);
-	bool ok = find_character(&p, skin->stage, err);
+	bool ok = find_character(&p, skin->stage, skin->conf, err);
 	if (ok && p.n_in && !stage_fresh(skin->stage, out, p.n_in, p.in))
 		ok = make(&p, skin, err);
 	free(p.in);
