@@ -8,7 +8,7 @@
 #include "math/stats.h"
 
 static const double finest_mm = 0.15, far_radii = 2.3;  // of an eyeball: grain is measured off its lids
-static const double cells = 2.4;                        // mm of a cell of the noise in those of its band
+static const double cells = 1.7;                        // mm of a cell of the noise in those of its band: their waves are as long
 
 /* Value noise in three dimensions: skin has no seams then, and no stretches. */
 static float corner(int x, int y, int z, uint32_t seed)
@@ -119,9 +119,9 @@ double complexion_grain_at(const struct complexion_grain *g, const float x[3], d
 {
 	double sum = 0, all = 1e-12;
 	for (int b = 0; b < BANDS; b++) {
-		const double shows = fmin(fmax(2 * g->mm[b] / texel - 1, 0), 1);
+		const double cell = cells * g->mm[b], shows = fmin(fmax(2 - texel / (0.6 * cell), 0), 1);  // not what is finer than texels
 		if (shows > 0 && g->rms[b] > 0)
-			sum += shows * g->rms[b] / noise_rms * (double)noise(x, 1 / (cells * g->mm[b]), (uint32_t)b + 1);
+			sum += shows * g->rms[b] / noise_rms * (double)noise(x, 1 / cell, (uint32_t)b + 1);
 		all += g->rms[b] * g->rms[b];
 	}
 	// A normal variate's rank, and what of the skin seen has that rank.
