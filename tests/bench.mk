@@ -17,8 +17,13 @@ bench-batch: build $B/tests/tools/variant
 
 # The exported eye in other programs: beside the others, since it needs Blender, and minutes.
 .PHONY: bench-look
-bench-look: build $B/tests/tools/eye_compare
+bench-look: build $B/tests/tools/eye_compare $B/tests/tools/look_sheet
 	@B=$B BIN=$(BIN) SAMPLES=$(or $(SAMPLES),$(if $(QUICK),16,64)) tests/bench/look.sh
+
+# A character as large as a scan: minutes.
+.PHONY: bench-import
+bench-import: build $B/tests/tools/dressed $B/tests/tools/import
+	@B=$B BIN=$(BIN) $(if $(QUICK),FACES=100000 PX=2048) tests/bench/import.sh
 
 # Films of people, of which the repository has none: FILMS=FOLDER.
 .PHONY: bench-track_real

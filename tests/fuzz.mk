@@ -4,7 +4,7 @@ CAPTURE_FUZZERS := $(CAPTURE_STAGES:%=build-fuzz/fuzz_capture_%)
 CAPTURE_OBJ := $(patsubst %.c,build-fuzz/%.o,$(wildcard tests/fuzz/capture/*.c))
 # What surrounds a stage, which run.c replaces; of the bridges those that take strangers' bytes are built anew, too.
 CAPTURE_WRAPS := exit _exit opt_resolve guard_enter call_program_path plan_stage_program say_error run_exists run_programs run_program
-BRIDGE_FUZZ_OBJ := $(filter-out build-fuzz/lib/bridge/om_mesh.o,$(BRIDGE_SRC:%.cc=build-fuzz/%.o))
+BRIDGE_FUZZ_OBJ := $(filter-out build-fuzz/lib/bridge/om_mesh.o build-fuzz/lib/bridge/ai_scene.o,$(BRIDGE_SRC:%.cc=build-fuzz/%.o))
 build-fuzz/%/main.o: FUZZ_FLAGS += -Dmain=stage_main
 build-fuzz/render/page/embed.o: $B/render/page/embed.o
 build-fuzz/bridge.a: $(BRIDGE_FUZZ_OBJ)

@@ -1,6 +1,7 @@
 /* seeds: small valid files of every kind that the fuzz targets begin from.
  *
- *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/front/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/..., DIR/json/...
+ *     seeds DIR        DIR/photo/..., DIR/exr/..., DIR/conf/..., DIR/front/..., DIR/fit/..., DIR/mesh/..., DIR/npy/..., DIR/csv/..., DIR/json/...,
+ *                      DIR/character/...
  */
 #include <math.h>
 #include <stdio.h>
@@ -169,11 +170,39 @@ static void objects(const char *dir)
 	free(all);
 }
 
+/* The letter before each says what it is (tests/fuzz/fuzz_character.c). */
+static void characters(const char *dir)
+{
+	struct pixels p = pattern(24, 20, 4);
+	struct blob png = encode_png(&p, 8), jpeg = encode_jpeg(&p, 0), of[2] = { png, jpeg };
+	for (int i = 0; i < 2; i++) {
+		char *all = mem_array(of[i].size + 1, 1);
+		all[0] = 't';
+		memcpy(all + 1, of[i].data, of[i].size);
+		put(dir, i ? "character/texture.jpg" : "character/texture.png", all, of[i].size + 1);
+		free(all);
+		free(of[i].data);
+	}
+	pixels_free(&p);
+	put_text(dir, "character/quad.obj", "ov 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/2 3/1 4/2\n");
+	put_text(dir, "character/three.gltf", "g{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2]}],"
+	                                      "\"materials\":[{\"name\":\"m\",\"alphaMode\":\"MASK\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0,"
+	                                      "\"targets\":[{\"POSITION\":0}]}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+	                                      "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+	                                      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}");
+	put_text(dir, "character/words.fbx", "f; FBX 7.4.0 project file\nFBXHeaderExtension:  {\nFBXVersion: 7400\n}\nObjects:  {\nGeometry: 1, \"Geometry::q\", \"Mesh\" {\nVertices: *9 {\n"
+	                                     "a: 0,0,0,1,0,0,0,1,0\n}\nPolygonVertexIndex: *3 {\na: 0,1,-3\n}\n}\nModel: 2, \"Model::q\", \"Mesh\" {\n}\n}\nConnections:  {\nC: \"OO\",2,0\nC: \"OO\",1,2\n}\n");
+	put_text(dir, "character/scene", "s2Two parts of one node, of many vertices: whatever numbers these letters are, and those that follow them 0123456789");
+	char none[1 + 16 * 40] = "r";
+	put(dir, "character/result", none, sizeof none);
+}
+
 int main(int argc, char **argv)
 {
 	if (argc != 2)
 		return 2;
 	const char *dir = argv[1];
+	characters(dir);
 	photos(dir);
 	maps(dir);
 	models(dir);
