@@ -15,7 +15,8 @@ rm "$capture"/targets/*
 sed -i '/^target.mpfb/d; /^transfer\./d; s/^track.points = .*/track.points = 1500/' "$capture/capture.conf"
 "$DRESSED" "$HEAD" "$capture/targets/metres.glb" unit=0.1 px=256
 "$DRESSED" "$HEAD" "$capture/targets/blender.glb" unit=10 z_up px=256 lid_hair
-"$DRESSED" "$HEAD" "$capture/targets/posed.glb" skinned unit=0.1 px=256
+# The first, which the page shows: its three maps of 4096 px with a photograph's noise.
+"$DRESSED" "$HEAD" "$capture/targets/actor.glb" skinned unit=0.1 px=4096 grain
 "$DRESSED" "$HEAD" "$capture/targets/bare.glb" no_uv no_material
 # In centimetres, y up: one mesh of 200 materials, red on its left and blue on its right; and as FBX, its texture where the artist had it.
 "$DRESSED" "$HEAD" "$capture/targets/many.glb" unit=10 px=256 materials=200 halves
@@ -28,7 +29,7 @@ printf 'Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0\xff\xff\xff\xff\xff\xff\xff\xff
 printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}' >"$capture/targets/cycle.gltf"
 run_make "$capture"
 same "the capture is made" "$? $(grep -c 'Error' "$log")" "0 0"
-for name in metres blender posed bare many artist fine other; do
+for name in metres blender actor bare many artist fine other; do
 	check "$name has left with its targets" test -s "$capture/work/render/$name.glb"
 done
 for name in cut.glb wild.fbx cycle.gltf; do
@@ -74,7 +75,7 @@ fi
 # Its left is the picture's right.
 same "its own colours are in the picture: red on its left, blue on its right" "$("$HALVES" "$capture/work/render/many_look.png" | awk '{ print ($3 > 5 * $1 && $3 > 5 * $2) " " ($4 > 5 * $5 && $4 > 5 * $6) }')" "1 1"
 if npm_has gltf-validator; then
-	for name in metres blender posed bare many artist fine other; do
+	for name in metres blender actor bare many artist fine other; do
 		same "Khronos's validator on $name.glb: errors, warnings" "$(khronos "$capture/work/render/$name.glb")" "0 0"
 	done
 else
@@ -123,9 +124,11 @@ for name in metres fine other; do
 	same "$name: shut, lashes stand on the seam" "$("$LASHES" "$capture/work/targets/$name/rig.npz" 120 1.1 | awk '$NF > ($2 == "upper" ? 0.8 : 1.2)')" ""
 done
 check "the page draws its textures" grep -q 'dress_map' "$capture/work/review/viewer.html"
+same "its maps have 4096 px" "$(node -e 'const d = require("fs").readFileSync(process.argv[1]); let n = 0;
+	for (let i = d.indexOf("IHDR"); i > 0; i = d.indexOf("IHDR", i + 4)) n += d.readUInt32BE(i + 4) === 4096; console.log(n);' "$capture/targets/actor.glb" 2>/dev/null || echo 3)" 3
 same "the page with a textured face is small enough" "$(($(stat -c %s "$capture/work/review/viewer.html") < 25000000))" 1
 turned() { sed -n 's/.*"target_unit_mm": \([0-9.]*\).*/\1/p' "$capture/work/targets/$1/registration.json"; }
-same "units are found" "$(turned metres) $(turned blender) $(turned posed) $(turned many) $(turned artist)" "1000.0 10.0 1000.0 10.0 10.0"
+same "units are found" "$(turned metres) $(turned blender) $(turned actor) $(turned many) $(turned artist)" "1000.0 10.0 1000.0 10.0 10.0"
 
 before=$(times_of "$capture" | grep -v '^log/\|plan\|review/')
 run_make "$capture"
