@@ -26,6 +26,8 @@ void hairs_grow(struct hairs *hairs, const struct rig *rig, const bool *shown, c
 	}
 	for (int side = 0; side < 2; side++)
 		hairs_grow_brow(hairs, &(struct front){ rig, skin, face, side, rig->globe[side].radius / 12 }, conf, &rng);
+	if (conf->lash_mm > 0)
+		hairs_turn_out(hairs, rig, skin);
 	ray_scene_free(skin);
 	free(face);
 	free(faces);

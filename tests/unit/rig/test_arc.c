@@ -1,0 +1,84 @@
+/* arc: hulls of chains in closed form; the opening of a made face, whose rows are known; a margin that is a staircase at rest is left. */
+#include "rig/deform/arc.h"
+#include "tests/lib/scenes/driven.h"
+#include "tests/lib/unit.h"
+
+#include <string.h>
+
+static int setup(void **state)
+{
+	static const struct hair_conf none = { 0 };
+	struct driven *m = calloc(1, sizeof *m);
+	struct err err = { 0 };
+	*state = m;
+	return driven_make(m, &none, &err) ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+	driven_free(*state);
+	free(*state);
+	return 0;
+}
+
+static void hulls(void **state)
+{
+	(void)state;
+	// A parabola is its own hull; with a dip of 0.3 at its top that is filled up to the line between its neighbours.
+	double y[21], hull[21];
+	for (int i = 0; i < 21; i++)
+		y[i] = 4 - 0.04 * (i - 10) * (i - 10);
+	NEAR(deform_hull(hull, 21, y), 0, 1e-12);
+	y[10] -= 0.3;
+	NEAR(deform_hull(hull, 21, y), 0.3 - 0.04, 1e-12);
+	NEAR(hull[10], 3.96, 1e-12);
+	for (int i = 0; i < 21; i++)
+		assert_true(i == 10 || fabs(hull[i] - y[i]) < 1e-12);
+	// Turned over, the straight line between its ends.
+	for (int i = 0; i < 21; i++)
+		y[i] = 0.04 * (i - 10) * (i - 10);
+	NEAR(deform_hull(hull, 21, y), 4, 1e-12);
+	for (int i = 0; i < 21; i++)
+		NEAR(hull[i], 4, 1e-12);
+}
+
+/* The made fissure, 10 by 4.5 mm, is cut from rows 7/6 mm apart: open up to the fourth in the middle, to the third further out. */
+static void opening_of_a_made_face(void **state)
+{
+	const struct driven *m = *state;
+	struct deform_near near = deform_near_of(&m->rig);
+	for (int side = 0; side < 2; side++) {
+		struct deform_opening o;
+		deform_open(&o, &m->rig, &near, side, (const float(*)[3])m->rig.rest, (double[]){ -6, 6 });
+		const int middle = DEFORM_COLUMNS / 2, aside = middle + (int)(6 / o.step);
+		assert_true(o.first < middle - 5 / o.step && o.last > middle + 5 / o.step);
+		NEAR(o.top[middle], 4 * 7.0 / 6, 1e-3);
+		NEAR(o.bottom[middle], -4 * 7.0 / 6, 1e-3);
+		NEAR(o.top[aside], 3 * 7.0 / 6, 1e-3);
+	}
+	deform_near_free(&near);
+}
+
+static void what_was_drawn_so_is_left(void **state)
+{
+	const struct driven *m = *state;
+	struct deform_near near = deform_near_of(&m->rig);
+	float (*x)[3] = calloc((size_t)m->rig.n, sizeof *x), (*was)[3] = calloc((size_t)m->rig.n, sizeof *was);
+	double turn[2][3][3];
+	driven_pose(x, turn, m, 10, -10, 0.5);
+	memcpy(was, x, (size_t)m->rig.n * sizeof *x);
+	deform_lower(x, &m->rig, &near, (const double(*)[3][3])turn);
+	deform_arcs(x, &m->rig, &near, (const double(*)[3][3])turn);
+	for (int i = 0; i < m->rig.n; i++)
+		for (int c = 0; c < 3; c++)
+			NEAR(x[i][c], was[i][c], 1e-6);
+	free(x);
+	free(was);
+	deform_near_free(&near);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = { cmocka_unit_test(hulls), cmocka_unit_test(opening_of_a_made_face), cmocka_unit_test(what_was_drawn_so_is_left) };
+	return cmocka_run_group_tests(tests, setup, teardown);
+}
