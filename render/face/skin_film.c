@@ -5,19 +5,13 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "base/npy/npy.h"
 #include "bridge/om_mesh.h"
 #include "draw/complexion/complexion.h"
-#include "math/vec.h"
-#include "optics/camera.h"
-#include "render/face/skin.h"
+#include "render/face/skin_tracked.h"
 
 const char *const skin_sources[] = { "auto", "video", "plain", 0 };
 
-enum { TRACK, HEAD, SKIN, VERTICES, CONFIDENCE, LIDS, FILES };
-static const char *const files[FILES] = { "work/skin/track.json", "work/skin/head.npy", "work/skin/skin.npy", "work/skin/vertices.npy",
-	                                      "work/skin/confidence.npy", "work/skin/lids.npy" };
-enum { EYE_LIDS = 4, LONGEST = 3600, SPREAD = 9 };
+enum { LONGEST = 3600, SPREAD = 9 };
 static const double lids_mm = 0.45;   // margins are moist and lashes grow on them: so far off the opening skin is dry
 static const double turned = 0.14;    // radians: a head turned further than this stands in another light
 static const double sure_least = 0.3;
@@ -33,15 +27,15 @@ void skin_film(struct skin_target *t, struct stage *stage, const struct skin_con
 	struct err none = { 0 }, nor = { 0 };
 	if (t->look_path || conf->source == SKIN_PLAIN || !t->name)
 		return;
-	for (int i = 0; i < FILES; i++)
-		if (!file_exists(stage_path(stage, "%s", files[i]))) {
-			stage_skipped_as_said(stage, "skin of %s from a video: %s is not there: its skin has one colour", t->name, files[i]);
+	for (int i = 0; i < TRACKED_FILES; i++)
+		if (!file_exists(stage_path(stage, "%s", tracked_files[i]))) {
+			stage_skipped_as_said(stage, "skin of %s from a video: %s is not there: its skin has one colour", t->name, tracked_files[i]);
 			return;
 		}
 	for (int i = 0; i < COUNT(beside); i++)
 		if (!file_exists(stage_path(stage, "work/targets/%s/%s", t->name, beside[i])))
 			return;
-	json_t *track = json_read(stage_path(stage, "%s", files[TRACK]), 1 << 24, &none);
+	json_t *track = json_read(stage_path(stage, "%s", tracked_files[TRACKED_JSON]), 1 << 24, &none);
 	json_t *laid = json_read(stage_path(stage, "work/targets/%s/registration.json", t->name), 1 << 24, &nor);
 	const char *video = json_string_value(json_object_get(track, "video")), *subject = json_string_value(json_object_get(laid, "subject"));
 	if (video && subject && !strstr(video, "..") && !strstr(subject, "..") && *video != '/' && *subject != '/' && file_exists(stage_path(stage, "%s", video))
@@ -50,8 +44,8 @@ void skin_film(struct skin_target *t, struct stage *stage, const struct skin_con
 		t->subject = inside(stage, stage_path(stage, "%s", subject));
 		t->in[t->n_in++] = t->film;
 		t->in[t->n_in++] = t->subject;
-		for (int i = 0; i < FILES; i++)
-			t->in[t->n_in++] = files[i];
+		for (int i = 0; i < TRACKED_FILES; i++)
+			t->in[t->n_in++] = tracked_files[i];
 		for (int i = 0; i < COUNT(beside); i++)
 			t->in[t->n_in++] = inside(stage, stage_path(stage, "work/targets/%s/%s", t->name, beside[i]));
 	}
@@ -59,93 +53,16 @@ void skin_film(struct skin_target *t, struct stage *stage, const struct skin_con
 	json_decref(laid);
 }
 
-/* What was tracked, as it is read. */
-struct film {
-	struct camera camera;
-	int width, height, reference;
-	long frames;
-	double eye[2][3], radius;
-	struct npy head, skin, vertices, sure, lids;
-	struct mesh mesh;          // mm
-};
-
-static void film_free(struct film *f)
-{
-	npy_free(&f->head);
-	npy_free(&f->skin);
-	npy_free(&f->vertices);
-	npy_free(&f->sure);
-	npy_free(&f->lids);
-	mesh_free(&f->mesh);
-}
-
-static bool read_track(struct film *f, const char *path, struct err *err)
-{
-	static const char *const eyes[2] = { "left_eye", "right_eye" };
-	json_t *j = json_read(path, 1 << 24, err);
-	const json_t *camera = json_object_get(j, "camera");
-	double width = 0, height = 0, reference = 0, radius[2] = { NAN, NAN };
-	bool ok = j && json_get(&width, camera, "width", path, err) && json_get(&height, camera, "height", path, err)
-	          && json_get(&f->camera.focal_px, camera, "focal_px", path, err) && json_get_array(f->camera.center_px, 2, camera, "center_px", path, err)
-	          && json_get_array(f->camera.distortion, 5, camera, "distortion", path, err) && json_get(&reference, j, "reference_frame", path, err);
-	for (int s = 0; s < 2 && ok; s++) {
-		const json_t *eye = json_object_get(j, eyes[s]);
-		if (!json_is_object(eye))
-			ok = err_set(err, "one eye alone was followed");
-		ok = ok && json_get_array(f->eye[s], 3, eye, "center_in_head_mm", path, err) && json_get(&radius[s], eye, "radius_mm", path, err);
-	}
-	f->width = (int)width;
-	f->height = (int)height;
-	f->reference = (int)reference;
-	f->radius = 0.5 * (radius[0] + radius[1]);
-	if (ok && !(f->radius > 1 && f->radius < 100 && isfinite(f->eye[0][0] + f->eye[1][0]) && width >= 16 && height >= 16 && width < 20000 && height < 20000 && f->camera.focal_px > 1))
-		ok = err_set(err, "%s: no picture of two eyes", path);
-	json_decref(j);
-	return ok;
-}
-
-static bool read_array(struct npy *out, struct skin_job *job, int file, enum npy_type type, int ndim, const long *shape, struct err *err)
-{
-	const char *path = stage_path(job->stage, "%s", files[file]);
-	if (!npy_read(out, path, NPY_LIMIT, err) || !npy_expect(out, path, ndim, shape, err))
-		return false;
-	return out->type == type || err_set(err, "%s: other types of numbers than track writes: run it again", path);
-}
-
-static bool read_all(struct film *f, struct skin_job *job, struct skin_target *t, struct err *err)
-{
-	double unit = 1;
-	const char *laid = stage_path(job->stage, "work/targets/%s/registration.json", t->name);
-	json_t *j = json_read(laid, 1 << 24, err);
-	bool ok = j && json_get(&unit, j, "subject_unit_mm", laid, err) && read_track(f, stage_path(job->stage, "%s", files[TRACK]), err)
-	          && read_array(&f->head, job, HEAD, NPY_F8, 3, (long[]){ -1, 4, 4 }, err);
-	json_decref(j);
-	f->frames = ok ? f->head.shape[0] : 0;
-	ok = ok && read_array(&f->vertices, job, VERTICES, NPY_I4, 1, (long[]){ -1 }, err)
-	     && read_array(&f->skin, job, SKIN, NPY_F4, 3, (long[]){ f->frames, f->vertices.shape[0], 2 }, err)
-	     && read_array(&f->sure, job, CONFIDENCE, NPY_F4, 2, (long[]){ f->frames, f->vertices.shape[0] }, err)
-	     && read_array(&f->lids, job, LIDS, NPY_F4, 4, (long[]){ f->frames, EYE_LIDS, -1, 2 }, err)
-	     && om_mesh_load(&f->mesh, stage_path(job->stage, "%s", t->subject), 10000000, err);
-	const int32_t *row = f->vertices.data;
-	for (long i = 0; i < (ok ? f->vertices.shape[0] : 0); i++)
-		if (row[i] < 0 || row[i] >= f->mesh.n_vertices)
-			return err_set(err, "%s: vertex %d is no row of %s: run track again", files[VERTICES], row[i], t->subject);
-	for (int i = 0; i < f->mesh.n_vertices; i++)
-		for (int k = 0; k < 3; k++)
-			f->mesh.vertices[i][k] *= (float)unit;
-	return ok;
-}
-
-static const double (*pose_of(const struct film *f, long frame))[4]
+static const double (*pose_of(const struct tracked *f, long frame))[4]
 {
 	return (const double(*)[4])((const double *)f->head.data + 16 * frame);
 }
 
 /* How wide the lids stand apart, px: the mean over both eyes. NAN: not known. */
-static double opening(const struct film *f, long frame)
+static double opening(const struct tracked *f, long frame)
 {
 	const long m = f->lids.shape[2];
-	const float *p = (const float *)f->lids.data + frame * EYE_LIDS * m * 2;
+	const float *p = (const float *)f->lids.data + frame * TRACKED_MARGINS * m * 2;
 	double sum = 0;
 	for (int s = 0; s < 2; s++)
 		sum += 0.5 * (double)(p[2 * ((2 * s + 1) * m + m / 2) + 1] - p[2 * (2 * s * m + m / 2) + 1]);
@@ -153,7 +70,7 @@ static double opening(const struct film *f, long frame)
 }
 
 /* Whether a frame is of use: its head is known, and stands as in the reference. */
-static bool usable(const struct film *f, long frame)
+static bool usable(const struct tracked *f, long frame)
 {
 	const double (*a)[4] = pose_of(f, frame), (*b)[4] = pose_of(f, f->reference);
 	double trace = 0;
@@ -165,7 +82,7 @@ static bool usable(const struct film *f, long frame)
 
 /* The reference, frames spread over the film, and those in which the lids are lowest: they show the upper lids' skin. Rising from the
  * second on. Returns how many. */
-static int choose(long out[COMPLEXION_VIEWS], const struct film *f)
+static int choose(long out[COMPLEXION_VIEWS], const struct tracked *f)
 {
 	const long first = f->reference > LONGEST / 2 ? f->reference - LONGEST / 2 : 0, last = first + LONGEST < f->frames ? first + LONGEST : f->frames;
 	int n = 0;
@@ -199,7 +116,7 @@ static int choose(long out[COMPLEXION_VIEWS], const struct film *f)
 }
 
 /* Where the mesh's vertices are in a frame: those that were followed there, the others where the head has them. */
-static void place(float (*at)[3], const struct film *f, long frame)
+static void place(float (*at)[3], const struct tracked *f, long frame)
 {
 	const double (*pose)[4] = pose_of(f, frame);
 	const long m = f->vertices.shape[0];
@@ -220,12 +137,12 @@ static void place(float (*at)[3], const struct film *f, long frame)
 }
 
 /* Marks what lies between the lids, and so many px around. */
-static void mark_open(uint8_t *open, const struct film *f, long frame, double around)
+static void mark_open(uint8_t *open, const struct tracked *f, long frame, double around)
 {
 	const long m = f->lids.shape[2];
 	memset(open, 0, (size_t)f->width * (size_t)f->height);
 	for (int s = 0; s < 2; s++) {
-		const float (*up)[2] = (const float(*)[2])f->lids.data + (frame * EYE_LIDS + 2 * s) * m, (*low)[2] = up + m;
+		const float (*up)[2] = (const float(*)[2])f->lids.data + (frame * TRACKED_MARGINS + 2 * s) * m, (*low)[2] = up + m;
 		for (long i = 0; i + 1 < m; i++)
 			for (int part = 0; part < 16; part++) {
 				const float t = ((float)part + 0.5f) / 16;
@@ -241,7 +158,7 @@ static void mark_open(uint8_t *open, const struct film *f, long frame, double ar
 	}
 }
 
-static void add(struct complexion *c, const struct film *f, long frame, const uint8_t *rgb)
+static void add(struct complexion *c, const struct tracked *f, long frame, const uint8_t *rgb)
 {
 	float (*at)[3] = mem_array((size_t)f->mesh.n_vertices + 1, sizeof *at);
 	uint8_t *open = mem_array((size_t)f->width * (size_t)f->height + 1, 1);
@@ -253,7 +170,7 @@ static void add(struct complexion *c, const struct film *f, long frame, const ui
 }
 
 /* Decodes the frames chosen. The reference is kept until it is its turn to be the first. */
-static bool look_at(struct complexion *c, const struct film *f, struct skin_job *job, const char *path, struct err *err)
+static bool look_at(struct complexion *c, const struct tracked *f, struct skin_job *job, const char *path, struct err *err)
 {
 	long frame[COMPLEXION_VIEWS], last = 0;
 	const int n = choose(frame, f);
@@ -317,19 +234,19 @@ static bool wear(struct skin_target *t, const struct complexion *c, struct skin_
 
 bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 {
-	struct film f = { 0 };
+	struct tracked f = { 0 };
 	struct err why = { 0 };
 	struct complexion_report r;
 	struct complexion_conf conf = { .side = job->conf->film_px, .bumps = 0.07 * job->conf->portrait.texture };
 	memcpy(conf.sclera_rgb, job->render->scene.sclera_rgb, sizeof conf.sclera_rgb);
 	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
-	bool ok = read_all(&f, job, t, &why);
+	bool ok = tracked_load(&f, job, t, &why);
 	if (ok) {
 		struct complexion *c = complexion_new(&f.mesh, (const double(*)[3])f.eye, f.radius, &conf);
 		ok = look_at(c, &f, job, stage_path(job->stage, "%s", t->film), &why) && complexion_make(c, &r, &why) && wear(t, c, job, &why);
 		complexion_free(c);
 	}
-	film_free(&f);
+	tracked_free(&f);
 	if (!ok && job->conf->source == SKIN_VIDEO)
 		return err_set(err, "skin of %s from %s: %s", t->name, t->film, why.msg);
 	if (!ok) {

@@ -150,7 +150,7 @@ static bool fine_of(struct maker *m, struct err *err)
 {
 	const long n = (long)m->side * m->side;
 	float *wide = mem_array((size_t)n + 1, sizeof *wide);
-	const double texel = m->c->texel_mm / 0.7 * m->c->side / m->side;
+	const double texel = m->c->texel_mm / m->c->chart.half * m->c->side / m->side;
 	for (long i = 0; i < n; i++)
 		m->fine[i] = logf(0.2126f * m->rgb[i][0] + 0.7152f * m->rgb[i][1] + 0.0722f * m->rgb[i][2] + 1e-4f);
 	const bool ok = cv_blur(wide, m->fine, m->side, m->side, 1, fmax(bump_mm / texel, 1), err);
