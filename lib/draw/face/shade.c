@@ -213,6 +213,12 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 		relief += (float)SKIN_PORES_LIGHT * (n[c] - q.normal[c]) * sky->light[0].dir[c];
 	for (int c = 0; c < 3; c++)
 		rgb[c] = q.albedo[c] * (1 + grain) * q.light[c] * relief + spec[c] * q.open * (1 - q.wet);
-	if (q.wet > 0)
+	if (q.wet > 0) {
+		if (q.bumpy) {  // a film's lobes are those of pores, not of a map of skin
+			memcpy(n, q.normal, sizeof n);
+			pores(n, q.rest, (float)SKIN_PORES * strength);
+			vecf_unit(n);
+		}
 		moist(rgb, p, sky, &q, n, dir);
+	}
 }
