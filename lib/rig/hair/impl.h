@@ -53,7 +53,7 @@ void front_clear(struct hairs *hairs, const struct front *front);
 void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct front_opening *opening, const struct hair_conf *conf, struct rng *rng);
 void hairs_grow_brow(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
 
-/* turn.c: turns lashes until skin crosses none in poses over the range of gaze, open, half open and shut; those that it crosses all the same are left out.
+/* turn.c: turns lashes, as little as does it, until skin crosses each in as few poses over the range of gaze, open, half open and shut, as can be.
  * skin: of the faces that hairs are to stand clear of, whose vertices are the rig's; left in a pose. */
 void hairs_turn_out(struct hairs *hairs, const struct rig *rig, struct ray_scene *skin);
 

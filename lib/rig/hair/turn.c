@@ -1,5 +1,4 @@
-/* Lashes that skin crosses in a pose are turned, and if that is not enough made shorter, until it crosses them in none; the few that it crosses all the same are
- * left out. */
+/* Lashes that skin crosses in a pose are turned, and if that is not enough made shorter, until it crosses them in as few as can be. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,26 +67,17 @@ static float change(int way)
 
 static void choose(struct hairs *h, const int (*n)[WAYS])
 {
-	int kept = 0, points = 0;
 	for (int i = 0; i < h->n; i++) {
-		struct hair hair = h->hair[i];
+		const struct hair *hair = &h->hair[i];
 		float local[HAIR_LASH_POINTS][3];
 		int best = 0;
-		for (int way = 1; way < WAYS && hair.kind != HAIR_BROW; way++)
+		for (int way = 1; way < WAYS && hair->kind != HAIR_BROW; way++)
 			best = n[i][way] < n[i][best] || (n[i][way] == n[i][best] && change(way) < change(best)) ? way : best;
-		if (n[i][best])
+		if (!best)
 			continue;
-		if (best)
-			turned(local, (const float(*)[3])h->local + hair.first, hair.n, best);
-		else
-			memcpy(local, h->local + hair.first, (size_t)hair.n * sizeof *local);
-		memcpy(h->local + points, local, (size_t)hair.n * sizeof *local);
-		hair.first = points;
-		points += hair.n;
-		h->hair[kept++] = hair;
+		turned(local, (const float(*)[3])h->local + hair->first, hair->n, best);
+		memcpy(h->local + hair->first, local, (size_t)hair->n * sizeof *local);
 	}
-	h->n = kept;
-	h->n_points = points;
 }
 
 void hairs_turn_out(struct hairs *h, const struct rig *rig, struct ray_scene *skin)
