@@ -7,10 +7,10 @@
 #include "base/mem.h"
 #include "math/vec.h"
 #include "rig/deform/deform.h"
+#include "rig/deform/terms.h"
 
 enum { COLUMNS = DEFORM_COLUMNS, ROUNDS = 4, LOWERED = 3, LEAST = 20 };  // of arcs, of lower lids; columns of what is an opening
-static const double before = 0.2;               // of a globe's radius: skin further back lines the socket
-static const double reach = 1.2;                // of it: columns to either side
+static const double near_radii = 0.5;     // of a globe, from its surface at rest: no lid comes from further
 static const double lid_radii = 0.5;            // of it: skin further from the eyeball at rest is no lid
 static const double drawn_mm = 0.4;             // of an eyeball of 12 mm: a margin that leaves an arc by more at rest was drawn so, or is as coarse
 static const double iris_mm = 10.6;             // the same: from the centre to the middle of the limbus
@@ -19,7 +19,6 @@ static const double open_mm[] = { 1, 4 };       // the same: lids less apart tha
 static const double rest_mm = 6;                // of an eyeball of 12 mm: heights between which the opening at rest has its middle
 static const double shut_mm[] = { 0.2, 1 };     // of an eyeball of 12 mm: the opening up to which lids are left; from which they are not
 static const double goes_along_mm[] = { 1.5, 8 }; // the same: skin above the margin goes with it up to the first, not at all from the second
-static const double step_mm = 0.4;              // the same: from one column to the next, a tenth of a millimetre, a margin goes up or down by less
 static const double lid_share[] = { 0.1, 0.6 };  // of the way from the opening's middle to its end: where at rest a lid begins
 
 static double rising(double x, double from, double to)
@@ -35,126 +34,6 @@ static void in_head(double out[3], const struct rig *rig, int side, const float 
 	for (int c = 0; c < 3; c++)
 		d[c] = x[c] - rig->globe[side].center[c];
 	mat_vec(out, rig->head_from_target, d);
-}
-
-/* What a face covers of a column. */
-struct cover {
-	int column;
-	double low, high;
-};
-
-struct covers {
-	int n, room;
-	struct cover *at;
-};
-
-static void add_face(struct covers *to, const double p[3][3], double step)
-{
-	const double least = fmin(fmin(p[0][0], p[1][0]), p[2][0]) / step, most = fmax(fmax(p[0][0], p[1][0]), p[2][0]) / step;
-	const int from = (int)fmax(ceil(least) + COLUMNS / 2, 0), to_column = (int)fmin(floor(most) + COLUMNS / 2, COLUMNS - 1);
-	for (int i = from; i <= to_column; i++) {
-		const double x = step * (i - COLUMNS / 2);
-		struct cover c = { i, INFINITY, -INFINITY };
-		for (int k = 0; k < 3; k++) {
-			const double *a = p[k], *b = p[(k + 1) % 3];
-			if ((a[0] <= x) == (b[0] <= x))
-				continue;
-			const double y = a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
-			c.low = fmin(c.low, y);
-			c.high = fmax(c.high, y);
-		}
-		if (!(c.high >= c.low))
-			continue;
-		if (to->n == to->room)
-			to->at = mem_grow(to->at, (size_t)(to->room = 2 * to->room + 1024), sizeof *to->at);
-		to->at[to->n++] = c;
-	}
-}
-
-static int by_place(const void *a, const void *b)
-{
-	const struct cover *p = a, *q = b;
-	return p->column != q->column ? p->column - q->column : (p->low > q->low) - (p->low < q->low);
-}
-
-/* The longest gap between covers of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
-static void take_gaps(struct deform_opening *o, const struct covers *c, double radius, const double within[2])
-{
-	for (int i = 0; i < COLUMNS; i++)
-		o->top[i] = o->bottom[i] = 0;
-	for (int k = 0; k < c->n;) {
-		const int column = c->at[k].column;
-		const double x = o->step * (column - COLUMNS / 2);
-		double high = c->at[k].high;
-		for (; k < c->n && c->at[k].column == column; k++) {
-			const double middle = 0.5 * (high + c->at[k].low);
-			if (c->at[k].low - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
-				o->bottom[column] = high;
-				o->top[column] = c->at[k].low;
-			}
-			high = fmax(high, c->at[k].high);
-		}
-	}
-}
-
-/* The outer eighths end where the upper margin steps: what is beyond lies behind it, in a corner. */
-static void trim(struct deform_opening *o, int middle, double unit)
-{
-	const int eighth = (o->last - o->first) / 8, first = o->first, last = o->last;
-	for (int i = first; i < first + eighth && i < middle; i++)
-		if (fabs(o->top[i + 1] - o->top[i]) > step_mm * unit)
-			o->first = i + 1;
-	for (int i = last; i > last - eighth && i > middle; i--)
-		if (fabs(o->top[i - 1] - o->top[i]) > step_mm * unit)
-			o->last = i - 1;
-}
-
-void deform_open(struct deform_opening *o, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2])
-{
-	const double radius = rig->globe[side].radius, least = 1e-3 * radius;
-	struct covers c = { 0 };
-	int widest = 0;
-	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
-	for (int k = 0; k < near->n; k++) {
-		const int32_t *v = rig->faces[near->face[k]];
-		double p[3][3];
-		bool in_front = rig->side[v[0]] == side;
-		for (int i = 0; i < 3 && in_front; i++) {
-			in_head(p[i], rig, side, x[v[i]]);
-			in_front = p[i][2] > before * radius;
-		}
-		if (in_front)
-			add_face(&c, (const double(*)[3])p, o->step);
-	}
-	qsort(c.at, (size_t)c.n, sizeof *c.at, by_place);
-	take_gaps(o, &c, radius, within);
-	free(c.at);
-	for (int i = 0; i < COLUMNS; i++)
-		widest = o->top[i] - o->bottom[i] > o->top[widest] - o->bottom[widest] ? i : widest;
-	o->first = widest;
-	o->last = o->top[widest] - o->bottom[widest] > least ? widest : widest - 1;
-	const int middle = widest;
-	while (o->last >= o->first && o->first > 0 && o->top[o->first - 1] - o->bottom[o->first - 1] > least)
-		o->first--;
-	while (o->last >= o->first && o->last + 1 < COLUMNS && o->top[o->last + 1] - o->bottom[o->last + 1] > least)
-		o->last++;
-	trim(o, middle, radius / 12);
-}
-
-double deform_hull(double *hull, int n, const double *y)
-{
-	double worst = 0;
-	for (int a = 0, b; a < n; a = b) {
-		hull[a] = y[a];
-		b = a + 1;
-		for (int i = a + 2; i < n; i++)  // the steepest way on
-			b = (y[i] - y[a]) * (b - a) >= (y[b] - y[a]) * (i - a) ? i : b;
-		for (int i = a + 1; i < b && b < n; i++) {
-			hull[i] = y[a] + (y[b] - y[a]) * (i - a) / (b - a);
-			worst = fmax(worst, hull[i] - y[i]);
-		}
-	}
-	return worst;
 }
 
 /* How far up each open column's margin has to go: by[column], and [COLUMNS + 1] the sums of those before. */
@@ -263,7 +142,13 @@ static bool nearer(double *arch, float (*x)[3], const struct rig *rig, const str
 	return true;
 }
 
-void deform_arcs(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+/* Moves the upper lids' skin over the eyeballs, up or down, so that between the corners of the opening, as the front sees it, the margin has
+ * curvature of one sign: the margin's convex hull, upper where it lies above the line between the corners in the mean and lower where it lies below,
+ * brought to the same mean height. What is such an arc already stays; so do corners, the lower lids, and skin's distance from the
+ * eyeball. What a character's own margin differs by from an arc at rest it keeps, in proportion to how high it is arched; where that is
+ * more than 0.4 mm of an eyeball of 12 mm, lids are left as they are. Skin above goes along, the less the higher. Lids that are nearly shut are left: there the upper margin lies on the lower one.
+ * x  [rig.n], the target's frame, mm, in and out;  target_from_globe  of both globes in this pose */
+static void arcs(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
 {
 	for (int side = 0; side < 2; side++) {
 		double arch = 0, later;
@@ -315,7 +200,7 @@ static void take_own(struct deform_near *near, const struct rig *rig)
 	free(x);
 }
 
-void deform_arcs_prepare(struct deform_near *near, const struct rig *rig)
+static void prepare(struct deform_near *near, const struct rig *rig)
 {
 	near->upper = mem_new((size_t)rig->n + 1, sizeof *near->upper);
 	near->lower = mem_new((size_t)rig->n + 1, sizeof *near->lower);
@@ -364,7 +249,10 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 	}
 }
 
-void deform_lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+/* Lowers the lower lids of eyes that look down, as people's do, until they cover no more of the iris, at its middle, than the lid at rest does there of one that
+ * looks to the same side: what was learnt of somebody whose lids are wide apart leaves a character's, which are not, across the pupil. As lids shut that
+ * ends.  */
+static void lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
 {
 	double to[2] = { NAN, NAN };
 	for (int k = 0; k < 2 * LOWERED; k++)
@@ -373,7 +261,36 @@ void deform_lower(float (*x)[3], const struct rig *rig, const struct deform_near
 
 void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
 {
-	deform_lower(x, rig, near, target_from_globe);
-	deform_arcs(x, rig, near, target_from_globe);
+	lower(x, rig, near, target_from_globe);
+	arcs(x, rig, near, target_from_globe);
 	deform_clear(x, rig, near, target_from_globe);
+}
+
+struct deform_near deform_near_of(const struct rig *rig)
+{
+	struct deform_near out = { .face = mem_new((size_t)rig->n_faces + 1, sizeof *out.face), .moves = mem_new((size_t)rig->n + 1, 1) };
+	for (int i = 0; i < rig->n; i++)
+		out.moves[i] = deform_terms_moves(rig, i);
+	for (int f = 0; f < rig->n_faces; f++) {
+		const int32_t *v = rig->faces[f];
+		bool near = true;
+		for (int k = 0; k < 3; k++)
+			near = near && rig->part[v[k]] == RIG_SKIN && rig->gap[v[k]] < near_radii * rig->globe[rig->side[v[k]]].radius
+			       && rig->side[v[k]] == rig->side[v[0]];
+		if (near && (out.moves[v[0]] || out.moves[v[1]] || out.moves[v[2]]))
+			out.face[out.n++] = f;
+	}
+	prepare(&out, rig);
+	return out;
+}
+
+void deform_near_free(struct deform_near *near)
+{
+	free(near->face);
+	free(near->moves);
+	free(near->upper);
+	free(near->lower);
+	free(near->rest);
+	free(near->own);
+	*near = (struct deform_near){ 0 };
 }

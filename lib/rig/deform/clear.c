@@ -6,43 +6,11 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "rig/deform/arc.h"
-#include "rig/deform/terms.h"
 
 enum { ROUNDS = 4, SAMPLES = 4 };
-static const double near_radii = 0.5;     // of a globe, from its surface at rest: no lid comes from further
 static const double deepest_mm = 2;       // what lies deeper is no lid before the eye
 static const double outwards = 0.3;       // least cosine of a face's normal with the way out
 static const float margin_mm = 0.4f, margin_share = 0.15f;  // at rest so near is the lid's margin; what it gives way, of others
-
-struct deform_near deform_near_of(const struct rig *rig)
-{
-	struct deform_near out = { .face = mem_new((size_t)rig->n_faces + 1, sizeof *out.face), .moves = mem_new((size_t)rig->n + 1, 1) };
-	for (int i = 0; i < rig->n; i++)
-		out.moves[i] = deform_terms_moves(rig, i);
-	for (int f = 0; f < rig->n_faces; f++) {
-		const int32_t *v = rig->faces[f];
-		bool near = true;
-		for (int k = 0; k < 3; k++)
-			near = near && rig->part[v[k]] == RIG_SKIN && rig->gap[v[k]] < near_radii * rig->globe[rig->side[v[k]]].radius
-			       && rig->side[v[k]] == rig->side[v[0]];
-		if (near && (out.moves[v[0]] || out.moves[v[1]] || out.moves[v[2]]))
-			out.face[out.n++] = f;
-	}
-	deform_arcs_prepare(&out, rig);
-	return out;
-}
-
-void deform_near_free(struct deform_near *near)
-{
-	free(near->face);
-	free(near->moves);
-	free(near->upper);
-	free(near->lower);
-	free(near->rest);
-	free(near->own);
-	*near = (struct deform_near){ 0 };
-}
 
 static bool faces_out(const float (*x)[3], const int32_t v[3], const double center[3])
 {

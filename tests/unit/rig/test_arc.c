@@ -67,8 +67,8 @@ static void what_was_drawn_so_is_left(void **state)
 	double turn[2][3][3];
 	driven_pose(x, turn, m, 10, -10, 0.5);
 	memcpy(was, x, (size_t)m->rig.n * sizeof *x);
-	deform_lower(x, &m->rig, &near, (const double(*)[3][3])turn);
-	deform_arcs(x, &m->rig, &near, (const double(*)[3][3])turn);
+	deform_settle(x, &m->rig, &near, (const double(*)[3][3])turn);
+	deform_clear(was, &m->rig, &near, (const double(*)[3][3])turn);
 	for (int i = 0; i < m->rig.n; i++)
 		for (int c = 0; c < 3; c++)
 			NEAR(x[i][c], was[i][c], 1e-6);

@@ -1,6 +1,6 @@
 /* Faces of a posed character stay out of its eyeballs: vertices that lie on one, so far apart that the edges between them cut into it. */
 #include "math/vec.h"
-#include "rig/deform/clear.h"
+#include "rig/deform/arc.h"
 #include "tests/lib/scenes/face.h"
 #include "tests/lib/unit.h"
 

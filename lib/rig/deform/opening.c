@@ -1,0 +1,141 @@
+#include "rig/deform/opening.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "math/vec.h"
+
+enum { COLUMNS = DEFORM_COLUMNS };
+static const double before = 0.2;               // of a globe's radius: skin further back lines the socket
+static const double reach = 1.2;                // of it: columns to either side
+static const double step_mm = 0.4;              // the same: from one column to the next, a tenth of a millimetre, a margin goes up or down by less
+
+/* About the eyeball's centre, along the head's axes. */
+static void in_head(double out[3], const struct rig *rig, int side, const float x[3])
+{
+	double d[3];
+	for (int c = 0; c < 3; c++)
+		d[c] = x[c] - rig->globe[side].center[c];
+	mat_vec(out, rig->head_from_target, d);
+}
+
+/* What a face covers of a column. */
+struct cover {
+	int column;
+	double low, high;
+};
+
+struct covers {
+	int n, room;
+	struct cover *at;
+};
+
+static void add_face(struct covers *to, const double p[3][3], double step)
+{
+	const double least = fmin(fmin(p[0][0], p[1][0]), p[2][0]) / step, most = fmax(fmax(p[0][0], p[1][0]), p[2][0]) / step;
+	const int from = (int)fmax(ceil(least) + COLUMNS / 2, 0), to_column = (int)fmin(floor(most) + COLUMNS / 2, COLUMNS - 1);
+	for (int i = from; i <= to_column; i++) {
+		const double x = step * (i - COLUMNS / 2);
+		struct cover c = { i, INFINITY, -INFINITY };
+		for (int k = 0; k < 3; k++) {
+			const double *a = p[k], *b = p[(k + 1) % 3];
+			if ((a[0] <= x) == (b[0] <= x))
+				continue;
+			const double y = a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+			c.low = fmin(c.low, y);
+			c.high = fmax(c.high, y);
+		}
+		if (!(c.high >= c.low))
+			continue;
+		if (to->n == to->room)
+			to->at = mem_grow(to->at, (size_t)(to->room = 2 * to->room + 1024), sizeof *to->at);
+		to->at[to->n++] = c;
+	}
+}
+
+static int by_place(const void *a, const void *b)
+{
+	const struct cover *p = a, *q = b;
+	return p->column != q->column ? p->column - q->column : (p->low > q->low) - (p->low < q->low);
+}
+
+/* The longest gap between covers of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
+static void take_gaps(struct deform_opening *o, const struct covers *c, double radius, const double within[2])
+{
+	for (int i = 0; i < COLUMNS; i++)
+		o->top[i] = o->bottom[i] = 0;
+	for (int k = 0; k < c->n;) {
+		const int column = c->at[k].column;
+		const double x = o->step * (column - COLUMNS / 2);
+		double high = c->at[k].high;
+		for (; k < c->n && c->at[k].column == column; k++) {
+			const double middle = 0.5 * (high + c->at[k].low);
+			if (c->at[k].low - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
+				o->bottom[column] = high;
+				o->top[column] = c->at[k].low;
+			}
+			high = fmax(high, c->at[k].high);
+		}
+	}
+}
+
+/* The outer eighths end where the upper margin steps: what is beyond lies behind it, in a corner. */
+static void trim(struct deform_opening *o, int middle, double unit)
+{
+	const int eighth = (o->last - o->first) / 8, first = o->first, last = o->last;
+	for (int i = first; i < first + eighth && i < middle; i++)
+		if (fabs(o->top[i + 1] - o->top[i]) > step_mm * unit)
+			o->first = i + 1;
+	for (int i = last; i > last - eighth && i > middle; i--)
+		if (fabs(o->top[i - 1] - o->top[i]) > step_mm * unit)
+			o->last = i - 1;
+}
+
+void deform_open(struct deform_opening *o, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2])
+{
+	const double radius = rig->globe[side].radius, least = 1e-3 * radius;
+	struct covers c = { 0 };
+	int widest = 0;
+	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
+	for (int k = 0; k < near->n; k++) {
+		const int32_t *v = rig->faces[near->face[k]];
+		double p[3][3];
+		bool in_front = rig->side[v[0]] == side;
+		for (int i = 0; i < 3 && in_front; i++) {
+			in_head(p[i], rig, side, x[v[i]]);
+			in_front = p[i][2] > before * radius;
+		}
+		if (in_front)
+			add_face(&c, (const double(*)[3])p, o->step);
+	}
+	qsort(c.at, (size_t)c.n, sizeof *c.at, by_place);
+	take_gaps(o, &c, radius, within);
+	free(c.at);
+	for (int i = 0; i < COLUMNS; i++)
+		widest = o->top[i] - o->bottom[i] > o->top[widest] - o->bottom[widest] ? i : widest;
+	o->first = widest;
+	o->last = o->top[widest] - o->bottom[widest] > least ? widest : widest - 1;
+	const int middle = widest;
+	while (o->last >= o->first && o->first > 0 && o->top[o->first - 1] - o->bottom[o->first - 1] > least)
+		o->first--;
+	while (o->last >= o->first && o->last + 1 < COLUMNS && o->top[o->last + 1] - o->bottom[o->last + 1] > least)
+		o->last++;
+	trim(o, middle, radius / 12);
+}
+
+double deform_hull(double *hull, int n, const double *y)
+{
+	double worst = 0;
+	for (int a = 0, b; a < n; a = b) {
+		hull[a] = y[a];
+		b = a + 1;
+		for (int i = a + 2; i < n; i++)  // the steepest way on
+			b = (y[i] - y[a]) * (b - a) >= (y[b] - y[a]) * (i - a) ? i : b;
+		for (int i = a + 1; i < b && b < n; i++) {
+			hull[i] = y[a] + (y[b] - y[a]) * (i - a) / (b - a);
+			worst = fmax(worst, hull[i] - y[i]);
+		}
+	}
+	return worst;
+}

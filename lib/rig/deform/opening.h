@@ -1,0 +1,21 @@
+/* deform_opening: the opening of a posed eye, and hulls of its margins. */
+#ifndef RIG_DEFORM_OPENING_H
+#define RIG_DEFORM_OPENING_H
+#include "rig/deform/clear.h"
+
+/* The opening of an eye as the front sees it: heights of its upper and lower end over the eyeball's centre, mm, by column. */
+enum { DEFORM_COLUMNS = 361 };
+struct deform_opening {
+	int first, last;               // columns that are open, in a row; none: last < first
+	double step;                   // mm; column i is at step (i - DEFORM_COLUMNS / 2), along the head's x
+	double top[DEFORM_COLUMNS], bottom[DEFORM_COLUMNS];
+};
+
+/* Exact for the mesh's faces, each column by itself; where the margin steps near an end, what is beyond lies behind it in the corner and is left out.
+ * x: [rig.n]; within: heights between which an opening's middle lies, mm */
+void deform_open(struct deform_opening *opening, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2]);
+
+/* The largest distance of a chain y[n] below its upper convex hull. hull: [n] out */
+double deform_hull(double *hull, int n, const double *y);
+
+#endif
