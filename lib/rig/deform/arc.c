@@ -147,19 +147,17 @@ static bool nearer(double *arch, float (*x)[3], const struct rig *rig, const str
  * brought to the same mean height. What is such an arc already stays; so do corners, the lower lids, and skin's distance from the
  * eyeball. What a character's own margin differs by from an arc at rest it keeps, in proportion to how high it is arched; where that is
  * more than 0.4 mm of an eyeball of 12 mm, lids are left as they are. Skin above goes along, the less the higher. Lids that are nearly shut are left: there the upper margin lies on the lower one.
- * x  [rig.n], the target's frame, mm, in and out;  target_from_globe  of both globes in this pose */
-static void arcs(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+ * x  [rig.n], the target's frame, mm, in and out: the skin of one side;  target_from_globe  of its globe in this pose */
+static void arcs(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
 {
-	for (int side = 0; side < 2; side++) {
-		double arch = 0, later;
-		bool open = nearer(&arch, x, rig, near, side, target_from_globe[side]);
-		for (int round = 1; round < ROUNDS && open; round++)
-			open = nearer(&later, x, rig, near, side, target_from_globe[side]);
-		const double kept = near->arch[side] > 0 ? fmin(fmax(arch / near->arch[side], -1), 1) : 0;
-		for (int i = 0; i < rig->n && near->own; i++)
-			if (near->upper[i] > 0 && rig->side[i] == side)
-				move(x[i], rig, side, target_from_globe[side], kept * (double)near->own[i]);
-	}
+	double arch = 0, later;
+	bool open = nearer(&arch, x, rig, near, side, target_from_globe);
+	for (int round = 1; round < ROUNDS && open; round++)
+		open = nearer(&later, x, rig, near, side, target_from_globe);
+	const double kept = near->arch[side] > 0 ? fmin(fmax(arch / near->arch[side], -1), 1) : 0;
+	for (int i = 0; i < rig->n && near->own; i++)
+		if (near->upper[i] > 0 && rig->side[i] == side)
+			move(x[i], rig, side, target_from_globe, kept * (double)near->own[i]);
 }
 
 static double widest(const struct deform_near *near, const struct rig *rig, int side)
@@ -252,17 +250,20 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 /* Lowers the lower lids of eyes that look down, as people's do, until they cover no more of the iris, at its middle, than the lid at rest does there of one that
  * looks to the same side: what was learnt of somebody whose lids are wide apart leaves a character's, which are not, across the pupil. As lids shut that
  * ends.  */
-static void lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+static void lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
 {
-	double to[2] = { NAN, NAN };
-	for (int k = 0; k < 2 * LOWERED; k++)
-		retract(&to[k % 2], x, rig, near, k % 2, target_from_globe[k % 2]);
+	double to = NAN;
+	for (int k = 0; k < LOWERED; k++)
+		retract(&to, x, rig, near, side, target_from_globe);
 }
 
 void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
 {
-	lower(x, rig, near, target_from_globe);
-	arcs(x, rig, near, target_from_globe);
+#pragma omp parallel for schedule(static, 1)
+	for (int side = 0; side < 2; side++) {
+		lower(x, rig, near, side, target_from_globe[side]);
+		arcs(x, rig, near, side, target_from_globe[side]);
+	}
 	deform_clear(x, rig, near, target_from_globe);
 }
 

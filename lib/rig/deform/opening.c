@@ -31,7 +31,7 @@ struct covers {
 	struct cover *at;
 };
 
-static void add_face(struct covers *to, const double p[3][3], double step)
+static void add_face(struct covers *to, const double *const p[3], double step)
 {
 	const double least = fmin(fmin(p[0][0], p[1][0]), p[2][0]) / step, most = fmax(fmax(p[0][0], p[1][0]), p[2][0]) / step;
 	const int from = (int)fmax(ceil(least) + COLUMNS / 2, 0), to_column = (int)fmin(floor(most) + COLUMNS / 2, COLUMNS - 1);
@@ -54,10 +54,37 @@ static void add_face(struct covers *to, const double p[3][3], double step)
 	}
 }
 
-static int by_place(const void *a, const void *b)
+static bool before_in_place(const struct cover *p, const struct cover *q)
 {
-	const struct cover *p = a, *q = b;
-	return p->column != q->column ? p->column - q->column : (p->low > q->low) - (p->low < q->low);
+	return p->column != q->column ? p->column < q->column : p->low < q->low;
+}
+
+/* By columns, and upwards in each: by counting, to a part of the height, and the few that are left by insertion. */
+static void sort(struct covers *c, double radius)
+{
+	enum { PARTS = 64 };
+	int *from = mem_new(COLUMNS * PARTS + 1, sizeof *from), *place = mem_array((size_t)c->n + 1, sizeof *place);
+	struct cover *out = mem_array((size_t)c->n + 1, sizeof *out);
+	for (int i = 0; i < c->n; i++) {
+		const double part = PARTS / 2 * (1 + c->at[i].low / (2 * radius));
+		place[i] = c->at[i].column * PARTS + (int)fmin(fmax(part, 0), PARTS - 1);
+		from[place[i] + 1]++;
+	}
+	for (int i = 0; i < COLUMNS * PARTS; i++)
+		from[i + 1] += from[i];
+	for (int i = 0; i < c->n; i++)
+		out[from[place[i]]++] = c->at[i];
+	for (int i = 1; i < c->n; i++) {
+		const struct cover now = out[i];
+		int k = i;
+		for (; k > 0 && before_in_place(&now, &out[k - 1]); k--)
+			out[k] = out[k - 1];
+		out[k] = now;
+	}
+	free(from);
+	free(place);
+	free(c->at);
+	c->at = out;
 }
 
 /* The longest gap between covers of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
@@ -97,19 +124,21 @@ void deform_open(struct deform_opening *o, const struct rig *rig, const struct d
 	const double radius = rig->globe[side].radius, least = 1e-3 * radius;
 	struct covers c = { 0 };
 	int widest = 0;
+	double (*head)[3] = mem_array((size_t)rig->n + 1, sizeof *head);
 	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
+	for (int i = 0; i < rig->n; i++)
+		if (rig->side[i] == side)
+			in_head(head[i], rig, side, x[i]);
 	for (int k = 0; k < near->n; k++) {
 		const int32_t *v = rig->faces[near->face[k]];
-		double p[3][3];
-		bool in_front = rig->side[v[0]] == side;
-		for (int i = 0; i < 3 && in_front; i++) {
-			in_head(p[i], rig, side, x[v[i]]);
-			in_front = p[i][2] > before * radius;
-		}
-		if (in_front)
-			add_face(&c, (const double(*)[3])p, o->step);
+		if (rig->side[v[0]] != side)
+			continue;
+		const double *p[3] = { head[v[0]], head[v[1]], head[v[2]] };
+		if (fmin(fmin(p[0][2], p[1][2]), p[2][2]) > before * radius)
+			add_face(&c, p, o->step);
 	}
-	qsort(c.at, (size_t)c.n, sizeof *c.at, by_place);
+	free(head);
+	sort(&c, radius);
 	take_gaps(o, &c, radius, within);
 	free(c.at);
 	for (int i = 0; i < COLUMNS; i++)
