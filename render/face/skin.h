@@ -98,6 +98,7 @@ struct skin_target {
 	struct dress *dress;              // its textures, with the portrait; null: none
 	struct portrait *portrait;        // of the stills; null until needed
 	const char *film, *subject;       // the video and the mesh that its skin is made of; null: of neither
+	double film_rgb[3];               // its median albedo then
 	const char *in[40];               // inputs that all its pictures have in common
 	int n_in;
 };

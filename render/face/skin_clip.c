@@ -92,6 +92,8 @@ static bool clip_make(struct clip *c, const char *rel, int n_in, const char *con
 	const struct skin_conf *conf = c->job->conf;
 	struct portrait_conf draw = conf->portrait;
 	draw.dress = c->t->dress;
+	if (c->t->film && c->t->dress)
+		memcpy(draw.skin_rgb, c->t->film_rgb, sizeof draw.skin_rgb);
 	draw.samples = conf->clip_samples;
 	draw.eye_samples = 1;
 	draw.lights = draw.lights > 8 ? 8 : draw.lights;  // shadows as sharp as its pixels show them

@@ -257,6 +257,7 @@ bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 	           t->film, 100 * r.seen, 100 * r.mirrored, r.rgb[0], r.rgb[1], r.rgb[2], r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
 	stage_figure(job->stage, "skin_seen", r.seen, "share of the face near the eyes that the film shows");
 	stage_figure(job->stage, "skin_grain", r.grain, "rms of the skin's grain, ln");
+	memcpy(t->film_rgb, r.rgb, sizeof t->film_rgb);
 	t->dress = dress_new(&t->look, job->conf->texture_px, &why);
 	return true;
 }

@@ -105,6 +105,8 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 		return false;
 	struct portrait_conf conf = job->conf->portrait;
 	conf.dress = t->dress;
+	if (t->film && t->dress)
+		memcpy(conf.skin_rgb, t->film_rgb, sizeof conf.skin_rgb);
 	if (coloured(t))
 		conf.hair.brow_mm = 0;
 	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &conf);

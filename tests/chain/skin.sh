@@ -17,6 +17,8 @@ for file in look.png sheet.png blink.png clip.mp4; do
 	check "work/render/mpfb_$file is there" test -s "$capture/work/render/mpfb_$file"
 done
 check "the glTF is one" test "$(head -c 4 "$capture/work/render/mpfb.glb")" = glTF
+check "its skin is that of the person in the video, with pores" sh -c "grep -aq '\"skin_colour\"' '$capture/work/render/mpfb.glb' && grep -aq '\"skin_normal\"' '$capture/work/render/mpfb.glb'"
+check "how much of it the video shows stands in the log" grep -q '"skin_seen"' "$capture/work/log/render.json"
 check "the review page shows the character" grep -q 'mpfb.glb' "$capture/work/review/index.html"
 check "and holds its clip" grep -q 'data:video/mp4' "$capture/work/review/index.html"
 
@@ -28,3 +30,17 @@ same "and writes nothing" "$(times_of "$capture")" "$before"
 echo "render.gaze = 15 -5" >>"$capture/capture.conf"
 run_make "$capture"
 same "another gaze runs render alone" "$? $(ran)" "0 render"
+
+echo "render.skin = plain" >>"$capture/capture.conf"
+run_make "$capture"
+same "skin of one colour runs render alone" "$? $(ran)" "0 render"
+check "which leaves without textures of skin" sh -c "! grep -aq '\"skin_colour\"' '$capture/work/render/mpfb.glb'"
+
+# A mesh that is not where the video has it cannot be asked of for its skin; auto does without, and says so.
+cp "$capture/work/skin/track.json" "$root/track.json"
+sed -i 's/"width": 1280/"width": 1281/' "$capture/work/skin/track.json"
+sed -i '/^render.skin/d' "$capture/capture.conf"
+"$BIN/render" --capture="$capture" >"$log" 2>&1 </dev/null
+same "a video that is not the one followed: render without it" "$? $(grep -c 'the video is not the one that was followed: it has one colour' "$log")" "0 2"
+"$BIN/render" --capture="$capture" --skin=video >"$log" 2>&1 </dev/null
+same "asked for all the same: an error in one line" "$? $(grep -c 'error\|skin of mpfb from video/face.mp4' "$log")" "1 1"
