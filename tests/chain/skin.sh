@@ -8,7 +8,7 @@ done
 capture=$root/face
 mkdir -p "$capture"
 cp -r samples/face/{video,targets,script,subject.ply,capture.conf} "$capture"
-echo "quality = draft" >>"$capture/capture.conf"
+printf "quality = draft\nrender.skin = auto\n" >>"$capture/capture.conf"
 
 run_make "$capture"
 same "make on a video, a mesh and a character" "$?" 0
@@ -31,7 +31,7 @@ echo "render.gaze = 15 -5" >>"$capture/capture.conf"
 run_make "$capture"
 same "another gaze runs render alone" "$? $(ran)" "0 render"
 
-echo "render.skin = plain" >>"$capture/capture.conf"
+sed -i "s/^render.skin.*/render.skin = plain/" "$capture/capture.conf"
 run_make "$capture"
 same "skin of one colour runs render alone" "$? $(ran)" "0 render"
 check "which leaves without textures of skin" sh -c "! grep -aq '\"skin_colour\"' '$capture/work/render/mpfb.glb'"
@@ -39,7 +39,7 @@ check "which leaves without textures of skin" sh -c "! grep -aq '\"skin_colour\"
 # A mesh that is not where the video has it cannot be asked of for its skin; auto does without, and says so.
 cp "$capture/work/skin/track.json" "$root/track.json"
 sed -i 's/"width": 1280/"width": 1281/' "$capture/work/skin/track.json"
-sed -i '/^render.skin/d' "$capture/capture.conf"
+sed -i 's/^render.skin.*/render.skin = auto/' "$capture/capture.conf"
 "$BIN/render" --capture="$capture" >"$log" 2>&1 </dev/null
 same "a video that is not the one followed: render without it" "$? $(grep -c 'the video is not the one that was followed: it has one colour' "$log")" "0 2"
 "$BIN/render" --capture="$capture" --skin=video >"$log" 2>&1 </dev/null
