@@ -78,6 +78,7 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 	} else {
 		stage_skipped(job->stage, "pictures of targets/%s: it has no rig", file);
 	}
+	skin_film_keep(job, &t);
 	skin_free(&t);
 	free(name);
 	return ok;

@@ -84,6 +84,11 @@ struct skin_job {
 	double gain;
 	char *eye_glb[2];                 // made by skin_eyes; the same for both, where both eyes are
 	size_t eye_size[2];
+	struct skin_worn {                // what skin_of_film made for a character, kept for the page, which shows it again
+		char *name;                   // null: nothing
+		struct look look;
+		double rgb[3];
+	} worn;
 };
 
 /* render/show.c: makes the contact sheets and the two pages. drawn: all pictures are there; false: only the review page is made. */
@@ -132,6 +137,9 @@ bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv,
  * for it all the same. */
 void skin_film(struct skin_target *target, struct stage *stage, const struct skin_conf *conf);
 bool skin_of_film(struct skin_job *job, struct skin_target *target, struct err *err);
+
+/* Hands the look that skin_of_film made to the job, unless it has one: skin_of_film gives it to the next target of that name. Portrait and dress, which use it, are freed. */
+void skin_film_keep(struct skin_job *job, struct skin_target *target);
 
 /* skin_open.c: loads the rig and makes the portrait, once; skin_free. */
 bool skin_open(struct skin_job *job, struct skin_target *target, struct err *err);

@@ -232,6 +232,30 @@ static bool wear(struct skin_target *t, const struct complexion *c, struct skin_
 	return ok;
 }
 
+void skin_film_keep(struct skin_job *job, struct skin_target *t)
+{
+	if (!t->film || !t->dress || job->worn.name)
+		return;
+	portrait_free(t->portrait);
+	dress_free(t->dress);
+	job->worn = (struct skin_worn){ mem_str(t->name), t->look, { t->film_rgb[0], t->film_rgb[1], t->film_rgb[2] } };
+	t->portrait = 0;
+	t->dress = 0;
+	t->look = (struct look){ 0 };
+}
+
+/* What was kept for it. */
+static bool taken(struct skin_target *t, struct skin_worn *worn)
+{
+	if (!worn->name || strcmp(worn->name, t->name) != 0)
+		return false;
+	t->look = worn->look;
+	memcpy(t->film_rgb, worn->rgb, sizeof t->film_rgb);
+	free(worn->name);
+	*worn = (struct skin_worn){ 0 };
+	return true;
+}
+
 bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	struct tracked f = { 0 };
@@ -240,6 +264,10 @@ bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 	struct complexion_conf conf = { .side = job->conf->film_px, .bumps = 0.07 * job->conf->portrait.texture };
 	memcpy(conf.sclera_rgb, job->render->scene.sclera_rgb, sizeof conf.sclera_rgb);
 	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
+	if (taken(t, &job->worn)) {
+		t->dress = dress_new(&t->look, job->conf->texture_px, &why);
+		return true;
+	}
 	bool ok = tracked_load(&f, job, t, &why);
 	if (ok) {
 		struct complexion *c = complexion_new(&f.mesh, (const double(*)[3])f.eye, f.radius, &conf);

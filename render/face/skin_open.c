@@ -144,6 +144,8 @@ void skin_close(struct skin_job *job)
 	if (job->eye_glb[1] != job->eye_glb[0])
 		free(job->eye_glb[1]);
 	free(job->eye_glb[0]);
+	free(job->worn.name);
+	look_free(&job->worn.look);
 	envmap_free(&job->studio);
 	skin_model_free(&job->model);
 	wrinkle_maps_free(&job->wrinkles);

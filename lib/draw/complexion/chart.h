@@ -29,4 +29,11 @@ struct complexion_spot {
  * lie; show: [n_faces] or null; out: [n_faces][3] how far out corners are. */
 struct complexion_spot *complexion_chart_raster(int side, int n_faces, const float (*uv)[3][2], const float (*out)[3], const bool *show);
 
+/* The mean of what the corners v of its face have, by its weights. */
+static inline void complexion_spot_mean(float out[3], const float (*of)[3], const int32_t v[3], const struct complexion_spot *s)
+{
+	for (int k = 0; k < 3; k++)
+		out[k] = (1 - s->w[0] - s->w[1]) * of[v[0]][k] + s->w[0] * of[v[1]][k] + s->w[1] * of[v[2]][k];
+}
+
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "draw/complexion/impl.h"
+#include "draw/smooth.h"
 #include "math/stats.h"
 #include "math/vec.h"
 
@@ -166,10 +167,10 @@ static float sample(float ln[3], const struct complexion *c, const float uv[2])
 		for (int k = 0; k < 3; k++)
 			ln[k] += w * c->ln[i][k];
 	}
-	const float t = fminf(rim, 1);
+	const float own = smooth(0, 1, rim);
 	for (int k = 0; k < 3; k++)
-		ln[k] = c->mean[k] + t * t * (3 - 2 * t) * (ln[k] - c->mean[k]);
-	return real * t * t * (3 - 2 * t);
+		ln[k] = c->mean[k] + own * (ln[k] - c->mean[k]);
+	return real * own;
 }
 
 float complexion_at(float rgb[3], const struct complexion *c, const float x[3])

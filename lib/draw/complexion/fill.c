@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
 #include "draw/complexion/impl.h"
+#include "draw/smooth.h"
 
 static const double alike_mm = 5;        // over more than this both halves of a face have the same colour
 static const double seam_mm = 0.8;       // over which what is seen goes over into what is not
@@ -42,15 +43,8 @@ bool complexion_place(float x[3], const struct complexion *c, long i)
 	if (s->face < 0)
 		return false;
 	const int32_t *v = c->mesh->faces[s->face];
-	for (int k = 0; k < 3; k++)
-		x[k] = (1 - s->w[0] - s->w[1]) * c->mesh->vertices[v[0]][k] + s->w[0] * c->mesh->vertices[v[1]][k] + s->w[1] * c->mesh->vertices[v[2]][k];
+	complexion_spot_mean(x, (const float(*)[3])c->mesh->vertices, v, s);
 	return true;
-}
-
-static float smooth(float t)
-{
-	t = fminf(fmaxf(t, 0), 1);
-	return t * t * (3 - 2 * t);
 }
 
 static long other(const struct complexion *c, long i)
@@ -67,7 +61,7 @@ static bool even(float (*ln)[3], const float *weight, const struct complexion *c
 	bool ok = complexion_blur(&low[0][0], near, &ln[0][0], weight, 3, alike_mm, c, err);
 	for (long i = 0; i < n && ok; i++) {
 		const long o = other(c, i);
-		both[i] = smooth(2 * fminf(near[i], near[o]));
+		both[i] = smooth(0, 1, 2 * fminf(near[i], near[o]));
 		for (int k = 0; k < 3; k++) {
 			const float apart = (low[o][k] - low[i][k]) / (float)brighter_ln;
 			off[i][k] = -(float)brighter_ln * logf(0.5f + 0.5f * expf(fminf(apart, 20)));
@@ -77,7 +71,7 @@ static bool even(float (*ln)[3], const float *weight, const struct complexion *c
 	ok = ok && complexion_blur(&low[0][0], near, &off[0][0], both, 3, 2 * alike_mm, c, err);
 	for (long i = 0; i < n && ok; i++)
 		for (int k = 0; k < 3; k++)
-			ln[i][k] -= both[i] * off[i][k] + (1 - both[i]) * smooth(4 * near[i]) * low[i][k];
+			ln[i][k] -= both[i] * off[i][k] + (1 - both[i]) * smooth(0, 1, 4 * near[i]) * low[i][k];
 	free(low);
 	free(off);
 	free(near);
@@ -118,7 +112,7 @@ static bool around(float (*out)[3], const float (*ln)[3], const float *known, co
 	for (int s = SCALES - 1; s >= 0 && ok; s--) {
 		ok = complexion_blur(&mean[0][0], near, &ln[0][0], known, 3, first_mm * (1 << s), c, err);
 		for (long i = 0; i < n && ok; i++) {
-			const float t = smooth(near[i] / 0.3f);
+			const float t = smooth(0, 1, near[i] / 0.3f);
 			for (int k = 0; k < 3; k++)
 				out[i][k] += t * (mean[i][k] - out[i][k]);
 		}
@@ -136,7 +130,7 @@ static bool shares(float *share, const float *weight, const struct complexion *c
 		share[i] = weight[i] > 0;
 	const bool ok = cv_blur(share, share, c->side, c->side, 1, seam_mm / c->texel_mm, err);
 	for (long i = 0; i < n; i++)
-		share[i] = weight[i] > 0 ? smooth(2 * share[i] - 1) : 0;
+		share[i] = weight[i] > 0 ? smooth(0, 1, 2 * share[i] - 1) : 0;
 	return ok;
 }
 

@@ -95,12 +95,6 @@ static void lay(struct maker *m, const struct look *l)
 	free(out);
 }
 
-static void between(float out[3], const float (*of)[3], const int32_t v[3], const struct complexion_spot *s)
-{
-	for (int k = 0; k < 3; k++)
-		out[k] = (1 - s->w[0] - s->w[1]) * of[v[0]][k] + s->w[0] * of[v[1]][k] + s->w[1] * of[v[2]][k];
-}
-
 /* Width of a texel on the character, mm; from its neighbour. */
 static double texel_of(const struct maker *m, long i)
 {
@@ -118,7 +112,7 @@ static void paint(struct maker *m, long i)
 	const struct complexion *c = m->c;
 	const int32_t *v = m->w->faces[s->face];
 	float on[3], rgb[3];
-	between(on, m->w->registered, v, s);
+	complexion_spot_mean(on, m->w->registered, v, s);
 	const float real = complexion_at(rgb, c, on);
 	const float rim = (1 - s->w[0] - s->w[1]) * m->w->margin[v[0]] + s->w[0] * m->w->margin[v[1]] + s->w[1] * m->w->margin[v[2]];
 	const double grain = real < 1 ? (1 - (double)real) * complexion_grain_at(&c->grain, m->at[i], texel_of(m, i)) : 0;
@@ -264,7 +258,7 @@ bool complexion_wear(struct look *l, const struct complexion *c, const struct co
 		if (m.spot[i].face < 0)
 			m.at[i][0] = m.at[i][1] = m.at[i][2] = NAN;
 		else
-			between(m.at[i], w->rest, w->faces[m.spot[i].face], &m.spot[i]);
+			complexion_spot_mean(m.at[i], w->rest, w->faces[m.spot[i].face], &m.spot[i]);
 #pragma omp parallel for schedule(dynamic, 4096)
 	for (size_t i = 0; i < n; i++)
 		paint(&m, (long)i);

@@ -27,15 +27,6 @@ static double rising(double x, double from, double to)
 	return t * t * (3 - 2 * t);
 }
 
-/* About the eyeball's centre, along the head's axes. */
-static void in_head(double out[3], const struct rig *rig, int side, const float x[3])
-{
-	double d[3];
-	for (int c = 0; c < 3; c++)
-		d[c] = x[c] - rig->globe[side].center[c];
-	mat_vec(out, rig->head_from_target, d);
-}
-
 /* How far up each open column's margin has to go: by[column], and [COLUMNS + 1] the sums of those before. */
 struct lift {
 	double by[COLUMNS], sum[COLUMNS + 1];
@@ -102,7 +93,7 @@ static void find_lids(struct deform_near *near, const struct rig *rig, int side)
 		double p[3];
 		if (!near->moves[v] || rig_is_globe(rig->part[v]) || rig->side[v] != side || rig->gap[v] > lid_radii * rig->globe[side].radius)
 			continue;
-		in_head(p, rig, side, rig->rest[v]);
+		deform_in_head(p, rig, side, rig->rest[v]);
 		const int i = (int)fmin(fmax(p[0] / o.step + COLUMNS / 2, o.first), o.last);
 		const double middle = 0.5 * (o.top[i] + o.bottom[i]), over = (p[1] - middle) / fmax(o.top[i] - middle, o.step);
 		const double lid = 1 - rising(rig->gap[v] / rig->globe[side].radius, 0.6 * lid_radii, lid_radii);
@@ -130,7 +121,7 @@ static bool nearer(double *arch, float (*x)[3], const struct rig *rig, const str
 		double p[3];
 		if (!(near->upper[i] > 0) || rig->side[i] != side)
 			continue;
-		in_head(p, rig, side, x[i]);
+		deform_in_head(p, rig, side, x[i]);
 		const double column = p[0] / now.step + COLUMNS / 2;
 		if (!(p[2] > 0) || column < now.first || column > now.last)
 			continue;
@@ -238,7 +229,7 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 		double p[3];
 		if (!(near->lower[i] > 0) || rig->side[i] != side)
 			continue;
-		in_head(p, rig, side, x[i]);
+		deform_in_head(p, rig, side, x[i]);
 		const double t = fmin(fmax((p[0] / now.step + COLUMNS / 2 - now.first) / span, 0), 1);
 		const int column = now.first + (int)lrint(t * span);
 		const double below = (now.bottom[column] - p[1]) / unit, with = (double)near->lower[i] * (1 - rising(below, goes_along_mm[0], goes_along_mm[1] + lack / unit));

@@ -11,8 +11,7 @@ static const double before = 0.2;               // of a globe's radius: skin fur
 static const double reach = 1.2;                // of it: columns to either side
 static const double step_mm = 0.4;              // the same: from one column to the next, a tenth of a millimetre, a margin goes up or down by less
 
-/* About the eyeball's centre, along the head's axes. */
-static void in_head(double out[3], const struct rig *rig, int side, const float x[3])
+void deform_in_head(double out[3], const struct rig *rig, int side, const float x[3])
 {
 	double d[3];
 	for (int c = 0; c < 3; c++)
@@ -128,7 +127,7 @@ void deform_open(struct deform_opening *o, const struct rig *rig, const struct d
 	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
 	for (int i = 0; i < rig->n; i++)
 		if (rig->side[i] == side)
-			in_head(head[i], rig, side, x[i]);
+			deform_in_head(head[i], rig, side, x[i]);
 	for (int k = 0; k < near->n; k++) {
 		const int32_t *v = rig->faces[near->face[k]];
 		if (rig->side[v[0]] != side)

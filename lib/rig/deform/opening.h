@@ -11,6 +11,9 @@ struct deform_opening {
 	double top[DEFORM_COLUMNS], bottom[DEFORM_COLUMNS];
 };
 
+/* A place about an eyeball's centre, along the head's axes, mm. */
+void deform_in_head(double out[3], const struct rig *rig, int side, const float x[3]);
+
 /* Exact for the mesh's faces, each column by itself; where the margin steps near an end, what is beyond lies behind it in the corner and is left out.
  * x: [rig.n]; within: heights between which an opening's middle lies, mm */
 void deform_open(struct deform_opening *opening, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2]);
