@@ -1,12 +1,12 @@
 "use strict";
-/* The page of many captures in a headless Chromium: node summary.js INDEX COUNT SECONDS PICTURE
- * INDEX: batch/index.html; COUNT captures must be told of within SECONDS; PICTURE: the page's first screen.
+/* The page of many captures in a headless Chromium: node summary.js INDEX COUNT PICTURE
+ * INDEX: batch/index.html; COUNT captures must be told of; PICTURE: the page's first screen.
  * Prints "pass NAME" or "fail NAME: WHY" a line. */
 const fs = require("fs");
 const { pathToFileURL } = require("url");
 const { Browser } = require("./browser.js");
 
-const [, , page, count, seconds, picture] = process.argv;
+const [, , page, count, picture] = process.argv;
 const say = (ok, name, why) => console.log(ok ? `pass ${name}` : `fail ${name}: ${why}`);
 
 (async () => {
@@ -16,9 +16,7 @@ const say = (ok, name, why) => console.log(ok ? `pass ${name}` : `fail ${name}: 
 		const begin = Date.now();
 		await b.open(pathToFileURL(page).href);
 		await b.until("document.querySelectorAll('#list tr').length > 0 && document.querySelector('#list img')?.complete", 60);
-		const took = (Date.now() - begin) / 1000;
-		say(took <= seconds, `${count} captures open within ${seconds} s`, `${took} s`);
-		console.log(`  opened in ${took} s`);
+		console.log(`  opened in ${(Date.now() - begin) / 1000} s`);
 		say((await b.value("document.getElementById('counts').textContent")).startsWith(`${count} captures: `), "all are counted", await b.value("document.getElementById('counts').textContent"));
 		say(await b.value("document.querySelector('#list .state').classList.contains('failed')"), "the worst stand first", "");
 		say(await b.value("[...document.querySelectorAll('#list img')].some(i => i.naturalWidth > 30)"), "pictures are shown", "");
@@ -31,6 +29,8 @@ const say = (ok, name, why) => console.log(ok ? `pass ${name}` : `fail ${name}: 
 		const before = await b.value("document.querySelectorAll('#list tr').length");
 		await b.value("window.scrollTo(0, document.body.scrollHeight)");
 		if (count > 100) {
+			// How long a page takes to open hangs on the machine; that it draws a few rows of many, on the page alone.
+			say(before < 500, "few rows are drawn at first", `${before} rows`);
 			await b.until(`document.querySelectorAll("#list tr").length > ${before}`, 10);
 			say(true, "more come when scrolled to");
 		}

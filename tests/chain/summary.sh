@@ -72,7 +72,7 @@ if command -v chromium >/dev/null && command -v node >/dev/null; then
 	"$BIN/summary" --capture="$root/crowd" >"$log" 2>&1
 	same "$N captures are put together" "$? $(cat "$log")" "0 "
 	echo "  $N captures put together in $((($(date +%s%N) - begin) / 1000000)) ms"
-	timeout 120 node tests/browser/summary.js "$root/crowd/batch/index.html" "$N" 3 "${SHOTS:-$root}/summary.png" >>"$root/said" 2>&1
+	timeout 120 node tests/browser/summary.js "$root/crowd/batch/index.html" "$N" "${SHOTS:-$root}/summary.png" >>"$root/said" 2>&1
 	check "the browser's run came to its end" grep -q 'nothing is loaded from elsewhere' "$root/said"
 else skip "the page in a browser" "no chromium or no node: apt-get install chromium nodejs"; fi
 while IFS= read -r line; do
