@@ -60,16 +60,17 @@ tests-sanitised: $(TESTS)
 stress: build $(STRESSES)
 	@printf '%s\n' $(filter %_render,$(STRESSES)) $(filter-out %_render,$(STRESSES)) | xargs -P $(CORES) -I{} sh -c 'said=$$({} --share=$(SHARE) --seed=$(SEED) 2>&1); bad=$$?; printf "== %s\n%s\n" {} "$$said"; exit $$bad'
 
-# Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive.
-FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE -w
+# Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive. Its C is built with all warnings: a second
+# compiler's word on it (tests/syntax.sh).
+FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE
 FUZZ_OBJ := $(LIB_SRC:%.c=build-fuzz/%.o) build-fuzz/lib/bridge/om_mesh.o build-fuzz/lib/bridge/ai_scene.o
 FUZZERS := $(patsubst tests/fuzz/fuzz_%.c,build-fuzz/fuzz_%,$(wildcard tests/fuzz/fuzz_*.c))
 build-fuzz/%.o: %.c
 	@mkdir -p $(@D)
-	@$(CLANG) -std=c2x $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -MMD -MP -c $< -o $@
+	@$(CLANG) -std=c2x $(WARN) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -MMD -MP -c $< -o $@
 build-fuzz/%.o: %.cc
 	@mkdir -p $(@D)
-	@$(CLANG)++ -std=c++17 $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -isystem /usr/include/opencv4 -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+	@$(CLANG)++ -std=c++17 -w $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link $(EXR_CFLAGS) -isystem /usr/include/opencv4 -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 build-fuzz/libeyewright.a: $(FUZZ_OBJ)
 	@rm -f $@
 	@$(AR) qcsD $@ $(FUZZ_OBJ)
