@@ -8,11 +8,7 @@
 #include "tests/lib/unit.h"
 #include "tests/lib/unseen/faces.h"
 
-#ifdef __SANITIZE_ADDRESS__
-enum { FACES = 2 };
-#else
-enum { FACES = 8 };
-#endif
+enum { FACES = SANITISED ? 2 : 8 };
 
 static int side_of(const struct ellipse *e, const struct unseen *u)
 {

@@ -49,6 +49,8 @@ static void test_captures(void **state)
 		skip();
 	}
 	struct limbus_found *found = mem_new(1, sizeof *found);
+	for (; SANITISED && n > 3; n--)
+		free(dirs[n - 1]);
 	for (int i = 0; i < n; i++) {
 		struct truth truth;
 		struct photo photo = { 0 };
@@ -81,7 +83,7 @@ static void test_synthetic(void **state)
 	struct limbus_conf rough = limbus_defaults;
 	rough.tolerance = 2 * LIMBUS_RIGHT;
 	int close = 0, right = 0, wrong = 0, rougher = 0, n = 0;
-	for (int i = 0; i < SYNTH_GRID * 3 / SYNTH_LEVELS; i += 8, n++) {  // occlusion 0, 15 and 30 %
+	for (int i = 0; i < SYNTH_GRID * 3 / SYNTH_LEVELS; i += SANITISED ? 40 : 8, n++) {  // occlusion 0, 15 and 30 %
 		struct synth_eye eye = synth_eye_grid(i + i / 8 % 6);  // all colours
 		struct synth_truth truth;
 		struct photo photo = synth_eye_render(&eye, &truth);
@@ -125,8 +127,9 @@ static void test_ring_light(void **state)
 	struct limbus_found *found = mem_new(1, sizeof *found);
 	struct limbus_conf anything = limbus_defaults;
 	anything.pupil.brightest = 10;
+	enum { EYES = SANITISED ? 1 : 4 };
 	int seen = 0, holes = 0;
-	for (int i = 0; i < SYNTH_GRID / SYNTH_LEVELS && seen < 4; i++) {
+	for (int i = 0; i < SYNTH_GRID / SYNTH_LEVELS && seen < EYES; i++) {
 		struct synth_eye eye = synth_eye_grid(i);
 		struct synth_truth truth;
 		eye.glints = 0;
@@ -143,8 +146,8 @@ static void test_ring_light(void **state)
 		}
 		photo_free(&photo);
 	}
-	assert_int_equal(seen, 4);
-	assert_true(holes > 0);
+	assert_int_equal(seen, EYES);
+	assert_true(SANITISED || holes > 0);
 	free(found);
 }
 

@@ -7,12 +7,7 @@
 #include "tests/lib/unit.h"
 
 enum { PARAMS = 6 };  // cx, cy, a, b, angle, theta
-// Sanitised, a few: memory faults show as well, and the plain run counts.
-#ifdef __SANITIZE_ADDRESS__
-enum { EYES = 12, NOISES = 1 };
-#else
-enum { EYES = 34, NOISES = 6 };
-#endif
+enum { EYES = SANITISED ? 12 : 34, NOISES = SANITISED ? 1 : 6 };
 
 static struct photo noisy(const struct photo *clean, double sigma, struct rng *rng)
 {

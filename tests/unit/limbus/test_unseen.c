@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { ANGLES = 360, SAMPLES = 49, CLEAN = 3, NAMED = 4 };
+enum { ANGLES = 360, SAMPLES = 49, CLEAN = SANITISED ? 1 : 3, NAMED = SANITISED ? 1 : 4 };
 static const double spacing = 0.005, middle = 24;
 
 static double luma(const struct photo *p, double x, double y)

@@ -378,11 +378,7 @@ static void rendered(void **state)
 	static const char *const clips[] = { "video/clip_a", "video/clip_b" };
 	if (!bench_data("video"))
 		skip();  // shared/data/video is not there
-#ifdef __SANITIZE_ADDRESS__
-	const int first = 1;  // the shorter one: the same code
-#else
-	const int first = 0;
-#endif
+	const int first = SANITISED;  // the shorter one: the same code
 	for (int i = first; i < 2; i++) {
 		struct tracked tracked;
 		struct skin_model model;

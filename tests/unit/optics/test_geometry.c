@@ -11,13 +11,6 @@
 /* What the project set itself, px of the photograph; of 95 % of the places. */
 static const double reach_px = 0.3;
 
-/* Sanitised all of it would take two minutes, of code that the first test and test_render's sanitised run go through. */
-#ifdef __SANITIZE_ADDRESS__
-static const bool sanitised = true;
-#else
-static const bool sanitised = false;
-#endif
-
 static void judge(const struct truth *t, const char *by, int shading, struct registered *r)
 {
 	double median = stats_quantile(r->n, r->px, 0.5), far = stats_quantile(r->n, r->px, 0.95);
@@ -30,6 +23,8 @@ static void judge(const struct truth *t, const char *by, int shading, struct reg
 static void capture(const char *name, bool map, int shading)
 {
 	const char *root = bench_data("eyes");
+	if (SANITISED)
+		skip();  // minutes, of code that test_render's sanitised run goes through
 	if (!root) {
 		print_message("the rendered captures are not there\n");
 		skip();
@@ -60,8 +55,6 @@ static void points_from_the_side(void **state)
 
 static void photograph(const char *name, int shading)
 {
-	if (sanitised)
-		skip();
 	capture(name, false, shading);
 }
 
@@ -82,7 +75,7 @@ static void wrong_depth_is_seen(void **state)
 {
 	(void)state;
 	const char *root = bench_data("eyes");
-	if (!root || sanitised)
+	if (!root || SANITISED)
 		skip();
 	char *dir = mem_printf("%s/G05_blue_40", root);
 	struct truth t;

@@ -162,11 +162,7 @@ static void check_taken(const struct colmap_model *m, const char *dir)
 static void test_mutated(void **state)
 {
 	(void)state;
-#ifdef __SANITIZE_ADDRESS__
-	enum { TRIALS = 4000 };
-#else
-	enum { TRIALS = 20000 };
-#endif
+	enum { TRIALS = SANITISED ? 4000 : 20000 };
 	struct colmap_model made;
 	struct err err = { 0 };
 	sfm_scene(&made, 4, 12, 1);
