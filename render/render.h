@@ -24,6 +24,7 @@ struct render_conf {
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
 	double page_glb_mib;             // largest character's .glb that the interactive page carries
+	double bloom;                    // share of light that is scattered over the studio's pictures
 	double socket_share;             // a fitted eye and a character's eyeball that differ by more are said to
 	double limit_mpx;                // larger photographs are refused
 };

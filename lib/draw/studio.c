@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "draw/bloom.h"
+
 double studio_exposure(const struct envmap *env, const double sclera[3])
 {
 	enum { TURNS = 16 };
@@ -17,7 +19,7 @@ double studio_exposure(const struct envmap *env, const double sclera[3])
 	return fmin(fmax(0.62 * 2 / (mean + most), 0.05), 3);
 }
 
-struct image studio_on_grey(const struct image *rgba, double gain)
+struct image studio_on_grey(const struct image *rgba, double gain, double glow)
 {
 	// A photographer's grey, falling off towards the corners.
 	static const float middle = 0.115f, corner = 0.030f;
@@ -31,5 +33,6 @@ struct image studio_on_grey(const struct image *rgba, double gain)
 			for (int c = 0; c < 3; c++)
 				image_at(&out, x, y)[c] = p[c] * (float)gain + (1 - p[3]) * grey;
 		}
+	bloom(&out, glow);
 	return out;
 }

@@ -10,7 +10,8 @@
  * sclera  albedo, linear */
 double studio_exposure(const struct envmap *env, const double sclera[3]);
 
-/* A picture (RGB premultiplied and A) times gain on a photographer's grey, which falls off towards the corners. image_free. */
-struct image studio_on_grey(const struct image *rgba, double gain);
+/* A picture (RGB premultiplied and A) times gain on a photographer's grey, which falls off towards the corners, with that share of its light
+ * scattered (bloom.h). image_free. */
+struct image studio_on_grey(const struct image *rgba, double gain, double glow);
 
 #endif

@@ -19,6 +19,7 @@ EMBED(viewer_march, "render/viewer/march.frag");
 EMBED(viewer_horizon, "render/viewer/horizon.frag");
 EMBED(viewer_iris, "render/viewer/iris.glsl");
 EMBED(viewer_eye_frag, "render/viewer/eye.frag");
+EMBED(viewer_bloom, "render/viewer/bloom.frag");
 EMBED(viewer_present, "render/viewer/present.frag");
 EMBED(viewer_lids, "render/viewer/lids.glsl");
 EMBED(viewer_tear, "render/viewer/tear.frag");

@@ -28,3 +28,11 @@ vec2 unfolded(vec3 d)
 	vec2 u = d.z > 0.0 ? vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(d.yx)) : d.xy;
 	return 0.5 * u + 0.5;
 }
+
+// A picture as it is seen: on a photographer's grey, which falls off towards the corners (lib/draw/studio.c).
+vec3 on_grey(sampler2D picture, vec2 at, vec3 gain)
+{
+	vec2 u = 2.0 * at - 1.0;
+	vec4 p = texture(picture, at);
+	return p.rgb * gain + (1.0 - p.a) * mix(0.115, 0.030, min(dot(u, u) / 2.0, 1.0));
+}

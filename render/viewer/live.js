@@ -136,7 +136,7 @@ class Live extends Leaving {
 		const exposure = this.beside ? 1 : (this.mode === "face" ? data.face.gain : this.eye.eye.exposure) * 2 ** this.values.exposure;
 		// In the photograph's own light its colour, beside the photograph its brightness, too.
 		const white = this.mode !== "face" && (this.eye.lights[this.light] || {}).white || [1, 1, 1], bright = this.beside ? 1 : 0.2126 * white[0] + 0.7152 * white[1] + 0.0722 * white[2];
-		this.scene.show(w, h, white.map(v => exposure * v / bright), false, this.values.tone);
+		this.scene.show(w, h, white.map(v => exposure * v / bright), false, this.values.tone, this.beside ? 0 : this.values.bloom);
 	}
 
 	/* How long a picture takes, from asking for it until the driver says it is done. */

@@ -1,16 +1,19 @@
-// The picture as it is seen: on a photographer's grey (lib/draw/studio.c), encoded as sRGB, without noise (bare) for measuring.
-uniform sampler2D picture;
+// The picture as it is seen, with the light that glows in it (bloom.frag, of so many octaves), encoded as sRGB, without noise (bare) for measuring.
+uniform sampler2D picture, glow;
 uniform vec3 gain;
-uniform float bare, tone;
+uniform float bare, tone, bloom, octaves;
 uniform vec2 size;
 out vec4 shown;
 
 void main()
 {
-	vec2 at = gl_FragCoord.xy / size, u = 2.0 * at - 1.0;
-	vec4 p = texture(picture, at);
-	float grey = mix(0.115, 0.030, min(dot(u, u) / 2.0, 1.0));
-	vec3 c = p.rgb * gain + (1.0 - p.a) * grey;
+	vec2 at = gl_FragCoord.xy / size;
+	vec3 c = on_grey(picture, at, gain);
+	if (bloom > 0.0) {
+		ivec2 p = ivec2(gl_FragCoord.xy), a = p / 2, b = clamp(a + 2 * (p & 1) - 1, ivec2(0), textureSize(glow, 0) - 1);
+		vec3 g = (9.0 * texelFetch(glow, a, 0).rgb + 3.0 * texelFetch(glow, ivec2(b.x, a.y), 0).rgb + 3.0 * texelFetch(glow, ivec2(a.x, b.y), 0).rgb + texelFetch(glow, b, 0).rgb) / 16.0;
+		c = (1.0 - bloom) * c + bloom / octaves * g;
+	}
 	// As film takes highlights: Narkowicz's fit of the ACES curve, with middle grey where it was.
 	vec3 f = 0.8 * c;
 	c = mix(clamp(c, 0.0, 1.0), clamp(f * (2.51 * f + 0.03) / (f * (2.43 * f + 0.59) + 0.14), 0.0, 1.0), tone);

@@ -151,6 +151,34 @@ class EyeScene {
 			this.g.gl.deleteTexture(this.target.texture);
 		this.target = this.g.texture(width, height, this.g.gl.RGBA16F);
 		this.count = 0;
+		for (const t of this.glows || [])
+			this.g.gl.deleteTexture(t.texture);
+		this.glows = null;
+	}
+
+	/* The light that glows (bloom.frag), as lib/draw/bloom.c has it: a pyramid of the picture, summed up into its level of half the size. Returns how many octaves. */
+	glow(gain) {
+		const { g } = this, gl = g.gl, { width, height } = this.target, side = Math.min(width, height);
+		let last = 0, first = 0;
+		for (; last < 16 && side >> last + 1 >= 8; last++)
+			first = first || (side >> last + 1 <= 256 ? last + 1 : 0);
+		this.glower = this.glower || g.program("bloom");
+		this.glows = this.glows || Array.from({ length: last + 1 }, (_, k) => g.plain(...[width, height].map(v => Math.ceil(v / 2 ** k)), gl.RGBA16F));
+		const pass = (what, from, to) => {
+			g.target(to);
+			g.draw(this.glower, { picture: from, gain, what, size: [to.width, to.height] });
+		};
+		pass(0, this.target, this.glows[0]);
+		for (let k = 1; k <= last; k++)
+			pass(1, this.glows[k - 1], this.glows[k]);
+		for (let k = last - 1; k > 0; k--) {
+			if (k >= first)
+				gl.enable(gl.BLEND);
+			gl.blendFunc(gl.ONE, gl.ONE);
+			pass(2, this.glows[k + 1], this.glows[k]);
+			gl.disable(gl.BLEND);
+		}
+		return last - first + 1;
 	}
 
 	/* A target for the paths of all beams, on side x side points. */
@@ -298,8 +326,10 @@ class EyeScene {
 		this.count = 0;
 	}
 
-	show(width, height, gain, bare, tone) {
+	/* gain: of all channels, or of each; bare: without noise; tone: as film takes highlights, 0 to 1; bloom: share of light that glows. */
+	show(width, height, gain, bare, tone, bloom) {
+		const own = [0, 1, 2].map(c => Array.isArray(gain) ? gain[c] : gain), wide = bloom > 0 && Math.min(width, height) >= 16, octaves = wide ? this.glow(own) : 1;
 		this.g.target(null, width, height);
-		this.g.draw(this.present, { picture: this.target, gain: [0, 1, 2].map(c => Array.isArray(gain) ? gain[c] : gain), bare: bare ? 1 : 0, tone: tone || 0, size: [width, height] });
+		this.g.draw(this.present, { picture: this.target, glow: wide ? this.glows[1] : this.target, gain: own, bare: bare ? 1 : 0, tone: tone || 0, bloom: wide ? bloom : 0, octaves, size: [width, height] });
 	}
 }

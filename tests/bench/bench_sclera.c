@@ -49,7 +49,7 @@ int main(int argc, char **argv)
 	bench_open("sclera", argc, argv);
 	struct case_of *k = mem_new(1, sizeof *k);
 	const double dark[3] = { 0 };
-	k->env = envmap_room(256, dark, dark, 1, 1, &(struct envmap_box){ { 0, 0, -1 }, { 0.03, 0.03 }, { 1000, 1000, 1000 } });
+	k->env = envmap_room(256, dark, dark, 1, 1, &(struct envmap_box){ { 0, 0, -1 }, { 0.03, 0.03 }, { 1000, 1000, 1000 }, 0 });
 	for (int i = 0; i < NORMALS; i++) {
 		double t = M_PI * (i % ZONES + 0.5) / ZONES;
 		k->normal[i][0] = (float)sin(t);

@@ -110,6 +110,7 @@ function picture(text, preset, width, height, directions, grid, coarse, map, sea
 	if (several)
 		add(main("refine"), eyes * 2 * grid * grid * (beams + 1));
 	add(main("march", preset.shadow > 0 ? ["shadows"] : []), eyes * (map >> 1 + preset.apart) ** 2);
+	add(main("bloom"), 5 / 3 * pixels);
 	add(main("present"), pixels);
 	if (!face)
 		add(main("eye"), pixels);

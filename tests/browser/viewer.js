@@ -43,7 +43,7 @@ async function compare(b, png, yaw, pitch) {
 		const view = { yaw: ${yaw} * Math.PI / 180, pitch: ${pitch} * Math.PI / 180, orbit: [0, 0], pan: [0, 0], field: 27, closure: 0 };
 		for (let i = 0; i < 4; i++)
 			s.add({ ...p.state(), aperture: null }, view, presets[0], [(i % 2) / 2 - 0.25, (i >> 1) / 2 - 0.25]);
-		s.show(n, n, p.eye.eye.exposure, true);
+		s.show(n, n, p.eye.eye.exposure, true, 0, data.bloom);
 		gl.readPixels(0, 0, n, n, gl.RGBA, gl.UNSIGNED_BYTE, got);
 		p.changed();
 		const line = v => v <= 10.31 ? v / 3294.6 : Math.pow((v / 255 + 0.055) / 1.055, 2.4);

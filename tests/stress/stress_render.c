@@ -106,7 +106,7 @@ static struct envmap any_light(struct rng *rng, bool even)
 	int n = even ? 0 : rng_below(rng, 4);
 	for (int i = 0; i < n; i++) {
 		double z = over(rng, -1, 1), phi = rng_range(rng, 0, 2 * M_PI), r = sqrt(fmax(1 - z * z, 0)), power = pow(10, rng_range(rng, 0, 4));
-		boxes[i] = (struct envmap_box){ { r * cos(phi), r * sin(phi), z }, { over(rng, 0.03, 1), over(rng, 0.03, 1) }, { power, power, power } };
+		boxes[i] = (struct envmap_box){ { r * cos(phi), r * sin(phi), z }, { over(rng, 0.03, 1), over(rng, 0.03, 1) }, { power, power, power }, 0 };
 	}
 	double ceiling[3], floor[3];
 	for (int c = 0; c < 3; c++) {

@@ -40,6 +40,7 @@ static bool lamp(struct envmap_box *box, const struct glint *g, const struct sho
 	box->half[1] = fmin(fmax(angle(t, b) / 2, 0.01), 0.7);
 	for (int c = 0; c < 3; c++)
 		box->rgb[c] = g->rgb[c] / mirror_at_normal;
+	box->hot = 0;  // a glint that clips tells nothing of it
 	return true;
 }
 
@@ -54,7 +55,7 @@ struct envmap light_studio(int height)
 	for (int i = 0; i < 3; i++) {
 		double x = sin(at[i][0] * deg) * cos(at[i][1] * deg), y = -sin(at[i][1] * deg);
 		boxes[i] = (struct envmap_box){ { x, y, -sqrt(1 - x * x - y * y) }, { half[i][0] * deg, half[i][1] * deg },
-		                                { rgb[i][0], rgb[i][1], rgb[i][2] } };
+		                                { rgb[i][0], rgb[i][1], rgb[i][2] }, 0.75 };
 	}
 	struct envmap env = envmap_room(height, ceiling, floor, 0.15, 3, boxes);
 	envmap_normalise(&env);
@@ -70,7 +71,7 @@ struct envmap light_window(int height)
 	for (int i = 0; i < 5; i++) {
 		const double x = sin(at[i][0] * deg) * cos(at[i][1] * deg), y = -sin(at[i][1] * deg), day = i < 4 ? 14 : 0.9;
 		boxes[i] = (struct envmap_box){ { x, y, -sqrt(1 - x * x - y * y) }, { (i < 4 ? 8 : 25) * deg, (i < 4 ? 11.5 : 30) * deg },
-		                                { day * (i < 4 ? 0.90 : 1.1), day, day * (i < 4 ? 1.16 : 0.86) } };
+		                                { day * (i < 4 ? 0.90 : 1.1), day, day * (i < 4 ? 1.16 : 0.86) }, i < 4 ? 0 : 1 };
 	}
 	struct envmap env = envmap_room(height, ceiling, floor, 0.4, 5, boxes);
 	envmap_normalise(&env);

@@ -116,16 +116,22 @@ static void project(struct envmap *env)
 			env->quadric[k][c] = (float)(factor[k] * env->sh[from[k]][c] - (k ? 0 : 0.315391565252520 * env->sh[6][c]));
 }
 
-/* Coverage of a direction by a box: 1 inside, falling to 0 over half a degree outside. */
-static double box_cover(const struct envmap_box *box, const double side[3], const double up[3], const double dir[3])
+/* Coverage of a direction by a box: 1 inside, falling to 0 over half a degree outside. bright: its radiance there over its mean. */
+static double box_cover(double *bright, const struct envmap_box *box, const double side[3], const double up[3], const double dir[3])
 {
 	double z = dir[0] * box->dir[0] + dir[1] * box->dir[1] + dir[2] * box->dir[2];
+	*bright = 1;
 	if (z <= 0.1)
 		return 0;
 	double a = atan((dir[0] * side[0] + dir[1] * side[1] + dir[2] * side[2]) / z);
 	double b = atan((dir[0] * up[0] + dir[1] * up[1] + dir[2] * up[2]) / z);
 	double edge = 0.5 * M_PI / 180, out = fmax(fabs(a) - box->half[0], fabs(b) - box->half[1]);
 	double t = 1 - fmin(fmax(out / edge + 0.5, 0), 1);
+	if (box->hot > 0) {
+		// A Gaussian of the mean 1 over the box.
+		const double fade = 1.5, u = a / box->half[0], v = b / box->half[1], mean = M_PI * pow(erf(sqrt(fade)), 2) / (4 * fade);
+		*bright += box->hot * (exp(-fade * (u * u + v * v)) / mean - 1);
+	}
 	return t * t * (3 - 2 * t);
 }
 
@@ -156,10 +162,10 @@ static void paint_box(struct image *map, const struct envmap_box *box)
 			double a = d[0] * box->dir[0] + d[1] * box->dir[1] + d[2] * box->dir[2];
 			if (a < 0.3)
 				continue;
-			double t = box_cover(box, side, up, d);
+			double bright, t = box_cover(&bright, box, side, up, d);
 			for (int c = 0; c < 3; c++) {
 				float *p = &image_at(map, x, y)[c];
-				*p += (float)(t * (box->rgb[c] - *p));
+				*p += (float)(t * (bright * box->rgb[c] - *p));
 			}
 		}
 }

@@ -24,7 +24,8 @@ struct envmap {
 struct envmap_box {
 	double dir[3];
 	double half[2];      // radians
-	double rgb[3];
+	double rgb[3];       // its mean
+	double hot;          // 0: even .. 1: brightest in the middle, as a lamp behind a cloth is: 2.3 times the mean, half of it in the middle of an edge
 };
 
 /* A directional light that stands for a region of the map. */

@@ -72,7 +72,7 @@ struct envmap sclera_light_environment(const struct sclera_light *s, int height)
 		even = least;
 	}
 	double room[3] = { even, even, even }, area = 4 * asin(sin(half) * sin(half));
-	struct envmap_box box = { { 0, 0, -1 }, { half, half }, { 0 } };
+	struct envmap_box box = { { 0, 0, -1 }, { half, half }, { 0 }, 0 };
 	if (slope > 1e-6) {
 		box.dir[0] = across * s->slope[0] / slope;
 		box.dir[1] = across * s->slope[1] / slope;

@@ -39,8 +39,8 @@ bool ridged_scene(struct scene *scene, const struct scene_conf *conf)
 
 struct envmap ridged_room(void)
 {
-	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.15, 0.2 }, { 25, 25, 25 } },
-		                         { { 0.7, -0.1, -0.7071 }, { 0.1, 0.2 }, { 10, 10, 11 } } };
+	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.15, 0.2 }, { 25, 25, 25 }, 0 },
+		                         { { 0.7, -0.1, -0.7071 }, { 0.1, 0.2 }, { 10, 10, 11 }, 0 } };
 	struct envmap env = envmap_room(128, (double[3]){ 0.6, 0.6, 0.7 }, (double[3]){ 0.2, 0.2, 0.2 }, 0.5, 2, box);
 	envmap_normalise(&env);
 	return env;

@@ -107,7 +107,7 @@ static void photograph_comes_back(void **state)
 	scene_of(&s, &plain_eye, &conf, even, bumps, 1.5);
 	struct fit fit = fit_at(0.35, 480, 480, 4200);
 	struct scene_view view = scene_view_photo(&fit, (double[4]){ 0, 0, 480, 480 }, 1);
-	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 } };
+	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 }, 0 };
 	struct envmap env = envmap_room(64, (double[3]){ 0.5, 0.5, 0.5 }, (double[3]){ 0.2, 0.2, 0.2 }, 1, 1, &box);
 	struct scene_lighting light = scene_lighting(&env, 0, 4);
 	scene_fit_colour(&s, &view, &light);
@@ -177,7 +177,7 @@ static void threads_and_numbers(void **state)
 /* Mean difference of a picture marched from every `apart`-th texel from one marched along every ray. */
 static double texels_off(int apart, double relief(double x, double y))
 {
-	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 } };
+	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 }, 0 };
 	struct envmap env = envmap_room(64, (double[3]){ 0.5, 0.5, 0.5 }, (double[3]){ 0.2, 0.2, 0.2 }, 1, 1, &box);
 	struct scene_lighting light = scene_lighting(&env, &env, 4);
 	struct image image[2];
@@ -246,7 +246,7 @@ static void kept_and_hidden(void **state)
 	struct scene_conf conf = conf_of(4);
 	conf.shading = SCENE_TEXELS;
 	scene_of(&s, &plain_eye, &conf, spot, bumps, 1.5);
-	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 } }, { { 0.6, -0.48, -0.64 }, { 0.2, 0.2 }, { 5, 12, 12 } } };
+	struct envmap_box box[2] = { { { -0.48, -0.6, -0.64 }, { 0.2, 0.2 }, { 12, 12, 12 }, 0 }, { { 0.6, -0.48, -0.64 }, { 0.2, 0.2 }, { 5, 12, 12 }, 0 } };
 	struct scene_hits *hits = scene_hits_new();
 	struct scene_view view = scene_view_turned(&s, 0.2, 0.1, 27, N);
 	for (int k = 0; k < 2; k++) {

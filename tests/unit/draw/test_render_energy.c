@@ -91,7 +91,7 @@ static void tissue_furnace(void **state)
 static void converges(void **state)
 {
 	(void)state;
-	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.3, 0.3 }, { 12, 12, 12 } };
+	struct envmap_box box = { { -0.48, -0.6, -0.64 }, { 0.3, 0.3 }, { 12, 12, 12 }, 0 };
 	struct envmap env = envmap_room(64, (double[3]){ 0.3, 0.3, 0.3 }, (double[3]){ 0.1, 0.1, 0.1 }, 1, 1, &box);
 	struct scene s;
 	struct scene_conf conf = conf_of(4);

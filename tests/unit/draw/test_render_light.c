@@ -59,7 +59,7 @@ static void white_by_photons(void **state)
 	enum { ZONES = 36 };
 	static const struct sclera_shell shell[] = { { 11.8, 0.6, 4.4, 0.06, 0.9, 1.336 }, { 11.8, 0.6, 3.0, 0.04, 0.9, 1.336 }, { 11.8, 0.9, 2.6, 0.02, 0.9, 1.336 }, { 11.8, 0.45, 2.6, 0.02, 0.8, 1.336 } };
 	const double lamp[3] = { 0.6, -0.48, -0.64 }, dark[3] = { 0 };
-	struct envmap_box box = { { lamp[0], lamp[1], lamp[2] }, { 0.03, 0.03 }, { 1000, 1000, 1000 } };
+	struct envmap_box box = { { lamp[0], lamp[1], lamp[2] }, { 0.03, 0.03 }, { 1000, 1000, 1000 }, 0 };
 	struct envmap env = envmap_room(256, dark, dark, 1, 1, &box), twice = envmap_tinted(&env, (double[3]){ 1, 2, 0.5 });
 	for (int k = 0; k < COUNT(shell); k++) {
 		double truth[ZONES], mean = 0, worst = 0;
@@ -91,7 +91,7 @@ static void white_by_photons(void **state)
 static void one_lamp(void **state)
 {
 	(void)state;
-	struct envmap_box box = { { 0.48, -0.6, -0.64 }, { 0.1, 0.1 }, { 20, 10, 5 } };
+	struct envmap_box box = { { 0.48, -0.6, -0.64 }, { 0.1, 0.1 }, { 20, 10, 5 }, 0 };
 	struct envmap env = envmap_room(256, (double[3]){ 0.01, 0.01, 0.01 }, (double[3]){ 0.01, 0.01, 0.01 }, 1, 1, &box);
 	float rgb[3], dir[3] = { 0.48f, -0.6f, -0.64f }, away[3] = { -0.48f, -0.6f, -0.64f };
 	envmap_at(rgb, &env, dir, 0);

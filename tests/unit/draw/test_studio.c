@@ -1,6 +1,7 @@
 /* What is read off the reference photograph, and how the beauty views are exposed: closed forms. */
 #include "tests/lib/unit.h"
 
+#include "draw/bloom.h"
 #include "draw/photo/reference.h"
 #include "draw/studio.h"
 
@@ -46,13 +47,82 @@ static void grey_shows_where_the_eye_does_not(void **state)
 	for (int i = 0; i < 101 * 101; i++)
 		rgba.px[4 * i + 3] = i < 101;  // the first row is covered, in black
 	image_at(&rgba, 50, 0)[1] = 0.25f;
-	struct image out = studio_on_grey(&rgba, 2);
+	struct image out = studio_on_grey(&rgba, 2, 0);
 	NEAR(image_at(&out, 50, 50)[0], 0.115, 1e-6);
 	NEAR(image_at(&out, 0, 100)[0], 0.115 + (0.030 - 0.115) * pow(100 / 101.0, 2), 1e-6);
 	NEAR(image_at(&out, 50, 0)[1], 0.5, 1e-6);
 	NEAR(image_at(&out, 50, 0)[0], 0, 1e-6);
 	image_free(&out);
 	image_free(&rgba);
+}
+
+/* Light that a spot throws so far away in a picture of n px, over the spot's own. */
+static double thrown(int n, double share, double away)
+{
+	struct image rgb = image_new(n, n, 3);
+	const int spot = n / 64;
+	for (int y = 0; y < spot; y++)
+		for (int x = 0; x < spot; x++)
+			image_at(&rgb, n / 2 - spot / 2 + x, n / 2 - spot / 2 + y)[1] = 100;
+	double before = 0, after = 0, red = 0;
+	for (long i = 0; i < 3L * n * n; i++)
+		before += rgb.px[i];
+	bloom(&rgb, share);
+	for (long i = 0; i < (long)n * n; i++) {
+		after += rgb.px[3 * i + 1];
+		red = fmax(red, rgb.px[3 * i]);
+	}
+	NEAR(after, before, 0.03 * share * before);  // little reaches the borders
+	assert_true(red == 0);
+	const double seen = image_at(&rgb, (int)(n * (0.5 + away)), n / 2)[1] / 100.0;
+	image_free(&rgb);
+	return seen;
+}
+
+static void bright_light_glows_and_none_is_lost(void **state)
+{
+	(void)state;
+	const double near = thrown(512, 0.1, 0.03), far = thrown(512, 0.1, 0.06), farther = thrown(512, 0.1, 0.12);
+	assert_true(near > far && far > farther && farther > 0);
+	// As the square of the distance, give or take what octaves are.
+	NEAR(log2(near / farther), 4, 0.8);
+	NEAR(thrown(512, 0.2, 0.06), 2 * far, 1e-3 * far);
+	NEAR(thrown(1024, 0.1, 0.06), far, 0.1 * far);  // the same in a picture of another size
+	struct image rgb = image_new(37, 19, 3), small = image_new(9, 5, 3);
+	for (long i = 0; i < 3L * 37 * 19; i++)
+		rgb.px[i] = 0.25F;
+	bloom(&rgb, 0.5);  // what is even stays even, also at the borders
+	for (long i = 0; i < 3L * 37 * 19; i++)
+		NEAR(rgb.px[i], 0.25, 1e-6);
+	image_at(&small, 4, 2)[0] = 1;
+	bloom(&small, 1);
+	assert_true(image_at(&small, 4, 2)[0] == 1);
+	image_free(&rgb);
+	image_free(&small);
+}
+
+/* As much light as an even box, gathered in its middle. */
+static void a_softbox_is_brightest_in_its_middle(void **state)
+{
+	(void)state;
+	const double dark[3] = { 0, 0, 0 };
+	float even[3], hot[3], toward[3] = { 0.6F, 0, -0.8F };
+	struct envmap_box box = { { 0.6, 0, -0.8 }, { 0.2, 0.3 }, { 10, 20, 5 }, 0 };
+	struct envmap flat = envmap_room(256, dark, dark, 1, 1, &box);
+	box.hot = 1;
+	struct envmap round = envmap_room(256, dark, dark, 1, 1, &box);
+	envmap_irradiance(even, &flat, toward);
+	envmap_irradiance(hot, &round, toward);
+	NEAR(hot[1], even[1], 0.03 * even[1]);
+	envmap_at(even, &flat, toward, 0);
+	envmap_at(hot, &round, toward, 0);
+	NEAR(even[1], 20, 0.01);
+	assert_true(hot[1] > 2 * even[1]);
+	const float edge[3] = { (float)sin(0.6435 + 0.19), 0, (float)-cos(0.6435 + 0.19) };
+	envmap_at(hot, &round, edge, 0);
+	assert_true(hot[1] < 0.7F * even[1] && hot[1] > 0.3F * even[1]);
+	envmap_free(&flat);
+	envmap_free(&round);
 }
 
 static void a_window_is_as_large_as_the_photograph_lets_it(void **state)
@@ -85,7 +155,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(even_light_exposes_the_sclera_to_62_per_cent),
-		cmocka_unit_test(grey_shows_where_the_eye_does_not),
+		cmocka_unit_test(grey_shows_where_the_eye_does_not), cmocka_unit_test(bright_light_glows_and_none_is_lost),
+		cmocka_unit_test(a_softbox_is_brightest_in_its_middle),
 		cmocka_unit_test(a_window_is_as_large_as_the_photograph_lets_it),
 		cmocka_unit_test(the_edges_blur_is_the_limbus_width),
 	};

@@ -121,7 +121,7 @@ static void pupil_at_any_weight(void **state)
 static void maps_under(struct image maps[EXPORT_MAPS], const struct scene *s, double room, double lamp)
 {
 	struct err err = { 0 };
-	const struct envmap_box box = { { -0.8, 0, -0.6 }, { 0.15, 0.15 }, { lamp, lamp, lamp } };
+	const struct envmap_box box = { { -0.8, 0, -0.6 }, { 0.15, 0.15 }, { lamp, lamp, lamp }, 0 };
 	struct envmap env = envmap_room(32, (double[3]){ room, room, room }, (double[3]){ room, room, room }, 1, lamp > 0, &box);
 	if (!export_eye_maps(maps, s, 0, &env, 256, &err))
 		fail_msg("%s", err.msg);

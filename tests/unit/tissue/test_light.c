@@ -44,9 +44,9 @@ static double traced(const double P[3], const struct envmap *env, long rays)
 static void through_cornea(void **state)
 {
 	(void)state;
-	struct envmap_box lamp = { { -0.45, -0.4, -0.798 }, { 0.2, 0.2 }, { 15, 15, 15 } };
+	struct envmap_box lamp = { { -0.45, -0.4, -0.798 }, { 0.2, 0.2 }, { 15, 15, 15 }, 0 };
 	struct envmap env = envmap_room(256, room, room, 0, 1, &lamp);
-	struct iris_view view = { .env = &env, .eye = &eye, .cam_from_eye = { { 1 }, { 0, 1 }, { 0, 0, 1, 500 }, { 0, 0, 0, 1 } } };
+	struct iris_view view = { .env = &env, .eye = &eye, .cam_from_eye = { { 1 }, { 0, 1 }, { 0, 0, 1, 500 }, { 0, 0, 0, 1 }, 0 } };
 	struct image light;
 	iris_light_make(&light, 65, 6.5, &view);
 	for (int i = 0; i < 5; i++) {
@@ -119,7 +119,7 @@ static void from_sclera(void **state)
 {
 	(void)state;
 	enum { N = 600, LIGHTS = 128 };
-	struct envmap_box lamp = { { 0.5, -0.35, -0.792 }, { 0.15, 0.15 }, { 14, 14, 14 } };
+	struct envmap_box lamp = { { 0.5, -0.35, -0.792 }, { 0.15, 0.15 }, { 14, 14, 14 }, 0 };
 	struct envmap env = envmap_room(128, room, room, 0, 1, &lamp);
 	struct envmap_light lights[LIGHTS];
 	struct pale s[N];
@@ -156,7 +156,7 @@ static void from_sclera(void **state)
 static void small_lamp(void **state)
 {
 	(void)state;
-	struct envmap_box lamp = { { -0.6, 0, -0.8 }, { 0.03, 0.03 }, { 900, 900, 900 } };
+	struct envmap_box lamp = { { -0.6, 0, -0.8 }, { 0.03, 0.03 }, { 900, 900, 900 }, 0 };
 	struct envmap env = envmap_room(64, room, room, 0, 1, &lamp);
 	struct envmap_light lights[ENVMAP_LIGHTS_MAX];
 	double all[3] = { 0 };
