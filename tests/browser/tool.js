@@ -145,6 +145,46 @@ async function exposed(b) {
 	say(off.burnt > 0.2 && off.bright < 0.8 * off.burnt, "as on film, highlights that would burn out do not", JSON.stringify(off));
 }
 
+/* Light that glows is moved, not made: the picture's mean stays, and the pupil's middle gets what octaves of Gaussians bring there (lib/draw/bloom.h: level k of its
+ * pyramid is blurred by a binomial at every level down and up, of the variance (4^k - 1) / 2). */
+async function glows(b) {
+	await open(b, page, "#gaze=0,0");
+	const got = JSON.parse(await b.value(`(() => {
+		const p = eyewright, was = p.values.bloom, at = bloom => { p.values.exposure = -1.5; p.values.bloom = bloom; p.scene.restart(); p.draw(presets[presets.length - 1]); return ${pixels}; };
+		p.busy = true;
+		const [sharp, soft] = [at(0), at(0.5)], { width, height } = p.graphics.gl.canvas, line = v => v <= 10.31 ? v / 3294.6 : Math.pow((v / 255 + 0.055) / 1.055, 2.4);
+		p.values.exposure = 0;
+		at(was);
+		p.busy = false;
+		const mean = (px, half) => {
+			let sum = 0, n = 0;
+			for (let y = 0; y < height; y++)
+				for (let x = 0; x < width; x++)
+					if (!half || Math.hypot(x - width / 2, y - height / 2) < half) {
+						n++;
+						sum += line(px[4 * (y * width + x) + 1]);
+					}
+			return sum / n;
+		};
+		const side = Math.min(width, height), octaves = [];
+		for (let k = 1; side >> k >= 8; k++)
+			if (side >> k <= 256) {
+				let sum = 0, weight = 0;
+				for (let y = 0; y < height; y++)
+					for (let x = 0; x < width; x++) {
+						const w = Math.exp(-(((x + 0.5 - width / 2) ** 2 + (y + 0.5 - height / 2) ** 2) / (4 ** k - 1)));
+						sum += w * line(sharp[4 * (y * width + x) + 1]);
+						weight += w;
+					}
+				octaves.push(sum / weight);
+			}
+		const glow = octaves.reduce((a, v) => a + v, 0) / octaves.length, pupil = [mean(sharp, height / 100), mean(soft, height / 100)];
+		return JSON.stringify({ all: [mean(sharp), mean(soft)], pupil, want: 0.5 * pupil[0] + 0.5 * glow });
+	})()`, 120000));
+	say(Math.abs(got.all[1] / got.all[0] - 1) < 0.02, "a glow keeps the light that there is", JSON.stringify(got));
+	say(Math.abs(got.pupil[1] - got.want) < 0.1 * (got.want - got.pupil[0] / 2) + 2e-4, "and brings as much into the pupil as its octaves say", JSON.stringify(got));
+}
+
 /* What a button saves. */
 const saved = (b, button, seconds) => b.value(`(async () => {
 	const kept = new Promise((done, late) => { Tools.download = (blob, name) => done([blob, name]); setTimeout(() => late(new Error("nothing saved")), ${1000 * seconds}); });
@@ -276,6 +316,7 @@ async function left_out(b) {
 		await two(b);
 		await presets_of(b);
 		await exposed(b);
+		await glows(b);
 		await whole_screen(b);
 		await dropped(b);
 		await left_out(b);
