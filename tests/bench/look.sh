@@ -63,4 +63,21 @@ for deg in $DEGREES; do
 	rows+=("$deg degrees" "$export/reference_$at.exr" "$(there_or "$root/eye_$at.npy")" "$(there_or "$root/cycles_$at.exr")")
 done
 "$B/tests/tools/look_sheet" "$export/eye.json" bench/look.png "${rows[@]}" && echo "for the eye: bench/look.png"
+
+# The driven face: its .glb as Blender imports it, its eyes as blender_eye.py assembles them, part by part. It has no goals. FACE=no leaves it out.
+if [ "${FACE:-yes}" = yes ]; then
+	face=$root/face
+	cp -r samples/face "$face"
+	mkdir -p "$face/photos" && cp "$PHOTO" "$face/photos"
+	printf '%s\n' "quality = review" "render.look_px = 640" "render.clip_px = 0" "render.blink_frames = 3" "render.sheet_px = 300" "export.make = yes" >>"$face/capture.conf"
+	run_make "$face" || { tail -n 3 "$log"; exit 1; }
+	field=$(sed -n 's/^face_field = //p' config/render.conf)
+	for layers in "$face"/work/render/*_look_layers.exr; do
+		name=${layers##*/} name=${name%_look_layers.exr}
+		read -r width height < <("$B/tests/tools/face_compare" "$layers")
+		timeout 3000 blender -b --python tests/tools/face_cycles.py -- "$face/work/render/$name.glb" "$face/work/export" "$root/$name.exr" "$SAMPLES" "$width" "$height" "$field" >"$log" 2>&1 || { tail -n 5 "$log"; exit 1; }
+		"$B/tests/tools/face_compare" "$layers" "$root/$name.exr" "bench/look_$name.png" | sed "s/^/Cycles, $name: /"
+	done
+	echo "for the eye: bench/look_*.png"
+fi
 exit $missed
