@@ -30,6 +30,22 @@ void rig_free(struct rig *rig)
 	*rig = (struct rig){ 0 };
 }
 
+int rig_own_vertices(const struct rig *rig)
+{
+	int n = rig->n;
+	while (n > 0 && rig->part[n - 1] == RIG_LINING)
+		n--;
+	return n;
+}
+
+int rig_own_faces(const struct rig *rig)
+{
+	int n = rig->n_faces;
+	while (n > 0 && rig->part[rig->faces[n - 1][0]] == RIG_LINING)
+		n--;
+	return n;
+}
+
 void rig_components(double e[RIG_COMPONENTS], const struct rig *rig, const double *inputs)
 {
 	double gaze[2][3];

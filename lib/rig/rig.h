@@ -19,8 +19,9 @@
 enum { RIG_SKIN_COMPONENTS = 4, RIG_LID_COMPONENTS = 4, RIG_COMPONENTS = RIG_SKIN_COMPONENTS + RIG_LID_COMPONENTS,
 	   RIG_BASIS = 2 * RIG_COMPONENTS };
 
-/* What a vertex belongs to. RIG_NEAR_EYE: separate pieces beside an eyeball (lashes, tear film), which follow the skin. */
-enum rig_part { RIG_SKIN, RIG_GLOBE_LEFT, RIG_GLOBE_RIGHT, RIG_NEAR_EYE, RIG_PARTS };
+/* What a vertex belongs to. RIG_NEAR_EYE: separate pieces beside an eyeball (lashes, tear film), which follow the skin. RIG_LINING: what the
+ * character's mesh has not (rig/make/lining.c): a lining of its lids, caruncles and plicae; its vertices and faces are the last. */
+enum rig_part { RIG_SKIN, RIG_GLOBE_LEFT, RIG_GLOBE_RIGHT, RIG_NEAR_EYE, RIG_LINING, RIG_PARTS };
 
 static inline bool rig_is_globe(uint8_t part)
 {
@@ -76,6 +77,10 @@ struct rig {
 };
 
 void rig_free(struct rig *rig);
+
+/* How many of its vertices and faces are the character's own: those before the lining. */
+int rig_own_vertices(const struct rig *rig);
+int rig_own_faces(const struct rig *rig);
 
 /* e = W [g~; 1], out. inputs[n_inputs]: g~; beyond the known gazes lids are as at the nearest (known_hold). */
 void rig_components(double e[RIG_COMPONENTS], const struct rig *rig, const double *inputs);

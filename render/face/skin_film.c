@@ -210,17 +210,18 @@ static bool look_at(struct complexion *c, const struct tracked *f, struct skin_j
 static bool wear(struct skin_target *t, const struct complexion *c, struct skin_job *job, struct err *err)
 {
 	const struct rig *rig = &t->rig;
+	const int n = rig_own_vertices(rig), n_faces = rig_own_faces(rig);
 	struct mesh registered = { 0 };
 	bool ok = om_mesh_load(&registered, stage_path(job->stage, "work/targets/%s/registered.ply", t->name), 10000000, err);
-	if (ok && registered.n_vertices != rig->n)
+	if (ok && registered.n_vertices != n)
 		ok = err_set(err, "work/targets/%s/registered.ply: not the rig's vertices: run extrapolate again", t->name);
-	bool *skin = mem_new((size_t)rig->n_faces + 1, sizeof *skin);
-	float *margin = mem_new((size_t)rig->n + 1, sizeof *margin);
-	for (int i = 0; i < rig->n_faces; i++)
+	bool *skin = mem_new((size_t)n_faces + 1, sizeof *skin);
+	float *margin = mem_new((size_t)n + 1, sizeof *margin);
+	for (int i = 0; i < n_faces; i++)
 		skin[i] = rig->part[rig->faces[i][0]] == RIG_SKIN;
-	for (int i = 0; i < rig->n; i++)
+	for (int i = 0; i < n; i++)
 		margin[i] = (float)exp(-pow(fmax((double)rig->gap[i] - 0.2, 0) / (0.055 * rig->globe[rig->side[i]].radius), 2));
-	struct complexion_wearer w = { rig->n, rig->n_faces, (const int32_t(*)[3])rig->faces, (const float(*)[3])rig->rest, (const float(*)[3])rig->normal,
+	struct complexion_wearer w = { n, n_faces, (const int32_t(*)[3])rig->faces, (const float(*)[3])rig->rest, (const float(*)[3])rig->normal,
 		                           (const float(*)[3])registered.vertices, skin, margin, { { 0 } }, { { 0 } } };
 	for (int s = 0; s < 2; s++)
 		memcpy(w.eye[s], rig->globe[s].center, sizeof w.eye[s]);

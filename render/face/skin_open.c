@@ -59,12 +59,12 @@ bool skin_ready(struct skin_job *job, struct err *err)
 /* Whether the look's faces are the rig's, and its blend shapes move vertices of it. */
 static bool fits(const struct look *look, const struct rig *rig)
 {
-	bool same = look->n_faces == rig->n_faces && look->n_points <= rig->n;
+	bool same = look->n_faces == rig_own_faces(rig) && look->n_points <= rig_own_vertices(rig);
 	for (int f = 0; same && f < look->n_faces; f++)
 		for (int k = 0; k < 3; k++)
 			same = same && look->point[look->corner[f][k]] == rig->faces[f][k];
 	for (int i = 0; same && i < look->shape_start[look->n_shapes]; i++)
-		same = look->shape_point[i] < rig->n;
+		same = look->shape_point[i] < rig_own_vertices(rig);
 	return same;
 }
 

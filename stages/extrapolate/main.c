@@ -27,6 +27,8 @@ int main(int argc, char **argv)
 		OPT_REALS("breadth_mm", r->breadth, 2, 0, 5, "mm", "of a lid's margin, of half the hollow at a corner, at most; closed eyes show none of it"),
 		OPT_REALS("tarsus_mm", r->tarsus, 2, 0, 40, "mm", "above the upper margin: skin that shuts with it, up to the first wholly, from the second not"),
 		OPT_REAL("seal_mm", &r->seal, -1, 5, "mm", "closed lids overlap so much; below 0: they close as far as they were learnt to"),
+		OPT_REAL("lining_mm", &r->lining, 0, 10, "mm", "that a lining goes on below lids whose mesh ends at their edges; 0: none"),
+		OPT_REAL("caruncle_mm", &r->caruncle, 0, 6, "mm", "width of caruncle and plica on what is seen of the eyeball; 0: none"),
 		OPT_REAL("min_confidence", &r->min_confidence, 0, 1, "", "of transfer, below which a vertex counts as untracked"),
 		OPT_REAL("map_step_px", &r->map_step, 0.25, 32, "px", "texel of the skull map, in the video's pixels"),
 		OPT_INT("globe_cells", &r->globe_cells, 8, 2048, "", "cells across the globe's map"),

@@ -56,7 +56,7 @@ if command -v node >/dev/null; then
 		j.bufferViews[j.images[j.textures[t.index].source].bufferView].byteLength + "," + m.extras.targetNames.includes("jawOpen")')" "Head,$(stat -c %s "$capture/targets/skin.png"),true"
 	# Cards on the skin from the left lid's edge to its brow, the last rows of the file: in a blink each root goes with the skin below it, to a third of a millimetre.
 	# The goal is a card that turns as a whole: its tip goes with the skin below the tip, and of 3.3 mm 1.0 to 4.5 are left when the lid is shut.
-	printf '0 0 0 0 1 1\n0 0 0 0 0 0\n' | "$POSED" "$capture/work/targets/blender/rig.npz" >"$root/posed"
+	printf '0 0 0 0 1 1\n0 0 0 0 0 0\n' | "$POSED" "$capture/work/targets/blender/rig.npz" own >"$root/posed"
 	same "hair cards on a lid go with it" "$(node -e 'const b = require("fs").readFileSync(process.argv[1]), f = new Float32Array(b.buffer, b.byteOffset, b.length / 4), cards = 16, n = f.length / 12, wrong = [];
 		const at = (pose, i) => [0, 1, 2].map(c => f[(2 * pose * n + i) * 3 + c]), between = (a, b) => Math.hypot(...a.map((x, c) => x - b[c])), mean = (a, b) => a.map((x, c) => (x + b[c]) / 2);
 		for (let i = n - 4 * cards; i < n; i += 4) {

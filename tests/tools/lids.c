@@ -267,13 +267,13 @@ static void picture(const char *folder, const char *name, const struct seen *s, 
 	fclose(f);
 }
 
-/* The skin alone, for rays. */
-static struct ray_scene *skin_of(const struct rig *rig)
+/* The skin alone, for rays; or it and the eyeballs, without lining: caruncles hide no margin. */
+static struct ray_scene *skin_of(const struct rig *rig, bool globes)
 {
 	int n = 0;
 	int32_t (*faces)[3] = mem_new((size_t)rig->n_faces + 1, sizeof *faces);
 	for (int f = 0; f < rig->n_faces; f++)
-		if (rig->part[rig->faces[f][0]] == RIG_SKIN)
+		if (rig->part[rig->faces[f][0]] == RIG_SKIN || (globes && rig_is_globe(rig->part[rig->faces[f][0]])))
 			memcpy(faces[n++], rig->faces[f], sizeof *faces);
 	struct ray_scene *scene = ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
 	free(faces);
@@ -319,7 +319,7 @@ int main(int argc, char **argv)
 	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ 9, 0, 100, 0, 1.1 });
 	struct deform *deform = deform_new(&rig);
 	struct deform_near near = deform_near_of(&rig);
-	struct ray_scene *skin = skin_of(&rig), *all = ray_scene_new(rig.n, (const float(*)[3])rig.rest, rig.n_faces, (const int32_t(*)[3])rig.faces);
+	struct ray_scene *skin = skin_of(&rig, false), *all = skin_of(&rig, true);
 	float (*x)[3] = mem_new((size_t)rig.n + 1, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs + 1, sizeof *c);
 	static const double across[] = { -20, -10, 0, 10, 20 }, up[] = { 15, 5, 0, -5, -15, -25 }, open[] = { 1, 0.5, 0 };

@@ -1,6 +1,6 @@
-/* posed RIG.npz: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
+/* posed RIG.npz [own]: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
  * input: gaze of the left eye and of the right (two numbers each, degrees), how far open each is of what is usual there, and
- * expressions. Standard output: floats [lines][2][vertices][3]. */
+ * expressions. Standard output: floats [lines][2][vertices][3]; own: of the character's mesh alone, without lining. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,10 +37,11 @@ int main(int argc, char **argv)
 	struct rig rig = { 0 };
 	struct err err = { 0 };
 	char line[512];
-	if (argc != 2 || !rig_load(&rig, argv[1], &err)) {
-		fprintf(stderr, "posed: %s\n", argc == 2 ? err.msg : "RIG.npz");
+	if (argc < 2 || argc > 3 || !rig_load(&rig, argv[1], &err)) {
+		fprintf(stderr, "posed: %s\n", argc == 2 || argc == 3 ? err.msg : "RIG.npz [own]");
 		return 2;
 	}
+	const int n = argc == 3 ? rig_own_vertices(&rig) : rig.n;
 	struct deform *deform = deform_new(&rig);
 	float (*x)[3] = mem_array((size_t)rig.n, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs, sizeof *c), e[RIG_COMPONENTS], turn[2][3][3];
@@ -51,8 +52,8 @@ int main(int argc, char **argv)
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
 		struct mesh mesh = { rig.n, rig.n_faces, x, rig.faces, 0 };
 		float (*normal)[3] = mesh_normals(&mesh);
-		fwrite(x, sizeof *x, (size_t)rig.n, stdout);
-		fwrite(normal, sizeof *normal, (size_t)rig.n, stdout);
+		fwrite(x, sizeof *x, (size_t)n, stdout);
+		fwrite(normal, sizeof *normal, (size_t)n, stdout);
 		free(normal);
 	}
 	free(c);

@@ -14,7 +14,7 @@ static bool *bearing(const struct portrait *p)
 {
 	const struct dress *dress = p->conf.dress;
 	bool *shown = dress ? mem_new((size_t)p->rig->n_faces + 1, sizeof *shown) : 0;
-	for (int f = 0; dress && f < p->rig->n_faces; f++)
+	for (int f = 0; dress && f < rig_own_faces(p->rig); f++)
 		shown[f] = !dress_cuts(dress, dress_look(dress)->face_material[f]);
 	return shown;
 }

@@ -157,11 +157,11 @@ static void subdivide(struct portrait_mesh *m, bool *marked)
 		int k = cut_face(cut, m->faces[f], mid[f]);
 		memset(next + n, marked[f], (size_t)k);
 		memcpy(faces + n, cut, (size_t)k * sizeof *faces);
-		for (int i = 0; was.n_dressed && i < k; i++)
+		for (int i = 0; f < was.n_dressed && i < k; i++)
 			follow(m, n + i, cut[i], &was, f, mid[f]);
 		n += k;
+		m->n_dressed = f < was.n_dressed ? n : m->n_dressed;
 	}
-	m->n_dressed = was.n_dressed ? n : 0;
 	free(was.uv);
 	free(was.material);
 	free(was.cuts);
@@ -224,11 +224,11 @@ void portrait_mesh_make(struct portrait *p)
 	m->faces = fresh((size_t)rig->n_faces, sizeof *m->faces);
 	bool *marked = fresh((size_t)rig->n_faces << 2 * p->conf.subdivide, sizeof *marked);
 	const struct dress *dress = p->conf.dress;
-	int solid = 0;
+	int solid = 0, own = rig_own_faces(rig);
 	undress(m, dress ? rig->n_faces : 0);
-	// What shows through somewhere casts no shadow: it comes last.
+	// What shows through somewhere casts no shadow: it comes after what does. Last is the lining, which lies below the lids and wears nothing.
 	for (int pass = 0; pass < (dress ? 2 : 1); pass++) {
-		for (int f = 0; f < rig->n_faces; f++) {
+		for (int f = 0; f < own; f++) {
 			const int32_t *v = rig->faces[f];
 			if (rig->part[v[0]] != RIG_SKIN || (dress && dress_cuts(dress, dress_look(dress)->face_material[f]) != (pass == 1)))
 				continue;
@@ -238,6 +238,10 @@ void portrait_mesh_make(struct portrait *p)
 			memcpy(m->faces[m->n_faces++], v, sizeof *m->faces);
 		}
 		solid = pass ? solid : m->n_faces;
+	}
+	for (int f = own; f < rig->n_faces; f++) {
+		marked[m->n_faces] = true;
+		memcpy(m->faces[m->n_faces++], rig->faces[f], sizeof *m->faces);
 	}
 	p->shadow = ray_scene_new(rig->n, (const float(*)[3])rig->rest, solid, (const int32_t(*)[3])m->faces);
 	double edge = edge_of(m, rig, marked);

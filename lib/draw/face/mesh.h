@@ -16,7 +16,7 @@ struct portrait_mesh {
 	float *open;                // share of the light that is not shadowed
 	float *wet;                 // moisture, 0..1
 	float (*home)[2];           // where the modelling camera sees it at rest, px; null without wrinkles
-	// Of a character with textures of its own; n_dressed 0 without. [n_dressed]: the faces, but for those of lashes
+	// Of a character with textures of its own; n_dressed 0 without. [n_dressed]: the faces, but for those of lining and lashes
 	int n_dressed;
 	float (*uv)[3][2];
 	int16_t *material;          // -1: none

@@ -7,6 +7,12 @@
 #include "base/mem.h"
 #include "math/vec.h"
 
+static bool is_surface(const struct rig *rig, int face)
+{
+	const uint8_t part = rig->part[rig->faces[face][0]];
+	return part == RIG_SKIN || part == RIG_LINING;
+}
+
 /* Neighbours along the skin, and how much light comes from them. */
 static void neighbours(struct portrait *p)
 {
@@ -14,14 +20,14 @@ static void neighbours(struct portrait *p)
 	int n = rig->n;
 	p->near_start = mem_new((size_t)n + 2, sizeof *p->near_start);
 	for (int f = 0; f < rig->n_faces; f++)
-		for (int k = 0; k < 3 && rig->part[rig->faces[f][0]] == RIG_SKIN; k++)
+		for (int k = 0; k < 3 && is_surface(rig, f); k++)
 			p->near_start[rig->faces[f][k] + 2] += 2;
 	for (int i = 2; i <= n + 1; i++)
 		p->near_start[i] += p->near_start[i - 1];
 	p->near = mem_new((size_t)p->near_start[n + 1] + 1, sizeof *p->near);
 	p->spread = mem_new((size_t)p->near_start[n + 1] + 1, sizeof *p->spread);
 	for (int f = 0; f < rig->n_faces; f++)
-		for (int k = 0; k < 3 && rig->part[rig->faces[f][0]] == RIG_SKIN; k++)
+		for (int k = 0; k < 3 && is_surface(rig, f); k++)
 			for (int j = 1; j < 3; j++) {
 				int a = rig->faces[f][k], b = rig->faces[f][(k + j) % 3], at = p->near_start[a + 1]++;
 				double d[3];

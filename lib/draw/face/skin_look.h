@@ -48,5 +48,11 @@
 #define CARUNCLE_END_MM 2.2
 #define CARUNCLE_RED 0.95, 0.66, 0.64
 #define CARUNCLE_LOBES 4.0
+// Where a caruncle stands there (rig/make/lining.c): how far it reddens skin beside it. Mucous membrane, and the pale thin edge of the plica
+// over the white: how high over the globe it is as red as the first, mm.
+#define CARUNCLE_BESIDE_MM 1.5
+#define MUCOSA_RGB 0.56, 0.27, 0.24
+#define MUCOSA_THIN_RGB 0.66, 0.46, 0.42
+#define MUCOSA_THICK_MM 0.45
 
 #endif

@@ -59,7 +59,52 @@ static bool find_corner(float corner[3], float caruncle[3], const struct portrai
 	return found;
 }
 
-static void wet_vertices(struct portrait *p, const float caruncle[3], int side)
+/* The middle of the caruncle, where one stands: of what of the lining is thick. False: there is none. */
+static bool find_mound(float middle[3], const struct portrait *p, int side)
+{
+	const struct rig *rig = p->rig;
+	const float thick = (float)(MUCOSA_THICK_MM * rig->globe[side].radius / 12);
+	int n = 0;
+	float sum[3] = { 0 };
+	for (int i = rig_own_vertices(rig); i < rig->n; i++)
+		if (rig->side[i] == side && rig->gap[i] > thick) {
+			for (int c = 0; c < 3; c++)
+				sum[c] += rig->rest[i][c];
+			n++;
+		}
+	for (int c = 0; c < 3 && n; c++)
+		middle[c] = sum[c] / (float)n;
+	return n > 0;
+}
+
+/* Lining is mucous membrane, paler where it is thin. */
+static void line(struct portrait *p)
+{
+	static const float thick[3] = { MUCOSA_RGB }, thin[3] = { MUCOSA_THIN_RGB };
+	struct portrait_mesh *m = &p->mesh;
+	const struct rig *rig = p->rig;
+	const int first = rig_own_vertices(rig);
+	bool *lined = mem_new((size_t)m->n + 1, sizeof *lined);
+	for (int i = first; i < rig->n; i++) {
+		const float at = (float)(rig->gap[i] / (MUCOSA_THICK_MM * rig->globe[rig->side[i]].radius / 12)), t = fminf(at, 1);
+		lined[i] = true;
+		m->wet[i] = (float)p->conf.caruncle_wet;
+		for (int c = 0; c < 3; c++)
+			m->albedo[i][c] = thin[c] + t * (thick[c] - thin[c]);
+	}
+	for (int i = m->n_base; i < m->n && first < rig->n; i++) {
+		const int *e = m->between[i - m->n_base];
+		lined[i] = lined[e[0]] || lined[e[1]];
+		if (!lined[i])
+			continue;
+		m->wet[i] = 0.5f * (m->wet[e[0]] + m->wet[e[1]]);
+		for (int c = 0; c < 3; c++)
+			m->albedo[i][c] = 0.5f * (m->albedo[e[0]][c] + m->albedo[e[1]][c]);
+	}
+	free(lined);
+}
+
+static void wet_vertices(struct portrait *p, const float caruncle[3], int side, float end_mm)
 {
 	static const float red[3] = { CARUNCLE_RED };
 	struct portrait_mesh *m = &p->mesh;
@@ -68,7 +113,7 @@ static void wet_vertices(struct portrait *p, const float caruncle[3], int side)
 		float r2 = 0;
 		for (int c = 0; c < 3; c++)
 			r2 += (m->rest[i][c] - caruncle[c]) * (m->rest[i][c] - caruncle[c]);
-		float t = fminf(fmaxf((sqrtf(r2) / size - (float)CARUNCLE_MM) / (float)(CARUNCLE_END_MM - CARUNCLE_MM), 0), 1);
+		float t = fminf(fmaxf((sqrtf(r2) / size - (float)CARUNCLE_MM) / (end_mm - (float)CARUNCLE_MM), 0), 1);
 		float wet = (1 - t * t * (3 - 2 * t)) * (float)p->conf.caruncle_wet;
 		if (!(wet > m->wet[i]))
 			continue;
@@ -85,9 +130,11 @@ void portrait_wet_make(struct portrait *p)
 		struct portrait_view view = portrait_front(p->rig, side, 3.2 * p->rig->globe[side].radius, 0, 0, VIEW, VIEW);
 		float caruncle[3];
 		p->corner_known[side] = find_corner(p->corner[side], caruncle, p, &view, side);
-		if (p->corner_known[side] && p->conf.caruncle_wet > 0)
-			wet_vertices(p, caruncle, side);
+		const bool mound = find_mound(caruncle, p, side);
+		if ((p->corner_known[side] || mound) && p->conf.caruncle_wet > 0)
+			wet_vertices(p, caruncle, side, (float)(mound ? CARUNCLE_BESIDE_MM : CARUNCLE_END_MM));
 	}
+	line(p);
 }
 
 float portrait_lake_height(const struct portrait *p, int side, const float at[3])

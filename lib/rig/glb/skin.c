@@ -12,20 +12,22 @@ static bool is_skin(const struct rig *rig, const int32_t face[3])
 	return !rig_is_globe(rig->part[face[0]]) && !rig_is_globe(rig->part[face[1]]) && !rig_is_globe(rig->part[face[2]]);
 }
 
-/* The faces of one mesh of the character, all of them where `of` is below 0. Returns false where none is shown. */
+/* The faces of one mesh of the character, all of them where `of` is below 0. Returns false where none is shown. LINING: what the character has not
+ * of its own, with the second material that none of its faces has. */
+enum { ALL = -1, LINING = -2 };
 static bool put_part(struct maker *m, struct part *p, int of)
 {
 	const struct look *l = m->look;
-	const int rows = l ? l->n_wedges : m->rig->n, none = l ? l->n_materials : 0;
+	const int rows = l ? l->n_wedges : m->rig->n, own = rig_own_faces(m->rig), none = of == LINING ? m->plain + 1 : m->plain;
 	int *row = mem_array((size_t)rows + 1, sizeof *row), n_faces = 0, *material = mem_new((size_t)m->rig->n_faces + 1, sizeof *material);
 	uint32_t (*corner)[3] = mem_new((size_t)m->rig->n_faces + 1, sizeof *corner);
-	*p = (struct part){ .name = l ? l->part[of] : "skin", .primitives = json_array(), .targets = glb_targets_new(), .zero = json_array() };
+	*p = (struct part){ .name = of == LINING ? "lining" : l ? l->part[of] : "skin", .primitives = json_array(), .targets = glb_targets_new(), .zero = json_array() };
 	p->vertex = mem_new((size_t)rows + 1, sizeof *p->vertex);
 	p->wedge = mem_new((size_t)rows + 1, sizeof *p->wedge);
 	for (int i = 0; i < rows; i++)
 		row[i] = -1;
 	for (int f = 0; f < m->rig->n_faces; f++) {
-		if (!is_skin(m->rig, m->rig->faces[f]) || (l && l->face_part[f] != of))
+		if ((f < own) == (of == LINING) || !is_skin(m->rig, m->rig->faces[f]) || (l && l->face_part[f] != of))
 			continue;
 		for (int k = 0; k < 3; k++) {
 			const int w = l ? l->corner[f][k] : m->rig->faces[f][k];
@@ -69,8 +71,8 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
                    const struct glb_conf *conf, const struct look *look)
 {
 	const struct mesh mesh = { rig->n, rig->n_faces, rig->rest, rig->faces, 0 };
-	struct maker m = { g, rig, bake, look, glb_unit(bake, look), mem_array((size_t)rig->n + 1, sizeof *m.moving), mesh_normals(&mesh) };
-	const int most = look ? look->n_parts : 1;
+	struct maker m = { g, rig, bake, look, look ? look->n_materials : 0, glb_unit(bake, look), mem_array((size_t)rig->n + 1, sizeof *m.moving), mesh_normals(&mesh) };
+	const int most = (look ? look->n_parts : 1) + 1;
 	struct part *parts = mem_new((size_t)most + 1, sizeof *parts);
 	*skin = (struct glb_skin){ .unit = m.unit, .meshes = json_array(), .ours = mem_new((size_t)most + 4, sizeof(int)), .all = mem_new((size_t)most + 4, sizeof(int)), .gain = mem_new((size_t)most + 4, sizeof(double *)) };
 	for (int i = 0; i < rig->n; i++)
@@ -80,7 +82,9 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
 	int face = 0, busiest = -1;
 	for (int i = 0; i < most; i++) {
 		struct part *p = &parts[skin->n];
-		if (!put_part(&m, p, look ? i : -1)) {
+		const bool lining = i == most - 1;
+		m.look = lining ? 0 : look;
+		if (!put_part(&m, p, lining ? LINING : look ? i : ALL)) {
 			part_free(p);
 			continue;
 		}
@@ -88,10 +92,11 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
 		int moves = 0;
 		for (int v = 0; v < p->n; v++)
 			moves += m.moving[p->vertex[v]] >= 0;
-		face = moves > busiest ? skin->n : face;
-		busiest = moves > busiest ? moves : busiest;
+		face = moves > busiest && !lining ? skin->n : face;
+		busiest = moves > busiest && !lining ? moves : busiest;
 		skin->n++;
 	}
+	m.look = look;
 	for (int s = 0; look && s < look->n_shapes; s++)
 		skin_put_own(&m, parts, skin->n, s);
 	if (bake->n_poses && skin->n)
@@ -101,7 +106,7 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
 		json_array_append_new(skin->meshes, mesh_of(&parts[i]));
 		part_free(&parts[i]);
 	}
-	skin_put_materials(skin, g, look, conf);
+	skin_put_materials(skin, g, look, rig_own_faces(rig) < rig->n_faces, conf);
 	free(parts);
 	free(m.moving);
 	free((void *)m.rest);

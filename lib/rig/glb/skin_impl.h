@@ -18,6 +18,7 @@ struct maker {
 	const struct rig *rig;
 	const struct glb_bake *bake;
 	const struct look *look;
+	int plain;                 // the material of faces that the look gives none; the lining's is the next
 	double unit;               // mm
 	int *moving;               // [rig.n] row of the bake; -1: it does not move
 	float (*rest)[3];          // [rig.n] normals of the surface at rest
@@ -33,7 +34,7 @@ bool skin_put_ours(struct maker *maker, struct part *part);
 void skin_put_own(struct maker *maker, struct part *parts, int n_parts, int shape);
 void skin_put_zero(struct maker *maker, struct part *part);
 
-/* skin_materials.c: the look's materials and textures, and one of one colour behind them. */
-void skin_put_materials(struct glb_skin *skin, struct glb_buffer *buffer, const struct look *look, const struct glb_conf *conf);
+/* skin_materials.c: the look's materials and textures, and one of one colour behind them; with a lining mucous membrane after that. */
+void skin_put_materials(struct glb_skin *skin, struct glb_buffer *buffer, const struct look *look, bool lining, const struct glb_conf *conf);
 
 #endif

@@ -33,12 +33,20 @@ static json_t *material_of(const struct look_material *m)
 	return o;
 }
 
-void skin_put_materials(struct glb_skin *skin, struct glb_buffer *g, const struct look *l, const struct glb_conf *conf)
+/* Linear: what draw/face draws lining with, and about as rough as what is wet looks. */
+static const double mucosa_rgb[3] = { 0.56, 0.27, 0.24 }, mucosa_rough = 0.25;
+
+void skin_put_materials(struct glb_skin *skin, struct glb_buffer *g, const struct look *l, bool lining, const struct glb_conf *conf)
 {
 	skin->materials = json_array();
 	for (int i = 0; l && i < l->n_materials; i++)
 		json_array_append_new(skin->materials, material_of(&l->material[i]));
 	json_array_append_new(skin->materials, plain_material("skin", conf->skin_rgb, 0.55));
+	if (lining) {
+		json_t *both = plain_material("lining", mucosa_rgb, mucosa_rough);
+		json_object_set_new(both, "doubleSided", json_true());
+		json_array_append_new(skin->materials, both);
+	}
 	skin->images = json_array();
 	skin->textures = json_array();
 	for (int i = 0; l && i < l->n_textures; i++) {

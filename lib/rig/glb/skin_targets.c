@@ -48,15 +48,31 @@ static bool has_name(const struct part *p, const char *name)
 	return false;
 }
 
-/* The normals of the surface with a blend shape at weight 1. */
-static float (*shaped_normals(const struct maker *m, int shape))[3]
+/* How a blend shape moves every vertex of the rig: what was added to the mesh goes with those that it follows. free(). */
+static float (*shaped(const struct maker *m, int shape, bool *moved))[3]
 {
 	const struct look *l = m->look;
+	const struct rig_weights *follows = &m->rig->bplus;
+	float (*by)[3] = mem_new((size_t)m->rig->n + 1, sizeof *by);
+	for (int k = l->shape_start[shape]; k < l->shape_start[shape + 1]; k++) {
+		memcpy(by[l->shape_point[k]], l->shape_by[k], sizeof *by);
+		moved[l->shape_point[k]] = true;
+	}
+	for (int i = rig_own_vertices(m->rig); i < m->rig->n; i++)
+		for (int j = follows->start[i]; j < follows->start[i + 1]; j++) {
+			moved[i] = moved[i] || moved[follows->column[j]];
+			for (int c = 0; c < 3; c++)
+				by[i][c] += follows->weight[j] * by[follows->column[j]][c];
+		}
+	return by;
+}
+
+/* The normals of the surface with a blend shape at weight 1. */
+static float (*shaped_normals(const struct maker *m, const float (*by)[3]))[3]
+{
 	float (*x)[3] = mem_array((size_t)m->rig->n + 1, sizeof *x);
-	memcpy(x, m->rig->rest, (size_t)m->rig->n * sizeof *x);
-	for (int k = l->shape_start[shape]; k < l->shape_start[shape + 1]; k++)
-		for (int c = 0; c < 3; c++)
-			x[l->shape_point[k]][c] += l->shape_by[k][c];
+	for (int i = 0; i < 3 * m->rig->n; i++)
+		x[i / 3][i % 3] = m->rig->rest[i / 3][i % 3] + by[i / 3][i % 3];
 	const struct mesh mesh = { m->rig->n, m->rig->n_faces, x, m->rig->faces, 0 };
 	float (*normal)[3] = mesh_normals(&mesh);
 	free(x);
@@ -66,23 +82,19 @@ static float (*shaped_normals(const struct maker *m, int shape))[3]
 void skin_put_own(struct maker *m, struct part *parts, int n_parts, int shape)
 {
 	const struct look *l = m->look;
-	int *row = mem_array((size_t)m->rig->n + 1, sizeof *row);
-	float (*normal)[3] = shaped_normals(m, shape);
-	for (int i = 0; i < m->rig->n; i++)
-		row[i] = -1;
-	for (int k = l->shape_start[shape]; k < l->shape_start[shape + 1]; k++)
-		row[l->shape_point[k]] = k;
+	bool *moved = mem_new((size_t)m->rig->n + 1, sizeof *moved);
+	float (*all)[3] = shaped(m, shape, moved), (*normal)[3] = shaped_normals(m, (const float(*)[3])all);
 	for (int i = 0; i < n_parts; i++) {
 		struct part *p = &parts[i];
 		float *by = mem_new(3 * (size_t)p->n + 1, sizeof *by), *lean = mem_new(3 * (size_t)p->n + 1, sizeof *lean);
 		bool moves = false;
 		for (int v = 0; v < p->n; v++) {
-			const int k = row[p->vertex[v]];
-			for (int c = 0; c < 3 && k >= 0; c++) {
-				by[3 * v + c] = l->shape_by[k][c];
-				lean[3 * v + c] = normal[p->vertex[v]][c] - m->rest[p->vertex[v]][c];
+			const int k = p->vertex[v];
+			for (int c = 0; c < 3 && moved[k]; c++) {
+				by[3 * v + c] = all[k][c];
+				lean[3 * v + c] = normal[k][c] - m->rest[k][c];
 			}
-			moves = moves || k >= 0;
+			moves = moves || moved[k];
 		}
 		if (moves) {
 			char *name = has_name(p, l->shape[shape]) ? mem_printf("%s.own", l->shape[shape]) : mem_str(l->shape[shape]);
@@ -92,7 +104,8 @@ void skin_put_own(struct maker *m, struct part *parts, int n_parts, int shape)
 		free(by);
 		free(lean);
 	}
-	free(row);
+	free(moved);
+	free(all);
 	free(normal);
 }
 

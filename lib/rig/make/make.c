@@ -214,6 +214,8 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 		ok = report->tracked > 0 || err_set(err, "no vertex of the character lies on tracked skin");
 		ok = ok && rig_take_skull(rig, motion, ch, conf->map_step, err);
 	}
+	if (ok)
+		rig_line_lids(rig, conf);
 	if (!ok)
 		rig_free(rig);
 	return ok;

@@ -54,6 +54,8 @@ struct rig_conf {
 	double tarsus[2];                     // mm above the upper margin of an eye of 12 mm: what was not learnt of closing moves skin up to
 	                                      // the first as far as the margin, from the second not at all
 	double seal;                          // mm that closed lids overlap; < 0: lids are not sealed
+	double lining;                        // mm of an eye of 12 mm that the lining goes on below lids whose mesh ends at their edges; 0: none
+	double caruncle;                      // the same: width of caruncle and plica on what is seen of the eyeball; 0: none
 	double min_confidence;                // of the registration, below which a vertex counts as untracked
 	double map_step;                      // texel of the skull map, px of the modelling camera
 	int globe_cells;                      // cells across the globe map

@@ -42,6 +42,9 @@ void rig_arc_margins(struct rig *rig, const struct rig_motion *motion, double px
 /* lids.c: makes skin at the lid margins move as the margins' splines do, fading over reach_mm. */
 void rig_follow_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double reach_mm, struct rig_report *report);
 
+/* lining.c: adds what the mesh has not: a lining where it ends at its lids' edges, caruncles and plicae. Last: the rig is whole before. */
+void rig_line_lids(struct rig *rig, const struct rig_conf *conf);
+
 /* closing.c: a linear form that measures how far an eye is closed: out . (e - rest_e). side: 0 left, 1 right. It is 1 in the pose `closed`
  * (components from rest, both eyes closed straight ahead) and, in the least-squares sense, 1 with that eye closed and 0 with it open,
  * whatever the other does, for all gazes and expressions. Sealing the lids in proportion to it leaves a gaze downwards, in which lids
