@@ -111,4 +111,9 @@ struct portrait_rays {
 struct portrait_rays portrait_rays_of(const struct portrait_view *view);
 float portrait_ray(float dir[3], const struct portrait_rays *rays, double x, double y);
 
+/* tear.c: depth of a globe along the camera's axis, the camera's unit, at the pixels from + (x, y) of a picture, lids before it or not:
+ * depth[size[1]][size[0]], out. away: where there is no globe. */
+void portrait_globe_depth(float *depth, const struct portrait *portrait, const struct portrait_rays *rays, int side, const int from[2], const int size[2],
+                          float away);
+
 #endif

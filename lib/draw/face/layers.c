@@ -28,7 +28,7 @@ static void eye_field(struct image *out, const struct portrait *p, const struct 
 	size_t n = (size_t)w * (size_t)h;
 	long row = (long)w * samples;
 	uint8_t *material = mem_array(n, 1);
-	float *cover = mem_array(n, sizeof *cover), *distance = mem_array(n, sizeof *distance);
+	float *cover = mem_array(n, sizeof *cover), *depth = mem_array(n, sizeof *depth), *distance = mem_array(n, sizeof *distance);
 	double away = v->cam_from_target[2][3];
 	for (int c = 0; c < 3; c++)
 		away += v->cam_from_target[2][c] * p->rig->globe[side].center[c];
@@ -38,20 +38,21 @@ static void eye_field(struct image *out, const struct portrait *p, const struct 
 			material[i] = portrait_material(&cover[i], p, spots + y * samples * row + (long)x * samples, row, samples, side);
 		}
 	struct portrait_rays rays = portrait_rays_of(v);
-	// Across the screen, as the tear line takes it.
-	double mm = away / (v->focal_px * per_mm);
-	struct distance_scene scene = { w, h, material, cover, 0, 0, { 0, 0 } };
+	// In view space, over the globe, as the tear line takes it.
+	portrait_globe_depth(depth, p, &rays, side, (int[2]){ 0, 0 }, (int[2]){ w, h }, (float)away);
+	const struct distance_scene scene = { w, h, material, cover, depth, v->focal_px, { v->center_px[0], v->center_px[1] } };
 	if (away > 0)
-		distance_band(distance, 0, &scene, PORTRAIT_REACH_MM / mm, 0);
+		distance_band(distance, 0, &scene, PORTRAIT_REACH_MM * per_mm, 0);
 	for (size_t i = 0; i < n && away > 0; i++) {
 		float *px = out->px + PORTRAIT_LAYERS * i;
 		if (material[i] != DISTANCE_GLOBE)
 			continue;
-		px[PORTRAIT_DISTANCE] = distance[i] * (float)mm;
+		px[PORTRAIT_DISTANCE] = distance[i] / (float)per_mm;
 		px[PORTRAIT_LAKE] = lake_at(p, &rays, side, (double)(i % (size_t)w) + 0.5, (double)(i / (size_t)w) + 0.5, px[PORTRAIT_DISTANCE]);
 	}
 	free(material);
 	free(cover);
+	free(depth);
 	free(distance);
 }
 

@@ -63,8 +63,8 @@ struct image portrait_draw(struct portrait *portrait, const struct portrait_view
 
 /* Layers of a picture that portrait_draw made in the same view, a channel each:
  * Z          depth along the camera's axis, mm; 0 where nothing is.
- * DISTANCE   from each point of the globes to the lid's edge as it stands on the screen, mm; INFINITY off the globes and more
- *            than PORTRAIT_REACH_MM from it.
+ * DISTANCE   from each point of the globes to the place of the globe that the lid's edge hides, in view space, mm; INFINITY off the globes and
+ *            more than PORTRAIT_REACH_MM from it.
  * LAKE       depth of the tear fluid there, mm; 0 where there is only the film.
  * NORMAL     unit, in the camera's frame; 0 where nothing is, or where a globe ends.
  * DIFFUSE, SPECULAR   RGB each; together the picture.

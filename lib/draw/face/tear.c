@@ -1,4 +1,5 @@
-/* The tear line (skin paper, chapter 4) between lid and globe, from the distance field of the screen alone.
+/* The tear line (skin paper, chapter 4) between lid and globe, from the screen's distance field: distances are those in view space, from the
+ * point of the globe that a pixel shows to the one that the lid's edge hides on the screen.
  *
  * The meniscus is a quarter of a circle, tangent to the globe and to the lid: with d the distance to the lid and R its height,
  * its depth is R - sqrt(R^2 - (R - d)^2). Its normal leans away from the lid, so along a lower lid it reflects what is above.
@@ -18,13 +19,14 @@ static const float shadow_mm = (float)TEAR_SHADOW_MM, shadow_part = (float)TEAR_
 struct field {
 	int x0, y0, width, height;
 	uint8_t *material;
-	float *cover, *distance, (*nearest)[2];  // the camera's unit; px
+	float *cover, *depth, *distance, (*nearest)[2];  // the camera's unit; px
 };
 
 static void field_free(struct field *f)
 {
 	free(f->material);
 	free(f->cover);
+	free(f->depth);
 	free(f->distance);
 	free(f->nearest);
 }
@@ -45,8 +47,19 @@ uint8_t portrait_material(float *cover, const struct portrait *p, const struct p
 	return !all ? DISTANCE_OTHER : 2 * skin >= all ? DISTANCE_SKIN : DISTANCE_GLOBE;
 }
 
+/* Of the globe, below lids, too: the lid's own edge stands off it by what the mesh's facets leave, or by its thickness. Beside the globe its centre's. */
+void portrait_globe_depth(float *depth, const struct portrait *p, const struct portrait_rays *rays, int side, const int from[2], const int size[2], float away)
+{
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < size[1]; y++)
+		for (int x = 0; x < size[0]; x++) {
+			float dir[3], along = portrait_ray(dir, rays, from[0] + x + 0.5, from[1] + y + 0.5), t = portrait_eye_hit(p, side, rays->origin, dir);
+			depth[(long)y * size[0] + x] = isfinite(t) ? t * along : away;
+		}
+}
+
 static struct field field_make(const struct portrait *p, const struct portrait_view *v, const struct portrait_spot *spots, int samples, int side,
-                               const struct image *eye, const int at[2], double reach, double away)
+                               const struct image *eye, const int at[2], double reach, double away, const struct portrait_rays *rays)
 {
 	struct field f = { 0 };
 	int margin = 4 + (int)fmin(ceil(1.2 * reach * v->focal_px / fmax(away, 1e-3)), 64), x1 = at[0] + eye->width + margin, y1 = at[1] + eye->height + margin;
@@ -57,6 +70,7 @@ static struct field field_make(const struct portrait *p, const struct portrait_v
 	size_t n = (size_t)f.width * (size_t)f.height;
 	f.material = mem_array(n, 1);
 	f.cover = mem_array(n, sizeof *f.cover);
+	f.depth = mem_array(n, sizeof *f.depth);
 	f.distance = mem_array(n, sizeof *f.distance);
 	f.nearest = mem_new(n, sizeof *f.nearest);
 	long row = (long)v->width * samples;
@@ -66,16 +80,14 @@ static struct field field_make(const struct portrait *p, const struct portrait_v
 			long i = (long)y * f.width + x;
 			f.material[i] = portrait_material(&f.cover[i], p, of, row, samples, side);
 		}
-	// Distance on the screen, not in space: the gap between lid and globe is only known to within the facets of the mesh.
-	struct distance_scene scene = { f.width, f.height, f.material, f.cover, 0, 0, { 0, 0 } };
-	distance_band(f.distance, f.nearest, &scene, reach * v->focal_px / away, 0);
-	for (size_t i = 0; i < n; i++)
-		f.distance[i] *= (float)(away / v->focal_px);
+	portrait_globe_depth(f.depth, p, rays, side, (int[2]){ f.x0, f.y0 }, (int[2]){ f.width, f.height }, (float)away);
+	const struct distance_scene scene = { f.width, f.height, f.material, f.cover, f.depth, v->focal_px, { v->center_px[0] - f.x0, v->center_px[1] - f.y0 } };
+	distance_band(f.distance, f.nearest, &scene, reach, 0);
 	return f;
 }
 
-/* Unit, in the globe's tangent plane, away from the lid's edge that lies off[2] px from (x, y). */
-static bool away(float out[3], const struct portrait_rays *rays, const float at[3], const float n[3], double x, double y, const float off[2])
+/* Unit, in the globe's tangent plane, away from the lid's edge, to which off[2] leads from (x, y), one px long. px_mm: out, what that px is there. */
+static bool away(float out[3], float *px_mm, const struct portrait_rays *rays, const float at[3], const float n[3], double x, double y, const float off[2])
 {
 	float dir[3], t = 0, d = 0, len = 0;
 	portrait_ray(dir, rays, x + (double)off[0], y + (double)off[1]);
@@ -90,6 +102,7 @@ static bool away(float out[3], const struct portrait_rays *rays, const float at[
 	len = sqrtf(len);
 	for (int c = 0; c < 3; c++)
 		out[c] /= len;
+	*px_mm = len;
 	return d < -0.02f && len > 1e-5f;
 }
 
@@ -143,20 +156,24 @@ struct wet {
 	int side;
 	float reach;   // of the highest meniscus, in the rig's mm
 	float per_mm;  // the camera's unit in one of the rig's
-	float pixel;   // mm
+	float pixel;   // mm, where it faces the camera
+	float blur;    // mm: half of what a pixel shows aslant, at most
 };
 
+/* A pixel that shows the eye, in part at least: of one that is mostly skin what lies between the lid's edge and its other end. */
 static void pixel_wet(float *px, const struct wet *w, double x, double y, const struct field *f)
 {
 	int u = (int)x - f->x0, v = (int)y - f->y0;
-	float off[2], distance = f->distance[(long)v * f->width + u];
-	float dir[3], at[3], n[3], out[3], lean[3], rgb[3], fresnel, len = 0, d = distance / w->per_mm;
+	const long i = (long)v * f->width + u;
+	const bool edge = f->material[i] == DISTANCE_SKIN;
+	float off[2], px_mm, d = edge ? 0 : f->distance[i] / w->per_mm;
+	float dir[3], at[3], n[3], out[3], lean[3], rgb[3], fresnel, len = 0;
 	float dark = 1 - shadow_part * expf(-(float)TEAR_SHADOW_FADE * d / shadow_mm) * (1 - smooth((float)TEAR_SHADOW_END * shadow_mm, shadow_mm, d));
 	portrait_ray(dir, w->rays, x, y);
 	float t = portrait_eye_hit(w->p, w->side, w->rays->origin, dir);
 	for (int c = 0; c < 3; c++)
 		px[c] *= dark;
-	if (!isfinite(t) || d >= w->reach)
+	if (!isfinite(t) || d >= w->reach + w->blur)
 		return;
 	for (int c = 0; c < 3; c++) {
 		at[c] = w->rays->origin[c] + t * dir[c];
@@ -166,15 +183,16 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	for (int c = 0; c < 3; c++)
 		n[c] /= sqrtf(len);
 	float height = portrait_lake_height(w->p, w->side, at);
-	if (d >= height)
-		return;
 	towards(off, f, u, v, (int)fminf(height / w->pixel, 6) + 1);
-	if (!away(out, w->rays, at, n, x, y, off))
+	if (!away(out, &px_mm, w->rays, at, n, x, y, off))
+		return;
+	const float from = edge ? 0 : fmaxf(d - 0.5f * px_mm, 0), to = edge ? (1 - f->cover[i]) * px_mm : d + 0.5f * px_mm;
+	if (from >= height)
 		return;
 	// The meniscus turns by a right angle within a few pixels: a pixel's reflection is the mean over it.
 	float sum[3] = { 0 }, through[3] = { 0 }, below[3], cos_i = -(dir[0] * n[0] + dir[1] * n[1] + dir[2] * n[2]);
 	for (int k = 0; k < ACROSS; k++) {
-		float dk = d + ((float)k + 0.5f - 0.5f * ACROSS) / ACROSS * w->pixel, part = 1 - smooth((float)TEAR_END * height, height, dk);
+		float dk = from + ((float)k + 0.5f) / ACROSS * (to - from), part = 1 - smooth((float)TEAR_END * height, height, dk);
 		portrait_meniscus(lean, n, out, dk, height);
 		mirrored(rgb, &fresnel, w->p, w->rays, at, lean, dir);
 		portrait_lake_light(below, portrait_lake_depth(dk, height), cos_i, w->p->conf.tear_absorb);
@@ -197,17 +215,18 @@ void portrait_tears(struct image out[2], int at[2][2], const struct portrait *p,
 		struct image *eye = &out[side];
 		if (!eye->px || !(p->conf.tear_mm > 0))
 			continue;
-		struct wet wet = { p, &rays, side, (float)(p->conf.tear_mm * (1 + LAKE_RISE)), (float)scale, 0 };
+		struct wet wet = { p, &rays, side, (float)(p->conf.tear_mm * (1 + LAKE_RISE)), (float)scale, 0, 0 };
 		double away = v->cam_from_target[2][3];
 		for (int c = 0; c < 3; c++)
 			away += v->cam_from_target[2][c] * p->rig->globe[side].center[c];
 		wet.pixel = (float)(away / (v->focal_px * scale));
-		struct field f = field_make(p, v, spots, samples, side, eye, at[side], fmax((double)wet.reach, (double)shadow_mm) * scale, away);
+		wet.blur = 2 * wet.pixel;
+		struct field f = field_make(p, v, spots, samples, side, eye, at[side], fmax((double)(wet.reach + wet.blur), (double)shadow_mm) * scale, away, &rays);
 #pragma omp parallel for schedule(dynamic, 8)
 		for (int y = 0; y < eye->height; y++)
 			for (int x = 0; x < eye->width; x++) {
 				long i = (long)(at[side][1] + y - f.y0) * f.width + at[side][0] + x - f.x0;
-				if (f.material[i] == DISTANCE_GLOBE && isfinite(f.distance[i]))
+				if (f.material[i] == DISTANCE_GLOBE ? isfinite(f.distance[i]) : f.material[i] == DISTANCE_SKIN && f.cover[i] < 1)
 					pixel_wet(image_at(eye, x, y), &wet, at[side][0] + x + 0.5, at[side][1] + y + 0.5, &f);
 			}
 		field_free(&f);
