@@ -36,8 +36,11 @@ const leaves = (() => {
 		});
 		for (const name of Object.keys(out))
 			out[name] = Math.min(1, Math.max(0, out[name]));
-		for (const side of ["Left", "Right"])  // lib/rig/glb/halves.h
-			out[`eyeBlink${side}_half`] = 4 * out[`eyeBlink${side}`] * (1 - out[`eyeBlink${side}`]);
+		for (const side of ["Left", "Right"]) {  // lib/rig/glb/halves.h, turned.h
+			const blink = out[`eyeBlink${side}`];
+			Object.assign(out, { [`eyeBlink${side}_half`]: 4 * blink * (1 - blink), [`eyeBlink${side}_down`]: blink * out[`eyeLookDown${side}`],
+				[`eyeBlink${side}_up`]: blink * out[`eyeLookUp${side}`] });
+		}
 		return Object.assign(out, expressions);
 	}
 

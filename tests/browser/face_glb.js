@@ -15,7 +15,8 @@ const poses = {
 	shut: [{ eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]],
 	down: [{ eyeLookDownLeft: 1, eyeLookDownRight: 1 }, [0, -0.8]],
 	up: [{ eyeLookUpLeft: 1, eyeLookUpRight: 1 }, [0, 0.8]],
-	half_down: [{ eyeLookDownLeft: 1, eyeLookDownRight: 1, eyeBlinkLeft: 0.5, eyeBlinkRight: 0.5, eyeBlinkLeft_half: 1, eyeBlinkRight_half: 1 }, [0, -0.8]],
+	half_down: [{ eyeLookDownLeft: 1, eyeLookDownRight: 1, eyeBlinkLeft: 0.5, eyeBlinkRight: 0.5, eyeBlinkLeft_half: 1, eyeBlinkRight_half: 1, eyeBlinkLeft_down: 0.5, eyeBlinkRight_down: 0.5 }, [0, -0.8]],
+	shut_down: [{ eyeLookDownLeft: 1, eyeLookDownRight: 1, eyeBlinkLeft: 1, eyeBlinkRight: 1, eyeBlinkLeft_down: 1, eyeBlinkRight_down: 1 }, [0, -0.8]],
 	left: [{ eyeLookOutLeft: 1, eyeLookInRight: 1 }, [1, 0]],
 	right: [{ eyeLookInLeft: 1, eyeLookOutRight: 1 }, [-1, 0]],
 };

@@ -240,7 +240,7 @@ function samples_of(mesh, node, near) {
  * looks ahead, open and shut, and open: how deep it is without the blink. */
 window.depths = (side, look = null, v = 0) => {
 	const eye = eyes[`eye_${side}`], which = side === "left" ? "Left" : "Right", name = `eyeBlink${which}`, out = { alone: [0, 0, 0], both: [0, 0, 0], open: 0, n: 0 };
-	const along = look ? { [look + which]: 1 } : {};
+	const along = look ? { [look + which]: 1 } : {}, and = w => look ? { [`${name}_${look.slice(7).toLowerCase()}`]: w } : {};
 	pose({}, [0, 0]);
 	face.updateMatrixWorld(true);
 	const surface = surface_of(eye.node), mm = 1000 * eye.node.getWorldScale(new THREE.Vector3()).x;
@@ -258,7 +258,7 @@ window.depths = (side, look = null, v = 0) => {
 		out.open = deepest({}, out.open);
 		[0.25, 0.5, 0.75].forEach((w, k) => {
 			out.alone[k] = deepest({ [name]: w }, out.alone[k]);
-			out.both[k] = deepest({ [name]: w, [`${name}_half`]: 4 * w * (1 - w) }, out.both[k]);
+			out.both[k] = deepest({ [name]: w, [`${name}_half`]: 4 * w * (1 - w), ...and(w) }, out.both[k]);
 		});
 	});
 	pose({}, [0, 0]);

@@ -13,7 +13,7 @@ struct glb_bake {
 	int n_hair;                // vertices of conf->hairs (strands.h), then of the tears (tears.h); 0 without
 	float *hair_target, *hair_pose;  // [n_targets][n_hair][3], [n_poses][n_hair][3] their displacements, mm
 	float *weight;             // [n_frames][n_targets], within -1 .. 1
-	int n_poses;               // GLB_POSES, then conf->expression, then GLB_HALVES; 0 without
+	int n_poses;               // GLB_POSES, then conf->expression, GLB_TURNED, GLB_HALVES; 0 without
 	const char **pose_name;
 	float *pose, *pose_lean;   // [n_poses][n][3] displacements of the named poses
 	float *turn[2];            // [n_frames][4] quaternions x y z w of the eyeballs: from rest, in the rig's axes

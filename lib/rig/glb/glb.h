@@ -6,7 +6,8 @@
  * tolerance (at most `targets`), with their weights over time. Further targets of single poses (eyeBlinkLeft, eyeLookUpRight ..., the
  * names of Apple's ARKit, an eye's being its own side of a pose of both; expressions, by the model's) are included with weight 0; they may be
  * added to each other, but not to the animation's. A target is a straight line and a lid goes round the eye: where eyeBlinkLeft has the weight
- * w, eyeBlinkLeft_half has 4 w (1 - w) (halves.h). A second animation, `blink`, does so.
+ * w, eyeBlinkLeft_half has 4 w (1 - w) (halves.h). A second animation, `blink`, does so. And where eyeLookDownLeft has v, eyeBlinkLeft_down
+ * has w v, and eyeBlinkLeft_up so with eyeLookUpLeft (turned.h).
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H

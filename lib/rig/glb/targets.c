@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "rig/glb/turned.h"
 
 static const double off_mm = 0.03;  // of all targets of 8 bits together
 static const double most_mm = 500;  // a step is 15 um then: what goes further is kept as it is
@@ -146,6 +147,11 @@ static json_t *driven_of(const json_t *names)
 		json_array_foreach(names, i, name)
 			if (!strcmp(json_string_value(name), glb_half_names[k]))
 				json_array_append_new(list, json_pack("{s:s,s:s,s:s}", "target", glb_half_names[k], "by", glb_pose_names[k], "weight", "4 w (1 - w)"));
+	for (int k = 0; k < GLB_TURNED; k++)
+		json_array_foreach(names, i, name)
+			if (!strcmp(json_string_value(name), glb_turned_names[k]))
+				json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:s}", "target", glb_turned_names[k], "by", glb_pose_names[k % 2], "and",
+				                                      glb_pose_names[glb_turned_look(k)], "weight", "w v"));
 	if (json_array_size(list))
 		return list;
 	json_decref(list);

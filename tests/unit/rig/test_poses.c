@@ -13,7 +13,7 @@ static void expressions_have_targets(void **state)
 	struct glb_bake b;
 	struct err err = { 0 };
 	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
-	assert_int_equal(b.n_poses, GLB_POSES + 2 + GLB_HALVES);
+	assert_int_equal(b.n_poses, GLB_POSES + 2 + GLB_TURNED + GLB_HALVES);
 	float (*x[2])[3] = { calloc((size_t)m->on.rig.n, sizeof **x), calloc((size_t)m->on.rig.n, sizeof **x) };
 	struct deform *deform = deform_new(&m->on.rig);
 	struct deform_near near = deform_near_of(&m->on.rig);
@@ -62,9 +62,10 @@ static void named_poses_add_up(void **state)
 	struct deform *deform = deform_new(&m->on.rig);
 	struct deform_near near = deform_near_of(&m->on.rig);
 	for (int k = 0; k < 3; k++) {
+		const bool whole = look[k][1] != 0;
 		double e[RIG_COMPONENTS], turn[2][3][3], c[12], worst = 0, most = 0;
 		float (*from)[3] = calloc((size_t)m->on.rig.n, sizeof *from);
-		for (int pass = 0; pass < 2; pass++) {  // what it is told against: rest for a blink, else a look straight ahead
+		for (int pass = 0; pass < 2; pass++) {  // what it is told against: rest for a blink, the mesh itself for a look up, else a look straight ahead
 			drive_look(c, &m->on.rig, pass ? look[k][0] : 0, pass ? look[k][1] : 0, pass ? look[k][2] : 1);
 			rig_components(e, &m->on.rig, c);
 			rig_globes_turned(turn, &m->on.rig, c);
@@ -72,7 +73,7 @@ static void named_poses_add_up(void **state)
 			deform_pose(deform, !pass && k == 0 ? m->on.rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
 			deform_settle(x, &m->on.rig, &near, (const double(*)[3][3])turn);
 			if (!pass)
-				memcpy(from, x, (size_t)m->on.rig.n * sizeof *from);
+				memcpy(from, whole ? m->on.rig.rest : x, (size_t)m->on.rig.n * sizeof *from);
 		}
 		for (int i = 0; i < b.n; i++)
 			for (int d = 0; d < 3; d++) {
@@ -91,6 +92,53 @@ static void named_poses_add_up(void **state)
 	deform_free(deform);
 	deform_near_free(&near);
 	glb_bake_free(&b);
+}
+
+/* Shut eyes that look down or up: blinks, looks and what goes with both together are that pose; without the last they are not. */
+static void turned_blinks_add_up(void **state)
+{
+	struct wandering *m = *state;
+	struct rig shuts, *rig = &shuts;
+	struct rig_conf shutting = face_conf();
+	struct glb_bake b;
+	struct err err = { 0 };
+	shutting.map_step = 4;
+	shutting.lid = 6;
+	shutting.seal = 0.15;
+	assert_true(face_rig(rig, 0, &m->on.face, &shutting, &err));
+	float (*x)[3] = calloc((size_t)rig->n, sizeof *x);
+	struct deform *deform = deform_new(rig);
+	struct deform_near near = deform_near_of(rig);
+	assert_true(glb_bake_make(&b, rig, &m->drive, &m->conf, &err));
+	for (int up = 0; up < 2; up++) {
+		const int turned = b.n_poses - GLB_HALVES - GLB_TURNED + 2 * up, look = up ? 2 : 4;
+		double e[RIG_COMPONENTS], c[12], turn[2][3][3], off[2] = { 0 };
+		assert_string_equal(b.pose_name[turned + 1], up ? "eyeBlinkRight_up" : "eyeBlinkRight_down");
+		drive_look(c, rig, 0, up ? 20 : -20, 0);
+		rig_components(e, rig, c);
+		rig_globes_turned(turn, rig, c);
+		deform_rest(deform, x, 0);
+		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
+		deform_settle(x, rig, &near, (const double(*)[3][3])turn);
+		for (int i = 0; i < b.n; i++)
+			for (int with = 0; with < 2; with++) {
+				double d[3];
+				for (int k = 0; k < 3; k++) {
+					double sum = 0;
+					for (int eye = 0; eye < 2; eye++)
+						sum += (double)b.pose[(eye * b.n + i) * 3 + k] + (double)b.pose[((look + eye) * b.n + i) * 3 + k] + with * (double)b.pose[((turned + eye) * b.n + i) * 3 + k];
+					d[k] = rig->rest[b.vertex[i]][k] + sum - (double)x[b.vertex[i]][k];
+				}
+				off[with] = fmax(off[with], vec_norm(d));
+			}
+		print_message("shut, looking %s: %.3f mm off by blinks and looks, %.5f with what goes with both\n", up ? "up" : "down", off[0], off[1]);
+		assert_true(off[0] > 0.1 && off[1] < 1e-4);  // sums of floats
+	}
+	free(x);
+	deform_free(deform);
+	deform_near_free(&near);
+	glb_bake_free(&b);
+	rig_free(rig);
 }
 
 /* An eye's targets move its own side of the face alone, however a clip ties both eyes to each other. */
@@ -223,6 +271,7 @@ int main(void)
 		cmocka_unit_test(lids_go_no_further_than_they_are_known),
 		cmocka_unit_test(blinks_go_round_the_eye),
 		cmocka_unit_test(each_eye_by_itself),
+		cmocka_unit_test(turned_blinks_add_up),
 	};
 	return cmocka_run_group_tests(tests, wandering_setup, wandering_teardown);
 }
