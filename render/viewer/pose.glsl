@@ -15,7 +15,7 @@ vec4 of(sampler2D map, int i)
 // Algorithm 1 of the skin paper: where the skin's coordinates are on the skull, and out of the globe. And light, between poses.
 layout(location = 0) in vec4 chart;     // mean, thickness t, gap delta0 + t
 layout(location = 1) in vec4 hold;      // glue, side, whether it moves, share of the left eye's lids
-layout(location = 2) in vec4 offset;    // at rest less the skull there; of what never moves its place
+layout(location = 2) in vec4 offset;    // at rest less the skull there, of what never moves its place; its number in settle_map plus 1, 0: it is not there
 layout(location = 3) in mat4 basis;     // U~, four vectors: x, then y
 uniform vec4 component[4];              // e: as the left eye has its lids, as the right one has
 uniform sampler2D skull_map, globe_map, pose_map;
@@ -27,6 +27,10 @@ uniform mat3 globe_from_rig[2];
 uniform vec3 globe_center[2];
 uniform vec3 lit[LIT];                  // pose, weight for the left side, for the right
 uniform int n_lit, lit_rows;            // lit_rows: of one pose in pose_map
+uniform sampler2D settle_map;           // how far lids are moved that their margins be arcs (rig/deform/arc.h), in poses of their own: 128 is not
+uniform float settle_step;              // mm; 0: they stay as they were learnt
+uniform int settle_rows, n_settled;     // settle_rows: of one pose
+uniform vec3 settled[LIT];              // as lit
 out vec4 at_now, light_now;
 
 vec3 skull(ivec2 at)
@@ -76,6 +80,13 @@ void main()
 	vec3 x = left + u.x * (right - left) + offset.xyz - globe_center[side];
 	float far = length(x) + 1e-12, D = radius(globe_from_rig[side] * x, side), pushed = max(far, D + chart.z);
 	at_now.xyz = globe_center[side] + (pushed + hold.x * (D + chart.w - pushed)) / far * x;
+	if (offset.w == 0.0 || settle_step == 0.0)
+		return;
+	int at = int(offset.w) - 1;
+	vec3 by = vec3(0.0);
+	for (int k = 0; k < n_settled; k++)
+		by += mix(settled[k].z, settled[k].y, hold.w) * (255.0 * texelFetch(settle_map, ivec2(at % WIDE, int(settled[k].x) * settle_rows + at / WIDE), 0).rgb - 128.0);
+	at_now.xyz += settle_step * by;
 }
 #endif
 

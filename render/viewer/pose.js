@@ -37,7 +37,11 @@ class FacePose {
 		const light = Graphics.bytes(data.light), poses = posed ? light.length / 3 / posed : 0, rows = Math.ceil(posed / FacePose.WIDE), padded = new Uint8Array(3 * FacePose.WIDE * rows * poses);
 		for (let k = 0; k < poses; k++)
 			padded.set(light.subarray(3 * posed * k, 3 * posed * (k + 1)), 3 * FacePose.WIDE * rows * k);
-		this.maps = { skull_map: this.g.plain(rig.skull.part[2], rig.skull.part[3], gl.RGB32F, gl.RGB, gl.FLOAT, Graphics.field(rig.skull.mm, rig.skull.part[2], rig.skull.part[3], 3)),
+		const lids = data.settle.n, bytes = Graphics.bytes(data.settle.bytes), deep = Math.max(1, Math.ceil(lids / FacePose.WIDE)), many = lids ? bytes.length / 3 / lids : 1;
+		const moved = new Uint8Array(3 * FacePose.WIDE * deep * many);
+		for (let k = 0; k < many; k++)
+			moved.set(bytes.subarray(3 * lids * k, 3 * lids * (k + 1)), 3 * FacePose.WIDE * deep * k);
+		this.maps = { settle_map: this.g.plain(FacePose.WIDE, deep * many, gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, moved), settle_rows: deep, settle_step: data.settle.step, skull_map: this.g.plain(rig.skull.part[2], rig.skull.part[3], gl.RGB32F, gl.RGB, gl.FLOAT, Graphics.field(rig.skull.mm, rig.skull.part[2], rig.skull.part[3], 3)),
 			globe_map: this.g.plain(side, 2 * side, gl.R32F, gl.RED, gl.FLOAT, Graphics.field(rig.globe.mm, side, 2 * side, 1)),
 			pose_map: this.g.plain(FacePose.WIDE, Math.max(rows * poses, 1), gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, padded),
 			skull_grid: [rig.skull.grid[0], rig.skull.grid[1], 1 / step], skull_most: [w - 1.001, h - 1.001], skull_part: rig.skull.part, cells: rig.globe.cells,
@@ -187,9 +191,10 @@ class FacePose {
 		return Math.min(1.4, Math.max(0, usual > 0.05 ? (c[5 * side + 3] + c[5 * side + 4]) / usual : 1));
 	}
 
-	/* Poses of the grid round these controls and their weights for either side; expressions beside the pose at rest. */
-	lit(c) {
-		const d = this.data, [ih, uh] = between(d.h, (c[0] + c[5]) / 2), [iv, uv] = between(d.v, (c[1] + c[6]) / 2), of = new Map();
+	/* Poses of a grid (of light: the data itself; of lids: data.settle) round these controls and their weights for either side; expressions beside the pose
+	 * at rest. */
+	lit(c, d = this.data) {
+		const [ih, uh] = between(d.h, (c[0] + c[5]) / 2), [iv, uv] = between(d.v, (c[1] + c[6]) / 2), of = new Map();
 		const add = (pose, left, right) => {
 			const w = of.get(pose) || [0, 0];
 			of.set(pose, [w[0] + left, w[1] + right]);
@@ -202,7 +207,7 @@ class FacePose {
 					add(ih + (k & 1) + d.h.length * (iv + (k >> 1 & 1) + d.v.length * (ia + (k >> 2))), side ? 0 : w, side ? w : 0);
 			}
 		}
-		d.expressions.forEach((_, k) => {
+		this.data.expressions.forEach((_, k) => {
 			const s = c[10 + k];
 			if (s > 0 && of.size < FacePose.LIT - 1) {
 				add(d.h.length * d.v.length * d.a.length + k, s, s);
@@ -219,12 +224,12 @@ class FacePose {
 		if (key === this.key)
 			return false;
 		const sides = open[0] === open[1] ? [c, c] : open.map(a => this.controls(gazes, [a, a], strengths, recorded));
-		const e = sides.flatMap(s => this.components(s)), lit = this.lit(c), rad = Math.PI / 180;
+		const e = sides.flatMap(s => this.components(s)), lit = this.lit(c), settled = this.lit(c, this.data.settle), rad = Math.PI / 180;
 		this.posed_as = c;
 		this.g.counted("posed");
 		const globes = [0, 1].flatMap(side => turns.multiply(turns.transpose(turns.fick(...c.slice(5 * side, 5 * side + 3).map(v => v * rad))), this.rig.head_from_rig));
 		this.key = key;
-		this.run(this.deform, { component: e, globe_from_rig: globes, lit: EyeScene.padded(lit.flat(), 3 * FacePose.LIT), n_lit: lit.length }, 0, 0, this.posed, [this.at, this.light]);
+		this.run(this.deform, { component: e, globe_from_rig: globes, lit: EyeScene.padded(lit.flat(), 3 * FacePose.LIT), n_lit: lit.length, settled: EyeScene.padded(settled.flat(), 3 * FacePose.LIT), n_settled: settled.length }, 0, 0, this.posed, [this.at, this.light]);
 		this.surface(false);
 		return true;
 	}

@@ -1,12 +1,14 @@
-/* posed RIG.npz [own]: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
+/* posed RIG.npz [own|settled]: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
  * input: gaze of the left eye and of the right (two numbers each, degrees), how far open each is of what is usual there, and
- * expressions. Standard output: floats [lines][2][vertices][3]; own: of the character's mesh alone, without lining. */
+ * expressions. Standard output: floats [lines][2][vertices][3]; own: of the character's mesh alone, without lining;
+ * settled: with lids as pictures have them (deform_settle). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "mesh/mesh.h"
+#include "rig/deform/arc.h"
 #include "rig/deform/deform.h"
 #include "rig/drive.h"
 
@@ -38,10 +40,12 @@ int main(int argc, char **argv)
 	struct err err = { 0 };
 	char line[512];
 	if (argc < 2 || argc > 3 || !rig_load(&rig, argv[1], &err)) {
-		fprintf(stderr, "posed: %s\n", argc == 2 || argc == 3 ? err.msg : "RIG.npz [own]");
+		fprintf(stderr, "posed: %s\n", argc == 2 || argc == 3 ? err.msg : "RIG.npz [own|settled]");
 		return 2;
 	}
-	const int n = argc == 3 ? rig_own_vertices(&rig) : rig.n;
+	const bool own = argc == 3 && !strcmp(argv[2], "own"), settled = argc == 3 && !own;
+	const int n = own ? rig_own_vertices(&rig) : rig.n;
+	struct deform_near near = deform_near_of(&rig);
 	struct deform *deform = deform_new(&rig);
 	float (*x)[3] = mem_array((size_t)rig.n, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs, sizeof *c), e[RIG_COMPONENTS], turn[2][3][3];
@@ -50,6 +54,8 @@ int main(int argc, char **argv)
 		rig_components(e, &rig, c);
 		rig_globes_turned(turn, &rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
+		if (settled)
+			deform_settle(x, &rig, &near, (const double(*)[3][3])turn);
 		struct mesh mesh = { rig.n, rig.n_faces, x, rig.faces, 0 };
 		float (*normal)[3] = mesh_normals(&mesh);
 		fwrite(x, sizeof *x, (size_t)n, stdout);
@@ -58,6 +64,7 @@ int main(int argc, char **argv)
 	}
 	free(c);
 	free(x);
+	deform_near_free(&near);
 	deform_free(deform);
 	rig_free(&rig);
 	return fflush(stdout) != 0;

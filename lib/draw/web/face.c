@@ -194,6 +194,7 @@ json_t *web_face(const char *name, struct portrait *portrait, const struct skin_
 	json_object_set_new(out, "sky", base64_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2));
 	web_order(&f, 0.98 * reach);
 	put_colours(out, &f);
+	web_settle_put(out, &f);
 	web_put_rig(out, &f);
 	json_t *names = json_array();
 	for (int k = 0; k < f.n_au; k++)
@@ -204,6 +205,7 @@ json_t *web_face(const char *name, struct portrait *portrait, const struct skin_
 		out = 0;
 	}
 	web_order_free(&f);
+	web_settle_free(&f);
 	for (int k = 0; k < POSES + f.n_au; k++)
 		free(f.light[k]);
 	free(f.light);

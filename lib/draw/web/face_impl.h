@@ -22,6 +22,7 @@ struct web_face {
 	int n_au;                        // expressions: a pose of each follows the grid's
 	uint8_t (**light)[3];            // [POSES + n_au][rig n]: roots of irradiance
 	uint8_t *sky;                    // [POSES + n_au][SKY][2 SKY]: left, right
+	int n_lid, *lid, *settled_as;    // settle.c: the lids' vertices that it moves, rows of the rig; of each row its number there plus 1, 0: none
 	int n_shown, *order, *place;     // the page's vertices: the mesh's row; and back, -1: not on the page
 	int n_levels;
 	struct web_level level[LEVELS];
@@ -34,6 +35,10 @@ struct web_face {
  * n_shown to ring. web_order_free. */
 void web_order(struct web_face *face, double reach_mm);
 void web_order_free(struct web_face *face);
+
+/* settle.c: how far deform_settle moves lids, in poses of a grid of its own; fills lid and settled_as, which rig.c reads. */
+void web_settle_put(json_t *out, struct web_face *face);
+void web_settle_free(struct web_face *face);
 
 /* rig.c: the numbers of algorithm 1 (rig/deform/deform.h), with which the page's shader poses the mesh. */
 void web_put_rig(json_t *out, const struct web_face *face);

@@ -32,13 +32,14 @@ static json_t *packed(const float *px, int width, int height, int channels)
 	return out;
 }
 
-static void terms(float to[TERMS], const struct rig *rig, int i)
+static void terms(float to[TERMS], const struct web_face *f, int i)
 {
+	const struct rig *rig = f->rig;
 	struct deform_terms t;
 	bool moves = deform_terms_moves(rig, i);
 	deform_terms_of(&t, rig, i);
 	const float *at = moves ? t.offset : rig->rest[i];
-	float all[12] = { t.mean[0], t.mean[1], rig->thickness[i], rig->gap[i], rig->glue[i], rig->side[i], moves, 0, at[0], at[1], at[2], 0 };
+	float all[12] = { t.mean[0], t.mean[1], rig->thickness[i], rig->gap[i], rig->glue[i], rig->side[i], moves, 0, at[0], at[1], at[2], (float)f->settled_as[i] };
 	memcpy(to, all, sizeof all);
 	memcpy(to + COUNT(all), t.basis, sizeof t.basis);
 }
@@ -152,7 +153,7 @@ void web_put_rig(json_t *out, const struct web_face *f)
 	float *of = mem_new((size_t)posed * TERMS + 1, sizeof *of), *rest = mem_new((size_t)n * 3 + 1, sizeof *rest);
 	for (int i = 0; i < n; i++) {
 		if (i < posed)
-			terms(of + (long)i * TERMS, rig, f->order[i]);
+			terms(of + (long)i * TERMS, f, f->order[i]);
 		memcpy(rest + 3L * i, rig->rest[f->order[i]], 3 * sizeof *rest);
 	}
 	for (int k = 0; k < f->n_levels; k++)
