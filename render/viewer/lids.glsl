@@ -46,7 +46,7 @@ vec3 wet(vec3 rgb, vec3 dir, vec3 n, vec3 away, float d, float height, float mm,
 	vec3 sum = vec3(0.0);
 	vec3 through = vec3(0.0);
 	for (int k = 0; k < ACROSS; k++) {
-		float dk = d + ((float(k) + 0.5) / float(ACROSS) - 0.5) * mm, part = 1.0 - step_smooth(TEAR_END * height, height, dk);
+		float dk = mix(max(d - 0.5 * mm, 0.0), d + 0.5 * mm, (float(k) + 0.5) / float(ACROSS)), part = 1.0 - step_smooth(TEAR_END * height, height, dk);
 		float lean = 1.0 - clamp(dk, 0.0, height) / height;
 		vec3 normal = sqrt(1.0 - lean * lean) * n + lean * away;
 		float c = -dot(dir, normal), share = part * mirror_share(c, LOOK_FILM_INDEX);
@@ -66,12 +66,19 @@ vec3 below_lids(vec3 rgb, vec3 at, vec3 dir)
 	float open = textureLod(sky_map, vec2(clamp(0.25 + 0.25 * place.x, 0.02, 0.48) + 0.5 * side, 0.5 + 0.5 * place.y), 0.0).r;
 	rgb *= open + vec3(LOOK_BOUNCE) * (1.0 - open);
 	ivec2 px = ivec2(gl_FragCoord.xy);
-	float mm = pixel * depth.z, d = (texelFetch(lid_map, px, 0).z - 0.5) * mm;
+	// In view space, over the globe: a pixel that it turns away from the camera shows more of it.
+	vec4 lid = texelFetch(lid_map, px, 0);
+	float mm = pixel * depth.z;
+	if (lid.z > 0.0 && lid.z < 1e3) {
+		vec3 beside = eye_from_cam * ray_at(vec2(gl_FragCoord.x + lid.x / lid.z, size.y - gl_FragCoord.y - lid.y / lid.z) + jitter);
+		mm = max(mm, min(length(at - (origin + beside * (dot(at - origin, n) / dot(beside, n)))) * depth.z, 4.0 * mm));
+	}
+	float d = (lid.z - 0.5) * mm;
 	rgb *= 1.0 - TEAR_SHADOW * exp(-TEAR_SHADOW_FADE * max(d, 0.0) / TEAR_SHADOW_MM) * (1.0 - step_smooth(TEAR_SHADOW_END * TEAR_SHADOW_MM, TEAR_SHADOW_MM, d));
 	float height = lake_height(place * length(at - vec3(0.0, 0.0, sclera.x)) * depth.z);
-	if (d >= height)
+	if (d - 0.5 * mm >= height)
 		return rgb;
-	vec2 off = towards(px, clamp(int(0.4 * height / mm), 1, 3));
+	vec2 off = towards(px, clamp(int(0.4 * height / (pixel * depth.z)), 1, 3));
 	vec3 beside = eye_from_cam * ray_at(vec2(gl_FragCoord.x + off.x, size.y - gl_FragCoord.y - off.y) + jitter);
 	vec3 away = at - (origin + beside * (dot(at - origin, n) / dot(beside, n)));
 	return length(away) > 1e-5 ? wet(rgb, dir, n, normalize(away), d, height, mm, open) : rgb;

@@ -6,6 +6,9 @@
  * inside_mm  least distance of the skin's vertices from the turned eyeball; below 0: inside
  * faces_mm   the same of points on edges and faces that look outwards before it
  * crossing   of a hundred lashes of an upper lid and sixty of a lower one, those that skin crosses
+ * thick_least, thick_mid   of both lids' margins, between the corners' tenths: from where the front sees the eyeball end to where skin no longer rises off it by half
+ *            of the way along it: the margin's outer edge; mm of an eyeball of 12 mm, the least and the median; below 0: the skin that ends there lies lower than the
+ *            eyeball. Nothing in eyes that are open by less than 1 mm
  * iris_low, pupil_low   share of iris and pupil (5.7 and 2 mm on an eyeball of 12 mm) that lies under the lower lid */
 #include <math.h>
 #include <stdio.h>
@@ -179,6 +182,81 @@ static double bend_of(const struct margins *m)
 	return fmin(below_hull(W, y), below_hull(W, down));
 }
 
+/* The first surface that the front sees at a place: the point in the head's axes; its height over the turned eyeball. False: none. */
+static bool seen_at(double at[3], double *height, const struct pose *p, const struct ray_scene *scene, int side, double x, double y)
+{
+	const double far = 4 * p->rig->globe[side].radius;
+	double from[3], along[3];
+	float origin[3], dir[3], hit_at[3];
+	mat_tvec(from, p->rig->head_from_target, (double[]){ x, y, far });
+	mat_tvec(along, p->rig->head_from_target, (double[]){ 0, 0, -1 });
+	for (int c = 0; c < 3; c++) {
+		origin[c] = (float)(p->rig->globe[side].center[c] + from[c]);
+		dir[c] = (float)along[c];
+	}
+	const struct ray_hit hit = ray_first(scene, origin, dir, 0, (float)(2 * far));
+	if (hit.face < 0)
+		return false;
+	for (int c = 0; c < 3; c++)
+		hit_at[c] = origin[c] + hit.t * dir[c];
+	into_head(at, p->rig, side, hit_at);
+	*height = rig_globe_distance(p->rig, side, p->turn[side], hit_at);
+	return true;
+}
+
+/* How thick a margin is in a column: NAN where its outer edge is not found. out: 1 upwards. */
+static double thickness_at(const struct pose *p, const struct ray_scene *skin, int side, double x, double edge, int out)
+{
+	enum { STEPS = 90, AHEAD = 6 };
+	const double unit = p->rig->globe[side].radius / 12, fine = 0.05 * unit;
+	double inner[3], at[STEPS][3], height[STEPS], off;
+	if (!seen_at(inner, &off, p, p->all, side, x, edge))
+		return NAN;
+	for (int k = 0; k < STEPS; k++) {
+		if (!seen_at(at[k], &height[k], p, skin, side, x, edge + out * (0.2 + k) * fine))
+			return NAN;
+		if (k < AHEAD)
+			continue;
+		const int from = k - AHEAD;
+		double d[3];
+		vec_add(d, at[k], -1, at[from]);
+		if (height[k] - height[from] < 0.5 * vec_norm(d)) {
+			vec_add(d, at[from], -1, inner);
+			return (height[from] < off - 0.05 ? -1 : 1) * vec_norm(d) / unit;
+		}
+	}
+	return NAN;
+}
+
+static int rising(const void *a, const void *b)
+{
+	const double p = *(const double *)a, q = *(const double *)b;
+	return (p > q) - (p < q);
+}
+
+/* least, middle: out; NAN where there are none. */
+static void thicknesses(double *least, double *middle, const struct margins *m, const struct pose *p, const struct ray_scene *skin, int side)
+{
+	double t[2 * W], most = 0;
+	int first = W, last = -1, n = 0;
+	for (int i = 0; i < W; i++)
+		if (isfinite(m->top[i])) {
+			first = i < first ? i : first;
+			last = i;
+			most = fmax(most, m->top[i] - m->bottom[i]);
+		}
+	const int tenth = (last - first) / 10;
+	for (int i = first + tenth; i <= last - tenth && most > 1; i++)
+		for (int upper = 0; upper < 2 && isfinite(m->top[i]); upper++) {
+			const double at = thickness_at(p, skin, side, step * (i - W / 2), upper ? m->top[i] : m->bottom[i], upper ? 1 : -1);
+			if (isfinite(at))
+				t[n++] = at;
+		}
+	qsort(t, (size_t)n, sizeof *t, rising);
+	*least = n ? t[0] : NAN;
+	*middle = n ? t[n / 2] : NAN;
+}
+
 /* Share of a disc across the eye's axis, of that radius, mm of an eyeball of 12 mm, that lies under the lower lid. */
 static double under_lower(const struct margins *m, const struct pose *p, int side, double radius)
 {
@@ -298,8 +376,10 @@ static void measure(const struct pose *p, const struct ray_scene *skin, const st
 	for (int i = 0; i < W * H; i++)
 		n += s->face[i] >= 0 && rig_is_globe(p->rig->part[p->rig->faces[s->face[i]][0]]);
 	find_margins(&m, p, side);
-	printf("%s,%d,%.2f,%.3f,%.3f,%.3f,%d,%.3f,%.3f\n", at, side, n * step * step, bend_of(&m), vertices_off(p, side), faces_off(p, side), crossing(hairs, p, skin, side),
-	       under_lower(&m, p, side, 5.7), under_lower(&m, p, side, 2));
+	double least, middle;
+	thicknesses(&least, &middle, &m, p, skin, side);
+	printf("%s,%d,%.2f,%.3f,%.3f,%.3f,%d,%.3f,%.3f,%.3f,%.3f\n", at, side, n * step * step, bend_of(&m), vertices_off(p, side), faces_off(p, side), crossing(hairs, p, skin, side),
+	       under_lower(&m, p, side, 5.7), under_lower(&m, p, side, 2), least, middle);
 	char name[80];
 	snprintf(name, sizeof name, "%s_%d", at, side);
 	if (folder)
@@ -323,7 +403,7 @@ int main(int argc, char **argv)
 	float (*x)[3] = mem_new((size_t)rig.n + 1, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs + 1, sizeof *c);
 	static const double across[] = { -20, -10, 0, 10, 20 }, up[] = { 15, 5, 0, -5, -15, -25 }, open[] = { 1, 0.5, 0 };
-	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low");
+	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low,thick_least,thick_mid");
 	deform_rest(deform, x, 0);
 	for (int k = 0; k < COUNT(open) * COUNT(up) * COUNT(across); k++) {
 		const double h = across[k % COUNT(across)], v = up[k / COUNT(across) % COUNT(up)], o = open[k / (COUNT(across) * COUNT(up))];
