@@ -6,8 +6,8 @@
  * inside_mm  least distance of the skin's vertices from the turned eyeball; below 0: inside
  * faces_mm   the same of points on edges and faces that look outwards before it
  * crossing   of a hundred lashes of an upper lid and sixty of a lower one, those that skin crosses
- * thick_least, thick_mid   of both lids' margins, between the corners' tenths: from where the front sees the eyeball end to where skin no longer rises off it by half
- *            of the way along it: the margin's outer edge; mm of an eyeball of 12 mm, the least and the median; below 0: the skin that ends there lies lower than the
+ * thick_least, thick_mid   of both lids' margins, between the corners' tenths: from where the front sees the eyeball end to where, within 3 mm, skin last rises off it by
+ *            half of the way along it: the margin's outer edge, beyond what lines the lid; mm of an eyeball of 12 mm, the least and the median; below 0: the skin that ends there lies lower than the
  *            eyeball. Nothing in eyes that are open by less than 1 mm
  * iris_low, pupil_low   share of iris and pupil (5.7 and 2 mm on an eyeball of 12 mm) that lies under the lower lid */
 #include <math.h>
@@ -207,9 +207,10 @@ static bool seen_at(double at[3], double *height, const struct pose *p, const st
 /* How thick a margin is in a column: NAN where its outer edge is not found. out: 1 upwards. */
 static double thickness_at(const struct pose *p, const struct ray_scene *skin, int side, double x, double edge, int out)
 {
-	enum { STEPS = 90, AHEAD = 6 };
+	enum { STEPS = 60, AHEAD = 6 };
 	const double unit = p->rig->globe[side].radius / 12, fine = 0.05 * unit;
 	double inner[3], at[STEPS][3], height[STEPS], off;
+	int outer = 0;
 	if (!seen_at(inner, &off, p, p->all, side, x, edge))
 		return NAN;
 	for (int k = 0; k < STEPS; k++) {
@@ -220,12 +221,11 @@ static double thickness_at(const struct pose *p, const struct ray_scene *skin, i
 		const int from = k - AHEAD;
 		double d[3];
 		vec_add(d, at[k], -1, at[from]);
-		if (height[k] - height[from] < 0.5 * vec_norm(d)) {
-			vec_add(d, at[from], -1, inner);
-			return (height[from] < off - 0.05 ? -1 : 1) * vec_norm(d) / unit;
-		}
+		outer = height[k] - height[from] < 0.5 * vec_norm(d) ? outer : k;
 	}
-	return NAN;
+	double d[3];
+	vec_add(d, at[outer], -1, inner);
+	return (height[outer] < off - 0.05 ? -1 : 1) * vec_norm(d) / unit;
 }
 
 static int rising(const void *a, const void *b)

@@ -258,9 +258,23 @@ void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_nea
 	deform_clear(x, rig, near, target_from_globe);
 }
 
+/* Whether a face of skin that can not come near an eyeball lies before it at rest: without it a lid would end where its skin is far off. */
+static bool covers(const struct rig *rig, const int32_t v[3])
+{
+	const int side = rig->side[v[0]];
+	const double radius = rig->globe[side].radius;
+	for (int k = 0; k < 3; k++) {
+		double p[3];
+		deform_in_head(p, rig, side, rig->rest[v[k]]);
+		if (rig->part[v[k]] != RIG_SKIN || rig->side[v[k]] != side || !(p[2] > 0) || fabs(p[0]) > 1.2 * radius || fabs(p[1]) > 1.2 * radius)
+			return false;
+	}
+	return true;
+}
+
 struct deform_near deform_near_of(const struct rig *rig)
 {
-	struct deform_near out = { .face = mem_new((size_t)rig->n_faces + 1, sizeof *out.face), .moves = mem_new((size_t)rig->n + 1, 1) };
+	struct deform_near out = { .face = mem_new((size_t)rig->n_faces + 1, sizeof *out.face), .beside = mem_new((size_t)rig->n_faces + 1, sizeof *out.beside), .moves = mem_new((size_t)rig->n + 1, 1) };
 	for (int i = 0; i < rig->n; i++)
 		out.moves[i] = deform_terms_moves(rig, i);
 	for (int f = 0; f < rig->n_faces; f++) {
@@ -271,6 +285,8 @@ struct deform_near deform_near_of(const struct rig *rig)
 			       && rig->side[v[k]] == rig->side[v[0]];
 		if (near && (out.moves[v[0]] || out.moves[v[1]] || out.moves[v[2]]))
 			out.face[out.n++] = f;
+		else if (covers(rig, v))
+			out.beside[out.n_beside++] = f;
 	}
 	prepare(&out, rig);
 	return out;
@@ -279,6 +295,7 @@ struct deform_near deform_near_of(const struct rig *rig)
 void deform_near_free(struct deform_near *near)
 {
 	free(near->face);
+	free(near->beside);
 	free(near->moves);
 	free(near->upper);
 	free(near->lower);

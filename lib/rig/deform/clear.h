@@ -10,6 +10,7 @@
 struct deform_opening;
 struct deform_near {
 	int n, *face;
+	int n_beside, *beside;   // other faces of skin before an eyeball: they cover it, and come no nearer
 	bool *moves;   // [rig.n]
 	float *upper;  // [rig.n] share in the upper lid, by the opening at rest: 0 below its middle, and where lids are shut at rest
 	float *lower;  // [rig.n] the same in the lower lid

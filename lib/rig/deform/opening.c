@@ -128,8 +128,8 @@ void deform_open(struct deform_opening *o, const struct rig *rig, const struct d
 	for (int i = 0; i < rig->n; i++)
 		if (rig->side[i] == side)
 			deform_in_head(head[i], rig, side, x[i]);
-	for (int k = 0; k < near->n; k++) {
-		const int32_t *v = rig->faces[near->face[k]];
+	for (int k = 0; k < near->n + near->n_beside; k++) {
+		const int32_t *v = rig->faces[k < near->n ? near->face[k] : near->beside[k - near->n]];
 		if (rig->side[v[0]] != side)
 			continue;
 		const double *p[3] = { head[v[0]], head[v[1]], head[v[2]] };
