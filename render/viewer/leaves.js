@@ -37,9 +37,10 @@ const leaves = (() => {
 		for (const name of Object.keys(out))
 			out[name] = Math.min(1, Math.max(0, out[name]));
 		for (const side of ["Left", "Right"]) {  // lib/rig/glb/halves.h, turned.h
-			const blink = out[`eyeBlink${side}`];
-			Object.assign(out, { [`eyeBlink${side}_half`]: 4 * blink * (1 - blink), [`eyeBlink${side}_down`]: blink * out[`eyeLookDown${side}`],
-				[`eyeBlink${side}_up`]: blink * out[`eyeLookUp${side}`] });
+			const blink = out[`eyeBlink${side}`], half = 4 * blink * (1 - blink);
+			out[`eyeBlink${side}_half`] = half;
+			for (const [way, look] of [["down", out[`eyeLookDown${side}`]], ["up", out[`eyeLookUp${side}`]]])
+				Object.assign(out, { [`eyeBlink${side}_${way}`]: blink * look, [`eyeBlink${side}_${way}_half`]: half * look });
 		}
 		return Object.assign(out, expressions);
 	}

@@ -240,7 +240,7 @@ function samples_of(mesh, node, near) {
  * looks ahead, open and shut, and open: how deep it is without the blink. */
 window.depths = (side, look = null, v = 0) => {
 	const eye = eyes[`eye_${side}`], which = side === "left" ? "Left" : "Right", name = `eyeBlink${which}`, out = { alone: [0, 0, 0], both: [0, 0, 0], open: 0, n: 0 };
-	const along = look ? { [look + which]: 1 } : {}, and = w => look ? { [`${name}_${look.slice(7).toLowerCase()}`]: w } : {};
+	const along = look ? { [look + which]: 1 } : {}, way = look && `${name}_${look.slice(7).toLowerCase()}`, and = w => look ? { [way]: w, [`${way}_half`]: 4 * w * (1 - w) } : {};
 	pose({}, [0, 0]);
 	face.updateMatrixWorld(true);
 	const surface = surface_of(eye.node), mm = 1000 * eye.node.getWorldScale(new THREE.Vector3()).x;

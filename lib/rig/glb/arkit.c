@@ -19,7 +19,8 @@ const char *const glb_pose_names[GLB_POSES] = { "eyeBlinkLeft", "eyeBlinkRight",
 
 const char *const glb_half_names[GLB_HALVES] = { "eyeBlinkLeft_half", "eyeBlinkRight_half" };
 
-const char *const glb_turned_names[GLB_TURNED] = { "eyeBlinkLeft_down", "eyeBlinkRight_down", "eyeBlinkLeft_up", "eyeBlinkRight_up" };
+const char *const glb_turned_names[GLB_TURNED] = { "eyeBlinkLeft_down", "eyeBlinkRight_down", "eyeBlinkLeft_up", "eyeBlinkRight_up",
+	                                                    "eyeBlinkLeft_down_half", "eyeBlinkRight_down_half", "eyeBlinkLeft_up_half", "eyeBlinkRight_up_half" };
 
 /* Letters and digits alone, small; what stands before the last dot is left out, a side of one letter written in full. */
 static void plain(char out[64], const char *name)

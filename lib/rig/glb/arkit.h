@@ -14,8 +14,8 @@ extern const char *const glb_pose_names[GLB_POSES];
 enum { GLB_HALVES = 2 };
 extern const char *const glb_half_names[GLB_HALVES];
 
-/* And what a blink's lacks where the eye looks down or up: left and right of each (turned.h). */
-enum { GLB_TURNED = 4 };
+/* And what a blink's lacks where the eye looks down or up: left and right of each; then what that way lacks half way (turned.h). */
+enum { GLB_TURNED_LOOKS = 4, GLB_TURNED = 2 * GLB_TURNED_LOOKS };
 extern const char *const glb_turned_names[GLB_TURNED];
 
 /* Whether a name means one of them, written in whatever way: eyeBlinkLeft, eyeBlink_L, "blendShape1.eye_blink_left". */

@@ -44,11 +44,11 @@ static void fit(float *out, struct poser *p, const struct glb_bake *b, struct st
 	free(controls);
 }
 
-/* A moving vertex i at the blink's weight w: from rest + w blink + 4 w (1 - w) half. */
-static void on_the_way(float x[3], const struct rig *rig, const struct glb_bake *b, int i, const float *blink, const float *half, double w)
+/* A moving vertex i at the blink's weight w: from + w blink + 4 w (1 - w) half. from: null: rest. */
+static void on_the_way(float x[3], const struct rig *rig, const struct glb_bake *b, int i, const float *from, const float *blink, const float *half, double w)
 {
 	for (int c = 0; c < 3; c++)
-		x[c] = (float)(rig->rest[b->vertex[i]][c] + w * blink[3 * i + c] + glb_half_weight(w) * half[3 * i + c]);
+		x[c] = (float)(rig->rest[b->vertex[i]][c] + (from ? from[3 * i + c] : 0) + w * blink[3 * i + c] + glb_half_weight(w) * half[3 * i + c]);
 }
 
 static double distance(const struct poser *p, int vertex, const float x[3])
@@ -58,12 +58,12 @@ static double distance(const struct poser *p, int vertex, const float x[3])
 }
 
 /* Least distance of each vertex from the eye at both ends; -INFINITY on the other eye's side, and of what is not outside it. */
-static void find_ends(double *ends, const struct poser *p, const struct glb_bake *b, const float *blink, int eye)
+static void find_ends(double *ends, const struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
 {
 	for (int i = 0; i < b->n; i++) {
 		float x[2][3];
 		for (int end = 0; end < 2; end++)
-			on_the_way(x[end], p->rig, b, i, blink, blink, end);
+			on_the_way(x[end], p->rig, b, i, from, blink, blink, end);
 		ends[i] = fmin(distance(p, b->vertex[i], x[0]), distance(p, b->vertex[i], x[1]));
 		if (p->rig->side[b->vertex[i]] != eye || ends[i] < -outside_mm)
 			ends[i] = -INFINITY;
@@ -83,24 +83,33 @@ static void lift(float x[3], const struct poser *p, int vertex, double ends)
 }
 
 /* Moves skin, between the ends, out of the eye, and with it edges and faces, as in poses. */
-static void clear(float *half, struct poser *p, const struct glb_bake *b, const float *blink, const double *ends)
+static void clear(float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, const double *ends)
 {
 	for (int step = 1; step < STEPS; step++) {
 		const double w = (double)step / STEPS;
 		float x[3];
 		for (int i = 0; i < b->n; i++)
-			on_the_way(p->x[b->vertex[i]], p->rig, b, i, blink, half, w);
+			on_the_way(p->x[b->vertex[i]], p->rig, b, i, from, blink, half, w);
 		if (step >= NEAR_END && step <= STEPS - NEAR_END)
 			deform_clear(p->x, p->rig, &p->near, (const double(*)[3][3])p->turn);
 		for (int i = 0; i < b->n; i++) {
 			if (!isfinite(ends[i]))
 				continue;
 			lift(p->x[b->vertex[i]], p, b->vertex[i], ends[i]);
-			on_the_way(x, p->rig, b, i, blink, half, w);
+			on_the_way(x, p->rig, b, i, from, blink, half, w);
 			for (int c = 0; c < 3; c++)
 				half[3 * i + c] += (float)((double)(p->x[b->vertex[i]][c] - x[c]) / glb_half_weight(w));
 		}
 	}
+}
+
+void glb_clear_way(float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
+{
+	double *ends = mem_new((size_t)b->n + 1, sizeof *ends);
+	find_ends(ends, p, b, from, blink, eye);
+	for (int round = 0; round < ROUNDS; round++)
+		clear(half, p, b, from, blink, ends);
+	free(ends);
 }
 
 void glb_take_halves(struct glb_bake *b, struct poser *p)
@@ -110,7 +119,6 @@ void glb_take_halves(struct glb_bake *b, struct poser *p)
 	s.still = mem_array(s.all + 1, sizeof *s.still);
 	s.shut = mem_array(s.all + 1, sizeof *s.shut);
 	s.now = mem_array(s.all + 1, sizeof *s.now);
-	double *ends = mem_new((size_t)b->n + 1, sizeof *ends);
 	for (int eye = 0; eye < GLB_HALVES; eye++) {
 		const size_t at = (size_t)(b->n_poses - GLB_HALVES + eye);
 		const float *blink = b->pose + (size_t)eye * row;
@@ -124,13 +132,10 @@ void glb_take_halves(struct glb_bake *b, struct poser *p)
 		}
 		for (size_t i = 0; i < hair; i++)
 			hairs[i] = poser_own_side(p, eye, p->hair_rest[i / 3]) * half[2 * row + i];
-		find_ends(ends, p, b, blink, eye);
-		for (int round = 0; round < ROUNDS; round++)
-			clear(skin, p, b, blink, ends);
+		glb_clear_way(skin, p, b, 0, blink, eye);
 		free(half);
 	}
 	free(s.still);
 	free(s.shut);
 	free(s.now);
-	free(ends);
 }

@@ -11,6 +11,10 @@ static inline double glb_half_weight(double w)
 	return 4 * w * (1 - w);
 }
 
+/* Moves skin, by a target half[bake.n][3] of that weight, out of the eye (poser.turn) on the way of another one, blink, from a pose `from` (null: from rest): what is
+ * outside at both ends. */
+void glb_clear_way(float *half, struct poser *poser, const struct glb_bake *bake, const float *from, const float *blink, int eye);
+
 /* Fills the bake's last GLB_HALVES poses: by least squares over the way of each blink's target from rest to shut, then outwards as far as skin that is
  * outside the eye at both ends needs to be so on the way. The blinks are the bake's first poses. */
 void glb_take_halves(struct glb_bake *bake, struct poser *poser);

@@ -85,8 +85,8 @@ void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *
 		pose_target(b->pose_lean + (size_t)k * row, now.lean, lifts ? 0 : from->lean, b->n, p, b->vertex, 0, eye);
 		pose_target(b->hair_pose + (size_t)k * hair, now.hair, lifts ? 0 : from->hair, b->n_hair, p, 0, (const float(*)[3])p->hair_rest, eye);
 	}
-	glb_take_turned(b, p);
 	glb_take_halves(b, p);
+	glb_take_turned(b, p);
 	posed_free(&still);
 	posed_free(&ahead);
 	posed_free(&now);

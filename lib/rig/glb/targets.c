@@ -151,7 +151,7 @@ static json_t *driven_of(const json_t *names)
 		json_array_foreach(names, i, name)
 			if (!strcmp(json_string_value(name), glb_turned_names[k]))
 				json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:s}", "target", glb_turned_names[k], "by", glb_pose_names[k % 2], "and",
-				                                      glb_pose_names[glb_turned_look(k)], "weight", "w v"));
+				                                      glb_pose_names[glb_turned_look(k)], "weight", k < GLB_TURNED_LOOKS ? "w v" : "4 w (1 - w) v"));
 	if (json_array_size(list))
 		return list;
 	json_decref(list);

@@ -207,25 +207,28 @@ static void under_lid(double head[3], const double middle[2], double by)
 /* Sews to an edge: a wall down to the globe, and from its foot, whose vertices are twice there for their normals, a strip over the globe below the lid. */
 static void line_edge(struct more *m, const struct rig *rig, int n, const int *loop, const double middle[2], const struct rig_conf *conf)
 {
+	enum { STRIPS = 3, ROWS = 2 + STRIPS };  // a strip as long as all of them would cut into the eyeball between its ends
 	const double unit = rig->globe[m->side].radius / 12;
 	const int32_t first = m->first + m->n;
 	for (int k = 0; k < n; k++)
-		for (int row = 0; row < 3; row++) {
+		for (int row = 0; row < ROWS; row++) {
 			double head[3], at[3];
 			const double gap = row < 2 ? conf->least : 0.5 * conf->least;
 			deform_in_head(head, rig, m->side, rig->rest[loop[k]]);
-			if (row == 2)
-				under_lid(head, middle, conf->lining * unit);
+			if (row >= 2)
+				under_lid(head, middle, conf->lining * unit * (row - 1) / STRIPS);
 			over_globe(at, rig, m->side, head, fmin(gap, fmax((double)rig->gap[loop[k]], 0)));
 			add_vertex(m, at, gap);
 			follow(m, loop[k], 1);
 		}
 	for (int k = 0; k < n; k++) {
-		const int32_t a = loop[k], b = loop[(k + 1) % n], p = first + 3 * k, q = first + 3 * ((k + 1) % n);
+		const int32_t a = loop[k], b = loop[(k + 1) % n], p = first + ROWS * k, q = first + ROWS * ((k + 1) % n);
 		add_face(m, p, b, a);
 		add_face(m, p, q, b);
-		add_face(m, p + 2, q + 1, p + 1);
-		add_face(m, p + 2, q + 2, q + 1);
+		for (int row = 1; row + 1 < ROWS; row++) {
+			add_face(m, p + row + 1, q + row, p + row);
+			add_face(m, p + row + 1, q + row + 1, q + row);
+		}
 	}
 }
 
