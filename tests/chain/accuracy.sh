@@ -88,6 +88,8 @@ holds "shut eyes are shut" "$(most 5 'o == 0')" 0.15
 # Curvature of one sign: mm. The character's own margin bends by 0.08 at rest, of eyeballs of 15 mm.
 holds "the upper margin of an open eye is an arc" "$(most 6 'o == 1')" 0.15
 holds "and that of one half open" "$(most 6 'o == 0.5')" 0.25
+# A human margin is 2 mm broad.
+check "margins are thick everywhere" awk -F, 'NR > 1 && $12 != "nan" && !($12 > 0.8 && $13 > 1.8) { exit 1 }' "$root/lids.csv"
 check "no vertex of skin is inside a turned eyeball" awk -F, 'NR > 1 && $7 < 0 { exit 1 }' "$root/lids.csv"
 check "nor is any edge or face by more than 0.02 mm" awk -F, 'NR > 1 && $8 < -0.02 { exit 1 }' "$root/lids.csv"
 # Of some 160 lashes of an eye; the goal is none. 4, 2 and 18 are reached: roots of the last lie in the fold of shut lids.
