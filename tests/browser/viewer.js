@@ -323,6 +323,7 @@ async function character(b) {
 	const dry = await b.value(`(() => { eyewright.reset(); eyewright.set("field", 16); return 1; })()`);
 	await b.until(settled, 180);
 	await b.screenshot(path.join(shots, "close.png"));
+	await tears(b);
 	const with_tears = await b.value(sum);
 	await b.value("eyewright.set('tear', 0)");
 	await b.until(settled, 180);
@@ -368,6 +369,51 @@ async function posed(b) {
 	const size = Math.max(...high.map((h, c) => h - low[c])), off = worst[0] / size, text = `${(1000 * worst[0]).toPrecision(2)} um of ${size.toFixed(0)} mm: ${off.toPrecision(2)}; normals ${worst[1].toPrecision(2)}`;
 	console.log(`# the shader's deformation is off by ${text}`);
 	say(moved > 3 && off < 1e-6 && worst[1] < 2e-3, "the shader deforms the skin as C does, to a millionth of the face", text);
+}
+
+/* The field from which the page draws tears and the dark under lids, pixel by pixel: the distance to the nearest pixel of skin as the definition has it, among all
+ * within reach, by looking at each. */
+async function tears(b) {
+	const off = JSON.parse(await b.value(`(() => {
+		const f = eyewright.face, was = f.field_of_lids, out = { seen: 0, worst: 0, missed: 0, beyond: 0, reach: 0 };
+		f.field_of_lids = function (side, key, per_mm, s) {
+			this.fielded[side] = "";
+			was.call(this, side, key, per_mm, s);
+			const { gl } = this.g, { width, height } = this.frame, box = gl.getParameter(gl.SCISSOR_BOX), mask = new Float32Array(4 * width * height), field = new Float32Array(4 * width * height);
+			this.g.target(this.frame);
+			gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, mask);
+			this.g.target(this.fields[1]);
+			gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, field);
+			if (gl.getError() !== gl.NO_ERROR)
+				out.error = true;
+			const reach = Math.min(64, Math.ceil(1.2 * per_mm * Math.max(this.data.shadow_mm, this.data.lake * this.data.tear_mm * s.tear)) + 2);
+			out.reach = reach;
+			for (let y = Math.max(box[1] + reach, 0); y < Math.min(box[1] + box[3] - reach, height); y++)
+				for (let x = Math.max(box[0] + reach, 0); x < Math.min(box[0] + box[2] - reach, width); x++) {
+					let best = Infinity;
+					for (let v = Math.max(y - reach, 0); v <= Math.min(y + reach, height - 1); v++)
+						for (let u = Math.max(x - reach, 0); u <= Math.min(x + reach, width - 1); u++)
+							if (mask[4 * (v * width + u) + 3] > 0.995)
+								best = Math.min(best, (u - x) ** 2 + (v - y) ** 2);
+					const got = field[4 * (y * width + x) + 2], want = Math.sqrt(best);
+					if (want > 0 && want <= reach) {
+						out.seen++;
+						out.worst = Math.max(out.worst, Math.abs(got - want) / want);
+						out.missed += got >= 1e3;
+					} else if (want > reach)
+						out.beyond += got < reach;
+				}
+		};
+		eyewright.set("tear", eyewright.values.tear + 0.01);
+		window.tears_off = out;
+		return JSON.stringify(out);
+	})()`));
+	await b.until("window.tears_off.seen > 0", 60);
+	const found = JSON.parse(await b.value("delete eyewright.face.field_of_lids, JSON.stringify(window.tears_off)"));
+	await b.value("eyewright.set('tear', eyewright.values.tear - 0.01)");
+	await b.until(settled, 180);
+	// Half floats: ten bits.
+	say(!off.error && found.seen > 500 && found.worst < 2e-3 && !found.missed && !found.beyond, "the distance to the lids is exact, pixel by pixel", JSON.stringify(found));
 }
 
 /* Vertices between rest and an expression in full, and back; wrinkles fold with theirs alone. */
