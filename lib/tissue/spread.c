@@ -1,6 +1,10 @@
 #include "tissue/spread.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "bridge/cv_blur.h"
 
 /* ln of what all orders reflect, at the middle of ways through a cornea (tissue.c). */
 static double ln_reflected(const double absorb[TISSUE_LAYERS], const double source[TISSUE_LAYERS], double abl, double stroma)
@@ -40,4 +44,16 @@ double tissue_spread(const struct tissue *t, double nm, double stroma)
 		square += 2.0 / 3 * way * way * free / (way + free);
 	}
 	return sqrt(square);
+}
+
+bool tissue_spread_map(float *map, int n, int channels, double sigma, struct err *err)
+{
+	const size_t all = (size_t)n * (size_t)n * (size_t)channels;
+	float *wide = mem_array(all, sizeof *wide);
+	bool ok = cv_blur(wide, map, n, n, channels, TISSUE_SPREAD_WIDE * sigma, err)
+	          && cv_blur(map, map, n, n, channels, TISSUE_SPREAD_NARROW * sigma, err);
+	for (size_t i = 0; ok && i < all; i++)
+		map[i] += (float)TISSUE_SPREAD_SHARE * (wide[i] - map[i]);
+	free(wide);
+	return ok;
 }

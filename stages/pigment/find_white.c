@@ -37,7 +37,7 @@ struct seen {
 	struct white white;
 	bool has_white, joined;
 	double cos_view;
-	struct image light;
+	struct image light, slant;
 	struct sclera_light shading;
 };
 
@@ -68,7 +68,7 @@ static bool measure(struct seen *out, const struct photo *photo, const struct fi
 	struct iris_view view = { .env = env, .eye = s->anatomy };
 	memcpy(view.cam_from_eye, fit->cam_from_eye, sizeof view.cam_from_eye);
 	if (on_iris)
-		iris_light_make(&out->light, LIGHT_TEXELS, s->extent, &view);
+		iris_light_make(&out->light, &out->slant, LIGHT_TEXELS, s->extent, &view);
 	if (card && c->white_from != WHITE_FROM_CAMERA) {
 		ok = white_card(&out->white, photo, card->value, &c->white, err);
 		out->has_white = ok;
@@ -176,6 +176,8 @@ static void take(struct found_white *out, const struct seen *seen, const double 
 {
 	for (long i = 0; i < 4L * out->light.width * out->light.height; i++)
 		out->light.px[i] += seen->light.px[i];
+	for (long i = 0; i < (long)IRIS_SLANT * out->slant.width * out->slant.height; i++)
+		out->slant.px[i] += seen->slant.px[i];
 	out->lights[out->n_lights++] = (struct found_light){ name, seen->shading };
 	if (!seen->has_white || !white_better(&seen->white, &out->white))
 		return;
@@ -193,7 +195,7 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 	if (!texture)
 		return false;
 	*out = (struct found_white){ .white = white_camera(), .light = image_new(LIGHT_TEXELS, LIGHT_TEXELS, 4),
-		.lights = mem_array((size_t)capture->n_photos, sizeof *out->lights) };
+		.slant = image_new(LIGHT_TEXELS, LIGHT_TEXELS, IRIS_SLANT), .lights = mem_array((size_t)capture->n_photos, sizeof *out->lights) };
 	const struct search search = { stage, capture, anatomy, env, extent, c };
 	double view = 0;
 	int views = 0;
@@ -213,6 +215,7 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 			stage_warn(stage, "white: %s", fault.msg);
 		}
 		image_free(&seen.light);
+		image_free(&seen.slant);
 	}
 	json_decref(texture);
 	out->cos_view = views ? view / views : 1;

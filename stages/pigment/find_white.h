@@ -10,6 +10,7 @@ struct found_white {
 	const char *photo;     // NAME of the photograph it is from; null: none
 	double cos_view;       // mean cosine, behind the cornea, of the directions that the photographs see the iris from
 	struct image light;    // mean of iris_light_make over the photographs, over the maps' square; image_free
+	struct image slant;    // their sums of its slant; image_free
 	struct found_light { const char *photo; struct sclera_light shading; } *lights;  // of every photograph looked at, where the light is not told; free
 	int n_lights;
 };

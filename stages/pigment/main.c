@@ -1,6 +1,6 @@
 /* pigment: melanin of both layers of the iris.
  * reads   IRIS/clean.exr, IRIS/texture.json, IRIS/thickness.exr, photos/, work/limbus/
- * writes  IRIS/pigment.json
+ * writes  IRIS/pigment.json, IRIS/light.exr (what white shows of its light there, and from where that comes)
  */
 #include "anatomy/keys.h"
 #include "anatomy/light.h"

@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "stages/pigment/find_white.h"
+#include "tissue/light/iris_light.h"
 #include "tissue/pigment/melanin_file.h"
 
 enum { FELLOW_MAPS = 6 };  // two of each eye that a capture may have
@@ -16,6 +17,7 @@ enum { FELLOW_MAPS = 6 };  // two of each eye that a capture may have
 struct work {
 	bool told;                 // the light
 	struct image clean, thickness;
+	double extent;
 	struct pupil pupil;
 	struct found_white found;
 	struct pigment_conf conf;  // as used: the cosines, the exposure's prior
@@ -180,6 +182,7 @@ static bool compute(struct work *w, char *const own[3], struct stage *stage, con
 	if (w->clean.width != w->thickness.width || w->clean.height != w->thickness.height)
 		return err_set(err, "%s: not the grid of %s", own[1], own[0]);
 	w->told = told;
+	w->extent = info.extent_mm;
 	w->conf = c->fit;
 	w->conf.cos_view = w->found.cos_view;
 	w->conf.cos_light = mean_cosine(&w->found.light);
@@ -205,12 +208,22 @@ static bool is_grey(const char *texture_json)
 	return grey;
 }
 
-static bool write_fit(struct work *w, const char *out, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye,
+/* The light on the iris, which relief needs, too. */
+static bool write_light(const struct work *w, const char *path, const char *made_by, struct err *err)
+{
+	struct image lit = iris_lit(&w->found.light, &w->found.slant);
+	const struct exr_info info = { .extent_mm = w->extent, .made_by = made_by };
+	bool ok = exr_write(path, &lit, iris_lit_names, EXR_FLOAT, &info, err);
+	image_free(&lit);
+	return ok;
+}
+
+static bool write_fit(struct work *w, const char *out, const char *lit, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye,
                       struct err *err)
 {
 	char *extra = extra_json(w);
-	bool ok = pigment_save(&w->fit, &w->classes, &w->conf, stage_path(stage, "%s", out), stage_made_by(stage, n, in),
-	                       extra, err);
+	bool ok = write_light(w, stage_path(stage, "%s", lit), stage_made_by(stage, n, in), err) && pigment_save(&w->fit, &w->classes, &w->conf, stage_path(stage, "%s", out),
+	                                                                                                      stage_made_by(stage, n, in), extra, err);
 	free(extra);
 	if (ok)
 		report(stage, eye, w);
@@ -239,7 +252,7 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
                    const struct pigment_stage_conf *conf, struct err *err)
 {
 	const struct capture_eye *eye = &capture->eyes[i];
-	char *own[3], *theirs[FELLOW_MAPS] = { 0 }, *out = mem_printf("%s/pigment.json", eye->iris);
+	char *own[3], *theirs[FELLOW_MAPS] = { 0 }, *out = mem_printf("%s/pigment.json", eye->iris), *lit = mem_printf("%s/light.exr", eye->iris);
 	const char **in = mem_new(4 + FELLOW_MAPS + 3 * (size_t)capture->n_photos, sizeof *in);
 	int n = inputs(in, own, capture, i);
 	n += fellow_inputs(in + n, theirs, capture, i);
@@ -248,16 +261,19 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
 	if (conf->light)
 		in[n++] = conf->light;
 	bool ok = light_told(&told, stage, conf, err);
-	if (ok && !stage_fresh(stage, out, n, in)) {
-		if (is_grey(stage_path(stage, "%s", own[2])))
+	bool grey = ok && is_grey(stage_path(stage, "%s", own[2]));
+	if (ok && !(stage_fresh(stage, out, n, in) && (grey || stage_fresh(stage, lit, n, in)))) {
+		if (grey)
 			ok = write_none(out, n, in, stage, eye, err);
 		else
-			ok = compute(&w, own, stage, capture, i, anatomy, conf->light ? &told : 0, conf, err) && write_fit(&w, out, n, in, stage, eye, err);
+			ok = compute(&w, own, stage, capture, i, anatomy, conf->light ? &told : 0, conf, err) && write_fit(&w, out, lit, n, in, stage, eye, err)
+			     && stage_made(stage, lit, n, in, err);
 		ok = ok && stage_made(stage, out, n, in, err);
 	}
 	image_free(&w.clean);
 	image_free(&w.thickness);
 	image_free(&w.found.light);
+	image_free(&w.found.slant);
 	free(w.found.lights);
 	envmap_free(&told);
 	for (int k = 0; k < 3; k++)
@@ -266,5 +282,6 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
 		free(theirs[k]);
 	free(in);
 	free(out);
+	free(lit);
 	return ok;
 }

@@ -2,21 +2,24 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/json.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "tissue/light/iris_light.h"
 #include "tissue/relief/height.h"
 
-enum { MAP_LIMIT_PX = 1 << 26, INPUTS = 4 };
-static const char *const input_names[INPUTS] = { "clean.exr", "texture.json", "thickness.exr", "pigment.json" };
+enum { MAP_LIMIT_PX = 1 << 26, INPUTS = 5 };
+static const char *const input_names[INPUTS] = { "clean.exr", "texture.json", "thickness.exr", "pigment.json", "light.exr" };
 
 struct work {
-	struct image clean, thickness, sharp, out;
+	struct image clean, thickness, light, sharp, out;
 	struct exr_info info;
 	struct pupil pupil;
 	double root;
 	struct relief_fit fit;
+	struct infer_fit infer;
 	double height_rms;
 	bool without;      // there are no pigments
 	char reason[256];  // why
@@ -33,9 +36,28 @@ static bool sharpen(struct work *w, char *const in[], struct stage *stage, const
 {
 	double x[PIGMENT_N], white[3];
 	struct pigment_conf pigment = { 0 };
-	return pigment_load(x, white, &pigment, stage_path(stage, "%s", in[3]), err)
-	       && relief_solve(&w->fit, &w->clean, &w->thickness, w->info.extent_mm, &w->pupil, w->root, white, x, &pigment, &c->relief, err)
-	       && relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err);
+	const double extent = w->info.extent_mm;
+	if (!pigment_load(x, white, &pigment, stage_path(stage, "%s", in[3]), err)
+	    || !relief_solve(&w->fit, &w->clean, &w->thickness, extent, &w->pupil, w->root, white, x, &pigment, &c->relief, err))
+		return false;
+	if (!c->shading)
+		return relief_apply(&w->sharp, &w->thickness, extent, &w->fit, &c->relief, err);
+	return exr_read(&w->light, stage_path(stage, "%s", in[4]), IRIS_LIT, iris_lit_names, MAP_LIMIT_PX, 0, err)
+	       && relief_infer(&w->sharp, &w->infer, &w->clean, &w->thickness, &w->light, extent, &w->pupil, w->root, white, x, &pigment, &c->relief,
+	                       &c->infer, err);
+}
+
+/* Height against the mean, thickness, and the sigma of its detail, where there is one: the third channel. */
+static void take_heights(struct work *w)
+{
+	struct image heights;
+	w->height_rms = relief_heights(&heights, &w->sharp, w->info.extent_mm, &w->pupil, w->root);
+	w->out = image_new(heights.width, heights.height, 3);
+	for (long i = 0; i < (long)heights.width * heights.height; i++) {
+		memcpy(w->out.px + 3 * i, heights.px + 2 * i, 2 * sizeof *heights.px);
+		w->out.px[3 * i + 2] = w->sharp.channels > 1 ? w->sharp.px[2 * i + 1] : 0;
+	}
+	image_free(&heights);
 }
 
 static bool compute(struct work *w, char *const in[], struct stage *stage, const struct eye *anatomy,
@@ -52,7 +74,7 @@ static bool compute(struct work *w, char *const in[], struct stage *stage, const
 		return err_set(err, "%s: not the grid of %s", in[2], in[0]);
 	if (!(w->without ? leave_coarse(w, c, err) : sharpen(w, in, stage, c, err)))
 		return false;
-	w->height_rms = relief_heights(&w->out, &w->sharp, w->info.extent_mm, &w->pupil, w->root);
+	take_heights(w);
 	return true;
 }
 
@@ -68,6 +90,18 @@ static bool save_fit(const struct work *w, const struct relief_conf *c, const ch
 	json_object_set_new(out, "contrast", json_number(f->contrast));
 	json_object_set_new(out, "light_per_thickness", json_number(f->slope));
 	json_object_set_new(out, "kappa", json_number(f->kappa));
+	if (w->infer.iterations) {
+		const struct infer_fit *i = &w->infer;
+		json_t *shading = json_object();
+		json_object_set_new(shading, "rms", json_numbers(INFER_OCTAVES, i->rms));
+		json_object_set_new(shading, "response", json_numbers(INFER_OCTAVES, i->response));
+		json_object_set_new(shading, "contrast", json_numbers(INFER_OCTAVES, i->contrast));
+		json_object_set_new(shading, "not_relief", json_numbers(INFER_OCTAVES, i->other));
+		json_object_set_new(shading, "noise", json_number(i->noise));
+		json_object_set_new(shading, "residual_course", json_number(i->before));
+		json_object_set_new(shading, "residual", json_number(i->after));
+		json_object_set_new(out, "shading", shading);
+	}
 	json_object_set_new(out, "height_rms_mm", json_number(w->height_rms));
 	bool ok = json_write(path, out, made_by, err);
 	json_decref(out);
@@ -82,7 +116,12 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 		stage_skipped(stage, "%s: the relief is the coarse field, lighter for thicker, not sharpened: %s", eye->side, w->reason);
 		return;
 	}
-	stage_note(stage, "%s: gains %.2f %.2f %.2f, detail differs by %.1f %% (coarse %.1f %%, of %.1f %%), relief %.3f mm rms", eye->side,
+	if (w->infer.iterations)
+		stage_note(stage, "%s: shading: ln thickness varies by %.3f, %.3f, %.3f, %.3f in its octaves, finest first; noise %.1f %%, detail differs by %.1f %% "
+		           "(without relief %.1f %%), relief %.3f mm rms", eye->side, w->infer.rms[0], w->infer.rms[1], w->infer.rms[2], w->infer.rms[3],
+		           100 * w->infer.noise, 100 * w->infer.after, 100 * w->infer.before, w->height_rms);
+	else
+		stage_note(stage, "%s: gains %.2f %.2f %.2f, detail differs by %.1f %% (coarse %.1f %%, of %.1f %%), relief %.3f mm rms", eye->side,
 	           f->gain[0], f->gain[1], f->gain[2], 100 * f->after, 100 * f->before, 100 * f->contrast, w->height_rms);
 	stage_figure(stage, "detail_residual", 100 * f->after, "%");
 	stage_figure(stage, "detail_residual_coarse", 100 * f->before, "%");
@@ -96,24 +135,25 @@ static void report(struct stage *stage, const struct capture_eye *eye, const str
 bool relief_stage(struct stage *stage, const struct capture_eye *eye, const struct eye *anatomy,
                   const struct relief_stage_conf *conf, struct err *err)
 {
-	static const char *const channels[] = { "Y", "T" };
+	static const char *const channels[] = { "Y", "T", "S" };
 	char *in[INPUTS], *out = mem_printf("%s/relief.exr", eye->iris), *json = mem_printf("%s/relief.json", eye->iris);
 	for (int i = 0; i < INPUTS; i++)
 		in[i] = mem_printf("%s/%s", eye->iris, input_names[i]);
 	const char *const *from = (const char *const *)in;
 	struct work w = { 0 };
-	bool ok = stage_fresh(stage, out, INPUTS, from) && stage_fresh(stage, json, INPUTS, from);
+	const int n = conf->shading && !tissue_without(w.reason, stage_path(stage, "%s", in[3])) ? INPUTS : INPUTS - 1;
+	bool ok = stage_fresh(stage, out, n, from) && stage_fresh(stage, json, n, from);
 	if (!ok) {
-		const char *made_by = stage_made_by(stage, INPUTS, from);
+		const char *made_by = stage_made_by(stage, n, from);
 		ok = compute(&w, in, stage, anatomy, conf, err);
 		w.info.made_by = made_by;
 		ok = ok && exr_write(stage_path(stage, "%s", out), &w.out, channels, EXR_HALF, &w.info, err)
 		     && save_fit(&w, &conf->relief, stage_path(stage, "%s", json), made_by, err)
-		     && stage_made(stage, out, INPUTS, from, err) && stage_made(stage, json, INPUTS, from, err);
+		     && stage_made(stage, out, n, from, err) && stage_made(stage, json, n, from, err);
 		if (ok)
 			report(stage, eye, &w);
 	}
-	struct image *maps[] = { &w.clean, &w.thickness, &w.sharp, &w.out };
+	struct image *maps[] = { &w.clean, &w.thickness, &w.light, &w.sharp, &w.out };
 	for (int i = 0; i < COUNT(maps); i++)
 		image_free(maps[i]);
 	for (int i = 0; i < INPUTS; i++)

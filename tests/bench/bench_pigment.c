@@ -47,7 +47,7 @@ static void photons(struct pigment_classes *out, double abl, long n)
 			double s = tissue_scattering(bands.nm[k]);
 			const struct tissue_layer layer[] = { { abl, 0.7 }, { abl / 4, 0.7 } };
 			struct photon_slab slab = { 1, 1, &stroma, 0.04, { s / (1 - g), scale * s / (1 - g) },
-				                        { tissue_absorption(&layer[0], bands.nm[k]), scale * tissue_absorption(&layer[1], bands.nm[k]) }, g };
+				                        { tissue_absorption(&layer[0], bands.nm[k]), scale * tissue_absorption(&layer[1], bands.nm[k]) }, g, false };
 			photon_reflectance(&r, &slab, 0.84, n, 0, (uint64_t)(k + 1));
 			for (int j = 0; j < 3; j++)
 				c->rgb[j] += bands.rgb[k][j] * r;

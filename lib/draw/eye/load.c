@@ -15,6 +15,7 @@
 #include "draw/eye/tint.h"
 #include "image/exr.h"
 #include "iris/refraction_file.h"
+#include "tissue/spread.h"
 
 static const long limit_px = 1L << 27;
 
@@ -129,6 +130,14 @@ static bool load_tissue(struct scene *s, const char *path, struct err *err)
 	return true;
 }
 
+/* The march knows nothing of light that walks sideways in the tissue, and would show relief sharper than it looks: it takes one that is as soft. */
+static bool soften_relief(struct scene *s, struct err *err)
+{
+	struct scene_level *l = &s->level[0];
+	double sigma = tissue_spread(&s->tissue, TISSUE_SPREAD_NM, scene_plain_stroma);
+	return !(sigma > 0) || tissue_spread_map(l->relief, l->n, 2, sigma * (double)l->per_mm, err);
+}
+
 /* Used only when it was made for this very cornea: the folder may have been changed since. */
 static bool load_refraction(struct scene *s, const char *path, struct err *err)
 {
@@ -152,7 +161,7 @@ bool scene_load(struct scene *s, const struct scene_files *files, const struct e
 	scene_geometry(s);
 	load_pupil(s, files->texture_json);
 	if (!load_colour(s, files->texture, conf->map_size, err) || !balance(s, files->pigment, err) || !load_relief(s, files->relief, err)
-	    || !load_tissue(s, files->pigment, err) || !load_refraction(s, files->refraction, err)) {
+	    || !load_tissue(s, files->pigment, err) || !soften_relief(s, err) || !load_refraction(s, files->refraction, err)) {
 		scene_free(s);
 		return false;
 	}

@@ -48,8 +48,8 @@ static double cos_at(const struct cornea *cornea, const double K[3], const doubl
 	return vec_dot(N, w);
 }
 
-/* Adds one light to a row of the map. */
-static void add_light(float *out, struct row *r, const struct cornea *cornea, const float w[3], const float rgb[3])
+/* Adds one light to a row of the map; slant: its row, or null. */
+static void add_light(float *out, float *slant, struct row *r, const struct cornea *cornea, const float w[3], const float rgb[3])
 {
 	for (int i = 0; i < r->n; i++) {
 		r->wx[i] = w[0];
@@ -68,6 +68,13 @@ static void add_light(float *out, struct row *r, const struct cornea *cornea, co
 			all += r->gain[i] * rgb[c];
 		}
 		out[4 * i + 3] += all * down;
+		if (!slant)
+			continue;
+		float along = -1 / fminf(d[2], -1e-6f), s[2] = { d[0] * along, d[1] * along }, length = hypotf(s[0], s[1]);
+		float shorter = length > IRIS_SLANT_MOST ? IRIS_SLANT_MOST / length : 1, x = shorter * s[0], y = shorter * s[1];
+		const float sums[IRIS_SLANT] = { 1, x, y, x * x, x * y, y * y };
+		for (int k = 0; k < IRIS_SLANT; k++)
+			slant[IRIS_SLANT * i + k] += all * sums[k];
 	}
 }
 
@@ -87,7 +94,7 @@ static void see(float *out, struct row *r, const struct cornea *cornea, const do
 	}
 }
 
-void iris_light_make(struct image *out, int n, double extent, const struct iris_view *view)
+void iris_light_make(struct image *out, struct image *slant, int n, double extent, const struct iris_view *view)
 {
 	struct envmap_light light[LIGHTS];
 	struct cornea cornea = eye_cornea(view->eye);
@@ -105,6 +112,8 @@ void iris_light_make(struct image *out, int n, double extent, const struct iris_
 		for (int i = 0; i < 3; i++)
 			C[j] -= view->cam_from_eye[i][j] * view->cam_from_eye[i][3];
 	*out = image_new(n, n, 4);
+	if (slant)
+		*slant = image_new(n, n, IRIS_SLANT);
 #pragma omp parallel for schedule(dynamic)
 	for (int y = 0; y < n; y++) {
 		struct row r = row_new(n);
@@ -115,8 +124,27 @@ void iris_light_make(struct image *out, int n, double extent, const struct iris_
 		}
 		for (int l = 0; l < lights; l++)
 			if (light[l].dir[2] < 0.16f)  // from further behind nothing reaches the iris
-				add_light(image_at(out, 0, y), &r, &cornea, light[l].dir, light[l].rgb);
+				add_light(image_at(out, 0, y), slant ? image_at(slant, 0, y) : 0, &r, &cornea, light[l].dir, light[l].rgb);
 		see(image_at(out, 0, y), &r, &cornea, C);
 		row_free(&r);
 	}
+}
+
+const char *const iris_lit_names[IRIS_LIT] = { "R", "G", "B", "cos", "sx", "sy", "xx", "xy", "yy" };
+
+struct image iris_lit(const struct image *light, const struct image *slant)
+{
+	struct image out = image_new(light->width, light->height, IRIS_LIT);
+	for (long i = 0; i < (long)light->width * light->height; i++) {
+		const float *from = light->px + 4 * i, *s = slant->px + IRIS_SLANT * i;
+		float *to = out.px + IRIS_LIT * i, all = s[0] > 1e-9f ? s[0] : 1, x = s[1] / all, y = s[2] / all;
+		for (int c = 0; c < 4; c++)
+			to[c] = from[c];
+		to[4] = x;
+		to[5] = y;
+		to[6] = s[3] / all - x * x;
+		to[7] = s[4] / all - x * y;
+		to[8] = s[5] / all - y * y;
+	}
+	return out;
 }

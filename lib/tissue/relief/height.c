@@ -25,8 +25,9 @@ double relief_heights(struct image *out, const struct image *thickness, double e
 			sum[k] += rows[y][k];
 	double count = fmax(sum[0], 1), mean = sum[1] / count;
 	for (long i = 0; i < (long)n * n; i++) {
-		out->px[2 * i] = (float)(thickness->px[i] - mean);
-		out->px[2 * i + 1] = thickness->px[i];
+		float t = thickness->px[i * thickness->channels];
+		out->px[2 * i] = (float)(t - mean);
+		out->px[2 * i + 1] = t;
 	}
 	free(rows);
 	return sqrt(fmax(sum[2] / count - mean * mean, 0));

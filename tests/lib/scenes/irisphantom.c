@@ -45,7 +45,7 @@ static void photograph(struct irisphantom *p, const struct tissue *t, double cos
 	for (int k = 0; k < bands.n; k++) {
 		double s = tissue_scattering(bands.nm[k]), scale = t->thickness_scale;
 		struct photon_slab slab = { n, cell, p->truth.px, t->abl_thickness, { s, scale * s }, {
-			tissue_absorption(&t->layer[TISSUE_ABL], bands.nm[k]), scale * tissue_absorption(&t->layer[TISSUE_STROMA], bands.nm[k]) }, 0 };
+			tissue_absorption(&t->layer[TISSUE_ABL], bands.nm[k]), scale * tissue_absorption(&t->layer[TISSUE_STROMA], bands.nm[k]) }, 0, false };
 		photon_reflectance(one, &slab, cos_light, photons, 0, seed + (uint64_t)k);
 		for (int i = 0; i < n * n; i++)
 			for (int c = 0; c < 3; c++)

@@ -58,7 +58,7 @@ static bool fly(struct photon *p, const struct photon_slab *s, double top, doubl
 
 static void start(struct photon *p, const struct photon_slab *s, double top, double cos_light)
 {
-	double azimuth = 2 * M_PI * uniform(&p->random), sine = sqrt(1 - cos_light * cos_light);
+	double azimuth = s->from_x ? M_PI : 2 * M_PI * uniform(&p->random), sine = sqrt(1 - cos_light * cos_light);
 	p->at[0] = uniform(&p->random) * s->n * s->cell;
 	p->at[1] = uniform(&p->random) * s->n * s->cell;
 	p->at[2] = top;

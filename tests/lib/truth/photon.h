@@ -6,6 +6,7 @@
  */
 #ifndef TESTS_PHOTON_H
 #define TESTS_PHOTON_H
+#include <stdbool.h>
 #include <stdint.h>
 
 struct photon_slab {
@@ -15,10 +16,11 @@ struct photon_slab {
 	double abl;           // mm
 	double scatter[2], absorb[2];  // border layer, stroma; mm^-1
 	double g;             // mean cosine of scattering; 0: isotropic
+	bool from_x;          // light comes from the side of +x alone, not from all azimuths
 };
 
 /* out[n][n]: pi times radiance straight up over irradiance on the plane z = 0 (a white Lambertian plane gives 1), for
- * light that comes from all azimuths with that cosine. orders: 0 all, else no more than that many scatterings. */
+ * light that comes from all azimuths (or slab->from_x) with that cosine. orders: 0 all, else no more than that many scatterings. */
 void photon_reflectance(float *out, const struct photon_slab *slab, double cos_light, long photons, int orders,
                         uint64_t seed);
 

@@ -48,7 +48,7 @@ static void through_cornea(void **state)
 	struct envmap env = envmap_room(256, room, room, 0, 1, &lamp);
 	struct iris_view view = { .env = &env, .eye = &eye, .cam_from_eye = { { 1 }, { 0, 1 }, { 0, 0, 1, 500 }, { 0, 0, 0, 1 }, 0 } };
 	struct image light;
-	iris_light_make(&light, 65, 6.5, &view);
+	iris_light_make(&light, 0, 65, 6.5, &view);
 	for (int i = 0; i < 5; i++) {
 		int x = 32 + 8 * (i == 1) - 14 * (i == 2), y = 32 + 16 * (i == 3) - 18 * (i == 4);
 		double P[3] = { (x - 32) * 0.2, (y - 32) * 0.2, 3.3 }, r = hypot(P[0], P[1]);

@@ -134,7 +134,7 @@ static struct pigment_classes photons(double abl, const struct pigment_conf *con
 			double s = tissue_scattering(bands.nm[k]);
 			struct photon_slab slab = { 1, 1, &stroma, 0.04, { s / (1 - g), scale * s / (1 - g) }, {
 				tissue_absorption(&(struct tissue_layer) { abl, 0.7 }, bands.nm[k]),
-				scale * tissue_absorption(&(struct tissue_layer) { abl / 4, 0.7 }, bands.nm[k]) }, g };
+				scale * tissue_absorption(&(struct tissue_layer) { abl / 4, 0.7 }, bands.nm[k]) }, g, false };
 			photon_reflectance(&r, &slab, conf->cos_light, 40000, 0, (uint64_t)(k + 1));
 			for (int j = 0; j < 3; j++)
 				c->rgb[j] += bands.rgb[k][j] * r;

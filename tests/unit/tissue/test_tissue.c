@@ -107,7 +107,7 @@ static void test_against_monte_carlo(void **state)
 			double absorb[] = { tissue_absorption(&(struct tissue_layer) { y[0], y[1] }, nm), y[4] * tissue_absorption(&(struct tissue_layer) { y[2], y[3] }, nm) };
 			double source[] = { s, y[4] * s }, extinction[] = { s + absorb[0], source[1] + absorb[1] };
 			float stroma = 0.45f, photons, first;
-			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0], source[1] }, { absorb[0], absorb[1] }, 0 };
+			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0], source[1] }, { absorb[0], absorb[1] }, 0, false };
 			photon_reflectance(&photons, &slab, 0.85, 400000, 0, 1);
 			photon_reflectance(&first, &slab, 0.85, 200000, 1, 2);
 			CHECK_NEAR(tissue_reflectance_all(extinction, source, 0.04, stroma, 1, 0.85), photons, 0.01 * photons);
@@ -128,12 +128,12 @@ static void test_forward(void **state)
 			double absorb[] = { tissue_absorption(&(struct tissue_layer) { y[0], y[1] }, nm), y[4] * tissue_absorption(&(struct tissue_layer) { y[2], y[3] }, nm) };
 			double source[] = { s, y[4] * s }, extinction[] = { s + absorb[0], source[1] + absorb[1] }, got[3], light = 0.85;
 			float stroma = 0.225f, photons[4], twice = 2 * stroma;
-			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0] / (1 - g), source[1] / (1 - g) }, { absorb[0], absorb[1] }, g };
+			struct photon_slab slab = { 1, 1, &stroma, 0.04, { source[0] / (1 - g), source[1] / (1 - g) }, { absorb[0], absorb[1] }, g, false };
 			photon_reflectance(&photons[0], &slab, light, 400000, 0, 1);
 			slab.stroma = &twice;
 			photon_reflectance(&photons[1], &slab, light, 400000, 0, 2);
 			tissue_reflectance_forward(got, extinction, source, 0.04, stroma, 1, light, 0);
-			slab = (struct photon_slab){ 1, 1, &twice, 0.04, { source[0] / 0.2, source[1] / 0.2 }, { absorb[0], absorb[1] }, 0.8 };
+			slab = (struct photon_slab){ 1, 1, &twice, 0.04, { source[0] / 0.2, source[1] / 0.2 }, { absorb[0], absorb[1] }, 0.8, false };
 			photon_reflectance(&photons[2], &slab, light, 400000, 0, 3);
 			print_message("%.0f nm: %.4f (photons %.4f), %.4f (%.4f; g = 0.8: %.4f)\n", nm, got[1], (double)photons[0], got[2], (double)photons[1], (double)photons[2]);
 			for (int i = 0; i < 2; i++)
@@ -159,7 +159,7 @@ static void test_spread(void **state)
 			struct tissue tissue = { .layer = { { y[0], y[1] }, { y[2], y[3] } }, .abl_thickness = 0.04, .thickness_scale = y[4], .multiple = true };
 			float stroma = (float)y[5];
 			struct photon_slab slab = { 1, 1, &stroma, 0.04, { s / (1 - g), y[4] * s / (1 - g) },
-				                        { tissue_absorption(&tissue.layer[0], nm), y[4] * tissue_absorption(&tissue.layer[1], nm) }, g };
+				                        { tissue_absorption(&tissue.layer[0], nm), y[4] * tissue_absorption(&tissue.layer[1], nm) }, g, false };
 			double want = photon_spread(&slab, light, 60000, 1), got = tissue_spread(&tissue, nm, y[5]);
 			print_message("%.0f nm, g = %.1f: %.3f mm (photons %.3f)\n", nm, g, got, want);
 			low = fmin(low, got / want);
