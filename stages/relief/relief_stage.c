@@ -32,6 +32,20 @@ static bool leave_coarse(struct work *w, const struct relief_stage_conf *c, stru
 	return relief_apply(&w->sharp, &w->thickness, w->info.extent_mm, &w->fit, &c->relief, err);
 }
 
+/* The light of pigment's making: of this texture, and numbers. */
+static bool read_light(struct work *w, const char *path, struct err *err)
+{
+	struct exr_info info = { 0 };
+	if (!exr_read(&w->light, path, IRIS_LIT, iris_lit_names, MAP_LIMIT_PX, &info, err))
+		return false;
+	if (!(fabs(info.extent_mm - w->info.extent_mm) <= 1e-3 * w->info.extent_mm))
+		return err_set(err, "%s: extentMm = %g, but the texture's is %g", path, info.extent_mm, w->info.extent_mm);
+	for (long i = 0; i < (long)IRIS_LIT * w->light.width * w->light.height; i++)
+		if (!(fabsf(w->light.px[i]) < 1e6f))
+			return err_set(err, "%s: %g: must be a light's strength or slant", path, (double)w->light.px[i]);
+	return true;
+}
+
 static bool sharpen(struct work *w, char *const in[], struct stage *stage, const struct relief_stage_conf *c, struct err *err)
 {
 	double x[PIGMENT_N], white[3];
@@ -42,7 +56,7 @@ static bool sharpen(struct work *w, char *const in[], struct stage *stage, const
 		return false;
 	if (!c->shading)
 		return relief_apply(&w->sharp, &w->thickness, extent, &w->fit, &c->relief, err);
-	return exr_read(&w->light, stage_path(stage, "%s", in[4]), IRIS_LIT, iris_lit_names, MAP_LIMIT_PX, 0, err)
+	return read_light(w, stage_path(stage, "%s", in[4]), err)
 	       && relief_infer(&w->sharp, &w->infer, &w->clean, &w->thickness, &w->light, extent, &w->pupil, w->root, white, x, &pigment, &c->relief,
 	                       &c->infer, err);
 }

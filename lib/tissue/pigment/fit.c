@@ -226,6 +226,43 @@ static bool varies(double *out, const struct pigment_classes *classes, const str
 	return true;
 }
 
+/* Little melanin is told from above only: any less looks the same, and the likeliest amount is the largest that does. What is reported is the mean
+ * of its logarithm, over the profile of the posterior (the others at their best for each amount), and its standard deviation there. Where melanin
+ * is told from both sides, by less than `told` (ln), mode and mean are the same. */
+static bool take_mean(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf, struct err *err)
+{
+	enum { STEPS = 13, AT = 8, M = PIGMENT_ABL_MELANIN };
+	const double told = 0.5, step = 0.5, *prior = conf->prior[M], mode = fit->x[M];
+	struct pigment_conf fixed = *conf;
+	struct pigment_fit at;
+	double x[PIGMENT_N], all = 0, sum = 0, square = 0;
+	if (!(fit->sigma[M] > told))
+		return true;
+	fixed.starts = 1;
+	fixed.prior[M][1] = 1e-3;
+	memcpy(x, fit->x, sizeof x);
+	for (int k = 0; k <= STEPS; k++) {  // the last one at the mean
+		double t = k < STEPS ? mode + (k - AT) * step : sum / all;
+		fixed.prior[M][0] = x[M] = fmin(fmax(t, -11), -0.6);  // inside of the bounds
+		if (!solve_once(&at, classes, &fixed, x, err))
+			return false;
+		double off = (t - prior[0]) / prior[1], weight = exp(fit->cost - at.cost - off * off / 2);
+		all += k < STEPS ? weight : 0;
+		sum += k < STEPS ? weight * t : 0;
+		square += k < STEPS ? weight * (t - mode) * (t - mode) : 0;
+	}
+	double mean = sum / all, variance = fmax(square / all - (mean - mode) * (mean - mode), 1e-4);
+	memcpy(fit->x, at.x, sizeof fit->x);
+	memcpy(fit->residual_rgb, at.residual_rgb, sizeof fit->residual_rgb);
+	memcpy(fit->thickness, at.thickness, sizeof fit->thickness);
+	memcpy(fit->ring, at.ring, sizeof fit->ring);
+	fit->residual = at.residual;
+	fit->residual_colour = at.residual_colour;
+	fit->residual_light = at.residual_light;
+	fit->sigma[M] = sqrt(variance);
+	return true;
+}
+
 bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                    const double *from, struct err *err)
 {
@@ -237,7 +274,7 @@ bool pigment_solve(struct pigment_fit *fit, const struct pigment_classes *classe
 	if (!solve_errors(fit, &used, classes, err))
 		return false;
 	used.starts = conf->starts;
-	bool ok = solve_once(fit, classes, &used, from, err);
+	bool ok = solve_once(fit, classes, &used, from, err) && take_mean(fit, classes, &used, err);
 	fit->varies = free_share;
 	return ok;
 }
