@@ -22,6 +22,12 @@ const char *const glb_half_names[GLB_HALVES] = { "eyeBlinkLeft_half", "eyeBlinkR
 const char *const glb_turned_names[GLB_TURNED] = { "eyeBlinkLeft_down", "eyeBlinkRight_down", "eyeBlinkLeft_up", "eyeBlinkRight_up",
 	                                                    "eyeBlinkLeft_down_half", "eyeBlinkRight_down_half", "eyeBlinkLeft_up_half", "eyeBlinkRight_up_half" };
 
+int glb_turned_look(int turned)
+{
+	enum { LOOK_UP = 2, LOOK_DOWN = 4 };  // glb_pose_names: of the left eye
+	return (turned % GLB_TURNED_LOOKS < 2 ? LOOK_DOWN : LOOK_UP) + turned % 2;
+}
+
 /* Letters and digits alone, small; what stands before the last dot is left out, a side of one letter written in full. */
 static void plain(char out[64], const char *name)
 {

@@ -17,6 +17,8 @@ extern const char *const glb_half_names[GLB_HALVES];
 /* And what a blink's lacks where the eye looks down or up: left and right of each; then what that way lacks half way (turned.h). */
 enum { GLB_TURNED_LOOKS = 4, GLB_TURNED = 2 * GLB_TURNED_LOOKS };
 extern const char *const glb_turned_names[GLB_TURNED];
+/* The bake's pose of such a blink's look. */
+int glb_turned_look(int turned);
 
 /* Whether a name means one of them, written in whatever way: eyeBlinkLeft, eyeBlink_L, "blendShape1.eye_blink_left". */
 bool arkit_means(const char *name, const char *arkit);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "rig/glb/turned.h"
 
 static const double off_mm = 0.03;  // of all targets of 8 bits together
 static const double most_mm = 500;  // a step is 15 um then: what goes further is kept as it is

@@ -6,13 +6,6 @@
 #include "rig/drive.h"
 #include "rig/glb/halves.h"
 
-enum { LOOK_UP = 2, LOOK_DOWN = 4 };  // glb_pose_names: of the left eye
-
-int glb_turned_look(int turned)
-{
-	return (turned % GLB_TURNED_LOOKS < 2 ? LOOK_DOWN : LOOK_UP) + turned % 2;
-}
-
 /* out = own now - blink - look */
 static void lack(float *out, const float *now, const float *blink, const float *look, int n, const float *own)
 {

@@ -10,7 +10,4 @@
 /* Fills the GLB_TURNED poses that stand before the halves; the bake's blinks, looks and halves are there. */
 void glb_take_turned(struct glb_bake *bake, struct poser *poser);
 
-/* The bake's pose of a turned blink's look. */
-int glb_turned_look(int turned);
-
 #endif
