@@ -16,7 +16,7 @@ static const double edge_mm = 4;            // a mesh's edge so near the eyeball
 static const double wide_mm[] = { 10, 2 };  // least width and height of what is an eye's opening
 static const double near_mm[] = { 0.8, 3 }; // skin so far from a place of the margin tells how it moves: of a normal distribution; at most
 static const double crest_mm = 0.28, valley_mm = 0.16, mound_mm = 0.75;  // heights over the globe: of the plica, behind it, of the caruncle
-static const double tuck_mm = 0.7;          // how far they go on below the lids
+static const double tuck_mm = 1.3;          // how far they go on below the lids
 static const double white = 0.6;            // of what is seen of the white at that corner, at most, lies below them
 static const double limbus_mm = 5.9;
 
