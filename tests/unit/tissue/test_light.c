@@ -46,7 +46,7 @@ static void through_cornea(void **state)
 	(void)state;
 	struct envmap_box lamp = { { -0.45, -0.4, -0.798 }, { 0.2, 0.2 }, { 15, 15, 15 }, 0 };
 	struct envmap env = envmap_room(256, room, room, 0, 1, &lamp);
-	struct iris_view view = { .env = &env, .eye = &eye, .cam_from_eye = { { 1 }, { 0, 1 }, { 0, 0, 1, 500 }, { 0, 0, 0, 1 }, 0 } };
+	struct iris_view view = { .env = &env, .eye = &eye, .cam_from_eye = { { 1 }, { 0, 1 }, { 0, 0, 1, 500 }, { 0, 0, 0, 1 } } };
 	struct image light;
 	iris_light_make(&light, 0, 65, 6.5, &view);
 	for (int i = 0; i < 5; i++) {
