@@ -23,8 +23,10 @@ if command -v clang >/dev/null 2>&1; then
 		if [ -n "${FUZZ:-}" ] && [ "build-fuzz/${f%.c}.o" -nt "$f" ]; then pass "clang $f"
 		else beside clang "clang $f" "$f"; fi
 	done < <(find lib stages render tests -name '*.c' 2>/dev/null | sort)
+	cc=clang
 else
 	skip "clang" "not installed: gcc alone has seen the code"
+	cc=gcc
 fi
 # A header that a source file includes before anything else has been compiled alone there.
 first=$(find lib stages render tests -name '*.c' -exec awk 'FNR == 1 { seen = 0 }
@@ -32,6 +34,6 @@ first=$(find lib stages render tests -name '*.c' -exec awk 'FNR == 1 { seen = 0 
 while IFS= read -r f; do
 	grep -q '^#ifndef' "$f" || continue # without a guard: a part that one source file includes
 	if grep -qxF -e "$f" -e "${f#lib/}" <<<"$first"; then pass "header alone $f"
-	else beside gcc "header alone $f" -x c -Wno-unused-function -Wno-unused-const-variable -Wno-empty-translation-unit "$f"; fi
+	else beside $cc "header alone $f" -x c -Wno-unused-function -Wno-unused-const-variable -Wno-pedantic -Wno-unknown-pragmas "$f"; fi
 done < <(find lib stages render tests -name '*.h' 2>/dev/null | sort)
 wait
