@@ -113,11 +113,11 @@ bool load(cv_net **net, const char *path, const char *data, size_t size, err *er
 	return true;
 }
 
-/* How many of OpenCV's own threads a picture runs on: they rest while pictures run side by side. */
-struct workers {
+/* OpenCV's own threads rest while pictures run side by side. */
+struct alone {
 	int was = cv::getNumThreads();
-	explicit workers(int n) { cv::setNumThreads(n); }
-	~workers() { cv::setNumThreads(was); }
+	alone() { cv::setNumThreads(1); }
+	~alone() { cv::setNumThreads(was); }
 };
 
 bool run_one(cv_net_picture *p, cv::dnn::Net *net, const std::vector<char> &data, int channels, err *err)
@@ -191,7 +191,7 @@ bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int c
 	std::vector<struct err> errs(static_cast<size_t>(n));
 	int failed = n;
 	const quiet hush;
-	const workers inside(n == 1 ? omp_get_max_threads() : 1);
+	const alone rest;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) reduction(min : failed)
 	for (int i = 0; i < n; i++)
 		if (!run_one(&picture[i], &net->each[static_cast<size_t>(omp_get_thread_num())], net->data, channels, &errs[static_cast<size_t>(i)]))

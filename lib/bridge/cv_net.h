@@ -23,7 +23,7 @@ struct cv_net_picture {
 	int size[3];
 };
 
-/* Runs the network on n pictures, side by side on as many threads as OpenMP would take, each picture on one, a single one on all: the numbers are the
+/* Runs the network on n pictures, side by side on as many threads as OpenMP would take, each picture on one: the numbers are the
  * same on any number of them. Large pictures first keep all busy. One call at a time for each net. A size that differs from the last
  * one of a thread costs it a set-up of some ms. False, err set, nothing to free, when the network does not take a size. */
 bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int channels, struct err *err);
