@@ -18,6 +18,7 @@ for light in warm cool; do
 	"${B:-build}/tests/tools/eye_compare" "$export/eye.json" 0 "$export/reference_00.exr" "$root/$light/work/export/reference_00.exr" >"$root/says" 2>&1
 	[ -n "${VERBOSE:-}" ] && cat "$root/says"
 	least "$light: in a studio's light, CIEDE2000 over the eye" "$(sed -n 's/.* eye \([0-9.]*\) .*/\1/p' "$root/says")" 5
-	least "$light: the largest channel over the smallest, of white light's" "$(sed -n 's/.*light \([0-9.]*\) \([0-9.]*\) \([0-9.]*\) of ours.*/\1\n\2\n\3/p' "$root/says" | sort -g | awk 'NR == 1 { low = $1 } END { print $1 / low }')" 1.05
+	# By a lamp 5.5 %, 4.4 while relief was drawn sharper than tissue lets it look: more of the photograph's contrast is albedo now, and bounded.
+	least "$light: the largest channel over the smallest, of white light's" "$(sed -n 's/.*light \([0-9.]*\) \([0-9.]*\) \([0-9.]*\) of ours.*/\1\n\2\n\3/p' "$root/says" | sort -g | awk 'NR == 1 { low = $1 } END { print $1 / low }')" 1.06
 	least "$light: and over the iris" "$(sed -n 's/.*: iris \([0-9.]*\) .*/\1/p' "$root/says")" 3
 done
