@@ -5,11 +5,6 @@ uniform int what;  // 0: the picture as it is seen; 1: half as large; 2: what is
 uniform vec2 size;
 out vec4 light;
 
-ivec2 held(ivec2 p)
-{
-	return clamp(p, ivec2(0), textureSize(picture, 0) - 1);
-}
-
 void main()
 {
 	ivec2 p = ivec2(gl_FragCoord.xy);
@@ -20,9 +15,8 @@ void main()
 		const float w[4] = float[](0.125, 0.375, 0.375, 0.125);
 		for (int j = 0; j < 4; j++)
 			for (int i = 0; i < 4; i++)
-				light += w[i] * w[j] * texelFetch(picture, held(2 * p + ivec2(i - 1, j - 1)), 0);
+				light += w[i] * w[j] * texelFetch(picture, held(picture, 2 * p + ivec2(i - 1, j - 1)), 0);
 	} else {
-		ivec2 a = p / 2, b = held(a + 2 * (p & 1) - 1);
-		light = (9.0 * texelFetch(picture, a, 0) + 3.0 * texelFetch(picture, ivec2(b.x, a.y), 0) + 3.0 * texelFetch(picture, ivec2(a.x, b.y), 0) + texelFetch(picture, b, 0)) / 16.0;
+		light = enlarged(picture, p);
 	}
 }

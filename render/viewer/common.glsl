@@ -36,3 +36,15 @@ vec3 on_grey(sampler2D picture, vec2 at, vec3 gain)
 	vec4 p = texture(picture, at);
 	return p.rgb * gain + (1.0 - p.a) * mix(0.115, 0.030, min(dot(u, u) / 2.0, 1.0));
 }
+
+ivec2 held(sampler2D picture, ivec2 p)
+{
+	return clamp(p, ivec2(0), textureSize(picture, 0) - 1);
+}
+
+// A pixel of what is half as large, enlarged: add_enlarged of lib/draw/bloom.c.
+vec4 enlarged(sampler2D half_size, ivec2 p)
+{
+	ivec2 a = p / 2, b = held(half_size, a + 2 * (p & 1) - 1);
+	return (9.0 * texelFetch(half_size, a, 0) + 3.0 * texelFetch(half_size, ivec2(b.x, a.y), 0) + 3.0 * texelFetch(half_size, ivec2(a.x, b.y), 0) + texelFetch(half_size, b, 0)) / 16.0;
+}

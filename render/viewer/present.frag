@@ -9,11 +9,8 @@ void main()
 {
 	vec2 at = gl_FragCoord.xy / size;
 	vec3 c = on_grey(picture, at, gain);
-	if (bloom > 0.0) {
-		ivec2 p = ivec2(gl_FragCoord.xy), a = p / 2, b = clamp(a + 2 * (p & 1) - 1, ivec2(0), textureSize(glow, 0) - 1);
-		vec3 g = (9.0 * texelFetch(glow, a, 0).rgb + 3.0 * texelFetch(glow, ivec2(b.x, a.y), 0).rgb + 3.0 * texelFetch(glow, ivec2(a.x, b.y), 0).rgb + texelFetch(glow, b, 0).rgb) / 16.0;
-		c = (1.0 - bloom) * c + bloom / octaves * g;
-	}
+	if (bloom > 0.0)
+		c = (1.0 - bloom) * c + bloom / octaves * enlarged(glow, ivec2(gl_FragCoord.xy)).rgb;
 	// As film takes highlights: Narkowicz's fit of the ACES curve, with middle grey where it was.
 	vec3 f = 0.8 * c;
 	c = mix(clamp(c, 0.0, 1.0), clamp(f * (2.51 * f + 0.03) / (f * (2.43 * f + 0.59) + 0.14), 0.0, 1.0), tone);
