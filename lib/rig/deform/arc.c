@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/rising.h"
 #include "math/vec.h"
 #include "rig/deform/deform.h"
 #include "rig/deform/terms.h"
@@ -20,12 +21,6 @@ static const double rest_mm = 6;                // of an eyeball of 12 mm: heigh
 static const double shut_mm[] = { 0.2, 1 };     // of an eyeball of 12 mm: the opening up to which lids are left; from which they are not
 static const double goes_along_mm[] = { 1.5, 8 }; // the same: skin above the margin goes with it up to the first, not at all from the second
 static const double lid_share[] = { 0.1, 0.6 };  // of the way from the opening's middle to its end: where at rest a lid begins
-
-static double rising(double x, double from, double to)
-{
-	const double t = fmin(fmax((x - from) / (to - from), 0), 1);
-	return t * t * (3 - 2 * t);
-}
 
 /* How far up each open column's margin has to go: by[column], and [COLUMNS + 1] the sums of those before. */
 struct lift {

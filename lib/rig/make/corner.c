@@ -1,6 +1,7 @@
 /* The inner corner of an eye: a caruncle, and the fold beside it, the plica semilunaris, as a sheet over the globe that follows both lids. */
 #include <math.h>
 
+#include "math/rising.h"
 #include "math/vec.h"
 #include "rig/deform/opening.h"
 #include "rig/make/lining_impl.h"
@@ -80,18 +81,12 @@ static void follow_lid(struct lining *m, const struct corner *k, double s, bool 
 		}
 }
 
-static double smooth_step(double x, double from, double to)
-{
-	const double t = fmin(fmax((x - from) / (to - from), 0), 1);
-	return t * t * (3 - 2 * t);
-}
-
 /* Height over the globe: r 0 at the corner, 1 at the plica's edge; t 0 at the lower margin, 1 at the upper one. */
 static double height_at(const struct corner *k, double r, double t, double least)
 {
 	const double along = fmin(fmax(t, 0), 1), round = sqrt(fmax(1 - (2 * along - 1) * (2 * along - 1), 0));
-	const double plica = crest_mm * smooth_step(r, 1, 0.86) * (1 - smooth_step(r, 0.86, 0.62)) + valley_mm * (1 - smooth_step(r, 0.6, 0.9));
-	const double mound = (mound_mm - valley_mm) * (1 - smooth_step(r, 0.12, 0.62)) * smooth_step(r, -0.5, 0.05);
+	const double plica = crest_mm * rising(r, 1, 0.86) * (1 - rising(r, 0.86, 0.62)) + valley_mm * (1 - rising(r, 0.6, 0.9));
+	const double mound = (mound_mm - valley_mm) * (1 - rising(r, 0.12, 0.62)) * rising(r, -0.5, 0.05);
 	return fmax(k->unit * (plica * (0.4 + 0.6 * round) + mound * round), least);
 }
 

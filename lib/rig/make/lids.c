@@ -5,15 +5,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/rising.h"
 #include "rig/make/make_impl.h"
 
 static const double lid_gap = 5;  // mm from the globe: skin further away is no lid
-
-static double ramp(double x, double from, double to)
-{
-	double t = fmin(fmax((x - from) / (to - from), 0), 1);
-	return t * t * (3 - 2 * t);
-}
 
 /* Points along a lid's margin at rest, px, and the difference of the margin's motion from that of the skin there. */
 struct margin {
@@ -114,13 +109,13 @@ void rig_follow_lids(struct rig *rig, const struct rig_motion *m, double px_per_
 			continue;
 		for (int lid = 0; lid < SKIN_LIDS; lid++) {
 			double lack[RIG_BASIS] = { 0 }, d = nearest(lack, &margin[lid], rig->home[i]) / px_per_mm;
-			double reach = 1 - ramp(d, 0.25 * reach_mm, reach_mm), w = reach / (0.05 + d * d);
+			double reach = 1 - rising(d, 0.25 * reach_mm, reach_mm), w = reach / (0.05 + d * d);
 			most = fmax(most, reach);
 			total += w;
 			for (int k = 0; k < RIG_BASIS; k++)
 				sum[k] += w * lack[k];
 		}
-		most *= 1 - ramp(rig->gap[i], lid_gap - 2, lid_gap + 2);
+		most *= 1 - rising(rig->gap[i], lid_gap - 2, lid_gap + 2);
 		report->lid += most > 0.5;
 		for (int k = 0; k < RIG_BASIS && total > 0; k++)
 			rig->basis[i][k] += (float)(most * sum[k] / total);
@@ -165,7 +160,7 @@ static void close_once(struct rig *rig, const struct rig_fissure *f, const float
 		if (rig_is_globe(rig->part[i]) || rig->side[i] != side || rig->gap[i] > lid_gap + 3 || !(open[x] > 0) || !(beyond < 3))
 			continue;
 		double middle = 0.5 * (f->top[x] + f->bottom[x]), above = (f->top[x] - f->at[i][1]) / px_per_mm;
-		double w = (1 - ramp(above, 1, 9)) * (1 - ramp(beyond, 0, 3)) * (1 - ramp(rig->gap[i], lid_gap, lid_gap + 3)) * (f->at[i][1] < middle + 0.2 * px_per_mm);
+		double w = (1 - rising(above, 1, 9)) * (1 - rising(beyond, 0, 3)) * (1 - rising(rig->gap[i], lid_gap, lid_gap + 3)) * (f->at[i][1] < middle + 0.2 * px_per_mm);
 		for (int k = 0; k < RIG_COMPONENTS; k++)
 			rig->basis[i][RIG_COMPONENTS + k] += (float)(w * open[x] * closing[k]);
 	}
