@@ -4,9 +4,21 @@ class FaceScene {
 	static PROBE = 16;
 	static WIDE = 2.3;  // distances between the eyes that are shown across
 
+	/* Bytes in place of what is packed, in all of the character's data, once. */
+	static async unpack(data) {
+		if (!window.DecompressionStream)
+			throw new Error("this browser cannot unpack the face; one of 2023 or later can");
+		await Promise.all(Object.entries(data).filter(([, v]) => v && typeof v === "object").map(async ([key, v]) => {
+			if (v.deflate !== undefined)
+				data[key] = await Graphics.unpacked(v);
+			else if (!Array.isArray(v) && !ArrayBuffer.isView(v))
+				await FaceScene.unpack(v);
+		}));
+	}
+
 	constructor(g, data) {
-		const gl = g.gl, bytes = Graphics.bytes;
-		Object.assign(this, { g, data, skies: bytes(data.sky), strengths: [] });
+		const gl = g.gl;
+		Object.assign(this, { g, data, skies: data.sky, strengths: [] });
 		this.skin(g.first);
 		this.eye = g.program("eye", null, ["skin_look", "lids"]);
 		this.probed = g.texture(FaceScene.PROBE, FaceScene.PROBE, gl.RGBA8);
@@ -14,7 +26,7 @@ class FaceScene {
 		this.tear = g.program("tear");
 		this.copy = g.program("copy");
 		this.poser = new FacePose(g, data);
-		const faces = new Uint32Array(bytes(data.faces).buffer);
+		const faces = new Uint32Array(data.faces.buffer);
 		this.n_indices = faces.length;
 		this.shape = gl.createVertexArray();
 		gl.bindVertexArray(this.shape);
@@ -30,10 +42,10 @@ class FaceScene {
 			return buffer;
 		};
 		["at", "normals", "light"].forEach((name, k) => array(k, this.poser[name].buffer, 3, gl.FLOAT, false, 16));
-		array(3, still(bytes(data.skin)), 4, gl.UNSIGNED_BYTE, true, 0);
+		array(3, still(data.skin), 4, gl.UNSIGNED_BYTE, true, 0);
 		array(4, still(this.poser.rest_in_head()), 3, gl.FLOAT, false, 0);
 		if (data.folds)
-			array(5, still(new Float32Array(Array.from(new Uint16Array(bytes(data.folds.home).buffer), v => v / 16))), 2, gl.FLOAT, false, 0);
+			array(5, still(new Float32Array(Array.from(new Uint16Array(data.folds.home.buffer), v => v / 16))), 2, gl.FLOAT, false, 0);
 		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
 		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
 		gl.bindVertexArray(null);

@@ -230,6 +230,16 @@ class Graphics {
 		return out;
 	}
 
+	/* Decodes lib/draw/web/packed.c: bytes deflated, those of an item apart, each as its difference from the one `back` bytes before it. */
+	static async unpacked({ size, item, back, deflate }) {
+		const apart = new Uint8Array(await new Response(new Blob([Graphics.bytes(deflate)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+		const out = new Uint8Array(size);
+		for (let k = 0, from = 0; k < item; k++)
+			for (let i = k; i < size; i += item)
+				out[i] = apart[from++] + (i < back ? 0 : out[i - back]);
+		return out;
+	}
+
 	/* Decodes lib/draw/web/field.c: whole steps, each stored as its difference from what its neighbours on the left and above foretell. */
 	static field(m, width, height, channels) {
 		const bytes = Graphics.bytes(m.bytes), row = width * channels, whole = new Int32Array(2 * row), out = new Float32Array(row * height);

@@ -26,9 +26,11 @@ class Page extends Live {
 		this.eye = data.eyes[index];
 		this.scene = new EyeScene(this.graphics, this.eye);
 		// Programs first: they compile while maps are decoded.
-		if (data.face)
-			this.face = this.face || new FaceScene(this.graphics, data.face);
-		else
+		if (data.face && !this.face) {
+			await FaceScene.unpack(data.face);
+			this.face = new FaceScene(this.graphics, data.face);
+		}
+		if (!data.face)
 			this.scene.start();
 		await Promise.all([this.scene.load(), this.face ? this.face.load() : null]);
 		if (data.face)

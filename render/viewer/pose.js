@@ -9,7 +9,7 @@ class FacePose {
 	static HAIR_LIGHT = Math.sqrt(0.8 / 3);
 
 	constructor(g, data) {
-		const rig = data.rig, floats = b => new Float32Array(Graphics.bytes(b).buffer);
+		const rig = data.rig, floats = bytes => new Float32Array(bytes.buffer);
 		Object.assign(this, { g, data, rig, key: "", n: data.n, base: rig.levels[0][2], posed: rig.levels[0][1] });
 		this.rest = floats(rig.rest);
 		this.deform = g.feedback("DEFORM", ["at_now", "light_now"]);
@@ -34,10 +34,10 @@ class FacePose {
 	/* Skull, globes, light of all poses. */
 	maps_of_rig() {
 		const { gl } = this.g, { rig, data, posed } = this, [, , step, w, h] = rig.skull.grid, side = rig.globe.cells + 1;
-		const light = Graphics.bytes(data.light), poses = posed ? light.length / 3 / posed : 0, rows = Math.ceil(posed / FacePose.WIDE), padded = new Uint8Array(3 * FacePose.WIDE * rows * poses);
+		const { light } = data, poses = posed ? light.length / 3 / posed : 0, rows = Math.ceil(posed / FacePose.WIDE), padded = new Uint8Array(3 * FacePose.WIDE * rows * poses);
 		for (let k = 0; k < poses; k++)
 			padded.set(light.subarray(3 * posed * k, 3 * posed * (k + 1)), 3 * FacePose.WIDE * rows * k);
-		const lids = data.settle.n, bytes = Graphics.bytes(data.settle.bytes), deep = Math.max(1, Math.ceil(lids / FacePose.WIDE)), many = lids ? bytes.length / 3 / lids : 1;
+		const lids = data.settle.n, { bytes } = data.settle, deep = Math.max(1, Math.ceil(lids / FacePose.WIDE)), many = lids ? bytes.length / 3 / lids : 1;
 		const moved = new Uint8Array(3 * FacePose.WIDE * deep * many);
 		for (let k = 0; k < many; k++)
 			moved.set(bytes.subarray(3 * lids * k, 3 * lids * (k + 1)), 3 * FacePose.WIDE * deep * k);
@@ -64,7 +64,7 @@ class FacePose {
 	}
 
 	shapes(floats) {
-		const { gl } = this.g, { rig, base } = this, terms = floats(rig.terms), faces = new Uint32Array(Graphics.bytes(rig.ring).buffer);
+		const { gl } = this.g, { rig, base } = this, terms = floats(rig.terms), faces = new Uint32Array(rig.ring.buffer);
 		for (let i = 0; i < this.posed; i++)
 			terms[FacePose.TERMS * i + 7] = this.share(i);
 		this.deform.shape = this.shape(terms, 4, 4, 4, 4, 4, 4, 4);
@@ -108,7 +108,7 @@ class FacePose {
 
 	/* The vertices that never move, once: the rig's own, and all that is made of them. */
 	begin() {
-		const { gl } = this.g, { n, base, hairs } = this, still = Graphics.bytes(this.data.still), up = turns.apply(turns.transpose(this.rig.head_from_rig), [0, 0, 1]);
+		const { gl } = this.g, { n, base, hairs } = this, { still } = this.data, up = turns.apply(turns.transpose(this.rig.head_from_rig), [0, 0, 1]);
 		const at = new Float32Array(4 * n), light = new Float32Array(4 * n), normals = new Float32Array(4 * n);
 		for (let i = 0; i < base; i++) {
 			at.set(this.rest.subarray(3 * i, 3 * i + 3), 4 * i);

@@ -19,8 +19,8 @@ const between = [[10, 5, 1], [-20, -15, 1], [20, 15, 1], [0, -25, 1], [0, -8, 0.
 		const floats = bytes => new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
 		const input = poses.map(([h, v, o]) => `${h} ${v} ${h} ${v} ${o} ${o}`).join("\n") + "\n";
 		const want = floats(execFileSync(path.join(tools, "posed"), [rig, "settled"], { input, maxBuffer: 1 << 30 })), n = want.length / poses.length / 6;
-		const rows = new Int32Array(floats(Buffer.from(await b.value("data.face.rig.rows"), "base64")).buffer);
-		const of = JSON.parse(await b.value(`(() => { const t = new Float32Array(Graphics.bytes(data.face.rig.terms).buffer), out = [];
+		const rows = JSON.parse(await b.value("JSON.stringify(Array.from(new Int32Array(data.face.rig.rows.buffer)))"));
+		const of = JSON.parse(await b.value(`(() => { const t = new Float32Array(data.face.rig.terms.buffer), out = [];
 			for (let i = 0; i < eyewright.face.poser.posed; i++) if (t[28 * i + 11] > 0) out.push(i);
 			return JSON.stringify(out); })()`));
 		for (let k = 0; k < poses.length; k++) {

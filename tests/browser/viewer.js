@@ -342,7 +342,7 @@ async function posed(b) {
 	const cases = ["0 0 0 0 1 1 0 0", "20 -15 18 -15 1 1 0 0", "-30 20 -30 20 0.5 0.5 0 0", "0 0 0 0 0 1 0 0", "10 5 8 5 1.4 0.2 0.7 0.3", "-40 -25 -40 -25 0.05 0 1 1"];
 	const floats = bytes => new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
 	const want = floats(execFileSync(path.join(tools, "posed"), [rig], { input: cases.flatMap(c => [4, 5].map(k => c.split(" ").map((w, i) => i === 4 || i === 5 ? c.split(" ")[k] : w).join(" "))).join("\n") + "\n", maxBuffer: 1 << 28 }));
-	const rows = new Int32Array(floats(Buffer.from(await b.value("data.face.rig.rows"), "base64")).buffer), n = want.length / cases.length / 12;
+	const rows = JSON.parse(await b.value("JSON.stringify(Array.from(new Int32Array(data.face.rig.rows.buffer)))")), n = want.length / cases.length / 12;
 	const share = JSON.parse(await b.value("JSON.stringify(Array.from({ length: eyewright.face.poser.base }, (_, i) => eyewright.face.poser.share(i)))"));
 	const posed = await b.value("eyewright.face.poser.posed"), worst = [0, 0], low = [0, 1, 2].map(() => 1e9), high = low.map(() => -1e9);
 	let moved = 0;

@@ -7,8 +7,8 @@
 #include "base/mem.h"
 #include "base/template.h"
 #include "draw/face/skin_look.h"
-#include "draw/web/base64.h"
 #include "draw/web/face_impl.h"
+#include "draw/web/packed.h"
 #include "math/vec.h"
 
 static const double at_h[NH] = { -32, -16, 0, 16, 32 }, at_v[NV] = { -22, 0, 22 }, at_a[NA] = { 0, 0.5, 1, 1.4 };
@@ -106,10 +106,10 @@ static void put_colours(json_t *out, const struct web_face *f)
 			memcpy(light + 3 * ((long)k * posed + i), f->light[k][f->order[i]], 3);
 	}
 	json_object_set_new(out, "n", json_integer(n));
-	json_object_set_new(out, "faces", base64_json(f->faces, (size_t)f->n_faces * sizeof *f->faces));
-	json_object_set_new(out, "skin", base64_json(skin, (size_t)n * 4));
-	json_object_set_new(out, "still", base64_json(still, (size_t)base * 3));
-	json_object_set_new(out, "light", base64_json(light, (size_t)posed * 3 * (size_t)poses));
+	json_object_set_new(out, "faces", packed_json(f->faces, (size_t)f->n_faces * sizeof *f->faces, sizeof *f->faces, sizeof *f->faces));
+	json_object_set_new(out, "skin", packed_json(skin, (size_t)n * 4, 4, 4));
+	json_object_set_new(out, "still", packed_json(still, (size_t)base * 3, 1, 3));
+	json_object_set_new(out, "light", packed_json(light, (size_t)posed * 3 * (size_t)poses, 1, (size_t)posed * 3));
 	json_object_set_new(out, "rest_pose", json_integer(REST));
 	free(skin);
 	free(still);
@@ -191,7 +191,7 @@ json_t *web_face(const char *name, struct portrait *portrait, const struct skin_
 	json_object_set_new(out, "globes", globes);
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
-	json_object_set_new(out, "sky", base64_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2));
+	json_object_set_new(out, "sky", packed_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2, 1, (size_t)SKY * SKY * 2));
 	web_order(&f, 0.98 * reach);
 	put_colours(out, &f);
 	web_settle_put(out, &f);

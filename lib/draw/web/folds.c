@@ -6,9 +6,9 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "draw/face/wrinkle_map.h"
-#include "draw/web/base64.h"
 #include "draw/web/face_impl.h"
 #include "draw/web/map.h"
+#include "draw/web/packed.h"
 #include "model/model.h"
 
 /* Each vertex's place in the wrinkle maps, in 1/16 px from their corner. */
@@ -22,7 +22,7 @@ static json_t *places(const struct web_face *f, const struct wrinkle_maps *maps)
 			double px = f->order[i] < m->n ? m->home[f->order[i]][c] - (c ? maps->y0 : maps->x0) : 0;
 			at[2 * i + c] = (uint16_t)lrint(fmin(fmax(16 * px, 0), 65535));
 		}
-	json_t *out = base64_json(at, (size_t)n * 2 * sizeof *at);
+	json_t *out = packed_json(at, (size_t)n * 2 * sizeof *at, 2 * sizeof *at, 2 * sizeof *at);
 	free(at);
 	return out;
 }

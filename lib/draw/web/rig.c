@@ -8,15 +8,17 @@
 #include "draw/web/base64.h"
 #include "draw/web/face_impl.h"
 #include "draw/web/field.h"
+#include "draw/web/packed.h"
 #include "rig/deform/terms.h"
 
 /* Floats of a vertex and of a hair's vertex, in the order in which pose.glsl reads them. */
 enum { TERMS = 12 + RIG_BASIS, PIN = 12 };
 _Static_assert(RIG_COMPONENTS == 8, "pose.glsl has two vectors of components");
 
-static json_t *floats(float *x, long n)
+/* x[n][columns], which it frees. */
+static json_t *floats(float *x, long n, size_t columns)
 {
-	json_t *out = base64_json(x, (size_t)n * sizeof *x);
+	json_t *out = packed_json(x, (size_t)n * columns * sizeof *x, columns * sizeof *x, columns * sizeof *x);
 	free(x);
 	return out;
 }
@@ -125,7 +127,7 @@ static json_t *hairs(const struct web_face *f)
 		}
 		to[3] = (float)pin.side;
 	}
-	return floats(pins, (long)n * PIN);
+	return floats(pins, n, PIN);
 }
 
 static json_t *between(const struct web_face *f)
@@ -135,7 +137,7 @@ static json_t *between(const struct web_face *f)
 	float *ends = mem_new((size_t)n * 2 + 1, sizeof *ends);
 	for (int i = 0; i < 2 * n; i++)
 		ends[i] = (float)f->place[m->between[f->order[first + i / 2] - m->n_base][i % 2]];
-	return floats(ends, 2L * n);
+	return floats(ends, n, 2);
 }
 
 /* The gazes at which lids are known (model/known.h). */
@@ -162,7 +164,7 @@ void web_put_rig(json_t *out, const struct web_face *f)
 		json_array_append_new(baseline, json_numbers(3, rig->baseline[k]));
 	json_object_set_new(out, "rig", json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "inputs", rig->n_inputs, "known", known(&rig->known),
 	    "W", json_numbers(RIG_COMPONENTS * (rig->n_inputs + 1), rig->W), "baseline", baseline, "head_from_rig", json_numbers(9, &rig->head_from_target[0][0]),
-	    "middle", json_numbers(3, f->middle), "levels", levels, "rows", base64_json(f->order, (size_t)n * sizeof *f->order), "rest", floats(rest, 3L * n),
-	    "terms", floats(of, (long)posed * TERMS), "ring", base64_json(f->ring, (size_t)f->n_ring * sizeof *f->ring), "between", between(f),
+	    "middle", json_numbers(3, f->middle), "levels", levels, "rows", packed_json(f->order, (size_t)n * sizeof *f->order, sizeof *f->order, sizeof *f->order), "rest", floats(rest, n, 3),
+	    "terms", floats(of, posed, TERMS), "ring", packed_json(f->ring, (size_t)f->n_ring * sizeof *f->ring, sizeof *f->ring, sizeof *f->ring), "between", between(f),
 	    "hairs", hairs(f), "skull", skull(f), "globe", globe_maps(rig)));
 }

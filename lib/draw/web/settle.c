@@ -7,8 +7,8 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "draw/web/base64.h"
 #include "draw/web/face_impl.h"
+#include "draw/web/packed.h"
 #include "rig/drive.h"
 
 enum { SH = 5, SV = 5, SA = 6, GRID = SH * SV * SA, SREST = (SA - 2) * SH * SV + 3 * SH + SH / 2, MOST = 127 };  // steps either way
@@ -101,7 +101,7 @@ void web_settle_put(json_t *out, struct web_face *f)
 	for (int i = 0; i < f->n_lid; i++)
 		f->settled_as[f->lid[i]] = i + 1;
 	json_object_set_new(out, "settle", json_pack("{s:i,s:f,s:o,s:o,s:o,s:i,s:o}", "n", f->n_lid, "step", (double)step, "h", json_numbers(SH, at_h), "v", json_numbers(SV, at_v), "a",
-	                                             json_numbers(SA, at_a), "rest_pose", SREST, "bytes", base64_json(bytes, (size_t)poses * row)));
+	                                             json_numbers(SA, at_a), "rest_pose", SREST, "bytes", packed_json(bytes, (size_t)poses * row, 1, row)));
 	free(bytes);
 	free(by);
 }

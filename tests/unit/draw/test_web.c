@@ -1,9 +1,12 @@
 /* What the pages get as text and pictures: each encoding against its own definition. */
 #include "tests/lib/unit.h"
 
+#include <zlib.h>
+
 #include "base/mem.h"
 #include "draw/web/base64.h"
 #include "draw/web/field.h"
+#include "draw/web/packed.h"
 #include "draw/web/pseudocolour.h"
 #include "math/rng.h"
 
@@ -23,6 +26,39 @@ static void base64_is_the_standards(void **state)
 	char *high = base64_encode("\xfb\xff", 2, "");
 	assert_string_equal(high, "+/8=");
 	free(high);
+}
+
+/* What render/viewer/gl.js does: each byte comes back, be there no items, fewer than `back`, or any number. */
+static void packed_bytes_come_back(void **state)
+{
+	(void)state;
+	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+	static const size_t cases[][3] = { { 0, 4, 4 }, { 12, 12, 12 }, { 12, 4, 24 }, { 3000, 12, 12 }, { 3000, 1, 300 }, { 3000, 4, 400 }, { 7, 1, 3 } };
+	struct rng rng = { 9 };
+	for (size_t i = 0; i < COUNT(cases); i++) {
+		const size_t size = cases[i][0], item = cases[i][1], back = cases[i][2];
+		uint8_t data[3000], apart[3000];
+		for (size_t k = 0; k < size; k++)
+			data[k] = (uint8_t)(256 * rng_uniform(&rng));
+		json_t *json = packed_json(data, size, item, back);
+		assert_int_equal(json_integer_value(json_object_get(json, "size")), size);
+		assert_int_equal(json_integer_value(json_object_get(json, "item")), item);
+		assert_int_equal(json_integer_value(json_object_get(json, "back")), back);
+		const char *text = json_string_value(json_object_get(json, "deflate"));
+		const size_t n = strlen(text);
+		uint8_t *bytes = mem_new(n + 1, 1);
+		for (size_t k = 0; k < n && text[k] != '='; k++)
+			for (size_t bit = 6 * k; bit < 6 * k + 6; bit++)
+				bytes[bit / 8] |= (uint8_t)(((strchr(digits, text[k]) - digits) >> (5 - bit % 6) & 1) << (7 - bit % 8));
+		uLongf whole = sizeof apart;
+		assert_int_equal(uncompress(apart, &whole, bytes, (uLong)n), Z_OK);
+		assert_int_equal(whole, size);
+		for (size_t k = 0, from = 0; k < item; k++)
+			for (size_t at = k; at < size; at += item)
+				assert_int_equal((uint8_t)(apart[from++] + (at >= back ? data[at - back] : 0)), data[at]);
+		free(bytes);
+		json_decref(json);
+	}
 }
 
 /* What render/viewer/gl.js does. */
@@ -142,7 +178,7 @@ static void what_no_photograph_saw_is_striped(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(base64_is_the_standards),
+		cmocka_unit_test(base64_is_the_standards), cmocka_unit_test(packed_bytes_come_back),
 		cmocka_unit_test(fields_come_back_to_half_a_step),
 		cmocka_unit_test(smooth_fields_take_a_byte_a_value),
 		cmocka_unit_test(a_scalars_ends_are_the_ramps),
