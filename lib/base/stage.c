@@ -249,12 +249,13 @@ void stage_warn(struct stage *stage, const char *fmt, ...)
 void stage_progress(struct stage *stage, int done, int total, const char *what)
 {
 	double now = now_s(), passed = now - stage->start_s;
-	// A piece of work is timed from the end of the one before it.
-	if (strncmp(stage->progress_what, what, sizeof stage->progress_what - 1)) {
+	if (strncmp(stage->progress_what, what, sizeof stage->progress_what - 1) || done < stage->done) {
 		snprintf(stage->progress_what, sizeof stage->progress_what, "%s", what);
-		stage->what_s = stage->called_s > 0 ? stage->called_s : stage->start_s;
+		stage->what_s = now;
+		stage->what_done = done;
+		stage->progress_shown = -1;
 	}
-	stage->called_s = now;
+	stage->done = done;
 	bool tty = isatty(STDERR_FILENO);
 	int tenths = total > 0 ? (int)(10LL * done / total) : 10;
 	if (stage->quiet || done <= 0 || passed < 1)
@@ -263,12 +264,15 @@ void stage_progress(struct stage *stage, int done, int total, const char *what)
 		return;
 	stage->progress_s = now;
 	stage->progress_shown = tenths;
-	double left = (now - stage->what_s) * (total - done) / done;
+	const int since = done - stage->what_done;
+	char left[40] = "";
+	if (since > 0 && total > done)
+		snprintf(left, sizeof left, ", about %.0f s left", (now - stage->what_s) * (total - done) / since);
 	if (!tty) {
-		stage_note(stage, "%s: %d of %d, about %.0f s left", what, done, total, left);
+		stage_note(stage, "%s: %d of %d%s", what, done, total, left);
 		return;
 	}
-	fprintf(stderr, "\r%s: %s [%.*s%.*s] %d/%d, %.0f s left \033[K", stage->name, what, 2 * tenths,
+	fprintf(stderr, "\r%s: %s [%.*s%.*s] %d/%d%s \033[K", stage->name, what, 2 * tenths,
 	        "####################", 20 - 2 * tenths, "....................", done, total, left);
 	stage->progress_open = true;
 	if (done >= total)

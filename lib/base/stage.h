@@ -41,7 +41,8 @@ struct stage {
 	double start_s, progress_s;
 	int progress_shown;
 	char progress_what[64];  // the piece of work that progress is shown of
-	double what_s, called_s; // when it began; when stage_progress was last called
+	double what_s;           // when it was first told of
+	int what_done, done;     // what was done of it then, and when it was last told of
 	bool progress_open;  // an unfinished progress line stands on the terminal
 };
 
@@ -85,7 +86,8 @@ void stage_note(struct stage *stage, const char *fmt, ...);
 __attribute__((format(printf, 2, 3)))
 void stage_warn(struct stage *stage, const char *fmt, ...);
 
-/* Shows progress with the time left: a bar on a terminal, plain lines elsewhere, nothing in short runs. */
+/* Shows progress: a bar on a terminal, plain lines elsewhere, nothing in short runs. With it the time left, by what has been done since a piece of work was first told of:
+ * its preparation is over by then. Another piece begins where `what` differs or less is done than before. */
 void stage_progress(struct stage *stage, int done, int total, const char *what);
 
 /* Logs a number for the review page, in work/log/STAGE.json. */
