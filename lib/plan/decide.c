@@ -73,6 +73,7 @@ static bool holdings(int *have, struct plan *plan, struct err *err)
 		ok = look(&n, &names, plan->capture, dirs[i].dir, dirs[i].kinds, err);
 		*have |= n >= dirs[i].least ? dirs[i].bit : 0;
 		plan->n_photos = dirs[i].bit == HAS_PHOTOS ? n : plan->n_photos;
+		plan->n_characters = dirs[i].bit == HAS_TARGETS ? n : plan->n_characters;
 	}
 	file_hash_bytes(plan->listing, names, strlen(names));
 	free(names);
@@ -141,21 +142,30 @@ static const char rests[] = "the camera rests in video/, or nothing beside the h
 static const char no_skin[] = "no mesh of the person (subject.ply), nor views/ to make it from: skin is not followed, and nothing tells how a character's moves";
 static const char lids_alone[] = "learns how the lids move with the eye; no mesh of the person (subject.ply): no skin";
 
-/* Whether cameras are to be sought in the video alone: where its lens is not given, and unless the camera is seen to rest. */
-static bool film_tells(int have, const char *capture, const struct conf *conf)
+/* The file of video/ that is read, relative to the capture; null: none. free(). */
+static char *film_of(const char *capture)
 {
 	struct file_list list;
 	struct err none = { 0 };
-	if (!(have & HAS_VIDEO) || lens_given(conf))
-		return false;
 	char *dir = mem_printf("%s/video", capture), *file = 0;
 	if (file_list(&list, dir, &none) && list.n)
 		file = mem_printf("video/%s", list.names[0]);
 	file_list_free(&list);
-	bool tells = !file || plan_film_camera(capture, file) != FILM_RESTS;
 	free(dir);
-	free(file);
-	return tells;
+	return file;
+}
+
+/* Whether cameras are to be sought in the video alone: where its lens is not given, and unless the camera is seen to rest. */
+static bool film_tells(int have, const char *capture, const char *film, const struct conf *conf)
+{
+	return have & HAS_VIDEO && !lens_given(conf) && (!film || plan_film_camera(capture, film) != FILM_RESTS);
+}
+
+static void measure_film(struct plan *plan, const char *film, int have)
+{
+	const struct film_length length = film ? plan_film_length(plan->capture, film) : (struct film_length){ 0 };
+	plan->kframes = 1e-3 * length.frames;
+	plan->clip_kframes = 1e-3 * length.minute * (have & HAS_SCRIPT ? 2 : 1);
 }
 
 static bool has_subject(const char *capture)
@@ -195,7 +205,11 @@ static const char *transfer_does(const char *usual, const char *capture)
 
 double plan_cost_seconds(const struct plan_cost *cost, const struct plan *plan)
 {
-	return cost->seconds[0] + cost->seconds[1] * plan->mpx + cost->seconds[2] * plan->mtexel;
+	const double each[PLAN_SECONDS] = { 1, plan->mpx, plan->mtexel, plan->kframes, plan->n_characters, plan->n_characters * plan->clip_kframes };
+	double sum = 0;
+	for (int i = 0; i < PLAN_SECONDS; i++)
+		sum += cost->seconds[i] * each[i];
+	return sum;
 }
 
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
@@ -218,7 +232,10 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		               capture, capture);
 	if (!(have & (HAS_PHOTOS | HAS_VIEWS | HAS_VIDEO)))
 		return err_set(err, "%s: nothing to work on: put macro photographs of an eye into %s/photos/", capture, capture);
-	bool grey = measure(plan), film = !(have & HAS_VIEWS) && film_tells(have, capture, conf);
+	char *file = film_of(capture);
+	bool grey = measure(plan), film = !(have & HAS_VIEWS) && film_tells(have, capture, file, conf);
+	measure_film(plan, file, have);
+	free(file);
 	for (int i = 0; i < PLAN_STAGES; i++)
 		plan->rows[i].name = plan_stages[i].name;
 	for (int i = 0; i < PLAN_STAGES; i++) {

@@ -7,10 +7,11 @@
 #include "base/conf.h"
 #include "plan/stages.h"
 
-/* What a stage costs on two processors: fixed, and for each megapixel: seconds of all photographs, memory of the largest; seconds for
- * each million texels of the iris map, too. */
+/* What a stage costs on two processors. Seconds: fixed, for each megapixel of all photographs, each million texels of the iris map, each thousand frames of the video,
+ * each character, and each character's thousand frames of clips. Memory: fixed, and for each megapixel of the largest photograph. */
+enum { PLAN_SECONDS = 6 };
 struct plan_cost {
-	double seconds[3], mib[2];
+	double seconds[PLAN_SECONDS], mib[2];
 };
 
 struct plan_row {
@@ -30,11 +31,14 @@ struct plan {
 	double mpx;          // of all photographs, as far as their heads tell
 	double largest_mpx;  // of one
 	double mtexel;       // million texels of an iris map, as large as they will be (setting.h)
+	int n_characters;    // in targets/
+	double kframes;      // thousand frames of the video, as its header promises
+	double clip_kframes; // of what is rendered of each character: the first minute of the video, and a script, taken to be as long
 	char asked[64];      // "error = 0.05 mm", or ""
 	char listing[33];    // hash of the names that decide
 };
 
-/* Seconds of a stage, by the plan's photographs and its iris maps. */
+/* Seconds of a stage, by what the plan's folder holds. */
 double plan_cost_seconds(const struct plan_cost *cost, const struct plan *plan);
 
 /* Decides from what the folder holds, from capture.conf (conf: whether it gives the lens) and from which programs are built.

@@ -1,6 +1,7 @@
 #include "plan/film.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -114,23 +115,23 @@ static enum film_camera look(const char *path)
 	return looks < 2 ? FILM_UNKNOWN : 2 * moved_in >= looks - 1 ? FILM_MOVES : FILM_RESTS;
 }
 
-enum film_camera plan_film_camera(const char *capture, const char *file)
+/* The numbers that an earlier look at a file of that size and date left in work/.made/NAME, else what look() tells, which is kept there. False: it tells nothing. */
+static bool kept(double told[2], const char *capture, const char *file, const char *name, bool (*look)(double told[2], const char *path))
 {
 	enum { LIMIT = 1024 };
 	struct stat st;
 	struct err none = { 0 };
-	char *path = mem_printf("%s/%s", capture, file), *kept = mem_printf("%s/work/.made/film", capture), *was = 0;
+	char *path = mem_printf("%s/%s", capture, file), *at = mem_printf("%s/work/.made/%s", capture, name), *was = 0;
 	size_t size;
-	enum film_camera is = FILM_UNKNOWN;
+	bool ok = false;
 	if (!stat(path, &st) && S_ISREG(st.st_mode)) {
 		char *key = mem_printf("%s %lld %lld.%09ld ", file, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
-		if (file_exists(kept) && file_read(&was, &size, kept, LIMIT, &none) && !strncmp(was, key, strlen(key))) {
-			is = atoi(was + strlen(key)) == FILM_MOVES ? FILM_MOVES : FILM_RESTS;
-		} else if ((is = look(path)) != FILM_UNKNOWN) {
-			char *text = mem_printf("%s%d\n", key, (int)is), *dir = mem_printf("%s/work/.made", capture);
+		ok = file_exists(at) && file_read(&was, &size, at, LIMIT, &none) && !strncmp(was, key, strlen(key)) && sscanf(was + strlen(key), "%lf %lf", &told[0], &told[1]) == 2;
+		if (!ok && (ok = look(told, path))) {
+			char *text = mem_printf("%s%g %g\n", key, told[0], told[1]), *dir = mem_printf("%s/work/.made", capture);
 			struct err not_kept = { 0 };  // it is looked at again
 			if (file_mkdirs(dir, &not_kept))
-				file_write(kept, text, strlen(text), &not_kept);
+				file_write(at, text, strlen(text), &not_kept);
 			free(text);
 			free(dir);
 		}
@@ -138,6 +139,35 @@ enum film_camera plan_film_camera(const char *capture, const char *file)
 	}
 	free(was);
 	free(path);
-	free(kept);
-	return is;
+	free(at);
+	return ok;
+}
+
+static bool look_at_camera(double told[2], const char *path)
+{
+	told[0] = look(path);
+	told[1] = 0;
+	return told[0] != FILM_UNKNOWN;
+}
+
+enum film_camera plan_film_camera(const char *capture, const char *file)
+{
+	double told[2];
+	return !kept(told, capture, file, "film", look_at_camera) ? FILM_UNKNOWN : told[0] == FILM_MOVES ? FILM_MOVES : FILM_RESTS;
+}
+
+static bool look_at_length(double told[2], const char *path)
+{
+	struct video_info info;
+	struct err none = { 0 };
+	const bool ok = video_header(&info, path, &none);
+	told[0] = (double)info.promised;
+	told[1] = info.fps > 0 ? fmin(told[0], 60 * info.fps) : told[0];
+	return ok;
+}
+
+struct film_length plan_film_length(const char *capture, const char *file)
+{
+	double told[2];
+	return kept(told, capture, file, "frames", look_at_length) && told[0] >= 0 && told[1] >= 0 ? (struct film_length){ told[0], told[1] } : (struct film_length){ 0 };
 }

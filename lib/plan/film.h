@@ -13,4 +13,9 @@ enum film_camera { FILM_UNKNOWN, FILM_RESTS, FILM_MOVES };
  * FILM_UNKNOWN where the file cannot be decoded: the stages that read it say why. */
 enum film_camera plan_film_camera(const char *capture, const char *file);
 
+/* How many frames its header promises, and how many of them lie in its first minute; 0, 0 where it is no video. work/.made/frames keeps the answer until the file
+ * changes. */
+struct film_length { double frames, minute; };
+struct film_length plan_film_length(const char *capture, const char *file);
+
 #endif

@@ -39,12 +39,12 @@ static struct plan_asked take_asked(int *argc, char **argv)
 	return asked;
 }
 
-/* Two rows a stage: STAGE_seconds and STAGE_mib, fixed and for each megapixel; seconds for each million texels, too. */
+/* Two rows a stage: STAGE_seconds and STAGE_mib, as struct plan_cost has them. */
 static void fill_table(struct opt opts[PLAN_OPTS], struct plan_cost cost[PLAN_STAGES])
 {
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		char *s = mem_printf("%s_seconds", plan_stages[i].name), *mib = mem_printf("%s_mib", plan_stages[i].name);
-		opts[2 * i] = (struct opt)OPT_REALS(s, cost[i].seconds, 3, 0, 1e6, "s; s/Mpx; s/Mtexel", "estimated time of the stage");
+		opts[2 * i] = (struct opt)OPT_REALS(s, cost[i].seconds, PLAN_SECONDS, 0, 1e6, "s; s/Mpx; s/Mtexel; s/1000 frames; s/character; s/1000 frames of its clips", "estimated time of the stage");
 		opts[2 * i + 1] = (struct opt)OPT_REALS(mib, cost[i].mib, 2, 0, 1e7, "MiB; MiB/Mpx", "estimated peak of its memory");
 	}
 }

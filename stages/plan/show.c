@@ -98,5 +98,14 @@ void plan_show(const struct plan *plan, const struct call *call)
 	}
 	if (*plan->asked)
 		printf("%s: settings from the measured fronts, config/fronts.conf\n", plan->asked);
-	printf("photographs: %d, %.1f megapixels; about %.1f s to do, in %.0f MiB of memory\n", plan->n_photos, plan->mpx, sum, peak);
+	if (plan->n_photos)
+		printf("photographs: %d, %.1f megapixels\n", plan->n_photos, plan->mpx);
+	if (plan->kframes > 0)
+		printf("video: %.0f frames\n", 1e3 * plan->kframes);
+	if (plan->n_characters)
+		printf("characters: %d\n", plan->n_characters);
+	if (sum > 0)
+		printf("about %.1f s to do, in %.0f MiB of memory\n", sum, peak);
+	else
+		printf("nothing to do\n");
 }

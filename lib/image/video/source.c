@@ -162,6 +162,21 @@ bool video_source_scan(struct video_source *s, struct video_info *info, const ch
 	return again;
 }
 
+bool video_header(struct video_info *info, const char *path, struct err *err)
+{
+	struct video_source s;
+	*info = (struct video_info){ 0 };
+	const bool ok = video_source_open(&s, path, err);
+	if (ok) {
+		const AVStream *st = s.file->streams[s.stream];
+		const double rate = st->avg_frame_rate.den > 0 ? av_q2d(st->avg_frame_rate) : 0, s_long = s.file->duration > 0 ? (double)s.file->duration / AV_TIME_BASE : 0;
+		info->fps = fmax(rate, 0);
+		info->promised = st->nb_frames > 0 ? st->nb_frames : lrint(fmin(info->fps * s_long, 1e9));
+	}
+	video_source_close(&s);
+	return ok;
+}
+
 int video_source_rotation(const struct video_source *s)
 {
 	size_t size = 0;

@@ -49,6 +49,10 @@ struct video;
  * Null, err set ("path: rule"), when it is no video, holds no picture, or is beyond the limits. */
 struct video *video_open(struct video_info *info, const char *path, const struct video_conf *conf, struct err *err);
 
+/* What a file's header says, in a few milliseconds: of info fps and promised alone, the frames that a length and a rate come to where they are not stated. Not to be
+ * trusted. False, err set, as video_open, but for the limits. */
+bool video_header(struct video_info *info, const char *path, struct err *err);
+
 /* Reads the next frame; *got = false at the end. video_frame_free in any case: frames may be kept, and freed in any order and
  * from any thread, also after video_close. False, err set, when decoding cannot go on. */
 bool video_next(struct video_frame *frame, bool *got, struct video *video, struct err *err);

@@ -100,6 +100,12 @@ static void round_trip(void **state)
 	assert_false(info.variable);
 	// half the resolution of colour and quantisation at quality 8
 	NEAR(d, 0, 3);
+	struct err err = { 0 };
+	assert_true(video_header(&info, path, &err));
+	assert_int_equal(info.promised, FRAMES);
+	NEAR(info.fps, 30, 0.02);
+	assert_false(video_header(&info, scratch_text("text.mp4", "no film"), &err));
+	assert_int_equal(info.promised, 0);
 }
 
 /* More than one group of pictures: an encoder's key frames are 250 apart. */

@@ -68,6 +68,34 @@ static void test_camera(void **state)
 	assert_int_equal(camera_of("plain"), FILM_RESTS);  // a person who moves before a wall: nothing tells that it is the camera
 }
 
+/* Frames of the whole and of its first minute; a file in its place is looked at anew, one that is gone is none. */
+static void test_length(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	film("length", 0, false, false);
+	char *capture = mem_str(scratch_path("length")), *path = mem_printf("%s/video/a.mp4", capture);
+	for (int again = 0; again < 2; again++) {
+		const struct film_length is = plan_film_length(capture, "video/a.mp4");
+		NEAR(is.frames, FRAMES, 1e-9);
+		NEAR(is.minute, FRAMES, 1e-9);
+	}
+	uint8_t *rgb = mem_new(3 * 64 * 48, 1);
+	struct video_writer_conf conf = { .width = 64, .height = 48, .fps = 2, .crf = 30, .preset = "ultrafast" };
+	struct video_writer *writer = video_writer_open(path, &conf, &err);
+	for (int f = 0; f < 200; f++)
+		assert_true(video_writer_put(writer, rgb, f / 2.0, &err));
+	assert_true(video_writer_close(writer, true, &err));
+	const struct film_length slow = plan_film_length(capture, "video/a.mp4");
+	NEAR(slow.frames, 200, 1e-9);
+	NEAR(slow.minute, 120, 1.5);
+	assert_int_equal(remove(path), 0);
+	assert_true(plan_film_length(capture, "video/a.mp4").frames == 0);
+	free(rgb);
+	free(capture);
+	free(path);
+}
+
 /* What is no film, and a pipe that nobody writes to: not known, and it does not wait. */
 static void test_no_film(void **state)
 {
@@ -87,7 +115,7 @@ static void test_no_film(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(test_camera), cmocka_unit_test(test_no_film) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(test_camera), cmocka_unit_test(test_length), cmocka_unit_test(test_no_film) };
 	scratch_open();
 	int failed = cmocka_run_group_tests(tests, 0, 0);
 	scratch_close();

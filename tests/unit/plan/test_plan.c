@@ -165,6 +165,26 @@ static void characters_of_the_subjects_topology_are_counted(void **state)
 	assert_int_equal(same, 1);
 }
 
+/* What a folder holds is what it costs: photographs, frames, characters, their clips, a script. */
+static void what_a_folder_holds_is_paid_for(void **state)
+{
+	(void)state;
+	char *film;
+	size_t size;
+	struct err err = { 0 };
+	struct plan_cost cost = { .seconds = { 1, 10, 100, 1000, 1e4, 1e5 } };
+	assert_true(file_read(&film, &size, "samples/face/video/face.mp4", 10000000, &err));
+	scratch_write("video/face.mp4", film, size);
+	free(film);
+	struct plan plan = decided((const char *[]){ "targets/a.obj", "targets/b.ply", "targets/c.txt", 0 }, "camera.focal_px = 1000\n");
+	NEAR(plan_cost_seconds(&cost, &plan), 1 + 1000 * 0.3 + 1e4 * 2 + 1e5 * 2 * 0.3, 1e-6);
+	plan = decided((const char *[]){ "script/a.csv", 0 }, "camera.focal_px = 1000\n");
+	NEAR(plan_cost_seconds(&cost, &plan), 1 + 1000 * 0.3 + 1e4 * 2 + 1e5 * 2 * 0.6, 1e-6);
+	plan.mpx = 2;
+	plan.mtexel = 3;
+	NEAR(plan_cost_seconds(&cost, &plan), 1 + 20 + 300 + 1000 * 0.3 + 1e4 * 2 + 1e5 * 2 * 0.6, 1e-6);
+}
+
 #define FRONTS \
 	"limbus.fast = 0.4 mm, 0.1 s + 0.1 s/Mpx: a = 4\n" \
 	"limbus.fine = 0.1 mm, 0.2 s + 0.2 s/Mpx: a = 2\n" \
@@ -289,6 +309,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(names_decide, setup, teardown),
 		cmocka_unit_test_setup_teardown(an_empty_folder_is_refused, setup, teardown),
 		cmocka_unit_test_setup_teardown(characters_of_the_subjects_topology_are_counted, setup, teardown),
+		cmocka_unit_test_setup_teardown(what_a_folder_holds_is_paid_for, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_setting_is_chosen_for_stages_that_run, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_finer_map_costs_more, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_time_is_kept_where_it_can_be, setup, teardown),
