@@ -8,6 +8,7 @@
 #include "math/rising.h"
 #include "math/vec.h"
 #include "rig/deform/deform.h"
+#include "rig/deform/room.h"
 #include "rig/deform/terms.h"
 
 enum { COLUMNS = DEFORM_COLUMNS, ROUNDS = 4, LOWERED = 3, LEAST = 20 };  // of arcs, of lower lids; columns of what is an opening
@@ -267,6 +268,20 @@ static bool covers(const struct rig *rig, const int32_t v[3])
 	return true;
 }
 
+/* The vertices that the opening is found by. */
+static void find_seen(struct deform_near *near, const struct rig *rig)
+{
+	bool *seen = mem_new((size_t)rig->n + 1, sizeof *seen);
+	for (int k = 0; k < 3 * (near->n + near->n_beside); k++)
+		seen[rig->faces[k / 3 < near->n ? near->face[k / 3] : near->beside[k / 3 - near->n]][k % 3]] = true;
+	for (int side = 0; side < 2; side++)
+		near->seen[side] = mem_array((size_t)rig->n + 1, sizeof *near->seen[side]);
+	for (int i = 0; i < rig->n; i++)
+		if (seen[i])
+			near->seen[rig->side[i]][near->n_seen[rig->side[i]]++] = i;
+	free(seen);
+}
+
 struct deform_near deform_near_of(const struct rig *rig)
 {
 	struct deform_near out = { .face = mem_new((size_t)rig->n_faces + 1, sizeof *out.face), .beside = mem_new((size_t)rig->n_faces + 1, sizeof *out.beside), .moves = mem_new((size_t)rig->n + 1, 1) };
@@ -283,6 +298,8 @@ struct deform_near deform_near_of(const struct rig *rig)
 		else if (covers(rig, v))
 			out.beside[out.n_beside++] = f;
 	}
+	find_seen(&out, rig);
+	out.rooms = deform_rooms_new(rig->n);
 	prepare(&out, rig);
 	return out;
 }
@@ -296,5 +313,8 @@ void deform_near_free(struct deform_near *near)
 	free(near->lower);
 	free(near->rest);
 	free(near->own);
+	free(near->seen[0]);
+	free(near->seen[1]);
+	deform_rooms_free(near->rooms);
 	*near = (struct deform_near){ 0 };
 }

@@ -1,11 +1,10 @@
 #include "rig/deform/clear.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "math/vec.h"
+#include "rig/deform/room.h"
 
 enum { ROUNDS = 4, SAMPLES = 4 };
 static const double deepest_mm = 2;       // what lies deeper is no lid before the eye
@@ -45,13 +44,15 @@ static void ask(float *push, const struct rig *rig, const struct deform_near *ne
 
 void deform_clear(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
 {
-	float *push = mem_new((size_t)rig->n + 1, sizeof *push);
+	struct deform_room *room = deform_room_take(near->rooms);
+	float *push = room->push;
 	for (int round = 0; round < ROUNDS; round++) {
 		memset(push, 0, (size_t)rig->n * sizeof *push);
 		for (int i = 0; i < near->n; i++) {
 			const int32_t *v = rig->faces[near->face[i]];
 			const int side = rig->side[v[0]];
-			for (int k = 0; k < SAMPLES && faces_out((const float(*)[3])x, v, rig->globe[side].center); k++)
+			const bool out = faces_out((const float(*)[3])x, v, rig->globe[side].center);
+			for (int k = 0; k < SAMPLES && out; k++)
 				ask(push, rig, near, (const float(*)[3])x, v, k, target_from_globe[side]);
 		}
 		for (int i = 0; i < rig->n; i++) {
@@ -66,5 +67,5 @@ void deform_clear(float (*x)[3], const struct rig *rig, const struct deform_near
 				x[i][c] += (float)(push[i] * d[c] / far);
 		}
 	}
-	free(push);
+	deform_room_give(near->rooms, room);
 }

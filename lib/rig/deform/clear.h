@@ -8,9 +8,11 @@
 
 /* Faces that can come near an eyeball, and which vertices deform_pose writes: others are not moved here either. deform_near_free. */
 struct deform_opening;
+struct deform_rooms;
 struct deform_near {
 	int n, *face;
 	int n_beside, *beside;   // other faces of skin before an eyeball: they cover it, and come no nearer
+	int n_seen[2], *seen[2]; // of each eye: the vertices of both
 	bool *moves;   // [rig.n]
 	float *upper;  // [rig.n] share in the upper lid, by the opening at rest: 0 below its middle, and where lids are shut at rest
 	float *lower;  // [rig.n] the same in the lower lid
@@ -18,6 +20,7 @@ struct deform_near {
 	double arch[2];       // of each eye: mean height of the upper margin at rest over the line between its corners, mm
 	struct deform_opening *rest;  // [2] each eye's opening at rest
 	double within[2][2];  // of each eye: heights over the eyeball's centre between which its opening is looked for, mm
+	struct deform_rooms *rooms;   // where poses are worked out; several threads may settle poses of their own with one deform_near
 };
 struct deform_near deform_near_of(const struct rig *rig);
 void deform_near_free(struct deform_near *near);

@@ -1,10 +1,9 @@
 #include "rig/deform/opening.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/mem.h"
 #include "math/vec.h"
+#include "rig/deform/room.h"
 
 enum { COLUMNS = DEFORM_COLUMNS };
 static const double before = 0.2;               // of a globe's radius: skin further back lines the socket
@@ -19,24 +18,13 @@ void deform_in_head(double out[3], const struct rig *rig, int side, const float 
 	mat_vec(out, rig->head_from_target, d);
 }
 
-/* What a face covers of a column. */
-struct cover {
-	int column;
-	double low, high;
-};
-
-struct covers {
-	int n, room;
-	struct cover *at;
-};
-
-static void add_face(struct covers *to, const double *const p[3], double step)
+static void add_face(struct deform_room *to, const double *const p[3], double step)
 {
 	const double least = fmin(fmin(p[0][0], p[1][0]), p[2][0]) / step, most = fmax(fmax(p[0][0], p[1][0]), p[2][0]) / step;
 	const int from = (int)fmax(ceil(least) + COLUMNS / 2, 0), to_column = (int)fmin(floor(most) + COLUMNS / 2, COLUMNS - 1);
 	for (int i = from; i <= to_column; i++) {
 		const double x = step * (i - COLUMNS / 2);
-		struct cover c = { i, INFINITY, -INFINITY };
+		struct deform_cover c = { i, INFINITY, -INFINITY };
 		for (int k = 0; k < 3; k++) {
 			const double *a = p[k], *b = p[(k + 1) % 3];
 			if ((a[0] <= x) == (b[0] <= x))
@@ -47,61 +35,56 @@ static void add_face(struct covers *to, const double *const p[3], double step)
 		}
 		if (!(c.high >= c.low))
 			continue;
-		if (to->n == to->room)
-			to->at = mem_grow(to->at, (size_t)(to->room = 2 * to->room + 1024), sizeof *to->at);
-		to->at[to->n++] = c;
+		deform_room_grow(to);
+		to->cover[to->n++] = c;
 	}
 }
 
-static bool before_in_place(const struct cover *p, const struct cover *q)
+static bool before_in_place(const struct deform_cover *p, const struct deform_cover *q)
 {
 	return p->column != q->column ? p->column < q->column : p->low < q->low;
 }
 
-/* By columns, and upwards in each: by counting, to a part of the height, and the few that are left by insertion. */
-static void sort(struct covers *c, double radius)
+/* By columns, and upwards in each, into `sorted`: by counting, to a part of the height, and the few that are left by insertion. */
+static void sort(struct deform_room *c, double radius)
 {
 	enum { PARTS = 64 };
-	int *from = mem_new(COLUMNS * PARTS + 1, sizeof *from), *place = mem_array((size_t)c->n + 1, sizeof *place);
-	struct cover *out = mem_array((size_t)c->n + 1, sizeof *out);
+	struct deform_cover *out = c->sorted;
+	int from[COLUMNS * PARTS + 1] = { 0 };
 	for (int i = 0; i < c->n; i++) {
-		const double part = PARTS / 2 * (1 + c->at[i].low / (2 * radius));
-		place[i] = c->at[i].column * PARTS + (int)fmin(fmax(part, 0), PARTS - 1);
-		from[place[i] + 1]++;
+		const double part = PARTS / 2 * (1 + c->cover[i].low / (2 * radius));
+		c->place[i] = c->cover[i].column * PARTS + (int)fmin(fmax(part, 0), PARTS - 1);
+		from[c->place[i] + 1]++;
 	}
 	for (int i = 0; i < COLUMNS * PARTS; i++)
 		from[i + 1] += from[i];
 	for (int i = 0; i < c->n; i++)
-		out[from[place[i]]++] = c->at[i];
+		out[from[c->place[i]]++] = c->cover[i];
 	for (int i = 1; i < c->n; i++) {
-		const struct cover now = out[i];
+		const struct deform_cover now = out[i];
 		int k = i;
 		for (; k > 0 && before_in_place(&now, &out[k - 1]); k--)
 			out[k] = out[k - 1];
 		out[k] = now;
 	}
-	free(from);
-	free(place);
-	free(c->at);
-	c->at = out;
 }
 
 /* The longest gap between covers of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
-static void take_gaps(struct deform_opening *o, const struct covers *c, double radius, const double within[2])
+static void take_gaps(struct deform_opening *o, const struct deform_room *c, double radius, const double within[2])
 {
 	for (int i = 0; i < COLUMNS; i++)
 		o->top[i] = o->bottom[i] = 0;
 	for (int k = 0; k < c->n;) {
-		const int column = c->at[k].column;
+		const int column = c->sorted[k].column;
 		const double x = o->step * (column - COLUMNS / 2);
-		double high = c->at[k].high;
-		for (; k < c->n && c->at[k].column == column; k++) {
-			const double middle = 0.5 * (high + c->at[k].low);
-			if (c->at[k].low - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
+		double high = c->sorted[k].high;
+		for (; k < c->n && c->sorted[k].column == column; k++) {
+			const double middle = 0.5 * (high + c->sorted[k].low);
+			if (c->sorted[k].low - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
 				o->bottom[column] = high;
-				o->top[column] = c->at[k].low;
+				o->top[column] = c->sorted[k].low;
 			}
-			high = fmax(high, c->at[k].high);
+			high = fmax(high, c->sorted[k].high);
 		}
 	}
 }
@@ -121,25 +104,23 @@ static void trim(struct deform_opening *o, int middle, double unit)
 void deform_open(struct deform_opening *o, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2])
 {
 	const double radius = rig->globe[side].radius, least = 1e-3 * radius;
-	struct covers c = { 0 };
+	struct deform_room *room = deform_room_take(near->rooms);
+	double (*head)[3] = room->head;
 	int widest = 0;
-	double (*head)[3] = mem_array((size_t)rig->n + 1, sizeof *head);
 	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
-	for (int i = 0; i < rig->n; i++)
-		if (rig->side[i] == side)
-			deform_in_head(head[i], rig, side, x[i]);
+	for (int i = 0; i < near->n_seen[side]; i++)
+		deform_in_head(head[near->seen[side][i]], rig, side, x[near->seen[side][i]]);
 	for (int k = 0; k < near->n + near->n_beside; k++) {
 		const int32_t *v = rig->faces[k < near->n ? near->face[k] : near->beside[k - near->n]];
 		if (rig->side[v[0]] != side)
 			continue;
 		const double *p[3] = { head[v[0]], head[v[1]], head[v[2]] };
 		if (fmin(fmin(p[0][2], p[1][2]), p[2][2]) > before * radius)
-			add_face(&c, p, o->step);
+			add_face(room, p, o->step);
 	}
-	free(head);
-	sort(&c, radius);
-	take_gaps(o, &c, radius, within);
-	free(c.at);
+	sort(room, radius);
+	take_gaps(o, room, radius, within);
+	deform_room_give(near->rooms, room);
 	for (int i = 0; i < COLUMNS; i++)
 		widest = o->top[i] - o->bottom[i] > o->top[widest] - o->bottom[widest] ? i : widest;
 	o->first = widest;

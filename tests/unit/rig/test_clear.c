@@ -60,7 +60,7 @@ static void edges_are_lifted_off_the_eye(void **state)
 		const int32_t *v = rig.faces[near.face[i]];
 		if (!near.moves[v[0]] || !near.moves[v[1]] || !near.moves[v[2]])
 			continue;
-		struct deform_near one = { .n = 1, .face = &near.face[i], .moves = near.moves };
+		struct deform_near one = { .n = 1, .face = &near.face[i], .moves = near.moves, .rooms = near.rooms };
 		memcpy(x, rig.rest, (size_t)rig.n * sizeof *x);
 		put_on_globe(x, &rig, v, 0.4);
 		assert_true(least_of(&rig, (const float(*)[3])x, v) < -0.1);

@@ -1,0 +1,72 @@
+#include "rig/deform/room.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+
+struct deform_rooms {
+	int n;
+	pthread_mutex_t lock;
+	struct deform_room *rests;
+};
+
+struct deform_rooms *deform_rooms_new(int n)
+{
+	struct deform_rooms *rooms = mem_new(1, sizeof *rooms);
+	rooms->n = n;
+	pthread_mutex_init(&rooms->lock, 0);
+	return rooms;
+}
+
+void deform_rooms_free(struct deform_rooms *rooms)
+{
+	if (!rooms)
+		return;
+	while (rooms->rests) {
+		struct deform_room *room = rooms->rests;
+		rooms->rests = room->next;
+		free(room->head);
+		free(room->push);
+		free(room->cover);
+		free(room->sorted);
+		free(room->place);
+		free(room);
+	}
+	pthread_mutex_destroy(&rooms->lock);
+	free(rooms);
+}
+
+struct deform_room *deform_room_take(struct deform_rooms *rooms)
+{
+	pthread_mutex_lock(&rooms->lock);
+	struct deform_room *room = rooms->rests;
+	if (room)
+		rooms->rests = room->next;
+	pthread_mutex_unlock(&rooms->lock);
+	if (!room) {
+		room = mem_new(1, sizeof *room);
+		room->head = mem_array((size_t)rooms->n + 1, sizeof *room->head);
+		room->push = mem_array((size_t)rooms->n + 1, sizeof *room->push);
+	}
+	room->n = 0;
+	return room;
+}
+
+void deform_room_give(struct deform_rooms *rooms, struct deform_room *room)
+{
+	pthread_mutex_lock(&rooms->lock);
+	room->next = rooms->rests;
+	rooms->rests = room;
+	pthread_mutex_unlock(&rooms->lock);
+}
+
+void deform_room_grow(struct deform_room *room)
+{
+	if (room->n < room->most)
+		return;
+	room->most = 2 * room->most + 1024;
+	room->cover = mem_grow(room->cover, (size_t)room->most, sizeof *room->cover);
+	room->sorted = mem_grow(room->sorted, (size_t)room->most, sizeof *room->sorted);
+	room->place = mem_grow(room->place, (size_t)room->most, sizeof *room->place);
+}

@@ -1,0 +1,34 @@
+/* deform_room: room to work in that poses of one rig have one after the other. A page, a .glb and hairs take hundreds of poses; what each of them
+ * allocated and gave back the system would clear anew every time. */
+#ifndef RIG_DEFORM_ROOM_H
+#define RIG_DEFORM_ROOM_H
+
+/* What a face covers of a column, mm (opening.c). */
+struct deform_cover {
+	int column;
+	double low, high;
+};
+
+/* What is in it is nobody's between poses. Owned by deform_rooms. */
+struct deform_room {
+	double (*head)[3];                   // [rig.n] places about an eyeball's centre
+	float *push;                         // [rig.n]
+	int n, most;                         // covers, and how many there is room for
+	struct deform_cover *cover, *sorted; // [most]
+	int *place;                          // [most]
+	struct deform_room *next;
+};
+
+/* Rooms that rest, for a rig of n vertices: as many as were ever needed at a time. deform_rooms_free once all are back; null is accepted. */
+struct deform_rooms;
+struct deform_rooms *deform_rooms_new(int n);
+void deform_rooms_free(struct deform_rooms *rooms);
+
+/* Any thread may take one and give it back. */
+struct deform_room *deform_room_take(struct deform_rooms *rooms);
+void deform_room_give(struct deform_rooms *rooms, struct deform_room *room);
+
+/* Makes place for another cover. */
+void deform_room_grow(struct deform_room *room);
+
+#endif
