@@ -273,7 +273,7 @@ static void find_seen(struct deform_near *near, const struct rig *rig)
 {
 	bool *seen = mem_new((size_t)rig->n + 1, sizeof *seen);
 	for (int k = 0; k < 3 * (near->n + near->n_beside); k++)
-		seen[rig->faces[k / 3 < near->n ? near->face[k / 3] : near->beside[k / 3 - near->n]][k % 3]] = true;
+		seen[rig->faces[deform_near_face(near, k / 3)][k % 3]] = true;
 	for (int side = 0; side < 2; side++)
 		near->seen[side] = mem_array((size_t)rig->n + 1, sizeof *near->seen[side]);
 	for (int i = 0; i < rig->n; i++)
@@ -300,6 +300,7 @@ struct deform_near deform_near_of(const struct rig *rig)
 	}
 	find_seen(&out, rig);
 	out.rooms = deform_rooms_new(rig->n);
+	deform_edges_find(&out, rig);
 	prepare(&out, rig);
 	return out;
 }
@@ -312,6 +313,7 @@ void deform_near_free(struct deform_near *near)
 	free(near->upper);
 	free(near->lower);
 	free(near->rest);
+	free(near->edge);
 	free(near->own);
 	free(near->seen[0]);
 	free(near->seen[1]);

@@ -9,9 +9,15 @@
 /* Faces that can come near an eyeball, and which vertices deform_pose writes: others are not moved here either. deform_near_free. */
 struct deform_opening;
 struct deform_rooms;
+
+/* An edge of one face or two (of more, two at a time): from the vertex of the smaller number to the other; way: 1 where the face runs so, -1 where it runs back. */
+struct deform_edge { int from, to, face[2], way[2]; };
+
 struct deform_near {
 	int n, *face;
 	int n_beside, *beside;   // other faces of skin before an eyeball: they cover it, and come no nearer
+	int n_edges;
+	struct deform_edge *edge; // of both; their faces: deform_near_face
 	int n_seen[2], *seen[2]; // of each eye: the vertices of both
 	bool *moves;   // [rig.n]
 	float *upper;  // [rig.n] share in the upper lid, by the opening at rest: 0 below its middle, and where lids are shut at rest
@@ -24,6 +30,12 @@ struct deform_near {
 };
 struct deform_near deform_near_of(const struct rig *rig);
 void deform_near_free(struct deform_near *near);
+
+/* Face k of n + n_beside, as a row of the rig. */
+static inline int deform_near_face(const struct deform_near *near, int k)
+{
+	return k < near->n ? near->face[k] : near->beside[k - near->n];
+}
 
 /* Moves vertices away from the eyeballs' centres until the middles of edges and faces that look outwards are DEFORM_CLEAR_MM off, most
  * those that lie further from it at rest: the lid's margin stays on the eye.

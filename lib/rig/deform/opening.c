@@ -1,7 +1,9 @@
 #include "rig/deform/opening.h"
 
 #include <math.h>
+#include <stdlib.h>
 
+#include "base/mem.h"
 #include "math/vec.h"
 #include "rig/deform/room.h"
 
@@ -18,58 +20,91 @@ void deform_in_head(double out[3], const struct rig *rig, int side, const float 
 	mat_vec(out, rig->head_from_target, d);
 }
 
-static void add_face(struct deform_room *to, const double *const p[3], double step)
+static int by_ends(const void *a, const void *b)
 {
-	const double least = fmin(fmin(p[0][0], p[1][0]), p[2][0]) / step, most = fmax(fmax(p[0][0], p[1][0]), p[2][0]) / step;
-	const int from = (int)fmax(ceil(least) + COLUMNS / 2, 0), to_column = (int)fmin(floor(most) + COLUMNS / 2, COLUMNS - 1);
-	for (int i = from; i <= to_column; i++) {
-		const double x = step * (i - COLUMNS / 2);
-		struct deform_cover c = { i, INFINITY, -INFINITY };
-		for (int k = 0; k < 3; k++) {
-			const double *a = p[k], *b = p[(k + 1) % 3];
-			if ((a[0] <= x) == (b[0] <= x))
-				continue;
-			const double y = a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
-			c.low = fmin(c.low, y);
-			c.high = fmax(c.high, y);
+	const struct deform_edge *p = a, *q = b;
+	return p->from != q->from ? (p->from > q->from) - (p->from < q->from) : p->to != q->to ? (p->to > q->to) - (p->to < q->to) : p->face[0] - q->face[0];
+}
+
+void deform_edges_find(struct deform_near *near, const struct rig *rig)
+{
+	const int n = 3 * (near->n + near->n_beside);
+	struct deform_edge *edge = near->edge = mem_array((size_t)n + 1, sizeof *edge);
+	for (int k = 0; k < n; k++) {
+		const int32_t *v = rig->faces[deform_near_face(near, k / 3)], a = v[k % 3], b = v[(k + 1) % 3];
+		edge[k] = a < b ? (struct deform_edge){ a, b, { k / 3, -1 }, { 1, 0 } } : (struct deform_edge){ b, a, { k / 3, -1 }, { -1, 0 } };
+	}
+	qsort(edge, (size_t)n, sizeof *edge, by_ends);
+	for (int k = 0; k < n; k++) {
+		struct deform_edge *last = near->n_edges ? &edge[near->n_edges - 1] : 0;
+		if (last && last->from == edge[k].from && last->to == edge[k].to && last->face[1] < 0) {
+			last->face[1] = edge[k].face[0];
+			last->way[1] = edge[k].way[0];
+		} else {
+			edge[near->n_edges++] = edge[k];
 		}
-		if (!(c.high >= c.low))
+	}
+}
+
+/* Of each face which way round the front sees it: 1 counterclockwise, -1; 0: not of this eye, or not before it. */
+static void see_faces(int *way, const double (*head)[3], const struct rig *rig, const struct deform_near *near, int side)
+{
+	for (int k = 0; k < near->n + near->n_beside; k++) {
+		const int32_t *v = rig->faces[deform_near_face(near, k)];
+		way[k] = 0;
+		if (rig->side[v[0]] != side)
 			continue;
-		deform_room_grow(to);
-		to->cover[to->n++] = c;
+		const double *a = head[v[0]], *b = head[v[1]], *c = head[v[2]], area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+		if (fmin(fmin(a[2], b[2]), c[2]) > before * rig->globe[side].radius)
+			way[k] = (area > 0) - (area < 0);
 	}
 }
 
-static bool before_in_place(const struct deform_cover *p, const struct deform_cover *q)
+/* Where an edge crosses columns. A column's number is tested by its place itself: all edges of a vertex then agree which of them the column crosses. */
+static void cross(struct deform_room *to, const double p[3], const double q[3], int change, double step)
 {
-	return p->column != q->column ? p->column < q->column : p->low < q->low;
+	const double *a = p[0] < q[0] ? p : q, *b = p[0] < q[0] ? q : p;
+	const int first = (int)fmax(ceil(a[0] / step) + COLUMNS / 2 - 1, 0), last = (int)fmin(floor(b[0] / step) + COLUMNS / 2 + 1, COLUMNS - 1);
+	for (int i = first; i <= last; i++) {
+		const double x = step * (i - COLUMNS / 2);
+		if (!(a[0] <= x && x < b[0]))
+			continue;
+		deform_room_hold(to, to->n + 1);
+		to->crossing[to->n++] = (struct deform_crossing){ i, change, a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) };
+	}
 }
 
-/* By columns, and upwards in each, into `sorted`: by counting, to a part of the height, and the few that are left by insertion. */
-static void sort(struct deform_room *c, double radius)
+/* The edges at which the cover of faces begins or ends: most have faces on both sides, and are none. */
+static void cross_all(struct deform_room *to, const struct deform_near *near, double step)
 {
-	enum { PARTS = 64 };
-	struct deform_cover *out = c->sorted;
-	int from[COLUMNS * PARTS + 1] = { 0 };
-	for (int i = 0; i < c->n; i++) {
-		const double part = PARTS / 2 * (1 + c->cover[i].low / (2 * radius));
-		c->place[i] = c->cover[i].column * PARTS + (int)fmin(fmax(part, 0), PARTS - 1);
-		from[c->place[i] + 1]++;
+	for (int k = 0; k < near->n_edges; k++) {
+		const struct deform_edge *e = &near->edge[k];
+		const double *p = to->head[e->from], *q = to->head[e->to];
+		const int round = to->way[e->face[0]] * e->way[0] + (e->face[1] < 0 ? 0 : to->way[e->face[1]] * e->way[1]);
+		// What is to the left of an edge that runs to the right lies above it.
+		if (round)
+			cross(to, p, q, p[0] < q[0] ? round : -round, step);
 	}
-	for (int i = 0; i < COLUMNS * PARTS; i++)
-		from[i + 1] += from[i];
+}
+
+/* By columns, and upwards in each, into `sorted`: few are in one. */
+static void sort(struct deform_room *c)
+{
+	int from[COLUMNS + 1] = { 0 }, n[COLUMNS] = { 0 };
 	for (int i = 0; i < c->n; i++)
-		out[from[c->place[i]]++] = c->cover[i];
-	for (int i = 1; i < c->n; i++) {
-		const struct deform_cover now = out[i];
-		int k = i;
-		for (; k > 0 && before_in_place(&now, &out[k - 1]); k--)
-			out[k] = out[k - 1];
-		out[k] = now;
+		from[c->crossing[i].column + 1]++;
+	for (int i = 0; i < COLUMNS; i++)
+		from[i + 1] += from[i];
+	for (int i = 0; i < c->n; i++) {
+		const struct deform_crossing now = c->crossing[i];
+		int k = from[now.column] + n[now.column]++;
+		for (; k > from[now.column] && c->sorted[k - 1].y > now.y; k--)
+			c->sorted[k] = c->sorted[k - 1];
+		c->sorted[k] = now;
 	}
 }
 
-/* The longest gap between covers of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
+/* The longest gap in the cover of each column that has its middle between two heights, and that before the eyeball: what is no lid has gaps, too. */
 static void take_gaps(struct deform_opening *o, const struct deform_room *c, double radius, const double within[2])
 {
 	for (int i = 0; i < COLUMNS; i++)
@@ -77,14 +112,15 @@ static void take_gaps(struct deform_opening *o, const struct deform_room *c, dou
 	for (int k = 0; k < c->n;) {
 		const int column = c->sorted[k].column;
 		const double x = o->step * (column - COLUMNS / 2);
-		double high = c->sorted[k].high;
-		for (; k < c->n && c->sorted[k].column == column; k++) {
-			const double middle = 0.5 * (high + c->sorted[k].low);
-			if (c->sorted[k].low - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
+		double high = INFINITY;
+		for (int cover = 0; k < c->n && c->sorted[k].column == column; k++) {
+			const double y = c->sorted[k].y, middle = 0.5 * (high + y);
+			const bool was = cover > 0, is = (cover += c->sorted[k].change) > 0;
+			if (!was && is && y - high > o->top[column] - o->bottom[column] && middle > within[0] && middle < within[1] && hypot(x, middle) < radius) {
 				o->bottom[column] = high;
-				o->top[column] = c->sorted[k].low;
+				o->top[column] = y;
 			}
-			high = fmax(high, c->sorted[k].high);
+			high = was && !is ? y : high;
 		}
 	}
 }
@@ -110,15 +146,10 @@ void deform_open(struct deform_opening *o, const struct rig *rig, const struct d
 	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
 	for (int i = 0; i < near->n_seen[side]; i++)
 		deform_in_head(head[near->seen[side][i]], rig, side, x[near->seen[side][i]]);
-	for (int k = 0; k < near->n + near->n_beside; k++) {
-		const int32_t *v = rig->faces[k < near->n ? near->face[k] : near->beside[k - near->n]];
-		if (rig->side[v[0]] != side)
-			continue;
-		const double *p[3] = { head[v[0]], head[v[1]], head[v[2]] };
-		if (fmin(fmin(p[0][2], p[1][2]), p[2][2]) > before * radius)
-			add_face(room, p, o->step);
-	}
-	sort(room, radius);
+	deform_room_hold(room, near->n + near->n_beside);
+	see_faces(room->way, (const double(*)[3])head, rig, near, side);
+	cross_all(room, near, o->step);
+	sort(room);
 	take_gaps(o, room, radius, within);
 	deform_room_give(near->rooms, room);
 	for (int i = 0; i < COLUMNS; i++)

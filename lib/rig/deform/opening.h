@@ -11,10 +11,13 @@ struct deform_opening {
 	double top[DEFORM_COLUMNS], bottom[DEFORM_COLUMNS];
 };
 
+/* Fills near's edges, of all its faces; near_free frees them. */
+void deform_edges_find(struct deform_near *near, const struct rig *rig);
+
 /* A place about an eyeball's centre, along the head's axes, mm. */
 void deform_in_head(double out[3], const struct rig *rig, int side, const float x[3]);
 
-/* Exact for the mesh's faces, each column by itself; where the margin steps near an end, what is beyond lies behind it in the corner and is left out.
+/* Exact for the mesh's faces, each column by itself: what covers it begins and ends at edges with a face on one side alone, or folded back, of which there are few. Where the margin steps near an end, what is beyond lies behind it in the corner and is left out.
  * x: [rig.n]; within: heights between which an opening's middle lies, mm */
 void deform_open(struct deform_opening *opening, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2]);
 

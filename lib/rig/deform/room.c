@@ -28,9 +28,9 @@ void deform_rooms_free(struct deform_rooms *rooms)
 		rooms->rests = room->next;
 		free(room->head);
 		free(room->push);
-		free(room->cover);
+		free(room->crossing);
 		free(room->sorted);
-		free(room->place);
+		free(room->way);
 		free(room);
 	}
 	pthread_mutex_destroy(&rooms->lock);
@@ -61,12 +61,12 @@ void deform_room_give(struct deform_rooms *rooms, struct deform_room *room)
 	pthread_mutex_unlock(&rooms->lock);
 }
 
-void deform_room_grow(struct deform_room *room)
+void deform_room_hold(struct deform_room *room, int n)
 {
-	if (room->n < room->most)
+	if (n <= room->most)
 		return;
-	room->most = 2 * room->most + 1024;
-	room->cover = mem_grow(room->cover, (size_t)room->most, sizeof *room->cover);
+	room->most = n + room->most + 1024;
+	room->crossing = mem_grow(room->crossing, (size_t)room->most, sizeof *room->crossing);
 	room->sorted = mem_grow(room->sorted, (size_t)room->most, sizeof *room->sorted);
-	room->place = mem_grow(room->place, (size_t)room->most, sizeof *room->place);
+	room->way = mem_grow(room->way, (size_t)room->most, sizeof *room->way);
 }

@@ -3,19 +3,19 @@
 #ifndef RIG_DEFORM_ROOM_H
 #define RIG_DEFORM_ROOM_H
 
-/* What a face covers of a column, mm (opening.c). */
-struct deform_cover {
-	int column;
-	double low, high;
+/* Where an edge crosses a column, mm, and how many faces more cover what is above than what is below (opening.c). */
+struct deform_crossing {
+	int column, change;
+	double y;
 };
 
 /* What is in it is nobody's between poses. Owned by deform_rooms. */
 struct deform_room {
 	double (*head)[3];                   // [rig.n] places about an eyeball's centre
 	float *push;                         // [rig.n]
-	int n, most;                         // covers, and how many there is room for
-	struct deform_cover *cover, *sorted; // [most]
-	int *place;                          // [most]
+	int n, most;                         // crossings, and how many there is room for
+	struct deform_crossing *crossing, *sorted; // [most]
+	int *way;                            // [most] of faces
 	struct deform_room *next;
 };
 
@@ -28,7 +28,7 @@ void deform_rooms_free(struct deform_rooms *rooms);
 struct deform_room *deform_room_take(struct deform_rooms *rooms);
 void deform_room_give(struct deform_rooms *rooms, struct deform_room *room);
 
-/* Makes place for another cover. */
-void deform_room_grow(struct deform_room *room);
+/* Makes place for n crossings, and n faces. */
+void deform_room_hold(struct deform_room *room, int n);
 
 #endif
