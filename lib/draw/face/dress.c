@@ -20,7 +20,7 @@ struct texels {
 struct dress {
 	const struct look *look;
 	struct texels *texture;    // [look.n_textures]; n = 0: not needed or damaged
-	float linear[256];
+	float linear[256], plain[256];  // of a byte: of sRGB, and 0..1
 };
 
 /* Colours are halved as light, weighted by their cover; other maps as they are. */
@@ -69,8 +69,10 @@ struct dress *dress_new(const struct look *look, int longest, struct err *why)
 	bool *used = mem_new((size_t)look->n_materials + 1, sizeof *used);
 	d->look = look;
 	d->texture = mem_new((size_t)look->n_textures + 1, sizeof *d->texture);
-	for (int i = 0; i < 256; i++)
-		d->linear[i] = linear_from_srgb((float)i / 255);
+	for (int i = 0; i < 256; i++) {
+		d->plain[i] = (float)i / 255;
+		d->linear[i] = linear_from_srgb(d->plain[i]);
+	}
 	for (int f = 0; f < look->n_faces; f++)
 		if (look->face_material[f] >= 0)
 			used[look->face_material[f]] = true;
@@ -97,23 +99,21 @@ const struct look *dress_look(const struct dress *d)
 	return d->look;
 }
 
-static int wrapped(int i, int n)
-{
-	return ((i % n) + n) % n;
-}
-
-/* Bilinear on one level, repeated in both directions; 0..1. linear: of sRGB, or null. */
-static void texel(float out[4], const struct texels *t, int k, const float uv[2], const float *linear)
+/* Bilinear on one level, repeated in both directions. rgb, cover: of a byte. */
+static void texel(float out[4], const struct texels *t, int k, const float uv[2], const float rgb[256], const float cover[256])
 {
 	const int w = t->width[k], h = t->height[k];
 	const float x = (uv[0] - floorf(uv[0])) * (float)w - 0.5f, y = (uv[1] - floorf(uv[1])) * (float)h - 0.5f;
-	const int x0 = (int)floorf(x), y0 = (int)floorf(y);
+	const int x0 = (int)floorf(x), y0 = (int)floorf(y);  // -1 to w - 1, h - 1
+	const int column[2] = { x0 < 0 ? x0 + w : x0, x0 + 1 < w ? x0 + 1 : x0 + 1 - w }, row[2] = { y0 < 0 ? y0 + h : y0, y0 + 1 < h ? y0 + 1 : y0 + 1 - h };
+	const float wx[2] = { 1 - x + (float)x0, x - (float)x0 }, wy[2] = { 1 - y + (float)y0, y - (float)y0 };
 	memset(out, 0, 4 * sizeof *out);
 	for (int j = 0; j < 4; j++) {
-		const float wx = j % 2 ? x - (float)x0 : 1 - x + (float)x0, wy = j / 2 ? y - (float)y0 : 1 - y + (float)y0;
-		const uint8_t *p = t->px[k] + 4 * ((size_t)wrapped(y0 + j / 2, h) * (size_t)w + (size_t)wrapped(x0 + j % 2, w));
-		for (int c = 0; c < 4; c++)
-			out[c] += wx * wy * (linear && c < 3 ? linear[p[c]] : (float)p[c] / 255);
+		const uint8_t *p = t->px[k] + 4 * ((size_t)row[j / 2] * (size_t)w + (size_t)column[j % 2]);
+		const float share = wx[j % 2] * wy[j / 2];
+		for (int c = 0; c < 3; c++)
+			out[c] += share * rgb[p[c]];
+		out[3] += share * cover[p[3]];
 	}
 }
 
@@ -126,8 +126,8 @@ static bool look_up(float out[4], const struct dress *d, int i, const float uv[2
 		return false;
 	const float level = fminf(fmaxf(log2f(fmaxf(wide * (float)t->width[0], 1e-6f)), 0), (float)(t->n - 1));
 	const int k = (int)level, next = k + 1 < t->n ? k + 1 : k;
-	texel(fine, t, k, uv, colour ? d->linear : 0);
-	texel(coarse, t, next, uv, colour ? d->linear : 0);
+	texel(fine, t, k, uv, colour ? d->linear : d->plain, d->plain);
+	texel(coarse, t, next, uv, colour ? d->linear : d->plain, d->plain);
 	for (int c = 0; c < 4; c++)
 		out[c] = fine[c] + (level - (float)k) * (coarse[c] - fine[c]);
 	return true;

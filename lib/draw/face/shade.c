@@ -50,10 +50,11 @@ static void pores(float n[3], const float rest[3], float strength)
 	}
 }
 
-/* Trowbridge-Reitz lobe with Smith's shadowing, Schlick's Fresnel of skin. */
-static float gloss(const float n[3], const float l[3], const float v[3], float rough)
+/* Trowbridge-Reitz lobes of two roughnesses with Smith's shadowing, Schlick's Fresnel of skin. */
+static void gloss(float lobe[2], const float n[3], const float l[3], const float v[3], const float rough[2])
 {
-	float h[3], len = 0, nh = 0, nl = 0, nv = 0, vh = 0, a2 = rough * rough * rough * rough;
+	float h[3], len = 0, nh = 0, nl = 0, nv = 0, vh = 0;
+	lobe[0] = lobe[1] = 0;
 	for (int c = 0; c < 3; c++) {
 		h[c] = l[c] + v[c];
 		len += h[c] * h[c];
@@ -66,10 +67,13 @@ static float gloss(const float n[3], const float l[3], const float v[3], float r
 		nv += n[c] * v[c];
 	}
 	if (nl <= 0 || nv <= 0)
-		return 0;
-	float d = nh * nh * (a2 - 1) + 1, k = 0.5f * rough * rough, g = nl / (nl * (1 - k) + k) * nv / (nv * (1 - k) + k);
-	float f0 = (float)SKIN_MIRROR, s = 1 - fmaxf(vh, 0), f = f0 + (1 - f0) * s * s * s * s * s;
-	return a2 / (d * d) * g * f / (4 * nv);  // times pi / pi: lights are irradiance over pi
+		return;
+	const float f0 = (float)SKIN_MIRROR, s = 1 - fmaxf(vh, 0), f = f0 + (1 - f0) * s * s * s * s * s;
+	for (int i = 0; i < 2; i++) {
+		const float a2 = rough[i] * rough[i] * rough[i] * rough[i], d = nh * nh * (a2 - 1) + 1, k = 0.5f * rough[i] * rough[i];
+		const float g = nl / (nl * (1 - k) + k) * nv / (nv * (1 - k) + k);
+		lobe[i] = a2 / (d * d) * g * f / (4 * nv);  // times pi / pi: lights are irradiance over pi
+	}
 }
 
 struct point {
@@ -201,9 +205,11 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
 	}
 	vecf_unit(n);
 	float spec[3] = { 0 };
+	const float rough[2] = { fminf((float)SKIN_ROUGH_WIDE * rougher, 1), fminf((float)SKIN_ROUGH_NARROW * rougher, 1) };
 	for (int k = 0; k < sky->n && !p->matte; k++) {
-		float shine = (float)SKIN_LOBE_WIDE * gloss(n, sky->light[k].dir, to, fminf((float)SKIN_ROUGH_WIDE * rougher, 1))
-		              + (float)SKIN_LOBE_NARROW * gloss(n, sky->light[k].dir, to, fminf((float)SKIN_ROUGH_NARROW * rougher, 1));
+		float lobe[2];
+		gloss(lobe, n, sky->light[k].dir, to, rough);
+		const float shine = (float)SKIN_LOBE_WIDE * lobe[0] + (float)SKIN_LOBE_NARROW * lobe[1];
 		for (int c = 0; c < 3; c++)
 			spec[c] += shine * sky->light[k].rgb[c];
 	}
