@@ -142,6 +142,7 @@ bool job_ready(struct job *job, struct err *err)
 	scene_fit_colour(&job->scene, &view, &light);
 	stage_figure(job->stage, "lamps_found", reference->n_lamps, "");
 	stage_figure(job->stage, "exposure", job->scene.gain, "");
+	stage_figure(job->stage, "limbus_shadow", (job->scene.rim.edge - 1) * job->scene.limbus[0], "mm");
 	stage_figure(job->stage, "explained_by_model", 100 * job->scene.explained, "%");
 	return true;
 }

@@ -23,7 +23,9 @@ double tissue_spread(const struct tissue *tissue, double nm, double stroma);
 #define TISSUE_SPREAD_SHARE 0.55  // of wide
 bool tissue_spread_map(float *map, int n, int channels, double sigma, struct err *err);
 
-/* The wavelength to which eyes are most sensitive, nm: one spread for all colours; red light spreads by a fifth more, blue by a quarter less. */
+/* The wavelength to which eyes are most sensitive, nm: one spread for all colours; red light spreads by a fifth more, blue by a quarter less. Those of
+ * each channel: the dominant wavelengths of Rec. 709's primaries. */
 #define TISSUE_SPREAD_NM 555.0
+#define TISSUE_PRIMARIES_NM { 611.0, 549.0, 464.0 }
 
 #endif

@@ -15,6 +15,8 @@ EMBED(viewer_decode, "render/viewer/decode.frag");
 EMBED(viewer_paths, "render/viewer/paths.frag");
 EMBED(viewer_refine, "render/viewer/refine.frag");
 EMBED(viewer_ground, "render/viewer/ground.glsl");
+EMBED(viewer_lights, "render/viewer/lights.glsl");
+EMBED(viewer_beside, "render/viewer/beside.frag");
 EMBED(viewer_march, "render/viewer/march.frag");
 EMBED(viewer_horizon, "render/viewer/horizon.frag");
 EMBED(viewer_iris, "render/viewer/iris.glsl");

@@ -80,7 +80,7 @@ class Graphics {
 
 	/* The text of a shader with the parts that it uses before it. */
 	text(name, parts) {
-		const below = { eye: ["ground", "iris"], march: ["ground"], horizon: ["ground"] }[name] || [];
+		const below = { eye: ["ground", "iris"], march: ["ground", "lights"], beside: ["ground", "lights"], horizon: ["ground"] }[name] || [];
 		return [...below, ...parts.filter(p => p in this.shaders), name].map(p => this.shaders[p]).join("");
 	}
 

@@ -2,16 +2,14 @@
 // camera; lib/draw/eye/march/shade.c, draw/eye/march/tile.c, draw/eye/march/march.c, draw/eye/colour.c.
 const int NODES = 12;
 uniform vec3 sclera;              // z of its centre, radius, width of the limbus over its radius
-uniform vec4 rim_light;           // width of the limbus' shadow's edge, slope and depth of the cornea there, spread of light in the tissue: lib/tissue/light/rim_shadow.h
-uniform sampler2D path_map, down_map, model_map;
+uniform sampler2D model_map;
 uniform int model_top;            // of this level's rows in model_map
-uniform int beams;
-uniform vec3 beam_rgb[LIGHTS];
 uniform vec4 source[2], extinction[2];  // by layer, four wavelengths
 uniform mat4 band_rgb;            // columns: wavelengths; rows: R, G, B
 uniform float abl, exposure, tissue_gain, detail, own;  // own: share of own_map that this light shows (lib/draw/eye/own_light.h)
 uniform float ratio_most, ratio_chroma;
 uniform sampler2D own_map;        // what the photograph's light did beyond the model
+uniform sampler2D beside_map;     // what light that spreads in the tissue changes: beside.frag
 uniform int nodes[2];
 uniform vec2 node[2 * NODES];     // place and weight, of the anterior border layer, then of the stroma
 #ifdef SHADOWS
@@ -19,36 +17,14 @@ uniform sampler2D horizon_map;
 #endif
 out vec4 light;
 
-vec2 path_place(int beam, int plane, vec2 p)
-{
-	const float grid = float(GRID);
-	vec2 cell = clamp((p + extent) / (2.0 * extent) * (grid - 1.0), 0.0, grid - 1.0);
-	return (cell + 0.5 + vec2(float(plane), float(beam)) * grid) / (grid * vec2(2.0, float(TILES)));
-}
-
-const float RIM_SHADOW_MOST = 3.6;
-
-// What the sclera's shadow leaves of light that enters at rho and comes to p from l: lib/tissue/light/rim_shadow.h.
-float rim_open(float rho, vec3 p, vec3 l)
-{
-	float inv = 1.0 / max(-l.z, 0.05);
-	vec2 k = p.xy + (p.z - rim_light.z) * inv * l.xy;
-	float outwards = dot(k, l.xy) / sqrt(dot(k, k) + 1e-6), soft = rim_light.w / (1.0 + rim_light.y * inv * max(outwards, 0.0));
-	float at = (rho - 1.0) / sqrt(rim_light.x * rim_light.x + soft * soft), far = abs(at) < RIM_SHADOW_MOST ? 0.5 * exp(-1.4142136 * abs(at)) : 0.0;
-	float t = clamp(0.2236068 * at + 0.5, 0.0, 1.0), begins = rim_light.x * rim_light.x;
-	return mix(at < 0.0 ? 1.0 - far : far, 1.0 - t * t * (3.0 - 2.0 * t), begins / (begins + rim_light.w * rim_light.w));
-}
-
 // Direction towards a beam's light (not of unit length), and irradiance of a plane that faces it. open: what the sclera lets
 // in, which begins gradually at the limbus; all of a ray has that of its near end.
 vec4 path_to(int beam, vec3 p, out float open)
 {
-	float q = (p.z - beam_z.x) / (beam_z.y - beam_z.x);
-	vec2 above = path_place(beam, 0, p.xy), below = path_place(beam, 1, p.xy);
-	vec4 w = mix(textureLod(path_map, above, 0.0), textureLod(path_map, below, 0.0), q);
-	float down = mix(textureLod(down_map, above, 0.0).r, textureLod(down_map, below, 0.0).r, q);
-	open = rim_open(w.w, p, vec3(w.xy, down));
-	return vec4(w.xy, down, down < 0.0 ? max(w.z, 0.0) : 0.0);
+	float rho;
+	vec4 w = way_at(beam, p, rho);
+	open = rim_open(rho, p, w.xyz, rim_light.w);
+	return w;
 }
 
 #ifdef SHADOWS
@@ -113,7 +89,7 @@ vec3 scatter(ivec2 texel, vec3 p, vec3 v)
 		}
 		sum += beam_rgb[b] * (band_rgb * (lit * (open * 0.25))).rgb;  // pi times the phase, 1 / (4 pi)
 	}
-	return max(sum * exposure, 0.0);
+	return max(sum * exposure, 0.0) * textureLod(beside_map, map_place(p.xy), 0.0).rgb;
 }
 
 // What the photograph's colour is multiplied by: lib/draw/eye/colour.c.

@@ -198,7 +198,7 @@ async function start() {
 		if (!data.eyes.length)
 			throw new Error("no eye of this folder has been fitted");
 		const c = data.eyes[0].constants;
-		const page = new Page(new Graphics(graphics_context(canvas), shaders, { LIGHTS: EyeScene.LIGHTS, TILES: EyeScene.LIGHTS + 1, DIRECTIONS: EyeScene.DIRECTIONS, SEARCH: EyeScene.SEARCH, GRID: c.grid, SIDE: c.coarse, ...(data.face ? { WIDE: FacePose.WIDE, LIT: FacePose.LIT, PROBE: FaceScene.PROBE } : {}) }));
+		const page = new Page(new Graphics(graphics_context(canvas), shaders, { LIGHTS: EyeScene.LIGHTS, TILES: EyeScene.LIGHTS + 1, DIRECTIONS: EyeScene.DIRECTIONS, SEARCH: EyeScene.SEARCH, GRID: c.grid, SIDE: c.coarse, BESIDE: c.beside, ...(data.face ? { WIDE: FacePose.WIDE, LIT: FacePose.LIT, PROBE: FaceScene.PROBE } : {}) }));
 		window.eyewright = page;
 		const wanted = Number(new URLSearchParams(location.hash.slice(1)).get("eye"));
 		await page.open(Number.isInteger(wanted) && wanted > 0 && wanted < data.eyes.length ? wanted : 0);

@@ -223,10 +223,29 @@ class EyeScene {
 			gl.deleteTexture(old.map.texture);
 		const map = old && old.map.width === n ? old.map : g.texture(n, n, gl.RGBA16F);
 		const horizon_map = preset.shadow > 0 ? this.horizon(ground, preset.shadow) : null;
+		const lights = { ...solved, ...ground, rim_light: this.rim(s), rim_edge: e.rim[2] }, beside_map = this.beside(lights);
 		g.target(map);
-		g.draw(this.marcher(preset), { ...solved, ...own, ...ground, sclera: this.sclera(s), rim_light: this.rim(s), horizon_map, abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, ratio_most: data.constants.ratio_most, ratio_chroma: data.constants.ratio_chroma, model_top: m.tops[level - m.from] });
+		g.draw(this.marcher(preset), { ...lights, ...own, sclera: this.sclera(s), beside_map, horizon_map, abl: data.tissue.abl, exposure: data.tissue.exposure, tissue_gain: e.gain, ratio_most: data.constants.ratio_most, ratio_chroma: data.constants.ratio_chroma, model_top: m.tops[level - m.from] });
 		this.shades[name] = { key, map };
 		g.counted("marched");
+	}
+
+	/* What light that spreads in the tissue changes: lib/draw/eye/march/beside.c. lights: what the march is given of them. Tissue that does not
+	 * spread light: one texel of 1. */
+	beside(lights) {
+		const { g } = this, e = this.data.eye, n = this.data.constants.beside, per = n / (2 * e.extent);
+		if (!(e.spread[1] > 0)) {
+			this.nothing_beside = this.nothing_beside || g.plain(1, 1, g.gl.RGBA8, g.gl.RGBA, g.gl.UNSIGNED_BYTE, new Uint8Array([255, 255, 255, 255]));
+			return this.nothing_beside;
+		}
+		const keep = e.spread.map(mm => 1 + 1 / Math.max((mm * per) ** 2, 1e-6)).map(a => a - Math.sqrt(a * a - 1));
+		this.beside_of = this.beside_of || g.program("beside");
+		this.beside_maps = this.beside_maps || [0, 1].map(() => g.texture(n, n, g.gl.RGBA16F));
+		for (const part of [0, 1, 2]) {
+			g.target(this.beside_maps[part % 2]);
+			g.draw(this.beside_of, { ...lights, part, keep, lit_map: this.beside_maps[1 - part % 2] });
+		}
+		return this.beside_maps[0];
 	}
 
 	/* The horizon of the relief, once for each change of the pupil. */

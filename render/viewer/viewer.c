@@ -66,7 +66,7 @@ static void programs(json_t *data, bool face)
 {
 	const struct {
 		const char *key, *text;
-	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths }, { "refine", viewer_refine }, { "ground", viewer_ground }, { "march", viewer_march }, { "horizon", viewer_horizon },
+	} part[] = { { "css", viewer_css }, { "look", scene_look }, { "common", viewer_common }, { "decode", viewer_decode }, { "paths", viewer_paths }, { "refine", viewer_refine }, { "ground", viewer_ground }, { "lights", viewer_lights }, { "beside", viewer_beside }, { "march", viewer_march }, { "horizon", viewer_horizon },
 		         { "iris", viewer_iris }, { "eye_frag", viewer_eye_frag }, { "bloom", viewer_bloom }, { "present", viewer_present } },
 	  of_face[] = { { "skin_look", skin_look }, { "lids", viewer_lids }, { "tear", viewer_tear }, { "skin", viewer_skin_frag },
 		            { "skin_vert", viewer_skin_vert }, { "folds", viewer_folds }, { "dress", viewer_dress }, { "pose", viewer_pose }, { "probe", viewer_probe }, { "copy", viewer_copy } };

@@ -54,7 +54,7 @@ static bool work_make(struct work *w, const struct scene_conf *conf, const struc
 static void work_free(struct work *w)
 {
 	free(w->batches);
-	free(w->beams.beam);
+	scene_beams_free(&w->beams);
 	scene_free(&w->scene);
 }
 

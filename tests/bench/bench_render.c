@@ -74,7 +74,7 @@ static void parts_beams(void *ctx)
 	struct parts *p = ctx;
 	double eye_from_cam[3][3];
 	turn_back(eye_from_cam, &p->frame->view);
-	free(p->beams.beam);
+	scene_beams_free(&p->beams);
 	p->beams = scene_beams(p->frame->scene, p->frame->light, eye_from_cam);
 }
 
@@ -122,7 +122,7 @@ static void parts_rows(const struct frame *f, const char *name, double all)
 		taken.review = all;
 		taken.march = t[1].median;
 	}
-	free(p.beams.beam);
+	scene_beams_free(&p.beams);
 }
 
 static struct bench_time frame_row(struct frame *f, const char *name)

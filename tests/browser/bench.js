@@ -24,7 +24,7 @@ const frames = (preset, n) => `(() => { const p = eyewright, gl = p.graphics.gl,
 async function count(b) {
 	const d = JSON.parse(await b.value(`(() => { const p = eyewright, e = p.eye; return JSON.stringify({ shaders: p.graphics.shaders, presets, face: !!p.face,
 		directions: e.lights[0].lights.length, grid: e.constants.grid, coarse: e.constants.coarse, map: e.eye.map_px, search: e.eye.search }); })()`));
-	const below = { eye: ["ground", "iris"], march: ["ground"] };
+	const below = { eye: ["ground", "iris"], march: ["ground", "lights"], beside: ["ground", "lights"] };
 	const text = (name, parts) => ["common", ...(below[name] || []), ...parts.filter(p => p in d.shaders), name].map(p => d.shaders[p]).join("\n");
 	for (const p of d.presets) {
 		const sum = picture(text, p, 1280, 1024, d.directions, d.grid, d.coarse, d.map, d.search, d.face);

@@ -101,7 +101,7 @@ function seconds_on(gpu, [operations, reads]) {
 function picture(text, preset, width, height, directions, grid, coarse, map, search, face) {
 	const beams = preset.beams, all = Math.min(directions, preset.directions), nodes = Math.min(preset.steps, 3), pixels = width * height * preset.scale * preset.scale;
 	// Newton's way from its closed start takes five steps; lids are looked for within 16 px; horizons stand with the pupil.
-	const limits = { 40: 5, SEARCH: search, 14: 1, NODES: nodes, LIGHTS: beams, first: all / beams, 64: 16, ACROSS: 4 };
+	const limits = { 40: 5, SEARCH: search, 14: 1, NODES: nodes, LIGHTS: beams, REACH: 12, first: all / beams, 64: 16, ACROSS: 4 };
 	const main = (name, parts, own) => new Count(text(name, parts || []), { ...limits, ...own }, (parts || []).map(p => p.toUpperCase())).of("main");
 	const eyes = face ? 2 : 1, several = all > beams, points = 2 * (several ? coarse : grid) ** 2;
 	let sum = [0, 0];
@@ -109,6 +109,7 @@ function picture(text, preset, width, height, directions, grid, coarse, map, sea
 	add(main("paths"), eyes * points * beams);
 	if (several)
 		add(main("refine"), eyes * 2 * grid * grid * (beams + 1));
+	add(main("beside"), eyes * 3 * 64 * 64);
 	add(main("march", preset.shadow > 0 ? ["shadows"] : []), eyes * (map >> 1 + preset.apart) ** 2);
 	add(main("bloom"), 5 / 3 * pixels);
 	add(main("present"), pixels);

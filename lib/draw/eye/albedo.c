@@ -41,7 +41,7 @@ static void mean_under(double mean[3], const struct scene *s, const struct scene
 		}
 	for (int c = 0; c < 3; c++)
 		mean[c] = sum[c] / fmax(on[c], 1e-9);
-	free(beams.beam);
+	scene_beams_free(&beams);
 }
 
 /* How much brighter the iris is under `lit` than its albedo in even light makes a diffuse surface (lamps that stand aside light a layer that
@@ -86,7 +86,7 @@ struct image scene_albedo(const struct scene *s, const struct envmap *lit)
 				for (int c = 0; c < 3; c++)
 					image_at(&out, x + i, y)[c] = fminf(fmaxf((float)gain[c] * b.rgb[c][i], 0), 1);
 		}
-	free(beams.beam);
+	scene_beams_free(&beams);
 	envmap_free(&env);
 	return out;
 }

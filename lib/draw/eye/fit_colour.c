@@ -15,6 +15,7 @@
 #include "draw/eye/march/march.h"
 #include "draw/eye/march/shade.h"
 #include "draw/eye/own_light.h"
+#include "draw/eye/rim_edge.h"
 #include "draw/eye/tint.h"
 #include "draw/eye/view.h"
 
@@ -104,6 +105,8 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 			C[j] -= view->cam_from_eye[i][j] * view->cam_from_eye[i][3];
 		}
 	struct scene_beams beams = scene_beams(s, light, eye_from_cam);
+	if (!s->plain)  // colours that are painted tell of no shadow
+		scene_rim_edge_fit(s, level->colour, C, &beams);
 	size_t texels = (size_t)level->n * (size_t)level->n;
 	float *texture = level->colour;
 	level->colour = mem_array(4 * texels, sizeof *level->colour);
@@ -122,5 +125,5 @@ void scene_fit_colour(struct scene *s, const struct scene_view *view, const stru
 	scene_levels_make(s);
 	for (int k = scene_marched(s); k < s->n_levels && s->conf.shading == SCENE_TEXELS; k++)
 		scene_shade_model(&s->level[k], s, C, &beams, through);
-	free(beams.beam);
+	scene_beams_free(&beams);
 }

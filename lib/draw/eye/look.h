@@ -30,6 +30,8 @@
 #define LOOK_SOURCE 0.15
 #define LOOK_FILL 0.4
 #define LOOK_BIAS 0.004
+// Of light that spreads in the tissue: what is darker than that, white facing the light being 1, is left as it is.
+#define LOOK_BESIDE_DARK 0.002
 // A ray of sight that leans more than that to the iris' axis may cross the relief several times.
 #define LOOK_LEANS 0.3
 // The march's quadrature: ways of light to and fro through a cornea, over the depth (about 1.05 and 1.3 times it).

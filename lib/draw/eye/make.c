@@ -57,5 +57,9 @@ static double rim_thickness(const struct scene *s)
 
 void scene_rim_make(struct scene *s)
 {
-	s->rim = rim_shadow_of(&s->eye, s->conf.limbus_width, tissue_spread(&s->tissue, TISSUE_SPREAD_NM, rim_thickness(s)));
+	static const double nm[3] = TISSUE_PRIMARIES_NM;
+	double thick = rim_thickness(s);
+	s->rim = rim_shadow_of(&s->eye, s->conf.limbus_width, tissue_spread(&s->tissue, TISSUE_SPREAD_NM, thick));
+	for (int c = 0; c < 3; c++)
+		s->spread[c] = (float)tissue_spread(&s->tissue, nm[c], thick);
 }

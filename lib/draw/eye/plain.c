@@ -38,7 +38,7 @@ static void plain_colour(float rgb[3], double rho, double turn, const float *fin
 
 void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf *conf, const double rgb[3], uint64_t seed)
 {
-	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1, .photo_white = { 1, 1, 1 }, .extent = extent_mm, .pupil = { 0, 0, plain_pupil_mm } };
+	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1, .plain = true, .photo_white = { 1, 1, 1 }, .extent = extent_mm, .pupil = { 0, 0, plain_pupil_mm } };
 	s->conf.albedo_mm = 0;  // all of the drawn colours are the iris' own
 	scene_geometry(s);
 	int n = conf->map_size < TEXELS ? conf->map_size : TEXELS;

@@ -153,7 +153,7 @@ struct image scene_render(const struct scene *s, const struct scene_view *view, 
 	}
 	free(mark);
 	free(shade.light);
-	free(beams.beam);
+	scene_beams_free(&beams);
 	if (count)
 		*count = (struct scene_count){ count->rays + rays, count->iris + iris, count->kept + kept, count->hidden + hidden };
 	return image;

@@ -91,6 +91,7 @@ struct scene {
 	struct tissue tissue;
 	struct tissue_optics optics;
 	struct rim_shadow rim;               // how light ends at the limbus
+	float spread[3];              // of light in the tissue next to it, by channel, mm (tissue/spread.h)
 	struct scene_paths *paths;    // paths of light into the eye, for beams of several lights (march/paths.h); owned; null: solved for each
 	struct refraction refraction; // of the artifact; zero: solved from the closed-form start
 	int n_nodes[2];               // of the march's quadrature, in each layer
@@ -100,6 +101,7 @@ struct scene {
 	                              // light are multiplied by it
 	float gain;                   // geometric mean of photograph over model: what the exposure leaves
 	double explained;             // share of the variance of ln colour that the model explains by itself
+	bool plain;                   // nobody photographed it
 	long not_finite;              // map values that were not finite, and became 0
 	double odd_pupil;             // radius of a recorded pupil that is impossible, replaced by a usual one; 0: it was possible
 };

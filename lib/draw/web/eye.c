@@ -83,8 +83,9 @@ static json_t *geometry(const struct scene *s, double gain, double sigma_of_pupi
 	put(out, "pupil_sigma", 1, &sigma_of_pupil);
 	double own[] = { s->own_mean[0], s->own_mean[1], s->own_mean[2] };
 	put(out, "own_mean", 3, own);
-	double rim[] = { s->rim.width, s->rim.spread };
-	put(out, "rim", 2, rim);
+	double rim[] = { s->rim.width, s->rim.spread, s->rim.edge }, spread[] = { s->spread[0], s->spread[1], s->spread[2] };
+	put(out, "rim", 3, rim);
+	put(out, "spread", 3, spread);
 	put(out, "extent", 1, &s->extent);
 	put(out, "heights", 2, heights);
 	put(out, "tissue_range", 2, tissue);
@@ -217,7 +218,7 @@ json_t *web_eye(const struct web_source *source, struct err *err)
 	json_t *out = json_object(), *part[PARTS];
 	struct err errs[PARTS] = { 0 };
 	json_object_set_new(out, "side", template_text(source->side));
-	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:f,s:f,s:f,s:i,s:i,s:o}", "own_width", s->conf.own_width, "ratio_most", s->conf.ratio_most, "ratio_chroma", s->conf.ratio_chroma, "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE, "wet_lobe", json_numbers(4, envmap_wet_lobe)));
+	json_object_set_new(out, "constants", json_pack("{s:f,s:f,s:f,s:f,s:f,s:i,s:i,s:i,s:o}", "own_width", s->conf.own_width, "ratio_most", s->conf.ratio_most, "ratio_chroma", s->conf.ratio_chroma, "sclera_reach", SCENE_SCLERA_REACH, "path_bend", path_bend(M_SQRT2), "grid", SCENE_GRID, "coarse", SCENE_COARSE, "beside", SCENE_BESIDE, "wet_lobe", json_numbers(4, envmap_wet_lobe)));
 	json_object_set_new(out, "eye", geometry(s, source->gain, pupil_sigma(source)));
 	json_object_set_new(out, "tissue", web_tissue(source));
 #pragma omp parallel for schedule(dynamic, 1)

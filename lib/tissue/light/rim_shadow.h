@@ -13,6 +13,7 @@ struct rim_shadow {
 	float slope, depth;  // of the cornea at the limbus; mm
 	float spread;        // of the edge that the tissue makes
 	float share;         // of width's square in both
+	float edge;          // where it lies: 1 at the limbus
 };
 
 /* width: over which the sclera begins; sigma: of light in the tissue (tissue/spread.h); mm. The sclera begins as t^2 (3 - 2 t) does, of the variance
@@ -23,7 +24,7 @@ static inline struct rim_shadow rim_shadow_of(const struct eye *eye, double widt
 {
 	double r = eye->limbus_radius, depth = eye_limbus_depth(eye), begins = width / sqrt(20);
 	return (struct rim_shadow){ (float)(begins / r), (float)(r / (eye->cornea_radius - eye->cornea_asphericity * depth)), (float)depth, (float)(sigma / r),
-		                        (float)(begins * begins / (begins * begins + sigma * sigma)) };
+		                        (float)(begins * begins / (begins * begins + sigma * sigma)), 1 };
 }
 
 /* How far a point lies beyond the shadow's edge, in standard deviations; negative: in the light.
@@ -36,7 +37,7 @@ SIMD_INLINE float rim_shadow_at(const struct rim_shadow *rim, float rho, float x
 {
 	float down = -lz > 0.05f ? -lz : 0.05f, inv = 1 / down, t = (z - rim->depth) * inv, kx = x + t * lx, ky = y + t * ly;
 	float out = (kx * lx + ky * ly) / sqrtf(kx * kx + ky * ky + 1e-6f), soft = rim->spread / (1 + rim->slope * inv * (out > 0 ? out : 0));
-	return (rho - 1) / sqrtf(rim->width * rim->width + soft * soft);
+	return (rho - rim->edge) / sqrtf(rim->width * rim->width + soft * soft);
 }
 
 /* The light that is left there, 0..1; all and none beyond RIM_SHADOW_MOST. */

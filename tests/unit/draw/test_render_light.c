@@ -193,7 +193,7 @@ static double march_error(int steps, int quadrature)
 	axial(expected, &s);
 	for (int c = 0; c < 3; c++)
 		worst = fmax(worst, fabs(b.rgb[c][0] / expected[c] - 1));
-	free(beams.beam);
+	scene_beams_free(&beams);
 	scene_free(&s);
 	return worst;
 }
@@ -243,7 +243,7 @@ static void table_against_solver(void **state)
 	assert_true(worst > 0 && worst < 0.004);  // a quarter of a degree
 	assert_true(mean_gain / n < 2e-3);
 	assert_true(worst_gain < 0.04);  // beside the rim, where the gain falls off within two of the grid's steps
-	free(beams.beam);
+	scene_beams_free(&beams);
 	scene_free(&s);
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "draw/eye/make.h"
+#include "draw/eye/march/beside.h"
 #include "draw/eye/march/paths.h"
 #include "draw/eye/own_light.h"
 #include "math/vec.h"
@@ -234,7 +235,15 @@ struct scene_beams scene_beams(const struct scene *s, const struct scene_lightin
 			way[k][3] = way[k][3] > 1e-7f ? way[k][3] : 0;
 	}
 	free(in);
+	beams.beside = scene_beside(s, &beams);
 	return beams;
+}
+
+void scene_beams_free(struct scene_beams *beams)
+{
+	free(beams->beam);
+	free(beams->beside);
+	*beams = (struct scene_beams){ 0 };
 }
 
 struct scene_beam *scene_sight(const struct scene *s, const double C[3])

@@ -7,6 +7,7 @@
 enum { SCENE_PATH_STEPS = 4 };  // Newton's, from the closed-form start: 2e-5 mm at worst
 enum { SCENE_WAY = 8 };         // channels of a table: six, padded to a whole vector
 enum { SCENE_FLAT = 64 };       // texels across the light of a flat iris (paths_flat.h)
+enum { SCENE_BESIDE = 64 };      // texels across the map of light from beside (beside.h)
 enum { SCENE_COARSE = 24 };     // nodes across the table of several lights, before cubic (Catmull-Rom) interpolation to SCENE_GRID
 
 /* One light, or several neighbouring ones (beam.c), with its refraction function tabulated on two planes across the iris. */
@@ -22,11 +23,13 @@ struct scene_beams {
 	int n;
 	float mean[3], own;         // mean direction of all lights, by luminance; how much it is the photograph's own (own_light.h)
 	struct scene_beam *beam;    // owned
+	float *beside;              // [SCENE_BESIDE][SCENE_BESIDE][4]: what light that spreads in the tissue changes (beside.h); owned; null: nothing
 };
 
-/* The beams of a lighting for one view. free(beams.beam). */
+/* The beams of a lighting for one view. scene_beams_free, which accepts empty ones. */
 struct scene_beams scene_beams(const struct scene *scene, const struct scene_lighting *light,
                                const double eye_from_cam[3][3]);
+void scene_beams_free(struct scene_beams *beams);
 
 /* The paths from points of the iris out to a camera at C (eye's frame, mm), tabulated like those of a light. free(). */
 struct scene_beam *scene_sight(const struct scene *scene, const double C[3]);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "draw/eye/march/beside.h"
 #include "math/exp2.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -144,6 +145,7 @@ void scene_scatter(struct iris_batch *r, const struct scene *s, const struct sce
 	memset(r->rgb, 0, sizeof r->rgb);
 	for (int i = 0; i < r->n; i += PART)
 		march_part(r, i, r->n - i < PART ? r->n - i : PART, s, &g, beams, &tissue);
+	scene_beside_put(r->n, r->rgb[0], r->rgb[1], r->rgb[2], r->px, r->py, beams->beside, (float)s->extent);
 }
 
 void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, const struct scene *s, const struct scene_level *level,
@@ -165,6 +167,7 @@ void scene_scatter_tile(struct iris_batch *r, const struct march_tile *tile, con
 		if (scene_light_tile(&light, &body, s, &beams->beam[k]))
 			light_add(r, 0, PART, nodes, node, &light, tissue, beams->beam[k].rgb);
 	}
+	scene_beside_put(PART, r->rgb[0], r->rgb[1], r->rgb[2], r->px, r->py, beams->beside, (float)s->extent);
 }
 
 SIMD_CLONES static void fall_add(float *restrict out, int n, const struct march_light *restrict w, float f)
