@@ -9,6 +9,8 @@
  * thick_least, thick_mid   of both lids' margins, between the corners' tenths: from where the front sees the eyeball end to where, within 3 mm, skin last rises off it by
  *            half of the way along it: the margin's outer edge, beyond what lines the lid; mm of an eyeball of 12 mm, the least and the median; below 0: the skin that ends there lies lower than the
  *            eyeball. Nothing in eyes that are open by less than 1 mm
+ * lining_mm  of columns 0.5 mm apart, but for 1.5 mm at each end, the most of skin next to the upper margin that at rest looks at the eyeball, mm: what lines the
+ *            lid, come before its margin
  * iris_low, pupil_low   share of iris and pupil (5.7 and 2 mm on an eyeball of 12 mm) that lies under the lower lid */
 #include <math.h>
 #include <stdio.h>
@@ -101,6 +103,7 @@ struct pose {
 	const float (*x)[3];
 	const struct ray_scene *all;
 	const double (*turn)[3][3];
+	const int32_t (*skin_and_globes)[3];   // the faces of all
 };
 
 static bool open_at(const struct pose *p, int side, double x, double y)
@@ -228,6 +231,50 @@ static double thickness_at(const struct pose *p, const struct ray_scene *skin, i
 	return (height[outer] < off - 0.05 ? -1 : 1) * vec_norm(d) / unit;
 }
 
+/* Whether the front sees at a place what at rest looks at the eyeball. */
+static bool lines_lid(const struct pose *p, int side, double x, double y)
+{
+	const double far = 4 * p->rig->globe[side].radius;
+	double from[3], along[3], e[2][3], normal[3], away[3] = { 0 };
+	float origin[3], dir[3];
+	mat_tvec(from, p->rig->head_from_target, (double[]){ x, y, far });
+	mat_tvec(along, p->rig->head_from_target, (double[]){ 0, 0, -1 });
+	for (int c = 0; c < 3; c++) {
+		origin[c] = (float)(p->rig->globe[side].center[c] + from[c]);
+		dir[c] = (float)along[c];
+	}
+	const struct ray_hit hit = ray_first(p->all, origin, dir, 0, (float)(2 * far));
+	if (hit.face < 0 || rig_is_globe(p->rig->part[p->skin_and_globes[hit.face][0]]))
+		return false;
+	const int32_t *v = p->skin_and_globes[hit.face];
+	for (int c = 0; c < 3; c++) {
+		for (int k = 0; k < 2; k++)
+			e[k][c] = (double)p->rig->rest[v[k + 1]][c] - (double)p->rig->rest[v[0]][c];
+		for (int k = 0; k < 3; k++)
+			away[c] += (double)p->rig->rest[v[k]][c] / 3;
+		away[c] -= p->rig->globe[side].center[c];
+	}
+	vec_cross(normal, e[0], e[1]);
+	return vec_dot(normal, away) < -0.5 * vec_norm(normal) * vec_norm(away);
+}
+
+/* Most of what lines the upper lid and is seen below its margin. */
+static double lining_seen(const struct margins *m, const struct pose *p, int side)
+{
+	static const double fine = 0.05, most_mm = 4;
+	const int every = (int)lrint(0.5 / step), ends = (int)lrint(1.5 / step);
+	double most = 0;
+	for (int i = ends; i + ends < W; i += every) {
+		if (!isfinite(m->top[i] + m->top[i - ends] + m->top[i + ends]))
+			continue;
+		double by = fine;
+		while (by < most_mm && lines_lid(p, side, step * (i - W / 2), m->top[i] + by))
+			by += fine;
+		most = fmax(most, by - fine);
+	}
+	return most;
+}
+
 static int rising(const void *a, const void *b)
 {
 	const double p = *(const double *)a, q = *(const double *)b;
@@ -345,17 +392,14 @@ static void picture(const char *folder, const char *name, const struct seen *s, 
 	fclose(f);
 }
 
-/* The skin alone, for rays; or it and the eyeballs, without lining: caruncles hide no margin. */
-static struct ray_scene *skin_of(const struct rig *rig, bool globes)
+/* faces: out, [rig.n_faces]. The skin alone, for rays; or it and the eyeballs, without lining: caruncles hide no margin. */
+static struct ray_scene *skin_of(int32_t (*faces)[3], const struct rig *rig, bool globes)
 {
 	int n = 0;
-	int32_t (*faces)[3] = mem_new((size_t)rig->n_faces + 1, sizeof *faces);
 	for (int f = 0; f < rig->n_faces; f++)
 		if (rig->part[rig->faces[f][0]] == RIG_SKIN || (globes && rig_is_globe(rig->part[rig->faces[f][0]])))
 			memcpy(faces[n++], rig->faces[f], sizeof *faces);
-	struct ray_scene *scene = ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
-	free(faces);
-	return scene;
+	return ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
 }
 
 static double vertices_off(const struct pose *p, int side)
@@ -378,8 +422,8 @@ static void measure(const struct pose *p, const struct ray_scene *skin, const st
 	find_margins(&m, p, side);
 	double least, middle;
 	thicknesses(&least, &middle, &m, p, skin, side);
-	printf("%s,%d,%.2f,%.3f,%.3f,%.3f,%d,%.3f,%.3f,%.3f,%.3f\n", at, side, n * step * step, bend_of(&m), vertices_off(p, side), faces_off(p, side), crossing(hairs, p, skin, side),
-	       under_lower(&m, p, side, 5.7), under_lower(&m, p, side, 2), least, middle);
+	printf("%s,%d,%.2f,%.3f,%.3f,%.3f,%d,%.3f,%.3f,%.3f,%.3f,%.2f\n", at, side, n * step * step, bend_of(&m), vertices_off(p, side), faces_off(p, side), crossing(hairs, p, skin, side),
+	       under_lower(&m, p, side, 5.7), under_lower(&m, p, side, 2), least, middle, lining_seen(&m, p, side));
 	char name[80];
 	snprintf(name, sizeof name, "%s_%d", at, side);
 	if (folder)
@@ -399,11 +443,12 @@ int main(int argc, char **argv)
 	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ 9, 0, 100, 0, 1.1 });
 	struct deform *deform = deform_new(&rig);
 	struct deform_near near = deform_near_of(&rig);
-	struct ray_scene *skin = skin_of(&rig, false), *all = skin_of(&rig, true);
+	int32_t (*faces[2])[3] = { mem_new((size_t)rig.n_faces + 1, sizeof **faces), mem_new((size_t)rig.n_faces + 1, sizeof **faces) };
+	struct ray_scene *skin = skin_of(faces[0], &rig, false), *all = skin_of(faces[1], &rig, true);
 	float (*x)[3] = mem_new((size_t)rig.n + 1, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs + 1, sizeof *c);
 	static const double across[] = { -20, -10, 0, 10, 20 }, up[] = { 15, 5, 0, -5, -15, -25 }, open[] = { 1, 0.5, 0 };
-	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low,thick_least,thick_mid");
+	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low,thick_least,thick_mid,lining_mm");
 	deform_rest(deform, x, 0);
 	for (int k = 0; k < COUNT(open) * COUNT(up) * COUNT(across); k++) {
 		const double h = across[k % COUNT(across)], v = up[k / COUNT(across) % COUNT(up)], o = open[k / (COUNT(across) * COUNT(up))];
@@ -418,10 +463,12 @@ int main(int argc, char **argv)
 		ray_scene_move(all, (const float(*)[3])x);
 		snprintf(at, sizeof at, "%g,%g,%g", h, v, o);
 		for (int side = 0; side < 2; side++)
-			measure(&(struct pose){ &rig, (const float(*)[3])x, all, (const double(*)[3][3])turn }, skin, &hairs, side, at, argc > 2 ? argv[2] : 0);
+			measure(&(struct pose){ &rig, (const float(*)[3])x, all, (const double(*)[3][3])turn, (const int32_t(*)[3])faces[1] }, skin, &hairs, side, at, argc > 2 ? argv[2] : 0);
 	}
 	free(c);
 	free(x);
+	free(faces[0]);
+	free(faces[1]);
 	ray_scene_free(skin);
 	ray_scene_free(all);
 	deform_near_free(&near);

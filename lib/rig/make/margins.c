@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/chol.h"
+#include "math/vec.h"
 #include "rig/make/make_impl.h"
 
 enum { UPPER, LOWER, LIDS, TERMS = 2 + LIDS };
@@ -13,6 +14,7 @@ enum { UPPER, LOWER, LIDS, TERMS = 2 + LIDS };
 static const double gap_fade = 2;       // mm to either side of the gap up to which skin is a lid
 static const double open_mm = 0.3;      // less than this is a corner
 static const double margin_mm = 1;      // as far from the line, skin goes with its own column
+static const double inwards[] = { -0.6, -0.2 };  // cosine of a normal with the way off the eyeball: up to the first skin lines a lid
 static const double least_mm[] = { 10, 2 };  // length and height of what is an eye's opening
 
 /* The character's opening at rest, in columns of the modelling camera. */
@@ -180,6 +182,48 @@ static double shut(double coefficient[TERMS][RIG_BASIS], const struct opening *o
 	return lack;
 }
 
+static double fading(double x, double from, double to)
+{
+	double t = fmin(fmax((x - from) / (to - from), 0), 1);
+	return 1 - t * t * (3 - 2 * t);
+}
+
+/* Share of a vertex in a lid's outside: what lines it faces the eyeball. */
+static double outside(const struct rig *rig, int i)
+{
+	const double *center = rig->globe[rig->side[i]].center;
+	double away[3], normal[3];
+	for (int c = 0; c < 3; c++) {
+		away[c] = rig->rest[i][c] - center[c];
+		normal[c] = rig->normal[i][c];
+	}
+	return 1 - fading(vec_dot(away, normal) / fmax(vec_norm(away), 1e-6), inwards[0], inwards[1]);
+}
+
+/* How far off the eyeball the outside of a lid is at its margin, mm: the mean over its skin there. 0: there is none. */
+static double outside_gap(const struct opening *o, const struct rig *rig, int side, int lid, double lid_gap)
+{
+	double sum = 0, total = 0;
+	for (int i = 0; i < rig->n; i++) {
+		if (rig->part[i] != RIG_SKIN || rig->side[i] != side || rig->gap[i] * o->px_per_mm / o->scale > lid_gap)
+			continue;
+		const double w = outside(rig, i) * margin_weight(o, lid, rig->home[i]);
+		sum += w * fmax((double)rig->gap[i], 0);
+		total += w;
+	}
+	return total > 1e-3 ? sum / total : 0;
+}
+
+/* A lid turns about the eyeball's centre as one, so that what is nearer to it goes less far than its outside: else what lines it comes before the margin. */
+static double nearer_in(const struct rig *rig, int i, double gap)
+{
+	const struct rig_globe *globe = &rig->globe[rig->side[i]];
+	double away[3];
+	for (int c = 0; c < 3; c++)
+		away[c] = rig->rest[i][c] - globe->center[c];
+	return fmin(vec_norm(away) / (globe->radius + gap), 1);
+}
+
 /* Distance of a point from a margin, mm. */
 static double off_margin(const struct opening *o, int lid, const float at[2])
 {
@@ -189,19 +233,13 @@ static double off_margin(const struct opening *o, int lid, const float at[2])
 	return least / o->px_per_mm;
 }
 
-static double fading(double x, double from, double to)
-{
-	double t = fmin(fmax((x - from) / (to - from), 0), 1);
-	return 1 - t * t * (3 - 2 * t);
-}
-
 /* Lids have a breadth: seen from the front, the outer edge of a margin stands off the line at which the eyeball ends. How far a vertex
  * must come towards that line for the outer edges to meet, px; down is positive. */
-static double breadth(const struct opening *o, int lid, const float at[2], const struct rig_conf *conf)
+static double breadth(const struct opening *o, int lid, const float at[2], double outside, const struct rig_conf *conf)
 {
 	const double x = fmin(fmax(at[0] - o->first, 0), o->n - 1), beyond = fmax(o->first - at[0], at[0] - o->first - o->n + 1);
 	const double hollow = fmin(fmax(fmax(o->end[0] - x, x - o->end[1]) / o->scale, 0), 1), off = o->y[lid][(int)x] - at[1];
-	const double most = o->scale * (conf->breadth[0] + hollow * (conf->breadth[1] - conf->breadth[0]));
+	const double most = outside * o->scale * (conf->breadth[0] + hollow * (conf->breadth[1] - conf->breadth[0]));
 	return (lid == UPPER ? fmin(fmax(off, 0), most) : fmax(fmin(off, 0), -most)) * fading(beyond / o->scale, 0, 1);
 }
 
@@ -216,10 +254,12 @@ static double on_tarsus(const struct rig *rig, int i, const struct opening *o, c
 
 /* lack: what shut() added to the upper margin, px. */
 static void apply(struct rig *rig, int i, const struct opening *o, const double coefficient[TERMS][RIG_BASIS],
-                  const double closing[RIG_COMPONENTS], double lack, const struct rig_conf *conf)
+                  const double closing[RIG_COMPONENTS], double lack, const double gap[LIDS], const struct rig_conf *conf)
 {
 	double most = 0, total = 0, sum[RIG_BASIS] = { 0 }, away[LIDS], open[TERMS];
+	const double out = outside(rig, i);
 	for (int lid = 0; lid < LIDS; lid++) {
+		const double near = out + (1 - out) * nearer_in(rig, i, gap[lid]);
 		double g[TERMS], d = off_margin(o, lid, rig->home[i]), share = fading(d, 0.25 * conf->lid, conf->lid), w = share / (0.01 + d * d);
 		away[lid] = d;
 		terms_at(g, o, lid, rig->home[i][0], fmax((d - margin_mm) * o->px_per_mm, 0.5));
@@ -227,9 +267,9 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 		total += w;
 		for (int k = 0; k < RIG_BASIS; k++)
 			for (int j = 0; j < TERMS; j++)
-				sum[k] += w * g[j] * coefficient[j][k];
+				sum[k] += w * near * g[j] * coefficient[j][k];
 		for (int k = 0; k < RIG_COMPONENTS; k++)
-			sum[RIG_COMPONENTS + k] += w * breadth(o, lid, rig->home[i], conf) * closing[k];
+			sum[RIG_COMPONENTS + k] += w * breadth(o, lid, rig->home[i], out, conf) * closing[k];
 	}
 	most *= fading(rig->gap[i] * o->px_per_mm / o->scale, conf->lid_gap - gap_fade, conf->lid_gap + gap_fade);
 	for (int k = 0; k < RIG_BASIS && total > 0; k++)
@@ -237,7 +277,7 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 	const double more = fmax(on_tarsus(rig, i, o, away, conf) - most, 0);
 	terms_at(open, o, UPPER, rig->home[i][0], fmax((away[UPPER] - margin_mm) * o->px_per_mm, 0.5));
 	for (int k = 0; k < RIG_COMPONENTS && more > 0; k++)
-		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * (open[2 + UPPER] * lack + (lack > 0) * breadth(o, UPPER, rig->home[i], conf)) * closing[k]);
+		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * (open[2 + UPPER] * lack + (lack > 0) * breadth(o, UPPER, rig->home[i], out, conf)) * closing[k]);
 }
 
 void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_mm, const struct rig_conf *conf)
@@ -253,9 +293,10 @@ void rig_arc_margins(struct rig *rig, const struct rig_motion *m, double px_per_
 			rig_closing_direction(closing, rig, side, closed);
 			lack = shut(coefficient, &o, closed, closing, conf->seal);
 		}
+		const double gap[LIDS] = { outside_gap(&o, rig, side, UPPER, conf->lid_gap), outside_gap(&o, rig, side, LOWER, conf->lid_gap) };
 		for (int i = 0; i < rig->n && ok; i++)
 			if (!rig_is_globe(rig->part[i]) && rig->side[i] == side)
-				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, closing, fmax(lack, 0), conf);
+				apply(rig, i, &o, (const double(*)[RIG_BASIS])coefficient, closing, fmax(lack, 0), gap, conf);
 		opening_free(&o);
 	}
 }
