@@ -1,4 +1,4 @@
-/* posed RIG.npz [own|settled]: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
+/* posed RIG.npz [own] [settled]: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
  * input: gaze of the left eye and of the right (two numbers each, degrees), how far open each is of what is usual there, and
  * expressions. Standard output: floats [lines][2][vertices][3]; own: of the character's mesh alone, without lining;
  * settled: with lids as pictures have them (deform_settle). */
@@ -39,11 +39,11 @@ int main(int argc, char **argv)
 	struct rig rig = { 0 };
 	struct err err = { 0 };
 	char line[512];
-	if (argc < 2 || argc > 3 || !rig_load(&rig, argv[1], &err)) {
-		fprintf(stderr, "posed: %s\n", argc == 2 || argc == 3 ? err.msg : "RIG.npz [own|settled]");
+	if (argc < 2 || argc > 4 || !rig_load(&rig, argv[1], &err)) {
+		fprintf(stderr, "posed: %s\n", argc >= 2 && argc <= 4 ? err.msg : "RIG.npz [own] [settled]");
 		return 2;
 	}
-	const bool own = argc == 3 && !strcmp(argv[2], "own"), settled = argc == 3 && !own;
+	const bool own = argc > 2 && !strcmp(argv[2], "own"), settled = argc > 2 && !strcmp(argv[argc - 1], "settled");
 	const int n = own ? rig_own_vertices(&rig) : rig.n;
 	struct deform_near near = deform_near_of(&rig);
 	struct deform *deform = deform_new(&rig);

@@ -15,6 +15,22 @@ enum { SH = 5, SV = 5, SA = 6, GRID = SH * SV * SA, SREST = (SA - 2) * SH * SV +
 static const double at_h[SH] = { -32, -16, 0, 16, 32 }, at_v[SV] = { -22, -14, -7, 0, 22 }, at_a[SA] = { 0, 0.25, 0.5, 0.75, 1, 1.4 };
 static const float least_mm = 0.004f;   // a vertex that is moved by less in every pose is left
 
+/* Marks the vertices of hair cards that the page draws as they are; those that show what is behind them it paints on the skin. */
+static void drawn_cards(bool *moves, const struct portrait *p)
+{
+	const struct deform_cards *cards = &p->lids.cards;
+	const struct portrait_mesh *m = &p->mesh;
+	bool *card = mem_new((size_t)p->rig->n + 1, sizeof *card);
+	for (int k = 0; k < cards->n; k++)
+		card[cards->carried[k].vertex] = true;
+	for (int k = 0; k < 3 * m->n_faces; k++) {
+		const int v = m->faces[k / 3][k % 3];
+		if (!(k / 3 < m->n_dressed && m->cuts[k / 3]) && v < p->rig->n && card[v])
+			moves[v] = true;
+	}
+	free(card);
+}
+
 /* The lids' vertices that deform_settle can move. Returns how many. */
 static int lids_of(int *lid, const struct portrait *p)
 {
@@ -24,6 +40,7 @@ static int lids_of(int *lid, const struct portrait *p)
 	int n = 0;
 	for (int k = 0; k < 3 * near->n; k++)
 		moves[rig->faces[near->face[k / 3]][k % 3]] = true;
+	drawn_cards(moves, p);
 	for (int i = 0; i < rig->n; i++)
 		if (near->moves[i] && (moves[i] || near->upper[i] > 0 || near->lower[i] > 0))
 			lid[n++] = i;

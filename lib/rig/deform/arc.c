@@ -9,6 +9,7 @@
 #include "math/vec.h"
 #include "rig/deform/deform.h"
 #include "rig/deform/room.h"
+#include "rig/deform/slide.h"
 #include "rig/deform/terms.h"
 
 enum { COLUMNS = DEFORM_COLUMNS, ROUNDS = 4, LOWERED = 3, LEAST = 20 };  // of arcs, of lower lids; columns of what is an opening
@@ -56,21 +57,6 @@ static double lift_over(const struct lift *l, double from, double to)
 	const double a = fmin(fmax(from, 0), COLUMNS - 1), b = fmin(fmax(to, 0), COLUMNS - 1);
 	const int i = (int)a, j = (int)b;
 	return b > a ? (l->sum[j] + (b - j) * l->by[j] - l->sum[i] - (a - i) * l->by[i]) / (b - a) : 0;
-}
-
-/* Along the head's y, as far from the eyeball's surface as before. */
-static void move(float x[3], const struct rig *rig, int side, const double target_from_globe[3][3], double up)
-{
-	const double was = rig_globe_distance(rig, side, target_from_globe, x);
-	double d[3], far;
-	for (int c = 0; c < 3; c++) {
-		x[c] += (float)(up * rig->head_from_target[1][c]);
-		d[c] = x[c] - rig->globe[side].center[c];
-	}
-	const double lack = was - rig_globe_distance(rig, side, target_from_globe, x);
-	far = fmax(vec_norm(d), 1e-6);
-	for (int c = 0; c < 3; c++)
-		x[c] += (float)(lack * d[c] / far);
 }
 
 /* The lids of an eye, and where its opening is looked for. */
@@ -124,7 +110,7 @@ static bool nearer(double *arch, float (*x)[3], const struct rig *rig, const str
 		const double above = (p[1] - now.top[(int)lrint(column)]) / unit, spread = fmax((above - 1) * unit / now.step, 0.5);
 		const double with = (double)near->upper[i] * (1 - rising(above, goes_along_mm[0], goes_along_mm[1]));
 		if (with > 0)
-			move(x[i], rig, side, target_from_globe, with * lift_over(&lift, column - spread, column + spread));
+			deform_slide(x[i], rig, side, target_from_globe, with * lift_over(&lift, column - spread, column + spread));
 	}
 	return true;
 }
@@ -144,7 +130,7 @@ static void arcs(float (*x)[3], const struct rig *rig, const struct deform_near 
 	const double kept = near->arch[side] > 0 ? fmin(fmax(arch / near->arch[side], -1), 1) : 0;
 	for (int i = 0; i < rig->n && near->own; i++)
 		if (near->upper[i] > 0 && rig->side[i] == side)
-			move(x[i], rig, side, target_from_globe, kept * (double)near->own[i]);
+			deform_slide(x[i], rig, side, target_from_globe, kept * (double)near->own[i]);
 }
 
 static double widest(const struct deform_near *near, const struct rig *rig, int side)
@@ -230,7 +216,7 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 		const int column = now.first + (int)lrint(t * span);
 		const double below = (now.bottom[column] - p[1]) / unit, with = (double)near->lower[i] * (1 - rising(below, goes_along_mm[0], goes_along_mm[1] + lack / unit));
 		if (p[2] > 0)
-			move(x[i], rig, side, target_from_globe, -with * lack * along_lid(t) / peak);
+			deform_slide(x[i], rig, side, target_from_globe, -with * lack * along_lid(t) / peak);
 	}
 }
 
@@ -250,8 +236,10 @@ void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_nea
 	for (int side = 0; side < 2; side++) {
 		lower(x, rig, near, side, target_from_globe[side]);
 		arcs(x, rig, near, side, target_from_globe[side]);
+		deform_shut(x, rig, near, side, target_from_globe[side]);
 	}
 	deform_clear(x, rig, near, target_from_globe);
+	deform_carry(x, &near->cards, rig, near->rooms);
 }
 
 /* Whether a face of skin that can not come near an eyeball lies before it at rest: without it a lid would end where its skin is far off. */
@@ -299,6 +287,7 @@ struct deform_near deform_near_of(const struct rig *rig)
 			out.beside[out.n_beside++] = f;
 	}
 	find_seen(&out, rig);
+	out.cards = deform_cards_of(rig, out.moves);
 	out.rooms = deform_rooms_new(rig->n);
 	deform_edges_find(&out, rig);
 	prepare(&out, rig);
@@ -315,6 +304,7 @@ void deform_near_free(struct deform_near *near)
 	free(near->rest);
 	free(near->edge);
 	free(near->own);
+	deform_cards_free(&near->cards);
 	free(near->seen[0]);
 	free(near->seen[1]);
 	deform_rooms_free(near->rooms);

@@ -4,7 +4,8 @@
 #define RIG_DEFORM_ARC_H
 #include "rig/deform/opening.h"
 
-/* What follows deform_pose in pictures and in what leaves: lowers lower lids, makes upper margins arcs, then deform_clear.
+/* What follows deform_pose in pictures and in what leaves: lowers lower lids, makes upper margins arcs, shuts what is all but shut, then
+ * deform_clear; hair cards go with the skin that they stand on.
  * x  [rig.n], the target's frame, mm, in and out;  target_from_globe  of both globes in this pose */
 void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3]);
 

@@ -4,6 +4,7 @@
 #define RIG_DEFORM_CLEAR_H
 #include <stdbool.h>
 
+#include "rig/deform/cards.h"
 #include "rig/rig.h"
 
 /* Faces that can come near an eyeball, and which vertices deform_pose writes: others are not moved here either. deform_near_free. */
@@ -25,6 +26,7 @@ struct deform_near {
 	float *own;    // [rig.n] mm: how far up from an arc the margin at rest has a vertex
 	double arch[2];       // of each eye: mean height of the upper margin at rest over the line between its corners, mm
 	struct deform_opening *rest;  // [2] each eye's opening at rest
+	struct deform_cards cards;    // what stands on the skin
 	double within[2][2];  // of each eye: heights over the eyeball's centre between which its opening is looked for, mm
 	struct deform_rooms *rooms;   // where poses are worked out; several threads may settle poses of their own with one deform_near
 };
@@ -37,10 +39,13 @@ static inline int deform_near_face(const struct deform_near *near, int k)
 	return k < near->n ? near->face[k] : near->beside[k - near->n];
 }
 
-/* Moves vertices away from the eyeballs' centres until the middles of edges and faces that look outwards are DEFORM_CLEAR_MM off, most
- * those that lie further from it at rest: the lid's margin stays on the eye.
+/* Moves vertices away from the eyeballs' centres until the middles of edges and faces before the eye are DEFORM_CLEAR_MM off, most
+ * those that lie further from it at rest: the lid's margin stays on the eye. What lines a lid goes no further than half of the
+ * way to its outside, nor than half a millimetre of an eyeball of 12 mm.
  * x  [rig.n], the target's frame, mm, in and out;  target_from_globe  of both globes in this pose */
 #define DEFORM_CLEAR_MM 0.03
+/* Whether a vertex lines a lid: at rest it looks at the eyeball. */
+bool deform_lines(const struct rig *rig, int vertex);
 void deform_clear(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3]);
 
 #endif

@@ -10,7 +10,7 @@
 enum { COLUMNS = DEFORM_COLUMNS };
 static const double before = 0.2;               // of a globe's radius: skin further back lines the socket
 static const double reach = 1.2;                // of it: columns to either side
-static const double step_mm = 0.4;              // the same: from one column to the next, a tenth of a millimetre, a margin goes up or down by less
+static const double step_mm = 0.6;              // the same: from one column to the next, a tenth of a millimetre, a margin goes up or down by less
 
 void deform_in_head(double out[3], const struct rig *rig, int side, const float x[3])
 {

@@ -31,6 +31,9 @@ void deform_rooms_free(struct deform_rooms *rooms)
 		free(room->crossing);
 		free(room->sorted);
 		free(room->way);
+		free(room->gone);
+		free(room->most);
+		free(room->motion);
 		free(room);
 	}
 	pthread_mutex_destroy(&rooms->lock);
@@ -48,6 +51,8 @@ struct deform_room *deform_room_take(struct deform_rooms *rooms)
 		room = mem_new(1, sizeof *room);
 		room->head = mem_array((size_t)rooms->n + 1, sizeof *room->head);
 		room->push = mem_array((size_t)rooms->n + 1, sizeof *room->push);
+		room->gone = mem_array((size_t)rooms->n + 1, sizeof *room->gone);
+		room->most = mem_array((size_t)rooms->n + 1, sizeof *room->most);
 	}
 	room->n = 0;
 	return room;
@@ -63,10 +68,17 @@ void deform_room_give(struct deform_rooms *rooms, struct deform_room *room)
 
 void deform_room_hold(struct deform_room *room, int n)
 {
-	if (n <= room->most)
+	if (n <= room->n_most)
 		return;
-	room->most = n + room->most + 1024;
-	room->crossing = mem_grow(room->crossing, (size_t)room->most, sizeof *room->crossing);
-	room->sorted = mem_grow(room->sorted, (size_t)room->most, sizeof *room->sorted);
-	room->way = mem_grow(room->way, (size_t)room->most, sizeof *room->way);
+	room->n_most = n + room->n_most + 1024;
+	room->crossing = mem_grow(room->crossing, (size_t)room->n_most, sizeof *room->crossing);
+	room->sorted = mem_grow(room->sorted, (size_t)room->n_most, sizeof *room->sorted);
+	room->way = mem_grow(room->way, (size_t)room->n_most, sizeof *room->way);
+}
+
+struct deform_motion *deform_room_motions(struct deform_room *room, int n)
+{
+	if (n > room->n_motions)
+		room->motion = mem_grow(room->motion, (size_t)(room->n_motions = n), sizeof *room->motion);
+	return room->motion;
 }

@@ -9,13 +9,20 @@ struct deform_crossing {
 	double y;
 };
 
+/* How skin at a hair card's root has turned, and where its foot is, mm (cards.c). */
+struct deform_motion {
+	double turn[3][3], foot[3];
+};
+
 /* What is in it is nobody's between poses. Owned by deform_rooms. */
 struct deform_room {
 	double (*head)[3];                   // [rig.n] places about an eyeball's centre
-	float *push;                         // [rig.n]
-	int n, most;                         // crossings, and how many there is room for
-	struct deform_crossing *crossing, *sorted; // [most]
-	int *way;                            // [most] of faces
+	float *push, *gone, *most;           // [rig.n]
+	int n, n_most;                       // crossings, and how many there is room for
+	struct deform_crossing *crossing, *sorted; // [n_most]
+	int *way;                            // [n_most] of faces
+	int n_motions;
+	struct deform_motion *motion;        // [n_motions]
 	struct deform_room *next;
 };
 
@@ -30,5 +37,8 @@ void deform_room_give(struct deform_rooms *rooms, struct deform_room *room);
 
 /* Makes place for n crossings, and n faces. */
 void deform_room_hold(struct deform_room *room, int n);
+
+/* Room for n motions. */
+struct deform_motion *deform_room_motions(struct deform_room *room, int n);
 
 #endif

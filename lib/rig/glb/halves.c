@@ -8,6 +8,7 @@
 #include "rig/drive.h"
 
 enum { STEPS = 8, NEAR_END = 2, ROUNDS = 2 };  // nearer than that to an end, faces would need much of a target that hardly moves there
+static const double lining_mm = 0.3;    // of an eyeball of 12 mm: lids are five times as thick, and two targets add up
 static const double outside_mm = 0.01;  // what lies deeper at an end lines the lid: it may be in the eye
 
 /* Skin, its normals and hairs, one behind the other: displacements from rest. */
@@ -82,8 +83,24 @@ static void lift(float x[3], const struct poser *p, int vertex, double ends)
 		x[c] += (float)(lack * d[c] / far);
 }
 
-/* Moves skin, between the ends, out of the eye, and with it edges and faces, as in poses. */
-static void clear(float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, const double *ends)
+/* What lines a lid, and looks at the eyeball, may give way to it by no more than a lid is thick, over all of the way. x: in, out; was: before; given: so far. */
+static void hold(float x[3], double *given, const struct poser *p, int vertex, const float was[3], double weight)
+{
+	const struct rig_globe *globe = &p->rig->globe[p->rig->side[vertex]];
+	double d[3];
+	for (int c = 0; c < 3; c++)
+		d[c] = (double)x[c] - (double)was[c];
+	const double by = vec_norm(d) / weight;
+	if (!(by > 0) || !deform_lines(p->rig, vertex))
+		return;
+	const double may = fmin(by, fmax(lining_mm * globe->radius / 12 - *given, 0));
+	*given += may;
+	for (int c = 0; c < 3; c++)
+		x[c] = was[c] + (float)(d[c] * may / by);
+}
+
+/* Moves skin, between the ends, out of the eye, and with it edges and faces, as in poses. given: by vertex, what it has moved so by clearing edges and faces. */
+static void clear(float *half, double *given, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, const double *ends)
 {
 	for (int step = 1; step < STEPS; step++) {
 		const double w = (double)step / STEPS;
@@ -95,8 +112,9 @@ static void clear(float *half, struct poser *p, const struct glb_bake *b, const 
 		for (int i = 0; i < b->n; i++) {
 			if (!isfinite(ends[i]))
 				continue;
-			lift(p->x[b->vertex[i]], p, b->vertex[i], ends[i]);
 			on_the_way(x, p->rig, b, i, from, blink, half, w);
+			hold(p->x[b->vertex[i]], &given[i], p, b->vertex[i], x, glb_half_weight(w));
+			lift(p->x[b->vertex[i]], p, b->vertex[i], ends[i]);
 			for (int c = 0; c < 3; c++)
 				half[3 * i + c] += (float)((double)(p->x[b->vertex[i]][c] - x[c]) / glb_half_weight(w));
 		}
@@ -105,11 +123,12 @@ static void clear(float *half, struct poser *p, const struct glb_bake *b, const 
 
 void glb_clear_way(float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
 {
-	double *ends = mem_new((size_t)b->n + 1, sizeof *ends);
+	double *ends = mem_new((size_t)b->n + 1, sizeof *ends), *given = mem_new((size_t)b->n + 1, sizeof *given);
 	find_ends(ends, p, b, from, blink, eye);
 	for (int round = 0; round < ROUNDS; round++)
-		clear(half, p, b, from, blink, ends);
+		clear(half, given, p, b, from, blink, ends);
 	free(ends);
+	free(given);
 }
 
 void glb_take_halves(struct glb_bake *b, struct poser *p)
