@@ -20,6 +20,14 @@ void deform_in_head(double out[3], const struct rig *rig, int side, const float 
 	mat_vec(out, rig->head_from_target, d);
 }
 
+void deform_in_head_aside(double out[3], const struct rig *rig, int side, const float x[3], double aside)
+{
+	deform_in_head(out, rig, side, x);
+	const double c = cos(aside), s = sin(aside), right = out[0];
+	out[0] = c * right - s * out[2];
+	out[2] = s * right + c * out[2];
+}
+
 static int by_ends(const void *a, const void *b)
 {
 	const struct deform_edge *p = a, *q = b;
@@ -139,13 +147,18 @@ static void trim(struct deform_opening *o, int middle, double unit)
 
 void deform_open(struct deform_opening *o, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2])
 {
+	deform_open_aside(o, rig, near, side, x, within, 0);
+}
+
+void deform_open_aside(struct deform_opening *o, const struct rig *rig, const struct deform_near *near, int side, const float (*x)[3], const double within[2], double aside)
+{
 	const double radius = rig->globe[side].radius, least = 1e-3 * radius;
 	struct deform_room *room = deform_room_take(near->rooms);
 	double (*head)[3] = room->head;
 	int widest = 0;
 	*o = (struct deform_opening){ .step = 2 * reach * radius / COLUMNS };
 	for (int i = 0; i < near->n_seen[side]; i++)
-		deform_in_head(head[near->seen[side][i]], rig, side, x[near->seen[side][i]]);
+		deform_in_head_aside(head[near->seen[side][i]], rig, side, x[near->seen[side][i]], aside);
 	deform_room_hold(room, near->n + near->n_beside);
 	see_faces(room->way, (const double(*)[3])head, rig, near, side);
 	cross_all(room, near, o->step);

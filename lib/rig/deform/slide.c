@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/mem.h"
 #include "math/rising.h"
 #include "math/vec.h"
 #include "rig/deform/opening.h"
@@ -74,17 +75,23 @@ static void take_margin(double y[COLUMNS], const struct deform_opening *o)
 		y[k] = o->top[last];
 }
 
-void deform_shut(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
+/* As seen from there. False: lids are apart. */
+static bool shut_from(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double from)
 {
+	struct deform_opening rest;
 	const double unit = rig->globe[side].radius / 12;
 	double share = 1, last = INFINITY, by[COLUMNS], margin[COLUMNS];
 	for (int round = 0; round < ROUNDS && share > 0; round++) {
 		struct deform_opening now;
-		deform_open(&now, rig, near, side, (const float(*)[3])x, near->within[side]);
-		between_lids(&now, &near->rest[side], rig->globe[side].radius);
+		deform_open_aside(&now, rig, near, side, (const float(*)[3])x, near->within[side], from);
+		if (!round && from == 0)
+			rest = near->rest[side];
+		else if (!round)
+			deform_open_aside(&rest, rig, near, side, (const float(*)[3])rig->rest, near->within[side], from);
+		between_lids(&now, &rest, rig->globe[side].radius);
 		const double widest = take_slit(by, &now, over_mm * unit);
 		if (!(widest > 0 && widest < last))
-			return;
+			return true;
 		last = widest;
 		share = round ? share : 1 - rising(widest / unit, told_mm[0], told_mm[1]);
 		take_margin(margin, &now);
@@ -92,7 +99,7 @@ void deform_shut(float (*x)[3], const struct rig *rig, const struct deform_near 
 			double p[3];
 			if (!(near->upper[i] > 0) || rig->side[i] != side)
 				continue;
-			deform_in_head(p, rig, side, x[i]);
+			deform_in_head_aside(p, rig, side, x[i], from);
 			const int column = (int)lrint(p[0] / now.step) + COLUMNS / 2;
 			if (!(p[2] > 0) || column < 0 || column >= COLUMNS || !(by[column] > 0))
 				continue;
@@ -100,6 +107,14 @@ void deform_shut(float (*x)[3], const struct rig *rig, const struct deform_near 
 			deform_slide(x[i], rig, side, target_from_globe, -with * share * by[column]);
 		}
 		if (share < 1)  // what is left is as asked
-			return;
+			return share > 0;
 	}
+	return share > 0;
+}
+
+void deform_shut(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
+{
+	static const double from[] = { 0, 0.5, -0.5 };  // rad: what meets as the front sees it may gape from aside
+	for (int k = 0; k < COUNT(from) && shut_from(x, rig, near, side, target_from_globe, from[k]); k++)
+		;
 }
