@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "math/rising.h"
 #include "math/vec.h"
+#include "rig/deform/carry.h"
 #include "rig/deform/deform.h"
 #include "rig/deform/room.h"
 #include "rig/deform/slide.h"

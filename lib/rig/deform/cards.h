@@ -30,8 +30,4 @@ struct deform_cards {
 struct deform_cards deform_cards_of(const struct rig *rig, const bool *moves);
 void deform_cards_free(struct deform_cards *cards);
 
-/* Puts cards onto posed skin. x: [rig.n], the target's frame, mm; in: skin; out: cards. At rest they are as they were. */
-struct deform_rooms;
-void deform_carry(float (*x)[3], const struct deform_cards *cards, const struct rig *rig, struct deform_rooms *rooms);
-
 #endif

@@ -1,8 +1,9 @@
+#include "rig/deform/carry.h"
+
 #include <lapacke.h>
 #include <string.h>
 
 #include "math/vec.h"
-#include "rig/deform/cards.h"
 #include "rig/deform/room.h"
 
 /* The rotation that takes a patch at rest best to where it is (Horn, Closed-form solution of absolute orientation using unit quaternions, 1987). */

@@ -1,6 +1,7 @@
 /* Hair cards: they turn as wholes with the skin that they stand on. Truth: a rotation, and a plane that is rolled onto a cylinder, in closed form. */
 #include "math/vec.h"
 #include "rig/deform/cards.h"
+#include "rig/deform/carry.h"
 #include "rig/deform/room.h"
 #include "tests/lib/unit.h"
 
