@@ -29,9 +29,9 @@ class Page extends Live {
 		if (data.face && !this.face) {
 			await FaceScene.unpack(data.face);
 			this.face = new FaceScene(this.graphics, data.face);
-		}
-		if (!data.face)
+		} else if (!data.face) {
 			this.scene.start();
+		}
 		await Promise.all([this.scene.load(), this.face ? this.face.load() : null]);
 		if (data.face)
 			await this.open_face();

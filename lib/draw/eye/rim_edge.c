@@ -80,8 +80,7 @@ static void compare(float *d, const struct scene *s, const struct scene_level *l
 				continue;
 			scene_model_row(&b, s, level, x, some, y, C, beams);
 			for (int i = 0; i < some; i++) {
-				float light = 0.2126f * b.rgb[0][i] + 0.7152f * b.rgb[1][i] + 0.0722f * b.rgb[2][i];
-				d[(long)y * n + x + i] = place[(long)y * n + x + i].photo - logf(fmaxf(light, SCENE_DARK));
+				d[(long)y * n + x + i] = place[(long)y * n + x + i].photo - logf(fmaxf(luminance(&b.rgb[0][i], BATCH), SCENE_DARK));
 			}
 		}
 }

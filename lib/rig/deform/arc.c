@@ -83,6 +83,8 @@ static void find_lids(struct deform_near *near, const struct rig *rig, int side)
 		near->upper[v] = (float)(lid * rising(over, lid_share[0], lid_share[1]));
 		near->lower[v] = (float)(lid * rising(-over, lid_share[0], lid_share[1]));
 	}
+	for (int k = 0; k < 2; k++)
+		deform_open_aside(&near->rest_aside[2 * side + k], rig, near, side, (const float(*)[3])rig->rest, within, k ? -DEFORM_ASIDE : DEFORM_ASIDE);
 }
 
 /* One round: how far margins are from arcs, and that much further. arch: out, the margin's mean height before. False: there is no opening, arch 0. */
@@ -177,6 +179,7 @@ static void prepare(struct deform_near *near, const struct rig *rig)
 	near->upper = mem_new((size_t)rig->n + 1, sizeof *near->upper);
 	near->lower = mem_new((size_t)rig->n + 1, sizeof *near->lower);
 	near->rest = mem_new(2, sizeof *near->rest);
+	near->rest_aside = mem_new(4, sizeof *near->rest_aside);
 	for (int side = 0; side < 2; side++)
 		find_lids(near, rig, side);
 	take_own(near, rig);
@@ -304,6 +307,7 @@ void deform_near_free(struct deform_near *near)
 	free(near->lower);
 	free(near->rest);
 	free(near->edge);
+	free(near->rest_aside);
 	free(near->own);
 	deform_cards_free(&near->cards);
 	free(near->seen[0]);

@@ -26,6 +26,7 @@ struct deform_near {
 	float *own;    // [rig.n] mm: how far up from an arc the margin at rest has a vertex
 	double arch[2];       // of each eye: mean height of the upper margin at rest over the line between its corners, mm
 	struct deform_opening *rest;  // [2] each eye's opening at rest
+	struct deform_opening *rest_aside;  // [4] the same as seen from either side, two of each eye (slide.h)
 	struct deform_cards cards;    // what stands on the skin
 	double within[2][2];  // of each eye: heights over the eyeball's centre between which its opening is looked for, mm
 	struct deform_rooms *rooms;   // where poses are worked out; several threads may settle poses of their own with one deform_near

@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "base/mem.h"
 #include "math/rising.h"
 #include "math/vec.h"
 #include "rig/deform/opening.h"
@@ -75,20 +74,15 @@ static void take_margin(double y[COLUMNS], const struct deform_opening *o)
 		y[k] = o->top[last];
 }
 
-/* As seen from there. False: lids are apart. */
-static bool shut_from(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double from)
+/* As seen from there; rest: the opening at rest from there. False: lids are apart. */
+static bool shut_from(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], const struct deform_opening *rest, double from)
 {
-	struct deform_opening rest;
 	const double unit = rig->globe[side].radius / 12;
 	double share = 1, last = INFINITY, by[COLUMNS], margin[COLUMNS];
 	for (int round = 0; round < ROUNDS && share > 0; round++) {
 		struct deform_opening now;
 		deform_open_aside(&now, rig, near, side, (const float(*)[3])x, near->within[side], from);
-		if (!round && from == 0)
-			rest = near->rest[side];
-		else if (!round)
-			deform_open_aside(&rest, rig, near, side, (const float(*)[3])rig->rest, near->within[side], from);
-		between_lids(&now, &rest, rig->globe[side].radius);
+		between_lids(&now, rest, rig->globe[side].radius);
 		const double widest = take_slit(by, &now, over_mm * unit);
 		if (!(widest > 0 && widest < last))
 			return true;
@@ -114,7 +108,7 @@ static bool shut_from(float (*x)[3], const struct rig *rig, const struct deform_
 
 void deform_shut(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
 {
-	static const double from[] = { 0, 0.5, -0.5 };  // rad: what meets as the front sees it may gape from aside
-	for (int k = 0; k < COUNT(from) && shut_from(x, rig, near, side, target_from_globe, from[k]); k++)
-		;
+	bool shut = shut_from(x, rig, near, side, target_from_globe, &near->rest[side], 0);
+	for (int k = 0; k < 2 && shut; k++)
+		shut = shut_from(x, rig, near, side, target_from_globe, &near->rest_aside[2 * side + k], k ? -DEFORM_ASIDE : DEFORM_ASIDE);
 }

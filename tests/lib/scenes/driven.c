@@ -56,6 +56,21 @@ struct glb_conf driven_glb(const struct driven *d)
 	return (struct glb_conf){ .targets = 20, .tolerance = 0.02, .poses = true, .skin_rgb = { 0.5, 0.3, 0.2 }, .tear_mm = 0.3, .n_expressions = 2, .expression = expressions, .hairs = &d->hairs };
 }
 
+int driven_setup(void **state)
+{
+	struct driven *m = mem_new(1, sizeof *m);
+	struct err err = { 0 };
+	*state = m;
+	return driven_make(m, &(struct hair_conf){ 0 }, &err) ? 0 : 1;
+}
+
+int driven_teardown(void **state)
+{
+	driven_free(*state);
+	free(*state);
+	return 0;
+}
+
 int wandering_setup(void **state)
 {
 	struct wandering *w = mem_new(1, sizeof *w);

@@ -26,6 +26,10 @@ struct drive driven_wanders(const struct driven *driven, int frames);
 /* Sensible settings of the glTF, with all there is: named poses, two expressions, hairs and tears. */
 struct glb_conf driven_glb(const struct driven *driven);
 
+/* One without hairs, as the state of a group of tests. */
+int driven_setup(void **state);
+int driven_teardown(void **state);
+
 /* All of that, as the state of a group of tests. */
 enum { WANDERING_FRAMES = 60 };
 struct wandering {

@@ -6,22 +6,6 @@
 
 #include <string.h>
 
-static int setup(void **state)
-{
-	static const struct hair_conf none = { 0 };
-	struct driven *m = calloc(1, sizeof *m);
-	struct err err = { 0 };
-	*state = m;
-	return driven_make(m, &none, &err) ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-	driven_free(*state);
-	free(*state);
-	return 0;
-}
-
 static void hulls(void **state)
 {
 	(void)state;
@@ -134,5 +118,5 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = { cmocka_unit_test(hulls), cmocka_unit_test(opening_of_a_made_face), cmocka_unit_test(what_was_drawn_so_is_left),
 		                                cmocka_unit_test(all_but_shut_is_shut) };
-	return cmocka_run_group_tests(tests, setup, teardown);
+	return cmocka_run_group_tests(tests, driven_setup, driven_teardown);
 }

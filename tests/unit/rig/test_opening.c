@@ -9,22 +9,6 @@
 #include "rig/deform/opening.h"
 #include "tests/lib/scenes/driven.h"
 
-static int setup(void **state)
-{
-	static const struct hair_conf none = { 0 };
-	struct driven *m = mem_new(1, sizeof *m);
-	struct err err = { 0 };
-	*state = m;
-	return driven_make(m, &none, &err) ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-	driven_free(*state);
-	free(*state);
-	return 0;
-}
-
 struct cover { double low, high; };
 
 static int upwards(const void *a, const void *b)
@@ -105,5 +89,5 @@ static void gaps_are_those_of_the_union(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = { cmocka_unit_test(gaps_are_those_of_the_union) };
-	return cmocka_run_group_tests(tests, setup, teardown);
+	return cmocka_run_group_tests(tests, driven_setup, driven_teardown);
 }
