@@ -37,6 +37,7 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 		return;
 	// Counter-clockwise from outside; the picture's y points down.
 	float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+	const bool lash = face >= s->p->first_lash;
 	const bool cuts = face < s->p->mesh.n_dressed && s->p->mesh.cuts[face];  // hair cards are seen from both sides
 	if (!(area < 0) && !(cuts && area > 0))
 		return;
@@ -55,7 +56,8 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 				continue;
 			float depth = 1 / (wa * ia + wb * ib + wc * ic);
 			struct portrait_spot *spot = &s->spots[(long)y * s->width + x];
-			if (depth < spot->depth && !(cuts && portrait_cut_away(s->p, face, (float[3]){ wa * ia * depth, wb * ib * depth, wc * ic * depth })))
+			if (depth < spot->depth && !(lash && !portrait_lash_here(s->p, face, x, y))
+			    && !(cuts && portrait_cut_away(s->p, face, (float[3]){ wa * ia * depth, wb * ib * depth, wc * ic * depth })))
 				*spot = (struct portrait_spot){ face, depth };
 		}
 }
