@@ -12,6 +12,10 @@
 enum skin_source { SKIN_AUTO, SKIN_VIDEO, SKIN_PLAIN };
 extern const char *const skin_sources[];
 
+/* Whose lashes and brows it has. */
+enum hair_source { HAIR_AUTO, HAIR_AVERAGE };
+extern const char *const hair_sources[];
+
 struct skin_conf {
 	struct portrait_conf portrait;
 	double gaze[2], aperture;            // typed by the user: degrees; times what the eye is open at that gaze
@@ -23,6 +27,7 @@ struct skin_conf {
 	struct glb_conf glb;
 	double iris_rgb[3];                  // of an invented eye, linear
 	int texture_px;
+	int hair;                            // enum hair_source
 	int source, film_px;                 // enum skin_source; px of the textures made of the film
 	struct video_conf video;
 };
@@ -51,6 +56,7 @@ struct skin_conf {
 	OPT_REAL("tear_mm", &(c)->portrait.tear_mm, 0, 3, "mm", "height of the tear line along the lids; 0: none"), \
 	OPT_REALS("tear_absorb", (c)->portrait.tear_absorb, 3, 0, 10, "1/mm", "what tear fluid absorbs of red, green and blue"), \
 	OPT_REAL("caruncle_wet", &(c)->portrait.caruncle_wet, 0, 1, "", "how moist and red the inner corners of the eyes are"), \
+	OPT_CHOICE("hair", &(c)->hair, hair_sources, "lashes and brows: with the person's skin those that the video shows, or an average adult's"), \
 	OPT_REAL("lash_mm", &(c)->portrait.hair.lash_mm, 0, 30, "mm", "length of the longest lashes on an eye of 12 mm; 0: none"), \
 	OPT_INT("lashes", &(c)->portrait.hair.lashes, 0, 1000, "", "on an upper lid; the lower has three fifths"), \
 	OPT_REAL("lid_margin_mm", &(c)->portrait.hair.margin_mm, 0, 5, "mm", "breadth of a lid's margin, on whose outer edge lashes grow"), \
@@ -88,6 +94,8 @@ struct skin_job {
 		char *name;                   // null: nothing
 		struct look look;
 		double rgb[3];
+		struct hair_film *hair;
+		float (*place)[3];
 	} worn;
 };
 
@@ -104,9 +112,14 @@ struct skin_target {
 	struct portrait *portrait;        // of the stills; null until needed
 	const char *film, *subject;       // the video and the mesh that its skin is made of; null: of neither
 	double film_rgb[3];               // its median albedo then
+	struct hair_film *film_hair;      // lashes and brows that it shows; null: average ones
+	float (*film_place)[3];           // [own vertices] where the character's skin lies on the person, mm
 	const char *in[40];               // inputs that all its pictures have in common
 	int n_in;
 };
+
+/* The portrait that a character is drawn with. After skin_open. */
+struct portrait_conf skin_portrait(const struct skin_job *job, const struct skin_target *target);
 
 /* Makes everything of every character that is not fresh. A capture without rigs is no error. */
 bool render_skin(struct skin_job *job, struct err *err);

@@ -90,10 +90,7 @@ static int step_of(const struct drive *d, double fps)
 static bool clip_make(struct clip *c, const char *rel, int n_in, const char *const in[], struct err *err)
 {
 	const struct skin_conf *conf = c->job->conf;
-	struct portrait_conf draw = conf->portrait;
-	draw.dress = c->t->dress;
-	if (c->t->film && c->t->dress)
-		memcpy(draw.skin_rgb, c->t->film_rgb, sizeof draw.skin_rgb);
+	struct portrait_conf draw = skin_portrait(c->job, c->t);
 	draw.samples = conf->clip_samples;
 	draw.eye_samples = 1;
 	draw.lights = draw.lights > 8 ? 8 : draw.lights;  // shadows as sharp as its pixels show them

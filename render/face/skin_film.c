@@ -10,6 +10,7 @@
 #include "render/face/skin_tracked.h"
 
 const char *const skin_sources[] = { "auto", "video", "plain", 0 };
+const char *const hair_sources[] = { "auto", "average", 0 };
 
 enum { LONGEST = 3600, SPREAD = 9 };
 static const double lids_mm = 0.45;   // margins are moist and lashes grow on them: so far off the opening skin is dry
@@ -164,7 +165,9 @@ static void add(struct complexion *c, const struct tracked *f, long frame, const
 	uint8_t *open = mem_array((size_t)f->width * (size_t)f->height + 1, 1);
 	place(at, f, frame);
 	mark_open(open, f, frame, lids_mm * f->camera.focal_px / fmax(pose_of(f, frame)[2][3], 1));
-	complexion_add(c, &(struct complexion_view){ rgb, f->width, f->height, (const float(*)[3])at, f->camera.focal_px, open });
+	const long m = f->lids.shape[2];
+	const float (*lids)[2] = (const float(*)[2])f->lids.data + frame * TRACKED_MARGINS * m;
+	complexion_add(c, &(struct complexion_view){ rgb, f->width, f->height, (const float(*)[3])at, f->camera.focal_px, open, lids, (int)m });
 	free(at);
 	free(open);
 }
@@ -227,6 +230,12 @@ static bool wear(struct skin_target *t, const struct complexion *c, struct skin_
 		memcpy(w.eye[s], rig->globe[s].center, sizeof w.eye[s]);
 	memcpy(w.head_from_rest, rig->head_from_target, sizeof w.head_from_rest);
 	ok = ok && complexion_wear(&t->look, c, &w, err);
+	if (ok) {
+		t->film_hair = mem_new(1, sizeof *t->film_hair);
+		*t->film_hair = *complexion_hair(c);
+		t->film_place = (float(*)[3])registered.vertices;
+		registered.vertices = 0;
+	}
 	free(skin);
 	free(margin);
 	mesh_free(&registered);
@@ -239,9 +248,11 @@ void skin_film_keep(struct skin_job *job, struct skin_target *t)
 		return;
 	portrait_free(t->portrait);
 	dress_free(t->dress);
-	job->worn = (struct skin_worn){ mem_str(t->name), t->look, { t->film_rgb[0], t->film_rgb[1], t->film_rgb[2] } };
+	job->worn = (struct skin_worn){ mem_str(t->name), t->look, { t->film_rgb[0], t->film_rgb[1], t->film_rgb[2] }, t->film_hair, t->film_place };
 	t->portrait = 0;
 	t->dress = 0;
+	t->film_hair = 0;
+	t->film_place = 0;
 	t->look = (struct look){ 0 };
 }
 
@@ -252,6 +263,8 @@ static bool taken(struct skin_target *t, struct skin_worn *worn)
 		return false;
 	t->look = worn->look;
 	memcpy(t->film_rgb, worn->rgb, sizeof t->film_rgb);
+	t->film_hair = worn->hair;
+	t->film_place = worn->place;
 	free(worn->name);
 	*worn = (struct skin_worn){ 0 };
 	return true;
@@ -284,6 +297,10 @@ bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 	}
 	stage_note(job->stage, "%s: skin of %s: %.0f %% of the face near the eyes in the film, %.0f %% more on its other half; albedo %.3f %.3f %.3f by %s", t->name,
 	           t->film, 100 * r.seen, 100 * r.mirrored, r.rgb[0], r.rgb[1], r.rgb[2], r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
+	const struct hair_lid *lash = t->film_hair->lid;
+	if (lash[HAIR_UPPER].area > 0 && lash[HAIR_LOWER].area > 0)
+		stage_note(job->stage, "%s: lashes of %s: seen from in front they reach %.1f mm (upper) and %.1f mm (lower) off the lids in the mean", t->name, t->film,
+		           lash[HAIR_UPPER].reach * t->film_hair->radius / 12, lash[HAIR_LOWER].reach * t->film_hair->radius / 12);
 	stage_figure(job->stage, "skin_seen", r.seen, "share of the face near the eyes that the film shows");
 	stage_figure(job->stage, "skin_grain", r.grain, "rms of the skin's grain, ln");
 	memcpy(t->film_rgb, r.rgb, sizeof t->film_rgb);

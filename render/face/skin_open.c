@@ -92,6 +92,21 @@ static bool coloured(const struct skin_target *t)
 	return false;
 }
 
+struct portrait_conf skin_portrait(const struct skin_job *job, const struct skin_target *t)
+{
+	struct portrait_conf conf = job->conf->portrait;
+	conf.dress = t->dress;
+	if (t->film && t->dress)
+		memcpy(conf.skin_rgb, t->film_rgb, sizeof conf.skin_rgb);
+	if (coloured(t))
+		conf.hair.brow_mm = 0;
+	if (job->conf->hair == HAIR_AVERAGE || !t->film_hair)
+		return conf;
+	conf.hair.film = t->film_hair;
+	conf.hair.place = (const float(*)[3])t->film_place;
+	return conf;
+}
+
 bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	if (t->portrait)
@@ -103,12 +118,7 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 		               job->model.n_inputs);
 	if (t->look_path ? !dress(job, t, err) : t->film && !skin_of_film(job, t, err))
 		return false;
-	struct portrait_conf conf = job->conf->portrait;
-	conf.dress = t->dress;
-	if (t->film && t->dress)
-		memcpy(conf.skin_rgb, t->film_rgb, sizeof conf.skin_rgb);
-	if (coloured(t))
-		conf.hair.brow_mm = 0;
+	const struct portrait_conf conf = skin_portrait(job, t);
 	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &conf);
 	portrait_wear(t->portrait, &job->wrinkles, job->model.n_au, job->model.au_names);
 	return true;
@@ -119,6 +129,8 @@ void skin_free(struct skin_target *t)
 	portrait_free(t->portrait);
 	dress_free(t->dress);
 	look_free(&t->look);
+	free(t->film_hair);
+	free(t->film_place);
 	rig_free(&t->rig);
 }
 
@@ -146,6 +158,8 @@ void skin_close(struct skin_job *job)
 	free(job->eye_glb[0]);
 	free(job->worn.name);
 	look_free(&job->worn.look);
+	free(job->worn.hair);
+	free(job->worn.place);
 	envmap_free(&job->studio);
 	skin_model_free(&job->model);
 	wrinkle_maps_free(&job->wrinkles);

@@ -94,7 +94,7 @@ void main()
 	n = smooth_n = normalize(smooth_n - fold);
 #endif
 	if (seen_skin.a > 0.5) {
-		seen = vec4(mix(skin_rgb * light, albedo * 1.5 * (0.4 + light), sqrt(seen_cover)), 0.98);  // several share a pixel: more is dark than one covers; they hang before a lid's edge and are not it: tear.frag, probe.frag
+		seen = vec4(mix(skin_rgb * light, (albedo * 1.25 + 0.012) * light, sqrt(seen_cover)), 0.98);  // several share a pixel: more is dark than one covers; they hang before a lid's edge and are not it: tear.frag, probe.frag
 		return;
 	}
 	float grain = 0.0, relief = 1.0;

@@ -28,6 +28,8 @@ struct complexion *complexion_new(const struct mesh *mesh, const double eye[2][3
 	double d[3];
 	*c = (struct complexion){ .mesh = mesh, .conf = *conf, .radius = radius, .side = (int)lrint(half * conf->side) };
 	memcpy(c->eye, eye, sizeof c->eye);
+	memcpy(c->hair.eye, eye, sizeof c->hair.eye);
+	c->hair.radius = radius;
 	c->chart = complexion_chart_of(eye, same, half);
 	for (int k = 0; k < 3; k++)
 		d[k] = 0.5 * (eye[0][k] + eye[1][k]) - c->chart.center[k];
@@ -94,8 +96,8 @@ static bool by_white(double by[3], const struct complexion *c, const double rgb[
 }
 
 /* Scales ln to albedo, and takes the colour of the light off. Without white eyes the skin is as bright as the configured one. rgb: out, the
- * median albedo. */
-static bool scale(double rgb[3], bool *white, float (*ln)[3], const float *weight, const struct complexion *c)
+ * median albedo; hair: a colour that is scaled, too. */
+static bool scale(double rgb[3], double hair[3], bool *white, float (*ln)[3], const float *weight, const struct complexion *c)
 {
 	const long n = (long)c->side * c->side;
 	double by[3], *x = mem_array((size_t)(n / 8) + 2, sizeof *x);
@@ -116,8 +118,10 @@ static bool scale(double rgb[3], bool *white, float (*ln)[3], const float *weigh
 		for (long i = 0; i < n; i++)
 			ln[i][k] += weight[i] > 0 ? (float)log(by[k]) : 0;
 	}
-	for (int k = 0; k < 3; k++)
+	for (int k = 0; k < 3; k++) {
 		rgb[k] *= by[k];
+		hair[k] *= by[k];
+	}
 	return true;
 }
 
@@ -135,8 +139,13 @@ bool complexion_make(struct complexion *c, struct complexion_report *r, struct e
 	bool *keep = steady(c, weight), ok = complexion_unlight(c->ln, weight, keep, shade, r->light, c);
 	if (!ok)
 		err_set(err, "too little of the face is seen, or in light that cannot be taken off");
-	ok = ok && complexion_shave(weight, (const float(*)[3])c->ln, c, err);
-	if (ok && !scale(r->rgb, &r->white, c->ln, weight, c))
+	float *before = mem_array((size_t)n + 1, sizeof *before);
+	uint8_t *brow = mem_new((size_t)n + 1, 1);
+	memcpy(before, weight, (size_t)n * sizeof *before);
+	ok = ok && complexion_shave(weight, brow, (const float(*)[3])c->ln, c, err)
+	     && complexion_brows(&c->hair, (const float(*)[3])c->ln, before, weight, brow, c, err);
+	complexion_lashes_mean(c->hair.lid, c);
+	if (ok && !scale(r->rgb, c->hair.rgb, &r->white, c->ln, weight, c))
 		ok = err_set(err, "too dark");
 	ok = ok && complexion_grain_measure(&c->grain, (const float(*)[3])c->ln, weight, c, err)
 	     && complexion_fill(c->ln, c->real, weight, &r->seen, &r->mirrored, c, err);
@@ -144,8 +153,15 @@ bool complexion_make(struct complexion *c, struct complexion_report *r, struct e
 	if (ok && r->seen < seen_least)
 		ok = err_set(err, "%.0f %% of the face near the eyes is seen well, must be >= %.0f %%", 100 * r->seen, 100 * seen_least);
 	free(keep);
+	free(before);
+	free(brow);
 	free(weight);
 	return ok;
+}
+
+const struct hair_film *complexion_hair(const struct complexion *c)
+{
+	return &c->hair;
 }
 
 /* ln of albedo and the share seen, bilinear; beyond the chart the mean. */

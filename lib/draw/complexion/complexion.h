@@ -5,13 +5,14 @@
  * 2, Ramamoorthi and Hanrahan 2001; what the head itself hides left out, Sloan, Kautz and Snyder 2002), fitted robustly to skin of one
  * colour. What those do not explain and differs between the two halves of the face over centimetres is light, too: skin is alike there.
  * What no frame shows is taken from the other half of the face, then from the skin around; its grain is drawn as strong at each size, and
- * as skewed, as that of the skin seen. Colours: linear Rec. 709 albedo; their scale by the white of the eyes.
+ * as skewed, as that of the skin seen. Of lashes and brows it is measured how much they hide, how far they reach, which way they grow. Colours: linear Rec. 709 albedo; their scale by the white of the eyes.
  */
 #ifndef DRAW_COMPLEXION_COMPLEXION_H
 #define DRAW_COMPLEXION_COMPLEXION_H
 #include "character/look.h"
 #include "draw/complexion/chart.h"
 #include "mesh/mesh.h"
+#include "rig/hair/hair.h"
 
 struct complexion;
 
@@ -29,6 +30,8 @@ struct complexion_view {
 	const float (*at)[3];   // [vertices] of the mesh: px, and mm before the camera; NAN: not known
 	double focal_px;
 	const uint8_t *open;    // [height][width] where the eyes are open
+	const float (*lids)[2]; // [4][lid_points] px: margins of the left eye's upper and lower lid, of the right's; null: not known
+	int lid_points;
 };
 
 /* What was found, for the log and the reader. */
@@ -54,6 +57,9 @@ bool complexion_make(struct complexion *complexion, struct complexion_report *re
 
 /* Albedo of the skin at a place of the person's head, 0..1, and how much of it the film or the other half of the face shows. */
 float complexion_at(float rgb[3], const struct complexion *complexion, const float x[3]);
+
+/* Lashes and brows that the film shows; belongs to the complexion. After complexion_make. */
+const struct hair_film *complexion_hair(const struct complexion *complexion);
 
 /* A character to wear it: n vertices at rest (mm, its own axes) and where they lie on the person (mm). */
 struct complexion_wearer {

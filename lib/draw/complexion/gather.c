@@ -152,6 +152,7 @@ void complexion_add(struct complexion *c, const struct complexion_view *v)
 		texel(to[i], c, &f, &c->spot[i], cosine);
 	if (c->n_views == 1)
 		white_of(c->white, v);
+	complexion_add_lashes(c, v);
 	free(cosine);
 	free(f.near);
 }

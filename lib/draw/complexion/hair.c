@@ -58,7 +58,7 @@ static int zone(const struct complexion *c, const float x[3])
 	return found;
 }
 
-bool complexion_shave(float *weight, const float (*ln)[3], const struct complexion *c, struct err *err)
+bool complexion_shave(float *weight, uint8_t *brow, const float (*ln)[3], const struct complexion *c, struct err *err)
 {
 	const int side = c->side;
 	const size_t n = (size_t)side * (size_t)side;
@@ -71,7 +71,7 @@ bool complexion_shave(float *weight, const float (*ln)[3], const struct complexi
 			some[many++] = (double)grey[i];
 	}
 	const double skin = stats_median(many, some);
-	uint8_t *brow = mem_new(n + 1, 1), *hair = mem_new(n + 1, 1), *none = mem_new(n + 1, 1);
+	uint8_t *hair = mem_new(n + 1, 1), *none = mem_new(n + 1, 1);
 	bool ok = complexion_blur(wide, 0, grey, weight, 1, brow_mm, c, err);
 	float *hollow = mem_array(n + 1, sizeof *hollow);
 	ok = ok && complexion_blur(hollow, 0, grey, weight, 1, grain_mm, c, err);
@@ -93,7 +93,6 @@ bool complexion_shave(float *weight, const float (*ln)[3], const struct complexi
 	free(wide);
 	free(some);
 	free(hollow);
-	free(brow);
 	free(hair);
 	free(none);
 	return ok;

@@ -5,6 +5,12 @@
 
 enum { BANDS = 5, QUANTILES = 33, HARMONICS = 9 };
 
+/* Lashes of an eye in a frame. open: how far its lids stand apart in their middles, mm. */
+struct complexion_lashes {
+	struct hair_lid lid[2];
+	double open;
+};
+
 /* Grain of the skin: what varies within some millimetres. */
 struct complexion_grain {
 	double mm[BANDS], rms[BANDS];   // sizes, and how strong each is in ln of luminance
@@ -21,6 +27,9 @@ struct complexion {
 	struct complexion_spot *spot;         // [side][side]
 	int n_views;
 	uint8_t (*view[COMPLEXION_VIEWS])[4]; // [side][side] sRGB, weight
+	struct complexion_lashes lashes[2 * COMPLEXION_VIEWS];
+	int n_lashes;
+	struct hair_film hair;
 	double white[3];                      // of the eyes, linear; 0: not seen
 	float (*ln)[3];                       // [side][side]
 	float *real;                          // 0..1 share that was seen, here or on the other half
@@ -35,8 +44,18 @@ void complexion_gather(float (*ln)[3], float *weight, const struct complexion *c
  * most green light comes from. False: too few. */
 bool complexion_unlight(float (*ln)[3], const float *weight, const bool *keep, double shade[3], double from[3], const struct complexion *c);
 
-/* hair.c: clears the weights of texels with hairs on them, and beside what is not seen. */
-bool complexion_shave(float *weight, const float (*ln)[3], const struct complexion *c, struct err *err);
+/* hair.c: clears the weights of texels with hairs on them, and beside what is not seen. brow: out, [side][side] where brows are. */
+bool complexion_shave(float *weight, uint8_t *brow, const float (*ln)[3], const struct complexion *c, struct err *err);
+
+/* brows.c: fills in film's brows and the colour of their hairs, as ln has it. before, after: the weights before and after shaving. */
+bool complexion_brows(struct hair_film *film, const float (*ln)[3], const float *before, const float *after, const uint8_t *brow, const struct complexion *c,
+                      struct err *err);
+
+/* lashes.c. _of: of one margin [lid_points], px; inner_first: from the inner corner on; px_mm: px in a mm. _add_lashes: of both eyes of a frame.
+ * _mean: of all frames in which the lids stand open. */
+struct hair_lid complexion_lashes_of(const struct complexion_view *v, const float (*margin)[2], bool upper, bool inner_first, double px_mm);
+void complexion_add_lashes(struct complexion *c, const struct complexion_view *v);
+void complexion_lashes_mean(struct hair_lid lid[2], const struct complexion *c);
 
 /* fill.c: makes both halves alike over centimetres, and fills what is not seen: ln; real: out. */
 bool complexion_fill(float (*ln)[3], float *real, const float *weight, double *seen, double *mirrored, struct complexion *c, struct err *err);

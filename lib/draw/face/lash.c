@@ -7,6 +7,7 @@
 #include "draw/face/impl.h"
 #include "math/vec.h"
 
+static const float sheen = 0.012f;  // of light that a hair's surface reflects, whichever way: as the page has it (skin.frag)
 enum { TRIANGLES = 4 };  // of a ribbon's piece between two points, both ways round: a hair has no inside
 
 /* Faces of skin that do not show what is behind them: hair cards bear no hairs. Null: all. free(). */
@@ -117,6 +118,7 @@ void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)
 	const struct hair *h = &p->hairs.hair[p->hair_of[point]];
 	const float tip = (float)(point - h->first) / (float)(h->n - 1);
 	const float *light = p->mesh.light[h->vertex[0]];
+	const double *albedo = hair_albedo(&p->hairs, h, p->conf.hair_rgb);
 	for (int c = 0; c < 3; c++)
-		rgb[c] = (float)p->conf.hair_rgb[c] * (1 + tip) * (0.4f + light[c]);
+		rgb[c] = ((float)albedo[c] * (1 + 0.5f * tip) + sheen) * light[c];
 }

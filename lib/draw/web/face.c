@@ -96,8 +96,10 @@ static void put_colours(json_t *out, const struct web_face *f)
 	uint8_t *skin = mem_array((size_t)n * 4 + 1, 1), *still = mem_array((size_t)base * 3 + 1, 1), *light = mem_array((size_t)posed * 3 * (size_t)poses + 1, 1);
 	for (int i = 0; i < n; i++) {
 		int at = f->order[i];
+		const struct portrait *p = f->portrait;
+		const double *hair = at < m->n ? 0 : hair_albedo(&p->hairs, &p->hairs.hair[p->hair_of[(at - p->lash_vertex) / 2]], p->conf.hair_rgb);
 		for (int c = 0; c < 3; c++)
-			skin[4 * i + c] = byte(255 * sqrt(fmax(at < m->n ? (double)m->albedo[at][c] : f->portrait->conf.hair_rgb[c], 0)));
+			skin[4 * i + c] = byte(255 * sqrt(fmax(hair ? hair[c] : (double)m->albedo[at][c], 0)));
 		skin[4 * i + 3] = at < m->n ? byte(127 * m->wet[at]) : 255;
 	}
 	for (int i = 0; i < base; i++) {

@@ -167,6 +167,8 @@ void strands_put(struct glb_skin *skin, struct glb_buffer *g, const struct rig *
 	json_array_append_new(skin->materials, strands_material(rgb));
 	for (int k = 0; k < 2; k++) {
 		const int from = k ? first : 0, to = k ? n : first, n_faces = strands_faces(face, hairs, k ? brows : 0, k ? hairs->n : brows);
+		if (k && hairs->brow_rgb[1] > 0)
+			json_array_append_new(skin->materials, strands_material(hairs->brow_rgb));
 		if (to > from)
 			strands_put_mesh(skin, g, b, k ? "brows" : "lashes", from, to - from, (const float(*)[3])x + from, (const float(*)[3])normal + from, (const uint32_t(*)[3])face, n_faces);
 	}

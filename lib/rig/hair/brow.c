@@ -1,6 +1,8 @@
 /* Brows. */
 #include <math.h>
+#include <stdlib.h>
 
+#include "base/mem.h"
 #include "math/stats.h"
 #include "math/vec.h"
 #include "rig/hair/impl.h"
@@ -46,13 +48,11 @@ static double way(double s, double row)
 	return along - 0.35 * row * fmin(1, 0.3 + 2 * s);
 }
 
-static void one(struct hairs *h, const struct front *f, const struct hair_conf *conf, double lift, double s, double row, struct rng *rng)
+/* A hair rooted at (x, y), combed along the skin. */
+static void comb(struct hairs *h, const struct front *f, double x, double y, double angle, double length, double half, struct rng *rng)
 {
-	const double angle = way(s, row) + 0.13 * rng_normal(rng), bend = rng_range(rng, -0.25, -0.05), stand = rng_range(rng, 0.25, 0.6);
-	const double length = conf->brow_mm * (0.5 + 0.5 * sin(M_PI * fmin(fmax(s, 0.02), 0.85))) * rng_range(rng, 0.7, 1.05), half = rng_range(rng, 0.03, 0.045);
-	// Its ends are not cut: hairs there are scattered further.
-	const double astray = 0.5 + 1.2 * exp(-s / 0.08) + 0.8 * exp((s - 1) / 0.08);
-	double x = inner + s * (outer - inner) + astray * fmin(fmax(rng_normal(rng), -2), 2), y = middle(s) + lift + row * half_breadth(s), point[HAIR_BROW_POINTS][3];
+	const double bend = rng_range(rng, -0.25, -0.05), stand = rng_range(rng, 0.25, 0.6);
+	double point[HAIR_BROW_POINTS][3];
 	struct front_hit root, hit;
 	if (!front_skin(&root, f, x, y) || root.normal[2] < 0.15)
 		return;
@@ -70,13 +70,74 @@ static void one(struct hairs *h, const struct front *f, const struct hair_conf *
 	front_add(h, f, &root, HAIR_BROW, HAIR_BROW_POINTS, (const double(*)[3])point, half);
 }
 
+static void average(struct hairs *h, const struct front *f, const struct hair_conf *conf, struct rng *rng)
+{
+	const double lift = ridge(f);
+	for (int i = 0; i < conf->brow_hairs; i++) {
+		const double s = pow((i + rng_uniform(rng)) / conf->brow_hairs, 1.12), row = 0.5 * fmin(fmax(rng_normal(rng), -2.2), 2.2);
+		const double angle = way(s, row) + 0.13 * rng_normal(rng);
+		const double length = conf->brow_mm * (0.5 + 0.5 * sin(M_PI * fmin(fmax(s, 0.02), 0.85))) * rng_range(rng, 0.7, 1.05);
+		// Its ends are not cut: hairs there are scattered further.
+		const double astray = 0.5 + 1.2 * exp(-s / 0.08) + 0.8 * exp((s - 1) / 0.08);
+		const double x = inner + s * (outer - inner) + astray * fmin(fmax(rng_normal(rng), -2), 2);
+		comb(h, f, x, middle(s) + lift + row * half_breadth(s), angle, length, rng_range(rng, 0.03, 0.045), rng);
+	}
+}
+
+/* The cell of the person's brow that lies where the front of the character shows its skin; -1: none. */
+static int cell_at(const struct front *f, const struct hair_conf *conf, double x, double y)
+{
+	struct front_hit hit;
+	double at[3] = { 0 };
+	if (!front_skin(&hit, f, x, y) || hit.normal[2] < 0.15)
+		return -1;
+	for (int k = 0; k < 3; k++) {
+		const int v = f->rig->faces[hit.face][k];
+		if (v >= rig_own_vertices(f->rig))
+			return -1;
+		for (int c = 0; c < 3; c++)
+			at[c] += (double)(hit.weight[k] * conf->place[v][c]);
+	}
+	const double unit = conf->film->radius / 12, *eye = conf->film->eye[f->side];
+	const double i = ((f->side ? -1 : 1) * (at[0] - eye[0]) / unit - HAIR_FROM_X) / HAIR_CELL, j = ((at[1] - eye[1]) / unit - HAIR_FROM_Y) / HAIR_CELL;
+	return i >= 0 && j >= 0 && i < HAIR_CELLS_X - 1 && j < HAIR_CELLS_Y - 1 ? (int)lrint(j) * HAIR_CELLS_X + (int)lrint(i) : -1;
+}
+
+/* As many hairs as hide as much of the skin, cell by cell, as the film shows. */
+static void filmed(struct hairs *h, const struct front *f, const struct hair_conf *conf, struct rng *rng)
+{
+	enum { CELLS = HAIR_CELLS_X * HAIR_CELLS_Y, MOST = 5000 };
+	const float *cover = &conf->film->cover[f->side][0][0], *way = &conf->film->way[f->side][0][0];
+	const double longest = 0.8 * conf->brow_mm, mean = 0.8 * longest, hides = 1.15 * 0.028 * mean;  // mm; mm2 of a hair in the mean
+	double *sum = mem_new(CELLS + 1, sizeof *sum);
+	int *cell = mem_new(CELLS, sizeof *cell);
+	for (int i = 0; i < CELLS; i++) {
+		const double x = HAIR_FROM_X + HAIR_CELL * (i % HAIR_CELLS_X), y = HAIR_FROM_Y + HAIR_CELL * (double)(i / HAIR_CELLS_X);
+		cell[i] = cell_at(f, conf, x, y);
+		// Hairs lie over each other: of a share c of the skin that is hidden -ln(1 - c) is their area.
+		sum[i + 1] = sum[i] - (cell[i] < 0 ? 0 : HAIR_CELL * HAIR_CELL * log1p(-fmin((double)cover[cell[i]], 0.9)));
+	}
+	const int n = (int)fmin(sum[CELLS] / hides, MOST);
+	for (int k = 0, i = 0; k < n; k++) {
+		const double at = (k + rng_uniform(rng)) / n * sum[CELLS];
+		while (i + 1 < CELLS && sum[i + 1] < at)
+			i++;
+		while (i > 0 && sum[i] > at)
+			i--;
+		const double angle = (double)way[cell[i]] + 0.1 * rng_normal(rng), length = longest * rng_range(rng, 0.6, 1);
+		const double x = HAIR_FROM_X + HAIR_CELL * (i % HAIR_CELLS_X + rng_uniform(rng) - 0.5), y = HAIR_FROM_Y + HAIR_CELL * (i / HAIR_CELLS_X + rng_uniform(rng) - 0.5);
+		comb(h, f, x - 0.5 * length * cos(angle), y - 0.5 * length * sin(angle), angle, length, rng_range(rng, 0.022, 0.034), rng);  // its middle is where it hides
+	}
+	free(sum);
+	free(cell);
+}
+
 void hairs_grow_brow(struct hairs *h, const struct front *f, const struct hair_conf *conf, struct rng *rng)
 {
 	if (!(conf->brow_mm > 0))
 		return;
-	const double lift = ridge(f);
-	for (int i = 0; i < conf->brow_hairs; i++) {
-		const double s = (i + rng_uniform(rng)) / conf->brow_hairs, row = 0.5 * fmin(fmax(rng_normal(rng), -2.2), 2.2);
-		one(h, f, conf, lift, pow(s, 1.12), row, rng);
-	}
+	if (conf->film && conf->film->brow[f->side])
+		filmed(h, f, conf, rng);
+	else
+		average(h, f, conf, rng);
 }

@@ -17,6 +17,15 @@ static void to_rig(float out[3], const struct front *f, const double at[3], bool
 		out[c] = (float)(place ? f->rig->globe[f->side].center[c] + f->scale * v[c] : v[c]);
 }
 
+void front_of(double at[3], const struct front *f, const float x[3])
+{
+	double d[3];
+	for (int c = 0; c < 3; c++)
+		d[c] = ((double)x[c] - f->rig->globe[f->side].center[c]) / f->scale;
+	mat_vec(at, f->rig->head_from_target, d);
+	at[0] *= f->side ? -1 : 1;
+}
+
 bool front_skin(struct front_hit *hit, const struct front *f, double x, double y)
 {
 	float from[3], dir[3];

@@ -24,6 +24,8 @@ void hairs_grow(struct hairs *hairs, const struct rig *rig, const bool *shown, c
 		hairs_grow_lashes(hairs, &front, &opening, conf, &rng);
 		hairs_find_rims(hairs, &front, &opening);
 	}
+	if (conf->film)
+		memcpy(hairs->brow_rgb, conf->film->rgb, sizeof hairs->brow_rgb);
 	for (int side = 0; side < 2; side++)
 		hairs_grow_brow(hairs, &(struct front){ rig, skin, face, side, rig->globe[side].radius / 12 }, conf, &rng);
 	if (conf->lash_mm > 0)

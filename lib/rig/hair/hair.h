@@ -30,13 +30,34 @@ struct hairs {
 	int n, n_points, n_rims;
 	struct hair *hair;     // all lashes before all brows
 	float (*local)[3];     // [n_points] mm
+	double brow_rgb[3];    // albedo of the brows' hairs; 0: that of lashes
 	struct hair_rim *rim;  // [n_rims] from corner to corner, at most HAIR_RIMS of the left eye, then of the right
+};
+
+/* What a film shows of a person's lashes and brows. Fronts are mm of an eyeball of 12 mm about an eyeball's centre, x outward, y up; of an eye
+ * (0 left, 1 right) cell [j][i] of a brow is at x = HAIR_FROM_X + HAIR_CELL i, y = HAIR_FROM_Y + HAIR_CELL j. */
+enum { HAIR_CELLS_X = 130, HAIR_CELLS_Y = 100 };
+#define HAIR_CELL 0.4
+#define HAIR_FROM_X (-22)
+#define HAIR_FROM_Y 3
+struct hair_film {
+	struct hair_lid {
+		double area, reach;    // of its lashes as the front sees them: mm2 on a mm of its margin; mean distance from that, mm. 0: not known
+	} lid[2];                  // enum hair_kind: upper, lower
+	double rgb[3];             // albedo where brows are thickest; 0: not known
+	bool brow[2];              // whether the skin of that brow was seen
+	float cover[2][HAIR_CELLS_Y][HAIR_CELLS_X];  // share of the skin that its hairs hide
+	float way[2][HAIR_CELLS_Y][HAIR_CELLS_X];    // where they grow to, radians from outward towards up
+	double eye[2][3], radius;  // the person's eyeballs: mm, x to the left, y up, z out of the face
 };
 
 struct hair_conf {
 	double lash_mm, brow_mm;   // the longest, on an eyeball of 12 mm; 0: none
 	int lashes, brow_hairs;    // of one upper lid (the lower has three fifths); of one brow
 	double margin_mm;          // breadth of a lid's margin, on an eyeball of 12 mm
+	// Null, or lashes and brows become those that the film shows, where it does, the numbers above being the average adult's:
+	const struct hair_film *film;
+	const float (*place)[3];   // [own vertices] where the character's lie on the person, as film->eye; null where film is
 };
 
 /* shown: [rig.n_faces] whether a face of skin has hairs on it; null: all. Lids that are shut at rest get no lashes. */
@@ -51,6 +72,12 @@ struct hair_frame hair_frame_of(const struct hair *hair, const struct rig *rig, 
 
 /* Its points there: out[hair.n][3]. */
 void hair_place(float (*out)[3], const struct hairs *hairs, const struct hair *hair, const struct rig *rig, const float (*x)[3]);
+
+/* Albedo of a hair where that of lashes is lash_rgb. */
+static inline const double *hair_albedo(const struct hairs *hairs, const struct hair *hair, const double lash_rgb[3])
+{
+	return hair->kind == HAIR_BROW && hairs->brow_rgb[1] > 0 ? hairs->brow_rgb : lash_rgb;
+}
 
 /* Half its breadth at point k, mm. */
 static inline float hair_half(const struct hair *hair, int k)

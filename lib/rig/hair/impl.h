@@ -49,6 +49,21 @@ void front_add_local(struct hairs *hairs, const struct front *front, const struc
 /* Bends the last hair off the eyeball until none of it goes through the skin at rest, as far as that helps. */
 void front_clear(struct hairs *hairs, const struct front *front);
 
+/* From the rig's frame to the front's. */
+void front_of(double at[3], const struct front *front, const float x[3]);
+
+/* lash.c. A lid's lashes: the longest's length (an eyeball of 12 mm), how much more than the average they curl (1: a third of their length), their
+ * number. */
+struct lash_growth {
+	double mm, curl, n;
+};
+struct lash_growth lash_average(const struct hair_conf *conf, int kind);
+void lash_plant(struct hairs *hairs, const struct front *front, const struct front_opening *opening, int kind, const struct lash_growth *growth, double margin_mm,
+                struct rng *rng);
+
+/* match.c: the growth that is most probable by what the film shows of a lid: seen from in front, hairs lie as far from the margin and hide as much. */
+struct lash_growth lash_match(const struct front *front, const struct front_opening *opening, int kind, const struct hair_conf *conf);
+
 /* lash.c, brow.c */
 void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct front_opening *opening, const struct hair_conf *conf, struct rng *rng);
 void hairs_grow_brow(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);

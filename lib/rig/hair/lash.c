@@ -32,18 +32,25 @@ struct clump {
 };
 
 /* Its points about the root: off the eyeball, along the lid, up over it. */
-static void curve(double local[HAIR_LASH_POINTS][3], double length, double fan, double lift, bool upper)
+static void curve(double local[HAIR_LASH_POINTS][3], double length, double fan, double lift, double curl, bool upper)
 {
 	for (int k = 0; k < HAIR_LASH_POINTS; k++) {
 		const double s = (double)k / (HAIR_LASH_POINTS - 1);
 		local[k][0] = length * (0.95 * s - 0.25 * s * s) - (k ? 0 : 0.1);  // it comes out of the skin
 		local[k][1] = length * fan * (0.45 * s + 0.2 * s * s);
-		local[k][2] = length * lift * (upper ? -0.42 * s + 0.60 * s * s : -0.15 * s - 0.28 * s * s);
+		local[k][2] = length * lift * (upper ? -0.42 * s + (0.60 + 0.33 * curl) * s * s : -0.15 * s - (0.28 + 0.33 * curl) * s * s);
 	}
 }
 
-static void plant(struct hairs *h, const struct front *f, const struct front_opening *o, bool upper, int hairs, const struct hair_conf *conf, struct rng *rng)
+struct lash_growth lash_average(const struct hair_conf *conf, int kind)
 {
+	return kind == HAIR_UPPER ? (struct lash_growth){ conf->lash_mm, 0, conf->lashes } : (struct lash_growth){ 0.4 * conf->lash_mm, 0, conf->lashes * 3 / 5 };
+}
+
+void lash_plant(struct hairs *h, const struct front *f, const struct front_opening *o, int kind, const struct lash_growth *g, double margin_mm, struct rng *rng)
+{
+	const bool upper = kind == HAIR_UPPER;
+	const int hairs = (int)lrint(g->n);
 	struct clump c = { 0 };
 	for (int i = 0; i < hairs; i++) {
 		// None in the inner eighth: there the lids hold the tear ducts. 0 inner canthus, 1 outer.
@@ -51,8 +58,8 @@ static void plant(struct hairs *h, const struct front *f, const struct front_ope
 		if (!c.left--)
 			c = (struct clump){ place, rng_range(rng, -0.12, 0.12), rng_range(rng, 0.85, 1.15), rng_below(rng, 4) };
 		const int at = o->first + (int)(place * (o->last - o->first));
-		const double away = conf->margin_mm * (1 + 0.5 * rng_range(rng, -0.4, 1));
-		const double length = conf->lash_mm * (upper ? 0.6 + 0.4 * sin(M_PI * fmin(place * 0.75 + 0.15, 1)) : 0.4) * rng_range(rng, 0.65, 1.05);
+		const double away = margin_mm * (1 + 0.5 * rng_range(rng, -0.4, 1));
+		const double length = g->mm * (upper ? 0.6 + 0.4 * sin(M_PI * fmin(place * 0.75 + 0.15, 1)) : 1) * rng_range(rng, 0.65, 1.05);
 		// Tips of a clump come together.
 		const double fan = 1.5 * (place - 0.42) + c.fan + 0.6 * (c.place - place) * (o->last - o->first) * FRONT_COLUMN / fmax(0.65 * length, 1) + rng_range(rng, -0.07, 0.07);
 		const double lift = c.lift * rng_range(rng, 0.94, 1.06), half = rng_range(rng, 0.05, 0.068);
@@ -60,16 +67,16 @@ static void plant(struct hairs *h, const struct front *f, const struct front_ope
 		double local[HAIR_LASH_POINTS][3];
 		if (!root_at(&root, &y, f, front_column(at), upper ? o->high[at] : o->low[at], upper, away))
 			continue;
-		curve(local, length, fan, lift, upper);
-		front_add_local(h, f, &root, upper ? HAIR_UPPER : HAIR_LOWER, HAIR_LASH_POINTS, (const double(*)[3])local, half);
+		curve(local, length, fan, lift, g->curl, upper);
+		front_add_local(h, f, &root, kind, HAIR_LASH_POINTS, (const double(*)[3])local, half);
 		front_clear(h, f);
 	}
 }
 
 void hairs_grow_lashes(struct hairs *h, const struct front *f, const struct front_opening *o, const struct hair_conf *conf, struct rng *rng)
 {
-	if (!(conf->lash_mm > 0))
-		return;
-	plant(h, f, o, true, conf->lashes, conf, rng);
-	plant(h, f, o, false, conf->lashes * 3 / 5, conf, rng);
+	for (int kind = HAIR_UPPER; kind <= HAIR_LOWER && conf->lash_mm > 0; kind++) {
+		const struct lash_growth g = lash_match(f, o, kind, conf);
+		lash_plant(h, f, o, kind, &g, conf->margin_mm, rng);
+	}
 }
