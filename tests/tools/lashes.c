@@ -89,7 +89,7 @@ int main(int argc, char **argv)
 		fprintf(stderr, "lashes: %s\n", err.msg);
 		return 1;
 	}
-	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ 9, 0, atoi(argv[2]), 0, atof(argv[3]) });
+	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ .lash_mm = 9, .brow_mm = 0, .lashes = atoi(argv[2]), .brow_hairs = 0, .margin_mm = atof(argv[3]) });
 	struct deform *deform = deform_new(&rig);
 	struct deform_near near = deform_near_of(&rig);
 	float (*x)[3] = mem_new((size_t)rig.n + 1, sizeof *x);

@@ -440,7 +440,7 @@ int main(int argc, char **argv)
 		fprintf(stderr, "lids: %s\n", argc < 2 ? "lids RIG.npz [FOLDER]" : err.msg);
 		return 1;
 	}
-	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ 9, 0, 100, 0, 1.1 });
+	hairs_grow(&hairs, &rig, 0, &(struct hair_conf){ .lash_mm = 9, .brow_mm = 0, .lashes = 100, .brow_hairs = 0, .margin_mm = 1.1 });
 	struct deform *deform = deform_new(&rig);
 	struct deform_near near = deform_near_of(&rig);
 	int32_t (*faces[2])[3] = { mem_new((size_t)rig.n_faces + 1, sizeof **faces), mem_new((size_t)rig.n_faces + 1, sizeof **faces) };

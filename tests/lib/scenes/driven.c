@@ -75,7 +75,7 @@ int wandering_setup(void **state)
 {
 	struct wandering *w = mem_new(1, sizeof *w);
 	struct err err = { 0 };
-	bool ok = driven_make(&w->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err);
+	bool ok = driven_make(&w->on, &(struct hair_conf){ .lash_mm = 9, .brow_mm = 8, .lashes = 40, .brow_hairs = 60, .margin_mm = 1.1 }, &err);
 	w->drive = driven_wanders(&w->on, WANDERING_FRAMES);
 	w->conf = driven_glb(&w->on);
 	*state = w;

@@ -40,6 +40,51 @@ static bool in_brow(double x, double y)
 	return a * a + b * b < 1;
 }
 
+/* Its hairs: lines that rise by comb radians to the temple, 1.6 mm apart. */
+static const double comb = 0.5;
+static double brow_at(double x, double y)
+{
+	const double across = -sin(comb) * (fabs(x) - eye_x) + cos(comb) * y;
+	return in_brow(x, y) ? 0.3 * exp(0.4 * sin(2 * M_PI / 1.6 * across)) : 1;
+}
+
+/* Lashes of each lid: straight strokes off its margin, from the inner corner on; n 0: none. */
+static struct {
+	int n;
+	double mm, half;
+} lash;
+
+/* The margin at an angle round the opening from its outer corner: place and direction outward. */
+static void margin_at(double at[2], double out[2], double angle)
+{
+	at[0] = 13 * cos(angle);
+	at[1] = 5 * sin(angle);
+	const double len = hypot(5 * cos(angle), 13 * sin(angle));
+	out[0] = 5 * cos(angle) / len;
+	out[1] = 13 * sin(angle) / len;
+}
+
+/* Share of a pixel of mm at (x, y) that lashes hide. */
+static double hidden(double x, double y, double mm)
+{
+	enum { FINE = 4 };
+	int in = 0;
+	if (!lash.n || hypot(fabs(x) - eye_x, y) > 22)
+		return 0;
+	for (int k = 0; k < FINE * FINE; k++) {
+		const double u = fabs(x) - eye_x + mm * ((k % FINE + 0.5) / FINE - 0.5), v = y + mm * ((k / FINE + 0.5) / FINE - 0.5);
+		bool hit = false;
+		for (int i = 0; i < 2 * lash.n && !hit; i++) {
+			double at[2], out[2];
+			margin_at(at, out, (i % 2 ? -1 : 1) * M_PI * (0.95 - 0.9 * (i / 2 + 0.5) / lash.n));
+			const double along = (u - at[0]) * out[0] + (v - at[1]) * out[1], aside = (u - at[0]) * out[1] - (v - at[1]) * out[0];
+			hit = along > 0 && along < lash.mm && fabs(aside) < lash.half;
+		}
+		in += hit;
+	}
+	return (double)in / (FINE * FINE);
+}
+
 /* Pores: rows of dimples, different on either side, and cheeks that are redder. */
 static double pore(double x, double y) { return 0.08 * sin(2.6 * x + 0.7 * sin(0.9 * y)) * cos(2.3 * y + 0.5 * sin(1.1 * x)); }
 
@@ -47,7 +92,7 @@ static void albedo_at(double rgb[3], double x, double y)
 {
 	const double cheek = 0.06 * exp(-((fabs(x) - 36) * (fabs(x) - 36) + (y + 26) * (y + 26)) / (2 * 10 * 10));
 	for (int c = 0; c < 3; c++)
-		rgb[c] = skin_rgb[c] * exp(pore(x, y)) * (1 + (c ? -cheek : cheek)) * (in_brow(x, y) ? 0.3 : 1);
+		rgb[c] = skin_rgb[c] * exp(pore(x, y)) * (1 + (c ? -cheek : cheek)) * brow_at(x, y);
 }
 
 struct lamp {
@@ -81,6 +126,7 @@ static uint8_t *film(uint8_t *open, const struct lamp *lamp, double exposure, bo
 			}
 			const double x = (mirror ? -1 : 1) * low * d[0], y = low * d[1];
 			double n[3], e[3], a[3];
+			const double dark = hidden(x, y, low / focal);
 			normal_at(n, x, y);
 			albedo_at(a, x, y);
 			open[(long)j * WIDE + i] = 0;
@@ -91,6 +137,8 @@ static uint8_t *film(uint8_t *open, const struct lamp *lamp, double exposure, bo
 					a[c] = iris ? 0.05 : white_rgb[c] * (0.5 + 0.2 * skin_rgb[c]);
 				open[(long)j * WIDE + i] = 1;
 			}
+			for (int c = 0; c < 3; c++)
+				a[c] *= 1 - 0.95 * dark;
 			for (int c = 0; c < 3; c++)
 				rgb[3 * ((long)j * WIDE + i) + c] = (uint8_t)lrintf(255 * fminf(srgb_from_linear((float)(exposure * a[c] * e[c])), 1));
 		}
@@ -135,8 +183,17 @@ static struct complexion *skin_of(struct complexion_report *r, const struct mesh
 	for (long i = 0; i < (long)WIDE * HIGH; i++)
 		if (i % WIDE >= shown)
 			memset(rgb + 3 * i, 0, 3);
+	enum { POINTS = 24 };
+	float lids[4 * POINTS][2];
+	for (int k = 0; k < 4 * POINTS; k++) {
+		double p[2], out[2];
+		margin_at(p, out, (k / POINTS % 2 ? -1 : 1) * M_PI * (k % POINTS) / (POINTS - 1));
+		const double x = (k / POINTS < 2 ? eye_x : -eye_x) + p[0], z = off - surface(x, p[1]);
+		lids[k][0] = (float)(WIDE / 2 + focal * x / z);
+		lids[k][1] = (float)(HIGH / 2 - focal * p[1] / z);
+	}
 	struct complexion *c = complexion_new(m, eyes, radius, &conf);
-	complexion_add(c, &(struct complexion_view){ rgb, WIDE, HIGH, (const float(*)[3])at, focal, open });
+	complexion_add(c, &(struct complexion_view){ rgb, WIDE, HIGH, (const float(*)[3])at, focal, open, (const float(*)[2])lids, POINTS });
 	const bool ok = complexion_make(c, r, why);
 	free(rgb);
 	free(open);
@@ -398,6 +455,73 @@ static void test_wear(void **state)
 	mesh_free(&m);
 }
 
+static struct hair_film bare;  // without lashes
+
+static struct hair_film hair_of(int n, double mm, double half, double exposure, bool mirror)
+{
+	struct mesh m = face();
+	struct complexion_report r;
+	struct err why = { 0 };
+	lash.n = n;
+	lash.mm = mm;
+	lash.half = half;
+	struct complexion *c = skin_of(&r, &m, &left, exposure, mirror, WIDE, &why);
+	lash.n = 0;
+	assert_non_null(c);
+	const struct hair_film film = *complexion_hair(c);
+	complexion_free(c);
+	mesh_free(&m);
+	return film;
+}
+
+/* Lashes: strokes off the margins reach half their length in the mean; twice as many hide twice as much; without any hardly anything is hidden. */
+static void test_lashes(void **state)
+{
+	(void)state;
+	bare = hair_of(0, 0, 0, 0.8, false);
+	const struct hair_film some = hair_of(20, 4, 0.1, 0.8, false), many = hair_of(40, 4, 0.1, 0.5, false);
+	const struct hair_film longer = hair_of(20, 6, 0.1, 0.8, true);
+	for (int k = HAIR_UPPER; k <= HAIR_LOWER; k++) {
+		printf("lashes, %s: %.3f mm2 on a mm, %.2f mm off; twice as many %.3f, %.2f; longer %.3f, %.2f; none %.3f\n", k ? "lower" : "upper", some.lid[k].area,
+		       some.lid[k].reach, many.lid[k].area, many.lid[k].reach, longer.lid[k].area, longer.lid[k].reach, bare.lid[k].area);
+		NEAR(some.lid[k].reach, 2, 0.25);
+		NEAR(many.lid[k].reach, 2, 0.25);
+		NEAR(longer.lid[k].reach, 3, 0.35);
+		NEAR(many.lid[k].area / some.lid[k].area, 2, 0.4);
+		NEAR(longer.lid[k].area / some.lid[k].area, 1.5, 0.2);
+		assert_true(bare.lid[k].area < 0.2 * some.lid[k].area);
+	}
+}
+
+/* Brows: as large and as dark as they are, and combed the way of their lines; on either side alike. */
+static void test_brows(void **state)
+{
+	(void)state;
+	const struct hair_film film = bare;
+	for (int s = 0; s < 2; s++) {
+		double area = 0, beyond = 0, off = 0;
+		assert_true(film.brow[s]);
+		for (int j = 0; j < HAIR_CELLS_Y; j++)
+			for (int i = 0; i < HAIR_CELLS_X; i++) {
+				const double x = eye_x + HAIR_FROM_X + HAIR_CELL * i, y = HAIR_FROM_Y + HAIR_CELL * j, share = HAIR_CELL * HAIR_CELL * (double)film.cover[s][j][i];
+				bool near = false;
+				for (int k = 0; k < 9; k++)
+					near = near || in_brow(x + k % 3 - 1, y + k / 3 - 1);
+				area += share;
+				beyond += near ? 0 : share;
+				off += share * fabs((double)film.way[s][j][i] - comb);
+			}
+		// Two lines in three are as dark as hair alone.
+		printf("brow %d: hides %.0f mm2 of %.0f, %.1f beyond it; combed %.2f rad off in the mean; albedo %.3f %.3f %.3f\n", s, area, M_PI * 20 * 3.5, beyond, off / area,
+		       film.rgb[0], film.rgb[1], film.rgb[2]);
+		NEAR(area / (M_PI * 20 * 3.5), 0.8, 0.15);
+		assert_true(beyond < 0.02 * area);
+		assert_true(off / area < 0.2);
+	}
+	for (int c = 0; c < 3; c++)
+		NEAR(film.rgb[c] / (0.3 * skin_rgb[c]), 0.8, 0.25);
+}
+
 /* What cannot be used is refused in a sentence. */
 static void test_bad(void **state)
 {
@@ -418,7 +542,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_two_lights), cmocka_unit_test(test_mirror), cmocka_unit_test(test_seams),
-		cmocka_unit_test(test_wear), cmocka_unit_test(test_bad),
+		cmocka_unit_test(test_wear), cmocka_unit_test(test_bad), cmocka_unit_test(test_lashes), cmocka_unit_test(test_brows),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

@@ -23,7 +23,7 @@ static int setup(void **state)
 	struct err err = { 0 };
 	scene_of(&m->scene, &plain_eye, &conf, even, 0, 1.5);
 	*state = m;
-	return driven_make(&m->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err) ? 0 : 1;
+	return driven_make(&m->on, &(struct hair_conf){ .lash_mm = 9, .brow_mm = 8, .lashes = 40, .brow_hairs = 60, .margin_mm = 1.1 }, &err) ? 0 : 1;
 }
 
 static int teardown(void **state)

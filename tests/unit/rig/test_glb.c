@@ -57,7 +57,7 @@ static int setup(void **state)
 {
 	struct made *m = calloc(1, sizeof *m);
 	struct err err = { 0 };
-	bool ok = driven_make(&m->on, &(struct hair_conf){ 9, 8, 40, 60, 1.1 }, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
+	bool ok = driven_make(&m->on, &(struct hair_conf){ .lash_mm = 9, .brow_mm = 8, .lashes = 40, .brow_hairs = 60, .margin_mm = 1.1 }, &err) && eye_make(m, 0, &err) && eye_make(m, 1, &err);
 	m->drive = driven_wanders(&m->on, FRAMES);
 	conf = driven_glb(&m->on);
 	*state = m;
