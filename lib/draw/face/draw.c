@@ -10,6 +10,7 @@
 struct canvas {
 	struct portrait *p;
 	const struct portrait_spot *spots;
+	struct portrait_veils veils;
 	struct portrait_rays rays;
 	struct portrait_sky sky;
 	struct portrait_glow glow;
@@ -24,10 +25,7 @@ static void colour_at(float rgba[4], const struct canvas *c, double x, double y,
 {
 	int face = spot.face;
 	rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
-	if (face >= c->p->first_lash) {
-		portrait_lash_colour(rgba, c->p, face);
-		rgba[3] = 1;
-	} else if (face >= 0) {
+	if (face >= 0) {
 		float dir[3];
 		portrait_ray(dir, &c->rays, x, y);
 		float light[3];
@@ -58,12 +56,11 @@ static bool is_plain(const struct canvas *c, int x, int y)
 	for (int j = 0; j < s; j++)
 		for (int i = 0; i < s; i++) {
 			const struct portrait_spot *o = &first[(long)j * w + i];
-			bool hair = (o->face >= c->p->first_lash) != (first->face >= c->p->first_lash);
-			bool same = first->face < 0 ? o->face == first->face : o->face >= 0 && !hair && fabsf(o->depth - first->depth) < 0.8f;
+			bool same = first->face < 0 ? o->face == first->face : o->face >= 0 && fabsf(o->depth - first->depth) < 0.8f;
 			if (!same)
 				return false;
 		}
-	if (first->face < 0 || first->face >= c->p->first_lash)
+	if (first->face < 0)
 		return true;
 	float apart = first->depth / (float)(c->rays.view->focal_px * s);  // of samples on the skin, mm
 	for (int k = 0; k < s; k++)
@@ -73,6 +70,17 @@ static bool is_plain(const struct canvas *c, int x, int y)
 				return false;
 		}
 	return true;
+}
+
+/* Hairs before a sample of that colour. */
+static void veil(float rgba[4], const struct canvas *c, const struct portrait_veil *v)
+{
+	float hair[3];
+	if (v->face < 0)
+		return;
+	portrait_lash_colour(hair, c->p, v->face);
+	for (int i = 0; i < 4; i++)
+		rgba[i] = v->through * rgba[i] + (1 - v->through) * (i < 3 ? hair[i] : 1);
 }
 
 /* Colours of a pixel's samples, [samples][samples]. */
@@ -89,6 +97,9 @@ static void fine_pixel(float (*fine)[4], const struct canvas *c, int x, int y)
 				colour_at(fine[j * s + i], c, x + (i + 0.5) / s, y + (j + 0.5) / s, spots[(long)j * w + i]);
 			else if (i || j)
 				memcpy(fine[j * s + i], fine[0], sizeof *fine);
+	const long at = c->veils.at[(long)y * c->rays.view->width + x];
+	for (int k = 0; k < s * s && at >= 0; k++)
+		veil(fine[k], c, &c->veils.veil[at + k]);
 }
 
 /* Marks the pixels at hairs and shades their samples: the filter of neighbouring pixels reads them, too. */
@@ -98,10 +109,10 @@ static void find_hairs(struct canvas *c)
 	long n = 0;
 	c->hairy = mem_new((size_t)width * (size_t)height + 1, 1);
 	c->fine_at = mem_array((size_t)width * (size_t)height + 1, sizeof *c->fine_at);
-	for (int y = 0; y < height * s; y++)
-		for (int x = 0; x < width * s; x++)
-			for (int k = 0; k < 25 && c->spots[(long)y * width * s + x].face >= c->p->first_lash; k++) {
-				int du = k % 5 - 2, dv = k / 5 - 2, a = x / s + du, b = y / s + dv, far = 1 + (abs(du) > 1 || abs(dv) > 1);
+	for (int y = 0; y < height; y++)
+		for (int x = 0; x < width; x++)
+			for (int k = 0; k < 25 && c->veils.at[(long)y * width + x] >= 0; k++) {
+				int du = k % 5 - 2, dv = k / 5 - 2, a = x + du, b = y + dv, far = 1 + (abs(du) > 1 || abs(dv) > 1);
 				if (a < 0 || b < 0 || a >= width || b >= height)
 					continue;
 				unsigned char *h = &c->hairy[(long)b * width + a];
@@ -170,11 +181,13 @@ struct image portrait_draw(struct portrait *p, const struct portrait_view *view)
 	portrait_eyes(c.eye, c.eye_at, p, view, spots, p->conf.samples);
 	c.glow = portrait_glow_of(p, view, spots, p->conf.samples);
 	portrait_tears(c.eye, c.eye_at, p, view, spots, p->conf.samples);
+	c.veils = portrait_veils_of(p, view, spots, p->conf.samples);
 	find_hairs(&c);
 #pragma omp parallel for schedule(dynamic, 4)
 	for (int y = 0; y < view->height; y++)
 		for (int x = 0; x < view->width; x++)
 			draw_pixel(image_at(&image, x, y), &c, x, y);
+	portrait_veils_free(&c.veils);
 	portrait_glow_free(&c.glow);
 	image_free(&c.eye[0]);
 	image_free(&c.eye[1]);

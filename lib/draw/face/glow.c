@@ -13,7 +13,7 @@ static void pixel(struct portrait_glow *g, const struct portrait *p, const struc
 {
 	float dir[3], rgb[3] = { 0 };
 	long at = (long)y * g->width + x;
-	bool skin = spot->face >= 0 && spot->face < p->first_lash;
+	bool skin = spot->face >= 0;
 	if (skin) {
 		portrait_ray(dir, rays, x + 0.5, y + 0.5);
 		portrait_bare_light(rgb, p, spot->face, rays->origin, dir);

@@ -9,8 +9,20 @@ struct portrait_spot {
 	float depth;   // along the camera's axis, mm
 };
 
-/* raster.c: the nearest surface at every sample: [height samples][width samples]. free(). */
+/* raster.c: the nearest surface at every sample, hairs left out: [height samples][width samples]. free(). */
 struct portrait_spot *portrait_raster(const struct portrait *portrait, const struct portrait_view *view, int samples);
+
+/* Hairs before a sample's surface: the nearest one's face (-1: none), its depth, and the share of the light from behind that they let through. */
+struct portrait_veil {
+	int face;
+	float depth, through;
+};
+struct portrait_veils {
+	long *at;                    // [height][width] where a pixel's samples are, -1: no hair is in it. Owned
+	struct portrait_veil *veil;  // [...][samples][samples]. Owned
+};
+struct portrait_veils portrait_veils_of(const struct portrait *portrait, const struct portrait_view *view, struct portrait_spot *spots, int samples);
+void portrait_veils_free(struct portrait_veils *veils);
 
 /* Value noise in -1..1 at a point p of the skin at rest (mm); per_mm: cells in a mm. */
 float portrait_noise(const float p[3], float per_mm);
@@ -92,7 +104,7 @@ void portrait_wet_shade(float rgb[3], const struct portrait *portrait, const flo
 
 /* enum distance_material of a pixel for the eye of that side, and the share of skin in it. spots: its first sample; row: samples in a
  * row of the picture. */
-uint8_t portrait_material(float *cover, const struct portrait *portrait, const struct portrait_spot *spots, long row, int samples,
+uint8_t portrait_material(float *cover, const struct portrait_spot *spots, long row, int samples,
                           int side);
 
 /* Unit normal of a meniscus of that height at distance d from the lid: between the globe's normal and `away`, the unit

@@ -62,7 +62,7 @@ static void ribbon(struct portrait *p, const struct hair *h, const float origin[
 	hair_place(point, &p->hairs, h, p->rig, (const float(*)[3])p->mesh.x);
 	for (int c = 0; c < 3; c++)
 		apart += (origin[c] - point[0][c]) * (origin[c] - point[0][c]);
-	// Never thinner than the distance of samples; of a hair that is thinner so many samples are left out.
+	// Never thinner than the distance of samples; a thinner hair lets through what is behind it.
 	apart = sqrtf(apart) / (float)(focal_px * p->conf.samples);
 	for (int k = 0; k < h->n; k++) {
 		float way[3], to[3], wide[3], own = hair_half(h, k), half = fmaxf(own, 0.45f * apart);
@@ -103,13 +103,10 @@ void portrait_lash_pin(struct portrait_pin *pin, const struct portrait *p, int v
 	}
 }
 
-bool portrait_lash_here(const struct portrait *p, int face, int x, int y)
+float portrait_lash_cover(const struct portrait *p, int face)
 {
-	const int point = p->hair_piece[(face - p->first_lash) / TRIANGLES], hair = p->hair_of[point];
-	const float cover = 0.5f * (p->hair_cover[point] + p->hair_cover[point + 1]);
-	// The plastic number's sequence (Roberts 2018): among any few neighbours as many as the share asks for; another start for each hair.
-	const float at = 0.7548777f * (float)x + 0.5698403f * (float)y + 0.6180340f * (float)hair;
-	return at - floorf(at) < cover;
+	const int point = p->hair_piece[(face - p->first_lash) / TRIANGLES];
+	return 0.5f * (p->hair_cover[point] + p->hair_cover[point + 1]);
 }
 
 void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)

@@ -4,12 +4,12 @@
 #include "draw/face/portrait.h"
 
 /* make: grows the hairs at rest, appends their triangles to the mesh. move: places their vertices for the pose, as ribbons that face the
- * view's camera. colour: of one of their faces. here: whether a sample that lies on the face shows it: a hair thinner than samples are apart is
- * drawn as wide as that, and the share of its samples that are left out shows what is behind it. */
+ * view's camera. colour: of one of their faces. cover: the share of what lies behind such a face that it hides: a hair thinner than
+ * samples are apart is drawn as wide as that. */
 void portrait_lashes_make(struct portrait *portrait);
 void portrait_lashes_free(struct portrait *portrait);
 void portrait_lashes_move(struct portrait *portrait, const struct portrait_view *view);
-bool portrait_lash_here(const struct portrait *portrait, int face, int x, int y);
+float portrait_lash_cover(const struct portrait *portrait, int face);
 void portrait_lash_colour(float rgb[3], const struct portrait *portrait, int face);
 
 /* A hair's vertex relative to its root: the root is the weighted mean of three vertices of the mesh; local: off the globe, along the

@@ -35,7 +35,7 @@ static void eye_field(struct image *out, const struct portrait *p, const struct 
 	for (int y = 0; y < h; y++)
 		for (int x = 0; x < w; x++) {
 			long i = (long)y * w + x;
-			material[i] = portrait_material(&cover[i], p, spots + y * samples * row + (long)x * samples, row, samples, side);
+			material[i] = portrait_material(&cover[i], spots + y * samples * row + (long)x * samples, row, samples, side);
 		}
 	struct portrait_rays rays = portrait_rays_of(v);
 	// In view space, over the globe, as the tear line takes it.
@@ -115,14 +115,20 @@ struct image portrait_layers(struct portrait *p, const struct portrait_view *v, 
 	p->matte = false;
 	struct portrait_spot *spots = portrait_raster(p, v, samples);
 	struct portrait_rays rays = portrait_rays_of(v);
+	struct portrait_veils veils = portrait_veils_of(p, v, spots, samples);
 	for (int y = 0; y < v->height; y++)
 		for (int x = 0; x < v->width; x++) {
-			const struct portrait_spot *spot = &spots[((long)y * samples + samples / 2) * v->width * samples + (long)x * samples + samples / 2];
-			pixel(image_at(&out, x, y), p, &rays, spot, per_mm, image_at(picture, x, y), image_at(&matte, x, y), x + 0.5, y + 0.5);
+			struct portrait_spot spot = spots[((long)y * samples + samples / 2) * v->width * samples + (long)x * samples + samples / 2];
+			const long at = veils.at[(long)y * v->width + x];
+			const struct portrait_veil *hair = at < 0 ? 0 : &veils.veil[at + samples / 2 * samples + samples / 2];
+			if (hair && hair->through < 0.5f)  // a depth has no shares: what hides more
+				spot = (struct portrait_spot){ hair->face, hair->depth };
+			pixel(image_at(&out, x, y), p, &rays, &spot, per_mm, image_at(picture, x, y), image_at(&matte, x, y), x + 0.5, y + 0.5);
 		}
 	for (int side = 0; side < 2; side++)
 		eye_field(&out, p, v, spots, side, per_mm);
 	image_free(&matte);
+	portrait_veils_free(&veils);
 	free(spots);
 	return out;
 }

@@ -1,4 +1,4 @@
-/* Rasteriser: which surface every sample shows. Bands of rows, one thread each, so that the result does not depend on threads. */
+/* Rasteriser: which surface every sample shows, and which hairs before it. Bands of rows, one thread each, so that the result does not depend on threads. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,7 +10,28 @@ struct screen {
 	float (*at)[3];  // x, y in samples, depth; depth <= 0: behind the camera
 	int points, width, height;
 	struct portrait_spot *spots;
+	struct portrait_veils *veils;  // null: surfaces are drawn; else hairs, and before there is room for them the pixels are marked that have one
+	int samples;
 };
+
+/* A hair at a sample. Hairs thinner than samples lie apart are drawn so wide, and let through what they would not hide. */
+static void hide(struct screen *s, int face, int x, int y, float depth)
+{
+	struct portrait_veils *v = s->veils;
+	const long pixel = (long)(y / s->samples) * (s->width / s->samples) + x / s->samples;
+	if (!(depth < s->spots[(long)y * s->width + x].depth))
+		return;
+	if (!v->veil) {
+		v->at[pixel] = 0;
+		return;
+	}
+	struct portrait_veil *to = &v->veil[v->at[pixel] + y % s->samples * s->samples + x % s->samples];
+	to->through *= 1 - portrait_lash_cover(s->p, face);
+	if (depth < to->depth) {
+		to->depth = depth;
+		to->face = face;
+	}
+}
 
 static void project(struct screen *s, const struct portrait *p, const struct portrait_view *v, int samples)
 {
@@ -37,7 +58,6 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 		return;
 	// Counter-clockwise from outside; the picture's y points down.
 	float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-	const bool lash = face >= s->p->first_lash;
 	const bool cuts = face < s->p->mesh.n_dressed && s->p->mesh.cuts[face];  // hair cards are seen from both sides
 	if (!(area < 0) && !(cuts && area > 0))
 		return;
@@ -56,8 +76,9 @@ static void fill(struct screen *s, const int32_t v[3], int face, int low, int hi
 				continue;
 			float depth = 1 / (wa * ia + wb * ib + wc * ic);
 			struct portrait_spot *spot = &s->spots[(long)y * s->width + x];
-			if (depth < spot->depth && !(lash && !portrait_lash_here(s->p, face, x, y))
-			    && !(cuts && portrait_cut_away(s->p, face, (float[3]){ wa * ia * depth, wb * ib * depth, wc * ic * depth })))
+			if (s->veils)
+				hide(s, face, x, y, depth);
+			else if (depth < spot->depth && !(cuts && portrait_cut_away(s->p, face, (float[3]){ wa * ia * depth, wb * ib * depth, wc * ic * depth })))
 				*spot = (struct portrait_spot){ face, depth };
 		}
 }
@@ -85,14 +106,13 @@ static void put_eye(struct screen *s, const struct portrait *p, const struct por
 		}
 }
 
+enum { BAND = 64 };
+
 struct portrait_spot *portrait_raster(const struct portrait *p, const struct portrait_view *v, int samples)
 {
-	enum { BAND = 64 };
-	struct screen s = { .p = p, .points = p->mesh.n, .width = v->width * samples, .height = v->height * samples };
+	struct screen s = { .p = p, .points = p->mesh.n, .width = v->width * samples, .height = v->height * samples, .samples = samples };
 	struct portrait_rays rays = portrait_rays_of(v);
 	long n = (long)s.width * s.height;
-	for (int f = p->first_lash; f < p->mesh.n_faces; f++)
-		s.points = p->mesh.faces[f][1] >= s.points ? p->mesh.faces[f][1] + 1 : s.points;
 	s.at = mem_array((size_t)s.points + 1, sizeof *s.at);
 	s.spots = mem_array((size_t)n, sizeof *s.spots);
 	project(&s, p, v, samples);
@@ -101,11 +121,48 @@ struct portrait_spot *portrait_raster(const struct portrait *p, const struct por
 		int low = band * BAND, high = low + BAND < s.height ? low + BAND : s.height;
 		for (long i = (long)low * s.width; i < (long)high * s.width; i++)
 			s.spots[i] = (struct portrait_spot){ -1, INFINITY };
-		for (int f = 0; f < p->mesh.n_faces; f++)
+		for (int f = 0; f < p->first_lash; f++)
 			fill(&s, p->mesh.faces[f], f, low, high);
 		for (int side = 0; side < 2; side++)
 			put_eye(&s, p, &rays, side, samples, low, high);
 	}
 	free(s.at);
 	return s.spots;
+}
+
+struct portrait_veils portrait_veils_of(const struct portrait *p, const struct portrait_view *v, struct portrait_spot *spots, int samples)
+{
+	const int rows = BAND / samples * samples;  // whole pixels
+	const long pixels = (long)v->width * v->height;
+	struct portrait_veils veils = { .at = mem_array((size_t)pixels + 1, sizeof *veils.at) };
+	struct screen s = { .p = p, .points = p->lash_vertex + 2 * p->hairs.n_points, .width = v->width * samples, .height = v->height * samples, .spots = spots, .veils = &veils,
+		                .samples = samples };
+	long n = 0;
+	s.at = mem_array((size_t)s.points + 1, sizeof *s.at);
+	project(&s, p, v, samples);
+	for (long i = 0; i < pixels; i++)
+		veils.at[i] = -1;
+	for (int pass = 0; pass < 2; pass++) {
+#pragma omp parallel for schedule(dynamic)
+		for (int low = 0; low < s.height; low += rows)
+			for (int f = p->first_lash; f < p->mesh.n_faces; f++)
+				fill(&s, p->mesh.faces[f], f, low, low + rows < s.height ? low + rows : s.height);
+		for (long i = 0; i < pixels && !pass; i++)
+			if (veils.at[i] == 0) {
+				veils.at[i] = n;
+				n += samples * samples;
+			}
+		if (!pass)
+			veils.veil = mem_array((size_t)n + 1, sizeof *veils.veil);
+		for (long i = 0; i < n && !pass; i++)
+			veils.veil[i] = (struct portrait_veil){ -1, INFINITY, 1 };
+	}
+	free(s.at);
+	return veils;
+}
+
+void portrait_veils_free(struct portrait_veils *veils)
+{
+	free(veils->at);
+	free(veils->veil);
 }

@@ -31,14 +31,14 @@ static void field_free(struct field *f)
 	free(f->nearest);
 }
 
-// Lashes occlude the lid's edge; they are not part of it.
-uint8_t portrait_material(float *cover, const struct portrait *p, const struct portrait_spot *spots, long row, int samples, int side)
+// Without hairs: they lie before a lid's edge and are not part of it.
+uint8_t portrait_material(float *cover, const struct portrait_spot *spots, long row, int samples, int side)
 {
 	int skin = 0, globe = 0;
 	for (int j = 0; j < samples; j++)
 		for (int i = 0; i < samples; i++) {
 			const struct portrait_spot *s = &spots[j * row + i];
-			bool is_skin = s->face >= 0 && s->face < p->first_lash, is_globe = s->face == -2 - side;
+			bool is_skin = s->face >= 0, is_globe = s->face == -2 - side;
 			skin += is_skin;
 			globe += is_globe;
 		}
@@ -78,7 +78,7 @@ static struct field field_make(const struct portrait *p, const struct portrait_v
 		for (int x = 0; x < f.width; x++) {
 			const struct portrait_spot *of = spots + (long)(f.y0 + y) * samples * row + (long)(f.x0 + x) * samples;
 			long i = (long)y * f.width + x;
-			f.material[i] = portrait_material(&f.cover[i], p, of, row, samples, side);
+			f.material[i] = portrait_material(&f.cover[i], of, row, samples, side);
 		}
 	portrait_globe_depth(f.depth, p, rays, side, (int[2]){ f.x0, f.y0 }, (int[2]){ f.width, f.height }, (float)away);
 	const struct distance_scene scene = { f.width, f.height, f.material, f.cover, f.depth, v->focal_px, { v->center_px[0] - f.x0, v->center_px[1] - f.y0 } };

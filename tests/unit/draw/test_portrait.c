@@ -202,7 +202,7 @@ static void distances_are_to_the_lids(void **state)
 		for (int k = 0; k < 2; k++)
 			wide = globe_at(there, p, &rays, side, i % W + (k ? 0 : 1), i / W + k) ? fmax(wide, apart(here, there)) : INFINITY;
 		for (int j = 0; j < W * H; j++)
-			if (spots[j].face >= 0 && spots[j].face < p->first_lash) {
+			if (spots[j].face >= 0) {
 				across = fmin(across, hypot(j % W - i % W, j / W - i / W) * mm);
 				nearest = globe_at(there, p, &rays, side, j % W, j / W) ? fmin(nearest, apart(here, there)) : nearest;
 			}

@@ -34,16 +34,18 @@ static struct image draw(struct portrayed *m, double lash_mm, int samples, int f
 	struct image out = portrait_draw(p, &view);
 	// 1: one edge of skin before another in the pixel, by the depths of three samples in a row; 2: a hair in it.
 	struct portrait_spot *spots = portrait_raster(p, &view, samples);
+	struct portrait_veils veils = portrait_veils_of(p, &view, spots, samples);
 	for (int i = 0; kind && i < WIDTH * HEIGHT; i++)
 		for (int k = 0; k < samples * samples; k++) {
 			long row = (long)samples * WIDTH, at = (i / WIDTH * samples + k / samples) * row + i % WIDTH * samples + k % samples;
 			const struct portrait_spot *o = &spots[at];
-			if (o->face >= p->first_lash)
+			if (veils.at[i] >= 0)
 				kind[i] = 2;
 			else if (kind[i] != 2 && k % samples + 2 < samples && o[0].face >= 0 && o[1].face >= 0 && o[2].face >= 0
 			         && fabsf(o[0].depth - 2 * o[1].depth + o[2].depth) > 0.2f)
 				kind[i] = 1;
 		}
+	portrait_veils_free(&veils);
 	free(spots);
 	portrait_free(p);
 	return out;
