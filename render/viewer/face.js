@@ -28,6 +28,8 @@ class FaceScene {
 		this.poser = new FacePose(g, data);
 		const faces = new Uint32Array(data.faces.buffer);
 		this.n_indices = faces.length;
+		const first_hair = this.data.n - this.poser.hairs, solid = faces.findIndex(v => v >= first_hair);  // hairs come last
+		this.n_solid = solid < 0 ? faces.length : solid - solid % 3;
 		this.shape = gl.createVertexArray();
 		gl.bindVertexArray(this.shape);
 		const array = (at, buffer, n, type, normalised, stride) => {
@@ -192,21 +194,34 @@ class FaceScene {
 		gl.enable(gl.CULL_FACE);
 		gl.clearColor(0, 0, 0, 0);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-		g.draw(this.skin(preset), { ...this.folds(), ...(this.data.dress ? { dress_map: this.dress_map, dress_place: this.data.dress.place } : {}), cam_from_head: c.R, head_from_rig: this.data.rig.head_from_rig, middle: this.data.rig.middle, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
+		const skin = { ...this.folds(), ...(this.data.dress ? { dress_map: this.dress_map, dress_place: this.data.dress.place } : {}), cam_from_head: c.R, head_from_rig: this.data.rig.head_from_rig, middle: this.data.rig.middle, camera: [2 * c.focal / width, 2 * c.focal / height, FaceScene.DISTANCE], clip_depth: FaceScene.clip(),
 			shift: [2 * (c.aim[0] - jitter[0]) / width, 2 * (jitter[1] - c.aim[1]) / height], head_camera: c.at, env_from_head: env, still_from_head: still, skies: skies.length,
 			sky_dir: EyeScene.padded(skies.flatMap(l => turns.apply(turns.transpose(env), l)), 3 * EyeScene.LIGHTS),
 			sky_rgb: EyeScene.padded(skies.flatMap(l => l.slice(3).map(v => v * s.light_gain)), 3 * EyeScene.LIGHTS),
 			globes: this.data.globes.flatMap(([x, y, z, scale], side) => [x, y, z, scale * eye_scenes[side].sclera(s)[1]]),
 			quadric: light.quadric.flat().map(v => v * s.light_gain), still_quadric: first.lights[0].quadric.flat(),
 			sharp_map: light.sharp_map || first.lights[0].sharp_map, rough_map: light.rough_map || first.lights[0].rough_map, mirror_on: light.sharp_map ? s.light_gain : 0,
-			at_map: this.poser.at.map, first_hair: this.data.n - this.poser.hairs, hair_px: [c.focal, preset.hair], skin_rgb: this.data.skin_rgb,
-			pores: !preset.pores ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) }, this.shape, this.n_indices);
+			at_map: this.poser.at.map, first_hair: this.data.n - this.poser.hairs, hair_px: [c.focal, preset.hair],
+			pores: !preset.pores ? 0 : Math.min(1, Math.max(0, (0.22 - FaceScene.DISTANCE / c.focal) / 0.1)) };
+		g.draw(this.skin(preset), skin, this.shape, this.n_solid);
 		gl.disable(gl.CULL_FACE);
 		gl.enable(gl.SCISSOR_TEST);
 		for (const side of [0, 1])
 			this.draw_eye(side, eye_scenes[side], s, view, c, preset, jitter);
 		gl.disable(gl.SCISSOR_TEST);
+		this.draw_hairs(skin, preset);
 		gl.disable(gl.DEPTH_TEST);
+	}
+
+	/* Hairs before what has been drawn, each hiding its share of it; alpha stays what it says of that. */
+	draw_hairs(values, preset) {
+		const gl = this.g.gl;
+		gl.enable(gl.BLEND);
+		gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ZERO, gl.ONE);
+		gl.depthMask(false);
+		this.g.draw(this.skin(preset), values, this.shape, this.n_indices - this.n_solid, this.n_solid);
+		gl.depthMask(true);
+		gl.disable(gl.BLEND);
 	}
 
 	/* One eye where its globe can be seen. */

@@ -143,13 +143,13 @@ class Graphics {
 		}
 	}
 
-	/* Draws the whole target, or a shape. */
-	draw(p, values, shape, n_indices) {
+	/* Draws the whole target, or n_indices of a shape from the first on. */
+	draw(p, values, shape, n_indices, first = 0) {
 		const gl = this.gl;
 		this.set(p, values);
 		gl.bindVertexArray(shape || this.whole);
 		if (shape)
-			gl.drawElements(gl.TRIANGLES, n_indices, gl.UNSIGNED_INT, 0);
+			gl.drawElements(gl.TRIANGLES, n_indices, gl.UNSIGNED_INT, 4 * first);
 		else
 			gl.drawArrays(gl.TRIANGLES, 0, 3);
 		gl.bindVertexArray(null);

@@ -1,4 +1,4 @@
-// The visible part of a globe under shut lids: its disc on the screen where neither skin nor a hair covers it (skin.frag).
+// The visible part of a globe under shut lids: its disc on the screen where no skin covers it.
 // Each texel measures its own part of the square round the disc. Or (crease) fills what is left.
 uniform vec3 globe;               // middle and radius, px
 out vec4 shown;
@@ -25,7 +25,7 @@ void main()
 	for (int y = max(low.y, 0); y < min(high.y, most.y); y++)
 		for (int x = max(low.x, 0); x < min(high.x, most.x); x++) {
 			float cover = texelFetch(picture, ivec2(x, y), 0).a;
-			if (cover <= 0.995 && abs(cover - 0.98) > 0.004 && distance(vec2(x, y) + 0.5, globe.xy) < globe.z)
+			if (cover <= 0.995 && distance(vec2(x, y) + 0.5, globe.xy) < globe.z)
 				seen_ += 1.0;
 		}
 	shown = vec4(seen_ / (cell.x * cell.y));

@@ -2,7 +2,6 @@
 in vec3 seen_at, seen_normal, seen_light, seen_rest;
 in vec4 seen_skin;
 in float seen_cover;
-uniform vec3 skin_rgb;
 uniform vec3 head_camera;         // where it is, head's axes
 uniform mat3 env_from_head, still_from_head;  // the surroundings as they are, and as the light of the vertices had them
 uniform int skies;
@@ -94,7 +93,7 @@ void main()
 	n = smooth_n = normalize(smooth_n - fold);
 #endif
 	if (seen_skin.a > 0.5) {
-		seen = vec4(mix(skin_rgb * light, (albedo * 1.25 + 0.012) * light, sqrt(seen_cover)), 0.98);  // several share a pixel: more is dark than one covers; they hang before a lid's edge and are not it: tear.frag, probe.frag
+		seen = vec4((albedo * 1.25 + 0.012) * light, seen_cover);  // blended: face.js
 		return;
 	}
 	float grain = 0.0, relief = 1.0;

@@ -24,7 +24,7 @@ void main()
 	vec3 place = at;
 	seen_cover = 1.0;
 	if (gl_VertexID >= first_hair) {
-		// Never thinner than pixels lie apart; what it covers too much then, its colour makes good: lib/draw/face/lash.c.
+		// Never thinner than pixels lie apart; it lets through what it covers too much then: lib/draw/face/lash.c.
 		int mate = first_hair + ((gl_VertexID - first_hair) ^ 1), wide = textureSize(at_map, 0).x;
 		vec3 off = 0.5 * (at - texelFetch(at_map, ivec2(mate % wide, mate / wide), 0).xyz);
 		seen_cover = min(1.0, 2.0 * length(off) * hair_px.x / (camera.z * hair_px.y));
