@@ -51,9 +51,7 @@ bool complexion_shave(float *weight, uint8_t *brow, const float (*ln)[3], const 
 bool complexion_brows(struct hair_film *film, const float (*ln)[3], const float *before, const float *after, const uint8_t *brow, const struct complexion *c,
                       struct err *err);
 
-/* lashes.c. _of: of one margin [lid_points], px; inner_first: from the inner corner on; px_mm: px in a mm. _add_lashes: of both eyes of a frame.
- * _mean: of all frames in which the lids stand open. */
-struct hair_lid complexion_lashes_of(const struct complexion_view *v, const float (*margin)[2], bool upper, bool inner_first, double px_mm);
+/* lashes.c. _add: those of both eyes of a frame. _mean: of all frames in which the lids stand open. */
 void complexion_add_lashes(struct complexion *c, const struct complexion_view *v);
 void complexion_lashes_mean(struct hair_lid lid[2], const struct complexion *c);
 

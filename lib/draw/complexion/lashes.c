@@ -89,7 +89,8 @@ static double row_cover(const double *y, int n, int first, int last, int reach)
 	return many * 2 > last - first ? -log1p(-fmin(sum / many, cover_most)) : NAN;
 }
 
-struct hair_lid complexion_lashes_of(const struct complexion_view *v, const float (*margin)[2], bool upper, bool inner_first, double px_mm)
+/* Of one margin, from the inner corner on or from the outer; px_mm: px in a mm. */
+static struct hair_lid of_margin(const struct complexion_view *v, const float (*margin)[2], bool upper, bool inner_first, double px_mm)
 {
 	const struct hair_lid none = { 0, 0 };
 	struct margin *g = mem_new(1, sizeof *g);
@@ -171,8 +172,8 @@ void complexion_add_lashes(struct complexion *c, const struct complexion_view *v
 		const bool inner_first = hypot((double)up[0][0] - other[0], (double)up[0][1] - other[1]) < hypot((double)up[e][0] - other[0], (double)up[e][1] - other[1]);
 		struct complexion_lashes *to = &c->lashes[c->n_lashes++];
 		to->open = hypot((double)(up[m][0] - low[m][0]), (double)(up[m][1] - low[m][1])) / px_mm[s];
-		to->lid[HAIR_UPPER] = complexion_lashes_of(v, up, true, inner_first, px_mm[s] * unit);
-		to->lid[HAIR_LOWER] = complexion_lashes_of(v, low, false, inner_first, px_mm[s] * unit);
+		to->lid[HAIR_UPPER] = of_margin(v, up, true, inner_first, px_mm[s] * unit);
+		to->lid[HAIR_LOWER] = of_margin(v, low, false, inner_first, px_mm[s] * unit);
 	}
 }
 

@@ -61,10 +61,7 @@ struct lash_growth lash_average(const struct hair_conf *conf, int kind);
 void lash_plant(struct hairs *hairs, const struct front *front, const struct front_opening *opening, int kind, const struct lash_growth *growth, double margin_mm,
                 struct rng *rng);
 
-/* match.c: the growth that is most probable by what the film shows of a lid: seen from in front, hairs lie as far from the margin and hide as much. */
-struct lash_growth lash_match(const struct front *front, const struct front_opening *opening, int kind, const struct hair_conf *conf);
-
-/* lash.c, brow.c */
+/* match.c, brow.c */
 void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct front_opening *opening, const struct hair_conf *conf, struct rng *rng);
 void hairs_grow_brow(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
 

@@ -72,11 +72,3 @@ void lash_plant(struct hairs *h, const struct front *f, const struct front_openi
 		front_clear(h, f);
 	}
 }
-
-void hairs_grow_lashes(struct hairs *h, const struct front *f, const struct front_opening *o, const struct hair_conf *conf, struct rng *rng)
-{
-	for (int kind = HAIR_UPPER; kind <= HAIR_LOWER && conf->lash_mm > 0; kind++) {
-		const struct lash_growth g = lash_match(f, o, kind, conf);
-		lash_plant(h, f, o, kind, &g, conf->margin_mm, rng);
-	}
-}

@@ -61,7 +61,8 @@ static double within(double v, double low, double high)
 	return fmin(fmax(v, low), high);
 }
 
-struct lash_growth lash_match(const struct front *f, const struct front_opening *o, int kind, const struct hair_conf *conf)
+/* The growth that is most probable by what the film shows of a lid: seen from in front, hairs lie as far from the margin and hide as much. */
+static struct lash_growth match(const struct front *f, const struct front_opening *o, int kind, const struct hair_conf *conf)
 {
 	const struct lash_growth average = lash_average(conf, kind);
 	const struct hair_lid *film = conf->film ? &conf->film->lid[kind] : 0;
@@ -87,4 +88,12 @@ struct lash_growth lash_match(const struct front *f, const struct front_opening 
 	if (now.area > 0)
 		g.n = average.n * within(exp(log(film->area / now.area) * number_sd * number_sd / (number_sd * number_sd + area_sd * area_sd)), fewest, most);
 	return g;
+}
+
+void hairs_grow_lashes(struct hairs *h, const struct front *f, const struct front_opening *o, const struct hair_conf *conf, struct rng *rng)
+{
+	for (int kind = HAIR_UPPER; kind <= HAIR_LOWER && conf->lash_mm > 0; kind++) {
+		const struct lash_growth g = match(f, o, kind, conf);
+		lash_plant(h, f, o, kind, &g, conf->margin_mm, rng);
+	}
 }
