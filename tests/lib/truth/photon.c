@@ -20,6 +20,8 @@ struct photon {
 
 static int cell_of(const struct photon_slab *s, const double at[3])
 {
+	if (s->n == 1)
+		return 0;
 	int x = (int)floor(at[0] / s->cell) % s->n, y = (int)floor(at[1] / s->cell) % s->n;
 	return (y < 0 ? y + s->n : y) * s->n + (x < 0 ? x + s->n : x);
 }
@@ -70,7 +72,8 @@ static void start(struct photon *p, const struct photon_slab *s, double top, dou
 /* Henyey and Greenstein, mean 1. */
 static double phase(double g, double cosine)
 {
-	return (1 - g * g) / pow(1 + g * g - 2 * g * cosine, 1.5);
+	double d = 1 + g * g - 2 * g * cosine;
+	return (1 - g * g) / (d * sqrt(d));
 }
 
 /* Turns into a new direction, by that phase function. */
