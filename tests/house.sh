@@ -38,6 +38,16 @@ circles() {
 				if (b == "" || a == b || (a, b) in edge) continue
 				edge[a, b] = 1; out[a] = out[a] " " b; node[a]; node[b]
 			}
+			# What calls nobody, or nobody that is left, is in no circle: as a rule nothing stays.
+			for (gone = 1; gone; ) {
+				gone = 0
+				for (a in node) {
+					n = split(out[a], list, " "); some = ""
+					for (i = 1; i <= n; i++) if (list[i] in node) some = some " " list[i]
+					out[a] = some
+					if (some == "") { delete node[a]; gone = 1 }
+				}
+			}
 			for (a in node) {
 				if (a in done) continue
 				line = ""
@@ -75,12 +85,25 @@ headless)
 		done
 		[ "$n" = 1 ] || room=
 		[ -e "$dir/${dir##*/}.h" ] && room=$dir/${dir##*/}.h
-		missing=$(nm "$B/${c%.c}.o" 2>/dev/null | awk 'NF == 3 && $2 == "T" && $3 !~ /\./ { print $3 }' | while IFS= read -r s; do
-			grep -qE "\b$s\(" $room "$dir"/impl.h "$dir"/*_impl.h 2>/dev/null && continue
-			grep -rqE --include='*.h' "\b$s\(" lib && printf ' %s' "$s"
-		done)
-		[ -z "$missing" ] || echo "$c:$missing"
-	done
+		printf '%s %s\n' "$c" "$room"
+	done >"$B/house.rooms"
+	# "HEADER:NAME(" for all that headers call or declare, then "FILE.o: ADDRESS T SYMBOL" for what these files export.
+	{
+		find lib -name '*.h' -exec grep -oHE '\b[A-Za-z_][A-Za-z0-9_]*\(' {} +
+		sed "s#^\([^ ]*\)\.c .*#$B/\1.o#" "$B/house.rooms" | xargs nm -A 2>/dev/null
+	} | awk -v rooms="$B/house.rooms" -v skip="$((${#B} + 1))" '
+		BEGIN { while ((getline s < rooms) > 0) { n = split(s, f, " "); order[++files] = f[1]; room[f[1]] = n > 1 ? f[2] : "" } }
+		/\($/ {
+			colon = index($0, ":"); h = substr($0, 1, colon - 1); s = substr($0, colon + 1, length($0) - colon - 1); dir = h; sub(/\/[^\/]*$/, "", dir)
+			told[s] = 1; in_file[h, s] = 1
+			if (h ~ /(\/|_)impl\.h$/) private[dir, s] = 1
+			next
+		}
+		NF == 3 && $2 == "T" && $3 !~ /\./ {
+			c = substr($1, skip + 1); sub(/\.o:.*$/, ".c", c); dir = c; sub(/\/[^\/]*$/, "", dir)
+			if (!((room[c], $3) in in_file) && !((dir, $3) in private) && $3 in told) missing[c] = missing[c] " " $3
+		}
+		END { for (i = 1; i <= files; i++) if (order[i] in missing) print order[i] ":" missing[order[i]] }'
 	;;
 folders)
 	find lib stages render tests \( -name '*.c' -o -name '*.h' -o -name '*.cc' \) | sed 's#/[^/]*$##' | sort | uniq -c | sort -rn |
