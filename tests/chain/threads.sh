@@ -15,6 +15,14 @@ for n in 2 5; do
 	same "$n threads and 1 give the same bytes" "$different" ""
 done
 
+# Threads that wait spin where nobody says otherwise: programs of many short loops start themselves anew with others that sleep.
+made=$(bytes_of "$root/1")
+env -u OMP_WAIT_POLICY "$BIN/limbus" --capture="$root/1" --force --quiet >"$log" 2>&1
+same "limbus by itself, on threads of its own choice" "$?" 0
+env -u OMP_WAIT_POLICY "$BIN/unrefract" --capture="$root/1" --force --quiet >"$log" 2>&1
+same "unrefract, on threads that spin" "$?" 0
+same "and the same bytes" "$(bytes_of "$root/1")" "$made"
+
 # The skin column.
 for n in 1 2; do
 	small_face "$root/face$n"

@@ -163,7 +163,7 @@ static void against_renderer(void **state)
 	struct freckle_conf conf = iris_freckle_conf("review");
 	char *dirs[CAPTURES];
 	int n = truth_captures(dirs, CAPTURES);
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < n; i += SANITISED ? 3 : 1) {
 		struct err err = { 0 };
 		struct truth truth;
 		struct unrefract_texture t;

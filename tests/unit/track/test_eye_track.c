@@ -330,7 +330,7 @@ static void painted_film(void **state)
 static void sigma_of_strangers(void **state)
 {
 	(void)state;
-	enum { DRAWS = 16, EVERY = 3 };
+	enum { DRAWS = SANITISED ? 2 : 16, EVERY = 3 };
 	struct rng rng = { 11 };
 	int within[3] = { 0 }, all = 0;
 	double widest = 0;
@@ -377,8 +377,8 @@ static void sigma_of_strangers(void **state)
 	print_message("of gaze with wrong anatomy %.0f, %.0f, %.0f %% lie within one, two, three standard deviations, of up to %.1f degrees\n", 100.0 * within[0] / all,
 	              100.0 * within[1] / all, 100.0 * within[2] / all, widest / DEGREE);
 	// 68 and 95 % are expected; 32 independent ones scatter by 8 and 4 %.
-	assert_true(within[0] > 0.5 * all && within[0] < 0.9 * all);
-	assert_true(within[1] > 0.86 * all);
+	assert_true(SANITISED || (within[0] > 0.5 * all && within[0] < 0.9 * all));
+	assert_true(SANITISED || within[1] > 0.86 * all);
 }
 
 /* No mesh and no camera: a limbus seen in the first frame is all that is known. Gaze then is off by as much as that first
