@@ -51,8 +51,8 @@ PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libop
 	libswscale-dev libavutil-dev libqhull-dev libmeshoptimizer-dev libassimp-dev liblcms2-dev libheif-dev libwebp-dev libraw-dev libseccomp-dev \
 	libcmocka-dev gnuplot-nox
 
-# Sanitised programs are built to be built fast: they run no longer for it.
-CFLAGS ?= $(if $(sanitised),-O1,-O3) -g
+# Sanitised programs are built to be built fast: they run no longer for it, and functions and lines are what a report needs.
+CFLAGS ?= $(if $(sanitised),-O1 -g1,-O3 -g)
 # The bridges' libraries are templates whose types would be four fifths of every program: lines suffice.
 CXXFLAGS ?= $(if $(sanitised),-O1,-O2) -g1
 WARN := -Wall -Wextra -Wpedantic -Werror

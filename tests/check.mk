@@ -62,7 +62,7 @@ stress: build $(STRESSES)
 
 # Fuzz targets need clang; what they reach is built anew with its instrumentation, in one archive. Its C is built with all warnings: a second
 # compiler's word on it (tests/syntax.sh).
-FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE
+FUZZ_FLAGS := -gline-tables-only -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -Ilib -I. -D_GNU_SOURCE
 FUZZ_OBJ := $(LIB_SRC:%.c=build-fuzz/%.o) build-fuzz/lib/bridge/om_mesh.o build-fuzz/lib/bridge/ai_scene.o
 FUZZERS := $(patsubst tests/fuzz/fuzz_%.c,build-fuzz/fuzz_%,$(wildcard tests/fuzz/fuzz_*.c))
 build-fuzz/%.o: %.c
