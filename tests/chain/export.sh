@@ -7,6 +7,10 @@ capture="$root/it's an eye"
 new_capture "$capture"
 cp "$PHOTO" "$capture/photos"
 sed -i 's/^quality.*/quality = review/' "$capture/capture.conf"
+# Pictures are drawn in passing: small ones. What is exported has sizes of its own.
+small=("render.size_px = 128" "render.photo_px = 128" "render.frames = 1" "render.frame_px = 64" "render.look_px = 128" "render.cell_px = 64"
+	"render.blink_frames = 3" "render.sheet_px = 300")
+printf '%s\n' "${small[@]}" >>"$capture/capture.conf"
 export=$capture/work/export
 
 run_make "$capture" export
@@ -49,7 +53,7 @@ face="$root/face"
 "$BIN/extrapolate" --capture="$face" --quiet >"$log" 2>&1
 mkdir "$face/photos"
 cp "$PHOTO" "$face/photos"
-grep -v '^quality' samples/demo/capture.conf >>"$face/capture.conf"
+{ grep -v '^quality' samples/demo/capture.conf; printf '%s\n' "${small[@]}"; } >>"$face/capture.conf"
 run_make "$face" export
 if command -v node >/dev/null; then
 	same "with a character, its lashes and tears stand round the eye" "$(node -e 'const d = require("fs").readFileSync(process.argv[1]), j = JSON.parse(d.subarray(20, 20 + d.readUInt32LE(12)));
