@@ -106,7 +106,8 @@ struct pose {
 	const int32_t (*skin_and_globes)[3];   // the faces of all
 };
 
-static bool open_at(const struct pose *p, int side, double x, double y)
+/* The first surface of a scene that the front sees at a place before an eyeball's centre, mm; at: out, where that is, the character's axes. Face < 0: none. */
+static struct ray_hit from_front(float at[3], const struct pose *p, const struct ray_scene *scene, int side, double x, double y)
 {
 	const double far = 4 * p->rig->globe[side].radius;
 	double from[3], along[3];
@@ -117,8 +118,17 @@ static bool open_at(const struct pose *p, int side, double x, double y)
 		origin[c] = (float)(p->rig->globe[side].center[c] + from[c]);
 		dir[c] = (float)along[c];
 	}
-	const struct ray_hit hit = ray_first(p->all, origin, dir, 0, (float)far);
-	return hit.face >= 0 && rig_is_globe(p->rig->part[p->rig->faces[hit.face][0]]);
+	const struct ray_hit hit = ray_first(scene, origin, dir, 0, (float)(2 * far));
+	for (int c = 0; c < 3; c++)
+		at[c] = origin[c] + hit.t * dir[c];
+	return hit;
+}
+
+static bool open_at(const struct pose *p, int side, double x, double y)
+{
+	float at[3];
+	const struct ray_hit hit = from_front(at, p, p->all, side, x, y);
+	return hit.face >= 0 && rig_is_globe(p->rig->part[p->skin_and_globes[hit.face][0]]);
 }
 
 static double edge_at(const struct pose *p, int side, double x, double open, double shut)
@@ -188,20 +198,9 @@ static double bend_of(const struct margins *m)
 /* The first surface that the front sees at a place: the point in the head's axes; its height over the turned eyeball. False: none. */
 static bool seen_at(double at[3], double *height, const struct pose *p, const struct ray_scene *scene, int side, double x, double y)
 {
-	const double far = 4 * p->rig->globe[side].radius;
-	double from[3], along[3];
-	float origin[3], dir[3], hit_at[3];
-	mat_tvec(from, p->rig->head_from_target, (double[]){ x, y, far });
-	mat_tvec(along, p->rig->head_from_target, (double[]){ 0, 0, -1 });
-	for (int c = 0; c < 3; c++) {
-		origin[c] = (float)(p->rig->globe[side].center[c] + from[c]);
-		dir[c] = (float)along[c];
-	}
-	const struct ray_hit hit = ray_first(scene, origin, dir, 0, (float)(2 * far));
-	if (hit.face < 0)
+	float hit_at[3];
+	if (from_front(hit_at, p, scene, side, x, y).face < 0)
 		return false;
-	for (int c = 0; c < 3; c++)
-		hit_at[c] = origin[c] + hit.t * dir[c];
 	into_head(at, p->rig, side, hit_at);
 	*height = rig_globe_distance(p->rig, side, p->turn[side], hit_at);
 	return true;
@@ -234,16 +233,9 @@ static double thickness_at(const struct pose *p, const struct ray_scene *skin, i
 /* Whether the front sees at a place what at rest looks at the eyeball. */
 static bool lines_lid(const struct pose *p, int side, double x, double y)
 {
-	const double far = 4 * p->rig->globe[side].radius;
-	double from[3], along[3], e[2][3], normal[3], away[3] = { 0 };
-	float origin[3], dir[3];
-	mat_tvec(from, p->rig->head_from_target, (double[]){ x, y, far });
-	mat_tvec(along, p->rig->head_from_target, (double[]){ 0, 0, -1 });
-	for (int c = 0; c < 3; c++) {
-		origin[c] = (float)(p->rig->globe[side].center[c] + from[c]);
-		dir[c] = (float)along[c];
-	}
-	const struct ray_hit hit = ray_first(p->all, origin, dir, 0, (float)(2 * far));
+	float at[3];
+	double e[2][3], normal[3], away[3] = { 0 };
+	const struct ray_hit hit = from_front(at, p, p->all, side, x, y);
 	if (hit.face < 0 || rig_is_globe(p->rig->part[p->skin_and_globes[hit.face][0]]))
 		return false;
 	const int32_t *v = p->skin_and_globes[hit.face];

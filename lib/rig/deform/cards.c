@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "mesh/kdtree.h"
+#include "mesh/closest.h"
 #include "mesh/topology.h"
 
 /* Of an eyeball of 12 mm, mm. */
@@ -22,95 +22,36 @@ static const double low_share = 0.25;      // of a piece's height over the skin:
 /* The skin, and a way to find it. */
 struct ground {
 	const struct rig *rig;
-	int n, *vertex, *start, *face;   // its vertices; the faces at each vertex of the rig
-	struct kdtree *tree;
+	struct topology about;          // of the whole mesh
+	struct mesh mesh;               // the skin's faces; the rig's vertices
+	struct closest_scene *scene;
 };
 
-/* The closest place of a face: weights of its corners, >= 0, sum 1. Returns the squared distance. (Ericson, Real-Time Collision Detection, 5.1.5.) */
-static double closest(double w[3], const struct rig *rig, const int32_t v[3], const float p[3])
+static struct closest_point onto(const struct ground *g, const float p[3])
 {
-	double ab[3], ac[3], ap[3], out = 0;
-	for (int c = 0; c < 3; c++) {
-		ab[c] = (double)rig->rest[v[1]][c] - (double)rig->rest[v[0]][c];
-		ac[c] = (double)rig->rest[v[2]][c] - (double)rig->rest[v[0]][c];
-		ap[c] = (double)p[c] - (double)rig->rest[v[0]][c];
-	}
-	const double d1 = vec_dot(ab, ap), d2 = vec_dot(ac, ap), bb = vec_dot(ab, ab), cc = vec_dot(ac, ac), bc = vec_dot(ab, ac);
-	const double d3 = d1 - bb, d4 = d2 - bc, d5 = d1 - bc, d6 = d2 - cc, va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-	double s = 0, t = 0;
-	if (d1 <= 0 && d2 <= 0)
-		s = t = 0;
-	else if (d3 >= 0 && d4 <= d3)
-		s = 1;
-	else if (d6 >= 0 && d5 <= d6)
-		t = 1;
-	else if (vc <= 0 && d1 >= 0 && d3 <= 0)
-		s = d1 / (d1 - d3);
-	else if (vb <= 0 && d2 >= 0 && d6 <= 0)
-		t = d2 / (d2 - d6);
-	else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-		t = (d4 - d3) / (d4 - d3 + d5 - d6);
-		s = 1 - t;
-	} else {
-		s = vb / (va + vb + vc);
-		t = vc / (va + vb + vc);
-	}
-	for (int c = 0; c < 3; c++)
-		out += (ap[c] - s * ab[c] - t * ac[c]) * (ap[c] - s * ab[c] - t * ac[c]);
-	w[0] = 1 - s - t;
-	w[1] = s;
-	w[2] = t;
-	return out;
+	return closest_find(g->scene, p, 0, 0, INFINITY, -1);
 }
 
-/* The face nearest to p, and where on it. Returns how far that is, mm. */
-static double onto(int *face, double w[3], const struct ground *g, const float p[3])
+static void ground_make(struct ground *g, const struct rig *rig, const int *piece, int skin)
 {
-	enum { NEAREST = 6 };
-	const int k = g->n < NEAREST ? g->n : NEAREST;
-	int index[NEAREST];
-	float d2[NEAREST];
-	double least = INFINITY;
-	kdtree_find(g->tree, 1, p, k, index, d2);
-	for (int i = 0; i < k; i++)
-		for (int j = g->start[g->vertex[index[i]]]; j < g->start[g->vertex[index[i]] + 1]; j++) {
-			double at[3];
-			const double d = closest(at, g->rig, g->rig->faces[g->face[j]], p);
-			if (!(d < least))
-				continue;
-			least = d;
-			*face = g->face[j];
-			memcpy(w, at, sizeof at);
-		}
-	return sqrt(least);
-}
-
-static struct ground ground_of(const struct rig *rig, const int *piece, int skin)
-{
-	struct ground g = { .rig = rig, .vertex = mem_array((size_t)rig->n + 1, sizeof *g.vertex), .start = mem_new((size_t)rig->n + 2, sizeof *g.start), .face = mem_array(3 * (size_t)rig->n_faces + 1, sizeof *g.face) };
-	for (int f = 0; f < 3 * rig->n_faces; f++)
-		g.start[rig->faces[f / 3][f % 3] + 2]++;
-	for (int i = 2; i <= rig->n + 1; i++)
-		g.start[i] += g.start[i - 1];
-	for (int f = 0; f < 3 * rig->n_faces; f++)
-		g.face[g.start[rig->faces[f / 3][f % 3] + 1]++] = f / 3;
-	float *at = mem_array((size_t)rig->n + 1, 3 * sizeof *at);
-	for (int i = 0; i < rig->n; i++)
-		if (piece[i] == skin && rig->part[i] == RIG_SKIN) {
-			memcpy(at + 3 * (size_t)g.n, rig->rest[i], 3 * sizeof *at);
-			g.vertex[g.n++] = i;
-		}
-	g.tree = kdtree_new(g.n, 3, at);
-	free(at);
-	return g;
+	*g = (struct ground){ .rig = rig, .mesh = { .n_vertices = rig->n, .vertices = rig->rest, .faces = mem_array((size_t)rig->n_faces + 1, sizeof *g->mesh.faces) } };
+	topology_make(&g->about, &(struct mesh){ .n_vertices = rig->n, .n_faces = rig->n_faces, .vertices = rig->rest, .faces = rig->faces });
+	for (int f = 0; f < rig->n_faces; f++) {
+		const int32_t *v = rig->faces[f];
+		bool is_skin = false;
+		for (int k = 0; k < 3; k++)
+			is_skin = is_skin || (piece[v[k]] == skin && rig->part[v[k]] == RIG_SKIN);
+		if (is_skin)
+			memcpy(g->mesh.faces[g->mesh.n_faces++], v, sizeof *g->mesh.faces);
+	}
+	g->scene = closest_new(&g->mesh, 0);
 }
 
 static void ground_free(struct ground *g)
 {
-	free(g->vertex);
-	free(g->start);
-	free(g->face);
-	kdtree_free(g->tree);
+	closest_free(g->scene);
+	topology_free(&g->about);
+	free(g->mesh.faces);
 }
 
 static double apart(const struct rig *rig, int i, const double at[3])
@@ -145,22 +86,21 @@ static int nearer_first(const void *p, const void *q)
 }
 
 /* The skin about a place of a face: that face's corners, and what its edges lead to within reach. */
-static struct deform_root root_of(const struct ground *g, int face, const double w[3], double reach)
+static struct deform_root root_of(const struct ground *g, const struct closest_point *on, double reach)
 {
 	struct deform_root r = { .n = 3 };
 	struct found found = { 0 };
-	const int32_t *v = g->rig->faces[face];
-	for (int c = 0; c < 9; c++)
-		r.at[c % 3] += w[c / 3] * (double)g->rig->rest[v[c / 3]][c % 3];
+	const int32_t *v = g->mesh.faces[on->face];
 	for (int k = 0; k < 3; k++) {
+		r.at[k] = (double)on->at[k];
 		r.vertex[k] = v[k];
-		r.foot[k] = (float)w[k];
-		find(&found, g, v[k], r.at, reach);
+		r.foot[k] = on->bary[k];
 	}
+	for (int k = 0; k < 3; k++)
+		find(&found, g, v[k], r.at, reach);
 	for (int k = 0; k < found.n; k++)
-		for (int j = g->start[found.of[k].vertex]; j < g->start[found.of[k].vertex + 1]; j++)
-			for (int q = 0; q < 3; q++)
-				find(&found, g, g->rig->faces[g->face[j]][q], r.at, reach);
+		for (int j = g->about.start[found.of[k].vertex]; j < g->about.start[found.of[k].vertex + 1]; j++)
+			find(&found, g, g->about.neighbour[j], r.at, reach);
 	qsort(found.of, (size_t)found.n, sizeof *found.of, nearer_first);
 	for (int k = 0; k < found.n && r.n < DEFORM_PATCH; k++)
 		if (found.of[k].vertex != v[0] && found.of[k].vertex != v[1] && found.of[k].vertex != v[2])
@@ -224,24 +164,20 @@ static void find_heights(struct piece *of, float *off, const struct ground *g, c
 {
 	for (int i = 0; i < g->rig->n; i++) {
 		struct piece *p = &of[piece[i]];
-		int face;
-		double w[3];
 		if (!p->n || !p->near)
 			continue;
-		off[i] = (float)onto(&face, w, g, g->rig->rest[i]);
+		const struct closest_point on = onto(g, g->rig->rest[i]);
+		off[i] = on.face < 0 ? INFINITY : on.distance;
 		p->least = fminf(p->least, off[i]);
 		p->most = fmaxf(p->most, off[i]);
 	}
 }
 
-/* Whether one of the roots from `first` on is there already: w are the weights of a face's corners. */
-static bool near_another(const struct deform_cards *cards, int first, const struct rig *rig, const int32_t v[3], const double w[3], double reach)
+/* Whether one of the roots from `first` on is there already. */
+static bool near_another(const struct deform_cards *cards, int first, const float at[3], double reach)
 {
-	double at[3] = { 0 };
-	for (int c = 0; c < 9; c++)
-		at[c % 3] += w[c / 3] * (double)rig->rest[v[c / 3]][c % 3];
 	for (int k = first; k < cards->n_roots; k++) {
-		const double *r = cards->root[k].at, d[3] = { r[0] - at[0], r[1] - at[1], r[2] - at[2] };
+		const double *r = cards->root[k].at, d[3] = { r[0] - (double)at[0], r[1] - (double)at[1], r[2] - (double)at[2] };
 		if (vec_norm(d) < reach)
 			return true;
 	}
@@ -254,15 +190,13 @@ static void take(struct deform_cards *cards, const struct ground *g, const int *
 	const double unit = rig->globe[rig->side[member[0]]].radius / 12, low = p->least + low_share * (p->most - p->least);
 	const int first = cards->n_roots;
 	for (int k = 0; k < n; k++) {
-		int face;
-		double w[3];
 		if (!(off[member[k]] <= low))
 			continue;
-		onto(&face, w, g, rig->rest[member[k]]);
-		if (near_another(cards, first, rig, rig->faces[face], w, apart_mm * unit))
+		const struct closest_point on = onto(g, rig->rest[member[k]]);
+		if (near_another(cards, first, on.at, apart_mm * unit))
 			continue;
 		cards->root = mem_grow(cards->root, (size_t)cards->n_roots + 1, sizeof *cards->root);
-		cards->root[cards->n_roots++] = root_of(g, face, w, patch_mm * unit);
+		cards->root[cards->n_roots++] = root_of(g, &on, patch_mm * unit);
 	}
 	cards->carried = mem_grow(cards->carried, (size_t)(cards->n + n), sizeof *cards->carried);
 	for (int k = 0; k < n; k++)
@@ -283,9 +217,10 @@ static int largest(const struct rig *rig, const int *piece)
 /* Those among the pieces that stand on the skin. */
 static void take_standing(struct deform_cards *cards, struct piece *of, const struct rig *rig, const int *piece, int skin)
 {
-	struct ground g = ground_of(rig, piece, skin);
+	struct ground g;
 	int *member = mem_array((size_t)rig->n + 1, sizeof *member), *start = mem_new((size_t)rig->n + 2, sizeof *start);
 	float *off = mem_new((size_t)rig->n + 1, sizeof *off);
+	ground_make(&g, rig, piece, skin);
 	find_heights(of, off, &g, piece);
 	for (int i = 0; i < rig->n; i++)
 		start[piece[i] + 2]++;

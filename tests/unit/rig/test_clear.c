@@ -39,80 +39,93 @@ static double least_of(const struct rig *rig, const float (*x)[3], const int32_t
 	return least;
 }
 
-static void edges_are_lifted_off_the_eye(void **state)
-{
-	(void)state;
+/* A made character at rest, its eyes straight. */
+struct scene {
 	struct face face;
 	struct rig rig;
+	struct deform_near near;
+	float (*x)[3];
+	double turn[2][3][3];
+};
+
+static int setup(void **state)
+{
+	struct scene *s = calloc(1, sizeof *s);
 	struct rig_conf conf = face_conf();
 	struct err err = { 0 };
-	face_make(&face, false);
+	face_make(&s->face, false);
 	conf.map_step = 4;
-	assert_true(face_rig(&rig, 0, &face, &conf, &err));
-	struct deform_near near = deform_near_of(&rig);
-	float (*x)[3] = calloc((size_t)rig.n, sizeof *x);
-	double turn[2][3][3];
+	if (!face_rig(&s->rig, 0, &s->face, &conf, &err))
+		return 1;
+	s->near = deform_near_of(&s->rig);
+	s->x = calloc((size_t)s->rig.n, sizeof *s->x);
+	for (int e = 0; e < 2; e++)
+		rig_globe_rotation(s->turn[e], &s->rig, straight);
+	*state = s;
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	struct scene *s = *state;
+	free(s->x);
+	deform_near_free(&s->near);
+	rig_free(&s->rig);
+	face_free(&s->face);
+	free(s);
+	return 0;
+}
+
+static void edges_are_lifted_off_the_eye(void **state)
+{
+	struct scene *s = *state;
+	const struct rig *rig = &s->rig;
+	float (*x)[3] = s->x;
 	int tried = 0;
-	assert_true(near.n > 0);
-	for (int s = 0; s < 2; s++)
-		rig_globe_rotation(turn[s], &rig, straight);
-	for (int i = 0; i < near.n && tried < 6; i++) {
-		const int32_t *v = rig.faces[near.face[i]];
-		if (!near.moves[v[0]] || !near.moves[v[1]] || !near.moves[v[2]])
+	assert_true(s->near.n > 0);
+	for (int i = 0; i < s->near.n && tried < 6; i++) {
+		const int32_t *v = rig->faces[s->near.face[i]];
+		if (!s->near.moves[v[0]] || !s->near.moves[v[1]] || !s->near.moves[v[2]])
 			continue;
 		// As it is, outside of a lid; turned round, what lines one.
 		int32_t turned[3] = { v[0], v[tried % 2 ? 2 : 1], v[tried % 2 ? 1 : 2] };
-		memcpy(rig.faces[near.face[i]], turned, sizeof turned);
-		struct deform_near one = { .n = 1, .face = &near.face[i], .moves = near.moves, .rooms = near.rooms };
-		memcpy(x, rig.rest, (size_t)rig.n * sizeof *x);
-		put_on_globe(x, &rig, v, 0.4);
-		assert_true(least_of(&rig, (const float(*)[3])x, v) < -0.1);
-		deform_clear(x, &rig, &one, (const double(*)[3][3])turn);
-		assert_true(least_of(&rig, (const float(*)[3])x, v) > 0);
-		NEAR(least_of(&rig, (const float(*)[3])x, v), DEFORM_CLEAR_MM, 0.1);  // and no further than that takes
-		for (int k = 0; k < rig.n; k++)
+		memcpy(rig->faces[s->near.face[i]], turned, sizeof turned);
+		struct deform_near one = { .n = 1, .face = &s->near.face[i], .moves = s->near.moves, .rooms = s->near.rooms };
+		memcpy(x, rig->rest, (size_t)rig->n * sizeof *x);
+		put_on_globe(x, rig, v, 0.4);
+		assert_true(least_of(rig, (const float(*)[3])x, v) < -0.1);
+		deform_clear(x, rig, &one, (const double(*)[3][3])s->turn);
+		assert_true(least_of(rig, (const float(*)[3])x, v) > 0);
+		NEAR(least_of(rig, (const float(*)[3])x, v), DEFORM_CLEAR_MM, 0.1);  // and no further than that takes
+		for (int k = 0; k < rig->n; k++)
 			if (k != v[0] && k != v[1] && k != v[2])
-				assert_memory_equal(x[k], rig.rest[k], sizeof x[k]);
+				assert_memory_equal(x[k], rig->rest[k], sizeof x[k]);
 		tried++;
 	}
 	assert_int_equal(tried, 6);
-	free(x);
-	deform_near_free(&near);
-	rig_free(&rig);
-	face_free(&face);
 }
 
 /* What lines a lid goes no further than half of the way to its outside, however deep it lies: a face far in the eye, another 0.6 mm over it. */
 static void linings_stay_below_lids(void **state)
 {
-	(void)state;
-	struct face face;
-	struct rig rig;
-	struct rig_conf conf = face_conf();
-	struct err err = { 0 };
-	face_make(&face, false);
-	conf.map_step = 4;
-	assert_true(face_rig(&rig, 0, &face, &conf, &err));
-	struct deform_near near = deform_near_of(&rig);
-	float (*x)[3] = calloc((size_t)rig.n, sizeof *x);
-	double turn[2][3][3];
+	struct scene *s = *state;
+	const struct rig *rig = &s->rig;
+	float (*x)[3] = s->x;
 	int pair[2] = { -1, -1 };
-	for (int s = 0; s < 2; s++)
-		rig_globe_rotation(turn[s], &rig, straight);
-	for (int i = 0; i < near.n && pair[1] < 0; i++) {
-		const int32_t *v = rig.faces[near.face[i]], *w = pair[0] < 0 ? 0 : rig.faces[near.face[pair[0]]];
-		bool apart = near.moves[v[0]] && near.moves[v[1]] && near.moves[v[2]];
+	for (int i = 0; i < s->near.n && pair[1] < 0; i++) {
+		const int32_t *v = rig->faces[s->near.face[i]], *w = pair[0] < 0 ? 0 : rig->faces[s->near.face[pair[0]]];
+		bool apart = s->near.moves[v[0]] && s->near.moves[v[1]] && s->near.moves[v[2]];
 		for (int k = 0; k < 9 && w; k++)
-			apart = apart && v[k / 3] != w[k % 3] && rig.side[v[0]] == rig.side[w[0]];
+			apart = apart && v[k / 3] != w[k % 3] && rig->side[v[0]] == rig->side[w[0]];
 		if (apart)
 			pair[w != 0] = i;
 	}
 	assert_true(pair[1] >= 0);
-	const int32_t *v = rig.faces[near.face[pair[0]]], *over = rig.faces[near.face[pair[1]]];
-	const double *center = rig.globe[rig.side[v[0]]].center;
-	memcpy(x, rig.rest, (size_t)rig.n * sizeof *x);
-	put_on_globe(x, &rig, v, 0.7);
-	put_on_globe(x, &rig, over, 1.2);  // wide, over all of it
+	const int32_t *v = rig->faces[s->near.face[pair[0]]], *over = rig->faces[s->near.face[pair[1]]];
+	const double *center = rig->globe[rig->side[v[0]]].center;
+	memcpy(x, rig->rest, (size_t)rig->n * sizeof *x);
+	put_on_globe(x, rig, v, 0.7);
+	put_on_globe(x, rig, over, 1.2);  // wide, over all of it
 	for (int k = 0; k < 3; k++) {
 		double d[3], far, lift;
 		for (int c = 0; c < 3; c++)
@@ -122,8 +135,8 @@ static void linings_stay_below_lids(void **state)
 		for (int c = 0; c < 3; c++)
 			x[over[k]][c] += (float)(lift * d[c] / far);
 	}
-	int faces[2] = { near.face[pair[0]], near.face[pair[1]] };
-	struct deform_near both = { .n = 2, .face = faces, .moves = near.moves, .rooms = near.rooms };
+	int faces[2] = { s->near.face[pair[0]], s->near.face[pair[1]] };
+	struct deform_near both = { .n = 2, .face = faces, .moves = s->near.moves, .rooms = s->near.rooms };
 	float was[3][3];
 	double room[3];
 	for (int k = 0; k < 3; k++) {  // along each corner's way off, to the plane of the face over it
@@ -140,28 +153,24 @@ static void linings_stay_below_lids(void **state)
 		room[k] = vec_dot(o, n) / vec_dot(d, n);
 		assert_true(room[k] > 0);
 	}
-	memcpy(rig.faces[faces[0]], (int32_t[]){ v[0], v[2], v[1] }, sizeof *rig.faces);
+	memcpy(rig->faces[faces[0]], (int32_t[]){ v[0], v[2], v[1] }, sizeof *rig->faces);
 	for (int k = 0; k < 9; k++)
-		rig.normal[v[k / 3]][k % 3] = (float)((center[k % 3] - (double)rig.rest[v[k / 3]][k % 3]) / rig.globe[0].radius);
-	deform_clear(x, &rig, &both, (const double(*)[3][3])turn);
+		rig->normal[v[k / 3]][k % 3] = (float)((center[k % 3] - (double)rig->rest[v[k / 3]][k % 3]) / rig->globe[0].radius);
+	deform_clear(x, rig, &both, (const double(*)[3][3])s->turn);
 	for (int k = 0; k < 3; k++) {
 		double by[3];
 		for (int c = 0; c < 3; c++)
-			by[c] = (double)x[rig.faces[faces[0]][k]][c] - (double)was[k == 0 ? 0 : 3 - k][c];
+			by[c] = (double)x[rig->faces[faces[0]][k]][c] - (double)was[k == 0 ? 0 : 3 - k][c];
 		print_message("moved by %.3f mm of %.3f\n", vec_norm(by), room[k == 0 ? 0 : 3 - k]);
-		assert_true(vec_norm(by) > 0.2 && vec_norm(by) < fmin(0.5 * room[k == 0 ? 0 : 3 - k], 0.5 * rig.globe[0].radius / 12) + 0.01);  // the other one gives way, too
+		assert_true(vec_norm(by) > 0.2 && vec_norm(by) < fmin(0.5 * room[k == 0 ? 0 : 3 - k], 0.5 * rig->globe[0].radius / 12) + 0.01);  // the other one gives way, too
 	}
-	free(x);
-	deform_near_free(&near);
-	rig_free(&rig);
-	face_free(&face);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(edges_are_lifted_off_the_eye),
-		cmocka_unit_test(linings_stay_below_lids),
+		cmocka_unit_test_setup_teardown(edges_are_lifted_off_the_eye, setup, teardown),
+		cmocka_unit_test_setup_teardown(linings_stay_below_lids, setup, teardown),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
