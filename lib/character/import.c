@@ -2,7 +2,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/apart.h"
 #include "base/file.h"
@@ -15,25 +14,6 @@
 enum { TEXTURE_MAX = 256 << 20 };
 static const size_t FILE_MOST = (size_t)1 << 30;
 
-static bool ends(const char *name, const char *end)
-{
-	const size_t n = strlen(name), k = strlen(end);
-	return n > k && !strcmp(name + n - k, end);
-}
-
-/* Whether a line that begins with `word` stands in data before one that begins with `stop`, null: anywhere. */
-static bool has_line(const char *data, size_t size, const char *word, const char *stop)
-{
-	for (const char *at = data; at; at = memchr(at, '\n', (size_t)(data + size - at))) {
-		at += *at == '\n';
-		if (!strncmp(at, word, strlen(word)))
-			return true;
-		if (stop && !strncmp(at, stop, strlen(stop)))
-			return false;
-	}
-	return false;
-}
-
 bool character_has_look(const char *path)
 {
 	char *data;
@@ -43,10 +23,7 @@ bool character_has_look(const char *path)
 		return character_kind_of(path) == CHARACTER_SCENE;
 	if (!file_read(&data, &size, path, FILE_MOST, &none))
 		return false;
-	// Assimp keeps one pair of coordinates a vertex: seams of a PLY that gives them to its faces' corners would be lost.
-	const bool found = ends(path, ".obj") ? has_line(data, size, "mtllib ", 0)
-	                                      : has_line(data, size, "comment TextureFile ", "end_header")
-	                                            && !has_line(data, size, "property list uchar float texcoord", "end_header");
+	const bool found = character_names_look(path, data, size);
 	free(data);
 	return found;
 }

@@ -23,6 +23,7 @@ struct plan_row {
 	char *setting;       // chosen from the measured fronts; null: the preset. Owned by the plan
 };
 
+struct plan_skin;
 struct plan {
 	const char *capture;
 	struct plan_row rows[PLAN_STAGES];
@@ -36,6 +37,8 @@ struct plan {
 	double kframes;      // thousand frames of the video, as its header promises
 	double clip_kframes; // of what is rendered of each character: the first minute of the video, and a script, taken to be as long
 	char asked[64];      // "error = 0.05 mm", or ""
+	int n_skins;
+	struct plan_skin *skins;  // of the characters that are driven (skin.h)
 	char listing[33];    // hash of the names that decide
 };
 

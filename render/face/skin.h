@@ -114,6 +114,11 @@ struct skin_target {
 	double film_rgb[3];               // its median albedo then
 	struct hair_film *film_hair;      // lashes and brows that it shows; null: average ones
 	float (*film_place)[3];           // [own vertices] where the character's skin lies on the person, mm
+	struct skin_told {                // where its skin comes from
+		const char *from;             // "own", "video", "one colour": plan/skin.h
+		struct err why;               // a sentence
+		double seen, mirrored;        // of "video": shares of the face near the eyes that the film shows, and its other half stands in for
+	} told;
 	const char *in[40];               // inputs that all its pictures have in common
 	int n_in;
 };
@@ -150,6 +155,9 @@ bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv,
  * for it all the same. */
 void skin_film(struct skin_target *target, struct stage *stage, const struct skin_conf *conf);
 bool skin_of_film(struct skin_job *job, struct skin_target *target, struct err *err);
+
+/* Writes work/render/NAME_skin.json: where its skin comes from, and why, for the page. */
+bool skin_told_save(struct skin_job *job, struct skin_target *target, struct err *err);
 
 /* Hands the look that skin_of_film made to the job, unless it has one: skin_of_film gives it to the next target of that name. Portrait and dress, which use it, are freed. */
 void skin_film_keep(struct skin_job *job, struct skin_target *target);

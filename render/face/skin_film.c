@@ -1,5 +1,7 @@
 /* Skin of the person in the film for a character that has no colours of its own (lib/draw/complexion). */
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,33 +24,76 @@ static const char *inside(struct stage *stage, const char *path)
 	return path + strlen(stage->capture) + 1;
 }
 
+__attribute__((format(printf, 3, 4)))
+static void tell(struct skin_target *t, const char *from, const char *fmt, ...)
+{
+	va_list ap;
+	va_start(ap, fmt);
+	t->told = (struct skin_told){ .from = from };
+	vsnprintf(t->told.why.msg, sizeof t->told.why.msg, fmt, ap);
+	va_end(ap);
+}
+
+static const char own[] = "own", video[] = "video", one_colour[] = "one colour";
+
+/* Why it has one colour where that is asked for: by capture.conf, or by the preset. */
+static void tell_plain(struct skin_target *t, struct stage *stage)
+{
+	const struct conf_item *said = conf_find(&stage->conf, "render.skin", 0), *quality = conf_find(&stage->conf, "quality", 0);
+	const bool preset = !(said && said->layer) && quality;
+	tell(t, one_colour, "its file brings no materials, and render.skin = plain%s%s", preset ? ", as the preset has it: quality = " : "", preset ? quality->value : "");
+}
+
+/* What the character's skin needs of the film. False where a file is not there: missing, to be freed. */
+static bool has_film(char **missing, struct skin_target *t, struct stage *stage)
+{
+	static const char *const beside[] = { "registered.ply", "registration.json" };
+	for (int i = 0; i < TRACKED_FILES + COUNT(beside); i++) {
+		*missing = i < TRACKED_FILES ? mem_str(tracked_files[i]) : mem_printf("work/targets/%s/%s", t->name, beside[i - TRACKED_FILES]);
+		if (!file_exists(stage_path(stage, "%s", *missing)))
+			return false;
+		t->in[t->n_in++] = inside(stage, stage_path(stage, "%s", *missing));
+		free(*missing);
+	}
+	return true;
+}
+
+/* The files that the two of them name: in the capture, and there. */
+static bool is_inside(struct stage *stage, const char *rel)
+{
+	return rel && !strstr(rel, "..") && *rel != '/' && file_exists(stage_path(stage, "%s", rel));
+}
+
 void skin_film(struct skin_target *t, struct stage *stage, const struct skin_conf *conf)
 {
-	const char *beside[] = { "registered.ply", "registration.json" };
 	struct err none = { 0 }, nor = { 0 };
-	if (t->look_path || conf->source == SKIN_PLAIN || !t->name)
+	char *missing;
+	const int n = t->n_in;
+	if (!t->name)
 		return;
-	for (int i = 0; i < TRACKED_FILES; i++)
-		if (!file_exists(stage_path(stage, "%s", tracked_files[i]))) {
-			stage_skipped_as_said(stage, "skin of %s from a video: %s is not there: its skin has one colour", t->name, tracked_files[i]);
-			return;
-		}
-	for (int i = 0; i < COUNT(beside); i++)
-		if (!file_exists(stage_path(stage, "work/targets/%s/%s", t->name, beside[i])))
-			return;
+	if (t->look_path)
+		tell(t, own, "as its file has it");
+	else if (conf->source == SKIN_PLAIN)
+		tell_plain(t, stage);
+	if (t->told.from)
+		return;
+	if (!has_film(&missing, t, stage)) {
+		stage_skipped_as_said(stage, "skin of %s from a video: %s is not there: its skin has one colour", t->name, missing);
+		tell(t, one_colour, "its file brings no materials, and of the video %s is not there", missing);
+		free(missing);
+		t->n_in = n;
+		return;
+	}
 	json_t *track = json_read(stage_path(stage, "%s", tracked_files[TRACKED_JSON]), 1 << 24, &none);
 	json_t *laid = json_read(stage_path(stage, "work/targets/%s/registration.json", t->name), 1 << 24, &nor);
-	const char *video = json_string_value(json_object_get(track, "video")), *subject = json_string_value(json_object_get(laid, "subject"));
-	if (video && subject && !strstr(video, "..") && !strstr(subject, "..") && *video != '/' && *subject != '/' && file_exists(stage_path(stage, "%s", video))
-	    && file_exists(stage_path(stage, "%s", subject))) {
-		t->film = inside(stage, stage_path(stage, "%s", video));
-		t->subject = inside(stage, stage_path(stage, "%s", subject));
-		t->in[t->n_in++] = t->film;
-		t->in[t->n_in++] = t->subject;
-		for (int i = 0; i < TRACKED_FILES; i++)
-			t->in[t->n_in++] = tracked_files[i];
-		for (int i = 0; i < COUNT(beside); i++)
-			t->in[t->n_in++] = inside(stage, stage_path(stage, "work/targets/%s/%s", t->name, beside[i]));
+	const char *film = json_string_value(json_object_get(track, "video")), *subject = json_string_value(json_object_get(laid, "subject"));
+	if (is_inside(stage, film) && is_inside(stage, subject)) {
+		t->in[t->n_in++] = t->film = inside(stage, stage_path(stage, "%s", film));
+		t->in[t->n_in++] = t->subject = inside(stage, stage_path(stage, "%s", subject));
+		tell(t, video, "of the person in %s", t->film);
+	} else {
+		t->n_in = n;
+		tell(t, one_colour, "its file brings no materials, and the video or the mesh that were followed are not there");
 	}
 	json_decref(track);
 	json_decref(laid);
@@ -293,6 +338,7 @@ bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 		return err_set(err, "skin of %s from %s: %s", t->name, t->film, why.msg);
 	if (!ok) {
 		stage_skipped(job->stage, "skin of %s from %s: %s: it has one colour", t->name, t->film, why.msg);
+		tell(t, one_colour, "its file brings no materials, and %s does not give it: %s", t->film, why.msg);
 		return true;
 	}
 	stage_note(job->stage, "%s: skin of %s: %.0f %% of the face near the eyes in the film, %.0f %% more on its other half; albedo %.3f %.3f %.3f by %s", t->name,
@@ -303,6 +349,10 @@ bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
 		           lash[HAIR_UPPER].reach * t->film_hair->radius / 12, lash[HAIR_LOWER].reach * t->film_hair->radius / 12);
 	stage_figure(job->stage, "skin_seen", r.seen, "share of the face near the eyes that the film shows");
 	stage_figure(job->stage, "skin_grain", r.grain, "rms of the skin's grain, ln");
+	tell(t, video, "of the person in %s, which shows %.0f %% of the face near the eyes; for %.0f %% more its other half stands in, the rest is drawn from its statistics; its light was taken off by %s",
+	     t->film, 100 * r.seen, 100 * r.mirrored, r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
+	t->told.seen = r.seen;
+	t->told.mirrored = r.mirrored;
 	memcpy(t->film_rgb, r.rgb, sizeof t->film_rgb);
 	t->dress = dress_new(&t->look, job->conf->texture_px, &why);
 	return true;

@@ -56,7 +56,7 @@ static struct inputs inputs(const struct capture *capture, const struct file_lis
 		add(&in, "%s/%s_compare.json", capture->eyes[p->eye].render, p->name);
 	}
 	static const char *const skin[] = { "gaze.csv", "track.json", "model.json", "track.png", "wrinkles.png", "curves.svg" };
-	static const char *const driven[] = { "_look.png", "_sheet.png", "_blink.png", "_expressions.png", "_clip.mp4", "_script.mp4", ".glb" };
+	static const char *const driven[] = { "_look.png", "_sheet.png", "_blink.png", "_expressions.png", "_skin.json", "_clip.mp4", "_script.mp4", ".glb" };
 	for (int i = 0; i < COUNT(skin); i++)
 		add(&in, "work/skin/%s", skin[i]);
 	add(&in, "work/render/track.mp4");

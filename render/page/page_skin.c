@@ -121,6 +121,19 @@ static json_t *expressions_title(struct page *page)
 	return out;
 }
 
+/* Where its skin comes from, and why; null: not known. */
+static json_t *skin_from(struct page *page, const char *name)
+{
+	json_t *told = page_json(page, page_file(page, "work/render/%s_skin.json", name));
+	const char *from = json_string_value(json_object_get(told, "skin")), *why = json_string_value(json_object_get(told, "reason"));
+	const bool video = from && !strcmp(from, "video");
+	char *text = from && why ? mem_printf("%s%s%s", video ? "" : !strcmp(from, "own") ? "its own" : from, video ? "" : ": ", why) : 0;
+	json_t *out = text ? page_sentence(text) : 0;
+	free(text);
+	json_decref(told);
+	return out;
+}
+
 static json_t *target(struct page *page, const char *name)
 {
 	static const char *const stills[][3] = {
@@ -151,6 +164,7 @@ static json_t *target(struct page *page, const char *name)
 	if (glb && !stat(glb, &st))
 		add(entry, "glb", page_text("work/render/%s.glb, %.1f MB", name, (double)st.st_size / 1e6));
 	add(entry, "name", template_text(name));
+	add(entry, "worn", skin_from(page, name));
 	add(entry, "pictures", pictures);
 	add(entry, "clips", clips);
 	check_sockets(page, name);

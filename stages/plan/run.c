@@ -11,6 +11,7 @@
 #include "base/work.h"
 #include "plan.h"
 #include "plan/setting.h"
+#include "plan/skin.h"
 #include "stages/plan/mirror.h"
 
 static char *slice_of(const struct opt opts[PLAN_OPTS], const struct conf *conf)
@@ -92,7 +93,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 	struct plan plan = { 0 };
 	char *slice = slice_of(opts, conf);
 	bool ok = work_check(call->capture, err) && plan_decide(&plan, call->capture, cost, conf, err)
-	          && work_enter(call->capture, err) && settle(&plan, cost, call, conf, err) && keys_check_names(conf, call->capture, err)
+	          && work_enter(call->capture, err) && settle(&plan, cost, call, conf, err) && plan_skins(&plan, call->config_dir, conf, err) && keys_check_names(conf, call->capture, err)
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
@@ -105,6 +106,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 		*fresh = plan_request(&plan, call);
 	for (int i = 0; i < PLAN_STAGES; i++)
 		free(plan.rows[i].setting);
+	plan_skins_free(&plan);
 	if (ok && !plan.n_run)
 		return err_set(err, "%s: nothing to run: %s", call->capture, plan.rows[plan_stage_find("limbus")].reason);
 	return ok;

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "base/record_holds.h"
 #include "plan.h"
+#include "plan/skin.h"
 
 bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *stage, struct err *err)
 {
@@ -104,6 +105,13 @@ void plan_show(const struct plan *plan, const struct call *call)
 		printf("video: %.0f frames\n", 1e3 * plan->kframes);
 	if (plan->n_characters)
 		printf("characters: %d\n", plan->n_characters);
+	for (int i = 0; i < plan->n_skins; i++) {
+		const struct plan_skin *s = &plan->skins[i];
+		fputs("skin of ", stdout);
+		for (const char *c = s->file; *c; c++)
+			putchar((unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c);
+		printf(": %s: %s\n", !strcmp(s->from, "own") ? "its own" : !strcmp(s->from, "video") ? "the person's in the video" : s->from, s->why);
+	}
 	if (sum > 0)
 		printf("about %.1f s to do, in %.0f MiB of memory\n", sum, peak);
 	else

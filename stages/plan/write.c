@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "base/version.h"
 #include "plan.h"
+#include "plan/skin.h"
 
 /* Writes a file only when its bytes differ. */
 static bool write_new(const char *path, const char *text, struct err *err)
@@ -45,8 +46,14 @@ static bool write_json(const struct plan *plan, const char *slice, struct err *e
 		json_array_append_new(stages, json_pack("{s:s,s:b,s:s,s:f,s:f,s:s*}", "name", row->name, "run", row->run, "reason",
 		                                        row->reason, "seconds", round(100 * row->seconds) / 100, "peak_mib", round(row->peak_mib), "setting", row->setting));
 	}
-	json_t *json = json_pack("{s:o,s:o,s:s*}", "made_by", made_by(plan, slice), "stages", stages, "asked",
-	                         *plan->asked ? plan->asked : 0);
+	json_t *characters = json_array();
+	for (int i = 0; i < plan->n_skins; i++) {
+		const struct plan_skin *s = &plan->skins[i];
+		json_t *file = json_string(s->file);
+		json_array_append_new(characters, json_pack("{s:o,s:s,s:s}", "file", file ? file : json_string("(name is not UTF-8)"), "skin", s->from, "reason", s->why));
+	}
+	json_t *json = json_pack("{s:o,s:o,s:s*,s:o}", "made_by", made_by(plan, slice), "stages", stages, "asked",
+	                         *plan->asked ? plan->asked : 0, "characters", characters);
 	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS | JSON_REAL_PRECISION(6));
 	char *path = mem_printf("%s/work/plan.json", plan->capture);
 	bool ok = write_new(path, text, err);

@@ -10,8 +10,12 @@ mkdir -p "$capture"
 cp -r samples/face/{video,targets,script,subject.ply,capture.conf} "$capture"
 printf "quality = draft\nrender.skin = auto\n" >>"$capture/capture.conf"
 
+run_make "$capture" plan
+check "plan says where the character's skin will come from" grep -q "^skin of targets/mpfb.obj: the person's in the video: " "$log"
 run_make "$capture"
 same "make on a video, a mesh and a character" "$?" 0
+told() { grep -q "\"skin\": \"$1\"" "$capture/work/render/mpfb_skin.json" && grep -q "Skin: $2" "$capture/work/review/index.html"; }
+check "the page says where it has come from" told video "of the person in video/face.mp4, which shows [0-9]* % of the face"
 same "runs the skin column and nothing of the photographs'" "$(ran | tr ' ' '\n' | grep -xE 'limbus|unrefract|freckles|relief' | tr '\n' ' ')" ""
 for file in look.png sheet.png blink.png clip.mp4; do
 	check "work/render/mpfb_$file is there" test -s "$capture/work/render/mpfb_$file"
@@ -34,6 +38,9 @@ same "another gaze runs render alone" "$? $(ran)" "0 render"
 sed -i "s/^render.skin.*/render.skin = plain/" "$capture/capture.conf"
 run_make "$capture"
 same "skin of one colour runs render alone" "$? $(ran)" "0 render"
+check "plan says so, and why" sh -c "'$BIN/plan' --capture='$capture' --show | grep -q '^skin of targets/mpfb.obj: one colour: .*render.skin = plain$'"
+check "and its file" sh -c "tr -d '\n' <'$capture/work/plan.json' | grep -q '\"characters\": \[[^]]*\"skin\": \"one colour\"'"
+check "the page, too" told "one colour" "one colour: its file brings no materials, and render.skin = plain"
 check "which leaves without textures of skin" sh -c "! grep -aq '\"skin_colour\"' '$capture/work/render/mpfb.glb'"
 
 # A mesh that is not where the video has it cannot be asked of for its skin; auto does without, and says so.
@@ -42,5 +49,6 @@ sed -i 's/"width": 1280/"width": 1281/' "$capture/work/skin/track.json"
 sed -i 's/^render.skin.*/render.skin = auto/' "$capture/capture.conf"
 "$BIN/render" --capture="$capture" >"$log" 2>&1 </dev/null
 same "a video that is not the one followed: render without it" "$? $(grep -c 'the video is not the one that was followed: it has one colour' "$log")" "0 2"
+check "which the page says, too" told "one colour" "one colour: .*the video is not the one that was followed"
 "$BIN/render" --capture="$capture" --skin=video >"$log" 2>&1 </dev/null
 same "asked for all the same: an error in one line" "$? $(grep -c 'error\|skin of mpfb from video/face.mp4' "$log")" "1 1"

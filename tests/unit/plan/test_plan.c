@@ -2,6 +2,7 @@
 #include "tests/lib/unit.h"
 
 #include <glob.h>
+#include <unistd.h>
 
 #include "base/conf.h"
 #include "base/file.h"
@@ -9,6 +10,7 @@
 #include "plan/decide.h"
 #include "plan/meshes.h"
 #include "plan/setting.h"
+#include "plan/skin.h"
 #include "tests/lib/scratch.h"
 
 static int teardown(void **state)
@@ -300,6 +302,47 @@ static void a_time_is_kept_where_it_can_be(void **state)
 	}
 }
 
+/* What plan says of a character's skin. The expected texts' beginnings are the manual's (README.md, config/render.conf). */
+static void a_characters_skin_is_told_beforehand(void **state)
+{
+	(void)state;
+	static const struct { const char *file, *text, *conf, *from, *why; } cases[] = {
+		{ "a.obj", "v 0 0 0\n", "", "video", "no materials" },
+		{ "a.obj", "v 0 0 0\n", "quality = draft\n", "one colour", "render.skin = plain at quality = draft" },
+		{ "a.obj", "v 0 0 0\n", "quality = draft\nrender.skin = auto\n", "video", "about them, one colour" },
+		{ "a.obj", "v 0 0 0\n", "render.skin = plain\n", "one colour", "render.skin = plain" },
+		{ "a.obj", "v 0 0 0\n", "render.skin = video\n", "video", "render fails: render.skin = video" },
+		{ "a.obj", "# a head\nmtllib head.mtl\n", "render.skin = video\n", "own", "as the file has it" },
+		{ "a.obj", "# no mtllib here\n", "", "video", "no materials" },
+		{ "a.ply", "ply\ncomment TextureFile a.png\nend_header\n", "", "own", "as the file has it" },
+		{ "a.ply", "ply\nend_header\ncomment TextureFile a.png\n", "", "video", "no materials" },
+		{ "a.glb", "glTF", "quality = draft\n", "own", "as the file has it" },
+	};
+	scratch_text("config/render.conf", "skin = auto\nskin.draft = plain\n");
+	for (int i = 0; i < COUNT(cases); i++) {
+		struct plan plan = { .capture = scratch_path(".") };
+		struct conf conf = { 0 };
+		struct err err = { 0 };
+		char *file = mem_printf("targets/%s", cases[i].file);
+		scratch_text(file, cases[i].text);
+		scratch_text("targets/a.mtl", "no character");
+		assert_true(conf_load(&conf, scratch_text("capture.conf", cases[i].conf), "", 1, &err));
+		assert_true(plan_skins(&plan, scratch_path("config"), &conf, &err));
+		assert_int_equal(plan.n_skins, 0);  // no rig is made
+		plan.rows[plan_stage_find("extrapolate")].run = plan.rows[plan_stage_find("render")].run = true;
+		assert_true(plan_skins(&plan, scratch_path("config"), &conf, &err));
+		assert_int_equal(plan.n_skins, 1);
+		assert_string_equal(plan.skins[0].file, file);
+		assert_string_equal(plan.skins[0].from, cases[i].from);
+		if (!strstr(plan.skins[0].why, cases[i].why))
+			fail_msg("%s with %s: %s", cases[i].file, cases[i].conf, plan.skins[0].why);
+		plan_skins_free(&plan);
+		unlink(scratch_path("%s", file));
+		conf_free(&conf);
+		free(file);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -313,6 +356,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_setting_is_chosen_for_stages_that_run, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_finer_map_costs_more, setup, teardown),
 		cmocka_unit_test_setup_teardown(a_time_is_kept_where_it_can_be, setup, teardown),
+		cmocka_unit_test_setup_teardown(a_characters_skin_is_told_beforehand, setup, teardown),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
