@@ -207,10 +207,8 @@ static void claim(struct record *r, const char *key, json_t *made)
 bool record_fresh(struct record *r, const char *out, int n, const char *const in[])
 {
 	char *key = json_key(out), *away = 0;
-	static const char *const kinds[] = { "outputs", "left", "aside" };
-	json_t *made = 0;
-	for (int i = 0; i < COUNT(kinds) && !made; i++)
-		made = json_object_get(json_object_get(r->old, kinds[i]), key);
+	json_t *made = json_object_get(json_object_get(r->old, "outputs"), key);
+	made = made ? made : json_object_get(json_object_get(r->old, "aside"), key);
 	const char *hash = made ? record_hash(r, out) : 0, *was = json_string_value(json_object_get(made, "hash"));
 	if (made && !hash)
 		hash = record_hash(r, away = aside_of(out));

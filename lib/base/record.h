@@ -13,7 +13,7 @@ struct record {
 	char *capture;       // path of the capture folder
 	const char *stage;
 	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, absent [path], complete,
-	                     // aside {path: as in outputs}: put aside; left {path: the same, or null}: of earlier runs, in a record of one that did not end}
+	                     // aside {path: as in outputs}: put aside; left {path: the same, or null}: of earlier runs, while one is under way}
 	json_t *hashes;      // path -> {size, inode, mtime, ctime, hash}
 	bool hashes_changed;
 };

@@ -113,13 +113,6 @@ bool record_settle(struct record *r, struct err *err)
 			json_object_del(aside, key);
 		free(rel);
 	}
-	// What a run that was ended had put aside, and this one has made anew.
-	json_object_foreach(json_object_get(r->now, "outputs"), key, made) {
-		char *rel = record_path_of(key);
-		if (lies_aside(r, rel))
-			ok = aside_drop(r->capture, rel, err) && ok;
-		free(rel);
-	}
 	json_object_del(r->now, "left");
 	return ok;
 }

@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include "base/aside.h"
 #include "base/asked.h"
 #include "base/conf.h"
 #include "base/file.h"
@@ -357,16 +356,6 @@ static void a_run_that_fails_leaves_all_in_place(void **state)
 	make_of(CONFIG, 2, three, true);
 	assert_int_equal(made, 4);
 	assert_true(is_there("b"));
-	// Nor is it made again by the next that asks for it.
-	make_of(CONFIG, 1, three, false);
-	make_of(CONFIG, 2, three, true);
-	assert_int_equal(made, 4);
-	// One that is ended when it has just put something aside leaves nothing there.
-	make_of(CONFIG, 1, three, false);
-	assert_true(aside_put(scratch_path("."), "work/made/b", &(struct err){ 0 }) && is_aside("b"));
-	scratch_text("b", "another");
-	make_of(CONFIG, 2, three, true);
-	assert_true(is_there("b") && !is_aside("b"));
 }
 
 /* A stage that is not needed leaves no file, log or record; needed again, it has them all, and holds. */
