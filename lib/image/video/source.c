@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/asked.h"
 #include "base/mem.h"
 #include "image/video/impl.h"
 #include "math/stats.h"
@@ -12,6 +13,8 @@
 static const char formats[] = "mov,matroska,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,ivf,asf,flv,ogg,mxf,dv,y4m,yuv4mpegpipe";
 static const char codecs[] = "h264,hevc,vp8,libvpx,vp9,libvpx-vp9,av1,libdav1d,libaom-av1,mpeg4,mpeg2video,mpeg1video,mjpeg,prores,"
                              "ffv1,dnxhd,rawvideo,huffyuv,utvideo,theora,dvvideo,cinepak,msmpeg4v3,wmv2,wmv3,vc1,flv,h263";
+
+static const char protocol[] = "file:";
 
 static bool choose(struct video_source *s, const char *path, struct err *err)
 {
@@ -42,7 +45,7 @@ bool video_source_open(struct video_source *s, const char *path, struct err *err
 	if (!video_api_load(err))
 		return err_wrap(err, "%s", path);
 	av.av_log_set_level(AV_LOG_QUIET);
-	char *url = mem_printf("file:%s", path);
+	char *url = mem_printf("%s%s", protocol, path);
 	AVDictionary *opts = 0;
 	av.av_dict_set(&opts, "format_whitelist", formats, 0);
 	av.av_dict_set(&opts, "codec_whitelist", codecs, 0);
@@ -79,6 +82,9 @@ bool video_source_decode(struct video_source *s, const char *path, int threads, 
 
 void video_source_close(struct video_source *s)
 {
+	// A disk that failed to give a part: what is made of the rest does not count.
+	if (s->file && s->file->pb && s->file->pb->error == AVERROR(EIO) && s->file->url && !strncmp(s->file->url, protocol, strlen(protocol)))
+		asked_in_vain(s->file->url + strlen(protocol), EIO);
 	if (s->decoder)
 		av.avcodec_free_context(&s->decoder);
 	if (s->file)
