@@ -10,6 +10,8 @@
 #include "math/vec.h"
 
 static const double facing_least = 0.3;  // cosine: skin seen at a flatter angle is left out
+/* Of the white that is seen. On 24 heads by another renderer skin by all of it has 0.20 too little ln R/G, by a quarter 0.03, 0.10 from head to head. */
+static const double bare_share = 0.25;
 static const float hidden_mm = 1.0f;     // behind what the frame shows there
 enum { DARK = 3, BRIGHT = 251, WHITE_LEAST = 200 };
 
@@ -101,13 +103,24 @@ static void texel(uint8_t out[4], const struct complexion *c, const struct frame
 	out[3] = (uint8_t)lrintf(255 * cosine[spot->face] * cosine[spot->face]);
 }
 
-/* White of the eyes: of what stands open, well inside, the brighter but for lights mirrored there. */
+/* Linear colour of a pixel's surroundings of 3 by 3. */
+static void around(double rgb[3], const struct complexion_view *v, long at)
+{
+	for (int k = 0; k < 3; k++) {
+		rgb[k] = 0;
+		for (int j = 0; j < 9; j++)
+			rgb[k] += (double)linear_from_srgb((float)v->rgb[3 * (at + (j / 3 - 1) * (long)v->width + j % 3 - 1) + k] / 255) / 9;
+	}
+}
+
+/* White of the eyes: of what stands open, well inside, the brighter but for lights mirrored there; of that what is least red: the rest has vessels over it. */
 static void white_of(double white[3], const struct complexion_view *v)
 {
 	enum { INSIDE = 3 };
-	int n = 0, least[3] = { 0, 0, 0 };
-	double *grey = mem_new((size_t)v->width * (size_t)v->height + 1, sizeof *grey), sum[3] = { 0 };
-	long *at = mem_new((size_t)v->width * (size_t)v->height + 1, sizeof *at), many = 0;
+	const size_t size = (size_t)v->width * (size_t)v->height + 1;
+	int n = 0, most = 0, clipped[3] = { 0, 0, 0 };
+	double *grey = mem_new(size, sizeof *grey), *sorted = mem_new(size, sizeof *sorted), sum[3] = { 0 };
+	long *at = mem_new(size, sizeof *at), many = 0;
 	for (int y = INSIDE; y < v->height - INSIDE; y++)
 		for (int x = INSIDE; x < v->width - INSIDE; x++) {
 			const long i = (long)y * v->width + x;
@@ -116,20 +129,33 @@ static void white_of(double white[3], const struct complexion_view *v)
 			at[n] = i;
 			grey[n++] = v->rgb[3 * i] + 2 * v->rgb[3 * i + 1] + v->rgb[3 * i + 2];
 		}
-	double *sorted = mem_new((size_t)n + 1, sizeof *sorted);
 	memcpy(sorted, grey, (size_t)n * sizeof *sorted);
 	const double low = n ? stats_quantile(n, sorted, 0.65) : 0, high = n ? stats_quantile(n, sorted, 0.92) : 0;
+	double *red = sorted, all = 0;
 	for (int i = 0; i < n; i++)
 		if (grey[i] >= low && grey[i] <= high) {
-			const uint8_t *p = v->rgb + 3 * at[i];
+			double rgb[3];
+			around(rgb, v, at[i]);
+			at[most] = at[i];
+			grey[most] = red[most] = rgb[0] / fmax(rgb[1], 1e-9);
+			all += rgb[1];
+			most++;
+		}
+	const double bare = most ? stats_quantile(most, red, bare_share) : 0;
+	for (int i = 0; i < most; i++)
+		if (grey[i] <= bare) {
+			double rgb[3];
+			around(rgb, v, at[i]);
 			for (int k = 0; k < 3; k++) {
-				sum[k] += (double)linear_from_srgb((float)p[k] / 255);
-				least[k] += p[k] > BRIGHT;
+				sum[k] += rgb[k];
+				clipped[k] += v->rgb[3 * at[i] + k] > BRIGHT;
 			}
 			many++;
 		}
+	// Its colour, but as bright as all of it: where it is bare it may be lit otherwise.
+	const double level = most && sum[1] > 0 ? all / most / sum[1] : 0;
 	for (int k = 0; k < 3; k++)
-		white[k] = many >= WHITE_LEAST && least[k] * 10 < many ? sum[k] / (double)many : 0;
+		white[k] = most >= WHITE_LEAST && clipped[k] * 10 < many ? sum[k] * level : 0;
 	free(sorted);
 	free(grey);
 	free(at);
