@@ -17,7 +17,7 @@ static const double box_x[2] = { -14, 20 }, box_y[2] = { 13, 24 };
 
 struct cells {
 	float sum[HAIR_CELLS_Y][HAIR_CELLS_X], twice[HAIR_CELLS_Y][HAIR_CELLS_X][2];
-	int n[HAIR_CELLS_Y][HAIR_CELLS_X], seen[HAIR_CELLS_Y][HAIR_CELLS_X];
+	int seen[HAIR_CELLS_Y][HAIR_CELLS_X];
 };
 
 /* Structure tensor of the detail: [texels][3] xx, xy, yy, averaged. */
@@ -43,23 +43,16 @@ static bool tensor(float (*t)[3], const float *grey, const float *weight, const 
 	return ok;
 }
 
-/* The cell of an eye's front that a place of the head lies in; false: none. */
-static bool cell_of(int *i, int *j, const struct complexion *c, int side, const float x[3])
-{
-	const double unit = c->radius / 12;
-	*i = (int)lrint(((side ? -1 : 1) * ((double)x[0] - c->eye[side][0]) / unit - HAIR_FROM_X) / HAIR_CELL);
-	*j = (int)lrint((((double)x[1] - c->eye[side][1]) / unit - HAIR_FROM_Y) / HAIR_CELL);
-	return *i >= 0 && *j >= 0 && *i < HAIR_CELLS_X && *j < HAIR_CELLS_Y;
-}
-
 static void gather(struct cells *k, int side, const float *cover, const float (*t)[3], const float *weight, const struct complexion *c)
 {
 	const double middle = 0.5 * (c->eye[0][0] + c->eye[1][0]);
 	memset(k, 0, sizeof *k);
 	for (long p = 0; p < (long)c->side * c->side; p++) {
 		float x[3];
-		int i, j;
-		if (!(weight[p] > 0) || !complexion_place(x, c, p) || ((double)x[0] > middle) == (side == 1) || !cell_of(&i, &j, c, side, x))
+		if (!(weight[p] > 0) || !complexion_place(x, c, p) || ((double)x[0] > middle) == (side == 1))
+			continue;
+		const int cell = hair_cell(&c->hair, side, (double[]){ (double)x[0], (double)x[1] }), i = cell % HAIR_CELLS_X, j = cell / HAIR_CELLS_X;
+		if (cell < 0)
 			continue;
 		k->seen[j][i]++;
 		if (!(cover[p] > 0))
@@ -68,7 +61,6 @@ static void gather(struct cells *k, int side, const float *cover, const float (*
 		// Hairs run along the eigenvector of the least change; doubled angles have no sign. v points down, u to the person's left.
 		k->twice[j][i][0] += t[p][2] - t[p][0];
 		k->twice[j][i][1] += (side ? -1 : 1) * 2 * t[p][1];
-		k->n[j][i]++;
 	}
 }
 
@@ -138,7 +130,7 @@ static double seen(const struct cells *k)
 /* The direction whose double is given and that is nearer to how brows grow: up at the nose, outward and down beyond the middle. */
 static double grows(double x, double c2, double s2)
 {
-	const double s = fmin(fmax((x + 15.5) / 37.5, 0), 1), usual = s < 0.3 ? 1.25 - 2.6 * s : 0.47 - 1.25 * (s - 0.3);
+	const double usual = hair_brow_way(x);
 	const double strong = hypot(c2, s2);
 	if (!(strong > 0))
 		return usual;

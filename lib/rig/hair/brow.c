@@ -41,11 +41,14 @@ static double ridge(const struct front *f)
 	return n > PLACES / 2 ? fmin(fmax(stats_median(n, off), -4), 4) : 0;
 }
 
-/* Direction of growth, radians from outward towards up: upright at the nose, along the brow further out; rows above and below lean to its middle. */
+/* Direction of growth in its middle, radians from outward towards up: upright at the nose, along the brow further out. */
+static double along(double s) { return s < 0.3 ? 1.25 - 2.6 * s : 0.47 - 1.25 * (s - 0.3); }
+double hair_brow_way(double x) { return along(fmin(fmax((x - inner) / (outer - inner), 0), 1)); }
+
+/* Rows above and below lean to its middle. */
 static double way(double s, double row)
 {
-	const double along = s < 0.3 ? 1.25 - 2.6 * s : 0.47 - 1.25 * (s - 0.3);
-	return along - 0.35 * row * fmin(1, 0.3 + 2 * s);
+	return along(s) - 0.35 * row * fmin(1, 0.3 + 2 * s);
 }
 
 /* A hair rooted at (x, y), combed along the skin. */
@@ -98,9 +101,7 @@ static int cell_at(const struct front *f, const struct hair_conf *conf, double x
 		for (int c = 0; c < 3; c++)
 			at[c] += (double)(hit.weight[k] * conf->place[v][c]);
 	}
-	const double unit = conf->film->radius / 12, *eye = conf->film->eye[f->side];
-	const double i = ((f->side ? -1 : 1) * (at[0] - eye[0]) / unit - HAIR_FROM_X) / HAIR_CELL, j = ((at[1] - eye[1]) / unit - HAIR_FROM_Y) / HAIR_CELL;
-	return i >= 0 && j >= 0 && i < HAIR_CELLS_X - 1 && j < HAIR_CELLS_Y - 1 ? (int)lrint(j) * HAIR_CELLS_X + (int)lrint(i) : -1;
+	return hair_cell(conf->film, f->side, at);
 }
 
 /* As many hairs as hide as much of the skin, cell by cell, as the film shows. */

@@ -1,5 +1,6 @@
 #include "rig/hair/hair.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "math/vec.h"
@@ -34,6 +35,14 @@ void hair_place(float (*out)[3], const struct hairs *all, const struct hair *h, 
 		for (int c = 0; c < 3; c++)
 			out[k][c] = f.root[c] + l[0] * f.off[c] + l[1] * f.along[c] + l[2] * f.up[c];
 	}
+}
+
+int hair_cell(const struct hair_film *film, int side, const double at[2])
+{
+	const double unit = film->radius / 12;
+	const double i = rint(((side ? -1 : 1) * (at[0] - film->eye[side][0]) / unit - HAIR_FROM_X) / HAIR_CELL);
+	const double j = rint(((at[1] - film->eye[side][1]) / unit - HAIR_FROM_Y) / HAIR_CELL);
+	return i >= 0 && j >= 0 && i < HAIR_CELLS_X && j < HAIR_CELLS_Y ? (int)j * HAIR_CELLS_X + (int)i : -1;
 }
 
 void hairs_free(struct hairs *h)

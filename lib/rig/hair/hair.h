@@ -51,6 +51,12 @@ struct hair_film {
 	double eye[2][3], radius;  // the person's eyeballs: mm, x to the left, y up, z out of the face
 };
 
+/* The cell that a place of the person (film->eye's axes, x and y) lies in for an eye, row by row; -1: none. */
+int hair_cell(const struct hair_film *film, int side, const double at[2]);
+
+/* Where an average brow's hairs grow to at x of an eye's front, radians from outward towards up. */
+double hair_brow_way(double x);
+
 struct hair_conf {
 	double lash_mm, brow_mm;   // the longest, on an eyeball of 12 mm; 0: none
 	int lashes, brow_hairs;    // of one upper lid (the lower has three fifths); of one brow
