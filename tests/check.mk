@@ -20,7 +20,7 @@ SHARE ?= 1
 tests: $(TESTS) $(TOOLS)
 
 # Without these the interactive page is not driven and no cameras are found, and the summary says so.
-CHECK_PACKAGES := chromium nodejs colmap slurm-wlm lintian
+CHECK_PACKAGES := chromium nodejs colmap slurm-wlm lintian gltfpack
 
 CORES = $(shell nproc)
 check: setup

@@ -68,9 +68,11 @@ private:
  * last is kept. */
 class Folder : public Assimp::IOSystem {
 public:
-	explicit Folder(std::string folder) : folder_(std::move(folder)) {}
+	explicit Folder(const struct ai_file *file) : folder_(file->folder), given_(file) {}
 	bool Exists(const char *name) const override
 	{
+		if (is_given(name))
+			return true;
 		struct err none = {};
 		char *path = nullptr;
 		const bool there = file_inside(&path, folder_.c_str(), inside(name).c_str(), &none);
@@ -83,6 +85,8 @@ public:
 		struct err none = {};
 		if (strpbrk(mode, "wa+"))
 			return nullptr;
+		if (is_given(name))
+			return new Assimp::MemoryIOStream((const uint8_t *)given_->bytes, given_->size, false);
 		if (!last_.data || last_name_ != name) {
 			last_ = {};
 			Bytes bytes;
@@ -96,7 +100,9 @@ public:
 	void Close(Assimp::IOStream *stream) override { delete stream; }
 
 private:
+	bool is_given(const char *name) const { return given_->bytes && inside(name) == given_->name; }
 	std::string folder_, last_name_;
+	const struct ai_file *given_;
 	Bytes last_;
 };
 
@@ -338,17 +344,17 @@ template <class T> T *kept(const std::vector<T> &v)
 
 }  // namespace
 
-bool ai_scene_read(struct ai_scene *scene, const char *folder, const char *name, long limit, size_t texture_bytes, struct err *err)
+bool ai_scene_read(struct ai_scene *scene, const struct ai_file *file, long limit, size_t texture_bytes, struct err *err)
 {
 	*scene = {};
 	try {
 		Assimp::Importer importer;
-		importer.SetIOHandler(new Folder(folder));
+		importer.SetIOHandler(new Folder(file));
 		importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
 		importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
 		Reader r = {};
-		r.from = importer.ReadFile(name, aiProcess_Triangulate | aiProcess_SortByPType);
-		r.folder = folder;
+		r.from = importer.ReadFile(file->name, aiProcess_Triangulate | aiProcess_SortByPType);
+		r.folder = file->folder;
 		r.texture_bytes = texture_bytes;
 		r.limit = limit;
 		if (!r.from || !r.from->mRootNode)

@@ -52,12 +52,17 @@ struct ai_scene {
 	struct ai_texture *texture;
 };
 
+/* A file of a folder; its ending says its kind. What it refers to is read from that folder, never from outside: an absolute path is taken for its last part. */
+struct ai_file {
+	const char *folder, *name;
+	const void *bytes;      // what is to be read in its place, as a file of that name; null: the file itself
+	size_t size;
+};
+
 /* scene   overwritten; never freed: its process ends
- * folder  its files are read from there, never from outside: an absolute path is taken for its last part
- * name    of the file in the folder; its ending says its kind
  * limit   most vertices and faces;  texture_bytes: most bytes of one texture
  * Returns false, err set, when Assimp cannot read it, it has no faces, or more than limit. */
-bool ai_scene_read(struct ai_scene *scene, const char *folder, const char *name, long limit, size_t texture_bytes, struct err *err);
+bool ai_scene_read(struct ai_scene *scene, const struct ai_file *file, long limit, size_t texture_bytes, struct err *err);
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "character/texture.h"
+#include "character/webp.h"
 
 /* A vertex of a part, to be sorted by place. */
 struct placed {
@@ -289,13 +290,19 @@ static int *put_textures(struct look *l, const struct ai_scene *s)
 		row[i] = -1;
 		if (!from->bytes)
 			err_set(&why, "%s", from->why);
+		uint8_t *png = 0;
+		size_t size;
+		if (from->bytes && look_is_webp(from->bytes, from->size) && (png = look_webp_png(&size, from->bytes, from->size, LOOK_TEXTURE_PX, &why)))
+			t = (struct look_texture){ .bytes = png, .size = (long)size };
 		if (err_is(&why) || !look_texture_check(&t, &why)) {
 			say_left_out(l, mem_printf("texture %.80s: %.300s", from->name, why.msg));
+			free(png);
 			continue;
 		}
 		t.name = mem_str(from->name);
 		l->bytes = mem_grow(l->bytes, (size_t)(l->n_bytes + t.size) + 1, 1);
-		memcpy(l->bytes + l->n_bytes, from->bytes, from->size);
+		memcpy(l->bytes + l->n_bytes, t.bytes, (size_t)t.size);
+		free(png);
 		l->n_bytes += t.size;
 		row[i] = l->n_textures;
 		l->texture[l->n_textures++] = t;

@@ -8,6 +8,8 @@
 #include "base/mem.h"
 #include "bridge/om_mesh.h"
 #include "character/build.h"
+#include "character/plain/plain.h"
+#include "character/webp.h"
 #include "mesh/mesh_clean.h"
 #include "mesh/mesh_joins.h"
 
@@ -47,13 +49,42 @@ static bool given_vertices(struct mesh *out, const struct task *task, struct err
 	return ok;
 }
 
+static bool load_beside(void *ctx, char **data, size_t *size, const char *name, struct err *err)
+{
+	const struct task *task = ctx;
+	char *path = 0;
+	const bool ok = file_inside(&path, task->folder, name, err) && file_read(data, size, path, FILE_MOST, err);
+	free(path);
+	return ok;
+}
+
+/* A scene by Assimp; a packed glTF is unpacked first. */
+static bool read_scene(struct ai_scene *scene, const struct task *task, struct err *err)
+{
+	struct ai_file file = { .folder = task->folder, .name = task->name };
+	char *data = 0, *plain = 0, *name = 0;
+	size_t size;
+	if (character_is_gltf(task->name)) {
+		if (!load_beside((void *)task, &data, &size, task->name, err) || !gltf_plain(&plain, &file.size, data, size, load_beside, (void *)task, err))
+			return false;
+		free(data);
+		if (plain)
+			file.name = name = mem_printf("%s.glb", task->name);
+		file.bytes = plain;
+	}
+	const bool ok = ai_scene_read(scene, &file, task->limit, TEXTURE_MAX, err);
+	free(plain);
+	free(name);
+	return ok;
+}
+
 static bool read_apart(void *ctx, struct apart_out *out, struct err *err)
 {
 	const struct task *task = ctx;
 	struct ai_scene scene;
 	struct mesh mesh, given;
 	struct look look;
-	if (!given_vertices(&given, task, err) || !ai_scene_read(&scene, task->folder, task->name, task->limit, TEXTURE_MAX, err)
+	if (!given_vertices(&given, task, err) || !read_scene(&scene, task, err)
 	    || !character_build(&mesh, &look, &scene, (const float(*)[3])given.vertices, given.n_vertices, err))
 		return false;
 	if (mesh.n_vertices > task->limit || mesh.n_faces > task->limit)
@@ -163,6 +194,7 @@ bool character_import(struct mesh *mesh, struct look *look, const char *folder, 
 	free(path);
 	if (!opens)
 		return false;
+	look_webp_ready();
 	bool ok = apart_run(&data, &size, &apart, &why) && look_take(look, mesh, data, size, &why);
 	free(data);
 	ok = ok && mesh_check(mesh, &why) && make_sound(mesh, look, &why);

@@ -34,6 +34,11 @@ enum character_kind character_kind_of(const char *name)
 	return CHARACTER_NONE;
 }
 
+bool character_is_gltf(const char *name)
+{
+	return ends(name, ".glb") || ends(name, ".gltf");
+}
+
 bool character_names_look(const char *name, const char *data, size_t size)
 {
 	if (character_kind_of(name) != CHARACTER_PLAIN)

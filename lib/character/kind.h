@@ -8,6 +8,7 @@
  * CHARACTER_SCENE: glTF (.glb, .gltf) and FBX. */
 enum character_kind { CHARACTER_NONE, CHARACTER_PLAIN, CHARACTER_SCENE };
 enum character_kind character_kind_of(const char *name);
+bool character_is_gltf(const char *name);
 
 /* Whether a file brings materials: a scene does; an OBJ that names them ("mtllib"), a PLY that names its texture ("comment TextureFile" in its
  * head). data[size]: the file, or as much of its beginning as is to be believed, a zero byte behind it. */
