@@ -6,7 +6,7 @@
 
 enum { BYTE = 5120, UNSIGNED_BYTE, SHORT, UNSIGNED_SHORT, UNSIGNED_INT = 5125, FLOAT };
 
-int gltf_number_bytes(const json_t *accessor)
+static int number_bytes(const json_t *accessor)
 {
 	switch (gltf_count(accessor, "componentType", 0, INT32_MAX)) {
 	case BYTE:
@@ -121,7 +121,7 @@ static bool put_sparse(float *out, const struct gltf *gltf, const json_t *access
 	if (!sparse)
 		return true;
 	const long few = gltf_count(sparse, "count", -1, n), type = gltf_count(accessor, "componentType", 0, INT32_MAX), index_type = gltf_count(where, "componentType", 0, INT32_MAX);
-	const int index_bytes = gltf_number_bytes(where);
+	const int index_bytes = number_bytes(where);
 	struct rows at, value;
 	if (few < 0 || !index_bytes)
 		return err_set(err, "accessors[%ld]: its sparse elements cannot be counted", i);
@@ -179,7 +179,7 @@ static bool make_float(void *ctx, long i)
 	if (is_float(gltf, i))
 		return true;
 	const long n = gltf_count(accessor, "count", -1, INT32_MAX), type = gltf_count(accessor, "componentType", 0, INT32_MAX);
-	const int c = gltf_components(accessor), bytes = gltf_number_bytes(accessor);
+	const int c = gltf_components(accessor), bytes = number_bytes(accessor);
 	const bool normalised = json_is_true(json_object_get(accessor, "normalized")), dense = json_object_get(accessor, "bufferView");
 	if (n < 0 || !c || !bytes)
 		return err_set(f->err, "accessors[%ld]: neither floats nor whole numbers", i);

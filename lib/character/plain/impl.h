@@ -19,7 +19,7 @@ struct gltf {
 	size_t size, room;
 };
 
-/* root.list[i], an object, or null; its member as a whole number of 0 to most, `otherwise` where it is missing, -1 where it is neither. */
+/* gltf.c. root.list[i], an object, or null; its member as a whole number of 0 to most, `otherwise` where it is missing, -1 where it is neither. */
 json_t *gltf_item(const struct gltf *gltf, const char *list, long i);
 long gltf_count(const json_t *object, const char *key, long otherwise, long most);
 /* object.extensions.name; null where there is none. */
@@ -40,8 +40,7 @@ bool gltf_unpack(struct gltf *gltf, gltf_load *load, void *ctx, struct err *err)
 /* accessors.c, after gltf_unpack. Whether any mesh's attribute is of whole numbers that it should not be; makes them floats. */
 bool gltf_is_quantised(const struct gltf *gltf);
 bool gltf_floats(struct gltf *gltf, struct err *err);
-/* Bytes of an accessor's one number, of its elements' numbers, and how many of them; zero where it is not known. */
-int gltf_number_bytes(const json_t *accessor);
+/* How many numbers each of its elements has; zero where it is not known. */
 int gltf_components(const json_t *accessor);
 /* An accessor of n elements of c floats of its own: appended to the file; *index. Null, err set. */
 float *gltf_new_floats(int *index, struct gltf *gltf, const char *type, long n, int c, struct err *err);
