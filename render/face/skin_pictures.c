@@ -136,12 +136,12 @@ static bool blink(struct skin_job *job, struct skin_target *t, struct err *err)
 	return ok;
 }
 
-/* At rest, and each expression in full with its wrinkles; three beside each other, as in the gaze sheet. */
+/* At rest, and each expression in full with its wrinkles; three beside each other, as in the gaze sheet, but higher: foreheads fold above raised brows. */
 static bool expressions(struct skin_job *job, struct skin_target *t, struct err *err)
 {
 	enum { GAP = 4, MOST = 8, ACROSS = 3 };
 	const char *rel = output(job, t->name, "_expressions.png");
-	int w = job->conf->cell_px, h = w * 3 / 7;
+	int w = job->conf->cell_px, h = w * 3 / 5;
 	if (!file_exists(stage_path(job->stage, "work/skin/wrinkles.json")) || skin_kept(job, rel, t->n_in, t->in, err))
 		return !err_is(err);
 	if (!skin_open(job, t, err))

@@ -6,7 +6,10 @@
 /* warp.c: log of the frame's linear brightness, warped to the chart; sure: 0 where no tracked point is near. */
 void wrinkle_unwrap(float *log_light, uint8_t *sure, const struct wrinkle_ground *ground, const struct wrinkle_frame *frame);
 
-/* ridge.c: dark ridges of the chart, by their curvature across. */
+/* Of the threshold: a line that is surely one goes on where it is so strong (hysteresis, Canny 1986). On the folds of the bundled clip. */
+static const double wrinkle_follows = 0.7;
+
+/* ridge.c: dark ridges of the chart, by their curvature across, from wrinkle_follows times the threshold on. */
 struct wrinkle_ridges {
 	int width, height;
 	float *rise;        // curvature across, sigma^2 times; 0: no ridge here
@@ -19,10 +22,11 @@ bool wrinkle_ridges_find(struct wrinkle_ridges *ridges, const float *change, con
                          const struct wrinkle_ground *ground, const struct wrinkle_conf *conf, struct err *err);
 void wrinkle_ridges_free(struct wrinkle_ridges *ridges);
 
-/* link.c: links ridges into curves with control points a mm apart on the surface; widths are the ridges'. lines: owned by the
- * caller. Returns how many. */
-int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *ridges, const struct wrinkle_ground *ground,
+/* link.c: links ridges into curves with control points a mm apart on the surface; widths are the ridges'. What is above the threshold has to be long enough; from there
+ * a line goes on as long as it is `least` times the threshold, wrinkle_follows to 1. lines: owned by the caller, wrinkle_lines_free. Returns how many. */
+int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *ridges, double least, const struct wrinkle_ground *ground,
                  const struct wrinkle_conf *conf);
+void wrinkle_lines_free(int n, struct wrinkle_line *lines);
 
 /* light.c: the light, first from the shading of the neutral face; then the share of ambient in frontal light, which that leaves
  * open, from the

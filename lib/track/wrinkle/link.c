@@ -40,7 +40,7 @@ static void claim(uint8_t *taken, const struct wrinkle_ridges *r, long i)
 }
 
 /* The next place from i along dir, nearest to where the line points; -1: it ends. Gaps of two texels are bridged. */
-static long next(const struct wrinkle_ridges *r, const uint8_t *taken, long i, const float dir[2])
+static long next(const struct wrinkle_ridges *r, const uint8_t *taken, long i, const float dir[2], float least)
 {
 	int x = (int)(i % r->width), y = (int)(i / r->width);
 	double best = INFINITY;
@@ -50,7 +50,7 @@ static long next(const struct wrinkle_ridges *r, const uint8_t *taken, long i, c
 			if (x + u < 0 || y + v < 0 || x + u >= r->width || y + v >= r->height)
 				continue;
 			long j = i + (long)v * r->width + u;
-			if (!(r->rise[j] > 0) || taken[j])
+			if (!(r->trust[j] >= least) || taken[j])
 				continue;
 			double d[2] = { r->at[j][0] - r->at[i][0], r->at[j][1] - r->at[i][1] }, len = hypot(d[0], d[1]);
 			double ahead = d[0] * dir[0] + d[1] * dir[1], same = fabs(r->along[j][0] * dir[0] + r->along[j][1] * dir[1]);
@@ -65,10 +65,10 @@ static long next(const struct wrinkle_ridges *r, const uint8_t *taken, long i, c
 	return found;
 }
 
-static void walk(struct chain *c, const struct wrinkle_ridges *r, uint8_t *taken, long i, const float from[2])
+/* Goes on from place i, the chain's last, as long as the next is `least` times the threshold. Returns the last place; dir: where the line points, in and out. */
+static long walk(struct chain *c, const struct wrinkle_ridges *r, uint8_t *taken, long i, float dir[2], float least)
 {
-	float dir[2] = { from[0], from[1] };
-	for (long j; (j = next(r, taken, i, dir)) >= 0; i = j) {
+	for (long j; (j = next(r, taken, i, dir, least)) >= 0; i = j) {
 		float s = r->along[j][0] * dir[0] + r->along[j][1] * dir[1] < 0 ? -1 : 1;
 		claim(taken, r, i);
 		for (int k = 0; k < 2; k++)
@@ -76,6 +76,7 @@ static void walk(struct chain *c, const struct wrinkle_ridges *r, uint8_t *taken
 		chain_add(c, r, j);
 	}
 	claim(taken, r, i);
+	return i;
 }
 
 static void reverse(struct chain *c)
@@ -203,7 +204,7 @@ static int by_trust(const void *a, const void *b)
 	return p->trust != q->trust ? (p->trust < q->trust) - (p->trust > q->trust) : (p->at > q->at) - (p->at < q->at);
 }
 
-int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *r, const struct wrinkle_ground *g, const struct wrinkle_conf *conf)
+int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *r, double least, const struct wrinkle_ground *g, const struct wrinkle_conf *conf)
 {
 	long area = (long)r->width * r->height, n_starts = 0;
 	int n = 0;
@@ -221,13 +222,22 @@ int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *r, co
 			continue;
 		c.n = 0;
 		chain_add(&c, r, i);
-		walk(&c, r, taken, i, r->along[i]);
+		float ahead[2] = { r->along[i][0], r->along[i][1] }, back[2] = { -ahead[0], -ahead[1] };
+		const long last = walk(&c, r, taken, i, ahead, 1);
 		reverse(&c);
-		walk(&c, r, taken, i, (float[]){ -r->along[i][0], -r->along[i][1] });
+		const long first = walk(&c, r, taken, i, back, 1);
 		struct wrinkle_line line;
 		if (c.n < 4)
 			continue;
-		if (line_of(&line, &c, g, conf)) {
+		bool found = line_of(&line, &c, g, conf);
+		if (found && least < 1) {
+			free(line.point);
+			walk(&c, r, taken, first, back, (float)least);
+			reverse(&c);
+			walk(&c, r, taken, last, ahead, (float)least);
+			found = line_of(&line, &c, g, conf);
+		}
+		if (found) {
 			*lines = mem_grow(*lines, (size_t)n + 1, sizeof **lines);
 			(*lines)[n++] = line;
 		} else {

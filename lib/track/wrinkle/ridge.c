@@ -75,7 +75,7 @@ static void take(struct wrinkle_ridges *r, const float (*d)[5], const float *pat
 				continue;
 			across(&most, &least, n, d[i]);
 			float rise = s2 * most, limit = fmaxf(least_rise, fmaxf((float)floor, share * pat[i]));
-			if (!(rise > limit) || rise <= r->rise[i] || fabsf(least) > (float)lineness * most)
+			if (!(rise > (float)wrinkle_follows * limit) || rise <= r->rise[i] || fabsf(least) > (float)lineness * most)
 				continue;
 			float t = -(d[i][0] * n[0] + d[i][1] * n[1]) / most;
 			if (fabsf(t * n[0]) > 0.6f || fabsf(t * n[1]) > 0.6f)

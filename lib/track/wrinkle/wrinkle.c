@@ -9,14 +9,19 @@
 #include "math/vec.h"
 #include "track/wrinkle/impl.h"
 
+void wrinkle_lines_free(int n, struct wrinkle_line *lines)
+{
+	for (int i = 0; i < n; i++) {
+		free(lines[i].point);
+		free(lines[i].depth);
+		free(lines[i].shift);
+	}
+	free(lines);
+}
+
 static void pose_free(struct wrinkle_pose *p)
 {
-	for (int i = 0; i < p->n; i++) {
-		free(p->line[i].point);
-		free(p->line[i].depth);
-		free(p->line[i].shift);
-	}
-	free(p->line);
+	wrinkle_lines_free(p->n, p->line);
 	free(p->frame);
 	free(p->name);
 }
@@ -125,8 +130,12 @@ bool wrinkle_find(struct wrinkles *w, const char *name, int n, const struct wrin
 	wrinkle_light(w, f.neutral, f.known, g);
 	bool ok = wrinkle_ridges_find(&ridges, f.change, f.neutral, f.skin, g, conf, err);
 	if (ok) {
-		p->n = wrinkle_link(&p->line, &ridges, g, conf);
-		wrinkle_ambient(w, p->n, p->line, f.change, g, grooves);
+		// The light is told by what is surely a line alone.
+		struct wrinkle_line *sure;
+		const int n_sure = wrinkle_link(&sure, &ridges, 1, g, conf);
+		wrinkle_ambient(w, n_sure, sure, f.change, g, grooves);
+		wrinkle_lines_free(n_sure, sure);
+		p->n = wrinkle_link(&p->line, &ridges, wrinkle_follows, g, conf);
 		for (int i = 0; i < p->n; i++)
 			wrinkle_measure(&p->line[i], w, f.change, g, grooves, conf);
 		keep(p);
