@@ -43,7 +43,8 @@ int main(int argc, char **argv)
 	for (int i = 0; ok && i < eyes.n; i++)
 		ok = (stage.only || render_eye(&eyes.job[i], &err)) && export_eye(&eyes.job[i], &leaves, &faces, &err);
 	if (!stage.only) {
-		ok = ok && render_skin(&faces, &err) && film_make(&faces, &err);
+		// The pages show what is there: what was made of inputs that are gone is put aside before.
+		ok = ok && render_skin(&faces, &err) && film_make(&faces, &err) && stage_put_aside(&stage, "work/render", &err);
 		show(&faces, ok, &err);
 	}
 	skin_close(&faces);

@@ -6,9 +6,11 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "base/aside.h"
 #include "base/asked.h"
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/record_left.h"
 
 char *record_in_capture(const char *capture, const char *rel)
 {
@@ -76,6 +78,7 @@ struct record *record_open(const char *capture, const char *stage, const char *p
 	json_object_set_new(r->now, "each", json_array());
 	json_object_set_new(r->now, "lists", json_object());
 	json_object_set_new(r->now, "outputs", json_object());
+	json_object_set_new(r->now, "aside", json_object());
 	return r;
 }
 
@@ -192,26 +195,35 @@ static json_t *input_hashes(struct record *r, int n, const char *const in[])
 	return inputs;
 }
 
-static bool same_maker(const struct record *r)
+/* Takes `made`. What this run has put aside under that path is of no use then. */
+static void claim(struct record *r, const char *key, json_t *made)
 {
-	return json_equal(json_object_get(r->old, "program"), json_object_get(r->now, "program"))
-	       && json_equal(json_object_get(r->old, "config"), json_object_get(r->now, "config"));
+	json_t *aside = json_object_get(r->now, "aside");
+	json_object_set_new(json_object_get(r->now, "outputs"), key, made);
+	if (json_object_get(aside, key))
+		json_object_set_new(aside, key, json_null());
 }
 
 bool record_fresh(struct record *r, const char *out, int n, const char *const in[])
 {
-	char *key = json_key(out);
-	json_t *made = json_object_get(json_object_get(r->old, "outputs"), key);
+	char *key = json_key(out), *away = 0;
+	static const char *const kinds[] = { "outputs", "left", "aside" };
+	json_t *made = 0;
+	for (int i = 0; i < COUNT(kinds) && !made; i++)
+		made = json_object_get(json_object_get(r->old, kinds[i]), key);
 	const char *hash = made ? record_hash(r, out) : 0, *was = json_string_value(json_object_get(made, "hash"));
-	bool fresh = hash && was && !strcmp(hash, was) && same_maker(r);
+	if (made && !hash)
+		hash = record_hash(r, away = aside_of(out));
+	bool fresh = hash && was && !strcmp(hash, was) && record_same_maker(r);
 	if (fresh) {
 		json_t *inputs = input_hashes(r, n, in);
-		fresh = json_equal(inputs, json_object_get(made, "inputs"));
+		fresh = json_equal(inputs, json_object_get(made, "inputs")) && (!away || aside_take(r->capture, out));
 		json_decref(inputs);
 	}
 	if (fresh)
-		json_object_set(json_object_get(r->now, "outputs"), key, made);
+		claim(r, key, json_incref(made));
 	free(key);
+	free(away);
 	return fresh;
 }
 
@@ -222,13 +234,13 @@ void record_made(struct record *r, const char *out, int n, const char *const in[
 	json_t *made = json_object();
 	json_object_set_new(made, "hash", json_string(hash ? hash : ""));
 	json_object_set_new(made, "inputs", input_hashes(r, n, in));
-	json_object_set_new(json_object_get(r->now, "outputs"), key, made);
+	claim(r, key, made);
 	free(key);
 }
 
 void record_keep(struct record *r)
 {
-	if (same_maker(r))
+	if (record_same_maker(r))
 		json_object_update_missing(json_object_get(r->now, "outputs"), json_object_get(r->old, "outputs"));
 }
 
@@ -255,14 +267,15 @@ bool record_save(struct record *r, bool complete, struct err *err)
 	json_t *absent = json_array();
 	asked_absent(add_absent, absent);
 	json_object_set_new(r->now, "absent", absent);
+	record_note_left(r);
 	// A disk that failed to give a file: what was made without it is made again.
 	if (asked_trouble()) {
 		complete = false;
-		json_object_set_new(r->now, "outputs", json_object());
+		record_distrust(r);
 	}
 	char *path = record_path(r->capture, r->stage), *hashes = record_in_capture(r->capture, RECORD_HASHES);
 	json_object_set_new(r->now, "complete", json_boolean(complete));
-	bool ok = record_save_json(path, r->now, err);
+	bool ok = (!complete || record_settle(r, err)) && record_save_json(path, r->now, err);
 	if (ok && r->hashes_changed)
 		ok = record_save_json(hashes, r->hashes, err);
 	free(path);

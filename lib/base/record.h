@@ -12,7 +12,8 @@
 struct record {
 	char *capture;       // path of the capture folder
 	const char *stage;
-	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, absent [path], complete}
+	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, absent [path], complete,
+	                     // aside {path: as in outputs}: put aside; left {path: the same, or null}: of earlier runs, in a record of one that did not end}
 	json_t *hashes;      // path -> {size, inode, mtime, ctime, hash}
 	bool hashes_changed;
 };
@@ -35,7 +36,7 @@ void record_list(struct record *record, const char *dir, const char *hash);
 void record_each(struct record *record, const char *pattern);
 
 /* Whether the file `out` stands as the last run recorded it, made by this program with this configuration from in[n] with these
- * bytes. If so it is recorded for this run too. */
+ * bytes. If so it is recorded for this run too; one that was put aside is brought back. */
 bool record_fresh(struct record *record, const char *out, int n, const char *const in[]);
 
 /* Records that `out` has been made from in[n]. */

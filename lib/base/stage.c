@@ -14,7 +14,7 @@
 #include "base/call.h"
 #include "base/guard.h"
 #include "base/mem.h"
-#include "base/record.h"
+#include "base/record_left.h"
 #include "base/run.h"
 #include "base/say.h"
 #include "base/version.h"
@@ -170,7 +170,8 @@ bool stage_list(struct stage *stage, struct file_list *out, const char *dir, str
 	pthread_mutex_lock(&busy);
 	record_list(stage->record, dir, hash);
 	pthread_mutex_unlock(&busy);
-	drop_long(stage, out, dir);
+	if (strncmp(dir, "work/", 5) != 0)
+		drop_long(stage, out, dir);
 	return true;
 }
 
@@ -209,6 +210,14 @@ bool stage_made(struct stage *stage, const char *out, int n, const char *const i
 	record_made(stage->record, out, n, in);
 	say_log_artifact(out, true);
 	bool ok = record_save(stage->record, false, err);
+	pthread_mutex_unlock(&busy);
+	return ok;
+}
+
+bool stage_put_aside(struct stage *stage, const char *dir, struct err *err)
+{
+	pthread_mutex_lock(&busy);
+	bool ok = record_put_aside(stage->record, dir, err);
 	pthread_mutex_unlock(&busy);
 	return ok;
 }
@@ -326,7 +335,9 @@ int stage_end(struct stage *stage, struct err *err)
 	struct err late = { 0 };
 	if (stage->only)
 		record_keep(stage->record);
-	if (!record_save(stage->record, ok && !stage->only, &late) && ok)
+	else if (ok)
+		record_put_aside(stage->record, "work", &late);
+	if ((!record_save(stage->record, ok && !stage->only && !err_is(&late), &late) || err_is(&late)) && ok)
 		*err = late;
 	if (!stage->only)
 		say_log_write(stage_path(stage, "work/log/%s.json", stage->name), stage->name, seconds, err->msg);

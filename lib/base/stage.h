@@ -62,7 +62,7 @@ __attribute__((format(printf, 2, 3)))
 const char *stage_path(struct stage *stage, const char *fmt, ...);
 
 /* Lists the names in a folder of the capture, sorted, as file_list. The listing is recorded as an input, so that a file added or
- * removed makes the stage run again. Names of more than 200 bytes are left out, and logged so: what is made of them has longer ones,
+ * removed makes the stage run again. Names of more than 200 bytes are left out, but below work/, and logged so: what is made of them has longer ones,
  * and file systems end at 255. file_list_free. */
 bool stage_list(struct stage *stage, struct file_list *out, const char *dir, struct err *err);
 
@@ -77,6 +77,11 @@ const char *stage_made_by(struct stage *stage, int n, const char *const in[]);
 /* Records that `out` has been made from in[n]; to be called after it is written. Returns false, err set, when the record cannot
  * be saved. */
 bool stage_made(struct stage *stage, const char *out, int n, const char *const in[], struct err *err);
+
+/* Puts aside (aside.h) what earlier runs have made below `dir` ("work/render") and this one has neither made nor found to be up to date: what
+ * is read of that folder behind this call is of the capture as it is now. stage_end does it with all of work/, where the run was a whole one and
+ * nothing failed. */
+bool stage_put_aside(struct stage *stage, const char *dir, struct err *err);
 
 /* Prints one line of log to stderr, unless --quiet. */
 __attribute__((format(printf, 2, 3)))

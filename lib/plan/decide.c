@@ -248,8 +248,10 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		row->reason = r->does;
 		if (!has && !other)
 			row->reason = calibrates && have & HAS_VIDEO && !lens_given(conf) ? rests : r->without;
-		else if (!is_built(r->name))
+		else if (!is_built(r->name)) {
 			row->reason = "its program is not built";
+			plan->unbuilt = true;
+		}
 		else if (!strcmp(r->name, "transfer") && !skin)
 			row->reason = no_skin;
 		else if (!fed)

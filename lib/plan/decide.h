@@ -28,6 +28,7 @@ struct plan {
 	const char *capture;
 	struct plan_row rows[PLAN_STAGES];
 	int n_run;           // plan itself not counted
+	bool unbuilt;        // a stage does not run because its program is not there
 	int n_photos;
 	double mpx;          // of all photographs, as far as their heads tell
 	double largest_mpx;  // of one

@@ -102,7 +102,8 @@ static bool give_up(struct stage *stage, const struct views *views, const char *
 	stage_skipped(stage, "%s: no camera found from it (%s): a generic one is taken. Set camera.focal_px, or put photographs taken round the head into views/",
 	              file, why);
 	*err = (struct err){ 0 };
-	bool ok = true;
+	// What was compared so far serves a next try.
+	bool ok = kept_record(stage, views, true, err);
 	for (int i = 0; i < COUNT(out); i++)
 		ok = file_remove(stage_path(stage, "%s", out[i]), err) && ok;
 	return ok;

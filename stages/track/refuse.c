@@ -68,7 +68,7 @@ void refuse_picture(struct stage *stage, const struct track_clip *clip, const st
 			if (f == clip->reference)
 				margins(&pic, &r->eyes.state[f][e]);
 	}
-	if (file_mkdirs(stage_path(stage, "work/skin"), &none))
-		picture_png_write(stage_path(stage, REFUSED_PICTURE), px, w, h, 3, &none);
+	if (file_mkdirs(stage_path(stage, "work/skin"), &none) && picture_png_write(stage_path(stage, REFUSED_PICTURE), px, w, h, 3, &none))
+		stage_made(stage, REFUSED_PICTURE, 0, 0, &none);
 	free(px);
 }

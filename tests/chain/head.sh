@@ -57,6 +57,23 @@ check "there is a picture of them" test -s "$head/work/calibrate/rig.png"
 run_make "$head"
 same "again: nothing runs" "$(ran)" ""
 
+# A photograph of an eye in place of the views: it finds neither their cameras nor their mesh. With the views back nothing is sought anew.
+found() { (cd "$head/work" && sha256sum rig.json subject.ply calibrate/database.db); }
+cameras=$(found)
+mv "$head/views" "$root/views" && mkdir "$head/photos" && cp "$PHOTO" "$head/photos/right_a.jpg"
+conf "photo.right_a.focal_px = 11826"
+run_make "$head"
+same "the views gone: make" "$?" 0
+check "the views gone: no cameras, no mesh" test ! -e "$head/work/rig.json" -a ! -e "$head/work/subject.ply" -a ! -e "$head/work/calibrate/rig.png"
+check "the views gone: the eye knows of no rig" sh -c "! grep -q '\"source\": \"rig\"\|work/rig.json' '$head/work/limbus/right_a.json'"
+check "the views gone: the page shows no cameras" sh -c "! grep -q 'id=\"cameras\"' '$head/work/review/index.html'"
+mv "$root/views" "$head/views" && rm -r "$head/photos"
+conf
+run_make "$head"
+case " $(ran) " in *" calibrate "*) fail "the views back: no cameras are sought" "ran $(ran)" ;; *) pass "the views back: no cameras are sought" ;; esac
+same "the views back: what was found is there" "$(found)" "$cameras"
+check "the views back: the page shows the cameras, and no eye" sh -c "grep -q 'id=\"cameras\"' '$head/work/review/index.html' && ! grep -q 'id=\"iris\"' '$head/work/review/index.html'"
+
 # Its eyes and the corners of its mouth as a hand marks them in three views (00034 is seen face on; its iris' width stands for a
 # scale that a statue does not have): the head stands upright in its own frame, and a character that has eyeballs goes there.
 calibrate "view.00034.left_eye_px = 1518 593 45" "view.00034.right_eye_px = 1498 1070 44" "view.00034.mouth_px = 1992 952 1978 700" \

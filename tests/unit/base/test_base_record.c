@@ -5,15 +5,20 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include "base/aside.h"
 #include "base/asked.h"
 #include "base/conf.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/record_holds.h"
+#include "base/record_leave.h"
+#include "base/record_left.h"
 #include "tests/lib/scratch.h"
 
 static const char *const inputs[] = { "photos/a.jpg" };
 static const char out[] = "work/out.json";
+
+static int made;  // files that make_of has made
 
 static int setup(void **state)
 {
@@ -278,6 +283,134 @@ static void what_was_not_there_comes(void **state)
 	assert_false(holds("input optional is new"));
 }
 
+/* A run that makes a file of each of these inputs, "work/made/x" of "x". ends: whether it comes to its end. */
+static void make_of(const char *config, int n, const char *const names[], bool ends)
+{
+	struct err err = { 0 };
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), config);
+	for (int i = 0; i < n; i++) {
+		char *rel = mem_printf("work/made/%s", names[i]);
+		const char *in[] = { names[i] };
+		if (!record_fresh(r, rel, 1, in)) {
+			char *text = mem_printf("made %d", ++made);
+			scratch_text(rel, text);
+			record_made(r, rel, 1, in);
+			assert_true(record_save(r, false, &err));
+			free(text);
+		}
+		free(rel);
+	}
+	if (ends)
+		assert_true(record_put_aside(r, "work", &err) && record_save(r, true, &err));
+	record_free(r);
+}
+
+static bool is_there(const char *name)
+{
+	return file_exists(scratch_path("work/made/%s", name));
+}
+
+static bool is_aside(const char *name)
+{
+	return file_exists(scratch_path("work/.made/aside/made/%s", name));
+}
+
+/* What a run does not ask for any more is out of the way, and back, with its bytes, without being made, when it is asked for again. */
+static void what_is_not_made_any_more_is_put_aside(void **state)
+{
+	(void)state;
+	static const char *const both[] = { "a", "b" };
+	made = 0;
+	make_of(CONFIG, 2, both, true);
+	assert_int_equal(made, 2);
+	make_of(CONFIG, 1, both, true);
+	assert_true(is_there("a") && !is_there("b") && is_aside("b"));
+	make_of(CONFIG, 1, both, true);  // and stays there
+	assert_true(is_aside("b"));
+	make_of(CONFIG, 2, both, true);
+	assert_int_equal(made, 2);
+	assert_true(is_there("b") && !is_aside("b"));
+	// Of another input it is made again.
+	make_of(CONFIG, 1, both, true);
+	scratch_text("b", "another");
+	make_of(CONFIG, 2, both, true);
+	assert_int_equal(made, 3);
+	assert_true(is_there("b") && !is_aside("b"));
+	// With another configuration it can not come back: it is not kept.
+	make_of("stage.sigma = 3\n", 1, both, true);
+	assert_true(is_there("a") && !is_there("b") && !is_aside("b"));
+	assert_false(file_exists(scratch_path("work/.made/aside/made")));
+}
+
+/* A run that fails loses nothing; what it did not come to is still known to the next as something to put aside. */
+static void a_run_that_fails_leaves_all_in_place(void **state)
+{
+	(void)state;
+	static const char *const three[] = { "a", "b", "\xff\xfe" };  // the last name is no UTF-8
+	made = 0;
+	make_of(CONFIG, 3, three, true);
+	scratch_text("a", "another");
+	make_of(CONFIG, 1, three, false);
+	assert_true(is_there("a") && is_there("b") && is_there(three[2]));
+	make_of(CONFIG, 1, three, true);
+	assert_true(is_there("a") && !is_there("b") && !is_there(three[2]) && is_aside("b") && is_aside(three[2]));
+	make_of(CONFIG, 2, three, true);
+	assert_int_equal(made, 4);
+	assert_true(is_there("b"));
+	// Nor is it made again by the next that asks for it.
+	make_of(CONFIG, 1, three, false);
+	make_of(CONFIG, 2, three, true);
+	assert_int_equal(made, 4);
+	// One that is ended when it has just put something aside leaves nothing there.
+	make_of(CONFIG, 1, three, false);
+	assert_true(aside_put(scratch_path("."), "work/made/b", &(struct err){ 0 }) && is_aside("b"));
+	scratch_text("b", "another");
+	make_of(CONFIG, 2, three, true);
+	assert_true(is_there("b") && !is_aside("b"));
+}
+
+/* A stage that is not needed leaves no file, log or record; needed again, it has them all, and holds. */
+static void a_stage_leaves_and_returns(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	char *capture = mem_str(scratch_path("."));
+	scratch_text("work/log/stage.json", "{}");
+	scratch_text("work/made/mine", "not the stage's");
+	run_stage(CONFIG);
+	assert_true(record_return(capture, "stage", &err) && holds(0));
+	assert_true(record_leave(capture, "stage", &err));
+	assert_false(file_exists(scratch_path("%s", out)) || file_exists(scratch_path("work/log/stage.json")));
+	assert_false(holds("never run"));
+	assert_true(is_there("mine"));
+	assert_true(record_leave(capture, "stage", &err));
+	assert_true(record_return(capture, "stage", &err));
+	assert_true(file_exists(scratch_path("%s", out)) && file_exists(scratch_path("work/log/stage.json")) && holds(0));
+	// One that has run meanwhile has the newer files: those stay.
+	assert_true(record_leave(capture, "stage", &err));
+	scratch_text("photos/a.jpg", "another");
+	run_stage(CONFIG);
+	assert_true(record_return(capture, "stage", &err) && holds(0));
+	free(capture);
+}
+
+/* A record of a stranger's making moves nothing that is not below work/, nor what stages lock and remember by. */
+static void nothing_outside_is_put_aside(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	scratch_text("precious", "mine");
+	scratch_text("work/.made/lock", "");
+	assert_int_equal(symlink(scratch_path("precious"), scratch_path("work/link")), 0);
+	scratch_text("work/.made/stage.json", "{\"outputs\": {\"precious\": {}, \"work/../precious\": {}, \"/etc/passwd\": {}, \"work/.made/lock\": {}, \"work/link\": {}, "
+	             "\"work/\": {}, \"%70\": 3, \"%%2f%\": [], \"work\": 0}, \"left\": [], \"aside\": {\"../x\": null}}");
+	make_of(CONFIG, 0, 0, true);
+	assert_true(file_exists(scratch_path("precious")) && file_exists(scratch_path("work/.made/lock")) && file_exists(scratch_path("work/link")));
+	scratch_text("work/.made/stage.json", "{\"outputs\": {\"work/../precious\": {}, \"work/.made/lock\": {}, \"work/link\": {}}, \"left\": {\"precious\": null}}");
+	assert_true(record_leave(scratch_path("."), "stage", &err));
+	assert_true(file_exists(scratch_path("precious")) && file_exists(scratch_path("work/.made/lock")) && file_exists(scratch_path("work/link")));
+}
+
 /* What a stage makes while its disk fails does not count, whether it noticed or not. */
 static void a_failing_disk_makes_nothing(void **state)
 {
@@ -310,6 +443,10 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_record_of_a_strangers_making_is_refused, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(nothing_outside_the_folder_is_dropped, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(what_was_not_there_comes, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(what_is_not_made_any_more_is_put_aside, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_run_that_fails_leaves_all_in_place, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(a_stage_leaves_and_returns, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(nothing_outside_is_put_aside, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(a_failing_disk_makes_nothing, setup, scratch_teardown),  // the last: a disk stays broken
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
