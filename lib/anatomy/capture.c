@@ -163,26 +163,22 @@ void capture_part(struct capture *capture, int i)
 	number_eyes(capture);
 }
 
-/* Whether limbus has found both eyes in it. */
+/* Whether limbus has found both eyes in it. An input of stages that read nothing else of those fits, too. */
 static bool is_parted(struct stage *stage, const struct capture_photo *p)
 {
 	bool is = true;
-	for (int s = 1; s < SIDES && is; s++)
-		is = file_exists(stage_path(stage, "work/limbus/%s.%s.json", p->name, side_names[s]));
+	for (int s = 1; s < SIDES && is; s++) {
+		char *fit = mem_printf("work/limbus/%s.%s.json", p->name, side_names[s]);
+		is = stage_has(stage, fit);
+		free(fit);
+	}
 	return is;
 }
 
 bool capture_load(struct capture *capture, struct stage *stage, const struct opt_each_list *eye_of, struct err *err)
 {
-	struct file_list fits;
 	if (!capture_list(capture, stage, eye_of, err))
 		return false;
-	// Which photographs count as two is told by names there: as an input, for stages that read no more of it.
-	if (!stage_list(stage, &fits, "work/limbus", err)) {
-		capture_free(capture);
-		return false;
-	}
-	file_list_free(&fits);
 	for (int i = 0; i < capture->n_photos; i++)
 		if (capture_may_part(capture, i) && is_parted(stage, &capture->photos[i]))
 			capture_part(capture, i++);

@@ -77,6 +77,7 @@ struct record *record_open(const char *capture, const char *stage, const char *p
 	json_object_set_new(r->now, "config", config_object(config));
 	json_object_set_new(r->now, "each", json_array());
 	json_object_set_new(r->now, "lists", json_object());
+	json_object_set_new(r->now, "there", json_object());
 	json_object_set_new(r->now, "outputs", json_object());
 	json_object_set_new(r->now, "aside", json_object());
 	return r;
@@ -162,6 +163,13 @@ const char *record_hash(struct record *r, const char *rel)
 void record_list(struct record *r, const char *dir, const char *hash)
 {
 	json_object_set_new(json_object_get(r->now, "lists"), dir, json_string(hash));
+}
+
+void record_there(struct record *r, const char *rel)
+{
+	char *key = json_key(rel);
+	json_object_set_new(json_object_get(r->now, "there"), key, json_true());
+	free(key);
 }
 
 void record_each(struct record *r, const char *pattern)

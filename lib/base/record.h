@@ -12,8 +12,8 @@
 struct record {
 	char *capture;       // path of the capture folder
 	const char *stage;
-	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, absent [path], complete,
-	                     // aside {path: as in outputs}: put aside; left {path: the same, or null}: of earlier runs, in a record of one that did not end}
+	json_t *old, *now;   // {stage, program, config {}, each [pattern], lists {dir: hash}, outputs {path: {hash, inputs {path: hash}}}, absent [path], there {path: true}, complete,
+	                     // aside {path: as in outputs; null: not known to hold}: put aside; left {path: the same}: of earlier runs, in a record of one that did not end}
 	json_t *hashes;      // path -> {size, inode, mtime, ctime, hash}
 	bool hashes_changed;
 };
@@ -31,6 +31,9 @@ const char *record_hash(struct record *record, const char *rel);
 
 /* Registers a folder's sorted listing, by its hash (record_listing_hash), as an input. */
 void record_list(struct record *record, const char *dir, const char *hash);
+
+/* Registers that a file is there, whatever it holds, as an input. */
+void record_there(struct record *record, const char *rel);
 
 /* Registers a pattern of keys ("view.*.distance_mm", in full) that the stage reads: a new key that matches is then a change. */
 void record_each(struct record *record, const char *pattern);

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/record_impl.h"
+#include "base/record_left.h"
 
 /* Whether one of the stage's patterns matches the key: "view.*.distance_mm" matches "view.a.distance_mm". */
 static bool is_each(const json_t *patterns, const char *key)
@@ -60,21 +61,28 @@ static const char *hash_once(struct record *r, json_t *seen, const char *rel)
 	return json_string_value(known);
 }
 
-static bool files_hold(struct record *r, json_t *seen, const json_t *files, const char *kind, char **why)
+static bool file_holds(struct record *r, json_t *seen, const char *rel, const json_t *was, const char *kind, char **why)
 {
-	const char *rel;
-	json_t *value;
-	json_object_foreach((json_t *)files, rel, value) {
-		const json_t *was = json_is_object(value) ? json_object_get(value, "hash") : value;
-		const char *hash = hash_once(r, seen, rel), *old = json_string_value(was);
-		if (!old || strcmp(hash ? hash : "", old)) {
-			*why = mem_printf("%s %s %s", kind, rel, hash ? "has changed" : "is missing");
-			return false;
-		}
-		if (json_is_object(value) && !files_hold(r, seen, json_object_get(value, "inputs"), "input", why))
-			return false;
+	const char *hash = hash_once(r, seen, rel), *old = json_string_value(was);
+	const bool holds = old && !strcmp(hash ? hash : "", old);
+	if (!holds)
+		*why = mem_printf("%s %s %s", kind, rel, hash ? "has changed" : "is missing");
+	return holds;
+}
+
+/* What the outputs were made of; made: and they themselves. */
+static bool files_hold(struct record *r, bool made, char **why)
+{
+	json_t *seen = json_object(), *value, *was;
+	const char *out, *in;
+	bool holds = true;
+	json_object_foreach(json_object_get(r->old, "outputs"), out, value) {
+		holds = holds && (!made || file_holds(r, seen, out, json_object_get(value, "hash"), "output", why));
+		json_object_foreach(json_object_get(value, "inputs"), in, was)
+			holds = holds && file_holds(r, seen, in, was, "input", why);
 	}
-	return true;
+	json_decref(seen);
+	return holds;
 }
 
 static bool lists_hold(struct record *r, char **why)
@@ -115,12 +123,49 @@ static bool absence_holds(const struct record *r, char **why)
 	return true;
 }
 
+/* What only had to be there still is. */
+static bool presence_holds(const struct record *r, char **why)
+{
+	const char *key;
+	json_t *value;
+	json_object_foreach(json_object_get(r->old, "there"), key, value) {
+		char *rel = record_path_of(key), *path = file_is_relative(rel) ? record_in_capture(r->capture, rel) : 0;
+		const bool there = path && file_exists(path);
+		free(rel);
+		free(path);
+		if (!there) {
+			*why = mem_printf("input %s is missing", key);
+			return false;
+		}
+	}
+	return true;
+}
+
+/* Saves the cache of hashes. It is only a memory: losing it costs time, nothing else. */
+static void remember(const struct record *r)
+{
+	char *hashes = record_in_capture(r->capture, RECORD_HASHES);
+	if (r->hashes_changed)
+		record_save_json(hashes, r->hashes, &(struct err){ 0 });
+	free(hashes);
+}
+
+bool record_inputs_hold(const char *capture, const char *stage)
+{
+	struct record *r = record_open_old(capture, stage);
+	char *why = 0;
+	const bool hold = lists_hold(r, &why) && absence_holds(r, &why) && presence_holds(r, &why) && files_hold(r, false, &why);
+	remember(r);
+	record_free(r);
+	free(why);
+	return hold;
+}
+
 bool record_holds(const char *capture, const char *stage, const char *program_path, const struct conf *conf,
                   char **why)
 {
 	char *reason = 0;
 	struct record *r = record_open_old(capture, stage);
-	json_t *seen = json_object();
 	const char *program = record_hash(r, program_path),
 	           *was = json_string_value(json_object_get(r->old, "program"));
 	bool holds = false;
@@ -130,15 +175,9 @@ bool record_holds(const char *capture, const char *stage, const char *program_pa
 		reason = mem_str("the program has changed");
 	else
 		holds = config_holds(r->old, stage, conf, &reason)
-		        && lists_hold(r, &reason) && absence_holds(r, &reason)
-		        && files_hold(r, seen, json_object_get(r->old, "outputs"), "output", &reason);
-	if (r->hashes_changed) {
-		char *hashes = record_in_capture(capture, RECORD_HASHES);
-		struct err err = { 0 };
-		record_save_json(hashes, r->hashes, &err);  // only a memory: losing it costs time, nothing else
-		free(hashes);
-	}
-	json_decref(seen);
+		        && lists_hold(r, &reason) && absence_holds(r, &reason) && presence_holds(r, &reason)
+		        && files_hold(r, true, &reason);
+	remember(r);
 	record_free(r);
 	if (why)
 		*why = reason;

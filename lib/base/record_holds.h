@@ -16,4 +16,8 @@ bool record_drop_altered(struct record *record, const char *dir, record_dropped 
 bool record_holds(const char *capture, const char *stage, const char *program_path, const struct conf *conf,
                   char **why);
 
+/* Whether all that the stage read in its last run is still there with the same bytes, listings too: what it made is of the capture as it is,
+ * though perhaps not as this program and this configuration would make it. */
+bool record_inputs_hold(const char *capture, const char *stage);
+
 #endif

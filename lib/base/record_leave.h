@@ -1,4 +1,4 @@
-/* record_leave: a stage that a capture does not need any more leaves it, with all that it has made (aside.h), and comes back when it is needed.
+/* record_leave: a stage that a capture has no inputs for any more leaves it, with all that it has made (aside.h), and comes back when it is needed.
  * To be called with work/ locked (work.h). False, err set, where a file cannot be moved.
  */
 #ifndef BASE_RECORD_LEAVE_H

@@ -104,20 +104,18 @@ bool record_settle(struct record *r, struct err *err)
 	const char *key;
 	void *next;
 	bool ok = true;
-	json_object_foreach_safe(aside, next, key, made) {
-		char *rel = record_path_of(key);
-		const bool there = lies_aside(r, rel);
-		if (there && json_is_null(made))
-			ok = aside_drop(r->capture, rel, err) && ok;
-		if (!there || json_is_null(made))
-			json_object_del(aside, key);
-		free(rel);
-	}
-	// What a run that was ended had put aside, and this one has made anew.
+	// What this run has made anew, or a file that has the same place, is newer than what lies aside. All else stays there, though this program
+	// and configuration may not know what to do with it: what was made is not lost.
 	json_object_foreach(json_object_get(r->now, "outputs"), key, made) {
 		char *rel = record_path_of(key);
 		if (lies_aside(r, rel))
 			ok = aside_drop(r->capture, rel, err) && ok;
+		free(rel);
+	}
+	json_object_foreach_safe(aside, next, key, made) {
+		char *rel = record_path_of(key);
+		if (!lies_aside(r, rel))
+			json_object_del(aside, key);
 		free(rel);
 	}
 	json_object_del(r->now, "left");

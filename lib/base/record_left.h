@@ -24,7 +24,7 @@ void record_note_left(struct record *record);
 /* What has been made counts as left, not as made. */
 void record_distrust(struct record *record);
 
-/* Of a run that is complete: forgets what was left, and removes what lies aside and cannot come back. */
+/* Of a run that is complete: forgets what was left, and removes what lies aside of files that it has made anew. */
 bool record_settle(struct record *record, struct err *err);
 
 #endif

@@ -170,9 +170,18 @@ bool stage_list(struct stage *stage, struct file_list *out, const char *dir, str
 	pthread_mutex_lock(&busy);
 	record_list(stage->record, dir, hash);
 	pthread_mutex_unlock(&busy);
-	if (strncmp(dir, "work/", 5) != 0)
-		drop_long(stage, out, dir);
+	drop_long(stage, out, dir);
 	return true;
+}
+
+bool stage_has(struct stage *stage, const char *rel)
+{
+	const bool has = file_exists(stage_path(stage, "%s", rel));  // which notes what is not there (asked.h)
+	pthread_mutex_lock(&busy);
+	if (has)
+		record_there(stage->record, rel);
+	pthread_mutex_unlock(&busy);
+	return has;
 }
 
 bool stage_fresh(struct stage *stage, const char *out, int n, const char *const in[])

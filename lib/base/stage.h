@@ -62,9 +62,12 @@ __attribute__((format(printf, 2, 3)))
 const char *stage_path(struct stage *stage, const char *fmt, ...);
 
 /* Lists the names in a folder of the capture, sorted, as file_list. The listing is recorded as an input, so that a file added or
- * removed makes the stage run again. Names of more than 200 bytes are left out, but below work/, and logged so: what is made of them has longer ones,
+ * removed makes the stage run again. Names of more than 200 bytes are left out, and logged so: what is made of them has longer ones,
  * and file systems end at 255. file_list_free. */
 bool stage_list(struct stage *stage, struct file_list *out, const char *dir, struct err *err);
+
+/* Whether a file of the capture is there. That it is, or is not, is recorded as an input; its bytes are not. */
+bool stage_has(struct stage *stage, const char *rel);
 
 /* Whether `out` is up to date: made by this very program from in[n] with these bytes and this configuration. It need not be made
  * again then. */

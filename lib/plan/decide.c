@@ -246,12 +246,12 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 		const char *other = other_way(plan, r, have);
 		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));
 		row->reason = r->does;
+		row->told = calibrates && !has && have & HAS_VIDEO && lens_given(conf);
+		plan->unbuilt |= (has || other) && !is_built(r->name);
 		if (!has && !other)
-			row->reason = calibrates && have & HAS_VIDEO && !lens_given(conf) ? rests : r->without;
-		else if (!is_built(r->name)) {
+			row->reason = calibrates && have & HAS_VIDEO && !row->told ? rests : r->without;
+		else if (!is_built(r->name))
 			row->reason = "its program is not built";
-			plan->unbuilt = true;
-		}
 		else if (!strcmp(r->name, "transfer") && !skin)
 			row->reason = no_skin;
 		else if (!fed)

@@ -17,6 +17,7 @@ struct plan_cost {
 struct plan_row {
 	const char *name;
 	bool run;
+	bool told;           // does not, since capture.conf gives what it would find
 	const char *reason;  // fixed texts: they go into plan.mk
 	double seconds;      // estimate; 0 when it does not run
 	double peak_mib;     // of memory, estimate; 0 when it does not run

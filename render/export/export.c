@@ -226,10 +226,6 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct skin_job
 		stage_skipped_as_said(job->stage, "export of the %s eye: there is no iris to export", job->names->side);
 		return true;
 	}
-	if (!conf->make && !job->stage->only) {
-		stage_skipped_as_said(job->stage, "%s/eye.glb: export.make = no: make export makes it", job->names->leaves);
-		return true;
-	}
 	struct skin_target face;
 	if (!skin_first(&face, job->stage, err))
 		return false;
@@ -237,7 +233,10 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct skin_job
 	bool fresh = true;
 	for (int i = 0; i < f.n; i++)
 		fresh &= stage_fresh(job->stage, f.rel[i], f.n_in, f.in);
-	if (fresh)
+	// One that was asked for alone stays for as long as it is of this eye.
+	if (!fresh && !conf->make && !job->stage->only)
+		stage_skipped_as_said(job->stage, "%s/eye.glb: export.make = no: make export makes it", job->names->leaves);
+	if (fresh || (!conf->make && !job->stage->only))
 		return true;
 	struct export_work w = { .job = job, .conf = conf };
 	struct image freckles = { 0 };

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/aside.h"
 #include "base/mem.h"
 #include "base/run.h"
 #include "sfm/figure/figure.h"
@@ -92,7 +93,7 @@ static bool from_views(bool *unfit, struct stage *stage, struct views *views, co
 	return ok;
 }
 
-/* Records that the video gives no camera and removes older results: later stages then assume a generic camera. */
+/* Records that the video gives no camera and puts older results aside: later stages then assume a generic camera. */
 static bool give_up(struct stage *stage, const struct views *views, const char *why, struct err *err)
 {
 	static const char *const out[] = { RIG, SUBJECT, FIGURE };
@@ -105,7 +106,7 @@ static bool give_up(struct stage *stage, const struct views *views, const char *
 	// What was compared so far serves a next try.
 	bool ok = kept_record(stage, views, true, err);
 	for (int i = 0; i < COUNT(out); i++)
-		ok = file_remove(stage_path(stage, "%s", out[i]), err) && ok;
+		ok = aside_put(stage->capture, out[i], err) && ok;
 	return ok;
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/aside.h"
 #include "base/mem.h"
 #include "image/photo/photo.h"
 #include "limbus/face/face.h"
@@ -151,7 +152,7 @@ static int measure_one(struct limbus_record record[2], struct limbus_kept *kept,
 	return 1;
 }
 
-/* What the photograph left when it was taken for one eye (parts false), or for two. */
+/* Puts aside what the photograph left when it was taken for one eye (parts false), or for two. */
 static bool clear(struct stage *stage, const char *name, bool parts, struct err *err)
 {
 	static const char *const tails[] = { ".edge.json", ".json", ".png" };
@@ -159,7 +160,7 @@ static bool clear(struct stage *stage, const char *name, bool parts, struct err 
 	for (int s = 0; s < (parts ? 2 : 1); s++)
 		for (int t = 0; t < COUNT(tails) && ok; t++) {
 			char *path = part_path(name, parts ? sides[s] : 0, tails[t]);
-			ok = file_remove(stage_path(stage, "%s", path), err);
+			ok = aside_put(stage->capture, path, err);
 			free(path);
 		}
 	return ok;

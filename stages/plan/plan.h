@@ -35,6 +35,13 @@ bool plan_fresh(bool *fresh, char **why, const struct call *call, const char *st
  * that was found good is remembered by a hash. Returns false, err set to the stage's own message. */
 bool plan_check_conf(const struct plan *plan, const struct conf *conf, struct err *err);
 
+/* Puts aside what stages that the folder does not need any more have made of files that are gone (base/record_leave.h), so that nobody takes it
+ * for its own, and says so unless quiet; brings back what stages have that it needs again. To be called with work/ locked. */
+bool plan_move(const struct plan *plan, bool quiet, struct err *err);
+
+/* Whether that would move anything. */
+bool plan_has_to_move(const struct plan *plan);
+
 /* Removes work/. A link is removed itself, never what it points to. Returns false, err set, when a stage is running there. */
 bool plan_clean(const char *capture, struct err *err);
 

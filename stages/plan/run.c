@@ -3,10 +3,8 @@
 #include <unistd.h>
 
 #include "anatomy/keys.h"
-#include "base/aside.h"
 #include "base/file.h"
 #include "base/front_use.h"
-#include "base/record_leave.h"
 #include "base/say.h"
 #include "base/work.h"
 #include "plan.h"
@@ -24,43 +22,22 @@ static char *slice_of(const struct opt opts[PLAN_OPTS], const struct conf *conf)
 	return text;
 }
 
-/* Whether a stage that the folder does not need has left something, or one that it needs has something put aside. */
-static bool has_to_move(const struct plan *plan)
-{
-	bool has = false;
-	for (int i = 1; i < PLAN_STAGES; i++) {
-		const bool stands = aside_stands(plan->capture, plan->rows[i].name, false);
-		has = has || (plan->rows[i].run ? !stands && aside_stands(plan->capture, plan->rows[i].name, true) : stands);
-	}
-	return has;
-}
-
-/* What stages that the folder does not need any more have made is put aside, so that nobody takes it for its own; it comes back with their
- * inputs. Where programs are missing, it is they and not the folder that decide. */
-static bool put_aside(const struct plan *plan, struct err *err)
-{
-	bool ok = true;
-	for (int i = 1; i < PLAN_STAGES && ok && !plan->unbuilt; i++)
-		ok = (plan->rows[i].run ? record_return : record_leave)(plan->capture, plan->rows[i].name, err);
-	return ok;
-}
-
 /* Brings work/ to where the plan finds it: also removes half-written files, since where no stage has to run none would do it. A running stage
  * does it itself, and is waited for where something has to be moved that the stages to come would read. */
-static bool tidy(const struct plan *plan, const struct plan_asked *asked, struct err *err)
+static bool tidy(const struct plan *plan, const struct plan_asked *asked, bool quiet, struct err *err)
 {
 	struct err unwritable = { 0 };
 	bool busy = false, ok = true;
 	int lock = work_lock(plan->capture, &busy, &unwritable);
 	if (lock < 0)
 		return true;
-	if (busy && !asked->show && !asked->request && has_to_move(plan)) {
+	if (busy && !asked->show && !asked->request && plan_has_to_move(plan)) {
 		work_wait(lock);
 		busy = false;
 	}
 	if (!busy) {
 		work_sweep(plan->capture);
-		ok = put_aside(plan, err);
+		ok = plan_move(plan, quiet, err);
 	}
 	close(lock);
 	return ok;
@@ -97,7 +74,7 @@ static bool make_plan(const struct call *call, const struct plan_asked *asked, c
 	          && plan_check_conf(&plan, conf, err)
 	          && plan_write(&plan, slice, err);
 	free(slice);
-	ok = ok && tidy(&plan, asked, err);
+	ok = ok && tidy(&plan, asked, call->quiet, err);
 	if (ok && asked->show)
 		plan_show(&plan, call);
 	if (ok && asked->todo)

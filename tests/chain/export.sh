@@ -48,6 +48,13 @@ run_make "$draft"
 check "a draft exports where it is asked to" test ! -e "$draft/work/export"
 run_make "$draft" export
 check "and then does" test -s "$draft/work/export/eye.glb"
+made=$(bytes_of "$draft" | grep export)
+run_make "$draft"
+same "which the pictures leave as it is" "$(bytes_of "$draft" | grep export)" "$made"
+sed -i '/^eye.iris_depth_mm/d' "$draft/capture.conf"
+echo "eye.iris_depth_mm = 3.5" >>"$draft/capture.conf"
+run_make "$draft"
+check "and that of another eye is put aside, not lost" test ! -e "$draft/work/export" -a -s "$draft/work/.made/aside/export/eye.glb"
 face="$root/face"
 "${B:-build}/tests/tools/made_face" "$face"
 "$BIN/extrapolate" --capture="$face" --quiet >"$log" 2>&1

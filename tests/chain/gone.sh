@@ -100,3 +100,21 @@ rm "$root/ended"/script/*
 mkdir -p "$root/ended/work/.made/aside/skin"
 mv "$root/ended/work/skin/animation.csv" "$root/ended/work/.made/aside/skin/"
 gone "script/, ended in between," "$root/ended"
+
+# A copy with little of what it was made of, where other programs are: nothing that was made is lost, in sight or aside. What is made of the
+# photograph that is left takes its old place.
+cp -a "$all" "$root/copy"
+rm -r "$root/copy"/{video,targets,script,subject.ply,photos/right_a.jpg}
+sed -i '/^photo.right_a/d; /^target\./d' "$root/copy/capture.conf"
+mkdir "$root/other"
+cp -r "$BIN" "$root/other/bin"
+cp -r config "$root/other"
+for program in "$root"/other/bin/*; do echo >>"$program"; done
+BIN="$root/other/bin" make --no-print-directory -f stages/capture.mk CAPTURE="$root/copy" ready= run >"$log" 2>&1
+same "a copy without inputs: make" "$?" 0
+check "a copy without inputs: it says what is put aside" grep -q 'plan: .* what track, train, transfer, extrapolate, animate made is put aside in work/.made/aside' "$log"
+check "a copy without inputs: there is one eye, and no skin" test -s "$root/copy/work/limbus/left_a.json" -a ! -e "$root/copy/work/limbus/right_a.json" -a ! -e "$root/copy/work/skin"
+same "a copy without inputs: what is lost" "$(while read -r hash path; do
+	case $path in ./plan.* | ./iris/* | ./limbus/left_a.* | ./render/left_a_*) continue ;; esac
+	sha256sum "$root/copy/work/$path" "$root/copy/work/.made/aside/$path" 2>/dev/null | grep -q "^$hash " || echo "$path"
+done <<<"$whole")" ""

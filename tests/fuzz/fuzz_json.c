@@ -45,6 +45,7 @@ static void records(const char *dir)
 	char *why = 0;
 	conf_add(&conf, "quality", "review");
 	conf_add(&conf, "blur.sigma", "3");
+	record_inputs_hold(dir, "blur");
 	if (!record_holds(dir, "blur", "program", &conf, &why) && !why)
 		abort();  // stale without a reason
 	free(why);

@@ -283,6 +283,56 @@ static void what_was_not_there_comes(void **state)
 	assert_false(holds("input optional is new"));
 }
 
+/* A file that only has to be there: it may change, but not go. */
+static void what_has_to_be_there_goes(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	scratch_text("mark", "1");
+	scratch_text("\xff", "1");
+	struct record *r = record_open(scratch_path("."), "stage", scratch_path("program"), CONFIG);
+	record_there(r, "mark");
+	record_there(r, "\xff");
+	assert_true(record_save(r, true, &err));
+	record_free(r);
+	assert_true(holds(0) && record_inputs_hold(scratch_path("."), "stage"));
+	scratch_text("mark", "another");
+	assert_true(holds(0));
+	assert_int_equal(unlink(scratch_path("mark")), 0);
+	assert_false(holds("input mark is missing") || record_inputs_hold(scratch_path("."), "stage"));
+	scratch_text("mark", "1");
+	assert_int_equal(unlink(scratch_path("\xff")), 0);
+	assert_false(holds("input %%ff is missing"));
+}
+
+/* What a stage has read is all that counts there: not what it made, with which program or configuration, nor whether it came to its end. */
+static void inputs_alone_hold(void **state)
+{
+	(void)state;
+	struct err err = { 0 };
+	char *capture = mem_str(scratch_path("."));
+	run_stage(CONFIG);
+	assert_true(record_inputs_hold(capture, "stage"));
+	scratch_text("program", "another");
+	scratch_text(out, "edited");
+	assert_true(!holds(0) && record_inputs_hold(capture, "stage"));
+	scratch_text("photos/a.jpg", "another");
+	assert_false(record_inputs_hold(capture, "stage"));
+	run_stage(CONFIG);
+	assert_int_equal(unlink(scratch_path("photos/a.jpg")), 0);
+	assert_false(record_inputs_hold(capture, "stage"));
+	scratch_text("photos/a.jpg", "another");
+	struct record *r = record_open(capture, "stage", scratch_path("program"), CONFIG);
+	char hash[33];
+	record_listing_hash(hash, 1, (char *[]){ "b.csv" });
+	record_list(r, "script", hash);
+	assert_true(record_save(r, true, &err) && !record_inputs_hold(capture, "stage"));
+	scratch_text("script/b.csv", "");
+	assert_true(record_inputs_hold(capture, "stage"));
+	record_free(r);
+	free(capture);
+}
+
 /* A run that makes a file of each of these inputs, "work/made/x" of "x". ends: whether it comes to its end. */
 static void make_of(const char *config, int n, const char *const names[], bool ends)
 {
@@ -336,9 +386,14 @@ static void what_is_not_made_any_more_is_put_aside(void **state)
 	make_of(CONFIG, 2, both, true);
 	assert_int_equal(made, 3);
 	assert_true(is_there("b") && !is_aside("b"));
-	// With another configuration it can not come back: it is not kept.
+	// With another configuration it does not come back by itself, nor is it lost; what is made anew takes its place.
 	make_of("stage.sigma = 3\n", 1, both, true);
-	assert_true(is_there("a") && !is_there("b") && !is_aside("b"));
+	make_of("stage.sigma = 3\n", 1, both, true);
+	assert_true(is_there("a") && !is_there("b") && is_aside("b"));
+	made = 0;
+	make_of("stage.sigma = 3\n", 2, both, true);
+	assert_int_equal(made, 1);
+	assert_true(is_there("b") && !is_aside("b"));
 	assert_false(file_exists(scratch_path("work/.made/aside/made")));
 }
 
@@ -443,6 +498,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_record_of_a_strangers_making_is_refused, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(nothing_outside_the_folder_is_dropped, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(what_was_not_there_comes, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(what_has_to_be_there_goes, setup, scratch_teardown),
+		cmocka_unit_test_setup_teardown(inputs_alone_hold, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(what_is_not_made_any_more_is_put_aside, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(a_run_that_fails_leaves_all_in_place, setup, scratch_teardown),
 		cmocka_unit_test_setup_teardown(a_stage_leaves_and_returns, setup, scratch_teardown),

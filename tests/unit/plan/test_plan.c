@@ -136,6 +136,7 @@ static void names_decide(void **state)
 	p = decided((const char *[]){ "targets/a.ply", 0 }, "camera.focal_px = 1000\n");
 	assert_string_equal(why(&p, "transfer"), unbuilt);
 	assert_string_equal(why(&p, "calibrate"), plan_stages[plan_stage_find("calibrate")].without);  // the lens is given
+	assert_true(p.rows[plan_stage_find("calibrate")].told && !p.rows[plan_stage_find("animate")].told);
 	p = decided((const char *[]){ "views/a.jpg", "views/b.jpg", 0 }, "camera.focal_px = 1000\n");
 	assert_string_equal(why(&p, "calibrate"), unbuilt);
 }
