@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/aside.h"
+#include "base/asked.h"
 #include "base/mem.h"
 
 const char *const record_kinds[RECORD_KINDS] = { "outputs", "left" };
@@ -51,9 +52,10 @@ bool record_put_aside(struct record *r, const char *dir, struct err *err)
 	const size_t n = strlen(dir);
 	const char *key;
 	bool ok = true;
+	// What a failing disk did not give may be there again for the next run: nothing is taken for gone.
 	json_object_foreach(all, key, made) {
 		char *rel = record_path_of(key);
-		if (ok && !strncmp(rel, dir, n) && rel[n] == '/') {
+		if (ok && !asked_trouble() && !strncmp(rel, dir, n) && rel[n] == '/') {
 			ok = aside_put(r->capture, rel, err);
 			json_object_set(json_object_get(r->now, "aside"), key, made);
 		}
