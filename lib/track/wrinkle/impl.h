@@ -23,10 +23,9 @@ bool wrinkle_ridges_find(struct wrinkle_ridges *ridges, const float *change, con
 void wrinkle_ridges_free(struct wrinkle_ridges *ridges);
 
 /* link.c: links ridges into curves with control points a mm apart on the surface; widths are the ridges'. What is above the threshold has to be long enough; from there
- * a line goes on as long as it is `least` times the threshold, wrinkle_follows to 1. lines: owned by the caller, wrinkle_lines_free. Returns how many. */
+ * a line goes on as long as it is `least` times the threshold, wrinkle_follows to 1. lines: owned by the caller. Returns how many. */
 int wrinkle_link(struct wrinkle_line **lines, const struct wrinkle_ridges *ridges, double least, const struct wrinkle_ground *ground,
                  const struct wrinkle_conf *conf);
-void wrinkle_lines_free(int n, struct wrinkle_line *lines);
 
 /* light.c: the light, first from the shading of the neutral face; then the share of ambient in frontal light, which that leaves
  * open, from the

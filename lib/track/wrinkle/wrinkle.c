@@ -9,7 +9,7 @@
 #include "math/vec.h"
 #include "track/wrinkle/impl.h"
 
-void wrinkle_lines_free(int n, struct wrinkle_line *lines)
+static void lines_free(int n, struct wrinkle_line *lines)
 {
 	for (int i = 0; i < n; i++) {
 		free(lines[i].point);
@@ -21,7 +21,7 @@ void wrinkle_lines_free(int n, struct wrinkle_line *lines)
 
 static void pose_free(struct wrinkle_pose *p)
 {
-	wrinkle_lines_free(p->n, p->line);
+	lines_free(p->n, p->line);
 	free(p->frame);
 	free(p->name);
 }
@@ -134,7 +134,7 @@ bool wrinkle_find(struct wrinkles *w, const char *name, int n, const struct wrin
 		struct wrinkle_line *sure;
 		const int n_sure = wrinkle_link(&sure, &ridges, 1, g, conf);
 		wrinkle_ambient(w, n_sure, sure, f.change, g, grooves);
-		wrinkle_lines_free(n_sure, sure);
+		lines_free(n_sure, sure);
 		p->n = wrinkle_link(&p->line, &ridges, wrinkle_follows, g, conf);
 		for (int i = 0; i < p->n; i++)
 			wrinkle_measure(&p->line[i], w, f.change, g, grooves, conf);
