@@ -27,18 +27,18 @@ static cv::Mat kernel(double sigma, int order)
 	return k;
 }
 
-bool cv_ridge(float (*out)[5], const float *in, int width, int height, double sigma, struct err *err)
+bool cv_ridge(float *const out[CV_DERIVATIVES], const float *in, int width, int height, double sigma, struct err *err)
 {
-	static const int orders[5][2] = { { 1, 0 }, { 0, 1 }, { 2, 0 }, { 1, 1 }, { 0, 2 } };
+	static const int orders[CV_DERIVATIVES][2] = { { 1, 0 }, { 0, 1 }, { 2, 0 }, { 1, 1 }, { 0, 2 } };
 	try {
-		cv::Mat from(height, width, CV_32F, const_cast<float *>(in)), all(height, width, CV_32FC(5), out), k[3];
+		cv::Mat from(height, width, CV_32F, const_cast<float *>(in)), k[3];
 		for (int i = 0; i < 3; i++)
 			k[i] = kernel(sigma, i);
-		for (int i = 0; i < 5; i++) {
-			cv::Mat one;
+		for (int i = 0; i < CV_DERIVATIVES; i++) {
+			if (!out[i])
+				continue;
+			cv::Mat one(height, width, CV_32F, out[i]);
 			cv::sepFilter2D(from, one, CV_32F, k[orders[i][0]], k[orders[i][1]], cv::Point(-1, -1), 0, cv::BORDER_REFLECT_101);
-			int to[] = { 0, i };
-			cv::mixChannels(&one, 1, &all, 1, to, 1);
 		}
 		return true;
 	} catch (const std::exception &e) {

@@ -6,9 +6,11 @@ extern "C" {
 #endif
 #include "base/err.h"
 
-/* out[height][width][5] = d/dx, d/dy, d2/dx2, d2/dxdy, d2/dy2 of `in`[height][width] convolved with a Gaussian of `sigma` px (>=
- * 0.6), in units per px; mirrored at the borders. Returns false, err set, where OpenCV fails. */
-bool cv_ridge(float (*out)[5], const float *in, int width, int height, double sigma, struct err *err);
+enum cv_derivative { CV_DX, CV_DY, CV_DXX, CV_DXY, CV_DYY, CV_DERIVATIVES };
+
+/* The derivatives of `in`[height][width] convolved with a Gaussian of `sigma` px (>= 0.6), in units per px; mirrored at the borders.
+ * out[k]: of enum cv_derivative, [height][width]; null: not wanted. Returns false, err set, where OpenCV fails. */
+bool cv_ridge(float *const out[CV_DERIVATIVES], const float *in, int width, int height, double sigma, struct err *err);
 
 #ifdef __cplusplus
 }

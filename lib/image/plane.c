@@ -11,16 +11,24 @@ static int clamp_int(int x, int lo, int hi)
 	return x < lo ? lo : x > hi ? hi : x;
 }
 
-/* Running mean over 2 radius + 1 pixels. */
-static void box_row(float *restrict out, const float *restrict in, int n, int radius)
+enum { ABREAST = 4 };  // rows whose sums run side by side: each waits for the one before
+
+/* Running mean over 2 radius + 1 pixels of rows of `width`, ABREAST of them or less. */
+static void box_rows(float *restrict out, const float *restrict in, int rows, int width, int radius)
 {
-	double sum = 0;
-	for (int i = -radius; i <= radius; i++)
-		sum += in[clamp_int(i, 0, n - 1)];
-	float scale = 1.0f / (float)(2 * radius + 1);
-	for (int i = 0; i < n; i++) {
-		out[i] = (float)sum * scale;
-		sum += in[clamp_int(i + radius + 1, 0, n - 1)] - in[clamp_int(i - radius, 0, n - 1)];
+	const float *from[ABREAST], scale = 1.0f / (float)(2 * radius + 1);
+	double sum[ABREAST] = { 0 };
+	for (int k = 0; k < ABREAST; k++)
+		from[k] = in + (long)(k < rows ? k : rows - 1) * width;
+	for (int k = 0; k < ABREAST; k++)
+		for (int i = -radius; i <= radius; i++)
+			sum[k] += from[k][clamp_int(i, 0, width - 1)];
+	for (int i = 0; i < width; i++) {
+		const int add = clamp_int(i + radius + 1, 0, width - 1), sub = clamp_int(i - radius, 0, width - 1);
+		for (int k = 0; k < rows; k++)
+			out[(long)k * width + i] = (float)sum[k] * scale;
+		for (int k = 0; k < ABREAST; k++)
+			sum[k] += from[k][add] - from[k][sub];
 	}
 }
 
@@ -60,8 +68,8 @@ void plane_blur(float *px, int width, int height, double sigma)
 		if (radius < 1)
 			continue;
 #pragma omp parallel for schedule(static)
-		for (int y = 0; y < height; y++)
-			box_row(other + (long)y * width, px + (long)y * width, width, radius);
+		for (int y = 0; y < height; y += ABREAST)
+			box_rows(other + (long)y * width, px + (long)y * width, y + ABREAST < height ? ABREAST : height - y, width, radius);
 #pragma omp parallel for schedule(static)
 		for (int x = 0; x < width; x += 64)
 			box_columns(px, other, width, height, x, x + 64 < width ? x + 64 : width, radius);

@@ -1,6 +1,11 @@
 #include "math/stats.h"
 
 #include <math.h>
+#include <stdbool.h>
+
+#include "math/simd.h"
+
+enum { FEW = 64 };  // so few are ranked by comparing all pairs: no branch that depends on them
 
 static void swap(double *a, double *b)
 {
@@ -47,9 +52,42 @@ double stats_quantile(int n, double x[n], double q)
 	return low + (at - k) * (high - low);
 }
 
+/* rank[i]: how many come before x[i] in rising order; of equal ones the earlier. room: a multiple of 8, n at least; beyond n x is not read as a rank. */
+SIMD_CLONES static void ranks(long rank[FEW], const double x[FEW], int n, int room)
+{
+	for (int i = 0; i < room; i++)
+		rank[i] = 0;
+	for (int j = 0; j < n; j++) {
+		SIMD_LOOP
+		for (int i = 0; i < room; i++)
+			rank[i] += (x[j] < x[i]) | ((x[j] == x[i]) & (j < i));
+	}
+}
+
+/* Median of at most FEW; false where NaNs leave a rank empty. */
+static bool median_of_few(double *median, int n, const double x[n])
+{
+	double all[FEW], low = 0, high = 0;
+	long rank[FEW];
+	const int k = (n - 1) / 2;
+	int found = 0;
+	for (int i = 0; i < FEW; i++)
+		all[i] = i < n ? x[i] : 0;
+	ranks(rank, all, n, (n + 7) / 8 * 8);
+	for (int i = 0; i < n; i++) {
+		if (rank[i] == k)
+			low = x[i], found++;
+		if (rank[i] == k + 1)
+			high = x[i], found++;
+	}
+	*median = n % 2 ? low : low + 0.5 * (high - low);
+	return found == (n > 1 ? 2 : 1);
+}
+
 double stats_median(int n, double x[n])
 {
-	return stats_quantile(n, x, 0.5);
+	double few;
+	return n > 0 && n <= FEW && median_of_few(&few, n, x) ? few : stats_quantile(n, x, 0.5);
 }
 
 double stats_mad(int n, double x[n], double center)

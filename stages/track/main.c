@@ -2,13 +2,25 @@
  * reads   video/, the subject's mesh (subject.ply, .obj or work/subject.ply), work/rig.json
  * writes  work/skin/: track_files (save.c), of expressions wrinkle_files (wrinkles.c)
  */
+#include <malloc.h>
+
 #include "base/mem.h"
 #include "base/stage.h"
 #include "stages/track/run.h"
 
+/* Pictures of some MB come and go all the time, from several threads: given back to the system each time, a tenth of the whole time would go into their pages. */
+static void keep_memory(void)
+{
+	enum { MIB = 1 << 20 };
+	mallopt(M_ARENA_MAX, 1);
+	mallopt(M_MMAP_THRESHOLD, 32 * MIB);
+	mallopt(M_TRIM_THRESHOLD, 256 * MIB);
+}
+
 int main(int argc, char **argv)
 {
 	stage_calm(argv);
+	keep_memory();
 	static const char *const shown[] = { "both", "left", "right", 0 };  // enum track_shown
 	struct track_conf c = { 0 };
 	const struct opt opts[] = {

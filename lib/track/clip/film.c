@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/simd.h"
 
 struct film *film_new(const struct track_clip *clip, const struct track_subject *s, const struct track_points *points)
 {
@@ -53,6 +54,13 @@ static void thin(struct film *film)
 	film->n = n;
 }
 
+SIMD_CLONES static void down_row(unsigned *restrict down, const uint8_t *restrict from, int n)
+{
+	SIMD_LOOP
+	for (int x = 0; x < n; x++)
+		down[x] += from[x];
+}
+
 void film_add(struct film *film, const struct video_frame *f)
 {
 	if (f->index % film->every)
@@ -64,19 +72,19 @@ void film_add(struct film *film, const struct video_frame *f)
 	uint8_t *to = film->px[film->n] = mem_new((size_t)film->width * (size_t)film->height, 1);
 	film->frame[film->n++] = f->index;
 	int s = film->step, wide = film->width * s;
+	const uint64_t share = (UINT64_C(1) << 32) / (uint64_t)(s * s) + 1;  // of a cell, in 2^-32: no division a pixel
 	unsigned *down = mem_array((size_t)wide + 1, sizeof *down);
 	for (int y = 0; y < film->height; y++) {
 		memset(down, 0, (size_t)wide * sizeof *down);
 		for (int v = 0; v < s; v++) {
 			const uint8_t *from = f->luma + (long)(film->y0 + y * s + v) * f->luma_stride + film->x0;
-			for (int x = 0; x < wide; x++)
-				down[x] += from[x];
+			down_row(down, from, wide);
 		}
 		for (int x = 0; x < film->width; x++) {
 			unsigned sum = 0;
 			for (int u = 0; u < s; u++)
 				sum += down[x * s + u];
-			to[y * film->width + x] = (uint8_t)(sum / (unsigned)(s * s));
+			to[y * film->width + x] = (uint8_t)(sum * share >> 32);
 		}
 	}
 	free(down);

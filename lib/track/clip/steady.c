@@ -53,6 +53,7 @@ static bool rests(const struct track_result *r, long reference)
 /* Recomputes the skin in the modelling camera with the final poses. */
 static void model_again(struct track_result *r, const struct track_points *points, const struct track_clip *clip)
 {
+#pragma omp parallel for schedule(static)
 	for (long f = 0; f < r->n; f++) {
 		for (int i = 0; i < r->n_points; i++) {
 			const float *at = r->skin[f * r->n_points + i];

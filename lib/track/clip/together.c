@@ -32,33 +32,52 @@ static void middle(double mid[2], int n, const int who[], const struct about *a)
 	}
 }
 
-/* Tukey's weighted mean about the median: one step. Returns false where too few are seen. */
-static bool mean_motion(struct field *out, int i, const struct about *a, const struct skin_points *p, double least_px)
+/* How much a point's neighbours count by their distance in the reference: [link], as p->near. free(). */
+static double *closeness(const struct skin_points *p)
+{
+	double *close = mem_array((size_t)p->first[p->n] + 1, sizeof *close);
+	for (int i = 0; i < p->n; i++) {
+		double reach = 0;
+		for (int k = p->first[i]; k < p->first[i + 1]; k++) {
+			const double *at = p->at[p->near[k]];
+			close[k] = hypot(at[0] - p->at[i][0], at[1] - p->at[i][1]);
+			reach = fmax(reach, close[k]);
+		}
+		for (int k = p->first[i]; k < p->first[i + 1]; k++) {
+			const double d = close[k] / (reach / 1.5);
+			close[k] = exp(-0.5 * d * d);
+		}
+	}
+	return close;
+}
+
+/* Tukey's weighted mean about the median: one step. close: of closeness(). Returns false where too few are seen. */
+static bool mean_motion(struct field *out, int i, const struct about *a, const struct skin_points *p, const double *close, double least_px)
 {
 	enum { LEAST = 4 };
 	int who[SKIN_NEAR_MAX + 1], n = 0;
-	double r[SKIN_NEAR_MAX + 1], mid[2], reach = 0, sum = 0, square = 0;
-	for (int k = p->first[i]; k < p->first[i + 1] && n < SKIN_NEAR_MAX; k++) {
-		const double *at = p->at[p->near[k]];
-		reach = fmax(reach, hypot(at[0] - p->at[i][0], at[1] - p->at[i][1]));
-		if (a[p->near[k]].weight > 0)
+	double r[SKIN_NEAR_MAX + 1], order[SKIN_NEAR_MAX + 1], nearness[SKIN_NEAR_MAX + 1], mid[2], sum = 0, square = 0;
+	for (int k = p->first[i]; k < p->first[i + 1] && n < SKIN_NEAR_MAX; k++)
+		if (a[p->near[k]].weight > 0) {
+			nearness[n] = close[k];
 			who[n++] = p->near[k];
-	}
+		}
 	if (n < LEAST)
 		return false;
-	if (a[i].weight > 0)
+	if (a[i].weight > 0) {
+		nearness[n] = 1;
 		who[n++] = i;
+	}
 	n = n < SKIN_NEAR_MAX + 1 ? n : SKIN_NEAR_MAX + 1;
 	assert(n > 0);
 	middle(mid, n, who, a);
 	for (int k = 0; k < n; k++)
-		r[k] = hypot(a[who[k]].off[0] - mid[0], a[who[k]].off[1] - mid[1]);
-	double scale = 4.5 * fmax(least_px, stats_median(n, r));
+		order[k] = r[k] = hypot(a[who[k]].off[0] - mid[0], a[who[k]].off[1] - mid[1]);
+	double scale = 4.5 * fmax(least_px, stats_median(n, order));
 	*out = (struct field){ 0 };
 	for (int k = 0; k < n; k++) {
-		const double *at = p->at[who[k]], *off = a[who[k]].off;
-		double d = hypot(at[0] - p->at[i][0], at[1] - p->at[i][1]) / (reach / 1.5), e = hypot(off[0] - mid[0], off[1] - mid[1]) / scale;
-		double w = e < 1 ? a[who[k]].weight * exp(-0.5 * d * d) * pow(1 - e * e, 2) : 0;
+		const double *off = a[who[k]].off;
+		double e = r[k] / scale, w = e < 1 ? a[who[k]].weight * nearness[k] * pow(1 - e * e, 2) : 0;
 		for (int c = 0; c < 2; c++)
 			out->off[c] += w * off[c];
 		square += w * (off[0] * off[0] + off[1] * off[1]);
@@ -72,7 +91,7 @@ static bool mean_motion(struct field *out, int i, const struct about *a, const s
 	return true;
 }
 
-static void frame(struct track_result *r, long f, struct about *a, const struct track_points *points, const struct track_clip *clip, double own, double astray)
+static void frame(struct track_result *r, long f, struct about *a, const struct track_points *points, const double *close, const struct track_clip *clip, double own, double astray)
 {
 	float (*skin)[2] = r->skin + f * r->n_points, *confidence = r->confidence + f * r->n_points;
 	for (int i = 0; i < r->n_points; i++) {
@@ -83,7 +102,7 @@ static void frame(struct track_result *r, long f, struct about *a, const struct 
 	}
 	for (int i = 0; i < r->n_points; i++) {
 		struct field field;
-		if (!mean_motion(&field, i, a, &points->points, own))
+		if (!mean_motion(&field, i, a, &points->points, close, own))
 			continue;
 		double d[2] = { a[i].off[0] - field.off[0], a[i].off[1] - field.off[1] }, off = hypot(d[0], d[1]) / astray;
 		double trust = a[i].weight > 0 && off < 2 ? exp(-0.5 * off * off) : 0, keep = trust * own * own / (own * own + field.scatter * field.scatter);
@@ -99,6 +118,7 @@ static void frame(struct track_result *r, long f, struct about *a, const struct 
 
 void track_together(struct track_result *r, const struct track_points *points, const struct track_clip *clip, const struct track_subject *s, const struct track_conf *conf)
 {
+	double *close = closeness(&points->points);
 #pragma omp parallel
 	{
 		struct about *a = mem_array((size_t)r->n_points + 1, sizeof *a);
@@ -106,8 +126,9 @@ void track_together(struct track_result *r, const struct track_points *points, c
 		for (long f = 0; f < r->n; f++)
 			if (!r->lost_at[f]) {
 				const double px_per_mm = track_px_per_mm(clip, (const double(*)[4])r->pose[f], s);
-				frame(r, f, a, points, clip, conf->own_mm * px_per_mm, conf->astray_mm * px_per_mm);
+				frame(r, f, a, points, close, clip, conf->own_mm * px_per_mm, conf->astray_mm * px_per_mm);
 			}
 		free(a);
 	}
+	free(close);
 }

@@ -15,13 +15,13 @@ static const double LOST = 0.15;
 
 struct seen {
 	const struct lid_track *lids;
-	double inside;
+	double rows;
 };
 
 static bool is_seen(const void *ctx, const double px[2])
 {
 	const struct seen *seen = ctx;
-	return lid_track_inside(seen->lids, px, seen->inside);
+	return lid_track_inside(seen->lids, px, seen->rows);
 }
 
 double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze_view *view, const struct evidence *evidence, bool anywhere)
@@ -51,7 +51,7 @@ double eye_seek(struct eye_side *eye, const struct luma *luma, const struct gaze
 static bool measure(struct gaze_fit *fit, struct gaze_edge edge[GAZE_ARCS_MAX], int *n, struct eye_side *eye,
                     const struct luma *luma, const struct gaze_view *view, double limbus_px)
 {
-	struct seen seen = { &eye->lids, 0.12 * limbus_px };
+	struct seen seen = { &eye->lids, lid_track_rows(&eye->lids, 0.12 * limbus_px) };
 	static const double range[3] = { 0.2, 0.1, 0.06 };
 	fit->fick[0] = eye->fick[0];
 	fit->fick[1] = eye->fick[1];
@@ -95,7 +95,7 @@ static void fill_gaze(struct eye_state *state, struct eye_side *eye, const struc
 static void fill_torsion(struct eye_state *state, struct eye_side *eye, const struct luma *luma,
                          const struct gaze_view *view, double limbus_px)
 {
-	struct seen seen = { &eye->lids, 0.08 * limbus_px };
+	struct seen seen = { &eye->lids, lid_track_rows(&eye->lids, 0.08 * limbus_px) };
 	struct torsion_look look = { luma, &eye->globe, view, &eye->scene->eye, { state->gaze[0], state->gaze[1] }, is_seen,
 		&seen };
 	double degree = M_PI / 180, first = degree * listing_torsion(state->gaze[0] / degree, state->gaze[1] / degree);

@@ -49,8 +49,13 @@ static double score_told(const struct evidence *e, const struct disc *d)
 	return sum / fmax(eye, least);
 }
 
+/* Directions of the arcs. */
+struct arcs {
+	double cos[ARCS], sin[ARCS];
+};
+
 /* The score of one direction. */
-static double score_of(const struct gaze_sight *sight, const double fick[2])
+static double score_of(const struct gaze_sight *sight, const struct arcs *arcs, const double fick[2])
 {
 	const struct luma *luma = sight->luma;
 	struct disc d;
@@ -62,7 +67,7 @@ static double score_of(const struct gaze_sight *sight, const double fick[2])
 	double sum = 0, dark = 0;
 	int n = 0, m = 0;
 	for (int i = 0; i < ARCS; i++) {
-		double c = cos(2 * M_PI * (i + 0.5) / ARCS), s = sin(2 * M_PI * (i + 0.5) / ARCS), v[4];
+		double c = arcs->cos[i], s = arcs->sin[i], v[4];
 		double ux = c * d.ax + s * d.bx, uy = c * d.ay + s * d.by;
 		// A pupil darker than the iris helps where little of the limbus is visible.
 		double in[2] = { d.x + pupil[1] * ux, d.y + pupil[1] * uy };
@@ -85,7 +90,7 @@ static double score_of(const struct gaze_sight *sight, const double fick[2])
 	return sum / (n > LEAST ? n : LEAST) + 0.5 * dark / (m > LEAST ? m : LEAST);
 }
 
-static double try_around(double best[2], double score, double step, int reach, const struct gaze_sight *sight)
+static double try_around(double best[2], double score, double step, int reach, const struct gaze_sight *sight, const struct arcs *arcs)
 {
 	double from[2] = { best[0], best[1] };
 	for (int i = -reach; i <= reach; i++) {
@@ -93,7 +98,7 @@ static double try_around(double best[2], double score, double step, int reach, c
 			double fick[2] = { from[0] + i * step, from[1] + j * step };
 			if ((i == 0 && j == 0) || hypot(fick[0], fick[1]) > TURN_MAX)
 				continue;
-			double s = score_of(sight, fick);
+			double s = score_of(sight, arcs, fick);
 			if (s > score || isnan(score)) {
 				score = s;
 				best[0] = fick[0];
@@ -106,9 +111,14 @@ static double try_around(double best[2], double score, double step, int reach, c
 
 double gaze_seek(double fick[2], const struct gaze_sight *sight, double reach, double step, double fine)
 {
-	double score = score_of(sight, fick);
-	score = try_around(fick, score, step, (int)ceil(reach / step), sight);
+	struct arcs arcs;
+	for (int i = 0; i < ARCS; i++) {
+		arcs.cos[i] = cos(2 * M_PI * (i + 0.5) / ARCS);
+		arcs.sin[i] = sin(2 * M_PI * (i + 0.5) / ARCS);
+	}
+	double score = score_of(sight, &arcs, fick);
+	score = try_around(fick, score, step, (int)ceil(reach / step), sight, &arcs);
 	for (double h = step / 2; h > fine / 2; h /= 2)
-		score = try_around(fick, score, h, 1, sight);
+		score = try_around(fick, score, h, 1, sight, &arcs);
 	return score;
 }

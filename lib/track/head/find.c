@@ -127,8 +127,11 @@ static double add(double total[CHANNELS], double *whole, const struct small *s, 
 static double contrast(const struct small *s, const struct shape *p, int x, int y)
 {
 	double in[CHANNELS] = { 0 }, out[CHANNELS] = { 0 }, whole, most;
-	double n = add(in, &whole, s, &p->in, x, y), m = add(out, &most, s, &p->out, x, y) - n;
-	if (n < 0.97 * whole || m < 0.7 * (most - whole) || n < 4)
+	double n = add(in, &whole, s, &p->in, x, y);
+	if (n < 0.97 * whole || n < 4)
+		return NAN;
+	double m = add(out, &most, s, &p->out, x, y) - n;
+	if (m < 0.7 * (most - whole))
 		return NAN;
 	for (int k = 0; k < CHANNELS; k++) {
 		out[k] = (out[k] - in[k]) / m;

@@ -122,7 +122,7 @@ static double sum(double H[P][P], double g[P], double *weight, const double m[4]
 		for (int a = 0; H && a < rows; a++)
 			for (int c = 0; c < P; c++) {
 				g[c] -= w * J[a][c] * r[a];
-				for (int d = 0; d < P; d++)
+				for (int d = 0; d <= c; d++)  // the lower triangle is what is solved
 					H[c][d] += w * J[a][c] * J[a][d];
 			}
 	}
@@ -239,29 +239,43 @@ double head_pose_cost(const double m[4][4], int n, const struct head_sight *s, c
 	return middle(pivot, m, n, s) ? sum(0, 0, &weight, m, n, s, camera, robust, pivot) + expect(0, 0, m, prior, pivot) : 0;
 }
 
+/* A pose's cost and the normal equations there. */
+struct normal {
+	double H[P][P], g[P], cost;
+};
+
+static void normal_at(struct normal *e, double *weight, const double m[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
+                      const struct head_prior *prior, const double pivot[3])
+{
+	*e = (struct normal){ 0 };
+	e->cost = sum(e->H, e->g, weight, m, n, s, camera, robust, pivot);
+	e->cost += expect(e->H, e->g, m, prior, pivot);
+}
+
 double head_pose_fit(double cam_from_head[4][4], int n, const struct head_sight *s, const struct camera *camera, double robust,
                      const struct head_prior *prior)
 {
 	double m[4][4], pivot[3], weight, damp = 1e-9;
+	struct normal here, there;
 	memcpy(m, cam_from_head, sizeof m);
 	if (!middle(pivot, m, n, s))
 		return NAN;
-	double cost = sum(0, 0, &weight, m, n, s, camera, robust, pivot) + expect(0, 0, m, prior, pivot);
+	normal_at(&here, &weight, m, n, s, camera, robust, prior, pivot);
 	for (int it = 0; it < STEPS; it++) {
-		double H[P][P] = { { 0 } }, g[P] = { 0 }, next[4][4];
-		sum(H, g, &weight, m, n, s, camera, robust, pivot);
-		expect(H, g, m, prior, pivot);
+		double H[P][P], g[P], next[4][4];
+		memcpy(H, here.H, sizeof H);
+		memcpy(g, here.g, sizeof g);
 		for (int k = 0; k < P; k++)
 			H[k][k] *= 1 + damp;
 		if (!chol_solve(P, P, &H[0][0], g))
 			return NAN;
 		head_moved(next, m, g, pivot);
-		double now = sum(0, 0, &weight, next, n, s, camera, robust, pivot) + expect(0, 0, next, prior, pivot);
+		normal_at(&there, &weight, next, n, s, camera, robust, prior, pivot);
 		double step = fmax(vec_norm(g) * 100, vec_norm(g + 3));
-		if (now < cost) {
-			bool small = cost - now < 1e-7 * cost;
+		if (there.cost < here.cost) {
+			bool small = here.cost - there.cost < 1e-7 * here.cost;
 			memcpy(m, next, sizeof m);
-			cost = now;
+			here = there;
 			damp = fmax(0.1 * damp, 1e-9);
 			if (small)
 				break;

@@ -296,12 +296,17 @@ void lid_track_again(struct lid_found *found, struct lid_track *lids, const stru
 		report(found, lids);
 }
 
-bool lid_track_inside(const struct lid_track *lids, const double px[2], double inside)
+double lid_track_rows(const struct lid_track *lids, double px)
 {
-	double col, row, high = hypot(lids->chart.dv[0], lids->chart.dv[1]);
+	return px / hypot(lids->chart.dv[0], lids->chart.dv[1]);
+}
+
+bool lid_track_inside(const struct lid_track *lids, const double px[2], double rows)
+{
+	double col, row;
 	lid_chart_of(&col, &row, &lids->chart, px);
 	int i = (int)lround(col);
 	if (!lids->known || i < 0 || i >= lids->chart.cols)
 		return false;
-	return row - lids->margins.row[0][i] > inside / high && lids->margins.row[1][i] - row > inside / high;
+	return row - lids->margins.row[0][i] > rows && lids->margins.row[1][i] - row > rows;
 }

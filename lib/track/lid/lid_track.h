@@ -71,7 +71,10 @@ void lid_track_end(struct lid_track *lids);
 /* Recomputes opening and points of a kept frame with the final offset; sense, clear and misfit stay. */
 void lid_track_again(struct lid_found *found, struct lid_track *lids, const struct lid_kept *kept);
 
-/* True when px lies in the last opening, at least `inside` px from either margin. */
-bool lid_track_inside(const struct lid_track *lids, const double px[2], double inside);
+/* px as rows of the last frame's chart. */
+double lid_track_rows(const struct lid_track *lids, double px);
+
+/* True when px lies in the last opening, at least `rows` of its chart from either margin. */
+bool lid_track_inside(const struct lid_track *lids, const double px[2], double rows);
 
 #endif

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/simd.h"
+
 enum { STEEP = 5, ROUNDS = 3 };
 
 struct ground {
@@ -72,6 +74,17 @@ static double cost_of(const struct margin *m, int i, int j, int edge, double sig
 	return cost;
 }
 
+/* Where a margin that steps by k rows costs less to come by than any before: best[j], step[j] of rows first..last. */
+SIMD_CLONES static void come_by(float *restrict best, int *restrict step, const float *restrict before, float bend, int k, int first, int last)
+{
+	SIMD_LOOP
+	for (int j = first; j <= last; j++) {
+		const float c = before[j - k] + bend;
+		step[j] = c < best[j] ? k : step[j];
+		best[j] = c < best[j] ? c : best[j];
+	}
+}
+
 /* One margin against the other, by dynamic programming. */
 static void one_path(double path[], const struct margin *m, const struct lid_chart *chart)
 {
@@ -85,18 +98,17 @@ static void one_path(double path[], const struct margin *m, const struct lid_cha
 		double t = (i - a) / (b - a), amid = t > 0 && t < 1 ? sqrt(4 * t * (1 - t)) : 0;
 		double sigma = m->conf->sigma[m->lower] * (0.35 + 0.85 * amid), slope = i ? m->expect[i] - m->expect[i - 1] : 0;
 		int lean = (int)lround(fmax(-100, fmin(100, slope))), edge = (int)fmin(LID_ROWS, fmax(0, m->other[i]));
+		float best[LID_ROWS + 1];
+		int step[LID_ROWS + 1];
 		for (int j = 0; j <= LID_ROWS; j++) {
-			float best = i ? 1e9F : 0;
-			int step = 0;
-			for (int k = lean - STEEP; i && k <= lean + STEEP; k++) {
-				if (j - k < 0 || j - k > LID_ROWS)
-					continue;
-				float c = before[j - k] + (float)(m->conf->bend * (k - slope) * (k - slope));
-				if (c < best)
-					best = c, step = k;
-			}
-			now[j] = best + (float)cost_of(m, i, j, edge, sigma);
-			from[i][j] = (signed char)step;
+			best[j] = i ? 1e9F : 0;
+			step[j] = 0;
+		}
+		for (int k = lean - STEEP; i && k <= lean + STEEP; k++)
+			come_by(best, step, before, (float)(m->conf->bend * (k - slope) * (k - slope)), k, k > 0 ? k : 0, k < 0 ? LID_ROWS + k : LID_ROWS);
+		for (int j = 0; j <= LID_ROWS; j++) {
+			now[j] = best[j] + (float)cost_of(m, i, j, edge, sigma);
+			from[i][j] = (signed char)step[j];
 			end = i == cols - 1 && now[j] < now[end] ? j : end;
 		}
 	}

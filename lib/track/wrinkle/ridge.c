@@ -16,15 +16,21 @@ static const double best_sigma = M_SQRT2, best_rise = 0.3849;
 static const double lineness = 0.6;  // curvature along a line against that across
 static const double least_px = 0.75; // narrower lines are camera noise
 
-/* Larger eigenvalue of the second derivatives, its direction, the other one. */
-static void across(float *most, float *least, float n[2], const float d[5])
+/* Maps of enum cv_derivative. */
+struct derived {
+	float *of[CV_DERIVATIVES];
+};
+
+/* Larger eigenvalue of the second derivatives at a texel, its direction, the other one. */
+static void across(float *most, float *least, float n[2], const struct derived *d, long i)
 {
-	float half = 0.5f * (d[2] - d[4]), root = hypotf(half, d[3]), mean = 0.5f * (d[2] + d[4]);
+	const float dxx = d->of[CV_DXX][i], dxy = d->of[CV_DXY][i], dyy = d->of[CV_DYY][i];
+	float half = 0.5f * (dxx - dyy), root = hypotf(half, dxy), mean = 0.5f * (dxx + dyy);
 	*most = mean + root;
 	*least = mean - root;
-	float x = half + root, y = d[3];
+	float x = half + root, y = dxy;
 	if (half < 0) {
-		x = d[3];
+		x = dxy;
 		y = root - half;
 	}
 	float len = hypotf(x, y);
@@ -33,14 +39,14 @@ static void across(float *most, float *least, float n[2], const float d[5])
 }
 
 /* Threshold of the response: median over the skin plus `significance` times the median absolute deviation. */
-static double usual(const float (*d)[5], const uint8_t *skin, long area, double sigma2, double significance)
+static double usual(const struct derived *d, const uint8_t *skin, long area, double sigma2, double significance)
 {
 	double *room = mem_array((size_t)area / 7 + 1, sizeof *room), *copy = mem_array((size_t)area / 7 + 1, sizeof *copy);
 	int n = 0;
 	for (long i = 0; i < area; i += 7)
 		if (skin[i]) {
 			float most, least, dir[2];
-			across(&most, &least, dir, d[i]);
+			across(&most, &least, dir, d, i);
 			room[n++] = sigma2 * (double)most;
 		}
 	memcpy(copy, room, (size_t)n * sizeof *room);
@@ -52,32 +58,34 @@ static double usual(const float (*d)[5], const uint8_t *skin, long area, double 
 
 /* Strength of the neutral skin's own pattern (hairs, lashes, moles) nearby at that scale. Frames are never registered well
  * enough to cancel it, so a line must be stronger. */
-static float *pattern(const float (*d)[5], long area, int width, int height, double sigma, double px_per_mm)
+static float *pattern(const struct derived *d, long area, int width, int height, double sigma, double px_per_mm)
 {
 	float *t = mem_array((size_t)area, sizeof *t);
+	const float *dxx = d->of[CV_DXX], *dxy = d->of[CV_DXY], *dyy = d->of[CV_DYY], scale = (float)pow(sigma, 4);
 	for (long i = 0; i < area; i++)
-		t[i] = (float)pow(sigma, 4) * (d[i][2] * d[i][2] + 2 * d[i][3] * d[i][3] + d[i][4] * d[i][4]);
+		t[i] = scale * (dxx[i] * dxx[i] + 2 * dxy[i] * dxy[i] + dyy[i] * dyy[i]);
 	plane_blur(t, width, height, fmax(2 * sigma, px_per_mm));
 	for (long i = 0; i < area; i++)
 		t[i] = sqrtf(fmaxf(0, t[i]));
 	return t;
 }
 
-static void take(struct wrinkle_ridges *r, const float (*d)[5], const float *pat, const uint8_t *skin, double floor, double sigma,
+static void take(struct wrinkle_ridges *r, const struct derived *d, const float *pat, const uint8_t *skin, double floor, double sigma,
                  const struct wrinkle_conf *conf)
 {
 	float least_rise = (float)(best_rise * conf->drop), s2 = (float)(sigma * sigma), share = (float)conf->pattern;
+#pragma omp parallel for schedule(static)
 	for (int y = 0; y < r->height; y++)
 		for (int x = 0; x < r->width; x++) {
 			long i = (long)y * r->width + x;
 			float most, least, n[2];
 			if (!skin[i])
 				continue;
-			across(&most, &least, n, d[i]);
+			across(&most, &least, n, d, i);
 			float rise = s2 * most, limit = fmaxf(least_rise, fmaxf((float)floor, share * pat[i]));
 			if (!(rise > (float)wrinkle_follows * limit) || rise <= r->rise[i] || fabsf(least) > (float)lineness * most)
 				continue;
-			float t = -(d[i][0] * n[0] + d[i][1] * n[1]) / most;
+			float t = -(d->of[CV_DX][i] * n[0] + d->of[CV_DY][i] * n[1]) / most;
 			if (fabsf(t * n[0]) > 0.6f || fabsf(t * n[1]) > 0.6f)
 				continue;
 			r->rise[i] = rise;
@@ -100,25 +108,48 @@ bool wrinkle_ridges_find(struct wrinkle_ridges *r, const float *change, const fl
 	r->half = mem_new((size_t)area, sizeof *r->half);
 	r->at = mem_new((size_t)area, sizeof *r->at);
 	r->along = mem_new((size_t)area, sizeof *r->along);
-	float (*d)[5] = mem_array((size_t)area, sizeof *d);
+	struct derived of_neutral = { 0 }, of_change;
+	for (int k = 0; k < CV_DERIVATIVES; k++) {
+		of_change.of[k] = mem_array((size_t)area, sizeof(float));
+		if (k == CV_DXX || k == CV_DXY || k == CV_DYY)  // what its pattern is told by
+			of_neutral.of[k] = mem_array((size_t)area, sizeof(float));
+	}
 	uint8_t *inside = mem_array((size_t)area, 1);
 	bool ok = true;
 	for (int k = 0; k < conf->scales && ok; k++) {
 		double t = conf->scales > 1 ? (double)k / (conf->scales - 1) : 0;
-		double w = g->px_per_mm * conf->width_mm[0] * pow(conf->width_mm[1] / conf->width_mm[0], t), sigma = best_sigma * w;
+		double w = g->px_per_mm * conf->width_mm[0] * pow(conf->width_mm[1] / conf->width_mm[0], t), sigma = best_sigma * w, floor = 0;
+		struct err other = { 0 };
+		float *pat = 0;
 		if (w < least_px)
 			continue;
-		memcpy(inside, skin, (size_t)area);
-		mask_grow(inside, g->width, g->height, -1.5 * sigma);
-		ok = cv_ridge(d, neutral, g->width, g->height, sigma, err);
-		float *pat = pattern((const float(*)[5])d, area, g->width, g->height, sigma, g->px_per_mm);
-		ok = ok && cv_ridge(d, change, g->width, g->height, sigma, err);
+#pragma omp parallel sections
+		{
+#pragma omp section
+			if (cv_ridge(of_neutral.of, neutral, g->width, g->height, sigma, &other))
+				pat = pattern(&of_neutral, area, g->width, g->height, sigma, g->px_per_mm);
+#pragma omp section
+			{
+				memcpy(inside, skin, (size_t)area);
+				mask_grow(inside, g->width, g->height, -1.5 * sigma);
+				ok = cv_ridge(of_change.of, change, g->width, g->height, sigma, err);
+				if (ok)
+					floor = usual(&of_change, inside, area, sigma * sigma, conf->significance);
+			}
+		}
+		if (ok && !pat) {
+			*err = other;
+			ok = false;
+		}
 		if (ok)
-			take(r, (const float(*)[5])d, pat, inside, usual((const float(*)[5])d, inside, area, sigma * sigma, conf->significance), sigma, conf);
+			take(r, &of_change, pat, inside, floor, sigma, conf);
 		free(pat);
 	}
 	free(inside);
-	free(d);
+	for (int k = 0; k < CV_DERIVATIVES; k++) {
+		free(of_neutral.of[k]);
+		free(of_change.of[k]);
+	}
 	return ok;
 }
 

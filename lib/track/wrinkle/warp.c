@@ -71,19 +71,18 @@ static void cubic(float w[4], float t)
 	w[3] = (0.5f * t - 0.5f) * t * t;
 }
 
+/* x, y: at least 1.5 px within the frame's part. */
 static float light_at(const struct wrinkle_ground *g, const uint8_t *grey, const float linear[256], double x, double y)
 {
 	int i = (int)floor(x - 0.5), j = (int)floor(y - 0.5);
 	float u[4], v[4], sum = 0;
 	cubic(u, (float)(x - 0.5 - i));
 	cubic(v, (float)(y - 0.5 - j));
-	for (int b = 0; b < 4; b++)
-		for (int a = 0; a < 4; a++) {
-			int c = i - 1 + a, r = j - 1 + b;
-			c = c < 0 ? 0 : c >= g->width ? g->width - 1 : c;
-			r = r < 0 ? 0 : r >= g->height ? g->height - 1 : r;
-			sum += u[a] * v[b] * linear[grey[(long)r * g->width + c]];
-		}
+	for (int b = 0; b < 4; b++) {
+		const uint8_t *row = grey + (long)(j - 1 + b) * g->width + i - 1;
+		for (int a = 0; a < 4; a++)
+			sum += u[a] * v[b] * linear[row[a]];
+	}
 	return sum;
 }
 

@@ -125,24 +125,25 @@ bool wrinkle_find(struct wrinkles *w, const char *name, int n, const struct wrin
 	if (n < 2)
 		return true;
 	struct faces f = faces_new(&frames[0], &frames[n - 1], g);
-	struct wrinkle_grooves *grooves = wrinkle_grooves_new(conf->slope);
 	struct wrinkle_ridges ridges;
 	wrinkle_light(w, f.neutral, f.known, g);
 	bool ok = wrinkle_ridges_find(&ridges, f.change, f.neutral, f.skin, g, conf, err);
-	if (ok) {
-		// The light is told by what is surely a line alone.
-		struct wrinkle_line *sure;
-		const int n_sure = wrinkle_link(&sure, &ridges, 1, g, conf);
+	// The light is told by what is surely a line alone.
+	struct wrinkle_line *sure = 0;
+	const int n_sure = ok ? wrinkle_link(&sure, &ridges, 1, g, conf) : 0;
+	if (n_sure > 0) {
+		struct wrinkle_grooves *grooves = wrinkle_grooves_new(conf->slope);
 		wrinkle_ambient(w, n_sure, sure, f.change, g, grooves);
-		lines_free(n_sure, sure);
 		p->n = wrinkle_link(&p->line, &ridges, wrinkle_follows, g, conf);
 		for (int i = 0; i < p->n; i++)
 			wrinkle_measure(&p->line[i], w, f.change, g, grooves, conf);
 		keep(p);
-		follow(p, w, frames, f.neutral, f.known, g, grooves);
+		if (p->n > 0)
+			follow(p, w, frames, f.neutral, f.known, g, grooves);
+		free(grooves);
 	}
+	lines_free(n_sure, sure);
 	wrinkle_ridges_free(&ridges);
-	free(grooves);
 	faces_free(&f);
 	return ok;
 }
