@@ -1,5 +1,6 @@
 /* Planes of a frame: upright, 8 bits; and their colour. */
 #include <libavutil/imgutils.h>
+#include <string.h>
 
 #include "image/video/impl.h"
 #include "math/simd.h"
@@ -126,6 +127,25 @@ SIMD_CLONES static void convert(uint8_t *restrict out, const struct matrix *m, i
 	}
 }
 
+/* A row of chroma at each of n pixels from x on. shift: log2 of pixels that share one. */
+SIMD_CLONES static void spread(uint8_t *restrict out, const uint8_t *restrict in, int x, int n, int shift)
+{
+	int i = 0;
+	if (shift == 1) {
+		for (; i < n && (x + i) % 2; i++)
+			out[i] = in[(x + i) >> 1];
+		const uint8_t *from = in + ((x + i) >> 1);
+		uint8_t *to = out + i;
+		const int pairs = (n - i) / 2;
+		SIMD_LOOP
+		for (int k = 0; k < pairs; k++)
+			to[2 * k] = to[2 * k + 1] = from[k];
+		i += 2 * pairs;
+	}
+	for (; i < n; i++)
+		out[i] = in[(x + i) >> shift];
+}
+
 void video_frame_rgb(uint8_t *rgb, int stride, const struct video_frame *frame, int x0, int y0, int x1, int y1)
 {
 	const AVFrame *f = frame->hold;
@@ -140,9 +160,12 @@ void video_frame_rgb(uint8_t *rgb, int stride, const struct video_frame *frame, 
 		for (int x = x0; x < x1; x += SPAN) {
 			uint8_t u[SPAN], v[SPAN];
 			int n = x1 - x < SPAN ? x1 - x : SPAN;
-			for (int i = 0; i < n; i++) {
-				u[i] = grey ? 128 : pu[(x + i) >> d->log2_chroma_w];
-				v[i] = grey ? 128 : pv[(x + i) >> d->log2_chroma_w];
+			if (grey) {
+				memset(u, 128, sizeof u);
+				memset(v, 128, sizeof v);
+			} else {
+				spread(u, pu, x, n, d->log2_chroma_w);
+				spread(v, pv, x, n, d->log2_chroma_w);
 			}
 			convert(out + 3L * x, &m, n, py + x, u, v);
 		}

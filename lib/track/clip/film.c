@@ -69,7 +69,7 @@ void film_add(struct film *film, const struct video_frame *f)
 		thin(film);
 	if (f->index % film->every)
 		return;
-	uint8_t *to = film->px[film->n] = mem_new((size_t)film->width * (size_t)film->height, 1);
+	uint8_t *to = film->px[film->n] = mem_array((size_t)film->width * (size_t)film->height, 1);
 	film->frame[film->n++] = f->index;
 	int s = film->step, wide = film->width * s;
 	const uint64_t share = (UINT64_C(1) << 32) / (uint64_t)(s * s) + 1;  // of a cell, in 2^-32: no division a pixel

@@ -36,10 +36,12 @@ int gaze_edges(struct gaze_edge edge[GAZE_ARCS_MAX], const struct luma *luma, co
 	// One sample a pixel, fewer where the eye is so large that the profile would not fit.
 	double step = fmax(1, 2 * (search->range + search->half) / (PROFILE_MAX - 4));
 	int half = (int)fmax(1, lround(search->half / step)), m = 2 * ((int)ceil(search->range / step) + half) + 1;
+	double R[3][3];
+	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
 	for (int i = 0; i < search->arcs; i++) {
 		struct gaze_arc arc;
 		double angle = 2 * M_PI * (i + 0.5) / search->arcs, v[PROFILE_MAX], at, rise;
-		if (!gaze_arc(&arc, globe, view, fick, angle, false) || (search->seen && !search->seen(search->ctx, arc.p)))
+		if (!gaze_arc_of(&arc, globe, view, R, fick, angle, false) || (search->seen && !search->seen(search->ctx, arc.p)))
 			continue;
 		double far = m / 2.0 * step;
 		double lo_x = arc.p[0] - far * arc.normal[0], lo_y = arc.p[1] - far * arc.normal[1];
@@ -105,8 +107,10 @@ static bool one_step(struct gaze_fit *fit, struct gaze_globe *globe, double *shi
 	struct gaze_arc arc[GAZE_ARCS_MAX];
 	double s[GAZE_ARCS_MAX], copy[GAZE_ARCS_MAX];
 	struct normal_system sys = { 0 };
+	double R[3][3];
+	gaze_rotation(R, (double[3]){ fit->fick[0], fit->fick[1], 0 });
 	for (int i = 0; i < n; i++) {
-		if (!gaze_arc(&arc[i], globe, view, fit->fick, edge[i].angle, true))
+		if (!gaze_arc_of(&arc[i], globe, view, R, fit->fick, edge[i].angle, true))
 			return false;
 		s[i] = (edge[i].x - arc[i].p[0]) * arc[i].normal[0] + (edge[i].y - arc[i].p[1]) * arc[i].normal[1];
 		copy[i] = fabs(s[i]);

@@ -29,15 +29,21 @@ static void to_camera(double out[3], const struct gaze_view *view, const double 
 		out[i] = vec_dot(view->cam_from_head[i], p) + view->cam_from_head[i][3];
 }
 
-bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, const double fick[3],
-                const double point_in_eye[3])
+bool gaze_pixel_of(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, double R[3][3], const double point_in_eye[3])
 {
-	double R[3][3], p[3], cam[3];
-	gaze_rotation(R, fick);
+	double p[3], cam[3];
 	mat_vec(p, R, point_in_eye);
 	vec_add(p, p, 1, globe->center);
 	to_camera(cam, view, p);
 	return camera_project(px, &view->camera, cam);
+}
+
+bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, const double fick[3],
+                const double point_in_eye[3])
+{
+	double R[3][3];
+	gaze_rotation(R, fick);
+	return gaze_pixel_of(px, globe, view, R, point_in_eye);
 }
 
 /* d px / d point in camera, by differences a hundredth of a millimetre wide: exact to 1e-9 for any lens. */
@@ -76,11 +82,10 @@ static void point_slopes(double d[GAZE_N][3], const struct gaze_globe *globe, do
 	}
 }
 
-bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
-              const double fick[2], double angle, bool with_row)
+bool gaze_arc_of(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, double R[3][3],
+                 const double fick[2], double angle, bool with_row)
 {
-	double R[3][3], c = cos(angle), s = sin(angle), p[3], along[3], cam[3], J[2][3], t[2];
-	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
+	double c = cos(angle), s = sin(angle), p[3], along[3], cam[3], J[2][3], t[2];
 	mat_vec(p, R, (double[3]){ globe->limbus * c, globe->limbus * s, gaze_plane(globe) });
 	mat_vec(along, R, (double[3]){ -s, c, 0 });
 	vec_add(p, p, 1, globe->center);
@@ -116,14 +121,23 @@ bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct
 	return true;
 }
 
+bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
+              const double fick[2], double angle, bool with_row)
+{
+	double R[3][3];
+	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
+	return gaze_arc_of(arc, globe, view, R, fick, angle, with_row);
+}
+
 bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struct gaze_view *view,
                   const double fick[2])
 {
-	double p[16][2];
+	double p[16][2], R[3][3];
+	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
 	for (int i = 0; i < 16; i++) {
 		double angle = 2 * M_PI * i / 16, eye[3] = { globe->limbus * cos(angle), globe->limbus * sin(angle),
 		                                             gaze_plane(globe) };
-		if (!gaze_pixel(p[i], globe, view, (double[3]){ fick[0], fick[1], 0 }, eye))
+		if (!gaze_pixel_of(p[i], globe, view, R, eye))
 			return false;
 	}
 	return ellipse_fit_direct(e, 16, p, 0);

@@ -42,6 +42,12 @@ bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct
 bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, const double fick[3],
                 const double point_in_eye[3]);
 
+/* Both of an eye whose rotation is known, for many points of it. head_from_eye: of gaze_rotation(); gaze_arc_of: torsion 0. */
+bool gaze_arc_of(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, double head_from_eye[3][3],
+                 const double fick[2], double angle, bool with_row);
+bool gaze_pixel_of(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, double head_from_eye[3][3],
+                   const double point_in_eye[3]);
+
 /* The ellipse that the limbus projects to, px (exact but for lens distortion); false behind the camera. */
 bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struct gaze_view *view,
                   const double fick[2]);

@@ -24,8 +24,10 @@ static bool disc_of(struct disc *d, const struct gaze_sight *sight, const double
 	const struct gaze_globe *globe = sight->globe;
 	double at[3][2], plane = gaze_plane(globe), r = globe->limbus;
 	double eye[3][3] = { { 0, 0, plane }, { r, 0, plane }, { 0, r, plane } };
+	double R[3][3];
+	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
 	for (int k = 0; k < 3; k++)
-		if (!gaze_pixel(at[k], globe, sight->view, (double[3]){ fick[0], fick[1], 0 }, eye[k]))
+		if (!gaze_pixel_of(at[k], globe, sight->view, R, eye[k]))
 			return false;
 	*d = (struct disc){ at[0][0], at[0][1], at[1][0] - at[0][0], at[1][1] - at[0][1], at[2][0] - at[0][0], at[2][1] - at[0][1] };
 	return d->x > 0 && d->y > 0 && d->x < sight->luma->width && d->y < sight->luma->height;

@@ -22,13 +22,18 @@ static bool see(float px[][2], int rays, const struct torsion_look *look)
 	enum { ALL = TORSION_RINGS * TORSION_RAYS_MAX };
 	static _Thread_local float x[ALL], y[ALL], z[ALL], kx[ALL], ky[ALL], kz[ALL];
 	double size = look->globe->limbus / look->eye->limbus_radius, R[3][3], apex, cam[3], eye[3];
+	double across[TORSION_RAYS_MAX], down[TORSION_RAYS_MAX];
 	struct cornea cornea = eye_cornea(look->eye);
 	int n = 0;
+	for (int i = 0; i < rays; i++) {
+		across[i] = cos(2 * M_PI * i / rays);
+		down[i] = sin(2 * M_PI * i / rays);
+	}
 	for (int r = 0; r < TORSION_RINGS; r++) {
 		double radius = look->eye->limbus_radius * (INNER + (OUTER - INNER) * r / (TORSION_RINGS - 1));
 		for (int i = 0; i < rays; i++, n++) {
-			x[n] = (float)(radius * cos(2 * M_PI * i / rays));
-			y[n] = (float)(radius * sin(2 * M_PI * i / rays));
+			x[n] = (float)(radius * across[i]);
+			y[n] = (float)(radius * down[i]);
 			z[n] = (float)look->eye->iris_depth;
 		}
 	}
@@ -47,8 +52,7 @@ static bool see(float px[][2], int rays, const struct torsion_look *look)
 	lightpath_batch_point(n, x, y, z, C, kx, ky, kz, NULL, &cornea, 3);
 	for (int k = 0; k < n; k++) {
 		double p[2];
-		if (!gaze_pixel(p, look->globe, look->view, (double[3]){ look->fick[0], look->fick[1], 0 },
-		                (double[3]){ size * kx[k], size * ky[k], apex - size * kz[k] }))
+		if (!gaze_pixel_of(p, look->globe, look->view, R, (double[3]){ size * kx[k], size * ky[k], apex - size * kz[k] }))
 			return false;
 		px[k][0] = (float)p[0];
 		px[k][1] = (float)p[1];

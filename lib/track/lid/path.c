@@ -17,8 +17,8 @@ struct ground {
 /* Weight of an edge as evidence against eye: none at the limbus, little inside it (pupil, reflections). */
 static double strange(const double iris[4], int i, int j)
 {
-	double r = hypot((i - iris[0]) / iris[2], (j - 0.5 - iris[1]) / iris[3]);
-	return !(r < 1.12) ? 1 : r > 0.88 ? 0 : 0.4;
+	double x = (i - iris[0]) / iris[2], y = (j - 0.5 - iris[1]) / iris[3], r2 = x * x + y * y;
+	return !(r2 < 1.12 * 1.12) ? 1 : r2 > 0.88 * 0.88 ? 0 : 0.4;
 }
 
 static void survey(struct ground *ground, const struct lid_chart *chart, float odds[LID_ROWS][LID_COLS_MAX],
