@@ -61,6 +61,24 @@ SIMD_CLONES static void down_row(unsigned *restrict down, const uint8_t *restric
 		down[x] += from[x];
 }
 
+/* Means of s sums each; share: 2^32 / (s * s), rounded up. */
+static void means(uint8_t *restrict to, const unsigned *restrict down, int n, int s, uint64_t share)
+{
+	for (int x = 0; x < n; x++) {
+		unsigned sum = 0;
+		for (int u = 0; u < s; u++)
+			sum += down[x * s + u];
+		to[x] = (uint8_t)(sum * share >> 32);
+	}
+}
+
+SIMD_CLONES static void means_of_two(uint8_t *restrict to, const unsigned *restrict down, int n)
+{
+	SIMD_LOOP
+	for (int x = 0; x < n; x++)
+		to[x] = (uint8_t)((down[2 * x] + down[2 * x + 1]) >> 2);
+}
+
 void film_add(struct film *film, const struct video_frame *f)
 {
 	if (f->index % film->every)
@@ -80,12 +98,10 @@ void film_add(struct film *film, const struct video_frame *f)
 			const uint8_t *from = f->luma + (long)(film->y0 + y * s + v) * f->luma_stride + film->x0;
 			down_row(down, from, wide);
 		}
-		for (int x = 0; x < film->width; x++) {
-			unsigned sum = 0;
-			for (int u = 0; u < s; u++)
-				sum += down[x * s + u];
-			to[y * film->width + x] = (uint8_t)(sum * share >> 32);
-		}
+		if (s == 2)
+			means_of_two(to + (long)y * film->width, down, film->width);
+		else
+			means(to + (long)y * film->width, down, film->width, s, share);
 	}
 	free(down);
 }

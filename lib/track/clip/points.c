@@ -87,30 +87,41 @@ static bool over_skin(const uint8_t *mask, int width, const double a[2], const d
 	return true;
 }
 
+/* The points nearest to point i over skin, in rising distance; returns how many. */
+static int nearest(int near[NEAR], const struct track_points *p, int i, int width)
+{
+	const double(*at)[2] = (const double(*)[2])p->points.at;
+	double d2[NEAR];
+	int n = 0;
+	for (int j = 0; j < p->n; j++) {
+		double d = pow(at[i][0] - at[j][0], 2) + pow(at[i][1] - at[j][1], 2);
+		if (j == i || (n == NEAR && d >= d2[NEAR - 1]) || !over_skin(p->mask, width, at[i], at[j]))
+			continue;
+		int k = n < NEAR ? n++ : NEAR - 1;
+		for (; k > 0 && d2[k - 1] > d; k--) {
+			d2[k] = d2[k - 1];
+			near[k] = near[k - 1];
+		}
+		d2[k] = d;
+		near[k] = j;
+	}
+	return n;
+}
+
 static void join(struct track_points *p, int width)
 {
 	int(*edge)[2] = mem_new((size_t)p->n * NEAR + 1, sizeof *edge), n_edges = 0;
-	const double(*at)[2] = (const double(*)[2])p->points.at;
-	for (int i = 0; i < p->n; i++) {
-		int near[NEAR], n = 0;
-		double d2[NEAR];
-		for (int j = 0; j < p->n; j++) {
-			double d = pow(at[i][0] - at[j][0], 2) + pow(at[i][1] - at[j][1], 2);
-			if (j == i || (n == NEAR && d >= d2[NEAR - 1]) || !over_skin(p->mask, width, at[i], at[j]))
-				continue;
-			int k = n < NEAR ? n++ : NEAR - 1;
-			for (; k > 0 && d2[k - 1] > d; k--) {
-				d2[k] = d2[k - 1];
-				near[k] = near[k - 1];
-			}
-			d2[k] = d;
-			near[k] = j;
-		}
-		for (int k = 0; k < n; k++, n_edges++) {
+	int(*near)[NEAR] = mem_new((size_t)p->n + 1, sizeof *near), *found = mem_new((size_t)p->n + 1, sizeof *found);
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < p->n; i++)
+		found[i] = nearest(near[i], p, i, width);
+	for (int i = 0; i < p->n; i++)
+		for (int k = 0; k < found[i]; k++, n_edges++) {
 			edge[n_edges][0] = i;
-			edge[n_edges][1] = near[k];
+			edge[n_edges][1] = near[i][k];
 		}
-	}
+	free(near);
+	free(found);
 	skin_points_join(&p->points, n_edges, (const int(*)[2])edge, NEIGHBOURS);
 	free(edge);
 }

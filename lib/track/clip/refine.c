@@ -106,11 +106,16 @@ static int margins(struct head_sight *sights, int points, const struct rest *res
                    const double pose[4][4])
 {
 	const struct eye_opening *o = &s->opening[side];
-	double px[OPENING_POINTS][2];
+	double px[OPENING_POINTS][2], d[OPENING_POINTS][2], length[OPENING_POINTS];
 	int n = 0;
 	for (int i = 0; i < OPENING_POINTS; i++)
 		if (!o->open || !head_project(px[i], &clip->camera, pose, o->edge[i]))
 			return 0;
+	for (int i = 0; i < OPENING_POINTS; i++) {
+		for (int c = 0; c < 2; c++)
+			d[i][c] = px[(i + 1) % OPENING_POINTS][c] - px[i][c];
+		length[i] = fmax(hypot(d[i][0], d[i][1]), 1e-9);
+	}
 	for (int k = 0; k < points; k++) {
 		const double rises = isnan(straight) ? 0 : straight - rest[k].up, p[2] = { rest[k].at[0] + rises * rest[k].slope[0], rest[k].at[1] + rises * rest[k].slope[1] };
 		int along = k % (points / LIDS);
@@ -119,15 +124,19 @@ static int margins(struct head_sight *sights, int points, const struct rest *res
 		double best = INFINITY;
 		struct head_sight to = { .line = true, .weight = margin_weight };
 		for (int i = 0; i < OPENING_POINTS && isfinite(p[0]); i++) {
-			const double *a = px[i], *b = px[(i + 1) % OPENING_POINTS], d[2] = { b[0] - a[0], b[1] - a[1] };
-			double length = fmax(hypot(d[0], d[1]), 1e-9), t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (length * length);
-			t = fmax(0, fmin(1, t));
-			double off = hypot(p[0] - a[0] - t * d[0], p[1] - a[1] - t * d[1]);
+			double u = p[0] - px[i][0], v = p[1] - px[i][1], t = (u * d[i][0] + v * d[i][1]) / (length[i] * length[i]);
+			t = t < 0 ? 0 : t > 1 ? 1 : t;
+			u -= t * d[i][0];
+			v -= t * d[i][1];
+			// most are further off by far
+			if (u * u + v * v > 1.001 * best * best)
+				continue;
+			const double off = hypot(u, v);
 			if (off >= best)
 				continue;
 			best = off;
-			to.normal[0] = d[1] / length;
-			to.normal[1] = -d[0] / length;
+			to.normal[0] = d[i][1] / length[i];
+			to.normal[1] = -d[i][0] / length[i];
 			for (int c = 0; c < 3; c++)
 				to.head[c] = (1 - t) * o->edge[i][c] + t * o->edge[(i + 1) % OPENING_POINTS][c];
 		}

@@ -161,6 +161,7 @@ bool eye_track_finish(struct eye_clip *clip, struct eye_track *track, struct err
 	clip->state = bulk_new(clip->bulk, (size_t)clip->frames, sizeof *clip->state);
 	bool seen = false;
 	eye_pair_alike(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT], track->conf.alike_radius);
+#pragma omp parallel for schedule(static, 1) num_threads(SIDES)
 	for (int side = 0; side < SIDES; side++)
 		eye_side_settle(&track->side[side]);
 	eye_pair_level(&track->side[SIDE_LEFT], &track->side[SIDE_RIGHT]);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/simd.h"
 
 static const double pair = 1.5;  // factor of the score of two eyes over one
 
@@ -103,7 +104,7 @@ static void shapes(struct shape out[2], const struct eye_opening opening[2], con
 }
 
 /* Adds a shape at (x, y) to total[CHANNELS]; returns how many small pixels of it are in the picture, *whole of how many. */
-static double add(double total[CHANNELS], double *whole, const struct small *s, const struct spans *p, int x, int y)
+SIMD_INLINE double add(double total[CHANNELS], double *whole, const struct small *s, const struct spans *p, int x, int y)
 {
 	double n = 0;
 	*whole = 0;
@@ -124,7 +125,7 @@ static double add(double total[CHANNELS], double *whole, const struct small *s, 
 
 /* Contrast of an opening: how much less red it is than the skin round it, in units of that skin's spread, and how much more its
  * brightness varies. NAN when it is not in the picture. */
-static double contrast(const struct small *s, const struct shape *p, int x, int y)
+SIMD_INLINE double contrast(const struct small *s, const struct shape *p, int x, int y)
 {
 	double in[CHANNELS] = { 0 }, out[CHANNELS] = { 0 }, whole, most;
 	double n = add(in, &whole, s, &p->in, x, y);
@@ -147,12 +148,12 @@ struct best {
 	bool seen[2];
 };
 
-static bool inside(const struct small *s, const struct shape *p, int x, int y)
+SIMD_INLINE bool inside(const struct small *s, const struct shape *p, int x, int y)
 {
 	return p->open && x + p->at[0] > 0 && x + p->at[0] < s->width && y + p->in.y0 >= 0 && y + p->in.y0 + p->in.rows <= s->height;
 }
 
-static void slide(struct best *best, const struct small *s, const struct shape shape[2], double px_per_mm, double roll)
+SIMD_CLONES static void slide(struct best *best, const struct small *s, const struct shape shape[2], double px_per_mm, double roll)
 {
 	int step = (int)fmax(1, (shape[0].open ? shape[0] : shape[1]).in.rows / 6);
 	for (int y = -s->height / 2; y < s->height + s->height / 2; y += step)
