@@ -72,7 +72,7 @@ static bool mean_motion(struct field *out, int i, const struct about *a, const s
 	assert(n > 0);
 	middle(mid, n, who, a);
 	for (int k = 0; k < n; k++)
-		order[k] = r[k] = hypot(a[who[k]].off[0] - mid[0], a[who[k]].off[1] - mid[1]);
+		order[k] = r[k] = sqrt(pow(a[who[k]].off[0] - mid[0], 2) + pow(a[who[k]].off[1] - mid[1], 2));
 	double scale = 4.5 * fmax(least_px, stats_median(n, order));
 	*out = (struct field){ 0 };
 	for (int k = 0; k < n; k++) {

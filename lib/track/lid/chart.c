@@ -29,14 +29,6 @@ double lid_chart_corner(const struct lid_chart *chart, int corner)
 	return (chart->cols - 1) * (corner ? 1 + BEYOND : BEYOND) / (1 + 2 * BEYOND);
 }
 
-void lid_chart_of(double *col, double *row, const struct lid_chart *chart, const double px[2])
-{
-	double x = px[0] - chart->origin[0], y = px[1] - chart->origin[1];
-	const double *u = chart->du, *v = chart->dv;
-	*col = (x * u[0] + y * u[1]) / (u[0] * u[0] + u[1] * u[1]);
-	*row = (x * v[0] + y * v[1]) / (v[0] * v[0] + v[1] * v[1]);
-}
-
 void lid_chart_fill(struct lid_chart *chart, const uint8_t *rgb, int stride, int width, int height)
 {
 	// Four samples a cell, further apart across than down: blurs lashes, not lids.

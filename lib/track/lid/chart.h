@@ -34,7 +34,12 @@ static inline void lid_chart_px(double px[2], const struct lid_chart *chart, dou
 }
 
 /* Image to chart. */
-void lid_chart_of(double *col, double *row, const struct lid_chart *chart, const double px[2]);
+static inline void lid_chart_of(double *col, double *row, const struct lid_chart *chart, const double px[2])
+{
+	const double x = px[0] - chart->origin[0], y = px[1] - chart->origin[1], *u = chart->du, *v = chart->dv;
+	*col = (x * u[0] + y * u[1]) / (u[0] * u[0] + u[1] * u[1]);
+	*row = (x * v[0] + y * v[1]) / (v[0] * v[0] + v[1] * v[1]);
+}
 
 /* Column of a corner of the eye: 0 inner, 1 outer. */
 double lid_chart_corner(const struct lid_chart *chart, int corner);
