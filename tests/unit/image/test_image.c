@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "image/plane.h"
 #include "tests/lib/scratch.h"
 #include "tests/peers/exr_channels.h"
 
@@ -240,12 +241,43 @@ static void limits_and_faults(void **state)
 	ERR_HAS(err, "text.exr");
 }
 
+/* A ramp across stays one, away from its ends, a spot keeps its sum and spreads as sigma says, in every row and column of any number of them. */
+static void blur_spreads(void **state)
+{
+	(void)state;
+	const double sigma = 2.3;
+	for (int height = 40; height < 45; height++) {
+		float px[45 * W];
+		for (int i = 0; i < height * W; i++)
+			px[i] = (float)(i % W);
+		plane_blur(px, W, height, sigma);
+		for (int i = 0; i < height * W; i++)
+			if (i % W >= 10 && i % W < W - 10)
+				NEAR(px[i], i % W, 1e-4);
+		for (int y = 12; y < height - 12; y++) {
+			double sum = 0, square[2] = { 0 };
+			memset(px, 0, sizeof px);
+			px[y * W + W / 2] = 1;
+			plane_blur(px, W, height, sigma);
+			for (int i = 0; i < height * W; i++) {
+				sum += (double)px[i];
+				square[0] += (double)px[i] * pow(i % W - W / 2, 2);
+				square[1] += (double)px[i] * pow(i / W - y, 2);
+			}
+			NEAR(sum, 1, 1e-5);
+			for (int k = 0; k < 2; k++)
+				NEAR(square[k], sigma * sigma, 2.0 / 3);  // boxes of 3 and of 5 px: sums of three variances lie 4 / 3 apart
+		}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(srgb_by_the_standard),
 		cmocka_unit_test(bytes_are_the_nearest),
 		cmocka_unit_test(sampling_is_bilinear),
+		cmocka_unit_test(blur_spreads),
 		SCRATCH_TEST(exr_round_trip),
 		SCRATCH_TEST(channels_by_name), SCRATCH_TEST(red_stays_red),
 		SCRATCH_TEST(any_subset_of_channels),

@@ -158,6 +158,24 @@ static void odd_sides(void **state)
 	assert_non_null(video);
 	assert_int_equal(info.width, 102);
 	assert_int_equal(info.height, 68);
+	struct video_frame frame;
+	uint8_t whole[3 * 102 * 68], part[3 * 102 * 68];
+	bool got;
+	assert_true(video_next(&frame, &got, video, &err) && got);
+	video_frame_rgb(whole, 3 * info.width, &frame, 0, 0, info.width, info.height);
+	// a part has the bytes of the whole, wherever it begins and ends between two pixels that share their colour
+	for (int x0 = 0; x0 < 4; x0++)
+		for (int x1 = info.width - 3; x1 <= info.width; x1++) {
+			memset(part, 1, sizeof part);
+			video_frame_rgb(part, 3 * info.width, &frame, x0, 3, x1, info.height - 2);
+			for (int y = 0; y < info.height; y++)
+				for (int x = 0; x < info.width; x++) {
+					const bool in = x >= x0 && x < x1 && y >= 3 && y < info.height - 2;
+					for (int c = 0; c < 3; c++)
+						assert_int_equal(part[3 * (y * info.width + x) + c], in ? whole[3 * (y * info.width + x) + c] : 1);
+				}
+		}
+	video_frame_free(&frame);
 	video_close(video);  // with frames still ahead
 }
 

@@ -225,12 +225,36 @@ static void test_stats(void **state)
 	assert_float_equal(stats_mad(5, y, 3), 1.4826, 1e-12);
 }
 
+static int rising(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+/* Against sorting, with many equal values, on both sides of the number that is ranked without branches. */
+static void test_median(void **state)
+{
+	(void)state;
+	enum { MOST = 80 };
+	unsigned seed = 1;
+	for (int n = 1; n <= MOST; n++)
+		for (int values = 2; values <= 1000; values *= 22) {
+			double x[MOST], sorted[MOST];
+			for (int i = 0; i < n; i++) {
+				seed = seed * 1664525 + 1013904223;
+				sorted[i] = x[i] = (double)(seed >> 8) / (1 << 24) < 0.1 ? -0.0 : (double)((seed >> 12) % (unsigned)values);
+			}
+			qsort(sorted, (size_t)n, sizeof *sorted, rising);
+			assert_float_equal(stats_median(n, x), 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), 0);
+		}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_forms), cmocka_unit_test(test_distance), cmocka_unit_test(test_normal_shift),
 		cmocka_unit_test(test_exact), cmocka_unit_test(test_bound), cmocka_unit_test(test_covariance), cmocka_unit_test(test_known),
-		cmocka_unit_test(test_stats),
+		cmocka_unit_test(test_stats), cmocka_unit_test(test_median),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }

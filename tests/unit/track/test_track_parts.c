@@ -1,10 +1,12 @@
 /* What the stage `track` is put together from, against closed forms: the path of a head, a margin as a chain of points. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "math/chol.h"
 #include "math/rng.h"
 #include "math/walk.h"
+#include "track/clip/film.h"
 #include "track/lid/line.h"
 #include "tests/lib/unit.h"
 
@@ -141,6 +143,31 @@ static void line_spreads_evenly(void **state)
 	assert_int_equal(line.n, LINE);
 }
 
+/* A small picture's pixels are the whole means of the large one's, white ones too, whatever number of pixels it takes together. */
+static void film_is_means(void **state)
+{
+	(void)state;
+	enum { W = 97, H = 61 };
+	struct rng rng = { 5 };
+	uint8_t luma[H][W];
+	const struct video_frame frame = { .width = W, .height = H, .luma = &luma[0][0], .luma_stride = W };
+	for (int s = 1; s < 12; s++) {
+		struct film film = { .x0 = 3, .y0 = 2, .step = s, .width = (W - 3) / s, .height = (H - 2) / s, .every = 1 };
+		for (int i = 0; i < W * H; i++)
+			luma[i / W][i % W] = i % W < W / 3 ? 255 : (uint8_t)(256 * rng_uniform(&rng));
+		film_add(&film, &frame);
+		assert_int_equal(film.n, 1);
+		for (int y = 0; y < film.height; y++)
+			for (int x = 0; x < film.width; x++) {
+				int sum = 0;
+				for (int i = 0; i < s * s; i++)
+					sum += luma[2 + y * s + i / s][3 + x * s + i % s];
+				assert_int_equal(film.px[0][y * film.width + x], sum / (s * s));
+			}
+		free(film.px[0]);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -150,6 +177,7 @@ int main(void)
 		cmocka_unit_test(glide_over_gap),
 		cmocka_unit_test(line_places),
 		cmocka_unit_test(line_spreads_evenly),
+		cmocka_unit_test(film_is_means),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
