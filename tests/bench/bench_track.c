@@ -158,7 +158,7 @@ static void precision(const struct worst *w)
 	bench_goal("torsion, median", "<= 1 deg", w->torsion, "deg", w->torsion <= 1);
 	bench_goal("lid margins, median", "<= 1 px", w->lid, "px", w->lid <= 1);
 	bench_goal("lid margins, 95 %", "<= 3 px", w->lid95, "px", w->lid95 <= 3);
-	bench_goal("track, review", ">= 15 frames/s", w->rate[1], "frames/s", w->rate[1] >= 15);
+	bench_goal("track, review", ">= 20 frames/s", w->rate[1], "frames/s", w->rate[1] >= 20);
 }
 
 int main(int argc, char **argv)

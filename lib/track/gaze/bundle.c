@@ -33,7 +33,7 @@ static int gather(struct own *own, double dist[EDGES], const struct gaze_frame *
 	for (int i = 0; i < frame->n && n < EDGES; i += step) {
 		struct gaze_arc arc;
 		const struct gaze_edge *e = &frame->edge[i];
-		if (!gaze_arc_of(&arc, globe, &frame->view, R, frame->fick, e->angle, true))
+		if (!gaze_arc(&arc, globe, &frame->view, R, frame->fick, e->angle, true))
 			continue;
 		double s = (e->x - arc.p[0]) * arc.normal[0] + (e->y - arc.p[1]) * arc.normal[1], u = s / cut;
 		double w = fabs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;

@@ -41,7 +41,7 @@ int gaze_edges(struct gaze_edge edge[GAZE_ARCS_MAX], const struct luma *luma, co
 	for (int i = 0; i < search->arcs; i++) {
 		struct gaze_arc arc;
 		double angle = 2 * M_PI * (i + 0.5) / search->arcs, v[PROFILE_MAX], at, rise;
-		if (!gaze_arc_of(&arc, globe, view, R, fick, angle, false) || (search->seen && !search->seen(search->ctx, arc.p)))
+		if (!gaze_arc(&arc, globe, view, R, fick, angle, false) || (search->seen && !search->seen(search->ctx, arc.p)))
 			continue;
 		double far = m / 2.0 * step;
 		double lo_x = arc.p[0] - far * arc.normal[0], lo_y = arc.p[1] - far * arc.normal[1];
@@ -110,7 +110,7 @@ static bool one_step(struct gaze_fit *fit, struct gaze_globe *globe, double *shi
 	double R[3][3];
 	gaze_rotation(R, (double[3]){ fit->fick[0], fit->fick[1], 0 });
 	for (int i = 0; i < n; i++) {
-		if (!gaze_arc_of(&arc[i], globe, view, R, fit->fick, edge[i].angle, true))
+		if (!gaze_arc(&arc[i], globe, view, R, fit->fick, edge[i].angle, true))
 			return false;
 		s[i] = (edge[i].x - arc[i].p[0]) * arc[i].normal[0] + (edge[i].y - arc[i].p[1]) * arc[i].normal[1];
 		copy[i] = fabs(s[i]);

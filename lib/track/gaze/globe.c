@@ -82,8 +82,8 @@ static void point_slopes(double d[GAZE_N][3], const struct gaze_globe *globe, do
 	}
 }
 
-bool gaze_arc_of(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, double R[3][3],
-                 const double fick[2], double angle, bool with_row)
+bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, double R[3][3],
+              const double fick[2], double angle, bool with_row)
 {
 	double c = cos(angle), s = sin(angle), p[3], along[3], cam[3], J[2][3], t[2];
 	mat_vec(p, R, (double[3]){ globe->limbus * c, globe->limbus * s, gaze_plane(globe) });
@@ -119,14 +119,6 @@ bool gaze_arc_of(struct gaze_arc *arc, const struct gaze_globe *globe, const str
 	for (int k = 0; k < GAZE_N; k++)
 		arc->row[k] = vec_dot(along_normal, d[k]);
 	return true;
-}
-
-bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
-              const double fick[2], double angle, bool with_row)
-{
-	double R[3][3];
-	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
-	return gaze_arc_of(arc, globe, view, R, fick, angle, with_row);
 }
 
 bool gaze_ellipse(struct ellipse *e, const struct gaze_globe *globe, const struct gaze_view *view,

@@ -32,19 +32,17 @@ struct gaze_arc {
 	double row[GAZE_N];        // Jacobian: d(p·normal) by h, v (radians), centre, radius, limbus (mm); only with_row
 };
 
-/* Projects the point of the limbus at `angle` (radians from the eye's x axis towards its y axis). fick: h, v, radians.
- * with_row: fills row.
+/* Projects the point of the limbus at `angle` (radians from the eye's x axis towards its y axis). fick: h, v, radians;
+ * head_from_eye: gaze_rotation() of them, torsion 0, made once for many points. with_row: fills row.
  * Returns false when it is behind the camera. */
-bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view,
+bool gaze_arc(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, double head_from_eye[3][3],
               const double fick[2], double angle, bool with_row);
 
 /* Pixel of a point of the eye frame (origin at the globe's centre, mm); false behind the camera. */
 bool gaze_pixel(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, const double fick[3],
                 const double point_in_eye[3]);
 
-/* Both of an eye whose rotation is known, for many points of it. head_from_eye: of gaze_rotation(); gaze_arc_of: torsion 0. */
-bool gaze_arc_of(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, double head_from_eye[3][3],
-                 const double fick[2], double angle, bool with_row);
+/* The same of an eye whose rotation (gaze_rotation()) is known. */
 bool gaze_pixel_of(double px[2], const struct gaze_globe *globe, const struct gaze_view *view, double head_from_eye[3][3],
                    const double point_in_eye[3]);
 

@@ -27,6 +27,13 @@ static struct gaze_view tilted_view(void)
 	return view;
 }
 
+static bool arc_at(struct gaze_arc *arc, const struct gaze_globe *globe, const struct gaze_view *view, const double fick[2], double angle, bool with_row)
+{
+	double R[3][3];
+	gaze_rotation(R, (double[3]){ fick[0], fick[1], 0 });
+	return gaze_arc(arc, globe, view, R, fick, angle, with_row);
+}
+
 /* Slopes of a limbus point against central differences. */
 static void arc_slopes(void **state)
 {
@@ -37,7 +44,7 @@ static void arc_slopes(void **state)
 	for (int i = 0; i < 16; i++) {
 		struct gaze_arc arc, lo, hi;
 		double angle = 2 * M_PI * i / 16;
-		assert_true(gaze_arc(&arc, &globe, &view, fick, angle, true));
+		assert_true(arc_at(&arc, &globe, &view, fick, angle, true));
 		for (int k = 0; k < GAZE_N; k++) {
 			struct gaze_globe g[2] = { globe, globe };
 			double f[2][2] = { { fick[0], fick[1] }, { fick[0], fick[1] } };
@@ -48,7 +55,7 @@ static void arc_slopes(void **state)
 				else
 					*(k < GAZE_RADIUS ? &g[s].center[k - GAZE_X] : k == GAZE_RADIUS ? &g[s].radius : &g[s].limbus) += d;
 			}
-			assert_true(gaze_arc(&lo, &g[0], &view, f[0], angle, false) && gaze_arc(&hi, &g[1], &view, f[1], angle, false));
+			assert_true(arc_at(&lo, &g[0], &view, f[0], angle, false) && arc_at(&hi, &g[1], &view, f[1], angle, false));
 			double slope = 0;
 			for (int c = 0; c < 2; c++)
 				slope += arc.normal[c] * (hi.p[c] - lo.p[c]) / (2 * step);
@@ -109,7 +116,7 @@ static void globe_from_clip(void **state)
 		for (int k = 0; k < ARCS; k++) {
 			struct gaze_arc arc;
 			double angle = 2 * M_PI * k / ARCS, off = 0.05 * rng_normal(&rng) + (k % 8 == 0 ? 6 : 0);
-			assert_true(gaze_arc(&arc, &truth, &frame[i].view, fick, angle, false));
+			assert_true(arc_at(&arc, &truth, &frame[i].view, fick, angle, false));
 			edge[i][k] = (struct gaze_edge){ (float)angle, (float)(arc.p[0] + off * arc.normal[0]),
 				(float)(arc.p[1] + off * arc.normal[1]), 50 };
 		}
@@ -145,7 +152,7 @@ static void globe_uncertain(void **state)
 			for (int k = 0; k < ARCS && !pass; k++) {
 				struct gaze_arc arc;
 				double angle = 2 * M_PI * k / ARCS, off = 0.1 * rng_normal(&rng);
-				assert_true(gaze_arc(&arc, &truth, &frame[i].view, fick, angle, false));
+				assert_true(arc_at(&arc, &truth, &frame[i].view, fick, angle, false));
 				edge[i][k] = (struct gaze_edge){ (float)angle, (float)(arc.p[0] + off * arc.normal[0]), (float)(arc.p[1] + off * arc.normal[1]), 50 };
 			}
 		}
