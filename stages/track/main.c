@@ -8,7 +8,7 @@
 #include "base/stage.h"
 #include "stages/track/run.h"
 
-/* Pictures of some MB come and go all the time, from several threads: given back to the system each time, a tenth of the whole time would go into their pages. */
+/* Pictures of some MB come and go all the time, from several threads: memory that is given back to the system each time costs the fetching of its pages anew. */
 static void keep_memory(void)
 {
 	enum { MIB = 1 << 20 };

@@ -98,6 +98,65 @@ static void take(struct wrinkle_ridges *r, const struct derived *d, const float 
 		}
 }
 
+/* What is made at every scale: derivatives of both maps and the skin that they do not reach beyond. */
+struct room {
+	struct derived neutral, change;
+	uint8_t *inside;
+};
+
+static struct room room_new(long area)
+{
+	struct room room = { .inside = mem_array((size_t)area, 1) };
+	for (int k = 0; k < CV_DERIVATIVES; k++) {
+		room.change.of[k] = mem_array((size_t)area, sizeof(float));
+		if (k == CV_DXX || k == CV_DXY || k == CV_DYY)  // what its pattern is told by
+			room.neutral.of[k] = mem_array((size_t)area, sizeof(float));
+	}
+	return room;
+}
+
+static void room_free(struct room *room)
+{
+	for (int k = 0; k < CV_DERIVATIVES; k++) {
+		free(room->neutral.of[k]);
+		free(room->change.of[k]);
+	}
+	free(room->inside);
+}
+
+/* Ridges of one scale: what the neutral frame tells and what the change does are made side by side. */
+static bool at_scale(struct wrinkle_ridges *r, struct room *room, double sigma, const float *change, const float *neutral, const uint8_t *skin,
+                     const struct wrinkle_ground *g, const struct wrinkle_conf *conf, struct err *err)
+{
+	const long area = (long)g->width * g->height;
+	struct err other = { 0 };
+	float *pat = 0;
+	double least = 0;
+	bool ok = true;
+#pragma omp parallel sections
+	{
+#pragma omp section
+		if (cv_ridge(room->neutral.of, neutral, g->width, g->height, sigma, &other))
+			pat = pattern(&room->neutral, area, g->width, g->height, sigma, g->px_per_mm);
+#pragma omp section
+		{
+			memcpy(room->inside, skin, (size_t)area);
+			mask_grow(room->inside, g->width, g->height, -1.5 * sigma);
+			ok = cv_ridge(room->change.of, change, g->width, g->height, sigma, err);
+			if (ok)
+				least = usual(&room->change, room->inside, area, sigma * sigma, conf->significance);
+		}
+	}
+	if (ok && !pat) {
+		*err = other;
+		ok = false;
+	}
+	if (ok)
+		take(r, &room->change, pat, room->inside, least, sigma, conf);
+	free(pat);
+	return ok;
+}
+
 bool wrinkle_ridges_find(struct wrinkle_ridges *r, const float *change, const float *neutral, const uint8_t *skin,
                          const struct wrinkle_ground *g, const struct wrinkle_conf *conf, struct err *err)
 {
@@ -108,48 +167,15 @@ bool wrinkle_ridges_find(struct wrinkle_ridges *r, const float *change, const fl
 	r->half = mem_new((size_t)area, sizeof *r->half);
 	r->at = mem_new((size_t)area, sizeof *r->at);
 	r->along = mem_new((size_t)area, sizeof *r->along);
-	struct derived of_neutral = { 0 }, of_change;
-	for (int k = 0; k < CV_DERIVATIVES; k++) {
-		of_change.of[k] = mem_array((size_t)area, sizeof(float));
-		if (k == CV_DXX || k == CV_DXY || k == CV_DYY)  // what its pattern is told by
-			of_neutral.of[k] = mem_array((size_t)area, sizeof(float));
-	}
-	uint8_t *inside = mem_array((size_t)area, 1);
+	struct room room = room_new(area);
 	bool ok = true;
 	for (int k = 0; k < conf->scales && ok; k++) {
 		double t = conf->scales > 1 ? (double)k / (conf->scales - 1) : 0;
-		double w = g->px_per_mm * conf->width_mm[0] * pow(conf->width_mm[1] / conf->width_mm[0], t), sigma = best_sigma * w, floor = 0;
-		struct err other = { 0 };
-		float *pat = 0;
-		if (w < least_px)
-			continue;
-#pragma omp parallel sections
-		{
-#pragma omp section
-			if (cv_ridge(of_neutral.of, neutral, g->width, g->height, sigma, &other))
-				pat = pattern(&of_neutral, area, g->width, g->height, sigma, g->px_per_mm);
-#pragma omp section
-			{
-				memcpy(inside, skin, (size_t)area);
-				mask_grow(inside, g->width, g->height, -1.5 * sigma);
-				ok = cv_ridge(of_change.of, change, g->width, g->height, sigma, err);
-				if (ok)
-					floor = usual(&of_change, inside, area, sigma * sigma, conf->significance);
-			}
-		}
-		if (ok && !pat) {
-			*err = other;
-			ok = false;
-		}
-		if (ok)
-			take(r, &of_change, pat, inside, floor, sigma, conf);
-		free(pat);
+		double w = g->px_per_mm * conf->width_mm[0] * pow(conf->width_mm[1] / conf->width_mm[0], t), sigma = best_sigma * w;
+		if (w >= least_px)
+			ok = at_scale(r, &room, sigma, change, neutral, skin, g, conf, err);
 	}
-	free(inside);
-	for (int k = 0; k < CV_DERIVATIVES; k++) {
-		free(of_neutral.of[k]);
-		free(of_change.of[k]);
-	}
+	room_free(&room);
 	return ok;
 }
 
