@@ -91,6 +91,12 @@ def splice(planes, width, height):
     run("-f", "concat", "-i", f"{OUT}/parts", "-c", "copy", "-movflags", "+faststart", "-video_track_timescale", "15360", f"{OUT}/face.mp4")
 
 
+def save(record, share):
+    """A line a fold."""
+    with open(f"{OUT}/folds.json", "w") as out:
+        out.write('{"folds": [\n' + ",\n".join(json.dumps(f) for f in record) + '],\n"share": {\n' + ",\n".join(f'"{name}": {json.dumps(s)}' for name, s in share.items()) + "}}\n")
+
+
 def mesh_of(path):
     lines = open(path).read().split("\n")
     n = [int(line.split()[2]) for line in lines if line.startswith("element")]
@@ -231,11 +237,12 @@ def main():
         planes[frame] = lit(planes[frame], encoded(linear(film[frame]) * ratio) - film[frame])
         print(frame, share, ratio.min(), ratio.max(), flush=True)
     splice(planes, width, height)
-    record = []
+    place, record = LinearNDInterpolator(px[seen], 10 * v[seen]), []
     for f in folds:
         pick = np.unique(np.linspace(0, len(f["course"]) - 1, max(4, len(f["course"]) // 12)).astype(int))
-        record.append(dict(expression=f["name"], half_width_mm=f["w"], px=np.round(f["course"][pick], 2).tolist(), depth_mm=np.round(f["depth"][pick], 4).tolist()))
-    json.dump(dict(folds=record, share={name: [round(folded(name, f), 4) for f in range(len(film))] for name in DRIVEN}), open(f"{OUT}/folds.json", "w"), indent=1)
+        record.append(dict(expression=f["name"], half_width_mm=f["w"], px=np.round(f["course"][pick], 2).tolist(), head_mm=np.round(place(f["course"][pick]), 2).tolist(),
+                           depth_mm=np.round(f["depth"][pick], 4).tolist()))
+    save(record, {name: [round(folded(name, f), 4) for f in range(len(film))] for name in DRIVEN})
 
 
 main()
