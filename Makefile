@@ -48,7 +48,7 @@ endif
 PACKAGES := gcc g++ make pkg-config libopencv-dev opencv-data libceres-dev libopenexr-dev libopenmesh-dev libjansson-dev \
 	libinih-dev libxxhash-dev zlib1g-dev libexif-dev libturbojpeg0-dev libpng-dev libtiff-dev liblapacke-dev \
 	libopenblas-dev libsuitesparse-dev libflann-dev libembree-dev libsqlite3-dev libzip-dev libavformat-dev libavcodec-dev \
-	libswscale-dev libavutil-dev libqhull-dev libmeshoptimizer-dev libassimp-dev liblcms2-dev libheif-dev libwebp-dev libraw-dev libseccomp-dev \
+	libswscale-dev libavutil-dev libqhull-dev libmeshoptimizer-dev libassimp-dev liblcms2-dev libheif-dev libwebp-dev libstb-dev libraw-dev libseccomp-dev \
 	libcmocka-dev gnuplot-nox
 
 # Sanitised programs are built to be built fast: they run no longer for it, and functions and lines are what a report needs.
@@ -68,7 +68,7 @@ ALL_CXXFLAGS := -std=c++17 -D_GNU_SOURCE $(WARN) $(CXXFLAGS) $(SANFLAGS) -fopenm
 EXR_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 EXR_LIBS = $(shell pkg-config --libs OpenEXR 2>/dev/null)
 LIBS = -lopencv_aruco -lopencv_objdetect -lopencv_dnn -lopencv_photo -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -lceres -lglog \
-	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lmeshoptimizer -lassimp -lsqlite3 -lzip \
+	-lOpenMeshTools -lOpenMeshCore $(EXR_LIBS) -lexif -lturbojpeg -lpng -ltiff -lcholmod -lqhull_r -lflann -lembree3 -lmeshoptimizer -lassimp -lstb -lsqlite3 -lzip \
 	-llapacke -lopenblas -ljansson -linih -lxxhash -lz -llcms2 -lseccomp -lm
 
 LIB_SRC := $(wildcard lib/*/*.c lib/*/*/*.c lib/*/*/*/*.c)

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "character/texture.h"
-#include "character/webp.h"
+#include "character/convert.h"
 
 /* A vertex of a part, to be sorted by place. */
 struct placed {
@@ -292,7 +292,7 @@ static int *put_textures(struct look *l, const struct ai_scene *s)
 			err_set(&why, "%s", from->why);
 		uint8_t *png = 0;
 		size_t size;
-		if (from->bytes && look_is_webp(from->bytes, from->size) && (png = look_webp_png(&size, from->bytes, from->size, LOOK_TEXTURE_PX, &why)))
+		if (from->bytes && look_is_foreign(from->name, from->bytes, from->size) && (png = look_convert(&size, from->bytes, from->size, LOOK_TEXTURE_PX, &why)))
 			t = (struct look_texture){ .bytes = png, .size = (long)size };
 		if (err_is(&why) || !look_texture_check(&t, &why)) {
 			say_left_out(l, mem_printf("texture %.80s: %.300s", from->name, why.msg));

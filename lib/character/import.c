@@ -9,7 +9,7 @@
 #include "bridge/om_mesh.h"
 #include "character/build.h"
 #include "character/plain/plain.h"
-#include "character/webp.h"
+#include "character/convert.h"
 #include "mesh/mesh_clean.h"
 #include "mesh/mesh_joins.h"
 
@@ -194,7 +194,7 @@ bool character_import(struct mesh *mesh, struct look *look, const char *folder, 
 	free(path);
 	if (!opens)
 		return false;
-	look_webp_ready();
+	look_convert_ready();
 	bool ok = apart_run(&data, &size, &apart, &why) && look_take(look, mesh, data, size, &why);
 	free(data);
 	ok = ok && mesh_check(mesh, &why) && make_sound(mesh, look, &why);

@@ -35,7 +35,7 @@ bool look_texture_check(struct look_texture *t, struct err *err)
 		t->width = be32(t->bytes + 16);
 		t->height = be32(t->bytes + 20);
 	} else if (t->size < 4 || t->bytes[0] != 0xff || t->bytes[1] != 0xd8)
-		return err_set(err, "is neither PNG nor JPEG");
+		return err_set(err, "is neither PNG, JPEG, WebP, TIFF, TGA nor BMP");
 	else if (!jpeg_head(t))
 		return err_set(err, "is a damaged JPEG");
 	if (t->width < 1 || t->height < 1 || t->width > LOOK_TEXTURE_PX || t->height > LOOK_TEXTURE_PX || (long)t->width * t->height > MOST_PX)
