@@ -116,6 +116,11 @@ def folded(name, frame):
     return x * x * (3 - 2 * x)
 
 
+def profile(s):
+    """A groove that is sharp at its bottom, skin that is pushed up beside it; s: half widths from its middle."""
+    return -1 / (1 + (s / 0.9) ** 2) ** 2 + 0.22 * np.exp(-((s - 2.6) / 1.1) ** 2)
+
+
 def noise(n, length):
     """Smooth, of standard deviation 1, over n samples; length: of its bumps, samples."""
     x = cv2.GaussianBlur(RNG.normal(size=(1, n + 8 * length)), (0, 0), length)[0, 4 * length:4 * length + n]
@@ -190,8 +195,7 @@ def main():
             if share[f["name"]] < 1e-3:
                 continue
             i, s, d = f["i"], f["s"], share[f["name"]] * f["depth"][f["near"]]
-            # A groove that is sharp at its bottom, skin that is pushed up beside it.
-            h.reshape(-1)[i] += -d / (1 + (s / 0.9) ** 2) ** 2 + 0.22 * d * np.exp(-((s - 2.6) / 1.1) ** 2)
+            h.reshape(-1)[i] += d * profile(s)
         gy, gx = np.gradient(h, mm_px)
         where = (np.abs(h) > 1e-4) | (np.hypot(gx, gy) > 1e-3)
         where &= np.isfinite(surface[..., 0])
@@ -237,11 +241,13 @@ def main():
         planes[frame] = lit(planes[frame], encoded(linear(film[frame]) * ratio) - film[frame])
         print(frame, share, ratio.min(), ratio.max(), flush=True)
     splice(planes, width, height)
+    # Depths are from the banks' tops.
+    high = np.ptp(profile(np.linspace(0, 8, 8000)))
     place, record = LinearNDInterpolator(px[seen], 10 * v[seen]), []
     for f in folds:
         pick = np.unique(np.linspace(0, len(f["course"]) - 1, max(4, len(f["course"]) // 12)).astype(int))
         record.append(dict(expression=f["name"], half_width_mm=f["w"], px=np.round(f["course"][pick], 2).tolist(), head_mm=np.round(place(f["course"][pick]), 2).tolist(),
-                           depth_mm=np.round(f["depth"][pick], 4).tolist()))
+                           depth_mm=np.round(high * f["depth"][pick], 4).tolist()))
     save(record, {name: [round(folded(name, f), 4) for f in range(len(film))] for name in DRIVEN})
 
 
