@@ -53,16 +53,21 @@ static bool is_tiff(const uint8_t *bytes, size_t size)
 	return begins(bytes, size, "II*", 4) || begins(bytes, size, "MM\0*", 4);
 }
 
-static bool is_png_or_jpeg(const uint8_t *bytes, size_t size)
+/* What stb would take for something else than TGA: that is not what the name says, and no kind that is to be read by it. */
+static bool is_another(const uint8_t *bytes, size_t size)
 {
-	return begins(bytes, size, "\x89PNG", 4) || begins(bytes, size, "\xff\xd8", 2);
+	static const char *const magic[] = { "\x89PNG", "\xff\xd8", "GIF8", "8BPS", "\x53\x80\xf6\x34", "#?RADIANCE", "#?RGBE", "P5", "P6" };
+	bool found = false;
+	for (int i = 0; i < COUNT(magic); i++)
+		found |= begins(bytes, size, magic[i], strlen(magic[i]));
+	return found;
 }
 
 bool look_is_foreign(const char *name, const uint8_t *bytes, size_t size)
 {
 	const size_t n = strlen(name);
 	return is_webp(bytes, size) || is_tiff(bytes, size) || begins(bytes, size, "BM", 2)
-	       || (n > 4 && !strcasecmp(name + n - 4, ".tga") && !is_png_or_jpeg(bytes, size));
+	       || (n > 4 && !strcasecmp(name + n - 4, ".tga") && !is_another(bytes, size));
 }
 
 /* Pixels of a picture: [height][width][channels], 3 or 4 of them, sRGB. free() */

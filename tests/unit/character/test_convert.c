@@ -182,6 +182,7 @@ static void damage_is_said(void **state)
 	assert_non_null(strstr(err.msg, "has 5 x 3 px, must be at most 4 a side"));
 	assert_false(look_is_foreign("skin.png", (const uint8_t *)"\x89PNG\r\n", 6));
 	assert_false(look_is_foreign("skin.tga", (const uint8_t *)"\x89PNG\r\n", 6));
+	assert_false(look_is_foreign("skin.tga", (const uint8_t *)"8BPS\0\1", 6));
 }
 
 /* An OBJ whose material has a TGA: it comes in as PNG, in the process that reads strangers' bytes. */
