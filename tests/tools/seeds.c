@@ -190,6 +190,16 @@ static void characters(const char *dir)
 	                                      "\"targets\":[{\"POSITION\":0}]}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
 	                                      "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
 	                                      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}");
+	put_text(dir, "character/packed.gltf", "g{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"images\":[{\"uri\":\"x.webp\"}],\"textures\":[{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}}],"
+	                                       "\"materials\":[{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,2],\"rotation\":1}}}}],"
+	                                       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},\"indices\":1,\"material\":0,\"targets\":[{\"POSITION\":3}]}]}],"
+	                                       "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"normalized\":true,\"count\":3,\"type\":\"VEC3\"},"
+	                                       "{\"bufferView\":1,\"componentType\":5125,\"count\":3,\"type\":\"SCALAR\"},{\"bufferView\":0,\"componentType\":5123,\"normalized\":true,\"count\":3,\"type\":\"VEC2\"},"
+	                                       "{\"componentType\":5122,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5125},\"values\":{\"bufferView\":0}}}],"
+	                                       "\"bufferViews\":[{\"buffer\":1,\"byteLength\":24,\"byteStride\":8,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteLength\":57,\"byteStride\":8,\"mode\":\"ATTRIBUTES\",\"count\":3}}},"
+	                                       "{\"buffer\":1,\"byteLength\":12,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":57,\"byteLength\":18,\"byteStride\":4,\"mode\":\"TRIANGLES\",\"count\":3}}}],"
+	                                       "\"buffers\":[{\"byteLength\":75,\"uri\":\"data:application/octet-stream;base64,"
+	                                       "oAEYAAAAARgAAAABBAAAAAEEAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA4PAAdodWZ3iphmWJaJgBaQAA\"},{\"byteLength\":36}]}");
 	put_text(dir, "character/words.fbx", "f; FBX 7.4.0 project file\nFBXHeaderExtension:  {\nFBXVersion: 7400\n}\nObjects:  {\nGeometry: 1, \"Geometry::q\", \"Mesh\" {\nVertices: *9 {\n"
 	                                     "a: 0,0,0,1,0,0,0,1,0\n}\nPolygonVertexIndex: *3 {\na: 0,1,-3\n}\n}\nModel: 2, \"Model::q\", \"Mesh\" {\n}\n}\nConnections:  {\nC: \"OO\",2,0\nC: \"OO\",1,2\n}\n");
 	put_text(dir, "character/scene", "s2Two parts of one node, of many vertices: whatever numbers these letters are, and those that follow them 0123456789");
