@@ -2,40 +2,20 @@
 
 #include <limits.h>
 #include <png.h>
-#include <pthread.h>
 #include <stb/stb_image.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <tiffio.h>
-#include <webp/decode.h>
 
-#include "base/dynamic.h"
 #include "base/mem.h"
+#include "image/webp.h"
 
 enum { MOST_PX = 1 << 26 };
 
-static struct {
-	__typeof__(WebPDecodeRGBAInto) *rgba;
-	__typeof__(WebPDecodeRGBInto) *rgb;
-	__typeof__(WebPGetFeaturesInternal) *features;
-} api;
-static char missing[256];
-static pthread_once_t once = PTHREAD_ONCE_INIT;
-
-static void load(void)
-{
-	void *library = dynamic_library(DYNAMIC_SONAME("webp", 7), missing, sizeof missing);
-	dynamic_function(&api.rgba, library, "WebPDecodeRGBAInto", missing, sizeof missing);
-	dynamic_function(&api.rgb, library, "WebPDecodeRGBInto", missing, sizeof missing);
-	dynamic_function(&api.features, library, "WebPGetFeaturesInternal", missing, sizeof missing);
-	TIFFSetErrorHandler(0);
-	TIFFSetWarningHandler(0);
-}
-
 void look_convert_ready(void)
 {
-	pthread_once(&once, load);
+	webp_missing();
 }
 
 static bool begins(const uint8_t *bytes, size_t size, const void *with, size_t n)
@@ -84,17 +64,16 @@ static bool fits(double width, double height, int most, struct err *err)
 
 static bool read_webp(struct pixels *p, const uint8_t *bytes, size_t size, int most, struct err *err)
 {
-	WebPBitstreamFeatures f;
-	if (*missing)
-		return err_set(err, "is WebP, which cannot be read here: %s (Debian's package: libwebp7)", missing);
-	if (api.features(bytes, size, &f, WEBP_DECODER_ABI_VERSION) != VP8_STATUS_OK || f.has_animation)
+	struct webp_head head;
+	if (webp_missing())
+		return err_set(err, "is WebP, which cannot be read here: %s (Debian's package: libwebp7)", webp_missing());
+	if (!webp_head(&head, bytes, size) || head.moves)
 		return err_set(err, "is a damaged or moving WebP");
-	if (!fits(f.width, f.height, most, err))
+	if (!fits(head.width, head.height, most, err))
 		return false;
-	*p = (struct pixels){ .width = f.width, .height = f.height, .channels = f.has_alpha ? 4 : 3 };
-	const size_t room = (size_t)p->width * (size_t)p->height * (size_t)p->channels;
-	p->px = mem_array(room, 1);
-	return (p->channels == 4 ? api.rgba : api.rgb)(bytes, size, p->px, room, p->channels * p->width) || err_set(err, "is a damaged WebP");
+	*p = (struct pixels){ .width = head.width, .height = head.height, .channels = head.alpha ? 4 : 3 };
+	p->px = mem_array((size_t)p->width * (size_t)p->height * (size_t)p->channels, 1);
+	return webp_decode(p->px, p->channels, &head, bytes, size) || err_set(err, "is a damaged WebP");
 }
 
 /* A TIFF in memory. */
@@ -155,6 +134,8 @@ static void take_rgba(struct pixels *p, const uint32_t *rgba)
 static bool read_tiff(struct pixels *p, const uint8_t *bytes, size_t size, int most, struct err *err)
 {
 	struct tiff memory = { bytes, size, 0 };
+	TIFFSetErrorHandler(0);
+	TIFFSetWarningHandler(0);
 	TIFF *tiff = TIFFClientOpen("texture", "rm", &memory, tiff_read, tiff_write, tiff_seek, tiff_close, tiff_size, 0, 0);
 	uint32_t width = 0, height = 0, *rgba = 0;
 	uint16_t samples = 3;
@@ -209,7 +190,6 @@ static uint8_t *png_of(size_t *n, const struct pixels *p, struct err *err)
 uint8_t *look_convert(size_t *n, const uint8_t *bytes, size_t size, int most, struct err *err)
 {
 	struct pixels p = { 0 };
-	look_convert_ready();
 	const bool ok = (is_webp(bytes, size) ? read_webp : is_tiff(bytes, size) ? read_tiff : read_other)(&p, bytes, size, most, err);
 	uint8_t *png = ok ? png_of(n, &p, err) : 0;
 	free(p.px);

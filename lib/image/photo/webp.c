@@ -1,26 +1,8 @@
 #include "image/photo/webp.h"
 
-#include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
-#include <webp/decode.h>
 
-#include "base/dynamic.h"
-#include "base/mem.h"
-
-static struct {
-	__typeof__(WebPDecodeRGBInto) *decode;
-	__typeof__(WebPGetFeaturesInternal) *features;
-} api;
-static char missing[256];
-static pthread_once_t once = PTHREAD_ONCE_INIT;
-
-static void load(void)
-{
-	void *library = dynamic_library(DYNAMIC_SONAME("webp", 7), missing, sizeof missing);
-	dynamic_function(&api.decode, library, "WebPDecodeRGBInto", missing, sizeof missing);
-	dynamic_function(&api.features, library, "WebPGetFeaturesInternal", missing, sizeof missing);
-}
+#include "image/webp.h"
 
 /* The chunk of that name; n = 0 where there is none. False where a chunk ends behind the file. */
 static bool find_chunk(struct bytes *chunk, struct bytes file, const char name[4])
@@ -43,18 +25,17 @@ static bool find_chunk(struct bytes *chunk, struct bytes file, const char name[4
 bool photo_parse_webp(struct photo *photo, struct bytes file, struct err *err)
 {
 	struct bytes exif;
-	WebPBitstreamFeatures features;
-	pthread_once(&once, load);
-	if (*missing)
-		return err_set(err, "is WebP, which cannot be read here: %s (Debian's package: libwebp7)", missing);
+	struct webp_head head;
+	if (webp_missing())
+		return err_set(err, "is WebP, which cannot be read here: %s (Debian's package: libwebp7)", webp_missing());
 	if (!find_chunk(&exif, file, "EXIF"))
 		return err_set(err, "is truncated: a chunk of the WebP ends behind the file; copy it again");
-	if (api.features(file.p, file.n, &features, WEBP_DECODER_ABI_VERSION) != VP8_STATUS_OK)
+	if (!webp_head(&head, file.p, file.n))
 		return err_set(err, "is damaged: no WebP picture in it");
-	if (features.has_animation)
+	if (head.moves)
 		return err_set(err, "is an animation: photographs go into photos/, videos into video/");
-	photo->width = features.width;
-	photo->height = features.height;
+	photo->width = head.width;
+	photo->height = head.height;
 	photo->bits = 8;
 	// Some programs put the six bytes of a JPEG's segment before the block.
 	bool jpeg = exif.n > 6 && !memcmp(exif.p, "Exif\0", 6);
@@ -64,8 +45,9 @@ bool photo_parse_webp(struct photo *photo, struct bytes file, struct err *err)
 
 bool photo_decode_webp(const struct photo *photo, uint16_t *rgb, struct photo_space *space, struct bytes file, struct err *err)
 {
+	const struct webp_head head = { .width = photo->width, .height = photo->height };
 	size_t n = (size_t)photo->width * (size_t)photo->height * 3;
-	bool ok = api.decode(file.p, file.n, photo_narrow(rgb, n), n, 3 * photo->width);
+	bool ok = webp_decode(photo_narrow(rgb, n), 3, &head, file.p, file.n);
 	if (ok)
 		photo_widen_in_place(rgb, n);
 	struct bytes icc;
