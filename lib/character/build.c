@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "character/texture.h"
 #include "character/convert.h"
+#include "character/texture.h"
 
 /* A vertex of a part, to be sorted by place. */
 struct placed {

@@ -9,9 +9,8 @@
 #include <tiffio.h>
 
 #include "base/mem.h"
+#include "character/texture.h"
 #include "image/webp.h"
-
-enum { MOST_PX = 1 << 26 };
 
 void look_convert_ready(void)
 {
@@ -58,8 +57,8 @@ struct pixels {
 
 static bool fits(double width, double height, int most, struct err *err)
 {
-	return (width >= 1 && height >= 1 && width <= most && height <= most && width * height <= MOST_PX)
-	       || err_set(err, "has %.0f x %.0f px, must be at most %d a side and %d in all", width, height, most, MOST_PX);
+	return (width >= 1 && height >= 1 && width <= most && height <= most && width * height <= LOOK_TEXTURE_AREA)
+	       || err_set(err, "has %.0f x %.0f px, must be at most %d a side and %d in all", width, height, most, LOOK_TEXTURE_AREA);
 }
 
 static bool read_webp(struct pixels *p, const uint8_t *bytes, size_t size, int most, struct err *err)

@@ -67,12 +67,14 @@ static bool read_scene(struct ai_scene *scene, const struct task *task, struct e
 	if (character_is_gltf(task->name)) {
 		if (!load_beside((void *)task, &data, &size, task->name, err) || !gltf_plain(&plain, &file.size, data, size, load_beside, (void *)task, err))
 			return false;
-		free(data);
 		if (plain)
 			file.name = name = mem_printf("%s.glb", task->name);
-		file.bytes = plain;
+		else
+			file.size = size;
+		file.bytes = plain ? plain : data;
 	}
 	const bool ok = ai_scene_read(scene, &file, task->limit, TEXTURE_MAX, err);
+	free(data);
 	free(plain);
 	free(name);
 	return ok;

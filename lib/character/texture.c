@@ -7,8 +7,6 @@
 
 #include "base/mem.h"
 
-enum { MOST_PX = 1 << 26 };
-
 static bool jpeg_head(struct look_texture *t)
 {
 	int sampling, space;
@@ -38,8 +36,8 @@ bool look_texture_check(struct look_texture *t, struct err *err)
 		return err_set(err, "is neither PNG, JPEG, WebP, TIFF, TGA nor BMP");
 	else if (!jpeg_head(t))
 		return err_set(err, "is a damaged JPEG");
-	if (t->width < 1 || t->height < 1 || t->width > LOOK_TEXTURE_PX || t->height > LOOK_TEXTURE_PX || (long)t->width * t->height > MOST_PX)
-		return err_set(err, "has %d x %d px, must be at most %d a side and %d in all", t->width, t->height, LOOK_TEXTURE_PX, MOST_PX);
+	if (t->width < 1 || t->height < 1 || t->width > LOOK_TEXTURE_PX || t->height > LOOK_TEXTURE_PX || (long)t->width * t->height > LOOK_TEXTURE_AREA)
+		return err_set(err, "has %d x %d px, must be at most %d a side and %d in all", t->width, t->height, LOOK_TEXTURE_PX, LOOK_TEXTURE_AREA);
 	return true;
 }
 

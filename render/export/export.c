@@ -233,10 +233,11 @@ bool export_eye(struct job *job, const struct export_conf *conf, struct skin_job
 	bool fresh = true;
 	for (int i = 0; i < f.n; i++)
 		fresh &= stage_fresh(job->stage, f.rel[i], f.n_in, f.in);
+	const bool wanted = conf->make || job->stage->only;
 	// One that was asked for alone stays for as long as it is of this eye.
-	if (!fresh && !conf->make && !job->stage->only)
+	if (!fresh && !wanted)
 		stage_skipped_as_said(job->stage, "%s/eye.glb: export.make = no: make export makes it", job->names->leaves);
-	if (fresh || (!conf->make && !job->stage->only))
+	if (fresh || !wanted)
 		return true;
 	struct export_work w = { .job = job, .conf = conf };
 	struct image freckles = { 0 };

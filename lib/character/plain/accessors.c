@@ -96,21 +96,16 @@ static float number(const uint8_t *p, long type, bool normalised)
 	}
 }
 
-/* Where elements lie in the new buffer: of the accessor's own view, or of one of its sparse lists. */
-struct rows {
-	size_t at, stride;
-};
-
-static bool rows_of(struct rows *rows, const struct gltf *gltf, const json_t *of, const char *key, size_t element, long n, long accessor, struct err *err)
+bool gltf_rows(struct gltf_rows *rows, const struct gltf *gltf, const json_t *of, size_t element, long n, long accessor, struct err *err)
 {
-	const json_t *view = gltf_item(gltf, "bufferViews", gltf_count(of, key, -1, INT32_MAX));
+	const json_t *view = gltf_item(gltf, "bufferViews", gltf_count(of, "bufferView", -1, INT32_MAX));
 	const long start = gltf_count(view, "byteOffset", 0, INT32_MAX), length = gltf_count(view, "byteLength", -1, INT32_MAX),
 	           stride = gltf_count(view, "byteStride", (long)element, 256), at = gltf_count(of, "byteOffset", 0, INT32_MAX);
 	if (!view || start < 0 || length < 0 || at < 0 || stride < (long)element || (size_t)(start + length) > gltf->size)
 		return err_set(err, "accessors[%ld]: no such bufferView", accessor);
 	if (n > 0 && at + (n - 1) * stride + (long)element > length)
 		return err_set(err, "accessors[%ld] ends behind its bufferView", accessor);
-	*rows = (struct rows){ (size_t)(start + at), (size_t)stride };
+	*rows = (struct gltf_rows){ (size_t)(start + at), (size_t)stride };
 	return true;
 }
 
@@ -122,10 +117,10 @@ static bool put_sparse(float *out, const struct gltf *gltf, const json_t *access
 		return true;
 	const long few = gltf_count(sparse, "count", -1, n), type = gltf_count(accessor, "componentType", 0, INT32_MAX), index_type = gltf_count(where, "componentType", 0, INT32_MAX);
 	const int index_bytes = number_bytes(where);
-	struct rows at, value;
+	struct gltf_rows at, value;
 	if (few < 0 || !index_bytes)
 		return err_set(err, "accessors[%ld]: its sparse elements cannot be counted", i);
-	if (!rows_of(&at, gltf, where, "bufferView", (size_t)index_bytes, few, i, err) || !rows_of(&value, gltf, values, "bufferView", (size_t)(c * bytes), few, i, err))
+	if (!gltf_rows(&at, gltf, where, (size_t)index_bytes, few, i, err) || !gltf_rows(&value, gltf, values, (size_t)(c * bytes), few, i, err))
 		return false;
 	for (long k = 0; k < few; k++) {
 		const double to = (double)number(gltf->blob + at.at + (size_t)k * at.stride, index_type, false);
@@ -183,8 +178,8 @@ static bool make_float(void *ctx, long i)
 	const bool normalised = json_is_true(json_object_get(accessor, "normalized")), dense = json_object_get(accessor, "bufferView");
 	if (n < 0 || !c || !bytes)
 		return err_set(f->err, "accessors[%ld]: neither floats nor whole numbers", i);
-	struct rows rows = { 0 };
-	if (dense && !rows_of(&rows, gltf, accessor, "bufferView", (size_t)(c * bytes), n, i, f->err))
+	struct gltf_rows rows = { 0 };
+	if (dense && !gltf_rows(&rows, gltf, accessor, (size_t)(c * bytes), n, i, f->err))
 		return false;
 	float *to;
 	const int view = new_view(&to, gltf, (size_t)n * (size_t)c, f->err);

@@ -40,6 +40,12 @@ bool gltf_unpack(struct gltf *gltf, gltf_load *load, void *ctx, struct err *err)
 /* accessors.c, after gltf_unpack. Whether any mesh's attribute is of whole numbers that it should not be; makes them floats. */
 bool gltf_is_quantised(const struct gltf *gltf);
 bool gltf_floats(struct gltf *gltf, struct err *err);
+/* Where elements lie in the new buffer: the first, and how far one is from the next. of: an accessor, or one of its sparse lists; element: bytes of one, n: how many.
+ * False, err set (by `accessor`'s index), where its view is not there or ends before. */
+struct gltf_rows {
+	size_t at, stride;
+};
+bool gltf_rows(struct gltf_rows *rows, const struct gltf *gltf, const json_t *of, size_t element, long n, long accessor, struct err *err);
 /* How many numbers each of its elements has; zero where it is not known. */
 int gltf_components(const json_t *accessor);
 /* An accessor of n elements of c floats of its own: appended to the file; *index. Null, err set. */

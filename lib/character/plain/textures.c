@@ -81,19 +81,21 @@ struct moved {
 
 static bool move_coordinates(int *to, struct gltf *gltf, long i, const struct transform *t, struct err *err)
 {
-	const json_t *accessor = gltf_item(gltf, "accessors", i), *view = gltf_item(gltf, "bufferViews", gltf_count(accessor, "bufferView", -1, INT32_MAX));
-	const long n = gltf_count(accessor, "count", -1, INT32_MAX), start = gltf_count(view, "byteOffset", 0, INT32_MAX),
-	           length = gltf_count(view, "byteLength", -1, INT32_MAX), stride = gltf_count(view, "byteStride", 8, 256), at = gltf_count(accessor, "byteOffset", 0, INT32_MAX);
+	const json_t *accessor = gltf_item(gltf, "accessors", i);
+	const long n = gltf_count(accessor, "count", -1, INT32_MAX);
+	struct gltf_rows rows;
 	// Sparse coordinates, which no exporter writes, stay as they are.
 	*to = (int)i;
-	if (!view || gltf_components(accessor) != 2 || json_object_get(accessor, "sparse"))
+	if (gltf_components(accessor) != 2 || json_object_get(accessor, "sparse") || !json_object_get(accessor, "bufferView"))
 		return true;
-	if (n < 0 || start < 0 || length < 0 || at < 0 || stride < 8 || (n > 0 && at + (n - 1) * stride + 8 > length) || (size_t)(start + length) > gltf->size)
-		return err_set(err, "accessors[%ld] ends behind its bufferView", i);
+	if (n < 0)
+		return err_set(err, "accessors[%ld]: its elements cannot be counted", i);
+	if (!gltf_rows(&rows, gltf, accessor, 2 * sizeof(float), n, i, err))
+		return false;
 	float *out = gltf_new_floats(to, gltf, "VEC2", n, 2, err);
 	for (long k = 0; out && k < n; k++) {
 		float uv[2];
-		memcpy(uv, gltf->blob + (size_t)(start + at) + (size_t)(k * stride), sizeof uv);
+		memcpy(uv, gltf->blob + rows.at + (size_t)k * rows.stride, sizeof uv);
 		for (int d = 0; d < 2; d++)
 			out[2 * k + d] = (float)(t->m[d][0] * (double)uv[0] + t->m[d][1] * (double)uv[1] + t->m[d][2]);
 	}
