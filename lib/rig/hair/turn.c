@@ -10,8 +10,8 @@
 #include "rig/hair/impl.h"
 
 /* Ways to turn a lash: how far its tip goes off the eye and up, of its length; and to make it shorter. */
-enum { OFF = 5, UP = 7, LENGTHS = 2, WAYS = OFF * UP * LENGTHS };
-static const float off_by[OFF] = { 0, 0.25f, 0.5f, 0.8f, 1.2f }, up_by[UP] = { 0, 0.25f, -0.25f, 0.5f, -0.5f, 0.9f, -0.9f }, length_by[LENGTHS] = { 1, 0.6f };
+enum { OFF = 5, UP = 7, LENGTHS = 3, WAYS = OFF * UP * LENGTHS };
+static const float off_by[OFF] = { 0, 0.25f, 0.5f, 0.8f, 1.2f }, up_by[UP] = { 0, 0.25f, -0.25f, 0.5f, -0.5f, 0.9f, -0.9f }, length_by[LENGTHS] = { 1, 0.6f, 0.35f };
 
 /* Whether skin crosses it, beyond the piece in which it comes out. */
 static bool crossed(const float at[HAIR_LASH_POINTS][3], int n, const struct ray_scene *skin)

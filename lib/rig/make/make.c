@@ -148,7 +148,7 @@ static void take_thickness(struct rig *rig, const struct rig_conf *conf)
 		t = fmin(fmax(t, 0), 1);
 		// The paper keeps the distance of extrapolated skin only. Here tracked lids keep theirs, too: otherwise a raised lid
 		// sinks into the socket behind its own margin.
-		rig->glue[i] = rig_is_globe(rig->part[i]) ? 0 : (float)(1 - t * t * (3 - 2 * t));
+		rig->glue[i] = rig_is_globe(rig->part[i]) ? 0 : fmaxf(rig->glue[i], (float)(1 - t * t * (3 - 2 * t)));
 		rig->gap[i] = (float)gap;
 		rig->thickness[i] = (float)fmin(gap, conf->thickness);
 	}

@@ -36,7 +36,7 @@ void rig_fissure_free(struct rig_fissure *f);
 /* margins.c: makes the character's own lid margins move as smooth arcs between corners that both lids share: each component moves a
  * margin by a share of the opening at rest, so that arcs stay arcs at every gaze. In closed poses they meet along their whole length
  * and conf->seal more, their outer edges too, by up to conf->breadth; conf->seal below 0: as was learnt. Fades over conf->lid; what closed
- * poses lacked, above the upper margin, over conf->tarsus. conf->lid = 0: nothing is done. */
+ * poses lacked, above the upper margin, over conf->tarsus. Over that, too, lids keep their distance from the eyeball: the least that glue will be. conf->lid = 0: nothing is done. */
 void rig_arc_margins(struct rig *rig, const struct rig_motion *motion, double px_per_mm, const struct rig_conf *conf);
 
 /* lids.c: makes skin at the lid margins move as the margins' splines do, fading over reach_mm. */

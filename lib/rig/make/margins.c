@@ -240,16 +240,14 @@ static double breadth(const struct opening *o, int lid, const float at[2], doubl
 	const double x = fmin(fmax(at[0] - o->first, 0), o->n - 1), beyond = fmax(o->first - at[0], at[0] - o->first - o->n + 1);
 	const double hollow = fmin(fmax(fmax(o->end[0] - x, x - o->end[1]) / o->scale, 0), 1), off = o->y[lid][(int)x] - at[1];
 	const double most = outside * o->scale * (conf->breadth[0] + hollow * (conf->breadth[1] - conf->breadth[0]));
-	return (lid == UPPER ? fmin(fmax(off, 0), most) : fmax(fmin(off, 0), -most)) * fading(beyond / o->scale, 0, 1);
+	return (lid == UPPER ? fmin(fmax(off, 0), most) : fmax(fmin(off, 0), -most)) * fading(beyond / o->scale, 0, 3);
 }
 
-/* Share with which skin above the upper margin goes with it as one: that on the tarsus. d: from both margins, mm. */
+/* Share with which skin goes with the nearer margin as one: that on a tarsus. d: from both margins, mm. */
 static double on_tarsus(const struct rig *rig, int i, const struct opening *o, const double d[LIDS], const struct rig_conf *conf)
 {
 	const double unit = o->px_per_mm / o->scale;
-	if (d[UPPER] > d[LOWER])
-		return 0;
-	return fading(d[UPPER] * unit, conf->tarsus[0], conf->tarsus[1]) * fading(rig->gap[i] * unit, conf->lid_gap, 2 * conf->lid_gap);
+	return fading(fmin(d[UPPER], d[LOWER]) * unit, conf->tarsus[0], conf->tarsus[1]) * fading(rig->gap[i] * unit, conf->lid_gap, 2 * conf->lid_gap);
 }
 
 /* lack: what shut() added to the upper margin, px. */
@@ -274,7 +272,9 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 	most *= fading(rig->gap[i] * o->px_per_mm / o->scale, conf->lid_gap - gap_fade, conf->lid_gap + gap_fade);
 	for (int k = 0; k < RIG_BASIS && total > 0; k++)
 		rig->basis[i][k] += (float)(most * (sum[k] / total - rig->basis[i][k]));
-	const double more = fmax(on_tarsus(rig, i, o, away, conf) - most, 0);
+	// A lid turns about the eyeball as one, its outside, too: else the outer edge of a thick margin sinks behind the inner one.
+	rig->glue[i] = (float)on_tarsus(rig, i, o, away, conf);
+	const double more = away[UPPER] > away[LOWER] ? 0 : fmax(on_tarsus(rig, i, o, away, conf) - most, 0);
 	terms_at(open, o, UPPER, rig->home[i][0], fmax((away[UPPER] - margin_mm) * o->px_per_mm, 0.5));
 	for (int k = 0; k < RIG_COMPONENTS && more > 0; k++)
 		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * (open[2 + UPPER] * lack + (lack > 0) * breadth(o, UPPER, rig->home[i], out, conf)) * closing[k]);
