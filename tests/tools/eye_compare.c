@@ -1,6 +1,7 @@
-/* A picture of an exported eye by another program, against render's own: EYE.json DEG REFERENCE.exr OTHER.npy|.exr [SIDE_BY_SIDE.png]
+/* A picture of an exported eye by another program, against render's own: EYE.json DEG REFERENCE.exr OTHER.npy|.exr [SIDE_BY_SIDE.png
+ * [HALF.exr HALF.exr]]
  * Prints: difference of the iris and of the eye (CIEDE2000, mean), px between the glints' middles, px of the iris' registration, structural
- * similarity, px between the outlines. */
+ * similarity, px between the outlines; structural similarity without the noise that two halves of OTHER, of a seed each, tell by their difference. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -29,6 +30,11 @@ static bool load(struct image *out, const char *path, struct err *err)
 	memcpy(out->px, a.data, (size_t)npy_count(&a) * sizeof(float));
 	npy_free(&a);
 	return true;
+}
+
+static bool load_as(struct image *out, const char *path, const struct image *like, struct err *err)
+{
+	return load(out, path, err) && ((out->width == like->width && out->height == like->height) || err_set(err, "%s: of another size", path));
 }
 
 /* The limbus of the turned eye, px: centre, half-widths. */
@@ -216,9 +222,10 @@ static bool beside(const char *path, const struct image *a, const struct image *
 int main(int argc, char **argv)
 {
 	struct err err = { 0 };
-	struct image a, b;
+	struct image a, b, half[2];
+	const bool halves = argc > 7;
 	json_t *says = argc >= 5 ? json_read(argv[1], 1 << 20, &err) : 0;
-	if (!says || !load(&a, argv[3], &err) || !load(&b, argv[4], &err) || a.width != b.width || a.height != b.height) {
+	if (!says || !load(&a, argv[3], &err) || !load_as(&b, argv[4], &a, &err) || (halves && (!load_as(&half[0], argv[6], &a, &err) || !load_as(&half[1], argv[7], &a, &err)))) {
 		fprintf(stderr, "eye_compare: %s\n", err.msg);
 		return 1;
 	}
@@ -230,11 +237,15 @@ int main(int argc, char **argv)
 	registration(off, &ncc, &a, &b, &(struct part){ &r, p, false });
 	ratio_of(ratio, &a, &b, &r);
 	printf("%g deg: iris %.2f eye %.2f CIEDE2000, light %.3f %.3f %.3f of ours; glint %.2f px; iris detail %.2f %.2f px off, correlation %.2f; structure %.4f; outlines %.3f px\n", deg, iris, eye, ratio[0],
-	       ratio[1], ratio[2], hypot(glints[0], glints[1]), off[0], off[1], ncc, likeness_structure(&a, &b, gain), likeness_outline(&a, &b));
+	       ratio[1], ratio[2], hypot(glints[0], glints[1]), off[0], off[1], ncc, likeness_structure(&a, &b, 0, gain), likeness_outline(&a, &b));
+	if (halves)
+		printf("without noise: %.4f\n", likeness_structure(&a, &b, (const struct image *const[2]){ &half[0], &half[1] }, gain));
 	if (argc > 5 && !beside(argv[5], &a, &b, gain, &err))
 		fprintf(stderr, "eye_compare: %s\n", err.msg);
 	json_decref(says);
 	image_free(&a);
 	image_free(&b);
+	for (int k = 0; k < 2 && halves; k++)
+		image_free(&half[k]);
 	return err_is(&err);
 }

@@ -4,7 +4,7 @@
 
 #include "bridge/cv_blur.h"
 
-enum { A, B, AA, BB, AB, MOMENTS };
+enum { A, B, AA, BB, AB, NOISE, MOMENTS };
 static const double window = 1.5, k1 = 0.01, k2 = 0.03;
 
 static double coded(const float *p, double gain)
@@ -13,7 +13,7 @@ static double coded(const float *p, double gain)
 	return light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
 }
 
-double likeness_structure(const struct image *a, const struct image *b, double gain)
+double likeness_structure(const struct image *a, const struct image *b, const struct image *const half[2], double gain)
 {
 	struct image of[MOMENTS], mean[MOMENTS];
 	struct err err = { 0 };
@@ -25,7 +25,10 @@ double likeness_structure(const struct image *a, const struct image *b, double g
 		mean[k] = image_new(a->width, a->height, 1);
 	}
 	for (int i = 0; i < n; i++) {
-		const double x = coded(a->px + 4L * i, gain), y = coded(b->px + 4L * i, gain), moment[MOMENTS] = { x, y, x * x, y * y, x * y };
+		const double x = coded(a->px + 4L * i, gain), y = coded(b->px + 4L * i, gain);
+		// Half the halves' difference has the variance of their mean's noise.
+		const double noise = half ? (coded(half[0]->px + 4L * i, gain) - coded(half[1]->px + 4L * i, gain)) / 2 : 0;
+		const double moment[MOMENTS] = { x, y, x * x, y * y, x * y, noise * noise };
 		for (int k = 0; k < MOMENTS; k++)
 			of[k].px[i] = (float)moment[k];
 	}
@@ -34,7 +37,7 @@ double likeness_structure(const struct image *a, const struct image *b, double g
 	for (int i = 0; i < n; i++) {
 		if (a->px[4L * i + 3] < 1 || b->px[4L * i + 3] < 1)
 			continue;
-		const double x = (double)mean[A].px[i], y = (double)mean[B].px[i], xx = (double)mean[AA].px[i] - x * x, yy = (double)mean[BB].px[i] - y * y, xy = (double)mean[AB].px[i] - x * y;
+		const double x = (double)mean[A].px[i], y = (double)mean[B].px[i], xx = (double)mean[AA].px[i] - x * x, yy = (double)mean[BB].px[i] - (double)mean[NOISE].px[i] - y * y, xy = (double)mean[AB].px[i] - x * y;
 		sum += (2 * x * y + k1 * k1) * (2 * xy + k2 * k2) / ((x * x + y * y + k1 * k1) * (xx + yy + k2 * k2));
 		count++;
 	}
