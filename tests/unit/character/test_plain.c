@@ -274,6 +274,44 @@ static void buffers_may_be_elsewhere(void **state)
 	json_decref(root);
 }
 
+/* A texture that is KTX alone is left out, and one line names it and says what to do; the surface stays, compressed or not. Where a picture that is read stands beside it,
+ * that one is taken without a word. */
+static void ktx_is_named(void **state)
+{
+	static const unsigned char ktx[80] = { 0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n' };
+	(void)state;
+	static struct packed p;
+	struct err err = { 0 };
+	for (int k = 0; k < 4; k++) {
+		const bool compressed = k & 1, beside = k & 2;
+		json_t *root = sheet(&p, compressed, false, 0);
+		json_array_append_new(p.views, view_of(&p, ktx, sizeof ktx));
+		json_array_append_new(json_object_get(root, "images"), json_pack("{siss}", "bufferView", (int)json_array_size(p.views) - 1, "mimeType", "image/ktx2"));
+		json_object_set_new(json_array_get(json_object_get(root, "buffers"), 0), "byteLength", json_integer((json_int_t)p.n));
+		json_object_set_new(root, "textures", beside ? json_pack("[{s{s{si}s{si}}}]", "extensions", "KHR_texture_basisu", "source", 1, "EXT_texture_webp", "source", 0)
+		                                             : json_pack("[{s{s{si}}}]", "extensions", "KHR_texture_basisu", "source", 1));
+		json_array_append_new(json_object_get(root, "extensionsRequired"), json_string("KHR_texture_basisu"));
+		write_glb("sheet.glb", root, &p);
+		json_decref(root);
+		if (beside) {
+			check_sheet("sheet.glb");
+			continue;
+		}
+		struct mesh mesh;
+		struct look look;
+		if (!character_import(&mesh, &look, scratch_path("."), "sheet.glb", &limits, &err))
+			fail_msg("%s", err.msg);
+		assert_int_equal(mesh.n_vertices, N);
+		assert_true(look.has_uv);
+		assert_int_equal(look.n_textures, 0);
+		assert_int_equal(look.n_left_out, 1);
+		assert_non_null(strstr(look.left_out[0], "is a KTX texture: save it as PNG or JPEG"));
+		assert_null(strchr(look.left_out[0], '\n'));
+		mesh_free(&mesh);
+		look_free(&look);
+	}
+}
+
 /* A refused file: one line that has the words. */
 static void refused(const char *words)
 {
@@ -350,6 +388,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		SCRATCH_TEST(what_was_packed_comes_out),
 		SCRATCH_TEST(buffers_may_be_elsewhere),
+		SCRATCH_TEST(ktx_is_named),
 		SCRATCH_TEST(damage_is_said),
 		SCRATCH_TEST(any_byte_may_be_wrong),
 	};
