@@ -1,6 +1,6 @@
-/* A driven face by another program, against render's own still, part by part: NAME_look_layers.exr OTHER.exr [SHEET.png]; of the first alone its width and height.
+/* A driven face by another program, against render's own still, part by part: NAME_look_layers.exr OTHER.exr [SHEET.png [PARTS.exr]]; of the first alone its width and height.
  * Prints: CIEDE2000 (mean) and structural similarity of skin away from the eyes, of skin within 6 mm of the lids' opening, of the eyeballs and of the wet line on
- * them; px between the outlines. The exposure puts the skin's mean at 0.35. SHEET.png: ours; the other; how far it is off, four times. */
+ * them; px between the outlines, of the head, and of the eyeballs between the lids where PARTS.exr has them (ViewLayer.IndexOB.X: 1). The exposure puts the skin's mean at 0.35. SHEET.png: ours; the other; how far it is off, four times. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,10 +90,32 @@ static double structure(const struct image *a, const struct image *b, const int8
 	for (long i = 0; i < (long)a->width * a->height; i++)
 		if (part[i] != which)
 			p.px[4 * i + 3] = 0;
-	double s = likeness_structure(&p, &q, gain);
+	double s = likeness_structure(&p, &q, 0, gain);
 	image_free(&p);
 	image_free(&q);
 	return s;
+}
+
+/* Px between the outlines of what is seen of the eyeballs, hairs away. */
+static bool openings(double *px, const struct image *layers, const char *path, struct err *err)
+{
+	static const char *const index[] = { "ViewLayer.IndexOB.X" };
+	struct image of, cover[2];
+	if (!exr_read(&of, path, 1, index, 1L << 24, 0, err))
+		return false;
+	const bool ok = (of.width == layers->width && of.height == layers->height) || err_set(err, "%s: of another size", path);
+	for (int k = 0; k < 2 && ok; k++)
+		cover[k] = image_new(of.width, of.height, 4);
+	for (long i = 0; i < (long)of.width * of.height && ok; i++) {
+		cover[0].px[4 * i + 3] = of_globe(layers->px + PORTRAIT_LAYERS * i);
+		cover[1].px[4 * i + 3] = of.px[i] > 0.5f;
+	}
+	if (ok)
+		*px = likeness_outline(&cover[0], &cover[1]);
+	for (int k = 0; k < 2 && ok; k++)
+		image_free(&cover[k]);
+	image_free(&of);
+	return ok;
 }
 
 static bool sheet(const char *path, const struct image *a, const struct image *b, double gain, struct err *err)
@@ -120,7 +142,7 @@ int main(int argc, char **argv)
 	struct image layers, other;
 	struct err err = { 0 };
 	if (argc < 2 || !exr_read(&layers, argv[1], PORTRAIT_LAYERS, names, 1L << 24, 0, &err)) {
-		fprintf(stderr, "face_compare: %s\n", argc < 2 ? "LAYERS.exr [OTHER.exr [SHEET.png]]" : err.msg);
+		fprintf(stderr, "face_compare: %s\n", argc < 2 ? "LAYERS.exr [OTHER.exr [SHEET.png [PARTS.exr]]]" : err.msg);
 		return 2;
 	}
 	if (argc < 3) {
@@ -158,7 +180,14 @@ int main(int argc, char **argv)
 	}
 	for (int k = 0; k < PARTS; k++)
 		printf("%s: difference %.2f, structure %.3f, of %ld px\n", part_names[k], difference[k] / (double)count[k], structure(&own, &other, part, k, gain), count[k]);
+	double eyes;
 	printf("outlines %.2f px\n", likeness_outline(&own, &other));
+	if (argc > 4 && !openings(&eyes, &layers, argv[4], &err)) {
+		fprintf(stderr, "face_compare: %s\n", err.msg);
+		return 2;
+	}
+	if (argc > 4)
+		printf("outlines of the eyeballs between the lids %.2f px\n", eyes);
 	if (argc > 3 && !sheet(argv[3], &own, &other, gain, &err)) {
 		fprintf(stderr, "face_compare: %s\n", err.msg);
 		return 2;

@@ -1,6 +1,7 @@
 # A driven face's .glb in Cycles, under the light and camera of render's own NAME_look (lib/draw/face/view.c: a long lens, 0.9 m off, field distances of the eyes
 # across): as Blender imports it, but for the eyes' materials, which are those that EXPORT/blender_eye.py builds.
-# blender -b --python tests/tools/face_cycles.py -- FACE.glb EXPORT OUT.exr SAMPLES WIDTH HEIGHT FIELD   writes OUT.exr, linear RGBA
+# blender -b --python tests/tools/face_cycles.py -- FACE.glb EXPORT OUT.exr SAMPLES WIDTH HEIGHT FIELD   writes OUT.exr, linear RGBA, and
+# OUT_parts.exr, whose channel ViewLayer.IndexOB.X is 1 on the eyeballs, hairs and tears away
 import math
 import os
 import sys
@@ -31,15 +32,18 @@ left, right = (bpy.data.objects["eye_" + side].matrix_world.translation for side
 middle, apart = (left + right) / 2, (left - right).length
 
 scene = cycles_set.scene(int(width), int(height), int(samples))
-for o in scene.objects:  # at rest: the picture looks straight ahead
-    if o.animation_data:
-        o.animation_data_clear()
-    if o.type == "MESH" and o.data.shape_keys:
-        if o.data.shape_keys.animation_data:
-            o.data.shape_keys.animation_data_clear()
-        for key in o.data.shape_keys.key_blocks[1:]:
-            key.value = 0
+# As its animation begins, which is how the picture stands: what importing leaves is the pose of another frame.
+scene.frame_set(int(min(a.frame_range[0] for a in bpy.data.actions)))
 cycles_set.camera(scene, (middle.x, middle.y - 0.9, middle.z), 2 * math.atan(float(field) * apart / 2 / 0.9))
 cycles_set.light(scene, os.path.join(export, "studio.exr"))
 scene.render.filepath = out
+bpy.ops.render.render(write_still=True)
+
+for o in scene.objects:
+    o.pass_index = o.name.startswith("eye_")
+    o.hide_render = o.name in ("lashes", "brows", "tears")
+scene.view_layers[0].use_pass_object_index = True
+scene.cycles.samples, scene.cycles.pixel_filter_type, scene.cycles.filter_width = 1, "BOX", 0.01
+scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+scene.render.filepath = out[:-4] + "_parts.exr"
 bpy.ops.render.render(write_still=True)
