@@ -15,15 +15,11 @@ def texture(nodes, name, colour):
     """An image node; the EXR where it was written, which is linear, else the PNG."""
     path = os.path.join(folder, "textures", name)
     image = bpy.data.images.load(path + ".exr" if os.path.exists(path + ".exr") else path + ".png", check_existing=True)
-    image.colorspace_settings.name = "sRGB" if colour and image.filepath.endswith(".png") else "Non-Color" if not colour else "Linear"
+    linear = "Linear" if bpy.app.version < (4, 0) else "Linear Rec.709"
+    image.colorspace_settings.name = "sRGB" if colour and image.filepath.endswith(".png") else "Non-Color" if not colour else linear
     node = nodes.new("ShaderNodeTexImage")
     node.image, node.extension = image, "EXTEND"
     return node.outputs["Color"]
-
-
-def socket(node, *names):
-    """The first input of one of the names: Blender 4 renamed some."""
-    return next(node.inputs[n] for n in names if n in node.inputs)
 
 
 def fresh(name):
@@ -54,7 +50,9 @@ def matt(nodes, links, colour, bump):
 def wet(nodes, links, colour, rough):
     node = nodes.new("ShaderNodeBsdfPrincipled")
     node.inputs["IOR"].default_value = index
-    socket(node, "Specular", "Specular IOR Level").default_value = ((index - 1) / (index + 1)) ** 2 / 0.08
+    # Until Blender 4 "Specular" alone tells how much is mirrored; from then on the index does, where "Specular IOR Level" stays a half.
+    if "Specular" in node.inputs:
+        node.inputs["Specular"].default_value = ((index - 1) / (index + 1)) ** 2 / 0.08
     links.new(texture(nodes, colour, True), node.inputs["Base Color"])
     links.new(texture(nodes, rough, False), node.inputs["Roughness"])
     return node.outputs["BSDF"]

@@ -19,6 +19,9 @@ check "the three files" test -s "$export/eye.glb" -a -s "$export/eye_lod1.glb" -
 check "no picture but its own" test ! -e "$capture/work/render" -a ! -e "$capture/work/review"
 check "textures as PNG and EXR" test "$(find "$export/textures" -name '*.png' | wc -l)" = 13 -a "$(find "$export/textures" -name '*.exr' | wc -l)" = 13
 check "Python that compiles" python3 -m py_compile "$export/blender_eye.py"
+# A surface mirrors as much in each version of Blender, which has each name that is used: 4.0 renamed colour spaces and took the index beside "Specular".
+same "which means the same to Blender 3.4 to 5.0" "$(python3 tests/tools/blender_names.py "$export" 2>&1 | sed 's/^[0-9.]*: //' | sort -u)" \
+	"mirrors $(awk -v n="$(sed -n 's/.*"index": \([0-9.]*\).*/\1/p' "$export/eye.json" | head -n 1)" 'BEGIN { printf "%.6f", ((n - 1) / (n + 1)) ^ 2 }'); exr Linear, exr Non-Color, png Non-Color"
 check "no placeholder is left" test "$(cat "$export/engines.md" "$export/blender_eye.py" | grep -c '{{')" = 0
 # Each row of a parameter says what of it holds; each number it gives is one of eye.json.
 same "engines.md: every row says what is exact" "$(awk -F'|' '/^## /{ part = $0 } part ~ /Unity|Unreal/ && /^\| / && !/^\| (property|parameter) / && $4 !~ /exact|near|by eye|one number/' "$export/engines.md")" ""
