@@ -56,7 +56,7 @@ static bool still(struct job *job, const char *name, double yaw, double pitch, s
 	if (!job_ready(job, err))
 		return false;
 	struct scene_view view;
-	struct image rgba = turned(job, &view, yaw, pitch, job->conf->size_px, true), seen = studio_on_grey(&rgba, job->gain, job->conf->bloom);
+	struct image rgba = turned(job, &view, yaw, pitch, job->conf->size_px, true), seen = studio_on_grey(&rgba, job->gain, &job->conf->finish);
 	const struct picture_out out[] = { { png, &seen }, { exr, &rgba } };
 	bool ok = pictures_save(job, job->conf->exr ? 2 : 1, out, job->n_in, job->in, err);
 	if (ok && job->conf->exr) {
@@ -82,7 +82,7 @@ static bool turntable(struct job *job, struct err *err)
 		double yaw = n > 1 ? job->conf->frame_deg * (2.0 * i / (n - 1) - 1) : 0;
 		struct scene_view view;
 		struct image rgba = turned(job, &view, yaw, 0, job->conf->frame_px, true);
-		frames[i] = studio_on_grey(&rgba, job->gain, job->conf->bloom);
+		frames[i] = studio_on_grey(&rgba, job->gain, &job->conf->finish);
 		image_free(&rgba);
 	}
 	struct image strip = sheet_strip(n, frames);
@@ -113,7 +113,7 @@ static struct shot_difference by_model(struct job *job, const struct shot *shot,
 {
 	const double detail = job->scene.conf.detail;
 	scene_set_detail(&job->scene, 0);
-	struct image rgba = traced_in_photo(job, shot, view), seen = studio_on_grey(&rgba, 1, 0);
+	struct image rgba = traced_in_photo(job, shot, view), seen = studio_on_grey(&rgba, 1, &(struct studio_finish){ 0 });
 	const struct shot_difference out = compare_numbers(&job->scene, shot, &seen);
 	scene_set_detail(&job->scene, detail);
 	image_free(&rgba);
@@ -160,7 +160,7 @@ static bool photo_view(struct job *job, struct shot *shot, struct err *err)
 		return false;
 	struct scene_view view = shot_view(shot);
 	struct shot_difference differs;
-	struct image rgba = traced_in_photo(job, shot, &view), seen = studio_on_grey(&rgba, 1, 0);
+	struct image rgba = traced_in_photo(job, shot, &view), seen = studio_on_grey(&rgba, 1, &(struct studio_finish){ 0 });
 	struct image beside = compare_shot(&differs, &job->scene, shot, &seen);
 	const struct shot_difference model = by_model(job, shot, &view);
 	json_t *figures = figures_of(job, shot, &differs, &model);

@@ -44,7 +44,8 @@ static const char *const render_paths[] = { "grid", "ends", 0 };
 	OPT_REAL("field_mm", &(c)->field_mm, 10, 60, "mm", "what front and three-quarter show"), \
 	OPT_REALS("three_quarter_deg", (c)->three_quarter_deg, 2, -80, 80, "deg", "yaw and pitch of the eye"), \
 	OPT_STR("environment", &(c)->environment, "latitude-longitude EXR in the capture folder; unset: a studio"), \
-	OPT_REAL("bloom", &(c)->bloom, 0, 1, "", "share of the light that a lens scatters over the picture: bright light glows"), \
+	OPT_REAL("bloom", &(c)->finish.bloom, 0, 1, "", "share of the light that a lens scatters over the picture: bright light glows"), \
+	OPT_REAL("tone", &(c)->finish.tone, 0, 1, "", "share of a film's curve: highlights bend towards white instead of being cut off"), \
 	OPT_BOOL("freckles", &(c)->freckles, "show the freckles, too"), \
 	OPT_BOOL("exr", &(c)->exr, "write linear pictures beside the PNG"), \
 	OPT_BOOL("film", &(c)->film, "the turntable as a film"), \

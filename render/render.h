@@ -7,6 +7,7 @@
 #include "anatomy/capture.h"
 #include "draw/eye/render.h"
 #include "draw/photo/photo.h"
+#include "draw/studio.h"
 
 struct render_conf {
 	struct scene_conf scene;
@@ -24,7 +25,7 @@ struct render_conf {
 	int sheet_px;                    // width of the contact sheet
 	int page_px;                     // width of the page's pictures
 	double page_glb_mib;             // largest character's .glb that the interactive page carries
-	double bloom;                    // share of light that is scattered over the studio's pictures
+	struct studio_finish finish;     // of the studio's pictures
 	double socket_share;             // a fitted eye and a character's eyeball that differ by more are said to
 	double limit_mpx;                // larger photographs are refused
 };

@@ -20,7 +20,7 @@ static bool film(struct job *job, struct video_writer *w, struct err *err)
 		double yaw = job->conf->frame_deg * M_PI / 180 * sin(2 * M_PI * i / (SECONDS * FPS));  // it begins again where it ends
 		struct scene_view view = scene_view_turned(&job->scene, yaw, 0, job->conf->field_mm, job->conf->frame_px);
 		view.samples = job->conf->samples;
-		struct image rgba = scene_render(&job->scene, &view, &light, &job->count), seen = studio_on_grey(&rgba, job->gain, job->conf->bloom);
+		struct image rgba = scene_render(&job->scene, &view, &light, &job->count), seen = studio_on_grey(&rgba, job->gain, &job->conf->finish);
 		uint8_t *px = image_to_srgb8(&seen);
 		ok = video_writer_put(w, px, (double)i / FPS, err);
 		free(px);

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "draw/bloom.h"
+#include "draw/tone.h"
 
 double studio_exposure(const struct envmap *env, const double sclera[3])
 {
@@ -19,7 +20,7 @@ double studio_exposure(const struct envmap *env, const double sclera[3])
 	return fmin(fmax(0.62 * 2 / (mean + most), 0.05), 3);
 }
 
-struct image studio_on_grey(const struct image *rgba, double gain, double glow)
+struct image studio_on_grey(const struct image *rgba, double gain, const struct studio_finish *finish)
 {
 	// A photographer's grey, falling off towards the corners.
 	static const float middle = 0.115f, corner = 0.030f;
@@ -33,6 +34,7 @@ struct image studio_on_grey(const struct image *rgba, double gain, double glow)
 			for (int c = 0; c < 3; c++)
 				image_at(&out, x, y)[c] = p[c] * (float)gain + (1 - p[3]) * grey;
 		}
-	bloom(&out, glow);
+	bloom(&out, finish->bloom);
+	tone(&out, finish->tone);
 	return out;
 }

@@ -10,8 +10,13 @@
  * sclera  albedo, linear */
 double studio_exposure(const struct envmap *env, const double sclera[3]);
 
-/* A picture (RGB premultiplied and A) times gain on a photographer's grey, which falls off towards the corners, with that share of its light
- * scattered (bloom.h). image_free. */
-struct image studio_on_grey(const struct image *rgba, double gain, double glow);
+/* What a lens and a film make of a picture: shares, 0..1. */
+struct studio_finish {
+	double bloom;  // of its light that is scattered (bloom.h)
+	double tone;   // of a film's curve for highlights (tone.h)
+};
+
+/* A picture (RGB premultiplied and A) times gain on a photographer's grey, which falls off towards the corners, finished. image_free. */
+struct image studio_on_grey(const struct image *rgba, double gain, const struct studio_finish *finish);
 
 #endif

@@ -57,7 +57,7 @@ static void put_face(struct clip *c, const double *controls, bool first)
 {
 	portrait_pose(c->portrait, controls);
 	portrait_light(c->portrait, &c->view, first);
-	struct image rgba = portrait_draw(c->portrait, &c->view), seen = studio_on_grey(&rgba, c->job->gain, c->job->render->bloom);
+	struct image rgba = portrait_draw(c->portrait, &c->view), seen = studio_on_grey(&rgba, c->job->gain, &c->job->render->finish);
 	uint8_t *px = image_to_srgb8(&seen);
 	for (int y = 0; y < c->view.height; y++)
 		memcpy(c->rgb + 3 * ((long)y * c->width + c->input_width), px + 3L * y * c->view.width, 3 * (size_t)c->view.width);

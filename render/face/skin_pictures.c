@@ -34,7 +34,7 @@ static struct image look_with(struct skin_job *job, struct skin_target *t, doubl
 	portrait_pose(t->portrait, controls);
 	struct portrait_view view = portrait_front(&t->rig, side, field, 0, 0, width, height);
 	portrait_light(t->portrait, &view, true);
-	struct image rgba = portrait_draw(t->portrait, &view), seen = studio_on_grey(&rgba, job->gain, job->render->bloom);
+	struct image rgba = portrait_draw(t->portrait, &view), seen = studio_on_grey(&rgba, job->gain, &job->render->finish);
 	if (layers)
 		*layers = portrait_layers(t->portrait, &view, &rgba);
 	image_free(&rgba);

@@ -73,7 +73,7 @@ function sliders(eye) {
 			{ key: "light_gain", label: "Strength", lo: 0.1, hi: 3, power: 2, value: 1, show: share, from: eye.photo ? "fitted" : "chosen",
 				why: eye.photo ? "100 % is the photograph's own exposure; its error goes into the pigments'" : "" },
 			{ key: "exposure", alone: true, label: "Exposure of the picture", lo: -4, hi: 4, value: 0, show: v => `${v > 0 ? "+" : ""}${v.toFixed(1)} stops`, from: "chosen", why: "0 is as the photograph is exposed" },
-			{ key: "tone", alone: true, label: "Highlights as on film", lo: 0, hi: 1, value: 0, show: share, from: "chosen", why: "0 % cuts them off, as the measured comparison does" },
+			{ key: "tone", alone: true, label: "Highlights as on film", lo: 0, hi: 1, value: data.tone, keep: as("render.tone", 0, 1), show: share, from: "configured", why: "0 % cuts them off, as the measured comparison does" },
 			{ key: "bloom", alone: true, label: "Glow of bright light", lo: 0, hi: 0.3, value: data.bloom, keep: as("render.bloom", 0, 1), show: v => `${(100 * v).toFixed(1)} %`, from: "configured", why: "of the light that a lens and the eye scatter" },
 		]],
 	];

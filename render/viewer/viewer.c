@@ -95,7 +95,8 @@ static bool write_page(struct stage *stage, const struct capture *capture, const
 	if (face)
 		json_object_set(state, "face", face);
 	json_object_set(state, "left", left);
-	json_object_set_new(state, "bloom", json_real(conf->bloom));
+	json_object_set_new(state, "bloom", json_real(conf->finish.bloom));
+	json_object_set_new(state, "tone", json_real(conf->finish.tone));
 	json_object_set_new(state, "motion", motion(stage));
 	json_object_set_new(state, "version", json_string(EYEWRIGHT_VERSION));
 	text = script_text(state);

@@ -11,7 +11,7 @@ struct deform_crossing {
 
 /* How skin at a hair card's root has turned, and where its foot is, mm (cards.c). */
 struct deform_motion {
-	double turn[3][3], foot[3];
+	double turn[4], foot[3];
 };
 
 /* What is in it is nobody's between poses. Owned by deform_rooms. */

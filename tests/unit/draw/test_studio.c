@@ -1,9 +1,11 @@
 /* What is read off the reference photograph, and how the beauty views are exposed: closed forms. */
 #include "tests/lib/unit.h"
 
+#include "base/mem.h"
 #include "draw/bloom.h"
 #include "draw/photo/reference.h"
 #include "draw/studio.h"
+#include "draw/tone.h"
 
 /* The same radiance from everywhere: a plane facing anywhere receives it. */
 static struct envmap even(float radiance)
@@ -47,13 +49,34 @@ static void grey_shows_where_the_eye_does_not(void **state)
 	for (int i = 0; i < 101 * 101; i++)
 		rgba.px[4 * i + 3] = i < 101;  // the first row is covered, in black
 	image_at(&rgba, 50, 0)[1] = 0.25f;
-	struct image out = studio_on_grey(&rgba, 2, 0);
+	struct image out = studio_on_grey(&rgba, 2, &(struct studio_finish){ 0 });
 	NEAR(image_at(&out, 50, 50)[0], 0.115, 1e-6);
 	NEAR(image_at(&out, 0, 100)[0], 0.115 + (0.030 - 0.115) * pow(100 / 101.0, 2), 1e-6);
 	NEAR(image_at(&out, 50, 0)[1], 0.5, 1e-6);
 	NEAR(image_at(&out, 50, 0)[0], 0, 1e-6);
 	image_free(&out);
 	image_free(&rgba);
+}
+
+/* Narkowicz's own figures: f 0.2 -> 0.2995, 1 -> 0.8038, 4 -> 0.9734 by his polynomials; light without end comes to white, and never beyond. */
+static void highlights_bend_as_on_film(void **state)
+{
+	(void)state;
+	static const double of[] = { 0, 0.25, 1.25, 5, 1000, -0.1 }, to[] = { 0, 0.1064 / 0.3552, 2.54 / 3.16, 40.28 / 41.38, 1, 0 };
+	for (int share = 0; share <= 2; share++)
+		for (int i = 0; i < COUNT(of); i++) {
+			struct image rgb = image_new(1, 1, 3);
+			for (int c = 0; c < 3; c++)
+				rgb.px[c] = (float)of[i];
+			tone(&rgb, 0.5 * share);
+			for (int c = 0; c < 3; c++)
+				NEAR(rgb.px[c], share ? (share * to[i] + (2 - share) * fmin(fmax(of[i], 0), 1)) / 2 : of[i], 1e-4);
+			image_free(&rgb);
+		}
+	// A light's edge keeps its steps: of what was cut off at white all would be alike.
+	struct image out = studio_on_grey(&(struct image){ 2, 1, 4, (float[]){ 1.5f, 0, 0, 1, 3, 0, 0, 1 } }, 1, &(struct studio_finish){ .tone = 1 });
+	assert_true(out.px[3] - out.px[0] > 0.05 && out.px[3] < 1);
+	image_free(&out);
 }
 
 /* Light that a spot throws so far away in a picture of n px, over the spot's own. */
@@ -155,7 +178,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(even_light_exposes_the_sclera_to_62_per_cent),
-		cmocka_unit_test(grey_shows_where_the_eye_does_not), cmocka_unit_test(bright_light_glows_and_none_is_lost),
+		cmocka_unit_test(grey_shows_where_the_eye_does_not), cmocka_unit_test(bright_light_glows_and_none_is_lost), cmocka_unit_test(highlights_bend_as_on_film),
 		cmocka_unit_test(a_softbox_is_brightest_in_its_middle),
 		cmocka_unit_test(a_window_is_as_large_as_the_photograph_lets_it),
 		cmocka_unit_test(the_edges_blur_is_the_limbus_width),
