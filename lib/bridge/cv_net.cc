@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <omp.h>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
@@ -15,10 +17,16 @@ extern "C" {
 #include "base/mem.h"
 }
 
-/* One of OpenCV's networks for each thread: it runs one picture at a time. */
+/* One of OpenCV's networks runs one picture at a time: as many as were ever needed at once. Those that rest remember the size of their last picture. */
+struct resting {
+	std::unique_ptr<cv::dnn::Net> net;
+	int height, width;
+};
+
 struct cv_net {
 	std::vector<char> data;
-	std::vector<cv::dnn::Net> each;
+	std::mutex busy;
+	std::vector<resting> rest;
 };
 
 namespace {
@@ -51,18 +59,40 @@ int silent(int, const char *, const char *, const char *, int, void *)
 	return 0;
 }
 
-/* OpenCV prints and logs what it throws; what it throws is turned into an err here. */
+/* How all of OpenCV is set while networks are read or run here, be it in several threads: what it throws is turned into an err, so it neither prints nor logs
+ * that, and its own threads rest while pictures run side by side. The last one out sets it back. */
 struct quiet {
-	cv::ErrorCallback was;
-	void *data = nullptr;
-	cv::utils::logging::LogLevel level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-	quiet() : was(cv::redirectError(silent, nullptr, &data)) {}
+	static std::mutex busy;
+	static int inside;
+	static cv::ErrorCallback callback;
+	static void *data;
+	static cv::utils::logging::LogLevel level;
+	static int threads;
+	quiet()
+	{
+		const std::lock_guard<std::mutex> hold(busy);
+		if (inside++)
+			return;
+		level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+		callback = cv::redirectError(silent, nullptr, &data);
+		threads = cv::getNumThreads();
+		cv::setNumThreads(1);
+	}
 	~quiet()
 	{
-		cv::redirectError(was, data);
+		const std::lock_guard<std::mutex> hold(busy);
+		if (--inside)
+			return;
+		cv::setNumThreads(threads);
+		cv::redirectError(callback, data);
 		cv::utils::logging::setLogLevel(level);
 	}
 };
+std::mutex quiet::busy;
+int quiet::inside, quiet::threads;
+cv::ErrorCallback quiet::callback;
+void *quiet::data;
+cv::utils::logging::LogLevel quiet::level;
 
 cv::dnn::Net read_net(const std::vector<char> &data)
 {
@@ -104,7 +134,7 @@ bool load(cv_net **net, const char *path, const char *data, size_t size, err *er
 	try {
 		n = new cv_net;
 		n->data.assign(data, data + size);
-		n->each.push_back(read_net(n->data));
+		n->rest.push_back({ std::make_unique<cv::dnn::Net>(read_net(n->data)), 0, 0 });
 	} catch (const std::exception &e) {
 		delete n;
 		return err_set(err, "%s: OpenCV cannot use this network: %s", path, e.what());
@@ -113,27 +143,48 @@ bool load(cv_net **net, const char *path, const char *data, size_t size, err *er
 	return true;
 }
 
-/* OpenCV's own threads rest while pictures run side by side. */
-struct alone {
-	int was = cv::getNumThreads();
-	alone() { cv::setNumThreads(1); }
-	~alone() { cv::setNumThreads(was); }
-};
+/* A network that rests, best one that has run the picture's size: another one costs a set-up. A new one where none rests. */
+resting borrow(cv_net *net, const cv_net_picture *p)
+{
+	{
+		const std::lock_guard<std::mutex> hold(net->busy);
+		size_t at = net->rest.size();
+		while (at > 0 && !(net->rest[at - 1].height == p->height && net->rest[at - 1].width == p->width))
+			at--;
+		if (!net->rest.empty()) {
+			std::swap(net->rest[at > 0 ? at - 1 : net->rest.size() - 1], net->rest.back());
+			resting got = std::move(net->rest.back());
+			net->rest.pop_back();
+			return got;
+		}
+	}
+	return { std::make_unique<cv::dnn::Net>(read_net(net->data)), 0, 0 };
+}
 
-bool run_one(cv_net_picture *p, cv::dnn::Net *net, const std::vector<char> &data, int channels, err *err)
+void give_back(cv_net *net, resting &&used, const cv_net_picture *p)
+{
+	used.height = p->height;
+	used.width = p->width;
+	const std::lock_guard<std::mutex> hold(net->busy);
+	net->rest.push_back(std::move(used));
+}
+
+bool run_one(cv_net_picture *p, cv_net *net, int channels, err *err)
 {
 	try {
-		if (net->empty())
-			*net = read_net(data);
+		resting own = borrow(net, p);
 		const int shape[4] = { 1, channels, p->height, p->width };
-		net->setInput(cv::Mat(4, shape, CV_32F, const_cast<float *>(p->in)));
-		const cv::Mat got = net->forward();
-		if (got.dims != 4 || got.size[0] != 1 || got.type() != CV_32F || !got.isContinuous())
-			return err_set(err, "network: gives no picture");
-		for (int i = 0; i < 3; i++)
-			p->size[i] = got.size[i + 1];
-		p->out = static_cast<float *>(mem_array(got.total(), sizeof(float)));
-		std::memcpy(p->out, got.ptr<float>(), got.total() * sizeof(float));
+		own.net->setInput(cv::Mat(4, shape, CV_32F, const_cast<float *>(p->in)));
+		{
+			const cv::Mat got = own.net->forward();
+			if (got.dims != 4 || got.size[0] != 1 || got.type() != CV_32F || !got.isContinuous())
+				return err_set(err, "network: gives no picture");
+			for (int i = 0; i < 3; i++)
+				p->size[i] = got.size[i + 1];
+			p->out = static_cast<float *>(mem_array(got.total(), sizeof(float)));
+			std::memcpy(p->out, got.ptr<float>(), got.total() * sizeof(float));
+		}
+		give_back(net, std::move(own), p);
 		return true;
 	} catch (const std::exception &e) {
 		return err_set(err, "network: does not take %d x %d px of %d channels: %s", p->width, p->height, channels, e.what());
@@ -184,17 +235,14 @@ bool cv_net_open(struct cv_net **net, const char *path, const int takes[3], cons
 bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int channels, struct err *err)
 {
 	const int threads = n < omp_get_max_threads() ? n : omp_get_max_threads();
-	if (static_cast<int>(net->each.size()) < threads)
-		net->each.resize(static_cast<size_t>(threads));
 	for (int i = 0; i < n; i++)
 		picture[i].out = nullptr;
 	std::vector<struct err> errs(static_cast<size_t>(n));
 	int failed = n;
 	const quiet hush;
-	const alone rest;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) reduction(min : failed)
 	for (int i = 0; i < n; i++)
-		if (!run_one(&picture[i], &net->each[static_cast<size_t>(omp_get_thread_num())], net->data, channels, &errs[static_cast<size_t>(i)]))
+		if (!run_one(&picture[i], net, channels, &errs[static_cast<size_t>(i)]))
 			failed = i < failed ? i : failed;
 	if (failed == n)
 		return true;

@@ -24,8 +24,8 @@ struct cv_net_picture {
 };
 
 /* Runs the network on n pictures, side by side on as many threads as OpenMP would take, each picture on one: the numbers are the
- * same on any number of them. Large pictures first keep all busy. One call at a time for each net. A size that differs from the last
- * one of a thread costs it a set-up of some ms. False, err set, nothing to free, when the network does not take a size. */
+ * same on any number of them. Large pictures first keep all busy. Several threads may call it at once. A network for each picture at once is
+ * read when it is first needed, and a size other than its last costs a set-up of some ms. False, err set, nothing to free, when the network does not take a size. */
 bool cv_net_run(struct cv_net_picture *picture, int n, struct cv_net *net, int channels, struct err *err);
 
 #ifdef __cplusplus

@@ -63,30 +63,41 @@ static double count_of(const struct trial *trial)
 	return pow(fmax(odds_one_sigma(trial->curve), LEAST), -4);
 }
 
+/* Measures the likeliest trial in full, with its pupil: rim[0]; and, side by side, all that say the same: rim[i + 1] of trial i where measured[i]. */
+static bool measure_all(struct rim rim[1 + TRIALS], bool measured[TRIALS], struct limbus_found *found, const struct trial *best, const struct trials *trials)
+{
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = -1; i < trials->n; i++) {
+		const struct trial *t = i < 0 ? best : &trials->trial[i];
+		const bool same = t != best && t->window == best->window && ellipse_apart(&t->e, &best->e) < trials->conf->same.most * best->e.a;
+		if (i < 0)
+			found->ok = trial_measure(rim, &found->pupil, &found->has_pupil, best, trials, false);
+		else
+			measured[i] = same && trial_measure(&rim[i + 1], 0, 0, t, trials, false);
+	}
+	return found->ok;
+}
+
 /* Edges err where the limbus is soft or shaded, the strip on eyes unlike those it has learnt from, and which of a window's trials is the likeliest may
  * turn with a few pixels: the answer lies between all that say the same. How far they are apart adds to its covariance. */
-static void between(struct rim *rim, const struct trial *best, const struct trials *trials)
+static void between(struct rim *rim, const struct rim other[TRIALS], const bool measured[TRIALS], const struct trial *best, const struct trials *trials)
 {
 	enum { N = ELLIPSE_N };
-	struct rim *other = mem_new(1, sizeof *other);
 	double q[N], p[N], sum = count_of(best);
 	ellipse_to_q(q, &rim->e);
 	for (int i = 0; i < trials->n; i++) {
-		const struct trial *t = &trials->trial[i];
-		const bool same = t != best && t->window == best->window && ellipse_apart(&t->e, &best->e) < trials->conf->same.most * best->e.a;
-		if (!same || !trial_measure(other, 0, 0, t, trials, false))
+		if (!measured[i])
 			continue;
-		const double count = count_of(t), share = count / (sum + count);
+		const double count = count_of(&trials->trial[i]), share = count / (sum + count);
 		sum += count;
-		ellipse_to_q(p, &other->e);
+		ellipse_to_q(p, &other[i].e);
 		for (int a = 0; a < N; a++)
 			for (int b = 0; b < N; b++)
-				rim->cov_q[a][b] += share * (other->cov_q[a][b] - rim->cov_q[a][b]) + share * (1 - share) * (p[a] - q[a]) * (p[b] - q[b]);
+				rim->cov_q[a][b] += share * (other[i].cov_q[a][b] - rim->cov_q[a][b]) + share * (1 - share) * (p[a] - q[a]) * (p[b] - q[b]);
 		for (int a = 0; a < N; a++)
 			q[a] += share * (p[a] - q[a]);
 	}
 	ellipse_from_q(&rim->e, q);
-	free(other);
 }
 
 void limbus_settle(struct limbus_found *found, struct trials *trials)
@@ -97,12 +108,17 @@ void limbus_settle(struct limbus_found *found, struct trials *trials)
 		return;
 	}
 	const struct trial *trial = &trials->trial[p->best];
-	found->ok = trial_measure(&found->limbus, &found->pupil, &found->has_pupil, trial, trials, false);
-	if (!found->ok) {
+	struct rim *rim = mem_new(1 + TRIALS, sizeof *rim);
+	bool measured[TRIALS];
+	const bool any = measure_all(rim, measured, found, trial, trials);
+	found->limbus = rim[0];
+	if (any)
+		between(&found->limbus, rim + 1, measured, trial, trials);
+	free(rim);
+	if (!any) {
 		limbus_refuse(found, "no clear edge between iris and sclera: light the eye evenly and focus on the iris");
 		return;
 	}
-	between(&found->limbus, trial, trials);
 	posterior_settle(&found->posterior, &found->limbus, trials);
 	limbus_refuse_doubtful(found, trials);
 }

@@ -165,31 +165,41 @@ struct trial_line trial_line_of(const struct rim *rim)
 	return line;
 }
 
-/* Measures a trial and keeps it where there is something to measure. */
-static bool try(struct trials *t, const struct trial *start, struct err *err)
+/* A trial on its way: measured, looked at beside what is known of its window, and kept. The first two run side by side with those of others. */
+struct attempt { struct trial trial; struct rim rim[2]; bool measured, has_pupil; };
+
+static void measure(struct attempt *a, const struct trials *t)
 {
-	if (t->n == TRIALS)
+	a->measured = trial_measure(a->rim, a->rim + 1, &a->has_pupil, &a->trial, t, true);
+}
+
+static void look(struct attempt *a, const struct trials *t)
+{
+	struct trial *trial = &a->trial;
+	const struct trial_window *w = trial->window;
+	const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, w->moved, w->blind,
+		                        trial->guide == GUIDE_STRIP ? 1 : trial->guide == GUIDE_STRIP_FIRST ? 2 : 0, trial->guide == GUIDE_WHITENESS_ALONE,
+		                        t->photo->width, t->photo->height };
+	if (!a->measured)
+		return;
+	odds_traits(trial->x, a->rim, a->has_pupil ? a->rim + 1 : 0, &view);
+	trial->e = a->rim->e;
+	trial->line = trial_line_of(a->rim);
+	trial->sigma = odds_sigma(a->rim);
+}
+
+/* Keeps a trial, where there was something to measure. */
+static bool keep(struct trials *t, const struct attempt *a, struct err *err)
+{
+	if (t->n == TRIALS || !a->measured)
 		return true;
 	struct trial *trial = &t->trial[t->n];
-	struct rim *rim = mem_new(2, sizeof *rim);
-	bool has_pupil, ok = true;
-	*trial = *start;
-	if (trial_measure(rim, rim + 1, &has_pupil, trial, t, true)) {
-		const struct trial_window *w = trial->window;
-		const struct odds_view view = { &w->evidence, &w->map, w->strip, &w->told, w->moved, w->blind,
-			                        trial->guide == GUIDE_STRIP ? 1 : trial->guide == GUIDE_STRIP_FIRST ? 2 : 0, trial->guide == GUIDE_WHITENESS_ALONE,
-			                        t->photo->width, t->photo->height };
-		odds_traits(trial->x, rim, has_pupil ? rim + 1 : 0, &view);
-		if (trial->guide == GUIDE_STRIP_FIRST && t->n && t->trial[t->n - 1].guide == GUIDE_STRIP)
-			trial->x[ODDS_STRIP_APART] = t->trial[t->n - 1].x[ODDS_STRIP_APART];
-		ok = odds_of(trial->curve, trial->x, t->conf->odds, err);
-		trial->log_odds = ok ? odds_log(trial->curve, t->conf->tolerance) : 0;
-		trial->e = rim->e;
-		trial->line = trial_line_of(rim);
-		trial->sigma = odds_sigma(rim);
-		t->n++;
-	}
-	free(rim);
+	*trial = a->trial;
+	if (trial->guide == GUIDE_STRIP_FIRST && t->n && t->trial[t->n - 1].guide == GUIDE_STRIP)
+		trial->x[ODDS_STRIP_APART] = t->trial[t->n - 1].x[ODDS_STRIP_APART];
+	const bool ok = odds_of(trial->curve, trial->x, t->conf->odds, err);
+	trial->log_odds = ok ? odds_log(trial->curve, t->conf->tolerance) : 0;
+	t->n++;
 	return ok;
 }
 
@@ -199,6 +209,38 @@ static void of_region(struct ellipse *e, const struct ellipse *told, const struc
 	region_fit(e, &w->map);
 	if (!(e->a > conf->least_region * told->a))
 		*e = *told;
+}
+
+/* The ellipse of the evidence, by either guide; then that of the strip, where it is seen, as a prior that edges move easily, or hardly. */
+static bool try_window(struct trials *t, struct trial_window *w, const struct ellipse *e, const struct ellipse *told, struct err *err)
+{
+	static const enum trial_guide guides[] = { GUIDE_EVIDENCE, GUIDE_WHITENESS, GUIDE_STRIP, GUIDE_STRIP_FIRST };
+	enum { FIRST = 2, ALL = COUNT(guides) };
+	struct attempt *a = mem_new(ALL, sizeof *a);
+	struct ellipse likeliest;
+	bool ok = true;
+	for (int i = 0; i < FIRST; i++)
+		a[i].trial = (struct trial){ .guide = guides[i], .window = w, .region = *e, .e = *e };
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = -1; i < FIRST; i++)
+		if (i >= 0)
+			measure(&a[i], t);
+		else if (!w->strip)
+			ok = read_strip(w, t, 2, (struct ellipse[]){ *e, *told }, err);
+	const int n = ok && w->seen.px && ellipse_from_q(&likeliest, w->told.q) ? ALL : FIRST;
+	for (int i = FIRST; i < n; i++)
+		a[i].trial = (struct trial){ .guide = guides[i], .window = w, .region = *e, .e = likeliest };
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = n - 1; i >= 0; i--) {  // the first ones are measured already
+		if (i >= FIRST)
+			measure(&a[i], t);
+		if (ok)
+			look(&a[i], t);
+	}
+	for (int i = 0; i < n && ok; i++)
+		ok = keep(t, &a[i], err);
+	free(a);
+	return ok;
 }
 
 /* From a window of its own size. */
@@ -220,15 +262,7 @@ bool trials_of_place(struct trials *t, double x, double y, double radius, struct
 	for (int i = 0; i < t->n; i++)
 		if (t->trial[i].window == w && t->trial[i].guide == GUIDE_EVIDENCE)
 			return true;
-	if (!w->strip && !read_strip(w, t, 2, (struct ellipse[]){ e, told }, err))
-		return false;
-	struct ellipse likeliest;
-	const bool ok = try(t, &(struct trial){ .guide = GUIDE_EVIDENCE, .window = w, .region = e, .e = e }, err)
-	                && try(t, &(struct trial){ .guide = GUIDE_WHITENESS, .window = w, .region = e, .e = e }, err);
-	if (!ok || !w->seen.px || !ellipse_from_q(&likeliest, w->told.q))
-		return ok;
-	return try(t, &(struct trial){ .guide = GUIDE_STRIP, .window = w, .region = e, .e = likeliest }, err)
-	       && try(t, &(struct trial){ .guide = GUIDE_STRIP_FIRST, .window = w, .region = e, .e = likeliest }, err);
+	return try_window(t, w, &e, &told, err);
 }
 
 bool trials_of_evidence(struct trials *t, struct err *err)
@@ -259,9 +293,21 @@ static bool of_vote(struct trials *t, const struct ellipse *e, struct err *err)
 	struct trial_window *w = window(t, e->cx, e->cy, e->a, err);
 	if (!w)
 		return !*err->msg;
-	if (!w->strip && !read_strip(w, t, 1, e, err))
-		return false;
-	return try(t, &(struct trial){ .guide = GUIDE_WHITENESS_ALONE, .window = w, .e = *e }, err);
+	struct attempt *a = mem_new(1, sizeof *a);
+	bool ok = true;
+	a->trial = (struct trial){ .guide = GUIDE_WHITENESS_ALONE, .window = w, .e = *e };
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = 0; i < 2; i++)
+		if (i)
+			measure(a, t);
+		else if (!w->strip)
+			ok = read_strip(w, t, 1, e, err);
+	if (ok) {
+		look(a, t);
+		ok = keep(t, a, err);
+	}
+	free(a);
+	return ok;
 }
 
 bool trials_of_votes(struct trials *t, struct err *err)
