@@ -30,37 +30,55 @@ static void equal_arcs(double t[ARCS], const struct ellipse *e)
 	}
 }
 
-static void sample_arc(struct ring *r, int arc, const struct grey *grey, double spacing, int most, int width,
-                       int height)
+/* Adds the samples of a line to v: from (x, y) on, px of the picture, every (dx, dy). */
+struct line { float x, y, dx, dy; };
+
+SIMD_CLONES static void add_line(float *restrict v, int m, const struct grey *grey, struct line at)
+{
+	const float *restrict px = grey->px;
+	const int width = grey->width;
+	const float right = (float)width - 1.001f, bottom = (float)grey->height - 1.001f;
+	SIMD_LOOP for (int j = 0; j < m; j++) {
+		float x = at.x + (float)j * at.dx, y = at.y + (float)j * at.dy;
+		x = x > 0 ? x < right ? x : right : 0;
+		y = y > 0 ? y < bottom ? y : bottom : 0;
+		const int ix = (int)x, iy = (int)y, i = iy * width + ix;
+		const float fx = x - (float)ix, top = px[i] + fx * (px[i + 1] - px[i]);
+		const float low = px[i + width] + fx * (px[i + width + 1] - px[i + width]);
+		v[j] += top + (y - (float)iy) * (low - top);
+	}
+}
+
+static void sample_arc(struct ring *r, int arc, const struct grey *grey, double spacing, int most)
 {
 	const int across = (int)fmin(fmax(spacing / grey->scale, 1), most);
-	const double nx = r->normal[arc][0], ny = r->normal[arc][1];
-	const double hi = r->lo + r->step * (r->m - 1), bend = 0.5 / r->e.a;
-	double x0 = r->p[arc][0] + r->lo * nx, y0 = r->p[arc][1] + r->lo * ny;
-	double x1 = r->p[arc][0] + hi * nx, y1 = r->p[arc][1] + hi * ny;
-	r->inside[arc] = fmin(x0, x1) > 1 && fmax(x0, x1) < width - 1 && fmin(y0, y1) > 1 && fmax(y0, y1) < height - 1;
+	const double nx = r->normal[arc][0], ny = r->normal[arc][1], bend = 0.5 / r->e.a;
 	float *v = r->v + (long)arc * r->m;
 	memset(v, 0, (size_t)r->m * sizeof *v);
 	/* in px of the picture: start, and step along the profile */
 	const double k = 1 / grey->scale;
-	const float du = (float)(nx * r->step * k), dv = (float)(ny * r->step * k);
-	const float right = (float)grey->width - 1.001f, bottom = (float)grey->height - 1.001f;
 	for (int i = 0; i < across; i++) {
 		double q = ((i + 0.5) / across - 0.5) * spacing, in = q * q * bend - r->lo;
-		float u = (float)((r->p[arc][0] - q * ny - in * nx - grey->x0) * k - 0.5);
-		float w = (float)((r->p[arc][1] + q * nx - in * ny - grey->y0) * k - 0.5);
-		for (int j = 0; j < r->m; j++) {
-			float x = u + (float)j * du, y = w + (float)j * dv;
-			x = x > 0 ? x < right ? x : right : 0;
-			y = y > 0 ? y < bottom ? y : bottom : 0;
-			int ix = (int)x, iy = (int)y;
-			const float *a = grey->px + (long)iy * grey->width + ix, *b = a + grey->width;
-			float fx = x - (float)ix, top = a[0] + fx * (a[1] - a[0]), low = b[0] + fx * (b[1] - b[0]);
-			v[j] += top + (y - (float)iy) * (low - top);
-		}
+		const struct line at = { (float)((r->p[arc][0] - q * ny - in * nx - grey->x0) * k - 0.5), (float)((r->p[arc][1] + q * nx - in * ny - grey->y0) * k - 0.5),
+			                 (float)(nx * r->step * k), (float)(ny * r->step * k) };
+		add_line(v, r->m, grey, at);
 	}
 	for (int j = 0; j < r->m; j++)
 		v[j] /= (float)across;
+}
+
+/* Where the profile of an arc ends on either side; and the box that all of its places lie in. */
+static void place_arc(struct ring *r, double box[4], int arc, double spacing, int width, int height)
+{
+	const double nx = r->normal[arc][0], ny = r->normal[arc][1], hi = r->lo + r->step * (r->m - 1);
+	double x0 = r->p[arc][0] + r->lo * nx, y0 = r->p[arc][1] + r->lo * ny;
+	double x1 = r->p[arc][0] + hi * nx, y1 = r->p[arc][1] + hi * ny;
+	r->inside[arc] = fmin(x0, x1) > 1 && fmax(x0, x1) < width - 1 && fmin(y0, y1) > 1 && fmax(y0, y1) < height - 1;
+	const double beside = 0.5 * spacing + 0.125 * spacing * spacing / r->e.a;  // along the arc, and by its bend
+	box[0] = fmin(x0, x1) - beside;
+	box[1] = fmin(y0, y1) - beside;
+	box[2] = fmax(x0, x1) + beside;
+	box[3] = fmax(y0, y1) + beside;
 }
 
 struct ring ring_sample(const struct grey *grey, const struct ellipse *e, double lo, double hi, double step,
@@ -68,13 +86,17 @@ struct ring ring_sample(const struct grey *grey, const struct ellipse *e, double
 {
 	struct ring r = { .e = *e, .m = (int)ceil((hi - lo) / step) + 1, .lo = lo, .step = step };
 	const double spacing = ellipse_perimeter(e) / ARCS;
+	double box[ARCS][4];
 	r.v = mem_array((size_t)ARCS * (size_t)r.m, sizeof *r.v);
 	equal_arcs(r.t, e);
-#pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++) {
 		ellipse_point(r.p[i], r.normal[i], e, r.t[i]);
-		sample_arc(&r, i, grey, spacing, across, width, height);
+		place_arc(&r, box[i], i, spacing, width, height);
 	}
+	grey_need(grey, ARCS, (const double (*)[4])box);
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < ARCS; i++)
+		sample_arc(&r, i, grey, spacing, across);
 	return r;
 }
 

@@ -77,7 +77,7 @@ static void reduce_row(const struct planes *out, long *over, long *under, const 
 
 static struct grey halve(const struct grey *g)
 {
-	struct grey h = { g->width / 2, g->height / 2, g->x0, g->y0, 2 * g->scale, 0 };
+	struct grey h = { g->width / 2, g->height / 2, g->x0, g->y0, 2 * g->scale, 0, 0 };
 	h.px = mem_array((size_t)h.width * (size_t)h.height, sizeof *h.px);
 	for (int y = 0; y < h.height; y++)
 		for (int x = 0; x < h.width; x++) {
@@ -89,7 +89,7 @@ static struct grey halve(const struct grey *g)
 
 static struct grey empty(int width, int height, double scale)
 {
-	return (struct grey){ width, height, 0, 0, scale, mem_array((size_t)width * (size_t)height, sizeof(float)) };
+	return (struct grey){ width, height, 0, 0, scale, mem_array((size_t)width * (size_t)height, sizeof(float)), 0 };
 }
 
 struct pyramid pyramid_make(const struct photo *photo)
@@ -146,17 +146,34 @@ static const float *decode_table(void)
 	return decode;
 }
 
-static void linear_row(float *out, const struct photo *photo, const struct grey *g, int k, int row,
-                       const float weight[3])
+enum { TILE = 16 };
+
+/* How pixels are made, and of which tiles they are. */
+struct grey_due {
+	const struct photo *photo;
+	int k;                // px of the photograph, each way, in one
+	float weight[3];
+	int across, down;     // tiles
+	bool *made;           // [down][across]
+	int *list;            // room for all tiles
+};
+
+static void make_tile(const struct grey *g, const struct grey_due *due, int tile)
 {
 	const float *table = decode_table();
-	memset(out, 0, (size_t)g->width * sizeof *out);
-	const long x0 = lround(g->x0), y0 = lround(g->y0);
-	for (long y = y0 + (long)row * k; y < y0 + (long)(row + 1) * k; y++) {
-		const uint16_t *p = photo->rgb + 3 * (y * photo->width + x0);
-		for (int x = 0; x < g->width; x++)
-			for (int i = 0; i < k; i++, p += 3)
-				out[x] += weight[0] * table[p[0]] + weight[1] * table[p[1]] + weight[2] * table[p[2]];
+	const int k = due->k, left = tile % due->across * TILE, top = tile / due->across * TILE;
+	const int n = left + TILE < g->width ? TILE : g->width - left, end = top + TILE < g->height ? top + TILE : g->height;
+	const long x0 = lround(g->x0) + (long)left * k, y0 = lround(g->y0);
+	const float r = due->weight[0], green = due->weight[1], b = due->weight[2];
+	for (int row = top; row < end; row++) {
+		float sum[TILE] = { 0 };
+		for (long y = y0 + (long)row * k; y < y0 + (long)(row + 1) * k; y++)
+			for (int i = 0; i < k; i++) {  // pixels by themselves first: none waits for the one before
+				const uint16_t *p = due->photo->rgb + 3 * (y * due->photo->width + x0 + i);
+				for (int x = 0; x < n; x++, p += 3 * k)
+					sum[x] += r * table[p[0]] + green * table[p[1]] + b * table[p[2]];
+			}
+		memcpy(g->px + (long)row * g->width + left, sum, (size_t)n * sizeof *sum);
 	}
 }
 
@@ -171,18 +188,54 @@ struct grey grey_linear(const struct photo *photo, const struct ellipse *e, doub
 	int y0 = (int)fmin(fmax(floor(e->cy - hy), 0), photo->height - 2 * k);
 	int x1 = (int)fmax(fmin(ceil(e->cx + hx), photo->width), x0 + 2 * k);
 	int y1 = (int)fmax(fmin(ceil(e->cy + hy), photo->height), y0 + 2 * k);
-	struct grey g = { (x1 - x0) / k, (y1 - y0) / k, x0, y0, k, 0 };
+	struct grey g = { (x1 - x0) / k, (y1 - y0) / k, x0, y0, k, 0, mem_new(1, sizeof *g.due) };
+	const double norm = (double)k * k;
 	g.px = mem_array((size_t)g.width * (size_t)g.height, sizeof *g.px);
-	double norm = (double)k * k;
-	const float w[3] = { (float)(weight[0] / norm), (float)(weight[1] / norm), (float)(weight[2] / norm) };
-#pragma omp parallel for schedule(static)
-	for (int row = 0; row < g.height; row++)
-		linear_row(g.px + (long)row * g.width, photo, &g, k, row, w);
+	*g.due = (struct grey_due){ photo, k, { (float)(weight[0] / norm), (float)(weight[1] / norm), (float)(weight[2] / norm) },
+		                    (g.width + TILE - 1) / TILE, (g.height + TILE - 1) / TILE, 0, 0 };
+	const size_t tiles = (size_t)g.due->across * (size_t)g.due->down;
+	g.due->made = mem_new(tiles, sizeof *g.due->made);
+	g.due->list = mem_array(tiles, sizeof *g.due->list);
 	return g;
+}
+
+/* The tile of a place along one side of n pixels, as grey_at clamps it. */
+static int tile_of(double u, int n)
+{
+	return (int)fmin(fmax(u, 0), n - 1) / TILE;
+}
+
+void grey_need(const struct grey *g, int n, const double box[n][4])
+{
+	static const double BESIDE = 2;  // pixels between which grey_at reads, and what rounding may add
+	struct grey_due *due = g->due;
+	int want = 0;
+	if (!due)
+		return;
+	for (int i = 0; i < n; i++) {
+		const double *b = box[i], k = g->scale;
+		const int x0 = tile_of((b[0] - g->x0) / k - BESIDE, g->width), x1 = tile_of((b[2] - g->x0) / k + BESIDE, g->width);
+		const int y0 = tile_of((b[1] - g->y0) / k - BESIDE, g->height), y1 = tile_of((b[3] - g->y0) / k + BESIDE, g->height);
+		for (int y = y0; y <= y1; y++)
+			for (int x = x0; x <= x1; x++) {
+				const int tile = y * due->across + x;
+				if (!due->made[tile])
+					due->list[want++] = tile;
+				due->made[tile] = true;
+			}
+	}
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < want; i++)
+		make_tile(g, due, due->list[i]);
 }
 
 void grey_free(struct grey *grey)
 {
+	if (grey->due) {
+		free(grey->due->made);
+		free(grey->due->list);
+		free(grey->due);
+	}
 	free(grey->px);
 	*grey = (struct grey){ 0 };
 }

@@ -12,6 +12,7 @@ struct grey {
 	int width, height;
 	double x0, y0, scale;  // photo px of the level's corner; photo px in one of the level's
 	float *px;             // [height][width]; owned
+	struct grey_due *due;  // owned; null: every pixel is there, else those that grey_need was asked for
 };
 
 enum { PYRAMID_MAX = 6, PYRAMID_LONG = 640, PYRAMID_SHORT_MIN = 28 };
@@ -46,9 +47,12 @@ static inline float grey_at(const struct grey *grey, double x, double y)
 }
 
 /* Linear light around the ellipse (its box grown by `margin`), the sum of weight[c] (any sign) times channel c,
- * box-reduced so that the major semi-axis is at most max_a px. grey_free. */
+ * box-reduced so that the major semi-axis is at most max_a px. Profiles across an ellipse see a third of it: its pixels are made where grey_need asks
+ * for them; `photo` is borrowed. grey_free. */
 struct grey grey_linear(const struct photo *photo, const struct ellipse *e, double margin, double max_a,
                         const double weight[3]);
+/* Makes the pixels that grey_at reads within n boxes (x0, y0, x1, y1, px of the photograph), where they are not there yet. One call at a time for each grey. */
+void grey_need(const struct grey *grey, int n, const double box[n][4]);
 void grey_free(struct grey *grey);
 
 /* Linear colour at (x, y), nearest pixel; clamped. */

@@ -87,7 +87,7 @@ double region_shown(const struct ellipse *e, const struct evidence *evidence)
 struct grey region_sclera(const struct evidence *e)
 {
 	const long n = (long)e->width * e->height;
-	struct grey g = { e->width, e->height, e->x0, e->y0, e->scale, mem_array((size_t)n, sizeof *g.px) };
+	struct grey g = { e->width, e->height, e->x0, e->y0, e->scale, mem_array((size_t)n, sizeof *g.px), 0 };
 	for (long i = 0; i < n; i++)
 		g.px[i] = e->plane[EVIDENCE_SCLERA][i] + 0.5F * (e->plane[EVIDENCE_REFLECTION][i] + e->plane[EVIDENCE_IRIS][i]) + 0.02F;
 	return g;

@@ -204,7 +204,7 @@ struct grey strip_seen(const struct strip *strip)
 	enum { SIDE = 160, UNIT = 40 };
 	const struct ellipse *e = &strip->e;
 	const double scale = e->a / UNIT;
-	struct grey g = { SIDE, SIDE, e->cx - 0.5 * SIDE * scale, e->cy - 0.5 * SIDE * scale, scale, mem_array(SIDE * SIDE, sizeof *g.px) };
+	struct grey g = { SIDE, SIDE, e->cx - 0.5 * SIDE * scale, e->cy - 0.5 * SIDE * scale, scale, mem_array(SIDE * SIDE, sizeof *g.px), 0 };
 	double q[ELLIPSE_N];
 	ellipse_to_q(q, e);
 	for (int y = 0; y < SIDE; y++)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "math/simd.h"
 
 static int within(int i, int n)
 {
@@ -25,17 +26,20 @@ static float share(const struct shares *s, int i)
 	return (float)((to - from) / (s->b - s->a));
 }
 
+/* Adds a weighted row to another. */
+SIMD_CLONES static void add_row(float *restrict row, const uint16_t *restrict from, int n, float weight)
+{
+	SIMD_LOOP for (int k = 0; k < n; k++)
+		row[k] += weight * (float)from[k];
+}
+
 /* Mean of the rows that [a, b) covers, from column `left` on, n columns. */
 static void mean_row(float *restrict row, const struct photo *photo, int left, int n, double a, double b)
 {
 	const struct shares rows = shares_of(a, b, photo->height);
 	memset(row, 0, sizeof *row * 3 * (size_t)n);
-	for (int j = rows.first; j <= rows.last; j++) {
-		const uint16_t *restrict from = photo->rgb + 3 * ((long)j * photo->width + left);
-		const float weight = share(&rows, j) / 65535;
-		for (int k = 0; k < 3 * n; k++)
-			row[k] += weight * (float)from[k];
-	}
+	for (int j = rows.first; j <= rows.last; j++)
+		add_row(row, photo->rgb + 3 * ((long)j * photo->width + left), 3 * n, share(&rows, j) / 65535);
 }
 
 /* The columns of each of the result's pixels, counted from `left` on, and their shares: [width][most]. */
@@ -90,6 +94,17 @@ float *photo_part(const struct photo *photo, double x0, double y0, double scale,
 	return out;
 }
 
+/* Codes of a row of three planes, `plane` values apart. */
+SIMD_CLONES static void encode_row(uint16_t *restrict to, const float *restrict from, long plane, int width)
+{
+	static const float WHOLE = 12582912.0f;  // 1.5 2^23: a sum with it is rounded to whole numbers
+	SIMD_LOOP for (int x = 0; x < width; x++)
+		for (int c = 0; c < 3; c++) {
+			const float v = from[c * plane + x], most = v < 1 ? v : 1;
+			to[3 * x + c] = (uint16_t)(int)(65535 * most + WHOLE - WHOLE);
+		}
+}
+
 struct photo photo_reduced(const struct photo *photo, int long_px, double *scale)
 {
 	const int longer = photo->width > photo->height ? photo->width : photo->height;
@@ -100,9 +115,9 @@ struct photo photo_reduced(const struct photo *photo, int long_px, double *scale
 	const long n = (long)out.width * out.height;
 	float *planes = photo_part(photo, 0, 0, *scale, out.width, out.height);
 	out.rgb = mem_array((size_t)(3 * n), sizeof *out.rgb);
-	for (long i = 0; i < n; i++)
-		for (int c = 0; c < 3; c++)
-			out.rgb[3 * i + c] = (uint16_t)lrintf(65535 * fminf(planes[c * n + i], 1));
+#pragma omp parallel for
+	for (int y = 0; y < out.height; y++)
+		encode_row(out.rgb + 3L * y * out.width, planes + (long)y * out.width, n, out.width);
 	free(planes);
 	return out;
 }
