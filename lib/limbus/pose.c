@@ -189,12 +189,12 @@ struct solution {
 	double x[N], cost, cov[N][N];
 };
 
-static bool solve(struct solution *s, struct problem *p, double tilt, double phi, struct err *err)
+static bool solve(struct solution *s, const struct problem *p, double tilt, double phi, struct err *err)
 {
 	const struct nls_conf conf = { .max_iter = 60, .ftol = 1e-12, .gtol = 1e-12, .xtol = 1e-10, .numeric = true };
 	struct nls_result result;
 	start(s->x, p, tilt, phi);
-	if (!nls_solve(&result, N, s->x, 0, 0, M, residuals, p, &conf, &s->cov[0][0], err))
+	if (!nls_solve(&result, N, s->x, 0, 0, M, residuals, (void *)p, &conf, &s->cov[0][0], err))
 		return false;
 	s->cost = result.cost;
 	return true;
@@ -274,12 +274,12 @@ bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct e
 	tilt = fmax(tilt, 0.02);
 	struct solution s[2];
 	bool ok[2];
-	for (int i = 0; i < 2; i++) {
-		struct err e = { 0 };
-		ok[i] = solve(&s[i], &p, tilt, across + i * M_PI, &e);
-		if (!ok[i] && i == 1 && !ok[0])
-			return err_set(err, "no pose of the eye fits the ellipses: %s", e.msg);
-	}
+	struct err errs[2] = { 0 };
+#pragma omp parallel for schedule(static, 1)
+	for (int i = 0; i < 2; i++)
+		ok[i] = solve(&s[i], &p, tilt, across + i * M_PI, &errs[i]);
+	if (!ok[0] && !ok[1])
+		return err_set(err, "no pose of the eye fits the ellipses: %s", errs[1].msg);
 	for (int i = 0; i < 2; i++) {
 		double theta, phi = 0;
 		if (ok[i])

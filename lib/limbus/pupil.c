@@ -25,10 +25,12 @@ static double ring_median(const struct grey *g, const struct ellipse *e, double 
 	return stats_quantile(SAMPLES, v, quantile);
 }
 
-/* Edge score, less where the inside is not one dark level from the middle to the margin (collarette, dark ring). */
-static double pupil_score(const struct grey *g, const struct ellipse *e, double contrast)
+/* Edge score, less where the inside is not one dark level from the middle to the margin (collarette, dark ring). 0 where it is no more than `top`. */
+static double pupil_score(const struct grey *g, const struct ellipse *e, double contrast, double top)
 {
-	double edge = score_ellipse(g, e, contrast, SCORE_WIDE);
+	double edge = score_ellipse_above(g, e, contrast, SCORE_WIDE, top);
+	if (!(edge > top))
+		return 0;
 	double core = ring_median(g, e, 0.4, 0.5), rim = ring_median(g, e, 0.85, 0.6), out = ring_median(g, e, 1.15, 0.5);
 	if (!(out > core))
 		return 0;
@@ -48,7 +50,7 @@ static double search(struct ellipse *best, const struct pyramid *pyramid, const 
 			for (int y = -GRID; y <= GRID; y++) {
 				struct ellipse e = { limbus->cx + x * reach, limbus->cy + y * reach, k * limbus->a, k * limbus->b,
 				                     limbus->angle };
-				double score = pupil_score(g, &e, conf->first_contrast);
+				double score = pupil_score(g, &e, conf->first_contrast, top);
 				if (score > top) {
 					top = score;
 					*best = e;

@@ -20,15 +20,38 @@ void strip_place(double p[2], const struct ellipse *e, int ray, double s)
 	p[1] = q[1] + s * (q[4] * x + (q[2] - q[3]) * y);
 }
 
+/* Where a ray along (dx, dy) from the centre of one ellipse leaves another. */
+struct leaving { double c, s, a, b, ou, ov, rest; };
+
+static struct leaving leaving_of(const struct ellipse *e, const struct ellipse *other)
+{
+	const double c = cos(other->angle), s = sin(other->angle), ox = e->cx - other->cx, oy = e->cy - other->cy;
+	const double ou = (c * ox + s * oy) / other->a, ov = (c * oy - s * ox) / other->b;
+	return (struct leaving){ c, s, other->a, other->b, ou, ov, ou * ou + ov * ov - 1 };
+}
+
+static double leaves(const struct leaving *o, double dx, double dy)
+{
+	const double du = (o->c * dx + o->s * dy) / o->a, dv = (o->c * dy - o->s * dx) / o->b;
+	const double a = du * du + dv * dv, b = du * o->ou + dv * o->ov, left = b * b - a * o->rest;
+	return left < 0 ? NAN : (-b + sqrt(left)) / a;
+}
+
+/* The ray to the ellipse. */
+static void direction(double d[2], const struct ellipse *e, int ray)
+{
+	double p[2];
+	strip_place(p, e, ray, 1);
+	d[0] = p[0] - e->cx;
+	d[1] = p[1] - e->cy;
+}
+
 double strip_crossing(const struct ellipse *e, int ray, const struct ellipse *other)
 {
-	double p[2], c = cos(other->angle), s = sin(other->angle);
-	strip_place(p, e, ray, 1);
-	const double dx = p[0] - e->cx, dy = p[1] - e->cy, ox = e->cx - other->cx, oy = e->cy - other->cy;
-	const double du = (c * dx + s * dy) / other->a, dv = (c * dy - s * dx) / other->b;
-	const double ou = (c * ox + s * oy) / other->a, ov = (c * oy - s * ox) / other->b;
-	const double a = du * du + dv * dv, b = du * ou + dv * ov, left = b * b - a * (ou * ou + ov * ov - 1);
-	return left < 0 ? NAN : (-b + sqrt(left)) / a;
+	const struct leaving o = leaving_of(e, other);
+	double d[2];
+	direction(d, e, ray);
+	return leaves(&o, d[0], d[1]);
 }
 
 static void ray_samples(float out[STRIP_PLANES][STRIP_ROWS][STRIP_RAYS], int ray, const float *part, double x0, double y0, double scale,
@@ -80,13 +103,32 @@ static double count_of(const struct strip *strip, int ray)
 	return strip->seen[ray] / strip->conf.rays + (1 - strip->seen[ray]) / strip->conf.hidden;
 }
 
-double strip_worth(const struct strip *strip, const struct ellipse *e)
+/* All rays of a strip, and what each counts for: the same for every ellipse that is weighed. */
+struct rays { double d[STRIP_RAYS][2], count[STRIP_RAYS]; };
+
+static void rays_of(struct rays *rays, const struct strip *strip)
 {
+	for (int j = 0; j < STRIP_RAYS; j++) {
+		direction(rays->d[j], &strip->e, j);
+		rays->count[j] = count_of(strip, j);
+	}
+}
+
+static double worth_of(const struct strip *strip, const struct rays *rays, const struct ellipse *e)
+{
+	const struct leaving o = leaving_of(&strip->e, e);
 	const double least = strip->conf.least;
 	double sum = 0;
 	for (int j = 0; j < STRIP_RAYS; j++)
-		sum += count_of(strip, j) * log((1 - least) * STRIP_ROWS * chance_at(strip, j, row_of(strip_crossing(&strip->e, j, e))) + least);
+		sum += rays->count[j] * log((1 - least) * STRIP_ROWS * chance_at(strip, j, row_of(leaves(&o, rays->d[j][0], rays->d[j][1]))) + least);
 	return sum;
+}
+
+double strip_worth(const struct strip *strip, const struct ellipse *e)
+{
+	struct rays rays;
+	rays_of(&rays, strip);
+	return worth_of(strip, &rays, e);
 }
 
 /* Mean and spread of a ray's place within so many rows of `row`; its chance. */
@@ -104,7 +146,7 @@ static double place_near(double *mean, double *spread, const struct strip *strip
 	return sum;
 }
 
-struct search { const struct strip *strip; const struct region_map *map; double start[ELLIPSE_N]; };
+struct search { const struct strip *strip; const struct region_map *map; double start[ELLIPSE_N]; struct rays rays; };
 
 static double worth(const void *ctx, const struct ellipse *e)
 {
@@ -118,7 +160,7 @@ static double worth(const void *ctx, const struct ellipse *e)
 	ellipse_to_q(q, e);
 	for (int i = 0; i < ELLIPSE_N; i++)
 		off += 0.5 * pow((q[i] - s->start[i]) / (conf->start_sigma[i >= 3] * s->start[2]), 2);
-	return strip_worth(s->strip, e) + region_worth(s->map, e) / conf->pixels - off;
+	return worth_of(s->strip, &s->rays, e) + region_worth(s->map, e) / conf->pixels - off;
 }
 
 bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *strip, const struct region_map *map, const double sigma[ELLIPSE_N])
@@ -129,6 +171,7 @@ bool strip_fit(struct ellipse *e, struct ellipse_fit *fit, const struct strip *s
 	struct ellipse_prior known = { .alike = conf->rays };
 	double p[STRIP_RAYS][2], weight[STRIP_RAYS];
 	int n = 0, seen = 0;
+	rays_of(&search.rays, strip);
 	ellipse_to_q(search.start, e);
 	ellipse_climb(e, 8 * row_px, 0.1 * row_px, 0.5, worth, &search);
 	ellipse_to_q(known.q, e);

@@ -22,6 +22,9 @@ struct limbus_kept {
 	struct photo photo;
 };
 
+/* Loads the networks that are shipped, side by side. False, err set, when one cannot be used; what was loaded is to be closed all the same. */
+bool limbus_open(struct limbus_conf *conf, struct err *err);
+
 void limbus_kept_free(struct limbus_kept *kept);
 
 /* Measures every photograph whose work/limbus/NAME.edge.json is not up to date, and writes it; a photograph that cannot be used

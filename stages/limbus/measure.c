@@ -11,6 +11,23 @@
 #include "limbus/face/face.h"
 #include "limbus/hand.h"
 #include "limbus/measure.h"
+#include "limbus/strip_net.h"
+
+bool limbus_open(struct limbus_conf *conf, struct err *err)
+{
+	struct err of_strip = { 0 };
+	bool ok = false, strip = false;
+#pragma omp parallel sections
+	{
+#pragma omp section
+		ok = evidence_open_shipped(&conf->net, err);
+#pragma omp section
+		strip = strip_open_shipped(&conf->strip, &of_strip) && odds_open_shipped(&conf->odds, &of_strip);
+	}
+	if (ok && !strip)
+		*err = of_strip;
+	return ok && strip;
+}
 
 char *limbus_record_path(const struct capture_photo *photo)
 {

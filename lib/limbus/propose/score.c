@@ -6,11 +6,19 @@ enum { POINTS = 64 };
 
 double score_ellipse(const struct grey *g, const struct ellipse *e, double contrast, enum score_reach reach)
 {
+	return score_ellipse_above(g, e, contrast, reach, -1);
+}
+
+double score_ellipse_above(const struct grey *g, const struct ellipse *e, double contrast, enum score_reach reach, double least)
+{
+	const double enough = POINTS * least - 1e-9;  // what rounding may add
 	const double near = fmax((reach == SCORE_NARROW ? 0.025 : 0.05) * e->b, 1.2 * g->scale), far = fmax(0.14 * e->b, 2.5 * g->scale);
 	const double c = cos(e->angle), s = sin(e->angle), step = 2 * M_PI / POINTS, cs = cos(step), ss = sin(step);
 	const double w = g->width * g->scale, h = g->height * g->scale;
 	double sum = 0, ct = 1, st = 0;
 	for (int i = 0; i < POINTS; i++) {
+		if (sum + (POINTS - i) < enough)
+			return 0;
 		double nx = e->b * ct, ny = e->a * st, n = sqrt(nx * nx + ny * ny);
 		double ux = (c * nx - s * ny) / n, uy = (s * nx + c * ny) / n;
 		double x = e->cx + c * e->a * ct - s * e->b * st, y = e->cy + s * e->a * ct + c * e->b * st;
