@@ -40,8 +40,10 @@ SIMD_CLONES static void add_line(float *restrict v, int m, const struct grey *gr
 	const float right = (float)width - 1.001f, bottom = (float)grey->height - 1.001f;
 	SIMD_LOOP for (int j = 0; j < m; j++) {
 		float x = at.x + (float)j * at.dx, y = at.y + (float)j * at.dy;
-		x = x > 0 ? x < right ? x : right : 0;
-		y = y > 0 ? y < bottom ? y : bottom : 0;
+		x = x > 0 ? x : 0;
+		y = y > 0 ? y : 0;
+		x = x < right ? x : right;
+		y = y < bottom ? y : bottom;
 		const int ix = (int)x, iy = (int)y, i = iy * width + ix;
 		const float fx = x - (float)ix, top = px[i] + fx * (px[i + 1] - px[i]);
 		const float low = px[i + width] + fx * (px[i + width + 1] - px[i + width]);
