@@ -91,10 +91,9 @@ struct ring ring_sample(const struct grey *grey, const struct ellipse *e, double
 	double box[ARCS][4];
 	r.v = mem_array((size_t)ARCS * (size_t)r.m, sizeof *r.v);
 	equal_arcs(r.t, e);
-	for (int i = 0; i < ARCS; i++) {
-		ellipse_point(r.p[i], r.normal[i], e, r.t[i]);
+	ellipse_points(ARCS, r.p, r.normal, e, r.t);
+	for (int i = 0; i < ARCS; i++)
 		place_arc(&r, box[i], i, spacing, width, height);
-	}
 	grey_need(grey, ARCS, (const double (*)[4])box);
 #pragma omp parallel for schedule(static)
 	for (int i = 0; i < ARCS; i++)

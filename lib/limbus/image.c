@@ -146,7 +146,7 @@ static const float *decode_table(void)
 	return decode;
 }
 
-enum { TILE = 16 };
+enum { TILE = 8 };
 
 /* How pixels are made, and of which tiles they are. */
 struct grey_due {

@@ -97,9 +97,24 @@ static bool project_pupil(double px[2], const struct problem *p, const double R[
 	return true;
 }
 
+/* A problem, and where the pupil was seen last: differences along the aspect and the roll leave it there. */
+struct seen_pupil { const struct problem *problem; bool any; double x[ASPECT], px[2]; };
+
+static bool see_pupil(double px[2], struct seen_pupil *last, const double R[3][3], const double apex[3], const double *x)
+{
+	_Static_assert((int)ASPECT + 2 == N && (int)ROLL + 1 == N, "of both the pupil knows nothing");
+	if (!last->any || memcmp(last->x, x, sizeof last->x)) {
+		last->any = project_pupil(last->px, last->problem, R, apex, x);
+		memcpy(last->x, x, sizeof last->x);
+	}
+	memcpy(px, last->px, sizeof last->px);
+	return last->any;
+}
+
 static bool residuals(void *ctx, const double *x, double *r, double *J)
 {
-	const struct problem *p = ctx;
+	struct seen_pupil *last = ctx;
+	const struct problem *p = last->problem;
 	(void)J;
 	double R[3][3], limbus[3], apex[3], q[ELLIPSE_N], px[2];
 	if (hypot(x[AX], x[AY]) > 1.4)
@@ -115,7 +130,7 @@ static bool residuals(void *ctx, const double *x, double *r, double *J)
 	}
 	r[R_PUPIL] = r[R_PUPIL + 1] = 0;
 	if (p->view->has_pupil) {
-		if (!project_pupil(px, p, R, apex, x))
+		if (!see_pupil(px, last, R, apex, x))
 			return false;
 		for (int i = 0; i < 2; i++)
 			r[R_PUPIL + i] = (px[i] - p->pupil[i]) / p->pupil_sigma;
@@ -193,8 +208,9 @@ static bool solve(struct solution *s, const struct problem *p, double tilt, doub
 {
 	const struct nls_conf conf = { .max_iter = 60, .ftol = 1e-12, .gtol = 1e-12, .xtol = 1e-10, .numeric = true };
 	struct nls_result result;
+	struct seen_pupil last = { .problem = p };
 	start(s->x, p, tilt, phi);
-	if (!nls_solve(&result, N, s->x, 0, 0, M, residuals, (void *)p, &conf, &s->cov[0][0], err))
+	if (!nls_solve(&result, N, s->x, 0, 0, M, residuals, &last, &conf, &s->cov[0][0], err))
 		return false;
 	s->cost = result.cost;
 	return true;

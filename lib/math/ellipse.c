@@ -34,9 +34,10 @@ void ellipse_sigma(double sigma[ELLIPSE_N], const struct ellipse *e, const doubl
 	sigma[4] = fmin(sqrt(fmax(across, 0)) / fmax(e->a - e->b, 1e-12), M_PI / sqrt(12));
 }
 
-void ellipse_point(double p[2], double normal[2], const struct ellipse *e, double t)
+/* With the cosine and the sine of its angle. */
+static inline void point(double p[2], double normal[2], const struct ellipse *e, double c, double s, double t)
 {
-	const double c = cos(e->angle), s = sin(e->angle), ct = cos(t), st = sin(t);
+	const double ct = cos(t), st = sin(t);
 	double x = e->a * ct, y = e->b * st;
 	double nx = e->b * ct, ny = e->a * st, n = hypot(nx, ny);
 	p[0] = e->cx + c * x - s * y;
@@ -45,9 +46,21 @@ void ellipse_point(double p[2], double normal[2], const struct ellipse *e, doubl
 	normal[1] = (s * nx + c * ny) / n;
 }
 
-double ellipse_distance(double *t, const struct ellipse *e, const double p[2])
+void ellipse_point(double p[2], double normal[2], const struct ellipse *e, double t)
 {
-	const double c = cos(e->angle), s = sin(e->angle), dx = p[0] - e->cx, dy = p[1] - e->cy;
+	point(p, normal, e, cos(e->angle), sin(e->angle), t);
+}
+
+void ellipse_points(int n, double p[n][2], double normal[n][2], const struct ellipse *e, const double t[n])
+{
+	const double c = cos(e->angle), s = sin(e->angle);
+	for (int i = 0; i < n; i++)
+		point(p[i], normal[i], e, c, s, t[i]);
+}
+
+static inline double distance(double *t, const struct ellipse *e, double c, double s, const double p[2])
+{
+	const double dx = p[0] - e->cx, dy = p[1] - e->cy;
 	const double a = e->a, b = e->b, k = a * a - b * b;
 	const double x = fabs(c * dx + s * dy), y = fabs(c * dy - s * dx);
 	/* First quadrant. f(u) = (a² - b²) cos u sin u - x a sin u + y b cos u falls through its root there, except for
@@ -78,10 +91,27 @@ double ellipse_distance(double *t, const struct ellipse *e, const double p[2])
 	return inside < 1 ? -d : d;
 }
 
+double ellipse_distance(double *t, const struct ellipse *e, const double p[2])
+{
+	return distance(t, e, cos(e->angle), sin(e->angle), p);
+}
+
+void ellipse_distances(int n, double d[n], double t[n], const struct ellipse *e, const double p[n][2])
+{
+	const double c = cos(e->angle), s = sin(e->angle);
+	for (int i = 0; i < n; i++)
+		d[i] = distance(&t[i], e, c, s, p[i]);
+}
+
 void ellipse_normal_shift(double row[ELLIPSE_N], const struct ellipse *e, double t)
 {
 	double p[2], n[2];
 	ellipse_point(p, n, e, t);
+	ellipse_shift_along(row, n, e, t);
+}
+
+void ellipse_shift_along(double row[ELLIPSE_N], const double n[2], const struct ellipse *e, double t)
+{
 	const double ux = cos(e->angle + t), uy = sin(e->angle + t);
 	row[0] = n[0];
 	row[1] = n[1];

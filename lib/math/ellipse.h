@@ -32,14 +32,22 @@ void ellipse_sigma(double sigma[ELLIPSE_N], const struct ellipse *e, const doubl
 /* Point and outward unit normal at eccentric angle t (from the major axis). */
 void ellipse_point(double p[2], double normal[2], const struct ellipse *e, double t);
 
+/* The same at n angles. */
+void ellipse_points(int n, double p[n][2], double normal[n][2], const struct ellipse *e, const double t[n]);
+
 /* Signed distance of p, positive outside; *t: eccentric angle of the nearest point. Newton's method, to 1e-12. */
 double ellipse_distance(double *t, const struct ellipse *e, const double p[2]);
+
+/* The same of n points. */
+void ellipse_distances(int n, double d[n], double t[n], const struct ellipse *e, const double p[n][2]);
 
 /* The largest of the distance of the centres and the differences of the semi-axes. */
 double ellipse_apart(const struct ellipse *e, const struct ellipse *f);
 
 /* row = dp·n / dq: the derivative of the curve's position along its outward normal n at eccentric angle t by q. */
 void ellipse_normal_shift(double row[ELLIPSE_N], const struct ellipse *e, double t);
+/* The same where the normal at t is known. */
+void ellipse_shift_along(double row[ELLIPSE_N], const double normal[2], const struct ellipse *e, double t);
 
 /* The ellipse of the conic A x² + B xy + C y² + D x + E y + F = 0, coefficients in this order, and back. Returns false when the
  * conic is no real ellipse. */

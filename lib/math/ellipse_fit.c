@@ -148,21 +148,20 @@ struct pass {
 	double weight;
 };
 
-/* One weighted Gauss-Newton system around e; distances in d. */
-static void build(struct pass *pass, const struct ellipse *e, int n, const double p[n][2], const double *prior,
-                  double *out, double *d, double scale)
+/* One weighted Gauss-Newton system around e, from distances and angles. */
+static void build(struct pass *pass, const struct ellipse *e, int n, const double *d, const double *t, const double *prior,
+                  double *out, double scale)
 {
 	*pass = (struct pass){ 0 };
 	for (int i = 0; i < n; i++) {
-		double t, row[N];
-		d[i] = ellipse_distance(&t, e, p[i]);
+		double row[N];
 		double k = prior ? sqrt(prior[i]) : 1, z = d[i] * k / (TUKEY * scale);
 		double w = fabs(z) < 1 ? (1 - z * z) * (1 - z * z) : 0;
 		if (out)
 			out[i] = w;
 		if (w == 0)
 			continue;
-		ellipse_normal_shift(row, e, t);
+		ellipse_normal_shift(row, e, t[i]);
 		pass->weight += w;
 		for (int a = 0; a < N; a++) {
 			pass->g[a] += w * k * k * row[a] * d[i];
@@ -215,22 +214,23 @@ static bool fit_from(struct ellipse *e, struct ellipse_fit *fit, int n, const do
                      bool have_start, const struct ellipse_prior *known)
 {
 	*fit = (struct ellipse_fit){ 0 };
-	double *d = mem_array(2 * (size_t)n, sizeof *d), q[N], step[N], t;
+	double *d = mem_array(3 * (size_t)n, sizeof *d), *work = d + n, *t = work + n, q[N], step[N];
 	bool ok = true;
-	for (int i = 0; i < n; i++)
-		d[i] = ellipse_distance(&t, e, p[i]);
+	ellipse_distances(n, d, t, e, p);
 	/* Around a start from a sample, inliers may be many sigma off: the scale begins large and falls to the known noise with
 	 * the fit. */
 	const bool falls = sigma <= 0 || !have_start || known;
 	const double least = sigma > 0 ? sigma : 1e-9;
-	double scale = falls ? fmax(scale_of(n, d, prior, d + n), least) : sigma;
+	double scale = falls ? fmax(scale_of(n, d, prior, work), least) : sigma;
 	if (!isfinite(scale)) {  // five points fit exactly: their noise cannot be estimated
 		ok = sigma > 0;
 		scale = sigma;
 	}
 	struct pass pass = { 0 };
 	for (fit->iterations = 0; ok && fit->iterations < 60; fit->iterations++) {
-		build(&pass, e, n, p, prior, out, d, scale);
+		if (fit->iterations)  // at the start they are known
+			ellipse_distances(n, d, t, e, p);
+		build(&pass, e, n, d, t, prior, out, scale);
 		double inv[N][N];
 		ellipse_to_q(q, e);
 		if (known)
@@ -253,7 +253,7 @@ static bool fit_from(struct ellipse *e, struct ellipse_fit *fit, int n, const do
 		}
 		/* The scale may only fall: one that grew again would readmit outliers. */
 		if (falls)
-			scale = fmax(fmin(scale, scale_of(n, d, prior, d + n)), least);
+			scale = fmax(fmin(scale, scale_of(n, d, prior, work)), least);
 		if (size >= 1e-4 * scale)
 			continue;
 		if (sigma <= 0 || known || scale <= least)
@@ -261,7 +261,8 @@ static bool fit_from(struct ellipse *e, struct ellipse_fit *fit, int n, const do
 		scale = fmax(scale / 2, least);
 	}
 	if (ok) {
-		build(&pass, e, n, p, prior, out, d, scale);
+		ellipse_distances(n, d, t, e, p);
+		build(&pass, e, n, d, t, prior, out, scale);
 		fit->sigma = scale;
 		fit->inliers = pass.weight / n;
 		ellipse_to_q(q, e);

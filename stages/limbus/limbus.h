@@ -22,16 +22,15 @@ struct limbus_kept {
 	struct photo photo;
 };
 
-/* Loads the networks that are shipped, side by side. False, err set, when one cannot be used; what was loaded is to be closed all the same. */
-bool limbus_open(struct limbus_conf *conf, struct err *err);
-
+/* The photograph `file` of the capture, at `path`, is in memory then. False, err set, where it cannot be read. */
+bool limbus_keep(struct limbus_kept *kept, const char *file, const char *path, double limit_mpx, struct err *err);
 void limbus_kept_free(struct limbus_kept *kept);
 
 /* Measures every photograph whose work/limbus/NAME.edge.json is not up to date, and writes it; a photograph that cannot be used
  * gets a record with the reason; one that shows both eyes becomes two of the capture, with NAME.left.edge.json and NAME.right.edge.json.
- * capture: of capture_list. kept: out; limbus_kept_free. False, err set, when a file cannot be read or written. */
-bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct capture *capture, const struct limbus_options *o,
-                    struct err *err);
+ * capture: of capture_list. kept: out; limbus_kept_free. o->find: gets the networks that are shipped where there is something to measure; closed
+ * by the caller. False, err set, when a file cannot be read or written, or a network cannot be used. */
+bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct capture *capture, struct limbus_options *o, struct err *err);
 
 /* Fits the poses of all photographs of each eye together; writes work/limbus/NAME.json and NAME.png. False, err set, when no
  * photograph is usable or a file cannot be read or written. */

@@ -76,8 +76,7 @@ int main(int argc, char **argv)
 	o.find.face.roll = o.face_roll_deg * M_PI / 180;
 	o.pose.roll_sigma = o.roll_sigma_deg * M_PI / 180;
 	o.pose.tilt_sigma = o.tilt_sigma_deg * M_PI / 180;
-	bool ok = limbus_open(&o.find, &err);
-	ok = ok && eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
+	bool ok = eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
 	odds_close(o.find.odds);
 	strip_close(o.find.strip);

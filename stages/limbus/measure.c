@@ -13,22 +13,6 @@
 #include "limbus/measure.h"
 #include "limbus/strip_net.h"
 
-bool limbus_open(struct limbus_conf *conf, struct err *err)
-{
-	struct err of_strip = { 0 };
-	bool ok = false, strip = false;
-#pragma omp parallel sections
-	{
-#pragma omp section
-		ok = evidence_open_shipped(&conf->net, err);
-#pragma omp section
-		strip = strip_open_shipped(&conf->strip, &of_strip) && odds_open_shipped(&conf->odds, &of_strip);
-	}
-	if (ok && !strip)
-		*err = of_strip;
-	return ok && strip;
-}
-
 char *limbus_record_path(const struct capture_photo *photo)
 {
 	return mem_printf("work/limbus/%s.edge.json", photo->name);
@@ -46,6 +30,43 @@ void limbus_kept_free(struct limbus_kept *kept)
 	photo_free(&kept->photo);
 	free(kept->file);
 	*kept = (struct limbus_kept){ 0 };
+}
+
+bool limbus_keep(struct limbus_kept *kept, const char *file, const char *path, double limit_mpx, struct err *err)
+{
+	if (kept->file && !strcmp(kept->file, file))
+		return true;
+	struct photo photo = { 0 };
+	limbus_kept_free(kept);
+	if (!photo_load(&photo, path, limit_mpx, err))
+		return false;
+	*kept = (struct limbus_kept){ mem_str(file), photo };
+	return true;
+}
+
+/* Loads the networks that are shipped, where they are not loaded, and the photograph, side by side: each takes as long as a third of finding an eye.
+ * A photograph that cannot be read is left out. False, err set, when a network cannot be used. */
+static bool ready(struct limbus_kept *kept, struct limbus_options *o, const char *file, const char *path, struct err *err)
+{
+	struct limbus_conf *conf = &o->find;
+	struct photo photo = { 0 };
+	struct err of_photo = { 0 }, of_strip = { 0 };
+	bool is_photo = false, evidence = true, strip = true;
+	limbus_kept_free(kept);
+#pragma omp parallel sections
+	{
+#pragma omp section
+		is_photo = photo_load(&photo, path, o->limit_mpx, &of_photo);
+#pragma omp section
+		evidence = conf->net || evidence_open_shipped(&conf->net, err);
+#pragma omp section
+		strip = (conf->strip || strip_open_shipped(&conf->strip, &of_strip)) && (conf->odds || odds_open_shipped(&conf->odds, &of_strip));
+	}
+	if (is_photo)
+		*kept = (struct limbus_kept){ mem_str(file), photo };
+	if (evidence && !strip)
+		*err = of_strip;
+	return evidence && strip;
 }
 
 /* What capture.conf says of where an eye is: of the whole photograph (side null), or of one of its eyes. */
@@ -150,21 +171,18 @@ static int measure_photo(struct limbus_record record[2], const struct photo *pho
 static int measure_one(struct limbus_record record[2], struct limbus_kept *kept, struct stage *stage, const struct capture_photo *p, const char *side,
                        bool may_part, const struct limbus_options *o, const struct camera_rig *rig)
 {
-	struct photo photo = { 0 };
 	struct err err = { 0 };
-	limbus_kept_free(kept);
 	memset(record, 0, 2 * sizeof *record);
 	record->width = record->height = 1;
-	if (!photo_load(&photo, stage_path(stage, "%s", p->file), o->limit_mpx, &err)) {
+	if (!limbus_keep(kept, p->file, stage_path(stage, "%s", p->file), o->limit_mpx, &err)) {
 		snprintf(record->reason, sizeof record->reason, "%.250s", err_less(&err, stage_path(stage, "%s", p->file)));
 		return 1;
 	}
-	*kept = (struct limbus_kept){ mem_str(p->file), photo };
-	int n = measure_photo(record, &photo, p, side, may_part, o, rig, &err);
+	int n = measure_photo(record, &kept->photo, p, side, may_part, o, rig, &err);
 	if (n)
 		return n;
-	record->width = photo.width;
-	record->height = photo.height;
+	record->width = kept->photo.width;
+	record->height = kept->photo.height;
 	snprintf(record->reason, sizeof record->reason, "%.250s", err.msg);
 	return 1;
 }
@@ -200,7 +218,7 @@ static bool is_fresh(struct stage *stage, const char *name, const char *side, in
 }
 
 /* Measures photograph i where that is not up to date. *parts: 2 where it shows both eyes, else 1. */
-static bool measure(int *parts, struct limbus_kept *kept, struct stage *stage, const struct capture *capture, int i, const struct limbus_options *o,
+static bool measure(int *parts, struct limbus_kept *kept, struct stage *stage, const struct capture *capture, int i, struct limbus_options *o,
                     const struct camera_rig *rig, struct err *err)
 {
 	const struct capture_photo *p = &capture->photos[i];
@@ -214,6 +232,8 @@ static bool measure(int *parts, struct limbus_kept *kept, struct stage *stage, c
 	*parts = 2;
 	if (may_part && is_fresh(stage, p->name, sides[0], n_in, in) && is_fresh(stage, p->name, sides[1], n_in, in))
 		return true;
+	if (!o->find.odds && !ready(kept, o, p->file, stage_path(stage, "%s", p->file), err))
+		return false;
 	struct limbus_record *record = mem_new(2, sizeof *record);
 	*parts = measure_one(record, kept, stage, p, capture->eyes[p->eye].side, may_part, o, rig);
 	bool ok = !may_part || clear(stage, p->name, *parts == 1, err);
@@ -223,8 +243,7 @@ static bool measure(int *parts, struct limbus_kept *kept, struct stage *stage, c
 	return ok;
 }
 
-bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct capture *capture, const struct limbus_options *o,
-                    struct err *err)
+bool limbus_measure(struct limbus_kept *kept, struct stage *stage, struct capture *capture, struct limbus_options *o, struct err *err)
 {
 	struct camera_rig rig = { 0 };
 	const char *path = stage_path(stage, RIG);

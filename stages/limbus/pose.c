@@ -77,12 +77,8 @@ static bool write_overlay(const struct eye_work *w, int i, const struct fit *fit
 {
 	struct limbus_kept *kept = w->kept;
 	const struct capture_photo *p = w->photo[i];
-	if (!kept->file || strcmp(kept->file, p->file)) {
-		limbus_kept_free(kept);
-		if (!photo_load(&kept->photo, stage_path(w->stage, "%s", p->file), w->o->limit_mpx, err))
-			return false;
-		kept->file = mem_str(p->file);
-	}
+	if (!limbus_keep(kept, p->file, stage_path(w->stage, "%s", p->file), w->o->limit_mpx, err))
+		return false;
 	int width, height;
 	uint8_t *px = limbus_overlay(&width, &height, w->o->overlay_px, &kept->photo, &w->record[i], fit);
 	bool ok = picture_png_write(stage_path(w->stage, "%s", path), px, width, height, 3, err);

@@ -27,7 +27,7 @@ static void collect(struct arcs *arcs, const struct ring *r, const struct grey *
 		int n = arcs->n;
 		if (!r->inside[i] || !(arcs->count[n] = edge_candidates(arcs->d[n], strength[n], r, i, half)))
 			continue;
-		ellipse_normal_shift(arcs->row[n], &r->e, r->t[i]);
+		ellipse_shift_along(arcs->row[n], r->normal[i], &r->e, r->t[i]);
 		first[n] = strength[n][0];
 		at[n] = i;
 		arcs->n++;
