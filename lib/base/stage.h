@@ -47,7 +47,8 @@ struct stage {
 };
 
 /* First in main, of programs with many short parallel loops: starts the program anew with threads that sleep while they wait, unless OMP_WAIT_POLICY is set. OpenMP
- * reads it when a program starts; threads that spin take the time of other programs, and of this one's decoders: limbus takes three times as long on a busy machine. */
+ * reads it when a program starts; threads that spin take the time of other programs, and of this one's decoders: limbus takes three times as long on a busy machine.
+ * OpenBLAS begins its own when a program starts, which spin, too: it begins none. */
 void stage_calm(char **argv);
 
 /* Parses the command line, loads the configuration, fills the table's pointers, and locks work/ against a second program.

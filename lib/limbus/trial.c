@@ -312,14 +312,15 @@ static bool of_vote(struct trials *t, const struct ellipse *e, struct err *err)
 
 bool trials_of_votes(struct trials *t, struct err *err)
 {
-	struct seek_found seen[SEEK_MAX], outer;
-	const int n = limbus_seek(seen, t->pyramid, 0, &t->conf->seek);
-	for (int i = 0; i < n && i < t->conf->trial.votes; i++) {
-		if (!of_vote(t, &seen[i].e, err))
+	struct seek_found seen[SEEK_MAX], outer[SEEK_MAX];
+	bool has_outer[SEEK_MAX] = { 0 };
+	const int found = limbus_seek(seen, t->pyramid, 0, &t->conf->seek), n = found < t->conf->trial.votes ? found : t->conf->trial.votes;
+#pragma omp parallel for schedule(dynamic, 1)
+	for (int i = 0; i < (n < t->conf->trial.rounds ? n : t->conf->trial.rounds); i++)
+		has_outer[i] = limbus_seek_outer(&outer[i], t->pyramid, &seen[i].e, &t->conf->seek);
+	for (int i = 0; i < n; i++)
+		if (!of_vote(t, &seen[i].e, err) || (has_outer[i] && !of_vote(t, &outer[i].e, err)))
 			return false;
-		if (i < t->conf->trial.rounds && limbus_seek_outer(&outer, t->pyramid, &seen[i].e, &t->conf->seek) && !of_vote(t, &outer.e, err))
-			return false;
-	}
 	return true;
 }
 
