@@ -202,9 +202,36 @@ static void test_threads(void **state)
 	evidence_close(net);
 }
 
+/* Threads that ask at once, at two sizes, each get what one by itself gets. */
+static void test_at_once(void **state)
+{
+	(void)state;
+	enum { N = 12 };
+	struct evidence_net *net = open_net();
+	struct photo photo = plain_eye();
+	struct evidence alone[2], e[N] = { 0 };
+	struct err err = { 0 }, errs[N] = { 0 };
+	for (int i = 0; i < 2; i++)
+		assert_true(evidence_whole(&alone[i], net, &photo, i ? 256 : 128, &err));
+	bool ok[N];
+#pragma omp parallel for schedule(dynamic, 1) num_threads(4)
+	for (int i = 0; i < N; i++)
+		ok[i] = evidence_whole(&e[i], net, &photo, i % 2 ? 256 : 128, &errs[i]);
+	for (int i = 0; i < N; i++) {
+		const struct evidence *want = &alone[i % 2];
+		assert_true(ok[i] && e[i].width == want->width && e[i].height == want->height);
+		assert_memory_equal(e[i].plane[0], want->plane[0], sizeof(float) * EVIDENCE_CLASSES * (size_t)(want->width * want->height));
+		evidence_free(&e[i]);
+	}
+	for (int i = 0; i < 2; i++)
+		evidence_free(&alone[i]);
+	photo_free(&photo);
+	evidence_close(net);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = { SCRATCH_TEST(test_files), cmocka_unit_test(test_shapes), cmocka_unit_test(test_plain_eye),
-		                            cmocka_unit_test(test_mirrored), cmocka_unit_test(test_threads) };
+		                            cmocka_unit_test(test_mirrored), cmocka_unit_test(test_threads), cmocka_unit_test(test_at_once) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }

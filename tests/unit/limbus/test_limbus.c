@@ -366,10 +366,50 @@ static void test_roll(void **state)
 	assert_true(pow(turned.theta, 2) < 1.5 * off[1]);
 }
 
+/* Linear light is made where it is asked for: there it is the mean over squares of the decoded codes, wherever else was asked before, and profiles
+ * across an ellipse ask for all that they see. */
+static void test_need(void **state)
+{
+	(void)state;
+	enum { W = 260, H = 190 };
+	static const double weight[3] = { 0.5, -0.25, 1 };
+	static const double ask[][4] = { { 96.5, 50, 96.5, 50 }, { 60, 20, 140, 31 }, { -50, 150, 300, 400 }, { 0, 0, W, H } };
+	struct photo photo = { .width = W, .height = H, .bits = 16, .rgb = mem_array(3 * W * H, sizeof(uint16_t)) };
+	struct rng rng = { 17 };
+	for (int i = 0; i < 3 * W * H; i++)
+		photo.rgb[i] = (uint16_t)rng_below(&rng, 65536);
+	for (int k = 1; k <= 3; k++) {
+		const struct ellipse e = { 131, 92, 60, 55, 0.4 };
+		struct grey g = grey_linear(&photo, &e, 1.4, 60.0 / k, weight);
+		for (int a = 0; a < COUNT(ask); a++) {
+			grey_need(&g, 1, &ask[a]);
+			for (int y = 0; y < g.height; y++)
+				for (int x = 0; x < g.width; x++) {
+					const double u = g.x0 + (x + 0.5) * k, v = g.y0 + (y + 0.5) * k;
+					double sum = 0;
+					if (u < ask[a][0] - k || u > ask[a][2] + k || v < ask[a][1] - k || v > ask[a][3] + k)
+						continue;
+					for (int j = 0; j < k * k; j++)
+						for (int c = 0; c < 3; c++)
+							sum += weight[c] / (k * k) * linear_from_srgb((float)photo.rgb[3 * (((int)g.y0 + y * k + j / k) * W + (int)g.x0 + x * k + j % k) + c] / 65535.0F);
+					NEAR(g.px[y * g.width + x], sum, 2e-6);  // twenty-seven sums of floats
+				}
+		}
+		struct grey few = grey_linear(&photo, &e, 1.4, 60.0 / k, weight);
+		struct ring seen = ring_sample(&few, &e, -9, 9, 0.7, 6, W, H), all = ring_sample(&g, &e, -9, 9, 0.7, 6, W, H);
+		assert_memory_equal(seen.v, all.v, sizeof *seen.v * ARCS * (size_t)seen.m);
+		ring_free(&seen);
+		ring_free(&all);
+		grey_free(&few);
+		grey_free(&g);
+	}
+	photo_free(&photo);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic), cmocka_unit_test(test_ring_light),
+		cmocka_unit_test(test_need), cmocka_unit_test(test_pose), cmocka_unit_test(test_roll), cmocka_unit_test(test_refused), cmocka_unit_test(test_synthetic), cmocka_unit_test(test_ring_light),
 		cmocka_unit_test(test_captures), cmocka_unit_test(test_likeliest), cmocka_unit_test(test_strip_first),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
