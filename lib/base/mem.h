@@ -25,6 +25,10 @@ char *mem_str(const char *s);
 __attribute__((format(printf, 1, 2)))
 char *mem_printf(const char *fmt, ...);
 
+/* First in main, of programs that free large arrays and ask for as large ones at once, over and over: what is freed stays with the program, since the
+ * kernel takes as long to make new pages as some of its loops to fill them. Arrays of more than 32 MiB are given back all the same. */
+void mem_hold(void);
+
 #ifdef __cplusplus
 }
 #endif

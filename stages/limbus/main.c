@@ -13,6 +13,7 @@
 int main(int argc, char **argv)
 {
 	stage_calm(argv);
+	mem_hold();
 	struct limbus_options o = { 0 };
 	struct stage stage;
 	struct capture capture = { 0 };
