@@ -12,6 +12,7 @@
 /* The matrices: one .npy each; its shape follows from the model's counts. */
 enum { M_L0, M_K, M_L, M_U0, M_J, M_M, M_L0_S, M_L_S, M_U0_S, M_M_S, M_K_S, M_J_S, M_W_S, M_RMS, M_REACH_L, M_REACH_S, M_VERTICES, MATRICES };
 static const double NUMBER_MOST = 1e12;  // no coefficient of pixels, degrees and shares comes near
+static const double LIDS_MOST = 100;     // of an aperture's range: a lid that hardly moves with the opening has a short one
 enum { MODEL_NUMBERS = 1 << 26 };  // most numbers in a matrix; checked before any of it is read
 
 const char *const skin_model_files[] = { "model.json",         "model_l0.npy",         "model_K.npy",
@@ -59,6 +60,10 @@ static json_t *inputs_json(const struct skin_model *m)
 		json_object_set_new(in, "high", json_number(m->high[i]));
 		json_object_set_new(in, "mean", json_number(m->mean[i]));
 		json_object_set_new(in, "rest_control", json_number(m->rest_controls[i]));
+		if (i >= SKIN_EYE_INPUTS) {
+			json_object_set_new(in, "lids", json_numbers(EXPRESS_LIDS, m->expression[i - SKIN_EYE_INPUTS]));
+			json_object_set_new(in, "lids_sigma", json_numbers(EXPRESS_LIDS, m->expression_sigma[i - SKIN_EYE_INPUTS]));
+		}
 		json_array_append_new(inputs, in);
 	}
 	return inputs;
@@ -151,6 +156,23 @@ static bool count_of(int *out, const json_t *j, const char *key, int low, int hi
 	return true;
 }
 
+/* What an expression does to lids. A model that was trained before this was told: nothing. */
+static bool load_expression(double by[EXPRESS_LIDS], double sigma[EXPRESS_LIDS], const json_t *in, const char *path, struct err *err)
+{
+	for (int k = 0; k < EXPRESS_LIDS; k++) {
+		by[k] = 0;
+		sigma[k] = NAN;
+	}
+	if (!json_object_get(in, "lids"))
+		return true;
+	if (!json_get_array(by, EXPRESS_LIDS, in, "lids", path, err) || !json_get_array(sigma, EXPRESS_LIDS, in, "lids_sigma", path, err))
+		return false;
+	for (int k = 0; k < EXPRESS_LIDS; k++)
+		if (!(fabs(by[k]) <= LIDS_MOST))
+			return err_set(err, "%s: lids: %g: must be in [-%g, %g] of an eye's opening", path, by[k], LIDS_MOST, LIDS_MOST);
+	return true;
+}
+
 static bool load_inputs(struct skin_model *m, const json_t *inputs, const char *path, struct err *err)
 {
 	for (int i = 0; i < m->n_inputs; i++) {
@@ -162,8 +184,11 @@ static bool load_inputs(struct skin_model *m, const json_t *inputs, const char *
 		const char *name = json_get_string(in, "name", path, err);
 		if (!name)
 			return false;
-		if (i >= SKIN_EYE_INPUTS)
-			m->au_names[i - SKIN_EYE_INPUTS] = mem_str(name);
+		const int au = i - SKIN_EYE_INPUTS;
+		if (au >= 0)
+			m->au_names[au] = mem_str(name);
+		if (au >= 0 && !load_expression(m->expression[au], m->expression_sigma[au], in, path, err))
+			return false;
 	}
 	return true;
 }

@@ -46,6 +46,8 @@ void skin_model_alloc(struct skin_model *m)
 	m->mean = numbers(m->n_inputs, 1);
 	m->rest_controls = numbers(m->n_inputs, 1);
 	m->rest_e = numbers(m->n_skin_pc, 1);
+	m->expression = mem_new((size_t)m->n_au + 1, sizeof *m->expression);
+	m->expression_sigma = mem_new((size_t)m->n_au + 1, sizeof *m->expression_sigma);
 	known_all(&m->known);
 }
 
@@ -62,6 +64,8 @@ void skin_model_free(struct skin_model *m)
 		                    m->lid_reach, m->skin_reach };
 	for (int i = 0; i < COUNT(all); i++)
 		free(all[i]);
+	free(m->expression);
+	free(m->expression_sigma);
 	*m = (struct skin_model){ 0 };
 }
 
@@ -186,4 +190,20 @@ void skin_model_baseline(double control[2], const struct skin_model *m, int eye,
 		const double *a = m->baseline[eye][lid];
 		control[lid] = c * (a[0] * gaze[0] + a[1] * gaze[1] + a[2]);
 	}
+}
+
+void skin_model_range(double px[EXPRESS_LIDS], const struct skin_model *m)
+{
+	for (int k = 0; k < EXPRESS_LIDS; k++) {
+		int at = k / 2 * EYE_INPUTS + 3 + k % 2;
+		px[k] = m->open[at] - m->closed[at];
+	}
+}
+
+void skin_model_express(double *controls, const struct skin_model *m, const double c[2])
+{
+	double px[EXPRESS_LIDS];
+	skin_model_range(px, m);
+	for (int eye = 0; eye < 2; eye++)
+		express_eye(controls + EYE_INPUTS * eye + 3, eye, m->n_au, controls + SKIN_EYE_INPUTS, (const double(*)[EXPRESS_LIDS])m->expression, px, c[eye]);
 }

@@ -22,6 +22,7 @@
 #ifndef MODEL_MODEL_H
 #define MODEL_MODEL_H
 #include "base/err.h"
+#include "model/express.h"
 #include "model/known.h"
 
 enum { SKIN_EYE_INPUTS = 10, SKIN_LIDS = 4 };
@@ -67,6 +68,9 @@ struct skin_model {
 	double closed[SKIN_EYE_INPUTS], open[SKIN_EYE_INPUTS];  // px, g_closed and g_open of the apertures; 0 for other inputs
 	double aperture_sigma;        // px, of closed and open
 	double baseline[2][2][3], baseline_sigma[2][2][3];  // A, eq. 3.11: [left, right][upper, lower][g1, g2, 1] degrees
+
+	/* What each expression in full does to lids (model/express.h), beyond A at the gaze. Where the clip does not tell: 0 of sigma NAN. */
+	double (*expression)[EXPRESS_LIDS], (*expression_sigma)[EXPRESS_LIDS];  // [n_au] controls
 };
 
 /* Allocates every array, zeroed, for the counts set in *model (n_au, n_points, n_vertices, n_lid_pc, n_skin_pc); sets n_inputs and
@@ -115,5 +119,10 @@ void skin_model_leverage(double h[3], const struct skin_model *model, const doub
 /* The usual aperture at a gaze, equation 3.11: controls of the upper and the lower lid of one eye (0 left, 1 right) that looks at
  * g1 (horizontal), g2 (vertical), degrees; multiplied by c >= 0. Beyond the known gazes: as at the nearest (known_hold). */
 void skin_model_baseline(double control[2], const struct skin_model *model, int eye, double c, double g1, double g2);
+
+/* Adds what expressions do to lids to controls[n_inputs], whose apertures are of an eye open by c[left, right]: express_eye by the model's own numbers. */
+void skin_model_express(double *controls, const struct skin_model *model, const double c[2]);
+/* What the apertures g4 g5 g9 g10 are from closed to open, px; of an eye that was not learnt 0. */
+void skin_model_range(double px[EXPRESS_LIDS], const struct skin_model *model);
 
 #endif

@@ -186,12 +186,14 @@ static double within(const struct skin_model *m, int input, double g, double bey
 	return isnan(pad) ? g : fmin(m->high[input] + pad, fmax(m->low[input] - pad, g));
 }
 
-/* Expressions, apertures (eq. 3.11 with c from keys and blinks) and the rotation of the eyes in a blink. */
+/* Expressions, apertures (eq. 3.11 with c from keys and blinks, and what lids do with the expressions; as recorded, where they are) and the rotation of the eyes in a blink. */
 static void move_lids(struct run *r)
 {
 	struct animation *a = r->out;
 	const struct skin_model *m = r->model;
 	bool replay = r->gaze && r->gaze->kind == SCRIPT_RECORDED, apertures = replay && r->gaze->has_apertures;
+	double px[EXPRESS_LIDS];
+	skin_model_range(px, m);
 	for (long i = 0; i < a->n; i++) {
 		double t = (double)i / a->fps, *g = a->g + i * a->n_inputs, *c = a->controls + i * a->n_inputs, turned;
 		double open = r->keys ? script_smooth(&r->keys->key[KEY_OPENNESS], t, 1) : 1, own[SKIN_EYE_INPUTS];
@@ -205,6 +207,7 @@ static void move_lids(struct run *r)
 			double lids[2], nasal = e ? 1 : -1;  // the nose is to the right of the left eye
 			double wink = r->keys ? script_smooth(&r->keys->key[e ? KEY_WINK_RIGHT : KEY_WINK_LEFT], t, 0) : 0, still_open = (1 - a->closure[i]) * (1 - wink);
 			skin_model_baseline(lids, m, e, open * still_open, g[5 * e], g[5 * e + 1]);
+			express_eye(lids, e, m->n_au, g + SKIN_EYE_INPUTS, (const double(*)[EXPRESS_LIDS])m->expression, px, open * still_open);
 			for (int k = 0; k < 2; k++) {
 				int at = 5 * e + 3 + k;
 				g[at] = within(m, at, m->closed[at] + (m->open[at] - m->closed[at]) * lids[k], r->conf->beyond);

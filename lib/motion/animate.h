@@ -1,6 +1,6 @@
 /* animate: gaze, lids and expressions over time (skin paper, sections 3.7, 3.9 and 3.10). Targets come from keyframes, recorded
- * gaze or places of a scene; gaze_sim.h moves the eyes to them; apertures come from the model's baseline (eq. 3.11), blinks and
- * keys.
+ * gaze or places of a scene; gaze_sim.h moves the eyes to them; apertures come from the model's baseline (eq. 3.11), blinks, keys
+ * and expressions (model/express.h).
  */
 #ifndef MOTION_ANIMATE_H
 #define MOTION_ANIMATE_H

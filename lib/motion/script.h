@@ -8,7 +8,7 @@
  *     openness                       factor c of equation 3.11: 1 as the gaze has it, 0 shut, above 1 wide
  *     wink_left, wink_right          how far the lids of that eye alone are shut: 1 wholly
  *     blink                          a blink begins: 1 a full one, less a partial one
- *     NAME or auN                    strength of an expression, 0..1
+ *     NAME or auN                    strength of an expression, 0..1; lids go with it
  * Recorded gaze: time_s and g1_deg, g2_deg, may be followed by g3_deg, g4_px, g5_px, g6_deg .. g10_px, au1 .. as in
  * gaze.csv; or time_s and x_px, y_px, a point on a screen (an eye tracker's). Other columns are not looked at.
  */

@@ -61,6 +61,16 @@ static long fill(struct drive *d, int input, double otherwise)
 	return filled;
 }
 
+/* Lids that the file leaves to us. */
+static void express_rest(double *c, const struct skin_model *model, const bool none[2])
+{
+	double px[EXPRESS_LIDS];
+	skin_model_range(px, model);
+	for (int eye = 0; eye < 2; eye++)
+		if (none[eye])
+			express_eye(c + 5 * eye + 3, eye, model->n_au, c + SKIN_EYE_INPUTS, (const double(*)[EXPRESS_LIDS])model->expression, px, 1);
+}
+
 static bool take(struct drive *d, const struct csv_table *t, const struct skin_model *model, const char *path, struct err *err)
 {
 	int time = csv_need(t, "time_s", path, err), *column = mem_new((size_t)model->n_inputs + 1, sizeof *column);
@@ -75,8 +85,11 @@ static bool take(struct drive *d, const struct csv_table *t, const struct skin_m
 		if (!normalised)
 			skin_model_controls(c, model, c);
 	}
+	bool none[2] = { column[3] < 0 && column[4] < 0, column[8] < 0 && column[9] < 0 };
 	for (int i = 0; i < d->n_inputs && ok; i++)
 		d->filled += fill(d, i, isfinite(model->rest_controls[i]) ? model->rest_controls[i] : 0);
+	for (int f = 0; f < d->n && ok; f++)
+		express_rest(drive_at(d, f), model, none);
 	free(column);
 	return ok;
 }
@@ -111,5 +124,24 @@ void drive_look(double *c, const struct rig *rig, double horizontal, double vert
 		}
 		c[5 * eye] = horizontal;
 		c[5 * eye + 1] = vertical;
+	}
+}
+
+void drive_express(double *c, const struct rig *rig, int k, double strength, double aperture)
+{
+	c[SKIN_EYE_INPUTS + k] = strength;
+	for (int eye = 0; eye < 2; eye++)
+		express_eye(c + 5 * eye + 3, eye, 1, &strength, (const double(*)[EXPRESS_LIDS])rig->expression + k, rig->aperture_px, aperture);
+}
+
+void drive_lifted(double mm[2], const struct rig *rig, const double *c)
+{
+	for (int eye = 0; eye < 2; eye++) {
+		const int lower = 2 * eye + 1;
+		const double *row = rig->camera.from_target[2], *at = rig->globe[eye].center, far = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
+		double up = 0;
+		for (int k = 0; k < rig->n_inputs - SKIN_EYE_INPUTS; k++)
+			up -= c[SKIN_EYE_INPUTS + k] * rig->expression[k][lower];
+		mm[eye] = fmax(up * rig->aperture_px[lower] * far / rig->camera.focal_px[1], 0);
 	}
 }

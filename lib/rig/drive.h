@@ -15,7 +15,7 @@ struct drive {
 
 /* Reads a CSV file with the columns time_s and g1_deg .. g8_deg; apertures as a4 a5 a9 a10 (0 closed .. 1 open) or, without these, as
  * g4_px g5_px g9_px g10_px of the model's own video; action units by their name or au1 .. . Empty fields (a blink hides the pupil) are
- * interpolated over time; an input that is never given is as at rest.
+ * interpolated over time; an input that is never given is as at rest: lids of which no aperture is given go with expressions (model/express.h) from there.
  * drive  overwritten; drive_free
  * Returns false, err set, when the file cannot be read or its time does not rise from row to row. */
 bool drive_load(struct drive *drive, const struct skin_model *model, const char *path, struct err *err);
@@ -31,5 +31,11 @@ static inline double *drive_at(const struct drive *drive, int frame)
 /* Controls [n_inputs], out, for both eyes looking at horizontal, vertical (degrees), with `aperture` times the usual aperture at that
  * gaze (eq. 3.11); action units 0. */
 void drive_look(double *controls, const struct rig *rig, double horizontal, double vertical, double aperture);
+
+/* Sets expression k (0: the model's first) of controls that drive_look has made with that aperture, and the lids that go with it (model/express.h). */
+void drive_express(double *controls, const struct rig *rig, int k, double strength, double aperture);
+
+/* How far the expressions of controls raise the left and the right lower lid, mm, >= 0: what the modelling camera saw it go up by, at its eyeball's distance. */
+void drive_lifted(double mm[2], const struct rig *rig, const double *controls);
 
 #endif

@@ -10,6 +10,7 @@ void rig_free(struct rig *rig)
 {
 	free(rig->faces);
 	free(rig->W);
+	free(rig->expression);
 	free(rig->rest);
 	free(rig->normal);
 	free(rig->home);

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "base/err.h"
+#include "model/express.h"
 #include "model/known.h"
 #include "rig/globe_map.h"
 #include "rig/skull_map.h"
@@ -62,6 +63,8 @@ struct rig {
 	double rest_aperture[4];         // g~ of g4, g5, g9, g10 at rest
 	double baseline[4][3];           // A: g~[4,5,9,10] = A [horizontal, vertical, 1] (deg), eq. 3.11
 	struct known known;              // gazes at which lids are known
+	double (*expression)[EXPRESS_LIDS];  // [n_inputs - 10] what each expression in full does to lids (model/express.h), controls g~
+	double aperture_px[EXPRESS_LIDS];    // of each aperture from 0 to 1
 	float (*rest)[3], (*normal)[3];  // the character's mesh, mm; unit normals
 	float (*home)[2];                // where the modelling camera sees the vertices at rest, px
 	float (*basis)[RIG_BASIS];       // U~, px: x, then y

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "base/npy/npy.h"
 
-static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" };
+static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" }, lids_key[] = "expression_lids";
 
 /* The single numbers of a rig, in their order in the file's array `parameters`. */
 struct small {
@@ -69,7 +69,8 @@ struct entry {
 enum { ENTRIES_MAX = 32 };
 static const double NUMBER_MOST = 1e12;  // no length in mm, no coefficient comes near
 
-static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **small, float **mean)
+/* The rig's arrays; the last is one that older rigs have not: aperture_px, then expression. */
+static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **small, float **mean, double (**lids)[EXPRESS_LIDS])
 {
 	long n = r->n, cells = r->globe[0].map.n + 1;
 	const struct entry small_entries[] = {
@@ -94,6 +95,7 @@ static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **
 		{ "skull", NPY_F4, 3, { r->skull.height, r->skull.width, SKULL_CHANNELS }, (void **)&r->skull.texel },
 		{ globe_keys[0], NPY_F4, 2, { cells, cells }, (void **)&r->globe[0].map.radius },
 		{ globe_keys[1], NPY_F4, 2, { cells, cells }, (void **)&r->globe[1].map.radius },
+		{ lids_key, NPY_F8, 2, { r->n_inputs - 10 + 1, EXPRESS_LIDS }, (void **)lids },
 	};
 	memcpy(out, small_entries, sizeof small_entries);
 	return COUNT(small_entries);
@@ -110,13 +112,19 @@ bool rig_save(const struct rig *rig, const char *path, const char *made_by, stru
 			m -= (double)rig->basis[i / 2][i % 2 * RIG_COMPONENTS + k] * rig->rest_e[k];
 		mean[i] = (float)m;
 	}
+	const int expressions = rig->n_inputs - 10;
+	double (*lids)[EXPRESS_LIDS] = mem_new((size_t)expressions + 1, sizeof *lids);
+	memcpy(lids[0], rig->aperture_px, sizeof lids[0]);
+	for (int k = 0; k < expressions && rig->expression; k++)
+		memcpy(lids[1 + k], rig->expression[k], sizeof lids[1 + k]);
 	struct entry all[ENTRIES_MAX];
 	struct npz_item items[ENTRIES_MAX];
-	int n = entries(all, &view, &at, &mean);
+	int n = entries(all, &view, &at, &mean, &lids);
 	for (int i = 0; i < n; i++)
 		items[i] = (struct npz_item){ all[i].name, npy_of(all[i].type, all[i].ndim, all[i].shape, *all[i].data) };
 	bool ok = npz_save(path, n, items, made_by, err);
 	free(mean);
+	free(lids);
 	return ok;
 }
 
@@ -140,6 +148,23 @@ static bool read_entry(const char *path, const struct entry *e, long got[3], str
 	for (int i = 0; i < e->ndim; i++)
 		got[i] = a.shape[i];
 	npy_free(&a);
+	return true;
+}
+
+/* What expressions do to lids; lids: as read, null: the rig is older. */
+static bool take_lids(struct rig *r, const double (*lids)[EXPRESS_LIDS], const char *path, struct err *err)
+{
+	static const double most = 100;  // of an aperture's range
+	const int expressions = r->n_inputs - 10;
+	r->expression = mem_new((size_t)expressions + 1, sizeof *r->expression);
+	for (int k = 0; k < EXPRESS_LIDS; k++)
+		r->aperture_px[k] = lids ? lids[0][k] : 1;
+	for (int i = 0; i < EXPRESS_LIDS * expressions && lids; i++) {
+		const double by = lids[1 + i / EXPRESS_LIDS][i % EXPRESS_LIDS];
+		if (!(fabs(by) <= most))
+			return err_set(err, "%s: %s: %g: must be in [-%g, %g] of an eye's opening", path, lids_key, by, most, most);
+		r->expression[i / EXPRESS_LIDS][i % EXPRESS_LIDS] = by;
+	}
 	return true;
 }
 
@@ -171,14 +196,16 @@ bool rig_load(struct rig *rig, const char *path, struct err *err)
 {
 	struct small *small = 0;
 	float *mean = 0;
+	double (*lids)[EXPRESS_LIDS] = 0;
 	struct entry all[ENTRIES_MAX];
 	bool ok = true;
 	*rig = (struct rig){ .n = -1, .n_faces = -1, .n_inputs = -2, .skull = { .width = -1, .height = -1 } };
 	rig->globe[0].map.n = rig->globe[1].map.n = -2;
-	int n = entries(all, rig, &small, &mean);
+	int n = entries(all, rig, &small, &mean, &lids);
+	n -= !npz_has(path, lids_key, NPY_LIMIT);
 	for (int i = 0; ok && i < n; i++) {
 		long got[3] = { 0 };
-		entries(all, rig, &small, &mean);  // again, with the shapes that are known by now
+		entries(all, rig, &small, &mean, &lids);  // again, with the shapes that are known by now
 		ok = read_entry(path, &all[i], got, err);
 		if (ok && !strcmp(all[i].name, "U"))
 			rig->n = (int)got[0];
@@ -193,10 +220,11 @@ bool rig_load(struct rig *rig, const char *path, struct err *err)
 	}
 	if (ok) {
 		small_to(rig, small);
-		ok = check(rig, path, err);
+		ok = check(rig, path, err) && take_lids(rig, (const double(*)[EXPRESS_LIDS])lids, path, err);
 	}
 	free(small);
 	free(mean);
+	free(lids);
 	if (!ok)
 		rig_free(rig);
 	return ok;

@@ -30,7 +30,7 @@ static struct image look_with(struct skin_job *job, struct skin_target *t, doubl
 	double *controls = mem_new((size_t)t->rig.n_inputs + 1, sizeof *controls);
 	drive_look(controls, &t->rig, h, v, aperture);
 	if (au >= 0)
-		controls[SKIN_EYE_INPUTS + au] = 1;
+		drive_express(controls, &t->rig, au, 1, aperture);
 	portrait_pose(t->portrait, controls);
 	struct portrait_view view = portrait_front(&t->rig, side, field, 0, 0, width, height);
 	portrait_light(t->portrait, &view, true);

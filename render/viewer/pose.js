@@ -164,7 +164,16 @@ class FacePose {
 		return h * known[0] + v * known[1] + one;
 	}
 
-	/* g~ (lib/model/model.h) for eyes that look so and are opened by so much of what is usual there; strengths: of expressions.
+	/* Adds what the lids of one eye, open by so much of what is usual, do with expressions: lib/model/express.h. */
+	express(c, side, open) {
+		const { expression_lids, aperture_px } = this.rig, at = 5 * side + 3, px = aperture_px.slice(2 * side, 2 * side + 2), share = Math.min(Math.max(open, 0), 1);
+		const sum = a => px[0] * a[0] + px[1] * a[1], add = [0, 1].map(lid => expression_lids.reduce((all, by, k) => all + share * c[10 + k] * by[2 * side + lid], 0));
+		const was = sum(c.slice(at, at + 2)), more = sum(add), room = more < 0 ? Math.min(was, 0) - was : Math.max(was, px[0] + px[1]) - was;
+		const kept = Math.abs(more) > Math.abs(room) ? room / more : 1;
+		add.forEach((a, lid) => { c[at + lid] += kept * a; });
+	}
+
+	/* g~ (lib/model/model.h) for eyes that look so and are opened by so much of what is usual there; strengths: of expressions, with which lids go.
 	 * recorded: controls that the lids are taken from. */
 	controls(gazes, open, strengths, recorded) {
 		const c = new Float64Array(this.rig.inputs);
@@ -174,6 +183,8 @@ class FacePose {
 				c[5 * side + 3 + k] = open[side] * (recorded ? recorded[5 * side + 3 + k] : this.usual(2 * side + k, gaze));
 		});
 		this.data.expressions.forEach((_, k) => { c[10 + k] = strengths && strengths[k] || 0; });
+		for (const side of recorded ? [] : [0, 1])
+			this.express(c, side, open[side]);
 		return c;
 	}
 
@@ -185,22 +196,29 @@ class FacePose {
 		return Array.from({ length: W.length / n }, (_, k) => c.reduce((sum, v, i) => sum + W[n * k + i] * v, W[n * k + n - 1]));
 	}
 
-	/* How far the lids of one eye are open, against what is usual. */
+	/* How far the lids of one eye are open, against what is usual with these expressions. */
 	opened(c, side) {
-		const usual = [0, 1].reduce((sum, k) => sum + this.usual(2 * side + k, [c[5 * side], c[5 * side + 1]]), 0);
-		return Math.min(1.4, Math.max(0, usual > 0.05 ? (c[5 * side + 3] + c[5 * side + 4]) / usual : 1));
+		const at = 5 * side + 3, px = this.rig.aperture_px.slice(2 * side, 2 * side + 2), all = px[0] + px[1];
+		const sum = c => (px[0] * c[at] + px[1] * c[at + 1]) / all, free = Float64Array.from(c);
+		for (const k of [0, 1])
+			free[at + k] = this.usual(2 * side + k, [c[5 * side], c[5 * side + 1]]);
+		const usual = sum(free);
+		this.express(free, side, 1);
+		const now = sum(c), open = sum(free);
+		return Math.min(1.4, Math.max(0, !(open > 0.05 && usual > 0.05) ? 1 : now > open ? 1 + (now - open) / usual : now / open));
 	}
 
 	/* Poses of a grid (of light: the data itself; of lids: data.settle) round these controls and their weights for either side; expressions beside the pose
-	 * at rest. */
+	 * at rest, as far as the eye is open. */
 	lit(c, d = this.data) {
+		const opened = [0, 1].map(side => this.opened(c, side)), shown = opened.map(o => Math.min(1, o));
 		const [ih, uh] = between(d.h, (c[0] + c[5]) / 2), [iv, uv] = between(d.v, (c[1] + c[6]) / 2), of = new Map();
 		const add = (pose, left, right) => {
 			const w = of.get(pose) || [0, 0];
 			of.set(pose, [w[0] + left, w[1] + right]);
 		};
 		for (const side of [0, 1]) {
-			const [ia, ua] = between(d.a, this.opened(c, side));
+			const [ia, ua] = between(d.a, opened[side]);
 			for (let k = 0; k < 8; k++) {
 				const w = (k & 1 ? uh : 1 - uh) * (k & 2 ? uv : 1 - uv) * (k & 4 ? ua : 1 - ua);
 				if (w > 0)
@@ -210,8 +228,8 @@ class FacePose {
 		this.data.expressions.forEach((_, k) => {
 			const s = c[10 + k];
 			if (s > 0 && of.size < FacePose.LIT - 1) {
-				add(d.h.length * d.v.length * d.a.length + k, s, s);
-				add(d.rest_pose, -s, -s);
+				add(d.h.length * d.v.length * d.a.length + k, s * shown[0], s * shown[1]);
+				add(d.rest_pose, -s * shown[0], -s * shown[1]);
 			}
 		});
 		return [...of].map(([pose, w]) => [pose, ...w]);

@@ -99,7 +99,7 @@ int main(int argc, char **argv)
 	rig_globes_turned(turn, &rig, c);
 	deform_rest(deform, x, 0);
 	deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-	deform_settle(x, &rig, &near, (const double(*)[3][3])turn);
+	deform_settle(x, &rig, &near, (const double(*)[3][3])turn, 0);
 	for (int side = 0; side < 2; side++)
 		for (int kind = HAIR_UPPER; kind <= HAIR_LOWER; kind++)
 			lid(&hairs, &rig, side, kind, (const float(*)[3])x);

@@ -1,5 +1,6 @@
 /* lids: measures a driven character's lids on its mesh, seen orthographically from the front.
  *   lids RIG.npz [FOLDER]   one line of numbers a pose and side on stdout; FOLDER: a picture of each pose, PGM, the eyeball white
+ *   lids RIG.npz expressions H V   the same of eyes that look so (degrees), without expression (-1) and with each in full, open as usual and shut, instead of gazes
  * open_mm2   area of the eyeball that is seen
  * bend_mm    how far the upper margin, found by rays in columns 0.1 mm apart, leaves the nearer of its convex and its concave hull: 0 where its curvature has one
  *            sign. It ends where it is behind skin: at steps of more than 0.5 mm within an eighth of its length from an end
@@ -440,22 +441,31 @@ int main(int argc, char **argv)
 	float (*x)[3] = mem_new((size_t)rig.n + 1, sizeof *x);
 	double *c = mem_new((size_t)rig.n_inputs + 1, sizeof *c);
 	static const double across[] = { -20, -10, 0, 10, 20 }, up[] = { 15, 5, 0, -5, -15, -25 }, open[] = { 1, 0.5, 0 };
-	puts("h_deg,v_deg,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low,thick_least,thick_mid,lining_mm");
+	const bool expressions = argc == 5 && !strcmp(argv[2], "expressions");
+	const int poses = expressions ? 2 * (1 + rig.n_inputs - 10) : COUNT(open) * COUNT(up) * COUNT(across);
+	printf("%s,aperture,side,open_mm2,bend_mm,inside_mm,faces_mm,crossing,iris_low,pupil_low,thick_least,thick_mid,lining_mm\n", expressions ? "expression,strength" : "h_deg,v_deg");
 	deform_rest(deform, x, 0);
-	for (int k = 0; k < COUNT(open) * COUNT(up) * COUNT(across); k++) {
-		const double h = across[k % COUNT(across)], v = up[k / COUNT(across) % COUNT(up)], o = open[k / (COUNT(across) * COUNT(up))];
+	for (int k = 0; k < poses; k++) {
+		const double h = expressions ? strtod(argv[3], 0) : across[k % COUNT(across)], v = expressions ? strtod(argv[4], 0) : up[k / COUNT(across) % COUNT(up)];
+		const double o = expressions ? 1 - k % 2 : open[k / (COUNT(across) * COUNT(up))];
 		double e[RIG_COMPONENTS], turn[2][3][3];
 		char at[64];
 		drive_look(c, &rig, h, v, o);
+		snprintf(at, sizeof at, "%g,%g,%g", h, v, o);
+		if (expressions && k > 1)
+			drive_express(c, &rig, k / 2 - 1, 1, o);
+		if (expressions)
+			snprintf(at, sizeof at, "%d,%d,%g", k / 2 - 1, k > 1, o);
+		double lifted[2];
+		drive_lifted(lifted, &rig, c);
 		rig_components(e, &rig, c);
 		rig_globes_turned(turn, &rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-		deform_settle(x, &rig, &near, (const double(*)[3][3])turn);
+		deform_settle(x, &rig, &near, (const double(*)[3][3])turn, lifted);
 		ray_scene_move(skin, (const float(*)[3])x);
 		ray_scene_move(all, (const float(*)[3])x);
-		snprintf(at, sizeof at, "%g,%g,%g", h, v, o);
 		for (int side = 0; side < 2; side++)
-			measure(&(struct pose){ &rig, (const float(*)[3])x, all, (const double(*)[3][3])turn, (const int32_t(*)[3])faces[1] }, skin, &hairs, side, at, argc > 2 ? argv[2] : 0);
+			measure(&(struct pose){ &rig, (const float(*)[3])x, all, (const double(*)[3][3])turn, (const int32_t(*)[3])faces[1] }, skin, &hairs, side, at, argc == 3 ? argv[2] : 0);
 	}
 	free(c);
 	free(x);

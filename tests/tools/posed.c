@@ -1,6 +1,6 @@
 /* posed RIG.npz [own] [settled]: a rig's vertices and their normals (area-weighted) as lib/rig/deform/deform.c poses them, for each line of standard
  * input: gaze of the left eye and of the right (two numbers each, degrees), how far open each is of what is usual there, and
- * expressions. Standard output: floats [lines][2][vertices][3]; own: of the character's mesh alone, without lining;
+ * expressions, with which its lids go. Standard output: floats [lines][2][vertices][3]; own: of the character's mesh alone, without lining;
  * settled: with lids as pictures have them (deform_settle). */
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +30,8 @@ static bool controls_of(double *c, const struct rig *rig, char *line)
 	}
 	for (int i = 10; i < rig->n_inputs; i++)
 		c[i] = strtod(word, &word);
+	for (int side = 0; side < 2; side++)
+		express_eye(c + 5 * side + 3, side, rig->n_inputs - 10, c + 10, (const double(*)[EXPRESS_LIDS])rig->expression, rig->aperture_px, open[side]);
 	free(one);
 	return ok;
 }
@@ -51,11 +53,13 @@ int main(int argc, char **argv)
 	double *c = mem_new((size_t)rig.n_inputs, sizeof *c), e[RIG_COMPONENTS], turn[2][3][3];
 	deform_rest(deform, x, 0);
 	while (fgets(line, sizeof line, stdin) && controls_of(c, &rig, line)) {
+		double lifted[2];
+		drive_lifted(lifted, &rig, c);
 		rig_components(e, &rig, c);
 		rig_globes_turned(turn, &rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
 		if (settled)
-			deform_settle(x, &rig, &near, (const double(*)[3][3])turn);
+			deform_settle(x, &rig, &near, (const double(*)[3][3])turn, lifted);
 		struct mesh mesh = { rig.n, rig.n_faces, x, rig.faces, 0 };
 		float (*normal)[3] = mesh_normals(&mesh);
 		fwrite(x, sizeof *x, (size_t)n, stdout);

@@ -54,6 +54,9 @@ double *npy_doubles(const struct npy *array);
  * npy_free. */
 bool npz_read(struct npy *out, const char *path, const char *name, size_t limit, struct err *err);
 
+/* Whether the file can be read and has an array of that name. */
+bool npz_has(const char *path, const char *name, size_t limit);
+
 struct npz_item {
 	const char *name;
 	struct npy array;

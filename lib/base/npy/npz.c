@@ -72,6 +72,20 @@ bool npz_read(struct npy *out, const char *path, const char *name, size_t limit,
 	return ok;
 }
 
+bool npz_has(const char *path, const char *name, size_t limit)
+{
+	char *bytes, *entry = mem_printf("%s.npy", name);
+	struct err none = { 0 };
+	zip_t *zip = open_zip(&bytes, path, limit, &none);
+	const bool has = zip && zip_name_locate(zip, entry, 0) >= 0;
+	if (zip) {
+		zip_discard(zip);
+		free(bytes);
+	}
+	free(entry);
+	return has;
+}
+
 /* Adds an entry; bytes: ownership passes on. Stored uncompressed and dated 1980-01-01: the same bytes with every zlib on every
  * day. */
 static bool add_entry(zip_t *zip, const char *name, void *bytes, size_t size)

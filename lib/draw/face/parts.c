@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/drive.h"
 
 static bool is_surface(const struct rig *rig, int face)
 {
@@ -118,12 +119,13 @@ void portrait_free(struct portrait *p)
 
 void portrait_pose(struct portrait *p, const double *controls)
 {
-	double e[RIG_COMPONENTS], turn[2][3][3];
+	double e[RIG_COMPONENTS], turn[2][3][3], lifted[2];
+	drive_lifted(lifted, p->rig, controls);
 	rig_components(e, p->rig, controls);
 	rig_globes_turned(turn, p->rig, controls);
 	memcpy(p->target_from_globe, turn, sizeof turn);
 	portrait_fold_pose(p, controls);
 	deform_pose(p->deform, e, (const double(*)[3][3])turn, p->mesh.x, p->mesh.normal);
-	deform_settle(p->mesh.x, p->rig, &p->lids, (const double(*)[3][3])turn);
+	deform_settle(p->mesh.x, p->rig, &p->lids, (const double(*)[3][3])turn, lifted);
 	portrait_mesh_move(p);
 }

@@ -75,7 +75,7 @@ static void pose_all(struct web_face *f)
 		int pose = k < POSES ? k : REST;
 		drive_look(controls, f->rig, at_h[pose % NH], at_v[pose / NH % NV], at_a[pose / NH / NV]);
 		if (k >= POSES)
-			controls[SKIN_EYE_INPUTS + k - POSES] = 1;
+			drive_express(controls, f->rig, k - POSES, 1, 1);
 		portrait_pose(f->portrait, controls);
 		portrait_light(f->portrait, &view, k == 0);
 		f->light[k] = mem_array((size_t)f->rig->n + 1, sizeof **f->light);

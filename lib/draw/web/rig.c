@@ -58,8 +58,11 @@ static void reach_on_map(int box[4], const struct web_face *f)
 		for (int i = 0; i < rig->n_inputs; i++) {
 			bool expression = i >= SKIN_EYE_INPUTS, lids = !expression && i % 5 >= 3;
 			double from = expression ? 0 : lids ? -0.5 : -45, to = expression ? 1.2 : lids ? 2 : 45;
-			e[k][0] += fmin(row[i] * from, row[i] * to);
-			e[k][1] += fmax(row[i] * from, row[i] * to);
+			double full = row[i];  // with all of what lids do with the expression
+			for (int lid = 0; lid < EXPRESS_LIDS && expression; lid++)
+				full += row[lid / 2 * 5 + 3 + lid % 2] * rig->expression[i - SKIN_EYE_INPUTS][lid];
+			e[k][0] += fmin(fmin(row[i] * from, row[i] * to), full * to);
+			e[k][1] += fmax(fmax(row[i] * from, row[i] * to), full * to);
 		}
 	}
 	for (int i = 0; i < f->level[0].posed; i++) {
@@ -151,7 +154,7 @@ void web_put_rig(json_t *out, const struct web_face *f)
 {
 	const struct rig *rig = f->rig;
 	int n = f->level[0].end, posed = f->level[0].posed;
-	json_t *levels = json_array(), *baseline = json_array();
+	json_t *levels = json_array(), *baseline = json_array(), *expressions = json_array();
 	float *of = mem_new((size_t)posed * TERMS + 1, sizeof *of), *rest = mem_new((size_t)n * 3 + 1, sizeof *rest);
 	for (int i = 0; i < n; i++) {
 		if (i < posed)
@@ -162,7 +165,9 @@ void web_put_rig(json_t *out, const struct web_face *f)
 		json_array_append_new(levels, json_pack("[i,i,i]", f->level[k].first, f->level[k].posed, f->level[k].end));
 	for (int k = 0; k < 4; k++)
 		json_array_append_new(baseline, json_numbers(3, rig->baseline[k]));
-	json_object_set_new(out, "rig", json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "inputs", rig->n_inputs, "known", known(&rig->known),
+	for (int k = 0; k < rig->n_inputs - SKIN_EYE_INPUTS; k++)
+		json_array_append_new(expressions, json_numbers(EXPRESS_LIDS, rig->expression[k]));
+	json_object_set_new(out, "rig", json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "inputs", rig->n_inputs, "expression_lids", expressions, "aperture_px", json_numbers(EXPRESS_LIDS, rig->aperture_px), "known", known(&rig->known),
 	    "W", json_numbers(RIG_COMPONENTS * (rig->n_inputs + 1), rig->W), "baseline", baseline, "head_from_rig", json_numbers(9, &rig->head_from_target[0][0]),
 	    "middle", json_numbers(3, f->middle), "levels", levels, "rows", packed_json(f->order, (size_t)n * sizeof *f->order, sizeof *f->order, sizeof *f->order), "rest", floats(rest, n, 3),
 	    "terms", floats(of, posed, TERMS), "ring", packed_json(f->ring, (size_t)f->n_ring * sizeof *f->ring, sizeof *f->ring, sizeof *f->ring), "between", between(f),

@@ -53,15 +53,16 @@ static void take(float (*by)[3], float (*x[2])[3], const struct web_face *f, int
 {
 	const struct rig *rig = f->rig;
 	const int pose = k < GRID ? k : SREST;
-	double e[RIG_COMPONENTS], turn[2][3][3], *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c);
+	double e[RIG_COMPONENTS], turn[2][3][3], lifted[2], *c = mem_new((size_t)rig->n_inputs + 1, sizeof *c);
 	drive_look(c, rig, at_h[pose % SH], at_v[pose / SH % SV], at_a[pose / SH / SV]);
 	if (k >= GRID)
-		c[SKIN_EYE_INPUTS + k - GRID] = 1;
+		drive_express(c, rig, k - GRID, 1, 1);
 	rig_components(e, rig, c);
 	rig_globes_turned(turn, rig, c);
 	deform_pose(f->portrait->deform, e, (const double(*)[3][3])turn, x[0], 0);
 	memcpy(x[1], x[0], (size_t)rig->n * sizeof *x[1]);
-	deform_settle(x[1], rig, &f->portrait->lids, (const double(*)[3][3])turn);
+	drive_lifted(lifted, rig, c);
+	deform_settle(x[1], rig, &f->portrait->lids, (const double(*)[3][3])turn, lifted);
 	for (int i = 0; i < 3 * f->n_lid; i++)
 		by[i / 3][i % 3] = x[1][f->lid[i / 3]][i % 3] - x[0][f->lid[i / 3]][i % 3];
 	free(c);

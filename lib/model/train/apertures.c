@@ -113,12 +113,11 @@ static bool is_calm(const struct train *t, const double *g, int eye, double usua
 {
 	bool calm = g[5 * eye + 3] + g[5 * eye + 4] > 0.6 * usual && !isnan(g[5 * eye] + g[5 * eye + 1]);
 	for (int a = SKIN_EYE_INPUTS; a < t->model->n_inputs; a++)
-		calm = calm && !(g[a] > 0.1);
+		calm = calm && !(g[a] > TRAIN_ON);
 	return calm;
 }
 
-/* Median opening of an eye over the clip, px. */
-static double usual_opening(const struct train *t, int eye)
+double train_usual_opening(const struct train *t, int eye)
 {
 	double *sum = mem_array((size_t)t->clip->n + 1, sizeof *sum);
 	long n = 0;
@@ -141,7 +140,7 @@ static void baseline(struct train *t, int eye)
 	size_t room = (size_t)(clip->n / step + 2);
 	struct calm c = { 0, mem_array(2 * room, sizeof *c.x), mem_array(room, sizeof *c.y), mem_array(room, sizeof *c.block),
 		              mem_array(room, sizeof *c.w), mem_array(room, sizeof *c.r) };
-	double usual = usual_opening(t, eye), *controls = mem_new((size_t)m->n_inputs, sizeof *controls);
+	double usual = train_usual_opening(t, eye), *controls = mem_new((size_t)m->n_inputs, sizeof *controls);
 	double span = clip->time[clip->n - 1] - clip->time[0];
 	int blocks = (int)fmin(20, fmax(2, span / t->conf->block_s));
 	for (int lid = 0; lid < 2; lid++) {

@@ -9,6 +9,7 @@
 enum { PILOT_FRAMES = 512, PILOT_COMPONENTS = 20, EYE_INPUTS = 5 };
 
 #define TRAIN_LEAST_SHARE 0.3  // a frame with a smaller share of its numbers measured has weight 0
+#define TRAIN_ON 0.1           // of an expression's strength: frames that show none by more are the baseline's, the others tell what lids do with it
 
 /* One of three parts that are modelled alike: the lids of one eye, or the skin. px of the modelling camera. */
 struct part {
@@ -91,6 +92,8 @@ bool train_inputs(struct train *t, struct err *err);   // interpolates gaps; dec
 bool train_sample(struct train *t, struct err *err);   // draws the sample, estimates the pilots, fills the sample in
 bool train_stream(struct train *t, struct err *err);   // sums all frames into the parts' scatters
 void train_apertures(struct train *t);                 // g_closed, g_open (eq. 3.6), the baseline A (eq. 3.11)
+double train_usual_opening(const struct train *t, int eye);  // median over the clip, px
+void train_expressions(struct train *t);               // what lids do with each expression, beyond A
 void train_choose_lids(struct train *t);               // called by train_fit: number of components of the lids,
 void train_choose_skin(struct train *t);               // and, once the lids are fitted, of the skin
 void train_fit(struct train *t);                       // components and regressions

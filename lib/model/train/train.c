@@ -67,6 +67,7 @@ bool train_run(struct skin_model *model, struct train_report *report, const stru
 	bool ok = train_inputs(&t, err) && train_sample(&t, err) && train_stream(&t, err) && enough_frames(&t, err);
 	if (ok) {
 		train_apertures(&t);
+		train_expressions(&t);
 		train_fit(&t);
 		train_sigmas(&t);
 		train_reach(&t);

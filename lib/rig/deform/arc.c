@@ -193,7 +193,7 @@ static double along_lid(double t)
 }
 
 /* Lowers the lower lid of an eye that looks down, to height *to before the iris; NAN: out. */
-static void retract(double *to, float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
+static void retract(double *to, float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double lifted)
 {
 	const struct deform_opening *rest = &near->rest[side];
 	const double unit = rig->globe[side].radius / 12;
@@ -209,7 +209,7 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 		return;
 	const double span = now.last - now.first, peak = fmax(along_lid((at - now.first) / span), 0.3), most = lowered_mm * unit;
 	if (isnan(*to))
-		*to = now.bottom[at] - most * tanh(fmax(now.bottom[at] - eye[1] - rest->bottom[at], 0) / most) * rising((now.top[at] - now.bottom[at]) / unit, open_mm[0], open_mm[1]);
+		*to = now.bottom[at] - most * tanh(fmax(now.bottom[at] - eye[1] - rest->bottom[at] - lifted, 0) / most) * rising((now.top[at] - now.bottom[at]) / unit, open_mm[0], open_mm[1]);
 	const double lack = now.bottom[at] - *to;
 	for (int i = 0; i < rig->n && lack > 0; i++) {
 		double p[3];
@@ -226,19 +226,19 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 
 /* Lowers the lower lids of eyes that look down, as people's do, until they cover no more of the iris, at its middle, than the lid at rest does there of one that
  * looks to the same side: what was learnt of somebody whose lids are wide apart leaves a character's, which are not, across the pupil. As lids shut that
- * ends.  */
-static void lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3])
+ * ends. What an expression lifts them by they keep. */
+static void lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double lifted)
 {
 	double to = NAN;
 	for (int k = 0; k < LOWERED; k++)
-		retract(&to, x, rig, near, side, target_from_globe);
+		retract(&to, x, rig, near, side, target_from_globe, lifted);
 }
 
-void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3])
+void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3], const double *lifted)
 {
 #pragma omp parallel for schedule(static, 1)
 	for (int side = 0; side < 2; side++) {
-		lower(x, rig, near, side, target_from_globe[side]);
+		lower(x, rig, near, side, target_from_globe[side], lifted ? lifted[side] : 0);
 		arcs(x, rig, near, side, target_from_globe[side]);
 		deform_shut(x, rig, near, side, target_from_globe[side]);
 	}

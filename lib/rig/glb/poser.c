@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/drive.h"
 #include "rig/glb/strands.h"
 #include "rig/glb/tears.h"
 
@@ -78,21 +79,22 @@ void poser_free(struct poser *p)
 	deform_near_free(&p->near);
 }
 
-/* The pose of components e, the globes turned as p->turn says. */
-static void pose(struct poser *p, const double e[RIG_COMPONENTS])
+/* The pose of components e, the globes turned as p->turn says; lifted: of deform_settle. */
+static void pose(struct poser *p, const double e[RIG_COMPONENTS], const double *lifted)
 {
 	deform_pose(p->deform, e, (const double(*)[3][3])p->turn, p->x, 0);
-	deform_settle(p->x, p->rig, &p->near, (const double(*)[3][3])p->turn);
+	deform_settle(p->x, p->rig, &p->near, (const double(*)[3][3])p->turn, lifted);
 	take_normals(p);
 }
 
 void poser_pose(struct poser *p, const double *controls, double turn[2][3][3])
 {
-	double e[RIG_COMPONENTS];
+	double e[RIG_COMPONENTS], lifted[2];
+	drive_lifted(lifted, p->rig, controls);
 	rig_components(e, p->rig, controls);
 	rig_globes_turned(turn, p->rig, controls);
 	memcpy(p->turn, turn, sizeof p->turn);
-	pose(p, e);
+	pose(p, e, lifted);
 }
 
 void poser_from_still(struct poser *p, const double *controls, double share)
@@ -103,14 +105,14 @@ void poser_from_still(struct poser *p, const double *controls, double share)
 		e[k] = p->rig->rest_e[k] + share * (e[k] - p->rig->rest_e[k]);
 	for (int s = 0; s < 2; s++)
 		rig_globe_rotation(p->turn[s], p->rig, (double[]){ 0, 0, 0 });
-	pose(p, e);
+	pose(p, e, 0);
 }
 
 void poser_still(struct poser *p)
 {
 	for (int s = 0; s < 2; s++)
 		rig_globe_rotation(p->turn[s], p->rig, (double[]){ 0, 0, 0 });
-	pose(p, p->rig->rest_e);
+	pose(p, p->rig->rest_e, 0);
 }
 
 void poser_skin(float *x, float *lean, const struct poser *p, int n, const int *vertex)

@@ -55,7 +55,7 @@ static void pose_controls(double *c, const struct rig *rig, int k)
 		return;
 	}
 	drive_look(c, rig, 0, 0, 1);
-	c[SKIN_EYE_INPUTS + k - GLB_POSES] = 1;
+	drive_express(c, rig, k - GLB_POSES, 1, 1);
 }
 
 void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *conf)

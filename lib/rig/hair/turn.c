@@ -94,7 +94,7 @@ void hairs_turn_out(struct hairs *h, const struct rig *rig, struct ray_scene *sk
 		rig_components(e, rig, c);
 		rig_globes_turned(turn, rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-		deform_settle(x, rig, &near, (const double(*)[3][3])turn);
+		deform_settle(x, rig, &near, (const double(*)[3][3])turn, 0);
 		ray_scene_move(skin, (const float(*)[3])x);
 		count(n, h, rig, (const float(*)[3])x, skin);
 	}

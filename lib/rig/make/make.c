@@ -194,6 +194,11 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 	memcpy(rig->rest_e, motion->rest_e, sizeof rig->rest_e);
 	memcpy(rig->rest_aperture, motion->rest_aperture, sizeof rig->rest_aperture);
 	memcpy(rig->baseline, motion->baseline, sizeof rig->baseline);
+	const size_t expressions = (size_t)(motion->n_inputs - SKIN_EYE_INPUTS);
+	rig->expression = mem_new(expressions + 1, sizeof *rig->expression);
+	if (expressions)
+		memcpy(rig->expression, motion->expression, expressions * sizeof *rig->expression);
+	memcpy(rig->aperture_px, motion->aperture_px, sizeof rig->aperture_px);
 	allocate(rig, ch->mesh);
 	take_camera(rig, motion, ch->subject_from_target);
 	rig_expect_globes(center, &radius, rig, ch);

@@ -60,6 +60,10 @@ void rig_motion_of_model(struct rig_motion *m, const struct skin_model *model)
 		for (int j = 0; j < 3; j++)
 			m->baseline[k][j] = finite_or(model->baseline[k / 2][k % 2][j], 0);
 	}
+	m->expression = mem_new((size_t)model->n_au + 1, sizeof *m->expression);
+	if (model->n_au)
+		memcpy(m->expression, model->expression, (size_t)model->n_au * sizeof *m->expression);
+	skin_model_range(m->aperture_px, model);
 	take_skin(m, model);
 	rig_motion_take_lids(m, model, c);
 	free(c);
@@ -68,6 +72,7 @@ void rig_motion_of_model(struct rig_motion *m, const struct skin_model *model)
 void rig_motion_free(struct rig_motion *m)
 {
 	free(m->W);
+	free(m->expression);
 	free(m->vertex);
 	free(m->basis);
 	free(m->rest_px);

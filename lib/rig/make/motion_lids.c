@@ -78,11 +78,12 @@ static void gather(struct poses *p, const struct skin_model *model)
 		for (int eye = 0; eye < 2; eye++)
 			open_at(near, model, eye, 0.25 * (eye ? -1 : 1) * (at[0][i % GAZES] - at[0][0]), v, 1);
 	}
-	for (int a = 0; a < model->n_au * GAZES; a++) {
+	for (int i = 0; i < model->n_au * GAZES * GAZES; i++) {
 		double *c = next(p);
 		for (int eye = 0; eye < 2; eye++)
-			open_at(c, model, eye, 0, 0, 1);
-		c[SKIN_EYE_INPUTS + a / GAZES] = 1;
+			open_at(c, model, eye, at[0][i % GAZES], at[1][i / GAZES % GAZES], 1);
+		c[SKIN_EYE_INPUTS + i / (GAZES * GAZES)] = 1;
+		skin_model_express(c, model, (double[]){ 1, 1 });
 	}
 }
 

@@ -52,7 +52,7 @@ static void what_was_drawn_so_is_left(void **state)
 	double turn[2][3][3];
 	driven_pose(x, turn, m, 10, -10, 0.5);
 	memcpy(was, x, (size_t)m->rig.n * sizeof *x);
-	deform_settle(x, &m->rig, &near, (const double(*)[3][3])turn);
+	deform_settle(x, &m->rig, &near, (const double(*)[3][3])turn, 0);
 	deform_clear(was, &m->rig, &near, (const double(*)[3][3])turn);
 	for (int i = 0; i < m->rig.n; i++)
 		for (int c = 0; c < 3; c++)

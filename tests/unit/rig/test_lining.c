@@ -134,7 +134,7 @@ static double posed(float (*x)[3], const struct rig *rig, const struct deform *d
 	rig_globes_turned(turn, rig, c);
 	deform_rest(deform, x, 0);
 	deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-	deform_settle(x, rig, near, (const double(*)[3][3])turn);
+	deform_settle(x, rig, near, (const double(*)[3][3])turn, 0);
 	for (int i = 0; i < rig->n; i++)
 		if (rig->part[i] == RIG_LINING)
 			least = fmin(least, rig_globe_distance(rig, rig->side[i], (const double(*)[3])turn[rig->side[i]], x[i]));

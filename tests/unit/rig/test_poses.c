@@ -20,14 +20,15 @@ static void expressions_have_targets(void **state)
 	for (int k = 0; k < 2; k++) {
 		double worst = 0, most = 0;
 		for (int on = 0; on < 2; on++) {
-			double c[12], e[RIG_COMPONENTS], turn[2][3][3];
+			double c[12], e[RIG_COMPONENTS], turn[2][3][3], lifted[2];
 			drive_look(c, &m->on.rig, 0, 0, 1);
-			c[SKIN_EYE_INPUTS + k] = on;
+			drive_express(c, &m->on.rig, k, on, 1);
 			rig_components(e, &m->on.rig, c);
 			rig_globes_turned(turn, &m->on.rig, c);
 			deform_rest(deform, x[on], 0);
 			deform_pose(deform, e, (const double(*)[3][3])turn, x[on], 0);
-			deform_settle(x[on], &m->on.rig, &near, (const double(*)[3][3])turn);
+			drive_lifted(lifted, &m->on.rig, c);
+			deform_settle(x[on], &m->on.rig, &near, (const double(*)[3][3])turn, lifted);
 		}
 		assert_string_equal(b.pose_name[GLB_POSES + k], m->conf.expression[k]);
 		for (int i = 0; i < b.n; i++)
@@ -71,7 +72,7 @@ static void named_poses_add_up(void **state)
 			rig_globes_turned(turn, &m->on.rig, c);
 			deform_rest(deform, x, 0);
 			deform_pose(deform, !pass && k == 0 ? m->on.rig.rest_e : e, (const double(*)[3][3])turn, x, 0);
-			deform_settle(x, &m->on.rig, &near, (const double(*)[3][3])turn);
+			deform_settle(x, &m->on.rig, &near, (const double(*)[3][3])turn, 0);
 			if (!pass)
 				memcpy(from, whole ? m->on.rig.rest : x, (size_t)m->on.rig.n * sizeof *from);
 		}
@@ -119,7 +120,7 @@ static void turned_blinks_add_up(void **state)
 		rig_globes_turned(turn, rig, c);
 		deform_rest(deform, x, 0);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);
-		deform_settle(x, rig, &near, (const double(*)[3][3])turn);
+		deform_settle(x, rig, &near, (const double(*)[3][3])turn, 0);
 		for (int i = 0; i < b.n; i++)
 			for (int with = 0; with < 2; with++) {
 				double d[3];
@@ -240,7 +241,7 @@ static void blinks_go_round_the_eye(void **state)
 				e[k] = (1 - w) * rig->rest_e[k] + w * e[k];
 			deform_rest(deform, pose, 0);
 			deform_pose(deform, e, (const double(*)[3][3])turn, pose, 0);
-			deform_settle(pose, rig, &near, (const double(*)[3][3])turn);
+			deform_settle(pose, rig, &near, (const double(*)[3][3])turn, 0);
 			for (int i = 0; i < b.n; i++) {
 				if (rig->side[b.vertex[i]] != eye)
 					continue;
