@@ -297,6 +297,35 @@ static struct animation keyed(const char *text, const struct skin_model *m, cons
 	return a;
 }
 
+/* Lids go with an expression that a script sets, less as it shuts them; recorded lids are what is meant. */
+static void expressions_take_lids(void **state)
+{
+	(void)state;
+	struct skin_model m = small_model();
+	struct animate_conf conf = usual;
+	struct script recorded;
+	struct err err = { 0 };
+	conf.gaze = steady();
+	conf.blinks = false;
+	memcpy(m.expression[0], (double[]){ -0.1, -0.3, -0.2, 0.05 }, sizeof m.expression[0]);
+	struct animation a = keyed("time_s,horizontal_deg,vertical_deg,smile,openness\n0,0,0,1,1\n1,0,0,1,0.5\n2,0,0,0.5,1\n3,0,0,1,0\n", &m, &conf);
+	static const double want[4][4] = { { 0.7, 0.2, 0.6, 0.55 }, { 0.35, 0.1, 0.3, 0.275 }, { 0.75, 0.35, 0.7, 0.525 }, { 0 } };
+	for (int s = 0; s < 4; s++)
+		for (int k = 0; k < 4; k++)
+			NEAR(a.controls[60 * s * a.n_inputs + k / 2 * 5 + 3 + k % 2], want[s][k], 1e-9);
+	animation_free(&a);
+	// The left eye's lids are told, the right one's are not.
+	if (!script_read(&recorded, scratch_text("gaze.csv", "time_s,g1_deg,g2_deg,g4_px,g5_px,au1\n0,0,0,60,12,1\n1,0,0,60,12,1\n"), &m, &err)
+	    || !animate_run(&a, &m, &recorded, 0, 0, &conf, &err))
+		fail_msg("%s", err.msg);
+	NEAR(a.g[3], 60, 1e-12);
+	NEAR(a.g[4], 12, 1e-12);
+	NEAR(a.controls[8], 0.6, 1e-12);
+	animation_free(&a);
+	script_free(&recorded);
+	skin_model_free(&m);
+}
+
 static void keyframes(void **state)
 {
 	(void)state;
@@ -518,7 +547,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(main_sequence), cmocka_unit_test(closed_forms),      cmocka_unit_test(vergence_geometry),
 		cmocka_unit_test(a_saccade),     cmocka_unit_test(reflex),            cmocka_unit_test(pursuit),
-		cmocka_unit_test(vergence_dynamics), cmocka_unit_test(blinks),        cmocka_unit_test(keyframes), cmocka_unit_test(winks),
+		cmocka_unit_test(vergence_dynamics), cmocka_unit_test(blinks),        cmocka_unit_test(expressions_take_lids), cmocka_unit_test(keyframes), cmocka_unit_test(winks),
 		cmocka_unit_test(deterministic), cmocka_unit_test(recorded),          cmocka_unit_test(bad_scripts),
 		cmocka_unit_test(popping_out), cmocka_unit_test(orientation_pops_out),
 	};

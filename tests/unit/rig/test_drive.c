@@ -64,10 +64,58 @@ static void driving_file(void **state)
 	scratch_close();
 }
 
+/* What an expression does to lids is added where they are ours to set, shut eyes stay so; and how far it raises the lower one. */
+static void expressions_take_lids(void **state)
+{
+	const struct face *face = *state;
+	struct rig rig;
+	struct err err = { 0 };
+	double by[EXPRESS_LIDS] = { -0.2, -0.9, -0.3, 0.5 }, look[12], c[12], mm[2];
+	struct rig_conf conf = face_conf();
+	assert_true(face_rig(&rig, 0, face, &conf, &err));
+	memcpy(rig.expression[1], by, sizeof by);
+	drive_look(look, &rig, 5, -3, 1);
+	memcpy(c, look, sizeof c);
+	drive_express(c, &rig, 1, 0.5, 1);
+	for (int i = 0; i < 12; i++)
+		NEAR(c[i] - look[i], i == 11 ? 0.5 : i == 3 ? -0.1 : i == 4 ? -0.45 : i == 8 ? -0.15 : i == 9 ? 0.25 : 0, 1e-12);
+	drive_look(c, &rig, 5, -3, 0);
+	drive_express(c, &rig, 1, 1, 0);
+	assert_true(c[3] == 0 && c[4] == 0 && c[8] == 0 && c[9] == 0 && c[11] == 1);
+	// 2 px of the lower lid, seen from 600 mm by a lens of 5000 px: what goes down is not raised.
+	drive_lifted(mm, &rig, c);
+	NEAR(rig.aperture_px[1], 2, 1e-12);
+	NEAR(mm[0], 0.9 * 2 * 600 / 5000, 1e-4);  // the eyeball is where its mesh has it
+	assert_true(mm[1] == 0);
+	rig_free(&rig);
+}
+
+/* A table that says nothing of lids leaves them to the expressions; one that does is meant so. */
+static void tables_mean_their_lids(void **state)
+{
+	struct face *face = *state;
+	struct drive d;
+	struct err err = { 0 };
+	scratch_open();
+	memcpy(face->model.expression[1], (double[]){ -0.2, -0.3, -0.4, 0 }, sizeof face->model.expression[1]);
+	assert_true(drive_load(&d, &face->model, scratch_text("a.csv", "time_s,squint\n0,0.5\n1,1\n"), &err));
+	NEAR(drive_at(&d, 0)[3], 0.8 - 0.1, 1e-12);
+	NEAR(drive_at(&d, 1)[4], 0.8 - 0.3, 1e-12);
+	NEAR(drive_at(&d, 1)[8], 0.8 - 0.4, 1e-12);
+	drive_free(&d);
+	assert_true(drive_load(&d, &face->model, scratch_text("b.csv", "time_s,squint,a4\n0,0.5,0.6\n1,1,0.7\n"), &err));
+	NEAR(drive_at(&d, 0)[3], 0.6, 1e-12);
+	NEAR(drive_at(&d, 1)[3], 0.7, 1e-12);
+	NEAR(drive_at(&d, 1)[8], 0.8 - 0.4, 1e-12);  // the other eye's are not told
+	drive_free(&d);
+	memset(face->model.expression[1], 0, sizeof face->model.expression[1]);
+	scratch_close();
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(driving_file),
+		cmocka_unit_test(driving_file), cmocka_unit_test(expressions_take_lids), cmocka_unit_test(tables_mean_their_lids),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
 }

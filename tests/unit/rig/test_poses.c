@@ -12,6 +12,8 @@ static void expressions_have_targets(void **state)
 	struct wandering *m = *state;
 	struct glb_bake b;
 	struct err err = { 0 };
+	for (int k = 0; k < EXPRESS_LIDS; k += 2)  // a second one that narrows the eyes
+		m->on.rig.expression[1][k] = -0.3;
 	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &m->conf, &err));
 	assert_int_equal(b.n_poses, GLB_POSES + 2 + GLB_TURNED + GLB_HALVES);
 	float (*x[2])[3] = { calloc((size_t)m->on.rig.n, sizeof **x), calloc((size_t)m->on.rig.n, sizeof **x) };
@@ -43,6 +45,8 @@ static void expressions_have_targets(void **state)
 	free(x[1]);
 	deform_free(deform);
 	deform_near_free(&near);
+	for (int k = 0; k < EXPRESS_LIDS; k += 2)
+		m->on.rig.expression[1][k] = 0;
 	glb_bake_free(&b);
 }
 
