@@ -111,17 +111,25 @@ bool drive_load(struct drive *d, const struct skin_model *model, const char *pat
 	return ok;
 }
 
+/* The usual apertures of an eye at a gaze, eq. 3.11. */
+static void usual(double a[2], const struct rig *rig, int eye, double horizontal, double vertical)
+{
+	double gaze[3] = { horizontal, vertical, 0 };
+	known_hold(gaze, &rig->known, eye);
+	for (int k = 0; k < 2; k++) {
+		const double *b = rig->baseline[2 * eye + k];
+		a[k] = b[0] * gaze[0] + b[1] * gaze[1] + b[2];
+	}
+}
+
 void drive_look(double *c, const struct rig *rig, double horizontal, double vertical, double aperture)
 {
 	for (int i = 0; i < rig->n_inputs; i++)
 		c[i] = 0;
 	for (int eye = 0; eye < 2; eye++) {
-		double gaze[3] = { horizontal, vertical, 0 };
-		known_hold(gaze, &rig->known, eye);
-		for (int k = 0; k < 2; k++) {
-			const double *b = rig->baseline[2 * eye + k];
-			c[5 * eye + 3 + k] = aperture * (b[0] * gaze[0] + b[1] * gaze[1] + b[2]);
-		}
+		usual(c + 5 * eye + 3, rig, eye, horizontal, vertical);
+		for (int k = 0; k < 2; k++)
+			c[5 * eye + 3 + k] *= aperture;
 		c[5 * eye] = horizontal;
 		c[5 * eye + 1] = vertical;
 	}
@@ -134,14 +142,12 @@ void drive_express(double *c, const struct rig *rig, int k, double strength, dou
 		express_eye(c + 5 * eye + 3, eye, 1, &strength, (const double(*)[EXPRESS_LIDS])rig->expression + k, rig->aperture_px, aperture);
 }
 
-void drive_lifted(double mm[2], const struct rig *rig, const double *c)
+double drive_opened(const struct rig *rig, const double *c, int eye)
 {
-	for (int eye = 0; eye < 2; eye++) {
-		const int lower = 2 * eye + 1;
-		const double *row = rig->camera.from_target[2], *at = rig->globe[eye].center, far = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
-		double up = 0;
-		for (int k = 0; k < rig->n_inputs - SKIN_EYE_INPUTS; k++)
-			up -= c[SKIN_EYE_INPUTS + k] * rig->expression[k][lower];
-		mm[eye] = fmax(up * rig->aperture_px[lower] * far / rig->camera.focal_px[1], 0);
-	}
+	const double *px = rig->aperture_px + 2 * eye, *now = c + 5 * eye + 3;
+	double a[2];
+	usual(a, rig, eye, c[5 * eye], c[5 * eye + 1]);
+	express_eye(a, eye, rig->n_inputs - SKIN_EYE_INPUTS, c + SKIN_EYE_INPUTS, (const double(*)[EXPRESS_LIDS])rig->expression, rig->aperture_px, 1);
+	const double all = px[0] * a[0] + px[1] * a[1];
+	return all > 0.05 * (px[0] + px[1]) ? fmin(fmax((px[0] * now[0] + px[1] * now[1]) / all, 0), 1) : 1;
 }

@@ -35,7 +35,7 @@ void drive_look(double *controls, const struct rig *rig, double horizontal, doub
 /* Sets expression k (0: the model's first) of controls that drive_look has made with that aperture, and the lids that go with it (model/express.h). */
 void drive_express(double *controls, const struct rig *rig, int k, double strength, double aperture);
 
-/* How far the expressions of controls raise the left and the right lower lid, mm, >= 0: what the modelling camera saw it go up by, at its eyeball's distance. */
-void drive_lifted(double mm[2], const struct rig *rig, const double *controls);
+/* How far one eye of controls (0 left, 1 right) is open, of what is usual at its gaze with its expressions: 0 shut .. 1. */
+double drive_opened(const struct rig *rig, const double *controls, int eye);
 
 #endif

@@ -2,14 +2,14 @@
 /* Opens a driven face's .glb in three.js in a headless Chromium: FILE NPM OUT. One line a pose and view: what it shows of eye and skin, in
  * pixels round one eye; how deep lids go through the eye between open and shut, mm, by a blink's target alone and with what goes with it; and the same of eyes
  * that look down and up, with that look's target. OUT/face_NAME.png:
- * pictures. */
+ * pictures. FILE NPM OUT EXPRESSION...: open eyes, and with the target of each of these in full, alone and in a blink, from in front; nothing else. */
 const fs = require("fs");
 const os = require("os");
 const path = require("path");
 const { Browser } = require("./browser.js");
-const [, , file, npm, out] = process.argv;
+const [, , file, npm, out, ...expressions] = process.argv;
 
-const poses = {
+let poses = {
 	open: [{}, [0, 0]],
 	half: [{ eyeBlinkLeft: 0.5, eyeBlinkRight: 0.5, eyeBlinkLeft_half: 1, eyeBlinkRight_half: 1 }, [0, 0]],
 	shut: [{ eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]],
@@ -21,6 +21,9 @@ const poses = {
 	left: [{ eyeLookOutLeft: 1, eyeLookInRight: 1 }, [1, 0]],
 	right: [{ eyeLookInLeft: 1, eyeLookOutRight: 1 }, [-1, 0]],
 };
+
+if (expressions.length)
+	poses = Object.fromEntries([["open", [{}, [0, 0]]], ...expressions.flatMap(e => [[e, [{ [e]: 1 }, [0, 0]]], [`${e}_shut`, [{ [e]: 1, eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]]]])]);
 
 (async () => {
 	const dir = fs.mkdtempSync(path.join(os.tmpdir(), "eyewright-three-"));
@@ -35,11 +38,11 @@ const poses = {
 		console.log(`meshes ${says.meshes.join(" ")}`);
 		for (const [name, [weights, turn]] of Object.entries(poses))
 			for (const side of ["left", "right"])
-				for (const aside of [-30, 0, 30]) {
+				for (const aside of expressions.length ? [0] : [-30, 0, 30]) {
 					const n = await b.value(`seen(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
 					console.log(`${name} ${side} ${aside} eye ${n.eye} skin ${n.skin} behind ${n.behind} nothing ${n.nothing} hair ${n.hair} tears ${n.tears} islands ${n.islands} through ${n.through}`);
 				}
-		for (const side of ["left", "right"]) {
+		for (const side of expressions.length ? [] : ["left", "right"]) {
 			const d = await b.value(`depths("${side}")`, 120000);
 			console.log(`depth ${side} alone ${d.alone.map(x => x.toFixed(3)).join(" ")} both ${d.both.map(x => x.toFixed(3)).join(" ")} of ${d.n}`);
 			for (const [name, look, v] of [["down", "eyeLookDown", -20], ["up", "eyeLookUp", 20]]) {
@@ -48,7 +51,7 @@ const poses = {
 			}
 		}
 		for (const [name, [weights, turn]] of Object.entries(poses))
-			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]]) {
+			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]].slice(0, expressions.length ? 2 : 3)) {
 				await b.value(`show(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
 				await b.screenshot(path.join(out, `face_${name}_${side}${aside || ""}.png`));
 			}

@@ -12,12 +12,13 @@ const grid = [[0, 0, 1], [16, 0, 1], [-16, -22, 1], [0, -22, 0.5], [0, 22, 1], [
 const between = [[10, 5, 1], [-20, -15, 1], [20, 15, 1], [0, -25, 1], [0, -8, 0.75], [8, 0, 0.75], [-8, -11, 0.5], [0, 0, 0.25]];
 
 (async () => {
-	const b = await Browser.start(["--allow-file-access-from-files"]), poses = [...grid, ...between];
+	const b = await Browser.start(["--allow-file-access-from-files"]);
 	try {
 		await b.open(pathToFileURL(page).href);
 		await b.until("window.eyewright && eyewright.face && eyewright.face.poser", 120);
 		const floats = bytes => new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
-		const input = poses.map(([h, v, o]) => `${h} ${v} ${h} ${v} ${o} ${o}`).join("\n") + "\n";
+		const many = await b.value("data.face.expressions.length"), full = [...Array(many).keys()].map(k => [0, 0, 1, ...Array.from({ length: many }, (_, i) => +(i === k))]), poses = [...grid, ...between, ...full];
+		const input = poses.map(([h, v, o, ...strengths]) => `${h} ${v} ${h} ${v} ${o} ${o} ${strengths.join(" ")}`).join("\n") + "\n";
 		const want = floats(execFileSync(path.join(tools, "posed"), [rig, "settled"], { input, maxBuffer: 1 << 30 })), n = want.length / poses.length / 6;
 		const rows = JSON.parse(await b.value("JSON.stringify(Array.from(new Int32Array(data.face.rig.rows.buffer)))"));
 		const of = JSON.parse(await b.value(`(() => { const t = new Float32Array(data.face.rig.terms.buffer), out = [];
@@ -26,12 +27,12 @@ const between = [[10, 5, 1], [-20, -15, 1], [20, 15, 1], [0, -25, 1], [0, -8, 0.
 		for (let k = 0; k < poses.length; k++) {
 			const said = [];
 			for (const on of [true, false]) {
-				const [h, v, o] = poses[k], got = floats(Buffer.from(await b.value(`(() => {
+				const [h, v, o, ...strengths] = poses[k], got = floats(Buffer.from(await b.value(`(() => {
 					const f = eyewright.face.poser, step = f.maps.settle_step;
 					f.key = "";
 					if (!${on})
 						f.maps.settle_step = 0;
-					f.pose([[${h}, ${v}], [${h}, ${v}]], [${o}, ${o}], []);
+					f.pose([[${h}, ${v}], [${h}, ${v}]], [${o}, ${o}], ${JSON.stringify(strengths)});
 					f.maps.settle_step = step;
 					const bytes = new Uint8Array(f.read(f.at).buffer, 0, 16 * f.base);
 					let text = ""; for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
@@ -44,7 +45,7 @@ const between = [[10, 5, 1], [-20, -15, 1], [20, 15, 1], [0, -25, 1], [0, -8, 0.
 				}
 				said.push(worst.toFixed(3), Math.sqrt(sum / of.length).toFixed(3));
 			}
-			console.log(`${k < grid.length ? "grid" : "between"} ${poses[k].join(" ")} off ${said[0]} rms ${said[1]} as learnt ${said[2]} rms ${said[3]} of ${of.length}`);
+			console.log(`${k < grid.length ? "grid" : k < poses.length - many ? "between" : "expression"} ${poses[k].join(" ")} off ${said[0]} rms ${said[1]} as learnt ${said[2]} rms ${said[3]} of ${of.length}`);
 		}
 		for (const problem of b.problems)
 			if (!/GPU stall|ReadPixels/.test(problem))

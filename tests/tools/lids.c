@@ -457,7 +457,7 @@ int main(int argc, char **argv)
 		if (expressions)
 			snprintf(at, sizeof at, "%d,%d,%g", k / 2 - 1, k > 1, o);
 		double lifted[2];
-		drive_lifted(lifted, &rig, c);
+		deform_lifted(lifted, &near, &rig, c);
 		rig_components(e, &rig, c);
 		rig_globes_turned(turn, &rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);

@@ -1,5 +1,5 @@
 /* low_lid TRUTH MESH: how much of a filmed person's own iris and pupil lies under the lower lid, by a rendered clip's truth (samples/face/truth): of frames without a blink a
- * line a frame and eye, as tools/lids.c says it of a character: h_deg,v_deg,side,iris_low,pupil_low. Pupil: 2 mm in radius. The camera looks straight at the head, which
+ * line a frame and eye, as tools/lids.c says it of a character: h_deg,v_deg,side,iris_low,pupil_low; frame, and what is open between the margins, px^2. Pupil: 2 mm in radius. The camera looks straight at the head, which
  * rests: where it stands is found from the skin's points. */
 #include <jansson.h>
 #include <math.h>
@@ -14,6 +14,8 @@
 #include "math/vec.h"
 #include "mesh/mesh_clean.h"
 #include "track/gaze/globe.h"
+
+enum { UPPER = 20, LOWER = 24 };  // points of an upper and a lower margin, samples/README.md
 
 static double *array(long *rows, const char *folder, const char *name, int columns, struct err *err)
 {
@@ -108,6 +110,20 @@ static double margin_at(const double *px, long n, double x)
 	return px[2 * i + 1] + t * (px[2 * (i + 1) + 1] - px[2 * i + 1]);
 }
 
+/* Area between an upper and a lower margin, px^2. */
+static double between(const double *upper, const double *lower)
+{
+	double twice = 0, outline[2 * (UPPER + LOWER)];
+	for (int i = 0; i < UPPER + LOWER; i++)
+		for (int k = 0; k < 2; k++)
+			outline[2 * i + k] = i < UPPER ? upper[2 * i + k] : lower[2 * (UPPER + LOWER - 1 - i) + k];
+	for (int i = 0; i < UPPER + LOWER; i++) {
+		const double *a = outline + 2 * i, *b = outline + 2 * ((i + 1) % (UPPER + LOWER));
+		twice += a[0] * b[1] - a[1] * b[0];
+	}
+	return fabs(twice) / 2;
+}
+
 static double under(const struct filmed *f, int side, const double gaze_deg[3], double radius, const double *lower, long points)
 {
 	double turn[3][3], below = 0, all = 0;
@@ -140,8 +156,8 @@ int main(int argc, char **argv)
 	double *vertex = array(&points, argv[1], "skin_vertex", 1, &err), *px = array(&frames, argv[1], "skin_px", 2, &err), *seen = array(&frames, argv[1], "skin_visible", 1, &err);
 	double *gaze[2] = { array(&frames, argv[1], "gaze_left_deg", 3, &err), array(&frames, argv[1], "gaze_right_deg", 3, &err) };
 	double *shut = array(&n, argv[1], "blink_closure", 1, &err);
+	double *upper[2] = { array(&n, argv[1], "lid_upper_px_left", 2, &err), array(&n, argv[1], "lid_upper_px_right", 2, &err) };
 	double *lower[2] = { array(&n, argv[1], "lid_lower_px_left", 2, &err), array(&n, argv[1], "lid_lower_px_right", 2, &err) };
-	enum { LOWER = 24 };  // points of a lower margin, samples/README.md
 	bool ok = !err_is(&err) && take_json(&f, argv[1], &err) && file_read(&data, &size, argv[2], 1 << 26, &err) && mesh_clean(&mesh, data, size, 1000000, &err);
 	for (long i = 0; i < points && ok; i++)
 		ok = vertex[i] < mesh.n_vertices || err_set(&err, "%s: no vertex %g", argv[2], vertex[i]);
@@ -149,13 +165,13 @@ int main(int argc, char **argv)
 	if (ok && !(off < 2))
 		ok = err_set(&err, "%s: the head does not look straight at its camera: points are %.2f px off", argv[1], off);
 	if (ok)
-		puts("h_deg,v_deg,side,iris_low,pupil_low");
+		puts("h_deg,v_deg,side,iris_low,pupil_low,frame,open_px2");
 	else
 		fprintf(stderr, "low_lid: %s\n", err.msg);
 	for (long i = 0; i < frames && ok; i++)
 		for (int side = 0; side < 2 && shut[i] < 0.01; side++) {
 			const double *g = gaze[side] + 3 * i, *low = lower[side] + 2L * LOWER * i;
-			printf("%.2f,%.2f,%d,%.3f,%.3f\n", g[0], g[1], side, under(&f, side, g, f.limbus, low, LOWER), under(&f, side, g, 0.2, low, LOWER));
+			printf("%.2f,%.2f,%d,%.3f,%.3f,%ld,%.0f\n", g[0], g[1], side, under(&f, side, g, f.limbus, low, LOWER), under(&f, side, g, 0.2, low, LOWER), i, between(upper[side] + 2L * UPPER * i, low));
 		}
 	free(data);
 	free(vertex);
@@ -165,6 +181,7 @@ int main(int argc, char **argv)
 	for (int side = 0; side < 2; side++) {
 		free(gaze[side]);
 		free(lower[side]);
+		free(upper[side]);
 	}
 	mesh_free(&mesh);
 	return !ok || fflush(stdout) != 0;

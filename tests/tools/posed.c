@@ -54,7 +54,7 @@ int main(int argc, char **argv)
 	deform_rest(deform, x, 0);
 	while (fgets(line, sizeof line, stdin) && controls_of(c, &rig, line)) {
 		double lifted[2];
-		drive_lifted(lifted, &rig, c);
+		deform_lifted(lifted, &near, &rig, c);
 		rig_components(e, &rig, c);
 		rig_globes_turned(turn, &rig, c);
 		deform_pose(deform, e, (const double(*)[3][3])turn, x, 0);

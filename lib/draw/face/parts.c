@@ -6,7 +6,6 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "rig/drive.h"
 
 static bool is_surface(const struct rig *rig, int face)
 {
@@ -120,7 +119,7 @@ void portrait_free(struct portrait *p)
 void portrait_pose(struct portrait *p, const double *controls)
 {
 	double e[RIG_COMPONENTS], turn[2][3][3], lifted[2];
-	drive_lifted(lifted, p->rig, controls);
+	deform_lifted(lifted, &p->lids, p->rig, controls);
 	rig_components(e, p->rig, controls);
 	rig_globes_turned(turn, p->rig, controls);
 	memcpy(p->target_from_globe, turn, sizeof turn);

@@ -61,7 +61,7 @@ static void take(float (*by)[3], float (*x[2])[3], const struct web_face *f, int
 	rig_globes_turned(turn, rig, c);
 	deform_pose(f->portrait->deform, e, (const double(*)[3][3])turn, x[0], 0);
 	memcpy(x[1], x[0], (size_t)rig->n * sizeof *x[1]);
-	drive_lifted(lifted, rig, c);
+	deform_lifted(lifted, &f->portrait->lids, rig, c);
 	deform_settle(x[1], rig, &f->portrait->lids, (const double(*)[3][3])turn, lifted);
 	for (int i = 0; i < 3 * f->n_lid; i++)
 		by[i / 3][i % 3] = x[1][f->lid[i / 3]][i % 3] - x[0][f->lid[i / 3]][i % 3];

@@ -295,6 +295,7 @@ struct deform_near deform_near_of(const struct rig *rig)
 	out.rooms = deform_rooms_new(rig->n);
 	deform_edges_find(&out, rig);
 	prepare(&out, rig);
+	deform_find_lifted(&out, rig);
 	return out;
 }
 
@@ -309,6 +310,7 @@ void deform_near_free(struct deform_near *near)
 	free(near->edge);
 	free(near->rest_aside);
 	free(near->own);
+	free(near->lifted);
 	deform_cards_free(&near->cards);
 	free(near->seen[0]);
 	free(near->seen[1]);

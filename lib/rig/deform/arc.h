@@ -7,7 +7,12 @@
 /* What follows deform_pose in pictures and in what leaves: lowers lower lids, makes upper margins arcs, shuts what is all but shut, then
  * deform_clear; hair cards go with the skin that they stand on.
  * x  [rig.n], the target's frame, mm, in and out;  target_from_globe  of both globes in this pose
- * lifted  [2] mm by which expressions raise the left and the right lower lid (drive_lifted), which are not taken back; null: 0 */
+ * lifted  [2] mm by which expressions raise the left and the right lower lid (deform_lifted), which are not taken back; null: 0 */
 void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3], const double *lifted);
+
+/* lifted.c: how far the expressions of controls raise the left and the right lower lid, mm, >= 0: less, the less an eye is open. */
+void deform_lifted(double mm[2], const struct deform_near *near, const struct rig *rig, const double *controls);
+/* Measures that of each expression, for near (deform_near_of, last). */
+void deform_find_lifted(struct deform_near *near, const struct rig *rig);
 
 #endif

@@ -27,6 +27,7 @@ struct deform_near {
 	double arch[2];       // of each eye: mean height of the upper margin at rest over the line between its corners, mm
 	struct deform_opening *rest;  // [2] each eye's opening at rest
 	struct deform_opening *rest_aside;  // [4] the same as seen from either side, two of each eye (slide.h)
+	double (*lifted)[2];  // [expressions] mm by which each in full raises the left and the right lower lid of eyes that look ahead (arc.h)
 	struct deform_cards cards;    // what stands on the skin
 	double within[2][2];  // of each eye: heights over the eyeball's centre between which its opening is looked for, mm
 	struct deform_rooms *rooms;   // where poses are worked out; several threads may settle poses of their own with one deform_near

@@ -6,7 +6,6 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
-#include "rig/drive.h"
 #include "rig/glb/strands.h"
 #include "rig/glb/tears.h"
 
@@ -90,7 +89,7 @@ static void pose(struct poser *p, const double e[RIG_COMPONENTS], const double *
 void poser_pose(struct poser *p, const double *controls, double turn[2][3][3])
 {
 	double e[RIG_COMPONENTS], lifted[2];
-	drive_lifted(lifted, p->rig, controls);
+	deform_lifted(lifted, &p->near, p->rig, controls);
 	rig_components(e, p->rig, controls);
 	rig_globes_turned(turn, p->rig, controls);
 	memcpy(p->turn, turn, sizeof p->turn);

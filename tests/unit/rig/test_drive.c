@@ -64,13 +64,13 @@ static void driving_file(void **state)
 	scratch_close();
 }
 
-/* What an expression does to lids is added where they are ours to set, shut eyes stay so; and how far it raises the lower one. */
+/* What an expression does to lids is added where they are ours to set, shut eyes stay so. */
 static void expressions_take_lids(void **state)
 {
 	const struct face *face = *state;
 	struct rig rig;
 	struct err err = { 0 };
-	double by[EXPRESS_LIDS] = { -0.2, -0.9, -0.3, 0.5 }, look[12], c[12], mm[2];
+	double by[EXPRESS_LIDS] = { -0.2, -0.9, -0.3, 0.5 }, look[12], c[12];
 	struct rig_conf conf = face_conf();
 	assert_true(face_rig(&rig, 0, face, &conf, &err));
 	memcpy(rig.expression[1], by, sizeof by);
@@ -79,14 +79,14 @@ static void expressions_take_lids(void **state)
 	drive_express(c, &rig, 1, 0.5, 1);
 	for (int i = 0; i < 12; i++)
 		NEAR(c[i] - look[i], i == 11 ? 0.5 : i == 3 ? -0.1 : i == 4 ? -0.45 : i == 8 ? -0.15 : i == 9 ? 0.25 : 0, 1e-12);
+	NEAR(drive_opened(&rig, c, 0), 1, 1e-12);
+	drive_look(c, &rig, 5, -3, 0.3);
+	drive_express(c, &rig, 1, 1, 0.3);
+	NEAR(drive_opened(&rig, c, 0), 0.3, 1e-12);
 	drive_look(c, &rig, 5, -3, 0);
 	drive_express(c, &rig, 1, 1, 0);
+	assert_true(drive_opened(&rig, c, 1) == 0);
 	assert_true(c[3] == 0 && c[4] == 0 && c[8] == 0 && c[9] == 0 && c[11] == 1);
-	// 2 px of the lower lid, seen from 600 mm by a lens of 5000 px: what goes down is not raised.
-	drive_lifted(mm, &rig, c);
-	NEAR(rig.aperture_px[1], 2, 1e-12);
-	NEAR(mm[0], 0.9 * 2 * 600 / 5000, 1e-4);  // the eyeball is where its mesh has it
-	assert_true(mm[1] == 0);
 	rig_free(&rig);
 }
 

@@ -29,7 +29,7 @@ static void expressions_have_targets(void **state)
 			rig_globes_turned(turn, &m->on.rig, c);
 			deform_rest(deform, x[on], 0);
 			deform_pose(deform, e, (const double(*)[3][3])turn, x[on], 0);
-			drive_lifted(lifted, &m->on.rig, c);
+			deform_lifted(lifted, &near, &m->on.rig, c);
 			deform_settle(x[on], &m->on.rig, &near, (const double(*)[3][3])turn, lifted);
 		}
 		assert_string_equal(b.pose_name[GLB_POSES + k], m->conf.expression[k]);
