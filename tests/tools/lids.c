@@ -23,6 +23,7 @@
 #include "mesh/ray.h"
 #include "rig/deform/arc.h"
 #include "rig/deform/deform.h"
+#include "rig/deform/lifted.h"
 #include "rig/drive.h"
 #include "rig/hair/hair.h"
 

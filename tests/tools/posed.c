@@ -10,6 +10,7 @@
 #include "mesh/mesh.h"
 #include "rig/deform/arc.h"
 #include "rig/deform/deform.h"
+#include "rig/deform/lifted.h"
 #include "rig/drive.h"
 
 /* Controls of one line; false where it does not say them all. */

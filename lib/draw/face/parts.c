@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/deform/lifted.h"
 
 static bool is_surface(const struct rig *rig, int face)
 {

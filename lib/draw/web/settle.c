@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "draw/web/face_impl.h"
 #include "draw/web/packed.h"
+#include "rig/deform/lifted.h"
 #include "rig/drive.h"
 
 enum { SH = 5, SV = 5, SA = 6, GRID = SH * SV * SA, SREST = (SA - 2) * SH * SV + 3 * SH + SH / 2, MOST = 127 };  // steps either way

@@ -9,6 +9,7 @@
 #include "math/vec.h"
 #include "rig/deform/carry.h"
 #include "rig/deform/deform.h"
+#include "rig/deform/lifted.h"
 #include "rig/deform/room.h"
 #include "rig/deform/slide.h"
 #include "rig/deform/terms.h"

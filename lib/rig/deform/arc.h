@@ -10,9 +10,4 @@
  * lifted  [2] mm by which expressions raise the left and the right lower lid (deform_lifted), which are not taken back; null: 0 */
 void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3], const double *lifted);
 
-/* lifted.c: how far the expressions of controls raise the left and the right lower lid, mm, >= 0: less, the less an eye is open. */
-void deform_lifted(double mm[2], const struct deform_near *near, const struct rig *rig, const double *controls);
-/* Measures that of each expression, for near (deform_near_of, last). */
-void deform_find_lifted(struct deform_near *near, const struct rig *rig);
-
 #endif

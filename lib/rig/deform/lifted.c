@@ -1,4 +1,5 @@
-/* How far an expression in full raises the lower lids of a character: measured once, looking ahead, as what is learnt moves them. */
+#include "rig/deform/lifted.h"
+
 #include <stdlib.h>
 #include <string.h>
 

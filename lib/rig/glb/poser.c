@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "math/vec.h"
+#include "rig/deform/lifted.h"
 #include "rig/glb/strands.h"
 #include "rig/glb/tears.h"
 

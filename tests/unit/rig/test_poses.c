@@ -1,6 +1,7 @@
 /* Targets of single poses: what each is, that they add up, and that a blink goes round the eye. */
 #include "math/vec.h"
 #include "rig/deform/arc.h"
+#include "rig/deform/lifted.h"
 #include "rig/glb/bake.h"
 #include "rig/glb/halves.h"
 #include "tests/lib/scenes/driven.h"
