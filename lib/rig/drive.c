@@ -61,16 +61,6 @@ static long fill(struct drive *d, int input, double otherwise)
 	return filled;
 }
 
-/* Lids that the file leaves to us. */
-static void express_rest(double *c, const struct skin_model *model, const bool none[2])
-{
-	double px[EXPRESS_LIDS];
-	skin_model_range(px, model);
-	for (int eye = 0; eye < 2; eye++)
-		if (none[eye])
-			express_eye(c + 5 * eye + 3, eye, model->n_au, c + SKIN_EYE_INPUTS, (const double(*)[EXPRESS_LIDS])model->expression, px, 1);
-}
-
 static bool take(struct drive *d, const struct csv_table *t, const struct skin_model *model, const char *path, struct err *err)
 {
 	int time = csv_need(t, "time_s", path, err), *column = mem_new((size_t)model->n_inputs + 1, sizeof *column);
@@ -85,11 +75,11 @@ static bool take(struct drive *d, const struct csv_table *t, const struct skin_m
 		if (!normalised)
 			skin_model_controls(c, model, c);
 	}
-	bool none[2] = { column[3] < 0 && column[4] < 0, column[8] < 0 && column[9] < 0 };
+	const double left_to_us[2] = { column[3] < 0 && column[4] < 0, column[8] < 0 && column[9] < 0 };  // eyes of which the file tells no aperture
 	for (int i = 0; i < d->n_inputs && ok; i++)
 		d->filled += fill(d, i, isfinite(model->rest_controls[i]) ? model->rest_controls[i] : 0);
 	for (int f = 0; f < d->n && ok; f++)
-		express_rest(drive_at(d, f), model, none);
+		skin_model_express(drive_at(d, f), model, left_to_us);
 	free(column);
 	return ok;
 }

@@ -64,15 +64,15 @@ static bool is_on(const struct skin_model *m, const double *g)
 static void take(struct on *o, const struct train *t, int eye)
 {
 	const struct skin_model *m = t->model;
-	double *controls = mem_new((size_t)m->n_inputs, sizeof *controls), gaze[2] = { NAN, NAN };
+	double *controls = mem_new((size_t)m->n_inputs, sizeof *controls), gaze[2] = { NAN, NAN }, px[EXPRESS_LIDS];
 	long many = 0;
 	for (long i = 0; i < t->clip->n; i++)
 		many += is_on(m, t->g + i * m->n_inputs);
 	const long step = 1 + many / (t->conf->sample + 1);
 	on_alloc(o, (size_t)(many / step + 2), m->n_au);
 	o->usual = train_usual_opening(t, eye);
-	for (int lid = 0; lid < 2; lid++)
-		o->px[lid] = m->open[5 * eye + 3 + lid] - m->closed[5 * eye + 3 + lid];
+	skin_model_range(px, m);
+	memcpy(o->px, px + 2 * eye, sizeof o->px);
 	many = 0;
 	for (long i = 0; i < t->clip->n; i++) {
 		const double *g = t->g + i * m->n_inputs, *measured = t->clip->g + i * m->n_inputs;

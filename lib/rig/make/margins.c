@@ -273,8 +273,8 @@ static void apply(struct rig *rig, int i, const struct opening *o, const double 
 	for (int k = 0; k < RIG_BASIS && total > 0; k++)
 		rig->basis[i][k] += (float)(most * (sum[k] / total - rig->basis[i][k]));
 	// A lid turns about the eyeball as one, its outside, too: else the outer edge of a thick margin sinks behind the inner one.
-	rig->glue[i] = (float)on_tarsus(rig, i, o, away, conf);
-	const double more = away[UPPER] > away[LOWER] ? 0 : fmax(on_tarsus(rig, i, o, away, conf) - most, 0);
+	const double as_one = on_tarsus(rig, i, o, away, conf), more = away[UPPER] > away[LOWER] ? 0 : fmax(as_one - most, 0);
+	rig->glue[i] = (float)as_one;
 	terms_at(open, o, UPPER, rig->home[i][0], fmax((away[UPPER] - margin_mm) * o->px_per_mm, 0.5));
 	for (int k = 0; k < RIG_COMPONENTS && more > 0; k++)
 		rig->basis[i][RIG_COMPONENTS + k] += (float)(more * (open[2 + UPPER] * lack + (lack > 0) * breadth(o, UPPER, rig->home[i], out, conf)) * closing[k]);

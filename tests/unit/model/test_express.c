@@ -95,18 +95,24 @@ static double naive(const struct linear_clip *c, const struct skin_model *m, int
 	return xy / xx;
 }
 
+/* skin_model_free, train_report_free. */
+static void train(struct skin_model *m, struct train_report *report, struct linear_clip *c)
+{
+	struct train_clip clip = linear_clip_train(c);
+	struct train_conf conf = train_defaults;
+	struct err err = { 0 };
+	conf.brief = true;
+	if (!train_run(m, report, &clip, &conf, &err))
+		fail_msg("%s", err.msg);
+}
+
 static void learnt(void **state)
 {
 	(void)state;
 	struct linear_clip *c = expressive();
-	struct train_clip clip = linear_clip_train(c);
-	struct train_conf conf = train_defaults;
 	struct skin_model m;
 	struct train_report report;
-	struct err err = { 0 };
-	conf.brief = true;
-	if (!train_run(&m, &report, &clip, &conf, &err))
-		fail_msg("%s", err.msg);
+	train(&m, &report, c);
 	double off = 0;
 	for (int k = 0; k < EXPRESS_LIDS; k++) {
 		for (int e = 0; e < 2; e++) {
@@ -131,14 +137,9 @@ static void one_eye(void **state)
 		for (int k = 5; k < 10; k++)
 			c->g[i * (SKIN_EYE_INPUTS + 3) + k] = NAN;
 	c->conf.no_right = true;
-	struct train_clip clip = linear_clip_train(c);
-	struct train_conf conf = train_defaults;
 	struct skin_model m;
 	struct train_report report;
-	struct err err = { 0 };
-	conf.brief = true;
-	if (!train_run(&m, &report, &clip, &conf, &err))
-		fail_msg("%s", err.msg);
+	train(&m, &report, c);
 	NEAR(in_px(&m, m.expression[0][1], 1), true_px(c, 0, 1), 0.2);
 	assert_true(m.expression[0][2] == 0 && m.expression[0][3] == 0 && isnan(m.expression_sigma[0][3]));
 	skin_model_free(&m);
