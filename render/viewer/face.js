@@ -54,7 +54,7 @@ class FaceScene {
 		gl.bindBuffer(gl.ARRAY_BUFFER, null);  // what a pass writes to is bound to nothing else
 		// Both eyes and some of what is beside them, mm across.
 		this.field = FaceScene.WIDE * Math.hypot(...[0, 1, 2].map(k => data.globes[0][k] - data.globes[1][k]));
-		this.sky_map = g.texture(2 * data.sky_px, data.sky_px, gl.R8);
+		this.sky_map = g.texture(2 * data.sky_px, data.sky_px, gl.RGBA8);
 	}
 
 	skin(preset) {
@@ -82,12 +82,12 @@ class FaceScene {
 		const sky = this.sky(c);
 		gl.bindTexture(gl.TEXTURE_2D, this.sky_map.texture);
 		gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * d.sky_px, d.sky_px, gl.RED, gl.UNSIGNED_BYTE, sky);
+		gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 2 * d.sky_px, d.sky_px, gl.RGBA, gl.UNSIGNED_BYTE, sky);
 	}
 
-	/* Share of the sky that lids leave over places of both globes, of 255: of the poses that light comes from, expressions too. */
+	/* Share of the sky that lids leave over places of both globes, of 255, and the direction of its middle: of the poses that light comes from, expressions too. */
 	sky(controls) {
-		const wide = 2 * this.data.sky_px, n = wide * this.data.sky_px, lit = this.poser.lit(controls);
+		const wide = 4 * 2 * this.data.sky_px, n = wide * this.data.sky_px, lit = this.poser.lit(controls);
 		return Uint8ClampedArray.from({ length: n }, (_, i) => lit.reduce((sum, [pose, left, right]) => sum + (i % wide < wide / 2 ? left : right) * this.skies[pose * n + i], 0));
 	}
 

@@ -1,4 +1,4 @@
-// What lids do to the eye below them: they leave it some of the sky, darken it under their edge, and hold the tear line, a quarter
+// What lids do to the eye below them: they leave it some of the sky, whose light is that about its middle, darken it under their edge, and hold the tear line, a quarter
 // of a circle that leaves the globe flat and meets the lid upright: lib/draw/face/eye.c, draw/face/tear.c, draw/face/wet.c.
 uniform mat3 lidded_from_eye;     // to the axes in which lids leave sky over places of the globe
 uniform float side;               // left eye 0, right eye 1
@@ -10,6 +10,7 @@ uniform vec4 canthus;             // the inner corner from the globe's middle, h
 uniform vec3 skin_rgb;
 
 vec3 environment(vec3 r, float rough);
+vec3 below_film(vec3 normal);
 vec3 ray_at(vec2 px);
 
 // Direction to the lid, averaged over the neighbours: a single pixel's follows every step of the edge.
@@ -63,8 +64,10 @@ vec3 wet(vec3 rgb, vec3 dir, vec3 n, vec3 away, float d, float height, float mm,
 vec3 below_lids(vec3 rgb, vec3 at, vec3 dir)
 {
 	vec3 n = normalize(at - vec3(0.0, 0.0, sclera.x)), place = lidded_from_eye * n;
-	float open = textureLod(sky_map, vec2(clamp(0.25 + 0.25 * place.x, 0.02, 0.48) + 0.5 * side, 0.5 + 0.5 * place.y), 0.0).r;
-	rgb *= open + vec3(LOOK_BOUNCE) * (1.0 - open);
+	vec4 left = textureLod(sky_map, vec2(clamp(0.25 + 0.25 * place.x, 0.02, 0.48) + 0.5 * side, 0.5 + 0.5 * place.y), 0.0);
+	float open = left.r;
+	vec3 middle = transpose(lidded_from_eye) * normalize(2.0 * left.gba - 1.0);
+	rgb *= open * min(max(below_film(middle), 0.02) / max(below_film(n), 0.02), 2.0) + vec3(LOOK_BOUNCE) * (1.0 - open);
 	ivec2 px = ivec2(gl_FragCoord.xy);
 	// In view space, over the globe: a pixel that it turns away from the camera shows more of it.
 	vec4 lid = texelFetch(lid_map, px, 0);

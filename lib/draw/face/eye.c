@@ -112,15 +112,14 @@ static unsigned char *visible_of(const int window[4], const struct portrait_view
 	return out;
 }
 
-/* Ambient occlusion: the share of the sky that lids and brow leave over a point of the eye, by fixed cosine-weighted directions. */
-static float sky_over(const struct portrait *p, const float at[3], const float normal[3])
+float portrait_sky_over(float middle[3], const struct portrait *p, const float at[3], const float normal[3])
 {
 	enum { RAYS = 20 };
-	float across[3], up[3], n = 0;
+	float across[3], up[3], sum[3] = { 0 }, len, n = 0;
 	int thin = fabsf(normal[0]) < 0.6f ? 0 : 1;
 	for (int c = 0; c < 3; c++)
 		across[c] = (c == thin) - normal[c] * normal[thin];
-	float len = sqrtf(across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
+	len = sqrtf(across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
 	for (int c = 0; c < 3; c++)
 		across[c] /= len;
 	up[0] = normal[1] * across[2] - normal[2] * across[1];
@@ -130,12 +129,19 @@ static float sky_over(const struct portrait *p, const float at[3], const float n
 		float r = sqrtf(((float)k + 0.5f) / RAYS), turn = 2.399963f * (float)k, z = sqrtf(1 - r * r), dir[3];
 		for (int c = 0; c < 3; c++)
 			dir[c] = r * cosf(turn) * across[c] + r * sinf(turn) * up[c] + z * normal[c];
-		n += !ray_blocked(p->shadow, at, dir, 0.02f, 60);
+		if (ray_blocked(p->shadow, at, dir, 0.02f, 60))
+			continue;
+		n++;
+		for (int c = 0; c < 3; c++)
+			sum[c] += dir[c];
 	}
+	len = sqrtf(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+	for (int c = 0; c < 3; c++)
+		middle[c] = n > 0 ? sum[c] / len : normal[c];
 	return n / RAYS;
 }
 
-/* Lids darken the eye below them. */
+/* Lids darken the eye below them: they leave it some of its sky, of which the light is that about its middle. */
 static void shade_eye(struct image *image, const int corner[2], const struct portrait *p, const struct portrait_rays *rays, int side)
 {
 	const double *center = p->rig->globe[side].center;
@@ -154,10 +160,20 @@ static void shade_eye(struct image *image, const int corner[2], const struct por
 			}
 			for (int c = 0; c < 3; c++)
 				normal[c] /= sqrtf(len);
-			float open = sky_over(p, at, normal);
 			static const float bounce[3] = { LOOK_BOUNCE };  // light off the lids
+			float middle[3], to[2][3], light[2][3];
+			const float open = portrait_sky_over(middle, p, at, normal);
+			for (int c = 0; c < 3; c++) {
+				to[0][c] = to[1][c] = 0;
+				for (int k = 0; k < 3; k++) {
+					to[0][c] += (float)rays->rig_from_cam[k][c] * normal[k];
+					to[1][c] += (float)rays->rig_from_cam[k][c] * middle[k];
+				}
+			}
+			for (int k = 0; k < 2; k++)
+				envmap_wet(light[k], p->env, to[k]);
 			for (int c = 0; c < 3; c++)
-				px[c] *= open + bounce[c] * (1 - open);
+				px[c] *= open * fminf(fmaxf(light[1][c], 0.02f) / fmaxf(light[0][c], 0.02f), 2) + bounce[c] * (1 - open);
 		}
 }
 

@@ -37,30 +37,26 @@ static void record(uint8_t (*to)[3], const struct web_face *f)
 			to[i][c] = byte(255 * sqrt(fmax(f->portrait->mesh.light[i][c], 0) / 3));
 }
 
-/* Share of the sky that lids leave open over points of both globes: SKY x SKY on the front half of each, seen along the line of sight
- * straight ahead. */
-static void sky(uint8_t *to, const struct web_face *f)
+/* What sky lids leave open over points of both globes: SKY x SKY on the front half of each, seen along the line of sight straight ahead. Its share, 255 all; and
+ * the direction of its middle in the head's axes, 0 -1 to 255 1. */
+static void sky(uint8_t (*to)[4], const struct web_face *f)
 {
-	enum { RAYS = 20 };
 	for (int side = 0; side < 2; side++)
 		for (int k = 0; k < SKY * SKY; k++) {
 			double x = (2 * (k % SKY) + 1.0) / SKY - 1, y = (2 * (k / SKY) + 1.0) / SKY - 1, z2 = 1 - x * x - y * y;
-			double n[3] = { x, y, sqrt(fmax(z2, 0)) }, t[3], u[3], w[3], open = 0;
+			double n[3] = { x, y, sqrt(fmax(z2, 0)) }, t[3], middle[3];
+			float from[3], normal[3], about[3];
 			vec_unit(n, n);
 			mat_tvec(t, f->rig->head_from_target, n);
-			vec_cross(u, t, fabs(t[0]) < 0.6 ? (double[]){ 1, 0, 0 } : (double[]){ 0, 1, 0 });
-			vec_unit(u, u);
-			vec_cross(w, t, u);
-			for (int j = 0; j < RAYS; j++) {
-				double r = sqrt((j + 0.5) / RAYS), turn = 2.399963 * j, up = sqrt(1 - r * r);
-				float from[3], dir[3];
-				for (int c = 0; c < 3; c++) {
-					from[c] = (float)(f->rig->globe[side].center[c] + f->rig->globe[side].radius * t[c]);
-					dir[c] = (float)(r * cos(turn) * u[c] + r * sin(turn) * w[c] + up * t[c]);
-				}
-				open += !ray_blocked(f->portrait->shadow, from, dir, 0.02f, 60);
+			for (int c = 0; c < 3; c++) {
+				from[c] = (float)(f->rig->globe[side].center[c] + f->rig->globe[side].radius * t[c]);
+				normal[c] = (float)t[c];
 			}
-			to[(k / SKY) * 2 * SKY + side * SKY + k % SKY] = byte(255 * open / RAYS);
+			uint8_t *at = to[(k / SKY) * 2 * SKY + side * SKY + k % SKY];
+			at[0] = byte(255 * (double)portrait_sky_over(about, f->portrait, from, normal));
+			mat_vec(middle, f->rig->head_from_target, (double[]){ (double)about[0], (double)about[1], (double)about[2] });
+			for (int c = 0; c < 3; c++)
+				at[1 + c] = byte(127.5 + 127.5 * middle[c]);
 		}
 }
 
@@ -69,7 +65,7 @@ static void pose_all(struct web_face *f)
 {
 	double *controls = mem_new((size_t)f->rig->n_inputs + 1, sizeof *controls);
 	struct portrait_view view = portrait_front(f->rig, -1, 140, 0, 0, 1280, 720);
-	f->sky = mem_new((size_t)(POSES + f->n_au) * SKY * SKY, 2);
+	f->sky = mem_new((size_t)(POSES + f->n_au) * SKY * SKY * 2, sizeof *f->sky);
 	f->light = mem_new((size_t)(POSES + f->n_au), sizeof *f->light);
 	for (int k = 0; k < POSES + f->n_au; k++) {
 		int pose = k < POSES ? k : REST;
@@ -193,7 +189,7 @@ json_t *web_face(const char *name, struct portrait *portrait, const struct skin_
 	json_object_set_new(out, "globes", globes);
 	json_object_set_new(out, "corners", corners);
 	json_object_set_new(out, "sky_px", json_integer(SKY));
-	json_object_set_new(out, "sky", packed_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2, 1, (size_t)SKY * SKY * 2));
+	json_object_set_new(out, "sky", packed_json(f.sky, (size_t)(POSES + f.n_au) * SKY * SKY * 2 * sizeof *f.sky, 1, (size_t)SKY * SKY * 2 * sizeof *f.sky));
 	web_order(&f, 0.98 * reach);
 	put_colours(out, &f);
 	web_settle_put(out, &f);

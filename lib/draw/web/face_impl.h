@@ -21,7 +21,7 @@ struct web_face {
 	double middle[3];                // of both eyes
 	int n_au;                        // expressions: a pose of each follows the grid's
 	uint8_t (**light)[3];            // [POSES + n_au][rig n]: roots of irradiance
-	uint8_t *sky;                    // [POSES + n_au][SKY][2 SKY]: left, right
+	uint8_t (*sky)[4];               // [POSES + n_au][SKY][2 SKY]: left, right; share and middle of what lids leave of it
 	int n_lid, *lid, *settled_as;    // settle.c: the lids' vertices that it moves, rows of the rig; of each row its number there plus 1, 0: none
 	int n_shown, *order, *place;     // the page's vertices: the mesh's row; and back, -1: not on the page
 	int n_levels;

@@ -1,4 +1,4 @@
-/* Edges and hairs of a portrait, against the same picture drawn four times as large and averaged. */
+/* Edges and hairs of a portrait, against the same picture drawn four times as large and averaged; what sky is left beside a wall. */
 #include "draw/face/impl.h"
 #include "rig/drive.h"
 #include "tests/lib/scenes/portrayed.h"
@@ -110,11 +110,43 @@ static void hairs_are_averaged(void **state)
 	assert_true(d < 0.01);  // of a box as wide as a pixel: 0.013
 }
 
+/* A wall that hides half of the sky: of directions weighted by the cosine half are left, whose mean is (4 / (3 pi), 0, 2 / 3); whichever way it stands. */
+static void half_a_sky_lies_beside_the_wall(void **state)
+{
+	(void)state;
+	static const float wall[4][3] = { { 0, 0, -900 }, { 0, 0, 900 }, { 900, 0, 900 }, { 900, 0, -900 } };
+	static const int32_t faces[2][3] = { { 0, 1, 2 }, { 0, 2, 3 } };
+	for (int turn = 0; turn < 12; turn++) {
+		const float a = (float)(turn * M_PI / 6), along[3] = { cosf(a), 0, -sinf(a) }, normal[3] = { sinf(a) * 0.6f, 0.8f, cosf(a) * 0.6f };
+		const float off[3] = { normal[1] * along[2] - normal[2] * along[1], normal[2] * along[0] - normal[0] * along[2], normal[0] * along[1] - normal[1] * along[0] };
+		float corner[4][3], middle[3], at[3] = { 0 }, beside = 0, above = 0, aside = 0;
+		for (int k = 0; k < 4; k++)
+			for (int c = 0; c < 3; c++)
+				corner[k][c] = 0.03f * along[c] + wall[k][2] * off[c] + wall[k][0] * normal[c];
+		struct portrait p = { .shadow = ray_scene_new(4, (const float(*)[3])corner, 2, faces) };
+		const float open = portrait_sky_over(middle, &p, at, normal);
+		for (int c = 0; c < 3; c++) {
+			beside -= middle[c] * along[c];
+			above += middle[c] * normal[c];
+			aside += middle[c] * off[c];
+		}
+		NEAR(open, 0.5, 0.051);  // of twenty directions
+		NEAR(atan2f(beside, above), atan(4 / (3 * M_PI) / (2 / 3.0)), 0.1);
+		NEAR(aside, 0, 0.15);
+		ray_scene_free(p.shadow);
+		p.shadow = ray_scene_new(0, 0, 0, 0);
+		NEAR(portrait_sky_over(middle, &p, at, normal), 1, 0);
+		NEAR(middle[0] * normal[0] + middle[1] * normal[1] + middle[2] * normal[2], 1, 0.01);
+		ray_scene_free(p.shadow);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(edges_are_averaged),
 		cmocka_unit_test(hairs_are_averaged),
+		cmocka_unit_test(half_a_sky_lies_beside_the_wall),
 	};
 	return cmocka_run_group_tests(tests, setup, teardown);
 }
