@@ -109,15 +109,15 @@ bool job_ready(struct job *job, struct err *err)
 		return true;
 	if (!shot_ready(job, reference, err) || !job_studio(job, err))
 		return false;
-	double white[3];
-	if (!scene_white(white, stage_path(job->stage, "%s", job->in[3]), err))
+	struct scene_white white;
+	if (!scene_white(&white, stage_path(job->stage, "%s", job->in[3]), err))
 		return false;
-	if (sclera_of_photo(conf.sclera_rgb, reference, white))
-		shot_unlight(conf.sclera_rgb, reference, job->eye, conf.sclera_radius);
+	if (white.has_sclera)
+		memcpy(conf.sclera_rgb, white.sclera, sizeof conf.sclera_rgb);
 	else
-		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", reference->photo->name);
+		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", job->names->side);
 	struct image vessels;
-	const bool seen = vessels_of_photo(&vessels, reference, job->eye, conf.sclera_radius, white, conf.veins_px);
+	const bool seen = vessels_of_photo(&vessels, reference, job->eye, conf.sclera_radius, white.rgb, conf.veins_px);
 	conf.vessels = seen ? &vessels : 0;
 	job->gain = studio_exposure(&job->studio, conf.sclera_rgb);
 	struct eye eye = *job->eye;

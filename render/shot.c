@@ -6,6 +6,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "bridge/cv_blur.h"
+#include "draw/eye/tint.h"
 #include "draw/photo/reference.h"
 #include "image/photo/photo.h"
 #include "render/render.h"
@@ -113,10 +114,13 @@ static bool light(struct job *job, struct shot *shot, struct err *err)
 {
 	const int rows = env_height(job->conf);
 	struct sclera_light shading;
+	struct scene_white white;
+	if (!scene_white(&white, stage_path(job->stage, "%s", job->in[3]), err))
+		return false;
 	if (job->conf->polarised)
 		shot->env = light_studio(rows);
 	else
-		shot->env = light_of_photo(shot, job->eye, rows, white_told(job), &shot->lamps, &shot->n_lamps);
+		shot->env = light_of_photo(shot, job->eye, rows, white.rgb, white_told(job), &shot->lamps, &shot->n_lamps);
 	if (job->conf->light) {
 		envmap_free(&shot->env);
 		if (!light_load(&shot->env, &job->light_level, job->stage, "light.environment", job->conf->light, err))

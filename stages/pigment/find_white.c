@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "limbus/evidence.h"
 #include "math/stats.h"
 #include "tissue/light/iris_light.h"
 
@@ -51,6 +52,7 @@ struct search {
 	const struct envmap *told;
 	double extent;
 	const struct pigment_stage_conf *conf;
+	struct evidence_net *net;
 };
 
 /* Light first, then white under it. on_iris: what white shows on the iris, too. */
@@ -60,8 +62,13 @@ static bool measure(struct seen *out, const struct photo *photo, const struct fi
 	const struct pigment_stage_conf *c = s->conf;
 	struct pale *samples = mem_array(PALE_MAX, sizeof *samples);
 	const struct opt_each *card = capture_key(&c->card, of);
-	int n = pale_find(samples, photo, fit, s->anatomy, pale);
-	bool ok = true;
+	struct evidence evidence = { 0 };
+	struct err untold = { 0 };
+	bool ok = true, told = evidence_window(&evidence, s->net, photo, fit->limbus.cx, fit->limbus.cy, fit->limbus.a, &untold);
+	int n = pale_find(samples, photo, fit, s->anatomy, told ? &evidence : 0, pale);
+	evidence_free(&evidence);
+	if (!told)
+		stage_warn(s->stage, "%s", untold.msg);
 	out->shading = sclera_light_fit(samples, n);
 	struct envmap own = s->told ? (struct envmap){ 0 } : sclera_light_environment(&out->shading, ENV_ROWS);
 	const struct envmap *env = s->told ? s->told : &own;
@@ -69,11 +76,21 @@ static bool measure(struct seen *out, const struct photo *photo, const struct fi
 	memcpy(view.cam_from_eye, fit->cam_from_eye, sizeof view.cam_from_eye);
 	if (on_iris)
 		iris_light_make(&out->light, &out->slant, LIGHT_TEXELS, s->extent, &view);
+	struct white sclera;
+	const bool measured = white_sclera(&sclera, samples, n, env, &c->white);
+	out->white = white_camera();
 	if (card && c->white_from != WHITE_FROM_CAMERA) {
 		ok = white_card(&out->white, photo, card->value, &c->white, err);
 		out->has_white = ok;
-	} else if (c->white_from == WHITE_FROM_SCLERA) {
-		out->has_white = white_sclera(&out->white, samples, n, env, &c->white);
+	} else if (measured && c->white_from == WHITE_FROM_SCLERA) {
+		out->white = sclera;
+		out->has_white = true;
+	}
+	for (int k = 0; k < 3 && measured; k++)
+		out->white.sclera[k] = sclera.rgb[k] * c->white.sclera[k] / out->white.rgb[k];
+	if (measured) {
+		out->white.shade = sclera.shade;
+		out->white.share = out->has_white ? out->white.share : sclera.share;
 	}
 	envmap_free(&own);
 	free(samples);
@@ -147,8 +164,11 @@ static void join(struct seen *out, const struct search *s, const struct capture_
 	chroma_of(own_chroma, out->white.rgb);
 	chroma_of(chroma, fellow.white.rgb);
 	white_pair(chroma, own_chroma, chroma, irises ? iris : 0, &s->conf->fellow);
-	out->white.rgb[0] = out->white.rgb[1] * exp(chroma[0]);
-	out->white.rgb[2] = out->white.rgb[1] * exp(chroma[1]);
+	for (int k = 0; k < 3; k += 2) {
+		const double was = out->white.rgb[k];
+		out->white.rgb[k] = out->white.rgb[1] * exp(chroma[k / 2]);
+		out->white.sclera[k] *= was / out->white.rgb[k];
+	}
 	out->joined = true;
 }
 
@@ -179,13 +199,17 @@ static void take(struct found_white *out, const struct seen *seen, const double 
 	for (long i = 0; i < (long)IRIS_SLANT * out->slant.width * out->slant.height; i++)
 		out->slant.px[i] += seen->slant.px[i];
 	out->lights[out->n_lights++] = (struct found_light){ name, seen->shading };
-	if (!seen->has_white || !white_better(&seen->white, &out->white))
+	if (!white_better(&seen->white, &out->white))
 		return;
 	out->white = seen->white;
 	out->joined = seen->joined;
-	out->photo = name;
-	for (int k = 0; k < 3; k++)
-		out->white.rgb[k] *= gain[k];
+	out->photo = seen->has_white ? name : 0;
+	for (int k = 0; k < 3; k++) {
+		if (seen->has_white)
+			out->white.rgb[k] *= gain[k];
+		else  // the camera's white is 1 in the texture, too
+			out->white.sclera[k] *= gain[k];
+	}
 }
 
 bool find_white(struct found_white *out, struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
@@ -196,9 +220,13 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 		return false;
 	*out = (struct found_white){ .white = white_camera(), .light = image_new(LIGHT_TEXELS, LIGHT_TEXELS, 4),
 		.slant = image_new(LIGHT_TEXELS, LIGHT_TEXELS, IRIS_SLANT), .lights = mem_array((size_t)capture->n_photos, sizeof *out->lights) };
-	const struct search search = { stage, capture, anatomy, env, extent, c };
+	struct search search = { stage, capture, anatomy, env, extent, c, 0 };
 	double view = 0;
 	int views = 0;
+	if (!evidence_open_shipped(&search.net, err)) {
+		json_decref(texture);
+		return false;
+	}
 	for (int i = 0; i < capture->n_photos; i++) {
 		const struct capture_photo *p = &capture->photos[i];
 		double gain[3];
@@ -217,6 +245,7 @@ bool find_white(struct found_white *out, struct stage *stage, const struct captu
 		image_free(&seen.light);
 		image_free(&seen.slant);
 	}
+	evidence_close(search.net);
 	json_decref(texture);
 	out->cos_view = views ? view / views : 1;
 	for (long i = 0; i < 4L * LIGHT_TEXELS * LIGHT_TEXELS; i++)

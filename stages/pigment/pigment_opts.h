@@ -32,6 +32,7 @@
 	OPT_REAL("prior_veil", &(c)->prior_veil, 1e-4, 1, "", "sigma of the cornea's reflection"), \
 	OPT_CHOICE("white", &(c)->white_from, pigment_whites, "where white is taken from"), \
 	OPT_REAL("white_unknown", &(c)->white_unknown, 0.01, 5, "", "sigma of ln exposure where no white was seen"), \
+	OPT_REAL("white_doubt", &(c)->white_doubt, 0, 10, "", "ln: errors of the white as fitted that are smaller are the model's"), \
 	OPT_REAL("card_reflectance", &(c)->white.card, 0.01, 1, "", "of the grey card"), \
 	OPT_REALS("sclera", (c)->white.sclera, 3, 0.05, 1, "", "reflectance of the sclera: R G B"), \
 	OPT_REAL("sclera_inner", &(c)->white.pale.inner, 1, 2, "", "ring searched for sclera, in limbus semi-axes"), \
@@ -39,6 +40,8 @@
 	OPT_REAL("sclera_redness", &(c)->white.pale.redness, 0.01, 2, "", "ln R/G above the palest that is skin"), \
 	OPT_REAL("sclera_reddest", &(c)->white.pale.reddest, 0.05, 3, "", "ln R/G that is skin in any light"), \
 	OPT_REAL("sclera_dark", &(c)->white.pale.dark, 0, 1, "", "share of the brightest that is shadow"), \
+	OPT_REAL("sclera_shade", &(c)->white.shade_most, 0, 3, "", "ln by which the light on sclera and iris may differ"), \
+	OPT_REAL("sclera_sure", &(c)->white.pale.sure, 0, 1, "", "evidence from which a place counts as sclera"), \
 	OPT_REAL("sclera_share_min", &(c)->white.share_min, 0.001, 1, "", "less of the ring than that is no white"), \
 	OPT_REAL("white_sigma", &(c)->fellow.sigma, 0.001, 1, "", "of ln R/G, ln B/G of a white, beside the other eye's"), \
 	OPT_REALS("white_skin", (c)->fellow.skin, 2, 0.001, 0.99, "", "chance that skin is in a white, ln R/G that it adds"), \

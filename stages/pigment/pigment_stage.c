@@ -112,16 +112,37 @@ static json_t *light_json(const struct work *w)
 	return out;
 }
 
-static char *extra_json(const struct work *w)
+/* level: of the light on the eye over the white's own; without a sclera the exposure of the fit tells it, where the white does not. sclera: its albedo, as light as
+ * conf has it, in the hue that it has under the white. */
+static json_t *white_json(const struct work *w, const struct white_conf *conf, double exposure)
 {
-	json_t *out = json_object(), *white = json_object();
-	json_object_set_new(white, "source", json_string(white_names[w->found.white.source]));
-	json_object_set_new(white, "photo", json_string(w->found.photo ? w->found.photo : ""));
-	json_object_set_new(white, "both_eyes", json_boolean(w->found.joined));
-	json_object_set_new(white, "rgb", json_numbers(3, w->found.white.rgb));
-	json_object_set_new(white, "share", json_number(w->found.white.share));
-	json_object_set_new(white, "spread", json_number(w->found.white.spread));
-	json_object_set_new(out, "white", white);
+	const struct white *of = &w->found.white;
+	json_t *out = json_object();
+	const double level = of->sclera[1] > 0 || of->source != WHITE_CAMERA ? white_level(of, w->told, conf) : exposure, light = white_level(of, true, conf);
+	json_object_set_new(out, "source", json_string(white_names[of->source]));
+	json_object_set_new(out, "photo", json_string(w->found.photo ? w->found.photo : ""));
+	json_object_set_new(out, "both_eyes", json_boolean(w->found.joined));
+	json_object_set_new(out, "rgb", json_numbers(3, of->rgb));
+	json_object_set_new(out, "level", json_number(level));
+	if (of->sclera[1] > 0)
+		json_object_set_new(out, "sclera", json_numbers(3, (double[3]){ of->sclera[0] / light, of->sclera[1] / light, of->sclera[2] / light }));
+	json_object_set_new(out, "share", json_number(of->share));
+	json_object_set_new(out, "spread", json_number(of->spread));
+	return out;
+}
+
+/* How much of white's error as fitted, ln, is the white's: small ones are the model's, that has no paint nor all irises' pigments. */
+static double believed(double error, double doubt)
+{
+	return error == 0 ? 0 : error * error * error / (error * error + doubt * doubt);
+}
+
+static char *extra_json(const struct work *w, const struct pigment_stage_conf *c)
+{
+	json_t *out = json_object(), *white;
+	const double *x = w->fit.x, exposure = exp(x[PIGMENT_EXPOSURE] - w->conf.prior[PIGMENT_EXPOSURE][0]);
+	json_object_set_new(out, "white", white = white_json(w, &c->white, exposure));
+	json_object_set_new(white, "error", json_numbers(3, (double[3]){ exp(believed(x[PIGMENT_RED], c->white_doubt)), 1, exp(believed(x[PIGMENT_BLUE], c->white_doubt)) }));
 	json_object_set_new(out, "light", light_json(w));
 	if (w->map.n)
 		json_object_set_new(out, "melanin_map", melanin_json(&w->map, &w->fit));
@@ -198,6 +219,17 @@ static bool compute(struct work *w, char *const own[3], struct stage *stage, con
 	return c->melanin == MELANIN_ONE || melanin_fit(&w->map, &t, &w->fit, &w->conf, &c->classes, &c->map, err);
 }
 
+/* White alone, of no colour. */
+static bool compute_grey(struct work *w, struct stage *stage, const struct capture *capture, int eye, const struct eye *anatomy,
+                         const struct envmap *told, const struct pigment_stage_conf *c, struct err *err)
+{
+	struct pigment_stage_conf grey = *c;
+	double *sclera = grey.white.sclera;
+	sclera[0] = sclera[1] = sclera[2] = 0.2126 * sclera[0] + 0.7152 * sclera[1] + 0.0722 * sclera[2];
+	w->told = told;
+	return find_white(&w->found, stage, capture, eye, anatomy, told, anatomy->limbus_radius, &grey, err);
+}
+
 /* Whether texture.json says that the texture has no colour. Older ones do not say. */
 static bool is_grey(const char *texture_json)
 {
@@ -219,9 +251,9 @@ static bool write_light(const struct work *w, const char *path, const char *made
 }
 
 static bool write_fit(struct work *w, const char *out, const char *lit, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye,
-                      struct err *err)
+                      const struct pigment_stage_conf *conf, struct err *err)
 {
-	char *extra = extra_json(w);
+	char *extra = extra_json(w, conf);
 	bool ok = write_light(w, stage_path(stage, "%s", lit), stage_made_by(stage, n, in), err) && pigment_save(&w->fit, &w->classes, &w->conf, stage_path(stage, "%s", out),
 	                                                                                                      stage_made_by(stage, n, in), extra, err);
 	free(extra);
@@ -230,11 +262,18 @@ static bool write_fit(struct work *w, const char *out, const char *lit, int n, c
 	return ok;
 }
 
-static bool write_none(const char *out, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye, struct err *err)
+/* Grey photographs tell no pigments; how bright white is in them they do. */
+static bool write_none(struct work *w, const char *out, int n, const char *const in[], struct stage *stage, const struct capture_eye *eye,
+                       const struct white_conf *conf, struct err *err)
 {
 	static const char reason[] = "the photographs are grey: pigments are told by their colour";
+	json_t *extra = json_pack("{s:o}", "white", white_json(w, conf, 1));
+	char *text = json_dumps(extra, 0);
 	stage_skipped(stage, "%s: no pigments: %s. Photograph the eye in colour", eye->side, reason);
-	return pigment_save_none(reason, stage_path(stage, "%s", out), stage_made_by(stage, n, in), err);
+	bool ok = pigment_save_none(reason, stage_path(stage, "%s", out), stage_made_by(stage, n, in), text, err);
+	free(text);
+	json_decref(extra);
+	return ok;
 }
 
 /* The light that capture.conf tells. */
@@ -264,9 +303,9 @@ bool pigment_stage(struct stage *stage, const struct capture *capture, int i, co
 	bool grey = ok && is_grey(stage_path(stage, "%s", own[2]));
 	if (ok && !(stage_fresh(stage, out, n, in) && (grey || stage_fresh(stage, lit, n, in)))) {
 		if (grey)
-			ok = write_none(out, n, in, stage, eye, err);
+			ok = compute_grey(&w, stage, capture, i, anatomy, conf->light ? &told : 0, conf, err) && write_none(&w, out, n, in, stage, eye, &conf->white, err);
 		else
-			ok = compute(&w, own, stage, capture, i, anatomy, conf->light ? &told : 0, conf, err) && write_fit(&w, out, lit, n, in, stage, eye, err)
+			ok = compute(&w, own, stage, capture, i, anatomy, conf->light ? &told : 0, conf, err) && write_fit(&w, out, lit, n, in, stage, eye, conf, err)
 			     && stage_made(stage, lit, n, in, err);
 		ok = ok && stage_made(stage, out, n, in, err);
 	}

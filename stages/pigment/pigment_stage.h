@@ -28,6 +28,7 @@ struct pigment_stage_conf {
 	double root_beyond_limbus;
 	double limit_mpx;
 	double white_unknown;   // sigma of ln exposure where no white was seen
+	double white_doubt;     // ln: errors of the white as fitted that are smaller are the model's
 	int white_from;         // WHITE_FROM_..., the best there is
 	int order, illuminant;  // of scattering: 0 first, 1 all
 	double light_unknown;   // the same where the light was not told

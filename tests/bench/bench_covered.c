@@ -205,7 +205,7 @@ static void palest_of(double rgb[3], const struct photo *photo, const struct fit
                       const double sclera[3])
 {
 	static struct pale sample[PALE_MAX];
-	int n = pale_find(sample, photo, fit, eye, conf);
+	int n = pale_find(sample, photo, fit, eye, 0, conf);
 	for (int c = 0; c < 3; c++) {
 		rgb[c] = n ? 0 : 1;
 		for (int i = 0; i < n; i++)
@@ -216,7 +216,7 @@ static void palest_of(double rgb[3], const struct photo *photo, const struct fit
 static bool white_errors(double angle[WHITES], struct evidence_net *net, const struct truth *truth, const float light[3])
 {
 	const struct balance_conf conf = iris_balance_conf();
-	const struct pale_conf pale = { .inner = 1.1, .outer = 1.5, .redness = 0.2, .reddest = 0.45, .dark = 0.3 };  // as config/pigment.conf
+	const struct pale_conf pale = { .inner = 1.1, .outer = 1.5, .redness = 0.2, .reddest = 0.45, .dark = 0.3, .sure = 0.6 };  // as config/pigment.conf
 	struct photo photo;
 	struct evidence evidence = { 0 };
 	struct fit fit = truth_fit(truth);

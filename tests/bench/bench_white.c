@@ -1,5 +1,5 @@
 /* bench_white: the light's colour beside each eye of drawn faces, by the sclera there and by that beside both eyes, and how far the colours of the two
- * differ. FACES=N of the test split, SEED. */
+ * differ. FACES=N of the test split, SEED. The sclera's own colour and brightness against labels: EYES=N drawn portraits, and EYEWRIGHT_HEADS=FILE. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,11 +10,12 @@
 #include "limbus/evidence.h"
 #include "math/rng.h"
 #include "math/stats.h"
+#include "tests/evidence/kept.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/conf/white_conf.h"
 #include "tests/lib/truth/iris.h"
 #include "tests/lib/unseen/faces.h"
-#include "tests/lib/unseen/unseen.h"
+#include "tests/lib/unseen/unseen_impl.h"
 #include "image/image.h"
 #include "image/photo/patch.h"
 #include "tissue/light/sclera_light.h"
@@ -64,7 +65,7 @@ static struct side side_of(const struct photo *photo, const struct unseen_eye *e
 	const struct balance first = balance_sclera(photo, &fit, &evidence, &balance);
 	struct pale_conf pale = conf->pale;
 	pale.white = first.found ? log(first.rgb[0] / first.rgb[1]) : 0;
-	const int n = pale_find(samples, photo, &fit, &anatomy, &pale);
+	const int n = pale_find(samples, photo, &fit, &anatomy, &evidence, &pale);
 	const struct sclera_light shading = sclera_light_fit(samples, n);
 	struct envmap env = sclera_light_environment(&shading, ENV_ROWS);
 	out.found = white_sclera(&white, samples, n, &env, conf) && iris_of(out.iris, photo, &fit, &evidence);
@@ -154,6 +155,129 @@ static void faces(struct evidence_net *net, bool two_lights, const char *setting
 	}
 }
 
+/* ---- the sclera's own colour and brightness ------------------------------------------------------------------------------- */
+enum { BY_COLOUR, BY_EVIDENCE, FINDERS };
+static const char *const finders[FINDERS] = { "the palest beside the iris", "of what the network takes for sclera" };
+
+struct found_sclera { int n, wrong, lost, eyes; double level[4096], chroma[4096]; };
+
+static double luminance(const double rgb[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
+
+static int by_first(const void *a, const void *b)
+{
+	const double *p = a, *q = b;
+	return (*p > *q) - (*p < *q);
+}
+
+/* The mean of the brighter half, without the brightest twentieth, of what is labelled as sclera within the ring. False: it is less of the ring than is asked for. */
+static bool labelled(double out[3], const struct drawn *d, const struct photo *photo, const struct ellipse *e, const struct white_conf *conf)
+{
+	enum { MOST = 20000 };
+	static double s[MOST][4];
+	const double c = cos(e->angle), t = sin(e->angle), step = fmax(1, e->a / 40);
+	int n = 0, ring = 0;
+	for (double y = e->cy - 1.6 * e->a; y < e->cy + 1.6 * e->a; y += step)
+		for (double x = e->cx - 1.6 * e->a; x < e->cx + 1.6 * e->a; x += step) {
+			const double u = x - e->cx, v = y - e->cy, away = hypot((c * u + t * v) / e->a, (c * v - t * u) / e->b);
+			if (away < conf->pale.inner || away > conf->pale.outer)
+				continue;
+			ring++;
+			if (x < 0 || y < 0 || x >= d->width || y >= d->height || d->label[(long)y * d->width + (long)x] != EVIDENCE_SCLERA || n == MOST
+			    || !photo_patch(s[n] + 1, photo, x, y, 0.5))
+				continue;
+			s[n][0] = luminance(s[n] + 1);
+			n++;
+		}
+	if (!(n > 1.5 * conf->share_min * ring))
+		return false;
+	qsort(s, (size_t)n, sizeof *s, by_first);
+	const int low = n / 2, high = n - n / 20;
+	for (int k = 0; k < 3; k++) {
+		out[k] = 0;
+		for (int i = low; i < high; i++)
+			out[k] += s[i][k + 1] / (high - low);
+	}
+	return true;
+}
+
+static void find_sclera(struct found_sclera by[FINDERS], const struct drawn *d, const struct photo *photo, int eye, struct evidence_net *net, const struct envmap *even)
+{
+	static struct pale samples[PALE_MAX];
+	const float *l = d->eye[eye].limbus;
+	struct fit fit = { .ok = true, .limbus = { (double)l[0], (double)l[1], (double)l[2], (double)l[3], (double)l[4] }, .width = photo->width, .height = photo->height };
+	const struct white_conf *conf = &white_defaults;
+	const struct balance_conf balance = iris_balance_conf();
+	struct evidence evidence;
+	struct err err = { 0 };
+	double truth[3];
+	if (d->eye[eye].shown < 0.3F || !evidence_window(&evidence, net, photo, fit.limbus.cx, fit.limbus.cy, fit.limbus.a, &err))
+		return;
+	const bool there = labelled(truth, d, photo, &fit.limbus, conf);
+	const struct balance first = balance_sclera(photo, &fit, &evidence, &balance);
+	struct pale_conf pale = conf->pale;
+	pale.white = first.found ? log(first.rgb[0] / first.rgb[1]) : 0;
+	for (int m = 0; m < FINDERS; m++) {
+		struct white white;
+		const bool found = white_sclera(&white, samples, pale_find(samples, photo, &fit, &anatomy, m == BY_EVIDENCE ? &evidence : 0, &pale), even, conf);
+		by[m].eyes++;
+		by[m].lost += there && !found;
+		if (!there || !found || by[m].n == 4096)
+			continue;
+		double seen[3], a[CHROMA], b[CHROMA];
+		for (int k = 0; k < 3; k++)
+			seen[k] = white.rgb[k] * conf->sclera[k];
+		chroma_of(a, seen);
+		chroma_of(b, truth);
+		by[m].level[by[m].n] = fabs(log(luminance(seen) / luminance(truth)));
+		by[m].chroma[by[m].n++] = apart(a, b);
+	}
+	evidence_free(&evidence);
+}
+
+static void sclera_rows(struct found_sclera by[FINDERS], const char *setting)
+{
+	for (int m = 0; m < FINDERS && by[m].n; m++) {
+		bench_row("the sclera beside the iris", finders[m], setting, untimed, "eye", stats_quantile(by[m].n, by[m].level, 0.5), "ln", "brightness off by, median");
+		bench_row("the sclera beside the iris", finders[m], setting, untimed, "eye", stats_quantile(by[m].n, by[m].level, 0.9), "ln", "the same, 90 %");
+		bench_row("the sclera beside the iris", finders[m], setting, untimed, "eye", stats_quantile(by[m].n, by[m].chroma, 0.9), "ln", "ln R/G, ln B/G off by, 90 %");
+		bench_row("the sclera beside the iris", finders[m], setting, untimed, "eye", 100.0 * by[m].lost / by[m].eyes, "%", "shows and is not found");
+	}
+}
+
+/* The sclera's colour and brightness against labels: of drawn portraits of the test split, and of heads in three dimensions ($EYEWRIGHT_HEADS). */
+static void scleras(struct evidence_net *net)
+{
+	static struct found_sclera by[FINDERS];
+	static const double grey[3] = { 1, 1, 1 };
+	const char *said = getenv("EYES"), *kept = getenv("EYEWRIGHT_HEADS");
+	const int wanted = said ? atoi(said) : bench_quick() ? 30 : 300;
+	struct envmap even = envmap_room(64, grey, grey, 1, 0, 0);
+	struct drawn d;
+	for (int i = 0; i < wanted; i++) {
+		const struct drawn_view view = { .radius = 40 + 5.0F * (float)(i % 30), .x = 480, .y = 360, .portrait = true };
+		d = drawn_photograph(52000 + (uint64_t)i, &view, 960, 720);
+		struct photo photo = unseen_photo(d.rgb, d.width, d.height);
+		for (int k = 0; k < d.n_eyes; k++)
+			find_sclera(by, &d, &photo, k, net, &even);
+		photo_free(&photo);
+		drawn_free(&d);
+	}
+	sclera_rows(by, "drawn portraits");
+	FILE *file = kept ? fopen(kept, "rb") : 0;
+	memset(by, 0, sizeof by);
+	while (file && kept_next(&d, file)) {
+		struct photo photo = unseen_photo(d.rgb, d.width, d.height);
+		for (int k = 0; k < d.n_eyes; k++)
+			find_sclera(by, &d, &photo, k, net, &even);
+		photo_free(&photo);
+		drawn_free(&d);
+	}
+	if (file)
+		fclose(file);
+	sclera_rows(by, "heads in three dimensions");
+	envmap_free(&even);
+}
+
 int main(int argc, char **argv)
 {
 	struct evidence_net *net;
@@ -165,6 +289,7 @@ int main(int argc, char **argv)
 	}
 	faces(net, false, "drawn faces, one light");
 	faces(net, true, "drawn faces, another light at one eye");
+	scleras(net);
 	evidence_close(net);
 	return bench_close();
 }

@@ -10,6 +10,7 @@ same "the chain runs through" "$? $(ran)" "0 limbus unrefract freckles heightfie
 same "the plan says why" "$(grep -c 'no pigments: the photographs are grey' "$root/grey/work/plan.json")" 1
 same "so does the file" "$(grep -c '"without": "the photographs are grey' "$root/grey/work/iris/pigment.json")" 1
 check "and the log" grep -q 'pigment: skipped: right: no pigments: the photographs are grey' "$log"
+same "how bright white is in it is told, and that white has no colour" "$(tr -d ' \n' <"$root/grey/work/iris/pigment.json" | grep -o '"sclera":\[[0-9.,]*\]' | tr ':[],' '\n' | grep '^0\.' | cut -c1-6 | uniq -c | awk '{ print $1 }')" 3
 check "there is a relief" test -s "$root/grey/work/iris/relief.exr"
 run_make "$root/grey" relief
 same "nothing runs again" "$? $(ran)" "0 "

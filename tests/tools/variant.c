@@ -2,7 +2,7 @@
  *
  *     variant KIND IN OUT
  * KIND: grey, png8, png16, tiff16, exr, cmyk, mpx200, truncated, over, under, dark, closed, noise, cut, half, turned,
- * warm (lamps' light, not balanced away), cool (the sky's), dim (as bright as these, without colour),
+ * warm (lamps' light, not balanced away), cool (the sky's), dim (as bright as these, without colour), dusk (two stops darker),
  * middle (its inner quarter: the same lens nearer up), blurred, bent, exif (a Canon EOS 600D with 100 mm, and no more)
  */
 #include <math.h>
@@ -193,6 +193,8 @@ int main(int argc, char **argv)
 	struct pixels p = middle ? crop(&photo, w / 4, h / 4, w / 2, h / 2, 1)
 	                         : crop(&photo, 0, 0, cut ? w / 2 : w, h, strcmp(kind, "half") ? 1 : 2);
 	expose(&p, !strcmp(kind, "over") ? 30 : !strcmp(kind, "under") ? 0.01 : !strcmp(kind, "dark") ? 0.1 : 1);
+	if (!strcmp(kind, "dusk"))
+		colour(&p, (float[3]){ 0.17F, 0.17F, 0.17F });
 	if (!strcmp(kind, "warm") || !strcmp(kind, "cool") || !strcmp(kind, "dim"))
 		colour(&p, *kind == 'w' ? (float[3]){ 1, 0.6F, 0.28F } : *kind == 'c' ? (float[3]){ 0.5F, 0.75F, 1 } : (float[3]){ 0.68F, 0.68F, 0.68F });
 	if (!strcmp(kind, "turned")) {

@@ -62,15 +62,18 @@ static bool load_colour(struct scene *s, const char *path, int most, struct err 
 	return ok;
 }
 
-/* Takes the colour of the photographs' light off theirs. */
+/* Takes the photographs' light and exposure off their colours. */
 static bool balance(struct scene *s, const char *pigment, struct err *err)
 {
 	struct scene_level *l = &s->level[0];
-	if (!scene_white(s->photo_white, pigment, err))
+	struct scene_white white;
+	if (!scene_white(&white, pigment, err))
 		return false;
+	for (int c = 0; c < 3; c++)
+		s->photo_white[c] = white.rgb[c];
 	for (long i = 0; i < (long)l->n * l->n; i++)
 		for (int c = 0; c < 3; c++)
-			l->colour[4 * i + c] /= (float)s->photo_white[c];
+			l->colour[4 * i + c] /= (float)white.rgb[c];
 	return true;
 }
 

@@ -97,7 +97,7 @@ struct scene {
 	int n_nodes[2];               // of the march's quadrature, in each layer
 	double node[2][SCENE_NODES_MAX], weight[2][SCENE_NODES_MAX];  // on 0..1
 	float flat[3];                // the model's mean reflectance, for pictures without a march
-	double photo_white[3];        // white in the photographs over its green: colours here are over it, as in light without colour; pictures in the photograph's own
+	double photo_white[3];        // white in the photographs (tint.h): colours here are over it, as in light without colour, of level 1; pictures in the photograph's own
 	                              // light are multiplied by it
 	float gain;                   // geometric mean of photograph over model: what the exposure leaves
 	double explained;             // share of the variance of ln colour that the model explains by itself

@@ -75,51 +75,65 @@ static void paint(struct scene *s, const struct melanin_map *map, const double e
 	free(t);
 }
 
-/* White as measured, over its green, and its error as fitted, a factor that leaves green; 1 where pigment.json does not tell it, or is not there. False, err set, when
- * the file is damaged. */
-static bool white_of(double white[3], double error[3], const char *path, struct err *err)
+bool scene_white(struct scene_white *out, const char *path, struct err *err)
 {
-	const double most = 20;
-	char reason[256];
-	for (int c = 0; c < 3; c++)
-		white[c] = error[c] = 1;
-	if (!path || !file_exists(path) || tissue_without(reason, path))
+	const double most = 20, brightest = 0.95;  // of a channel of the sclera; its hue is kept
+	*out = (struct scene_white){ .rgb = { 1, 1, 1 } };
+	if (!path || !file_exists(path))
 		return true;
+	json_t *root = json_read(path, 1 << 22, err), *white = json_object_get(root, "white");
+	bool ok = root;
+	double level = 1, over = brightest;
+	for (int c = 0; c < 3; c++)
+		out->error[c] = 1;
+	if (white) {
+		ok = json_get_array(out->rgb, 3, white, "rgb", path, err) && (!json_object_get(white, "level") || json_get(&level, white, "level", path, err))
+		     && (!json_object_get(white, "error") || json_get_array(out->error, 3, white, "error", path, err));
+		out->has_sclera = ok && json_object_get(white, "sclera");
+		ok = ok && (!out->has_sclera || json_get_array(out->sclera, 3, white, "sclera", path, err));
+	}
+	json_decref(root);
+	for (int c = 0; c < 3; c++) {
+		out->rgb[c] *= level * out->error[c];
+		if (ok && !(out->rgb[c] > 1e-4 && out->rgb[c] < 1e4 && out->rgb[c] <= most * out->rgb[1] && most * out->rgb[c] >= out->rgb[1]))
+			ok = err_set(err, "%s: white %g, of green %g: must be in [0.0001, 10000], and within %g times green", path, out->rgb[c], out->rgb[1], most);
+		if (ok && out->has_sclera && !(out->sclera[c] > 0 && out->sclera[c] < 100))
+			ok = err_set(err, "%s: white.sclera: %g: must be above 0, below 100", path, out->sclera[c]);
+		over = fmax(over, out->sclera[c]);
+	}
+	for (int c = 0; c < 3; c++)
+		out->sclera[c] *= brightest / over;
+	return ok;
+}
+
+/* The error of white as fitted, a factor that leaves green, less what of it went into the white; 1 where pigment.json does not tell it. False, err set, when the
+ * file is damaged. */
+static bool error_of(double error[3], const char *path, struct err *err)
+{
 	json_t *root = json_read(path, 1 << 22, err);
 	bool read = root, told = json_object_get(root, "white");
 	json_decref(root);
+	error[0] = error[1] = error[2] = 1;
 	if (!read || !told)
 		return read;
-	double x[PIGMENT_N];
+	double x[PIGMENT_N], rgb[3];
 	struct pigment_conf conf = { 0 };
-	if (!pigment_load(x, white, &conf, path, err))
+	struct scene_white white;
+	if (!pigment_load(x, rgb, &conf, path, err) || !scene_white(&white, path, err))
 		return false;
-	error[0] = exp(x[PIGMENT_RED]);
-	error[2] = exp(x[PIGMENT_BLUE]);
-	const double green = white[1];
-	for (int c = 0; c < 3; c++) {
-		white[c] /= green;
-		const double ratio = error[c] * white[c];
-		if (!(ratio >= 1 / most && ratio <= most))
-			return err_set(err, "%s: white: %g of its green: must be in [%g, %g]", path, ratio, 1 / most, most);
-	}
+	error[0] = exp(x[PIGMENT_RED]) / white.error[0];
+	error[2] = exp(x[PIGMENT_BLUE]) / white.error[2];
 	return true;
-}
-
-bool scene_white(double out[3], const char *pigment, struct err *err)
-{
-	double error[3];
-	return white_of(out, error, pigment, err);
 }
 
 bool scene_tint_make(struct scene *s, const char *path, struct err *err)
 {
-	double white[3], error[3];
+	double error[3];
 	char reason[256];
 	if (!path || !file_exists(path) || tissue_without(reason, path))
 		return true;
 	struct melanin_map *map = mem_new(1, sizeof *map);
-	bool ok = white_of(white, error, path, err) && melanin_load(map, path, err);
+	bool ok = error_of(error, path, err) && melanin_load(map, path, err);
 	if (ok)
 		paint(s, map, error);
 	free(map);

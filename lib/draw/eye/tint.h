@@ -9,9 +9,16 @@
  * where there are no pigments. Returns false, err set, when the file is damaged. */
 bool scene_tint_make(struct scene *scene, const char *pigment, struct err *err);
 
-/* The colour of white in the photographs over its green, by the sclera or a card, as measured; 1 where pigment.json does not
- * tell it, or is not there. False, err set, when the file is damaged. */
-bool scene_white(double out[3], const char *pigment, struct err *err);
+/* What white that faces the camera shows in the photographs, by the sclera or a card, as bright as the light on the eye makes it: the colour of that light and the
+ * photograph's exposure; and the albedo of the sclera beside the limbus, at most 0.95. */
+struct scene_white {
+	double rgb[3], sclera[3];
+	double error[3];  // what of rgb the iris' own colours have added to the white as measured, factors
+	bool has_sclera;
+};
+
+/* 1, and no sclera, where pigment.json does not tell them, or is not there. False, err set, when the file is damaged. */
+bool scene_white(struct scene_white *out, const char *pigment, struct err *err);
 
 /* The factor at (x, y), mm; 1 where there is none. */
 void scene_tint_at(float rgb[3], const struct scene *scene, float x, float y);

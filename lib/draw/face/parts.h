@@ -35,8 +35,4 @@ struct portrait {
 	bool corner_known[2];
 };
 
-/* eye.c: share of the sky that lids and brow leave over a place of an eye, weighted by the cosine, by fixed directions; middle: the unit direction about which it lies,
- * the normal where none is left. at, normal: the rig's axes. */
-float portrait_sky_over(float middle[3], const struct portrait *portrait, const float at[3], const float normal[3]);
-
 #endif

@@ -99,7 +99,7 @@ static void even_hue(int n, struct envmap_box boxes[])
 			boxes[i].rgb[c] *= sum[c] > 0 ? mean / sum[c] : 1;
 }
 
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, bool balanced, struct envmap *lamps, int *n)
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, const double white[3], bool balanced, struct envmap *lamps, int *n)
 {
 	static const double dark[3] = { 0 };
 	struct glint glints[GLINTS_MAX];
@@ -115,7 +115,11 @@ struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int
 	if (balanced)
 		even_hue(*n, boxes);
 	// The room gives the rest of the light, at least a fifth.
-	double level = envmap_level(lamps), room = fmax(1 - level, 0.2 * fmax(level, 1));
+	const double exposure = 0.2126 * white[0] + 0.7152 * white[1] + 0.0722 * white[2];
+	for (int i = 0; i < *n; i++)
+		for (int c = 0; c < 3; c++)
+			boxes[i].rgb[c] /= exposure;
+	double level = envmap_level(lamps) / exposure, room = fmax(1 - level, 0.2 * fmax(level, 1));
 	struct envmap env = envmap_room(height, (double[3]){ 1.3 * room, 1.3 * room, 1.3 * room },
 	                                (double[3]){ 0.7 * room, 0.7 * room, 0.7 * room }, 1, *n, boxes);
 	envmap_normalise(&env);

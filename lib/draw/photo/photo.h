@@ -1,4 +1,4 @@
-/* photo: what the renderer takes from a photograph of the eye: its place in the iris maps, its light, its sclera; and the
+/* photo: what the renderer takes from a photograph of the eye: its place in the iris maps, its light, its vessels; and the
  * comparison of a rendering with it.
  * A shot is one photograph with its fit. Its view is the window of the photograph that is drawn, at a size of its own:
  * view px (x, y) is photo px (window[0] + x scale, window[1] + y scale). Image px: x right, y down, centre of the first pixel
@@ -39,22 +39,16 @@ double ellipse_radius(const struct ellipse *e, double x, double y);
  * the light. Where the cornea mirrors no lamp, the studio.
  * shot    decoded; eye: its cornea
  * height  rows of the maps
+ * white     what white that faces the camera shows in it: lamps are so bright against the rest of the light
  * balanced  the photograph's white is told: the light is over it. Else its lamps' colours, as far as they are not clipped, stand for it
  * lamps   out, in the photograph's colours: the lamps alone, black elsewhere; n: how many
  * Returns the whole light, of the level of envmap_normalise. envmap_free both. */
-struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, bool balanced, struct envmap *lamps, int *n);
+struct envmap light_of_photo(const struct shot *shot, const struct eye *eye, int height, const double white[3], bool balanced, struct envmap *lamps, int *n);
 /* A photographer's studio: key, fill and a strip from above. envmap_free. */
 struct envmap light_studio(int height);
 /* Other surroundings of the same level: a room with daylight from a window of four panes at the left; an overcast sky. */
 struct envmap light_window(int height);
 struct envmap light_sky(int height);
-
-/* The mean colour of the sclera beside the limbus in a decoded photograph, under its light, over its white. Returns false, rgb unset, when
- * lids leave too little of it. */
-bool sclera_of_photo(double rgb[3], const struct shot *shot, const double white[3]);
-
-/* Neither skin nor large vessel nor reflection, by colour alone: over the photograph's white, and as photographed. */
-bool sclera_is_white(const float over_white[3], const float own[3]);
 
 /* How a rendering differs from its photograph where the iris texture has weight: off pupil, lids and reflections. */
 struct shot_difference {

@@ -11,12 +11,6 @@ void shot_window(struct shot *shot, int most_px);
 /* How well a photograph serves as reference: size of the limbus, px, times the share of it that shows, times cos² of the tilt. */
 double shot_merit(const struct fit *fit);
 
-/* Divides the colour of the sclera as photographed by the mean light beside the limbus, where that is seen: its albedo.
- * rgb            in: linear, of sclera_of_photo; out: at most 0.95
- * shot           with its light
- * sclera_radius  of the eyeball, mm */
-void shot_unlight(double rgb[3], const struct shot *shot, const struct eye *eye, double sclera_radius);
-
 /* Width of the limbus, mm: over which sclera turns into cornea, from the blur of the edge in the photograph (edge_sigma_px); within
  * 0.2..1.2, 0.4 where it was not measured. */
 double shot_limbus_width(const struct shot *shot);

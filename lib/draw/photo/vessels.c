@@ -45,6 +45,17 @@ static bool place(double xy[2], int x, int y, const struct shot *shot, const str
 	return xy[0] > 1 && xy[1] > 1 && xy[0] < shot->image.width - 1 && xy[1] < shot->image.height - 1;
 }
 
+static float luminance(const float *p)
+{
+	return 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
+}
+
+/* Neither skin nor large vessel nor reflection, by colour alone: over the photograph's white, and as photographed. */
+static bool is_white(const float p[3], const float own[3])
+{
+	return luminance(p) > 0.08f && luminance(own) < 0.95f && p[0] < 1.42f * p[1] && p[1] < 1.5f * p[2] && p[2] < 1.15f * p[1];
+}
+
 static void look(struct sight *s, const struct shot *shot, const struct eye *eye, double radius, const double white[3], int size)
 {
 	s->red = image_new(size, size, 1);
@@ -62,7 +73,7 @@ static void look(struct sight *s, const struct shot *shot, const struct eye *eye
 				p[c] = own[c] / (float)white[c];
 			}
 			*image_at(&s->red, x, y) = logf(fmaxf(p[0], 1e-3f) / fmaxf(p[1], 1e-3f));
-			*image_at(&s->white, x, y) = sclera_is_white(p, own) ? 1 : 0;
+			*image_at(&s->white, x, y) = is_white(p, own) ? 1 : 0;
 		}
 }
 

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "base/template.h"
 #include "draw/face/skin_look.h"
+#include "draw/face/sky.h"
 #include "draw/web/face_impl.h"
 #include "draw/web/packed.h"
 #include "math/vec.h"

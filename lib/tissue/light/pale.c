@@ -38,7 +38,8 @@ static int by_redness(const void *a, const void *b)
 	return (s->redness > t->redness) - (s->redness < t->redness);
 }
 
-static int ring(struct pale s[PALE_MAX], const struct photo *photo, const struct fit *fit, const struct eye *eye, const struct pale_conf *conf)
+static int ring(struct pale s[PALE_MAX], const struct photo *photo, const struct fit *fit, const struct eye *eye, const struct evidence *evidence,
+                const struct pale_conf *conf)
 {
 	const struct ellipse *e = &fit->limbus;
 	double side = e->a * 0.006, c = cos(e->angle), d = sin(e->angle);
@@ -47,6 +48,8 @@ static int ring(struct pale s[PALE_MAX], const struct photo *photo, const struct
 		double turn = 2 * M_PI * (i / PALE_ACROSS) / PALE_AROUND, rgb[3];
 		double scale = conf->inner + (conf->outer - conf->inner) * (i % PALE_ACROSS + 0.5) / PALE_ACROSS;
 		double u = scale * e->a * cos(turn), v = scale * e->b * sin(turn), px[2] = { e->cx + u * c - v * d, e->cy + u * d + v * c };
+		if (evidence && (double)evidence_at(evidence, EVIDENCE_SCLERA, px[0], px[1]) < conf->sure)
+			continue;
 		if (!photo_patch(rgb, photo, px[0], px[1], side))
 			continue;
 		double light = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
@@ -58,9 +61,10 @@ static int ring(struct pale s[PALE_MAX], const struct photo *photo, const struct
 	return n;
 }
 
-int pale_find(struct pale s[PALE_MAX], const struct photo *photo, const struct fit *fit, const struct eye *eye, const struct pale_conf *conf)
+int pale_find(struct pale s[PALE_MAX], const struct photo *photo, const struct fit *fit, const struct eye *eye, const struct evidence *evidence,
+              const struct pale_conf *conf)
 {
-	int n = ring(s, photo, fit, eye, conf), m = 0, pale = 0;
+	int n = ring(s, photo, fit, eye, evidence, conf), m = 0, pale = 0;
 	qsort(s, (size_t)n, sizeof *s, by_light);
 	float bright = n ? s[n * 9 / 10].light : 0;
 	for (int i = 0; i < n; i++)

@@ -121,7 +121,7 @@ bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *c
                   const char *path, const char *made_by, const char *extra, struct err *err);
 
 /* The same for an iris of which no pigments can be told: the file holds the reason ("without"). */
-bool pigment_save_none(const char *reason, const char *path, const char *made_by, struct err *err);
+bool pigment_save_none(const char *reason, const char *path, const char *made_by, const char *extra, struct err *err);
 
 /* Reads it back: the unknowns, the white they were found with, and those fields of conf that shape the forward model. Returns false,
  * err set, when the file is damaged. */

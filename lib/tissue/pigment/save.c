@@ -83,6 +83,14 @@ static json_t *minima(const struct pigment_fit *fit)
 	return out;
 }
 
+static void add_missing(json_t *out, const char *extra)
+{
+	json_t *more = extra ? json_loads(extra, 0, 0) : 0;
+	if (more)
+		json_object_update_missing(out, more);
+	json_decref(more);
+}
+
 bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *classes, const struct pigment_conf *conf,
                   const char *path, const char *made_by, const char *extra, struct err *err)
 {
@@ -113,19 +121,16 @@ bool pigment_save(const struct pigment_fit *fit, const struct pigment_classes *c
 	json_object_set_new(out, "minima", json_integer(fit->minima));
 	json_object_set_new(out, "other_minima", minima(fit));
 	json_object_set_new(out, "classes", classes_json(fit, classes, conf));
-	if (extra) {
-		json_t *more = json_loads(extra, 0, 0);
-		json_object_update_missing(out, more);
-		json_decref(more);
-	}
+	add_missing(out, extra);
 	bool ok = json_write(path, out, made_by, err);
 	json_decref(out);
 	return ok;
 }
 
-bool pigment_save_none(const char *reason, const char *path, const char *made_by, struct err *err)
+bool pigment_save_none(const char *reason, const char *path, const char *made_by, const char *extra, struct err *err)
 {
 	json_t *out = json_pack("{s:s}", "without", reason);
+	add_missing(out, extra);
 	bool ok = json_write(path, out, made_by, err);
 	json_decref(out);
 	return ok;

@@ -29,6 +29,17 @@ bool white_card(struct white *out, const struct photo *photo, const double disc[
 	return true;
 }
 
+static double luminance(const double rgb[3])
+{
+	return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
+double white_level(const struct white *white, bool told, const struct white_conf *conf)
+{
+	const double level = luminance(white->sclera) / luminance(conf->sclera), most = conf->shade_most, by = white->shade > 0 ? -log(white->shade) : 0;
+	return !(level > 0) ? 1 : told ? level : level * exp((most > 0 ? most * tanh(by / most) : 0) - by);
+}
+
 static int by_light(const void *a, const void *b)
 {
 	const struct pale *s = a, *t = b;
@@ -47,19 +58,25 @@ bool white_sclera(struct white *out, struct pale s[], int n, const struct envmap
 	for (int i = 0; i < n; i++) {
 		float here[3];
 		sclera_light_at(here, light, lights, s[i].normal);
+		s[i].redness = s[i].light;  // as photographed
 		for (int c = 0; c < 3; c++)
 			s[i].rgb[c] /= fmaxf(here[c], 0.02f);
 		s[i].light = 0.2126f * s[i].rgb[0] + 0.7152f * s[i].rgb[1] + 0.0722f * s[i].rgb[2];
 	}
 	qsort(s, (size_t)n, sizeof *s, by_light);
 	int low = n / 2, high = n - n / 20, k = high - low;
-	double sum[3] = { 0 };
-	for (int i = low; i < high; i++)
+	double sum[3] = { 0 }, own = 0;
+	for (int i = low; i < high; i++) {
+		own += s[i].redness / k;
 		for (int c = 0; c < 3; c++)
 			sum[c] += s[i].rgb[c] / k;
+	}
 	*out = (struct white) { .source = WHITE_SCLERA, .share = (double)n / PALE_MAX };
-	for (int c = 0; c < 3; c++)
+	for (int c = 0; c < 3; c++) {
 		out->rgb[c] = sum[c] / conf->sclera[c];
+		out->sclera[c] = conf->sclera[c];
+	}
+	out->shade = own / luminance(sum);
 	out->spread = log(s[high - 1].light / s[low].light) / 2;
 	return true;
 }

@@ -1,5 +1,6 @@
 /* Edges and hairs of a portrait, against the same picture drawn four times as large and averaged; what sky is left beside a wall. */
 #include "draw/face/impl.h"
+#include "draw/face/sky.h"
 #include "rig/drive.h"
 #include "tests/lib/scenes/portrayed.h"
 #include "tests/lib/unit.h"

@@ -1,8 +1,10 @@
 /* What is read off the reference photograph, and how the beauty views are exposed: closed forms. */
+#include "tests/lib/scratch.h"
 #include "tests/lib/unit.h"
 
 #include "base/mem.h"
 #include "draw/bloom.h"
+#include "draw/eye/tint.h"
 #include "draw/photo/reference.h"
 #include "draw/studio.h"
 #include "draw/tone.h"
@@ -26,20 +28,38 @@ static void even_light_exposes_the_sclera_to_62_per_cent(void **state)
 	double grey[3] = { 0.5, 0.5, 0.5 }, black[3] = { 1e-4, 1e-4, 1e-4 };
 	NEAR(studio_exposure(&env, grey), 0.62 / 0.5, 0.02);  // the map's cells: irradiance to a per cent
 	assert_true(studio_exposure(&env, black) == 3);
-	struct shot shot = { .env = env };
-	for (int i = 0; i < 3; i++)
-		shot.fit.cam_from_eye[i][i] = 1;
-	struct eye eye = { .limbus_radius = 5.85 };
-	double rgb[3] = { 0.5, 0.4, 0.3 }, bright[3] = { 2, 1, 0.5 };
-	shot_unlight(rgb, &shot, &eye, 11.5);  // through a camera that projects nothing: every direction counts alike
-	NEAR(rgb[0], 0.5, 0.01);
-	NEAR(rgb[1], 0.4, 0.01);
-	NEAR(rgb[2], 0.3, 0.01);
-	shot_unlight(bright, &shot, &eye, 11.5);  // none returns more than 0.95, and its hue stays
-	NEAR(bright[0], 0.95, 1e-12);
-	NEAR(bright[1], 0.475, 1e-12);
-	NEAR(bright[2], 0.2375, 1e-12);
 	envmap_free(&env);
+}
+
+/* pigment.json's white: as measured, by the level of the light on the eye and what of its error is believed; the sclera no brighter than 0.95, in its hue. */
+static void the_photographs_white_is_read(void **state)
+{
+	(void)state;
+	struct scene_white w;
+	struct err err = { 0 };
+	assert_true(scene_white(&w, 0, &err) && scene_white(&w, scratch_path("none.json"), &err));
+	assert_true(w.rgb[0] == 1 && w.rgb[2] == 1 && !w.has_sclera);
+	scratch_text("old.json", "{\"white\": {\"rgb\": [0.6, 0.5, 0.4]}}");
+	assert_true(scene_white(&w, scratch_path("old.json"), &err) && !w.has_sclera);
+	NEAR(w.rgb[2], 0.4, 1e-12);
+	scratch_text("white.json", "{\"without\": \"grey\", \"white\": {\"rgb\": [0.6, 0.5, 0.4], \"level\": 0.5, \"error\": [1.2, 1, 0.9], \"sclera\": [1.9, 0.95, 0.5]}}");
+	assert_true(scene_white(&w, scratch_path("white.json"), &err) && w.has_sclera);
+	NEAR(w.rgb[0], 0.36, 1e-12);
+	NEAR(w.rgb[1], 0.25, 1e-12);
+	NEAR(w.rgb[2], 0.18, 1e-12);
+	NEAR(w.sclera[0], 0.95, 1e-12);
+	NEAR(w.sclera[1], 0.475, 1e-12);
+	NEAR(w.sclera[2], 0.25, 1e-12);
+	static const char *const bad[] = { "\"rgb\": [0, 1, 1]", "\"rgb\": [1, 1, 30]", "\"rgb\": [1, 1, 1], \"level\": -1", "\"rgb\": [1, 1, 1], \"error\": [1, 1]",
+		                           "\"rgb\": [1, 1, 1], \"sclera\": [0.5, 0.5, 1e9]", "\"level\": 1" };
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+		char text[200];
+		snprintf(text, sizeof text, "{\"white\": {%s}}", bad[i]);
+		scratch_text("bad.json", text);
+		err = (struct err){ 0 };
+		assert_false(scene_white(&w, scratch_path("bad.json"), &err));
+		assert_non_null(strstr(err.msg, "bad.json"));
+	}
 }
 
 static void grey_shows_where_the_eye_does_not(void **state)
@@ -178,6 +198,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(even_light_exposes_the_sclera_to_62_per_cent),
+		SCRATCH_TEST(the_photographs_white_is_read),
 		cmocka_unit_test(grey_shows_where_the_eye_does_not), cmocka_unit_test(bright_light_glows_and_none_is_lost), cmocka_unit_test(highlights_bend_as_on_film),
 		cmocka_unit_test(a_softbox_is_brightest_in_its_middle),
 		cmocka_unit_test(a_window_is_as_large_as_the_photograph_lets_it),

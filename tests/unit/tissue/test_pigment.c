@@ -1,12 +1,10 @@
-/* Melanin: known parameters are recovered, standard deviations hold, colours by Monte Carlo (independent of the model), white from a picture. */
+/* Melanin: known parameters are recovered, standard deviations hold, colours by Monte Carlo (independent of the model). */
 #include "base/file.h"
 #include "base/mem.h"
 #include "tissue/pigment/pigment.h"
-#include "tissue/pigment/white.h"
 #include "math/rng.h"
 #include "tests/lib/scratch.h"
 #include "tests/lib/truth/photon.h"
-#include "tests/lib/conf/white_conf.h"
 #include "tests/lib/unit.h"
 
 #define CHECK_NEAR(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
@@ -205,99 +203,13 @@ static void test_none(void **state)
 	char reason[256];
 	struct tissue tissue;
 	struct err err = { 0 };
-	assert_true(pigment_save_none("the photographs are grey", path, "{}", &err));
+	assert_true(pigment_save_none("the photographs are grey", path, "{}", "{\"white\": {\"level\": 0.5}}", &err));
 	assert_true(tissue_without(reason, path));
 	assert_string_equal(reason, "the photographs are grey");
 	assert_false(tissue_load(&tissue, path, &err));
 	scratch_text("pigment.json", "{}");
 	assert_false(tissue_without(reason, path));
 	assert_false(tissue_without(reason, scratch_path("none.json")));
-}
-
-/* ---- white -------------------------------------------------------------------------------------------------------- */
-enum { WIDE = 600, HIGH = 400 };
-
-/* An eye of semi-axis 100 px in its middle: sclera between lids that are `open` px apart, skin beyond, a clipped glint. */
-static struct photo picture(double open, const double sclera[3])
-{
-	struct photo photo = { .width = WIDE, .height = HIGH, .bits = 16, .rgb = mem_array(3 * WIDE * HIGH, sizeof(uint16_t)) };
-	for (int y = 0; y < HIGH; y++)
-		for (int x = 0; x < WIDE; x++) {
-			double u = x - 299.5, v = y - 199.5, r = hypot(u, v);
-			bool skin = fabs(v) > open / 2, glint = hypot(u - 130, v + 10) < 6;
-			for (int c = 0; c < 3; c++) {
-				double value = glint ? 1 : r < 100 && !skin ? 0.1 : skin ? (const double[]) { 0.5, 0.26, 0.18 }[c] : sclera[c];
-				photo.rgb[3 * (y * WIDE + x) + c] = (uint16_t)(65535 * srgb_from_linear((float)value) + 0.5);
-			}
-		}
-	return photo;
-}
-
-static bool sclera_white(struct white *white, const struct photo *photo, const struct fit *fit)
-{
-	static const double grey[3] = { 1, 1, 1 };
-	static const struct eye eye = { .limbus_radius = 5.85, .cornea_radius = 7.8, .cornea_asphericity = 0.75, .iris_depth = 3.3 };
-	static struct pale samples[PALE_MAX];
-	struct envmap env = envmap_room(64, grey, grey, 1, 0, 0);
-	int n = pale_find(samples, photo, fit, &eye, &white_defaults.pale);
-	bool found = white_sclera(white, samples, n, &env, &white_defaults);
-	envmap_free(&env);
-	return found;
-}
-
-static void test_white(void **state)
-{
-	const double want[] = { 0.8, 0.7, 0.6 };
-	const double sclera[] = { 0.66 * 0.8, 0.55 * 0.7, 0.48 * 0.6 };
-	const struct fit fit = { .ok = true, .limbus = { 300, 200, 100, 100, 0 }, .width = WIDE, .height = HIGH };
-	const double card[] = { 300, 30, 15 }, glint[] = { 430, 190, 8 };
-	struct white white;
-	struct err err = { 0 };
-	(void)state;
-	struct photo open = picture(150, sclera), shut = picture(20, sclera);
-	assert_true(sclera_white(&white, &open, &fit));
-	for (int c = 0; c < 3; c++)  // a sphere of light as 128 directions: a per cent
-		CHECK_NEAR(white.rgb[c], want[c], 0.015);
-	assert_int_equal(white.source, WHITE_SCLERA);
-	assert_true(white.spread < 0.01);
-	bool found = sclera_white(&white, &shut, &fit);
-	for (int c = 0; c < 3 && found; c++)  // a slit: either none, or the right one
-		CHECK_NEAR(white.rgb[c], want[c], 0.02);
-	assert_true(white_card(&white, &open, card, &white_defaults, &err));
-	CHECK_NEAR(white.rgb[1], 0.26 / 0.18, 1e-3);
-	assert_false(white_card(&white, &open, glint, &white_defaults, &err));
-	assert_non_null(strstr(err.msg, "over-exposed"));
-	photo_free(&open);
-	photo_free(&shut);
-}
-
-/* A face's whites: alike, they stay; skin at one eye gives way to the other's; light that differs, as the irises show, stays apart; what is asked
- * of one eye is asked of the other alike. */
-static void test_white_pair(void **state)
-{
-	static const struct { double own[2], fellow[2], iris[2], want[2], within; } cases[] = {
-		{ { 0.1, -0.1 }, { 0.1, -0.1 }, { 0, 0 }, { 0.1, -0.1 }, 0.03 },
-		{ { 0.4, -0.3 }, { 0.1, -0.1 }, { 0, 0 }, { 0.1, -0.1 }, 0.08 },
-		{ { 0.1, -0.1 }, { 0.4, -0.3 }, { 0, 0 }, { 0.1, -0.1 }, 0.03 },
-		{ { 0.4, -0.3 }, { 0.1, -0.1 }, { 0.3, -0.2 }, { 0.4, -0.3 }, 0.06 },
-		{ { -0.2, 0.3 }, { 0.1, -0.1 }, { -0.3, 0.4 }, { -0.2, 0.3 }, 0.05 },
-		{ { 3, -3 }, { -3, 3 }, { 6, -6 }, { 3, -3 }, 0.06 },  // far beyond what any light is
-	};
-	(void)state;
-	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-		double got[CHROMA];
-		white_pair(got, cases[i].own, cases[i].fellow, cases[i].iris, &white_pair_defaults);
-		for (int k = 0; k < CHROMA; k++)
-			CHECK_NEAR(got[k], cases[i].want[k], cases[i].within);
-	}
-	double own[CHROMA], iris[CHROMA], moved[CHROMA];  // all colours multiplied: so is what follows
-	const double a[] = { 0.3, -0.2 }, b[] = { 0.15, -0.05 }, differ[] = { 0.02, 0.01 }, by[] = { 0.7, -0.9 };
-	white_pair(own, a, b, differ, &white_pair_defaults);
-	white_pair(moved, (const double[]){ a[0] + by[0], a[1] + by[1] }, (const double[]){ b[0] + by[0], b[1] + by[1] }, differ, &white_pair_defaults);
-	for (int k = 0; k < CHROMA; k++)
-		CHECK_NEAR(moved[k], own[k] + by[k], 1e-9);
-	white_pair(iris, a, b, 0, &white_pair_defaults);  // nothing known of the irises
-	assert_true(iris[0] > b[0] - 0.05 && iris[0] < a[0]);
 }
 
 /* Where melanin is told from above alone, what is reported is the mean of what it may be; the likeliest amount would be more. */
@@ -331,7 +243,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_coverage), cmocka_unit_test(test_recovery), cmocka_unit_test(test_starts), cmocka_unit_test(test_little),
-		cmocka_unit_test(test_monte_carlo), SCRATCH_TEST(test_files), SCRATCH_TEST(test_none), cmocka_unit_test(test_white), cmocka_unit_test(test_white_pair),
+		cmocka_unit_test(test_monte_carlo), SCRATCH_TEST(test_files), SCRATCH_TEST(test_none),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
