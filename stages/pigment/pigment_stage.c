@@ -112,9 +112,9 @@ static json_t *light_json(const struct work *w)
 	return out;
 }
 
-/* level: of the light on the eye over the white's own; without a sclera the exposure of the fit tells it, where the white does not. sclera: its albedo, as light as
+/* level: of the light on the eye over the white's own; without a sclera the exposure of the fit (and its sigma, ln) tells it, where the white does not. sclera: its albedo, as light as
  * conf has it, in the hue that it has under the white. */
-static json_t *white_json(const struct work *w, const struct white_conf *conf, double exposure)
+static json_t *white_json(const struct work *w, const struct white_conf *conf, double exposure, double sigma)
 {
 	const struct white *of = &w->found.white;
 	json_t *out = json_object();
@@ -124,6 +124,7 @@ static json_t *white_json(const struct work *w, const struct white_conf *conf, d
 	json_object_set_new(out, "both_eyes", json_boolean(w->found.joined));
 	json_object_set_new(out, "rgb", json_numbers(3, of->rgb));
 	json_object_set_new(out, "level", json_number(level));
+	json_object_set_new(out, "level_sigma", json_number(of->sclera[1] > 0 ? white_level_sigma(of, w->told) : sigma));  // of ln
 	if (of->sclera[1] > 0)
 		json_object_set_new(out, "sclera", json_numbers(3, (double[3]){ of->sclera[0] / light, of->sclera[1] / light, of->sclera[2] / light }));
 	json_object_set_new(out, "share", json_number(of->share));
@@ -141,7 +142,7 @@ static char *extra_json(const struct work *w, const struct pigment_stage_conf *c
 {
 	json_t *out = json_object(), *white;
 	const double *x = w->fit.x, exposure = exp(x[PIGMENT_EXPOSURE] - w->conf.prior[PIGMENT_EXPOSURE][0]);
-	json_object_set_new(out, "white", white = white_json(w, &c->white, exposure));
+	json_object_set_new(out, "white", white = white_json(w, &c->white, exposure, w->fit.sigma[PIGMENT_EXPOSURE]));
 	json_object_set_new(white, "error", json_numbers(3, (double[3]){ exp(believed(x[PIGMENT_RED], c->white_doubt)), 1, exp(believed(x[PIGMENT_BLUE], c->white_doubt)) }));
 	json_object_set_new(out, "light", light_json(w));
 	if (w->map.n)
@@ -267,7 +268,7 @@ static bool write_none(struct work *w, const char *out, int n, const char *const
                        const struct white_conf *conf, struct err *err)
 {
 	static const char reason[] = "the photographs are grey: pigments are told by their colour";
-	json_t *extra = json_pack("{s:o}", "white", white_json(w, conf, 1));
+	json_t *extra = json_pack("{s:o}", "white", white_json(w, conf, 1, INFINITY));
 	char *text = json_dumps(extra, 0);
 	stage_skipped(stage, "%s: no pigments: %s. Photograph the eye in colour", eye->side, reason);
 	bool ok = pigment_save_none(reason, stage_path(stage, "%s", out), stage_made_by(stage, n, in), text, err);

@@ -127,6 +127,19 @@ if there three && command -v chromium >/dev/null; then
 else
 	skip "a driven face in three.js" "no chromium, or npm could not install three"
 fi
+# The same in Blender's Cycles, from in front, 256 px.
+if command -v blender >/dev/null; then
+	for name in metres fine other; do
+		seen=$root/cycles.$name
+		timeout 600 blender -b --python tests/tools/face_blender.py -- "$capture/work/render/$name.glb" "$root/$name" 2>"$log" | grep '^blender ' >"$seen"
+		same "$name: Cycles draws every pose" "$(awk '$1 == "blender" && $5 + $7 + $9 > 40000' "$seen" | wc -l)" 14
+		same "$name: shut in Cycles, nothing of an open eye shows, looking down, too" "$(awk '$2 == "open" { open[$3] = $5 } $2 ~ /^shut/ && !($5 < 0.001 * open[$3] + 1)' "$seen")" ""
+		same "$name: in Cycles no gap and no lid inside out in any pose" "$(awk '$11 > 0 || $9 > 25' "$seen")" ""
+		same "$name: in Cycles eyes that look aside show half of what an open one shows" "$(awk '$2 == "open" { open[$3] = $5 } ($2 == "left" || $2 == "right") && $5 > open[$3] / 2' "$seen" | wc -l)" 4
+	done
+else
+	skip "a driven face in Blender's Cycles" "no blender: apt-get install blender"
+fi
 # mm of an eyeball of 12 mm; a margin is 1 to 2 mm broad.
 for name in metres fine other; do
 	same "$name: shut, lashes stand on the seam" "$("$LASHES" "$capture/work/targets/$name/rig.npz" 120 1.1 | awk '$NF > ($2 == "upper" ? 0.8 : 1.2)')" ""

@@ -40,6 +40,12 @@ double white_level(const struct white *white, bool told, const struct white_conf
 	return !(level > 0) ? 1 : told ? level : level * exp((most > 0 ? most * tanh(by / most) : 0) - by);
 }
 
+double white_level_sigma(const struct white *white, bool told)
+{
+	const double people = 0.12, shade = !told && white->shade > 0 ? log(white->shade) : 0;
+	return white->sclera[1] > 0 ? hypot(people, shade / 2) : NAN;
+}
+
 static int by_light(const void *a, const void *b)
 {
 	const struct pale *s = a, *t = b;

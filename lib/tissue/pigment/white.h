@@ -39,6 +39,9 @@ bool white_card(struct white *out, const struct photo *photo, const double disc[
  *       shade_most. */
 double white_level(const struct white *white, bool told, const struct white_conf *conf);
 
+/* Sigma of its ln: people's scleras, and half of what their shading tells of the light. NAN where no sclera was measured. */
+double white_level_sigma(const struct white *white, bool told);
+
 /* Whether a is the better white: a card before sclera before none; of two from sclera, the one that shows more of it. */
 bool white_better(const struct white *a, const struct white *b);
 

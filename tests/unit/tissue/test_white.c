@@ -145,13 +145,16 @@ static void test_level(void **state)
 	white.shade = 0.5;   // an eye of which one side shows: the light as photographed, and shade_most more
 	CHECK_NEAR(white_level(&white, false, &conf), 0.5 * exp(0.2), 0.005);
 	CHECK_NEAR(white_level(&white, true, &conf), 1, 1e-12);
+	CHECK_NEAR(white_level_sigma(&white, true), 0.12, 1e-12);
+	CHECK_NEAR(white_level_sigma(&white, false), hypot(0.12, log(2) / 2), 1e-12);
 	conf.shade_most = 0;
 	CHECK_NEAR(white_level(&white, false, &conf), 0.5, 1e-12);
 	for (int c = 0; c < 3; c++)  // a card in the open, an eye in the shade of its brow
 		white.sclera[c] *= 0.3;
 	white.shade = 1;
 	CHECK_NEAR(white_level(&white, false, &conf), 0.3, 1e-12);
-	assert_true(white_level(&(struct white){ .rgb = { 1, 1, 1 } }, false, &conf) == 1);
+	const struct white none = { .rgb = { 1, 1, 1 } };
+	assert_true(white_level(&none, false, &conf) == 1 && isnan(white_level_sigma(&none, false)));
 }
 
 int main(void)
