@@ -86,7 +86,7 @@ if [ "${FACE:-yes}" = yes ]; then
 		name=${layers##*/} name=${name%_look_layers.exr}
 		read -r width height < <("$B/tests/tools/face_compare" "$layers")
 		timeout 3000 blender -b --python tests/tools/face_cycles.py -- "$face/work/render/$name.glb" "$face/work/export" "$root/$name.exr" "$SAMPLES" "$width" "$height" "$field" >"$log" 2>&1 || { tail -n 5 "$log"; exit 1; }
-		"$B/tests/tools/face_compare" "$layers" "$root/$name.exr" "bench/look_$name.png" "$root/${name}_parts.exr" | sed "s/^/Cycles, $name: /"
+		"$B/tests/tools/face_compare" "$layers" "$root/$name.exr" "bench/look_$name.png" "$root/${name}_parts.exr" "$root/${name}_hair.exr" | sed "s/^/Cycles, $name: /"
 	done
 	echo "for the eye: bench/look_*.png"
 fi

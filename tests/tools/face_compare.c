@@ -1,6 +1,7 @@
-/* A driven face by another program, against render's own still, part by part: NAME_look_layers.exr OTHER.exr [SHEET.png [PARTS.exr]]; of the first alone its width and height.
+/* A driven face by another program, against render's own still, part by part: NAME_look_layers.exr OTHER.exr [SHEET.png [PARTS.exr [HAIR.exr]]]; of the first alone its width and height.
  * Prints: CIEDE2000 (mean) and structural similarity of skin away from the eyes, of skin within 6 mm of the lids' opening, of the eyeballs and of the wet line on
- * them; px between the outlines, of the head, and of the eyeballs between the lids where PARTS.exr has them (ViewLayer.IndexOB.X: 1). The exposure puts the skin's mean at 0.35. SHEET.png: ours; the other; how far it is off, four times. */
+ * them; of their white and irises, where PARTS.exr has them (ViewLayer.IndexOB.X: 1, 2), and of lashes over skin and eyes, where HAIR.exr has them (3); px between the
+ * outlines, of the head, and of the eyeballs between the lids. The exposure puts the skin's mean at 0.35. SHEET.png: ours; the other; how far it is off, four times. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +15,8 @@
 #include "image/picture.h"
 #include "tests/lib/score/likeness.h"
 
-enum part { SKIN, LIDS, EYES, WET, PARTS, NONE = -1 };
-static const char *const part_names[PARTS] = { "skin", "round the eyes", "eyeballs", "wet line" };
+enum part { SKIN, LIDS, EYES, WET, WHITE, IRIS, LASHES, PARTS, NONE = -1 };
+static const char *const part_names[PARTS] = { "skin", "round the eyes", "eyeballs", "wet line", "white of the eyes", "irises", "lashes" };
 
 static bool of_globe(const float *layers)
 {
@@ -96,26 +97,48 @@ static double structure(const struct image *a, const struct image *b, const int8
 	return s;
 }
 
-/* Px between the outlines of what is seen of the eyeballs, hairs away. */
-static bool openings(double *px, const struct image *layers, const char *path, struct err *err)
+/* Which thing the other program has at each pixel. image_free. */
+static bool things(struct image *of, const struct image *layers, const char *path, struct err *err)
 {
 	static const char *const index[] = { "ViewLayer.IndexOB.X" };
-	struct image of, cover[2];
-	if (!exr_read(&of, path, 1, index, 1L << 24, 0, err))
-		return false;
-	const bool ok = (of.width == layers->width && of.height == layers->height) || err_set(err, "%s: of another size", path);
-	for (int k = 0; k < 2 && ok; k++)
-		cover[k] = image_new(of.width, of.height, 4);
-	for (long i = 0; i < (long)of.width * of.height && ok; i++) {
+	return exr_read(of, path, 1, index, 1L << 24, 0, err)
+	       && ((of->width == layers->width && of->height == layers->height) || err_set(err, "%s: of another size", path));
+}
+
+/* Px between the outlines of what is seen of the eyeballs, hairs away. */
+static double openings(const struct image *layers, const struct image *of)
+{
+	struct image cover[2];
+	for (int k = 0; k < 2; k++)
+		cover[k] = image_new(of->width, of->height, 4);
+	for (long i = 0; i < (long)of->width * of->height; i++) {
 		cover[0].px[4 * i + 3] = of_globe(layers->px + PORTRAIT_LAYERS * i);
-		cover[1].px[4 * i + 3] = of.px[i] > 0.5f;
+		cover[1].px[4 * i + 3] = of->px[i] > 0.5f;
 	}
-	if (ok)
-		*px = likeness_outline(&cover[0], &cover[1]);
-	for (int k = 0; k < 2 && ok; k++)
+	const double px = likeness_outline(&cover[0], &cover[1]);
+	for (int k = 0; k < 2; k++)
 		image_free(&cover[k]);
-	image_free(&of);
-	return ok;
+	return px;
+}
+
+/* Mean difference and structure of a part. */
+static void tell(enum part which, const struct image *own, const struct image *other, const int8_t *part, double gain)
+{
+	double sum = 0;
+	long n = 0;
+	for (long i = 0; i < (long)own->width * own->height; i++) {
+		float p[3], q[3];
+		if (part[i] != (int8_t)which || other->px[4 * i + 3] < 1)
+			continue;
+		for (int c = 0; c < 3; c++) {
+			p[c] = (float)gain * own->px[4 * i + c];
+			q[c] = (float)gain * other->px[4 * i + c];
+		}
+		sum += colour_difference(p, q);
+		n++;
+	}
+	if (n)
+		printf("%s: difference %.2f, structure %.3f, of %ld px\n", part_names[which], sum / (double)n, structure(own, other, part, which, gain), n);
 }
 
 static bool sheet(const char *path, const struct image *a, const struct image *b, double gain, struct err *err)
@@ -142,7 +165,7 @@ int main(int argc, char **argv)
 	struct image layers, other;
 	struct err err = { 0 };
 	if (argc < 2 || !exr_read(&layers, argv[1], PORTRAIT_LAYERS, names, 1L << 24, 0, &err)) {
-		fprintf(stderr, "face_compare: %s\n", argc < 2 ? "LAYERS.exr [OTHER.exr [SHEET.png [PARTS.exr]]]" : err.msg);
+		fprintf(stderr, "face_compare: %s\n", argc < 2 ? "LAYERS.exr [OTHER.exr [SHEET.png [PARTS.exr [HAIR.exr]]]]" : err.msg);
 		return 2;
 	}
 	if (argc < 3) {
@@ -158,36 +181,33 @@ int main(int argc, char **argv)
 	const long n = (long)width * height;
 	const struct image own = picture_of(&layers);
 	int8_t *part = parts(&layers);
-	double sum = 0, difference[PARTS] = { 0 };
-	long count[PARTS] = { 0 };
+	double sum = 0;
+	long count = 0;
 	for (long i = 0; i < n; i++)
 		if (part[i] == SKIN) {
 			sum += luminance(own.px + 4 * i);
-			count[SKIN]++;
+			count++;
 		}
-	const double gain = 0.35 * (double)count[SKIN] / sum;
-	count[SKIN] = 0;
-	for (long i = 0; i < n; i++) {
-		float p[3], q[3];
-		if (part[i] == NONE || other.px[4 * i + 3] < 1)
-			continue;
-		for (int c = 0; c < 3; c++) {
-			p[c] = (float)gain * own.px[4 * i + c];
-			q[c] = (float)gain * other.px[4 * i + c];
-		}
-		difference[part[i]] += colour_difference(p, q);
-		count[part[i]]++;
-	}
-	for (int k = 0; k < PARTS; k++)
-		printf("%s: difference %.2f, structure %.3f, of %ld px\n", part_names[k], difference[k] / (double)count[k], structure(&own, &other, part, k, gain), count[k]);
-	double eyes;
-	printf("outlines %.2f px\n", likeness_outline(&own, &other));
-	if (argc > 4 && !openings(&eyes, &layers, argv[4], &err)) {
+	const double gain = 0.35 * (double)count / sum;
+	struct image eyes, hair;
+	if ((argc > 4 && !things(&eyes, &layers, argv[4], &err)) || (argc > 5 && !things(&hair, &layers, argv[5], &err))) {
 		fprintf(stderr, "face_compare: %s\n", err.msg);
 		return 2;
 	}
+	for (int k = SKIN; k <= WET; k++)
+		tell((enum part)k, &own, &other, part, gain);
+	for (long i = 0; i < n && argc > 4; i++)
+		if (part[i] == EYES || part[i] == WET)
+			part[i] = eyes.px[i] > 1.5f ? IRIS : WHITE;
+	for (int k = WHITE; k <= IRIS && argc > 4; k++)
+		tell((enum part)k, &own, &other, part, gain);
+	for (long i = 0; i < n && argc > 5; i++)
+		part[i] = part[i] != NONE && part[i] != SKIN && hair.px[i] > 2.5f ? LASHES : part[i];
+	if (argc > 5)
+		tell(LASHES, &own, &other, part, gain);
+	printf("outlines %.2f px\n", likeness_outline(&own, &other));
 	if (argc > 4)
-		printf("outlines of the eyeballs between the lids %.2f px\n", eyes);
+		printf("outlines of the eyeballs between the lids %.2f px\n", openings(&layers, &eyes));
 	if (argc > 3 && !sheet(argv[3], &own, &other, gain, &err)) {
 		fprintf(stderr, "face_compare: %s\n", err.msg);
 		return 2;

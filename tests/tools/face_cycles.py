@@ -1,7 +1,7 @@
 # A driven face's .glb in Cycles, under the light and camera of render's own NAME_look (lib/draw/face/view.c: a long lens, 0.9 m off, field distances of the eyes
 # across): as Blender imports it, but for the eyes' materials, which are those that EXPORT/blender_eye.py builds.
 # blender -b --python tests/tools/face_cycles.py -- FACE.glb EXPORT OUT.exr SAMPLES WIDTH HEIGHT FIELD   writes OUT.exr, linear RGBA, and
-# OUT_parts.exr, whose channel ViewLayer.IndexOB.X is 1 on the eyeballs, hairs and tears away
+# OUT_parts.exr, whose channel ViewLayer.IndexOB.X is 1 on the eyeballs' white, 2 on their irises, hairs, tears and corneae away; OUT_hair.exr: 3 on lashes
 import math
 import os
 import sys
@@ -40,10 +40,14 @@ scene.render.filepath = out
 bpy.ops.render.render(write_still=True)
 
 for o in scene.objects:
-    o.pass_index = o.name.startswith("eye_")
-    o.hide_render = o.name in ("lashes", "brows", "tears")
+    o.pass_index = 3 if o.name == "lashes" else 2 if o.name.endswith("_iris") else o.name.startswith("eye_")
+    o.hide_render = o.name in ("lashes", "brows", "tears") or o.name.endswith("_cornea")
 scene.view_layers[0].use_pass_object_index = True
 scene.cycles.samples, scene.cycles.pixel_filter_type, scene.cycles.filter_width = 1, "BOX", 0.01
 scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
 scene.render.filepath = out[:-4] + "_parts.exr"
+bpy.ops.render.render(write_still=True)
+for o in scene.objects:
+    o.hide_render = o.name in ("brows", "tears")
+scene.render.filepath = out[:-4] + "_hair.exr"
 bpy.ops.render.render(write_still=True)
