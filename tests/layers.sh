@@ -5,7 +5,7 @@
 . tests/lib/check.sh
 
 # A room may include rooms of lower rank, and itself.
-declare -A rank=([base]=0 [math]=1 [optics]=2 [image]=2 [mesh]=2 [bridge]=3 [character]=4 [anatomy]=4
+declare -A rank=([base]=0 [math]=1 [optics]=2 [image]=2 [mesh]=2 [net]=2 [bridge]=3 [character]=4 [anatomy]=4
 	[limbus]=5 [iris]=6 [tissue]=7 [model]=5 [register]=5 [plan]=5 [sfm]=6 [rig]=6 [motion]=6 [track]=7 [draw]=8 [export]=9)
 
 includes() { grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' -r "$@" --include='*.[ch]' --include='*.cc'; }

@@ -5,23 +5,23 @@
 
 #include "base/call.h"
 #include "base/mem.h"
-#include "bridge/cv_net.h"
 #include "image/photo/part.h"
 #include "image/plane.h"
 #include "limbus/candidates.h"
 #include "limbus/disc.h"
+#include "net/net.h"
 
 enum { STEP = 32, WINDOW_WIDE = 256, WINDOW_HIGH = 160, LONG_FIRST = 64, LONG_SURE = 256, LONG_LAST = 512, VIEWS_MAX = 12, CLOSE_WIDE = 128, CLOSE_HIGH = 96 };
 
 struct evidence_net {
-	struct cv_net *net;
+	struct net *net;
 };
 
 bool evidence_open(struct evidence_net **out, const char *path, struct err *err)
 {
-	struct cv_net *net;
+	struct net *net;
 	*out = 0;
-	if (!cv_net_open(&net, path, (const int[3]){ 3, STEP, STEP }, (const int[3]){ EVIDENCE_CLASSES, STEP / 2, STEP / 2 }, err))
+	if (!net_open(&net, path, (const int[3]){ 3, STEP, STEP }, (const int[3]){ EVIDENCE_CLASSES, STEP / 2, STEP / 2 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
@@ -39,7 +39,7 @@ bool evidence_open_shipped(struct evidence_net **net, struct err *err)
 void evidence_close(struct evidence_net *net)
 {
 	if (net)
-		cv_net_close(net->net);
+		net_close(net->net);
 	free(net);
 }
 
@@ -71,7 +71,7 @@ static float *mirrored(const float *planes, int n, int width, int height)
 struct view { double x0, y0, scale; int width, height; };
 
 /* The planes of a picture; those of its mirror image, turned back, are averaged with them. */
-static struct evidence planes_of(const struct view *view, const struct cv_net_picture *p, const struct cv_net_picture *mirror)
+static struct evidence planes_of(const struct view *view, const struct net_picture *p, const struct net_picture *mirror)
 {
 	const long n = (long)p->size[1] * p->size[2];
 	softmax(p->out, n);
@@ -102,7 +102,7 @@ static float *part_of(const struct source *s, const struct view *v)
 static bool classify(struct evidence *out, const struct view *view, int n, bool both, struct evidence_net *net, const struct source *source,
                      struct err *err)
 {
-	struct cv_net_picture picture[2 * VIEWS_MAX] = { 0 };
+	struct net_picture picture[2 * VIEWS_MAX] = { 0 };
 	float *in[2 * VIEWS_MAX] = { 0 };
 	const int runs = both ? 2 * n : n;
 	for (int i = 0; i < n; i++) {
@@ -111,8 +111,8 @@ static bool classify(struct evidence *out, const struct view *view, int n, bool 
 		in[n + i] = both ? mirrored(in[i], 3, v->width, v->height) : 0;
 	}
 	for (int i = 0; i < runs; i++)
-		picture[i] = (struct cv_net_picture){ .in = in[i], .height = view[i % n].height, .width = view[i % n].width };
-	const bool ok = cv_net_run(picture, runs, net->net, 3, err);
+		picture[i] = (struct net_picture){ .in = in[i], .height = view[i % n].height, .width = view[i % n].width };
+	const bool ok = net_run(picture, runs, net->net, 3, err);
 	for (int i = 0; i < n; i++)
 		out[i] = ok ? planes_of(&view[i], &picture[i], both ? &picture[n + i] : 0) : (struct evidence){ 0 };
 	for (int i = 0; i < 2 * n; i++) {

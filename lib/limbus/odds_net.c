@@ -5,19 +5,19 @@
 
 #include "base/call.h"
 #include "base/mem.h"
-#include "bridge/cv_net.h"
+#include "net/net.h"
 
 const double odds_tolerance[ODDS_CURVE] = { 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.1 };
 
 struct odds_net {
-	struct cv_net *net;
+	struct net *net;
 };
 
 bool odds_open(struct odds_net **out, const char *path, struct err *err)
 {
-	struct cv_net *net;
+	struct net *net;
 	*out = 0;
-	if (!cv_net_open(&net, path, (const int[3]){ ODDS_TRAITS, 1, 1 }, (const int[3]){ ODDS_CURVE, 1, 1 }, err))
+	if (!net_open(&net, path, (const int[3]){ ODDS_TRAITS, 1, 1 }, (const int[3]){ ODDS_CURVE, 1, 1 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
@@ -35,7 +35,7 @@ bool odds_open_shipped(struct odds_net **net, struct err *err)
 void odds_close(struct odds_net *net)
 {
 	if (net)
-		cv_net_close(net->net);
+		net_close(net->net);
 	free(net);
 }
 
@@ -44,8 +44,8 @@ bool odds_of(double curve[ODDS_CURVE], const double x[ODDS_TRAITS], struct odds_
 	float in[ODDS_TRAITS];
 	for (int i = 0; i < ODDS_TRAITS; i++)
 		in[i] = isfinite(x[i]) ? (float)x[i] : 0;
-	struct cv_net_picture p = { .in = in, .height = 1, .width = 1 };
-	const bool ok = cv_net_run(&p, 1, net->net, ODDS_TRAITS, err);
+	struct net_picture p = { .in = in, .height = 1, .width = 1 };
+	const bool ok = net_run(&p, 1, net->net, ODDS_TRAITS, err);
 	// the first, and what each adds to the one before
 	for (int i = 0; i < ODDS_CURVE && ok; i++)
 		curve[i] = i ? curve[i - 1] + fmax(p.out[i], 0) + log1p(exp(-fabs(p.out[i]))) : p.out[i];

@@ -6,20 +6,20 @@
 
 #include "base/call.h"
 #include "base/mem.h"
-#include "bridge/cv_net.h"
+#include "net/net.h"
 
 enum { WRAP = 16, WIDE = STRIP_RAYS + 2 * WRAP };
 static const float LEAST_CONTRAST = 0.02F;
 
 struct strip_net {
-	struct cv_net *net;
+	struct net *net;
 };
 
 bool strip_open(struct strip_net **out, const char *path, struct err *err)
 {
-	struct cv_net *net;
+	struct net *net;
 	*out = 0;
-	if (!cv_net_open(&net, path, (const int[3]){ STRIP_PLANES, STRIP_ROWS, WIDE }, (const int[3]){ 1, STRIP_ROWS + 1, WIDE }, err))
+	if (!net_open(&net, path, (const int[3]){ STRIP_PLANES, STRIP_ROWS, WIDE }, (const int[3]){ 1, STRIP_ROWS + 1, WIDE }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
@@ -37,7 +37,7 @@ bool strip_open_shipped(struct strip_net **net, struct err *err)
 void strip_close(struct strip_net *net)
 {
 	if (net)
-		cv_net_close(net->net);
+		net_close(net->net);
 	free(net);
 }
 
@@ -102,15 +102,15 @@ bool strip_read(struct strip *out, struct strip_net *net, const struct photo *ph
 	enum { FIRST = 3, LAST = 6 };  // planes of the evidence
 	const int n = way == STRIP_ONCE ? 1 : 2;
 	float (*strip)[STRIP_ROWS][STRIP_RAYS] = mem_array(STRIP_PLANES, sizeof *strip);
-	struct cv_net_picture run[2] = { 0 };
+	struct net_picture run[2] = { 0 };
 	*out = (struct strip){ .e = *e, .conf = *conf };
 	strip_sample(strip, photo, evidence, e);
 	if (way == STRIP_BLIND)
 		memset(strip[FIRST], 0, (LAST - FIRST + 1) * sizeof *strip);
 	even(strip);
 	for (int i = 0; i < n; i++)
-		run[i] = (struct cv_net_picture){ .in = input_of(strip, i), .height = STRIP_ROWS, .width = WIDE };
-	const bool ok = cv_net_run(run, n, net->net, STRIP_PLANES, err);
+		run[i] = (struct net_picture){ .in = input_of(strip, i), .height = STRIP_ROWS, .width = WIDE };
+	const bool ok = net_run(run, n, net->net, STRIP_PLANES, err);
 	for (int i = 0; i < n; i++) {
 		if (ok)
 			add(out, run[i].out, i, 1.0F / n);

@@ -1,4 +1,4 @@
-"""Weights of the evidence network in ONNX: written with the seal that lib/bridge/cv_net asks for, and read back to go on training.
+"""Weights of the evidence network in ONNX: written with the seal that lib/net/file.h asks for, and read back to go on training.
 
 A written network has its batch normalisation folded into the convolutions. Read back, each normalisation is set to undo the mean and the
 variance that its input has on pictures, so that the network is the same function and trains on as before.
@@ -17,7 +17,7 @@ def export(net, path, width, height, planes=3, small=False):
     net = copy.deepcopy(net).eval().to(memory_format=torch.contiguous_format)
     if small:
         fold(net)
-    plain = {"dynamo": False} if "dynamo" in inspect.signature(torch.onnx.export).parameters else {}  # newer ones write graphs OpenCV 4.6 cannot read
+    plain = {"dynamo": False} if "dynamo" in inspect.signature(torch.onnx.export).parameters else {}  # newer ones write graphs that lib/net cannot read
     torch.onnx.export(net, torch.zeros(1, planes, height, width), path, opset_version=11, input_names=["in"], output_names=["logits"], **plain)
     seal(path)
     if small:

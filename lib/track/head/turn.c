@@ -6,7 +6,7 @@
 
 #include "base/call.h"
 #include "base/mem.h"
-#include "bridge/cv_net.h"
+#include "net/net.h"
 
 /* What the network has learnt to see (tests/evidence/turn.py): SIZE px square, the eyes' middle there and so far apart; each channel by its mean and spread in the middle. */
 enum { SIZE = 96, FROM = 16, TO = 80, FINEST = 8 };
@@ -16,17 +16,17 @@ static const double STRANGER[TURNS] = { 0.02, 0.05 };
 static const double MIDDLE[2] = { 48, 58.0 * 96 / 144 }, APART = 40.0 * 96 / 144, FLAT = 0.02;
 
 struct turn_net {
-	struct cv_net *net;
+	struct net *net;
 };
 
 /* What the network says of a face [3][SIZE][SIZE] and of its mirror image, as of the face. */
-static bool run(double out[2][2 * TURNS], const float *in, struct cv_net *net, struct err *err)
+static bool run(double out[2][2 * TURNS], const float *in, struct net *net, struct err *err)
 {
 	float *mirrored = mem_array((size_t)3 * SIZE * SIZE, sizeof *mirrored);
 	for (int i = 0; i < 3 * SIZE * SIZE; i++)
 		mirrored[i] = in[i / SIZE * SIZE + SIZE - 1 - i % SIZE];
-	struct cv_net_picture p[2] = { { .in = in, .height = SIZE, .width = SIZE }, { .in = mirrored, .height = SIZE, .width = SIZE } };
-	const bool ok = cv_net_run(p, 2, net, 3, err);
+	struct net_picture p[2] = { { .in = in, .height = SIZE, .width = SIZE }, { .in = mirrored, .height = SIZE, .width = SIZE } };
+	const bool ok = net_run(p, 2, net, 3, err);
 	for (int m = 0; m < 2 && ok; m++)
 		for (int k = 0; k < 2 * TURNS; k++)
 			out[m][k] = (m && k == TURN_ASIDE ? -1 : 1) * (double)p[m].out[k];
@@ -38,9 +38,9 @@ static bool run(double out[2][2 * TURNS], const float *in, struct cv_net *net, s
 
 bool turn_open(struct turn_net **out, const char *path, struct err *err)
 {
-	struct cv_net *net;
+	struct net *net;
 	*out = 0;
-	if (!cv_net_open(&net, path, (const int[3]){ 3, SIZE, SIZE }, (const int[3]){ 2 * TURNS, 1, 1 }, err))
+	if (!net_open(&net, path, (const int[3]){ 3, SIZE, SIZE }, (const int[3]){ 2 * TURNS, 1, 1 }, err))
 		return false;
 	*out = mem_new(1, sizeof **out);
 	(*out)->net = net;
@@ -58,7 +58,7 @@ bool turn_open_shipped(struct turn_net **net, struct err *err)
 void turn_close(struct turn_net *net)
 {
 	if (net)
-		cv_net_close(net->net);
+		net_close(net->net);
 	free(net);
 }
 

@@ -3,7 +3,6 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "bridge/cv_net.h"
 #include "limbus/evidence.h"
 #include "math/rng.h"
 #include "tests/evidence/scene.h"
