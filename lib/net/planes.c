@@ -19,8 +19,8 @@ float *net_planes_row(const struct net_planes *p, int channel, int row)
 
 void net_planes_seal(const struct net_planes *p, int channel)
 {
-	for (int row = 0; row < p->size.height; row++)
-		for (int x = 0; x < p->border; x++)
+	for (int x = 0; x < p->border; x++)
+		for (int row = 0; row < p->size.height; row++)
 			net_planes_row(p, channel, row)[p->size.width + x] = 0;
 }
 

@@ -48,12 +48,15 @@ static void test_opencv(void **state)
 		char *onnx;
 		size_t bytes;
 		assert_true(net_file_read(&onnx, &bytes, nets[i].path, &err));
+		struct cv_net *peer = cv_net_open(onnx, bytes, &err);
+		if (!peer)
+			fail_msg("%s: %s", nets[i].path, err.msg);
 		for (int s = 0; s < nets[i].n; s++) {
 			const int channels = nets[i].takes[0], height = nets[i].size[s][0], width = nets[i].size[s][1];
 			float *in = noise(&rng, channels, height, width);
 			int size[3] = { channels, height, width };
 			struct net_picture p = { .in = in, .height = height, .width = width };
-			float *want = cv_net_run(onnx, bytes, in, size, &err);
+			float *want = cv_net_run(peer, in, size, &err);
 			if (!want || !net_run(&p, 1, net, channels, &err))
 				fail_msg("%s: %s", nets[i].path, err.msg);
 			assert_memory_equal(p.size, size, sizeof size);
@@ -65,6 +68,7 @@ static void test_opencv(void **state)
 			free(in);
 		}
 		free(onnx);
+		cv_net_close(peer);
 		net_close(net);
 	}
 }
