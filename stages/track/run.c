@@ -18,6 +18,7 @@
 #include "track/clip/follow.h"
 #include "track/clip/kappa.h"
 #include "track/clip/others.h"
+#include "track/clip/outlines.h"
 #include "track/clip/refine.h"
 #include "track/clip/settle.h"
 #include "track/clip/trust.h"
@@ -102,6 +103,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_kappa(result, conf, err))
 		return false;
 	track_corners(result, clip, subject, points);
+	track_outlines(result, conf);
 	track_apertures(result, clip, subject, conf);
 	if (subject->assumed)
 		result->n_points = points->n = 0;  // rows of no mesh of the person

@@ -1,0 +1,30 @@
+/* outlines: the lids' margins about where the network's evidence has them. Edges and colours that a clip is followed by tell how a margin moves to a fraction of a pixel, not
+ * which line of the lid it is; the evidence, which was taught that, is asked in some frames a second.
+ */
+#ifndef TRACK_CLIP_OUTLINES_H
+#define TRACK_CLIP_OUTLINES_H
+#include "base/pack.h"
+#include "track/clip/clip.h"
+#include "track/clip/conf.h"
+#include "track/clip/result.h"
+
+struct outlines;
+
+/* clip, subject and bulk are borrowed until outlines_free. Null: they are not looked for, without a mesh or in a clip that is only looked at, or the network cannot be run, which
+ * track_canthi() reports. */
+struct outlines *outlines_new(const struct track_clip *clip, const struct track_subject *subject, struct bulk *bulk, const struct track_conf *conf);
+
+/* The next frame: looks at the eyes that are in the picture if it is time to. box: of each, first column and row, and those after the last, that frame->rgb has been filled in. */
+void outlines_push(struct outlines *outlines, const struct eye_frame *frame, const bool in[SIDES], const int box[SIDES][4]);
+
+/* After the last frame: hands what was found over to result. */
+void outlines_give(struct track_result *result, struct outlines *outlines);
+
+/* Their state after a push (base/pack.h). */
+void outlines_pack(struct pack *pack, struct outlines *outlines);
+void outlines_free(struct outlines *outlines);
+
+/* Draws the margins in result->eyes to the outlines, the mean of those of the open eye near in time; in blinks as before and after them. Without outlines nothing changes. */
+void track_outlines(struct track_result *result, const struct track_conf *conf);
+
+#endif
