@@ -26,7 +26,10 @@ struct track_canthi_conf {
 /* The lids' margins over the clip (outlines.h). */
 struct track_outlines_conf {
 	double every_s;        // the evidence is asked once in so long; 0: never
+	double again;          // and where the opening has changed by so much since, of the iris' radius
 	double steady_s;       // standard deviation, in time, of the mean of what it tells
+	double alike;          // of the iris' radius: the same, of openings that are alike
+	double most;           // apart by more, of the iris' radius, they are not one margin
 	double found_sigma;    // of margins that edges and colours tell, against the evidence's, of the iris' radius
 };
 

@@ -166,14 +166,15 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 		held(&frame, eyes, in, skin_pose, f);
 	else if (eyes->glance)
 		glance_at(&frame, eyes->glance, in);
+	const struct eye_state *state[SIDES];
 #pragma omp parallel for schedule(static, 1) num_threads(SIDES)
 	for (int e = 0; e < SIDES; e++) {
 		if (in[e] && !one_by_one)
 			video_frame_rgb(eyes->rgb, 3 * f->width, f, box[e][0], box[e][1], box[e][2], box[e][3]);
-		eye_track_push(eyes->track, e, &frame);
+		state[e] = eye_track_push(eyes->track, e, &frame);
 	}
 	if (eyes->outlines)
-		outlines_push(eyes->outlines, &frame, in, (const int(*)[4])box);
+		outlines_push(eyes->outlines, &frame, state, in, (const int(*)[4])box);
 }
 
 void track_eyes_hold(struct track_result *r, struct track_eyes *eyes, const struct track_conf *conf)

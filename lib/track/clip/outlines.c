@@ -12,8 +12,9 @@ struct outlines {
 	const struct track_subject *subject;
 	struct evidence_net *net;
 	struct bulk *bulk;
-	double every, limbus, least_area;  // s; mm, of an average eye; squares of the iris' radius
-	double looked;                 // time of the last frame that was looked at
+	double limbus, least_area;     // mm, of an average eye; squares of the iris' radius
+	struct track_outlines_conf conf;
+	double looked[SIDES], gap[SIDES];  // time of the last frame that was looked at, and the opening in it, of the iris' radius
 	long frames;                   // pushed
 	struct track_outline *seen;    // bulk
 	long n, room, packed;
@@ -26,8 +27,8 @@ struct outlines *outlines_new(const struct track_clip *clip, const struct track_
 	if (subject->assumed || conf->limit || !(conf->outlines.every_s > 0) || !evidence_open_shipped(&net, &none))
 		return 0;
 	struct outlines *o = mem_new(1, sizeof *o);
-	*o = (struct outlines){ .clip = clip, .subject = subject, .net = net, .bulk = bulk, .every = conf->outlines.every_s, .limbus = conf->eye.limbus_radius,
-		                    .least_area = conf->canthi.least_area, .looked = -INFINITY };
+	*o = (struct outlines){ .clip = clip, .subject = subject, .net = net, .bulk = bulk, .conf = conf->outlines, .limbus = conf->eye.limbus_radius,
+		                    .least_area = conf->canthi.least_area, .looked = { -INFINITY, -INFINITY } };
 	return o;
 }
 
@@ -63,14 +64,25 @@ static struct photo photo_of(const struct eye_frame *frame, const int box[4])
 	return photo;
 }
 
-static void look(struct outlines *o, int side, const struct eye_frame *frame, const int box[4])
+/* True where it is time to look, or the opening has changed since. */
+static bool due(struct outlines *o, int side, double time, double gap)
+{
+	const double early = 1e-3;  // s: time stamps are rounded
+	if (time - o->looked[side] < o->conf.every_s - early && !(fabs(gap - o->gap[side]) > o->conf.again))
+		return false;
+	o->looked[side] = time;
+	o->gap[side] = gap;
+	return true;
+}
+
+static void look(struct outlines *o, int side, const struct eye_frame *frame, const struct eye_state *state, const int box[4])
 {
 	struct evidence e;
 	struct track_outline t;
 	struct err none = { 0 };
 	double place[3], across[2], down[2];
 	memset(&t, 0, sizeof t);  // its bytes are kept
-	if (!place_of(place, across, down, o, side, frame->cam_from_head))
+	if (!place_of(place, across, down, o, side, frame->cam_from_head) || !due(o, side, frame->time, outlines_gap(state) / place[2]))
 		return;
 	struct photo photo = photo_of(frame, box);
 	if (evidence_window(&e, o->net, &photo, place[0] - box[0], place[1] - box[1], place[2], &none)) {
@@ -90,16 +102,19 @@ static void look(struct outlines *o, int side, const struct eye_frame *frame, co
 	free(photo.rgb);
 }
 
-void outlines_push(struct outlines *o, const struct eye_frame *frame, const bool in[SIDES], const int box[SIDES][4])
+void outlines_push(struct outlines *o, const struct eye_frame *frame, const struct eye_state *const state[SIDES], const bool in[SIDES], const int box[SIDES][4])
 {
-	const double early = 1e-3;  // s: time stamps are rounded
-	if (frame->time - o->looked > o->every - early) {
-		for (int e = 0; e < SIDES; e++)
-			if (in[e])
-				look(o, e, frame, box[e]);
-		o->looked = frame->time;
-	}
+	for (int e = 0; e < SIDES; e++)
+		if (in[e])
+			look(o, e, frame, state[e], box[e]);
 	o->frames++;
+}
+
+double outlines_gap(const struct eye_state *s)
+{
+	const int n = s->lid_points;
+	const double gap = n ? hypot(s->lid[LID_LOWER][n / 2][0] - s->lid[LID_UPPER][n / 2][0], s->lid[LID_LOWER][n / 2][1] - s->lid[LID_UPPER][n / 2][1]) : 0;
+	return isfinite(gap) ? gap : 0;
 }
 
 void outlines_give(struct track_result *r, struct outlines *o)
@@ -125,6 +140,7 @@ void outlines_pack(struct pack *p, struct outlines *o)
 		pack_bytes(p, o->seen + o->packed, (size_t)(n - o->packed) * sizeof *o->seen);
 	o->n = o->packed = n;
 	PACK(p, o->looked);
+	PACK(p, o->gap);
 	PACK(p, o->frames);
 }
 

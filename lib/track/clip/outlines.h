@@ -14,8 +14,12 @@ struct outlines;
  * track_canthi() reports. */
 struct outlines *outlines_new(const struct track_clip *clip, const struct track_subject *subject, struct bulk *bulk, const struct track_conf *conf);
 
-/* The next frame: looks at the eyes that are in the picture if it is time to. box: of each, first column and row, and those after the last, that frame->rgb has been filled in. */
-void outlines_push(struct outlines *outlines, const struct eye_frame *frame, const bool in[SIDES], const int box[SIDES][4]);
+/* The next frame: looks at the eyes that are in the picture if it is time to. state: what eye_track_push() found. box: of each, first column and row, and those after the last, that
+ * frame->rgb has been filled in. */
+void outlines_push(struct outlines *outlines, const struct eye_frame *frame, const struct eye_state *const state[SIDES], const bool in[SIDES], const int box[SIDES][4]);
+
+/* How far the eye is open, px: between the middles of its margins; 0 where it is shut. */
+double outlines_gap(const struct eye_state *state);
 
 /* After the last frame: hands what was found over to result. */
 void outlines_give(struct track_result *result, struct outlines *outlines);
@@ -24,7 +28,7 @@ void outlines_give(struct track_result *result, struct outlines *outlines);
 void outlines_pack(struct pack *pack, struct outlines *outlines);
 void outlines_free(struct outlines *outlines);
 
-/* Draws the margins in result->eyes to the outlines, the mean of those of the open eye near in time; in blinks as before and after them. Without outlines nothing changes. */
+/* Draws the margins in result->eyes to the outlines, the mean of those near in time that are open as far. Without outlines nothing changes. */
 void track_outlines(struct track_result *result, const struct track_conf *conf);
 
 #endif

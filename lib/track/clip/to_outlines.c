@@ -49,7 +49,7 @@ static void apart(by_point off, const struct eye_state *s, const struct eye_outl
 		outwards(out, s, k, hand);
 		for (int i = 0; i < s->lid_points; i++) {
 			const double u = line_along(s->lid[k][i], s->lid[k][0], s->lid[k][s->lid_points - 1]);
-			off[k][i] = u < rounded || u > 1 - rounded ? NAN : eye_outline_apart(o, k, s->lid[k][i], out[i], conf->canthi.most * radius) / radius + conf->canthi.outline_beyond;
+			off[k][i] = u < rounded || u > 1 - rounded ? NAN : eye_outline_apart(o, k, s->lid[k][i], out[i], conf->outlines.most * radius) / radius + conf->canthi.outline_beyond;
 		}
 	}
 }
@@ -111,19 +111,20 @@ static void draw(struct eye_state *s, by_point off, double hand)
 }
 
 /* Outlines of the open eye that margins were found in, in order of their frames, and how far they lie beyond those. */
-struct told { long n, *frame; float *radius; by_point *off; };
+struct told { long n, *frame; float *radius, *gap; by_point *off; };
 
 static struct told told_of(const struct track_result *r, int side, double hand, const struct track_conf *conf)
 {
 	const size_t room = (size_t)r->outlines + 1;
-	struct told t = { 0, mem_array(room, sizeof *t.frame), mem_array(room, sizeof *t.radius), mem_array(room, sizeof *t.off) };
+	struct told t = { 0, mem_array(room, sizeof *t.frame), mem_array(room, sizeof *t.radius), mem_array(room, sizeof *t.gap), mem_array(room, sizeof *t.off) };
 	for (long i = 0; i < r->outlines; i++) {
 		const struct track_outline *o = &r->outline[i];
 		const struct eye_state *s = o->side == side && o->frame < r->n ? &r->eyes.state[o->frame][side] : 0;
-		if (!s || s->blink != BLINK_OPEN || r->lost_at[o->frame] || !isfinite(s->lid[0][0][0]))
+		if (!s || r->lost_at[o->frame] || !isfinite(s->lid[0][0][0]))
 			continue;
 		t.frame[t.n] = o->frame;
 		t.radius[t.n] = o->at.radius;
+		t.gap[t.n] = (float)outlines_gap(s) / o->at.radius;
 		apart(t.off[t.n++], s, &o->at, hand, conf);
 	}
 	return t;
@@ -133,22 +134,25 @@ static void told_free(struct told *t)
 {
 	free(t->frame);
 	free(t->radius);
+	free(t->gap);
 	free(t->off);
 }
 
-/* Means over the outlines i..end - 1 near in time, px; what is too far off, as in canthi.c, counts little. */
-static bool mean(by_point by, const struct told *t, long i, long end, long frame, const struct track_result *r, int points, const struct track_conf *conf)
+/* Means over the outlines i..end - 1 near in time, px; what is too far off, counts little. */
+static bool mean(by_point by, const struct told *t, long i, long end, long frame, int side, const struct track_result *r, int points, const struct track_conf *conf)
 {
 	const double share = pow(conf->outlines.found_sigma, 2) / (pow(conf->outlines.found_sigma, 2) + pow(conf->canthi.outline_sigma, 2));
 	by_point weight = { { 0 } };
+	const double unlike_still = 1e-3;  // weight of openings that are not alike, where no others are near
 	double radius = 0, sum = 0;
 	memset(by, 0, sizeof(by_point));
 	for (; i < end; i++) {
-		const double late = (r->time[t->frame[i]] - r->time[frame]) / conf->outlines.steady_s, near = exp(-0.5 * late * late) + 1e-9;
+		const double late = (r->time[t->frame[i]] - r->time[frame]) / conf->outlines.steady_s, other = (outlines_gap(&r->eyes.state[frame][side]) / (double)t->radius[i] - (double)t->gap[i]) / conf->outlines.alike;
+		const double near = (exp(-0.5 * late * late) + 1e-9) * (exp(-0.5 * other * other) + unlike_still);
 		radius += near * (double)t->radius[i];
 		sum += near;
 		for (int k = 0; k < LIDS * points; k++) {
-			const double off = t->off[i][k / points][k % points], w = isnan(off) ? 0 : near / (1 + pow(off / conf->canthi.most, 4));
+			const double off = t->off[i][k / points][k % points], w = isnan(off) ? 0 : near / (1 + pow(off / conf->outlines.most, 4));
 			by[k / points][k % points] += w > 0 ? w * off : 0;
 			weight[k / points][k % points] += w;
 		}
@@ -174,7 +178,7 @@ static void eye(struct track_result *r, int side, const struct track_conf *conf)
 			last++;
 		// far from all: the nearest
 		const long from = first < last ? first : last > 0 ? last - 1 : 0, to = last > from ? last : from + 1;
-		if (isfinite(s->lid[0][0][0]) && mean(by, &t, from, to, f, r, s->lid_points, conf))
+		if (isfinite(s->lid[0][0][0]) && mean(by, &t, from, to, f, side, r, s->lid_points, conf))
 			draw(s, by, hand);
 	}
 	told_free(&t);
