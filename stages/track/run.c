@@ -18,9 +18,9 @@
 #include "track/clip/follow.h"
 #include "track/clip/kappa.h"
 #include "track/clip/others.h"
-#include "track/clip/outlines.h"
 #include "track/clip/refine.h"
 #include "track/clip/settle.h"
+#include "track/clip/to_outlines.h"
 #include "track/clip/trust.h"
 
 /* Warns of shortcomings of the video, one line each. */

@@ -1,6 +1,4 @@
-/* outlines: the lids' margins about where the network's evidence has them. Edges and colours that a clip is followed by tell how a margin moves to a fraction of a pixel, not
- * which line of the lid it is; the evidence, which was taught that, is asked in some frames a second.
- */
+/* outlines: where the network's evidence (limbus/evidence.h) has the lids' margins, looked at in some frames a second while a clip is followed. */
 #ifndef TRACK_CLIP_OUTLINES_H
 #define TRACK_CLIP_OUTLINES_H
 #include "base/pack.h"
@@ -27,8 +25,5 @@ void outlines_give(struct track_result *result, struct outlines *outlines);
 /* Their state after a push (base/pack.h). */
 void outlines_pack(struct pack *pack, struct outlines *outlines);
 void outlines_free(struct outlines *outlines);
-
-/* Draws the margins in result->eyes to the outlines, the mean of those near in time that are open as far. Without outlines nothing changes. */
-void track_outlines(struct track_result *result, const struct track_conf *conf);
 
 #endif

@@ -1,4 +1,5 @@
-/* Margins drawn to the outlines that the evidence tells. */
+#include "track/clip/to_outlines.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
