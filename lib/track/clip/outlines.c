@@ -24,7 +24,7 @@ struct outlines *outlines_new(const struct track_clip *clip, const struct track_
 {
 	struct evidence_net *net = 0;
 	struct err none = { 0 };
-	if (subject->assumed || conf->limit || !(conf->outlines.every_s > 0) || !evidence_open_shipped(&net, &none))
+	if (subject->assumed || conf->limit || !(conf->canthi.mesh_sigma > 0) || !(conf->outlines.every_s > 0) || !evidence_open_shipped(&net, &none))
 		return 0;
 	struct outlines *o = mem_new(1, sizeof *o);
 	*o = (struct outlines){ .clip = clip, .subject = subject, .net = net, .bulk = bulk, .conf = conf->outlines, .limbus = conf->eye.limbus_radius,

@@ -8,7 +8,7 @@
 
 struct outlines;
 
-/* clip, subject and bulk are borrowed until outlines_free. Null: they are not looked for, without a mesh or in a clip that is only looked at, or the network cannot be run, which
+/* clip, subject and bulk are borrowed until outlines_free. Null: they are not looked for, as settings say, without a mesh or in a clip that is only looked at, or the network cannot be run, which
  * track_canthi() reports. */
 struct outlines *outlines_new(const struct track_clip *clip, const struct track_subject *subject, struct bulk *bulk, const struct track_conf *conf);
 
