@@ -55,7 +55,7 @@ static int ring(struct pale s[PALE_MAX], const struct photo *photo, const struct
 		double light = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 		if (!(light > 0.004))
 			continue;
-		s[n] = (struct pale){ { (float)rgb[0], (float)rgb[1], (float)rgb[2] }, (float)light, (float)log(rgb[0] / fmax(rgb[1], 1e-4)), { 0 } };
+		s[n] = (struct pale){ { (float)rgb[0], (float)rgb[1], (float)rgb[2] }, (float)light, (float)log(rgb[0] / fmax(rgb[1], 1e-4)), (float)light, { 0 } };
 		normal_at(s[n++].normal, fit, eye, px);
 	}
 	return n;

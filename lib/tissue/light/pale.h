@@ -21,6 +21,7 @@ struct pale_conf {
 
 struct pale {
 	float rgb[3], light, redness;  // linear; luminance; ln R/G
+	float shown;                   // luminance as photographed, whatever rgb and light were divided by since
 	float normal[3];               // of the sclera there, in the camera's frame
 };
 

@@ -64,7 +64,6 @@ bool white_sclera(struct white *out, struct pale s[], int n, const struct envmap
 	for (int i = 0; i < n; i++) {
 		float here[3];
 		sclera_light_at(here, light, lights, s[i].normal);
-		s[i].redness = s[i].light;  // as photographed
 		for (int c = 0; c < 3; c++)
 			s[i].rgb[c] /= fmaxf(here[c], 0.02f);
 		s[i].light = 0.2126f * s[i].rgb[0] + 0.7152f * s[i].rgb[1] + 0.0722f * s[i].rgb[2];
@@ -73,7 +72,7 @@ bool white_sclera(struct white *out, struct pale s[], int n, const struct envmap
 	int low = n / 2, high = n - n / 20, k = high - low;
 	double sum[3] = { 0 }, own = 0;
 	for (int i = low; i < high; i++) {
-		own += s[i].redness / k;
+		own += s[i].shown / k;
 		for (int c = 0; c < 3; c++)
 			sum[c] += s[i].rgb[c] / k;
 	}
