@@ -20,7 +20,6 @@
 #include "track/clip/others.h"
 #include "track/clip/refine.h"
 #include "track/clip/settle.h"
-#include "track/clip/to_outlines.h"
 #include "track/clip/trust.h"
 
 /* Warns of shortcomings of the video, one line each. */
@@ -103,7 +102,6 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_kappa(result, conf, err))
 		return false;
 	track_corners(result, clip, subject, points);
-	track_outlines(result, conf);
 	track_apertures(result, clip, subject, conf);
 	if (subject->assumed)
 		result->n_points = points->n = 0;  // rows of no mesh of the person

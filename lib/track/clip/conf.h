@@ -23,16 +23,6 @@ struct track_canthi_conf {
 	double least_area;     // squares of the radius: of less that shows nothing is told
 };
 
-/* The lids' margins over the clip (outlines.h). */
-struct track_outlines_conf {
-	double every_s;        // the evidence is asked once in so long; 0: never
-	double again;          // and where the opening has changed by so much since, of the iris' radius
-	double steady_s;       // standard deviation, in time, of the mean of what it tells
-	double alike;          // of the iris' radius: the same, of openings that are alike
-	double most;           // apart by more, of the iris' radius, they are not one margin
-	double found_sigma;    // of margins that edges and colours tell, against the evidence's, of the iris' radius
-};
-
 struct track_conf {
 	struct video_conf video;
 	struct eye eye;
@@ -75,7 +65,6 @@ struct track_conf {
 	int chunk;             // frames after which what has been followed is kept on disk; 0: never
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	struct track_canthi_conf canthi;
-	struct track_outlines_conf outlines;
 	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
 	double kappa[2], kappa_sigma[2];     // degrees: prior of the line of sight against the optical axis, towards the nose and up
 	double camera_frames[2];             // first and last of those in which the person looks into the camera; NAN: not told

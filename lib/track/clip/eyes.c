@@ -7,7 +7,6 @@
 #include "base/mem.h"
 #include "track/clip/glance.h"
 #include "track/clip/hold.h"
-#include "track/clip/outlines.h"
 #include "track/clip/trust.h"
 #include "track/eye/events.h"
 
@@ -17,7 +16,6 @@ struct track_eyes {
 	const struct track_subject *subject;
 	uint8_t *rgb;          // [height][3 width]; only what lies round the eyes is filled
 	struct glance *glance; // null: edges and colours alone tell the eyes
-	struct outlines *outlines;  // null: the lids' margins are told by edges and colours alone
 	struct hold *hold;     // null: skin alone tells the head's pose
 	struct turn_net *turn; // with hold; null: cannot be opened, which the search for the reference reports
 	double time, turned;   // of the last frame, and of the last one whose head's turn was looked at
@@ -80,7 +78,7 @@ struct track_eyes *track_eyes_new(const struct track_clip *clip, const struct tr
 		                       .head_sigma = { clip->turn_sigma[1], clip->turn_sigma[0] }, .bulk = bulk };
 	struct eye_track_conf free_centers = conf->eyes;
 	struct track_eyes *eyes = mem_new(1, sizeof *eyes);
-	*eyes = (struct track_eyes){ .clip = clip, .subject = subject, .glance = glance_new(clip, subject, conf), .outlines = outlines_new(clip, subject, bulk, conf), .turned = -INFINITY };
+	*eyes = (struct track_eyes){ .clip = clip, .subject = subject, .glance = glance_new(clip, subject, conf), .turned = -INFINITY };
 	struct err none = { 0 };
 	if (eyes->glance && subject->assumed) {
 		eyes->hold = hold_new(clip, subject, conf->eyes.evidence_px);
@@ -166,15 +164,12 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 		held(&frame, eyes, in, skin_pose, f);
 	else if (eyes->glance)
 		glance_at(&frame, eyes->glance, in);
-	const struct eye_state *state[SIDES];
 #pragma omp parallel for schedule(static, 1) num_threads(SIDES)
 	for (int e = 0; e < SIDES; e++) {
 		if (in[e] && !one_by_one)
 			video_frame_rgb(eyes->rgb, 3 * f->width, f, box[e][0], box[e][1], box[e][2], box[e][3]);
-		state[e] = eye_track_push(eyes->track, e, &frame);
+		eye_track_push(eyes->track, e, &frame);
 	}
-	if (eyes->outlines)
-		outlines_push(eyes->outlines, &frame, state, in, (const int(*)[4])box);
 }
 
 void track_eyes_hold(struct track_result *r, struct track_eyes *eyes, const struct track_conf *conf)
@@ -203,8 +198,6 @@ bool track_eyes_finish(struct track_result *r, struct track_eyes *eyes, struct e
 		eye_track_head_was(eyes->track, f, r->pose[f]);
 	bool ok = eye_track_finish(&r->eyes, eyes->track, err);
 	r->has_eyes = ok && r->eyes.frames == r->n;
-	if (eyes->outlines)
-		outlines_give(r, eyes->outlines);
 	bool *forgotten = mem_new((size_t)r->n + 1, sizeof *forgotten);
 	for (long f = 0; f < r->n; f++)
 		forgotten[f] = r->lost_at[f] || (r->unsure_at && r->unsure_at[f]);
@@ -221,8 +214,6 @@ void track_eyes_pack(struct pack *pack, struct track_eyes *eyes, long first)
 	eye_track_pack(pack, eyes->track, first);
 	if (eyes->hold)
 		hold_pack(pack, eyes->hold, first);
-	if (eyes->outlines)
-		outlines_pack(pack, eyes->outlines);
 	PACK(pack, eyes->time);
 	PACK(pack, eyes->turned);
 }
@@ -233,7 +224,6 @@ void track_eyes_free(struct track_eyes *eyes)
 		return;
 	eye_track_free(eyes->track);
 	glance_free(eyes->glance);
-	outlines_free(eyes->outlines);
 	hold_free(eyes->hold);
 	turn_close(eyes->turn);
 	free(eyes->rgb);

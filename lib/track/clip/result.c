@@ -30,7 +30,6 @@ void track_result_free(struct track_result *r)
 	bulk_free(r->bulk, r->skin);
 	bulk_free(r->bulk, r->skin_model);
 	bulk_free(r->bulk, r->confidence);
-	bulk_free(r->bulk, r->outline);
 	bulk_free(r->bulk, r->lids);
 	bulk_free(r->bulk, r->lids_model);
 	free(r->g);

@@ -1,7 +1,7 @@
 /* result: everything measured in a clip, frame by frame. Arrays are owned, those marked bulk by base/bulk.h; frames are those that were followed. */
 #ifndef TRACK_CLIP_RESULT_H
 #define TRACK_CLIP_RESULT_H
-#include "track/eye/outline.h"
+#include "track/eye/eye_track.h"
 
 /* Evidence for a clip that was followed rightly: see trust.h. */
 enum { TRUST_LAID, TRUST_SKIN, TRUST_LEVEL, TRUST_APART, TRUST_IRIS, TRUST_SCALE, TRUST_STRAIGHT, TRUST_TURNED, TRUST_UNLIKE, TRUST_EVIDENCES };
@@ -18,13 +18,6 @@ struct track_kappa {
 	int frames[SIDES];     // that measured it; 0: the prior
 };
 
-/* Where the evidence has the margins of an eye's opening in a frame: see outlines.h. */
-struct track_outline {
-	long frame;
-	int side;
-	struct eye_outline at;
-};
-
 struct track_result {
 	struct bulk *bulk;     // where the arrays that are long lie (those marked bulk, and eyes'); owned; null: in memory
 	long n;                // frames
@@ -37,8 +30,6 @@ struct track_result {
 	float (*skin_model)[2];  // [n][n_points] px of the modelling camera; bulk
 	float *confidence;     // [n][n_points] 0..1, 0 not seen; bulk
 	struct eye_clip eyes;
-	struct track_outline *outline;  // [outlines] in order of their frames; bulk
-	long outlines;
 	struct film *film;     // null where the clip is only looked at
 	struct folds *folds;   // likewise, and null where there are no expressions or no points
 	bool has_eyes;
