@@ -1,10 +1,10 @@
 #!/bin/bash
 # The look in numbers: the exported eye path-traced by Blender's Cycles and drawn by three.js, against render's own still of the same view and
 # light. One line a figure; exit status 1 where a goal is missed. Without Blender (apt-get install blender) it is skipped, by name.
-#   SAMPLES=128 DEGREES="0 30" tests/bench/look.sh      for the eye: bench/look.png, a row for each view; two by two: bench/look_WHO_DEG.png
+#   SAMPLES=256 DEGREES="0 30" tests/bench/look.sh      for the eye: bench/look.png, a row for each view; two by two: bench/look_WHO_DEG.png
 . "$(dirname "$0")/../lib/chain.sh"
 trap 'rm -rf "$root"' EXIT
-SAMPLES=${SAMPLES:-64} DEGREES=${DEGREES:-0 30} missed=0 B=${B:-build} npm=${B:-build}/npm
+SAMPLES=${SAMPLES:-128} DEGREES=${DEGREES:-0 30} missed=0 B=${B:-build} npm=${B:-build}/npm
 if ! command -v blender >/dev/null; then
 	echo "skipped: bench-look: no blender: apt-get install blender"
 	exit 0
