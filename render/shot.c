@@ -11,7 +11,6 @@
 #include "image/photo/photo.h"
 #include "render/render.h"
 #include "tissue/light/sclera_light.h"
-#include "tissue/pigment/white.h"
 
 bool shots_load(struct job *job, const struct capture *capture, int eye_index, struct err *err)
 {
@@ -96,18 +95,6 @@ static bool shading_of(struct sclera_light *light, const struct job *job, const 
 	return found;
 }
 
-/* Whether the sclera or a card tells the photographs' white. */
-static bool white_told(const struct job *job)
-{
-	struct err unread = { 0 };
-	const char *path = stage_path(job->stage, "%s/pigment.json", job->names->iris);
-	json_t *root = file_exists(path) ? json_read(path, 1 << 22, &unread) : 0;
-	const char *source = json_string_value(json_object_get(json_object_get(root, "white"), "source"));
-	const bool told = source && (!strcmp(source, white_names[WHITE_SCLERA]) || !strcmp(source, white_names[WHITE_CARD]));
-	json_decref(root);
-	return told;
-}
-
 /* The light of a decoded photograph: told, or estimated from it. Where the cornea mirrors no lamp it is the light that pigment was fitted under,
  * or else another model would be shown than the one that was fitted. */
 static bool light(struct job *job, struct shot *shot, struct err *err)
@@ -120,7 +107,7 @@ static bool light(struct job *job, struct shot *shot, struct err *err)
 	if (job->conf->polarised)
 		shot->env = light_studio(rows);
 	else
-		shot->env = light_of_photo(shot, job->eye, rows, white.rgb, white_told(job), &shot->lamps, &shot->n_lamps);
+		shot->env = light_of_photo(shot, job->eye, rows, white.rgb, white.told, &shot->lamps, &shot->n_lamps);
 	if (job->conf->light) {
 		envmap_free(&shot->env);
 		if (!light_load(&shot->env, &job->light_level, job->stage, "light.environment", job->conf->light, err))

@@ -2,12 +2,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/json.h"
 #include "base/mem.h"
 #include "draw/eye/batch_impl.h"
 #include "tissue/pigment/melanin_file.h"
+#include "tissue/pigment/white.h"
 
 enum { LEVELS = 24 };
 static const double cos_view = 0.95, cos_light = 0.85;  // as in tissue.c
@@ -87,6 +89,9 @@ bool scene_white(struct scene_white *out, const char *path, struct err *err)
 	for (int c = 0; c < 3; c++)
 		out->error[c] = 1;
 	if (white) {
+		const char *source = json_string_value(json_object_get(white, "source"));
+		out->found = true;
+		out->told = source && (!strcmp(source, white_names[WHITE_SCLERA]) || !strcmp(source, white_names[WHITE_CARD]));
 		ok = json_get_array(out->rgb, 3, white, "rgb", path, err) && (!json_object_get(white, "level") || json_get(&level, white, "level", path, err))
 		     && (!json_object_get(white, "error") || json_get_array(out->error, 3, white, "error", path, err));
 		out->has_sclera = ok && json_object_get(white, "sclera");
@@ -110,16 +115,15 @@ bool scene_white(struct scene_white *out, const char *path, struct err *err)
  * file is damaged. */
 static bool error_of(double error[3], const char *path, struct err *err)
 {
-	json_t *root = json_read(path, 1 << 22, err);
-	bool read = root, told = json_object_get(root, "white");
-	json_decref(root);
-	error[0] = error[1] = error[2] = 1;
-	if (!read || !told)
-		return read;
 	double x[PIGMENT_N], rgb[3];
 	struct pigment_conf conf = { 0 };
 	struct scene_white white;
-	if (!pigment_load(x, rgb, &conf, path, err) || !scene_white(&white, path, err))
+	error[0] = error[1] = error[2] = 1;
+	if (!scene_white(&white, path, err))
+		return false;
+	if (!white.found)
+		return true;
+	if (!pigment_load(x, rgb, &conf, path, err))
 		return false;
 	error[0] = exp(x[PIGMENT_RED]) / white.error[0];
 	error[2] = exp(x[PIGMENT_BLUE]) / white.error[2];

@@ -14,7 +14,7 @@ bool scene_tint_make(struct scene *scene, const char *pigment, struct err *err);
 struct scene_white {
 	double rgb[3], sclera[3];
 	double error[3];  // what of rgb the iris' own colours have added to the white as measured, factors
-	bool has_sclera;
+	bool found, told, has_sclera;  // pigment.json has a white; it is from sclera or card, not the camera's own
 };
 
 /* 1, and no sclera, where pigment.json does not tell them, or is not there. False, err set, when the file is damaged. */
