@@ -25,6 +25,13 @@ struct plan_row {
 };
 
 struct plan_skin;
+
+/* Where characters' irises come from: "photographs", "video" or "drawn"; why: of plan_skins (skin.h), null: no character is driven. */
+struct plan_iris {
+	const char *from;
+	char *why;
+};
+
 struct plan {
 	const char *capture;
 	struct plan_row rows[PLAN_STAGES];
@@ -40,6 +47,7 @@ struct plan {
 	char asked[64];      // "error = 0.05 mm", or ""
 	int n_skins;
 	struct plan_skin *skins;  // of the characters that are driven (skin.h)
+	struct plan_iris iris;
 	char listing[33];    // hash of the names that decide
 };
 

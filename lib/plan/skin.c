@@ -27,14 +27,13 @@ static bool brings_look(const char *path)
 	return brings;
 }
 
-/* render.skin as render will read it: of capture.conf, else of its own configuration for that quality. */
+/* render.skin or another key of where things come from, as render will read it: of capture.conf, else of its own configuration for that quality. */
 struct source {
 	char *value, *said;  // said: "render.skin = plain at quality = draft"
 };
 
-static bool source_of(struct source *s, const char *config_dir, const struct conf *conf, struct err *err)
+static bool source_of(struct source *s, const char *key, const char *config_dir, const struct conf *conf, struct err *err)
 {
-	static const char key[] = "render.skin";
 	const struct conf_item *own = conf_find(conf, key, 0), *q = conf_find(conf, "quality", 0);
 	const bool given = own && own->layer && *own->value;
 	const char *quality = q && *q->value ? q->value : "review";
@@ -71,24 +70,41 @@ static struct plan_skin skin_of(const char *capture, const char *name, const str
 	return s;
 }
 
+static void iris_of(struct plan *plan, const struct source *source)
+{
+	const bool fitted = plan->rows[plan_stage_find("unrefract")].run, plain = !strcmp(source->value, "plain");
+	plan->iris.from = fitted ? "photographs" : plain ? "drawn" : "video";
+	if (fitted)
+		plan->iris.why = mem_str("as fitted; where they are refused, as without any");
+	else if (plain)
+		plan->iris.why = mem_printf("there is no photograph of an eye; %s", source->said);
+	else
+		plan->iris.why = mem_printf("there is no photograph of an eye; where the film shows no iris of 24 px with white beside it, %s",
+		                            strcmp(source->value, "video") ? "drawn" : "render fails: render.iris = video");
+}
+
 bool plan_skins(struct plan *plan, const char *config_dir, const struct conf *conf, struct err *err)
 {
 	struct file_list list;
-	struct source source = { 0 };
+	struct source source = { 0 }, iris = { 0 };
 	if (!plan->rows[plan_stage_find("extrapolate")].run || !plan->rows[plan_stage_find("render")].run)
 		return true;
 	char *dir = mem_printf("%s/targets", plan->capture);
-	bool ok = source_of(&source, config_dir, conf, err) && file_list(&list, dir, err);
+	bool ok = source_of(&source, "render.skin", config_dir, conf, err) && source_of(&iris, "render.iris", config_dir, conf, err) && file_list(&list, dir, err);
 	for (int i = 0; ok && i < list.n; i++) {
 		if (character_kind_of(list.names[i]) == CHARACTER_NONE)
 			continue;
 		plan->skins = mem_grow(plan->skins, (size_t)plan->n_skins + 1, sizeof *plan->skins);
 		plan->skins[plan->n_skins++] = skin_of(plan->capture, list.names[i], &source);
 	}
-	if (ok)
+	if (ok) {
 		file_list_free(&list);
+		iris_of(plan, &iris);
+	}
 	free(source.value);
 	free(source.said);
+	free(iris.value);
+	free(iris.said);
 	free(dir);
 	return ok;
 }
@@ -100,6 +116,8 @@ void plan_skins_free(struct plan *plan)
 		free(plan->skins[i].why);
 	}
 	free(plan->skins);
+	free(plan->iris.why);
+	plan->iris = (struct plan_iris){ 0 };
 	plan->skins = 0;
 	plan->n_skins = 0;
 }

@@ -73,6 +73,7 @@ static bool one(struct skin_job *job, const char *file, struct err *err)
 	if (file_exists(stage_path(job->stage, "%s", t.rig_path))) {
 		inputs(job, &t);
 		skin_film(&t, job->stage, job->conf);
+		skin_iris(&t, job);
 		ok = check_sockets(job, &t, err) && skin_pictures(job, &t, err) && skin_clips(job, &t, err) && skin_told_save(job, &t, err);
 		ok = ok || err_wrap(err, "targets/%s", file);
 	} else {

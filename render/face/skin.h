@@ -12,6 +12,10 @@
 enum skin_source { SKIN_AUTO, SKIN_VIDEO, SKIN_PLAIN };
 extern const char *const skin_sources[];
 
+/* Where the iris of a person whom nobody photographed comes from. */
+enum iris_source { IRIS_AUTO, IRIS_VIDEO, IRIS_PLAIN };
+extern const char *const iris_sources[];
+
 /* Whose lashes and brows it has. */
 enum hair_source { HAIR_AUTO, HAIR_AVERAGE };
 extern const char *const hair_sources[];
@@ -26,6 +30,7 @@ struct skin_conf {
 	double clip_fps, clip_crf, clip_seconds;
 	struct glb_conf glb;
 	double iris_rgb[3];                  // of an invented eye, linear
+	int iris;                            // enum iris_source
 	int texture_px;
 	int hair;                            // enum hair_source
 	int source, film_px;                 // enum skin_source; px of the textures made of the film
@@ -64,7 +69,8 @@ struct skin_conf {
 	OPT_INT("brow_hairs", &(c)->portrait.hair.brow_hairs, 0, 5000, "", "of one brow"), \
 	OPT_REALS("hair_rgb", (c)->portrait.hair_rgb, 3, 0, 1, "", "colour of lashes and brows"), \
 	OPT_INT("skin_texture_px", &(c)->texture_px, 16, 16384, "px", "longest side at which a character's own textures are drawn"), \
-	OPT_REALS("iris_rgb", (c)->iris_rgb, 3, 0, 1, "", "colour of the iris where no photograph was fitted"), \
+	OPT_CHOICE("iris", &(c)->iris, iris_sources, "where no photograph was fitted: the person's in the video where that shows it, or drawn"), \
+	OPT_REALS("iris_rgb", (c)->iris_rgb, 3, 0, 1, "", "colour of the iris where neither a photograph nor the video gives it"), \
 	OPT_INT("glb_targets", &(c)->glb.targets, 1, 200, "", "morph targets of the animation, at most"), \
 	OPT_REAL("glb_tolerance_mm", &(c)->glb.tolerance, 0, 10, "mm", "no more targets than it takes to keep every vertex so close"), \
 	OPT_BOOL("glb_poses", &(c)->glb.poses, "named targets, too: eyeBlinkLeft, eyeLookUpRight ..."), \
@@ -82,7 +88,8 @@ struct skin_job {
 	const char *video;                // the input video, relative to the folder; null: none
 	// Made by skin_ready, when the first picture needs them:
 	bool ready;
-	struct scene plain;               // an invented eye, for a side that no photograph was fitted to
+	struct scene plain;               // an invented eye, or the film's, for a side that no photograph was fitted to
+	struct err iris_told;             // a sentence: where its iris comes from; empty: a photograph's
 	const struct scene *eyes[2];      // left, right
 	struct envmap studio;
 	struct skin_model model;
@@ -155,6 +162,16 @@ bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv,
  * for it all the same. */
 void skin_film(struct skin_target *target, struct stage *stage, const struct skin_conf *conf);
 bool skin_of_film(struct skin_job *job, struct skin_target *target, struct err *err);
+
+/* skin_film.c: whether a file that another one names is in the capture, and there. */
+bool skin_is_inside(struct stage *stage, const char *rel);
+
+/* skin_iris.c. skin_iris: finds the film of a person whom nobody photographed, and puts what the irises are made of into a character's inputs.
+ * skin_iris_of_film: makes them. seen: overwritten where *found, scene_seen_free. job->iris_told says of what it is made. Returns false, err set, where render.iris asks
+ * for it all the same. */
+struct scene_seen;
+void skin_iris(struct skin_target *target, struct skin_job *job);
+bool skin_iris_of_film(struct scene_seen *seen, bool *found, struct skin_job *job, struct err *err);
 
 /* Writes work/render/NAME_skin.json: where its skin comes from, and why, for the page. */
 bool skin_told_save(struct skin_job *job, struct skin_target *target, struct err *err);

@@ -58,8 +58,7 @@ static bool has_film(char **missing, struct skin_target *t, struct stage *stage)
 	return true;
 }
 
-/* The files that the two of them name: in the capture, and there. */
-static bool is_inside(struct stage *stage, const char *rel)
+bool skin_is_inside(struct stage *stage, const char *rel)
 {
 	return rel && !strstr(rel, "..") && *rel != '/' && file_exists(stage_path(stage, "%s", rel));
 }
@@ -87,7 +86,7 @@ void skin_film(struct skin_target *t, struct stage *stage, const struct skin_con
 	json_t *track = json_read(stage_path(stage, "%s", tracked_files[TRACKED_JSON]), 1 << 24, &none);
 	json_t *laid = json_read(stage_path(stage, "work/targets/%s/registration.json", t->name), 1 << 24, &nor);
 	const char *film = json_string_value(json_object_get(track, "video")), *subject = json_string_value(json_object_get(laid, "subject"));
-	if (is_inside(stage, film) && is_inside(stage, subject)) {
+	if (skin_is_inside(stage, film) && skin_is_inside(stage, subject)) {
 		t->in[t->n_in++] = t->film = inside(stage, stage_path(stage, "%s", film));
 		t->in[t->n_in++] = t->subject = inside(stage, stage_path(stage, "%s", subject));
 		tell(t, video, "of the person in %s", t->film);
@@ -97,11 +96,6 @@ void skin_film(struct skin_target *t, struct stage *stage, const struct skin_con
 	}
 	json_decref(track);
 	json_decref(laid);
-}
-
-static const double (*pose_of(const struct tracked *f, long frame))[4]
-{
-	return (const double(*)[4])((const double *)f->head.data + 16 * frame);
 }
 
 /* How wide the lids stand apart, px: the mean over both eyes. NAN: not known. */
@@ -118,7 +112,7 @@ static double opening(const struct tracked *f, long frame)
 /* Whether a frame is of use: its head is known, and stands as in the reference. */
 static bool usable(const struct tracked *f, long frame)
 {
-	const double (*a)[4] = pose_of(f, frame), (*b)[4] = pose_of(f, f->reference);
+	const double (*a)[4] = tracked_pose(f, frame), (*b)[4] = tracked_pose(f, f->reference);
 	double trace = 0;
 	for (int i = 0; i < 3; i++)
 		for (int k = 0; k < 3; k++)
@@ -164,7 +158,7 @@ static int choose(long out[COMPLEXION_VIEWS], const struct tracked *f)
 /* Where the mesh's vertices are in a frame: those that were followed there, the others where the head has them. */
 static void place(float (*at)[3], const struct tracked *f, long frame)
 {
-	const double (*pose)[4] = pose_of(f, frame);
+	const double (*pose)[4] = tracked_pose(f, frame);
 	const long m = f->vertices.shape[0];
 	const float (*px)[2] = (const float(*)[2])f->skin.data + frame * m, *sure = (const float *)f->sure.data + frame * m;
 	const int32_t *row = f->vertices.data;
@@ -209,7 +203,7 @@ static void add(struct complexion *c, const struct tracked *f, long frame, const
 	float (*at)[3] = mem_array((size_t)f->mesh.n_vertices + 1, sizeof *at);
 	uint8_t *open = mem_array((size_t)f->width * (size_t)f->height + 1, 1);
 	place(at, f, frame);
-	mark_open(open, f, frame, lids_mm * f->camera.focal_px / fmax(pose_of(f, frame)[2][3], 1));
+	mark_open(open, f, frame, lids_mm * f->camera.focal_px / fmax(tracked_pose(f, frame)[2][3], 1));
 	const long m = f->lids.shape[2];
 	const float (*lids)[2] = (const float(*)[2])f->lids.data + frame * TRACKED_MARGINS * m;
 	complexion_add(c, &(struct complexion_view){ rgb, f->width, f->height, (const float(*)[3])at, f->camera.focal_px, open, lids, (int)m });
@@ -217,41 +211,23 @@ static void add(struct complexion *c, const struct tracked *f, long frame, const
 	free(open);
 }
 
-/* Decodes the frames chosen. The reference is kept until it is its turn to be the first. */
+static void keep(void *to, int i, uint8_t *rgb)
+{
+	((uint8_t **)to)[i] = rgb;
+}
+
+/* The reference, which the film does not begin with, is the first to be looked at. */
 static bool look_at(struct complexion *c, const struct tracked *f, struct skin_job *job, const char *path, struct err *err)
 {
-	long frame[COMPLEXION_VIEWS], last = 0;
-	const int n = choose(frame, f);
-	const size_t size = 3 * (size_t)f->width * (size_t)f->height;
+	long frame[COMPLEXION_VIEWS];
 	uint8_t *kept[COMPLEXION_VIEWS] = { 0 };
-	struct video_info info;
-	struct video *video = video_open(&info, path, &job->conf->video, err);
-	bool ok = video, got = true;
-	if (ok && (info.width != f->width || info.height != f->height))
-		ok = err_set(err, "the video is not the one that was followed");
+	const int n = choose(frame, f);
+	const bool ok = tracked_decode(n, frame, f, job, path, &(struct tracked_take){ keep, kept }, err);
 	for (int i = 0; i < n; i++)
-		last = frame[i] > last ? frame[i] : last;
-	while (ok && got) {
-		struct video_frame v;
-		ok = video_next(&v, &got, video, err);
-		if (!ok || !got)
-			break;
-		for (int i = 0; i < n; i++)
-			if (frame[i] == v.index) {
-				kept[i] = mem_array(size + 1, 1);
-				video_frame_rgb(kept[i], 3 * f->width, &v, 0, 0, f->width, f->height);
-			}
-		got = v.index < last;
-		video_frame_free(&v);
-	}
-	video_close(video);
-	for (int i = 0; i < n; i++) {
 		if (ok && kept[i] && kept[0])
 			add(c, f, frame[i], kept[i]);
-		if (i)
-			free(kept[i]);
-	}
-	free(kept[0]);
+	for (int i = 0; i < n; i++)
+		free(kept[i]);
 	return ok;
 }
 

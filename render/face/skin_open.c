@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw/eye/seen.h"
 #include "export/outside.h"
 #include "math/vec.h"
 #include "render/face/skin.h"
@@ -17,6 +18,26 @@ static bool light_ready(struct skin_job *job, struct err *err)
 	job->studio = studio.studio;
 	job->gain = exposure;
 	return ok;
+}
+
+/* An eye that no photograph was fitted to: the film's as far as it shows one. */
+static bool invent(struct skin_job *job, struct err *err)
+{
+	struct eye eye = *job->eye;
+	struct scene_conf conf = job->render->scene;
+	struct scene_seen seen;
+	bool found;
+	eye.limbus_aspect = isfinite(eye.limbus_aspect) ? eye.limbus_aspect : 0.95;
+	conf.limbus_width = isfinite(conf.limbus_width) ? conf.limbus_width : 0.5;
+	if (!skin_iris_of_film(&seen, &found, job, err))
+		return false;
+	scene_plain(&job->plain, &eye, &conf, job->conf->iris_rgb, (uint64_t)conf.seed, found ? &seen : 0);
+	if (found)
+		scene_seen_free(&seen);
+	struct scene_view view = scene_view_turned(&job->plain, 0, 0, job->render->field_mm, 256);
+	struct scene_lighting light = scene_lighting(&job->studio, 0, job->render->lights);
+	scene_fit_colour(&job->plain, &view, &light);
+	return true;
 }
 
 /* Assigns fitted eyes to their sides; a single or unnamed one to both. Without any an eye is invented. */
@@ -36,14 +57,8 @@ static bool eyes_ready(struct skin_job *job, struct err *err)
 	}
 	if (job->eyes[0])
 		return true;
-	struct eye eye = *job->eye;
-	struct scene_conf conf = job->render->scene;
-	eye.limbus_aspect = isfinite(eye.limbus_aspect) ? eye.limbus_aspect : 0.95;
-	conf.limbus_width = isfinite(conf.limbus_width) ? conf.limbus_width : 0.5;
-	scene_plain(&job->plain, &eye, &conf, job->conf->iris_rgb, (uint64_t)conf.seed);
-	struct scene_view view = scene_view_turned(&job->plain, 0, 0, job->render->field_mm, 256);
-	struct scene_lighting light = scene_lighting(&job->studio, 0, job->render->lights);
-	scene_fit_colour(&job->plain, &view, &light);
+	if (!invent(job, err))
+		return false;
 	job->eyes[0] = job->eyes[1] = &job->plain;
 	return true;
 }

@@ -13,13 +13,27 @@ struct tracked {
 	struct camera camera;
 	int width, height, reference;
 	long frames;
-	double eye[2][3], radius;  // mm, the mesh's axes
+	double eye[2][3], radius;  // mm, the mesh's axes; the mean of both
+	double eye_radius[2], limbus[2];  // mm
 	struct npy head, skin, vertices, sure, lids;
 	struct mesh mesh;          // mm
 };
 
-/* Reads it. tracked: overwritten; tracked_free in any case. Returns false, err set, when a file is damaged, or they do not go together. */
+/* Reads camera, eyes, head and lids alone: what a film without a mesh has, too. As tracked_load. */
+bool tracked_load_eyes(struct tracked *tracked, struct skin_job *job, struct err *err);
+
+/* The same, and the person's skin. tracked: overwritten; tracked_free in any case. Returns false, err set, when a file is damaged, or they do not go together. */
 bool tracked_load(struct tracked *tracked, struct skin_job *job, const struct skin_target *target, struct err *err);
 void tracked_free(struct tracked *tracked);
+
+/* Pose of the head in a frame, cam_from_head. */
+const double (*tracked_pose(const struct tracked *tracked, long frame))[4];
+
+/* Decodes n frames of the film, in their order there: take is given each that it has, [height][width][3] sRGB, which it has to free(). Returns false, err set. */
+struct tracked_take {
+	void (*take)(void *to, int i, uint8_t *rgb);
+	void *to;
+};
+bool tracked_decode(int n, const long *frame, const struct tracked *tracked, struct skin_job *job, const char *path, const struct tracked_take *take, struct err *err);
 
 #endif

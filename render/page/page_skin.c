@@ -134,6 +134,16 @@ static json_t *skin_from(struct page *page, const char *name)
 	return out;
 }
 
+/* The same of its irises; null: of photographs, or not known. */
+static json_t *iris_from(struct page *page, const char *name)
+{
+	json_t *told = page_json(page, page_file(page, "work/render/%s_skin.json", name));
+	const char *why = json_string_value(json_object_get(told, "iris"));
+	json_t *out = why ? page_sentence(why) : 0;
+	json_decref(told);
+	return out;
+}
+
 static json_t *target(struct page *page, const char *name)
 {
 	static const char *const stills[][3] = {
@@ -165,6 +175,7 @@ static json_t *target(struct page *page, const char *name)
 		add(entry, "glb", page_text("work/render/%s.glb, %.1f MB", name, (double)st.st_size / 1e6));
 	add(entry, "name", template_text(name));
 	add(entry, "worn", skin_from(page, name));
+	add(entry, "iris", iris_from(page, name));
 	add(entry, "pictures", pictures);
 	add(entry, "clips", clips);
 	check_sockets(page, name);

@@ -139,12 +139,15 @@ static void find_eyes(struct parts *p)
 	}
 }
 
-static bool find_character(struct parts *p, struct stage *stage, const struct skin_conf *conf, struct err *err)
+static bool find_character(struct parts *p, struct skin_job *skin, struct err *err)
 {
+	struct stage *stage = skin->stage;
 	static const char *const driven[] = { "work/skin/gaze.csv", "work/skin/animation.csv", "work/skin/wrinkles.json", "work/skin/wrinkles.exr" };
 	if (!skin_first(&p->target, stage, err))
 		return false;
-	skin_film(&p->target, stage, conf);
+	skin_film(&p->target, stage, skin->conf);
+	if (p->target.name)
+		skin_iris(&p->target, skin);
 	for (int i = 0; i < p->target.n_in; i++)
 		p->in[p->n_in++] = p->target.in[i];
 	for (int i = 0; i < COUNT(driven) && p->target.name; i++)
@@ -275,7 +278,7 @@ bool viewer_make(struct skin_job *skin, struct err *err)
 	struct jobs *eyes = skin->photographed;
 	struct parts p = { .eyes = eyes, .in = mem_new((size_t)eyes->n * COUNT(eyes->job->in) + COUNT(((struct skin_target *)0)->in) + 8, sizeof *p.in) };
 	find_eyes(&p);
-	bool ok = find_character(&p, skin->stage, skin->conf, err);
+	bool ok = find_character(&p, skin, err);
 	if (ok && p.n_in && !stage_fresh(skin->stage, out, p.n_in, p.in))
 		ok = make(&p, skin, err);
 	free(p.in);

@@ -52,8 +52,9 @@ static bool write_json(const struct plan *plan, const char *slice, struct err *e
 		json_t *file = json_string(s->file);
 		json_array_append_new(characters, json_pack("{s:o,s:s,s:s}", "file", file ? file : json_string("(name is not UTF-8)"), "skin", s->from, "reason", s->why));
 	}
-	json_t *json = json_pack("{s:o,s:o,s:s*,s:o}", "made_by", made_by(plan, slice), "stages", stages, "asked",
-	                         *plan->asked ? plan->asked : 0, "characters", characters);
+	json_t *iris = plan->iris.why ? json_pack("{s:s,s:s}", "from", plan->iris.from, "reason", plan->iris.why) : 0;
+	json_t *json = json_pack("{s:o,s:o,s:s*,s:o,s:o*}", "made_by", made_by(plan, slice), "stages", stages, "asked",
+	                         *plan->asked ? plan->asked : 0, "characters", characters, "iris", iris);
 	char *text = json_dumps(json, JSON_INDENT(1) | JSON_SORT_KEYS | JSON_REAL_PRECISION(6));
 	char *path = mem_printf("%s/work/plan.json", plan->capture);
 	bool ok = write_new(path, text, err);

@@ -12,6 +12,7 @@ printf "quality = draft\nrender.skin = auto\n" >>"$capture/capture.conf"
 
 run_make "$capture" plan
 check "plan says where the character's skin will come from" grep -q "^skin of targets/mpfb.obj: the person's in the video: " "$log"
+check "and their irises" grep -q "^irises of characters: the person's in the video: there is no photograph" "$log"
 run_make "$capture"
 same "make on a video, a mesh and a character" "$?" 0
 told() { grep -q "\"skin\": \"$1\"" "$capture/work/render/mpfb_skin.json" && grep -q "Skin: $2" "$capture/work/review/index.html"; }
@@ -22,6 +23,10 @@ for file in look.png sheet.png blink.png clip.mp4; do
 done
 check "the glTF is one" test "$(head -c 4 "$capture/work/render/mpfb.glb")" = glTF
 check "its skin is that of the person in the video, with pores" sh -c "grep -aq '\"skin_colour\"' '$capture/work/render/mpfb.glb' && grep -aq '\"skin_normal\"' '$capture/work/render/mpfb.glb'"
+check "the page says where its irises have come from" grep -q "Irises: of the person in video/face.mp4, whose [a-z]* iris is 1[23][0-9] px wide there; [6-9][0-9] % of it is seen in 24 frames" "$capture/work/review/index.html"
+# The film's irises are brown, a drawn one is as grey as green: a patch of the right one, beside the pupil, in the film and in the character's picture, sRGB.
+patch() { ffmpeg -v error -i "$1" -vf "crop=iw/64:ih/48:iw*$2:ih*$3,scale=1:1:flags=area" -frames:v 1 -f rawvideo -pix_fmt rgb24 - | od -An -tu1; }
+same "the character's irises are as brown as the person's" "$( (patch "$capture/video/face.mp4" 0.2031 0.514; patch "$capture/work/render/mpfb_look.png" 0.2266 0.507) | awk '{ print ($1 > 1.4 * $3 && $1 > 1.2 * $2 && $1 < 110) }' | tr '\n' ' ')" "1 1 "
 check "how much of it the video shows stands in the log" grep -q '"skin_seen"' "$capture/work/log/render.json"
 check "the review page shows the character" grep -q 'mpfb.glb' "$capture/work/review/index.html"
 check "and holds its clip" grep -q 'data:video/mp4' "$capture/work/review/index.html"

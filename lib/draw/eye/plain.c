@@ -9,6 +9,7 @@
 #include "draw/eye/march/nodes.h"
 #include "draw/eye/march/paths.h"
 #include "draw/eye/sclera.h"
+#include "draw/eye/seen.h"
 #include "math/rng.h"
 
 enum { TEXELS = 512, FIBRES = 420 };
@@ -36,28 +37,73 @@ static void plain_colour(float rgb[3], double rho, double turn, const float *fin
 		rgb[c] = (float)(base[c] * light * (1 + 0.75 * inner * (warm[c] - 1)) * (1 - 0.62 * rim));
 }
 
-void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf *conf, const double rgb[3], uint64_t seed)
+struct fibres {
+	float fine[FIBRES], coarse[FIBRES / 6];
+};
+
+/* The colour at (u, v) mm. */
+static void drawn_at(float colour[3], const struct scene *s, const struct fibres *f, const double rgb[3], double u, double v)
+{
+	const double rho = (hypot(u, v) - s->pupil[2]) / (s->limbus[0] - s->pupil[2]);
+	plain_colour(colour, fmin(fmax(rho, 0), 1), atan2(v, u), f->fine, f->coarse, rgb);
+}
+
+static void complete(struct scene_seen *seen, const struct scene *s, const struct fibres *f, const double rgb[3])
+{
+	float (*ln)[3] = mem_array(SEEN_SIDE * SEEN_SIDE, sizeof *ln);
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < SEEN_SIDE * SEEN_SIDE; i++) {
+		const double mm = 2 * seen->extent / SEEN_SIDE;
+		drawn_at(ln[i], s, f, rgb, (i % SEEN_SIDE + 0.5) * mm - seen->extent, (i / SEEN_SIDE + 0.5) * mm - seen->extent);
+		for (int c = 0; c < 3; c++)
+			ln[i][c] = logf(fmaxf(ln[i][c], 1e-4f));
+	}
+	scene_seen_fill(seen, (const float(*)[3])ln);
+	free(ln);
+}
+
+static void seen_at(float colour[3], const struct scene_seen *seen, double u, double v)
+{
+	// What lies beyond the limbus has the colour of its last texels.
+	const double r = hypot(u, v), in = fmin(1, 0.995 * seen->limbus / fmax(r, 1e-9));
+	const double x = (in * u + seen->extent) / (2 * seen->extent) * SEEN_SIDE - 0.5, y = (in * v + seen->extent) / (2 * seen->extent) * SEEN_SIDE - 0.5;
+	const int i = (int)fmin(fmax(x, 0), SEEN_SIDE - 2), j = (int)fmin(fmax(y, 0), SEEN_SIDE - 2);
+	for (int c = 0; c < 3; c++) {
+		float ln = 0;
+		for (int k = 0; k < 4; k++)
+			ln += (float)((k % 2 ? x - i : 1 - x + i) * (k / 2 ? y - j : 1 - y + j)) * seen->ln[(j + k / 2) * SEEN_SIDE + i + k % 2][c];
+		colour[c] = fminf(expf(ln), 1);
+	}
+}
+
+void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf *conf, const double rgb[3], uint64_t seed, struct scene_seen *seen)
 {
 	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1, .plain = true, .photo_white = { 1, 1, 1 }, .extent = extent_mm, .pupil = { 0, 0, plain_pupil_mm } };
 	s->conf.albedo_mm = 0;  // all of the drawn colours are the iris' own
 	scene_geometry(s);
+	if (seen && seen->pupil > 0)
+		s->pupil[2] = seen->pupil;
 	int n = conf->map_size < TEXELS ? conf->map_size : TEXELS;
 	struct scene_level *l = &s->level[0];
 	*l = (struct scene_level){ .n = n, .per_mm = (float)(n / (2 * s->extent)) };
 	l->colour = mem_array((size_t)n * (size_t)n * 4, sizeof *l->colour);
 	l->relief = mem_array((size_t)n * (size_t)n * 2, sizeof *l->relief);
-	float fine[FIBRES], coarse[FIBRES / 6];
+	struct fibres fibres;
 	struct rng rng = { seed };
 	for (int i = 0; i < FIBRES; i++)
-		fine[i] = (float)rng_uniform(&rng);
+		fibres.fine[i] = (float)rng_uniform(&rng);
 	for (int i = 0; i < FIBRES / 6; i++)
-		coarse[i] = (float)rng_uniform(&rng);
+		fibres.coarse[i] = (float)rng_uniform(&rng);
+	if (seen)
+		complete(seen, s, &fibres, rgb);
 	for (int y = 0; y < n; y++)
 		for (int x = 0; x < n; x++) {
-			double u = (x + 0.5) / l->per_mm - s->extent, v = (y + 0.5) / l->per_mm - s->extent, r = hypot(u, v);
-			double rho = (r - s->pupil[2]) / (s->limbus[0] - s->pupil[2]);
+			const double u = (x + 0.5) / l->per_mm - s->extent, v = (y + 0.5) / l->per_mm - s->extent;
 			float *colour = l->colour + 4 * ((long)y * n + x);
-			plain_colour(colour, fmin(fmax(rho, 0), 1), atan2(v, u), fine, coarse, rgb);
+			if (seen)
+				seen_at(colour, seen, u, v);
+			else
+				drawn_at(colour, s, &fibres, rgb, u, v);
 			colour[3] = 1;
 			l->relief[2 * ((long)y * n + x)] = 0;
 			l->relief[2 * ((long)y * n + x) + 1] = (float)scene_plain_stroma;

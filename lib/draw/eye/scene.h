@@ -117,9 +117,10 @@ struct scene_files {
  * Returns false, err set, scene empty, when a file cannot be read or the maps do not fit each other. */
 bool scene_load(struct scene *scene, const struct scene_files *files, const struct eye *eye,
                 const struct scene_conf *conf, struct err *err);
-/* An eye that nobody photographed: an iris of about the colour rgb (linear), with fibres from a seed. scene_fit_colour next;
- * scene_free at the end. */
-void scene_plain(struct scene *scene, const struct eye *eye, const struct scene_conf *conf, const double rgb[3], uint64_t seed);
+/* An eye that nobody photographed: an iris of about the colour rgb (linear), with fibres from a seed. seen: what a film shows of it, which is
+ * completed by those fibres, and its pupil; null: nothing. scene_fit_colour next; scene_free at the end. */
+struct scene_seen;
+void scene_plain(struct scene *scene, const struct eye *eye, const struct scene_conf *conf, const double rgb[3], uint64_t seed, struct scene_seen *seen);
 void scene_free(struct scene *scene);
 
 /* The albedo step: fills level[].model with what the model shows in this view and light, those of the reference photograph, so

@@ -38,7 +38,7 @@ static struct image picture_of(const struct truth *t, int shading, int n, const 
 	struct scene_conf conf = { .map_size = 512, .search = 8, .steps = 2, .shading = shading, .bands = 3, .detail = 1, .own_width = 0.2, .ratio_most = 2.5, .ratio_chroma = 1.5, .limbus_width = 0.05,
 		                       .sclera_radius = 11.8, .sclera_rgb = { 0.7, 0.7, 0.7 }, .veins_px = 128, .seed = 1 };
 	struct scene s;
-	scene_plain(&s, &t->eye, &conf, (double[]){ 0.2, 0.2, 0.2 }, 1);
+	scene_plain(&s, &t->eye, &conf, (double[]){ 0.2, 0.2, 0.2 }, 1, 0);
 	struct scene_level *l = &s.level[0];
 	free(l->colour);
 	free(l->relief);

@@ -303,7 +303,7 @@ static void a_time_is_kept_where_it_can_be(void **state)
 	}
 }
 
-/* What plan says of a character's skin. The expected texts' beginnings are the manual's (README.md, config/render.conf). */
+/* What plan says of a character's skin and irises. The expected texts' beginnings are the manual's (README.md, config/render.conf). */
 static void a_characters_skin_is_told_beforehand(void **state)
 {
 	(void)state;
@@ -319,7 +319,28 @@ static void a_characters_skin_is_told_beforehand(void **state)
 		{ "a.ply", "ply\nend_header\ncomment TextureFile a.png\n", "", "video", "no materials" },
 		{ "a.glb", "glTF", "quality = draft\n", "own", "as the file has it" },
 	};
-	scratch_text("config/render.conf", "skin = auto\nskin.draft = plain\n");
+	static const struct { const char *conf, *from, *why; bool photos; } irises[] = {
+		{ "", "video", "no photograph of an eye; where the film shows no iris of 24 px with white beside it, drawn", false },
+		{ "render.iris = video\n", "video", "render fails: render.iris = video", false },
+		{ "render.iris = plain\n", "drawn", "render.iris = plain", false },
+		{ "render.iris = video\n", "photographs", "as fitted", true },
+	};
+	scratch_text("config/render.conf", "skin = auto\nskin.draft = plain\niris = auto\n");
+	scratch_text("targets/a.obj", "v 0 0 0\n");
+	for (int i = 0; i < COUNT(irises); i++) {
+		struct plan plan = { .capture = scratch_path(".") };
+		struct conf conf = { 0 };
+		struct err err = { 0 };
+		plan.rows[plan_stage_find("extrapolate")].run = plan.rows[plan_stage_find("render")].run = true;
+		plan.rows[plan_stage_find("unrefract")].run = irises[i].photos;
+		assert_true(conf_load(&conf, scratch_text("capture.conf", irises[i].conf), "", 1, &err));
+		assert_true(plan_skins(&plan, scratch_path("config"), &conf, &err));
+		assert_string_equal(plan.iris.from, irises[i].from);
+		if (!strstr(plan.iris.why, irises[i].why))
+			fail_msg("%s: %s", irises[i].conf, plan.iris.why);
+		plan_skins_free(&plan);
+		conf_free(&conf);
+	}
 	for (int i = 0; i < COUNT(cases); i++) {
 		struct plan plan = { .capture = scratch_path(".") };
 		struct conf conf = { 0 };

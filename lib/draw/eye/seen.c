@@ -1,0 +1,187 @@
+#include "draw/eye/seen.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/rising.h"
+
+enum { SIDE = SEEN_SIDE, TEXELS = SIDE * SIDE, RINGS = SEEN_RINGS, TURNS = SEEN_TURNS };
+static const double drawn_mm = 1;            // sigma, at most, below which fibres are drawn
+static const double strength[] = { 0.3, 0.8 }; // of drawn fibres, so that they go on as strong as those seen
+static const double beside_pupil_mm = 0.25;  // a pupil's margin moves, and is blurred
+
+void scene_seen_free(struct scene_seen *s)
+{
+	free(s->ln);
+	free(s->weight);
+	*s = (struct scene_seen){ 0 };
+}
+
+/* Mean by a Gaussian of that many texels, weighted (null: 1). */
+static void blur(float (*to)[3], const float (*from)[3], const float *weight, double sigma)
+{
+	enum { MOST = 255 };
+	const int reach = (int)fmin(ceil(3 * sigma), MOST);
+	float kernel[2 * MOST + 1], (*half)[4] = mem_array(TEXELS, sizeof *half), (*in)[4] = mem_array(TEXELS, sizeof *in);
+	float total = 0;
+	for (int k = -reach; k <= reach; k++)
+		total += kernel[k + reach] = (float)exp(-0.5 * k * k / (sigma * sigma));
+	for (int i = 0; i < TEXELS; i++) {
+		const float w = weight ? weight[i] : 1;
+		for (int c = 0; c < 3; c++)
+			in[i][c] = w * from[i][c];
+		in[i][3] = w;
+	}
+	for (int pass = 0; pass < 2; pass++) {
+		const int step = pass ? SIDE : 1;
+		float (*src)[4] = pass ? half : in, (*dst)[4] = pass ? in : half;
+#pragma omp parallel for schedule(static)
+		for (int i = 0; i < TEXELS; i++) {
+			const int at = pass ? i / SIDE : i % SIDE;
+			const int a = at - reach < 0 ? -at : -reach, b = at + reach >= SIDE ? SIDE - 1 - at : reach;
+			float acc[4] = { 0 };
+			for (int k = a; k <= b; k++)
+				for (int c = 0; c < 4; c++)
+					acc[c] += kernel[k + reach] * src[i + k * step][c];
+			for (int c = 0; c < 4; c++)
+				dst[i][c] = acc[c] / total;
+		}
+	}
+	for (int i = 0; i < TEXELS; i++)
+		for (int c = 0; c < 3; c++)
+			to[i][c] = in[i][3] > 1e-6f ? in[i][c] / in[i][3] : 0;
+	free(half);
+	free(in);
+}
+
+/* A place in the map: radius mm, angle. */
+static double polar_of(double *turn, const struct scene_seen *s, int i)
+{
+	const double mm = 2 * s->extent / SIDE, x = (i % SIDE + 0.5) * mm - s->extent, y = (i / SIDE + 0.5) * mm - s->extent;
+	*turn = atan2(y, x);
+	return hypot(x, y);
+}
+
+struct cell {
+	double ln[3], weight;
+};
+
+static double inner_of(const struct scene_seen *s)
+{
+	return s->pupil > 0 ? s->pupil + beside_pupil_mm : 0;
+}
+
+/* What is seen, in rings; what is not of each ring is taken from the nearest of it on both sides, wider means the farther they are, then from the rings beside it. */
+static void rings_of(struct cell cell[RINGS][TURNS], const struct scene_seen *s)
+{
+	struct cell (*raw)[TURNS] = mem_new(RINGS, sizeof *raw);
+	for (int i = 0; i < TEXELS; i++) {
+		double turn, r = polar_of(&turn, s, i);
+		if (!(s->weight[i] > 0) || r >= s->limbus || r < inner_of(s))
+			continue;
+		struct cell *c = &raw[(int)(r / s->limbus * RINGS)][(int)((turn / (2 * M_PI) + 1) * TURNS) % TURNS];
+		for (int k = 0; k < 3; k++)
+			c->ln[k] += (double)(s->weight[i] * s->ln[i][k]);
+		c->weight += (double)s->weight[i];
+	}
+	for (int r = 0; r < RINGS; r++)
+		for (int t = 0; t < TURNS; t++) {
+			struct cell *c = &cell[r][t];
+			*c = (struct cell){ 0 };
+			for (int width = 1; width <= TURNS / 2 && c->weight < 1e-3; width *= 2)
+				for (int k = -width; k <= width; k++) {
+					const struct cell *b = &raw[r][(t + k + TURNS) % TURNS];
+					const double near = 1 - abs(k) / (width + 1.0);
+					for (int j = 0; j < 3; j++)
+						c->ln[j] += near * b->ln[j];
+					c->weight += near * b->weight;
+				}
+			for (int j = 0; j < 3 && c->weight > 0; j++)
+				c->ln[j] /= c->weight;
+		}
+	// Rings of which nothing is seen: under a pupil, at a limbus that runs into the sclera.
+	for (int pass = 0; pass < 2; pass++)
+		for (int k = 1; k < RINGS; k++) {
+			const int r = pass ? RINGS - 1 - k : k, from = pass ? r + 1 : r - 1;
+			if (!(cell[r][0].weight > 0) && cell[from][0].weight > 0)
+				memcpy(cell[r], cell[from], sizeof cell[r]);
+		}
+	free(raw);
+}
+
+static void ring_at(float ln[3], struct cell cell[RINGS][TURNS], const struct scene_seen *s, double radius, double turn)
+{
+	const double y = fmin(fmax(radius / s->limbus * RINGS - 0.5, 0), RINGS - 1.001), x = (turn / (2 * M_PI) + 1) * TURNS - 0.5;
+	const int r = (int)y, t = (int)floor(x);
+	for (int c = 0; c < 3; c++) {
+		double v = 0;
+		for (int k = 0; k < 4; k++)
+			v += (k / 2 ? y - r : 1 - y + r) * (k % 2 ? x - t : 1 - x + t) * cell[r + k / 2][(t + k % 2) % TURNS].ln[c];
+		ln[c] = (float)v;
+	}
+}
+
+static double green_rms(const float (*a)[3], const float (*b)[3], const float *weight)
+{
+	double sum = 0, n = 0;
+	for (int i = 0; i < TEXELS; i++)
+		if (weight[i] > 0.5f) {
+			const double d = (double)(a[i][1] - b[i][1]);
+			sum += d * d;
+			n++;
+		}
+	return sqrt(sum / fmax(n, 1));
+}
+
+/* Mean of each ring of what is drawn: what is seen of an iris has its own. */
+static void ring_means(float mean[RINGS], const float (*drawn)[3], const struct scene_seen *s)
+{
+	double sum[RINGS] = { 0 }, n[RINGS] = { 0 }, turn;
+	for (int i = 0; i < TEXELS; i++) {
+		const int r = (int)(polar_of(&turn, s, i) / s->limbus * RINGS);
+		if (r < RINGS) {
+			sum[r] += (double)drawn[i][1];
+			n[r]++;
+		}
+	}
+	for (int r = 0; r < RINGS; r++)
+		mean[r] = (float)(sum[r] / fmax(n[r], 1));
+}
+
+void scene_seen_fill(struct scene_seen *s, const float (*drawn)[3])
+{
+	const double per_mm = SIDE / (2 * s->extent), sigma = fmin(s->finest, drawn_mm) * per_mm;
+	struct cell (*cell)[TURNS] = mem_new(RINGS, sizeof *cell);
+	float (*fine)[3] = mem_array(TEXELS, sizeof *fine), (*own)[3] = mem_array(TEXELS, sizeof *own);
+	float (*near)[3] = mem_array(TEXELS, sizeof *near), mean[RINGS];
+	for (int i = 0; i < TEXELS; i++) {
+		double turn;
+		if (polar_of(&turn, s, i) < inner_of(s))
+			s->weight[i] = 0;
+	}
+	rings_of(cell, s);
+	// How strong fibres are between one and two times the finest that is seen, here and as drawn.
+	blur(own, (const float(*)[3])s->ln, s->weight, sigma);
+	blur(near, (const float(*)[3])s->ln, s->weight, 2 * sigma);
+	const double seen = green_rms((const float(*)[3])own, (const float(*)[3])near, s->weight);
+	blur(fine, drawn, 0, sigma);
+	blur(near, drawn, 0, 2 * sigma);
+	const double invented = green_rms((const float(*)[3])fine, (const float(*)[3])near, s->weight);
+	const float strong = (float)fmin(fmax(seen / fmax(invented, 1e-6), strength[0]), strength[1]);
+	ring_means(mean, drawn, s);
+	for (int i = 0; i < TEXELS; i++) {
+		double turn;
+		const double r = polar_of(&turn, s, i);
+		float ring[3];
+		ring_at(ring, cell, s, r, turn);
+		const float w = s->weight[i];
+		for (int c = 0; c < 3; c++)
+			s->ln[i][c] = w * (s->ln[i][c] + strong * (drawn[i][1] - fine[i][1])) + (1 - w) * (ring[c] + strong * (drawn[i][1] - mean[(int)fmin(r / s->limbus * RINGS, RINGS - 1)]));
+	}
+	free(cell);
+	free(fine);
+	free(own);
+	free(near);
+}
