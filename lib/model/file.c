@@ -81,6 +81,15 @@ static json_t *camera_json(const struct skin_camera *c)
 	return camera;
 }
 
+static json_t *eyes_json(const struct skin_eyes *e)
+{
+	json_t *eyes = json_object();
+	json_object_set_new(eyes, "center_in_head_mm", json_numbers(6, &e->center[0][0]));
+	json_object_set_new(eyes, "radius_mm", json_numbers(2, e->radius));
+	json_object_set_new(eyes, "limbus_radius_mm", json_numbers(2, e->limbus));
+	return eyes;
+}
+
 static json_t *known_json(const struct known *k)
 {
 	json_t *j = json_object();
@@ -101,6 +110,8 @@ static json_t *model_json(const struct skin_model *m)
 	json_object_set_new(j, "reference_frame", json_integer(m->reference_frame));
 	json_object_set_new(j, "inputs", inputs_json(m));
 	json_object_set_new(j, "camera", camera_json(&m->camera));
+	if (isfinite(m->eyes.limbus[0] + m->eyes.limbus[1]))
+		json_object_set_new(j, "eyes", eyes_json(&m->eyes));
 	json_object_set_new(j, "known_gazes", known_json(&m->known));
 	json_object_set_new(j, "closed_px", json_numbers(SKIN_EYE_INPUTS, m->closed));
 	json_object_set_new(j, "open_px", json_numbers(SKIN_EYE_INPUTS, m->open));
@@ -203,6 +214,19 @@ static bool load_camera(struct skin_camera *c, const json_t *camera, const char 
 	       && json_get_array(&c->cam_from_head[0][0], 16, camera, "cam_from_head", path, err);
 }
 
+/* Models of before have none. */
+static bool load_eyes(struct skin_eyes *e, const json_t *eyes, const char *path, struct err *err)
+{
+	if (!eyes)
+		return true;
+	bool ok = json_get_array(&e->center[0][0], 6, eyes, "center_in_head_mm", path, err) && json_get_array(e->radius, 2, eyes, "radius_mm", path, err)
+	          && json_get_array(e->limbus, 2, eyes, "limbus_radius_mm", path, err);
+	for (int s = 0; s < 2 && ok; s++)
+		ok = (e->limbus[s] > 0 && e->limbus[s] < e->radius[s] && e->radius[s] < 1000)
+		     || err_set(err, "%s: eyes: an iris of %g mm on an eye of %g mm", path, e->limbus[s], e->radius[s]);
+	return ok;
+}
+
 static bool load_known(struct known *k, const json_t *j, const char *path, struct err *err)
 {
 	return json_get_array(&k->corner[0][0][0], 2 * KNOWN_CORNERS, j, "left_deg", path, err)
@@ -228,6 +252,7 @@ static bool load_json(struct skin_model *m, const json_t *j, const char *path, s
 		return err_set(err, "%s: vertices, skin_components: more than %d numbers", path, MODEL_NUMBERS);
 	skin_model_alloc(m);
 	return load_inputs(m, inputs, path, err) && load_camera(&m->camera, json_object_get(j, "camera"), path, err)
+	       && load_eyes(&m->eyes, json_object_get(j, "eyes"), path, err)
 	       && load_known(&m->known, json_object_get(j, "known_gazes"), path, err)
 	       && json_get_array(m->closed, SKIN_EYE_INPUTS, j, "closed_px", path, err)
 	       && json_get_array(m->open, SKIN_EYE_INPUTS, j, "open_px", path, err)

@@ -14,10 +14,20 @@ static double *numbers(int rows, int columns)
 	return mem_new((size_t)rows * (size_t)columns + 1, sizeof(double));
 }
 
+struct skin_eyes skin_eyes_unknown(void)
+{
+	struct skin_eyes out;
+	double *x = &out.center[0][0];
+	for (size_t i = 0; i < sizeof out / sizeof *x; i++)
+		x[i] = NAN;
+	return out;
+}
+
 void skin_model_alloc(struct skin_model *m)
 {
 	m->n_inputs = SKIN_EYE_INPUTS + m->n_au;
 	m->n_lid = SKIN_LIDS * m->n_points * 2;
+	m->eyes = skin_eyes_unknown();
 	int u = 2 * m->n_vertices, from = m->n_lid + m->n_au + 1;
 	m->au_names = mem_new((size_t)m->n_au + 1, sizeof *m->au_names);
 	m->vertices = mem_new((size_t)m->n_vertices + 1, sizeof *m->vertices);

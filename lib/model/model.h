@@ -35,6 +35,11 @@ struct skin_camera {
 	double cam_from_head[4][4];   // at the reference frame, mm
 };
 
+/* The person's eyeballs in the head, mm: left, right. limbus: radius of the circle in which the white ends. NAN: not known. */
+struct skin_eyes {
+	double center[2][3], radius[2], limbus[2];
+};
+
 struct skin_model {
 	int n_au, n_inputs;           // n_inputs = SKIN_EYE_INPUTS + n_au
 	int n_points, n_lid;          // control points a lid; n_lid = SKIN_LIDS * n_points * 2
@@ -44,6 +49,7 @@ struct skin_model {
 	int *vertices;                // [n_vertices] rows of the subject mesh
 	int reference_frame;
 	struct skin_camera camera;
+	struct skin_eyes eyes;
 
 	double *l0, *l0_sigma;        // [n_lid] px
 	double *K, *K_sigma;          // [n_lid][n_lid_pc], orthonormal columns, each of one eye's lids alone
@@ -72,6 +78,9 @@ struct skin_model {
 	/* What each expression in full does to lids (model/express.h), beyond A at the gaze. Where the clip does not tell: 0 of sigma NAN. */
 	double (*expression)[EXPRESS_LIDS], (*expression_sigma)[EXPRESS_LIDS];  // [n_au] controls
 };
+
+/* Eyes of which nothing is known. */
+struct skin_eyes skin_eyes_unknown(void);
 
 /* Allocates every array, zeroed, for the counts set in *model (n_au, n_points, n_vertices, n_lid_pc, n_skin_pc); sets n_inputs and
  * n_lid from them. skin_model_free accepts an empty model. */

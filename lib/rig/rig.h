@@ -12,6 +12,7 @@
 #include "base/err.h"
 #include "model/express.h"
 #include "model/known.h"
+#include "model/own_low.h"
 #include "rig/globe_map.h"
 #include "rig/skull_map.h"
 
@@ -65,6 +66,7 @@ struct rig {
 	struct known known;              // gazes at which lids are known
 	double (*expression)[EXPRESS_LIDS];  // [n_inputs - 10] what each expression in full does to lids (model/express.h), controls g~
 	double aperture_px[EXPRESS_LIDS];    // of each aperture from 0 to 1
+	struct own_low own_low;              // how high the person's own lower lids stand
 	float (*rest)[3], (*normal)[3];  // the character's mesh, mm; unit normals
 	float (*home)[2];                // where the modelling camera sees the vertices at rest, px
 	float (*basis)[RIG_BASIS];       // U~, px: x, then y

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "base/npy/npy.h"
 
-static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" }, lids_key[] = "expression_lids";
+static const char *const globe_keys[2] = { "globe_left_map", "globe_right_map" }, lids_key[] = "expression_lids", low_key[] = "own_lower_lids";
 
 /* The single numbers of a rig, in their order in the file's array `parameters`. */
 struct small {
@@ -69,8 +69,8 @@ struct entry {
 enum { ENTRIES_MAX = 32 };
 static const double NUMBER_MOST = 1e12;  // no length in mm, no coefficient comes near
 
-/* The rig's arrays; the last is one that older rigs have not: aperture_px, then expression. */
-static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **small, float **mean, double (**lids)[EXPRESS_LIDS])
+/* The rig's arrays; the last two are some that older rigs have not: aperture_px, then expression; own_low. */
+static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **small, float **mean, double (**lids)[EXPRESS_LIDS], float **low)
 {
 	long n = r->n, cells = r->globe[0].map.n + 1;
 	const struct entry small_entries[] = {
@@ -96,6 +96,7 @@ static int entries(struct entry out[ENTRIES_MAX], struct rig *r, struct small **
 		{ globe_keys[0], NPY_F4, 2, { cells, cells }, (void **)&r->globe[0].map.radius },
 		{ globe_keys[1], NPY_F4, 2, { cells, cells }, (void **)&r->globe[1].map.radius },
 		{ lids_key, NPY_F8, 2, { r->n_inputs - 10 + 1, EXPRESS_LIDS }, (void **)lids },
+		{ low_key, NPY_F4, 3, { 2, OWN_LOW_V, OWN_LOW_H }, (void **)low },
 	};
 	memcpy(out, small_entries, sizeof small_entries);
 	return COUNT(small_entries);
@@ -119,7 +120,8 @@ bool rig_save(const struct rig *rig, const char *path, const char *made_by, stru
 		memcpy(lids[1 + k], rig->expression[k], sizeof lids[1 + k]);
 	struct entry all[ENTRIES_MAX];
 	struct npz_item items[ENTRIES_MAX];
-	int n = entries(all, &view, &at, &mean, &lids);
+	float *low = &view.own_low.share[0][0][0];
+	int n = entries(all, &view, &at, &mean, &lids, &low);
 	for (int i = 0; i < n; i++)
 		items[i] = (struct npz_item){ all[i].name, npy_of(all[i].type, all[i].ndim, all[i].shape, *all[i].data) };
 	bool ok = npz_save(path, n, items, made_by, err);
@@ -195,17 +197,18 @@ static bool check(const struct rig *r, const char *path, struct err *err)
 bool rig_load(struct rig *rig, const char *path, struct err *err)
 {
 	struct small *small = 0;
-	float *mean = 0;
+	float *mean = 0, *low = 0;
 	double (*lids)[EXPRESS_LIDS] = 0;
 	struct entry all[ENTRIES_MAX];
 	bool ok = true;
 	*rig = (struct rig){ .n = -1, .n_faces = -1, .n_inputs = -2, .skull = { .width = -1, .height = -1 } };
 	rig->globe[0].map.n = rig->globe[1].map.n = -2;
-	int n = entries(all, rig, &small, &mean, &lids);
-	n -= !npz_has(path, lids_key, NPY_LIMIT);
+	int n = entries(all, rig, &small, &mean, &lids, &low);
 	for (int i = 0; ok && i < n; i++) {
 		long got[3] = { 0 };
-		entries(all, rig, &small, &mean, &lids);  // again, with the shapes that are known by now
+		if ((!strcmp(all[i].name, lids_key) || !strcmp(all[i].name, low_key)) && !npz_has(path, all[i].name, NPY_LIMIT))
+			continue;
+		entries(all, rig, &small, &mean, &lids, &low);  // again, with the shapes that are known by now
 		ok = read_entry(path, &all[i], got, err);
 		if (ok && !strcmp(all[i].name, "U"))
 			rig->n = (int)got[0];
@@ -220,11 +223,14 @@ bool rig_load(struct rig *rig, const char *path, struct err *err)
 	}
 	if (ok) {
 		small_to(rig, small);
+		for (int i = 0; i < 2 * OWN_LOW_V * OWN_LOW_H; i++)
+			(&rig->own_low.share[0][0][0])[i] = low ? low[i] : 1;
 		ok = check(rig, path, err) && take_lids(rig, (const double(*)[EXPRESS_LIDS])lids, path, err);
 	}
 	free(small);
 	free(mean);
 	free(lids);
+	free(low);
 	if (!ok)
 		rig_free(rig);
 	return ok;

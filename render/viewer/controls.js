@@ -76,7 +76,7 @@ class Controls extends Address {
 			element("div", { className: "numbers" }, number("To the person's left, degrees", 0), number("Up, degrees", 1)));
 		set.dataset.of = "gaze";
 		if (this.face) {
-			const [right, left, down, up] = data.face.looked.map(v => `${Math.abs(v).toFixed(0)}°`), note = element("p", { className: "note", textContent: `The video shows gazes to ${left} left and ${right} right, ${up} up and ${down} down; further out lids follow only a little more.` });
+			const [right, left, down, up] = data.face.looked.map(v => `${Math.abs(v).toFixed(0)}°`), note = element("p", { className: "note", textContent: `The video shows gazes to ${left} left and ${right} right, ${up} up and ${down} down; further out upper lids go with the eye, all else follows only a little more.` });
 			note.dataset.of = "lids";
 			set.append(note);
 		}

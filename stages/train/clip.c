@@ -73,11 +73,28 @@ static void name_expressions(struct clip *clip, const struct opt_each_list *expr
 		clip->au_names[i] = i < expressions->n ? mem_str(expressions->items[i].name) : mem_printf("au%d", i + 1);
 }
 
+/* Eyes of which both were followed. */
+static void read_eyes(struct skin_eyes *eyes, const json_t *track)
+{
+	static const char *const names[2] = { "left_eye", "right_eye" };
+	struct err none = { 0 };
+	bool ok = true;
+	*eyes = skin_eyes_unknown();
+	for (int s = 0; s < 2 && ok; s++) {
+		const json_t *eye = json_object_get(track, names[s]);
+		ok = json_is_object(eye) && json_get_array(eyes->center[s], 3, eye, "center_in_head_mm", "", &none) && json_get(&eyes->radius[s], eye, "radius_mm", "", &none)
+		     && json_get(&eyes->limbus[s], eye, "limbus_radius_mm", "", &none) && eyes->limbus[s] > 0 && eyes->limbus[s] < eyes->radius[s];
+	}
+	if (!ok)
+		*eyes = skin_eyes_unknown();
+}
+
 static bool read_camera(struct clip *clip, struct stage *stage, struct err *err)
 {
 	struct skin_camera *c = &clip->camera;
 	const char *path = stage_path(stage, "%s", files[TRACK]);
 	*c = (struct skin_camera){ .cam_from_head = { { 1 }, { 0, 1 }, { 0, 0, 1 }, { 0, 0, 0, 1 } } };
+	clip->eyes = skin_eyes_unknown();
 	if (!file_exists(path))
 		return true;
 	json_t *j = json_read(path, 1 << 24, err);
@@ -93,6 +110,8 @@ static bool read_camera(struct clip *clip, struct stage *stage, struct err *err)
 	c->height = (int)height;
 	if (ok && !(reference >= 0 && reference < (double)clip->train.n))
 		ok = err_set(err, "%s: reference_frame = %g: must be in [0, %ld]", path, reference, clip->train.n - 1);
+	if (ok)
+		read_eyes(&clip->eyes, j);
 	clip->train.reference = ok ? (long)reference : 0;
 	json_decref(j);
 	return ok;

@@ -8,6 +8,7 @@
 struct clip {
 	struct train_clip train;     // its arrays belong to the clip
 	struct skin_camera camera;
+	struct skin_eyes eyes;
 	char **au_names;             // [train.n_au]
 	int *vertices;
 	double *time, *g, *confidence;

@@ -132,10 +132,11 @@ static void tell(struct stage *stage, const struct train_report *r, const struct
 	stage_figure(stage, "train_aperture_sigma", model->aperture_sigma, "px");
 }
 
-/* Names of the action units, rows of the mesh and camera, which train_run does not fill in. */
+/* Names of the action units, rows of the mesh, camera and eyes, which train_run does not fill in. */
 static void identify(struct skin_model *model, struct clip *clip)
 {
 	model->camera = clip->camera;
+	model->eyes = clip->eyes;
 	model->reference_frame = (int)clip->train.reference;
 	for (int i = 0; i < model->n_vertices; i++)
 		model->vertices[i] = clip->vertices[i];

@@ -81,7 +81,8 @@ void scene_plain(struct scene *s, const struct eye *eye, const struct scene_conf
 	*s = (struct scene){ .eye = *eye, .conf = *conf, .gain = 1, .plain = true, .photo_white = { 1, 1, 1 }, .extent = extent_mm, .pupil = { 0, 0, plain_pupil_mm } };
 	s->conf.albedo_mm = 0;  // all of the drawn colours are the iris' own
 	scene_geometry(s);
-	if (seen && seen->pupil > 0)
+	s->filmed = seen && seen->pupil > 0;
+	if (s->filmed)
 		s->pupil[2] = seen->pupil;
 	int n = conf->map_size < TEXELS ? conf->map_size : TEXELS;
 	struct scene_level *l = &s->level[0];

@@ -101,7 +101,7 @@ struct scene {
 	                              // light are multiplied by it
 	float gain;                   // geometric mean of photograph over model: what the exposure leaves
 	double explained;             // share of the variance of ln colour that the model explains by itself
-	bool plain;                   // nobody photographed it
+	bool plain, filmed;           // nobody photographed it; but its pupil is that of a film
 	long not_finite;              // map values that were not finite, and became 0
 	double odd_pupil;             // radius of a recorded pupil that is impossible, replaced by a usual one; 0: it was possible
 };

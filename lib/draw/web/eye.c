@@ -81,6 +81,7 @@ static json_t *geometry(const struct scene *s, double gain, double sigma_of_pupi
 	put(out, "sclera", 3, sclera);
 	put(out, "pupil", 3, s->pupil);
 	put(out, "pupil_sigma", 1, &sigma_of_pupil);
+	json_object_set_new(out, "filmed", json_boolean(s->filmed));
 	double own[] = { s->own_mean[0], s->own_mean[1], s->own_mean[2] };
 	put(out, "own_mean", 3, own);
 	double rim[] = { s->rim.width, s->rim.spread, s->rim.edge }, spread[] = { s->spread[0], s->spread[1], s->spread[2] };

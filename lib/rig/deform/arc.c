@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "math/rising.h"
 #include "math/vec.h"
+#include "rig/deform/along.h"
 #include "rig/deform/carry.h"
 #include "rig/deform/deform.h"
 #include "rig/deform/lifted.h"
@@ -14,16 +15,12 @@
 #include "rig/deform/slide.h"
 #include "rig/deform/terms.h"
 
-enum { COLUMNS = DEFORM_COLUMNS, ROUNDS = 4, LOWERED = 3, LEAST = 20 };  // of arcs, of lower lids; columns of what is an opening
+enum { COLUMNS = DEFORM_COLUMNS, ROUNDS = 4, LEAST = DEFORM_OPENING_LEAST };  // of arcs; columns of what is an opening
 static const double near_radii = 0.5;     // of a globe, from its surface at rest: no lid comes from further
 static const double lid_radii = 0.5;            // of it: skin further from the eyeball at rest is no lid
 static const double drawn_mm = 0.4;             // of an eyeball of 12 mm: a margin that leaves an arc by more at rest was drawn so, or is as coarse
-static const double iris_mm = 10.6;             // the same: from the centre to the middle of the limbus
-static const double lowered_mm = 3;             // the same: a lower lid goes down by no more than that beyond what was learnt
-static const double open_mm[] = { 1, 4 };       // the same: lids less apart than the first are shutting, from the second they are not
 static const double rest_mm = 6;                // of an eyeball of 12 mm: heights between which the opening at rest has its middle
 static const double shut_mm[] = { 0.2, 1 };     // of an eyeball of 12 mm: the opening up to which lids are left; from which they are not
-static const double goes_along_mm[] = { 1.5, 8 }; // the same: skin above the margin goes with it up to the first, not at all from the second
 static const double lid_share[] = { 0.1, 0.6 };  // of the way from the opening's middle to its end: where at rest a lid begins
 
 /* How far up each open column's margin has to go: by[column], and [COLUMNS + 1] the sums of those before. */
@@ -112,7 +109,7 @@ static bool nearer(double *arch, float (*x)[3], const struct rig *rig, const str
 		if (!(p[2] > 0) || column < now.first || column > now.last)
 			continue;
 		const double above = (p[1] - now.top[(int)lrint(column)]) / unit, spread = fmax((above - 1) * unit / now.step, 0.5);
-		const double with = (double)near->upper[i] * (1 - rising(above, goes_along_mm[0], goes_along_mm[1]));
+		const double with = (double)near->upper[i] * (1 - rising(above, deform_goes_along_mm[0], deform_goes_along_mm[1]));
 		if (with > 0)
 			deform_slide(x[i], rig, side, target_from_globe, with * lift_over(&lift, column - spread, column + spread));
 	}
@@ -186,60 +183,11 @@ static void prepare(struct deform_near *near, const struct rig *rig)
 	take_own(near, rig);
 }
 
-/* Most along the middle of a lid, 0 at its ends. */
-static double along_lid(double t)
-{
-	const double off = (2 * t - 1) * (2 * t - 1);
-	return 1 - off * off;
-}
-
-/* Lowers the lower lid of an eye that looks down, to height *to before the iris; NAN: out. */
-static void retract(double *to, float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double lifted)
-{
-	const struct deform_opening *rest = &near->rest[side];
-	const double unit = rig->globe[side].radius / 12;
-	double axis[3], eye[3];
-	struct deform_opening now;
-	mat_vec(axis, target_from_globe, (double[]){ 0, 0, iris_mm * unit });
-	mat_vec(eye, rig->head_from_target, axis);
-	if (!(eye[1] < 0) || rest->last - rest->first < LEAST)
-		return;
-	deform_open(&now, rig, near, side, (const float(*)[3])x, near->within[side]);
-	const int at = (int)fmin(fmax(lrint(eye[0] / rest->step) + COLUMNS / 2, rest->first), rest->last);
-	if (now.last - now.first < LEAST || at <= now.first || at >= now.last)
-		return;
-	const double span = now.last - now.first, peak = fmax(along_lid((at - now.first) / span), 0.3), most = lowered_mm * unit;
-	if (isnan(*to))
-		*to = now.bottom[at] - most * tanh(fmax(now.bottom[at] - eye[1] - rest->bottom[at] - lifted, 0) / most) * rising((now.top[at] - now.bottom[at]) / unit, open_mm[0], open_mm[1]);
-	const double lack = now.bottom[at] - *to;
-	for (int i = 0; i < rig->n && lack > 0; i++) {
-		double p[3];
-		if (!(near->lower[i] > 0) || rig->side[i] != side)
-			continue;
-		deform_in_head(p, rig, side, x[i]);
-		const double t = fmin(fmax((p[0] / now.step + COLUMNS / 2 - now.first) / span, 0), 1);
-		const int column = now.first + (int)lrint(t * span);
-		const double below = (now.bottom[column] - p[1]) / unit, with = (double)near->lower[i] * (1 - rising(below, goes_along_mm[0], goes_along_mm[1] + lack / unit));
-		if (p[2] > 0)
-			deform_slide(x[i], rig, side, target_from_globe, -with * lack * along_lid(t) / peak);
-	}
-}
-
-/* Lowers the lower lids of eyes that look down, as people's do, until they cover no more of the iris, at its middle, than the lid at rest does there of one that
- * looks to the same side: what was learnt of somebody whose lids are wide apart leaves a character's, which are not, across the pupil. As lids shut that
- * ends. What an expression lifts them by they keep. */
-static void lower(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double lifted)
-{
-	double to = NAN;
-	for (int k = 0; k < LOWERED; k++)
-		retract(&to, x, rig, near, side, target_from_globe, lifted);
-}
-
 void deform_settle(float (*x)[3], const struct rig *rig, const struct deform_near *near, const double target_from_globe[2][3][3], const double *lifted)
 {
 #pragma omp parallel for schedule(static, 1)
 	for (int side = 0; side < 2; side++) {
-		lower(x, rig, near, side, target_from_globe[side], lifted ? lifted[side] : 0);
+		deform_along(x, rig, near, side, target_from_globe[side], lifted ? lifted[side] : 0);
 		arcs(x, rig, near, side, target_from_globe[side]);
 		deform_shut(x, rig, near, side, target_from_globe[side]);
 	}

@@ -4,7 +4,7 @@
 #include "rig/deform/clear.h"
 
 /* The opening of an eye as the front sees it: heights of its upper and lower end over the eyeball's centre, mm, by column. */
-enum { DEFORM_COLUMNS = 361 };
+enum { DEFORM_COLUMNS = 361, DEFORM_OPENING_LEAST = 20 };  // columns across it; so few are none
 struct deform_opening {
 	int first, last;               // columns that are open, in a row; none: last < first
 	double step;                   // mm; column i is at step (i - DEFORM_COLUMNS / 2), along the head's x

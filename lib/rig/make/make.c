@@ -191,6 +191,7 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 	rig->W = mem_new(RIG_COMPONENTS * row, sizeof *rig->W);
 	memcpy(rig->W, motion->W, RIG_COMPONENTS * row * sizeof *rig->W);
 	rig->known = motion->known;
+	rig->own_low = motion->own_low;
 	memcpy(rig->rest_e, motion->rest_e, sizeof rig->rest_e);
 	memcpy(rig->rest_aperture, motion->rest_aperture, sizeof rig->rest_aperture);
 	memcpy(rig->baseline, motion->baseline, sizeof rig->baseline);

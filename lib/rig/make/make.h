@@ -13,6 +13,7 @@ struct rig_motion {
 	double *W;                            // [RIG_COMPONENTS][n_inputs + 1]
 	double rest_e[RIG_COMPONENTS], rest_aperture[4], baseline[4][3];
 	struct known known;
+	struct own_low own_low;
 	double (*expression)[EXPRESS_LIDS], aperture_px[EXPRESS_LIDS];  // as a rig's
 	int n;                                // tracked rows of the subject mesh
 	int *vertex;

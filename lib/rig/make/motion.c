@@ -41,7 +41,7 @@ static void take_skin(struct rig_motion *m, const struct skin_model *model)
 void rig_motion_of_model(struct rig_motion *m, const struct skin_model *model)
 {
 	int kept = model->n_skin_pc < RIG_SKIN_COMPONENTS ? model->n_skin_pc : RIG_SKIN_COMPONENTS;
-	*m = (struct rig_motion){ .n_inputs = model->n_inputs, .n_points = model->n_points, .camera = model->camera, .known = model->known };
+	*m = (struct rig_motion){ .n_inputs = model->n_inputs, .n_points = model->n_points, .camera = model->camera, .known = model->known, .own_low = own_low_of(model) };
 	size_t row = (size_t)model->n_inputs + 1;
 	double *W = mem_new((size_t)model->n_skin_pc * row + 1, sizeof *W);
 	skin_model_fold(W, model);

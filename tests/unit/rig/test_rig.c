@@ -182,17 +182,18 @@ static void weights_sum_to_one_and_motion_fades(void **state)
 	face_free(&face);
 }
 
-/* a/rig.npz as it was before rigs knew what expressions do to lids: that array under another name. */
-static void without_lids(void)
+/* a/rig.npz as it was before rigs knew what expressions do to lids, or how much of her iris the person's own lower lids cover: that array under another name. */
+static void without(const char *array)
 {
-	static const char name[] = "expression_lids.npy";
+	char name[64];
+	snprintf(name, sizeof name, "%s.npy", array);
 	char *bytes;
 	size_t size;
 	int renamed = 0;
 	struct err err = { 0 };
 	assert_true(file_read(&bytes, &size, scratch_path("a/rig.npz"), 1 << 30, &err));
-	for (size_t i = 0; i + sizeof name < size; i++)
-		if (!memcmp(bytes + i, name, sizeof name - 1)) {
+	for (size_t i = 0; i + strlen(name) < size; i++)
+		if (!memcmp(bytes + i, name, strlen(name))) {
 			bytes[i] = 'E';
 			renamed++;
 		}
@@ -216,6 +217,7 @@ static void file_brings_back_the_same_rig(void **state)
 	rig_of(&rig, &report, &face, &conf);
 	scratch_open();
 	rig.expression[1][3] = -0.9;
+	rig.own_low.share[1][2][3] = 0.25f;
 	assert_true(rig_save(&rig, scratch_path("a/rig.npz"), "{}", &err));
 	if (!rig_load(&back, scratch_path("a/rig.npz"), &err))
 		fail_msg("%s", err.msg);
@@ -223,11 +225,16 @@ static void file_brings_back_the_same_rig(void **state)
 	assert_true(file_hash(first, scratch_path("a/rig.npz"), 1 << 30, &err) && file_hash(second, scratch_path("b/rig.npz"), 1 << 30, &err));
 	assert_string_equal(first, second);
 	assert_true(back.expression[1][3] == -0.9 && back.expression[0][3] == 0 && back.aperture_px[0] == 70);
-	rig_free(&back);
-	without_lids();
+	assert_true(back.own_low.share[1][2][3] == 0.25f);
+	without("expression_lids");
 	if (!rig_load(&back, scratch_path("d/rig.npz"), &err))
 		fail_msg("%s", err.msg);
 	assert_true(back.expression[1][3] == 0 && back.W[3] == rig.W[3]);
+	rig_free(&back);
+	without("own_lower_lids");
+	if (!rig_load(&back, scratch_path("d/rig.npz"), &err))
+		fail_msg("%s", err.msg);
+	assert_true(back.own_low.share[1][2][3] == 1 && back.expression[1][3] == -0.9);
 	rig_free(&back);
 	rig.expression[1][3] = 1e6;
 	assert_true(rig_save(&rig, scratch_path("a/rig.npz"), "{}", &err));
