@@ -8,7 +8,7 @@ const { Browser } = require("./browser.js");
 const [, , page, rig, tools] = process.argv;
 
 // Of the grid of poses from which the page knows it, and between those.
-const grid = [[0, 0, 1], [16, 0, 1], [-16, -22, 1], [0, -22, 0.5], [0, 22, 1], [0, 0, 0.5], [16, 22, 0]];
+const grid = [[0, 0, 1], [16, 0, 1], [-16, -20, 1], [0, -20, 0.5], [0, 22, 1], [0, 0, 0.5], [16, 22, 0]];
 const between = [[10, 5, 1], [-20, -15, 1], [20, 15, 1], [0, -25, 1], [0, -8, 0.75], [8, 0, 0.75], [-8, -11, 0.5], [0, 0, 0.25]];
 
 (async () => {

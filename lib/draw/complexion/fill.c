@@ -8,7 +8,7 @@
 #include "draw/complexion/impl.h"
 #include "draw/smooth.h"
 
-static const double alike_mm = 5;        // over more than this both halves of a face have the same colour
+static const double alike_mm = 3;        // over more than this both halves of a face have the same colour
 static const double seam_mm = 0.8;       // over which what is seen goes over into what is not
 static const double brighter_ln = 0.15;  // shadows are cast, lights hardly: of halves that differ by more than this the brighter counts
 static const double most_grey = 0.14, most_hue = 0.07;  // ln: of skin over centimetres: dark rings, red cheeks

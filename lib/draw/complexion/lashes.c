@@ -17,6 +17,8 @@ static const double px_mm_least = 2.5, spread_mm = 1.2;      // a lash is some t
  * show the skin between them. Measured on 13 heads of known lashes by another renderer. */
 static const double area_seen[2] = { 0.35, 0.5 };
 static const double rows_smooth_mm = 0.3, cover_most = 0.9;
+/* From so far off the margin up to where they hide most, lashes hide at least that share of it: else what is darkest is something else, or the margin is not there. */
+static const double from_mm = 1, least_share = 0.5;
 enum { ROWS = 110, COLUMNS = 600, LEAST_COLUMNS = 120, MOST_POINTS = 512 };
 
 /* A margin, so many points along it, each with the direction out of the opening. */
@@ -124,6 +126,11 @@ static struct hair_lid of_margin(const struct complexion_view *v, const float (*
 		if (j > end && smooth[j] < smooth[end])
 			end = j;
 	}
+	int darkest = 0;
+	for (int j = 0; j < end && ok; j++)
+		darkest = smooth[j] > smooth[darkest] ? j : darkest;
+	for (int j = (int)lrint(from_mm / row_mm); j < darkest && ok; j++)
+		ok = smooth[j] - smooth[end] >= least_share * (smooth[darkest] - smooth[end]);
 	for (int j = 0; j < end && ok; j++) {
 		const double own = fmax(cover[j] - smooth[end], 0) * row_mm;
 		area += own;

@@ -12,8 +12,8 @@
 #include "rig/deform/lifted.h"
 #include "rig/drive.h"
 
-enum { SH = 5, SV = 6, SA = 6, GRID = SH * SV * SA, SREST = (SA - 2) * SH * SV + 4 * SH + SH / 2, MOST = 127 };  // steps either way
-static const double at_h[SH] = { -32, -16, 0, 16, 32 }, at_v[SV] = { -26, -20, -14, -7, 0, 22 }, at_a[SA] = { 0, 0.25, 0.5, 0.75, 1, 1.4 };
+enum { SH = 5, SV = 7, SA = 6, GRID = SH * SV * SA, SREST = (SA - 2) * SH * SV + 5 * SH + SH / 2, MOST = 127 };  // steps either way
+static const double at_h[SH] = { -32, -16, 0, 16, 32 }, at_v[SV] = { -26, -20, -15, -10, -5, 0, 22 }, at_a[SA] = { 0, 0.25, 0.5, 0.75, 1, 1.4 };
 static const float least_mm = 0.004f;   // a vertex that is moved by less in every pose is left
 
 /* Marks the vertices of hair cards that the page draws as they are; those that show what is behind them it paints on the skin. */
