@@ -33,6 +33,9 @@ run_plan = case "$$CAPTURE" in /*) mk=$$CAPTURE ;; *) mk=./$$CAPTURE ;; esac; $(
 # Where no photograph could be used there is the page all the same: on it the limbus can be drawn by hand.
 page_alone = test -d "$$CAPTURE/work/limbus" && test ! -d "$$CAPTURE/work/iris" && "$$BIN/render" --capture="$$CAPTURE" --quiet >/dev/null 2>&1 && \
 	echo "where the eye is can be drawn on $$CAPTURE/work/review/index.html" >&2
+# Where a film was followed and a stage after it could not use it, the page shows what there is.
+page_film = test -f "$$CAPTURE/work/skin/gaze.csv" && test -e "$$CAPTURE/work/.made/track.json" && "$$BIN/plan" --capture="$$CAPTURE" --fresh=track >/dev/null 2>&1 && \
+	"$$BIN/render" --capture="$$CAPTURE" --quiet >/dev/null 2>&1 && echo "what was followed is on $$CAPTURE/work/review/index.html" >&2
 ifeq ($(origin STAGES),undefined)
 STAGES := $(shell ls -I version -I summary "$$BIN")
 endif
@@ -41,7 +44,7 @@ need-capture:
 	@test -n "$$CAPTURE" || { echo "make: say which folder: make CAPTURE=my-capture $(MAKECMDGOALS)" >&2; exit 2; }
 run: need-capture $(ready)
 	@"$$BIN/plan" --capture="$$CAPTURE" --todo; todo=$$?; test $$todo = 3 || exit $$todo; \
-		{ $(run_plan) all; } || { bad=$$?; $(page_alone); exit $$bad; }
+		{ $(run_plan) all; } || { bad=$$?; $(page_alone); $(page_film); exit $$bad; }
 $(filter-out plan,$(STAGES)) export: need-capture $(ready)
 	@"$$BIN/plan" --capture="$$CAPTURE" --quiet
 	@$(run_plan) $@

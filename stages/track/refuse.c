@@ -69,6 +69,7 @@ void refuse_picture(struct stage *stage, const struct track_clip *clip, const st
 				margins(&pic, &r->eyes.state[f][e]);
 	}
 	if (file_mkdirs(stage_path(stage, "work/skin"), &none) && picture_png_write(stage_path(stage, REFUSED_PICTURE), px, w, h, 3, &none))
-		stage_made(stage, REFUSED_PICTURE, 0, 0, &none);
+		if (stage_made(stage, REFUSED_PICTURE, 0, 0, &none))
+			stage_note(stage, "%s: frame %ld, the openings (orange) and eyeballs (blue) as they were laid on it", REFUSED_PICTURE, clip->reference);
 	free(px);
 }

@@ -157,8 +157,12 @@ void part_pilot(struct part *p, long m, double *x, double *c, const struct train
 			x[i] = c[i] > 0 ? was[i] : x[i];
 		part_complete(p, m, x, c, d, share);
 		add_leverage(p, d, lambda, m, x, w);
-		memcpy(sorted, d, (size_t)m * sizeof *d);
-		p->usual = fmax(stats_median((int)m, sorted), smallest_distance * sqrt(spread / (double)m / fmax(p->n, 1)));
+		int shown = 0;
+		// a frame that shows nothing of the part lies on its fit
+		for (long r = 0; r < m; r++)
+			if (share[r] > 0)
+				sorted[shown++] = d[r];
+		p->usual = fmax(shown ? stats_median(shown, sorted) : 0, smallest_distance * sqrt(spread / (double)m / fmax(p->n, 1)));
 		double change = 0;
 		for (long r = 0; r < m; r++) {
 			double to = part_weight(p, conf, d[r]) * (share[r] > 0);

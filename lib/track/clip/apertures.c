@@ -8,9 +8,11 @@
 #include "math/stats.h"
 #include "track/clip/scale.h"
 
-enum { EYE_INPUTS = 5 };
+enum { EYE_INPUTS = 5, ABOUT = 5 };
 
-static const double shut = 0.3;  // of the usual opening: below it the lids count as meeting
+/* Shares of the usual opening: eyes that are open less are shut; what a lower lid rises by when an eye shuts (of a rendered head, -0.02), and its standard deviation, assumptions; what it leaps by from
+ * one frame to the next where it is found wrongly. */
+static const double shut = 0.2, rises = 0.05, rises_sigma = 0.1, leaps = 0.05;
 
 /* Height of a margin where it passes x: NAN where it does not. */
 static double height_at(int n, const float (*lid)[2], double x)
@@ -53,25 +55,57 @@ static double column(const struct track_result *r, int side)
 	return mid;
 }
 
-/* Height at which upper and lower margin meet: median over the most closed frames; where the eye never shuts, the line between
- * the corners. usual: the median opening. */
-static double meeting(const struct track_result *r, int side, const double *up, const double *low, double *usual)
+struct vote { double at, weight; };
+
+static int by_height(const void *a, const void *b)
 {
-	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), *at = mem_new((size_t)r->n + 1, sizeof *at), least = INFINITY;
-	for (long f = 0; f < r->n; f++) {
-		gap[f] = low[f] - up[f];
-		least = isfinite(gap[f]) ? fmin(least, gap[f]) : least;
+	const struct vote *x = a, *y = b;
+	return (x->at > y->at) - (x->at < y->at);
+}
+
+/* The weighted median: where half of the weight lies below, each vote's spread evenly to the next ones. Sorts. */
+static double middle_of(int n, struct vote *v, double weight)
+{
+	double below = 0;
+	qsort(v, (size_t)n, sizeof *v, by_height);
+	for (int i = 0; i < n; i++) {
+		const double to = below + 0.5 * v[i].weight, from = i ? below - 0.5 * v[i - 1].weight : to;
+		if (to >= 0.5 * weight)
+			return i && to > from ? v[i - 1].at + (0.5 * weight - from) / (to - from) * (v[i].at - v[i - 1].at) : v[i].at;
+		below += v[i].weight;
 	}
-	*usual = median_known(r->n, gap);
-	bool closes = least < shut * *usual;
+	return n ? v[n - 1].at : NAN;
+}
+
+/* Median of the frames about one. */
+static double about(const double *y, long n, long f)
+{
+	const long from = f < ABOUT ? 0 : f - ABOUT, to = f + ABOUT < n ? f + ABOUT : n - 1;
+	return median_known(to - from + 1, y + from);
+}
+
+/* Height at which upper and lower margin meet, the same in all frames: on the way there the lower lid hardly moves. Each frame tells it, the better the further the eye is shut; of one that never shuts, all
+ * tell it badly (*sigma). No frame decides by itself: that of a lid which closes fast is often wrong. */
+static double meeting(double *sigma, const struct track_result *r, const double *up, const double *low)
+{
+	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), weight = 0, left = 0;
+	struct vote *vote = mem_array((size_t)r->n + 1, sizeof *vote);
+	int n = 0;
+	for (long f = 0; f < r->n; f++)
+		gap[f] = fabs(low[f] - up[f]);
+	const double usual = median_known(r->n, gap);
 	for (long f = 0; f < r->n; f++) {
-		const float(*u)[2] = lid_of(r, f, side, LID_UPPER);
-		double corners = 0.5 * (u[0][1] + u[r->lid_points - 1][1]);
-		at[f] = !closes ? corners : gap[f] <= least + 0.03 * *usual ? 0.5 * (up[f] + low[f]) : NAN;
+		const double open = gap[f] / usual, at = low[f] - rises * gap[f], odd = (low[f] - about(low, r->n, f)) / (leaps * usual), w = pow((shut * shut + open * open) * (1 + odd * odd), -2);
+		if (!isfinite(w))
+			continue;
+		vote[n++] = (struct vote){ at, w };
+		weight += w;
+		left += w * gap[f];
 	}
-	double y = median_known(r->n, at);
+	const double y = middle_of(n, vote, weight);
 	free(gap);
-	free(at);
+	free(vote);
+	*sigma = weight > 0 ? rises_sigma * left / weight : NAN;
 	return y;
 }
 
@@ -89,7 +123,7 @@ static double scatter(long n, const double *y)
 	return isfinite(mid) ? normal * mid / differences : 0;
 }
 
-static void sigmas(struct track_result *r, int side, int lid, const double *y, double least_px)
+static void sigmas(struct track_result *r, int side, int lid, const double *y, double common_px)
 {
 	const double most = 10;  // of a margin hardly seen
 	double *clear = mem_new((size_t)r->n + 1, sizeof *clear), noise = scatter(r->n, y);
@@ -97,26 +131,28 @@ static void sigmas(struct track_result *r, int side, int lid, const double *y, d
 		clear[f] = isfinite(y[f]) ? r->eyes.state[f][side].lid_confidence[lid] : NAN;
 	double usual = median_known(r->n, clear);
 	for (long f = 0; f < r->n; f++)
-		r->aperture_sigma[f][side][lid] = isfinite(y[f]) ? hypot(least_px, noise * fmin(most, fmax(1, usual / fmax(clear[f], 1e-9)))) : NAN;
+		r->aperture_sigma[f][side][lid] = isfinite(y[f]) ? hypot(common_px, noise * fmin(most, fmax(1, usual / fmax(clear[f], 1e-9)))) : NAN;
 	free(clear);
 }
 
 static void eye(struct track_result *r, int side, double least_px)
 {
-	double *up = mem_new((size_t)r->n + 1, sizeof *up), *low = mem_new((size_t)r->n + 1, sizeof *low), usual;
+	double *up = mem_new((size_t)r->n + 1, sizeof *up), *low = mem_new((size_t)r->n + 1, sizeof *low), common;
 	double x = column(r, side);
 	for (long f = 0; f < r->n; f++) {
 		up[f] = height_at(r->lid_points, lid_of(r, f, side, LID_UPPER), x);
 		low[f] = height_at(r->lid_points, lid_of(r, f, side, LID_LOWER), x);
 	}
-	double y = meeting(r, side, up, low, &usual);
+	double y = meeting(&common, r, up, low);
+	r->meeting_sigma[side] = common;
+	common = hypot(common, least_px);
 	for (long f = 0; f < r->n; f++) {
 		double *g = r->g + f * (SIDES * EYE_INPUTS + r->n_au) + side * EYE_INPUTS;
 		g[3] = y - up[f];
 		g[4] = low[f] - y;
 	}
-	sigmas(r, side, LID_UPPER, up, least_px);
-	sigmas(r, side, LID_LOWER, low, least_px);
+	sigmas(r, side, LID_UPPER, up, common);
+	sigmas(r, side, LID_LOWER, low, common);
 	free(up);
 	free(low);
 }

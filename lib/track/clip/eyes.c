@@ -67,6 +67,7 @@ static void held(struct eye_frame *frame, struct track_eyes *eyes, const bool in
 	glance_at(frame, eyes->glance, lost ? eyes->clip->eye_seen : in);
 	glance_tell(&t, frame, eyes->glance);
 	hold_push(eyes->hold, t.known, turned(&turn, eyes, frame, &t, f) ? &turn : 0, t.radius, f ? fmax(0, frame->time - eyes->time) : 0, f);
+	hold_keep(eyes->hold, frame->luma, frame->luma_stride);
 	hold_guess(frame->cam_from_head, eyes->hold, skin_pose);
 	eyes->time = frame->time;
 }
@@ -147,8 +148,10 @@ void track_eyes_push(struct track_eyes *eyes, const struct video_frame *f, const
 {
 	double pose[4][4];
 	memcpy(pose, skin_pose, sizeof pose);
-	if (eyes->hold)
+	if (eyes->hold) {
+		hold_carry(eyes->hold, f->luma, f->luma_stride);
 		hold_guess(pose, eyes->hold, skin_pose);
+	}
 	struct eye_frame frame = { .luma = f->luma, .rgb = eyes->rgb, .luma_stride = f->luma_stride, .rgb_stride = 3 * f->width, .time = f->time };
 	int box[SIDES][4];
 	bool in[SIDES];

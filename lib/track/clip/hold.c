@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "math/stats.h"
 #include "math/walk.h"
+#include "track/clip/carry.h"
 
 /* mm: the line through the corners of the eye lies lower on people than on the mean opening (subject.c): of heads of a model made from scans 2.2 +- 0.2 below the eyeballs'
  * centres, of that opening 0.5; between both. */
@@ -15,7 +16,13 @@ static const double OUTWARD = 0.8;     // mm: and the middle between them furthe
 static const double OPEN = 2;          // squares of the iris' radius: eyes that show less tell no corners
 static const double AGREE = 0.8;       // radii: skin that tells the eyes so near to where they are is believed on the way
 static const double LOST_S = 0.25;     // longer than most blinks
-enum { ROUNDS = 6, LEAST_FRAMES = 12 };
+static const double WINK = 0.25;       // where one eye is told and the face was seen again, time counts for so much: the other eye winks
+/* What lies otherwise than a frame before by more than this is no pair of this head's eyes: lean, radians; logarithm of the size. Heads turn by 300 degrees a second at most, and films have 25 frames. */
+static const double LEAPS[2] = { 0.25, 0.2 };
+static const double MOST[2] = { 0.7, 0.35 };  // and after a while, of one that was found in all of the picture
+static const double NEAR = 0.5;        // eyes' distances: of a face that was seen again, the same
+enum { ROUNDS = 6, LEAST_FRAMES = 12, BESIDE = 5 };
+static const double UNSEEN = 8;        // times the noise of what is seen: so far off may be what is taken for it where it is not
 
 static const double UNTOLD = 0.35;     // radians: how faces of a clip are turned, one standard deviation, where nothing tells
 
@@ -28,7 +35,8 @@ static const double least_bend[ASIDE] = { 0.003, 0.003, 0.0005, 0.0003 };
  * alike, so that a clip does not show it. */
 static const double turn_bend = 3;
 
-struct seen { float corner[SIDES][2][2], turn[TURNS], sigma[TURNS], unlike; bool known[SIDES], turned; };
+/* carried: the shift that the face round the eyes tells alone. */
+struct seen { float corner[SIDES][2][2], turn[TURNS], sigma[TURNS], unlike, carried[2]; bool known[SIDES], turned, is_carried; };
 
 struct hold {
 	const struct track_clip *clip;
@@ -37,7 +45,9 @@ struct hold {
 	double lean;                   // of the reference, radians
 	double begun[MOTIONS], now[MOTIONS];  // of the reference, and last
 	double radius;                 // px, of the irises, last
-	double lost_s;                 // since eyes were told
+	double lost_s, untold_s;       // since eyes were told, or looked for in all of the picture; since both were told
+	bool carried;                  // the face round them was seen again in this frame
+	struct carry carry;
 	double seconds;                // of the frames kept
 	long n, room;
 	struct seen *seen;             // [n]
@@ -62,7 +72,7 @@ struct hold *hold_new(const struct track_clip *clip, const struct track_subject 
 	h->clip = clip;
 	h->subject = subject;
 	h->large_px = large_px;
-	h->lost_s = INFINITY;
+	h->lost_s = h->untold_s = INFINITY;
 	double at[3];
 	middle_in(at, h, clip->cam_from_head);
 	turn_of(h->begun + ASIDE, &h->lean, clip->cam_from_head, at);
@@ -201,48 +211,122 @@ bool hold_lost(const struct hold *h)
 	return h->lost_s > LOST_S;
 }
 
+/* Whether what was found may be this head's eyes: as far apart, as level and near as the time since they were told lets them be. */
+static bool may_be(const double by[MOTIONS], double apart, const struct hold *h)
+{
+	const double since = 1 + h->untold_s;
+	if (!isfinite(h->untold_s))
+		return true;
+	if (fabs(by[SIZE] - h->now[SIZE]) > fmin(since * LEAPS[1], MOST[1]) || fabs(by[LEAN] - h->now[LEAN]) > fmin(since * LEAPS[0], MOST[0]))
+		return false;
+	return !h->carried || hypot(by[ACROSS] - h->now[ACROSS], by[DOWN] - h->now[DOWN]) < NEAR * since * apart;
+}
+
 void hold_found(struct hold *h, const double eye[SIDES][2])
 {
-	double px[2], middle[2] = { 0 };
+	double px[SIDES][2], pose[4][4], by[MOTIONS];
 	h->lost_s = 0;
-	for (int e = 0; e < SIDES && eye; e++) {
-		if (!head_project(px, &h->clip->camera, h->clip->cam_from_head, h->subject->opening[e].center))
+	if (!eye)
+		return;
+	memcpy(by, h->now, sizeof by);
+	by[ACROSS] = by[DOWN] = 0;
+	moved(pose, h, (const double[MOTIONS]){ [ASIDE] = h->now[ASIDE], [NOD] = h->now[NOD] });
+	for (int e = 0; e < SIDES; e++) {
+		if (!head_project(px[e], &h->clip->camera, (const double(*)[4])pose, h->subject->opening[e].center))
 			return;
 		for (int k = 0; k < 2; k++)
-			middle[k] += 0.5 * (eye[e][k] - px[k]);
+			by[k] += 0.5 * (eye[e][k] - px[e][k]);
 	}
-	if (eye)
-		memcpy(h->now, middle, sizeof middle);
+	const double to[2] = { eye[0][0] - eye[1][0], eye[0][1] - eye[1][1] }, from[2] = { px[0][0] - px[1][0], px[0][1] - px[1][1] };
+	by[LEAN] = atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+	by[SIZE] = log(hypot(to[0], to[1]) / hypot(from[0], from[1]));
+	if (may_be(by, hypot(to[0], to[1]), h))
+		memcpy(h->now, by, sizeof by);
+}
+
+void hold_carry(struct hold *h, const uint8_t *luma, int stride)
+{
+	double shift[2];
+	h->carried = isfinite(h->lost_s) && carry_find(shift, &h->carry, luma, stride, h->clip->info.width, h->clip->info.height);
+	for (int k = 0; k < 2 && h->carried; k++)
+		h->now[k] += shift[k];
+}
+
+void hold_keep(struct hold *h, const uint8_t *luma, int stride)
+{
+	double pose[4][4], px[SIDES][2];
+	moved(pose, h, h->now);
+	for (int e = 0; e < SIDES; e++)
+		if (!head_project(px[e], &h->clip->camera, (const double(*)[4])pose, h->subject->opening[e].center))
+			return;
+	carry_keep(&h->carry, luma, stride, h->clip->info.width, h->clip->info.height, (const double[2]){ 0.5 * (px[0][0] + px[1][0]), 0.5 * (px[0][1] + px[1][1]) },
+	           hypot(px[0][0] - px[1][0], px[0][1] - px[1][1]));
 }
 
 void hold_push(struct hold *h, const struct eye_told *const told[SIDES], const struct head_turn *turn, double radius, double dt, bool keep)
 {
-	const struct seen seen = seen_of(told, turn);
+	struct seen seen = seen_of(told, turn);
 	double by[MOTIONS];
 	const bool any = motion_of(by, h, &seen, h->now);
-	h->lost_s = !keep ? INFINITY : seen.known[0] && seen.known[1] ? 0 : h->lost_s + dt;
-	if (any)
-		for (int k = 0; k < MOTIONS; k++)
-			h->now[k] += isnan(by[k]) ? 0 : (dt > 0 ? 1 - exp(-dt / follow_s[k]) : 1) * (by[k] - h->now[k]);
+	const bool leaps = keep && any && (fabs(by[LEAN] - h->now[LEAN]) > LEAPS[0] || fabs(by[SIZE] - h->now[SIZE]) > LEAPS[1]);
+	const bool both = seen.known[0] && seen.known[1] && !leaps;
+	h->lost_s = !keep ? INFINITY : both ? 0 : h->lost_s + dt * (h->carried && (seen.known[0] || seen.known[1]) ? WINK : 1);
+	h->untold_s = !keep ? INFINITY : both ? 0 : h->untold_s + dt;
+	if (leaps)
+		seen.known[0] = seen.known[1] = seen.turned = false;
+	for (int k = 0; k < MOTIONS && any && !leaps; k++)
+		h->now[k] += isnan(by[k]) ? 0 : (dt > 0 ? 1 - exp(-dt / follow_s[k]) : 1) * (by[k] - h->now[k]);
 	if (radius > 0)
 		h->radius = radius;
 	if (!keep)
 		return;
+	seen.is_carried = h->carried;
+	for (int k = 0; k < 2; k++)
+		seen.carried[k] = (float)h->now[k];
 	h->seconds += dt;
 	if (h->n == h->room)
 		h->seen = mem_grow(h->seen, (size_t)(h->room = 2 * h->room + 256), sizeof *h->seen);
 	h->seen[h->n++] = seen;
 }
 
-/* The path of y (NAN: not known) that goes on as it did but for changes of so much; what is far off by the noise counts little. x: overwritten. */
-static void glide(double *x, long n, const double *y, double noise, double bend)
+/* The median of the known ones that lie next to a gap, on one side of it. */
+static double beside(const double *y, long n, long from, long step)
 {
+	double near[BESIDE];
+	int m = 0;
+	for (long i = from; i >= 0 && i < n && m < BESIDE; i += step)
+		if (isfinite(y[i]))
+			near[m++] = y[i];
+	return m ? stats_median(m, near) : NAN;
+}
+
+/* What is taken for y where it is not known: a straight line between what lies on both sides. */
+static void bridged(double *fill, long n, const double *y)
+{
+	for (long i = 0; i < n; i++) {
+		long end = i;
+		while (end < n && isnan(y[end]))
+			end++;
+		if (end == i)
+			continue;
+		const double before = beside(y, n, i - 1, -1), after = beside(y, n, end, 1), from = isnan(before) ? after : before, to = isnan(after) ? before : after;
+		for (long k = i; k < end; k++)
+			fill[k] = isnan(fill[k]) ? from + (to - from) * (double)(k - i + 1) / (double)(end - i + 1) : fill[k];
+		i = end - 1;
+	}
+}
+
+/* The path of y (NAN: not known) that goes on as it did but for changes of so much; what is far off by the noise counts little. Where y is not known long it does not go on for ever: fill
+ * (NAN: where nothing tells) counts a little. x: overwritten. */
+static void glide(double *x, long n, const double *y, double *fill, double noise, double bend)
+{
+	bridged(fill, n, y);
 	double *sigma = mem_array((size_t)n + 1, sizeof *sigma), *room = mem_array(2 * (size_t)n + 1, sizeof *room);
 	for (int round = 0; round < ROUNDS; round++) {
 		for (long i = 0; i < n; i++) {
 			const double off = round ? (y[i] - x[i]) / (3 * noise) : 0;
-			sigma[i] = isnan(y[i]) ? 1e4 * noise : noise * sqrt(1 + off * off);
-			x[i] = isnan(y[i]) ? 0 : y[i];
+			sigma[i] = isfinite(y[i]) ? noise * sqrt(1 + off * off) : (isfinite(fill[i]) ? UNSEEN : 1e4) * noise;
+			x[i] = isfinite(y[i]) ? y[i] : isfinite(fill[i]) ? fill[i] : 0;
 		}
 		walk_glide(n, x, sigma, bend, room);
 	}
@@ -251,12 +335,12 @@ static void glide(double *x, long n, const double *y, double noise, double bend)
 }
 
 /* The same where the clip itself shows how it is measured and how it changes. */
-static void path(double *x, long n, const double *y, double noise_least, double bend_least)
+static void path(double *x, long n, const double *y, double *fill, double noise_least, double bend_least)
 {
 	double *room = mem_array((size_t)n + 1, sizeof *room), noise, bend;
 	walk_unrest(&noise, &bend, n, y, room);
 	free(room);
-	glide(x, n, y, fmax(noise, noise_least), fmax(bend, bend_least));
+	glide(x, n, y, fill, fmax(noise, noise_least), fmax(bend, bend_least));
 }
 
 static double gap(const float a[2], const float b[2])
@@ -271,9 +355,10 @@ static double place_of(const struct hold *h, long n)
 	int m = 0;
 	for (long i = 0; i < n; i++) {
 		const struct seen *s = &h->seen[i];
+		off[i] = NAN;
 		apart[i] = s->known[0] && s->known[1] ? gap(s->corner[SIDE_LEFT][0], s->corner[SIDE_RIGHT][0]) : NAN;
 	}
-	path(middle, n, apart, 0.3 * h->radius, least_bend[SIZE] * h->radius);
+	path(middle, n, apart, off, 0.3 * h->radius, least_bend[SIZE] * h->radius);
 	for (long i = 0; i < n; i++)
 		if (isfinite(apart[i]))
 			off[m++] = apart[i] - middle[i];
@@ -305,7 +390,7 @@ double hold_unlike(const struct hold *h)
 void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const struct hold *h, bool rests)
 {
 	n = n < h->n ? n : h->n;
-	double *y = mem_array((size_t)n + 1, sizeof *y), *x = mem_array((size_t)n + 1, sizeof *x), (*by)[MOTIONS] = mem_new((size_t)n + 1, sizeof *by);
+	double *y = mem_array((size_t)n + 1, sizeof *y), *x = mem_array((size_t)n + 1, sizeof *x), *fill = mem_array((size_t)n + 1, sizeof *fill), (*by)[MOTIONS] = mem_new((size_t)n + 1, sizeof *by);
 	for (int k = 0; k < TURNS; k++) {
 		known->turn[k] = usual(h, k);
 		known->turn[k] = isnan(known->turn[k]) ? UNTOLD : known->turn[k];
@@ -319,14 +404,15 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 		for (long i = 0; i < n; i++) {
 			double own[MOTIONS];
 			y[i] = motion_of(own, h, &h->seen[i], by[i]) ? own[k] : NAN;
+			fill[i] = k < LEAN && h->seen[i].is_carried ? (double)h->seen[i].carried[k] : NAN;
 			seen += isfinite(y[i]);
 		}
 		if (seen < LEAST_FRAMES)
 			continue;
 		if (k < ASIDE)
-			path(x, n, y, least[k] * unit, least_bend[k] * unit);
+			path(x, n, y, fill, least[k] * unit, least_bend[k] * unit);
 		else
-			glide(x, n, y, known->turn[k - ASIDE], turn_bend * pow(h->seconds / (double)h->n, 1.5));
+			glide(x, n, y, fill, known->turn[k - ASIDE], turn_bend * pow(h->seconds / (double)h->n, 1.5));
 		memcpy(y, x, (size_t)n * sizeof *y);
 		const double middle = rests ? stats_median((int)n, y) : 0;
 		for (long i = 0; i < n; i++)
@@ -336,6 +422,7 @@ void hold_settle(struct hold_known *known, double (*poses)[4][4], long n, const 
 		moved(poses[i], h, by[i]);
 	free(y);
 	free(x);
+	free(fill);
 	free(by);
 	known->place_mm = n ? fmax(least[ACROSS] * h->radius, rests ? 0 : place_of(h, n)) * poses[0][2][3] / h->clip->camera.focal_px : 0;
 }
@@ -386,5 +473,8 @@ void hold_pack(struct pack *p, struct hold *h, long first)
 	PACK(p, h->now);
 	PACK(p, h->radius);
 	PACK(p, h->lost_s);
+	PACK(p, h->untold_s);
+	PACK(p, h->carried);
+	PACK(p, h->carry);
 	PACK(p, h->seconds);
 }

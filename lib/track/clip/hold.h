@@ -18,7 +18,12 @@ void hold_free(struct hold *hold);
 /* On the way: skin's pose of a frame where irises are large and it has the eyes about where they were told last, or else the pose that they tell. */
 void hold_guess(double pose[4][4], const struct hold *hold, const double skin_pose[4][4]);
 
-/* Whether eyes have not been told for longer than most blinks last, or ever but in the reference; where they were found then: middles of the irises, px; null: nowhere. */
+/* On the way from one frame to the next: the face round the eyes is looked for near where it was in the frame kept; what was told last moves with it. Then the frame is kept. */
+void hold_carry(struct hold *hold, const uint8_t *luma, int stride);
+void hold_keep(struct hold *hold, const uint8_t *luma, int stride);
+
+/* Whether eyes have not been told for longer than most blinks last, or ever but in the reference; where they were found then: middles of the irises, px; null: nowhere. These
+ * tell lean and distance, too. */
 bool hold_lost(const struct hold *hold);
 void hold_found(struct hold *hold, const double eye[SIDES][2]);
 

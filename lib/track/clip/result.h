@@ -43,6 +43,7 @@ struct track_result {
 	struct track_trust trust;
 	struct track_kappa kappa;
 	double (*aperture_sigma)[SIDES][LIDS];  // [n] px, standard deviations of g4, g5, g9, g10; NAN where those are; null without eyes
+	double meeting_sigma[SIDES];            // px, of that the part that is in all of an eye's frames: where its lids meet
 	int n_au;
 	long still, lost, unsure, cut;  // frames that stand still; frames lost; frames unsure; the first frame after a cut, or -1
 };

@@ -38,6 +38,7 @@ struct eye_side {
 	double fick[2];            // last gaze
 	bool have;                 // fick is valid: measured less than a second ago
 	double lost_s;             // seconds since gaze was measured
+	double denied_s;           // seconds since when lids seem shut though evidence shows an open eye
 	double contrast;           // grey levels from iris to sclera
 	struct lid_track lids;
 	struct gaze_torsion torsion;

@@ -49,6 +49,7 @@ void eye_side_pack(struct pack *p, struct eye_side *eye, long first)
 	PACK(p, eye->fick);
 	PACK(p, eye->have);
 	PACK(p, eye->lost_s);
+	PACK(p, eye->denied_s);
 	PACK(p, eye->contrast);
 	PACK(p, eye->lids);
 	PACK(p, eye->torsion);

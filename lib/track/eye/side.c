@@ -8,6 +8,8 @@
 
 // Seconds for which a hidden gaze is assumed to be near its last direction.
 static const double LOST_S = 1;
+static const double OPEN = 2.5;        // squares of the limbus' radius: eyes that show so much are open
+static const double DENIED_S = 0.2;
 
 static bool to_pixel(double px[2], const struct gaze_view *view, const double p[3])
 {
@@ -88,6 +90,27 @@ static bool find_corners(struct eye_side *eye, struct eye_record *record, const 
 	return lid_track_push(&record->found, &eye->lids, picture, look);
 }
 
+/* How much of an eye the evidence shows, in squares of the limbus' radius. */
+static double area_told(const struct evidence *e, double limbus_px)
+{
+	double sum = 0;
+	for (long i = 0; i < (long)e->width * e->height; i++)
+		sum += (double)evidence_eye(e, i);
+	return sum * pow(e->scale / limbus_px, 2);
+}
+
+/* Lids that are taken for shut while the evidence shows an open eye have been learnt wrongly: after a while they are learnt anew. */
+static bool learn_again(struct lid_found *found, struct eye_side *eye, const struct lid_picture *picture, const struct lid_look *look, double limbus_px)
+{
+	const bool denied = !found->open && look->evidence && area_told(look->evidence, limbus_px) > OPEN;
+	eye->denied_s = denied ? eye->denied_s + 1 / eye->scene->fps : 0;
+	if (eye->denied_s < DENIED_S || !(look->iris_px > 0))
+		return true;
+	eye->denied_s = 0;
+	lid_track_start(&eye->lids, eye->conf->lid_columns, eye->conf->lid_points, eye->conf->lid_wet, eye->scene->fps);
+	return lid_track_push(found, &eye->lids, picture, look);
+}
+
 /* Finds the lids, then measures gaze between them. */
 static void look(struct eye_state *state, struct eye_record *record, struct lid_fine *fine, struct eye_side *eye, const struct eye_frame *frame,
                  const struct gaze_view *view)
@@ -110,6 +133,8 @@ static void look(struct eye_state *state, struct eye_record *record, struct lid_
 	record->measured = lid_track_push(&record->found, &eye->lids, &picture, &look);
 	if (eye->corners_guessed && record->measured)
 		record->measured = find_corners(eye, record, &picture, &look, view);
+	if (record->measured)
+		record->measured = learn_again(&record->found, eye, &picture, &look, limbus_px);
 	if (!record->measured)
 		return;
 	record->open = record->found.open;

@@ -71,11 +71,11 @@ static void coverage(void **state)
 			int n = 0, one = 0;
 			for (long f = part * DIM; f < (part ? FRAMES : DIM); f++)
 				if (f != UNSEEN) {
-					const double sigma = r.aperture_sigma[f][SIDE_LEFT][lid], want = (lid == LID_UPPER ? -1 : 1) * height(lid, f);
+					const double sigma = sqrt(pow(r.aperture_sigma[f][SIDE_LEFT][lid], 2) - pow(r.meeting_sigma[SIDE_LEFT], 2)), want = (lid == LID_UPPER ? -1 : 1) * height(lid, f);
 					z[n] = (r.g[f * 10 + 3 + lid] - want) / sigma;
 					n++;
 				}
-			// the line where lids meet is known to some tenths of a pixel, and common to all frames
+			// where lids meet is common to all frames
 			double copy[FRAMES], middle;
 			memcpy(copy, z, sizeof copy);
 			middle = stats_median(n, copy);
