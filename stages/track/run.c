@@ -44,8 +44,22 @@ static void tell_way(struct stage *stage, const struct track_clip *clip)
 		stage_skipped(stage, "%s: the face is upside down in it: it is followed as it is; film upright, or set the file's rotation", clip->file);
 }
 
+/* Frames in which lids of neither eye were found though no blink was. */
+static long blind_of(const struct track_result *r)
+{
+	long n = 0;
+	for (long f = 0; f < r->n && r->has_eyes; f++) {
+		bool any = r->lost_at[f];
+		for (int e = 0; e < SIDES; e++)
+			any = any || isfinite(r->eyes.state[f][e].lid[LID_UPPER][0][0]) || r->eyes.state[f][e].blink != BLINK_OPEN;
+		n += !any;
+	}
+	return n;
+}
+
 static void tell(struct stage *stage, const struct track_result *r, const struct track_clip *clip)
 {
+	const double few = 0.05;
 	double seen = 0;
 	for (long i = 0; i < r->n * r->n_points; i++)
 		seen += r->confidence[i] > 0;
@@ -60,6 +74,9 @@ static void tell(struct stage *stage, const struct track_result *r, const struct
 	if (r->place_mm > 0)
 		stage_skipped(stage, "%s: the corners of the eyes tell where the head is, the face how it turns, as far as people are alike: gaze is known to some %.0f degrees (one standard deviation; gaze.csv has each)",
 		              clip->file, trust_sigma_deg(r));
+	const long blind = blind_of(r);
+	if (blind > few * (double)r->n)
+		stage_skipped(stage, "%s: in %ld of %ld frames neither eye is measured: shut for long, turned away, or blurred", clip->file, blind, r->n);
 	if (r->unsure)
 		stage_skipped(stage, "%s: in %ld frames the skin stirs too much to tell how the head is turned: no gaze and no lids there", clip->file, r->unsure);
 	if (r->lost)

@@ -233,6 +233,17 @@ if [ -x "$RECUT" ]; then
 	for bound in "gaze, horizontal, 95 %:6" "gaze, vertical, 95 %:6" "lid margins:3" "lid margins, 95 %:16" "blinks missed or invented:0" "gaze, frames with open eyes that lack it:5"; do
 		check "a video alone, small irises: ${bound%:*} at most ${bound##*:} (it says: $figures)" awk -F'\t' -v name="${bound%:*}" -v most="${bound##*:}" '$1 == name { ok = $2 + 0 <= most } END { exit !ok }' <<<"$figures"
 	done
+	# What nobody sees changes nothing: of each column the median change, as a share of its standard deviation.
+	capture alone_brighter
+	rm "$root/alone_brighter/subject.ply" "$root/alone_brighter/capture.conf"
+	"$RECUT" "$root/alone_brighter/video/a.mp4" "$root/alone_small/video/a.mp4" brighter:0-299
+	check "a video alone, brighter by 1: track" "$BIN/track" --quiet --capture="$root/alone_brighter"
+	for column in g1_deg g2_deg g6_deg g7_deg g4_px g5_px g9_px g10_px; do
+		change=$(paste -d, "$root/alone_small/work/skin/gaze.csv" "$root/alone_brighter/work/skin/gaze.csv" | awk -F, -v name="$column" '
+			NR == 1 { for (i = NF / 2; i > 0; i--) { if ($i == name) c = i; if ($i == "sigma_" name) s = i } half = NF / 2 }
+			NR > 1 && $c != "" && $(c + half) != "" { d = ($(c + half) - $c) / $s; print d < 0 ? -d : d }' | sort -g | awk '{ x[NR] = $1 } END { print NR < 200 ? 9 : x[int((NR + 1) / 2)] }')
+		check "a video alone, brighter by 1: $column changes by $change standard deviations" awk -v x="$change" 'BEGIN { exit !(x < 0.2) }'
+	done
 	refuses alone_aside "one eye alone is found, and a picture of it does not tell which: .*track.shown = left or right"
 fi
 

@@ -1,7 +1,8 @@
 /* recut OUT.mp4 IN.mp4 [HOW:]FIRST-LAST[xTIMES]...: a video of another's frames, in any order. HOW: over (upside down), side (a quarter turn), roll (turned
  * further from frame to frame, by 180 degrees in all), uneven (every second frame half an interval late), sway (moved aside by 30 px and back once a
  * second, as by a head that does not rest), bob (up and down by 40 px likewise), aside (half the picture to the right), pair
- * (the picture twice beside itself, half as large), mirror (the same, the right one mirrored), toon (few colours and black outlines), fifth (a fifth of the pixels either way; of all parts or of none). */
+ * (the picture twice beside itself, half as large), mirror (the same, the right one mirrored), toon (few colours and black outlines), fifth (a fifth of the pixels either way; of all parts or of none),
+ * brighter (by one of 255, which nobody sees). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -128,6 +129,11 @@ static bool put(struct video_writer *writer, long *n, const struct part *p, uint
 			if (!strcmp(p->how, "fifth")) {
 				memcpy(turned, px, 3 * (size_t)info->width * (size_t)info->height);
 				worsen_reduce(turned, info->width, info->height, 5);
+				px = turned;
+			}
+			if (!strcmp(p->how, "brighter")) {
+				for (long i = 0; i < 3L * info->width * info->height; i++)
+					turned[i] = (uint8_t)(px[i] + (px[i] < 255));
 				px = turned;
 			}
 			if (!strcmp(p->how, "bob")) {
