@@ -6,7 +6,7 @@
 #include "tests/lib/unit.h"
 #include "base/mem.h"
 
-enum { FRAMES = 600, POINTS = 20, UNSEEN = 40, DIM = 450 };
+enum { FRAMES = 600, POINTS = 20, UNSEEN = 40, DIM = 450, WRONG = 300 };
 static const double upper_noise = 0.4, lower_noise = 0.9, floor_mm = 0.05, px_per_mm = 8, open_px[LIDS] = { 60, 25 };
 
 /* Where the head is in a frame, mm aside and down of where it was in the reference, 600 mm away. */
@@ -107,8 +107,55 @@ static void common_error(void **state)
 	track_result_free(&b);
 }
 
+/* One frame in which both lids were found far off, as if shut, moves no other frame's apertures. */
+static void one_wrong_frame(void **state)
+{
+	(void)state;
+	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { { 1 }, { 0, 1 }, { 0, 0, 1, 600 }, { 0, 0, 0, 1 } } };
+	struct track_subject subject = { .assumed = true };
+	struct track_result a = noisy(&(struct rng){ 5 }), b = noisy(&(struct rng){ 5 });
+	double head[2];
+	head_at(head, WRONG);
+	for (int lid = 0; lid < LIDS; lid++)
+		for (int i = 0; i < POINTS; i++)
+			b.eyes.state[WRONG][SIDE_LEFT].lid[lid][i][1] = 300 - 25 + 0.5 * lid + px_per_mm * head[1];
+	track_apertures(&a, &clip, &subject, &(struct track_conf){ .lid_sigma_mm = 0 });
+	track_apertures(&b, &clip, &subject, &(struct track_conf){ .lid_sigma_mm = 0 });
+	for (long f = 0; f < FRAMES; f++)
+		for (int lid = 0; lid < LIDS && f != WRONG && f != UNSEEN; lid++)
+			NEAR(b.g[f * 10 + 3 + lid], a.g[f * 10 + 3 + lid], 0.2 * a.aperture_sigma[f][SIDE_LEFT][lid]);
+	track_result_free(&a);
+	track_result_free(&b);
+}
+
+/* Lids that meet on the lower one do so there, whether the eye shuts in the clip or not; what is not shown is in the standard deviation. */
+static void where_lids_meet(void **state)
+{
+	(void)state;
+	struct track_clip clip = { .camera = { .focal_px = 600 * px_per_mm }, .cam_from_head = { { 1 }, { 0, 1 }, { 0, 0, 1, 600 }, { 0, 0, 0, 1 } } };
+	struct track_subject subject = { .assumed = true };
+	double known[2];
+	for (int shuts = 0; shuts < 2; shuts++) {
+		struct track_result r = noisy(&(struct rng){ 5 });
+		for (long f = 0; f < FRAMES; f++)
+			for (int i = 0; i < POINTS; i++) {
+				const double u = 2.0 * i / (POINTS - 1) - 1, open = shuts && f % 100 < 10 ? 1 - 2 * fmin((double)(f % 100), (double)(10 - f % 100)) / 10 : 1;
+				double head[2];
+				head_at(head, f);
+				for (int lid = 0; lid < LIDS; lid++)
+					r.eyes.state[f][SIDE_LEFT].lid[lid][i][1] = 300 + (1 - u * u) * (open_px[1] - (lid == LID_UPPER) * open * 70) + px_per_mm * head[1];
+			}
+		track_apertures(&r, &clip, &subject, &(struct track_conf){ .lid_sigma_mm = 0 });
+		known[shuts] = r.meeting_sigma[SIDE_LEFT];
+		NEAR(r.g[50 * 10 + 4], 0, 2 * known[shuts] + 0.5);
+		NEAR(r.g[50 * 10 + 3] + r.g[50 * 10 + 4], 70, 1);
+		track_result_free(&r);
+	}
+	assert_true(known[1] < 0.4 * known[0] && known[0] < 8);
+}
+
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(coverage), cmocka_unit_test(common_error) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(coverage), cmocka_unit_test(common_error), cmocka_unit_test(one_wrong_frame), cmocka_unit_test(where_lids_meet) };
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -228,6 +228,38 @@ static void a_head_that_turns(void **state)
 	free(poses);
 }
 
+/* Eyes that are found in all of a picture are taken where they may be this head's: their place, lean and distance; and not where they cannot. */
+static void found_again(void **state)
+{
+	(void)state;
+	struct track_subject subject = average();
+	struct track_clip clip = { .camera = { .focal_px = FOCAL, .center_px = { 256, 200 } }, .cam_from_head = { { 1, 0, 0, 0 }, { 0, -1, 0, 0 }, { 0, 0, -1, FAR }, { 0, 0, 0, 1 } } };
+	// middle, px; half the eyes' distance, px; lean
+	const struct { double at[2], half, lean; bool is; } found[] = { { { 400, 120 }, 43, 0.15, true }, { { 256, 200 }, 90, 0, false }, { { 256, 200 }, 40, 0.9, false } };
+	for (int i = 0; i < (int)(sizeof found / sizeof *found); i++) {
+		struct hold *hold = hold_new(&clip, &subject, 5);
+		struct eye_told told[SIDES];
+		double now[4], guess[4][4];
+		for (int f = -1; f < 5; f++) {
+			for (int e = 0; e < SIDES; e++) {
+				told[e].area = 6;
+				for (int c = 0; c < 2; c++)
+					corner_at(told[e].corner[c], &(struct motion){ .z = FAR }, e, c);
+			}
+			hold_push(hold, (const struct eye_told *[SIDES]){ &told[0], &told[1] }, 0, FOCAL * 5.85 / FAR, f < 0 ? 0 : 1 / FPS, f >= 0);
+		}
+		const double x = found[i].half * cos(found[i].lean), y = found[i].half * sin(found[i].lean);
+		hold_found(hold, (const double[SIDES][2]){ { found[i].at[0] + x, found[i].at[1] + y }, { found[i].at[0] - x, found[i].at[1] - y } });
+		hold_guess(guess, hold, (const double[4][4]){ { 1, 0, 0, 300 }, { 0, -1, 0, 0 }, { 0, 0, -1, FAR }, { 0, 0, 0, 1 } });
+		middle_of(now, (const double(*)[4])guess);
+		NEAR(now[0], found[i].is ? found[i].at[0] : 256, 2.5);
+		NEAR(now[1], found[i].is ? found[i].at[1] : 200, 2.5);
+		NEAR(now[2], found[i].is ? found[i].lean : 0, 0.02);
+		NEAR(now[3], found[i].is ? FAR * FOCAL * 31.5 / FAR / found[i].half : FAR, 40);  // where corners lie about an eyeball is its own assumption
+		hold_free(hold);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -235,6 +267,7 @@ int main(void)
 		cmocka_unit_test(no_opening),
 		cmocka_unit_test(the_path_of_a_head),
 		cmocka_unit_test(a_head_that_turns),
+		cmocka_unit_test(found_again),
 	};
 	return cmocka_run_group_tests(tests, 0, 0);
 }
