@@ -12,6 +12,8 @@
 enum { LEAST_FRAMES = 12, LEAST_MARGIN = 20, ROUNDS = 12, REST_ROUNDS = 4, ENDS = 2, LAST_ROBUST = 2 };
 
 static const double margin_weight = 0.05;  // px^-2: errors of margins are correlated (shadows of lashes)
+static const double usual_px = 2;          // of a picture 1280 wide, the eyes of usual size: residuals that margins have
+static const double earned_aside = 0.5;    // mm: standard deviation, aside and down, of a place that the skin's motion tells
 static const double open_enough = 0.8;     // of the usual opening
 static const double still_gaze = 0.01, like_v = 0.05;  // radians
 
@@ -154,6 +156,14 @@ struct lids {
 	double usual;          // radians: the median height of gaze under the prior's pose
 };
 
+/* Margins that lie further off the mesh than usual (an expression; lids found wrongly) are as far off in common: they weigh by how far. px: the residual's rms. */
+static void weigh_margins(int n, struct head_sight *sights, double px, const struct track_clip *clip, const struct track_subject *s)
+{
+	const double usual = usual_px * trust_scale(clip, s), share = px > usual ? pow(usual / px, 2) : 1;
+	for (int i = 0; i < n; i++)
+		sights[i].weight *= share;
+}
+
 /* Lays the mesh on, its lids where they are while the eyes look so high (radians, under the prior's pose; NAN: as they are in lids). pose: start and result. Returns what is
  * minimised (head_pose_cost), INFINITY, pose undefined, where too little is known. px, turned: the residual's rms, sigmas (head_pose_sigma); NAN where not known. */
 static double lay(double pose[4][4], double *px, double turned[3], double straight, const struct lids *lids, const struct track_result *r, const struct track_clip *clip,
@@ -162,14 +172,18 @@ static double lay(double pose[4][4], double *px, double turned[3], double straig
 	struct head_sight sights[SIDES * (LIDS * LID_POINTS_MAX + 2)];
 	int n = 0;
 	memcpy(pose, lids->prior.cam_from_head, sizeof lids->prior.cam_from_head);
+	*px = 0;
 	for (int round = 0; round < ROUNDS; round++) {
 		n = centers(sights, conf->center_floor, r, clip, s, conf);
 		if (!n)
 			return INFINITY;
+		const int first = n;
 		for (int e = 0; e < SIDES; e++)
 			n += margins(sights + n, LIDS * conf->eyes.lid_points, lids->rest[e], straight, clip, s, e, (const double(*)[4])pose);
 		if (n < LEAST_MARGIN)
 			return INFINITY;
+		if (clip->moves.n_known)
+			weigh_margins(n - first, sights + first, *px, clip, s);
 		*px = head_pose_fit(pose, n, sights, &clip->camera, fmax(LAST_ROBUST, 16 - 2 * round), &lids->prior);
 		if (isnan(*px))
 			return INFINITY;
@@ -218,8 +232,11 @@ static struct lids lids_of(bool doubted, const struct track_clip *clip, const st
 	const double turn = conf->head.turn_sigma * M_PI / 180, calm = doubted ? reference_usual_misfit(r) : 0;
 	// one eye alone tells no turn aside
 	const double yaw = clip->eye_seen[0] && clip->eye_seen[1] ? conf->head.yaw_sigma * M_PI / 180 : turn;
-	const double away = clip->moves.n_known ? conf->earned_away * track_eyes_depth(clip->cam_from_head, s) : INFINITY;
-	struct lids lids = { .prior = { .sigma = { turn, yaw, INFINITY, INFINITY, INFINITY, away } } };
+	// the skin's motion tells how the head leans and where it is, too
+	const bool earned = clip->moves.n_known;
+	const double lean = earned ? conf->earned_deg * M_PI / 180 : INFINITY, aside = earned ? earned_aside : INFINITY;
+	const double away = earned ? conf->earned_away * track_eyes_depth(clip->cam_from_head, s) : INFINITY;
+	struct lids lids = { .prior = { .sigma = { turn, yaw, lean, aside, aside, away } } };
 	int eyes = 0;
 	memcpy(lids.prior.cam_from_head, clip->cam_from_head, sizeof lids.prior.cam_from_head);
 	for (int i = 0; i < SIDES * points; i++)
