@@ -8,13 +8,12 @@
 #include "rig/deform/slide.h"
 
 enum { LOWERED = 3 };  // rounds
-static const double limbus_mm = 5.7;            // the same: radius of the limbus
-static const double iris_mm = 10.6;             // the same: from the centre to the middle of the limbus
-static const double lowered_mm = 3.5;             // the same: a lower lid goes down by no more than that beyond what was learnt
-static const double own_deg = 10;               // down, from where on it covers no more of the iris than the person's own; at 0 it is the character's
-static const double open_mm[] = { 1, 4.5 };       // the same: lids less apart than the first are shutting, from the second they are not
-static const double follow_mm[] = { 2, 6 };     // of an eyeball of 12 mm: what is open, from where on they do in part, and wholly
-static const double follows = 0.9;              // of an eye that looks further up or down than was filmed, the upper lid goes so much of the way: lids go with the eye nearly one to one (Evinger et al. 1991)
+/* mm of an eyeball of 12 mm: the limbus' radius, and how far its middle is from the centre; by how much a lower lid goes down beyond what was learnt, at most (half as much
+ * again where the person's own covers less); lids less apart than the first are shutting, from the second they are not; the same of upper lids, which follow in part and wholly. */
+static const double limbus_mm = 5.7, iris_mm = 10.6, lowered_mm = 3.5, open_mm[] = { 1, 4.5 }, follow_mm[] = { 2, 6 };
+static const double own_deg = 10;     // down, from where on a lower lid covers no more of the iris than the person's own; looking ahead it is the character's
+/* Of an eye that looks further up or down than was filmed the upper lid goes so much of the way: lids go with the eye nearly one to one (Evinger et al. 1991). */
+static const double follows = 0.9;
 const double deform_goes_along_mm[2] = { 1.5, 8 };
 
 /* Most along the middle of a lid, 0 at its ends. */
@@ -64,6 +63,24 @@ static double soft(double x, double most)
 	return most * tanh(fmax(x, 0) / most);
 }
 
+/* A margin, and skin next to it, goes up by so much over the eyeball in the lid's middle, mm. lid: [rig.n] shares in it; far: that much further off skin still goes along. */
+static void take_along(float (*x)[3], const struct rig *rig, int side, const double target_from_globe[3][3], const float *lid, const struct deform_opening *o, bool upper, double up, double far)
+{
+	const double unit = rig->globe[side].radius / 12, span = o->last - o->first;
+	for (int i = 0; i < rig->n; i++) {
+		double p[3];
+		if (!(lid[i] > 0) || rig->side[i] != side)
+			continue;
+		deform_in_head(p, rig, side, x[i]);
+		const double t = fmin(fmax((p[0] / o->step + DEFORM_COLUMNS / 2 - o->first) / span, 0), 1);
+		const int column = o->first + (int)lrint(t * span);
+		const double off = (upper ? p[1] - o->top[column] : o->bottom[column] - p[1]) / unit;
+		const double with = (double)lid[i] * (1 - rising(off, deform_goes_along_mm[0], deform_goes_along_mm[1] + far / unit));
+		if (p[2] > 0)
+			deform_slide(x[i], rig, side, target_from_globe, with * up * along_lid(t));
+	}
+}
+
 /* Lowers the lower lid of an eye that looks down, to height *to before the iris; NAN: out. */
 static void retract(double *to, float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double lifted)
 {
@@ -83,17 +100,8 @@ static void retract(double *to, float (*x)[3], const struct rig *rig, const stru
 	if (isnan(*to))
 		*to = now.bottom[at] - fmax(soft(now.bottom[at] - eye[1] - rest->bottom[at] - lifted, most), soft(peak * above_own(rig, side, eye, &now) - lifted, 1.5 * most)) * rising((now.top[at] - now.bottom[at]) / unit, open_mm[0], open_mm[1]);
 	const double lack = now.bottom[at] - *to;
-	for (int i = 0; i < rig->n && lack > 0; i++) {
-		double p[3];
-		if (!(near->lower[i] > 0) || rig->side[i] != side)
-			continue;
-		deform_in_head(p, rig, side, x[i]);
-		const double t = fmin(fmax((p[0] / now.step + DEFORM_COLUMNS / 2 - now.first) / span, 0), 1);
-		const int column = now.first + (int)lrint(t * span);
-		const double below = (now.bottom[column] - p[1]) / unit, with = (double)near->lower[i] * (1 - rising(below, deform_goes_along_mm[0], deform_goes_along_mm[1] + lack / unit));
-		if (p[2] > 0)
-			deform_slide(x[i], rig, side, target_from_globe, -with * lack * along_lid(t) / peak);
-	}
+	if (lack > 0)
+		take_along(x, rig, side, target_from_globe, near->lower, &now, false, -lack / peak, lack);
 }
 
 /* Lowers the lower lids of eyes that look down, as people's do, until they cover no more of the iris, at its middle, than the lid at rest does there of one that
@@ -127,18 +135,9 @@ static void follow(float (*x)[3], const struct rig *rig, const struct deform_nea
 	double widest = 0;
 	for (int i = now.first; i <= now.last; i++)
 		widest = fmax(widest, now.top[i] - now.bottom[i]);
-	const double open = rising(widest / unit, follow_mm[0], follow_mm[1]), span = now.last - now.first;
-	for (int i = 0; i < rig->n && open > 0; i++) {
-		double p[3];
-		if (!(near->upper[i] > 0) || rig->side[i] != side)
-			continue;
-		deform_in_head(p, rig, side, x[i]);
-		const double t = fmin(fmax((p[0] / now.step + DEFORM_COLUMNS / 2 - now.first) / span, 0), 1);
-		const int column = now.first + (int)lrint(t * span);
-		const double above = (p[1] - now.top[column]) / unit, with = (double)near->upper[i] * (1 - rising(above, deform_goes_along_mm[0], deform_goes_along_mm[1] + fabs(down) / unit));
-		if (p[2] > 0)
-			deform_slide(x[i], rig, side, target_from_globe, -open * with * down * along_lid(t));
-	}
+	const double open = rising(widest / unit, follow_mm[0], follow_mm[1]);
+	if (open > 0)
+		take_along(x, rig, side, target_from_globe, near->upper, &now, true, -open * down, fabs(down));
 }
 
 void deform_along(float (*x)[3], const struct rig *rig, const struct deform_near *near, int side, const double target_from_globe[3][3], double lifted)
