@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "math/rising.h"
 
-enum { SIDE = SEEN_SIDE, TEXELS = SIDE * SIDE, RINGS = SEEN_RINGS, TURNS = SEEN_TURNS };
+enum { SIDE = SEEN_SIDE, TEXELS = SIDE * SIDE, RINGS = SEEN_RINGS, TURNS = SEEN_TURNS, KNOWN = 8 };  // a ring is known by an eighth of its turns
 static const double drawn_mm = 1;            // sigma, at most, below which fibres are drawn
 static const double strength[] = { 0.3, 0.8 }; // of drawn fibres, so that they go on as strong as those seen
 static const double beside_pupil_mm = 0.25;  // a pupil's margin moves, and is blurred
@@ -77,6 +77,7 @@ static double inner_of(const struct scene_seen *s)
 static void rings_of(struct cell cell[RINGS][TURNS], const struct scene_seen *s)
 {
 	struct cell (*raw)[TURNS] = mem_new(RINGS, sizeof *raw);
+	bool known[RINGS];
 	for (int i = 0; i < TEXELS; i++) {
 		double turn, r = polar_of(&turn, s, i);
 		if (!(s->weight[i] > 0) || r >= s->limbus || r < inner_of(s))
@@ -86,27 +87,34 @@ static void rings_of(struct cell cell[RINGS][TURNS], const struct scene_seen *s)
 			c->ln[k] += (double)(s->weight[i] * s->ln[i][k]);
 		c->weight += (double)s->weight[i];
 	}
-	for (int r = 0; r < RINGS; r++)
-		for (int t = 0; t < TURNS; t++) {
+	for (int r = 0; r < RINGS; r++) {
+		int some = 0;
+		for (int t = 0; t < TURNS; t++)
+			some += raw[r][t].weight > 0;
+		known[r] = some * KNOWN >= TURNS;
+		for (int t = 0; t < TURNS && known[r]; t++) {
 			struct cell *c = &cell[r][t];
 			*c = (struct cell){ 0 };
-			for (int width = 1; width <= TURNS / 2 && c->weight < 1e-3; width *= 2)
-				for (int k = -width; k <= width; k++) {
+			for (int width = 1; width <= TURNS && c->weight < 1e-3; width *= 2)
+				for (int k = -width < -TURNS / 2 ? -TURNS / 2 : -width; k <= width && k < TURNS / 2; k++) {
 					const struct cell *b = &raw[r][(t + k + TURNS) % TURNS];
 					const double near = 1 - abs(k) / (width + 1.0);
 					for (int j = 0; j < 3; j++)
 						c->ln[j] += near * b->ln[j];
 					c->weight += near * b->weight;
 				}
-			for (int j = 0; j < 3 && c->weight > 0; j++)
+			for (int j = 0; j < 3; j++)
 				c->ln[j] /= c->weight;
 		}
-	// Rings of which nothing is seen: under a pupil, at a limbus that runs into the sclera.
+	}
+	// Rings of which hardly anything is seen: under a pupil, at a limbus that runs into the sclera.
 	for (int pass = 0; pass < 2; pass++)
 		for (int k = 1; k < RINGS; k++) {
 			const int r = pass ? RINGS - 1 - k : k, from = pass ? r + 1 : r - 1;
-			if (!(cell[r][0].weight > 0) && cell[from][0].weight > 0)
+			if (!known[r] && known[from]) {
 				memcpy(cell[r], cell[from], sizeof cell[r]);
+				known[r] = true;
+			}
 		}
 	free(raw);
 }

@@ -24,6 +24,7 @@ static const double sclera_rings[] = { 1.15, 1.55 };  // limbus radii, between w
 /* Of the sclera that is seen, as of a face (draw/complexion): the brighter but for lights mirrored there, and of that what has the fewest vessels over it. */
 static const double white_bright[] = { 0.65, 0.92 }, white_bare = 0.25;
 static const double share_least = 0.3;     // of an iris: less is no eye to look at
+static const double whole_share = 0.88;    // of the limbus' radius: what a film can show of its iris
 static const double within = 0.25;         // ln of luminance from the middle of what frames show: the same thing
 static const double enough = 1.5;          // frames that show a place well
 static const double step_least = 0.35;     // ln by which an iris is brighter than its pupil, or the pupil is not seen
@@ -208,8 +209,9 @@ void filmed_add(struct filmed *f, const struct filmed_view *v)
 	}
 #pragma omp parallel for schedule(static)
 	for (int i = 0; i < TEXELS; i++) {
-		double rgb[3], at[2];
-		const double off = (f->eye.limbus_radius - place_of(at, f, i)) * per_mm;
+		double rgb[3];
+		// Where the path leaves the cornea, not where it begins: beyond the limbus the white is seen, some tenths of a millimetre before the iris ends.
+		const double off = (f->eye.limbus_radius - (double)map.rim[i]) * width / (2 * f->eye.limbus_radius);
 		if (!(off > 0) || !isfinite(map.u[i] + map.v[i]) || !colour_at(rgb, v, (double)map.u[i], (double)map.v[i]))
 			continue;
 		const double weight = open_at(v, per_mm, (double)map.u[i], (double)map.v[i]) * rising(off, rim_px[0], rim_px[1]) * straight;
@@ -384,9 +386,7 @@ bool filmed_make(struct scene_seen *s, struct filmed_report *report, struct film
 		s->weight[i] = middle_of(s->ln[i], f, gain, white, i);
 	for (int i = 0; i < TEXELS; i++) {
 		double at[2];
-		const double in = (s->limbus - place_of(at, f, i)) * per_mm;
-		const bool inside = in > rim_px[1];
-		s->weight[i] *= (float)rising(in, rim_px[0], rim_px[1]);
+		const bool inside = place_of(at, f, i) < whole_share * s->limbus;
 		all += inside;
 		seen += inside && s->weight[i] > 0.1f;
 	}
