@@ -226,6 +226,7 @@ static void file_brings_back_the_same_rig(void **state)
 	assert_string_equal(first, second);
 	assert_true(back.expression[1][3] == -0.9 && back.expression[0][3] == 0 && back.aperture_px[0] == 70);
 	assert_true(back.own_low.share[1][2][3] == 0.25f);
+	rig_free(&back);
 	without("expression_lids");
 	if (!rig_load(&back, scratch_path("d/rig.npz"), &err))
 		fail_msg("%s", err.msg);
