@@ -13,6 +13,8 @@ enum { EYE_INPUTS = 5, ABOUT = 5 };
 /* Shares of the usual opening: eyes that are open less are shut; what a lower lid rises by when an eye shuts (of a rendered head, -0.02), and its standard deviation, assumptions; what it leaps by from
  * one frame to the next where it is found wrongly. */
 static const double shut = 0.2, rises = 0.05, rises_sigma = 0.1, leaps = 0.05;
+static const double few = 100;         // votes, of which a frame that is wholly shut has 600: with so many the line between the corners counts as much
+static const double line_sigma = 0.2;  // of the usual opening: how far that line is from where lids meet
 
 /* Height of a margin where it passes x: NAN where it does not. */
 static double height_at(int n, const float (*lid)[2], double x)
@@ -84,29 +86,34 @@ static double about(const double *y, long n, long f)
 	return median_known(to - from + 1, y + from);
 }
 
-/* Height at which upper and lower margin meet, the same in all frames: on the way there the lower lid hardly moves. Each frame tells it, the better the further the eye is shut; of one that never shuts, all
- * tell it badly (*sigma). No frame decides by itself: that of a lid which closes fast is often wrong. */
-static double meeting(double *sigma, const struct track_result *r, const double *up, const double *low)
+/* Height at which upper and lower margin meet, the same in all frames: on the way there the lower lid hardly moves. Each frame tells it in which the eye is less than half open, the better the further it
+ * is shut. No frame decides by itself: that of a lid which closes fast is often wrong. Of an eye that never shuts it is the line between the corners, which lies higher
+ * (*sigma): lids that are driven by what was learnt meet there best. Between both it moves smoothly. */
+static double meeting(double *sigma, const struct track_result *r, int side, const double *up, const double *low)
 {
-	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), weight = 0, left = 0;
+	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), *line = mem_new((size_t)r->n + 1, sizeof *line), weight = 0, left = 0;
 	struct vote *vote = mem_array((size_t)r->n + 1, sizeof *vote);
 	int n = 0;
-	for (long f = 0; f < r->n; f++)
-		gap[f] = fabs(low[f] - up[f]);
-	const double usual = median_known(r->n, gap);
 	for (long f = 0; f < r->n; f++) {
-		const double open = gap[f] / usual, at = low[f] - rises * gap[f], odd = (low[f] - about(low, r->n, f)) / (leaps * usual), w = pow((shut * shut + open * open) * (1 + odd * odd), -2);
-		if (!isfinite(w))
+		const float(*u)[2] = lid_of(r, f, side, LID_UPPER);
+		gap[f] = fabs(low[f] - up[f]);
+		line[f] = 0.5 * (u[0][1] + u[r->lid_points - 1][1]);
+	}
+	const double usual = median_known(r->n, gap), corners = median_known(r->n, line), half = pow(shut * shut + 0.25, -2);
+	for (long f = 0; f < r->n; f++) {
+		const double open = gap[f] / usual, at = low[f] - rises * gap[f], odd = (low[f] - about(low, r->n, f)) / (leaps * usual), w = pow((shut * shut + open * open) * (1 + odd * odd), -2) - half;
+		if (!(w > 0))
 			continue;
 		vote[n++] = (struct vote){ at, w };
 		weight += w;
 		left += w * gap[f];
 	}
-	const double y = middle_of(n, vote, weight);
+	const double told = weight / (weight + few), y = n ? middle_of(n, vote, weight) : corners;
+	*sigma = hypot(told * (weight > 0 ? rises_sigma * left / weight : 0), (1 - told) * line_sigma * usual);
 	free(gap);
+	free(line);
 	free(vote);
-	*sigma = weight > 0 ? rises_sigma * left / weight : NAN;
-	return y;
+	return told * y + (1 - told) * corners;
 }
 
 /* How much a margin scatters from frame to frame, px: median size of the second differences, those of frames that stand still left out. */
@@ -143,7 +150,7 @@ static void eye(struct track_result *r, int side, double least_px)
 		up[f] = height_at(r->lid_points, lid_of(r, f, side, LID_UPPER), x);
 		low[f] = height_at(r->lid_points, lid_of(r, f, side, LID_LOWER), x);
 	}
-	double y = meeting(&common, r, up, low);
+	double y = meeting(&common, r, side, up, low);
 	r->meeting_sigma[side] = common;
 	common = hypot(common, least_px);
 	for (long f = 0; f < r->n; f++) {
