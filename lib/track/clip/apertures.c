@@ -13,7 +13,7 @@ enum { EYE_INPUTS = 5, ABOUT = 5 };
 /* Shares of the usual opening: eyes that are open less are shut; what a lower lid rises by when an eye shuts (of a rendered head, -0.02), and its standard deviation, assumptions; what it leaps by from
  * one frame to the next where it is found wrongly. */
 static const double shut = 0.2, rises = 0.05, rises_sigma = 0.1, leaps = 0.05;
-static const double few = 100;         // votes, of which a frame that is wholly shut has 600: with so many the line between the corners counts as much
+static const double few = 20;          // votes of frames less than half open, of which one that is wholly shut has 600: with so many the line between the corners counts as much
 static const double line_sigma = 0.2;  // of the usual opening: how far that line is from where lids meet
 
 /* Height of a margin where it passes x: NAN where it does not. */
@@ -86,12 +86,12 @@ static double about(const double *y, long n, long f)
 	return median_known(to - from + 1, y + from);
 }
 
-/* Height at which upper and lower margin meet, the same in all frames: on the way there the lower lid hardly moves. Each frame tells it in which the eye is less than half open, the better the further it
- * is shut. No frame decides by itself: that of a lid which closes fast is often wrong. Of an eye that never shuts it is the line between the corners, which lies higher
+/* Height at which upper and lower margin meet, the same in all frames: on the way there the lower lid hardly moves. Each frame tells it, the better the further the
+ * eye is shut. No frame decides by itself: that of a lid which closes fast is often wrong. Of an eye that is never less than half open it is the line between the corners, which lies higher
  * (*sigma): lids that are driven by what was learnt meet there best. Between both it moves smoothly. */
 static double meeting(double *sigma, const struct track_result *r, int side, const double *up, const double *low)
 {
-	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), *line = mem_new((size_t)r->n + 1, sizeof *line), weight = 0, left = 0;
+	double *gap = mem_new((size_t)r->n + 1, sizeof *gap), *line = mem_new((size_t)r->n + 1, sizeof *line), weight = 0, left = 0, closing = 0;
 	struct vote *vote = mem_array((size_t)r->n + 1, sizeof *vote);
 	int n = 0;
 	for (long f = 0; f < r->n; f++) {
@@ -101,14 +101,15 @@ static double meeting(double *sigma, const struct track_result *r, int side, con
 	}
 	const double usual = median_known(r->n, gap), corners = median_known(r->n, line), half = pow(shut * shut + 0.25, -2);
 	for (long f = 0; f < r->n; f++) {
-		const double open = gap[f] / usual, at = low[f] - rises * gap[f], odd = (low[f] - about(low, r->n, f)) / (leaps * usual), w = pow((shut * shut + open * open) * (1 + odd * odd), -2) - half;
-		if (!(w > 0))
+		const double open = gap[f] / usual, at = low[f] - rises * gap[f], odd = (low[f] - about(low, r->n, f)) / (leaps * usual), w = pow((shut * shut + open * open) * (1 + odd * odd), -2);
+		if (!isfinite(w))
 			continue;
+		closing += fmax(w - half, 0);
 		vote[n++] = (struct vote){ at, w };
 		weight += w;
 		left += w * gap[f];
 	}
-	const double told = weight / (weight + few), y = n ? middle_of(n, vote, weight) : corners;
+	const double told = closing / (closing + few), y = n ? middle_of(n, vote, weight) : corners;
 	*sigma = hypot(told * (weight > 0 ? rises_sigma * left / weight : 0), (1 - told) * line_sigma * usual);
 	free(gap);
 	free(line);
