@@ -1,4 +1,4 @@
-/* own_low: how much of the iris a person's lower lids cover, by the gaze: what a character's are held to (rig/deform/arc.h). */
+/* own_low: how much of the iris a person's lower lids cover, by the gaze: what a character's are held to (rig/deform/along.h). */
 #ifndef MODEL_OWN_LOW_H
 #define MODEL_OWN_LOW_H
 struct skin_model;

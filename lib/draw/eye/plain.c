@@ -50,15 +50,15 @@ static void drawn_at(float colour[3], const struct scene *s, const struct fibres
 
 static void complete(struct scene_seen *seen, const struct scene *s, const struct fibres *f, const double rgb[3])
 {
-	float (*ln)[3] = mem_array(SEEN_SIDE * SEEN_SIDE, sizeof *ln);
+	float *ln = mem_array(SEEN_SIDE * SEEN_SIDE, sizeof *ln);
 #pragma omp parallel for schedule(static)
 	for (int i = 0; i < SEEN_SIDE * SEEN_SIDE; i++) {
 		const double mm = 2 * seen->extent / SEEN_SIDE;
-		drawn_at(ln[i], s, f, rgb, (i % SEEN_SIDE + 0.5) * mm - seen->extent, (i / SEEN_SIDE + 0.5) * mm - seen->extent);
-		for (int c = 0; c < 3; c++)
-			ln[i][c] = logf(fmaxf(ln[i][c], 1e-4f));
+		float colour[3];
+		drawn_at(colour, s, f, rgb, (i % SEEN_SIDE + 0.5) * mm - seen->extent, (i / SEEN_SIDE + 0.5) * mm - seen->extent);
+		ln[i] = logf(fmaxf(colour[1], 1e-4f));
 	}
-	scene_seen_fill(seen, (const float(*)[3])ln);
+	scene_seen_fill(seen, ln);
 	free(ln);
 }
 

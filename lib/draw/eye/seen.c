@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "math/rising.h"
+#include "bridge/cv_blur.h"
 
 enum { SIDE = SEEN_SIDE, TEXELS = SIDE * SIDE, RINGS = SEEN_RINGS, TURNS = SEEN_TURNS, KNOWN = 8 };  // a ring is known by an eighth of its turns
 static const double drawn_mm = 1;            // sigma, at most, below which fibres are drawn
@@ -19,41 +19,20 @@ void scene_seen_free(struct scene_seen *s)
 	*s = (struct scene_seen){ 0 };
 }
 
-/* Mean by a Gaussian of that many texels, weighted (null: 1). */
-static void blur(float (*to)[3], const float (*from)[3], const float *weight, double sigma)
+/* Mean by a Gaussian of that many texels, over what is seen. */
+static bool blur(float *to, const float *from, const float *weight, double sigma)
 {
-	enum { MOST = 255 };
-	const int reach = (int)fmin(ceil(3 * sigma), MOST);
-	float kernel[2 * MOST + 1], (*half)[4] = mem_array(TEXELS, sizeof *half), (*in)[4] = mem_array(TEXELS, sizeof *in);
-	float total = 0;
-	for (int k = -reach; k <= reach; k++)
-		total += kernel[k + reach] = (float)exp(-0.5 * k * k / (sigma * sigma));
+	struct err none = { 0 };
+	float (*both)[2] = mem_array(TEXELS, sizeof *both);
 	for (int i = 0; i < TEXELS; i++) {
-		const float w = weight ? weight[i] : 1;
-		for (int c = 0; c < 3; c++)
-			in[i][c] = w * from[i][c];
-		in[i][3] = w;
+		both[i][0] = weight[i] * from[i];
+		both[i][1] = weight[i];
 	}
-	for (int pass = 0; pass < 2; pass++) {
-		const int step = pass ? SIDE : 1;
-		float (*src)[4] = pass ? half : in, (*dst)[4] = pass ? in : half;
-#pragma omp parallel for schedule(static)
-		for (int i = 0; i < TEXELS; i++) {
-			const int at = pass ? i / SIDE : i % SIDE;
-			const int a = at - reach < 0 ? -at : -reach, b = at + reach >= SIDE ? SIDE - 1 - at : reach;
-			float acc[4] = { 0 };
-			for (int k = a; k <= b; k++)
-				for (int c = 0; c < 4; c++)
-					acc[c] += kernel[k + reach] * src[i + k * step][c];
-			for (int c = 0; c < 4; c++)
-				dst[i][c] = acc[c] / total;
-		}
-	}
+	const bool ok = cv_blur(&both[0][0], &both[0][0], SIDE, SIDE, 2, sigma, &none);
 	for (int i = 0; i < TEXELS; i++)
-		for (int c = 0; c < 3; c++)
-			to[i][c] = in[i][3] > 1e-6f ? in[i][c] / in[i][3] : 0;
-	free(half);
-	free(in);
+		to[i] = both[i][1] > 1e-6f ? both[i][0] / both[i][1] : 0;
+	free(both);
+	return ok;
 }
 
 /* A place in the map: radius mm, angle. */
@@ -131,12 +110,13 @@ static void ring_at(float ln[3], struct cell cell[RINGS][TURNS], const struct sc
 	}
 }
 
-static double green_rms(const float (*a)[3], const float (*b)[3], const float *weight)
+/* Of what differs where it is well seen. */
+static double rms_of(const float *a, const float *b, const float *weight)
 {
 	double sum = 0, n = 0;
 	for (int i = 0; i < TEXELS; i++)
 		if (weight[i] > 0.5f) {
-			const double d = (double)(a[i][1] - b[i][1]);
+			const double d = (double)(a[i] - b[i]);
 			sum += d * d;
 			n++;
 		}
@@ -144,13 +124,13 @@ static double green_rms(const float (*a)[3], const float (*b)[3], const float *w
 }
 
 /* Mean of each ring of what is drawn: what is seen of an iris has its own. */
-static void ring_means(float mean[RINGS], const float (*drawn)[3], const struct scene_seen *s)
+static void ring_means(float mean[RINGS], const float *drawn, const struct scene_seen *s)
 {
 	double sum[RINGS] = { 0 }, n[RINGS] = { 0 }, turn;
 	for (int i = 0; i < TEXELS; i++) {
 		const int r = (int)(polar_of(&turn, s, i) / s->limbus * RINGS);
 		if (r < RINGS) {
-			sum[r] += (double)drawn[i][1];
+			sum[r] += (double)drawn[i];
 			n[r]++;
 		}
 	}
@@ -158,12 +138,12 @@ static void ring_means(float mean[RINGS], const float (*drawn)[3], const struct 
 		mean[r] = (float)(sum[r] / fmax(n[r], 1));
 }
 
-void scene_seen_fill(struct scene_seen *s, const float (*drawn)[3])
+void scene_seen_fill(struct scene_seen *s, const float *drawn)
 {
 	const double per_mm = SIDE / (2 * s->extent), sigma = fmin(s->finest, drawn_mm) * per_mm;
 	struct cell (*cell)[TURNS] = mem_new(RINGS, sizeof *cell);
-	float (*fine)[3] = mem_array(TEXELS, sizeof *fine), (*own)[3] = mem_array(TEXELS, sizeof *own);
-	float (*near)[3] = mem_array(TEXELS, sizeof *near), mean[RINGS];
+	float *green = mem_array(TEXELS, sizeof *green), *fine = mem_new(TEXELS, sizeof *fine), *own = mem_new(TEXELS, sizeof *own), *near = mem_new(TEXELS, sizeof *near), mean[RINGS];
+	struct err none = { 0 };
 	for (int i = 0; i < TEXELS; i++) {
 		double turn;
 		if (polar_of(&turn, s, i) < inner_of(s))
@@ -171,13 +151,13 @@ void scene_seen_fill(struct scene_seen *s, const float (*drawn)[3])
 	}
 	rings_of(cell, s);
 	// How strong fibres are between one and two times the finest that is seen, here and as drawn.
-	blur(own, (const float(*)[3])s->ln, s->weight, sigma);
-	blur(near, (const float(*)[3])s->ln, s->weight, 2 * sigma);
-	const double seen = green_rms((const float(*)[3])own, (const float(*)[3])near, s->weight);
-	blur(fine, drawn, 0, sigma);
-	blur(near, drawn, 0, 2 * sigma);
-	const double invented = green_rms((const float(*)[3])fine, (const float(*)[3])near, s->weight);
-	const float strong = (float)fmin(fmax(seen / fmax(invented, 1e-6), strength[0]), strength[1]);
+	for (int i = 0; i < TEXELS; i++)
+		green[i] = s->ln[i][1];
+	bool ok = blur(own, green, s->weight, sigma) && blur(near, green, s->weight, 2 * sigma);
+	const double seen = rms_of(own, near, s->weight);
+	ok = ok && cv_blur(fine, drawn, SIDE, SIDE, 1, sigma, &none) && cv_blur(near, drawn, SIDE, SIDE, 1, 2 * sigma, &none);
+	const double invented = ok ? rms_of(fine, near, s->weight) : 0;
+	const float strong = ok ? (float)fmin(fmax(seen / fmax(invented, 1e-6), strength[0]), strength[1]) : 0;  // without: smooth
 	ring_means(mean, drawn, s);
 	for (int i = 0; i < TEXELS; i++) {
 		double turn;
@@ -186,9 +166,10 @@ void scene_seen_fill(struct scene_seen *s, const float (*drawn)[3])
 		ring_at(ring, cell, s, r, turn);
 		const float w = s->weight[i];
 		for (int c = 0; c < 3; c++)
-			s->ln[i][c] = w * (s->ln[i][c] + strong * (drawn[i][1] - fine[i][1])) + (1 - w) * (ring[c] + strong * (drawn[i][1] - mean[(int)fmin(r / s->limbus * RINGS, RINGS - 1)]));
+			s->ln[i][c] = w * (s->ln[i][c] + strong * (drawn[i] - fine[i])) + (1 - w) * (ring[c] + strong * (drawn[i] - mean[(int)fmin(r / s->limbus * RINGS, RINGS - 1)]));
 	}
 	free(cell);
+	free(green);
 	free(fine);
 	free(own);
 	free(near);

@@ -17,8 +17,8 @@ struct scene_seen {
 };
 void scene_seen_free(struct scene_seen *seen);
 
-/* Completes it: ln of every texel within the limbus, also where weight is 0. drawn [n] ln of an invented iris of the same map, whose fibres stand for
- * what is finer than was seen. */
-void scene_seen_fill(struct scene_seen *seen, const float (*drawn)[3]);
+/* Completes it: ln of every texel within the limbus, also where weight is 0. drawn [SEEN_SIDE][SEEN_SIDE] ln of green of an invented iris of the same map, whose fibres stand
+ * for what is finer than was seen. */
+void scene_seen_fill(struct scene_seen *seen, const float *drawn);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "bridge/cv_blur.h"
 #include "draw/photo/filmed_impl.h"
 #include "math/chol.h"
 
@@ -41,35 +42,22 @@ static void small_free(struct small *s)
 	free(s->weight);
 }
 
-/* Blurred over what is seen. */
+/* Blurred over what is seen; where that fails nothing is. */
 static struct small blurred(const struct small *from, double sd)
 {
 	struct small s = { mem_new(CELLS, sizeof *s.ln), mem_new(CELLS, sizeof *s.weight) };
-	float *half = mem_new(CELLS, sizeof *half), *half_w = mem_new(CELLS, sizeof *half_w);
-	const int reach = (int)ceil(3 * sd);
-	for (int pass = 0; pass < 2; pass++)
-		for (int i = 0; i < CELLS; i++) {
-			float sum = 0, w = 0, all = 0;
-			for (int k = -reach; k <= reach; k++) {
-				const int x = i % SMALL + (pass ? 0 : k), y = i / SMALL + (pass ? k : 0);
-				if (x < 0 || y < 0 || x >= SMALL || y >= SMALL)
-					continue;
-				const int at = y * SMALL + x;
-				const float g = (float)exp(-0.5 * k * k / (sd * sd));
-				sum += g * (pass ? half[at] : from->ln[at] * from->weight[at]);
-				w += g * (pass ? half_w[at] : from->weight[at]);
-				all += g;
-			}
-			if (pass) {
-				s.ln[i] = w > 1e-6f ? sum / w : 0;
-				s.weight[i] = from->weight[i] > 0 ? w / all : 0;
-			} else {
-				half[i] = sum / all;
-				half_w[i] = w / all;
-			}
-		}
-	free(half);
-	free(half_w);
+	struct err none = { 0 };
+	float (*both)[2] = mem_array(CELLS, sizeof *both);
+	for (int i = 0; i < CELLS; i++) {
+		both[i][0] = from->weight[i] * from->ln[i];
+		both[i][1] = from->weight[i];
+	}
+	const bool ok = cv_blur(&both[0][0], &both[0][0], SMALL, SMALL, 2, sd, &none);
+	for (int i = 0; i < CELLS && ok; i++) {
+		s.ln[i] = both[i][1] > 1e-6f ? both[i][0] / both[i][1] : 0;
+		s.weight[i] = from->weight[i] > 0 ? both[i][1] : 0;
+	}
+	free(both);
 	return s;
 }
 

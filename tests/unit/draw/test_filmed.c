@@ -208,9 +208,9 @@ static void completed(void **state)
 	struct filmed_report r;
 	struct err err = { 0 };
 	assert_true(make(&s, &r, (double[]){ 1, 1, 1 }, 9, 6, &err));
-	float (*drawn)[3] = mem_new(SEEN_SIDE * SEEN_SIDE, sizeof *drawn), *weight = mem_new(SEEN_SIDE * SEEN_SIDE, sizeof *weight);
+	float *drawn = mem_new(SEEN_SIDE * SEEN_SIDE, sizeof *drawn), *weight = mem_new(SEEN_SIDE * SEEN_SIDE, sizeof *weight);
 	memcpy(weight, s.weight, SEEN_SIDE * SEEN_SIDE * sizeof *weight);
-	scene_seen_fill(&s, (const float(*)[3])drawn);
+	scene_seen_fill(&s, drawn);
 	double mean[2] = { 0 }, n[2] = { 0 };
 	for (int i = 0; i < SEEN_SIDE * SEEN_SIDE; i++) {
 		double at[2];
