@@ -58,8 +58,10 @@ static json_t *camera_json(const struct fit *fit)
 bool fit_save(const struct fit *fit, const char *path, const char *made_by, const char *extra, struct err *err)
 {
 	json_t *json = json_object();
-	json_object_set_new(json, "status", json_string(fit->ok ? "ok" : "rejected"));
+	json_object_set_new(json, "status", json_string(!fit->ok ? "rejected" : fit->rough > 0 ? "rough" : "ok"));
 	json_object_set_new(json, "reason", json_string(fit->reason));
+	if (fit->ok && fit->rough > 0)
+		json_object_set_new(json, "known_to", json_number(fit->rough));
 	if (fit->ok) {
 		json_object_set_new(json, "ellipse", ellipse_json(&fit->limbus));
 		json_t *sigma = json_object();
@@ -119,9 +121,12 @@ static bool fit_read(struct fit *fit, const json_t *json, const char *path, stru
 	if (!status || !reason)
 		return false;
 	strncpy(fit->reason, reason, sizeof fit->reason - 1);
-	fit->ok = !strcmp(status, "ok");
+	const bool rough = !strcmp(status, "rough");
+	fit->ok = rough || !strcmp(status, "ok");
 	if (!fit->ok)
 		return true;
+	if (rough && (!json_get(&fit->rough, json, "known_to", path, err) || !(fit->rough > 0 && fit->rough < 1)))
+		return err_set(err, "%s: known_to: must be a share of the semi-axis, in (0, 1)", path);
 	const json_t *pupil = json_object_get(json, "pupil"), *sigma = json_object_get(json, "ellipse_sigma");
 	static const char *const names[] = { "cx", "cy", "a", "b", "angle_deg" };
 	for (int i = 0; i < 5; i++) {

@@ -8,8 +8,9 @@
 enum { FIT_SECTORS = 72 };
 
 struct fit {
-	bool ok;                    // status "ok"
-	char reason[256];           // why rejected
+	bool ok;                    // status "ok" or "rough"
+	double rough;               // status "rough": only known to this share of the semi-axis, in (0, 1); 0: to what was asked for
+	char reason[256];           // why rejected, or rough
 	struct ellipse limbus, pupil;
 	bool has_pupil;
 	double ellipse_sigma[5];    // standard deviations of cx, cy, a, b (px), angle (rad)

@@ -139,7 +139,7 @@ void limbus_find_in(struct limbus_found *found, struct trials *trials, const dou
 	}
 	if (hint && !(found->ok && limbus_hand_near(&found->limbus.e, &meant)))
 		limbus_by_hand(found, photo, pyramid, &meant, conf->hint_sigma, conf);
-	if (found->ok)
+	if (limbus_usable(found))
 		band_sample(&found->band, pyramid, &found->limbus);
 }
 

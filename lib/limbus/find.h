@@ -68,7 +68,7 @@ struct limbus_conf {
 	double strip_sigma;    // of the strip's ellipse, beside what its rays say; share of the semi-axis
 	double region_hidden;  // how many times more where no sclera is beside it
 	double tolerance;      // share of the semi-axis: an answer that is farther off is a gross error
-	double rough_tolerance; // the widest that a refusal names where that takes the ellipse
+	double rough_tolerance; // the widest to which a refused ellipse may be known
 	double max_gross;      // chance of that, beyond which a limbus is refused
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
 	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis
@@ -88,6 +88,7 @@ struct posterior {
 struct limbus_found {
 	bool ok;
 	bool by_hand;      // the search did not find it: it is where a person says
+	double rough;      // refused, but known to this share of the semi-axis, at most conf->rough_tolerance; 0: to none
 	char reason[256];
 	struct rim limbus, pupil;
 	bool has_pupil;
@@ -99,6 +100,12 @@ struct limbus_found {
  * hint   x, y, radius px, or null; with one an ellipse near it is always accepted (hand.h), but in a photograph too small to hold an iris */
 void limbus_find(struct limbus_found *found, const struct photo *photo, const double *hint,
                  const struct limbus_conf *conf);
+
+/* Whether there is an ellipse to go on with, refused as it may be. */
+static inline bool limbus_usable(const struct limbus_found *found)
+{
+	return found->ok || found->rough > 0;
+}
 
 /* Refuses a photograph too small to hold an iris; true where it is. */
 bool limbus_too_small(struct limbus_found *found, const struct photo *photo);

@@ -73,6 +73,7 @@ void limbus_by_hand(struct limbus_found *found, const struct photo *photo, const
 	}
 	found->limbus = *rim;
 	found->ok = found->by_hand = true;
+	found->rough = 0;
 	*found->reason = 0;
 	free(rim);
 }

@@ -176,6 +176,7 @@ struct fit limbus_joint_fit(const struct limbus_record *r, const struct pose *po
 	memcpy(fit.reason, r->reason, sizeof fit.reason);
 	if (!r->ok)
 		return fit;
+	fit.rough = r->rough;
 	fit.limbus = r->view.limbus;
 	fit.pupil = r->view.pupil;
 	fit.has_pupil = r->view.has_pupil;

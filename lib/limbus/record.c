@@ -9,14 +9,14 @@ enum { FILE_LIMIT = 1 << 20 };
 
 void limbus_record_fill(struct limbus_record *record, const struct limbus_found *found, const struct photo *photo)
 {
-	*record = (struct limbus_record){ .ok = found->ok, .by_hand = found->by_hand, .width = photo->width, .height = photo->height };
+	*record = (struct limbus_record){ .ok = found->ok, .by_hand = found->by_hand, .rough = found->rough, .width = photo->width, .height = photo->height };
 	memcpy(record->reason, found->reason, sizeof record->reason);
 	record->gross = found->by_hand ? 0 : fmax(found->posterior.gross, found->posterior.beyond_right);
 	record->has_guess = found->limbus.e.a > 0;
 	record->guess = found->limbus.e;
 	record->has_rival = found->posterior.rival >= 0 && !found->by_hand;
 	record->rival = found->posterior.other;
-	if (!found->ok)
+	if (!limbus_usable(found))
 		return;
 	const struct rim *rim = &found->limbus;
 	record->view.limbus = rim->e;
@@ -67,7 +67,9 @@ bool limbus_record_save(const struct limbus_record *r, const char *path, const c
 		json_object_set_new(json, "guess", ellipse_json(&r->guess));
 	if (r->has_rival)
 		json_object_set_new(json, "rival", ellipse_json(&r->rival));
-	if (r->ok) {
+	if (r->rough > 0)
+		json_object_set_new(json, "rough", json_number(r->rough));
+	if (r->ok || r->rough > 0) {
 		const struct camera *c = &r->view.camera;
 		double camera[9] = { c->focal_px, c->center_px[0], c->center_px[1], c->distortion[0], c->distortion[1],
 			             c->distortion[2], c->distortion[3], c->distortion[4], c->source };
@@ -116,7 +118,9 @@ static bool record_read(struct limbus_record *r, const json_t *json, const char 
 		return err_set(err, "%s: size_px: must be positive", path);
 	r->width = (int)size[0];
 	r->height = (int)size[1];
-	if (!r->ok)
+	if (json_object_get(json, "rough") && (!json_get(&r->rough, json, "rough", path, err) || !(r->rough > 0 && r->rough < 1)))
+		return err_set(err, "%s: rough: must be a share of the semi-axis, in (0, 1)", path);
+	if (!r->ok && !(r->rough > 0))
 		return true;
 	r->by_hand = json_is_true(json_object_get(json, "by_hand"));
 	r->view.has_pupil = json_is_array(json_object_get(json, "pupil"));

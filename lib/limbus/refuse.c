@@ -12,6 +12,7 @@ bool limbus_refuse(struct limbus_found *found, const char *fmt, ...)
 	va_start(ap, fmt);
 	vsnprintf(found->reason, sizeof found->reason, fmt, ap);
 	va_end(ap);
+	found->rough = 0;
 	return found->ok = false;
 }
 
@@ -93,10 +94,11 @@ void limbus_refuse_doubtful(struct limbus_found *found, const struct trials *tri
 	const double taken_at = p->gross > conf->max_gross ? posterior_taken_at(p, &found->limbus, trials) : 0;
 	if (is_cut(&found->limbus.e, trials->photo))
 		limbus_refuse(found, "the iris is cut by the frame: show all of it with some white around");
-	else if (taken_at > 0)
-		limbus_refuse(found, "its ellipse may be more than %.2g %% off (chance %.0f %%), hardly more than %.2g %%: limbus.tolerance = %.2g takes it; or %s", 100 * conf->tolerance,
-		              100 * p->gross, 100 * taken_at, taken_at, words_of(trial, true, conf));
-	else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
+	else if (taken_at > 0) {
+		limbus_refuse(found, "its ellipse may be more than %.2g %% off (chance %.0f %%), hardly more than %.2g %%: %s", 100 * conf->tolerance, 100 * p->gross, 100 * taken_at,
+		              words_of(trial, true, conf));
+		found->rough = taken_at;
+	} else if (p->gross > conf->max_gross && p->rival_chance > 0.5 * p->gross)
 		limbus_refuse(found, "two ellipses may be the limbus (chance that the likelier is wrong: %.0f %%): light the eye evenly and show all of the iris", 100 * p->gross);
 	else if (p->gross > conf->max_gross && known > conf->tolerance)
 		limbus_refuse(found, "its ellipse is known to %.2g %% only, %.2g %% is asked for: %s", 100 * known, 100 * conf->tolerance, words_of(trial, true, conf));

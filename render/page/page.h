@@ -57,6 +57,9 @@ json_t *page_stages(struct page *page, double *seconds);
 /* {uri, width, height, whole} of a picture file as JPEG in a data: URI, at most `width` px wide; null when it cannot be read. whole: the
  * file as the review page links it, where browsers show files of its kind. */
 json_t *page_picture(struct page *page, const char *path, int width);
+
+/* The same of a part of it, {x, y, width, height} px, which no link leads beyond. Null where it does not lie in the picture. */
+json_t *page_picture_part(struct page *page, const char *path, const int box[4], int width);
 /* The same of the thirds of a comparison (draw/photo): photograph, rendering, difference; third: 0, 1, 2. False when it cannot be read. */
 bool page_panels(json_t *out[3], struct page *page, const char *path);
 

@@ -129,7 +129,7 @@ for (const slider of document.querySelectorAll(".slider")) {
  * photograph's px; the angle is the longer axis', in degrees from +x towards +y. */
 for (const box of document.querySelectorAll("details.hand")) {
 	const svg = box.closest(".photo").querySelector("svg.hand"), line = box.querySelector(".line"), copy = box.querySelector("button");
-	const outline = svg.querySelector("ellipse"), grips = [...svg.querySelectorAll("circle")], { width, height } = svg.viewBox.baseVal;
+	const outline = svg.querySelector("ellipse"), grips = [...svg.querySelectorAll("circle")], { x: left, y: top, width, height } = svg.viewBox.baseVal;
 	let [cx, cy, a, b, angle] = svg.dataset.ellipse.split(" ").map(Number);
 	const least = 8, most = Math.max(width, height), within = (v, lo, hi) => Math.min(Math.max(v, lo), hi);
 	const axis = () => [Math.cos(angle * Math.PI / 180), Math.sin(angle * Math.PI / 180)];
@@ -146,8 +146,8 @@ for (const box of document.querySelectorAll("details.hand")) {
 	function move(i, x, y) {
 		const dx = x - cx, dy = y - cy, [c, s] = axis();
 		if (i === 0) {
-			cx = within(x, 0, width);
-			cy = within(y, 0, height);
+			cx = within(x, left, left + width);
+			cy = within(y, top, top + height);
 		} else if (i === 1) {
 			a = within(Math.hypot(dx, dy), least, most);
 			angle = Math.atan2(dy, dx) * 180 / Math.PI;

@@ -68,6 +68,21 @@ json_t *page_picture(struct page *page, const char *path, int width)
 	return picture;
 }
 
+json_t *page_picture_part(struct page *page, const char *path, const int box[4], int width)
+{
+	struct err err = { 0 };
+	uint8_t *px;
+	int w, h;
+	if (!path || !picture_read(&px, &w, &h, path, page->conf->limit_mpx, &err))
+		return 0;
+	const bool within = box[0] >= 0 && box[1] >= 0 && box[2] > 0 && box[3] > 0 && box[0] + box[2] <= w && box[1] + box[3] <= h;
+	for (int y = 0; y < box[3] && within; y++)
+		memmove(px + 3L * y * box[2], px + 3L * ((long)(y + box[1]) * w + box[0]), 3 * (size_t)box[2]);
+	json_t *picture = within ? pixels_at_most(px, box[2], box[3], width) : 0;
+	free(px);
+	return picture;
+}
+
 bool page_panels(json_t *out[3], struct page *page, const char *path)
 {
 	struct err err = { 0 };

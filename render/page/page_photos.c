@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json.h"
 #include "image/photo/photo.h"
 #include "render/page/page.h"
 
@@ -75,6 +76,8 @@ static void advise(struct page *page, const char *name, const struct fit *f)
 		page_say(page->advice, "%s was not used: %s", name, f->reason);
 		return;
 	}
+	if (f->rough > 0)
+		page_say(page->advice, "%s is the best of its eye, but where the iris ends is known to %.2g %% of its radius only: %s", name, 100 * f->rough, f->reason);
 	if (f->coverage < 0.6)
 		page_say(page->advice, "%s: lids hide %.0f %% of the limbus. Open the eye wider, or hold the upper lid.", name,
 		         100 * (1 - f->coverage));
@@ -142,19 +145,68 @@ static bool size_of(int *width, int *height, const char *path)
 	return ok;
 }
 
-/* Where the ellipse that a hand may correct begins: on the fit, or in the middle. For page.js. */
-static void hand(json_t *entry, const char *name, const struct fit *f, const char *file)
+/* The likeliest ellipse of a photograph that was not used, as its fit at `path` has it. False: there is none. */
+static bool likeliest(struct ellipse *e, struct page *page, const char *path)
 {
-	struct ellipse e = f->limbus;
-	int width = f->width, height = f->height;
-	if (!f->ok) {
-		if (!size_of(&width, &height, file))
-			return;
-		double r = 0.25 * fmin(width, height);
-		e = (struct ellipse){ 0.5 * width, 0.5 * height, r, r, 0 };
+	double v[5];
+	struct err err = { 0 };
+	json_t *root = page_json(page, path);
+	const bool ok = json_is_array(json_object_get(root, "likeliest_px")) && json_get_array(v, 5, root, "likeliest_px", path, &err) && v[2] >= v[3] && v[3] > 0;
+	if (ok)
+		*e = (struct ellipse){ v[0], v[1], v[2], v[3], v[4] * deg };
+	json_decref(root);
+	return ok;
+}
+
+/* The part of the photograph that the page shows, px: all of it, or where the eye is small in it, that eye. */
+static void shown_of(int box[4], const struct ellipse *e, int width, int height)
+{
+	const double small = 0.08, wide = 5, high = 4;  // of the longer side; semi-axes to each side
+	memcpy(box, (int[]){ 0, 0, width, height }, 4 * sizeof *box);
+	if (!(e->a > 0) || e->a > small * fmax(width, height))
+		return;
+	box[0] = (int)fmin(fmax(e->cx - wide * e->a, 0), width - 1);
+	box[1] = (int)fmin(fmax(e->cy - high * e->a, 0), height - 1);
+	box[2] = (int)fmin(ceil(2 * wide * e->a), width - box[0]);
+	box[3] = (int)fmin(ceil(2 * high * e->a), height - box[1]);
+}
+
+/* The ellipse that is drawn, and a hand may correct: the fit's, the likeliest that was not believed, or one in the middle. False: the photograph's size
+ * is not known. */
+static bool drawn_of(struct ellipse *e, bool *guessed, int size[2], struct page *page, const struct fit *f, const char *path, const char *file)
+{
+	*e = f->limbus;
+	size[0] = f->width;
+	size[1] = f->height;
+	if (f->ok)
+		return true;
+	if (!size_of(&size[0], &size[1], file))
+		return false;
+	*guessed = likeliest(e, page, path);
+	const double r = 0.25 * fmin(size[0], size[1]);
+	if (!*guessed)
+		*e = (struct ellipse){ 0.5 * size[0], 0.5 * size[1], r, r, 0 };
+	return true;
+}
+
+/* The photograph with the ellipse on it, for page.js. */
+static void frame(json_t *entry, struct page *page, const struct capture_photo *p, const struct fit *f, const char *path, const char *file)
+{
+	struct ellipse e;
+	bool guessed = false;
+	int size[2], box[4];
+	if (!drawn_of(&e, &guessed, size, page, f, path, file)) {
+		add(entry, "picture", page_picture(page, file, 2 * page->width));
+		return;
 	}
-	json_object_set_new(entry, "hand", json_pack("{s:i,s:i,s:o,s:o}", "px_width", width, "px_height", height, "at", ellipse(&e), "key",
-	                                             template_text(name)));
+	shown_of(box, &e, size[0], size[1]);
+	const bool whole = box[2] == size[0] && box[3] == size[1];
+	add(entry, "picture", whole ? page_picture(page, file, 2 * page->width) : page_picture_part(page, file, box, 2 * page->width));
+	json_object_set_new(entry, "box", page_text("%d %d %d %d", box[0], box[1], box[2], box[3]));
+	json_object_set_new(entry, "stroke", json_real(box[2] / 450.0));
+	json_object_set_new(entry, "hand", json_pack("{s:o,s:o}", "at", ellipse(&e), "key", template_text(p->name)));
+	if (guessed)
+		json_object_set_new(entry, "guessed", json_true());
 }
 
 static json_t *photo(struct page *page, const struct capture_photo *p)
@@ -165,24 +217,24 @@ static json_t *photo(struct page *page, const struct capture_photo *p)
 	json_t *entry = json_object();
 	json_object_set_new(entry, "name", template_text(p->name));
 	json_object_set_new(entry, "file", template_text(p->file));
-	add(entry, "picture", page_picture(page, file, 2 * page->width));
 	if (!path || !fit_load(&fit, path, &err)) {
+		add(entry, "picture", page_picture(page, file, 2 * page->width));
 		json_object_set_new(entry, "reason", page_sentence(path ? err.msg : "the stage limbus has not looked at it"));
 		page_say(page->missing, "%s: %s", p->name, path ? err.msg : "no fit; the stage limbus has not looked at it");
 		return entry;
 	}
 	advise(page, p->name, &fit);
+	frame(entry, page, p, &fit, path, file);
 	if (!fit.ok) {
 		json_object_set_new(entry, "reason", page_sentence(fit.reason));
-		hand(entry, p->name, &fit, file);
 		return entry;
 	}
 	json_object_set_new(entry, "ok", json_true());
-	json_object_set_new(entry, "px_width", json_integer(fit.width));
-	json_object_set_new(entry, "px_height", json_integer(fit.height));
-	json_object_set_new(entry, "stroke", json_real(fit.width / 450.0));
 	json_object_set_new(entry, "limbus", ellipse(&fit.limbus));
-	hand(entry, p->name, &fit, file);
+	if (fit.rough > 0) {
+		json_object_set_new(entry, "rough", page_text("%.2g", 100 * fit.rough));
+		json_object_set_new(entry, "doubt", page_sentence(fit.reason));
+	}
 	if (fit.has_pupil)
 		json_object_set_new(entry, "pupil", ellipse(&fit.pupil));
 	json_t *list = facts(&fit);

@@ -23,7 +23,7 @@ struct eye_work {
 	const struct capture_photo **photo;  // [n]
 	struct limbus_record *record;        // [n]
 	struct limbus_joint joint;
-	int usable;
+	int usable, rough;                   // rough: the one that is used for want of a better, -1: none
 	struct limbus_kept *kept;
 };
 
@@ -92,7 +92,7 @@ static void note(const struct eye_work *w, int i, const struct fit *fit, const s
 	stage_note(w->stage, "%s: theta %.1f +- %.1f deg, %.0f %% of the limbus seen, rms %.2f px%s%s", name, fit->theta / DEG,
 	           fit->theta_sigma / DEG, 100 * fit->coverage, fit->rms_px,
 	           fit->camera.source == CAMERA_NONE ? ", camera unknown: weak perspective" : "",
-	           w->record[i].by_hand ? ", where capture.conf says: by hand" : "");
+	           w->record[i].by_hand ? ", where capture.conf says: by hand" : fit->rough > 0 ? ", roughly" : "");
 	char key[320];
 	snprintf(key, sizeof key, "%s rms", name);
 	stage_figure(w->stage, key, fit->rms_px, "px");
@@ -116,6 +116,8 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 		stage_warn(w->stage, "%s: rejected: %s", p->file, r->reason);
 	else if (!limbus_joint_pose(&pose, &w->joint, r, &w->o->eye, err))
 		return err_wrap(err, "%s", p->file);
+	if (i == w->rough)
+		stage_warn(w->stage, "%s: used roughly, for want of a better photograph of this eye: %s", p->file, r->reason);
 	struct fit fit = limbus_joint_fit(r, &pose);
 	if (r->ok)
 		note(w, i, &fit, &pose);
@@ -135,6 +137,29 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 	return ok;
 }
 
+/* Where no photograph shows the eye to what is asked, the surest of those that show it roughly is used: an artist is better served by an eye that says
+ * so than by none. */
+static void take_rough(struct eye_work *w)
+{
+	w->rough = -1;
+	for (int i = 0; i < w->n; i++) {
+		const struct limbus_record *r = &w->record[i];
+		if (r->rough > 0 && r->rough <= w->o->rough_used && (w->rough < 0 || r->gross < w->record[w->rough].gross))
+			w->rough = i;
+	}
+	if (w->usable)
+		w->rough = -1;
+	for (int i = 0; i < w->n; i++) {
+		struct limbus_record *r = &w->record[i];
+		const size_t n = strlen(r->reason);
+		if (i == w->rough)
+			r->ok = true;
+		else if (r->rough > w->o->rough_used && !w->usable)
+			snprintf(r->reason + n, sizeof r->reason - n, "; limbus.rough_used = %.2g takes it", r->rough);
+	}
+	w->usable += w->rough >= 0;
+}
+
 static bool fit_eye(struct eye_work *w, struct err *err)
 {
 	char **paths = mem_new((size_t)w->n, sizeof *paths);
@@ -145,14 +170,16 @@ static bool fit_eye(struct eye_work *w, struct err *err)
 		ok = limbus_record_load(&w->record[i], stage_path(w->stage, "%s", paths[i]), err);
 		w->usable += w->record[i].ok;
 	}
+	if (ok)
+		take_rough(w);
 	ok = ok && limbus_joint(&w->joint, w->n, w->record, &w->o->eye, &w->o->pose, err);
-	/* With the aspect fitted, every photograph of the eye is an input of each. */
+	/* With the aspect fitted, every photograph of the eye is an input of each; and of one that may be used for want of a better. */
 	bool shared = !isfinite(w->o->eye.limbus_aspect) && w->usable >= 2;
 	for (int i = 0; i < w->n && ok; i++) {
 		int n = 0;
 		in[n++] = w->photo[i]->file;
 		for (int j = 0; j < w->n; j++)
-			if (shared || j == i)
+			if (shared || j == i || w->record[i].rough > 0)
 				in[n++] = paths[j];
 		ok = finish(w, i, n, in, err);
 	}

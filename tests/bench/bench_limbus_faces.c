@@ -19,7 +19,7 @@
 enum { DRAWN = 200, KINDS = 3 };
 static const char *const kind_name[KINDS] = { "drawn (tests/evidence, test split)", "drawn, mirrored", "rendered (EYEWRIGHT_FACES)" };
 
-struct seen { bool ok, right, swapped, pupil, pupil_wrong, shows; double error, ratio; struct ellipse e, truth; };
+struct seen { bool ok, right, rough, rough_off, swapped, pupil, pupil_wrong, shows; double error, ratio; struct ellipse e, truth; };
 struct outcome { bool ran; int kind, parts; double seconds; struct seen eye[2]; };
 struct faces { uint64_t seed; int drawn; struct outcome *outcome; };
 
@@ -35,6 +35,8 @@ static struct seen seen_of(const struct answer *a, const struct unseen *u, int s
 {
 	const struct unseen_eye *eye = &u->eye[side];
 	struct seen s = { .ok = a->ok, .error = NAN, .ratio = NAN, .e = a->e, .truth = eye->limbus, .shows = eye->showing >= 0.5 };
+	s.rough = !a->ok && a->rough > 0 && a->rough <= ANSWER_ROUGH;
+	s.rough_off = s.rough && ellipse_apart(&a->e, &eye->limbus) > a->rough * eye->limbus.a;
 	if (!a->ok)
 		return s;
 	s.swapped = answer_meant(&a->e, u) != eye;
@@ -68,7 +70,7 @@ static void one(void *ctx, int i)
 	unseen_free(&u);
 }
 
-struct count { int faces, both, n, right, wrong, refused, swapped, pupils, pupils_wrong, unlike, shows, shows_right; double ratio90, seconds; };
+struct count { int faces, both, n, right, wrong, refused, swapped, rough, rough_off, pupils, pupils_wrong, unlike, shows, shows_right; double ratio90, seconds; };
 
 static struct count count_of(int n, const struct faces *f, int kind)
 {
@@ -87,6 +89,8 @@ static struct count count_of(int n, const struct faces *f, int kind)
 			c.right += e->right;
 			c.wrong += e->ok && !e->right;
 			c.refused += !e->ok;
+			c.rough += e->rough;
+			c.rough_off += e->rough_off;
 			c.swapped += e->swapped;
 			c.pupils += e->pupil && e->right;
 			c.pupils_wrong += e->pupil_wrong && e->right;
@@ -112,13 +116,13 @@ static double percent(int part, int of)
 
 static void tell(int n, const struct faces *f)
 {
-	printf("%-36s %5s %7s %7s %7s %7s %8s %8s %7s %7s %9s\n", "", "faces", "both", "right", "WRONG", "refused", "swapped", "half: ok", "pupils", "wrong", "tilt/sg90");
+	printf("%-36s %5s %7s %7s %7s %7s %7s %7s %8s %8s %7s %7s %9s\n", "", "faces", "both", "right", "WRONG", "refused", "rough", "off", "swapped", "half: ok", "pupils", "wrong", "tilt/sg90");
 	for (int k = -1; k < KINDS; k++) {
 		const struct count c = count_of(n, f, k);
 		if (!c.faces)
 			continue;
-		printf("%-36s %5d %6.1f%% %6.1f%% %6.1f%% %6.1f%% %8d %7.1f%% %6.1f%% %6.1f%% %9.2f\n", k < 0 ? "all" : kind_name[k], c.faces, percent(c.both, c.faces),
-		       percent(c.right, c.n), percent(c.wrong, c.n), percent(c.refused, c.n), c.swapped, percent(c.shows_right, c.shows), percent(c.pupils, c.right),
+		printf("%-36s %5d %6.1f%% %6.1f%% %6.1f%% %6.1f%% %6.1f%% %6.1f%% %8d %7.1f%% %6.1f%% %6.1f%% %9.2f\n", k < 0 ? "all" : kind_name[k], c.faces, percent(c.both, c.faces),
+		       percent(c.right, c.n), percent(c.wrong, c.n), percent(c.refused, c.n), percent(c.rough, c.n), percent(c.rough_off, c.n), c.swapped, percent(c.shows_right, c.shows), percent(c.pupils, c.right),
 		       percent(c.pupils_wrong, c.pupils), c.ratio90);
 	}
 	const struct count c = count_of(n, f, -1);

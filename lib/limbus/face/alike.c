@@ -55,7 +55,7 @@ void face_alike_sizes(struct limbus_found found[2], const struct face_conf *conf
 {
 	const struct ellipse *e = &found[0].limbus.e, *f = &found[1].limbus.e;
 	double sigma[2][ELLIPSE_N];
-	if (!found[0].ok || !found[1].ok)
+	if (!limbus_usable(&found[0]) || !limbus_usable(&found[1]))
 		return;
 	ellipse_sigma(sigma[0], e, found[0].limbus.cov_q);
 	ellipse_sigma(sigma[1], f, found[1].limbus.cov_q);
@@ -74,7 +74,7 @@ static double size_of(const struct limbus_found *f)
 void face_alike_pupils(struct limbus_found found[2], const struct photo *photo, const struct limbus_conf *conf)
 {
 	const double most = conf->face.far * conf->face.pupil_sigma;
-	if (!found[0].ok || !found[1].ok || !(found[0].has_pupil || found[1].has_pupil))
+	if (!limbus_usable(&found[0]) || !limbus_usable(&found[1]) || !(found[0].has_pupil || found[1].has_pupil))
 		return;
 	if (found[0].has_pupil && found[1].has_pupil && fabs(log(size_of(&found[1]) / size_of(&found[0]))) < most)
 		return;

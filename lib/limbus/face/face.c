@@ -75,7 +75,7 @@ static void settle(struct limbus_found *found, struct trials *t, double alone)
 	limbus_settle(found, t);
 	if (!found->ok && alone <= t->conf->max_gross && found->posterior.gross > t->conf->max_gross)
 		limbus_refuse(found, "its size contradicts the other eye's: light both eyes evenly and open them wide");
-	if (found->ok)
+	if (limbus_usable(found))
 		band_sample(&found->band, t->pyramid, &found->limbus);
 }
 
@@ -94,7 +94,7 @@ static bool both(struct limbus_found found[2], struct trials *first, const struc
 		face_alike_odds(first, second, &conf->face);
 		settle(&pair[0], first, alone[0]);
 		settle(&pair[1], second, alone[1]);
-		is = pair[1].ok || r->score >= conf->face.sure;
+		is = limbus_usable(&pair[1]) || r->score >= conf->face.sure;
 	}
 	if (is) {
 		face_alike_sizes(pair, &conf->face);

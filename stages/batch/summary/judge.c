@@ -35,7 +35,10 @@ static void judge_limbus(struct judging *j, const json_t *record, const struct s
 		j->score = fmax(j->score, 10);
 		return;
 	}
-	if (beyond(j, gross, conf->gross) && !record_number(record, "by_hand"))
+	if (!strcmp(record_text(record, "status"), "rough")) {
+		j->score = fmax(j->score, 2);
+		doubt(j, mem_printf("%s: known to %.2g %% only, and used for want of a better: %s", of, 100 * record_number(record, "known_to"), record_text(record, "reason")));
+	} else if (beyond(j, gross, conf->gross) && !record_number(record, "by_hand"))
 		doubt(j, mem_printf("%s: wrong with a chance of %.0f %%", of, 100 * gross));
 	if (beyond(j, theta, conf->theta_deg))
 		doubt(j, mem_printf("%s: tilt known to ± %.1f° alone", of, theta));

@@ -16,12 +16,6 @@ struct limbus_conf *answer_conf(void)
 	return &limbus_defaults;
 }
 
-double answer_named(const struct answer *a)
-{
-	const char *key = "limbus.tolerance = ", *at = a->ok ? 0 : strstr(a->reason, key);
-	return at ? strtod(at + strlen(key), 0) : 0;
-}
-
 double answer_right(void)
 {
 	return limbus_defaults.tolerance;
@@ -54,9 +48,10 @@ static struct eye eye_of(double aspect)
 static void fill(struct answer *out, const struct limbus_record *record)
 {
 	out->ok = record->ok;
+	out->rough = record->rough;
 	snprintf(out->reason, sizeof out->reason, "%s", record->reason);
 	out->e = record->guess;
-	if (!record->ok)
+	if (!record->ok && !(record->rough > 0))
 		return;
 	out->has_pupil = record->view.has_pupil;
 	out->pupil = record->view.pupil;

@@ -4,8 +4,11 @@
 #include "limbus/find.h"
 #include "tests/lib/unseen/unseen.h"
 
+#define ANSWER_ROUGH 0.04  // limbus.rough_used
+
 struct answer {
 	bool ok;
+	double rough;                // refused, but known to this share of a; 0: to none
 	char reason[256];
 	struct ellipse e;            // where it is refused, the likeliest one; a 0: none
 	bool has_pupil;
@@ -24,9 +27,6 @@ void answer_ours(struct answer *out, const struct photo *photo, double aspect);
 
 /* The same of a photograph that may show both eyes: returns how many; of two, out[0] is the person's left one. */
 int answer_face(struct answer out[2], const struct photo *photo, double aspect, bool mirrored);
-
-/* The limbus.tolerance that a refusal says would take the eye; 0: it names none, or the eye is taken. */
-double answer_named(const struct answer *a);
 
 /* The eye of the photograph that an ellipse is nearest to, by ellipse_apart over a. */
 const struct unseen_eye *answer_meant(const struct ellipse *got, const struct unseen *u);

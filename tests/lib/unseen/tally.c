@@ -51,22 +51,22 @@ void outcome_of(struct outcome *o, int number, const struct unseen *u)
 
 struct verdict verdict_of(const struct answer *a, const struct unseen *u)
 {
-	struct verdict v = { .ran = true, .ok = a->ok, .error = NAN, .share = NAN, .ratio = { NAN, NAN, NAN, NAN }, .tilt = NAN, .tilt_ratio = NAN,
+	struct verdict v = { .ran = true, .ok = a->ok, .rough = a->rough, .error = NAN, .share = NAN, .ratio = { NAN, NAN, NAN, NAN }, .tilt = NAN, .tilt_ratio = NAN,
 		.weak = NAN, .seconds = a->seconds, .e = a->e };
 	snprintf(v.reason, sizeof v.reason, "%.95s", a->reason);
-	if (!a->ok)
+	if (!a->ok && !(a->rough > 0))
 		return v;
 	const struct unseen_eye *eye = answer_meant(&a->e, u);
 	const struct ellipse *t = &eye->limbus;
 	v.error = ellipse_apart(&a->e, t);
 	v.share = v.error / t->a;
-	v.right = v.share <= answer_right();
+	v.right = a->ok && v.share <= answer_right();
 	v.has_pupil = a->has_pupil && eye->pupil.a > 0;  // of heads none is known
 	v.pupil_wrong = v.has_pupil && ellipse_apart(&a->pupil, &eye->pupil) > 0.1 * t->a;
 	const double off[4] = { a->e.cx - t->cx, a->e.cy - t->cy, a->e.a - t->a, a->e.b - t->b };
 	for (int k = 0; k < 4; k++)
 		v.ratio[k] = a->sigma[k] > 0 ? fabs(off[k]) / a->sigma[k] : NAN;
-	if (u->leans)
+	if (u->leans || !a->ok)
 		return v;
 	v.tilt = fabs(a->theta - eye->theta) / DEG;
 	v.tilt_ratio = fabs(a->theta - eye->theta) / a->theta_sigma;
@@ -87,7 +87,7 @@ static void push(double *x, int *n, double value)
 
 struct tally tally_make(int n, const struct outcome *o, int method, int bin)
 {
-	enum { ERROR, RATIO, TILT_RATIO, TILT, WEAK, SECONDS, LISTS };
+	enum { ERROR, RATIO, ROUGH_RATIO, TILT_RATIO, TILT, WEAK, SECONDS, LISTS };
 	double *list[LISTS];
 	int of[LISTS] = { 0 };
 	struct tally t = { 0 };
@@ -107,9 +107,13 @@ struct tally tally_make(int n, const struct outcome *o, int method, int bin)
 		t.refused += !v->ok;
 		t.half += half;
 		t.half_found += half && v->right;
+		const bool rough = !v->ok && v->rough > 0 && v->rough <= ANSWER_ROUGH;
+		t.rough += rough;
+		t.rough_off += rough && v->share > v->rough;
+		t.half_rough += half && rough && v->share <= v->rough;
 		push(list[ERROR], &of[ERROR], v->right ? v->error : NAN);
 		for (int k = 0; k < 4; k++)
-			push(list[RATIO], &of[RATIO], v->ok ? v->ratio[k] : NAN);
+			push(list[v->ok ? RATIO : ROUGH_RATIO], &of[v->ok ? RATIO : ROUGH_RATIO], v->ok || rough ? v->ratio[k] : NAN);
 		push(list[TILT_RATIO], &of[TILT_RATIO], v->ok ? v->tilt_ratio : NAN);
 		push(list[TILT], &of[TILT], v->right ? v->tilt : NAN);
 		push(list[WEAK], &of[WEAK], v->right ? v->weak : NAN);
@@ -117,6 +121,7 @@ struct tally tally_make(int n, const struct outcome *o, int method, int bin)
 	}
 	t.median_px = quantile(of[ERROR], list[ERROR], 0.5);
 	t.ratio90 = quantile(of[RATIO], list[RATIO], 0.9);
+	t.rough_ratio90 = quantile(of[ROUGH_RATIO], list[ROUGH_RATIO], 0.9);
 	t.tilt_ratio90 = quantile(of[TILT_RATIO], list[TILT_RATIO], 0.9);
 	t.tilt_median = quantile(of[TILT], list[TILT], 0.5);
 	t.weak_median = quantile(of[WEAK], list[WEAK], 0.5);
@@ -142,7 +147,7 @@ bool tally_csv(const char *path, int n, const struct outcome *o, int methods, co
 				continue;
 			fprintf(f, "%d,%s,%d,%d,%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.3f,%.3f,%.2f,%.2f,%s,%.3f,%.5f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.4f,\"%s\"\n",
 			        c->number, name[m], c->width, c->height, (int)c->maker, t->cx, t->cy, t->a, t->b, t->angle / DEG, c->eye.showing, c->opening,
-			        c->warmth, c->eye.theta / DEG, v->right ? "right" : v->ok ? "WRONG" : "refused", v->error, v->share, e->cx, e->cy, e->a, e->b,
+			        c->warmth, c->eye.theta / DEG, v->right ? "right" : v->ok ? "WRONG" : v->rough > 0 ? v->share <= v->rough ? "rough" : "rough, OFF" : "refused", v->error, v->share, e->cx, e->cy, e->a, e->b,
 			        e->angle / DEG, v->ratio[0], v->ratio[1], v->ratio[2], v->ratio[3], v->tilt, v->tilt_ratio, v->seconds, v->reason);
 		}
 	return fclose(f) == 0;

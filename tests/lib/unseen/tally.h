@@ -5,8 +5,9 @@
 
 struct verdict {
 	bool ran, ok, right;
+	double rough;          // not ok, but known to this share of a; 0: to none
 	bool has_pupil, pupil_wrong;  // wrong: off by more than a tenth of the limbus's a
-	double error, share;   // ellipse_apart px, and over the true a
+	double error, share;   // ellipse_apart px, and over the true a; of rough ones, too
 	double ratio[4];       // error over sigma of cx, cy, a, b; NAN: the method states no sigma
 	double tilt, tilt_ratio, weak;  // degrees off the true theta; over its sigma; the same of arccos(b / a)
 	double seconds;
@@ -31,8 +32,10 @@ struct verdict verdict_of(const struct answer *a, const struct unseen *u);
 
 struct tally {
 	int n, right, near, wrong, refused, half, half_found;  // near: within 5 % of a; half: with half of the limbus showing
+	int rough, rough_off, half_rough;  // refused, but known to at most ANSWER_ROUGH; of these off by more than they say; of half-showing ones, not off
 	int pupils, pupils_wrong;                         // of the right ones
 	double median_px, ratio90, tilt_ratio90, tilt_median, weak_median;  // error px: of right ones; ratios: of all that are ok
+	double rough_ratio90;                             // of all that are known roughly
 	double seconds;                                   // median
 };
 

@@ -40,6 +40,29 @@ static void what_is_written_is_read(void **state)
 	assert_float_equal(back.camera.distortion[3], -2e-3, 1e-12);
 }
 
+/* One that is known roughly is as usable, and says so; to nothing, or to all of it, none is. */
+static void a_rough_one_says_so(void **state)
+{
+	(void)state;
+	const char *path = scratch_path("fit.json");
+	struct fit fit = sample(), back;
+	struct err err = { 0 };
+	char *text = 0;
+	size_t size = 0;
+	fit.rough = 0.03;
+	strcpy(fit.reason, "soft");
+	assert_true(fit_save(&fit, path, "{\"stage\":\"limbus\"}", 0, &err));
+	assert_true(file_read(&text, &size, path, 1 << 20, &err));
+	assert_non_null(strstr(text, "\"status\": \"rough\""));
+	assert_true(fit_load(&back, path, &err));
+	assert_true(back.ok && back.rough == 0.03 && !strcmp(back.reason, "soft"));
+	free(text);
+	fit.rough = 1;
+	assert_true(fit_save(&fit, path, "{\"stage\":\"limbus\"}", 0, &err));
+	assert_false(fit_load(&back, path, &err));
+	assert_non_null(strstr(err.msg, "known_to"));
+}
+
 static void damaged_files_are_refused(void **state)
 {
 	(void)state;
@@ -115,6 +138,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		SCRATCH_TEST(what_is_written_is_read),
+		SCRATCH_TEST(a_rough_one_says_so),
 		SCRATCH_TEST(damaged_files_are_refused),
 		SCRATCH_TEST(large_pupil_is_refused),
 		cmocka_unit_test(rays_project_back),

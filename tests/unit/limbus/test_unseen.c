@@ -123,7 +123,7 @@ static void a_tolerance_that_is_named_is_taken(void **state)
 		struct unseen u = unseen_sized(11, i, 640, 480);
 		struct answer a;
 		answer_ours(&a, &u.photo, u.aspect);
-		const double at = answer_named(&a);
+		const double at = a.rough;
 		if (at > 0) {
 			named++;
 			answer_conf()->tolerance = at;
