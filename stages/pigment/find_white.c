@@ -142,6 +142,12 @@ static bool iris_shown(double out[CHROMA], const struct search *s, const struct 
 	return true;
 }
 
+/* How much the colour of white that was measured beside an eye counts. */
+static double trust(const struct white *white, const struct search *s)
+{
+	return 1 / (pow(white->spread, 2) + pow(s->conf->fellow.sigma, 2));
+}
+
 /* The colour of a face's white beside one eye, by that beside the other eye, too. */
 static void join(struct seen *out, const struct search *s, const struct capture_photo *p, const struct photo *photo, const double gain[3])
 {
@@ -150,7 +156,7 @@ static void join(struct seen *out, const struct search *s, const struct capture_
 	struct fit fit;
 	struct err err = { 0 };
 	struct pale_conf pale = s->conf->white.pale;
-	double theirs[3], own_chroma[CHROMA], chroma[CHROMA], iris[CHROMA], their_iris[CHROMA];
+	double theirs[3], own_chroma[CHROMA], their_chroma[CHROMA], chroma[CHROMA], theirs_joined[CHROMA], iris[CHROMA] = { 0 }, their_iris[CHROMA];
 	if (!other || !out->has_white || out->white.source != WHITE_SCLERA || !fit_load(&fit, stage_path(s->stage, "%s", other->fit), &err) || !fit.ok)
 		return;
 	json_t *texture = json_read(stage_path(s->stage, "%s/texture.json", s->capture->eyes[other->eye].iris), 1 << 22, &err);
@@ -162,12 +168,18 @@ static void join(struct seen *out, const struct search *s, const struct capture_
 	for (int k = 0; k < CHROMA && irises; k++)
 		iris[k] -= their_iris[k];
 	chroma_of(own_chroma, out->white.rgb);
-	chroma_of(chroma, fellow.white.rgb);
-	white_pair(chroma, own_chroma, chroma, irises ? iris : 0, &s->conf->fellow);
+	chroma_of(their_chroma, fellow.white.rgb);
+	white_pair(chroma, own_chroma, their_chroma, irises ? iris : 0, &s->conf->fellow);
+	for (int k = 0; k < CHROMA; k++)
+		iris[k] = -iris[k];
+	white_pair(theirs_joined, their_chroma, own_chroma, irises ? iris : 0, &s->conf->fellow);
+	// A person's two scleras are of one colour. What either shows beyond the white that both tell may be skin among it, the more so where it is uneven.
+	const double w = trust(&out->white, s), v = trust(&fellow.white, s);
 	for (int k = 0; k < 3; k += 2) {
-		const double was = out->white.rgb[k];
-		out->white.rgb[k] = out->white.rgb[1] * exp(chroma[k / 2]);
-		out->white.sclera[k] *= was / out->white.rgb[k];
+		const int c = k / 2;
+		const double beyond = (w * (own_chroma[c] - chroma[c]) + v * (their_chroma[c] - theirs_joined[c])) / (w + v);
+		out->white.rgb[k] = out->white.rgb[1] * exp(chroma[c]);
+		out->white.sclera[k] = out->white.sclera[1] * s->conf->white.sclera[k] / s->conf->white.sclera[1] * exp(beyond);
 	}
 	out->joined = true;
 }

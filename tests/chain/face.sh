@@ -27,6 +27,8 @@ check "the page has both, to be corrected by hand" sh -c "grep -q 'portrait\.lef
 for iris in iris iris_right; do
 	check "$iris: its white is that beside both eyes" grep -q '"both_eyes": true' "$face/work/$iris/pigment.json"
 done
+sclera() { tr -d ' \n' <"$face/work/$1/pigment.json" | sed 's/.*"sclera":\[\([^]]*\)\].*/\1/' | awk -F, '{ printf "%.6f %.6f", $1 / $2, $3 / $2 }'; }
+same "one person's scleras are of one colour" "$(sclera iris_right)" "$(sclera iris)"
 run_make "$face"
 same "a second make runs nothing" "$(ran)" ""
 
