@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/mem.h"
 #include "draw/eye/converge.h"
+#include "draw/photo/lids.h"
 #include "draw/studio.h"
 #include "render/render.h"
 
@@ -104,6 +105,7 @@ static struct image traced_in_photo(struct job *job, const struct shot *shot, st
 	struct scene_lighting light = scene_lighting_of(&shot->env, shot->n_lamps ? &lamps : 0, job->conf->lights, job->conf->light_directions);
 	struct image rgba = trace(job, view, &light);
 	shot_colour(&rgba, &job->scene);
+	shot_lids(&rgba, shot, &job->scene.eye);
 	envmap_free(&lamps);
 	return rgba;
 }

@@ -63,6 +63,9 @@ static void more_facts(json_t *list, struct page *page, const char *iris, const 
 		                              json_number_value(json_array_get(rgb, 2))));
 	else if (photo)
 		fact(list, "Light", page_text("its colour is not known: too little sclera is seen"));
+	const double shade = json_number_value(json_object_get(photo, "lid_shade"));
+	if (shade > 0.01)
+		fact(list, "Iris shaded", page_text("lids take %.0f %% of its light: given back", 100 * shade));
 	if (photo)
 		fact(list, "Iris hidden", page_text("%.0f %% by lids and lashes, %.0f %% by reflections: filled in",
 		                                    100 * json_number_value(json_object_get(photo, "lid_share")),

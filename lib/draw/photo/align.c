@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "draw/photo/photo.h"
+#include "draw/photo/lids.h"
 
 enum { TEXTURE_JSON_LIMIT = 1 << 22 };
 
@@ -62,7 +62,7 @@ bool shot_align(struct shot *shot, const char *texture_json, struct err *err)
 		double m[6];
 		if (!ok || !name || strcmp(name, shot->photo->name) || !json_object_get(entry, "photo_from_map"))
 			continue;
-		ok = json_get_array(m, 6, entry, "photo_from_map", texture_json, err)
+		ok = shot_lids_read(shot, entry, texture_json, err) && json_get_array(m, 6, entry, "photo_from_map", texture_json, err)
 		     && (align(shot, m) || err_set(err, "%s: photo_from_map of %s: must be near a turn", texture_json, name));
 	}
 	json_decref(json);

@@ -21,6 +21,8 @@ struct shot {
 	int n_lamps;
 	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view
 	double slip[2][3];               // as in struct scene_view
+	float *lids;                     // what lids left of the light on the iris there (lids.h), over the maps' square of that half-width, mm; null: all; owned by who aligns it
+	double lids_extent;
 };
 
 /* The photograph's own view. */

@@ -1,7 +1,10 @@
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "base/json.h"
+#include "base/mem.h"
+#include "image/plane.h"
 #include "iris/unrefract/unrefract.h"
 
 static const double deg = M_PI / 180;
@@ -17,6 +20,25 @@ static json_t *white_json(const struct balance *white)
 	json_object_set_new(json, "share", json_number(white->share));
 	json_object_set_new(json, "spread", json_number(white->spread));
 	return json;
+}
+
+/* What lids left of the light, red, green, blue, [3][UNREFRACT_LIDS][UNREFRACT_LIDS] of the map's square, to a thousandth. */
+static void put_lids(json_t *json, const struct unrefract_view *view)
+{
+	enum { N = UNREFRACT_LIDS };
+	const struct unrefract_survey *s = &view->survey;
+	const double(*m)[3] = view->iris.a, to = s->size / (2 * s->extent);
+	double *v = mem_array(3 * N * N, sizeof *v);
+	for (int c = 0; c < 3; c++)
+		for (int i = 0; i < N * N; i++) {
+			const double x = (i % N + 0.5) * 2 * s->extent / N - s->extent, y = (i / N + 0.5) * 2 * s->extent / N - s->extent;
+			const double u = m[0][0] * x + m[0][1] * y + m[0][2], w = m[1][0] * x + m[1][1] * y + m[1][2];
+			const double left = exp((double)plane_sample(s->shade + (long)c * s->size * s->size, s->size, s->size, (u + s->extent) * to, (w + s->extent) * to));
+			v[c * N * N + i] = round(1000 * fmin(left, 1)) / 1000;
+		}
+	json_object_set_new(json, "lid_light", json_numbers(3 * N * N, v));
+	json_object_set_new(json, "lid_light_extent_mm", json_number(s->extent));
+	free(v);
 }
 
 static json_t *view_json(const struct unrefract_view *view)
@@ -38,6 +60,9 @@ static json_t *view_json(const struct unrefract_view *view)
 	json_object_set_new(json, "px_per_mm", json_number(iris_view_px_per_mm(&view->iris)));
 	json_object_set_new(json, "lid_share", json_number(view->survey.lid_share));
 	json_object_set_new(json, "glint_share", json_number(view->survey.glint_share));
+	json_object_set_new(json, "lid_shade", json_number(view->survey.lid_shade));
+	if (view->survey.shade)
+		put_lids(json, view);
 	return json;
 }
 

@@ -8,6 +8,7 @@
 #include "image/mask.h"
 #include "image/plane.h"
 #include "iris/unrefract/lids.h"
+#include "iris/unrefract/shade.h"
 
 enum { OUTSIDE, IRIS, LID, GLINT, LASH };
 
@@ -51,10 +52,9 @@ static double lid_at(const double lid_t[SHEET_ANGLES], double phi)
 	return (1 - f) * lid_t[a % SHEET_ANGLES] + f * lid_t[(a + 1) % SHEET_ANGLES];
 }
 
-static void mark_lids(struct work *work, const struct unrefract_survey *survey, const float *seen, const struct told *told,
+static void mark_lids(struct work *work, double lid_t[SHEET_ANGLES], const struct unrefract_survey *survey, const float *seen, const struct told *told,
                       const struct sheet *sheet, const struct unrefract_conf *conf)
 {
-	double lid_t[SHEET_ANGLES];
 	take_logs(work, survey, seen, 0.06 / work->texel);
 	float *iris = told_iris(told, seen, (size_t)work->size * (size_t)work->size);
 	unrefract_lids(lid_t, (const float *const *)work->log, seen, iris, told->cover, sheet, conf);
@@ -222,6 +222,7 @@ void unrefract_mask(struct unrefract_survey *survey, const float *seen, const st
 	int size = survey->size;
 	size_t n = (size_t)size * (size_t)size;
 	struct work work = { .size = size, .texel = 2 * survey->extent / size };
+	double lid_t[SHEET_ANGLES];
 	for (int c = 0; c < 3; c++) {
 		work.log[c] = mem_array(n, sizeof(float));
 		work.white[c] = logf((float)fmax(white[c] / white[1], darkest));
@@ -235,10 +236,12 @@ void unrefract_mask(struct unrefract_survey *survey, const float *seen, const st
 			work.t[i] = (float)sheet_t(sheet, plane_mm(x, survey), plane_mm(y, survey));
 			work.kind[i] = seen[i] > 0 && work.t[i] > 0 && work.t[i] < 1 ? IRIS : OUTSIDE;
 		}
-	mark_lids(&work, survey, seen, told, sheet, conf);
+	mark_lids(&work, lid_t, survey, seen, told, sheet, conf);
 	mark_lashes(&work, survey, seen, conf);
 	mark_glints(&work, survey, seen, told, sheet, conf);
 	weigh(survey, &work, seen);
+	take_logs(&work, survey, survey->weight, 0.06 / work.texel);
+	unrefract_shade(survey, (const float *const *)work.log, work.t, lid_t, survey->weight, sheet, conf);
 	for (int c = 0; c < 3; c++)
 		free(work.log[c]);
 	free(work.t);

@@ -3,6 +3,7 @@
 
 #include "base/mem.h"
 #include "iris/unrefract/sample.h"
+#include "iris/unrefract/shade.h"
 #include "image/plane.h"
 
 int unrefract_size(int n, const struct unrefract_view views[], const struct eye *eye,
@@ -77,6 +78,13 @@ static float texel_weight(const struct unrefract_texture *texture, const struct 
 	return w * smooth_step(from_pupil / fmax(mm, conf->pupil_margin) + 0.5);
 }
 
+static void unshade(float rgb[3], const struct unrefract_texture *texture, const struct unrefract_view *view, int col, int row)
+{
+	const double mm = 2 * texture->extent / texture->rgbw.width, x = (col + 0.5) * mm - texture->extent, y = (row + 0.5) * mm - texture->extent;
+	const double(*a)[3] = view->iris.a;
+	unrefract_unshade(rgb, &view->survey, a[0][0] * x + a[0][1] * y + a[0][2], a[1][0] * x + a[1][1] * y + a[1][2]);
+}
+
 // A texel that spans less of a photo pixel than this, at the grazing limit, shows its neighbours' colours.
 static const double grazing = 0.2;
 
@@ -101,6 +109,8 @@ void unrefract_add(struct unrefract_texture *texture, const struct unrefract_vie
 				continue;
 			// a trace of weight, so that a texel of weight 0 has a colour too
 			float w = texel_weight(texture, &map, view, eye, col, row, ramp, conf) + 1e-6f;
+			if (view->survey.shade)
+				unshade(rgb + 3 * i, texture, view, col, row);
 			for (int c = 0; c < 3; c++)
 				out[c] += w * view->gain[c] * rgb[3 * i + c];
 			out[3] += w;

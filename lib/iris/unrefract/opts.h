@@ -33,6 +33,7 @@ static const char *const unrefract_methods[] = { "lattice", "newton", "algorithm
 	OPT_REAL("lid_z", &(c)->lid_z, 0.5, 10, "sigma", "outlier level of lids"), \
 	OPT_REAL("lid_told", &(c)->lid_told, 0, 10, "", "weight of what the network tells of lids"), \
 	OPT_REAL("lid_shadow", &(c)->lid_shadow, 0, 5, "", "log contrast of the shadow beside a lid"), \
+	OPT_REAL("lid_shade", &(c)->lid_shade, 0, 4, "mm", "how far a lid takes light from the iris"), \
 	OPT_REAL("lid_smooth", &(c)->lid_smooth, 0, 100, "", "stiffness of the lid's edge"), \
 	OPT_REAL("glint_z", &(c)->glint_z, 0.5, 20, "sigma", "outlier level of reflections"), \
 	OPT_REAL("glint_grow", &(c)->glint_grow, 0, 1, "mm", "margin round reflections"), \

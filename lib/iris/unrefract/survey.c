@@ -135,6 +135,7 @@ void unrefract_view_free(struct unrefract_view *view)
 {
 	free(view->survey.rgb);
 	free(view->survey.weight);
+	free(view->survey.shade);
 	free(view->survey.detail);
 	free(view->survey.sharp);
 	view->survey = (struct unrefract_survey){ 0 };

@@ -27,6 +27,7 @@ struct unrefract_conf {
 	double haze;              // share of the iris' own light that the sclera's may add there
 	double lid_z, lid_smooth; // standard score of a lid; stiffness of the lid's edge
 	double lid_told, lid_shadow;  // scores for a unit of the evidence's log odds; log contrast of a lid's shadow
+	double lid_shade;         // mm: how far at most a lid takes light from the iris below it; 0: that is left as it is
 	double glint_z, glint_grow, saturated;  // standard score of a reflection, its margin in mm, share of full scale
 	double lash_contrast, lash_width;       // log, mm
 	double foreshortening;    // exponent of a foreshortened texel's weight
@@ -34,6 +35,8 @@ struct unrefract_conf {
 	double correlation_min;   // photographs that correlate less are left out
 	bool polarised;           // cross-polarised photographs: without reflections of the cornea
 };
+
+enum { UNREFRACT_LIDS = 32 };  // places a side at which texture.json tells what lids leave of the light
 
 struct circle {
 	double cx, cy, r;  // iris plane, mm
@@ -49,9 +52,11 @@ struct unrefract_survey {
 	double extent;  // mm
 	float *rgb;     // [size][size][3], linear
 	float *weight;  // 0..1: share that is iris and well seen
+	float *shade;   // [3][size][size] logarithm of what lids leave of the light on it, red, green, blue, taken off rgb; null: all of it
 	float *detail;  // local contrast, zero mean, unit variance; null where there is one photograph alone
 	float *sharp;   // local energy of the finest structure seen; likewise
 	double lid_share, glint_share;  // of the iris
+	double lid_shade;               // share of the light on what is seen of it that lids take
 };
 
 struct unrefract_view {

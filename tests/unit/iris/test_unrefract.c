@@ -7,6 +7,8 @@
 #include "iris/iris_map.h"
 #include "iris/unrefract/unrefract.h"
 #include "image/exr.h"
+#include "image/plane.h"
+#include "math/stats.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/iris.h"
 #include "tests/lib/unit.h"
@@ -238,6 +240,78 @@ static void masks_against_labels(void **state)
 	}
 }
 
+/* Where lids were found to take a good part of the light: the median by which the logarithm of its green is off the painted iris, over what it is off where
+ * they take none. *n: such texels. */
+static double shaded_bias(int *n, const struct unrefract_texture *texture, const struct unrefract_view *view, const struct truth *truth, const struct image *painted,
+                          double extent, bool given_back)
+{
+	const struct unrefract_survey *s = &view->survey;
+	const long all = (long)painted->width * painted->height;
+	double *in = mem_array((size_t)all, sizeof *in), *out = mem_array((size_t)all, sizeof *out);
+	int n_in = 0, n_out = 0;
+	for (long i = 0; i < all && s->shade; i++) {
+		const double to = 2 * extent / painted->width, at[2] = { ((double)(i % painted->width) + 0.5) * to - extent, ((double)(i / painted->width) + 0.5) * to - extent };
+		double p[2];
+		truth_turn(p, truth, at);
+		const double u = (p[0] + texture->extent) / (2 * texture->extent) * texture->rgbw.width, v = (p[1] + texture->extent) / (2 * texture->extent) * texture->rgbw.width;
+		if (!(painted->px[4 * i + 3] > 0.9F) || u < 0 || v < 0 || u >= texture->rgbw.width || v >= texture->rgbw.width)
+			continue;
+		const float *px = image_at(&texture->rgbw, (int)u, (int)v);
+		const double k = s->size / (2 * s->extent);
+		const double shade = (double)plane_sample(s->shade + (long)s->size * s->size, s->size, s->size, (p[0] + s->extent) * k, (p[1] + s->extent) * k);
+		if (px[3] < 0.3F || px[1] < 1e-4F || painted->px[4 * i + 1] < 1e-3F)
+			continue;
+		const double off = log((double)px[1] / (double)painted->px[4 * i + 1]) + (given_back ? 0 : shade);
+		if (shade < -0.3)
+			in[n_in++] = off;
+		else if (shade > -1e-6)
+			out[n_out++] = off;
+	}
+	const double bias = n_in && n_out ? stats_median(n_in, in) - stats_median(n_out, out) : NAN;
+	*n = n_in;
+	free(in);
+	free(out);
+	return bias;
+}
+
+/* Path-traced lids: what they take is given back; where the renderer let light through them nothing is. */
+static void lids_give_their_light_back(void **state)
+{
+	(void)state;
+	char *dirs[CAPTURES];
+	int n = truth_captures(dirs, CAPTURES), shaded = 0;
+	for (int i = 0; i < n; i++) {
+		struct err err = { 0 };
+		struct truth truth;
+		struct image painted;
+		double extent;
+		const char *name = strrchr(dirs[i], '/') + 1;
+		const bool lids = !strncmp(name, "G08", 3) || !strncmp(name, "L0", 2);
+		if (lids && truth_load(&truth, dirs[i], &err) && iris_painted(&painted, &extent, &truth, dirs[i], 256)) {
+			struct fit fit;
+			struct unrefract_view view;
+			struct unrefract_texture texture = texture_of(&truth, &fit, &view);
+			int texels;
+			const double was = shaded_bias(&texels, &texture, &view, &truth, &painted, extent, false), is = shaded_bias(&texels, &texture, &view, &truth, &painted, extent, true);
+			if (*name == 'G')
+				assert_null(view.survey.shade);  // lit evenly from all sides
+			if (texels > 500) {
+				print_message("%s: %d texels, %.2f off, %.2f with the light given back\n", name, texels, was, is);
+				assert_true(fabs(is) < 0.5 * fabs(was) + 0.05);
+				shaded++;
+			}
+			image_free(&painted);
+			image_free(&texture.rgbw);
+			unrefract_view_free(&view);
+		}
+		free(dirs[i]);
+	}
+	if (!shaded) {
+		print_message("no rendered captures with shaded lids here: skipped\n");
+		skip();
+	}
+}
+
 /* Photographs of one eye, each in an eye frame turned by its own camera's roll: the turns are found again, and points
  * of one land on the same point of another. */
 static void photographs_meet(void **state)
@@ -325,6 +399,7 @@ int main(void)
 		cmocka_unit_test(flat_limit),      cmocka_unit_test(paraxial),
 		cmocka_unit_test(round_trip),      cmocka_unit_test(lattice_is_exact),
 		cmocka_unit_test(against_renderer), cmocka_unit_test(masks_against_labels),
+		cmocka_unit_test(lids_give_their_light_back),
 		cmocka_unit_test(photographs_meet), cmocka_unit_test(threads_do_not_matter),
 	};
 	plain = iris_unrefract_conf("review");
