@@ -126,7 +126,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	long n = (long)work->size * work->size;
 	float *weight = mem_array((size_t)n, sizeof *weight), *z = mem_array((size_t)n, sizeof *z);
 	uint8_t *glint = mem_new((size_t)n, 1);
-	const float told_z = 0.7f;  // of the level: what the network takes for a reflection is only to be brighter than its ring
+	const float told_z = 0.3f, told_p = 0.3f;  // of the level: what the network takes for a reflection, with that chance, is only to be brighter than its ring
 	iris_weight(weight, work, seen);
 	for (long i = 0; i < n && told->mirror; i++)
 		weight[i] *= 1 - told->mirror[i];
@@ -140,7 +140,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	for (long i = 0; i < n; i++) {
 		const float *rgb = survey->rgb + 3 * i;
 		float mirror = told->mirror ? told->mirror[i] : 0;
-		bool is_told = mirror > 0.7f;
+		bool is_told = mirror > told_p;
 		bool here = seen[i] > 0 && work->t[i] > -0.05f && (work->t[i] < 0.9f || is_told);  // beyond: the limbus' haze
 		// a yellow fleck may saturate red; a light saturates nearly all
 		bool full = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) > (float)conf->saturated
