@@ -36,13 +36,15 @@ const leaves = (() => {
 		});
 		for (const name of Object.keys(out))
 			out[name] = Math.min(1, Math.max(0, out[name]));
-		for (const side of ["Left", "Right"]) {  // lib/rig/glb/halves.h, turned.h
-			const blink = out[`eyeBlink${side}`], half = 4 * blink * (1 - blink);
-			out[`eyeBlink${side}_half`] = half;
-			for (const [way, look] of [["down", out[`eyeLookDown${side}`]], ["up", out[`eyeLookUp${side}`]]])
-				Object.assign(out, { [`eyeBlink${side}_${way}`]: blink * look, [`eyeBlink${side}_${way}_half`]: half * look });
-		}
 		return Object.assign(out, expressions);
+	}
+
+	/* Weights of a mesh's targets that others drive, as its file says: "w v", "4 w (1 - w)" or "4 w (1 - w) v" (lib/rig/glb/bake.h). */
+	function driven(mesh, weights) {
+		return Object.fromEntries((mesh.extras.drivenTargets || []).map(d => {
+			const w = weights[d.by] || 0, v = d.and ? weights[d.and] || 0 : 1;
+			return [d.target, (d.weight.startsWith("4 w") ? 4 * w * (1 - w) : w) * v];
+		}));
 	}
 
 	/* Of a pupil so wide (mm), whose mesh was made with one of `own`: towards 1 or 8 mm. */
@@ -51,8 +53,10 @@ const leaves = (() => {
 	function weigh(json, weights, pupil) {
 		for (const mesh of json.meshes) {
 			const names = mesh.extras && mesh.extras.targetNames || [], own = mesh.extras && mesh.extras.pupil_mm, of = own ? pupil_weights(own, pupil) : weights;
-			if (names.length)
-				mesh.weights = names.map(name => of[name] || 0);
+			if (names.length) {
+				const all = { ...of, ...driven(mesh, of) };
+				mesh.weights = names.map(name => all[name] || 0);
+			}
 		}
 	}
 

@@ -46,7 +46,7 @@ if (expressions.length)
 			const d = await b.value(`depths("${side}")`, 120000);
 			console.log(`depth ${side} alone ${d.alone.map(x => x.toFixed(3)).join(" ")} both ${d.both.map(x => x.toFixed(3)).join(" ")} of ${d.n}`);
 			for (const [name, look, v] of [["down", "eyeLookDown", -20], ["up", "eyeLookUp", 20]]) {
-				const t = await b.value(`depths("${side}", "${look}", ${v})`, 120000);
+				const t = await b.value(`depths("${side}", "${look}${side === "left" ? "Left" : "Right"}", "${name}", ${v})`, 120000);
 				console.log(`turned ${side} ${name} blink ${t.both.map(x => x.toFixed(3)).join(" ")} open ${t.open.toFixed(3)} of ${t.n}`);
 			}
 		}

@@ -3,7 +3,7 @@ import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 
-const SIZE = 512, FIELD = 0.045;  // m across, round one eye
+const SIZE = 512, STEP = 16, FIELD = 0.045;  // m across, round one eye
 
 function bytes(url) {
 	return new Promise((resolve, reject) => {
@@ -146,7 +146,7 @@ function patches(kind) {
 	return out;
 }
 
-function pixels(side, aside, haired) {
+function pixels(side, aside, haired, kinds = false) {
 	const target = new THREE.WebGLRenderTarget(SIZE, SIZE, { depthBuffer: true }), px = new Uint8Array(4 * SIZE * SIZE);
 	dress(true, haired);
 	const environment = scene.environment;
@@ -166,12 +166,52 @@ function pixels(side, aside, haired) {
 		kind.push(k);
 		n[k]++;
 	}
-	return haired ? n : { ...n, ...patches(kind) };
+	return kinds ? kind : haired ? n : { ...n, ...patches(kind) };
 }
 
 window.seen = (weights, turn, side, aside) => {
 	pose(weights, turn);
 	return counted(side, aside);
+};
+
+/* How many surfaces of skin that look at the camera lie over each other in each pixel, before the eye's centre, and in which pixels the eye is seen. */
+function layers(side) {
+	const target = new THREE.WebGLRenderTarget(SIZE, SIZE, { depthBuffer: false }), px = new Uint8Array(4 * SIZE * SIZE), camera = before(side, 0), was = new Map();
+	const each = new THREE.MeshBasicMaterial({ color: new THREE.Color().setRGB(STEP / 255, 0, 0), blending: THREE.CustomBlending, blendSrc: THREE.OneFactor, blendDst: THREE.OneFactor,
+		depthTest: false, depthWrite: false, transparent: true, toneMapped: false });
+	camera.far = 0.5;
+	camera.updateProjectionMatrix();
+	face.traverse(o => {
+		if (!o.isMesh)
+			return;
+		was.set(o, [o.visible, o.material]);
+		o.visible = !o.userData.behind && !hair.test(o.name) && !wet.test(o.name) && !/^eye_(left|right)_/.test(o.name);
+		o.material = each;
+	});
+	renderer.setRenderTarget(target);
+	renderer.setClearColor(0, 1);
+	renderer.clear();
+	renderer.render(scene, camera);
+	renderer.readRenderTargetPixels(target, 0, 0, SIZE, SIZE, px);
+	renderer.setRenderTarget(null);
+	target.dispose();
+	each.dispose();
+	was.forEach(([visible, material], o) => Object.assign(o, { visible, material }));
+	return Array.from({ length: SIZE * SIZE }, (_, i) => Math.round(px[4 * i] / STEP));
+}
+
+/* How far a pose's lids lie over each other where the pose `open` shows the eye, mm: by column of that opening, the mean and the most. */
+window.over = (weights, open, turn, side) => {
+	pose(open, turn);
+	const kind = pixels(side, 0, false, true);
+	pose(weights, turn);
+	const n = layers(side), mm = 1000 * FIELD / SIZE, by = new Map();
+	kind.forEach((k, i) => {
+		if (k === "eye")
+			by.set(i % SIZE, (by.get(i % SIZE) || 0) + (n[i] > 1 ? mm : 0));
+	});
+	const all = [...by.values()];
+	return { mean: all.reduce((a, b) => a + b, 0) / all.length, most: Math.max(...all), hist: n.reduce((h, x, i) => { if (kind[i] === "eye") h[x] = (h[x] || 0) + 1; return h; }, {}) };
 };
 
 /* How far out an eye's surface is from its centre, by direction: a grid over the plane before it (gnomonic), the outermost of sclera and cornea. Of the
@@ -236,11 +276,11 @@ function samples_of(mesh, node, near) {
 }
 
 /* How deep in an eye skin lies on the way of a blink, mm, that is outside at both of its ends: at weights 0.25, 0.5, 0.75 of the blink's target, by
- * itself and with the one that goes with it. look: a target that goes with all of it, of an eye turned up by v degrees; then what counts is skin outside the eye that
- * looks ahead, open and shut, and open: how deep it is without the blink. */
-window.depths = (side, look = null, v = 0) => {
+ * itself and with the one that goes with it. along: a target that goes with all of it, a look of an eye turned up by v degrees or an expression, whose name
+ * in those of what the blink lacks then is `way`; then what counts is skin outside the eye that looks ahead, open and shut, and open: how deep it is without the blink. */
+window.depths = (side, along = null, way = "", v = 0) => {
 	const eye = eyes[`eye_${side}`], which = side === "left" ? "Left" : "Right", name = `eyeBlink${which}`, out = { alone: [0, 0, 0], both: [0, 0, 0], open: 0, n: 0 };
-	const along = look ? { [look + which]: 1 } : {}, way = look && `${name}_${look.slice(7).toLowerCase()}`, and = w => look ? { [way]: w, [`${way}_half`]: 4 * w * (1 - w) } : {};
+	const with_it = along ? { [along]: 1 } : {}, and = w => along ? { [`${name}_${way}`]: w, [`${name}_${way}_half`]: 4 * w * (1 - w) } : {};
 	pose({}, [0, 0]);
 	face.updateMatrixWorld(true);
 	const surface = surface_of(eye.node), mm = 1000 * eye.node.getWorldScale(new THREE.Vector3()).x;
@@ -254,7 +294,7 @@ window.depths = (side, look = null, v = 0) => {
 		};
 		const ends = [off({}, 0), off({ [name]: 1 }, 0)], outside = ends[0].map((d, i) => Math.min(d, ends[1][i]) > -0.03 && Math.min(d, ends[1][i]) < 5);
 		out.n += outside.filter(o => o).length;
-		const deepest = (weights, was) => off({ ...along, ...weights }, v).reduce((most, d, i) => outside[i] && -d > most ? -d : most, was);
+		const deepest = (weights, was) => off({ ...with_it, ...weights }, v).reduce((most, d, i) => outside[i] && -d > most ? -d : most, was);
 		out.open = deepest({}, out.open);
 		[0.25, 0.5, 0.75].forEach((w, k) => {
 			out.alone[k] = deepest({ [name]: w }, out.alone[k]);

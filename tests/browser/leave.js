@@ -76,6 +76,9 @@ async function face(b) {
 	say(of("eyeBlinkLeft_half") === 0 && near(of("eyeBlinkRight_half"), 0.64, 1e-6), "with what they are between open and shut", JSON.stringify(skin.weights));
 	say(near(of("eyeLookOutLeft"), 0.4, 1e-6) && near(of("eyeLookInRight"), 0.4, 1e-6) && of("eyeLookInLeft") === 0 && near(of("eyeLookDownLeft"), 0.25, 1e-6), "with its gaze", JSON.stringify(skin.weights));
 	say(await b.value("data.face.expressions[0].name").then(n => near(of(n), 0.5, 1e-6)), "with its expression", JSON.stringify(skin.extras.targetNames));
+	const expression = await b.value("data.face.expressions[0].name"), [left, right] = ["Left", "Right"].map(side => `eyeBlink${side}_${expression}`);
+	say(!skin.extras.targetNames.includes(left) || near(of(left), 0.5, 1e-6) && near(of(right), 0.1, 1e-6), "and with what its blinks lack then", JSON.stringify(skin.extras.drivenTargets));
+	say(near(of("eyeBlinkRight_down"), 0.2 * of("eyeLookDownRight"), 1e-6) && of("eyeBlinkRight_down") > 0, "looking down, too", JSON.stringify(skin.weights));
 	const lashes = j.meshes.find(m => m.name === "lashes");
 	say(!lashes || weight(lashes, "eyeBlinkLeft") === 1, "its lashes go with the lids", "");
 	const was = opened(Buffer.from(await b.value("document.getElementById('glb-face').textContent.trim()"), "base64")), node = (of_file, side) => of_file.nodes.find(n => n.name === side);

@@ -212,7 +212,10 @@ void glb_bake_free(struct glb_bake *b)
 	free(b->pose_lean);
 	free(b->hair_target);
 	free(b->hair_pose);
+	for (int k = 0; k < b->n_poses; k++)
+		free(b->pose_name[k]);
 	free(b->pose_name);
+	free(b->driven);
 	free(b->turn[0]);
 	free(b->turn[1]);
 	*b = (struct glb_bake){ 0 };

@@ -9,7 +9,7 @@
 
 enum { STEPS = 8, NEAR_END = 2, ROUNDS = 2 };  // nearer than that to an end, faces would need much of a target that hardly moves there
 static const double lining_mm = 0.3;    // of an eyeball of 12 mm: lids are five times as thick, and two targets add up
-static const double outside_mm = 0.01;  // what lies deeper at an end lines the lid: it may be in the eye
+static const double outside_mm = 0.2;   // what lies deeper at an end lines the lid: it may go deeper on the way, too
 
 /* Skin, its normals and hairs, one behind the other: displacements from rest. */
 struct stack {
@@ -71,10 +71,16 @@ static void find_ends(double *ends, const struct poser *p, const struct glb_bake
 	}
 }
 
+/* How much further off the eye than in its pose x a vertex has to be: as far as at its ends. */
+static double lack_of(const struct poser *p, int vertex, const float x[3], double ends)
+{
+	return fmin(ends, DEFORM_CLEAR_MM) - distance(p, vertex, x);
+}
+
 /* A vertex in its pose x, away from the eye's centre until it is as far off as it has to be. */
 static void lift(float x[3], const struct poser *p, int vertex, double ends)
 {
-	const double lack = fmin(fmax(ends, 0), DEFORM_CLEAR_MM) - distance(p, vertex, x);
+	const double lack = lack_of(p, vertex, x, ends);
 	double d[3];
 	for (int c = 0; c < 3; c++)
 		d[c] = x[c] - p->rig->globe[p->rig->side[vertex]].center[c];
@@ -131,6 +137,20 @@ void glb_clear_way(float *half, struct poser *p, const struct glb_bake *b, const
 	free(given);
 }
 
+double glb_way_lacks(const float *half, const struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
+{
+	double *ends = mem_new((size_t)b->n + 1, sizeof *ends), most = 0;
+	find_ends(ends, p, b, from, blink, eye);
+	for (int step = 1; step < STEPS; step++)
+		for (int i = 0; i < b->n; i++) {
+			float x[3];
+			on_the_way(x, p->rig, b, i, from, blink, half, (double)step / STEPS);
+			most = isfinite(ends[i]) ? fmax(most, lack_of(p, b->vertex[i], x, ends[i])) : most;
+		}
+	free(ends);
+	return most;
+}
+
 void glb_take_halves(struct glb_bake *b, struct poser *p)
 {
 	const size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair;
@@ -143,7 +163,8 @@ void glb_take_halves(struct glb_bake *b, struct poser *p)
 		const float *blink = b->pose + (size_t)eye * row;
 		float *half = mem_new(s.all + 1, sizeof *half), *skin = b->pose + at * row, *lean = b->pose_lean + at * row, *hairs = b->hair_pose + at * hair;
 		fit(half, p, b, &s);
-		b->pose_name[at] = glb_half_names[eye];
+		b->pose_name[at] = mem_str(glb_half_names[eye]);
+		b->driven[at] = (struct glb_driven){ eye, -1, true };
 		for (size_t i = 0; i < row; i++) {
 			const float share = poser_own_side(p, eye, p->rig->rest[b->vertex[i / 3]]);
 			skin[i] = share * half[i];

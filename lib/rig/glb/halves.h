@@ -12,8 +12,11 @@ static inline double glb_half_weight(double w)
 }
 
 /* Moves skin, by a target half[bake.n][3] of that weight, out of the eye (poser.turn) on the way of another one, blink, from a pose `from` (null: from rest): what is
- * outside at both ends. */
+ * outside at both ends, and what lies in it by a little there goes no deeper. */
 void glb_clear_way(float *half, struct poser *poser, const struct glb_bake *bake, const float *from, const float *blink, int eye);
+
+/* By how much, at worst, mm, a vertex of that skin comes nearer to the eye on that way than it is at both ends. */
+double glb_way_lacks(const float *half, const struct poser *poser, const struct glb_bake *bake, const float *from, const float *blink, int eye);
 
 /* Fills the bake's last GLB_HALVES poses: by least squares over the way of each blink's target from rest to shut, then outwards as far as skin that is
  * outside the eye at both ends needs to be so on the way. The blinks are the bake's first poses. */

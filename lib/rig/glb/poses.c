@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "rig/drive.h"
 #include "rig/glb/halves.h"
+#include "rig/glb/mixed.h"
 #include "rig/glb/turned.h"
 
 /* Displacements of one pose: of skin, of its normals, of hairs. */
@@ -60,11 +61,13 @@ static void pose_controls(double *c, const struct rig *rig, int k)
 
 void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *conf)
 {
-	const size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair, all = (size_t)(GLB_POSES + conf->n_expressions + GLB_TURNED + GLB_HALVES);
+	const size_t row = 3 * (size_t)b->n, hair = 3 * (size_t)b->n_hair;
+	const size_t all = (size_t)(GLB_POSES + conf->n_expressions + glb_most_mixed(conf->n_expressions) + GLB_TURNED + GLB_HALVES);
 	double *c = mem_new((size_t)p->rig->n_inputs + 1, sizeof *c), turn[2][3][3];
 	struct posed still = posed_new(b), ahead = posed_new(b), now = posed_new(b);
 	b->n_poses = (int)all;
 	b->pose_name = mem_new(all, sizeof *b->pose_name);
+	b->driven = mem_new(all, sizeof *b->driven);
 	b->pose = mem_new(all * row + 1, sizeof *b->pose);
 	b->pose_lean = mem_new(all * row + 1, sizeof *b->pose_lean);
 	b->hair_pose = mem_new(all * hair + 1, sizeof *b->hair_pose);
@@ -73,11 +76,13 @@ void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *
 	drive_look(c, p->rig, 0, 0, 1);
 	poser_pose(p, c, turn);
 	posed_take(&ahead, p, b);
-	for (int k = 0; k < b->n_poses - GLB_HALVES - GLB_TURNED; k++) {
+	for (int k = 0; k < b->n_poses; k++)
+		b->driven[k] = (struct glb_driven){ -1, -1, false };
+	for (int k = 0; k < GLB_POSES + conf->n_expressions; k++) {
 		const int eye = k < GLB_POSES ? k % 2 : -1;
 		const bool lifts = k >= 2 && k < 6;  // glb_pose_names
 		const struct posed *from = k < 2 ? &still : &ahead;
-		b->pose_name[k] = k < GLB_POSES ? glb_pose_names[k] : conf->expression[k - GLB_POSES];
+		b->pose_name[k] = mem_str(k < GLB_POSES ? glb_pose_names[k] : conf->expression[k - GLB_POSES]);
 		pose_controls(c, p->rig, k);
 		poser_pose(p, c, turn);
 		posed_take(&now, p, b);
@@ -87,6 +92,7 @@ void glb_take_poses(struct glb_bake *b, struct poser *p, const struct glb_conf *
 	}
 	glb_take_halves(b, p);
 	glb_take_turned(b, p);
+	glb_take_mixed(b, p, conf->n_expressions);
 	posed_free(&still);
 	posed_free(&ahead);
 	posed_free(&now);

@@ -57,11 +57,11 @@ static void part_free(struct part *p)
 	free(p->wedge);
 }
 
-static json_t *mesh_of(const struct part *p)
+static json_t *mesh_of(const struct part *p, const struct glb_bake *bake)
 {
 	json_t *name = json_string(p->name);
 	json_t *mesh = json_pack("{s:o,s:O}", "name", name ? name : json_string("mesh"), "primitives", p->primitives);
-	glb_targets_put(&p->targets, mesh);
+	glb_targets_put(&p->targets, mesh, bake);
 	if (json_array_size(p->zero))
 		json_object_set(json_object_get(mesh, "extras"), "zeroTargets", p->zero);
 	return mesh;
@@ -103,7 +103,7 @@ void glb_skin_make(struct glb_skin *skin, struct glb_buffer *g, const struct rig
 		skin_put_zero(&m, &parts[face]);
 	for (int i = 0; i < skin->n; i++) {
 		skin->all[i] = (int)json_array_size(parts[i].targets.list);
-		json_array_append_new(skin->meshes, mesh_of(&parts[i]));
+		json_array_append_new(skin->meshes, mesh_of(&parts[i], bake));
 		part_free(&parts[i]);
 	}
 	skin_put_materials(skin, g, look, rig_own_faces(rig) < rig->n_faces, conf);

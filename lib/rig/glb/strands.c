@@ -127,7 +127,7 @@ void strands_put_mesh(struct glb_skin *skin, struct glb_buffer *g, const struct 
 	double *gain = skin->gain[skin->n] = mem_new((size_t)b->n_targets + 1, sizeof *gain);
 	struct glb_targets targets = targets_of(gain, g, b, first, n, skin->unit);
 	skin->ours[skin->n] = b->n_targets > 0;
-	skin->all[skin->n++] = glb_targets_put(&targets, mesh);
+	skin->all[skin->n++] = glb_targets_put(&targets, mesh, b);
 	json_array_append_new(skin->meshes, mesh);
 	glb_targets_free(&targets);
 }

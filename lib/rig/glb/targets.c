@@ -137,27 +137,35 @@ void glb_targets_add_zero(struct glb_targets *t, struct glb_buffer *g, const cha
 		append(t, names[i], zero, normals ? zero : -1);
 }
 
-/* Which of the targets are driven by others, and how: for those who rig the file by hand. Null where none is. */
-static json_t *driven_of(const json_t *names)
+static bool there(const json_t *names, const char *name)
 {
-	json_t *list = json_array(), *name;
+	const json_t *at;
 	size_t i;
-	for (int k = 0; k < GLB_HALVES; k++)
-		json_array_foreach(names, i, name)
-			if (!strcmp(json_string_value(name), glb_half_names[k]))
-				json_array_append_new(list, json_pack("{s:s,s:s,s:s}", "target", glb_half_names[k], "by", glb_pose_names[k], "weight", "4 w (1 - w)"));
-	for (int k = 0; k < GLB_TURNED; k++)
-		json_array_foreach(names, i, name)
-			if (!strcmp(json_string_value(name), glb_turned_names[k]))
-				json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:s}", "target", glb_turned_names[k], "by", glb_pose_names[k % 2], "and",
-				                                      glb_pose_names[glb_turned_look(k)], "weight", k < GLB_TURNED_LOOKS ? "w v" : "4 w (1 - w) v"));
+	json_array_foreach(names, i, at)
+		if (!strcmp(json_string_value(at), name))
+			return true;
+	return false;
+}
+
+/* Which of the targets are driven by others, and how: for those who rig the file by hand; halves of blinks first. Null where none is. */
+static json_t *driven_of(const json_t *names, const struct glb_bake *b)
+{
+	json_t *list = json_array();
+	for (int k = 0; k < b->n_poses; k++) {
+		const int pose = (k + b->n_poses - GLB_HALVES) % b->n_poses;
+		const struct glb_driven *d = &b->driven[pose];
+		if (d->by < 0 || !there(names, b->pose_name[pose]))
+			continue;
+		json_array_append_new(list, json_pack("{s:s,s:s,s:s*,s:s}", "target", b->pose_name[pose], "by", b->pose_name[d->by], "and", d->and < 0 ? 0 : b->pose_name[d->and],
+		                                      "weight", d->half ? d->and < 0 ? "4 w (1 - w)" : "4 w (1 - w) v" : "w v"));
+	}
 	if (json_array_size(list))
 		return list;
 	json_decref(list);
 	return 0;
 }
 
-int glb_targets_put(const struct glb_targets *t, json_t *mesh)
+int glb_targets_put(const struct glb_targets *t, json_t *mesh, const struct glb_bake *bake)
 {
 	const size_t n = json_array_size(t->list);
 	json_t *primitive, *weights = json_array();
@@ -168,7 +176,7 @@ int glb_targets_put(const struct glb_targets *t, json_t *mesh)
 		json_array_foreach(json_object_get(mesh, "primitives"), i, primitive)
 			json_object_set(primitive, "targets", t->list);
 		json_object_set(mesh, "weights", weights);
-		json_object_set_new(mesh, "extras", json_pack("{s:O,s:o*}", "targetNames", t->names, "drivenTargets", driven_of(t->names)));
+		json_object_set_new(mesh, "extras", json_pack("{s:O,s:o*}", "targetNames", t->names, "drivenTargets", driven_of(t->names, bake)));
 	}
 	json_decref(weights);
 	return (int)n;

@@ -31,7 +31,7 @@ void glb_targets_add(struct glb_targets *targets, struct glb_buffer *buffer, con
 /* Appends one that moves nothing, n_names times, each by its name. normals: it says so of normals, too. */
 void glb_targets_add_zero(struct glb_targets *targets, struct glb_buffer *buffer, const char *const *names, int n_names, bool normals, int n);
 
-/* Sets the targets of a mesh's primitives, its weights (0) and in extras the targets' names, and which are driven by others (halves.h); nothing where there are none. Returns how many. */
-int glb_targets_put(const struct glb_targets *targets, json_t *mesh);
+/* Sets the targets of a mesh's primitives, its weights (0) and in extras the targets' names, and which are driven by others (bake.h); nothing where there are none. Returns how many. */
+int glb_targets_put(const struct glb_targets *targets, json_t *mesh, const struct glb_bake *bake);
 
 #endif

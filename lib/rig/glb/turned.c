@@ -30,7 +30,8 @@ void glb_take_turned(struct glb_bake *b, struct poser *p)
 		poser_pose(p, c, turn);
 		poser_skin(x, n, p, b->n, b->vertex);
 		poser_hair(h, p);
-		b->pose_name[at] = glb_turned_names[k];
+		b->pose_name[at] = mem_str(glb_turned_names[k]);
+		b->driven[at] = (struct glb_driven){ (int)eye, (int)look, false };
 		lack(b->pose + at * row, x, b->pose + eye * row, b->pose + look * row, b->n, own);
 		lack(b->pose_lean + at * row, n, b->pose_lean + eye * row, b->pose_lean + look * row, b->n, own);
 		lack(b->hair_pose + at * hairs, h, b->hair_pose + eye * hairs, b->hair_pose + look * hairs, b->n_hair, own_hair);
@@ -45,7 +46,8 @@ void glb_take_turned(struct glb_bake *b, struct poser *p)
 		glb_clear_way(round, p, b, b->pose + look * row, x, (int)eye);
 		for (size_t i = 0; i < row; i++)
 			round[i] -= half[i];
-		b->pose_name[way] = glb_turned_names[k + GLB_TURNED_LOOKS];
+		b->pose_name[way] = mem_str(glb_turned_names[k + GLB_TURNED_LOOKS]);
+		b->driven[way] = (struct glb_driven){ (int)eye, (int)look, true };
 	}
 	free(c);
 	free(x);

@@ -177,6 +177,37 @@ static void a_blink_of_its_own(void **state)
 	scratch_close();
 }
 
+/* What a blink lacks in an expression is a target of every mesh, and says whose weights it goes with. */
+static void blinks_in_expressions_are_listed(void **state)
+{
+	struct made *m = *state;
+	struct err err = { 0 };
+	scratch_open();
+	const char *path = scratch_path("face.glb");
+	assert_true(put(m, path, 0, 0, &err));
+	json_t *root = json_of(path);
+	for (size_t i = 0; i < 4; i++) {
+		json_t *extras = json_object_get(json_array_get(json_object_get(root, "meshes"), i), "extras"), *names = json_object_get(extras, "targetNames"), *target;
+		size_t k, found = 0;
+		json_array_foreach(json_object_get(extras, "drivenTargets"), k, target) {
+			const char *name = json_string_value(json_object_get(target, "target"));
+			bool there = false;
+			for (size_t j = 0; j < json_array_size(names); j++)
+				there = there || !strcmp(json_string_value(json_array_get(names, j)), name);
+			assert_true(there);
+			if (strcmp(name, "eyeBlinkRight_squint"))
+				continue;
+			assert_string_equal(json_string_value(json_object_get(target, "by")), "eyeBlinkRight");
+			assert_string_equal(json_string_value(json_object_get(target, "and")), "squint");
+			assert_string_equal(json_string_value(json_object_get(target, "weight")), "w v");
+			found++;
+		}
+		assert_int_equal(found, 1);
+	}
+	json_decref(root);
+	scratch_close();
+}
+
 /* The end of a node's name decides what it is. */
 static json_t *named(json_t *nodes, const char *name)
 {
@@ -251,6 +282,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(container),
 		cmocka_unit_test(a_blink_of_its_own),
+		cmocka_unit_test(blinks_in_expressions_are_listed),
 		cmocka_unit_test(khronos_validator_finds_nothing),
 		cmocka_unit_test(eyes_in_their_sockets),
 		cmocka_unit_test(no_eye_no_file),

@@ -118,7 +118,7 @@ static void what_does_not_move_takes_no_room(void **state)
 	assert_int_equal(g.size, 0);
 	assert_null(json_object_get(json_array_get(g.accessors, 0), "sparse"));
 	json_t *mesh = json_pack("{s:[{}]}", "primitives");
-	assert_int_equal(glb_targets_put(&t, mesh), 1);
+	assert_int_equal(glb_targets_put(&t, mesh, &(struct glb_bake){ 0 }), 1);
 	assert_int_equal(json_array_size(json_object_get(mesh, "weights")), 1);
 	json_decref(mesh);
 	glb_targets_free(&t);
