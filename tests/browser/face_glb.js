@@ -2,7 +2,8 @@
 /* Opens a driven face's .glb in three.js in a headless Chromium: FILE NPM OUT. One line a pose and view: what it shows of eye and skin, in
  * pixels round one eye; how deep lids go through the eye between open and shut, mm, by a blink's target alone and with what goes with it; and the same of eyes
  * that look down and up, with that look's target. OUT/face_NAME.png:
- * pictures. FILE NPM OUT EXPRESSION...: open eyes, and with the target of each of these in full, alone and in a blink, from in front; nothing else. */
+ * pictures. FILE NPM OUT EXPRESSION...: the same from in front of open and shut eyes, and with the target of each of these in full alone, half and all the way down a blink, shut with half
+ * of it, and shut and looking down; how far shut lids lie over each other, mm; and how deep they go through the eye on their way; nothing else. */
 const fs = require("fs");
 const os = require("os");
 const path = require("path");
@@ -22,8 +23,12 @@ let poses = {
 	right: [{ eyeLookInLeft: 1, eyeLookOutRight: 1 }, [-1, 0]],
 };
 
+/* Weights of a blink of both eyes by w, of an expression by v, with what goes with them. */
+const both = (name, w) => ({ [name.replace("*", "Left")]: w, [name.replace("*", "Right")]: w });
+const blinks = (w, e, v) => ({ [e]: v, ...both("eyeBlink*", w), ...both("eyeBlink*_half", 4 * w * (1 - w)), ...both(`eyeBlink*_${e}`, w * v), ...both(`eyeBlink*_${e}_half`, 4 * w * (1 - w) * v) });
 if (expressions.length)
-	poses = Object.fromEntries([["open", [{}, [0, 0]]], ...expressions.flatMap(e => [[e, [{ [e]: 1 }, [0, 0]]], [`${e}_shut`, [{ [e]: 1, eyeBlinkLeft: 1, eyeBlinkRight: 1 }, [0, 0]]]])]);
+	poses = Object.fromEntries([["open", [{}, [0, 0]]], ["shut", poses.shut], ...expressions.flatMap(e => [[e, [{ [e]: 1 }, [0, 0]]], [`${e}_half`, [blinks(0.5, e, 1), [0, 0]]],
+		[`${e}_shut`, [blinks(1, e, 1), [0, 0]]], [`${e}_little_shut`, [blinks(1, e, 0.5), [0, 0]]], [`${e}_shut_down`, [{ ...poses.shut_down[0], ...blinks(1, e, 1) }, [0, -0.8]]]])]);
 
 (async () => {
 	const dir = fs.mkdtempSync(path.join(os.tmpdir(), "eyewright-three-"));
@@ -48,6 +53,14 @@ if (expressions.length)
 			for (const [name, look, v] of [["down", "eyeLookDown", -20], ["up", "eyeLookUp", 20]]) {
 				const t = await b.value(`depths("${side}", "${look}${side === "left" ? "Left" : "Right"}", "${name}", ${v})`, 120000);
 				console.log(`turned ${side} ${name} blink ${t.both.map(x => x.toFixed(3)).join(" ")} open ${t.open.toFixed(3)} of ${t.n}`);
+			}
+		}
+		for (const side of expressions.length ? ["left", "right"] : []) {
+			for (const name of Object.keys(poses).filter(n => n.endsWith("shut")))
+				console.log(`over ${name} ${side} ${(await b.value(`over(${JSON.stringify(poses[name][0])}, "eye_${side}")`, 120000)).toFixed(3)}`);
+			for (const e of expressions) {
+				const t = await b.value(`depths("${side}", "${e}", "${e}")`, 120000);
+				console.log(`along ${side} ${e} blink ${t.both.map(x => x.toFixed(3)).join(" ")} open ${t.open.toFixed(3)} of ${t.n}`);
 			}
 		}
 		for (const [name, [weights, turn]] of Object.entries(poses))

@@ -146,7 +146,8 @@ function patches(kind) {
 	return out;
 }
 
-function pixels(side, aside, haired, kinds = false) {
+/* What each pixel of the eye's picture shows. */
+function kinds_of(side, aside, haired) {
 	const target = new THREE.WebGLRenderTarget(SIZE, SIZE, { depthBuffer: true }), px = new Uint8Array(4 * SIZE * SIZE);
 	dress(true, haired);
 	const environment = scene.environment;
@@ -160,13 +161,17 @@ function pixels(side, aside, haired, kinds = false) {
 	target.dispose();
 	scene.environment = environment;
 	dress(false);
-	const n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0, tears: 0 }, kind = [];
-	for (let i = 0; i < px.length; i += 4) {
-		const k = px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i] > 127 && px[i + 2] > 127 ? "tears" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing";
-		kind.push(k);
+	const kind = [];
+	for (let i = 0; i < px.length; i += 4)
+		kind.push(px[i] > 127 && px[i + 1] > 127 ? "hair" : px[i] > 127 && px[i + 2] > 127 ? "tears" : px[i + 1] > 127 ? "eye" : px[i] > 127 ? "skin" : px[i + 2] > 127 ? "behind" : "nothing");
+	return kind;
+}
+
+function pixels(side, aside, haired) {
+	const kind = kinds_of(side, aside, haired), n = { eye: 0, skin: 0, behind: 0, nothing: 0, hair: 0, tears: 0 };
+	for (const k of kind)
 		n[k]++;
-	}
-	return kinds ? kind : haired ? n : { ...n, ...patches(kind) };
+	return haired ? n : { ...n, ...patches(kind) };
 }
 
 window.seen = (weights, turn, side, aside) => {
@@ -174,7 +179,7 @@ window.seen = (weights, turn, side, aside) => {
 	return counted(side, aside);
 };
 
-/* How many surfaces of skin that look at the camera lie over each other in each pixel, before the eye's centre, and in which pixels the eye is seen. */
+/* How many surfaces of skin that look at the camera lie over each other in each pixel of an eye's picture from in front, before the eye's centre. */
 function layers(side) {
 	const target = new THREE.WebGLRenderTarget(SIZE, SIZE, { depthBuffer: false }), px = new Uint8Array(4 * SIZE * SIZE), camera = before(side, 0), was = new Map();
 	const each = new THREE.MeshBasicMaterial({ color: new THREE.Color().setRGB(STEP / 255, 0, 0), blending: THREE.CustomBlending, blendSrc: THREE.OneFactor, blendDst: THREE.OneFactor,
@@ -200,18 +205,20 @@ function layers(side) {
 	return Array.from({ length: SIZE * SIZE }, (_, i) => Math.round(px[4 * i] / STEP));
 }
 
-/* How far a pose's lids lie over each other where the pose `open` shows the eye, mm: by column of that opening, the mean and the most. */
-window.over = (weights, open, turn, side) => {
-	pose(open, turn);
-	const kind = pixels(side, 0, false, true);
-	pose(weights, turn);
-	const n = layers(side), mm = 1000 * FIELD / SIZE, by = new Map();
-	kind.forEach((k, i) => {
-		if (k === "eye")
-			by.set(i % SIZE, (by.get(i % SIZE) || 0) + (n[i] > 1 ? mm : 0));
+/* How far a pose's lids lie over each other where an open eye is seen, mm: the mean over that opening's columns. */
+window.over = (weights, side) => {
+	pose({}, [0, 0]);
+	const open = kinds_of(side, 0, false), mm = 1000 * FIELD / SIZE;
+	pose(weights, [0, 0]);
+	const n = layers(side), columns = new Set();
+	let twice = 0;
+	open.forEach((kind, i) => {
+		if (kind === "eye") {
+			columns.add(i % SIZE);
+			twice += n[i] > 1;
+		}
 	});
-	const all = [...by.values()];
-	return { mean: all.reduce((a, b) => a + b, 0) / all.length, most: Math.max(...all), hist: n.reduce((h, x, i) => { if (kind[i] === "eye") h[x] = (h[x] || 0) + 1; return h; }, {}) };
+	return mm * twice / columns.size;
 };
 
 /* How far out an eye's surface is from its centre, by direction: a grid over the plane before it (gnomonic), the outermost of sclera and cornea. Of the

@@ -1,5 +1,5 @@
 # A driven face's .glb in Blender's Cycles: what shows round each eye, as tests/browser/face_glb.js counts it in three.js.
-# blender -b --python tests/tools/face_blender.py -- FACE.glb OUT   prints a line a pose and side: how many pixels show the eye, skin, skin from behind, nothing at all
+# blender -b --python tests/tools/face_blender.py -- FACE.glb OUT [EXPRESSION...]   of open eyes and such that look about and are shut, or shut in each of those expressions and look down; prints a line a pose and side: how many pixels show the eye, skin, skin from behind, nothing at all
 # between; OUT/blender_POSE_SIDE.png is what it counted (green, red, blue, black)
 import math
 import os
@@ -42,7 +42,13 @@ def flat(name, front, back):
     return m
 
 
-glb, out = sys.argv[sys.argv.index("--") + 1:]
+glb, out, *expressions = sys.argv[sys.argv.index("--") + 1:]
+if expressions:
+    shut = {name: POSES[name] for name in ("shut", "shut_down")}
+    POSES = {"open": POSES["open"]}
+    for e in expressions:
+        for name, (weights, turn) in shut.items():
+            POSES[f"{e}_{name}"] = ({**weights, e: 1, f"eyeBlinkLeft_{e}": 1, f"eyeBlinkRight_{e}": 1}, turn)
 bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.ops.import_scene.gltf(filepath=glb)
 meshes = [o for o in bpy.data.objects if o.type == "MESH"]

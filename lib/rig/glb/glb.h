@@ -7,7 +7,9 @@
  * names of Apple's ARKit, an eye's being its own side of a pose of both; expressions, by the model's) are included with weight 0; they may be
  * added to each other, but not to the animation's. A target is a straight line and a lid goes round the eye: where eyeBlinkLeft has the weight
  * w, eyeBlinkLeft_half has 4 w (1 - w) (halves.h). A second animation, `blink`, does so. And where eyeLookDownLeft has v, eyeBlinkLeft_down
- * has w v, eyeBlinkLeft_down_half 4 w (1 - w) v, and eyeBlinkLeft_up so with eyeLookUpLeft (turned.h).
+ * has w v, eyeBlinkLeft_down_half 4 w (1 - w) v, and eyeBlinkLeft_up so with eyeLookUpLeft (turned.h); so has
+ * eyeBlinkLeft_squint, and eyeBlinkLeft_squint_half where it is needed, with v of each expression that moves lids (mixed.h). The file says it of each mesh, in extras: drivenTargets, a
+ * list of target, by (whose weight is w), and (v) and weight: "w v", "4 w (1 - w)" or "4 w (1 - w) v".
  */
 #ifndef RIG_GLB_GLB_H
 #define RIG_GLB_GLB_H
