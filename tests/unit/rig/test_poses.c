@@ -230,6 +230,30 @@ static void blinks_in_expressions_add_up(void **state)
 	rig_free(rig);
 }
 
+/* Whatever an expression is called, no two targets have one name. */
+static void no_name_twice(void **state)
+{
+	struct wandering *m = *state;
+	static const char *const called[2] = { "down_half", "down" };
+	struct glb_conf conf = m->conf;
+	struct glb_bake b;
+	struct err err = { 0 };
+	conf.expression = called;
+	for (int k = 0; k < EXPRESS_LIDS; k++)
+		m->on.rig.expression[1][k] = -0.3;
+	assert_true(glb_bake_make(&b, &m->on.rig, &m->drive, &conf, &err));
+	for (int k = 0; k < b.n_poses; k++)
+		for (int i = 0; i < k; i++)
+			assert_string_not_equal(b.pose_name[i], b.pose_name[k]);
+	const int look = pose_of(&b, "eyeBlinkLeft_down"), expression = pose_of(&b, "eyeBlinkLeft_down_too");
+	assert_true(look >= 0 && expression >= 0);
+	assert_int_equal(b.driven[look].and, glb_turned_look(0));
+	assert_int_equal(b.driven[expression].and, GLB_POSES + 1);
+	for (int k = 0; k < EXPRESS_LIDS; k++)
+		m->on.rig.expression[1][k] = 0;
+	glb_bake_free(&b);
+}
+
 /* An eye's targets move its own side of the face alone, however a clip ties both eyes to each other. */
 static void each_eye_by_itself(void **state)
 {
@@ -362,6 +386,7 @@ int main(void)
 		cmocka_unit_test(each_eye_by_itself),
 		cmocka_unit_test(turned_blinks_add_up),
 		cmocka_unit_test(blinks_in_expressions_add_up),
+		cmocka_unit_test(no_name_twice),
 	};
 	return cmocka_run_group_tests(tests, wandering_setup, wandering_teardown);
 }
