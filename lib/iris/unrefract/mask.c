@@ -126,7 +126,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	long n = (long)work->size * work->size;
 	float *weight = mem_array((size_t)n, sizeof *weight), *z = mem_array((size_t)n, sizeof *z);
 	uint8_t *glint = mem_new((size_t)n, 1);
-	const float told_z = 0.3f, told_p = 0.3f;  // of the level: what the network takes for a reflection, with that chance, is only to be brighter than its ring
+	const float told_z = 0.3f, told_p = 0.5f;  // of the level: what the network takes for a reflection, with that chance, is only to be brighter than its ring
 	iris_weight(weight, work, seen);
 	for (long i = 0; i < n && told->mirror; i++)
 		weight[i] *= 1 - told->mirror[i];
