@@ -9,7 +9,9 @@
 #include "iris/iris_map.h"
 #include "iris/unrefract/unrefract.h"
 
-enum { STEP = 8 };  // px between rays that are traced: it is smooth
+enum { STEP = 4 };  // px between rays that are traced: it is smooth
+
+static const double fade = 0.4;  // mm inside of the limbus, over which it ends: beyond, nothing is told of it
 
 bool shot_lids_read(struct shot *shot, const json_t *entry, const char *path, struct err *err)
 {
@@ -45,8 +47,9 @@ void shot_lids(struct image *rgba, const struct shot *shot, const struct eye *ey
 		const double px[2] = { shot->window[0] + STEP * (i % w) * shot->scale, shot->window[1] + STEP * (i / w) * shot->scale };
 		const bool iris = iris_see(p, &rim, &view, px);
 		const double to = N / (2 * shot->lids_extent);
+		const float share = iris ? (float)fmin(fmax((eye->limbus_radius - rim) / fade, 0), 1) : 0;
 		for (int c = 0; c < 3; c++)
-			node[c * w * h + i] = iris ? plane_sample(shot->lids + c * N * N, N, N, (p[0] + shot->lids_extent) * to, (p[1] + shot->lids_extent) * to) : 1;
+			node[c * w * h + i] = share > 0 ? 1 + share * (plane_sample(shot->lids + c * N * N, N, N, (p[0] + shot->lids_extent) * to, (p[1] + shot->lids_extent) * to) - 1) : 1;
 	}
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < rgba->height; y++)

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "iris/unrefract/polar.h"
+#include "math/stats.h"
 
 enum { STRIP_DEG = 12, OVERLAP_DEG = 3 };
 static const double again = 0.5;  // what each time that a piece was taken before costs, of the pattern's variance: repeated pieces show as spokes
@@ -16,6 +17,7 @@ static const double again = 0.5;  // what each time that a piece was taken befor
 /* What is laid over the polar sheet: sum of weighted patterns, and the sum of squared weights, [rows][columns][4]. */
 struct laid {
 	const struct polar *sheet;
+	const float (*bounds)[2];  // of each colour (bounds_of)
 	float *sum;
 	int *taken;  // [columns]: how often a column was taken, in earlier passes, too
 };
@@ -223,7 +225,7 @@ static void settle(struct polar *p, const struct laid *laid)
 				continue;
 			float scale = sum[3] > 0 ? 1 / sqrtf(sum[3]) : 0;
 			for (int c = 0; c < 3; c++)
-				polar_at(p, k, j)[c] = scale * sum[c] + level_at(&step, k, j)[c];
+				polar_at(p, k, j)[c] = fminf(fmaxf(scale * sum[c] + level_at(&step, k, j)[c], laid->bounds[c][0]), laid->bounds[c][1]);
 		}
 	free(step.px);
 }
@@ -254,6 +256,23 @@ static double variance_of(const struct polar *p)
 	return n ? fmax(sum / (double)n, 1e-6) : 1e-6;
 }
 
+/* What the pattern's colours lie between but for one in a hundred, where it is seen: beside a reflection's rim a step may be far beyond, and no iris is. */
+static void bounds_of(float bounds[3][2], const struct polar *p)
+{
+	enum { MOST = 1 << 15 };
+	const long all = (long)p->rows * p->columns, stride = 1 + all / MOST;
+	double *x = mem_array(MOST, sizeof *x);
+	for (int c = 0; c < 3; c++) {
+		int n = 0;
+		for (long i = 0; i < all; i += stride)
+			if (p->kind[i] == POLAR_SEEN)
+				x[n++] = p->px[3 * i + c];
+		bounds[c][0] = n ? (float)stats_quantile(n, x, 0.005) : -INFINITY;
+		bounds[c][1] = n ? (float)stats_quantile(n, x, 0.995) : INFINITY;
+	}
+	free(x);
+}
+
 static bool column_hides(const struct polar *p, int column)
 {
 	for (int k = 0; k < p->rows; k++)
@@ -280,7 +299,7 @@ static void fill_run(struct laid *laid, int from, int count, double variance)
 }
 
 /* One pass over all runs of columns with hidden places. Returns whether it has filled any, which count as seen from then on. */
-static bool fill_pass(struct polar *p, int *taken, double variance)
+static bool fill_pass(struct polar *p, int *taken, double variance, const float (*bounds)[2])
 {
 	bool any = false;
 	int start = 0;
@@ -289,7 +308,7 @@ static bool fill_pass(struct polar *p, int *taken, double variance)
 	if (!any)
 		return false;
 	any = false;
-	struct laid laid = { p, mem_new(4 * (size_t)p->rows * (size_t)p->columns, sizeof(float)), taken };
+	struct laid laid = { p, bounds, mem_new(4 * (size_t)p->rows * (size_t)p->columns, sizeof(float)), taken };
 	while (start < p->columns && column_hides(p, start))
 		start++;
 	for (int j = 0; j < p->columns; j++) {
@@ -315,8 +334,10 @@ static void fill_sheet(struct polar *p)
 {
 	enum { PASSES = 4 };  // what a strip's source lacked is filled from what is filled by then
 	double variance = variance_of(p);
+	float bounds[3][2];
+	bounds_of(bounds, p);
 	int *taken = mem_new((size_t)p->columns, sizeof *taken);
-	for (int i = 0; i < PASSES && fill_pass(p, taken, variance); i++)
+	for (int i = 0; i < PASSES && fill_pass(p, taken, variance, bounds); i++)
 		;
 	free(taken);
 	mirror_rims(p);

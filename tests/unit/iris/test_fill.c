@@ -144,6 +144,33 @@ static void no_spokes(void **state)
 	image_free(&texture.rgbw);
 }
 
+/* A reflection's red fringe, left beside the hole that it made, does not flow into it: nothing that is filled is redder than what an iris shows. */
+static void fringes_stay_outside(void **state)
+{
+	(void)state;
+	struct unrefract_texture texture = iris(2, 1);
+	float most = 0, filled = 0;
+	for (int row = 0; row < SIZE; row++)
+		for (int col = 0; col < SIZE; col++) {
+			const double x = (col + 0.5) * 2 * extent / SIZE - extent, y = (row + 0.5) * 2 * extent / SIZE - extent, from = hypot(x + 1.5, y + 3);
+			float *px = image_at(&texture.rgbw, col, row);
+			if (px[3] > 0)
+				most = fmaxf(most, px[0]);
+			if (from >= 0.9 && from < 0.97 && x > -1.5)
+				px[0] *= 12;
+		}
+	unrefract_fill(&texture, &anatomy);
+	for (int row = 0; row < SIZE; row++)
+		for (int col = 0; col < SIZE; col++) {
+			const double x = (col + 0.5) * 2 * extent / SIZE - extent, y = (row + 0.5) * 2 * extent / SIZE - extent;
+			if (hypot(x + 1.5, y + 3) < 0.75)  // nearer to its edge texels are between both
+				filled = fmaxf(filled, image_at(&texture.rgbw, col, row)[0]);
+		}
+	print_message("filled up to %.2f, of an iris of up to %.2f\n", (double)filled, (double)most);
+	assert_true(filled < 1.2F * most);
+	image_free(&texture.rgbw);
+}
+
 static void nothing_seen_nothing_filled(void **state)
 {
 	(void)state;
@@ -188,7 +215,7 @@ static void threads_do_not_matter(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(the_pattern_goes_on), cmocka_unit_test(no_spokes), cmocka_unit_test(nothing_seen_nothing_filled),
+	const struct CMUnitTest tests[] = { cmocka_unit_test(the_pattern_goes_on), cmocka_unit_test(no_spokes), cmocka_unit_test(nothing_seen_nothing_filled), cmocka_unit_test(fringes_stay_outside),
 		                            cmocka_unit_test(little_seen), cmocka_unit_test(threads_do_not_matter) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
