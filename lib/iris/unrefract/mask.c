@@ -119,6 +119,32 @@ static void drop_small(uint8_t *glint, const float *z, const struct work *work, 
 	free(label);
 }
 
+/* Goes on from what is surely a reflection to what hangs together with it, is brighter than its ring, and to the network may be one: a window is plain in
+ * one place and faint in another. */
+static void spread(uint8_t *glint, const float *z, const struct told *told, const struct work *work, const float *seen)
+{
+	const float may = 0.2f;                   // chance
+	const double far = 1.5 / work->texel;     // mm
+	const long n = (long)work->size * work->size;
+	if (!told->mirror)
+		return;
+	uint8_t *all = mem_array((size_t)n, 1);
+	int *label = mem_array((size_t)n, sizeof *label);
+	memcpy(all, glint, (size_t)n);
+	mask_grow(all, work->size, work->size, far);
+	for (long i = 0; i < n; i++)
+		all[i] = glint[i] || (all[i] && seen[i] > 0 && work->kind[i] == IRIS && work->t[i] < 0.9f && told->mirror[i] > may && z[i] > 0);
+	const int count = mask_label(label, all, work->size, work->size);
+	uint8_t *is = mem_new((size_t)count + 1, 1);
+	for (long i = 0; i < n; i++)
+		is[label[i]] |= glint[i];
+	for (long i = 0; i < n; i++)
+		glint[i] = label[i] && is[label[i]];
+	free(is);
+	free(label);
+	free(all);
+}
+
 /* Reflections: blobs too bright in the channel in which the iris is darkest, or saturated. */
 static void mark_glints(struct work *work, const struct unrefract_survey *survey, const float *seen, const struct told *told,
                         const struct sheet *sheet, const struct unrefract_conf *conf)
@@ -151,6 +177,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 		           && (full || is_told || turns_white(logs, rings, c, work->t[i]));
 	}
 	drop_small(glint, z, work, conf);
+	spread(glint, z, told, work, seen);
 	mask_grow(glint, work->size, work->size, conf->glint_grow / work->texel);
 	for (long i = 0; i < n; i++)
 		if (glint[i] && work->kind[i] == IRIS)
