@@ -145,17 +145,15 @@ static double cost_of(const struct cell *c, double residual, double spread)
 }
 
 /* Amplitude of one channel along a lid: least squares with Cauchy's weights; the slope is held to little. Returns the gain in log likelihood. */
-static double fit_lid(double a[2], const struct cell cell[CELLS], int lid, int channel, double reach, double most_reach, double spread)
+static double fit_lid(double a[2], int n, const struct cell cell[], int channel, double reach, double spread)
 {
 	double gain = 0;
 	a[0] = a[1] = 0;
 	const int passes = 8;
 	for (int pass = 0; pass < passes; pass++) {
 		double m[2][2] = { { 1e-6, 0 }, { 0, 1 / (0.3 * 0.3) } }, b[2] = { 0, 0 };
-		for (int i = 0; i < CELLS; i++) {
+		for (int i = 0; i < n; i++) {
 			const struct cell *c = &cell[i];
-			if (!c->seen || c->lid != lid || c->d < close || c->d > most_reach)
-				continue;
 			const double f = fall(c->d, reach), g[2] = { f, f * c->along }, r = c->log[channel] + a[0] * g[0] + a[1] * g[1];
 			const double w = c->area / (patch * patch) / (spread * spread) / (1 + r * r / (2 * spread * spread));
 			for (int j = 0; j < 2; j++) {
@@ -177,18 +175,24 @@ static double fit_lid(double a[2], const struct cell cell[CELLS], int lid, int c
 static bool shade_of(struct lid_fit *fit, const struct cell cell[CELLS], int lid, double most_reach, double spread)
 {
 	double best = sure, a[2];
+	int n = 0;
+	struct cell *near = mem_array(CELLS, sizeof *near);
 	*fit = (struct lid_fit){ 0 };
+	for (int i = 0; i < CELLS; i++)
+		if (cell[i].seen && cell[i].lid == lid && cell[i].d >= close && cell[i].d <= most_reach)
+			near[n++] = cell[i];
 	for (int i = 0; i < REACHES; i++) {
-		const double reach = most_reach * pow(0.7, i), gain = fit_lid(a, cell, lid, 1, reach, most_reach, spread);
+		const double reach = most_reach * pow(0.7, i), gain = fit_lid(a, n, near, 1, reach, spread);
 		if (gain > best && a[0] > least) {
 			best = gain;
 			*fit = (struct lid_fit){ .reach = reach, .a = { fmin(a[0], most), a[1] } };
 		}
 	}
 	for (int k = 0; k < 3 && fit->reach > 0; k++) {
-		fit_lid(a, cell, lid, k, fit->reach, most_reach, spread);
+		fit_lid(a, n, near, k, fit->reach, spread);
 		fit->ratio[k] = fmin(fmax(a[0] / fit->a[0], 0.5), 2);
 	}
+	free(near);
 	return fit->reach > 0;
 }
 
