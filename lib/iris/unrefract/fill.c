@@ -256,7 +256,7 @@ static double variance_of(const struct polar *p)
 	return n ? fmax(sum / (double)n, 1e-6) : 1e-6;
 }
 
-/* What the pattern's colours lie between but for one in a hundred, where it is seen: beside a reflection's rim a step may be far beyond, and no iris is. */
+/* What the pattern's colours lie between but for one in a hundred, where it is seen, and a quarter more: beside a reflection's rim a step may be far beyond, and no iris is. */
 static void bounds_of(float bounds[3][2], const struct polar *p)
 {
 	enum { MOST = 1 << 15 };
@@ -267,8 +267,9 @@ static void bounds_of(float bounds[3][2], const struct polar *p)
 		for (long i = 0; i < all; i += stride)
 			if (p->kind[i] == POLAR_SEEN)
 				x[n++] = p->px[3 * i + c];
-		bounds[c][0] = n ? (float)stats_quantile(n, x, 0.005) : -INFINITY;
-		bounds[c][1] = n ? (float)stats_quantile(n, x, 0.995) : INFINITY;
+		const double low = n ? stats_quantile(n, x, 0.005) : -INFINITY, high = n ? stats_quantile(n, x, 0.995) : INFINITY, room = n ? 0.25 * (high - low) : 0;
+		bounds[c][0] = (float)(low - room);
+		bounds[c][1] = (float)(high + room);
 	}
 	free(x);
 }

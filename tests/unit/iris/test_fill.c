@@ -167,7 +167,7 @@ static void fringes_stay_outside(void **state)
 				filled = fmaxf(filled, image_at(&texture.rgbw, col, row)[0]);
 		}
 	print_message("filled up to %.2f, of an iris of up to %.2f\n", (double)filled, (double)most);
-	assert_true(filled < 1.2F * most);
+	assert_true(filled < 1.4F * most);  // nine times as much without bounds
 	image_free(&texture.rgbw);
 }
 
