@@ -143,10 +143,8 @@ void shot_done(struct shot *shot)
 
 void shots_free(struct job *job)
 {
-	for (int i = 0; i < job->n_shots; i++) {
+	for (int i = 0; i < job->n_shots; i++)
 		shot_done(&job->shots[i]);
-		free(job->shots[i].lids);
-	}
 	free(job->shots);
 }
 

@@ -104,3 +104,16 @@ int mask_label(int *label, const uint8_t *mask, int width, int height)
 	free(parent);
 	return count;
 }
+
+void mask_keep(uint8_t *mask, const uint8_t *seed, int width, int height)
+{
+	const long n = (long)width * height;
+	int *label = mem_array((size_t)n, sizeof *label);
+	uint8_t *kept = mem_new((size_t)mask_label(label, mask, width, height) + 1, 1);
+	for (long i = 0; i < n; i++)
+		kept[label[i]] |= seed[i] != 0;
+	for (long i = 0; i < n; i++)
+		mask[i] = label[i] && kept[label[i]] ? mask[i] : 0;
+	free(kept);
+	free(label);
+}

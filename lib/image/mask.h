@@ -11,4 +11,7 @@ void mask_grow(uint8_t *mask, int width, int height, double radius);
  * label: [height][width], overwritten. Returns n. */
 int mask_label(int *label, const uint8_t *mask, int width, int height);
 
+/* Clears the components of a mask that hold no pixel of `seed`, which is another. */
+void mask_keep(uint8_t *mask, const uint8_t *seed, int width, int height);
+
 #endif

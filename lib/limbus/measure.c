@@ -67,13 +67,13 @@ static void record_of(struct limbus_record *record, const struct limbus_found *f
 {
 	struct err err = { 0 };
 	limbus_record_fill(record, found, photo);
-	const bool usable = limbus_usable(found);
-	if (usable)
-		record->view.camera = camera_of(known, photo, &record->view.limbus, eye);
+	if (!limbus_usable(found))
+		return;
+	record->view.camera = camera_of(known, photo, &record->view.limbus, eye);
 	const struct camera *camera = &record->view.camera;
-	bool ok = !usable || isfinite(known->focal_px) || camera_keys_agree(known->keys, photo->width, photo->height, &err);
-	ok = ok && (!usable || camera->source != CAMERA_CONF || camera_keys_place(camera->focal_px, eye->limbus_radius, record->view.limbus.a, &err));
-	ok = ok && (!usable || (camera_keys_check(camera, photo->width, photo->height, &err) && lean(record, found, eye, pose_conf, &err)));
+	const bool ok = (isfinite(known->focal_px) || camera_keys_agree(known->keys, photo->width, photo->height, &err))
+	                && (camera->source != CAMERA_CONF || camera_keys_place(camera->focal_px, eye->limbus_radius, record->view.limbus.a, &err))
+	                && camera_keys_check(camera, photo->width, photo->height, &err) && lean(record, found, eye, pose_conf, &err);
 	if (!ok) {
 		record->ok = false;
 		record->rough = 0;

@@ -8,7 +8,7 @@
 
 struct limbus_record {
 	bool ok, by_hand;              // by_hand: where a person said it is (hand.h)
-	double rough;                  // not ok, but known to this share of the semi-axis, with all that an ok one has; 0: to none
+	double rough;                  // refused, but known to this share of the semi-axis, with all that an ok one has; 0: to none. The stage may use it: ok, then
 	char reason[256];
 	int width, height;             // px
 	struct pose_view view;         // camera as used

@@ -23,7 +23,7 @@ struct eye_work {
 	const struct capture_photo **photo;  // [n]
 	struct limbus_record *record;        // [n]
 	struct limbus_joint joint;
-	int usable, rough;                   // rough: the one that is used for want of a better, -1: none
+	int usable;
 	struct limbus_kept *kept;
 };
 
@@ -116,7 +116,7 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 		stage_warn(w->stage, "%s: rejected: %s", p->file, r->reason);
 	else if (!limbus_joint_pose(&pose, &w->joint, r, &w->o->eye, err))
 		return err_wrap(err, "%s", p->file);
-	if (i == w->rough)
+	if (r->ok && r->rough > 0)
 		stage_warn(w->stage, "%s: used roughly, for want of a better photograph of this eye: %s", p->file, r->reason);
 	struct fit fit = limbus_joint_fit(r, &pose);
 	if (r->ok)
@@ -141,23 +141,19 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
  * so than by none. */
 static void take_rough(struct eye_work *w)
 {
-	w->rough = -1;
-	for (int i = 0; i < w->n; i++) {
-		const struct limbus_record *r = &w->record[i];
-		if (r->rough > 0 && r->rough <= w->o->rough_used && (w->rough < 0 || r->gross < w->record[w->rough].gross))
-			w->rough = i;
-	}
-	if (w->usable)
-		w->rough = -1;
-	for (int i = 0; i < w->n; i++) {
+	struct limbus_record *best = 0;
+	for (int i = 0; i < w->n && !w->usable; i++) {
 		struct limbus_record *r = &w->record[i];
 		const size_t n = strlen(r->reason);
-		if (i == w->rough)
-			r->ok = true;
-		else if (r->rough > w->o->rough_used && !w->usable)
+		if (r->rough > w->o->rough_used)
 			snprintf(r->reason + n, sizeof r->reason - n, "; limbus.rough_used = %.2g takes it", r->rough);
+		else if (r->rough > 0 && (!best || r->gross < best->gross))
+			best = r;
 	}
-	w->usable += w->rough >= 0;
+	if (best) {
+		best->ok = true;
+		w->usable = 1;
+	}
 }
 
 static bool fit_eye(struct eye_work *w, struct err *err)

@@ -7,7 +7,6 @@
 #include "base/mem.h"
 #include "image/plane.h"
 #include "iris/iris_map.h"
-#include "iris/unrefract/unrefract.h"
 
 enum { STEP = 4 };  // px between rays that are traced: it is smooth
 
@@ -15,28 +14,26 @@ static const double fade = 0.4;  // mm inside of the limbus, over which it ends:
 
 bool shot_lids_read(struct shot *shot, const json_t *entry, const char *path, struct err *err)
 {
-	enum { N = UNREFRACT_LIDS, ALL = 3 * N * N };
+	double v[COUNT(shot->lids)], extent;
 	if (!json_object_get(entry, "lid_light"))
 		return true;
-	double *v = mem_array(ALL, sizeof *v);
-	bool ok = json_get_array(v, ALL, entry, "lid_light", path, err) && json_get(&shot->lids_extent, entry, "lid_light_extent_mm", path, err);
-	if (ok && !(shot->lids_extent > 0.1 && shot->lids_extent < 100))
-		ok = err_set(err, "%s: lid_light_extent_mm: must be in [0.1, 100]", path);
-	for (int i = 0; i < ALL && ok; i++)
-		ok = (v[i] >= 0 && v[i] <= 1) || err_set(err, "%s: lid_light: must be in [0, 1]", path);
-	if (ok) {
-		shot->lids = mem_array(ALL, sizeof *shot->lids);
-		for (int i = 0; i < ALL; i++)
-			shot->lids[i] = (float)v[i];
+	if (!json_get_array(v, COUNT(v), entry, "lid_light", path, err) || !json_get(&extent, entry, "lid_light_extent_mm", path, err))
+		return false;
+	if (!(extent > 0.1 && extent < 100))
+		return err_set(err, "%s: lid_light_extent_mm: must be in [0.1, 100]", path);
+	for (int i = 0; i < COUNT(v); i++) {
+		if (!(v[i] >= 0 && v[i] <= 1))
+			return err_set(err, "%s: lid_light: must be in [0, 1]", path);
+		shot->lids[i] = (float)v[i];
 	}
-	free(v);
-	return ok;
+	shot->lids_extent = extent;
+	return true;
 }
 
 void shot_lids(struct image *rgba, const struct shot *shot, const struct eye *eye)
 {
 	enum { N = UNREFRACT_LIDS };
-	if (!shot->lids)
+	if (!(shot->lids_extent > 0))
 		return;
 	const struct iris_view view = iris_view_new(&shot->fit, eye);
 	const int w = rgba->width / STEP + 2, h = rgba->height / STEP + 2;

@@ -7,7 +7,6 @@
 #include "draw/photo/photo.h"
 
 /* Reads it from the photograph's entry in texture.json: shot->lids. True also where there is none. False, err set (texture_json, key, rule). */
-
 bool shot_lids_read(struct shot *shot, const json_t *entry, const char *texture_json, struct err *err);
 
 /* Multiplies the colours of the iris in a picture of shot_view(shot) by it. */

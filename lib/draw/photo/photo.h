@@ -11,6 +11,7 @@
 #include "anatomy/capture.h"
 #include "anatomy/fit.h"
 #include "draw/eye/view.h"
+#include "iris/unrefract/unrefract.h"
 
 /* One photograph with its fit. */
 struct shot {
@@ -21,8 +22,8 @@ struct shot {
 	int n_lamps;
 	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view
 	double slip[2][3];               // as in struct scene_view
-	float *lids;                     // what lids left of the light on the iris there (lids.h), over the maps' square of that half-width, mm; null: all; owned by who aligns it
-	double lids_extent;
+	float lids[3 * UNREFRACT_LIDS * UNREFRACT_LIDS];  // what lids left of the light on the iris there (lids.h), [3][UNREFRACT_LIDS][UNREFRACT_LIDS]
+	double lids_extent;              // half-width of that square of the maps, mm; 0: all of it
 };
 
 /* The photograph's own view. */

@@ -4,8 +4,7 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "image/plane.h"
-#include "iris/unrefract/unrefract.h"
+#include "iris/unrefract/register.h"
 
 static const double deg = M_PI / 180;
 
@@ -27,13 +26,13 @@ static void put_lids(json_t *json, const struct unrefract_view *view)
 {
 	enum { N = UNREFRACT_LIDS };
 	const struct unrefract_survey *s = &view->survey;
-	const double(*m)[3] = view->iris.a, to = s->size / (2 * s->extent);
+	const double mm = 2 * s->extent / N;
 	double *v = mem_array(3 * N * N, sizeof *v);
 	for (int c = 0; c < 3; c++)
 		for (int i = 0; i < N * N; i++) {
-			const double x = (i % N + 0.5) * 2 * s->extent / N - s->extent, y = (i / N + 0.5) * 2 * s->extent / N - s->extent;
-			const double u = m[0][0] * x + m[0][1] * y + m[0][2], w = m[1][0] * x + m[1][1] * y + m[1][2];
-			const double left = exp((double)plane_sample(s->shade + (long)c * s->size * s->size, s->size, s->size, (u + s->extent) * to, (w + s->extent) * to));
+			double p[2];
+			affine_apply(p, view->iris.a, (i % N + 0.5) * mm - s->extent, (i / N + 0.5) * mm - s->extent);
+			const double left = exp((double)survey_at(s, s->shade + (long)c * s->size * s->size, p));
 			v[c * N * N + i] = round(1000 * fmin(left, 1)) / 1000;
 		}
 	json_object_set_new(json, "lid_light", json_numbers(3 * N * N, v));

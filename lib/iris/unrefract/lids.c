@@ -4,16 +4,15 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "image/plane.h"
 
 enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, LID_MIN_DEG = 20 };
 
 /* A plane [size][size] read at the middle of a cell. */
 static float cell_at(const float *plane, const struct sheet *sheet, int a, int r)
 {
-	double p[2], to = sheet->size / (2 * sheet->extent);
+	double p[2];
 	sheet_point(p, sheet, (r + 0.5) / RINGS, 2 * M_PI * (a + 0.5) / ANGLES);
-	return plane_sample(plane, sheet->size, sheet->size, (p[0] + sheet->extent) * to, (p[1] + sheet->extent) * to);
+	return sheet_sample(plane, sheet, p);
 }
 
 /* Evidence for each cell of the sheet: its standard score in its ring, the maximum over the planes so far; NAN where unseen. */

@@ -129,19 +129,12 @@ static void spread(uint8_t *glint, const float *z, const struct told *told, cons
 	if (!told->mirror)
 		return;
 	uint8_t *all = mem_array((size_t)n, 1);
-	int *label = mem_array((size_t)n, sizeof *label);
 	memcpy(all, glint, (size_t)n);
 	mask_grow(all, work->size, work->size, far);
 	for (long i = 0; i < n; i++)
 		all[i] = glint[i] || (all[i] && seen[i] > 0 && work->kind[i] == IRIS && work->t[i] < 0.9f && told->mirror[i] > may && z[i] > 0);
-	const int count = mask_label(label, all, work->size, work->size);
-	uint8_t *is = mem_new((size_t)count + 1, 1);
-	for (long i = 0; i < n; i++)
-		is[label[i]] |= glint[i];
-	for (long i = 0; i < n; i++)
-		glint[i] = label[i] && is[label[i]];
-	free(is);
-	free(label);
+	mask_keep(all, glint, work->size, work->size);
+	memcpy(glint, all, (size_t)n);
 	free(all);
 }
 
@@ -200,20 +193,16 @@ static void mark_lashes(struct work *work, const struct unrefract_survey *survey
 		fine[i] = wide[i] = logf(fmaxf(0.3f * rgb[0] + 0.6f * rgb[1] + 0.1f * rgb[2], darkest));
 	}
 	plane_blur_weighted(wide, seen, size, size, 2 * conf->lash_width / work->texel, 0);
-	uint8_t *dark = mem_array((size_t)n, 1);
-	int *label = mem_array((size_t)n, sizeof *label);
+	uint8_t *dark = mem_array((size_t)n, 1), *lid = mem_array((size_t)n, 1);
+	for (long i = 0; i < n; i++) {
+		lid[i] = work->kind[i] == LID;
+		dark[i] = lid[i] || (work->kind[i] == IRIS && fine[i] < wide[i] - (float)conf->lash_contrast);
+	}
+	mask_keep(dark, lid, size, size);
 	for (long i = 0; i < n; i++)
-		dark[i] = work->kind[i] == LID
-		          || (work->kind[i] == IRIS && fine[i] < wide[i] - (float)conf->lash_contrast);
-	int count = mask_label(label, dark, size, size);
-	uint8_t *hangs = mem_new((size_t)count + 1, 1);
-	for (long i = 0; i < n; i++)
-		hangs[label[i]] |= work->kind[i] == LID;
-	for (long i = 0; i < n; i++)
-		if (label[i] && hangs[label[i]] && work->kind[i] == IRIS)
+		if (dark[i] && work->kind[i] == IRIS)
 			work->kind[i] = LASH;
-	free(hangs);
-	free(label);
+	free(lid);
 	free(dark);
 	free(wide);
 	free(fine);
@@ -243,6 +232,14 @@ static void weigh(struct unrefract_survey *survey, const struct work *work, cons
 	free(bad);
 }
 
+static bool any_lid(const double lid_t[SHEET_ANGLES])
+{
+	for (int a = 0; a < SHEET_ANGLES; a++)
+		if (lid_t[a] < 1)
+			return true;
+	return false;
+}
+
 void unrefract_mask(struct unrefract_survey *survey, const float *seen, const struct told *told, const double white[3], const struct sheet *sheet,
                     const struct unrefract_conf *conf)
 {
@@ -267,8 +264,10 @@ void unrefract_mask(struct unrefract_survey *survey, const float *seen, const st
 	mark_lashes(&work, survey, seen, conf);
 	mark_glints(&work, survey, seen, told, sheet, conf);
 	weigh(survey, &work, seen);
-	take_logs(&work, survey, survey->weight, 0.06 / work.texel);
-	unrefract_shade(survey, (const float *const *)work.log, work.t, lid_t, survey->weight, sheet, conf);
+	if (conf->lid_shade > 0 && any_lid(lid_t)) {
+		take_logs(&work, survey, survey->weight, 0.06 / work.texel);
+		unrefract_shade(survey, (const float *const *)work.log, work.t, lid_t, survey->weight, sheet, conf);
+	}
 	for (int c = 0; c < 3; c++)
 		free(work.log[c]);
 	free(work.t);

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "iris/unrefract/register.h"
 #include "iris/unrefract/sample.h"
 #include "iris/unrefract/shade.h"
 #include "image/plane.h"
@@ -81,8 +82,9 @@ static float texel_weight(const struct unrefract_texture *texture, const struct 
 static void unshade(float rgb[3], const struct unrefract_texture *texture, const struct unrefract_view *view, int col, int row)
 {
 	const double mm = 2 * texture->extent / texture->rgbw.width, x = (col + 0.5) * mm - texture->extent, y = (row + 0.5) * mm - texture->extent;
-	const double(*a)[3] = view->iris.a;
-	unrefract_unshade(rgb, &view->survey, a[0][0] * x + a[0][1] * y + a[0][2], a[1][0] * x + a[1][1] * y + a[1][2]);
+	double p[2];
+	affine_apply(p, view->iris.a, x, y);
+	unrefract_unshade(rgb, &view->survey, p);
 }
 
 // A texel that spans less of a photo pixel than this, at the grazing limit, shows its neighbours' colours.

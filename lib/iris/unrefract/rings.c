@@ -23,6 +23,12 @@ void sheet_point(double xy[2], const struct sheet *sheet, double t, double phi)
 	xy[1] = cy + r * s;
 }
 
+float sheet_sample(const float *plane, const struct sheet *sheet, const double xy[2])
+{
+	const double to = sheet->size / (2 * sheet->extent);
+	return plane_sample(plane, sheet->size, sheet->size, (xy[0] + sheet->extent) * to, (xy[1] + sheet->extent) * to);
+}
+
 struct weighted {
 	float value, weight;
 };

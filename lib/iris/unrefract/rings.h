@@ -23,6 +23,9 @@ double sheet_t(const struct sheet *sheet, double x, double y);
 /* The point (mm) at t and phi. */
 void sheet_point(double xy[2], const struct sheet *sheet, double t, double phi);
 
+/* A plane at a point (mm). */
+float sheet_sample(const float *plane, const struct sheet *sheet, const double xy[2]);
+
 /* Weighted median and spread (quartile distance over 1.349) of a plane on each ring. */
 struct rings {
 	float median[SHEET_RINGS], scale[SHEET_RINGS];

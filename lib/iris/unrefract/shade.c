@@ -2,10 +2,9 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
-#include "image/plane.h"
+#include "iris/unrefract/register.h"
 #include "math/stats.h"
 
 enum { ANGLES = SHEET_ANGLES, RINGS = SHEET_RINGS, CELLS = ANGLES * RINGS, LIDS = 4, REACHES = 6 };
@@ -59,12 +58,6 @@ static void measure_cell(struct cell *cell, const double (*edge)[2], int n, cons
 		}
 }
 
-static float at(const float *plane, const struct sheet *sheet, const double p[2])
-{
-	const double to = sheet->size / (2 * sheet->extent);
-	return plane_sample(plane, sheet->size, sheet->size, (p[0] + sheet->extent) * to, (p[1] + sheet->extent) * to);
-}
-
 static struct cell *cells_of(const float *const logs[3], const double lid_t[ANGLES], const float *iris, const struct sheet *sheet, int n, const struct lid lid[])
 {
 	struct cell *cell = mem_new(CELLS, sizeof *cell);
@@ -80,9 +73,9 @@ static struct cell *cells_of(const float *const logs[3], const double lid_t[ANGL
 		sheet_point(next, sheet, t, step * (i / RINGS + 1.5));
 		sheet_point(out, sheet, t + 1.0 / RINGS, step * (i / RINGS + 0.5));
 		c->area = hypot(next[0] - c->p[0], next[1] - c->p[1]) * hypot(out[0] - c->p[0], out[1] - c->p[1]);
-		c->seen = t > inner && t < outer && at(iris, sheet, c->p) > 0.9f;
+		c->seen = t > inner && t < outer && sheet_sample(iris, sheet, c->p) > 0.9f;
 		for (int k = 0; k < 3; k++)
-			c->log[k] = at(logs[k], sheet, c->p);
+			c->log[k] = sheet_sample(logs[k], sheet, c->p);
 		measure_cell(c, edge, n, lid);
 	}
 	free(edge);
@@ -261,10 +254,9 @@ void unrefract_shade(struct unrefract_survey *survey, const float *const logs[3]
 	free(cell);
 }
 
-void unrefract_unshade(float rgb[3], const struct unrefract_survey *s, double x, double y)
+void unrefract_unshade(float rgb[3], const struct unrefract_survey *s, const double p[2])
 {
-	const double to = s->size / (2 * s->extent);
 	const long n = (long)s->size * s->size;
 	for (int k = 0; k < 3 && s->shade; k++)
-		rgb[k] *= expf(-plane_sample(s->shade + k * n, s->size, s->size, (x + s->extent) * to, (y + s->extent) * to));
+		rgb[k] *= expf(-survey_at(s, s->shade + k * n, p));
 }

@@ -15,7 +15,7 @@
 void unrefract_shade(struct unrefract_survey *survey, const float *const logs[3], const float *t, const double lid_t[SHEET_ANGLES], const float *iris,
                      const struct sheet *sheet, const struct unrefract_conf *conf);
 
-/* Multiplies a colour by what its light lacks; xy: the photograph's own frame, mm. */
-void unrefract_unshade(float rgb[3], const struct unrefract_survey *survey, double x, double y);
+/* Multiplies a colour by what its light lacks; p: the photograph's own frame, mm. */
+void unrefract_unshade(float rgb[3], const struct unrefract_survey *survey, const double p[2]);
 
 #endif

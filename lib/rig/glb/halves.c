@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "math/vec.h"
@@ -127,7 +128,8 @@ static void clear(float *half, double *given, struct poser *p, const struct glb_
 	}
 }
 
-void glb_clear_way(float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
+/* Moves skin, by a target half of that weight, out of the eye on the way of another one, blink, from a pose `from` (null: from rest). */
+static void clear_way(float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
 {
 	double *ends = mem_new((size_t)b->n + 1, sizeof *ends), *given = mem_new((size_t)b->n + 1, sizeof *given);
 	find_ends(ends, p, b, from, blink, eye);
@@ -135,6 +137,15 @@ void glb_clear_way(float *half, struct poser *p, const struct glb_bake *b, const
 		clear(half, given, p, b, from, blink, ends);
 	free(ends);
 	free(given);
+}
+
+void glb_lead_round(float *out, const float *half, struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
+{
+	const size_t row = 3 * (size_t)b->n;
+	memcpy(out, half, row * sizeof *out);
+	clear_way(out, p, b, from, blink, eye);
+	for (size_t i = 0; i < row; i++)
+		out[i] -= half[i];
 }
 
 double glb_way_lacks(const float *half, const struct poser *p, const struct glb_bake *b, const float *from, const float *blink, int eye)
@@ -172,7 +183,7 @@ void glb_take_halves(struct glb_bake *b, struct poser *p)
 		}
 		for (size_t i = 0; i < hair; i++)
 			hairs[i] = poser_own_side(p, eye, p->hair_rest[i / 3]) * half[2 * row + i];
-		glb_clear_way(skin, p, b, 0, blink, eye);
+		clear_way(skin, p, b, 0, blink, eye);
 		free(half);
 	}
 	free(s.still);

@@ -11,9 +11,9 @@ static inline double glb_half_weight(double w)
 	return 4 * w * (1 - w);
 }
 
-/* Moves skin, by a target half[bake.n][3] of that weight, out of the eye (poser.turn) on the way of another one, blink, from a pose `from` (null: from rest): what is
- * outside at both ends, and what lies in it by a little there goes no deeper. */
-void glb_clear_way(float *half, struct poser *poser, const struct glb_bake *bake, const float *from, const float *blink, int eye);
+/* What leads skin out of the eye (poser.turn) on the way of a target, blink, from a pose `from` (null: from rest), beyond half[bake.n][3], which goes along: out[bake.n][3].
+ * What is outside at both ends stays so, and what lies in it by a little there goes no deeper. */
+void glb_lead_round(float *out, const float *half, struct poser *poser, const struct glb_bake *bake, const float *from, const float *blink, int eye);
 
 /* By how much, at worst, mm, a vertex of that skin comes nearer to the eye on that way than it is at both ends. */
 double glb_way_lacks(const float *half, const struct poser *poser, const struct glb_bake *bake, const float *from, const float *blink, int eye);

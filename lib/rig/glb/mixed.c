@@ -7,37 +7,10 @@
 #include "base/mem.h"
 #include "rig/drive.h"
 #include "rig/glb/halves.h"
+#include "rig/glb/posed.h"
 
 static const double rests_mm = 0.02, rests_lean = 0.02;  // a vertex that moves and turns by less is left where it is: no margin and no fold shows it
 static const double needed_mm = 0.1;                     // a target that moves no skin by more, or a way that goes no deeper, needs none: margins are arcs to 0.12 mm
-
-/* One pose: displacements of skin, of its normals, of hairs. */
-struct taken {
-	float *x, *lean, *hair;
-};
-
-static struct taken taken_new(const struct glb_bake *b)
-{
-	return (struct taken){ mem_array(3 * (size_t)b->n + 1, sizeof(float)), mem_array(3 * (size_t)b->n + 1, sizeof(float)), mem_array(3 * (size_t)b->n_hair + 1, sizeof(float)) };
-}
-
-static void taken_free(struct taken *t)
-{
-	free(t->x);
-	free(t->lean);
-	free(t->hair);
-}
-
-static struct taken taken_of(const struct glb_bake *b, int pose)
-{
-	return (struct taken){ b->pose + 3 * (size_t)pose * (size_t)b->n, b->pose_lean + 3 * (size_t)pose * (size_t)b->n, b->hair_pose + 3 * (size_t)pose * (size_t)b->n_hair };
-}
-
-static void take(struct taken *t, const struct poser *p, const struct glb_bake *b)
-{
-	poser_skin(t->x, t->lean, p, b->n, b->vertex);
-	poser_hair(t->hair, p);
-}
 
 /* out = own (now - still - expression) - blink: a blink's target is told against `still`, and has its own side already */
 static void lack(float *out, const float *now, const float *still, const float *blink, const float *expression, int n, const float *own)
@@ -84,11 +57,7 @@ static void lead_round(struct glb_bake *b, struct poser *p, int expression, int 
 	}
 	for (int eye = 0; eye < 2 && most > needed_mm; eye++) {
 		const float *half = way_of(way, b, eye, mixed);
-		float *out = b->pose + (size_t)(mixed + 2 + eye) * row;
-		memcpy(out, half, row * sizeof *out);
-		glb_clear_way(out, p, b, from, way, eye);
-		for (size_t i = 0; i < row; i++)
-			out[i] -= half[i];
+		glb_lead_round(b->pose + (size_t)(mixed + 2 + eye) * row, half, p, b, from, way, eye);
 	}
 	free(way);
 }
@@ -142,19 +111,19 @@ void glb_take_mixed(struct glb_bake *b, struct poser *p, int n)
 {
 	double *c = mem_new((size_t)p->rig->n_inputs + 1, sizeof *c), turn[2][3][3];
 	float *own = mem_array((size_t)b->n + 1, sizeof *own), *own_hair = mem_array((size_t)b->n_hair + 1, sizeof *own_hair);
-	struct taken still = taken_new(b), now = taken_new(b);
+	struct posed still = posed_new(b), now = posed_new(b);
 	const int first = GLB_POSES + n;
 	poser_still(p);
-	take(&still, p, b);
+	posed_take(&still, p, b);
 	for (int k = 0; k < n; k++) {
 		const int expression = GLB_POSES + k, at = first + 4 * k;
-		const struct taken by = taken_of(b, expression);
+		const struct posed by = posed_of(b, expression);
 		drive_look(c, p->rig, 0, 0, 0);
 		drive_express(c, p->rig, k, 1, 0);
 		poser_pose(p, c, turn);
-		take(&now, p, b);
+		posed_take(&now, p, b);
 		for (int eye = 0; eye < 2; eye++) {
-			const struct taken blink = taken_of(b, eye), out = taken_of(b, at + eye);
+			const struct posed blink = posed_of(b, eye), out = posed_of(b, at + eye);
 			for (int i = 0; i < b->n; i++)
 				own[i] = poser_own_side(p, eye, p->rig->rest[b->vertex[i]]);
 			for (int i = 0; i < b->n_hair; i++)
@@ -175,6 +144,6 @@ void glb_take_mixed(struct glb_bake *b, struct poser *p, int n)
 	free(c);
 	free(own);
 	free(own_hair);
-	taken_free(&still);
-	taken_free(&now);
+	posed_free(&still);
+	posed_free(&now);
 }

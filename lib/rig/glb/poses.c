@@ -2,36 +2,13 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "rig/drive.h"
 #include "rig/glb/halves.h"
 #include "rig/glb/mixed.h"
+#include "rig/glb/posed.h"
 #include "rig/glb/turned.h"
-
-/* Displacements of one pose: of skin, of its normals, of hairs. */
-struct posed {
-	float *x, *lean, *hair;
-};
-
-static struct posed posed_new(const struct glb_bake *b)
-{
-	return (struct posed){ mem_array(3 * (size_t)b->n + 1, sizeof(float)), mem_array(3 * (size_t)b->n + 1, sizeof(float)), mem_array(3 * (size_t)b->n_hair + 1, sizeof(float)) };
-}
-
-static void posed_take(struct posed *to, const struct poser *p, const struct glb_bake *b)
-{
-	poser_skin(to->x, to->lean, p, b->n, b->vertex);
-	poser_hair(to->hair, p);
-}
-
-static void posed_free(struct posed *p)
-{
-	free(p->x);
-	free(p->lean);
-	free(p->hair);
-}
 
 /* A named pose as a target that others may be added to: on its eye's side of the face (of an expression, eye < 0, everywhere) what it differs by from a look
  * straight ahead, or a blink from rest: `from`; null: from the mesh itself. What all poses have in common with each other against the mesh (its lids'

@@ -38,14 +38,9 @@ void glb_take_turned(struct glb_bake *b, struct poser *p)
 		// The blink's whole way from that look, and what leads it round: beyond what does so straight ahead.
 		const size_t way = at + GLB_TURNED_LOOKS;
 		const float *half = b->pose + ((size_t)(b->n_poses - GLB_HALVES) + eye) * row;
-		float *round = b->pose + way * row;
-		for (size_t i = 0; i < row; i++) {
-			x[i] = b->pose[eye * row + i] + b->pose[at * row + i];
-			round[i] = half[i];
-		}
-		glb_clear_way(round, p, b, b->pose + look * row, x, (int)eye);
 		for (size_t i = 0; i < row; i++)
-			round[i] -= half[i];
+			x[i] = b->pose[eye * row + i] + b->pose[at * row + i];
+		glb_lead_round(b->pose + way * row, half, p, b, b->pose + look * row, x, (int)eye);
 		b->pose_name[way] = mem_str(glb_turned_names[k + GLB_TURNED_LOOKS]);
 		b->driven[way] = (struct glb_driven){ (int)eye, (int)look, true };
 	}

@@ -129,7 +129,7 @@ static void deep_shade_counts_less(void **state)
 	const double mm = 2 * extent / SIZE;
 	assert_true(s.t[i] > 0 && s.survey.weight[i] < 0.8F);
 	float rgb[3] = { 1, 1, 1 };
-	unrefract_unshade(rgb, &s.survey, (x + 0.5) * mm - extent, (y + 0.5) * mm - extent);
+	unrefract_unshade(rgb, &s.survey, (const double[2]){ (x + 0.5) * mm - extent, (y + 0.5) * mm - extent });
 	for (int c = 0; c < 3; c++)
 		NEAR(rgb[c], expf(-s.survey.shade[c * SIZE * SIZE + i]), 1e-5);
 	iris_free(&s);
