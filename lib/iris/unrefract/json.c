@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/json.h"
 #include "base/mem.h"
@@ -27,11 +28,13 @@ static void put_lids(json_t *json, const struct unrefract_view *view)
 	enum { N = UNREFRACT_LIDS };
 	const struct unrefract_survey *s = &view->survey;
 	const double mm = 2 * s->extent / N;
+	double to_own[2][3];
+	memcpy(to_own, view->iris.a, sizeof to_own);
 	double *v = mem_array(3 * N * N, sizeof *v);
 	for (int c = 0; c < 3; c++)
 		for (int i = 0; i < N * N; i++) {
 			double p[2];
-			affine_apply(p, view->iris.a, (i % N + 0.5) * mm - s->extent, (i / N + 0.5) * mm - s->extent);
+			affine_apply(p, (const double(*)[3])to_own, (i % N + 0.5) * mm - s->extent, (i / N + 0.5) * mm - s->extent);
 			const double left = exp((double)survey_at(s, s->shade + (long)c * s->size * s->size, p));
 			v[c * N * N + i] = round(1000 * fmin(left, 1)) / 1000;
 		}
