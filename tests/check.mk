@@ -7,7 +7,7 @@
 #                         ONLY=skin: of this column
 #   make tsan             every stage under clang's thread sanitizer
 #   make fuzz             libFuzzer on everything that reads strangers' files; SECONDS_EACH=30; KEEP=1: what it found is kept in tests/fuzz/
-TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c)) $B/tests/evidence/make_eyes $B/tests/evidence/make_strips $B/tests/preload/faults.so
+TOOLS := $(patsubst %.c,$B/%,$(wildcard tests/tools/*.c)) $B/tests/evidence/make_eyes $B/tests/evidence/make_strips $B/tests/evidence/make_occlusions $B/tests/preload/faults.so
 $B/tests/preload/%.so: tests/preload/%.c
 	@mkdir -p $(@D)
 	@$(CC) -std=gnu2x -D_GNU_SOURCE $(WARN) -O2 -g -fPIC -shared -o $@ $<
@@ -24,7 +24,7 @@ CHECK_PACKAGES := chromium nodejs colmap slurm-wlm lintian gltfpack
 
 CORES = $(shell nproc)
 check: setup
-	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/evidence/make_eyes $B/tests/evidence/make_strips $B/tests/bench/report/compare $B/tests/bench/report/report
+	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/evidence/make_eyes $B/tests/evidence/make_strips $B/tests/evidence/make_occlusions $B/tests/bench/report/compare $B/tests/bench/report/report
 	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory -j$(CORES) SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=6 \

@@ -9,6 +9,7 @@
 #include "bridge/cv_photo.h"
 #include "image/exr.h"
 #include "limbus/evidence.h"
+#include "limbus/occlusion.h"
 
 /* The photographs of one eye whose limbus was found. */
 struct work {
@@ -22,6 +23,7 @@ struct work {
 	int n_inputs;
 	const char **inputs;                  // photographs and fits; also fits that are not ok: a change may make them usable
 	struct evidence_net *net;
+	struct occlusion_net *occlusion;
 	struct photo kept;                    // a single photograph stays in memory between survey and merge
 };
 
@@ -96,10 +98,15 @@ static bool look(struct work *w, int i, const struct photo *photo, struct err *e
 	struct evidence evidence = { 0 };
 	const struct evidence *told = evidence_of(&evidence, w, photo, fit);
 	const struct pupil_curve fellow = fellow_of(w, photo, w->fellows[i]);
+	struct occlusion *hidden = mem_new(1, sizeof *hidden);
+	if (told && occlusion_read(hidden, w->occlusion, photo, told, &fit->limbus, err))
+		view->occlusion = hidden;
 	if (!photo->grey)
 		view->white = balance_sclera(photo, fit, told, w->run->white);
-	bool ok = unrefract_survey(view, photo, fit, told, &fellow, w->run->eye, w->run->conf, err);
+	bool ok = (view->occlusion || !told) && unrefract_survey(view, photo, fit, told, &fellow, w->run->eye, w->run->conf, err);
 	evidence_free(&evidence);
+	view->occlusion = 0;
+	free(hidden);
 	return ok;
 }
 
@@ -186,9 +193,12 @@ static bool make(struct work *w, const char *exr, const char *json, struct err *
 	if (stage_fresh(stage, exr, w->n_inputs, w->inputs) && stage_fresh(stage, json, w->n_inputs, w->inputs)
 	    && !w->run->write_map)
 		return true;
-	if (!evidence_open_shipped(&w->net, err))
+	if (!evidence_open_shipped(&w->net, err) || !occlusion_open_shipped(&w->occlusion, err)) {
+		evidence_close(w->net);
 		return false;
+	}
 	survey(w);
+	occlusion_close(w->occlusion);
 	evidence_close(w->net);
 	int best = unrefract_align(w->n, w->views, w->run->conf);
 	if (!w->views[best].used)

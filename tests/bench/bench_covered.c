@@ -1,6 +1,5 @@
-/* What covers an iris: kept out of its texture, on drawn eyes with the class of every pixel (the network's test split), with the evidence
- * and without; the light's colour by the sclera; and how what was hidden is filled, against painted irises whose truth lies under
- * the covers, in the filled region alone.
+/* The light's colour by the sclera; and how what covers of an iris hide is filled, against painted irises whose truth lies under the covers, in the filled
+ * region alone. How well covers are found: bench_occluded.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,85 +13,16 @@
 #include "image/plane.h"
 #include "limbus/evidence.h"
 #include "math/rng.h"
-#include "math/stats.h"
 #include "tests/evidence/light.h"
-#include "tests/evidence/scene.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/iris.h"
 #include "tissue/light/pale.h"
 
-static const struct eye anatomy = { 7.8, 0.75, 1.336, 5.85, 1, 3.3, false, 6.5, 0.75, 0.55, 1.376 };
 static const struct bench_time untimed = { NAN, NAN, NAN };
 
-/* ---- covers of drawn eyes ------------------------------------------------------------------------------------------ */
-enum { WIDE = 384, HIGH = 288, EYES_MOST = 120, BY_RINGS = 0, BY_EVIDENCE = 1 };
-
-/* The fit of a circle seen so, under weak perspective: the eye looks to the side of its limbus to which the pupil lies. */
-static struct fit fit_of(const struct drawn_eye *e)
-{
-	struct fit fit = { .ok = true, .has_pupil = e->pupil[2] > 0, .width = WIDE, .height = HIGH, .edge_sigma_px = 1, .limbus_aspect = 1,
-		           .limbus = { e->limbus[0], e->limbus[1], e->limbus[2], e->limbus[3], e->limbus[4] },
-		           .pupil = { e->pupil[0], e->pupil[1], e->pupil[2], e->pupil[3], e->pupil[4] } };
-	const double far = 1000, focal = fit.limbus.a / anatomy.limbus_radius * far, depth = eye_limbus_depth(&anatomy);
-	double theta = acos(fmin(1, fit.limbus.b / fit.limbus.a)), phi = fit.limbus.angle + M_PI / 2;
-	if ((fit.pupil.cx - fit.limbus.cx) * cos(phi) + (fit.pupil.cy - fit.limbus.cy) * sin(phi) < 0)
-		phi += M_PI;
-	fit.camera = (struct camera){ .focal_px = focal, .center_px = { WIDE / 2., HIGH / 2. }, .source = CAMERA_CONF };
-	fit.theta = theta;
-	fit.phi = phi;
-	// The smallest rotation that takes (0, 0, -1) to the direction of gaze (Rodrigues).
-	double v[3] = { sin(theta) * sin(phi), -sin(theta) * cos(phi), 0 }, c = cos(theta);
-	double K[3][3] = { { 0, -v[2], v[1] }, { v[2], 0, -v[0] }, { -v[1], v[0], 0 } };
-	double at[3] = { (fit.limbus.cx - WIDE / 2.) * far / focal, (fit.limbus.cy - HIGH / 2.) * far / focal, far };
-	for (int i = 0; i < 3; i++) {
-		for (int j = 0; j < 3; j++) {
-			double square = 0;
-			for (int k = 0; k < 3; k++)
-				square += K[i][k] * K[k][j];
-			fit.cam_from_eye[i][j] = (i == j) + K[i][j] + square / (1 + c);
-		}
-		fit.cam_from_eye[i][3] = at[i] - fit.cam_from_eye[i][2] * depth;
-	}
-	fit.cam_from_eye[3][3] = 1;
-	for (int i = 0; i < FIT_SECTORS; i++)
-		fit.seen[i] = 1;
-	return fit;
-}
-
-struct covers {
-	int n;
-	double wrong[EYES_MOST], mirrored[EYES_MOST], missed[EYES_MOST];  // %
-	int n_mirrored;
-	int n_pupils;
-	double pupil[EYES_MOST], usual[EYES_MOST], sigmas[EYES_MOST];  // mm; error over sigma
-};
-
-/* What the survey keeps, against the classes; the margins of pupil and limbus are left out, where classes and blur are undecided. */
-static void count(struct covers *c, const struct unrefract_view *view, const struct fit *fit, const uint8_t *label)
-{
-	const struct unrefract_survey *s = &view->survey;
-	double kept = 0, wrong = 0, iris = 0, missed = 0, mirror = 0, mirror_kept = 0, to = s->size / (2 * s->extent);
-	for (int y = 0; y < HIGH; y++)
-		for (int x = 0; x < WIDE; x++) {
-			double px[2] = { x + 0.5, y + 0.5 }, p[2], rim;
-			if (hypot(px[0] - fit->limbus.cx, px[1] - fit->limbus.cy) > fit->limbus.a || !iris_see(p, &rim, &view->iris, px)
-			    || rim > 0.94 * anatomy.limbus_radius || hypot(p[0] - view->pupil.cx, p[1] - view->pupil.cy) < view->pupil.r + 0.15)
-				continue;
-			int is = label[y * WIDE + x];
-			bool w = plane_sample(s->weight, s->size, s->size, (p[0] + s->extent) * to, (p[1] + s->extent) * to) > 0.1f;
-			kept += w;
-			wrong += w && (is == EVIDENCE_SKIN || is == EVIDENCE_LASH || is == EVIDENCE_SCLERA);
-			mirror += is == EVIDENCE_REFLECTION;
-			mirror_kept += w && is == EVIDENCE_REFLECTION;
-			iris += is == EVIDENCE_IRIS;
-			missed += is == EVIDENCE_IRIS && !w;
-		}
-	c->wrong[c->n] = 100 * wrong / fmax(kept, 1);
-	c->missed[c->n] = 100 * missed / fmax(iris, 1);
-	c->n++;
-	if (mirror > 0.002 * M_PI * fit->limbus.a * fit->limbus.b)
-		c->mirrored[c->n_mirrored++] = 100 * mirror_kept / mirror;
-}
+/* ---- white --------------------------------------------------------------------------------------------------------- */
+static const float kelvins[] = { 2800, 3500, 5000, 8000 };
+enum { KELVINS = 4, WHITES = 3, LIDDED_MOST = 8, BY_EVIDENCE = 1 };
 
 /* Angle between two colours, degrees: of the light, whatever its strength. */
 static double colour_angle(const double a[3], const float b[3])
@@ -105,90 +35,6 @@ static double colour_angle(const double a[3], const float b[3])
 	}
 	return acos(fmin(1, ab / sqrt(aa * bb))) * 180 / M_PI;
 }
-
-static double mean(int n, const double *v)
-{
-	double sum = 0;
-	for (int i = 0; i < n; i++)
-		sum += v[i] / n;
-	return sum;
-}
-
-/* The size of the pupil as if its margin had not been measured, against the true ellipse's. */
-static void count_pupil(struct covers *c, const struct photo *photo, const struct fit *fit, const struct evidence *told, const struct unrefract_view *view,
-                        const struct unrefract_conf *conf)
-{
-	struct fit unmeasured = *fit;
-	struct unrefract_view guess = { .name = "drawn" };
-	struct err err = { 0 };
-	unmeasured.has_pupil = false;
-	if (fit->has_pupil && unrefract_survey(&guess, photo, &unmeasured, told, 0, &anatomy, conf, &err)) {
-		const double truth = view->pupil.r;
-		c->pupil[c->n_pupils] = fabs(guess.pupil.r - truth);
-		c->usual[c->n_pupils] = fabs(conf->pupil_usual[0] - truth);
-		c->sigmas[c->n_pupils++] = fabs(log(guess.pupil.r / truth)) / guess.pupil_sigma;
-	}
-	unrefract_view_free(&guess);
-}
-
-static void measure(struct covers covers[2], struct evidence_net *net, const struct drawn *d)
-{
-	struct unrefract_conf conf = iris_unrefract_conf("draft");
-	struct photo photo = photo_of_bytes(d->rgb, WIDE, HIGH);
-	struct fit fit = fit_of(&d->eye[0]);
-	struct evidence evidence;
-	struct err err = { 0 };
-	if (evidence_window(&evidence, net, &photo, fit.limbus.cx, fit.limbus.cy, fit.limbus.a, &err)) {
-		const struct balance_conf conf_white = iris_balance_conf();
-		for (int k = 0; k < 2; k++) {
-			const struct evidence *told = k == BY_EVIDENCE ? &evidence : 0;
-			struct unrefract_view view = { .name = "drawn", .white = balance_sclera(&photo, &fit, told, &conf_white) };
-			if (unrefract_survey(&view, &photo, &fit, told, 0, &anatomy, &conf, &err))
-				count(&covers[k], &view, &fit, d->label);
-			if (k == BY_EVIDENCE && view.used)
-				count_pupil(&covers[k], &photo, &fit, told, &view, &conf);
-			unrefract_view_free(&view);
-		}
-		evidence_free(&evidence);
-	}
-	photo_free(&photo);
-}
-
-static void drawn_eyes(struct evidence_net *net)
-{
-	static struct covers covers[2];
-	static const char *const methods[] = { "brightness and hue of the rings", "with the network's evidence" };
-	struct rng rng = { 11 };
-	for (uint64_t number = 1; covers[0].n < (bench_quick() ? 16 : EYES_MOST) && number < 2000; number++) {
-		struct drawn_view at = { .radius = (float)(45 + 45 * rng_uniform(&rng)), .x = WIDE * (float)(0.4 + 0.2 * rng_uniform(&rng)),
-			                 .y = HIGH * 0.5f, .turn = (float)(0.4 * rng_uniform(&rng) - 0.2) };
-		struct drawn d = drawn_photograph(number, &at, WIDE, HIGH);
-		if (d.n_eyes == 1 && d.eye[0].shown > 0.35 && d.eye[0].limbus[3] > 0.75 * d.eye[0].limbus[2])
-			measure(covers, net, &d);
-		drawn_free(&d);
-	}
-	for (int k = 0; k < 2; k++) {
-		bench_row("covers left in the texture", methods[k], "drawn eyes, mean", untimed, "eye", mean(covers[k].n, covers[k].wrong), "%",
-		          "of what is kept is lid, lash or sclera");
-		bench_row("covers left in the texture", methods[k], "drawn eyes, mean", untimed, "eye", mean(covers[k].n_mirrored, covers[k].mirrored), "%",
-		          "of reflections is kept");
-		bench_row("covers left in the texture", methods[k], "drawn eyes, mean", untimed, "eye", mean(covers[k].n, covers[k].missed), "%",
-		          "of the visible iris is lost");
-	}
-	struct covers *c = &covers[BY_EVIDENCE];
-	bench_row("pupils taken as unmeasured", "evidence, step, usual size", "drawn eyes, mean", untimed, "eye", mean(c->n_pupils, c->pupil), "mm", "of the radius");
-	bench_row("pupils taken as unmeasured", "the usual size alone", "drawn eyes, mean", untimed, "eye", mean(c->n_pupils, c->usual), "mm", "of the radius");
-	if (c->n_pupils) {
-		const double within = stats_quantile(c->n_pupils, c->sigmas, 0.9);
-		bench_goal("pupils taken as unmeasured: error over sigma, 90 %", "<= 2", within, "", within <= 2);
-	}
-	double before = mean(covers[0].n, covers[0].wrong), after = mean(covers[1].n, covers[1].wrong);
-	bench_goal("lid, lash or sclera in what is kept, against without evidence", "<= 1/4", after / before, "", after <= before / 4);
-}
-
-/* ---- white --------------------------------------------------------------------------------------------------------- */
-static const float kelvins[] = { 2800, 3500, 5000, 8000 };
-enum { KELVINS = 4, WHITES = 3, LIDDED_MOST = 8 };
 
 /* The photograph as the same camera takes it in light of another colour, its balance kept. Truth: a white surface is that colour then. */
 static void relight(struct photo *photo, const float light[3])
@@ -474,7 +320,6 @@ int main(int argc, char **argv)
 	}
 	fillings();
 	whites(net);
-	drawn_eyes(net);
 	evidence_close(net);
 	return bench_close();
 }

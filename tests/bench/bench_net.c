@@ -21,6 +21,7 @@ static const struct sized {
 	{ "config/evidence.onnx", "evidence, 256 x 160", { 3, 160, 256 }, { 6, 80, 128 } },
 	{ "config/evidence.onnx", "evidence, 128 x 96", { 3, 96, 128 }, { 6, 48, 64 } },
 	{ "config/strip.onnx", "strip, 160 x 64", { 8, 64, 160 }, { 1, 65, 160 } },
+	{ "config/occlusion.onnx", "occlusion, 128 x 128", { 8, 128, 128 }, { 4, 64, 64 } },
 	{ "config/turn.onnx", "turn, 96 x 96", { 3, 96, 96 }, { 4, 1, 1 } },
 	{ "config/odds.onnx", "odds, 1 x 1", { 36, 1, 1 }, { 9, 1, 1 } },
 };

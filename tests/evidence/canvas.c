@@ -8,13 +8,15 @@ struct canvas canvas_new(int width, int height)
 {
 	const size_t n = (size_t)width * (size_t)height;
 	return (struct canvas){ .width = width, .height = height, .rgb = calloc(3 * n, sizeof(float)), .hair = calloc(n, sizeof(float)),
-		.label = calloc(n, 1), .mm = 1 };
+		.mirror = calloc(n, sizeof(float)), .body = calloc(n, sizeof(float)), .label = calloc(n, 1), .mm = 1 };
 }
 
 void canvas_free(struct canvas *c)
 {
 	free(c->rgb);
 	free(c->hair);
+	free(c->mirror);
+	free(c->body);
 	free(c->label);
 	*c = (struct canvas){ 0 };
 }

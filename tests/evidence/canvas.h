@@ -12,6 +12,7 @@ struct canvas {
 	int width, height;
 	float *rgb;       // [height][width][3], linear
 	float *hair;      // [height][width], share that hairs cover
+	float *mirror, *body;  // [height][width], luminance that eyes and glasses mirror, and that of what lies below it
 	uint8_t *label;   // [height][width]
 	float at[2];      // face mm of px (0, 0)
 	float m[2][2];    // face mm a px: u = at[0] + m[0][0] x + m[0][1] y

@@ -43,6 +43,7 @@ static void before(struct canvas *c, long i, const struct glasses *g, float x, f
 		}
 		for (int k = 0; k < 3; k++)
 			rgb[k] = rgb[k] * g->tint[k] + added * white[k];
+		c->mirror[i] += added * (0.2126F * white[0] + 0.7152F * white[1] + 0.0722F * white[2]);
 		if (added > 0.3F && c->label[i] >= EVIDENCE_SCLERA)
 			c->label[i] = EVIDENCE_REFLECTION;
 	}

@@ -27,6 +27,22 @@ static void unit(float v[3])
 		v[c] /= n;
 }
 
+void source_axes(float d[3], float e[3], float up[3], float x, float y, float lean)
+{
+	const float upright[3] = { sinf(lean), cosf(lean), 0 };
+	d[0] = x;
+	d[1] = y;
+	d[2] = 1;
+	unit(d);
+	e[0] = upright[1] * d[2] - upright[2] * d[1];
+	e[1] = upright[2] * d[0] - upright[0] * d[2];
+	e[2] = upright[0] * d[1] - upright[1] * d[0];
+	unit(e);
+	up[0] = d[1] * e[2] - d[2] * e[1];
+	up[1] = d[2] * e[0] - d[0] * e[2];
+	up[2] = d[0] * e[1] - d[1] * e[0];
+}
+
 /* A source in direction (x, y) of the plane z = 1, of so wide a half extent; mirrored radiance, irradiance. */
 static void add(struct light *l, struct rng *rng, float x, float y, float w, float h, int shape, float kelvin, float radiance,
                 float irradiance)
@@ -34,19 +50,8 @@ static void add(struct light *l, struct rng *rng, float x, float y, float w, flo
 	if (l->n == SOURCES_MAX)
 		return;
 	struct source *s = &l->source[l->n++];
-	*s = (struct source){ .dir = { x, y, 1 }, .half = { w, h }, .shape = shape, .bars = { 1 + rng_below(rng, 3), 1 + rng_below(rng, 3) } };
-	unit(s->dir);
-	const float turn = (float)(0.15 * rng_normal(rng));
-	float up[3] = { sinf(turn), cosf(turn), 0 };
-	const float *d = s->dir;
-	float *e = s->side;
-	e[0] = up[1] * d[2] - up[2] * d[1];
-	e[1] = up[2] * d[0] - up[0] * d[2];
-	e[2] = up[0] * d[1] - up[1] * d[0];
-	unit(e);
-	s->up[0] = d[1] * e[2] - d[2] * e[1];
-	s->up[1] = d[2] * e[0] - d[0] * e[2];
-	s->up[2] = d[0] * e[1] - d[1] * e[0];
+	*s = (struct source){ .half = { w, h }, .shape = shape, .bars = { 1 + rng_below(rng, 3), 1 + rng_below(rng, 3) } };
+	source_axes(s->dir, s->side, s->up, x, y, (float)(0.15 * rng_normal(rng)));
 	float colour[3];
 	light_colour(colour, kelvin);
 	for (int c = 0; c < 3; c++) {
@@ -163,10 +168,15 @@ void light_mirrored(float out[3], const struct light *l, const float d[3])
 	const float level = (1 - l->above + l->above * (0.12F + high)) * (0.25F + 1.5F * wobble * wobble);
 	for (int c = 0; c < 3; c++)
 		out[c] = l->room[c] * level;
+	if (l->around.on)
+		around_mirrored(out, &l->around, d);
 	for (int i = 0; i < l->n; i++)
 		if (in_source(&l->source[i], d))
 			for (int c = 0; c < 3; c++)
 				out[c] += l->source[i].radiance[c];
+	const float through = l->around.on ? around_through(&l->around, d) : 1;
+	for (int c = 0; c < 3; c++)
+		out[c] *= through;
 }
 
 void light_on(float out[3], const struct light *l, const float n[3], float wrap)

@@ -3,6 +3,7 @@
  */
 #ifndef EVIDENCE_LIGHT_H
 #define EVIDENCE_LIGHT_H
+#include "around.h"
 #include "field.h"
 #include "math/rng.h"
 
@@ -27,10 +28,14 @@ struct light {
 	float above, skyline;       // how much more is mirrored from above; height of the horizon, as y of a direction
 	const struct field *clutter;
 	float at[2], scale;         // where and how large the clutter is
+	struct around around;       // off: none
 	float shade_dir[2], shade_at, shade_soft, shade_depth, shade_period;  // a shadow's edge, or slats, over the face; mm
 };
 
 struct light light_make(struct rng *rng, bool test);
+
+/* Axes of a source or window in direction (x, y) of the plane z = 1, leaning by so many radians. */
+void source_axes(float dir[3], float side[3], float up[3], float x, float y, float lean);
 
 /* Radiance from direction d (unit). */
 void light_mirrored(float out[3], const struct light *light, const float d[3]);

@@ -14,6 +14,14 @@ static int label_of(const struct ball_point *p, float kept, const float white[3]
 	return m > 0.12F * luma(white) && m > 0.8F * luma(p->body) * kept ? EVIDENCE_REFLECTION : p->label;
 }
 
+/* What a pixel shows. */
+static void note(struct canvas *c, long i, const struct ball_point *p, float kept, const float white[3])
+{
+	c->label[i] = (uint8_t)label_of(p, kept, white);
+	c->mirror[i] = luma(p->mirror);
+	c->body[i] = luma(p->body) * kept;
+}
+
 /* An eyeball without lids, before whatever is there: a prepared one, a prosthesis, a model. */
 static void draw_bare(struct canvas *c, const struct set *s, int e)
 {
@@ -33,7 +41,7 @@ static void draw_bare(struct canvas *c, const struct set *s, int e)
 			for (int k = 0; k < 3; k++)
 				to[k] += cover * (p.body[k] * shade + p.mirror[k] - to[k]);
 			if (cover > 0.5F)
-				c->label[j * c->width + i] = (uint8_t)label_of(&p, shade, s->white);
+				note(c, (long)j * c->width + i, &p, shade, s->white);
 		}
 }
 
@@ -85,7 +93,7 @@ static void eye_pixel(struct canvas *c, long i, const struct set *s, int e, floa
 	for (int k = 0; k < 3; k++)
 		c->rgb[3 * i + k] += cover * (rgb[k] - c->rgb[3 * i + k]);
 	if (cover > 0.5F)
-		c->label[i] = (uint8_t)label_of(&p, kept, s->white);
+		note(c, i, &p, kept, s->white);
 }
 
 void open_eye_draw(struct canvas *c, const struct set *s, int e)

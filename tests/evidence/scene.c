@@ -214,6 +214,19 @@ static struct drawn begin(struct set *s, struct rng *rng, bool test, int width, 
 	return d;
 }
 
+/* What is mirrored, against white. */
+static void keep_mirror(struct drawn *d, const struct canvas *c)
+{
+	const size_t n = (size_t)d->width * (size_t)d->height;
+	const float white = 0.2126F * d->white[0] + 0.7152F * d->white[1] + 0.0722F * d->white[2];
+	d->mirror = malloc(n * sizeof(float));
+	d->body = malloc(n * sizeof(float));
+	for (size_t i = 0; i < n; i++) {
+		d->mirror[i] = c->mirror[i] / white;
+		d->body[i] = c->body[i] / white;
+	}
+}
+
 /* Draws, exposes and labels what is in view; frees the canvas. */
 static void finish(struct drawn *d, struct canvas *c, const struct set *s, struct rng *rng, bool test, bool photo, float rough)
 {
@@ -227,6 +240,7 @@ static void finish(struct drawn *d, struct canvas *c, const struct set *s, struc
 		other_draw(c, (enum other_kind)d->other, rng, test);
 	lens_expose(d->rgb, c, d->white, 5.9F / c->mm, photo, rough, rng);
 	memcpy(d->label, c->label, (size_t)d->width * (size_t)d->height);
+	keep_mirror(d, c);
 	if (face)
 		note_eyes(d, s, c);
 	canvas_free(c);
@@ -285,6 +299,10 @@ struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, in
 		s.ball[k].blur *= 0.5F;
 	}
 	roughen(s.ball, view->rough, &rng);
+	if (view->around) {
+		struct rng own = { (number * 2 + 1) * 0x9e3779b97f4a7c15 + 11 };
+		s.light.around = around_make(&own, !view->training);
+	}
 	ball_limbus(limbus, &s.ball[e]);
 	canvas_view(&c, s.face.frame[e].at[0] + limbus[0], s.face.frame[e].at[1] + limbus[1] - (d.other == OTHER_FACE ? 55 : 0), view->x, view->y,
 	            s.ball[e].limbus / view->radius, view->turn, view->mirrored);
@@ -310,5 +328,7 @@ void drawn_free(struct drawn *d)
 {
 	free(d->rgb);
 	free(d->label);
+	free(d->mirror);
+	free(d->body);
 	*d = (struct drawn){ 0 };
 }

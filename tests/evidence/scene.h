@@ -21,6 +21,7 @@ struct drawn_eye {
 struct drawn {
 	int width, height;
 	uint8_t *rgb, *label;  // [height][width][3], [height][width]
+	float *mirror, *body;  // [height][width], before lens and noise, white is 1: luminance that eyes and glasses mirror, and that of what lies below it; may be null
 	int n_eyes;
 	struct drawn_eye eye[2];
 	float aspect;          // of their limbi, vertical over horizontal, of the eye
@@ -35,8 +36,8 @@ struct drawn drawn_make(uint64_t number, bool test, int width, int height);
 
 /* A photograph for measuring by: of the test split unless training is set, the limbus a ramp of equal halves (ball.h), one eye's limbus where it is asked for.
  * rough: 0 a clean limbus; up to 1 softer, ragged, with vessels up to it, and a poorer camera. other: 0, or what to draw instead of an eye
- * (other.h). portrait: as photographs of people are (portrait.h). Otherwise as drawn_make. */
-struct drawn_view { float radius, x, y, turn, rough; bool mirrored; int other; bool training, portrait; };  // limbus's larger semi-axis and centre, px; radians
+ * (other.h). portrait: as photographs of people are (portrait.h). around: it mirrors surroundings (around.h). Otherwise as drawn_make. */
+struct drawn_view { float radius, x, y, turn, rough; bool mirrored; int other; bool training, portrait, around; };  // limbus's larger semi-axis and centre, px; radians
 struct drawn drawn_photograph(uint64_t number, const struct drawn_view *view, int width, int height);
 /* Photograph `number` of those that the limbus's measure learns from: of the training split, `least` to 2.4 times as many px long, the limbus
  * 24 px to two fifths of the height; one in five shows no eye, two in three are rough, half are portraits. view: set. drawn_free. */

@@ -19,6 +19,7 @@ train "evidence network" train.py make_eyes
 "${B:-build}/tests/evidence/make_eyes" 700000000 40 192 160 > "$lessons"
 train "evidence network with lessons" train.py make_eyes --lessons "$lessons" --held "$lessons"
 train "strip network" strip.py make_strips
+train "network of what hides an iris" occlusion.py make_occlusions
 # Heads of another renderer, where its generator is: photographs with labels and ellipses that make_strips can read.
 data=${EYEWRIGHT_DATA:-../shared/data}
 faces=$data/../tools/faces

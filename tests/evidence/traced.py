@@ -1,11 +1,12 @@
 """Photographs of path-traced eyes, a third renderer's, with labels and ellipses, as heads.py --photographs writes them.
 
-    blender -b -P tests/evidence/traced.py -- --eyes FOLDER --out PHOTOGRAPHS --first 50000 --count 60 [--sheet PNG]
+    blender -b -P tests/evidence/traced.py -- --eyes FOLDER --out PHOTOGRAPHS --first 50000 --count 60 [--sheet PNG] [--mirrors]
 
 FOLDER: the generator of path-traced eyes (a refracting cornea, lids, lashes, tears, lamps and rooms), not part of this repository. Each number is
 an eye: iris, pose, lids, skin, light, a limbus as sharp or as soft as people's; of each some photographs, as near and as far as heads' are. The limbus is the
 middle of its ramp. Numbers below 59000 are for training, 59000 to 59499 for development, those above judge; irises are shared within each of them
-alone, since their textures take longest. Needs blender, python3-numpy, -scipy, -opencv.
+alone, since their textures take longest. --mirrors: every eye is lit, nearly faces the camera and mirrors what lights it; it is rendered without its cornea's mirror image as well, and what that
+adds more than a third of the iris' own light to is labelled a reflection. Needs blender, python3-numpy, -scipy, -opencv.
 """
 import argparse
 import functools
@@ -29,7 +30,7 @@ PRESETS = ("blue", "brown", "hazel", "green", "grey", "dark")
 F32 = np.float32
 
 
-def arguments(number, out):
+def arguments(number, out, mirrors):
     """What an eye is drawn with."""
     rng = np.random.default_rng([91, number])
     u, pick = rng.uniform, lambda *names: str(rng.choice(names))
@@ -44,19 +45,32 @@ def arguments(number, out):
              width=SIZE[0], height=SIZE[1], spp=12, threads=1)
     if a["mode"] == "lit":
         a.update(specular=int(rng.random() < .8), light=pick("softboxes", "ring", "side", "side", "room"))
+    if mirrors:
+        a.update(mode="lit", specular=1, light=pick("softboxes", "side", "room", "room", "room"), theta=25 * rng.random(), field=u(16, 22), width=384, height=288, spp=24)
     return [x for key, v in a.items() for x in ("--" + key.replace("_", "-"), str(v))]
+
+
+def mirrored(light, plain, label):
+    """Where reflections add more than a third of the iris' own light, over what is mirrored everywhere; white is the brightest of the plain picture."""
+    added, own = (v @ np.array([.2126, .7152, .0722], F32) for v in (light - plain, plain))
+    eye = (label == heads.IRIS) | (label == heads.PUPIL)
+    if not (label == heads.IRIS).any():
+        return np.zeros(label.shape, bool)
+    iris = np.median(own[label == heads.IRIS])
+    over = cv2.GaussianBlur(added, (0, 0), .7) - np.percentile(added[eye], 10)
+    return eye & (over > .01 * np.percentile(own, 99)) & (over > .3 * np.maximum(own, .5 * iris))
 
 
 class Eye:
     """Linear picture, labels, ellipse of the limbus and which of its places show, tilt."""
 
-    def __init__(self, number, work):
+    def __init__(self, number, work, mirrors=False):
         import eye_capture as capture
         import eye_model
         import eye_scene
         import exr_io
         import textures
-        o = capture.parser().parse_args(arguments(number, work))
+        o = capture.parser().parse_args(arguments(number, work, mirrors))
         P = capture.draw(o)
         rng = np.random.default_rng([o.seed, 3])
         tex = capture.build_iris(o, P)
@@ -88,6 +102,10 @@ class Eye:
             return exr_io.read(file)
         e = seen(o.spp, seed=o.seed, clamp=8.0 if lit else 0.0)
         self.light = np.stack([e["R"], e["G"], e["B"]], -1).astype(F32)
+        if mirrors:
+            eye.materials(o.mode, spec, o.transport, 0.0)
+            e = seen(o.spp, seed=o.seed, clamp=8.0)
+            plain = np.stack([e["R"], e["G"], e["B"]], -1).astype(F32)
         eye.materials("label")
         if lids:
             lids.materials("label", False)
@@ -100,6 +118,8 @@ class Eye:
         status = capture.limbus_occlusion(labels, uv, front, eye_scene.L_SCLERA, (eye_scene.L_SKIN, eye_scene.L_LASH, eye_scene.L_CARUNCLE))
         self.label, self.limbus, self.theta = CLASS[np.minimum(labels, 7)], truth["limbus_ellipse_exact"], np.radians(o.theta)
         self.line, self.shown = uv, status == 0
+        if mirrors:
+            self.label[mirrored(self.light, plain, self.label)] = heads.REFLECTION
         self.rng = np.random.default_rng([93, number])
 
     def photograph(self):
@@ -107,7 +127,7 @@ class Eye:
         rng, e = self.rng, self.limbus
         scale = min(1, max(np.exp(rng.uniform(np.log(.3), np.log(1.1))), 26 / e["a"]))
         scale = np.ceil(scale * WHOLE) / WHOLE
-        side = np.round(scale * np.array(SIZE)).astype(int)
+        side = np.round(scale * np.array(self.light.shape[1::-1])).astype(int)
         light = cv2.resize(self.light, side, interpolation=cv2.INTER_AREA) if scale < 1 else self.light
         label = cv2.resize(self.label, side, interpolation=cv2.INTER_NEAREST)
         least = np.minimum(side, max(2.2 * e["a"] * scale, 100))
@@ -126,6 +146,7 @@ def main():
     p.add_argument("--out", required=True, help="photographs, added to what is there")
     p.add_argument("--first", type=int, default=50000)
     p.add_argument("--count", type=int, default=60)
+    p.add_argument("--mirrors", action="store_true", help="lit eyes, their reflections labelled")
     p.add_argument("--sheet", metavar="PNG", help="a contact sheet of them")
     args = p.parse_args(sys.argv[sys.argv.index("--") + 1:])
     cv2.setNumThreads(1)
@@ -136,9 +157,9 @@ def main():
     tiles = []
     with tempfile.TemporaryDirectory() as work:
         for number in range(args.first, args.first + args.count):
-            eye = Eye(number, work)
+            eye = Eye(number, work, args.mirrors)
             with open(args.out, "ab") as file:
-                for _ in range(SHOTS):
+                for _ in range(1 if args.mirrors else SHOTS):
                     picture, label, limbus = eye.photograph()
                     file.write(heads.kept(picture, label, limbus))
                     tiles.append((cv2.resize(picture, heads.SIZE), cv2.resize(label, heads.SIZE, interpolation=cv2.INTER_NEAREST)))

@@ -123,7 +123,7 @@ static void drop_small(uint8_t *glint, const float *z, const struct work *work, 
  * one place and faint in another. */
 static void spread(uint8_t *glint, const float *z, const struct told *told, const struct work *work, const float *seen)
 {
-	const float may = 0.2f;                   // chance
+	const float may = 0.4f;                   // chance
 	const double far = 1.5 / work->texel;     // mm
 	const long n = (long)work->size * work->size;
 	if (!told->mirror)
@@ -145,7 +145,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 	long n = (long)work->size * work->size;
 	float *weight = mem_array((size_t)n, sizeof *weight), *z = mem_array((size_t)n, sizeof *z);
 	uint8_t *glint = mem_new((size_t)n, 1);
-	const float told_z = 0.3f, told_p = 0.5f;  // of the level: what the network takes for a reflection, with that chance, is only to be brighter than its ring
+	const float told_p = 0.5f;  // chance: what the network takes for a reflection is only to be brighter than its ring
 	iris_weight(weight, work, seen);
 	for (long i = 0; i < n && told->mirror; i++)
 		weight[i] *= 1 - told->mirror[i];
@@ -166,7 +166,7 @@ static void mark_glints(struct work *work, const struct unrefract_survey *survey
 		            && fminf(rgb[0], fminf(rgb[1], rgb[2])) > 0.5f * (float)conf->saturated;
 		z[i] = full ? INFINITY : conf->polarised ? 0 : rings_z(&rings[c], work->log[c][i], work->t[i]);
 		float logs[3] = { work->log[0][i], work->log[1][i], work->log[2][i] };
-		glint[i] = here && z[i] > (float)conf->glint_z * (is_told ? told_z : 1)
+		glint[i] = here && z[i] > (is_told ? 0 : (float)conf->glint_z)
 		           && (full || is_told || turns_white(logs, rings, c, work->t[i]));
 	}
 	drop_small(glint, z, work, conf);

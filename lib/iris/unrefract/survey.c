@@ -62,7 +62,7 @@ static bool sight_new(struct sight *sight, struct unrefract_view *view, const st
 		sight->seen[i] = sight->map.rim[i] < (float)eye->limbus_radius && rgb[0] + rgb[1] + rgb[2] > 0;
 		sight->lum[i] = logf(rgb[0] + rgb[1] + rgb[2] + 1e-3f);
 	}
-	sight->told = told_new(evidence, &sight->map, sight->seen, eye->limbus_radius);
+	sight->told = told_new(evidence, view->occlusion, &sight->map, sight->seen, eye->limbus_radius);
 	sight->iris = told_iris(&sight->told, sight->seen, n);
 	return true;
 }

@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 
-struct told told_new(const struct evidence *evidence, const struct iris_map *map, const float *seen, double limbus)
+struct told told_new(const struct evidence *evidence, const struct occlusion *occlusion, const struct iris_map *map, const float *seen, double limbus)
 {
 	const double least = 0.3;  // mean probability of an iris in the ring: eyes are above 0.5, what is none below 0.1
 	struct told told = { 0 };
@@ -22,9 +22,10 @@ struct told told_new(const struct evidence *evidence, const struct iris_map *map
 		if (!(seen[i] > 0))
 			continue;
 		double x = map->u[i], y = map->v[i];
-		told.cover[i] = evidence_at(evidence, EVIDENCE_SKIN, x, y) + evidence_at(evidence, EVIDENCE_LASH, x, y)
-		                + evidence_at(evidence, EVIDENCE_SCLERA, x, y);
-		told.mirror[i] = evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
+		told.cover[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_LID, x, y)
+		                          : evidence_at(evidence, EVIDENCE_SKIN, x, y) + evidence_at(evidence, EVIDENCE_LASH, x, y)
+		                                + evidence_at(evidence, EVIDENCE_SCLERA, x, y);
+		told.mirror[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_MIRROR, x, y) : evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
 		told.pupil[i] = evidence_at(evidence, EVIDENCE_PUPIL, x, y);
 	}
 	for (size_t i = 0; i < n; i++)

@@ -2,6 +2,7 @@
 #ifndef IRIS_UNREFRACT_TOLD_H
 #define IRIS_UNREFRACT_TOLD_H
 #include "iris/unrefract/unrefract.h"
+#include "limbus/occlusion.h"
 
 /* Probabilities, [size][size] each; null: nothing is told. */
 struct told {
@@ -13,8 +14,9 @@ struct told {
 /* Samples the evidence where the map's texels are seen. What it tells is dropped where it does not take the ring inside of the limbus
  * for an iris at all: it errs then, or the ellipse does. told_free.
  * seen      [size][size], 1 where the photograph shows the texel
- * evidence  null: nothing is told */
-struct told told_new(const struct evidence *evidence, const struct iris_map *map, const float *seen, double limbus);
+ * evidence  null: nothing is told
+ * occlusion where it is not null, lids and reflections are taken from it */
+struct told told_new(const struct evidence *evidence, const struct occlusion *occlusion, const struct iris_map *map, const float *seen, double limbus);
 void told_free(struct told *told);
 
 /* What is seen, times how likely it is iris or pupil and no reflection. [n]; free(). */

@@ -63,6 +63,7 @@ struct unrefract_view {
 	const char *name;         // of the photograph; the caller's
 	const struct fit *fit;    // the caller's, must outlive the view
 	struct balance white;     // of the photograph: what a reflection's colour is near; the caller's (balance.h)
+	const struct occlusion *occlusion;  // of the photograph, beside the evidence (limbus/occlusion.h); the caller's, for the survey alone; null: none
 	struct iris_view iris;
 	struct unrefract_survey survey;
 	struct circle pupil;      // this photograph's own frame
@@ -87,7 +88,7 @@ struct unrefract_texture {
 };
 
 /* Surveys one photograph.
- * view      zeroed but for name and white; unrefract_view_free
+ * view      zeroed but for name, white and occlusion; unrefract_view_free
  * evidence  of this photograph, in a window round the limbus (limbus/evidence.h), or null: lids and reflections by brightness and hue
  *           of the rings alone
  * fellow    what the other eye in the photograph tells of a pupil that was not measured here; null: nothing

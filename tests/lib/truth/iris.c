@@ -11,6 +11,7 @@
 #include "iris/unrefract/opts.h"
 #include "iris/balance_opts.h"
 #include "limbus/evidence.h"
+#include "limbus/occlusion.h"
 
 static const double painted_extent = 6.4;  // mm, half-width of the renderer's maps
 
@@ -73,13 +74,24 @@ bool iris_texture(struct unrefract_texture *texture, struct unrefract_view *view
 	*view = (struct unrefract_view){ .name = truth->name };
 	if (!photo_load(&photo, truth->photo, 100, err) || !evidence_open(&net, "config/evidence.onnx", err))
 		return false;
+	struct occlusion_net *hides;
+	if (!occlusion_open(&hides, "config/occlusion.onnx", err)) {
+		evidence_close(net);
+		return false;
+	}
+	struct occlusion *hidden = mem_new(1, sizeof *hidden);
 	struct evidence evidence = { 0 };
 	struct balance_conf white = iris_balance_conf();
 	bool ok = evidence_window(&evidence, net, &photo, fit->limbus.cx, fit->limbus.cy, fit->limbus.a, err);
 	if (ok)
 		view->white = balance_sclera(&photo, fit, &evidence, &white);
+	ok = ok && occlusion_read(hidden, hides, &photo, &evidence, &fit->limbus, err);
+	view->occlusion = hidden;
 	ok = ok && unrefract_survey(view, &photo, fit, &evidence, 0, &truth->eye, conf, err);
 	evidence_free(&evidence);
+	view->occlusion = 0;
+	free(hidden);
+	occlusion_close(hides);
 	evidence_close(net);
 	if (!ok)
 		return false;

@@ -17,6 +17,7 @@ static const struct {
 	{ "config/evidence.onnx", { 3, 32, 32 }, { 6, 16, 16 }, 4, { { 32, 32 }, { 96, 128 }, { 160, 256 }, { 224, 32 } } },
 	{ "config/strip.onnx", { 8, 64, 160 }, { 1, 65, 160 }, 3, { { 64, 160 }, { 64, 16 }, { 64, 208 } } },
 	{ "config/odds.onnx", { 36, 1, 1 }, { 9, 1, 1 }, 3, { { 1, 1 }, { 3, 5 }, { 1, 57 } } },
+	{ "config/occlusion.onnx", { 8, 128, 128 }, { 4, 64, 64 }, 3, { { 128, 128 }, { 64, 96 }, { 16, 160 } } },
 	{ "config/turn.onnx", { 3, 96, 96 }, { 4, 1, 1 }, 4, { { 96, 96 }, { 97, 101 }, { 71, 133 }, { 200, 65 } } },
 };
 
@@ -234,8 +235,8 @@ static void test_not_run(void **state)
 		{ 0, "Resize", "nearest", "nearesT", "Resize" },
 		{ 0, "Resize", "floor", "round", "Resize" },
 		{ 1, "AveragePool", "kernel_shape", "kernel_shapf", "AveragePool" },
-		{ 3, "Conv", "strides", "stridez", "must be 4 of 1 x 1" },
-		{ 3, "Relu", "Relu", "Tanh", 0 },
+		{ 4, "Conv", "strides", "stridez", "must be 4 of 1 x 1" },
+		{ 4, "Relu", "Relu", "Tanh", 0 },
 	};
 	struct err err = { 0 };
 	struct net *net;

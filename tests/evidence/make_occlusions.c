@@ -1,0 +1,188 @@
+/* make_occlusions: writes what an iris network (limbus/occlusion.h) sees of drawn eyes, with truth, to stdout, for training.
+ *
+ *     make_occlusions FIRST COUNT [test] | occlusion.py
+ *     make_occlusions sheet FIRST COLUMNS ROWS OUT.png [test]
+ *
+ * STARTS lessons of each photograph, their ellipses a little off. A lesson is OCCLUSION_SEEN x OCCLUSION_SIDE x OCCLUSION_SIDE bytes, 0 to 255 for 0 to 1, then
+ * OCCLUSION_CLASSES x OCCLUSION_CELLS x OCCLUSION_CELLS bytes: the share of each class in a cell.
+ * A reflection is what adds more than MUCH of the iris' own light to it, over what is mirrored everywhere.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "image/picture.h"
+#include "limbus/occlusion.h"
+#include "math/rng.h"
+#include "math/stats.h"
+#include "scene.h"
+
+enum { STARTS = 2, FINE = 4, WIDEST = 460 };
+static const float MUCH = 0.3F, FAINT = 0.01F;  // FAINT: of white; less is not seen
+
+/* Of what an eye mirrors: what lies over all of it, and how bright the iris is. */
+struct veil { float mirrored, iris; };
+
+static struct veil veil_of(const struct drawn *d, const struct ellipse *e)
+{
+	const long n = (long)d->width * d->height;
+	double *mirror = mem_array((size_t)n, sizeof *mirror), *iris = mem_array((size_t)n, sizeof *iris);
+	int all = 0, irises = 0;
+	for (long i = 0; i < n; i++) {
+		if (d->label[i] < EVIDENCE_IRIS || hypot(i % d->width - e->cx, i / d->width - e->cy) > e->a)
+			continue;
+		mirror[all++] = d->mirror[i];
+		if (d->label[i] == EVIDENCE_IRIS)
+			iris[irises++] = d->body[i];
+	}
+	struct veil v = { all ? (float)stats_quantile(all, mirror, 0.1) : 0, irises ? (float)stats_quantile(irises, iris, 0.5) : 0.02F };
+	free(mirror);
+	free(iris);
+	return v;
+}
+
+static enum occlusion_class class_at(const struct drawn *d, const struct veil *veil, const double p[2])
+{
+	if (p[0] < 0 || p[1] < 0 || p[0] >= d->width || p[1] >= d->height)
+		return OCCLUSION_LID;
+	const long i = (long)p[1] * d->width + (long)p[0];
+	const float added = d->mirror[i] - veil->mirrored;
+	if (d->label[i] < EVIDENCE_IRIS)
+		return OCCLUSION_LID;
+	const bool pupil = d->label[i] == EVIDENCE_PUPIL;
+	if (d->label[i] == EVIDENCE_REFLECTION || (added > FAINT && added > MUCH * (pupil ? 1.5F * veil->iris : fmaxf(d->body[i], 0.5F * veil->iris))))
+		return OCCLUSION_MIRROR;
+	return pupil ? OCCLUSION_PUPIL : OCCLUSION_IRIS;
+}
+
+static void truth_of(uint8_t out[OCCLUSION_CLASSES][OCCLUSION_CELLS][OCCLUSION_CELLS], const struct drawn *d, const struct veil *veil, const struct ellipse *e)
+{
+	for (int j = 0; j < OCCLUSION_CELLS; j++)
+		for (int i = 0; i < OCCLUSION_CELLS; i++) {
+			int count[OCCLUSION_CLASSES] = { 0 };
+			for (int k = 0; k < FINE * FINE; k++) {
+				double p[2];
+				occlusion_place(p, e, OCCLUSION_REACH * (2 * (i + (k % FINE + 0.5) / FINE) / OCCLUSION_CELLS - 1),
+				            OCCLUSION_REACH * (2 * (j + (k / FINE + 0.5) / FINE) / OCCLUSION_CELLS - 1));
+				count[class_at(d, veil, p)]++;
+			}
+			for (int c = 0; c < OCCLUSION_CLASSES; c++)
+				out[c][j][i] = (uint8_t)(255 * count[c] / (FINE * FINE));
+		}
+}
+
+/* Centre, size and shape moved by so many radii. */
+static struct ellipse moved(const struct ellipse *e, struct rng *rng)
+{
+	double q[ELLIPSE_N];
+	ellipse_to_q(q, e);
+	for (int i = 0; i < ELLIPSE_N; i++)
+		q[i] += 0.02 * e->a * rng_normal(rng);
+	struct ellipse f;
+	return ellipse_from_q(&f, q) && f.b > 0.4 * f.a ? f : *e;
+}
+
+struct lesson { float seen[OCCLUSION_SEEN][OCCLUSION_SIDE][OCCLUSION_SIDE]; uint8_t truth[OCCLUSION_CLASSES][OCCLUSION_CELLS][OCCLUSION_CELLS]; };
+
+/* The photograph of a number; false: it shows too little of an eye. */
+static bool lessons_of(struct lesson lesson[STARTS], uint64_t number, bool test, struct evidence_net *net)
+{
+	struct rng rng = { number * 131 + 3 };
+	const float radius = (float)exp(rng_range(&rng, log(24), log(130))), reach = (float)rng_range(&rng, 1.4, 3.2);
+	const int width = (int)fminf(2 * reach * radius, WIDEST), height = (int)((float)width * (float)rng_range(&rng, 0.65, 0.95));
+	struct drawn_view view = { .radius = radius, .x = (float)width * (float)rng_range(&rng, 0.42, 0.58), .y = (float)height * (float)rng_range(&rng, 0.42, 0.58),
+		.turn = (float)(rng_below(&rng, 5) ? 0.2 * rng_normal(&rng) : rng_range(&rng, 0, 2 * M_PI)), .mirrored = rng_below(&rng, 2), .training = !test,
+		.rough = (float)fmax(rng_range(&rng, -0.5, 1), 0), .portrait = !test && rng_below(&rng, 2), .around = rng_below(&rng, 4) > 0 };
+	struct drawn d = drawn_photograph(number, &view, width, height);
+	struct photo photo = photo_of_bytes(d.rgb, width, height);
+	bool ok = false;
+	for (int k = 0; k < d.n_eyes && !ok; k++) {
+		const float *l = d.eye[k].limbus;
+		const struct ellipse e = { l[0], l[1], l[2], l[3], l[4] };
+		struct evidence evidence;
+		struct err err = { 0 };
+		if (hypot(l[0] - view.x, l[1] - view.y) > 0.5 * radius || d.eye[k].shown < 0.25F)
+			continue;
+		if (!evidence_window(&evidence, net, &photo, e.cx, e.cy, e.a, &err)) {
+			fprintf(stderr, "%s\n", err.msg);
+			exit(1);
+		}
+		const struct veil veil = veil_of(&d, &e);
+		for (int s = 0; s < STARTS; s++) {
+			const struct ellipse near = s ? moved(&e, &rng) : e;
+			occlusion_sample(lesson[s].seen, &photo, &evidence, &near);
+			truth_of(lesson[s].truth, &d, &veil, &near);
+		}
+		evidence_free(&evidence);
+		ok = true;
+	}
+	photo_free(&photo);
+	drawn_free(&d);
+	return ok;
+}
+
+static void write_lesson(const struct lesson *l)
+{
+	static uint8_t bytes[OCCLUSION_SEEN * OCCLUSION_SIDE * OCCLUSION_SIDE];
+	for (int i = 0; i < OCCLUSION_SEEN * OCCLUSION_SIDE * OCCLUSION_SIDE; i++)
+		bytes[i] = (uint8_t)lrintf(255 * (&l->seen[0][0][0])[i]);
+	fwrite(bytes, 1, sizeof bytes, stdout);
+	fwrite(l->truth, 1, sizeof l->truth, stdout);
+}
+
+static int sheet(struct lesson *lesson, uint64_t first, int columns, int rows, const char *path, bool test, struct evidence_net *net)
+{
+	static const uint8_t colour[OCCLUSION_CLASSES][3] = { { 60, 130, 230 }, { 0, 0, 0 }, { 255, 60, 200 }, { 60, 40, 30 } };
+	const int w = columns * OCCLUSION_SIDE, h = 2 * rows * OCCLUSION_SIDE;
+	uint8_t *px = mem_new((size_t)w * (size_t)h, 3);
+	for (int k = 0; k < rows * columns; first++) {
+		if (!lessons_of(lesson, first, test, net))
+			continue;
+		for (int i = 0; i < OCCLUSION_SIDE * OCCLUSION_SIDE; i++) {
+			const int x = i % OCCLUSION_SIDE, y = i / OCCLUSION_SIDE;
+			uint8_t *to = px + 3 * ((long)(2 * (k / columns) * OCCLUSION_SIDE + y) * w + k % columns * OCCLUSION_SIDE + x), *truth = to + 3L * w * OCCLUSION_SIDE;
+			for (int c = 0; c < 3; c++) {
+				float sum = 0;
+				for (int q = 0; q < OCCLUSION_CLASSES; q++)
+					sum += (float)lesson->truth[q][y / 2][x / 2] / 255 * colour[q][c];
+				to[c] = (uint8_t)(255 * lesson->seen[c][y][x]);
+				truth[c] = (uint8_t)sum;
+			}
+		}
+		k++;
+	}
+	struct err err = { 0 };
+	const bool ok = picture_png_write(path, px, w, h, 3, &err);
+	free(px);
+	return !ok;
+}
+
+int main(int argc, char **argv)
+{
+	struct evidence_net *net;
+	struct err err = { 0 };
+	struct lesson *lesson = mem_array(STARTS, sizeof *lesson);
+	int status = 2;
+	if (argc < 3) {
+		fprintf(stderr, "usage: make_occlusions FIRST COUNT [test]\n       make_occlusions sheet FIRST COLUMNS ROWS OUT.png [test]\n");
+	} else if (!evidence_open(&net, "config/evidence.onnx", &err)) {
+		fprintf(stderr, "%s\n", err.msg);
+		status = 1;
+	} else {
+		if (argc > 5 && strcmp(argv[1], "sheet") == 0) {
+			status = sheet(lesson, strtoull(argv[2], 0, 10), atoi(argv[3]), atoi(argv[4]), argv[5], argc > 6, net);
+		} else {
+			const bool test = argc > 3;
+			for (long i = 0; i < atol(argv[2]) && !ferror(stdout); i++)
+				if (lessons_of(lesson, strtoull(argv[1], 0, 10) + (uint64_t)i, test, net))
+					for (int s = 0; s < STARTS; s++)
+						write_lesson(&lesson[s]);
+			status = ferror(stdout) ? 1 : 0;
+		}
+		evidence_close(net);
+	}
+	free(lesson);
+	return status;
+}
