@@ -74,6 +74,16 @@ static const struct evidence *evidence_of(struct evidence *out, const struct wor
 	return 0;
 }
 
+/* What hides this eye; null where it cannot be told, err is set. free(). */
+static struct occlusion *occlusion_of(const struct work *w, const struct photo *photo, const struct evidence *told, const struct fit *fit, struct err *err)
+{
+	struct occlusion *hidden = mem_new(1, sizeof *hidden);
+	if (occlusion_read(hidden, w->occlusion, photo, told, &fit->limbus, err))
+		return hidden;
+	free(hidden);
+	return 0;
+}
+
 /* What the other eye tells of this one's pupil; nothing where it has no usable limbus. */
 static struct pupil_curve fellow_of(const struct work *w, const struct photo *photo, const struct capture_photo *other)
 {
@@ -84,9 +94,11 @@ static struct pupil_curve fellow_of(const struct work *w, const struct photo *ph
 	if (!other || !fit_load(&fit, stage_path(w->run->stage, "%s", other->fit), &err) || !fit.ok)
 		return curve;
 	const struct evidence *told = fit.has_pupil ? 0 : evidence_of(&evidence, w, photo, &fit);
-	if (!unrefract_pupil(&curve, photo, &fit, told, w->run->eye, w->run->conf, &err))
+	struct occlusion *hidden = told ? occlusion_of(w, photo, told, &fit, &err) : 0;
+	if ((told && !hidden) || !unrefract_pupil(&curve, photo, &fit, told, hidden, w->run->eye, w->run->conf, &err))
 		stage_warn(w->run->stage, "%s: tells nothing of the other eye's pupil: %s", other->name, err.msg);
 	evidence_free(&evidence);
+	free(hidden);
 	return curve;
 }
 
@@ -98,12 +110,11 @@ static bool look(struct work *w, int i, const struct photo *photo, struct err *e
 	struct evidence evidence = { 0 };
 	const struct evidence *told = evidence_of(&evidence, w, photo, fit);
 	const struct pupil_curve fellow = fellow_of(w, photo, w->fellows[i]);
-	struct occlusion *hidden = mem_new(1, sizeof *hidden);
-	if (told && occlusion_read(hidden, w->occlusion, photo, told, &fit->limbus, err))
-		view->occlusion = hidden;
+	struct occlusion *hidden = told ? occlusion_of(w, photo, told, fit, err) : 0;
+	view->occlusion = hidden;
 	if (!photo->grey)
 		view->white = balance_sclera(photo, fit, told, w->run->white);
-	bool ok = (view->occlusion || !told) && unrefract_survey(view, photo, fit, told, &fellow, w->run->eye, w->run->conf, err);
+	bool ok = (hidden || !told) && unrefract_survey(view, photo, fit, told, &fellow, w->run->eye, w->run->conf, err);
 	evidence_free(&evidence);
 	view->occlusion = 0;
 	free(hidden);

@@ -129,11 +129,11 @@ static double mean(int n, const double *v)
 }
 
 /* The size of the pupil as if its margin had not been measured, against the true ellipse's. */
-static void count_pupil(struct covers *c, const struct photo *photo, const struct fit *fit, const struct evidence *told, const struct unrefract_view *view,
+static void count_pupil(struct covers *c, const struct photo *photo, const struct fit *fit, const struct evidence *told, const struct occlusion *occlusion, const struct unrefract_view *view,
                         const struct unrefract_conf *conf)
 {
 	struct fit unmeasured = *fit;
-	struct unrefract_view guess = { .name = "drawn" };
+	struct unrefract_view guess = { .name = "drawn", .occlusion = occlusion };
 	struct err err = { 0 };
 	unmeasured.has_pupil = false;
 	if (fit->has_pupil && unrefract_survey(&guess, photo, &unmeasured, told, 0, &anatomy, conf, &err)) {
@@ -162,7 +162,7 @@ static void measure(struct covers covers[WAYS], const struct nets *nets, const s
 			if (unrefract_survey(&view, &photo, &fit, told, 0, &anatomy, &conf, &err))
 				count(&covers[k], &view, &fit, d);
 			if (k == BY_OCCLUSION && view.used && pupils)
-				count_pupil(&covers[k], &photo, &fit, told, &view, &conf);
+				count_pupil(&covers[k], &photo, &fit, told, &occlusion, &view, &conf);
 			unrefract_view_free(&view);
 		}
 	} else {

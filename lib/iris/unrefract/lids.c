@@ -29,13 +29,13 @@ static void add_evidence(float (*cell)[RINGS], const float *plane, const float *
 }
 
 /* What is told of each cell: log odds, in units of the scores. */
-static void told_of(float (*cell)[RINGS], const float *seen, const float *cover, const struct sheet *sheet, const struct unrefract_conf *conf)
+static void told_of(float (*cell)[RINGS], const float *cover, const struct sheet *sheet, const struct unrefract_conf *conf)
 {
 	const float surest = 5, careful = 1;  // log odds: none is surer than 150 to 1; lid that is kept spoils more than iris that is lost
 	for (int a = 0; a < ANGLES; a++)
 		for (int r = 0; r < RINGS; r++) {
 			float p = fminf(fmaxf(cell_at(cover, sheet, a, r), 0.001f), 0.999f);
-			cell[a][r] = cell_at(seen, sheet, a, r) < 0.5f ? 0 : (float)conf->lid_told * fminf(fmaxf(logf(p / (1 - p)) + careful, -surest), surest);
+			cell[a][r] = (float)conf->lid_told * fminf(fmaxf(logf(p / (1 - p)) + careful, -surest), surest);
 		}
 }
 
@@ -130,7 +130,7 @@ void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], cons
 	float(*cell)[RINGS] = mem_new(ANGLES, sizeof *cell);
 	float(*gain)[RINGS + 1] = mem_array(ANGLES, sizeof *gain);
 	if (cover && conf->lid_told > 0)  // it knows brightness and hue, too
-		told_of(cell, seen, cover, sheet, conf);
+		told_of(cell, cover, sheet, conf);
 	else
 		by_rings(cell, logs, seen, iris, sheet, (float)conf->lid_z);
 	for (int a = 0; a < ANGLES; a++) {

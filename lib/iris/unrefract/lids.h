@@ -9,7 +9,7 @@
  * logs    logarithms of red, green, blue, [size][size] each
  * seen    [size][size] 0..1: what of the planes is seen
  * iris    [size][size] 0..1: the same, times how likely it is iris: of it the rings' own level is taken
- * cover   [size][size] probability that it is none, or null */
+ * cover   [size][size] probability that a lid or lashes cover it, or null */
 void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], const float *seen, const float *iris,
                     const float *cover, const struct sheet *sheet, const struct unrefract_conf *conf);
 

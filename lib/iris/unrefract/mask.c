@@ -57,7 +57,7 @@ static void mark_lids(struct work *work, double lid_t[SHEET_ANGLES], const struc
 {
 	take_logs(work, survey, seen, 0.06 / work->texel);
 	float *iris = told_iris(told, seen, (size_t)work->size * (size_t)work->size);
-	unrefract_lids(lid_t, (const float *const *)work->log, seen, iris, told->cover, sheet, conf);
+	unrefract_lids(lid_t, (const float *const *)work->log, seen, iris, told->lid, sheet, conf);
 	free(iris);
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < work->size; y++)

@@ -90,10 +90,10 @@ static void find_pupil(struct unrefract_view *view, const struct sight *sight, c
 	view->pupil = pupil_of_curve(&view->pupil_sigma, &curve, conf);
 }
 
-bool unrefract_pupil(struct pupil_curve *out, const struct photo *photo, const struct fit *fit, const struct evidence *evidence, const struct eye *eye,
+bool unrefract_pupil(struct pupil_curve *out, const struct photo *photo, const struct fit *fit, const struct evidence *evidence, const struct occlusion *occlusion, const struct eye *eye,
                      const struct unrefract_conf *conf, struct err *err)
 {
-	struct unrefract_view view = { .fit = fit, .iris = iris_view_new(fit, eye) };
+	struct unrefract_view view = { .fit = fit, .occlusion = occlusion, .iris = iris_view_new(fit, eye) };
 	struct sight sight = { 0 };
 	const struct circle measured = pupil_measured(&view);
 	bool ok = true;

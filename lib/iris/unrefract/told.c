@@ -12,7 +12,7 @@ struct told told_new(const struct evidence *evidence, const struct occlusion *oc
 	if (!evidence)
 		return told;
 	size_t n = (size_t)map->size * (size_t)map->size;
-	float **plane[] = { &told.cover, &told.mirror, &told.pupil };
+	float **plane[] = { &told.cover, &told.lid, &told.mirror, &told.pupil };
 	for (int k = 0; k < COUNT(plane); k++)
 		*plane[k] = mem_new(n, sizeof(float));
 	double eye = 0;
@@ -22,11 +22,11 @@ struct told told_new(const struct evidence *evidence, const struct occlusion *oc
 		if (!(seen[i] > 0))
 			continue;
 		double x = map->u[i], y = map->v[i];
-		told.cover[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_LID, x, y)
-		                          : evidence_at(evidence, EVIDENCE_SKIN, x, y) + evidence_at(evidence, EVIDENCE_LASH, x, y)
-		                                + evidence_at(evidence, EVIDENCE_SCLERA, x, y);
+		const float lid = evidence_at(evidence, EVIDENCE_SKIN, x, y) + evidence_at(evidence, EVIDENCE_LASH, x, y), all = lid + evidence_at(evidence, EVIDENCE_SCLERA, x, y);
+		told.cover[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_LID, x, y) : all;
+		told.lid[i] = all > 0 ? told.cover[i] * lid / all : 0;
 		told.mirror[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_MIRROR, x, y) : evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
-		told.pupil[i] = evidence_at(evidence, EVIDENCE_PUPIL, x, y);
+		told.pupil[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_PUPIL, x, y) : evidence_at(evidence, EVIDENCE_PUPIL, x, y);
 	}
 	for (size_t i = 0; i < n; i++)
 		if (seen[i] > 0 && map->rim[i] > 0.4 * limbus && map->rim[i] < 0.9 * limbus) {
@@ -41,6 +41,7 @@ struct told told_new(const struct evidence *evidence, const struct occlusion *oc
 void told_free(struct told *told)
 {
 	free(told->cover);
+	free(told->lid);
 	free(told->mirror);
 	free(told->pupil);
 	*told = (struct told){ 0 };

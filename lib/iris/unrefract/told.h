@@ -7,6 +7,7 @@
 /* Probabilities, [size][size] each; null: nothing is told. */
 struct told {
 	float *cover;   // lid, skin, lash, and sclera where the ellipse reaches too far
+	float *lid;     // the same but for sclera
 	float *mirror;  // a reflection
 	float *pupil;
 };
@@ -15,7 +16,7 @@ struct told {
  * for an iris at all: it errs then, or the ellipse does. told_free.
  * seen      [size][size], 1 where the photograph shows the texel
  * evidence  null: nothing is told
- * occlusion where it is not null, lids and reflections are taken from it */
+ * occlusion where it is not null, all of it is taken from there */
 struct told told_new(const struct evidence *evidence, const struct occlusion *occlusion, const struct iris_map *map, const float *seen, double limbus);
 void told_free(struct told *told);
 

@@ -95,8 +95,8 @@ struct unrefract_texture {
  * False, err set, when the iris lies outside the photograph. */
 bool unrefract_survey(struct unrefract_view *view, const struct photo *photo, const struct fit *fit, const struct evidence *evidence,
                       const struct pupil_curve *fellow, const struct eye *eye, const struct unrefract_conf *conf, struct err *err);
-/* What one eye of a photograph tells of the other's pupil. False, err set, as above; out tells nothing then. */
-bool unrefract_pupil(struct pupil_curve *out, const struct photo *photo, const struct fit *fit, const struct evidence *evidence, const struct eye *eye,
+/* What one eye of a photograph tells of the other's pupil; occlusion as of a view. False, err set, as above; out tells nothing then. */
+bool unrefract_pupil(struct pupil_curve *out, const struct photo *photo, const struct fit *fit, const struct evidence *evidence, const struct occlusion *occlusion, const struct eye *eye,
                      const struct unrefract_conf *conf, struct err *err);
 void unrefract_view_free(struct unrefract_view *view);
 

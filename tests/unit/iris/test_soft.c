@@ -164,10 +164,10 @@ static void fellow_pupil(void **state)
 	struct photo photo = painted(iris, 5, 0, 66, 0.1);
 	struct pupil_curve curve;
 	struct err err = { 0 };
-	assert_true(unrefract_pupil(&curve, &photo, &shown, 0, &eye, &conf, &err) && curve.known);
+	assert_true(unrefract_pupil(&curve, &photo, &shown, 0, 0, &eye, &conf, &err) && curve.known);
 	const struct circle found = pupil_of(&sigma, 66, 1, 0, 0, &curve);
 	assert_true(fabs(log(found.r / truth.r)) < 2 * conf.pupil_fellow && sigma < 2 * conf.pupil_fellow);
-	assert_true(unrefract_pupil(&curve, &photo, &hidden, 0, &eye, &conf, &err) && curve.known);
+	assert_true(unrefract_pupil(&curve, &photo, &hidden, 0, 0, &eye, &conf, &err) && curve.known);
 	const struct circle alone = pupil_of(&sigma, 66, 1, 0, 0, 0), both = pupil_of(&sigma, 66, 1, 0, 0, &curve);
 	assert_true(fabs(log(both.r / truth.r)) < fabs(log(alone.r / truth.r)));
 	photo_free(&photo);
@@ -175,7 +175,7 @@ static void fellow_pupil(void **state)
 	struct fit out = hidden;
 	struct photo other = painted(iris, 5, 0, 66, 0.1);
 	out.cam_from_eye[0][3] = 500;
-	assert_false(unrefract_pupil(&curve, &other, &out, 0, &eye, &conf, &err));
+	assert_false(unrefract_pupil(&curve, &other, &out, 0, 0, &eye, &conf, &err));
 	assert_false(curve.known);
 	photo_free(&other);
 }

@@ -170,6 +170,6 @@ static void test_windows(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(test_places), cmocka_unit_test(test_files), cmocka_unit_test(test_windows) };
+	const struct CMUnitTest tests[] = { cmocka_unit_test(test_places), SCRATCH_TEST(test_files), cmocka_unit_test(test_windows) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
