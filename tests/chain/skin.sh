@@ -84,13 +84,19 @@ run_make "$others"
 same "two other characters follow the same film" "$? $(ran | tr ' ' '\n' | grep -xE 'track|train' | tr '\n' ' ')" "0 "
 # Targets are added: what shut lids lack in an expression is a target of its own, in each of the file's meshes that move. Without it the bundled character's lay 2.0 mm over each other in a squint, which
 # is 0.2 of a blink's without, and raised brows left 4 % of the open eye, 6 of another's; half way down those led lids 0.8 mm through another's cornea, 0.3 through the bundled one's.
-# added NAME FILE.glb SEEN: what face_glb.js saw. Where skin is turned inside out it is at the outer corners, in a squint, as the rig itself has it.
+# Skin off the margins keeps to its side on the mesh itself, shut, three quarters and half shut, without expression and with each in full and half: beside the outer corners up to 90 faces, 33 mm^2, were
+# turned over in a squint, 2 mm^2 of them seen. Left are, of the finest mesh, up to 10 faces, 3.5 mm^2, in the creases of lids; 0.3 mm^2 of skin, margins', too, is seen from behind.
+for rig in "$capture/work/targets/mpfb" "$others/work/targets"/{fine,other}; do
+	"${B:-build}/tests/tools/turned_over" "$rig/rig.npz" >"$root/turned" 2>&1
+	same "${rig##*/}: no skin off the margins turns over" "$(awk -F, 'NR > 1 && !($7 < 5 && $6 < 0.01 * $8 && $5 < 0.4)' "$root/turned")$(wc -l <"$root/turned")" 31
+done
+# added NAME FILE.glb SEEN: what face_glb.js saw. Skin turned inside out was up to 275 px beside the outer corners, in a squint; left are up to 66, half shut, at margins.
 added() {
 	same "$1: shut in any expression, nothing of an open eye shows, looking down, too" "$(awk '$1 == "open" { open[$2] = $5 } $1 ~ /shut/ && $4 == "eye" && $5 > 0.001 * open[$2]' "$3")$(grep -c '_shut' "$3")" 20
 	same "$1: and no lid lies further over the other than in a blink" "$(awk '$1 == "over" && $2 == "shut" { by[$3] = $4 } $1 == "over" && ($4 > by[$3] + 0.1 || $4 > 0.35)' "$3")$(grep -c '^over' "$3")" 10
 	same "$1: on their way lids are before the eye" "$(awk '$1 == "along" && ($5 > 0.15 || $6 > 0.15 || $7 > 0.15 || $9 > 0.15 || $11 < 100)' "$3")$(grep -c '^along' "$3")" 4
 	same "$1: no gap, no hole, no eye through a lid in any expression" "$(awk '$4 == "eye" && ($11 > 0 || $17 > 0 || ($1 !~ /shut/ && $19 > 0.001 * $5 + 10))' "$3")" ""
-	same "$1: nor a lid turned inside out, but for corners" "$(awk '$4 == "eye" && $9 > 300' "$3")" ""
+	same "$1: nor a lid turned inside out" "$(awk '$4 == "eye" && $9 > 80' "$3")" ""
 	same "$1: its file says what goes with what" "$(node -e 'const d = require("fs").readFileSync(process.argv[1]), j = JSON.parse(d.subarray(20, 20 + d.readUInt32LE(12))), wrong = [];
 		for (const m of j.meshes.filter(m => m.extras && (m.extras.targetNames || []).includes("eyeBlinkLeft")))
 			for (const side of ["Left", "Right"])

@@ -184,7 +184,7 @@ static double rig_px_per_mm(const struct rig *rig, const struct rig_motion *m, c
 bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motion *motion, const struct rig_character *ch,
               const struct rig_conf *conf, struct err *err)
 {
-	double center[2][3], radius;
+	double center[2][3], radius, px_per_mm = 1;
 	size_t row = (size_t)motion->n_inputs + 1;
 	*rig = (struct rig){ .n_inputs = motion->n_inputs };
 	*report = (struct rig_report){ 0 };
@@ -210,7 +210,7 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 		take_tracked(rig, motion, ch, conf->min_confidence, report);
 		rig_spread(rig, conf);
 		extrapolate(rig);
-		double px_per_mm = rig_px_per_mm(rig, motion, ch);
+		px_per_mm = rig_px_per_mm(rig, motion, ch);
 		rig_follow_lids(rig, motion, px_per_mm, conf->lid, report);
 		rig_arc_margins(rig, motion, px_per_mm, conf);
 		if (conf->seal >= 0)
@@ -220,6 +220,8 @@ bool rig_make(struct rig *rig, struct rig_report *report, const struct rig_motio
 		ok = report->tracked > 0 || err_set(err, "no vertex of the character lies on tracked skin");
 		ok = ok && rig_take_skull(rig, motion, ch, conf->map_step, err);
 	}
+	if (ok && conf->lid > 0)
+		rig_unfold_lids(rig, motion, px_per_mm);
 	if (ok)
 		rig_line_lids(rig, conf);
 	if (!ok)

@@ -56,6 +56,10 @@ void rig_closed_pose(double closed[RIG_COMPONENTS], const struct rig *rig);
 /* lids.c: lowers the upper lids in closed poses until no gap is left, and by seal_mm more. */
 void rig_seal_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm, double seal_mm, struct rig_report *report);
 
+/* unfold.c: keeps skin off the margins from turning over as eyes close, beside their corners, in expressions, too: it moves, in proportion to how far they are closed, by what leaves each
+ * face a quarter of its breadth as the front sees it (widen.c). The skull is there. */
+void rig_unfold_lids(struct rig *rig, const struct rig_motion *motion, double px_per_mm);
+
 /* globe.c: finds the eyeballs: closed, round connected pieces about the expected centres (of rig_expect_globes); marks part[], fills
  * globe[]. Where none is found, a sphere with a cornea takes the expected place; an error where that is NAN. */
 bool rig_find_globes(struct rig *rig, const double center[2][3], double radius, const struct rig_conf *conf,
