@@ -2,7 +2,7 @@
 /* Opens a driven face's .glb in three.js in a headless Chromium: FILE NPM OUT. One line a pose and view: what it shows of eye and skin, in
  * pixels round one eye; how deep lids go through the eye between open and shut, mm, by a blink's target alone and with what goes with it; and the same of eyes
  * that look down and up, with that look's target. OUT/face_NAME.png:
- * pictures. FILE NPM OUT EXPRESSION...: the same from in front of open and shut eyes, and with the target of each of these in full alone, half and all the way down a blink, shut with half
+ * pictures; OUT is -: none is kept, and the first pose alone is drawn in the file's own materials, for what three.js says of them. FILE NPM OUT EXPRESSION...: the same from in front of open and shut eyes, and with the target of each of these in full alone, half and all the way down a blink, shut with half
  * of it, and shut and looking down; how far shut lids lie over each other, mm; and how deep they go through the eye on their way; nothing else. */
 const fs = require("fs");
 const os = require("os");
@@ -63,10 +63,11 @@ if (expressions.length)
 				console.log(`along ${side} ${e} blink ${t.both.map(x => x.toFixed(3)).join(" ")} open ${t.open.toFixed(3)} of ${t.n}`);
 			}
 		}
-		for (const [name, [weights, turn]] of Object.entries(poses))
+		const kept = out !== "-";
+		for (const [name, [weights, turn]] of Object.entries(poses).slice(0, kept ? undefined : 1))
 			for (const [side, aside] of [["left", 0], ["right", 0], ["left", 70]].slice(0, expressions.length ? 2 : 3)) {
 				await b.value(`show(${JSON.stringify(weights)}, ${JSON.stringify(turn.map(t => 25 * t))}, "eye_${side}", ${aside})`, 120000);
-				await b.screenshot(path.join(out, `face_${name}_${side}${aside || ""}.png`));
+				await b.screenshot(path.join(kept ? out : dir, `face_${name}_${side}${aside || ""}.png`));
 			}
 		for (const problem of b.problems)
 			if (!/GPU stall|ReadPixels/.test(problem))

@@ -95,7 +95,7 @@ npm_has three
 shown() {
 	local name=$1 most=$2 down=$3 seen=$root/seen.$1
 	mkdir -p "$root/$name"
-	timeout 300 node tests/browser/face_glb.js "$capture/work/render/$name.glb" "$npm" "$root/$name" >"$seen" 2>&1
+	timeout 300 node tests/browser/face_glb.js "$capture/work/render/$name.glb" "$npm" - >"$seen" 2>&1
 	same "$name: three.js opens it without a word" "$(grep '^fail' "$seen")" ""
 	same "$name: open eyes show, from all sides" "$(awk '$1 == "open" && $5 > 10000' "$seen" | wc -l)" 6
 	# The goal is none, and none is left; a tenth of a per cent is some 20 px.
