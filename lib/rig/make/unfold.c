@@ -17,7 +17,7 @@ enum { LOOKS = 5, CLOSINGS = 2 };            // times that poses are evaluated: 
 static const double closings[CLOSINGS] = { 1, 0.5 };
 static const double least_share = 0.25;       // breadth of a face in a pose over that at rest, where it is narrowest
 static const double front = 0.25;            // least cosine of a face at rest with the way to the front: others are folded, or line a lid
-static const double held_mm[] = { 0.7, 2 };  // of an eyeball of 12 mm: skin as near to a margin stays where lids meet; from the second it is free
+static const double held_mm[] = { 0.75, 2 };  // of an eyeball of 12 mm: skin as near to a margin stays where lids meet; from the second it is free
 static const double far_mm[] = { 14, 20 };   // the same: from the first it is less so, from the second it is no lid
 
 /* Share to which a vertex may move: none at the margins, nor far from them. */
