@@ -108,7 +108,7 @@ static void drop_short(int path[ANGLES])
  * it. What is darker in some colours alone is pigment. */
 static void add_shadow(int path[ANGLES], const float *const logs[3], const float *iris, const struct sheet *sheet, double shadow)
 {
-	const int deepest = RINGS / 5;  // such shadows are less than a millimetre wide
+	const int deepest = RINGS / 3;  // such shadows are a millimetre wide
 	struct rings rings[3];
 	for (int c = 0; c < 3; c++)
 		rings[c] = rings_of(logs[c], iris, sheet, true, 0.1f);
