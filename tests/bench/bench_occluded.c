@@ -15,6 +15,7 @@
 #include "math/stats.h"
 #include "tests/evidence/kept.h"
 #include "tests/evidence/scene.h"
+#include "tests/evidence/veil.h"
 #include "tests/lib/bench/bench.h"
 #include "tests/lib/truth/iris.h"
 
@@ -65,33 +66,14 @@ struct covers {
 	double pupil[EYES_MOST], usual[EYES_MOST], sigmas[EYES_MOST];    // mm; error over sigma
 };
 
-/* What an eye mirrors everywhere, and how bright its iris is: the light that a reflection adds is counted against them. */
-static bool veil_of(double *mirrored, double *iris, const struct drawn *d, const struct fit *fit)
-{
-	const long n = (long)d->width * d->height;
-	double *mirror = mem_array((size_t)n, sizeof *mirror), *body = mem_array((size_t)n, sizeof *body);
-	int all = 0, irises = 0;
-	for (long i = 0; i < n && d->mirror; i++) {
-		if (d->label[i] < EVIDENCE_IRIS || hypot((double)(i % d->width) - fit->limbus.cx, (double)(i / d->width) - fit->limbus.cy) > fit->limbus.a)
-			continue;
-		mirror[all++] = d->mirror[i];
-		if (d->label[i] == EVIDENCE_IRIS)
-			body[irises++] = d->body[i];
-	}
-	*mirrored = all ? stats_quantile(all, mirror, 0.1) : 0;
-	*iris = irises ? stats_quantile(irises, body, 0.5) : 0;
-	free(mirror);
-	free(body);
-	return irises > 0 && *iris > 0;
-}
-
 /* What the survey keeps, against the classes; the margins of pupil and limbus are left out, where classes and blur are undecided. Of what a reflection adds to, the iris is
  * lost only where it is less than a tenth of its own light. */
 static void count(struct covers *c, const struct unrefract_view *view, const struct fit *fit, const struct drawn *d)
 {
 	const struct unrefract_survey *s = &view->survey;
-	double kept = 0, wrong = 0, iris = 0, missed = 0, mirror = 0, mirror_kept = 0, added = 0, shown = 0, to = s->size / (2 * s->extent), veil, bright;
-	const bool measured = veil_of(&veil, &bright, d, fit);
+	double kept = 0, wrong = 0, iris = 0, missed = 0, mirror = 0, mirror_kept = 0, added = 0, shown = 0, to = s->size / (2 * s->extent);
+	const struct veil veil = veil_of(d, fit->limbus.cx, fit->limbus.cy, fit->limbus.a);
+	const bool measured = d->mirror && veil.iris > 0;
 	for (int y = 0; y < d->height; y++)
 		for (int x = 0; x < d->width; x++) {
 			double px[2] = { x + 0.5, y + 0.5 }, p[2], rim;
@@ -101,7 +83,7 @@ static void count(struct covers *c, const struct unrefract_view *view, const str
 			const long i = (long)y * d->width + x;
 			const int is = d->label[i];
 			const bool w = plane_sample(s->weight, s->size, s->size, (p[0] + s->extent) * to, (p[1] + s->extent) * to) > 0.1f;
-			const double more = measured ? fmax(d->mirror[i] - veil, 0) / bright : 0;
+			const double more = measured ? fmax(d->mirror[i] - veil.mirrored, 0) / veil.iris : 0;
 			kept += w;
 			wrong += w && (is == EVIDENCE_SKIN || is == EVIDENCE_LASH || is == EVIDENCE_SCLERA);
 			mirror += is == EVIDENCE_REFLECTION;
@@ -178,6 +160,8 @@ static void tell(struct covers covers[WAYS], const char *eyes)
 		struct covers *c = &covers[k];
 		bench_row("covers left in the texture", way_names[k], eyes, untimed, "eye", mean(c->n, c->wrong), "%", "of what is kept is lid, lash or sclera");
 		bench_row("covers left in the texture", way_names[k], eyes, untimed, "eye", mean(c->n_mirrored, c->mirrored), "%", "of reflections is kept");
+		if (c->n_mirrored)
+			bench_row("covers left in the texture", way_names[k], eyes, untimed, "eye", stats_quantile(c->n_mirrored, c->mirrored, 0.5), "%", "of reflections is kept, median");
 		bench_row("covers left in the texture", way_names[k], eyes, untimed, "eye", mean(c->n, c->missed), "%", "of the visible iris is lost");
 		if (c->n_added)
 			bench_row("covers left in the texture", way_names[k], eyes, untimed, "eye", stats_quantile(c->n_added, c->added, 0.9), "%", "of the iris' light is added by reflections, 90 %");

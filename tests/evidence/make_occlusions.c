@@ -16,32 +16,11 @@
 #include "image/picture.h"
 #include "limbus/occlusion.h"
 #include "math/rng.h"
-#include "math/stats.h"
 #include "scene.h"
+#include "veil.h"
 
 enum { STARTS = 2, FINE = 4, WIDEST = 460 };
 static const float MUCH = 0.3F, FAINT = 0.01F;  // FAINT: of white; less is not seen
-
-/* Of what an eye mirrors: what lies over all of it, and how bright the iris is. */
-struct veil { float mirrored, iris; };
-
-static struct veil veil_of(const struct drawn *d, const struct ellipse *e)
-{
-	const long n = (long)d->width * d->height;
-	double *mirror = mem_array((size_t)n, sizeof *mirror), *iris = mem_array((size_t)n, sizeof *iris);
-	int all = 0, irises = 0;
-	for (long i = 0; i < n; i++) {
-		if (d->label[i] < EVIDENCE_IRIS || hypot(i % d->width - e->cx, i / d->width - e->cy) > e->a)
-			continue;
-		mirror[all++] = d->mirror[i];
-		if (d->label[i] == EVIDENCE_IRIS)
-			iris[irises++] = d->body[i];
-	}
-	struct veil v = { all ? (float)stats_quantile(all, mirror, 0.1) : 0, irises ? (float)stats_quantile(irises, iris, 0.5) : 0.02F };
-	free(mirror);
-	free(iris);
-	return v;
-}
 
 static enum occlusion_class class_at(const struct drawn *d, const struct veil *veil, const double p[2])
 {
@@ -109,7 +88,9 @@ static bool lessons_of(struct lesson lesson[STARTS], uint64_t number, bool test,
 			fprintf(stderr, "%s\n", err.msg);
 			exit(1);
 		}
-		const struct veil veil = veil_of(&d, &e);
+		struct veil veil = veil_of(&d, e.cx, e.cy, e.a);
+		if (!veil.known)
+			veil.iris = 0.02F;
 		for (int s = 0; s < STARTS; s++) {
 			const struct ellipse near = s ? moved(&e, &rng) : e;
 			occlusion_sample(lesson[s].seen, &photo, &evidence, &near);
