@@ -28,32 +28,36 @@ static void add_evidence(float (*cell)[RINGS], const float *plane, const float *
 		}
 }
 
-/* What is told of each cell: log odds, in units of the scores. */
-static void told_of(float (*cell)[RINGS], const float *cover, const struct sheet *sheet, const struct unrefract_conf *conf)
+/* What is told of each cell is added: log odds, in units of the scores. */
+static void add_told(float (*cell)[RINGS], const float *cover, const struct sheet *sheet, const struct unrefract_conf *conf)
 {
-	const float surest = 5, careful = 1;  // log odds: none is surer than 150 to 1; lid that is kept spoils more than iris that is lost
+	const float surest = 3;  // log odds of 20: the network is seldom right to more than that on photographs
 	for (int a = 0; a < ANGLES; a++)
 		for (int r = 0; r < RINGS; r++) {
 			float p = fminf(fmaxf(cell_at(cover, sheet, a, r), 0.001f), 0.999f);
-			cell[a][r] = (float)conf->lid_told * fminf(fmaxf(logf(p / (1 - p)) + careful, -surest), surest);
+			cell[a][r] += (float)conf->lid_told * fminf(fmaxf(logf(p / (1 - p)), -surest), surest);
 		}
 }
 
-/* Evidence for lid (positive) against iris (negative) by the photograph alone: unlike its ring in brightness, or in hue, which shading does not change. */
-static void by_rings(float (*cell)[RINGS], const float *const logs[3], const float *seen, const float *iris, const struct sheet *sheet, float lid_z)
+/* Evidence for lid (positive) against iris (negative): unlike its ring in brightness, or in hue, which shading does not
+ * change; and what is told. */
+static void lid_evidence(float (*cell)[RINGS], const float *const logs[3], const float *seen, const float *iris, const float *cover,
+                         const struct sheet *sheet, const struct unrefract_conf *conf)
 {
-	const size_t n = (size_t)sheet->size * (size_t)sheet->size;
-	float *hue = mem_array(n, sizeof *hue);
+	long n = (long)sheet->size * sheet->size;
+	float *hue = mem_array((size_t)n, sizeof *hue), lid_z = (float)conf->lid_z;
 	for (int c = 0; c < 3; c++)
 		add_evidence(cell, logs[c], seen, iris, sheet);
 	for (int c = 0; c < 2; c++) {
-		for (size_t i = 0; i < n; i++)
+		for (long i = 0; i < n; i++)
 			hue[i] = logs[c][i] - logs[c + 1][i];
 		add_evidence(cell, hue, seen, iris, sheet);
 	}
 	for (int a = 0; a < ANGLES; a++)
 		for (int r = 0; r < RINGS; r++)
 			cell[a][r] = isfinite(cell[a][r]) ? fminf(cell[a][r], 2 * lid_z) - lid_z : 0;
+	if (cover)
+		add_told(cell, cover, sheet, conf);
 	free(hue);
 }
 
@@ -108,7 +112,7 @@ static void drop_short(int path[ANGLES])
  * it. What is darker in some colours alone is pigment. */
 static void add_shadow(int path[ANGLES], const float *const logs[3], const float *iris, const struct sheet *sheet, double shadow)
 {
-	const int deepest = RINGS / 3;  // such shadows are a millimetre wide
+	const int deepest = RINGS / 5;  // such shadows are less than a millimetre wide
 	struct rings rings[3];
 	for (int c = 0; c < 3; c++)
 		rings[c] = rings_of(logs[c], iris, sheet, true, 0.1f);
@@ -129,10 +133,7 @@ void unrefract_lids(double lid_t[SHEET_ANGLES], const float *const logs[3], cons
 {
 	float(*cell)[RINGS] = mem_new(ANGLES, sizeof *cell);
 	float(*gain)[RINGS + 1] = mem_array(ANGLES, sizeof *gain);
-	if (cover && conf->lid_told > 0)  // it knows brightness and hue, too
-		told_of(cell, cover, sheet, conf);
-	else
-		by_rings(cell, logs, seen, iris, sheet, (float)conf->lid_z);
+	lid_evidence(cell, logs, seen, iris, cover, sheet, conf);
 	for (int a = 0; a < ANGLES; a++) {
 		gain[a][RINGS] = 0;
 		for (int r = RINGS - 1; r >= 0; r--)

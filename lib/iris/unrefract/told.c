@@ -23,7 +23,7 @@ struct told told_new(const struct evidence *evidence, const struct occlusion *oc
 			continue;
 		double x = map->u[i], y = map->v[i];
 		const float lid = evidence_at(evidence, EVIDENCE_SKIN, x, y) + evidence_at(evidence, EVIDENCE_LASH, x, y), all = lid + evidence_at(evidence, EVIDENCE_SCLERA, x, y);
-		told.cover[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_LID, x, y) : all;
+		told.cover[i] = occlusion ? fmaxf(occlusion_at(occlusion, OCCLUSION_LID, x, y), all) : all;  // what either takes for a lid may be dark with its shadow
 		told.lid[i] = all > 0 ? told.cover[i] * lid / all : 0;
 		told.mirror[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_MIRROR, x, y) : evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
 		told.pupil[i] = occlusion ? occlusion_at(occlusion, OCCLUSION_PUPIL, x, y) : evidence_at(evidence, EVIDENCE_PUPIL, x, y);

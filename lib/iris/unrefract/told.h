@@ -16,7 +16,7 @@ struct told {
  * for an iris at all: it errs then, or the ellipse does. told_free.
  * seen      [size][size], 1 where the photograph shows the texel
  * evidence  null: nothing is told
- * occlusion where it is not null, all of it is taken from there */
+ * occlusion where it is not null, reflections and pupil are taken from it, lids from whichever is surer */
 struct told told_new(const struct evidence *evidence, const struct occlusion *occlusion, const struct iris_map *map, const float *seen, double limbus);
 void told_free(struct told *told);
 
