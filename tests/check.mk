@@ -24,7 +24,7 @@ CHECK_PACKAGES := chromium nodejs colmap slurm-wlm lintian gltfpack
 
 CORES = $(shell nproc)
 check: setup
-	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/evidence/make_eyes $B/tests/evidence/make_strips $B/tests/evidence/make_occlusions $B/tests/bench/report/compare $B/tests/bench/report/report
+	@$(MAKE) --no-print-directory -j$(CORES) build tests $(STRESSES) $B/tests/bench/report/compare $B/tests/bench/report/report
 	@tests/setup.sh $(CHECK_PACKAGES) || true
 	@$(MAKE) --no-print-directory -j$(CORES) SAN=1 tests-sanitised
 	@B=$B BIN=$(BIN) TESTS="$(TESTS)" SAN_TESTS="$(TESTS:$B/%=build-san/%)" FLAGS="$(EXR_CFLAGS)" FUZZ=6 \

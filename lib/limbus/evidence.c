@@ -174,6 +174,14 @@ float evidence_eye_at(const struct evidence *e, double x, double y)
 	return evidence_at(e, EVIDENCE_SCLERA, x, y) + evidence_at(e, EVIDENCE_IRIS, x, y) + evidence_at(e, EVIDENCE_PUPIL, x, y) + evidence_at(e, EVIDENCE_REFLECTION, x, y);
 }
 
+void evidence_told(float out[EVIDENCE_TOLD], const struct evidence *e, double x, double y)
+{
+	out[0] = evidence_at(e, EVIDENCE_IRIS, x, y) + evidence_at(e, EVIDENCE_PUPIL, x, y);
+	out[1] = evidence_at(e, EVIDENCE_SCLERA, x, y);
+	out[2] = evidence_at(e, EVIDENCE_LASH, x, y);
+	out[3] = evidence_at(e, EVIDENCE_REFLECTION, x, y);
+}
+
 void evidence_free(struct evidence *evidence)
 {
 	free(evidence->plane[0]);

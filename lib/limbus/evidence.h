@@ -62,6 +62,10 @@ float evidence_at(const struct evidence *evidence, enum evidence_class class, do
 float evidence_eye(const struct evidence *evidence, long i);
 float evidence_eye_at(const struct evidence *evidence, double x, double y);
 
+/* What the networks that look closer are told of a place: chances of iris or pupil, sclera, lash, reflection. */
+enum { EVIDENCE_TOLD = 4 };
+void evidence_told(float out[EVIDENCE_TOLD], const struct evidence *evidence, double x, double y);
+
 void evidence_free(struct evidence *evidence);
 
 #endif

@@ -45,10 +45,10 @@ void occlusion_close(struct occlusion_net *net)
 
 void occlusion_place(double p[2], const struct ellipse *e, double u, double v)
 {
-	double q[ELLIPSE_N];
-	ellipse_to_q(q, e);
-	p[0] = q[0] + (q[2] + q[3]) * u + q[4] * v;
-	p[1] = q[1] + q[4] * u + (q[2] - q[3]) * v;
+	double d[2];
+	ellipse_span(d, e, u, v);
+	p[0] = e->cx + d[0];
+	p[1] = e->cy + d[1];
 }
 
 void occlusion_sample(float out[OCCLUSION_SEEN][OCCLUSION_SIDE][OCCLUSION_SIDE], const struct photo *photo, const struct evidence *evidence, const struct ellipse *e)
@@ -62,10 +62,10 @@ void occlusion_sample(float out[OCCLUSION_SEEN][OCCLUSION_SIDE][OCCLUSION_SIDE],
 			occlusion_place(p, e, OCCLUSION_REACH * (2 * (i + 0.5) / OCCLUSION_SIDE - 1), OCCLUSION_REACH * (2 * (j + 0.5) / OCCLUSION_SIDE - 1));
 			for (int c = 0; c < 3; c++)
 				out[c][j][i] = plane_sample(part + c * PART * PART, PART, PART, (p[0] - x0) / scale, (p[1] - y0) / scale);
-			out[3][j][i] = evidence_at(evidence, EVIDENCE_IRIS, p[0], p[1]) + evidence_at(evidence, EVIDENCE_PUPIL, p[0], p[1]);
-			out[4][j][i] = evidence_at(evidence, EVIDENCE_SCLERA, p[0], p[1]);
-			out[5][j][i] = evidence_at(evidence, EVIDENCE_LASH, p[0], p[1]);
-			out[6][j][i] = evidence_at(evidence, EVIDENCE_REFLECTION, p[0], p[1]);
+			float told[EVIDENCE_TOLD];
+			evidence_told(told, evidence, p[0], p[1]);
+			for (int k = 0; k < EVIDENCE_TOLD; k++)
+				out[3 + k][j][i] = told[k];
 		}
 	free(part);
 }

@@ -13,11 +13,11 @@ static const double REACH = 1.44;  // semi-axes: what the part shows to each sid
 
 void strip_place(double p[2], const struct ellipse *e, int ray, double s)
 {
-	double q[ELLIPSE_N];
-	ellipse_to_q(q, e);
-	const double phi = 2 * M_PI * ray / STRIP_RAYS, x = cos(phi), y = sin(phi);
-	p[0] = q[0] + s * ((q[2] + q[3]) * x + q[4] * y);
-	p[1] = q[1] + s * (q[4] * x + (q[2] - q[3]) * y);
+	const double phi = 2 * M_PI * ray / STRIP_RAYS;
+	double d[2];
+	ellipse_span(d, e, cos(phi), sin(phi));
+	p[0] = e->cx + s * d[0];
+	p[1] = e->cy + s * d[1];
 }
 
 /* Where a ray along (dx, dy) from the centre of one ellipse leaves another. */
@@ -64,10 +64,10 @@ static void ray_samples(float out[STRIP_PLANES][STRIP_ROWS][STRIP_RAYS], int ray
 		const double s = STRIP_FROM + (row + 0.5) * STRIP_STEP, x = e->cx + s * dx, y = e->cy + s * dy;
 		for (int c = 0; c < 3; c++)
 			out[c][row][ray] = plane_sample(part + c * PART * PART, PART, PART, (x - x0) / scale, (y - y0) / scale);
-		out[3][row][ray] = evidence_at(evidence, EVIDENCE_IRIS, x, y) + evidence_at(evidence, EVIDENCE_PUPIL, x, y);
-		out[4][row][ray] = evidence_at(evidence, EVIDENCE_SCLERA, x, y);
-		out[5][row][ray] = evidence_at(evidence, EVIDENCE_LASH, x, y);
-		out[6][row][ray] = evidence_at(evidence, EVIDENCE_REFLECTION, x, y);
+		float told[EVIDENCE_TOLD];
+		evidence_told(told, evidence, x, y);
+		for (int k = 0; k < EVIDENCE_TOLD; k++)
+			out[3 + k][row][ray] = told[k];
 		out[7][row][ray] = x > 0 && y > 0 && x < photo->width && y < photo->height;
 	}
 }

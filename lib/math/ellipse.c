@@ -13,6 +13,14 @@ void ellipse_to_q(double q[ELLIPSE_N], const struct ellipse *e)
 	q[4] = d * sin(2 * e->angle);
 }
 
+void ellipse_span(double d[2], const struct ellipse *e, double x, double y)
+{
+	double q[ELLIPSE_N];
+	ellipse_to_q(q, e);
+	d[0] = (q[2] + q[3]) * x + q[4] * y;
+	d[1] = q[4] * x + (q[2] - q[3]) * y;
+}
+
 bool ellipse_from_q(struct ellipse *e, const double q[ELLIPSE_N])
 {
 	double d = hypot(q[3], q[4]);

@@ -14,6 +14,8 @@ enum { ELLIPSE_N = 5 };  // parameters of an ellipse
 
 /* q of an ellipse. */
 void ellipse_to_q(double q[ELLIPSE_N], const struct ellipse *e);
+/* S (x, y): what leads from the centre to the ellipse where (x, y) is a unit vector. */
+void ellipse_span(double d[2], const struct ellipse *e, double x, double y);
 /* The ellipse of q, angle in [0, pi). Returns false when S is not positive definite, that is, q no ellipse. */
 bool ellipse_from_q(struct ellipse *e, const double q[ELLIPSE_N]);
 

@@ -3,14 +3,9 @@
 #include "canvas.h"
 #include "light.h"
 
-static float range(struct rng *rng, double lo, double hi)
-{
-	return (float)rng_range(rng, lo, hi);
-}
-
 static float logs(struct rng *rng, double lo, double hi)
 {
-	return expf(range(rng, log(lo), log(hi)));
+	return expf(range_of(rng, log(lo), log(hi)));
 }
 
 static void coloured(float out[3], float level, float kelvin)
@@ -22,9 +17,9 @@ static void coloured(float out[3], float level, float kelvin)
 
 static void pane_make(struct pane *p, struct rng *rng, float x, float y, float w, float h, float level)
 {
-	*p = (struct pane){ .half = { w, h }, .bars = { rng_below(rng, 4), rng_below(rng, 4) }, .bar_wide = range(rng, 0.02, 0.1),
-		.skyline = rng_below(rng, 3) ? range(rng, -1, 0.8) : -2, .curtain_at = rng_below(rng, 3) ? 2 : range(rng, 0.2, 0.9),
-		.curtain = range(rng, 0.05, 0.6), .below = range(rng, 0.05, 0.5) };
+	*p = (struct pane){ .half = { w, h }, .bars = { rng_below(rng, 4), rng_below(rng, 4) }, .bar_wide = range_of(rng, 0.02, 0.1),
+		.skyline = rng_below(rng, 3) ? range_of(rng, -1, 0.8) : -2, .curtain_at = rng_below(rng, 3) ? 2 : range_of(rng, 0.2, 0.9),
+		.curtain = range_of(rng, 0.05, 0.6), .below = range_of(rng, 0.05, 0.5) };
 	source_axes(p->dir, p->side, p->up, x, y, (float)(0.1 * rng_normal(rng)));
 	coloured(p->radiance, level, logs(rng, 3000, 14000));
 }
@@ -32,52 +27,52 @@ static void pane_make(struct pane *p, struct rng *rng, float x, float y, float w
 /* Windows beside each other on one wall, or anywhere; now and then one that fills half of what is mirrored. */
 static void panes_make(struct around *a, struct rng *rng)
 {
-	const float level = logs(rng, 2, 40), turn = range(rng, -1.6, 1.6), up = range(rng, -0.2, 0.9), w = logs(rng, 0.12, 0.8), h = logs(rng, 0.2, 1);
+	const float level = logs(rng, 2, 40), turn = range_of(rng, -1.6, 1.6), up = range_of(rng, -0.2, 0.9), w = logs(rng, 0.12, 0.8), h = logs(rng, 0.2, 1);
 	const bool wall = rng_below(rng, 2);
 	a->n = 1 + rng_below(rng, PANES_MAX);
 	for (int i = 0; i < a->n; i++)
 		if (wall)
 			pane_make(&a->pane[i], rng, turn + 2.4F * w * (float)(i - a->n / 2), up, w, h, level);
 		else
-			pane_make(&a->pane[i], rng, range(rng, -2, 2), range(rng, -0.4, 1.2), logs(rng, 0.1, 1.3), logs(rng, 0.1, 1.2), level * logs(rng, 0.4, 2));
+			pane_make(&a->pane[i], rng, range_of(rng, -2, 2), range_of(rng, -0.4, 1.2), logs(rng, 0.1, 1.3), logs(rng, 0.1, 1.2), level * logs(rng, 0.4, 2));
 }
 
 struct around around_make(struct rng *rng, bool test)
 {
 	struct around a = { .on = true, .open = rng_below(rng, 5) < 2, .lid = 2, .seed = (uint32_t)rng_bits(rng) };
 	coloured(a.sky, a.open ? logs(rng, 0.7, 14) : 0, logs(rng, 4500, 16000));
-	const float green = range(rng, 0.6, 1.1), dark = range(rng, 0.03, 0.4);
+	const float green = range_of(rng, 0.6, 1.1), dark = range_of(rng, 0.03, 0.4);
 	for (int c = 0; c < 3; c++) {
-		a.ground[c] = a.sky[c] * dark * (c == 1 ? 1 : green) * (c == 2 ? range(rng, 0.4, 1) : 1);
-		a.walls[c] = range(rng, 0.9, 1.1);
+		a.ground[c] = a.sky[c] * dark * (c == 1 ? 1 : green) * (c == 2 ? range_of(rng, 0.4, 1) : 1);
+		a.walls[c] = range_of(rng, 0.9, 1.1);
 	}
 	coloured(a.walls, logs(rng, 0.05, 1.2), logs(rng, 2400, 6000));
-	a.skyline = range(rng, -0.5, 0.5);
-	a.rough = rng_below(rng, 3) ? range(rng, 0.02, 0.25) : range(rng, 0.2, 0.6);
-	a.cloud = rng_below(rng, 2) ? range(rng, 0, 0.9) : 0;
-	a.houses = rng_below(rng, 3) ? 0 : range(rng, 0.1, 0.4);
+	a.skyline = range_of(rng, -0.5, 0.5);
+	a.rough = rng_below(rng, 3) ? range_of(rng, 0.02, 0.25) : range_of(rng, 0.2, 0.6);
+	a.cloud = rng_below(rng, 2) ? range_of(rng, 0, 0.9) : 0;
+	a.houses = rng_below(rng, 3) ? 0 : range_of(rng, 0.1, 0.4);
 	a.outline = field_of(rng_below(rng, 2) ? FIELD_FINE : FIELD_SMOOTH, rng_below(rng, FIELD_SEEDS), test);
 	a.clutter = field_of(rng_below(rng, 2) ? FIELD_SMOOTH : FIELD_CELL, rng_below(rng, FIELD_SEEDS), test);
-	a.at[0] = range(rng, 0, 256);
-	a.at[1] = range(rng, 0, 256);
-	a.scale = range(rng, 12, 80);
+	a.at[0] = range_of(rng, 0, 256);
+	a.at[1] = range_of(rng, 0, 256);
+	a.scale = range_of(rng, 12, 80);
 	if (!a.open)
 		panes_make(&a, rng);
 	if (rng_below(rng, 5) < 2) {
-		a.person_dark = range(rng, 0, 0.35);
+		a.person_dark = range_of(rng, 0, 0.35);
 		a.person[0] = (float)(0.15 * rng_normal(rng));
-		a.person[1] = range(rng, -0.15, 0.3);
+		a.person[1] = range_of(rng, -0.15, 0.3);
 		a.person[2] = logs(rng, 0.05, 0.3);
 		a.person[3] = a.person[1] - 1.3F * a.person[2];
 	}
 	if (rng_below(rng, 5)) {
-		a.lid = range(rng, 0.35, 1);
-		a.lid_dark = range(rng, 0, 0.3);
+		a.lid = range_of(rng, 0.35, 1);
+		a.lid_dark = range_of(rng, 0, 0.3);
 		a.lash_gap = logs(rng, 0.015, 0.09);
-		a.lash_long = rng_below(rng, 4) ? range(rng, 0.1, 0.7) : 0;
-		a.lash_wide = a.lash_gap * range(rng, 0.15, 0.8);
-		a.lash_lean = range(rng, -0.4, 0.4);
-		a.lash_dark = range(rng, 0, 0.4);
+		a.lash_long = rng_below(rng, 4) ? range_of(rng, 0.1, 0.7) : 0;
+		a.lash_wide = a.lash_gap * range_of(rng, 0.15, 0.8);
+		a.lash_lean = range_of(rng, -0.4, 0.4);
+		a.lash_dark = range_of(rng, 0, 0.4);
 	}
 	return a;
 }
@@ -122,13 +117,9 @@ void around_mirrored(float out[3], const struct around *a, const float d[3])
 		out[c] = a->walls[c] * (0.2F + 1.6F * clutter * clutter);
 	for (int i = 0; i < a->n; i++) {
 		const struct pane *p = &a->pane[i];
-		const float ahead = d[0] * p->dir[0] + d[1] * p->dir[1] + d[2] * p->dir[2];
-		if (ahead < 0.05F)
-			continue;
-		const float x = (d[0] * p->side[0] + d[1] * p->side[1] + d[2] * p->side[2]) / ahead / p->half[0];
-		const float y = (d[0] * p->up[0] + d[1] * p->up[1] + d[2] * p->up[2]) / ahead / p->half[1];
-		if (fabsf(x) < 1 && fabsf(y) < 1) {
-			const float seen = pane_at(a, p, x, y);
+		float at[2];
+		if (source_place(at, p->dir, p->side, p->up, p->half, d) && fabsf(at[0]) < 1 && fabsf(at[1]) < 1) {
+			const float seen = pane_at(a, p, at[0], at[1]);
 			for (int c = 0; c < 3; c++)
 				out[c] = p->radiance[c] * seen;
 		}

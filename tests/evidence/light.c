@@ -139,14 +139,22 @@ struct light light_make(struct rng *rng, bool test)
 	return l;
 }
 
-static bool in_source(const struct source *s, const float d[3])
+bool source_place(float at[2], const float dir[3], const float side[3], const float up[3], const float half[2], const float d[3])
 {
-	const float ahead = d[0] * s->dir[0] + d[1] * s->dir[1] + d[2] * s->dir[2];
+	const float ahead = d[0] * dir[0] + d[1] * dir[1] + d[2] * dir[2];
 	if (ahead < 0.05F)
 		return false;
-	const float a = (d[0] * s->side[0] + d[1] * s->side[1] + d[2] * s->side[2]) / ahead / s->half[0];
-	const float b = (d[0] * s->up[0] + d[1] * s->up[1] + d[2] * s->up[2]) / ahead / s->half[1];
-	const float r = a * a + b * b;
+	at[0] = (d[0] * side[0] + d[1] * side[1] + d[2] * side[2]) / ahead / half[0];
+	at[1] = (d[0] * up[0] + d[1] * up[1] + d[2] * up[2]) / ahead / half[1];
+	return true;
+}
+
+static bool in_source(const struct source *s, const float d[3])
+{
+	float at[2];
+	if (!source_place(at, s->dir, s->side, s->up, s->half, d))
+		return false;
+	const float a = at[0], b = at[1], r = a * a + b * b;
 	switch (s->shape) {
 	case 1: return r < 1;
 	case 2: return r < 1 && r > 0.5F;

@@ -37,6 +37,9 @@ struct light light_make(struct rng *rng, bool test);
 /* Axes of a source or window in direction (x, y) of the plane z = 1, leaning by so many radians. */
 void source_axes(float dir[3], float side[3], float up[3], float x, float y, float lean);
 
+/* Where direction d (unit) meets the plane of a source or window, against its half extents; false: nowhere, or far aslant. */
+bool source_place(float at[2], const float dir[3], const float side[3], const float up[3], const float half[2], const float d[3]);
+
 /* Radiance from direction d (unit). */
 void light_mirrored(float out[3], const struct light *light, const float d[3]);
 

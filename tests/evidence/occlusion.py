@@ -9,7 +9,6 @@ Input: 1 x 8 x 128 x 128: red, green and blue without their means, over the stan
 Output: 1 x 4 x 64 x 64, logits of iris, pupil, reflection, and what lies before the eye. Needs python3-torch and python3-numpy.
 """
 import argparse
-import math
 import subprocess
 import sys
 import queue
@@ -22,6 +21,7 @@ from torch import nn
 from torch.nn import functional as F
 
 sys.dont_write_bytecode = True
+import train as evidence
 import weights
 
 SEEN, PLANES, SIDE, CELLS, CLASSES, REACH = 7, 8, 128, 64, 4, 1.2
@@ -31,18 +31,14 @@ NAMES, MIRROR = ("iris", "pupil", "reflection", "before it"), 2
 KEPT, HELD = 12000, 900000000   # lessons in memory; numbers that are never learnt from
 
 
-def step(i, o, stride=1):
-    return nn.Sequential(nn.Conv2d(i, o, 3, stride, 1, bias=False), nn.BatchNorm2d(o), nn.ReLU(inplace=True))
-
-
 class Net(nn.Module):
     def __init__(self, c=CHANNELS):
         super().__init__()
-        self.first = nn.Sequential(step(PLANES, c[0], 2), step(c[0], c[0]))
-        self.down = nn.ModuleList([nn.Sequential(step(c[k], c[k + 1], 2), step(c[k + 1], c[k + 1])) for k in range(len(c) - 1)])
-        self.deep = nn.Sequential(step(c[-1], c[-1]), step(c[-1], c[-1]))
+        self.first = nn.Sequential(evidence.step(PLANES, c[0], 2), evidence.step(c[0], c[0]))
+        self.down = nn.ModuleList([nn.Sequential(evidence.step(c[k], c[k + 1], 2), evidence.step(c[k + 1], c[k + 1])) for k in range(len(c) - 1)])
+        self.deep = nn.Sequential(evidence.step(c[-1], c[-1]), evidence.step(c[-1], c[-1]))
         self.thin = nn.ModuleList([nn.Conv2d(c[k + 1], c[k], 1) for k in reversed(range(len(c) - 1))])
-        self.up = nn.ModuleList([step(c[k], c[k]) for k in reversed(range(len(c) - 1))])
+        self.up = nn.ModuleList([evidence.step(c[k], c[k]) for k in reversed(range(len(c) - 1))])
         self.out = nn.Conv2d(c[0], CLASSES, 1)
 
     def forward(self, x):
@@ -204,8 +200,7 @@ def main():
         done = (time.time() - begun) / max(60 * args.minutes, 1e-9) if not args.short else len(losses) / 60
         if done >= 1:
             break
-        for group in optimiser.param_groups:
-            group["lr"] = args.rate * min(1, len(losses) / (20 if args.short else 100) + 0.02) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+        evidence.pace(optimiser, args.rate, min(1, len(losses) / (20 if args.short else 100) + 0.02), done)
         x, truth = lessons.next(args.batch)
         x, truth = jitter(x.float() / 255, truth.float() / 255, rng)
         with torch.autocast("cpu", dtype=torch.bfloat16, enabled=args.half):
@@ -216,10 +211,8 @@ def main():
         nn.utils.clip_grad_norm_(net.parameters(), 2)
         optimiser.step()
         losses.append(float(loss))
-        keep = min(0.998, len(losses) / (len(losses) + 10))
         with torch.no_grad():
-            for a, b in zip(mean.values(), net.state_dict().values()):
-                a.mul_(keep).add_(b, alpha=1 - keep) if a.dtype.is_floating_point else a.copy_(b)
+            evidence.blend(mean, net.state_dict(), min(0.998, len(losses) / (len(losses) + 10)))
         if len(losses) % 100 == 0:
             print("%5.1f min, step %d, of %d lessons, loss %.4f" % ((time.time() - begun) / 60, len(losses), lessons.made, np.mean(losses[-100:])), flush=True)
         if args.keep and time.time() - last > 240:

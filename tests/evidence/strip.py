@@ -27,6 +27,7 @@ from torch.nn import functional as F
 sys.dont_write_bytecode = True
 import ring
 import strip_ellipse
+import train as evidence
 import weights
 
 PLANES, ROWS, RAYS, WRAP = 8, 64, 128, 16
@@ -39,18 +40,14 @@ APART, TOGETHER = 1000000, 64   # numbers of the photographs of two generators; 
 HELD, STARTS, NEAR = 900000000, 8, slice(2, 6)   # photographs that are never learnt from; strips of each, those near a limbus
 
 
-def step(i, o, stride=1):
-    return nn.Sequential(nn.Conv2d(i, o, 3, stride, 1, bias=False), nn.BatchNorm2d(o), nn.ReLU(inplace=True))
-
-
 class Net(nn.Module):
     def __init__(self, c=CHANNELS):
         super().__init__()
-        self.first = step(PLANES, c[0])
-        self.down = nn.ModuleList([nn.Sequential(step(c[k], c[k + 1], 2), step(c[k + 1], c[k + 1])) for k in range(len(c) - 1)])
-        self.deep = step(c[-1], c[-1])
+        self.first = evidence.step(PLANES, c[0])
+        self.down = nn.ModuleList([nn.Sequential(evidence.step(c[k], c[k + 1], 2), evidence.step(c[k + 1], c[k + 1])) for k in range(len(c) - 1)])
+        self.deep = evidence.step(c[-1], c[-1])
         self.thin = nn.ModuleList([nn.Conv2d(c[k + 1], c[k], 1) for k in reversed(range(len(c) - 1))])
-        self.up = nn.ModuleList([step(c[k], c[k]) for k in reversed(range(len(c) - 1))])
+        self.up = nn.ModuleList([evidence.step(c[k], c[k]) for k in reversed(range(len(c) - 1))])
         self.row = nn.Conv2d(c[0], 1, 1)
         self.seen = nn.Conv2d(c[0], 1, 1)
 
@@ -299,8 +296,7 @@ def main():
         done = (time.time() - begun) / max(60 * args.minutes, 1e-9) if not args.short else len(losses) / 60
         if done >= 1:
             break
-        for group in optimiser.param_groups:
-            group["lr"] = args.rate * min(1, len(losses) / (20 if args.short else 100) + 0.02) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+        evidence.pace(optimiser, args.rate, min(1, len(losses) / (20 if args.short else 100) + 0.02), done)
         x, crossing, shown = strips.next()
         x, (hot, seen) = jitter(x.float() / 255, rng), target(crossing, shown)
         if torch.rand(1, generator=rng, device=args.device) < 0.5:  # mirrored left to right: phi becomes pi - phi
@@ -318,10 +314,8 @@ def main():
         optimiser.step()
         losses.append(loss.detach())
         ellipse.append(follows.detach())
-        keep = min(0.998, len(losses) / (len(losses) + 10))
         with torch.no_grad():
-            for a, b in zip(mean.values(), net.state_dict().values()):
-                a.mul_(keep).add_(b, alpha=1 - keep) if a.dtype.is_floating_point else a.copy_(b)
+            evidence.blend(mean, net.state_dict(), min(0.998, len(losses) / (len(losses) + 10)))
         if len(losses) % (100 if args.device == "cpu" else 1000) == 0:
             print("%5.1f min, step %d, of %d strips, loss %.4f, ellipse %.3f"
                   % ((time.time() - begun) / 60, len(losses), strips.seen, float(sum(losses[-100:]) / 100), float(sum(ellipse[-100:]) / 100)), flush=True)

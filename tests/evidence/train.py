@@ -276,6 +276,12 @@ def calibrated(net, args, pictures=800, batch=16, kept=200):
     return net
 
 
+def pace(optimiser, rate, warm, done):
+    """Sets the rate: its share while it warms up, then half a cosine over what is done of the schedule."""
+    for group in optimiser.param_groups:
+        group["lr"] = rate * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+
+
 def blend(into, net, keep):
     """into = keep into + (1 - keep) net, for all that a network holds."""
     for a, b in zip(into.values(), net.values()):
@@ -348,9 +354,7 @@ def train(args, worker=0, meeting=None):
             pictures.close()
             size, number = LARGE, number + 50000000
             pictures = pictures_of(args, number, size)
-        for group in optimiser.param_groups:
-            warm = min(1, len(losses) / (20 if args.short or args.start else 200) + 0.02)
-            group["lr"] = args.rate * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * done)))
+        pace(optimiser, args.rate, min(1, len(losses) / (20 if args.short or args.start else 200) + 0.02), done)
         losses.append(optimise(net, optimiser, pictures, rng, args.half))
         if meeting and len(losses) % 20 == 0:
             meeting.visit(net)

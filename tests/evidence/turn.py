@@ -11,7 +11,6 @@ deviations. Needs python3-torch and python3-numpy.
 """
 import argparse
 import copy
-import math
 import os
 import sys
 import time
@@ -184,8 +183,7 @@ def train(args):
         done = (time.time() - begun) / (60 * args.minutes) if not args.short else len(losses) / SHORT
         if done >= 1:
             break
-        for group in optimiser.param_groups:
-            group["lr"] = args.rate * min(1, len(losses) / (10 if args.short else 100) + .02) * (.01 + .99 * .5 * (1 + math.cos(math.pi * done)))
+        evidence.pace(optimiser, args.rate, min(1, len(losses) / (10 if args.short else 100) + .02), done)
         if len(losses) % 100 == 0:
             lessons.look()
         x, y = cut(*lessons.take(pick.integers(0, sum(lessons.count), args.batch)), rng)
