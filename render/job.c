@@ -117,7 +117,7 @@ bool job_ready(struct job *job, struct err *err)
 	else
 		stage_note(job->stage, "%s: too little of the sclera shows: a generic one", job->names->side);
 	struct image vessels;
-	const bool seen = vessels_of_photo(&vessels, reference, job->eye, conf.sclera_radius, white.rgb, conf.veins_px);
+	const bool seen = vessels_of_photo(&vessels, reference, job->eye, conf.sclera_radius, conf.veins_px);
 	conf.vessels = seen ? &vessels : 0;
 	job->gain = studio_exposure(&job->studio, conf.sclera_rgb);
 	struct eye eye = *job->eye;

@@ -45,6 +45,18 @@ bool shots_load(struct job *job, const struct capture *capture, int eye_index, s
 	return true;
 }
 
+/* What each pixel round the eye shows: where its white is. */
+static bool ask(struct shot *shot, const struct photo *photo, struct err *err)
+{
+	const struct ellipse *e = &shot->fit.limbus;
+	struct evidence_net *net;
+	if (!evidence_open_shipped(&net, err))
+		return false;
+	const bool ok = evidence_window(&shot->told, net, photo, e->cx, e->cy, e->a, err);
+	evidence_close(net);
+	return ok;
+}
+
 static bool decode(struct job *job, struct shot *shot, struct err *err)
 {
 	struct photo photo;
@@ -68,6 +80,8 @@ static bool decode(struct job *job, struct shot *shot, struct err *err)
 			image_free(&all);
 		}
 	}
+	if (ok && shot == &job->shots[job->reference])
+		ok = ask(shot, &photo, err);
 	photo_free(&photo);
 	return ok;
 }
@@ -134,6 +148,7 @@ bool shot_ready(struct job *job, struct shot *shot, struct err *err)
 void shot_done(struct shot *shot)
 {
 	image_free(&shot->image);
+	evidence_free(&shot->told);
 	envmap_free(&shot->env);
 	envmap_free(&shot->lamps);
 	shot->image = (struct image){ 0 };

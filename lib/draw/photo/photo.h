@@ -12,12 +12,14 @@
 #include "anatomy/fit.h"
 #include "draw/eye/view.h"
 #include "iris/unrefract/unrefract.h"
+#include "limbus/evidence.h"
 
 /* One photograph with its fit. */
 struct shot {
 	const struct capture_photo *photo;
 	struct fit fit;
 	struct image image;              // the window, linear, at the size of its view; px null: not decoded yet
+	struct evidence told;            // what each of its pixels shows; planes null: not asked
 	struct envmap env, lamps;        // its light; what the cornea mirrors beyond what is in the texture already
 	int n_lamps;
 	double window[4], scale;         // x0, y0, x1, y1 photo px; photo px a pixel of the view

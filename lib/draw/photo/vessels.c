@@ -17,6 +17,8 @@ static const double SIGMAS[2] = { 1.8, 3.2 };  // of a line's redness over what 
 enum { TURNS = 12 };
 static const double STEEPEST = 0.35;     // cosine between surface and sight, below which nothing is taken
 static const float WHITE_FROM = 0.70f, WHITE_TO = 0.92f;  // share of white round a texel, from which it counts and all of it does
+static const float SURE = 0.6f;          // chance of sclera by the evidence, from which a place is white
+static const float CARUNCLE = 0.3f;      // its ln R/G over that of the white: less than skin's, more than any white's whose vessels one would count
 
 /* Maps of one channel: ln R/G, whether it is white. */
 struct sight {
@@ -45,18 +47,14 @@ static bool place(double xy[2], int x, int y, const struct shot *shot, const str
 	return xy[0] > 1 && xy[1] > 1 && xy[0] < shot->image.width - 1 && xy[1] < shot->image.height - 1;
 }
 
-static float luminance(const float *p)
+/* Sclera by the evidence, and not clipped. */
+static bool is_white(const struct shot *shot, const double xy[2], const float own[3])
 {
-	return 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
+	const double x = shot->window[0] + xy[0] * shot->scale, y = shot->window[1] + xy[1] * shot->scale;
+	return evidence_at(&shot->told, EVIDENCE_SCLERA, x, y) > SURE && fminf(own[0], own[1]) > 0.01f && fmaxf(own[0], own[1]) < 0.98f;
 }
 
-/* Neither skin nor large vessel nor reflection, by colour alone: over the photograph's white, and as photographed. */
-static bool is_white(const float p[3], const float own[3])
-{
-	return luminance(p) > 0.08f && luminance(own) < 0.95f && p[0] < 1.42f * p[1] && p[1] < 1.5f * p[2] && p[2] < 1.15f * p[1];
-}
-
-static void look(struct sight *s, const struct shot *shot, const struct eye *eye, double radius, const double white[3], int size)
+static void look(struct sight *s, const struct shot *shot, const struct eye *eye, double radius, int size)
 {
 	s->red = image_new(size, size, 1);
 	s->white = image_new(size, size, 1);
@@ -65,15 +63,13 @@ static void look(struct sight *s, const struct shot *shot, const struct eye *eye
 	for (int y = 0; y < size; y++)
 		for (int x = 0; x < size; x++) {
 			double xy[2];
-			float p[3], own[3];
+			float own[3];
 			if (!place(xy, x, y, shot, eye, radius, size))
 				continue;
-			for (int c = 0; c < 3; c++) {
+			for (int c = 0; c < 3; c++)
 				own[c] = image_sample(&shot->image, xy[0], xy[1], c);
-				p[c] = own[c] / (float)white[c];
-			}
-			*image_at(&s->red, x, y) = logf(fmaxf(p[0], 1e-3f) / fmaxf(p[1], 1e-3f));
-			*image_at(&s->white, x, y) = is_white(p, own) ? 1 : 0;
+			*image_at(&s->red, x, y) = logf(fmaxf(own[0], 1e-3f) / fmaxf(own[1], 1e-3f));
+			*image_at(&s->white, x, y) = is_white(shot, xy, own) ? 1 : 0;
 		}
 }
 
@@ -170,14 +166,35 @@ static void cover(struct image *seen, const struct image *red, double per_texel)
 	free(mask);
 }
 
-bool vessels_of_photo(struct image *seen, const struct shot *shot, const struct eye *eye, double sclera_radius, const double white[3], int size)
+/* The caruncle, which is sclera by the evidence, is white no more. */
+static void leave_caruncle(struct sight *s, const struct image *ground)
 {
+	const long all = (long)s->white.width * s->white.height;
+	double *v = mem_array((size_t)all, sizeof *v);
+	int n = 0;
+	for (long i = 0; i < all; i++)
+		if (s->white.px[i] > 0)
+			v[n++] = (double)ground->px[i];
+	const float most = n ? (float)stats_median(n, v) + CARUNCLE : 0;
+	free(v);
+	for (long i = 0; i < all; i++)
+		if (ground->px[i] > most)
+			s->white.px[i] = 0;
+}
+
+bool vessels_of_photo(struct image *seen, const struct shot *shot, const struct eye *eye, double sclera_radius, int size)
+{
+	*seen = (struct image){ 0 };
+	if (!shot->told.plane[0])
+		return false;
 	struct sight s;
 	struct err err = { 0 };
-	look(&s, shot, eye, sclera_radius, white, size);
+	look(&s, shot, eye, sclera_radius, size);
 	struct image ground = image_new(size, size, 1), share = image_new(size, size, 1);
 	*seen = image_new(size, size, 2);
-	bool ok = mean_round(&ground, &share, &s, AROUND / s.per_texel, &err);
+	bool ok = mean_round(&ground, &share, &s, GROUND / s.per_texel, &err);
+	leave_caruncle(&s, &ground);
+	ok = ok && mean_round(&ground, &share, &s, AROUND / s.per_texel, &err);
 	double sum = 0;
 	for (long i = 0; i < (long)size * size; i++) {
 		const float t = fminf(fmaxf((share.px[i] - WHITE_FROM) / (WHITE_TO - WHITE_FROM), 0), 1);
