@@ -63,7 +63,7 @@ static double count_of(const struct trial *trial)
 	return pow(fmax(odds_one_sigma(trial->curve), LEAST), -4);
 }
 
-/* Measures the likeliest trial in full, with its pupil: rim[0]; and, side by side, all that say the same: rim[i + 1] of trial i where measured[i]. */
+/* Measures the likeliest trial in full: rim[0]; and, side by side, all that say the same: rim[i + 1] of trial i where measured[i]. */
 static bool measure_all(struct rim rim[1 + TRIALS], bool measured[TRIALS], struct limbus_found *found, const struct trial *best, const struct trials *trials)
 {
 #pragma omp parallel for schedule(dynamic, 1)
@@ -71,7 +71,7 @@ static bool measure_all(struct rim rim[1 + TRIALS], bool measured[TRIALS], struc
 		const struct trial *t = i < 0 ? best : &trials->trial[i];
 		const bool same = t != best && t->window == best->window && ellipse_apart(&t->e, &best->e) < trials->conf->same.most * best->e.a;
 		if (i < 0)
-			found->ok = trial_measure(rim, &found->pupil, &found->has_pupil, best, trials, false);
+			found->ok = trial_measure(rim, 0, 0, best, trials, false);
 		else
 			measured[i] = same && trial_measure(&rim[i + 1], 0, 0, t, trials, false);
 	}
@@ -143,6 +143,40 @@ void limbus_find_in(struct limbus_found *found, struct trials *trials, const dou
 		band_sample(&found->band, pyramid, &found->limbus);
 }
 
+/* The evidence in whose window an ellipse was tried; null: it was not. */
+static const struct evidence *evidence_of(const struct ellipse *e, const struct trials *trials)
+{
+	static const double near = 0.1;  // semi-axes: the window suits it
+	const struct evidence *evidence = 0;
+	double least = near * e->a;
+	for (int i = 0; i < trials->n; i++) {
+		const double apart = ellipse_apart(&trials->trial[i].e, e);
+		if (apart < least) {
+			least = apart;
+			evidence = &trials->trial[i].window->evidence;
+		}
+	}
+	return evidence;
+}
+
+void limbus_find_pupil(struct limbus_found *found, const struct trials *trials)
+{
+	const struct limbus_conf *conf = trials->conf;
+	const struct ellipse *e = &found->limbus.e;
+	const struct evidence *evidence = evidence_of(e, trials);
+	struct occlusion *occlusion = mem_new(1, sizeof *occlusion);
+	struct evidence own = { 0 };
+	struct err err = { 0 };
+	found->has_pupil = false;
+	if (limbus_usable(found) && (evidence || evidence_window(&own, conf->net, trials->photo, e->cx, e->cy, e->a, &err))) {
+		evidence = evidence ? evidence : &own;
+		found->has_pupil = occlusion_read(occlusion, conf->occlusion, trials->photo, evidence, e, &err)
+		                   && limbus_pupil_told(&found->pupil, trials->photo, trials->pyramid, e, evidence, occlusion, &conf->rim, &conf->pupil);
+	}
+	evidence_free(&own);
+	free(occlusion);
+}
+
 bool limbus_too_small(struct limbus_found *found, const struct photo *photo)
 {
 	*found = (struct limbus_found){ .posterior = { .best = -1, .rival = -1, .gross = 1 } };
@@ -159,6 +193,7 @@ void limbus_find(struct limbus_found *found, const struct photo *photo, const do
 	struct pyramid pyramid = pyramid_make(photo);
 	struct trials *trials = trials_new(photo, &pyramid, conf);
 	limbus_find_in(found, trials, hint);
+	limbus_find_pupil(found, trials);
 	trials_free(trials);
 	pyramid_free(&pyramid);
 }
@@ -169,6 +204,8 @@ void limbus_find_drawn(struct limbus_found *found, const struct photo *photo, co
 	struct pyramid pyramid = pyramid_make(photo);
 	limbus_by_hand(found, photo, &pyramid, drawn, conf->drawn_sigma, conf);
 	band_sample(&found->band, &pyramid, &found->limbus);
-	found->has_pupil = limbus_pupil(&found->pupil, photo, &pyramid, &found->limbus.e, &conf->rim, &conf->pupil);
+	struct trials *none = trials_new(photo, &pyramid, conf);
+	limbus_find_pupil(found, none);
+	trials_free(none);
 	pyramid_free(&pyramid);
 }

@@ -60,6 +60,7 @@ struct limbus_conf {
 	struct strip_net *strip;     // borrowed
 	struct strip_conf strip_conf;
 	struct odds_net *odds;       // borrowed
+	struct occlusion_net *occlusion;  // borrowed
 	struct face_conf face;
 	struct trial_conf trial;
 	struct same_conf same;
@@ -112,8 +113,11 @@ bool limbus_too_small(struct limbus_found *found, const struct photo *photo);
 
 struct trials;
 
-/* The same on trials that hold none yet (trial.h); they hold what was tried afterwards. */
+/* The same on trials that hold none yet (trial.h), without a pupil; they hold what was tried afterwards. */
 void limbus_find_in(struct limbus_found *found, struct trials *trials, const double *hint);
+
+/* The pupil of an eye that is usable. trials: those among which it was found, or none where a person says where it is. */
+void limbus_find_pupil(struct limbus_found *found, const struct trials *trials);
 
 /* Measures the likeliest of the trials, as found->posterior has it, in full; refuses what is doubtful. */
 void limbus_settle(struct limbus_found *found, struct trials *trials);

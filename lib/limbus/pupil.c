@@ -8,7 +8,7 @@
 #include "limbus/region.h"
 #include "math/stats.h"
 
-enum { RADII = 16, GRID = 2, SAMPLES = 24, DISC_RINGS = 12, DISC_ANGLES = 48, ALIKE_ARCS = 12 };
+enum { RADII = 16, GRID = 2, SAMPLES = 24, DISC_RINGS = 12, DISC_ANGLES = 48, ALIKE_ARCS = 12, CLOSER = 96 };
 static const float HIDDEN = 0.85F, FLOOR = 0.02F;  // as of region.c
 
 static double ring_median(const struct grey *g, const struct ellipse *e, double scale, double quantile)
@@ -179,28 +179,44 @@ bool limbus_pupil_like(struct rim *pupil, const struct photo *photo, const struc
 	less.min_contrast *= conf->other_eye;
 	less.min_coverage *= conf->other_eye;
 	return measure_near(pupil, photo, &e, sigma * e.a, rim_conf, conf) && believed(pupil, limbus, &less) && is_clear(pupil, conf->other_eye, conf)
-	       && agree(&pupil->e, &e, conf->told_far * sigma * e.a);
+	       && agree(&pupil->e, &e, conf->other_far * sigma * e.a);
 }
 
-/* By edge and evidence. */
+/* What the iris' own network says, in the form of the pixels' evidence. evidence_free. */
+static struct evidence closer_of(const struct occlusion *o, const struct ellipse *limbus)
+{
+	const enum evidence_class of[OCCLUSION_CLASSES] = { [OCCLUSION_IRIS] = EVIDENCE_IRIS, [OCCLUSION_PUPIL] = EVIDENCE_PUPIL,
+		[OCCLUSION_MIRROR] = EVIDENCE_REFLECTION, [OCCLUSION_LID] = EVIDENCE_SKIN };
+	const double reach = OCCLUSION_REACH * limbus->a;
+	struct evidence e = { .width = CLOSER, .height = CLOSER, .x0 = limbus->cx - reach, .y0 = limbus->cy - reach, .scale = 2 * reach / CLOSER };
+	e.plane[0] = mem_new((size_t)EVIDENCE_CLASSES * CLOSER * CLOSER, sizeof **e.plane);
+	for (int c = 1; c < EVIDENCE_CLASSES; c++)
+		e.plane[c] = e.plane[0] + (long)c * CLOSER * CLOSER;
+	for (int i = 0; i < CLOSER * CLOSER; i++)
+		for (int c = 0; c < OCCLUSION_CLASSES; c++)
+			e.plane[of[c]][i] = occlusion_at(o, c, e.x0 + (i % CLOSER + 0.5) * e.scale, e.y0 + (i / CLOSER + 0.5) * e.scale);
+	return e;
+}
+
+/* By edge and networks. */
 static bool told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
-                 const struct evidence *evidence, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
+                 const struct evidence *evidence, const struct evidence *closer, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
 {
-	struct ellipse region = { 0 };
-	const bool found = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf);
-	const double sure = told_by(&region, evidence, limbus, conf);
-	const double sigma = conf->told_sigma[0] * limbus->a + conf->told_sigma[1] * region.a;
-	if (found && sure >= conf->told_sure && agree(&pupil->e, &region, conf->told_far * sigma))
+	struct ellipse e = { 0 }, f = { 0 };
+	if (!(told_by(&e, closer, limbus, conf) >= conf->told_sure))
+		return false;
+	const double within = conf->told_within * limbus->a, sigma = conf->told_sigma[0] * limbus->a + conf->told_sigma[1] * e.a;
+	if (limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf) && agree(&pupil->e, &e, within))
 		return true;
-	// Against the evidence, or without it, an edge counts that is there all round.
-	if (found && is_clear(pupil, 1, conf) && (sure < conf->told_sure || agree(&pupil->e, &region, 1.5 * conf->told_far * sigma)))
-		return true;
-	return sure >= conf->told_sure && measure_near(pupil, photo, &region, sigma, rim_conf, conf) && believed(pupil, limbus, conf) && is_clear(pupil, 1, conf)
-	       && agree(&pupil->e, &region, conf->told_far * sigma);
+	return told_by(&f, evidence, limbus, conf) > 0 && agree(&e, &f, conf->told_apart * limbus->a) && measure_near(pupil, photo, &e, sigma, rim_conf, conf)
+	       && believed(pupil, limbus, conf) && pupil->share_used > conf->told_used && agree(&pupil->e, &e, within);
 }
 
-bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
-                       const struct evidence *evidence, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
+bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus, const struct evidence *evidence,
+                       const struct occlusion *occlusion, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
 {
-	return told(pupil, photo, pyramid, limbus, evidence, rim_conf, conf) && !mirrors(pupil, pyramid, limbus, conf);
+	struct evidence closer = closer_of(occlusion, limbus);
+	const bool is = told(pupil, photo, pyramid, limbus, evidence, &closer, rim_conf, conf) && !mirrors(pupil, pyramid, limbus, conf);
+	evidence_free(&closer);
+	return is;
 }

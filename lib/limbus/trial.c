@@ -136,9 +136,8 @@ bool trial_measure(struct rim *rim, struct rim *pupil, bool *has_pupil, const st
 		return true;
 	conf.known = 0;
 	conf.absolute = false;
-	conf.max_axis = coarse ? t->conf->trial.pupil_px : conf.max_axis;
-	*has_pupil = coarse ? limbus_pupil(pupil, t->photo, t->pyramid, &rim->e, &conf, &t->conf->pupil)
-	                    : limbus_pupil_told(pupil, t->photo, t->pyramid, &rim->e, &trial->window->evidence, &conf, &t->conf->pupil);
+	conf.max_axis = t->conf->trial.pupil_px;
+	*has_pupil = limbus_pupil(pupil, t->photo, t->pyramid, &rim->e, &conf, &t->conf->pupil);
 	return true;
 }
 

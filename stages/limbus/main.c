@@ -80,6 +80,7 @@ int main(int argc, char **argv)
 	o.pose.tilt_sigma = o.tilt_sigma_deg * M_PI / 180;
 	bool ok = eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
+	occlusion_close(o.find.occlusion);
 	odds_close(o.find.odds);
 	strip_close(o.find.strip);
 	evidence_close(o.find.net);

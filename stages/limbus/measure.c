@@ -60,7 +60,8 @@ static bool ready(struct limbus_kept *kept, struct limbus_options *o, const char
 #pragma omp section
 		evidence = conf->net || evidence_open_shipped(&conf->net, err);
 #pragma omp section
-		strip = (conf->strip || strip_open_shipped(&conf->strip, &of_strip)) && (conf->odds || odds_open_shipped(&conf->odds, &of_strip));
+		strip = (conf->strip || strip_open_shipped(&conf->strip, &of_strip)) && (conf->odds || odds_open_shipped(&conf->odds, &of_strip))
+		        && (conf->occlusion || occlusion_open_shipped(&conf->occlusion, &of_strip));
 	}
 	if (is_photo)
 		*kept = (struct limbus_kept){ mem_str(file), photo };

@@ -42,18 +42,21 @@
 #define PUPIL_OPTS(c) \
 	OPT_REAL("pupil_contrast", &(c)->min_contrast, 0.02, 1, "", "Weber contrast of pupil and iris"), \
 	OPT_REAL("pupil_largest", &(c)->largest, 0.3, 1, "", "a pupil is smaller, share of the limbus"), \
-	OPT_REAL("pupil_clear_coverage", &(c)->clear_coverage, 0.1, 1, "", "share seen of a margin that the evidence does not bear out"), \
+	OPT_REAL("pupil_clear_coverage", &(c)->clear_coverage, 0.1, 1, "", "share seen of a margin near the other eye's size"), \
 	OPT_REAL("pupil_clear_used", &(c)->clear_used, 0, 1, "", "share of it that is good enough to measure"), \
 	OPT_REAL("pupil_coverage", &(c)->min_coverage, 0.1, 1, "", "share of the pupil's margin seen"), \
 	OPT_REALS("pupil_first", (c)->first, 2, 0.05, 1, "", "sizes tried first, share of the limbus: least, most"), \
 	OPT_REAL("pupil_first_contrast", &(c)->first_contrast, 0.01, 1, "", "Weber contrast of a fully supported edge there"), \
 	OPT_REAL("pupil_first_score", &(c)->first_score, 0, 1, "", "support from which one is measured"), \
 	OPT_REAL("pupil_window", &(c)->least_window, 0.5, 20, "px", "least width in which its step is fitted"), \
-	OPT_REALS("pupil_told_sigma", (c)->told_sigma, 2, 0.001, 0.3, "", "of the evidence's ellipse: of the limbus's semi-axis, of its own"), \
-	OPT_REAL("pupil_told_far", &(c)->told_far, 0.5, 10, "", "so many of these apart: not the same"), \
+	OPT_REALS("pupil_told_sigma", (c)->told_sigma, 2, 0.001, 0.3, "", "of the networks' ellipse: of the limbus's semi-axis, of its own"), \
 	OPT_REAL("pupil_told_sure", &(c)->told_sure, 0.01, 1, "", "mean chance of pupil in an ellipse that is believed"), \
+	OPT_REAL("pupil_told_within", &(c)->told_within, 0.005, 0.5, "", "share of the limbus: an edge that near that ellipse is the pupil's"), \
+	OPT_REAL("pupil_told_apart", &(c)->told_apart, 0.005, 0.5, "", "the same of what the pixels' evidence has"), \
+	OPT_REAL("pupil_told_used", &(c)->told_used, 0, 1, "", "share of a margin that is good enough to measure, where both networks have it"), \
 	OPT_REAL("pupil_brightest", &(c)->brightest, 1, 10, "", "brightness round a pupil over the iris's, beyond which a lamp is mirrored there"), \
-	OPT_REAL("pupil_other_eye", &(c)->other_eye, 0.1, 1, "", "of what is asked of a margin, where the other eye shows its pupil")
+	OPT_REAL("pupil_other_eye", &(c)->other_eye, 0.1, 1, "", "of what is asked of a margin, where the other eye shows its pupil"), \
+	OPT_REAL("pupil_other_far", &(c)->other_far, 0.5, 10, "", "sigmas from the other eye's size, beyond which it is not the same")
 
 #define FACE_OPTS(c) \
 	OPT_REALS("face_distance", (c)->distance, 2, 2, 30, "", "between both limbi of a face, in radii: least, most"), \

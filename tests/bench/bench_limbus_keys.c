@@ -43,8 +43,10 @@ static void list(struct eyes *s)
 	add(s, "pupil_window", &c->pupil.least_window);
 	add(s, "pupil_told_sigma, limbus", &c->pupil.told_sigma[0]);
 	add(s, "pupil_told_sigma, pupil", &c->pupil.told_sigma[1]);
-	add(s, "pupil_told_far", &c->pupil.told_far);
 	add(s, "pupil_told_sure", &c->pupil.told_sure);
+	add(s, "pupil_told_within", &c->pupil.told_within);
+	add(s, "pupil_told_apart", &c->pupil.told_apart);
+	add(s, "pupil_told_used", &c->pupil.told_used);
 	add(s, "rough_px", &c->trial.limbus_px);
 	add(s, "rough_pupil_px", &c->trial.pupil_px);
 	add(s, "window_place", &c->trial.window_place);

@@ -98,6 +98,8 @@ static bool both(struct limbus_found found[2], struct trials *first, const struc
 	}
 	if (is) {
 		face_alike_sizes(pair, &conf->face);
+		limbus_find_pupil(&pair[0], first);
+		limbus_find_pupil(&pair[1], second);
 		face_alike_pupils(pair, first->photo, conf);
 		memcpy(found, pair, 2 * sizeof *found);
 	}
@@ -125,6 +127,8 @@ int limbus_find_face(struct limbus_found found[2], const struct photo *photo, bo
 	const struct ellipse e = found[0].limbus.e;
 	const int other = e.a > 0 ? other_of(trials, &e, &conf->face) : -1;
 	const bool pair = other >= 0 && both(found, trials, &trials->region[other]);
+	if (!pair)
+		limbus_find_pupil(&found[0], trials);
 	if (pair) {
 		if ((trials->region[other].x > e.cx) != mirrored)
 			swap_sides(found);

@@ -12,7 +12,8 @@ static struct limbus_conf limbus_defaults = {
 	.seek = { .min_radius = 0.015, .max_radius = 0.52, .contrast = 0.15, .candidates = 8 },
 	.rim = { .search = 0.08, .max_rms = 0.15, .min_contrast = 0.15, .irregularity = 0.06, .straying = 1, .coarse_straying = 6, .colour_gain = 5, .rough_gain = 1.2, .max_axis = 900, .passes = 6 },
 	.pupil = { .min_contrast = 0.25, .min_coverage = 0.4, .clear_coverage = 0.7, .clear_used = 0.45, .largest = 0.85,
-		.first = { 0.12, 0.78 }, .first_contrast = 0.12, .first_score = 0.2, .least_window = 2, .told_sigma = { 0.025, 0.03 }, .told_far = 2.2, .told_sure = 0.3, .brightest = 1.3, .other_eye = 0.5 },
+		.first = { 0.12, 0.78 }, .first_contrast = 0.12, .first_score = 0.2, .least_window = 2, .told_sigma = { 0.025, 0.03 }, .told_sure = 0.5, .told_within = 0.05, .told_apart = 0.08,
+		.told_used = 0.2, .brightest = 1.3, .other_eye = 0.5, .other_far = 2.2 },
 	.face = { .distance = { 7.5, 13.5 }, .roll = 60 * M_PI / 180, .size_sigma = 0.03, .score = 0.3, .sure = 0.6, .pupil_sigma = 0.06,
 		.region_alike = 0.5, .off_alike = 0.5, .off_sigma = 2, .broad = 0.3, .unlike = 0.01, .far = 4 },
 	.trial = { .regions = 3, .votes = 4, .rounds = 2, .reads = 3, .passes = 4, .limbus_px = 110, .pupil_px = 70, .window_place = 0.5, .window_size = 0.3,
@@ -32,6 +33,7 @@ static void limbus_defaults_open(void)
 	evidence_open(&limbus_defaults.net, "config/evidence.onnx", &err);
 	strip_open(&limbus_defaults.strip, "config/strip.onnx", &err);
 	odds_open(&limbus_defaults.odds, "config/odds.onnx", &err);
+	occlusion_open(&limbus_defaults.occlusion, "config/occlusion.onnx", &err);
 }
 
 static const struct pose_conf pose_defaults = {
