@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 
-enum { EYES = 2, MOST_PX = 20000 };
+enum { EYES = 2, MOST_PX = 20000, SOMEWHERE = 997 };
 
 bool kept_next(struct drawn *drawn, FILE *file)
 {
@@ -26,5 +26,34 @@ bool kept_next(struct drawn *drawn, FILE *file)
 	if (fread(drawn->rgb, 3, px, file) == px && fread(drawn->label, 1, px, file) == px)
 		return true;
 	drawn_free(drawn);
+	return false;
+}
+
+FILE *kept_open(const char *path, uint64_t first)
+{
+	FILE *file = fopen(path, "rb");
+	struct drawn d;
+	if (!file) {
+		fprintf(stderr, "cannot read %s\n", path);
+		exit(2);
+	}
+	for (uint64_t i = 0; i < first % SOMEWHERE && kept_next(&d, file); i++)
+		drawn_free(&d);
+	return file;
+}
+
+bool kept_next_eye(struct drawn *drawn, const struct drawn_eye **eye, FILE *file, float shown)
+{
+	for (int again = 0; again < 2;) {
+		if (!kept_next(drawn, file)) {
+			rewind(file);
+			again++;
+			continue;
+		}
+		const struct drawn_eye *e = *eye = &drawn->eye[drawn->n_eyes > 1 && drawn->eye[1].shown > drawn->eye[0].shown];
+		if (drawn->n_eyes && e->shown > shown && e->limbus[0] > 0 && e->limbus[0] < (float)drawn->width && e->limbus[1] > 0 && e->limbus[1] < (float)drawn->height)
+			return true;
+		drawn_free(drawn);
+	}
 	return false;
 }

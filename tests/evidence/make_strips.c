@@ -115,36 +115,14 @@ static void lesson(uint64_t number, struct evidence_net *net)
 	drawn_free(&d);
 }
 
-/* The next of a file's photographs that shows an eye, from the beginning again at its end. */
 static void lesson_kept(uint64_t number, struct evidence_net *net, FILE *file)
 {
 	struct drawn d;
-	for (int again = 0; again < 2;) {
-		if (!kept_next(&d, file)) {
-			rewind(file);
-			again++;
-			continue;
-		}
-		const struct drawn_eye *e = &d.eye[d.n_eyes > 1 && d.eye[1].shown > d.eye[0].shown];
-		if (d.n_eyes && e->shown > 0.02F && e->limbus[0] > 0 && e->limbus[0] < d.width && e->limbus[1] > 0 && e->limbus[1] < d.height) {
-			strips_of(&d, (struct ellipse){ e->limbus[0], e->limbus[1], e->limbus[2], e->limbus[2], 0 }, number, net);
-			again = 2;
-		}
-		drawn_free(&d);
-	}
-}
-
-static FILE *opened(const char *path, uint64_t first)
-{
-	FILE *file = fopen(path, "rb");
-	struct drawn d;
-	if (!file) {
-		fprintf(stderr, "cannot read %s\n", path);
-		exit(2);
-	}
-	for (uint64_t i = 0; i < first % 997 && kept_next(&d, file); i++)
-		drawn_free(&d);
-	return file;
+	const struct drawn_eye *e;
+	if (!kept_next_eye(&d, &e, file, 0.02F))
+		return;
+	strips_of(&d, (struct ellipse){ e->limbus[0], e->limbus[1], e->limbus[2], e->limbus[2], 0 }, number, net);
+	drawn_free(&d);
 }
 
 int main(int argc, char **argv)
@@ -163,7 +141,7 @@ int main(int argc, char **argv)
 	}
 	const uint64_t first = strtoull(argv[1], 0, 10);
 	for (int k = 0; k < n; k++)
-		kept[k] = opened(argv[3 + k], first);
+		kept[k] = kept_open(argv[3 + k], first);
 	for (long i = 0; i < atol(argv[2]) && !ferror(stdout); i++)
 		if (n && i % 2)
 			lesson_kept(first + (uint64_t)i, net, kept[i / 2 % n]);

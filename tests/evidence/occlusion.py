@@ -63,9 +63,9 @@ class Net(nn.Module):
 class Lessons:
     """From the generator; the last KEPT are kept and drawn from."""
 
-    def __init__(self, make, first, kept, test=False):
+    def __init__(self, make, first, kept, more=None):
         self.queue, self.kept, self.most, self.made, self.rng = queue.Queue(256), [], kept, 0, np.random.default_rng(first)
-        self.process = subprocess.Popen([make, str(first), "100000000", *(["test"] if test else [])], stdout=subprocess.PIPE, bufsize=1 << 22)
+        self.process = subprocess.Popen([make, str(first), "100000000", *([more] if more else [])], stdout=subprocess.PIPE, bufsize=1 << 22)
         threading.Thread(target=self.read, daemon=True).start()
 
     def read(self):
@@ -154,8 +154,8 @@ def judge(net, held, batch=32):
         print("  a chance of %.2f: of reflections %.1f %% found, of iris %.2f %% lost" % (at, 100 * f[f <= 1].mean(), 100 * torch.cat(lost[at]).mean()), flush=True)
 
 
-def held_out(args, test):
-    lessons = Lessons(args.make, HELD, 0, test)
+def held_out(args, more=None, first=HELD):
+    lessons = Lessons(args.make, first, 0, more)
     held = lessons.fresh(args.held)
     lessons.close()
     return held
@@ -174,6 +174,7 @@ def main():
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--threads", type=int, default=1)
     p.add_argument("--held", type=int, default=384, help="lessons to judge on")
+    p.add_argument("--photographs", help="what traced.py --mirrors has written: every second lesson is of these")
     p.add_argument("--half", action="store_true", help="multiply in bfloat16: faster where the processor has it")
     p.add_argument("--short", action="store_true")
     args = p.parse_args()
@@ -189,12 +190,12 @@ def main():
     elif args.start:
         net.load_state_dict(torch.load(args.start))
     print("%d parameters" % sum(v.numel() for v in net.parameters()), flush=True)
-    held = None if args.short else held_out(args, False)
+    held = None if args.short else held_out(args)
     mean = {k: v.clone() for k, v in net.state_dict().items()}
     optimiser = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=1e-3)
     if args.short:
         args.batch = 8
-    lessons, weight = Lessons(args.make, args.first, 96 if args.short else KEPT), disc()
+    lessons, weight = Lessons(args.make, args.first, 96 if args.short else KEPT, args.photographs), disc()
     begun, losses, last = time.time(), [], time.time()
     while True:
         done = (time.time() - begun) / max(60 * args.minutes, 1e-9) if not args.short else len(losses) / 60
@@ -230,7 +231,7 @@ def main():
     net.load_state_dict(mean)
     judge(net, held)
     print("the test split:")
-    judge(net, held_out(args, True))
+    judge(net, held_out(args, "test"))
     if args.keep:
         torch.save(mean, args.keep)
     if args.out:

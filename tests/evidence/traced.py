@@ -6,7 +6,7 @@ FOLDER: the generator of path-traced eyes (a refracting cornea, lids, lashes, te
 an eye: iris, pose, lids, skin, light, a limbus as sharp or as soft as people's; of each some photographs, as near and as far as heads' are. The limbus is the
 middle of its ramp. Numbers below 59000 are for training, 59000 to 59499 for development, those above judge; irises are shared within each of them
 alone, since their textures take longest. --mirrors: every eye is lit, nearly faces the camera and mirrors what lights it; it is rendered without its cornea's mirror image as well, and what that
-adds more than a third of the iris' own light to is labelled a reflection. Needs blender, python3-numpy, -scipy, -opencv.
+adds more than a third of the iris' own light to is labelled a reflection; what is mirrored is a third to three times as bright in each photograph. Needs blender, python3-numpy, -scipy, -opencv.
 """
 import argparse
 import functools
@@ -46,18 +46,18 @@ def arguments(number, out, mirrors):
     if a["mode"] == "lit":
         a.update(specular=int(rng.random() < .8), light=pick("softboxes", "ring", "side", "side", "room"))
     if mirrors:
-        a.update(mode="lit", specular=1, light=pick("softboxes", "side", "room", "room", "room"), theta=25 * rng.random(), field=u(16, 22), width=384, height=288, spp=24)
+        a.update(mode="lit", specular=1, light=pick("softboxes", "side", "room", "room", "room"), theta=25 * rng.random(), field=u(16, 22), width=320, height=240, spp=14)
     return [x for key, v in a.items() for x in ("--" + key.replace("_", "-"), str(v))]
 
 
 def mirrored(light, plain, label):
-    """Where reflections add more than a third of the iris' own light, over what is mirrored everywhere; white is the brightest of the plain picture."""
+    """Where reflections add more than a third of the iris' own light, over what is mirrored on half of the eye; white is the brightest of the plain picture."""
     added, own = (v @ np.array([.2126, .7152, .0722], F32) for v in (light - plain, plain))
     eye = (label == heads.IRIS) | (label == heads.PUPIL)
     if not (label == heads.IRIS).any():
         return np.zeros(label.shape, bool)
     iris = np.median(own[label == heads.IRIS])
-    over = cv2.GaussianBlur(added, (0, 0), .7) - np.percentile(added[eye], 10)
+    over = cv2.GaussianBlur(added, (0, 0), 1) - np.median(added[eye])
     return eye & (over > .01 * np.percentile(own, 99)) & (over > .3 * np.maximum(own, .5 * iris))
 
 
@@ -118,18 +118,21 @@ class Eye:
         status = capture.limbus_occlusion(labels, uv, front, eye_scene.L_SCLERA, (eye_scene.L_SKIN, eye_scene.L_LASH, eye_scene.L_CARUNCLE))
         self.label, self.limbus, self.theta = CLASS[np.minimum(labels, 7)], truth["limbus_ellipse_exact"], np.radians(o.theta)
         self.line, self.shown = uv, status == 0
-        if mirrors:
-            self.label[mirrored(self.light, plain, self.label)] = heads.REFLECTION
+        self.plain = plain if mirrors else None
         self.rng = np.random.default_rng([93, number])
 
     def photograph(self):
         """Some part of it, smaller or not, as a camera shows it: picture, labels, what kept.h reads."""
         rng, e = self.rng, self.limbus
+        of_light, of_label = self.light, self.label
+        if self.plain is not None:  # what surrounds it shines more or less
+            of_light = self.plain + np.exp(rng.uniform(np.log(.3), np.log(3))) * (self.light - self.plain)
+            of_label = np.where(mirrored(of_light, self.plain, self.label), np.uint8(heads.REFLECTION), self.label)
         scale = min(1, max(np.exp(rng.uniform(np.log(.3), np.log(1.1))), 26 / e["a"]))
         scale = np.ceil(scale * WHOLE) / WHOLE
-        side = np.round(scale * np.array(self.light.shape[1::-1])).astype(int)
-        light = cv2.resize(self.light, side, interpolation=cv2.INTER_AREA) if scale < 1 else self.light
-        label = cv2.resize(self.label, side, interpolation=cv2.INTER_NEAREST)
+        side = np.round(scale * np.array(of_light.shape[1::-1])).astype(int)
+        light = cv2.resize(of_light, side, interpolation=cv2.INTER_AREA) if scale < 1 else of_light
+        label = cv2.resize(of_label, side, interpolation=cv2.INTER_NEAREST)
         least = np.minimum(side, max(2.2 * e["a"] * scale, 100))
         size = (least + rng.random(2) * (side - least)).astype(int)
         at = (rng.random(2) * (side - size)).astype(int)
@@ -159,7 +162,7 @@ def main():
         for number in range(args.first, args.first + args.count):
             eye = Eye(number, work, args.mirrors)
             with open(args.out, "ab") as file:
-                for _ in range(1 if args.mirrors else SHOTS):
+                for _ in range(SHOTS):
                     picture, label, limbus = eye.photograph()
                     file.write(heads.kept(picture, label, limbus))
                     tiles.append((cv2.resize(picture, heads.SIZE), cv2.resize(label, heads.SIZE, interpolation=cv2.INTER_NEAREST)))
