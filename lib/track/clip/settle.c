@@ -256,7 +256,7 @@ static bool is_confirmed(const struct track_clip *clip, const struct track_resul
 /* A pose that was earned by how the skin moves knows the turn better than the place: openings and eyeballs tell that. */
 static void settle_earned(struct track_clip *clip, struct stage *stage, const struct track_subject *s, const struct track_conf *conf)
 {
-	struct track_conf few = track_few_of(conf, clip, conf->look.frames, conf->doubt.span);
+	struct track_conf few = track_few_of(conf, clip, conf->doubt.frames, conf->doubt.span);
 	struct track_result r = { 0 };
 	const double px = clip->pose_px;
 	few.head.turn_sigma = few.head.yaw_sigma = conf->earned_deg;
