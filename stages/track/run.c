@@ -20,6 +20,7 @@
 #include "track/clip/others.h"
 #include "track/clip/refine.h"
 #include "track/clip/settle.h"
+#include "track/clip/tapers.h"
 #include "track/clip/trust.h"
 
 /* Warns of shortcomings of the video, one line each. */
@@ -119,6 +120,7 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_kappa(result, conf, err))
 		return false;
 	track_corners(result, clip, subject, points);
+	track_tapers(result, subject);
 	track_apertures(result, clip, subject, conf);
 	if (subject->assumed)
 		result->n_points = points->n = 0;  // rows of no mesh of the person
