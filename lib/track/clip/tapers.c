@@ -10,7 +10,8 @@
 static const double near_corner = 0.92, blunt = 0.6;
 static const double open_enough = 0.5;  // of the usual opening
 
-double track_taper(const struct eye_state *state)
+/* How far the margins of a frame stand apart near the outer corner, as a share of how far they do at most; NAN where that is not told. */
+static double taper(const struct eye_state *state)
 {
 	enum { STEPS = 24 };
 	struct line margin[LIDS];
@@ -39,7 +40,7 @@ void track_tapers(struct track_result *r, const struct track_subject *s)
 	for (long f = 0; f < r->n && r->has_eyes && s->assumed; f++)
 		for (int e = 0; e < SIDES; e++) {
 			struct eye_state *state = &r->eyes.state[f][e];
-			if (state->blink != BLINK_OPEN || !(state->openness > open_enough) || !(track_taper(state) > blunt))
+			if (state->blink != BLINK_OPEN || !(state->openness > open_enough) || !(taper(state) > blunt))
 				continue;
 			for (int k = 0; k < LIDS; k++) {
 				state->lid_confidence[k] = 0;

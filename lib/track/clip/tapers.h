@@ -10,7 +10,4 @@
  * nothing changes. */
 void track_tapers(struct track_result *result, const struct track_subject *subject);
 
-/* How far the margins of a frame stand apart near the outer corner, as a share of how far they do at most; NAN where that is not told. */
-double track_taper(const struct eye_state *state);
-
 #endif
