@@ -1,6 +1,6 @@
 /* render: pictures of the fitted eye and of driven characters, and the review page.
  * reads   IRIS/texture.exr, clean.exr, relief.exr, pigment.json, limbus/NAME.json, photos/
- *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/
+ *         work/targets/NAME/rig.npz, work/skin/model.json, gaze.csv, animation.csv, video/, views/, work/rig.json, work/subject.ply
  * writes  RENDER/NAME_view, NAME_compare, front, three_quarter, turntable, contact_sheet, shot_NAME; review/index.html, viewer.html;
  *         work/render/NAME_look.png, NAME_look_layers.exr, NAME_sheet.png, NAME_blink.png, NAME_clip.mp4, NAME_script.mp4, NAME.glb
  *         work/render/track.mp4, track.svg: what was followed in the video

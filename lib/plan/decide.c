@@ -168,7 +168,7 @@ static void measure_film(struct plan *plan, const char *film, int have)
 	plan->clip_kframes = 1e-3 * length.minute * (have & HAS_SCRIPT ? 2 : 1);
 }
 
-static bool has_subject(const char *capture)
+bool plan_has_subject(const char *capture)
 {
 	static const char *const names[] = { "subject.ply", "subject.obj" };
 	bool has = false;
@@ -241,7 +241,7 @@ bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost 
 	for (int i = 0; i < PLAN_STAGES; i++) {
 		const struct plan_stage *r = &plan_stages[i];
 		struct plan_row *row = &plan->rows[i];
-		bool calibrates = !strcmp(r->name, "calibrate"), skin = runs(plan, "calibrate") || has_subject(capture);
+		bool calibrates = !strcmp(r->name, "calibrate"), skin = runs(plan, "calibrate") || plan_has_subject(capture);
 		bool has = (!calibrates || have & HAS_VIEWS || film) && (!r->any || have & r->any) && (have & r->all) == r->all;
 		const char *other = other_way(plan, r, have);
 		bool fed = (has && (!r->needs || runs(plan, r->needs))) || (other && runs(plan, other));

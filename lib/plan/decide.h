@@ -62,4 +62,7 @@ double plan_cost_seconds(const struct plan_cost *cost, const struct plan *plan);
 bool plan_decide(struct plan *plan, const char *capture, const struct plan_cost cost[PLAN_STAGES], const struct conf *conf,
                  struct err *err);
 
+/* Whether the folder brings a mesh of the person: none is made of views/ then. */
+bool plan_has_subject(const char *capture);
+
 #endif

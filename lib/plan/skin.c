@@ -51,7 +51,8 @@ static bool source_of(struct source *s, const char *key, const char *config_dir,
 	return ok;
 }
 
-static struct plan_skin skin_of(const char *capture, const char *name, const struct source *source)
+/* views: a mesh is made of views/. */
+static struct plan_skin skin_of(const char *capture, const char *name, const struct source *source, bool views)
 {
 	char *path = mem_printf("%s/targets/%s", capture, name);
 	struct plan_skin s = { .file = mem_printf("targets/%s", name) };
@@ -62,9 +63,10 @@ static struct plan_skin skin_of(const char *capture, const char *name, const str
 		s.from = "one colour";
 		s.why = mem_printf("the file brings no materials; %s", source->said);
 	} else {
-		s.from = "video";
-		s.why = mem_printf("the file brings no materials; where the film does not show both eyes and a fifth of the face about them, %s",
-		                   strcmp(source->value, "video") ? "one colour" : "render fails: render.skin = video");
+		const bool only = !strcmp(source->value, "video"), of_views = !strcmp(source->value, "views");
+		s.from = of_views ? "views" : "video";
+		s.why = mem_printf("the file brings no materials; where %s not show both eyes and a fifth of the face about them, %s%s", of_views ? "they do" : "the film does",
+		                   only || of_views ? "render fails: render.skin = " : views ? "that of views/" : "one colour", only || of_views ? source->value : "");
 	}
 	free(path);
 	return s;
@@ -90,12 +92,13 @@ bool plan_skins(struct plan *plan, const char *config_dir, const struct conf *co
 	if (!plan->rows[plan_stage_find("extrapolate")].run || !plan->rows[plan_stage_find("render")].run)
 		return true;
 	char *dir = mem_printf("%s/targets", plan->capture);
+	const bool views = plan->rows[plan_stage_find("calibrate")].run && !plan_has_subject(plan->capture);
 	bool ok = source_of(&source, "render.skin", config_dir, conf, err) && source_of(&iris, "render.iris", config_dir, conf, err) && file_list(&list, dir, err);
 	for (int i = 0; ok && i < list.n; i++) {
 		if (character_kind_of(list.names[i]) == CHARACTER_NONE)
 			continue;
 		plan->skins = mem_grow(plan->skins, (size_t)plan->n_skins + 1, sizeof *plan->skins);
-		plan->skins[plan->n_skins++] = skin_of(plan->capture, list.names[i], &source);
+		plan->skins[plan->n_skins++] = skin_of(plan->capture, list.names[i], &source, views);
 	}
 	if (ok) {
 		file_list_free(&list);

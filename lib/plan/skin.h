@@ -1,5 +1,5 @@
 /* skin: where skin and irises of a driven character will come from, as far as the configuration, names and the heads of files tell: its own materials, the
- * person in the video, or one colour. What the video shows of the person is known when it has been followed: render decides then, and says so in
+ * person in the video or in views/, or one colour. What the video shows of the person is known when it has been followed: render decides then, and says so in
  * work/render/NAME_skin.json.
  */
 #ifndef PLAN_SKIN_H
@@ -8,7 +8,7 @@
 
 struct plan_skin {
 	char *file;        // "targets/a.obj"
-	const char *from;  // "own", "video" or "one colour"
+	const char *from;  // "own", "video", "views" or "one colour"
 	char *why;
 };
 

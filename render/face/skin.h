@@ -9,7 +9,7 @@
 #include "draw/face/portrait.h"
 
 /* Where the skin of a character without textures comes from. */
-enum skin_source { SKIN_AUTO, SKIN_VIDEO, SKIN_PLAIN };
+enum skin_source { SKIN_AUTO, SKIN_VIDEO, SKIN_VIEWS, SKIN_PLAIN };
 extern const char *const skin_sources[];
 
 /* Where the iris of a person whom nobody photographed comes from. */
@@ -53,8 +53,8 @@ struct skin_conf {
 	OPT_INT("skin_lights", &(c)->portrait.lights, 1, 64, "", "directions that stand for the environment on skin; a power of 2"), \
 	OPT_INT("skin_subdivide", &(c)->portrait.subdivide, 0, 4, "", "times the triangles round the eyes are cut in four"), \
 	OPT_INT("skin_samples", &(c)->portrait.samples, 1, 8, "", "rays across a pixel of skin where it shows more than one thing"), \
-	OPT_CHOICE("skin", &(c)->source, skin_sources, "of a character without textures: the person's in the video where that shows it, or of one colour"), \
-	OPT_INT("skin_px", &(c)->film_px, 128, 8192, "px", "width of the textures that are made of the video"), \
+	OPT_CHOICE("skin", &(c)->source, skin_sources, "of a character without textures: the person's in the video where that shows it, else in views/, or of one colour"), \
+	OPT_INT("skin_px", &(c)->film_px, 128, 8192, "px", "width of the textures that are made of the video or the views"), \
 	OPT_REALS("skin_rgb", (c)->portrait.skin_rgb, 3, 0, 1, "", "colour of the skin"), \
 	OPT_REAL("skin_texture", &(c)->portrait.texture, 0, 3, "", "strength of pores and blotches"), \
 	OPT_REAL("skin_scatter_mm", &(c)->portrait.scatter_mm, 0, 20, "mm", "how far red light travels in skin"), \
@@ -118,15 +118,16 @@ struct skin_target {
 	struct dress *dress;              // its textures, with the portrait; null: none
 	struct portrait *portrait;        // of the stills; null until needed
 	const char *film, *subject;       // the video and the mesh that its skin is made of; null: of neither
-	double film_rgb[3];               // its median albedo then
+	int views;                        // photographs of views/ that it may be made of, or is where there is no video; 0: none
+	double film_rgb[3];               // its median albedo then, or of the views
 	struct hair_film *film_hair;      // lashes and brows that it shows; null: average ones
 	float (*film_place)[3];           // [own vertices] where the character's skin lies on the person, mm
 	struct skin_told {                // where its skin comes from
-		const char *from;             // "own", "video", "one colour": plan/skin.h
+		const char *from;             // "own", "video", "views", "one colour": plan/skin.h
 		struct err why;               // a sentence
-		double seen, mirrored;        // of "video": shares of the face near the eyes that the film shows, and its other half stands in for
+		double seen, mirrored;        // of "video" and "views": shares of the face near the eyes that they show, and its other half stands in for
 	} told;
-	const char *in[40];               // inputs that all its pictures have in common
+	const char *in[64];               // inputs that all its pictures have in common
 	int n_in;
 };
 
@@ -157,8 +158,8 @@ bool skin_clips(struct skin_job *job, struct skin_target *target, struct err *er
 /* skin_glb.c: NAME.glb, driven by csv, with the eyes that its pictures show. */
 bool skin_glb(struct skin_job *job, struct skin_target *target, const char *csv, struct err *err);
 
-/* skin_film.c. skin_film: finds what a character without a look can be given the skin of the person from, and puts it into its inputs.
- * skin_of_film: makes look and dress of it; where it cannot be, says so and leaves them empty. Returns false, err set, where render.skin asks
+/* skin_film.c. skin_film: finds what a character without a look can be given the skin of the person from, the film or views/, and puts it into its inputs.
+ * skin_of_film: makes look and dress of the film, or where that does not give it of the views; where it cannot be, says so and leaves them empty. Returns false, err set, where render.skin asks
  * for it all the same. */
 void skin_film(struct skin_target *target, struct stage *stage, const struct skin_conf *conf);
 bool skin_of_film(struct skin_job *job, struct skin_target *target, struct err *err);

@@ -1,4 +1,4 @@
-/* Skin of the person in the film for a character that has no colours of its own (lib/draw/complexion). */
+/* Skin of the person in the film, or in photographs round the head, for a character that has no colours of its own (lib/draw/complexion). */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,8 +10,9 @@
 #include "bridge/om_mesh.h"
 #include "draw/complexion/complexion.h"
 #include "render/face/skin_tracked.h"
+#include "render/face/skin_views.h"
 
-const char *const skin_sources[] = { "auto", "video", "plain", 0 };
+const char *const skin_sources[] = { "auto", "video", "views", "plain", 0 };
 const char *const hair_sources[] = { "auto", "average", 0 };
 
 enum { LONGEST = 3600, SPREAD = 9 };
@@ -34,7 +35,7 @@ static void tell(struct skin_target *t, const char *from, const char *fmt, ...)
 	va_end(ap);
 }
 
-static const char own[] = "own", video[] = "video", one_colour[] = "one colour";
+static const char own[] = "own", video[] = "video", views[] = "views", one_colour[] = "one colour";
 
 /* Why it has one colour where that is asked for: by capture.conf, or by the preset. */
 static void tell_plain(struct skin_target *t, struct stage *stage)
@@ -44,17 +45,23 @@ static void tell_plain(struct skin_target *t, struct stage *stage)
 	tell(t, one_colour, "its file brings no materials, and render.skin = plain%s%s", preset ? ", as the preset has it: quality = " : "", preset ? quality->value : "");
 }
 
-/* What the character's skin needs of the film. False where a file is not there: missing, to be freed. */
-static bool has_film(char **missing, struct skin_target *t, struct stage *stage)
+/* What the character's skin needs of the film, or of its eyes alone. False where a file is not there: missing, to be freed. */
+static bool has_tracked(char **missing, struct skin_target *t, struct stage *stage, bool eyes_alone)
 {
 	static const char *const beside[] = { "registered.ply", "registration.json" };
+	const int n = t->n_in;
 	for (int i = 0; i < TRACKED_FILES + COUNT(beside); i++) {
+		if (eyes_alone && i < TRACKED_FILES && i != TRACKED_JSON && i != TRACKED_HEAD && i != TRACKED_LIDS)
+			continue;
 		*missing = i < TRACKED_FILES ? mem_str(tracked_files[i]) : mem_printf("work/targets/%s/%s", t->name, beside[i - TRACKED_FILES]);
-		if (!file_exists(stage_path(stage, "%s", *missing)))
+		if (!file_exists(stage_path(stage, "%s", *missing))) {
+			t->n_in = n;
 			return false;
+		}
 		t->in[t->n_in++] = inside(stage, stage_path(stage, "%s", *missing));
 		free(*missing);
 	}
+	*missing = 0;
 	return true;
 }
 
@@ -63,11 +70,56 @@ bool skin_is_inside(struct stage *stage, const char *rel)
 	return rel && !strstr(rel, "..") && *rel != '/' && file_exists(stage_path(stage, "%s", rel));
 }
 
-void skin_film(struct skin_target *t, struct stage *stage, const struct skin_conf *conf)
+/* The film that was followed, and the mesh. False, lacks set to a sentence's end: they are not there. */
+static bool find_film(struct skin_target *t, struct stage *stage, struct err *lacks)
 {
 	struct err none = { 0 }, nor = { 0 };
-	char *missing;
 	const int n = t->n_in;
+	char *missing;
+	if (!has_tracked(&missing, t, stage, false)) {
+		stage_skipped_as_said(stage, "skin of %s from a video: %s is not there", t->name, missing);
+		err_set(lacks, "of the video %s is not there", missing);
+		free(missing);
+		return false;
+	}
+	json_t *track = json_read(stage_path(stage, "%s", tracked_files[TRACKED_JSON]), 1 << 24, &none);
+	json_t *laid = json_read(stage_path(stage, "work/targets/%s/registration.json", t->name), 1 << 24, &nor);
+	const char *film = json_string_value(json_object_get(track, "video")), *subject = json_string_value(json_object_get(laid, "subject"));
+	const bool there = skin_is_inside(stage, film) && skin_is_inside(stage, subject);
+	if (there) {
+		t->in[t->n_in++] = t->film = inside(stage, stage_path(stage, "%s", film));
+		t->in[t->n_in++] = t->subject = inside(stage, stage_path(stage, "%s", subject));
+		tell(t, video, "of the person in %s", t->film);
+	} else {
+		t->n_in = n;
+		err_set(lacks, "the video or the mesh that were followed are not there");
+	}
+	json_decref(track);
+	json_decref(laid);
+	return there;
+}
+
+/* Photographs round the head, in place of the film or where it does not serve. */
+static bool find_views(struct skin_target *t, struct stage *stage, struct err *lacks)
+{
+	const int n = t->n_in;
+	char *missing = 0;
+	if (!t->film && !has_tracked(&missing, t, stage, true)) {
+		err_set(lacks, "%s is not there", missing);
+		free(missing);
+		return false;
+	}
+	skin_views_find(t, stage, lacks);
+	if (!t->views && !t->film)
+		t->n_in = n;
+	else if (!t->film)
+		tell(t, views, "of the person in views/");
+	return t->views > 0;
+}
+
+void skin_film(struct skin_target *t, struct stage *stage, const struct skin_conf *conf)
+{
+	struct err lacks = { 0 }, nor = { 0 };
 	if (!t->name)
 		return;
 	if (t->look_path)
@@ -76,26 +128,11 @@ void skin_film(struct skin_target *t, struct stage *stage, const struct skin_con
 		tell_plain(t, stage);
 	if (t->told.from)
 		return;
-	if (!has_film(&missing, t, stage)) {
-		stage_skipped_as_said(stage, "skin of %s from a video: %s is not there: its skin has one colour", t->name, missing);
-		tell(t, one_colour, "its file brings no materials, and of the video %s is not there", missing);
-		free(missing);
-		t->n_in = n;
-		return;
-	}
-	json_t *track = json_read(stage_path(stage, "%s", tracked_files[TRACKED_JSON]), 1 << 24, &none);
-	json_t *laid = json_read(stage_path(stage, "work/targets/%s/registration.json", t->name), 1 << 24, &nor);
-	const char *film = json_string_value(json_object_get(track, "video")), *subject = json_string_value(json_object_get(laid, "subject"));
-	if (skin_is_inside(stage, film) && skin_is_inside(stage, subject)) {
-		t->in[t->n_in++] = t->film = inside(stage, stage_path(stage, "%s", film));
-		t->in[t->n_in++] = t->subject = inside(stage, stage_path(stage, "%s", subject));
-		tell(t, video, "of the person in %s", t->film);
-	} else {
-		t->n_in = n;
-		tell(t, one_colour, "its file brings no materials, and the video or the mesh that were followed are not there");
-	}
-	json_decref(track);
-	json_decref(laid);
+	bool found = conf->source != SKIN_VIEWS && find_film(t, stage, &lacks);
+	if (conf->source != SKIN_VIDEO)
+		found |= find_views(t, stage, &nor);
+	if (!found)
+		tell(t, one_colour, "its file brings no materials, and %s", conf->source == SKIN_VIEWS ? nor.msg : lacks.msg);
 }
 
 /* How wide the lids stand apart, px: the mean over both eyes. NAN: not known. */
@@ -176,37 +213,16 @@ static void place(float (*at)[3], const struct tracked *f, long frame)
 			memcpy(at[row[i]], px[i], sizeof px[i]);
 }
 
-/* Marks what lies between the lids, and so many px around. */
-static void mark_open(uint8_t *open, const struct tracked *f, long frame, double around)
-{
-	const long m = f->lids.shape[2];
-	memset(open, 0, (size_t)f->width * (size_t)f->height);
-	for (int s = 0; s < 2; s++) {
-		const float (*up)[2] = (const float(*)[2])f->lids.data + (frame * TRACKED_MARGINS + 2 * s) * m, (*low)[2] = up + m;
-		for (long i = 0; i + 1 < m; i++)
-			for (int part = 0; part < 16; part++) {
-				const float t = ((float)part + 0.5f) / 16;
-				const double x = (double)(up[i][0] + t * (up[i + 1][0] - up[i][0])), x2 = (double)(low[i][0] + t * (low[i + 1][0] - low[i][0]));
-				const double y = (double)(up[i][1] + t * (up[i + 1][1] - up[i][1])) - around, y2 = (double)(low[i][1] + t * (low[i + 1][1] - low[i][1])) + around;
-				const double left = fmin(x, x2) - around, right = fmax(x, x2) + around;
-				if (!(left < f->width && right > 0 && y < f->height && y2 > 0))
-					continue;
-				for (int v = (int)fmax(y, 0); v <= (int)fmin(y2, f->height - 1); v++)
-					for (int u = (int)fmax(left, 0); u <= (int)fmin(right, f->width - 1); u++)
-						open[(long)v * f->width + u] = 1;
-			}
-	}
-}
-
 static void add(struct complexion *c, const struct tracked *f, long frame, const uint8_t *rgb)
 {
 	float (*at)[3] = mem_array((size_t)f->mesh.n_vertices + 1, sizeof *at);
 	uint8_t *open = mem_array((size_t)f->width * (size_t)f->height + 1, 1);
 	place(at, f, frame);
-	mark_open(open, f, frame, lids_mm * f->camera.focal_px / fmax(tracked_pose(f, frame)[2][3], 1));
 	const long m = f->lids.shape[2];
 	const float (*lids)[2] = (const float(*)[2])f->lids.data + frame * TRACKED_MARGINS * m;
-	complexion_add(c, &(struct complexion_view){ rgb, f->width, f->height, (const float(*)[3])at, f->camera.focal_px, open, lids, (int)m });
+	const double around = lids_mm * f->camera.focal_px / fmax(tracked_pose(f, frame)[2][3], 1);
+	tracked_mark_open(open, f->width, f->height, lids, m, (double[]){ around, around });
+	complexion_add(c, &(struct complexion_view){ rgb, f->width, f->height, (const float(*)[3])at, f->camera.focal_px, open, lids, (int)m, 0 });
 	free(at);
 	free(open);
 }
@@ -265,7 +281,7 @@ static bool wear(struct skin_target *t, const struct complexion *c, struct skin_
 
 void skin_film_keep(struct skin_job *job, struct skin_target *t)
 {
-	if (!t->film || !t->dress || job->worn.name)
+	if ((!t->film && !t->views) || !t->dress || job->worn.name)
 		return;
 	portrait_free(t->portrait);
 	dress_free(t->dress);
@@ -291,42 +307,58 @@ static bool taken(struct skin_target *t, struct skin_worn *worn)
 	return true;
 }
 
-bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
+/* Of the film, or of views/. */
+static bool made(struct skin_job *job, struct skin_target *t, bool of_views, struct complexion_report *r, struct err *err)
 {
 	struct tracked f = { 0 };
-	struct err why = { 0 };
-	struct complexion_report r;
 	struct complexion_conf conf = { .side = job->conf->film_px, .bumps = 0.07 * job->conf->portrait.texture };
 	memcpy(conf.sclera_rgb, job->render->scene.sclera_rgb, sizeof conf.sclera_rgb);
 	memcpy(conf.skin_rgb, job->conf->portrait.skin_rgb, sizeof conf.skin_rgb);
+	bool ok = of_views ? tracked_load_eyes(&f, job, err) && tracked_load_mesh(&f, job, t, err) : tracked_load(&f, job, t, err);
+	if (ok) {
+		struct complexion *c = complexion_new(&f.mesh, (const double(*)[3])f.eye, f.radius, &conf);
+		ok = (of_views ? skin_views_add(c, &f, job, t, err) : look_at(c, &f, job, stage_path(job->stage, "%s", t->film), err))
+		     && complexion_make(c, r, err) && wear(t, c, job, err);
+		complexion_free(c);
+	}
+	tracked_free(&f);
+	return ok;
+}
+
+bool skin_of_film(struct skin_job *job, struct skin_target *t, struct err *err)
+{
+	struct err why = { 0 }, nor = { 0 };
+	struct complexion_report r;
 	if (taken(t, &job->worn)) {
 		t->dress = dress_new(&t->look, job->conf->texture_px, &why);
 		return true;
 	}
-	bool ok = tracked_load(&f, job, t, &why);
-	if (ok) {
-		struct complexion *c = complexion_new(&f.mesh, (const double(*)[3])f.eye, f.radius, &conf);
-		ok = look_at(c, &f, job, stage_path(job->stage, "%s", t->film), &why) && complexion_make(c, &r, &why) && wear(t, c, job, &why);
-		complexion_free(c);
+	bool ok = t->film && made(job, t, false, &r, &why);
+	const bool of_views = !ok && t->views;
+	if (of_views) {
+		if (t->film)
+			stage_skipped(job->stage, "skin of %s from %s: %s: it is that of views/", t->name, t->film, why.msg);
+		ok = made(job, t, true, &r, &nor);
 	}
-	tracked_free(&f);
-	if (!ok && job->conf->source == SKIN_VIDEO)
-		return err_set(err, "skin of %s from %s: %s", t->name, t->film, why.msg);
+	const char *from = of_views ? "views/" : t->film;
+	const struct err *last = of_views ? &nor : &why;
+	if (!ok && job->conf->source != SKIN_AUTO)
+		return err_set(err, "skin of %s from %s: %s", t->name, from, last->msg);
 	if (!ok) {
-		stage_skipped(job->stage, "skin of %s from %s: %s: it has one colour", t->name, t->film, why.msg);
-		tell(t, one_colour, "its file brings no materials, and %s does not give it: %s", t->film, why.msg);
+		stage_skipped(job->stage, "skin of %s from %s: %s: it has one colour", t->name, from, last->msg);
+		tell(t, one_colour, "its file brings no materials, and %s does not give it: %s", from, last->msg);
 		return true;
 	}
-	stage_note(job->stage, "%s: skin of %s: %.0f %% of the face near the eyes in the film, %.0f %% more on its other half; albedo %.3f %.3f %.3f by %s", t->name,
-	           t->film, 100 * r.seen, 100 * r.mirrored, r.rgb[0], r.rgb[1], r.rgb[2], r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
+	stage_note(job->stage, "%s: skin of %s: %.0f %% of the face near the eyes in %s, %.0f %% more on its other half; albedo %.3f %.3f %.3f by %s", t->name,
+	           from, 100 * r.seen, of_views ? "them" : "the film", 100 * r.mirrored, r.rgb[0], r.rgb[1], r.rgb[2], r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
 	const struct hair_lid *lash = t->film_hair->lid;
 	if (lash[HAIR_UPPER].area > 0 && lash[HAIR_LOWER].area > 0)
-		stage_note(job->stage, "%s: lashes of %s: seen from in front they reach %.1f mm (upper) and %.1f mm (lower) off the lids in the mean", t->name, t->film,
+		stage_note(job->stage, "%s: lashes of %s: seen from in front they reach %.1f mm (upper) and %.1f mm (lower) off the lids in the mean", t->name, from,
 		           lash[HAIR_UPPER].reach * t->film_hair->radius / 12, lash[HAIR_LOWER].reach * t->film_hair->radius / 12);
-	stage_figure(job->stage, "skin_seen", r.seen, "share of the face near the eyes that the film shows");
+	stage_figure(job->stage, "skin_seen", r.seen, "share of the face near the eyes that the film or the views show");
 	stage_figure(job->stage, "skin_grain", r.grain, "rms of the skin's grain, ln");
-	tell(t, video, "of the person in %s, which shows %.0f %% of the face near the eyes; for %.0f %% more its other half stands in, the rest is drawn from its statistics; its light was taken off by %s",
-	     t->film, 100 * r.seen, 100 * r.mirrored, r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
+	tell(t, of_views ? views : video, "of the person in %s, which %s %.0f %% of the face near the eyes; for %.0f %% more its other half stands in, the rest is drawn from its statistics; its light was taken off by %s",
+	     from, of_views ? "show" : "shows", 100 * r.seen, 100 * r.mirrored, r.white ? "the white of the eyes" : "render.skin_rgb's brightness");
 	t->told.seen = r.seen;
 	t->told.mirrored = r.mirrored;
 	memcpy(t->film_rgb, r.rgb, sizeof t->film_rgb);

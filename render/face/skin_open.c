@@ -111,7 +111,7 @@ struct portrait_conf skin_portrait(const struct skin_job *job, const struct skin
 {
 	struct portrait_conf conf = job->conf->portrait;
 	conf.dress = t->dress;
-	if (t->film && t->dress)
+	if ((t->film || t->views) && t->dress && !t->look_path)
 		memcpy(conf.skin_rgb, t->film_rgb, sizeof conf.skin_rgb);
 	if (coloured(t))
 		conf.hair.brow_mm = 0;
@@ -131,7 +131,7 @@ bool skin_open(struct skin_job *job, struct skin_target *t, struct err *err)
 	if (t->rig.n_inputs != job->model.n_inputs)
 		return err_set(err, "%s: %d inputs, but work/skin/model.json has %d: run extrapolate again", t->rig_path, t->rig.n_inputs,
 		               job->model.n_inputs);
-	if (t->look_path ? !dress(job, t, err) : t->film && !skin_of_film(job, t, err))
+	if (t->look_path ? !dress(job, t, err) : (t->film || t->views) && !skin_of_film(job, t, err))
 		return false;
 	const struct portrait_conf conf = skin_portrait(job, t);
 	t->portrait = portrait_new(&t->rig, job->eyes, &job->studio, &conf);

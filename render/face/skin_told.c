@@ -14,7 +14,7 @@ bool skin_told_save(struct skin_job *job, struct skin_target *t, struct err *err
 	if (err_is(err) || !skin_open(job, t, err))
 		return false;
 	json_t *root = json_pack("{s:s,s:o}", "skin", t->told.from, "reason", template_text(t->told.why.msg));
-	if (!strcmp(t->told.from, "video"))
+	if (!strcmp(t->told.from, "video") || !strcmp(t->told.from, "views"))
 		json_object_update_new(root, json_pack("{s:f,s:f}", "seen", t->told.seen, "mirrored", t->told.mirrored));
 	if (err_is(&job->iris_told))
 		json_object_set_new(root, "iris", template_text(job->iris_told.msg));

@@ -71,30 +71,54 @@ bool tracked_load_eyes(struct tracked *f, struct skin_job *job, struct err *err)
 	return ok;
 }
 
-bool tracked_load(struct tracked *f, struct skin_job *job, const struct skin_target *t, struct err *err)
+bool tracked_load_mesh(struct tracked *f, struct skin_job *job, const struct skin_target *t, struct err *err)
 {
 	double unit = 1;
 	const char *laid = stage_path(job->stage, "work/targets/%s/registration.json", t->name);
-	bool ok = tracked_load_eyes(f, job, err);
 	json_t *j = json_read(laid, 1 << 24, err);
-	ok = ok && j && json_get(&unit, j, "subject_unit_mm", laid, err) && read_array(&f->vertices, job, TRACKED_VERTICES, NPY_I4, 1, (long[]){ -1 }, err)
-	     && read_array(&f->skin, job, TRACKED_SKIN, NPY_F4, 3, (long[]){ f->frames, f->vertices.shape[0], 2 }, err)
-	     && read_array(&f->sure, job, TRACKED_CONFIDENCE, NPY_F4, 2, (long[]){ f->frames, f->vertices.shape[0] }, err)
-	     && om_mesh_load(&f->mesh, stage_path(job->stage, "%s", t->subject), 10000000, err);
+	const bool ok = j && json_get(&unit, j, "subject_unit_mm", laid, err) && om_mesh_load(&f->mesh, stage_path(job->stage, "%s", t->subject), 10000000, err);
 	json_decref(j);
-	const int32_t *row = f->vertices.data;
-	for (long i = 0; i < (ok ? f->vertices.shape[0] : 0); i++)
-		if (row[i] < 0 || row[i] >= f->mesh.n_vertices)
-			return err_set(err, "%s: vertex %d is no row of %s: run track again", tracked_files[TRACKED_VERTICES], row[i], t->subject);
 	for (int i = 0; i < f->mesh.n_vertices; i++)
 		for (int k = 0; k < 3; k++)
 			f->mesh.vertices[i][k] *= (float)unit;
 	return ok;
 }
 
+bool tracked_load(struct tracked *f, struct skin_job *job, const struct skin_target *t, struct err *err)
+{
+	bool ok = tracked_load_eyes(f, job, err) && tracked_load_mesh(f, job, t, err) && read_array(&f->vertices, job, TRACKED_VERTICES, NPY_I4, 1, (long[]){ -1 }, err)
+	          && read_array(&f->skin, job, TRACKED_SKIN, NPY_F4, 3, (long[]){ f->frames, f->vertices.shape[0], 2 }, err)
+	          && read_array(&f->sure, job, TRACKED_CONFIDENCE, NPY_F4, 2, (long[]){ f->frames, f->vertices.shape[0] }, err);
+	const int32_t *row = f->vertices.data;
+	for (long i = 0; i < (ok ? f->vertices.shape[0] : 0); i++)
+		if (row[i] < 0 || row[i] >= f->mesh.n_vertices)
+			return err_set(err, "%s: vertex %d is no row of %s: run track again", tracked_files[TRACKED_VERTICES], row[i], t->subject);
+	return ok;
+}
+
 const double (*tracked_pose(const struct tracked *f, long frame))[4]
 {
 	return (const double(*)[4])((const double *)f->head.data + 16 * frame);
+}
+
+void tracked_mark_open(uint8_t *open, int width, int height, const float (*lids)[2], long m, const double further[2])
+{
+	memset(open, 0, (size_t)width * (size_t)height);
+	for (int s = 0; s < 2; s++) {
+		const float (*up)[2] = lids + 2 * s * m, (*low)[2] = up + m;
+		for (long i = 0; i + 1 < m; i++)
+			for (int part = 0; part < 16; part++) {
+				const float t = ((float)part + 0.5f) / 16;
+				const double x = (double)(up[i][0] + t * (up[i + 1][0] - up[i][0])), x2 = (double)(low[i][0] + t * (low[i + 1][0] - low[i][0]));
+				const double y = (double)(up[i][1] + t * (up[i + 1][1] - up[i][1])) - further[1], y2 = (double)(low[i][1] + t * (low[i + 1][1] - low[i][1])) + further[1];
+				const double left = fmin(x, x2) - further[0], right = fmax(x, x2) + further[0];
+				if (!(left < width && right > 0 && y < height && y2 > 0))
+					continue;
+				for (int v = (int)fmax(y, 0); v <= (int)fmin(y2, height - 1); v++)
+					for (int u = (int)fmax(left, 0); u <= (int)fmin(right, width - 1); u++)
+						open[(long)v * width + u] = 1;
+			}
+	}
 }
 
 bool tracked_decode(int n, const long *frame, const struct tracked *f, struct skin_job *job, const char *path, const struct tracked_take *take, struct err *err)

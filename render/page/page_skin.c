@@ -126,8 +126,8 @@ static json_t *skin_from(struct page *page, const char *name)
 {
 	json_t *told = page_json(page, page_file(page, "work/render/%s_skin.json", name));
 	const char *from = json_string_value(json_object_get(told, "skin")), *why = json_string_value(json_object_get(told, "reason"));
-	const bool video = from && !strcmp(from, "video");
-	char *text = from && why ? mem_printf("%s%s%s", video ? "" : !strcmp(from, "own") ? "its own" : from, video ? "" : ": ", why) : 0;
+	const bool person = from && (!strcmp(from, "video") || !strcmp(from, "views"));
+	char *text = from && why ? mem_printf("%s%s%s", person ? "" : !strcmp(from, "own") ? "its own" : from, person ? "" : ": ", why) : 0;
 	json_t *out = text ? page_sentence(text) : 0;
 	free(text);
 	json_decref(told);

@@ -110,7 +110,8 @@ void plan_show(const struct plan *plan, const struct call *call)
 		fputs("skin of ", stdout);
 		for (const char *c = s->file; *c; c++)
 			putchar((unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c);
-		printf(": %s: %s\n", !strcmp(s->from, "own") ? "its own" : !strcmp(s->from, "video") ? "the person's in the video" : s->from, s->why);
+		printf(": %s: %s\n", !strcmp(s->from, "own") ? "its own" : !strcmp(s->from, "video") ? "the person's in the video" : !strcmp(s->from, "views") ? "the person's in views/" : s->from,
+		       s->why);
 	}
 	if (plan->iris.why)
 		printf("irises of characters: %s: %s\n", !strcmp(plan->iris.from, "video") ? "the person's in the video" : !strcmp(plan->iris.from, "drawn") ? "drawn" : "those of photos/", plan->iris.why);

@@ -15,6 +15,8 @@ check "plan says where the character's skin will come from" grep -q "^skin of ta
 check "and their irises" grep -q "^irises of characters: the person's in the video: there is no photograph" "$log"
 run_make "$capture"
 same "make on a video, a mesh and a character" "$?" 0
+albedo() { sed -n "s/.*albedo \([0-9. ]*\) by the white of the eyes.*/\1/p" "$log" | head -n 1; }
+film_albedo=$(albedo)
 told() { grep -q "\"skin\": \"$1\"" "$capture/work/render/mpfb_skin.json" && grep -q "Skin: $2" "$capture/work/review/index.html"; }
 check "the page says where it has come from" told video "of the person in video/face.mp4, which shows [0-9]* % of the face"
 same "runs the skin column and nothing of the photographs'" "$(ran | tr ' ' '\n' | grep -xE 'limbus|unrefract|freckles|relief' | tr '\n' ' ')" ""
@@ -165,3 +167,30 @@ same "a video that is not the one followed: render without it" "$? $(grep -c 'th
 check "which the page says, too" told "one colour" "one colour: .*the video is not the one that was followed"
 "$BIN/render" --capture="$capture" --skin=video >"$log" 2>&1 </dev/null
 same "asked for all the same: an error in one line" "$? $(grep -c 'error\|skin of mpfb from video/face.mp4' "$log")" "1 1"
+
+# Photographs round the head: here one, the film's first frame cut and drawn twice as large, whose camera is that frame's. It shows what the film does, in the same light, but for its rim.
+if command -v node >/dev/null; then
+	round=$root/round
+	cp -r "$capture" "$round"
+	mkdir "$round/views"
+	ffmpeg -v error -i "$round/video/face.mp4" -vf "crop=1260:710:10:5,scale=2520:1420:flags=bicubic" -frames:v 1 "$round/views/a.png"
+	cp "$round/subject.ply" "$round/work/subject.ply"
+	sed -i 's#"subject": "subject.ply"#"subject": "work/subject.ply"#' "$round/work/targets/mpfb/registration.json"
+	cp "$root/track.json" "$round/work/skin/track.json"
+	node -e 'const fs = require("fs"), c = JSON.parse(fs.readFileSync(process.argv[1])).camera, f = 2 * c.focal_px;
+		fs.writeFileSync(process.argv[2], JSON.stringify({ scale_source: "ruler", scale_sigma: 0.01, frame_source: "eyes", cameras: [{ name: "a", file: "views/a.png", width: 2520, height: 1420, fx: f, fy: f,
+			cx: 2 * (c.center_px[0] - 10), cy: 2 * (c.center_px[1] - 5), distortion: [0, 0, 0, 0, 0], cam_from_head: c.cam_from_head, residual_px: 0.5, points: 100 }] }));' \
+		"$root/track.json" "$round/work/rig.json"
+	"$BIN/render" --capture="$round" --skin=views --skin_px=1536 >"$log" 2>&1 </dev/null
+	same "skin from views/: render" "$?" 0
+	same "it is the film's, to a fifth ($(albedo); $film_albedo)" "$(echo "$(albedo) $film_albedo" | awk '{ for (k = 1; k <= 3; k++) near += $k > 0.8 * $(k + 3) && $k < 1.25 * $(k + 3); print NF, near }')" "6 3"
+	check "the page says so" grep -q "Skin: of the person in views/, which show [45][0-9] % of the face near the eyes" "$round/work/review/index.html"
+	cp "$capture/work/skin/track.json" "$round/work/skin/track.json"
+	"$BIN/render" --capture="$round" --skin_px=1536 >"$log" 2>&1 </dev/null
+	same "a video that does not serve: that of views/" "$? $(grep -c 'the video is not the one that was followed: it is that of views/' "$log") $(grep -c 'skin of views/: ' "$log")" "0 1 1"
+	sed -i 's#"views/a.png"#"views/../../a.png"#' "$round/work/rig.json"
+	"$BIN/render" --capture="$round" >"$log" 2>&1 </dev/null
+	same "a view that leads out is none" "$? $(grep -c 'it has one colour' "$log")" "0 2"
+else
+	skip "skin from views/" "node is not installed"
+fi

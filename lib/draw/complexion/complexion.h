@@ -1,4 +1,4 @@
-/* complexion: the skin of a person as a film shows it, with the light taken off, and characters that wear it.
+/* complexion: the skin of a person as a film, or photographs round the head, show it, with the light taken off, and characters that wear it.
  *
  * Frames of the film are laid onto the person's mesh, each point of skin being what most of them show; hairs, openings of the eyes and
  * what is over- or underexposed are left out. Light is smooth over the directions: nine numbers a colour (spherical harmonics to order
@@ -29,9 +29,10 @@ struct complexion_view {
 	int width, height;
 	const float (*at)[3];   // [vertices] of the mesh: px, and mm before the camera; NAN: not known
 	double focal_px;
-	const uint8_t *open;    // [height][width] where the eyes are open
+	const uint8_t *open;    // [height][width] where the eyes are open, which shows no skin
 	const float (*lids)[2]; // [4][lid_points] px: margins of the left eye's upper and lower lid, of the right's; null: not known
 	int lid_points;
+	const uint8_t *eyes;    // [height][width] where that is sure, and shows the eyes; null: as open
 };
 
 /* What was found, for the log and the reader. */

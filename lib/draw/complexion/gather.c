@@ -117,6 +117,7 @@ static void around(double rgb[3], const struct complexion_view *v, long at)
 static void white_of(double white[3], const struct complexion_view *v)
 {
 	enum { INSIDE = 3 };
+	const uint8_t *open = v->eyes ? v->eyes : v->open;
 	const size_t size = (size_t)v->width * (size_t)v->height + 1;
 	int n = 0, most = 0, clipped[3] = { 0, 0, 0 };
 	double *grey = mem_new(size, sizeof *grey), *sorted = mem_new(size, sizeof *sorted), sum[3] = { 0 };
@@ -124,7 +125,7 @@ static void white_of(double white[3], const struct complexion_view *v)
 	for (int y = INSIDE; y < v->height - INSIDE; y++)
 		for (int x = INSIDE; x < v->width - INSIDE; x++) {
 			const long i = (long)y * v->width + x;
-			if (!v->open[i] || !v->open[i - INSIDE] || !v->open[i + INSIDE] || !v->open[i - (long)INSIDE * v->width] || !v->open[i + (long)INSIDE * v->width])
+			if (!open[i] || !open[i - INSIDE] || !open[i + INSIDE] || !open[i - (long)INSIDE * v->width] || !open[i + (long)INSIDE * v->width])
 				continue;
 			at[n] = i;
 			grey[n++] = v->rgb[3 * i] + 2 * v->rgb[3 * i + 1] + v->rgb[3 * i + 2];

@@ -77,9 +77,22 @@ static bool shape_of(struct complexion_grain *g, const float (*d)[3], const bool
 	return kept >= LEAST;
 }
 
+/* Weight of a texel that is seen, in the mean, at most 1: of one view alone it is less. */
+static float usual_weight(const float *weight, long n)
+{
+	double sum = 0;
+	long seen = 0;
+	for (long i = 0; i < n; i++) {
+		sum += (double)weight[i];
+		seen += weight[i] > 0;
+	}
+	return seen ? (float)fmin(sum / (double)seen, 1) : 1;
+}
+
 bool complexion_grain_measure(struct complexion_grain *g, const float (*ln)[3], const float *weight, const struct complexion *c, struct err *err)
 {
 	const long n = (long)c->side * c->side;
+	const float usual = usual_weight(weight, n);
 	float (*d)[3] = mem_array((size_t)n + 1, sizeof *d), *fine = mem_array((size_t)n + 1, sizeof *fine), *coarse = mem_array((size_t)n + 1, sizeof *coarse);
 	float *sum = mem_array((size_t)n + 1, sizeof *sum);
 	bool *use = mem_new((size_t)n + 1, sizeof *use), ok = true;
@@ -88,7 +101,7 @@ bool complexion_grain_measure(struct complexion_grain *g, const float (*ln)[3], 
 		fine[i] = (float)complexion_luminance(ln[i]);
 	ok = complexion_blur(&d[0][0], sum, &ln[0][0], weight, 3, finest_mm * (1 << BANDS), c, err);
 	for (long i = 0; i < n; i++) {
-		use[i] = weight[i] > 0 && sum[i] > 0.5f && off_lids(c, i);
+		use[i] = weight[i] > 0 && sum[i] > 0.5f * usual && off_lids(c, i);
 		for (int k = 0; k < 3; k++)
 			d[i][k] = ln[i][k] - d[i][k];
 	}

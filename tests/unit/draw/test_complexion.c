@@ -193,7 +193,7 @@ static struct complexion *skin_of(struct complexion_report *r, const struct mesh
 		lids[k][1] = (float)(HIGH / 2 - focal * p[1] / z);
 	}
 	struct complexion *c = complexion_new(m, eyes, radius, &conf);
-	complexion_add(c, &(struct complexion_view){ rgb, WIDE, HIGH, (const float(*)[3])at, focal, open, (const float(*)[2])lids, POINTS });
+	complexion_add(c, &(struct complexion_view){ rgb, WIDE, HIGH, (const float(*)[3])at, focal, open, (const float(*)[2])lids, POINTS, 0 });
 	const bool ok = complexion_make(c, r, why);
 	free(rgb);
 	free(open);

@@ -313,6 +313,8 @@ static void a_characters_skin_is_told_beforehand(void **state)
 		{ "a.obj", "v 0 0 0\n", "quality = draft\nrender.skin = auto\n", "video", "about them, one colour" },
 		{ "a.obj", "v 0 0 0\n", "render.skin = plain\n", "one colour", "render.skin = plain" },
 		{ "a.obj", "v 0 0 0\n", "render.skin = video\n", "video", "render fails: render.skin = video" },
+		{ "a.obj", "v 0 0 0\n", "render.skin = views\n", "views", "render fails: render.skin = views" },
+		{ "a.obj", "v 0 0 0\n", "", "video", "about them, that of views/" },
 		{ "a.obj", "# a head\nmtllib head.mtl\n", "render.skin = video\n", "own", "as the file has it" },
 		{ "a.obj", "# no mtllib here\n", "", "video", "no materials" },
 		{ "a.ply", "ply\ncomment TextureFile a.png\nend_header\n", "", "own", "as the file has it" },
@@ -352,6 +354,7 @@ static void a_characters_skin_is_told_beforehand(void **state)
 		assert_true(plan_skins(&plan, scratch_path("config"), &conf, &err));
 		assert_int_equal(plan.n_skins, 0);  // no rig is made
 		plan.rows[plan_stage_find("extrapolate")].run = plan.rows[plan_stage_find("render")].run = true;
+		plan.rows[plan_stage_find("calibrate")].run = strstr(cases[i].why, "views");
 		assert_true(plan_skins(&plan, scratch_path("config"), &conf, &err));
 		assert_int_equal(plan.n_skins, 1);
 		assert_string_equal(plan.skins[0].file, file);
