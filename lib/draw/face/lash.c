@@ -7,7 +7,7 @@
 #include "draw/face/impl.h"
 #include "math/vec.h"
 
-static const float sheen = 0.012f;  // of light that a hair's surface reflects, whichever way: as the page has it (skin.frag)
+static const float sheen = 0.012f, tips = 0.5f;  // of light that a hair's surface reflects, whichever way; by which its tip is brighter: as the page has them (skin.frag)
 enum { TRIANGLES = 4 };  // of a ribbon's piece between two points, both ways round: a hair has no inside
 
 /* Faces of skin that do not show what is behind them: hair cards bear no hairs. Null: all. free(). */
@@ -109,13 +109,21 @@ float portrait_lash_cover(const struct portrait *p, int face)
 	return 0.5f * (p->hair_cover[point] + p->hair_cover[point + 1]);
 }
 
+void portrait_lash_albedo(double rgb[3], const struct portrait *p, const struct hair *h)
+{
+	const double *albedo = hair_albedo(&p->hairs, h, p->conf.hair_rgb);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = albedo == p->hairs.brow_rgb ? fmax((albedo[c] - (double)sheen) / (1 + 0.5 * (double)tips), 0) : albedo[c];
+}
+
 void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)
 {
 	const int point = p->hair_piece[(face - p->first_lash) / TRIANGLES];
 	const struct hair *h = &p->hairs.hair[p->hair_of[point]];
 	const float tip = (float)(point - h->first) / (float)(h->n - 1);
 	const float *light = p->mesh.light[h->vertex[0]];
-	const double *albedo = hair_albedo(&p->hairs, h, p->conf.hair_rgb);
+	double albedo[3];
+	portrait_lash_albedo(albedo, p, h);
 	for (int c = 0; c < 3; c++)
-		rgb[c] = ((float)albedo[c] * (1 + 0.5f * tip) + sheen) * light[c];
+		rgb[c] = ((float)albedo[c] * (1 + tips * tip) + sheen) * light[c];
 }

@@ -12,6 +12,9 @@ void portrait_lashes_move(struct portrait *portrait, const struct portrait_view 
 float portrait_lash_cover(const struct portrait *portrait, int face);
 void portrait_lash_colour(float rgb[3], const struct portrait *portrait, int face);
 
+/* Albedo that a hair is drawn with. A colour that was measured, of brows, has the sheen and the brighter tips, which drawing adds, in it. */
+void portrait_lash_albedo(double rgb[3], const struct portrait *portrait, const struct hair *hair);
+
 /* A hair's vertex relative to its root: the root is the weighted mean of three vertices of the mesh; local: off the globe, along the
  * lid, up over it (mm). vertex: row of the mesh. */
 struct portrait_pin {

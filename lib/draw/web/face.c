@@ -94,9 +94,11 @@ static void put_colours(json_t *out, const struct web_face *f)
 	for (int i = 0; i < n; i++) {
 		int at = f->order[i];
 		const struct portrait *p = f->portrait;
-		const double *hair = at < m->n ? 0 : hair_albedo(&p->hairs, &p->hairs.hair[p->hair_of[(at - p->lash_vertex) / 2]], p->conf.hair_rgb);
+		double hair[3];
+		if (at >= m->n)
+			portrait_lash_albedo(hair, p, &p->hairs.hair[p->hair_of[(at - p->lash_vertex) / 2]]);
 		for (int c = 0; c < 3; c++)
-			skin[4 * i + c] = byte(255 * sqrt(fmax(hair ? hair[c] : (double)m->albedo[at][c], 0)));
+			skin[4 * i + c] = byte(255 * sqrt(fmax(at >= m->n ? hair[c] : (double)m->albedo[at][c], 0)));
 		skin[4 * i + 3] = at < m->n ? byte(127 * m->wet[at]) : 255;
 	}
 	for (int i = 0; i < base; i++) {
