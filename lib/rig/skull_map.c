@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "image/plane.h"
 #include "math/natural.h"
 
 enum { FRAME = 24, WITH = 6 };  // sites added around the map; numbers of a site
@@ -136,6 +137,20 @@ bool skull_map_make(struct skull_map *map, int n, const double (*site)[2], const
 	free(s.at);
 	free(s.value);
 	return natural || err_wrap(err, "skull map");
+}
+
+void skull_map_smooth(struct skull_map *map, double px)
+{
+	const long n = (long)map->width * map->height;
+	float *of = mem_array((size_t)n + 1, sizeof *of);
+	for (int k = 0; k < WITH; k++) {
+		for (long i = 0; i < n; i++)
+			of[i] = map->texel[i * SKULL_CHANNELS + k];
+		plane_blur(of, map->width, map->height, px / map->step);
+		for (long i = 0; i < n; i++)
+			map->texel[i * SKULL_CHANNELS + k] = of[i];
+	}
+	free(of);
 }
 
 void skull_map_free(struct skull_map *map)

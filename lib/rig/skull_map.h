@@ -23,6 +23,8 @@ struct skull_map {
  * Returns false, err set, when the sites span no area. */
 bool skull_map_make(struct skull_map *map, int n, const double (*site)[2], const float (*position)[3], const float (*normal)[3],
                     const double box[4], double step, struct err *err);
+/* Takes the mean by a Gaussian of so many px: detail then goes with the skin that it is of, which offsets from the map keep, and not with the place. */
+void skull_map_smooth(struct skull_map *map, double px);
 void skull_map_free(struct skull_map *map);
 
 /* Position (mm) and normal (not normalised) at a point, px: bilinear, clamped at the border. */

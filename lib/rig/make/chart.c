@@ -85,7 +85,7 @@ static void reach_of(double box[4], const struct rig *rig)
 		box[k] += (k < 2 ? -0.08 : 0.08) * span;
 }
 
-bool rig_take_skull(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double step, struct err *err)
+bool rig_take_skull(struct rig *rig, const struct rig_motion *m, const struct rig_character *ch, double step, double smooth, struct err *err)
 {
 	double box[4], (*site)[2] = fresh(rig->n, sizeof *site);
 	float (*position)[3] = fresh(rig->n, sizeof *position), (*normal)[3] = fresh(rig->n, sizeof *normal);
@@ -109,6 +109,8 @@ bool rig_take_skull(struct rig *rig, const struct rig_motion *m, const struct ri
 	                            "on the subject");
 	ok = ok && skull_map_make(&rig->skull, n, (const double(*)[2])site, (const float(*)[3])position, (const float(*)[3])normal,
 	                          box, step, err);
+	if (ok)
+		skull_map_smooth(&rig->skull, smooth);
 	free(visible);
 	free(site);
 	free(position);

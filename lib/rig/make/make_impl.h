@@ -12,9 +12,9 @@ void rig_motion_take_lids(struct rig_motion *motion, const struct skin_model *mo
 void rig_project(double px[2], double cam[3], const struct skin_camera *camera, const float x[3]);
 /* Where the modelling camera sees the registered vertices: home. */
 void rig_take_homes(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character);
-/* The skull map, from the vertices that the camera sees at rest. step: texel, px. */
+/* The skull map, from the vertices that the camera sees at rest. step: texel, px; smooth: over which it is a mean, px. */
 bool rig_take_skull(struct rig *rig, const struct rig_motion *motion, const struct rig_character *character, double step,
-                    struct err *err);
+                    double smooth, struct err *err);
 
 /* globe.c: expects the character's eyeballs where the registration moves the subject's, by the skin around them. center (left, right)
  * and radius: out, in the target's frame, mm. Centres are NAN where the subject's are unknown; its radius is then 12 mm. */
