@@ -18,7 +18,7 @@ bench-batch: build $B/tests/tools/variant
 # The exported eye in other programs: beside the others, since it needs Blender, and minutes.
 .PHONY: bench-look
 bench-look: build $B/tests/tools/eye_compare $B/tests/tools/face_compare $B/tests/tools/look_sheet
-	@B=$B BIN=$(BIN) SAMPLES=$(or $(SAMPLES),$(if $(QUICK),16,64)) tests/bench/look.sh
+	@B=$B BIN=$(BIN) SAMPLES=$(or $(SAMPLES),$(if $(QUICK),16,128)) tests/bench/look.sh
 
 # A character as large as a scan: minutes.
 .PHONY: bench-import

@@ -72,7 +72,7 @@ for deg in $DEGREES; do
 done
 "$B/tests/tools/look_sheet" "$export/eye.json" bench/look.png "${rows[@]}" && echo "for the eye: bench/look.png"
 
-# The driven face: its .glb as Blender imports it, its eyes as blender_eye.py assembles them, part by part. It has no goals. FACE=no leaves it out.
+# The driven face: its .glb as Blender imports it, its eyes as blender_eye.py assembles them, part by part. What is asked of the eye is asked of each. FACE=no leaves it out.
 if [ "${FACE:-yes}" = yes ]; then
 	face=$root/face
 	cp -r samples/face "$face"
@@ -86,7 +86,16 @@ if [ "${FACE:-yes}" = yes ]; then
 		name=${layers##*/} name=${name%_look_layers.exr}
 		read -r width height < <("$B/tests/tools/face_compare" "$layers")
 		timeout 3000 blender -b --python tests/tools/face_cycles.py -- "$face/work/render/$name.glb" "$face/work/export" "$root/$name.exr" "$SAMPLES" "$width" "$height" "$field" >"$log" 2>&1 || { tail -n 5 "$log"; exit 1; }
-		"$B/tests/tools/face_compare" "$layers" "$root/$name.exr" "bench/look_$name.png" "$root/${name}_parts.exr" "$root/${name}_hair.exr" | sed "s/^/Cycles, $name: /"
+		"$B/tests/tools/face_compare" "$layers" "$root/$name.exr" "bench/look_$name.png" "$root/${name}_parts.exr" "$root/${name}_hair.exr" >"$root/says" 2>&1 || { cat "$root/says"; missed=1; }
+		while IFS= read -r line; do
+			part=${line%%: *} number=$(sed -n 's/.*difference \([0-9.]*\),.*/\1/p' <<<"$line")
+			if [ -n "$number" ]; then
+				goal "Cycles, $name: $part, CIEDE2000" "$number" 2
+				figure "Cycles, $name: $part, structure with noise" "$(sed -n 's/.*structure \([0-9.]*\),.*/\1/p' <<<"$line")"
+			else
+				goal "Cycles, $name: ${line% [0-9.]* px}, px" "$(sed -n 's/.* \([0-9.]*\) px$/\1/p' <<<"$line")" 0.5
+			fi
+		done <"$root/says"
 	done
 	echo "for the eye: bench/look_*.png"
 fi
