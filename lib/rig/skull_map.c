@@ -141,9 +141,9 @@ bool skull_map_make(struct skull_map *map, int n, const double (*site)[2], const
 
 void skull_map_smooth(struct skull_map *map, double px)
 {
-	const long n = (long)map->width * map->height;
+	const long n = px < map->step ? 0 : (long)map->width * map->height;
 	float *of = mem_array((size_t)n + 1, sizeof *of);
-	for (int k = 0; k < WITH; k++) {
+	for (int k = 0; k < WITH && n; k++) {
 		for (long i = 0; i < n; i++)
 			of[i] = map->texel[i * SKULL_CHANNELS + k];
 		plane_blur(of, map->width, map->height, px / map->step);

@@ -23,7 +23,8 @@ struct skull_map {
  * Returns false, err set, when the sites span no area. */
 bool skull_map_make(struct skull_map *map, int n, const double (*site)[2], const float (*position)[3], const float (*normal)[3],
                     const double box[4], double step, struct err *err);
-/* Takes the mean by a Gaussian of so many px: detail then goes with the skin that it is of, which offsets from the map keep, and not with the place. */
+/* Takes the mean by a Gaussian of so many px: detail then goes with the skin that it is of, which offsets from the map keep, and not with the place. A map whose texels are
+ * further apart than that is left. */
 void skull_map_smooth(struct skull_map *map, double px);
 void skull_map_free(struct skull_map *map);
 
