@@ -10,6 +10,7 @@
 
 enum { RADII = 16, GRID = 2, SAMPLES = 24, DISC_RINGS = 12, DISC_ANGLES = 48, ALIKE_ARCS = 12, CLOSER = 96 };
 static const float HIDDEN = 0.85F, FLOOR = 0.02F;  // as of region.c
+static const double DOUBT = 0.5;
 
 static double ring_median(const struct grey *g, const struct ellipse *e, double scale, double quantile)
 {
@@ -198,6 +199,18 @@ static struct evidence closer_of(const struct occlusion *o, const struct ellipse
 	return e;
 }
 
+/* An edge may be another than the pupil's where the network has it a little aside: half of how far they are apart adds to its sigma. Counts too much where the
+ * network is off, which a pupil's own wandering about the axis (pose.h) hides. */
+static void doubt(struct rim *pupil, const struct ellipse *told)
+{
+	double q[ELLIPSE_N], p[ELLIPSE_N];
+	ellipse_to_q(q, &pupil->e);
+	ellipse_to_q(p, told);
+	const double centre = hypot(q[0] - p[0], q[1] - p[1]);
+	for (int i = 0; i < ELLIPSE_N; i++)
+		pupil->cov_q[i][i] += pow(DOUBT * (i < 2 ? centre : p[i] - q[i]), 2);
+}
+
 /* By edge and networks. */
 static bool told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus,
                  const struct evidence *evidence, const struct evidence *closer, const struct rim_conf *rim_conf, const struct pupil_conf *conf)
@@ -206,10 +219,13 @@ static bool told(struct rim *pupil, const struct photo *photo, const struct pyra
 	if (!(told_by(&e, closer, limbus, conf) >= conf->told_sure))
 		return false;
 	const double within = conf->told_within * limbus->a, sigma = conf->told_sigma[0] * limbus->a + conf->told_sigma[1] * e.a;
-	if (limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf) && agree(&pupil->e, &e, within))
-		return true;
-	return told_by(&f, evidence, limbus, conf) > 0 && agree(&e, &f, conf->told_apart * limbus->a) && measure_near(pupil, photo, &e, sigma, rim_conf, conf)
-	       && believed(pupil, limbus, conf) && pupil->share_used > conf->told_used && agree(&pupil->e, &e, within);
+	bool is = limbus_pupil(pupil, photo, pyramid, limbus, rim_conf, conf) && agree(&pupil->e, &e, within);
+	if (!is)
+		is = told_by(&f, evidence, limbus, conf) > 0 && agree(&e, &f, conf->told_apart * limbus->a) && measure_near(pupil, photo, &e, sigma, rim_conf, conf)
+		     && believed(pupil, limbus, conf) && pupil->share_used > conf->told_used && agree(&pupil->e, &e, within);
+	if (is)
+		doubt(pupil, &e);
+	return is;
 }
 
 bool limbus_pupil_told(struct rim *pupil, const struct photo *photo, const struct pyramid *pyramid, const struct ellipse *limbus, const struct evidence *evidence,
