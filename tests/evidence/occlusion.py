@@ -4,6 +4,7 @@
     occlusion.py --make build/tests/evidence/make_occlusions --minutes 40 --out config/occlusion.onnx
     occlusion.py --make build/tests/evidence/make_occlusions --short      a minute: the loss falls, asserted
     occlusion.py --make build/tests/evidence/make_occlusions --start config/occlusion.onnx --minutes 0      figures alone, of the test split
+    occlusion.py --make build/tests/evidence/make_occlusions --mean FIRST.onnx SECOND.onnx 0.5 --minutes 0 --out config/occlusion.onnx    half of the second's weights
 
 Input: 1 x 8 x 128 x 128: red, green and blue without their means, over the standard deviation of their mean; four chances; the darkest channel as it is.
 Output: 1 x 4 x 64 x 64, logits of iris, pupil, reflection, and what lies before the eye. Needs python3-torch and python3-numpy.
@@ -167,6 +168,7 @@ def main():
     p.add_argument("--out")
     p.add_argument("--keep")
     p.add_argument("--start", help="checkpoint or ONNX file to begin with")
+    p.add_argument("--mean", nargs=3, metavar=("FIRST", "SECOND", "PART"), help="the mean of two networks' weights, part of the second, and its figures")
     p.add_argument("--minutes", type=float, default=40)
     p.add_argument("--rate", type=float, default=3e-3)
     p.add_argument("--batch", type=int, default=24)
@@ -183,7 +185,9 @@ def main():
     torch.manual_seed(args.seed)
     rng = torch.Generator().manual_seed(args.seed)
     net = Net().to(memory_format=torch.channels_last)
-    if args.start and args.start.endswith(".onnx"):
+    if args.mean:
+        weights.mean(net, args.mean[0], args.mean[1], float(args.mean[2]))
+    elif args.start and args.start.endswith(".onnx"):
         lessons = Lessons(args.make, 800000000, 0)
         weights.read(net, args.start, [even(lessons.fresh(24)[0].float() / 255) for _ in range(12)])
         lessons.close()
