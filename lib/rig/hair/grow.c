@@ -16,20 +16,20 @@ void hairs_grow(struct hairs *hairs, const struct rig *rig, const bool *shown, c
 			face[n++] = i;
 		}
 	struct ray_scene *skin = ray_scene_new(rig->n, (const float(*)[3])rig->rest, n, (const int32_t(*)[3])faces);
+	const struct front front[2] = { { rig, skin, face, 0, rig->globe[0].radius / 12 }, { rig, skin, face, 1, rig->globe[1].radius / 12 } };
 	for (int side = 0; side < 2; side++) {
-		const struct front front = { rig, skin, face, side, rig->globe[side].radius / 12 };
 		struct front_opening opening;
-		if (!front_open(&opening, &front))
+		if (!front_open(&opening, &front[side]))
 			continue;
-		hairs_grow_lashes(hairs, &front, &opening, conf, &rng);
-		hairs_find_rims(hairs, &front, &opening);
+		hairs_grow_lashes(hairs, &front[side], &opening, conf, &rng);
+		hairs_find_rims(hairs, &front[side], &opening);
 	}
 	if (conf->film)
 		memcpy(hairs->brow_rgb, conf->film->rgb, sizeof hairs->brow_rgb);
 	for (int side = 0; side < 2; side++)
-		hairs_grow_brow(hairs, &(struct front){ rig, skin, face, side, rig->globe[side].radius / 12 }, conf, &rng);
+		hairs_grow_brow(hairs, &front[side], conf, &rng);
 	if (conf->lash_mm > 0)
-		hairs_turn_out(hairs, rig, skin);
+		hairs_turn_out(hairs, front, skin);
 	ray_scene_free(skin);
 	free(face);
 	free(faces);

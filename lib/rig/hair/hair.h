@@ -1,7 +1,7 @@
 /* hair: lashes and brows that grow from a character's skin, as curved, tapered, clumped hairs, and move with it.
  *
- * Lashes are rooted on the outer edge of the lids' margins, which is found at rest: a margin's breadth along the skin from where the front
- * sees the eyeball end. Brows lie along the ridge above the sockets. A hair is a chain of points in the frame of its root: off the eyeball,
+ * Lashes are rooted on the outer edge of the lids' margins, which is found at rest: along the skin from where the front sees the eyeball end, where
+ * it turns to the front, at least a margin's breadth away. Brows lie along the ridge above the sockets. A hair is a chain of points in the frame of its root: off the eyeball,
  * along the lid outward, up over it; so it turns with the lid as that goes over the globe.
  */
 #ifndef RIG_HAIR_HAIR_H

@@ -61,12 +61,16 @@ struct lash_growth lash_average(const struct hair_conf *conf, int kind);
 void lash_plant(struct hairs *hairs, const struct front *front, const struct front_opening *opening, int kind, const struct lash_growth *growth, double margin_mm,
                 struct rng *rng);
 
+/* The skin that lies `away` units from a place of the front, x and `from`, up (of an upper lid) or down along the skin as a column of the front shows it. False:
+ * there is none. */
+bool lash_root(struct front_hit *root, const struct front *front, double x, double from, bool upper, double away);
+
 /* match.c, brow.c */
 void hairs_grow_lashes(struct hairs *hairs, const struct front *front, const struct front_opening *opening, const struct hair_conf *conf, struct rng *rng);
 void hairs_grow_brow(struct hairs *hairs, const struct front *front, const struct hair_conf *conf, struct rng *rng);
 
-/* turn.c: turns lashes, as little as does it, until skin crosses each in as few poses over the range of gaze, open, half open and shut, as can be.
- * skin: of the faces that hairs are to stand clear of, whose vertices are the rig's; left in a pose. */
-void hairs_turn_out(struct hairs *hairs, const struct rig *rig, struct ray_scene *skin);
+/* turn.c: turns lashes, or moves their roots off the margin, as little as does it, until skin crosses each in as few poses over the range of gaze, open, half open
+ * and shut, as can be. front: of both eyes; skin: theirs, left in a pose. */
+void hairs_turn_out(struct hairs *hairs, const struct front front[2], struct ray_scene *skin);
 
 #endif
