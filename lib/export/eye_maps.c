@@ -168,20 +168,50 @@ static struct image vessels(const struct scene *s)
 	return out;
 }
 
+/* Mean albedo of the iris inside the limbus. */
+static void outer_iris(float rgb[3], const struct image *albedo, const struct scene *s)
+{
+	double sum[3] = { 0 }, mm = 2 * s->extent / albedo->width;
+	long n = 0;
+	for (int y = 0; y < albedo->height; y++)
+		for (int x = 0; x < albedo->width; x++) {
+			const double rho = export_rho(s, (x + 0.5) * mm - s->extent, (y + 0.5) * mm - s->extent);
+			if (rho < 0.85 || rho > 0.97)
+				continue;
+			for (int c = 0; c < 3; c++)
+				sum[c] += image_at(albedo, x, y)[c];
+			n++;
+		}
+	for (int c = 0; c < 3; c++)
+		rgb[c] = n ? (float)(sum[c] / (double)n) : 0;
+}
+
 static void cornea_texel(struct image maps[EXPORT_MAPS], const struct scene *s, int x, int y)
 {
 	struct image *colour = &maps[EXPORT_CORNEA_COLOUR];
 	double e = export_cornea_extent(s), u = ((x + 0.5) / colour->width * 2 - 1) * e, v = ((y + 0.5) / colour->width * 2 - 1) * e, rho = export_rho(s, u, v);
 	double at[3], n[3], in[3];
-	float white[3], share = (float)export_white(s, rho), *rgb = image_at(colour, x, y);
+	float share = (float)export_white(s, rho);
 	export_front(at, s, u, v);
-	white_at(white, n, s, at);
-	for (int c = 0; c < 3; c++)
-		rgb[c] = 1 + share * (white[c] - 1);
+	white_at(image_at(colour, x, y), n, s, at);
 	*image_at(&maps[EXPORT_CORNEA_CLEAR], x, y) = 1 - share;
 	export_normal(n, s, at);
 	bool ok = refract(in, (double[3]){ 0, 0, 1 }, n, 1, s->cornea.n) && in[2] > 0;
 	*image_at(&maps[EXPORT_CORNEA_DEPTH], x, y) = (float)(ok ? fmax((s->eye.iris_depth - at[2]) / in[2], 0) : 0);
+}
+
+/* A material has one colour for what it scatters and what goes through: where it does both, the two together become as bright as sclera and clear glass before that
+ * iris are, in light that is the same on both. */
+static void join_colours(struct image maps[EXPORT_MAPS], const struct scene *s)
+{
+	float iris[3];
+	outer_iris(iris, &maps[EXPORT_IRIS_ALBEDO], s);
+	struct image *colour = &maps[EXPORT_CORNEA_COLOUR], *clear = &maps[EXPORT_CORNEA_CLEAR];
+	for (long i = 0; i < (long)colour->width * colour->height; i++)
+		for (int c = 0; c < 3; c++) {
+			float *rgb = colour->px + 3 * i + c, through = clear->px[i] * iris[c];
+			*rgb += (1 - *rgb) * through / fmaxf(1 - clear->px[i] + through, 1e-6f);
+		}
 }
 
 static void rough_texel(struct image maps[EXPORT_MAPS], const struct scene *s, int x, int y)
@@ -250,6 +280,7 @@ bool export_eye_maps(struct image maps[EXPORT_MAPS], const struct scene *s, cons
 	each_texel(maps, EXPORT_SCLERA_ALBEDO, s, sclera_texel);
 	each_texel(maps, EXPORT_SCLERA_NORMAL, s, ripple_texel);
 	each_texel(maps, EXPORT_CORNEA_COLOUR, s, cornea_texel);
+	join_colours(maps, s);
 	each_texel(maps, EXPORT_SCLERA_ROUGHNESS, s, rough_texel);
 	return true;
 }

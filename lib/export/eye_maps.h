@@ -14,7 +14,7 @@ enum export_map {
 	EXPORT_SCLERA_NORMAL,     // ripples of the tear film
 	EXPORT_SCLERA_VESSELS,    // 0..1: share of green light that vessels take
 	EXPORT_SCLERA_ROUGHNESS,  // of the tear film, glTF's (its square is GGX's alpha)
-	EXPORT_CORNEA_COLOUR,     // linear; white where it is clear, the sclera's colour at the rim
+	EXPORT_CORNEA_COLOUR,     // linear; white where it is clear, the sclera's colour where it is not, and between them what makes both together as bright as they are
 	EXPORT_CORNEA_CLEAR,      // share of light that goes through, 0..1
 	EXPORT_CORNEA_DEPTH,      // length of a refracted ray along the axis from here to the iris plane, mm
 	EXPORT_CORNEA_ROUGHNESS,

@@ -3,63 +3,18 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "draw/eye/look.h"
 #include "draw/eye/render.h"
 #include "draw/face/impl.h"
-#include "draw/face/sky.h"
 #include "math/vec.h"
-
-/* rig_from_eye: columns x, y, z of the eye's frame (lib/README.md: z into the eye, x and y as a camera before it has them), for a
- * globe turned so. */
-static void eye_axes(double axes[3][3], const double target_from_globe[3][3])
-{
-	for (int i = 0; i < 3; i++) {
-		axes[i][0] = target_from_globe[i][0];
-		axes[i][1] = -target_from_globe[i][1];
-		axes[i][2] = -target_from_globe[i][2];
-	}
-}
-
-/* mm of the rig in one of the eye's. */
-static double eye_scale(const struct portrait *p, int side)
-{
-	return p->rig->globe[side].radius / p->eye[side]->conf.sclera_radius;
-}
-
-/* Nearest root of |o + t d - c| = r that lies on the cap beyond depth `from` along the axis. */
-static double ball_hit(const double o[3], const double d[3], double cz, double r, double above)
-{
-	double q[3] = { o[0], o[1], o[2] - cz }, b = vec_dot(q, d), disc = b * b - vec_dot(q, q) + r * r;
-	if (disc < 0)
-		return INFINITY;
-	double t = -b - sqrt(disc);
-	return t > 0 && o[2] + t * d[2] <= above ? t : INFINITY;
-}
-
-float portrait_eye_hit(const struct portrait *p, int side, const float origin[3], const float dir[3])
-{
-	const struct scene *s = p->eye[side];
-	double axes[3][3], o[3], d[3], scale = eye_scale(p, side), from[3], along[3] = { dir[0], dir[1], dir[2] };
-	eye_axes(axes, p->target_from_globe[side]);
-	for (int c = 0; c < 3; c++)
-		from[c] = (origin[c] - p->rig->globe[side].center[c]) / scale;
-	mat_tvec(o, axes, from);
-	mat_tvec(d, axes, along);
-	o[2] += s->sclera_z;  // the eye's frame begins at the corneal apex
-	// The cornea's conic as the sphere through its apex and the limbus: what decides which of eye and lid is nearer.
-	double r = s->limbus[0], z = s->limbus_depth, R = (r * r + z * z) / (2 * z);
-	double t = fmin(ball_hit(o, d, s->sclera_z, s->conf.sclera_radius, INFINITY), ball_hit(o, d, R, R, z));
-	return (float)(t * scale);
-}
 
 static struct scene_view eye_view(const struct portrait *p, const struct portrait_view *v, int side)
 {
 	const struct scene *s = p->eye[side];
 	const struct rig_globe *g = &p->rig->globe[side];
 	struct scene_view view = { .scale = 1, .samples = p->conf.eye_samples };
-	double axes[3][3], scale = eye_scale(p, side), cam_scale = 0;
+	double axes[3][3], scale = portrait_eye_scale(p, side), cam_scale = 0;
 	view.camera = (struct camera){ .focal_px = v->focal_px, .center_px = { v->center_px[0], v->center_px[1] }, .source = CAMERA_CONF };
-	eye_axes(axes, p->target_from_globe[side]);
+	portrait_eye_axes(axes, p, side);
 	for (int k = 0; k < 3; k++)
 		cam_scale += v->cam_from_target[0][k] * v->cam_from_target[0][k];
 	cam_scale = sqrt(cam_scale);
@@ -113,40 +68,60 @@ static unsigned char *visible_of(const int window[4], const struct portrait_view
 	return out;
 }
 
-/* Lids darken the eye below them: they leave it some of its sky, of which the light is that about its middle. */
-static void shade_eye(struct image *image, const int corner[2], const struct portrait *p, const struct portrait_rays *rays, int side)
+static bool behind_lid(const struct portrait *p, const float origin[3], const float dir[3], const float at[3])
 {
-	const double *center = p->rig->globe[side].center;
-#pragma omp parallel for schedule(dynamic, 4)
-	for (int y = 0; y < image->height; y++)
-		for (int x = 0; x < image->width; x++) {
-			float dir[3], at[3], normal[3], len = 0, *px = image_at(image, x, y);
-			portrait_ray(dir, rays, corner[0] + x + 0.5, corner[1] + y + 0.5);
-			float t = portrait_eye_hit(p, side, rays->origin, dir);
-			if (!isfinite(t) || px[3] == 0)
-				continue;
-			for (int c = 0; c < 3; c++) {
-				at[c] = rays->origin[c] + t * dir[c];
-				normal[c] = at[c] - (float)center[c];
-				len += normal[c] * normal[c];
+	float t = 0;
+	for (int c = 0; c < 3; c++)
+		t += (at[c] - origin[c]) * dir[c];
+	return ray_blocked(p->shadow, origin, dir, 0, t - 0.02f);
+}
+
+/* Pixels that show the eye become, where they are not seen, the mean of those beside them that are; further in they stay. */
+static void take_beside(struct image *image, const unsigned char *seen)
+{
+	const int w = image->width, h = image->height;
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			float sum[4] = { 0 };
+			int n = 0;
+			for (int k = 0; k < 9 && !seen[(long)y * w + x]; k++) {
+				const int u = x + k % 3 - 1, v = y + k / 3 - 1;
+				if (u < 0 || v < 0 || u >= w || v >= h || !seen[(long)v * w + u])
+					continue;
+				for (int c = 0; c < 4; c++)
+					sum[c] += image_at(image, u, v)[c];
+				n++;
 			}
-			for (int c = 0; c < 3; c++)
-				normal[c] /= sqrtf(len);
-			static const float bounce[3] = { LOOK_BOUNCE };  // light off the lids
-			float middle[3], to[2][3], light[2][3];
-			const float open = portrait_sky_over(middle, p, at, normal);
-			for (int c = 0; c < 3; c++) {
-				to[0][c] = to[1][c] = 0;
-				for (int k = 0; k < 3; k++) {
-					to[0][c] += (float)rays->rig_from_cam[k][c] * normal[k];
-					to[1][c] += (float)rays->rig_from_cam[k][c] * middle[k];
-				}
-			}
-			for (int k = 0; k < 2; k++)
-				envmap_wet(light[k], p->env, to[k]);
-			for (int c = 0; c < 3; c++)
-				px[c] *= open * fminf(fmaxf(light[1][c], 0.02f) / fmaxf(light[0][c], 0.02f), 2) + bounce[c] * (1 - open);
+			for (int c = 0; c < 4 && n; c++)
+				image_at(image, x, y)[c] = sum[c] / (float)n;
 		}
+}
+
+/* Lids and lashes before the light: of a picture of the eye alone, and the same without what its outside mirrors. Pixels whose middle lies behind a lid are
+ * as their neighbours that show the eye. */
+static void shade_eye(struct image *image, const struct image *matte, const int corner[2], const struct portrait *p, const struct portrait_rays *rays, int side)
+{
+	struct portrait_beneath *beneath = portrait_beneath_new(p, rays, side);
+	const int w = image->width, h = image->height;
+	unsigned char *seen = mem_new((size_t)w * (size_t)h + 1, 1);
+#pragma omp parallel for schedule(dynamic, 4)
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			float dir[3], share[3], skin[3], *px = image_at(image, x, y);
+			const float *own = image_at(matte, x, y);
+			struct portrait_eye_spot spot;
+			portrait_ray(dir, rays, corner[0] + x + 0.5, corner[1] + y + 0.5);
+			if (px[3] == 0 || !portrait_eye_meet(&spot, p, side, rays->origin, dir) || behind_lid(p, rays->origin, dir, spot.at))
+				continue;
+			portrait_beneath_light(share, beneath, &spot);
+			const float room = p->matte ? 0 : portrait_beneath_mirrored(skin, beneath, &spot, dir);
+			for (int c = 0; c < 3; c++)
+				px[c] = own[c] * share[c] + (p->matte ? 0 : px[3] * skin[c] + room * (px[c] - own[c]));
+			seen[(long)y * w + x] = 1;
+		}
+	take_beside(image, seen);
+	free(seen);
+	portrait_beneath_free(beneath);
 }
 
 void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *p, const struct portrait_view *v,
@@ -170,7 +145,14 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *p, 
 		if (!light.n)
 			light = scene_lighting(p->env, p->matte ? 0 : p->env, 8);
 		out[side] = scene_render(p->eye[side], &view, &light, &count);
+		struct image matte = image_new(0, 0, 4);
+		if (!p->matte) {
+			struct scene_lighting dull = light;
+			dull.mirror = 0;
+			matte = scene_render(p->eye[side], &view, &dull, &count);
+		}
+		shade_eye(&out[side], p->matte ? &out[side] : &matte, at[side], p, &rays, side);
+		image_free(&matte);
 		free(visible);
-		shade_eye(&out[side], at[side], p, &rays, side);
 	}
 }

@@ -27,7 +27,11 @@ void portrait_veils_free(struct portrait_veils *veils);
 /* Value noise in -1..1 at a point p of the skin at rest (mm); per_mm: cells in a mm. */
 float portrait_noise(const float p[3], float per_mm);
 
-/* light.c: the environment's directions in the rig's axes. */
+/* light.c: the environment by at most n directions, in the rig's axes; returns how many. */
+struct portrait_rays;
+int portrait_lights(struct envmap_light light[], int n, const struct portrait *portrait, const struct portrait_rays *rays);
+
+/* The environment's directions in the rig's axes. */
 struct portrait_sky {
 	int n;
 	float detail;  // 0..1: how far pixels of the view resolve pores
@@ -35,6 +39,9 @@ struct portrait_sky {
 	float rig_from_cam[3][3];
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
+/* Light that skin sends from where a ray meets it between from and to (mm), over pi: its albedo times light [rig.n]. False: there is none. */
+bool portrait_skin_light(float rgb[3], const struct portrait *portrait, const float (*light)[3], const float at[3], const float dir[3], float from, float to);
+
 /* shade.c: colour of the point of a face that the ray from origin along dir (unit) meets. light: irradiance there; null:
  * interpolated from the vertices. */
 void portrait_shade(float rgb[3], const struct portrait *portrait, const struct portrait_sky *sky, int face,
@@ -77,7 +84,7 @@ bool portrait_fold(float normal[3], float light[3], const struct portrait *portr
 void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                    const struct portrait_spot *spots, int samples);
 
-/* tear.c: draws the tear line and the shadow of the lids' edges into those pictures. */
+/* tear.c: draws the tear line into those pictures. */
 void portrait_tears(struct image out[2], int at[2][2], const struct portrait *portrait, const struct portrait_view *view,
                     const struct portrait_spot *spots, int samples);
 
@@ -111,8 +118,46 @@ uint8_t portrait_material(float *cover, const struct portrait_spot *spots, long 
  * direction from the lid in the globe's tangent plane. */
 void portrait_meniscus(float normal[3], const float globe[3], const float away[3], float d, float height);
 
+/* globe.c: an eye as a sphere with a spherical cornea. */
 /* Distance to the eye along a ray in the rig's frame, mm; INFINITY: missed. */
 float portrait_eye_hit(const struct portrait *portrait, int side, const float origin[3], const float dir[3]);
+
+/* rig_from_eye: columns x, y, z of the eye's frame (lib/README.md: z into the eye, x and y as a camera before it has them), as it is turned. */
+void portrait_eye_axes(double axes[3][3], const struct portrait *portrait, int side);
+
+/* mm of the rig in one of the eye's; radius (the eye's mm) of the sphere through the apex and the limbus, which stands for the cornea. */
+double portrait_eye_scale(const struct portrait *portrait, int side);
+double portrait_eye_cap(const struct scene *scene);
+
+/* A direction d outside (index 1) bent to the inside of a surface with the unit normal n, both away from it: towards the light or the camera. cosine: of d with n.
+ * False: d comes from behind. */
+bool portrait_eye_bend(double in[3], double *cosine, const double d[3], const double n[3], double index);
+
+/* Where a ray meets an eye: a place of its outside and the unit normal there (the rig's frame, mm). white: share of the sclera in what is seen there;
+ * within: if that is not 1, the place of the iris plane that the ray comes to through the cornea (the eye's frame, mm). False: missed. */
+struct portrait_eye_spot {
+	float at[3], normal[3], white;
+	double within[3];
+};
+bool portrait_eye_meet(struct portrait_eye_spot *spot, const struct portrait *portrait, int side, const float origin[3], const float dir[3]);
+
+/* beneath.c: light on an eye below lids and lashes, in the pose and light of a picture. */
+struct portrait_beneath;
+struct portrait_beneath *portrait_beneath_new(const struct portrait *portrait, const struct portrait_rays *rays, int side);
+void portrait_beneath_free(struct portrait_beneath *beneath);
+
+/* Light that reaches what is seen there, the light that the lids' skin sends included, over what would reach it without lids and lashes. */
+void portrait_beneath_light(float share[3], const struct portrait_beneath *beneath, const struct portrait_eye_spot *spot);
+
+/* Skin that the outside mirrors there towards a camera that sees it along dir; returns what is left of the room's image: 0 where skin stands before it. */
+float portrait_beneath_mirrored(float rgb[3], const struct portrait_beneath *beneath, const struct portrait_eye_spot *spot, const float dir[3]);
+
+/* fringe.c: what lashes, and brows, leave of light that comes to an eye, and to the skin about it, from each of n directions (the rig's axes). For the
+ * mesh's pose. */
+struct portrait_fringe;
+struct portrait_fringe *portrait_fringe_new(const struct portrait *portrait, int side, bool brows, int n, const struct envmap_light light[]);
+void portrait_fringe_free(struct portrait_fringe *fringe);
+float portrait_fringe_through(const struct portrait_fringe *fringe, int k, const float at[3]);
 
 /* The camera in the rig's frame, and a pixel's ray there (dir: unit; scale: its length along the camera's axis). */
 struct portrait_rays {

@@ -121,9 +121,9 @@ void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)
 	const int point = p->hair_piece[(face - p->first_lash) / TRIANGLES];
 	const struct hair *h = &p->hairs.hair[p->hair_of[point]];
 	const float tip = (float)(point - h->first) / (float)(h->n - 1);
-	const float *light = p->mesh.light[h->vertex[0]];
+	const int root = h->vertex[0];
 	double albedo[3];
 	portrait_lash_albedo(albedo, p, h);
 	for (int c = 0; c < 3; c++)
-		rgb[c] = ((float)albedo[c] * (1 + tips * tip) + sheen) * light[c];
+		rgb[c] = ((float)albedo[c] * (1 + tips * tip) + sheen) * (p->mesh.light[root][c] + p->bald[root][c] - p->direct[root][c]);
 }

@@ -244,6 +244,8 @@ void portrait_mesh_make(struct portrait *p)
 		memcpy(m->faces[m->n_faces++], rig->faces[f], sizeof *m->faces);
 	}
 	p->shadow = ray_scene_new(rig->n, (const float(*)[3])rig->rest, solid, (const int32_t(*)[3])m->faces);
+	p->solid = fresh((size_t)solid, sizeof *p->solid);
+	memcpy(p->solid, m->faces, (size_t)solid * sizeof *p->solid);
 	double edge = edge_of(m, rig, marked);
 	for (int k = 0; k < p->conf.subdivide && edge > fine_mm; k++, edge /= 2)
 		subdivide(m, marked);

@@ -82,6 +82,8 @@ struct portrait *portrait_new(const struct rig *rig, const struct scene *const e
 	portrait_mesh_make(p);
 	neighbours(p);
 	colours(p);
+	p->direct = mem_new((size_t)rig->n + 1, sizeof *p->direct);
+	p->bald = mem_new((size_t)rig->n + 1, sizeof *p->bald);
 	p->lit = mem_new((size_t)rig->n + 1, sizeof *p->lit);
 	p->lit_at = mem_new((size_t)rig->n + 1, sizeof *p->lit_at);
 	deform_rest(p->deform, p->mesh.x, p->mesh.normal);
@@ -104,11 +106,14 @@ void portrait_free(struct portrait *p)
 		return;
 	portrait_mesh_free(&p->mesh);
 	ray_scene_free(p->shadow);
+	free(p->solid);
 	deform_free(p->deform);
 	deform_near_free(&p->lids);
 	portrait_lashes_free(p);
 	free(p->wrinkle_input);
 	free(p->wrinkle_strength);
+	free(p->direct);
+	free(p->bald);
 	free(p->lit);
 	free(p->lit_at);
 	free(p->near_start);

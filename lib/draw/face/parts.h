@@ -17,7 +17,10 @@ struct portrait {
 	struct deform_near lids;
 	struct portrait_mesh mesh;
 	struct ray_scene *shadow;   // the skin's own triangles
-	float (*lit)[3];            // irradiance at the rig's vertices, before it is spread
+	int32_t (*solid)[3];        // their vertices
+	float (*direct)[3];         // irradiance at the rig's vertices that no skin sends
+	float (*bald)[3];           // the same without the shade of hairs: that is what they have themselves
+	float (*lit)[3];            // all of it, before it is spread
 	float (*lit_at)[3];         // where they were then
 	int *near_start, *near;     // neighbours of the rig's vertices
 	float *spread;              // diffusion weight of each neighbour, for red

@@ -3,7 +3,7 @@
  *
  * The meniscus is a quarter of a circle, tangent to the globe and to the lid: with d the distance to the lid and R its height,
  * its depth is R - sqrt(R^2 - (R - d)^2). Its normal leans away from the lid, so along a lower lid it reflects what is above.
- * It is higher at the inner corner, and absorbs light on its way in and out (wet.c). The lid's edge shadows the globe below it. */
+ * It is higher at the inner corner, and absorbs light on its way in and out (wet.c). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,7 +13,6 @@
 #include "draw/smooth.h"
 #include "image/distance/distance.h"
 
-static const float shadow_mm = (float)TEAR_SHADOW_MM, shadow_part = (float)TEAR_SHADOW;
 
 /* A part of the screen round one eye: inputs and outputs of the distance field. */
 struct field {
@@ -168,11 +167,8 @@ static void pixel_wet(float *px, const struct wet *w, double x, double y, const 
 	const bool edge = f->material[i] == DISTANCE_SKIN;
 	float off[2], px_mm, d = edge ? 0 : f->distance[i] / w->per_mm;
 	float dir[3], at[3], n[3], out[3], lean[3], rgb[3], fresnel, len = 0;
-	float dark = 1 - shadow_part * expf(-(float)TEAR_SHADOW_FADE * d / shadow_mm) * (1 - smooth((float)TEAR_SHADOW_END * shadow_mm, shadow_mm, d));
 	portrait_ray(dir, w->rays, x, y);
 	float t = portrait_eye_hit(w->p, w->side, w->rays->origin, dir);
-	for (int c = 0; c < 3; c++)
-		px[c] *= dark;
 	if (!isfinite(t) || d >= w->reach + w->blur)
 		return;
 	for (int c = 0; c < 3; c++) {
@@ -221,7 +217,7 @@ void portrait_tears(struct image out[2], int at[2][2], const struct portrait *p,
 			away += v->cam_from_target[2][c] * p->rig->globe[side].center[c];
 		wet.pixel = (float)(away / (v->focal_px * scale));
 		wet.blur = 2 * wet.pixel;
-		struct field f = field_make(p, v, spots, samples, side, eye, at[side], fmax((double)(wet.reach + wet.blur), (double)shadow_mm) * scale, away, &rays);
+		struct field f = field_make(p, v, spots, samples, side, eye, at[side], (double)(wet.reach + wet.blur) * scale, away, &rays);
 #pragma omp parallel for schedule(dynamic, 8)
 		for (int y = 0; y < eye->height; y++)
 			for (int x = 0; x < eye->width; x++) {

@@ -9,6 +9,7 @@
 #include "rig/glb/targets.h"
 
 enum { TUBE = 3, RIBBON = 2 };
+static const float tube = 1.2092f;  // radius of the circle round a triangle that is as wide as a round hair, in the mean over where it is seen from: 2 pi / (3 sqrt 3)
 
 static int sides_of(const struct hair *h)
 {
@@ -55,7 +56,7 @@ static void one(float (*out)[3], float (*normal)[3], const struct hairs *hairs, 
 		for (int i = 0; i < (tip ? 1 : sides); i++, row++)
 			for (int c = 0; c < 3; c++) {
 				const float turn = 2 * (float)M_PI * (float)i / (float)sides, side = cosf(turn) * a[c] + sinf(turn) * b[c];
-				out[row][c] = point[k][c] + (tip ? 0 : hair_half(h, k) * side);
+				out[row][c] = point[k][c] + (tip ? 0 : (ribbon ? 1 : tube) * hair_half(h, k) * side);
 				if (normal)
 					normal[row][c] = ribbon ? b[c] : tip ? way[c] : side;
 			}

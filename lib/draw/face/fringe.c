@@ -1,0 +1,148 @@
+/* Hairs before an eye and the skin about it, as light from one direction has them: a map of their optical depth, perpendicular to it, and of where along it
+ * they are. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "draw/face/impl.h"
+#include "math/vec.h"
+
+static const float reach[2] = { 1.2f, 2.8f };  // of the globe's radius: the eye; brows, too
+static const float cell_mm[2] = { 0.15f, 0.3f };
+static const float apart_mm = 0.3f;   // behind hairs by less than that they shade a place by part
+static const float step = 0.4f;       // between points of a hair, of their shadows' half width
+static const float widest = 0.4f;     // tangent of half the angle between directions, at most
+
+struct plane {
+	float across[3], up[3], dir[3];
+	float spread;   // tangent of half the angle to the nearest other direction
+	float (*depth)[2];   // [cells][cells]; and that times where, mm from the globe's middle towards the light
+};
+
+struct portrait_fringe {
+	float center[3], radius, cell;  // mm
+	int n, cells;
+	struct plane *plane;
+};
+
+static float dot(const float a[3], const float b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void plane_make(struct plane *plane, int cells, int k, int n, const struct envmap_light light[])
+{
+	const float *d = light[k].dir;
+	float nearest = -1;
+	const int thin = fabsf(d[0]) < 0.6f ? 0 : 1;
+	for (int c = 0; c < 3; c++) {
+		plane->dir[c] = d[c];
+		plane->across[c] = (c == thin) - d[c] * d[thin];
+	}
+	vecf_unit(plane->across);
+	vecf_cross(plane->up, d, plane->across);
+	for (int i = 0; i < n; i++)
+		nearest = i == k ? nearest : fmaxf(nearest, dot(d, light[i].dir));
+	plane->spread = fminf(sqrtf(fmaxf(1 - nearest, 0) / (1 + nearest)), widest);
+	plane->depth = mem_new((size_t)cells * (size_t)cells, sizeof *plane->depth);
+}
+
+/* Half the width, in cells, of the shadow of a place of a hair: the further that is from the globe, the softer, if it does not lie on skin. */
+static float softness(const struct portrait_fringe *f, const struct plane *plane, const float off[3], bool lies)
+{
+	const float u = dot(off, plane->across), v = dot(off, plane->up), ground2 = f->radius * f->radius - u * u - v * v;
+	const float above = lies ? 0 : fmaxf(dot(off, plane->dir) - (ground2 > 0 ? sqrtf(ground2) : 0), 0);
+	return 1.5f + plane->spread * above / f->cell;
+}
+
+/* A piece of a hair, of that area perpendicular to the light, as a tent round the place of its shadow. */
+static void put(const struct portrait_fringe *f, const struct plane *plane, const float off[3], float area, float wide)
+{
+	const float half = 0.5f * (float)f->cells, i = dot(off, plane->across) / f->cell + half, j = dot(off, plane->up) / f->cell + half, s = dot(off, plane->dir);
+	const float height = area / (f->cell * f->cell * wide * wide);
+	const int x0 = (int)fmaxf(ceilf(i - wide), 0), x1 = (int)fminf(floorf(i + wide), (float)(f->cells - 1));
+	const int y0 = (int)fmaxf(ceilf(j - wide), 0), y1 = (int)fminf(floorf(j + wide), (float)(f->cells - 1));
+	for (int b = y0; b <= y1; b++)
+		for (int a = x0; a <= x1; a++) {
+			const float more = height * (1 - fabsf((float)a - i) / wide) * (1 - fabsf((float)b - j) / wide);
+			plane->depth[b * f->cells + a][0] += more;
+			plane->depth[b * f->cells + a][1] += more * s;
+		}
+}
+
+static void put_hair(const struct portrait_fringe *f, const struct plane *plane, const struct hair *h, const float (*point)[3])
+{
+	for (int k = 0; k + 1 < h->n; k++) {
+		float way[3];
+		for (int c = 0; c < 3; c++)
+			way[c] = point[k + 1][c] - point[k][c];
+		const float along = dot(way, plane->dir), len2 = dot(way, way), breadth = hair_half(h, k) + hair_half(h, k + 1);
+		float off[3];
+		for (int c = 0; c < 3; c++)
+			off[c] = 0.5f * (point[k][c] + point[k + 1][c]) - f->center[c];
+		const float wide = softness(f, plane, off, h->kind == HAIR_BROW), across2 = fmaxf(len2 - along * along, 0);
+		const int pieces = 1 + (int)(sqrtf(across2) / (step * wide * f->cell));
+		for (int i = 0; i < pieces; i++) {
+			for (int c = 0; c < 3; c++)
+				off[c] = point[k][c] + ((float)i + 0.5f) / (float)pieces * way[c] - f->center[c];
+			put(f, plane, off, breadth * sqrtf(across2) / (float)pieces, wide);
+		}
+	}
+}
+
+struct portrait_fringe *portrait_fringe_new(const struct portrait *p, int side, bool brows, int n, const struct envmap_light light[])
+{
+	struct portrait_fringe *f = mem_new(1, sizeof *f);
+	const struct rig_globe *g = &p->rig->globe[side];
+	f->radius = (float)g->radius;
+	f->cell = cell_mm[brows];
+	f->cells = 2 * (int)ceilf(reach[brows] * f->radius / f->cell);
+	f->n = n;
+	for (int c = 0; c < 3; c++)
+		f->center[c] = (float)g->center[c];
+	f->plane = mem_new((size_t)n + 1, sizeof *f->plane);
+#pragma omp parallel for schedule(dynamic)
+	for (int k = 0; k < n; k++) {
+		plane_make(&f->plane[k], f->cells, k, n, light);
+		for (int i = 0; i < p->hairs.n; i++) {
+			const struct hair *h = &p->hairs.hair[i];
+			float point[HAIR_LASH_POINTS][3];
+			if ((h->kind == HAIR_BROW && !brows) || h->side != side)
+				continue;
+			hair_place(point, &p->hairs, h, p->rig, (const float(*)[3])p->mesh.x);
+			put_hair(f, &f->plane[k], h, (const float(*)[3])point);
+		}
+	}
+	return f;
+}
+
+void portrait_fringe_free(struct portrait_fringe *f)
+{
+	for (int k = 0; f && k < f->n; k++)
+		free(f->plane[k].depth);
+	if (f)
+		free(f->plane);
+	free(f);
+}
+
+float portrait_fringe_through(const struct portrait_fringe *f, int k, const float at[3])
+{
+	const struct plane *plane = &f->plane[k];
+	float off[3];
+	for (int c = 0; c < 3; c++)
+		off[c] = at[c] - f->center[c];
+	const float half = 0.5f * (float)f->cells, i = dot(off, plane->across) / f->cell + half, j = dot(off, plane->up) / f->cell + half;
+	if (!(i >= 0 && j >= 0 && i < (float)(f->cells - 1) && j < (float)(f->cells - 1)))
+		return 1;
+	const int a = (int)i, b = (int)j;
+	const float x = i - (float)a, y = j - (float)b, w[4] = { (1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y };
+	float depth = 0, where = 0;
+	for (int q = 0; q < 4; q++) {
+		const float *cell = plane->depth[(b + q / 2) * f->cells + a + q % 2];
+		depth += w[q] * cell[0];
+		where += w[q] * cell[1];
+	}
+	if (!(depth > 0))
+		return 1;
+	return expf(-depth * fminf(fmaxf((where / depth - dot(off, plane->dir)) / apart_mm, 0), 1));
+}
